@@ -1,0 +1,182 @@
+// Exact signs and distances: see the header. SPDX-License-Identifier: Apache-2.0
+#include <gridiron/base/exact_sum.h>
+
+#include <bit>
+
+namespace gridiron {
+namespace {
+
+constexpr int kFloatLowestExponent = -149;
+
+struct Decomposed {
+  std::uint32_t mantissa;
+  int exponent;  ///< value = +-mantissa * 2^exponent
+  bool negative;
+};
+
+Decomposed decompose(float value) {
+  const std::uint32_t bits = std::bit_cast<std::uint32_t>(value);
+  const std::uint32_t biased = (bits >> 23) & 0xFFu;
+  const std::uint32_t fraction = bits & 0x7FFFFFu;
+  if (biased == 0) return {fraction, kFloatLowestExponent, (bits >> 31) != 0};
+  return {fraction | 0x800000u, static_cast<int>(biased) - 150, (bits >> 31) != 0};
+}
+
+// Adds limb * 2^(32 index + shift) to a magnitude whose bits there are still zero or come from lower limbs.
+void shift_in(std::uint32_t* out, int shift, int index, std::uint64_t limb) {
+  const int base = index + shift / 32;
+  const std::uint64_t moved = limb << (shift % 32);
+  out[base] |= static_cast<std::uint32_t>(moved);
+  out[base + 1] |= static_cast<std::uint32_t>(moved >> 32);
+}
+
+// Compares numerator with denominator * mantissa * 2^exponent, all non-negative, -160 <= exponent <= 128.
+// The window is wide enough for a shift of one operand by any float exponent.
+int compare_with_multiple(const ExactSum& numerator, const ExactSum& denominator, std::uint32_t mantissa,
+                          int exponent) {
+  constexpr int kWideLimbs = ExactSum::kLimbCount + 7;
+  std::uint32_t left[kWideLimbs] = {};
+  std::uint32_t right[kWideLimbs] = {};
+  const int left_shift = exponent < 0 ? -exponent : 0;
+  const int right_shift = exponent > 0 ? exponent : 0;
+  for (int i = 0; i < ExactSum::kLimbCount; ++i) shift_in(left, left_shift, i, numerator.limb(i));
+  std::uint64_t carry = 0;
+  for (int i = 0; i < ExactSum::kLimbCount + 1; ++i) {
+    if (i < ExactSum::kLimbCount) carry += std::uint64_t{denominator.limb(i)} * mantissa;
+    shift_in(right, right_shift, i, carry & 0xFFFFFFFFu);
+    carry >>= 32;
+  }
+  for (int i = kWideLimbs - 1; i >= 0; --i) {
+    if (left[i] != right[i]) return left[i] < right[i] ? -1 : 1;
+  }
+  return 0;
+}
+
+void add_volume(ExactSum& sum, const float org[3], const float a[3], const float b[3], const float c[3]) {
+  sum.add_determinant(1, a, b, c);
+  sum.add_determinant(-1, org, b, c);
+  sum.add_determinant(-1, a, org, c);
+  sum.add_determinant(-1, a, b, org);
+}
+
+}  // namespace
+
+void ExactSum::add_product(int sign, float a, float b, float c) {
+  const Decomposed x = decompose(a);
+  const Decomposed y = decompose(b);
+  const Decomposed z = decompose(c);
+  const std::uint64_t xy = std::uint64_t{x.mantissa} * y.mantissa;   // 48 bits
+  const std::uint64_t low = (xy & 0xFFFFFFFFu) * z.mantissa;         // 56 bits
+  const std::uint64_t high = (xy >> 32) * z.mantissa + (low >> 32);  // product = high * 2^32 + low's 32 bits
+  const int position = x.exponent + y.exponent + z.exponent - kLowestExponent;  // 0..759
+  const int index = position / 32;
+  const int shift = position % 32;
+  const std::uint64_t part0 = (low & 0xFFFFFFFFu) << shift;
+  const std::uint64_t part1 = ((high & 0xFFFFFFFFu) << shift) + (part0 >> 32);
+  const std::uint64_t part2 = ((high >> 32) << shift) + (part1 >> 32);
+  const bool negative = (x.negative != y.negative) != (z.negative != (sign < 0));
+  const std::int64_t unit = negative ? -1 : 1;
+  limbs_[index] += unit * static_cast<std::int64_t>(part0 & 0xFFFFFFFFu);
+  limbs_[index + 1] += unit * static_cast<std::int64_t>(part1 & 0xFFFFFFFFu);
+  limbs_[index + 2] += unit * static_cast<std::int64_t>(part2 & 0xFFFFFFFFu);
+  limbs_[index + 3] += unit * static_cast<std::int64_t>(part2 >> 32);
+}
+
+void ExactSum::add_determinant(int sign, const float a[3], const float b[3], const float c[3]) {
+  add_product(sign, a[0], b[1], c[2]);
+  add_product(sign, a[1], b[2], c[0]);
+  add_product(sign, a[2], b[0], c[1]);
+  add_product(-sign, a[2], b[1], c[0]);
+  add_product(-sign, a[1], b[0], c[2]);
+  add_product(-sign, a[0], b[2], c[1]);
+}
+
+int ExactSum::sign() {
+  std::int64_t carry = 0;
+  std::uint32_t any = 0;
+  for (std::int64_t& limb : limbs_) {
+    const std::int64_t value = limb + carry;
+    const std::uint32_t digit = static_cast<std::uint32_t>(value);
+    carry = value >> 32;
+    limb = digit;
+    any |= digit;
+  }
+  // A negative sum leaves carry -1; the top limb takes it back, so that the limbs still say the same number.
+  limbs_[kLimbCount - 1] += carry * (std::int64_t{1} << 32);
+  if (carry < 0) return -1;
+  return any != 0 ? 1 : 0;
+}
+
+int ExactSum::take_magnitude() {
+  const int had = sign();
+  if (had < 0) {
+    for (std::int64_t& limb : limbs_) limb = -limb;
+    (void)sign();
+  }
+  return had;
+}
+
+int exact_edge_sign(const float org[3], const float dir[3], const float a[3], const float b[3]) {
+  ExactSum sum;  // det[d, a-o, b-o] = det[d,a,b] - det[d,o,b] - det[d,a,o]
+  sum.add_determinant(1, dir, a, b);
+  sum.add_determinant(-1, dir, org, b);
+  sum.add_determinant(-1, dir, a, org);
+  return sum.sign();
+}
+
+int exact_volume_sign(const float org[3], const float a[3], const float b[3], const float c[3]) {
+  ExactSum sum;
+  add_volume(sum, org, a, b, c);
+  return sum.sign();
+}
+
+bool exact_zero_area(const float a[3], const float b[3], const float c[3]) {
+  for (int u = 0; u < 3; ++u) {
+    const int v = (u + 1) % 3;
+    ExactSum sum;  // one component of (b-a) x (c-a); the product a_u * a_v cancels
+    sum.add_product(1, b[u], c[v], 1.0f);
+    sum.add_product(-1, b[u], a[v], 1.0f);
+    sum.add_product(-1, a[u], c[v], 1.0f);
+    sum.add_product(-1, b[v], c[u], 1.0f);
+    sum.add_product(1, b[v], a[u], 1.0f);
+    sum.add_product(1, a[v], c[u], 1.0f);
+    if (sum.sign() != 0) return false;
+  }
+  return true;
+}
+
+float exact_distance(const float org[3], const float dir[3], const float a[3], const float b[3], const float c[3]) {
+  ExactSum numerator;
+  add_volume(numerator, org, a, b, c);
+  ExactSum denominator;  // det[d, b-a, c-a] = det[d,b,c] - det[d,a,c] - det[d,b,a]
+  denominator.add_determinant(1, dir, b, c);
+  denominator.add_determinant(-1, dir, a, c);
+  denominator.add_determinant(-1, dir, b, a);
+  const int numerator_sign = numerator.take_magnitude();
+  const int denominator_sign = denominator.take_magnitude();
+  if (numerator_sign == 0 || denominator_sign == 0 || numerator_sign != denominator_sign) return 0.0f;
+
+  // Bisect over the bit patterns of the positive normal floats, which order them, for the largest f whose lower
+  // rounding boundary is not above the quotient. The boundary is the midpoint of f = m 2^e and its predecessor:
+  // (2 m - 1) 2^(e-1), or (4 m - 1) 2^(e-2) where f is a power of two.
+  constexpr std::uint32_t kLeastNormal = 0x00800000u;
+  std::uint32_t low = kLeastNormal - 1;
+  std::uint32_t high = 0x7F7FFFFFu;
+  while (low < high) {
+    const std::uint32_t middle = low + (high - low + 1) / 2;
+    const std::uint32_t mantissa = (middle & 0x7FFFFFu) | 0x800000u;
+    const int exponent = static_cast<int>(middle >> 23) - 150;
+    const bool power_of_two = mantissa == 0x800000u;
+    const int order = power_of_two
+                          ? compare_with_multiple(numerator, denominator, 4 * mantissa - 1, exponent - 2)
+                          : compare_with_multiple(numerator, denominator, 2 * mantissa - 1, exponent - 1);
+    if (order >= 0) {
+      low = middle;
+    } else {
+      high = middle - 1;
+    }
+  }
+  return low < kLeastNormal ? 0.0f : std::bit_cast<float>(low);
+}
+
+}  // namespace gridiron

@@ -1,0 +1,177 @@
+// Layout of everything core reads or writes in main memory. Little-endian, no pointers; core/SPEC.md is the text form.
+// Memory: described, not owned. Threads: read-only during a frame. SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <cstdint>
+
+namespace gridiron {
+
+inline constexpr std::uint32_t kLineBytes = 128;  ///< alignment of every section, block and tile in main memory
+
+// --- Scene image ------------------------------------------------------------------------------------------------
+
+inline constexpr std::uint32_t kImageMagic = 0x49524447;  ///< "GDRI" as bytes
+inline constexpr std::uint32_t kImageVersion = 1;
+
+/// How a triangle is stored in the kTriangles section. Fixed at build time; a frame may ask only for what is stored.
+enum class TriangleFormat : std::uint32_t {
+  kVertices = 1,    ///< VertexTriangle: `standard`
+  kProjection = 2,  ///< ProjectionTriangle: `paper`
+};
+
+enum class SectionKind : std::uint32_t {
+  kGrid = 1,        ///< one GridRecord
+  kMacroTable = 2,  ///< MacroTableEntry[ceil(macro_cell_count / 32)]
+  kCellBlocks = 3,  ///< cell blocks of cell_block_bytes each; block 0 is the empty one (all zero)
+  kTriangles = 4,   ///< triangle records, grouped by cell, in the order of the cells in the blocks
+};
+
+/// First bytes of a scene image. 64 bytes, 128-byte aligned.
+struct ImageHeader {
+  std::uint32_t magic;
+  std::uint32_t version;
+  std::uint64_t image_bytes;       ///< whole image, a multiple of kLineBytes
+  std::uint64_t check_value;       ///< FNV-1a 64 over all 64-bit words of the image with this field taken as 0
+  std::uint32_t section_count;
+  std::uint32_t section_table_offset_bytes;  ///< SectionEntry[section_count]
+  std::uint32_t triangle_count;    ///< input triangles after fanning, dropped ones included
+  std::uint32_t vertex_count;      ///< input vertices
+  std::uint32_t dropped_triangle_count;  ///< zero-area triangles, in no cell
+  std::uint32_t reserved[5];
+};
+static_assert(sizeof(ImageHeader) == 64);
+
+/// One section: where it lies and what it holds. Unknown kinds are skipped by readers.
+struct SectionEntry {
+  std::uint32_t kind;              ///< SectionKind
+  std::uint32_t element_bytes;
+  std::uint64_t offset_bytes;      ///< from the start of the image, a multiple of kLineBytes
+  std::uint64_t element_count;
+  std::uint64_t section_bytes;     ///< element_bytes * element_count, or more where padded
+};
+static_assert(sizeof(SectionEntry) == 32);
+
+/// The grid. Cell (x, y, z) covers, in cell space, the closed box [x, x+1] x [y, y+1] x [z, z+1]; cell space is the
+/// exact map p -> (p - minimum) * cells_per_unit of world space, taken with real numbers.
+struct GridRecord {
+  float minimum[3];                ///< world position of cell space's origin
+  float cells_per_unit[3];         ///< finite, > 0
+  std::uint32_t cell_count[3];     ///< 1..kMaxCellsPerAxis
+  std::uint32_t macro_cell_count[3];       ///< ceil(cell_count / macro_width)
+  std::uint32_t macro_width;       ///< m, cells along a macrocell's edge, 1..kMaxMacroWidth
+  std::uint32_t cell_block_bytes;  ///< m^3 * sizeof(CellRecord), rounded up to kLineBytes
+  std::uint32_t cell_block_count;  ///< non-empty macrocells + 1
+  std::uint32_t triangle_format;   ///< TriangleFormat
+  std::uint32_t triangle_bytes;    ///< record size
+  std::uint32_t reference_count;   ///< triangle records in the image
+  float bounds_minimum[3];         ///< tight bounds of the kept triangles, world space
+  float bounds_maximum[3];
+  float lambda;                    ///< Eq. (1) of the paper
+  std::uint32_t reserved[7];
+};
+static_assert(sizeof(GridRecord) == 128);
+
+inline constexpr std::uint32_t kMaxCellsPerAxis = 2048;
+inline constexpr std::uint32_t kMaxMacroWidth = 8;
+
+/// 32 macrocells, x fastest, then y, then z. Macrocell i is bit i % 32 of entry i / 32; a set bit means non-empty,
+/// and its cell block is first_block + (set bits below it).
+struct MacroTableEntry {
+  std::uint32_t occupied;          ///< bit i: macrocell holds at least one reference
+  std::uint32_t first_block;       ///< block index of the entry's first non-empty macrocell
+};
+static_assert(sizeof(MacroTableEntry) == 8);
+
+/// One cell inside a cell block; cells of a block are stored x fastest, then y, then z, m^3 of them always.
+struct CellRecord {
+  std::uint32_t first_triangle;    ///< index into kTriangles
+  std::uint32_t triangle_count;
+};
+static_assert(sizeof(CellRecord) == 8);
+
+/// A triangle by its input vertices (bit for bit).
+struct VertexTriangle {
+  float v[3][3];
+  std::uint32_t reserved[2];
+  std::uint32_t triangle_id;       ///< index in the input's order after fanning, dropped ones counted
+};
+static_assert(sizeof(VertexTriangle) == 48);
+
+/// A triangle by its precomputed projection along axis_k (paper, section 4.1; Wald 2004, section 7.1.2).
+/// Plane: p_k = n_d - n_u p_u - n_v p_v; u = k+1, v = k+2 (mod 3).
+/// Barycentric: beta = b_u p_u + b_v p_v + b_d, gamma = c_u p_u + c_v p_v + c_d.
+struct ProjectionTriangle {
+  float n_u, n_v, n_d;
+  float b_u, b_v, b_d;
+  float c_u, c_v, c_d;
+  std::uint32_t axis_k;            ///< 0, 1, 2
+  std::uint32_t reserved;
+  std::uint32_t triangle_id;
+};
+static_assert(sizeof(ProjectionTriangle) == 48);
+
+/// Every triangle record is this long and ends with its triangle_id.
+inline constexpr std::uint32_t kTriangleRecordBytes = 48;
+
+// --- Frame ------------------------------------------------------------------------------------------------------
+
+inline constexpr std::uint32_t kFrameMagic = 0x4d524647;  ///< "GFRM" as bytes
+inline constexpr std::uint32_t kFrameVersion = 1;
+
+enum class Accuracy : std::uint32_t {
+  kStandard = 0,  ///< filtered edge signs with exact ones behind them, correctly rounded distance
+  kPaper = 1,     ///< precomputed projection in single precision; may leak
+};
+
+enum class Shading : std::uint32_t {
+  kNone = 0,    ///< hit or background
+  kSimple = 1,  ///< facing ratio with the geometric normal
+};
+
+/// Techniques of the traversal that a frame can switch off to measure their gain.
+enum TechniqueBits : std::uint32_t {
+  kUseMailbox = 1u << 0,
+  kUseCornerCulling = 1u << 1,
+  kUseEmptySkip = 1u << 2,      ///< skip empty macrocells without a transfer
+};
+
+/// Everything a core needs to know of a frame. Fetched by every core at its start. 128-byte aligned, 384 bytes.
+struct FrameRecord {
+  std::uint32_t magic;
+  std::uint32_t version;
+  std::uint32_t width, height;         ///< pixels, 1..kMaxPictureWidth
+  std::uint32_t tile_width;            ///< pixels, must equal the store layout's
+  std::uint32_t tiles_x, tiles_y;      ///< ceil(width / tile_width), ceil(height / tile_width)
+  std::uint32_t accuracy;              ///< Accuracy
+  std::uint32_t shading;               ///< Shading
+  std::uint32_t techniques;            ///< TechniqueBits
+  std::uint32_t output_depth;          ///< tile buffers in rotation: 1 single, 2 double
+  std::uint32_t macro_depth;           ///< cell blocks in flight or in use
+  std::uint32_t triangle_depth;        ///< triangle buffers in flight or in use
+  std::uint32_t background_rgba;       ///< 0xAABBGGRR
+  float t_far;                         ///< a hit has 0 < t <= t_far; in units of the ray's direction
+  std::uint32_t reserved0;
+
+  // Pinhole camera: direction of the ray through the centre of pixel (x, y), y = 0 the top row, is
+  // (corner + x * step_x) + y * step_y per component, each operation rounded to float.
+  float eye[3];
+  float corner[3];
+  float step_x[3];
+  float step_y[3];
+
+  std::uint64_t color_address;         ///< RGBA8, tile-major: tile i at i * tile_width^2 * 4, row-major inside
+  std::uint64_t depth_address;         ///< float distance along the unit direction, kFloatMax where nothing; 0: off
+  std::uint64_t id_address;            ///< triangle_id, kNoTriangle where nothing; 0: off
+  std::uint64_t macro_table_address;
+  std::uint64_t cell_blocks_address;
+  std::uint64_t triangles_address;
+  std::uint64_t reserved1[4];
+  GridRecord grid;
+  std::uint32_t reserved2[16];
+};
+static_assert(sizeof(FrameRecord) == 384);
+
+inline constexpr std::uint32_t kNoTriangle = 0xFFFFFFFFu;
+inline constexpr std::uint32_t kMaxPictureWidth = 16384;
+
+}  // namespace gridiron

@@ -1,0 +1,48 @@
+// Work counters: how much of each kind of work a core has done. Plain integers, no clock.
+// Memory: inside the local store. Threads: one core. SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <cstdint>
+
+namespace gridiron {
+
+/// Kinds of work that cost time on a chip. "Group" is one SIMD group of kLaneCount rays.
+enum class Work : std::uint8_t {
+  kTileStart,         ///< tiles begun: parameter reset, output buffer turned over         (initialisation)
+  kRayGenerated,      ///< primary ray groups generated                                     (initialisation)
+  kPacketStart,       ///< packet passes begun: frustum, mailbox reset                      (initialisation)
+  kMacroSliceStep,    ///< macro slices entered
+  kMacroCellStep,     ///< macrocells looked up in the macrocell table
+  kMacroCellVisit,    ///< non-empty macrocells whose cell block was walked
+  kSliceStep,         ///< slices entered inside a visited macrocell
+  kCellStep,          ///< cells looked up inside a visited macrocell
+  kCellVisit,         ///< non-empty cells visited
+  kTriangleBatch,     ///< triangle buffers consumed
+  kMailboxProbe,      ///< mailbox look-ups
+  kCullTest,          ///< corner-ray culling tests, one per triangle
+  kTriangleSetup,     ///< per (packet, triangle) set-ups of the `standard` test
+  kGroupTestStandard, ///< (group, triangle) tests, filtered edge functions
+  kGroupTestPaper,    ///< (group, triangle) tests, precomputed projection
+  kHitGroup,          ///< groups for which distances were computed and hits merged
+  kHitSetup,          ///< triangles for which the distance set-up was computed
+  kExactSign,         ///< edge signs decided in integers
+  kExactDistance,     ///< distances rounded in integers
+  kShadedGroup,       ///< ray groups turned into pixels without shading
+  kShadedSimpleGroup, ///< ray groups shaded by facing ratio
+  kGetIssue,          ///< get commands issued
+  kPutIssue,          ///< put commands issued
+  kWait,              ///< waits
+  kCount
+};
+
+inline constexpr std::uint32_t kWorkKindCount = static_cast<std::uint32_t>(Work::kCount);
+
+/// One counter per kind of work; wraps after 2^32 - 1.
+struct WorkCounters {
+  std::uint32_t counts[kWorkKindCount] = {};
+
+  constexpr void add(Work kind, std::uint32_t amount = 1) { counts[static_cast<std::uint32_t>(kind)] += amount; }
+  [[nodiscard]] constexpr std::uint32_t operator[](Work kind) const { return counts[static_cast<std::uint32_t>(kind)]; }
+};
+
+}  // namespace gridiron

@@ -1,0 +1,89 @@
+// Frame set-up. SPDX-License-Identifier: Apache-2.0
+#include <gridiron/frame/frame_setup.h>
+
+#include <glm/geometric.hpp>
+
+namespace gridiron {
+namespace {
+
+bool is_finite(double value) { return value - value == 0.0; }
+
+bool is_finite(const DVec3& v) { return is_finite(v.x) && is_finite(v.y) && is_finite(v.z); }
+
+void store(float out[3], const DVec3& v) {
+  out[0] = static_cast<float>(v.x);
+  out[1] = static_cast<float>(v.y);
+  out[2] = static_cast<float>(v.z);
+}
+
+}  // namespace
+
+std::uint64_t output_plane_bytes(std::uint32_t width, std::uint32_t height, std::uint32_t tile_width) {
+  const std::uint64_t tiles_x = (std::uint64_t{width} + tile_width - 1) / tile_width;
+  const std::uint64_t tiles_y = (std::uint64_t{height} + tile_width - 1) / tile_width;
+  return tiles_x * tiles_y * tile_width * tile_width * sizeof(std::uint32_t);
+}
+
+std::uint64_t output_plane_index(std::uint32_t width, std::uint32_t tile_width, std::uint32_t x, std::uint32_t y) {
+  const std::uint64_t tiles_x = (std::uint64_t{width} + tile_width - 1) / tile_width;
+  const std::uint64_t tile = tiles_x * (y / tile_width) + x / tile_width;
+  return (tile * tile_width + y % tile_width) * tile_width + x % tile_width;
+}
+
+Status make_frame_record(const FrameSettings& settings, const SceneImageView& image, MainAddress image_address,
+                         FrameRecord& frame) {
+  const bool size_ok = settings.width >= 1 && settings.height >= 1 && settings.width <= kMaxPictureWidth &&
+                       settings.height <= kMaxPictureWidth && settings.tile_width >= 1;
+  if (!size_ok || !(settings.t_far > 0.0f) || !(settings.camera.tan_half_fov > 0.0f) ||
+      !is_finite(double{settings.camera.tan_half_fov})) {
+    return Status::kBadFrame;
+  }
+  const auto needed =
+      settings.accuracy == Accuracy::kPaper ? TriangleFormat::kProjection : TriangleFormat::kVertices;
+  if (image.grid.triangle_format != static_cast<std::uint32_t>(needed)) return Status::kUnsupportedImage;
+
+  // Orthonormal frame of the camera; double keeps the steps exact to a float ulp whatever the distance.
+  const DVec3 forward_raw = DVec3(settings.camera.at) - DVec3(settings.camera.eye);
+  const DVec3 forward = forward_raw / glm::sqrt(glm::dot(forward_raw, forward_raw));
+  const DVec3 right_raw = glm::cross(forward, DVec3(settings.camera.up));
+  const DVec3 right = right_raw / glm::sqrt(glm::dot(right_raw, right_raw));
+  const DVec3 up = glm::cross(right, forward);
+  if (!is_finite(DVec3(settings.camera.eye)) || !is_finite(right) || !is_finite(up)) return Status::kBadFrame;
+
+  // Rays go through pixel centres; the image plane lies at distance 1.
+  const double half_height = settings.camera.tan_half_fov;
+  const double pixel = 2.0 * half_height / settings.height;
+  const double left = -0.5 * pixel * settings.width + 0.5 * pixel;
+  const double top = half_height - 0.5 * pixel;
+
+  frame = FrameRecord{};
+  frame.magic = kFrameMagic;
+  frame.version = kFrameVersion;
+  frame.width = settings.width;
+  frame.height = settings.height;
+  frame.tile_width = settings.tile_width;
+  frame.tiles_x = (settings.width + settings.tile_width - 1) / settings.tile_width;
+  frame.tiles_y = (settings.height + settings.tile_width - 1) / settings.tile_width;
+  frame.accuracy = static_cast<std::uint32_t>(settings.accuracy);
+  frame.shading = static_cast<std::uint32_t>(settings.shading);
+  frame.techniques = settings.techniques;
+  frame.output_depth = settings.output_depth;
+  frame.macro_depth = settings.macro_depth;
+  frame.triangle_depth = settings.triangle_depth;
+  frame.background_rgba = settings.background_rgba;
+  frame.t_far = settings.t_far;
+  store(frame.eye, DVec3(settings.camera.eye));
+  store(frame.corner, forward + left * right + top * up);
+  store(frame.step_x, pixel * right);
+  store(frame.step_y, -pixel * up);
+  frame.color_address = settings.color.value;
+  frame.depth_address = settings.depth.value;
+  frame.id_address = settings.ids.value;
+  frame.macro_table_address = image_address.value + image.macro_table_offset_bytes;
+  frame.cell_blocks_address = image_address.value + image.cell_blocks_offset_bytes;
+  frame.triangles_address = image_address.value + image.triangles_offset_bytes;
+  frame.grid = image.grid;
+  return Status::kOk;
+}
+
+}  // namespace gridiron

@@ -1,0 +1,51 @@
+// Prepares the FrameRecord of a frame: camera, outputs and the parts of the scene image.
+// Memory: caller's. Threads: any. SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <gridiron/base/math.h>
+#include <gridiron/base/records.h>
+#include <gridiron/image/scene_image.h>
+#include <gridiron/platform/contract.h>
+
+#include <cstdint>
+
+namespace gridiron {
+
+/// A pinhole camera in world space.
+struct Camera {
+  Vec3 eye{0, 0, 1};
+  Vec3 at{0, 0, 0};
+  Vec3 up{0, 1, 0};
+  float tan_half_fov = 0.41421356f;  ///< tangent of half the angle between the top and the bottom edge; > 0
+};
+
+/// Everything of a frame that is not in the scene image.
+struct FrameSettings {
+  Camera camera;
+  std::uint32_t width = 1024, height = 1024;
+  std::uint32_t tile_width = 32;       ///< must be the store layout's
+  Accuracy accuracy = Accuracy::kStandard;
+  Shading shading = Shading::kSimple;
+  std::uint32_t techniques = kUseMailbox | kUseCornerCulling | kUseEmptySkip;
+  std::uint32_t output_depth = 2, macro_depth = 2, triangle_depth = 2;
+  std::uint32_t background_rgba = 0xFF000000u;
+  float t_far = kFloatMax;
+  MainAddress color, depth, ids;       ///< depth, ids: value 0 = not wanted
+};
+
+/// Bytes of one output plane (colour, depth or ids): tile-major, whole tiles.
+[[nodiscard]] std::uint64_t output_plane_bytes(std::uint32_t width, std::uint32_t height, std::uint32_t tile_width);
+
+/// Index of pixel (x, y), y = 0 on top, in an output plane.
+[[nodiscard]] std::uint64_t output_plane_index(std::uint32_t width, std::uint32_t tile_width, std::uint32_t x,
+                                               std::uint32_t y);
+
+/// Fills `frame`. The directions it describes have length between 1 and a few units, whatever the scale of the camera.
+///
+/// @param image_address  where `image` lies in main memory, kLineBytes-aligned.
+/// Errors: kBadFrame (size, camera degenerate or not finite, t_far not above 0), kUnsupportedImage (accuracy needs
+/// another triangle format).
+[[nodiscard]] Status make_frame_record(const FrameSettings& settings, const SceneImageView& image,
+                                       MainAddress image_address, FrameRecord& frame);
+
+}  // namespace gridiron

@@ -1,0 +1,44 @@
+// Builds the scene image (grid, macrocells, sorted triangle references) from a mesh, in memory that the caller gives.
+// Source: Cho, Kim, Han 2012, sections 3.1 and 3.2. Memory: caller's. Threads: one. SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <gridiron/base/records.h>
+#include <gridiron/platform/status.h>
+#include <gridiron/scene/mesh.h>
+
+#include <cstddef>
+#include <cstdint>
+#include <span>
+
+namespace gridiron {
+
+/// Parameters of the grid.
+struct GridParameters {
+  float lambda = 4.0f;                                ///< cells per triangle, Eq. (1); 1e-6..1e6
+  std::uint32_t macro_width = 6;                      ///< m; 1..kMaxMacroWidth
+  TriangleFormat format = TriangleFormat::kVertices;  ///< how triangles are stored
+};
+
+/// What a scene image of a mesh will hold and need, counted exactly.
+struct GridNeed {
+  GridRecord grid;                       ///< complete, as it will stand in the image
+  std::uint32_t dropped_triangle_count;  ///< zero-area triangles (decided exactly)
+  std::uint64_t image_bytes;             ///< size of the image, a multiple of kLineBytes
+  std::uint64_t scratch_bytes;           ///< working memory of build_scene_image, free again afterwards
+};
+
+/// Counts what build_scene_image will need. Itself needs no memory beyond a fixed stack frame.
+///
+/// Errors: kBadVertex, kBadIndex, kBadParameter, kNoTriangles, kTooManyTriangles. Cost: linear in triangles + references.
+[[nodiscard]] Status count_scene_image(const MeshView& mesh, const GridParameters& parameters, GridNeed& need);
+
+/// Writes the scene image. Same bytes for the same input on every host.
+///
+/// @param need     from count_scene_image with the same mesh and parameters.
+/// @param image    kLineBytes-aligned, at least need.image_bytes; only the first image_bytes are written.
+/// @param scratch  8-byte aligned, at least need.scratch_bytes.
+/// Errors: kMemoryTooSmall (nothing is touched), kBadParameter. Cost: linear.
+[[nodiscard]] Status build_scene_image(const MeshView& mesh, const GridParameters& parameters, const GridNeed& need,
+                                       std::span<std::byte> image, std::span<std::byte> scratch);
+
+}  // namespace gridiron

@@ -1,0 +1,39 @@
+// Validation of a scene image and access to its parts. The byte layout is in base/records.h and core/SPEC.md.
+// Memory: borrowed. Threads: read-only. SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <gridiron/base/records.h>
+#include <gridiron/platform/status.h>
+
+#include <cstddef>
+#include <cstdint>
+#include <span>
+
+namespace gridiron {
+
+/// A validated scene image: header, grid and where each section lies. Offsets count from the image's first byte.
+struct SceneImageView {
+  ImageHeader header;
+  GridRecord grid;
+  std::uint64_t macro_table_offset_bytes;
+  std::uint64_t cell_blocks_offset_bytes;
+  std::uint64_t triangles_offset_bytes;
+};
+
+/// What was wrong with an image: for the words of tools.
+struct SceneImageError {
+  Status status = Status::kOk;
+  std::uint64_t byte_offset = 0;    ///< place of the offending field
+  const char* field = "";           ///< its name in SPEC.md
+};
+
+/// Checks every byte of an image that the kernel will rely on, once; afterwards the hot path checks nothing.
+///
+/// @param image  kLineBytes-aligned; may be longer than the image, never shorter.
+/// Errors: kBadImage, with the place in `error`. Cost: linear in the image's size.
+[[nodiscard]] Status open_scene_image(std::span<const std::byte> image, SceneImageView& view, SceneImageError& error);
+
+/// @returns the check value of an image: FNV-1a 64 over its 64-bit little-endian words, the check value's own word as 0.
+[[nodiscard]] std::uint64_t scene_image_check_value(std::span<const std::byte> image);
+
+}  // namespace gridiron

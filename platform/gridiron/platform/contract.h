@@ -1,0 +1,96 @@
+// The platform contract: what a chip must offer so that core can run on one of its cores.
+// Memory: a platform is an object the caller places; core borrows it by reference. Threads: one core per object.
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <gridiron/platform/status.h>
+
+#include <concepts>
+#include <cstddef>
+#include <cstdint>
+
+namespace gridiron {
+
+/// A byte address in main memory. Opaque to core: it may be offset and its low bits compared, never dereferenced.
+struct MainAddress {
+  std::uint64_t value = 0;
+
+  friend constexpr bool operator==(MainAddress, MainAddress) = default;
+  [[nodiscard]] constexpr MainAddress offset_by(std::uint64_t bytes) const { return {value + bytes}; }
+};
+
+/// Names a group of transfers that are waited for together. 0 <= index < PlatformLimits::tag_count.
+struct Tag {
+  std::uint8_t index = 0;
+};
+
+/// A set of tags: bit i stands for Tag{i}.
+struct TagMask {
+  std::uint32_t bits = 0;
+
+  [[nodiscard]] static constexpr TagMask of(Tag tag) { return {std::uint32_t{1} << tag.index}; }
+  friend constexpr TagMask operator|(TagMask a, TagMask b) { return {a.bits | b.bits}; }
+};
+
+/// What one platform's transfers may look like. Core keeps to the portable subset (see kPortable...) on every platform,
+/// and to queue_depth; the rest is what the platform checks.
+struct PlatformLimits {
+  std::uint32_t alignment_bytes = 16;      ///< both ends, and the size, are multiples of this
+  std::uint32_t congruence_bytes = 32;     ///< both ends are congruent modulo this
+  std::uint32_t max_transfer_bytes = 16384;///< largest single transfer
+  std::uint32_t boundary_bytes = 4096;     ///< the main-memory side may not cross a multiple of this; 0: it may
+  std::uint32_t tag_count = 32;            ///< 1..32
+  std::uint32_t queue_depth = 16;          ///< commands that may be pending at once; 1 is legal
+};
+
+/// The transfers core issues, on every target alike, so that counters agree on every board: sizes 16n <= 8 KB, both
+/// ends congruent modulo 32, the main-memory side crossing no 4 KB boundary.
+inline constexpr std::uint32_t kPortableGranuleBytes = 16;
+inline constexpr std::uint32_t kPortableCongruenceBytes = 32;
+inline constexpr std::uint32_t kPortableMaxTransferBytes = 8192;
+inline constexpr std::uint32_t kPortableBoundaryBytes = 4096;
+
+/// Answer of claim_tile().
+struct TileClaim {
+  enum class Kind : std::uint8_t {
+    kTile,      ///< render tile `tile_id`
+    kNone,      ///< no tile is left
+    kAborted,   ///< the frame was asked to stop
+    kDeadline,  ///< the frame's deadline has passed
+  };
+  Kind kind = Kind::kNone;
+  std::uint32_t tile_id = 0;  ///< row-major, 0 = top left; meaningful for kTile only
+};
+
+/// One core of a chip, as seen by the code that runs on it.
+///
+/// get   starts a copy of `bytes` from main memory to local memory. The destination is undefined until the wait.
+/// put   starts a copy of `bytes` from local memory to main memory. Bytes stored before the call are what is sent;
+///       the source must not change until the wait.
+/// wait  blocks until every transfer of the tags in the mask has ended; afterwards loads see the data. A tag without
+///       pending transfers is legal and ends at once. Returns kTransferFailed / kTransferTimedOut if one of them did
+///       not succeed; all transfers of the mask have ended even then.
+/// claim_tile   next tile of the frame, or why there is none. Each tile is handed out exactly once per frame.
+///
+/// Rules: a size of 0 is an error (kTransferSize); a transfer that a limit forbids is an error and starts nothing;
+/// several transfers may share a tag; there is no order between transfers but through wait; two pending transfers
+/// that overlap, at least one writing, are an error in the program.
+template <class P>
+concept Platform = requires(P& platform, const P& constant, void* local, const void* source, MainAddress address,
+                            std::uint32_t bytes, Tag tag, TagMask tags) {
+  { constant.limits() } -> std::same_as<PlatformLimits>;
+  { platform.get(local, address, bytes, tag) } -> std::same_as<Status>;
+  { platform.put(source, address, bytes, tag) } -> std::same_as<Status>;
+  { platform.wait(tags) } -> std::same_as<Status>;
+  { platform.claim_tile() } -> std::same_as<TileClaim>;
+};
+
+/// A platform that also wants to know how much work was done between its calls (the simulator's clock). Core calls
+/// it before every get, put, wait and claim_tile; `counts` has `count` entries, ever growing within a frame, owned
+/// by core. Optional: a board leaves it out and pays nothing.
+template <class P>
+concept WorkObserver = requires(P& platform, const std::uint32_t* counts, std::uint32_t count) {
+  { platform.note_work(counts, count) } -> std::same_as<void>;
+};
+
+}  // namespace gridiron

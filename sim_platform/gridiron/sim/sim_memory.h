@@ -1,0 +1,53 @@
+// Simulated main memory: one block of host memory with addresses of its own.
+// Memory: owns. Threads: allocate before the frame; bytes are shared during it. SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <gridiron/platform/contract.h>
+
+#include <cstddef>
+#include <cstdint>
+#include <optional>
+#include <span>
+#include <vector>
+
+namespace gridiron::sim {
+
+/// A piece of main memory: its address for cores, its bytes for the host.
+struct MemoryRegion {
+  MainAddress address;
+  std::span<std::byte> bytes;
+};
+
+/// Main memory of `capacity_bytes`; address 0 is never handed out, so that it can mean "none".
+class SimMemory {
+ public:
+  static constexpr std::uint64_t kFirstAddress = 4096;
+
+  explicit SimMemory(std::uint64_t capacity_bytes);
+  ~SimMemory();
+  SimMemory(const SimMemory&) = delete;
+  SimMemory& operator=(const SimMemory&) = delete;
+
+  /// Next free bytes, zeroed, aligned (power of two >= 128). @returns nothing where the capacity is used up.
+  [[nodiscard]] std::optional<MemoryRegion> allocate(std::uint64_t bytes, std::uint64_t alignment_bytes = 128);
+
+  /// Gives back everything allocated after `mark` = used_bytes() of some earlier time.
+  void release_to(std::uint64_t mark);
+
+  [[nodiscard]] std::uint64_t used_bytes() const { return used_bytes_; }
+  [[nodiscard]] std::uint64_t capacity_bytes() const { return capacity_bytes_; }
+
+  /// Host bytes of [address, address + bytes). Empty where the range is not inside what was allocated.
+  [[nodiscard]] std::span<std::byte> bytes_at(MainAddress address, std::uint64_t bytes);
+
+  /// Host pointer of address 0 (for the plain mode: base() + address.value).
+  [[nodiscard]] std::byte* base() const { return base_; }
+
+ private:
+  std::byte* base_ = nullptr;   ///< virtual: host address that stands for main address 0
+  std::byte* storage_ = nullptr;
+  std::uint64_t capacity_bytes_ = 0;
+  std::uint64_t used_bytes_ = 0;
+};
+
+}  // namespace gridiron::sim

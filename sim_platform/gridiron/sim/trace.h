@@ -1,0 +1,52 @@
+// Trace: what one tile did, in order, without any clock. The replay gives it a time on a machine.
+// Memory: std::vector. Threads: a TileTrace is written by one core. SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <gridiron/base/work_counters.h>
+
+#include <array>
+#include <cstdint>
+#include <vector>
+
+namespace gridiron::sim {
+
+enum class EventKind : std::uint8_t { kWork, kGet, kPut, kWait };
+
+/// One step of a core. Tags of output buffers are stored relative to the core's tile ordinal (rotated), so that a
+/// trace does not depend on which core rendered the tile; all others are stored as they are.
+struct TraceEvent {
+  EventKind kind;
+  std::uint8_t tag;            ///< kGet, kPut: tag index
+  bool rotating;               ///< kGet, kPut: tag is relative to the tile ordinal; kWait: see rotating_tags
+  std::uint32_t bytes;         ///< kGet, kPut
+  std::uint64_t address;       ///< kGet, kPut: main memory
+  std::uint32_t tags;          ///< kWait: mask of plain tags
+  std::uint32_t rotating_tags; ///< kWait: mask of tags relative to the tile ordinal
+  std::uint32_t first_work;    ///< kWork: range in TileTrace::work
+  std::uint32_t work_count;
+};
+
+/// Work of one kind done between two transfers.
+struct WorkAmount {
+  Work kind;
+  std::uint32_t amount;
+};
+
+struct TileTrace {
+  std::uint32_t tile_id = 0;
+  std::vector<TraceEvent> events;
+  std::vector<WorkAmount> work;
+};
+
+using WorkTotals = std::array<std::uint64_t, kWorkKindCount>;
+
+/// Everything a frame did. `prologue` is what every core does before its first claim (fetching the frame record and
+/// resident tables), `epilogue` what it does after its last tile (draining output).
+struct FrameTrace {
+  TileTrace prologue;
+  TileTrace epilogue;
+  std::vector<TileTrace> tiles;  ///< index = tile_id
+  std::uint32_t output_depth = 1; ///< rotation of the relative tags
+};
+
+}  // namespace gridiron::sim
