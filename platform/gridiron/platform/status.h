@@ -21,6 +21,8 @@ enum class [[nodiscard]] Status : std::uint8_t {
   kTransferOverlap,     ///< overlaps a pending transfer, at least one of the two writing
   kTransferFailed,      ///< the transfer was started and reported an error
   kTransferTimedOut,    ///< the transfer did not end within the platform's bound
+  kTransferPending,     ///< a transfer was never waited for before the frame ended (platforms that check)
+  kBadAccess,           ///< a load or store touched bytes that it must not (platforms that check)
 
   // Frames (kernel).
   kBadFrame,            ///< frame record: wrong magic, version, size or range

@@ -10,6 +10,10 @@
 
 namespace gridiron::sim {
 
+/// Output buffer `slot` of a core is put under Tag{kFirstRotatingTag + slot}, slot = (tiles begun before on this core)
+/// % output_depth. A trace stores such a tag as (slot - tile ordinal) mod output_depth, without kFirstRotatingTag.
+inline constexpr std::uint32_t kFirstRotatingTag = 24;
+
 enum class EventKind : std::uint8_t { kWork, kGet, kPut, kWait };
 
 /// One step of a core. Tags of output buffers are stored relative to the core's tile ordinal (rotated), so that a
