@@ -5,8 +5,8 @@
 #include <gridiron/sim/machine_profile.h>
 #include <gridiron/sim/trace.h>
 
+#include <cstddef>
 #include <cstdint>
-#include <string>
 #include <vector>
 
 namespace gridiron::sim {
@@ -15,40 +15,71 @@ namespace gridiron::sim {
 enum class WaitLevel : std::uint8_t { kTile, kMacroCell, kTriangle, kSetup, kCount };
 inline constexpr std::size_t kWaitLevelCount = static_cast<std::size_t>(WaitLevel::kCount);
 
-/// Where one core's cycles went: init + compute + sum of waits + idle = frame cycles.
+/// Levels by name of the tag waited for (core/gridiron/store/dma_tags.h): kTile = output buffers, kMacroCell = cell
+/// blocks, kTriangle = triangle buffers, kSetup = frame record and macrocell table.
+[[nodiscard]] WaitLevel wait_level_of_tag(std::uint32_t tag);
+
+/// @returns true for the kinds of work that count as initialisation; all others are computation.
+[[nodiscard]] constexpr bool is_initialisation(Work kind) {
+  return kind == Work::kTileStart || kind == Work::kRayGenerated || kind == Work::kPacketStart;
+}
+
+/// Where one core's cycles went: init + compute + sum of waits + idle = frame cycles, without any rounding.
+///
+/// Cycles that the core spends on transfers itself (issuing a command, asking whether tags are done) are computation:
+/// no buffering can hide them. Time in which it stands still is a wait: at a wait, of the level of the transfer that
+/// ended last; at a full queue, of the level of the transfer that could not be issued.
 struct CoreTiming {
   std::uint32_t tiles = 0;
   double init_cycles = 0;
   double compute_cycles = 0;
   double dma_wait_cycles[kWaitLevelCount] = {};
-  double idle_cycles = 0;                ///< claim latency and the time after the last tile
+  double idle_cycles = 0;  ///< claim latency (of the refused claim too) and the time after the core's last step
   std::uint64_t gets = 0, puts = 0;
-  std::uint64_t bytes_in = 0, bytes_out = 0;           ///< as requested
-  std::uint64_t line_bytes_in = 0, line_bytes_out = 0; ///< in whole lines
+  std::uint64_t bytes_in = 0, bytes_out = 0;            ///< as requested
+  std::uint64_t line_bytes_in = 0, line_bytes_out = 0;  ///< in whole lines
 };
 
-/// One bar of the timeline.
+inline constexpr std::uint32_t kNoTileId = 0xFFFFFFFFu;  ///< tile_id of spans of the prologue and the epilogue
+
+/// One bar of the timeline. A kTile span encloses the spans of its tile; the others do not overlap on one core. What no
+/// span covers is idle.
 struct TimelineSpan {
   enum class Kind : std::uint8_t { kInit, kCompute, kWait, kTile };
   std::uint32_t core;
   Kind kind;
-  WaitLevel level;        ///< kWait only
+  WaitLevel level;  ///< kWait only
   std::uint32_t tile_id;
   double begin_cycles, end_cycles;
 };
 
 struct FrameTiming {
-  double frame_cycles = 0;
+  double frame_cycles = 0;  ///< until the last core has ended its epilogue
   double seconds = 0;
+  double channel_busy_cycles = 0;  ///< time in which the shared channel carried a line
   std::vector<CoreTiming> cores;
-  std::vector<TimelineSpan> timeline;    ///< filled only when asked for
+  std::vector<TimelineSpan> timeline;  ///< filled only when asked for; core by core, each in order of time
 };
 
 struct ReplayOptions {
-  std::uint32_t core_count = 0;          ///< 0: the profile's
+  std::uint32_t core_count = 0;  ///< 0: the profile's
   bool timeline = false;
 };
 
+/// Gives every step of `trace` a time on `core_count` cores of `machine`.
+///
+/// Each core runs the prologue, claims tiles, then runs the epilogue. Claims are granted in order of simulated time,
+/// ties by core; the n-th grant hands out trace.tiles[n]. A core's commands are served one after another in the order
+/// of issue. Each line leaves the core when the command has been issued, core_line_interval_cycles after the line
+/// before it, and when fewer than lines_in_flight lines are under way; the channel serves lines of all cores, gets and
+/// puts alike, by the time they left, ties by core; latency_cycles after its turn on the channel has ended the line is
+/// there. A command leaves the queue with its last line.
+///
+/// Time is counted in integers of 1/1024 cycle: profile values are rounded to them first, and the result depends on
+/// nothing else. Values of the profile that mean nothing are taken as the nearest that does: cycles below 0 as 0 and
+/// above 2^20 as 2^20, counts of 0 as 1, queue_depth and lines_in_flight above 65,536 as that;
+/// channel_bytes_per_cycle <= 0 is a channel that costs no time. Preconditions: a frame shorter than 2^43 cycles; tags
+/// below 32; ranges of work inside TileTrace::work. Cost: linear in events and lines, times core_count.
 [[nodiscard]] FrameTiming replay(const FrameTrace& trace, const MachineProfile& machine, const ReplayOptions& options);
 
 }  // namespace gridiron::sim

@@ -1,0 +1,139 @@
+// The built-in machine profiles and where their figures come from.
+// Memory: constants. Threads: any. SPDX-License-Identifier: Apache-2.0
+#include <gridiron/sim/machine_profile.h>
+
+#include <array>
+#include <cstddef>
+#include <cstdint>
+#include <span>
+#include <string_view>
+
+namespace gridiron::sim {
+
+namespace {
+
+constexpr std::uint64_t kMegabyte = std::uint64_t{1} << 20;
+
+/// Cycles per unit of work on an in-order core with two pipes (even: arithmetic, odd: loads, stores, shuffles,
+/// branches), 4 single-precision lanes, 6 cycles of latency for loads and float arithmetic, and 18 cycles for a
+/// mispredicted branch.
+///
+/// ESTIMATES, to be calibrated: instructions of each algorithm were counted by hand, not measured on compiled code. The
+/// rule: even instructions plus the odd ones that find no even partner (two issue together in a quarter of the cycles),
+/// plus half a branch miss where a branch goes either way, plus latency where a chain of dependent instructions is
+/// longer than what can be put between. Expect +-30 % on each; ratios between machines with the same work are better.
+constexpr std::array<double, kWorkKindCount> two_pipe_work_cycles() {
+  std::array<double, kWorkKindCount> cycles{};
+  const auto set = [&cycles](Work kind, double value) { cycles[static_cast<std::size_t>(kind)] = value; };
+
+  // Initialisation. With kShadedGroup, an 8x8 packet costs 500 + 16 * (40 + 40) = 1,780, and a sixteenth of a 32x32
+  // tile's start makes it 1,805: the 1,800 of a hand count of packet set-up and output as a whole.
+  set(Work::kTileStart, 400);    // tile corner and buffer addresses, some 60 scalar instructions at their full latency
+  set(Work::kRayGenerated, 40);  // 3 axes * (2 multiplications, 2 additions), 3 stores, |d| maximum: 17 even, 9 odd,
+                                 // a chain of four float instructions
+  set(Work::kPacketStart, 500);  // 4 corner rays, major axis and signs, slopes of 4 bounds (3 divisions of 4 lanes,
+                                 // each estimate + Newton step, 30), 16 stores that empty the mailbox, loop set-up
+
+  // Walking the grid. Scalar control that depends on itself: latency decides.
+  set(Work::kMacroSliceStep, 70);  // overlap rectangle of a macro slice: 8 multiply-adds, floor, clamp, loop bounds
+  set(Work::kMacroCellStep, 20);   // load the 32-bit word, test one bit, unpredictable branch
+  set(Work::kMacroCellVisit, 40);  // block index by population count, buffer look-up, bounds of its slices
+  set(Work::kSliceStep, 60);       // as a macro slice, the clamp being to the macrocell
+  set(Work::kCellStep, 24);        // index, load of {first, count}, test, branch
+  set(Work::kCellVisit, 30);       // set-up of the triangle loop, splitting the range into buffers
+  set(Work::kTriangleBatch, 20);   // turn the buffer over, bounds of the loop inside it
+
+  // Per triangle.
+  set(Work::kMailboxProbe, 40);   // scalar load, compare, store: 14 even, 10 odd, half a branch miss
+  set(Work::kCullTest, 90);       // the four corner rays as one group test: 30 even, 20 odd, bound by its chain, then a
+                                  // branch that goes either way
+  set(Work::kTriangleSetup, 95);  // vertices relative to the eye, three edges side by side in lanes:
+                                  // 3 + 3 + 3 additions, 6 multiplications, 3 subtractions, 10 for the filter's bound,
+                                  // 12 splats of the result, 8 shuffles in front: 28 even, 24 odd, a chain of 85,
+                                  // half a branch miss
+  set(Work::kGroupTestStandard, 46);  // 3 edges * (3 multiplications, 2 additions, |e|, 2 compares) = 24, bound times
+                                      // |d| maximum 3, merging masks 8: 35 even, 10 odd, a quarter of a miss
+  set(Work::kGroupTestPaper, 36);     // distance (5, reciprocal estimate and Newton step 4), hit point 2, 2 * 3
+                                      // multiply-adds, compares, selects: 27 even, 14 odd = 34, and 2 for its share of
+                                      // the loop (580 for 16 groups)
+  set(Work::kHitGroup, 60);  // denominator 5, division to the nearest float 16, clamp to the triangle's extent 6,
+                             // compare by (t, id) 6, 4 selects, 6 loads and stores
+  set(Work::kHitSetup, 60);  // vertices into canonical order (6 compares, 6 selects), plane normal 9, distance 5,
+                             // extent on the major axis 4, splats 5
+
+  // In integers, scalar, 27 limbs of 32 bits.
+  set(Work::kExactSign, 1000);      // 18 products of three 24-bit mantissas at about 45 (two multiplications of 16-bit
+                                    // parts, shift, 4 limb updates), carries over 27 limbs at 6
+  set(Work::kExactDistance, 6000);  // 12 such products, then up to 31 comparisons of 27 limbs at 6 each
+
+  // Pixels.
+  set(Work::kShadedGroup, 40);         // compare, select, pack 4 pixels, store, tile address
+  set(Work::kShadedSimpleGroup, 160);  // the same, and the normal: gather of 4 triangles (36 scalar loads, of which
+                                       // most are hidden), cross product 9, three dot products 15, reciprocal square
+                                       // root with a Newton step 8, scale and convert 6
+
+  // Commands and waits are charged where they happen: MachineProfile::issue_cycles and wait_cycles.
+  set(Work::kGetIssue, 0);
+  set(Work::kPutIssue, 0);
+  set(Work::kWait, 0);
+  return cycles;
+}
+
+// Six cores of a games console: 3.2 GHz, 256 KB local stores, 256 MB of main memory at 25.6 GB/s.
+constexpr MachineProfile kCellPs3 = {
+    .name = "cell-ps3",
+    .description = "6 cores at 3.2 GHz, 256 KB local stores, 256 MB main memory at 25.6 GB/s",
+    .core_count = 6,
+    .clock_hz = 3.2e9,
+    .main_memory_bytes = 256 * kMegabyte,
+    .local_store_bytes = 256 * 1024,
+    .line_bytes = 128,                // a partial line is a bus request like a whole one
+    .queue_depth = 16,                // commands of one core's transfer engine; published
+    .lines_in_flight = 16,            // 16 * 128 bytes per 518 cycles = 12.7 GB/s for one core; about 10 in practice
+    .issue_cycles = 24,               // 6 channel writes at 6 cycles, partly overlapped, and the address arithmetic
+    .wait_cycles = 14,                // write the mask, read the status
+    .latency_cycles = 500,            // "several hundred" published; report 300, 500 and 1,000
+    .channel_bytes_per_cycle = 7.2,   // 25.6 GB/s = 8 bytes a cycle, 90 % of it usable: 23 GB/s; 20-23 in practice
+    .core_line_interval_cycles = 16,  // 8 bytes a cycle into one local store
+    .claim_cycles = 300,              // a mailbox round trip to the general core; estimate
+    .work_cycles = two_pipe_work_cycles(),
+};
+
+constexpr MachineProfile with_two_gigabytes(MachineProfile machine) {
+  machine.name = "cell-ps3-2gb";
+  machine.description = "cell-ps3 with 2 GB of main memory, for scenes that outgrow 256 MB";
+  machine.main_memory_bytes = 2048 * kMegabyte;
+  return machine;
+}
+
+// Eight cores of the same make at 2.4 GHz. What belongs to the memory keeps its time, so it takes fewer cycles; what
+// belongs to the core keeps its cycles. The size of its main memory is an assumption.
+constexpr MachineProfile eight_cores_of_2006(MachineProfile machine) {
+  machine.name = "cell-2006";
+  machine.description = "8 cores at 2.4 GHz, 256 KB local stores, 512 MB main memory at 25.6 GB/s";
+  machine.core_count = 8;
+  machine.clock_hz = 2.4e9;
+  machine.main_memory_bytes = 512 * kMegabyte;
+  machine.latency_cycles = 375;           // 500 cycles at 3.2 GHz = 156 ns
+  machine.channel_bytes_per_cycle = 9.6;  // 90 % of 25.6 GB/s
+  machine.claim_cycles = 225;
+  return machine;
+}
+
+constexpr std::array<MachineProfile, 3> kProfiles = {kCellPs3, eight_cores_of_2006(kCellPs3),
+                                                     with_two_gigabytes(kCellPs3)};
+
+}  // namespace
+
+std::span<const MachineProfile> machine_profiles() {
+  return kProfiles;
+}
+
+const MachineProfile* find_machine_profile(std::string_view name) {
+  for (const MachineProfile& machine : kProfiles) {
+    if (machine.name == name) return &machine;
+  }
+  return nullptr;
+}
+
+}  // namespace gridiron::sim

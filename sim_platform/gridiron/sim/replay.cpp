@@ -1,0 +1,394 @@
+// Replay: a discrete-event simulation of one frame's traces. See replay.h for the model.
+// Memory: std::vector. Threads: any, no shared state. SPDX-License-Identifier: Apache-2.0
+#include <gridiron/sim/replay.h>
+#include <gridiron/store/dma_tags.h>
+
+#include <algorithm>
+#include <array>
+#include <cstddef>
+#include <cstdint>
+#include <span>
+#include <vector>
+
+namespace gridiron::sim {
+
+namespace {
+
+/// Simulated time. Integers, so that no sum depends on its order; fine enough that a rounded profile value is off by
+/// less than 5e-4 cycles; exact in a double for frames below 2^43 cycles.
+using Ticks = std::uint64_t;
+constexpr double kTicksPerCycle = 1024;
+constexpr Ticks kNever = ~Ticks{0};
+constexpr double kMaxConstantCycles = 1 << 20;
+constexpr std::uint32_t kMaxWindow = 65536;
+constexpr std::uint32_t kTagCount = 32;
+
+Ticks ticks_from_cycles(double cycles) {
+  if (!(cycles > 0)) return 0;
+  return static_cast<Ticks>(std::min(cycles, kMaxConstantCycles) * kTicksPerCycle + 0.5);
+}
+
+double cycles_from_ticks(Ticks ticks) {
+  return static_cast<double>(ticks) / kTicksPerCycle;
+}
+
+/// A machine profile in ticks, with counts that are safe to index by.
+struct Constants {
+  explicit Constants(const MachineProfile& machine)
+      : line_bytes(std::max(1u, machine.line_bytes)),
+        queue_depth(std::clamp(machine.queue_depth, 1u, kMaxWindow)),
+        lines_in_flight(std::clamp(machine.lines_in_flight, 1u, kMaxWindow)),
+        issue(ticks_from_cycles(machine.issue_cycles)),
+        wait(ticks_from_cycles(machine.wait_cycles)),
+        latency(ticks_from_cycles(machine.latency_cycles)),
+        slot(machine.channel_bytes_per_cycle > 0 ? ticks_from_cycles(line_bytes / machine.channel_bytes_per_cycle) : 0),
+        line_interval(ticks_from_cycles(machine.core_line_interval_cycles)),
+        claim(ticks_from_cycles(machine.claim_cycles)) {
+    for (std::uint32_t kind = 0; kind < kWorkKindCount; ++kind)
+      work[kind] = ticks_from_cycles(machine.work_cycles[kind]);
+  }
+
+  std::uint32_t line_bytes;
+  std::uint32_t queue_depth;
+  std::uint32_t lines_in_flight;
+  Ticks issue, wait, latency, slot, line_interval, claim;
+  std::array<Ticks, kWorkKindCount> work{};
+};
+
+struct Command {
+  Ticks issued = 0;
+  Ticks done = 0;           ///< meaningful once all lines are granted
+  std::uint64_t lines = 0;  ///< not granted yet
+};
+
+enum class Phase : std::uint8_t { kPrologue, kTile, kEpilogue, kEnded };
+
+/// One core: where its program stands, and its transfer engine.
+struct Core {
+  // Program.
+  Phase phase = Phase::kPrologue;
+  const TileTrace* steps = nullptr;
+  std::size_t next_step = 0;
+  std::uint32_t tile_id = kNoTileId;
+  std::uint32_t ordinal = 0;  ///< of the tile: how many this core has had before it
+  Ticks now = 0;
+  Ticks claim_time = kNever;        ///< when it asks for a tile
+  std::uint64_t blocked_until = 0;  ///< granted_count that lets the program go on; 0: not blocked
+
+  // Transfers, numbered from 1 in the order of issue.
+  std::vector<Command> queue;  ///< command n at (n - 1) % queue_depth
+  std::uint64_t issued_count = 0;
+  std::uint64_t granted_count = 0;                     ///< commands of which every line has had its turn
+  std::array<std::uint64_t, kTagCount> last_of_tag{};  ///< number of the last command of a tag, 0: none
+  std::vector<Ticks> arrivals;                         ///< line n, numbered from 0, at n % lines_in_flight
+  std::uint64_t line_count = 0;
+  Ticks last_request = 0;
+  Ticks next_request = kNever;  ///< when the next line leaves the core
+
+  // Sums.
+  CoreTiming timing;
+  Ticks init = 0, compute = 0, idle = 0;
+  std::array<Ticks, kWaitLevelCount> waits{};
+  std::vector<TimelineSpan> timeline;
+  std::size_t tile_span = 0;
+};
+
+class Replay {
+ public:
+  Replay(const FrameTrace& trace, const MachineProfile& machine, const ReplayOptions& options)
+      : trace_(trace),
+        machine_(machine),
+        constants_(machine),
+        output_depth_(std::clamp(trace.output_depth, 1u, std::uint32_t{kOutputTagCount})),
+        with_timeline_(options.timeline),
+        cores_(std::max(1u, options.core_count != 0 ? options.core_count : machine.core_count)) {
+    for (Core& core : cores_) {
+      core.queue.resize(constants_.queue_depth);
+      core.arrivals.resize(constants_.lines_in_flight);
+    }
+  }
+
+  FrameTiming run() {
+    for (Core& core : cores_) {
+      core.steps = &trace_.prologue;
+      advance(core);
+    }
+    // Nothing that an event causes lies before it, so the earliest one is always safe to take.
+    while (take_earliest_event()) {
+    }
+    return result();
+  }
+
+ private:
+  /// Handles the earliest claim or line request, ties: claims first, then by core. @returns false where none is left.
+  bool take_earliest_event() {
+    Core* claimer = nullptr;
+    Core* requester = nullptr;
+    Ticks claim_time = kNever;
+    Ticks request_time = kNever;
+    for (Core& core : cores_) {
+      if (core.claim_time < claim_time) {
+        claim_time = core.claim_time;
+        claimer = &core;
+      }
+      if (core.next_request < request_time) {
+        request_time = core.next_request;
+        requester = &core;
+      }
+    }
+    if (claimer != nullptr && claim_time <= request_time) {
+      grant_claim(*claimer);
+    } else if (requester != nullptr) {
+      grant_line(*requester);
+    } else {
+      return false;
+    }
+    return true;
+  }
+
+  void grant_claim(Core& core) {
+    core.claim_time = kNever;
+    core.now += constants_.claim;
+    core.idle += constants_.claim;
+    core.ordinal = core.timing.tiles;
+    core.next_step = 0;
+    if (next_tile_ < trace_.tiles.size()) {
+      core.phase = Phase::kTile;
+      core.steps = &trace_.tiles[next_tile_++];
+      core.tile_id = core.steps->tile_id;
+      ++core.timing.tiles;
+      if (with_timeline_) {
+        core.tile_span = core.timeline.size();
+        core.timeline.push_back(span(core, TimelineSpan::Kind::kTile, WaitLevel::kTile, core.now, core.now));
+      }
+    } else {
+      core.phase = Phase::kEpilogue;
+      core.steps = &trace_.epilogue;
+      core.tile_id = kNoTileId;
+    }
+    advance(core);
+  }
+
+  void grant_line(Core& core) {
+    const Ticks turn = std::max(core.next_request, channel_free_);
+    channel_free_ = turn + constants_.slot;
+    channel_busy_ += constants_.slot;
+    const Ticks arrival = channel_free_ + constants_.latency;
+    core.arrivals[core.line_count % constants_.lines_in_flight] = arrival;
+    ++core.line_count;
+    core.last_request = core.next_request;
+
+    Command& command = core.queue[core.granted_count % constants_.queue_depth];
+    if (--command.lines == 0) {
+      command.done = arrival;
+      ++core.granted_count;
+      if (core.blocked_until != 0 && core.blocked_until <= core.granted_count) {
+        advance(core);
+        return;
+      }
+    }
+    schedule_request(core);
+  }
+
+  void schedule_request(Core& core) const {
+    core.next_request = kNever;
+    if (core.granted_count == core.issued_count) return;
+    Ticks time = core.queue[core.granted_count % constants_.queue_depth].issued;
+    if (core.line_count > 0) time = std::max(time, core.last_request + constants_.line_interval);
+    if (core.line_count >= constants_.lines_in_flight) {
+      time = std::max(time, core.arrivals[core.line_count % constants_.lines_in_flight]);
+    }
+    core.next_request = time;
+  }
+
+  /// Runs a core's program until it needs to know something that other cores may still change, or ends.
+  void advance(Core& core) {
+    core.blocked_until = 0;
+    while (core.next_step < core.steps->events.size()) {
+      if (!take_step(core, core.steps->events[core.next_step])) {
+        schedule_request(core);
+        return;
+      }
+      ++core.next_step;
+    }
+    if (core.phase == Phase::kEpilogue) {
+      core.phase = Phase::kEnded;
+    } else {
+      if (core.phase == Phase::kTile && with_timeline_) {
+        core.timeline[core.tile_span].end_cycles = cycles_from_ticks(core.now);
+      }
+      core.claim_time = core.now;
+    }
+    schedule_request(core);
+  }
+
+  /// @returns false where the core is blocked and the step must be taken again later.
+  bool take_step(Core& core, const TraceEvent& event) {
+    switch (event.kind) {
+      case EventKind::kWork:
+        take_work(core, std::span(core.steps->work).subspan(event.first_work, event.work_count));
+        return true;
+      case EventKind::kGet:
+      case EventKind::kPut:
+        return take_transfer(core, event);
+      case EventKind::kWait:
+        return take_wait(core, event);
+    }
+    return true;
+  }
+
+  void take_work(Core& core, std::span<const WorkAmount> amounts) {
+    Ticks init = 0;
+    Ticks compute = 0;
+    for (const WorkAmount& work : amounts) {
+      const Ticks ticks = constants_.work[static_cast<std::size_t>(work.kind)] * work.amount;
+      (is_initialisation(work.kind) ? init : compute) += ticks;
+    }
+    spend(core, TimelineSpan::Kind::kInit, WaitLevel::kTile, init);
+    spend(core, TimelineSpan::Kind::kCompute, WaitLevel::kTile, compute);
+  }
+
+  bool take_transfer(Core& core, const TraceEvent& event) {
+    const std::uint32_t tag = event.rotating ? rotated_tag(core, event.tag) : event.tag % kTagCount;
+
+    // A full queue: the command queue_depth before this one must have left it.
+    if (core.issued_count >= constants_.queue_depth &&
+        !wait_for(core, core.issued_count + 1 - constants_.queue_depth, wait_level_of_tag(tag))) {
+      return false;
+    }
+    spend(core, TimelineSpan::Kind::kCompute, WaitLevel::kTile, constants_.issue);
+
+    const std::uint64_t first_line = event.address / constants_.line_bytes;
+    const std::uint64_t last_line = (event.address + std::max(1u, event.bytes) - 1) / constants_.line_bytes;
+    const std::uint64_t lines = last_line - first_line + 1;
+    core.queue[core.issued_count % constants_.queue_depth] = {.issued = core.now, .done = 0, .lines = lines};
+    core.last_of_tag[tag] = ++core.issued_count;
+
+    CoreTiming& timing = core.timing;
+    const bool is_get = event.kind == EventKind::kGet;
+    (is_get ? timing.gets : timing.puts) += 1;
+    (is_get ? timing.bytes_in : timing.bytes_out) += event.bytes;
+    (is_get ? timing.line_bytes_in : timing.line_bytes_out) += lines * constants_.line_bytes;
+    return true;
+  }
+
+  bool take_wait(Core& core, const TraceEvent& event) {
+    std::uint32_t tags = event.tags;
+    for (std::uint32_t relative = 0; relative < kTagCount; ++relative) {
+      if ((event.rotating_tags >> relative & 1u) != 0) tags |= 1u << rotated_tag(core, relative);
+    }
+    // Commands end in the order of issue, so the last one of the tags decides.
+    std::uint64_t last = 0;
+    std::uint32_t last_tag = 0;
+    for (std::uint32_t tag = 0; tag < kTagCount; ++tag) {
+      if ((tags >> tag & 1u) != 0 && core.last_of_tag[tag] > last) {
+        last = core.last_of_tag[tag];
+        last_tag = tag;
+      }
+    }
+    if (last != 0 && !wait_for(core, last, wait_level_of_tag(last_tag))) return false;
+    spend(core, TimelineSpan::Kind::kCompute, WaitLevel::kTile, constants_.wait);
+    return true;
+  }
+
+  std::uint32_t rotated_tag(const Core& core, std::uint32_t relative) const {
+    return kFirstOutputTag + (relative + core.ordinal) % output_depth_;
+  }
+
+  /// Lets a core stand still until a command is done. @returns false where that time is not known yet.
+  bool wait_for(Core& core, std::uint64_t command, WaitLevel level) {
+    if (command > core.granted_count) {
+      core.blocked_until = command;
+      return false;
+    }
+    // A command whose place has been taken by a later one left the queue long ago.
+    if (command + constants_.queue_depth <= core.issued_count) return true;
+    const Ticks done = core.queue[(command - 1) % constants_.queue_depth].done;
+    if (done > core.now) spend(core, TimelineSpan::Kind::kWait, level, done - core.now);
+    return true;
+  }
+
+  void spend(Core& core, TimelineSpan::Kind kind, WaitLevel level, Ticks ticks) {
+    if (ticks == 0) return;
+    const Ticks begin = core.now;
+    core.now += ticks;
+    switch (kind) {
+      case TimelineSpan::Kind::kInit:
+        core.init += ticks;
+        break;
+      case TimelineSpan::Kind::kWait:
+        core.waits[static_cast<std::size_t>(level)] += ticks;
+        break;
+      case TimelineSpan::Kind::kCompute:
+      case TimelineSpan::Kind::kTile:
+        core.compute += ticks;
+        break;
+    }
+    if (!with_timeline_) return;
+    if (!core.timeline.empty()) {
+      TimelineSpan& last = core.timeline.back();
+      if (last.kind == kind && last.level == level && last.tile_id == core.tile_id &&
+          last.end_cycles == cycles_from_ticks(begin)) {
+        last.end_cycles = cycles_from_ticks(core.now);
+        return;
+      }
+    }
+    core.timeline.push_back(span(core, kind, level, begin, core.now));
+  }
+
+  TimelineSpan span(const Core& core, TimelineSpan::Kind kind, WaitLevel level, Ticks begin, Ticks end) const {
+    return {.core = static_cast<std::uint32_t>(&core - cores_.data()),
+            .kind = kind,
+            .level = level,
+            .tile_id = core.tile_id,
+            .begin_cycles = cycles_from_ticks(begin),
+            .end_cycles = cycles_from_ticks(end)};
+  }
+
+  FrameTiming result() {
+    Ticks end = 0;
+    for (const Core& core : cores_) end = std::max(end, core.now);
+
+    FrameTiming frame;
+    frame.frame_cycles = cycles_from_ticks(end);
+    frame.seconds = machine_.clock_hz > 0 ? frame.frame_cycles / machine_.clock_hz : 0;
+    frame.channel_busy_cycles = cycles_from_ticks(channel_busy_);
+    for (Core& core : cores_) {
+      CoreTiming& timing = core.timing;
+      timing.init_cycles = cycles_from_ticks(core.init);
+      timing.compute_cycles = cycles_from_ticks(core.compute);
+      timing.idle_cycles = cycles_from_ticks(core.idle + (end - core.now));
+      for (std::size_t level = 0; level < kWaitLevelCount; ++level) {
+        timing.dma_wait_cycles[level] = cycles_from_ticks(core.waits[level]);
+      }
+      frame.cores.push_back(timing);
+      frame.timeline.insert(frame.timeline.end(), core.timeline.begin(), core.timeline.end());
+    }
+    return frame;
+  }
+
+  const FrameTrace& trace_;
+  const MachineProfile& machine_;
+  const Constants constants_;
+  const std::uint32_t output_depth_;
+  const bool with_timeline_;
+  std::vector<Core> cores_;
+  std::size_t next_tile_ = 0;
+  Ticks channel_free_ = 0;
+  Ticks channel_busy_ = 0;
+};
+
+}  // namespace
+
+WaitLevel wait_level_of_tag(std::uint32_t tag) {
+  if (tag < kFirstMacroTag) return WaitLevel::kSetup;
+  if (tag < kFirstTriangleTag) return WaitLevel::kMacroCell;
+  if (tag < kFirstOutputTag) return WaitLevel::kTriangle;
+  return WaitLevel::kTile;
+}
+
+FrameTiming replay(const FrameTrace& trace, const MachineProfile& machine, const ReplayOptions& options) {
+  return Replay(trace, machine, options).run();
+}
+
+}  // namespace gridiron::sim
