@@ -58,15 +58,18 @@ void find_candidates(const FilterGroup* groups, std::size_t count, const RayBloc
       const Lanes e0 = normal[0][0] * d[0] + normal[0][1] * d[1] + normal[0][2] * d[2];
       const Lanes e1 = normal[1][0] * d[0] + normal[1][1] * d[1] + normal[1][2] * d[2];
       const Lanes e2 = normal[2][0] * d[0] + normal[2][1] * d[1] + normal[2][2] * d[2];
-      const LaneMask positive = (e0 > bound[0]) | (e1 > bound[1]) | (e2 > bound[2]);
-      const LaneMask negative = (e0 < -bound[0]) | (e1 < -bound[1]) | (e2 < -bound[2]);
+      // Sign bits stand for comparisons: compilers split those of wide vectors into scalars.
+      const auto positive = reinterpret_cast<LaneMask>(bound[0] - e0) | reinterpret_cast<LaneMask>(bound[1] - e1) |
+                            reinterpret_cast<LaneMask>(bound[2] - e2);
+      const auto negative = reinterpret_cast<LaneMask>(bound[0] + e0) | reinterpret_cast<LaneMask>(bound[1] + e1) |
+                            reinterpret_cast<LaneMask>(bound[2] + e2);
       kept[r] |= ~(positive & negative);
     }
   }
   for (std::size_t r = 0; r < kRaysAtOnce; ++r) {
     long long bits = 0;
     for (std::size_t lane = 0; lane < kWidth; ++lane) bits |= kept[r][lane];
-    any[r] = bits != 0;
+    any[r] = bits < 0;
   }
 }
 
