@@ -22,6 +22,7 @@ constexpr Ticks kNever = ~Ticks{0};
 constexpr double kMaxConstantCycles = 1 << 20;
 constexpr std::uint32_t kMaxWindow = 65536;
 constexpr std::uint32_t kTagCount = 32;
+static_assert(kFirstRotatingTag == kFirstOutputTag);
 
 Ticks ticks_from_cycles(double cycles) {
   if (!(cycles > 0)) return 0;

@@ -1,0 +1,655 @@
+// Replay against closed forms, by-hand sums and its own invariants.
+// Memory: std::vector. Threads: one. SPDX-License-Identifier: Apache-2.0
+#include <gridiron/sim/machine_profile.h>
+#include <gridiron/sim/replay.h>
+#include <gridiron/store/dma_tags.h>
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <chrono>
+#include <cstdint>
+#include <cstdio>
+#include <limits>
+#include <random>
+#include <set>
+#include <string>
+#include <vector>
+
+namespace gridiron::sim {
+namespace {
+
+constexpr std::uint8_t kTriangleTag = kFirstTriangleTag;
+constexpr std::uint8_t kMacroTag = kFirstMacroTag;
+constexpr std::size_t kTileLevel = static_cast<std::size_t>(WaitLevel::kTile);
+constexpr std::size_t kMacroLevel = static_cast<std::size_t>(WaitLevel::kMacroCell);
+constexpr std::size_t kTriangleLevel = static_cast<std::size_t>(WaitLevel::kTriangle);
+constexpr std::size_t kSetupLevel = static_cast<std::size_t>(WaitLevel::kSetup);
+
+/// A machine that costs nothing but what a test sets. One unit of work is one cycle, whatever the kind.
+MachineProfile free_machine() {
+  MachineProfile machine{};
+  machine.name = "free";
+  machine.core_count = 1;
+  machine.clock_hz = 1e9;
+  machine.line_bytes = 128;
+  machine.queue_depth = 65536;
+  machine.lines_in_flight = 65536;
+  machine.work_cycles.fill(1);
+  return machine;
+}
+
+/// What the published blocking-get bandwidths follow from: a latency after a channel of 8 bytes a cycle, no in-flight
+/// limit, nothing for issue and wait.
+MachineProfile blocking_machine(double latency_cycles) {
+  MachineProfile machine = free_machine();
+  machine.clock_hz = 3.2e9;
+  machine.latency_cycles = latency_cycles;
+  machine.channel_bytes_per_cycle = 8;
+  return machine;
+}
+
+/// Writes a TileTrace step by step.
+class Steps {
+ public:
+  explicit Steps(std::uint32_t tile_id = 0) { tile_.tile_id = tile_id; }
+
+  Steps& work(std::uint32_t amount, Work kind = Work::kCellStep) {
+    TraceEvent event = blank(EventKind::kWork);
+    event.first_work = static_cast<std::uint32_t>(tile_.work.size());
+    event.work_count = 1;
+    tile_.work.push_back({kind, amount});
+    tile_.events.push_back(event);
+    return *this;
+  }
+  Steps& get(std::uint32_t bytes, std::uint8_t tag, std::uint64_t address = 4096) {
+    return transfer(EventKind::kGet, bytes, tag, false, address);
+  }
+  Steps& put(std::uint32_t bytes, std::uint8_t tag, bool rotating = false) {
+    return transfer(EventKind::kPut, bytes, tag, rotating, 8192);
+  }
+  Steps& wait(std::uint32_t tags, std::uint32_t rotating_tags = 0) {
+    TraceEvent event = blank(EventKind::kWait);
+    event.tags = tags;
+    event.rotating_tags = rotating_tags;
+    event.rotating = rotating_tags != 0;
+    tile_.events.push_back(event);
+    return *this;
+  }
+  operator TileTrace() const { return tile_; }
+
+ private:
+  static TraceEvent blank(EventKind kind) {
+    return {.kind = kind,
+            .tag = 0,
+            .rotating = false,
+            .bytes = 0,
+            .address = 0,
+            .tags = 0,
+            .rotating_tags = 0,
+            .first_work = 0,
+            .work_count = 0};
+  }
+  Steps& transfer(EventKind kind, std::uint32_t bytes, std::uint8_t tag, bool rotating, std::uint64_t address) {
+    TraceEvent event = blank(kind);
+    event.bytes = bytes;
+    event.tag = tag;
+    event.rotating = rotating;
+    event.address = address;
+    tile_.events.push_back(event);
+    return *this;
+  }
+  TileTrace tile_;
+};
+
+std::uint32_t bit(std::uint32_t tag) {
+  return 1u << tag;
+}
+
+FrameTrace frame_of(std::vector<TileTrace> tiles) {
+  FrameTrace trace;
+  trace.tiles = std::move(tiles);
+  return trace;
+}
+
+FrameTiming replay_on(const FrameTrace& trace, const MachineProfile& machine, std::uint32_t cores = 1) {
+  return replay(trace, machine, {.core_count = cores, .timeline = false});
+}
+
+double accounted_cycles(const CoreTiming& core) {
+  double sum = core.init_cycles + core.compute_cycles + core.idle_cycles;
+  for (const double wait : core.dma_wait_cycles) sum += wait;
+  return sum;
+}
+
+/// A frame that looks like a rendered one: per packet a cell block, then triangle batches fetched ahead, then output.
+/// About lines_per_tile lines of transfers per tile.
+FrameTrace synthetic_frame(std::uint32_t seed, std::uint32_t tile_count, std::uint32_t packets_per_tile,
+                           std::uint32_t output_depth = 2) {
+  std::mt19937 random(seed);
+  const auto draw = [&random](std::uint32_t least, std::uint32_t most) {
+    return least + static_cast<std::uint32_t>(random() % (most - least + 1));
+  };
+  FrameTrace trace;
+  trace.output_depth = output_depth;
+  trace.prologue = Steps().get(384, kSetupTag).wait(bit(kSetupTag)).get(8192, kSetupTag).wait(bit(kSetupTag));
+  for (std::uint32_t i = 0; i < tile_count; ++i) {
+    Steps tile(i);
+    tile.work(1, Work::kTileStart).wait(0, 1);
+    for (std::uint32_t packet = 0; packet < packets_per_tile; ++packet) {
+      tile.work(1, Work::kPacketStart).work(16, Work::kRayGenerated);
+      tile.get(1792, kMacroTag, draw(0, 100000) * 128).wait(bit(kMacroTag));
+      std::uint8_t slot = 0;
+      for (std::uint32_t batch = draw(1, 6); batch > 0; --batch) {
+        const std::uint32_t bytes = draw(1, 40) * 48;
+        const std::uint64_t address = std::uint64_t{draw(0, 1000000)} * 16;
+        tile.get(bytes, static_cast<std::uint8_t>(kFirstTriangleTag + slot), address);
+        tile.work(draw(0, 40), Work::kCullTest).wait(bit(kFirstTriangleTag + slot));
+        tile.work(draw(0, 90), Work::kGroupTestStandard);
+        slot ^= 1;
+      }
+      tile.work(16, Work::kShadedGroup);
+    }
+    tile.put(4096, 0, true);
+    trace.tiles.push_back(tile);
+  }
+  trace.epilogue = Steps().wait(0, 0xFF);
+  return trace;
+}
+
+TEST(Replay, NothingToDoCostsNothing) {
+  const FrameTiming frame = replay_on({}, free_machine(), 3);
+  EXPECT_EQ(frame.frame_cycles, 0);
+  ASSERT_EQ(frame.cores.size(), 3u);
+  EXPECT_EQ(accounted_cycles(frame.cores[2]), 0);
+}
+
+TEST(Replay, BlockingGetBandwidthIsTheClosedForm) {
+  for (const double latency : {300.0, 500.0, 1000.0}) {
+    for (const std::uint32_t bytes : {128u, 512u, 2048u, 4096u, 16384u}) {
+      constexpr std::uint32_t kGets = 10;
+      Steps tile;
+      for (std::uint32_t i = 0; i < kGets; ++i) tile.get(bytes, kTriangleTag).wait(bit(kTriangleTag));
+      const FrameTiming frame = replay_on(frame_of({tile}), blocking_machine(latency));
+      EXPECT_EQ(frame.frame_cycles, kGets * (latency + bytes / 8.0)) << bytes << " bytes at latency " << latency;
+    }
+  }
+}
+
+TEST(Replay, BlockingGetBandwidthAt500CyclesIsThePublishedOne) {
+  const struct {
+    std::uint32_t bytes;
+    double gigabytes_per_second;
+    double tolerance;
+  } cases[] = {{128, 0.79, 0.005}, {512, 2.90, 0.005}, {2048, 8.67, 0.005}, {4096, 13.0, 0.05}, {16384, 20.6, 0.05}};
+  for (const auto& c : cases) {
+    const TileTrace tile = Steps().get(c.bytes, kTriangleTag).wait(bit(kTriangleTag));
+    const FrameTiming frame = replay_on(frame_of({tile}), blocking_machine(500));
+    EXPECT_NEAR(c.bytes / frame.seconds / 1e9, c.gigabytes_per_second, c.tolerance) << c.bytes << " bytes";
+  }
+}
+
+TEST(Replay, OneCoreWithoutContentionIsTheSumByHand) {
+  MachineProfile machine = free_machine();
+  machine.issue_cycles = 24;
+  machine.wait_cycles = 14;
+  machine.latency_cycles = 500;
+  machine.channel_bytes_per_cycle = 8;  // 16 cycles a line
+  machine.claim_cycles = 300;
+  machine.work_cycles[static_cast<std::size_t>(Work::kPacketStart)] = 500;
+
+  FrameTrace trace;
+  trace.prologue = Steps().get(384, kSetupTag, 0).wait(bit(kSetupTag));
+  const TileTrace tile = Steps()
+                             .work(2, Work::kPacketStart)
+                             .get(1792, kMacroTag, 0)
+                             .wait(bit(kMacroTag))
+                             .get(256, kTriangleTag, 0)
+                             .work(100)
+                             .wait(bit(kTriangleTag))
+                             .work(50)
+                             .put(4096, 0, true);
+  trace.tiles = {tile};
+  trace.epilogue = Steps().wait(0, 1);
+  trace.epilogue.events[0].tags = bit(kFirstOutputTag);
+  trace.epilogue.events[0].rotating_tags = 0;
+
+  const FrameTiming frame = replay_on(trace, machine);
+  const CoreTiming& core = frame.cores[0];
+  EXPECT_EQ(core.init_cycles, 2 * 500);
+  EXPECT_EQ(core.compute_cycles, 4 * 24 + 4 * 14 + 100 + 50);
+  EXPECT_EQ(core.dma_wait_cycles[kSetupLevel], 3 * 16 + 500);
+  EXPECT_EQ(core.dma_wait_cycles[kMacroLevel], 14 * 16 + 500);
+  EXPECT_EQ(core.dma_wait_cycles[kTriangleLevel], 2 * 16 + 500 - 100);
+  // Between the put and its wait lies the refused claim.
+  EXPECT_EQ(core.dma_wait_cycles[kTileLevel], 32 * 16 + 500 - 300);
+  EXPECT_EQ(core.idle_cycles, 2 * 300);
+  EXPECT_EQ(frame.frame_cycles, accounted_cycles(core));
+  EXPECT_EQ(frame.seconds, frame.frame_cycles / 1e9);
+  EXPECT_EQ(core.tiles, 1u);
+  EXPECT_EQ(core.gets, 3u);
+  EXPECT_EQ(core.puts, 1u);
+  EXPECT_EQ(core.bytes_in, 384u + 1792 + 256);
+  EXPECT_EQ(core.bytes_out, 4096u);
+  EXPECT_EQ(frame.channel_busy_cycles, (3 + 14 + 2 + 32) * 16);
+}
+
+TEST(Replay, TransfersCostWholeLinesTouched) {
+  const struct {
+    std::uint64_t address;
+    std::uint32_t bytes;
+    std::uint32_t lines;
+  } cases[] = {{0, 16, 1}, {0, 128, 1}, {112, 16, 1}, {112, 32, 2}, {64, 128, 2}, {0, 144, 2}, {120, 272, 4}};
+  for (const auto& c : cases) {
+    const TileTrace tile = Steps().get(c.bytes, kTriangleTag, c.address).wait(bit(kTriangleTag));
+    const FrameTiming frame = replay_on(frame_of({tile}), blocking_machine(500));
+    EXPECT_EQ(frame.cores[0].line_bytes_in, c.lines * 128u) << c.address << " + " << c.bytes;
+    EXPECT_EQ(frame.cores[0].bytes_in, c.bytes);
+    EXPECT_EQ(frame.frame_cycles, 500 + 16.0 * c.lines) << c.address << " + " << c.bytes;
+  }
+}
+
+TEST(Replay, WaitIsForItsTagsOnly) {
+  const TileTrace tile =
+      Steps().get(128, kMacroTag).get(16384, kTriangleTag).wait(bit(kMacroTag)).work(10).wait(bit(kTriangleTag));
+  const FrameTiming frame = replay_on(frame_of({tile}), blocking_machine(500));
+  EXPECT_EQ(frame.cores[0].dma_wait_cycles[kMacroLevel], 516);
+  EXPECT_EQ(frame.cores[0].dma_wait_cycles[kTriangleLevel], 128 * 16 - 10);
+  // A tag that nothing was issued under ends at once.
+  EXPECT_EQ(replay_on(frame_of({Steps().get(128, kMacroTag).wait(bit(kTriangleTag)).work(7)}), blocking_machine(500))
+                .frame_cycles,
+            7);
+}
+
+TEST(Replay, MixedWaitBelongsToTheLevelThatEndsLast) {
+  const TileTrace tile =
+      Steps().get(128, kMacroTag).get(128, kTriangleTag).wait(bit(kMacroTag) | bit(kTriangleTag)).work(1);
+  const FrameTiming frame = replay_on(frame_of({tile}), blocking_machine(500));
+  EXPECT_EQ(frame.cores[0].dma_wait_cycles[kTriangleLevel], 532);
+  EXPECT_EQ(frame.cores[0].dma_wait_cycles[kMacroLevel], 0);
+}
+
+TEST(Replay, LevelsFollowTheTags) {
+  EXPECT_EQ(wait_level_of_tag(kSetupTag), WaitLevel::kSetup);
+  for (std::uint32_t tag = 1; tag < 9; ++tag) EXPECT_EQ(wait_level_of_tag(tag), WaitLevel::kMacroCell) << tag;
+  for (std::uint32_t tag = 9; tag < 24; ++tag) EXPECT_EQ(wait_level_of_tag(tag), WaitLevel::kTriangle) << tag;
+  for (std::uint32_t tag = 24; tag < 32; ++tag) EXPECT_EQ(wait_level_of_tag(tag), WaitLevel::kTile) << tag;
+}
+
+TEST(Replay, InFlightLimitBoundsOneCore) {
+  MachineProfile machine = blocking_machine(500);
+  machine.lines_in_flight = 16;
+  const TileTrace tile = Steps().get(16384, kTriangleTag).wait(bit(kTriangleTag));
+  // Line n + 16 leaves when line n has arrived: 16 lines every 516 cycles; the last of 8 rounds ends 15 turns later.
+  EXPECT_EQ(replay_on(frame_of({tile}), machine).frame_cycles, 8 * 516 + 15 * 16);
+}
+
+TEST(Replay, LineIntervalBoundsOneCore) {
+  MachineProfile machine = blocking_machine(500);
+  machine.core_line_interval_cycles = 40;
+  const TileTrace tile = Steps().get(1280, kTriangleTag, 0).wait(bit(kTriangleTag));
+  EXPECT_EQ(replay_on(frame_of({tile}), machine).frame_cycles, 9 * 40 + 516);
+}
+
+TEST(Replay, FullQueueStallsTheIssue) {
+  MachineProfile machine = blocking_machine(500);
+  machine.queue_depth = 2;
+  machine.issue_cycles = 10;
+  Steps tile;
+  for (int i = 0; i < 3; ++i) tile.get(128, kTriangleTag, 0);
+  tile.work(5);
+  const FrameTiming frame = replay_on(frame_of({tile}), machine);
+  // The third get waits for the first, which left at 10 and is there at 526.
+  EXPECT_EQ(frame.cores[0].dma_wait_cycles[kTriangleLevel], 526 - 20);
+  EXPECT_EQ(frame.cores[0].compute_cycles, 3 * 10 + 5);
+  EXPECT_EQ(frame.frame_cycles, 526 + 10 + 5);
+
+  machine.queue_depth = 3;
+  EXPECT_EQ(replay_on(frame_of({tile}), machine).frame_cycles, 3 * 10 + 5);
+
+  machine.queue_depth = 1;  // every get but the first waits for the one before
+  EXPECT_EQ(replay_on(frame_of({tile}), machine).frame_cycles, 526 + 526 + 10 + 5);
+}
+
+TEST(Replay, FullQueueStallHasTheLevelOfTheNewCommand) {
+  MachineProfile machine = blocking_machine(500);
+  machine.queue_depth = 1;
+  const TileTrace tile = Steps().get(128, kMacroTag).put(128, 0, true).work(1);
+  const FrameTiming frame = replay_on(frame_of({tile}), machine);
+  EXPECT_EQ(frame.cores[0].dma_wait_cycles[kTileLevel], 516);
+  EXPECT_EQ(frame.cores[0].dma_wait_cycles[kMacroLevel], 0);
+}
+
+TEST(Replay, ClaimsAreGrantedInOrderOfTimeTiesByCore) {
+  std::vector<TileTrace> tiles;
+  for (const std::uint32_t length : {100u, 10u, 10u, 10u, 10u}) {
+    tiles.push_back(Steps(static_cast<std::uint32_t>(tiles.size())).work(length));
+  }
+  MachineProfile machine = free_machine();
+  machine.claim_cycles = 3;
+  const FrameTiming frame = replay(frame_of(tiles), machine, {.core_count = 2, .timeline = true});
+  EXPECT_EQ(frame.cores[0].tiles, 1u);
+  EXPECT_EQ(frame.cores[1].tiles, 4u);
+  EXPECT_EQ(frame.frame_cycles, 3 + 100 + 3);
+  EXPECT_EQ(frame.cores[1].idle_cycles, 5 * 3 + (106 - 4 * 13 - 3));
+  std::vector<std::uint32_t> tiles_of_core_1;
+  for (const TimelineSpan& span : frame.timeline) {
+    if (span.kind == TimelineSpan::Kind::kTile && span.core == 1) tiles_of_core_1.push_back(span.tile_id);
+  }
+  EXPECT_EQ(tiles_of_core_1, (std::vector<std::uint32_t>{1, 2, 3, 4}));
+}
+
+TEST(Replay, ClaimsWaitForEarlierTransfersOfOtherCores) {
+  // Core 0 is slow because of a transfer that is only known after core 1 has claimed: core 1 must still come first.
+  std::vector<TileTrace> tiles;
+  tiles.push_back(Steps(0).get(128, kTriangleTag).wait(bit(kTriangleTag)));
+  tiles.push_back(Steps(1).work(515));
+  tiles.push_back(Steps(2).work(1));
+  tiles.push_back(Steps(3).work(1));
+  const FrameTiming frame = replay(frame_of(tiles), blocking_machine(500), {.core_count = 2, .timeline = true});
+  std::vector<std::uint32_t> core_of_tile(4);
+  for (const TimelineSpan& span : frame.timeline) {
+    if (span.kind == TimelineSpan::Kind::kTile) core_of_tile[span.tile_id] = span.core;
+  }
+  EXPECT_EQ(core_of_tile, (std::vector<std::uint32_t>{0, 1, 1, 0}));  // core 1 asks at 515, both at 516
+}
+
+TEST(Replay, ChannelServesCoresInOrderOfRequest) {
+  // Both ask at the same times; core 0 first. Lines alternate, so the last lines are one turn apart.
+  const TileTrace tile = Steps().get(1280, kTriangleTag, 0).wait(bit(kTriangleTag));
+  MachineProfile machine = blocking_machine(500);
+  machine.core_line_interval_cycles = 16;
+  const FrameTiming frame = replay_on(frame_of({tile, tile}), machine, 2);
+  EXPECT_EQ(frame.cores[0].dma_wait_cycles[kTriangleLevel], 19 * 16 + 500);
+  EXPECT_EQ(frame.cores[1].dma_wait_cycles[kTriangleLevel], 20 * 16 + 500);
+}
+
+/// Streams 512 KB per core in gets of 16 KB, four in flight. @returns GB/s over all cores.
+double streaming_bandwidth(const MachineProfile& machine, std::uint32_t cores) {
+  Steps tile;
+  constexpr std::uint32_t kGets = 32;
+  for (std::uint32_t i = 0; i < kGets; ++i) {
+    const auto tag = static_cast<std::uint8_t>(kFirstTriangleTag + i % 4);
+    tile.wait(bit(tag)).get(16384, tag, 0);
+  }
+  for (std::uint8_t i = 0; i < 4; ++i) tile.wait(bit(kFirstTriangleTag + i));
+  const FrameTiming frame = replay_on(frame_of(std::vector<TileTrace>(cores, tile)), machine, cores);
+  EXPECT_LE(frame.channel_busy_cycles, frame.frame_cycles);
+  return cores * kGets * 16384.0 / frame.seconds / 1e9;
+}
+
+TEST(Replay, TwoOrMoreCoresSaturateTheChannel) {
+  const MachineProfile& machine = *find_machine_profile("cell-ps3");
+  EXPECT_NEAR(streaming_bandwidth(machine, 1), 16 * 128 / 517.8 * 3.2, 0.15);
+  for (const std::uint32_t cores : {2u, 3u, 6u, 16u}) {
+    EXPECT_NEAR(streaming_bandwidth(machine, cores), 7.2 * 3.2, 0.4) << cores << " cores";
+  }
+}
+
+TEST(Replay, GetsAndPutsShareTheChannel) {
+  MachineProfile machine = blocking_machine(0);
+  const TileTrace in = Steps().get(8192, kTriangleTag, 0).wait(bit(kTriangleTag));
+  const TileTrace out = Steps().put(8192, 0, true).wait(0, 1);
+  EXPECT_EQ(replay_on(frame_of({in}), machine, 1).frame_cycles, 1024);
+  EXPECT_EQ(replay_on(frame_of({in, out}), machine, 2).frame_cycles, 2048);
+}
+
+/// Tiles that wait for their output buffer, work, and put. @returns the frame's wait at the tile level.
+double output_wait(std::uint32_t output_depth, double put_cycles, std::uint32_t work) {
+  FrameTrace trace;
+  trace.output_depth = output_depth;
+  for (std::uint32_t i = 0; i < 6; ++i) trace.tiles.push_back(Steps(i).work(work).wait(0, 1).put(128, 0, true));
+  MachineProfile machine = blocking_machine(put_cycles - 16);
+  return replay_on(trace, machine).cores[0].dma_wait_cycles[kTileLevel];
+}
+
+TEST(Replay, RotatingTagsLetPutsOverlap) {
+  EXPECT_EQ(output_wait(1, 1000, 100), 5 * 900);  // each tile but the first waits out the put before
+  // Two buffers wait for the put before last: 200 of its 1,000 cycles pass in work, then one tile goes without a stall.
+  EXPECT_EQ(output_wait(2, 1000, 100), 2 * 800);
+  EXPECT_EQ(output_wait(2, 1000, 600), 0);
+  EXPECT_EQ(output_wait(1, 1000, 600), 5 * 400);
+  EXPECT_EQ(output_wait(8, 1000, 1), 0);
+}
+
+TEST(Replay, RotatingTagsAreTheCoresOwn) {
+  // Two cores take tiles in turn; each has one put pending when it needs a buffer again, of depth two: no wait.
+  FrameTrace trace;
+  trace.output_depth = 2;
+  for (std::uint32_t i = 0; i < 8; ++i) trace.tiles.push_back(Steps(i).work(600).wait(0, 1).put(128, 0, true));
+  const FrameTiming frame = replay_on(trace, blocking_machine(984), 2);
+  EXPECT_EQ(frame.cores[0].tiles, 4u);
+  EXPECT_EQ(frame.cores[0].dma_wait_cycles[kTileLevel], 0);
+  EXPECT_EQ(frame.cores[1].dma_wait_cycles[kTileLevel], 0);
+  trace.output_depth = 1;
+  EXPECT_EQ(replay_on(trace, blocking_machine(984), 2).cores[0].dma_wait_cycles[kTileLevel], 3 * 400);
+}
+
+TEST(Replay, EveryCycleIsAccountedFor) {
+  for (std::uint32_t seed = 1; seed <= 5; ++seed) {
+    const FrameTrace trace = synthetic_frame(seed, 64, 4, 1 + seed % 3);
+    for (const MachineProfile& machine : machine_profiles()) {
+      for (std::uint32_t cores = 1; cores <= 16; ++cores) {
+        const FrameTiming frame = replay_on(trace, machine, cores);
+        ASSERT_EQ(frame.cores.size(), cores);
+        std::uint32_t tiles = 0;
+        for (const CoreTiming& core : frame.cores) {
+          ASSERT_EQ(accounted_cycles(core), frame.frame_cycles)
+              << "seed " << seed << ", " << machine.name << ", " << cores << " cores";
+          tiles += core.tiles;
+        }
+        ASSERT_EQ(tiles, 64u);
+      }
+    }
+  }
+}
+
+TEST(Replay, WorkAndTransfersDoNotDependOnTheNumberOfCores) {
+  const FrameTrace trace = synthetic_frame(7, 96, 4);
+  const MachineProfile& machine = *find_machine_profile("cell-ps3");
+  const auto totals = [&](std::uint32_t cores) {
+    const FrameTiming frame = replay_on(trace, machine, cores);
+    CoreTiming sum;
+    for (const CoreTiming& core : frame.cores) {
+      sum.init_cycles += core.init_cycles;
+      sum.compute_cycles += core.compute_cycles;
+      sum.puts += core.puts;
+      sum.bytes_in += core.bytes_in;
+    }
+    // The prologue and the epilogue run once per core.
+    sum.compute_cycles -= cores * (2 * machine.issue_cycles + 3 * machine.wait_cycles);
+    sum.bytes_in -= cores * (384u + 8192u);
+    return sum;
+  };
+  const CoreTiming one = totals(1);
+  for (std::uint32_t cores = 2; cores <= 16; ++cores) {
+    const CoreTiming many = totals(cores);
+    EXPECT_EQ(many.init_cycles, one.init_cycles) << cores;
+    EXPECT_EQ(many.compute_cycles, one.compute_cycles) << cores;
+    EXPECT_EQ(many.puts, one.puts) << cores;
+    EXPECT_EQ(many.bytes_in, one.bytes_in) << cores;
+  }
+}
+
+TEST(Replay, MoreCoresAreFasterAndNeverBeyondLinear) {
+  const FrameTrace trace = synthetic_frame(11, 256, 4);
+  const MachineProfile& machine = *find_machine_profile("cell-ps3");
+  const double one = replay_on(trace, machine, 1).frame_cycles;
+  double last = one;
+  for (const std::uint32_t cores : {2u, 4u, 8u, 16u}) {
+    const double cycles = replay_on(trace, machine, cores).frame_cycles;
+    EXPECT_LT(cycles, last) << cores;
+    EXPECT_GE(cycles * cores, one * 0.999) << cores;
+    last = cycles;
+  }
+}
+
+/// Everything of a frame's timing as text, digits complete.
+std::string fingerprint(const FrameTiming& frame) {
+  std::string text;
+  const auto add = [&text](double value) {
+    char digits[40];
+    std::snprintf(digits, sizeof digits, "%a ", value);
+    text += digits;
+  };
+  add(frame.frame_cycles);
+  add(frame.seconds);
+  add(frame.channel_busy_cycles);
+  for (const CoreTiming& core : frame.cores) {
+    add(core.tiles);
+    add(core.init_cycles);
+    add(core.compute_cycles);
+    for (const double wait : core.dma_wait_cycles) add(wait);
+    add(core.idle_cycles);
+    add(static_cast<double>(core.gets + core.puts));
+    add(static_cast<double>(core.line_bytes_in + core.line_bytes_out));
+  }
+  for (const TimelineSpan& span : frame.timeline) {
+    add(span.core);
+    add(static_cast<double>(span.kind));
+    add(span.tile_id);
+    add(span.begin_cycles);
+    add(span.end_cycles);
+  }
+  return text;
+}
+
+TEST(Replay, TwiceIsEqualToTheLastDigit) {
+  const MachineProfile& machine = *find_machine_profile("cell-ps3");
+  FrameTrace trace = synthetic_frame(3, 64, 4);
+  const std::string first = fingerprint(replay(trace, machine, {.core_count = 6, .timeline = true}));
+  EXPECT_EQ(fingerprint(replay(trace, machine, {.core_count = 6, .timeline = true})), first);
+
+  // The same frame in other memory, with other capacities.
+  for (TileTrace& tile : trace.tiles) {
+    tile.events.reserve(tile.events.size() * 3);
+    tile.work.reserve(tile.work.size() * 2 + 7);
+  }
+  trace.tiles.reserve(1000);
+  const FrameTrace copy = trace;
+  EXPECT_EQ(fingerprint(replay(trace, machine, {.core_count = 6, .timeline = true})), first);
+  EXPECT_EQ(fingerprint(replay(copy, machine, {.core_count = 6, .timeline = true})), first);
+}
+
+TEST(Replay, KnownFrameHasKnownCycles) {
+  // Pins the result across hosts and compilers: the trace is a closed formula, no random numbers.
+  FrameTrace trace;
+  trace.output_depth = 2;
+  for (std::uint32_t i = 0; i < 50; ++i) {
+    Steps tile(i);
+    tile.work(1, Work::kTileStart).wait(0, 1);
+    for (std::uint32_t k = 0; k < 20; ++k) {
+      tile.get(48 * (1 + (i * 7 + k * 3) % 60), kTriangleTag, 16 * (i * 31 + k * 17))
+          .work((i * k) % 37, Work::kCullTest);
+      tile.wait(bit(kTriangleTag)).work((i + k) % 90, Work::kGroupTestPaper);
+    }
+    trace.tiles.push_back(tile.put(4096, 0, true));
+  }
+  trace.epilogue = Steps().wait(0, 3);
+  MachineProfile machine = *find_machine_profile("cell-ps3");
+  machine.work_cycles.fill(33.3);
+  const FrameTiming frame = replay_on(trace, machine, 6);
+  EXPECT_EQ(frame.frame_cycles, 409544.7607421875);
+}
+
+TEST(Replay, TimelineCoversEveryCycleThatIsNotIdle) {
+  const FrameTrace trace = synthetic_frame(5, 40, 3);
+  const FrameTiming frame = replay(trace, *find_machine_profile("cell-ps3"), {.core_count = 6, .timeline = true});
+  std::vector<double> covered(6, 0), end(6, 0);
+  std::vector<double> init(6, 0), triangle_wait(6, 0);
+  std::set<std::uint32_t> tiles;
+  for (const TimelineSpan& span : frame.timeline) {
+    ASSERT_LE(span.begin_cycles, span.end_cycles);
+    if (span.kind == TimelineSpan::Kind::kTile) {
+      EXPECT_TRUE(tiles.insert(span.tile_id).second) << span.tile_id;
+      continue;
+    }
+    ASSERT_GE(span.begin_cycles, end[span.core]) << "spans of core " << span.core << " overlap";
+    end[span.core] = span.end_cycles;
+    const double cycles = span.end_cycles - span.begin_cycles;
+    covered[span.core] += cycles;
+    if (span.kind == TimelineSpan::Kind::kInit) init[span.core] += cycles;
+    if (span.kind == TimelineSpan::Kind::kWait && span.level == WaitLevel::kTriangle) {
+      triangle_wait[span.core] += cycles;
+    }
+  }
+  EXPECT_EQ(tiles.size(), 40u);
+  for (std::size_t core = 0; core < 6; ++core) {
+    EXPECT_EQ(covered[core] + frame.cores[core].idle_cycles, frame.frame_cycles) << core;
+    EXPECT_EQ(init[core], frame.cores[core].init_cycles) << core;
+    EXPECT_EQ(triangle_wait[core], frame.cores[core].dma_wait_cycles[kTriangleLevel]) << core;
+  }
+  EXPECT_TRUE(replay_on(trace, *find_machine_profile("cell-ps3"), 6).timeline.empty());
+}
+
+TEST(Replay, SenselessProfileValuesAreTakenAsDocumented) {
+  MachineProfile machine = free_machine();
+  machine.queue_depth = 0;
+  machine.lines_in_flight = 0;
+  machine.line_bytes = 0;
+  machine.core_count = 0;
+  machine.latency_cycles = -5;
+  machine.claim_cycles = std::numeric_limits<double>::quiet_NaN();
+  machine.channel_bytes_per_cycle = 0;
+  FrameTrace trace = frame_of({Steps().get(256, kTriangleTag).wait(bit(kTriangleTag)).work(9)});
+  trace.output_depth = 0;
+  const FrameTiming frame = replay(trace, machine, {});
+  EXPECT_EQ(frame.cores.size(), 1u);
+  EXPECT_EQ(frame.frame_cycles, 9);
+}
+
+TEST(Replay, BunnySizedFrameTakesWellUnderASecond) {
+  const FrameTrace trace = synthetic_frame(1, 1024, 20);
+  const MachineProfile& machine = *find_machine_profile("cell-ps3");
+  const auto begin = std::chrono::steady_clock::now();
+  const FrameTiming frame = replay_on(trace, machine, 6);
+  const double seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
+  std::uint64_t line_bytes = 0;
+  for (const CoreTiming& core : frame.cores) line_bytes += core.line_bytes_in + core.line_bytes_out;
+  RecordProperty("lines", std::to_string(line_bytes / 128));
+  RecordProperty("seconds", std::to_string(seconds));
+  EXPECT_GT(line_bytes / 128, 900000u);
+#ifdef NDEBUG
+  EXPECT_LT(seconds, 1.0);
+#endif
+}
+
+TEST(MachineProfile, BuiltInProfilesAreComplete) {
+  ASSERT_FALSE(machine_profiles().empty());
+  EXPECT_EQ(machine_profiles()[0].name, "cell-ps3");
+  std::set<std::string> names;
+  for (const MachineProfile& machine : machine_profiles()) {
+    EXPECT_TRUE(names.insert(std::string(machine.name)).second) << machine.name;
+    EXPECT_EQ(find_machine_profile(machine.name), &machine);
+    EXPECT_FALSE(machine.description.empty());
+    EXPECT_GT(machine.latency_cycles, 0);
+    EXPECT_GT(machine.channel_bytes_per_cycle, 0);
+    for (std::uint32_t kind = 0; kind < kWorkKindCount; ++kind) {
+      const bool charged_as_event = kind == static_cast<std::uint32_t>(Work::kGetIssue) ||
+                                    kind == static_cast<std::uint32_t>(Work::kPutIssue) ||
+                                    kind == static_cast<std::uint32_t>(Work::kWait);
+      EXPECT_EQ(machine.work_cycles[kind] == 0, charged_as_event) << machine.name << ", kind " << kind;
+    }
+  }
+  EXPECT_EQ(find_machine_profile("cell"), nullptr);
+}
+
+TEST(MachineProfile, FiguresAreThePublishedOnes) {
+  const MachineProfile& ps3 = *find_machine_profile("cell-ps3");
+  EXPECT_EQ(ps3.core_count, 6u);
+  EXPECT_EQ(ps3.clock_hz, 3.2e9);
+  EXPECT_EQ(ps3.main_memory_bytes, 256u << 20);
+  EXPECT_EQ(ps3.local_store_bytes, 262144u);
+  EXPECT_EQ(ps3.queue_depth, 16u);
+  const MachineProfile& blade = *find_machine_profile("cell-2006");
+  EXPECT_EQ(blade.core_count, 8u);
+  EXPECT_EQ(blade.clock_hz, 2.4e9);
+  // The same memory: as many bytes a second, as many nanoseconds.
+  EXPECT_DOUBLE_EQ(blade.channel_bytes_per_cycle * blade.clock_hz, ps3.channel_bytes_per_cycle * ps3.clock_hz);
+  EXPECT_DOUBLE_EQ(blade.latency_cycles / blade.clock_hz, ps3.latency_cycles / ps3.clock_hz);
+  MachineProfile large = *find_machine_profile("cell-ps3-2gb");
+  EXPECT_EQ(large.main_memory_bytes, 2048ull << 20);
+  EXPECT_EQ(large.work_cycles, ps3.work_cycles);
+}
+
+}  // namespace
+}  // namespace gridiron::sim
