@@ -1,0 +1,174 @@
+// SIMD lanes: W floats that go through the same operations. The type is the kernel's choice of width and changes no
+// pixel: every operation is the IEEE one per lane. Source: GCC vector extensions. Memory: values. Threads: any.
+// Everything is always inlined, so that files built for a wide ISA leave no function behind for baseline ones.
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <cstdint>
+
+#if defined(__AVX512F__) || defined(__AVX2__) || defined(__SSE2__)
+#include <immintrin.h>
+#endif
+
+#define GRIDIRON_INLINE inline __attribute__((always_inline))
+
+namespace gridiron {
+
+/// The compiler's vector types: W floats or ints, W / 2 doubles, longs or half vectors; ...Memory may alias plain
+/// arrays.
+template <int W>
+struct LaneVectors;
+template <>
+struct LaneVectors<4> {
+  typedef float FloatVector __attribute__((vector_size(16)));
+  typedef std::int32_t IntVector __attribute__((vector_size(16)));
+  typedef double DoubleVector __attribute__((vector_size(16)));
+  typedef std::int64_t LongVector __attribute__((vector_size(16)));
+  typedef std::int32_t HalfIntVector __attribute__((vector_size(8)));
+  typedef float FloatMemory __attribute__((vector_size(16), may_alias));
+  typedef float HalfFloatMemory __attribute__((vector_size(8), may_alias));
+  typedef std::int32_t HalfIntMemory __attribute__((vector_size(8), may_alias));
+};
+template <>
+struct LaneVectors<8> {
+  typedef float FloatVector __attribute__((vector_size(32)));
+  typedef std::int32_t IntVector __attribute__((vector_size(32)));
+  typedef double DoubleVector __attribute__((vector_size(32)));
+  typedef std::int64_t LongVector __attribute__((vector_size(32)));
+  typedef std::int32_t HalfIntVector __attribute__((vector_size(16)));
+  typedef float FloatMemory __attribute__((vector_size(32), may_alias));
+  typedef float HalfFloatMemory __attribute__((vector_size(16), may_alias));
+  typedef std::int32_t HalfIntMemory __attribute__((vector_size(16), may_alias));
+};
+template <>
+struct LaneVectors<16> {
+  typedef float FloatVector __attribute__((vector_size(64)));
+  typedef std::int32_t IntVector __attribute__((vector_size(64)));
+  typedef double DoubleVector __attribute__((vector_size(64)));
+  typedef std::int64_t LongVector __attribute__((vector_size(64)));
+  typedef std::int32_t HalfIntVector __attribute__((vector_size(32)));
+  typedef float FloatMemory __attribute__((vector_size(64), may_alias));
+  typedef float HalfFloatMemory __attribute__((vector_size(32), may_alias));
+  typedef std::int32_t HalfIntMemory __attribute__((vector_size(32), may_alias));
+};
+
+/// Vectors of W lanes. W = 4 (chips), 8, 16 (hosts); 16 is meant for files compiled with AVX-512.
+template <int W>
+struct Lanes {
+  static constexpr int kCount = W;
+  static constexpr std::uint32_t kAllBits = (W == 32) ? ~0u : ((1u << W) - 1u);
+
+  using FloatVector = typename LaneVectors<W>::FloatVector;
+  using IntVector = typename LaneVectors<W>::IntVector;
+  using DoubleVector = typename LaneVectors<W>::DoubleVector;
+  using LongVector = typename LaneVectors<W>::LongVector;
+  using HalfIntVector = typename LaneVectors<W>::HalfIntVector;
+  using FloatMemory = typename LaneVectors<W>::FloatMemory;
+  using HalfFloatMemory = typename LaneVectors<W>::HalfFloatMemory;
+  using HalfIntMemory = typename LaneVectors<W>::HalfIntMemory;
+
+  /// W truth values.
+  struct Mask {
+    IntVector v;
+
+    /// Bit i = lane i.
+    [[nodiscard]] GRIDIRON_INLINE std::uint32_t bits() const {
+#if defined(__AVX512F__)
+      if constexpr (W == 16) return _mm512_movepi32_mask(reinterpret_cast<__m512i>(v));
+#endif
+#if defined(__AVX2__)
+      if constexpr (W == 8) {
+        return static_cast<std::uint32_t>(_mm256_movemask_ps(reinterpret_cast<__m256>(v)));
+      }
+#endif
+#if defined(__SSE2__)
+      if constexpr (W == 4) return static_cast<std::uint32_t>(_mm_movemask_ps(reinterpret_cast<__m128>(v)));
+#endif
+      std::uint32_t result = 0;
+      for (int i = 0; i < W; ++i) result |= (static_cast<std::uint32_t>(v[i]) & 1u) << i;
+      return result;
+    }
+    friend GRIDIRON_INLINE Mask operator|(Mask a, Mask b) {
+      return {a.v | b.v};
+    }
+    friend GRIDIRON_INLINE Mask operator&(Mask a, Mask b) {
+      return {a.v & b.v};
+    }
+  };
+
+  /// W floats.
+  struct Float {
+    FloatVector v;
+
+    Float() = default;
+    GRIDIRON_INLINE explicit Float(FloatVector vector) : v(vector) {}
+    /// The same value in every lane (x - 0 is x, the sign of zero included).
+    GRIDIRON_INLINE explicit Float(float value) : v(value - FloatVector{}) {}
+
+    /// @param source  W floats, aligned to 4 * W bytes.
+    [[nodiscard]] static GRIDIRON_INLINE Float load(const float* source) {
+      return Float(*reinterpret_cast<const FloatMemory*>(source));
+    }
+    GRIDIRON_INLINE void store(float* target) const { *reinterpret_cast<FloatMemory*>(target) = v; }
+
+    friend GRIDIRON_INLINE Float operator+(Float a, Float b) { return Float(a.v + b.v); }
+    friend GRIDIRON_INLINE Float operator-(Float a, Float b) { return Float(a.v - b.v); }
+    friend GRIDIRON_INLINE Float operator*(Float a, Float b) { return Float(a.v * b.v); }
+    friend GRIDIRON_INLINE Float operator/(Float a, Float b) { return Float(a.v / b.v); }
+    friend GRIDIRON_INLINE Float operator-(Float a) { return Float(-a.v); }
+    friend GRIDIRON_INLINE Mask operator<(Float a, Float b) { return {a.v < b.v}; }
+    friend GRIDIRON_INLINE Mask operator>(Float a, Float b) { return {a.v > b.v}; }
+    friend GRIDIRON_INLINE Mask operator<=(Float a, Float b) { return {a.v <= b.v}; }
+    friend GRIDIRON_INLINE Mask operator>=(Float a, Float b) { return {a.v >= b.v}; }
+    friend GRIDIRON_INLINE Mask operator==(Float a, Float b) { return {a.v == b.v}; }
+  };
+
+  [[nodiscard]] static GRIDIRON_INLINE Float min(Float a, Float b) {
+    return Float(a.v < b.v ? a.v : b.v);
+  }
+  [[nodiscard]] static GRIDIRON_INLINE Float max(Float a, Float b) {
+    return Float(a.v > b.v ? a.v : b.v);
+  }
+  [[nodiscard]] static GRIDIRON_INLINE Float abs(Float a) {
+    const IntVector magnitude = reinterpret_cast<IntVector>(a.v) & 0x7FFFFFFF;
+    return Float(reinterpret_cast<FloatVector>(magnitude));
+  }
+  /// Lane i of the result is a[i] where mask[i], else b[i].
+  [[nodiscard]] static GRIDIRON_INLINE Float select(Mask mask, Float a, Float b) {
+    return Float(mask.v ? a.v : b.v);
+  }
+  /// Mask with lane i set where bit i is.
+  [[nodiscard]] static GRIDIRON_INLINE Mask mask_from_bits(std::uint32_t bits) {
+    IntVector lane_bit;
+    for (int i = 0; i < W; ++i) lane_bit[i] = 1 << i;
+    return {(lane_bit & static_cast<std::int32_t>(bits)) != 0};
+  }
+  /// Largest lane.
+  [[nodiscard]] static GRIDIRON_INLINE float horizontal_max(Float a) {
+    float result = a.v[0];
+    for (int i = 1; i < W; ++i) result = a.v[i] > result ? a.v[i] : result;
+    return result;
+  }
+  [[nodiscard]] static GRIDIRON_INLINE float horizontal_min(Float a) {
+    float result = a.v[0];
+    for (int i = 1; i < W; ++i) result = a.v[i] < result ? a.v[i] : result;
+    return result;
+  }
+};
+
+/// Square root, correctly rounded as IEEE has it; the compiler's instruction, never a library call.
+[[nodiscard]] GRIDIRON_INLINE float square_root(float value) {
+  return __builtin_sqrtf(value);
+}
+[[nodiscard]] GRIDIRON_INLINE double square_root(double value) {
+  return __builtin_sqrt(value);
+}
+
+/// Number of set bits.
+[[nodiscard]] GRIDIRON_INLINE std::uint32_t count_bits(std::uint32_t bits) {
+  bits -= (bits >> 1) & 0x55555555u;
+  bits = (bits & 0x33333333u) + ((bits >> 2) & 0x33333333u);
+  return (((bits + (bits >> 4)) & 0x0F0F0F0Fu) * 0x01010101u) >> 24;
+}
+
+}  // namespace gridiron

@@ -1,0 +1,66 @@
+// The parts of the `standard` test that run once per triangle. SPDX-License-Identifier: Apache-2.0
+#include <gridiron/ray/intersect_standard.h>
+
+namespace gridiron {
+namespace {
+
+double magnitude(double value) {
+  return value < 0.0 ? -value : value;
+}
+
+// normal = (b - a) x (c - a) with, per component, the sum of the magnitudes of its two products.
+void normal_of(const VertexTriangle& triangle, double normal[3], double products[3]) {
+  double e1[3], e2[3];
+  for (int i = 0; i < 3; ++i) {
+    e1[i] = double{triangle.v[1][i]} - double{triangle.v[0][i]};
+    e2[i] = double{triangle.v[2][i]} - double{triangle.v[0][i]};
+  }
+  for (int i = 0; i < 3; ++i) {
+    const int j = (i + 1) % 3;
+    const int k = (i + 2) % 3;
+    const double first = e1[j] * e2[k];
+    const double second = e1[k] * e2[j];
+    normal[i] = first - second;
+    products[i] = magnitude(first) + magnitude(second);
+  }
+}
+
+}  // namespace
+
+void set_up_distance(const float origin[3], float dir_max, const VertexTriangle& triangle, DistanceSetup& setup) {
+  double products[3];
+  normal_of(triangle, setup.normal, products);
+  double numerator = 0.0;
+  double numerator_error = 0.0;
+  double squared_length = 0.0;
+  for (int i = 0; i < 3; ++i) {
+    const double a = double{triangle.v[0][i]} - double{origin[i]};
+    numerator += a * setup.normal[i];
+    numerator_error += magnitude(a) * products[i];
+    squared_length += setup.normal[i] * setup.normal[i];
+  }
+  setup.numerator = numerator;
+  // A numerator of 0 makes this NaN or infinite: unsure, which is right.
+  setup.numerator_relative_error = kDistanceError * numerator_error / magnitude(numerator) + 0x1p-50;
+  setup.denominator_error = kDistanceError * double{dir_max} * (products[0] + products[1] + products[2]);
+  setup.facing_scale = 1.0 / square_root(squared_length);
+}
+
+int volume_sign_in_double(const float origin[3], const VertexTriangle& triangle, WorkCounters& work) {
+  double normal[3], products[3];
+  normal_of(triangle, normal, products);
+  double volume = 0.0;
+  double error = 0.0;
+  for (int i = 0; i < 3; ++i) {
+    const double a = double{triangle.v[0][i]} - double{origin[i]};
+    volume += a * normal[i];
+    error += magnitude(a) * products[i];
+  }
+  error *= kDistanceError;
+  if (volume > error) return 1;
+  if (volume < -error) return -1;
+  work.add(Work::kExactSign);
+  return exact_volume_sign(origin, triangle.v[0], triangle.v[1], triangle.v[2]);
+}
+
+}  // namespace gridiron

@@ -1,0 +1,180 @@
+// The entry point of a core: claim a tile, trace its packets, put the pixels, until no tile is left.
+// Source: Cho, Kim, Han 2012, sections 2, 4 and 5. Memory: the local store the caller places; nothing else.
+// Threads: one core; cores share nothing but the frame in main memory. SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <gridiron/base/records.h>
+#include <gridiron/platform/contract.h>
+#include <gridiron/ray/frustum.h>
+#include <gridiron/render/camera.h>
+#include <gridiron/render/shading.h>
+#include <gridiron/store/local_store.h>
+#include <gridiron/store/packet_driver.h>
+#include <gridiron/store/transfers.h>
+
+#include <cstdint>
+
+namespace gridiron {
+
+/// Renders tiles of one frame on one core.
+///
+/// @tparam L       lane type, Lanes<4>, Lanes<8> or Lanes<16>; changes no pixel.
+/// @tparam Layout  sizes of the local store.
+template <class L, class Layout, Platform P>
+class TileRenderer {
+ public:
+  TileRenderer(LocalStore<Layout>& store, P& platform) : store_(store), transfers_(platform, store.work) {}
+
+  /// Renders every tile this core can claim of the frame whose FrameRecord lies at `frame`.
+  ///
+  /// Errors: kBadFrame, kUnsupportedFrame, kUnsupportedImage before the first claim; kAborted, kDeadline between
+  /// tiles; whatever the platform's transfers report. All transfers have been waited for when kOk is returned.
+  [[nodiscard]] Status run(MainAddress frame) {
+    // 1. What every core needs: the frame, and the macrocell table where it fits.
+    store_.work = WorkCounters{};
+    GRIDIRON_TRY(transfers_.get(&store_.frame, frame, sizeof(FrameRecord), kSetupTag));
+    GRIDIRON_TRY(transfers_.wait(kSetupTag));
+    GRIDIRON_TRY(check_frame());
+    GRIDIRON_TRY(load_table());
+    // 2. Tiles.
+    for (TileClaim claim = transfers_.claim_tile();; claim = transfers_.claim_tile()) {
+      if (claim.kind == TileClaim::Kind::kAborted) return finish(Status::kAborted);
+      if (claim.kind == TileClaim::Kind::kDeadline) return finish(Status::kDeadline);
+      if (claim.kind == TileClaim::Kind::kNone) return finish(Status::kOk);
+      GRIDIRON_TRY(render_tile(claim.tile_id));
+    }
+  }
+
+ private:
+  using Store = LocalStore<Layout>;
+  using StorePacket = Packet<Layout::kPacketWidth>;
+  using Table = MacroTableWindow<Layout::kTableEntries>;
+  using TileOutput = typename Store::TileOutput;
+
+  // Traces and shades one tile; its pixels are on their way when this returns.
+  [[nodiscard]] Status render_tile(std::uint32_t tile_id) {
+    const FrameRecord& frame = store_.frame;
+    if (tile_id >= frame.tiles_x * frame.tiles_y) return Status::kBadFrame;
+    store_.work.add(Work::kTileStart);
+    if (!table_resident_) store_.table.forget();
+    const std::uint32_t left = tile_id % frame.tiles_x * Layout::kTileWidth;
+    const std::uint32_t top = tile_id / frame.tiles_x * Layout::kTileWidth;
+
+    // The output buffer's last tile must have left.
+    const std::uint32_t slot = output_slot_;
+    const std::uint8_t tag = static_cast<std::uint8_t>(kFirstOutputTag + slot);
+    output_slot_ = output_slot_ + 1 == frame.output_depth ? 0 : output_slot_ + 1;
+    GRIDIRON_TRY(transfers_.wait(tag));
+
+    for (std::uint32_t y = 0; y < Layout::kTileWidth && top + y < frame.height; y += Layout::kPacketWidth) {
+      for (std::uint32_t x = 0; x < Layout::kTileWidth && left + x < frame.width; x += Layout::kPacketWidth) {
+        GRIDIRON_TRY(trace_packet(left + x, top + y));
+        shade_packet<L>(frame, store_.packet, x, y, store_.output[slot], store_.work);
+      }
+    }
+    GRIDIRON_TRY(put_tile(tile_id, slot, tag));
+    return frame.output_depth == 1 ? transfers_.wait(tag) : Status::kOk;
+  }
+
+  // Generates a packet and takes it through the grid, once per march axis and sign that its rays have.
+  [[nodiscard]] Status trace_packet(std::uint32_t left, std::uint32_t top) {
+    RaySet<StorePacket::kRayCount> waiting;
+    generate_packet<L>(store_.frame, left, top, store_.packet, waiting, store_.work);
+    store_.mailbox.clear();
+    Frustum frustum;
+    while (take_pass<L>(store_.frame.grid, waiting, store_.packet, frustum)) {
+      store_.work.add(Work::kPacketStart);
+      PacketDriver<L, Layout, P> driver(store_, transfers_, frustum);
+      GRIDIRON_TRY(driver.run());
+      // The next pass has other rays: what this one has seen says nothing about them.
+      store_.mailbox.clear();
+    }
+    return Status::kOk;
+  }
+
+  [[nodiscard]] Status put_tile(std::uint32_t tile_id, std::uint32_t slot, std::uint8_t tag) {
+    const FrameRecord& frame = store_.frame;
+    const TileOutput& output = store_.output[slot];
+    constexpr std::uint32_t kPlaneBytes = Store::kTilePixels * sizeof(std::uint32_t);
+    const std::uint64_t offset = std::uint64_t{tile_id} * kPlaneBytes;
+    GRIDIRON_TRY(transfers_.put(output.color, MainAddress{frame.color_address + offset}, kPlaneBytes, tag));
+    if (frame.depth_address != 0) {
+      GRIDIRON_TRY(transfers_.put(output.depth, MainAddress{frame.depth_address + offset}, kPlaneBytes, tag));
+    }
+    if (frame.id_address != 0) {
+      GRIDIRON_TRY(transfers_.put(output.id, MainAddress{frame.id_address + offset}, kPlaneBytes, tag));
+    }
+    return Status::kOk;
+  }
+
+  // The scene image was validated when it was loaded; here the frame is held against what this store can do.
+  [[nodiscard]] Status check_frame() const {
+    const FrameRecord& frame = store_.frame;
+    if (frame.magic != kFrameMagic || frame.version != kFrameVersion) return Status::kBadFrame;
+    if (frame.width == 0 || frame.height == 0 || frame.width > kMaxPictureWidth || frame.height > kMaxPictureWidth) {
+      return Status::kBadFrame;
+    }
+    if (frame.tile_width != Layout::kTileWidth) return Status::kUnsupportedFrame;
+    if (frame.tiles_x != (frame.width + Layout::kTileWidth - 1) / Layout::kTileWidth ||
+        frame.tiles_y != (frame.height + Layout::kTileWidth - 1) / Layout::kTileWidth) {
+      return Status::kBadFrame;
+    }
+    const auto in_range = [](std::uint32_t depth, std::uint32_t most) { return depth >= 1 && depth <= most; };
+    if (!in_range(frame.output_depth, Layout::kMaxOutputDepth) ||
+        !in_range(frame.macro_depth, Layout::kMaxMacroDepth) ||
+        !in_range(frame.triangle_depth, Layout::kMaxTriangleDepth)) {
+      return Status::kUnsupportedFrame;
+    }
+    if (!(frame.t_far > 0.0f) || frame.color_address == 0) return Status::kBadFrame;
+    if (frame.accuracy > static_cast<std::uint32_t>(Accuracy::kPaper) ||
+        frame.shading > static_cast<std::uint32_t>(Shading::kSimple)) {
+      return Status::kUnsupportedFrame;
+    }
+    const GridRecord& grid = frame.grid;
+    const bool wants_projection = frame.accuracy == static_cast<std::uint32_t>(Accuracy::kPaper);
+    const TriangleFormat format = wants_projection ? TriangleFormat::kProjection : TriangleFormat::kVertices;
+    if (grid.triangle_format != static_cast<std::uint32_t>(format)) return Status::kUnsupportedImage;
+    if (grid.macro_width == 0 || grid.macro_width > Layout::kMaxMacroWidth ||
+        grid.cell_block_bytes > Store::kCellBlockBytes) {
+      return Status::kUnsupportedImage;
+    }
+    return Status::kOk;
+  }
+
+  [[nodiscard]] Status load_table() {
+    const GridRecord& grid = store_.frame.grid;
+    const std::uint64_t macro_cells =
+        std::uint64_t{grid.macro_cell_count[0]} * grid.macro_cell_count[1] * grid.macro_cell_count[2];
+    const std::uint64_t chunks = (macro_cells + 32 * Table::kChunkEntries - 1) / (32 * Table::kChunkEntries);
+    store_.table.forget();
+    table_resident_ = chunks <= Table::kChunkCount;
+    if (!table_resident_) return Status::kOk;
+    const std::uint32_t count = static_cast<std::uint32_t>(chunks);
+    GRIDIRON_TRY(transfers_.get(store_.table.entries, MainAddress{store_.frame.macro_table_address}, count * kLineBytes,
+                                kSetupTag));
+    for (std::uint32_t chunk = 0; chunk < count; ++chunk) store_.table.chunk_of_slot[chunk] = chunk;
+    return transfers_.wait(kSetupTag);
+  }
+
+  // Waits for the tiles still on their way.
+  [[nodiscard]] Status finish(Status outcome) {
+    for (std::uint32_t slot = 0; slot < store_.frame.output_depth; ++slot) {
+      GRIDIRON_TRY(transfers_.wait(static_cast<std::uint8_t>(kFirstOutputTag + slot)));
+    }
+    return outcome;
+  }
+
+  Store& store_;
+  Transfers<P> transfers_;
+  std::uint32_t output_slot_ = 0;
+  bool table_resident_ = false;
+};
+
+/// Renders tiles of the frame at `frame` on the calling core until none is left. See TileRenderer.
+template <class L, class Layout, Platform P>
+[[nodiscard]] Status render_tiles(LocalStore<Layout>& store, P& platform, MainAddress frame) {
+  TileRenderer<L, Layout, P> renderer(store, platform);
+  return renderer.run(frame);
+}
+
+}  // namespace gridiron

@@ -1,0 +1,112 @@
+// The local store: every byte a core works in, one struct, in address order.
+// Memory: is the memory. Threads: one core. SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <gridiron/base/records.h>
+#include <gridiron/base/work_counters.h>
+#include <gridiron/ray/packet.h>
+#include <gridiron/store/dma_tags.h>
+#include <gridiron/traverse/macro_table.h>
+#include <gridiron/traverse/mailbox.h>
+
+#include <cstddef>
+#include <cstdint>
+
+namespace gridiron {
+
+/// Sizes of a 256 KB core (Cho, Kim, Han 2012, section 6). @tparam PacketWidthV  rays along a packet's edge: 4, 8, 16.
+template <std::uint32_t PacketWidthV = 8>
+struct StoreLayout256K {
+  static constexpr std::uint32_t kArenaBytes = 256 * 1024;
+  static constexpr std::uint32_t kCodeBudgetBytes = 48 * 1024;
+  static constexpr std::uint32_t kStackBudgetBytes = 8 * 1024;
+  static constexpr std::uint32_t kTileWidth = 32;
+  static constexpr std::uint32_t kPacketWidth = PacketWidthV;
+  static constexpr std::uint32_t kTableEntries = 4096;  ///< 131,072 macrocells resident
+  static constexpr std::uint32_t kMaxMacroWidth = 8;
+  static constexpr std::uint32_t kMaxMacroDepth = 4;
+  static constexpr std::uint32_t kTrianglesPerBuffer = 64;
+  static constexpr std::uint32_t kMaxTriangleDepth = 12;
+  static constexpr std::uint32_t kMaxOutputDepth = 2;
+};
+
+/// Sizes of a 64 KB core: smaller tiles and buffers, the same picture.
+template <std::uint32_t PacketWidthV = 8>
+struct StoreLayout64K {
+  static constexpr std::uint32_t kArenaBytes = 64 * 1024;
+  static constexpr std::uint32_t kCodeBudgetBytes = 32 * 1024;
+  static constexpr std::uint32_t kStackBudgetBytes = 6 * 1024;
+  static constexpr std::uint32_t kTileWidth = 16;
+  static constexpr std::uint32_t kPacketWidth = PacketWidthV;
+  static constexpr std::uint32_t kTableEntries = 512;  ///< 16,384 macrocells resident
+  static constexpr std::uint32_t kMaxMacroWidth = 6;
+  static constexpr std::uint32_t kMaxMacroDepth = 2;
+  static constexpr std::uint32_t kTrianglesPerBuffer = 16;
+  static constexpr std::uint32_t kMaxTriangleDepth = 4;
+  static constexpr std::uint32_t kMaxOutputDepth = 2;
+};
+
+/// Memory of one core. Buffers for transfers are congruent with main memory modulo kPortableCongruenceBytes: cell
+/// blocks and tiles start on lines there and here; triangle runs start anywhere on 16 bytes, so their buffers have room
+/// to start 16 bytes later.
+template <class LayoutType>
+struct alignas(128) LocalStore {
+  using Layout = LayoutType;
+  static constexpr std::uint32_t kTilePixels = Layout::kTileWidth * Layout::kTileWidth;
+  static constexpr std::uint32_t kMacroCells = Layout::kMaxMacroWidth * Layout::kMaxMacroWidth * Layout::kMaxMacroWidth;
+  static constexpr std::uint32_t kCellBlockBytes =
+      (kMacroCells * static_cast<std::uint32_t>(sizeof(CellRecord)) + kLineBytes - 1) / kLineBytes * kLineBytes;
+  static constexpr std::uint32_t kTriangleBufferBytes =
+      (Layout::kTrianglesPerBuffer * kTriangleRecordBytes + 32 + kLineBytes - 1) / kLineBytes * kLineBytes;
+
+  struct alignas(128) CellBlock {
+    std::byte bytes[kCellBlockBytes];
+  };
+  struct alignas(128) TriangleBuffer {
+    std::byte bytes[kTriangleBufferBytes];
+  };
+  /// One finished or growing tile, row-major.
+  struct alignas(128) TileOutput {
+    std::uint32_t color[kTilePixels];
+    float depth[kTilePixels];
+    std::uint32_t id[kTilePixels];
+  };
+
+  alignas(128) FrameRecord frame;
+  alignas(128) WorkCounters work;
+  MacroTableWindow<Layout::kTableEntries> table;
+  CellBlock cell_blocks[Layout::kMaxMacroDepth];
+  TriangleBuffer triangles[Layout::kMaxTriangleDepth];
+  Packet<Layout::kPacketWidth> packet;
+  Mailbox mailbox;
+  TileOutput output[Layout::kMaxOutputDepth];
+
+  static_assert(Layout::kMaxMacroDepth <= kMacroTagCount);
+  static_assert(Layout::kMaxTriangleDepth <= kTriangleTagCount);
+  static_assert(Layout::kMaxOutputDepth <= kOutputTagCount);
+  static_assert(Layout::kTileWidth % Layout::kPacketWidth == 0);
+};
+
+/// The budget of a layout holds, or the build stops.
+template <class Layout>
+inline constexpr bool kFitsArena = sizeof(LocalStore<Layout>) + Layout::kCodeBudgetBytes + Layout::kStackBudgetBytes
+                                   <= Layout::kArenaBytes;
+
+static_assert(kFitsArena<StoreLayout256K<4>> && kFitsArena<StoreLayout256K<8>> && kFitsArena<StoreLayout256K<16>>);
+static_assert(kFitsArena<StoreLayout64K<4>> && kFitsArena<StoreLayout64K<8>> && kFitsArena<StoreLayout64K<16>>);
+
+/// Calls visit(name, offset_bytes, bytes) for every region of the store, in address order.
+template <class Layout, class Visit>
+constexpr void for_each_region(Visit&& visit) {
+  using Store = LocalStore<Layout>;
+  visit("frame", offsetof(Store, frame), sizeof(Store::frame));
+  visit("work", offsetof(Store, work), sizeof(Store::work));
+  visit("macro_table", offsetof(Store, table), sizeof(Store::table));
+  visit("cell_blocks", offsetof(Store, cell_blocks), sizeof(Store::cell_blocks));
+  visit("triangles", offsetof(Store, triangles), sizeof(Store::triangles));
+  visit("packet", offsetof(Store, packet), sizeof(Store::packet));
+  visit("mailbox", offsetof(Store, mailbox), sizeof(Store::mailbox));
+  visit("output", offsetof(Store, output), sizeof(Store::output));
+}
+
+}  // namespace gridiron

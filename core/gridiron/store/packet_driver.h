@@ -1,0 +1,194 @@
+// Packet driver: takes one packet through the grid. It fetches what the walks ask for ahead of its use (cell blocks of
+// the next macrocells, triangles of the next cells) and tests what has arrived.
+// Source: Cho, Kim, Han 2012, section 5, macrocell and triangle level. Memory: the local store. Threads: one core.
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <gridiron/base/lanes.h>
+#include <gridiron/base/records.h>
+#include <gridiron/platform/contract.h>
+#include <gridiron/ray/frustum.h>
+#include <gridiron/ray/intersect_projection.h>
+#include <gridiron/ray/intersect_standard.h>
+#include <gridiron/store/buffer_ring.h>
+#include <gridiron/store/local_store.h>
+#include <gridiron/store/transfers.h>
+#include <gridiron/traverse/slice_walk.h>
+
+#include <cstdint>
+#include <type_traits>
+
+namespace gridiron {
+
+/// Traces the active rays of store.packet: one pass, one frustum.
+///
+/// Two pipelines, each a ring of buffers. The front of the macrocell ring is the block being walked, the rest are in
+/// flight; the triangle ring holds runs of triangles on their way, the front one is tested next. With a depth of 1 a
+/// buffer is fetched, waited for and used before the next get; with 2 the next one travels meanwhile (the paper's
+/// double buffering); deeper rings look farther ahead.
+template <class L, class Layout, Platform P>
+class PacketDriver {
+ public:
+  PacketDriver(LocalStore<Layout>& store, Transfers<P>& transfers, const Frustum& frustum)
+      : store_(store),
+        transfers_(transfers),
+        frustum_(frustum),
+        macro_ring_(store.frame.macro_depth),
+        triangle_ring_(store.frame.triangle_depth) {}
+
+  [[nodiscard]] Status run() {
+    macro_walk_.begin(store_.frame.grid, frustum_);
+    reach_ = reach_of<L>(store_.packet, frustum_);
+    for (;;) {
+      while (!triangle_ring_.full() && !cells_done_) GRIDIRON_TRY(fetch_next_run());
+      if (triangle_ring_.empty()) break;
+      GRIDIRON_TRY(test_front_run());
+    }
+    return Status::kOk;
+  }
+
+ private:
+  static constexpr std::uint32_t kRunTriangles = Layout::kTrianglesPerBuffer;
+
+  struct TriangleRun {
+    std::uint32_t count;
+    std::uint32_t first_byte;  ///< where the run starts in its buffer
+    float entry;               ///< march distance of its cell's slice
+  };
+
+  // Starts the get of the next run of triangles, or sets cells_done_.
+  [[nodiscard]] Status fetch_next_run() {
+    if (frustum_.beyond(Slab{cell_.entry, cell_.entry}, reach_)) cell_.triangle_count = 0;
+    while (cell_.triangle_count == 0) {
+      if (walking_ && cell_walk_.next(frustum_, front_cells(), reach_, cell_, store_.work)) break;
+      walking_ = false;
+      GRIDIRON_TRY(enter_next_macro_cell());
+      if (cells_done_) return Status::kOk;
+    }
+    const std::uint32_t count = cell_.triangle_count < kRunTriangles ? cell_.triangle_count : kRunTriangles;
+    const MainAddress address{store_.frame.triangles_address +
+                              std::uint64_t{cell_.first_triangle} * kTriangleRecordBytes};
+    const std::uint32_t slot = triangle_ring_.push();
+    const std::uint32_t first_byte = static_cast<std::uint32_t>(address.value % kPortableCongruenceBytes);
+    runs_[slot] = {count, first_byte, cell_.entry};
+    cell_.first_triangle += count;
+    cell_.triangle_count -= count;
+    return transfers_.get(store_.triangles[slot].bytes + first_byte, address, count * kTriangleRecordBytes,
+                          static_cast<std::uint8_t>(kFirstTriangleTag + slot));
+  }
+
+  // Leaves the macrocell that was walked, keeps the ring filled, and waits for the next block; or sets cells_done_.
+  [[nodiscard]] Status enter_next_macro_cell() {
+    if (entered_) macro_ring_.pop();
+    entered_ = false;
+    while (!macro_ring_.full() && !macro_cells_done_) GRIDIRON_TRY(fetch_next_macro_cell());
+    if (macro_ring_.empty()) {
+      cells_done_ = true;
+      return Status::kOk;
+    }
+    const std::uint32_t slot = macro_ring_.front();
+    GRIDIRON_TRY(transfers_.wait(static_cast<std::uint8_t>(kFirstMacroTag + slot)));
+    store_.work.add(Work::kMacroCellVisit);
+    cell_walk_.begin(store_.frame.grid, frustum_, visits_[slot]);
+    entered_ = true;
+    walking_ = true;
+    return Status::kOk;
+  }
+
+  // Starts the get of the next macrocell's block, or sets macro_cells_done_.
+  [[nodiscard]] Status fetch_next_macro_cell() {
+    const bool skip_empty = (store_.frame.techniques & kUseEmptySkip) != 0;
+    MacroVisit visit;
+    WalkStep step = macro_walk_.next(frustum_, store_.table, reach_, skip_empty, visit, store_.work);
+    while (step == WalkStep::kNeedsChunk) {
+      GRIDIRON_TRY(fetch_chunk(macro_walk_.needed_chunk()));
+      step = macro_walk_.next(frustum_, store_.table, reach_, skip_empty, visit, store_.work);
+    }
+    if (step == WalkStep::kDone) {
+      macro_cells_done_ = true;
+      return Status::kOk;
+    }
+    const std::uint32_t slot = macro_ring_.push();
+    visits_[slot] = visit;
+    const std::uint32_t block_bytes = store_.frame.grid.cell_block_bytes;
+    const MainAddress address{store_.frame.cell_blocks_address + std::uint64_t{visit.block} * block_bytes};
+    return transfers_.get(store_.cell_blocks[slot].bytes, address, block_bytes,
+                          static_cast<std::uint8_t>(kFirstMacroTag + slot));
+  }
+
+  [[nodiscard]] Status fetch_chunk(std::uint32_t chunk) {
+    using Table = MacroTableWindow<Layout::kTableEntries>;
+    const std::uint32_t slot = Table::slot_of(chunk);
+    const MainAddress address{store_.frame.macro_table_address + std::uint64_t{chunk} * kLineBytes};
+    GRIDIRON_TRY(transfers_.get(store_.table.entries + slot * Table::kChunkEntries, address, kLineBytes, kSetupTag));
+    GRIDIRON_TRY(transfers_.wait(kSetupTag));
+    store_.table.chunk_of_slot[slot] = chunk;
+    return Status::kOk;
+  }
+
+  // Waits for the oldest run and tests it, unless every ray has meanwhile hit something in front of it.
+  [[nodiscard]] Status test_front_run() {
+    const std::uint32_t slot = triangle_ring_.front();
+    GRIDIRON_TRY(transfers_.wait(static_cast<std::uint8_t>(kFirstTriangleTag + slot)));
+    const TriangleRun& run = runs_[slot];
+    if (!frustum_.beyond(Slab{run.entry, run.entry}, reach_)) {
+      store_.work.add(Work::kTriangleBatch);
+      if (test_run(store_.triangles[slot].bytes + run.first_byte, run.count)) {
+        reach_ = reach_of<L>(store_.packet, frustum_);
+      }
+    }
+    triangle_ring_.pop();
+    return Status::kOk;
+  }
+
+  [[nodiscard]] bool test_run(const std::byte* records, std::uint32_t count) {
+    const bool paper = store_.frame.accuracy == static_cast<std::uint32_t>(Accuracy::kPaper);
+    const bool facing = store_.frame.shading != static_cast<std::uint32_t>(Shading::kNone);
+    if (paper)
+      return facing ? test_each<ProjectionTriangle, true>(records, count)
+                    : test_each<ProjectionTriangle, false>(records, count);
+    return facing ? test_each<VertexTriangle, true>(records, count) : test_each<VertexTriangle, false>(records, count);
+  }
+
+  template <class Triangle, bool kWantFacing>
+  [[nodiscard]] bool test_each(const std::byte* records, std::uint32_t count) {
+    const Triangle* triangles = reinterpret_cast<const Triangle*>(records);
+    const bool use_mailbox = (store_.frame.techniques & kUseMailbox) != 0;
+    const bool use_culling = (store_.frame.techniques & kUseCornerCulling) != 0;
+    bool changed = false;
+    for (std::uint32_t i = 0; i < count; ++i) {
+      if (use_mailbox) {
+        store_.work.add(Work::kMailboxProbe);
+        if (store_.mailbox.seen(triangles[i].triangle_id)) continue;
+      }
+      if constexpr (std::is_same_v<Triangle, ProjectionTriangle>) {
+        changed |= intersect_projection<L, kWantFacing>(store_.packet, triangles[i], use_culling, store_.work);
+      } else {
+        changed |= intersect_standard<L, kWantFacing>(store_.packet, triangles[i], use_culling, store_.work);
+      }
+    }
+    return changed;
+  }
+
+  [[nodiscard]] const CellRecord* front_cells() const {
+    return reinterpret_cast<const CellRecord*>(store_.cell_blocks[macro_ring_.front()].bytes);
+  }
+
+  LocalStore<Layout>& store_;
+  Transfers<P>& transfers_;
+  const Frustum& frustum_;
+  BufferRing macro_ring_;
+  BufferRing triangle_ring_;
+  MacroWalk macro_walk_;
+  CellWalk cell_walk_;
+  MacroVisit visits_[Layout::kMaxMacroDepth];
+  TriangleRun runs_[Layout::kMaxTriangleDepth];
+  CellVisit cell_{0, 0, 0.0f};  ///< the cell whose triangles are being fetched, what is left of it
+  float reach_ = 0.0f;
+  bool entered_ = false;  ///< the macrocell ring's front has been waited for
+  bool walking_ = false;  ///< cell_walk_ has cells left
+  bool macro_cells_done_ = false;
+  bool cells_done_ = false;
+};
+
+}  // namespace gridiron
