@@ -1,0 +1,125 @@
+// From a mesh to planes of pixels: see the header. SPDX-License-Identifier: Apache-2.0
+#include "support/render_mesh.h"
+
+#include <gridiron/store/local_store.h>
+
+#include <bit>
+#include <cmath>
+#include <cstring>
+#include <new>
+#include <span>
+#include <sstream>
+
+#include "support/views.h"
+
+namespace gridiron::test {
+namespace {
+
+constexpr std::uint64_t kAlignmentSlackBytes = 16 * kLineBytes;
+
+// Scratch memory of the builder: raw, since the builder writes before it reads.
+struct Scratch {
+  explicit Scratch(std::uint64_t count) : bytes(std::make_unique_for_overwrite<std::uint64_t[]>(count / 8 + 1)) {}
+  std::unique_ptr<std::uint64_t[]> bytes;
+};
+
+// Copies a tile-major plane of 4-byte elements into rows.
+template <class Element>
+std::vector<Element> untile(const FrameRecord& frame, std::span<const std::byte> plane) {
+  std::vector<Element> rows(std::size_t{frame.width} * frame.height);
+  for (std::uint32_t y = 0; y < frame.height; ++y) {
+    for (std::uint32_t x = 0; x < frame.width; ++x) {
+      const std::uint64_t index = output_plane_index(frame.width, frame.tile_width, x, y);
+      std::memcpy(&rows[std::size_t{y} * frame.width + x], plane.data() + index * sizeof(Element), sizeof(Element));
+    }
+  }
+  return rows;
+}
+
+}  // namespace
+
+Camera framed_camera(const MeshView& mesh) {
+  DVec3 low(mesh.vertices.front());
+  DVec3 high = low;
+  for (const Vec3& vertex : mesh.vertices) {
+    for (int axis = 0; axis < 3; ++axis) {
+      low[axis] = std::fmin(low[axis], double{vertex[axis]});
+      high[axis] = std::fmax(high[axis], double{vertex[axis]});
+    }
+  }
+  const DVec3 center = (low + high) * 0.5;
+  const DVec3 extent = high - low;
+  const double diagonal = std::sqrt(extent.x * extent.x + extent.y * extent.y + extent.z * extent.z);
+  const DVec3 toward_eye = DVec3(0.35, 0.25, 1.0) / std::sqrt(0.35 * 0.35 + 0.25 * 0.25 + 1.0);
+  return {Vec3(center + 1.05 * diagonal * toward_eye), Vec3(center), {0, 1, 0}, kTanHalf45Degrees};
+}
+
+SceneInMemory::SceneInMemory(const MeshView& mesh, const GridParameters& parameters, std::uint64_t frame_bytes) {
+  status_ = count_scene_image(mesh, parameters, need_);
+  if (status_ != Status::kOk) return;
+  memory_ = std::make_unique<sim::SimMemory>(need_.image_bytes + frame_bytes + kAlignmentSlackBytes);
+  const auto image = memory_->allocate(need_.image_bytes);
+  if (!image) {
+    status_ = Status::kMemoryTooSmall;
+    return;
+  }
+  const Scratch scratch(need_.scratch_bytes);
+  status_ = build_scene_image(mesh, parameters, need_, image->bytes,
+                              std::as_writable_bytes(std::span(scratch.bytes.get(), need_.scratch_bytes / 8 + 1)));
+  if (status_ != Status::kOk) return;
+  image_address_ = image->address;
+  SceneImageError error;
+  status_ = open_scene_image(image->bytes, view_, error);
+}
+
+RenderedFrame SceneInMemory::render(FrameSettings settings, const sim::ChipOptions& chip) {
+  RenderedFrame rendered;
+  settings.tile_width = tile_width_of(chip);
+  const std::uint64_t mark = memory_->used_bytes();
+  const std::uint64_t plane_bytes = output_plane_bytes(settings.width, settings.height, settings.tile_width);
+  const auto color = memory_->allocate(plane_bytes);
+  const auto depth = memory_->allocate(plane_bytes);
+  const auto ids = memory_->allocate(plane_bytes);
+  const auto record = memory_->allocate(sizeof(FrameRecord));
+  if (!color || !depth || !ids || !record) {
+    rendered.result.status = Status::kMemoryTooSmall;
+    memory_->release_to(mark);
+    return rendered;
+  }
+  settings.color = color->address;
+  settings.depth = depth->address;
+  settings.ids = ids->address;
+  rendered.result.status = make_frame_record(settings, view_, image_address_, rendered.frame);
+  if (rendered.result.status == Status::kOk) {
+    std::memcpy(record->bytes.data(), &rendered.frame, sizeof(FrameRecord));
+    rendered.result = sim::render_frame(*memory_, record->address, chip);
+  }
+  if (rendered.result.status == Status::kOk) {
+    rendered.planes = {untile<std::uint32_t>(rendered.frame, color->bytes), untile<float>(rendered.frame, depth->bytes),
+                       untile<std::uint32_t>(rendered.frame, ids->bytes)};
+  }
+  memory_->release_to(mark);
+  return rendered;
+}
+
+std::uint32_t tile_width_of(const sim::ChipOptions& chip) {
+  return chip.store == sim::StoreSize::k64KB ? StoreLayout64K<>::kTileWidth : StoreLayout256K<>::kTileWidth;
+}
+
+std::string first_difference(const RenderedFrame& a, const RenderedFrame& b) {
+  std::ostringstream words;
+  if (a.frame.width != b.frame.width || a.planes.color.size() != b.planes.color.size()) return "sizes differ";
+  for (std::size_t i = 0; i < a.planes.color.size(); ++i) {
+    const bool same =
+        a.planes.ids[i] == b.planes.ids[i] && a.planes.color[i] == b.planes.color[i] &&
+        std::bit_cast<std::uint32_t>(a.planes.depth[i]) == std::bit_cast<std::uint32_t>(b.planes.depth[i]);
+    if (same) continue;
+    words << "pixel (" << i % a.frame.width << ", " << i / a.frame.width << "): triangle " << a.planes.ids[i] << " or "
+          << b.planes.ids[i] << ", depth " << std::hexfloat << a.planes.depth[i] << " or " << b.planes.depth[i]
+          << ", colour " << std::hex << a.planes.color[i] << " or " << b.planes.color[i];
+    return words.str();
+  }
+  return {};
+}
+
+}  // namespace gridiron::test

@@ -1,0 +1,69 @@
+// From a mesh to planes of pixels on the simulated chip, for tests.
+// Memory: owns the simulated main memory. Threads: one caller. SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <gridiron/frame/frame_setup.h>
+#include <gridiron/grid/grid_builder.h>
+#include <gridiron/image/scene_image.h>
+#include <gridiron/scene/mesh.h>
+#include <gridiron/sim/sim_chip.h>
+#include <gridiron/sim/sim_memory.h>
+
+#include <cstddef>
+#include <cstdint>
+#include <memory>
+#include <string>
+#include <vector>
+
+namespace gridiron::test {
+
+/// A frame's planes, row-major, row 0 on top.
+struct Planes {
+  std::vector<std::uint32_t> color;  ///< 0xAABBGGRR
+  std::vector<float> depth;
+  std::vector<std::uint32_t> ids;
+
+  friend bool operator==(const Planes&, const Planes&) = default;
+};
+
+/// What rendering a frame gave.
+struct RenderedFrame {
+  sim::ChipResult result;
+  FrameRecord frame{};
+  Planes planes;  ///< empty unless result.status is kOk
+
+  [[nodiscard]] std::size_t pixel_index(std::uint32_t x, std::uint32_t y) const {
+    return std::size_t{y} * frame.width + x;
+  }
+};
+
+/// A scene image in simulated main memory, ready for any number of frames.
+class SceneInMemory {
+ public:
+  /// Builds the image; failures show in status().
+  /// @param frame_bytes  room for the planes of the largest frame.
+  SceneInMemory(const MeshView& mesh, const GridParameters& parameters,
+                std::uint64_t frame_bytes = std::uint64_t{1} << 25);
+
+  [[nodiscard]] Status status() const { return status_; }
+  [[nodiscard]] const SceneImageView& image() const { return view_; }
+  [[nodiscard]] const GridNeed& need() const { return need_; }
+
+  /// Renders one frame. Tile width, output addresses: set here, whatever `settings` says.
+  [[nodiscard]] RenderedFrame render(FrameSettings settings, const sim::ChipOptions& chip);
+
+ private:
+  Status status_ = Status::kOk;
+  GridNeed need_{};
+  SceneImageView view_{};
+  std::unique_ptr<sim::SimMemory> memory_;
+  MainAddress image_address_;
+};
+
+/// @returns tile width of the store layout that `chip` asks for.
+std::uint32_t tile_width_of(const sim::ChipOptions& chip);
+
+/// @returns the first place where two frames differ, in words; empty where they are the same bit for bit.
+std::string first_difference(const RenderedFrame& a, const RenderedFrame& b);
+
+}  // namespace gridiron::test
