@@ -1,0 +1,11 @@
+# Cross-compiles core with a Debian cross compiler, freestanding. The including file sets GRIDIRON_TARGET.
+set(CMAKE_SYSTEM_NAME Generic)
+set(CMAKE_SYSTEM_PROCESSOR ${GRIDIRON_TARGET})
+set(CMAKE_C_COMPILER ${GRIDIRON_TARGET}-linux-gnu-gcc)
+set(CMAKE_CXX_COMPILER ${GRIDIRON_TARGET}-linux-gnu-g++)
+set(CMAKE_TRY_COMPILE_TARGET_TYPE STATIC_LIBRARY)
+set(CMAKE_CXX_FLAGS_INIT
+  "-fno-pie -fstack-usage -fno-tree-loop-distribute-patterns ${GRIDIRON_TARGET_FLAGS}")
+
+# The host's /usr/include must not be on a cross compiler's path: GLM is reached through a directory of its own.
+set(glm_DIR ${CMAKE_CURRENT_LIST_DIR}/glm CACHE PATH "GLM for freestanding cross builds" FORCE)
