@@ -12,6 +12,7 @@ inline constexpr std::uint32_t kLineBytes = 128;  ///< alignment of every sectio
 
 inline constexpr std::uint32_t kImageMagic = 0x49524447;  ///< "GDRI" as bytes
 inline constexpr std::uint32_t kImageVersion = 1;
+inline constexpr std::uint32_t kMaxSectionCount = 32;  ///< entries of a section table
 
 /// How a triangle is stored in the kTriangles section. Fixed at build time; a frame may ask only for what is stored.
 enum class TriangleFormat : std::uint32_t {
@@ -31,7 +32,7 @@ struct ImageHeader {
   std::uint32_t magic;
   std::uint32_t version;
   std::uint64_t image_bytes;       ///< whole image, a multiple of kLineBytes
-  std::uint64_t check_value;       ///< FNV-1a 64 over all 64-bit words of the image with this field taken as 0
+  std::uint64_t check_value;       ///< of the whole image with this field taken as 0; see image/check_value.h
   std::uint32_t section_count;
   std::uint32_t section_table_offset_bytes;  ///< SectionEntry[section_count]
   std::uint32_t triangle_count;    ///< input triangles after fanning, dropped ones included
@@ -82,7 +83,8 @@ struct MacroTableEntry {
 };
 static_assert(sizeof(MacroTableEntry) == 8);
 
-/// One cell inside a cell block; cells of a block are stored x fastest, then y, then z, m^3 of them always.
+/// One cell inside a cell block; cells of a block are stored x fastest, then y, then z, m^3 of them always. In every
+/// block but the empty one first_triangle runs on, also through empty cells: a block's triangles are contiguous.
 struct CellRecord {
   std::uint32_t first_triangle;    ///< index into kTriangles
   std::uint32_t triangle_count;

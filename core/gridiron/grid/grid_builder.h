@@ -29,7 +29,8 @@ struct GridNeed {
 
 /// Counts what build_scene_image will need. Itself needs no memory beyond a fixed stack frame.
 ///
-/// Errors: kBadVertex, kBadIndex, kBadParameter, kNoTriangles, kTooManyTriangles. Cost: linear in triangles + references.
+/// Errors: kBadVertex, kBadIndex, kBadParameter, kNoTriangles, kTooManyTriangles. Cost: linear in triangles +
+/// references.
 [[nodiscard]] Status count_scene_image(const MeshView& mesh, const GridParameters& parameters, GridNeed& need);
 
 /// Writes the scene image. Same bytes for the same input on every host.

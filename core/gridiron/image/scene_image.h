@@ -28,12 +28,14 @@ struct SceneImageError {
 };
 
 /// Checks every byte of an image that the kernel will rely on, once; afterwards the hot path checks nothing.
+/// Sections of unknown kinds are checked for place and size only.
 ///
 /// @param image  kLineBytes-aligned; may be longer than the image, never shorter.
+/// @param view   written on success only.
 /// Errors: kBadImage, with the place in `error`. Cost: linear in the image's size.
 [[nodiscard]] Status open_scene_image(std::span<const std::byte> image, SceneImageView& view, SceneImageError& error);
 
-/// @returns the check value of an image: FNV-1a 64 over its 64-bit little-endian words, the check value's own word as 0.
+/// @returns the check value (image/check_value.h) of a whole image, a multiple of 64 bytes long, its own field taken as 0.
 [[nodiscard]] std::uint64_t scene_image_check_value(std::span<const std::byte> image);
 
 }  // namespace gridiron

@@ -1,0 +1,322 @@
+// Scene image validation: see the header. SPDX-License-Identifier: Apache-2.0
+#include <gridiron/base/math.h>
+#include <gridiron/image/check_value.h>
+#include <gridiron/image/scene_image.h>
+
+#include <bit>
+
+namespace gridiron {
+namespace {
+
+bool is_finite(float value) {
+  return (std::bit_cast<std::uint32_t>(value) & 0x7F800000u) != 0x7F800000u;
+}
+
+// Reads records out of the image and remembers what was wrong, and where.
+class Checker {
+ public:
+  Checker(std::span<const std::byte> image, SceneImageError& error) : image_(image), error_(error) {}
+
+  /// Precondition: [offset, offset + sizeof(Record)) lies inside the image.
+  template <class Record>
+  [[nodiscard]] Record read(std::uint64_t offset) const {
+    Record record;
+    __builtin_memcpy(&record, image_.data() + offset, sizeof(Record));
+    return record;
+  }
+
+  [[nodiscard]] bool require(bool holds, std::uint64_t byte_offset, const char* field) {
+    if (!holds) error_ = {Status::kBadImage, byte_offset, field};
+    return holds;
+  }
+
+  [[nodiscard]] std::span<const std::byte> image() const { return image_; }
+
+ private:
+  std::span<const std::byte> image_;
+  SceneImageError& error_;
+};
+
+#define GRIDIRON_REQUIRE(holds, base, record_type, member, name) \
+  if (!checker.require((holds), (base) + offsetof(record_type, member), (name))) return false
+
+// --- Header and sections ------------------------------------------------------------------------------------------
+
+bool all_zero(const std::uint32_t* words, int count) {
+  std::uint32_t any = 0;
+  for (int i = 0; i < count; ++i) any |= words[i];
+  return any == 0;
+}
+
+bool check_header(Checker& checker, ImageHeader& header) {
+  const std::uint64_t available = checker.image().size();
+  const bool aligned = reinterpret_cast<std::uintptr_t>(checker.image().data()) % kLineBytes == 0;
+  if (!checker.require(aligned && available >= sizeof(ImageHeader), 0, "image")) return false;
+  header = checker.read<ImageHeader>(0);
+  GRIDIRON_REQUIRE(header.magic == kImageMagic, 0, ImageHeader, magic, "header.magic");
+  GRIDIRON_REQUIRE(header.version == kImageVersion, 0, ImageHeader, version, "header.version");
+  GRIDIRON_REQUIRE(
+      header.image_bytes >= kLineBytes && header.image_bytes % kLineBytes == 0 && header.image_bytes <= available, 0,
+      ImageHeader, image_bytes, "header.image_bytes");
+  const auto image = checker.image().first(static_cast<std::size_t>(header.image_bytes));
+  GRIDIRON_REQUIRE(header.check_value == scene_image_check_value(image), 0, ImageHeader, check_value,
+                   "header.check_value");
+  GRIDIRON_REQUIRE(header.section_count <= kMaxSectionCount, 0, ImageHeader, section_count, "header.section_count");
+  const std::uint64_t table_end =
+      std::uint64_t{header.section_table_offset_bytes} + std::uint64_t{header.section_count} * sizeof(SectionEntry);
+  GRIDIRON_REQUIRE(header.section_table_offset_bytes >= sizeof(ImageHeader) &&
+                       header.section_table_offset_bytes % 8 == 0 && table_end <= header.image_bytes,
+                   0, ImageHeader, section_table_offset_bytes, "header.section_table_offset_bytes");
+  GRIDIRON_REQUIRE(header.triangle_count >= 1, 0, ImageHeader, triangle_count, "header.triangle_count");
+  GRIDIRON_REQUIRE(header.dropped_triangle_count < header.triangle_count, 0, ImageHeader, dropped_triangle_count,
+                   "header.dropped_triangle_count");
+  GRIDIRON_REQUIRE(all_zero(header.reserved, 5), 0, ImageHeader, reserved, "header.reserved");
+  return true;
+}
+
+// The known sections by kind, and where their entries stand.
+struct Sections {
+  static constexpr std::uint32_t kKnownCount = 4;
+  SectionEntry entries[kKnownCount] = {};
+  std::uint64_t entry_offsets[kKnownCount] = {};
+  bool found[kKnownCount] = {};
+
+  [[nodiscard]] static std::uint32_t index_of(SectionKind kind) { return static_cast<std::uint32_t>(kind) - 1; }
+  [[nodiscard]] const SectionEntry& entry(SectionKind kind) const { return entries[index_of(kind)]; }
+  [[nodiscard]] std::uint64_t entry_offset(SectionKind kind) const { return entry_offsets[index_of(kind)]; }
+};
+
+bool check_sections(Checker& checker, const ImageHeader& header, Sections& sections) {
+  const std::uint64_t table_begin = header.section_table_offset_bytes;
+  const std::uint64_t table_end = table_begin + std::uint64_t{header.section_count} * sizeof(SectionEntry);
+  for (std::uint32_t i = 0; i < header.section_count; ++i) {
+    const std::uint64_t place = table_begin + i * sizeof(SectionEntry);
+    const auto entry = checker.read<SectionEntry>(place);
+
+    // Inside the image, behind the header, apart from the table and from every earlier section.
+    GRIDIRON_REQUIRE(entry.offset_bytes >= sizeof(ImageHeader) && entry.offset_bytes % kLineBytes == 0 &&
+                         entry.offset_bytes <= header.image_bytes,
+                     place, SectionEntry, offset_bytes, "section.offset_bytes");
+    GRIDIRON_REQUIRE(
+        entry.section_bytes % kLineBytes == 0 && entry.section_bytes <= header.image_bytes - entry.offset_bytes, place,
+        SectionEntry, section_bytes, "section.section_bytes");
+    GRIDIRON_REQUIRE(entry.element_bytes == 0 || entry.element_count <= entry.section_bytes / entry.element_bytes,
+                     place, SectionEntry, element_count, "section.element_count");
+    const std::uint64_t begin = entry.offset_bytes;
+    const std::uint64_t end = begin + entry.section_bytes;
+    GRIDIRON_REQUIRE(begin == end || end <= table_begin || begin >= table_end, place, SectionEntry, offset_bytes,
+                     "section.offset_bytes");
+    for (std::uint32_t j = 0; j < i; ++j) {
+      const auto other = checker.read<SectionEntry>(table_begin + j * sizeof(SectionEntry));
+      const bool apart = begin == end || other.section_bytes == 0 || end <= other.offset_bytes ||
+                         begin >= other.offset_bytes + other.section_bytes;
+      GRIDIRON_REQUIRE(apart, place, SectionEntry, offset_bytes, "section.offset_bytes");
+    }
+
+    // Known kinds stand once; others are none of our business.
+    const std::uint32_t index = entry.kind - 1;
+    if (index >= Sections::kKnownCount) continue;
+    GRIDIRON_REQUIRE(!sections.found[index], place, SectionEntry, kind, "section.kind");
+    sections.found[index] = true;
+    sections.entries[index] = entry;
+    sections.entry_offsets[index] = place;
+  }
+  for (const bool found : sections.found) {
+    GRIDIRON_REQUIRE(found, 0, ImageHeader, section_count, "header.section_count");
+  }
+  return true;
+}
+
+bool check_elements(Checker& checker, const Sections& sections, SectionKind kind, std::uint64_t element_bytes,
+                    std::uint64_t element_count) {
+  const SectionEntry& entry = sections.entry(kind);
+  const std::uint64_t place = sections.entry_offset(kind);
+  GRIDIRON_REQUIRE(entry.element_bytes == element_bytes, place, SectionEntry, element_bytes, "section.element_bytes");
+  GRIDIRON_REQUIRE(entry.element_count == element_count, place, SectionEntry, element_count, "section.element_count");
+  return true;
+}
+
+// --- Grid ---------------------------------------------------------------------------------------------------------
+
+bool check_grid(Checker& checker, const Sections& sections, GridRecord& grid) {
+  if (!check_elements(checker, sections, SectionKind::kGrid, sizeof(GridRecord), 1)) return false;
+  const std::uint64_t base = sections.entry(SectionKind::kGrid).offset_bytes;
+  grid = checker.read<GridRecord>(base);
+  GRIDIRON_REQUIRE(grid.macro_width >= 1 && grid.macro_width <= kMaxMacroWidth, base, GridRecord, macro_width,
+                   "grid.macro_width");
+  for (int axis = 0; axis < 3; ++axis) {
+    const float minimum = grid.minimum[axis];
+    const float scale = grid.cells_per_unit[axis];
+    const float low = grid.bounds_minimum[axis];
+    const float high = grid.bounds_maximum[axis];
+    const std::uint32_t cells = grid.cell_count[axis];
+    GRIDIRON_REQUIRE(is_finite(minimum), base, GridRecord, minimum, "grid.minimum");
+    GRIDIRON_REQUIRE(is_finite(scale) && scale > 0.0f, base, GridRecord, cells_per_unit, "grid.cells_per_unit");
+    GRIDIRON_REQUIRE(cells >= 1 && cells <= kMaxCellsPerAxis, base, GridRecord, cell_count, "grid.cell_count");
+    GRIDIRON_REQUIRE(grid.macro_cell_count[axis] == (cells + grid.macro_width - 1) / grid.macro_width, base, GridRecord,
+                     macro_cell_count, "grid.macro_cell_count");
+    GRIDIRON_REQUIRE(is_finite(low) && low >= minimum, base, GridRecord, bounds_minimum, "grid.bounds_minimum");
+    const double extent = double{high} - double{minimum};
+    GRIDIRON_REQUIRE(is_finite(high) && high >= low && extent * double{scale} <= static_cast<double>(cells), base,
+                     GridRecord, bounds_maximum, "grid.bounds_maximum");
+  }
+  const std::uint32_t cells_per_block = grid.macro_width * grid.macro_width * grid.macro_width;
+  const std::uint32_t block_bytes = cells_per_block * static_cast<std::uint32_t>(sizeof(CellRecord));
+  GRIDIRON_REQUIRE(grid.cell_block_bytes == round_up(block_bytes, kLineBytes), base, GridRecord, cell_block_bytes,
+                   "grid.cell_block_bytes");
+  GRIDIRON_REQUIRE(grid.cell_block_count >= 1, base, GridRecord, cell_block_count, "grid.cell_block_count");
+  GRIDIRON_REQUIRE(grid.triangle_format == static_cast<std::uint32_t>(TriangleFormat::kVertices) ||
+                       grid.triangle_format == static_cast<std::uint32_t>(TriangleFormat::kProjection),
+                   base, GridRecord, triangle_format, "grid.triangle_format");
+  GRIDIRON_REQUIRE(grid.triangle_bytes == kTriangleRecordBytes, base, GridRecord, triangle_bytes,
+                   "grid.triangle_bytes");
+  GRIDIRON_REQUIRE(is_finite(grid.lambda) && grid.lambda > 0.0f, base, GridRecord, lambda, "grid.lambda");
+  GRIDIRON_REQUIRE(all_zero(grid.reserved, 7), base, GridRecord, reserved, "grid.reserved");
+
+  // What the other sections must hold, in numbers that cannot overflow: at most 2^33 macrocells.
+  const std::uint64_t macro_cells =
+      std::uint64_t{grid.macro_cell_count[0]} * grid.macro_cell_count[1] * grid.macro_cell_count[2];
+  return check_elements(checker, sections, SectionKind::kMacroTable, sizeof(MacroTableEntry),
+                        (macro_cells + 31) / 32) &&
+         check_elements(checker, sections, SectionKind::kCellBlocks, grid.cell_block_bytes, grid.cell_block_count) &&
+         check_elements(checker, sections, SectionKind::kTriangles, grid.triangle_bytes, grid.reference_count);
+}
+
+// --- Cells and triangles ------------------------------------------------------------------------------------------
+
+bool finite_fields(const float* values, int count) {
+  bool finite = true;
+  for (int i = 0; i < count; ++i) finite = finite && is_finite(values[i]);
+  return finite;
+}
+
+// Triangle records [first, first + count) of one cell: finite, known ids, ascending.
+bool check_triangles(Checker& checker, const SceneImageView& view, std::uint64_t first, std::uint64_t count) {
+  const bool projection = view.grid.triangle_format == static_cast<std::uint32_t>(TriangleFormat::kProjection);
+  std::uint64_t least_id = 0;
+  for (std::uint64_t i = first; i < first + count; ++i) {
+    const std::uint64_t base = view.triangles_offset_bytes + i * kTriangleRecordBytes;
+    std::uint32_t id = 0;
+    if (projection) {
+      const auto triangle = checker.read<ProjectionTriangle>(base);
+      const float values[9] = {triangle.n_u, triangle.n_v, triangle.n_d, triangle.b_u, triangle.b_v,
+                               triangle.b_d, triangle.c_u, triangle.c_v, triangle.c_d};
+      GRIDIRON_REQUIRE(finite_fields(values, 9), base, ProjectionTriangle, n_u, "triangle.n_u");
+      GRIDIRON_REQUIRE(triangle.axis_k < 3, base, ProjectionTriangle, axis_k, "triangle.axis_k");
+      GRIDIRON_REQUIRE(triangle.reserved == 0, base, ProjectionTriangle, reserved, "triangle.reserved");
+      id = triangle.triangle_id;
+    } else {
+      const auto triangle = checker.read<VertexTriangle>(base);
+      bool finite = true;
+      for (const auto& corner : triangle.v) finite = finite && finite_fields(corner, 3);
+      GRIDIRON_REQUIRE(finite, base, VertexTriangle, v, "triangle.v");
+      GRIDIRON_REQUIRE(all_zero(triangle.reserved, 2), base, VertexTriangle, reserved, "triangle.reserved");
+      id = triangle.triangle_id;
+    }
+    GRIDIRON_REQUIRE(id >= least_id && id < view.header.triangle_count, base, VertexTriangle, triangle_id,
+                     "triangle.triangle_id");
+    least_id = std::uint64_t{id} + 1;
+  }
+  return true;
+}
+
+// One block: cells inside the grid hold running ranges of triangles, cells beyond its edge hold none.
+bool check_block(Checker& checker, const SceneImageView& view, std::uint64_t block, const std::uint32_t macro_cell[3],
+                 std::uint64_t& running) {
+  const GridRecord& grid = view.grid;
+  const std::uint32_t width = grid.macro_width;
+  const std::uint64_t begin = running;
+  std::uint64_t base = view.cell_blocks_offset_bytes + block * grid.cell_block_bytes;
+  for (std::uint32_t z = 0; z < width; ++z) {
+    for (std::uint32_t y = 0; y < width; ++y) {
+      for (std::uint32_t x = 0; x < width; ++x) {
+        const auto cell = checker.read<CellRecord>(base);
+        const bool inside = macro_cell[0] * width + x < grid.cell_count[0] &&
+                            macro_cell[1] * width + y < grid.cell_count[1] &&
+                            macro_cell[2] * width + z < grid.cell_count[2];
+        GRIDIRON_REQUIRE(cell.first_triangle == running, base, CellRecord, first_triangle, "cell.first_triangle");
+        GRIDIRON_REQUIRE(cell.triangle_count <= grid.reference_count - running && (inside || cell.triangle_count == 0),
+                         base, CellRecord, triangle_count, "cell.triangle_count");
+        if (!check_triangles(checker, view, running, cell.triangle_count)) return false;
+        running += cell.triangle_count;
+        base += sizeof(CellRecord);
+      }
+    }
+  }
+  const std::uint64_t block_base = view.cell_blocks_offset_bytes + block * grid.cell_block_bytes;
+  return checker.require(running > begin, block_base, "cell.triangle_count");
+}
+
+// The macro table against the blocks, the blocks against the triangles.
+bool check_cells(Checker& checker, const Sections& sections, const SceneImageView& view) {
+  const GridRecord& grid = view.grid;
+  for (std::uint64_t offset = 0; offset < grid.cell_block_bytes; offset += sizeof(CellRecord)) {
+    const std::uint64_t base = view.cell_blocks_offset_bytes + offset;
+    const auto cell = checker.read<CellRecord>(base);
+    GRIDIRON_REQUIRE(cell.first_triangle == 0, base, CellRecord, first_triangle, "cell.first_triangle");
+    GRIDIRON_REQUIRE(cell.triangle_count == 0, base, CellRecord, triangle_count, "cell.triangle_count");
+  }
+  const std::uint64_t macro_cells =
+      std::uint64_t{grid.macro_cell_count[0]} * grid.macro_cell_count[1] * grid.macro_cell_count[2];
+  const std::uint64_t entry_count = sections.entry(SectionKind::kMacroTable).element_count;
+  std::uint64_t block = 1;
+  std::uint64_t running = 0;
+  for (std::uint64_t i = 0; i < entry_count; ++i) {
+    const std::uint64_t base = view.macro_table_offset_bytes + i * sizeof(MacroTableEntry);
+    const auto entry = checker.read<MacroTableEntry>(base);
+    GRIDIRON_REQUIRE(entry.first_block == block, base, MacroTableEntry, first_block, "macro_table.first_block");
+    for (std::uint32_t bit = 0; bit < 32 && entry.occupied >> bit != 0; ++bit) {
+      if ((entry.occupied >> bit & 1u) == 0) continue;
+      const std::uint64_t index = i * 32 + bit;
+      GRIDIRON_REQUIRE(index < macro_cells && block < grid.cell_block_count, base, MacroTableEntry, occupied,
+                       "macro_table.occupied");
+      const std::uint64_t row = index / grid.macro_cell_count[0];
+      const std::uint32_t macro_cell[3] = {static_cast<std::uint32_t>(index % grid.macro_cell_count[0]),
+                                           static_cast<std::uint32_t>(row % grid.macro_cell_count[1]),
+                                           static_cast<std::uint32_t>(row / grid.macro_cell_count[1])};
+      if (!check_block(checker, view, block, macro_cell, running)) return false;
+      ++block;
+    }
+  }
+  const std::uint64_t grid_base = sections.entry(SectionKind::kGrid).offset_bytes;
+  GRIDIRON_REQUIRE(block == grid.cell_block_count, grid_base, GridRecord, cell_block_count, "grid.cell_block_count");
+  GRIDIRON_REQUIRE(running == grid.reference_count && running >= 1, grid_base, GridRecord, reference_count,
+                   "grid.reference_count");
+  return true;
+}
+
+#undef GRIDIRON_REQUIRE
+
+}  // namespace
+
+Status open_scene_image(std::span<const std::byte> image, SceneImageView& view, SceneImageError& error) {
+  error = SceneImageError{};
+  Checker checker(image, error);
+  SceneImageView opened{};
+  Sections sections;
+  if (!check_header(checker, opened.header) || !check_sections(checker, opened.header, sections) ||
+      !check_grid(checker, sections, opened.grid)) {
+    return Status::kBadImage;
+  }
+  opened.macro_table_offset_bytes = sections.entry(SectionKind::kMacroTable).offset_bytes;
+  opened.cell_blocks_offset_bytes = sections.entry(SectionKind::kCellBlocks).offset_bytes;
+  opened.triangles_offset_bytes = sections.entry(SectionKind::kTriangles).offset_bytes;
+  if (!check_cells(checker, sections, opened)) return Status::kBadImage;
+  view = opened;
+  return Status::kOk;
+}
+
+std::uint64_t scene_image_check_value(std::span<const std::byte> image) {
+  constexpr std::size_t kGroup = CheckValue::kGroupBytes;
+  static_assert(sizeof(ImageHeader) == kGroup);
+  if (image.size() < kGroup) return 0;
+  std::byte header[kGroup];
+  __builtin_memcpy(header, image.data(), kGroup);
+  __builtin_memset(header + offsetof(ImageHeader, check_value), 0, sizeof(ImageHeader::check_value));
+  CheckValue check;
+  check.add(header);
+  check.add(image.subspan(kGroup));
+  return check.value();
+}
+
+}  // namespace gridiron
