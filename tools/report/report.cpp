@@ -1,0 +1,193 @@
+// Report: see report.h.
+// Memory: std::string. Threads: any, no shared state. SPDX-License-Identifier: Apache-2.0
+#include "report/report.h"
+
+#include <cstddef>
+#include <cstdint>
+#include <nlohmann/json.hpp>
+#include <span>
+#include <string>
+#include <string_view>
+#include <utility>
+
+namespace gridiron::tool {
+
+namespace {
+
+using Json = nlohmann::ordered_json;
+
+Json scene_json(const ReportInput& input) {
+  const GridRecord& grid = input.grid;
+  const auto product = [](const std::uint32_t counts[3]) { return std::uint64_t{counts[0]} * counts[1] * counts[2]; };
+  return {{"triangles", input.triangle_count},
+          {"vertices", input.vertex_count},
+          {"dropped_triangles", input.dropped_triangle_count},
+          {"grid",
+           {{"cells", product(grid.cell_count)},
+            {"macrocells", product(grid.macro_cell_count)},
+            {"references", grid.reference_count},
+            {"bytes", input.grid_bytes}}}};
+}
+
+Json core_json(const sim::CoreTiming& core) {
+  Json waits = Json::object();
+  for (std::size_t level = 0; level < sim::kWaitLevelCount; ++level) {
+    waits[std::string(wait_level_name(static_cast<sim::WaitLevel>(level)))] = core.dma_wait_cycles[level];
+  }
+  return {{"tiles", core.tiles},
+          {"init_cycles", core.init_cycles},
+          {"compute_cycles", core.compute_cycles},
+          {"dma_wait_cycles", std::move(waits)},
+          {"idle_cycles", core.idle_cycles},
+          {"dma",
+           {{"gets", core.gets},
+            {"puts", core.puts},
+            {"bytes_in", core.bytes_in},
+            {"bytes_out", core.bytes_out},
+            {"line_bytes_in", core.line_bytes_in},
+            {"line_bytes_out", core.line_bytes_out}}}};
+}
+
+Json work_json(const sim::WorkTotals& work) {
+  Json json = Json::object();
+  for (std::uint32_t kind = 0; kind < kWorkKindCount; ++kind) {
+    json[std::string(work_name(static_cast<Work>(kind)))] = work[kind];
+  }
+  return json;
+}
+
+Json effects_json(const ReportInput& input) {
+  Json rays = Json::object();
+  for (const RayCount& ray : input.rays) rays[ray.kind] = ray.count;
+  return {{"called_for", input.effects_called_for}, {"rays", std::move(rays)}};
+}
+
+Json local_store_json(const ReportInput& input) {
+  Json regions = Json::array();
+  for (const LocalStoreRegion& region : input.regions) {
+    regions.push_back(Json{{"name", region.name}, {"offset", region.offset_bytes}, {"bytes", region.bytes}});
+  }
+  return {{"arena_bytes", input.arena_bytes},
+          {"regions", std::move(regions)},
+          {"code_bytes", input.code_bytes},
+          {"stack_bytes", input.stack_bytes}};
+}
+
+}  // namespace
+
+std::string report_json(const ReportInput& input) {
+  Json cores = Json::array();
+  for (const sim::CoreTiming& core : input.timing.cores) cores.push_back(core_json(core));
+
+  const double seconds = input.timing.seconds;
+  Json report;
+  report["version"] = kReportVersion;
+  report["scene"] = scene_json(input);
+  report["machine"] = {{"name", std::string(input.machine.name)},
+                       {"cores", input.timing.cores.size()},
+                       {"clock_hz", input.machine.clock_hz}};
+  report["frame"] = {
+      {"cycles", input.timing.frame_cycles}, {"seconds", seconds}, {"fps", seconds > 0 ? 1 / seconds : 0.0}};
+  report["cores"] = std::move(cores);
+  report["work"] = work_json(input.work);
+  report["effects"] = effects_json(input);
+  report["local_store"] = local_store_json(input);
+  report["host"] = {{"load_seconds", input.load_seconds},
+                    {"build_seconds", input.build_seconds},
+                    {"render_seconds", input.render_seconds},
+                    {"threads", input.host_threads}};
+  report["image_hash"] = hash_text(input.image_hash);
+  return report.dump(2, ' ', false, Json::error_handler_t::replace) + "\n";
+}
+
+// A switch, so that the compiler misses a name when a kind of work is added.
+std::string_view work_name(Work kind) {
+  switch (kind) {
+    case Work::kTileStart:
+      return "tile_start";
+    case Work::kRayGenerated:
+      return "ray_generated";
+    case Work::kPacketStart:
+      return "packet_start";
+    case Work::kMacroSliceStep:
+      return "macro_slice_step";
+    case Work::kMacroCellStep:
+      return "macro_cell_step";
+    case Work::kMacroCellVisit:
+      return "macro_cell_visit";
+    case Work::kSliceStep:
+      return "slice_step";
+    case Work::kCellStep:
+      return "cell_step";
+    case Work::kCellVisit:
+      return "cell_visit";
+    case Work::kTriangleBatch:
+      return "triangle_batch";
+    case Work::kMailboxProbe:
+      return "mailbox_probe";
+    case Work::kCullTest:
+      return "cull_test";
+    case Work::kTriangleSetup:
+      return "triangle_setup";
+    case Work::kGroupTestStandard:
+      return "group_test_standard";
+    case Work::kGroupTestPaper:
+      return "group_test_paper";
+    case Work::kHitGroup:
+      return "hit_group";
+    case Work::kHitSetup:
+      return "hit_setup";
+    case Work::kExactSign:
+      return "exact_sign";
+    case Work::kExactDistance:
+      return "exact_distance";
+    case Work::kShadedGroup:
+      return "shaded_group";
+    case Work::kShadedSimpleGroup:
+      return "shaded_simple_group";
+    case Work::kGetIssue:
+      return "get_issue";
+    case Work::kPutIssue:
+      return "put_issue";
+    case Work::kWait:
+      return "wait";
+    case Work::kCount:
+      break;
+  }
+  return "";
+}
+
+std::string_view wait_level_name(sim::WaitLevel level) {
+  switch (level) {
+    case sim::WaitLevel::kTile:
+      return "tile";
+    case sim::WaitLevel::kMacroCell:
+      return "macrocell";
+    case sim::WaitLevel::kTriangle:
+      return "triangle";
+    case sim::WaitLevel::kSetup:
+      return "setup";
+    case sim::WaitLevel::kCount:
+      break;
+  }
+  return "";
+}
+
+std::uint64_t image_hash(std::span<const std::uint32_t> pixels) {
+  std::uint64_t hash = 0xcbf29ce484222325u;
+  for (const std::uint32_t pixel : pixels) {
+    for (std::uint32_t shift = 0; shift < 32; shift += 8) {
+      hash ^= pixel >> shift & 0xFFu;
+      hash *= 0x100000001b3u;
+    }
+  }
+  return hash;
+}
+
+std::string hash_text(std::uint64_t hash) {
+  std::string text(16, '0');
+  for (std::size_t i = 0; i < text.size(); ++i) text[i] = "0123456789abcdef"[hash >> (60 - 4 * i) & 15u];
+  return text;
+}
+
+}  // namespace gridiron::tool

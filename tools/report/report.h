@@ -1,0 +1,77 @@
+// Report: where every cycle and byte of a frame went, as JSON. Keys and units: tools/README.md, "Report".
+// Memory: std::string. Threads: any, no shared state. SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <gridiron/base/records.h>
+#include <gridiron/base/work_counters.h>
+#include <gridiron/sim/machine_profile.h>
+#include <gridiron/sim/replay.h>
+#include <gridiron/sim/trace.h>
+
+#include <cstdint>
+#include <span>
+#include <string>
+#include <string_view>
+#include <vector>
+
+namespace gridiron::tool {
+
+/// Grows when a key changes its meaning or goes away; new keys do not change it.
+inline constexpr int kReportVersion = 1;
+
+/// One named part of the local store.
+struct LocalStoreRegion {
+  std::string name;
+  std::uint64_t offset_bytes = 0;  ///< from the start of the arena
+  std::uint64_t bytes = 0;
+};
+
+/// Rays of one kind that a frame traced.
+struct RayCount {
+  std::string kind;  ///< snake_case: primary, shadow, ...
+  std::uint64_t count = 0;
+};
+
+/// Everything a report tells, filled by the program.
+struct ReportInput {
+  std::uint64_t triangle_count = 0;  ///< of the input, dropped ones included
+  std::uint64_t vertex_count = 0;
+  std::uint64_t dropped_triangle_count = 0;  ///< zero area
+  GridRecord grid{};
+  std::uint64_t grid_bytes = 0;  ///< the whole scene image
+
+  sim::MachineProfile machine{};
+  sim::FrameTiming timing;
+  sim::WorkTotals work{};
+
+  std::vector<std::string> effects_called_for;
+  std::vector<RayCount> rays;
+
+  std::uint64_t arena_bytes = 0;
+  std::vector<LocalStoreRegion> regions;
+  std::uint64_t code_bytes = 0, stack_bytes = 0;  ///< committed figures of the cross build
+
+  double load_seconds = 0, build_seconds = 0, render_seconds = 0;  ///< on this host
+  std::uint32_t host_threads = 1;
+
+  std::uint64_t image_hash = 0;
+};
+
+/// @returns the report as JSON text, two spaces of indentation, keys in the documented order, newline at the end.
+[[nodiscard]] std::string report_json(const ReportInput& input);
+
+/// @returns the stable snake_case name of a kind of work.
+[[nodiscard]] std::string_view work_name(Work kind);
+
+/// @returns the stable name of a wait level: tile, macrocell, triangle, setup.
+[[nodiscard]] std::string_view wait_level_name(sim::WaitLevel level);
+
+/// FNV-1a, 64 bits, over the bytes R, G, B, A of each pixel.
+///
+/// @param pixels  0xAABBGGRR, row-major, top row first.
+[[nodiscard]] std::uint64_t image_hash(std::span<const std::uint32_t> pixels);
+
+/// @returns 16 lower-case hexadecimal digits.
+[[nodiscard]] std::string hash_text(std::uint64_t hash);
+
+}  // namespace gridiron::tool

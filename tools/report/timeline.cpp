@@ -1,0 +1,189 @@
+// Timeline: see timeline.h.
+// Memory: std::string. Threads: any, no shared state. SPDX-License-Identifier: Apache-2.0
+#include "report/timeline.h"
+
+#include <array>
+#include <charconv>
+#include <cstddef>
+#include <cstdint>
+#include <nlohmann/json.hpp>
+#include <string>
+#include <string_view>
+#include <utility>
+
+#include "report/report.h"
+
+namespace gridiron::tool {
+
+namespace {
+
+using sim::TimelineSpan;
+
+constexpr double kFirstThresholdCycles = 64;
+constexpr double kThresholdFactor = 4;
+
+void append_number(std::string& text, std::uint64_t value) {
+  std::array<char, 20> digits;
+  const auto result = std::to_chars(digits.data(), digits.data() + digits.size(), value);
+  text.append(digits.data(), result.ptr);
+}
+
+/// Writes the events of one frame with one threshold.
+class Writer {
+ public:
+  Writer(const sim::MachineProfile& machine, double threshold_cycles)
+      : units_per_cycle_(machine.clock_hz > 0 ? kUnitsPerSecond / machine.clock_hz : 0),
+        threshold_cycles_(threshold_cycles) {}
+
+  /// @returns false, with the text incomplete, when it grows beyond max_bytes.
+  bool write(const sim::FrameTiming& timing, const sim::MachineProfile& machine, std::size_t max_bytes) {
+    text_ = "{\"traceEvents\":[\n";
+    write_names(timing, machine);
+    for (const TimelineSpan& span : timing.timeline) {
+      if (span.kind != TimelineSpan::Kind::kTile && belongs_to_run(span)) {
+        add_to_run(span);
+      } else {
+        write_run();
+        if (span.kind != TimelineSpan::Kind::kTile && is_short(span)) {
+          add_to_run(span);
+        } else {
+          write_span(span);
+        }
+      }
+      if (text_.size() > max_bytes) return false;
+    }
+    write_run();
+    text_ += "\n],\n\"displayTimeUnit\":\"ns\",\n\"otherData\":{\"version\":";
+    append_number(text_, kTimelineVersion);
+    text_ += ",\"machine\":" + quoted(machine.name) + ",\"merged_below_cycles\":";
+    append_number(text_, static_cast<std::uint64_t>(threshold_cycles_));
+    text_ += "}}\n";
+    return text_.size() <= max_bytes;
+  }
+
+  std::string take_text() { return std::move(text_); }
+
+ private:
+  // Times are whole units of 0.1 ns before they become text, so that spans which meet still meet.
+  static constexpr double kUnitsPerSecond = 1e10;
+  static constexpr std::uint64_t kUnitsPerMicrosecond = 10'000;
+
+  /// Short spans of one tile that follow each other.
+  struct Run {
+    TimelineSpan first{};
+    double end_cycles = 0;
+    std::uint64_t span_count = 0;
+    std::array<double, 3> cycles{};  ///< by Kind: init, compute, wait
+  };
+
+  static std::string quoted(std::string_view name) {
+    return nlohmann::json(std::string(name)).dump(-1, ' ', false, nlohmann::json::error_handler_t::replace);
+  }
+
+  bool is_short(const TimelineSpan& span) const { return span.end_cycles - span.begin_cycles < threshold_cycles_; }
+
+  bool belongs_to_run(const TimelineSpan& span) const {
+    return run_.span_count > 0 && is_short(span) && span.core == run_.first.core &&
+           span.tile_id == run_.first.tile_id && span.begin_cycles == run_.end_cycles;
+  }
+
+  void add_to_run(const TimelineSpan& span) {
+    if (run_.span_count++ == 0) run_.first = span;
+    run_.end_cycles = span.end_cycles;
+    run_.cycles[static_cast<std::size_t>(span.kind)] += span.end_cycles - span.begin_cycles;
+  }
+
+  void write_run() {
+    if (run_.span_count == 1) {
+      write_span(run_.first);
+    } else if (run_.span_count > 1) {
+      begin_event("mixed", run_.first.core, run_.first.begin_cycles, run_.end_cycles);
+      write_tile(run_.first.tile_id);
+      text_ += run_.first.tile_id != sim::kNoTileId ? ",\"spans\":" : "\"spans\":";
+      append_number(text_, run_.span_count);
+      constexpr std::array<std::string_view, 3> kKeys = {",\"init_us\":", ",\"compute_us\":", ",\"wait_us\":"};
+      for (std::size_t kind = 0; kind < kKeys.size(); ++kind) {
+        text_ += kKeys[kind];
+        append_microseconds(units(run_.cycles[kind]));
+      }
+      text_ += "}}";
+    }
+    run_ = {};
+  }
+
+  void write_span(const TimelineSpan& span) {
+    std::string_view name = "tile";
+    std::string wait_name;
+    if (span.kind == TimelineSpan::Kind::kInit) {
+      name = "init";
+    } else if (span.kind == TimelineSpan::Kind::kCompute) {
+      name = "compute";
+    } else if (span.kind == TimelineSpan::Kind::kWait) {
+      wait_name.append("wait ").append(wait_level_name(span.level));
+      name = wait_name;
+    }
+    begin_event(name, span.core, span.begin_cycles, span.end_cycles);
+    write_tile(span.tile_id);
+    text_ += "}}";
+  }
+
+  void write_names(const sim::FrameTiming& timing, const sim::MachineProfile& machine) {
+    text_ += "{\"name\":\"process_name\",\"ph\":\"M\",\"pid\":0,\"args\":{\"name\":" + quoted(machine.name) + "}}";
+    for (std::size_t core = 0; core < timing.cores.size(); ++core) {
+      text_ += ",\n{\"name\":\"thread_name\",\"ph\":\"M\",\"pid\":0,\"tid\":";
+      append_number(text_, core);
+      text_ += ",\"args\":{\"name\":\"core ";
+      append_number(text_, core);
+      text_ += "\"}}";
+    }
+  }
+
+  /// Leaves the text inside the event's arguments.
+  void begin_event(std::string_view name, std::uint32_t core, double begin_cycles, double end_cycles) {
+    const std::uint64_t begin = units(begin_cycles);
+    text_.append(",\n{\"name\":\"").append(name).append("\",\"ph\":\"X\",\"pid\":0,\"tid\":");
+    append_number(text_, core);
+    text_ += ",\"ts\":";
+    append_microseconds(begin);
+    text_ += ",\"dur\":";
+    append_microseconds(units(end_cycles) - begin);
+    text_ += ",\"args\":{";
+  }
+
+  void write_tile(std::uint32_t tile_id) {
+    if (tile_id == sim::kNoTileId) return;
+    text_ += "\"tile\":";
+    append_number(text_, tile_id);
+  }
+
+  std::uint64_t units(double cycles) const { return static_cast<std::uint64_t>(cycles * units_per_cycle_ + 0.5); }
+
+  void append_microseconds(std::uint64_t units) {
+    append_number(text_, units / kUnitsPerMicrosecond);
+    std::uint64_t rest = units % kUnitsPerMicrosecond;
+    text_ += '.';
+    for (std::uint64_t digit = kUnitsPerMicrosecond / 10; digit > 0; digit /= 10) {
+      text_ += static_cast<char>('0' + rest / digit);
+      rest %= digit;
+    }
+  }
+
+  double units_per_cycle_;
+  double threshold_cycles_;
+  std::string text_;
+  Run run_;
+};
+
+}  // namespace
+
+std::string timeline_json(const sim::FrameTiming& timing, const sim::MachineProfile& machine, std::size_t max_bytes) {
+  for (double threshold = 0;; threshold = threshold > 0 ? threshold * kThresholdFactor : kFirstThresholdCycles) {
+    const bool is_last = threshold > timing.frame_cycles && threshold > 0;
+    Writer writer(machine, threshold);
+    if (writer.write(timing, machine, is_last ? static_cast<std::size_t>(-1) : max_bytes) || is_last) {
+      return writer.take_text();
+    }
+  }
+}
+
+}  // namespace gridiron::tool

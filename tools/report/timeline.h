@@ -1,0 +1,29 @@
+// Timeline: a frame as a Chrome trace, one row per core, for a browser's trace viewer.
+// Memory: std::string. Threads: any, no shared state. SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <gridiron/sim/machine_profile.h>
+#include <gridiron/sim/replay.h>
+
+#include <cstddef>
+#include <string>
+
+namespace gridiron::tool {
+
+inline constexpr int kTimelineVersion = 1;
+inline constexpr std::size_t kMaxTimelineBytes = 50'000'000;  ///< beyond it trace viewers become unusable
+
+/// Writes the spans of a frame as complete events ("ph": "X"), times in microseconds of the machine's clock.
+///
+/// Spans are named init, compute, "wait tile|macrocell|triangle|setup"; each tile's spans lie inside one named "tile".
+/// Only where the text would exceed max_bytes, neighbouring spans of one tile that are each shorter than a threshold
+/// become one span named "mixed", which tells its parts in its arguments; the threshold is the first of 64, 256, 1024,
+/// ... cycles that does it, and stands in otherData.merged_below_cycles (0: nothing was merged). Text that no threshold
+/// makes small enough is returned as short as it gets.
+///
+/// @param timing  of a replay with ReplayOptions::timeline.
+/// @returns       JSON text. Format: the Trace Event Format's JSON object form.
+[[nodiscard]] std::string timeline_json(const sim::FrameTiming& timing, const sim::MachineProfile& machine,
+                                        std::size_t max_bytes = kMaxTimelineBytes);
+
+}  // namespace gridiron::tool
