@@ -10,6 +10,9 @@ bool is_finite(double value) { return value - value == 0.0; }
 
 bool is_finite(const DVec3& v) { return is_finite(v.x) && is_finite(v.y) && is_finite(v.z); }
 
+// The built-in becomes the square root instruction; glm::sqrt would call libm.
+double length_of(const DVec3& v) { return __builtin_sqrt(glm::dot(v, v)); }
+
 void store(float out[3], const DVec3& v) {
   out[0] = static_cast<float>(v.x);
   out[1] = static_cast<float>(v.y);
@@ -44,9 +47,9 @@ Status make_frame_record(const FrameSettings& settings, const SceneImageView& im
 
   // Orthonormal frame of the camera; double keeps the steps exact to a float ulp whatever the distance.
   const DVec3 forward_raw = DVec3(settings.camera.at) - DVec3(settings.camera.eye);
-  const DVec3 forward = forward_raw / glm::sqrt(glm::dot(forward_raw, forward_raw));
+  const DVec3 forward = forward_raw / length_of(forward_raw);
   const DVec3 right_raw = glm::cross(forward, DVec3(settings.camera.up));
-  const DVec3 right = right_raw / glm::sqrt(glm::dot(right_raw, right_raw));
+  const DVec3 right = right_raw / length_of(right_raw);
   const DVec3 up = glm::cross(right, forward);
   if (!is_finite(DVec3(settings.camera.eye)) || !is_finite(right) || !is_finite(up)) return Status::kBadFrame;
 
