@@ -10,6 +10,7 @@
 #include <atomic>
 #include <cstdint>
 #include <functional>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -27,7 +28,8 @@ enum class StoreSize : std::uint8_t { k64KB, k256KB };
 
 enum class Mode : std::uint8_t {
   kChecked,  ///< every rule checked, destinations poisoned until the wait, work traced
-  kPlain,    ///< plain copies: fast host rendering, no trace
+  kPlain,    ///< plain copies: fast host rendering, no trace, no work totals
+  kInstrumented,  ///< kChecked, and every load and store of the kernel checked too; 4 lanes, see has_instrumented_mode
 };
 
 struct ChipOptions {
@@ -39,7 +41,8 @@ struct ChipOptions {
   Completion completion = Completion::kEarly;
   std::uint64_t seed = 0;          ///< of Completion::kRandom
   PlatformLimits limits;           ///< of the simulated platform
-  std::uint64_t fail_transfer = 0; ///< n > 0: the n-th transfer (over one thread) fails
+  std::uint64_t fail_transfer = 0; ///< n > 0: the n-th transfer started (over all threads) fails; checked modes only
+  std::optional<std::uint32_t> only_tile;  ///< render this tile alone
   const std::atomic<bool>* abort = nullptr;             ///< stop between tiles when it becomes true
   std::function<void(std::uint32_t done, std::uint32_t total)> progress;  ///< called from any thread, serialised
 };
@@ -48,13 +51,13 @@ struct ChipOptions {
 struct Violation {
   Status rule;
   std::uint32_t core;
-  std::uint32_t tile_id;
+  std::uint32_t tile_id;  ///< kNoTile (sim_core.h) before the first and after the last tile of a core
   std::string detail;   ///< addresses and sizes, for people
 };
 
 struct ChipResult {
   Status status = Status::kOk;
-  std::uint32_t failed_core = 0, failed_tile = 0;  ///< meaningful when status is not kOk
+  std::uint32_t failed_core = 0, failed_tile = 0;  ///< meaningful when status is not kOk; lowest tile that failed
   std::vector<Violation> violations;
   WorkTotals work{};                 ///< over all tiles; the same for any number of threads
   FrameTrace trace;                  ///< Mode::kChecked only
@@ -62,9 +65,17 @@ struct ChipResult {
 };
 
 /// Renders the frame whose FrameRecord lies at `frame` in `memory`. The output lies in `memory` afterwards.
+///
+/// Errors: kBadFrame (the record, or a part of memory that it names, is not there), kUnsupportedFrame (lanes, packet
+/// width or mode not built, or not runnable on this host), kBadParameter (limits that are not a platform's, a tile that
+/// is not in the frame, no threads), kAborted, and whatever the kernel or a broken rule reports. When several tiles
+/// fail, the lowest one is told, with its violations, for any number of threads.
 [[nodiscard]] ChipResult render_frame(SimMemory& memory, MainAddress frame, const ChipOptions& options);
 
 /// @returns the widest lane count this host can run: 4, 8 or 16.
 [[nodiscard]] std::uint32_t widest_lanes();
+
+/// @returns whether Mode::kInstrumented was built (GCC, no sanitizer of its own in the build).
+[[nodiscard]] bool has_instrumented_mode();
 
 }  // namespace gridiron::sim

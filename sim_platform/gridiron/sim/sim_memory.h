@@ -23,12 +23,14 @@ class SimMemory {
  public:
   static constexpr std::uint64_t kFirstAddress = 4096;
 
+  /// Errors: throws std::bad_alloc where the host has not that much memory.
   explicit SimMemory(std::uint64_t capacity_bytes);
   ~SimMemory();
   SimMemory(const SimMemory&) = delete;
   SimMemory& operator=(const SimMemory&) = delete;
 
-  /// Next free bytes, zeroed, aligned (power of two >= 128). @returns nothing where the capacity is used up.
+  /// Next free bytes, zeroed, aligned (power of two). @returns nothing where the capacity is used up or the alignment
+  /// is no power of two.
   [[nodiscard]] std::optional<MemoryRegion> allocate(std::uint64_t bytes, std::uint64_t alignment_bytes = 128);
 
   /// Gives back everything allocated after `mark` = used_bytes() of some earlier time.
@@ -47,7 +49,8 @@ class SimMemory {
   std::byte* base_ = nullptr;   ///< virtual: host address that stands for main address 0
   std::byte* storage_ = nullptr;
   std::uint64_t capacity_bytes_ = 0;
-  std::uint64_t used_bytes_ = 0;
+  std::uint64_t used_bytes_ = 0;   ///< end of what was handed out, from kFirstAddress on
+  std::uint64_t dirty_bytes_ = 0;  ///< largest used_bytes_ ever: what lies behind it is still zero
 };
 
 }  // namespace gridiron::sim

@@ -49,7 +49,7 @@ using WorkTotals = std::array<std::uint64_t, kWorkKindCount>;
 struct FrameTrace {
   TileTrace prologue;
   TileTrace epilogue;
-  std::vector<TileTrace> tiles;  ///< index = tile_id
+  std::vector<TileTrace> tiles;  ///< index = tile_id; one entry where a tile was rendered alone
   std::uint32_t output_depth = 1; ///< rotation of the relative tags
 };
 

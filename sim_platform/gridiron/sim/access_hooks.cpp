@@ -1,0 +1,40 @@
+// What the compiler's kernel-address instrumentation calls at each load and store of the instrumented kernel.
+// Memory: none. Threads: each thread checks for its own core. SPDX-License-Identifier: Apache-2.0
+#include <gridiron/sim/sim_core.h>
+
+#include <cstdint>
+
+// The compiler chooses these names, which start with two underscores.
+#define GRIDIRON_ACCESS_HOOK(kind, bytes, is_store)                                                      \
+  extern "C" void __asan_##kind##bytes##_noabort(std::uintptr_t address);                                \
+  extern "C" void __asan_##kind##bytes##_noabort(std::uintptr_t address) {                               \
+    gridiron::sim::SimCore::check_access(address, bytes, is_store,                                       \
+                                         reinterpret_cast<std::uintptr_t>(__builtin_return_address(0))); \
+  }
+
+GRIDIRON_ACCESS_HOOK(load, 1, false)
+GRIDIRON_ACCESS_HOOK(load, 2, false)
+GRIDIRON_ACCESS_HOOK(load, 4, false)
+GRIDIRON_ACCESS_HOOK(load, 8, false)
+GRIDIRON_ACCESS_HOOK(load, 16, false)
+GRIDIRON_ACCESS_HOOK(store, 1, true)
+GRIDIRON_ACCESS_HOOK(store, 2, true)
+GRIDIRON_ACCESS_HOOK(store, 4, true)
+GRIDIRON_ACCESS_HOOK(store, 8, true)
+GRIDIRON_ACCESS_HOOK(store, 16, true)
+
+extern "C" void __asan_loadN_noabort(std::uintptr_t address, std::uintptr_t bytes);
+extern "C" void __asan_loadN_noabort(std::uintptr_t address, std::uintptr_t bytes) {
+  gridiron::sim::SimCore::check_access(address, bytes, false,
+                                       reinterpret_cast<std::uintptr_t>(__builtin_return_address(0)));
+}
+
+extern "C" void __asan_storeN_noabort(std::uintptr_t address, std::uintptr_t bytes);
+extern "C" void __asan_storeN_noabort(std::uintptr_t address, std::uintptr_t bytes) {
+  gridiron::sim::SimCore::check_access(address, bytes, true,
+                                       reinterpret_cast<std::uintptr_t>(__builtin_return_address(0)));
+}
+
+// Called before functions that do not return; the instrumentation of the stack is off, so there is nothing to do.
+extern "C" void __asan_handle_no_return();
+extern "C" void __asan_handle_no_return() {}

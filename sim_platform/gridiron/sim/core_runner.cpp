@@ -1,0 +1,176 @@
+// Runs one program on every core of a simulated chip, in checked mode, and puts the cores' results together.
+// Memory: owns local stores for the time of the frame. Threads: starts its own. SPDX-License-Identifier: Apache-2.0
+#include <gridiron/base/records.h>
+#include <gridiron/sim/core_runner.h>
+
+#include <algorithm>
+#include <bit>
+#include <cstring>
+#include <iterator>
+#include <memory>
+#include <new>
+#include <thread>
+#include <utility>
+
+namespace gridiron::sim {
+
+namespace {
+
+// In front of and behind a core's arena. A multiple of any boundary, so that the arena stays aligned.
+constexpr std::size_t kGuardBytes = 4096;
+constexpr std::byte kGuardPattern{0xC9};
+
+/// Local memory of one core between two guards; everything but the data carries the guard's pattern.
+class GuardedArena {
+ public:
+  GuardedArena(std::size_t arena_bytes, std::size_t data_bytes)
+      : total_bytes_(arena_bytes + 2 * kGuardBytes),
+        data_bytes_(data_bytes),
+        bytes_(static_cast<std::byte*>(::operator new (total_bytes_, std::align_val_t{kGuardBytes}))) {
+    std::memset(bytes_, static_cast<int>(kGuardPattern), total_bytes_);
+    std::memset(bytes_ + kGuardBytes, 0, data_bytes);
+  }
+  ~GuardedArena() { ::operator delete (bytes_, std::align_val_t{kGuardBytes}); }
+  GuardedArena(const GuardedArena&) = delete;
+  GuardedArena& operator=(const GuardedArena&) = delete;
+
+  [[nodiscard]] std::span<std::byte> data() const { return {bytes_ + kGuardBytes, data_bytes_}; }
+
+  /// @returns offset from the arena's start of a changed byte outside the data; 0 where there is none (0 is data).
+  [[nodiscard]] std::ptrdiff_t find_damage() const {
+    const auto damaged = [](std::byte b) { return b != kGuardPattern; };
+    const std::byte* const data_begin = bytes_ + kGuardBytes;
+    const std::byte* const data_end = data_begin + data_bytes_;
+    const std::byte* const front = std::find_if(static_cast<const std::byte*>(bytes_), data_begin, damaged);
+    if (front != data_begin) return front - data_begin;
+    const std::byte* const end = bytes_ + total_bytes_;
+    const std::byte* const back = std::find_if(data_end, end, damaged);
+    return back != end ? back - data_begin : 0;
+  }
+
+ private:
+  std::size_t total_bytes_;
+  std::size_t data_bytes_;
+  std::byte* bytes_;
+};
+
+/// One core, what it ran in, and how it ended.
+struct CoreRun {
+  std::unique_ptr<SimCore> core;
+  Status status = Status::kOk;
+  std::uint32_t tile = kNoTile;  ///< that the status belongs to
+};
+
+void run_core(CoreRun& run, const GuardedArena& arena, const CoreProgram& program, TileSource& tiles) {
+  SimCore& core = *run.core;
+  const Status returned = program(core, arena.data());
+  const std::uint32_t last_tile = core.tile_id();
+  core.finish(returned == Status::kOk);
+
+  // The core's own record is the earlier and the more exact one; a program may even have dropped the status.
+  run.status = core.first_error() != Status::kOk ? core.first_error() : returned;
+  run.tile = core.first_error() != Status::kOk ? core.first_error_tile() : last_tile;
+  if (run.status != Status::kOk) tiles.stop();
+}
+
+/// A failure outranks an abort (which it causes on the other cores); of two failures the lower tile is told.
+[[nodiscard]] bool outranks(const CoreRun& a, const CoreRun& b) {
+  const auto rank = [](const CoreRun& run) { return run.status == Status::kOk ? 2 : run.status == Status::kAborted; };
+  return rank(a) != rank(b) ? rank(a) < rank(b) : a.tile < b.tile;
+}
+
+}  // namespace
+
+bool are_limits_valid(const PlatformLimits& limits) {
+  const auto is_power_of_two_or_zero = [](std::uint32_t value) { return value == 0 || std::has_single_bit(value); };
+  return is_power_of_two_or_zero(limits.alignment_bytes) && is_power_of_two_or_zero(limits.congruence_bytes) &&
+         is_power_of_two_or_zero(limits.boundary_bytes) && limits.max_transfer_bytes > 0 && limits.tag_count >= 1 &&
+         limits.tag_count <= 32 && limits.queue_depth >= 1 && limits.congruence_bytes <= kLineBytes;
+}
+
+ChipResult run_cores(SimMemory& memory, const FrameShape& shape, const ChipOptions& options,
+                     const CoreProgram& program) {
+  ChipResult result;
+  const bool one_tile = options.only_tile.has_value();
+  if (!are_limits_valid(options.limits) || options.threads == 0 || shape.output_depth == 0 || shape.data_bytes == 0 ||
+      shape.data_bytes > shape.arena_bytes || (one_tile && *options.only_tile >= shape.tile_count)) {
+    result.status = Status::kBadParameter;
+    return result;
+  }
+  const std::uint32_t first_tile = one_tile ? *options.only_tile : 0;
+  const std::uint32_t end_tile = one_tile ? first_tile + 1 : shape.tile_count;
+  TileSource tiles(first_tile, end_tile, options.abort, options.progress);
+
+  SimFrame frame;
+  frame.memory = &memory;
+  frame.tiles = &tiles;
+  frame.writable = shape.writable;
+  frame.limits = options.limits;
+  frame.completion = options.completion;
+  frame.seed = options.seed;
+  frame.output_depth = shape.output_depth;
+  frame.fail_transfer = options.fail_transfer;
+
+  // Run: the calling thread is core 0.
+  std::vector<std::unique_ptr<GuardedArena>> arenas;
+  std::vector<CoreRun> runs(options.threads);
+  for (std::uint32_t i = 0; i < options.threads; ++i) {
+    arenas.push_back(std::make_unique<GuardedArena>(shape.arena_bytes, shape.data_bytes));
+    runs[i].core = std::make_unique<SimCore>(frame, i, arenas[i]->data());
+  }
+  std::vector<std::thread> threads;
+  for (std::uint32_t i = 1; i < options.threads; ++i) {
+    threads.emplace_back([&, i] { run_core(runs[i], *arenas[i], program, tiles); });
+  }
+  run_core(runs[0], *arenas[0], program, tiles);
+  for (std::thread& thread : threads) thread.join();
+
+  // Status: that of the lowest failing tile, with its violations.
+  const auto worst = std::min_element(runs.begin(), runs.end(), outranks);
+  result.status = worst->status;
+  if (result.status != Status::kOk) {
+    result.failed_core = static_cast<std::uint32_t>(worst - runs.begin());
+    result.failed_tile = worst->tile;
+    std::copy_if(worst->core->violations().begin(), worst->core->violations().end(),
+                 std::back_inserter(result.violations), [&](const Violation& v) { return v.tile_id == worst->tile; });
+  }
+  const auto fail = [&](const Violation& violation) {
+    if (result.status == Status::kOk) {
+      result.status = violation.rule;
+      result.failed_core = violation.core;
+      result.failed_tile = violation.tile_id;
+    }
+    result.violations.push_back(violation);
+  };
+  for (std::uint32_t i = 0; i < options.threads; ++i) {
+    const std::ptrdiff_t damage = arenas[i]->find_damage();
+    if (damage == 0) continue;
+    fail({Status::kBadAccess, i, kNoTile, "byte " + std::to_string(damage) + " from the arena's start was written to"});
+  }
+
+  // Across tiles: only complete frames have the same footprints in every run.
+  if (result.status == Status::kOk) {
+    std::vector<TileFootprint> footprints;
+    for (const CoreRun& run : runs) {
+      footprints.insert(footprints.end(), run.core->footprints.begin(), run.core->footprints.end());
+    }
+    for (const Violation& violation : check_across_tiles(footprints)) fail(violation);
+  }
+
+  // Trace and totals.
+  result.trace.output_depth = shape.output_depth;
+  result.trace.tiles.resize(end_tile - first_tile);
+  for (std::uint32_t i = 0; i < result.trace.tiles.size(); ++i) result.trace.tiles[i].tile_id = first_tile + i;
+  for (CoreRun& run : runs) {
+    result.transfers += run.core->transfers();
+    for (TileTrace& trace : run.core->traces) {
+      for (const WorkAmount& work : trace.work) result.work[static_cast<std::size_t>(work.kind)] += work.amount;
+      result.trace.tiles[trace.tile_id - first_tile] = std::move(trace);
+    }
+  }
+  result.trace.prologue = std::move(runs[0].core->prologue);
+  result.trace.epilogue = std::move(runs[0].core->epilogue);
+  return result;
+}
+
+}  // namespace gridiron::sim

@@ -1,0 +1,36 @@
+// Runs one program on every core of a simulated chip, in checked mode; render_frame does so with the kernel.
+// Memory: owns local stores, borrows SimMemory. Threads: starts its own. SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <gridiron/sim/sim_chip.h>
+#include <gridiron/sim/sim_core.h>
+
+#include <cstddef>
+#include <cstdint>
+#include <functional>
+#include <span>
+#include <vector>
+
+namespace gridiron::sim {
+
+/// The parts of a frame that do not depend on what the cores run.
+struct FrameShape {
+  std::uint32_t tile_count = 0;
+  std::uint32_t output_depth = 1;
+  std::uint32_t arena_bytes = 256 * 1024;  ///< local memory of a core
+  std::uint32_t data_bytes = 256 * 1024;   ///< its first bytes, where data lies; the rest is code and stack
+  std::vector<MainRange> writable;         ///< where puts may go
+};
+
+/// What a core runs: from its first claim to its last wait. `data` is zeroed and kLineBytes-aligned.
+using CoreProgram = std::function<Status(SimCore& core, std::span<std::byte> data)>;
+
+/// Runs `program` on options.threads cores (options.mode, lanes, store and packet_width are not looked at). The bytes
+/// around a core's data carry a pattern that is checked at the end.
+[[nodiscard]] ChipResult run_cores(SimMemory& memory, const FrameShape& shape, const ChipOptions& options,
+                                   const CoreProgram& program);
+
+/// @returns whether `limits` describe a platform at all: powers of two, and counts above zero.
+[[nodiscard]] bool are_limits_valid(const PlatformLimits& limits);
+
+}  // namespace gridiron::sim

@@ -1,0 +1,66 @@
+// Platform of the plain mode: a get or put is one copy, at once, unchecked. For fast renders on the host.
+// Memory: borrows main memory and the tile source. Threads: one core per object. SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <gridiron/platform/contract.h>
+#include <gridiron/sim/tile_source.h>
+
+#include <cassert>
+#include <cstddef>
+#include <cstdint>
+#include <cstring>
+
+namespace gridiron::sim {
+
+/// One core that believes what it is told: a transfer that breaks a rule of the contract is undefined behaviour of the
+/// host. Asserts catch the cheapest mistakes in builds without NDEBUG.
+class PlainCore {
+ public:
+  /// @param base  host address of main address 0.
+  PlainCore(std::byte* base, const PlatformLimits& limits, TileSource& tiles)
+      : base_(base), limits_(limits), tiles_(&tiles) {}
+
+  [[nodiscard]] PlatformLimits limits() const { return limits_; }
+
+  Status get(void* local, MainAddress address, std::uint32_t bytes, Tag tag) {
+    assert(bytes != 0 && bytes <= limits_.max_transfer_bytes && tag.index < limits_.tag_count);
+    static_cast<void>(tag);
+    ++transfers_;
+    std::memcpy(local, base_ + address.value, bytes);
+    return Status::kOk;
+  }
+
+  Status put(const void* local, MainAddress address, std::uint32_t bytes, Tag tag) {
+    assert(bytes != 0 && bytes <= limits_.max_transfer_bytes && tag.index < limits_.tag_count);
+    static_cast<void>(tag);
+    ++transfers_;
+    std::memcpy(base_ + address.value, local, bytes);
+    return Status::kOk;
+  }
+
+  Status wait(TagMask) { return Status::kOk; }
+
+  TileClaim claim_tile() {
+    if (busy_) tiles_->tile_done();
+    const TileClaim claim = tiles_->claim();
+    busy_ = claim.kind == TileClaim::Kind::kTile;
+    if (busy_) tile_id_ = claim.tile_id;
+    return claim;
+  }
+
+  /// The tile claimed last.
+  [[nodiscard]] std::uint32_t tile_id() const { return tile_id_; }
+  [[nodiscard]] std::uint64_t transfers() const { return transfers_; }
+
+ private:
+  std::byte* base_;
+  PlatformLimits limits_;
+  TileSource* tiles_;
+  std::uint64_t transfers_ = 0;
+  std::uint32_t tile_id_ = 0;
+  bool busy_ = false;
+};
+
+static_assert(Platform<PlainCore>);
+
+}  // namespace gridiron::sim

@@ -1,0 +1,39 @@
+// Entry points of the kernel as compiled for one lane count and one mode. Each lives in an object of its own, from
+// which nothing but the entry point is visible: code built for a wide instruction set, or with instrumentation, is
+// never picked by the linker for anybody else.
+// Memory: the core's arena. Threads: one core per call. SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <gridiron/sim/plain_core.h>
+#include <gridiron/sim/sim_chip.h>
+#include <gridiron/sim/sim_core.h>
+
+#include <cstddef>
+#include <cstdint>
+
+extern "C" {
+
+/// Renders tiles until none is left. `store` is zeroed, kLineBytes-aligned, as large as the layout's LocalStore.
+/// Errors: kUnsupportedFrame for a packet width that is not built; the kernel's.
+gridiron::Status gridiron_sim_render_checked_lanes4(gridiron::sim::StoreSize size, std::uint32_t packet_width,
+                                                    std::byte* store, gridiron::sim::SimCore& core,
+                                                    gridiron::MainAddress frame);
+gridiron::Status gridiron_sim_render_checked_lanes8(gridiron::sim::StoreSize size, std::uint32_t packet_width,
+                                                    std::byte* store, gridiron::sim::SimCore& core,
+                                                    gridiron::MainAddress frame);
+gridiron::Status gridiron_sim_render_checked_lanes16(gridiron::sim::StoreSize size, std::uint32_t packet_width,
+                                                     std::byte* store, gridiron::sim::SimCore& core,
+                                                     gridiron::MainAddress frame);
+gridiron::Status gridiron_sim_render_instrumented_lanes4(gridiron::sim::StoreSize size, std::uint32_t packet_width,
+                                                         std::byte* store, gridiron::sim::SimCore& core,
+                                                         gridiron::MainAddress frame);
+gridiron::Status gridiron_sim_render_plain_lanes4(gridiron::sim::StoreSize size, std::uint32_t packet_width,
+                                                  std::byte* store, gridiron::sim::PlainCore& core,
+                                                  gridiron::MainAddress frame);
+gridiron::Status gridiron_sim_render_plain_lanes8(gridiron::sim::StoreSize size, std::uint32_t packet_width,
+                                                  std::byte* store, gridiron::sim::PlainCore& core,
+                                                  gridiron::MainAddress frame);
+gridiron::Status gridiron_sim_render_plain_lanes16(gridiron::sim::StoreSize size, std::uint32_t packet_width,
+                                                   std::byte* store, gridiron::sim::PlainCore& core,
+                                                   gridiron::MainAddress frame);
+}

@@ -1,0 +1,220 @@
+// The simulated chip: checks the frame's ranges, picks the kernel that was compiled for the options, and runs it.
+// Memory: owns local stores for the time of the frame. Threads: starts its own. SPDX-License-Identifier: Apache-2.0
+#include <gridiron/base/records.h>
+#include <gridiron/sim/core_runner.h>
+#include <gridiron/sim/plain_core.h>
+#include <gridiron/sim/render_entry.h>
+#include <gridiron/sim/sim_chip.h>
+#include <gridiron/sim/sim_core.h>
+#include <gridiron/store/local_store.h>
+
+#include <algorithm>
+#include <cstring>
+#include <memory>
+#include <new>
+#include <thread>
+
+namespace gridiron::sim {
+
+namespace {
+
+template <class Core>
+using RenderEntry = Status (*)(StoreSize, std::uint32_t, std::byte*, Core&, MainAddress);
+
+[[nodiscard]] bool host_runs_lanes(std::uint32_t lanes) {
+#if defined(GRIDIRON_SIM_WIDE_LANES)
+  if (lanes == 8) return __builtin_cpu_supports("avx2") != 0;
+  if (lanes == 16) {
+    return __builtin_cpu_supports("avx512f") != 0 && __builtin_cpu_supports("avx512bw") != 0 &&
+           __builtin_cpu_supports("avx512dq") != 0 && __builtin_cpu_supports("avx512vl") != 0;
+  }
+#endif
+  return lanes == 4;
+}
+
+/// @returns null where nothing was built for these options.
+[[nodiscard]] RenderEntry<SimCore> checked_entry(const ChipOptions& options) {
+  if (!host_runs_lanes(options.lanes)) return nullptr;
+  if (options.mode == Mode::kInstrumented) {
+#if defined(GRIDIRON_SIM_INSTRUMENTED)
+    if (options.lanes == 4) return gridiron_sim_render_instrumented_lanes4;
+#endif
+    return nullptr;
+  }
+#if defined(GRIDIRON_SIM_WIDE_LANES)
+  if (options.lanes == 8) return gridiron_sim_render_checked_lanes8;
+  if (options.lanes == 16) return gridiron_sim_render_checked_lanes16;
+#endif
+  return gridiron_sim_render_checked_lanes4;
+}
+
+[[nodiscard]] RenderEntry<PlainCore> plain_entry(const ChipOptions& options) {
+  if (!host_runs_lanes(options.lanes)) return nullptr;
+#if defined(GRIDIRON_SIM_WIDE_LANES)
+  if (options.lanes == 8) return gridiron_sim_render_plain_lanes8;
+  if (options.lanes == 16) return gridiron_sim_render_plain_lanes16;
+#endif
+  return gridiron_sim_render_plain_lanes4;
+}
+
+struct StoreBytes {
+  std::uint32_t arena = 0;
+  std::uint32_t data = 0;  ///< 0: this packet width is not built
+};
+
+template <template <std::uint32_t> class Layout>
+[[nodiscard]] StoreBytes store_bytes(std::uint32_t packet_width) {
+  switch (packet_width) {
+    case 4:
+      return {Layout<4>::kArenaBytes, sizeof(LocalStore<Layout<4>>)};
+    case 8:
+      return {Layout<8>::kArenaBytes, sizeof(LocalStore<Layout<8>>)};
+    case 16:
+      return {Layout<16>::kArenaBytes, sizeof(LocalStore<Layout<16>>)};
+    default:
+      return {};
+  }
+}
+
+/// Reads the frame record and checks that everything it names lies in memory: the plain mode believes it.
+[[nodiscard]] Status describe_frame(SimMemory& memory, MainAddress address, FrameShape& shape) {
+  const std::span<std::byte> bytes = memory.bytes_at(address, sizeof(FrameRecord));
+  if (bytes.empty() || address.value % kLineBytes != 0) return Status::kBadFrame;
+  FrameRecord frame;
+  std::memcpy(&frame, bytes.data(), sizeof frame);
+
+  const auto whole_tiles = [&](std::uint32_t pixels) { return (pixels + frame.tile_width - 1) / frame.tile_width; };
+  const auto in_picture = [](std::uint32_t count) { return count >= 1 && count <= kMaxPictureWidth; };
+  if (frame.magic != kFrameMagic || frame.version != kFrameVersion || !in_picture(frame.width) ||
+      !in_picture(frame.height) || !in_picture(frame.tile_width) || frame.tiles_x != whole_tiles(frame.width) ||
+      frame.tiles_y != whole_tiles(frame.height) || frame.output_depth == 0) {
+    return Status::kBadFrame;
+  }
+  shape.tile_count = frame.tiles_x * frame.tiles_y;
+  shape.output_depth = frame.output_depth;
+
+  const std::uint64_t plane_bytes = std::uint64_t{shape.tile_count} * frame.tile_width * frame.tile_width * 4;
+  if (frame.color_address == 0) return Status::kBadFrame;
+  for (const std::uint64_t plane : {frame.color_address, frame.depth_address, frame.id_address}) {
+    if (plane == 0) continue;
+    if (memory.bytes_at(MainAddress{plane}, plane_bytes).empty()) return Status::kBadFrame;
+    shape.writable.push_back({plane, plane + plane_bytes});
+  }
+  std::sort(shape.writable.begin(), shape.writable.end(),
+            [](const MainRange& a, const MainRange& b) { return a.begin < b.begin; });
+
+  const auto lies_in_memory = [&](std::uint64_t begin, std::uint64_t byte_count) {
+    return byte_count == 0 || !memory.bytes_at(MainAddress{begin}, byte_count).empty();
+  };
+  const GridRecord& grid = frame.grid;
+  std::uint64_t macro_cells = 1;
+  for (const std::uint32_t count : grid.macro_cell_count) {
+    if (count > kMaxCellsPerAxis) return Status::kBadFrame;
+    macro_cells *= count;
+  }
+  if (!lies_in_memory(frame.macro_table_address, (macro_cells + 31) / 32 * sizeof(MacroTableEntry)) ||
+      !lies_in_memory(frame.cell_blocks_address, std::uint64_t{grid.cell_block_count} * grid.cell_block_bytes) ||
+      !lies_in_memory(frame.triangles_address, std::uint64_t{grid.reference_count} * grid.triangle_bytes)) {
+    return Status::kBadFrame;
+  }
+  return Status::kOk;
+}
+
+[[nodiscard]] ChipResult render_plain(SimMemory& memory, MainAddress frame, const FrameShape& shape,
+                                      const ChipOptions& options, RenderEntry<PlainCore> entry) {
+  ChipResult result;
+  const bool one_tile = options.only_tile.has_value();
+  const std::uint32_t first_tile = one_tile ? *options.only_tile : 0;
+  TileSource tiles(first_tile, one_tile ? first_tile + 1 : shape.tile_count, options.abort, options.progress);
+
+  struct FreeArena {
+    void operator()(std::byte* bytes) const { ::operator delete (bytes, std::align_val_t{kLineBytes}); }
+  };
+  struct Run {
+    std::unique_ptr<std::byte, FreeArena> arena;
+    std::unique_ptr<PlainCore> core;
+    Status status = Status::kOk;
+  };
+  std::vector<Run> runs(options.threads);
+  for (Run& run : runs) {
+    run.arena.reset(static_cast<std::byte*>(::operator new (shape.data_bytes, std::align_val_t{kLineBytes})));
+    std::memset(run.arena.get(), 0, shape.data_bytes);
+    run.core = std::make_unique<PlainCore>(memory.base(), options.limits, tiles);
+  }
+  const auto render = [&](Run& run) {
+    run.status = entry(options.store, options.packet_width, run.arena.get(), *run.core, frame);
+    if (run.status != Status::kOk) tiles.stop();
+  };
+  std::vector<std::thread> threads;
+  for (std::uint32_t i = 1; i < options.threads; ++i) threads.emplace_back([&, i] { render(runs[i]); });
+  render(runs[0]);
+  for (std::thread& thread : threads) thread.join();
+
+  for (std::uint32_t i = 0; i < options.threads; ++i) {
+    const Run& run = runs[i];
+    result.transfers += run.core->transfers();
+    if (run.status == Status::kOk) continue;
+    // A failure outranks the abort that it causes on other cores; of two failures the lower tile is told.
+    const bool is_first = result.status == Status::kOk;
+    const bool was_abort = result.status == Status::kAborted, is_abort = run.status == Status::kAborted;
+    if (is_first || (was_abort && !is_abort) || (was_abort == is_abort && run.core->tile_id() < result.failed_tile)) {
+      result.status = run.status;
+      result.failed_core = i;
+      result.failed_tile = run.core->tile_id();
+    }
+  }
+  return result;
+}
+
+}  // namespace
+
+ChipResult render_frame(SimMemory& memory, MainAddress frame, const ChipOptions& options) {
+  ChipResult result;
+  const auto refuse = [&](Status status) {
+    result.status = status;
+    return result;
+  };
+  FrameShape shape;
+  const StoreBytes store = options.store == StoreSize::k64KB ? store_bytes<StoreLayout64K>(options.packet_width)
+                                                             : store_bytes<StoreLayout256K>(options.packet_width);
+  if (store.data == 0) return refuse(Status::kUnsupportedFrame);
+  shape.arena_bytes = store.arena;
+  shape.data_bytes = store.data;
+  const Status described = describe_frame(memory, frame, shape);
+  if (described != Status::kOk) return refuse(described);
+  if (!are_limits_valid(options.limits) || options.threads == 0 ||
+      (options.only_tile && *options.only_tile >= shape.tile_count)) {
+    return refuse(Status::kBadParameter);
+  }
+
+  if (options.mode == Mode::kPlain) {
+    const RenderEntry<PlainCore> entry = plain_entry(options);
+    return entry == nullptr ? refuse(Status::kUnsupportedFrame) : render_plain(memory, frame, shape, options, entry);
+  }
+  const RenderEntry<SimCore> entry = checked_entry(options);
+  if (entry == nullptr) return refuse(Status::kUnsupportedFrame);
+  return run_cores(memory, shape, options, [&](SimCore& core, std::span<std::byte> data) {
+    if (options.mode == Mode::kInstrumented) {
+      const SimCore::AccessScope scope(core, __builtin_frame_address(0));
+      return entry(options.store, options.packet_width, data.data(), core, frame);
+    }
+    return entry(options.store, options.packet_width, data.data(), core, frame);
+  });
+}
+
+std::uint32_t widest_lanes() {
+  for (const std::uint32_t lanes : {16u, 8u}) {
+    if (host_runs_lanes(lanes)) return lanes;
+  }
+  return 4;
+}
+
+bool has_instrumented_mode() {
+#if defined(GRIDIRON_SIM_INSTRUMENTED)
+  return true;
+#else
+  return false;
+#endif
+}
+
+}  // namespace gridiron::sim

@@ -1,0 +1,66 @@
+// Hands out the tiles of one frame to all cores of a chip, in rising order, each exactly once.
+// Memory: borrows the abort flag. Threads: any number claim at once; progress calls are serialised.
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <gridiron/platform/contract.h>
+
+#include <atomic>
+#include <cstdint>
+#include <functional>
+#include <mutex>
+#include <utility>
+
+namespace gridiron::sim {
+
+/// Shared claim counter of a frame.
+///
+/// Tiles go out in rising order, so that when a tile fails every tile below it has been claimed: the lowest failing
+/// tile of a frame is the same however the cores interleave.
+class TileSource {
+ public:
+  using Progress = std::function<void(std::uint32_t done, std::uint32_t total)>;
+
+  /// Tiles [first_tile, end_tile). `abort` may be null.
+  TileSource(std::uint32_t first_tile, std::uint32_t end_tile, const std::atomic<bool>* abort = nullptr,
+             Progress progress = {})
+      : next_(first_tile),
+        end_tile_(end_tile),
+        total_(end_tile - first_tile),
+        abort_(abort),
+        progress_(std::move(progress)) {}
+
+  /// Next tile, kNone after the last, kAborted once the frame is to stop.
+  [[nodiscard]] TileClaim claim() {
+    if (stopped_.load(std::memory_order_relaxed) || (abort_ != nullptr && abort_->load(std::memory_order_relaxed))) {
+      return {TileClaim::Kind::kAborted, 0};
+    }
+    // A core asks once more after the last tile, so the counter cannot come near its range's end.
+    const std::uint64_t tile = next_.fetch_add(1, std::memory_order_relaxed);
+    if (tile >= end_tile_) return {TileClaim::Kind::kNone, 0};
+    return {TileClaim::Kind::kTile, static_cast<std::uint32_t>(tile)};
+  }
+
+  /// Tells that a claimed tile is finished.
+  void tile_done() {
+    if (!progress_) return;
+    const std::scoped_lock lock(progress_mutex_);
+    ++done_;
+    progress_(done_, total_);
+  }
+
+  /// From now on every claim is answered kAborted.
+  void stop() { stopped_.store(true, std::memory_order_relaxed); }
+
+ private:
+  std::atomic<std::uint64_t> next_;
+  std::uint64_t end_tile_;
+  std::uint32_t total_;
+  const std::atomic<bool>* abort_;
+  std::atomic<bool> stopped_{false};
+  Progress progress_;
+  std::mutex progress_mutex_;
+  std::uint32_t done_ = 0;
+};
+
+}  // namespace gridiron::sim
