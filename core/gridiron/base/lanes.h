@@ -52,6 +52,45 @@ struct LaneVectors<16> {
   typedef std::int32_t HalfIntMemory __attribute__((vector_size(32), may_alias));
 };
 
+/// W truth values; bit i of bits() = lane i.
+template <int W>
+struct LaneMask {
+  typename LaneVectors<W>::IntVector v;
+
+  [[nodiscard]] GRIDIRON_INLINE std::uint32_t bits() const {
+#if defined(__AVX2__)
+    if constexpr (W == 8) return static_cast<std::uint32_t>(_mm256_movemask_ps(reinterpret_cast<__m256>(v)));
+#endif
+#if defined(__SSE2__)
+    if constexpr (W == 4) return static_cast<std::uint32_t>(_mm_movemask_ps(reinterpret_cast<__m128>(v)));
+#endif
+    std::uint32_t result = 0;
+    for (int i = 0; i < W; ++i) result |= (static_cast<std::uint32_t>(v[i]) & 1u) << i;
+    return result;
+  }
+  friend GRIDIRON_INLINE LaneMask operator|(LaneMask a, LaneMask b) {
+    return {a.v | b.v};
+  }
+  friend GRIDIRON_INLINE LaneMask operator&(LaneMask a, LaneMask b) {
+    return {a.v & b.v};
+  }
+};
+
+#if defined(__AVX512F__)
+/// With AVX-512 truth values live in mask registers.
+template <>
+struct LaneMask<16> {
+  __mmask16 m;
+  [[nodiscard]] GRIDIRON_INLINE std::uint32_t bits() const { return m; }
+  friend GRIDIRON_INLINE LaneMask operator|(LaneMask a, LaneMask b) {
+    return {static_cast<__mmask16>(static_cast<unsigned>(a.m) | static_cast<unsigned>(b.m))};
+  }
+  friend GRIDIRON_INLINE LaneMask operator&(LaneMask a, LaneMask b) {
+    return {static_cast<__mmask16>(static_cast<unsigned>(a.m) & static_cast<unsigned>(b.m))};
+  }
+};
+#endif
+
 /// Vectors of W lanes. W = 4 (chips), 8, 16 (hosts); 16 is meant for files compiled with AVX-512.
 template <int W>
 struct Lanes {
@@ -67,34 +106,21 @@ struct Lanes {
   using HalfFloatMemory = typename LaneVectors<W>::HalfFloatMemory;
   using HalfIntMemory = typename LaneVectors<W>::HalfIntMemory;
 
-  /// W truth values.
-  struct Mask {
-    IntVector v;
+  using Mask = LaneMask<W>;
 
-    /// Bit i = lane i.
-    [[nodiscard]] GRIDIRON_INLINE std::uint32_t bits() const {
+  enum class Order : std::uint8_t { kLess, kLessEqual };
+  template <Order kOrder>
+  [[nodiscard]] static GRIDIRON_INLINE Mask compare(FloatVector a, FloatVector b) {
 #if defined(__AVX512F__)
-      if constexpr (W == 16) return _mm512_movepi32_mask(reinterpret_cast<__m512i>(v));
+    if constexpr (W == 16) {
+      return {_mm512_cmp_ps_mask(__m512(a), __m512(b), kOrder == Order::kLess ? _CMP_LT_OQ : _CMP_LE_OQ)};
+    } else
 #endif
-#if defined(__AVX2__)
-      if constexpr (W == 8) {
-        return static_cast<std::uint32_t>(_mm256_movemask_ps(reinterpret_cast<__m256>(v)));
-      }
-#endif
-#if defined(__SSE2__)
-      if constexpr (W == 4) return static_cast<std::uint32_t>(_mm_movemask_ps(reinterpret_cast<__m128>(v)));
-#endif
-      std::uint32_t result = 0;
-      for (int i = 0; i < W; ++i) result |= (static_cast<std::uint32_t>(v[i]) & 1u) << i;
-      return result;
+    {
+      if constexpr (kOrder == Order::kLess) return {a < b};
+      return {a <= b};
     }
-    friend GRIDIRON_INLINE Mask operator|(Mask a, Mask b) {
-      return {a.v | b.v};
-    }
-    friend GRIDIRON_INLINE Mask operator&(Mask a, Mask b) {
-      return {a.v & b.v};
-    }
-  };
+  }
 
   /// W floats.
   struct Float {
@@ -116,11 +142,10 @@ struct Lanes {
     friend GRIDIRON_INLINE Float operator*(Float a, Float b) { return Float(a.v * b.v); }
     friend GRIDIRON_INLINE Float operator/(Float a, Float b) { return Float(a.v / b.v); }
     friend GRIDIRON_INLINE Float operator-(Float a) { return Float(-a.v); }
-    friend GRIDIRON_INLINE Mask operator<(Float a, Float b) { return {a.v < b.v}; }
-    friend GRIDIRON_INLINE Mask operator>(Float a, Float b) { return {a.v > b.v}; }
-    friend GRIDIRON_INLINE Mask operator<=(Float a, Float b) { return {a.v <= b.v}; }
-    friend GRIDIRON_INLINE Mask operator>=(Float a, Float b) { return {a.v >= b.v}; }
-    friend GRIDIRON_INLINE Mask operator==(Float a, Float b) { return {a.v == b.v}; }
+    friend GRIDIRON_INLINE Mask operator<(Float a, Float b) { return compare<Order::kLess>(a.v, b.v); }
+    friend GRIDIRON_INLINE Mask operator>(Float a, Float b) { return compare<Order::kLess>(b.v, a.v); }
+    friend GRIDIRON_INLINE Mask operator<=(Float a, Float b) { return compare<Order::kLessEqual>(a.v, b.v); }
+    friend GRIDIRON_INLINE Mask operator>=(Float a, Float b) { return compare<Order::kLessEqual>(b.v, a.v); }
   };
 
   [[nodiscard]] static GRIDIRON_INLINE Float min(Float a, Float b) {
@@ -135,13 +160,40 @@ struct Lanes {
   }
   /// Lane i of the result is a[i] where mask[i], else b[i].
   [[nodiscard]] static GRIDIRON_INLINE Float select(Mask mask, Float a, Float b) {
-    return Float(mask.v ? a.v : b.v);
+#if defined(__AVX512F__)
+    if constexpr (W == 16)
+      return Float(FloatVector(_mm512_mask_blend_ps(mask.m, __m512(b.v), __m512(a.v))));
+    else
+#endif
+      return Float(mask.v ? a.v : b.v);
   }
   /// Mask with lane i set where bit i is.
   [[nodiscard]] static GRIDIRON_INLINE Mask mask_from_bits(std::uint32_t bits) {
-    IntVector lane_bit;
-    for (int i = 0; i < W; ++i) lane_bit[i] = 1 << i;
-    return {(lane_bit & static_cast<std::int32_t>(bits)) != 0};
+#if defined(__AVX512F__)
+    if constexpr (W == 16) {
+      return {static_cast<__mmask16>(bits)};
+    } else
+#endif
+    {
+      IntVector lane_bit;
+      for (int i = 0; i < W; ++i) lane_bit[i] = 1 << i;
+      return {(lane_bit & static_cast<std::int32_t>(bits)) != 0};
+    }
+  }
+  /// Bit i = the sign of lane i, W / 2 lanes.
+  [[nodiscard]] static GRIDIRON_INLINE std::uint32_t half_bits(LongVector v) {
+#if defined(__AVX512DQ__)
+    if constexpr (W == 16) return _mm512_movepi64_mask(__m512i(v));
+#endif
+#if defined(__AVX2__)
+    if constexpr (W == 8) return static_cast<std::uint32_t>(_mm256_movemask_pd(reinterpret_cast<__m256d>(v)));
+#endif
+#if defined(__SSE2__)
+    if constexpr (W == 4) return static_cast<std::uint32_t>(_mm_movemask_pd(reinterpret_cast<__m128d>(v)));
+#endif
+    std::uint32_t result = 0;
+    for (int i = 0; i < W / 2; ++i) result |= (v[i] < 0 ? 1u : 0u) << i;
+    return result;
   }
   /// Largest lane.
   [[nodiscard]] static GRIDIRON_INLINE float horizontal_max(Float a) {

@@ -25,7 +25,8 @@ enum class Work : std::uint8_t {
   kGroupTestPaper,    ///< (group, triangle) tests, precomputed projection
   kHitGroup,          ///< groups for which distances were computed and hits merged
   kHitSetup,          ///< triangles for which the distance set-up was computed
-  kExactSign,         ///< edge signs decided in integers
+  kDoubleSign,        ///< edge signs the float filter left open, tried in double
+  kExactSign,         ///< signs decided in integers
   kExactDistance,     ///< distances rounded in integers
   kShadedGroup,       ///< ray groups turned into pixels without shading
   kShadedSimpleGroup, ///< ray groups shaded by facing ratio

@@ -27,14 +27,19 @@ struct Slab {
 /// Let o be the origin in cell space and s the slope of a ray (cells along u per cell along the march). In exact
 /// arithmetic the ray is at o_u + s x after marching x. Every quantity below carries at most a handful of roundings:
 /// o has 2, s has 3, x has 1 on |x| and 2 on |o_k|, the product and the sum one each. Their sum is at most
-/// e (4 |o_u| + |s| (8 |o_k| + 8 N_k)) with e = 2^-23, one unit in any rounding mode; that is pad_u. pad_k likewise.
+/// e (6 |o_u| + |s| (8 |o_k| + 8 N_k)) with e = 2^-23, one unit in any rounding mode, the pad's own addition included;
+/// that is pad_u. pad_k likewise.
 struct Frustum {
   std::uint32_t axis_k, axis_u, axis_v;
   std::int32_t cells_u, cells_v, cells_k;
-  bool reverse;                        ///< the rays march towards smaller k
-  float origin_k, origin_u, origin_v;  ///< cell space
-  float slope_u_min, slope_u_max, slope_v_min, slope_v_max;
-  float pad_k, pad_u, pad_v;
+  bool reverse;    ///< the rays march towards smaller k
+  float origin_k;  ///< cell space
+  // One lane per bound: u low, u high, v low, v high.
+  alignas(16) float start[4];       ///< o_u - pad_u, o_u + pad_u, o_v - pad_v, o_v + pad_v
+  alignas(16) float slope_near[4];  ///< slope of the bound while it is reached at the slab's entry, else 0
+  alignas(16) float slope_far[4];   ///< the same at the slab's exit
+  alignas(16) float limit[4];       ///< cells_u, cells_u, cells_v, cells_v
+  float pad_k;
   float depth_per_t;  ///< factor |cells_per_unit_k|; times |dir_k| it turns t into march distance
 
   /// @param first, last  cells along k, inclusive.
@@ -56,28 +61,20 @@ struct Frustum {
 
   /// Cells of the plane u, v that rays touch between the slab's two ends.
   [[nodiscard]] GRIDIRON_INLINE CellRect rect_of(const Slab& slab) const {
-    CellRect rect;
-    range_of(slab, origin_u, slope_u_min, slope_u_max, pad_u, cells_u, rect.u_first, rect.u_last);
-    range_of(slab, origin_v, slope_v_min, slope_v_max, pad_v, cells_v, rect.v_first, rect.v_last);
-    return rect;
-  }
-
- private:
-  static GRIDIRON_INLINE void range_of(const Slab& slab, float origin, float slope_min, float slope_max, float pad,
-                                       std::int32_t cells, std::int32_t& first, std::int32_t& last) {
+    using Four = Lanes<4>;
+    using Float = Four::Float;
     const float far = slab.exit > 0.0f ? slab.exit : 0.0f;
-    const float low = origin + slope_min * (slope_min < 0.0f ? far : slab.entry) - pad;
-    const float high = origin + slope_max * (slope_max > 0.0f ? far : slab.entry) + pad;
-    const float limit = static_cast<float>(cells);
-    if (!(high >= 0.0f) || !(low <= limit)) {
-      first = 1;
-      last = 0;
-      return;
-    }
-    first = low > 0.0f ? static_cast<std::int32_t>(low) : 0;
-    last = high < limit ? static_cast<std::int32_t>(high) : cells;
-    if (first > cells - 1) first = cells - 1;
-    if (last > cells - 1) last = cells - 1;
+    // One of the two slopes is 0, so that this is start + slope * distance.
+    const Float bound =
+        Float::load(start) + (Float::load(slope_near) * Float(slab.entry) + Float::load(slope_far) * Float(far));
+    const Float cells = Float::load(limit);
+    constexpr std::uint32_t kLowBounds = 0b0101, kHighBounds = 0b1010;
+    const std::uint32_t below = (bound < Float(0.0f)).bits() & kHighBounds;
+    const std::uint32_t above = (cells < bound).bits() & kLowBounds;
+    if ((below | above) != 0) return {1, 0, 1, 0};
+    const Float inside = Four::min(Four::max(bound, Float(0.0f)), cells - Float(0.5f));
+    const Four::IntVector cell = __builtin_convertvector(inside.v, Four::IntVector);
+    return {cell[0], cell[1], cell[2], cell[3]};
   }
 };
 
@@ -129,11 +126,6 @@ template <class L, class PacketType>
     high_v = L::max(high_v, L::select(joined, slope_v, Float(-kFloatMax)));
   }
   waiting.erase(leader);  // a direction that vanishes in cell space is a miss
-  const float slope_u_min = L::horizontal_min(low_u);
-  const float slope_u_max = L::horizontal_max(high_u);
-  const float slope_v_min = L::horizontal_min(low_v);
-  const float slope_v_max = L::horizontal_max(high_v);
-
   const auto magnitude = [](float value) { return value < 0.0f ? -value : value; };
   const auto larger = [](float a, float b) { return a > b ? a : b; };
   const auto in_cells = [&](std::uint32_t axis) {
@@ -147,19 +139,23 @@ template <class L, class PacketType>
   frustum.cells_v = static_cast<std::int32_t>(grid.cell_count[v]);
   frustum.reverse = reverse;
   frustum.origin_k = in_cells(k);
-  frustum.origin_u = in_cells(u);
-  frustum.origin_v = in_cells(v);
-  frustum.slope_u_min = slope_u_min;
-  frustum.slope_u_max = slope_u_max;
-  frustum.slope_v_min = slope_v_min;
-  frustum.slope_v_max = slope_v_max;
   constexpr float kUnit = 0x1p-23f;
   const float march_bound = 8.0f * (magnitude(frustum.origin_k) + static_cast<float>(frustum.cells_k));
-  const float steep_u = larger(magnitude(slope_u_min), magnitude(slope_u_max));
-  const float steep_v = larger(magnitude(slope_v_min), magnitude(slope_v_max));
   frustum.pad_k = kUnit * march_bound;
-  frustum.pad_u = kUnit * (4.0f * magnitude(frustum.origin_u) + steep_u * march_bound) + 0x1p-60f;
-  frustum.pad_v = kUnit * (4.0f * magnitude(frustum.origin_v) + steep_v * march_bound) + 0x1p-60f;
+  const auto set_bounds = [&](std::uint32_t axis, std::uint32_t lane, float slope_min, float slope_max) {
+    const float origin = in_cells(axis);
+    const float steepest = larger(magnitude(slope_min), magnitude(slope_max));
+    const float pad = kUnit * (6.0f * magnitude(origin) + steepest * march_bound) + 0x1p-60f;
+    frustum.start[lane] = origin - pad;
+    frustum.start[lane + 1] = origin + pad;
+    frustum.slope_near[lane] = slope_min < 0.0f ? 0.0f : slope_min;
+    frustum.slope_far[lane] = slope_min < 0.0f ? slope_min : 0.0f;
+    frustum.slope_near[lane + 1] = slope_max > 0.0f ? 0.0f : slope_max;
+    frustum.slope_far[lane + 1] = slope_max > 0.0f ? slope_max : 0.0f;
+    frustum.limit[lane] = frustum.limit[lane + 1] = static_cast<float>(grid.cell_count[axis]);
+  };
+  set_bounds(u, 0, L::horizontal_min(low_u), L::horizontal_max(high_u));
+  set_bounds(v, 2, L::horizontal_min(low_v), L::horizontal_max(high_v));
   frustum.depth_per_t = grid.cells_per_unit[k];
   return true;
 }

@@ -40,10 +40,35 @@ void set_up_distance(const float origin[3], float dir_max, const VertexTriangle&
     squared_length += setup.normal[i] * setup.normal[i];
   }
   setup.numerator = numerator;
-  // A numerator of 0 makes this NaN or infinite: unsure, which is right.
-  setup.numerator_relative_error = kDistanceError * numerator_error / magnitude(numerator) + 0x1p-50;
-  setup.denominator_error = kDistanceError * double{dir_max} * (products[0] + products[1] + products[2]);
+  // A numerator of 0 makes these NaN or infinite: unsure, which is right.
+  setup.relative_error = kDistanceError * numerator_error / magnitude(numerator) + 0x1p-50;
+  setup.relative_error_per_t =
+      kDistanceError * double{dir_max} * (products[0] + products[1] + products[2]) / magnitude(numerator);
   setup.facing_scale = 1.0 / square_root(squared_length);
+}
+
+// The float test's form and bound with u = 2^-52 in the place of 2^-23; nothing here can leave the range of a double.
+int edge_sign_in_double(const float origin[3], const float dir[3], const float a[3], const float b[3],
+                        WorkCounters& work) {
+  work.add(Work::kDoubleSign);
+  double sum[3], edge[3];
+  double size_sum = 0.0, size_edge = 0.0, size_dir = 0.0;
+  for (int i = 0; i < 3; ++i) {
+    const double from_a = double{a[i]} - double{origin[i]};
+    const double from_b = double{b[i]} - double{origin[i]};
+    sum[i] = from_a + from_b;
+    edge[i] = double{b[i]} - double{a[i]};
+    size_sum += magnitude(from_a) + magnitude(from_b);
+    size_edge = magnitude(edge[i]) > size_edge ? magnitude(edge[i]) : size_edge;
+    size_dir = magnitude(double{dir[i]}) > size_dir ? magnitude(double{dir[i]}) : size_dir;
+  }
+  const double value = (sum[1] * edge[2] - sum[2] * edge[1]) * dir[0] + (sum[2] * edge[0] - sum[0] * edge[2]) * dir[1] +
+                       (sum[0] * edge[1] - sum[1] * edge[0]) * dir[2];
+  const double error = 0x1p-47 * size_sum * size_edge * size_dir;
+  if (value > error) return 1;
+  if (value < -error) return -1;
+  work.add(Work::kExactSign);
+  return exact_edge_sign(origin, dir, a, b);
 }
 
 int volume_sign_in_double(const float origin[3], const VertexTriangle& triangle, WorkCounters& work) {

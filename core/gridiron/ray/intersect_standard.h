@@ -41,6 +41,10 @@ inline constexpr float kCornerErrorFactor = 5.0f * 0x1p-23f;
 /// @returns sign of det[a - o, b - o, c - o]: float filter by the caller, then double, then integers.
 [[nodiscard]] int volume_sign_in_double(const float origin[3], const VertexTriangle& triangle, WorkCounters& work);
 
+/// @returns sign of det[dir, a - o, b - o]: in double where that is sure, else in integers.
+[[nodiscard]] int edge_sign_in_double(const float origin[3], const float dir[3], const float a[3], const float b[3],
+                                      WorkCounters& work);
+
 /// What the distances of one triangle need, in double. Distance of a ray = numerator / (normal . d).
 ///
 /// With u = 2^-52: normal = (b - a) x (c - a) has error 4 u M per component, M_x = |e1_y e2_z| + |e1_z e2_y|; the
@@ -48,9 +52,9 @@ inline constexpr float kCornerErrorFactor = 5.0f * 0x1p-23f;
 struct DistanceSetup {
   double normal[3];
   double numerator;
-  double numerator_relative_error;
-  double denominator_error;
-  double facing_scale;  ///< 1 / |normal|
+  double relative_error;        ///< of the quotient, but for the denominator's part
+  double relative_error_per_t;  ///< times the quotient: the denominator's part
+  double facing_scale;          ///< 1 / |normal|
 };
 inline constexpr double kDistanceError = 0x1p-48;
 
@@ -129,18 +133,24 @@ template <class L, class PacketType>
 }
 
 /// Decides the lanes of one group that the float test left open. @returns those that hit the triangle's area.
+///
+/// @param sure_inside  per edge, the lanes whose float test surely passed on the inside.
 template <class L, class PacketType>
-[[nodiscard]] std::uint32_t settle_exactly(const PacketType& packet, std::uint32_t base, std::uint32_t open_bits,
-                                           const VertexTriangle& triangle, int orientation, WorkCounters& work) {
+[[nodiscard]] std::uint32_t settle_open_lanes(const PacketType& packet, std::uint32_t base, std::uint32_t open_bits,
+                                              const std::uint32_t sure_inside[3], const VertexTriangle& triangle,
+                                              int orientation, WorkCounters& work) {
   std::uint32_t inside = 0;
-  for (std::uint32_t lane = 0; lane < L::kCount; ++lane) {
-    if (((open_bits >> lane) & 1u) == 0) continue;
+  for (std::uint32_t rest = open_bits; rest != 0; rest &= rest - 1) {
+    const std::uint32_t lane = static_cast<std::uint32_t>(__builtin_ctz(rest));
     const float dir[3] = {packet.dir[0][base + lane], packet.dir[1][base + lane], packet.dir[2][base + lane]};
     bool hit = true;
     bool any = false;
     for (int edge = 0; edge < 3 && hit; ++edge) {
-      const int sign = orientation * exact_edge_sign(packet.origin, dir, triangle.v[edge], triangle.v[(edge + 1) % 3]);
-      work.add(Work::kExactSign);
+      int sign = 1;
+      if (((sure_inside[edge] >> lane) & 1u) == 0) {
+        sign =
+            orientation * edge_sign_in_double(packet.origin, dir, triangle.v[edge], triangle.v[(edge + 1) % 3], work);
+      }
       hit = sign >= 0;
       any = any || sign > 0;
     }
@@ -170,8 +180,8 @@ GRIDIRON_INLINE void distances_of(const PacketType& packet, std::uint32_t base, 
     const Double d_z = __builtin_convertvector(*reinterpret_cast<const HalfMemory*>(packet.dir[2] + first), Double);
     const Double denominator = d_x * setup.normal[0] + d_y * setup.normal[1] + d_z * setup.normal[2];
     const Double quotient = setup.numerator / denominator;
-    const Double magnitude = denominator < 0.0 ? -denominator : denominator;
-    const Double relative = setup.denominator_error / magnitude + setup.numerator_relative_error;
+    // error(D) / |D| = error(D) |t| / |N|
+    const Double relative = quotient * setup.relative_error_per_t + setup.relative_error;
     constexpr std::int64_t kHalfStep = std::int64_t{1} << 28;
     const Long low = (reinterpret_cast<Long>(quotient - quotient * relative) + kHalfStep) >> 29;
     const Long high = (reinterpret_cast<Long>(quotient + quotient * relative) + kHalfStep) >> 29;
@@ -179,9 +189,7 @@ GRIDIRON_INLINE void distances_of(const PacketType& packet, std::uint32_t base, 
     const Long pattern = low - kRebias;
     const Long sure = (low == high) & (pattern >= 0x00800000) & (pattern <= 0x7F7FFFFF) & (relative < 0x1p-10);
     *reinterpret_cast<typename L::HalfIntMemory*>(distance + half * kHalf) = __builtin_convertvector(pattern, HalfInt);
-    for (std::uint32_t i = 0; i < kHalf; ++i) {
-      unsure |= (sure[static_cast<int>(i)] == 0 ? 1u : 0u) << (half * kHalf + i);
-    }
+    unsure |= L::half_bits(~sure) << (half * kHalf);
   }
   unsure &= bits;
   for (std::uint32_t lane = 0; unsure != 0 && lane < L::kCount; ++lane) {
@@ -230,12 +238,14 @@ template <class L, bool kWantFacing, class PacketType>
     const std::uint32_t outside = ((e0 < -error0) | (e1 < -error1) | (e2 < -error2)).bits();
     std::uint32_t open = active & (edges.in_range ? ~outside : ~0u);
     if (open == 0) continue;
-    // 2. Three edges surely passed on the inside: a hit. Anything else is decided exactly.
-    std::uint32_t inside = ((e0 > error0) & (e1 > error1) & (e2 > error2)).bits();
-    inside = edges.in_range ? inside & open : 0u;
+    // 2. Three edges surely passed on the inside: a hit. Anything else is decided in double, then exactly.
+    const std::uint32_t known = edges.in_range ? ~0u : 0u;
+    const std::uint32_t sure_inside[3] = {(e0 > error0).bits() & known, (e1 > error1).bits() & known,
+                                          (e2 > error2).bits() & known};
+    std::uint32_t inside = open & sure_inside[0] & sure_inside[1] & sure_inside[2];
     open &= ~inside;
     if (open != 0) [[unlikely]] {
-      inside |= settle_exactly<L>(packet, base, open, triangle, orientation, work);
+      inside |= settle_open_lanes<L>(packet, base, open, sure_inside, triangle, orientation, work);
     }
     if (inside == 0) continue;
     // 3. Distances, and the least (t, id).
