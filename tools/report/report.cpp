@@ -26,7 +26,9 @@ Json scene_json(const ReportInput& input) {
            {{"cells", product(grid.cell_count)},
             {"macrocells", product(grid.macro_cell_count)},
             {"references", grid.reference_count},
-            {"bytes", input.grid_bytes}}}};
+            {"bytes", input.grid_bytes},
+            {"lambda", grid.lambda},
+            {"wanted_lambda", input.wanted_lambda}}}};
 }
 
 Json core_json(const sim::CoreTiming& core) {
@@ -135,8 +137,12 @@ std::string_view work_name(Work kind) {
       return "group_test_paper";
     case Work::kHitGroup:
       return "hit_group";
+    case Work::kHitGroupPaper:
+      return "hit_group_paper";
     case Work::kHitSetup:
       return "hit_setup";
+    case Work::kDoubleSign:
+      return "double_sign";
     case Work::kExactSign:
       return "exact_sign";
     case Work::kExactDistance:

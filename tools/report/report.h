@@ -38,6 +38,7 @@ struct ReportInput {
   std::uint64_t vertex_count = 0;
   std::uint64_t dropped_triangle_count = 0;  ///< zero area
   GridRecord grid{};
+  float wanted_lambda = 0;           ///< more than the grid's where that was reduced to fit the main memory
   std::uint64_t grid_bytes = 0;  ///< the whole scene image
 
   sim::MachineProfile machine{};

@@ -23,7 +23,8 @@ enum class Work : std::uint8_t {
   kTriangleSetup,     ///< per (packet, triangle) set-ups of the `standard` test
   kGroupTestStandard, ///< (group, triangle) tests, filtered edge functions
   kGroupTestPaper,    ///< (group, triangle) tests, precomputed projection
-  kHitGroup,          ///< groups for which distances were computed and hits merged
+  kHitGroup,          ///< groups for which distances were computed and hits merged, `standard` test
+  kHitGroupPaper,     ///< groups of which hits were merged, precomputed projection
   kHitSetup,          ///< triangles for which the distance set-up was computed
   kDoubleSign,        ///< edge signs the float filter left open, tried in double
   kExactSign,         ///< signs decided in integers

@@ -76,7 +76,7 @@ template <class L, bool kWantFacing, class PacketType>
                                .bits() &
                            active;
     if (inside == 0) continue;
-    work.add(Work::kHitGroup);
+    work.add(Work::kHitGroupPaper);
     for (; inside != 0; inside &= inside - 1) {
       const int lane = __builtin_ctz(inside);
       const std::uint32_t ray = base + static_cast<std::uint32_t>(lane);

@@ -43,23 +43,32 @@ constexpr std::array<double, kWorkKindCount> two_pipe_work_cycles() {
   set(Work::kCellVisit, 30);       // set-up of the triangle loop, splitting the range into buffers
   set(Work::kTriangleBatch, 20);   // turn the buffer over, bounds of the loop inside it
 
-  // Per triangle.
-  set(Work::kMailboxProbe, 40);   // scalar load, compare, store: 14 even, 10 odd, half a branch miss
-  set(Work::kCullTest, 90);       // the four corner rays as one group test: 30 even, 20 odd, bound by its chain, then a
-                                  // branch that goes either way
-  set(Work::kTriangleSetup, 95);  // vertices relative to the eye, three edges side by side in lanes:
-                                  // 3 + 3 + 3 additions, 6 multiplications, 3 subtractions, 10 for the filter's bound,
-                                  // 12 splats of the result, 8 shuffles in front: 28 even, 24 odd, a chain of 85,
-                                  // half a branch miss
-  set(Work::kGroupTestStandard, 46);  // 3 edges * (3 multiplications, 2 additions, |e|, 2 compares) = 24, bound times
-                                      // |d| maximum 3, merging masks 8: 35 even, 10 odd, a quarter of a miss
-  set(Work::kGroupTestPaper, 36);     // distance (5, reciprocal estimate and Newton step 4), hit point 2, 2 * 3
-                                      // multiply-adds, compares, selects: 27 even, 14 odd = 34, and 2 for its share of
-                                      // the loop (580 for 16 groups)
-  set(Work::kHitGroup, 60);  // denominator 5, division to the nearest float 16, clamp to the triangle's extent 6,
-                             // compare by (t, id) 6, 4 selects, 6 loads and stores
-  set(Work::kHitSetup, 60);  // vertices into canonical order (6 compares, 6 selects), plane normal 9, distance 5,
-                             // extent on the major axis 4, splats 5
+  // Per triangle. Double precision: two lanes, and each instruction holds up everything for 6 cycles more: 7 each.
+  set(Work::kMailboxProbe, 40);  // scalar load, compare, store: 14 even, 10 odd, half a branch miss
+  // The four corner rays as one group test of the paper's kind: 30 even, 20 odd, bound by its chain, then a branch that
+  // goes either way. The `standard` test has the edges already and needs about 65; the larger of the two is charged.
+  set(Work::kCullTest, 90);
+  // Vertices relative to the eye, three edges side by side in lanes: 18 additions and subtractions, 6 multiplications,
+  // 3 subtractions, 15 for the filter's bounds, 13 for the orientation's sign, 3 to flip by it, and 6 compares: 64
+  // even; 9 loads, 12 shuffles, 9 splats, 10 stores: 40 odd, of which 15 pair; a branch miss now and then, and latency
+  // at the start, where nothing can be put between.
+  set(Work::kTriangleSetup, 110);
+  // 3 edges * (3 multiplications, 2 additions, 2 compares, negated bound) = 24, merging masks 11: 35 even, 10 odd, of
+  // which 4 pair; a quarter of a miss.
+  set(Work::kGroupTestStandard, 46);
+  // Distance (5, reciprocal estimate and Newton step 4), hit point 2, barycentrics 2 * 3, compares and selects 10: 27
+  // even, 14 odd = 34; and 2 for its share of the loop (580 for 16 groups).
+  set(Work::kGroupTestPaper, 36);
+  // In double, per half of a group: 3 conversions, denominator 5, division 8 (estimate and three Newton steps), error
+  // 2, ends of the interval 3: 21 * 7, and 20 for rounding on bit patterns; twice, and 2 lanes that merge at 30 each.
+  set(Work::kHitGroup, 395);
+  set(Work::kHitGroupPaper, 60);  // 2 lanes that merge at 30 each
+  // In double: normal 18, numerator 6, error bounds 9, squared length 5, two divisions and a square root 30: 68, of
+  // which 40 go two by two.
+  set(Work::kHitSetup, 340);
+  // In double: 6 + 3 + 3 differences and sums, their sizes 6, determinant 14, bound 3, and 12 conversions: 47, of which
+  // 16 go two by two; compares and a branch that goes either way 20.
+  set(Work::kDoubleSign, 290);
 
   // In integers, scalar, 27 limbs of 32 bits.
   set(Work::kExactSign, 1000);      // 18 products of three 24-bit mantissas at about 45 (two multiplications of 16-bit
@@ -68,9 +77,8 @@ constexpr std::array<double, kWorkKindCount> two_pipe_work_cycles() {
 
   // Pixels.
   set(Work::kShadedGroup, 40);         // compare, select, pack 4 pixels, store, tile address
-  set(Work::kShadedSimpleGroup, 160);  // the same, and the normal: gather of 4 triangles (36 scalar loads, of which
-                                       // most are hidden), cross product 9, three dot products 15, reciprocal square
-                                       // root with a Newton step 8, scale and convert 6
+  set(Work::kShadedSimpleGroup, 100);  // the same, |d| 5, square root to the nearest float 20, division 16, scale,
+                                       // clamp and convert 6, pack 9; the cosine is part of kHitGroup
 
   // Commands and waits are charged where they happen: MachineProfile::issue_cycles and wait_cycles.
   set(Work::kGetIssue, 0);

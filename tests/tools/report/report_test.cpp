@@ -94,6 +94,8 @@ TEST(Report, HasExactlyTheDocumentedKeysInOrder) {
                                        "scene.grid.macrocells",
                                        "scene.grid.references",
                                        "scene.grid.bytes",
+                                       "scene.grid.lambda",
+                                       "scene.grid.wanted_lambda",
                                        "machine.name",
                                        "machine.cores",
                                        "machine.clock_hz",
@@ -114,12 +116,19 @@ TEST(Report, HasExactlyTheDocumentedKeysInOrder) {
                                        "cores[].dma.bytes_out",
                                        "cores[].dma.line_bytes_in",
                                        "cores[].dma.line_bytes_out"};
-  for (const char* name : {"tile_start",          "ray_generated",       "packet_start",     "macro_slice_step",
-                           "macro_cell_step",     "macro_cell_visit",    "slice_step",       "cell_step",
-                           "cell_visit",          "triangle_batch",      "mailbox_probe",    "cull_test",
-                           "triangle_setup",      "group_test_standard", "group_test_paper", "hit_group",
-                           "hit_setup",           "exact_sign",          "exact_distance",   "shaded_group",
-                           "shaded_simple_group", "get_issue",           "put_issue",        "wait"}) {
+  for (const char* name : {"tile_start",          "ray_generated",
+                           "packet_start",        "macro_slice_step",
+                           "macro_cell_step",     "macro_cell_visit",
+                           "slice_step",          "cell_step",
+                           "cell_visit",          "triangle_batch",
+                           "mailbox_probe",       "cull_test",
+                           "triangle_setup",      "group_test_standard",
+                           "group_test_paper",    "hit_group",
+                           "hit_group_paper",     "hit_setup",
+                           "double_sign",         "exact_sign",
+                           "exact_distance",      "shaded_group",
+                           "shaded_simple_group", "get_issue",
+                           "put_issue",           "wait"}) {
     expected.push_back(std::string("work.") + name);
   }
   for (const char* path : {"effects.called_for[]", "effects.rays.primary", "local_store.arena_bytes",
