@@ -15,9 +15,10 @@ namespace gridiron {
 /// - A computed cell coordinate (p - minimum) * cells_per_unit has two roundings and no underflow: it is off by at most
 ///   2048 * 2.01 u < 2^-40. Call the triangle of the computed corners T'. Every point of the true triangle has a
 ///   partner in T' within 2^-40 per axis (the same barycentric weights).
-/// - T' is cut at planes with exact comparisons, so which edges are cut is decided without error. A cut point is
-///   r + (plane - s) * slope, four roundings of terms of at most 2048, and its weight lies in [0, 1]: off by < 2^-39.
-///   Two cuts follow each other (z, then y): at most 2^-38.
+/// - A cut point of T' and a plane is r + (plane - s) * slope with plane between the ends of the edge: four roundings
+/// of
+///   terms of at most 2048, off by < 2^-39. Which edge is cut is decided by exact comparisons. Two cuts follow each
+///   other (z, then y): at most 2^-38.
 /// - Every slab is grown, and every range widened, by kCellPad = 2^-36, more than the sum of it all.
 inline constexpr double kCellPad = 0x1p-36;
 
@@ -43,46 +44,117 @@ namespace cell_rows_detail {
 inline constexpr double kNothing = 1e300;  ///< beyond every coordinate
 
 struct Range {
-  double low = kNothing;
-  double high = -kNothing;
+  double low;
+  double high;
 
-  void include(bool wanted, double value) {
-    const double for_low = wanted ? value : kNothing;
-    const double for_high = wanted ? value : -kNothing;
-    low = for_low < low ? for_low : low;
-    high = for_high > high ? for_high : high;
+  void include(double value) {
+    low = value < low ? value : low;
+    high = value > high ? value : high;
   }
-  [[nodiscard]] bool empty() const { return low > high; }
 };
 
-/// A convex outline in the plane of axes s and r, kMaxPoints corners in order.
-template <std::size_t kMaxPoints>
-struct Outline {
-  double s[kMaxPoints];
-  double r[kMaxPoints];
-  double slope[kMaxPoints];  ///< r per s along the edge from corner i to the next; 0 where s does not change
+/// dr / ds; 0 where s does not change.
+inline double slope_of(double s0, double r0, double s1, double r1) {
+  return s0 != s1 ? (r1 - r0) / (s1 - s0) : 0.0;
+}
 
-  static double slope_of(double s0, double r0, double s1, double r1) { return s0 != s1 ? (r1 - r0) / (s1 - s0) : 0.0; }
+/// A triangle's corners in ascending order of one coordinate.
+struct SortedCorners {
+  int low, middle, high;
 
-  void set_slopes(int count) {
+  explicit SortedCorners(const double s[3]) {
+    const bool swap01 = s[1] < s[0];
+    const int low01 = swap01 ? 1 : 0;
+    const int high01 = swap01 ? 0 : 1;
+    const bool second_lowest = s[2] < s[low01];
+    low = second_lowest ? 2 : low01;
+    const int rest = second_lowest ? low01 : 2;
+    const bool swap_rest = s[rest] < s[high01];
+    middle = swap_rest ? rest : high01;
+    high = swap_rest ? high01 : rest;
+  }
+};
+
+/// The two chains of a triangle's outline as functions of coordinate s: one edge from the lowest corner to the highest,
+/// and two edges through the middle corner. r is another coordinate.
+struct Chains {
+  double s_low, s_middle, s_high, r_low, r_middle, r_high;
+  double slope_long, slope_below, slope_above;
+
+  Chains(const SortedCorners& corners, const double s[3], const double r[3])
+      : s_low(s[corners.low]),
+        s_middle(s[corners.middle]),
+        s_high(s[corners.high]),
+        r_low(r[corners.low]),
+        r_middle(r[corners.middle]),
+        r_high(r[corners.high]),
+        slope_long(slope_of(s_low, r_low, s_high, r_high)),
+        slope_below(slope_of(s_low, r_low, s_middle, r_middle)),
+        slope_above(slope_of(s_middle, r_middle, s_high, r_high)) {}
+
+  /// The long edge at a slab's lower and upper plane: r_low and r_high where s does not change at all.
+  [[nodiscard]] double long_from(double at) const { return r_low + (at - s_low) * slope_long; }
+  [[nodiscard]] double long_to(double at) const { return at < s_high ? r_low + (at - s_low) * slope_long : r_high; }
+  [[nodiscard]] double middle_at(double at) const {
+    const bool below = at < s_middle;
+    return (below ? r_low : r_middle) + (at - (below ? s_low : s_middle)) * (below ? slope_below : slope_above);
+  }
+};
+
+/// A convex polygon of at most five corners in order, in the plane of coordinates y and x.
+struct Polygon {
+  double y[5];
+  double x[5];
+  double slope[5];  ///< x per y along the edge from corner i to the next
+  int count;
+
+  void set_slopes() {
     for (int i = 0; i < count; ++i) {
       const int j = i + 1 < count ? i + 1 : 0;
-      slope[i] = slope_of(s[i], r[i], s[j], r[j]);
+      slope[i] = slope_of(y[i], x[i], y[j], x[j]);
     }
   }
 
-  /// Range of r over the part with low <= s <= high.
-  [[nodiscard]] Range range_in_slab(int count, double low, double high) const {
-    Range range;
+  /// Range of x over the part with low <= y <= high; an empty one where there is none.
+  [[nodiscard]] Range range_in_slab(double low, double high) const {
+    Range range{kNothing, -kNothing};
     for (int i = 0; i < count; ++i) {
       const int j = i + 1 < count ? i + 1 : 0;
-      range.include(s[i] >= low && s[i] <= high, r[i]);
-      range.include((s[i] < low) != (s[j] < low), r[i] + (low - s[i]) * slope[i]);
-      range.include((s[i] > high) != (s[j] > high), r[i] + (high - s[i]) * slope[i]);
+      // The edge's part within the slab, by its ends clamped to it; none where both ends lie beyond the same plane.
+      const double start = y[i] < low ? low : y[i] > high ? high : y[i];
+      const double end = y[j] < low ? low : y[j] > high ? high : y[j];
+      const bool outside = (y[i] < low && y[j] < low) || (y[i] > high && y[j] > high);
+      if (outside) continue;
+      range.include(x[i] + (start - y[i]) * slope[i]);
+      range.include(x[i] + (end - y[i]) * slope[i]);
     }
     return range;
   }
 };
+
+/// Which cells of a 2 x 2 square around the corner (corner_s, corner_r) a triangle touches whose range spans both axes.
+///
+/// A quadrant is missed only if an edge's normal n separates it: n points into it, and the corner lies farther along n
+/// than all of the triangle. Rounding: the edge is off by u of itself, the sums by less than 2^-49 |n|, and the partner
+/// point by 2^-40 |n|, |n| = |n_s| + |n_r|; kCellPad |n| covers both.
+/// @returns  bit 2 * (s is above) + (r is above).
+inline std::uint32_t touched_quadrants(const double s[3], const double r[3], double corner_s, double corner_r) {
+  const double area = (s[1] - s[0]) * (r[2] - r[0]) - (r[1] - r[0]) * (s[2] - s[0]);
+  const double greatest = area > 0.0 ? area : 0.0;
+  const double least = area > 0.0 ? 0.0 : area;
+  std::uint32_t missed = 0;
+  for (int i = 0; i < 3; ++i) {
+    const int j = i < 2 ? i + 1 : 0;
+    const double n_r = s[j] - s[i];
+    const double n_s = r[i] - r[j];
+    const double margin = kCellPad * (__builtin_fabs(n_r) + __builtin_fabs(n_s));
+    const double side = n_r * (corner_r - r[i]) + n_s * (corner_s - s[i]);
+    const std::uint32_t ahead = static_cast<std::uint32_t>(n_s > 0.0) << 1 | static_cast<std::uint32_t>(n_r > 0.0);
+    missed |= static_cast<std::uint32_t>(side > greatest + margin) << ahead;
+    missed |= static_cast<std::uint32_t>(side < least - margin) << (3u - ahead);
+  }
+  return ~missed & 15u;
+}
 
 /// Cells that the closed range touches, within [first, last].
 struct CellRange {
@@ -135,91 +207,108 @@ inline void for_each_cell_row(const CellBox& box, Row&& row) {
   const auto& p = box.p;
   const auto& first = box.first;
   const auto& last = box.last;
-  const bool wide_x = first[0] != last[0];
-  const bool wide_y = first[1] != last[1];
-  const bool wide_z = first[2] != last[2];
+  // Bit i: axis i is wide, that is, its range has more than one cell. Kept as arithmetic: the classes are hard to
+  // predict.
+  const auto wide_bit = [&](int axis) { return static_cast<std::uint32_t>(first[axis] != last[axis]) << axis; };
+  const std::uint32_t wide = wide_bit(0) | wide_bit(1) | wide_bit(2);
 
-  // One wide axis: the triangle is connected, so it touches every cell of its box.
-  if (static_cast<int>(wide_x) + static_cast<int>(wide_y) + static_cast<int>(wide_z) <= 1) {
+  // At most one wide axis: the triangle is connected, so it touches every cell of its box.
+  if ((wide & (wide - 1)) == 0) {
     for (std::int32_t z = first[2]; z <= last[2]; ++z) {
       for (std::int32_t y = first[1]; y <= last[1]; ++y) row(first[0], last[0], y, z);
     }
     return;
   }
 
-  // Two wide axes: cut the outline in their plane into slabs of one, take the range of the other.
-  if (!(wide_x && wide_y && wide_z)) {
-    const int slab_axis = wide_z ? 2 : 1;
-    const int range_axis = wide_x ? 0 : 1;
-    Outline<3> outline;
-    for (int i = 0; i < 3; ++i) {
-      outline.s[i] = p[slab_axis][i];
-      outline.r[i] = p[range_axis][i];
+  // Two wide axes make a plane in which the third does not matter: `s` in slabs of one cell, `r` within them.
+  const bool all_wide = wide == 7u;
+  const int slab_axis = (wide & 4u) != 0 ? 2 : 1;
+  const int range_axis = (wide & 1u) != 0 ? 0 : 1;
+  const double* const s = p[slab_axis];
+  const double* const r = p[range_axis];
+  const auto emit = [&](std::int32_t slab, std::int32_t from, std::int32_t to) {
+    if (range_axis == 0) {
+      row(from, to, slab_axis == 1 ? slab : first[1], slab_axis == 1 ? first[2] : slab);
+    } else {
+      for (std::int32_t y = from; y <= to; ++y) row(first[0], first[0], y, slab);
     }
-    outline.set_slopes(3);
-    for (std::int32_t slab = first[slab_axis]; slab <= last[slab_axis]; ++slab) {
-      const Range range = outline.range_in_slab(3, slab - kCellPad, slab + 1 + kCellPad);
-      if (range.empty()) continue;
-      const CellRange cells(range, first[range_axis], last[range_axis]);
-      if (slab_axis == 1) {
-        row(cells.first, cells.last, slab, first[2]);
-      } else if (range_axis == 0) {
-        row(cells.first, cells.last, first[1], slab);
-      } else {
-        for (std::int32_t y = cells.first; y <= cells.last; ++y) row(first[0], last[0], y, slab);
-      }
+  };
+  if (!all_wide && last[slab_axis] == first[slab_axis] + 1 && last[range_axis] == first[range_axis] + 1) {
+    const std::uint32_t touched = touched_quadrants(s, r, last[slab_axis], last[range_axis]);
+    const std::int32_t from = first[range_axis];
+    for (std::int32_t i = 0; i < 2; ++i) {
+      const std::uint32_t pair = touched >> (2 * i) & 3u;
+      if (pair != 0) emit(first[slab_axis] + i, pair == 2 ? from + 1 : from, pair == 1 ? from : from + 1);
     }
     return;
   }
 
-  // Three: cut into slabs of z, each slab's polygon into rows of y, and take the range of x.
-  double slope_y[3];
-  double slope_x[3];
-  for (int i = 0; i < 3; ++i) {
-    const int j = i < 2 ? i + 1 : 0;
-    slope_y[i] = Outline<3>::slope_of(p[2][i], p[1][i], p[2][j], p[1][j]);
-    slope_x[i] = Outline<3>::slope_of(p[2][i], p[0][i], p[2][j], p[0][j]);
-  }
-  for (std::int32_t z = first[2]; z <= last[2]; ++z) {
-    const double low = z - kCellPad;
-    const double high = z + 1 + kCellPad;
-    Outline<6> part;  // s = y, r = x; each of the two planes adds at most one corner to the three
-    int count = 0;
-    Range y_range;
-    const auto add = [&](double y, double x) {
-      part.s[count] = y;
-      part.r[count] = x;
-      ++count;
-      y_range.include(true, y);
-    };
-    for (int i = 0; i < 3; ++i) {
-      const int j = i < 2 ? i + 1 : 0;
-      const double zi = p[2][i];
-      const double zj = p[2][j];
-      const auto cut = [&](double plane) {
-        add(p[1][i] + (plane - zi) * slope_y[i], p[0][i] + (plane - zi) * slope_x[i]);
-      };
-      if (zi >= low && zi <= high) add(p[1][i], p[0][i]);
-      const bool cuts_low = (zi < low) != (zj < low);
-      const bool cuts_high = (zi > high) != (zj > high);
-      if (cuts_low && zi < low) cut(low);
-      if (cuts_high) cut(high);
-      if (cuts_low && zi >= low) cut(low);
+  // Larger: cut the outline into slabs and take the range of r in each.
+  const SortedCorners corners(s);
+  const double s_middle = s[corners.middle];
+  // Cuts stay on the outline, also where rounding puts a slab's plane beyond its end.
+  const auto clamped = [&](double at) {
+    const double above = at > s[corners.low] ? at : s[corners.low];
+    return above < s[corners.high] ? above : s[corners.high];
+  };
+  const auto lowest_in = [&](std::int32_t slab) { return clamped(slab - kCellPad); };
+  const auto highest_in = [&](std::int32_t slab) { return clamped(slab + 1 + kCellPad); };
+  if (!all_wide) {
+    const Chains chains(corners, s, r);
+    for (std::int32_t slab = first[slab_axis]; slab <= last[slab_axis]; ++slab) {
+      const double low = lowest_in(slab);
+      const double high = highest_in(slab);
+      const double start = chains.long_from(low);
+      Range range{start, start};
+      range.include(chains.long_to(high));
+      range.include(chains.middle_at(low));
+      range.include(chains.middle_at(high));
+      range.include(low <= s_middle && s_middle <= high ? r[corners.middle] : start);
+      const CellRange cells(range, first[range_axis], last[range_axis]);
+      emit(slab, cells.first, cells.last);
     }
-    if (count == 0) continue;
+    return;
+  }
+
+  // Three wide axes: each slab of z is a polygon, cut into rows of y, and take the range of x.
+  const Chains chains_y(corners, s, p[1]);
+  const Chains chains_x(corners, s, p[0]);
+  for (std::int32_t z = first[2]; z <= last[2]; ++z) {
+    const double low = lowest_in(z);
+    const double high = highest_in(z);
+    Polygon part;
+    part.y[0] = chains_y.long_from(low);
+    part.x[0] = chains_x.long_from(low);
+    part.y[1] = chains_y.long_to(high);
+    part.x[1] = chains_x.long_to(high);
+    part.y[2] = chains_y.middle_at(high);
+    part.x[2] = chains_x.middle_at(high);
+    part.count = 3;
+    if (low <= s_middle && s_middle <= high) {
+      part.y[3] = p[1][corners.middle];
+      part.x[3] = p[0][corners.middle];
+      part.count = 4;
+    }
+    part.y[part.count] = chains_y.middle_at(low);
+    part.x[part.count] = chains_x.middle_at(low);
+    ++part.count;
+    Range y_range{part.y[0], part.y[0]};
+    Range x_range{part.x[0], part.x[0]};
+    for (int i = 1; i < part.count; ++i) {
+      y_range.include(part.y[i]);
+      x_range.include(part.x[i]);
+    }
     const CellRange rows(y_range, first[1], last[1]);
-    if (rows.first == rows.last) {
-      Range x_range;
-      for (int i = 0; i < count; ++i) x_range.include(true, part.r[i]);
-      const CellRange cells(x_range, first[0], last[0]);
-      row(cells.first, cells.last, rows.first, z);
+    const CellRange columns(x_range, first[0], last[0]);
+    if (rows.first >= rows.last || columns.first >= columns.last) {  // connected: all of them
+      for (std::int32_t y = rows.first; y <= rows.last; ++y) row(columns.first, columns.last, y, z);
       continue;
     }
-    part.set_slopes(count);
+    part.set_slopes();
     for (std::int32_t y = rows.first; y <= rows.last; ++y) {
-      const Range x_range = part.range_in_slab(count, y - kCellPad, y + 1 + kCellPad);
-      if (x_range.empty()) continue;
-      const CellRange cells(x_range, first[0], last[0]);
+      const Range in_row = part.range_in_slab(y - kCellPad, y + 1 + kCellPad);
+      if (in_row.low > in_row.high) continue;
+      const CellRange cells(in_row, first[0], last[0]);
       row(cells.first, cells.last, y, z);
     }
   }
