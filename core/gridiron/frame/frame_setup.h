@@ -30,7 +30,7 @@ struct FrameSettings {
   std::uint32_t output_depth = 2, macro_depth = 2, triangle_depth = 2;
   std::uint32_t background_rgba = 0xFF000000u;
   float t_far = kFloatMax;
-  MainAddress color, depth, ids;       ///< depth, ids: value 0 = not wanted
+  MainAddress color{}, depth{}, ids{}; ///< depth, ids: value 0 = not wanted
 };
 
 /// Bytes of one output plane (colour, depth or ids): tile-major, whole tiles.

@@ -1,0 +1,122 @@
+// The rules of the rooms: the sources keep them, and a breach of each is noticed. SPDX-License-Identifier: Apache-2.0
+#include <gtest/gtest.h>
+
+#include <string>
+
+#include "run_script.h"
+
+namespace gridiron::test {
+namespace {
+
+ScriptResult check_rooms(const std::string& root) {
+  return run_script(source_path("tools/house/check_rooms") + " '" + root + "'");
+}
+
+TEST(Rooms, TheSourcesKeepTheRules) {
+  const ScriptResult result = check_rooms(source_path(""));
+  EXPECT_EQ(result.exit_code, 0) << result.output;
+}
+
+struct Breach {
+  const char* name;
+  const char* file;
+  const char* line;
+  const char* reason;  ///< nullptr: no breach
+};
+
+void PrintTo(const Breach& breach, std::ostream* stream) {
+  *stream << breach.name;
+}
+
+constexpr const char* kLicence = "// A file. SPDX-License-Identifier: Apache-2.0\n";
+
+class RoomsBreach : public testing::TestWithParam<Breach> {};
+
+TEST_P(RoomsBreach, IsNoticed) {
+  const Breach& breach = GetParam();
+  const ScratchDirectory tree;
+  tree.write(breach.file, std::string(kLicence) + "\n" + breach.line + "\n");
+  const ScriptResult result = check_rooms(tree.path().string());
+  if (breach.reason == nullptr) {
+    EXPECT_EQ(result.exit_code, 0) << result.output;
+    return;
+  }
+  EXPECT_EQ(result.exit_code, 1) << result.output;
+  EXPECT_NE(result.output.find(std::string(breach.file) + ":3: "), std::string::npos) << result.output;
+  EXPECT_NE(result.output.find(breach.reason), std::string::npos) << result.output;
+}
+
+constexpr const char* kNotFreestanding = "is not a freestanding header";
+constexpr const char* kMustNot = "must not include room";
+constexpr const char* kHosted = "a hosted type";
+
+INSTANTIATE_TEST_SUITE_P(
+    Each, RoomsBreach,
+    testing::Values(
+        // What is right stays quiet.
+        Breach{"ray_on_base", "core/gridiron/ray/a.h", "#include <gridiron/base/math.h>", nullptr},
+        Breach{"render_on_store", "core/gridiron/render/a.h", "#include <gridiron/store/local_store.h>", nullptr},
+        Breach{"image_on_grid", "core/gridiron/image/a.h", "#include <gridiron/grid/grid_builder.h>", nullptr},
+        Breach{"core_on_platform", "core/gridiron/ray/a.h", "#include <gridiron/platform/status.h>", nullptr},
+        Breach{"core_on_glm", "core/gridiron/ray/a.h", "#include <glm/vec3.hpp>", nullptr},
+        Breach{"port_on_core", "platform/board/a.h", "#include <gridiron/render/tile_renderer.h>", nullptr},
+        Breach{"tools_on_anything", "tools/a.cpp", "#include <vector>", nullptr},
+        Breach{"placement_new", "core/gridiron/ray/a.h", "void* f(void* p) { return new (p) int; }", nullptr},
+        Breach{"deleted", "core/gridiron/ray/a.h", "struct A { A(const A&) = delete; };", nullptr},
+        Breach{"word_in_comment", "core/gridiron/ray/a.h", "int a;  // try malloc(1) and throw it away", nullptr},
+        // Arrows that do not point down.
+        Breach{"ray_on_traverse", "core/gridiron/ray/a.h", "#include <gridiron/traverse/slice_walk.h>", kMustNot},
+        Breach{"traverse_on_store", "core/gridiron/traverse/a.h", "#include <gridiron/store/local_store.h>", kMustNot},
+        Breach{"store_on_render", "core/gridiron/store/a.h", "#include <gridiron/render/camera.h>", kMustNot},
+        Breach{"kernel_on_prepare", "core/gridiron/render/a.h", "#include <gridiron/grid/grid_builder.h>", kMustNot},
+        Breach{"kernel_on_frame", "core/gridiron/store/a.cpp", "#include <gridiron/frame/frame_setup.h>", kMustNot},
+        Breach{"prepare_on_kernel", "core/gridiron/grid/a.cpp", "#include <gridiron/ray/packet.h>", kMustNot},
+        Breach{"grid_on_image", "core/gridiron/grid/a.h", "#include <gridiron/image/scene_image.h>", kMustNot},
+        Breach{"scene_on_io", "core/gridiron/scene/a.h", "#include <gridiron/io/ply_reader.h>", kMustNot},
+        Breach{"base_on_ray", "core/gridiron/base/a.h", "#include <gridiron/ray/packet.h>", kMustNot},
+        Breach{"core_on_sim", "core/gridiron/render/a.h", "#include <gridiron/sim/trace.h>", "no room called sim"},
+        Breach{"platform_on_core", "platform/gridiron/platform/a.h", "#include <gridiron/base/math.h>",
+               "platform knows nothing of base"},
+        Breach{"platform_on_glm", "platform/gridiron/platform/a.h", "#include <glm/vec3.hpp>", "does not use GLM"},
+        Breach{"port_on_sim", "platform/board/a.h", "#include <gridiron/sim/trace.h>", "nothing of the simulator"},
+        Breach{"new_room", "core/gridiron/attic/a.h", "int a;", "not in a room of core"},
+        // What core does not use.
+        Breach{"vector_header", "core/gridiron/grid/a.h", "#include <vector>", kNotFreestanding},
+        Breach{"cmath_header", "core/gridiron/grid/a.cpp", "#include <cmath>", kNotFreestanding},
+        Breach{"stdio_header", "platform/gridiron/platform/a.h", "  #  include <cstdio>", kNotFreestanding},
+        Breach{"immintrin_outside_lanes", "core/gridiron/ray/a.h", "#include <immintrin.h>", kNotFreestanding},
+        Breach{"quoted", "core/gridiron/ray/a.h", "#include \"packet.h\"", "with <gridiron/...> only"},
+        Breach{"throw_word", "core/gridiron/ray/a.cpp", "void f() { throw 1; }", "a word that core does not use"},
+        Breach{"virtual_word", "core/gridiron/ray/a.h", "struct A { virtual void f(); };", "a word that core"},
+        Breach{"malloc_call", "core/gridiron/ray/a.cpp", "void* f() { return malloc(3); }", "heap or alloca"},
+        Breach{"new_word", "core/gridiron/ray/a.cpp", "int* f() { return new int; }", "heap: new"},
+        Breach{"delete_word", "core/gridiron/ray/a.cpp", "void f(int* p) { delete p; }", "heap: delete"},
+        Breach{"string_type", "core/gridiron/io/a.h", "void f(std::string s);", kHosted},
+        Breach{"function_type", "core/gridiron/io/a.h", "void f(std::function<void()> s);", kHosted},
+        Breach{"libm_call", "core/gridiron/ray/a.cpp", "float f(float x) { return std::sin(x); }", "libm"}),
+    [](const testing::TestParamInfo<Breach>& breach) { return std::string(breach.param.name); });
+
+TEST(Rooms, ALineTooLongAFileTooLongAndAHeaderTooLongAreNoticed) {
+  const ScratchDirectory tree;
+  tree.write("tools/wide.cpp", std::string(kLicence) + "// " + std::string(118, 'x') + "\n");
+  std::string text = kLicence;
+  for (int line = 0; line < 700; ++line) text += "int a" + std::to_string(line) + ";\n";
+  tree.write("tools/tall.cpp", text);
+  tree.write("tools/wordy.cpp", "// 1\n// 2\n// 3\n// 4\n// 5\n// 6\n" + std::string(kLicence) + "int a;\n");
+  tree.write("tools/unlicensed.cpp", "int a;\n" + std::string(kLicence));
+  const ScriptResult result = check_rooms(tree.path().string());
+  EXPECT_EQ(result.exit_code, 1);
+  for (const char* line : {"tools/wide.cpp:2: longer than 120 columns", "tools/tall.cpp:701: longer than 700 lines",
+                           "tools/wordy.cpp:1: opening comment of 7 lines", "tools/unlicensed.cpp:1: no SPDX",
+                           "check_rooms: 4 breaches"}) {
+    EXPECT_NE(result.output.find(line), std::string::npos) << line << "\n" << result.output;
+  }
+}
+
+TEST(Rooms, AnEmptyTreeIsNotInOrder) {
+  const ScratchDirectory tree;
+  EXPECT_EQ(check_rooms(tree.path().string()).exit_code, 2);
+}
+
+}  // namespace
+}  // namespace gridiron::test
