@@ -72,33 +72,65 @@ SceneInMemory::SceneInMemory(const MeshView& mesh, const GridParameters& paramet
   status_ = open_scene_image(image->bytes, view_, error);
 }
 
-RenderedFrame SceneInMemory::render(FrameSettings settings, const sim::ChipOptions& chip) {
-  RenderedFrame rendered;
+PreparedFrame::PreparedFrame(sim::SimMemory* memory, const SceneImageView& image, MainAddress image_address,
+                             FrameSettings settings, const sim::ChipOptions& chip, bool all_planes)
+    : memory_(memory), mark_(memory->used_bytes()) {
   settings.tile_width = tile_width_of(chip);
-  const std::uint64_t mark = memory_->used_bytes();
   const std::uint64_t plane_bytes = output_plane_bytes(settings.width, settings.height, settings.tile_width);
   const auto color = memory_->allocate(plane_bytes);
-  const auto depth = memory_->allocate(plane_bytes);
-  const auto ids = memory_->allocate(plane_bytes);
+  const auto depth = memory_->allocate(all_planes ? plane_bytes : kLineBytes);
+  const auto ids = memory_->allocate(all_planes ? plane_bytes : kLineBytes);
   const auto record = memory_->allocate(sizeof(FrameRecord));
   if (!color || !depth || !ids || !record) {
-    rendered.result.status = Status::kMemoryTooSmall;
-    memory_->release_to(mark);
-    return rendered;
+    status_ = Status::kMemoryTooSmall;
+    return;
   }
+  color_ = color->bytes;
   settings.color = color->address;
-  settings.depth = depth->address;
-  settings.ids = ids->address;
-  rendered.result.status = make_frame_record(settings, view_, image_address_, rendered.frame);
-  if (rendered.result.status == Status::kOk) {
-    std::memcpy(record->bytes.data(), &rendered.frame, sizeof(FrameRecord));
-    rendered.result = sim::render_frame(*memory_, record->address, chip);
+  settings.depth = settings.ids = MainAddress{};
+  if (all_planes) {
+    depth_ = depth->bytes;
+    settings.depth = depth->address;
+    ids_ = ids->bytes;
+    settings.ids = ids->address;
   }
-  if (rendered.result.status == Status::kOk) {
-    rendered.planes = {untile<std::uint32_t>(rendered.frame, color->bytes), untile<float>(rendered.frame, depth->bytes),
-                       untile<std::uint32_t>(rendered.frame, ids->bytes)};
+  // What a tile fails to write must not look like a pixel.
+  for (const std::span<std::byte> plane : {color_, depth_, ids_}) {
+    if (!plane.empty()) std::memset(plane.data(), 0xA5, plane.size());
   }
-  memory_->release_to(mark);
+  status_ = make_frame_record(settings, image, image_address, record_);
+  record_address_ = record->address;
+  std::memcpy(record->bytes.data(), &record_, sizeof(FrameRecord));
+}
+
+PreparedFrame::~PreparedFrame() {
+  memory_->release_to(mark_);
+}
+
+sim::ChipResult PreparedFrame::render(const sim::ChipOptions& chip) {
+  return sim::render_frame(*memory_, record_address_, chip);
+}
+
+Planes PreparedFrame::planes() const {
+  Planes planes;
+  planes.color = untile<std::uint32_t>(record_, color_);
+  if (!depth_.empty()) planes.depth = untile<float>(record_, depth_);
+  if (!ids_.empty()) planes.ids = untile<std::uint32_t>(record_, ids_);
+  return planes;
+}
+
+PreparedFrame SceneInMemory::prepare(const FrameSettings& settings, const sim::ChipOptions& chip, bool all_planes) {
+  return {memory_.get(), view_, image_address_, settings, chip, all_planes};
+}
+
+RenderedFrame SceneInMemory::render(const FrameSettings& settings, const sim::ChipOptions& chip) {
+  RenderedFrame rendered;
+  PreparedFrame frame = prepare(settings, chip);
+  rendered.result.status = frame.status();
+  rendered.frame = frame.record();
+  if (frame.status() != Status::kOk) return rendered;
+  rendered.result = frame.render(chip);
+  if (rendered.result.status == Status::kOk) rendered.planes = frame.planes();
   return rendered;
 }
 

@@ -12,6 +12,7 @@
 #include <cstddef>
 #include <cstdint>
 #include <memory>
+#include <span>
 #include <string>
 #include <vector>
 
@@ -37,6 +38,36 @@ struct RenderedFrame {
   }
 };
 
+class SceneInMemory;
+
+/// One frame's record and planes in simulated main memory, to be rendered any number of times. Its memory is given back
+/// at the end of its life; of several, the last one made goes first. Borrows the scene.
+class PreparedFrame {
+ public:
+  PreparedFrame(sim::SimMemory* memory, const SceneImageView& image, MainAddress image_address, FrameSettings settings,
+                const sim::ChipOptions& chip, bool all_planes);
+  ~PreparedFrame();
+  PreparedFrame(const PreparedFrame&) = delete;
+  PreparedFrame& operator=(const PreparedFrame&) = delete;
+
+  [[nodiscard]] Status status() const { return status_; }
+  [[nodiscard]] const FrameRecord& record() const { return record_; }
+
+  /// Renders into the planes. Precondition: status() is kOk; `chip` has the store it was prepared for.
+  [[nodiscard]] sim::ChipResult render(const sim::ChipOptions& chip);
+
+  /// @returns what the last render left; depth and ids are empty unless all planes were asked for.
+  [[nodiscard]] Planes planes() const;
+
+ private:
+  sim::SimMemory* memory_;
+  std::uint64_t mark_;
+  Status status_ = Status::kOk;
+  FrameRecord record_{};
+  MainAddress record_address_;
+  std::span<std::byte> color_, depth_, ids_;
+};
+
 /// A scene image in simulated main memory, ready for any number of frames.
 class SceneInMemory {
  public:
@@ -49,8 +80,13 @@ class SceneInMemory {
   [[nodiscard]] const SceneImageView& image() const { return view_; }
   [[nodiscard]] const GridNeed& need() const { return need_; }
 
-  /// Renders one frame. Tile width, output addresses: set here, whatever `settings` says.
-  [[nodiscard]] RenderedFrame render(FrameSettings settings, const sim::ChipOptions& chip);
+  /// Sets up a frame. Tile width and output addresses are set here, whatever `settings` says.
+  /// @param all_planes  depth and ids beside colour.
+  [[nodiscard]] PreparedFrame prepare(const FrameSettings& settings, const sim::ChipOptions& chip,
+                                      bool all_planes = true);
+
+  /// Renders one frame with all planes.
+  [[nodiscard]] RenderedFrame render(const FrameSettings& settings, const sim::ChipOptions& chip);
 
  private:
   Status status_ = Status::kOk;
