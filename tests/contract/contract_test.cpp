@@ -1,0 +1,153 @@
+// Runs the contract's checks against every platform of the tree, and those with a queue at depths 1, 2 and 16.
+// SPDX-License-Identifier: Apache-2.0
+#include <gridiron/platform/fault_injection.h>
+#include <gridiron/sim/plain_core.h>
+#include <gridiron/sim/sim_core.h>
+#include <gridiron/sim/sim_memory.h>
+#include <gtest/gtest.h>
+
+#include <cstdint>
+#include <memory>
+#include <string>
+
+#include "contract_checks.h"
+#include "host_board.h"
+#include "template_port.h"
+
+namespace gridiron::contract {
+namespace {
+
+/// Main memory, an arena and tiles; what all benches have in common.
+class HostBench {
+ public:
+  explicit HostBench(std::uint32_t queue_depth) : memory_(kMainBytes + 8192), tiles_(0, kTileCount) {
+    region_ = *memory_.allocate(kMainBytes, 4096);
+    limits_.queue_depth = queue_depth;
+  }
+  std::byte* local() { return arena_->bytes; }
+  MainAddress main() { return region_.address; }
+  void poke(std::uint32_t offset, std::byte value) { region_.bytes[offset] = value; }
+  std::byte peek(std::uint32_t offset) { return region_.bytes[offset]; }
+
+ protected:
+  struct alignas(128) Arena {
+    std::byte bytes[kLocalBytes] = {};
+  };
+  sim::SimMemory memory_;
+  sim::MemoryRegion region_;
+  std::unique_ptr<Arena> arena_ = std::make_unique<Arena>();
+  sim::TileSource tiles_;
+  PlatformLimits limits_;
+};
+
+template <sim::Completion kCompletion, std::uint32_t kDepth>
+class SimBench : public HostBench {
+ public:
+  using PlatformType = sim::SimCore;
+  static constexpr bool kChecksRules = true, kChecksOverlap = true;
+
+  SimBench() : HostBench(kDepth) {
+    frame_.memory = &memory_;
+    frame_.tiles = &tiles_;
+    frame_.writable = {{region_.address.value, region_.address.value + kMainBytes}};
+    frame_.limits = limits_;
+    frame_.completion = kCompletion;
+    frame_.seed = 20;
+    core_ = std::make_unique<sim::SimCore>(frame_, 0, std::span(arena_->bytes));
+  }
+  sim::SimCore& platform() { return *core_; }
+
+ private:
+  sim::SimFrame frame_;
+  std::unique_ptr<sim::SimCore> core_;
+};
+
+template <std::uint32_t kDepth>
+class PlainBench : public HostBench {
+ public:
+  using PlatformType = sim::PlainCore;
+  static constexpr bool kChecksRules = false, kChecksOverlap = false;
+
+  PlainBench() : HostBench(kDepth), core_(memory_.base(), limits_, tiles_) {}
+  sim::PlainCore& platform() { return core_; }
+
+ private:
+  sim::PlainCore core_;
+};
+
+template <std::uint32_t kDepth, std::uint32_t kPolls>
+class TemplateBench : public HostBench {
+ public:
+  using PlatformType = port::TemplatePort<HostBoard, kDepth>;
+  static constexpr bool kChecksRules = true, kChecksOverlap = false;
+
+  TemplateBench() : HostBench(kDepth), board_(memory_, std::span(arena_->bytes), kTileCount), port_(board_) {
+    board_.polls_per_command = kPolls;
+  }
+  ~TemplateBench() { EXPECT_EQ(board_.starts_while_busy, 0u); }
+  TemplateBench(const TemplateBench&) = delete;
+  TemplateBench& operator=(const TemplateBench&) = delete;
+  PlatformType& platform() { return port_; }
+
+ private:
+  HostBoard board_;
+  PlatformType port_;
+};
+
+/// The decorator around another bench's platform. With kDelayed every check has its second transfer started late.
+template <class Inner, std::uint64_t kDelayed = 0>
+class DecoratedBench {
+ public:
+  using PlatformType = FaultInjection<typename Inner::PlatformType>;
+  static constexpr bool kChecksRules = Inner::kChecksRules && kDelayed == 0, kChecksOverlap = Inner::kChecksOverlap;
+
+  DecoratedBench() : platform_(inner_.platform(), FaultPlan{.transfer = kDelayed, .kind = FaultPlan::Kind::kDelay}) {}
+  PlatformType& platform() { return platform_; }
+  std::byte* local() { return inner_.local(); }
+  MainAddress main() { return inner_.main(); }
+  void poke(std::uint32_t offset, std::byte value) { inner_.poke(offset, value); }
+  std::byte peek(std::uint32_t offset) { return inner_.peek(offset); }
+
+ private:
+  Inner inner_;
+  PlatformType platform_;
+};
+
+template <class B>
+class Contract : public testing::Test {};
+
+using sim::Completion;
+using Benches =
+    testing::Types<SimBench<Completion::kEarly, 1>, SimBench<Completion::kEarly, 2>, SimBench<Completion::kEarly, 16>,
+                   SimBench<Completion::kLate, 1>, SimBench<Completion::kLate, 2>, SimBench<Completion::kLate, 16>,
+                   SimBench<Completion::kRandom, 1>, SimBench<Completion::kRandom, 2>,
+                   SimBench<Completion::kRandom, 16>, PlainBench<1>, PlainBench<2>, PlainBench<16>, TemplateBench<1, 0>,
+                   TemplateBench<2, 1>, TemplateBench<16, 2>, TemplateBench<16, 0>,
+                   DecoratedBench<SimBench<Completion::kLate, 1>>, DecoratedBench<SimBench<Completion::kEarly, 16>>,
+                   DecoratedBench<SimBench<Completion::kEarly, 16>, 2>, DecoratedBench<PlainBench<16>>,
+                   DecoratedBench<TemplateBench<2, 1>>>;
+
+class BenchNames {
+ public:
+  template <class B>
+  static std::string GetName(int index) {
+    return std::to_string(index);
+  }
+};
+TYPED_TEST_SUITE(Contract, Benches, BenchNames);
+
+TYPED_TEST(Contract, Holds) {
+  static_assert(Bench<TypeParam>);
+  std::uint32_t run_count = 0;
+  for_each_check<TypeParam>([&](const char* name, Failure (*check)(TypeParam&), bool is_rule) {
+    if (is_rule && !TypeParam::kChecksRules) return;
+    ++run_count;
+    TypeParam bench;
+    const Failure failure = check(bench);
+    EXPECT_EQ(failure, nullptr) << name << ": " << failure;
+  });
+  EXPECT_GE(run_count, 11u);
+}
+
+}  // namespace
+}  // namespace gridiron::contract
