@@ -1,0 +1,303 @@
+// Arguments. SPDX-License-Identifier: Apache-2.0
+#include "arguments.h"
+
+#include <CLI/CLI.hpp>
+#include <functional>
+#include <map>
+#include <string_view>
+
+#include "failure.h"
+#include "store_facts.h"
+#include "version.h"
+
+namespace gridiron::tool {
+namespace {
+
+using sim::Completion;
+using sim::Mode;
+using sim::StoreSize;
+
+// Options as they stand on the command line, before those that depend on one another are joined.
+struct RawRender {
+  RenderArguments arguments;
+  std::string output;
+  std::optional<BufferDepths> buffering;
+  bool no_mailbox = false, no_culling = false, no_empty_skip = false;
+};
+
+constexpr BufferDepths kSingleBuffering = {.output = 1, .macro = 1, .triangle = 1};
+constexpr BufferDepths kDoubleBuffering = {.output = 2, .macro = 2, .triangle = 2};
+
+// Adds an option whose text one of our own parsers turns into a value; `expected` completes the error message.
+template <class Target, class Parser>
+CLI::Option* add_parsed(CLI::App& app, const std::string& name, Target& target, Parser parser,
+                        const std::string& expected, const std::string& type, const std::string& help) {
+  const auto set = [&target, parser, name, expected](const std::string& text) {
+    auto value = parser(text);
+    if (!value) throw CLI::ValidationError(name, "'" + text + "' is not " + expected);
+    target = *value;
+  };
+  return app.add_option_function<std::string>(name, set, help)->type_name(type)->expected(1);
+}
+
+// Adds an option that takes one word of a list.
+template <class Target, class Value>
+CLI::Option* add_choice(CLI::App& app, const std::string& name, Target& target,
+                        const std::map<std::string, Value>& choices, const std::string& help) {
+  std::string list;
+  for (const auto& [word, value] : choices) list += (list.empty() ? "" : "|") + word;
+  const auto find = [choices](const std::string& text) -> std::optional<Value> {
+    const auto found = choices.find(text);
+    return found == choices.end() ? std::nullopt : std::optional<Value>(found->second);
+  };
+  return add_parsed(app, name, target, find, "one of " + list, list, help);
+}
+
+std::function<std::optional<std::uint32_t>(const std::string&)> count_between(std::uint32_t least, std::uint32_t most) {
+  return [least, most](const std::string& text) {
+    const std::optional<std::uint32_t> count = parse_count(text);
+    return count && *count >= least && *count <= most ? count : std::nullopt;
+  };
+}
+
+std::optional<std::uint64_t> parse_seed(const std::string& text) {
+  const bool digits = !text.empty() && text.find_first_not_of("0123456789") == std::string::npos;
+  if (!digits || text.size() > 19) return std::nullopt;  // 19 digits always fit 64 bits
+  return std::stoull(text);
+}
+
+std::optional<CountPair> parse_picture_size(const std::string& text) {
+  const std::optional<CountPair> size = parse_count_pair(text, 'x');
+  const auto fits = [](std::uint32_t pixels) { return pixels >= 1 && pixels <= kMaxPictureWidth; };
+  return size && fits(size->x) && fits(size->y) ? size : std::nullopt;
+}
+
+void add_size(CLI::App& app, std::uint32_t& width, std::uint32_t& height, const std::string& help) {
+  const auto set = [&width, &height](const std::string& text) {
+    const std::optional<CountPair> size = parse_picture_size(text);
+    if (!size) {
+      throw CLI::ValidationError("--size",
+                                 "'" + text + "' is not WxH with both from 1 to " + std::to_string(kMaxPictureWidth));
+    }
+    width = size->x;
+    height = size->y;
+  };
+  app.add_option_function<std::string>("--size", set, help)->type_name("WxH")->expected(1);
+}
+
+void add_scene_options(CLI::App& app, SceneArguments& scene) {
+  app.add_option("INPUT", scene.input, "scene: .ply (mesh) or .gri (made by pack)")->required()->type_name("");
+  std::map<std::string, const sim::MachineProfile*> machines;
+  for (const sim::MachineProfile& machine : sim::machine_profiles()) machines[std::string(machine.name)] = &machine;
+  std::map<std::string, const Configuration*> sets;
+  for (const Configuration& configuration : configurations()) sets[std::string(configuration.name)] = &configuration;
+  scene.machine = &sim::machine_profiles().front();
+  scene.configuration = &configurations().front();
+  add_choice(app, "--machine", scene.machine, machines,
+             "machine profile (default " + std::string(scene.machine->name) + ")");
+  add_choice(app, "--configuration", scene.configuration, sets,
+             "named set of parameters (default " + std::string(scene.configuration->name) + ")");
+  const auto lambda = [](const std::string& text) {
+    const std::optional<float> value = parse_float(text);
+    return value && *value >= 1e-6f && *value <= 1e6f ? value : std::nullopt;
+  };
+  add_parsed(app, "--lambda", scene.lambda, lambda, "a number from 1e-6 to 1e6", "NUMBER",
+             "grid cells per triangle; given, it is never reduced to fit the machine's memory");
+  add_parsed(app, "--macro-width", scene.macro_width, count_between(1, kMaxMacroWidth), "a whole number from 1 to 8",
+             "N", "cells along a macrocell's edge");
+}
+
+const std::map<std::string, TriangleFormat> kFormats = {{"vertices", TriangleFormat::kVertices},
+                                                        {"projection", TriangleFormat::kProjection}};
+
+void add_view_options(CLI::App& app, RenderArguments& render) {
+  const std::string vector = "x,y,z with three finite numbers";
+  add_parsed(
+      app, "--camera", render.camera,
+      [](const std::string& text) { return std::optional<std::filesystem::path>(text); }, "a file name", "FILE",
+      "view from a text file; --eye, --at, --up and --fov replace parts of it");
+  add_parsed(app, "--eye", render.view.eye, parse_vector, vector, "x,y,z", "position of the camera (default: framed)");
+  add_parsed(app, "--at", render.view.at, parse_vector, vector, "x,y,z", "point looked at (default: framed)");
+  add_parsed(app, "--up", render.view.up, parse_vector, vector, "x,y,z", "direction that is up (default 0,1,0)");
+  const auto fov = [](const std::string& text) {
+    const std::optional<float> value = parse_float(text);
+    return value && fov_is_possible(*value) ? value : std::nullopt;
+  };
+  add_parsed(app, "--fov", render.view.fov_degrees, fov, "an angle between 0 and 180 degrees", "DEG",
+             "angle between the top and the bottom edge (default 45)");
+}
+
+void add_output_options(CLI::App& app, RawRender& raw) {
+  RenderArguments& render = raw.arguments;
+  const auto path = [](const std::string& text) {
+    return text.empty() ? std::nullopt : std::optional<std::filesystem::path>(text);
+  };
+  const std::string name = "a file name";
+  app.add_option("-o,--output", raw.output, "picture, PNG (default: INPUT's name with .png, in the current folder)")
+      ->type_name("FILE");
+  add_parsed(app, "--depth", render.depth, path, name, "FILE",
+             "distance of every pixel, PFM, +inf where nothing is hit");
+  add_parsed(app, "--ids", render.ids, path, name, "FILE", "triangle of every pixel, PFM, -1 where nothing is hit");
+  add_parsed(app, "--report", render.report, path, name, "FILE", "where cycles and bytes went, JSON");
+  add_parsed(app, "--timeline", render.timeline, path, name, "FILE", "what each core did when, Chrome trace format");
+  app.add_flag("--quiet", render.quiet, "print nothing but errors");
+}
+
+void add_machine_options(CLI::App& app, RawRender& raw) {
+  RenderArguments& render = raw.arguments;
+  constexpr std::uint32_t kMostCores = 1024, kMostThreads = 256;
+  add_parsed(app, "--cores", render.cores, count_between(1, kMostCores), "a whole number from 1 to 1024", "N",
+             "cores of the machine (default: the profile's)");
+  add_parsed(app, "--threads", render.threads, count_between(1, kMostThreads), "a whole number from 1 to 256", "N",
+             "host threads (default: the host's); no result depends on it");
+  add_choice(app, "--store", render.store,
+             std::map<std::string, StoreSize>{{"64", StoreSize::k64KB}, {"256", StoreSize::k256KB}},
+             "local store in KB (default 256)");
+  add_choice(app, "--mode", render.mode,
+             std::map<std::string, Mode>{
+                 {"checked", Mode::kChecked}, {"plain", Mode::kPlain}, {"instrumented", Mode::kInstrumented}},
+             "checked (default): every rule checked, work traced; plain: fast, no report; "
+             "instrumented: checked, and every load and store of the kernel too");
+  add_choice(app, "--completion", render.completion,
+             std::map<std::string, Completion>{
+                 {"early", Completion::kEarly}, {"late", Completion::kLate}, {"random", Completion::kRandom}},
+             "when the bytes of a transfer move (default early)");
+  add_parsed(app, "--seed", render.seed, parse_seed, "a whole number of at most 19 digits", "N",
+             "seed of --completion random (default 0)");
+  add_choice(app, "--lanes", render.lanes, std::map<std::string, std::uint32_t>{{"4", 4}, {"8", 8}, {"16", 16}},
+             "rays per SIMD group (default 4; plain: the host's widest); time is told for 4 only");
+  const auto tile = [](const std::string& text) { return parse_count_pair(text, ','); };
+  add_parsed(app, "--tile", render.tile, tile, "X,Y with a column and a row", "X,Y",
+             "render this tile alone; the picture is the tile");
+}
+
+void add_algorithm_options(CLI::App& app, RawRender& raw) {
+  RenderArguments& render = raw.arguments;
+  add_choice(app, "--buffering", raw.buffering,
+             std::map<std::string, BufferDepths>{{"single", kSingleBuffering}, {"double", kDoubleBuffering}},
+             "buffers of all three levels (default: the configuration's)");
+  add_choice(app, "--packet", render.packet_width, std::map<std::string, std::uint32_t>{{"4", 4}, {"8", 8}, {"16", 16}},
+             "rays along a packet's edge (default: the configuration's)");
+  add_choice(app, "--accuracy", render.accuracy,
+             std::map<std::string, Accuracy>{{"standard", Accuracy::kStandard}, {"paper", Accuracy::kPaper}},
+             "intersection test (default standard)");
+  add_choice(app, "--shading", render.shading,
+             std::map<std::string, Shading>{{"none", Shading::kNone}, {"simple", Shading::kSimple}},
+             "none: hit or background; simple: facing ratio (default)");
+  app.add_flag("--no-mailbox", raw.no_mailbox, "test a triangle again in every cell that holds it");
+  app.add_flag("--no-culling", raw.no_culling, "do not cull triangles by the corner rays");
+  app.add_flag("--no-empty-skip", raw.no_empty_skip, "fetch the cell blocks of empty macrocells too");
+}
+
+[[noreturn]] void usage_error(const std::string& message) {
+  throw Failure(ExitCode::kUsage, message);
+}
+
+// Defaults that depend on other options, and combinations that make no sense.
+RenderArguments complete_render(const RawRender& raw, bool has_seed) {
+  RenderArguments render = raw.arguments;
+  const Configuration& configuration = *render.scene.configuration;
+  render.output = raw.output.empty() ? render.scene.input.stem().concat(".png") : std::filesystem::path(raw.output);
+  render.depths = raw.buffering.value_or(configuration.depths);
+  if (render.packet_width == 0) render.packet_width = configuration.packet_width;
+  render.techniques = configuration.techniques;
+  if (raw.no_mailbox) render.techniques &= ~std::uint32_t{kUseMailbox};
+  if (raw.no_culling) render.techniques &= ~std::uint32_t{kUseCornerCulling};
+  if (raw.no_empty_skip) render.techniques &= ~std::uint32_t{kUseEmptySkip};
+
+  const bool plain = render.mode == Mode::kPlain;
+  if (render.lanes == 0) render.lanes = plain ? sim::widest_lanes() : 4;
+  if (render.lanes > sim::widest_lanes()) {
+    usage_error("--lanes: this host has at most " + std::to_string(sim::widest_lanes()) + " lanes");
+  }
+  if (render.mode == Mode::kInstrumented && render.lanes != 4) usage_error("--mode instrumented: has 4 lanes only");
+  const bool wants_time = render.report || render.timeline;
+  if (wants_time && plain) usage_error("--report, --timeline: --mode plain records nothing to report");
+  if (wants_time && render.lanes != 4) usage_error("--report, --timeline: time is told for --lanes 4 only");
+  if (wants_time && render.tile) usage_error("--report, --timeline: not of one tile alone (--tile)");
+  if (has_seed && render.completion != Completion::kRandom) usage_error("--seed: needs --completion random");
+
+  const std::uint32_t store_bytes = (render.store == StoreSize::k64KB ? 64u : 256u) << 10;
+  if (store_bytes > render.scene.machine->local_store_bytes) {
+    usage_error("--store: " + std::string(render.scene.machine->name) + " has a local store of " +
+                std::to_string(render.scene.machine->local_store_bytes >> 10) + " KB");
+  }
+
+  const StoreFacts facts = store_facts(render.store, render.packet_width);
+  const std::uint32_t macro_width = render.scene.macro_width.value_or(configuration.macro_width);
+  if (render.depths.output > facts.max_output_depth || render.depths.macro > facts.max_macro_depth ||
+      render.depths.triangle > facts.max_triangle_depth || macro_width > facts.max_macro_width) {
+    usage_error("--store " + std::to_string(store_bytes >> 10) + ": holds at most " +
+                std::to_string(facts.max_macro_depth) + " cell blocks of macrocells of width " +
+                std::to_string(facts.max_macro_width) + " and " + std::to_string(facts.max_triangle_depth) +
+                " triangle buffers; the configuration asks for more");
+  }
+
+  // Two outputs under one name would leave only the last one.
+  std::map<std::filesystem::path, const char*> names;
+  const auto add_name = [&names](const std::optional<std::filesystem::path>& path, const char* option) {
+    if (!path) return;
+    const auto [other, is_new] = names.emplace(path->lexically_normal(), option);
+    if (!is_new) usage_error(std::string(other->second) + " and " + option + " name the same file: " + path->string());
+  };
+  add_name(render.output, "-o");
+  add_name(render.depth, "--depth");
+  add_name(render.ids, "--ids");
+  add_name(render.report, "--report");
+  add_name(render.timeline, "--timeline");
+  return render;
+}
+
+}  // namespace
+
+Command parse_arguments(int count, const char* const* values) {
+  CLI::App app("Ray traces on a simulated chip whose cores have a small local store and move data by DMA.", "gridiron");
+  app.set_version_flag("--version", std::string("gridiron ") + kVersion);
+  app.require_subcommand(1);
+
+  RawRender raw;
+  CLI::App* render = app.add_subcommand("render", "renders a scene and tells what the frame costs on the chip");
+  add_scene_options(*render, raw.arguments.scene);
+  add_output_options(*render, raw);
+  add_size(*render, raw.arguments.width, raw.arguments.height, "picture in pixels (default 1024x1024)");
+  add_view_options(*render, raw.arguments);
+  add_machine_options(*render, raw);
+  add_algorithm_options(*render, raw);
+
+  InfoArguments info_arguments;
+  CLI::App* info = app.add_subcommand("info", "tells what a scene holds and what it needs");
+  add_scene_options(*info, info_arguments.scene);
+  add_choice(*info, "--format", info_arguments.format, kFormats, "how triangles are stored (default vertices)");
+  add_size(*info, info_arguments.width, info_arguments.height, "picture whose memory is told (default 1024x1024)");
+  info->add_flag("--json", info_arguments.json, "as JSON");
+
+  PackArguments pack_arguments;
+  CLI::App* pack = app.add_subcommand("pack", "makes a scene image (.gri) that render and firmware read as it is");
+  add_scene_options(*pack, pack_arguments.scene);
+  pack->add_option("-o,--output", pack_arguments.output, "scene image")->required()->type_name("FILE");
+  add_choice(*pack, "--format", pack_arguments.format, kFormats,
+             "vertices (default): for --accuracy standard; projection: for --accuracy paper");
+
+  MachinesArguments machines_arguments;
+  CLI::App* machines = app.add_subcommand("machines", "lists the machine profiles");
+  machines->add_flag("--json", machines_arguments.json, "as JSON");
+
+  try {
+    app.parse(count, values);
+  } catch (const CLI::CallForHelp&) {
+    const auto chosen = app.get_subcommands();
+    return TextRequest{(chosen.empty() ? &app : chosen.front())->help()};
+  } catch (const CLI::CallForVersion& version) {
+    return TextRequest{std::string(version.what()) + "\n"};
+  } catch (const CLI::ParseError& error) {
+    const auto chosen = app.get_subcommands();
+    const std::string command = chosen.empty() ? "" : " " + chosen.front()->get_name();
+    usage_error(std::string(error.what()) + "\nrun 'gridiron" + command + " --help' for the options");
+  }
+  if (*render) return complete_render(raw, render->count("--seed") > 0);
+  if (*info) return info_arguments;
+  if (*pack) return pack_arguments;
+  return machines_arguments;
+}
+
+}  // namespace gridiron::tool

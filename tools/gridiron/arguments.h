@@ -1,0 +1,79 @@
+// Arguments: the command line as values.
+// Memory: owns strings. Threads: one. SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <gridiron/base/records.h>
+#include <gridiron/sim/machine_profile.h>
+#include <gridiron/sim/sim_chip.h>
+
+#include <filesystem>
+#include <optional>
+#include <string>
+#include <variant>
+
+#include "configurations.h"
+#include "numbers.h"
+#include "view.h"
+
+namespace gridiron::tool {
+
+/// Which grid a mesh gets, and which machine's memory it has to fit. A packed scene brings its own grid.
+struct SceneArguments {
+  std::filesystem::path input;
+  const sim::MachineProfile* machine = nullptr;
+  const Configuration* configuration = nullptr;
+  std::optional<float> lambda;
+  std::optional<std::uint32_t> macro_width;
+};
+
+struct RenderArguments {
+  SceneArguments scene;
+  std::filesystem::path output;  ///< never empty
+  std::optional<std::filesystem::path> depth, ids, report, timeline;
+  std::optional<std::filesystem::path> camera;
+  ViewRequest view;
+  std::uint32_t width = 1024, height = 1024;
+  std::optional<CountPair> tile;   ///< column and row of the one tile to render
+  std::uint32_t cores = 0;         ///< 0: the machine's
+  std::uint32_t threads = 0;       ///< 0: the host's
+  std::uint32_t lanes = 0;         ///< 0: 4 where time is told, else the widest of the host
+  std::uint32_t packet_width = 0;  ///< 0: the configuration's
+  BufferDepths depths;
+  std::uint32_t techniques = 0;
+  Accuracy accuracy = Accuracy::kStandard;
+  Shading shading = Shading::kSimple;
+  sim::StoreSize store = sim::StoreSize::k256KB;
+  sim::Mode mode = sim::Mode::kChecked;
+  sim::Completion completion = sim::Completion::kEarly;
+  std::uint64_t seed = 0;
+  bool quiet = false;
+};
+
+struct InfoArguments {
+  SceneArguments scene;
+  TriangleFormat format = TriangleFormat::kVertices;
+  std::uint32_t width = 1024, height = 1024;
+  bool json = false;
+};
+
+struct PackArguments {
+  SceneArguments scene;
+  TriangleFormat format = TriangleFormat::kVertices;
+  std::filesystem::path output;
+};
+
+struct MachinesArguments {
+  bool json = false;
+};
+
+/// Help or the version was asked for: text for standard output.
+struct TextRequest {
+  std::string text;
+};
+
+using Command = std::variant<RenderArguments, InfoArguments, PackArguments, MachinesArguments, TextRequest>;
+
+/// Errors: Failure (kUsage) with what is wrong.
+[[nodiscard]] Command parse_arguments(int count, const char* const* values);
+
+}  // namespace gridiron::tool

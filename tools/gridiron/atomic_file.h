@@ -1,0 +1,47 @@
+// AtomicFile: an output file that appears whole or not at all.
+// Memory: owns a temporary file until commit or destruction. Threads: one. SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <cstddef>
+#include <filesystem>
+#include <span>
+#include <string>
+#include <string_view>
+#include <vector>
+
+namespace gridiron::tool {
+
+/// Bytes on their way to `path`: written under another name in the same folder, renamed by commit().
+///
+/// A path that is a device or a pipe is written through at commit, since renaming over it would replace it. A symbolic
+/// link is followed. Errors: Failure (kBadInput) with path and reason; nothing is left behind then.
+class AtomicFile {
+ public:
+  /// Opens the temporary file.
+  explicit AtomicFile(std::filesystem::path path);
+  ~AtomicFile();
+  AtomicFile(const AtomicFile&) = delete;
+  AtomicFile& operator=(const AtomicFile&) = delete;
+
+  void write(std::span<const std::byte> bytes);
+  void write(std::string_view text);
+
+  /// Closes and makes the file appear under its name.
+  void commit();
+
+ private:
+  [[noreturn]] void fail(const char* action);
+
+  std::filesystem::path path_;       ///< as asked for: the one people are told
+  std::filesystem::path target_;     ///< links followed
+  std::string temporary_;            ///< empty: nothing to remove
+  std::vector<std::byte> deferred_;  ///< bytes for a device or pipe
+  bool is_special_ = false;
+  int descriptor_ = -1;
+};
+
+/// Throws Failure (kBadInput) where no file of that name could be made, before the work for it is done: the folder is
+/// missing or closed, or the name is a folder.
+void check_can_write(const std::filesystem::path& path);
+
+}  // namespace gridiron::tool

@@ -1,0 +1,15 @@
+// Commands of the program, one function each. Errors: Failure.
+// Memory: their own. Threads: one; render starts more. SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include "arguments.h"
+
+namespace gridiron::tool {
+
+void run_command(const RenderArguments& arguments);
+void run_command(const InfoArguments& arguments);
+void run_command(const PackArguments& arguments);
+void run_command(const MachinesArguments& arguments);
+void run_command(const TextRequest& request);
+
+}  // namespace gridiron::tool

@@ -1,0 +1,35 @@
+// Configurations. SPDX-License-Identifier: Apache-2.0
+#include "configurations.h"
+
+#include <gridiron/base/records.h>
+
+#include <algorithm>
+
+namespace gridiron::tool {
+namespace {
+
+constexpr std::uint32_t kAllTechniques = kUseMailbox | kUseCornerCulling | kUseEmptySkip;
+
+// clang-format off
+constexpr Configuration kConfigurations[] = {
+    {.name = "reference", .description = "the reference system: double buffering at three levels",
+     .lambda = 4.0f, .macro_width = 6, .packet_width = 8,
+     .depths = {.output = 2, .macro = 2, .triangle = 2}, .techniques = kAllTechniques},
+    {.name = "deep", .description = "the reference system, prefetching 4 cell blocks and 8 triangle buffers",
+     .lambda = 4.0f, .macro_width = 6, .packet_width = 8,
+     .depths = {.output = 2, .macro = 4, .triangle = 8}, .techniques = kAllTechniques},
+};
+// clang-format on
+
+}  // namespace
+
+std::span<const Configuration> configurations() {
+  return kConfigurations;
+}
+
+const Configuration* find_configuration(std::string_view name) {
+  const auto* found = std::ranges::find(kConfigurations, name, &Configuration::name);
+  return found == std::end(kConfigurations) ? nullptr : found;
+}
+
+}  // namespace gridiron::tool

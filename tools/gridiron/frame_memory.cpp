@@ -1,0 +1,99 @@
+// Frame memory. SPDX-License-Identifier: Apache-2.0
+#include "frame_memory.h"
+
+#include <gridiron/frame/frame_setup.h>
+
+#include <cstring>
+#include <string>
+
+#include "failure.h"
+#include "stopwatch.h"
+#include "store_facts.h"
+#include "words.h"
+
+namespace gridiron::tool {
+namespace {
+
+sim::MemoryRegion allocate(sim::SimMemory& memory, std::uint64_t bytes) {
+  const std::optional<sim::MemoryRegion> region = memory.allocate(bytes, kLineBytes);
+  if (!region) {
+    throw Failure(ExitCode::kBadInput, "the main memory of " + words_of_bytes(memory.capacity_bytes()) + " is full");
+  }
+  return *region;
+}
+
+// Puts the scene image into main memory. @returns where it lies.
+MainAddress place_image(FrameMemory& frame, const SceneInput& input, const RenderArguments& arguments,
+                        std::uint64_t budget_bytes) {
+  const TriangleFormat format =
+      arguments.accuracy == Accuracy::kPaper ? TriangleFormat::kProjection : TriangleFormat::kVertices;
+  if (const PackedScene* packed = std::get_if<PackedScene>(&input.content)) {
+    check_packed(input, *packed, arguments.scene, format, budget_bytes);
+    const std::uint64_t image_bytes = packed->view.header.image_bytes;
+    const sim::MemoryRegion region = allocate(frame.memory, image_bytes);
+    std::memcpy(region.bytes.data(), packed->file.bytes.data(), image_bytes);
+    frame.image = packed->view;
+    frame.wanted_lambda = packed->view.grid.lambda;
+    return region.address;
+  }
+  const Stopwatch stopwatch;
+  const Mesh& mesh = std::get<Mesh>(input.content);
+  const GridChoice choice = choose_grid(input, mesh, arguments.scene, format, budget_bytes);
+  require_fit(choice, arguments.scene);
+  const sim::MemoryRegion region = allocate(frame.memory, choice.need.image_bytes);
+  frame.image = build_image(input, mesh, choice, region.bytes);
+  frame.wanted_lambda = choice.wanted_lambda;
+  frame.build_seconds = stopwatch.seconds();
+  return region.address;
+}
+
+}  // namespace
+
+void prepare_frame(FrameMemory& frame, const SceneInput& input, const RenderArguments& arguments,
+                   const ViewRequest& view) {
+  const std::uint32_t planes = 1u + (arguments.depth ? 1u : 0u) + (arguments.ids ? 1u : 0u);
+  const std::uint64_t budget_bytes =
+      image_budget_bytes(*arguments.scene.machine, arguments.width, arguments.height, planes);
+  const MainAddress image_address = place_image(frame, input, arguments, budget_bytes);
+
+  // Identifiers travel as floats in a PFM file.
+  constexpr std::uint32_t kMostExactIds = 1u << 24;
+  if (arguments.ids && frame.image.header.triangle_count > kMostExactIds) {
+    throw Failure(ExitCode::kBadInput, input.path.string() +
+                                           ": --ids: " + words_of_count(frame.image.header.triangle_count) +
+                                           " triangles; the floats of a PFM file tell at most 16,777,216 apart");
+  }
+
+  FrameSettings settings;
+  settings.camera = frame_view(view, frame.image.grid.bounds_minimum, frame.image.grid.bounds_maximum);
+  settings.width = arguments.width;
+  settings.height = arguments.height;
+  settings.tile_width = store_facts(arguments.store, arguments.packet_width).tile_width;
+  settings.accuracy = arguments.accuracy;
+  settings.shading = arguments.shading;
+  settings.techniques = arguments.techniques;
+  settings.output_depth = arguments.depths.output;
+  settings.macro_depth = arguments.depths.macro;
+  settings.triangle_depth = arguments.depths.triangle;
+
+  const std::uint64_t plane_bytes = output_plane_bytes(settings.width, settings.height, settings.tile_width);
+  frame.color = allocate(frame.memory, plane_bytes);
+  if (arguments.depth) frame.depth = allocate(frame.memory, plane_bytes);
+  if (arguments.ids) frame.ids = allocate(frame.memory, plane_bytes);
+  settings.color = frame.color.address;
+  settings.depth = frame.depth.address;
+  settings.ids = frame.ids.address;
+
+  const Status status = make_frame_record(settings, frame.image, image_address, frame.record);
+  if (status == Status::kBadFrame) {
+    throw Failure(ExitCode::kUsage, "view: no camera can be made of it; eye, at, up or the scene's bounds are extreme");
+  }
+  if (status != Status::kOk) {
+    throw Failure(ExitCode::kBadInput, input.path.string() + ": " + words_of(status));
+  }
+  const sim::MemoryRegion record = allocate(frame.memory, sizeof(FrameRecord));
+  std::memcpy(record.bytes.data(), &frame.record, sizeof(FrameRecord));
+  frame.record_address = record.address;
+}
+
+}  // namespace gridiron::tool

@@ -1,0 +1,35 @@
+// Frame memory: a machine's main memory with scene image, frame record and output planes in it.
+// Memory: owns the simulated main memory. Threads: one before the frame. SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <gridiron/base/records.h>
+#include <gridiron/image/scene_image.h>
+#include <gridiron/sim/sim_memory.h>
+
+#include <cstdint>
+#include <span>
+
+#include "arguments.h"
+#include "scene_input.h"
+
+namespace gridiron::tool {
+
+/// Everything a frame needs, in place.
+struct FrameMemory {
+  explicit FrameMemory(std::uint64_t capacity_bytes) : memory(capacity_bytes) {}
+
+  sim::SimMemory memory;
+  SceneImageView image{};
+  FrameRecord record{};
+  MainAddress record_address{};
+  sim::MemoryRegion color, depth, ids;  ///< depth, ids: no bytes where not asked for
+  float wanted_lambda = 0;              ///< the image's own is image.grid.lambda
+  double build_seconds = 0;             ///< host time of building the image, 0 for a packed scene
+};
+
+/// Fills `frame` for a render. @param view  parts of the view that were asked for.
+/// Errors: Failure.
+void prepare_frame(FrameMemory& frame, const SceneInput& input, const RenderArguments& arguments,
+                   const ViewRequest& view);
+
+}  // namespace gridiron::tool

@@ -1,0 +1,138 @@
+// info: what a scene holds and what it needs, for people or as JSON. SPDX-License-Identifier: Apache-2.0
+#include <cstdio>
+#include <nlohmann/json.hpp>
+#include <string>
+
+#include "commands.h"
+#include "scene_facts.h"
+#include "store_facts.h"
+#include "words.h"
+
+namespace gridiron::tool {
+namespace {
+
+using Json = nlohmann::ordered_json;
+
+const char* name_of_format(std::uint32_t format) {
+  return format == static_cast<std::uint32_t>(TriangleFormat::kProjection) ? "projection" : "vertices";
+}
+
+template <class Number>
+Json json_of(const Number (&vector)[3]) {
+  return {vector[0], vector[1], vector[2]};
+}
+
+Json json_of(const StoreFacts& store) {
+  Json regions = Json::array();
+  for (const LocalStoreRegion& region : store.regions) {
+    regions.push_back({{"name", region.name}, {"offset", region.offset_bytes}, {"bytes", region.bytes}});
+  }
+  return {{"arena_bytes", store.arena_bytes},
+          {"regions", regions},
+          {"code_bytes", store.code_bytes},
+          {"stack_bytes", store.stack_bytes}};
+}
+
+Json json_of(const LoopBounds& bounds) {
+  return {{"passes_per_packet", bounds.passes_per_packet},
+          {"macro_slices_per_pass", bounds.macro_slices_per_pass},
+          {"macro_cells_per_pass", bounds.macro_cells_per_pass},
+          {"slices_per_pass", bounds.slices_per_pass},
+          {"cells_per_pass", bounds.cells_per_pass},
+          {"triangle_tests_per_pass", bounds.triangle_tests_per_pass}};
+}
+
+void print_json(const InfoArguments& arguments, const SceneFacts& facts, const StoreFacts& store) {
+  const GridRecord& grid = facts.grid;
+  const Json document = {
+      {"version", 1},
+      {"input", arguments.scene.input.string()},
+      {"packed", facts.is_packed},
+      {"scene",
+       {{"vertices", facts.vertices},
+        {"triangles", facts.triangles},
+        {"dropped_triangles", facts.dropped_triangles},
+        {"bounds", {{"minimum", json_of(grid.bounds_minimum)}, {"maximum", json_of(grid.bounds_maximum)}}}}},
+      {"grid",
+       {{"lambda", grid.lambda},
+        {"wanted_lambda", facts.wanted_lambda},
+        {"macro_width", grid.macro_width},
+        {"cell_count", json_of(grid.cell_count)},
+        {"macro_cell_count", json_of(grid.macro_cell_count)},
+        {"cells", facts.bounds.cells_per_pass},
+        {"macrocells", facts.bounds.macro_cells_per_pass},
+        {"cell_blocks", grid.cell_block_count},
+        {"references", grid.reference_count},
+        {"triangle_format", name_of_format(grid.triangle_format)}}},
+      {"main_memory",
+       {{"machine", arguments.scene.machine->name},
+        {"capacity_bytes", arguments.scene.machine->main_memory_bytes},
+        {"image_bytes", facts.image_bytes},
+        {"scratch_bytes", facts.scratch_bytes},
+        {"picture_bytes", facts.picture_bytes},
+        {"fits", facts.fits}}},
+      {"local_store", json_of(store)},
+      {"effects", {{"called_for", Json::array()}}},
+      {"loop_bounds", json_of(facts.bounds)}};
+  std::printf("%s\n", document.dump(2).c_str());
+}
+
+std::string joined(const std::uint32_t (&counts)[3]) {
+  return std::to_string(counts[0]) + " x " + std::to_string(counts[1]) + " x " + std::to_string(counts[2]);
+}
+
+void print_line(const char* name, const std::string& text) {
+  std::printf("%-14s %s\n", name, text.c_str());
+}
+
+void print_text(const InfoArguments& arguments, const SceneFacts& facts, const StoreFacts& store) {
+  const GridRecord& grid = facts.grid;
+  print_line("scene", words_of_count(facts.triangles) + " triangles (" + words_of_count(facts.dropped_triangles) +
+                          " of zero area dropped), " + words_of_count(facts.vertices) + " vertices");
+  char text[160];
+  std::snprintf(text, sizeof text, "%g %g %g to %g %g %g", static_cast<double>(grid.bounds_minimum[0]),
+                static_cast<double>(grid.bounds_minimum[1]), static_cast<double>(grid.bounds_minimum[2]),
+                static_cast<double>(grid.bounds_maximum[0]), static_cast<double>(grid.bounds_maximum[1]),
+                static_cast<double>(grid.bounds_maximum[2]));
+  print_line("bounds", text);
+  std::snprintf(text, sizeof text, ", lambda %g", static_cast<double>(grid.lambda));
+  print_line("grid", joined(grid.cell_count) + " cells" + text + ", " + words_of_count(grid.reference_count) +
+                         " references stored as " + name_of_format(grid.triangle_format));
+  if (grid.lambda != facts.wanted_lambda) {
+    std::snprintf(text, sizeof text, "reduced from lambda %g to fit the main memory",
+                  static_cast<double>(facts.wanted_lambda));
+    print_line("", text);
+  }
+  print_line("macrocells", joined(grid.macro_cell_count) + " of width " + std::to_string(grid.macro_width) + ", " +
+                               words_of_count(grid.cell_block_count - 1) + " of them hold triangles");
+  print_line("main memory", words_of_bytes(facts.image_bytes) + " scene image, " + words_of_bytes(facts.scratch_bytes) +
+                                " while it is built, " + words_of_bytes(facts.picture_bytes) + " picture of " +
+                                std::to_string(arguments.width) + "x" + std::to_string(arguments.height));
+  print_line("", std::string(facts.fits ? "fits" : "does NOT fit") + " the " +
+                     words_of_bytes(arguments.scene.machine->main_memory_bytes) + " of " +
+                     std::string(arguments.scene.machine->name));
+  print_line("local store", words_of_bytes(store.arena_bytes) + ": " + words_of_bytes(store.code_bytes) + " code, " +
+                                words_of_bytes(store.stack_bytes) + " stack, " + words_of_bytes(store.data_bytes()) +
+                                " data");
+  for (const LocalStoreRegion& region : store.regions) {
+    std::printf("%14s %8s  %s\n", "", words_of_count(region.bytes).c_str(),
+                (region.name + " at " + words_of_count(region.offset_bytes)).c_str());
+  }
+  print_line("effects", "none called for");
+  print_line("loop bounds", "per packet " + std::to_string(facts.bounds.passes_per_packet) + " passes; per pass " +
+                                words_of_count(facts.bounds.macro_slices_per_pass) + " macro slices, " +
+                                words_of_count(facts.bounds.macro_cells_per_pass) + " macrocells, " +
+                                words_of_count(facts.bounds.slices_per_pass) + " slices, " +
+                                words_of_count(facts.bounds.cells_per_pass) + " cells, " +
+                                words_of_count(facts.bounds.triangle_tests_per_pass) + " triangle tests");
+}
+
+}  // namespace
+
+void run_command(const InfoArguments& arguments) {
+  const SceneFacts facts = collect_scene_facts(arguments);
+  const StoreFacts store = store_facts(sim::StoreSize::k256KB, arguments.scene.configuration->packet_width);
+  arguments.json ? print_json(arguments, facts, store) : print_text(arguments, facts, store);
+}
+
+}  // namespace gridiron::tool

@@ -1,0 +1,79 @@
+// Input files. SPDX-License-Identifier: Apache-2.0
+#include "input_file.h"
+
+#include <fcntl.h>
+#include <sys/stat.h>
+#include <unistd.h>
+
+#include <algorithm>
+#include <array>
+#include <cerrno>
+#include <cstring>
+#include <string>
+#include <string_view>
+#include <utility>
+
+#include "failure.h"
+#include "interrupt.h"
+
+namespace gridiron::tool {
+namespace {
+
+// The public scans of the reference figures, which the repository does not carry.
+constexpr std::array<std::string_view, 4> kPublicScans = {"bunny.ply", "horse.ply", "armadillo.ply", "conference.ply"};
+
+class Descriptor {
+ public:
+  explicit Descriptor(int value) : value_(value) {}
+  ~Descriptor() {
+    if (value_ >= 0) ::close(value_);
+  }
+  Descriptor(const Descriptor&) = delete;
+  Descriptor& operator=(const Descriptor&) = delete;
+  [[nodiscard]] int value() const { return value_; }
+
+ private:
+  int value_;
+};
+
+[[noreturn]] void fail(const std::filesystem::path& path, int error) {
+  std::string message = path.string() + ": " + std::strerror(error);
+  const std::string name = path.filename().string();
+  if (error == ENOENT && std::ranges::find(kPublicScans, name) != kPublicScans.end()) {
+    message += "; " + name + " is a public scan that this repository does not carry: tools/fetch_scenes gets it";
+  }
+  throw Failure(ExitCode::kBadInput, message);
+}
+
+}  // namespace
+
+InputFile read_input_file(const std::filesystem::path& path) {
+  const Descriptor file(::open(path.c_str(), O_RDONLY | O_CLOEXEC));
+  struct stat status {};
+  if (file.value() < 0 || ::fstat(file.value(), &status) != 0) fail(path, errno);
+  if (S_ISDIR(status.st_mode)) fail(path, EISDIR);
+
+  // A pipe has no size: start small and grow. One byte more than the size lets the first read meet the end.
+  constexpr std::size_t kReadBytes = std::size_t{16} << 20;
+  std::size_t capacity = S_ISREG(status.st_mode) ? static_cast<std::size_t>(status.st_size) + 1 : kReadBytes;
+  InputFile input{allocate_aligned(capacity), {}};
+  std::size_t used = 0;
+  while (true) {
+    stop_if_interrupted();
+    if (used == capacity) {
+      AlignedBytes larger = allocate_aligned(capacity * 2);
+      std::memcpy(larger.get(), input.storage.get(), used);
+      input.storage = std::move(larger);
+      capacity *= 2;
+    }
+    const ssize_t got = ::read(file.value(), input.storage.get() + used, std::min(capacity - used, kReadBytes));
+    if (got < 0 && errno == EINTR) continue;
+    if (got < 0) fail(path, errno);
+    if (got == 0) break;
+    used += static_cast<std::size_t>(got);
+  }
+  input.bytes = {input.storage.get(), used};
+  return input;
+}
+
+}  // namespace gridiron::tool

@@ -1,0 +1,35 @@
+// Input files as bytes.
+// Memory: owns the bytes. Threads: any. SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <cstddef>
+#include <filesystem>
+#include <memory>
+#include <new>
+#include <span>
+
+namespace gridiron::tool {
+
+inline constexpr std::align_val_t kImageAlignment{128};
+
+struct AlignedDelete {
+  void operator()(std::byte* bytes) const { ::operator delete[](bytes, kImageAlignment); }
+};
+using AlignedBytes = std::unique_ptr<std::byte[], AlignedDelete>;
+
+/// @returns bytes aligned as a scene image must be, uninitialised.
+[[nodiscard]] inline AlignedBytes allocate_aligned(std::size_t bytes) {
+  return AlignedBytes(new (kImageAlignment) std::byte[bytes]);
+}
+
+/// A file's bytes, aligned so that a scene image may be read in place.
+struct InputFile {
+  AlignedBytes storage;
+  std::span<const std::byte> bytes;
+};
+
+/// Reads a whole file. Errors: Failure (kBadInput) that names the file and the reason; a missing scan of the reference
+/// figures is told how to get.
+[[nodiscard]] InputFile read_input_file(const std::filesystem::path& path);
+
+}  // namespace gridiron::tool

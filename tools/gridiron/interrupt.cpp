@@ -1,0 +1,38 @@
+// Interrupt. SPDX-License-Identifier: Apache-2.0
+#include "interrupt.h"
+
+#include <csignal>
+
+#include "failure.h"
+
+namespace gridiron::tool {
+namespace {
+
+std::atomic<bool> interrupted{false};
+static_assert(std::atomic<bool>::is_always_lock_free, "a signal handler may only touch lock-free atomics");
+
+extern "C" void note_interrupt(int) {
+  interrupted.store(true);
+}
+
+}  // namespace
+
+void watch_for_interrupt() {
+  struct sigaction action {};
+  action.sa_handler = note_interrupt;
+  sigemptyset(&action.sa_mask);
+  action.sa_flags = SA_RESTART;
+  sigaction(SIGINT, &action, nullptr);
+  sigaction(SIGTERM, &action, nullptr);
+  std::signal(SIGPIPE, SIG_IGN);
+}
+
+const std::atomic<bool>& interrupt_flag() {
+  return interrupted;
+}
+
+void stop_if_interrupted() {
+  if (interrupted.load()) throw Failure(ExitCode::kInterrupted, "interrupted; no file was written");
+}
+
+}  // namespace gridiron::tool

@@ -1,0 +1,18 @@
+// Interrupt: SIGINT and SIGTERM as a flag that the renderer looks at between two tiles.
+// Memory: one flag in static storage. Threads: the flag may be read by any. SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <atomic>
+
+namespace gridiron::tool {
+
+/// Lets SIGINT and SIGTERM set the flag from now on, and SIGPIPE be an error of the write instead of the end.
+void watch_for_interrupt();
+
+/// @returns the flag: true once a signal has come.
+[[nodiscard]] const std::atomic<bool>& interrupt_flag();
+
+/// Throws Failure (kInterrupted) once a signal has come.
+void stop_if_interrupted();
+
+}  // namespace gridiron::tool

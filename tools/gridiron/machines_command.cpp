@@ -1,0 +1,49 @@
+// machines: the machine profiles. SPDX-License-Identifier: Apache-2.0
+#include <cstdio>
+#include <nlohmann/json.hpp>
+#include <string>
+
+#include "commands.h"
+#include "words.h"
+
+namespace gridiron::tool {
+namespace {
+
+nlohmann::ordered_json json_of(const sim::MachineProfile& machine) {
+  return {{"name", machine.name},
+          {"description", machine.description},
+          {"cores", machine.core_count},
+          {"clock_hz", machine.clock_hz},
+          {"main_memory_bytes", machine.main_memory_bytes},
+          {"local_store_bytes", machine.local_store_bytes},
+          {"line_bytes", machine.line_bytes},
+          {"queue_depth", machine.queue_depth},
+          {"lines_in_flight", machine.lines_in_flight},
+          {"issue_cycles", machine.issue_cycles},
+          {"wait_cycles", machine.wait_cycles},
+          {"latency_cycles", machine.latency_cycles},
+          {"channel_bytes_per_cycle", machine.channel_bytes_per_cycle},
+          {"core_line_interval_cycles", machine.core_line_interval_cycles},
+          {"claim_cycles", machine.claim_cycles}};
+}
+
+}  // namespace
+
+void run_command(const MachinesArguments& arguments) {
+  if (arguments.json) {
+    nlohmann::ordered_json list = nlohmann::ordered_json::array();
+    for (const sim::MachineProfile& machine : sim::machine_profiles()) list.push_back(json_of(machine));
+    const nlohmann::ordered_json document = {{"version", 1}, {"machines", list}};
+    std::printf("%s\n", document.dump(2).c_str());
+    return;
+  }
+  for (const sim::MachineProfile& machine : sim::machine_profiles()) {
+    std::printf("%-14s %u cores at %.1f GHz, %s local store each, %s main memory, %.0f cycles of latency\n",
+                std::string(machine.name).c_str(), machine.core_count, machine.clock_hz * 1e-9,
+                words_of_bytes(machine.local_store_bytes).c_str(), words_of_bytes(machine.main_memory_bytes).c_str(),
+                machine.latency_cycles);
+    std::printf("%-14s %s\n", "", std::string(machine.description).c_str());
+  }
+}
+
+}  // namespace gridiron::tool

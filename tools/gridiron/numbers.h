@@ -1,0 +1,28 @@
+// Numbers in text: one strict, locale-free way for the command line and for camera files.
+// Memory: none. Threads: any. SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <gridiron/base/math.h>
+
+#include <cstdint>
+#include <optional>
+#include <string_view>
+
+namespace gridiron::tool {
+
+/// @returns the float nearest to a decimal number that is the whole of `text`; nothing where it is none or not finite.
+[[nodiscard]] std::optional<float> parse_float(std::string_view text);
+
+/// @returns the whole number that is the whole of `text`.
+[[nodiscard]] std::optional<std::uint32_t> parse_count(std::string_view text);
+
+/// @returns the vector of "x,y,z".
+[[nodiscard]] std::optional<Vec3> parse_vector(std::string_view text);
+
+/// Two whole numbers around a separator: "640x480", "3,5".
+struct CountPair {
+  std::uint32_t x = 0, y = 0;
+};
+[[nodiscard]] std::optional<CountPair> parse_count_pair(std::string_view text, char separator);
+
+}  // namespace gridiron::tool

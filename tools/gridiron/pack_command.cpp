@@ -1,0 +1,40 @@
+// pack: a mesh becomes a scene image. SPDX-License-Identifier: Apache-2.0
+#include <cstdio>
+#include <new>
+
+#include "atomic_file.h"
+#include "commands.h"
+#include "failure.h"
+#include "interrupt.h"
+#include "scene_input.h"
+#include "words.h"
+
+namespace gridiron::tool {
+
+void run_command(const PackArguments& arguments) {
+  check_can_write(arguments.output);
+  const SceneInput input = read_scene_input(arguments.scene.input);
+  const Mesh* mesh = std::get_if<Mesh>(&input.content);
+  if (mesh == nullptr) {
+    throw Failure(ExitCode::kBadInput, input.path.string() + ": is a scene image already; pack takes a mesh (.ply)");
+  }
+
+  // The budget of an ordinary picture, so that render would choose the same grid.
+  const std::uint64_t budget_bytes = image_budget_bytes(*arguments.scene.machine, 1, 1, 1);
+  const GridChoice choice = choose_grid(input, *mesh, arguments.scene, arguments.format, budget_bytes);
+  require_fit(choice, arguments.scene);
+
+  const AlignedBytes storage = allocate_aligned(choice.need.image_bytes);
+  const std::span<std::byte> image(storage.get(), choice.need.image_bytes);
+  (void)build_image(input, *mesh, choice, image);
+
+  AtomicFile file(arguments.output);
+  file.write(image);
+  stop_if_interrupted();
+  file.commit();
+  std::printf("%s: %s, %s triangles, %s references, lambda %g\n", arguments.output.c_str(),
+              words_of_bytes(image.size()).c_str(), words_of_count(mesh->triangles.size()).c_str(),
+              words_of_count(choice.need.grid.reference_count).c_str(), static_cast<double>(choice.parameters.lambda));
+}
+
+}  // namespace gridiron::tool

@@ -1,0 +1,220 @@
+// render: a scene becomes a picture, and where its cycles and bytes went. SPDX-License-Identifier: Apache-2.0
+#include <gridiron/sim/replay.h>
+#include <gridiron/sim/sim_chip.h>
+#include <report/report.h>
+#include <report/timeline.h>
+
+#include <algorithm>
+#include <bit>
+#include <cstdio>
+#include <limits>
+#include <list>
+#include <string>
+#include <thread>
+
+#include "atomic_file.h"
+#include "commands.h"
+#include "failure.h"
+#include "frame_memory.h"
+#include "image_files.h"
+#include "interrupt.h"
+#include "progress.h"
+#include "scene_input.h"
+#include "stopwatch.h"
+#include "store_facts.h"
+#include "untile.h"
+#include "words.h"
+
+namespace gridiron::tool {
+namespace {
+
+// Fails early: nobody should wait for a picture that cannot be written.
+void check_outputs(const RenderArguments& arguments) {
+  check_can_write(arguments.output);
+  for (const auto* path : {&arguments.depth, &arguments.ids, &arguments.report, &arguments.timeline}) {
+    if (*path) check_can_write(**path);
+  }
+}
+
+// The camera file's view with the parts that the command line replaces.
+ViewRequest join_view(const RenderArguments& arguments) {
+  ViewRequest view = arguments.camera ? read_camera_file(*arguments.camera) : ViewRequest{};
+  if (arguments.view.eye) view.eye = arguments.view.eye;
+  if (arguments.view.at) view.at = arguments.view.at;
+  if (arguments.view.up) view.up = arguments.view.up;
+  if (arguments.view.fov_degrees) view.fov_degrees = arguments.view.fov_degrees;
+  return view;
+}
+
+std::uint32_t host_threads(const RenderArguments& arguments) {
+  if (arguments.threads != 0) return arguments.threads;
+  return std::max(1u, std::thread::hardware_concurrency());
+}
+
+std::optional<std::uint32_t> chosen_tile(const RenderArguments& arguments, const FrameRecord& record) {
+  if (!arguments.tile) return std::nullopt;
+  if (arguments.tile->x >= record.tiles_x || arguments.tile->y >= record.tiles_y) {
+    throw Failure(ExitCode::kUsage, "--tile: the picture has " + std::to_string(record.tiles_x) + " columns and " +
+                                        std::to_string(record.tiles_y) + " rows of tiles, counted from 0,0");
+  }
+  return arguments.tile->y * record.tiles_x + arguments.tile->x;
+}
+
+// Every violation on a line of its own, then what the renderer itself said.
+[[noreturn]] void fail_frame(const sim::ChipResult& result) {
+  constexpr std::size_t kMostLines = 20;
+  std::string message;
+  for (std::size_t i = 0; i < std::min(result.violations.size(), kMostLines); ++i) {
+    const sim::Violation& violation = result.violations[i];
+    message += "core " + std::to_string(violation.core) + ", tile " + std::to_string(violation.tile_id) + ": " +
+               words_of(violation.rule) + ": " + violation.detail + "\n";
+  }
+  if (result.violations.size() > kMostLines) {
+    message += "... and " + words_of_count(result.violations.size() - kMostLines) + " more\n";
+  }
+  if (result.status != Status::kOk) {
+    message += "the frame failed on core " + std::to_string(result.failed_core) + " in tile " +
+               std::to_string(result.failed_tile) + ": " + words_of(result.status);
+  } else {
+    message += "the frame broke " + words_of_count(result.violations.size()) + " rules of the machine";
+  }
+  throw Failure(ExitCode::kCheckFailed, message);
+}
+
+sim::ChipResult render_on_chip(FrameMemory& frame, const RenderArguments& arguments) {
+  if (arguments.mode == sim::Mode::kInstrumented && !sim::has_instrumented_mode()) {
+    throw Failure(ExitCode::kUsage, "--mode instrumented: this build has no instrumented kernel");
+  }
+  Progress progress(!arguments.quiet);
+  sim::ChipOptions options;
+  options.mode = arguments.mode;
+  options.threads = host_threads(arguments);
+  options.lanes = arguments.lanes;
+  options.store = arguments.store;
+  options.packet_width = arguments.packet_width;
+  options.completion = arguments.completion;
+  options.seed = arguments.seed;
+  options.limits.queue_depth = arguments.scene.machine->queue_depth;
+  options.only_tile = chosen_tile(arguments, frame.record);
+  options.abort = &interrupt_flag();
+  options.progress = [&progress](std::uint32_t done, std::uint32_t total) { progress.update(done, total); };
+  stop_if_interrupted();
+  sim::ChipResult result = sim::render_frame(frame.memory, frame.record_address, options);
+  stop_if_interrupted();
+  if (result.status == Status::kUnsupportedFrame) {
+    throw Failure(ExitCode::kUsage, words_of(result.status));
+  }
+  if (result.status != Status::kOk || !result.violations.empty()) fail_frame(result);
+  return result;
+}
+
+float depth_of_word(std::uint32_t word) {
+  // A chip may have no infinity, so its plane says "largest float" where nothing is hit.
+  const float depth = std::bit_cast<float>(word);
+  return depth >= kFloatMax ? std::numeric_limits<float>::infinity() : depth;
+}
+
+float id_of_word(std::uint32_t word) {
+  return word == kNoTriangle ? -1.0f : static_cast<float>(word);
+}
+
+// Whether the frame left a trace that a clock can be put to: costs are those of 4 lanes and of whole frames.
+bool has_time(const RenderArguments& arguments) {
+  return arguments.mode != sim::Mode::kPlain && arguments.lanes == 4 && !arguments.tile;
+}
+
+ReportInput collect_report(const RenderArguments& arguments, const SceneInput& input, const FrameMemory& frame,
+                           const sim::ChipResult& result, const sim::FrameTiming& timing) {
+  ReportInput report;
+  report.triangle_count = frame.image.header.triangle_count;
+  report.vertex_count = frame.image.header.vertex_count;
+  report.dropped_triangle_count = frame.image.header.dropped_triangle_count;
+  report.grid = frame.image.grid;
+  report.wanted_lambda = frame.wanted_lambda;
+  report.grid_bytes = frame.image.header.image_bytes;
+  report.machine = *arguments.scene.machine;
+  report.timing = timing;
+  report.work = result.work;
+  report.rays = {{"primary", std::uint64_t{arguments.width} * arguments.height}};
+  const StoreFacts store = store_facts(arguments.store, arguments.packet_width);
+  report.arena_bytes = store.arena_bytes;
+  report.regions = store.regions;
+  report.code_bytes = store.code_bytes;
+  report.stack_bytes = store.stack_bytes;
+  report.load_seconds = input.load_seconds;
+  report.build_seconds = frame.build_seconds;
+  report.host_threads = host_threads(arguments);
+  return report;
+}
+
+void print_picture(const RenderArguments& arguments, const Picture<std::uint32_t>& color, std::uint64_t hash) {
+  std::printf("%s: %ux%u, hash %s\n", arguments.output.c_str(), color.width, color.height, hash_text(hash).c_str());
+}
+
+void print_timing(const RenderArguments& arguments, const sim::FrameTiming& timing) {
+  double wait_cycles = 0;
+  for (const sim::CoreTiming& core : timing.cores) {
+    for (const double cycles : core.dma_wait_cycles) wait_cycles += cycles;
+  }
+  const auto cores = static_cast<double>(timing.cores.size());
+  const double core_cycles = timing.frame_cycles * cores;
+  std::printf("%s, %u cores: %s cycles, %.2f ms, %.2f frames/s, %.2f %% of them waiting for DMA\n",
+              std::string(arguments.scene.machine->name).c_str(), static_cast<std::uint32_t>(timing.cores.size()),
+              words_of_count(static_cast<std::uint64_t>(timing.frame_cycles)).c_str(), timing.seconds * 1e3,
+              timing.seconds > 0 ? 1 / timing.seconds : 0.0, core_cycles > 0 ? 100 * wait_cycles / core_cycles : 0.0);
+}
+
+}  // namespace
+
+void run_command(const RenderArguments& arguments) {
+  check_outputs(arguments);
+  const ViewRequest view = join_view(arguments);
+  const SceneInput input = read_scene_input(arguments.scene.input);
+  FrameMemory frame(arguments.scene.machine->main_memory_bytes);
+  prepare_frame(frame, input, arguments, view);
+
+  const Stopwatch render_stopwatch;
+  const sim::ChipResult result = render_on_chip(frame, arguments);
+  const double render_seconds = render_stopwatch.seconds();
+
+  const auto color =
+      untile<std::uint32_t>(frame.record, frame.color.bytes, arguments.tile, [](std::uint32_t word) { return word; });
+  const std::uint64_t hash = image_hash(color.pixels);
+  sim::FrameTiming timing;
+  if (has_time(arguments)) {
+    timing = sim::replay(result.trace, *arguments.scene.machine,
+                         {.core_count = arguments.cores, .timeline = arguments.timeline.has_value()});
+  }
+
+  // Every file is complete under its temporary name before the first one appears.
+  std::list<AtomicFile> files;
+  const auto add_file = [&files](const std::filesystem::path& path, const auto& content) {
+    stop_if_interrupted();
+    files.emplace_back(path).write(content);
+  };
+  add_file(arguments.output, encode_png(color));
+  if (arguments.depth) {
+    add_file(*arguments.depth,
+             encode_pfm(untile<float>(frame.record, frame.depth.bytes, arguments.tile, depth_of_word)));
+  }
+  if (arguments.ids) {
+    add_file(*arguments.ids, encode_pfm(untile<float>(frame.record, frame.ids.bytes, arguments.tile, id_of_word)));
+  }
+  if (arguments.report) {
+    ReportInput report = collect_report(arguments, input, frame, result, timing);
+    report.render_seconds = render_seconds;
+    report.image_hash = hash;
+    add_file(*arguments.report, report_json(report));
+  }
+  if (arguments.timeline) add_file(*arguments.timeline, timeline_json(timing, *arguments.scene.machine));
+  stop_if_interrupted();
+  for (AtomicFile& file : files) file.commit();
+
+  if (arguments.quiet) return;
+  print_picture(arguments, color, hash);
+  if (has_time(arguments)) print_timing(arguments, timing);
+  std::printf("host: %.3f s to load, %.3f s to build, %.3f s to render on %u threads\n", input.load_seconds,
+              frame.build_seconds, render_seconds, host_threads(arguments));
+}
+
+}  // namespace gridiron::tool

@@ -1,0 +1,166 @@
+// Scene input. SPDX-License-Identifier: Apache-2.0
+#include "scene_input.h"
+
+#include <gridiron/frame/frame_setup.h>
+#include <gridiron/sim/sim_memory.h>
+
+#include <algorithm>
+#include <cctype>
+#include <cstdio>
+#include <string>
+
+#include "failure.h"
+#include "interrupt.h"
+#include "stopwatch.h"
+#include "words.h"
+
+namespace gridiron::tool {
+namespace {
+
+// Halving lambda any further frees next to nothing: what is left is one record per triangle.
+constexpr float kLeastLambda = 1.0f / 64.0f;
+
+[[noreturn]] void fail(const std::filesystem::path& path, const std::string& reason) {
+  throw Failure(ExitCode::kBadInput, path.string() + ": " + reason);
+}
+
+std::string lower_extension(const std::filesystem::path& path) {
+  std::string extension = path.extension().string();
+  std::ranges::transform(extension, extension.begin(),
+                         [](unsigned char letter) { return static_cast<char>(std::tolower(letter)); });
+  return extension;
+}
+
+PackedScene read_packed_scene(const std::filesystem::path& path) {
+  PackedScene packed{read_input_file(path), {}};
+  SceneImageError error;
+  if (open_scene_image(packed.file.bytes, packed.view, error) != Status::kOk) {
+    throw Failure(ExitCode::kBadInput, path.string() + ":byte " + std::to_string(error.byte_offset) + ": " +
+                                           words_of(error.status) + " (field " + error.field + ")");
+  }
+  return packed;
+}
+
+GridNeed count_need(const SceneInput& input, const Mesh& mesh, const GridParameters& parameters) {
+  stop_if_interrupted();
+  GridNeed need{};
+  const Status status = count_scene_image(mesh.view(), parameters, need);
+  if (status == Status::kNoTriangles) {
+    fail(input.path, mesh.triangles.empty()
+                         ? "no triangles: a point cloud of " + words_of_count(mesh.vertices.size()) + " vertices"
+                         : "no triangle to trace: all " + words_of_count(mesh.triangles.size()) + " have zero area");
+  }
+  if (status != Status::kOk) fail(input.path, std::string("cannot build the grid: ") + words_of(status));
+  return need;
+}
+
+std::string text_of(float number) {
+  char text[32];
+  std::snprintf(text, sizeof text, "%g", static_cast<double>(number));
+  return text;
+}
+
+}  // namespace
+
+SceneInput read_scene_input(const std::filesystem::path& path) {
+  const Stopwatch stopwatch;
+  SceneInput input{path, Mesh{}, 0};
+  const std::string extension = lower_extension(path);
+  if (extension == ".ply") {
+    input.content = read_ply_mesh(path);
+  } else if (extension == ".gri") {
+    input.content = read_packed_scene(path);
+  } else if (extension == ".nff") {
+    fail(path, "NFF scenes are not supported; expected .ply or .gri");
+  } else {
+    fail(path, "unknown kind of scene; expected .ply or .gri");
+  }
+  input.load_seconds = stopwatch.seconds();
+  return input;
+}
+
+std::uint64_t image_budget_bytes(const sim::MachineProfile& machine, std::uint32_t width, std::uint32_t height,
+                                 std::uint32_t planes) {
+  constexpr std::uint32_t kUsualSize = 1024, kMostPlanes = 3, kTileWidth = 32;
+  const std::uint64_t frame_bytes = round_up<std::uint64_t>(sizeof(FrameRecord), kLineBytes);
+  const std::uint64_t wanted = output_plane_bytes(width, height, kTileWidth) * planes + frame_bytes;
+  const std::uint64_t usual = output_plane_bytes(kUsualSize, kUsualSize, kTileWidth) * kMostPlanes + frame_bytes;
+  const std::uint64_t memory = machine.main_memory_bytes - sim::SimMemory::kFirstAddress;
+  if (wanted > memory) {
+    throw Failure(ExitCode::kBadInput, "a picture of " + std::to_string(width) + "x" + std::to_string(height) +
+                                           " needs " + words_of_bytes(wanted) + " of main memory; " +
+                                           std::string(machine.name) + " has " +
+                                           words_of_bytes(machine.main_memory_bytes));
+  }
+  const std::uint64_t reserved = std::max(wanted, usual);
+  return memory > reserved ? memory - reserved : 0;
+}
+
+GridChoice choose_grid(const SceneInput& input, const Mesh& mesh, const SceneArguments& arguments,
+                       TriangleFormat format, std::uint64_t budget_bytes) {
+  GridChoice choice;
+  choice.wanted_lambda = arguments.lambda.value_or(arguments.configuration->lambda);
+  choice.parameters.lambda = choice.wanted_lambda;
+  choice.parameters.macro_width = arguments.macro_width.value_or(arguments.configuration->macro_width);
+  choice.parameters.format = format;
+  choice.budget_bytes = budget_bytes;
+  choice.need = count_need(input, mesh, choice.parameters);
+  while (!choice.fits() && !arguments.lambda && choice.parameters.lambda > kLeastLambda) {
+    choice.parameters.lambda *= 0.5f;
+    choice.need = count_need(input, mesh, choice.parameters);
+  }
+  return choice;
+}
+
+void require_fit(const GridChoice& choice, const SceneArguments& arguments) {
+  if (!choice.fits()) {
+    fail(arguments.input, "the scene needs " + words_of_bytes(choice.need.image_bytes) + " at lambda " +
+                              text_of(choice.parameters.lambda) + "; " + std::string(arguments.machine->name) +
+                              " has " + words_of_bytes(choice.budget_bytes) +
+                              " beside the picture (see 'gridiron machines')");
+  }
+  if (!choice.is_reduced()) return;
+  std::fprintf(stderr, "%s: lambda reduced from %g to %g so that the scene fits the main memory of %s\n",
+               arguments.input.c_str(), static_cast<double>(choice.wanted_lambda),
+               static_cast<double>(choice.parameters.lambda), std::string(arguments.machine->name).c_str());
+}
+
+SceneImageView build_image(const SceneInput& input, const Mesh& mesh, const GridChoice& choice,
+                           std::span<std::byte> image) {
+  stop_if_interrupted();
+  std::vector<std::uint64_t> scratch((choice.need.scratch_bytes + 7) / 8);
+  const Status status =
+      build_scene_image(mesh.view(), choice.parameters, choice.need, image, std::as_writable_bytes(std::span(scratch)));
+  if (status != Status::kOk) fail(input.path, std::string("cannot build the grid: ") + words_of(status));
+  SceneImageView view{};
+  SceneImageError error;
+  if (open_scene_image(image, view, error) != Status::kOk) {
+    throw Failure(ExitCode::kCheckFailed, input.path.string() + ": the built image is not valid: field " + error.field +
+                                              " at byte " + std::to_string(error.byte_offset));
+  }
+  return view;
+}
+
+void check_packed(const SceneInput& input, const PackedScene& packed, const SceneArguments& arguments,
+                  TriangleFormat format, std::uint64_t budget_bytes) {
+  const GridRecord& grid = packed.view.grid;
+  if (grid.triangle_format != static_cast<std::uint32_t>(format)) {
+    const bool wants_projection = format == TriangleFormat::kProjection;
+    fail(input.path, std::string("was packed with --format ") + (wants_projection ? "vertices" : "projection") +
+                         "; this needs --format " + (wants_projection ? "projection" : "vertices"));
+  }
+  if (arguments.lambda && *arguments.lambda != grid.lambda) {
+    fail(input.path, "was packed with lambda " + text_of(grid.lambda) + "; --lambda cannot change it");
+  }
+  if (arguments.macro_width && *arguments.macro_width != grid.macro_width) {
+    fail(input.path, "was packed with macrocells of width " + std::to_string(grid.macro_width) +
+                         "; --macro-width cannot change it");
+  }
+  if (packed.view.header.image_bytes > budget_bytes) {
+    fail(input.path, "the scene needs " + words_of_bytes(packed.view.header.image_bytes) + "; " +
+                         std::string(arguments.machine->name) + " has " + words_of_bytes(budget_bytes) +
+                         " beside the picture (see 'gridiron machines')");
+  }
+}
+
+}  // namespace gridiron::tool

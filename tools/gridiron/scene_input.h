@@ -1,0 +1,86 @@
+// Scene input: a mesh (.ply) or a packed scene (.gri), read and checked, and the grid that fits a machine.
+// Memory: owns mesh or file. Threads: one. SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <gridiron/grid/grid_builder.h>
+#include <gridiron/image/scene_image.h>
+#include <gridiron/scene/mesh.h>
+
+#include <cstdint>
+#include <filesystem>
+#include <optional>
+#include <span>
+#include <variant>
+#include <vector>
+
+#include "arguments.h"
+#include "input_file.h"
+
+namespace gridiron::tool {
+
+/// Triangles as read, in the input's order after fanning.
+struct Mesh {
+  std::vector<Vec3> vertices;
+  std::vector<UVec3> triangles;
+
+  [[nodiscard]] MeshView view() const { return {vertices, triangles}; }
+};
+
+/// A scene image as read and validated.
+struct PackedScene {
+  InputFile file;
+  SceneImageView view;
+};
+
+struct SceneInput {
+  std::filesystem::path path;
+  std::variant<Mesh, PackedScene> content;
+  double load_seconds = 0;  ///< host time of reading and checking
+};
+
+/// Reads the scene. Errors: Failure (kBadInput), `file:line: reason` or `file:byte N: reason`.
+[[nodiscard]] SceneInput read_scene_input(const std::filesystem::path& path);
+
+/// @returns the mesh of a PLY file. Errors as read_scene_input.
+[[nodiscard]] Mesh read_ply_mesh(const std::filesystem::path& path);
+
+/// The grid that a mesh will get, or that a packed scene has.
+struct GridChoice {
+  GridParameters parameters;
+  GridNeed need;
+  float wanted_lambda = 0;  ///< of the configuration or the command line
+  std::uint64_t budget_bytes = 0;
+
+  [[nodiscard]] bool fits() const { return need.image_bytes <= budget_bytes; }
+  [[nodiscard]] bool is_reduced() const { return parameters.lambda != wanted_lambda; }
+};
+
+/// Bytes of main memory that a scene image may take.
+///
+/// @param planes  output planes of the frame, 1..3. A picture smaller than 1024x1024 with three planes is counted as
+///        that, so that pack and render choose the same grid.
+/// Errors: Failure (kBadInput) where the picture alone does not fit.
+[[nodiscard]] std::uint64_t image_budget_bytes(const sim::MachineProfile& machine, std::uint32_t width,
+                                               std::uint32_t height, std::uint32_t planes);
+
+/// Chooses the grid of a mesh: the wanted lambda, halved until the image fits the budget unless the command line fixed
+/// it. Where nothing fits the choice says so and holds the least need found.
+/// Errors: Failure (kBadInput) where there is nothing to trace.
+[[nodiscard]] GridChoice choose_grid(const SceneInput& input, const Mesh& mesh, const SceneArguments& arguments,
+                                     TriangleFormat format, std::uint64_t budget_bytes);
+
+/// Says in one line of standard error that the grid was reduced; nothing where it was not.
+/// Errors: Failure (kBadInput) where the choice does not fit.
+void require_fit(const GridChoice& choice, const SceneArguments& arguments);
+
+/// Builds the image of a mesh. @param image  kLineBytes-aligned, choice.need.image_bytes.
+/// @returns its validated view. Errors: Failure.
+[[nodiscard]] SceneImageView build_image(const SceneInput& input, const Mesh& mesh, const GridChoice& choice,
+                                         std::span<std::byte> image);
+
+/// Throws Failure (kBadInput) where a packed scene cannot be used as asked: stored in another format, made with other
+/// grid parameters than the command line fixes, or larger than the budget.
+void check_packed(const SceneInput& input, const PackedScene& packed, const SceneArguments& arguments,
+                  TriangleFormat format, std::uint64_t budget_bytes);
+
+}  // namespace gridiron::tool

@@ -1,0 +1,95 @@
+// Words. SPDX-License-Identifier: Apache-2.0
+#include "words.h"
+
+#include <cstdio>
+#include <iterator>
+
+namespace gridiron::tool {
+
+// No default: the compiler names a value that was forgotten.
+const char* words_of(Status status) {
+  switch (status) {
+    case Status::kOk:
+      return "no error";
+    case Status::kTransferSize:
+      return "transfer of a forbidden size (0, too large, or not a multiple of 16 bytes)";
+    case Status::kTransferAlignment:
+      return "transfer between misaligned or incongruent addresses";
+    case Status::kTransferBoundary:
+      return "transfer across a boundary of main memory that the machine forbids";
+    case Status::kTransferTag:
+      return "transfer with a tag that the machine does not have";
+    case Status::kTransferQueueFull:
+      return "more transfers pending than the machine's queue holds";
+    case Status::kTransferLocalRange:
+      return "transfer outside the core's local store";
+    case Status::kTransferMainRange:
+      return "transfer outside the main memory that may be read or written";
+    case Status::kTransferOverlap:
+      return "transfer that overlaps a pending one, or a source changed before its wait";
+    case Status::kTransferFailed:
+      return "transfer that failed";
+    case Status::kTransferTimedOut:
+      return "transfer that did not end in time";
+    case Status::kTransferPending:
+      return "transfer that was never waited for";
+    case Status::kBadAccess:
+      return "load or store of bytes that must not be touched";
+    case Status::kBadFrame:
+      return "frame record with a wrong magic, version, size or range";
+    case Status::kBadImage:
+      return "damaged scene image";
+    case Status::kUnsupportedImage:
+      return "scene image that this local store or accuracy cannot use";
+    case Status::kUnsupportedFrame:
+      return "frame that this build or this host cannot render (lanes, packet width, buffers or mode)";
+    case Status::kAborted:
+      return "stopped between two tiles";
+    case Status::kDeadline:
+      return "deadline passed between two tiles";
+    case Status::kMemoryTooSmall:
+      return "memory smaller than the counted need";
+    case Status::kTooManyTriangles:
+      return "more triangles or references than 32-bit counts can address";
+    case Status::kNoTriangles:
+      return "no triangle of non-zero area";
+    case Status::kBadVertex:
+      return "vertex coordinate that is no finite number";
+    case Status::kBadIndex:
+      return "triangle that names a vertex that does not exist";
+    case Status::kBadParameter:
+      return "parameter outside its range";
+  }
+  return "unknown status";
+}
+
+// The reader's own table is the one table of these words.
+const char* words_of(PlyError error) {
+  return ply_error_reason(error);
+}
+
+std::string words_of_bytes(std::uint64_t bytes) {
+  constexpr const char* kUnits[] = {"bytes", "KB", "MB", "GB", "TB"};
+  if (bytes < 1024) return std::to_string(bytes) + " bytes";
+  double amount = static_cast<double>(bytes);
+  std::size_t unit = 0;
+  while (amount >= 1024.0 && unit + 1 < std::size(kUnits)) {
+    amount /= 1024.0;
+    ++unit;
+  }
+  char text[32];
+  std::snprintf(text, sizeof text, "%.1f %s", amount, kUnits[unit]);
+  return text;
+}
+
+std::string words_of_count(std::uint64_t count) {
+  const std::string digits = std::to_string(count);
+  std::string words;
+  for (std::size_t place = 0; place < digits.size(); ++place) {
+    if (place != 0 && (digits.size() - place) % 3 == 0) words.push_back(',');
+    words.push_back(digits[place]);
+  }
+  return words;
+}
+
+}  // namespace gridiron::tool

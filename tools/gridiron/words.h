@@ -1,0 +1,23 @@
+// Words: what every Status and every PlyError means to people.
+// Memory: static text. Threads: any. SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <gridiron/io/ply_types.h>
+#include <gridiron/platform/status.h>
+
+#include <cstdint>
+#include <string>
+
+namespace gridiron::tool {
+
+/// @returns a phrase without capital or full stop; never nullptr.
+[[nodiscard]] const char* words_of(Status status);
+[[nodiscard]] const char* words_of(PlyError error);
+
+/// @returns "12.3 MB" and the like; 1 MB = 2^20 bytes.
+[[nodiscard]] std::string words_of_bytes(std::uint64_t bytes);
+
+/// @returns "1,234,567".
+[[nodiscard]] std::string words_of_count(std::uint64_t count);
+
+}  // namespace gridiron::tool
