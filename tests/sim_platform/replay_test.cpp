@@ -6,9 +6,9 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
-#include <chrono>
 #include <cstdint>
 #include <cstdio>
+#include <ctime>
 #include <limits>
 #include <random>
 #include <set>
@@ -319,6 +319,77 @@ TEST(Replay, FullQueueStallHasTheLevelOfTheNewCommand) {
   EXPECT_EQ(frame.cores[0].dma_wait_cycles[kMacroLevel], 0);
 }
 
+TEST(Replay, CommandThatLeftTheQueueIsNotWaitedForAgain) {
+  // The queue holds one command. When the second tile waits for the first get, that get's place is taken by the second
+  // one, which has had its turn on the channel and is still under way.
+  MachineProfile machine = blocking_machine(500);
+  machine.queue_depth = 1;
+  machine.claim_cycles = 100;
+  const TileTrace first = Steps(0).get(128, kMacroTag).get(128, kTriangleTag);
+  const TileTrace second = Steps(1).wait(bit(kMacroTag)).work(1);
+  const FrameTiming frame = replay_on(frame_of({first, second}), machine);
+  EXPECT_EQ(frame.cores[0].dma_wait_cycles[kMacroLevel], 0);
+  EXPECT_EQ(frame.frame_cycles, 100 + 516 + 100 + 1 + 100);
+}
+
+TEST(Replay, FractionsOfACycleCount) {
+  MachineProfile machine = free_machine();
+  machine.latency_cycles = 0.5;
+  const TileTrace tile = Steps().get(128, kTriangleTag).wait(bit(kTriangleTag));
+  EXPECT_EQ(replay_on(frame_of({tile}), machine).frame_cycles, 0.5);
+  machine.latency_cycles = 1 - 0.4 / 1024;  // rounded to the nearest 1/1024
+  EXPECT_EQ(replay_on(frame_of({tile}), machine).frame_cycles, 1);
+}
+
+TEST(Replay, ClaimComesBeforeALineOfTheSameTime) {
+  // Core 1 asks for its second line when core 0 claims its second tile and asks for a line at once: core 0 is served
+  // first, as with every tie.
+  MachineProfile machine = blocking_machine(0);
+  machine.lines_in_flight = 1;  // core 1: lines at 0 and 16
+  const TileTrace work = Steps(0).work(16);
+  const TileTrace stream = Steps(1).get(256, kTriangleTag, 0).wait(bit(kTriangleTag));
+  const TileTrace late = Steps(2).get(128, kTriangleTag, 0).wait(bit(kTriangleTag));
+  const FrameTiming frame = replay_on(frame_of({work, stream, late}), machine, 2);
+  EXPECT_EQ(frame.cores[0].dma_wait_cycles[kTriangleLevel], 16);
+  EXPECT_EQ(frame.cores[1].dma_wait_cycles[kTriangleLevel], 48);
+}
+
+TEST(Replay, PutsCountAsBytesOut) {
+  TileTrace tile = Steps().put(64, 0, true).wait(0, 1);
+  tile.events[0].address = 8192 + 96;
+  const FrameTiming frame = replay_on(frame_of({tile}), blocking_machine(500));
+  EXPECT_EQ(frame.cores[0].puts, 1u);
+  EXPECT_EQ(frame.cores[0].gets, 0u);
+  EXPECT_EQ(frame.cores[0].bytes_out, 64u);
+  EXPECT_EQ(frame.cores[0].line_bytes_out, 256u);
+  EXPECT_EQ(frame.cores[0].bytes_in, 0u);
+  EXPECT_EQ(frame.cores[0].line_bytes_in, 0u);
+}
+
+TEST(Replay, TimelineTellsTilesAndLevelsApart) {
+  const TileTrace tile = Steps(5)
+                             .get(128, kMacroTag, 0)
+                             .get(128, kTriangleTag, 0)
+                             .wait(bit(kMacroTag))
+                             .wait(bit(kTriangleTag))
+                             .work(3)
+                             .work(4);
+  const FrameTiming frame = replay(frame_of({tile}), blocking_machine(500), {.core_count = 1, .timeline = true});
+  ASSERT_EQ(frame.timeline.size(), 4u);
+  const auto expect = [&](std::size_t index, TimelineSpan::Kind kind, double begin, double end) {
+    EXPECT_EQ(frame.timeline[index].kind, kind) << index;
+    EXPECT_EQ(frame.timeline[index].begin_cycles, begin) << index;
+    EXPECT_EQ(frame.timeline[index].end_cycles, end) << index;
+    EXPECT_EQ(frame.timeline[index].tile_id, 5u) << index;
+  };
+  expect(0, TimelineSpan::Kind::kTile, 0, 539);
+  expect(1, TimelineSpan::Kind::kWait, 0, 516);
+  expect(2, TimelineSpan::Kind::kWait, 516, 532);
+  expect(3, TimelineSpan::Kind::kCompute, 532, 539);
+  EXPECT_EQ(frame.timeline[1].level, WaitLevel::kMacroCell);
+  EXPECT_EQ(frame.timeline[2].level, WaitLevel::kTriangle);
+}
+
 TEST(Replay, ClaimsAreGrantedInOrderOfTimeTiesByCore) {
   std::vector<TileTrace> tiles;
   for (const std::uint32_t length : {100u, 10u, 10u, 10u, 10u}) {
@@ -600,15 +671,15 @@ TEST(Replay, SenselessProfileValuesAreTakenAsDocumented) {
 TEST(Replay, BunnySizedFrameTakesWellUnderASecond) {
   const FrameTrace trace = synthetic_frame(1, 1024, 20);
   const MachineProfile& machine = *find_machine_profile("cell-ps3");
-  const auto begin = std::chrono::steady_clock::now();
+  const std::clock_t begin = std::clock();  // processor time: other load on the host does not count
   const FrameTiming frame = replay_on(trace, machine, 6);
-  const double seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
+  const double seconds = static_cast<double>(std::clock() - begin) / CLOCKS_PER_SEC;
   std::uint64_t line_bytes = 0;
   for (const CoreTiming& core : frame.cores) line_bytes += core.line_bytes_in + core.line_bytes_out;
   RecordProperty("lines", std::to_string(line_bytes / 128));
   RecordProperty("seconds", std::to_string(seconds));
   EXPECT_GT(line_bytes / 128, 900000u);
-#ifdef NDEBUG
+#if defined(NDEBUG) && !defined(__SANITIZE_ADDRESS__) && !defined(__SANITIZE_THREAD__)
   EXPECT_LT(seconds, 1.0);
 #endif
 }
