@@ -16,7 +16,8 @@ bool is_line_end(char c) {
   return c == '\n' || c == '\r';
 }
 bool is_control(char c) {
-  return (c >= 0 && c < 0x20) || c == 0x7F;
+  const auto code = static_cast<unsigned char>(c);
+  return code < 0x20 || code == 0x7F;
 }
 
 }  // namespace
