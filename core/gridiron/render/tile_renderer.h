@@ -156,10 +156,11 @@ class TileRenderer {
     return transfers_.wait(kSetupTag);
   }
 
-  // Waits for the tiles still on their way.
+  // Waits for the tiles still on their way, the oldest first: the order does not tell how many tiles this core had.
   [[nodiscard]] Status finish(Status outcome) {
-    for (std::uint32_t slot = 0; slot < store_.frame.output_depth; ++slot) {
-      GRIDIRON_TRY(transfers_.wait(static_cast<std::uint8_t>(kFirstOutputTag + slot)));
+    for (std::uint32_t i = 0; i < store_.frame.output_depth; ++i) {
+      GRIDIRON_TRY(transfers_.wait(static_cast<std::uint8_t>(kFirstOutputTag + output_slot_)));
+      output_slot_ = output_slot_ + 1 == store_.frame.output_depth ? 0 : output_slot_ + 1;
     }
     return outcome;
   }

@@ -1,0 +1,355 @@
+// One frame, however it is made: the same picture, the same work, the same trace.
+// SPDX-License-Identifier: Apache-2.0
+#include <gridiron/sim/machine_profile.h>
+#include <gridiron/sim/replay.h>
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <functional>
+#include <map>
+#include <string>
+#include <vector>
+
+#include "support/render_mesh.h"
+#include "support/test_mesh.h"
+#include "support/views.h"
+
+namespace gridiron::test {
+namespace {
+
+// A mesh with long triangle lists, empty space, silhouettes and overlapping surfaces.
+TestMesh make_mesh() {
+  TestMesh mesh = make_torus(60, 30, 1.0f, 0.35f);
+  mesh.append(make_random_soup(800, 0.15f, 3));
+  mesh.append(make_height_field(20, 0.2f, 4));
+  mesh.append(make_triangle({-3, -0.5f, -3}, {3, -0.5f, -3}, {0, -0.4f, 3}));
+  return mesh;
+}
+
+FrameSettings default_settings(Accuracy accuracy) {
+  FrameSettings settings;
+  settings.camera = {{1.2f, 1.5f, 2.5f}, {0, 0, 0}, {0, 1, 0}, 0.5f};
+  settings.width = 150;
+  settings.height = 110;
+  settings.accuracy = accuracy;
+  return settings;
+}
+
+// Frames of one accuracy share the scene and the frame that all others are compared with.
+class Subject {
+ public:
+  explicit Subject(Accuracy accuracy) : accuracy_(accuracy), mesh_(make_mesh()), scene_(mesh_.view(), grid(accuracy)) {
+    EXPECT_EQ(scene_.status(), Status::kOk);
+    first_ = scene_.render(default_settings(accuracy), {});
+    EXPECT_EQ(first_.result.status, Status::kOk);
+  }
+
+  static Subject& of(Accuracy accuracy) {
+    static std::map<Accuracy, Subject> subjects;
+    return subjects.try_emplace(accuracy, accuracy).first->second;
+  }
+
+  [[nodiscard]] const RenderedFrame& first() const { return first_; }
+  [[nodiscard]] FrameSettings settings() const { return default_settings(accuracy_); }
+  RenderedFrame render(const FrameSettings& settings, const sim::ChipOptions& chip) {
+    return scene_.render(settings, chip);
+  }
+
+ private:
+  static GridParameters grid(Accuracy accuracy) {
+    GridParameters parameters;
+    if (accuracy == Accuracy::kPaper) parameters.format = TriangleFormat::kProjection;
+    return parameters;
+  }
+
+  Accuracy accuracy_;
+  TestMesh mesh_;
+  SceneInMemory scene_;
+  RenderedFrame first_;
+};
+
+std::string words_of(const sim::TraceEvent& e) {
+  return "kind " + std::to_string(static_cast<int>(e.kind)) + " tag " + std::to_string(e.tag) + " bytes " +
+         std::to_string(e.bytes) + " address " + std::to_string(e.address);
+}
+
+// First difference of two tile traces in words, empty where there is none. Addresses count relative to the planes and
+// the image, which lie at the same place in every frame here.
+std::string first_difference(const sim::TileTrace& a, const sim::TileTrace& b) {
+  if (a.tile_id != b.tile_id) return "tile ids";
+  if (a.events.size() != b.events.size()) return "event counts";
+  for (std::size_t i = 0; i < a.events.size(); ++i) {
+    const sim::TraceEvent& x = a.events[i];
+    const sim::TraceEvent& y = b.events[i];
+    const bool transfer = x.kind == sim::EventKind::kGet || x.kind == sim::EventKind::kPut;
+    bool same = x.kind == y.kind;
+    if (transfer) {
+      same = same && x.tag == y.tag && x.rotating == y.rotating && x.bytes == y.bytes && x.address == y.address;
+    } else if (x.kind == sim::EventKind::kWait) {
+      same = same && x.tags == y.tags && x.rotating_tags == y.rotating_tags;
+    } else {
+      same = same && x.first_work == y.first_work && x.work_count == y.work_count;
+    }
+    if (!same) return "event " + std::to_string(i) + ": " + words_of(x) + " or " + words_of(y);
+  }
+  const auto same_amount = [](const sim::WorkAmount& x, const sim::WorkAmount& y) {
+    return x.kind == y.kind && x.amount == y.amount;
+  };
+  const bool same_work = std::equal(a.work.begin(), a.work.end(), b.work.begin(), b.work.end(), same_amount);
+  return same_work ? "" : "work";
+}
+
+std::string first_difference(const sim::FrameTrace& a, const sim::FrameTrace& b) {
+  if (a.tiles.size() != b.tiles.size() || a.output_depth != b.output_depth) return "shape of the traces";
+  if (const std::string words = first_difference(a.prologue, b.prologue); !words.empty()) return "prologue: " + words;
+  if (const std::string words = first_difference(a.epilogue, b.epilogue); !words.empty()) return "epilogue: " + words;
+  for (std::size_t tile = 0; tile < a.tiles.size(); ++tile) {
+    const std::string words = first_difference(a.tiles[tile], b.tiles[tile]);
+    if (!words.empty()) return "tile " + std::to_string(tile) + ": " + words;
+  }
+  return {};
+}
+
+// What a variation must leave alone.
+enum class Keeps : std::uint8_t {
+  kEverything,  // picture, work counters and trace
+  kPicture,
+};
+
+struct Variation {
+  std::string name;
+  Keeps keeps;
+  std::function<void(FrameSettings&, sim::ChipOptions&)> apply;
+  // Accuracy `paper` promises its picture for every order, width, depth and store, but not without corner-ray culling:
+  // the corners' test rounds like any other, so it may drop a triangle whose edge a ray of the packet just touches.
+  bool changes_paper = false;
+};
+
+std::vector<Variation> make_variations() {
+  using Settings = FrameSettings;
+  using Chip = sim::ChipOptions;
+  std::vector<Variation> variations;
+  const auto add = [&variations](std::string name, Keeps keeps, std::function<void(Settings&, Chip&)> apply) {
+    variations.push_back({std::move(name), keeps, std::move(apply)});
+  };
+  add("again", Keeps::kEverything, [](Settings&, Chip&) {});
+  for (const std::uint32_t threads : {2u, 3u, 6u}) {
+    add("threads_" + std::to_string(threads), Keeps::kEverything,
+        [threads](Settings&, Chip& chip) { chip.threads = threads; });
+  }
+  add("completion_late", Keeps::kEverything, [](Settings&, Chip& chip) { chip.completion = sim::Completion::kLate; });
+  add("completion_late_threads_6", Keeps::kEverything, [](Settings&, Chip& chip) {
+    chip.completion = sim::Completion::kLate;
+    chip.threads = 6;
+  });
+  for (std::uint64_t seed = 1; seed <= 20; ++seed) {
+    add("completion_seed_" + std::to_string(seed), Keeps::kEverything, [seed](Settings&, Chip& chip) {
+      chip.completion = sim::Completion::kRandom;
+      chip.seed = seed;
+      chip.threads = seed % 2 == 0 ? 2 : 1;
+    });
+  }
+  for (const std::uint32_t lanes : {4u, 8u, 16u}) {
+    if (lanes > sim::widest_lanes()) continue;
+    add("lanes_" + std::to_string(lanes), Keeps::kPicture, [lanes](Settings&, Chip& chip) { chip.lanes = lanes; });
+    add("plain_lanes_" + std::to_string(lanes), Keeps::kPicture, [lanes](Settings&, Chip& chip) {
+      chip.lanes = lanes;
+      chip.mode = sim::Mode::kPlain;
+      chip.threads = 2;
+    });
+  }
+  for (const std::uint32_t width : {4u, 16u}) {
+    for (const std::uint32_t lanes : {4u, 8u, 16u}) {
+      if (lanes > sim::widest_lanes()) continue;
+      add("packet_" + std::to_string(width) + "_lanes_" + std::to_string(lanes), Keeps::kPicture,
+          [width, lanes](Settings&, Chip& chip) {
+            chip.packet_width = width;
+            chip.lanes = lanes;
+          });
+    }
+  }
+  add("store_64KB", Keeps::kPicture, [](Settings&, Chip& chip) { chip.store = sim::StoreSize::k64KB; });
+  add("store_64KB_packet_16_late", Keeps::kPicture, [](Settings&, Chip& chip) {
+    chip.store = sim::StoreSize::k64KB;
+    chip.packet_width = 16;
+    chip.completion = sim::Completion::kLate;
+  });
+  const auto buffering = [&add](std::string name, std::uint32_t output, std::uint32_t macro, std::uint32_t triangle) {
+    for (const sim::Completion completion : {sim::Completion::kEarly, sim::Completion::kLate}) {
+      add("buffering_" + name + (completion == sim::Completion::kEarly ? "" : "_late"), Keeps::kPicture,
+          [=](Settings& settings, Chip& chip) {
+            settings.output_depth = output;
+            settings.macro_depth = macro;
+            settings.triangle_depth = triangle;
+            chip.completion = completion;
+          });
+    }
+  };
+  buffering("single", 1, 1, 1);
+  buffering("single_tiles", 1, 2, 2);
+  buffering("single_cells", 2, 1, 2);
+  buffering("single_triangles", 2, 2, 1);
+  buffering("deep_cells", 2, 4, 2);
+  buffering("deep", 2, 4, 12);
+  for (std::uint32_t off = 1; off < 8; ++off) {
+    add("techniques_off_" + std::to_string(off), Keeps::kPicture,
+        [off](Settings& settings, Chip&) { settings.techniques &= ~off; });
+    variations.back().changes_paper = (off & kUseCornerCulling) != 0;
+  }
+  for (const std::uint32_t depth : {1u, 2u, 16u}) {
+    add("queue_" + std::to_string(depth), Keeps::kPicture, [depth](Settings&, Chip& chip) {
+      chip.limits.queue_depth = depth;
+      chip.completion = sim::Completion::kLate;
+    });
+  }
+  return variations;
+}
+
+std::vector<std::string> variation_names(Accuracy accuracy) {
+  std::vector<std::string> names;
+  for (const Variation& variation : make_variations()) {
+    if (accuracy == Accuracy::kStandard || !variation.changes_paper) names.push_back(variation.name);
+  }
+  return names;
+}
+
+Variation variation_called(const std::string& name) {
+  for (Variation& variation : make_variations()) {
+    if (variation.name == name) return variation;
+  }
+  return {};
+}
+
+class StandardDeterminism : public testing::TestWithParam<std::string> {};
+class PaperDeterminism : public testing::TestWithParam<std::string> {};
+
+void expect_same_frame(Accuracy accuracy, const std::string& name) {
+  const Variation variation = variation_called(name);
+  Subject& subject = Subject::of(accuracy);
+  FrameSettings settings = subject.settings();
+  sim::ChipOptions chip;
+  variation.apply(settings, chip);
+  const RenderedFrame rendered = subject.render(settings, chip);
+  ASSERT_EQ(rendered.result.status, Status::kOk);
+  EXPECT_TRUE(rendered.result.violations.empty()) << rendered.result.violations.front().detail;
+  EXPECT_EQ(test::first_difference(subject.first(), rendered), "");
+  if (variation.keeps == Keeps::kEverything) {
+    EXPECT_EQ(subject.first().result.work, rendered.result.work);
+    const auto& once = subject.first().result.trace.prologue.events;
+    const auto gets = static_cast<std::uint64_t>(
+        std::count_if(once.begin(), once.end(), [](const auto& e) { return e.kind == sim::EventKind::kGet; }));
+    EXPECT_EQ(subject.first().result.transfers + (chip.threads - 1) * gets, rendered.result.transfers);
+    EXPECT_EQ(first_difference(subject.first().result.trace, rendered.result.trace), "");
+  }
+}
+
+std::string parameter_name(const testing::TestParamInfo<std::string>& tested) {
+  return tested.param;
+}
+
+TEST_P(StandardDeterminism, GivesTheSameFrame) {
+  expect_same_frame(Accuracy::kStandard, GetParam());
+}
+
+TEST_P(PaperDeterminism, GivesTheSameFrame) {
+  expect_same_frame(Accuracy::kPaper, GetParam());
+}
+
+INSTANTIATE_TEST_SUITE_P(Variations, StandardDeterminism, testing::ValuesIn(variation_names(Accuracy::kStandard)),
+                         parameter_name);
+INSTANTIATE_TEST_SUITE_P(Variations, PaperDeterminism, testing::ValuesIn(variation_names(Accuracy::kPaper)),
+                         parameter_name);
+
+// The comparisons above could be blind; these are frames that must not compare equal.
+TEST(DeterminismTest, SeesDifferences) {
+  Subject& subject = Subject::of(Accuracy::kStandard);
+  FrameSettings nudged = subject.settings();
+  nudged.camera.eye.x = std::nextafter(nudged.camera.eye.x, 2.0f);
+  const RenderedFrame other = subject.render(nudged, {});
+  EXPECT_NE(test::first_difference(subject.first(), other), "");
+  FrameSettings single = subject.settings();
+  single.triangle_depth = 1;
+  const RenderedFrame other_trace = subject.render(single, {});
+  EXPECT_NE(first_difference(subject.first().result.trace, other_trace.result.trace), "");
+}
+
+// One trace, any number of cores: the same work, bytes and tiles, and every cycle of every core accounted for.
+TEST(ReplayOfAFrame, SumsToTheSameWorkForAnyNumberOfCores) {
+  const sim::FrameTrace& trace = Subject::of(Accuracy::kStandard).first().result.trace;
+  const sim::MachineProfile* machine = sim::find_machine_profile("cell-ps3");
+  ASSERT_NE(machine, nullptr);
+
+  // What every core does once, whatever its tiles.
+  const auto count = [](const sim::TileTrace& part, sim::EventKind kind) {
+    return static_cast<std::uint64_t>(
+        std::count_if(part.events.begin(), part.events.end(), [kind](const auto& e) { return e.kind == kind; }));
+  };
+  const auto bytes = [](const sim::TileTrace& part, sim::EventKind kind) {
+    std::uint64_t sum = 0;
+    for (const sim::TraceEvent& e : part.events) sum += e.kind == kind ? e.bytes : 0;
+    return sum;
+  };
+  std::uint64_t tile_gets = 0, tile_puts = 0, tile_bytes_in = 0, tile_bytes_out = 0;
+  for (const sim::TileTrace& tile : trace.tiles) {
+    tile_gets += count(tile, sim::EventKind::kGet);
+    tile_puts += count(tile, sim::EventKind::kPut);
+    tile_bytes_in += bytes(tile, sim::EventKind::kGet);
+    tile_bytes_out += bytes(tile, sim::EventKind::kPut);
+  }
+  ASSERT_GT(tile_gets, 0u);
+  ASSERT_GT(tile_puts, 0u);
+
+  double one_core_cycles = 0;
+  double work_of_tiles = 0;  // computation and initialisation without the once-per-core part
+  double work_per_core = 0;
+  double last_cycles = 0;
+  for (const std::uint32_t cores : {1u, 2u, 3u, 6u, 8u}) {
+    sim::ReplayOptions options;
+    options.core_count = cores;
+    const sim::FrameTiming timing = sim::replay(trace, *machine, options);
+    const sim::FrameTiming again = sim::replay(trace, *machine, options);
+    EXPECT_EQ(timing.frame_cycles, again.frame_cycles);
+    ASSERT_EQ(timing.cores.size(), cores);
+    sim::CoreTiming sum;
+    double busy = 0;
+    for (const sim::CoreTiming& core : timing.cores) {
+      sum.tiles += core.tiles;
+      sum.gets += core.gets;
+      sum.puts += core.puts;
+      sum.bytes_in += core.bytes_in;
+      sum.bytes_out += core.bytes_out;
+      busy += core.init_cycles + core.compute_cycles;
+      double all = core.init_cycles + core.compute_cycles + core.idle_cycles;
+      for (const double wait : core.dma_wait_cycles) all += wait;
+      EXPECT_EQ(all, timing.frame_cycles) << cores << " cores";
+    }
+    const auto once = [&](auto part, sim::EventKind kind) {
+      return cores * (part(trace.prologue, kind) + part(trace.epilogue, kind));
+    };
+    EXPECT_EQ(sum.tiles, trace.tiles.size()) << cores << " cores";
+    EXPECT_EQ(sum.gets, tile_gets + once(count, sim::EventKind::kGet)) << cores << " cores";
+    EXPECT_EQ(sum.puts, tile_puts + once(count, sim::EventKind::kPut)) << cores << " cores";
+    EXPECT_EQ(sum.bytes_in, tile_bytes_in + once(bytes, sim::EventKind::kGet)) << cores << " cores";
+    EXPECT_EQ(sum.bytes_out, tile_bytes_out + once(bytes, sim::EventKind::kPut)) << cores << " cores";
+
+    // busy = tiles' work + cores * once-per-core work: two core counts tell both, the others must agree.
+    if (cores == 1) {
+      one_core_cycles = timing.frame_cycles;
+      work_of_tiles = busy;
+    } else if (cores == 2) {
+      work_per_core = busy - work_of_tiles;
+      work_of_tiles -= work_per_core;
+    } else {
+      EXPECT_EQ(busy, work_of_tiles + cores * work_per_core) << cores << " cores";
+    }
+    if (cores > 1) {
+      EXPECT_LT(timing.frame_cycles, last_cycles) << cores << " cores";
+      EXPECT_GE(timing.frame_cycles, one_core_cycles / cores * 0.9) << cores << " cores";
+    }
+    last_cycles = timing.frame_cycles;
+  }
+}
+
+}  // namespace
+}  // namespace gridiron::test
