@@ -325,11 +325,11 @@ TEST(Replay, CommandThatLeftTheQueueIsNotWaitedForAgain) {
   MachineProfile machine = blocking_machine(500);
   machine.queue_depth = 1;
   machine.claim_cycles = 100;
-  const TileTrace first = Steps(0).get(128, kMacroTag).get(128, kTriangleTag);
+  const TileTrace first = Steps(0).get(128, kMacroTag).get(128, kTriangleTag).work(10);
   const TileTrace second = Steps(1).wait(bit(kMacroTag)).work(1);
   const FrameTiming frame = replay_on(frame_of({first, second}), machine);
   EXPECT_EQ(frame.cores[0].dma_wait_cycles[kMacroLevel], 0);
-  EXPECT_EQ(frame.frame_cycles, 100 + 516 + 100 + 1 + 100);
+  EXPECT_EQ(frame.frame_cycles, 100 + 516 + 10 + 100 + 1 + 100);
 }
 
 TEST(Replay, FractionsOfACycleCount) {
