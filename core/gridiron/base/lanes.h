@@ -216,6 +216,10 @@ struct Lanes {
   return __builtin_sqrt(value);
 }
 
+/// |value|: clears the sign bit, no branch, no library call.
+[[nodiscard]] GRIDIRON_INLINE float magnitude(float value) { return __builtin_fabsf(value); }
+[[nodiscard]] GRIDIRON_INLINE double magnitude(double value) { return __builtin_fabs(value); }
+
 /// Number of set bits.
 [[nodiscard]] GRIDIRON_INLINE std::uint32_t count_bits(std::uint32_t bits) {
   bits -= (bits >> 1) & 0x55555555u;

@@ -93,8 +93,7 @@ template <class L, class PacketType>
   if (leader == kRays) return false;
 
   const auto size_of = [&](std::uint32_t axis, std::uint32_t ray) {
-    const float value = packet.dir[axis][ray] * grid.cells_per_unit[axis];
-    return value < 0.0f ? -value : value;
+    return magnitude(packet.dir[axis][ray] * grid.cells_per_unit[axis]);
   };
   std::uint32_t k = 0;
   if (size_of(1, leader) > size_of(k, leader)) k = 1;
@@ -112,9 +111,10 @@ template <class L, class PacketType>
     const Float march = Float::load(packet.dir[k] + base) * march_scale;
     const Float along_u = Float::load(packet.dir[u] + base) * u_scale;
     const Float along_v = Float::load(packet.dir[v] + base) * v_scale;
-    const std::uint32_t bits =
-        ((march > Float(0.0f)) & (L::abs(along_u) <= march + march) & (L::abs(along_v) <= march + march)).bits() &
-        waiting.template group<L>(base);
+    const std::uint32_t bits = ((march > Float(0.0f)) & (march <= Float(0.5f * kFloatMax)) &
+                                (L::abs(along_u) <= march + march) & (L::abs(along_v) <= march + march))
+                                   .bits() &
+                               waiting.template group<L>(base);
     packet.active.template set_group<L>(base, bits);
     waiting.template set_group<L>(base, waiting.template group<L>(base) & ~bits);
     const auto joined = L::mask_from_bits(bits);
@@ -125,8 +125,7 @@ template <class L, class PacketType>
     low_v = L::min(low_v, L::select(joined, slope_v, Float(kFloatMax)));
     high_v = L::max(high_v, L::select(joined, slope_v, Float(-kFloatMax)));
   }
-  waiting.erase(leader);  // a direction that vanishes in cell space is a miss
-  const auto magnitude = [](float value) { return value < 0.0f ? -value : value; };
+  waiting.erase(leader);  // a direction that vanishes or overflows in cell space, or is not finite, is a miss
   const auto larger = [](float a, float b) { return a > b ? a : b; };
   const auto in_cells = [&](std::uint32_t axis) {
     return (packet.origin[axis] - grid.minimum[axis]) * grid.cells_per_unit[axis];

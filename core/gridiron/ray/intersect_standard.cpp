@@ -4,10 +4,6 @@
 namespace gridiron {
 namespace {
 
-double magnitude(double value) {
-  return value < 0.0 ? -value : value;
-}
-
 // normal = (b - a) x (c - a) with, per component, the sum of the magnitudes of its two products.
 void normal_of(const VertexTriangle& triangle, double normal[3], double products[3]) {
   double e1[3], e2[3];
@@ -16,8 +12,8 @@ void normal_of(const VertexTriangle& triangle, double normal[3], double products
     e2[i] = double{triangle.v[2][i]} - double{triangle.v[0][i]};
   }
   for (int i = 0; i < 3; ++i) {
-    const int j = (i + 1) % 3;
-    const int k = (i + 2) % 3;
+    const int j = i == 2 ? 0 : i + 1;
+    const int k = j == 2 ? 0 : j + 1;
     const double first = e1[j] * e2[k];
     const double second = e1[k] * e2[j];
     normal[i] = first - second;

@@ -34,6 +34,7 @@ struct StandardEdges {
 inline constexpr float kEdgeErrorFactor = 17.0f * 0x1p-23f;
 inline constexpr float kUnderflow = 0x1p-100f;
 inline constexpr float kEdgeRangeLimit = 0x1p100f;
+inline constexpr float kVolumeErrorLimit = 0x1p90f;
 
 /// A bound of the rounding of pixel directions themselves, added where the corner rays speak for all others.
 inline constexpr float kCornerErrorFactor = 5.0f * 0x1p-23f;
@@ -62,11 +63,13 @@ void set_up_distance(const float origin[3], float dir_max, const VertexTriangle&
 
 /// Prepares the edge functions of a triangle for a packet.
 ///
+/// @param range_factor  the larger of dir_max and 1.
 /// @returns +1 or -1, the orientation as seen from the packet's origin, or 0: the origin lies in the triangle's plane
 ///          and no ray of the packet can hit it at a distance above 0.
 template <class L>
-[[nodiscard]] GRIDIRON_INLINE int set_up_edges(const float origin[3], float dir_max, const VertexTriangle& triangle,
-                                               StandardEdges<L>& edges, WorkCounters& work) {
+[[nodiscard]] GRIDIRON_INLINE int set_up_edges(const float origin[3], float dir_max, float range_factor,
+                                               const VertexTriangle& triangle, StandardEdges<L>& edges,
+                                               WorkCounters& work) {
   using Four = Lanes<4>;
   using Float = typename Four::Float;
   using Vector = typename Four::FloatVector;
@@ -93,21 +96,24 @@ template <class L>
   const Float n_y = s_z * f_x - s_x * f_z;
   const Float n_z = s_x * f_y - s_y * f_x;
   const Float size_a = Four::abs(a_x) + Four::abs(a_y) + Four::abs(a_z);
-  const Float size_b = Four::abs(b_x) + Four::abs(b_y) + Four::abs(b_z);
+  const Float size_b(__builtin_shufflevector(size_a.v, size_a.v, 1, 2, 0, 0));
   const Float size_f = Four::max(Four::max(Four::abs(f_x), Four::abs(f_y)), Four::abs(f_z));
   const Float scale = (size_a + size_b) * size_f;
-  edges.in_range = (scale * Float(dir_max) < Float(kEdgeRangeLimit)).bits() == 0xFu &&
-                   (scale < Float(kEdgeRangeLimit)).bits() == 0xFu;
+  edges.in_range = (scale * Float(range_factor) < Float(kEdgeRangeLimit)).bits() == 0xFu;
   edges.error = scale * Float(kEdgeErrorFactor * dir_max) + Float(kUnderflow);
 
-  // Orientation: c . n_0 = 2 det[a, b, c], by the same bound with c in the place of d.
-  const float c_x = a_x.v[2], c_y = a_y.v[2], c_z = a_z.v[2];
-  const float volume = n_x.v[0] * c_x + n_y.v[0] * c_y + n_z.v[0] * c_z;
-  const float c_abs = Four::max(Four::max(Four::abs(a_x), Four::abs(a_y)), Four::abs(a_z)).v[2];
-  const float volume_error = scale.v[0] * (2.0f * kEdgeErrorFactor * c_abs) + kUnderflow * (1.0f + c_abs);
-  const bool volume_sure = volume_error < 0x1p90f && (volume > volume_error || volume < -volume_error);
-  int orientation = volume > 0.0f ? 1 : -1;
-  if (!volume_sure) [[unlikely]]
+  // Orientation: with c the vertex opposite an edge, n . c = 2 det[a, b, c], by the same bound with c in the place of
+  // d. The three edges give the same determinant; lane 0 is used.
+  const Float c_x(__builtin_shufflevector(a_x.v, a_x.v, 2, 0, 1, 1));
+  const Float c_y(__builtin_shufflevector(a_y.v, a_y.v, 2, 0, 1, 1));
+  const Float c_z(__builtin_shufflevector(a_z.v, a_z.v, 2, 0, 1, 1));
+  const Float size_c(__builtin_shufflevector(size_a.v, size_a.v, 2, 0, 1, 1));
+  const Float volume = n_x * c_x + n_y * c_y + n_z * c_z;
+  const Float volume_error =
+      scale * (size_c * Float(2.0f * kEdgeErrorFactor)) + size_c * Float(kUnderflow) + Float(kUnderflow);
+  const std::uint32_t sure = ((Four::abs(volume) > volume_error) & (volume_error < Float(kVolumeErrorLimit))).bits();
+  int orientation = (volume < Float(0.0f)).bits() & 1u ? -1 : 1;
+  if ((sure & 1u) == 0) [[unlikely]]
     orientation = volume_sign_in_double(origin, triangle, work);
   const Float flip(orientation < 0 ? -1.0f : 1.0f);
   edges.n_x = n_x * flip;
@@ -211,7 +217,7 @@ template <class L, bool kWantFacing, class PacketType>
   using Float = typename L::Float;
   StandardEdges<L> edges;
   work.add(Work::kTriangleSetup);
-  const int orientation = set_up_edges<L>(packet.origin, packet.dir_max, triangle, edges, work);
+  const int orientation = set_up_edges<L>(packet.origin, packet.dir_max, packet.range_factor, triangle, edges, work);
   if (orientation == 0) return false;
   if (use_culling) {
     work.add(Work::kCullTest);

@@ -47,6 +47,7 @@ struct alignas(128) Packet {
   alignas(16) float corner_dir[3][4];       ///< the four corner rays, for culling
   float origin[3];
   float dir_max;          ///< largest |component| of all active directions
+  float range_factor;     ///< the larger of dir_max and 1
   float corner_widening;  ///< factor on edge errors that lets the corner rays speak for all
 };
 

@@ -51,7 +51,6 @@ void generate_packet(const FrameRecord& frame, std::uint32_t left, std::uint32_t
   }
 
   constexpr float kLast = static_cast<float>(kWidth - 1);
-  const auto magnitude = [](float value) { return value < 0.0f ? -value : value; };
   float dir_max = 0.0f;
   float dir_bound = 0.0f;
   for (int axis = 0; axis < 3; ++axis) {
@@ -67,6 +66,7 @@ void generate_packet(const FrameRecord& frame, std::uint32_t left, std::uint32_t
     dir_bound = bound > dir_bound ? bound : dir_bound;
   }
   packet.dir_max = dir_max;
+  packet.range_factor = dir_max > 1.0f ? dir_max : 1.0f;
   packet.corner_widening = 1.0f + kCornerErrorFactor / kEdgeErrorFactor * (dir_bound / dir_max);
 }
 
