@@ -196,7 +196,7 @@ Status survey(const MeshView& mesh, KeptTriangles& kept) {
 // A set of macrocells within a window of their linear order that fits the stack.
 class MacroWindow {
  public:
-  static constexpr std::uint64_t kMacroCells = 20480;
+  static constexpr std::uint64_t kMacroCells = 16384;
 
   void move_to(std::uint64_t begin) {
     begin_ = begin;

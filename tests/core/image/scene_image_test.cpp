@@ -1,0 +1,343 @@
+// Scene image: every hostile byte is refused or harmless. SPDX-License-Identifier: Apache-2.0
+#include <gridiron/image/scene_image.h>
+#include <gtest/gtest.h>
+
+#include <cstdint>
+#include <cstring>
+#include <functional>
+#include <limits>
+#include <string>
+#include <vector>
+
+#include "core/grid/built_image.h"
+#include "support/test_mesh.h"
+
+namespace gridiron::test {
+namespace {
+
+template <class Record>
+void write_record(LineBuffer& image, std::uint64_t offset, const Record& record) {
+  ASSERT_LE(offset + sizeof(Record), image.bytes().size());
+  std::memcpy(image.bytes().data() + offset, &record, sizeof(Record));
+}
+
+template <class Record>
+void edit(LineBuffer& image, std::uint64_t offset, const std::function<void(Record&)>& change) {
+  auto record = read_record<Record>(image.bytes(), offset);
+  change(record);
+  write_record(image, offset, record);
+}
+
+void renew_check_value(LineBuffer& image) {
+  const std::uint64_t value = scene_image_check_value(image.bytes());
+  edit<ImageHeader>(image, 0, [&](ImageHeader& header) { header.check_value = value; });
+}
+
+// Opens; where that succeeds, reads everything as the kernel would, with every read checked.
+Status open_and_read(const LineBuffer& image, SceneImageError& error) {
+  SceneImageView view{};
+  const Status status = open_scene_image(image.bytes(), view, error);
+  if (status != Status::kOk) {
+    EXPECT_NE(std::string(error.field), "");
+    EXPECT_EQ(error.status, status);
+    EXPECT_LE(error.byte_offset, image.bytes().size());
+    return status;
+  }
+  std::uint64_t references = 0;
+  for (const auto& ids : read_cells(image.bytes(), view)) {
+    references += ids.size();
+    for (const std::uint32_t id : ids) EXPECT_LT(id, view.header.triangle_count);
+  }
+  EXPECT_EQ(references, view.grid.reference_count);
+  return status;
+}
+
+BuiltImage small_image(TriangleFormat format, std::uint32_t macro_width = 2) {
+  TestMesh mesh = make_triangle({0, 0, 0}, {1, 0.5f, 0.25f}, {0.25f, 1, 0.75f});
+  mesh.append(make_triangle({0.5f, 0.5f, 0.5f}, {1, 0.5f, 1}, {0.25f, 0.75f, 0.125f}));
+  return build_image(mesh.view(), {4.0f, macro_width, format});
+}
+
+class Formats : public ::testing::TestWithParam<TriangleFormat> {};
+
+TEST_P(Formats, EveryFlippedBitIsSeenByTheCheckValue) {
+  BuiltImage built = small_image(GetParam());
+  ASSERT_FALSE(HasFailure());
+  for (std::size_t i = 0; i < built.image.bytes().size(); ++i) {
+    for (int bit = 0; bit < 8; ++bit) {
+      built.image.bytes()[i] ^= std::byte{1} << bit;
+      SceneImageError error;
+      SceneImageView view{};
+      ASSERT_EQ(open_scene_image(built.image.bytes(), view, error), Status::kBadImage)
+          << "byte " << i << " bit " << bit;
+      built.image.bytes()[i] ^= std::byte{1} << bit;
+    }
+  }
+}
+
+TEST_P(Formats, EveryChangedByteIsRefusedOrHarmless) {
+  const BuiltImage built = small_image(GetParam());
+  ASSERT_FALSE(HasFailure());
+  int refused = 0;
+  for (std::size_t i = 0; i < built.image.bytes().size(); ++i) {
+    for (const int change : {1, 2, 0x10, 0x80, 0xFF}) {
+      LineBuffer image = built.image;
+      image.bytes()[i] ^= static_cast<std::byte>(change);
+      renew_check_value(image);
+      SceneImageError error;
+      if (open_and_read(image, error) != Status::kOk) ++refused;
+      ASSERT_FALSE(HasFailure()) << "byte " << i << " change " << change;
+    }
+  }
+  EXPECT_GT(refused, 500);
+}
+
+INSTANTIATE_TEST_SUITE_P(All, Formats, ::testing::Values(TriangleFormat::kVertices, TriangleFormat::kProjection));
+
+TEST(SceneImage, EveryTruncationIsRefused) {
+  const BuiltImage built = small_image(TriangleFormat::kVertices);
+  SceneImageError error;
+  SceneImageView view{};
+  for (std::size_t bytes = 0; bytes < built.image.bytes().size(); ++bytes) {
+    ASSERT_EQ(open_scene_image(built.image.bytes().first(bytes), view, error), Status::kBadImage) << bytes;
+  }
+  // A prefix that claims to be whole, with a check value to match.
+  for (std::size_t bytes = kLineBytes; bytes < built.image.bytes().size(); bytes += kLineBytes) {
+    LineBuffer image(bytes);
+    std::memcpy(image.bytes().data(), built.image.bytes().data(), bytes);
+    edit<ImageHeader>(image, 0, [&](ImageHeader& header) { header.image_bytes = bytes; });
+    renew_check_value(image);
+    ASSERT_EQ(open_scene_image(image.bytes(), view, error), Status::kBadImage) << bytes;
+  }
+}
+
+TEST(SceneImage, BytesBehindTheImageDoNotMatter) {
+  const BuiltImage built = small_image(TriangleFormat::kVertices);
+  LineBuffer longer(built.image.bytes().size() + 333, std::byte{0x5A});
+  std::memcpy(longer.bytes().data(), built.image.bytes().data(), built.image.bytes().size());
+  SceneImageError error;
+  SceneImageView view{};
+  EXPECT_EQ(open_scene_image(longer.bytes(), view, error), Status::kOk);
+}
+
+TEST(SceneImage, MisalignedIsRefused) {
+  const BuiltImage built = small_image(TriangleFormat::kVertices);
+  LineBuffer moved(built.image.bytes().size() + 64);
+  std::memcpy(moved.bytes().data() + 64, built.image.bytes().data(), built.image.bytes().size());
+  SceneImageError error;
+  SceneImageView view{};
+  EXPECT_EQ(open_scene_image(moved.bytes().subspan(64), view, error), Status::kBadImage);
+  EXPECT_STREQ(error.field, "image");
+}
+
+TEST(SceneImage, AFailureLeavesTheViewAlone) {
+  const BuiltImage built = small_image(TriangleFormat::kVertices);
+  SceneImageView view{};
+  view.cell_blocks_offset_bytes = 77;
+  SceneImageError error;
+  EXPECT_EQ(open_scene_image(built.image.bytes().first(200), view, error), Status::kBadImage);
+  EXPECT_EQ(view.cell_blocks_offset_bytes, 77u);
+}
+
+// --- Errors by name -----------------------------------------------------------------------------------------------
+
+struct Damage {
+  const char* name;
+  const char* field;
+  std::function<std::uint64_t(LineBuffer&, const SceneImageView&)> apply;  // @returns the field's byte offset
+};
+
+constexpr std::uint64_t kTableOffset = 128;
+constexpr std::uint64_t kGridOffset = 256;
+
+std::uint64_t entry_offset(SectionKind kind) {
+  return kTableOffset + (static_cast<std::uint64_t>(kind) - 1) * sizeof(SectionEntry);
+}
+
+#define DAMAGE_IN(label, field_name, record, member, base, statement)      \
+  Damage {                                                                 \
+    label, field_name, [](LineBuffer& image, const SceneImageView& view) { \
+      const std::uint64_t offset = (base);                                 \
+      edit<record>(image, offset, [&](record& r) {                         \
+        (void)view;                                                        \
+        statement;                                                         \
+      });                                                                  \
+      return offset + offsetof(record, member);                            \
+    }                                                                      \
+  }
+#define HEADER_DAMAGE(label, member, statement) \
+  DAMAGE_IN(label, "header." #member, ImageHeader, member, 0 * view.grid.lambda == 0 ? 0u : 0u, statement)
+#define GRID_DAMAGE(label, member, statement) \
+  DAMAGE_IN(label, "grid." #member, GridRecord, member, 0 * view.grid.lambda == 0 ? kGridOffset : 0u, statement)
+#define SECTION_DAMAGE(label, kind, member, statement) \
+  DAMAGE_IN(label, "section." #member, SectionEntry, member, entry_offset(kind), statement)
+
+constexpr float kNan = std::numeric_limits<float>::quiet_NaN();
+constexpr float kInfinity = std::numeric_limits<float>::infinity();
+
+const Damage kDamages[] = {
+    HEADER_DAMAGE("magic", magic, r.magic ^= 1),
+    HEADER_DAMAGE("version", version, r.version = 2),
+    HEADER_DAMAGE("odd_image_bytes", image_bytes, r.image_bytes -= 64),
+    HEADER_DAMAGE("no_image_bytes", image_bytes, r.image_bytes = 0),
+    HEADER_DAMAGE("too_many_image_bytes", image_bytes, r.image_bytes += kLineBytes),
+    HEADER_DAMAGE("enormous_image_bytes", image_bytes, r.image_bytes = ~std::uint64_t{127}),
+    HEADER_DAMAGE("no_sections", section_count, r.section_count = 0),
+    HEADER_DAMAGE("a_section_missing", section_count, r.section_count = 3),
+    HEADER_DAMAGE("too_many_sections", section_count, r.section_count = kMaxSectionCount + 1),
+    HEADER_DAMAGE("section_table_in_header", section_table_offset_bytes, r.section_table_offset_bytes = 56),
+    HEADER_DAMAGE("section_table_misaligned", section_table_offset_bytes, r.section_table_offset_bytes = 132),
+    HEADER_DAMAGE("section_table_beyond", section_table_offset_bytes, r.section_table_offset_bytes = 0xFFFFFFF8u),
+    HEADER_DAMAGE("no_triangles", triangle_count, r.triangle_count = 0),
+    HEADER_DAMAGE("all_dropped", dropped_triangle_count, r.dropped_triangle_count = r.triangle_count),
+    HEADER_DAMAGE("reserved", reserved, r.reserved[4] = 1),
+    SECTION_DAMAGE("section_misaligned", SectionKind::kGrid, offset_bytes, r.offset_bytes += 64),
+    SECTION_DAMAGE("section_in_header", SectionKind::kGrid, offset_bytes, r.offset_bytes = 0),
+    SECTION_DAMAGE("section_on_table", SectionKind::kGrid, offset_bytes, r.offset_bytes = kTableOffset),
+    SECTION_DAMAGE("section_beyond", SectionKind::kTriangles, offset_bytes, r.offset_bytes = ~std::uint64_t{127}),
+    SECTION_DAMAGE("section_on_another", SectionKind::kCellBlocks, offset_bytes, r.offset_bytes = kGridOffset),
+    SECTION_DAMAGE("section_too_long", SectionKind::kTriangles, section_bytes, r.section_bytes += kLineBytes),
+    SECTION_DAMAGE("section_wraps", SectionKind::kTriangles, section_bytes, r.section_bytes = ~std::uint64_t{127}),
+    SECTION_DAMAGE("section_odd", SectionKind::kTriangles, section_bytes, r.section_bytes -= 16),
+    SECTION_DAMAGE("elements_exceed", SectionKind::kTriangles, element_count, r.element_count = ~std::uint64_t{0}),
+    SECTION_DAMAGE("element_count_off", SectionKind::kTriangles, element_count, r.element_count -= 1),
+    SECTION_DAMAGE("element_bytes_off", SectionKind::kTriangles, element_bytes, r.element_bytes = 32),
+    SECTION_DAMAGE("blocks_off", SectionKind::kCellBlocks, element_count, r.element_count -= 1),
+    SECTION_DAMAGE("macro_entries_off", SectionKind::kMacroTable, element_count, r.element_count += 1),
+    SECTION_DAMAGE("kind_twice", SectionKind::kMacroTable, kind, r.kind = 1),
+    GRID_DAMAGE("minimum_nan", minimum, r.minimum[2] = kNan),
+    GRID_DAMAGE("scale_zero", cells_per_unit, r.cells_per_unit[0] = 0.0f),
+    GRID_DAMAGE("scale_negative", cells_per_unit, r.cells_per_unit[1] = -1.0f),
+    GRID_DAMAGE("scale_infinite", cells_per_unit, r.cells_per_unit[2] = kInfinity),
+    GRID_DAMAGE("scale_nan", cells_per_unit, r.cells_per_unit[2] = kNan),
+    GRID_DAMAGE("no_cells", cell_count, r.cell_count[0] = 0),
+    GRID_DAMAGE("too_many_cells", cell_count, r.cell_count[1] = kMaxCellsPerAxis + 1),
+    GRID_DAMAGE("macro_cells_off", macro_cell_count, r.macro_cell_count[2] += 1),
+    GRID_DAMAGE("macro_width_zero", macro_width, r.macro_width = 0),
+    GRID_DAMAGE("macro_width_nine", macro_width, r.macro_width = 9),
+    GRID_DAMAGE("block_bytes", cell_block_bytes, r.cell_block_bytes += kLineBytes),
+    GRID_DAMAGE("no_blocks", cell_block_count, r.cell_block_count = 0),
+    GRID_DAMAGE("format", triangle_format, r.triangle_format = 3),
+    GRID_DAMAGE("triangle_bytes", triangle_bytes, r.triangle_bytes = 64),
+    GRID_DAMAGE("bounds_below", bounds_minimum, r.bounds_minimum[0] = r.minimum[0] - 1),
+    GRID_DAMAGE("bounds_nan", bounds_maximum, r.bounds_maximum[0] = kNan),
+    GRID_DAMAGE("bounds_above", bounds_maximum, r.bounds_maximum[1] *= 1.5f),
+    GRID_DAMAGE("bounds_reversed", bounds_maximum, r.bounds_maximum[1] = r.bounds_minimum[1] - 1),
+    GRID_DAMAGE("lambda", lambda, r.lambda = kNan),
+    GRID_DAMAGE("grid_reserved", reserved, r.reserved[6] = 1),
+    DAMAGE_IN("first_block", "macro_table.first_block", MacroTableEntry, first_block, view.macro_table_offset_bytes,
+              r.first_block = 2),
+    DAMAGE_IN("occupied_beyond", "macro_table.occupied", MacroTableEntry, occupied, view.macro_table_offset_bytes,
+              r.occupied |= 0x80000000u),
+    DAMAGE_IN("block_zero_first", "cell.first_triangle", CellRecord, first_triangle, view.cell_blocks_offset_bytes + 8,
+              r.first_triangle = 1),
+    DAMAGE_IN("block_zero_count", "cell.triangle_count", CellRecord, triangle_count, view.cell_blocks_offset_bytes + 8,
+              r.triangle_count = 1),
+    DAMAGE_IN("cell_first", "cell.first_triangle", CellRecord, first_triangle,
+              view.cell_blocks_offset_bytes + view.grid.cell_block_bytes, r.first_triangle += 1),
+    DAMAGE_IN("cell_count", "cell.triangle_count", CellRecord, triangle_count,
+              view.cell_blocks_offset_bytes + view.grid.cell_block_bytes, r.triangle_count = 0xFFFFFFFFu),
+    DAMAGE_IN("triangle_nan", "triangle.v", VertexTriangle, v, view.triangles_offset_bytes + 48, r.v[2][1] = kNan),
+    DAMAGE_IN("triangle_infinite", "triangle.v", VertexTriangle, v, view.triangles_offset_bytes,
+              r.v[0][0] = -kInfinity),
+    DAMAGE_IN("triangle_reserved", "triangle.reserved", VertexTriangle, reserved, view.triangles_offset_bytes,
+              r.reserved[1] = 5),
+    DAMAGE_IN("triangle_id", "triangle.triangle_id", VertexTriangle, triangle_id, view.triangles_offset_bytes,
+              r.triangle_id = view.header.triangle_count),
+};
+
+class Damages : public ::testing::TestWithParam<Damage> {};
+
+TEST_P(Damages, AreNamedWithTheirPlace) {
+  BuiltImage built = small_image(TriangleFormat::kVertices);
+  ASSERT_FALSE(HasFailure());
+  const std::uint64_t expected = GetParam().apply(built.image, built.view);
+  renew_check_value(built.image);
+  SceneImageError error;
+  EXPECT_EQ(open_and_read(built.image, error), Status::kBadImage);
+  EXPECT_STREQ(error.field, GetParam().field);
+  EXPECT_EQ(error.byte_offset, expected);
+}
+INSTANTIATE_TEST_SUITE_P(All, Damages, ::testing::ValuesIn(kDamages), [](const auto& test) { return test.param.name; });
+
+TEST(SceneImage, ProjectionAxisAboveTwoIsRefused) {
+  BuiltImage built = small_image(TriangleFormat::kProjection);
+  edit<ProjectionTriangle>(built.image, built.view.triangles_offset_bytes, [](auto& r) { r.axis_k = 3; });
+  renew_check_value(built.image);
+  SceneImageError error;
+  EXPECT_EQ(open_and_read(built.image, error), Status::kBadImage);
+  EXPECT_STREQ(error.field, "triangle.axis_k");
+}
+
+TEST(SceneImage, IdsMustAscendWithinACell) {
+  TestMesh mesh = make_triangle({0, 0, 0}, {1, 0, 0}, {0, 1, 0});
+  mesh.triangles.push_back(mesh.triangles[0]);
+  BuiltImage built = build_image(mesh.view(), {0.01f, 1, TriangleFormat::kVertices});
+  ASSERT_EQ(built.view.grid.reference_count, 2u);
+  edit<VertexTriangle>(built.image, built.view.triangles_offset_bytes, [](auto& r) { r.triangle_id = 1; });
+  renew_check_value(built.image);
+  SceneImageError error;
+  EXPECT_EQ(open_and_read(built.image, error), Status::kBadImage);
+  EXPECT_STREQ(error.field, "triangle.triangle_id");
+}
+
+// --- Sections of kinds yet to come --------------------------------------------------------------------------------
+
+// The image with its section table moved behind it and one more section of an unknown kind at the very end.
+LineBuffer with_unknown_section(const BuiltImage& built, std::uint64_t unknown_offset_from_end) {
+  const std::size_t size = built.image.bytes().size();
+  LineBuffer image(size + 3 * kLineBytes);
+  std::memcpy(image.bytes().data(), built.image.bytes().data(), size);
+  std::memcpy(image.bytes().data() + size, built.image.bytes().data() + kTableOffset, 4 * sizeof(SectionEntry));
+  const SectionEntry unknown{1000, 1, size + 3 * kLineBytes - unknown_offset_from_end, kLineBytes, kLineBytes};
+  write_record(image, size + 4 * sizeof(SectionEntry), unknown);
+  edit<ImageHeader>(image, 0, [&](ImageHeader& header) {
+    header.image_bytes = size + 3 * kLineBytes;
+    header.section_count = 5;
+    header.section_table_offset_bytes = static_cast<std::uint32_t>(size);
+  });
+  renew_check_value(image);
+  return image;
+}
+
+TEST(SceneImage, UnknownSectionsAreSkipped) {
+  const BuiltImage built = small_image(TriangleFormat::kVertices);
+  SceneImageError error;
+  EXPECT_EQ(open_and_read(with_unknown_section(built, kLineBytes), error), Status::kOk) << error.field;
+}
+
+TEST(SceneImage, UnknownSectionsMayNotOverlapEither) {
+  const BuiltImage built = small_image(TriangleFormat::kVertices);
+  SceneImageError error;
+  EXPECT_EQ(open_and_read(with_unknown_section(built, 2 * kLineBytes), error), Status::kBadImage) << "on the table";
+  EXPECT_STREQ(error.field, "section.offset_bytes");
+  EXPECT_EQ(open_and_read(with_unknown_section(built, 4 * kLineBytes), error), Status::kBadImage) << "on the triangles";
+  EXPECT_STREQ(error.field, "section.offset_bytes");
+  EXPECT_EQ(open_and_read(with_unknown_section(built, 0), error), Status::kBadImage) << "beyond the end";
+  EXPECT_STREQ(error.field, "section.section_bytes");
+}
+
+// --- Check value --------------------------------------------------------------------------------------------------
+
+// The definition of SPEC.md, word by word.
+std::uint64_t check_value_by_the_book(std::span<const std::byte> bytes) {
+  std::vector<std::uint64_t> streams(8, 0xcbf29ce484222325u);
+  for (std::size_t i = 0; i < bytes.size() / 8; ++i) {
+    std::uint64_t word = 0;
+    for (std::size_t k = 0; k < 8; ++k) word |= std::to_integer<std::uint64_t>(bytes[8 * i + k]) << (8 * k);
+    if (i == 2) word = 0;  // the field itself
+    streams[i % 8] = (streams[i % 8] ^ word) * 0x100000001b3u;
+  }
+  std::uint64_t value = 0xcbf29ce484222325u;
+  for (const std::uint64_t stream : streams) value = (value ^ stream) * 0x100000001b3u;
+  return value;
+}
+
+TEST(CheckValue, IsWhatTheSpecificationSays) {
+  const BuiltImage built = small_image(TriangleFormat::kVertices);
+  EXPECT_EQ(built.view.header.check_value, check_value_by_the_book(built.image.bytes()));
+  EXPECT_EQ(scene_image_check_value(built.image.bytes()), built.view.header.check_value);
+}
+
+}  // namespace
+}  // namespace gridiron::test
