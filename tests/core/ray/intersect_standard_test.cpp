@@ -1,0 +1,351 @@
+// The `standard` test against exact arithmetic: which rays hit, at which float, whose triangle it is.
+// SPDX-License-Identifier: Apache-2.0
+#include <gridiron/ray/intersect_standard.h>
+#include <gridiron/render/camera.h>
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <bit>
+#include <cmath>
+#include <cstdint>
+#include <string>
+#include <vector>
+
+#include "core/ray/packet_cases.h"
+#include "core/seeds.h"
+#include "support/test_mesh.h"
+
+namespace gridiron::test {
+namespace {
+
+using SmallPacket = Packet<4>;
+constexpr std::uint32_t kRays = SmallPacket::kRayCount;
+
+bool all_seeds_run() {
+  return std::getenv("GRIDIRON_TEST_SEED") == nullptr;
+}
+
+template <class PacketType>
+void reset_hits(PacketType& packet, float t_far) {
+  for (std::uint32_t ray = 0; ray < PacketType::kRayCount; ++ray) {
+    packet.t[ray] = t_far;
+    packet.id[ray] = kNoTriangle;
+    packet.facing[ray] = -1.0f;
+  }
+}
+
+template <class PacketType>
+void activate_all(PacketType& packet) {
+  for (std::uint32_t ray = 0; ray < PacketType::kRayCount; ++ray) packet.active.insert(ray);
+}
+
+bool same_bits(float a, float b) {
+  return std::bit_cast<std::uint32_t>(a) == std::bit_cast<std::uint32_t>(b);
+}
+
+template <class L>
+class StandardTest : public testing::Test {};
+struct LaneNames {
+  template <class L>
+  static std::string GetName(int) {
+    return "W" + std::to_string(L::kCount);
+  }
+};
+using LaneTypes = testing::Types<Lanes<4>, Lanes<8>, Lanes<16>>;
+TYPED_TEST_SUITE(StandardTest, LaneTypes, LaneNames);
+
+TYPED_TEST(StandardTest, EveryRayHoldsTheLeastDistanceAndIdOfExactArithmetic) {
+  std::uint64_t hits = 0;
+  std::uint64_t ties = 0;
+  for_each_seed(1500, [&](std::uint64_t seed) {
+    TestRandom random(seed);
+    const TriangleCase shown = random_triangles(random, 4);
+    SmallPacket packet{};
+    aim_at(random, shown, packet);
+    packet.active.clear();
+    for (std::uint32_t ray = 0; ray < kRays; ++ray) {
+      if (random.below(8) != 0) packet.active.insert(ray);
+    }
+    std::vector<std::size_t> order(shown.triangles.size());
+    for (std::size_t i = 0; i < order.size(); ++i) order[i] = i;
+    WorkCounters work;
+    SmallPacket first_result{};
+    for (int round = 0; round < 2; ++round) {
+      reset_hits(packet, kFloatMax);
+      for (const std::size_t i : order) {
+        const SmallPacket before = packet;
+        const bool changed = intersect_standard<TypeParam, false>(packet, shown.triangles[i], false, work);
+        bool differs = false;
+        for (std::uint32_t ray = 0; ray < kRays; ++ray) {
+          differs = differs || packet.id[ray] != before.id[ray] || !same_bits(packet.t[ray], before.t[ray]);
+        }
+        ASSERT_EQ(changed, differs) << "seed " << seed << ", triangle " << i;
+      }
+      if (round == 0) first_result = packet;
+      std::reverse(order.begin(), order.end());
+    }
+    for (std::uint32_t ray = 0; ray < kRays; ++ray) {
+      float best = kFloatMax;
+      std::uint32_t best_id = kNoTriangle;
+      if (packet.active.contains(ray)) {
+        const float direction[3] = {packet.dir[0][ray], packet.dir[1][ray], packet.dir[2][ray]};
+        for (const VertexTriangle& triangle : shown.triangles) {
+          const float t = true_distance(packet.origin, direction, triangle);
+          if (!(t > 0.0f)) continue;
+          ++hits;
+          ties += t == best && best_id != kNoTriangle ? 1u : 0u;
+          if (t < best || (t == best && triangle.triangle_id < best_id)) {
+            best = t;
+            best_id = triangle.triangle_id;
+          }
+        }
+      }
+      ASSERT_TRUE(same_bits(packet.t[ray], best) && packet.id[ray] == best_id)
+          << "seed " << seed << ", ray " << ray << ": t " << std::hexfloat << packet.t[ray] << " of " << packet.id[ray]
+          << " instead of " << best << " of " << best_id;
+      ASSERT_TRUE(same_bits(first_result.t[ray], best) && first_result.id[ray] == best_id)
+          << "the order of the triangles matters, seed " << seed << ", ray " << ray;
+      ASSERT_EQ(packet.facing[ray], -1.0f);
+    }
+  });
+  if (all_seeds_run()) {
+    EXPECT_GT(hits, 10000u);
+    EXPECT_GT(ties, 1000u);
+  }
+}
+
+TYPED_TEST(StandardTest, LimitIsClosed) {
+  std::uint64_t hits = 0;
+  for_each_seed(1500, [&](std::uint64_t seed) {
+    TestRandom random(seed);
+    TriangleCase shown = random_triangles(random, 1);
+    shown.triangles.resize(1);
+    const VertexTriangle& triangle = shown.triangles[0];
+    SmallPacket packet{};
+    aim_at(random, shown, packet);
+    activate_all(packet);
+    WorkCounters work;
+    reset_hits(packet, kFloatMax);
+    (void)intersect_standard<TypeParam, false>(packet, triangle, false, work);
+    const SmallPacket free = packet;
+    reset_hits(packet, kFloatMax);
+    for (std::uint32_t ray = 0; ray < kRays; ++ray) packet.t[ray] = free.t[ray];
+    (void)intersect_standard<TypeParam, false>(packet, triangle, false, work);
+    for (std::uint32_t ray = 0; ray < kRays; ++ray) {
+      ASSERT_EQ(packet.id[ray], free.id[ray]) << "a hit at t_far counts, seed " << seed << ", ray " << ray;
+      ASSERT_EQ(packet.t[ray], free.t[ray]) << "seed " << seed << ", ray " << ray;
+    }
+    reset_hits(packet, kFloatMax);
+    for (std::uint32_t ray = 0; ray < kRays; ++ray) packet.t[ray] = std::nextafter(free.t[ray], 0.0f);
+    EXPECT_FALSE((intersect_standard<TypeParam, false>(packet, triangle, false, work))) << "seed " << seed;
+    for (std::uint32_t ray = 0; ray < kRays; ++ray) {
+      hits += free.id[ray] != kNoTriangle ? 1u : 0u;
+      ASSERT_EQ(packet.id[ray], kNoTriangle) << "a hit behind t_far, seed " << seed << ", ray " << ray;
+    }
+  });
+  if (all_seeds_run()) {
+    EXPECT_GT(hits, 2000u);
+  }
+}
+
+TYPED_TEST(StandardTest, OriginOnATriangleDoesNotHitIt) {
+  VertexTriangle triangle;
+  set_triangle(triangle, {0, 0, 0}, {4, 0, 0}, {0, 4, 0}, 7);
+  const Vec3 origins[] = {{1, 1, 0}, {0, 0, 0}, {2, 2, 0}, {2, 0, 0}, {9, 9, 0}};
+  for (const Vec3& origin : origins) {
+    SmallPacket packet{};
+    TestRandom random(1);
+    for (int axis = 0; axis < 3; ++axis) {
+      packet.origin[axis] = origin[axis];
+      for (std::uint32_t ray = 0; ray < kRays; ++ray) packet.dir[axis][ray] = random.between(-1, 1);
+    }
+    packet.dir_max = 1.0f;
+    activate_all(packet);
+    reset_hits(packet, kFloatMax);
+    WorkCounters work;
+    EXPECT_FALSE((intersect_standard<TypeParam, false>(packet, triangle, false, work)));
+    for (const std::uint32_t id : packet.id) EXPECT_EQ(id, kNoTriangle);
+  }
+}
+
+TYPED_TEST(StandardTest, FacingIsTheCosineOfTheUnitNormal) {
+  for_each_seed(500, [&](std::uint64_t seed) {
+    TestRandom random(seed);
+    const float scale = random.below(2) == 0 ? 1.0f : 1e15f;
+    const Vec3 a = random_vec(random, scale), b = random_vec(random, scale), c = random_vec(random, scale);
+    VertexTriangle triangle;
+    set_triangle(triangle, a, b, c, 1);
+    const DVec3 u = DVec3(b) - DVec3(a), v = DVec3(c) - DVec3(a);
+    const DVec3 normal(u.y * v.z - u.z * v.y, u.z * v.x - u.x * v.z, u.x * v.y - u.y * v.x);
+    const double length = std::sqrt(normal.x * normal.x + normal.y * normal.y + normal.z * normal.z);
+    const TriangleCase shown{{0.1f * scale, -3.0f * scale, 2.0f * scale}, {triangle}};
+    SmallPacket packet{};
+    aim_at(random, shown, packet);
+    activate_all(packet);
+    reset_hits(packet, kFloatMax);
+    WorkCounters work;
+    (void)intersect_standard<TypeParam, true>(packet, triangle, false, work);
+    for (std::uint32_t ray = 0; ray < kRays; ++ray) {
+      if (packet.id[ray] == kNoTriangle) {
+        ASSERT_EQ(packet.facing[ray], -1.0f);
+        continue;
+      }
+      const double along =
+          normal.x * packet.dir[0][ray] + normal.y * packet.dir[1][ray] + normal.z * packet.dir[2][ray];
+      ASSERT_NEAR(packet.facing[ray], std::fabs(along) / length, 1e-6 * packet.dir_max) << "seed " << seed;
+    }
+  });
+}
+
+TYPED_TEST(StandardTest, FilterDecidesOrdinaryRays) {
+  // Integers are for the rare ray, or the test would be too slow to be of use.
+  WorkCounters work;
+  std::uint64_t rays = 0;
+  for (std::uint64_t seed = 1; seed <= 2000; ++seed) {
+    TestRandom random(seed);
+    VertexTriangle triangle;
+    set_triangle(triangle, random_vec(random, 1), random_vec(random, 1), random_vec(random, 1), 1);
+    SmallPacket packet{};
+    packet.origin[2] = 4.0f;
+    for (std::uint32_t ray = 0; ray < kRays; ++ray) {
+      packet.dir[0][ray] = random.between(-0.25f, 0.25f);
+      packet.dir[1][ray] = random.between(-0.25f, 0.25f);
+      packet.dir[2][ray] = -1.0f;
+    }
+    packet.dir_max = 1.0f;
+    activate_all(packet);
+    reset_hits(packet, kFloatMax);
+    (void)intersect_standard<TypeParam, false>(packet, triangle, false, work);
+    rays += kRays;
+  }
+  EXPECT_LT(work[Work::kExactSign], 3u);
+  EXPECT_LT(work[Work::kExactDistance], 3u);
+  EXPECT_LT(work[Work::kDoubleSign], rays / 1000);
+}
+
+// A frame whose pixels the packets of the tests below are.
+FrameRecord random_frame(TestRandom& random) {
+  FrameRecord frame{};
+  frame.width = frame.height = 16384;
+  frame.t_far = kFloatMax;
+  const Vec3 eye = random_vec(random, std::ldexp(1.0f, static_cast<int>(random.below(12))));
+  const float pixel = std::ldexp(0.5f + random.unit(), -4 - static_cast<int>(random.below(11)));
+  Vec3 right = random_vec(random, 1.0f);
+  Vec3 down = random_vec(random, 1.0f);
+  if (random.below(3) == 0) {
+    right = {1, 0, 0};
+    down = {0, -1, 0};
+  }
+  const Vec3 forward(right.y * down.z - right.z * down.y, right.z * down.x - right.x * down.z,
+                     right.x * down.y - right.y * down.x);
+  for (int axis = 0; axis < 3; ++axis) {
+    frame.eye[axis] = eye[axis];
+    frame.step_x[axis] = right[axis] * pixel;
+    frame.step_y[axis] = down[axis] * pixel;
+    frame.corner[axis] = forward[axis] - right[axis] - down[axis];
+  }
+  return frame;
+}
+
+// A triangle outside of one side of a packet, its near edge along that side within rounding.
+template <class PacketType>
+VertexTriangle triangle_at_the_border(TestRandom& random, const PacketType& packet) {
+  constexpr std::uint32_t kLast = PacketType::kWidth - 1;
+  constexpr std::uint32_t kCorners[4] = {0, kLast, PacketType::kRayCount - 1, PacketType::kRayCount - 1 - kLast};
+  const std::uint32_t side = random.below(4);
+  const auto point = [&](std::uint32_t ray, float t) {
+    return Vec3(packet.origin[0], packet.origin[1], packet.origin[2]) +
+           t * Vec3(packet.dir[0][ray], packet.dir[1][ray], packet.dir[2][ray]);
+  };
+  const Vec3 from = point(kCorners[side], 1.0f + 4.0f * random.unit());
+  const Vec3 to = point(kCorners[(side + 1) % 4], 1.0f + 4.0f * random.unit());
+  const Vec3 other = point(kCorners[(side + 2) % 4], 1.0f + 4.0f * random.unit());
+  // Longer than the side on both ends; shorter, now and then.
+  const float longer = random.below(4) == 0 ? -0.3f : 2.0f * random.unit();
+  const Vec3 a = from - longer * (to - from);
+  const Vec3 b = to + longer * (to - from);
+  const Vec3 outward = (random.below(8) == 0 ? 1.0f : -1.0f) * (other - to);
+  VertexTriangle triangle;
+  set_triangle(triangle, a, b, to + (0.1f + random.unit()) * outward, 5);
+  return triangle;
+}
+
+TYPED_TEST(StandardTest, CornerCullingDropsNoHit) {
+  using WidePacket = Packet<8>;
+  std::uint64_t culled = 0;
+  std::uint64_t hit = 0;
+  for_each_seed(5000, [&](std::uint64_t seed) {
+    TestRandom random(seed);
+    const FrameRecord frame = random_frame(random);
+    RaySet<WidePacket::kRayCount> present;
+    WidePacket packet{};
+    WorkCounters work;
+    generate_packet<TypeParam>(frame, 8 * random.below(2048), 8 * random.below(2048), packet, present, work);
+    packet.active = present;
+    for (int i = 0; i < 80; ++i) {
+      const VertexTriangle triangle = triangle_at_the_border(random, packet);
+      reset_hits(packet, kFloatMax);
+      work = WorkCounters{};
+      const bool with_culling = intersect_standard<TypeParam, false>(packet, triangle, true, work);
+      if (work[Work::kGroupTestStandard] != 0) {  // not culled: the same code as without
+        hit += with_culling ? 1u : 0u;
+        continue;
+      }
+      ++culled;
+      ASSERT_FALSE((intersect_standard<TypeParam, false>(packet, triangle, false, work)))
+          << "culled, but hit: seed " << seed << ", pair " << i;
+    }
+  });
+  if (all_seeds_run()) {
+    EXPECT_GT(culled, 40000u);
+    EXPECT_GT(hit, 40000u);
+  }
+}
+
+TYPED_TEST(StandardTest, NoRayLeavesAClosedSphere) {
+  using WidePacket = Packet<16>;
+  const TestMesh sphere = make_sphere(10, 13, 1.0f);
+  std::vector<VertexTriangle> triangles(sphere.triangles.size());
+  for (std::size_t i = 0; i < triangles.size(); ++i) {
+    const UVec3& t = sphere.triangles[i];
+    set_triangle(triangles[i], sphere.vertices[t.x], sphere.vertices[t.y], sphere.vertices[t.z],
+                 static_cast<std::uint32_t>(i));
+  }
+  std::uint64_t rays = 0;
+  WorkCounters work;
+  for_each_seed(1350, [&](std::uint64_t seed) {
+    TestRandom random(seed);
+    WidePacket packet{};
+    // From anywhere inside: the insphere of this tessellation has a radius above 0.9.
+    const Vec3 origin = random_vec(random, 0.5f);
+    for (int axis = 0; axis < 3; ++axis) packet.origin[axis] = origin[axis];
+    for (std::uint32_t ray = 0; ray < WidePacket::kRayCount; ++ray) {
+      const UVec3& t = sphere.triangles[random.below(static_cast<std::uint32_t>(sphere.triangles.size()))];
+      const Vec3 a = sphere.vertices[t.x];
+      const Vec3 b = sphere.vertices[t.y];
+      const Vec3 p = ray % 2 == 0 ? a : a + random.unit() * (b - a);
+      for (int axis = 0; axis < 3; ++axis) {
+        const float value = p[axis] - origin[axis];
+        packet.dir[axis][ray] = value;
+        packet.dir_max = std::fmax(packet.dir_max, std::fabs(value));
+      }
+    }
+    activate_all(packet);
+    reset_hits(packet, kFloatMax);
+    for (const VertexTriangle& triangle : triangles) {
+      (void)intersect_standard<TypeParam, false>(packet, triangle, false, work);
+    }
+    for (std::uint32_t ray = 0; ray < WidePacket::kRayCount; ++ray) {
+      ASSERT_NE(packet.id[ray], kNoTriangle) << "seed " << seed << ", ray " << ray;
+      ASSERT_NEAR(packet.t[ray], 1.0f, 1e-5f) << "seed " << seed << ", ray " << ray;
+    }
+    rays += WidePacket::kRayCount;
+  });
+  if (all_seeds_run()) {
+    EXPECT_GT(rays * 3, 1000000u);  // over the three lane counts
+    EXPECT_GT(work[Work::kExactSign], 10000u) << "the rays are not hard enough";
+  }
+}
+
+}  // namespace
+}  // namespace gridiron::test

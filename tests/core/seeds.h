@@ -1,0 +1,29 @@
+// Seeds of property tests: as many as the test asks for, or the one that GRIDIRON_TEST_SEED names.
+// Memory: none. Threads: any. SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <gtest/gtest.h>
+
+#include <cstdint>
+#include <cstdlib>
+#include <string>
+
+namespace gridiron::test {
+
+/// Calls body(seed) for the seeds 1..count until one fails, and then says how to run that one alone.
+template <class Body>
+void for_each_seed(std::uint64_t count, Body&& body) {
+  const char* wanted = std::getenv("GRIDIRON_TEST_SEED");
+  const std::uint64_t only = wanted != nullptr ? std::strtoull(wanted, nullptr, 10) : 0;
+  const std::uint64_t first = only != 0 ? only : 1;
+  const std::uint64_t last = only != 0 ? only : count;
+  for (std::uint64_t seed = first; seed <= last; ++seed) {
+    body(seed);
+    if (testing::Test::HasFailure()) {
+      ADD_FAILURE() << "rerun with GRIDIRON_TEST_SEED=" << seed;
+      return;
+    }
+  }
+}
+
+}  // namespace gridiron::test

@@ -1,0 +1,28 @@
+# gridiron_lanes_test(NAME sources... LIBS libs...): a test for the baseline and, where compiler and host have them,
+# once more for AVX2 and AVX-512, whose lanes take other code paths. Each is a program of its own, so that no function
+# built for one instruction set can stand in for another's.
+include_guard(GLOBAL)
+include(CheckCXXSourceRuns)
+include(CMakePushCheckState)
+
+set(GRIDIRON_LANES_OPTIONS_avx2 -mavx2)
+set(GRIDIRON_LANES_OPTIONS_avx512 -mavx512f -mavx512bw -mavx512dq -mavx512vl)
+set(GRIDIRON_LANES_FEATURES_avx2 "__builtin_cpu_supports(\"avx2\")")
+set(GRIDIRON_LANES_FEATURES_avx512 "__builtin_cpu_supports(\"avx512dq\") && __builtin_cpu_supports(\"avx512vl\")")
+foreach(isa avx2 avx512)
+  cmake_push_check_state(RESET)
+  list(JOIN GRIDIRON_LANES_OPTIONS_${isa} " " CMAKE_REQUIRED_FLAGS)
+  check_cxx_source_runs(
+    "int main() { __builtin_cpu_init(); return (${GRIDIRON_LANES_FEATURES_${isa}}) ? 0 : 1; }" GRIDIRON_HOST_RUNS_${isa})
+  cmake_pop_check_state()
+endforeach()
+
+function(gridiron_lanes_test name)
+  gridiron_test(${name} ${ARGN})
+  foreach(isa avx2 avx512)
+    if(GRIDIRON_HOST_RUNS_${isa})
+      gridiron_test(${name}_${isa} ${ARGN})
+      target_compile_options(${name}_${isa} PRIVATE ${GRIDIRON_LANES_OPTIONS_${isa}})
+    endif()
+  endforeach()
+endfunction()
