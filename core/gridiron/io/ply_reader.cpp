@@ -130,11 +130,13 @@ PlyStep PlyReader::run(const std::byte* bytes, std::size_t count, bool at_end) {
     }
   }
   if (stage_ == Stage::kTrailer && pending_ == PlyEvent::kNeedInput) {
-    const bool ascii = header_.format == PlyFormat::kAscii;
-    if (!ascii) counts_.surplus_bytes += count - used;
-    for (; ascii && used < count; ++used) counts_.surplus_bytes += is_blank(text[used]) ? 0u : 1u;
-    used = count;
-    if (at_end) stage_ = Stage::kDone;
+    if (header_.format == PlyFormat::kAscii) {
+      ascii_trailer(text, count, used);
+    } else {
+      counts_.surplus_bytes += count - used;
+      used = count;
+    }
+    if (at_end && stage_ == Stage::kTrailer) stage_ = Stage::kDone;
   }
 
   offset_ += used;
@@ -165,8 +167,6 @@ void PlyReader::begin_element(std::uint32_t element) {
   property_ = 0;
   row_ = 0;
   in_list_ = false;
-  row_inside_line_ = false;
-  element_spans_lines_ = false;
   stage_ = element < element_count_ ? Stage::kBody : Stage::kTrailer;
   if (stage_ == Stage::kBody && header_.format != PlyFormat::kAscii) lay_out_rows();
 }
@@ -309,17 +309,8 @@ bool PlyReader::index(std::int64_t value, std::uint64_t byte_offset) {
 bool PlyReader::ascii_body(const char* text, std::size_t count, std::size_t& used, bool at_end) {
   while (stage_ == Stage::kBody && pending_ == PlyEvent::kNeedInput) {
     if (text_bytes_ == 0) {
-      for (; used < count && is_blank(text[used]); ++used) {
-        const char c = text[used];
-        if (c == '\r' || (c == '\n' && !after_return_)) {
-          ++line_;
-          line_has_token_ = false;
-        }
-        after_return_ = c == '\r';
-      }
-      if (used == count) return true;
-      after_return_ = false;
-      if (!token_begins(offset_ + used)) return false;
+      if (!skip_blanks(text, count, used)) return true;
+      if (!token_begins(offset_ + used, property_ == 0 && !in_list_)) return false;
     }
     std::size_t end = used;
     while (end < count && !is_blank(text[end])) ++end;
@@ -341,17 +332,42 @@ bool PlyReader::ascii_body(const char* text, std::size_t count, std::size_t& use
   return true;
 }
 
-// Rows are lines, or all rows of an element stand on one line. Anything between the two is what a header that declares
-// fewer values than the lines hold looks like; read as a stream it would give a wrong mesh without an error.
-bool PlyReader::token_begins(std::uint64_t byte_offset) {
-  const bool row_start = property_ == 0 && !in_list_;
+// Steps over blanks and counts lines. Returns false at the end of the piece.
+bool PlyReader::skip_blanks(const char* text, std::size_t count, std::size_t& used) {
+  for (; used < count && is_blank(text[used]); ++used) {
+    const char c = text[used];
+    if (c == '\r' || (c == '\n' && !after_return_)) {
+      ++line_;
+      line_has_token_ = false;
+    }
+    after_return_ = c == '\r';
+  }
+  if (used == count) return false;
+  after_return_ = false;
+  return true;
+}
+
+// Rows are lines, or the whole body is one line. Anything between the two is what a header that declares fewer values
+// than the lines hold looks like; read as a stream it would give a wrong mesh without an error.
+bool PlyReader::token_begins(std::uint64_t byte_offset, bool row_start) {
   if (line_has_token_) {
     row_inside_line_ = row_inside_line_ || row_start;
   } else {
-    element_spans_lines_ = element_spans_lines_ || !row_start || row_ > 0;
+    body_spans_lines_ = body_has_token_;
   }
   line_has_token_ = true;
-  if (row_inside_line_ && element_spans_lines_) return fail_in_row(PlyError::kRowsAndLinesDisagree, byte_offset);
+  body_has_token_ = true;
+  if (!row_inside_line_ || !body_spans_lines_) return true;
+  if (stage_ == Stage::kBody) return fail_in_row(PlyError::kRowsAndLinesDisagree, byte_offset);
+  return fail(PlyError::kRowsAndLinesDisagree, byte_offset, line_, kPlyNoElement);
+}
+
+// Counts what follows the last row.
+bool PlyReader::ascii_trailer(const char* text, std::size_t count, std::size_t& used) {
+  while (skip_blanks(text, count, used)) {
+    if (!token_begins(offset_ + used, false)) return false;
+    for (; used < count && !is_blank(text[used]); ++used) ++counts_.surplus_bytes;
+  }
   return true;
 }
 

@@ -48,7 +48,7 @@ struct PlyOutput {
 ///
 /// A polygon (v0 v1 v2 ...) becomes (v0 v1 v2) (v0 v2 v3) ...; a strip (v0 v1 v2 v3 ...) becomes (v0 v1 v2) (v2 v1 v3)
 /// ..., every other triangle turned, with the same side in front; -1 starts a new strip. Polygons with fewer than three
-/// corners become nothing. An ASCII body has its rows on lines of their own, or an element's rows all on one line.
+/// corners become nothing. An ASCII body has its rows on lines of their own, or stands on one line as a whole.
 /// In a binary file one line feed after the carriage return of end_header belongs to the header, unless the first line
 /// ended with a carriage return alone.
 ///
@@ -145,7 +145,9 @@ class PlyReader {
   void end_rows(std::uint64_t count);
   void flush_batch();
   bool ascii_body(const char* text, std::size_t count, std::size_t& used, bool at_end);
-  bool token_begins(std::uint64_t byte_offset);
+  bool ascii_trailer(const char* text, std::size_t count, std::size_t& used);
+  bool skip_blanks(const char* text, std::size_t count, std::size_t& used);
+  bool token_begins(std::uint64_t byte_offset, bool row_start);
   bool token(const char* text, std::size_t bytes, std::uint64_t byte_offset);
   bool binary_body(const std::byte* bytes, std::size_t count, std::size_t& used);
   std::size_t quick_rows(const std::byte* bytes, std::size_t row_count);
@@ -214,8 +216,9 @@ class PlyReader {
   std::uint8_t carry_bytes_ = 0;
   RowLayout layout_;
   bool line_has_token_ = false;
-  bool row_inside_line_ = false;  // a row of this element started inside a line
-  bool element_spans_lines_ = false;
+  bool row_inside_line_ = false;  // a row started inside a line
+  bool body_has_token_ = false;
+  bool body_spans_lines_ = false;
 
   // The row being assembled.
   std::uint32_t coordinate_bits_[3] = {};

@@ -47,7 +47,7 @@ enum class [[nodiscard]] PlyError : std::uint8_t{
     kNotFinite,             ///< a coordinate that is NaN, infinite, or not finite as a float
     kNegativeListCount,     ///< a list with fewer than no entries
     kIndexRange,            ///< an index that is no vertex of the header's count
-    kRowsAndLinesDisagree,  ///< ASCII: a row starts inside a line of an element that has several lines
+    kRowsAndLinesDisagree,  ///< ASCII: a row starts inside a line, though the body has several lines
     kTooManyTriangles,      ///< above PlyConfig::max_triangles
 
     // Memory given to read_ply.
