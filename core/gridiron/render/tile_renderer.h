@@ -13,6 +13,7 @@
 #include <gridiron/store/transfers.h>
 
 #include <cstdint>
+#include <initializer_list>
 
 namespace gridiron {
 
@@ -36,6 +37,7 @@ class TileRenderer {
     GRIDIRON_TRY(transfers_.wait(kSetupTag));
     GRIDIRON_TRY(check_frame());
     GRIDIRON_TRY(load_table());
+    share_queue();
     // 2. Tiles.
     for (TileClaim claim = transfers_.claim_tile();; claim = transfers_.claim_tile()) {
       if (claim.kind == TileClaim::Kind::kAborted) return finish(Status::kAborted);
@@ -50,6 +52,7 @@ class TileRenderer {
   using StorePacket = Packet<Layout::kPacketWidth>;
   using Table = MacroTableWindow<Layout::kTableEntries>;
   using TileOutput = typename Store::TileOutput;
+  static constexpr std::uint32_t kPlaneBytes = Store::kTilePixels * sizeof(std::uint32_t);
 
   // Traces and shades one tile; its pixels are on their way when this returns.
   [[nodiscard]] Status render_tile(std::uint32_t tile_id) {
@@ -73,7 +76,22 @@ class TileRenderer {
       }
     }
     GRIDIRON_TRY(put_tile(tile_id, slot, tag));
-    return frame.output_depth == 1 ? transfers_.wait(tag) : Status::kOk;
+    return waits_for_output_ ? transfers_.wait(tag) : Status::kOk;
+  }
+
+  // What is waited for during a tile must not depend on the tiles before it: either those have places of their own in
+  // the queue, or, where it is too short for that, a tile has left before the next one begins.
+  void share_queue() {
+    constexpr std::uint32_t kLeastInputCommands = 4;
+    const FrameRecord& frame = store_.frame;
+    std::uint32_t commands = 0;
+    for (const std::uint64_t plane : {frame.color_address, frame.depth_address, frame.id_address}) {
+      constexpr std::uint32_t kPieces = (kPlaneBytes + kPortableBoundaryBytes - 1) / kPortableBoundaryBytes;
+      if (plane != 0) commands += kPieces + (plane % kPortableBoundaryBytes != 0 ? 1 : 0);
+    }
+    commands *= frame.output_depth;
+    waits_for_output_ = frame.output_depth == 1 || commands + kLeastInputCommands > transfers_.queue_depth();
+    if (!waits_for_output_) transfers_.reserve_for_output(commands);
   }
 
   // Generates a packet and takes it through the grid, once per march axis and sign that its rays have.
@@ -95,7 +113,6 @@ class TileRenderer {
   [[nodiscard]] Status put_tile(std::uint32_t tile_id, std::uint32_t slot, std::uint8_t tag) {
     const FrameRecord& frame = store_.frame;
     const TileOutput& output = store_.output[slot];
-    constexpr std::uint32_t kPlaneBytes = Store::kTilePixels * sizeof(std::uint32_t);
     const std::uint64_t offset = std::uint64_t{tile_id} * kPlaneBytes;
     GRIDIRON_TRY(transfers_.put(output.color, MainAddress{frame.color_address + offset}, kPlaneBytes, tag));
     if (frame.depth_address != 0) {
@@ -169,6 +186,7 @@ class TileRenderer {
   Transfers<P> transfers_;
   std::uint32_t output_slot_ = 0;
   bool table_resident_ = false;
+  bool waits_for_output_ = true;
 };
 
 /// Renders tiles of the frame at `frame` on the calling core until none is left. See TileRenderer.

@@ -5,6 +5,7 @@
 #include <gridiron/base/lanes.h>
 #include <gridiron/base/work_counters.h>
 #include <gridiron/platform/contract.h>
+#include <gridiron/store/dma_tags.h>
 
 #include <cstdint>
 
@@ -25,6 +26,12 @@ template <Platform P>
 class Transfers {
  public:
   Transfers(P& platform, WorkCounters& work) : platform_(platform), work_(work) {}
+
+  [[nodiscard]] std::uint32_t queue_depth() const { return platform_.limits().queue_depth; }
+
+  /// Keeps `commands` places of the queue for output tags; the caller never has more of them pending. All other
+  /// transfers share the rest, so that what they wait for does not depend on which tiles are still leaving.
+  void reserve_for_output(std::uint32_t commands) { output_share_ = commands; }
 
   /// Starts a get of `bytes` > 0, a multiple of 16, both ends congruent modulo 32.
   [[nodiscard]] Status get(void* local, MainAddress address, std::uint32_t bytes, std::uint8_t tag) {
@@ -62,7 +69,7 @@ class Transfers {
   [[nodiscard]] Status wait(std::uint8_t tag) {
     work_.add(Work::kWait);
     note_work();
-    pending_count_ -= pending_[tag];
+    if (is_counted(tag)) pending_count_ -= pending_[tag];
     pending_[tag] = 0;
     return platform_.wait(TagMask::of(Tag{tag}));
   }
@@ -75,13 +82,13 @@ class Transfers {
  private:
   // Counts one command of `tag`, waiting for the tag that began longest ago while the queue is full.
   [[nodiscard]] Status make_room(std::uint8_t tag) {
-    const std::uint32_t depth = platform_.limits().queue_depth;
-    if (pending_count_ >= depth) [[unlikely]] {
+    const std::uint32_t depth = platform_.limits().queue_depth - output_share_;
+    if (is_counted(tag) && pending_count_ >= depth) [[unlikely]] {
       std::uint8_t oldest = 0;
       std::uint32_t oldest_age = 0;
       for (std::uint8_t i = 0; i < kTagCount; ++i) {
         const std::uint32_t age = sequence_ - started_[i];
-        if (pending_[i] != 0 && age >= oldest_age) {
+        if (pending_[i] != 0 && is_counted(i) && age >= oldest_age) {
           oldest = i;
           oldest_age = age;
         }
@@ -91,9 +98,12 @@ class Transfers {
     if (pending_[tag] == 0) started_[tag] = sequence_;
     ++sequence_;
     ++pending_[tag];
-    ++pending_count_;
+    if (is_counted(tag)) ++pending_count_;
     return Status::kOk;
   }
+
+  // Does a command of `tag` take a place of the shared part of the queue?
+  [[nodiscard]] bool is_counted(std::uint8_t tag) const { return output_share_ == 0 || tag < kFirstOutputTag; }
 
   GRIDIRON_INLINE void note_work() {
     if constexpr (WorkObserver<P>) platform_.note_work(work_.counts, kWorkKindCount);
@@ -103,7 +113,8 @@ class Transfers {
   P& platform_;
   WorkCounters& work_;
   std::uint32_t sequence_ = 0;
-  std::uint32_t pending_count_ = 0;
+  std::uint32_t pending_count_ = 0;  // in the shared part of the queue
+  std::uint32_t output_share_ = 0;
   std::uint32_t started_[kTagCount] = {};
   std::uint8_t pending_[kTagCount] = {};
 };

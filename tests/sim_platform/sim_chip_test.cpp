@@ -1,0 +1,247 @@
+// The simulated chip with the real kernel: one picture and one trace for any threads, completion, lanes and mode.
+// SPDX-License-Identifier: Apache-2.0
+#include <gridiron/sim/sim_chip.h>
+#include <gridiron/sim/sim_core.h>
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <atomic>
+#include <cstdint>
+#include <ostream>
+#include <string>
+#include <tuple>
+#include <vector>
+
+#include "sim_platform/program_bench.h"
+#include "support/render_mesh.h"
+#include "support/test_mesh.h"
+#include "support/views.h"
+
+namespace gridiron::sim {
+
+// Traces are compared field by field.
+[[nodiscard]] static auto fields(const TraceEvent& e) {
+  return std::tuple(e.kind, e.tag, e.rotating, e.bytes, e.address, e.tags, e.rotating_tags, e.first_work, e.work_count);
+}
+[[nodiscard]] static std::string difference(const TileTrace& a, const TileTrace& b) {
+  if (a.tile_id != b.tile_id) return "tile_id";
+  for (std::size_t i = 0; i < a.events.size() && i < b.events.size(); ++i) {
+    if (fields(a.events[i]) != fields(b.events[i])) return "event " + std::to_string(i);
+  }
+  if (a.events.size() != b.events.size()) return "number of events";
+  for (std::size_t i = 0; i < a.work.size() && i < b.work.size(); ++i) {
+    if (a.work[i].kind != b.work[i].kind || a.work[i].amount != b.work[i].amount) return "work " + std::to_string(i);
+  }
+  return a.work.size() == b.work.size() ? "" : "number of work amounts";
+}
+[[nodiscard]] static std::string difference(const FrameTrace& a, const FrameTrace& b) {
+  if (const std::string d = difference(a.prologue, b.prologue); !d.empty()) return "prologue: " + d;
+  if (const std::string d = difference(a.epilogue, b.epilogue); !d.empty()) return "epilogue: " + d;
+  if (a.tiles.size() != b.tiles.size()) return "number of tiles";
+  for (std::size_t i = 0; i < a.tiles.size(); ++i) {
+    if (const std::string d = difference(a.tiles[i], b.tiles[i]); !d.empty()) {
+      return "tile " + std::to_string(i) + ": " + d;
+    }
+  }
+  return a.output_depth == b.output_depth ? "" : "output_depth";
+}
+
+namespace {
+
+/// A torus in front of hills, with enough triangles per cell to stream, in a picture that tiles do not divide.
+class Scene {
+ public:
+  Scene() : mesh_(make()), scene_(mesh_.view(), {}) {
+    settings.camera = test::framed_camera(mesh_.view());
+    settings.width = 150;
+    settings.height = 100;
+  }
+  [[nodiscard]] test::RenderedFrame render(const ChipOptions& options) { return scene_.render(settings, options); }
+
+  FrameSettings settings;
+
+ private:
+  static test::TestMesh make() {
+    test::TestMesh mesh = test::make_torus(24, 40, 0.6f, 0.2f);
+    mesh.append(test::make_height_field(24, 0.2f, 3));
+    return mesh;
+  }
+  test::TestMesh mesh_;
+  test::SceneInMemory scene_;
+};
+
+TEST(SimChip, ACheckedFrameBreaksNoRuleAndShowsSomething) {
+  Scene scene;
+  const test::RenderedFrame frame = scene.render({});
+  ASSERT_EQ(frame.result.status, Status::kOk) << words(frame.result);
+  EXPECT_TRUE(frame.result.violations.empty()) << words(frame.result);
+  std::uint32_t hits = 0;
+  for (const std::uint32_t id : frame.planes.ids) hits += id != kNoTriangle;
+  EXPECT_GT(hits, 150u * 100u / 10u);
+  EXPECT_LT(hits, 150u * 100u);
+  EXPECT_EQ(frame.result.trace.tiles.size(), 5u * 4u);
+  EXPECT_GT(frame.result.transfers, 100u);
+  EXPECT_EQ(frame.result.work[static_cast<std::size_t>(Work::kTileStart)], 20u);
+}
+
+/// How a frame is run; none of it may change picture, trace or totals.
+struct HowToRun {
+  std::uint32_t threads;
+  Completion completion;
+  std::uint64_t seed;
+  Mode mode = Mode::kChecked;
+};
+
+TEST(SimChip, PictureTraceAndTotalsAreTheSameForAnyThreadsCompletionAndSeed) {
+  // Single, double and deep buffering, with queues that are often full.
+  struct Buffering {
+    std::uint32_t depth, queue_depth;
+  };
+  for (const auto [depth, queue_depth] : {Buffering{1, 16}, {2, 16}, {12, 16}, {12, 10}, {2, 4}, {2, 2}, {2, 1}}) {
+    Scene scene;
+    scene.settings.output_depth = std::min(depth, 2u);
+    scene.settings.macro_depth = std::min(depth, 4u);
+    scene.settings.triangle_depth = depth;
+    ChipOptions reference_options;
+    reference_options.limits.queue_depth = queue_depth;
+    const test::RenderedFrame reference = scene.render(reference_options);
+    ASSERT_EQ(reference.result.status, Status::kOk) << words(reference.result);
+    std::vector<HowToRun> runs = {{1, Completion::kLate, 0},  {2, Completion::kEarly, 0}, {3, Completion::kLate, 0},
+                                  {6, Completion::kEarly, 0}, {8, Completion::kLate, 0},  {32, Completion::kEarly, 0}};
+    const std::uint64_t seeds = depth == 2 && queue_depth == 16 ? 20 : 2;
+    for (std::uint64_t seed = 1; seed <= seeds; ++seed) {
+      runs.push_back({static_cast<std::uint32_t>(seed % 3 + 1), Completion::kRandom, seed});
+    }
+    if (has_instrumented_mode()) runs.push_back({2, Completion::kEarly, 0, Mode::kInstrumented});
+    for (const HowToRun& how : runs) {
+      SCOPED_TRACE("depth " + std::to_string(depth) + ", threads " + std::to_string(how.threads) + ", completion " +
+                   std::to_string(static_cast<int>(how.completion)) + ", seed " + std::to_string(how.seed) + ", mode " +
+                   std::to_string(static_cast<int>(how.mode)));
+      ChipOptions options = reference_options;
+      options.threads = how.threads;
+      options.completion = how.completion;
+      options.seed = how.seed;
+      options.mode = how.mode;
+      const test::RenderedFrame frame = scene.render(options);
+      ASSERT_EQ(frame.result.status, Status::kOk) << words(frame.result);
+      EXPECT_EQ(test::first_difference(reference, frame), "");
+      EXPECT_EQ(difference(reference.result.trace, frame.result.trace), "");
+      EXPECT_EQ(frame.result.work, reference.result.work);
+    }
+  }
+}
+
+TEST(SimChip, PictureIsTheSameForAnyLanesStorePacketAndQueue) {
+  Scene scene;
+  const test::RenderedFrame reference = scene.render({});
+  ASSERT_EQ(reference.result.status, Status::kOk) << words(reference.result);
+  for (const Mode mode : {Mode::kChecked, Mode::kPlain, Mode::kInstrumented}) {
+    for (const std::uint32_t lanes : {4u, 8u, 16u}) {
+      for (const StoreSize store : {StoreSize::k64KB, StoreSize::k256KB}) {
+        for (const std::uint32_t packet_width : {4u, 8u, 16u}) {
+          for (const std::uint32_t queue_depth : {1u, 2u, 16u}) {
+            ChipOptions options;
+            options.mode = mode;
+            options.lanes = lanes;
+            options.store = store;
+            options.packet_width = packet_width;
+            options.limits.queue_depth = queue_depth;
+            options.threads = 2;
+            SCOPED_TRACE("mode " + std::to_string(static_cast<int>(mode)) + ", lanes " + std::to_string(lanes) +
+                         ", store " + std::to_string(static_cast<int>(store)) + ", packet " +
+                         std::to_string(packet_width) + ", queue " + std::to_string(queue_depth));
+            const test::RenderedFrame frame = scene.render(options);
+            const bool is_built =
+                lanes <= widest_lanes() && (mode != Mode::kInstrumented || (has_instrumented_mode() && lanes == 4));
+            if (!is_built) {
+              EXPECT_EQ(frame.result.status, Status::kUnsupportedFrame);
+              continue;
+            }
+            ASSERT_EQ(frame.result.status, Status::kOk) << words(frame.result);
+            EXPECT_EQ(test::first_difference(reference, frame), "");
+          }
+        }
+      }
+    }
+  }
+}
+
+TEST(SimChip, ATileRenderedAloneIsTheTileOfTheFrame) {
+  Scene scene;
+  const test::RenderedFrame whole = scene.render({});
+  ASSERT_EQ(whole.result.status, Status::kOk);
+  for (const std::uint32_t tile : {0u, 7u, 19u}) {
+    for (const Mode mode : {Mode::kChecked, Mode::kPlain}) {
+      ChipOptions options;
+      options.mode = mode;
+      options.only_tile = tile;
+      const test::RenderedFrame alone = scene.render(options);
+      ASSERT_EQ(alone.result.status, Status::kOk) << words(alone.result);
+      const std::uint32_t left = tile % 5 * 32, top = tile / 5 * 32;
+      for (std::uint32_t y = top; y < top + 32 && y < 100; ++y) {
+        for (std::uint32_t x = left; x < left + 32 && x < 150; ++x) {
+          const std::size_t i = whole.pixel_index(x, y);
+          ASSERT_EQ(alone.planes.color[i], whole.planes.color[i]) << "tile " << tile << " pixel " << x << ", " << y;
+          ASSERT_EQ(alone.planes.ids[i], whole.planes.ids[i]) << "tile " << tile << " pixel " << x << ", " << y;
+        }
+      }
+      if (mode == Mode::kPlain) continue;
+      ASSERT_EQ(alone.result.trace.tiles.size(), 1u);
+      EXPECT_EQ(difference(alone.result.trace.tiles[0], whole.result.trace.tiles[tile]), "") << "tile " << tile;
+    }
+  }
+}
+
+TEST(SimChip, ProgressCountsEveryTileOnceAndAbortStopsBetweenTiles) {
+  for (const Mode mode : {Mode::kChecked, Mode::kPlain}) {
+    Scene scene;
+    std::vector<std::uint32_t> seen;
+    ChipOptions options;
+    options.mode = mode;
+    options.threads = 3;
+    options.progress = [&](std::uint32_t done, std::uint32_t total) {
+      EXPECT_EQ(total, 20u);
+      seen.push_back(done);
+    };
+    ASSERT_EQ(scene.render(options).result.status, Status::kOk);
+    ASSERT_EQ(seen.size(), 20u);
+    for (std::uint32_t i = 0; i < 20; ++i) EXPECT_EQ(seen[i], i + 1);
+
+    std::atomic<bool> abort{false};
+    options.abort = &abort;
+    options.threads = 2;
+    options.progress = [&](std::uint32_t done, std::uint32_t) { abort = done >= 5; };
+    seen.clear();
+    const ChipResult result = scene.render(options).result;
+    EXPECT_EQ(result.status, Status::kAborted) << words(result);
+    EXPECT_TRUE(result.violations.empty()) << words(result);
+  }
+}
+
+TEST(SimChip, RefusesWhatItCannotRender) {
+  Scene scene;
+  const auto status_of = [&](auto change) {
+    ChipOptions options;
+    change(options);
+    return scene.render(options).result.status;
+  };
+  EXPECT_EQ(status_of([](ChipOptions& o) { o.packet_width = 5; }), Status::kUnsupportedFrame);
+  EXPECT_EQ(status_of([](ChipOptions& o) { o.lanes = 6; }), Status::kUnsupportedFrame);
+  EXPECT_EQ(status_of([](ChipOptions& o) { o.threads = 0; }), Status::kBadParameter);
+  EXPECT_EQ(status_of([](ChipOptions& o) { o.only_tile = 20; }), Status::kBadParameter);
+  EXPECT_EQ(status_of([](ChipOptions& o) { o.limits.queue_depth = 0; }), Status::kBadParameter);
+  EXPECT_EQ(status_of([](ChipOptions& o) { o.limits.tag_count = 33; }), Status::kBadParameter);
+  EXPECT_EQ(status_of([](ChipOptions& o) { o.limits.alignment_bytes = 24; }), Status::kBadParameter);
+
+  SimMemory memory(1 << 16);
+  EXPECT_EQ(render_frame(memory, MainAddress{0}, {}).status, Status::kBadFrame);
+  const MemoryRegion record = *memory.allocate(sizeof(FrameRecord));
+  for (const Mode mode : {Mode::kChecked, Mode::kPlain}) {
+    ChipOptions options;
+    options.mode = mode;
+    EXPECT_EQ(render_frame(memory, record.address, options).status, Status::kBadFrame);
+  }
+}
+
+}  // namespace
+}  // namespace gridiron::sim
