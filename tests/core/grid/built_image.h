@@ -10,32 +10,12 @@
 #include <cstddef>
 #include <cstdint>
 #include <cstring>
-#include <new>
 #include <span>
 #include <vector>
 
+#include "core/grid/line_buffer.h"
+
 namespace gridiron::test {
-
-/// Bytes aligned to a line.
-class LineBuffer {
- public:
-  LineBuffer() = default;
-  explicit LineBuffer(std::size_t size, std::byte fill = std::byte{0})
-      : lines_((size + kLineBytes - 1) / kLineBytes), size_(size) {
-    std::memset(lines_.data(), std::to_integer<int>(fill), lines_.size() * kLineBytes);
-  }
-  [[nodiscard]] std::span<std::byte> bytes() { return {reinterpret_cast<std::byte*>(lines_.data()), size_}; }
-  [[nodiscard]] std::span<const std::byte> bytes() const {
-    return {reinterpret_cast<const std::byte*>(lines_.data()), size_};
-  }
-
- private:
-  struct alignas(kLineBytes) Line {
-    std::byte bytes[kLineBytes];
-  };
-  std::vector<Line> lines_;
-  std::size_t size_ = 0;
-};
 
 template <class Record>
 Record read_record(std::span<const std::byte> bytes, std::uint64_t offset) {

@@ -317,6 +317,41 @@ TEST(SceneImage, UnknownSectionsMayNotOverlapEither) {
   EXPECT_STREQ(error.field, "section.section_bytes");
 }
 
+// --- Layout ---------------------------------------------------------------------------------------------------------
+
+// The offsets that core/SPEC.md prints.
+TEST(Layout, FieldsStandWhereTheSpecificationSays) {
+  EXPECT_EQ(offsetof(ImageHeader, image_bytes), 8u);
+  EXPECT_EQ(offsetof(ImageHeader, check_value), 16u);
+  EXPECT_EQ(offsetof(ImageHeader, section_table_offset_bytes), 28u);
+  EXPECT_EQ(offsetof(ImageHeader, dropped_triangle_count), 40u);
+  EXPECT_EQ(offsetof(SectionEntry, offset_bytes), 8u);
+  EXPECT_EQ(offsetof(SectionEntry, section_bytes), 24u);
+  EXPECT_EQ(offsetof(GridRecord, cells_per_unit), 12u);
+  EXPECT_EQ(offsetof(GridRecord, cell_count), 24u);
+  EXPECT_EQ(offsetof(GridRecord, macro_cell_count), 36u);
+  EXPECT_EQ(offsetof(GridRecord, macro_width), 48u);
+  EXPECT_EQ(offsetof(GridRecord, triangle_format), 60u);
+  EXPECT_EQ(offsetof(GridRecord, reference_count), 68u);
+  EXPECT_EQ(offsetof(GridRecord, bounds_maximum), 84u);
+  EXPECT_EQ(offsetof(GridRecord, lambda), 96u);
+  EXPECT_EQ(offsetof(VertexTriangle, triangle_id), 44u);
+  EXPECT_EQ(offsetof(ProjectionTriangle, b_u), 12u);
+  EXPECT_EQ(offsetof(ProjectionTriangle, c_u), 24u);
+  EXPECT_EQ(offsetof(ProjectionTriangle, axis_k), 36u);
+  EXPECT_EQ(offsetof(ProjectionTriangle, triangle_id), 44u);
+  EXPECT_EQ(offsetof(FrameRecord, tile_width), 16u);
+  EXPECT_EQ(offsetof(FrameRecord, accuracy), 28u);
+  EXPECT_EQ(offsetof(FrameRecord, techniques), 36u);
+  EXPECT_EQ(offsetof(FrameRecord, triangle_depth), 48u);
+  EXPECT_EQ(offsetof(FrameRecord, t_far), 56u);
+  EXPECT_EQ(offsetof(FrameRecord, eye), 64u);
+  EXPECT_EQ(offsetof(FrameRecord, step_y), 100u);
+  EXPECT_EQ(offsetof(FrameRecord, color_address), 112u);
+  EXPECT_EQ(offsetof(FrameRecord, triangles_address), 152u);
+  EXPECT_EQ(offsetof(FrameRecord, grid), 192u);
+}
+
 // --- Check value --------------------------------------------------------------------------------------------------
 
 // The definition of SPEC.md, word by word.

@@ -1,0 +1,129 @@
+// Fuzzes the scene image loader: any bytes, as they are and with the check value made right. What the loader accepts is
+// read the way the kernel reads it, under the sanitizers. SPDX-License-Identifier: Apache-2.0
+#include <gridiron/grid/grid_builder.h>
+#include <gridiron/image/scene_image.h>
+
+#include <bit>
+#include <cstddef>
+#include <cstdint>
+#include <cstdio>
+#include <cstdlib>
+#include <cstring>
+#include <span>
+
+#include "core/grid/line_buffer.h"
+
+namespace gridiron::test {
+namespace {
+
+void require(bool holds, const char* what) {
+  if (holds) return;
+  std::fprintf(stderr, "accepted an image in which %s\n", what);
+  std::abort();
+}
+
+template <class Record>
+Record read(std::span<const std::byte> bytes, std::uint64_t offset) {
+  require(offset <= bytes.size() && sizeof(Record) <= bytes.size() - offset, "a record lies outside");
+  Record record;
+  std::memcpy(&record, bytes.data() + offset, sizeof(Record));
+  return record;
+}
+
+// Every macrocell, block, cell and triangle.
+void read_all(std::span<const std::byte> bytes, const SceneImageView& view) {
+  const GridRecord& grid = view.grid;
+  const std::uint64_t macro_cells =
+      std::uint64_t{grid.macro_cell_count[0]} * grid.macro_cell_count[1] * grid.macro_cell_count[2];
+  const std::uint64_t cells = std::uint64_t{grid.macro_width} * grid.macro_width * grid.macro_width;
+  std::uint64_t references = 0;
+  for (std::uint64_t macro_cell = 0; macro_cell < macro_cells; ++macro_cell) {
+    const auto entry =
+        read<MacroTableEntry>(bytes, view.macro_table_offset_bytes + macro_cell / 32 * sizeof(MacroTableEntry));
+    const std::uint32_t bit = 1u << (macro_cell % 32);
+    if ((entry.occupied & bit) == 0) continue;
+    const std::uint64_t block =
+        std::uint64_t{entry.first_block} + static_cast<std::uint32_t>(std::popcount(entry.occupied & (bit - 1)));
+    require(block >= 1 && block < grid.cell_block_count, "a block does not exist");
+    for (std::uint64_t cell = 0; cell < cells; ++cell) {
+      const auto record = read<CellRecord>(
+          bytes, view.cell_blocks_offset_bytes + block * grid.cell_block_bytes + cell * sizeof(CellRecord));
+      for (std::uint64_t i = 0; i < record.triangle_count; ++i) {
+        const std::uint64_t place = record.first_triangle + i;
+        const auto triangle = read<VertexTriangle>(bytes, view.triangles_offset_bytes + place * kTriangleRecordBytes);
+        require(triangle.triangle_id < view.header.triangle_count, "a triangle does not exist");
+        ++references;
+      }
+    }
+  }
+  require(references == grid.reference_count, "references are miscounted");
+}
+
+// A valid image of a few triangles, so that the search needs no seeds. @returns its size, 0 where it does not fit.
+std::size_t write_valid_image(std::uint8_t* data, std::size_t max_size, unsigned seed) {
+  const std::uint32_t triangle_count = 1 + seed % 5;
+  Vec3 vertices[15];
+  UVec3 triangles[5];
+  std::uint32_t state = seed;
+  for (Vec3& vertex : vertices) {
+    for (int axis = 0; axis < 3; ++axis) {
+      state = state * 1664525u + 1013904223u;
+      vertex[axis] = static_cast<float>(state >> 16) / 4096.0f;
+    }
+  }
+  for (std::uint32_t i = 0; i < triangle_count; ++i) triangles[i] = {3 * i, 3 * i + 1, 3 * i + 2};
+  const MeshView mesh{vertices, {triangles, triangle_count}};
+  const GridParameters parameters{2.0f, 1 + (seed >> 8) % kMaxMacroWidth,
+                                  (seed >> 16) % 2 == 0 ? TriangleFormat::kVertices : TriangleFormat::kProjection};
+  GridNeed need{};
+  if (count_scene_image(mesh, parameters, need) != Status::kOk || need.image_bytes > max_size) return 0;
+  LineBuffer image(static_cast<std::size_t>(need.image_bytes));
+  if (build_scene_image(mesh, parameters, need, image.bytes(), {}) != Status::kOk) std::abort();
+  std::memcpy(data, image.bytes().data(), image.bytes().size());
+  return image.bytes().size();
+}
+
+void open(std::span<const std::byte> bytes) {
+  SceneImageView view{};
+  SceneImageError error;
+  if (open_scene_image(bytes, view, error) == Status::kOk) {
+    read_all(bytes, view);
+  } else {
+    require(error.field[0] != '\0' && error.byte_offset <= bytes.size(), "the error names no place");
+  }
+}
+
+}  // namespace
+}  // namespace gridiron::test
+
+extern "C" std::size_t LLVMFuzzerMutate(std::uint8_t* data, std::size_t size, std::size_t max_size);
+
+extern "C" std::size_t LLVMFuzzerCustomMutator(std::uint8_t* data, std::size_t size, std::size_t max_size,
+                                               unsigned int seed) {
+  if (size < sizeof(gridiron::ImageHeader) || seed % 64 == 0) {
+    const std::size_t valid = gridiron::test::write_valid_image(data, max_size, seed / 64);
+    if (valid != 0) return valid;
+  }
+  return LLVMFuzzerMutate(data, size, max_size);
+}
+
+extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
+  using namespace gridiron;
+  // A right size and check value at first, so that the search starts behind them; then the bytes as they came.
+  const std::size_t whole = size / kLineBytes * kLineBytes;
+  test::LineBuffer repaired(whole);
+  if (whole != 0) {
+    std::memcpy(repaired.bytes().data(), data, whole);
+    ImageHeader header;
+    std::memcpy(&header, repaired.bytes().data(), sizeof(header));
+    header.image_bytes = whole;
+    std::memcpy(repaired.bytes().data(), &header, sizeof(header));
+    header.check_value = scene_image_check_value(repaired.bytes());
+    std::memcpy(repaired.bytes().data(), &header, sizeof(header));
+    test::open(repaired.bytes());
+  }
+  test::LineBuffer as_is(size);
+  if (size != 0) std::memcpy(as_is.bytes().data(), data, size);
+  test::open(as_is.bytes());
+  return 0;
+}
