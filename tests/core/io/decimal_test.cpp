@@ -79,7 +79,7 @@ TEST(Decimal, RandomDigitsAndExponents) {
       if (d == point) text += '.';
       text += static_cast<char>('0' + generator() % 10);
     }
-    if (generator() % 4 != 0) text += "e" + std::to_string(static_cast<int>(generator() % 110) - 60);
+    if (generator() % 4 != 0) text.append("e").append(std::to_string(static_cast<int>(generator() % 110) - 60));
     ASSERT_TRUE(agrees(text)) << "case " << i;
   }
 }
