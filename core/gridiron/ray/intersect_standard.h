@@ -21,8 +21,9 @@ namespace gridiron {
 /// component: S and a + b carry 2 e S, F carries e F, a product of them adds e, so each of the two products of a
 /// component is within 4 e S_j F_k, their difference within 5 e (S_j F_k + S_k F_j). Times d and summed over three
 /// components: 3 e more. In all 8 e sum_i |d_i| (S_j F_k + S_k F_j) <= 16 e |d|max |F|max |S|1, and the bound itself
-/// is computed with less than 1 e of relative error per operation: 17 e covers it. kUnderflow covers what products
-/// below the least normal float lose. Edges whose magnitudes leave the range where this holds are decided exactly.
+/// is computed with less than 1 e of relative error per operation: 17 e covers it. kUnderflow, times |d|max where that
+/// is above 1, covers what products below the least normal float lose. Edges whose magnitudes leave the range where this
+/// holds are decided exactly.
 template <class L>
 struct StandardEdges {
   using Four = Lanes<4>;
@@ -100,7 +101,7 @@ template <class L>
   const Float size_f = Four::max(Four::max(Four::abs(f_x), Four::abs(f_y)), Four::abs(f_z));
   const Float scale = (size_a + size_b) * size_f;
   edges.in_range = (scale * Float(range_factor) < Float(kEdgeRangeLimit)).bits() == 0xFu;
-  edges.error = scale * Float(kEdgeErrorFactor * dir_max) + Float(kUnderflow);
+  edges.error = scale * Float(kEdgeErrorFactor * dir_max) + Float(kUnderflow * range_factor);
 
   // Orientation: with c the vertex opposite an edge, n . c = 2 det[a, b, c], by the same bound with c in the place of
   // d. The three edges give the same determinant; lane 0 is used.
