@@ -195,6 +195,45 @@ struct Lanes {
     for (int i = 0; i < W / 2; ++i) result |= (v[i] < 0 ? 1u : 0u) << i;
     return result;
   }
+  /// W / 4 quads of lanes, each loaded from four floats at sources[quad], aligned to 16 bytes.
+  [[nodiscard]] static GRIDIRON_INLINE Float load_quads(const float* const* sources) {
+    using Quad = typename LaneVectors<4>::FloatMemory;
+    const auto quad = [&](int i) { return LaneVectors<4>::FloatVector(*reinterpret_cast<const Quad*>(sources[i])); };
+    if constexpr (W == 4) {
+      return Float(quad(0));
+    } else {
+      const auto low = __builtin_shufflevector(quad(0), quad(1), 0, 1, 2, 3, 4, 5, 6, 7);
+      if constexpr (W == 8) {
+        return Float(low);
+      } else {
+        const auto high = __builtin_shufflevector(quad(2), quad(3), 0, 1, 2, 3, 4, 5, 6, 7);
+        return Float(__builtin_shufflevector(low, high, 0, 1, 2, 3, 4, 5, 6, 7, 8, 9, 10, 11, 12, 13, 14, 15));
+      }
+    }
+  }
+  /// Rearranges each quad of lanes alike: indices 0..3 pick from a's quad, 4..7 from b's.
+  template <int I0, int I1, int I2, int I3>
+  [[nodiscard]] static GRIDIRON_INLINE Float shuffle_quads(Float a, Float b) {
+    constexpr auto at = [](int quad, int i) { return i < 4 ? 4 * quad + i : W + 4 * quad + i - 4; };
+    if constexpr (W == 4) {
+      return Float(__builtin_shufflevector(a.v, b.v, I0, I1, I2, I3));
+    } else if constexpr (W == 8) {
+      return Float(__builtin_shufflevector(a.v, b.v, at(0, I0), at(0, I1), at(0, I2), at(0, I3), at(1, I0), at(1, I1),
+                                           at(1, I2), at(1, I3)));
+    } else {
+      return Float(__builtin_shufflevector(a.v, b.v, at(0, I0), at(0, I1), at(0, I2), at(0, I3), at(1, I0), at(1, I1),
+                                           at(1, I2), at(1, I3), at(2, I0), at(2, I1), at(2, I2), at(2, I3), at(3, I0),
+                                           at(3, I1), at(3, I2), at(3, I3)));
+    }
+  }
+  template <int I0, int I1, int I2, int I3>
+  [[nodiscard]] static GRIDIRON_INLINE Float shuffle_quads(Float a) {
+    return shuffle_quads<I0, I1, I2, I3>(a, a);
+  }
+  /// a with its sign flipped in the lanes of the mask.
+  [[nodiscard]] static GRIDIRON_INLINE Float flip_sign(Mask mask, Float a) {
+    return select(mask, -a, a);
+  }
   /// Largest lane.
   [[nodiscard]] static GRIDIRON_INLINE float horizontal_max(Float a) {
     float result = a.v[0];
@@ -217,8 +256,12 @@ struct Lanes {
 }
 
 /// |value|: clears the sign bit, no branch, no library call.
-[[nodiscard]] GRIDIRON_INLINE float magnitude(float value) { return __builtin_fabsf(value); }
-[[nodiscard]] GRIDIRON_INLINE double magnitude(double value) { return __builtin_fabs(value); }
+[[nodiscard]] GRIDIRON_INLINE float magnitude(float value) {
+  return __builtin_fabsf(value);
+}
+[[nodiscard]] GRIDIRON_INLINE double magnitude(double value) {
+  return __builtin_fabs(value);
+}
 
 /// Number of set bits.
 [[nodiscard]] GRIDIRON_INLINE std::uint32_t count_bits(std::uint32_t bits) {

@@ -14,22 +14,24 @@
 
 namespace gridiron {
 
-/// Edge functions of one triangle for all rays of one packet (they share the origin o). Lane k = edge k, from
-/// vertex k to vertex k + 1: with a = A - o, b = B - o, n = (a + b) x (b - a), so that n . d = 2 det[d, a, b].
+/// Edge functions of L::kCount / 4 triangles for all rays of one packet (they share the origin o). Each triangle has a
+/// quad of lanes, lane k = edge k, from vertex k to vertex k + 1 (lane 3 repeats edge 2): with a = A - o, b = B - o,
+/// n = (a + b) x (b - a), so that n . d = 2 det[d, a, b].
 ///
 /// Error of n . d in single precision, e = 2^-23 (one unit in any rounding mode), S = |a| + |b|, F = |b - a| per
 /// component: S and a + b carry 2 e S, F carries e F, a product of them adds e, so each of the two products of a
 /// component is within 4 e S_j F_k, their difference within 5 e (S_j F_k + S_k F_j). Times d and summed over three
 /// components: 3 e more. In all 8 e sum_i |d_i| (S_j F_k + S_k F_j) <= 16 e |d|max |F|max |S|1, and the bound itself
-/// is computed with less than 1 e of relative error per operation: 17 e covers it. kUnderflow, times |d|max where that
-/// is above 1, covers what products below the least normal float lose. Edges whose magnitudes leave the range where this
-/// holds are decided exactly.
+/// is computed with less than 1 e of relative error per operation: 17 e covers it. kUnderflow covers what products
+/// below the least normal float lose. Edges whose magnitudes leave the range where this holds are decided exactly.
 template <class L>
-struct StandardEdges {
-  using Four = Lanes<4>;
-  typename Four::Float n_x, n_y, n_z;  ///< signed so that inside means n . d >= 0 on all three edges
-  typename Four::Float error;          ///< |n . d| above this has the right sign, for every active ray
-  bool in_range;                       ///< false: the float test says nothing
+struct EdgeBatch {
+  static constexpr std::uint32_t kTriangles = L::kCount / 4;
+  alignas(64) float n[3][L::kCount];     ///< signed so that inside means n . d >= 0 on all three edges
+  alignas(64) float error[L::kCount];    ///< |n . d| above this has the right sign, for every active ray
+  std::uint32_t in_range;                ///< lanes for which the float test says something
+  std::uint32_t missed;                  ///< lanes whose edge all four corner rays surely pass on the outside
+  std::int32_t orientation[kTriangles];  ///< +1, -1; 0: the origin lies in the triangle's plane, nothing can be hit
 };
 
 inline constexpr float kEdgeErrorFactor = 17.0f * 0x1p-23f;
@@ -62,81 +64,78 @@ inline constexpr double kDistanceError = 0x1p-48;
 
 void set_up_distance(const float origin[3], float dir_max, const VertexTriangle& triangle, DistanceSetup& setup);
 
-/// Prepares the edge functions of a triangle for a packet.
+/// Prepares the edge functions of a batch of triangles for a packet, and holds them against its corner rays: where all
+/// four pass on the outside of one and the same edge, so does every ray between them (Dmitriev, Havran, Seidel 2004).
 ///
-/// @param range_factor  the larger of dir_max and 1.
-/// @returns +1 or -1, the orientation as seen from the packet's origin, or 0: the origin lies in the triangle's plane
-///          and no ray of the packet can hit it at a distance above 0.
-template <class L>
-[[nodiscard]] GRIDIRON_INLINE int set_up_edges(const float origin[3], float dir_max, float range_factor,
-                                               const VertexTriangle& triangle, StandardEdges<L>& edges,
-                                               WorkCounters& work) {
-  using Four = Lanes<4>;
-  using Float = typename Four::Float;
-  using Vector = typename Four::FloatVector;
-  // The record's first 36 bytes are x0 y0 z0 x1 | y1 z1 x2 y2 | z2: turn them into one vector per axis.
-  const float* values = &triangle.v[0][0];
-  const Vector row0 = Float::load(values).v;
-  const Vector row1 = Float::load(values + 4).v;
-  const Float z2(values[8]);
-  const Vector xs = __builtin_shufflevector(row0, row1, 0, 3, 6, 6);
-  const Vector ys = __builtin_shufflevector(row0, row1, 1, 4, 7, 7);
-  const Vector zs = __builtin_shufflevector(__builtin_shufflevector(row0, row1, 2, 5, 5, 5), z2.v, 0, 1, 4, 4);
-  const Float a_x = Float(xs) - Float(origin[0]);
-  const Float a_y = Float(ys) - Float(origin[1]);
-  const Float a_z = Float(zs) - Float(origin[2]);
-  const Float b_x(__builtin_shufflevector(a_x.v, a_x.v, 1, 2, 0, 0));
-  const Float b_y(__builtin_shufflevector(a_y.v, a_y.v, 1, 2, 0, 0));
-  const Float b_z(__builtin_shufflevector(a_z.v, a_z.v, 1, 2, 0, 0));
-  // Lane 3 repeats vertex 2 against vertex 0, the same edge as lane 2: it never says anything new.
-  const Float s_x = a_x + b_x, s_y = a_y + b_y, s_z = a_z + b_z;
-  const Float f_x = Float(__builtin_shufflevector(xs, xs, 1, 2, 0, 0)) - Float(xs);
-  const Float f_y = Float(__builtin_shufflevector(ys, ys, 1, 2, 0, 0)) - Float(ys);
-  const Float f_z = Float(__builtin_shufflevector(zs, zs, 1, 2, 0, 0)) - Float(zs);
+/// @param triangles  EdgeBatch<L>::kTriangles of them; a shorter batch repeats one.
+template <class L, class PacketType>
+GRIDIRON_INLINE void set_up_edges(const PacketType& packet, const VertexTriangle* const* triangles, bool use_culling,
+                                  EdgeBatch<L>& batch, WorkCounters& work) {
+  using Float = typename L::Float;
+  constexpr std::uint32_t kTriangles = EdgeBatch<L>::kTriangles;
+  // A record's first 36 bytes are x0 y0 z0 x1 | y1 z1 x2 y2 | z2: turn them into one vector per axis.
+  const float* rows[3][kTriangles];
+  for (std::uint32_t i = 0; i < kTriangles; ++i) {
+    for (int row = 0; row < 3; ++row) rows[row][i] = &triangles[i]->v[0][0] + 4 * row;
+  }
+  const Float row0 = L::load_quads(rows[0]);
+  const Float row1 = L::load_quads(rows[1]);
+  const Float row2 = L::load_quads(rows[2]);
+  const Float x = L::template shuffle_quads<0, 3, 6, 6>(row0, row1);
+  const Float y = L::template shuffle_quads<1, 4, 7, 7>(row0, row1);
+  const Float z = L::template shuffle_quads<0, 1, 4, 4>(L::template shuffle_quads<2, 5, 5, 5>(row0, row1), row2);
+  const auto next = [](Float value) { return L::template shuffle_quads<1, 2, 0, 0>(value); };
+  const auto opposite = [](Float value) { return L::template shuffle_quads<2, 0, 1, 1>(value); };
+  const Float a_x = x - Float(packet.origin[0]);
+  const Float a_y = y - Float(packet.origin[1]);
+  const Float a_z = z - Float(packet.origin[2]);
+  const Float s_x = a_x + next(a_x), s_y = a_y + next(a_y), s_z = a_z + next(a_z);
+  const Float f_x = next(x) - x, f_y = next(y) - y, f_z = next(z) - z;
   const Float n_x = s_y * f_z - s_z * f_y;
   const Float n_y = s_z * f_x - s_x * f_z;
   const Float n_z = s_x * f_y - s_y * f_x;
-  const Float size_a = Four::abs(a_x) + Four::abs(a_y) + Four::abs(a_z);
-  const Float size_b(__builtin_shufflevector(size_a.v, size_a.v, 1, 2, 0, 0));
-  const Float size_f = Four::max(Four::max(Four::abs(f_x), Four::abs(f_y)), Four::abs(f_z));
-  const Float scale = (size_a + size_b) * size_f;
-  edges.in_range = (scale * Float(range_factor) < Float(kEdgeRangeLimit)).bits() == 0xFu;
-  edges.error = scale * Float(kEdgeErrorFactor * dir_max) + Float(kUnderflow * range_factor);
+  const Float size_a = L::abs(a_x) + L::abs(a_y) + L::abs(a_z);
+  const Float size_f = L::max(L::max(L::abs(f_x), L::abs(f_y)), L::abs(f_z));
+  const Float scale = (size_a + next(size_a)) * size_f;
+  const Float error = scale * Float(kEdgeErrorFactor * packet.dir_max) + Float(kUnderflow);
+  batch.in_range = (scale * Float(packet.range_factor) < Float(kEdgeRangeLimit)).bits();
 
   // Orientation: with c the vertex opposite an edge, n . c = 2 det[a, b, c], by the same bound with c in the place of
-  // d. The three edges give the same determinant; lane 0 is used.
-  const Float c_x(__builtin_shufflevector(a_x.v, a_x.v, 2, 0, 1, 1));
-  const Float c_y(__builtin_shufflevector(a_y.v, a_y.v, 2, 0, 1, 1));
-  const Float c_z(__builtin_shufflevector(a_z.v, a_z.v, 2, 0, 1, 1));
-  const Float size_c(__builtin_shufflevector(size_a.v, size_a.v, 2, 0, 1, 1));
-  const Float volume = n_x * c_x + n_y * c_y + n_z * c_z;
+  // d. The three edges give the same determinant; the quad's first lane speaks for it.
+  const Float size_c = opposite(size_a);
+  const Float volume = n_x * opposite(a_x) + n_y * opposite(a_y) + n_z * opposite(a_z);
   const Float volume_error =
       scale * (size_c * Float(2.0f * kEdgeErrorFactor)) + size_c * Float(kUnderflow) + Float(kUnderflow);
-  const std::uint32_t sure = ((Four::abs(volume) > volume_error) & (volume_error < Float(kVolumeErrorLimit))).bits();
-  int orientation = (volume < Float(0.0f)).bits() & 1u ? -1 : 1;
-  if ((sure & 1u) == 0) [[unlikely]]
-    orientation = volume_sign_in_double(origin, triangle, work);
-  const Float flip(orientation < 0 ? -1.0f : 1.0f);
-  edges.n_x = n_x * flip;
-  edges.n_y = n_y * flip;
-  edges.n_z = n_z * flip;
-  return orientation;
-}
+  const std::uint32_t sure = ((L::abs(volume) > volume_error) & (volume_error < Float(kVolumeErrorLimit))).bits();
+  const std::uint32_t negative = (L::template shuffle_quads<0, 0, 0, 0>(volume) < Float(0.0f)).bits();
+  std::uint32_t flipped = negative;
+  for (std::uint32_t i = 0; i < kTriangles; ++i) {
+    const std::uint32_t first_lane = 4 * i;
+    batch.orientation[i] = ((negative >> first_lane) & 1u) != 0 ? -1 : 1;
+    if (((sure >> first_lane) & 1u) != 0) [[likely]]
+      continue;
+    batch.orientation[i] = volume_sign_in_double(packet.origin, *triangles[i], work);
+    flipped &= ~(0xFu << first_lane);
+    if (batch.orientation[i] < 0) flipped |= 0xFu << first_lane;
+  }
+  const auto flip = L::mask_from_bits(flipped);
+  const Float inward_x = L::flip_sign(flip, n_x);
+  const Float inward_y = L::flip_sign(flip, n_y);
+  const Float inward_z = L::flip_sign(flip, n_z);
+  inward_x.store(batch.n[0]);
+  inward_y.store(batch.n[1]);
+  inward_z.store(batch.n[2]);
+  error.store(batch.error);
 
-/// @returns true where all four corner rays, and with them every ray between them, pass the triangle on the outside
-///          of one and the same edge. Source: Dmitriev, Havran, Seidel 2004.
-template <class L, class PacketType>
-[[nodiscard]] GRIDIRON_INLINE bool corners_miss(const PacketType& packet, const StandardEdges<L>& edges) {
-  using Four = Lanes<4>;
-  using Float = typename Four::Float;
+  batch.missed = 0;
+  if (!use_culling) return;
   Float nearest(-kFloatMax);
   for (int corner = 0; corner < 4; ++corner) {
-    const Float value = edges.n_x * Float(packet.corner_dir[0][corner]) +
-                        edges.n_y * Float(packet.corner_dir[1][corner]) +
-                        edges.n_z * Float(packet.corner_dir[2][corner]);
-    nearest = Four::max(nearest, value);
+    nearest = L::max(nearest, inward_x * Float(packet.corner_dir[0][corner]) +
+                                  inward_y * Float(packet.corner_dir[1][corner]) +
+                                  inward_z * Float(packet.corner_dir[2][corner]));
   }
-  return edges.in_range && (nearest < -(edges.error * Float(packet.corner_widening))).bits() != 0;
+  batch.missed = (nearest < -(error * Float(packet.corner_widening))).bits() & batch.in_range;
 }
 
 /// Decides the lanes of one group that the float test left open. @returns those that hit the triangle's area.
@@ -207,26 +206,22 @@ GRIDIRON_INLINE void distances_of(const PacketType& packet, std::uint32_t base, 
   }
 }
 
-/// Intersects one triangle with every active ray of a packet, keeping the least (t, id).
+/// Intersects triangle `index` of a batch with every active ray of a packet, keeping the least (t, id).
 ///
-/// @param packet    t, id (and facing where wanted) are updated. @param use_culling  the corner rays bound the packet.
-/// @returns         true where a ray's hit changed.
-/// Errors: none (hot path). Cost: one set-up, at most kRayCount / L::kCount group tests.
+/// @param packet  t, id (and facing where wanted) are updated. @returns true where a ray's hit changed.
+/// Errors: none (hot path). Cost: at most kRayCount / L::kCount group tests.
 template <class L, bool kWantFacing, class PacketType>
-[[nodiscard]] GRIDIRON_INLINE bool intersect_standard(PacketType& packet, const VertexTriangle& triangle,
-                                                      bool use_culling, WorkCounters& work) {
+[[nodiscard]] GRIDIRON_INLINE bool test_groups(PacketType& packet, const VertexTriangle& triangle,
+                                               const EdgeBatch<L>& batch, std::uint32_t index, WorkCounters& work) {
   using Float = typename L::Float;
-  StandardEdges<L> edges;
-  work.add(Work::kTriangleSetup);
-  const int orientation = set_up_edges<L>(packet.origin, packet.dir_max, packet.range_factor, triangle, edges, work);
-  if (orientation == 0) return false;
-  if (use_culling) {
-    work.add(Work::kCullTest);
-    if (corners_miss<L>(packet, edges)) return false;
-  }
-  const Float n0_x(edges.n_x.v[0]), n0_y(edges.n_y.v[0]), n0_z(edges.n_z.v[0]), error0(edges.error.v[0]);
-  const Float n1_x(edges.n_x.v[1]), n1_y(edges.n_y.v[1]), n1_z(edges.n_z.v[1]), error1(edges.error.v[1]);
-  const Float n2_x(edges.n_x.v[2]), n2_y(edges.n_y.v[2]), n2_z(edges.n_z.v[2]), error2(edges.error.v[2]);
+  const std::uint32_t first_lane = 4 * index;
+  const std::int32_t orientation = batch.orientation[index];
+  const std::uint32_t known = ((batch.in_range >> first_lane) & 0xFu) == 0xFu ? ~0u : 0u;
+  const auto splat = [&](const float* lanes, std::uint32_t edge) { return Float(lanes[first_lane + edge]); };
+  const Float n0_x = splat(batch.n[0], 0), n0_y = splat(batch.n[1], 0), n0_z = splat(batch.n[2], 0);
+  const Float n1_x = splat(batch.n[0], 1), n1_y = splat(batch.n[1], 1), n1_z = splat(batch.n[2], 1);
+  const Float n2_x = splat(batch.n[0], 2), n2_y = splat(batch.n[1], 2), n2_z = splat(batch.n[2], 2);
+  const Float error0 = splat(batch.error, 0), error1 = splat(batch.error, 1), error2 = splat(batch.error, 2);
 
   DistanceSetup setup;
   bool setup_done = false;
@@ -243,10 +238,9 @@ template <class L, bool kWantFacing, class PacketType>
     const Float e2 = n2_x * d_x + n2_y * d_y + n2_z * d_z;
     // 1. One edge that is surely passed on the outside ends it.
     const std::uint32_t outside = ((e0 < -error0) | (e1 < -error1) | (e2 < -error2)).bits();
-    std::uint32_t open = active & (edges.in_range ? ~outside : ~0u);
+    std::uint32_t open = active & ~(outside & known);
     if (open == 0) continue;
     // 2. Three edges surely passed on the inside: a hit. Anything else is decided in double, then exactly.
-    const std::uint32_t known = edges.in_range ? ~0u : 0u;
     const std::uint32_t sure_inside[3] = {(e0 > error0).bits() & known, (e1 > error1).bits() & known,
                                           (e2 > error2).bits() & known};
     std::uint32_t inside = open & sure_inside[0] & sure_inside[1] & sure_inside[2];
@@ -284,6 +278,34 @@ template <class L, bool kWantFacing, class PacketType>
     }
   }
   return changed;
+}
+
+/// Intersects 1..EdgeBatch<L>::kTriangles triangles with every active ray of a packet.
+///
+/// @param use_culling  the packet's corner rays bound it. @returns true where a ray's hit changed.
+template <class L, bool kWantFacing, class PacketType>
+[[nodiscard]] GRIDIRON_INLINE bool intersect_standard_batch(PacketType& packet, const VertexTriangle* const* triangles,
+                                                            std::uint32_t count, bool use_culling, WorkCounters& work) {
+  EdgeBatch<L> batch;
+  const VertexTriangle* padded[EdgeBatch<L>::kTriangles];
+  for (std::uint32_t i = 0; i < EdgeBatch<L>::kTriangles; ++i) padded[i] = triangles[i < count ? i : 0];
+  work.add(Work::kTriangleSetup, count);
+  if (use_culling) work.add(Work::kCullTest, count);
+  set_up_edges<L>(packet, padded, use_culling, batch, work);
+  bool changed = false;
+  for (std::uint32_t i = 0; i < count; ++i) {
+    if (((batch.missed >> (4 * i)) & 0xFu) != 0 || batch.orientation[i] == 0) continue;
+    changed |= test_groups<L, kWantFacing>(packet, *triangles[i], batch, i, work);
+  }
+  return changed;
+}
+
+/// Intersects one triangle with every active ray of a packet.
+template <class L, bool kWantFacing, class PacketType>
+[[nodiscard]] GRIDIRON_INLINE bool intersect_standard(PacketType& packet, const VertexTriangle& triangle,
+                                                      bool use_culling, WorkCounters& work) {
+  const VertexTriangle* const triangles[] = {&triangle};
+  return intersect_standard_batch<L, kWantFacing>(packet, triangles, 1, use_culling, work);
 }
 
 }  // namespace gridiron

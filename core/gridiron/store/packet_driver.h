@@ -152,20 +152,26 @@ class PacketDriver {
 
   template <class Triangle, bool kWantFacing>
   [[nodiscard]] bool test_each(const std::byte* records, std::uint32_t count) {
+    constexpr bool kPaper = std::is_same_v<Triangle, ProjectionTriangle>;
+    constexpr std::uint32_t kBatch = kPaper ? 1 : EdgeBatch<L>::kTriangles;
     const Triangle* triangles = reinterpret_cast<const Triangle*>(records);
     const bool use_mailbox = (store_.frame.techniques & kUseMailbox) != 0;
     const bool use_culling = (store_.frame.techniques & kUseCornerCulling) != 0;
+    if (use_mailbox) store_.work.add(Work::kMailboxProbe, count);
+    const Triangle* waiting[kBatch];
+    std::uint32_t waiting_count = 0;
     bool changed = false;
     for (std::uint32_t i = 0; i < count; ++i) {
-      if (use_mailbox) {
-        store_.work.add(Work::kMailboxProbe);
-        if (store_.mailbox.seen(triangles[i].triangle_id)) continue;
-      }
-      if constexpr (std::is_same_v<Triangle, ProjectionTriangle>) {
-        changed |= intersect_projection<L, kWantFacing>(store_.packet, triangles[i], use_culling, store_.work);
+      waiting[waiting_count] = triangles + i;
+      if (!use_mailbox || !store_.mailbox.seen(triangles[i].triangle_id)) ++waiting_count;
+      if (waiting_count < kBatch && (i + 1 < count || waiting_count == 0)) continue;
+      if constexpr (kPaper) {
+        changed |= intersect_projection<L, kWantFacing>(store_.packet, *waiting[0], use_culling, store_.work);
       } else {
-        changed |= intersect_standard<L, kWantFacing>(store_.packet, triangles[i], use_culling, store_.work);
+        changed |=
+            intersect_standard_batch<L, kWantFacing>(store_.packet, waiting, waiting_count, use_culling, store_.work);
       }
+      waiting_count = 0;
     }
     return changed;
   }
