@@ -22,8 +22,9 @@ namespace gridiron {
 /// component: S and a + b carry 2 e S, F carries e F, a product of them adds e, so each of the two products of a
 /// component is within 4 e S_j F_k, their difference within 5 e (S_j F_k + S_k F_j). Times d and summed over three
 /// components: 3 e more. In all 8 e sum_i |d_i| (S_j F_k + S_k F_j) <= 16 e |d|max |F|max |S|1, and the bound itself
-/// is computed with less than 1 e of relative error per operation: 17 e covers it. kUnderflow covers what products
-/// below the least normal float lose. Edges whose magnitudes leave the range where this holds are decided exactly.
+/// is computed with less than 1 e of relative error per operation: 17 e covers it. kUnderflow, times |d|max where that
+/// is above 1, covers what products below the least normal float lose. Edges whose magnitudes leave the range where
+/// this holds are decided exactly.
 template <class L>
 struct EdgeBatch {
   static constexpr std::uint32_t kTriangles = L::kCount / 4;
@@ -97,7 +98,7 @@ GRIDIRON_INLINE void set_up_edges(const PacketType& packet, const VertexTriangle
   const Float size_a = L::abs(a_x) + L::abs(a_y) + L::abs(a_z);
   const Float size_f = L::max(L::max(L::abs(f_x), L::abs(f_y)), L::abs(f_z));
   const Float scale = (size_a + next(size_a)) * size_f;
-  const Float error = scale * Float(kEdgeErrorFactor * packet.dir_max) + Float(kUnderflow);
+  const Float error = scale * Float(kEdgeErrorFactor * packet.dir_max) + Float(kUnderflow * packet.range_factor);
   batch.in_range = (scale * Float(packet.range_factor) < Float(kEdgeRangeLimit)).bits();
 
   // Orientation: with c the vertex opposite an edge, n . c = 2 det[a, b, c], by the same bound with c in the place of
