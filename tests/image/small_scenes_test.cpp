@@ -140,7 +140,8 @@ std::vector<SceneCase> make_cases() {
        look({0, 2e-30f, 3e-30f}, {0, 0, 0})},
       {"scale_1e30", [] { return moved(make_torus(32, 16, 1.0f, 0.4f), 1e30f, {}); },
        look({0, 2e30f, 3e30f}, {0, 0, 0})},
-      {"mixed_scale", [] { return joined(make_height_field(16, 60.0f, 3), moved(make_sphere(8, 10, 1.0f), 1e-3f, {})); },
+      {"mixed_scale",
+       [] { return joined(make_height_field(16, 60.0f, 3), moved(make_sphere(8, 10, 1.0f), 1e-3f, {})); },
        look({0, 0, 0.005f}, {0, 0, 0})},
 
       {"flat_z", [] { return make_box({-1, -1, 0}, {1, 1, 0}); }, look({0.3f, 0.2f, 3}, {0, 0, 0})},

@@ -32,7 +32,7 @@ struct ImageHeader {
   std::uint32_t magic;
   std::uint32_t version;
   std::uint64_t image_bytes;       ///< whole image, a multiple of kLineBytes
-  std::uint64_t check_value;       ///< of the whole image with this field taken as 0; see image/check_value.h
+  std::uint64_t check_value;       ///< of the whole image with this field taken as 0; see check_value.h
   std::uint32_t section_count;
   std::uint32_t section_table_offset_bytes;  ///< SectionEntry[section_count]
   std::uint32_t triangle_count;    ///< input triangles after fanning, dropped ones included

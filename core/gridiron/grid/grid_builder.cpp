@@ -2,7 +2,7 @@
 #include <gridiron/grid/cell_rows.h>
 #include <gridiron/grid/grid_builder.h>
 #include <gridiron/grid/triangle_records.h>
-#include <gridiron/image/check_value.h>
+#include <gridiron/base/check_value.h>
 
 #include <bit>
 

@@ -1,6 +1,6 @@
 // Scene image validation: see the header. SPDX-License-Identifier: Apache-2.0
 #include <gridiron/base/math.h>
-#include <gridiron/image/check_value.h>
+#include <gridiron/base/check_value.h>
 #include <gridiron/image/scene_image.h>
 
 #include <bit>

@@ -35,7 +35,8 @@ struct SceneImageError {
 /// Errors: kBadImage, with the place in `error`. Cost: linear in the image's size.
 [[nodiscard]] Status open_scene_image(std::span<const std::byte> image, SceneImageView& view, SceneImageError& error);
 
-/// @returns the check value (image/check_value.h) of a whole image, a multiple of 64 bytes long, its own field taken as 0.
+/// @returns the check value (base/check_value.h) of a whole image, its own field taken as 0.
+/// @param image  a multiple of 64 bytes long.
 [[nodiscard]] std::uint64_t scene_image_check_value(std::span<const std::byte> image);
 
 }  // namespace gridiron

@@ -1,4 +1,5 @@
 // Decimal parsing against the C library's, which rounds correctly, and against hand-made corner cases.
+// SPDX-License-Identifier: Apache-2.0
 #include <gridiron/io/decimal.h>
 #include <gtest/gtest.h>
 

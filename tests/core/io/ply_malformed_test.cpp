@@ -1,4 +1,5 @@
 // What is wrong with malformed PLY inputs, and where: error, byte, line, element and row, for every chunking.
+// SPDX-License-Identifier: Apache-2.0
 #include <gridiron/io/ply_reader.h>
 #include <gtest/gtest.h>
 

@@ -1,4 +1,5 @@
 // What valid PLY inputs give, for every format, type, line end, chunking and size of output.
+// SPDX-License-Identifier: Apache-2.0
 #include <gridiron/io/ply_reader.h>
 #include <gtest/gtest.h>
 

@@ -1,4 +1,5 @@
 // Every file of the PLY zoo against the verdict of its manifest, in several chunkings.
+// SPDX-License-Identifier: Apache-2.0
 #include <gridiron/io/ply_reader.h>
 #include <gtest/gtest.h>
 

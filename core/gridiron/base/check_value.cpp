@@ -1,5 +1,5 @@
 // Check value: see the header. SPDX-License-Identifier: Apache-2.0
-#include <gridiron/image/check_value.h>
+#include <gridiron/base/check_value.h>
 
 #include <bit>
 
