@@ -2,9 +2,12 @@
 #include "arguments.h"
 
 #include <CLI/CLI.hpp>
+#include <algorithm>
 #include <functional>
 #include <map>
 #include <string_view>
+#include <utility>
+#include <vector>
 
 #include "failure.h"
 #include "store_facts.h"
@@ -40,14 +43,18 @@ CLI::Option* add_parsed(CLI::App& app, const std::string& name, Target& target, 
   return app.add_option_function<std::string>(name, set, help)->type_name(type)->expected(1);
 }
 
+// Words and what they stand for, in the order in which people are told them.
+template <class Value>
+using Choices = std::vector<std::pair<std::string, Value>>;
+
 // Adds an option that takes one word of a list.
 template <class Target, class Value>
-CLI::Option* add_choice(CLI::App& app, const std::string& name, Target& target,
-                        const std::map<std::string, Value>& choices, const std::string& help) {
+CLI::Option* add_choice(CLI::App& app, const std::string& name, Target& target, const Choices<Value>& choices,
+                        const std::string& help) {
   std::string list;
   for (const auto& [word, value] : choices) list += (list.empty() ? "" : "|") + word;
   const auto find = [choices](const std::string& text) -> std::optional<Value> {
-    const auto found = choices.find(text);
+    const auto found = std::ranges::find(choices, text, &Choices<Value>::value_type::first);
     return found == choices.end() ? std::nullopt : std::optional<Value>(found->second);
   };
   return add_parsed(app, name, target, find, "one of " + list, list, help);
@@ -87,10 +94,10 @@ void add_size(CLI::App& app, std::uint32_t& width, std::uint32_t& height, const 
 
 void add_scene_options(CLI::App& app, SceneArguments& scene) {
   app.add_option("INPUT", scene.input, "scene: .ply (mesh) or .gri (made by pack)")->required()->type_name("");
-  std::map<std::string, const sim::MachineProfile*> machines;
-  for (const sim::MachineProfile& machine : sim::machine_profiles()) machines[std::string(machine.name)] = &machine;
-  std::map<std::string, const Configuration*> sets;
-  for (const Configuration& configuration : configurations()) sets[std::string(configuration.name)] = &configuration;
+  Choices<const sim::MachineProfile*> machines;
+  for (const sim::MachineProfile& machine : sim::machine_profiles()) machines.emplace_back(machine.name, &machine);
+  Choices<const Configuration*> sets;
+  for (const Configuration& configuration : configurations()) sets.emplace_back(configuration.name, &configuration);
   scene.machine = &sim::machine_profiles().front();
   scene.configuration = &configurations().front();
   add_choice(app, "--machine", scene.machine, machines,
@@ -107,8 +114,8 @@ void add_scene_options(CLI::App& app, SceneArguments& scene) {
              "N", "cells along a macrocell's edge");
 }
 
-const std::map<std::string, TriangleFormat> kFormats = {{"vertices", TriangleFormat::kVertices},
-                                                        {"projection", TriangleFormat::kProjection}};
+const Choices<TriangleFormat> kFormats = {{"vertices", TriangleFormat::kVertices},
+                                          {"projection", TriangleFormat::kProjection}};
 
 void add_view_options(CLI::App& app, RenderArguments& render) {
   const std::string vector = "x,y,z with three finite numbers";
@@ -150,21 +157,19 @@ void add_machine_options(CLI::App& app, RawRender& raw) {
              "cores of the machine (default: the profile's)");
   add_parsed(app, "--threads", render.threads, count_between(1, kMostThreads), "a whole number from 1 to 256", "N",
              "host threads (default: the host's); no result depends on it");
-  add_choice(app, "--store", render.store,
-             std::map<std::string, StoreSize>{{"64", StoreSize::k64KB}, {"256", StoreSize::k256KB}},
+  add_choice(app, "--store", render.store, Choices<StoreSize>{{"64", StoreSize::k64KB}, {"256", StoreSize::k256KB}},
              "local store in KB (default 256)");
   add_choice(app, "--mode", render.mode,
-             std::map<std::string, Mode>{
-                 {"checked", Mode::kChecked}, {"plain", Mode::kPlain}, {"instrumented", Mode::kInstrumented}},
+             Choices<Mode>{{"checked", Mode::kChecked}, {"plain", Mode::kPlain}, {"instrumented", Mode::kInstrumented}},
              "checked (default): every rule checked, work traced; plain: fast, no report; "
              "instrumented: checked, and every load and store of the kernel too");
-  add_choice(app, "--completion", render.completion,
-             std::map<std::string, Completion>{
-                 {"early", Completion::kEarly}, {"late", Completion::kLate}, {"random", Completion::kRandom}},
-             "when the bytes of a transfer move (default early)");
+  add_choice(
+      app, "--completion", render.completion,
+      Choices<Completion>{{"early", Completion::kEarly}, {"late", Completion::kLate}, {"random", Completion::kRandom}},
+      "when the bytes of a transfer move (default early)");
   add_parsed(app, "--seed", render.seed, parse_seed, "a whole number of at most 19 digits", "N",
              "seed of --completion random (default 0)");
-  add_choice(app, "--lanes", render.lanes, std::map<std::string, std::uint32_t>{{"4", 4}, {"8", 8}, {"16", 16}},
+  add_choice(app, "--lanes", render.lanes, Choices<std::uint32_t>{{"4", 4}, {"8", 8}, {"16", 16}},
              "rays per SIMD group (default 4; plain: the host's widest); time is told for 4 only");
   const auto tile = [](const std::string& text) { return parse_count_pair(text, ','); };
   add_parsed(app, "--tile", render.tile, tile, "X,Y with a column and a row", "X,Y",
@@ -174,15 +179,14 @@ void add_machine_options(CLI::App& app, RawRender& raw) {
 void add_algorithm_options(CLI::App& app, RawRender& raw) {
   RenderArguments& render = raw.arguments;
   add_choice(app, "--buffering", raw.buffering,
-             std::map<std::string, BufferDepths>{{"single", kSingleBuffering}, {"double", kDoubleBuffering}},
+             Choices<BufferDepths>{{"single", kSingleBuffering}, {"double", kDoubleBuffering}},
              "buffers of all three levels (default: the configuration's)");
-  add_choice(app, "--packet", render.packet_width, std::map<std::string, std::uint32_t>{{"4", 4}, {"8", 8}, {"16", 16}},
+  add_choice(app, "--packet", render.packet_width, Choices<std::uint32_t>{{"4", 4}, {"8", 8}, {"16", 16}},
              "rays along a packet's edge (default: the configuration's)");
   add_choice(app, "--accuracy", render.accuracy,
-             std::map<std::string, Accuracy>{{"standard", Accuracy::kStandard}, {"paper", Accuracy::kPaper}},
+             Choices<Accuracy>{{"standard", Accuracy::kStandard}, {"paper", Accuracy::kPaper}},
              "intersection test (default standard)");
-  add_choice(app, "--shading", render.shading,
-             std::map<std::string, Shading>{{"none", Shading::kNone}, {"simple", Shading::kSimple}},
+  add_choice(app, "--shading", render.shading, Choices<Shading>{{"none", Shading::kNone}, {"simple", Shading::kSimple}},
              "none: hit or background; simple: facing ratio (default)");
   app.add_flag("--no-mailbox", raw.no_mailbox, "test a triangle again in every cell that holds it");
   app.add_flag("--no-culling", raw.no_culling, "do not cull triangles by the corner rays");
@@ -281,6 +285,15 @@ Command parse_arguments(int count, const char* const* values) {
   MachinesArguments machines_arguments;
   CLI::App* machines = app.add_subcommand("machines", "lists the machine profiles");
   machines->add_flag("--json", machines_arguments.json, "as JSON");
+
+  // CLI11 would only say that a subcommand is required.
+  const std::string first = count > 1 ? values[1] : "";
+  const auto all = app.get_subcommands([](const CLI::App*) { return true; });
+  const bool is_command =
+      std::ranges::any_of(all, [&first](const CLI::App* each) { return each->get_name() == first; });
+  if (!first.empty() && first.front() != '-' && !is_command) {
+    usage_error("'" + first + "' is not a command; expected render, info, pack or machines");
+  }
 
   try {
     app.parse(count, values);

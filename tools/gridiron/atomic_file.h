@@ -29,6 +29,9 @@ class AtomicFile {
   /// Closes and makes the file appear under its name.
   void commit();
 
+  /// @returns whether the path is a device or a pipe, whose bytes can fail to arrive as late as at commit.
+  [[nodiscard]] bool is_special() const { return is_special_; }
+
  private:
   [[noreturn]] void fail(const char* action);
 

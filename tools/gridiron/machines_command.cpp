@@ -1,15 +1,20 @@
 // machines: the machine profiles. SPDX-License-Identifier: Apache-2.0
+#include <report/report.h>
+
 #include <cstdio>
 #include <nlohmann/json.hpp>
 #include <string>
 
 #include "commands.h"
-#include "words.h"
 
 namespace gridiron::tool {
 namespace {
 
 nlohmann::ordered_json json_of(const sim::MachineProfile& machine) {
+  nlohmann::ordered_json work = nlohmann::ordered_json::object();
+  for (std::uint32_t kind = 0; kind < kWorkKindCount; ++kind) {
+    work[std::string(work_name(static_cast<Work>(kind)))] = machine.work_cycles[kind];
+  }
   return {{"name", machine.name},
           {"description", machine.description},
           {"cores", machine.core_count},
@@ -24,7 +29,8 @@ nlohmann::ordered_json json_of(const sim::MachineProfile& machine) {
           {"latency_cycles", machine.latency_cycles},
           {"channel_bytes_per_cycle", machine.channel_bytes_per_cycle},
           {"core_line_interval_cycles", machine.core_line_interval_cycles},
-          {"claim_cycles", machine.claim_cycles}};
+          {"claim_cycles", machine.claim_cycles},
+          {"work_cycles", work}};
 }
 
 }  // namespace
@@ -38,11 +44,7 @@ void run_command(const MachinesArguments& arguments) {
     return;
   }
   for (const sim::MachineProfile& machine : sim::machine_profiles()) {
-    std::printf("%-14s %u cores at %.1f GHz, %s local store each, %s main memory, %.0f cycles of latency\n",
-                std::string(machine.name).c_str(), machine.core_count, machine.clock_hz * 1e-9,
-                words_of_bytes(machine.local_store_bytes).c_str(), words_of_bytes(machine.main_memory_bytes).c_str(),
-                machine.latency_cycles);
-    std::printf("%-14s %s\n", "", std::string(machine.description).c_str());
+    std::printf("%-14s %s\n", std::string(machine.name).c_str(), std::string(machine.description).c_str());
   }
 }
 

@@ -15,6 +15,7 @@
 #include "atomic_file.h"
 #include "commands.h"
 #include "failure.h"
+#include "frame_failure.h"
 #include "frame_memory.h"
 #include "image_files.h"
 #include "interrupt.h"
@@ -60,27 +61,6 @@ std::optional<std::uint32_t> chosen_tile(const RenderArguments& arguments, const
   return arguments.tile->y * record.tiles_x + arguments.tile->x;
 }
 
-// Every violation on a line of its own, then what the renderer itself said.
-[[noreturn]] void fail_frame(const sim::ChipResult& result) {
-  constexpr std::size_t kMostLines = 20;
-  std::string message;
-  for (std::size_t i = 0; i < std::min(result.violations.size(), kMostLines); ++i) {
-    const sim::Violation& violation = result.violations[i];
-    message += "core " + std::to_string(violation.core) + ", tile " + std::to_string(violation.tile_id) + ": " +
-               words_of(violation.rule) + ": " + violation.detail + "\n";
-  }
-  if (result.violations.size() > kMostLines) {
-    message += "... and " + words_of_count(result.violations.size() - kMostLines) + " more\n";
-  }
-  if (result.status != Status::kOk) {
-    message += "the frame failed on core " + std::to_string(result.failed_core) + " in tile " +
-               std::to_string(result.failed_tile) + ": " + words_of(result.status);
-  } else {
-    message += "the frame broke " + words_of_count(result.violations.size()) + " rules of the machine";
-  }
-  throw Failure(ExitCode::kCheckFailed, message);
-}
-
 sim::ChipResult render_on_chip(FrameMemory& frame, const RenderArguments& arguments) {
   if (arguments.mode == sim::Mode::kInstrumented && !sim::has_instrumented_mode()) {
     throw Failure(ExitCode::kUsage, "--mode instrumented: this build has no instrumented kernel");
@@ -101,10 +81,7 @@ sim::ChipResult render_on_chip(FrameMemory& frame, const RenderArguments& argume
   stop_if_interrupted();
   sim::ChipResult result = sim::render_frame(frame.memory, frame.record_address, options);
   stop_if_interrupted();
-  if (result.status == Status::kUnsupportedFrame) {
-    throw Failure(ExitCode::kUsage, words_of(result.status));
-  }
-  if (result.status != Status::kOk || !result.violations.empty()) fail_frame(result);
+  if (const std::optional<Failure> failure = frame_failure(result)) throw *failure;
   return result;
 }
 
@@ -156,10 +133,9 @@ void print_timing(const RenderArguments& arguments, const sim::FrameTiming& timi
   for (const sim::CoreTiming& core : timing.cores) {
     for (const double cycles : core.dma_wait_cycles) wait_cycles += cycles;
   }
-  const auto cores = static_cast<double>(timing.cores.size());
-  const double core_cycles = timing.frame_cycles * cores;
-  std::printf("%s, %u cores: %s cycles, %.2f ms, %.2f frames/s, %.2f %% of them waiting for DMA\n",
-              std::string(arguments.scene.machine->name).c_str(), static_cast<std::uint32_t>(timing.cores.size()),
+  const double core_cycles = timing.frame_cycles * static_cast<double>(timing.cores.size());
+  std::printf("%s, %s: %s cycles, %.2f ms, %.2f frames/s; %.2f %% of the cycles wait for DMA\n",
+              std::string(arguments.scene.machine->name).c_str(), words_of_count(timing.cores.size(), "core").c_str(),
               words_of_count(static_cast<std::uint64_t>(timing.frame_cycles)).c_str(), timing.seconds * 1e3,
               timing.seconds > 0 ? 1 / timing.seconds : 0.0, core_cycles > 0 ? 100 * wait_cycles / core_cycles : 0.0);
 }
@@ -208,13 +184,19 @@ void run_command(const RenderArguments& arguments) {
   }
   if (arguments.timeline) add_file(*arguments.timeline, timeline_json(timing, *arguments.scene.machine));
   stop_if_interrupted();
-  for (AtomicFile& file : files) file.commit();
+  // Devices and pipes first: they may fail where a rename no longer does.
+  for (AtomicFile& file : files) {
+    if (file.is_special()) file.commit();
+  }
+  for (AtomicFile& file : files) {
+    if (!file.is_special()) file.commit();
+  }
 
   if (arguments.quiet) return;
   print_picture(arguments, color, hash);
   if (has_time(arguments)) print_timing(arguments, timing);
-  std::printf("host: %.3f s to load, %.3f s to build, %.3f s to render on %u threads\n", input.load_seconds,
-              frame.build_seconds, render_seconds, host_threads(arguments));
+  std::printf("host: %.3f s to load, %.3f s to build, %.3f s to render on %s\n", input.load_seconds,
+              frame.build_seconds, render_seconds, words_of_count(host_threads(arguments), "thread").c_str());
 }
 
 }  // namespace gridiron::tool

@@ -92,4 +92,8 @@ std::string words_of_count(std::uint64_t count) {
   return words;
 }
 
+std::string words_of_count(std::uint64_t count, const char* noun) {
+  return words_of_count(count).append(" ").append(noun).append(count == 1 ? "" : "s");
+}
+
 }  // namespace gridiron::tool

@@ -20,4 +20,7 @@ namespace gridiron::tool {
 /// @returns "1,234,567".
 [[nodiscard]] std::string words_of_count(std::uint64_t count);
 
+/// @returns "1 core", "2 cores".
+[[nodiscard]] std::string words_of_count(std::uint64_t count, const char* noun);
+
 }  // namespace gridiron::tool

@@ -1,0 +1,93 @@
+// pack: scene images. SPDX-License-Identifier: Apache-2.0
+#include <gtest/gtest.h>
+
+#include "run_program.h"
+#include "temporary_folder.h"
+
+namespace gridiron::test {
+namespace {
+
+using Words = std::vector<std::string>;
+
+// "hash 0123456789abcdef" of the program's first line.
+std::string hash_of(const ProgramResult& result) {
+  EXPECT_EQ(result.exit_code, 0) << result.err;
+  const std::size_t place = result.out.find("hash ");
+  return place == std::string::npos ? "" : result.out.substr(place, 21);
+}
+
+TEST(Pack, RendersTheSamePictureAsTheMesh) {
+  const TemporaryFolder folder;
+  TestMesh mesh = make_torus(40, 24, 1.0f, 0.4f);
+  mesh.append(make_triangle(Vec3(0, 0, 0), Vec3(50, 0, 0), Vec3(100, 0, 0)));
+  folder.write_ply("a.ply", mesh);
+  const struct {
+    Words pack, render;
+  } cases[] = {
+      {{}, {}},
+      {{"--format", "projection"}, {"--accuracy", "paper"}},
+      {{"--lambda", "1", "--macro-width", "4"}, {}},
+  };
+  for (const auto& choice : cases) {
+    Words pack = {"pack", "a.ply", "-o", "a.gri"}, render = {"render", "a.gri", "--size", "96x64"};
+    pack.insert(pack.end(), choice.pack.begin(), choice.pack.end());
+    render.insert(render.end(), choice.render.begin(), choice.render.end());
+    const ProgramResult packed = run_program(folder.folder(), pack);
+    ASSERT_EQ(packed.exit_code, 0) << packed.err;
+    const std::string hash = hash_of(run_program(folder.folder(), render));
+    render[1] = "a.ply";
+    EXPECT_EQ(hash, hash_of(run_program(folder.folder(), render)));
+    EXPECT_EQ(hash.size(), 21u);
+  }
+}
+
+TEST(Pack, IsTheSameBytesEveryTime) {
+  const TemporaryFolder folder;
+  folder.write_ply("a.ply", make_random_soup(300, 0.2f, 7));
+  ASSERT_EQ(run_program(folder.folder(), {"pack", "a.ply", "-o", "a.gri"}).exit_code, 0);
+  ASSERT_EQ(run_program(folder.folder(), {"pack", "a.ply", "-o", "b.gri"}).exit_code, 0);
+  EXPECT_EQ(read_file(folder.path("a.gri")), read_file(folder.path("b.gri")));
+}
+
+TEST(Pack, ImagesAreUsedAsTheyWerePacked) {
+  const TemporaryFolder folder;
+  folder.write_ply("a.ply", make_sphere(12, 16, 1.0f));
+  ASSERT_EQ(run_program(folder.folder(), {"pack", "a.ply", "-o", "a.gri"}).exit_code, 0);
+  const struct {
+    Words arguments;
+    const char* words;
+  } cases[] = {
+      {{"render", "a.gri", "--accuracy", "paper"}, "needs --format projection"},
+      {{"render", "a.gri", "--lambda", "2"}, "packed with lambda 4"},
+      {{"render", "a.gri", "--macro-width", "4"}, "width 6"},
+      {{"pack", "a.gri", "-o", "b.gri"}, "already"},
+  };
+  for (const auto& mistake : cases) {
+    const ProgramResult result = run_program(folder.folder(), mistake.arguments);
+    EXPECT_EQ(result.exit_code, 1) << result.out;
+    EXPECT_NE(result.err.find(mistake.words), std::string::npos) << result.err;
+  }
+  EXPECT_EQ(folder.names(), (Words{"a.gri", "a.ply"}));
+}
+
+TEST(Pack, DamagedImagesAreNamedWithTheirByte) {
+  const TemporaryFolder folder;
+  folder.write_ply("a.ply", make_sphere(12, 16, 1.0f));
+  ASSERT_EQ(run_program(folder.folder(), {"pack", "a.ply", "-o", "a.gri"}).exit_code, 0);
+  const std::string image = read_file(folder.path("a.gri"));
+  std::string flipped = image;
+  flipped[flipped.size() / 2] = static_cast<char>(flipped[flipped.size() / 2] ^ 1);
+  for (const std::string& damaged :
+       {std::string(), image.substr(0, 40), image.substr(0, image.size() - 128), flipped, "GDRX" + image.substr(4)}) {
+    folder.write("b.gri", damaged);
+    for (const Words& command : {Words{"render", "b.gri"}, {"info", "b.gri"}}) {
+      const ProgramResult result = run_program(folder.folder(), command);
+      EXPECT_EQ(result.exit_code, 1);
+      EXPECT_EQ(result.err.find("b.gri:byte "), 0u) << result.err;
+    }
+  }
+  EXPECT_EQ(folder.names(), (Words{"a.gri", "a.ply", "b.gri"}));
+}
+
+}  // namespace
+}  // namespace gridiron::test

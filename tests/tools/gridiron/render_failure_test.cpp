@@ -1,0 +1,162 @@
+// render that cannot: exit codes, words, and no file left behind. SPDX-License-Identifier: Apache-2.0
+#include <gtest/gtest.h>
+#include <signal.h>
+
+#include <chrono>
+#include <thread>
+
+#include "run_program.h"
+#include "temporary_folder.h"
+
+namespace gridiron::test {
+namespace {
+
+using Words = std::vector<std::string>;
+
+void expect_failure(const TemporaryFolder& folder, const Words& arguments, int exit_code, const std::string& words) {
+  const Words before = folder.names();
+  const ProgramResult result = run_program(folder.folder(), arguments);
+  EXPECT_EQ(result.exit_code, exit_code) << result.err;
+  EXPECT_NE(result.err.find(words), std::string::npos) << result.err << "\nlacks: " << words;
+  EXPECT_EQ(result.out, "");
+  EXPECT_EQ(folder.names(), before) << "a file was left behind or lost";
+}
+
+TEST(RenderFailure, BadInputNamesFileAndLineOrByte) {
+  const TemporaryFolder folder;
+  folder.write("text.ply", "ply\nformat ascii 1.0\nelement vertex many\n");
+  folder.write("index.ply",
+               "ply\nformat ascii 1.0\nelement vertex 3\nproperty float x\nproperty float y\nproperty float z\n"
+               "element face 1\nproperty list uchar int vertex_indices\nend_header\n0 0 0\n1 0 0\n0 1 0\n3 0 1 3\n");
+  folder.write_ply("whole.ply", make_sphere(8, 12, 1.0f));
+  const std::string whole = read_file(folder.path("whole.ply"));
+  folder.write("short.ply", whole.substr(0, whole.size() - 1));
+  folder.write("empty.ply", "");
+  folder.write("a.nff", "v\n");
+  folder.write("a.txt", "ply\n");
+  std::filesystem::create_directory(folder.path("folder.ply"));
+  const struct {
+    const char* input;
+    std::string words;
+  } cases[] = {
+      {"missing.ply", "missing.ply: No such file or directory"},
+      {"nowhere/bunny.ply", "nowhere/bunny.ply: No such file or directory; bunny.ply is a public scan"},
+      {"conference.ply", "tools/fetch_scenes"},
+      {"text.ply", "text.ply:3: "},
+      {"index.ply", "index.ply:13: "},
+      {"short.ply", "short.ply:byte " + std::to_string(whole.size() - 1) + ": "},
+      {"empty.ply", "empty.ply:1: "},
+      {"folder.ply", "folder.ply: Is a directory"},
+      {"a.nff", "a.nff: NFF"},
+      {"a.txt", "a.txt: unknown kind of scene"},
+  };
+  for (const auto& input : cases) {
+    expect_failure(folder, {"render", input.input, "-o", "out.png", "--depth", "d.pfm"}, 1, input.words);
+    expect_failure(folder, {"info", input.input}, 1, input.words);
+    expect_failure(folder, {"pack", input.input, "-o", "out.gri"}, 1, input.words);
+  }
+}
+
+TEST(RenderFailure, ScenesWithoutATriangleToTrace) {
+  const TemporaryFolder folder;
+  TestMesh cloud = make_sphere(8, 12, 1.0f);
+  cloud.triangles.clear();
+  folder.write_ply("cloud.ply", cloud);
+  folder.write_ply("line.ply", make_triangle(Vec3(0), Vec3(1, 0, 0), Vec3(2, 0, 0)));
+  expect_failure(folder, {"render", "cloud.ply"}, 1, "cloud.ply: no triangles: a point cloud of ");
+  expect_failure(folder, {"render", "line.ply"}, 1, "line.ply: no triangle to trace: all 1 have zero area");
+}
+
+TEST(RenderFailure, OutputsThatCannotBeWritten) {
+  const TemporaryFolder folder;
+  folder.write_ply("a.ply", make_box(Vec3(0), Vec3(1)));
+  std::filesystem::create_directory(folder.path("folder"));
+  const Words scene = {"render", "a.ply", "--size", "8x8"};
+  for (const char* option : {"-o", "--depth", "--ids", "--report", "--timeline"}) {
+    for (const char* path : {"missing/x", "a.ply/x", "folder", "/proc/gridiron_test"}) {
+      Words arguments = scene;
+      if (std::string(option) != "-o") arguments.insert(arguments.end(), {"-o", "good.png"});
+      arguments.insert(arguments.end(), {option, path});
+      expect_failure(folder, arguments, 1, std::string(path) + ": cannot write");
+    }
+  }
+  expect_failure(folder, {"render", "a.ply", "--size", "8x8", "-o", "good.png", "--report", "/dev/full"}, 1,
+                 "/dev/full: cannot write: write: No space left on device");
+  expect_failure(folder, {"pack", "a.ply", "-o", "missing/x.gri"}, 1, "missing/x.gri: cannot write");
+}
+
+TEST(RenderFailure, AFailureKeepsTheFilesOfAnEarlierRun) {
+  const TemporaryFolder folder;
+  folder.write_ply("a.ply", make_box(Vec3(0), Vec3(1)));
+  folder.write("out.png", "earlier");
+  expect_failure(folder, {"render", "a.ply", "-o", "out.png", "--report", "/dev/full"}, 1, "/dev/full");
+  EXPECT_EQ(read_file(folder.path("out.png")), "earlier");
+}
+
+TEST(RenderFailure, PicturesLargerThanTheMachine) {
+  const TemporaryFolder folder;
+  folder.write_ply("a.ply", make_box(Vec3(0), Vec3(1)));
+  expect_failure(folder, {"render", "a.ply", "--size", "16384x16384"}, 1, "a picture of 16384x16384 needs 1.0 GB");
+}
+
+TEST(RenderFailure, ViewsThatNoCameraHas) {
+  const TemporaryFolder folder;
+  folder.write_ply("a.ply", make_box(Vec3(0), Vec3(1)));
+  folder.write("bad.camera", "eye 1 2 3\nat 0 0\n");
+  expect_failure(folder, {"render", "a.ply", "--eye", "1,2,3", "--at", "1,2,3"}, 2, "eye and at are the same point");
+  expect_failure(folder, {"render", "a.ply", "--eye", "0,5,0", "--at", "0,0,0"}, 2, "up points along the view");
+  expect_failure(folder, {"render", "a.ply", "--tile", "32,0"}, 2, "32 columns");
+  expect_failure(folder, {"render", "a.ply", "--camera", "bad.camera"}, 1, "bad.camera:2: ");
+  expect_failure(folder, {"render", "a.ply", "--camera", "none.camera"}, 1, "none.camera: No such file");
+}
+
+TEST(RenderFailure, TheStoreMustHoldThePackedMacrocells) {
+  const TemporaryFolder folder;
+  folder.write_ply("a.ply", make_box(Vec3(0), Vec3(1)));
+  ASSERT_EQ(run_program(folder.folder(), {"pack", "a.ply", "-o", "a.gri", "--macro-width", "8"}).exit_code, 0);
+  expect_failure(folder, {"render", "a.gri", "--store", "64"}, 1, "scene image that this local store");
+}
+
+// Sends `signal` some time into a render that lasts for minutes.
+void expect_interrupt(int signal, std::chrono::milliseconds delay) {
+  const TemporaryFolder folder;
+  folder.write_ply("a.ply", make_torus(40, 24, 1.0f, 0.4f));
+  folder.write("a.png", "earlier");
+  RunningProgram program(folder.folder(),
+                         {"render", "a.ply", "-o", "a.png", "--report", "r.json", "--size", "4096x4096", "--mode",
+                          "checked", "--threads", "1", "--completion", "random"});
+  std::this_thread::sleep_for(delay);
+  const auto start = std::chrono::steady_clock::now();
+  program.send(signal);
+  const ProgramResult result = program.wait();
+  EXPECT_EQ(result.exit_code, 130) << result.err;
+  EXPECT_EQ(result.err, "interrupted; no file was written\n");
+  EXPECT_LT(std::chrono::steady_clock::now() - start, std::chrono::seconds(20)) << "it should stop at the next tile";
+  EXPECT_EQ(folder.names(), (Words{"a.ply", "a.png"}));
+  EXPECT_EQ(read_file(folder.path("a.png")), "earlier");
+}
+
+TEST(RenderFailure, AnInterruptStopsBetweenTilesAndLeavesNothing) {
+  expect_interrupt(SIGINT, std::chrono::milliseconds(300));
+  expect_interrupt(SIGTERM, std::chrono::milliseconds(400));
+}
+
+TEST(RenderFailure, AnInterruptAtAnyTimeLeavesAllOrNothing) {
+  for (int step = 0; step < 8; ++step) {
+    const TemporaryFolder folder;
+    folder.write_ply("a.ply", make_torus(40, 24, 1.0f, 0.4f));
+    RunningProgram program(folder.folder(),
+                           {"render", "a.ply", "-o", "a.png", "--report", "r.json", "--size", "256x256"});
+    std::this_thread::sleep_for(std::chrono::milliseconds(7 * step));
+    program.send(SIGINT);
+    const ProgramResult result = program.wait();
+    const Words expected = result.exit_code == 0 ? Words{"a.ply", "a.png", "r.json"} : Words{"a.ply"};
+    EXPECT_EQ(folder.names(), expected) << "after " << 7 * step << " ms, exit code " << result.exit_code;
+    // A signal before main has begun ends the process by itself.
+    const bool ended_as_promised = result.exit_code == 0 || result.exit_code == 130 || result.exit_code == -SIGINT;
+    EXPECT_TRUE(ended_as_promised) << result.exit_code;
+  }
+}
+
+}  // namespace
+}  // namespace gridiron::test

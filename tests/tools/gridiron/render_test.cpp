@@ -1,0 +1,240 @@
+// render: pictures, planes and reports of the whole program. SPDX-License-Identifier: Apache-2.0
+#include <gtest/gtest.h>
+#include <report/report.h>
+
+#include <cmath>
+#include <nlohmann/json.hpp>
+
+#include "gridiron/view.h"
+#include "run_program.h"
+#include "support/picture.h"
+#include "support/render_mesh.h"
+#include "temporary_folder.h"
+
+namespace gridiron::test {
+namespace {
+
+using Json = nlohmann::json;
+using Words = std::vector<std::string>;
+
+Words operator+(Words a, const Words& b) {
+  a.insert(a.end(), b.begin(), b.end());
+  return a;
+}
+
+// Runs a render that must succeed.
+ProgramResult render(const TemporaryFolder& folder, const Words& arguments) {
+  const ProgramResult result = run_program(folder.folder(), Words{"render"} + arguments);
+  EXPECT_EQ(result.exit_code, 0) << result.err;
+  return result;
+}
+
+Json render_report(const TemporaryFolder& folder, const Words& arguments) {
+  (void)render(folder, arguments + Words{"--report", "report.json", "--quiet"});
+  return Json::parse(read_file(folder.path("report.json")), nullptr, false);
+}
+
+// The planes that the simulated chip leaves for the program's default view.
+RenderedFrame expected_frame(const TestMesh& mesh, std::uint32_t width, std::uint32_t height) {
+  SceneInMemory scene(mesh.view(), {});
+  FrameSettings settings;
+  settings.camera = tool::frame_view({}, scene.image().grid.bounds_minimum, scene.image().grid.bounds_maximum);
+  settings.width = width;
+  settings.height = height;
+  return scene.render(settings, {});
+}
+
+TEST(Render, FilesHoldThePlanesOfTheChip) {
+  const TestMesh mesh = make_torus(40, 24, 1.0f, 0.4f);
+  const struct { std::uint32_t width, height; } sizes[] = {{96, 64}, {33, 17}, {1, 1}, {1, 300}, {300, 1}};
+  for (const auto& size : sizes) {
+    const TemporaryFolder folder;
+    folder.write_ply("a.ply", mesh);
+    const std::string text = std::to_string(size.width) + "x" + std::to_string(size.height);
+    (void)render(folder, {"a.ply", "-o", "a.png", "--depth", "d.pfm", "--ids", "i.pfm", "--size", text});
+    const RenderedFrame expected = expected_frame(mesh, size.width, size.height);
+    ASSERT_EQ(expected.result.status, Status::kOk);
+
+    const auto color = load_picture(folder.path("a.png"));
+    const auto depth = load_picture(folder.path("d.pfm"));
+    const auto ids = load_picture(folder.path("i.pfm"));
+    ASSERT_TRUE(color && depth && ids) << text;
+    for (const Picture* picture : {&*color, &*depth, &*ids}) {
+      ASSERT_EQ(picture->width, size.width) << text;
+      ASSERT_EQ(picture->height, size.height) << text;
+    }
+    for (std::size_t i = 0; i < expected.planes.color.size(); ++i) {
+      for (std::uint32_t channel = 0; channel < 4; ++channel) {
+        ASSERT_EQ(color->values[4 * i + channel], static_cast<float>(expected.planes.color[i] >> (8 * channel) & 0xFFu))
+            << text << ", pixel " << i;
+      }
+      const bool is_hit = expected.planes.ids[i] != kNoTriangle;
+      ASSERT_EQ(ids->values[i], is_hit ? static_cast<float>(expected.planes.ids[i]) : -1.0f) << text << ", pixel " << i;
+      ASSERT_EQ(depth->values[i], is_hit ? expected.planes.depth[i] : INFINITY) << text << ", pixel " << i;
+    }
+  }
+}
+
+TEST(Render, TheDefaultPictureIsNamedAfterTheInput) {
+  const TemporaryFolder folder;
+  std::filesystem::create_directory(folder.path("scenes"));
+  folder.write_ply("scenes/tetra.box.ply", make_box(Vec3(0), Vec3(1)));
+  (void)render(folder, {"scenes/tetra.box.ply", "--size", "8x8"});
+  EXPECT_EQ(folder.names(), (Words{"scenes", "tetra.box.png"}));
+}
+
+TEST(Render, QuietPrintsNothing) {
+  const TemporaryFolder folder;
+  folder.write_ply("a.ply", make_box(Vec3(0), Vec3(1)));
+  const ProgramResult quiet = render(folder, {"a.ply", "--size", "8x8", "--quiet"});
+  EXPECT_EQ(quiet.out + quiet.err, "");
+  const ProgramResult loud = render(folder, {"a.ply", "--size", "8x8"});
+  EXPECT_NE(loud.out.find("hash "), std::string::npos) << loud.out;
+  EXPECT_EQ(loud.err, "") << "no progress bar where standard error is no terminal";
+}
+
+TEST(Render, TheReportHoldsWhatWasRendered) {
+  const TemporaryFolder folder;
+  const TestMesh mesh = make_torus(40, 24, 1.0f, 0.4f);
+  folder.write_ply("a.ply", mesh);
+  const Json report = render_report(folder, {"a.ply", "-o", "a.png", "--size", "96x64", "--timeline", "t.json"});
+  EXPECT_EQ(report["scene"]["triangles"], mesh.triangles.size());
+  EXPECT_EQ(report["scene"]["grid"]["lambda"], 4.0);
+  EXPECT_EQ(report["machine"]["name"], "cell-ps3");
+  EXPECT_EQ(report["cores"].size(), 6u);
+  EXPECT_GT(report["frame"]["cycles"], 0);
+  EXPECT_EQ(report["effects"]["rays"]["primary"], 96 * 64);
+  EXPECT_EQ(report["work"]["tile_start"], 6);
+  EXPECT_EQ(report["local_store"]["arena_bytes"], 262144);
+  EXPECT_EQ(report["image_hash"], tool::hash_text(tool::image_hash(expected_frame(mesh, 96, 64).planes.color)));
+  const Json timeline = Json::parse(read_file(folder.path("t.json")), nullptr, false);
+  EXPECT_GT(timeline["traceEvents"].size(), 6u);
+}
+
+// Everything but host times.
+Json without_host(Json report) {
+  report.erase("host");
+  return report;
+}
+
+TEST(Render, OptionsOfTheHostChangeNothing) {
+  const TemporaryFolder folder;
+  folder.write_ply("a.ply", make_random_soup(400, 0.15f, 11));
+  const Words scene = {"a.ply", "-o", "a.png", "--size", "100x70"};
+  const Json reference = without_host(render_report(folder, scene + Words{"--threads", "1"}));
+  const Words variants[] = {{"--threads", "3"},
+                            {"--completion", "late"},
+                            {"--completion", "random", "--seed", "5"},
+                            {"--configuration", "reference", "--machine", "cell-ps3", "--buffering", "double"}};
+  for (const Words& variant : variants) {
+    EXPECT_EQ(without_host(render_report(folder, scene + variant)), reference) << variant[0] << " " << variant[1];
+  }
+}
+
+TEST(Render, TechniquesChangeTheWorkAndNotThePicture) {
+  const TemporaryFolder folder;
+  folder.write_ply("a.ply", make_torus(60, 40, 1.0f, 0.3f));
+  const Words scene = {"a.ply", "-o", "a.png", "--size", "100x70"};
+  const Json reference = render_report(folder, scene);
+  const Words variants[] = {{"--no-mailbox"},
+                            {"--no-culling"},
+                            {"--no-empty-skip"},
+                            {"--buffering", "single"},
+                            {"--configuration", "deep"},
+                            {"--packet", "4"},
+                            {"--packet", "16"},
+                            {"--store", "64"},
+                            {"--lambda", "1"},
+                            {"--macro-width", "4"},
+                            {"--cores", "2"},
+                            {"--machine", "cell-2006"}};
+  for (const Words& variant : variants) {
+    const Json report = render_report(folder, scene + variant);
+    EXPECT_EQ(report["image_hash"], reference["image_hash"]) << variant[0];
+    EXPECT_NE(report["frame"]["cycles"], reference["frame"]["cycles"]) << variant[0];
+  }
+  EXPECT_EQ(render_report(folder, scene + Words{"--no-mailbox"})["work"]["mailbox_probe"], 0);
+  EXPECT_EQ(render_report(folder, scene + Words{"--no-culling"})["work"]["cull_test"], 0);
+  EXPECT_EQ(render_report(folder, scene + Words{"--cores", "2"})["cores"].size(), 2u);
+  EXPECT_EQ(render_report(folder, scene + Words{"--store", "64"})["local_store"]["arena_bytes"], 65536);
+  const Json paper = render_report(folder, scene + Words{"--accuracy", "paper"});
+  EXPECT_EQ(paper["work"]["group_test_standard"], 0);
+  EXPECT_GT(paper["work"]["group_test_paper"], 0);
+  const Json flat = render_report(folder, scene + Words{"--shading", "none"});
+  EXPECT_NE(flat["image_hash"], reference["image_hash"]);
+  EXPECT_EQ(flat["work"]["shaded_simple_group"], 0);
+}
+
+TEST(Render, ModesAndLanesMakeTheSamePicture) {
+  const TemporaryFolder folder;
+  folder.write_ply("a.ply", make_random_soup(400, 0.15f, 13));
+  const Words scene = {"a.ply", "-o", "a.png", "--size", "50x40"};
+  (void)render(folder, scene);
+  const std::string reference = read_file(folder.path("a.png"));
+  std::vector<Words> variants = {{"--mode", "plain"}, {"--mode", "plain", "--lanes", "4"}};
+  if (sim::has_instrumented_mode()) variants.push_back({"--mode", "instrumented"});
+  for (std::uint32_t lanes = 8; lanes <= sim::widest_lanes(); lanes *= 2) {
+    variants.push_back({"--lanes", std::to_string(lanes)});
+  }
+  for (const Words& variant : variants) {
+    std::filesystem::remove(folder.path("a.png"));
+    (void)render(folder, scene + variant);
+    EXPECT_EQ(read_file(folder.path("a.png")), reference) << variant[0] << " " << variant[1];
+  }
+}
+
+TEST(Render, OneTileIsThatPartOfThePicture) {
+  const TemporaryFolder folder;
+  folder.write_ply("a.ply", make_torus(40, 24, 1.0f, 0.4f));
+  const Words scene = {"a.ply", "--size", "100x70"};
+  (void)render(folder, scene + Words{"-o", "a.png", "--depth", "a.pfm"});
+  (void)render(folder, scene + Words{"-o", "b.png", "--depth", "b.pfm", "--tile", "3,1"});
+  for (const char* extension : {".png", ".pfm"}) {
+    const auto whole = load_picture(folder.path(std::string("a") + extension));
+    const auto tile = load_picture(folder.path(std::string("b") + extension));
+    ASSERT_TRUE(whole && tile);
+    // Columns 96 to 99 of the picture, rows 32 to 63.
+    ASSERT_EQ(tile->width, 4u);
+    ASSERT_EQ(tile->height, 32u);
+    for (std::uint32_t y = 0; y < 32; ++y) {
+      for (std::uint32_t i = 0; i < 4 * tile->channels; ++i) {
+        ASSERT_EQ(tile->values[y * 4 * tile->channels + i], whole->values[((y + 32) * 100 + 96) * tile->channels + i]);
+      }
+    }
+  }
+}
+
+TEST(Render, ACameraFileIsAView) {
+  const TemporaryFolder folder;
+  folder.write_ply("a.ply", make_torus(40, 24, 1.0f, 0.4f));
+  folder.write("a.camera", "eye -1 2 3\nat 0 0.5 0\nup 0 0 1\nfov 30\n");
+  const Words scene = {"a.ply", "-o", "a.png", "--size", "64x48"};
+  const Words spelled = {"--eye", "-1,2,3", "--at", "0,0.5,0", "--up", "0,0,1"};
+  const Json framed = render_report(folder, scene);
+  const Json from_file = render_report(folder, scene + Words{"--camera", "a.camera"});
+  EXPECT_NE(from_file["image_hash"], framed["image_hash"]);
+  EXPECT_EQ(render_report(folder, scene + spelled + Words{"--fov", "30"})["image_hash"], from_file["image_hash"]);
+  EXPECT_EQ(render_report(folder, scene + Words{"--camera", "a.camera", "--fov", "40"})["image_hash"],
+            render_report(folder, scene + spelled + Words{"--fov", "40"})["image_hash"]);
+}
+
+TEST(Render, ReducesLambdaToFitTheMachineAndSaysSo) {
+  // Large triangles in many cells: far more references than the 256 MB of cell-ps3 hold at lambda 4.
+  const TemporaryFolder folder;
+  folder.write_ply("a.ply", make_random_soup(30000, 3.0f, 14));
+  const Words scene = {"a.ply", "-o", "a.png", "--size", "8x8"};
+  const ProgramResult result = run_program(folder.folder(), Words{"render"} + scene + Words{"--report", "r.json"});
+  ASSERT_EQ(result.exit_code, 0) << result.err;
+  EXPECT_EQ(result.err.find("a.ply: lambda reduced from 4 to "), 0u) << result.err;
+  const Json grid = Json::parse(read_file(folder.path("r.json")))["scene"]["grid"];
+  EXPECT_EQ(grid["wanted_lambda"], 4.0);
+  EXPECT_LT(grid["lambda"], 4.0);
+  EXPECT_LT(grid["bytes"], std::uint64_t{256} << 20);
+
+  const ProgramResult fixed = run_program(folder.folder(), Words{"render"} + scene + Words{"--lambda", "4"});
+  EXPECT_EQ(fixed.exit_code, 1);
+  EXPECT_NE(fixed.err.find("cell-ps3 has"), std::string::npos) << fixed.err;
+}
+
+}  // namespace
+}  // namespace gridiron::test

@@ -1,0 +1,76 @@
+// Runs the gridiron program. SPDX-License-Identifier: Apache-2.0
+#include "run_program.h"
+
+#include <fcntl.h>
+#include <gtest/gtest.h>
+#include <signal.h>
+#include <stdlib.h>
+#include <sys/wait.h>
+#include <unistd.h>
+
+namespace gridiron::test {
+namespace {
+
+// A file without a name: the program's folder must hold nothing that the program did not write.
+int open_nameless() {
+  std::string name = (std::filesystem::temp_directory_path() / "gridiron_output.XXXXXX").string();
+  const int descriptor = ::mkostemp(name.data(), O_CLOEXEC);
+  EXPECT_GE(descriptor, 0) << name;
+  ::unlink(name.c_str());
+  return descriptor;
+}
+
+std::string take_text(int descriptor) {
+  std::string text;
+  char buffer[4096];
+  ::lseek(descriptor, 0, SEEK_SET);
+  for (ssize_t got = 0; (got = ::read(descriptor, buffer, sizeof buffer)) > 0;) {
+    text.append(buffer, static_cast<std::size_t>(got));
+  }
+  ::close(descriptor);
+  return text;
+}
+
+}  // namespace
+
+RunningProgram::RunningProgram(const std::filesystem::path& folder, const std::vector<std::string>& arguments)
+    : out_(open_nameless()), err_(open_nameless()) {
+  std::vector<std::string> words = {GRIDIRON_PROGRAM};
+  words.insert(words.end(), arguments.begin(), arguments.end());
+  std::vector<char*> values;
+  for (std::string& word : words) values.push_back(word.data());
+  values.push_back(nullptr);
+  process_ = ::fork();
+  if (process_ == 0) {
+    ::dup2(out_, STDOUT_FILENO);
+    ::dup2(err_, STDERR_FILENO);
+    if (::chdir(folder.c_str()) == 0) ::execv(values[0], values.data());
+    ::_exit(127);
+  }
+}
+
+RunningProgram::~RunningProgram() {
+  if (process_ > 0) (void)wait();
+}
+
+void RunningProgram::send(int signal) const {
+  ::kill(process_, signal);
+}
+
+ProgramResult RunningProgram::wait() {
+  int status = 0;
+  ::waitpid(process_, &status, 0);
+  process_ = -1;
+  ProgramResult result;
+  result.exit_code = WIFEXITED(status) ? WEXITSTATUS(status) : -WTERMSIG(status);
+  result.out = take_text(out_);
+  result.err = take_text(err_);
+  return result;
+}
+
+ProgramResult run_program(const std::filesystem::path& folder, const std::vector<std::string>& arguments) {
+  RunningProgram program(folder, arguments);
+  return program.wait();
+}
+
+}  // namespace gridiron::test

@@ -1,0 +1,37 @@
+// Runs the gridiron program as a process of its own.
+// Memory: strings. Threads: one. SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <sys/types.h>
+
+#include <filesystem>
+#include <string>
+#include <vector>
+
+namespace gridiron::test {
+
+struct ProgramResult {
+  int exit_code = -1;  ///< -signal where a signal ended it
+  std::string out, err;
+};
+
+/// A running program, in `folder`, its output in files beside the folder.
+class RunningProgram {
+ public:
+  RunningProgram(const std::filesystem::path& folder, const std::vector<std::string>& arguments);
+  ~RunningProgram();
+  RunningProgram(const RunningProgram&) = delete;
+  RunningProgram& operator=(const RunningProgram&) = delete;
+
+  void send(int signal) const;
+  [[nodiscard]] ProgramResult wait();
+
+ private:
+  pid_t process_ = -1;
+  int out_ = -1, err_ = -1;
+};
+
+/// Runs to the end.
+ProgramResult run_program(const std::filesystem::path& folder, const std::vector<std::string>& arguments);
+
+}  // namespace gridiron::test

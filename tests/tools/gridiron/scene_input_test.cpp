@@ -1,0 +1,79 @@
+// Scene input: which grid a mesh gets in a given main memory. SPDX-License-Identifier: Apache-2.0
+#include "gridiron/scene_input.h"
+
+#include <gtest/gtest.h>
+
+#include "gridiron/failure.h"
+#include "temporary_folder.h"
+
+namespace gridiron::test {
+namespace {
+
+class SceneInputTest : public ::testing::Test {
+ protected:
+  SceneInputTest() {
+    const TestMesh mesh = make_sphere(40, 60, 1.0f);
+    arguments_.input = folder_.write_ply("sphere.ply", mesh);
+    arguments_.machine = &sim::machine_profiles().front();
+    arguments_.configuration = tool::find_configuration("reference");
+    input_ = tool::read_scene_input(arguments_.input);
+  }
+
+  [[nodiscard]] tool::GridChoice choose(std::uint64_t budget_bytes) const {
+    return tool::choose_grid(input_, std::get<tool::Mesh>(input_.content), arguments_, TriangleFormat::kVertices,
+                             budget_bytes);
+  }
+
+  const TemporaryFolder folder_;
+  tool::SceneArguments arguments_;
+  tool::SceneInput input_;
+};
+
+TEST_F(SceneInputTest, KeepsTheWantedLambdaWhereItFits) {
+  const tool::GridChoice roomy = choose(std::uint64_t{1} << 30);
+  EXPECT_EQ(roomy.parameters.lambda, 4.0f);
+  EXPECT_FALSE(roomy.is_reduced());
+  const tool::GridChoice exact = choose(roomy.need.image_bytes);
+  EXPECT_TRUE(exact.fits());
+  EXPECT_FALSE(exact.is_reduced());
+}
+
+TEST_F(SceneInputTest, HalvesLambdaUntilItFits) {
+  const std::uint64_t budget_bytes = choose(std::uint64_t{1} << 30).need.image_bytes - 1;
+  const tool::GridChoice choice = choose(budget_bytes);
+  EXPECT_TRUE(choice.fits());
+  EXPECT_TRUE(choice.is_reduced());
+  EXPECT_EQ(choice.wanted_lambda, 4.0f);
+  EXPECT_LE(choice.need.image_bytes, budget_bytes);
+  // The first halving that fits, not a later one.
+  tool::SceneArguments twice = arguments_;
+  twice.lambda = choice.parameters.lambda * 2;
+  const tool::GridChoice before =
+      tool::choose_grid(input_, std::get<tool::Mesh>(input_.content), twice, TriangleFormat::kVertices, budget_bytes);
+  EXPECT_FALSE(before.fits());
+}
+
+TEST_F(SceneInputTest, SaysSoWhereNothingFits) {
+  const tool::GridChoice choice = choose(10'000);
+  EXPECT_FALSE(choice.fits());
+  EXPECT_THROW(tool::require_fit(choice, arguments_), tool::Failure);
+}
+
+TEST_F(SceneInputTest, NeverChangesALambdaOfTheCommandLine) {
+  arguments_.lambda = 4.0f;
+  const std::uint64_t need_bytes = choose(std::uint64_t{1} << 30).need.image_bytes;
+  const tool::GridChoice choice = choose(need_bytes - 1);
+  EXPECT_FALSE(choice.fits());
+  EXPECT_EQ(choice.parameters.lambda, 4.0f);
+}
+
+TEST_F(SceneInputTest, BudgetLeavesRoomForThePicture) {
+  const sim::MachineProfile& machine = *arguments_.machine;
+  const std::uint64_t small = tool::image_budget_bytes(machine, 1, 1, 1);
+  EXPECT_EQ(small, tool::image_budget_bytes(machine, 1024, 1024, 3)) << "pack and render agree";
+  EXPECT_EQ(small - tool::image_budget_bytes(machine, 2048, 1024, 3), std::uint64_t{3} * 4 * 1024 * 1024);
+  EXPECT_THROW((void)tool::image_budget_bytes(machine, 16384, 16384, 1), tool::Failure);
+}
+
+}  // namespace
+}  // namespace gridiron::test

@@ -1,0 +1,106 @@
+// The command line: what is refused, with which exit code and words. SPDX-License-Identifier: Apache-2.0
+#include <gtest/gtest.h>
+
+#include <cstdlib>
+#include <nlohmann/json.hpp>
+
+#include "run_program.h"
+#include "temporary_folder.h"
+
+namespace gridiron::test {
+namespace {
+
+using Words = std::vector<std::string>;
+
+TEST(Usage, MistakesExitWithTwoAndSayWhy) {
+  struct Case {
+    Words arguments;
+    const char* words;
+  };
+  const Case cases[] = {
+      {{}, "subcommand"},
+      {{"paint"}, "paint"},
+      {{"experiment", "paper"}, "experiment"},
+      {{"render"}, "INPUT"},
+      {{"render", "a.ply", "b.ply"}, "b.ply"},
+      {{"render", "a.ply", "--colour"}, "--colour"},
+      {{"render", "a.ply", "--size", "640"}, "WxH"},
+      {{"render", "a.ply", "--size", "0x10"}, "WxH"},
+      {{"render", "a.ply", "--size", "16385x10"}, "16384"},
+      {{"render", "a.ply", "--eye", "1,2"}, "x,y,z"},
+      {{"render", "a.ply", "--eye", "1,2,nan"}, "x,y,z"},
+      {{"render", "a.ply", "--fov", "180"}, "180"},
+      {{"render", "a.ply", "--cores", "0"}, "1 to 1024"},
+      {{"render", "a.ply", "--threads", "-1"}, "1 to 256"},
+      {{"render", "a.ply", "--machine", "abacus"}, "cell-ps3|"},
+      {{"render", "a.ply", "--configuration", "fastest"}, "reference|deep"},
+      {{"render", "a.ply", "--buffering", "triple"}, "single|double"},
+      {{"render", "a.ply", "--accuracy", "exact"}, "standard|paper"},
+      {{"render", "a.ply", "--shading", "scene"}, "none|simple"},
+      {{"render", "a.ply", "--lanes", "5"}, "4|8|16"},
+      {{"render", "a.ply", "--store", "128"}, "64|256"},
+      {{"render", "a.ply", "--packet", "32"}, "4|8|16"},
+      {{"render", "a.ply", "--mode", "fast"}, "checked|plain|instrumented"},
+      {{"render", "a.ply", "--completion", "never"}, "early|late|random"},
+      {{"render", "a.ply", "--seed", "1"}, "--completion random"},
+      {{"render", "a.ply", "--completion", "random", "--seed", "-1"}, "digits"},
+      {{"render", "a.ply", "--lambda", "0"}, "1e-6"},
+      {{"render", "a.ply", "--macro-width", "9"}, "1 to 8"},
+      {{"render", "a.ply", "--tile", "3"}, "X,Y"},
+      {{"render", "a.ply", "--mode", "plain", "--report", "r.json"}, "plain"},
+      {{"render", "a.ply", "--tile", "0,0", "--timeline", "t.json"}, "--tile"},
+      {{"render", "a.ply", "--store", "64", "--configuration", "deep"}, "--store 64"},
+      {{"render", "a.ply", "-o", "x", "--report", "./x"}, "the same file"},
+      {{"info"}, "INPUT"},
+      {{"pack", "a.ply"}, "--output"},
+      {{"pack", "a.ply", "-o", "a.gri", "--format", "lattice"}, "vertices|projection"},
+      {{"machines", "cell-ps3"}, "cell-ps3"},
+  };
+  const TemporaryFolder folder;
+  for (const Case& mistake : cases) {
+    const ProgramResult result = run_program(folder.folder(), mistake.arguments);
+    std::string line;
+    for (const std::string& word : mistake.arguments) line += " " + word;
+    EXPECT_EQ(result.exit_code, 2) << line << "\n" << result.err;
+    EXPECT_NE(result.err.find(mistake.words), std::string::npos) << line << "\n" << result.err;
+    EXPECT_EQ(result.out, "") << line;
+  }
+  EXPECT_EQ(folder.names(), Words{});
+}
+
+TEST(Usage, HelpAndVersionAreAnswers) {
+  const TemporaryFolder folder;
+  for (const Words& arguments : {Words{"--help"}, {"render", "--help"}, {"info", "-h"}, {"pack", "--help"}}) {
+    const ProgramResult result = run_program(folder.folder(), arguments);
+    EXPECT_EQ(result.exit_code, 0) << arguments.front();
+    EXPECT_NE(result.out.find("--help"), std::string::npos) << arguments.front();
+  }
+  const ProgramResult version = run_program(folder.folder(), {"--version"});
+  EXPECT_EQ(version.exit_code, 0);
+  EXPECT_EQ(version.out.find("gridiron "), 0u);
+}
+
+TEST(Usage, MachinesAreListed) {
+  const TemporaryFolder folder;
+  EXPECT_NE(run_program(folder.folder(), {"machines"}).out.find("cell-ps3-2gb"), std::string::npos);
+  const ProgramResult result = run_program(folder.folder(), {"machines", "--json"});
+  ASSERT_EQ(result.exit_code, 0);
+  const auto document = nlohmann::json::parse(result.out);
+  EXPECT_EQ(document["version"], 1);
+  const auto& first = document["machines"][0];
+  EXPECT_EQ(first["name"], "cell-ps3");
+  EXPECT_EQ(first["cores"], 6);
+  EXPECT_EQ(first["clock_hz"], 3.2e9);
+  EXPECT_EQ(first["main_memory_bytes"], 256u << 20);
+  EXPECT_TRUE(first["work_cycles"]["group_test_standard"].is_number());
+}
+
+TEST(Usage, AFullStandardOutputIsAnError) {
+  const TemporaryFolder folder;
+  const std::string command = std::string(GRIDIRON_PROGRAM) + " machines > /dev/full 2> /dev/null";
+  const int status = std::system(command.c_str());
+  EXPECT_NE(status, 0);
+}
+
+}  // namespace
+}  // namespace gridiron::test

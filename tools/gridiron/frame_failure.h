@@ -1,0 +1,18 @@
+// Frame failure: what went wrong on the simulated chip, in words.
+// Memory: strings. Threads: any. SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <gridiron/sim/sim_chip.h>
+
+#include <optional>
+
+#include "failure.h"
+
+namespace gridiron::tool {
+
+/// @returns nothing for a frame that went well; else how the command ends: every violation on a line of its own (at
+/// most 20) and what the renderer said. kCheckFailed, or kUsage where the build cannot render what the options ask for,
+/// or kBadInput where it cannot use the scene image.
+[[nodiscard]] std::optional<Failure> frame_failure(const sim::ChipResult& result);
+
+}  // namespace gridiron::tool
