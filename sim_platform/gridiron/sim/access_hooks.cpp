@@ -2,7 +2,9 @@
 // Memory: none. Threads: each thread checks for its own core. SPDX-License-Identifier: Apache-2.0
 #include <gridiron/sim/sim_core.h>
 
+#include <cstddef>
 #include <cstdint>
+#include <cstring>
 
 // The compiler chooses these names, which start with two underscores.
 #define GRIDIRON_ACCESS_HOOK(kind, bytes, is_store)                                                      \
@@ -38,3 +40,30 @@ extern "C" void __asan_storeN_noabort(std::uintptr_t address, std::uintptr_t byt
 // Called before functions that do not return; the instrumentation of the stack is off, so there is nothing to do.
 extern "C" void __asan_handle_no_return();
 extern "C" void __asan_handle_no_return() {}
+
+// Block operations of instrumented code; the build renames its calls.
+
+static void check_block(const void* address, std::size_t bytes, bool is_store, const void* code) {
+  gridiron::sim::SimCore::check_access(reinterpret_cast<std::uintptr_t>(address), bytes, is_store,
+                                       reinterpret_cast<std::uintptr_t>(code));
+}
+
+extern "C" void* gridiron_sim_checked_memcpy(void* target, const void* source, std::size_t bytes);
+extern "C" void* gridiron_sim_checked_memcpy(void* target, const void* source, std::size_t bytes) {
+  check_block(source, bytes, false, __builtin_return_address(0));
+  check_block(target, bytes, true, __builtin_return_address(0));
+  return std::memcpy(target, source, bytes);
+}
+
+extern "C" void* gridiron_sim_checked_memmove(void* target, const void* source, std::size_t bytes);
+extern "C" void* gridiron_sim_checked_memmove(void* target, const void* source, std::size_t bytes) {
+  check_block(source, bytes, false, __builtin_return_address(0));
+  check_block(target, bytes, true, __builtin_return_address(0));
+  return std::memmove(target, source, bytes);
+}
+
+extern "C" void* gridiron_sim_checked_memset(void* target, int value, std::size_t bytes);
+extern "C" void* gridiron_sim_checked_memset(void* target, int value, std::size_t bytes) {
+  check_block(target, bytes, true, __builtin_return_address(0));
+  return std::memset(target, value, bytes);
+}

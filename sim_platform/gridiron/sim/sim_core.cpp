@@ -548,7 +548,10 @@ void SimCore::unmark(const Pending& pending) {
 
 void SimCore::bad_access(std::uintptr_t address, std::uintptr_t bytes, bool is_store, std::uintptr_t code,
                          const char* what) {
-  if (++bad_accesses_ > kMaxViolations / 2) return;
+  // A loop repeats itself; each instruction is told once.
+  if (std::find(bad_code_.begin(), bad_code_.end(), code) != bad_code_.end()) return;
+  if (bad_code_.size() == kMaxViolations / 2) return;
+  bad_code_.push_back(code);
   sticky_error_ = violate(Status::kBadAccess, tile_id_,
                           std::string(is_store ? "store" : "load") + " of " + std::to_string(bytes) + " bytes at " +
                               describe_local(address) + ": " + what + " (instruction " +

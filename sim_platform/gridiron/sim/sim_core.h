@@ -157,7 +157,6 @@ class SimCore {
   bool in_tile_ = false;
   bool after_last_tile_ = false;
   std::uint64_t transfers_ = 0;
-  std::uint64_t bad_accesses_ = 0;
   std::uint64_t random_state_ = 0;
   std::array<std::uint32_t, kWorkKindCount> last_counts_{};
   Status first_error_ = Status::kOk;
@@ -165,6 +164,7 @@ class SimCore {
   Status sticky_error_ = Status::kOk;  ///< found where no status could be returned; every later call returns it
   std::vector<Violation> violations_;
   std::vector<std::uint8_t> granule_state_;  ///< per 16 bytes of arena: is a transfer in flight there?
+  std::vector<std::uintptr_t> bad_code_;    ///< instructions whose bad access was recorded
   std::uintptr_t stack_bottom_ = 0, stack_top_ = 0;
 };
 
