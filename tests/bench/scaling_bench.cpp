@@ -19,7 +19,7 @@ constexpr double kCyclesExponentLimit = 0.5;
 constexpr double kLinearExponentLimit = 1.1;  // build and memory; above 1 for caches and rounding
 
 struct Point {
-  double triangles, build_seconds, image_bytes, scratch_bytes, references, cycles_per_ray;
+  double triangles, build_seconds, memory_bytes, references, cycles_per_ray;
 };
 
 // Least-squares slope of log(value) over log(triangles).
@@ -94,19 +94,16 @@ bool measure(std::uint32_t cells, const sim::MachineProfile& machine, Point& poi
     return static_cast<double>(rendered.result.work[static_cast<std::size_t>(kind)]) / rays;
   };
   const GridNeed& need = scene.need();
-  point = {static_cast<double>(mesh.triangles.size()),
-           build_seconds,
-           static_cast<double>(need.image_bytes),
-           static_cast<double>(need.scratch_bytes),
-           need.grid.reference_count * 1.0,
+  point = {static_cast<double>(mesh.triangles.size()), build_seconds,
+           static_cast<double>(need.image_bytes + need.scratch_bytes), need.grid.reference_count * 1.0,
            timing.frame_cycles * static_cast<double>(timing.cores.size()) / rays};
   std::printf(
       "  %zu triangles, %ux%u: build %.1f ms (count, build, validate), image %.1f MB, scratch %.1f MB, "
       "%.2f references a triangle, grid %ux%ux%u\n"
       "    a ray: %.3f macro steps, %.3f cell steps, %.3f cell visits, %.3f set-ups, %.3f group tests, "
       "%.0f core cycles on %s\n",
-      mesh.triangles.size(), width, width, 1e3 * build_seconds, 0x1p-20 * point.image_bytes,
-      0x1p-20 * point.scratch_bytes, point.references / point.triangles, need.grid.cell_count[0],
+      mesh.triangles.size(), width, width, 1e3 * build_seconds, 0x1p-20 * static_cast<double>(need.image_bytes),
+      0x1p-20 * static_cast<double>(need.scratch_bytes), point.references / point.triangles, need.grid.cell_count[0],
       need.grid.cell_count[1], need.grid.cell_count[2], per_ray(Work::kMacroCellStep), per_ray(Work::kCellStep),
       per_ray(Work::kCellVisit), per_ray(Work::kTriangleSetup), per_ray(Work::kGroupTestStandard), point.cycles_per_ray,
       machine.name.data());
@@ -134,8 +131,8 @@ bool bench_scaling(const BenchOptions& options) {
     std::printf("  %s grows as n^%.3f (limit %.2f)%s\n", what, value, limit, holds ? "" : "  EXCEEDED");
   };
   check("build time", exponent(points, [](const Point& p) { return p.build_seconds; }), kLinearExponentLimit);
-  check("image memory", exponent(points, [](const Point& p) { return p.image_bytes; }), kLinearExponentLimit);
-  check("scratch memory", exponent(points, [](const Point& p) { return p.scratch_bytes; }), kLinearExponentLimit);
+  check("memory (image and scratch)", exponent(points, [](const Point& p) { return p.memory_bytes; }),
+        kLinearExponentLimit);
   check("references", exponent(points, [](const Point& p) { return p.references; }), kLinearExponentLimit);
   check("cycles per ray", exponent(points, [](const Point& p) { return p.cycles_per_ray; }), kCyclesExponentLimit);
   return within;

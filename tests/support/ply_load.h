@@ -1,4 +1,4 @@
-// Loads a PLY file whole into a test mesh.
+// Loads a PLY file whole into a test mesh, by the library's own reader.
 // Memory: std::vector. Threads: any. SPDX-License-Identifier: Apache-2.0
 #pragma once
 
@@ -9,8 +9,7 @@
 
 namespace gridiron::test {
 
-/// @returns the mesh of a binary little-endian PLY with float x y z first and triangles only; nothing where the file is
-///          of another kind or cannot be read.
+/// @returns the mesh; nothing where the file cannot be read or the reader refuses it.
 std::optional<TestMesh> load_ply(const std::filesystem::path& path);
 
 }  // namespace gridiron::test
