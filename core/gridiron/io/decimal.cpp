@@ -19,12 +19,11 @@ char lower(char c) {
   return (c >= 'A' && c <= 'Z') ? static_cast<char>(c - 'A' + 'a') : c;
 }
 
-// The value is +-mantissa * 10^exponent, plus less than one unit of the mantissa where digits were dropped.
+// The value is +-mantissa * 10^exponent, plus less than one unit of the mantissa where it has kMaxStoredDigits digits.
 struct Scan {
   std::uint64_t mantissa = 0;
   int exponent = 0;
   bool negative = false;
-  bool dropped = false;
 };
 
 bool scan_decimal(const char* text, std::size_t text_bytes, Scan& scan) {
@@ -46,7 +45,6 @@ bool scan_decimal(const char* text, std::size_t text_bytes, Scan& scan) {
         if (scan.mantissa != 0) ++stored;
         if (point) --scan.exponent;
       } else {
-        if (c != '0') scan.dropped = true;
         if (!point) ++scan.exponent;
       }
     } else if (c == '.' && !point) {
@@ -244,8 +242,9 @@ bool round_quickly(const Scan& scan, std::uint32_t& magnitude) {
   const int power = scan.exponent < 0 ? -scan.exponent : scan.exponent;
   if (power > 44) return false;
   // Roundings: mantissa to double, and one or two operations. Each is half a unit, at most one unit after the scaling
-  // by the quotient of the mantissas; dropped digits add 2^-59 of the value. Sixteen units bound them all together.
-  const bool exact = scan.mantissa <= (std::uint64_t{1} << 53) && power <= 22 && !scan.dropped;
+  // by the quotient of the mantissas; digits beyond the stored ones add 2^-59 of the value. Sixteen units bound all
+  // together.
+  const bool exact = scan.mantissa <= (std::uint64_t{1} << 53) && power <= 22;
   double value = static_cast<double>(scan.mantissa);
   const double first = power_of_ten(power <= 22 ? power : 22);
   value = scan.exponent < 0 ? value / first : value * first;

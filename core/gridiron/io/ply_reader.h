@@ -1,5 +1,5 @@
 // PLY reader, fed with bytes: ASCII and binary, polygons fanned, strips unrolled, all else skipped. See PlyReader.
-// Source: G. Turk, "The PLY Polygon File Format", 1994. Memory: about 9 KB by value; output in the caller's spans.
+// Source: G. Turk, "The PLY Polygon File Format", 1994. Memory: 8 KB by value; output in the caller's spans.
 // Threads: one per reader. SPDX-License-Identifier: Apache-2.0
 #pragma once
 

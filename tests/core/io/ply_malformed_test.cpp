@@ -368,6 +368,29 @@ TEST(PlyMalformed, TriangleLimitInQuickRows) {
   EXPECT_EQ(run_all(maker.text(), options).error, PlyError::kNone);
 }
 
+// With so many vertices that a negative index, taken as unsigned, would be one of them.
+TEST(PlyMalformed, NegativeIndicesAmongFourThousandMillionVertices) {
+  for (const PlyFormat format : kFormats) {
+    for (const char* type : {"int", "uint"}) {
+      PlyMaker maker(format);
+      maker.line("element face 2").line(std::string("property list uchar ") + type + " vertex_indices");
+      maker.line("element vertex 4294967295")
+          .line("property float x")
+          .line("property float y")
+          .line("property float z");
+      maker.end_header();
+      const double other = type[0] == 'i' ? -2.0 : 4294967294.0;
+      for (int i = 0; i < 2; ++i) {
+        maker.value("uchar", 3).value("int", 0).value("int", i).value(type, i == 0 ? 2147483647.0 : other).end_row();
+      }
+      const PlyOutcome outcome = run_all(maker.text());
+      EXPECT_EQ(outcome.error, type[0] == 'i' ? PlyError::kIndexRange : PlyError::kTruncatedBody) << describe(outcome);
+      EXPECT_EQ(outcome.element_name, type[0] == 'i' ? "face" : "vertex");
+      EXPECT_EQ(outcome.counted_triangles, type[0] == 'i' ? 1u : 2u);
+    }
+  }
+}
+
 // --- Truncation at every byte ---------------------------------------------------------------------------------------
 
 std::vector<std::string> small_files() {
