@@ -159,6 +159,50 @@ TYPED_TEST(LanesTest, SelectTakesTheFirstWhereTheMaskIsSet) {
   });
 }
 
+TYPED_TEST(LanesTest, FlipSignFlipsItWhereTheMaskIsSet) {
+  TestRandom random(4);
+  this->for_each_pair([&](const auto& a, const auto&) {
+    const auto bits = static_cast<std::uint32_t>(random.next()) & TypeParam::kAllBits;
+    const auto result = this->store(TypeParam::flip_sign(TypeParam::mask_from_bits(bits), this->load(a)));
+    for (std::size_t i = 0; i < result.size(); ++i) {
+      ASSERT_TRUE(same(result[i], (bits >> i & 1u) != 0 ? -a[i] : a[i])) << "lane " << i << " of mask " << bits;
+    }
+  });
+}
+
+TYPED_TEST(LanesTest, QuadsAreLoadedAndRearrangedAlike) {
+  constexpr std::size_t kQuads = TypeParam::kCount / 4;
+  struct alignas(16) Quad {
+    float values[4];
+  };
+  Quad quads[kQuads][2];
+  const float* first[kQuads];
+  const float* second[kQuads];
+  for (std::size_t quad = 0; quad < kQuads; ++quad) {
+    for (std::size_t i = 0; i < 4; ++i) {
+      quads[quad][0].values[i] = static_cast<float>(10 * quad + i);
+      quads[quad][1].values[i] = static_cast<float>(100 + 10 * quad + i);
+    }
+    first[quad] = quads[quad][0].values;
+    second[quad] = quads[quad][1].values;
+  }
+  const auto a = TypeParam::load_quads(first);
+  const auto b = TypeParam::load_quads(second);
+  const auto loaded = this->store(a);
+  const auto from_both = this->store(TypeParam::template shuffle_quads<2, 5, 7, 0>(a, b));
+  const auto from_one = this->store(TypeParam::template shuffle_quads<1, 2, 0, 0>(a));
+  for (std::size_t quad = 0; quad < kQuads; ++quad) {
+    const auto base = static_cast<float>(10 * quad);
+    const float expected_both[4] = {base + 2, 100 + base + 1, 100 + base + 3, base};
+    const float expected_one[4] = {base + 1, base + 2, base, base};
+    for (std::size_t i = 0; i < 4; ++i) {
+      EXPECT_EQ(loaded[4 * quad + i], base + static_cast<float>(i));
+      EXPECT_EQ(from_both[4 * quad + i], expected_both[i]);
+      EXPECT_EQ(from_one[4 * quad + i], expected_one[i]);
+    }
+  }
+}
+
 TYPED_TEST(LanesTest, HalfBitsAreTheSigns) {
   constexpr int kHalf = TypeParam::kCount / 2;
   constexpr std::int64_t kNegative[] = {-1, std::numeric_limits<std::int64_t>::min(), -0x100000000};

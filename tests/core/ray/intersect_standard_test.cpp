@@ -114,6 +114,47 @@ TYPED_TEST(StandardTest, EveryRayHoldsTheLeastDistanceAndIdOfExactArithmetic) {
   }
 }
 
+TYPED_TEST(StandardTest, ABatchIsItsTrianglesOneByOne) {
+  constexpr std::uint32_t kBatch = EdgeBatch<TypeParam>::kTriangles;
+  for_each_seed(3000, [&](std::uint64_t seed) {
+    TestRandom random(seed);
+    const TriangleCase shown = random_triangles(random, 6);
+    SmallPacket single{};
+    aim_at(random, shown, single);
+    activate_all(single);
+    reset_hits(single, kFloatMax);
+    // Corner rays that bound nothing but themselves: culling has to be the same decision, right or wrong.
+    for (auto& component : single.corner_dir) {
+      for (float& value : component) value = random.between(-single.dir_max, single.dir_max);
+    }
+    single.corner_widening = 1.0f;
+    SmallPacket batched = single;
+    const bool use_culling = random.below(2) != 0;
+    WorkCounters single_work, batch_work;
+    const auto total = static_cast<std::uint32_t>(shown.triangles.size());
+    for (std::uint32_t first = 0; first < total;) {
+      const std::uint32_t count = std::min(1 + random.below(kBatch), total - first);
+      const VertexTriangle* batch[kBatch] = {};
+      bool changed = false;
+      for (std::uint32_t i = 0; i < count; ++i) {
+        batch[i] = &shown.triangles[first + i];
+        changed |= intersect_standard<TypeParam, true>(single, *batch[i], use_culling, single_work);
+      }
+      ASSERT_EQ((intersect_standard_batch<TypeParam, true>(batched, batch, count, use_culling, batch_work)), changed)
+          << "seed " << seed;
+      first += count;
+    }
+    for (std::uint32_t ray = 0; ray < kRays; ++ray) {
+      ASSERT_TRUE(same_bits(batched.t[ray], single.t[ray])) << "seed " << seed << ", ray " << ray;
+      ASSERT_EQ(batched.id[ray], single.id[ray]) << "seed " << seed << ", ray " << ray;
+      ASSERT_TRUE(same_bits(batched.facing[ray], single.facing[ray])) << "seed " << seed << ", ray " << ray;
+    }
+    for (const Work kind : {Work::kTriangleSetup, Work::kCullTest, Work::kGroupTestStandard, Work::kHitSetup}) {
+      ASSERT_EQ(batch_work[kind], single_work[kind]) << "seed " << seed << ", kind " << static_cast<int>(kind);
+    }
+  });
+}
+
 TYPED_TEST(StandardTest, LimitIsClosed) {
   std::uint64_t hits = 0;
   for_each_seed(1500, [&](std::uint64_t seed) {
