@@ -320,7 +320,7 @@ TYPED_TEST(StandardTest, CornerCullingDropsNoHit) {
   using WidePacket = Packet<8>;
   std::uint64_t culled = 0;
   std::uint64_t hit = 0;
-  for_each_seed(3000, [&](std::uint64_t seed) {
+  for_each_seed(6000, [&](std::uint64_t seed) {
     TestRandom random(seed);
     const FrameRecord frame = random_frame(random);
     RaySet<WidePacket::kRayCount> present;

@@ -1,0 +1,128 @@
+// A scene and a frame in the memory of a test platform, rendered by the kernel on one core.
+// Memory: std::vector. Threads: one. SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <gridiron/frame/frame_setup.h>
+#include <gridiron/grid/grid_builder.h>
+#include <gridiron/image/scene_image.h>
+#include <gridiron/render/tile_renderer.h>
+#include <gtest/gtest.h>
+
+#include <cstdint>
+#include <cstring>
+#include <memory>
+#include <vector>
+
+#include "core/store/test_platform.h"
+#include "support/test_mesh.h"
+
+namespace gridiron::test {
+
+/// A scene image on a line's start.
+struct BuiltScene {
+  std::vector<std::uint64_t> words;
+  std::span<std::byte> bytes;
+  SceneImageView view{};
+
+  BuiltScene(const MeshView& mesh, const GridParameters& parameters) {
+    GridNeed need{};
+    EXPECT_EQ(count_scene_image(mesh, parameters, need), Status::kOk);
+    words.resize(need.image_bytes / 8 + 16);
+    const auto place = reinterpret_cast<std::uintptr_t>(words.data());
+    bytes = std::as_writable_bytes(std::span(words))
+                .subspan((kLineBytes - place % kLineBytes) % kLineBytes, need.image_bytes);
+    std::vector<std::uint64_t> scratch(need.scratch_bytes / 8 + 1);
+    EXPECT_EQ(build_scene_image(mesh, parameters, need, bytes, std::as_writable_bytes(std::span(scratch))),
+              Status::kOk);
+    SceneImageError error;
+    EXPECT_EQ(open_scene_image(bytes, view, error), Status::kOk) << error.field;
+  }
+};
+
+/// What a core did with a frame. Planes are row-major, row 0 on top.
+struct KernelFrame {
+  Status status = Status::kOk;
+  WorkCounters work;
+  std::vector<std::uint32_t> color, ids;
+  std::vector<float> depth;
+};
+
+/// Where things lie in the platform's memory.
+inline constexpr std::uint64_t kFrameAddress = 128;
+inline constexpr std::uint64_t kPlanesAddress = 8192;
+
+/// One frame: made, put into memory, rendered, and what it wrote outside of its planes.
+class TestFrame {
+ public:
+  /// @param settings  output addresses are set here. Planes start 128 bytes into a 4 KB page.
+  TestFrame(const BuiltScene& scene, FrameSettings settings, std::uint32_t queue_depth = 16,
+            Moves moves = Moves::kAtTheWait) {
+    plane_bytes_ = output_plane_bytes(settings.width, settings.height, settings.tile_width);
+    settings.color = {kPlanesAddress + kLineBytes};
+    settings.depth = {settings.color.value + plane_bytes_ + kLineBytes};
+    settings.ids = {settings.depth.value + plane_bytes_ + kLineBytes};
+    const std::uint64_t image_address = round_up(settings.ids.value + plane_bytes_ + kLineBytes, std::uint64_t{4096});
+    platform = std::make_unique<TestPlatform>(queue_depth, moves, image_address + scene.bytes.size());
+    const Status made = make_frame_record(settings, scene.view, {image_address}, record);
+    EXPECT_EQ(made, Status::kOk);
+    std::memset(platform->at(0), 0xA5, image_address);
+    std::memcpy(platform->at(image_address), scene.bytes.data(), scene.bytes.size());
+    claim_all();
+  }
+
+  /// All tiles in order, then none.
+  void claim_all() {
+    platform->claims.clear();
+    for (std::uint32_t tile = 0; tile < record.tiles_x * record.tiles_y; ++tile) {
+      platform->claims.push_back({TileClaim::Kind::kTile, tile});
+    }
+    platform->claims.push_back({});
+  }
+
+  template <class L, class Layout>
+  [[nodiscard]] KernelFrame render() {
+    std::memcpy(platform->at(kFrameAddress), &record, sizeof(record));
+    const auto store = std::make_unique<LocalStore<Layout>>();
+    KernelFrame result;
+    result.status = render_tiles<L>(*store, *platform, MainAddress{kFrameAddress});
+    result.work = store->work;
+    result.color = plane<std::uint32_t>(record.color_address);
+    result.depth = plane<float>(record.depth_address);
+    result.ids = plane<std::uint32_t>(record.id_address);
+    return result;
+  }
+
+  /// @returns true where the lines between the planes are as they were.
+  [[nodiscard]] bool gaps_are_untouched() const {
+    for (std::uint64_t gap = kPlanesAddress; gap <= record.id_address + plane_bytes_;
+         gap += plane_bytes_ + kLineBytes) {
+      for (std::uint64_t i = 0; i < kLineBytes; ++i) {
+        if (*platform->at(gap + i) != std::byte{0xA5}) return false;
+      }
+    }
+    return true;
+  }
+
+  std::unique_ptr<TestPlatform> platform;
+  FrameRecord record{};
+
+ private:
+  template <class Element>
+  [[nodiscard]] std::vector<Element> plane(std::uint64_t address) const {
+    std::vector<Element> rows;
+    if (address == 0 || record.width > kMaxPictureWidth || record.tile_width == 0) return rows;
+    for (std::uint32_t y = 0; y < record.height; ++y) {
+      for (std::uint32_t x = 0; x < record.width; ++x) {
+        const std::uint64_t index = output_plane_index(record.width, record.tile_width, x, y);
+        Element element;
+        std::memcpy(&element, platform->at(address + index * sizeof(Element)), sizeof(Element));
+        rows.push_back(element);
+      }
+    }
+    return rows;
+  }
+
+  std::uint64_t plane_bytes_ = 0;
+};
+
+}  // namespace gridiron::test
