@@ -56,9 +56,8 @@ int largest_axis(const double v[3]) {
 }
 
 float to_float(double value) {
-  if (value > double{kFloatMax}) return kFloatMax;
-  if (value < -double{kFloatMax}) return -kFloatMax;
-  return static_cast<float>(value);
+  const double below = value < double{kFloatMax} ? value : double{kFloatMax};
+  return static_cast<float>(below > -double{kFloatMax} ? below : -double{kFloatMax});
 }
 
 }  // namespace
@@ -100,22 +99,23 @@ void make_projection_triangle(const Vec3& a, const Vec3& b, const Vec3& c, std::
     }
     k = largest_axis(normal);
   }
-  const int u = (k + 1) % 3;
-  const int v = (k + 2) % 3;
+  const int u = k < 2 ? k + 1 : 0;
+  const int v = k > 0 ? k - 1 : 2;
   const double a_u = double{a[u]};
   const double a_v = double{a[v]};
-  const double n_u = normal[u] / normal[k];
-  const double n_v = normal[v] / normal[k];
+  const double scale = 1.0 / normal[k];  // at most 2^299: far from the ends of double
+  const double n_u = normal[u] * scale;
+  const double n_v = normal[v] * scale;
   record = ProjectionTriangle{};
   record.n_u = to_float(n_u);
   record.n_v = to_float(n_v);
   record.n_d = to_float(double{a[k]} + n_u * a_u + n_v * a_v);
-  record.b_u = to_float(e2[v] / normal[k]);
-  record.b_v = to_float(-e2[u] / normal[k]);
-  record.b_d = to_float((a_v * e2[u] - a_u * e2[v]) / normal[k]);
-  record.c_u = to_float(-e1[v] / normal[k]);
-  record.c_v = to_float(e1[u] / normal[k]);
-  record.c_d = to_float((a_u * e1[v] - a_v * e1[u]) / normal[k]);
+  record.b_u = to_float(e2[v] * scale);
+  record.b_v = to_float(-e2[u] * scale);
+  record.b_d = to_float((a_v * e2[u] - a_u * e2[v]) * scale);
+  record.c_u = to_float(-e1[v] * scale);
+  record.c_v = to_float(e1[u] * scale);
+  record.c_d = to_float((a_u * e1[v] - a_v * e1[u]) * scale);
   record.axis_k = static_cast<std::uint32_t>(k);
   record.triangle_id = triangle_id;
 }

@@ -124,6 +124,25 @@ TEST(CellRows, TriangleTouchingACellAtItsCornerOnlyIsInIt) {
   expect_right_cells(grid, {3, 0, 0}, {0, 3, 0}, {0, 0, 3}, "diagonal plane");
 }
 
+// Cell coordinate 1 + 2^-30 is a float's worth away from nothing, but it is not 1: the pad must not reach that far.
+TEST(CellRows, ATriangleJustBeyondAFaceIsNotInTheCellBefore) {
+  const GridRecord grid = make_grid(Vec3(-1), Vec3(1), 3, 3, 3);
+  for (int axis = 0; axis < 3; ++axis) {
+    for (const float gap : {0x1p-30f, 0x1p-33f}) {
+      Vec3 a(gap), b(gap), c(gap);
+      b[(axis + 1) % 3] = c[(axis + 2) % 3] = 1.5f;
+      const std::string what = "axis " + std::to_string(axis) + " gap " + std::to_string(gap);
+      expect_right_cells(grid, a, b, c, what);
+      for (const Cell& cell : listed_cells(grid, a, b, c)) EXPECT_GE(cell[static_cast<std::size_t>(axis)], 1) << what;
+    }
+    Vec3 a(0), b(0), c(0);
+    b[(axis + 1) % 3] = c[(axis + 2) % 3] = 1.5f;
+    std::set<int> layers;
+    for (const Cell& cell : listed_cells(grid, a, b, c)) layers.insert(cell[static_cast<std::size_t>(axis)]);
+    EXPECT_EQ(layers, (std::set<int>{0, 1})) << "axis " << axis;
+  }
+}
+
 TEST(CellRows, NeedleAlongTheDiagonalTakesItsCellsNotItsBox) {
   const GridRecord grid = make_grid(Vec3(0), Vec3(2048.0f), 2048, 2048, 2048);
   const std::set<Cell> cells = listed_cells(grid, {0, 0, 0}, {1, 1, 1}, {0.99999f, 1, 1});
