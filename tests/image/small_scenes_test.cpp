@@ -190,7 +190,7 @@ TEST_P(SmallScenesTest, EveryPixelEqualsTheTruth) {
   const TestMesh mesh = c.make();
   SceneInMemory scene(mesh.view(), c.grid);
   ASSERT_EQ(scene.status(), Status::kOk);
-  for (const std::uint32_t lanes : {4u, sim::widest_lanes()}) {
+  for (std::uint32_t lanes = 4; lanes <= sim::widest_lanes(); lanes *= 2) {
     for (const sim::StoreSize store : {sim::StoreSize::k256KB, sim::StoreSize::k64KB}) {
       if (store == sim::StoreSize::k64KB && c.grid.macro_width > 6) continue;  // more than its cell buffers hold
       sim::ChipOptions chip;
@@ -251,6 +251,165 @@ TEST(RandomSmallScenes, EveryPixelEqualsTheTruth) {
     EXPECT_EQ(report.mismatches, 0u) << "seed " << seed << ": " << report.first_mismatch;
   }
 }
+
+// Directions of all pixels of a frame.
+std::vector<Vec3> directions_of(const FrameSettings& settings) {
+  SceneImageView any_image{};
+  any_image.grid.triangle_format = static_cast<std::uint32_t>(TriangleFormat::kVertices);
+  FrameRecord frame{};
+  EXPECT_EQ(make_frame_record(settings, any_image, {}, frame), Status::kOk);
+  std::vector<Vec3> directions;
+  for (std::uint32_t y = 0; y < settings.height; ++y) {
+    for (std::uint32_t x = 0; x < settings.width; ++x) directions.push_back(pixel_direction(frame, x, y));
+  }
+  return directions;
+}
+
+// Distance of a point from the nearest cell face across x or y, in cells.
+double distance_to_face(const GridRecord& grid, Vec3 p) {
+  double nearest = 1.0;
+  for (int axis = 0; axis < 2; ++axis) {
+    const double cell = (double{p[axis]} - double{grid.minimum[axis]}) * double{grid.cells_per_unit[axis]};
+    nearest = std::fmin(nearest, std::fabs(cell - std::round(cell)));
+  }
+  return nearest;
+}
+
+// A rim of a packet: its first or last row or column of pixels.
+struct Rim {
+  std::uint32_t packet_x, packet_y;
+  bool last, columns;
+
+  // Index of the pixel `along` the rim and `out` pixels beyond it.
+  [[nodiscard]] std::size_t pixel(std::uint32_t along, std::uint32_t out, std::uint32_t width) const {
+    const std::uint32_t x = packet_x * 8 + along;
+    const std::uint32_t y = last ? packet_y * 8 + 7 + out : packet_y * 8 - out;
+    return columns ? std::size_t{x} * width + y : std::size_t{y} * width + x;
+  }
+};
+
+Rim random_rim(TestRandom& random, std::uint32_t width) {
+  const std::uint32_t packet_x = 1 + random.below(width / 8 - 2);
+  const std::uint32_t packet_y = 1 + random.below(width / 8 - 2);
+  const bool last = random.below(2) == 0;
+  return {packet_x, packet_y, last, random.below(2) == 0};
+}
+
+// How the cameras of these scenes stand.
+enum class HungView : std::uint8_t {
+  kAnyBits,  // directions of 24 bits: corners at powers of two along them
+  kFewBits,  // directions of 7 bits: corners anywhere
+  kFar,      // the same, almost parallel: rays run along faces of the grid
+};
+
+constexpr float kFarDistance = 4096.0f;
+
+FrameSettings hung_settings(HungView view, TestRandom& random) {
+  FrameSettings settings;
+  settings.width = settings.height = 64;
+  settings.camera = look({0, 0, 0}, {0, 0, -1}, 0.5f);
+  if (view == HungView::kFar) settings.camera = look({0, 0, kFarDistance}, {0, 0, 0}, 1.0f / kFarDistance);
+  if (view == HungView::kAnyBits) {
+    settings.camera.tan_half_fov = random.between(0.2f, 0.9f);
+    settings.camera.at = {random.between(-1, 1), random.between(-1, 1), -1};
+  }
+  return settings;
+}
+
+// A distance along a ray at which a corner may hang.
+float random_scale(HungView view, TestRandom& random) {
+  switch (view) {
+    case HungView::kAnyBits:
+      return static_cast<float>(1u << random.below(6));
+    case HungView::kFewBits:
+      return static_cast<float>(1 + random.below(40 * 64)) / 64.0f;
+    case HungView::kFar:
+      return kFarDistance + (static_cast<float>(random.below(81)) - 40.0f) / 32.0f;
+  }
+  return 1.0f;
+}
+
+// Triangles whose corners lie exactly on rays at the rim of a packet, the rest of them outside of it: the last rays
+// that corner rays, frusta and cell ranges may not lose. Where `grid` is given, half of them touch one ray with one
+// corner, as close to a face of the grid as many draws allow. The first two triangles, out of sight, set the bounds.
+TestMesh hang_on_rays(const FrameSettings& settings, HungView view, const GridRecord* grid, std::uint64_t seed) {
+  const float reach = view == HungView::kFar ? 1.5f : 60.0f;
+  constexpr std::size_t kTriangles = 300;
+  constexpr int kDraws = 20000;
+  const std::uint32_t width = settings.width;
+  const Vec3 eye = settings.camera.eye;
+  const std::vector<Vec3> directions = directions_of(settings);
+  TestRandom random(seed);
+  TestMesh mesh = make_triangle({reach, reach, reach}, {reach, reach - 0.1f, reach}, {reach - 0.1f, reach, reach});
+  mesh.append(make_triangle({-reach, -reach, -reach}, {-reach, 0.1f - reach, -reach}, {0.1f - reach, -reach, -reach}));
+  while (mesh.triangles.size() < kTriangles) {
+    Rim rim = random_rim(random, width);
+    std::uint32_t from = random.below(8);
+    float scale = random_scale(view, random);
+    const bool at_face = grid != nullptr && view != HungView::kAnyBits && mesh.triangles.size() % 2 == 0;
+    double nearest = 2.0;
+    for (int draw = 0; at_face && draw < kDraws; ++draw) {
+      const Rim other_rim = random_rim(random, width);
+      const std::uint32_t other_from = random.below(8);
+      const float other_scale = random_scale(view, random);
+      const Vec3 corner = eye + directions[other_rim.pixel(other_from, 0, width)] * other_scale;
+      const double distance = distance_to_face(*grid, corner);
+      if (distance >= nearest) continue;
+      nearest = distance;
+      rim = other_rim;
+      from = other_from;
+      scale = other_scale;
+    }
+    const std::uint32_t to = random.below(8);
+    const std::uint32_t outward = 1 + random.below(5);
+    const float tilt = view == HungView::kFar ? random.between(-0.2f, 0.2f) : scale * random.between(-0.1f, 0.1f);
+    const Vec3 a = eye + directions[rim.pixel(from, 0, width)] * scale;
+    const Vec3 b = eye + directions[rim.pixel(to, at_face ? outward : 0, width)] * scale;
+    const Vec3 c = eye + directions[rim.pixel((from + to) / 2, outward, width)] * (scale + tilt);
+    mesh.append(make_triangle(a, b, c));
+  }
+  return mesh;
+}
+
+class HungOnRaysTest : public testing::TestWithParam<HungView> {};
+
+TEST_P(HungOnRaysTest, EveryPixelEqualsTheTruth) {
+  constexpr std::uint64_t kSeeds = 8;
+  const HungView view = GetParam();
+  std::uint64_t exact_signs = 0;
+  for (std::uint64_t seed = 0; seed < kSeeds; ++seed) {
+    TestRandom random(1000 + seed);
+    const FrameSettings settings = hung_settings(view, random);
+    const GridParameters grid = grid_of(random.between(2.0f, 400.0f), 1 + random.below(6));
+
+    GridNeed need{};
+    const TestMesh anywhere = hang_on_rays(settings, view, nullptr, seed);
+    ASSERT_EQ(count_scene_image(anywhere.view(), grid, need), Status::kOk) << "seed " << seed;
+    const TestMesh mesh = hang_on_rays(settings, view, &need.grid, seed);
+    SceneInMemory scene(mesh.view(), grid);
+    ASSERT_EQ(scene.status(), Status::kOk) << "seed " << seed;
+    for (const std::uint32_t packet_width : {4u, 8u}) {
+      sim::ChipOptions chip;
+      chip.packet_width = packet_width;
+      chip.lanes = seed % 2 == 0 ? 4 : sim::widest_lanes();
+      const RenderedFrame rendered = scene.render(settings, chip);
+      ASSERT_EQ(rendered.result.status, Status::kOk) << "seed " << seed;
+      const TruthReport report = check_against_truth(rendered, mesh.view(), all_pixels(rendered.frame));
+      EXPECT_EQ(report.mismatches, 0u) << "seed " << seed << ", packets of " << packet_width << ": "
+                                       << report.first_mismatch;
+      exact_signs += report.work.exact_signs;
+    }
+  }
+  EXPECT_GT(exact_signs, 400 * kSeeds) << "corners do not lie on rays";
+}
+
+std::string hung_view_name(const testing::TestParamInfo<HungView>& tested) {
+  constexpr const char* kNames[] = {"any_bits", "few_bits", "far"};
+  return kNames[static_cast<std::size_t>(tested.param)];
+}
+
+INSTANTIATE_TEST_SUITE_P(Views, HungOnRaysTest, testing::Values(HungView::kAnyBits, HungView::kFewBits, HungView::kFar),
+                         hung_view_name);
 
 // `paper` may leak and rounds its distances, so it is held to a share of pixels only.
 TEST(PaperAccuracy, AgreesWithTheTruthAlmostEverywhere) {
