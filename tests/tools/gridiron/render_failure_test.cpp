@@ -117,21 +117,21 @@ TEST(RenderFailure, TheStoreMustHoldThePackedMacrocells) {
   expect_failure(folder, {"render", "a.gri", "--store", "64"}, 1, "scene image that this local store");
 }
 
-// Sends `signal` some time into a render that lasts for minutes.
+// Sends `signal` some time into a render that would last for most of a minute.
 void expect_interrupt(int signal, std::chrono::milliseconds delay) {
   const TemporaryFolder folder;
-  folder.write_ply("a.ply", make_torus(40, 24, 1.0f, 0.4f));
+  folder.write_ply("a.ply", make_torus(200, 100, 1.0f, 0.4f));
   folder.write("a.png", "earlier");
-  RunningProgram program(folder.folder(),
-                         {"render", "a.ply", "-o", "a.png", "--report", "r.json", "--size", "4096x4096", "--mode",
-                          "checked", "--threads", "1", "--completion", "random"});
+  RunningProgram program(
+      folder.folder(), {"render", "a.ply", "-o", "a.png", "--report", "r.json", "--size", "7000x7000", "--threads", "1",
+                        "--completion", "random", "--packet", "4", "--no-culling", "--no-mailbox"});
   std::this_thread::sleep_for(delay);
   const auto start = std::chrono::steady_clock::now();
   program.send(signal);
   const ProgramResult result = program.wait();
   EXPECT_EQ(result.exit_code, 130) << result.err;
   EXPECT_EQ(result.err, "interrupted; no file was written\n");
-  EXPECT_LT(std::chrono::steady_clock::now() - start, std::chrono::seconds(20)) << "it should stop at the next tile";
+  EXPECT_LT(std::chrono::steady_clock::now() - start, std::chrono::seconds(10)) << "it should stop at the next tile";
   EXPECT_EQ(folder.names(), (Words{"a.ply", "a.png"}));
   EXPECT_EQ(read_file(folder.path("a.png")), "earlier");
 }

@@ -165,6 +165,28 @@ TEST(Render, TechniquesChangeTheWorkAndNotThePicture) {
   EXPECT_EQ(flat["work"]["shaded_simple_group"], 0);
 }
 
+// Cycles that all cores wait at one level.
+double wait_cycles(const Json& report, const char* level) {
+  double cycles = 0;
+  for (const Json& core : report["cores"]) cycles += core["dma_wait_cycles"][level].get<double>();
+  return cycles;
+}
+
+TEST(Render, BufferingHidesWaitsAtEachLevel) {
+  const TemporaryFolder folder;
+  folder.write_ply("a.ply", make_torus(60, 40, 1.0f, 0.3f));
+  const Words scene = {"a.ply", "-o", "a.png", "--size", "200x200", "--cores", "1"};
+  const Json twice = render_report(folder, scene);
+  const Json once = render_report(folder, scene + Words{"--buffering", "single"});
+  const Json deep = render_report(folder, scene + Words{"--configuration", "deep"});
+  for (const char* level : {"tile", "macrocell", "triangle"}) {
+    EXPECT_LT(wait_cycles(twice, level), wait_cycles(once, level)) << level;
+  }
+  EXPECT_LT(wait_cycles(deep, "triangle"), 0.5 * wait_cycles(twice, "triangle"));
+  const Json both = render_report(folder, scene + Words{"--configuration", "deep", "--buffering", "single"});
+  EXPECT_EQ(both["frame"], once["frame"]) << "--buffering replaces what the configuration says";
+}
+
 TEST(Render, ModesAndLanesMakeTheSamePicture) {
   const TemporaryFolder folder;
   folder.write_ply("a.ply", make_random_soup(400, 0.15f, 13));
