@@ -1,5 +1,6 @@
 // The simulated chip: checks the frame's ranges, picks the kernel that was compiled for the options, and runs it.
 // Memory: owns local stores for the time of the frame. Threads: starts its own. SPDX-License-Identifier: Apache-2.0
+#include <gridiron/base/math.h>
 #include <gridiron/base/records.h>
 #include <gridiron/sim/core_runner.h>
 #include <gridiron/sim/plain_core.h>
@@ -112,7 +113,10 @@ template <template <std::uint32_t> class Layout>
     if (count > kMaxCellsPerAxis) return Status::kBadFrame;
     macro_cells *= count;
   }
-  if (!lies_in_memory(frame.macro_table_address, (macro_cells + 31) / 32 * sizeof(MacroTableEntry)) ||
+  // The table is read in whole lines.
+  const std::uint64_t table_bytes =
+      round_up<std::uint64_t>((macro_cells + 31) / 32 * sizeof(MacroTableEntry), kLineBytes);
+  if (!lies_in_memory(frame.macro_table_address, table_bytes) ||
       !lies_in_memory(frame.cell_blocks_address, std::uint64_t{grid.cell_block_count} * grid.cell_block_bytes) ||
       !lies_in_memory(frame.triangles_address, std::uint64_t{grid.reference_count} * grid.triangle_bytes)) {
     return Status::kBadFrame;
