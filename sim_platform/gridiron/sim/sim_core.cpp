@@ -208,15 +208,21 @@ Status SimCore::start(std::byte* local, MainAddress address, std::uint32_t bytes
     for (std::uint32_t i = 0; i < bytes; ++i) local[i] = kPoison[i & 1];
   }
   if (frame_->completion == Completion::kEarly && !pending.fails) {
-    std::byte* const main = frame_->memory->base() + address.value;
-    std::memcpy(is_get ? local : main, is_get ? main : local, bytes);
-    pending.arrived = true;
+    copy_bytes(pending);
   }
   return Status::kOk;
 }
 
-Status SimCore::move_bytes(Pending& pending) {
+void SimCore::copy_bytes(Pending& pending) {
   std::byte* const main = frame_->memory->base() + pending.address;
+  // Cores of a wrong program may write the same bytes; that must not be a race of the host's.
+  std::unique_lock lock(frame_->writable_bytes, std::defer_lock);
+  if (meets_writable(pending.address, pending.bytes)) lock.lock();
+  std::memcpy(pending.is_get ? pending.local : main, pending.is_get ? main : pending.local, pending.bytes);
+  pending.arrived = true;
+}
+
+Status SimCore::move_bytes(Pending& pending) {
   Status status = Status::kOk;
   if (pending.is_get) {
     for (std::uint32_t i = 0; i < pending.bytes; ++i) {
@@ -226,12 +232,9 @@ Status SimCore::move_bytes(Pending& pending) {
           describe(pending) + ": the core wrote to byte " + std::to_string(i) + " of the destination before the wait");
       break;
     }
-    std::memcpy(pending.local, main, pending.bytes);
-  } else {
-    // What the source holds now is what goes out, as on a chip whose transfers run late.
-    std::memcpy(main, pending.local, pending.bytes);
   }
-  pending.arrived = true;
+  // What a source holds now is what goes out, as on a chip whose transfers run late.
+  copy_bytes(pending);
   return status;
 }
 

@@ -13,6 +13,7 @@
 #include <atomic>
 #include <cstddef>
 #include <cstdint>
+#include <mutex>
 #include <span>
 #include <string>
 #include <vector>
@@ -27,7 +28,7 @@ struct MainRange {
   friend constexpr bool operator==(const MainRange&, const MainRange&) = default;
 };
 
-/// What the cores of one frame share. Everything but the two counters is constant while cores run.
+/// What the cores of one frame share. Constant while cores run, but for the counter and the lock.
 struct SimFrame {
   SimMemory* memory = nullptr;
   TileSource* tiles = nullptr;
@@ -38,6 +39,7 @@ struct SimFrame {
   std::uint32_t output_depth = 1;   ///< rotation of the output tags in the trace
   std::uint64_t fail_transfer = 0;  ///< the transfer that fails, counted from 1 over all cores; 0: none
   std::atomic<std::uint64_t> transfers_started{0};
+  std::mutex writable_bytes;  ///< held while bytes that more than one core may write are moved
 };
 
 /// What one tile read and wrote in main memory, for the check across tiles. Only ranges that meet writable memory.
@@ -133,6 +135,7 @@ class SimCore {
   [[nodiscard]] std::string describe(bool is_get, const std::byte* local, std::uint64_t address, std::uint32_t bytes,
                                      std::uint32_t tag) const;
   [[nodiscard]] std::string describe(const Pending& pending) const;
+  void copy_bytes(Pending& pending);
   Status move_bytes(Pending& pending);
   void move_some();
   Status complete(Pending& pending);
@@ -164,7 +167,7 @@ class SimCore {
   Status sticky_error_ = Status::kOk;  ///< found where no status could be returned; every later call returns it
   std::vector<Violation> violations_;
   std::vector<std::uint8_t> granule_state_;  ///< per 16 bytes of arena: is a transfer in flight there?
-  std::vector<std::uintptr_t> bad_code_;    ///< instructions whose bad access was recorded
+  std::vector<std::uintptr_t> bad_code_;     ///< instructions whose bad access was recorded
   std::uintptr_t stack_bottom_ = 0, stack_top_ = 0;
 };
 
