@@ -34,6 +34,7 @@ struct TinyLayout {
   static constexpr std::uint32_t kMaxTriangleDepth = 5;
   static constexpr std::uint32_t kMaxOutputDepth = 3;
 };
+static_assert(kFitsArena<TinyLayout>);
 
 TestMesh make_scene() {
   TestMesh mesh = make_sphere(12, 16, 0.8f);
