@@ -46,7 +46,7 @@ const sim::MachineProfile& roomy_machine() {
   return *best;
 }
 
-// The largest lambda of 4, 2, 1 ... whose image, scratch and frame fit a machine's memory.
+// The largest lambda of 4, 2, 1 ... whose image and frame fit a machine's memory.
 void print_fit(const MeshView& mesh, std::uint64_t frame_bytes, const sim::MachineProfile& machine) {
   for (float lambda = 4.0f; lambda >= 1.0f / 64; lambda *= 0.5f) {
     GridParameters parameters;
