@@ -13,7 +13,8 @@ foreach(isa avx2 avx512)
   cmake_push_check_state(RESET)
   list(JOIN GRIDIRON_LANES_OPTIONS_${isa} " " CMAKE_REQUIRED_FLAGS)
   check_cxx_source_runs(
-    "int main() { __builtin_cpu_init(); return (${GRIDIRON_LANES_FEATURES_${isa}}) ? 0 : 1; }" GRIDIRON_HOST_RUNS_${isa})
+    "int main() { __builtin_cpu_init(); return (${GRIDIRON_LANES_FEATURES_${isa}}) ? 0 : 1; }"
+    GRIDIRON_HOST_RUNS_${isa})
   cmake_pop_check_state()
 endforeach()
 
