@@ -8,9 +8,11 @@
 #include <cassert>
 #include <cstddef>
 #include <cstdint>
-#include <cstring>
 
 namespace gridiron::sim {
+
+/// The host's memcpy, called: inlined, a copy of bounded but unknown size becomes a slow string instruction.
+void copy_bytes(void* to, const void* from, std::size_t bytes);
 
 /// One core that believes what it is told: a transfer that breaks a rule of the contract is undefined behaviour of the
 /// host. Asserts catch the cheapest mistakes in builds without NDEBUG.
@@ -26,7 +28,7 @@ class PlainCore {
     assert(bytes != 0 && bytes <= limits_.max_transfer_bytes && tag.index < limits_.tag_count);
     static_cast<void>(tag);
     ++transfers_;
-    std::memcpy(local, base_ + address.value, bytes);
+    copy_bytes(local, base_ + address.value, bytes);
     return Status::kOk;
   }
 
@@ -34,7 +36,7 @@ class PlainCore {
     assert(bytes != 0 && bytes <= limits_.max_transfer_bytes && tag.index < limits_.tag_count);
     static_cast<void>(tag);
     ++transfers_;
-    std::memcpy(base_ + address.value, local, bytes);
+    copy_bytes(base_ + address.value, local, bytes);
     return Status::kOk;
   }
 

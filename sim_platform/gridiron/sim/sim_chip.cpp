@@ -24,9 +24,11 @@ using RenderEntry = Status (*)(StoreSize, std::uint32_t, std::byte*, Core&, Main
 
 [[nodiscard]] bool host_runs_lanes(std::uint32_t lanes) {
 #if defined(GRIDIRON_SIM_WIDE_LANES)
-  if (lanes == 8) return __builtin_cpu_supports("avx2") != 0;
+  const bool has_avx2 = __builtin_cpu_supports("avx2") != 0 && __builtin_cpu_supports("bmi") != 0 &&
+                        __builtin_cpu_supports("bmi2") != 0;
+  if (lanes == 8) return has_avx2;
   if (lanes == 16) {
-    return __builtin_cpu_supports("avx512f") != 0 && __builtin_cpu_supports("avx512bw") != 0 &&
+    return has_avx2 && __builtin_cpu_supports("avx512f") != 0 && __builtin_cpu_supports("avx512bw") != 0 &&
            __builtin_cpu_supports("avx512dq") != 0 && __builtin_cpu_supports("avx512vl") != 0;
   }
 #endif

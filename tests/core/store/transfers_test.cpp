@@ -97,7 +97,7 @@ TEST_P(TransfersTest, RandomTrafficNeverExceedsTheQueue) {
         continue;
       }
       ASSERT_EQ(transfers.wait(tag), Status::kOk);  // each tag has one buffer
-      std::byte* const local = store[0].bytes + tag * kSlotBytes;
+      std::byte* const local = reinterpret_cast<std::byte*>(store.data()) + tag * kSlotBytes;
       const std::uint32_t bytes = 16 * (1 + random.below(kSlotBytes / 16));
       const MainAddress address{32 * std::uint64_t{random.below(6000)}};
       const Status status =
