@@ -3,6 +3,7 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <filesystem>
 #include <fstream>
 #include <map>
 #include <optional>
@@ -18,7 +19,7 @@ namespace gridiron::test {
 namespace {
 
 std::map<std::string, std::vector<double>> read_camera(const std::string& name) {
-  std::ifstream file(std::string(GRIDIRON_SOURCE_DIR) + "/scenes/" + name + ".camera");
+  std::ifstream file(std::filesystem::path(GRIDIRON_SOURCE_DIR) / "scenes" / (name + ".camera"));
   EXPECT_TRUE(file) << name;
   std::map<std::string, std::vector<double>> lines;
   for (std::string line; std::getline(file, line);) {

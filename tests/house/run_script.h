@@ -32,7 +32,7 @@ inline ScriptResult run_script(const std::string& command) {
 
 /// Path of a file of the checkout.
 inline std::string source_path(const std::string& name) {
-  return std::string(GRIDIRON_SOURCE_DIR) + "/" + name;
+  return (std::filesystem::path(GRIDIRON_SOURCE_DIR) / name).string();
 }
 
 /// An empty directory of the running test's own, gone when the object goes.

@@ -99,7 +99,7 @@ class Writer {
     } else if (run_.span_count > 1) {
       begin_event("mixed", run_.first.core, run_.first.begin_cycles, run_.end_cycles);
       write_tile(run_.first.tile_id);
-      text_ += run_.first.tile_id != sim::kNoTileId ? ",\"spans\":" : "\"spans\":";
+      text_ += run_.first.tile_id != sim::kNoTile ? ",\"spans\":" : "\"spans\":";
       append_number(text_, run_.span_count);
       constexpr std::array<std::string_view, 3> kKeys = {",\"init_us\":", ",\"compute_us\":", ",\"wait_us\":"};
       for (std::size_t kind = 0; kind < kKeys.size(); ++kind) {
@@ -151,7 +151,7 @@ class Writer {
   }
 
   void write_tile(std::uint32_t tile_id) {
-    if (tile_id == sim::kNoTileId) return;
+    if (tile_id == sim::kNoTile) return;
     text_ += "\"tile\":";
     append_number(text_, tile_id);
   }

@@ -70,7 +70,7 @@ struct Core {
   Phase phase = Phase::kPrologue;
   const TileTrace* steps = nullptr;
   std::size_t next_step = 0;
-  std::uint32_t tile_id = kNoTileId;
+  std::uint32_t tile_id = kNoTile;
   std::uint32_t ordinal = 0;  ///< of the tile: how many this core has had before it
   Ticks now = 0;
   Ticks claim_time = kNever;        ///< when it asks for a tile
@@ -165,7 +165,7 @@ class Replay {
     } else {
       core.phase = Phase::kEpilogue;
       core.steps = &trace_.epilogue;
-      core.tile_id = kNoTileId;
+      core.tile_id = kNoTile;
     }
     advance(core);
   }

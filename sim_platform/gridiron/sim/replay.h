@@ -40,8 +40,6 @@ struct CoreTiming {
   std::uint64_t line_bytes_in = 0, line_bytes_out = 0;  ///< in whole lines
 };
 
-inline constexpr std::uint32_t kNoTileId = 0xFFFFFFFFu;  ///< tile_id of spans of the prologue and the epilogue
-
 /// One bar of the timeline. A kTile span encloses the spans of its tile; the others do not overlap on one core. What no
 /// span covers is idle.
 struct TimelineSpan {

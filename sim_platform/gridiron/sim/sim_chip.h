@@ -51,7 +51,7 @@ struct ChipOptions {
 struct Violation {
   Status rule;
   std::uint32_t core;
-  std::uint32_t tile_id;  ///< kNoTile (sim_core.h) before the first and after the last tile of a core
+  std::uint32_t tile_id;  ///< kNoTile before the first and after the last tile of a core
   std::string detail;   ///< addresses and sizes, for people
 };
 

@@ -50,9 +50,6 @@ struct TileFootprint {
   std::vector<MainRange> puts;
 };
 
-/// Pseudo tile of what a core does before its first and after its last claim.
-inline constexpr std::uint32_t kNoTile = 0xFFFFFFFFu;
-
 /// The platform of Mode::kChecked and Mode::kInstrumented.
 ///
 /// Each call checks its rules, in this order: size, tag, alignment and congruence, boundary, local range, main range,

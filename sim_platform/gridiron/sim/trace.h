@@ -14,6 +14,9 @@ namespace gridiron::sim {
 /// % output_depth. A trace stores such a tag as (slot - tile ordinal) mod output_depth, without kFirstRotatingTag.
 inline constexpr std::uint32_t kFirstRotatingTag = 24;
 
+/// Pseudo tile of what a core does before its first and after its last claim: prologue and epilogue.
+inline constexpr std::uint32_t kNoTile = 0xFFFFFFFFu;
+
 enum class EventKind : std::uint8_t { kWork, kGet, kPut, kWait };
 
 /// One step of a core. Tags of output buffers are stored relative to the core's tile ordinal (rotated), so that a

@@ -97,7 +97,8 @@ TEST(Usage, MachinesAreListed) {
 
 TEST(Usage, AFullStandardOutputIsAnError) {
   const TemporaryFolder folder;
-  const std::string command = std::string(GRIDIRON_PROGRAM) + " machines > /dev/full 2> /dev/null";
+  std::string command = GRIDIRON_PROGRAM;
+  command += " machines > /dev/full 2> /dev/null";
   const int status = std::system(command.c_str());
   EXPECT_NE(status, 0);
 }

@@ -34,7 +34,7 @@ TimelineSpan span(std::uint32_t core, Kind kind, std::uint32_t tile, double begi
 sim::FrameTiming sample(std::uint32_t short_span_count) {
   sim::FrameTiming timing;
   timing.cores.resize(2);
-  timing.timeline = {span(0, Kind::kWait, sim::kNoTileId, 0, 100, WaitLevel::kSetup),
+  timing.timeline = {span(0, Kind::kWait, sim::kNoTile, 0, 100, WaitLevel::kSetup),
                      span(0, Kind::kTile, 7, 400, 1000),
                      span(0, Kind::kInit, 7, 400, 500),
                      span(0, Kind::kCompute, 7, 500, 800),
@@ -150,8 +150,8 @@ TEST(Timeline, MergingStopsAtTilesGapsAndLongSpans) {
                      span(0, Kind::kCompute, 2, 60, 4000),
                      span(0, Kind::kInit, 2, 4000, 4010),
                      span(0, Kind::kCompute, 2, 4010, 4020),
-                     span(0, Kind::kInit, sim::kNoTileId, 4020, 4030),
-                     span(0, Kind::kCompute, sim::kNoTileId, 4030, 4040)};
+                     span(0, Kind::kInit, sim::kNoTile, 4020, 4030),
+                     span(0, Kind::kCompute, sim::kNoTile, 4030, 4040)};
   const std::size_t whole_bytes = timeline_json(timing, machine()).size();
   const json trace = json::parse(timeline_json(timing, machine(), whole_bytes - 1));
   std::vector<std::string> names;
