@@ -159,11 +159,17 @@ std::vector<Variation> make_variations() {
       chip.threads = 2;
     });
   }
-  for (const std::uint32_t width : {4u, 16u}) {
+  for (const std::uint32_t width : {4u, 16u, 32u}) {
     for (const std::uint32_t lanes : {4u, 8u, 16u}) {
       if (lanes > sim::widest_lanes()) continue;
       add("packet_" + std::to_string(width) + "_lanes_" + std::to_string(lanes), Keeps::kPicture,
           [width, lanes](Settings&, Chip& chip) {
+            chip.packet_width = width;
+            chip.lanes = lanes;
+          });
+      add("subpackets_" + std::to_string(width) + "_lanes_" + std::to_string(lanes), Keeps::kPicture,
+          [width, lanes](Settings& settings, Chip& chip) {
+            settings.techniques |= kUseSubpackets;
             chip.packet_width = width;
             chip.lanes = lanes;
           });

@@ -55,6 +55,13 @@ TEST_P(ScansTest, PixelsEqualTheTruthBitForBit) {
       static_cast<unsigned long long>(report.work.exact_distances));
   EXPECT_EQ(report.mismatches, 0u) << view.name << ", seed " << kSeed << ": " << report.first_mismatch;
   EXPECT_GT(report.hits, kBorderPixels / 2);
+
+  // The `best` configuration: another traversal, the same bits in every pixel.
+  settings.techniques = kUseMailbox | kUseEmptySkip | kUseSubpackets;
+  settings.macro_depth = 4;
+  settings.triangle_depth = 8;
+  chip.packet_width = 32;
+  EXPECT_EQ(first_difference(rendered, scene.render(settings, chip)), "");
 }
 
 INSTANTIATE_TEST_SUITE_P(Views, ScansTest,

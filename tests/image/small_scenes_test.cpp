@@ -241,7 +241,9 @@ TEST(RandomSmallScenes, EveryPixelEqualsTheTruth) {
     ASSERT_EQ(scene.status(), Status::kOk) << "seed " << seed;
     sim::ChipOptions chip;
     chip.lanes = random.below(2) == 0 ? 4u : sim::widest_lanes();
-    chip.packet_width = 4u << random.below(3);
+    chip.packet_width = 4u << random.below(4);
+    if (random.below(2) == 0) settings.techniques |= kUseSubpackets;
+    if (random.below(2) == 0) settings.techniques &= ~std::uint32_t{kUseCornerCulling};
     chip.completion = sim::Completion::kRandom;
     chip.seed = seed;
     const RenderedFrame rendered = scene.render(settings, chip);
@@ -379,17 +381,19 @@ TEST_P(HungOnRaysTest, EveryPixelEqualsTheTruth) {
   std::uint64_t exact_signs = 0;
   for (std::uint64_t seed = 0; seed < kSeeds; ++seed) {
     TestRandom random(1000 + seed);
-    const FrameSettings settings = hung_settings(view, random);
+    const FrameSettings view_settings = hung_settings(view, random);
     const GridParameters grid = grid_of(random.between(2.0f, 400.0f), 1 + random.below(6));
 
     GridNeed need{};
-    const TestMesh anywhere = hang_on_rays(settings, view, nullptr, seed);
+    const TestMesh anywhere = hang_on_rays(view_settings, view, nullptr, seed);
     ASSERT_EQ(count_scene_image(anywhere.view(), grid, need), Status::kOk) << "seed " << seed;
-    const TestMesh mesh = hang_on_rays(settings, view, &need.grid, seed);
+    const TestMesh mesh = hang_on_rays(view_settings, view, &need.grid, seed);
     SceneInMemory scene(mesh.view(), grid);
     ASSERT_EQ(scene.status(), Status::kOk) << "seed " << seed;
-    for (const std::uint32_t packet_width : {4u, 8u}) {
+    for (const std::uint32_t packet_width : {4u, 8u, 32u}) {
       sim::ChipOptions chip;
+      FrameSettings settings = view_settings;
+      if (packet_width == 32) settings.techniques = kUseMailbox | kUseEmptySkip | kUseSubpackets;
       chip.packet_width = packet_width;
       chip.lanes = seed % 2 == 0 ? 4 : sim::widest_lanes();
       const RenderedFrame rendered = scene.render(settings, chip);

@@ -25,7 +25,7 @@ struct RawRender {
   RenderArguments arguments;
   std::string output;
   std::optional<BufferDepths> buffering;
-  bool no_mailbox = false, no_culling = false, no_empty_skip = false;
+  bool no_mailbox = false, no_culling = false, no_subpackets = false, no_empty_skip = false;
 };
 
 constexpr BufferDepths kSingleBuffering = {.output = 1, .macro = 1, .triangle = 1};
@@ -169,7 +169,7 @@ void add_machine_options(CLI::App& app, RawRender& raw) {
       "when the bytes of a transfer move (default early)");
   add_parsed(app, "--seed", render.seed, parse_seed, "a whole number of at most 19 digits", "N",
              "seed of --completion random (default 0)");
-  add_choice(app, "--lanes", render.lanes, Choices<std::uint32_t>{{"4", 4}, {"8", 8}, {"16", 16}},
+  add_choice(app, "--lanes", render.lanes, Choices<std::uint32_t>{{"4", 4}, {"8", 8}, {"16", 16}, {"32", 32}},
              "rays per SIMD group (default 4; plain: the host's widest); time is told for 4 only");
   const auto tile = [](const std::string& text) { return parse_count_pair(text, ','); };
   add_parsed(app, "--tile", render.tile, tile, "X,Y with a column and a row", "X,Y",
@@ -181,7 +181,7 @@ void add_algorithm_options(CLI::App& app, RawRender& raw) {
   add_choice(app, "--buffering", raw.buffering,
              Choices<BufferDepths>{{"single", kSingleBuffering}, {"double", kDoubleBuffering}},
              "buffers of all three levels (default: the configuration's)");
-  add_choice(app, "--packet", render.packet_width, Choices<std::uint32_t>{{"4", 4}, {"8", 8}, {"16", 16}},
+  add_choice(app, "--packet", render.packet_width, Choices<std::uint32_t>{{"4", 4}, {"8", 8}, {"16", 16}, {"32", 32}},
              "rays along a packet's edge (default: the configuration's)");
   add_choice(app, "--accuracy", render.accuracy,
              Choices<Accuracy>{{"standard", Accuracy::kStandard}, {"paper", Accuracy::kPaper}},
@@ -190,6 +190,7 @@ void add_algorithm_options(CLI::App& app, RawRender& raw) {
              "none: hit or background; simple: facing ratio (default)");
   app.add_flag("--no-mailbox", raw.no_mailbox, "test a triangle again in every cell that holds it");
   app.add_flag("--no-culling", raw.no_culling, "do not cull triangles by the corner rays");
+  app.add_flag("--no-subpackets", raw.no_subpackets, "do not cull subpackets of a packet");
   app.add_flag("--no-empty-skip", raw.no_empty_skip, "fetch the cell blocks of empty macrocells too");
 }
 
@@ -203,10 +204,16 @@ RenderArguments complete_render(const RawRender& raw, bool has_seed) {
   const Configuration& configuration = *render.scene.configuration;
   render.output = raw.output.empty() ? render.scene.input.stem().concat(".png") : std::filesystem::path(raw.output);
   render.depths = raw.buffering.value_or(configuration.depths);
-  if (render.packet_width == 0) render.packet_width = configuration.packet_width;
+  // A packet is no wider than a tile.
+  const std::uint32_t tile_width = store_facts(render.store, 8).tile_width;
+  if (render.packet_width > tile_width) {
+    usage_error("--packet: tiles of this store are " + std::to_string(tile_width) + " pixels wide");
+  }
+  if (render.packet_width == 0) render.packet_width = std::min(configuration.packet_width, tile_width);
   render.techniques = configuration.techniques;
   if (raw.no_mailbox) render.techniques &= ~std::uint32_t{kUseMailbox};
   if (raw.no_culling) render.techniques &= ~std::uint32_t{kUseCornerCulling};
+  if (raw.no_subpackets) render.techniques &= ~std::uint32_t{kUseSubpackets};
   if (raw.no_empty_skip) render.techniques &= ~std::uint32_t{kUseEmptySkip};
 
   const bool plain = render.mode == Mode::kPlain;

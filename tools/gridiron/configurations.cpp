@@ -8,16 +8,20 @@
 namespace gridiron::tool {
 namespace {
 
-constexpr std::uint32_t kAllTechniques = kUseMailbox | kUseCornerCulling | kUseEmptySkip;
+constexpr std::uint32_t kReferenceTechniques = kUseMailbox | kUseCornerCulling | kUseEmptySkip;
 
 // clang-format off
 constexpr Configuration kConfigurations[] = {
     {.name = "reference", .description = "the reference system: double buffering at three levels",
      .lambda = 4.0f, .macro_width = 6, .packet_width = 8,
-     .depths = {.output = 2, .macro = 2, .triangle = 2}, .techniques = kAllTechniques},
+     .depths = {.output = 2, .macro = 2, .triangle = 2}, .techniques = kReferenceTechniques},
     {.name = "deep", .description = "the reference system, prefetching 4 cell blocks and 8 triangle buffers",
      .lambda = 4.0f, .macro_width = 6, .packet_width = 8,
-     .depths = {.output = 2, .macro = 4, .triangle = 8}, .techniques = kAllTechniques},
+     .depths = {.output = 2, .macro = 4, .triangle = 8}, .techniques = kReferenceTechniques},
+    {.name = "best", .description = "one traversal per tile for all its rays, culling by subpackets, deep prefetch",
+     .lambda = 4.0f, .macro_width = 6, .packet_width = 32,
+     .depths = {.output = 2, .macro = 4, .triangle = 8},
+     .techniques = kUseMailbox | kUseEmptySkip | kUseSubpackets},
 };
 // clang-format on
 

@@ -31,6 +31,9 @@ StoreFacts facts_of_width(std::uint32_t packet_width) {
       return facts_of<Layout<4>>();
     case 16:
       return facts_of<Layout<16>>();
+    case 32:
+      if constexpr (Layout<32>::kTileWidth >= 32) return facts_of<Layout<32>>();
+      return facts_of<Layout<16>>();
     default:
       return facts_of<Layout<8>>();
   }

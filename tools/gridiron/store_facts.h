@@ -23,7 +23,7 @@ struct StoreFacts {
   [[nodiscard]] std::uint64_t data_bytes() const;
 };
 
-/// @param packet_width  4, 8 or 16.
+/// @param packet_width  4, 8, 16 or 32; 32 is 16 in the 64 KB store, whose tiles are no wider.
 [[nodiscard]] StoreFacts store_facts(sim::StoreSize size, std::uint32_t packet_width);
 
 }  // namespace gridiron::tool

@@ -133,6 +133,12 @@ std::string_view work_name(Work kind) {
       return "triangle_setup";
     case Work::kGroupTestStandard:
       return "group_test_standard";
+    case Work::kSubpacketSetup:
+      return "subpacket_setup";
+    case Work::kSubpacketGroup:
+      return "subpacket_group";
+    case Work::kReachGroup:
+      return "reach_group";
     case Work::kGroupTestPaper:
       return "group_test_paper";
     case Work::kHitGroup:

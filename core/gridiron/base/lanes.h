@@ -11,6 +11,7 @@
 #endif
 
 #define GRIDIRON_INLINE inline __attribute__((always_inline))
+#define GRIDIRON_INLINE_LAMBDA __attribute__((always_inline))
 
 namespace gridiron {
 
@@ -234,16 +235,31 @@ struct Lanes {
   [[nodiscard]] static GRIDIRON_INLINE Float flip_sign(Mask mask, Float a) {
     return select(mask, -a, a);
   }
-  /// Largest lane.
+  /// Largest lane, smallest lane: halves against each other, four times for 16 lanes.
   [[nodiscard]] static GRIDIRON_INLINE float horizontal_max(Float a) {
-    float result = a.v[0];
-    for (int i = 1; i < W; ++i) result = a.v[i] > result ? a.v[i] : result;
-    return result;
+    if constexpr (W == 16) a = max(a, swap_lanes<8>(a));
+    if constexpr (W >= 8) a = max(a, swap_lanes<4>(a));
+    a = max(a, swap_lanes<2>(a));
+    return max(a, swap_lanes<1>(a)).v[0];
   }
   [[nodiscard]] static GRIDIRON_INLINE float horizontal_min(Float a) {
-    float result = a.v[0];
-    for (int i = 1; i < W; ++i) result = a.v[i] < result ? a.v[i] : result;
-    return result;
+    if constexpr (W == 16) a = min(a, swap_lanes<8>(a));
+    if constexpr (W >= 8) a = min(a, swap_lanes<4>(a));
+    a = min(a, swap_lanes<2>(a));
+    return min(a, swap_lanes<1>(a)).v[0];
+  }
+  /// Lane i of the result is lane i ^ Distance of a.
+  template <int Distance>
+  [[nodiscard]] static GRIDIRON_INLINE Float swap_lanes(Float a) {
+    constexpr int d = Distance;
+    if constexpr (W == 4) {
+      return Float(__builtin_shufflevector(a.v, a.v, 0 ^ d, 1 ^ d, 2 ^ d, 3 ^ d));
+    } else if constexpr (W == 8) {
+      return Float(__builtin_shufflevector(a.v, a.v, 0 ^ d, 1 ^ d, 2 ^ d, 3 ^ d, 4 ^ d, 5 ^ d, 6 ^ d, 7 ^ d));
+    } else {
+      return Float(__builtin_shufflevector(a.v, a.v, 0 ^ d, 1 ^ d, 2 ^ d, 3 ^ d, 4 ^ d, 5 ^ d, 6 ^ d, 7 ^ d, 8 ^ d,
+                                           9 ^ d, 10 ^ d, 11 ^ d, 12 ^ d, 13 ^ d, 14 ^ d, 15 ^ d));
+    }
   }
 };
 

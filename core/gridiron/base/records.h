@@ -135,6 +135,7 @@ enum TechniqueBits : std::uint32_t {
   kUseMailbox = 1u << 0,
   kUseCornerCulling = 1u << 1,
   kUseEmptySkip = 1u << 2,      ///< skip empty macrocells without a transfer
+  kUseSubpackets = 1u << 3,     ///< cull by subpackets: those a triangle cannot touch, those that hit nearer already
 };
 
 /// Everything a core needs to know of a frame. Fetched by every core at its start. 128-byte aligned, 384 bytes.

@@ -21,6 +21,8 @@ enum class Work : std::uint8_t {
   kMailboxProbe,      ///< mailbox look-ups
   kCullTest,          ///< corner-ray culling tests, one per triangle
   kTriangleSetup,     ///< per (packet, triangle) set-ups of the `standard` test
+  kSubpacketSetup,    ///< triangles whose edge functions were made linear in the pixel, for culling subpackets
+  kSubpacketGroup,    ///< SIMD groups of squares or subpackets held against a triangle's edges
   kGroupTestStandard, ///< (group, triangle) tests, filtered edge functions
   kGroupTestPaper,    ///< (group, triangle) tests, precomputed projection
   kHitGroup,          ///< groups for which distances were computed and hits merged, `standard` test
@@ -29,6 +31,7 @@ enum class Work : std::uint8_t {
   kDoubleSign,        ///< edge signs the float filter left open, tried in double
   kExactSign,         ///< signs decided in integers
   kExactDistance,     ///< distances rounded in integers
+  kReachGroup,        ///< SIMD groups of which the farthest hit was sought, or held against a cell's entry
   kShadedGroup,       ///< ray groups turned into pixels without shading
   kShadedSimpleGroup, ///< ray groups shaded by facing ratio
   kGetIssue,          ///< get commands issued

@@ -30,6 +30,8 @@ struct Slab {
 /// e (6 |o_u| + |s| (8 |o_k| + 8 N_k)) with e = 2^-23, one unit in any rounding mode, the pad's own addition included;
 /// that is pad_u. pad_k likewise.
 struct Frustum {
+  static constexpr float kReachFactor = 1.0f + 0x1p-20f;  ///< covers the roundings of a reach
+
   std::uint32_t axis_k, axis_u, axis_v;
   std::int32_t cells_u, cells_v, cells_k;
   bool reverse;    ///< the rays march towards smaller k
@@ -56,7 +58,7 @@ struct Frustum {
 
   /// @returns true where the slab begins farther than every ray's nearest hit; reach is their largest march distance.
   [[nodiscard]] GRIDIRON_INLINE bool beyond(const Slab& slab, float reach) const {
-    return slab.entry > reach * (1.0f + 0x1p-20f) + pad_k;
+    return slab.entry > reach * kReachFactor + pad_k;
   }
 
   /// Cells of the plane u, v that rays touch between the slab's two ends.
@@ -157,21 +159,6 @@ template <class L, class PacketType>
   set_bounds(v, 2, L::horizontal_min(low_v), L::horizontal_max(high_v));
   frustum.depth_per_t = grid.cells_per_unit[k];
   return true;
-}
-
-/// @returns the largest march distance of the active rays' nearest hits: beyond it nothing can be nearer.
-template <class L, class PacketType>
-[[nodiscard]] GRIDIRON_INLINE float reach_of(const PacketType& packet, const Frustum& frustum) {
-  using Float = typename L::Float;
-  Float reach(0.0f);
-  const Float scale(frustum.depth_per_t);
-  for (std::uint32_t base = 0; base < PacketType::kRayCount; base += L::kCount) {
-    const auto active = L::mask_from_bits(packet.active.template group<L>(base));
-    const Float distance =
-        Float::load(packet.t + base) * (L::abs(Float::load(packet.dir[frustum.axis_k] + base)) * scale);
-    reach = L::max(reach, L::select(active, distance, Float(0.0f)));
-  }
-  return L::horizontal_max(reach);
 }
 
 }  // namespace gridiron

@@ -37,11 +37,12 @@ template <class L>
   return hit;
 }
 
-/// Intersects one projected triangle with every active ray of a packet, keeping the least (t, id).
-/// @returns true where a ray's hit changed. Errors: none (hot path).
+/// Intersects one projected triangle with the active rays of some subpackets, keeping the least (t, id).
+/// @returns the subpackets of which a ray's hit changed. Errors: none (hot path).
 template <class L, bool kWantFacing, class PacketType>
-[[nodiscard]] GRIDIRON_INLINE bool intersect_projection(PacketType& packet, const ProjectionTriangle& triangle,
-                                                        bool use_culling, WorkCounters& work) {
+[[nodiscard]] GRIDIRON_INLINE SubpacketSet intersect_projection(PacketType& packet, const ProjectionTriangle& triangle,
+                                                                SubpacketSet subpackets, bool use_culling,
+                                                                WorkCounters& work) {
   using Float = typename L::Float;
   const std::uint32_t k = triangle.axis_k;
   const std::uint32_t u = k == 2 ? 0 : k + 1;
@@ -61,10 +62,12 @@ template <class L, bool kWantFacing, class PacketType>
     const bool in_front = (corner.t > zero).bits() == 0xFu;
     const bool outside = (corner.beta < zero).bits() == 0xFu || (corner.gamma < zero).bits() == 0xFu ||
                          (corner.alpha < zero).bits() == 0xFu;
-    if (in_front && outside) return false;
+    if (in_front && outside) return 0;
   }
-  bool changed = false;
+  SubpacketSet changed = 0;
   for (std::uint32_t base = 0; base < PacketType::kRayCount; base += L::kCount) {
+    const SubpacketSet subpacket = SubpacketSet{1} << (base / kSubpacketRays);
+    if ((subpackets & subpacket) == 0) continue;
     const std::uint32_t active = packet.active.template group<L>(base);
     if (active == 0) continue;
     work.add(Work::kGroupTestPaper);
@@ -84,7 +87,7 @@ template <class L, bool kWantFacing, class PacketType>
       if (t == packet.t[ray] && triangle.triangle_id >= packet.id[ray]) continue;
       packet.t[ray] = t;
       packet.id[ray] = triangle.triangle_id;
-      changed = true;
+      changed |= subpacket;
       if constexpr (kWantFacing) {
         const float length = square_root(1.0f + triangle.n_u * triangle.n_u + triangle.n_v * triangle.n_v);
         const float cosine = hit.denominator.v[lane] / length;

@@ -33,6 +33,19 @@ struct EdgeBatch {
   std::uint32_t in_range;                ///< lanes for which the float test says something
   std::uint32_t missed;                  ///< lanes whose edge all four corner rays surely pass on the outside
   std::int32_t orientation[kTriangles];  ///< +1, -1; 0: the origin lies in the triangle's plane, nothing can be hit
+
+  // For culling subpackets: n . d as a linear function of the pixel, and the value below which an edge is surely
+  // passed on the outside.
+  alignas(64) float first[L::kCount];
+  alignas(64) float per_column[L::kCount];
+  alignas(64) float per_row[L::kCount];
+  alignas(64) float surely_outside[L::kCount];
+};
+
+/// What a test may leave out by looking at several rays at once.
+struct Culling {
+  bool corner_rays;  ///< the packet's corner rays bound it
+  bool subpackets;   ///< its rays are a linear function of the pixel
 };
 
 inline constexpr float kEdgeErrorFactor = 17.0f * 0x1p-23f;
@@ -42,6 +55,12 @@ inline constexpr float kVolumeErrorLimit = 0x1p90f;
 
 /// A bound of the rounding of pixel directions themselves, added where the corner rays speak for all others.
 inline constexpr float kCornerErrorFactor = 5.0f * 0x1p-23f;
+
+/// The same for n . d evaluated as first + column * per_column + row * per_row. With D the largest sum of magnitudes
+/// that goes into a direction's component and scale = |F|max |S|1 >= |n|1 / 2: the rounding of n itself is within
+/// 16 e scale D; the direction differs from the linear form by less than 6 e D, 12 e scale D in all; and less than 12
+/// roundings of sums of at most 2 scale D each, 24 e scale D, happen on the way. 52 e covers all, 68 e is charged.
+inline constexpr float kSubpacketErrorFactor = 68.0f * 0x1p-23f;
 
 /// @returns sign of det[a - o, b - o, c - o]: float filter by the caller, then double, then integers.
 [[nodiscard]] int volume_sign_in_double(const float origin[3], const VertexTriangle& triangle, WorkCounters& work);
@@ -70,7 +89,7 @@ void set_up_distance(const float origin[3], float dir_max, const VertexTriangle&
 ///
 /// @param triangles  EdgeBatch<L>::kTriangles of them; a shorter batch repeats one.
 template <class L, class PacketType>
-GRIDIRON_INLINE void set_up_edges(const PacketType& packet, const VertexTriangle* const* triangles, bool use_culling,
+GRIDIRON_INLINE void set_up_edges(const PacketType& packet, const VertexTriangle* const* triangles, Culling culling,
                                   EdgeBatch<L>& batch, WorkCounters& work) {
   using Float = typename L::Float;
   constexpr std::uint32_t kTriangles = EdgeBatch<L>::kTriangles;
@@ -128,8 +147,18 @@ GRIDIRON_INLINE void set_up_edges(const PacketType& packet, const VertexTriangle
   inward_z.store(batch.n[2]);
   error.store(batch.error);
 
+  if (culling.subpackets) {
+    const auto along = [&](const float* direction) {
+      return inward_x * Float(direction[0]) + inward_y * Float(direction[1]) + inward_z * Float(direction[2]);
+    };
+    along(packet.first_dir).store(batch.first);
+    along(packet.step_x).store(batch.per_column);
+    along(packet.step_y).store(batch.per_row);
+    (-(error * Float(packet.subpacket_widening))).store(batch.surely_outside);
+  }
+
   batch.missed = 0;
-  if (!use_culling) return;
+  if (!culling.corner_rays) return;
   Float nearest(-kFloatMax);
   for (int corner = 0; corner < 4; ++corner) {
     nearest = L::max(nearest, inward_x * Float(packet.corner_dir[0][corner]) +
@@ -207,13 +236,98 @@ GRIDIRON_INLINE void distances_of(const PacketType& packet, std::uint32_t base, 
   }
 }
 
-/// Intersects triangle `index` of a batch with every active ray of a packet, keeping the least (t, id).
+/// Origins of squares of 2x2 subpackets in a packet, in pixels, along the Z curve.
+struct SquareOrigins {
+  alignas(64) float column[16];
+  alignas(64) float row[16];
+};
+inline constexpr SquareOrigins kSquareOrigins = [] {
+  SquareOrigins origins{};
+  for (std::uint32_t i = 0; i < 16; ++i) {
+    origins.column[i] = static_cast<float>(2 * kSubpacketWidth * subpacket_column(i));
+    origins.row[i] = static_cast<float>(2 * kSubpacketWidth * subpacket_row(i));
+  }
+  return origins;
+}();
+
+/// @returns those of the `wanted` subpackets that triangle `index` of a batch may touch. One is left out where an edge
+/// surely passes all its rays on the outside: the edge function is linear, so its largest value is at a corner.
+template <class L, class PacketType>
+[[nodiscard]] GRIDIRON_INLINE SubpacketSet subpackets_near(const EdgeBatch<L>& batch, std::uint32_t index,
+                                                           SubpacketSet wanted, WorkCounters& work) {
+  using Float = typename L::Float;
+  using Four = Lanes<4>;
+  constexpr std::uint32_t kSquares = PacketType::kSubpacketCount / 4;
+  if constexpr (kSquares == 0) return wanted;
+  const std::uint32_t first_lane = 4 * index;
+  if (((batch.in_range >> first_lane) & 0xFu) != 0xFu) return wanted;
+  const auto positive = [](float value) { return value > 0.0f ? value : 0.0f; };
+  constexpr float kSquareSpan = 2.0f * kSubpacketWidth - 1.0f;
+  constexpr float kSubpacketSpan = kSubpacketWidth - 1.0f;
+
+  // 1. Squares of four subpackets.
+  alignas(64) float at_square[3][16];
+  std::uint32_t squares = 1;
+  if constexpr (kSquares == 1) {
+    for (std::uint32_t edge = 0; edge < 3; ++edge) at_square[edge][0] = batch.first[first_lane + edge];
+  } else {
+    squares = 0;
+    for (std::uint32_t base = 0; base < kSquares; base += L::kCount) {
+      work.add(Work::kSubpacketGroup);
+      const Float column = Float::load(kSquareOrigins.column + base);
+      const Float row = Float::load(kSquareOrigins.row + base);
+      std::uint32_t outside = 0;
+      for (std::uint32_t edge = 0; edge < 3; ++edge) {
+        const std::uint32_t lane = first_lane + edge;
+        const float largest =
+            kSquareSpan * positive(batch.per_column[lane]) + kSquareSpan * positive(batch.per_row[lane]);
+        const Float value = Float(batch.first[lane]) +
+                            (column * Float(batch.per_column[lane]) + row * Float(batch.per_row[lane]));
+        value.store(at_square[edge] + base);
+        outside |= (value + Float(largest) < Float(batch.surely_outside[lane])).bits();
+      }
+      squares |= (~outside & L::kAllBits) << base;
+    }
+    squares &= (1u << kSquares) - 1u;
+  }
+
+  // 2. The subpackets of those that are left.
+  Four::Float offset[3];
+  for (std::uint32_t edge = 0; edge < 3; ++edge) {
+    const std::uint32_t lane = first_lane + edge;
+    alignas(16) float corner[4];
+    const float largest =
+        kSubpacketSpan * positive(batch.per_column[lane]) + kSubpacketSpan * positive(batch.per_row[lane]);
+    for (std::uint32_t i = 0; i < 4; ++i) {
+      corner[i] = largest + (static_cast<float>(kSubpacketWidth * subpacket_column(i)) * batch.per_column[lane] +
+                             static_cast<float>(kSubpacketWidth * subpacket_row(i)) * batch.per_row[lane]);
+    }
+    offset[edge] = Four::Float::load(corner);
+  }
+  SubpacketSet near = 0;
+  for (; squares != 0; squares &= squares - 1) {
+    const std::uint32_t square = static_cast<std::uint32_t>(__builtin_ctz(squares));
+    const SubpacketSet four = SubpacketSet{0xF} << (4 * square);
+    if ((wanted & four) == 0) continue;
+    work.add(Work::kSubpacketGroup);
+    std::uint32_t outside = 0;
+    for (std::uint32_t edge = 0; edge < 3; ++edge) {
+      const Four::Float value = Four::Float(at_square[edge][square]) + offset[edge];
+      outside |= (value < Four::Float(batch.surely_outside[first_lane + edge])).bits();
+    }
+    near |= SubpacketSet{~outside & 0xFu} << (4 * square);
+  }
+  return near & wanted;
+}
+
+/// Intersects triangle `index` of a batch with the active rays of some subpackets, keeping the least (t, id).
 ///
-/// @param packet  t, id (and facing where wanted) are updated. @returns true where a ray's hit changed.
-/// Errors: none (hot path). Cost: at most kRayCount / L::kCount group tests.
+/// @param packet  t, id (and facing where wanted) are updated. @returns the subpackets of which a ray's hit changed.
+/// Errors: none (hot path). Cost: at most kSubpacketRays / L::kCount group tests per subpacket.
 template <class L, bool kWantFacing, class PacketType>
-[[nodiscard]] GRIDIRON_INLINE bool test_groups(PacketType& packet, const VertexTriangle& triangle,
-                                               const EdgeBatch<L>& batch, std::uint32_t index, WorkCounters& work) {
+[[nodiscard]] GRIDIRON_INLINE SubpacketSet test_groups(PacketType& packet, const VertexTriangle& triangle,
+                                                       const EdgeBatch<L>& batch, std::uint32_t index,
+                                                       SubpacketSet subpackets, WorkCounters& work) {
   using Float = typename L::Float;
   const std::uint32_t first_lane = 4 * index;
   const std::int32_t orientation = batch.orientation[index];
@@ -226,77 +340,87 @@ template <class L, bool kWantFacing, class PacketType>
 
   DistanceSetup setup;
   bool setup_done = false;
-  bool changed = false;
-  for (std::uint32_t base = 0; base < PacketType::kRayCount; base += L::kCount) {
-    const std::uint32_t active = packet.active.template group<L>(base);
-    if (active == 0) continue;
-    work.add(Work::kGroupTestStandard);
-    const Float d_x = Float::load(packet.dir[0] + base);
-    const Float d_y = Float::load(packet.dir[1] + base);
-    const Float d_z = Float::load(packet.dir[2] + base);
-    const Float e0 = n0_x * d_x + n0_y * d_y + n0_z * d_z;
-    const Float e1 = n1_x * d_x + n1_y * d_y + n1_z * d_z;
-    const Float e2 = n2_x * d_x + n2_y * d_y + n2_z * d_z;
-    // 1. One edge that is surely passed on the outside ends it.
-    const std::uint32_t outside = ((e0 < -error0) | (e1 < -error1) | (e2 < -error2)).bits();
-    std::uint32_t open = active & ~(outside & known);
-    if (open == 0) continue;
-    // 2. Three edges surely passed on the inside: a hit. Anything else is decided in double, then exactly.
-    const std::uint32_t sure_inside[3] = {(e0 > error0).bits() & known, (e1 > error1).bits() & known,
-                                          (e2 > error2).bits() & known};
-    std::uint32_t inside = open & sure_inside[0] & sure_inside[1] & sure_inside[2];
-    open &= ~inside;
-    if (open != 0) [[unlikely]] {
-      inside |= settle_open_lanes<L>(packet, base, open, sure_inside, triangle, orientation, work);
-    }
-    if (inside == 0) continue;
-    // 3. Distances, and the least (t, id).
-    if (!setup_done) {
-      set_up_distance(packet.origin, packet.dir_max, triangle, setup);
-      work.add(Work::kHitSetup);
-      setup_done = true;
-    }
-    work.add(Work::kHitGroup);
-    alignas(64) float distance[L::kCount];
-    distances_of<L>(packet, base, inside, triangle, setup, distance, work);
-    for (std::uint32_t rest = inside; rest != 0; rest &= rest - 1) {
-      const std::uint32_t lane = static_cast<std::uint32_t>(__builtin_ctz(rest));
-      const float t = distance[lane];
-      float& best_t = packet.t[base + lane];
-      std::uint32_t& best_id = packet.id[base + lane];
-      const bool nearer = t > 0.0f && (t < best_t || (t == best_t && triangle.triangle_id < best_id));
-      if (!nearer) continue;
-      best_t = t;
-      best_id = triangle.triangle_id;
-      changed = true;
-      if constexpr (kWantFacing) {
-        const double along = setup.normal[0] * packet.dir[0][base + lane] +
-                             setup.normal[1] * packet.dir[1][base + lane] +
-                             setup.normal[2] * packet.dir[2][base + lane];
-        const float cosine = static_cast<float>(along * setup.facing_scale);
-        packet.facing[base + lane] = cosine < 0.0f ? -cosine : cosine;
+  SubpacketSet changed = 0;
+  for_each_subpacket<PacketType::kSubpacketCount>(subpackets, [&](std::uint32_t subpacket) GRIDIRON_INLINE_LAMBDA {
+    const std::uint32_t first_ray = subpacket * kSubpacketRays;
+    for (std::uint32_t base = first_ray; base < first_ray + kSubpacketRays; base += L::kCount) {
+      const std::uint32_t active = packet.active.template group<L>(base);
+      if (active == 0) continue;
+      work.add(Work::kGroupTestStandard);
+      const Float d_x = Float::load(packet.dir[0] + base);
+      const Float d_y = Float::load(packet.dir[1] + base);
+      const Float d_z = Float::load(packet.dir[2] + base);
+      const Float e0 = n0_x * d_x + n0_y * d_y + n0_z * d_z;
+      const Float e1 = n1_x * d_x + n1_y * d_y + n1_z * d_z;
+      const Float e2 = n2_x * d_x + n2_y * d_y + n2_z * d_z;
+      // 1. One edge that is surely passed on the outside ends it.
+      const std::uint32_t outside = ((e0 < -error0) | (e1 < -error1) | (e2 < -error2)).bits();
+      std::uint32_t open = active & ~(outside & known);
+      if (open == 0) continue;
+      // 2. Three edges surely passed on the inside: a hit. Anything else is decided in double, then exactly.
+      const std::uint32_t sure_inside[3] = {(e0 > error0).bits() & known, (e1 > error1).bits() & known,
+                                            (e2 > error2).bits() & known};
+      std::uint32_t inside = open & sure_inside[0] & sure_inside[1] & sure_inside[2];
+      open &= ~inside;
+      if (open != 0) [[unlikely]] {
+        inside |= settle_open_lanes<L>(packet, base, open, sure_inside, triangle, orientation, work);
+      }
+      if (inside == 0) continue;
+      // 3. Distances, and the least (t, id).
+      if (!setup_done) {
+        set_up_distance(packet.origin, packet.dir_max, triangle, setup);
+        work.add(Work::kHitSetup);
+        setup_done = true;
+      }
+      work.add(Work::kHitGroup);
+      alignas(64) float distance[L::kCount];
+      distances_of<L>(packet, base, inside, triangle, setup, distance, work);
+      for (std::uint32_t rest = inside; rest != 0; rest &= rest - 1) {
+        const std::uint32_t lane = static_cast<std::uint32_t>(__builtin_ctz(rest));
+        const float t = distance[lane];
+        float& best_t = packet.t[base + lane];
+        std::uint32_t& best_id = packet.id[base + lane];
+        const bool nearer = t > 0.0f && (t < best_t || (t == best_t && triangle.triangle_id < best_id));
+        if (!nearer) continue;
+        best_t = t;
+        best_id = triangle.triangle_id;
+        changed |= SubpacketSet{1} << subpacket;
+        if constexpr (kWantFacing) {
+          const double along = setup.normal[0] * packet.dir[0][base + lane] +
+                               setup.normal[1] * packet.dir[1][base + lane] +
+                               setup.normal[2] * packet.dir[2][base + lane];
+          const float cosine = static_cast<float>(along * setup.facing_scale);
+          packet.facing[base + lane] = cosine < 0.0f ? -cosine : cosine;
+        }
       }
     }
-  }
+  });
   return changed;
 }
 
-/// Intersects 1..EdgeBatch<L>::kTriangles triangles with every active ray of a packet.
+/// Intersects 1..EdgeBatch<L>::kTriangles triangles with the active rays of a packet.
 ///
-/// @param use_culling  the packet's corner rays bound it. @returns true where a ray's hit changed.
+/// @param subpackets  per triangle, those to look at. @returns the subpackets of which a ray's hit changed.
 template <class L, bool kWantFacing, class PacketType>
-[[nodiscard]] GRIDIRON_INLINE bool intersect_standard_batch(PacketType& packet, const VertexTriangle* const* triangles,
-                                                            std::uint32_t count, bool use_culling, WorkCounters& work) {
+[[nodiscard]] GRIDIRON_INLINE SubpacketSet intersect_standard_batch(PacketType& packet,
+                                                                    const VertexTriangle* const* triangles,
+                                                                    const SubpacketSet* subpackets, std::uint32_t count,
+                                                                    Culling culling, WorkCounters& work) {
   EdgeBatch<L> batch;
   const VertexTriangle* padded[EdgeBatch<L>::kTriangles];
   for (std::uint32_t i = 0; i < EdgeBatch<L>::kTriangles; ++i) padded[i] = triangles[i < count ? i : 0];
   work.add(Work::kTriangleSetup, count);
-  if (use_culling) work.add(Work::kCullTest, count);
-  set_up_edges<L>(packet, padded, use_culling, batch, work);
-  bool changed = false;
+  if (culling.corner_rays) work.add(Work::kCullTest, count);
+  set_up_edges<L>(packet, padded, culling, batch, work);
+  SubpacketSet changed = 0;
   for (std::uint32_t i = 0; i < count; ++i) {
     if (((batch.missed >> (4 * i)) & 0xFu) != 0 || batch.orientation[i] == 0) continue;
-    changed |= test_groups<L, kWantFacing>(packet, *triangles[i], batch, i, work);
+    SubpacketSet near = subpackets[i];
+    if (culling.subpackets) {
+      work.add(Work::kSubpacketSetup);
+      near = subpackets_near<L, PacketType>(batch, i, near, work);
+    }
+    changed |= test_groups<L, kWantFacing>(packet, *triangles[i], batch, i, near, work);
   }
   return changed;
 }
@@ -306,7 +430,9 @@ template <class L, bool kWantFacing, class PacketType>
 [[nodiscard]] GRIDIRON_INLINE bool intersect_standard(PacketType& packet, const VertexTriangle& triangle,
                                                       bool use_culling, WorkCounters& work) {
   const VertexTriangle* const triangles[] = {&triangle};
-  return intersect_standard_batch<L, kWantFacing>(packet, triangles, 1, use_culling, work);
+  const SubpacketSet subpackets[] = {PacketType::kAllSubpackets};
+  const Culling culling{.corner_rays = use_culling, .subpackets = false};
+  return intersect_standard_batch<L, kWantFacing>(packet, triangles, subpackets, 1, culling, work) != 0;
 }
 
 }  // namespace gridiron

@@ -19,6 +19,10 @@ struct RaySet {
   GRIDIRON_INLINE void clear() {
     for (std::uint32_t i = 0; i < kWordCount; ++i) words[i] = 0;
   }
+  GRIDIRON_INLINE void fill() {
+    static_assert(RayCount % 32 == 0 || RayCount < 32);
+    for (std::uint32_t i = 0; i < kWordCount; ++i) words[i] = RayCount < 32 ? (1u << (RayCount % 32)) - 1u : ~0u;
+  }
   GRIDIRON_INLINE void insert(std::uint32_t ray) { words[ray / 32] |= 1u << (ray % 32); }
   GRIDIRON_INLINE void erase(std::uint32_t ray) { words[ray / 32] &= ~(1u << (ray % 32)); }
   [[nodiscard]] GRIDIRON_INLINE bool contains(std::uint32_t ray) const { return (words[ray / 32] >> (ray % 32)) & 1u; }
@@ -33,11 +37,50 @@ struct RaySet {
   }
 };
 
-/// Width x Width rays, SoA, row-major. World space, directions not normalised.
+/// A subpacket is a square of a packet's pixels, the finest piece that is culled as a whole. Its rays follow each
+/// other, row by row; subpackets follow each other along a Z curve, so that every four of them are a square too.
+inline constexpr std::uint32_t kSubpacketWidth = 4;
+inline constexpr std::uint32_t kSubpacketRays = kSubpacketWidth * kSubpacketWidth;
+
+/// Subpackets of a packet, bit i = subpacket i.
+using SubpacketSet = std::uint64_t;
+
+/// Column of subpacket i in its packet, in subpackets: the even bits of i. subpacket_row: the odd ones.
+[[nodiscard]] GRIDIRON_INLINE constexpr std::uint32_t subpacket_column(std::uint32_t i) {
+  return (i & 1u) | ((i >> 1) & 2u) | ((i >> 2) & 4u);
+}
+[[nodiscard]] GRIDIRON_INLINE constexpr std::uint32_t subpacket_row(std::uint32_t i) {
+  return subpacket_column(i >> 1);
+}
+
+/// Calls visit(i) for every subpacket i of a set, in order. Of few, each is asked for: the loop can be unrolled.
+template <std::uint32_t SubpacketCount, class Visit>
+GRIDIRON_INLINE void for_each_subpacket(SubpacketSet set, Visit&& visit) {
+  if constexpr (SubpacketCount <= 4) {
+    for (std::uint32_t i = 0; i < SubpacketCount; ++i) {
+      if ((set >> i & 1u) != 0) visit(i);
+    }
+  } else {
+    for (; set != 0; set &= set - 1) visit(static_cast<std::uint32_t>(__builtin_ctzll(set)));
+  }
+}
+
+/// Width x Width rays, SoA. World space, directions not normalised.
 template <std::uint32_t Width>
 struct alignas(128) Packet {
   static constexpr std::uint32_t kWidth = Width;
   static constexpr std::uint32_t kRayCount = Width * Width;
+  static constexpr std::uint32_t kSubpacketCount = kRayCount / kSubpacketRays;
+  static constexpr SubpacketSet kAllSubpackets = ~SubpacketSet{0} >> (64 - kSubpacketCount);
+  static_assert(Width == 4 || Width == 8 || Width == 16 || Width == 32);
+
+  /// Column and row of a ray's pixel in the packet.
+  [[nodiscard]] static GRIDIRON_INLINE constexpr std::uint32_t column_of(std::uint32_t ray) {
+    return subpacket_column(ray / kSubpacketRays) * kSubpacketWidth + ray % kSubpacketWidth;
+  }
+  [[nodiscard]] static GRIDIRON_INLINE constexpr std::uint32_t row_of(std::uint32_t ray) {
+    return subpacket_row(ray / kSubpacketRays) * kSubpacketWidth + ray % kSubpacketRays / kSubpacketWidth;
+  }
 
   alignas(64) float dir[3][kRayCount];      ///< direction
   alignas(64) float t[kRayCount];           ///< nearest hit so far; t_far before the first
@@ -49,6 +92,12 @@ struct alignas(128) Packet {
   float dir_max;          ///< largest |component| of all active directions
   float range_factor;     ///< the larger of dir_max and 1
   float corner_widening;  ///< factor on edge errors that lets the corner rays speak for all
+
+  // The rays as a linear function of column and row: first_dir + column * step_x + row * step_y.
+  float first_dir[3];
+  float step_x[3];
+  float step_y[3];
+  float subpacket_widening;  ///< factor on edge errors that covers this form and its evaluation
 };
 
 }  // namespace gridiron

@@ -17,6 +17,20 @@ namespace gridiron {
   return (frame.corner[axis] + x * frame.step_x[axis]) + y * frame.step_y[axis];
 }
 
+/// Column and row of a subpacket's rays in it, in pixels.
+struct SubpacketPixels {
+  alignas(64) float column[kSubpacketRays];
+  alignas(64) float row[kSubpacketRays];
+};
+inline constexpr SubpacketPixels kSubpacketPixels = [] {
+  SubpacketPixels pixels{};
+  for (std::uint32_t i = 0; i < kSubpacketRays; ++i) {
+    pixels.column[i] = static_cast<float>(i % kSubpacketWidth);
+    pixels.row[i] = static_cast<float>(i / kSubpacketWidth);
+  }
+  return pixels;
+}();
+
 /// Generates the rays of the packet whose first pixel is (left, top).
 ///
 /// @param present  out: the rays whose pixels lie in the picture.
@@ -25,16 +39,22 @@ namespace gridiron {
 template <class L, class PacketType>
 void generate_packet(const FrameRecord& frame, std::uint32_t left, std::uint32_t top, PacketType& packet,
                      RaySet<PacketType::kRayCount>& present, WorkCounters& work) {
+  using Float = typename L::Float;
   constexpr std::uint32_t kWidth = PacketType::kWidth;
   work.add(Work::kRayGenerated, PacketType::kRayCount / L::kCount);
   const float x0 = static_cast<float>(left);
   const float y0 = static_cast<float>(top);
   for (int axis = 0; axis < 3; ++axis) {
     packet.origin[axis] = frame.eye[axis];
-    for (std::uint32_t y = 0; y < kWidth; ++y) {
-      for (std::uint32_t x = 0; x < kWidth; ++x) {
-        packet.dir[axis][y * kWidth + x] =
-            pixel_direction(frame, axis, x0 + static_cast<float>(x), y0 + static_cast<float>(y));
+    for (std::uint32_t first = 0; first < PacketType::kRayCount; first += kSubpacketRays) {
+      const float column = x0 + static_cast<float>(PacketType::column_of(first));
+      const float row = y0 + static_cast<float>(PacketType::row_of(first));
+      for (std::uint32_t i = 0; i < kSubpacketRays; i += L::kCount) {
+        const Float x = Float(column) + Float::load(kSubpacketPixels.column + i);
+        const Float y = Float(row) + Float::load(kSubpacketPixels.row + i);
+        const Float direction =
+            (Float(frame.corner[axis]) + x * Float(frame.step_x[axis])) + y * Float(frame.step_y[axis]);
+        direction.store(packet.dir[axis] + first + i);
       }
     }
   }
@@ -43,11 +63,15 @@ void generate_packet(const FrameRecord& frame, std::uint32_t left, std::uint32_t
     packet.id[ray] = kNoTriangle;
     packet.facing[ray] = 0.0f;
   }
-  present.clear();
-  const std::uint32_t columns = frame.width - left < kWidth ? frame.width - left : kWidth;
-  const std::uint32_t rows = frame.height - top < kWidth ? frame.height - top : kWidth;
-  for (std::uint32_t y = 0; y < rows; ++y) {
-    for (std::uint32_t x = 0; x < columns; ++x) present.insert(y * kWidth + x);
+  const std::uint32_t columns = frame.width - left;
+  const std::uint32_t rows = frame.height - top;
+  if (columns >= kWidth && rows >= kWidth) [[likely]] {
+    present.fill();
+  } else {
+    present.clear();
+    for (std::uint32_t ray = 0; ray < PacketType::kRayCount; ++ray) {
+      if (PacketType::column_of(ray) < columns && PacketType::row_of(ray) < rows) present.insert(ray);
+    }
   }
 
   constexpr float kLast = static_cast<float>(kWidth - 1);
@@ -68,6 +92,12 @@ void generate_packet(const FrameRecord& frame, std::uint32_t left, std::uint32_t
   packet.dir_max = dir_max;
   packet.range_factor = dir_max > 1.0f ? dir_max : 1.0f;
   packet.corner_widening = 1.0f + kCornerErrorFactor / kEdgeErrorFactor * (dir_bound / dir_max);
+  for (int axis = 0; axis < 3; ++axis) {
+    packet.first_dir[axis] = packet.corner_dir[axis][0];
+    packet.step_x[axis] = frame.step_x[axis];
+    packet.step_y[axis] = frame.step_y[axis];
+  }
+  packet.subpacket_widening = kSubpacketErrorFactor / kEdgeErrorFactor * (dir_bound / dir_max);
 }
 
 }  // namespace gridiron

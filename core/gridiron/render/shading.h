@@ -26,34 +26,28 @@ namespace gridiron {
 template <class L, class PacketType, class TileOutput>
 void shade_packet(const FrameRecord& frame, const PacketType& packet, std::uint32_t x, std::uint32_t y,
                   TileOutput& output, WorkCounters& work) {
-  constexpr std::uint32_t kWidth = PacketType::kWidth;
   const bool simple = frame.shading == static_cast<std::uint32_t>(Shading::kSimple);
+  const bool wants_depth = frame.depth_address != 0;
   work.add(simple ? Work::kShadedSimpleGroup : Work::kShadedGroup, PacketType::kRayCount / L::kCount);
 
-  alignas(64) float length[PacketType::kRayCount];
-  if (simple || frame.depth_address != 0) {
-    for (std::uint32_t i = 0; i < PacketType::kRayCount; ++i) {
-      length[i] = square_root((packet.dir[0][i] * packet.dir[0][i] + packet.dir[1][i] * packet.dir[1][i]) +
-                              packet.dir[2][i] * packet.dir[2][i]);
-    }
-  }
-  for (std::uint32_t row = 0; row < kWidth; ++row) {
-    const std::uint32_t first_ray = row * kWidth;
-    const std::uint32_t first_pixel = (y + row) * frame.tile_width + x;
-    for (std::uint32_t i = 0; i < kWidth; ++i) {
-      const std::uint32_t ray = first_ray + i;
-      const bool hit = packet.id[ray] != kNoTriangle;
-      const std::uint32_t lit = simple ? grey(packet.facing[ray] / length[ray]) : 0xFFFFFFFFu;
-      output.color[first_pixel + i] = hit ? lit : frame.background_rgba;
-    }
-    if (frame.depth_address != 0) {
-      for (std::uint32_t i = 0; i < kWidth; ++i) {
-        const std::uint32_t ray = first_ray + i;
-        output.depth[first_pixel + i] = packet.id[ray] != kNoTriangle ? packet.t[ray] * length[ray] : kFloatMax;
+  for (std::uint32_t first = 0; first < PacketType::kRayCount; first += kSubpacketRays) {
+    alignas(64) float length[kSubpacketRays] = {};
+    if (simple || wants_depth) {
+      for (std::uint32_t i = 0; i < kSubpacketRays; ++i) {
+        const float d_x = packet.dir[0][first + i], d_y = packet.dir[1][first + i], d_z = packet.dir[2][first + i];
+        length[i] = square_root((d_x * d_x + d_y * d_y) + d_z * d_z);
       }
     }
-    if (frame.id_address != 0) {
-      for (std::uint32_t i = 0; i < kWidth; ++i) output.id[first_pixel + i] = packet.id[first_ray + i];
+    const std::uint32_t first_pixel =
+        (y + PacketType::row_of(first)) * frame.tile_width + x + PacketType::column_of(first);
+    for (std::uint32_t i = 0; i < kSubpacketRays; ++i) {
+      const std::uint32_t ray = first + i;
+      const std::uint32_t pixel = first_pixel + i / kSubpacketWidth * frame.tile_width + i % kSubpacketWidth;
+      const bool hit = packet.id[ray] != kNoTriangle;
+      const std::uint32_t lit = simple ? grey(packet.facing[ray] / length[i]) : 0xFFFFFFFFu;
+      output.color[pixel] = hit ? lit : frame.background_rgba;
+      if (wants_depth) output.depth[pixel] = hit ? packet.t[ray] * length[i] : kFloatMax;
+      if (frame.id_address != 0) output.id[pixel] = packet.id[ray];
     }
   }
 }

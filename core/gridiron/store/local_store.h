@@ -14,7 +14,8 @@
 
 namespace gridiron {
 
-/// Sizes of a 256 KB core (Cho, Kim, Han 2012, section 6). @tparam PacketWidthV  rays along a packet's edge: 4, 8, 16.
+/// Sizes of a 256 KB core (Cho, Kim, Han 2012, section 6).
+/// @tparam PacketWidthV  rays along a packet's edge: 4, 8, 16, 32.
 template <std::uint32_t PacketWidthV = 8>
 struct StoreLayout256K {
   static constexpr std::uint32_t kArenaBytes = 256 * 1024;
@@ -22,6 +23,7 @@ struct StoreLayout256K {
   static constexpr std::uint32_t kStackBudgetBytes = 8 * 1024;
   static constexpr std::uint32_t kTileWidth = 32;
   static constexpr std::uint32_t kPacketWidth = PacketWidthV;
+  static constexpr std::uint32_t kMailboxSlots = PacketWidthV == 32 ? 256 : 64;
   static constexpr std::uint32_t kTableEntries = 4096;  ///< 131,072 macrocells resident
   static constexpr std::uint32_t kMaxMacroWidth = 8;
   static constexpr std::uint32_t kMaxMacroDepth = 4;
@@ -38,6 +40,7 @@ struct StoreLayout64K {
   static constexpr std::uint32_t kStackBudgetBytes = 6 * 1024;
   static constexpr std::uint32_t kTileWidth = 16;
   static constexpr std::uint32_t kPacketWidth = PacketWidthV;
+  static constexpr std::uint32_t kMailboxSlots = 64;
   static constexpr std::uint32_t kTableEntries = 512;  ///< 16,384 macrocells resident
   static constexpr std::uint32_t kMaxMacroWidth = 6;
   static constexpr std::uint32_t kMaxMacroDepth = 2;
@@ -78,7 +81,7 @@ struct alignas(128) LocalStore {
   CellBlock cell_blocks[Layout::kMaxMacroDepth];
   TriangleBuffer triangles[Layout::kMaxTriangleDepth];
   Packet<Layout::kPacketWidth> packet;
-  Mailbox mailbox;
+  Mailbox<Layout::kMailboxSlots> mailbox;
   TileOutput output[Layout::kMaxOutputDepth];
 
   static_assert(Layout::kMaxMacroDepth <= kMacroTagCount);
@@ -92,7 +95,8 @@ template <class Layout>
 inline constexpr bool kFitsArena = sizeof(LocalStore<Layout>) + Layout::kCodeBudgetBytes + Layout::kStackBudgetBytes
                                    <= Layout::kArenaBytes;
 
-static_assert(kFitsArena<StoreLayout256K<4>> && kFitsArena<StoreLayout256K<8>> && kFitsArena<StoreLayout256K<16>>);
+static_assert(kFitsArena<StoreLayout256K<4>> && kFitsArena<StoreLayout256K<8>> && kFitsArena<StoreLayout256K<16>> &&
+              kFitsArena<StoreLayout256K<32>>);
 static_assert(kFitsArena<StoreLayout64K<4>> && kFitsArena<StoreLayout64K<8>> && kFitsArena<StoreLayout64K<16>>);
 
 /// Calls visit(name, offset_bytes, bytes) for every region of the store, in address order.

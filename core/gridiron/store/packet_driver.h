@@ -10,6 +10,7 @@
 #include <gridiron/ray/frustum.h>
 #include <gridiron/ray/intersect_projection.h>
 #include <gridiron/ray/intersect_standard.h>
+#include <gridiron/ray/reach.h>
 #include <gridiron/store/buffer_ring.h>
 #include <gridiron/store/local_store.h>
 #include <gridiron/store/transfers.h>
@@ -38,7 +39,7 @@ class PacketDriver {
 
   [[nodiscard]] Status run() {
     macro_walk_.begin(store_.frame.grid, frustum_);
-    reach_ = reach_of<L>(store_.packet, frustum_);
+    reach_ = reaches_.template update<L>(store_.packet, frustum_, StorePacket::kAllSubpackets, store_.work);
     for (;;) {
       while (!triangle_ring_.full() && !cells_done_) GRIDIRON_TRY(fetch_next_run());
       if (triangle_ring_.empty()) break;
@@ -48,6 +49,7 @@ class PacketDriver {
   }
 
  private:
+  using StorePacket = Packet<Layout::kPacketWidth>;
   static constexpr std::uint32_t kRunTriangles = Layout::kTrianglesPerBuffer;
 
   struct TriangleRun {
@@ -133,43 +135,51 @@ class PacketDriver {
     const TriangleRun& run = runs_[slot];
     if (!frustum_.beyond(Slab{run.entry, run.entry}, reach_)) {
       store_.work.add(Work::kTriangleBatch);
-      if (test_run(store_.triangles[slot].bytes + run.first_byte, run.count)) {
-        reach_ = reach_of<L>(store_.packet, frustum_);
-      }
+      const bool by_subpackets = (store_.frame.techniques & kUseSubpackets) != 0;
+      const SubpacketSet open = by_subpackets ? reaches_.template open<L>(frustum_, run.entry, store_.work)
+                                              : StorePacket::kAllSubpackets;
+      const SubpacketSet changed = test_run(store_.triangles[slot].bytes + run.first_byte, run.count, open);
+      if (changed != 0) reach_ = reaches_.template update<L>(store_.packet, frustum_, changed, store_.work);
     }
     triangle_ring_.pop();
     return Status::kOk;
   }
 
-  [[nodiscard]] bool test_run(const std::byte* records, std::uint32_t count) {
+  // Tests a run against the rays of the open subpackets. @returns the subpackets of which a hit changed.
+  [[nodiscard]] SubpacketSet test_run(const std::byte* records, std::uint32_t count, SubpacketSet open) {
     const bool paper = store_.frame.accuracy == static_cast<std::uint32_t>(Accuracy::kPaper);
     const bool facing = store_.frame.shading != static_cast<std::uint32_t>(Shading::kNone);
     if (paper)
-      return facing ? test_each<ProjectionTriangle, true>(records, count)
-                    : test_each<ProjectionTriangle, false>(records, count);
-    return facing ? test_each<VertexTriangle, true>(records, count) : test_each<VertexTriangle, false>(records, count);
+      return facing ? test_each<ProjectionTriangle, true>(records, count, open)
+                    : test_each<ProjectionTriangle, false>(records, count, open);
+    return facing ? test_each<VertexTriangle, true>(records, count, open)
+                  : test_each<VertexTriangle, false>(records, count, open);
   }
 
   template <class Triangle, bool kWantFacing>
-  [[nodiscard]] bool test_each(const std::byte* records, std::uint32_t count) {
+  [[nodiscard]] SubpacketSet test_each(const std::byte* records, std::uint32_t count, SubpacketSet open) {
     constexpr bool kPaper = std::is_same_v<Triangle, ProjectionTriangle>;
     constexpr std::uint32_t kBatch = kPaper ? 1 : EdgeBatch<L>::kTriangles;
     const Triangle* triangles = reinterpret_cast<const Triangle*>(records);
     const bool use_mailbox = (store_.frame.techniques & kUseMailbox) != 0;
-    const bool use_culling = (store_.frame.techniques & kUseCornerCulling) != 0;
+    const Culling culling{.corner_rays = (store_.frame.techniques & kUseCornerCulling) != 0,
+                          .subpackets = (store_.frame.techniques & kUseSubpackets) != 0};
     if (use_mailbox) store_.work.add(Work::kMailboxProbe, count);
     const Triangle* waiting[kBatch];
+    SubpacketSet subpackets[kBatch];
     std::uint32_t waiting_count = 0;
-    bool changed = false;
+    SubpacketSet changed = 0;
     for (std::uint32_t i = 0; i < count; ++i) {
       waiting[waiting_count] = triangles + i;
-      if (!use_mailbox || !store_.mailbox.seen(triangles[i].triangle_id)) ++waiting_count;
+      subpackets[waiting_count] = use_mailbox ? store_.mailbox.untested(triangles[i].triangle_id, open) : open;
+      if (subpackets[waiting_count] != 0) ++waiting_count;
       if (waiting_count < kBatch && (i + 1 < count || waiting_count == 0)) continue;
       if constexpr (kPaper) {
-        changed |= intersect_projection<L, kWantFacing>(store_.packet, *waiting[0], use_culling, store_.work);
+        changed |= intersect_projection<L, kWantFacing>(store_.packet, *waiting[0], subpackets[0], culling.corner_rays,
+                                                        store_.work);
       } else {
-        changed |=
-            intersect_standard_batch<L, kWantFacing>(store_.packet, waiting, waiting_count, use_culling, store_.work);
+        changed |= intersect_standard_batch<L, kWantFacing>(store_.packet, waiting, subpackets, waiting_count, culling,
+                                                            store_.work);
       }
       waiting_count = 0;
     }
@@ -190,7 +200,8 @@ class PacketDriver {
   MacroVisit visits_[Layout::kMaxMacroDepth];
   TriangleRun runs_[Layout::kMaxTriangleDepth];
   CellVisit cell_{0, 0, 0.0f};  ///< the cell whose triangles are being fetched, what is left of it
-  float reach_ = 0.0f;
+  SubpacketReach<StorePacket> reaches_;
+  float reach_ = 0.0f;  ///< the largest of them
   bool entered_ = false;  ///< the macrocell ring's front has been waited for
   bool walking_ = false;  ///< cell_walk_ has cells left
   bool macro_cells_done_ = false;

@@ -5,25 +5,30 @@
 
 #include <gridiron/base/lanes.h>
 #include <gridiron/base/records.h>
+#include <gridiron/ray/packet.h>
 
 #include <cstdint>
 
 namespace gridiron {
 
-/// Direct-mapped, one triangle id per slot. Forgetting is harmless: a test done twice changes nothing.
+/// Direct-mapped: per slot a triangle and the subpackets that were tested against it. Forgetting is harmless: a test
+/// done twice changes nothing. @tparam SlotCount  a power of two.
+template <std::uint32_t SlotCount>
 struct alignas(128) Mailbox {
-  static constexpr std::uint32_t kSlotCount = 64;
-  std::uint32_t slots[kSlotCount];
+  static constexpr std::uint32_t kSlotCount = SlotCount;
+  std::uint32_t triangle_ids[kSlotCount];
+  SubpacketSet tested[kSlotCount];
 
   GRIDIRON_INLINE void clear() {
-    for (std::uint32_t& slot : slots) slot = kNoTriangle;
+    for (std::uint32_t& id : triangle_ids) id = kNoTriangle;
   }
-  /// @returns true where the triangle was tested before; remembers it otherwise.
-  [[nodiscard]] GRIDIRON_INLINE bool seen(std::uint32_t triangle_id) {
-    std::uint32_t& slot = slots[triangle_id % kSlotCount];
-    if (slot == triangle_id) return true;
-    slot = triangle_id;
-    return false;
+  /// @returns those of the `wanted` subpackets that were not tested against the triangle before; remembers them.
+  [[nodiscard]] GRIDIRON_INLINE SubpacketSet untested(std::uint32_t triangle_id, SubpacketSet wanted) {
+    const std::uint32_t slot = triangle_id % kSlotCount;
+    const SubpacketSet before = triangle_ids[slot] == triangle_id ? tested[slot] : 0;
+    triangle_ids[slot] = triangle_id;
+    tested[slot] = before | wanted;
+    return wanted & ~before;
   }
 };
 

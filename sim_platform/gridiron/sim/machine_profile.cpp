@@ -56,6 +56,14 @@ constexpr std::array<double, kWorkKindCount> two_pipe_work_cycles() {
   // 3 edges * (3 multiplications, 2 additions, 2 compares, negated bound) = 24, merging masks 11: 35 even, 10 odd, of
   // which 4 pair; a quarter of a miss.
   set(Work::kGroupTestStandard, 46);
+  // Three linear forms for three edges at once 15, threshold 2, offsets of four subpackets 27: 44 even; 9 splats, 8
+  // loads and stores, 7 shuffles: 24 odd, of which 10 pair.
+  set(Work::kSubpacketSetup, 58);
+  // A square: 3 edges * (2 multiplications, 3 additions, compare) = 18, merging 5 even, 12 splats and loads odd; four
+  // subpackets: 3 * 2 + 5 even, 6 odd. There are about as many of one as of the other: 17 even, 9 odd, of which 4 pair.
+  set(Work::kSubpacketGroup, 22);
+  // Product of distance and scale, absolute value, select, maximum: 5 even, 4 odd, half of which pair.
+  set(Work::kReachGroup, 7);
   // Distance (5, reciprocal estimate and Newton step 4), hit point 2, barycentrics 2 * 3, compares and selects 10: 27
   // even, 14 odd = 34; and 2 for its share of the loop (580 for 16 groups).
   set(Work::kGroupTestPaper, 36);

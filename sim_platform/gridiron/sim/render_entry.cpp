@@ -30,6 +30,8 @@ Status render(StoreSize size, std::uint32_t packet_width, std::byte* store, P& c
     case 16:
       return is_small ? render_in<StoreLayout64K<16>>(store, core, frame)
                       : render_in<StoreLayout256K<16>>(store, core, frame);
+    case 32:
+      return is_small ? Status::kUnsupportedFrame : render_in<StoreLayout256K<32>>(store, core, frame);
     default:
       return Status::kUnsupportedFrame;
   }

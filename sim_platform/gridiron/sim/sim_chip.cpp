@@ -74,6 +74,11 @@ template <template <std::uint32_t> class Layout>
       return {Layout<8>::kArenaBytes, sizeof(LocalStore<Layout<8>>)};
     case 16:
       return {Layout<16>::kArenaBytes, sizeof(LocalStore<Layout<16>>)};
+    case 32:
+      if constexpr (Layout<32>::kTileWidth >= 32) {
+        return {Layout<32>::kArenaBytes, sizeof(LocalStore<Layout<32>>)};
+      }
+      return {};
     default:
       return {};
   }

@@ -37,7 +37,7 @@ struct ChipOptions {
   std::uint32_t threads = 1;       ///< host threads, each one simulated core's worth of claims
   std::uint32_t lanes = 4;         ///< 4, 8, 16 (8 and 16 where the host has them, else kUnsupportedFrame)
   StoreSize store = StoreSize::k256KB;
-  std::uint32_t packet_width = 8;  ///< 4, 8, 16
+  std::uint32_t packet_width = 8;  ///< 4, 8, 16; 32 in the 256 KB store
   Completion completion = Completion::kEarly;
   std::uint64_t seed = 0;          ///< of Completion::kRandom
   PlatformLimits limits;           ///< of the simulated platform

@@ -135,13 +135,17 @@ TYPED_TEST(StandardTest, ABatchIsItsTrianglesOneByOne) {
     for (std::uint32_t first = 0; first < total;) {
       const std::uint32_t count = std::min(1 + random.below(kBatch), total - first);
       const VertexTriangle* batch[kBatch] = {};
+      SubpacketSet subpackets[kBatch] = {};
       bool changed = false;
       for (std::uint32_t i = 0; i < count; ++i) {
         batch[i] = &shown.triangles[first + i];
+        subpackets[i] = SmallPacket::kAllSubpackets;
         changed |= intersect_standard<TypeParam, true>(single, *batch[i], use_culling, single_work);
       }
-      ASSERT_EQ((intersect_standard_batch<TypeParam, true>(batched, batch, count, use_culling, batch_work)), changed)
-          << "seed " << seed;
+      const Culling culling{.corner_rays = use_culling, .subpackets = false};
+      const SubpacketSet batch_changed =
+          intersect_standard_batch<TypeParam, true>(batched, batch, subpackets, count, culling, batch_work);
+      ASSERT_EQ(batch_changed != 0, changed) << "seed " << seed;
       first += count;
     }
     for (std::uint32_t ray = 0; ray < kRays; ++ray) {
@@ -292,12 +296,11 @@ FrameRecord random_frame(TestRandom& random) {
 // and now and then overlaps it.
 template <class PacketType>
 VertexTriangle triangle_at_the_border(TestRandom& random, const PacketType& packet) {
-  constexpr std::uint32_t kLast = PacketType::kWidth - 1;
-  constexpr std::uint32_t kCorners[4] = {0, kLast, PacketType::kRayCount - 1, PacketType::kRayCount - 1 - kLast};
+  constexpr std::uint32_t kCorners[4] = {0, 1, 3, 2};
   const std::uint32_t side = random.below(4);
   const auto direction = [&](std::uint32_t corner) {
-    const std::uint32_t ray = kCorners[(side + corner) % 4];
-    return Vec3(packet.dir[0][ray], packet.dir[1][ray], packet.dir[2][ray]);
+    const std::uint32_t i = kCorners[(side + corner) % 4];
+    return Vec3(packet.corner_dir[0][i], packet.corner_dir[1][i], packet.corner_dir[2][i]);
   };
   const Vec3 origin(packet.origin[0], packet.origin[1], packet.origin[2]);
   const Vec3 outward = direction(1) - direction(2);
@@ -314,6 +317,82 @@ VertexTriangle triangle_at_the_border(TestRandom& random, const PacketType& pack
   VertexTriangle triangle;
   set_triangle(triangle, a, b, b + (1.0f + 9.0f * random.unit()) * outward, 5);
   return triangle;
+}
+
+// A triangle with an edge along the border between two columns or rows of a packet's pixels, from within rounding of
+// the rays beside it to some pixels away, or a small one anywhere.
+template <class PacketType>
+VertexTriangle triangle_at_a_row(TestRandom& random, const PacketType& packet) {
+  constexpr std::uint32_t kWidth = PacketType::kWidth;
+  const Vec3 origin(packet.origin[0], packet.origin[1], packet.origin[2]);
+  const auto along = [&](float column, float row) {
+    Vec3 direction;
+    for (int axis = 0; axis < 3; ++axis) {
+      direction[axis] = packet.first_dir[axis] + column * packet.step_x[axis] + row * packet.step_y[axis];
+    }
+    return direction;
+  };
+  const bool by_row = random.below(2) != 0;
+  const auto pixel = [&](float across, float line) { return by_row ? along(across, line) : along(line, across); };
+  const float off = std::ldexp(random.between(-1, 1), -static_cast<int>(random.below(24)));
+  const float line = static_cast<float>(random.below(kWidth)) + off;
+  const float slant = random.below(2) == 0 ? 0.0f : random.between(-4, 4);
+  const float first = random.between(-4, static_cast<float>(kWidth));
+  const float length = random.between(0.5f, static_cast<float>(kWidth));
+  const float depth = 1.0f + 4.0f * random.unit();
+  const float tilt = 1.0f + std::ldexp(random.unit(), -static_cast<int>(random.below(12)));
+  const float side = (random.below(2) == 0 ? 1.0f : -1.0f) * random.between(0.25f, 9.0f);
+  VertexTriangle triangle;
+  const Vec3 a = origin + depth * pixel(first, line);
+  const Vec3 b = origin + depth * tilt * pixel(first + length, line + slant);
+  set_triangle(triangle, a, b, origin + depth * pixel(first + random.unit() * length, line + side), 5);
+  return triangle;
+}
+
+template <class L, class PacketType>
+void expect_subpacket_culling_drops_no_hit() {
+  std::uint64_t left_out = 0;
+  std::uint64_t hit_count = 0;
+  for_each_seed(400, [&](std::uint64_t seed) {
+    TestRandom random(seed);
+    const FrameRecord frame = random_frame(random);
+    RaySet<PacketType::kRayCount> present;
+    PacketType packet{};
+    WorkCounters work;
+    const std::uint32_t left = PacketType::kWidth * random.below(frame.width / PacketType::kWidth + 1);
+    const std::uint32_t top = PacketType::kWidth * random.below(frame.height / PacketType::kWidth + 1);
+    if (left >= frame.width || top >= frame.height) return;
+    generate_packet<L>(frame, left, top, packet, present, work);
+    packet.active = present;
+    const auto intersect = [&](const VertexTriangle& triangle, bool by_subpackets) {
+      const VertexTriangle* const triangles[] = {&triangle};
+      const SubpacketSet all[] = {PacketType::kAllSubpackets};
+      reset_hits(packet, kFloatMax);
+      work = WorkCounters{};
+      return intersect_standard_batch<L, false>(packet, triangles, all, 1,
+                                                Culling{.corner_rays = false, .subpackets = by_subpackets}, work);
+    };
+    for (int i = 0; i < 40; ++i) {
+      const VertexTriangle triangle = triangle_at_a_row(random, packet);
+      const SubpacketSet expected = intersect(triangle, false);
+      const std::uint32_t all_tests = work[Work::kGroupTestStandard];
+      const SubpacketSet found = intersect(triangle, true);
+      ASSERT_EQ(found, expected) << "seed " << seed << ", triangle " << i;
+      ASSERT_LE(work[Work::kGroupTestStandard], all_tests);
+      left_out += all_tests - work[Work::kGroupTestStandard];
+      hit_count += expected != 0 ? 1u : 0u;
+    }
+  });
+  if (std::getenv("GRIDIRON_TEST_SEED") == nullptr) {
+    EXPECT_GT(left_out, 1000u);
+    EXPECT_GT(hit_count, 1000u);
+  }
+}
+
+TYPED_TEST(StandardTest, SubpacketCullingDropsNoHit) {
+  expect_subpacket_culling_drops_no_hit<TypeParam, Packet<8>>();
+  expect_subpacket_culling_drops_no_hit<TypeParam, Packet<16>>();
+  expect_subpacket_culling_drops_no_hit<TypeParam, Packet<32>>();
 }
 
 TYPED_TEST(StandardTest, CornerCullingDropsNoHit) {

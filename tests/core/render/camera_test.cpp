@@ -34,8 +34,8 @@ TEST(Camera, RaysGoThroughThePixelsOfThePicture) {
     generate_packet<Lanes<4>>(frame, left, top, packet, present, work);
     EXPECT_EQ(work[Work::kRayGenerated], 16u);
     for (std::uint32_t ray = 0; ray < 64; ++ray) {
-      const std::uint32_t x = left + ray % 8;
-      const std::uint32_t y = top + ray / 8;
+      const std::uint32_t x = left + WidePacket::column_of(ray);
+      const std::uint32_t y = top + WidePacket::row_of(ray);
       ASSERT_EQ(present.contains(ray), x < frame.width && y < frame.height) << "seed " << seed << ", ray " << ray;
       ASSERT_EQ(packet.t[ray], frame.t_far);
       ASSERT_EQ(packet.id[ray], kNoTriangle);
@@ -55,13 +55,19 @@ TEST(Camera, RaysGoThroughThePixelsOfThePicture) {
     for (int axis = 0; axis < 3; ++axis) {
       ASSERT_EQ(packet.origin[axis], frame.eye[axis]);
       ASSERT_EQ(packet.corner_dir[axis][0], packet.dir[axis][0]);
-      ASSERT_EQ(packet.corner_dir[axis][1], packet.dir[axis][7]);
-      ASSERT_EQ(packet.corner_dir[axis][2], packet.dir[axis][56]);
-      ASSERT_EQ(packet.corner_dir[axis][3], packet.dir[axis][63]);
+      for (std::uint32_t ray = 0; ray < 64; ++ray) {
+        const std::uint32_t column = WidePacket::column_of(ray), row = WidePacket::row_of(ray);
+        if (column % 7 != 0 || row % 7 != 0) continue;
+        ASSERT_EQ(packet.corner_dir[axis][column / 7 + 2 * (row / 7)], packet.dir[axis][ray]);
+      }
+      ASSERT_EQ(packet.first_dir[axis], packet.dir[axis][0]);
+      ASSERT_EQ(packet.step_x[axis], frame.step_x[axis]);
+      ASSERT_EQ(packet.step_y[axis], frame.step_y[axis]);
     }
     ASSERT_GE(packet.range_factor, packet.dir_max);
     ASSERT_GE(packet.range_factor, 1.0f);
     ASSERT_GT(packet.corner_widening, 1.0f);
+    ASSERT_GT(packet.subpacket_widening, packet.corner_widening);
   });
 }
 

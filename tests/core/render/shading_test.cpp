@@ -32,6 +32,7 @@ class ShadePacket : public testing::TestWithParam<Shading> {
     frame_.background_rgba = 0x12345678u;
     frame_.depth_address = frame_.id_address = 128;
     for (std::uint32_t ray = 0; ray < 64; ++ray) {
+      ray_at_[Packet<8>::row_of(ray)][Packet<8>::column_of(ray)] = ray;
       packet_.dir[0][ray] = 0.25f * static_cast<float>(ray % 8);
       packet_.dir[2][ray] = -2.0f;
       packet_.t[ray] = 1.0f + static_cast<float>(ray);
@@ -43,6 +44,7 @@ class ShadePacket : public testing::TestWithParam<Shading> {
 
   FrameRecord frame_{};
   Packet<8> packet_{};
+  std::uint32_t ray_at_[8][8] = {};
   std::unique_ptr<Output> output_;
 };
 
@@ -60,7 +62,7 @@ TEST_P(ShadePacket, WritesItsPixelsAndNoOther) {
         ASSERT_EQ(output_->id[pixel], 0x77777777u) << x << ", " << y;
         continue;
       }
-      const std::uint32_t ray = (y - 4) * 8 + x - 8;
+      const std::uint32_t ray = ray_at_[y - 4][x - 8];
       ASSERT_EQ(output_->id[pixel], packet_.id[ray]);
       if (packet_.id[ray] == kNoTriangle) {
         ASSERT_EQ(output_->color[pixel], 0x12345678u);

@@ -27,6 +27,7 @@ struct TinyLayout {
   static constexpr std::uint32_t kStackBudgetBytes = 6 * 1024;
   static constexpr std::uint32_t kTileWidth = 16;
   static constexpr std::uint32_t kPacketWidth = 4;
+  static constexpr std::uint32_t kMailboxSlots = 64;
   static constexpr std::uint32_t kTableEntries = 16;
   static constexpr std::uint32_t kMaxMacroWidth = 3;
   static constexpr std::uint32_t kMaxMacroDepth = 3;
@@ -195,6 +196,24 @@ TEST_F(TileRendererTest, TechniquesChangeNoPixelButTheWork) {
     EXPECT_EQ(difference(without, reference()), "") << tested.bit;
     EXPECT_GT(without.work[tested.counter], with_all.work[tested.counter]) << tested.bit;
   }
+}
+
+TEST_F(TileRendererTest, SubpacketsChangeNoPixelButTheWork) {
+  using WholeTiles = StoreLayout256K<32>;
+  FrameSettings settings = settings_of(64, 48, WholeTiles::kTileWidth);
+  TestFrame whole(fine_scene(), settings);
+  const KernelFrame without = whole.render<Lanes<4>, WholeTiles>();
+  ASSERT_EQ(without.status, Status::kOk);
+  EXPECT_EQ(difference(without, reference()), "");
+  settings.techniques |= kUseSubpackets;
+  TestFrame by_subpackets(fine_scene(), settings);
+  const KernelFrame with = by_subpackets.render<Lanes<4>, WholeTiles>();
+  ASSERT_EQ(with.status, Status::kOk);
+  EXPECT_EQ(difference(with, reference()), "");
+  EXPECT_LT(4 * with.work[Work::kGroupTestStandard], without.work[Work::kGroupTestStandard]);
+  EXPECT_EQ(without.work[Work::kSubpacketGroup], 0u);
+  TestFrame small(fine_scene(), settings);
+  EXPECT_EQ(difference(small.render<Lanes<4>, Normal>(), reference()), "");
 }
 
 TEST_F(TileRendererTest, OddSizes) {

@@ -3,7 +3,7 @@
 #include <gtest/gtest.h>
 
 #include <cstdint>
-#include <set>
+#include <map>
 
 #include "core/seeds.h"
 #include "support/test_mesh.h"
@@ -11,31 +11,44 @@
 namespace gridiron::test {
 namespace {
 
+using SmallMailbox = Mailbox<64>;
+constexpr SubpacketSet kAll = ~SubpacketSet{0};
+
 TEST(Mailbox, RemembersWhatNothingPushedOut) {
-  Mailbox mailbox;
+  SmallMailbox mailbox{};
   mailbox.clear();
-  for (std::uint32_t id = 0; id < Mailbox::kSlotCount; ++id) EXPECT_FALSE(mailbox.seen(id)) << id;
-  for (std::uint32_t id = 0; id < Mailbox::kSlotCount; ++id) EXPECT_TRUE(mailbox.seen(id)) << id;
-  EXPECT_FALSE(mailbox.seen(Mailbox::kSlotCount + 3));
-  EXPECT_FALSE(mailbox.seen(3)) << "its slot holds another triangle";
-  EXPECT_TRUE(mailbox.seen(4));
+  for (std::uint32_t id = 0; id < SmallMailbox::kSlotCount; ++id) EXPECT_EQ(mailbox.untested(id, kAll), kAll) << id;
+  for (std::uint32_t id = 0; id < SmallMailbox::kSlotCount; ++id) EXPECT_EQ(mailbox.untested(id, kAll), 0u) << id;
+  EXPECT_EQ(mailbox.untested(SmallMailbox::kSlotCount + 3, kAll), kAll);
+  EXPECT_EQ(mailbox.untested(3, kAll), kAll) << "its slot holds another triangle";
+  EXPECT_EQ(mailbox.untested(4, kAll), 0u);
   mailbox.clear();
-  for (std::uint32_t id = 0; id < Mailbox::kSlotCount; ++id) EXPECT_FALSE(mailbox.seen(id)) << id;
+  for (std::uint32_t id = 0; id < SmallMailbox::kSlotCount; ++id) EXPECT_EQ(mailbox.untested(id, kAll), kAll) << id;
+}
+
+TEST(Mailbox, RemembersSubpackets) {
+  SmallMailbox mailbox{};
+  mailbox.clear();
+  EXPECT_EQ(mailbox.untested(7, 0b0011), 0b0011u);
+  EXPECT_EQ(mailbox.untested(7, 0b0110), 0b0100u);
+  EXPECT_EQ(mailbox.untested(7, 0b1111), 0b1000u);
+  EXPECT_EQ(mailbox.untested(7, 0b1111), 0u);
 }
 
 TEST(Mailbox, NeverClaimsATriangleThatWasNotTested) {
   std::uint64_t seen_count = 0;
   for_each_seed(200, [&](std::uint64_t seed) {
     TestRandom random(seed);
-    Mailbox mailbox;
+    SmallMailbox mailbox{};
     mailbox.clear();
-    std::set<std::uint32_t> tested;
+    std::map<std::uint32_t, SubpacketSet> tested;
     for (int i = 0; i < 2000; ++i) {
       const std::uint32_t id = random.below(4) == 0 ? kNoTriangle - 1 - random.below(100) : random.below(200);
-      const bool seen = mailbox.seen(id);
-      seen_count += seen ? 1u : 0u;
-      ASSERT_TRUE(!seen || tested.contains(id)) << "seed " << seed << ", step " << i << ", triangle " << id;
-      tested.insert(id);
+      const SubpacketSet wanted = random.below(2) == 0 ? kAll : SubpacketSet{random.below(16)} << random.below(60);
+      const SubpacketSet left_out = wanted & ~mailbox.untested(id, wanted);
+      seen_count += left_out != 0 ? 1u : 0u;
+      ASSERT_EQ(left_out & ~tested[id], 0u) << "seed " << seed << ", step " << i << ", triangle " << id;
+      tested[id] |= wanted;
     }
   });
   EXPECT_GT(seen_count, 1000u);

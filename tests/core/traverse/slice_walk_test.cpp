@@ -12,6 +12,7 @@
 
 #include "core/ray/exact_ray.h"
 #include "core/ray/frustum_cases.h"
+#include "core/ray/reach_of.h"
 #include "core/seeds.h"
 #include "core/traverse/table_cases.h"
 #include "support/test_mesh.h"

@@ -122,13 +122,15 @@ TEST(Report, HasExactlyTheDocumentedKeysInOrder) {
                            "slice_step",          "cell_step",
                            "cell_visit",          "triangle_batch",
                            "mailbox_probe",       "cull_test",
-                           "triangle_setup",      "group_test_standard",
+                           "triangle_setup",      "subpacket_setup",
+                           "subpacket_group",     "group_test_standard",
                            "group_test_paper",    "hit_group",
                            "hit_group_paper",     "hit_setup",
                            "double_sign",         "exact_sign",
-                           "exact_distance",      "shaded_group",
-                           "shaded_simple_group", "get_issue",
-                           "put_issue",           "wait"}) {
+                           "exact_distance",      "reach_group",
+                           "shaded_group",        "shaded_simple_group",
+                           "get_issue",           "put_issue",
+                           "wait"}) {
     expected.push_back(std::string("work.") + name);
   }
   for (const char* path : {"effects.called_for[]", "effects.rays.primary", "local_store.arena_bytes",

@@ -1,0 +1,87 @@
+// Reaches of subpackets. SPDX-License-Identifier: Apache-2.0
+#include <gridiron/ray/reach.h>
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <string>
+
+#include "core/seeds.h"
+#include "support/test_mesh.h"
+
+namespace gridiron::test {
+namespace {
+
+template <class L>
+class Reach : public testing::Test {};
+struct LaneNames {
+  template <class L>
+  static std::string GetName(int) {
+    return "W" + std::to_string(L::kCount);
+  }
+};
+using LaneTypes = testing::Types<Lanes<4>, Lanes<8>, Lanes<16>>;
+TYPED_TEST_SUITE(Reach, LaneTypes, LaneNames);
+
+template <class L, class PacketType>
+void expect_reaches() {
+  using Reaches = SubpacketReach<PacketType>;
+  std::uint64_t closed = 0;
+  for_each_seed(50, [&](std::uint64_t seed) {
+    TestRandom random(seed);
+    PacketType packet{};
+    Frustum frustum{};
+    frustum.axis_k = random.below(3);
+    frustum.depth_per_t = random.between(0.5f, 4.0f);
+    frustum.pad_k = 0x1p-18f;
+    for (std::uint32_t ray = 0; ray < PacketType::kRayCount; ++ray) {
+      packet.dir[frustum.axis_k][ray] = random.between(-2, 2);
+      packet.t[ray] = random.between(1, 50);
+      if (random.below(4) != 0) packet.active.insert(ray);
+    }
+    Reaches reaches{};
+    WorkCounters work;
+    (void)reaches.template update<L>(packet, frustum, PacketType::kAllSubpackets, work);
+    const SubpacketSet changed = random.below(0xFFFF) & PacketType::kAllSubpackets;
+    for (float& t : packet.t) t *= 0.5f;
+    const float largest = reaches.template update<L>(packet, frustum, changed, work);
+    float expected_largest = 0.0f;
+    for (std::uint32_t subpacket = 0; subpacket < PacketType::kSubpacketCount; ++subpacket) {
+      float expected = 0.0f;
+      for (std::uint32_t i = 0; i < kSubpacketRays; ++i) {
+        const std::uint32_t ray = subpacket * kSubpacketRays + i;
+        if (!packet.active.contains(ray)) continue;
+        const float t = (changed >> subpacket & 1u) != 0 ? packet.t[ray] : 2.0f * packet.t[ray];
+        expected = std::max(expected, t * (magnitude(packet.dir[frustum.axis_k][ray]) * frustum.depth_per_t));
+      }
+      ASSERT_EQ(reaches.reach[subpacket], expected) << "seed " << seed << ", subpacket " << subpacket;
+      expected_largest = std::max(expected_largest, expected);
+    }
+    ASSERT_EQ(largest, expected_largest) << "seed " << seed;
+
+    for (int i = 0; i < 20; ++i) {
+      const std::uint32_t edge = random.below(PacketType::kSubpacketCount);
+      const float entry = i % 2 == 0 ? random.between(0, 120) : reaches.reach[edge];
+      const SubpacketSet open = reaches.template open<L>(frustum, entry, work);
+      for (std::uint32_t subpacket = 0; subpacket < PacketType::kSubpacketCount; ++subpacket) {
+        const bool is_open = (open >> subpacket & 1u) != 0;
+        closed += is_open ? 0u : 1u;
+        if (frustum.beyond(Slab{entry, entry}, reaches.reach[subpacket])) continue;
+        ASSERT_TRUE(is_open) << "seed " << seed << ", subpacket " << subpacket;
+      }
+      ASSERT_EQ(open & ~PacketType::kAllSubpackets, 0u);
+    }
+  });
+  if (std::getenv("GRIDIRON_TEST_SEED") == nullptr && PacketType::kSubpacketCount >= L::kCount) {
+    EXPECT_GT(closed, 100u);
+  }
+}
+
+TYPED_TEST(Reach, IsTheFarthestNearestHitAndClosesSubpackets) {
+  expect_reaches<TypeParam, Packet<4>>();
+  expect_reaches<TypeParam, Packet<8>>();
+  expect_reaches<TypeParam, Packet<16>>();
+  expect_reaches<TypeParam, Packet<32>>();
+}
+
+}  // namespace
+}  // namespace gridiron::test
