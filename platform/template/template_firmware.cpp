@@ -1,4 +1,5 @@
-// What runs on each core of the made-up chip: one call into the kernel, with the local store in the core's arena.
+// What runs on each core of the made-up chip: one call into the kernel, with the local store in the core's arena. The
+// build gives GRIDIRON_PACKET_WIDTH, the rays along a packet's edge.
 // Memory: the arena that the loader gives. Threads: one core. SPDX-License-Identifier: Apache-2.0
 #include <gridiron/base/lanes.h>
 #include <gridiron/render/tile_renderer.h>
@@ -8,7 +9,7 @@
 
 namespace gridiron::port {
 
-using FirmwareStore = LocalStore<StoreLayout256K<8>>;
+using FirmwareStore = LocalStore<StoreLayout256K<GRIDIRON_PACKET_WIDTH>>;
 
 /// Renders the core's share of a frame.
 ///
