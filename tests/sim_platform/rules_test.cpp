@@ -202,7 +202,10 @@ TEST(RulesBench, OtherLimitsGiveOtherRules) {
                           .queue_depth = 2};
   const auto status_of = [&](Program program) {
     return bench.run([&](SimCore& core, std::span<std::byte> data) {
-                  return program({bench, core, data.data()});
+                  GRIDIRON_TRY(program({bench, core, data.data()}));
+                  while (core.claim_tile().kind == TileClaim::Kind::kTile) {
+                  }
+                  return Status::kOk;
                 })
         .status;
   };
@@ -228,6 +231,16 @@ TEST(RulesBench, OtherLimitsGiveOtherRules) {
 }
 
 // --- Use before wait, without instrumentation -------------------------------------------------------------------
+
+TEST(RulesBench, TilesThatNobodyClaimedAreAnError) {
+  ProgramBench bench;
+  const ChipResult result = bench.run([](SimCore& core, std::span<std::byte>) {
+    (void)core.claim_tile();
+    return Status::kOk;
+  });
+  EXPECT_EQ(result.status, Status::kAborted);
+  EXPECT_EQ(result.failed_tile, 1u);
+}
 
 TEST(InFlight, DestinationsArePoisonedUntilTheWait) {
   for (const Completion completion : {Completion::kLate, Completion::kRandom}) {

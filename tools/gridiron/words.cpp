@@ -54,7 +54,7 @@ const char* words_of(Status status) {
     case Status::kNoTriangles:
       return "no triangle of non-zero area";
     case Status::kBadVertex:
-      return "vertex coordinate that is no finite number";
+      return "vertex coordinate that is no number between -2^120 and 2^120";
     case Status::kBadIndex:
       return "triangle that names a vertex that does not exist";
     case Status::kBadParameter:

@@ -52,11 +52,19 @@ struct SectionEntry {
 };
 static_assert(sizeof(SectionEntry) == 32);
 
+/// Ranges in which no quantity of the traversal overflows and no scale is subnormal; beyond them a mesh, an image or a
+/// frame is refused.
+inline constexpr float kCoordinateLimit = 0x1p120f;       ///< |vertex|, |eye|
+inline constexpr float kLeastCellsPerUnit = 0x1p-122f;    ///< one cell across the widest mesh has more
+inline constexpr float kGreatestCellsPerUnit = 0x1p100f;  ///< smaller meshes get fewer cells
+inline constexpr double kCellSpaceLimit = 0x1p120;        ///< |eye|, in cells
+inline constexpr double kCellDirectionLimit = 0x1p124;    ///< |direction|, in cells
+
 /// The grid. Cell (x, y, z) covers, in cell space, the closed box [x, x+1] x [y, y+1] x [z, z+1]; cell space is the
 /// exact map p -> (p - minimum) * cells_per_unit of world space, taken with real numbers.
 struct GridRecord {
   float minimum[3];                ///< world position of cell space's origin
-  float cells_per_unit[3];         ///< finite, > 0
+  float cells_per_unit[3];         ///< [kLeastCellsPerUnit, kGreatestCellsPerUnit]
   std::uint32_t cell_count[3];     ///< 1..kMaxCellsPerAxis
   std::uint32_t macro_cell_count[3];       ///< ceil(cell_count / macro_width)
   std::uint32_t macro_width;       ///< m, cells along a macrocell's edge, 1..kMaxMacroWidth

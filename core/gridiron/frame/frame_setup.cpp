@@ -1,6 +1,8 @@
 // Frame set-up. SPDX-License-Identifier: Apache-2.0
 #include <gridiron/frame/frame_setup.h>
 
+#include <gridiron/base/lanes.h>
+
 #include <glm/geometric.hpp>
 
 namespace gridiron {
@@ -52,6 +54,18 @@ Status make_frame_record(const FrameSettings& settings, const SceneImageView& im
   const DVec3 right = right_raw / length_of(right_raw);
   const DVec3 up = glm::cross(right, forward);
   if (!is_finite(DVec3(settings.camera.eye)) || !is_finite(right) || !is_finite(up)) return Status::kBadFrame;
+
+  // Traversal stays inside a float's range.
+  for (int axis = 0; axis < 3; ++axis) {
+    const double scale = image.grid.cells_per_unit[axis];
+    const double eye = settings.camera.eye[axis];
+    const double aspect = static_cast<double>(settings.width) / settings.height;
+    const double widest = 1.0 + settings.camera.tan_half_fov * (1.0 + aspect);
+    const bool in_range = magnitude(eye) <= double{kCoordinateLimit} &&
+                          magnitude(eye - image.grid.minimum[axis]) * scale <= kCellSpaceLimit &&
+                          widest * scale <= kCellDirectionLimit;
+    if (!in_range) return Status::kBadFrame;
+  }
 
   // Rays go through pixel centres; the image plane lies at distance 1.
   const double half_height = settings.camera.tan_half_fov;

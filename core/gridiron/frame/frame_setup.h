@@ -43,7 +43,8 @@ struct FrameSettings {
 /// Fills `frame`. The directions it describes have length between 1 and a few units, whatever the scale of the camera.
 ///
 /// @param image_address  where `image` lies in main memory, kLineBytes-aligned.
-/// Errors: kBadFrame (size, camera degenerate or not finite, t_far not above 0), kUnsupportedImage (accuracy needs
+/// Errors: kBadFrame (size, camera degenerate, not finite or so far away that its place in cells exceeds
+/// kCellSpaceLimit, t_far not above 0), kUnsupportedImage (accuracy needs
 /// another triangle format).
 [[nodiscard]] Status make_frame_record(const FrameSettings& settings, const SceneImageView& image,
                                        MainAddress image_address, FrameRecord& frame);

@@ -67,14 +67,15 @@ void solve_resolution(const double extent[3], double wanted_cells, std::uint32_t
 }
 
 // Cells per unit as a float, such that (maximum - minimum) * result <= cell_count as real numbers: the quotient has
-// three roundings of 2^-53 at most, taken back by the factor, and the conversion to float goes down.
-float cells_per_unit_of(double extent, std::uint32_t& cell_count) {
+// three roundings of 2^-53 at most, taken back by the factor, and the conversion to float goes down. More than
+// `greatest` are not given: the cells of an axis become fewer, none of them unused.
+float cells_per_unit_of(double extent, float greatest, std::uint32_t& cell_count) {
   if (!(extent > 0.0)) return 1.0f;
   const double quotient = static_cast<double>(cell_count) / extent * (1.0 - 0x1p-50);
-  if (quotient >= double{kFloatMax}) {  // a scene smaller than the least normal float: fewer cells, none of them unused
-    const double cells = extent * double{kFloatMax} + 1.0;
+  if (quotient >= double{greatest}) {
+    const double cells = extent * double{greatest} + 1.0;
     if (cells < static_cast<double>(cell_count)) cell_count = static_cast<std::uint32_t>(cells);
-    return kFloatMax;
+    return greatest;
   }
   const float nearest = static_cast<float>(quotient);
   if (double{nearest} <= quotient) return nearest;
@@ -154,15 +155,15 @@ Status check_parameters(const GridParameters& parameters) {
   return lambda_ok && width_ok && format_ok ? Status::kOk : Status::kBadParameter;
 }
 
-bool all_finite(std::span<const Vec3> vertices) {
-  constexpr std::uint32_t kExponent = 0x7F800000u;
-  std::uint32_t not_finite = 0;
+bool all_in_range(std::span<const Vec3> vertices) {
+  constexpr std::uint32_t kLimit = std::bit_cast<std::uint32_t>(kCoordinateLimit);  // bits grow with the magnitude
+  std::uint32_t outside = 0;
   for (const Vec3& v : vertices) {
     for (int axis = 0; axis < 3; ++axis) {
-      not_finite |= (std::bit_cast<std::uint32_t>(v[axis]) & kExponent) == kExponent ? 1u : 0u;
+      outside |= (std::bit_cast<std::uint32_t>(v[axis]) & 0x7FFFFFFFu) > kLimit ? 1u : 0u;
     }
   }
-  return not_finite == 0;
+  return outside == 0;
 }
 
 // Indices, zero areas, and the tight bounds of the triangles that are kept.
@@ -453,7 +454,7 @@ void write_triangles(const MeshView& mesh, const GridRecord& grid, const std::ui
 Status count_scene_image(const MeshView& mesh, const GridParameters& parameters, GridNeed& need) {
   GRIDIRON_TRY(check_parameters(parameters));
   if (mesh.triangles.size() > kMaxCount || mesh.vertices.size() > kMaxCount) return Status::kTooManyTriangles;
-  if (!all_finite(mesh.vertices)) return Status::kBadVertex;
+  if (!all_in_range(mesh.vertices)) return Status::kBadVertex;
   KeptTriangles kept;
   GRIDIRON_TRY(survey(mesh, kept));
   if (kept.count == 0) return Status::kNoTriangles;
@@ -469,8 +470,18 @@ Status count_scene_image(const MeshView& mesh, const GridParameters& parameters,
   }
   solve_resolution(extent, double{parameters.lambda} * static_cast<double>(kept.count), grid.cell_count);
   const std::uint32_t width = parameters.macro_width;
+  // An axis of one cell is scaled like the others: a mesh that is almost flat leaves most of that cell empty.
+  float greatest = 0.0f;
   for (int axis = 0; axis < 3; ++axis) {
-    grid.cells_per_unit[axis] = cells_per_unit_of(extent[axis], grid.cell_count[axis]);
+    if (grid.cell_count[axis] == 1) continue;
+    grid.cells_per_unit[axis] = cells_per_unit_of(extent[axis], kGreatestCellsPerUnit, grid.cell_count[axis]);
+    greatest = grid.cells_per_unit[axis] > greatest ? grid.cells_per_unit[axis] : greatest;
+  }
+  if (greatest == 0.0f) greatest = kGreatestCellsPerUnit;
+  for (int axis = 0; axis < 3; ++axis) {
+    if (grid.cells_per_unit[axis] == 0.0f) {
+      grid.cells_per_unit[axis] = cells_per_unit_of(extent[axis], greatest, grid.cell_count[axis]);
+    }
     grid.macro_cell_count[axis] = (grid.cell_count[axis] + width - 1) / width;
   }
   grid.macro_width = width;

@@ -3,6 +3,8 @@
 #include <gridiron/base/check_value.h>
 #include <gridiron/image/scene_image.h>
 
+#include <gridiron/base/lanes.h>
+
 #include <bit>
 
 namespace gridiron {
@@ -150,15 +152,17 @@ bool check_grid(Checker& checker, const Sections& sections, GridRecord& grid) {
     const float low = grid.bounds_minimum[axis];
     const float high = grid.bounds_maximum[axis];
     const std::uint32_t cells = grid.cell_count[axis];
-    GRIDIRON_REQUIRE(is_finite(minimum), base, GridRecord, minimum, "grid.minimum");
-    GRIDIRON_REQUIRE(is_finite(scale) && scale > 0.0f, base, GridRecord, cells_per_unit, "grid.cells_per_unit");
+    GRIDIRON_REQUIRE(magnitude(minimum) <= kCoordinateLimit, base, GridRecord, minimum, "grid.minimum");
+    GRIDIRON_REQUIRE(scale >= kLeastCellsPerUnit && scale <= kGreatestCellsPerUnit, base, GridRecord, cells_per_unit,
+                     "grid.cells_per_unit");
     GRIDIRON_REQUIRE(cells >= 1 && cells <= kMaxCellsPerAxis, base, GridRecord, cell_count, "grid.cell_count");
     GRIDIRON_REQUIRE(grid.macro_cell_count[axis] == (cells + grid.macro_width - 1) / grid.macro_width, base, GridRecord,
                      macro_cell_count, "grid.macro_cell_count");
     GRIDIRON_REQUIRE(is_finite(low) && low >= minimum, base, GridRecord, bounds_minimum, "grid.bounds_minimum");
     const double extent = double{high} - double{minimum};
-    GRIDIRON_REQUIRE(is_finite(high) && high >= low && extent * double{scale} <= static_cast<double>(cells), base,
-                     GridRecord, bounds_maximum, "grid.bounds_maximum");
+    const bool fits = extent * double{scale} <= static_cast<double>(cells);
+    GRIDIRON_REQUIRE(high <= kCoordinateLimit && high >= low && fits, base, GridRecord, bounds_maximum,
+                     "grid.bounds_maximum");
   }
   const std::uint32_t cells_per_block = grid.macro_width * grid.macro_width * grid.macro_width;
   const std::uint32_t block_bytes = cells_per_block * static_cast<std::uint32_t>(sizeof(CellRecord));

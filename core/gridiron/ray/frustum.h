@@ -27,8 +27,9 @@ struct Slab {
 /// Let o be the origin in cell space and s the slope of a ray (cells along u per cell along the march). In exact
 /// arithmetic the ray is at o_u + s x after marching x. Every quantity below carries at most a handful of roundings:
 /// o has 2, s has 3, x has 1 on |x| and 2 on |o_k|, the product and the sum one each. Their sum is at most
-/// e (6 |o_u| + |s| (8 |o_k| + 8 N_k)) with e = 2^-23, one unit in any rounding mode, the pad's own addition included;
-/// that is pad_u. pad_k likewise.
+/// e (6 |o_u| + |s| (8 |o_k| + 8 N_k)) with e = 2^-23, one unit in any rounding mode, the pad's own addition included.
+/// A slope may also be off by 2^-26 for good: what its numerator loses below the least normal float, 2^-149, over a
+/// march of at least 2^-123 (kLeastCellsPerUnit, directions of length 1 or more). Both are pad_u; pad_k likewise.
 struct Frustum {
   static constexpr float kReachFactor = 1.0f + 0x1p-20f;  ///< covers the roundings of a reach
 
@@ -141,12 +142,13 @@ template <class L, class PacketType>
   frustum.reverse = reverse;
   frustum.origin_k = in_cells(k);
   constexpr float kUnit = 0x1p-23f;
+  constexpr float kSlopeLoss = 0x1p-26f / (8.0f * kUnit);  // in units of march_bound * kUnit
   const float march_bound = 8.0f * (magnitude(frustum.origin_k) + static_cast<float>(frustum.cells_k));
   frustum.pad_k = kUnit * march_bound;
   const auto set_bounds = [&](std::uint32_t axis, std::uint32_t lane, float slope_min, float slope_max) {
     const float origin = in_cells(axis);
     const float steepest = larger(magnitude(slope_min), magnitude(slope_max));
-    const float pad = kUnit * (6.0f * magnitude(origin) + steepest * march_bound) + 0x1p-60f;
+    const float pad = kUnit * (6.0f * magnitude(origin) + (steepest + kSlopeLoss) * march_bound) + 0x1p-60f;
     frustum.start[lane] = origin - pad;
     frustum.start[lane + 1] = origin + pad;
     frustum.slope_near[lane] = slope_min < 0.0f ? 0.0f : slope_min;

@@ -25,7 +25,7 @@ enum class [[nodiscard]] Status : std::uint8_t {
   kBadAccess,           ///< a load or store touched bytes that it must not (platforms that check)
 
   // Frames (kernel).
-  kBadFrame,            ///< frame record: wrong magic, version, size or range
+  kBadFrame,            ///< frame record: wrong magic, version, size or range; camera too far for its grid
   kBadImage,            ///< scene image: wrong magic, version, check value, offset or count
   kUnsupportedImage,    ///< scene image is valid but this store layout or profile cannot use it
   kUnsupportedFrame,    ///< frame asks for something this renderer was not built for
@@ -36,7 +36,7 @@ enum class [[nodiscard]] Status : std::uint8_t {
   kMemoryTooSmall,      ///< the caller's span is smaller than the counted need; nothing was written
   kTooManyTriangles,    ///< more triangles or references than 32-bit counts can address
   kNoTriangles,         ///< nothing to trace: the mesh has no triangle of non-zero area
-  kBadVertex,           ///< a vertex coordinate is NaN or infinite
+  kBadVertex,           ///< a vertex coordinate is NaN, infinite or beyond +-2^120
   kBadIndex,            ///< a triangle names a vertex that does not exist
   kBadParameter,        ///< a parameter is outside its documented range
 };

@@ -203,7 +203,7 @@ Status SimCore::start(std::byte* local, MainAddress address, std::uint32_t bytes
   note_footprint(address.value, bytes, is_get);
   mark(pending, is_get ? kGetInFlight : kPutInFlight);
 
-  if (!is_get) pending.sent.assign(local, local + bytes);
+  if (!is_get) pending.copy.assign(local, local + bytes);
   if (is_get && (frame_->completion != Completion::kEarly || pending.fails)) {
     for (std::uint32_t i = 0; i < bytes; ++i) local[i] = kPoison[i & 1];
   }
@@ -220,6 +220,8 @@ void SimCore::copy_bytes(Pending& pending) {
   if (meets_writable(pending.address, pending.bytes)) lock.lock();
   std::memcpy(pending.is_get ? pending.local : main, pending.is_get ? main : pending.local, pending.bytes);
   pending.arrived = true;
+  // What has arrived from memory that other cores may write cannot be looked up again.
+  if (pending.is_get && lock.owns_lock()) pending.copy.assign(pending.local, pending.local + pending.bytes);
 }
 
 Status SimCore::move_bytes(Pending& pending) {
@@ -251,10 +253,9 @@ void SimCore::move_some() {
 
 Status SimCore::check_untouched(const Pending& pending) {
   const std::byte* expected = nullptr;
-  if (!pending.is_get) {
-    expected = pending.sent.data();
-  } else if (pending.arrived && !meets_writable(pending.address, pending.bytes)) {
-    // What other tiles may write is compared across tiles at the end of the frame instead.
+  if (!pending.is_get || (pending.arrived && meets_writable(pending.address, pending.bytes))) {
+    expected = pending.copy.data();
+  } else if (pending.arrived) {
     expected = frame_->memory->base() + pending.address;
   }
   if (expected == nullptr || std::memcmp(expected, pending.local, pending.bytes) == 0) return Status::kOk;

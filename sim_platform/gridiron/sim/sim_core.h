@@ -120,7 +120,7 @@ class SimCore {
     std::uint32_t tile_id = kNoTile;  ///< that started it
     std::byte* local = nullptr;
     std::uint64_t address = 0;
-    std::vector<std::byte> sent;  ///< puts: the source as it was at the call
+    std::vector<std::byte> copy;  ///< puts: the source at the call; gets from writable memory: what arrived
   };
 
   Status start(std::byte* local, MainAddress address, std::uint32_t bytes, Tag tag, bool is_get);
