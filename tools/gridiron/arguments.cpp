@@ -33,8 +33,8 @@ struct RawRender {
 constexpr BufferDepths kSingleBuffering = {.output = 1, .macro = 1, .triangle = 1};
 constexpr BufferDepths kDoubleBuffering = {.output = 2, .macro = 2, .triangle = 2};
 
-constexpr const char* kMachineFormat = R"(A machine file holds one 'key value' per line; # opens a comment. Every number has its unit in its
-key: _hz, _bytes, _cycles (of the core clock; under master. of the general core's own).
+constexpr const char* kMachineFormat = R"(A machine file holds one 'key value' per line; # opens a comment.
+Units are in the keys: _hz, _bytes, _cycles (of the core clock; under master. of the general core's own).
 'based_on NAME' as the first key takes what the file leaves out from a built-in machine:
 
   based_on       cell-ps3
@@ -310,7 +310,8 @@ Command parse_arguments(int count, const char* const* values) {
 
   MachinesArguments machines_arguments;
   std::string machine;
-  CLI::App* machines = app.add_subcommand("machines", "lists the machine profiles, or prints one as --machine reads it");
+  CLI::App* machines =
+      app.add_subcommand("machines", "lists the machine profiles, or prints one as --machine reads it");
   machines->add_option("MACHINE", machine, "built-in name or machine file: printed in full, to be copied and edited")
       ->type_name("");
   machines->footer(kMachineFormat);

@@ -113,6 +113,20 @@ TEST(Machines, TheExampleFileRenders) {
   EXPECT_GT(report["frame"]["fps"], 0.0);
 }
 
+TEST(Machines, TheReadmeNamesEveryKey) {
+  const TemporaryFolder folder;
+  const std::string readme = read_file(std::string(GRIDIRON_MACHINES) + "/../README.md");
+  std::istringstream stream(run(folder, {"machines", "cell-ps3"}).out);
+  for (std::string line; std::getline(stream, line);) {
+    const std::string key = line.substr(0, line.find(' '));
+    const std::size_t dot = key.rfind('.');
+    // Kinds of work and steps are words of their own there.
+    const bool is_listed = dot != std::string::npos && key != "master.clock_hz";
+    const std::string word = is_listed ? key.substr(dot + 1) : key;
+    EXPECT_NE(readme.find("`" + word + "`"), std::string::npos) << key;
+  }
+}
+
 TEST(Machines, HelpShowsTheFormat) {
   const TemporaryFolder folder;
   const std::string help = run(folder, {"machines", "--help"}).out;
