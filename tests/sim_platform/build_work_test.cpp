@@ -61,6 +61,7 @@ TEST(BuildWork, SweepsBeyondTheFirstAreCounted) {
   EXPECT_EQ(need.steps.row_count, 2u);
   EXPECT_EQ(need.steps.swept_row_count, 3u) << "the second sweep passes over the first triangle";
   EXPECT_EQ(grid_build_work(6, 2, need)[BuildStep::kCellBox], 6u);
+  EXPECT_EQ(grid_build_work(6, 2, need)[BuildStep::kCellRow], 5u);
 }
 
 TEST(BuildWork, CyclesAreTheSumOverSteps) {

@@ -132,7 +132,7 @@ TEST(MachineFile, NamesTheLineOfEveryDefect) {
       {base + "main_memory_bytes 1\n", ":2: 'main_memory_bytes' must be from 1048576 to 1099511627776, not '1'"},
       {base + "latency_cycles -1\n", ":2: 'latency_cycles' must be from 0 to 1048576, not '-1'"},
       {base + "channel_bytes_per_cycle 0\n", ":2: 'channel_bytes_per_cycle' must be from 0.0625 to 65536, not '0'"},
-      {base + "queue_depth 65537\n", ":2: 'queue_depth' must be from 1 to 65536"},
+      {base + "queue_depth 4097\n", ":2: 'queue_depth' must be from 1 to 4096"},
       {base + "line_bytes 0\n", ":2: 'line_bytes' must be from 1 to 16384"},
       {base + "# " + std::string(999, 'x') + "\n", ":2: line of more than 1000 bytes"},
       {base + std::string(100000, 'x'), ":2: line of more than 1000 bytes"},
