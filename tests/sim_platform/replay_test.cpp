@@ -1,4 +1,4 @@
-// Replay against closed forms, by-hand sums and its own invariants.
+// Replay: its invariants and its determinism; closed forms are in replay_model_test.cpp.
 // Memory: std::vector. Threads: one. SPDX-License-Identifier: Apache-2.0
 #include <gridiron/sim/machine_profile.h>
 #include <gridiron/sim/replay.h>
@@ -15,111 +15,10 @@
 #include <string>
 #include <vector>
 
+#include "replay_cases.h"
+
 namespace gridiron::sim {
 namespace {
-
-constexpr std::uint8_t kTriangleTag = kFirstTriangleTag;
-constexpr std::uint8_t kMacroTag = kFirstMacroTag;
-constexpr std::size_t kTileLevel = static_cast<std::size_t>(WaitLevel::kTile);
-constexpr std::size_t kMacroLevel = static_cast<std::size_t>(WaitLevel::kMacroCell);
-constexpr std::size_t kTriangleLevel = static_cast<std::size_t>(WaitLevel::kTriangle);
-constexpr std::size_t kSetupLevel = static_cast<std::size_t>(WaitLevel::kSetup);
-
-/// A machine that costs nothing but what a test sets. One unit of work is one cycle, whatever the kind.
-MachineProfile free_machine() {
-  MachineProfile machine{};
-  machine.name = "free";
-  machine.core_count = 1;
-  machine.clock_hz = 1e9;
-  machine.line_bytes = 128;
-  machine.queue_depth = 65536;
-  machine.lines_in_flight = 65536;
-  machine.work_cycles.fill(1);
-  return machine;
-}
-
-/// What the published blocking-get bandwidths follow from: a latency after a channel of 8 bytes a cycle, no in-flight
-/// limit, nothing for issue and wait.
-MachineProfile blocking_machine(double latency_cycles) {
-  MachineProfile machine = free_machine();
-  machine.clock_hz = 3.2e9;
-  machine.latency_cycles = latency_cycles;
-  machine.channel_bytes_per_cycle = 8;
-  return machine;
-}
-
-/// Writes a TileTrace step by step.
-class Steps {
- public:
-  explicit Steps(std::uint32_t tile_id = 0) { tile_.tile_id = tile_id; }
-
-  Steps& work(std::uint32_t amount, Work kind = Work::kCellStep) {
-    TraceEvent event = blank(EventKind::kWork);
-    event.first_work = static_cast<std::uint32_t>(tile_.work.size());
-    event.work_count = 1;
-    tile_.work.push_back({kind, amount});
-    tile_.events.push_back(event);
-    return *this;
-  }
-  Steps& get(std::uint32_t bytes, std::uint8_t tag, std::uint64_t address = 4096) {
-    return transfer(EventKind::kGet, bytes, tag, false, address);
-  }
-  Steps& put(std::uint32_t bytes, std::uint8_t tag, bool rotating = false) {
-    return transfer(EventKind::kPut, bytes, tag, rotating, 8192);
-  }
-  Steps& wait(std::uint32_t tags, std::uint32_t rotating_tags = 0) {
-    TraceEvent event = blank(EventKind::kWait);
-    event.tags = tags;
-    event.rotating_tags = rotating_tags;
-    event.rotating = rotating_tags != 0;
-    tile_.events.push_back(event);
-    return *this;
-  }
-  operator TileTrace() const { return tile_; }
-
- private:
-  static TraceEvent blank(EventKind kind) {
-    return {.kind = kind,
-            .tag = 0,
-            .rotating = false,
-            .bytes = 0,
-            .address = 0,
-            .tags = 0,
-            .rotating_tags = 0,
-            .first_work = 0,
-            .work_count = 0};
-  }
-  Steps& transfer(EventKind kind, std::uint32_t bytes, std::uint8_t tag, bool rotating, std::uint64_t address) {
-    TraceEvent event = blank(kind);
-    event.bytes = bytes;
-    event.tag = tag;
-    event.rotating = rotating;
-    event.address = address;
-    tile_.events.push_back(event);
-    return *this;
-  }
-  TileTrace tile_;
-};
-
-std::uint32_t bit(std::uint32_t tag) {
-  return 1u << tag;
-}
-
-FrameTrace frame_of(std::vector<TileTrace> tiles) {
-  FrameTrace trace;
-  trace.tiles = std::move(tiles);
-  return trace;
-}
-
-FrameTiming replay_on(const FrameTrace& trace, const MachineProfile& machine, std::uint32_t cores = 1) {
-  return replay(trace, machine, {.core_count = cores, .timeline = false});
-}
-
-double accounted_cycles(const CoreTiming& core) {
-  double sum = core.init_cycles + core.compute_cycles + core.idle_cycles;
-  for (const double wait : core.dma_wait_cycles) sum += wait;
-  return sum;
-}
 
 /// A frame that looks like a rendered one: per packet a cell block, then triangle batches fetched ahead, then output.
 /// About lines_per_tile lines of transfers per tile.
@@ -163,91 +62,6 @@ TEST(Replay, NothingToDoCostsNothing) {
   EXPECT_EQ(accounted_cycles(frame.cores[2]), 0);
 }
 
-TEST(Replay, BlockingGetBandwidthIsTheClosedForm) {
-  for (const double latency : {300.0, 500.0, 1000.0}) {
-    for (const std::uint32_t bytes : {128u, 512u, 2048u, 4096u, 16384u}) {
-      constexpr std::uint32_t kGets = 10;
-      Steps tile;
-      for (std::uint32_t i = 0; i < kGets; ++i) tile.get(bytes, kTriangleTag).wait(bit(kTriangleTag));
-      const FrameTiming frame = replay_on(frame_of({tile}), blocking_machine(latency));
-      EXPECT_EQ(frame.frame_cycles, kGets * (latency + bytes / 8.0)) << bytes << " bytes at latency " << latency;
-    }
-  }
-}
-
-TEST(Replay, BlockingGetBandwidthAt500CyclesIsThePublishedOne) {
-  const struct {
-    std::uint32_t bytes;
-    double gigabytes_per_second;
-    double tolerance;
-  } cases[] = {{128, 0.79, 0.005}, {512, 2.90, 0.005}, {2048, 8.67, 0.005}, {4096, 13.0, 0.05}, {16384, 20.6, 0.05}};
-  for (const auto& c : cases) {
-    const TileTrace tile = Steps().get(c.bytes, kTriangleTag).wait(bit(kTriangleTag));
-    const FrameTiming frame = replay_on(frame_of({tile}), blocking_machine(500));
-    EXPECT_NEAR(c.bytes / frame.seconds / 1e9, c.gigabytes_per_second, c.tolerance) << c.bytes << " bytes";
-  }
-}
-
-TEST(Replay, OneCoreWithoutContentionIsTheSumByHand) {
-  MachineProfile machine = free_machine();
-  machine.issue_cycles = 24;
-  machine.wait_cycles = 14;
-  machine.latency_cycles = 500;
-  machine.channel_bytes_per_cycle = 8;  // 16 cycles a line
-  machine.claim_cycles = 300;
-  machine.work_cycles[static_cast<std::size_t>(Work::kPacketStart)] = 500;
-
-  FrameTrace trace;
-  trace.prologue = Steps().get(384, kSetupTag, 0).wait(bit(kSetupTag));
-  const TileTrace tile = Steps()
-                             .work(2, Work::kPacketStart)
-                             .get(1792, kMacroTag, 0)
-                             .wait(bit(kMacroTag))
-                             .get(256, kTriangleTag, 0)
-                             .work(100)
-                             .wait(bit(kTriangleTag))
-                             .work(50)
-                             .put(4096, 0, true);
-  trace.tiles = {tile};
-  trace.epilogue = Steps().wait(0, 1);
-  trace.epilogue.events[0].tags = bit(kFirstOutputTag);
-  trace.epilogue.events[0].rotating_tags = 0;
-
-  const FrameTiming frame = replay_on(trace, machine);
-  const CoreTiming& core = frame.cores[0];
-  EXPECT_EQ(core.init_cycles, 2 * 500);
-  EXPECT_EQ(core.compute_cycles, 4 * 24 + 4 * 14 + 100 + 50);
-  EXPECT_EQ(core.dma_wait_cycles[kSetupLevel], 3 * 16 + 500);
-  EXPECT_EQ(core.dma_wait_cycles[kMacroLevel], 14 * 16 + 500);
-  EXPECT_EQ(core.dma_wait_cycles[kTriangleLevel], 2 * 16 + 500 - 100);
-  // Between the put and its wait lies the refused claim.
-  EXPECT_EQ(core.dma_wait_cycles[kTileLevel], 32 * 16 + 500 - 300);
-  EXPECT_EQ(core.idle_cycles, 2 * 300);
-  EXPECT_EQ(frame.frame_cycles, accounted_cycles(core));
-  EXPECT_EQ(frame.seconds, frame.frame_cycles / 1e9);
-  EXPECT_EQ(core.tiles, 1u);
-  EXPECT_EQ(core.gets, 3u);
-  EXPECT_EQ(core.puts, 1u);
-  EXPECT_EQ(core.bytes_in, 384u + 1792 + 256);
-  EXPECT_EQ(core.bytes_out, 4096u);
-  EXPECT_EQ(frame.channel_busy_cycles, (3 + 14 + 2 + 32) * 16);
-}
-
-TEST(Replay, TransfersCostWholeLinesTouched) {
-  const struct {
-    std::uint64_t address;
-    std::uint32_t bytes;
-    std::uint32_t lines;
-  } cases[] = {{0, 16, 1}, {0, 128, 1}, {112, 16, 1}, {112, 32, 2}, {64, 128, 2}, {0, 144, 2}, {120, 272, 4}};
-  for (const auto& c : cases) {
-    const TileTrace tile = Steps().get(c.bytes, kTriangleTag, c.address).wait(bit(kTriangleTag));
-    const FrameTiming frame = replay_on(frame_of({tile}), blocking_machine(500));
-    EXPECT_EQ(frame.cores[0].line_bytes_in, c.lines * 128u) << c.address << " + " << c.bytes;
-    EXPECT_EQ(frame.cores[0].bytes_in, c.bytes);
-    EXPECT_EQ(frame.frame_cycles, 500 + 16.0 * c.lines) << c.address << " + " << c.bytes;
-  }
-}
-
 TEST(Replay, WaitIsForItsTagsOnly) {
   const TileTrace tile =
       Steps().get(128, kMacroTag).get(16384, kTriangleTag).wait(bit(kMacroTag)).work(10).wait(bit(kTriangleTag));
@@ -273,63 +87,6 @@ TEST(Replay, LevelsFollowTheTags) {
   for (std::uint32_t tag = 1; tag < 9; ++tag) EXPECT_EQ(wait_level_of_tag(tag), WaitLevel::kMacroCell) << tag;
   for (std::uint32_t tag = 9; tag < 24; ++tag) EXPECT_EQ(wait_level_of_tag(tag), WaitLevel::kTriangle) << tag;
   for (std::uint32_t tag = 24; tag < 32; ++tag) EXPECT_EQ(wait_level_of_tag(tag), WaitLevel::kTile) << tag;
-}
-
-TEST(Replay, InFlightLimitBoundsOneCore) {
-  MachineProfile machine = blocking_machine(500);
-  machine.lines_in_flight = 16;
-  const TileTrace tile = Steps().get(16384, kTriangleTag).wait(bit(kTriangleTag));
-  // Line n + 16 leaves when line n has arrived: 16 lines every 516 cycles; the last of 8 rounds ends 15 turns later.
-  EXPECT_EQ(replay_on(frame_of({tile}), machine).frame_cycles, 8 * 516 + 15 * 16);
-}
-
-TEST(Replay, LineIntervalBoundsOneCore) {
-  MachineProfile machine = blocking_machine(500);
-  machine.core_line_interval_cycles = 40;
-  const TileTrace tile = Steps().get(1280, kTriangleTag, 0).wait(bit(kTriangleTag));
-  EXPECT_EQ(replay_on(frame_of({tile}), machine).frame_cycles, 9 * 40 + 516);
-}
-
-TEST(Replay, FullQueueStallsTheIssue) {
-  MachineProfile machine = blocking_machine(500);
-  machine.queue_depth = 2;
-  machine.issue_cycles = 10;
-  Steps tile;
-  for (int i = 0; i < 3; ++i) tile.get(128, kTriangleTag, 0);
-  tile.work(5);
-  const FrameTiming frame = replay_on(frame_of({tile}), machine);
-  // The third get waits for the first, which left at 10 and is there at 526.
-  EXPECT_EQ(frame.cores[0].dma_wait_cycles[kTriangleLevel], 526 - 20);
-  EXPECT_EQ(frame.cores[0].compute_cycles, 3 * 10 + 5);
-  EXPECT_EQ(frame.frame_cycles, 526 + 10 + 5);
-
-  machine.queue_depth = 3;
-  EXPECT_EQ(replay_on(frame_of({tile}), machine).frame_cycles, 3 * 10 + 5);
-
-  machine.queue_depth = 1;  // every get but the first waits for the one before
-  EXPECT_EQ(replay_on(frame_of({tile}), machine).frame_cycles, 526 + 526 + 10 + 5);
-}
-
-TEST(Replay, FullQueueStallHasTheLevelOfTheNewCommand) {
-  MachineProfile machine = blocking_machine(500);
-  machine.queue_depth = 1;
-  const TileTrace tile = Steps().get(128, kMacroTag).put(128, 0, true).work(1);
-  const FrameTiming frame = replay_on(frame_of({tile}), machine);
-  EXPECT_EQ(frame.cores[0].dma_wait_cycles[kTileLevel], 516);
-  EXPECT_EQ(frame.cores[0].dma_wait_cycles[kMacroLevel], 0);
-}
-
-TEST(Replay, CommandThatLeftTheQueueIsNotWaitedForAgain) {
-  // The queue holds one command. When the second tile waits for the first get, that get's place is taken by the second
-  // one, which has had its turn on the channel and is still under way.
-  MachineProfile machine = blocking_machine(500);
-  machine.queue_depth = 1;
-  machine.claim_cycles = 100;
-  const TileTrace first = Steps(0).get(128, kMacroTag).get(128, kTriangleTag).work(10);
-  const TileTrace second = Steps(1).wait(bit(kMacroTag)).work(1);
-  const FrameTiming frame = replay_on(frame_of({first, second}), machine);
-  EXPECT_EQ(frame.cores[0].dma_wait_cycles[kMacroLevel], 0);
-  EXPECT_EQ(frame.frame_cycles, 100 + 516 + 10 + 100 + 1 + 100);
 }
 
 TEST(Replay, FractionsOfACycleCount) {
@@ -422,46 +179,6 @@ TEST(Replay, ClaimsWaitForEarlierTransfersOfOtherCores) {
     if (span.kind == TimelineSpan::Kind::kTile) core_of_tile[span.tile_id] = span.core;
   }
   EXPECT_EQ(core_of_tile, (std::vector<std::uint32_t>{0, 1, 1, 0}));  // core 1 asks at 515, both at 516
-}
-
-TEST(Replay, ChannelServesCoresInOrderOfRequest) {
-  // Both ask at the same times; core 0 first. Lines alternate, so the last lines are one turn apart.
-  const TileTrace tile = Steps().get(1280, kTriangleTag, 0).wait(bit(kTriangleTag));
-  MachineProfile machine = blocking_machine(500);
-  machine.core_line_interval_cycles = 16;
-  const FrameTiming frame = replay_on(frame_of({tile, tile}), machine, 2);
-  EXPECT_EQ(frame.cores[0].dma_wait_cycles[kTriangleLevel], 19 * 16 + 500);
-  EXPECT_EQ(frame.cores[1].dma_wait_cycles[kTriangleLevel], 20 * 16 + 500);
-}
-
-/// Streams 512 KB per core in gets of 16 KB, four in flight. @returns GB/s over all cores.
-double streaming_bandwidth(const MachineProfile& machine, std::uint32_t cores) {
-  Steps tile;
-  constexpr std::uint32_t kGets = 32;
-  for (std::uint32_t i = 0; i < kGets; ++i) {
-    const auto tag = static_cast<std::uint8_t>(kFirstTriangleTag + i % 4);
-    tile.wait(bit(tag)).get(16384, tag, 0);
-  }
-  for (std::uint8_t i = 0; i < 4; ++i) tile.wait(bit(kFirstTriangleTag + i));
-  const FrameTiming frame = replay_on(frame_of(std::vector<TileTrace>(cores, tile)), machine, cores);
-  EXPECT_LE(frame.channel_busy_cycles, frame.frame_cycles);
-  return cores * kGets * 16384.0 / frame.seconds / 1e9;
-}
-
-TEST(Replay, TwoOrMoreCoresSaturateTheChannel) {
-  const MachineProfile& machine = *find_machine_profile("cell-ps3");
-  EXPECT_NEAR(streaming_bandwidth(machine, 1), 16 * 128 / 517.8 * 3.2, 0.15);
-  for (const std::uint32_t cores : {2u, 3u, 6u, 16u}) {
-    EXPECT_NEAR(streaming_bandwidth(machine, cores), 7.2 * 3.2, 0.4) << cores << " cores";
-  }
-}
-
-TEST(Replay, GetsAndPutsShareTheChannel) {
-  MachineProfile machine = blocking_machine(0);
-  const TileTrace in = Steps().get(8192, kTriangleTag, 0).wait(bit(kTriangleTag));
-  const TileTrace out = Steps().put(8192, 0, true).wait(0, 1);
-  EXPECT_EQ(replay_on(frame_of({in}), machine, 1).frame_cycles, 1024);
-  EXPECT_EQ(replay_on(frame_of({in, out}), machine, 2).frame_cycles, 2048);
 }
 
 /// Tiles that wait for their output buffer, work, and put. @returns the frame's wait at the tile level.

@@ -25,11 +25,24 @@ struct RawRender {
   RenderArguments arguments;
   std::string output;
   std::optional<BufferDepths> buffering;
+  std::string machine_name;
+  std::optional<StoreSize> store;
   bool no_mailbox = false, no_culling = false, no_subpackets = false, no_empty_skip = false;
 };
 
 constexpr BufferDepths kSingleBuffering = {.output = 1, .macro = 1, .triangle = 1};
 constexpr BufferDepths kDoubleBuffering = {.output = 2, .macro = 2, .triangle = 2};
+
+constexpr const char* kMachineFormat = R"(A machine file holds one 'key value' per line; # opens a comment.
+Units are in the keys: _hz, _bytes, _cycles (of the core clock; under master. of the general core's own).
+'based_on NAME' as the first key takes what the file leaves out from a built-in machine:
+
+  based_on       cell-ps3
+  name           my-chip
+  core_count     4
+  latency_cycles 250
+
+Ranges and meanings: tools/README.md, "Machines".)";
 
 // Adds an option whose text one of our own parsers turns into a value; `expected` completes the error message.
 template <class Target, class Parser>
@@ -92,16 +105,18 @@ void add_size(CLI::App& app, std::uint32_t& width, std::uint32_t& height, const 
   app.add_option_function<std::string>("--size", set, help)->type_name("WxH")->expected(1);
 }
 
-void add_scene_options(CLI::App& app, SceneArguments& scene) {
+void add_scene_options(CLI::App& app, SceneArguments& scene, std::string& machine_name) {
   app.add_option("INPUT", scene.input, "scene: .ply (mesh) or .gri (made by pack)")->required()->type_name("");
-  Choices<const sim::MachineProfile*> machines;
-  for (const sim::MachineProfile& machine : sim::machine_profiles()) machines.emplace_back(machine.name, &machine);
   Choices<const Configuration*> sets;
   for (const Configuration& configuration : configurations()) sets.emplace_back(configuration.name, &configuration);
-  scene.machine = &sim::machine_profiles().front();
+  machine_name = sim::machine_profiles().front().name;
   scene.configuration = &configurations().front();
-  add_choice(app, "--machine", scene.machine, machines,
-             "machine profile (default " + std::string(scene.machine->name) + ")");
+  std::string built_in;
+  for (const sim::MachineProfile& machine : sim::machine_profiles()) built_in += std::string(machine.name) + "|";
+  const auto any_name = [](const std::string& text) { return text.empty() ? std::nullopt : std::optional(text); };
+  add_parsed(app, "--machine", machine_name, any_name, "a machine's name or file", built_in + "FILE",
+             "machine profile, built in or a text file as 'gridiron machines NAME' prints (default " + machine_name +
+                 ")");
   add_choice(app, "--configuration", scene.configuration, sets,
              "named set of parameters (default " + std::string(scene.configuration->name) + ")");
   const auto lambda = [](const std::string& text) {
@@ -157,8 +172,8 @@ void add_machine_options(CLI::App& app, RawRender& raw) {
              "cores of the machine (default: the profile's)");
   add_parsed(app, "--threads", render.threads, count_between(1, kMostThreads), "a whole number from 1 to 256", "N",
              "host threads (default: the host's); no result depends on it");
-  add_choice(app, "--store", render.store, Choices<StoreSize>{{"64", StoreSize::k64KB}, {"256", StoreSize::k256KB}},
-             "local store in KB (default 256)");
+  add_choice(app, "--store", raw.store, Choices<StoreSize>{{"64", StoreSize::k64KB}, {"256", StoreSize::k256KB}},
+             "local store in KB (default: the larger that the machine has)");
   add_choice(app, "--mode", render.mode,
              Choices<Mode>{{"checked", Mode::kChecked}, {"plain", Mode::kPlain}, {"instrumented", Mode::kInstrumented}},
              "checked (default): every rule checked, work traced; plain: fast, no report; "
@@ -202,6 +217,8 @@ void add_algorithm_options(CLI::App& app, RawRender& raw) {
 RenderArguments complete_render(const RawRender& raw, bool has_seed) {
   RenderArguments render = raw.arguments;
   const Configuration& configuration = *render.scene.configuration;
+  render.scene.machine = find_machine(raw.machine_name);
+  render.store = raw.store.value_or(largest_store(*render.scene.machine));
   render.output = raw.output.empty() ? render.scene.input.stem().concat(".png") : std::filesystem::path(raw.output);
   render.depths = raw.buffering.value_or(configuration.depths);
   // A packet is no wider than a tile.
@@ -268,7 +285,7 @@ Command parse_arguments(int count, const char* const* values) {
 
   RawRender raw;
   CLI::App* render = app.add_subcommand("render", "renders a scene and tells what the frame costs on the chip");
-  add_scene_options(*render, raw.arguments.scene);
+  add_scene_options(*render, raw.arguments.scene, raw.machine_name);
   add_output_options(*render, raw);
   add_size(*render, raw.arguments.width, raw.arguments.height, "picture in pixels (default 1024x1024)");
   add_view_options(*render, raw.arguments);
@@ -276,21 +293,28 @@ Command parse_arguments(int count, const char* const* values) {
   add_algorithm_options(*render, raw);
 
   InfoArguments info_arguments;
+  std::string info_machine;
   CLI::App* info = app.add_subcommand("info", "tells what a scene holds and what it needs");
-  add_scene_options(*info, info_arguments.scene);
+  add_scene_options(*info, info_arguments.scene, info_machine);
   add_choice(*info, "--format", info_arguments.format, kFormats, "how triangles are stored (default vertices)");
   add_size(*info, info_arguments.width, info_arguments.height, "picture whose memory is told (default 1024x1024)");
   info->add_flag("--json", info_arguments.json, "as JSON");
 
   PackArguments pack_arguments;
+  std::string pack_machine;
   CLI::App* pack = app.add_subcommand("pack", "makes a scene image (.gri) that render and firmware read as it is");
-  add_scene_options(*pack, pack_arguments.scene);
+  add_scene_options(*pack, pack_arguments.scene, pack_machine);
   pack->add_option("-o,--output", pack_arguments.output, "scene image")->required()->type_name("FILE");
   add_choice(*pack, "--format", pack_arguments.format, kFormats,
              "vertices (default): for --accuracy standard; projection: for --accuracy paper");
 
   MachinesArguments machines_arguments;
-  CLI::App* machines = app.add_subcommand("machines", "lists the machine profiles");
+  std::string machine;
+  CLI::App* machines =
+      app.add_subcommand("machines", "lists the machine profiles, or prints one as --machine reads it");
+  machines->add_option("MACHINE", machine, "built-in name or machine file: printed in full, to be copied and edited")
+      ->type_name("");
+  machines->footer(kMachineFormat);
   machines->add_flag("--json", machines_arguments.json, "as JSON");
 
   // CLI11 would only say that a subcommand is required.
@@ -315,8 +339,15 @@ Command parse_arguments(int count, const char* const* values) {
     usage_error(std::string(error.what()) + "\nrun 'gridiron" + command + " --help' for the options");
   }
   if (*render) return complete_render(raw, render->count("--seed") > 0);
-  if (*info) return info_arguments;
-  if (*pack) return pack_arguments;
+  if (*info) {
+    info_arguments.scene.machine = find_machine(info_machine);
+    return info_arguments;
+  }
+  if (*pack) {
+    pack_arguments.scene.machine = find_machine(pack_machine);
+    return pack_arguments;
+  }
+  if (machines->count("MACHINE") > 0) machines_arguments.machine = find_machine(machine);
   return machines_arguments;
 }
 

@@ -3,7 +3,6 @@
 #pragma once
 
 #include <gridiron/base/records.h>
-#include <gridiron/sim/machine_profile.h>
 #include <gridiron/sim/sim_chip.h>
 
 #include <filesystem>
@@ -12,6 +11,7 @@
 #include <variant>
 
 #include "configurations.h"
+#include "machine_file.h"
 #include "numbers.h"
 #include "view.h"
 
@@ -20,7 +20,7 @@ namespace gridiron::tool {
 /// Which grid a mesh gets, and which machine's memory it has to fit. A packed scene brings its own grid.
 struct SceneArguments {
   std::filesystem::path input;
-  const sim::MachineProfile* machine = nullptr;
+  Machine machine;  ///< never null
   const Configuration* configuration = nullptr;
   std::optional<float> lambda;
   std::optional<std::uint32_t> macro_width;
@@ -63,6 +63,7 @@ struct PackArguments {
 };
 
 struct MachinesArguments {
+  Machine machine;  ///< the one to print; null: all built-in ones are listed
   bool json = false;
 };
 
@@ -73,7 +74,7 @@ struct TextRequest {
 
 using Command = std::variant<RenderArguments, InfoArguments, PackArguments, MachinesArguments, TextRequest>;
 
-/// Errors: Failure (kUsage) with what is wrong.
+/// Reads a machine file that is named. Errors: Failure, kUsage with what is wrong, kBadInput of a machine file.
 [[nodiscard]] Command parse_arguments(int count, const char* const* values);
 
 }  // namespace gridiron::tool

@@ -131,7 +131,8 @@ void print_text(const InfoArguments& arguments, const SceneFacts& facts, const S
 
 void run_command(const InfoArguments& arguments) {
   const SceneFacts facts = collect_scene_facts(arguments);
-  const StoreFacts store = store_facts(sim::StoreSize::k256KB, arguments.scene.configuration->packet_width);
+  const StoreFacts store =
+      store_facts(largest_store(*arguments.scene.machine), arguments.scene.configuration->packet_width);
   arguments.json ? print_json(arguments, facts, store) : print_text(arguments, facts, store);
 }
 

@@ -47,7 +47,7 @@ class Descriptor {
 
 }  // namespace
 
-InputFile read_input_file(const std::filesystem::path& path) {
+InputFile read_input_file(const std::filesystem::path& path, std::size_t most_bytes) {
   const Descriptor file(::open(path.c_str(), O_RDONLY | O_CLOEXEC));
   struct stat status {};
   if (file.value() < 0 || ::fstat(file.value(), &status) != 0) fail(path, errno);
@@ -71,6 +71,7 @@ InputFile read_input_file(const std::filesystem::path& path) {
     if (got < 0) fail(path, errno);
     if (got == 0) break;
     used += static_cast<std::size_t>(got);
+    if (used > most_bytes) fail(path, EFBIG);
   }
   input.bytes = {input.storage.get(), used};
   return input;

@@ -4,6 +4,7 @@
 
 #include <cstddef>
 #include <filesystem>
+#include <limits>
 #include <memory>
 #include <new>
 #include <span>
@@ -28,8 +29,9 @@ struct InputFile {
   std::span<const std::byte> bytes;
 };
 
-/// Reads a whole file. Errors: Failure (kBadInput) that names the file and the reason; a missing scan of the reference
-/// figures is told how to get.
-[[nodiscard]] InputFile read_input_file(const std::filesystem::path& path);
+/// Reads a whole file. Errors: Failure (kBadInput) that names the file and the reason, also where it is larger than
+/// `most_bytes`; a missing scan of the reference figures is told how to get.
+[[nodiscard]] InputFile read_input_file(const std::filesystem::path& path,
+                                        std::size_t most_bytes = std::numeric_limits<std::size_t>::max());
 
 }  // namespace gridiron::tool

@@ -1,4 +1,4 @@
-// machines: the machine profiles. SPDX-License-Identifier: Apache-2.0
+// machines: the machine profiles, as a list, as a machine file, or as JSON. SPDX-License-Identifier: Apache-2.0
 #include <report/report.h>
 
 #include <cstdio>
@@ -15,6 +15,10 @@ nlohmann::ordered_json json_of(const sim::MachineProfile& machine) {
   for (std::uint32_t kind = 0; kind < kWorkKindCount; ++kind) {
     work[std::string(work_name(static_cast<Work>(kind)))] = machine.work_cycles[kind];
   }
+  nlohmann::ordered_json steps = nlohmann::ordered_json::object();
+  for (std::size_t step = 0; step < sim::kBuildStepCount; ++step) {
+    steps[std::string(build_step_name(static_cast<sim::BuildStep>(step)))] = machine.master.step_cycles[step];
+  }
   return {{"name", machine.name},
           {"description", machine.description},
           {"cores", machine.core_count},
@@ -30,7 +34,8 @@ nlohmann::ordered_json json_of(const sim::MachineProfile& machine) {
           {"channel_bytes_per_cycle", machine.channel_bytes_per_cycle},
           {"core_line_interval_cycles", machine.core_line_interval_cycles},
           {"claim_cycles", machine.claim_cycles},
-          {"work_cycles", work}};
+          {"work_cycles", work},
+          {"master", {{"clock_hz", machine.master.clock_hz}, {"step_cycles", steps}}}};
 }
 
 }  // namespace
@@ -38,9 +43,17 @@ nlohmann::ordered_json json_of(const sim::MachineProfile& machine) {
 void run_command(const MachinesArguments& arguments) {
   if (arguments.json) {
     nlohmann::ordered_json list = nlohmann::ordered_json::array();
-    for (const sim::MachineProfile& machine : sim::machine_profiles()) list.push_back(json_of(machine));
+    if (arguments.machine) {
+      list.push_back(json_of(*arguments.machine));
+    } else {
+      for (const sim::MachineProfile& machine : sim::machine_profiles()) list.push_back(json_of(machine));
+    }
     const nlohmann::ordered_json document = {{"version", 1}, {"machines", list}};
     std::printf("%s\n", document.dump(2).c_str());
+    return;
+  }
+  if (arguments.machine) {
+    std::printf("%s", machine_text(*arguments.machine).c_str());
     return;
   }
   for (const sim::MachineProfile& machine : sim::machine_profiles()) {

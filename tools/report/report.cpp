@@ -169,6 +169,42 @@ std::string_view work_name(Work kind) {
   return "";
 }
 
+std::string_view build_step_name(sim::BuildStep step) {
+  switch (step) {
+    case sim::BuildStep::kVertexCheck:
+      return "vertex_check";
+    case sim::BuildStep::kTriangleSurvey:
+      return "triangle_survey";
+    case sim::BuildStep::kCellBox:
+      return "cell_box";
+    case sim::BuildStep::kCellRow:
+      return "cell_row";
+    case sim::BuildStep::kReferenceInsert:
+      return "reference_insert";
+    case sim::BuildStep::kReferenceSort:
+      return "reference_sort";
+    case sim::BuildStep::kTriangleWrite:
+      return "triangle_write";
+    case sim::BuildStep::kProjectionSetup:
+      return "projection_setup";
+    case sim::BuildStep::kCellSum:
+      return "cell_sum";
+    case sim::BuildStep::kMacroWord:
+      return "macro_word";
+    case sim::BuildStep::kCheckedLine:
+      return "checked_line";
+    case sim::BuildStep::kBinUpdate:
+      return "bin_update";
+    case sim::BuildStep::kTriangleMoved:
+      return "triangle_moved";
+    case sim::BuildStep::kNodeMade:
+      return "node_made";
+    case sim::BuildStep::kCount:
+      break;
+  }
+  return "";
+}
+
 std::string_view wait_level_name(sim::WaitLevel level) {
   switch (level) {
     case sim::WaitLevel::kTile:

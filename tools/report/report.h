@@ -64,6 +64,9 @@ struct ReportInput {
 /// @returns the stable snake_case name of a kind of work.
 [[nodiscard]] std::string_view work_name(Work kind);
 
+/// @returns the stable snake_case name of a step of a build.
+[[nodiscard]] std::string_view build_step_name(sim::BuildStep step);
+
 /// @returns the stable name of a wait level: tile, macrocell, triangle, setup.
 [[nodiscard]] std::string_view wait_level_name(sim::WaitLevel level);
 

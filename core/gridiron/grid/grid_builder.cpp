@@ -226,6 +226,7 @@ class MacroWindow {
 // One sweep over the triangles: marks the macrocells inside the window, and finds where the next one has to begin.
 struct Sweep {
   std::uint64_t reference_count = 0;
+  std::uint64_t row_count = 0;
   std::uint64_t next_begin = ~std::uint64_t{0};  // no macrocell between the window's end and this one is touched
 };
 
@@ -250,6 +251,7 @@ Status sweep_window(const MeshView& mesh, const GridRecord& grid, MacroWindow& w
     }
     for_each_cell_row(box, [&](std::int32_t x0, std::int32_t x1, std::int32_t y, std::int32_t z) {
       sweep.reference_count += static_cast<std::uint64_t>(x1 - x0 + 1);
+      ++sweep.row_count;
       const std::uint64_t row = macros.row_index(y, z);
       const std::uint64_t last = row + macros.macro_of(x1);
       for (std::uint64_t macro_cell = row + macros.macro_of(x0); macro_cell <= last; ++macro_cell) {
@@ -494,11 +496,17 @@ Status count_scene_image(const MeshView& mesh, const GridParameters& parameters,
   MacroWindow window;
   std::uint64_t reference_count = 0;
   std::uint64_t block_count = 1;
+  GridSteps steps{};
   for (std::uint64_t begin = 0; begin != ~std::uint64_t{0};) {
     Sweep sweep;
     window.move_to(begin);
     GRIDIRON_TRY(sweep_window(mesh, grid, window, sweep));
-    if (begin == 0) reference_count = sweep.reference_count;
+    if (begin == 0) {
+      reference_count = sweep.reference_count;
+      steps.row_count = sweep.row_count;
+    }
+    ++steps.sweep_count;
+    steps.swept_row_count += sweep.row_count;
     block_count += window.size();
     begin = sweep.next_begin;
   }
@@ -510,6 +518,7 @@ Status count_scene_image(const MeshView& mesh, const GridParameters& parameters,
   need.dropped_triangle_count = static_cast<std::uint32_t>(mesh.triangles.size() - kept.count);
   need.image_bytes = layout_of(grid).image_bytes;
   need.scratch_bytes = 0;
+  need.steps = steps;
   return Status::kOk;
 }
 

@@ -19,12 +19,20 @@ struct GridParameters {
   TriangleFormat format = TriangleFormat::kVertices;  ///< how triangles are stored
 };
 
+/// Steps of counting and building that do not follow from the rest of a GridNeed: what a cost model multiplies.
+struct GridSteps {
+  std::uint32_t sweep_count;      ///< sweeps over all triangles that counting took, at least 1; building takes one more
+  std::uint64_t swept_row_count;  ///< rows of cells that those sweeps met; for_each_cell_row's
+  std::uint64_t row_count;        ///< rows of cells that building will meet
+};
+
 /// What a scene image of a mesh will hold and need, counted exactly.
 struct GridNeed {
   GridRecord grid;                       ///< complete, as it will stand in the image
   std::uint32_t dropped_triangle_count;  ///< zero-area triangles (decided exactly)
   std::uint64_t image_bytes;             ///< size of the image, a multiple of kLineBytes
   std::uint64_t scratch_bytes;           ///< working memory of build_scene_image, free again afterwards
+  GridSteps steps;
 };
 
 /// Counts what build_scene_image will need. Itself needs no memory beyond a fixed stack frame.

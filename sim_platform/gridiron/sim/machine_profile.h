@@ -5,13 +5,42 @@
 #include <gridiron/base/work_counters.h>
 
 #include <array>
+#include <cstddef>
 #include <cstdint>
 #include <span>
 #include <string_view>
 
 namespace gridiron::sim {
 
-/// All times in cycles of the core clock.
+/// Steps of building a scene's data structure that cost time on the general core, for grid and hierarchy.
+enum class BuildStep : std::uint8_t {
+  kVertexCheck,      ///< vertices held against NaN and infinity
+  kTriangleSurvey,   ///< triangles read: indices, zero area, bounds
+  kCellBox,          ///< triangles swept: zero area, box of cells, once per sweep
+  kCellRow,          ///< rows of cells met in all sweeps
+  kReferenceInsert,  ///< references listed as (cell, triangle)
+  kReferenceSort,    ///< references sorted by cell
+  kTriangleWrite,    ///< triangle records written, one a reference
+  kProjectionSetup,  ///< of these, records of the paper's projected form
+  kCellSum,          ///< cells of blocks cleared and summed
+  kMacroWord,        ///< words of the macrocell table
+  kCheckedLine,      ///< 128-byte lines of the scene image cleared and added to its check value
+  kBinUpdate,        ///< hierarchy: (triangle, axis) entered into a bin of the surface area heuristic
+  kTriangleMoved,    ///< hierarchy: triangles moved to their side of a split
+  kNodeMade,         ///< hierarchy: nodes written, inner and leaf, the sweep over an inner node's bins included
+  kCount
+};
+inline constexpr std::size_t kBuildStepCount = static_cast<std::size_t>(BuildStep::kCount);
+
+/// The general core, which builds the scene image before the cores render it. One core of it works.
+struct MasterProfile {
+  double clock_hz;
+  std::array<double, kBuildStepCount> step_cycles;  ///< cycles of its own clock per step, memory included
+
+  bool operator==(const MasterProfile&) const = default;
+};
+
+/// All times in cycles of the core clock, but those of `master`.
 struct MachineProfile {
   std::string_view name;
   std::string_view description;
@@ -29,6 +58,9 @@ struct MachineProfile {
   double core_line_interval_cycles;     ///< least distance between two lines of one core
   double claim_cycles;                  ///< from asking for a tile to having it
   std::array<double, kWorkKindCount> work_cycles;  ///< cycles per unit of each kind of work, 4 lanes
+  MasterProfile master;
+
+  bool operator==(const MachineProfile&) const = default;
 };
 
 /// The built-in profiles, `cell-ps3` first.

@@ -73,6 +73,9 @@ struct ReplayOptions {
 /// puts alike, by the time they left, ties by core; latency_cycles after its turn on the channel has ended the line is
 /// there. A command leaves the queue with its last line.
 ///
+/// First come, first served is fair: cores that stream alike get alike, and a line waits for at most lines_in_flight
+/// lines of each other core.
+///
 /// Time is counted in integers of 1/1024 cycle: profile values are rounded to them first, and the result depends on
 /// nothing else. Values of the profile that mean nothing are taken as the nearest that does: cycles below 0 as 0 and
 /// above 2^20 as 2^20, counts of 0 as 1, queue_depth and lines_in_flight above 65,536 as that;

@@ -14,7 +14,7 @@ class SceneInputTest : public ::testing::Test {
   SceneInputTest() {
     const TestMesh mesh = make_sphere(40, 60, 1.0f);
     arguments_.input = folder_.write_ply("sphere.ply", mesh);
-    arguments_.machine = &sim::machine_profiles().front();
+    arguments_.machine = tool::find_machine("cell-ps3");
     arguments_.configuration = tool::find_configuration("reference");
     input_ = tool::read_scene_input(arguments_.input);
   }

@@ -32,7 +32,7 @@ TEST(Usage, MistakesExitWithTwoAndSayWhy) {
       {{"render", "a.ply", "--fov", "180"}, "180"},
       {{"render", "a.ply", "--cores", "0"}, "1 to 1024"},
       {{"render", "a.ply", "--threads", "-1"}, "1 to 256"},
-      {{"render", "a.ply", "--machine", "abacus"}, "cell-ps3|"},
+      {{"render", "a.ply", "--machine", ""}, "a machine's name or file"},
       {{"render", "a.ply", "--configuration", "fastest"}, "reference|deep"},
       {{"render", "a.ply", "--buffering", "triple"}, "single|double"},
       {{"render", "a.ply", "--accuracy", "exact"}, "standard|paper"},
@@ -55,7 +55,7 @@ TEST(Usage, MistakesExitWithTwoAndSayWhy) {
       {{"info"}, "INPUT"},
       {{"pack", "a.ply"}, "--output"},
       {{"pack", "a.ply", "-o", "a.gri", "--format", "lattice"}, "vertices|projection"},
-      {{"machines", "cell-ps3"}, "cell-ps3"},
+      {{"machines", "cell-ps3", "cell-2006"}, "cell-2006"},
   };
   const TemporaryFolder folder;
   for (const Case& mistake : cases) {

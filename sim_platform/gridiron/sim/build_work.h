@@ -1,0 +1,37 @@
+// Build work: counted steps of building a scene's data structure, and what they cost on a machine's general core.
+// Memory: plain values. Threads: any. SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <gridiron/grid/grid_builder.h>
+#include <gridiron/sim/machine_profile.h>
+
+#include <array>
+#include <cstddef>
+#include <cstdint>
+
+namespace gridiron::sim {
+
+/// How often each step of a build was done. The same on every host.
+struct BuildWork {
+  std::array<std::uint64_t, kBuildStepCount> counts{};
+
+  constexpr void add(BuildStep step, std::uint64_t amount) { counts[static_cast<std::size_t>(step)] += amount; }
+  [[nodiscard]] constexpr std::uint64_t operator[](BuildStep step) const {
+    return counts[static_cast<std::size_t>(step)];
+  }
+};
+
+/// Counting and building the grid: count_scene_image with this result, then build_scene_image.
+///
+/// @param vertex_count, triangle_count  of the mesh, dropped triangles included.
+/// @param need                          from count_scene_image.
+[[nodiscard]] BuildWork grid_build_work(std::uint64_t vertex_count, std::uint64_t triangle_count, const GridNeed& need);
+
+/// @returns cycles of `master`'s clock that one core needs for `work`; a sum of whole counts times profile values in
+/// the order of BuildStep, so equal to the last digit on every host.
+[[nodiscard]] double build_cycles(const MasterProfile& master, const BuildWork& work);
+
+/// @returns simulated seconds; 0 where the clock is not positive.
+[[nodiscard]] double build_seconds(const MasterProfile& master, const BuildWork& work);
+
+}  // namespace gridiron::sim

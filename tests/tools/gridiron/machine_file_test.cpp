@@ -1,0 +1,187 @@
+// Machine files: what is printed reads back identical, and every complaint has its line.
+// SPDX-License-Identifier: Apache-2.0
+#include "gridiron/machine_file.h"
+
+#include <gtest/gtest.h>
+
+#include "gridiron/failure.h"
+#include "temporary_folder.h"
+
+namespace gridiron::test {
+namespace {
+
+using sim::MachineProfile;
+using tool::Machine;
+
+std::string failure_of(const std::filesystem::path& path) {
+  try {
+    (void)tool::read_machine_file(path);
+  } catch (const tool::Failure& failure) {
+    EXPECT_EQ(failure.code(), tool::ExitCode::kBadInput);
+    return failure.what();
+  }
+  return "accepted";
+}
+
+std::string without_line(const std::string& text, const std::string& key) {
+  const std::size_t begin = text.find("\n" + key + " ");
+  EXPECT_NE(begin, std::string::npos) << key;
+  return text.substr(0, begin) + text.substr(text.find('\n', begin + 1));
+}
+
+TEST(MachineFile, BuiltInProfilesReadBackIdentical) {
+  const TemporaryFolder folder;
+  for (const MachineProfile& machine : sim::machine_profiles()) {
+    const Machine copy = tool::read_machine_file(folder.write("a.machine", tool::machine_text(machine)));
+    EXPECT_EQ(*copy, machine) << machine.name;
+  }
+}
+
+TEST(MachineFile, EveryDigitReadsBackIdentical) {
+  MachineProfile machine = *sim::find_machine_profile("cell-ps3");
+  machine.clock_hz = 1e9 / 3;
+  machine.latency_cycles = 0.1 + 0.2;
+  machine.channel_bytes_per_cycle = 65536;
+  machine.claim_cycles = 1e-300;
+  machine.main_memory_bytes = std::uint64_t{1} << 40;
+  machine.work_cycles[0] = 123456.0 / 7;
+  machine.master.step_cycles[0] = 1.0 / 3;
+  const TemporaryFolder folder;
+  EXPECT_EQ(*tool::read_machine_file(folder.write("a.machine", tool::machine_text(machine))), machine);
+}
+
+TEST(MachineFile, ABaseGivesWhatIsNotSaid) {
+  const TemporaryFolder folder;
+  const Machine machine = tool::read_machine_file(
+      folder.write("mine.machine",
+                   "\xEF\xBB\xBF# my chip\r\n\r\nbased_on\tcell-ps3\r\n core_count 4 # half of it\r\nclock_hz 1.5e9\n"
+                   "work_cycles.cell_step 12.5\nmaster.step_cycles.node_made 7\nmaster.clock_hz 2e9\nqueue_depth 1"));
+  MachineProfile expected = *sim::find_machine_profile("cell-ps3");
+  expected.name = "mine";
+  expected.description = "based on cell-ps3";
+  expected.core_count = 4;
+  expected.clock_hz = 1.5e9;
+  expected.queue_depth = 1;
+  expected.work_cycles[static_cast<std::size_t>(Work::kCellStep)] = 12.5;
+  expected.master.step_cycles[static_cast<std::size_t>(sim::BuildStep::kNodeMade)] = 7;
+  expected.master.clock_hz = 2e9;
+  EXPECT_EQ(*machine, expected);
+}
+
+TEST(MachineFile, NamesAndDescriptionsAreText) {
+  const TemporaryFolder folder;
+  const Machine machine = tool::read_machine_file(
+      folder.write("a.machine", "based_on cell-2006\nname chip-7\ndescription  8 cores, as we think of them  # now\n"));
+  EXPECT_EQ(machine->name, "chip-7");
+  EXPECT_EQ(machine->description, "8 cores, as we think of them");
+  EXPECT_EQ(tool::read_machine_file(folder.write("two words.machine", "based_on cell-2006\n"))->name, "unnamed");
+}
+
+TEST(MachineFile, WithoutABaseEveryKeyIsAsked) {
+  const TemporaryFolder folder;
+  const std::string text = tool::machine_text(*sim::find_machine_profile("cell-ps3"));
+  const auto lines = std::to_string(std::count(text.begin(), text.end(), '\n') - 1);
+  std::istringstream stream(text);
+  int keys = 0;
+  for (std::string line; std::getline(stream, line);) {
+    const std::string key = line.substr(0, line.find(' '));
+    if (key == "name" || key == "description") continue;
+    ++keys;
+    const auto path = folder.write("a.machine", without_line(text, key));
+    EXPECT_EQ(failure_of(path), path.string() + ":" + lines + ": the file ends without '" + key +
+                                    "', and has no 'based_on' to take it from");
+  }
+  // 13 numbers and the master's clock; three kinds of work are charged as events and have no key.
+  EXPECT_EQ(keys, static_cast<int>(14 + kWorkKindCount - 3 + sim::kBuildStepCount));
+  EXPECT_NE(tool::read_machine_file(folder.write("b.machine", without_line(text, "description")))->description, "");
+}
+
+TEST(MachineFile, NamesTheLineOfEveryDefect) {
+  struct Case {
+    std::string content;
+    const char* line_and_reason;
+  };
+  const std::string base = "based_on cell-ps3\n";
+  const Case cases[] = {
+      {base + "cores 4\n", ":2: unknown key 'cores'"},
+      {base + "Core_count 4\n", ":2: unknown key; keys are words"},
+      {base + "work_cycles.paint 4\n", ":2: unknown key 'work_cycles.paint'"},
+      {base + "work_cycles.wait 4\n", ":2: unknown key 'work_cycles.wait'"},
+      {base + "core_count 4\n\ncore_count 4\n", ":4: second 'core_count'"},
+      {base + "name a\nname b\n", ":3: second 'name'"},
+      {base + base, ":2: second 'based_on'"},
+      {"core_count 4\n" + base, ":2: 'based_on' must be the first key"},
+      {"based_on abacus\n", ":1: 'abacus' is no built-in machine; there are cell-ps3, cell-2006"},
+      {"based_on\n", ":1: '' is no built-in machine"},
+      {base + "core_count\n", ":2: 'core_count' has no value"},
+      {base + "name # none\n", ":2: 'name' has no value"},
+      {base + "name two words\n", ":2: 'name' takes one word"},
+      {base + "core_count 4 5\n", ":2: 'core_count' takes one number"},
+      {base + "core_count four\n", ":2: 'four' is not a whole number"},
+      {base + "core_count 4.5\n", ":2: '4.5' is not a whole number"},
+      {base + "core_count -4\n", ":2: '-4' is not a whole number"},
+      {base + "clock_hz 3GHz\n", ":2: '3GHz' is not a number"},
+      {base + "clock_hz nan\n", ":2: 'nan' is not a number"},
+      {base + "clock_hz inf\n", ":2: 'inf' is not a number"},
+      {base + "clock_hz 0x10\n", ":2: '0x10' is not a number"},
+      {base + "core_count 0\n", ":2: 'core_count' must be from 1 to 1024, not '0'"},
+      {base + "core_count 1025\n", ":2: 'core_count' must be from 1 to 1024, not '1025'"},
+      {base + "core_count 99999999999999999999999\n", ":2: 'core_count' must be from 1 to 1024"},
+      {base + "clock_hz 1e999\n", ":2: 'clock_hz' must be from 1 to 1e12, not '1e999'"},
+      {base + "local_store_bytes 32768\n", ":2: 'local_store_bytes' must be from 65536 to 1073741824, not '32768'"},
+      {base + "main_memory_bytes 1\n", ":2: 'main_memory_bytes' must be from 1048576 to 1099511627776, not '1'"},
+      {base + "latency_cycles -1\n", ":2: 'latency_cycles' must be from 0 to 1048576, not '-1'"},
+      {base + "channel_bytes_per_cycle 0\n", ":2: 'channel_bytes_per_cycle' must be from 0.0625 to 65536, not '0'"},
+      {base + "queue_depth 4097\n", ":2: 'queue_depth' must be from 1 to 4096"},
+      {base + "line_bytes 0\n", ":2: 'line_bytes' must be from 1 to 16384"},
+      {base + "# " + std::string(999, 'x') + "\n", ":2: line of more than 1000 bytes"},
+      {base + std::string(100000, 'x'), ":2: line of more than 1000 bytes"},
+      {base + std::string("core_count\0 4\n", 14), ":2: not a text file"},
+      {"\x7F"
+       "ELF\x02\x01\x01",
+       ":1: not a text file"},
+      {"ply\nformat ascii 1.0\n", ":1: unknown key 'ply'"},
+      {"", ":1: the file ends without 'core_count'"},
+      {"# nothing\n\n", ":2: the file ends without 'core_count'"},
+  };
+  const TemporaryFolder folder;
+  for (const Case& defect : cases) {
+    const auto path = folder.write("a.machine", defect.content);
+    const std::string failure = failure_of(path);
+    EXPECT_EQ(failure.find(path.string() + defect.line_and_reason), 0u)
+        << failure << "\nfor: " << defect.content.substr(0, 200);
+    EXPECT_LT(failure.size(), path.string().size() + 250) << "a complaint does not repeat the file";
+  }
+}
+
+TEST(MachineFile, FilesThatCannotBeRead) {
+  const TemporaryFolder folder;
+  EXPECT_EQ(failure_of(folder.folder()), folder.folder().string() + ": Is a directory");
+  EXPECT_EQ(failure_of(folder.path("none")), folder.path("none").string() + ": No such file or directory");
+  EXPECT_EQ(failure_of("/dev/zero"), "/dev/zero: File too large");
+}
+
+TEST(MachineFile, NamesOfBuiltInMachinesComeFirst) {
+  EXPECT_EQ(tool::find_machine("cell-2006").get(), sim::find_machine_profile("cell-2006"));
+  const TemporaryFolder folder;
+  const std::string path = folder.write("cell-2006", "based_on cell-ps3\ncore_count 3\n").string();
+  EXPECT_EQ(tool::find_machine(path)->core_count, 3u);
+  try {
+    (void)tool::find_machine("abacus");
+    ADD_FAILURE();
+  } catch (const tool::Failure& failure) {
+    EXPECT_STREQ(failure.what(),
+                 "abacus: no such file, and no built-in machine of that name; there are cell-ps3, cell-2006, "
+                 "cell-ps3-2gb");
+  }
+}
+
+TEST(MachineFile, TheStoreFollowsTheMachine) {
+  MachineProfile machine = *sim::find_machine_profile("cell-ps3");
+  EXPECT_EQ(tool::largest_store(machine), sim::StoreSize::k256KB);
+  machine.local_store_bytes = (256u << 10) - 1;
+  EXPECT_EQ(tool::largest_store(machine), sim::StoreSize::k64KB);
+}
+
+}  // namespace
+}  // namespace gridiron::test

@@ -1,0 +1,138 @@
+// machines and --machine: profiles that people print, edit and give back. SPDX-License-Identifier: Apache-2.0
+#include <gtest/gtest.h>
+
+#include <nlohmann/json.hpp>
+
+#include "run_program.h"
+#include "temporary_folder.h"
+
+namespace gridiron::test {
+namespace {
+
+using Json = nlohmann::json;
+using Words = std::vector<std::string>;
+
+ProgramResult run(const TemporaryFolder& folder, const Words& arguments) {
+  const ProgramResult result = run_program(folder.folder(), arguments);
+  EXPECT_EQ(result.exit_code, 0) << result.err;
+  return result;
+}
+
+/// Renders a small torus. @returns the report without the host's seconds.
+Json report_on(const TemporaryFolder& folder, const std::string& machine) {
+  folder.write_ply("a.ply", make_torus(24, 16, 1.0f, 0.4f));
+  run(folder, {"render", "a.ply", "-o", "a.png", "--size", "96x96", "--machine", machine, "--report", "r.json"});
+  Json report = Json::parse(read_file(folder.path("r.json")), nullptr, false);
+  report.erase("host");
+  return report;
+}
+
+TEST(Machines, APrintedProfileRendersTheSameFrame) {
+  const TemporaryFolder folder;
+  for (const char* name : {"cell-ps3", "cell-2006", "cell-ps3-2gb"}) {
+    const std::string text = run(folder, {"machines", name}).out;
+    folder.write("copy.machine", text);
+    EXPECT_EQ(run(folder, {"machines", "copy.machine"}).out, text);
+    EXPECT_EQ(report_on(folder, "copy.machine"), report_on(folder, name)) << name;
+  }
+}
+
+TEST(Machines, EditedFiguresCount) {
+  const TemporaryFolder folder;
+  folder.write("slow.machine", "based_on cell-ps3\nlatency_cycles 5000\ncore_count 2\n");
+  const Json slow = report_on(folder, "slow.machine");
+  EXPECT_EQ(slow["machine"]["name"], "slow");
+  EXPECT_EQ(slow["machine"]["cores"], 2);
+  const Json usual = report_on(folder, "cell-ps3");
+  EXPECT_GT(slow["frame"]["cycles"], usual["frame"]["cycles"]);
+  EXPECT_EQ(slow["image_hash"], usual["image_hash"]) << "a machine changes figures and no pixel";
+}
+
+TEST(Machines, InfoAndPackFitTheMachineOfAFile) {
+  const TemporaryFolder folder;
+  folder.write_ply("a.ply", make_torus(24, 16, 1.0f, 0.4f));
+  folder.write("small.machine", "based_on cell-ps3\nmain_memory_bytes 12650000\nlocal_store_bytes 65536\n");
+  const Json info = Json::parse(run(folder, {"info", "a.ply", "--json", "--machine", "small.machine"}).out);
+  EXPECT_EQ(info["main_memory"]["machine"], "small");
+  EXPECT_EQ(info["main_memory"]["capacity_bytes"], 12650000);
+  EXPECT_EQ(info["local_store"]["arena_bytes"], 65536);
+  EXPECT_LT(info["grid"]["lambda"], 4.0) << "the grid is made to fit";
+  run(folder, {"pack", "a.ply", "-o", "a.gri", "--machine", "small.machine"});
+  const Json packed = Json::parse(run(folder, {"info", "a.gri", "--json"}).out);
+  EXPECT_EQ(packed["grid"]["lambda"], info["grid"]["lambda"]);
+}
+
+TEST(Machines, BadFilesEndWithOneAndRenderNothing) {
+  const TemporaryFolder folder;
+  folder.write_ply("a.ply", make_torus(24, 16, 1.0f, 0.4f));
+  folder.write("bad.machine", "based_on cell-ps3\ncore_count 0\n");
+  const Words before = folder.names();
+  const struct {
+    const char* machine;
+    const char* words;
+  } cases[] = {{"bad.machine", "bad.machine:2: 'core_count' must be from 1 to 1024, not '0'"},
+               {"abacus", "abacus: no such file, and no built-in machine of that name; there are cell-ps3,"},
+               {"a.ply", "a.ply:1: unknown key 'ply'"},
+               {".", ".: Is a directory"}};
+  for (const auto& each : cases) {
+    for (const Words& command : {Words{"render", "a.ply", "--machine"},
+                                 {"info", "a.ply", "--machine"},
+                                 {"pack", "a.ply", "-o", "a.gri", "--machine"},
+                                 {"machines"}}) {
+      Words arguments = command;
+      arguments.emplace_back(each.machine);
+      const ProgramResult result = run_program(folder.folder(), arguments);
+      EXPECT_EQ(result.exit_code, 1) << each.machine;
+      EXPECT_EQ(result.err.find(each.words), 0u) << result.err;
+      EXPECT_EQ(result.out, "");
+      EXPECT_EQ(folder.names(), before);
+    }
+  }
+  // A mistake on the command line is told first.
+  EXPECT_EQ(run_program(folder.folder(), {"render", "a.ply", "--machine", "bad.machine", "--fov", "0"}).exit_code, 2);
+}
+
+TEST(Machines, OneMachineAsJson) {
+  const TemporaryFolder folder;
+  folder.write("mine.machine", "based_on cell-ps3\nmaster.step_cycles.cell_row 99.5\n");
+  const Json document = Json::parse(run(folder, {"machines", "mine.machine", "--json"}).out);
+  ASSERT_EQ(document["machines"].size(), 1u);
+  EXPECT_EQ(document["machines"][0]["name"], "mine");
+  EXPECT_EQ(document["machines"][0]["master"]["step_cycles"]["cell_row"], 99.5);
+  EXPECT_EQ(document["machines"][0]["work_cycles"]["cell_step"], 24);
+}
+
+TEST(Machines, TheExampleFileRenders) {
+  const TemporaryFolder folder;
+  const std::string file = std::string(GRIDIRON_MACHINES) + "/cluster-8.machine";
+  const Json report = report_on(folder, file);
+  EXPECT_EQ(report["machine"]["name"], "cluster-8");
+  EXPECT_EQ(report["machine"]["cores"], 8);
+  EXPECT_EQ(report["machine"]["clock_hz"], 1e9);
+  EXPECT_EQ(report["local_store"]["arena_bytes"], 65536) << "the store of 64 KB is what 128 KB have room for";
+  EXPECT_GT(report["frame"]["fps"], 0.0);
+}
+
+TEST(Machines, TheReadmeNamesEveryKey) {
+  const TemporaryFolder folder;
+  const std::string readme = read_file(std::string(GRIDIRON_MACHINES) + "/../README.md");
+  std::istringstream stream(run(folder, {"machines", "cell-ps3"}).out);
+  for (std::string line; std::getline(stream, line);) {
+    const std::string key = line.substr(0, line.find(' '));
+    const std::size_t dot = key.rfind('.');
+    // Kinds of work and steps are words of their own there.
+    const bool is_listed = dot != std::string::npos && key != "master.clock_hz";
+    const std::string word = is_listed ? key.substr(dot + 1) : key;
+    EXPECT_NE(readme.find("`" + word + "`"), std::string::npos) << key;
+  }
+}
+
+TEST(Machines, HelpShowsTheFormat) {
+  const TemporaryFolder folder;
+  const std::string help = run(folder, {"machines", "--help"}).out;
+  EXPECT_NE(help.find("based_on       cell-ps3"), std::string::npos) << help;
+  EXPECT_NE(run(folder, {"render", "--help"}).out.find("cell-ps3-2gb|FILE"), std::string::npos);
+}
+
+}  // namespace
+}  // namespace gridiron::test
