@@ -49,12 +49,6 @@ class TileSource {
     progress_(done_, total_);
   }
 
-  /// @returns the first tile that nobody has claimed, or end_tile.
-  [[nodiscard]] std::uint64_t next() const {
-    const std::uint64_t next = next_.load(std::memory_order_relaxed);
-    return next < end_tile_ ? next : end_tile_;
-  }
-
   /// From now on every claim is answered kAborted.
   void stop() { stopped_.store(true, std::memory_order_relaxed); }
 
