@@ -34,6 +34,7 @@ enum class Work : std::uint8_t {
   kReachGroup,        ///< SIMD groups of which the farthest hit was sought, or held against a cell's entry
   kShadedGroup,       ///< ray groups turned into pixels without shading
   kShadedSimpleGroup, ///< ray groups shaded by facing ratio
+  kFootprintGroup,    ///< SIMD groups of subpackets held against a cell
   kGetIssue,          ///< get commands issued
   kPutIssue,          ///< put commands issued
   kWait,              ///< waits

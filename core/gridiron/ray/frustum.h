@@ -111,6 +111,10 @@ template <class L, class PacketType>
   const Float v_scale(grid.cells_per_unit[v]);
   Float low_u(kFloatMax), high_u(-kFloatMax), low_v(kFloatMax), high_v(-kFloatMax);
   for (std::uint32_t base = 0; base < kRays; base += L::kCount) {
+    if (base % kSubpacketRays == 0) {
+      low_u = low_v = Float(kFloatMax);
+      high_u = high_v = Float(-kFloatMax);
+    }
     const Float march = Float::load(packet.dir[k] + base) * march_scale;
     const Float along_u = Float::load(packet.dir[u] + base) * u_scale;
     const Float along_v = Float::load(packet.dir[v] + base) * v_scale;
@@ -127,6 +131,12 @@ template <class L, class PacketType>
     high_u = L::max(high_u, L::select(joined, slope_u, Float(-kFloatMax)));
     low_v = L::min(low_v, L::select(joined, slope_v, Float(kFloatMax)));
     high_v = L::max(high_v, L::select(joined, slope_v, Float(-kFloatMax)));
+    if ((base + L::kCount) % kSubpacketRays != 0) continue;
+    const std::uint32_t subpacket = base / kSubpacketRays;
+    packet.slope_low[0][subpacket] = L::horizontal_min(low_u);
+    packet.slope_high[0][subpacket] = L::horizontal_max(high_u);
+    packet.slope_low[1][subpacket] = L::horizontal_min(low_v);
+    packet.slope_high[1][subpacket] = L::horizontal_max(high_v);
   }
   waiting.erase(leader);  // a direction that vanishes or overflows in cell space, or is not finite, is a miss
   const auto larger = [](float a, float b) { return a > b ? a : b; };
@@ -157,8 +167,18 @@ template <class L, class PacketType>
     frustum.slope_far[lane + 1] = slope_max > 0.0f ? slope_max : 0.0f;
     frustum.limit[lane] = frustum.limit[lane + 1] = static_cast<float>(grid.cell_count[axis]);
   };
-  set_bounds(u, 0, L::horizontal_min(low_u), L::horizontal_max(high_u));
-  set_bounds(v, 2, L::horizontal_min(low_v), L::horizontal_max(high_v));
+  const auto least = [](const float* values) {
+    float result = kFloatMax;
+    for (std::uint32_t i = 0; i < PacketType::kSubpacketCount; ++i) result = values[i] < result ? values[i] : result;
+    return result;
+  };
+  const auto greatest = [](const float* values) {
+    float result = -kFloatMax;
+    for (std::uint32_t i = 0; i < PacketType::kSubpacketCount; ++i) result = values[i] > result ? values[i] : result;
+    return result;
+  };
+  set_bounds(u, 0, least(packet.slope_low[0]), greatest(packet.slope_high[0]));
+  set_bounds(v, 2, least(packet.slope_low[1]), greatest(packet.slope_high[1]));
   frustum.depth_per_t = grid.cells_per_unit[k];
   return true;
 }

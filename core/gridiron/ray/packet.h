@@ -98,6 +98,11 @@ struct alignas(128) Packet {
   float step_x[3];
   float step_y[3];
   float subpacket_widening;  ///< factor on edge errors that covers this form and its evaluation
+
+  // Slopes of this pass, in cells along u and v per cell along the march: least and greatest of each subpacket's active
+  // rays. Where none is active the least is above the greatest.
+  alignas(64) float slope_low[2][kSubpacketCount];
+  alignas(64) float slope_high[2][kSubpacketCount];
 };
 
 }  // namespace gridiron

@@ -7,6 +7,7 @@
 #include <gridiron/base/lanes.h>
 #include <gridiron/base/records.h>
 #include <gridiron/platform/contract.h>
+#include <gridiron/ray/footprint.h>
 #include <gridiron/ray/frustum.h>
 #include <gridiron/ray/intersect_projection.h>
 #include <gridiron/ray/intersect_standard.h>
@@ -56,13 +57,19 @@ class PacketDriver {
     std::uint32_t count;
     std::uint32_t first_byte;  ///< where the run starts in its buffer
     float entry;               ///< march distance of its cell's slice
+    SubpacketSet touching;     ///< subpackets that may touch the cell
   };
 
   // Starts the get of the next run of triangles, or sets cells_done_.
   [[nodiscard]] Status fetch_next_run() {
     if (frustum_.beyond(Slab{cell_.entry, cell_.entry}, reach_)) cell_.triangle_count = 0;
     while (cell_.triangle_count == 0) {
-      if (walking_ && cell_walk_.next(frustum_, front_cells(), reach_, cell_, store_.work)) break;
+      if (walking_ && cell_walk_.next(frustum_, front_cells(), reach_, cell_, store_.work)) {
+        touching_ = subpackets_that_see(cell_);
+        if (touching_ != 0) break;
+        cell_.triangle_count = 0;
+        continue;
+      }
       walking_ = false;
       GRIDIRON_TRY(enter_next_macro_cell());
       if (cells_done_) return Status::kOk;
@@ -72,7 +79,7 @@ class PacketDriver {
                               std::uint64_t{cell_.first_triangle} * kTriangleRecordBytes};
     const std::uint32_t slot = triangle_ring_.push();
     const std::uint32_t first_byte = static_cast<std::uint32_t>(address.value % kPortableCongruenceBytes);
-    runs_[slot] = {count, first_byte, cell_.entry};
+    runs_[slot] = {count, first_byte, cell_.entry, touching_};
     cell_.first_triangle += count;
     cell_.triangle_count -= count;
     return transfers_.get(store_.triangles[slot].bytes + first_byte, address, count * kTriangleRecordBytes,
@@ -128,6 +135,20 @@ class PacketDriver {
     return Status::kOk;
   }
 
+  // Subpackets that have hit nothing in front of `entry` yet.
+  [[nodiscard]] SubpacketSet open_subpackets(float entry) {
+    if ((store_.frame.techniques & kUseSubpackets) == 0) return StorePacket::kAllSubpackets;
+    return reaches_.template open<L>(frustum_, entry, store_.work);
+  }
+
+  // Those of the open subpackets that may touch a cell.
+  [[nodiscard]] SubpacketSet subpackets_that_see(const CellVisit& cell) {
+    const SubpacketSet open = open_subpackets(cell.entry);
+    if ((store_.frame.techniques & kUseSubpackets) == 0) return open;
+    return subpackets_touching<L>(store_.packet, frustum_, Slab{cell.entry, cell.exit}, cell.u, cell.v, open,
+                                  store_.work);
+  }
+
   // Waits for the oldest run and tests it, unless every ray has meanwhile hit something in front of it.
   [[nodiscard]] Status test_front_run() {
     const std::uint32_t slot = triangle_ring_.front();
@@ -135,10 +156,10 @@ class PacketDriver {
     const TriangleRun& run = runs_[slot];
     if (!frustum_.beyond(Slab{run.entry, run.entry}, reach_)) {
       store_.work.add(Work::kTriangleBatch);
-      const bool by_subpackets = (store_.frame.techniques & kUseSubpackets) != 0;
-      const SubpacketSet open = by_subpackets ? reaches_.template open<L>(frustum_, run.entry, store_.work)
-                                              : StorePacket::kAllSubpackets;
-      const SubpacketSet changed = test_run(store_.triangles[slot].bytes + run.first_byte, run.count, open);
+      const SubpacketSet open = open_subpackets(run.entry);
+      // The others are tested too, so that no triangle comes again for them from a later cell.
+      const SubpacketSet changed =
+          (open & run.touching) != 0 ? test_run(store_.triangles[slot].bytes + run.first_byte, run.count, open) : 0;
       if (changed != 0) reach_ = reaches_.template update<L>(store_.packet, frustum_, changed, store_.work);
     }
     triangle_ring_.pop();
@@ -199,7 +220,8 @@ class PacketDriver {
   CellWalk cell_walk_;
   MacroVisit visits_[Layout::kMaxMacroDepth];
   TriangleRun runs_[Layout::kMaxTriangleDepth];
-  CellVisit cell_{0, 0, 0.0f};  ///< the cell whose triangles are being fetched, what is left of it
+  CellVisit cell_{};  ///< the cell whose triangles are being fetched, what is left of it
+  SubpacketSet touching_ = 0;  ///< subpackets that may touch it
   SubpacketReach<StorePacket> reaches_;
   float reach_ = 0.0f;  ///< the largest of them
   bool entered_ = false;  ///< the macrocell ring's front has been waited for

@@ -23,7 +23,8 @@ struct MacroVisit {
 /// A non-empty cell to test.
 struct CellVisit {
   std::uint32_t first_triangle, triangle_count;
-  float entry;  ///< march distance at which its slice begins
+  float entry, exit;  ///< march distances at which its slice begins and ends
+  std::int32_t u, v;
 };
 
 /// Answer of MacroWalk::next().
@@ -154,7 +155,7 @@ class CellWalk {
           const CellRecord& cell = cells[row_ + (u_ - visit_.u_first) * stride_u_ + (v_ - visit_.v_first) * stride_v_];
           if (cell.triangle_count == 0) continue;
           work.add(Work::kCellVisit);
-          found = {cell.first_triangle, cell.triangle_count, entry_};
+          found = {cell.first_triangle, cell.triangle_count, slab_.entry, slab_.exit, u_, v_};
           ++u_;
           return true;
         }
@@ -176,7 +177,7 @@ class CellWalk {
       v_last_ = rect.v_last < visit_.v_last ? rect.v_last : visit_.v_last;
       u_ = u_first_;
       row_ = (k - visit_.k_first) * stride_k_;
-      entry_ = slab.entry;
+      slab_ = slab;
     }
   }
 
@@ -185,7 +186,7 @@ class CellWalk {
   std::int32_t stride_k_, stride_u_, stride_v_;
   std::int32_t step_, row_;
   std::int32_t u_, u_first_, u_last_, v_, v_last_;
-  float entry_;
+  Slab slab_;
 };
 
 }  // namespace gridiron
