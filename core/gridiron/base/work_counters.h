@@ -35,6 +35,7 @@ enum class Work : std::uint8_t {
   kShadedGroup,       ///< ray groups turned into pixels without shading
   kShadedSimpleGroup, ///< ray groups shaded by facing ratio
   kFootprintGroup,    ///< SIMD groups of subpackets held against a cell
+  kRowGroup,          ///< subpackets of which rows were held against a triangle's edges
   kGetIssue,          ///< get commands issued
   kPutIssue,          ///< put commands issued
   kWait,              ///< waits

@@ -250,17 +250,23 @@ inline constexpr SquareOrigins kSquareOrigins = [] {
   return origins;
 }();
 
+/// Subpackets beside a triangle.
+struct NearSubpackets {
+  SubpacketSet touching;  ///< may be touched
+  SubpacketSet covered;   ///< of these, all rays surely pass inside all three edges
+};
+
 /// @returns those of the `wanted` subpackets that triangle `index` of a batch may touch. One is left out where an edge
 /// surely passes all its rays on the outside: the edge function is linear, so its largest value is at a corner.
 template <class L, class PacketType>
-[[nodiscard]] GRIDIRON_INLINE SubpacketSet subpackets_near(const EdgeBatch<L>& batch, std::uint32_t index,
-                                                           SubpacketSet wanted, WorkCounters& work) {
+[[nodiscard]] GRIDIRON_INLINE NearSubpackets subpackets_near(const EdgeBatch<L>& batch, std::uint32_t index,
+                                                             SubpacketSet wanted, WorkCounters& work) {
   using Float = typename L::Float;
   using Four = Lanes<4>;
   constexpr std::uint32_t kSquares = PacketType::kSubpacketCount / 4;
-  if constexpr (kSquares == 0) return wanted;
+  if constexpr (kSquares == 0) return {wanted, 0};
   const std::uint32_t first_lane = 4 * index;
-  if (((batch.in_range >> first_lane) & 0xFu) != 0xFu) return wanted;
+  if (((batch.in_range >> first_lane) & 0xFu) != 0xFu) return {wanted, 0};
   const auto positive = [](float value) { return value > 0.0f ? value : 0.0f; };
   constexpr float kSquareSpan = 2.0f * kSubpacketWidth - 1.0f;
   constexpr float kSubpacketSpan = kSubpacketWidth - 1.0f;
@@ -293,11 +299,14 @@ template <class L, class PacketType>
 
   // 2. The subpackets of those that are left.
   Four::Float offset[3];
+  Four::Float span[3];
   for (std::uint32_t edge = 0; edge < 3; ++edge) {
     const std::uint32_t lane = first_lane + edge;
     alignas(16) float corner[4];
     const float largest =
         kSubpacketSpan * positive(batch.per_column[lane]) + kSubpacketSpan * positive(batch.per_row[lane]);
+    span[edge] = Four::Float(kSubpacketSpan * magnitude(batch.per_column[lane]) +
+                             kSubpacketSpan * magnitude(batch.per_row[lane]));
     for (std::uint32_t i = 0; i < 4; ++i) {
       corner[i] = largest + (static_cast<float>(kSubpacketWidth * subpacket_column(i)) * batch.per_column[lane] +
                              static_cast<float>(kSubpacketWidth * subpacket_row(i)) * batch.per_row[lane]);
@@ -305,19 +314,46 @@ template <class L, class PacketType>
     offset[edge] = Four::Float::load(corner);
   }
   SubpacketSet near = 0;
+  SubpacketSet covered = 0;
   for (; squares != 0; squares &= squares - 1) {
     const std::uint32_t square = static_cast<std::uint32_t>(__builtin_ctz(squares));
     const SubpacketSet four = SubpacketSet{0xF} << (4 * square);
     if ((wanted & four) == 0) continue;
     work.add(Work::kSubpacketGroup);
     std::uint32_t outside = 0;
+    std::uint32_t uncovered = 0;
     for (std::uint32_t edge = 0; edge < 3; ++edge) {
       const Four::Float value = Four::Float(at_square[edge][square]) + offset[edge];
-      outside |= (value < Four::Float(batch.surely_outside[first_lane + edge])).bits();
+      const Four::Float limit(batch.surely_outside[first_lane + edge]);
+      outside |= (value < limit).bits();
+      uncovered |= (value - span[edge] <= -limit).bits();
     }
     near |= SubpacketSet{~outside & 0xFu} << (4 * square);
+    covered |= SubpacketSet{~uncovered & 0xFu} << (4 * square);
   }
-  return near & wanted;
+  return {near & wanted, covered & wanted};
+}
+
+/// @returns those of a subpacket's four rows, bit i = row i, that triangle `index` of a batch may touch.
+template <class L, class PacketType>
+[[nodiscard]] GRIDIRON_INLINE std::uint32_t rows_near(const EdgeBatch<L>& batch, std::uint32_t index,
+                                                      std::uint32_t subpacket, WorkCounters& work) {
+  using Four = Lanes<4>;
+  alignas(16) static constexpr float kRows[4] = {0, 1, 2, 3};
+  work.add(Work::kRowGroup);
+  const float column = static_cast<float>(kSubpacketWidth * subpacket_column(subpacket));
+  const float row = static_cast<float>(kSubpacketWidth * subpacket_row(subpacket));
+  std::uint32_t outside = 0;
+  for (std::uint32_t edge = 0; edge < 3; ++edge) {
+    const std::uint32_t lane = 4 * index + edge;
+    const float per_column = batch.per_column[lane];
+    const float largest = per_column > 0.0f ? (kSubpacketWidth - 1) * per_column : 0.0f;
+    const Four::Float value =
+        Four::Float(batch.first[lane] + (column * per_column + largest)) +
+        (Four::Float(row) + Four::Float::load(kRows)) * Four::Float(batch.per_row[lane]);
+    outside |= (value < Four::Float(batch.surely_outside[lane])).bits();
+  }
+  return ~outside & 0xFu;
 }
 
 /// Intersects triangle `index` of a batch with the active rays of some subpackets, keeping the least (t, id).
@@ -327,7 +363,7 @@ template <class L, class PacketType>
 template <class L, bool kWantFacing, class PacketType>
 [[nodiscard]] GRIDIRON_INLINE SubpacketSet test_groups(PacketType& packet, const VertexTriangle& triangle,
                                                        const EdgeBatch<L>& batch, std::uint32_t index,
-                                                       SubpacketSet subpackets, WorkCounters& work) {
+                                                       NearSubpackets near, bool by_rows, WorkCounters& work) {
   using Float = typename L::Float;
   const std::uint32_t first_lane = 4 * index;
   const std::int32_t orientation = batch.orientation[index];
@@ -341,11 +377,21 @@ template <class L, bool kWantFacing, class PacketType>
   DistanceSetup setup;
   bool setup_done = false;
   SubpacketSet changed = 0;
-  for_each_subpacket<PacketType::kSubpacketCount>(subpackets, [&](std::uint32_t subpacket) GRIDIRON_INLINE_LAMBDA {
+  for_each_subpacket<PacketType::kSubpacketCount>(near.touching, [&](std::uint32_t subpacket) GRIDIRON_INLINE_LAMBDA {
     const std::uint32_t first_ray = subpacket * kSubpacketRays;
+    const bool covered = (near.covered >> subpacket & 1u) != 0;
+    std::uint32_t rows = 0xF;
+    if constexpr (L::kCount == 4) {
+      if (by_rows && !covered) rows = rows_near<L, PacketType>(batch, index, subpacket, work);
+    }
     for (std::uint32_t base = first_ray; base < first_ray + kSubpacketRays; base += L::kCount) {
       const std::uint32_t active = packet.active.template group<L>(base);
       if (active == 0) continue;
+      if constexpr (L::kCount == 4) {
+        if ((rows >> (base - first_ray) / 4 & 1u) == 0) continue;
+      }
+      std::uint32_t inside = active;
+      if (!covered) {
       work.add(Work::kGroupTestStandard);
       const Float d_x = Float::load(packet.dir[0] + base);
       const Float d_y = Float::load(packet.dir[1] + base);
@@ -360,12 +406,13 @@ template <class L, bool kWantFacing, class PacketType>
       // 2. Three edges surely passed on the inside: a hit. Anything else is decided in double, then exactly.
       const std::uint32_t sure_inside[3] = {(e0 > error0).bits() & known, (e1 > error1).bits() & known,
                                             (e2 > error2).bits() & known};
-      std::uint32_t inside = open & sure_inside[0] & sure_inside[1] & sure_inside[2];
+      inside = open & sure_inside[0] & sure_inside[1] & sure_inside[2];
       open &= ~inside;
       if (open != 0) [[unlikely]] {
         inside |= settle_open_lanes<L>(packet, base, open, sure_inside, triangle, orientation, work);
       }
       if (inside == 0) continue;
+      }
       // 3. Distances, and the least (t, id).
       if (!setup_done) {
         set_up_distance(packet.origin, packet.dir_max, triangle, setup);
@@ -415,12 +462,13 @@ template <class L, bool kWantFacing, class PacketType>
   SubpacketSet changed = 0;
   for (std::uint32_t i = 0; i < count; ++i) {
     if (((batch.missed >> (4 * i)) & 0xFu) != 0 || batch.orientation[i] == 0) continue;
-    SubpacketSet near = subpackets[i];
+    NearSubpackets near{subpackets[i], 0};
     if (culling.subpackets) {
       work.add(Work::kSubpacketSetup);
-      near = subpackets_near<L, PacketType>(batch, i, near, work);
+      near = subpackets_near<L, PacketType>(batch, i, subpackets[i], work);
     }
-    changed |= test_groups<L, kWantFacing>(packet, *triangles[i], batch, i, near, work);
+    const bool by_rows = culling.subpackets && ((batch.in_range >> (4 * i)) & 0xFu) == 0xFu;
+    changed |= test_groups<L, kWantFacing>(packet, *triangles[i], batch, i, near, by_rows, work);
   }
   return changed;
 }
