@@ -36,6 +36,8 @@ enum class Work : std::uint8_t {
   kShadedSimpleGroup, ///< ray groups shaded by facing ratio
   kFootprintGroup,    ///< SIMD groups of subpackets held against a cell
   kRowGroup,          ///< subpackets of which rows were held against a triangle's edges
+  kFarSetup,          ///< triangles for which the filter of hits behind others was set up
+  kHitHalf,           ///< halves of groups of which distances were computed in double
   kGetIssue,          ///< get commands issued
   kPutIssue,          ///< put commands issued
   kWait,              ///< waits

@@ -43,6 +43,33 @@ void set_up_distance(const float origin[3], float dir_max, const VertexTriangle&
   setup.facing_scale = 1.0 / square_root(squared_length);
 }
 
+FarFilter set_up_far_filter(const float origin[3], float dir_max, const VertexTriangle& triangle) {
+  FarFilter filter;
+  float edge1[3], edge2[3];
+  for (int i = 0; i < 3; ++i) {
+    edge1[i] = triangle.v[1][i] - triangle.v[0][i];
+    edge2[i] = triangle.v[2][i] - triangle.v[0][i];
+  }
+  float numerator = 0.0f, numerator_size = 0.0f, normal_size = 0.0f;
+  for (int i = 0; i < 3; ++i) {
+    const int j = i == 2 ? 0 : i + 1;
+    const int k = j == 2 ? 0 : j + 1;
+    const float first = edge1[j] * edge2[k];
+    const float second = edge1[k] * edge2[j];
+    const float size = magnitude(first) + magnitude(second);
+    const float from_origin = triangle.v[0][i] - origin[i];
+    filter.normal[i] = first - second;
+    normal_size += size;
+    numerator += from_origin * filter.normal[i];
+    numerator_size += magnitude(from_origin) * size;
+  }
+  filter.widening = kFarError * (dir_max * normal_size);
+  filter.nearest = magnitude(numerator) - kFarError * numerator_size;
+  const bool in_range = filter.widening > kFarLeast && filter.nearest > kFarLeast && numerator_size < kFloatMax;
+  if (!in_range) filter.nearest = 0.0f;
+  return filter;
+}
+
 // The float test's form and bound with u = 2^-52 in the place of 2^-23; nothing here can leave the range of a double.
 int edge_sign_in_double(const float origin[3], const float dir[3], const float a[3], const float b[3],
                         WorkCounters& work) {

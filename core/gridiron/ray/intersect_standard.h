@@ -84,6 +84,33 @@ inline constexpr double kDistanceError = 0x1p-48;
 
 void set_up_distance(const float origin[3], float dir_max, const VertexTriangle& triangle, DistanceSetup& setup);
 
+/// What tells in single precision that a hit lies behind the one a ray already has.
+///
+/// Errors as in DistanceSetup with e = 2^-23 in the place of u; the same factor of two covers e^2, and what products
+/// lose below the least normal float while the sums of magnitudes stay above 2^-90.
+struct FarFilter {
+  float normal[3];
+  float nearest;   ///< |numerator| is surely not below it; 0: nothing can be told
+  float widening;  ///< |normal . d| is surely not above its computed value and this
+};
+inline constexpr float kFarError = 16.0f * 0x1p-23f;
+inline constexpr float kFarLeast = 0x1p-90f;
+
+[[nodiscard]] FarFilter set_up_far_filter(const float origin[3], float dir_max, const VertexTriangle& triangle);
+
+/// @returns the lanes whose ray surely meets the triangle's plane behind its hit: t_plane >= nearest / (|n . d| +
+/// widening) > t (1 + 4 e), so that t_plane does not round to t either.
+template <class L, class PacketType>
+[[nodiscard]] GRIDIRON_INLINE std::uint32_t lanes_behind(const PacketType& packet, std::uint32_t base,
+                                                         const FarFilter& filter) {
+  using Float = typename L::Float;
+  const Float denominator = Float(filter.normal[0]) * Float::load(packet.dir[0] + base) +
+                            Float(filter.normal[1]) * Float::load(packet.dir[1] + base) +
+                            Float(filter.normal[2]) * Float::load(packet.dir[2] + base);
+  const Float largest = L::abs(denominator) + Float(filter.widening);
+  return (Float::load(packet.t + base) * largest * Float(1.0f + 8.0f * 0x1p-23f) < Float(filter.nearest)).bits();
+}
+
 /// Prepares the edge functions of a batch of triangles for a packet, and holds them against its corner rays: where all
 /// four pass on the outside of one and the same edge, so does every ray between them (Dmitriev, Havran, Seidel 2004).
 ///
@@ -195,21 +222,25 @@ template <class L, class PacketType>
   return inside;
 }
 
-/// Distances of a group's rays to a triangle, rounded to the nearest float, for the lanes in `bits`.
+/// Distances of a group's rays to a triangle, rounded to the nearest float, for the lanes in `bits`, and the cosines
+/// between ray and normal times the ray's length.
 ///
 /// The quotient in double comes with a relative error; where both ends of its interval round to the same float, that
 /// float is the answer, else integers give it. Rounding is done on bit patterns: no rounding mode can change it.
 template <class L, class PacketType>
 GRIDIRON_INLINE void distances_of(const PacketType& packet, std::uint32_t base, std::uint32_t bits,
                                   const VertexTriangle& triangle, const DistanceSetup& setup, float* distance,
-                                  WorkCounters& work) {
+                                  float* facing, WorkCounters& work) {
   using Double = typename L::DoubleVector;
   using Long = typename L::LongVector;
   using HalfMemory = typename L::HalfFloatMemory;
   using HalfInt = typename L::HalfIntVector;
+  using HalfFloat __attribute__((vector_size(2 * L::kCount))) = float;
   constexpr std::uint32_t kHalf = L::kCount / 2;
   std::uint32_t unsure = 0;
   for (std::uint32_t half = 0; half < 2; ++half) {
+    if ((bits >> (half * kHalf) & ((1u << kHalf) - 1u)) == 0) continue;
+    work.add(Work::kHitHalf);
     const std::uint32_t first = base + half * kHalf;
     const Double d_x = __builtin_convertvector(*reinterpret_cast<const HalfMemory*>(packet.dir[0] + first), Double);
     const Double d_y = __builtin_convertvector(*reinterpret_cast<const HalfMemory*>(packet.dir[1] + first), Double);
@@ -226,6 +257,8 @@ GRIDIRON_INLINE void distances_of(const PacketType& packet, std::uint32_t base, 
     const Long sure = (low == high) & (pattern >= 0x00800000) & (pattern <= 0x7F7FFFFF) & (relative < 0x1p-10);
     *reinterpret_cast<typename L::HalfIntMemory*>(distance + half * kHalf) = __builtin_convertvector(pattern, HalfInt);
     unsure |= L::half_bits(~sure) << (half * kHalf);
+    *reinterpret_cast<HalfMemory*>(facing + half * kHalf) =
+        __builtin_convertvector(denominator * setup.facing_scale, HalfFloat);
   }
   unsure &= bits;
   for (std::uint32_t lane = 0; unsure != 0 && lane < L::kCount; ++lane) {
@@ -374,6 +407,8 @@ template <class L, bool kWantFacing, class PacketType>
   const Float n2_x = splat(batch.n[0], 2), n2_y = splat(batch.n[1], 2), n2_z = splat(batch.n[2], 2);
   const Float error0 = splat(batch.error, 0), error1 = splat(batch.error, 1), error2 = splat(batch.error, 2);
 
+  FarFilter far;
+  bool far_done = false;
   DistanceSetup setup;
   bool setup_done = false;
   SubpacketSet changed = 0;
@@ -414,31 +449,39 @@ template <class L, bool kWantFacing, class PacketType>
       if (inside == 0) continue;
       }
       // 3. Distances, and the least (t, id).
+      if (!far_done) {
+        far = set_up_far_filter(packet.origin, packet.dir_max, triangle);
+        work.add(Work::kFarSetup);
+        far_done = true;
+      }
+      work.add(Work::kHitGroup);
+      inside &= ~lanes_behind<L>(packet, base, far);
+      if (inside == 0) continue;
       if (!setup_done) {
         set_up_distance(packet.origin, packet.dir_max, triangle, setup);
         work.add(Work::kHitSetup);
         setup_done = true;
       }
-      work.add(Work::kHitGroup);
       alignas(64) float distance[L::kCount];
-      distances_of<L>(packet, base, inside, triangle, setup, distance, work);
-      for (std::uint32_t rest = inside; rest != 0; rest &= rest - 1) {
-        const std::uint32_t lane = static_cast<std::uint32_t>(__builtin_ctz(rest));
-        const float t = distance[lane];
-        float& best_t = packet.t[base + lane];
-        std::uint32_t& best_id = packet.id[base + lane];
-        const bool nearer = t > 0.0f && (t < best_t || (t == best_t && triangle.triangle_id < best_id));
-        if (!nearer) continue;
-        best_t = t;
-        best_id = triangle.triangle_id;
-        changed |= SubpacketSet{1} << subpacket;
-        if constexpr (kWantFacing) {
-          const double along = setup.normal[0] * packet.dir[0][base + lane] +
-                               setup.normal[1] * packet.dir[1][base + lane] +
-                               setup.normal[2] * packet.dir[2][base + lane];
-          const float cosine = static_cast<float>(along * setup.facing_scale);
-          packet.facing[base + lane] = cosine < 0.0f ? -cosine : cosine;
-        }
+      alignas(64) float facing[L::kCount];
+      distances_of<L>(packet, base, inside, triangle, setup, distance, facing, work);
+      const Float t = Float::load(distance);
+      const Float old_t = Float::load(packet.t + base);
+      const std::uint32_t in_front = (t > Float(0.0f)).bits() & inside;
+      std::uint32_t nearer = (t < old_t).bits() & in_front;
+      for (std::uint32_t ties = (t <= old_t).bits() & in_front & ~nearer; ties != 0; ties &= ties - 1) {
+        const std::uint32_t lane = static_cast<std::uint32_t>(__builtin_ctz(ties));
+        if (triangle.triangle_id < packet.id[base + lane]) nearer |= 1u << lane;
+      }
+      if (nearer == 0) continue;
+      changed |= SubpacketSet{1} << subpacket;
+      const auto taken = L::mask_from_bits(nearer);
+      L::select(taken, t, old_t).store(packet.t + base);
+      for (std::uint32_t rest = nearer; rest != 0; rest &= rest - 1) {
+        packet.id[base + static_cast<std::uint32_t>(__builtin_ctz(rest))] = triangle.triangle_id;
+      }
+      if constexpr (kWantFacing) {
+        L::select(taken, L::abs(Float::load(facing)), Float::load(packet.facing + base)).store(packet.facing + base);
       }
     }
   });
