@@ -12,36 +12,37 @@
 
 namespace gridiron {
 
-/// @returns those of the `wanted` subpackets of which an active ray may touch cell (u, v) of a slab; of packets with
-/// fewer subpackets than lanes, all that are wanted. The frustum's pads cover each subpacket: its rays are among those
-/// that the pads were made for.
+/// @returns the subpackets, in whole squares of 2x2, of which an active ray may touch cell (u, v) of a slab.
+///
+/// The frustum's pads cover each square: its rays are among those that the pads were made for.
 template <class L, class PacketType>
 [[nodiscard]] GRIDIRON_INLINE SubpacketSet subpackets_touching(const PacketType& packet, const Frustum& frustum,
                                                                const Slab& slab, std::int32_t u, std::int32_t v,
-                                                               SubpacketSet wanted, WorkCounters& work) {
-  if constexpr (PacketType::kSubpacketCount < L::kCount) return wanted;
-  using Float = typename L::Float;
+                                                               WorkCounters& work) {
+  constexpr std::uint32_t kSquares = PacketType::kSquareCount;
+  if constexpr (kSquares < 4) return PacketType::kAllSubpackets;
+  using S = Lanes<4>;
+  using Float = S::Float;
   const Float near(slab.entry);
   const Float far(slab.exit > 0.0f ? slab.exit : 0.0f);
-  const Float first_u(static_cast<float>(u)), last_u(static_cast<float>(u + 1));
-  const Float first_v(static_cast<float>(v)), last_v(static_cast<float>(v + 1));
+  const Float first[2] = {Float(static_cast<float>(u)), Float(static_cast<float>(v))};
+  const Float last[2] = {Float(static_cast<float>(u + 1)), Float(static_cast<float>(v + 1))};
   SubpacketSet touching = 0;
-  for (std::uint32_t base = 0; base < PacketType::kSubpacketCount; base += L::kCount) {
-    if (((wanted >> base) & L::kAllBits) == 0) continue;
+  for (std::uint32_t base = 0; base < kSquares; base += 4) {
     work.add(Work::kFootprintGroup);
-    const auto low = [&](std::uint32_t axis) {
-      const Float slope = Float::load(packet.slope_low[axis] + base);
-      return Float(frustum.start[2 * axis]) + L::min(slope * near, slope * far);
-    };
-    const auto high = [&](std::uint32_t axis) {
-      const Float slope = Float::load(packet.slope_high[axis] + base);
-      return Float(frustum.start[2 * axis + 1]) + L::max(slope * near, slope * far);
-    };
-    const std::uint32_t outside =
-        ((last_u < low(0)) | (high(0) < first_u) | (last_v < low(1)) | (high(1) < first_v)).bits();
-    touching |= SubpacketSet{~outside & L::kAllBits} << base;
+    std::uint32_t outside = 0;
+    for (std::uint32_t axis = 0; axis < 2; ++axis) {
+      const Float slope_low = Float::load(packet.slope_low[axis] + base);
+      const Float slope_high = Float::load(packet.slope_high[axis] + base);
+      const Float low = Float(frustum.start[2 * axis]) + S::min(slope_low * near, slope_low * far);
+      const Float high = Float(frustum.start[2 * axis + 1]) + S::max(slope_high * near, slope_high * far);
+      outside |= ((last[axis] < low) | (high < first[axis])).bits();
+    }
+    for (std::uint32_t rest = ~outside & 0xFu; rest != 0; rest &= rest - 1) {
+      touching |= SubpacketSet{0xF} << (4 * (base + static_cast<std::uint32_t>(__builtin_ctz(rest))));
+    }
   }
-  return touching & wanted;
+  return touching;
 }
 
 }  // namespace gridiron

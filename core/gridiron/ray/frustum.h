@@ -91,6 +91,7 @@ template <class L, class PacketType>
 [[nodiscard]] bool take_pass(const GridRecord& grid, RaySet<PacketType::kRayCount>& waiting, PacketType& packet,
                              Frustum& frustum) {
   constexpr std::uint32_t kRays = PacketType::kRayCount;
+  constexpr std::uint32_t kSquareRays = kRays / PacketType::kSquareCount;
   std::uint32_t leader = 0;
   while (leader < kRays && !waiting.contains(leader)) ++leader;
   if (leader == kRays) return false;
@@ -111,7 +112,7 @@ template <class L, class PacketType>
   const Float v_scale(grid.cells_per_unit[v]);
   Float low_u(kFloatMax), high_u(-kFloatMax), low_v(kFloatMax), high_v(-kFloatMax);
   for (std::uint32_t base = 0; base < kRays; base += L::kCount) {
-    if (base % kSubpacketRays == 0) {
+    if (base % kSquareRays == 0) {
       low_u = low_v = Float(kFloatMax);
       high_u = high_v = Float(-kFloatMax);
     }
@@ -131,12 +132,12 @@ template <class L, class PacketType>
     high_u = L::max(high_u, L::select(joined, slope_u, Float(-kFloatMax)));
     low_v = L::min(low_v, L::select(joined, slope_v, Float(kFloatMax)));
     high_v = L::max(high_v, L::select(joined, slope_v, Float(-kFloatMax)));
-    if ((base + L::kCount) % kSubpacketRays != 0) continue;
-    const std::uint32_t subpacket = base / kSubpacketRays;
-    packet.slope_low[0][subpacket] = L::horizontal_min(low_u);
-    packet.slope_high[0][subpacket] = L::horizontal_max(high_u);
-    packet.slope_low[1][subpacket] = L::horizontal_min(low_v);
-    packet.slope_high[1][subpacket] = L::horizontal_max(high_v);
+    if ((base + L::kCount) % kSquareRays != 0) continue;
+    const std::uint32_t square = base / kSquareRays;
+    packet.slope_low[0][square] = L::horizontal_min(low_u);
+    packet.slope_high[0][square] = L::horizontal_max(high_u);
+    packet.slope_low[1][square] = L::horizontal_min(low_v);
+    packet.slope_high[1][square] = L::horizontal_max(high_v);
   }
   waiting.erase(leader);  // a direction that vanishes or overflows in cell space, or is not finite, is a miss
   const auto larger = [](float a, float b) { return a > b ? a : b; };
@@ -169,12 +170,12 @@ template <class L, class PacketType>
   };
   const auto least = [](const float* values) {
     float result = kFloatMax;
-    for (std::uint32_t i = 0; i < PacketType::kSubpacketCount; ++i) result = values[i] < result ? values[i] : result;
+    for (std::uint32_t i = 0; i < PacketType::kSquareCount; ++i) result = values[i] < result ? values[i] : result;
     return result;
   };
   const auto greatest = [](const float* values) {
     float result = -kFloatMax;
-    for (std::uint32_t i = 0; i < PacketType::kSubpacketCount; ++i) result = values[i] > result ? values[i] : result;
+    for (std::uint32_t i = 0; i < PacketType::kSquareCount; ++i) result = values[i] > result ? values[i] : result;
     return result;
   };
   set_bounds(u, 0, least(packet.slope_low[0]), greatest(packet.slope_high[0]));

@@ -283,6 +283,28 @@ inline constexpr SquareOrigins kSquareOrigins = [] {
   return origins;
 }();
 
+/// @returns those quarters of a packet of 8x8 subpackets that triangle `index` of a batch may touch.
+template <class L>
+[[nodiscard]] GRIDIRON_INLINE std::uint32_t quarters_near(const EdgeBatch<L>& batch, std::uint32_t index,
+                                                          WorkCounters& work) {
+  using Float = Lanes<4>::Float;
+  constexpr float kSide = 4.0f * kSubpacketWidth;
+  alignas(16) static constexpr float kColumns[4] = {0, kSide, 0, kSide};
+  alignas(16) static constexpr float kRows[4] = {0, 0, kSide, kSide};
+  work.add(Work::kSubpacketGroup);
+  std::uint32_t outside = 0;
+  for (std::uint32_t edge = 0; edge < 3; ++edge) {
+    const std::uint32_t lane = 4 * index + edge;
+    const float per_column = batch.per_column[lane], per_row = batch.per_row[lane];
+    const float largest = batch.first[lane] + ((per_column > 0.0f ? (kSide - 1.0f) * per_column : 0.0f) +
+                                               (per_row > 0.0f ? (kSide - 1.0f) * per_row : 0.0f));
+    const Float value =
+        Float(largest) + (Float::load(kColumns) * Float(per_column) + Float::load(kRows) * Float(per_row));
+    outside |= (value < Float(batch.surely_outside[lane])).bits();
+  }
+  return ~outside & 0xFu;
+}
+
 /// Subpackets beside a triangle.
 struct NearSubpackets {
   SubpacketSet touching;  ///< may be touched
@@ -311,7 +333,12 @@ template <class L, class PacketType>
     for (std::uint32_t edge = 0; edge < 3; ++edge) at_square[edge][0] = batch.first[first_lane + edge];
   } else {
     squares = 0;
+    std::uint32_t quarters = 0xF;
+    if constexpr (kSquares == 16 && L::kCount == 4) quarters = quarters_near(batch, index, work);
     for (std::uint32_t base = 0; base < kSquares; base += L::kCount) {
+      if constexpr (kSquares == 16 && L::kCount == 4) {
+        if ((quarters >> base / 4 & 1u) == 0) continue;
+      }
       work.add(Work::kSubpacketGroup);
       const Float column = Float::load(kSquareOrigins.column + base);
       const Float row = Float::load(kSquareOrigins.row + base);

@@ -99,10 +99,11 @@ struct alignas(128) Packet {
   float step_y[3];
   float subpacket_widening;  ///< factor on edge errors that covers this form and its evaluation
 
-  // Slopes of this pass, in cells along u and v per cell along the march: least and greatest of each subpacket's active
-  // rays. Where none is active the least is above the greatest.
-  alignas(64) float slope_low[2][kSubpacketCount];
-  alignas(64) float slope_high[2][kSubpacketCount];
+  // Slopes of this pass, in cells along u and v per cell along the march: least and greatest of the active rays of each
+  // square of 2x2 subpackets. Where none is active the least is above the greatest.
+  static constexpr std::uint32_t kSquareCount = kSubpacketCount < 4 ? 1 : kSubpacketCount / 4;
+  alignas(64) float slope_low[2][kSquareCount];
+  alignas(64) float slope_high[2][kSquareCount];
 };
 
 }  // namespace gridiron

@@ -49,20 +49,22 @@ struct SubpacketReach {
     return largest;
   }
 
-  /// @returns the subpackets that still look beyond the march distance `entry`.
+  /// @returns those of the `wanted` subpackets that still look beyond the march distance `entry`.
   template <class L>
-  [[nodiscard]] GRIDIRON_INLINE SubpacketSet open(const Frustum& frustum, float entry, WorkCounters& work) const {
+  [[nodiscard]] GRIDIRON_INLINE SubpacketSet open(const Frustum& frustum, float entry, SubpacketSet wanted,
+                                                  WorkCounters& work) const {
     if constexpr (kCount < L::kCount) {
-      return PacketType::kAllSubpackets;
+      return wanted;
     } else {
       using Float = typename L::Float;
       SubpacketSet result = 0;
       for (std::uint32_t base = 0; base < kCount; base += L::kCount) {
+        if ((wanted >> base & L::kAllBits) == 0) continue;
         work.add(Work::kReachGroup);
         const Float limit = Float::load(reach + base) * Float(Frustum::kReachFactor) + Float(frustum.pad_k);
         result |= SubpacketSet{(Float(entry) <= limit).bits()} << base;
       }
-      return result;
+      return result & wanted;
     }
   }
 };

@@ -138,15 +138,15 @@ class PacketDriver {
   // Subpackets that have hit nothing in front of `entry` yet.
   [[nodiscard]] SubpacketSet open_subpackets(float entry) {
     if ((store_.frame.techniques & kUseSubpackets) == 0) return StorePacket::kAllSubpackets;
-    return reaches_.template open<L>(frustum_, entry, store_.work);
+    return reaches_.template open<L>(frustum_, entry, StorePacket::kAllSubpackets, store_.work);
   }
 
   // Those of the open subpackets that may touch a cell.
   [[nodiscard]] SubpacketSet subpackets_that_see(const CellVisit& cell) {
-    const SubpacketSet open = open_subpackets(cell.entry);
-    if ((store_.frame.techniques & kUseSubpackets) == 0) return open;
-    return subpackets_touching<L>(store_.packet, frustum_, Slab{cell.entry, cell.exit}, cell.u, cell.v, open,
-                                  store_.work);
+    if ((store_.frame.techniques & kUseSubpackets) == 0) return StorePacket::kAllSubpackets;
+    const SubpacketSet touching = subpackets_touching<L>(store_.packet, frustum_, Slab{cell.entry, cell.exit}, cell.u,
+                                                         cell.v, store_.work);
+    return reaches_.template open<L>(frustum_, cell.entry, touching, store_.work);
   }
 
   // Waits for the oldest run and tests it, unless every ray has meanwhile hit something in front of it.
