@@ -37,6 +37,7 @@ enum class Work : std::uint8_t {
   kFootprintGroup,    ///< SIMD groups of subpackets held against a cell
   kRowGroup,          ///< subpackets of which rows were held against a triangle's edges
   kFarSetup,          ///< triangles for which the filter of hits behind others was set up
+  kFarGroup,          ///< groups held against that filter
   kHitHalf,           ///< halves of groups of which distances were computed in double
   kGetIssue,          ///< get commands issued
   kPutIssue,          ///< put commands issued

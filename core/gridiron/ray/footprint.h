@@ -9,8 +9,18 @@
 #include <gridiron/ray/packet.h>
 
 #include <cstdint>
+#include <type_traits>
 
 namespace gridiron {
+
+/// @returns the four subpackets of each square: bit i becomes bits 4 i to 4 i + 3. @param squares  16 bits.
+[[nodiscard]] GRIDIRON_INLINE constexpr SubpacketSet subpackets_of_squares(std::uint64_t squares) {
+  squares = (squares | squares << 24) & 0x000000FF000000FFu;
+  squares = (squares | squares << 12) & 0x000F000F000F000Fu;
+  squares = (squares | squares << 6) & 0x0303030303030303u;
+  squares = (squares | squares << 3) & 0x1111111111111111u;
+  return squares * 0xFu;
+}
 
 /// @returns the subpackets, in whole squares of 2x2, of which an active ray may touch cell (u, v) of a slab.
 ///
@@ -21,14 +31,14 @@ template <class L, class PacketType>
                                                                WorkCounters& work) {
   constexpr std::uint32_t kSquares = PacketType::kSquareCount;
   if constexpr (kSquares < 4) return PacketType::kAllSubpackets;
-  using S = Lanes<4>;
-  using Float = S::Float;
+  using S = std::conditional_t<(kSquares >= L::kCount), L, Lanes<4>>;
+  using Float = typename S::Float;
   const Float near(slab.entry);
   const Float far(slab.exit > 0.0f ? slab.exit : 0.0f);
   const Float first[2] = {Float(static_cast<float>(u)), Float(static_cast<float>(v))};
   const Float last[2] = {Float(static_cast<float>(u + 1)), Float(static_cast<float>(v + 1))};
-  SubpacketSet touching = 0;
-  for (std::uint32_t base = 0; base < kSquares; base += 4) {
+  std::uint64_t squares = 0;
+  for (std::uint32_t base = 0; base < kSquares; base += S::kCount) {
     work.add(Work::kFootprintGroup);
     std::uint32_t outside = 0;
     for (std::uint32_t axis = 0; axis < 2; ++axis) {
@@ -38,11 +48,9 @@ template <class L, class PacketType>
       const Float high = Float(frustum.start[2 * axis + 1]) + S::max(slope_high * near, slope_high * far);
       outside |= ((last[axis] < low) | (high < first[axis])).bits();
     }
-    for (std::uint32_t rest = ~outside & 0xFu; rest != 0; rest &= rest - 1) {
-      touching |= SubpacketSet{0xF} << (4 * (base + static_cast<std::uint32_t>(__builtin_ctz(rest))));
-    }
+    squares |= std::uint64_t{~outside & S::kAllBits} << base;
   }
-  return touching;
+  return subpackets_of_squares(squares);
 }
 
 }  // namespace gridiron

@@ -227,7 +227,7 @@ template <class L, class PacketType>
 ///
 /// The quotient in double comes with a relative error; where both ends of its interval round to the same float, that
 /// float is the answer, else integers give it. Rounding is done on bit patterns: no rounding mode can change it.
-template <class L, class PacketType>
+template <class L, bool kWantFacing, class PacketType>
 GRIDIRON_INLINE void distances_of(const PacketType& packet, std::uint32_t base, std::uint32_t bits,
                                   const VertexTriangle& triangle, const DistanceSetup& setup, float* distance,
                                   float* facing, WorkCounters& work) {
@@ -257,8 +257,10 @@ GRIDIRON_INLINE void distances_of(const PacketType& packet, std::uint32_t base, 
     const Long sure = (low == high) & (pattern >= 0x00800000) & (pattern <= 0x7F7FFFFF) & (relative < 0x1p-10);
     *reinterpret_cast<typename L::HalfIntMemory*>(distance + half * kHalf) = __builtin_convertvector(pattern, HalfInt);
     unsure |= L::half_bits(~sure) << (half * kHalf);
-    *reinterpret_cast<HalfMemory*>(facing + half * kHalf) =
-        __builtin_convertvector(denominator * setup.facing_scale, HalfFloat);
+    if constexpr (kWantFacing) {
+      *reinterpret_cast<HalfMemory*>(facing + half * kHalf) =
+          __builtin_convertvector(denominator * setup.facing_scale, HalfFloat);
+    }
   }
   unsure &= bits;
   for (std::uint32_t lane = 0; unsure != 0 && lane < L::kCount; ++lane) {
@@ -476,14 +478,18 @@ template <class L, bool kWantFacing, class PacketType>
       if (inside == 0) continue;
       }
       // 3. Distances, and the least (t, id).
-      if (!far_done) {
-        far = set_up_far_filter(packet.origin, packet.dir_max, triangle);
-        work.add(Work::kFarSetup);
-        far_done = true;
-      }
       work.add(Work::kHitGroup);
-      inside &= ~lanes_behind<L>(packet, base, far);
-      if (inside == 0) continue;
+      const Float old_t = Float::load(packet.t + base);
+      if (((old_t < Float(kFloatMax)).bits() & inside) != 0) {
+        if (!far_done) {
+          far = set_up_far_filter(packet.origin, packet.dir_max, triangle);
+          work.add(Work::kFarSetup);
+          far_done = true;
+        }
+        work.add(Work::kFarGroup);
+        inside &= ~lanes_behind<L>(packet, base, far);
+        if (inside == 0) continue;
+      }
       if (!setup_done) {
         set_up_distance(packet.origin, packet.dir_max, triangle, setup);
         work.add(Work::kHitSetup);
@@ -491,9 +497,8 @@ template <class L, bool kWantFacing, class PacketType>
       }
       alignas(64) float distance[L::kCount];
       alignas(64) float facing[L::kCount];
-      distances_of<L>(packet, base, inside, triangle, setup, distance, facing, work);
+      distances_of<L, kWantFacing>(packet, base, inside, triangle, setup, distance, facing, work);
       const Float t = Float::load(distance);
-      const Float old_t = Float::load(packet.t + base);
       const std::uint32_t in_front = (t > Float(0.0f)).bits() & inside;
       std::uint32_t nearer = (t < old_t).bits() & in_front;
       for (std::uint32_t ties = (t <= old_t).bits() & in_front & ~nearer; ties != 0; ties &= ties - 1) {
