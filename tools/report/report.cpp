@@ -157,6 +157,16 @@ std::string_view work_name(Work kind) {
       return "shaded_group";
     case Work::kShadedSimpleGroup:
       return "shaded_simple_group";
+    case Work::kFootprintGroup:
+      return "footprint_group";
+    case Work::kRowGroup:
+      return "row_group";
+    case Work::kFarSetup:
+      return "far_setup";
+    case Work::kFarGroup:
+      return "far_group";
+    case Work::kHitHalf:
+      return "hit_half";
     case Work::kGetIssue:
       return "get_issue";
     case Work::kPutIssue:

@@ -27,6 +27,7 @@ struct LaneVectors<4> {
   typedef std::int64_t LongVector __attribute__((vector_size(16)));
   typedef std::int32_t HalfIntVector __attribute__((vector_size(8)));
   typedef float FloatMemory __attribute__((vector_size(16), may_alias));
+  typedef float HalfFloatVector __attribute__((vector_size(8)));
   typedef float HalfFloatMemory __attribute__((vector_size(8), may_alias));
   typedef std::int32_t HalfIntMemory __attribute__((vector_size(8), may_alias));
 };
@@ -38,6 +39,7 @@ struct LaneVectors<8> {
   typedef std::int64_t LongVector __attribute__((vector_size(32)));
   typedef std::int32_t HalfIntVector __attribute__((vector_size(16)));
   typedef float FloatMemory __attribute__((vector_size(32), may_alias));
+  typedef float HalfFloatVector __attribute__((vector_size(16)));
   typedef float HalfFloatMemory __attribute__((vector_size(16), may_alias));
   typedef std::int32_t HalfIntMemory __attribute__((vector_size(16), may_alias));
 };
@@ -49,6 +51,7 @@ struct LaneVectors<16> {
   typedef std::int64_t LongVector __attribute__((vector_size(64)));
   typedef std::int32_t HalfIntVector __attribute__((vector_size(32)));
   typedef float FloatMemory __attribute__((vector_size(64), may_alias));
+  typedef float HalfFloatVector __attribute__((vector_size(32)));
   typedef float HalfFloatMemory __attribute__((vector_size(32), may_alias));
   typedef std::int32_t HalfIntMemory __attribute__((vector_size(32), may_alias));
 };
@@ -104,6 +107,7 @@ struct Lanes {
   using LongVector = typename LaneVectors<W>::LongVector;
   using HalfIntVector = typename LaneVectors<W>::HalfIntVector;
   using FloatMemory = typename LaneVectors<W>::FloatMemory;
+  using HalfFloatVector = typename LaneVectors<W>::HalfFloatVector;
   using HalfFloatMemory = typename LaneVectors<W>::HalfFloatMemory;
   using HalfIntMemory = typename LaneVectors<W>::HalfIntMemory;
 

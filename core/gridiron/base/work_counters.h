@@ -25,7 +25,7 @@ enum class Work : std::uint8_t {
   kSubpacketGroup,    ///< SIMD groups of squares or subpackets held against a triangle's edges
   kGroupTestStandard, ///< (group, triangle) tests, filtered edge functions
   kGroupTestPaper,    ///< (group, triangle) tests, precomputed projection
-  kHitGroup,          ///< groups for which distances were computed and hits merged, `standard` test
+  kHitGroup,          ///< groups with hits to be merged, `standard` test
   kHitGroupPaper,     ///< groups of which hits were merged, precomputed projection
   kHitSetup,          ///< triangles for which the distance set-up was computed
   kDoubleSign,        ///< edge signs the float filter left open, tried in double
@@ -34,10 +34,10 @@ enum class Work : std::uint8_t {
   kReachGroup,        ///< SIMD groups of which the farthest hit was sought, or held against a cell's entry
   kShadedGroup,       ///< ray groups turned into pixels without shading
   kShadedSimpleGroup, ///< ray groups shaded by facing ratio
-  kFootprintGroup,    ///< SIMD groups of subpackets held against a cell
-  kRowGroup,          ///< subpackets of which rows were held against a triangle's edges
-  kFarSetup,          ///< triangles for which the filter of hits behind others was set up
-  kFarGroup,          ///< groups held against that filter
+  kFootprintGroup,    ///< SIMD groups of squares of subpackets held against a cell
+  kRowGroup,          ///< subpackets whose rows were held against a triangle's edges
+  kFarSetup,          ///< triangles for which the float test of hits behind others was set up
+  kFarGroup,          ///< groups held against it
   kHitHalf,           ///< halves of groups of which distances were computed in double
   kGetIssue,          ///< get commands issued
   kPutIssue,          ///< put commands issued

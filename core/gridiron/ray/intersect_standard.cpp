@@ -63,9 +63,11 @@ FarFilter set_up_far_filter(const float origin[3], float dir_max, const VertexTr
     numerator += from_origin * filter.normal[i];
     numerator_size += magnitude(from_origin) * size;
   }
-  filter.widening = kFarError * (dir_max * normal_size);
+  const float denominator_size = dir_max * normal_size;
+  filter.widening = kFarError * denominator_size;
   filter.nearest = magnitude(numerator) - kFarError * numerator_size;
-  const bool in_range = filter.widening > kFarLeast && filter.nearest > kFarLeast && numerator_size < kFloatMax;
+  const bool in_range = normal_size < 0x1p40f && dir_max < 0x1p40f && denominator_size > 0x1p-60f &&
+                        filter.nearest > 0x1p-40f && numerator_size < kFloatMax;
   if (!in_range) filter.nearest = 0.0f;
   return filter;
 }

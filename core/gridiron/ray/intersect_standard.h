@@ -84,31 +84,37 @@ inline constexpr double kDistanceError = 0x1p-48;
 
 void set_up_distance(const float origin[3], float dir_max, const VertexTriangle& triangle, DistanceSetup& setup);
 
-/// What tells in single precision that a hit lies behind the one a ray already has.
+/// Whether sparing a distance in double is worth a float test and a branch. With four lanes it is: a core's doubles go
+/// two at a time, and slowly; wide hosts divide a whole group in the time of a mispredicted branch.
+template <class L>
+inline constexpr bool kSparesDoubles = L::kCount == 4;
+
+/// What tells in single precision that a triangle lies behind what a ray has hit already.
 ///
-/// Errors as in DistanceSetup with e = 2^-23 in the place of u; the same factor of two covers e^2, and what products
-/// lose below the least normal float while the sums of magnitudes stay above 2^-90.
+/// Errors as in DistanceSetup with e = 2^-23 in the place of u, twice that charged. Values below the least normal float
+/// may be lost; in the range that is asked for, that is less than what was charged too much: at most 2^-126 times 2^40
+/// is lost of sums above 2^-60.
 struct FarFilter {
   float normal[3];
   float nearest;   ///< |numerator| is surely not below it; 0: nothing can be told
-  float widening;  ///< |normal . d| is surely not above its computed value and this
+  float widening;  ///< |normal . d| is surely not above its computed value plus this
 };
 inline constexpr float kFarError = 16.0f * 0x1p-23f;
-inline constexpr float kFarLeast = 0x1p-90f;
 
 [[nodiscard]] FarFilter set_up_far_filter(const float origin[3], float dir_max, const VertexTriangle& triangle);
 
-/// @returns the lanes whose ray surely meets the triangle's plane behind its hit: t_plane >= nearest / (|n . d| +
-/// widening) > t (1 + 4 e), so that t_plane does not round to t either.
+/// @returns the lanes whose ray surely meets the triangle behind its hit: its distance, at least nearest / (|n . d| +
+/// widening), is above t (1 + 4 e), so that it does not even round to t.
 template <class L, class PacketType>
 [[nodiscard]] GRIDIRON_INLINE std::uint32_t lanes_behind(const PacketType& packet, std::uint32_t base,
                                                          const FarFilter& filter) {
   using Float = typename L::Float;
+  constexpr float kMargin = 1.0f + 8.0f * 0x1p-23f;  // 4 e, and the roundings of both products and the sum
   const Float denominator = Float(filter.normal[0]) * Float::load(packet.dir[0] + base) +
                             Float(filter.normal[1]) * Float::load(packet.dir[1] + base) +
                             Float(filter.normal[2]) * Float::load(packet.dir[2] + base);
   const Float largest = L::abs(denominator) + Float(filter.widening);
-  return (Float::load(packet.t + base) * largest * Float(1.0f + 8.0f * 0x1p-23f) < Float(filter.nearest)).bits();
+  return (Float::load(packet.t + base) * largest * Float(kMargin) < Float(filter.nearest)).bits();
 }
 
 /// Prepares the edge functions of a batch of triangles for a packet, and holds them against its corner rays: where all
@@ -222,8 +228,8 @@ template <class L, class PacketType>
   return inside;
 }
 
-/// Distances of a group's rays to a triangle, rounded to the nearest float, for the lanes in `bits`, and the cosines
-/// between ray and normal times the ray's length.
+/// Distances of a group's rays to a triangle, rounded to the nearest float, and the rays' components along its normal,
+/// for the lanes in `bits`.
 ///
 /// The quotient in double comes with a relative error; where both ends of its interval round to the same float, that
 /// float is the answer, else integers give it. Rounding is done on bit patterns: no rounding mode can change it.
@@ -235,11 +241,11 @@ GRIDIRON_INLINE void distances_of(const PacketType& packet, std::uint32_t base, 
   using Long = typename L::LongVector;
   using HalfMemory = typename L::HalfFloatMemory;
   using HalfInt = typename L::HalfIntVector;
-  using HalfFloat __attribute__((vector_size(2 * L::kCount))) = float;
+  using HalfFloat = typename L::HalfFloatVector;
   constexpr std::uint32_t kHalf = L::kCount / 2;
   std::uint32_t unsure = 0;
   for (std::uint32_t half = 0; half < 2; ++half) {
-    if ((bits >> (half * kHalf) & ((1u << kHalf) - 1u)) == 0) continue;
+    if (kSparesDoubles<L> && (bits >> (half * kHalf) & ((1u << kHalf) - 1u)) == 0) continue;
     work.add(Work::kHitHalf);
     const std::uint32_t first = base + half * kHalf;
     const Double d_x = __builtin_convertvector(*reinterpret_cast<const HalfMemory*>(packet.dir[0] + first), Double);
@@ -311,19 +317,21 @@ template <class L>
 struct NearSubpackets {
   SubpacketSet touching;  ///< may be touched
   SubpacketSet covered;   ///< of these, all rays surely pass inside all three edges
+  bool is_linear;         ///< the edge functions' linear form holds
 };
 
 /// @returns those of the `wanted` subpackets that triangle `index` of a batch may touch. One is left out where an edge
-/// surely passes all its rays on the outside: the edge function is linear, so its largest value is at a corner.
+/// surely passes all its rays on the outside: the edge function is linear, so its largest value is at a corner, and its
+/// least value, which shows that all are inside, at the opposite one.
 template <class L, class PacketType>
 [[nodiscard]] GRIDIRON_INLINE NearSubpackets subpackets_near(const EdgeBatch<L>& batch, std::uint32_t index,
                                                              SubpacketSet wanted, WorkCounters& work) {
   using Float = typename L::Float;
   using Four = Lanes<4>;
   constexpr std::uint32_t kSquares = PacketType::kSubpacketCount / 4;
-  if constexpr (kSquares == 0) return {wanted, 0};
+  if constexpr (kSquares == 0) return {wanted, 0, false};
   const std::uint32_t first_lane = 4 * index;
-  if (((batch.in_range >> first_lane) & 0xFu) != 0xFu) return {wanted, 0};
+  if (((batch.in_range >> first_lane) & 0xFu) != 0xFu) return {wanted, 0, false};
   const auto positive = [](float value) { return value > 0.0f ? value : 0.0f; };
   constexpr float kSquareSpan = 2.0f * kSubpacketWidth - 1.0f;
   constexpr float kSubpacketSpan = kSubpacketWidth - 1.0f;
@@ -335,12 +343,12 @@ template <class L, class PacketType>
     for (std::uint32_t edge = 0; edge < 3; ++edge) at_square[edge][0] = batch.first[first_lane + edge];
   } else {
     squares = 0;
+    // A group of four lanes is a quarter of the packet.
+    constexpr bool kByQuarters = kSquares == 16 && L::kCount == 4;
     std::uint32_t quarters = 0xF;
-    if constexpr (kSquares == 16 && L::kCount == 4) quarters = quarters_near(batch, index, work);
+    if constexpr (kByQuarters) quarters = quarters_near(batch, index, work);
     for (std::uint32_t base = 0; base < kSquares; base += L::kCount) {
-      if constexpr (kSquares == 16 && L::kCount == 4) {
-        if ((quarters >> base / 4 & 1u) == 0) continue;
-      }
+      if (kByQuarters && (quarters >> base / 4 & 1u) == 0) continue;
       work.add(Work::kSubpacketGroup);
       const Float column = Float::load(kSquareOrigins.column + base);
       const Float row = Float::load(kSquareOrigins.row + base);
@@ -393,11 +401,11 @@ template <class L, class PacketType>
     near |= SubpacketSet{~outside & 0xFu} << (4 * square);
     covered |= SubpacketSet{~uncovered & 0xFu} << (4 * square);
   }
-  return {near & wanted, covered & wanted};
+  return {near & wanted, covered & wanted, true};
 }
 
 /// @returns those of a subpacket's four rows, bit i = row i, that triangle `index` of a batch may touch.
-template <class L, class PacketType>
+template <class L>
 [[nodiscard]] GRIDIRON_INLINE std::uint32_t rows_near(const EdgeBatch<L>& batch, std::uint32_t index,
                                                       std::uint32_t subpacket, WorkCounters& work) {
   using Four = Lanes<4>;
@@ -405,17 +413,119 @@ template <class L, class PacketType>
   work.add(Work::kRowGroup);
   const float column = static_cast<float>(kSubpacketWidth * subpacket_column(subpacket));
   const float row = static_cast<float>(kSubpacketWidth * subpacket_row(subpacket));
+  constexpr float kSpan = kSubpacketWidth - 1.0f;
   std::uint32_t outside = 0;
   for (std::uint32_t edge = 0; edge < 3; ++edge) {
     const std::uint32_t lane = 4 * index + edge;
     const float per_column = batch.per_column[lane];
-    const float largest = per_column > 0.0f ? (kSubpacketWidth - 1) * per_column : 0.0f;
+    const float largest = per_column > 0.0f ? kSpan * per_column : 0.0f;
     const Four::Float value =
         Four::Float(batch.first[lane] + (column * per_column + largest)) +
         (Four::Float(row) + Four::Float::load(kRows)) * Four::Float(batch.per_row[lane]);
     outside |= (value < Four::Float(batch.surely_outside[lane])).bits();
   }
   return ~outside & 0xFu;
+}
+
+/// One triangle's edge functions, each in all lanes.
+template <class L>
+struct SplatEdges {
+  using Float = typename L::Float;
+  Float n[3][3];  ///< edge, axis
+  Float error[3];
+  std::uint32_t known;  ///< all lanes, or none: whether the float test says something
+
+  GRIDIRON_INLINE SplatEdges(const EdgeBatch<L>& batch, std::uint32_t index) {
+    const std::uint32_t first_lane = 4 * index;
+    for (std::uint32_t edge = 0; edge < 3; ++edge) {
+      for (std::uint32_t axis = 0; axis < 3; ++axis) n[edge][axis] = Float(batch.n[axis][first_lane + edge]);
+      error[edge] = Float(batch.error[first_lane + edge]);
+    }
+    known = ((batch.in_range >> first_lane) & 0xFu) == 0xFu ? ~0u : 0u;
+  }
+};
+
+/// @returns those of a group's active rays that hit the triangle's area.
+template <class L, class PacketType>
+[[nodiscard]] GRIDIRON_INLINE std::uint32_t lanes_inside(const PacketType& packet, std::uint32_t base,
+                                                         std::uint32_t active, const SplatEdges<L>& edges,
+                                                         const VertexTriangle& triangle, int orientation,
+                                                         WorkCounters& work) {
+  using Float = typename L::Float;
+  work.add(Work::kGroupTestStandard);
+  const Float d_x = Float::load(packet.dir[0] + base);
+  const Float d_y = Float::load(packet.dir[1] + base);
+  const Float d_z = Float::load(packet.dir[2] + base);
+  const auto along = [&](int edge) GRIDIRON_INLINE_LAMBDA {
+    return edges.n[edge][0] * d_x + edges.n[edge][1] * d_y + edges.n[edge][2] * d_z;
+  };
+  const Float e0 = along(0), e1 = along(1), e2 = along(2);
+  // 1. One edge that is surely passed on the outside ends it.
+  const std::uint32_t outside = ((e0 < -edges.error[0]) | (e1 < -edges.error[1]) | (e2 < -edges.error[2])).bits();
+  std::uint32_t open = active & ~(outside & edges.known);
+  if (open == 0) return 0;
+  // 2. Three edges surely passed on the inside: a hit. Anything else is decided in double, then exactly.
+  const std::uint32_t sure_inside[3] = {(e0 > edges.error[0]).bits() & edges.known,
+                                        (e1 > edges.error[1]).bits() & edges.known,
+                                        (e2 > edges.error[2]).bits() & edges.known};
+  const std::uint32_t inside = open & sure_inside[0] & sure_inside[1] & sure_inside[2];
+  open &= ~inside;
+  if (open == 0) [[likely]]
+    return inside;
+  return inside | settle_open_lanes<L>(packet, base, open, sure_inside, triangle, orientation, work);
+}
+
+/// What the hits of one triangle need, computed when the first of them does.
+struct HitSetups {
+  FarFilter far;
+  DistanceSetup distance;
+  bool has_far = false;
+  bool has_distance = false;
+};
+
+/// Merges a triangle's hits into a group of rays: the least (t, id) stays. @returns whether one of them is nearer.
+template <class L, bool kWantFacing, class PacketType>
+[[nodiscard]] GRIDIRON_INLINE bool merge_hits(PacketType& packet, std::uint32_t base, std::uint32_t hit,
+                                              const VertexTriangle& triangle, HitSetups& setups, WorkCounters& work) {
+  using Float = typename L::Float;
+  work.add(Work::kHitGroup);
+  const Float old_t = Float::load(packet.t + base);
+  if (kSparesDoubles<L> && ((old_t < Float(kFloatMax)).bits() & hit) != 0) {
+    if (!setups.has_far) {
+      work.add(Work::kFarSetup);
+      setups.far = set_up_far_filter(packet.origin, packet.dir_max, triangle);
+      setups.has_far = true;
+    }
+    work.add(Work::kFarGroup);
+    hit &= ~lanes_behind<L>(packet, base, setups.far);
+    if (hit == 0) return false;
+  }
+  if (!setups.has_distance) {
+    work.add(Work::kHitSetup);
+    set_up_distance(packet.origin, packet.dir_max, triangle, setups.distance);
+    setups.has_distance = true;
+  }
+  alignas(64) float distance[L::kCount];
+  alignas(64) float along_normal[L::kCount];
+  distances_of<L, kWantFacing>(packet, base, hit, triangle, setups.distance, distance, along_normal, work);
+  const Float t = Float::load(distance);
+  const std::uint32_t in_front = (t > Float(0.0f)).bits() & hit;
+  std::uint32_t nearer = (t < old_t).bits() & in_front;
+  for (std::uint32_t ties = (t <= old_t).bits() & in_front & ~nearer; ties != 0; ties &= ties - 1) {
+    const std::uint32_t lane = static_cast<std::uint32_t>(__builtin_ctz(ties));
+    if (triangle.triangle_id < packet.id[base + lane]) nearer |= 1u << lane;
+  }
+  if (nearer == 0) return false;
+  const auto taken = L::mask_from_bits(nearer);
+  L::select(taken, t, old_t).store(packet.t + base);
+  for (std::uint32_t rest = nearer; rest != 0; rest &= rest - 1) {
+    packet.id[base + static_cast<std::uint32_t>(__builtin_ctz(rest))] = triangle.triangle_id;
+  }
+  if constexpr (kWantFacing) {
+    const Float facing = L::abs(Float::load(along_normal));
+    L::select(taken, facing, Float::load(packet.facing + base)).store(packet.facing + base);
+  }
+  return true;
 }
 
 /// Intersects triangle `index` of a batch with the active rays of some subpackets, keeping the least (t, id).
@@ -425,95 +535,28 @@ template <class L, class PacketType>
 template <class L, bool kWantFacing, class PacketType>
 [[nodiscard]] GRIDIRON_INLINE SubpacketSet test_groups(PacketType& packet, const VertexTriangle& triangle,
                                                        const EdgeBatch<L>& batch, std::uint32_t index,
-                                                       NearSubpackets near, bool by_rows, WorkCounters& work) {
-  using Float = typename L::Float;
-  const std::uint32_t first_lane = 4 * index;
-  const std::int32_t orientation = batch.orientation[index];
-  const std::uint32_t known = ((batch.in_range >> first_lane) & 0xFu) == 0xFu ? ~0u : 0u;
-  const auto splat = [&](const float* lanes, std::uint32_t edge) { return Float(lanes[first_lane + edge]); };
-  const Float n0_x = splat(batch.n[0], 0), n0_y = splat(batch.n[1], 0), n0_z = splat(batch.n[2], 0);
-  const Float n1_x = splat(batch.n[0], 1), n1_y = splat(batch.n[1], 1), n1_z = splat(batch.n[2], 1);
-  const Float n2_x = splat(batch.n[0], 2), n2_y = splat(batch.n[1], 2), n2_z = splat(batch.n[2], 2);
-  const Float error0 = splat(batch.error, 0), error1 = splat(batch.error, 1), error2 = splat(batch.error, 2);
-
-  FarFilter far;
-  bool far_done = false;
-  DistanceSetup setup;
-  bool setup_done = false;
+                                                       const NearSubpackets& near, WorkCounters& work) {
+  constexpr bool kGroupsAreRows = L::kCount == kSubpacketWidth;
+  const SplatEdges<L> edges(batch, index);
+  HitSetups setups;
   SubpacketSet changed = 0;
   for_each_subpacket<PacketType::kSubpacketCount>(near.touching, [&](std::uint32_t subpacket) GRIDIRON_INLINE_LAMBDA {
     const std::uint32_t first_ray = subpacket * kSubpacketRays;
-    const bool covered = (near.covered >> subpacket & 1u) != 0;
-    std::uint32_t rows = 0xF;
-    if constexpr (L::kCount == 4) {
-      if (by_rows && !covered) rows = rows_near<L, PacketType>(batch, index, subpacket, work);
+    const bool is_covered = (near.covered >> subpacket & 1u) != 0;
+    std::uint32_t rows = ~0u;
+    if constexpr (kGroupsAreRows) {
+      if (near.is_linear && !is_covered) rows = rows_near(batch, index, subpacket, work);
     }
-    for (std::uint32_t base = first_ray; base < first_ray + kSubpacketRays; base += L::kCount) {
+    for (std::uint32_t group = 0; group < kSubpacketRays / L::kCount; ++group) {
+      const std::uint32_t base = first_ray + group * L::kCount;
       const std::uint32_t active = packet.active.template group<L>(base);
-      if (active == 0) continue;
-      if constexpr (L::kCount == 4) {
-        if ((rows >> (base - first_ray) / 4 & 1u) == 0) continue;
-      }
-      std::uint32_t inside = active;
-      if (!covered) {
-      work.add(Work::kGroupTestStandard);
-      const Float d_x = Float::load(packet.dir[0] + base);
-      const Float d_y = Float::load(packet.dir[1] + base);
-      const Float d_z = Float::load(packet.dir[2] + base);
-      const Float e0 = n0_x * d_x + n0_y * d_y + n0_z * d_z;
-      const Float e1 = n1_x * d_x + n1_y * d_y + n1_z * d_z;
-      const Float e2 = n2_x * d_x + n2_y * d_y + n2_z * d_z;
-      // 1. One edge that is surely passed on the outside ends it.
-      const std::uint32_t outside = ((e0 < -error0) | (e1 < -error1) | (e2 < -error2)).bits();
-      std::uint32_t open = active & ~(outside & known);
-      if (open == 0) continue;
-      // 2. Three edges surely passed on the inside: a hit. Anything else is decided in double, then exactly.
-      const std::uint32_t sure_inside[3] = {(e0 > error0).bits() & known, (e1 > error1).bits() & known,
-                                            (e2 > error2).bits() & known};
-      inside = open & sure_inside[0] & sure_inside[1] & sure_inside[2];
-      open &= ~inside;
-      if (open != 0) [[unlikely]] {
-        inside |= settle_open_lanes<L>(packet, base, open, sure_inside, triangle, orientation, work);
-      }
-      if (inside == 0) continue;
-      }
-      // 3. Distances, and the least (t, id).
-      work.add(Work::kHitGroup);
-      const Float old_t = Float::load(packet.t + base);
-      if (((old_t < Float(kFloatMax)).bits() & inside) != 0) {
-        if (!far_done) {
-          far = set_up_far_filter(packet.origin, packet.dir_max, triangle);
-          work.add(Work::kFarSetup);
-          far_done = true;
-        }
-        work.add(Work::kFarGroup);
-        inside &= ~lanes_behind<L>(packet, base, far);
-        if (inside == 0) continue;
-      }
-      if (!setup_done) {
-        set_up_distance(packet.origin, packet.dir_max, triangle, setup);
-        work.add(Work::kHitSetup);
-        setup_done = true;
-      }
-      alignas(64) float distance[L::kCount];
-      alignas(64) float facing[L::kCount];
-      distances_of<L, kWantFacing>(packet, base, inside, triangle, setup, distance, facing, work);
-      const Float t = Float::load(distance);
-      const std::uint32_t in_front = (t > Float(0.0f)).bits() & inside;
-      std::uint32_t nearer = (t < old_t).bits() & in_front;
-      for (std::uint32_t ties = (t <= old_t).bits() & in_front & ~nearer; ties != 0; ties &= ties - 1) {
-        const std::uint32_t lane = static_cast<std::uint32_t>(__builtin_ctz(ties));
-        if (triangle.triangle_id < packet.id[base + lane]) nearer |= 1u << lane;
-      }
-      if (nearer == 0) continue;
-      changed |= SubpacketSet{1} << subpacket;
-      const auto taken = L::mask_from_bits(nearer);
-      L::select(taken, t, old_t).store(packet.t + base);
-      for (std::uint32_t rest = nearer; rest != 0; rest &= rest - 1) {
-        packet.id[base + static_cast<std::uint32_t>(__builtin_ctz(rest))] = triangle.triangle_id;
-      }
-      if constexpr (kWantFacing) {
-        L::select(taken, L::abs(Float::load(facing)), Float::load(packet.facing + base)).store(packet.facing + base);
+      if (active == 0 || (kGroupsAreRows && (rows >> group & 1u) == 0)) continue;
+      const std::uint32_t hit =
+          is_covered ? active
+                     : lanes_inside<L>(packet, base, active, edges, triangle, batch.orientation[index], work);
+      if (hit == 0) continue;
+      if (merge_hits<L, kWantFacing>(packet, base, hit, triangle, setups, work)) {
+        changed |= SubpacketSet{1} << subpacket;
       }
     }
   });
@@ -537,13 +580,12 @@ template <class L, bool kWantFacing, class PacketType>
   SubpacketSet changed = 0;
   for (std::uint32_t i = 0; i < count; ++i) {
     if (((batch.missed >> (4 * i)) & 0xFu) != 0 || batch.orientation[i] == 0) continue;
-    NearSubpackets near{subpackets[i], 0};
+    NearSubpackets near{subpackets[i], 0, false};
     if (culling.subpackets) {
       work.add(Work::kSubpacketSetup);
       near = subpackets_near<L, PacketType>(batch, i, subpackets[i], work);
     }
-    const bool by_rows = culling.subpackets && ((batch.in_range >> (4 * i)) & 0xFu) == 0xFu;
-    changed |= test_groups<L, kWantFacing>(packet, *triangles[i], batch, i, near, by_rows, work);
+    changed |= test_groups<L, kWantFacing>(packet, *triangles[i], batch, i, near, work);
   }
   return changed;
 }

@@ -67,9 +67,14 @@ constexpr std::array<double, kWorkKindCount> two_pipe_work_cycles() {
   // Distance (5, reciprocal estimate and Newton step 4), hit point 2, barycentrics 2 * 3, compares and selects 10: 27
   // even, 14 odd = 34; and 2 for its share of the loop (580 for 16 groups).
   set(Work::kGroupTestPaper, 36);
-  // In double, per half of a group: 3 conversions, denominator 5, division 8 (estimate and three Newton steps), error
-  // 2, ends of the interval 3: 21 * 7, and 20 for rounding on bit patterns; twice, and 2 lanes that merge at 30 each.
-  set(Work::kHitGroup, 395);
+  set(Work::kHitGroup, 25);    // load, compares, selects, stores: 12 even, 10 odd, half a branch miss
+  set(Work::kFarSetup, 60);    // edges 6, normal 9, numerator and sizes 17, range 5; a chain, hardly any pairs
+  set(Work::kFarGroup, 20);    // denominator 5, product 2, widening, compare 3, 4 odd; half a branch miss
+  // In double: 3 conversions, denominator 5, division 8 (estimate and three Newton steps), error 2, ends of the interval
+  // 3, facing 2: 23 * 7, and 20 for rounding on bit patterns.
+  set(Work::kHitHalf, 181);
+  set(Work::kFootprintGroup, 27);  // 4 bounds * (2 multiplications, minimum, sum) and 4 compares: 23 even, 8 odd
+  set(Work::kRowGroup, 26);        // 3 edges * (3 multiplications, 3 sums, compare): 21 even, 9 odd
   set(Work::kHitGroupPaper, 60);  // 2 lanes that merge at 30 each
   // In double: normal 18, numerator 6, error bounds 9, squared length 5, two divisions and a square root 30: 68, of
   // which 40 go two by two.

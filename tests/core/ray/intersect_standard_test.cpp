@@ -353,6 +353,7 @@ template <class L, class PacketType>
 void expect_subpacket_culling_drops_no_hit() {
   std::uint64_t left_out = 0;
   std::uint64_t hit_count = 0;
+  std::uint64_t untested_hits = 0;  // triangles with whole subpackets inside
   for_each_seed(400, [&](std::uint64_t seed) {
     TestRandom random(seed);
     const FrameRecord frame = random_frame(random);
@@ -376,9 +377,13 @@ void expect_subpacket_culling_drops_no_hit() {
       const VertexTriangle triangle = triangle_at_a_row(random, packet);
       const SubpacketSet expected = intersect(triangle, false);
       const std::uint32_t all_tests = work[Work::kGroupTestStandard];
+      const PacketType wanted = packet;
       const SubpacketSet found = intersect(triangle, true);
       ASSERT_EQ(found, expected) << "seed " << seed << ", triangle " << i;
+      ASSERT_TRUE(std::ranges::equal(packet.id, wanted.id)) << "seed " << seed << ", triangle " << i;
+      ASSERT_TRUE(std::ranges::equal(packet.t, wanted.t, same_bits)) << "seed " << seed << ", triangle " << i;
       ASSERT_LE(work[Work::kGroupTestStandard], all_tests);
+      untested_hits += work[Work::kHitGroup] > work[Work::kGroupTestStandard] ? 1u : 0u;
       left_out += all_tests - work[Work::kGroupTestStandard];
       hit_count += expected != 0 ? 1u : 0u;
     }
@@ -386,6 +391,7 @@ void expect_subpacket_culling_drops_no_hit() {
   if (std::getenv("GRIDIRON_TEST_SEED") == nullptr) {
     EXPECT_GT(left_out, 1000u);
     EXPECT_GT(hit_count, 1000u);
+    EXPECT_GT(untested_hits, 100u);
   }
 }
 
@@ -393,6 +399,41 @@ TYPED_TEST(StandardTest, SubpacketCullingDropsNoHit) {
   expect_subpacket_culling_drops_no_hit<TypeParam, Packet<8>>();
   expect_subpacket_culling_drops_no_hit<TypeParam, Packet<16>>();
   expect_subpacket_culling_drops_no_hit<TypeParam, Packet<32>>();
+}
+
+TYPED_TEST(StandardTest, OnlyHitsBehindAnotherAreFilteredOut) {
+  std::uint64_t behind_count = 0;
+  std::uint64_t near_count = 0;  // distances next to the one the ray has
+  for_each_seed(4000, [&](std::uint64_t seed) {
+    TestRandom random(seed);
+    const TriangleCase shown = random_triangles(random, 2);
+    Packet<4> packet{};
+    aim_at(random, shown, packet);
+    for (const VertexTriangle& triangle : shown.triangles) {
+      const FarFilter filter = set_up_far_filter(packet.origin, packet.dir_max, triangle);
+      float distance[kRays];
+      for (std::uint32_t ray = 0; ray < kRays; ++ray) {
+        const float direction[3] = {packet.dir[0][ray], packet.dir[1][ray], packet.dir[2][ray]};
+        distance[ray] = true_distance(packet.origin, direction, triangle);
+        packet.t[ray] = distance[ray] * (1.0f + std::ldexp(random.between(-1, 1), -static_cast<int>(random.below(26))));
+      }
+      for (std::uint32_t base = 0; base < kRays; base += TypeParam::kCount) {
+        const std::uint32_t behind = lanes_behind<TypeParam>(packet, base, filter);
+        for (std::uint32_t lane = 0; lane < TypeParam::kCount; ++lane) {
+          const std::uint32_t ray = base + lane;
+          if (!(distance[ray] > 0.0f)) continue;
+          near_count += std::fabs(packet.t[ray] - distance[ray]) < 1e-5f * distance[ray] ? 1u : 0u;
+          if ((behind >> lane & 1u) == 0) continue;
+          ++behind_count;
+          ASSERT_GT(distance[ray], packet.t[ray]) << std::hexfloat << "seed " << seed << ", ray " << ray;
+        }
+      }
+    }
+  });
+  if (all_seeds_run()) {
+    EXPECT_GT(behind_count, 10000u);
+    EXPECT_GT(near_count, 10000u);
+  }
 }
 
 TYPED_TEST(StandardTest, CornerCullingDropsNoHit) {

@@ -1,0 +1,88 @@
+// Footprints: a subpacket that is left out has no ray that exact arithmetic says touches the cell.
+// SPDX-License-Identifier: Apache-2.0
+#include <gridiron/ray/footprint.h>
+#include <gtest/gtest.h>
+
+#include <bit>
+#include <cstdlib>
+#include <string>
+
+#include "core/ray/exact_ray.h"
+#include "core/ray/frustum_cases.h"
+#include "core/seeds.h"
+#include "support/test_mesh.h"
+
+namespace gridiron::test {
+namespace {
+
+template <class L>
+class Footprint : public testing::Test {};
+struct LaneNames {
+  template <class L>
+  static std::string GetName(int) {
+    return "W" + std::to_string(L::kCount);
+  }
+};
+using LaneTypes = testing::Types<Lanes<4>, Lanes<8>, Lanes<16>>;
+TYPED_TEST_SUITE(Footprint, LaneTypes, LaneNames);
+
+TYPED_TEST(Footprint, SquaresBecomeTheirFourSubpackets) {
+  for (std::uint32_t square = 0; square < 16; ++square) {
+    EXPECT_EQ(subpackets_of_squares(std::uint64_t{1} << square), SubpacketSet{0xF} << (4 * square));
+  }
+  EXPECT_EQ(subpackets_of_squares(0xFFFF), ~SubpacketSet{0});
+  EXPECT_EQ(subpackets_of_squares(0), 0u);
+}
+
+template <class L, class PacketType>
+void expect_no_touch_left_out(int seed_count, std::uint32_t ray_stride) {
+  std::uint64_t touches = 0;
+  std::uint64_t left_out = 0;
+  for_each_seed(seed_count, [&](std::uint64_t seed) {
+    TestRandom random(seed);
+    const GridRecord grid = random_grid(random, 2048, 1);
+    PacketType packet{};
+    random_packet(random, grid, packet);
+    RaySet<PacketType::kRayCount> waiting;
+    waiting.fill();
+    Frustum frustum;
+    WorkCounters work;
+    while (take_pass<L>(grid, waiting, packet, frustum)) {
+      for (int slice = 0; slice < 3; ++slice) {
+        const auto k = static_cast<std::int32_t>(random.below(static_cast<std::uint32_t>(frustum.cells_k)));
+        const Slab slab = frustum.slab_of(k, k);
+        for (std::uint32_t ray = random.below(ray_stride); ray < PacketType::kRayCount; ray += ray_stride) {
+          if (!packet.active.contains(ray)) continue;
+          const float d[3] = {packet.dir[0][ray], packet.dir[1][ray], packet.dir[2][ray]};
+          const auto box = ExactRay(grid, packet.origin, d).box_between(frustum.axis_k, k, k);
+          if (!box) continue;
+          for (const std::int32_t u : {box->u.first, box->u.last}) {
+            for (const std::int32_t v : {box->v.first, box->v.last}) {
+              const SubpacketSet touching = subpackets_touching<L>(packet, frustum, slab, u, v, work);
+              ++touches;
+              left_out += PacketType::kSubpacketCount - static_cast<std::uint32_t>(std::popcount(touching));
+              ASSERT_EQ(touching & ~PacketType::kAllSubpackets, 0u);
+              ASSERT_NE(touching >> (ray / kSubpacketRays) & 1u, 0u)
+                  << "seed " << seed << ", ray " << ray << ", cell k " << k << " u " << u << " v " << v;
+            }
+          }
+        }
+      }
+    }
+  });
+  if (std::getenv("GRIDIRON_TEST_SEED") == nullptr) {
+    EXPECT_GT(touches, 5000u);
+    if (PacketType::kSquareCount >= 4) {
+      EXPECT_GT(left_out, touches);
+    }
+  }
+}
+
+TYPED_TEST(Footprint, NoSubpacketThatTouchesACellIsLeftOut) {
+  expect_no_touch_left_out<TypeParam, Packet<8>>(60, 3);
+  expect_no_touch_left_out<TypeParam, Packet<16>>(60, 11);
+  expect_no_touch_left_out<TypeParam, Packet<32>>(60, 41);
+}
+
+}  // namespace
+}  // namespace gridiron::test
