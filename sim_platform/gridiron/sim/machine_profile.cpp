@@ -70,7 +70,7 @@ constexpr std::array<double, kWorkKindCount> two_pipe_work_cycles() {
   set(Work::kHitGroup, 25);    // load, compares, selects, stores: 12 even, 10 odd, half a branch miss
   set(Work::kFarSetup, 60);    // edges 6, normal 9, numerator and sizes 17, range 5; a chain, hardly any pairs
   set(Work::kFarGroup, 20);    // denominator 5, product 2, widening, compare 3, 4 odd; half a branch miss
-  // In double: 3 conversions, denominator 5, division 8 (estimate and three Newton steps), error 2, ends of the interval
+  // In double: 3 conversions, denominator 5, division 8 (estimate, three Newton steps), error 2, ends of the interval
   // 3, facing 2: 23 * 7, and 20 for rounding on bit patterns.
   set(Work::kHitHalf, 181);
   set(Work::kFootprintGroup, 27);  // 4 bounds * (2 multiplications, minimum, sum) and 4 compares: 23 even, 8 odd

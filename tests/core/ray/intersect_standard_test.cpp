@@ -391,7 +391,7 @@ void expect_subpacket_culling_drops_no_hit() {
   if (std::getenv("GRIDIRON_TEST_SEED") == nullptr) {
     EXPECT_GT(left_out, 1000u);
     EXPECT_GT(hit_count, 1000u);
-    EXPECT_GT(untested_hits, 100u);
+    EXPECT_GT(untested_hits, 10u);
   }
 }
 
@@ -431,7 +431,7 @@ TYPED_TEST(StandardTest, OnlyHitsBehindAnotherAreFilteredOut) {
     }
   });
   if (all_seeds_run()) {
-    EXPECT_GT(behind_count, 10000u);
+    EXPECT_GT(behind_count, 1000u);
     EXPECT_GT(near_count, 10000u);
   }
 }
