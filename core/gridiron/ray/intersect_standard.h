@@ -159,6 +159,7 @@ GRIDIRON_INLINE void set_up_edges(const PacketType& packet, const VertexTriangle
 
   batch.missed = 0;
   if (!culling.corner_rays) return;
+  work.charge_to(Work::kCullTest);
   Float nearest(-kFloatMax);
   for (int corner = 0; corner < 4; ++corner) {
     nearest = L::max(nearest, inward_x * Float(packet.corner_dir[0][corner]) +
@@ -177,7 +178,7 @@ template <class L, class PacketType>
                                               int orientation, WorkCounters& work) {
   std::uint32_t inside = 0;
   for (std::uint32_t rest = open_bits; rest != 0; rest &= rest - 1) {
-    const std::uint32_t lane = static_cast<std::uint32_t>(__builtin_ctz(rest));
+    const std::uint32_t lane = lowest_bit(rest);
     const float dir[3] = {packet.dir[0][base + lane], packet.dir[1][base + lane], packet.dir[2][base + lane]};
     bool hit = true;
     bool any = false;
@@ -203,36 +204,35 @@ template <class L, class PacketType>
 GRIDIRON_INLINE void distances_of(const PacketType& packet, std::uint32_t base, std::uint32_t bits,
                                   const VertexTriangle& triangle, const DistanceSetup& setup, float* distance,
                                   WorkCounters& work) {
-  using Double = typename L::DoubleVector;
-  using Long = typename L::LongVector;
-  using HalfMemory = typename L::HalfFloatMemory;
-  using HalfInt = typename L::HalfIntVector;
+  using Double = typename L::Double;
+  using Long = typename L::Long;
   constexpr std::uint32_t kHalf = L::kCount / 2;
   std::uint32_t unsure = 0;
   for (std::uint32_t half = 0; half < 2; ++half) {
     const std::uint32_t first = base + half * kHalf;
-    const Double d_x = __builtin_convertvector(*reinterpret_cast<const HalfMemory*>(packet.dir[0] + first), Double);
-    const Double d_y = __builtin_convertvector(*reinterpret_cast<const HalfMemory*>(packet.dir[1] + first), Double);
-    const Double d_z = __builtin_convertvector(*reinterpret_cast<const HalfMemory*>(packet.dir[2] + first), Double);
-    const Double denominator = d_x * setup.normal[0] + d_y * setup.normal[1] + d_z * setup.normal[2];
-    const Double quotient = setup.numerator / denominator;
+    const Double d_x = Double::load_floats(packet.dir[0] + first);
+    const Double d_y = Double::load_floats(packet.dir[1] + first);
+    const Double d_z = Double::load_floats(packet.dir[2] + first);
+    const Double denominator =
+        d_x * Double(setup.normal[0]) + d_y * Double(setup.normal[1]) + d_z * Double(setup.normal[2]);
+    const Double quotient = Double(setup.numerator) / denominator;
     // error(D) / |D| = error(D) |t| / |N|
-    const Double relative = quotient * setup.relative_error_per_t + setup.relative_error;
+    const Double relative = quotient * Double(setup.relative_error_per_t) + Double(setup.relative_error);
     constexpr std::int64_t kHalfStep = std::int64_t{1} << 28;
-    const Long low = (reinterpret_cast<Long>(quotient - quotient * relative) + kHalfStep) >> 29;
-    const Long high = (reinterpret_cast<Long>(quotient + quotient * relative) + kHalfStep) >> 29;
+    const Long low = ((quotient - quotient * relative).pattern() + kHalfStep) >> 29;
+    const Long high = ((quotient + quotient * relative).pattern() + kHalfStep) >> 29;
     constexpr std::int64_t kRebias = std::int64_t{1023 - 127} << 23;
     const Long pattern = low - kRebias;
     const Long sure = (low == high) & (pattern >= 0x00800000) & (pattern <= 0x7F7FFFFF) & (relative < 0x1p-10);
-    *reinterpret_cast<typename L::HalfIntMemory*>(distance + half * kHalf) = __builtin_convertvector(pattern, HalfInt);
+    L::store_patterns(pattern, distance + half * kHalf);
     unsure |= L::half_bits(~sure) << (half * kHalf);
   }
   unsure &= bits;
   for (std::uint32_t lane = 0; unsure != 0 && lane < L::kCount; ++lane) {
     if (((unsure >> lane) & 1u) == 0) continue;
     const float dir[3] = {packet.dir[0][base + lane], packet.dir[1][base + lane], packet.dir[2][base + lane]};
-    distance[lane] = exact_distance(packet.origin, dir, triangle.v[0], triangle.v[1], triangle.v[2]);
     work.add(Work::kExactDistance);
+    distance[lane] = exact_distance(packet.origin, dir, triangle.v[0], triangle.v[1], triangle.v[2]);
   }
 }
 
@@ -292,6 +292,7 @@ template <class L, class PacketType>
   }
 
   // 2. The subpackets of those that are left.
+  work.charge_to(Work::kSubpacketSetup);
   Four::Float offset[3];
   for (std::uint32_t edge = 0; edge < 3; ++edge) {
     const std::uint32_t lane = first_lane + edge;
@@ -306,7 +307,7 @@ template <class L, class PacketType>
   }
   SubpacketSet near = 0;
   for (; squares != 0; squares &= squares - 1) {
-    const std::uint32_t square = static_cast<std::uint32_t>(__builtin_ctz(squares));
+    const std::uint32_t square = lowest_bit(squares);
     const SubpacketSet four = SubpacketSet{0xF} << (4 * square);
     if ((wanted & four) == 0) continue;
     work.add(Work::kSubpacketGroup);
@@ -329,6 +330,7 @@ template <class L, bool kWantFacing, class PacketType>
                                                        const EdgeBatch<L>& batch, std::uint32_t index,
                                                        SubpacketSet subpackets, WorkCounters& work) {
   using Float = typename L::Float;
+  work.charge_to(Work::kTriangleSetup);
   const std::uint32_t first_lane = 4 * index;
   const std::int32_t orientation = batch.orientation[index];
   const std::uint32_t known = ((batch.in_range >> first_lane) & 0xFu) == 0xFu ? ~0u : 0u;
@@ -341,6 +343,7 @@ template <class L, bool kWantFacing, class PacketType>
   DistanceSetup setup;
   bool setup_done = false;
   SubpacketSet changed = 0;
+  work.charge_to(Work::kGroupTestStandard);
   for_each_subpacket<PacketType::kSubpacketCount>(subpackets, [&](std::uint32_t subpacket) GRIDIRON_INLINE_LAMBDA {
     const std::uint32_t first_ray = subpacket * kSubpacketRays;
     for (std::uint32_t base = first_ray; base < first_ray + kSubpacketRays; base += L::kCount) {
@@ -364,19 +367,21 @@ template <class L, bool kWantFacing, class PacketType>
       open &= ~inside;
       if (open != 0) [[unlikely]] {
         inside |= settle_open_lanes<L>(packet, base, open, sure_inside, triangle, orientation, work);
+        work.charge_to(Work::kGroupTestStandard);
       }
       if (inside == 0) continue;
       // 3. Distances, and the least (t, id).
       if (!setup_done) {
-        set_up_distance(packet.origin, packet.dir_max, triangle, setup);
         work.add(Work::kHitSetup);
+        set_up_distance(packet.origin, packet.dir_max, triangle, setup);
         setup_done = true;
       }
       work.add(Work::kHitGroup);
       alignas(64) float distance[L::kCount];
       distances_of<L>(packet, base, inside, triangle, setup, distance, work);
+      work.charge_to(Work::kHitGroup);
       for (std::uint32_t rest = inside; rest != 0; rest &= rest - 1) {
-        const std::uint32_t lane = static_cast<std::uint32_t>(__builtin_ctz(rest));
+        const std::uint32_t lane = lowest_bit(rest);
         const float t = distance[lane];
         float& best_t = packet.t[base + lane];
         std::uint32_t& best_id = packet.id[base + lane];
@@ -411,6 +416,7 @@ template <class L, bool kWantFacing, class PacketType>
   for (std::uint32_t i = 0; i < EdgeBatch<L>::kTriangles; ++i) padded[i] = triangles[i < count ? i : 0];
   work.add(Work::kTriangleSetup, count);
   if (culling.corner_rays) work.add(Work::kCullTest, count);
+  work.charge_to(Work::kTriangleSetup);
   set_up_edges<L>(packet, padded, culling, batch, work);
   SubpacketSet changed = 0;
   for (std::uint32_t i = 0; i < count; ++i) {
