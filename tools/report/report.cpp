@@ -111,6 +111,8 @@ std::string_view work_name(Work kind) {
       return "ray_generated";
     case Work::kPacketStart:
       return "packet_start";
+    case Work::kPassGroup:
+      return "pass_group";
     case Work::kMacroSliceStep:
       return "macro_slice_step";
     case Work::kMacroCellStep:

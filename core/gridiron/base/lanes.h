@@ -153,6 +153,56 @@ struct Lanes {
     friend GRIDIRON_INLINE Mask operator>=(Float a, Float b) { return compare<Order::kLessEqual>(b.v, a.v); }
   };
 
+  /// W signed integers.
+  struct Int {
+    IntVector v;
+    [[nodiscard]] GRIDIRON_INLINE std::int32_t operator[](int lane) const { return v[lane]; }
+  };
+  /// W / 2 integers of 64 bits. Comparisons give -1 in the lanes where they hold, else 0.
+  struct Long {
+    LongVector v;
+    friend GRIDIRON_INLINE Long operator+(Long a, std::int64_t b) { return {a.v + b}; }
+    friend GRIDIRON_INLINE Long operator-(Long a, std::int64_t b) { return {a.v - b}; }
+    friend GRIDIRON_INLINE Long operator>>(Long a, int count) { return {a.v >> count}; }
+    friend GRIDIRON_INLINE Long operator&(Long a, Long b) { return {a.v & b.v}; }
+    friend GRIDIRON_INLINE Long operator~(Long a) { return {~a.v}; }
+    friend GRIDIRON_INLINE Long operator==(Long a, Long b) { return {a.v == b.v}; }
+    friend GRIDIRON_INLINE Long operator>=(Long a, std::int64_t b) { return {a.v >= b}; }
+    friend GRIDIRON_INLINE Long operator<=(Long a, std::int64_t b) { return {a.v <= b}; }
+  };
+  /// W / 2 doubles.
+  struct Double {
+    DoubleVector v;
+
+    GRIDIRON_INLINE explicit Double(DoubleVector vector) : v(vector) {}
+    GRIDIRON_INLINE explicit Double(double value) : v(value - DoubleVector{}) {}
+    /// @param source  W / 2 floats, aligned to 2 * W bytes.
+    [[nodiscard]] static GRIDIRON_INLINE Double load_floats(const float* source) {
+      return Double(__builtin_convertvector(*reinterpret_cast<const HalfFloatMemory*>(source), DoubleVector));
+    }
+    /// The 64 bits of each lane.
+    [[nodiscard]] GRIDIRON_INLINE Long pattern() const { return {reinterpret_cast<LongVector>(v)}; }
+
+    friend GRIDIRON_INLINE Double operator+(Double a, Double b) { return Double(a.v + b.v); }
+    friend GRIDIRON_INLINE Double operator-(Double a, Double b) { return Double(a.v - b.v); }
+    friend GRIDIRON_INLINE Double operator*(Double a, Double b) { return Double(a.v * b.v); }
+    friend GRIDIRON_INLINE Double operator/(Double a, Double b) { return Double(a.v / b.v); }
+    friend GRIDIRON_INLINE Long operator<(Double a, double b) { return {a.v < b}; }
+  };
+
+  /// Lane `lane` of a.
+  [[nodiscard]] static GRIDIRON_INLINE float lane(Float a, std::uint32_t lane) { return a.v[lane]; }
+  /// Rounded towards zero. Precondition: the values fit.
+  [[nodiscard]] static GRIDIRON_INLINE Int truncate(Float a) { return {__builtin_convertvector(a.v, IntVector)}; }
+  /// Stores W / 2 doubles, rounded to floats, aligned to 2 * W bytes.
+  static GRIDIRON_INLINE void store_floats(Double a, float* target) {
+    *reinterpret_cast<HalfFloatMemory*>(target) = __builtin_convertvector(a.v, HalfFloatVector);
+  }
+  /// Stores the low halves of W / 2 integers of 64 bits as the patterns of floats, aligned to 2 * W bytes.
+  static GRIDIRON_INLINE void store_patterns(Long patterns, float* target) {
+    *reinterpret_cast<HalfIntMemory*>(target) = __builtin_convertvector(patterns.v, HalfIntVector);
+  }
+
   [[nodiscard]] static GRIDIRON_INLINE Float min(Float a, Float b) {
     return Float(a.v < b.v ? a.v : b.v);
   }
@@ -186,7 +236,8 @@ struct Lanes {
     }
   }
   /// Bit i = the sign of lane i, W / 2 lanes.
-  [[nodiscard]] static GRIDIRON_INLINE std::uint32_t half_bits(LongVector v) {
+  [[nodiscard]] static GRIDIRON_INLINE std::uint32_t half_bits(Long a) {
+    const LongVector v = a.v;
 #if defined(__AVX512DQ__)
     if constexpr (W == 16) return _mm512_movepi64_mask(__m512i(v));
 #endif
@@ -281,6 +332,20 @@ struct Lanes {
 }
 [[nodiscard]] GRIDIRON_INLINE double magnitude(double value) {
   return __builtin_fabs(value);
+}
+
+/// Position of the lowest set bit. Precondition: there is one.
+[[nodiscard]] GRIDIRON_INLINE std::uint32_t lowest_bit(std::uint32_t bits) {
+  return static_cast<std::uint32_t>(__builtin_ctz(bits));
+}
+[[nodiscard]] GRIDIRON_INLINE std::uint32_t lowest_bit(std::uint64_t bits) {
+  return static_cast<std::uint32_t>(__builtin_ctzll(bits));
+}
+
+/// Writes `value` to all of `target`.
+template <class Word, std::uint32_t Count>
+GRIDIRON_INLINE void fill_words(Word (&target)[Count], Word value) {
+  for (Word& word : target) word = value;
 }
 
 /// Number of set bits.

@@ -11,6 +11,7 @@ enum class Work : std::uint8_t {
   kTileStart,         ///< tiles begun: parameter reset, output buffer turned over         (initialisation)
   kRayGenerated,      ///< primary ray groups generated                                     (initialisation)
   kPacketStart,       ///< packet passes begun: frustum, mailbox reset                      (initialisation)
+  kPassGroup,         ///< ray groups held against a pass's march axis, and their slopes        (initialisation)
   kMacroSliceStep,    ///< macro slices entered
   kMacroCellStep,     ///< macrocells looked up in the macrocell table
   kMacroCellVisit,    ///< non-empty macrocells whose cell block was walked
@@ -52,6 +53,8 @@ struct WorkCounters {
   std::uint32_t counts[kWorkKindCount] = {};
 
   constexpr void add(Work kind, std::uint32_t amount = 1) { counts[static_cast<std::uint32_t>(kind)] += amount; }
+  /// The operations that follow belong to `kind`. Nothing to a core: tools/calibrate listens to it, and to add().
+  constexpr void charge_to(Work) const {}
   [[nodiscard]] constexpr std::uint32_t operator[](Work kind) const { return counts[static_cast<std::uint32_t>(kind)]; }
 };
 

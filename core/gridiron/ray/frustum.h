@@ -5,6 +5,7 @@
 
 #include <gridiron/base/lanes.h>
 #include <gridiron/base/records.h>
+#include <gridiron/base/work_counters.h>
 #include <gridiron/ray/packet.h>
 
 #include <cstdint>
@@ -76,7 +77,7 @@ struct Frustum {
     const std::uint32_t above = (cells < bound).bits() & kLowBounds;
     if ((below | above) != 0) return {1, 0, 1, 0};
     const Float inside = Four::min(Four::max(bound, Float(0.0f)), cells - Float(0.5f));
-    const Four::IntVector cell = __builtin_convertvector(inside.v, Four::IntVector);
+    const Four::Int cell = Four::truncate(inside);
     return {cell[0], cell[1], cell[2], cell[3]};
   }
 };
@@ -89,12 +90,15 @@ struct Frustum {
 /// @returns false when no ray is waiting.
 template <class L, class PacketType>
 [[nodiscard]] bool take_pass(const GridRecord& grid, RaySet<PacketType::kRayCount>& waiting, PacketType& packet,
-                             Frustum& frustum) {
+                             Frustum& frustum, WorkCounters& work) {
   constexpr std::uint32_t kRays = PacketType::kRayCount;
   constexpr std::uint32_t kSquareRays = kRays / PacketType::kSquareCount;
-  std::uint32_t leader = 0;
-  while (leader < kRays && !waiting.contains(leader)) ++leader;
-  if (leader == kRays) return false;
+  work.charge_to(Work::kPacketStart);
+  std::uint32_t word = 0;
+  while (word < waiting.kWordCount && waiting.words[word] == 0) ++word;
+  if (word == waiting.kWordCount) return false;
+  const std::uint32_t leader = 32 * word + lowest_bit(waiting.words[word]);
+  work.add(Work::kPacketStart);
 
   const auto size_of = [&](std::uint32_t axis, std::uint32_t ray) {
     return magnitude(packet.dir[axis][ray] * grid.cells_per_unit[axis]);
@@ -111,6 +115,7 @@ template <class L, class PacketType>
   const Float u_scale(grid.cells_per_unit[u]);
   const Float v_scale(grid.cells_per_unit[v]);
   Float low_u(kFloatMax), high_u(-kFloatMax), low_v(kFloatMax), high_v(-kFloatMax);
+  work.add(Work::kPassGroup, kRays / L::kCount);
   for (std::uint32_t base = 0; base < kRays; base += L::kCount) {
     if (base % kSquareRays == 0) {
       low_u = low_v = Float(kFloatMax);
@@ -139,6 +144,7 @@ template <class L, class PacketType>
     packet.slope_low[1][square] = L::horizontal_min(low_v);
     packet.slope_high[1][square] = L::horizontal_max(high_v);
   }
+  work.charge_to(Work::kPacketStart);
   waiting.erase(leader);  // a direction that vanishes or overflows in cell space, or is not finite, is a miss
   const auto larger = [](float a, float b) { return a > b ? a : b; };
   const auto in_cells = [&](std::uint32_t axis) {

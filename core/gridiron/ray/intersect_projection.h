@@ -65,6 +65,7 @@ template <class L, bool kWantFacing, class PacketType>
     if (in_front && outside) return 0;
   }
   SubpacketSet changed = 0;
+  work.charge_to(Work::kGroupTestPaper);
   for (std::uint32_t base = 0; base < PacketType::kRayCount; base += L::kCount) {
     const SubpacketSet subpacket = SubpacketSet{1} << (base / kSubpacketRays);
     if ((subpackets & subpacket) == 0) continue;
@@ -81,16 +82,16 @@ template <class L, bool kWantFacing, class PacketType>
     if (inside == 0) continue;
     work.add(Work::kHitGroupPaper);
     for (; inside != 0; inside &= inside - 1) {
-      const int lane = __builtin_ctz(inside);
-      const std::uint32_t ray = base + static_cast<std::uint32_t>(lane);
-      const float t = hit.t.v[lane];
+      const std::uint32_t lane = lowest_bit(inside);
+      const std::uint32_t ray = base + lane;
+      const float t = L::lane(hit.t, lane);
       if (t == packet.t[ray] && triangle.triangle_id >= packet.id[ray]) continue;
       packet.t[ray] = t;
       packet.id[ray] = triangle.triangle_id;
       changed |= subpacket;
       if constexpr (kWantFacing) {
         const float length = square_root(1.0f + triangle.n_u * triangle.n_u + triangle.n_v * triangle.n_v);
-        const float cosine = hit.denominator.v[lane] / length;
+        const float cosine = L::lane(hit.denominator, lane) / length;
         packet.facing[ray] = cosine < 0.0f ? -cosine : cosine;
       }
     }

@@ -192,6 +192,7 @@ GRIDIRON_INLINE void set_up_edges(const PacketType& packet, const VertexTriangle
 
   batch.missed = 0;
   if (!culling.corner_rays) return;
+  work.charge_to(Work::kCullTest);
   Float nearest(-kFloatMax);
   for (int corner = 0; corner < 4; ++corner) {
     nearest = L::max(nearest, inward_x * Float(packet.corner_dir[0][corner]) +
@@ -210,7 +211,7 @@ template <class L, class PacketType>
                                               int orientation, WorkCounters& work) {
   std::uint32_t inside = 0;
   for (std::uint32_t rest = open_bits; rest != 0; rest &= rest - 1) {
-    const std::uint32_t lane = static_cast<std::uint32_t>(__builtin_ctz(rest));
+    const std::uint32_t lane = lowest_bit(rest);
     const float dir[3] = {packet.dir[0][base + lane], packet.dir[1][base + lane], packet.dir[2][base + lane]};
     bool hit = true;
     bool any = false;
@@ -236,44 +237,41 @@ template <class L, class PacketType>
 template <class L, bool kWantFacing, class PacketType>
 GRIDIRON_INLINE void distances_of(const PacketType& packet, std::uint32_t base, std::uint32_t bits,
                                   const VertexTriangle& triangle, const DistanceSetup& setup, float* distance,
-                                  float* facing, WorkCounters& work) {
-  using Double = typename L::DoubleVector;
-  using Long = typename L::LongVector;
-  using HalfMemory = typename L::HalfFloatMemory;
-  using HalfInt = typename L::HalfIntVector;
-  using HalfFloat = typename L::HalfFloatVector;
+                                  float* along_normal, WorkCounters& work) {
+  using Double = typename L::Double;
+  using Long = typename L::Long;
   constexpr std::uint32_t kHalf = L::kCount / 2;
   std::uint32_t unsure = 0;
   for (std::uint32_t half = 0; half < 2; ++half) {
     if (kSparesDoubles<L> && (bits >> (half * kHalf) & ((1u << kHalf) - 1u)) == 0) continue;
     work.add(Work::kHitHalf);
     const std::uint32_t first = base + half * kHalf;
-    const Double d_x = __builtin_convertvector(*reinterpret_cast<const HalfMemory*>(packet.dir[0] + first), Double);
-    const Double d_y = __builtin_convertvector(*reinterpret_cast<const HalfMemory*>(packet.dir[1] + first), Double);
-    const Double d_z = __builtin_convertvector(*reinterpret_cast<const HalfMemory*>(packet.dir[2] + first), Double);
-    const Double denominator = d_x * setup.normal[0] + d_y * setup.normal[1] + d_z * setup.normal[2];
-    const Double quotient = setup.numerator / denominator;
+    const Double d_x = Double::load_floats(packet.dir[0] + first);
+    const Double d_y = Double::load_floats(packet.dir[1] + first);
+    const Double d_z = Double::load_floats(packet.dir[2] + first);
+    const Double denominator =
+        d_x * Double(setup.normal[0]) + d_y * Double(setup.normal[1]) + d_z * Double(setup.normal[2]);
+    const Double quotient = Double(setup.numerator) / denominator;
     // error(D) / |D| = error(D) |t| / |N|
-    const Double relative = quotient * setup.relative_error_per_t + setup.relative_error;
+    const Double relative = quotient * Double(setup.relative_error_per_t) + Double(setup.relative_error);
     constexpr std::int64_t kHalfStep = std::int64_t{1} << 28;
-    const Long low = (reinterpret_cast<Long>(quotient - quotient * relative) + kHalfStep) >> 29;
-    const Long high = (reinterpret_cast<Long>(quotient + quotient * relative) + kHalfStep) >> 29;
+    const Long low = ((quotient - quotient * relative).pattern() + kHalfStep) >> 29;
+    const Long high = ((quotient + quotient * relative).pattern() + kHalfStep) >> 29;
     constexpr std::int64_t kRebias = std::int64_t{1023 - 127} << 23;
     const Long pattern = low - kRebias;
     const Long sure = (low == high) & (pattern >= 0x00800000) & (pattern <= 0x7F7FFFFF) & (relative < 0x1p-10);
-    *reinterpret_cast<typename L::HalfIntMemory*>(distance + half * kHalf) = __builtin_convertvector(pattern, HalfInt);
+    L::store_patterns(pattern, distance + half * kHalf);
     unsure |= L::half_bits(~sure) << (half * kHalf);
     if constexpr (kWantFacing) {
-      *reinterpret_cast<HalfMemory*>(facing + half * kHalf) =
-          __builtin_convertvector(denominator * setup.facing_scale, HalfFloat);
+      L::store_floats(denominator * Double(setup.facing_scale), along_normal + half * kHalf);
     }
   }
   unsure &= bits;
   for (std::uint32_t lane = 0; unsure != 0 && lane < L::kCount; ++lane) {
     if (((unsure >> lane) & 1u) == 0) continue;
     const float dir[3] = {packet.dir[0][base + lane], packet.dir[1][base + lane], packet.dir[2][base + lane]};
-    distance[lane] = exact_distance(packet.origin, dir, triangle.v[0], triangle.v[1], triangle.v[2]);
     work.add(Work::kExactDistance);
+    distance[lane] = exact_distance(packet.origin, dir, triangle.v[0], triangle.v[1], triangle.v[2]);
   }
 }
 
@@ -291,14 +289,20 @@ inline constexpr SquareOrigins kSquareOrigins = [] {
   return origins;
 }();
 
+/// Where the four lanes of a test stand, in pixels: quarters in a packet of 8x8 subpackets, rows in a subpacket.
+struct LanePlaces {
+  alignas(16) float quarter_column[4];
+  alignas(16) float quarter_row[4];
+  alignas(16) float row[4];
+};
+inline constexpr LanePlaces kLanePlaces = {{0, 16, 0, 16}, {0, 0, 16, 16}, {0, 1, 2, 3}};
+
 /// @returns those quarters of a packet of 8x8 subpackets that triangle `index` of a batch may touch.
 template <class L>
 [[nodiscard]] GRIDIRON_INLINE std::uint32_t quarters_near(const EdgeBatch<L>& batch, std::uint32_t index,
                                                           WorkCounters& work) {
   using Float = Lanes<4>::Float;
   constexpr float kSide = 4.0f * kSubpacketWidth;
-  alignas(16) static constexpr float kColumns[4] = {0, kSide, 0, kSide};
-  alignas(16) static constexpr float kRows[4] = {0, 0, kSide, kSide};
   work.add(Work::kSubpacketGroup);
   std::uint32_t outside = 0;
   for (std::uint32_t edge = 0; edge < 3; ++edge) {
@@ -307,7 +311,8 @@ template <class L>
     const float largest = batch.first[lane] + ((per_column > 0.0f ? (kSide - 1.0f) * per_column : 0.0f) +
                                                (per_row > 0.0f ? (kSide - 1.0f) * per_row : 0.0f));
     const Float value =
-        Float(largest) + (Float::load(kColumns) * Float(per_column) + Float::load(kRows) * Float(per_row));
+        Float(largest) + (Float::load(kLanePlaces.quarter_column) * Float(per_column) +
+                          Float::load(kLanePlaces.quarter_row) * Float(per_row));
     outside |= (value < Float(batch.surely_outside[lane])).bits();
   }
   return ~outside & 0xFu;
@@ -368,6 +373,7 @@ template <class L, class PacketType>
   }
 
   // 2. The subpackets of those that are left.
+  work.charge_to(Work::kSubpacketSetup);
   Four::Float offset[3];
   Four::Float span[3];
   for (std::uint32_t edge = 0; edge < 3; ++edge) {
@@ -386,7 +392,7 @@ template <class L, class PacketType>
   SubpacketSet near = 0;
   SubpacketSet covered = 0;
   for (; squares != 0; squares &= squares - 1) {
-    const std::uint32_t square = static_cast<std::uint32_t>(__builtin_ctz(squares));
+    const std::uint32_t square = lowest_bit(squares);
     const SubpacketSet four = SubpacketSet{0xF} << (4 * square);
     if ((wanted & four) == 0) continue;
     work.add(Work::kSubpacketGroup);
@@ -409,7 +415,6 @@ template <class L>
 [[nodiscard]] GRIDIRON_INLINE std::uint32_t rows_near(const EdgeBatch<L>& batch, std::uint32_t index,
                                                       std::uint32_t subpacket, WorkCounters& work) {
   using Four = Lanes<4>;
-  alignas(16) static constexpr float kRows[4] = {0, 1, 2, 3};
   work.add(Work::kRowGroup);
   const float column = static_cast<float>(kSubpacketWidth * subpacket_column(subpacket));
   const float row = static_cast<float>(kSubpacketWidth * subpacket_row(subpacket));
@@ -421,7 +426,7 @@ template <class L>
     const float largest = per_column > 0.0f ? kSpan * per_column : 0.0f;
     const Four::Float value =
         Four::Float(batch.first[lane] + (column * per_column + largest)) +
-        (Four::Float(row) + Four::Float::load(kRows)) * Four::Float(batch.per_row[lane]);
+        (Four::Float(row) + Four::Float::load(kLanePlaces.row)) * Four::Float(batch.per_row[lane]);
     outside |= (value < Four::Float(batch.surely_outside[lane])).bits();
   }
   return ~outside & 0xFu;
@@ -472,7 +477,9 @@ template <class L, class PacketType>
   open &= ~inside;
   if (open == 0) [[likely]]
     return inside;
-  return inside | settle_open_lanes<L>(packet, base, open, sure_inside, triangle, orientation, work);
+  const std::uint32_t settled = settle_open_lanes<L>(packet, base, open, sure_inside, triangle, orientation, work);
+  work.charge_to(Work::kGroupTestStandard);
+  return inside | settled;
 }
 
 /// What the hits of one triangle need, computed when the first of them does.
@@ -508,18 +515,19 @@ template <class L, bool kWantFacing, class PacketType>
   alignas(64) float distance[L::kCount];
   alignas(64) float along_normal[L::kCount];
   distances_of<L, kWantFacing>(packet, base, hit, triangle, setups.distance, distance, along_normal, work);
+  work.charge_to(Work::kHitGroup);
   const Float t = Float::load(distance);
   const std::uint32_t in_front = (t > Float(0.0f)).bits() & hit;
   std::uint32_t nearer = (t < old_t).bits() & in_front;
   for (std::uint32_t ties = (t <= old_t).bits() & in_front & ~nearer; ties != 0; ties &= ties - 1) {
-    const std::uint32_t lane = static_cast<std::uint32_t>(__builtin_ctz(ties));
+    const std::uint32_t lane = lowest_bit(ties);
     if (triangle.triangle_id < packet.id[base + lane]) nearer |= 1u << lane;
   }
   if (nearer == 0) return false;
   const auto taken = L::mask_from_bits(nearer);
   L::select(taken, t, old_t).store(packet.t + base);
   for (std::uint32_t rest = nearer; rest != 0; rest &= rest - 1) {
-    packet.id[base + static_cast<std::uint32_t>(__builtin_ctz(rest))] = triangle.triangle_id;
+    packet.id[base + lowest_bit(rest)] = triangle.triangle_id;
   }
   if constexpr (kWantFacing) {
     const Float facing = L::abs(Float::load(along_normal));
@@ -537,6 +545,7 @@ template <class L, bool kWantFacing, class PacketType>
                                                        const EdgeBatch<L>& batch, std::uint32_t index,
                                                        const NearSubpackets& near, WorkCounters& work) {
   constexpr bool kGroupsAreRows = L::kCount == kSubpacketWidth;
+  work.charge_to(Work::kTriangleSetup);
   const SplatEdges<L> edges(batch, index);
   HitSetups setups;
   SubpacketSet changed = 0;
@@ -547,6 +556,7 @@ template <class L, bool kWantFacing, class PacketType>
     if constexpr (kGroupsAreRows) {
       if (near.is_linear && !is_covered) rows = rows_near(batch, index, subpacket, work);
     }
+    work.charge_to(Work::kGroupTestStandard);
     for (std::uint32_t group = 0; group < kSubpacketRays / L::kCount; ++group) {
       const std::uint32_t base = first_ray + group * L::kCount;
       const std::uint32_t active = packet.active.template group<L>(base);
@@ -576,6 +586,7 @@ template <class L, bool kWantFacing, class PacketType>
   for (std::uint32_t i = 0; i < EdgeBatch<L>::kTriangles; ++i) padded[i] = triangles[i < count ? i : 0];
   work.add(Work::kTriangleSetup, count);
   if (culling.corner_rays) work.add(Work::kCullTest, count);
+  work.charge_to(Work::kTriangleSetup);
   set_up_edges<L>(packet, padded, culling, batch, work);
   SubpacketSet changed = 0;
   for (std::uint32_t i = 0; i < count; ++i) {

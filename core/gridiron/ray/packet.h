@@ -61,7 +61,7 @@ GRIDIRON_INLINE void for_each_subpacket(SubpacketSet set, Visit&& visit) {
       if ((set >> i & 1u) != 0) visit(i);
     }
   } else {
-    for (; set != 0; set &= set - 1) visit(static_cast<std::uint32_t>(__builtin_ctzll(set)));
+    for (; set != 0; set &= set - 1) visit(lowest_bit(set));
   }
 }
 

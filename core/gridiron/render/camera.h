@@ -58,11 +58,9 @@ void generate_packet(const FrameRecord& frame, std::uint32_t left, std::uint32_t
       }
     }
   }
-  for (std::uint32_t ray = 0; ray < PacketType::kRayCount; ++ray) {
-    packet.t[ray] = frame.t_far;
-    packet.id[ray] = kNoTriangle;
-    packet.facing[ray] = 0.0f;
-  }
+  fill_words(packet.t, frame.t_far);
+  fill_words(packet.id, kNoTriangle);
+  fill_words(packet.facing, 0.0f);
   const std::uint32_t columns = frame.width - left;
   const std::uint32_t rows = frame.height - top;
   if (columns >= kWidth && rows >= kWidth) [[likely]] {

@@ -75,6 +75,7 @@ class TileRenderer {
         shade_packet<L>(frame, store_.packet, x, y, store_.output[slot], store_.work);
       }
     }
+    store_.work.charge_to(Work::kTileStart);
     GRIDIRON_TRY(put_tile(tile_id, slot, tag));
     return waits_for_output_ ? transfers_.wait(tag) : Status::kOk;
   }
@@ -98,12 +99,13 @@ class TileRenderer {
   [[nodiscard]] Status trace_packet(std::uint32_t left, std::uint32_t top) {
     RaySet<StorePacket::kRayCount> waiting;
     generate_packet<L>(store_.frame, left, top, store_.packet, waiting, store_.work);
+    store_.work.charge_to(Work::kPacketStart);
     store_.mailbox.clear();
     Frustum frustum;
-    while (take_pass<L>(store_.frame.grid, waiting, store_.packet, frustum)) {
-      store_.work.add(Work::kPacketStart);
+    while (take_pass<L>(store_.frame.grid, waiting, store_.packet, frustum, store_.work)) {
       PacketDriver<L, Layout, P> driver(store_, transfers_, frustum);
       GRIDIRON_TRY(driver.run());
+      store_.work.charge_to(Work::kPacketStart);
       // The next pass has other rays: what this one has seen says nothing about them.
       store_.mailbox.clear();
     }

@@ -39,6 +39,7 @@ class PacketDriver {
         triangle_ring_(store.frame.triangle_depth) {}
 
   [[nodiscard]] Status run() {
+    store_.work.charge_to(Work::kPacketStart);
     macro_walk_.begin(store_.frame.grid, frustum_);
     reach_ = reaches_.template update<L>(store_.packet, frustum_, StorePacket::kAllSubpackets, store_.work);
     for (;;) {
@@ -74,6 +75,7 @@ class PacketDriver {
       GRIDIRON_TRY(enter_next_macro_cell());
       if (cells_done_) return Status::kOk;
     }
+    store_.work.charge_to(Work::kCellVisit);
     const std::uint32_t count = cell_.triangle_count < kRunTriangles ? cell_.triangle_count : kRunTriangles;
     const MainAddress address{store_.frame.triangles_address +
                               std::uint64_t{cell_.first_triangle} * kTriangleRecordBytes};
@@ -88,6 +90,7 @@ class PacketDriver {
 
   // Leaves the macrocell that was walked, keeps the ring filled, and waits for the next block; or sets cells_done_.
   [[nodiscard]] Status enter_next_macro_cell() {
+    store_.work.charge_to(Work::kMacroCellVisit);
     if (entered_) macro_ring_.pop();
     entered_ = false;
     while (!macro_ring_.full() && !macro_cells_done_) GRIDIRON_TRY(fetch_next_macro_cell());
@@ -117,6 +120,7 @@ class PacketDriver {
       macro_cells_done_ = true;
       return Status::kOk;
     }
+    store_.work.charge_to(Work::kMacroCellVisit);
     const std::uint32_t slot = macro_ring_.push();
     visits_[slot] = visit;
     const std::uint32_t block_bytes = store_.frame.grid.cell_block_bytes;
@@ -151,17 +155,21 @@ class PacketDriver {
 
   // Waits for the oldest run and tests it, unless every ray has meanwhile hit something in front of it.
   [[nodiscard]] Status test_front_run() {
+    store_.work.charge_to(Work::kTriangleBatch);
     const std::uint32_t slot = triangle_ring_.front();
     GRIDIRON_TRY(transfers_.wait(static_cast<std::uint8_t>(kFirstTriangleTag + slot)));
     const TriangleRun& run = runs_[slot];
     if (!frustum_.beyond(Slab{run.entry, run.entry}, reach_)) {
       store_.work.add(Work::kTriangleBatch);
       const SubpacketSet open = open_subpackets(run.entry);
-      // The others are tested too, so that no triangle comes again for them from a later cell.
-      const SubpacketSet changed =
-          (open & run.touching) != 0 ? test_run(store_.triangles[slot].bytes + run.first_byte, run.count, open) : 0;
+      SubpacketSet changed = 0;
+      // The other open subpackets are tested too, so that no triangle comes again for them from a later cell.
+      if ((open & run.touching) != 0) {
+        changed = test_run(store_.triangles[slot].bytes + run.first_byte, run.count, open);
+      }
       if (changed != 0) reach_ = reaches_.template update<L>(store_.packet, frustum_, changed, store_.work);
     }
+    store_.work.charge_to(Work::kTriangleBatch);
     triangle_ring_.pop();
     return Status::kOk;
   }
@@ -185,12 +193,16 @@ class PacketDriver {
     const bool use_mailbox = (store_.frame.techniques & kUseMailbox) != 0;
     const Culling culling{.corner_rays = (store_.frame.techniques & kUseCornerCulling) != 0,
                           .subpackets = (store_.frame.techniques & kUseSubpackets) != 0};
-    if (use_mailbox) store_.work.add(Work::kMailboxProbe, count);
+    if (use_mailbox) {
+      store_.work.add(Work::kMailboxProbe, count);
+      store_.work.charge_to(Work::kTriangleBatch);
+    }
     const Triangle* waiting[kBatch];
     SubpacketSet subpackets[kBatch];
     std::uint32_t waiting_count = 0;
     SubpacketSet changed = 0;
     for (std::uint32_t i = 0; i < count; ++i) {
+      store_.work.charge_to(use_mailbox ? Work::kMailboxProbe : Work::kTriangleBatch);
       waiting[waiting_count] = triangles + i;
       subpackets[waiting_count] = use_mailbox ? store_.mailbox.untested(triangles[i].triangle_id, open) : open;
       if (subpackets[waiting_count] != 0) ++waiting_count;

@@ -20,12 +20,12 @@ struct alignas(128) Mailbox {
   SubpacketSet tested[kSlotCount];
 
   GRIDIRON_INLINE void clear() {
-    for (std::uint32_t& id : triangle_ids) id = kNoTriangle;
+    fill_words(triangle_ids, kNoTriangle);
   }
   /// @returns those of the `wanted` subpackets that were not tested against the triangle before; remembers them.
   [[nodiscard]] GRIDIRON_INLINE SubpacketSet untested(std::uint32_t triangle_id, SubpacketSet wanted) {
     const std::uint32_t slot = triangle_id % kSlotCount;
-    const SubpacketSet before = triangle_ids[slot] == triangle_id ? tested[slot] : 0;
+    const SubpacketSet before = triangle_ids[slot] == triangle_id ? tested[slot] : SubpacketSet{0};
     triangle_ids[slot] = triangle_id;
     tested[slot] = before | wanted;
     return wanted & ~before;

@@ -64,6 +64,7 @@ class MacroWalk {
       // 1. The rest of the current macro slice.
       for (; v_ <= v_last_; ++v_, u_ = u_first_) {
         for (; u_ <= u_last_; ++u_) {
+          work.charge_to(Work::kMacroCellStep);
           const std::uint32_t cell = static_cast<std::uint32_t>(k_) * stride_k_ +
                                      static_cast<std::uint32_t>(u_) * stride_u_ +
                                      static_cast<std::uint32_t>(v_) * stride_v_;
@@ -86,6 +87,7 @@ class MacroWalk {
         }
       }
       // 2. The next macro slice.
+      work.charge_to(Work::kMacroSliceStep);
       if (step_ == macro_count_k_) return WalkStep::kDone;
       k_ = frustum.reverse ? macro_count_k_ - 1 - step_ : step_;
       ++step_;
@@ -160,6 +162,7 @@ class CellWalk {
           return true;
         }
       }
+      work.charge_to(Work::kSliceStep);
       if (step_ == slice_count) return false;
       const std::int32_t k = frustum.reverse ? visit_.k_last - step_ : visit_.k_first + step_;
       ++step_;

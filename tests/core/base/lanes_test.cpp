@@ -211,7 +211,7 @@ TYPED_TEST(LanesTest, HalfBitsAreTheSigns) {
     for (int kind = 0; kind < 3; ++kind) {
       typename TypeParam::LongVector vector{};
       for (int i = 0; i < kHalf; ++i) vector[i] = (bits >> i & 1u) != 0 ? kNegative[kind] : kOther[kind];
-      ASSERT_EQ(TypeParam::half_bits(vector), bits);
+      ASSERT_EQ(TypeParam::half_bits({vector}), bits);
     }
   }
 }

@@ -55,7 +55,7 @@ void expect_no_touch_left_out(std::uint64_t seed_count, std::uint32_t ray_stride
     waiting.fill();
     Frustum frustum;
     WorkCounters work;
-    while (take_pass<L>(grid, waiting, packet, frustum)) {
+    while (take_pass<L>(grid, waiting, packet, frustum, work)) {
       for (int slice = 0; slice < 6; ++slice) {
         const auto k = static_cast<std::int32_t>(random.below(static_cast<std::uint32_t>(frustum.cells_k)));
         const Slab slab = frustum.slab_of(k, k);

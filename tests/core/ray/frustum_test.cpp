@@ -20,6 +20,8 @@
 namespace gridiron::test {
 namespace {
 
+WorkCounters pass_work;  // of take_pass, of no interest here
+
 using SmallPacket = Packet<4>;
 using Rays = RaySet<SmallPacket::kRayCount>;
 constexpr std::uint32_t kRays = SmallPacket::kRayCount;
@@ -78,7 +80,7 @@ TYPED_TEST(FrustumTest, EveryRayIsTakenOnceInAtMostSixPasses) {
     std::uint32_t taken = 0;
     std::uint32_t passes = 0;
     Frustum frustum;
-    while (take_pass<TypeParam>(grid, waiting, packet, frustum)) {
+    while (take_pass<TypeParam>(grid, waiting, packet, frustum, pass_work)) {
       const std::uint32_t active = packet.active.words[0];
       ASSERT_EQ(active & taken, 0u) << "a ray was taken twice, seed " << seed;
       ASSERT_EQ(active & waiting.words[0], 0u) << "a taken ray still waits, seed " << seed;
@@ -112,7 +114,9 @@ TYPED_TEST(FrustumTest, SixDirectionsNeedSixPasses) {
   Rays waiting = all_waiting();
   Frustum frustum;
   std::set<std::pair<std::uint32_t, bool>> ways;
-  while (take_pass<TypeParam>(grid, waiting, packet, frustum)) ways.insert({frustum.axis_k, frustum.reverse});
+  while (take_pass<TypeParam>(grid, waiting, packet, frustum, pass_work)) {
+    ways.insert({frustum.axis_k, frustum.reverse});
+  }
   EXPECT_EQ(ways.size(), 6u);
 }
 
@@ -147,7 +151,7 @@ TYPED_TEST(FrustumTest, RaysWithoutADirectionAreDroppedAndSpoilNoOther) {
     Frustum expected{}, frustum{};
     std::uint32_t taken = 0;
     for (int pass = 0; pass < 6 + static_cast<int>(kRays); ++pass) {
-      if (!take_pass<TypeParam>(grid, together, packet, frustum)) break;
+      if (!take_pass<TypeParam>(grid, together, packet, frustum, pass_work)) break;
       const std::uint32_t active = packet.active.words[0];
       ASSERT_EQ(active & ~good, 0u) << "a ray without direction runs, seed " << seed;
       ASSERT_EQ(active & taken, 0u) << "seed " << seed;
@@ -155,7 +159,7 @@ TYPED_TEST(FrustumTest, RaysWithoutADirectionAreDroppedAndSpoilNoOther) {
       if (active == 0) continue;
       Rays same;
       same.words[0] = active;
-      ASSERT_TRUE(take_pass<TypeParam>(grid, same, other, expected));
+      ASSERT_TRUE(take_pass<TypeParam>(grid, same, other, expected, pass_work));
       if (frustum.axis_k != expected.axis_k) continue;  // a bad leader chose the axis
       ++compared;
       for (int i = 0; i < 4; ++i) {
@@ -203,7 +207,7 @@ TYPED_TEST(FrustumTest, RectanglesHoldEveryCellTouched) {
     random_packet(random, grid, packet);
     Rays waiting = all_waiting();
     Frustum frustum;
-    while (take_pass<TypeParam>(grid, waiting, packet, frustum)) {
+    while (take_pass<TypeParam>(grid, waiting, packet, frustum, pass_work)) {
       const std::vector<CellSpan> slabs = slabs_of(random, frustum);
       for (std::uint32_t ray = 0; ray < kRays; ++ray) {
         if (!packet.active.contains(ray)) continue;
@@ -246,7 +250,7 @@ TYPED_TEST(FrustumTest, NoSlabWithAPointInReachIsBeyond) {
     random_packet(random, grid, packet);
     Rays waiting = all_waiting();
     Frustum frustum;
-    while (take_pass<TypeParam>(grid, waiting, packet, frustum)) {
+    while (take_pass<TypeParam>(grid, waiting, packet, frustum, pass_work)) {
       const std::vector<CellSpan> slabs = slabs_of(random, frustum);
       for (const CellSpan& slices : slabs) {
         // Hits at about the slab's entry: nearer or farther by anything from the last digit to 1 in 256.
@@ -286,7 +290,7 @@ TEST(Frustum, BeyondIsBeyond) {
   for (float& t : packet.t) t = 5.0f;  // to z = 40.5
   Rays waiting = all_waiting();
   Frustum frustum;
-  ASSERT_TRUE(take_pass<Lanes<4>>(grid, waiting, packet, frustum));
+  ASSERT_TRUE(take_pass<Lanes<4>>(grid, waiting, packet, frustum, pass_work));
   const float reach = reach_of<Lanes<4>>(packet, frustum);
   EXPECT_EQ(reach, 10.0f);
   EXPECT_FALSE(frustum.beyond(frustum.slab_of(40, 40), reach));
@@ -309,7 +313,7 @@ TEST(Frustum, RaysInACellFaceTouchBothSides) {
   packet.origin[2] = 7.0f;
   Rays waiting = all_waiting();
   Frustum frustum;
-  ASSERT_TRUE(take_pass<Lanes<4>>(grid, waiting, packet, frustum));
+  ASSERT_TRUE(take_pass<Lanes<4>>(grid, waiting, packet, frustum, pass_work));
   for (std::int32_t k = 0; k < 16; ++k) {
     const CellRect rect = frustum.rect_of(frustum.slab_of(k, k));
     EXPECT_EQ(rect.u_first, 2);
@@ -329,7 +333,7 @@ TEST(Frustum, RaysBesideTheGridTouchNothing) {
     packet.origin[2] = 8.0f;
     Rays waiting = all_waiting();
     Frustum frustum;
-    ASSERT_TRUE(take_pass<Lanes<4>>(grid, waiting, packet, frustum));
+    ASSERT_TRUE(take_pass<Lanes<4>>(grid, waiting, packet, frustum, pass_work));
     for (std::int32_t k = 0; k < 16; ++k) EXPECT_TRUE(frustum.rect_of(frustum.slab_of(k, k)).empty()) << y;
   }
 }

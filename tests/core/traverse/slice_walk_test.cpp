@@ -20,6 +20,8 @@
 namespace gridiron::test {
 namespace {
 
+WorkCounters pass_work;  // of take_pass, of no interest here
+
 using SmallPacket = Packet<4>;
 using Window = MacroTableWindow<16>;  // one chunk: the walk is interrupted wherever it can be
 constexpr std::uint32_t kRays = SmallPacket::kRayCount;
@@ -189,7 +191,7 @@ TEST(SliceWalk, VisitsEveryCellTouchedOnceAndInOrder) {
     RaySet<kRays> waiting;
     waiting.words[0] = (1u << kRays) - 1;
     Frustum frustum;
-    while (take_pass<Lanes<4>>(scene.grid, waiting, packet, frustum)) {
+    while (take_pass<Lanes<4>>(scene.grid, waiting, packet, frustum, pass_work)) {
       check_pass(scene, packet, frustum, reach_of<Lanes<4>>(packet, frustum), touched);
       // The same with hits on the way.
       SmallPacket hit = packet;
@@ -233,7 +235,7 @@ class StraightWalk : public testing::TestWithParam<bool> {
     packet_.origin[2] = 6.5f;
     RaySet<kRays> waiting;
     waiting.words[0] = (1u << kRays) - 1;
-    ASSERT_TRUE(take_pass<Lanes<4>>(grid, waiting, packet_, frustum_));
+    ASSERT_TRUE(take_pass<Lanes<4>>(grid, waiting, packet_, frustum_, pass_work));
   }
   std::optional<WalkScene> scene_;
   SmallPacket packet_{};
@@ -267,7 +269,7 @@ TEST_P(StraightWalk, OriginInsideStartsThere) {
   packet_.origin[0] = GetParam() ? 9.5f : 14.5f;
   RaySet<kRays> waiting;
   waiting.words[0] = (1u << kRays) - 1;
-  ASSERT_TRUE(take_pass<Lanes<4>>(scene_->grid, waiting, packet_, frustum_));
+  ASSERT_TRUE(take_pass<Lanes<4>>(scene_->grid, waiting, packet_, frustum_, pass_work));
   Visited visited;
   walk(*scene_, frustum_, kFloatMax, true, visited);
   EXPECT_EQ(visited.cells.size(), 10u);
@@ -300,7 +302,7 @@ TEST(SliceWalk, ChunksAreFetchedOnDemandOnly) {
   RaySet<kRays> waiting;
   waiting.words[0] = (1u << kRays) - 1;
   Frustum frustum;
-  ASSERT_TRUE(take_pass<Lanes<4>>(grid, waiting, packet, frustum));
+  ASSERT_TRUE(take_pass<Lanes<4>>(grid, waiting, packet, frustum, pass_work));
   Visited visited;
   walk(scene, frustum, kFloatMax, true, visited);
   EXPECT_EQ(visited.cells.size(), 16u);

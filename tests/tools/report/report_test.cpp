@@ -117,7 +117,7 @@ TEST(Report, HasExactlyTheDocumentedKeysInOrder) {
                                        "cores[].dma.line_bytes_in",
                                        "cores[].dma.line_bytes_out"};
   for (const char* name : {"tile_start",          "ray_generated",
-                           "packet_start",        "macro_slice_step",
+                           "packet_start",        "pass_group",          "macro_slice_step",
                            "macro_cell_step",     "macro_cell_visit",
                            "slice_step",          "cell_step",
                            "cell_visit",          "triangle_batch",

@@ -1,0 +1,65 @@
+// What a unit of each kind of work costs on a core of two in-order pipes. Written by gridiron_calibrate from
+// counted operations of the kernel itself; do not edit. tools/calibrate/README.md says how, and where each constant
+// comes from.
+// Memory: constants. Threads: any. SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <gridiron/base/work_counters.h>
+
+#include <array>
+
+namespace gridiron::sim {
+
+/// Means over the units of the counted frames.
+struct WorkCost {
+  double cycles;        ///< charged: superblock schedule, branch misses included
+  double least_cycles;  ///< bound: the fuller pipe never idle
+  double most_cycles;   ///< bound: nothing issued together
+  double even;          ///< operations of the even pipe, and of these:
+  double doubles;       ///< in double precision
+  double odd;           ///< operations of the odd pipe, and of these:
+  double branches;
+  double misses;        ///< branches that go the rarer way
+};
+
+/// By kind of work. Commands and waits are charged where they happen, see MachineProfile.
+inline constexpr std::array<WorkCost, kWorkKindCount> kWorkCosts = {{
+    //  cycles    least     most     even  doubles      odd branches   misses
+    {   66.1,    56.4,    91.8,   54.44,    0.00,   20.67,    6.89,    0.11},  // tile_start
+    {   31.4,    31.6,    57.7,   31.61,    0.00,   26.11,    0.04,    0.00},  // ray_generated
+    {  266.3,   217.2,   320.4,  137.42,    0.00,   88.58,   11.91,    4.43},  // packet_start
+    {   59.2,    57.7,    71.8,   55.42,    0.00,   13.79,    2.00,    0.12},  // pass_group
+    {  159.3,    99.5,   167.0,   54.15,    0.00,   27.39,    9.80,    2.52},  // macro_slice_step
+    {   73.5,    63.9,    78.3,   50.36,    0.00,    7.70,    4.99,    0.75},  // macro_cell_step
+    {  185.2,   132.6,   194.8,   32.89,    0.00,   25.78,   13.74,    5.54},  // macro_cell_visit
+    {   98.1,    64.2,   114.0,   48.76,    0.00,   26.60,    7.79,    0.86},  // slice_step
+    {   40.0,    28.4,    41.7,   17.13,    0.00,    3.85,    2.14,    0.63},  // cell_step
+    {   62.0,    40.4,    72.6,   31.72,    0.00,   19.50,    5.54,    0.48},  // cell_visit
+    {  102.0,    67.5,   107.9,   27.25,    0.00,   15.06,   10.99,    2.24},  // triangle_batch
+    {   42.3,    30.3,    49.9,   16.39,    0.00,   14.68,    2.28,    0.77},  // mailbox_probe
+    {   84.5,    43.5,    96.1,   37.63,    0.00,   19.10,    1.40,    0.33},  // cull_test
+    {  125.3,    97.0,   166.5,   95.55,    0.00,   59.33,    6.15,    0.08},  // triangle_setup
+    {  120.3,   112.7,   137.9,  108.95,    0.00,   17.64,    2.95,    0.21},  // subpacket_setup
+    {   64.7,    60.2,    85.7,   50.69,    0.00,   22.09,    1.64,    0.53},  // subpacket_group
+    {   55.6,    42.2,    61.4,   37.20,    0.00,    9.00,    3.72,    0.28},  // group_test_standard
+    {   99.9,    45.7,   110.9,   45.14,    0.00,   21.01,    2.96,    0.03},  // group_test_paper
+    {   72.7,    53.9,    84.9,   31.87,    0.00,   17.85,    4.69,    1.22},  // hit_group
+    {   66.3,    47.5,    77.8,   26.41,    0.00,   22.10,    6.52,    1.17},  // hit_group_paper
+    {  756.6,   757.0,   774.1,  135.99,  102.00,   15.89,    1.50,    0.50},  // hit_setup
+    {  511.4,   508.2,   537.6,  127.71,   61.00,   27.81,    3.06,    0.81},  // double_sign
+    { 3022.7,  2281.1,  3855.8, 2237.48,    0.00, 1211.62,   55.00,    2.42},  // exact_sign
+    {42293.9, 21784.5, 49459.2, 17219.05,    0.00, 19288.69, 4070.06,  138.66},  // exact_distance
+    {   38.9,    21.8,    43.0,   12.27,    0.00,    9.70,    1.06,    0.53},  // reach_group
+    {   83.9,    50.7,    96.7,   50.73,    0.00,   29.64,    8.25,    0.00},  // shaded_group
+    {  215.3,   170.7,   258.8,  170.75,    0.00,   53.47,    8.25,    0.00},  // shaded_simple_group
+    {   75.9,    52.6,    90.5,   47.94,    0.00,   23.15,    2.02,    0.26},  // footprint_group
+    {   60.7,    56.5,    77.7,   56.50,    0.00,   18.99,    0.00,    0.00},  // row_group
+    {   66.0,    60.0,    75.8,   60.00,    0.00,   13.88,    1.00,    0.00},  // far_setup
+    {   86.3,    45.5,    92.1,   21.80,    0.00,   10.92,    3.29,    1.32},  // far_group
+    {  292.5,   219.3,   314.8,   64.31,   25.00,   26.49,    0.48,    0.28},  // hit_half
+    {      0,       0,       0,       0,       0,       0,       0,       0},  // get_issue
+    {      0,       0,       0,       0,       0,       0,       0,       0},  // put_issue
+    {      0,       0,       0,       0,       0,       0,       0,       0},  // wait
+}};
+
+}  // namespace gridiron::sim

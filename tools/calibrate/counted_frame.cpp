@@ -1,0 +1,164 @@
+// Runs the counted kernel and the kernel: see the header. SPDX-License-Identifier: Apache-2.0
+#include <counted_frame.h>
+#include <gridiron/frame/frame_setup.h>
+#include <gridiron/grid/grid_builder.h>
+#include <gridiron/image/scene_image.h>
+#include <gridiron/platform/contract.h>
+#include <gridiron/render/tile_renderer.h>
+#include <gridiron_counted/render/tile_renderer.h>
+
+#include <cstddef>
+#include <cstring>
+#include <memory>
+#include <new>
+#include <stdexcept>
+
+namespace gridiron::calibrate {
+
+namespace {
+
+constexpr std::size_t kLine = 128;
+
+// Bytes aligned to a line.
+class LineBytes {
+ public:
+  explicit LineBytes(std::size_t bytes)
+      : size_(bytes), data_(static_cast<std::byte*>(::operator new (bytes, std::align_val_t{kLine}))) {
+    std::memset(data_.get(), 0, bytes);
+  }
+  [[nodiscard]] std::span<std::byte> bytes() const { return {data_.get(), size_}; }
+
+ private:
+  struct Free {
+    void operator()(std::byte* data) const { ::operator delete (data, std::align_val_t{kLine}); }
+  };
+  std::size_t size_;
+  std::unique_ptr<std::byte, Free> data_;
+};
+
+// Transfers are copies, and every tile of the frame is this core's.
+class CopyCore {
+ public:
+  CopyCore(std::span<std::byte> memory, std::uint32_t tile_count) : memory_(memory), tile_count_(tile_count) {}
+
+  [[nodiscard]] PlatformLimits limits() const { return {}; }
+  [[nodiscard]] Status get(void* local, MainAddress address, std::uint32_t bytes, Tag) {
+    std::memcpy(local, memory_.subspan(address.value, bytes).data(), bytes);
+    return Status::kOk;
+  }
+  [[nodiscard]] Status put(const void* local, MainAddress address, std::uint32_t bytes, Tag) {
+    std::memcpy(memory_.subspan(address.value, bytes).data(), local, bytes);
+    return Status::kOk;
+  }
+  [[nodiscard]] Status wait(TagMask) { return Status::kOk; }
+  [[nodiscard]] TileClaim claim_tile() {
+    if (next_tile_ == tile_count_) return {TileClaim::Kind::kNone, 0};
+    return {TileClaim::Kind::kTile, next_tile_++};
+  }
+
+ private:
+  std::span<std::byte> memory_;
+  std::uint32_t tile_count_;
+  std::uint32_t next_tile_ = 0;
+};
+
+void require(Status status) {
+  if (status != Status::kOk) throw std::runtime_error("calibration: a frame cannot be rendered");
+}
+
+// Frame record, picture and scene image, one behind the other.
+struct MainMemory {
+  LineBytes bytes;
+  std::uint32_t tile_count;
+  std::size_t pixel_count;
+};
+constexpr std::uint64_t kPictureAddress = 512;
+
+MainMemory make_memory(const CountedFrame& frame) {
+  const MeshView mesh{frame.vertices, frame.triangles};
+  GridParameters grid;
+  grid.format = frame.accuracy == Accuracy::kPaper ? TriangleFormat::kProjection : TriangleFormat::kVertices;
+  GridNeed need;
+  require(count_scene_image(mesh, grid, need));
+  const std::uint32_t tiles = (frame.width + 31) / 32 * ((frame.width + 31) / 32);
+  const std::size_t pixel_count = std::size_t{tiles} * 32 * 32;
+  const std::uint64_t image_address = kPictureAddress + pixel_count * 4;
+  MainMemory memory{LineBytes(image_address + need.image_bytes), tiles, pixel_count};
+  const std::span<std::byte> image = memory.bytes.bytes().subspan(image_address);
+  std::vector<std::byte> scratch(need.scratch_bytes);
+  require(build_scene_image(mesh, grid, need, image, scratch));
+  SceneImageView view;
+  SceneImageError error;
+  require(open_scene_image(image, view, error));
+  FrameSettings settings;
+  settings.camera.eye = frame.eye;
+  settings.camera.at = frame.at;
+  settings.camera.tan_half_fov = frame.tan_half_fov;
+  settings.width = settings.height = frame.width;
+  settings.accuracy = frame.accuracy;
+  settings.shading = frame.shading;
+  settings.techniques = frame.techniques;
+  settings.color = MainAddress{kPictureAddress};
+  require(
+      make_frame_record(settings, view, MainAddress{image_address}, *new (memory.bytes.bytes().data()) FrameRecord));
+  return memory;
+}
+
+std::vector<std::uint32_t> pixels_of(const MainMemory& memory) {
+  std::vector<std::uint32_t> pixels(memory.pixel_count);
+  std::memcpy(pixels.data(), memory.bytes.bytes().data() + kPictureAddress, pixels.size() * 4);
+  return pixels;
+}
+
+// The counted kernel on a model of its own. noinline: what it puts on the stack is below `stack_base`.
+template <std::uint32_t PacketWidth>
+__attribute__((noinline)) Totals run_counted(MainMemory& memory, PipeModel& model) {
+  namespace twin = gridiron_counted;
+  using Store = twin::LocalStore<twin::StoreLayout256K<PacketWidth>>;
+  LineBytes bytes(sizeof(Store));
+  Store& store = *::new (static_cast<void*>(bytes.bytes().data())) Store;
+  CopyCore core(memory.bytes.bytes(), memory.tile_count);
+  require(twin::render_tiles<twin::Lanes<4>>(store, core, twin::MainAddress{0}));
+  return model.finish();
+}
+
+// Twice: what the branches usually do, then what everything costs.
+template <std::uint32_t PacketWidth>
+Totals run_twice(MainMemory& memory, std::uint32_t superblock_branches) {
+  const int stack_base = 0;
+  PipeModel first(nullptr);
+  first.set_stack(&stack_base);
+  (void)run_counted<PacketWidth>(memory, first);
+  PipeModel second(&first.branches(), superblock_branches);
+  second.set_stack(&stack_base);
+  return run_counted<PacketWidth>(memory, second);
+}
+
+template <std::uint32_t PacketWidth>
+Totals run_plain(MainMemory& memory) {
+  using Store = LocalStore<StoreLayout256K<PacketWidth>>;
+  LineBytes bytes(sizeof(Store));
+  Store& store = *::new (static_cast<void*>(bytes.bytes().data())) Store;
+  CopyCore core(memory.bytes.bytes(), memory.tile_count);
+  require(render_tiles<Lanes<4>>(store, core, MainAddress{0}));
+  Totals totals{};
+  for (std::size_t kind = 0; kind < kWorkKindCount; ++kind) totals[kind].units = store.work.counts[kind];
+  return totals;
+}
+
+}  // namespace
+
+CountedPicture render_counted(const CountedFrame& frame, std::uint32_t superblock_branches) {
+  MainMemory memory = make_memory(frame);
+  Totals totals =
+      frame.packet_width == 32 ? run_twice<32>(memory, superblock_branches) : run_twice<8>(memory, superblock_branches);
+  return {totals, pixels_of(memory)};
+}
+
+CountedPicture render_plain(const CountedFrame& frame) {
+  MainMemory memory = make_memory(frame);
+  Totals totals = frame.packet_width == 32 ? run_plain<32>(memory) : run_plain<8>(memory);
+  return {totals, pixels_of(memory)};
+}
+
+}  // namespace gridiron::calibrate

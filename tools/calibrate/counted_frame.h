@@ -1,0 +1,41 @@
+// A frame rendered by the counted kernel: the same picture, and what every operation of it came to.
+// Memory: owned. Threads: the caller's only. SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <gridiron/base/math.h>
+#include <gridiron/base/records.h>
+#include <pipe_model.h>
+
+#include <cstdint>
+#include <span>
+#include <vector>
+
+namespace gridiron::calibrate {
+
+/// What is rendered, and how.
+struct CountedFrame {
+  std::span<const Vec3> vertices;
+  std::span<const UVec3> triangles;
+  Vec3 eye, at;
+  float tan_half_fov;
+  std::uint32_t width;         ///< and height, pixels
+  std::uint32_t packet_width;  ///< 8 or 32
+  Accuracy accuracy;
+  Shading shading;
+  std::uint32_t techniques;  ///< TechniqueBits
+};
+
+struct CountedPicture {
+  Totals totals;
+  std::vector<std::uint32_t> pixels;  ///< tile-major, as the kernel puts them
+};
+
+/// Renders on one core out of a 256 KB store, double-buffered, lambda 4, macrocells of width 6.
+/// Errors: std::runtime_error where the scene cannot be built or the kernel refuses the frame.
+[[nodiscard]] CountedPicture render_counted(const CountedFrame& frame,
+                                            std::uint32_t superblock_branches = kSuperblockBranches);
+
+/// The same by the kernel itself: pixels, and work as it counts it in `totals[].units`.
+[[nodiscard]] CountedPicture render_plain(const CountedFrame& frame);
+
+}  // namespace gridiron::calibrate

@@ -1,0 +1,273 @@
+// Counted lanes: the interface of core's lanes.h, four floats that tell the pipe model what is done with them.
+// Memory: values. Threads: the model's. SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <gridiron/base/lanes.h>
+#include <gridiron_counted/base/counted.h>
+
+#include <cstddef>
+#include <cstdint>
+
+namespace gridiron_counted {
+
+template <int W>
+struct Lanes {
+  static_assert(W == 4, "a chip's vectors have four lanes");
+  static constexpr int kCount = W;
+  static constexpr std::uint32_t kAllBits = 0xF;
+  using Native = gridiron::Lanes<4>;
+
+  template <class Vector>
+  static std::uint64_t tie(const Vector& v) {
+    std::uint64_t words[2];
+    static_assert(sizeof(words) == sizeof(Vector));
+    __builtin_memcpy(words, &v, sizeof(words));
+    return words[0] * 0x9E3779B97F4A7C15u + words[1];
+  }
+
+  struct Mask {
+    Native::Mask v;
+    Node node;
+    /// Gather of the words' lowest bits.
+    [[nodiscard]] Counted<std::uint32_t> bits() const {
+      return Counted<std::uint32_t>::made(v.bits(), emit(OpClass::kShuffle, v.bits(), node));
+    }
+    friend Mask operator|(Mask a, Mask b) {
+      return {a.v | b.v, emit(OpClass::kFixed, tie((a.v | b.v).v), a.node, b.node)};
+    }
+    friend Mask operator&(Mask a, Mask b) {
+      return {a.v & b.v, emit(OpClass::kFixed, tie((a.v & b.v).v), a.node, b.node)};
+    }
+  };
+
+  struct Float {
+    Native::Float v;
+    Node node;
+
+    Float() = default;
+    Float(Native::Float value, Node made) : v(value), node(made) {}
+    explicit Float(float constant) : v(constant), node(0) {}
+    explicit Float(const Counted<float>& value)
+        : v(value.value), node(PipeModel::current().splat_of(&value.value, bits_of(value.value))) {}
+
+    [[nodiscard]] static Float load(const Counted<float>* source) {
+      const Native::Float value = Native::Float::load(&source->value);
+      return {value, PipeModel::current().load_quad(source, tie(value.v))};
+    }
+    void store(Counted<float>* target) const {
+      v.store(&target->value);
+      PipeModel::current().store_quad(target, node, tie(v.v));
+    }
+
+    friend Float operator+(Float a, Float b) { return make(OpClass::kFloat, a.v + b.v, a, b); }
+    friend Float operator-(Float a, Float b) { return make(OpClass::kFloat, a.v - b.v, a, b); }
+    friend Float operator*(Float a, Float b) { return make(OpClass::kFloat, a.v * b.v, a, b); }
+    friend Float operator/(Float a, Float b) {
+      const Native::Float value = a.v / b.v;
+      return {value, divide_floats(a.node, b.node, tie(value.v))};
+    }
+    friend Float operator-(Float a) { return make(OpClass::kFixed, -a.v, a, a); }  // the sign bit
+    friend Mask operator<(Float a, Float b) { return compare(a.v < b.v, a, b); }
+    friend Mask operator>(Float a, Float b) { return compare(a.v > b.v, a, b); }
+    // There is only "greater": not greater, turned around.
+    friend Mask operator<=(Float a, Float b) { return turned(compare(a.v <= b.v, a, b)); }
+    friend Mask operator>=(Float a, Float b) { return turned(compare(a.v >= b.v, a, b)); }
+  };
+
+  static Float make(OpClass op, Native::Float value, Float a, Float b) {
+    return {value, a.node == 0 && b.node == 0 ? 0 : emit(op, tie(value.v), a.node, b.node)};
+  }
+  static Mask compare(Native::Mask value, Float a, Float b) {
+    return {value, emit(OpClass::kFixed, tie(value.v), a.node, b.node)};
+  }
+  static Mask turned(Mask mask) { return {mask.v, emit(OpClass::kFixed, tie(mask.v.v) + 1, mask.node)}; }
+
+  struct Int {
+    Native::Int v;
+    Node node;
+    [[nodiscard]] Counted<std::int32_t> operator[](int lane) const {
+      const std::int32_t value = v[lane];
+      return Counted<std::int32_t>::made(value, lane == 0 ? node : emit(OpClass::kShuffle, bits_of(value), node));
+    }
+  };
+
+  /// Two integers of 64 bits. What a scalar of 64 bits takes, two of them take.
+  struct Long {
+    Native::Long v;
+    Node node;
+    friend Long operator+(Long a, std::int64_t b) { return {a.v + b, add_longs(a.node, 0, tie((a.v + b).v))}; }
+    friend Long operator-(Long a, std::int64_t b) { return {a.v - b, add_longs(a.node, 0, tie((a.v - b).v))}; }
+    // The words apart: high word shifted with its sign, bits of it moved to the low one.
+    friend Long operator>>(Long a, int count) {
+      const Native::Long value = a.v >> count;
+      const Node low = emit(OpClass::kShift, tie(value.v), a.node);
+      const Node high = emit(OpClass::kShift, tie(value.v) + 1, a.node);
+      const Node carried = emit(OpClass::kShuffle, tie(value.v), a.node);
+      return {value, emit(OpClass::kFixed, tie(value.v), low, high, carried)};
+    }
+    friend Long operator&(Long a, Long b) {
+      return {a.v & b.v, emit(OpClass::kFixed, tie((a.v & b.v).v), a.node, b.node)};
+    }
+    friend Long operator~(Long a) { return {~a.v, emit(OpClass::kFixed, tie((~a.v).v), a.node)}; }
+    friend Long operator==(Long a, Long b) {
+      return {a.v == b.v, compare_longs(a.node, b.node, tie((a.v == b.v).v), true)};
+    }
+    friend Long operator>=(Long a, std::int64_t b) {
+      return {a.v >= b, compare_longs(a.node, 0, tie((a.v >= b).v), false)};
+    }
+    friend Long operator<=(Long a, std::int64_t b) {
+      return {a.v <= b, compare_longs(a.node, 0, tie((a.v <= b).v), false)};
+    }
+  };
+
+  struct Double {
+    Native::Double v;
+    Node node;
+    Double(Native::Double value, Node made) : v(value), node(made) {}
+    explicit Double(const Counted<double>& value)
+        : v(value.value), node(PipeModel::current().splat_of(&value.value, bits_of(value.value))) {}
+    /// Half a quadword: moved apart, then extended.
+    [[nodiscard]] static Double load_floats(const Counted<float>* source) {
+      const Native::Double value = Native::Double::load_floats(&source->value);
+      const auto* quad = reinterpret_cast<const Counted<float>*>(reinterpret_cast<std::uintptr_t>(source) / 16 * 16);
+      const Node loaded = PipeModel::current().load_quad(quad, tie(value.v));
+      return {value, emit(OpClass::kDouble, tie(value.v), emit(OpClass::kShuffle, tie(value.v), loaded))};
+    }
+    [[nodiscard]] Long pattern() const { return {v.pattern(), node}; }
+
+    friend Double operator+(Double a, Double b) { return make_double(a.v + b.v, a, b); }
+    friend Double operator-(Double a, Double b) { return make_double(a.v - b.v, a, b); }
+    friend Double operator*(Double a, Double b) { return make_double(a.v * b.v, a, b); }
+    // Both halves at once.
+    friend Double operator/(Double a, Double b) {
+      const Native::Double value = a.v / b.v;
+      return {value, divide_doubles(a.node, b.node, tie(value.v))};
+    }
+    friend Long operator<(Double a, double b) { return {a.v < b, compare_doubles(a.node, 0, tie((a.v < b).v))}; }
+  };
+  static Double make_double(Native::Double value, Double a, Double b) {
+    return {value, emit(OpClass::kDouble, tie(value.v), a.node, b.node)};
+  }
+
+  /// A rotation by a variable count.
+  [[nodiscard]] static Counted<float> lane(Float a, const Counted<std::uint32_t>& lane) {
+    const float value = a.v.v[lane.value];
+    return Counted<float>::made(value, emit(OpClass::kShuffle, bits_of(value), a.node, node_of(lane)));
+  }
+  [[nodiscard]] static Int truncate(Float a) {
+    const Native::Int value = Native::truncate(a.v);
+    return {value, emit(OpClass::kConvert, tie(value.v), a.node)};
+  }
+  /// Low words side by side, and half a quadword of memory replaced.
+  static void store_patterns(Long patterns, Counted<float>* target) {
+    Native::store_patterns(patterns.v, &target->value);
+    auto* quad = reinterpret_cast<Counted<float>*>(reinterpret_cast<std::uintptr_t>(target) / 16 * 16);
+    const Node merged = emit(OpClass::kShuffle, tie(patterns.v.v), patterns.node);
+    PipeModel::current().store_quad(quad, merged, tie(patterns.v.v));
+  }
+
+  /// Rounded, moved together, and half a quadword of memory replaced.
+  static void store_floats(Double a, Counted<float>* target) {
+    Native::store_floats(a.v, &target->value);
+    auto* quad = reinterpret_cast<Counted<float>*>(reinterpret_cast<std::uintptr_t>(target) / 16 * 16);
+    const Node rounded = emit(OpClass::kDouble, tie(a.v.v), a.node);
+    PipeModel::current().store_quad(quad, emit(OpClass::kShuffle, tie(a.v.v), rounded), tie(a.v.v));
+  }
+
+  // Compare and select.
+  [[nodiscard]] static Float min(Float a, Float b) {
+    return make(OpClass::kFixed, Native::min(a.v, b.v), a, chosen(a, b));
+  }
+  [[nodiscard]] static Float max(Float a, Float b) {
+    return make(OpClass::kFixed, Native::max(a.v, b.v), a, chosen(a, b));
+  }
+  static Float chosen(Float a, Float b) {
+    return {b.v, emit(OpClass::kFixed, tie(a.v.v) + tie(b.v.v), a.node, b.node)};
+  }
+  [[nodiscard]] static Float abs(Float a) { return make(OpClass::kFixed, Native::abs(a.v), a, a); }
+  [[nodiscard]] static Float select(Mask mask, Float a, Float b) {
+    const Native::Float value = Native::select(mask.v, a.v, b.v);
+    return {value, emit(OpClass::kFixed, tie(value.v), mask.node, a.node, b.node)};
+  }
+  [[nodiscard]] static Mask mask_from_bits(const Counted<std::uint32_t>& bits) {
+    return {Native::mask_from_bits(bits.value), emit(OpClass::kShuffle, bits.value, node_of(bits))};
+  }
+  [[nodiscard]] static Counted<std::uint32_t> half_bits(Long v) {
+    const std::uint32_t bits = Native::half_bits(v.v);
+    return Counted<std::uint32_t>::made(bits, emit(OpClass::kShuffle, bits, v.node));
+  }
+  [[nodiscard]] static Float load_quads(const Counted<float>* const* sources) { return Float::load(sources[0]); }
+  template <int I0, int I1, int I2, int I3>
+  [[nodiscard]] static Float shuffle_quads(Float a, Float b) {
+    return make(OpClass::kShuffle, Native::shuffle_quads<I0, I1, I2, I3>(a.v, b.v), a, b);
+  }
+  template <int I0, int I1, int I2, int I3>
+  [[nodiscard]] static Float shuffle_quads(Float a) {
+    return shuffle_quads<I0, I1, I2, I3>(a, a);
+  }
+  /// The mask's sign bit, exclusive or.
+  [[nodiscard]] static Float flip_sign(Mask mask, Float a) {
+    const Native::Float value = Native::flip_sign(mask.v, a.v);
+    const Node sign = emit(OpClass::kFixed, tie(value.v), mask.node);
+    return {value, emit(OpClass::kFixed, tie(value.v), sign, a.node)};
+  }
+  [[nodiscard]] static Counted<float> horizontal_max(Float a) {
+    a = max(a, swap_lanes<2>(a));
+    const Float result = max(a, swap_lanes<1>(a));
+    return Counted<float>::made(result.v.v[0], result.node);
+  }
+  [[nodiscard]] static Counted<float> horizontal_min(Float a) {
+    a = min(a, swap_lanes<2>(a));
+    const Float result = min(a, swap_lanes<1>(a));
+    return Counted<float>::made(result.v.v[0], result.node);
+  }
+  template <int Distance>
+  [[nodiscard]] static Float swap_lanes(Float a) {
+    return make(OpClass::kShuffle, Native::swap_lanes<Distance>(a.v), a, a);
+  }
+};
+
+[[nodiscard]] inline Counted<float> square_root(const Counted<float>& value) {
+  return Counted<float>::made(gridiron::square_root(value.value), root_of_float(node_of(value), bits_of(value.value)));
+}
+[[nodiscard]] inline Counted<double> square_root(const Counted<double>& value) {
+  return Counted<double>::made(gridiron::square_root(value.value),
+                               root_of_double(node_of(value), bits_of(value.value)));
+}
+template <class T>
+[[nodiscard]] Counted<T> magnitude(const Counted<T>& value) {
+  const Node node = node_of(value);
+  return Counted<T>::made(gridiron::magnitude(value.value),
+                          node == 0 ? 0 : emit(OpClass::kFixed, bits_of(value.value), node));
+}
+
+/// x & -x, leading zeros of it, 31 - that; of 64 bits the word that holds it first.
+template <class T>
+[[nodiscard]] Counted<std::uint32_t> lowest_bit(const Counted<T>& bits) {
+  const std::uint32_t value = gridiron::lowest_bit(bits.value);
+  Node node = node_of(bits);
+  if constexpr (sizeof(T) == 8) {
+    node = emit(OpClass::kFixed, bits.value, emit(OpClass::kShuffle, bits.value, node));
+  }
+  const Node negative = emit(OpClass::kFixed, bits.value + 1, node);
+  const Node lowest = emit(OpClass::kFixed, bits.value + 2, node, negative);
+  const Node zeros = emit(OpClass::kFixed, bits.value + 3, lowest);
+  return Counted<std::uint32_t>::made(value, emit(OpClass::kFixed, value, zeros));
+}
+/// Bits of bytes, sum of bytes.
+[[nodiscard]] inline Counted<std::uint32_t> count_bits(const Counted<std::uint32_t>& bits) {
+  const std::uint32_t value = gridiron::count_bits(bits.value);
+  return Counted<std::uint32_t>::made(value,
+                                      emit(OpClass::kShift, value, emit(OpClass::kShift, bits.value, node_of(bits))));
+}
+/// Four words a store.
+template <class T, std::size_t Count, class Value>
+void fill_words(Counted<T> (&target)[Count], const Value& value) {
+  static_assert(Count % 4 == 0 && sizeof(T) == 4);
+  const T word = static_cast<T>(plain(value));
+  const Node node = emit(OpClass::kShuffle, bits_of(word), node_of(value));
+  for (std::size_t i = 0; i < Count; ++i) target[i].value = word;
+  for (std::size_t i = 0; i < Count; i += 4) PipeModel::current().store_quad(target + i, node, i);
+}
+
+}  // namespace gridiron_counted

@@ -1,0 +1,22 @@
+// The platform's contract as it is, but for addresses, which the kernel computes.
+// Memory: none. Threads: any. SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <gridiron/platform/contract.h>
+#include <gridiron_counted/base/counted.h>
+
+#include <cstdint>
+
+namespace gridiron_counted {
+
+using gridiron::kPortableBoundaryBytes;
+using gridiron::kPortableCongruenceBytes;
+using gridiron::Platform;
+using gridiron::Status;
+using gridiron::TileClaim;
+
+struct MainAddress {
+  Counted<std::uint64_t> value;
+};
+
+}  // namespace gridiron_counted

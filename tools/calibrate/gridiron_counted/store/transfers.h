@@ -1,0 +1,43 @@
+// Transfers of the counted kernel: bytes arrive at once. What issuing and waiting cost is MachineProfile::issue_cycles
+// and wait_cycles, so nothing is counted in here.
+// Memory: borrowed. Threads: the model's. SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <gridiron_counted/base/lanes.h>
+#include <gridiron_counted/base/work_counters.h>
+#include <gridiron_counted/platform/contract.h>
+#include <gridiron_counted/store/dma_tags.h>
+
+#include <cstdint>
+
+namespace gridiron_counted {
+
+template <class P>
+class Transfers {
+ public:
+  Transfers(P& platform, WorkCounters&) : platform_(platform) {}
+
+  [[nodiscard]] std::uint32_t queue_depth() const { return platform_.limits().queue_depth; }
+  template <class Count>
+  void reserve_for_output(const Count&) {}
+
+  template <class Bytes, class TagIndex>
+  [[nodiscard]] Status get(void* local, const MainAddress& address, const Bytes& bytes, const TagIndex&) {
+    PipeModel::current().forget(local, plain(bytes));
+    return platform_.get(local, {address.value.value}, plain(bytes), {});
+  }
+  template <class Bytes, class TagIndex>
+  [[nodiscard]] Status put(const void* local, const MainAddress& address, const Bytes& bytes, const TagIndex&) {
+    return platform_.put(local, {address.value.value}, plain(bytes), {});
+  }
+  template <class TagIndex>
+  [[nodiscard]] Status wait(const TagIndex&) {
+    return Status::kOk;
+  }
+  [[nodiscard]] TileClaim claim_tile() { return platform_.claim_tile(); }
+
+ private:
+  P& platform_;
+};
+
+}  // namespace gridiron_counted

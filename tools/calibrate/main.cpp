@@ -1,0 +1,53 @@
+// gridiron_calibrate: writes the table of work costs, or shows what it is made of.
+// Memory: little. Threads: one. SPDX-License-Identifier: Apache-2.0
+#include <work_table.h>
+
+#include <cstdio>
+#include <exception>
+#include <fstream>
+#include <string>
+#include <string_view>
+
+namespace {
+
+constexpr std::string_view kUsage =
+    "usage: gridiron_calibrate [FILE]\n"
+    "Counts the operations of the kernel on three small frames and puts them through the pipeline model.\n"
+    "  FILE           write the table there: sim_platform/gridiron/sim/work_costs.h\n"
+    "Without FILE: every kind of work with its operations by class, for superblocks of 1, 2, 4 and 8 basic blocks.\n";
+
+int run(int argument_count, char** arguments) {
+  namespace calibrate = gridiron::calibrate;
+  if (argument_count > 2 || (argument_count == 2 && arguments[1][0] == '-')) {
+    std::fputs(kUsage.data(), argument_count == 2 && std::string_view(arguments[1]) == "--help" ? stdout : stderr);
+    return argument_count == 2 && std::string_view(arguments[1]) == "--help" ? 0 : 2;
+  }
+  if (argument_count == 1) {
+    for (const std::uint32_t branches : {1u, 2u, 4u, 8u}) {
+      std::printf("superblocks of at most %u basic blocks%s\n%s\n", branches,
+                  branches == calibrate::kSuperblockBranches ? " (charged)" : "",
+                  calibrate::report_text(calibrate::count_frames(branches)).c_str());
+    }
+    return 0;
+  }
+  const std::string text = calibrate::table_text(calibrate::count_frames());
+  std::ofstream file(arguments[1], std::ios::binary);
+  file << text;
+  file.close();
+  if (!file) {
+    std::fprintf(stderr, "%s: cannot be written\n", arguments[1]);
+    return 1;
+  }
+  return 0;
+}
+
+}  // namespace
+
+int main(int argument_count, char** arguments) {
+  try {
+    return run(argument_count, arguments);
+  } catch (const std::exception& error) {
+    std::fprintf(stderr, "gridiron_calibrate: %s\n", error.what());
+    return 1;
+  }
+}

@@ -1,0 +1,188 @@
+// Two in-order pipes: takes the operations that a kernel did, in basic blocks, and says what they cost.
+// Source of the rules: the public handbooks of the SPU; the numbers beside each class.
+// Memory: owned, grows with a block. Threads: one model per thread, see current(). SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <gridiron/base/work_counters.h>
+
+#include <array>
+#include <cstddef>
+#include <cstdint>
+#include <map>
+#include <unordered_map>
+#include <vector>
+
+namespace gridiron::calibrate {
+
+/// What an instruction occupies. The order is that of kClassFacts.
+enum class OpClass : std::uint8_t {
+  kFloat,    ///< single-precision add, subtract, multiply
+  kDouble,   ///< any double-precision operation, conversions to and from float included
+  kConvert,  ///< 16-bit integer multiply, float to integer and back, interpolation of an estimate
+  kFixed,    ///< add, logic, compare, select of 32-bit integers; compare of floats
+  kShift,    ///< word rotate and shift, byte operations
+  kShuffle,  ///< shuffle, rotate of a quadword, gather of bits, mask formation, estimates
+  kLoad,     ///< of 16 aligned bytes
+  kStore,    ///< of 16 aligned bytes
+  kBranch,   ///< hinted
+  kCount
+};
+inline constexpr std::size_t kOpClassCount = static_cast<std::size_t>(OpClass::kCount);
+
+struct ClassFacts {
+  const char* name;
+  std::uint32_t latency_cycles;  ///< from issue to use
+  std::uint32_t hold_cycles;     ///< further cycles in which nothing can be issued
+  bool odd;                      ///< odd pipe, else even
+};
+
+/// Public figures of the SPU's pipelines (Cell Broadband Engine Programming Handbook, appendix on instruction
+/// latencies).
+inline constexpr std::array<ClassFacts, kOpClassCount> kClassFacts = {{
+    {"float", 6, 0, false},    // single-precision float and fma: 6
+    {"double", 13, 6, false},  // double precision: 13, of which 6 stall all issue
+    {"convert", 7, 0, false},  // integer multiply, convert: 7
+    {"fixed", 2, 0, false},    // simple fixed point: 2
+    {"shift", 4, 0, false},    // word rotate and shift, byte operations: 4
+    {"shuffle", 4, 0, true},   // shuffle, quadword rotate: 4
+    {"load", 6, 0, true},      // load and store: 6
+    {"store", 6, 0, true},     // nobody waits for it
+    {"branch", 1, 0, true},    // hinted: 0 beyond its own slot
+}};
+/// A mispredicted branch costs 18 to 19 cycles.
+inline constexpr std::uint32_t kBranchMissCycles = 18;
+/// Basic blocks for which a value stays in its register after its last use. A block uses some ten quadwords, there are
+/// 128 registers: an assumption.
+inline constexpr std::uint32_t kRegisterBlocks = 8;
+
+/// Basic blocks that a compiler schedules as one where the branches between them go their usual way: what unrolling a
+/// loop four times and moving operations above branches gives. An assumption, held against the published rate of dual
+/// issue, see documentation/calibration.md.
+inline constexpr std::uint32_t kSuperblockBranches = 4;
+
+/// What all units of one kind of work came to.
+struct KindTotals {
+  std::uint64_t units = 0;
+  std::uint64_t half_cycles = 0;  ///< twice the cycles of the schedule, branch misses not included
+  std::uint64_t pairs = 0;        ///< cycles in which an even and an odd operation issued together, twice
+  std::uint64_t misses = 0;       ///< branches that went the rarer way
+  std::array<std::uint64_t, kOpClassCount> operations{};
+
+  [[nodiscard]] std::uint64_t even() const;
+  [[nodiscard]] std::uint64_t odd() const;
+  [[nodiscard]] double cycles() const;  ///< of all units, branch misses included
+  /// Lower bound: the fuller pipe never idle, misses included.
+  [[nodiscard]] double resource_cycles() const;
+  /// Upper bound: the same schedule, nothing issued together.
+  [[nodiscard]] double single_issue_cycles() const;
+};
+using Totals = std::array<KindTotals, kWorkKindCount>;
+
+/// A value that an operation made; 0: a constant, always there.
+using Node = std::uint32_t;
+
+/// Where a branch stands: file number * 65536 + line.
+using Site = std::uint32_t;
+
+/// How often each branch was taken and not.
+struct BranchWays {
+  std::array<std::array<std::uint64_t, 2>, kWorkKindCount> by_kind{};
+  [[nodiscard]] bool usual() const;  ///< true: it is taken more often than not
+};
+using Branches = std::map<Site, BranchWays>;
+
+/// Schedules superblocks of at most `superblock_branches` basic blocks as a compiler would, longest chain first, and
+/// keeps what it costs by kind of work.
+///
+/// Ties are broken by how values came about, so that the order in which a compiler evaluates operands changes nothing.
+class PipeModel {
+ public:
+  /// @param branches  of an earlier run of the same: what is usual. Null: nothing is scheduled, branches are counted.
+  explicit PipeModel(const Branches* branches, std::uint32_t superblock_branches = kSuperblockBranches);
+  ~PipeModel();
+  PipeModel(const PipeModel&) = delete;
+  PipeModel& operator=(const PipeModel&) = delete;
+
+  /// The one that counted values report to; set by the constructor, for the calling thread.
+  [[nodiscard]] static PipeModel& current();
+
+  /// What follows belongs to `kind`.
+  void charge_to(Work kind) { kind_ = kind; }
+  void add_units(Work kind, std::uint32_t amount);
+
+  /// One operation. @param tie  bits of the result.
+  Node emit(OpClass op, std::uint64_t tie, Node a = 0, Node b = 0, Node c = 0);
+  /// A branch that ends the block, on `condition` and on whatever pending_condition() was told of.
+  void branch(Site site, bool taken, Node condition);
+  void note_condition(Node node) { conditions_.push_back(node); }
+  /// `node` is part of the address of the loads that follow.
+  void note_address(Node node);
+
+  // Values in memory, by quadword; stack addresses are registers until they are stored to as vectors.
+  void set_stack(const void* base) { stack_base_ = reinterpret_cast<std::uintptr_t>(base); }
+  [[nodiscard]] Node scalar_at(const void* address, std::uint64_t tie);
+  void set_scalar(const void* address, Node node, std::uint64_t tie);
+  void make_register(const void* address, Node node);
+  [[nodiscard]] Node splat_of(const void* address, std::uint64_t tie);
+  [[nodiscard]] Node load_quad(const void* address, std::uint64_t tie);
+  void store_quad(const void* address, Node node, std::uint64_t tie);
+  /// The bytes changed behind the core's back.
+  void forget(const void* address, std::size_t bytes);
+
+  [[nodiscard]] const Branches& branches() const { return branches_; }
+
+  /// Ends the last block. @returns the totals, branch misses included.
+  [[nodiscard]] Totals finish();
+
+ private:
+  struct Op {
+    OpClass op;
+    Work kind;
+    std::uint32_t segment;  // branches before it in the block
+    Node deps[3];
+    std::uint64_t tie;
+  };
+  struct Quad {
+    Node node;
+    Node lanes[4];
+    std::uint32_t last_block;
+  };
+  struct Slot {
+    Node node;
+    bool in_memory;
+  };
+  [[nodiscard]] bool on_stack(std::uintptr_t address) const { return stack_base_ - address < kStackBytes; }
+  [[nodiscard]] Slot& slot_of(std::uintptr_t address) { return slots_[(address >> 2) % slots_.size()]; }
+  [[nodiscard]] Quad& quad_at(std::uintptr_t address, std::uint64_t tie);
+  [[nodiscard]] std::uint64_t ready_of(Node node) const;
+  [[nodiscard]] Node gather_addresses();
+  void schedule();
+
+  static constexpr std::uintptr_t kStackBytes = std::uintptr_t{1} << 20;
+  static constexpr std::size_t kRememberedNodes = std::size_t{1} << 20;
+
+  Totals totals_{};
+  Work kind_ = Work::kWait;  // what is done before the first tile is not charged by the tile
+  const Branches* usual_;
+  std::uint32_t superblock_branches_;
+  std::uint32_t segment_ = 0;
+  std::vector<Op> block_;
+  Node first_node_ = 1;  // of the block
+  std::uint32_t block_number_ = 1;
+  std::uint64_t clock_ = 0;                     // of the last issue
+  std::vector<std::uint64_t> ready_, history_;  // by node, of the last kRememberedNodes
+  std::vector<Node> conditions_;
+  std::vector<Node> addresses_;
+  bool addresses_used_ = false;
+  std::uintptr_t stack_base_ = 0;
+  std::vector<Slot> slots_;
+  std::unordered_map<std::uintptr_t, Quad> quads_;
+  Branches branches_;
+  PipeModel* outer_;
+
+  // Working space of schedule().
+  std::vector<std::uint64_t> height_, earliest_;
+  std::vector<std::uint32_t> missing_, candidates_, first_successor_, successors_, left_in_segment_;
+};
+
+}  // namespace gridiron::calibrate

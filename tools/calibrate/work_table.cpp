@@ -1,0 +1,211 @@
+// Frames, table and words: see the header. SPDX-License-Identifier: Apache-2.0
+#include <counted_frame.h>
+#include <gridiron_counted/base/exact_sum.h>
+#include <report/report.h>
+#include <scene_makers/shapes.h>
+#include <work_table.h>
+
+#include <cstdio>
+#include <stdexcept>
+#include <string_view>
+#include <vector>
+
+namespace gridiron::calibrate {
+
+namespace {
+
+struct Scene {
+  std::vector<Vec3> vertices;
+  std::vector<UVec3> triangles;
+};
+
+Scene make_scene() {
+  constexpr std::uint32_t kSegments = 5;
+  const scene_makers::Mesh mesh = scene_makers::make_teapot(kSegments);
+  Scene scene;
+  for (const auto& p : mesh.vertices) {
+    scene.vertices.emplace_back(static_cast<float>(p[0]), static_cast<float>(p[1]), static_cast<float>(p[2]));
+  }
+  for (const auto& t : mesh.triangles) scene.triangles.emplace_back(t[0], t[1], t[2]);
+  return scene;
+}
+
+constexpr Vec3 kEye{2.0f, 3.0f, 8.0f};
+constexpr std::uint32_t kReference = kUseMailbox | kUseCornerCulling | kUseEmptySkip;
+constexpr std::uint32_t kBest = kUseMailbox | kUseEmptySkip | kUseSubpackets;
+
+void add(Totals& sum, const Totals& more) {
+  for (std::size_t kind = 0; kind < kWorkKindCount; ++kind) {
+    KindTotals& to = sum[kind];
+    const KindTotals& from = more[kind];
+    to.units += from.units;
+    to.half_cycles += from.half_cycles;
+    to.pairs += from.pairs;
+    to.misses += from.misses;
+    for (std::size_t i = 0; i < kOpClassCount; ++i) to.operations[i] += from.operations[i];
+  }
+}
+
+// Which rays need an exact decision depends on the scene, and hardly any does: rays through the vertices of triangles
+// all over the scene are decided here.
+__attribute__((noinline)) void decide_exactly(const Scene& scene) {
+  using gridiron_counted::Counted;
+  constexpr std::uint32_t kDecisions = 64;
+  const auto counted = [](Counted<float>* to, const Vec3& from) {
+    for (int i = 0; i < 3; ++i) {
+      to[i] = Counted<float>::made(from[i], gridiron_counted::emit(OpClass::kLoad, gridiron_counted::bits_of(from[i])));
+    }
+  };
+  for (std::uint32_t i = 0; i < kDecisions; ++i) {
+    const UVec3 triangle = scene.triangles[i * scene.triangles.size() / kDecisions];
+    Counted<float> eye[3], direction[3], a[3], b[3], c[3];
+    PipeModel::current().charge_to(Work::kWait);  // reading the input is the caller's work
+    counted(eye, kEye);
+    counted(a, scene.vertices[triangle.x]);
+    counted(b, scene.vertices[triangle.y]);
+    counted(c, scene.vertices[triangle.z]);
+    counted(direction, scene.vertices[triangle.x] - kEye);
+    PipeModel::current().add_units(Work::kExactSign, 1);
+    (void)gridiron_counted::exact_edge_sign(eye, direction, a, b);
+    PipeModel::current().add_units(Work::kExactDistance, 1);
+    (void)gridiron_counted::exact_distance(eye, direction, a, b, c);
+  }
+}
+
+Totals count_exact(const Scene& scene, std::uint32_t superblock_branches) {
+  const int stack_base = 0;
+  PipeModel first(nullptr);
+  first.set_stack(&stack_base);
+  decide_exactly(scene);
+  (void)first.finish();
+  PipeModel second(&first.branches(), superblock_branches);
+  second.set_stack(&stack_base);
+  decide_exactly(scene);
+  return second.finish();
+}
+
+bool is_charged(std::size_t kind) {
+  const Work work = static_cast<Work>(kind);
+  return work != Work::kGetIssue && work != Work::kPutIssue && work != Work::kWait;
+}
+
+template <class... Values>
+std::string format(const char* pattern, Values... values) {
+  char text[400];
+  const int length = std::snprintf(text, sizeof(text), pattern, values...);
+  return std::string(text, static_cast<std::size_t>(length));
+}
+
+double per_unit(const KindTotals& totals, double value) {
+  return totals.units == 0 ? 0 : value / static_cast<double>(totals.units);
+}
+double per_unit(const KindTotals& totals, std::uint64_t value) {
+  return per_unit(totals, static_cast<double>(value));
+}
+
+constexpr std::string_view kTableHead =
+    R"(// What a unit of each kind of work costs on a core of two in-order pipes. Written by gridiron_calibrate from
+// counted operations of the kernel itself; do not edit. tools/calibrate/README.md says how, and where each constant
+// comes from.
+// Memory: constants. Threads: any. SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <gridiron/base/work_counters.h>
+
+#include <array>
+
+namespace gridiron::sim {
+
+/// Means over the units of the counted frames.
+struct WorkCost {
+  double cycles;        ///< charged: superblock schedule, branch misses included
+  double least_cycles;  ///< bound: the fuller pipe never idle
+  double most_cycles;   ///< bound: nothing issued together
+  double even;          ///< operations of the even pipe, and of these:
+  double doubles;       ///< in double precision
+  double odd;           ///< operations of the odd pipe, and of these:
+  double branches;
+  double misses;        ///< branches that go the rarer way
+};
+
+/// By kind of work. Commands and waits are charged where they happen, see MachineProfile.
+inline constexpr std::array<WorkCost, kWorkKindCount> kWorkCosts = {{
+    //  cycles    least     most     even  doubles      odd branches   misses
+)";
+
+}  // namespace
+
+Totals count_frames(std::uint32_t superblock_branches) {
+  const Scene scene = make_scene();
+  const CountedFrame reference{.vertices = scene.vertices,
+                               .triangles = scene.triangles,
+                               .eye = kEye,
+                               .at = {0.25f, 1.5f, 0.0f},
+                               .tan_half_fov = 0.41421356f,
+                               .width = 96,
+                               .packet_width = 8,
+                               .accuracy = Accuracy::kStandard,
+                               .shading = Shading::kSimple,
+                               .techniques = kReference};
+  CountedFrame best = reference;
+  best.packet_width = 32;
+  best.techniques = kBest;
+  CountedFrame paper = reference;
+  paper.accuracy = Accuracy::kPaper;
+  paper.shading = Shading::kNone;
+
+  Totals sum = count_exact(scene, superblock_branches);
+  for (const CountedFrame& frame : {reference, best, paper}) {
+    const CountedPicture counted = render_counted(frame, superblock_branches);
+    const CountedPicture plain = render_plain(frame);
+    if (counted.pixels != plain.pixels) throw std::runtime_error("calibration: the counted picture is another one");
+    for (std::size_t kind = 0; kind < kWorkKindCount; ++kind) {
+      if (is_charged(kind) && counted.totals[kind].units != plain.totals[kind].units) {
+        throw std::runtime_error("calibration: the counted kernel did other work");
+      }
+    }
+    add(sum, counted.totals);
+  }
+  return sum;
+}
+
+std::string table_text(const Totals& totals) {
+  std::string text(kTableHead);
+  for (std::size_t kind = 0; kind < kWorkKindCount; ++kind) {
+    const KindTotals& t = totals[kind];
+    const std::string name(tool::work_name(static_cast<Work>(kind)));
+    if (!is_charged(kind)) {
+      text += format("    {%7d, %7d, %7d, %7d, %7d, %7d, %7d, %7d},  // %s\n", 0, 0, 0, 0, 0, 0, 0, 0, name.c_str());
+      continue;
+    }
+    if (t.units == 0) throw std::runtime_error("calibration: no unit of " + name + " in the frames");
+    text += format("    {%7.1f, %7.1f, %7.1f, %7.2f, %7.2f, %7.2f, %7.2f, %7.2f},  // %s\n", per_unit(t, t.cycles()),
+                   per_unit(t, t.resource_cycles()), per_unit(t, t.single_issue_cycles()), per_unit(t, t.even()),
+                   per_unit(t, t.operations[static_cast<std::size_t>(OpClass::kDouble)]), per_unit(t, t.odd()),
+                   per_unit(t, t.operations[static_cast<std::size_t>(OpClass::kBranch)]), per_unit(t, t.misses),
+                   name.c_str());
+  }
+  return text + "}};\n\n}  // namespace gridiron::sim\n";
+}
+
+std::string report_text(const Totals& totals) {
+  std::string text = format("%-20s %8s %8s", "kind", "units", "cycles");
+  for (const ClassFacts& facts : kClassFacts) text += format(" %8s", facts.name);
+  text += format(" %8s\n", "misses");
+  double cycles = 0;
+  double pairs = 0;
+  for (std::size_t kind = 0; kind < kWorkKindCount; ++kind) {
+    const KindTotals& t = totals[kind];
+    if (t.units == 0 || !is_charged(kind)) continue;
+    const std::string name(tool::work_name(static_cast<Work>(kind)));
+    text +=
+        format("%-20s %8llu %8.1f", name.c_str(), static_cast<unsigned long long>(t.units), per_unit(t, t.cycles()));
+    for (const std::uint64_t count : t.operations) text += format(" %8.2f", per_unit(t, count));
+    text += format(" %8.2f\n", per_unit(t, t.misses));
+    cycles += t.cycles();
+    pairs += static_cast<double>(t.pairs) / 2;
+  }
+  return text + format("dual issue in %.1f %% of all cycles\n", 100 * pairs / cycles);
+}
+
+}  // namespace gridiron::calibrate

@@ -1,0 +1,25 @@
+// The table of what a unit of each kind of work costs: made from counted frames, written as the source file that the
+// machine profiles are built with.
+// Memory: owned. Threads: the caller's only. SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <pipe_model.h>
+
+#include <cstdint>
+#include <string>
+
+namespace gridiron::calibrate {
+
+/// Counts the frames that the table is made from: the teapot, 1,640 triangles on 96 x 96 pixels, as `reference`, as
+/// `best` and with the paper's test, and the exact decisions on 64 rays and triangles of it.
+///
+/// @returns the sum over the frames. Errors: std::runtime_error where a counted picture differs from the kernel's.
+[[nodiscard]] Totals count_frames(std::uint32_t superblock_branches = kSuperblockBranches);
+
+/// @returns the generated source file, sim_platform/gridiron/sim/work_costs.h.
+[[nodiscard]] std::string table_text(const Totals& totals);
+
+/// @returns the same for people: every kind with its bounds and classes, and the rate of dual issue.
+[[nodiscard]] std::string report_text(const Totals& totals);
+
+}  // namespace gridiron::calibrate
