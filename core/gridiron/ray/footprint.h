@@ -22,22 +22,22 @@ namespace gridiron {
   return squares * 0xFu;
 }
 
-/// @returns the subpackets, in whole squares of 2x2, of which an active ray may touch cell (u, v) of a slab.
+/// @returns a bit for each square of 2x2 subpackets of which an active ray may touch cell (u, v) of a slab.
 ///
 /// The frustum's pads cover each square: its rays are among those that the pads were made for.
 template <class L, class PacketType>
-[[nodiscard]] GRIDIRON_INLINE SubpacketSet subpackets_touching(const PacketType& packet, const Frustum& frustum,
-                                                               const Slab& slab, std::int32_t u, std::int32_t v,
-                                                               WorkCounters& work) {
+[[nodiscard]] GRIDIRON_INLINE std::uint32_t squares_touching(const PacketType& packet, const Frustum& frustum,
+                                                             const Slab& slab, std::int32_t u, std::int32_t v,
+                                                             WorkCounters& work) {
   constexpr std::uint32_t kSquares = PacketType::kSquareCount;
-  if constexpr (kSquares < 4) return PacketType::kAllSubpackets;
+  if constexpr (kSquares < 4) return (1u << kSquares) - 1u;
   using S = std::conditional_t<(kSquares >= L::kCount), L, Lanes<4>>;
   using Float = typename S::Float;
   const Float near(slab.entry);
   const Float far(slab.exit > 0.0f ? slab.exit : 0.0f);
   const Float first[2] = {Float(static_cast<float>(u)), Float(static_cast<float>(v))};
   const Float last[2] = {Float(static_cast<float>(u + 1)), Float(static_cast<float>(v + 1))};
-  std::uint64_t squares = 0;
+  std::uint32_t squares = 0;
   for (std::uint32_t base = 0; base < kSquares; base += S::kCount) {
     work.add(Work::kFootprintGroup);
     std::uint32_t outside = 0;
@@ -48,9 +48,9 @@ template <class L, class PacketType>
       const Float high = Float(frustum.start[2 * axis + 1]) + S::max(slope_high * near, slope_high * far);
       outside |= ((last[axis] < low) | (high < first[axis])).bits();
     }
-    squares |= std::uint64_t{~outside & S::kAllBits} << base;
+    squares |= (~outside & S::kAllBits) << base;
   }
-  return subpackets_of_squares(squares);
+  return squares;
 }
 
 }  // namespace gridiron

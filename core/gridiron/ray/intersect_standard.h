@@ -36,10 +36,16 @@ struct EdgeBatch {
 
   // For culling subpackets: n . d as a linear function of the pixel, and the value below which an edge is surely
   // passed on the outside.
-  alignas(64) float first[L::kCount];
   alignas(64) float per_column[L::kCount];
   alignas(64) float per_row[L::kCount];
   alignas(64) float surely_outside[L::kCount];
+  // Its largest value over a quarter, a square and a row whose first pixel is that of the packet, and what leads from
+  // there to the largest and to the least value of a subpacket.
+  alignas(64) float first_quarter[L::kCount];
+  alignas(64) float first_square[L::kCount];
+  alignas(64) float first_row[L::kCount];
+  alignas(64) float square_to_subpacket[L::kCount];
+  alignas(64) float subpacket_span[L::kCount];
 };
 
 /// What a test may leave out by looking at several rays at once.
@@ -184,10 +190,22 @@ GRIDIRON_INLINE void set_up_edges(const PacketType& packet, const VertexTriangle
     const auto along = [&](const float* direction) {
       return inward_x * Float(direction[0]) + inward_y * Float(direction[1]) + inward_z * Float(direction[2]);
     };
-    along(packet.first_dir).store(batch.first);
-    along(packet.step_x).store(batch.per_column);
-    along(packet.step_y).store(batch.per_row);
+    constexpr float kSubpacketSpan = kSubpacketWidth - 1.0f;
+    constexpr float kSquareSpan = 2.0f * kSubpacketWidth - 1.0f;
+    constexpr float kQuarterSpan = 4.0f * kSubpacketWidth - 1.0f;
+    const Float first = along(packet.first_dir);
+    const Float per_column = along(packet.step_x);
+    const Float per_row = along(packet.step_y);
+    const Float rise_column = L::max(per_column, Float(0.0f));
+    const Float rise = rise_column + L::max(per_row, Float(0.0f));  // per pixel of a square's side
+    per_column.store(batch.per_column);
+    per_row.store(batch.per_row);
     (-(error * Float(packet.subpacket_widening))).store(batch.surely_outside);
+    (first + rise * Float(kQuarterSpan)).store(batch.first_quarter);
+    (first + rise * Float(kSquareSpan)).store(batch.first_square);
+    (first + rise_column * Float(kSubpacketSpan)).store(batch.first_row);
+    (rise * Float(kSubpacketSpan - kSquareSpan)).store(batch.square_to_subpacket);
+    ((L::abs(per_column) + L::abs(per_row)) * Float(kSubpacketSpan)).store(batch.subpacket_span);
   }
 
   batch.missed = 0;
@@ -289,33 +307,61 @@ inline constexpr SquareOrigins kSquareOrigins = [] {
   return origins;
 }();
 
-/// Where the four lanes of a test stand, in pixels: quarters in a packet of 8x8 subpackets, rows in a subpacket.
+/// Where the four lanes of a test stand, in pixels: quarters in a packet of 8x8 subpackets, subpackets in a square,
+/// rows in a subpacket.
 struct LanePlaces {
   alignas(16) float quarter_column[4];
   alignas(16) float quarter_row[4];
+  alignas(16) float subpacket_column[4];
+  alignas(16) float subpacket_row[4];
   alignas(16) float row[4];
 };
-inline constexpr LanePlaces kLanePlaces = {{0, 16, 0, 16}, {0, 0, 16, 16}, {0, 1, 2, 3}};
+inline constexpr LanePlaces kLanePlaces = {{0, 16, 0, 16}, {0, 0, 16, 16}, {0, 4, 0, 4}, {0, 0, 4, 4}, {0, 1, 2, 3}};
 
-/// @returns those quarters of a packet of 8x8 subpackets that triangle `index` of a batch may touch.
-template <class L>
-[[nodiscard]] GRIDIRON_INLINE std::uint32_t quarters_near(const EdgeBatch<L>& batch, std::uint32_t index,
-                                                          WorkCounters& work) {
-  using Float = Lanes<4>::Float;
-  constexpr float kSide = 4.0f * kSubpacketWidth;
-  work.add(Work::kSubpacketGroup);
+/// @returns the places that an edge of triangle `index` surely passes on the outside, a bit each.
+///
+/// @param largest  of EdgeBatch: the edge function's largest value over the place at column 0, row 0.
+template <class L, class Wide>
+[[nodiscard]] GRIDIRON_INLINE std::uint32_t places_outside(const EdgeBatch<L>& batch, std::uint32_t index,
+                                                           const float* largest, typename Wide::Float column,
+                                                           typename Wide::Float row) {
+  using Float = typename Wide::Float;
   std::uint32_t outside = 0;
   for (std::uint32_t edge = 0; edge < 3; ++edge) {
     const std::uint32_t lane = 4 * index + edge;
-    const float per_column = batch.per_column[lane], per_row = batch.per_row[lane];
-    const float largest = batch.first[lane] + ((per_column > 0.0f ? (kSide - 1.0f) * per_column : 0.0f) +
-                                               (per_row > 0.0f ? (kSide - 1.0f) * per_row : 0.0f));
     const Float value =
-        Float(largest) + (Float::load(kLanePlaces.quarter_column) * Float(per_column) +
-                          Float::load(kLanePlaces.quarter_row) * Float(per_row));
+        Float(largest[lane]) + (column * Float(batch.per_column[lane]) + row * Float(batch.per_row[lane]));
     outside |= (value < Float(batch.surely_outside[lane])).bits();
   }
-  return ~outside & 0xFu;
+  return outside;
+}
+
+/// @returns those squares of 2x2 subpackets that triangle `index` of a batch may touch.
+template <class L, class PacketType>
+[[nodiscard]] GRIDIRON_INLINE std::uint32_t squares_near(const EdgeBatch<L>& batch, std::uint32_t index,
+                                                         WorkCounters& work) {
+  using Float = typename L::Float;
+  using Four = Lanes<4>;
+  constexpr std::uint32_t kSquares = PacketType::kSquareCount;
+  // A group of four lanes is a quarter of the packet.
+  constexpr bool kByQuarters = kSquares == 16 && L::kCount == 4;
+  std::uint32_t far_quarters = 0;
+  if constexpr (kByQuarters) {
+    work.add(Work::kSubpacketGroup);
+    far_quarters = places_outside<L, Four>(batch, index, batch.first_quarter,
+                                           Four::Float::load(kLanePlaces.quarter_column),
+                                           Four::Float::load(kLanePlaces.quarter_row));
+  }
+  std::uint32_t squares = 0;
+  for (std::uint32_t base = 0; base < kSquares; base += L::kCount) {
+    if (kByQuarters && (far_quarters >> base / 4 & 1u) != 0) continue;
+    work.add(Work::kSubpacketGroup);
+    const std::uint32_t outside =
+        places_outside<L, L>(batch, index, batch.first_square, Float::load(kSquareOrigins.column + base),
+                             Float::load(kSquareOrigins.row + base));
+    squares |= (~outside & L::kAllBits) << base;
+  }
+  return squares & ((1u << kSquares) - 1u);
 }
 
 /// Subpackets beside a triangle.
@@ -331,63 +377,25 @@ struct NearSubpackets {
 template <class L, class PacketType>
 [[nodiscard]] GRIDIRON_INLINE NearSubpackets subpackets_near(const EdgeBatch<L>& batch, std::uint32_t index,
                                                              SubpacketSet wanted, WorkCounters& work) {
-  using Float = typename L::Float;
   using Four = Lanes<4>;
-  constexpr std::uint32_t kSquares = PacketType::kSubpacketCount / 4;
-  if constexpr (kSquares == 0) return {wanted, 0, false};
+  using Float = Four::Float;
+  if constexpr (PacketType::kSubpacketCount < 4) return {wanted, 0, false};
   const std::uint32_t first_lane = 4 * index;
   if (((batch.in_range >> first_lane) & 0xFu) != 0xFu) return {wanted, 0, false};
-  const auto positive = [](float value) { return value > 0.0f ? value : 0.0f; };
-  constexpr float kSquareSpan = 2.0f * kSubpacketWidth - 1.0f;
-  constexpr float kSubpacketSpan = kSubpacketWidth - 1.0f;
-
-  // 1. Squares of four subpackets.
-  alignas(64) float at_square[3][16];
   std::uint32_t squares = 1;
-  if constexpr (kSquares == 1) {
-    for (std::uint32_t edge = 0; edge < 3; ++edge) at_square[edge][0] = batch.first[first_lane + edge];
-  } else {
-    squares = 0;
-    // A group of four lanes is a quarter of the packet.
-    constexpr bool kByQuarters = kSquares == 16 && L::kCount == 4;
-    std::uint32_t quarters = 0xF;
-    if constexpr (kByQuarters) quarters = quarters_near(batch, index, work);
-    for (std::uint32_t base = 0; base < kSquares; base += L::kCount) {
-      if (kByQuarters && (quarters >> base / 4 & 1u) == 0) continue;
-      work.add(Work::kSubpacketGroup);
-      const Float column = Float::load(kSquareOrigins.column + base);
-      const Float row = Float::load(kSquareOrigins.row + base);
-      std::uint32_t outside = 0;
-      for (std::uint32_t edge = 0; edge < 3; ++edge) {
-        const std::uint32_t lane = first_lane + edge;
-        const float largest =
-            kSquareSpan * positive(batch.per_column[lane]) + kSquareSpan * positive(batch.per_row[lane]);
-        const Float value = Float(batch.first[lane]) +
-                            (column * Float(batch.per_column[lane]) + row * Float(batch.per_row[lane]));
-        value.store(at_square[edge] + base);
-        outside |= (value + Float(largest) < Float(batch.surely_outside[lane])).bits();
-      }
-      squares |= (~outside & L::kAllBits) << base;
-    }
-    squares &= (1u << kSquares) - 1u;
-  }
+  if constexpr (PacketType::kSquareCount > 1) squares = squares_near<L, PacketType>(batch, index, work);
 
-  // 2. The subpackets of those that are left.
   work.charge_to(Work::kSubpacketSetup);
-  Four::Float offset[3];
-  Four::Float span[3];
+  Float offset[3];  // from a square's largest value to its subpackets'
+  Float span[3];
+  Float limit[3];
   for (std::uint32_t edge = 0; edge < 3; ++edge) {
     const std::uint32_t lane = first_lane + edge;
-    alignas(16) float corner[4];
-    const float largest =
-        kSubpacketSpan * positive(batch.per_column[lane]) + kSubpacketSpan * positive(batch.per_row[lane]);
-    span[edge] = Four::Float(kSubpacketSpan * magnitude(batch.per_column[lane]) +
-                             kSubpacketSpan * magnitude(batch.per_row[lane]));
-    for (std::uint32_t i = 0; i < 4; ++i) {
-      corner[i] = largest + (static_cast<float>(kSubpacketWidth * subpacket_column(i)) * batch.per_column[lane] +
-                             static_cast<float>(kSubpacketWidth * subpacket_row(i)) * batch.per_row[lane]);
-    }
-    offset[edge] = Four::Float::load(corner);
+    offset[edge] = Float(batch.first_square[lane] + batch.square_to_subpacket[lane]) +
+                   (Float::load(kLanePlaces.subpacket_column) * Float(batch.per_column[lane]) +
+                    Float::load(kLanePlaces.subpacket_row) * Float(batch.per_row[lane]));
+    span[edge] = Float(batch.subpacket_span[lane]);
+    limit[edge] = Float(batch.surely_outside[lane]);
   }
   SubpacketSet near = 0;
   SubpacketSet covered = 0;
@@ -399,10 +407,11 @@ template <class L, class PacketType>
     std::uint32_t outside = 0;
     std::uint32_t uncovered = 0;
     for (std::uint32_t edge = 0; edge < 3; ++edge) {
-      const Four::Float value = Four::Float(at_square[edge][square]) + offset[edge];
-      const Four::Float limit(batch.surely_outside[first_lane + edge]);
-      outside |= (value < limit).bits();
-      uncovered |= (value - span[edge] <= -limit).bits();
+      const std::uint32_t lane = first_lane + edge;
+      const Float value = offset[edge] + Float(kSquareOrigins.column[square] * batch.per_column[lane] +
+                                               kSquareOrigins.row[square] * batch.per_row[lane]);
+      outside |= (value < limit[edge]).bits();
+      uncovered |= (value - span[edge] <= -limit[edge]).bits();
     }
     near |= SubpacketSet{~outside & 0xFu} << (4 * square);
     covered |= SubpacketSet{~uncovered & 0xFu} << (4 * square);
@@ -410,26 +419,29 @@ template <class L, class PacketType>
   return {near & wanted, covered & wanted, true};
 }
 
+/// Origins of subpackets in a packet, in pixels, along the Z curve.
+struct SubpacketOrigins {
+  float column[64];
+  float row[64];
+};
+inline constexpr SubpacketOrigins kSubpacketOrigins = [] {
+  SubpacketOrigins origins{};
+  for (std::uint32_t i = 0; i < 64; ++i) {
+    origins.column[i] = static_cast<float>(kSubpacketWidth * subpacket_column(i));
+    origins.row[i] = static_cast<float>(kSubpacketWidth * subpacket_row(i));
+  }
+  return origins;
+}();
+
 /// @returns those of a subpacket's four rows, bit i = row i, that triangle `index` of a batch may touch.
 template <class L>
 [[nodiscard]] GRIDIRON_INLINE std::uint32_t rows_near(const EdgeBatch<L>& batch, std::uint32_t index,
                                                       std::uint32_t subpacket, WorkCounters& work) {
-  using Four = Lanes<4>;
+  using Float = Lanes<4>::Float;
   work.add(Work::kRowGroup);
-  const float column = static_cast<float>(kSubpacketWidth * subpacket_column(subpacket));
-  const float row = static_cast<float>(kSubpacketWidth * subpacket_row(subpacket));
-  constexpr float kSpan = kSubpacketWidth - 1.0f;
-  std::uint32_t outside = 0;
-  for (std::uint32_t edge = 0; edge < 3; ++edge) {
-    const std::uint32_t lane = 4 * index + edge;
-    const float per_column = batch.per_column[lane];
-    const float largest = per_column > 0.0f ? kSpan * per_column : 0.0f;
-    const Four::Float value =
-        Four::Float(batch.first[lane] + (column * per_column + largest)) +
-        (Four::Float(row) + Four::Float::load(kLanePlaces.row)) * Four::Float(batch.per_row[lane]);
-    outside |= (value < Four::Float(batch.surely_outside[lane])).bits();
-  }
-  return ~outside & 0xFu;
+  const Float column(kSubpacketOrigins.column[subpacket]);
+  const Float row = Float(kSubpacketOrigins.row[subpacket]) + Float::load(kLanePlaces.row);
+  return ~places_outside<L, Lanes<4>>(batch, index, batch.first_row, column, row) & 0xFu;
 }
 
 /// One triangle's edge functions, each in all lanes.

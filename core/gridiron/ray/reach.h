@@ -15,7 +15,9 @@ namespace gridiron {
 template <class PacketType>
 struct SubpacketReach {
   static constexpr std::uint32_t kCount = PacketType::kSubpacketCount;
+  static constexpr std::uint32_t kSquareCount = PacketType::kSquareCount;
   alignas(64) float reach[kCount];
+  alignas(16) float square_reach[kSquareCount < 4 ? 4 : kSquareCount];  ///< the largest of each square's subpackets
 
   /// Measures anew the subpackets whose hits changed. @returns the largest reach of the packet.
   template <class L>
@@ -35,36 +37,54 @@ struct SubpacketReach {
       }
       reach[subpacket] = L::horizontal_max(farthest);
     });
-    float largest = 0.0f;
-    if constexpr (kCount < L::kCount) {
-      for (const float value : reach) largest = value > largest ? value : largest;
+    if constexpr (kCount < 4) {
+      return reach[0];
     } else {
-      Float farthest(0.0f);
-      for (std::uint32_t base = 0; base < kCount; base += L::kCount) {
+      using Four = Lanes<4>;
+      for (std::uint32_t square = 0; square < kSquareCount; ++square) {
+        if ((changed >> (4 * square) & 0xFu) == 0) continue;
         work.add(Work::kReachGroup);
-        farthest = L::max(farthest, Float::load(reach + base));
+        square_reach[square] = Four::horizontal_max(Four::Float::load(reach + 4 * square));
       }
-      largest = L::horizontal_max(farthest);
+      if constexpr (kSquareCount == 1) return square_reach[0];
+      work.add(Work::kReachGroup);
+      Four::Float farthest = Four::Float::load(square_reach);
+      for (std::uint32_t base = 4; base < kSquareCount; base += 4) {
+        farthest = Four::max(farthest, Four::Float::load(square_reach + base));
+      }
+      return Four::horizontal_max(farthest);
     }
-    return largest;
   }
 
-  /// @returns those of the `wanted` subpackets that still look beyond the march distance `entry`.
+  /// @returns a bit for each square of which a subpacket still looks beyond the march distance `entry`.
+  [[nodiscard]] GRIDIRON_INLINE std::uint32_t open_squares(const Frustum& frustum, float entry,
+                                                           WorkCounters& work) const {
+    using Four = Lanes<4>;
+    using Float = Four::Float;
+    if constexpr (kSquareCount < 4) return (1u << kSquareCount) - 1u;
+    std::uint32_t result = 0;
+    for (std::uint32_t base = 0; base < kSquareCount; base += 4) {
+      work.add(Work::kReachGroup);
+      const Float limit = Float::load(square_reach + base) * Float(Frustum::kReachFactor) + Float(frustum.pad_k);
+      result |= (Float(entry) <= limit).bits() << base;
+    }
+    return result;
+  }
+
+  /// @returns the subpackets that still look beyond the march distance `entry`.
   template <class L>
-  [[nodiscard]] GRIDIRON_INLINE SubpacketSet open(const Frustum& frustum, float entry, SubpacketSet wanted,
-                                                  WorkCounters& work) const {
+  [[nodiscard]] GRIDIRON_INLINE SubpacketSet open(const Frustum& frustum, float entry, WorkCounters& work) const {
     if constexpr (kCount < L::kCount) {
-      return wanted;
+      return PacketType::kAllSubpackets;
     } else {
       using Float = typename L::Float;
       SubpacketSet result = 0;
       for (std::uint32_t base = 0; base < kCount; base += L::kCount) {
-        if ((wanted >> base & L::kAllBits) == 0) continue;
         work.add(Work::kReachGroup);
         const Float limit = Float::load(reach + base) * Float(Frustum::kReachFactor) + Float(frustum.pad_k);
         result |= SubpacketSet{(Float(entry) <= limit).bits()} << base;
       }
-      return result & wanted;
+      return result;
     }
   }
 };

@@ -58,7 +58,7 @@ class PacketDriver {
     std::uint32_t count;
     std::uint32_t first_byte;  ///< where the run starts in its buffer
     float entry;               ///< march distance of its cell's slice
-    SubpacketSet touching;     ///< subpackets that may touch the cell
+    SubpacketSet touching;     ///< subpackets of the squares that may touch the cell
   };
 
   // Starts the get of the next run of triangles, or sets cells_done_.
@@ -66,7 +66,7 @@ class PacketDriver {
     if (frustum_.beyond(Slab{cell_.entry, cell_.entry}, reach_)) cell_.triangle_count = 0;
     while (cell_.triangle_count == 0) {
       if (walking_ && cell_walk_.next(frustum_, front_cells(), reach_, cell_, store_.work)) {
-        touching_ = subpackets_that_see(cell_);
+        touching_ = squares_that_see(cell_);
         if (touching_ != 0) break;
         cell_.triangle_count = 0;
         continue;
@@ -81,7 +81,7 @@ class PacketDriver {
                               std::uint64_t{cell_.first_triangle} * kTriangleRecordBytes};
     const std::uint32_t slot = triangle_ring_.push();
     const std::uint32_t first_byte = static_cast<std::uint32_t>(address.value % kPortableCongruenceBytes);
-    runs_[slot] = {count, first_byte, cell_.entry, touching_};
+    runs_[slot] = {count, first_byte, cell_.entry, subpackets_of_squares(touching_)};
     cell_.first_triangle += count;
     cell_.triangle_count -= count;
     return transfers_.get(store_.triangles[slot].bytes + first_byte, address, count * kTriangleRecordBytes,
@@ -142,15 +142,17 @@ class PacketDriver {
   // Subpackets that have hit nothing in front of `entry` yet.
   [[nodiscard]] SubpacketSet open_subpackets(float entry) {
     if ((store_.frame.techniques & kUseSubpackets) == 0) return StorePacket::kAllSubpackets;
-    return reaches_.template open<L>(frustum_, entry, StorePacket::kAllSubpackets, store_.work);
+    return reaches_.template open<L>(frustum_, entry, store_.work);
   }
 
-  // Those of the open subpackets that may touch a cell.
-  [[nodiscard]] SubpacketSet subpackets_that_see(const CellVisit& cell) {
-    if ((store_.frame.techniques & kUseSubpackets) == 0) return StorePacket::kAllSubpackets;
-    const SubpacketSet touching = subpackets_touching<L>(store_.packet, frustum_, Slab{cell.entry, cell.exit}, cell.u,
-                                                         cell.v, store_.work);
-    return reaches_.template open<L>(frustum_, cell.entry, touching, store_.work);
+  // Squares of subpackets that may touch a cell and have hit nothing in front of it yet.
+  [[nodiscard]] std::uint32_t squares_that_see(const CellVisit& cell) {
+    constexpr std::uint32_t kAllSquares = (1u << StorePacket::kSquareCount) - 1u;
+    if ((store_.frame.techniques & kUseSubpackets) == 0) return kAllSquares;
+    const std::uint32_t open = reaches_.open_squares(frustum_, cell.entry, store_.work);
+    if (open == 0) return 0;
+    return open & squares_touching<L>(store_.packet, frustum_, Slab{cell.entry, cell.exit}, cell.u, cell.v,
+                                      store_.work);
   }
 
   // Waits for the oldest run and tests it, unless every ray has meanwhile hit something in front of it.
@@ -233,7 +235,7 @@ class PacketDriver {
   MacroVisit visits_[Layout::kMaxMacroDepth];
   TriangleRun runs_[Layout::kMaxTriangleDepth];
   CellVisit cell_{};  ///< the cell whose triangles are being fetched, what is left of it
-  SubpacketSet touching_ = 0;  ///< subpackets that may touch it
+  std::uint32_t touching_ = 0;  ///< squares of subpackets that may touch it
   SubpacketReach<StorePacket> reaches_;
   float reach_ = 0.0f;  ///< the largest of them
   bool entered_ = false;  ///< the macrocell ring's front has been waited for

@@ -66,10 +66,11 @@ void expect_no_touch_left_out(std::uint64_t seed_count, std::uint32_t ray_stride
           if (!box) continue;
           for (const std::int32_t u : {box->u.first, box->u.last}) {
             for (const std::int32_t v : {box->v.first, box->v.last}) {
-              const SubpacketSet touching = subpackets_touching<L>(packet, frustum, slab, u, v, work);
+              const std::uint32_t squares = squares_touching<L>(packet, frustum, slab, u, v, work);
+              const SubpacketSet touching = subpackets_of_squares(squares) & PacketType::kAllSubpackets;
               ++touches;
               left_out += PacketType::kSubpacketCount - static_cast<std::uint32_t>(std::popcount(touching));
-              ASSERT_EQ(touching & ~PacketType::kAllSubpackets, 0u);
+              ASSERT_EQ(squares >> PacketType::kSquareCount, 0u);
               ASSERT_NE(touching >> (ray / kSubpacketRays) & 1u, 0u)
                   << "seed " << seed << ", ray " << ray << ", cell k " << k << " u " << u << " v " << v;
             }

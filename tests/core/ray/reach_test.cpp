@@ -1,4 +1,5 @@
 // Reaches of subpackets. SPDX-License-Identifier: Apache-2.0
+#include <gridiron/ray/footprint.h>
 #include <gridiron/ray/reach.h>
 #include <gtest/gtest.h>
 
@@ -61,16 +62,24 @@ void expect_reaches() {
     for (int i = 0; i < 20; ++i) {
       const std::uint32_t edge = random.below(PacketType::kSubpacketCount);
       const float entry = i % 2 == 0 ? random.between(0, 120) : reaches.reach[edge];
-      const SubpacketSet wanted =
-          i < 10 ? PacketType::kAllSubpackets : (random.below(0xFFFF) * 0x1000100010001u) & PacketType::kAllSubpackets;
-      const SubpacketSet open = reaches.template open<L>(frustum, entry, wanted, work);
+      const SubpacketSet open = reaches.template open<L>(frustum, entry, work);
+      const SubpacketSet open_squares = subpackets_of_squares(reaches.open_squares(frustum, entry, work));
       for (std::uint32_t subpacket = 0; subpacket < PacketType::kSubpacketCount; ++subpacket) {
         const bool is_open = (open >> subpacket & 1u) != 0;
         closed += is_open ? 0u : 1u;
         if (frustum.beyond(Slab{entry, entry}, reaches.reach[subpacket])) continue;
-        ASSERT_EQ(is_open, (wanted >> subpacket & 1u) != 0) << "seed " << seed << ", subpacket " << subpacket;
+        ASSERT_TRUE(is_open) << "seed " << seed << ", subpacket " << subpacket;
       }
-      ASSERT_EQ(open & ~wanted, 0u);
+      ASSERT_EQ(open & ~PacketType::kAllSubpackets, 0u);
+      if (PacketType::kSubpacketCount < L::kCount) continue;
+      // A square is open where one of its subpackets is.
+      for (std::uint32_t square = 0; square < PacketType::kSquareCount; ++square) {
+        const bool any = PacketType::kSubpacketCount < 4 || (open >> (4 * square) & 0xFu) != 0;
+        ASSERT_TRUE(!any || (open_squares >> (4 * square) & 1u) != 0) << "seed " << seed << ", square " << square;
+        if (PacketType::kSquareCount >= 4) {
+          ASSERT_EQ(any, (open_squares >> (4 * square) & 1u) != 0) << "seed " << seed << ", square " << square;
+        }
+      }
     }
   });
   if (std::getenv("GRIDIRON_TEST_SEED") == nullptr && PacketType::kSubpacketCount >= L::kCount) {
