@@ -254,7 +254,13 @@ class BvhCore {
     const VertexTriangle* const triangles = line + child.first_triangle() % settings().line_triangles;
     count(RivalWork::kLeafVisit);
     const Culling culling{.corner_rays = true, .subpackets = settings().use_subpackets != 0};
-    constexpr SubpacketSet kAll = StorePacket::kAllSubpackets;
+    // Subpackets that the leaf's box may be met by, and that have not hit anything nearer.
+    SubpacketSet open = 0;
+    store_.work.add(Work::kReachGroup);
+    for (std::uint32_t i = context.current.first_group * L::kCount / kSubpacketRays; i < StorePacket::kSubpacketCount;
+         ++i) {
+      if (context.current.entry <= context.reach[i]) open |= SubpacketSet{1} << i;
+    }
     SubpacketSet changed = 0;
     constexpr std::uint32_t kBatch = EdgeBatch<L>::kTriangles;
     for (std::uint32_t i = 0; i < child.triangle_count(); i += kBatch) {
@@ -263,7 +269,7 @@ class BvhCore {
       std::uint32_t in_batch = 0;
       for (; in_batch < kBatch && i + in_batch < child.triangle_count(); ++in_batch) {
         batch[in_batch] = triangles + i + in_batch;
-        subpackets[in_batch] = kAll;
+        subpackets[in_batch] = open;
       }
       changed |= intersect_standard_batch<L, kWantFacing>(context.packet, batch, subpackets, in_batch, culling,
                                                           store_.work);

@@ -22,20 +22,20 @@ namespace gridiron::rival {
 /// Sizes of both caches. Lines: a multiple of kCacheWays; together at most kCacheBytes. What a line holds is decided
 /// when the hierarchy is built (BvhParameters::line_nodes, line_triangles).
 struct CacheGeometry {
-  std::uint32_t node_lines = 256;
-  std::uint32_t triangle_lines = 160;
+  std::uint32_t node_lines = 64;
+  std::uint32_t triangle_lines = 100;
 };
 
 struct RenderOptions {
   std::uint32_t core_count = 0;     ///< 0: the profile's
   bool hyper_threading = true;      ///< packets take turns; else one after another
-  std::uint32_t ring_size = 4;      ///< of them, 2..kMaxRing; without hyper-threading not looked at
+  std::uint32_t ring_size = 3;      ///< of them, 2..kMaxRing; without hyper-threading not looked at
   CacheGeometry caches;
   RayTests ray_tests = RayTests::kLeaves;
-  bool use_subpackets = false;      ///< cull triangles by 4x4 pixels too
+  bool use_subpackets = true;       ///< cull triangles by 4x4 pixels too
   bool all_planes = false;          ///< depth and ids beside colour
   bool timeline = false;            ///< fill timing.timeline
-  sim::Completion completion = sim::Completion::kEarly;  ///< changes nothing but when bytes move
+  sim::Completion completion = sim::Completion::kEarly;   ///< changes nothing but when bytes move
   std::uint64_t seed = 0;
 };
 
@@ -63,7 +63,8 @@ struct BvhFrame {
 ///
 /// Claims are granted by each core's clock without contention, so the run depends on `machine` and the options, and on
 /// nothing of the host; the replay then gives its steps their times with contention.
-/// @param settings  camera, size, shading, t_far, background; accuracy kStandard. Tile width and addresses are set here.
+/// @param settings  camera, size, shading, t_far, background; accuracy kStandard. What a grid needs is not looked at;
+/// tile width, output depth and addresses are set here.
 /// Errors: kUnsupportedFrame (accuracy; a machine with less than 256 KB of local store), kBadParameter (options),
 /// kMemoryTooSmall (main memory of the machine), kBadFrame (settings), and what a broken rule reports.
 [[nodiscard]] BvhFrame render_bvh_frame(const Bvh& bvh, const FrameSettings& settings,

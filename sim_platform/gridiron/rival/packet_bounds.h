@@ -26,7 +26,8 @@ struct SceneExtent {
   for (int axis = 0; axis < 3; ++axis) {
     point = larger(point, larger(magnitude(low[axis]), magnitude(high[axis])));
     origin = larger(origin, magnitude(eye[axis]));
-    extent.distance = larger(extent.distance, larger(magnitude(low[axis] - eye[axis]), magnitude(high[axis] - eye[axis])));
+    extent.distance = larger(extent.distance, magnitude(low[axis] - eye[axis]));
+    extent.distance = larger(extent.distance, magnitude(high[axis] - eye[axis]));
   }
   extent.coordinate = point + origin;
   return extent;
@@ -43,7 +44,8 @@ struct SceneExtent {
 /// of magnitudes below 6 D S (P + O) has less than 5 roundings: 30 e D S (P + O). A plane is passed on the outside
 /// where the sum is below -e S D (160 D R + 32 (P + O)).
 ///
-/// Nearest way: t >= (near_k - o_k) / max |d_k| along each axis on which all rays run the same way, less 4 roundings.
+/// Ways: along each axis on which all rays run the same way, t >= (near_k - o_k) / max |d_k| and, where a box is not
+/// behind the eye, t <= (far_k - o_k) / min |d_k|, give or take 4 roundings of magnitudes below P + O.
 template <std::uint32_t Width>
 struct alignas(128) PacketBounds {
   using StorePacket = Packet<Width>;
@@ -53,6 +55,8 @@ struct alignas(128) PacketBounds {
   std::uint32_t plane_side[4][3];  ///< bound that is farthest along n: 0 low, 1 high
   float entry_scale[3];            ///< t >= near_k * scale + offset
   float entry_offset[3];
+  float exit_scale[3];             ///< t <= far_k * scale + offset
+  float exit_offset[3];
   std::uint32_t near_side[3];      ///< bound that the rays meet first
   float far_bias[3];               ///< 0, or kFloatMax on an axis that says nothing about single rays
   alignas(64) float reciprocal[3][StorePacket::kRayCount];  ///< 1 / direction; 0 on such an axis
@@ -71,13 +75,18 @@ struct alignas(128) PacketBounds {
       }
       const float least = low > 0.0f ? low : high < 0.0f ? -high : 0.0f;
       const float largest = high < 0.0f ? -low : high;
-      const bool one_way = least > 0.0f;
       near_side[axis] = high < 0.0f ? 1 : 0;
-      entry_scale[axis] = entry_offset[axis] = 0.0f;
-      if (one_way) {
-        const float scale = (1.0f - 4.0f * kUnit) / largest;
-        entry_scale[axis] = high < 0.0f ? -scale : scale;
-        entry_offset[axis] = -(packet.origin[axis] * entry_scale[axis]) - 8.0f * kUnit * extent.coordinate * scale;
+      entry_scale[axis] = entry_offset[axis] = exit_scale[axis] = 0.0f;
+      exit_offset[axis] = kFloatMax;
+      if (least > 0x1p-30f * dir_bound) {
+        const float sign = high < 0.0f ? -1.0f : 1.0f;
+        const float slowest = (1.0f - 4.0f * kUnit) / largest;
+        const float fastest = (1.0f + 4.0f * kUnit) / least;
+        const float slack = 8.0f * kUnit * extent.coordinate;
+        entry_scale[axis] = sign * slowest;
+        entry_offset[axis] = -(packet.origin[axis] * entry_scale[axis]) - slack * slowest;
+        exit_scale[axis] = sign * fastest;
+        exit_offset[axis] = slack * fastest - packet.origin[axis] * exit_scale[axis];
       }
       if (!ray_tests) continue;
       const bool usable = least > 0x1p-30f * dir_bound;
@@ -101,13 +110,15 @@ struct alignas(128) PacketBounds {
       const Float z = Float(plane[i][2]) * Float::load(node.bounds[plane_side[i][2]][2]);
       outside |= (x + y + z + Float(plane[i][3]) < Float(0.0f)).bits();
     }
-    Float nearest(0.0f);
+    Float nearest(0.0f), farthest(reach);
     for (int axis = 0; axis < 3; ++axis) {
-      const Float way = Float(entry_scale[axis]) * Float::load(node.bounds[near_side[axis]][axis]);
-      nearest = Lanes<4>::max(nearest, way + Float(entry_offset[axis]));
+      const Float way_in = Float(entry_scale[axis]) * Float::load(node.bounds[near_side[axis]][axis]);
+      nearest = Lanes<4>::max(nearest, way_in + Float(entry_offset[axis]));
+      const Float way_out = Float(exit_scale[axis]) * Float::load(node.bounds[1 - near_side[axis]][axis]);
+      farthest = Lanes<4>::min(farthest, way_out + Float(exit_offset[axis]));
     }
     nearest.store(entry);
-    return ~outside & (nearest <= Float(reach)).bits() & ((1u << node.child_count) - 1u);
+    return ~outside & (nearest <= farthest).bits() & ((1u << node.child_count) - 1u);
   }
 
   /// @returns the first group of rays, from `first_group` on, of which one meets the box before its nearest hit;

@@ -15,7 +15,7 @@ struct KindFacts {
 /// ESTIMATES by the rule of sim/machine_profile.cpp: even instructions, plus the odd ones that find no even partner,
 /// plus half a branch miss (9) where a branch goes either way, plus latency that nothing covers.
 constexpr std::array<KindFacts, kRivalWorkCount> kFacts = {{
-    // Set by multiply and mask 4, load of four tags 6, compare and gather 5, way by table 6, age word 6, slot address 3.
+    // Set by multiply and mask 4, load of four tags 6, compare and gather 5, way by table 6, ages 6, slot address 3.
     {"cache_lookup", 30},
     // Largest age of four by compare and select 8, tag and state stored 4, slot and main address 8; the branch to it 9.
     // The command itself is the profile's issue_cycles.
@@ -23,10 +23,10 @@ constexpr std::array<KindFacts, kRivalWorkCount> kFacts = {{
     // Stack pointer, reference and slot stored 6, the next packet's loaded 10, its planes and axes into registers 22
     // loads, is its line there 4, indirect branch 18.
     {"switch", 60},
-    // Four planes * (3 multiply-adds, compare) 16, merging 3, three axes * (multiply-add, maximum) 6, compare with the
-    // reach, masks 3: 28 even; 15 loads of bounds, 4 of and for results: 19 odd, of which 8 pair; the first load and the
-    // chain of a plane, half hidden 12; no child is met or some 9.
-    {"node_step", 60},
+    // Four planes * (3 multiply-adds, compare) 16, merging 3, three axes * (2 multiply-adds, maximum, minimum) 12,
+    // compare, masks 4: 35 even; 18 loads of bounds, 4 of and for results: 22 odd, of which 9 pair; the first load and
+    // the chain of a plane, half hidden 12; no child is met or some 9.
+    {"node_step", 69},
     // Lane to scalar 4, compare with those before and move 8, store of the entry 3, half a miss 9.
     {"child_push", 24},
     // Load of the entry 6, compare with the reach 2, goes either way 9, stack pointer 1, leaf or node 2.
