@@ -17,12 +17,14 @@ using TestPacket = Packet<8>;
 using Bounds = PacketBounds<8>;
 
 /// A frame by its camera vectors alone.
-FrameRecord make_frame(test::TestRandom& random, float eye_distance) {
+FrameRecord make_frame(test::TestRandom& random, float eye_distance, bool along_an_axis) {
   FrameRecord frame{};
   frame.width = frame.height = 64;
   frame.t_far = kFloatMax;
   double forward[3], side[3], up[3];
-  const double angle = 6.2831853 * random.unit(), tilt = random.between(-1.5f, 1.5f);
+  const double quarter = 1.5707963267948966;
+  const double angle = along_an_axis ? quarter * random.below(4) : 4 * quarter * random.unit();
+  const double tilt = along_an_axis ? 0.0 : random.between(-1.5f, 1.5f);
   forward[0] = std::cos(angle) * std::cos(tilt);
   forward[1] = std::sin(tilt);
   forward[2] = std::sin(angle) * std::cos(tilt);
@@ -63,7 +65,7 @@ TEST(PacketBounds, BoxesThatARayMeetsAreMet) {
   for (std::uint64_t seed = 1; seed <= 400; ++seed) {
     test::TestRandom random(seed);
     const float scale = seed % 3 == 0 ? 1e4f : 1.0f;
-    const FrameRecord frame = make_frame(random, seed % 2 == 0 ? 0.0f : 3.0f);
+    const FrameRecord frame = make_frame(random, seed % 2 == 0 ? 0.0f : 3.0f, seed % 5 == 0);
     RaySet<64> present;
     generate_packet<Lanes<4>>(frame, 8 * random.below(8), 8 * random.below(8), *packet, present, work);
     packet->active = present;

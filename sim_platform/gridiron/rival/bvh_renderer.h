@@ -31,7 +31,7 @@ struct RenderOptions {
   bool hyper_threading = true;      ///< packets take turns; else one after another
   std::uint32_t ring_size = 3;      ///< of them, 2..kMaxRing; without hyper-threading not looked at
   CacheGeometry caches;
-  RayTests ray_tests = RayTests::kLeaves;
+  RayTests ray_tests = RayTests::kAll;
   bool use_subpackets = true;       ///< cull triangles by 4x4 pixels too
   bool all_planes = false;          ///< depth and ids beside colour
   bool timeline = false;            ///< fill timing.timeline
