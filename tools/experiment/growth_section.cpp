@@ -73,6 +73,7 @@ Writer plan_table1(Plan& plan, const Stage& stage) {
                    .log_x = true,
                    .log_y = true,
                    .x_ticks = {}};
+    Range build_exponents, walk_exponents;
     for (std::size_t c = 0; c < stage.contenders.size(); ++c) {
       const Contender& contender = stage.contenders[c];
       std::vector<std::vector<Point2>> points(std::size(kQuantities));
@@ -105,6 +106,8 @@ Writer plan_table1(Plan& plan, const Stage& stage) {
         exponents.add(
             {contender.key, kQuantities[q].title, fit.exponent, fit.r_squared, std::string(kQuantities[q].paper)});
       }
+      build_exponents.add(fit_power(points[0]).exponent);
+      walk_exponents.add(fit_power(points[1]).exponent);
       build.series.push_back({contender.title, points[0], false});
       walk.series.push_back({contender.title, points[1], false});
     }
@@ -112,17 +115,18 @@ Writer plan_table1(Plan& plan, const Stage& stage) {
     book.section("table1", "Table 1: work against the number of triangles");
     book.paragraph(
         "The paper states growth without measuring it: O(n) to build a grid and O(n^(1/3)) to traverse it [P]. Here "
-        "both "
-        "are counted on one torus knot, made at several sizes and seen by the same camera. A build step is one "
+        "both are counted on one torus knot, made at several sizes and seen by the same camera. A build step is one "
         "element touched: a triangle read, a reference written, a cell of a stored block or a macrocell cleared. A "
         "traversal step is one macro slice, macrocell, slice or cell, summed over all packets of a frame.");
-    book.paragraph(
-        "The printed O(n^(1/3)) counts cells along a single ray. A packet visits every cell that its frustum overlaps, "
-        "so "
-        "once cells are narrower than a packet its steps also grow with the width and height of that overlap, and the "
-        "fitted exponent lies above 1/3; systems with wider packets feel it earlier. The exponents are least-squares "
-        "fits of the "
-        "logarithms and hold for this mesh and this range only.");
+    book.paragraph("Building grows with exponent " + build_exponents.text(2) +
+                   ": below 1, because the triangles of a surface shrink faster than the cells of its grid, so that "
+                   "each lies in fewer of them. Traversal grows with exponent " +
+                   walk_exponents.text(2) +
+                   " against a printed 1/3, which counts the cells along one ray. A packet visits every cell that its "
+                   "frustum overlaps, which adds steps once cells are narrower than the packet, the sooner the wider "
+                   "it is; skipping empty macrocells and stopping behind the last hit take steps away. The fits are "
+                   "least squares of the logarithms; they hold for this mesh and this range only, and r squared tells "
+                   "how far from a power law the counts are.");
     book.table(exponents, "Fitted exponents: quantity ~ n^exponent.");
     book.figure("table1_build", line_chart_svg(build), "Elements touched while the structure is built.");
     book.figure("table1_traversal", line_chart_svg(walk), "Steps through the structure for one frame.");
@@ -182,9 +186,9 @@ Writer plan_table2(Plan& plan, const Stage& stage) {
     book.paragraph(
         "Bunny and Horse are the models that the paper names. The armadillo is a stand-in wherever it appears: a scan "
         "of half the resolution whose edges were split until its counts were those of the paper. The conference room "
-        "is the public version with more triangles than the paper's, many of them of zero area, which are dropped. "
-        "The paper does not say from where it looks at its scenes; the views are ours, so single figures may differ "
-        "from the paper's for that reason alone.");
+        "is the public version with more triangles than the paper's, many of them of zero area, which are dropped. The "
+        "paper does not say from where it looks at its scenes; the views are ours, so single figures may differ from "
+        "the paper's for that reason alone.");
     book.table(table,
                "Scenes and the grid of the reference configuration. Digits that the paper's text form lost (horse, "
                "armadillo) are completed from the models themselves.");

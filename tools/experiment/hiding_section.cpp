@@ -80,11 +80,10 @@ Writer plan_figure6(Plan& plan, const Stage& stage) {
     book.paragraph(
         "The time of a frame, split as in the paper: initialisation (starting tiles and packets, generating rays), "
         "computation (traversal, intersection, issuing commands) and waiting for DMA. The left bar of each pair "
-        "fetches, waits and "
-        "uses at all three levels; the right bar hides latency: double buffering for the reference, deeper prefetch "
-        "for best. "
-        "As in the paper only the waiting shrinks. A fourth part, idle, is what the dynamic distribution of tiles "
-        "leaves at the end of a frame; the paper does not show it. All values are of the mean core, without shading.");
+        "fetches, waits and uses at all three levels; the right bar hides latency: double buffering for the reference, "
+        "deeper prefetch for best. As in the paper only the waiting shrinks. A fourth part, idle, is what the dynamic "
+        "distribution of tiles leaves at the end of a frame; the paper does not show it. All values are of the mean "
+        "core, without shading.");
     for (std::size_t c = 0; c < stage.contenders.size(); ++c) {
       for (std::size_t i = 0; i < std::size(kPaperCoreCounts); ++i) {
         BarChart chart;
@@ -175,23 +174,20 @@ Writer plan_table4(Plan& plan, const Stage& stage) {
                    " % of the reference configuration's waiting (paper: " + std::string(kPaperHidden) +
                    " [P]) and gains " + gain_range.text(1) + " % fps (paper: " + std::string(kPaperFpsGain) +
                    " [P]). The hidden share depends on how transfers and work interleave; the gain also depends on how "
-                   "much there was "
-                   "to hide, which is the next table.");
+                   "much there was to hide, which is the next table.");
     book.table(hiding,
                "Share of the waiting that is hidden, and the fps it gains, against the same system without hiding.");
     book.paragraph(
         "A frame of the reference waits " + single_range.text(1) + " % of its core cycles single-buffered and " +
         double_range.text(1) +
-        " % double-buffered. The paper's columns are derived [D] from its Table 4: they follow from hidden "
-        "share and gain if nothing but the waiting changes. The share grows by " +
-        growth_range.text(1) +
-        " percentage points from one core to six, so that here, as in the paper, latency binds and not bandwidth.");
-    book.paragraph(
-        "Where we differ, three assumptions are the most likely reasons. The cost table was estimated by hand, +-30 % "
-        "each: a "
-        "share of waiting moves with everything that is computed beside it, which shows in the two reference columns, "
-        "equal but for the intersection test. The latency of 500 cycles is an assumption too (see the sweep). And "
-        "the paper's views are unknown.");
+        " % double-buffered. The paper's columns are derived [D] from its Table 4: they follow from hidden share and "
+        "gain if nothing but the waiting changes. The share grows by " +
+        growth_range.text(1) + " percentage points from one core to six" +
+        (growth_range.greatest() < 3 ? ": here, as in the paper, latency binds and not bandwidth." : "."));
+    book.paragraph(std::string("Where we differ, three assumptions are the most likely reasons. ") + kCostTableWords +
+                   " A share of waiting moves with everything that is computed beside it, which shows in the two "
+                   "reference columns, equal but for the intersection test. The latency of 500 cycles is an assumption "
+                   "too (see the sweep). And the paper's views are unknown.");
     book.table(wait, "Share of core cycles spent waiting for DMA.");
   };
 }
@@ -256,8 +252,7 @@ Writer plan_best(Plan& plan, const Stage& stage) {
     book.paragraph(
         "Configuration best is the same grid and the same exact test. It traverses the grid once per tile instead of "
         "once per 8x8 packet, so that what was fetched serves 1,024 rays, culls by subpackets of 4x4 rays, and "
-        "prefetches four cell "
-        "blocks and eight triangle buffers. On six cores it renders " +
+        "prefetches four cell blocks and eight triangle buffers. On six cores it renders " +
         ratios.text(2) + " times the frames of the reference, waits " + waits.text(2) + " % of its cycles, and " +
         gone.text(1) + " % of the reference's single-buffered waiting (in core cycles) is gone. " +
         (all_same ? "All three runs of every row render the same picture, pixel for pixel."

@@ -101,11 +101,9 @@ Writer plan_machine_sweeps(Plan& plan, const Stage& stage) {
     book.section("latency", "Sweep: memory latency");
     book.paragraph(
         "Cycles from a line's turn on the memory channel to its arrival. The profile assumes 500, which no document "
-        "that we have "
-        "states; the paper's machine may well have had more or less. The recorded frame is the same at every "
-        "point, only the replay changes. Waiting grows in proportion without hiding; double buffering hides a transfer "
-        "only as "
-        "long as the work beside it lasts, and deep prefetch moves that limit out.");
+        "that we have states; the paper's machine may well have had more or less. The recorded frame is the same at "
+        "every point, only the replay changes. Waiting grows in proportion without hiding; double buffering hides a "
+        "transfer only as long as the work beside it lasts, and deep prefetch moves that limit out.");
     for (const View* view : stage.sweep_views) {
       book.figure("sweep_latency_" + view->key,
                   point_chart(done, curves, latencies, *view, kPaperCores,
@@ -125,10 +123,8 @@ Writer plan_machine_sweeps(Plan& plan, const Stage& stage) {
     book.section("bandwidth", "Sweep: memory bandwidth");
     book.paragraph(
         "Bandwidth that all cores share, usable part (23 GB/s in the profile, 90 % of the published 25.6), on six and "
-        "on sixteen cores. "
-        "Where halving it changes nothing the frame is bound by work or latency; where fps halves with it the channel "
-        "is full, and "
-        "only fetching fewer bytes helps.");
+        "on sixteen cores. Where halving it changes nothing the frame is bound by work or latency; where fps halves "
+        "with it the channel is full, and only fetching fewer bytes helps.");
     for (const View* view : stage.sweep_views) {
       book.figure("sweep_bandwidth_" + view->key,
                   point_chart(done, curves, bandwidths, *view, kManyCores,

@@ -48,18 +48,15 @@ void write_host_figures(const Stage& stage, std::uint32_t threads, Book& book) {
                {"frame_ms", "frame, ms"},
                {"fps", "fps"}},
               {}};
+  const FrameRequest request = {.width = stage.width, .height = stage.height, .shading = Shading::kNone};
+  std::vector<std::uint32_t> thread_counts = {1};
+  if (threads > 1) thread_counts.push_back(threads);
   for (const View& view : stage.views()) {
     for (const char* configuration : {"reference", "best"}) {
-      for (const std::uint32_t count : {1u, threads}) {
-        if (count == threads && threads == 1 && !table.rows.empty() && table.rows.back()[0] == Cell{view.title} &&
-            table.rows.back()[1] == Cell{std::string(configuration)}) {
-          continue;
-        }
-        const double seconds = host_frame_seconds(
-            grid_variant(configuration), view,
-            {.width = stage.width, .height = stage.height, .shading = Shading::kNone}, count, kRepeats);
-        table.add({view.title, std::string(configuration), std::uint64_t{sim::widest_lanes()}, std::uint64_t{count},
-                   seconds * 1e3, seconds > 0 ? 1 / seconds : 0.0});
+      for (const std::uint32_t count : thread_counts) {
+        const double seconds = host_frame_seconds(grid_variant(configuration), view, request, count, kRepeats);
+        table.add({view.title, configuration, std::uint64_t{sim::widest_lanes()}, std::uint64_t{count}, seconds * 1e3,
+                   1 / seconds});
       }
     }
   }
@@ -70,6 +67,7 @@ void write_host_figures(const Stage& stage, std::uint32_t threads, Book& book) {
 }  // namespace
 
 void Range::add(double value) {
+  if (!std::isfinite(value)) return;
   least_ = empty_ ? value : std::min(least_, value);
   greatest_ = empty_ ? value : std::max(greatest_, value);
   empty_ = false;
@@ -82,11 +80,11 @@ std::string Range::text(int decimals) const {
 }
 
 double percent_less(double part, double whole) {
-  return whole > 0 ? 100 * (1 - part / whole) : 0;
+  return whole > 0 ? 100 * (1 - part / whole) : std::nan("");
 }
 
 double percent_more(double changed, double base) {
-  return base > 0 ? 100 * (changed / base - 1) : 0;
+  return base > 0 ? 100 * (changed / base - 1) : std::nan("");
 }
 
 PaperResult run_paper_experiment(const PaperExperiment& experiment,
@@ -116,9 +114,8 @@ PaperResult run_paper_experiment(const PaperExperiment& experiment,
       "Every figure below comes from one run of `gridiron experiment paper`: pictures of " + size +
           " rendered by the kernel's real code on the simulated chip " + stage.machine.key +
           ", their recorded transfers and work replayed on the machine's clock. Cycles per unit of work are those of "
-          "the built-in profile; nothing is fitted to the paper's figures. [P] marks what the paper prints, "
-          "[D] what follows from what it prints. Paper: Cho, Kim, Han, Enhancing Visual Rendering on Multicore "
-          "Accelerators "
+          "the built-in profile; nothing is fitted to the paper's figures. [P] marks what the paper prints, [D] what "
+          "follows from what it prints. Paper: Cho, Kim, Han, Enhancing Visual Rendering on Multicore Accelerators "
           "with Explicitly Managed Memories, Journal of Information Science and Engineering 28 (2012), 895-909.");
   for (const Writer& write : before_host) write(plan, book);
   write_host_figures(stage, experiment.threads, book);

@@ -26,7 +26,7 @@ struct PaperResult {
   std::vector<std::string> missing;  ///< a sentence for each view that was left out
 };
 
-/// Runs the experiment. Every file but host_*.csv and the picture of it is a function of scenes, size and largest_knot.
+/// Runs the experiment. Every file but host_*.csv is a function of scenes, size and largest_knot.
 ///
 /// @param progress  called serialised with steps done and steps in all.
 /// Errors: Failure.

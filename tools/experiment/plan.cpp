@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <atomic>
+#include <cmath>
 #include <exception>
 #include <mutex>
 #include <thread>
@@ -16,6 +17,10 @@ Machine built_in_machine(std::string_view name) {
   return {std::string(name), *sim::find_machine_profile(name)};
 }
 
+double RunResult::fps() const {
+  return timing.seconds > 0 ? 1 / timing.seconds : std::nan("");
+}
+
 double RunResult::wait_cycles() const {
   double cycles = 0;
   for (const sim::CoreTiming& core : timing.cores) {
@@ -26,7 +31,7 @@ double RunResult::wait_cycles() const {
 
 double RunResult::wait_percent() const {
   const double all = timing.frame_cycles * static_cast<double>(timing.cores.size());
-  return all > 0 ? 100 * wait_cycles() / all : 0;
+  return all > 0 ? 100 * wait_cycles() / all : std::nan("");
 }
 
 std::uint64_t RunResult::bytes_in() const {

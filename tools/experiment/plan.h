@@ -35,10 +35,11 @@ struct RunResult {
   sim::FrameTiming timing;
 
   [[nodiscard]] bool failed() const { return !failure.empty(); }
-  [[nodiscard]] double fps() const { return timing.seconds > 0 ? 1 / timing.seconds : 0; }
+  /// Frames a second; not a number where the run failed.
+  [[nodiscard]] double fps() const;
   /// Core cycles standing still for transfers, all cores.
   [[nodiscard]] double wait_cycles() const;
-  /// Percent of all core cycles of the frame.
+  /// Percent of all core cycles of the frame; not a number where the run failed.
   [[nodiscard]] double wait_percent() const;
   /// Bytes requested by gets, all cores.
   [[nodiscard]] std::uint64_t bytes_in() const;

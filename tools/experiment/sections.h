@@ -30,6 +30,10 @@ using Writer = std::function<void(const Plan&, Book&)>;
 
 inline constexpr std::uint32_t kPaperCores = 6;
 
+/// What is known of the cycles per unit of work (sim_platform/gridiron/sim/machine_profile.cpp).
+inline constexpr const char* kCostTableWords =
+    "The cycles per unit of work are estimates, counted by hand on the algorithms and good to some 30 % each.";
+
 [[nodiscard]] Writer plan_table1(Plan& plan, const Stage& stage);
 [[nodiscard]] Writer plan_table2(Plan& plan, const Stage& stage);
 [[nodiscard]] Writer plan_table3(Plan& plan, const Stage& stage);
@@ -48,9 +52,8 @@ inline constexpr std::uint32_t kPaperCores = 6;
 /// Least and greatest of some figures, as words: "1.2 to 3.4"; one figure where both print alike; "none".
 class Range {
  public:
-  void add(double value);
+  void add(double value);  ///< what is not finite is left out
   [[nodiscard]] std::string text(int decimals) const;
-  [[nodiscard]] double least() const { return least_; }
   [[nodiscard]] double greatest() const { return greatest_; }
 
  private:
@@ -58,9 +61,9 @@ class Range {
   double least_ = 0, greatest_ = 0;
 };
 
-/// @returns 100 * (1 - part / whole), 0 where whole is 0.
+/// @returns 100 * (1 - part / whole), not a number where whole is none or not above 0.
 [[nodiscard]] double percent_less(double part, double whole);
-/// @returns 100 * (changed / base - 1), 0 where base is 0.
+/// @returns 100 * (changed / base - 1), not a number where base is none or not above 0.
 [[nodiscard]] double percent_more(double changed, double base);
 
 }  // namespace gridiron::experiment

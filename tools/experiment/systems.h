@@ -1,6 +1,6 @@
 // Systems: ways of rendering a frame on the simulated chip, and those that the experiment compares.
-// Memory: a recording owns its trace. Threads: any; record() and time() share nothing. SPDX-License-Identifier:
-// Apache-2.0
+// Memory: a recording owns its trace. Threads: any; record() and time() share nothing.
+// SPDX-License-Identifier: Apache-2.0
 #pragma once
 
 #include <gridiron/base/records.h>

@@ -278,7 +278,8 @@ void add_experiment_options(CLI::App& app, ExperimentArguments& experiment, std:
   add_threads(app, experiment.threads);
   add_size(app, experiment.width, experiment.height, "pictures in pixels (default 1024x1024)");
   add_parsed(app, "--largest", experiment.largest_knot, count_between(60'000, 10'000'000),
-             "a whole number from 60000 to 10000000", "N", "triangles of the largest mesh of Table 1 (default 1000000)");
+             "a whole number from 60000 to 10000000", "N",
+             "triangles of the largest mesh of Table 1 (default 1000000)");
   app.add_flag("--quiet", experiment.quiet, "print nothing but errors");
 }
 
@@ -326,7 +327,8 @@ Command parse_arguments(int count, const char* const* values) {
 
   ExperimentArguments experiment_arguments;
   std::string experiment_name;
-  CLI::App* experiment = app.add_subcommand("experiment", "runs the paper's evaluation again and writes it to a folder");
+  CLI::App* experiment =
+      app.add_subcommand("experiment", "runs the paper's evaluation again: tables, plots and a page in a folder");
   add_experiment_options(*experiment, experiment_arguments, experiment_name);
 
   // CLI11 would only say that a subcommand is required.
