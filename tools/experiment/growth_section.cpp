@@ -128,7 +128,8 @@ Writer plan_table1(Plan& plan, const Stage& stage) {
                    "least squares of the logarithms; they hold for this mesh and this range only, and r squared tells "
                    "how far from a power law the counts are.");
     book.table(exponents, "Fitted exponents: quantity ~ n^exponent.");
-    book.figure("table1_build", line_chart_svg(build), "Elements touched while the structure is built.");
+    book.figure("table1_build", line_chart_svg(build),
+                "Elements touched while the structure is built. Systems that share a grid share a curve.");
     book.figure("table1_traversal", line_chart_svg(walk), "Steps through the structure for one frame.");
     book.table(growth, "The counts behind the fit.");
   };

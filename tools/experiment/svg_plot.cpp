@@ -167,7 +167,7 @@ std::vector<double> tick_values(double low, double high, bool logarithmic, std::
     }
   }
   const double first = std::ceil(low / step - 1e-9);
-  for (double i = first; i * step <= high + 1e-9 * step; ++i) ticks.push_back(i * step);
+  for (double i = first; i * step <= high + 1e-9 * step; ++i) ticks.push_back(i * step + 0.0);  // no negative zero
   return ticks;
 }
 
@@ -223,7 +223,8 @@ std::string line_chart_svg(const LineChart& chart) {
       y_greatest = std::max(y_greatest, point.y);
     }
   }
-  const Axis x = fit_axis(x_least, x_greatest, chart.log_x, area.left, area.right);
+  Axis x = fit_axis(x_least, x_greatest, chart.log_x, area.left, area.right);
+  if (!chart.x_ticks.empty() && !chart.log_x) x.high = std::max(x_greatest, chart.x_ticks.back());
   const Axis y = fit_axis(y_least, y_greatest, chart.log_y, area.bottom, area.top);
 
   // 2. Axes, ticks, titles.
@@ -304,9 +305,12 @@ std::string bar_chart_svg(const BarChart& chart) {
                         number_text(value));
         below += value;
       }
-      if (chart.labels) {
-        drawing.write(left + bar_width / 2, y.place(below) - 5, fixed_text(below, below < 10 ? 2 : 1), "middle",
-                      "font-size=\"11\" fill=\"#444444\"");
+      if (chart.labels && bar_width > 24) {
+        drawing.write(left + bar_width / 2, y.place(below) - 5,
+                      fixed_text(below, below < 10    ? 2
+                                        : below < 100 ? 1
+                                                      : 0),
+                      "middle", "font-size=\"11\" fill=\"#444444\"");
       }
       if (stacked) {
         drawing.write(left + bar_width / 2, area.bottom + 15, chart.bars[bar], "middle",

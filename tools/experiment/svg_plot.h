@@ -54,7 +54,7 @@ struct BarChart {
   std::vector<std::string> bars;    ///< of each group, side by side; named under them where there is more than one part
   std::vector<std::string> parts;   ///< of each bar, from the axis upwards; one part: bars have the colours
   std::vector<double> values;       ///< [group][bar][part], not negative; NaN: no bar
-  bool labels = false;              ///< the bar's height in figures above it
+  bool labels = false;              ///< the bar's height in figures above it, where bars are wide enough
 };
 
 /// @returns a whole SVG document. Points with a value that the axis cannot show are left out.

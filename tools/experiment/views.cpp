@@ -69,7 +69,7 @@ FoundViews find_views(const std::filesystem::path& folder) {
   if (!found.views.empty()) return found;
 
   constexpr std::uint32_t kTeapotSegments = 15;  // scenes/teapot.ply
-  constexpr std::uint32_t kKnotTriangles = 60'000;
+  constexpr std::uint32_t kKnotTriangles = 20'000;
   found.generated = true;
   found.views.push_back({"teapot", "Teapot", scene_of(scene_makers::make_teapot(kTeapotSegments), "teapot"), {}});
   found.views.push_back(make_knot_view(kKnotTriangles));

@@ -21,8 +21,8 @@ namespace fs = std::filesystem;
 
 std::vector<std::string> tiny(const std::string& output, const std::string& threads) {
   // The folder itself holds no scans, so that GRIDIRON_SCENES does not matter.
-  return {"experiment", "paper",     "-o",    output,      "--scenes", ".",      "--size",
-          "64x48",      "--largest", "60000", "--threads", threads,    "--quiet"};
+  return {"experiment", "paper",     "-o",   output,      "--scenes", ".",      "--size",
+          "64x48",      "--largest", "6000", "--threads", threads,    "--quiet"};
 }
 
 std::set<std::string> names_in(const fs::path& folder) {
@@ -83,7 +83,7 @@ TEST(Experiment, MistakesAreTold) {
       {{"experiment", "paper"}, 2, "--output"},
       {{"experiment", "accuracy", "-o", "out"}, 2, "expected paper"},
       {{"experiment", "paper", "-o", "out", "--threads", "0"}, 2, "1 to 256"},
-      {{"experiment", "paper", "-o", "out", "--largest", "10"}, 2, "60000"},
+      {{"experiment", "paper", "-o", "out", "--largest", "10"}, 2, "6000"},
       {{"experiment", "paper", "-o", "out", "--size", "64"}, 2, "WxH"},
       {{"experiment", "paper", "-o", "out", "--scenes", "nowhere"}, 1, "nowhere: no such folder"},
       {{"experiment", "paper", "-o", "no/such/out"}, 1, "no/such/out"},

@@ -37,6 +37,7 @@ TEST(SvgPlot, TicksAreRoundAndInside) {
   EXPECT_EQ(tick_values(0, 1, false, 6), (std::vector<double>{0, 0.2, 0.4, 0.6000000000000001, 0.8, 1}));
   EXPECT_EQ(tick_values(1, 100, true), (std::vector<double>{1, 2, 5, 10, 20, 50, 100}));
   EXPECT_EQ(tick_values(1e4, 1e8, true).size(), 5u);
+  EXPECT_FALSE(std::signbit(tick_values(0, 10, false).front()));
   EXPECT_TRUE(tick_values(1, 1, false).empty());
   for (const double high : {0.003, 0.7, 3.0, 86.0, 12'345.0, 9.9e8}) {
     const std::vector<double> ticks = tick_values(0, high, false);

@@ -71,6 +71,7 @@ TEST(Views, GrowthCountsAreEvenAndRise) {
   EXPECT_EQ(growth_counts(1'000'000),
             (std::vector<std::uint32_t>{10'000, 20'000, 50'000, 100'000, 200'000, 500'000, 1'000'000}));
   EXPECT_EQ(growth_counts(60'000).front(), 600u);
+  EXPECT_EQ(growth_counts(6'000), (std::vector<std::uint32_t>{600, 1'200, 3'000, 6'000}));
   EXPECT_EQ(growth_counts(30'000).front(), 600u) << "300 triangles make no knot";
   for (const std::uint32_t count : growth_counts(123'457)) EXPECT_EQ(count % 2, 0u);
   EXPECT_EQ(make_knot_view(600).mesh().triangles.size(), 600u);
