@@ -81,7 +81,8 @@ Writer plan_figure6(Plan& plan, const Stage& stage) {
         "The time of a frame, split as in the paper: initialisation (starting tiles and packets, generating rays), "
         "computation (traversal, intersection, issuing commands) and waiting for DMA. The left bar of each pair "
         "fetches, waits and uses at all three levels; the right bar hides latency: double buffering for the reference, "
-        "deeper prefetch for best. As in the paper only the waiting shrinks. A fourth part, idle, is what the dynamic "
+        "deeper prefetch for best. As in the paper it is the waiting that shrinks; computation grows a little, because "
+        "prefetch also walks cells that turn out not to be needed. A fourth part, idle, is what the dynamic "
         "distribution of tiles leaves at the end of a frame; the paper does not show it. All values are of the mean "
         "core, without shading.");
     for (std::size_t c = 0; c < stage.contenders.size(); ++c) {
@@ -177,13 +178,12 @@ Writer plan_table4(Plan& plan, const Stage& stage) {
                    "much there was to hide, which is the next table.");
     book.table(hiding,
                "Share of the waiting that is hidden, and the fps it gains, against the same system without hiding.");
-    book.paragraph(
-        "A frame of the reference waits " + single_range.text(1) + " % of its core cycles single-buffered and " +
-        double_range.text(1) +
-        " % double-buffered. The paper's columns are derived [D] from its Table 4: they follow from hidden share and "
-        "gain if nothing but the waiting changes. The share grows by " +
-        growth_range.text(1) + " percentage points from one core to six" +
-        (growth_range.greatest() < 3 ? ": here, as in the paper, latency binds and not bandwidth." : "."));
+    book.paragraph("A frame of the reference waits " + single_range.text(1) +
+                   " % of its core cycles single-buffered and " + double_range.text(1) +
+                   " % double-buffered. The paper's columns are derived [D] from its Table 4: they follow from hidden "
+                   "share and gain if nothing but the waiting changes. The share grows by " +
+                   growth_range.text(1) + " percentage points from one core to six" +
+                   (growth_range.greatest() < 3 ? ": here, as in the paper, latency binds and not bandwidth." : "."));
     book.paragraph(std::string("Where we differ, three assumptions are the most likely reasons. ") + kCostTableWords +
                    " A share of waiting moves with everything that is computed beside it, which shows in the two "
                    "reference columns, equal but for the intersection test. The latency of 500 cycles is an assumption "

@@ -102,8 +102,8 @@ Writer plan_machine_sweeps(Plan& plan, const Stage& stage) {
     book.paragraph(
         "Cycles from a line's turn on the memory channel to its arrival. The profile assumes 500, which no document "
         "that we have states; the paper's machine may well have had more or less. The recorded frame is the same at "
-        "every point, only the replay changes. Waiting grows in proportion without hiding; double buffering hides a "
-        "transfer only as long as the work beside it lasts, and deep prefetch moves that limit out.");
+        "every point, only the replay changes. Without hiding every cycle of latency is waited for; double buffering "
+        "hides a transfer only as long as the work beside it lasts, and deep prefetch moves that limit out.");
     for (const View* view : stage.sweep_views) {
       book.figure("sweep_latency_" + view->key,
                   point_chart(done, curves, latencies, *view, kPaperCores,
