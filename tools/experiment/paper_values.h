@@ -45,9 +45,12 @@ struct PaperView {
 inline constexpr std::string_view kPaperShadingCost = "10-20 %";       ///< section 6.1
 inline constexpr std::string_view kPaperHidden = "60-76 %";            ///< section 6.2
 inline constexpr std::string_view kPaperFpsGain = "10-22 %";           ///< section 6.2
-inline constexpr std::string_view kPaperGridTraversal = "O(n^(1/3))";  ///< Table 1
-inline constexpr std::string_view kPaperGridBuild = "O(n)";            ///< Table 1
-inline constexpr double kPaperGridTraversalExponent = 1.0 / 3.0;       ///< Table 1
-inline constexpr double kPaperGridBuildExponent = 1.0;                 ///< Table 1
+
+/// What Table 1 says of a structure: n is the number of triangles.
+struct PaperGrowth {
+  std::string_view build, traversal;
+};
+inline constexpr PaperGrowth kPaperGridGrowth = {"O(n)", "O(n^(1/3))"};    ///< [P]
+inline constexpr PaperGrowth kPaperBvhGrowth = {"O(n log n)", "O(log n)"};  ///< [P]
 
 }  // namespace gridiron::experiment

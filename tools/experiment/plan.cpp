@@ -7,6 +7,7 @@
 #include <exception>
 #include <mutex>
 #include <thread>
+#include <utility>
 
 #include "gridiron/failure.h"
 #include "gridiron/interrupt.h"
@@ -19,6 +20,10 @@ Machine built_in_machine(std::string_view name) {
 
 double RunResult::fps() const {
   return timing.seconds > 0 ? 1 / timing.seconds : std::nan("");
+}
+
+double RunResult::fps_with_build() const {
+  return timing.seconds > 0 ? 1 / (timing.seconds + build_seconds) : std::nan("");
 }
 
 double RunResult::wait_cycles() const {
@@ -68,7 +73,11 @@ void Plan::run_frame(const Frame& frame, const std::function<void()>& run_done) 
       result.failure = failure;
     } else {
       result.facts = recording->facts();
-      result.timing = recording->time(run.machine.profile, run.core_count);
+      TimedFrame timed = recording->time(run.machine.profile, run.core_count);
+      result.timing = std::move(timed.timing);
+      result.caches = timed.caches;
+      result.build_cycles = sim::build_cycles(run.machine.profile.master, result.facts.build);
+      result.build_seconds = sim::build_seconds(run.machine.profile.master, result.facts.build);
     }
     run_done();
   }

@@ -10,6 +10,7 @@
 #include <functional>
 #include <map>
 #include <memory>
+#include <optional>
 #include <string>
 #include <tuple>
 #include <vector>
@@ -33,10 +34,14 @@ struct RunResult {
   std::string failure;  ///< empty where the run went well
   FrameFacts facts;
   sim::FrameTiming timing;
+  std::optional<CacheFacts> caches;
+  double build_cycles = 0, build_seconds = 0;  ///< counted steps of the build on the machine's general core
 
   [[nodiscard]] bool failed() const { return !failure.empty(); }
   /// Frames a second; not a number where the run failed.
   [[nodiscard]] double fps() const;
+  /// Frames a second where each frame is built anew and rendered after that; not a number where the run failed.
+  [[nodiscard]] double fps_with_build() const;
   /// Core cycles standing still for transfers, all cores.
   [[nodiscard]] double wait_cycles() const;
   /// Percent of all core cycles of the frame; not a number where the run failed.

@@ -4,25 +4,20 @@
 #include <report/report.h>
 
 #include <algorithm>
+#include <numeric>
 #include <utility>
 
+#include "experiment/rival_system.h"
 #include "gridiron/arguments.h"
 #include "gridiron/failure.h"
 #include "gridiron/frame_failure.h"
 #include "gridiron/frame_memory.h"
 #include "gridiron/interrupt.h"
-#include "gridiron/machine_file.h"
 #include "gridiron/stopwatch.h"
 #include "gridiron/untile.h"
 
 namespace gridiron::experiment {
 namespace {
-
-// The machine whose main memory every scene has to fit.
-const tool::Machine& home_machine() {
-  static const tool::Machine machine = std::make_shared<sim::MachineProfile>(sim::machine_profiles().front());
-  return machine;
-}
 
 tool::RenderArguments arguments_of(const GridVariant& variant, const View& view, const FrameRequest& request) {
   tool::RenderArguments arguments;
@@ -63,22 +58,12 @@ std::uint64_t sum_of(const sim::WorkTotals& work, std::initializer_list<Work> ki
   return sum;
 }
 
-// The builder reads every triangle, writes every reference, clears every cell of a stored block and every macrocell.
-std::uint64_t build_steps_of(const tool::FrameMemory& frame) {
-  const GridRecord& grid = frame.image.grid;
-  const std::uint64_t block_cells = std::uint64_t{grid.macro_width} * grid.macro_width * grid.macro_width;
-  const std::uint64_t macro_cells =
-      std::uint64_t{grid.macro_cell_count[0]} * grid.macro_cell_count[1] * grid.macro_cell_count[2];
-  return frame.image.header.triangle_count + std::uint64_t{grid.reference_count} + grid.cell_block_count * block_cells +
-         macro_cells;
-}
-
 class GridRecording : public Recording {
  public:
   GridRecording(FrameFacts facts, sim::FrameTrace trace) : facts_(std::move(facts)), trace_(std::move(trace)) {}
   [[nodiscard]] const FrameFacts& facts() const override { return facts_; }
-  [[nodiscard]] sim::FrameTiming time(const sim::MachineProfile& machine, std::uint32_t core_count) const override {
-    return sim::replay(trace_, machine, {.core_count = core_count});
+  [[nodiscard]] TimedFrame time(const sim::MachineProfile& machine, std::uint32_t core_count) const override {
+    return {sim::replay(trace_, machine, {.core_count = core_count}), std::nullopt};
   }
 
  private:
@@ -86,16 +71,35 @@ class GridRecording : public Recording {
   sim::FrameTrace trace_;
 };
 
-Contender grid_contender(std::string key, std::string title, GridVariant variant) {
+Contender grid_contender(std::string key, std::string title, std::string hiding, GridVariant variant) {
   variant.key = key;
   GridVariant unhidden = variant;
   unhidden.key = key + "_single";
   unhidden.configuration.depths = {.output = 1, .macro = 1, .triangle = 1};
   return {std::move(key), std::move(title), std::make_shared<GridSystem>(std::move(variant)),
-          std::make_shared<GridSystem>(std::move(unhidden))};
+          std::make_shared<GridSystem>(std::move(unhidden)), std::move(hiding), true, kPaperGridGrowth};
+}
+
+Contender bvh_contender() {
+  return {"bvh",
+          "BVH",
+          std::make_shared<RivalSystem>(true),
+          std::make_shared<RivalSystem>(false),
+          "a ring of packets",
+          false,
+          kPaperBvhGrowth};
 }
 
 }  // namespace
+
+const tool::Machine& home_machine() {
+  static const tool::Machine machine = std::make_shared<sim::MachineProfile>(sim::machine_profiles().front());
+  return machine;
+}
+
+std::uint64_t FrameFacts::build_steps() const {
+  return std::accumulate(build.counts.begin(), build.counts.end(), std::uint64_t{0});
+}
 
 GridVariant grid_variant(std::string_view configuration) {
   return {std::string(configuration), *tool::find_configuration(configuration)};
@@ -104,9 +108,9 @@ GridVariant grid_variant(std::string_view configuration) {
 std::vector<Contender> make_contenders() {
   GridVariant projection = grid_variant("reference");
   projection.accuracy = Accuracy::kPaper;
-  return {grid_contender("reference", "reference", grid_variant("reference")),
-          grid_contender("projection", "reference, projection test", projection),
-          grid_contender("best", "best", grid_variant("best"))};
+  return {grid_contender("reference", "reference", "double buffering", grid_variant("reference")),
+          grid_contender("projection", "reference, projection test", "double buffering", projection),
+          grid_contender("best", "best", "deep prefetch", grid_variant("best")), bvh_contender()};
 }
 
 std::unique_ptr<Recording> GridSystem::record(const View& view, const FrameRequest& request) const {
@@ -116,7 +120,7 @@ std::unique_ptr<Recording> GridSystem::record(const View& view, const FrameReque
   sim::ChipResult result = run_chip(frame, arguments, sim::Mode::kChecked, 4, 1);
 
   FrameFacts facts;
-  facts.build_steps = build_steps_of(frame);
+  facts.build = sim::grid_build_work(view.mesh().vertices.size(), view.mesh().triangles.size(), frame.need);
   facts.traversal_steps =
       sum_of(result.work, {Work::kMacroSliceStep, Work::kMacroCellStep, Work::kSliceStep, Work::kCellStep});
   facts.intersection_tests = sum_of(result.work, {Work::kGroupTestStandard, Work::kGroupTestPaper});

@@ -4,6 +4,7 @@
 #pragma once
 
 #include <gridiron/base/records.h>
+#include <gridiron/sim/build_work.h>
 #include <gridiron/sim/machine_profile.h>
 #include <gridiron/sim/replay.h>
 #include <gridiron/sim/sim_chip.h>
@@ -14,8 +15,10 @@
 #include <string>
 #include <vector>
 
+#include "experiment/paper_values.h"
 #include "experiment/views.h"
 #include "gridiron/configurations.h"
+#include "gridiron/machine_file.h"
 
 namespace gridiron::experiment {
 
@@ -27,22 +30,37 @@ struct FrameRequest {
 
 /// What is known of a frame without any clock.
 struct FrameFacts {
-  std::uint64_t build_steps = 0;         ///< elements touched to build the structure
+  sim::BuildWork build;                  ///< of the structure
   std::uint64_t traversal_steps = 0;     ///< steps through the structure, all packets
   std::uint64_t intersection_tests = 0;  ///< (SIMD group, triangle) tests
   std::uint64_t scene_bytes = 0;         ///< structure and triangles in main memory
   std::uint64_t picture_hash = 0;
   std::uint32_t dropped_triangles = 0;  ///< of zero area
   std::optional<GridRecord> grid;       ///< of systems that have one
+
+  /// Counted steps of the build, of all kinds.
+  [[nodiscard]] std::uint64_t build_steps() const;
 };
 
-/// A frame that was rendered once and can be given a time on any machine.
+/// How software caches did, over all cores.
+struct CacheFacts {
+  double node_hit_percent = 0, triangle_hit_percent = 0;  ///< look-ups that started no fetch
+  std::uint64_t suspended_packets = 0;                    ///< changes to another packet of the ring
+};
+
+/// What a run on a machine gave.
+struct TimedFrame {
+  sim::FrameTiming timing;
+  std::optional<CacheFacts> caches;  ///< of systems that have them
+};
+
+/// A frame that can be given a time on any machine: by replay, or by rendering it again there.
 class Recording {
  public:
   virtual ~Recording() = default;
   [[nodiscard]] virtual const FrameFacts& facts() const = 0;
-  /// @param core_count  0: the machine's. A pure function of its arguments.
-  [[nodiscard]] virtual sim::FrameTiming time(const sim::MachineProfile& machine, std::uint32_t core_count) const = 0;
+  /// @param core_count  0: the machine's. A pure function of its arguments. Errors: Failure.
+  [[nodiscard]] virtual TimedFrame time(const sim::MachineProfile& machine, std::uint32_t core_count) const = 0;
 };
 
 /// A way of rendering.
@@ -60,11 +78,17 @@ struct Contender {
   std::string key;    ///< suffix of CSV columns
   std::string title;  ///< for people
   std::shared_ptr<const System> system;
-  std::shared_ptr<const System> unhidden;  ///< the same without any hiding of latency
+  std::shared_ptr<const System> unhidden;  ///< the same without hiding the latency of what it fetches
+  std::string hiding;                      ///< how `system` hides it, for people
+  bool is_grid = true;                     ///< false: a hierarchy
+  PaperGrowth paper_growth;                ///< what the paper's Table 1 says of such a structure
 };
 
-/// The columns of every table that compares systems. A rival is added here and nowhere else.
+/// The columns of every table that compares systems.
 [[nodiscard]] std::vector<Contender> make_contenders();
+
+/// The machine whose main memory every scene has to fit.
+[[nodiscard]] const tool::Machine& home_machine();
 
 /// Parameters of core's own grid traversal.
 struct GridVariant {
