@@ -198,14 +198,8 @@ Writer plan_best(Plan& plan, const Stage& stage) {
     Shading shading;
     Plan::RunId single, reference, best, best_one_core;
   };
-  const auto system_of = [&stage](std::string_view key) -> const Contender& {
-    for (const Contender& contender : stage.contenders) {
-      if (contender.key == key) return contender;
-    }
-    return stage.contenders.front();
-  };
-  const Contender& reference = system_of("reference");
-  const Contender& best = system_of("best");
+  const Contender& reference = contender_named(stage, "reference");
+  const Contender& best = contender_named(stage, "best");
   std::vector<Row> rows;
   for (const Shading shading : {Shading::kNone, Shading::kSimple}) {
     for (const View& view : stage.views()) {

@@ -37,34 +37,11 @@ std::vector<const View*> choose_sweep_views(const std::vector<View>& views) {
   return chosen;
 }
 
-// Fig. 7 (b): the same kernel on this host's processor. One frame after another, nothing beside it.
-void write_host_figures(const Stage& stage, std::uint32_t threads, Book& book) {
-  constexpr std::uint32_t kRepeats = 3;
-  Table table{"host_fig7",
-              {{"view", "view"},
-               {"configuration", "configuration"},
-               {"lanes", "lanes"},
-               {"threads", "threads"},
-               {"frame_ms", "frame, ms"},
-               {"fps", "fps"}},
-              {}};
-  const FrameRequest request = {.width = stage.width, .height = stage.height, .shading = Shading::kNone};
-  std::vector<std::uint32_t> thread_counts = {1};
-  if (threads > 1) thread_counts.push_back(threads);
-  for (const View& view : stage.views()) {
-    for (const char* configuration : {"reference", "best"}) {
-      for (const std::uint32_t count : thread_counts) {
-        const double seconds = host_frame_seconds(grid_variant(configuration), view, request, count, kRepeats);
-        table.add({view.title, configuration, std::uint64_t{sim::widest_lanes()}, std::uint64_t{count}, seconds * 1e3,
-                   1 / seconds});
-      }
-    }
-  }
-  book.linked_table(
-      table, "frames a second of the same kernel on this host's processor, wall-clock, the fastest of three frames.");
-}
-
 }  // namespace
+
+const Contender& contender_named(const Stage& stage, std::string_view key) {
+  return *std::ranges::find(stage.contenders, key, &Contender::key);
+}
 
 void Range::add(double value) {
   if (!std::isfinite(value)) return;

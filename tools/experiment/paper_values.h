@@ -44,6 +44,7 @@ struct PaperView {
 /// Statements of the paper in words, each [P].
 inline constexpr std::string_view kPaperShadingCost = "10-20 %";       ///< section 6.1
 inline constexpr std::string_view kPaperHidden = "60-76 %";            ///< section 6.2
+inline constexpr std::string_view kPaperAgainstBvh = "slow by half";   ///< section 6.3
 inline constexpr std::string_view kPaperFpsGain = "10-22 %";           ///< section 6.2
 
 /// What Table 1 says of a structure: n is the number of triangles.

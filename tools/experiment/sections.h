@@ -43,11 +43,18 @@ inline constexpr const char* kCostTableWords =
 [[nodiscard]] Writer plan_best(Plan& plan, const Stage& stage);
 [[nodiscard]] Writer plan_figure7(Plan& plan, const Stage& stage);
 
+/// Fig. 7 (b): the same kernel, and Embree, on this host's processor. One frame after another, nothing beside it.
+/// @param threads  host threads of the grid's second row. Errors: Failure.
+void write_host_figures(const Stage& stage, std::uint32_t threads, Book& book);
+
 [[nodiscard]] Writer plan_grid_sweeps(Plan& plan, const Stage& stage);      ///< lambda, macrocell width
 [[nodiscard]] Writer plan_packet_sweep(Plan& plan, const Stage& stage);     ///< packets, subpackets, tiles
 [[nodiscard]] Writer plan_prefetch_sweeps(Plan& plan, const Stage& stage);  ///< cell blocks, triangle buffers
 [[nodiscard]] Writer plan_machine_sweeps(Plan& plan, const Stage& stage);   ///< latency, bandwidth
 [[nodiscard]] Writer plan_store_sweep(Plan& plan, const Stage& stage);      ///< 64 and 256 KB, the maps
+
+/// @returns the contender of that key. Precondition: there is one.
+[[nodiscard]] const Contender& contender_named(const Stage& stage, std::string_view key);
 
 /// Least and greatest of some figures, as words: "1.2 to 3.4"; one figure where both print alike; "none".
 class Range {

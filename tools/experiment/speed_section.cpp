@@ -1,4 +1,4 @@
-// Table 3, Fig. 5 and Fig. 7: frames a second. SPDX-License-Identifier: Apache-2.0
+// Table 3 and Fig. 5: frames a second. SPDX-License-Identifier: Apache-2.0
 #include "experiment/paper_values.h"
 #include "experiment/sections.h"
 #include "experiment/svg_plot.h"
@@ -156,58 +156,6 @@ Writer plan_figure5(Plan& plan, const Stage& stage) {
                   "Speed-up of " + stage.contenders[c].title + ", 1 to 16 cores, no shading.");
     }
     book.linked_table(table, "all core counts, with fps, projection and wait share.");
-  };
-}
-
-Writer plan_figure7(Plan& plan, const Stage& stage) {
-  const Machine rival_machine = built_in_machine("cell-2006");
-  struct Row {
-    const View* view;
-    std::vector<Plan::RunId> home, away;
-  };
-  std::vector<Row> rows;
-  for (const View& view : stage.views()) {
-    Row& row = rows.emplace_back(Row{&view, {}, {}});
-    for (const Contender& contender : stage.contenders) {
-      row.home.push_back(plan.add(view, contender.system, Shading::kNone, stage.machine, kPaperCores));
-      row.away.push_back(plan.add(view, contender.system, Shading::kNone, rival_machine, 0));
-    }
-  }
-  return [&stage, rows](const Plan& done, Book& book) {
-    Table table{"fig7_machines", {{"view", "view"}}, {}};
-    BarChart chart;
-    chart.title = "cell-2006: 8 cores at 2.4 GHz";
-    chart.y_title = "frames a second";
-    chart.parts = {"fps"};
-    chart.labels = true;
-    for (const Contender& contender : stage.contenders) {
-      table.columns.push_back({contender.key + "_cell_ps3_fps", contender.title + ", 6 x 3.2 GHz", 2});
-      table.columns.push_back({contender.key + "_cell_2006_fps", "8 x 2.4 GHz", 2});
-      chart.bars.push_back(contender.title);
-    }
-    for (const Row& row : rows) {
-      std::vector<Cell> cells = {row.view->title};
-      chart.groups.push_back(row.view->title);
-      for (std::size_t c = 0; c < row.home.size(); ++c) {
-        cells.emplace_back(done.result(row.home[c]).fps());
-        cells.emplace_back(done.result(row.away[c]).fps());
-        chart.values.push_back(done.result(row.away[c]).fps());
-      }
-      table.add(std::move(cells));
-    }
-    book.section("fig7", "Fig. 7: other chips, and this host");
-    book.paragraph(
-        "The paper compares its six cores at 3.2 GHz with a ray tracer measured on eight cores at 2.4 GHz, a chip of "
-        "the same peak (profile cell-2006), and calls itself \"slow by half\" [P]; against coherent grid traversal on "
-        "a general processor of its day it was almost four times faster [P]. The heights of its bars are lost. Below "
-        "is our code on both chips.");
-    book.table(table, "Frames a second without shading on both chips.");
-    book.figure("fig7_cell_2006", bar_chart_svg(chart),
-                "Frames a second on the chip of the paper's rival, no shading.");
-    book.paragraph(
-        "The same kernel also runs directly on this host, without checks or a simulated clock, in the widest SIMD "
-        "groups that it has. Those are wall-clock times of one machine: they are kept in files whose names begin with "
-        "host_, which alone differ from run to run.");
   };
 }
 

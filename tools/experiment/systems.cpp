@@ -133,8 +133,8 @@ std::unique_ptr<Recording> GridSystem::record(const View& view, const FrameReque
   return std::make_unique<GridRecording>(std::move(facts), std::move(result.trace));
 }
 
-double host_frame_seconds(const GridVariant& variant, const View& view, const FrameRequest& request,
-                          std::uint32_t threads, std::uint32_t repeats) {
+HostFrame render_on_host(const GridVariant& variant, const View& view, const FrameRequest& request,
+                         std::uint32_t threads, std::uint32_t repeats) {
   const tool::RenderArguments arguments = arguments_of(variant, view, request);
   tool::FrameMemory frame(home_machine()->main_memory_bytes);
   tool::prepare_frame(frame, *view.scene, arguments, view.camera);
@@ -145,7 +145,7 @@ double host_frame_seconds(const GridVariant& variant, const View& view, const Fr
     const double seconds = stopwatch.seconds();
     least = i == 0 ? seconds : std::min(least, seconds);
   }
-  return least;
+  return {least, frame.record};
 }
 
 }  // namespace gridiron::experiment

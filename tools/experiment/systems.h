@@ -112,11 +112,16 @@ class GridSystem : public System {
   GridVariant variant_;
 };
 
+/// A frame rendered directly on this host.
+struct HostFrame {
+  double seconds = 0;    ///< wall clock, the fastest of all repeats; the scene's build not included
+  FrameRecord record{};  ///< camera and size of it
+};
+
 /// Renders the frame directly on this host: plain mode, no simulated clock.
 ///
-/// @param threads  host threads. @returns seconds of the fastest of `repeats` frames, the scene's build not included.
-/// Errors: Failure.
-[[nodiscard]] double host_frame_seconds(const GridVariant& variant, const View& view, const FrameRequest& request,
-                                        std::uint32_t threads, std::uint32_t repeats);
+/// @param threads  host threads. Errors: Failure.
+[[nodiscard]] HostFrame render_on_host(const GridVariant& variant, const View& view, const FrameRequest& request,
+                                       std::uint32_t threads, std::uint32_t repeats);
 
 }  // namespace gridiron::experiment
