@@ -1,5 +1,7 @@
 // Sweeps of what the grid traversal is built with: lambda, macrocells, packets, prefetch, local store.
 // SPDX-License-Identifier: Apache-2.0
+#include <gridiron/rival/rival_store.h>
+
 #include <algorithm>
 #include <optional>
 
@@ -278,6 +280,23 @@ Writer plan_prefetch_sweeps(Plan& plan, const Stage& stage) {
   };
 }
 
+namespace {
+
+Table rival_map() {
+  Table map{"local_store_map_bvh", {{"region", "region"}, {"offset", "offset"}, {"bytes", "bytes"}}, {}};
+  rival::for_each_region([&map](const char* name, std::size_t offset_bytes, std::size_t bytes) {
+    map.add({name, std::uint64_t{offset_bytes}, std::uint64_t{bytes}});
+  });
+  const auto add_row = [&map](const char* name, std::uint64_t bytes) { map.add({name, Cell{}, bytes}); };
+  add_row("code (budget)", rival::kCodeBudgetBytes);
+  add_row("stack (budget)", rival::kStackBudgetBytes);
+  add_row("free", rival::kArenaBytes - rival::kCodeBudgetBytes - rival::kStackBudgetBytes - sizeof(rival::RivalStore));
+  add_row("local store", rival::kArenaBytes);
+  return map;
+}
+
+}  // namespace
+
 Writer plan_store_sweep(Plan& plan, const Stage& stage) {
   struct Row {
     const View* view;
@@ -342,15 +361,24 @@ Writer plan_store_sweep(Plan& plan, const Stage& stage) {
         {"best_64", "best, 64 KB", tool::store_facts(sim::StoreSize::k64KB, 16)},
     };
     Table map{"local_store_map", {{"region", "region"}}, {}};
-    for (const Layout& layout : layouts) map.columns.push_back({std::string(layout.key) + "_bytes", layout.title});
+    for (const Layout& layout : layouts) {
+      map.columns.push_back({std::string(layout.key) + "_offset", std::string(layout.title) + ": offset"});
+      map.columns.push_back({std::string(layout.key) + "_bytes", "bytes"});
+    }
     for (std::size_t i = 0; i < layouts[0].facts.regions.size(); ++i) {
       std::vector<Cell> cells = {layouts[0].facts.regions[i].name};
-      for (const Layout& layout : layouts) cells.emplace_back(layout.facts.regions[i].bytes);
+      for (const Layout& layout : layouts) {
+        cells.emplace_back(layout.facts.regions[i].offset_bytes);
+        cells.emplace_back(layout.facts.regions[i].bytes);
+      }
       map.add(std::move(cells));
     }
     const auto add_row = [&](const char* name, auto value) {
       std::vector<Cell> cells = {name};
-      for (const Layout& layout : layouts) cells.emplace_back(std::uint64_t{value(layout.facts)});
+      for (const Layout& layout : layouts) {
+        cells.emplace_back();
+        cells.emplace_back(std::uint64_t{value(layout.facts)});
+      }
       map.add(std::move(cells));
     };
     add_row("code (budget)", [](const tool::StoreFacts& facts) { return facts.code_bytes; });
@@ -364,7 +392,11 @@ Writer plan_store_sweep(Plan& plan, const Stage& stage) {
         "Everything a core works in, in address order. The sizes are those of the compiled layouts, which hold the "
         "deepest prefetch of every configuration, so reference and best differ only in packet and mailbox. Code and "
         "stack are committed budgets that the cross builds prove.");
-    book.table(map, "Bytes of a core's local store.");
+    book.table(map, "A core's local store under the grid: where each region begins, and its bytes.");
+    book.paragraph(
+        "The hierarchy has a map of its own. The regions are as large as the largest ring and caches that it can be "
+        "asked for; its budgets for code and stack are the grid's, taken over and not proved by a cross build.");
+    book.table(rival_map(), "A core's local store under the hierarchy.");
   };
 }
 

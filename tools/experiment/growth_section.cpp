@@ -38,6 +38,7 @@ constexpr std::size_t kBuildSteps = 0, kTraversalSteps = 2;
 // The exponent that a function of the paper's notation shows when it is fitted over the same triangle counts; not a
 // number for what is none of Table 1's.
 double exponent_of(std::string_view growth, const std::vector<Point2>& points) {
+  if (growth.empty()) return std::nan("");
   std::vector<Point2> values;
   for (const Point2& point : points) {
     const double n = point.x;

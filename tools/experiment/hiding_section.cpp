@@ -76,13 +76,18 @@ Writer plan_figure6(Plan& plan, const Stage& stage) {
                  {"idle_ms", "idle, ms", 3},
                  {"frame_ms", "frame, ms"}},
                 {}};
+    std::string hidings;
+    for (const Contender& contender : stage.contenders) {
+      hidings += (hidings.empty() ? "" : ", ") + contender.hiding + " for " + contender.title;
+    }
     book.section("fig6", "Fig. 6: where the time goes");
     book.paragraph(
         "The time of a frame, split as in the paper: initialisation (starting tiles and packets, generating rays), "
         "computation (traversal, intersection, issuing commands) and waiting for DMA. The left bar of each pair "
-        "fetches, waits and uses at all three levels; the right bar hides latency: double buffering for the reference, "
-        "deeper prefetch for best. As in the paper it is the waiting that shrinks; computation grows a little, because "
-        "prefetch also walks cells that turn out not to be needed. A fourth part, idle, is what the dynamic "
+        "fetches, waits and uses at all levels; the right bar hides latency: " +
+        hidings +
+        ". As in the paper it is the waiting that shrinks; computation grows a little: prefetch also walks cells that "
+        "turn out not to be needed, and packets that take turns cost their switching. A fourth part, idle, is what the dynamic "
         "distribution of tiles leaves at the end of a frame; the paper does not show it. All values are of the mean "
         "core, without shading.");
     for (std::size_t c = 0; c < stage.contenders.size(); ++c) {

@@ -1,4 +1,4 @@
-// Sweeps of the machine: latency and bandwidth of main memory. The work stays the same; only the replay changes.
+// Sweeps of the machine: latency and bandwidth of main memory. The grid's work stays the same; only the replay changes.
 // SPDX-License-Identifier: Apache-2.0
 #include "experiment/sections.h"
 #include "experiment/svg_plot.h"
@@ -101,9 +101,10 @@ Writer plan_machine_sweeps(Plan& plan, const Stage& stage) {
     book.section("latency", "Sweep: memory latency");
     book.paragraph(
         "Cycles from a line's turn on the memory channel to its arrival. The profile assumes 500, which no document "
-        "that we have states; the paper's machine may well have had more or less. The recorded frame is the same at "
-        "every point, only the replay changes. Without hiding every cycle of latency is waited for; double buffering "
-        "hides a transfer only as long as the work beside it lasts, and deep prefetch moves that limit out.");
+        "that we have states; the paper's machine may well have had more or less. The grid's recorded frame is the "
+        "same at every point, only the replay changes; the hierarchy is rendered anew. Without hiding every cycle of latency is waited for; double buffering "
+        "hides a transfer only as long as the work beside it lasts, and deep prefetch moves that limit out. "
+        "The hierarchy waits little because its caches seldom miss.");
     for (const View* view : stage.sweep_views) {
       book.figure("sweep_latency_" + view->key,
                   point_chart(done, curves, latencies, *view, kPaperCores,

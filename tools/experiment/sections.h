@@ -34,6 +34,11 @@ inline constexpr std::uint32_t kPaperCores = 6;
 inline constexpr const char* kCostTableWords =
     "The cycles per unit of work are estimates, counted by hand on the algorithms and good to some 30 % each.";
 
+/// The same of the kinds of work that only the rival has (sim_platform/gridiron/rival/rival_work.cpp).
+inline constexpr const char* kRivalCostWords =
+    "The kinds of work that only the hierarchy has (caches, boxes, stack) are estimates, counted by hand on the "
+    "algorithms and good to some 30 % each; all others cost what they cost the grid.";
+
 [[nodiscard]] Writer plan_table1(Plan& plan, const Stage& stage);
 [[nodiscard]] Writer plan_table2(Plan& plan, const Stage& stage);
 [[nodiscard]] Writer plan_table3(Plan& plan, const Stage& stage);

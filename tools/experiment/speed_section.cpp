@@ -145,7 +145,8 @@ Writer plan_figure5(Plan& plan, const Stage& stage) {
     }
     book.section("fig5", "Fig. 5: scaling with cores");
     book.paragraph(
-        "Every frame is recorded once and replayed on 1 to 16 cores of the same machine; the paper stops at six. The "
+        "1 to 16 cores of the same machine; the paper stops at six. Frames of the grid are recorded once and replayed; "
+        "the hierarchy, whose caches outlive a tile, is rendered anew for each number of cores. The "
         "dashed line projects one core's fps, as the paper's dotted line does. On six cores the speed-up is " +
         speedups.text(2) +
         "; the paper reads \"only slightly lower than the projected\" [P]. What is missing to the projection is the "

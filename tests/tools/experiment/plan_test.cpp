@@ -19,13 +19,14 @@ using namespace experiment;
 // Cycles that tell who asked: clock and cores of the machine.
 class FakeRecording : public Recording {
  public:
+  FakeRecording() { facts_.build.add(sim::BuildStep::kNodeMade, 16); }
   [[nodiscard]] const FrameFacts& facts() const override { return facts_; }
-  [[nodiscard]] sim::FrameTiming time(const sim::MachineProfile& machine, std::uint32_t core_count) const override {
+  [[nodiscard]] TimedFrame time(const sim::MachineProfile& machine, std::uint32_t core_count) const override {
     sim::FrameTiming timing;
     timing.frame_cycles = 1000.0 / core_count;
     timing.seconds = timing.frame_cycles / machine.clock_hz;
     timing.cores.resize(core_count);
-    return timing;
+    return {timing, CacheFacts{.node_hit_percent = 90, .triangle_hit_percent = 80, .suspended_packets = core_count}};
   }
 
  private:
@@ -76,6 +77,28 @@ TEST(Plan, FramesAreRenderedOnceAndRunsAreShared) {
   EXPECT_EQ(steps, (std::vector<std::uint32_t>{1, 2, 3}));
   EXPECT_EQ(plan.result(one).timing.frame_cycles, 1000);
   EXPECT_EQ(plan.result(six).timing.cores.size(), 6u);
+}
+
+// The build has its price on the master of the run's machine, and caches are those of the run.
+TEST(Plan, BuildAndCachesBelongToTheRun) {
+  std::atomic<int> frames = 0;
+  const auto system = std::make_shared<FakeSystem>("a", frames);
+  const View view = view_named("v");
+  Machine slow = built_in_machine("cell-ps3");
+  slow.key = "slow";
+  slow.profile.master.clock_hz /= 2;
+  Plan plan(8, 8);
+  const auto fast_run = plan.add(view, system, Shading::kNone, built_in_machine("cell-ps3"), 1);
+  const auto slow_run = plan.add(view, system, Shading::kNone, slow, 2);
+  plan.execute(1, kNoProgress);
+  const RunResult& fast = plan.result(fast_run);
+  const double step = slow.profile.master.step_cycles[static_cast<std::size_t>(sim::BuildStep::kNodeMade)];
+  EXPECT_EQ(fast.build_cycles, 16 * step);
+  EXPECT_EQ(plan.result(slow_run).build_cycles, fast.build_cycles);
+  EXPECT_DOUBLE_EQ(plan.result(slow_run).build_seconds, 2 * fast.build_seconds);
+  EXPECT_DOUBLE_EQ(fast.fps_with_build(), 1 / (1 / fast.fps() + fast.build_seconds));
+  EXPECT_EQ(fast.caches->suspended_packets, 1u);
+  EXPECT_EQ(plan.result(slow_run).caches->suspended_packets, 2u);
 }
 
 TEST(Plan, AFrameThatCannotBeIsAFailedRun) {
