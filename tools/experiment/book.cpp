@@ -36,7 +36,11 @@ tbody tr:hover { background: #f5f8fb; }
 std::string text_of(const Cell& cell, int decimals) {
   if (const auto* words = std::get_if<std::string>(&cell)) return escape_markup(*words);
   if (const auto* count = std::get_if<std::uint64_t>(&cell)) return tool::words_of_count(*count);
-  if (const auto* measure = std::get_if<double>(&cell)) return fixed_text(*measure, decimals);
+  if (const auto* measure = std::get_if<double>(&cell)) {
+    constexpr double kMostWhole = 1e15;
+    const bool groups = decimals == 0 && *measure >= 0 && *measure < kMostWhole;
+    return groups ? tool::words_of_count(static_cast<std::uint64_t>(*measure + 0.5)) : fixed_text(*measure, decimals);
+  }
   return "";
 }
 

@@ -68,17 +68,23 @@ std::string point_chart(const Plan& done, const std::vector<Curve>& curves, cons
 
 }  // namespace
 
+Machine machine_with_latency(const Machine& machine, double cycles) {
+  Machine changed = machine;
+  changed.key += "/latency=" + number_text(cycles);
+  changed.profile.latency_cycles = cycles;
+  return changed;
+}
+
 Writer plan_machine_sweeps(Plan& plan, const Stage& stage) {
   const std::vector<Curve> curves = make_curves(stage);
-  const auto plan_points = [&](const std::string& name, std::span<const double> values, auto change,
+  const auto plan_points = [&](std::span<const double> values, auto change,
                                std::initializer_list<std::uint32_t> core_counts) {
     std::vector<Point> points;
     for (const View* view : stage.sweep_views) {
       for (const std::uint32_t cores : core_counts) {
         for (const double value : values) {
           Machine machine = stage.machine;
-          Point point{view, change(machine.profile, value), cores, {}};
-          machine.key += "/" + name + "=" + number_text(point.value);
+          Point point{view, change(machine, value), cores, {}};
           for (const Curve& curve : curves) {
             point.runs.push_back(plan.add(*view, curve.system, Shading::kNone, machine, cores));
           }
@@ -88,13 +94,20 @@ Writer plan_machine_sweeps(Plan& plan, const Stage& stage) {
     }
     return points;
   };
-  const auto latencies = plan_points(
-      "latency", kLatencies, [](sim::MachineProfile& machine, double value) { return machine.latency_cycles = value; },
-      {1, kPaperCores});
-  const auto bandwidths = plan_points("gigabytes", kBandwidthFactors,
-                                      [](sim::MachineProfile& machine, double factor) {
-                                        machine.channel_bytes_per_cycle *= factor;
-                                        return machine.channel_bytes_per_cycle * machine.clock_hz / 1e9;
+  const auto latencies =
+      plan_points(kLatencies,
+                  [](Machine& machine, double value) {
+                    machine = machine_with_latency(machine, value);
+                    return value;
+                  },
+                  {1, kPaperCores});
+  const auto bandwidths = plan_points(kBandwidthFactors,
+                                      [](Machine& machine, double factor) {
+                                        machine.profile.channel_bytes_per_cycle *= factor;
+                                        const double gigabytes =
+                                            machine.profile.channel_bytes_per_cycle * machine.profile.clock_hz / 1e9;
+                                        machine.key += "/gigabytes=" + number_text(gigabytes);
+                                        return gigabytes;
                                       },
                                       {kPaperCores, kManyCores});
   return [&stage, curves, latencies, bandwidths](const Plan& done, Book& book) {

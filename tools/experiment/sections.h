@@ -58,6 +58,9 @@ void write_host_figures(const Stage& stage, std::uint32_t threads, Book& book);
 [[nodiscard]] Writer plan_machine_sweeps(Plan& plan, const Stage& stage);   ///< latency, bandwidth
 [[nodiscard]] Writer plan_store_sweep(Plan& plan, const Stage& stage);      ///< 64 and 256 KB, the maps
 
+/// @returns the machine with another latency, under the key that all sections give it.
+[[nodiscard]] Machine machine_with_latency(const Machine& machine, double cycles);
+
 /// @returns the contender of that key. Precondition: there is one.
 [[nodiscard]] const Contender& contender_named(const Stage& stage, std::string_view key);
 

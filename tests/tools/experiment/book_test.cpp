@@ -22,9 +22,9 @@ std::vector<BookFile> small_book() {
   Book book("A & B", "lead <b>");
   book.section("one", "Section 1 < 2");
   book.paragraph("5 < 6 & \"quoted\"");
-  Table table{"numbers", {{"name", "name & title"}, {"value", "value", 1}}, {}};
-  table.add({"<tag>", 1234.56});
-  table.add({"missing", experiment::Cell{}});
+  Table table{"numbers", {{"name", "name & title"}, {"value", "value", 1}, {"whole", "whole", 0}}, {}};
+  table.add({"<tag>", 1234.56, 1234567.8});
+  table.add({"missing", experiment::Cell{}, experiment::Cell{}});
   book.table(table, "a caption");
   table.name = "long";
   book.linked_table(table, "a link");
@@ -56,7 +56,8 @@ TEST(Book, WordsStayWordsAndNumbersAreRounded) {
   EXPECT_EQ(cells.at(0).text, "<tag>");
   EXPECT_EQ(cells.at(1).text, "1234.6");
   EXPECT_EQ(cells.at(1).attributes.at("class"), "number");
-  EXPECT_EQ(cells.at(3).text, "");
+  EXPECT_EQ(cells.at(2).text, "1,234,568");
+  EXPECT_EQ(cells.at(4).text, "");
 }
 
 TEST(Book, ThePageUsesNothingFromOutside) {

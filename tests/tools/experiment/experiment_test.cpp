@@ -6,6 +6,7 @@
 #include <csignal>
 #include <filesystem>
 #include <set>
+#include <sstream>
 #include <string>
 #include <thread>
 #include <vector>
@@ -31,6 +32,77 @@ std::set<std::string> names_in(const fs::path& folder) {
   return names;
 }
 
+std::vector<std::string> split(const std::string& text, char separator) {
+  std::vector<std::string> parts;
+  std::istringstream stream(text);
+  for (std::string part; std::getline(stream, part, separator);) parts.push_back(part);
+  return parts;
+}
+
+// Rows of a CSV file without quotes; the first holds the keys.
+std::vector<std::vector<std::string>> csv_rows(const fs::path& path) {
+  std::vector<std::vector<std::string>> rows;
+  for (const std::string& line : split(read_file(path), '\n')) rows.push_back(split(line + ",;", ','));
+  return rows;
+}
+
+// The number in a row under a key; fails where there is none.
+double number_under(const std::vector<std::vector<std::string>>& rows, std::size_t row, const std::string& key) {
+  const auto found = std::ranges::find(rows.at(0), key);
+  if (found == rows.at(0).end()) {
+    ADD_FAILURE() << "no column " << key;
+    return 0;
+  }
+  const std::string& text = rows.at(row).at(static_cast<std::size_t>(found - rows.at(0).begin()));
+  EXPECT_FALSE(text.empty()) << key << " in row " << row;
+  return text.empty() ? 0 : std::stod(text);
+}
+
+// What stands about the rival: every table has it, and what follows from two columns does follow.
+void expect_rival(const fs::path& folder) {
+  const auto frames = csv_rows(folder / "fig7_frames.csv"), built = csv_rows(folder / "fig7_with_build.csv");
+  const auto cycles = csv_rows(folder / "fig7_cycles.csv");
+  ASSERT_EQ(frames.size(), 5u) << "two views on two machines";
+  ASSERT_EQ(built.size(), frames.size());
+  for (std::size_t row = 1; row < frames.size(); ++row) {
+    SCOPED_TRACE(row);
+    const double clock = frames[row][0] == "cell-2006" ? 2.4e9 : 3.2e9;
+    for (const std::string side : {"reference", "best", "bvh_single", "bvh"}) {
+      const double fps = number_under(frames, row, side + "_fps");
+      const double build_ms = number_under(built, row, side.starts_with("bvh") ? "bvh_build_ms" : "grid_build_ms");
+      EXPECT_NEAR(number_under(cycles, row, side + "_mcycles") * 1e6 * fps, clock, 1e-6 * clock);
+      EXPECT_NEAR(number_under(built, row, side + "_with_build_fps") * (1 / fps + build_ms / 1e3), 1, 1e-9);
+    }
+    EXPECT_NEAR(number_under(frames, row, "best_over_bvh") * number_under(frames, row, "bvh_fps"),
+                number_under(frames, row, "best_fps"), 1e-6);
+  }
+  EXPECT_EQ(csv_rows(folder / "fig7_caches.csv").size(), 9u) << "two views, two machines, with and without turns";
+  EXPECT_NE(csv_rows(folder / "host_fig7.csv").at(0).at(5), "") << "Embree has its column";
+
+  // The steps of the build add up to its time.
+  const auto steps = csv_rows(folder / "fig7_build_steps.csv");
+  double grid_mcycles = 0, bvh_mcycles = 0;
+  for (std::size_t row = 1; row < steps.size(); ++row) {
+    if (steps[row][0] != steps[1][0]) continue;
+    grid_mcycles += number_under(steps, row, "grid_mcycles");
+    bvh_mcycles += number_under(steps, row, "bvh_mcycles");
+  }
+  EXPECT_NEAR(grid_mcycles / 2.4e3, number_under(built, 1, "grid_build_ms") / 1e3, 1e-9);
+  EXPECT_NEAR(bvh_mcycles / 2.4e3, number_under(built, 1, "bvh_build_ms") / 1e3, 1e-9);
+
+  // A map is as long as its store; its regions follow each other.
+  const auto map = csv_rows(folder / "local_store_map_bvh.csv");
+  double end = 0;
+  for (std::size_t row = 1; row + 4 < map.size(); ++row) {
+    EXPECT_GE(number_under(map, row, "offset"), end);
+    end = number_under(map, row, "offset") + number_under(map, row, "bytes");
+  }
+  double sum = end;
+  for (std::size_t row = map.size() - 4; row + 1 < map.size(); ++row) sum += number_under(map, row, "bytes");
+  EXPECT_LE(sum, number_under(map, map.size() - 1, "bytes"));
+  EXPECT_GT(sum, number_under(map, map.size() - 1, "bytes") - 128) << "padding of the last region at most";
+}
+
 TEST(Experiment, FilesDoNotDependOnThreads) {
   const TemporaryFolder folder;
   for (const char* threads : {"1", "3"}) {
@@ -48,6 +120,7 @@ TEST(Experiment, FilesDoNotDependOnThreads) {
   }
   EXPECT_GE(compared, 35);
   EXPECT_EQ(names.count("host_fig7.csv"), 1u);
+  expect_rival(folder.path("out1"));
 
   // The page names every file and nothing else; every plot is well formed, every table has rows of one length.
   std::set<std::string> linked = {"index.html"};
