@@ -56,7 +56,8 @@ double exponent_of(std::string_view growth, const std::vector<Point2>& points) {
 // Systems whose counts are the same share a curve.
 void add_curve(LineChart& chart, const std::string& title, const std::vector<Point2>& points) {
   for (Series& series : chart.series) {
-    if (!std::ranges::equal(series.points, points, [](Point2 a, Point2 b) { return a.x == b.x && a.y == b.y; })) continue;
+    if (!std::ranges::equal(series.points, points, [](Point2 a, Point2 b) { return a.x == b.x && a.y == b.y; }))
+      continue;
     series.name += "; " + title;
     return;
   }
@@ -132,8 +133,9 @@ Writer plan_table1(Plan& plan, const Stage& stage) {
         } else {
           row.resize(5);
         }
-        row.insert(row.end(), {run.facts.build_steps(), run.build_cycles, run.facts.traversal_steps, run.facts.intersection_tests,
-                               run.timing.frame_cycles, run.bytes_in(), run.facts.scene_bytes, Cell{}});
+        row.insert(row.end(),
+                   {run.facts.build_steps(), run.build_cycles, run.facts.traversal_steps, run.facts.intersection_tests,
+                    run.timing.frame_cycles, run.bytes_in(), run.facts.scene_bytes, Cell{}});
         growth.add(std::move(row));
         for (std::size_t q = 0; q < std::size(kQuantities); ++q) {
           points[q].push_back({static_cast<double>(count), kQuantities[q].value(run)});
@@ -156,13 +158,14 @@ Writer plan_table1(Plan& plan, const Stage& stage) {
         "The paper states growth without measuring it: O(n) to build a grid and O(n^(1/3)) to traverse it, O(n log n) "
         "and O(log n) for a hierarchy [P]. Here all four are counted on one torus knot, made at several sizes and seen "
         "by the same camera. Build steps are the counted steps that the machine's general core is priced by (a vertex "
-        "checked, a row of cells met, a reference sorted, a triangle entered into a bin, ...); their cycles weigh them. "
+        "checked, a row of cells met, a reference sorted, a triangle entered into a bin, ...); their cycles weigh "
+        "them. "
         "A traversal step of the grid is one macro slice, macrocell, slice or cell, one of the hierarchy a node or a "
         "leaf; both are summed over all packets of a frame. Where the paper names a function, the last column is the "
         "exponent that a fit of that function over the same triangle counts gives [D].");
-    book.paragraph("Building the grid grows with exponent " + grid_build.text(2) +
-                   ", building the hierarchy with " + bvh_build.text(2) + "; traversing the grid with " +
-                   grid_walk.text(2) + ", traversing the hierarchy with " + bvh_walk.text(2) +
+    book.paragraph("Building the grid grows with exponent " + grid_build.text(2) + ", building the hierarchy with " +
+                   bvh_build.text(2) + "; traversing the grid with " + grid_walk.text(2) +
+                   ", traversing the hierarchy with " + bvh_walk.text(2) +
                    ". The printed growth is that of one ray. A packet also visits what its other rays need, the more "
                    "the narrower cells and boxes become beside it; skipping what is empty and stopping behind the "
                    "last hit take steps away. The fits are least squares of the logarithms; they hold for this mesh "

@@ -87,7 +87,8 @@ Writer plan_figure6(Plan& plan, const Stage& stage) {
         "fetches, waits and uses at all levels; the right bar hides latency: " +
         hidings +
         ". As in the paper it is the waiting that shrinks; computation grows a little: prefetch also walks cells that "
-        "turn out not to be needed, and packets that take turns cost their switching. A fourth part, idle, is what the dynamic "
+        "turn out not to be needed, and packets that take turns cost their switching. A fourth part, idle, is what the "
+        "dynamic "
         "distribution of tiles leaves at the end of a frame; the paper does not show it. All values are of the mean "
         "core, without shading.");
     for (std::size_t c = 0; c < stage.contenders.size(); ++c) {
@@ -236,12 +237,13 @@ Writer plan_table4(Plan& plan, const Stage& stage) {
                    "waiting changes. The share grows by " +
                    growth_range.text(1) + " percentage points from one core to six" +
                    (growth_range.greatest() < 3 ? ": here, as in the paper, latency binds and not bandwidth." : "."));
-    book.paragraph("What moves these shares can be measured. What is computed beside the transfers: with the paper's "
-                   "own test, the same transfers and less work, the shares are " +
-                   projection.single.text(1) + " % and " + projection.hidden_wait.text(1) +
-                   " %. The latency, an assumption of 500 cycles: single-buffered on six cores, the reference waits " +
-                   latency_words(done, latencies) +
-                   ". The paper's views, which are unknown: the spread within a column. " + kCostTableWords);
+    book.paragraph(
+        "What moves these shares can be measured. What is computed beside the transfers: with the paper's "
+        "own test, the same transfers and less work, the shares are " +
+        projection.single.text(1) + " % and " + projection.hidden_wait.text(1) +
+        " %. The latency, an assumption of 500 cycles: single-buffered on six cores, the reference waits " +
+        latency_words(done, latencies) + ". The paper's views, which are unknown: the spread within a column. " +
+        kCostTableWords);
     book.table(wait, "Share of core cycles spent waiting for DMA.");
   };
 }

@@ -71,8 +71,9 @@ void write_host_figures(const Stage& stage, std::uint32_t threads, Book& book) {
       "same simple shading, where the program was built with it. Those are wall-clock times of one machine, whatever "
       "else it was doing: they are kept in files whose names begin with host_, which alone differ from run to run, and "
       "are not repeated on this page.");
-  book.linked_table(table, "milliseconds of a frame, the fastest of three; Embree's is the better of its low and "
-                           "medium build quality.");
+  book.linked_table(table,
+                    "milliseconds of a frame, the fastest of three; Embree's is the better of its low and "
+                    "medium build quality.");
 }
 
 }  // namespace gridiron::experiment

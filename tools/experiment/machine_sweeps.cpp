@@ -94,13 +94,12 @@ Writer plan_machine_sweeps(Plan& plan, const Stage& stage) {
     }
     return points;
   };
-  const auto latencies =
-      plan_points(kLatencies,
-                  [](Machine& machine, double value) {
-                    machine = machine_with_latency(machine, value);
-                    return value;
-                  },
-                  {1, kPaperCores});
+  const auto latencies = plan_points(kLatencies,
+                                     [](Machine& machine, double value) {
+                                       machine = machine_with_latency(machine, value);
+                                       return value;
+                                     },
+                                     {1, kPaperCores});
   const auto bandwidths = plan_points(kBandwidthFactors,
                                       [](Machine& machine, double factor) {
                                         machine.profile.channel_bytes_per_cycle *= factor;
@@ -115,7 +114,8 @@ Writer plan_machine_sweeps(Plan& plan, const Stage& stage) {
     book.paragraph(
         "Cycles from a line's turn on the memory channel to its arrival. The profile assumes 500, which no document "
         "that we have states; the paper's machine may well have had more or less. The grid's recorded frame is the "
-        "same at every point, only the replay changes; the hierarchy is rendered anew. Without hiding every cycle of latency is waited for; double buffering "
+        "same at every point, only the replay changes; the hierarchy is rendered anew. Without hiding every cycle of "
+        "latency is waited for; double buffering "
         "hides a transfer only as long as the work beside it lasts, and deep prefetch moves that limit out. "
         "The hierarchy waits little because its caches seldom miss.");
     for (const View* view : stage.sweep_views) {

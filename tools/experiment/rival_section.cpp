@@ -221,28 +221,32 @@ Writer plan_figure7(Plan& plan, const Stage& stage) {
         kRivalCostWords +
         (all_same ? " All four systems render the same picture, pixel for pixel."
                   : " NOT all four systems render the same picture."));
-    book.paragraph("The paper's own case, the reference on six cores at 3.2 GHz against the hierarchy with "
-                   "hyper-threading on eight at 2.4 GHz, gives " + paper_cases.text(2) +
-                   " of its frames; \"slow by half\" is about 0.5. With both on cell-2006, frame alone, " +
-                   score.text() + " (" + score.ratios.text(2) +
-                   " times its frames). Hyper-threading gains the hierarchy " + gains.text(1) +
-                   " % fps on both machines: its caches miss seldom, so that there is not much waiting to hide.");
+    book.paragraph(
+        "The paper's own case, the reference on six cores at 3.2 GHz against the hierarchy with "
+        "hyper-threading on eight at 2.4 GHz, gives " +
+        paper_cases.text(2) + " of its frames; \"slow by half\" is about 0.5. With both on cell-2006, frame alone, " +
+        score.text() + " (" + score.ratios.text(2) + " times its frames). Hyper-threading gains the hierarchy " +
+        gains.text(1) + " % fps on both machines: its caches miss seldom, so that there is not much waiting to hide.");
     book.table(frames, "Frames a second without shading.");
     book.figure("fig7_cell_2006", bar_chart_svg(bare),
                 "Frames a second on the chip of the paper's rival, no shading, the structure being there already.");
-    book.paragraph("The build is counted work, priced in cycles of the machine's one general core: the same table "
-                   "prices the steps of both structures. The hierarchy takes " + build_ratios.text(2) +
-                   " times as long to build as the grid. Where every frame builds its structure anew and is rendered "
-                   "after that, " + build_score.text() + " (" + build_score.ratios.text(2) +
-                   " times its frames). The general core builds alone in both cases, so the build is most of such a "
-                   "frame; how a build would spread over the other cores is not modelled.");
+    book.paragraph(
+        "The build is counted work, priced in cycles of the machine's one general core: the same table "
+        "prices the steps of both structures. The hierarchy takes " +
+        build_ratios.text(2) +
+        " times as long to build as the grid. Where every frame builds its structure anew and is rendered "
+        "after that, " +
+        build_score.text() + " (" + build_score.ratios.text(2) +
+        " times its frames). The general core builds alone in both cases, so the build is most of such a "
+        "frame; how a build would spread over the other cores is not modelled.");
     book.table(with_build, "Build on the general core, and frames a second of build and frame together, no shading.");
     book.figure("fig7_with_build", bar_chart_svg(whole),
                 "Build and frame together on the chip of the paper's rival, frames a second.");
     const Range without_sweeps = write_build_steps(done, rows, rows.front().machine, book);
-    book.paragraph("A builder that spends fewer bins on small nodes would be faster than the rival's. Even if sweeping "
-                   "bins cost nothing, its build would take " +
-                   without_sweeps.text(2) + " times as long as the grid's.");
+    book.paragraph(
+        "A builder that spends fewer bins on small nodes would be faster than the rival's. Even if sweeping "
+        "bins cost nothing, its build would take " +
+        without_sweeps.text(2) + " times as long as the grid's.");
     book.table(cycles, "Millions of cycles of a frame, all cores working at once.");
     write_caches(done, rows, book);
   };

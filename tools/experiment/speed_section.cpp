@@ -79,11 +79,10 @@ Writer plan_table3(Plan& plan, const Stage& stage) {
     book.table(fps, "Frames a second.");
     std::string words = "Here simple shading costs " + costs.text(1) + " % of the fps. ";
     if (costs.greatest() < 10) {
-      words +=
-          "That is less than the paper's 10-20 %. In cycles it is " +
-          pixel_cycles.text(1) + " a pixel; 10 to 20 % of the reference's fps would be " + paper_cycles.text(0) +
-          ". Ours is a facing ratio: the cosine comes from the intersection test, what is left is a length and a "
-          "division for each ray. The paper does not say what its simple shading computes.";
+      words += "That is less than the paper's 10-20 %. In cycles it is " + pixel_cycles.text(1) +
+               " a pixel; 10 to 20 % of the reference's fps would be " + paper_cycles.text(0) +
+               ". Ours is a facing ratio: the cosine comes from the intersection test, what is left is a length and a "
+               "division for each ray. The paper does not say what its simple shading computes.";
     }
     book.paragraph(words);
     book.table(cost, "Share of the fps that simple shading costs.");

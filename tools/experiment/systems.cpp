@@ -76,8 +76,13 @@ Contender grid_contender(std::string key, std::string title, std::string hiding,
   GridVariant unhidden = variant;
   unhidden.key = key + "_single";
   unhidden.configuration.depths = {.output = 1, .macro = 1, .triangle = 1};
-  return {std::move(key), std::move(title), std::make_shared<GridSystem>(std::move(variant)),
-          std::make_shared<GridSystem>(std::move(unhidden)), std::move(hiding), true, kPaperGridGrowth};
+  return {std::move(key),
+          std::move(title),
+          std::make_shared<GridSystem>(std::move(variant)),
+          std::make_shared<GridSystem>(std::move(unhidden)),
+          std::move(hiding),
+          true,
+          kPaperGridGrowth};
 }
 
 Contender bvh_contender() {
