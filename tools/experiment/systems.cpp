@@ -4,6 +4,7 @@
 #include <report/report.h>
 
 #include <algorithm>
+#include <ctime>
 #include <numeric>
 #include <utility>
 
@@ -138,19 +139,28 @@ std::unique_ptr<Recording> GridSystem::record(const View& view, const FrameReque
   return std::make_unique<GridRecording>(std::move(facts), std::move(result.trace));
 }
 
+HostSeconds least_host_seconds(std::uint32_t repeats, const std::function<void()>& work) {
+  HostSeconds least;
+  for (std::uint32_t i = 0; i < repeats; ++i) {
+    const tool::Stopwatch stopwatch;
+    const std::clock_t begin = std::clock();
+    work();
+    const double processor = static_cast<double>(std::clock() - begin) / CLOCKS_PER_SEC;
+    const double wall = stopwatch.seconds();
+    least = i == 0 ? HostSeconds{wall, processor}
+                   : HostSeconds{std::min(least.wall, wall), std::min(least.processor, processor)};
+  }
+  return least;
+}
+
 HostFrame render_on_host(const GridVariant& variant, const View& view, const FrameRequest& request,
                          std::uint32_t threads, std::uint32_t repeats) {
   const tool::RenderArguments arguments = arguments_of(variant, view, request);
   tool::FrameMemory frame(home_machine()->main_memory_bytes);
   tool::prepare_frame(frame, *view.scene, arguments, view.camera);
-  double least = 0;
-  for (std::uint32_t i = 0; i < repeats; ++i) {
-    const tool::Stopwatch stopwatch;
-    run_chip(frame, arguments, sim::Mode::kPlain, sim::widest_lanes(), threads);
-    const double seconds = stopwatch.seconds();
-    least = i == 0 ? seconds : std::min(least, seconds);
-  }
-  return {least, frame.record};
+  const HostSeconds seconds =
+      least_host_seconds(repeats, [&] { run_chip(frame, arguments, sim::Mode::kPlain, sim::widest_lanes(), threads); });
+  return {seconds, frame.record};
 }
 
 }  // namespace gridiron::experiment

@@ -10,6 +10,7 @@
 #include <gridiron/sim/sim_chip.h>
 
 #include <cstdint>
+#include <functional>
 #include <memory>
 #include <optional>
 #include <string>
@@ -112,9 +113,17 @@ class GridSystem : public System {
   GridVariant variant_;
 };
 
+/// Seconds of something on this host, by the wall clock and of its processors, all threads together.
+struct HostSeconds {
+  double wall = 0, processor = 0;
+};
+
+/// Runs `work` several times. @returns the least of each time.
+[[nodiscard]] HostSeconds least_host_seconds(std::uint32_t repeats, const std::function<void()>& work);
+
 /// A frame rendered directly on this host.
 struct HostFrame {
-  double seconds = 0;    ///< wall clock, the fastest of all repeats; the scene's build not included
+  HostSeconds seconds;   ///< the scene's build not included
   FrameRecord record{};  ///< camera and size of it
 };
 
