@@ -6,7 +6,6 @@
 #include <csignal>
 #include <filesystem>
 #include <set>
-#include <sstream>
 #include <string>
 #include <thread>
 #include <vector>
@@ -32,17 +31,22 @@ std::set<std::string> names_in(const fs::path& folder) {
   return names;
 }
 
-std::vector<std::string> split(const std::string& text, char separator) {
-  std::vector<std::string> parts;
-  std::istringstream stream(text);
-  for (std::string part; std::getline(stream, part, separator);) parts.push_back(part);
-  return parts;
-}
-
-// Rows of a CSV file without quotes; the first holds the keys.
+// Rows of a CSV file, quoted fields without their quotes; the first row holds the keys.
 std::vector<std::vector<std::string>> csv_rows(const fs::path& path) {
-  std::vector<std::vector<std::string>> rows;
-  for (const std::string& line : split(read_file(path), '\n')) rows.push_back(split(line + ",;", ','));
+  std::vector<std::vector<std::string>> rows = {{""}};
+  bool quoted = false;
+  for (const char letter : read_file(path)) {
+    if (letter == '"') {
+      quoted = !quoted;
+    } else if (letter == ',' && !quoted) {
+      rows.back().emplace_back();
+    } else if (letter == '\n') {
+      rows.push_back({""});
+    } else {
+      rows.back().back() += letter;
+    }
+  }
+  rows.pop_back();  // behind the last end of line
   return rows;
 }
 
