@@ -53,6 +53,12 @@ double exponent_of(std::string_view growth, const std::vector<Point2>& points) {
   return fit_power(values).exponent;
 }
 
+// "8x8 rays": the packets of a configuration.
+std::string packet_words(std::string_view configuration) {
+  const std::string width = std::to_string(grid_variant(configuration).configuration.packet_width);
+  return width + "x" + width + " rays";
+}
+
 // Systems whose counts are the same share a curve.
 void add_curve(LineChart& chart, const std::string& title, const std::vector<Point2>& points) {
   for (Series& series : chart.series) {
@@ -167,9 +173,12 @@ Writer plan_table1(Plan& plan, const Stage& stage) {
                    bvh_build.text(2) + "; traversing the grid with " + grid_walk.text(2) +
                    ", traversing the hierarchy with " + bvh_walk.text(2) +
                    ". The printed growth is that of one ray. A packet also visits what its other rays need, the more "
-                   "the narrower cells and boxes become beside it; skipping what is empty and stopping behind the "
-                   "last hit take steps away. The fits are least squares of the logarithms; they hold for this mesh "
-                   "and this range only, and r squared tells how far from a power law the counts are.");
+                   "the narrower cells and boxes become beside it; how much that is shows in two configurations of one "
+                   "grid, reference with packets of " +
+                   packet_words("reference") + " and best with " + packet_words("best") +
+                   ". Skipping what is empty and stopping behind the last hit take steps away. The fits are "
+                   "least squares of the logarithms; they hold for this mesh and this range only, and r squared tells "
+                   "how far from a power law the counts are.");
     book.table(exponents, "Fitted exponents: quantity ~ n^exponent.");
     book.figure("table1_build", line_chart_svg(build),
                 "Cycles of the machine's general core to build the structure. The projection test needs another form "

@@ -1,5 +1,8 @@
 // Fig. 6, Table 4 and configuration best: where the time goes, and how much of the waiting is hidden.
 // SPDX-License-Identifier: Apache-2.0
+#include <map>
+#include <string>
+
 #include "experiment/paper_values.h"
 #include "experiment/sections.h"
 #include "experiment/svg_plot.h"
@@ -76,9 +79,14 @@ Writer plan_figure6(Plan& plan, const Stage& stage) {
                  {"idle_ms", "idle, ms", 3},
                  {"frame_ms", "frame, ms"}},
                 {}};
-    std::string hidings;
+    std::map<std::string, std::string> hidden_by;
     for (const Contender& contender : stage.contenders) {
-      hidings += (hidings.empty() ? "" : ", ") + contender.hiding + " for " + contender.title;
+      std::string& titles = hidden_by[contender.hiding];
+      titles += (titles.empty() ? "" : "; ") + contender.title;
+    }
+    std::string hidings;
+    for (const auto& [hiding, titles] : hidden_by) {
+      hidings += (hidings.empty() ? "" : ", ") + hiding + " (" + titles + ")";
     }
     book.section("fig6", "Fig. 6: where the time goes");
     book.paragraph(

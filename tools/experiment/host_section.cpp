@@ -77,12 +77,13 @@ void write_host_figures(const Stage& stage, std::uint32_t threads, Book& book) {
       "Against coherent grid traversal on a general processor of its day the paper was almost four times faster [P]. "
       "The same kernel also runs directly on this host, without checks or a simulated clock, in the widest SIMD groups "
       "that it has; beside it Embree 3 renders the same frames on one thread with coherent packets of 16 rays and the "
-      "same simple shading, where the program was built with it. Those are wall-clock times of one machine, whatever "
+      "same simple shading, where the program was built with it. Those are times of one machine, whatever "
       "else it was doing: they are kept in files whose names begin with host_, which alone differ from run to run, and "
       "are not repeated on this page.");
-  book.linked_table(table,
-                    "milliseconds of a frame, the fastest of three; Embree's is the better of its low and "
-                    "medium build quality.");
+  book.linked_table(
+      table,
+      "milliseconds of a frame, the least of five, by the wall clock and, for a host with other work, of "
+      "its processors, all threads together; Embree's is the better of its low and medium build quality.");
 }
 
 }  // namespace gridiron::experiment
