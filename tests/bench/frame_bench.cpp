@@ -4,7 +4,7 @@
 #include <string>
 
 #include "bench/bench.h"
-#include "bench/embree_peer.h"
+#include "embree_peer/embree_peer.h"
 #include "support/ply_load.h"
 #include "support/render_mesh.h"
 #include "support/views.h"
@@ -35,12 +35,12 @@ bool bench_view(const BenchOptions& options, const test::SceneView& view) {
     return false;
   }
 
-  EmbreeScene low;
-  EmbreeScene medium;
+  peer::EmbreeScene low;
+  peer::EmbreeScene medium;
   low.set_mesh(mesh->view());
-  low.build(EmbreeQuality::kLow);
+  low.build(peer::EmbreeQuality::kLow);
   medium.set_mesh(mesh->view());
-  medium.build(EmbreeQuality::kMedium);
+  medium.build(peer::EmbreeQuality::kMedium);
   std::vector<std::uint32_t> color;
 
   bool rendered = true;

@@ -8,8 +8,8 @@
 #include <string>
 
 #include "bench/bench.h"
-#include "bench/embree_peer.h"
 #include "core/grid/line_buffer.h"
+#include "embree_peer/embree_peer.h"
 #include "support/ply_load.h"
 
 namespace gridiron::bench {
@@ -26,7 +26,7 @@ bool bench_mesh(const std::string& name, const MeshView& mesh, TriangleFormat fo
     return false;
   }
   test::LineBuffer image(static_cast<std::size_t>(need.image_bytes));
-  EmbreeScene peer;
+  peer::EmbreeScene peer;
   peer.set_mesh(mesh);
   bool ok = true;
   const Candidate candidates[] = {
@@ -38,7 +38,7 @@ bool bench_mesh(const std::string& name, const MeshView& mesh, TriangleFormat fo
          SceneImageError error;
          ok = open_scene_image(image.bytes(), view, error) == Status::kOk && ok;
        }},
-      {"Embree", [&] { peer.build(EmbreeQuality::kLow); }},
+      {"Embree", [&] { peer.build(peer::EmbreeQuality::kLow); }},
   };
   const std::vector<double> seconds = least_seconds(candidates, rounds);
   std::printf("%s: %u references, %.1f MB; count %.2f ms, build %.2f ms, open %.2f ms%s\n", name.c_str(),

@@ -3,6 +3,7 @@
 
 #include <CLI/CLI.hpp>
 #include <algorithm>
+#include <cstdlib>
 #include <functional>
 #include <string_view>
 #include <utility>
@@ -164,13 +165,18 @@ void add_output_options(CLI::App& app, RawRender& raw) {
   app.add_flag("--quiet", render.quiet, "print nothing but errors");
 }
 
+void add_threads(CLI::App& app, std::uint32_t& threads) {
+  constexpr std::uint32_t kMostThreads = 256;
+  add_parsed(app, "--threads", threads, count_between(1, kMostThreads), "a whole number from 1 to 256", "N",
+             "host threads (default: the host's); no result depends on it");
+}
+
 void add_machine_options(CLI::App& app, RawRender& raw) {
   RenderArguments& render = raw.arguments;
-  constexpr std::uint32_t kMostCores = 1024, kMostThreads = 256;
+  constexpr std::uint32_t kMostCores = 1024;
   add_parsed(app, "--cores", render.cores, count_between(1, kMostCores), "a whole number from 1 to 1024", "N",
              "cores of the machine (default: the profile's)");
-  add_parsed(app, "--threads", render.threads, count_between(1, kMostThreads), "a whole number from 1 to 256", "N",
-             "host threads (default: the host's); no result depends on it");
+  add_threads(app, render.threads);
   add_choice(app, "--store", raw.store, Choices<StoreSize>{{"64", StoreSize::k64KB}, {"256", StoreSize::k256KB}},
              "local store in KB (default: the larger that the machine has)");
   add_choice(app, "--mode", render.mode,
@@ -300,6 +306,31 @@ RenderArguments complete_render(const RawRender& raw, bool has_seed) {
   return render;
 }
 
+void add_experiment_options(CLI::App& app, ExperimentArguments& experiment, std::string& name) {
+  const auto known = [](const std::string& text) { return text == "paper" ? std::optional(text) : std::nullopt; };
+  add_parsed(app, "NAME", name, known, "an experiment; expected paper", "",
+             "paper: Tables 1-4, Figs. 5-7 and sweeps, as CSV, SVG and index.html")
+      ->required();
+  app.add_option("-o,--output", experiment.output, "folder, made where it is not there")->required()->type_name("DIR");
+  app.add_option("--scenes", experiment.scenes,
+                 "folder of the scans (default: the environment's GRIDIRON_SCENES); scans that are not there are left "
+                 "out, and without any a teapot and a torus knot are made")
+      ->type_name("DIR");
+  add_threads(app, experiment.threads);
+  add_size(app, experiment.width, experiment.height, "pictures in pixels (default 1024x1024)");
+  add_parsed(app, "--largest", experiment.largest_knot, count_between(6'000, 10'000'000),
+             "a whole number from 6000 to 10000000", "N", "triangles of the largest mesh of Table 1 (default 1000000)");
+  app.add_flag("--quiet", experiment.quiet, "print nothing but errors");
+}
+
+ExperimentArguments complete_experiment(ExperimentArguments experiment) {
+  if (experiment.scenes.empty()) {
+    const char* scenes = std::getenv("GRIDIRON_SCENES");
+    if (scenes != nullptr) experiment.scenes = scenes;
+  }
+  return experiment;
+}
+
 }  // namespace
 
 Command parse_arguments(int count, const char* const* values) {
@@ -341,13 +372,19 @@ Command parse_arguments(int count, const char* const* values) {
   machines->footer(kMachineFormat);
   machines->add_flag("--json", machines_arguments.json, "as JSON");
 
+  ExperimentArguments experiment_arguments;
+  std::string experiment_name;
+  CLI::App* experiment =
+      app.add_subcommand("experiment", "runs the paper's evaluation again: tables, plots and a page in a folder");
+  add_experiment_options(*experiment, experiment_arguments, experiment_name);
+
   // CLI11 would only say that a subcommand is required.
   const std::string first = count > 1 ? values[1] : "";
   const auto all = app.get_subcommands([](const CLI::App*) { return true; });
   const bool is_command =
       std::ranges::any_of(all, [&first](const CLI::App* each) { return each->get_name() == first; });
   if (!first.empty() && first.front() != '-' && !is_command) {
-    usage_error("'" + first + "' is not a command; expected render, info, pack or machines");
+    usage_error("'" + first + "' is not a command; expected render, info, pack, machines or experiment");
   }
 
   try {
@@ -373,6 +410,7 @@ Command parse_arguments(int count, const char* const* values) {
                       {{"-o", pack_arguments.output}});
     return pack_arguments;
   }
+  if (*experiment) return complete_experiment(experiment_arguments);
   if (machines->count("MACHINE") > 0) machines_arguments.machine = find_machine(machine);
   return machines_arguments;
 }

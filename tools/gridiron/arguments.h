@@ -67,12 +67,23 @@ struct MachinesArguments {
   bool json = false;
 };
 
+/// The paper's evaluation, run again.
+struct ExperimentArguments {
+  std::filesystem::path output;  ///< folder
+  std::filesystem::path scenes;  ///< folder of scans; empty: none
+  std::uint32_t threads = 0;     ///< 0: the host's
+  std::uint32_t width = 1024, height = 1024;
+  std::uint32_t largest_knot = 1'000'000;  ///< triangles of the largest mesh of Table 1
+  bool quiet = false;
+};
+
 /// Help or the version was asked for: text for standard output.
 struct TextRequest {
   std::string text;
 };
 
-using Command = std::variant<RenderArguments, InfoArguments, PackArguments, MachinesArguments, TextRequest>;
+using Command = std::variant<RenderArguments, InfoArguments, PackArguments, MachinesArguments, ExperimentArguments,
+                             TextRequest>;
 
 /// Reads a machine file that is named. Errors: Failure, kUsage with what is wrong, kBadInput of a machine file.
 [[nodiscard]] Command parse_arguments(int count, const char* const* values);

@@ -1,5 +1,5 @@
 // Commands of the program, one function each. Errors: Failure.
-// Memory: their own. Threads: one; render starts more. SPDX-License-Identifier: Apache-2.0
+// Memory: their own. Threads: one; render and experiment start more. SPDX-License-Identifier: Apache-2.0
 #pragma once
 
 #include "arguments.h"
@@ -10,6 +10,7 @@ void run_command(const RenderArguments& arguments);
 void run_command(const InfoArguments& arguments);
 void run_command(const PackArguments& arguments);
 void run_command(const MachinesArguments& arguments);
+void run_command(const ExperimentArguments& arguments);  ///< in tools/experiment
 void run_command(const TextRequest& request);
 
 }  // namespace gridiron::tool

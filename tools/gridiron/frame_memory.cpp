@@ -42,6 +42,7 @@ MainAddress place_image(FrameMemory& frame, const SceneInput& input, const Rende
   require_fit(choice, arguments.scene);
   const sim::MemoryRegion region = allocate(frame.memory, choice.need.image_bytes);
   frame.image = build_image(input, mesh, choice, region.bytes);
+  frame.need = choice.need;
   frame.wanted_lambda = choice.wanted_lambda;
   frame.build_seconds = stopwatch.seconds();
   return region.address;

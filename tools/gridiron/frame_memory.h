@@ -3,6 +3,7 @@
 #pragma once
 
 #include <gridiron/base/records.h>
+#include <gridiron/grid/grid_builder.h>
 #include <gridiron/image/scene_image.h>
 #include <gridiron/sim/sim_memory.h>
 
@@ -20,6 +21,7 @@ struct FrameMemory {
 
   sim::SimMemory memory;
   SceneImageView image{};
+  GridNeed need{};                      ///< of the image; nothing where it was packed
   FrameRecord record{};
   MainAddress record_address{};
   sim::MemoryRegion color, depth, ids;  ///< depth, ids: no bytes where not asked for

@@ -8,7 +8,8 @@
 
 namespace gridiron::tool {
 
-Progress::Progress(bool wanted) : drawing_(wanted && ::isatty(STDERR_FILENO) == 1) {}
+Progress::Progress(bool wanted, const char* noun)
+    : drawing_(wanted && ::isatty(STDERR_FILENO) == 1), noun_(noun) {}
 
 Progress::~Progress() {
   if (drawing_ && drawn_percent_ != ~0u) std::fputs("\r\033[K", stderr);
@@ -22,7 +23,7 @@ void Progress::update(std::uint32_t done, std::uint32_t total) {
   constexpr std::uint32_t kBarWidth = 40;
   const std::uint32_t filled = percent * kBarWidth / 100;
   const std::string bar = std::string(filled, '#') + std::string(kBarWidth - filled, '.');
-  std::fprintf(stderr, "\r[%s] %3u %%  tile %u of %u", bar.c_str(), percent, done, total);
+  std::fprintf(stderr, "\r[%s] %3u %%  %s %u of %u", bar.c_str(), percent, noun_, done, total);
   std::fflush(stderr);
 }
 

@@ -10,7 +10,8 @@ namespace gridiron::tool {
 class Progress {
  public:
   /// @param wanted  false, or a standard error that is no terminal: nothing is ever drawn.
-  explicit Progress(bool wanted);
+  /// @param noun    what is counted.
+  explicit Progress(bool wanted, const char* noun = "tile");
   ~Progress();
   Progress(const Progress&) = delete;
   Progress& operator=(const Progress&) = delete;
@@ -19,6 +20,7 @@ class Progress {
 
  private:
   bool drawing_;
+  const char* noun_;
   std::uint32_t drawn_percent_ = ~0u;
 };
 

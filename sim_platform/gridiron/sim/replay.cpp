@@ -72,6 +72,7 @@ struct Core {
   std::size_t next_step = 0;
   std::uint32_t tile_id = kNoTile;
   std::uint32_t ordinal = 0;  ///< of the tile: how many this core has had before it
+  std::size_t next_own_tile = 0;  ///< where tiles are assigned: the first of the trace that may be its next
   Ticks now = 0;
   Ticks claim_time = kNever;        ///< when it asks for a tile
   std::uint64_t blocked_until = 0;  ///< granted_count that lets the program go on; 0: not blocked
@@ -102,6 +103,7 @@ class Replay {
         constants_(machine),
         output_depth_(std::clamp(trace.output_depth, 1u, std::uint32_t{kOutputTagCount})),
         with_timeline_(options.timeline),
+        core_of_tile_(options.core_of_tile),
         cores_(std::max(1u, options.core_count != 0 ? options.core_count : machine.core_count)) {
     for (Core& core : cores_) {
       core.queue.resize(constants_.queue_depth);
@@ -153,9 +155,9 @@ class Replay {
     core.idle += constants_.claim;
     core.ordinal = core.timing.tiles;
     core.next_step = 0;
-    if (next_tile_ < trace_.tiles.size()) {
+    if (const TileTrace* const tile = next_tile_of(core); tile != nullptr) {
       core.phase = Phase::kTile;
-      core.steps = &trace_.tiles[next_tile_++];
+      core.steps = tile;
       core.tile_id = core.steps->tile_id;
       ++core.timing.tiles;
       if (with_timeline_) {
@@ -168,6 +170,18 @@ class Replay {
       core.tile_id = kNoTile;
     }
     advance(core);
+  }
+
+  /// @returns null where the core gets no more.
+  const TileTrace* next_tile_of(Core& core) {
+    const std::size_t count = trace_.tiles.size();
+    if (core_of_tile_.empty()) return next_tile_ < count ? &trace_.tiles[next_tile_++] : nullptr;
+    const auto index = static_cast<std::uint32_t>(&core - cores_.data());
+    while (core.next_own_tile < count) {
+      const std::size_t tile = core.next_own_tile++;
+      if (tile < core_of_tile_.size() && core_of_tile_[tile] == index) return &trace_.tiles[tile];
+    }
+    return nullptr;
   }
 
   void grant_line(Core& core) {
@@ -373,6 +387,7 @@ class Replay {
   const Constants constants_;
   const std::uint32_t output_depth_;
   const bool with_timeline_;
+  const std::span<const std::uint32_t> core_of_tile_;
   std::vector<Core> cores_;
   std::size_t next_tile_ = 0;
   Ticks channel_free_ = 0;

@@ -7,6 +7,7 @@
 
 #include <cstddef>
 #include <cstdint>
+#include <span>
 #include <vector>
 
 namespace gridiron::sim {
@@ -63,12 +64,16 @@ struct FrameTiming {
 struct ReplayOptions {
   std::uint32_t core_count = 0;  ///< 0: the profile's
   bool timeline = false;
+  /// Core that renders trace.tiles[n], for programs whose tiles depend on what their core did before; empty: cores
+  /// claim. A tile of a core that there is not is rendered by none.
+  std::span<const std::uint32_t> core_of_tile = {};
 };
 
 /// Gives every step of `trace` a time on `core_count` cores of `machine`.
 ///
 /// Each core runs the prologue, claims tiles, then runs the epilogue. Claims are granted in order of simulated time,
-/// ties by core; the n-th grant hands out trace.tiles[n]. A core's commands are served one after another in the order
+/// ties by core; the n-th grant hands out trace.tiles[n], or, where options.core_of_tile names the cores, a core is
+/// given the next of its own, in the order of the trace. A core's commands are served one after another in the order
 /// of issue. Each line leaves the core when the command has been issued, core_line_interval_cycles after the line
 /// before it, and when fewer than lines_in_flight lines are under way; the channel serves lines of all cores, gets and
 /// puts alike, by the time they left, ties by core; latency_cycles after its turn on the channel has ended the line is

@@ -20,7 +20,7 @@ TEST(Usage, MistakesExitWithTwoAndSayWhy) {
   const Case cases[] = {
       {{}, "subcommand"},
       {{"paint"}, "paint"},
-      {{"experiment", "paper"}, "experiment"},
+      {{"experiment", "paper"}, "--output"},
       {{"render"}, "INPUT"},
       {{"render", "a.ply", "b.ply"}, "b.ply"},
       {{"render", "a.ply", "--colour"}, "--colour"},

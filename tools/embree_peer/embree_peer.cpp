@@ -1,5 +1,5 @@
 // Embree as the peer: see the header. SPDX-License-Identifier: Apache-2.0
-#include "bench/embree_peer.h"
+#include "embree_peer/embree_peer.h"
 
 #include <embree3/rtcore.h>
 
@@ -7,10 +7,10 @@
 #include <cstdio>
 #include <cstdlib>
 
-namespace gridiron::bench {
+namespace gridiron::peer {
 namespace {
 
-constexpr std::uint32_t kPacketWidth = 4;
+constexpr std::uint32_t kPacketWidth = kEmbreePacketWidth;
 constexpr std::uint32_t kPacketRays = kPacketWidth * kPacketWidth;
 
 void stop_on_error(void*, RTCError, const char* words) {
@@ -159,4 +159,4 @@ std::uint64_t EmbreeScene::hit_count(const FrameRecord& frame) const {
   return hits;
 }
 
-}  // namespace gridiron::bench
+}  // namespace gridiron::peer

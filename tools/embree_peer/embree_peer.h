@@ -9,7 +9,9 @@
 #include <memory>
 #include <vector>
 
-namespace gridiron::bench {
+namespace gridiron::peer {
+
+inline constexpr std::uint32_t kEmbreePacketWidth = 4;  ///< pixels along a packet's edge
 
 enum class EmbreeQuality : std::uint8_t { kLow, kMedium };
 
@@ -27,7 +29,8 @@ class EmbreeScene {
   void build(EmbreeQuality quality);
 
   /// Renders `frame` (camera, size, background, facing-ratio shading) with coherent packets of 16 rays, 4x4 pixels
-  /// each, tile by tile of frame.tile_width pixels, into tile-major RGBA8. Sizes must be multiples of 4.
+  /// each, tile by tile of frame.tile_width pixels, into tile-major RGBA8. Sizes must be multiples of
+  /// kEmbreePacketWidth.
   void render(const FrameRecord& frame, std::vector<std::uint32_t>& color) const;
 
   /// @returns how many pixels of `frame` hit anything.
@@ -38,4 +41,4 @@ class EmbreeScene {
   std::unique_ptr<State> state_;
 };
 
-}  // namespace gridiron::bench
+}  // namespace gridiron::peer

@@ -1,0 +1,19 @@
+// Build work of the rival: see the header. SPDX-License-Identifier: Apache-2.0
+#include <gridiron/rival/bvh_build_work.h>
+
+namespace gridiron::rival {
+
+sim::BuildWork bvh_build_work(std::uint64_t vertex_count, std::uint64_t triangle_count, const BuildCounts& counts) {
+  using sim::BuildStep;
+  constexpr std::uint64_t kBinsOfNode = std::uint64_t{3} * 16 * 2;  // what a kNodeMade is priced for
+  sim::BuildWork work;
+  work.add(BuildStep::kVertexCheck, vertex_count);
+  work.add(BuildStep::kTriangleSurvey, triangle_count);
+  work.add(BuildStep::kTriangleWrite, counts.records_written);
+  work.add(BuildStep::kBinUpdate, counts.bin_updates);
+  work.add(BuildStep::kTriangleMoved, counts.triangles_moved);
+  work.add(BuildStep::kNodeMade, (counts.bins_swept + kBinsOfNode - 1) / kBinsOfNode);
+  return work;
+}
+
+}  // namespace gridiron::rival

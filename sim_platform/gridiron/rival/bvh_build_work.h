@@ -1,0 +1,20 @@
+// Build work of the rival: the steps of building a hierarchy, to be priced by the same table as the grid's.
+// Memory: plain values. Threads: any. SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <gridiron/rival/bvh.h>
+#include <gridiron/sim/build_work.h>
+
+#include <cstdint>
+
+namespace gridiron::rival {
+
+/// Steps of build_bvh. A kNodeMade of the table is a sweep over 16 bins of three axes, there and back; smaller sweeps
+/// count in proportion. What has no step of its own is left out, in the rival's favour: bounds of centres, leaves that
+/// need no sweep, merging to four children and writing these nodes.
+///
+/// @param vertex_count, triangle_count  of the mesh, dropped triangles included.
+[[nodiscard]] sim::BuildWork bvh_build_work(std::uint64_t vertex_count, std::uint64_t triangle_count,
+                                            const BuildCounts& counts);
+
+}  // namespace gridiron::rival

@@ -1,0 +1,180 @@
+// Sets a frame of the rival up in simulated main memory, runs its cores in turn, and replays what they did.
+// Memory: owns main memory and traces for the time of a frame. Threads: see the header.
+// SPDX-License-Identifier: Apache-2.0
+#include <gridiron/rival/bvh_core.h>
+#include <gridiron/rival/bvh_renderer.h>
+#include <gridiron/rival/claim_order.h>
+#include <gridiron/sim/core_runner.h>
+
+#include <cstring>
+#include <mutex>
+#include <new>
+#include <span>
+
+namespace gridiron::rival {
+
+namespace {
+
+/// Where the parts of a frame lie.
+struct FrameInMemory {
+  sim::MemoryRegion record, color, depth, ids;
+  FrameRecord frame{};
+};
+
+template <class Element>
+[[nodiscard]] std::span<const std::byte> bytes_of(const std::vector<Element>& elements) {
+  return std::as_bytes(std::span(elements));
+}
+
+template <class Element>
+[[nodiscard]] std::vector<Element> untile(const FrameRecord& frame, std::span<const std::byte> plane) {
+  std::vector<Element> rows(std::size_t{frame.width} * frame.height);
+  for (std::uint32_t y = 0; y < frame.height; ++y) {
+    for (std::uint32_t x = 0; x < frame.width; ++x) {
+      const std::uint64_t index = output_plane_index(frame.width, frame.tile_width, x, y);
+      std::memcpy(&rows[std::size_t{y} * frame.width + x], plane.data() + index * sizeof(Element), sizeof(Element));
+    }
+  }
+  return rows;
+}
+
+[[nodiscard]] Status make_record(const Bvh& bvh, FrameSettings settings, const RenderOptions& options,
+                                 sim::SimMemory& memory, FrameInMemory& parts) {
+  const std::uint64_t plane_bytes = output_plane_bytes(settings.width, settings.height, kTileWidth);
+  const auto nodes = memory.allocate(bytes_of(bvh.nodes).size());
+  const auto triangles = memory.allocate(bytes_of(bvh.triangles).size());
+  const auto color = memory.allocate(plane_bytes);
+  const auto depth = memory.allocate(options.all_planes ? plane_bytes : kLineBytes);
+  const auto ids = memory.allocate(options.all_planes ? plane_bytes : kLineBytes);
+  const auto record = memory.allocate(sizeof(RivalFrameRecord));
+  if (!nodes || !triangles || !color || !depth || !ids || !record) return Status::kMemoryTooSmall;
+  std::memcpy(nodes->bytes.data(), bvh.nodes.data(), nodes->bytes.size());
+  std::memcpy(triangles->bytes.data(), bvh.triangles.data(), triangles->bytes.size());
+
+  settings.tile_width = kTileWidth;
+  settings.output_depth = kOutputDepth;
+  settings.color = color->address;
+  settings.depth = options.all_planes ? depth->address : MainAddress{};
+  settings.ids = options.all_planes ? ids->address : MainAddress{};
+  // Core's own frame, of an image that is never opened: only camera, size and outputs are looked at.
+  SceneImageView no_image{};
+  no_image.grid.triangle_format = static_cast<std::uint32_t>(TriangleFormat::kVertices);
+  RivalFrameRecord rival{};
+  GRIDIRON_TRY(make_frame_record(settings, no_image, MainAddress{}, rival.frame));
+  std::memcpy(rival.low, bvh.low, sizeof rival.low);
+  std::memcpy(rival.high, bvh.high, sizeof rival.high);
+  rival.nodes_address = nodes->address.value;
+  rival.triangles_address = triangles->address.value;
+  rival.settings = {.ring_size = options.hyper_threading ? options.ring_size : 1,
+                    .node_lines = options.caches.node_lines,
+                    .triangle_lines = options.caches.triangle_lines,
+                    .line_nodes = bvh.parameters.line_nodes,
+                    .line_triangles = bvh.parameters.line_triangles,
+                    .ray_tests = options.ray_tests,
+                    .use_subpackets = options.use_subpackets ? 1u : 0u,
+                    .reserved = 0};
+  std::memcpy(record->bytes.data(), &rival, sizeof rival);
+  parts = {*record, *color, *depth, *ids, rival.frame};
+  return Status::kOk;
+}
+
+[[nodiscard]] bool are_options_valid(const Bvh& bvh, const RenderOptions& options) {
+  const auto lines_ok = [](std::uint32_t lines, std::uint32_t most) {
+    return lines >= kCacheWays && lines <= most && lines % kCacheWays == 0;
+  };
+  const std::uint64_t bytes =
+      std::uint64_t{options.caches.node_lines} * bvh.parameters.line_nodes * sizeof(BvhNode) +
+      std::uint64_t{options.caches.triangle_lines} * bvh.parameters.line_triangles * kTriangleRecordBytes;
+  const bool ring_ok = !options.hyper_threading || (options.ring_size >= 2 && options.ring_size <= kMaxRing);
+  return ring_ok && lines_ok(options.caches.node_lines, kMaxNodeLines) &&
+         lines_ok(options.caches.triangle_lines, kMaxTriangleLines) && bytes <= kCacheBytes && !bvh.nodes.empty();
+}
+
+}  // namespace
+
+BvhFrame render_bvh_frame(const Bvh& bvh, const FrameSettings& settings, const sim::MachineProfile& machine,
+                          const RenderOptions& options) {
+  BvhFrame result;
+  const auto refuse = [&](Status status) {
+    result.status = status;
+    return result;
+  };
+  if (settings.accuracy != Accuracy::kStandard || machine.local_store_bytes < kArenaBytes) {
+    return refuse(Status::kUnsupportedFrame);
+  }
+  if (!are_options_valid(bvh, options)) return refuse(Status::kBadParameter);
+
+  // 1. The frame in main memory.
+  const std::uint64_t planes = options.all_planes ? 3 : 1;
+  constexpr std::uint64_t kSlack = 64 * kLineBytes;
+  if (settings.width < 1 || settings.height < 1 || settings.width > kMaxPictureWidth ||
+      settings.height > kMaxPictureWidth) {
+    return refuse(Status::kBadFrame);
+  }
+  result.main_memory_bytes = bytes_of(bvh.nodes).size() + bytes_of(bvh.triangles).size() +
+                             planes * output_plane_bytes(settings.width, settings.height, kTileWidth) +
+                             sizeof(RivalFrameRecord);
+  if (result.main_memory_bytes > machine.main_memory_bytes) return refuse(Status::kMemoryTooSmall);
+  sim::SimMemory memory(result.main_memory_bytes + sim::SimMemory::kFirstAddress + kSlack);
+  FrameInMemory parts;
+  const Status made = make_record(bvh, settings, options, memory, parts);
+  if (made != Status::kOk) return refuse(made);
+
+  // 2. The cores, in turn.
+  const sim::MachineProfile priced = with_rival_costs(machine);
+  sim::ChipOptions chip;
+  chip.threads = options.core_count != 0 ? options.core_count : machine.core_count;
+  chip.completion = options.completion;
+  chip.seed = options.seed;
+  sim::FrameShape shape;
+  shape.tile_count = parts.frame.tiles_x * parts.frame.tiles_y;
+  shape.output_depth = kOutputDepth;
+  shape.arena_bytes = kArenaBytes;
+  shape.data_bytes = sizeof(RivalStore);
+  for (const sim::MemoryRegion* plane : {&parts.color, &parts.depth, &parts.ids}) {
+    if (plane != &parts.color && !options.all_planes) continue;
+    shape.writable.push_back({plane->address.value, plane->address.value + plane->bytes.size()});
+  }
+  result.core_of_tile.assign(shape.tile_count, 0);
+  ClaimOrder order(chip.threads);
+  std::mutex mutex;
+  std::uint32_t cores_begun = 0;
+  sim::ChipResult run = sim::run_cores(memory, shape, chip, [&](sim::SimCore& core, std::span<std::byte> data) {
+    // Cores are alike until their first claim, so it does not matter which thread is called by which number.
+    std::uint32_t index = 0;
+    {
+      const std::scoped_lock lock(mutex);
+      index = cores_begun++;
+    }
+    OrderedCore platform(core, index, order, priced, kOutputDepth, result.core_of_tile);
+    RivalStore& store = *::new (static_cast<void*>(data.data())) RivalStore;
+    BvhCore<Lanes<4>, OrderedCore> program(store, platform);
+    const Status status = program.run(parts.record.address);
+    const std::scoped_lock lock(mutex);
+    result.node_cache += store.node_cache.counts();
+    result.triangle_cache += store.triangle_cache.counts();
+    return status;
+  });
+  result.status = run.status;
+  result.violations = std::move(run.violations);
+  if (result.status != Status::kOk) return result;
+
+  // 3. Time with contention, work by kind, the picture.
+  result.timing = sim::replay(run.trace, priced,
+                              {.core_count = chip.threads, .timeline = options.timeline,
+                               .core_of_tile = result.core_of_tile});
+  result.work = run.work;
+  for (std::uint32_t i = 0; i < kRivalWorkCount; ++i) {
+    std::uint64_t& carried = result.work[static_cast<std::size_t>(carrier_of(static_cast<RivalWork>(i)))];
+    result.rival_work[i] = carried;
+    carried = 0;
+  }
+  result.picture.color = untile<std::uint32_t>(parts.frame, parts.color.bytes);
+  if (options.all_planes) {
+    result.picture.depth = untile<float>(parts.frame, parts.depth.bytes);
+    result.picture.ids = untile<std::uint32_t>(parts.frame, parts.ids.bytes);
+  }
+  return result;
+}
+
+}  // namespace gridiron::rival

@@ -1,0 +1,73 @@
+// The rival of the grid on the same chip: packets through a bounding volume hierarchy, software caches for nodes and
+// triangles, with and without a ring of packets that hide each other's misses. There to be compared with.
+// Source: Benthin, Wald, Scherbaum, Friedrich 2006. Memory: owns what it makes; borrows meshes.
+// Threads: starts its own, one per simulated core, one of which runs at a time. SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <gridiron/frame/frame_setup.h>
+#include <gridiron/rival/bvh.h>
+#include <gridiron/rival/rival_store.h>
+#include <gridiron/rival/rival_work.h>
+#include <gridiron/rival/soft_cache.h>
+#include <gridiron/sim/machine_profile.h>
+#include <gridiron/sim/replay.h>
+#include <gridiron/sim/sim_chip.h>
+
+#include <array>
+#include <cstdint>
+#include <vector>
+
+namespace gridiron::rival {
+
+/// Sizes of both caches. Lines: a multiple of kCacheWays; together at most kCacheBytes. What a line holds is decided
+/// when the hierarchy is built (BvhParameters::line_nodes, line_triangles).
+struct CacheGeometry {
+  std::uint32_t node_lines = 64;
+  std::uint32_t triangle_lines = 100;
+};
+
+struct RenderOptions {
+  std::uint32_t core_count = 0;     ///< 0: the profile's
+  bool hyper_threading = true;      ///< packets take turns; else one after another
+  std::uint32_t ring_size = 3;      ///< of them, 2..kMaxRing; without hyper-threading not looked at
+  CacheGeometry caches;
+  RayTests ray_tests = RayTests::kAll;
+  bool use_subpackets = true;       ///< cull triangles by 4x4 pixels too
+  bool all_planes = false;          ///< depth and ids beside colour
+  bool timeline = false;            ///< fill timing.timeline
+  sim::Completion completion = sim::Completion::kEarly;   ///< changes nothing but when bytes move
+  std::uint64_t seed = 0;
+};
+
+/// A frame's planes, row-major, row 0 on top. The same bits as core's picture of the same frame.
+struct BvhPicture {
+  std::vector<std::uint32_t> color;  ///< 0xAABBGGRR
+  std::vector<float> depth;          ///< along the unit direction, kFloatMax where nothing is hit
+  std::vector<std::uint32_t> ids;    ///< triangle, kNoTriangle where nothing is hit
+};
+
+/// What a frame gave and what it cost.
+struct BvhFrame {
+  Status status = Status::kOk;
+  std::vector<sim::Violation> violations;
+  BvhPicture picture;                ///< depth and ids only where asked for
+  sim::FrameTiming timing;           ///< with contention; waits for node lines under kMacroCell, triangles kTriangle
+  sim::WorkTotals work{};            ///< core's kinds; those that carry the rival's are 0
+  std::array<std::uint64_t, kRivalWorkCount> rival_work{};
+  CacheCounts node_cache, triangle_cache;   ///< over all cores
+  std::vector<std::uint32_t> core_of_tile;  ///< which core rendered tile i
+  std::uint64_t main_memory_bytes = 0;      ///< nodes, triangles, planes
+};
+
+/// Renders a frame on the simulated chip, every rule of the contract checked.
+///
+/// Claims are granted by each core's clock without contention, so the run depends on `machine` and the options, and on
+/// nothing of the host; the replay then gives its steps their times with contention.
+/// @param settings  camera, size, shading, t_far, background; accuracy kStandard. What a grid needs is not looked at;
+/// tile width, output depth and addresses are set here.
+/// Errors: kUnsupportedFrame (accuracy; a machine with less than 256 KB of local store), kBadParameter (options),
+/// kMemoryTooSmall (main memory of the machine), kBadFrame (settings), and what a broken rule reports.
+[[nodiscard]] BvhFrame render_bvh_frame(const Bvh& bvh, const FrameSettings& settings,
+                                        const sim::MachineProfile& machine, const RenderOptions& options);
+
+}  // namespace gridiron::rival

@@ -1,0 +1,49 @@
+// Build work of the rival: the builder's counts in the steps that price both structures.
+// SPDX-License-Identifier: Apache-2.0
+#include <gridiron/rival/bvh_build_work.h>
+#include <gridiron/sim/machine_profile.h>
+#include <gtest/gtest.h>
+
+#include "support/test_mesh.h"
+
+namespace gridiron::rival {
+namespace {
+
+using sim::BuildStep;
+
+TEST(BvhBuildWork, EachCountIsAStep) {
+  BuildCounts counts;
+  counts.bin_updates = 700;
+  counts.bins_swept = 3 * 2 * 16 * 5;  // five nodes of three axes and 16 bins
+  counts.triangles_moved = 30;
+  counts.records_written = 11;
+  const sim::BuildWork work = bvh_build_work(20, 12, counts);
+  EXPECT_EQ(work[BuildStep::kVertexCheck], 20u);
+  EXPECT_EQ(work[BuildStep::kTriangleSurvey], 12u);
+  EXPECT_EQ(work[BuildStep::kTriangleWrite], 11u);
+  EXPECT_EQ(work[BuildStep::kBinUpdate], 700u);
+  EXPECT_EQ(work[BuildStep::kTriangleMoved], 30u);
+  EXPECT_EQ(work[BuildStep::kNodeMade], 5u);
+  EXPECT_EQ(work[BuildStep::kCellBox] + work[BuildStep::kReferenceSort] + work[BuildStep::kCheckedLine], 0u);
+
+  counts.bins_swept += 1;
+  EXPECT_EQ(bvh_build_work(20, 12, counts)[BuildStep::kNodeMade], 6u) << "a part of a sweep counts as one";
+}
+
+// No more sweeps than nodes, no fewer than inner nodes: those of leaves are priced only where a split was weighed.
+TEST(BvhBuildWork, SweepsOfARealTree) {
+  const test::TestMesh mesh = test::make_torus(80, 40, 1.0f, 0.35f);
+  Bvh bvh;
+  ASSERT_EQ(build_bvh(mesh.view(), {}, bvh), Status::kOk);
+  const sim::BuildWork work = bvh_build_work(mesh.view().vertices.size(), mesh.view().triangles.size(), bvh.counts);
+  EXPECT_EQ(work[BuildStep::kTriangleWrite], mesh.view().triangles.size());
+  EXPECT_LE(work[BuildStep::kNodeMade], bvh.counts.binary_nodes);
+  EXPECT_GE(work[BuildStep::kNodeMade], bvh.counts.binary_nodes - bvh.counts.leaves - 1);
+  const sim::MasterProfile& master = sim::find_machine_profile("cell-ps3")->master;
+  const double bins = master.step_cycles[static_cast<std::size_t>(BuildStep::kBinUpdate)] *
+                      static_cast<double>(work[BuildStep::kBinUpdate]);
+  EXPECT_GT(sim::build_cycles(master, work), bins);
+}
+
+}  // namespace
+}  // namespace gridiron::rival

@@ -1,0 +1,76 @@
+// Replay of tiles that are fixed to cores. SPDX-License-Identifier: Apache-2.0
+#include <gridiron/sim/replay.h>
+#include <gtest/gtest.h>
+
+#include <vector>
+
+namespace gridiron::sim {
+namespace {
+
+/// One unit of work is one cycle; a claim takes 10.
+MachineProfile claim_machine() {
+  MachineProfile machine{};
+  machine.core_count = 2;
+  machine.line_bytes = 128;
+  machine.queue_depth = 16;
+  machine.lines_in_flight = 16;
+  machine.claim_cycles = 10;
+  machine.work_cycles.fill(1);
+  return machine;
+}
+
+FrameTrace frame_of(const std::vector<std::uint32_t>& tile_cycles) {
+  FrameTrace trace;
+  for (const std::uint32_t cycles : tile_cycles) {
+    TileTrace& tile = trace.tiles.emplace_back();
+    tile.tile_id = static_cast<std::uint32_t>(trace.tiles.size()) - 1;
+    tile.work.push_back({Work::kCellStep, cycles});
+    TraceEvent event{};
+    event.kind = EventKind::kWork;
+    event.work_count = 1;
+    tile.events.push_back(event);
+  }
+  return trace;
+}
+
+TEST(FixedTiles, EachCoreRendersItsOwnInOrder) {
+  const FrameTrace trace = frame_of({100, 20, 30, 400, 50});
+  const std::vector<std::uint32_t> core_of_tile = {1, 0, 1, 1, 0};
+  const FrameTiming frame =
+      replay(trace, claim_machine(), {.core_count = 2, .timeline = true, .core_of_tile = core_of_tile});
+  ASSERT_EQ(frame.cores.size(), 2u);
+  EXPECT_EQ(frame.cores[0].tiles, 2u);
+  EXPECT_EQ(frame.cores[1].tiles, 3u);
+  EXPECT_EQ(frame.cores[0].compute_cycles, 70);
+  EXPECT_EQ(frame.cores[1].compute_cycles, 530);
+  EXPECT_EQ(frame.frame_cycles, 530 + 4 * 10);
+  std::vector<std::uint32_t> tiles[2];
+  for (const TimelineSpan& span : frame.timeline) {
+    if (span.kind == TimelineSpan::Kind::kTile) tiles[span.core].push_back(span.tile_id);
+  }
+  EXPECT_EQ(tiles[0], (std::vector<std::uint32_t>{1, 4}));
+  EXPECT_EQ(tiles[1], (std::vector<std::uint32_t>{0, 2, 3}));
+}
+
+TEST(FixedTiles, TheOrderOfClaimsIsTheOneWithoutThem) {
+  const std::vector<std::uint32_t> cycles = {100, 20, 30, 400, 50, 70, 5, 5, 300};
+  const FrameTrace trace = frame_of(cycles);
+  const FrameTiming claimed = replay(trace, claim_machine(), {.timeline = true});
+  std::vector<std::uint32_t> core_of_tile(cycles.size());
+  for (const TimelineSpan& span : claimed.timeline) core_of_tile[span.tile_id] = span.core;
+  const FrameTiming fixed = replay(trace, claim_machine(), {.core_of_tile = core_of_tile});
+  EXPECT_EQ(fixed.frame_cycles, claimed.frame_cycles);
+  for (std::size_t core = 0; core < 2; ++core) EXPECT_EQ(fixed.cores[core].tiles, claimed.cores[core].tiles);
+}
+
+TEST(FixedTiles, TilesOfNobodyAreNotRendered) {
+  const FrameTrace trace = frame_of({100, 20, 30});
+  const std::vector<std::uint32_t> core_of_tile = {0, 7};
+  const FrameTiming frame = replay(trace, claim_machine(), {.core_of_tile = core_of_tile});
+  EXPECT_EQ(frame.cores[0].tiles, 1u);
+  EXPECT_EQ(frame.cores[1].tiles, 0u);
+  EXPECT_EQ(frame.frame_cycles, 100 + 2 * 10);
+}
+
+}  // namespace
+}  // namespace gridiron::sim

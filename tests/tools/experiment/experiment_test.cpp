@@ -1,0 +1,197 @@
+// The experiment as a program: a tiny one, on generated scenes. SPDX-License-Identifier: Apache-2.0
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <chrono>
+#include <csignal>
+#include <filesystem>
+#include <set>
+#include <string>
+#include <thread>
+#include <vector>
+
+#include "../gridiron/run_program.h"
+#include "../gridiron/temporary_folder.h"
+#include "markup.h"
+
+namespace gridiron::test {
+namespace {
+
+namespace fs = std::filesystem;
+
+std::vector<std::string> tiny(const std::string& output, const std::string& threads) {
+  // The folder itself holds no scans, so that GRIDIRON_SCENES does not matter.
+  return {"experiment", "paper",     "-o",   output,      "--scenes", ".",      "--size",
+          "64x48",      "--largest", "6000", "--threads", threads,    "--quiet"};
+}
+
+std::set<std::string> names_in(const fs::path& folder) {
+  std::set<std::string> names;
+  for (const auto& entry : fs::directory_iterator(folder)) names.insert(entry.path().filename().string());
+  return names;
+}
+
+// Rows of a CSV file, quoted fields without their quotes; the first row holds the keys.
+std::vector<std::vector<std::string>> csv_rows(const fs::path& path) {
+  std::vector<std::vector<std::string>> rows = {{""}};
+  bool quoted = false;
+  for (const char letter : read_file(path)) {
+    if (letter == '"') {
+      quoted = !quoted;
+    } else if (letter == ',' && !quoted) {
+      rows.back().emplace_back();
+    } else if (letter == '\n') {
+      rows.push_back({""});
+    } else {
+      rows.back().back() += letter;
+    }
+  }
+  rows.pop_back();  // behind the last end of line
+  return rows;
+}
+
+// The number in a row under a key; fails where there is none.
+double number_under(const std::vector<std::vector<std::string>>& rows, std::size_t row, const std::string& key) {
+  const auto found = std::ranges::find(rows.at(0), key);
+  if (found == rows.at(0).end()) {
+    ADD_FAILURE() << "no column " << key;
+    return 0;
+  }
+  const std::string& text = rows.at(row).at(static_cast<std::size_t>(found - rows.at(0).begin()));
+  EXPECT_FALSE(text.empty()) << key << " in row " << row;
+  return text.empty() ? 0 : std::stod(text);
+}
+
+// What stands about the rival: every table has it, and what follows from two columns does follow.
+void expect_rival(const fs::path& folder) {
+  const auto frames = csv_rows(folder / "fig7_frames.csv"), built = csv_rows(folder / "fig7_with_build.csv");
+  const auto cycles = csv_rows(folder / "fig7_cycles.csv");
+  ASSERT_EQ(frames.size(), 5u) << "two views on two machines";
+  ASSERT_EQ(built.size(), frames.size());
+  for (std::size_t row = 1; row < frames.size(); ++row) {
+    SCOPED_TRACE(row);
+    const double clock = frames[row][0] == "cell-2006" ? 2.4e9 : 3.2e9;
+    for (const std::string side : {"reference", "best", "bvh_single", "bvh"}) {
+      const double fps = number_under(frames, row, side + "_fps");
+      const double build_ms = number_under(built, row, side.starts_with("bvh") ? "bvh_build_ms" : "grid_build_ms");
+      EXPECT_NEAR(number_under(cycles, row, side + "_mcycles") * 1e6 * fps, clock, 1e-6 * clock);
+      EXPECT_NEAR(number_under(built, row, side + "_with_build_fps") * (1 / fps + build_ms / 1e3), 1, 1e-9);
+    }
+    EXPECT_NEAR(number_under(frames, row, "best_over_bvh") * number_under(frames, row, "bvh_fps"),
+                number_under(frames, row, "best_fps"), 1e-6);
+  }
+  EXPECT_EQ(csv_rows(folder / "fig7_caches.csv").size(), 9u) << "two views, two machines, with and without turns";
+  EXPECT_NE(csv_rows(folder / "host_fig7.csv").at(0).at(5), "") << "Embree has its column";
+
+  // The steps of the build add up to its time.
+  const auto steps = csv_rows(folder / "fig7_build_steps.csv");
+  double grid_mcycles = 0, bvh_mcycles = 0;
+  for (std::size_t row = 1; row < steps.size(); ++row) {
+    if (steps[row][0] != steps[1][0]) continue;
+    grid_mcycles += number_under(steps, row, "grid_mcycles");
+    bvh_mcycles += number_under(steps, row, "bvh_mcycles");
+  }
+  EXPECT_NEAR(grid_mcycles / 2.4e3, number_under(built, 1, "grid_build_ms") / 1e3, 1e-9);
+  EXPECT_NEAR(bvh_mcycles / 2.4e3, number_under(built, 1, "bvh_build_ms") / 1e3, 1e-9);
+
+  // A map is as long as its store; its regions follow each other.
+  const auto map = csv_rows(folder / "local_store_map_bvh.csv");
+  double end = 0;
+  for (std::size_t row = 1; row + 4 < map.size(); ++row) {
+    EXPECT_GE(number_under(map, row, "offset"), end);
+    end = number_under(map, row, "offset") + number_under(map, row, "bytes");
+  }
+  double sum = end;
+  for (std::size_t row = map.size() - 4; row + 1 < map.size(); ++row) sum += number_under(map, row, "bytes");
+  EXPECT_LE(sum, number_under(map, map.size() - 1, "bytes"));
+  EXPECT_GT(sum, number_under(map, map.size() - 1, "bytes") - 128) << "padding of the last region at most";
+}
+
+TEST(Experiment, FilesDoNotDependOnThreads) {
+  const TemporaryFolder folder;
+  for (const char* threads : {"1", "3"}) {
+    const ProgramResult result = run_program(folder.folder(), tiny(std::string("out") + threads, threads));
+    ASSERT_EQ(result.exit_code, 0) << result.err;
+    EXPECT_EQ(result.out, "");
+  }
+  const std::set<std::string> names = names_in(folder.path("out1"));
+  EXPECT_EQ(names, names_in(folder.path("out3")));
+  int compared = 0;
+  for (const std::string& name : names) {
+    if (name.starts_with("host_")) continue;
+    EXPECT_TRUE(read_file(folder.path("out1") / name) == read_file(folder.path("out3") / name)) << name;
+    ++compared;
+  }
+  EXPECT_GE(compared, 35);
+  EXPECT_EQ(names.count("host_fig7.csv"), 1u);
+  expect_rival(folder.path("out1"));
+
+  // The page names every file and nothing else; every plot is well formed, every table has rows of one length.
+  std::set<std::string> linked = {"index.html"};
+  for (const MarkupElement& element : parse_markup(read_file(folder.path("out1") / "index.html"))) {
+    for (const char* key : {"href", "src"}) {
+      const auto found = element.attributes.find(key);
+      if (found != element.attributes.end() && found->second.front() != '#') linked.insert(found->second);
+    }
+  }
+  EXPECT_EQ(linked, names);
+  for (const std::string& name : names) {
+    const std::string content = read_file(folder.path("out1") / name);
+    if (name.ends_with(".svg")) {
+      SCOPED_TRACE(name);
+      EXPECT_FALSE(parse_markup(content).empty());
+    } else if (name.ends_with(".csv")) {
+      EXPECT_GE(std::ranges::count(content, '\n'), 2) << name << " has no rows";
+    }
+  }
+  EXPECT_NE(read_file(folder.path("out1") / "index.html").find("bunny.ply was not found"), std::string::npos);
+}
+
+TEST(Experiment, MistakesAreTold) {
+  const TemporaryFolder folder;
+  folder.write("file", "no folder");
+  struct Case {
+    std::vector<std::string> arguments;
+    int exit_code;
+    const char* words;
+  };
+  const Case cases[] = {
+      {{"experiment"}, 2, "NAME"},
+      {{"experiment", "paper"}, 2, "--output"},
+      {{"experiment", "accuracy", "-o", "out"}, 2, "expected paper"},
+      {{"experiment", "paper", "-o", "out", "--threads", "0"}, 2, "1 to 256"},
+      {{"experiment", "paper", "-o", "out", "--largest", "10"}, 2, "6000"},
+      {{"experiment", "paper", "-o", "out", "--size", "64"}, 2, "WxH"},
+      {{"experiment", "paper", "-o", "out", "--scenes", "nowhere"}, 1, "nowhere: no such folder"},
+      {{"experiment", "paper", "-o", "no/such/out"}, 1, "no/such/out"},
+      {{"experiment", "paper", "-o", "file"}, 1, "file"},
+  };
+  for (const Case& mistake : cases) {
+    const ProgramResult result = run_program(folder.folder(), mistake.arguments);
+    EXPECT_EQ(result.exit_code, mistake.exit_code) << result.err;
+    EXPECT_NE(result.err.find(mistake.words), std::string::npos) << result.err;
+  }
+  EXPECT_EQ(folder.names(), std::vector<std::string>{"file"});
+}
+
+TEST(Experiment, AWrongScanLeavesNothing) {
+  const TemporaryFolder folder;
+  folder.write("bunny.ply", "ply\nformat ascii 1.0\nnonsense\n");
+  const ProgramResult result = run_program(folder.folder(), tiny("out", "1"));
+  EXPECT_EQ(result.exit_code, 1);
+  EXPECT_NE(result.err.find("bunny.ply:3"), std::string::npos) << result.err;
+  EXPECT_EQ(folder.names(), std::vector<std::string>{"bunny.ply"});
+}
+
+TEST(Experiment, AnInterruptLeavesNothing) {
+  const TemporaryFolder folder;
+  RunningProgram program(folder.folder(), {"experiment", "paper", "-o", "out", "--scenes", ".", "--threads", "2"});
+  while (!fs::exists(folder.path("out"))) std::this_thread::sleep_for(std::chrono::milliseconds(5));
+  program.send(SIGINT);
+  const ProgramResult result = program.wait();
+  EXPECT_EQ(result.exit_code, 130) << result.err;
+  EXPECT_EQ(folder.names(), std::vector<std::string>{});
+}
+
+}  // namespace
+}  // namespace gridiron::test

@@ -1,0 +1,149 @@
+// SVG plots: well formed, and values land where they should. SPDX-License-Identifier: Apache-2.0
+#include "experiment/svg_plot.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <sstream>
+#include <string>
+#include <vector>
+
+#include "markup.h"
+
+namespace gridiron::test {
+namespace {
+
+using namespace experiment;
+
+std::vector<Point2> points_of(const MarkupElement& polyline) {
+  std::vector<Point2> points;
+  std::istringstream text(polyline.attributes.at("points"));
+  Point2 point;
+  char comma = 0;
+  while (text >> point.x >> comma >> point.y) points.push_back(point);
+  return points;
+}
+
+const MarkupElement* text_element(const std::vector<MarkupElement>& elements, const std::string& words) {
+  for (const MarkupElement& element : elements) {
+    if (element.name == "text" && element.text == words) return &element;
+  }
+  ADD_FAILURE() << "no text '" << words << "'";
+  return nullptr;
+}
+
+TEST(SvgPlot, TicksAreRoundAndInside) {
+  EXPECT_EQ(tick_values(0, 10, false), (std::vector<double>{0, 2, 4, 6, 8, 10}));
+  EXPECT_EQ(tick_values(0, 1, false, 6), (std::vector<double>{0, 0.2, 0.4, 0.6000000000000001, 0.8, 1}));
+  EXPECT_EQ(tick_values(1, 100, true), (std::vector<double>{1, 2, 5, 10, 20, 50, 100}));
+  EXPECT_EQ(tick_values(1e4, 1e8, true).size(), 5u);
+  EXPECT_FALSE(std::signbit(tick_values(0, 10, false).front()));
+  EXPECT_TRUE(tick_values(1, 1, false).empty());
+  for (const double high : {0.003, 0.7, 3.0, 86.0, 12'345.0, 9.9e8}) {
+    const std::vector<double> ticks = tick_values(0, high, false);
+    EXPECT_GE(ticks.size(), 3u) << high;
+    EXPECT_LE(ticks.size(), 8u) << high;
+    for (const double tick : ticks) EXPECT_LE(tick, high * 1.0001);
+  }
+}
+
+TEST(SvgPlot, TickLabelsAreShort) {
+  EXPECT_EQ(tick_text(0), "0");
+  EXPECT_EQ(tick_text(0.6000000000000001), "0.6");
+  EXPECT_EQ(tick_text(2000), "2000");
+  EXPECT_EQ(tick_text(50'000), "50k");
+  EXPECT_EQ(tick_text(1e6), "1M");
+  EXPECT_EQ(tick_text(2.5e9), "2.5G");
+}
+
+TEST(SvgPlot, LinesGoThroughTheirPoints) {
+  const PlotArea area;
+  const LineChart chart = {.title = "A < B & \"C\"",
+                           .x_title = "x",
+                           .y_title = "y",
+                           .series = {{"one", {{0, 0}, {5, 5}, {10, 10}}, false}, {"two", {{0, 10}, {10, 0}}, true}},
+                           .log_x = false,
+                           .log_y = false,
+                           .x_ticks = {0, 5, 10}};
+  const auto elements = parse_markup(line_chart_svg(chart));
+  text_element(elements, "A < B & \"C\"");
+  const auto curves = elements_named(elements, "polyline");
+  ASSERT_EQ(curves.size(), 2u);
+  const auto rising = points_of(curves[0]), falling = points_of(curves[1]);
+  ASSERT_EQ(rising.size(), 3u);
+  EXPECT_NEAR(rising[0].x, area.left, 0.01);
+  EXPECT_NEAR(rising[0].y, area.bottom, 0.01);
+  EXPECT_NEAR(rising[1].x, (area.left + area.right) / 2, 0.01);
+  EXPECT_NEAR(rising[1].y, (area.top + area.bottom) / 2, 0.01);
+  EXPECT_NEAR(rising[2].x, area.right, 0.01);
+  EXPECT_NEAR(rising[2].y, area.top, 0.01);
+  ASSERT_EQ(falling.size(), 2u);
+  EXPECT_NEAR(falling[0].y, area.top, 0.01);
+  EXPECT_EQ(curves[1].attributes.count("stroke-dasharray"), 1u);
+  EXPECT_EQ(elements_named(elements, "circle").size(), 3u) << "a dashed line has no markers";
+  // A label stands under its value.
+  const MarkupElement* five = text_element(elements, "5");
+  ASSERT_NE(five, nullptr);
+  EXPECT_NEAR(five->number("x"), rising[1].x, 0.01);
+  text_element(elements, "one");
+  text_element(elements, "two");
+}
+
+TEST(SvgPlot, LogarithmicAxesSpaceFactorsEvenly) {
+  const LineChart chart = {.title = "t",
+                           .x_title = "x",
+                           .y_title = "y",
+                           .series = {{"s", {{1, 10}, {10, 100}, {100, 1000}, {-1, 5}, {5, 0}}, false}},
+                           .log_x = true,
+                           .log_y = true,
+                           .x_ticks = {}};
+  const auto elements = parse_markup(line_chart_svg(chart));
+  const auto points = points_of(elements_named(elements, "polyline").at(0));
+  ASSERT_EQ(points.size(), 3u) << "what has no logarithm is left out";
+  EXPECT_NEAR(points[1].x - points[0].x, points[2].x - points[1].x, 0.02);
+  EXPECT_NEAR(points[1].y - points[0].y, points[2].y - points[1].y, 0.02);
+  EXPECT_LT(points[2].y, points[0].y);
+}
+
+TEST(SvgPlot, BarsStandOnTheAxisAndStack) {
+  const PlotArea area;
+  const BarChart chart = {.title = "t",
+                          .y_title = "y",
+                          .groups = {"g", "h"},
+                          .bars = {"a", "b"},
+                          .parts = {"p", "q"},
+                          .values = {1, 2, 4, 0, std::nan(""), 1, 10, 0},
+                          .labels = false};
+  const auto elements = parse_markup(bar_chart_svg(chart));
+  std::vector<MarkupElement> bars;
+  for (const MarkupElement& rect : elements_named(elements, "rect")) {
+    if (rect.attributes.count("x") == 1) bars.push_back(rect);
+  }
+  ASSERT_EQ(bars.size(), 6u) << "three bars of two parts; the one without a value is left out";
+  const double unit = (area.bottom - area.top) / 10;
+  EXPECT_NEAR(bars[0].number("height"), unit, 0.02);
+  EXPECT_NEAR(bars[0].number("y") + bars[0].number("height"), area.bottom, 0.02);
+  EXPECT_NEAR(bars[1].number("height"), 2 * unit, 0.02);
+  EXPECT_NEAR(bars[1].number("y") + bars[1].number("height"), bars[0].number("y"), 0.02);
+  EXPECT_NEAR(bars[2].number("height"), 4 * unit, 0.02);
+  EXPECT_NEAR(bars[4].number("y"), area.top, 0.02) << "10 is the top of the axis";
+  EXPECT_NE(bars[0].attributes.at("fill"), bars[1].attributes.at("fill"));
+  EXPECT_EQ(bars[0].attributes.at("fill"), bars[2].attributes.at("fill")) << "parts have the colours";
+  EXPECT_LT(bars[0].number("x") + bars[0].number("width"), bars[2].number("x"));
+  for (const MarkupElement& bar : bars) {
+    EXPECT_GE(bar.number("x"), area.left);
+    EXPECT_LE(bar.number("x") + bar.number("width"), area.right);
+  }
+}
+
+TEST(SvgPlot, ChartsOfNothingAreStillDocuments) {
+  EXPECT_FALSE(
+      parse_markup(
+          line_chart_svg(
+              {.title = "t", .x_title = "", .y_title = "", .series = {}, .log_x = true, .log_y = true, .x_ticks = {}}))
+          .empty());
+  EXPECT_FALSE(parse_markup(bar_chart_svg({})).empty());
+}
+
+}  // namespace
+}  // namespace gridiron::test

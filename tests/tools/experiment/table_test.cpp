@@ -1,0 +1,68 @@
+// Table: numbers as text, CSV. SPDX-License-Identifier: Apache-2.0
+#include "experiment/table.h"
+
+#include <gtest/gtest.h>
+
+#include <bit>
+#include <charconv>
+#include <cmath>
+#include <cstdint>
+#include <limits>
+#include <random>
+#include <string>
+
+namespace gridiron::test {
+namespace {
+
+using experiment::csv_text;
+using experiment::fixed_text;
+using experiment::number_text;
+using experiment::Table;
+
+TEST(Table, NumbersAreShortestAndReadBackTheSame) {
+  EXPECT_EQ(number_text(0.1), "0.1");
+  EXPECT_EQ(number_text(1.0 / 3.0), "0.3333333333333333");
+  EXPECT_EQ(number_text(100), "100");
+  EXPECT_EQ(number_text(-2.5), "-2.5");
+  EXPECT_EQ(number_text(5e-324), "5e-324");
+  EXPECT_EQ(number_text(std::nan("")), "");
+  EXPECT_EQ(number_text(std::numeric_limits<double>::infinity()), "");
+  std::mt19937_64 random(3);
+  for (int i = 0; i < 10'000; ++i) {
+    const double number = std::bit_cast<double>(random());
+    if (!std::isfinite(number)) continue;
+    const std::string text = number_text(number);
+    double back = 0;
+    const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), back);
+    ASSERT_TRUE(error == std::errc{} && end == text.data() + text.size()) << text;
+    ASSERT_EQ(std::bit_cast<std::uint64_t>(back), std::bit_cast<std::uint64_t>(number)) << text;
+  }
+}
+
+TEST(Table, FixedNumbersAreRoundedAndZeroHasNoSign) {
+  EXPECT_EQ(fixed_text(1.005, 1), "1.0");
+  EXPECT_EQ(fixed_text(12.36, 1), "12.4");
+  EXPECT_EQ(fixed_text(1e6, 0), "1000000");
+  EXPECT_EQ(fixed_text(-0.04, 1), "0.0");
+  EXPECT_EQ(fixed_text(-0.06, 1), "-0.1");
+  EXPECT_EQ(fixed_text(std::nan(""), 2), "");
+}
+
+TEST(Table, FieldsAreQuotedWhereTheyMustBe) {
+  Table table{"t", {{"a", "A"}, {"b,c", "B"}}, {}};
+  table.add({"plain", 1.5});
+  table.add({"with, comma", std::uint64_t{7}});
+  table.add({"say \"hi\"", experiment::Cell{}});
+  table.add({"two\nlines", std::nan("")});
+  table.add({"semicolon; space", -0.25});
+  EXPECT_EQ(csv_text(table),
+            "a,\"b,c\"\n"
+            "plain,1.5\n"
+            "\"with, comma\",7\n"
+            "\"say \"\"hi\"\"\",\n"
+            "\"two\nlines\",\n"
+            "semicolon; space,-0.25\n");
+}
+
+}  // namespace
+}  // namespace gridiron::test

@@ -1,0 +1,81 @@
+// Views: which scenes, from where. SPDX-License-Identifier: Apache-2.0
+#include "experiment/views.h"
+
+#include <gtest/gtest.h>
+
+#include <cstring>
+#include <filesystem>
+#include <string>
+#include <vector>
+
+#include "../gridiron/temporary_folder.h"
+#include "gridiron/failure.h"
+#include "support/test_mesh.h"
+
+namespace gridiron::test {
+namespace {
+
+using namespace experiment;
+
+const std::filesystem::path kScenes = std::filesystem::path(GRIDIRON_SOURCE_DIR) / "scenes";
+
+TEST(Views, WithoutScansATeapotAndAKnotAreMade) {
+  for (const std::filesystem::path& folder : {std::filesystem::path(), kScenes}) {
+    const FoundViews found = find_views(folder);
+    EXPECT_TRUE(found.generated);
+    ASSERT_EQ(found.views.size(), 2u);
+    EXPECT_EQ(found.missing.size(), 5u);
+    const tool::Mesh teapot = tool::read_ply_mesh(kScenes / "teapot.ply");
+    const tool::Mesh& made = found.views[0].mesh();
+    ASSERT_EQ(made.vertices.size(), teapot.vertices.size());
+    ASSERT_EQ(made.triangles.size(), teapot.triangles.size());
+    EXPECT_EQ(std::memcmp(made.vertices.data(), teapot.vertices.data(), teapot.vertices.size() * sizeof(Vec3)), 0);
+    EXPECT_EQ(std::memcmp(made.triangles.data(), teapot.triangles.data(), teapot.triangles.size() * sizeof(UVec3)), 0);
+  }
+}
+
+TEST(Views, WhatIsThereIsUsedAndWhatIsNotIsNamed) {
+  const TemporaryFolder folder;
+  folder.write_ply("bunny.ply", make_torus(12, 8, 1.0f, 0.4f));
+  folder.write_ply("conference.ply", make_torus(12, 8, 500.0f, 100.0f));
+  const FoundViews found = find_views(folder.folder());
+  EXPECT_FALSE(found.generated);
+  ASSERT_EQ(found.views.size(), 3u);
+  EXPECT_EQ(found.views[0].key, "bunny");
+  EXPECT_EQ(found.views[1].key, "conference_1");
+  EXPECT_EQ(found.views[2].key, "conference_2");
+  EXPECT_EQ(found.views[1].scene, found.views[2].scene) << "one mesh for both views";
+  ASSERT_EQ(found.missing.size(), 2u);
+  EXPECT_NE(found.missing[0].find("horse.ply"), std::string::npos);
+  EXPECT_NE(found.missing[1].find("stand-in"), std::string::npos);
+
+  folder.write("horse.ply", "ply\nnonsense\n");
+  EXPECT_THROW((void)find_views(folder.folder()), tool::Failure);
+}
+
+TEST(Views, CamerasAreThoseOfTheCameraFiles) {
+  const TemporaryFolder folder;
+  folder.write_ply("conference.ply", make_torus(12, 8, 1.0f, 0.4f));
+  const FoundViews found = find_views(folder.folder());
+  ASSERT_EQ(found.views.size(), 2u);
+  for (const View& view : found.views) {
+    const tool::ViewRequest file = tool::read_camera_file(kScenes / (view.key + ".camera"));
+    EXPECT_EQ(view.camera.eye, file.eye) << view.key;
+    EXPECT_EQ(view.camera.at, file.at) << view.key;
+    EXPECT_EQ(view.camera.up, file.up) << view.key;
+    EXPECT_EQ(view.camera.fov_degrees, file.fov_degrees) << view.key;
+  }
+}
+
+TEST(Views, GrowthCountsAreEvenAndRise) {
+  EXPECT_EQ(growth_counts(1'000'000),
+            (std::vector<std::uint32_t>{10'000, 20'000, 50'000, 100'000, 200'000, 500'000, 1'000'000}));
+  EXPECT_EQ(growth_counts(60'000).front(), 600u);
+  EXPECT_EQ(growth_counts(6'000), (std::vector<std::uint32_t>{600, 1'200, 3'000, 6'000}));
+  EXPECT_EQ(growth_counts(30'000).front(), 600u) << "300 triangles make no knot";
+  for (const std::uint32_t count : growth_counts(123'457)) EXPECT_EQ(count % 2, 0u);
+  EXPECT_EQ(make_knot_view(600).mesh().triangles.size(), 600u);
+}
+
+}  // namespace
+}  // namespace gridiron::test

@@ -1,0 +1,53 @@
+// Book: the files of an experiment in the making: CSV tables, SVG plots and the page that shows them.
+// Memory: owns all text until it is written. Threads: one. SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <filesystem>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "experiment/table.h"
+
+namespace gridiron::experiment {
+
+struct BookFile {
+  std::string name;  ///< no folders
+  std::string content;
+};
+
+/// Text goes in as plain words; what has a meaning in HTML is escaped here.
+class Book {
+ public:
+  /// @param title, lead  heading of the page and the paragraph below it.
+  Book(std::string_view title, std::string_view lead);
+
+  /// Opens a section of the page, named in its list of contents. @param id  a word, unique.
+  void section(std::string_view id, std::string_view title);
+  void paragraph(std::string_view text);
+
+  /// Adds NAME.csv; `caption` stands above the table on the page.
+  void table(const Table& table, std::string_view caption);
+  /// Adds NAME.csv and a link to it; for what is too long to read or differs between runs.
+  void linked_table(const Table& table, std::string_view caption);
+  /// Shows a table that is a view of others and has no file of its own.
+  void shown_table(const Table& table, std::string_view caption);
+  /// Adds NAME.svg.
+  void figure(std::string_view name, std::string svg, std::string_view caption);
+
+  /// @returns every file, index.html last. The book ends with it.
+  [[nodiscard]] std::vector<BookFile> finish();
+
+ private:
+  void add_rows(const Table& table, std::string_view caption);
+
+  std::string title_, lead_;
+  std::string contents_, body_;
+  std::vector<BookFile> files_;
+};
+
+/// Writes all files into `folder`, which exists: each whole under a hidden name, then all under their own.
+/// Errors: tool::Failure; nothing is left then that was not there before.
+void write_files(const std::filesystem::path& folder, const std::vector<BookFile>& files);
+
+}  // namespace gridiron::experiment

@@ -1,0 +1,83 @@
+// experiment: runs one experiment and writes its folder. SPDX-License-Identifier: Apache-2.0
+#include <algorithm>
+#include <cstdio>
+#include <filesystem>
+#include <system_error>
+#include <thread>
+
+#include "experiment/paper_experiment.h"
+#include "gridiron/atomic_file.h"
+#include "gridiron/commands.h"
+#include "gridiron/failure.h"
+#include "gridiron/interrupt.h"
+#include "gridiron/progress.h"
+#include "gridiron/stopwatch.h"
+#include "gridiron/words.h"
+
+namespace gridiron::tool {
+namespace {
+
+// The folder of an experiment: made where it is not there, gone again where nothing was written into it.
+class OutputFolder {
+ public:
+  explicit OutputFolder(std::filesystem::path path) : path_(std::move(path)) {
+    std::error_code error;
+    made_ = std::filesystem::create_directory(path_, error);
+    if (error) {
+      throw Failure(ExitCode::kBadInput, path_.string() + ": cannot make the folder: " + error.message());
+    }
+    if (!std::filesystem::is_directory(path_, error)) {
+      throw Failure(ExitCode::kBadInput, path_.string() + ": is no folder");
+    }
+    check_can_write(path_ / "index.html");
+  }
+  ~OutputFolder() {
+    std::error_code ignored;
+    if (made_ && !kept_) std::filesystem::remove(path_, ignored);  // only where empty
+  }
+  OutputFolder(const OutputFolder&) = delete;
+  OutputFolder& operator=(const OutputFolder&) = delete;
+
+  void keep() { kept_ = true; }
+
+ private:
+  std::filesystem::path path_;
+  bool made_ = false, kept_ = false;
+};
+
+void check_scenes(const std::filesystem::path& folder) {
+  std::error_code ignored;
+  if (!folder.empty() && !std::filesystem::is_directory(folder, ignored)) {
+    throw Failure(ExitCode::kBadInput, folder.string() + ": no such folder of scenes");
+  }
+}
+
+}  // namespace
+
+void run_command(const ExperimentArguments& arguments) {
+  check_scenes(arguments.scenes);
+  OutputFolder folder(arguments.output);
+  const Stopwatch stopwatch;
+  experiment::PaperExperiment settings;
+  settings.scenes = arguments.scenes;
+  settings.threads = arguments.threads != 0 ? arguments.threads : std::max(1u, std::thread::hardware_concurrency());
+  settings.width = arguments.width;
+  settings.height = arguments.height;
+  settings.largest_knot = arguments.largest_knot;
+
+  experiment::PaperResult result;
+  {
+    Progress progress(!arguments.quiet, "run");
+    result = experiment::run_paper_experiment(
+        settings, [&progress](std::uint32_t done, std::uint32_t total) { progress.update(done, total); });
+  }
+  experiment::write_files(arguments.output, result.files);
+  folder.keep();
+  if (arguments.quiet) return;
+  for (const std::string& sentence : result.missing) std::printf("%s\n", sentence.c_str());
+  std::printf("%s: %s, %s rendered, %s of the machine, %.1f s\n", (arguments.output / "index.html").c_str(),
+              words_of_count(result.files.size(), "file").c_str(), words_of_count(result.frame_count, "frame").c_str(),
+              words_of_count(result.run_count, "run").c_str(), stopwatch.seconds());
+}
+
+}  // namespace gridiron::tool

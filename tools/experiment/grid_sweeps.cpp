@@ -1,0 +1,403 @@
+// Sweeps of what the grid traversal is built with: lambda, macrocells, packets, prefetch, local store.
+// SPDX-License-Identifier: Apache-2.0
+#include <gridiron/rival/rival_store.h>
+
+#include <algorithm>
+#include <optional>
+
+#include "experiment/sections.h"
+#include "experiment/svg_plot.h"
+#include "gridiron/store_facts.h"
+
+namespace gridiron::experiment {
+namespace {
+
+const char* const kSweptConfigurations[] = {"reference", "best"};
+
+/// One frame of a sweep: a view, a configuration, and the parameter's value in it.
+struct Step {
+  const View* view;
+  std::string configuration;
+  double value;
+  Plan::RunId run;
+};
+
+// Plans each value for each swept view and configuration; `change` makes a variant, or nothing where there is none.
+template <class Change>
+std::vector<Step> plan_steps(Plan& plan, const Stage& stage, const std::vector<double>& values, const std::string& name,
+                             Change change) {
+  std::vector<Step> steps;
+  for (const View* view : stage.sweep_views) {
+    for (const char* configuration : kSweptConfigurations) {
+      for (const double value : values) {
+        GridVariant variant = grid_variant(configuration);
+        if (!change(variant, value)) continue;
+        variant.key += "/" + name + "=" + number_text(value);
+        const auto system = std::make_shared<GridSystem>(std::move(variant));
+        steps.push_back(
+            {view, configuration, value, plan.add(*view, system, Shading::kNone, stage.machine, kPaperCores)});
+      }
+    }
+  }
+  return steps;
+}
+
+Table step_table(const Plan& done, const std::vector<Step>& steps, const std::string& name, Column parameter) {
+  Table table{name,
+              {{"view", "view"},
+               {"configuration", "configuration"},
+               std::move(parameter),
+               {"fps", "fps"},
+               {"wait_percent", "wait, %"},
+               {"fetched_mb", "fetched, MB", 1},
+               {"scene_mb", "main memory, MB", 1},
+               {"references", "references"},
+               {"traversal_steps", "traversal steps"},
+               {"intersection_tests", "intersection tests"},
+               {"note", "note"}},
+              {}};
+  for (const Step& step : steps) {
+    const RunResult& run = done.result(step.run);
+    std::vector<Cell> row = {step.view->title, step.configuration, step.value};
+    if (run.failed()) {
+      row.resize(table.columns.size() - 1);
+      row.emplace_back(run.failure);
+    } else {
+      constexpr double kMegabyte = 1 << 20;
+      row.insert(row.end(), {run.fps(), run.wait_percent(), static_cast<double>(run.bytes_in()) / kMegabyte,
+                             static_cast<double>(run.facts.scene_bytes) / kMegabyte,
+                             run.facts.grid ? Cell{std::uint64_t{run.facts.grid->reference_count}} : Cell{},
+                             run.facts.traversal_steps, run.facts.intersection_tests, Cell{}});
+    }
+    table.add(std::move(row));
+  }
+  return table;
+}
+
+// One curve for each view and configuration.
+template <class Value>
+std::string step_chart(const Plan& done, const std::vector<Step>& steps, LineChart chart, Value value) {
+  for (const Step& step : steps) {
+    const std::string name = step.view->title + ", " + step.configuration;
+    auto series = std::ranges::find(chart.series, name, &Series::name);
+    if (series == chart.series.end()) series = chart.series.insert(series, {name, {}, false});
+    const RunResult& run = done.result(step.run);
+    if (!run.failed()) series->points.push_back({step.value, value(run)});
+  }
+  return line_chart_svg(chart);
+}
+
+double fps_of(const RunResult& run) {
+  return run.fps();
+}
+
+double wait_of(const RunResult& run) {
+  return run.wait_percent();
+}
+
+// "3 (Bunny, reference), ...": the value that gave each curve its most frames a second.
+std::string best_values(const Plan& done, const std::vector<Step>& steps) {
+  std::vector<const Step*> best;
+  for (const Step& step : steps) {
+    const auto same = std::ranges::find_if(best, [&step](const Step* other) {
+      return other->view == step.view && other->configuration == step.configuration;
+    });
+    if (same == best.end()) {
+      best.push_back(&step);
+    } else if (!(done.result((*same)->run).fps() >= done.result(step.run).fps())) {  // also where that one failed
+      *same = &step;
+    }
+  }
+  std::string text;
+  for (const Step* step : best) {
+    text += (text.empty() ? "" : ", ") + number_text(step->value) + " (" + step->view->title + ", " +
+            step->configuration + ")";
+  }
+  return text;
+}
+
+}  // namespace
+
+Writer plan_grid_sweeps(Plan& plan, const Stage& stage) {
+  const auto lambdas =
+      plan_steps(plan, stage, {0.5, 1, 2, 3, 4, 5, 6, 8, 12, 16}, "lambda", [](GridVariant& variant, double value) {
+        variant.configuration.lambda = static_cast<float>(value);
+        return true;
+      });
+  const auto widths =
+      plan_steps(plan, stage, {2, 3, 4, 5, 6, 7, 8}, "macro_width", [](GridVariant& variant, double value) {
+        variant.configuration.macro_width = static_cast<std::uint32_t>(value);
+        return true;
+      });
+  return [lambdas, widths](const Plan& done, Book& book) {
+    book.section("lambda", "Sweep: cells per triangle");
+    book.paragraph(
+        "Lambda of Eq. (1). Few large cells mean more intersection tests, many small ones more steps and more "
+        "duplicated triangles in main memory. Most frames a second at " +
+        best_values(done, lambdas) + "; both configurations use 4.");
+    book.figure("sweep_lambda",
+                step_chart(done, lambdas,
+                           {.title = "Cells per triangle",
+                            .x_title = "lambda",
+                            .y_title = "frames a second",
+                            .series = {},
+                            .log_x = true,
+                            .log_y = false,
+                            .x_ticks = {0.5, 1, 2, 4, 8, 16}},
+                           fps_of),
+                "Frames a second against lambda, 6 cores, no shading.");
+    book.linked_table(step_table(done, lambdas, "sweep_lambda", {"lambda", "lambda", 1}),
+                      "every step, with work, bytes and memory.");
+
+    book.section("macro-width", "Sweep: macrocell size");
+    book.paragraph(
+        "Cells along the edge of a macrocell, which one DMA command brings: a line of 128 bytes at width 2, 1,792 at "
+        "6, 4,096 at 8. Wide macrocells need fewer commands and carry more cells that nobody asks for. Most frames a "
+        "second at " +
+        best_values(done, widths) +
+        "; both configurations use 6. A view whose waiting jumps at width 2 has more macrocells than the local store "
+        "holds entries for (131,072), so that parts of their table are fetched again.");
+    book.figure("sweep_macro_width",
+                step_chart(done, widths,
+                           {.title = "Macrocell size",
+                            .x_title = "cells along an edge",
+                            .y_title = "frames a second",
+                            .series = {},
+                            .log_x = false,
+                            .log_y = false,
+                            .x_ticks = {2, 3, 4, 5, 6, 7, 8}},
+                           fps_of),
+                "Frames a second against the width of macrocells, 6 cores, no shading.");
+    book.linked_table(step_table(done, widths, "sweep_macro_width", {"macro_width", "width", 0}),
+                      "every step, with work, bytes and memory.");
+  };
+}
+
+Writer plan_packet_sweep(Plan& plan, const Stage& stage) {
+  struct Row {
+    const View* view;
+    std::uint32_t width;
+    bool subpackets;
+    Plan::RunId two, deep;
+  };
+  std::vector<Row> rows;
+  for (const View* view : stage.sweep_views) {
+    for (const bool subpackets : {false, true}) {
+      for (const std::uint32_t width : {4u, 8u, 16u, 32u}) {
+        GridVariant two = grid_variant(subpackets ? "best" : "reference");
+        two.configuration.packet_width = width;
+        GridVariant deep = two;
+        two.configuration.depths = grid_variant("reference").configuration.depths;
+        deep.configuration.depths = grid_variant("best").configuration.depths;
+        two.key += "/double/packet=" + std::to_string(width);
+        deep.key += "/deep/packet=" + std::to_string(width);
+        const auto add = [&](GridVariant variant) {
+          return plan.add(*view, std::make_shared<GridSystem>(std::move(variant)), Shading::kNone, stage.machine,
+                          kPaperCores);
+        };
+        rows.push_back({view, width, subpackets, add(std::move(two)), add(std::move(deep))});
+      }
+    }
+  }
+  return [rows](const Plan& done, Book& book) {
+    Table table{"sweep_packet",
+                {{"view", "view"},
+                 {"culling", "culling"},
+                 {"packet_width", "packet width"},
+                 {"double_fps", "double buffering, fps"},
+                 {"double_wait_percent", "wait, %"},
+                 {"deep_fps", "deep prefetch, fps"},
+                 {"deep_wait_percent", "wait, %"},
+                 {"fetched_mb", "fetched, MB", 1}},
+                {}};
+    for (const Row& row : rows) {
+      const RunResult& two = done.result(row.two);
+      const RunResult& deep = done.result(row.deep);
+      table.add({row.view->title, row.subpackets ? "subpackets" : "corner rays", std::uint64_t{row.width}, two.fps(),
+                 two.wait_percent(), deep.fps(), deep.wait_percent(),
+                 static_cast<double>(deep.bytes_in()) / (1 << 20)});
+    }
+    book.section("packets", "Sweep: packet and tile size");
+    book.paragraph(
+        "Rays along a packet's edge, with the two ways of culling a triangle: by the four corner rays of the packet "
+        "(reference) or by subpackets of 4x4 rays (best). Wide packets fetch and walk less often; without subpackets "
+        "every triangle that touches the packet is then tested against all of its rays.");
+    book.table(table,
+               "Packet size and culling, 6 cores, no shading. Double buffering: 2 cell blocks, 2 triangle buffers; "
+               "deep prefetch: 4 and 8.");
+    book.paragraph(
+        "Tile size is not swept on its own: the compiled local-store layouts fix it, 32 pixels in the 256 KB store and "
+        "16 in the 64 KB store. The sweep of the local store below compares those two.");
+  };
+}
+
+Writer plan_prefetch_sweeps(Plan& plan, const Stage& stage) {
+  const tool::StoreFacts facts = tool::store_facts(sim::StoreSize::k256KB, 32);
+  std::vector<double> macro_depths, triangle_depths;
+  for (std::uint32_t depth = 1; depth <= facts.max_macro_depth; ++depth) macro_depths.push_back(depth);
+  for (std::uint32_t depth = 1; depth <= facts.max_triangle_depth; ++depth) triangle_depths.push_back(depth);
+  const auto macros = plan_steps(plan, stage, macro_depths, "macro_depth", [](GridVariant& variant, double value) {
+    variant.configuration.depths.macro = static_cast<std::uint32_t>(value);
+    return true;
+  });
+  const auto triangles =
+      plan_steps(plan, stage, triangle_depths, "triangle_depth", [](GridVariant& variant, double value) {
+        variant.configuration.depths.triangle = static_cast<std::uint32_t>(value);
+        return true;
+      });
+  return [macros, triangles, macro_depths, triangle_depths](const Plan& done, Book& book) {
+    book.section("prefetch", "Sweep: prefetch depth");
+    book.paragraph(
+        "Buffers in rotation at one level, the other levels as the configuration has them: 1 fetches, waits and uses, "
+        "2 is double buffering. Deeper prefetch fetches a little more than is used, because rays may end before the "
+        "prefetched cell. Most frames a second with this many cell blocks: " +
+        best_values(done, macros) + "; with this many triangle buffers: " + best_values(done, triangles) + ".");
+    book.figure("sweep_macro_depth",
+                step_chart(done, macros,
+                           {.title = "Prefetch of cell blocks",
+                            .x_title = "cell blocks in rotation",
+                            .y_title = "waiting, % of core cycles",
+                            .series = {},
+                            .log_x = false,
+                            .log_y = false,
+                            .x_ticks = macro_depths},
+                           wait_of),
+                "Share of waiting against the number of cell-block buffers, 6 cores, no shading.");
+    book.figure("sweep_triangle_depth",
+                step_chart(done, triangles,
+                           {.title = "Prefetch of triangles",
+                            .x_title = "triangle buffers in rotation",
+                            .y_title = "waiting, % of core cycles",
+                            .series = {},
+                            .log_x = false,
+                            .log_y = false,
+                            .x_ticks = triangle_depths},
+                           wait_of),
+                "Share of waiting against the number of triangle buffers, 6 cores, no shading.");
+    book.linked_table(step_table(done, macros, "sweep_macro_depth", {"macro_depth", "cell blocks", 0}), "cell blocks.");
+    book.linked_table(step_table(done, triangles, "sweep_triangle_depth", {"triangle_depth", "triangle buffers", 0}),
+                      "triangle buffers.");
+  };
+}
+
+namespace {
+
+Table rival_map() {
+  Table map{"local_store_map_bvh", {{"region", "region"}, {"offset", "offset"}, {"bytes", "bytes"}}, {}};
+  rival::for_each_region([&map](const char* name, std::size_t offset_bytes, std::size_t bytes) {
+    map.add({name, std::uint64_t{offset_bytes}, std::uint64_t{bytes}});
+  });
+  const auto add_row = [&map](const char* name, std::uint64_t bytes) { map.add({name, Cell{}, bytes}); };
+  add_row("code (budget)", rival::kCodeBudgetBytes);
+  add_row("stack (budget)", rival::kStackBudgetBytes);
+  add_row("free", rival::kArenaBytes - rival::kCodeBudgetBytes - rival::kStackBudgetBytes - sizeof(rival::RivalStore));
+  add_row("local store", rival::kArenaBytes);
+  return map;
+}
+
+}  // namespace
+
+Writer plan_store_sweep(Plan& plan, const Stage& stage) {
+  struct Row {
+    const View* view;
+    std::string configuration;
+    Plan::RunId small, large;
+  };
+  std::vector<Row> rows;
+  for (const View& view : stage.views()) {
+    for (const char* configuration : kSweptConfigurations) {
+      GridVariant small = grid_variant(configuration);
+      small.store = sim::StoreSize::k64KB;
+      tool::Configuration& fitted = small.configuration;
+      fitted.packet_width = std::min(fitted.packet_width, tool::store_facts(sim::StoreSize::k64KB, 8).tile_width);
+      const tool::StoreFacts facts = tool::store_facts(sim::StoreSize::k64KB, fitted.packet_width);
+      fitted.depths.macro = std::min(fitted.depths.macro, facts.max_macro_depth);
+      fitted.depths.triangle = std::min(fitted.depths.triangle, facts.max_triangle_depth);
+      small.key += "/store=64";
+      const auto add = [&](GridVariant variant) {
+        return plan.add(view, std::make_shared<GridSystem>(std::move(variant)), Shading::kNone, stage.machine,
+                        kPaperCores);
+      };
+      rows.push_back({&view, configuration, add(std::move(small)), add(grid_variant(configuration))});
+    }
+  }
+  return [rows](const Plan& done, Book& book) {
+    Table table{"sweep_local_store",
+                {{"view", "view"},
+                 {"configuration", "configuration"},
+                 {"store_64_fps", "64 KB, fps"},
+                 {"store_64_wait_percent", "wait, %"},
+                 {"store_64_fetched_mb", "fetched, MB", 1},
+                 {"store_256_fps", "256 KB, fps"},
+                 {"store_256_wait_percent", "wait, %"},
+                 {"store_256_fetched_mb", "fetched, MB", 1},
+                 {"same_picture", "same picture"}},
+                {}};
+    for (const Row& row : rows) {
+      const RunResult& small = done.result(row.small);
+      const RunResult& large = done.result(row.large);
+      constexpr double kMegabyte = 1 << 20;
+      table.add({row.view->title, row.configuration, small.fps(), small.wait_percent(),
+                 static_cast<double>(small.bytes_in()) / kMegabyte, large.fps(), large.wait_percent(),
+                 static_cast<double>(large.bytes_in()) / kMegabyte,
+                 small.facts.picture_hash == large.facts.picture_hash ? "yes" : "no"});
+    }
+    book.section("store", "Sweep: local store");
+    book.paragraph(
+        "The 64 KB layout has tiles of 16 pixels, triangle buffers of 16 records instead of 64, and at most two cell "
+        "blocks and four triangle buffers, to which the configurations are cut down; best then traverses once per "
+        "16x16 tile. Layouts for other sizes are not built, 512 KB among them.");
+    book.table(table, "The two compiled sizes of the local store, 6 cores, no shading.");
+
+    struct Layout {
+      const char* key;
+      const char* title;
+      tool::StoreFacts facts;
+    };
+    const Layout layouts[] = {
+        {"reference_256", "reference, 256 KB", tool::store_facts(sim::StoreSize::k256KB, 8)},
+        {"best_256", "best, 256 KB", tool::store_facts(sim::StoreSize::k256KB, 32)},
+        {"reference_64", "reference, 64 KB", tool::store_facts(sim::StoreSize::k64KB, 8)},
+        {"best_64", "best, 64 KB", tool::store_facts(sim::StoreSize::k64KB, 16)},
+    };
+    Table map{"local_store_map", {{"region", "region"}}, {}};
+    for (const Layout& layout : layouts) {
+      map.columns.push_back({std::string(layout.key) + "_offset", std::string(layout.title) + ": offset"});
+      map.columns.push_back({std::string(layout.key) + "_bytes", "bytes"});
+    }
+    for (std::size_t i = 0; i < layouts[0].facts.regions.size(); ++i) {
+      std::vector<Cell> cells = {layouts[0].facts.regions[i].name};
+      for (const Layout& layout : layouts) {
+        cells.emplace_back(layout.facts.regions[i].offset_bytes);
+        cells.emplace_back(layout.facts.regions[i].bytes);
+      }
+      map.add(std::move(cells));
+    }
+    const auto add_row = [&](const char* name, auto value) {
+      std::vector<Cell> cells = {name};
+      for (const Layout& layout : layouts) {
+        cells.emplace_back();
+        cells.emplace_back(std::uint64_t{value(layout.facts)});
+      }
+      map.add(std::move(cells));
+    };
+    add_row("code (budget)", [](const tool::StoreFacts& facts) { return facts.code_bytes; });
+    add_row("stack (budget)", [](const tool::StoreFacts& facts) { return facts.stack_bytes; });
+    add_row("free", [](const tool::StoreFacts& facts) {
+      return facts.arena_bytes - facts.code_bytes - facts.stack_bytes - facts.data_bytes();
+    });
+    add_row("local store", [](const tool::StoreFacts& facts) { return facts.arena_bytes; });
+    book.section("map", "The local store, byte by byte");
+    book.paragraph(
+        "Everything a core works in, in address order. The sizes are those of the compiled layouts, which hold the "
+        "deepest prefetch of every configuration, so reference and best differ only in packet and mailbox. Code and "
+        "stack are committed budgets that the cross builds prove.");
+    book.table(map, "A core's local store under the grid: where each region begins, and its bytes.");
+    book.paragraph(
+        "The hierarchy has a map of its own. The regions are as large as the largest ring and caches that it can be "
+        "asked for; its budgets for code and stack are the grid's, taken over and not proved by a cross build.");
+    book.table(rival_map(), "A core's local store under the hierarchy.");
+  };
+}
+
+}  // namespace gridiron::experiment

@@ -1,0 +1,103 @@
+// The paper experiment. SPDX-License-Identifier: Apache-2.0
+#include "experiment/paper_experiment.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "experiment/plan.h"
+#include "experiment/sections.h"
+#include "experiment/svg_plot.h"
+#include "gridiron/interrupt.h"
+
+namespace gridiron::experiment {
+namespace {
+
+Stage make_stage(const PaperExperiment& experiment) {
+  Stage stage;
+  stage.found = find_views(experiment.scenes);
+  for (const std::uint32_t count : growth_counts(experiment.largest_knot)) {
+    tool::stop_if_interrupted();
+    stage.knots.push_back(make_knot_view(count));
+  }
+  stage.contenders = make_contenders();
+  stage.machine = built_in_machine("cell-ps3");
+  stage.width = experiment.width;
+  stage.height = experiment.height;
+  return stage;
+}
+
+// Bunny and the first view of the conference room; the first and the last of other views.
+std::vector<const View*> choose_sweep_views(const std::vector<View>& views) {
+  std::vector<const View*> chosen;
+  for (const View& view : views) {
+    if (view.key == "bunny" || view.key == "conference_1") chosen.push_back(&view);
+  }
+  if (chosen.empty()) chosen.push_back(&views.front());
+  if (chosen.size() == 1 && chosen.front() != &views.back()) chosen.push_back(&views.back());
+  return chosen;
+}
+
+}  // namespace
+
+const Contender& contender_named(const Stage& stage, std::string_view key) {
+  return *std::ranges::find(stage.contenders, key, &Contender::key);
+}
+
+void Range::add(double value) {
+  if (!std::isfinite(value)) return;
+  least_ = empty_ ? value : std::min(least_, value);
+  greatest_ = empty_ ? value : std::max(greatest_, value);
+  empty_ = false;
+}
+
+std::string Range::text(int decimals) const {
+  if (empty_) return "none";
+  const std::string low = fixed_text(least_, decimals), high = fixed_text(greatest_, decimals);
+  return low == high ? low : low + " to " + high;
+}
+
+double percent_less(double part, double whole) {
+  return whole > 0 ? 100 * (1 - part / whole) : std::nan("");
+}
+
+double percent_more(double changed, double base) {
+  return base > 0 ? 100 * (changed / base - 1) : std::nan("");
+}
+
+PaperResult run_paper_experiment(const PaperExperiment& experiment,
+                                 const std::function<void(std::uint32_t, std::uint32_t)>& progress) {
+  Stage stage = make_stage(experiment);
+  stage.sweep_views = choose_sweep_views(stage.found.views);
+
+  // 1. What is needed.
+  Plan plan(experiment.width, experiment.height);
+  std::vector<Writer> before_host, after_host;
+  for (const auto section :
+       {plan_table1, plan_table2, plan_table3, plan_figure5, plan_figure6, plan_table4, plan_best, plan_figure7}) {
+    before_host.push_back(section(plan, stage));
+  }
+  for (const auto section :
+       {plan_grid_sweeps, plan_packet_sweep, plan_prefetch_sweeps, plan_machine_sweeps, plan_store_sweep}) {
+    after_host.push_back(section(plan, stage));
+  }
+
+  // 2. Rendered and replayed.
+  plan.execute(experiment.threads, progress);
+
+  // 3. Written down.
+  const std::string size = std::to_string(experiment.width) + "x" + std::to_string(experiment.height);
+  Book book(
+      "Grid ray tracing from small local stores: the evaluation, run again",
+      "Every figure below comes from one run of `gridiron experiment paper`: pictures of " + size +
+          " rendered by the kernel's real code on the simulated chip " + stage.machine.key +
+          ", their recorded transfers and work replayed on the machine's clock. " +
+          kCostTableWords + " Nothing is fitted to the paper's figures. [P] marks what the paper prints, [D] what "
+          "follows from what it prints. Paper: Cho, Kim, Han, Enhancing Visual Rendering on Multicore Accelerators "
+          "with Explicitly Managed Memories, Journal of Information Science and Engineering 28 (2012), 895-909.");
+  for (const Writer& write : before_host) write(plan, book);
+  write_host_figures(stage, experiment.threads, book);
+  for (const Writer& write : after_host) write(plan, book);
+  return {book.finish(), plan.frame_count(), plan.run_count(), stage.found.missing};
+}
+
+}  // namespace gridiron::experiment

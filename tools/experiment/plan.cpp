@@ -1,0 +1,116 @@
+// Plan. SPDX-License-Identifier: Apache-2.0
+#include "experiment/plan.h"
+
+#include <algorithm>
+#include <atomic>
+#include <cmath>
+#include <exception>
+#include <mutex>
+#include <thread>
+#include <utility>
+
+#include "gridiron/failure.h"
+#include "gridiron/interrupt.h"
+
+namespace gridiron::experiment {
+
+Machine built_in_machine(std::string_view name) {
+  return {std::string(name), *sim::find_machine_profile(name)};
+}
+
+double RunResult::fps() const {
+  return timing.seconds > 0 ? 1 / timing.seconds : std::nan("");
+}
+
+double RunResult::fps_with_build() const {
+  return timing.seconds > 0 ? 1 / (timing.seconds + build_seconds) : std::nan("");
+}
+
+double RunResult::wait_cycles() const {
+  double cycles = 0;
+  for (const sim::CoreTiming& core : timing.cores) {
+    for (const double wait : core.dma_wait_cycles) cycles += wait;
+  }
+  return cycles;
+}
+
+double RunResult::wait_percent() const {
+  const double all = timing.frame_cycles * static_cast<double>(timing.cores.size());
+  return all > 0 ? 100 * wait_cycles() / all : std::nan("");
+}
+
+std::uint64_t RunResult::bytes_in() const {
+  std::uint64_t bytes = 0;
+  for (const sim::CoreTiming& core : timing.cores) bytes += core.bytes_in;
+  return bytes;
+}
+
+Plan::RunId Plan::add(const View& view, const std::shared_ptr<const System>& system, Shading shading,
+                      const Machine& machine, std::uint32_t core_count) {
+  const auto [frame, is_new_frame] = frame_of_.try_emplace({view.key, system->key(), shading}, frames_.size());
+  if (is_new_frame) frames_.push_back({&view, system, shading, {}});
+  const auto [run, is_new_run] = run_of_.try_emplace({frame->second, machine.key, core_count}, results_.size());
+  if (is_new_run) {
+    frames_[frame->second].runs.push_back({run->second, machine, core_count});
+    results_.emplace_back();
+  }
+  return run->second;
+}
+
+void Plan::run_frame(const Frame& frame, const std::function<void()>& run_done) {
+  std::unique_ptr<Recording> recording;
+  std::string failure;
+  try {
+    recording = frame.system->record(*frame.view, {.width = width_, .height = height_, .shading = frame.shading});
+  } catch (const tool::Failure& reason) {
+    if (reason.code() != tool::ExitCode::kBadInput) throw;
+    failure = reason.what();
+  }
+  for (const Run& run : frame.runs) {
+    tool::stop_if_interrupted();
+    RunResult& result = results_[run.id];
+    if (recording == nullptr) {
+      result.failure = failure;
+    } else {
+      result.facts = recording->facts();
+      TimedFrame timed = recording->time(run.machine.profile, run.core_count);
+      result.timing = std::move(timed.timing);
+      result.caches = timed.caches;
+      result.build_cycles = sim::build_cycles(run.machine.profile.master, result.facts.build);
+      result.build_seconds = sim::build_seconds(run.machine.profile.master, result.facts.build);
+    }
+    run_done();
+  }
+}
+
+void Plan::execute(std::uint32_t threads, const std::function<void(std::uint32_t, std::uint32_t)>& progress) {
+  std::atomic<std::size_t> next_frame{0};
+  std::atomic<bool> stop{false};
+  std::mutex mutex;
+  std::uint32_t done = 0;
+  std::vector<std::exception_ptr> errors(frames_.size());
+  const auto total = static_cast<std::uint32_t>(results_.size());
+  const auto run_done = [&] {
+    const std::lock_guard lock(mutex);
+    progress(++done, total);
+  };
+  const auto work = [&] {
+    for (std::size_t i = next_frame++; i < frames_.size() && !stop; i = next_frame++) {
+      try {
+        run_frame(frames_[i], run_done);
+      } catch (...) {
+        errors[i] = std::current_exception();
+        stop = true;
+      }
+    }
+  };
+  std::vector<std::thread> workers;
+  for (std::uint32_t i = 1; i < threads; ++i) workers.emplace_back(work);
+  work();
+  for (std::thread& worker : workers) worker.join();
+  for (const std::exception_ptr& error : errors) {
+    if (error != nullptr) std::rethrow_exception(error);
+  }
+}
+
+}  // namespace gridiron::experiment

@@ -1,0 +1,84 @@
+// Sections of the paper experiment: each asks a plan for the runs it needs and returns how to write them down.
+// Memory: writers share what they need. Threads: one. SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <cstdint>
+#include <functional>
+#include <vector>
+
+#include "experiment/book.h"
+#include "experiment/plan.h"
+#include "experiment/systems.h"
+#include "experiment/views.h"
+
+namespace gridiron::experiment {
+
+/// What all sections work on. Outlives the plan.
+struct Stage {
+  FoundViews found;
+  std::vector<View> knots;               ///< of Table 1, rising
+  std::vector<const View*> sweep_views;  ///< of the sweeps: fewer than all
+  std::vector<Contender> contenders;
+  Machine machine;  ///< of every table but Fig. 7
+  std::uint32_t width = 1024, height = 1024;
+
+  [[nodiscard]] const std::vector<View>& views() const { return found.views; }
+};
+
+/// Adds a section's tables, figures and words to the book once the plan has been executed.
+using Writer = std::function<void(const Plan&, Book&)>;
+
+inline constexpr std::uint32_t kPaperCores = 6;
+
+/// What is known of the cycles per unit of work (sim_platform/gridiron/sim/machine_profile.cpp).
+inline constexpr const char* kCostTableWords =
+    "The cycles per unit of work are estimates, counted by hand on the algorithms and good to some 30 % each.";
+
+/// The same of the kinds of work that only the rival has (sim_platform/gridiron/rival/rival_work.cpp).
+inline constexpr const char* kRivalCostWords =
+    "The kinds of work that only the hierarchy has (caches, boxes, stack) are estimates, counted by hand on the "
+    "algorithms and good to some 30 % each; all others cost what they cost the grid.";
+
+[[nodiscard]] Writer plan_table1(Plan& plan, const Stage& stage);
+[[nodiscard]] Writer plan_table2(Plan& plan, const Stage& stage);
+[[nodiscard]] Writer plan_table3(Plan& plan, const Stage& stage);
+[[nodiscard]] Writer plan_figure5(Plan& plan, const Stage& stage);
+[[nodiscard]] Writer plan_figure6(Plan& plan, const Stage& stage);
+[[nodiscard]] Writer plan_table4(Plan& plan, const Stage& stage);
+[[nodiscard]] Writer plan_best(Plan& plan, const Stage& stage);
+[[nodiscard]] Writer plan_figure7(Plan& plan, const Stage& stage);
+
+/// Fig. 7 (b): the same kernel, and Embree, on this host's processor. One frame after another, nothing beside it.
+/// @param threads  host threads of the grid's second row. Errors: Failure.
+void write_host_figures(const Stage& stage, std::uint32_t threads, Book& book);
+
+[[nodiscard]] Writer plan_grid_sweeps(Plan& plan, const Stage& stage);      ///< lambda, macrocell width
+[[nodiscard]] Writer plan_packet_sweep(Plan& plan, const Stage& stage);     ///< packets, subpackets, tiles
+[[nodiscard]] Writer plan_prefetch_sweeps(Plan& plan, const Stage& stage);  ///< cell blocks, triangle buffers
+[[nodiscard]] Writer plan_machine_sweeps(Plan& plan, const Stage& stage);   ///< latency, bandwidth
+[[nodiscard]] Writer plan_store_sweep(Plan& plan, const Stage& stage);      ///< 64 and 256 KB, the maps
+
+/// @returns the machine with another latency, under the key that all sections give it.
+[[nodiscard]] Machine machine_with_latency(const Machine& machine, double cycles);
+
+/// @returns the contender of that key. Precondition: there is one.
+[[nodiscard]] const Contender& contender_named(const Stage& stage, std::string_view key);
+
+/// Least and greatest of some figures, as words: "1.2 to 3.4"; one figure where both print alike; "none".
+class Range {
+ public:
+  void add(double value);  ///< what is not finite is left out
+  [[nodiscard]] std::string text(int decimals) const;
+  [[nodiscard]] double greatest() const { return greatest_; }
+
+ private:
+  bool empty_ = true;
+  double least_ = 0, greatest_ = 0;
+};
+
+/// @returns 100 * (1 - part / whole), not a number where whole is none or not above 0.
+[[nodiscard]] double percent_less(double part, double whole);
+/// @returns 100 * (changed / base - 1), not a number where base is none or not above 0.
+[[nodiscard]] double percent_more(double changed, double base);
+
+}  // namespace gridiron::experiment

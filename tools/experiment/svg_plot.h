@@ -1,0 +1,69 @@
+// SVG plots: line charts and stacked or grouped bars as text, with axes, ticks and legend.
+// Memory: std::string. Threads: any, no shared state. SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <cstddef>
+#include <span>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "experiment/power_fit.h"
+
+namespace gridiron::experiment {
+
+/// Area of the plot inside the picture, in SVG units; y grows downwards.
+struct PlotArea {
+  double left = 72, top = 44, right = 700, bottom = 352;
+};
+inline constexpr double kPlotWidth = 720, kPlotHeight = 470;
+
+/// One axis: its end values, and where they lie in the picture.
+struct Axis {
+  double low = 0, high = 1;   ///< values; 0 < low on a logarithmic axis
+  double begin = 0, end = 1;  ///< places of low and high
+  bool logarithmic = false;
+
+  [[nodiscard]] double place(double value) const;
+};
+
+/// @returns round values from `low` to `high` (1, 2 or 5 times a power of ten apart; on a logarithmic axis the powers
+/// themselves, with 2 and 5 between where they are few), rising, at most about `most`.
+[[nodiscard]] std::vector<double> tick_values(double low, double high, bool logarithmic, std::size_t most = 8);
+
+/// @returns "0.5", "20", "10k", "1M": a tick's label.
+[[nodiscard]] std::string tick_text(double value);
+
+struct Series {
+  std::string name;
+  std::vector<Point2> points;
+  bool dashed = false;  ///< a projection or a limit: thin, without markers
+};
+
+struct LineChart {
+  std::string title, x_title, y_title;
+  std::vector<Series> series;
+  bool log_x = false, log_y = false;  ///< linear axes start at 0
+  std::vector<double> x_ticks;        ///< empty: chosen
+};
+
+/// Bars in groups; a bar is a stack of parts.
+struct BarChart {
+  std::string title, y_title;
+  std::vector<std::string> groups;  ///< along the axis
+  std::vector<std::string> bars;    ///< of each group, side by side; named under them where there is more than one part
+  std::vector<std::string> parts;   ///< of each bar, from the axis upwards; one part: bars have the colours
+  std::vector<double> values;       ///< [group][bar][part], not negative; NaN: no bar
+  bool labels = false;              ///< the bar's height in figures above it, where bars are wide enough
+};
+
+/// @returns a whole SVG document. Points with a value that the axis cannot show are left out.
+[[nodiscard]] std::string line_chart_svg(const LineChart& chart);
+
+/// @returns a whole SVG document. Precondition: values has groups x bars x parts elements.
+[[nodiscard]] std::string bar_chart_svg(const BarChart& chart);
+
+/// @returns the text with &, <, > and quotes as entities.
+[[nodiscard]] std::string escape_markup(std::string_view text);
+
+}  // namespace gridiron::experiment

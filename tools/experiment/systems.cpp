@@ -1,0 +1,166 @@
+// Systems. SPDX-License-Identifier: Apache-2.0
+#include "experiment/systems.h"
+
+#include <report/report.h>
+
+#include <algorithm>
+#include <ctime>
+#include <numeric>
+#include <utility>
+
+#include "experiment/rival_system.h"
+#include "gridiron/arguments.h"
+#include "gridiron/failure.h"
+#include "gridiron/frame_failure.h"
+#include "gridiron/frame_memory.h"
+#include "gridiron/interrupt.h"
+#include "gridiron/stopwatch.h"
+#include "gridiron/untile.h"
+
+namespace gridiron::experiment {
+namespace {
+
+tool::RenderArguments arguments_of(const GridVariant& variant, const View& view, const FrameRequest& request) {
+  tool::RenderArguments arguments;
+  arguments.scene.input = view.scene->path;
+  arguments.scene.machine = home_machine();
+  arguments.scene.configuration = &variant.configuration;
+  arguments.scene.lambda = variant.configuration.lambda;  // kept or refused: a reduced grid would be another system
+  arguments.width = request.width;
+  arguments.height = request.height;
+  arguments.packet_width = variant.configuration.packet_width;
+  arguments.depths = variant.configuration.depths;
+  arguments.techniques = variant.configuration.techniques;
+  arguments.accuracy = variant.accuracy;
+  arguments.shading = request.shading;
+  arguments.store = variant.store;
+  return arguments;
+}
+
+sim::ChipResult run_chip(tool::FrameMemory& frame, const tool::RenderArguments& arguments, sim::Mode mode,
+                         std::uint32_t lanes, std::uint32_t threads) {
+  sim::ChipOptions options;
+  options.mode = mode;
+  options.threads = threads;
+  options.lanes = lanes;
+  options.store = arguments.store;
+  options.packet_width = arguments.packet_width;
+  options.limits.queue_depth = arguments.scene.machine->queue_depth;
+  options.abort = &tool::interrupt_flag();
+  sim::ChipResult result = sim::render_frame(frame.memory, frame.record_address, options);
+  tool::stop_if_interrupted();
+  if (const std::optional<tool::Failure> failure = tool::frame_failure(result)) throw *failure;
+  return result;
+}
+
+std::uint64_t sum_of(const sim::WorkTotals& work, std::initializer_list<Work> kinds) {
+  std::uint64_t sum = 0;
+  for (const Work kind : kinds) sum += work[static_cast<std::size_t>(kind)];
+  return sum;
+}
+
+class GridRecording : public Recording {
+ public:
+  GridRecording(FrameFacts facts, sim::FrameTrace trace) : facts_(std::move(facts)), trace_(std::move(trace)) {}
+  [[nodiscard]] const FrameFacts& facts() const override { return facts_; }
+  [[nodiscard]] TimedFrame time(const sim::MachineProfile& machine, std::uint32_t core_count) const override {
+    return {sim::replay(trace_, machine, {.core_count = core_count}), std::nullopt};
+  }
+
+ private:
+  FrameFacts facts_;
+  sim::FrameTrace trace_;
+};
+
+Contender grid_contender(std::string key, std::string title, std::string hiding, GridVariant variant) {
+  variant.key = key;
+  GridVariant unhidden = variant;
+  unhidden.key = key + "_single";
+  unhidden.configuration.depths = {.output = 1, .macro = 1, .triangle = 1};
+  return {std::move(key),
+          std::move(title),
+          std::make_shared<GridSystem>(std::move(variant)),
+          std::make_shared<GridSystem>(std::move(unhidden)),
+          std::move(hiding),
+          true,
+          kPaperGridGrowth};
+}
+
+Contender bvh_contender() {
+  return {"bvh",
+          "BVH",
+          std::make_shared<RivalSystem>(true),
+          std::make_shared<RivalSystem>(false),
+          "a ring of packets",
+          false,
+          kPaperBvhGrowth};
+}
+
+}  // namespace
+
+const tool::Machine& home_machine() {
+  static const tool::Machine machine = std::make_shared<sim::MachineProfile>(sim::machine_profiles().front());
+  return machine;
+}
+
+std::uint64_t FrameFacts::build_steps() const {
+  return std::accumulate(build.counts.begin(), build.counts.end(), std::uint64_t{0});
+}
+
+GridVariant grid_variant(std::string_view configuration) {
+  return {std::string(configuration), *tool::find_configuration(configuration)};
+}
+
+std::vector<Contender> make_contenders() {
+  GridVariant projection = grid_variant("reference");
+  projection.accuracy = Accuracy::kPaper;
+  return {grid_contender("reference", "reference", "double buffering", grid_variant("reference")),
+          grid_contender("projection", "reference, projection test", "double buffering", projection),
+          grid_contender("best", "best", "deep prefetch", grid_variant("best")), bvh_contender()};
+}
+
+std::unique_ptr<Recording> GridSystem::record(const View& view, const FrameRequest& request) const {
+  const tool::RenderArguments arguments = arguments_of(variant_, view, request);
+  tool::FrameMemory frame(home_machine()->main_memory_bytes);
+  tool::prepare_frame(frame, *view.scene, arguments, view.camera);
+  sim::ChipResult result = run_chip(frame, arguments, sim::Mode::kChecked, 4, 1);
+
+  FrameFacts facts;
+  facts.build = sim::grid_build_work(view.mesh().vertices.size(), view.mesh().triangles.size(), frame.need);
+  facts.traversal_steps =
+      sum_of(result.work, {Work::kMacroSliceStep, Work::kMacroCellStep, Work::kSliceStep, Work::kCellStep});
+  facts.intersection_tests = sum_of(result.work, {Work::kGroupTestStandard, Work::kGroupTestPaper});
+  facts.scene_bytes = frame.image.header.image_bytes;
+  facts.dropped_triangles = frame.image.header.dropped_triangle_count;
+  facts.grid = frame.image.grid;
+  const auto picture = tool::untile<std::uint32_t>(frame.record, frame.color.bytes, std::nullopt,
+                                                   [](std::uint32_t word) { return word; });
+  facts.picture_hash = tool::image_hash(picture.pixels);
+  return std::make_unique<GridRecording>(std::move(facts), std::move(result.trace));
+}
+
+HostSeconds least_host_seconds(std::uint32_t repeats, const std::function<void()>& work) {
+  HostSeconds least;
+  for (std::uint32_t i = 0; i < repeats; ++i) {
+    const tool::Stopwatch stopwatch;
+    const std::clock_t begin = std::clock();
+    work();
+    const double processor = static_cast<double>(std::clock() - begin) / CLOCKS_PER_SEC;
+    const double wall = stopwatch.seconds();
+    least = i == 0 ? HostSeconds{wall, processor}
+                   : HostSeconds{std::min(least.wall, wall), std::min(least.processor, processor)};
+  }
+  return least;
+}
+
+HostFrame render_on_host(const GridVariant& variant, const View& view, const FrameRequest& request,
+                         std::uint32_t threads, std::uint32_t repeats) {
+  const tool::RenderArguments arguments = arguments_of(variant, view, request);
+  tool::FrameMemory frame(home_machine()->main_memory_bytes);
+  tool::prepare_frame(frame, *view.scene, arguments, view.camera);
+  const HostSeconds seconds =
+      least_host_seconds(repeats, [&] { run_chip(frame, arguments, sim::Mode::kPlain, sim::widest_lanes(), threads); });
+  return {seconds, frame.record};
+}
+
+}  // namespace gridiron::experiment

@@ -1,0 +1,136 @@
+// Systems: ways of rendering a frame on the simulated chip, and those that the experiment compares.
+// Memory: a recording owns its trace. Threads: any; record() and time() share nothing.
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <gridiron/base/records.h>
+#include <gridiron/sim/build_work.h>
+#include <gridiron/sim/machine_profile.h>
+#include <gridiron/sim/replay.h>
+#include <gridiron/sim/sim_chip.h>
+
+#include <cstdint>
+#include <functional>
+#include <memory>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "experiment/paper_values.h"
+#include "experiment/views.h"
+#include "gridiron/configurations.h"
+#include "gridiron/machine_file.h"
+
+namespace gridiron::experiment {
+
+/// What a frame asks for beside the view.
+struct FrameRequest {
+  std::uint32_t width = 1024, height = 1024;
+  Shading shading = Shading::kNone;
+};
+
+/// What is known of a frame without any clock.
+struct FrameFacts {
+  sim::BuildWork build;                  ///< of the structure
+  std::uint64_t traversal_steps = 0;     ///< steps through the structure, all packets
+  std::uint64_t intersection_tests = 0;  ///< (SIMD group, triangle) tests
+  std::uint64_t scene_bytes = 0;         ///< structure and triangles in main memory
+  std::uint64_t picture_hash = 0;
+  std::uint32_t dropped_triangles = 0;  ///< of zero area
+  std::optional<GridRecord> grid;       ///< of systems that have one
+
+  /// Counted steps of the build, of all kinds.
+  [[nodiscard]] std::uint64_t build_steps() const;
+};
+
+/// How software caches did, over all cores.
+struct CacheFacts {
+  double node_hit_percent = 0, triangle_hit_percent = 0;  ///< look-ups that started no fetch
+  std::uint64_t suspended_packets = 0;                    ///< changes to another packet of the ring
+};
+
+/// What a run on a machine gave.
+struct TimedFrame {
+  sim::FrameTiming timing;
+  std::optional<CacheFacts> caches;  ///< of systems that have them
+};
+
+/// A frame that can be given a time on any machine: by replay, or by rendering it again there.
+class Recording {
+ public:
+  virtual ~Recording() = default;
+  [[nodiscard]] virtual const FrameFacts& facts() const = 0;
+  /// @param core_count  0: the machine's. A pure function of its arguments. Errors: Failure.
+  [[nodiscard]] virtual TimedFrame time(const sim::MachineProfile& machine, std::uint32_t core_count) const = 0;
+};
+
+/// A way of rendering.
+class System {
+ public:
+  virtual ~System() = default;
+  /// @returns a name by which two systems are the same.
+  [[nodiscard]] virtual std::string key() const = 0;
+  /// Renders a frame on the calling thread. Errors: Failure; kBadInput where the scene does not fit the machine.
+  [[nodiscard]] virtual std::unique_ptr<Recording> record(const View& view, const FrameRequest& request) const = 0;
+};
+
+/// A system as the tables show it: one column each.
+struct Contender {
+  std::string key;    ///< suffix of CSV columns
+  std::string title;  ///< for people
+  std::shared_ptr<const System> system;
+  std::shared_ptr<const System> unhidden;  ///< the same without hiding the latency of what it fetches
+  std::string hiding;                      ///< how `system` hides it, for people
+  bool is_grid = true;                     ///< false: a hierarchy
+  PaperGrowth paper_growth;                ///< what the paper's Table 1 says of such a structure
+};
+
+/// The columns of every table that compares systems.
+[[nodiscard]] std::vector<Contender> make_contenders();
+
+/// The machine whose main memory every scene has to fit.
+[[nodiscard]] const tool::Machine& home_machine();
+
+/// Parameters of core's own grid traversal.
+struct GridVariant {
+  std::string key;
+  tool::Configuration configuration;
+  Accuracy accuracy = Accuracy::kStandard;
+  sim::StoreSize store = sim::StoreSize::k256KB;
+};
+
+/// @returns the configuration of that name, e.g. "best". Precondition: there is one.
+[[nodiscard]] GridVariant grid_variant(std::string_view configuration);
+
+/// The grid traversal of core, rendered in checked mode with 4 lanes and given a time by replay.
+class GridSystem : public System {
+ public:
+  explicit GridSystem(GridVariant variant) : variant_(std::move(variant)) {}
+  [[nodiscard]] std::string key() const override { return variant_.key; }
+  [[nodiscard]] std::unique_ptr<Recording> record(const View& view, const FrameRequest& request) const override;
+
+ private:
+  GridVariant variant_;
+};
+
+/// Seconds of something on this host, by the wall clock and of its processors, all threads together.
+struct HostSeconds {
+  double wall = 0, processor = 0;
+};
+
+/// Runs `work` several times. @returns the least of each time.
+[[nodiscard]] HostSeconds least_host_seconds(std::uint32_t repeats, const std::function<void()>& work);
+
+/// A frame rendered directly on this host.
+struct HostFrame {
+  HostSeconds seconds;   ///< the scene's build not included
+  FrameRecord record{};  ///< camera and size of it
+};
+
+/// Renders the frame directly on this host: plain mode, no simulated clock.
+///
+/// @param threads  host threads. Errors: Failure.
+[[nodiscard]] HostFrame render_on_host(const GridVariant& variant, const View& view, const FrameRequest& request,
+                                       std::uint32_t threads, std::uint32_t repeats);
+
+}  // namespace gridiron::experiment

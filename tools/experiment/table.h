@@ -1,0 +1,41 @@
+// Table: named columns and rows of cells; one table becomes a CSV file and a table of the page.
+// Memory: owns strings. Threads: any, no shared state. SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <cstdint>
+#include <string>
+#include <string_view>
+#include <variant>
+#include <vector>
+
+namespace gridiron::experiment {
+
+/// Nothing (an empty field), words, a count or a measure.
+using Cell = std::variant<std::monostate, std::string, std::uint64_t, double>;
+
+struct Column {
+  std::string key;    ///< snake_case with the unit as its suffix: the header of the CSV file
+  std::string title;  ///< for people
+  int decimals = 2;   ///< of measures on the page; the CSV file always holds all digits
+};
+
+struct Table {
+  std::string name;  ///< of the CSV file, without extension
+  std::vector<Column> columns;
+  std::vector<std::vector<Cell>> rows;  ///< each as long as `columns`
+
+  /// Appends a row. Precondition: as many cells as columns.
+  void add(std::vector<Cell> row) { rows.push_back(std::move(row)); }
+};
+
+/// @returns the shortest decimal text that reads back as the same number (std::to_chars), "" where it is not finite.
+[[nodiscard]] std::string number_text(double number);
+
+/// @returns the number with exactly `decimals` digits behind the point.
+[[nodiscard]] std::string fixed_text(double number, int decimals);
+
+/// @returns the table as CSV (RFC 4180 with plain line feeds): a header of keys, then the rows. A field with a comma, a
+/// quote or a line break stands in quotes, quotes inside it are doubled.
+[[nodiscard]] std::string csv_text(const Table& table);
+
+}  // namespace gridiron::experiment

@@ -1,0 +1,96 @@
+// Views. SPDX-License-Identifier: Apache-2.0
+#include "experiment/views.h"
+
+#include <scene_makers/shapes.h>
+
+#include <map>
+#include <system_error>
+#include <utility>
+
+#include "gridiron/words.h"
+
+namespace gridiron::experiment {
+namespace {
+
+// The paper does not say from where its views are taken. Scans are framed; the two of the conference room are ours,
+// those of scenes/conference_*.camera.
+struct KnownView {
+  const char* key;
+  const char* title;
+  const char* file;
+  tool::ViewRequest camera;
+};
+
+const KnownView kKnownViews[] = {
+    {"bunny", "Bunny", "bunny.ply", {}},
+    {"horse", "Horse", "horse.ply", {}},
+    {"armadillo_standin", "Armadillo stand-in", "armadillo_standin_345944.ply", {}},
+    {"conference_1",
+     "Conference 1",
+     "conference.ply",
+     {Vec3(-73, 454, -883), Vec3(603, 128, 151), Vec3(0, 1, 0), 65.0f}},
+    {"conference_2",
+     "Conference 2",
+     "conference.ply",
+     {Vec3(1415, 389, -797), Vec3(-208, 160, -21), Vec3(0, 1, 0), 65.0f}},
+};
+
+std::shared_ptr<const tool::SceneInput> scene_of(const scene_makers::Mesh& made, const std::string& name) {
+  tool::Mesh mesh;
+  mesh.vertices.reserve(made.vertices.size());
+  for (const scene_makers::Point& point : made.vertices) {
+    mesh.vertices.emplace_back(static_cast<float>(point[0]), static_cast<float>(point[1]),
+                               static_cast<float>(point[2]));
+  }
+  mesh.triangles.reserve(made.triangles.size());
+  for (const scene_makers::Triangle& triangle : made.triangles) {
+    mesh.triangles.emplace_back(triangle[0], triangle[1], triangle[2]);
+  }
+  return std::make_shared<const tool::SceneInput>(tool::SceneInput{name, std::move(mesh), 0});
+}
+
+}  // namespace
+
+FoundViews find_views(const std::filesystem::path& folder) {
+  FoundViews found;
+  std::map<std::string, std::shared_ptr<const tool::SceneInput>> scenes;
+  for (const KnownView& known : kKnownViews) {
+    std::error_code ignored;
+    const std::filesystem::path path = folder / known.file;
+    if (folder.empty() || !std::filesystem::exists(path, ignored)) {
+      found.missing.push_back(std::string(known.title) + " is left out: " + known.file + " was not found" +
+                              (folder.empty() ? ", no folder of scenes being named." : " among the scenes."));
+      continue;
+    }
+    auto& scene = scenes[known.file];
+    if (scene == nullptr) scene = std::make_shared<const tool::SceneInput>(tool::read_scene_input(path));
+    found.views.push_back({known.key, known.title, scene, known.camera});
+  }
+  if (!found.views.empty()) return found;
+
+  constexpr std::uint32_t kTeapotSegments = 15;  // scenes/teapot.ply
+  constexpr std::uint32_t kKnotTriangles = 20'000;
+  found.generated = true;
+  found.views.push_back({"teapot", "Teapot", scene_of(scene_makers::make_teapot(kTeapotSegments), "teapot"), {}});
+  found.views.push_back(make_knot_view(kKnotTriangles));
+  return found;
+}
+
+View make_knot_view(std::uint32_t triangle_count) {
+  const std::string key = "knot_" + std::to_string(triangle_count);
+  return {key,
+          "Torus knot of " + tool::words_of_count(triangle_count),
+          scene_of(scene_makers::make_torus_knot(triangle_count), key),
+          {}};
+}
+
+std::vector<std::uint32_t> growth_counts(std::uint32_t largest) {
+  std::vector<std::uint32_t> counts;
+  for (const std::uint32_t divisor : {100u, 50u, 20u, 10u, 5u, 2u, 1u}) {
+    const std::uint32_t count = largest / divisor / 2 * 2;
+    if (count >= scene_makers::kMinKnotTriangles) counts.push_back(count);
+  }
+  return counts;
+}
+
+}  // namespace gridiron::experiment

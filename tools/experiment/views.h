@@ -1,0 +1,44 @@
+// Views: the scenes of an experiment, each with the camera it is seen by.
+// Memory: owns meshes, shared between views. Threads: any may read. SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <cstdint>
+#include <filesystem>
+#include <memory>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "gridiron/scene_input.h"
+#include "gridiron/view.h"
+
+namespace gridiron::experiment {
+
+struct View {
+  std::string key;                                ///< snake_case, unique
+  std::string title;                              ///< for people
+  std::shared_ptr<const tool::SceneInput> scene;  ///< a mesh
+  tool::ViewRequest camera;                       ///< what is not set is framed
+
+  [[nodiscard]] const tool::Mesh& mesh() const { return std::get<tool::Mesh>(scene->content); }
+};
+
+/// What was found of the paper's five views.
+struct FoundViews {
+  std::vector<View> views;           ///< never empty
+  std::vector<std::string> missing;  ///< a sentence for each view that is not there
+  bool generated = false;            ///< no scan was found: the views are a teapot and a torus knot
+};
+
+/// Looks for the scans of the paper's views in `folder`; an empty path finds none. A scan that is there and wrong is an
+/// error, one that is not there a sentence. Errors: Failure.
+[[nodiscard]] FoundViews find_views(const std::filesystem::path& folder);
+
+/// @returns a torus knot of `triangle_count` (even) triangles, framed; key "knot_COUNT".
+[[nodiscard]] View make_knot_view(std::uint32_t triangle_count);
+
+/// Triangle counts of Table 1: largest times 1/100, 1/50, 1/20, 1/10, 1/5, 1/2 and 1, even, those below the smallest
+/// knot left out.
+[[nodiscard]] std::vector<std::uint32_t> growth_counts(std::uint32_t largest);
+
+}  // namespace gridiron::experiment
