@@ -117,6 +117,7 @@ __attribute__((noinline)) Totals run_counted(MainMemory& memory, PipeModel& mode
   using Store = twin::LocalStore<twin::StoreLayout256K<PacketWidth>>;
   LineBytes bytes(sizeof(Store));
   Store& store = *::new (static_cast<void*>(bytes.bytes().data())) Store;
+  model.set_store(&store, sizeof(store));
   CopyCore core(memory.bytes.bytes(), memory.tile_count);
   require(twin::render_tiles<twin::Lanes<4>>(store, core, twin::MainAddress{0}));
   return model.finish();

@@ -137,6 +137,7 @@ PipeModel::Quad& PipeModel::quad_at(std::uintptr_t address, std::uint64_t tie) {
 
 Node PipeModel::scalar_at(const void* pointer, std::uint64_t tie) {
   const auto address = reinterpret_cast<std::uintptr_t>(pointer);
+  if (is_constant(address)) return 0;
   if (on_stack(address) && !slot_of(address).in_memory) return slot_of(address).node;
   Quad& quad = quad_at(address, tie);
   const std::size_t lane = address / 4 % 4;
@@ -166,6 +167,7 @@ void PipeModel::set_scalar(const void* pointer, Node node, std::uint64_t tie) {
 
 Node PipeModel::splat_of(const void* pointer, std::uint64_t tie) {
   const auto address = reinterpret_cast<std::uintptr_t>(pointer);
+  if (is_constant(address)) return 0;
   if (on_stack(address) && !slot_of(address).in_memory) {
     const Node node = slot_of(address).node;
     return node == 0 ? 0 : emit(OpClass::kShuffle, tie, node);

@@ -120,6 +120,11 @@ class PipeModel {
 
   // Values in memory, by quadword; stack addresses are registers until they are stored to as vectors.
   void set_stack(const void* base) { stack_base_ = reinterpret_cast<std::uintptr_t>(base); }
+  /// The local store. Scalars that lie neither there nor on the stack are constants.
+  void set_store(const void* store, std::size_t bytes) {
+    store_base_ = reinterpret_cast<std::uintptr_t>(store);
+    store_bytes_ = bytes;
+  }
   [[nodiscard]] Node scalar_at(const void* address, std::uint64_t tie);
   void set_scalar(const void* address, Node node, std::uint64_t tie);
   void make_register(const void* address, Node node);
@@ -152,6 +157,9 @@ class PipeModel {
     bool in_memory;
   };
   [[nodiscard]] bool on_stack(std::uintptr_t address) const { return stack_base_ - address < kStackBytes; }
+  [[nodiscard]] bool is_constant(std::uintptr_t address) const {
+    return !on_stack(address) && address - store_base_ >= store_bytes_;
+  }
   [[nodiscard]] Slot& slot_of(std::uintptr_t address) { return slots_[(address >> 2) % slots_.size()]; }
   [[nodiscard]] Quad& quad_at(std::uintptr_t address, std::uint64_t tie);
   [[nodiscard]] std::uint64_t ready_of(Node node) const;
@@ -174,7 +182,8 @@ class PipeModel {
   std::vector<Node> conditions_;
   std::vector<Node> addresses_;
   bool addresses_used_ = false;
-  std::uintptr_t stack_base_ = 0;
+  std::uintptr_t stack_base_ = 0, store_base_ = 0;
+  std::size_t store_bytes_ = 0;
   std::vector<Slot> slots_;
   std::unordered_map<std::uintptr_t, Quad> quads_;
   Branches branches_;
