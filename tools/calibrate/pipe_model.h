@@ -8,7 +8,6 @@
 #include <array>
 #include <cstddef>
 #include <cstdint>
-#include <map>
 #include <unordered_map>
 #include <vector>
 
@@ -89,7 +88,7 @@ struct BranchWays {
   std::array<std::array<std::uint64_t, 2>, kWorkKindCount> by_kind{};
   [[nodiscard]] bool usual() const;  ///< true: it is taken more often than not
 };
-using Branches = std::map<Site, BranchWays>;
+using Branches = std::unordered_map<Site, BranchWays>;
 
 /// Schedules superblocks of at most `superblock_branches` basic blocks as a compiler would, longest chain first, and
 /// keeps what it costs by kind of work.
@@ -161,9 +160,9 @@ class PipeModel {
     return !on_stack(address) && address - store_base_ >= store_bytes_;
   }
   [[nodiscard]] Slot& slot_of(std::uintptr_t address) { return slots_[(address >> 2) % slots_.size()]; }
-  [[nodiscard]] Quad& quad_at(std::uintptr_t address, std::uint64_t tie);
+  [[nodiscard]] Quad& quad_at(std::uintptr_t address);
   [[nodiscard]] std::uint64_t ready_of(Node node) const;
-  [[nodiscard]] Node gather_addresses();
+  [[nodiscard]] std::array<Node, 2> gather_addresses();
   void schedule();
 
   static constexpr std::uintptr_t kStackBytes = std::uintptr_t{1} << 20;
@@ -171,14 +170,15 @@ class PipeModel {
 
   Totals totals_{};
   Work kind_ = Work::kWait;  // what is done before the first tile is not charged by the tile
-  const Branches* usual_;
+  bool schedules_;
+  std::unordered_map<Site, bool> usual_;
   std::uint32_t superblock_branches_;
   std::uint32_t segment_ = 0;
   std::vector<Op> block_;
   Node first_node_ = 1;  // of the block
   std::uint32_t block_number_ = 1;
   std::uint64_t clock_ = 0;                     // of the last issue
-  std::vector<std::uint64_t> ready_, history_;  // by node, of the last kRememberedNodes
+  std::vector<std::uint64_t> ready_, history_, depth_;  // by node, of the last kRememberedNodes
   std::vector<Node> conditions_;
   std::vector<Node> addresses_;
   bool addresses_used_ = false;
