@@ -44,7 +44,7 @@ template <sim::Completion kCompletion, std::uint32_t kDepth>
 class SimBench : public HostBench {
  public:
   using PlatformType = sim::SimCore;
-  static constexpr bool kChecksRules = true, kChecksOverlap = true;
+  static constexpr bool kChecksRules = true, kChecksQueue = true, kChecksOverlap = true;
 
   SimBench() : HostBench(kDepth) {
     frame_.memory = &memory_;
@@ -66,7 +66,7 @@ template <std::uint32_t kDepth>
 class PlainBench : public HostBench {
  public:
   using PlatformType = sim::PlainCore;
-  static constexpr bool kChecksRules = false, kChecksOverlap = false;
+  static constexpr bool kChecksRules = false, kChecksQueue = false, kChecksOverlap = false;
 
   PlainBench() : HostBench(kDepth), core_(memory_.base(), limits_, tiles_) {}
   sim::PlainCore& platform() { return core_; }
@@ -79,7 +79,7 @@ template <std::uint32_t kDepth, std::uint32_t kPolls>
 class TemplateBench : public HostBench {
  public:
   using PlatformType = port::TemplatePort<HostBoard, kDepth>;
-  static constexpr bool kChecksRules = true, kChecksOverlap = false;
+  static constexpr bool kChecksRules = true, kChecksQueue = true, kChecksOverlap = false;
 
   TemplateBench() : HostBench(kDepth), board_(memory_, std::span(arena_->bytes), kTileCount), port_(board_) {
     board_.polls_per_command = kPolls;
@@ -99,7 +99,8 @@ template <class Inner, std::uint64_t kDelayed = 0>
 class DecoratedBench {
  public:
   using PlatformType = FaultInjection<typename Inner::PlatformType>;
-  static constexpr bool kChecksRules = Inner::kChecksRules && kDelayed == 0, kChecksOverlap = Inner::kChecksOverlap;
+  static constexpr bool kChecksRules = Inner::kChecksRules && kDelayed == 0, kChecksQueue = Inner::kChecksQueue,
+                        kChecksOverlap = Inner::kChecksOverlap;
 
   DecoratedBench() : platform_(inner_.platform(), FaultPlan{.transfer = kDelayed, .kind = FaultPlan::Kind::kDelay}) {}
   PlatformType& platform() { return platform_; }

@@ -66,7 +66,7 @@ TEST(FetchScenes, WrongCountsAWrongChecksumAndABrokenArchiveLeaveNothing) {
 }
 
 TEST(FetchScenes, AnUnknownNameAndAnUnknownOptionAreRefused) {
-  EXPECT_EQ(run_script(source_path("tools/fetch_scenes") + " lucy").exit_code, 1);
+  EXPECT_EQ(run_script(source_path("tools/fetch_scenes") + " lucy").exit_code, 2);
   EXPECT_EQ(run_script(source_path("tools/fetch_scenes") + " --everything").exit_code, 2);
 }
 

@@ -358,6 +358,43 @@ TEST(AcrossTiles, ATileThatGetsWhatAnotherPutsIsFoundForAnyNumberOfThreads) {
   }
 }
 
+TEST(WholePicture, TilesThatNobodyClaimedOrPutAreTold) {
+  for (const std::uint32_t threads : {1u, 2u, 4u}) {
+    ProgramBench bench;
+    bench.shape.is_picture = true;
+    bench.shape.writable[0].end = bench.shape.writable[0].begin + 8 * 256;
+    const auto put_parts = [&](std::uint32_t bytes_of_tile_6) {
+      return run_tiles(bench, threads, [&](SimCore& core, std::byte* data, std::uint32_t tile) {
+        GRIDIRON_TRY(core.put(data, bench.output(tile * 256), 128, kTag));
+        GRIDIRON_TRY(core.wait(kBoth));
+        const std::uint32_t rest = tile == 6 ? bytes_of_tile_6 : 128;
+        return rest == 0 ? Status::kOk : core.put(data, bench.output(tile * 256 + 128), rest, kTag);
+      });
+    };
+    EXPECT_EQ(put_parts(128).status, Status::kOk) << words(put_parts(128));
+    for (const std::uint32_t rest : {0u, 112u}) {
+      const ChipResult result = put_parts(rest);
+      EXPECT_EQ(result.status, Status::kIncompleteFrame);
+      ASSERT_EQ(result.violations.size(), 1u) << words(result);
+      EXPECT_EQ(result.violations[0].tile_id, 6u);
+      EXPECT_NE(result.violations[0].detail.find("of the tile's 256 bytes"), std::string::npos) << words(result);
+    }
+    // Bytes that are put twice are not counted twice.
+    const ChipResult twice = run_tiles(bench, threads, [&](SimCore& core, std::byte* data, std::uint32_t tile) {
+      GRIDIRON_TRY(core.put(data, bench.output(tile * 256), 128, kTag));
+      GRIDIRON_TRY(core.wait(kBoth));
+      return core.put(data, bench.output(tile * 256), 128, kTag);
+    });
+    EXPECT_EQ(twice.status, Status::kIncompleteFrame) << words(twice);
+
+    bench.shape.tile_count = 8;
+    const ChipResult nobody = bench.run([](SimCore&, std::span<std::byte>) { return Status::kOk; });
+    EXPECT_EQ(nobody.status, Status::kIncompleteFrame);
+    EXPECT_EQ(nobody.failed_tile, 0u);
+    EXPECT_NE(words(nobody).find("no core claimed"), std::string::npos) << words(nobody);
+  }
+}
+
 /// The sweep against every pair compared, on random footprints.
 TEST(AcrossTiles, TheSweepFindsWhatComparingAllPairsFinds) {
   std::uint32_t with_clash = 0;

@@ -1,7 +1,7 @@
 # Prints the main figures of a render report in six lines: cmake -D REPORT=file.json -P summarize_report.cmake
 file(READ "${REPORT}" report)
 
-# integer(OUT keys...): the value at `keys`, its fraction cut off.
+# integer(OUT keys...): the value at `keys`, its fraction cut off (cycles, of which there are millions).
 function(integer out)
   string(JSON value GET "${report}" ${ARGN})
   string(REGEX REPLACE "\\..*$" "" value "${value}")
@@ -48,15 +48,12 @@ foreach(core RANGE ${last_core})
   endforeach()
 endforeach()
 
-set(region_bytes 0)
+# Data ends where the last region does: what lies between regions to align them counts.
 string(JSON region_count LENGTH "${report}" local_store regions)
-if(region_count GREATER 0)
-  math(EXPR last_region "${region_count} - 1")
-  foreach(region RANGE ${last_region})
-    integer(value local_store regions ${region} bytes)
-    math(EXPR region_bytes "${region_bytes} + ${value}")
-  endforeach()
-endif()
+math(EXPR last_region "${region_count} - 1")
+integer(last_offset local_store regions ${last_region} offset)
+integer(last_bytes local_store regions ${last_region} bytes)
+math(EXPR data_bytes "${last_offset} + ${last_bytes}")
 
 math(EXPR all "${frame_cycles} * ${core_count}")
 foreach(part init compute wait idle)
@@ -67,7 +64,7 @@ math(EXPR fps_tenths "(${clock_hz} * 10 + ${frame_cycles} / 2) / ${frame_cycles}
 tenths(fps ${fps_tenths})
 math(EXPR clock_tenths "${clock_hz} / 100000000")
 tenths(clock_ghz ${clock_tenths})
-math(EXPR megabytes_tenths "${bytes} / 100000")
+math(EXPR megabytes_tenths "(${bytes} * 10 + 524288) / 1048576")
 tenths(megabytes ${megabytes_tenths})
 
 set(lines
@@ -76,7 +73,7 @@ set(lines
   "frame       ${frame_cycles} cycles, ${fps} frames a second"
   "cycles      ${compute_percent} % computing, ${init_percent} % starting, ${wait_percent} % waiting for DMA, ${idle_percent} % idle"
   "DMA         ${megabytes} MB moved"
-  "local store ${region_bytes} bytes of buffers + ${stack_bytes} stack + ${code_bytes} code of ${arena_bytes}")
+  "local store ${data_bytes} bytes of data + ${stack_bytes} for the stack + ${code_bytes} for code, of ${arena_bytes}")
 foreach(line IN LISTS lines)
   execute_process(COMMAND ${CMAKE_COMMAND} -E echo "${line}")
 endforeach()

@@ -4,7 +4,6 @@
 #include <CLI/CLI.hpp>
 #include <algorithm>
 #include <functional>
-#include <map>
 #include <string_view>
 #include <utility>
 #include <vector>
@@ -213,6 +212,34 @@ void add_algorithm_options(CLI::App& app, RawRender& raw) {
   throw Failure(ExitCode::kUsage, message);
 }
 
+// A file of the command line and the option that names it.
+struct NamedFile {
+  const char* option;
+  std::optional<std::filesystem::path> path;
+};
+
+// Whether two names, which need not exist, mean one file: links, `.` and `..` are followed.
+bool is_same_file(const std::filesystem::path& a, const std::filesystem::path& b) {
+  std::error_code error;
+  if (std::filesystem::equivalent(a, b, error)) return !std::filesystem::is_character_file(a, error);
+  const std::filesystem::path target = std::filesystem::weakly_canonical(a, error);
+  return !target.empty() && target == std::filesystem::weakly_canonical(b, error);
+}
+
+// An output in the place of an input would destroy it, and two outputs under one name would leave only the last one.
+void require_own_files(const std::vector<NamedFile>& inputs, const std::vector<NamedFile>& outputs) {
+  std::vector<NamedFile> known = inputs;
+  for (const NamedFile& output : outputs) {
+    if (!output.path) continue;
+    for (const NamedFile& other : known) {
+      if (!other.path || !is_same_file(*other.path, *output.path)) continue;
+      usage_error(std::string(other.option) + " and " + output.option +
+                  " name the same file: " + output.path->string());
+    }
+    known.push_back(output);
+  }
+}
+
 // Defaults that depend on other options, and combinations that make no sense.
 RenderArguments complete_render(const RawRender& raw, bool has_seed) {
   RenderArguments render = raw.arguments;
@@ -255,24 +282,21 @@ RenderArguments complete_render(const RawRender& raw, bool has_seed) {
   const std::uint32_t macro_width = render.scene.macro_width.value_or(configuration.macro_width);
   if (render.depths.output > facts.max_output_depth || render.depths.macro > facts.max_macro_depth ||
       render.depths.triangle > facts.max_triangle_depth || macro_width > facts.max_macro_width) {
+    const auto blocks = [](std::uint32_t depth, std::uint32_t width, std::uint32_t buffers) {
+      return std::to_string(depth) + " cell blocks of macrocells of width " + std::to_string(width) + " and " +
+             std::to_string(buffers) + " triangle buffers";
+    };
     usage_error("--store " + std::to_string(store_bytes >> 10) + ": holds at most " +
-                std::to_string(facts.max_macro_depth) + " cell blocks of macrocells of width " +
-                std::to_string(facts.max_macro_width) + " and " + std::to_string(facts.max_triangle_depth) +
-                " triangle buffers; the configuration asks for more");
+                blocks(facts.max_macro_depth, facts.max_macro_width, facts.max_triangle_depth) + "; " +
+                blocks(render.depths.macro, macro_width, render.depths.triangle) + " are asked for");
   }
 
-  // Two outputs under one name would leave only the last one.
-  std::map<std::filesystem::path, const char*> names;
-  const auto add_name = [&names](const std::optional<std::filesystem::path>& path, const char* option) {
-    if (!path) return;
-    const auto [other, is_new] = names.emplace(path->lexically_normal(), option);
-    if (!is_new) usage_error(std::string(other->second) + " and " + option + " name the same file: " + path->string());
-  };
-  add_name(render.output, "-o");
-  add_name(render.depth, "--depth");
-  add_name(render.ids, "--ids");
-  add_name(render.report, "--report");
-  add_name(render.timeline, "--timeline");
+  require_own_files({{"INPUT", render.scene.input}, {"--camera", render.camera}, {"--machine", raw.machine_name}},
+                    {{"-o", render.output},
+                     {"--depth", render.depth},
+                     {"--ids", render.ids},
+                     {"--report", render.report},
+                     {"--timeline", render.timeline}});
   return render;
 }
 
@@ -345,6 +369,8 @@ Command parse_arguments(int count, const char* const* values) {
   }
   if (*pack) {
     pack_arguments.scene.machine = find_machine(pack_machine);
+    require_own_files({{"INPUT", pack_arguments.scene.input}, {"--machine", pack_machine}},
+                      {{"-o", pack_arguments.output}});
     return pack_arguments;
   }
   if (machines->count("MACHINE") > 0) machines_arguments.machine = find_machine(machine);

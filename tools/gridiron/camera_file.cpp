@@ -7,9 +7,12 @@
 #include "input_file.h"
 #include "numbers.h"
 #include "view.h"
+#include "words.h"
 
 namespace gridiron::tool {
 namespace {
+
+constexpr std::size_t kMaxFileBytes = 1 << 16;
 
 struct Line {
   const std::filesystem::path& path;
@@ -36,7 +39,7 @@ std::vector<float> parse_values(const std::vector<std::string>& words, std::size
   std::vector<float> values;
   for (std::size_t i = 1; i < words.size(); ++i) {
     const std::optional<float> value = parse_float(words[i]);
-    if (!value) line.fail("'" + words[i] + "' is not a finite number");
+    if (!value) line.fail(in_quotes(words[i]) + " is not a finite number");
     values.push_back(*value);
   }
   return values;
@@ -45,7 +48,7 @@ std::vector<float> parse_values(const std::vector<std::string>& words, std::size
 }  // namespace
 
 ViewRequest read_camera_file(const std::filesystem::path& path) {
-  const InputFile file = read_input_file(path);
+  const InputFile file = read_input_file(path, kMaxFileBytes);
   std::istringstream stream(std::string(reinterpret_cast<const char*>(file.bytes.data()), file.bytes.size()));
   ViewRequest view;
   std::size_t number = 0;
@@ -61,7 +64,7 @@ ViewRequest read_camera_file(const std::filesystem::path& path) {
       continue;
     }
     std::optional<Vec3>* target = key == "eye" ? &view.eye : key == "at" ? &view.at : key == "up" ? &view.up : nullptr;
-    if (target == nullptr) line.fail("unknown word '" + key + "'; expected eye, at, up or fov");
+    if (target == nullptr) line.fail("unknown word " + in_quotes(key) + "; expected eye, at, up or fov");
     if (*target) line.fail("second '" + key + "'");
     const std::vector<float> values = parse_values(words, 3, line);
     *target = Vec3(values[0], values[1], values[2]);

@@ -13,7 +13,8 @@ enum class ExitCode : int {
   kBadInput = 1,       ///< a file is missing, wrong, too large for the machine, or cannot be written
   kUsage = 2,          ///< the command line
   kCheckFailed = 3,    ///< a check of the simulator or a memory budget failed
-  kInterrupted = 130,  ///< SIGINT or SIGTERM
+  kInterrupted = 130,  ///< SIGINT
+  kTerminated = 143,   ///< SIGTERM
 };
 
 /// Ends the command; main prints the message, one line or several, and exits with the code.

@@ -19,8 +19,10 @@
 namespace gridiron::tool {
 namespace {
 
-// The public scans of the reference figures, which the repository does not carry.
-constexpr std::array<std::string_view, 4> kPublicScans = {"bunny.ply", "horse.ply", "armadillo.ply", "conference.ply"};
+// Scans that the repository does not carry.
+constexpr std::array<std::string_view, 4> kFetchedScans = {"bunny.ply", "horse.ply", "armadillo.ply", "dragon.ply"};
+constexpr std::array<std::string_view, 5> kOtherScans = {"conference.ply", "sponza_dabrovic.ply", "cornell_box.ply",
+                                                         "armadillo_standin_345944.ply", "stanford_dragon_res2.ply"};
 
 class Descriptor {
  public:
@@ -39,8 +41,11 @@ class Descriptor {
 [[noreturn]] void fail(const std::filesystem::path& path, int error) {
   std::string message = path.string() + ": " + std::strerror(error);
   const std::string name = path.filename().string();
-  if (error == ENOENT && std::ranges::find(kPublicScans, name) != kPublicScans.end()) {
+  const auto is_one_of = [&name](const auto& names) { return std::ranges::find(names, name) != names.end(); };
+  if (error == ENOENT && is_one_of(kFetchedScans)) {
     message += "; " + name + " is a public scan that this repository does not carry: tools/fetch_scenes gets it";
+  } else if (error == ENOENT && is_one_of(kOtherScans)) {
+    message += "; this repository does not carry it: 'tools/fetch_scenes --help' says where it comes from";
   }
   throw Failure(ExitCode::kBadInput, message);
 }

@@ -9,9 +9,11 @@ namespace gridiron::tool {
 namespace {
 
 std::atomic<bool> interrupted{false};
+std::atomic<bool> terminated{false};
 static_assert(std::atomic<bool>::is_always_lock_free, "a signal handler may only touch lock-free atomics");
 
-extern "C" void note_interrupt(int) {
+extern "C" void note_interrupt(int signal) {
+  if (signal == SIGTERM) terminated.store(true);
   interrupted.store(true);
 }
 
@@ -32,7 +34,8 @@ const std::atomic<bool>& interrupt_flag() {
 }
 
 void stop_if_interrupted() {
-  if (interrupted.load()) throw Failure(ExitCode::kInterrupted, "interrupted; no file was written");
+  if (!interrupted.load()) return;
+  throw Failure(terminated.load() ? ExitCode::kTerminated : ExitCode::kInterrupted, "interrupted; no file was written");
 }
 
 }  // namespace gridiron::tool

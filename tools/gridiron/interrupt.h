@@ -1,5 +1,5 @@
 // Interrupt: SIGINT and SIGTERM as a flag that the renderer looks at between two tiles.
-// Memory: one flag in static storage. Threads: the flag may be read by any. SPDX-License-Identifier: Apache-2.0
+// Memory: flags in static storage. Threads: the flag may be read by any. SPDX-License-Identifier: Apache-2.0
 #pragma once
 
 #include <atomic>
@@ -12,7 +12,7 @@ void watch_for_interrupt();
 /// @returns the flag: true once a signal has come.
 [[nodiscard]] const std::atomic<bool>& interrupt_flag();
 
-/// Throws Failure (kInterrupted) once a signal has come.
+/// Throws Failure (kInterrupted, kTerminated) once a signal has come.
 void stop_if_interrupted();
 
 }  // namespace gridiron::tool

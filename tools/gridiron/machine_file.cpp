@@ -14,6 +14,7 @@
 
 #include "failure.h"
 #include "input_file.h"
+#include "words.h"
 
 namespace gridiron::tool {
 namespace {
@@ -132,13 +133,6 @@ bool is_key(std::string_view word) {
 bool is_name(std::string_view word) {
   const auto fits = [](char c) { return c > ' ' && c < 0x7F && c != '#'; };
   return !word.empty() && word.size() <= kMaxNameBytes && std::ranges::all_of(word, fits);
-}
-
-std::string in_quotes(std::string_view text) {
-  std::string quoted(1, '\'');
-  quoted += text.substr(0, kMaxNameBytes);
-  quoted += '\'';
-  return quoted;
 }
 
 // Reads one file, line by line.

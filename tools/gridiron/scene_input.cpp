@@ -17,8 +17,7 @@
 namespace gridiron::tool {
 namespace {
 
-// Halving lambda any further frees next to nothing: what is left is one record per triangle.
-constexpr float kLeastLambda = 1.0f / 64.0f;
+constexpr float kLeastLambda = 1e-6f;  // the least that --lambda takes
 
 [[noreturn]] void fail(const std::filesystem::path& path, const std::string& reason) {
   throw Failure(ExitCode::kBadInput, path.string() + ": " + reason);
@@ -41,17 +40,23 @@ PackedScene read_packed_scene(const std::filesystem::path& path) {
   return packed;
 }
 
-GridNeed count_need(const SceneInput& input, const Mesh& mesh, const GridParameters& parameters) {
+// @returns false where the grid's references outgrow their 32 bits; `need` is zero then.
+bool count_need(const SceneInput& input, const Mesh& mesh, const GridParameters& parameters, GridNeed& need) {
   stop_if_interrupted();
-  GridNeed need{};
+  need = {};
   const Status status = count_scene_image(mesh.view(), parameters, need);
+  if (status == Status::kTooManyTriangles) return false;
   if (status == Status::kNoTriangles) {
     fail(input.path, mesh.triangles.empty()
                          ? "no triangles: a point cloud of " + words_of_count(mesh.vertices.size()) + " vertices"
                          : "no triangle to trace: all " + words_of_count(mesh.triangles.size()) + " have zero area");
   }
   if (status != Status::kOk) fail(input.path, std::string("cannot build the grid: ") + words_of(status));
-  return need;
+  return true;
+}
+
+bool has_one_cell(const GridRecord& grid) {
+  return grid.cell_count[0] == 1 && grid.cell_count[1] == 1 && grid.cell_count[2] == 1;
 }
 
 std::string text_of(float number) {
@@ -104,10 +109,17 @@ GridChoice choose_grid(const SceneInput& input, const Mesh& mesh, const SceneArg
   choice.parameters.macro_width = arguments.macro_width.value_or(arguments.configuration->macro_width);
   choice.parameters.format = format;
   choice.budget_bytes = budget_bytes;
-  choice.need = count_need(input, mesh, choice.parameters);
-  while (!choice.fits() && !arguments.lambda && choice.parameters.lambda > kLeastLambda) {
-    choice.parameters.lambda *= 0.5f;
-    choice.need = count_need(input, mesh, choice.parameters);
+  float& lambda = choice.parameters.lambda;
+  bool is_counted = count_need(input, mesh, choice.parameters, choice.need);
+  // Fewer cells, fewer references: down to one cell, where one record per triangle is left.
+  while ((!is_counted || !choice.fits()) && !arguments.lambda && lambda > kLeastLambda &&
+         !has_one_cell(choice.need.grid)) {
+    lambda = std::max(lambda * 0.5f, kLeastLambda);
+    is_counted = count_need(input, mesh, choice.parameters, choice.need);
+  }
+  if (!is_counted) {
+    fail(input.path, std::string(words_of(Status::kTooManyTriangles)) + " at lambda " + text_of(lambda) +
+                         (arguments.lambda ? "; a smaller --lambda needs fewer" : ""));
   }
   return choice;
 }

@@ -47,6 +47,8 @@ const char* words_of(Status status) {
       return "stopped between two tiles";
     case Status::kDeadline:
       return "deadline passed between two tiles";
+    case Status::kIncompleteFrame:
+      return "picture of which no core wrote a part";
     case Status::kMemoryTooSmall:
       return "memory smaller than the counted need";
     case Status::kTooManyTriangles:
@@ -80,6 +82,23 @@ std::string words_of_bytes(std::uint64_t bytes) {
   char text[32];
   std::snprintf(text, sizeof text, "%.1f %s", amount, kUnits[unit]);
   return text;
+}
+
+std::string in_quotes(std::string_view text) {
+  constexpr std::size_t kMostBytes = 64;
+  constexpr char kDigits[] = "0123456789abcdef";
+  std::string quoted(1, '\'');
+  for (const char letter : text.substr(0, kMostBytes)) {
+    const auto byte = static_cast<unsigned char>(letter);
+    if (byte >= ' ' && byte < 0x7F) {
+      quoted.push_back(letter);
+    } else {
+      quoted.append("\\x").append(1, kDigits[byte >> 4]).append(1, kDigits[byte & 15]);
+    }
+  }
+  if (text.size() > kMostBytes) quoted.append("...");
+  quoted.push_back('\'');
+  return quoted;
 }
 
 std::string words_of_count(std::uint64_t count) {

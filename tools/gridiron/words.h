@@ -7,6 +7,7 @@
 
 #include <cstdint>
 #include <string>
+#include <string_view>
 
 namespace gridiron::tool {
 
@@ -16,6 +17,9 @@ namespace gridiron::tool {
 
 /// @returns "12.3 MB" and the like; 1 MB = 2^20 bytes.
 [[nodiscard]] std::string words_of_bytes(std::uint64_t bytes);
+
+/// @returns text of a file as a message may show it: in single quotes, cut to 64 bytes, what is not printable as \xNN.
+[[nodiscard]] std::string in_quotes(std::string_view text);
 
 /// @returns "1,234,567".
 [[nodiscard]] std::string words_of_count(std::uint64_t count);

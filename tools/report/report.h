@@ -50,7 +50,7 @@ struct ReportInput {
 
   std::uint64_t arena_bytes = 0;
   std::vector<LocalStoreRegion> regions;
-  std::uint64_t code_bytes = 0, stack_bytes = 0;  ///< committed figures of the cross build
+  std::uint64_t code_bytes = 0, stack_bytes = 0;  ///< committed budgets
 
   double load_seconds = 0, build_seconds = 0, render_seconds = 0;  ///< on this host
   std::uint32_t host_threads = 1;

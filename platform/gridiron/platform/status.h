@@ -31,6 +31,7 @@ enum class [[nodiscard]] Status : std::uint8_t {
   kUnsupportedFrame,    ///< frame asks for something this renderer was not built for
   kAborted,             ///< the frame was asked to stop between two tiles
   kDeadline,            ///< the frame's deadline passed between two tiles
+  kIncompleteFrame,     ///< the cores ended well, but part of the picture was not written (platforms that check)
 
   // Readers and builders (prepare).
   kMemoryTooSmall,      ///< the caller's span is smaller than the counted need; nothing was written

@@ -79,6 +79,40 @@ void run_core(CoreRun& run, const GuardedArena& arena, const CoreProgram& progra
   return rank(a) != rank(b) ? rank(a) < rank(b) : a.tile < b.tile;
 }
 
+[[nodiscard]] std::uint64_t covered_bytes(std::vector<MainRange> ranges) {
+  std::sort(ranges.begin(), ranges.end(), [](const MainRange& a, const MainRange& b) { return a.begin < b.begin; });
+  std::uint64_t bytes = 0, end = 0;
+  for (const MainRange& range : ranges) {
+    if (range.end <= end) continue;
+    bytes += range.end - std::max(range.begin, end);
+    end = range.end;
+  }
+  return bytes;
+}
+
+/// A core that ends early, or puts less than its tile, would leave old bytes of main memory in the picture.
+///
+/// @param tile_bytes  of each tile, over all planes; tiles are known not to overlap, so as many bytes are all of them.
+[[nodiscard]] std::vector<Violation> check_complete(const std::vector<CoreRun>& runs, std::uint64_t tile_bytes,
+                                                    std::uint32_t first_tile, std::uint32_t end_tile) {
+  std::vector<bool> is_claimed(end_tile - first_tile);
+  std::vector<std::uint64_t> put_bytes(end_tile - first_tile);
+  for (const CoreRun& run : runs) {
+    for (const TileTrace& trace : run.core->traces) is_claimed[trace.tile_id - first_tile] = true;
+    for (const TileFootprint& footprint : run.core->footprints) {
+      if (footprint.tile_id != kNoTile) put_bytes[footprint.tile_id - first_tile] += covered_bytes(footprint.puts);
+    }
+  }
+  for (std::uint32_t i = 0; i < is_claimed.size(); ++i) {
+    if (!is_claimed[i]) return {{Status::kIncompleteFrame, 0, first_tile + i, "no core claimed the tile"}};
+    if (put_bytes[i] < tile_bytes) {
+      return {{Status::kIncompleteFrame, 0, first_tile + i,
+               std::to_string(put_bytes[i]) + " of the tile's " + std::to_string(tile_bytes) + " bytes were put"}};
+    }
+  }
+  return {};
+}
+
 }  // namespace
 
 bool are_limits_valid(const PlatformLimits& limits) {
@@ -155,6 +189,12 @@ ChipResult run_cores(SimMemory& memory, const FrameShape& shape, const ChipOptio
       footprints.insert(footprints.end(), run.core->footprints.begin(), run.core->footprints.end());
     }
     for (const Violation& violation : check_across_tiles(footprints)) fail(violation);
+    if (shape.is_picture && result.status == Status::kOk) {
+      std::uint64_t picture_bytes = 0;
+      for (const MainRange& range : shape.writable) picture_bytes += range.end - range.begin;
+      const std::uint64_t tile_bytes = picture_bytes / shape.tile_count;
+      for (const Violation& violation : check_complete(runs, tile_bytes, first_tile, end_tile)) fail(violation);
+    }
   }
 
   // Trace and totals.

@@ -19,7 +19,8 @@ struct FrameShape {
   std::uint32_t output_depth = 1;
   std::uint32_t arena_bytes = 256 * 1024;  ///< local memory of a core
   std::uint32_t data_bytes = 256 * 1024;   ///< its first bytes, where data lies; the rest is code and stack
-  std::vector<MainRange> writable;         ///< where puts may go
+  std::vector<MainRange> writable;         ///< where puts may go; sorted, disjoint
+  bool is_picture = false;                 ///< writable holds equal parts of every tile; each must be claimed and put
 };
 
 /// What a core runs: from its first claim to its last wait. `data` is zeroed and kLineBytes-aligned.
@@ -27,6 +28,9 @@ using CoreProgram = std::function<Status(SimCore& core, std::span<std::byte> dat
 
 /// Runs `program` on options.threads cores (options.mode, lanes, store and packet_width are not looked at). The bytes
 /// around a core's data carry a pattern that is checked at the end.
+///
+/// What a core puts before its first tile or after its last belongs to no tile: two cores that do so and overlap are
+/// told, but whether there are two of them is the caller's choice.
 [[nodiscard]] ChipResult run_cores(SimMemory& memory, const FrameShape& shape, const ChipOptions& options,
                                    const CoreProgram& program);
 

@@ -100,6 +100,7 @@ template <template <std::uint32_t> class Layout>
   }
   shape.tile_count = frame.tiles_x * frame.tiles_y;
   shape.output_depth = frame.output_depth;
+  shape.is_picture = true;
 
   const std::uint64_t plane_bytes = std::uint64_t{shape.tile_count} * frame.tile_width * frame.tile_width * 4;
   if (frame.color_address == 0) return Status::kBadFrame;

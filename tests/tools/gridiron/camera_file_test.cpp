@@ -45,6 +45,9 @@ TEST(CameraFile, NamesTheLineOfEveryDefect) {
       {"\n\neye 1 2 3\neye 1 2 3\n", ":4: second 'eye'"},
       {"eye 1 2 3\nat 0 0 0\nfov 45\nfov 45\n", ":4: second 'fov'"},
       {"eye 1 2 3\nlook 0 0 0\n", ":2: unknown word 'look'"},
+      {"\x1B[2J\xFF 0 0 0\n", ":1: unknown word '\\x1b[2J\\xff'"},
+      {"eye 1 2 0123456789012345678901234567890123456789012345678901234567890123456789a\n",
+       ":1: '0123456789012345678901234567890123456789012345678901234567890123...' is not"},
       {"Eye 1 2 3\n", ":1: unknown word 'Eye'"},
       {"eye 1 2 3\nat 0 0 0\nfov 180\n", ":3: fov must lie between"},
       {"eye 1 2 3\nat 0 0 0\nfov 0\n", ":3: fov must lie between"},
@@ -65,6 +68,15 @@ TEST(CameraFile, NamesTheLineOfEveryDefect) {
       EXPECT_EQ(std::string(failure.what()).find(path.string() + defect.line_and_reason), 0u)
           << failure.what() << "\nfor: " << defect.content;
     }
+  }
+}
+
+TEST(CameraFile, EndsReadingWhatHasNoEnd) {
+  try {
+    (void)tool::read_camera_file("/dev/zero");
+    ADD_FAILURE();
+  } catch (const tool::Failure& failure) {
+    EXPECT_NE(std::string(failure.what()).find("/dev/zero: File too large"), std::string::npos) << failure.what();
   }
 }
 

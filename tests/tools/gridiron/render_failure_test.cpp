@@ -129,7 +129,7 @@ void expect_interrupt(int signal, std::chrono::milliseconds delay) {
   const auto start = std::chrono::steady_clock::now();
   program.send(signal);
   const ProgramResult result = program.wait();
-  EXPECT_EQ(result.exit_code, 130) << result.err;
+  EXPECT_EQ(result.exit_code, signal == SIGTERM ? 143 : 130) << result.err;
   EXPECT_EQ(result.err, "interrupted; no file was written\n");
   EXPECT_LT(std::chrono::steady_clock::now() - start, std::chrono::seconds(10)) << "it should stop at the next tile";
   EXPECT_EQ(folder.names(), (Words{"a.ply", "a.png"}));

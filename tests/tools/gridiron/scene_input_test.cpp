@@ -59,6 +59,41 @@ TEST_F(SceneInputTest, SaysSoWhereNothingFits) {
   EXPECT_THROW(tool::require_fit(choice, arguments_), tool::Failure);
 }
 
+TEST_F(SceneInputTest, GoesDownToOneCell) {
+  // Triangles that all fill the box: every one is in most cells, so only few cells fit, and far fewer than at 1/64.
+  TestMesh mesh;
+  mesh.vertices = {{0, 0, 0}, {1, 0, 0}, {0, 1, 1}, {1, 1, 1}};
+  for (int i = 0; i < 20000; ++i) mesh.triangles.emplace_back(i % 2, 1 + i % 2, 2 + i % 2);
+  arguments_.input = folder_.write_ply("pile.ply", mesh);
+  input_ = tool::read_scene_input(arguments_.input);
+  const tool::GridChoice choice = choose(std::uint64_t{1} << 20);
+  EXPECT_TRUE(choice.fits());
+  EXPECT_LT(choice.parameters.lambda, 1.0f / 64.0f);
+}
+
+TEST_F(SceneInputTest, HalvesLambdaWhereReferencesOutgrowTheirCounts) {
+  TestMesh mesh;
+  mesh.vertices = {{0, 0, 0}, {1, 0, 0}, {0, 1, 0}, {1, 1, 0}};
+  for (int i = 0; i < 2100; ++i) mesh.triangles.emplace_back(i % 2, 1 + i % 2, 2 + i % 2);
+  arguments_.input = folder_.write_ply("sheet.ply", mesh);
+  input_ = tool::read_scene_input(arguments_.input);
+  arguments_.lambda = 3000.0f;
+  try {
+    (void)choose(std::uint64_t{1} << 30);
+    ADD_FAILURE();
+  } catch (const tool::Failure& failure) {
+    EXPECT_NE(std::string(failure.what()).find("at lambda 3000; a smaller --lambda needs fewer"), std::string::npos)
+        << failure.what();
+  }
+  arguments_.lambda.reset();
+  tool::Configuration fine = *arguments_.configuration;
+  fine.lambda = 3000.0f;
+  arguments_.configuration = &fine;
+  const tool::GridChoice choice = choose(std::uint64_t{1} << 30);
+  EXPECT_TRUE(choice.fits());
+  EXPECT_TRUE(choice.is_reduced());
+}
+
 TEST_F(SceneInputTest, NeverChangesALambdaOfTheCommandLine) {
   arguments_.lambda = 4.0f;
   const std::uint64_t need_bytes = choose(std::uint64_t{1} << 30).need.image_bytes;

@@ -51,9 +51,13 @@ TEST(Usage, MistakesExitWithTwoAndSayWhy) {
       {{"render", "a.ply", "--mode", "plain", "--report", "r.json"}, "plain"},
       {{"render", "a.ply", "--tile", "0,0", "--timeline", "t.json"}, "--tile"},
       {{"render", "a.ply", "--store", "64", "--configuration", "deep"}, "--store 64"},
-      {{"render", "a.ply", "-o", "x", "--report", "./x"}, "the same file"},
+      {{"render", "a.ply", "--store", "64", "--macro-width", "8"}, "width 8"},
+      {{"render", "a.ply", "-o", "x", "--report", "./x"}, "-o and --report name the same file"},
+      {{"render", "a.ply", "-o", "./a.ply"}, "INPUT and -o name the same file"},
+      {{"render", "a.ply", "--camera", "v.camera", "--depth", "v.camera"}, "--camera and --depth name the same file"},
       {{"info"}, "INPUT"},
       {{"pack", "a.ply"}, "--output"},
+      {{"pack", "a.ply", "-o", "a.ply"}, "INPUT and -o name the same file"},
       {{"pack", "a.ply", "-o", "a.gri", "--format", "lattice"}, "vertices|projection"},
       {{"machines", "cell-ps3", "cell-2006"}, "cell-2006"},
   };
@@ -67,6 +71,29 @@ TEST(Usage, MistakesExitWithTwoAndSayWhy) {
     EXPECT_EQ(result.out, "") << line;
   }
   EXPECT_EQ(folder.names(), Words{});
+}
+
+TEST(Usage, NamesOfOneFileAreSeenThroughLinks) {
+  const TemporaryFolder folder;
+  const auto machine = folder.write("my.machine", "based_on cell-ps3\n");
+  const auto mesh = folder.write("a.ply", "ply\n");
+  std::filesystem::create_symlink("a.ply", folder.folder() / "link.gri");
+  std::filesystem::create_symlink("nowhere", folder.folder() / "dangling");
+  const Words cases[] = {
+      {"pack", "a.ply", "-o", "link.gri"},
+      {"render", "link.gri", "-o", mesh.string()},
+      {"render", "a.ply", "--machine", "my.machine", "--report", machine.string()},
+      {"render", "a.ply", "--ids", "dangling", "--depth", "nowhere"},
+  };
+  for (const Words& arguments : cases) {
+    const ProgramResult result = run_program(folder.folder(), arguments);
+    EXPECT_EQ(result.exit_code, 2) << result.err;
+    EXPECT_NE(result.err.find("name the same file"), std::string::npos) << result.err;
+  }
+  // A device takes any number of outputs.
+  const ProgramResult result =
+      run_program(folder.folder(), {"render", "a.ply", "-o", "/dev/null", "--report", "/dev/null"});
+  EXPECT_EQ(result.err.find("name the same file"), std::string::npos) << result.err;
 }
 
 TEST(Usage, HelpAndVersionAreAnswers) {
