@@ -156,6 +156,12 @@ CountedPicture render_counted(const CountedFrame& frame, std::uint32_t superbloc
   return {totals, pixels_of(memory)};
 }
 
+std::vector<std::byte> main_memory_of(const CountedFrame& frame) {
+  const MainMemory memory = make_memory(frame);
+  const std::span<std::byte> bytes = memory.bytes.bytes();
+  return {bytes.begin(), bytes.end()};
+}
+
 CountedPicture render_plain(const CountedFrame& frame) {
   MainMemory memory = make_memory(frame);
   Totals totals = frame.packet_width == 32 ? run_plain<32>(memory) : run_plain<8>(memory);
