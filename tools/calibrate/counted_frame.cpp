@@ -117,6 +117,7 @@ __attribute__((noinline)) Totals run_counted(MainMemory& memory, PipeModel& mode
   using Store = twin::LocalStore<twin::StoreLayout256K<PacketWidth>>;
   LineBytes bytes(sizeof(Store));
   Store& store = *::new (static_cast<void*>(bytes.bytes().data())) Store;
+  model.set_store(&store, sizeof(store));
   CopyCore core(memory.bytes.bytes(), memory.tile_count);
   require(twin::render_tiles<twin::Lanes<4>>(store, core, twin::MainAddress{0}));
   return model.finish();
@@ -153,6 +154,12 @@ CountedPicture render_counted(const CountedFrame& frame, std::uint32_t superbloc
   Totals totals =
       frame.packet_width == 32 ? run_twice<32>(memory, superblock_branches) : run_twice<8>(memory, superblock_branches);
   return {totals, pixels_of(memory)};
+}
+
+std::vector<std::byte> main_memory_of(const CountedFrame& frame) {
+  const MainMemory memory = make_memory(frame);
+  const std::span<std::byte> bytes = memory.bytes.bytes();
+  return {bytes.begin(), bytes.end()};
 }
 
 CountedPicture render_plain(const CountedFrame& frame) {

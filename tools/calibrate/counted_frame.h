@@ -6,6 +6,7 @@
 #include <gridiron/base/records.h>
 #include <pipe_model.h>
 
+#include <cstddef>
 #include <cstdint>
 #include <span>
 #include <vector>
@@ -37,5 +38,8 @@ struct CountedPicture {
 
 /// The same by the kernel itself: pixels, and work as it counts it in `totals[].units`.
 [[nodiscard]] CountedPicture render_plain(const CountedFrame& frame);
+
+/// @returns the main memory that both render from: frame record, picture, scene image.
+[[nodiscard]] std::vector<std::byte> main_memory_of(const CountedFrame& frame);
 
 }  // namespace gridiron::calibrate

@@ -11,13 +11,18 @@
 namespace {
 
 constexpr std::string_view kUsage =
-    "usage: gridiron_calibrate [FILE]\n"
+    "usage: gridiron_calibrate [FILE | --memories FOLDER]\n"
     "Counts the operations of the kernel on three small frames and puts them through the pipeline model.\n"
     "  FILE           write the table there: sim_platform/gridiron/sim/work_costs.h\n"
+    "  --memories     write the frames' memories there, for second_opinion/run\n"
     "Without FILE: every kind of work with its operations by class, for superblocks of 1, 2, 4 and 8 basic blocks.\n";
 
 int run(int argument_count, char** arguments) {
   namespace calibrate = gridiron::calibrate;
+  if (argument_count == 3 && std::string_view(arguments[1]) == "--memories") {
+    calibrate::write_memories(arguments[2]);
+    return 0;
+  }
   if (argument_count > 2 || (argument_count == 2 && arguments[1][0] == '-')) {
     std::fputs(kUsage.data(), argument_count == 2 && std::string_view(arguments[1]) == "--help" ? stdout : stderr);
     return argument_count == 2 && std::string_view(arguments[1]) == "--help" ? 0 : 2;

@@ -2,6 +2,7 @@
 #include <pipe_model.h>
 
 #include <algorithm>
+#include <cstring>
 
 namespace gridiron::calibrate {
 
@@ -52,13 +53,16 @@ bool BranchWays::usual() const {
 }
 
 PipeModel::PipeModel(const Branches* branches, std::uint32_t superblock_branches)
-    : usual_(branches),
+    : schedules_(branches != nullptr),
       superblock_branches_(superblock_branches),
       ready_(kRememberedNodes),
       history_(kRememberedNodes),
+      depth_(kRememberedNodes),
       slots_(kStackBytes / 4),
       outer_(current_model) {
   current_model = this;
+  if (branches == nullptr) return;
+  for (const auto& [site, ways] : *branches) usual_[site] = ways.usual();
 }
 
 PipeModel::~PipeModel() {
@@ -84,6 +88,9 @@ Node PipeModel::emit(OpClass op, std::uint64_t tie, Node a, Node b, Node c) {
   block_.push_back({op, kind_, segment_, {a, b, c}, history});
   const Node node = first_node_ + static_cast<Node>(block_.size()) - 1;
   history_[node % kRememberedNodes] = history;
+  std::uint64_t depth = 0;
+  for (const Node before : {a, b, c}) depth = std::max(depth, before == 0 ? 0 : depth_[before % kRememberedNodes]);
+  depth_[node % kRememberedNodes] = depth + facts(op).latency_cycles;
   return node;
 }
 
@@ -95,13 +102,15 @@ std::uint64_t PipeModel::ready_of(Node node) const {
 void PipeModel::branch(Site site, bool taken, Node condition) {
   // A branch waits for its conditions; the operations that join several are counted with them.
   Node last = 0;
-  for (const Node node : conditions_) last = std::max(last, node);
+  for (const Node node : conditions_) {
+    if (last == 0 || depth_[node % kRememberedNodes] > depth_[last % kRememberedNodes]) last = node;
+  }
   conditions_.clear();
   emit(OpClass::kBranch, site, condition, last);
   ++branches_[site].by_kind[static_cast<std::size_t>(kind_)][taken ? 1 : 0];
   ++block_number_;
   ++segment_;
-  if (usual_ == nullptr || segment_ >= superblock_branches_ || taken != usual_->at(site).usual()) schedule();
+  if (!schedules_ || segment_ >= superblock_branches_ || taken != usual_.at(site)) schedule();
 }
 
 void PipeModel::note_address(Node node) {
@@ -110,35 +119,38 @@ void PipeModel::note_address(Node node) {
   addresses_.push_back(node);
 }
 
-Node PipeModel::gather_addresses() {
+// The latest of what is part of the address, in no order that a compiler could choose.
+std::array<Node, 2> PipeModel::gather_addresses() {
   addresses_used_ = true;
-  Node latest = 0;
-  std::uint64_t latest_ready = 0;
-  for (const Node node : addresses_) {
-    if (node >= first_node_) {
-      latest = std::max(latest, node);
-    } else if (latest < first_node_ && ready_of(node) >= latest_ready) {
-      latest_ready = ready_of(node);
-      latest = node;
+  const auto later = [this](Node a, Node b) {
+    if (depth_[a % kRememberedNodes] != depth_[b % kRememberedNodes]) {
+      return depth_[a % kRememberedNodes] > depth_[b % kRememberedNodes];
     }
-  }
-  return latest;
+    return history_[a % kRememberedNodes] > history_[b % kRememberedNodes];
+  };
+  std::ranges::sort(addresses_, later);
+  return {addresses_.empty() ? 0 : addresses_[0], addresses_.size() < 2 ? 0 : addresses_[1]};
 }
 
 // The register that holds a quadword of memory, loaded where it has left the registers.
-PipeModel::Quad& PipeModel::quad_at(std::uintptr_t address, std::uint64_t tie) {
+PipeModel::Quad& PipeModel::quad_at(std::uintptr_t address) {
   Quad& quad = quads_[address / 16];
   if (quad.last_block == 0 || block_number_ - quad.last_block > kRegisterBlocks) {
-    quad = {emit(OpClass::kLoad, tie, gather_addresses()), {}, block_number_};
+    std::uint64_t words[2];
+    std::memcpy(words, reinterpret_cast<const void*>(address / 16 * 16), sizeof(words));
+    const auto [first, second] = gather_addresses();
+    quad = {emit(OpClass::kLoad, words[0] * 31 + words[1], first, second), {}, block_number_};
   }
   quad.last_block = block_number_;
   return quad;
 }
 
 Node PipeModel::scalar_at(const void* pointer, std::uint64_t tie) {
+  addresses_used_ = true;
   const auto address = reinterpret_cast<std::uintptr_t>(pointer);
+  if (is_constant(address)) return 0;
   if (on_stack(address) && !slot_of(address).in_memory) return slot_of(address).node;
-  Quad& quad = quad_at(address, tie);
+  Quad& quad = quad_at(address);
   const std::size_t lane = address / 4 % 4;
   if (lane == 0) return quad.node;  // a scalar lives in the first word of a register
   if (quad.lanes[lane] == 0) quad.lanes[lane] = emit(OpClass::kShuffle, tie, quad.node);
@@ -157,24 +169,27 @@ void PipeModel::set_scalar(const void* pointer, Node node, std::uint64_t tie) {
     slot_of(address) = {node, false};
     return;
   }
-  Quad& quad = quad_at(address, 0);
-  const Node mask = emit(OpClass::kShuffle, tie, gather_addresses());
+  Quad& quad = quad_at(address);
+  const Node mask = emit(OpClass::kShuffle, tie, gather_addresses()[0]);
   const Node merged = emit(OpClass::kShuffle, tie, quad.node, node, mask);
   emit(OpClass::kStore, tie, merged);
   quad = {merged, {}, block_number_};
 }
 
 Node PipeModel::splat_of(const void* pointer, std::uint64_t tie) {
+  addresses_used_ = true;
   const auto address = reinterpret_cast<std::uintptr_t>(pointer);
+  if (is_constant(address)) return 0;
   if (on_stack(address) && !slot_of(address).in_memory) {
     const Node node = slot_of(address).node;
     return node == 0 ? 0 : emit(OpClass::kShuffle, tie, node);
   }
-  const Node node = quad_at(address, tie).node;
+  const Node node = quad_at(address).node;
   return emit(OpClass::kShuffle, tie, node);
 }
 
 Node PipeModel::load_quad(const void* pointer, std::uint64_t tie) {
+  addresses_used_ = true;
   const auto address = reinterpret_cast<std::uintptr_t>(pointer);
   if (on_stack(address) && !slot_of(address).in_memory) {
     // Scalars in registers become a vector.
@@ -182,12 +197,12 @@ Node PipeModel::load_quad(const void* pointer, std::uint64_t tie) {
     const Node high = emit(OpClass::kShuffle, tie + 1, slot_of(address + 8).node, slot_of(address + 12).node);
     return emit(OpClass::kShuffle, tie + 2, low, high);
   }
-  return quad_at(address, tie).node;
+  return quad_at(address).node;
 }
 
 void PipeModel::store_quad(const void* pointer, Node node, std::uint64_t tie) {
   const auto address = reinterpret_cast<std::uintptr_t>(pointer);
-  emit(OpClass::kStore, tie, node, gather_addresses());
+  emit(OpClass::kStore, tie, node, gather_addresses()[0]);
   quads_[address / 16] = {node, {}, block_number_};
   if (on_stack(address)) {
     for (std::uintptr_t i = 0; i < 4; ++i) slot_of(address + 4 * i) = {node, true};
@@ -205,7 +220,7 @@ void PipeModel::schedule() {
   const std::uint32_t count = static_cast<std::uint32_t>(block_.size());
   const std::uint32_t segments = segment_ + 1;
   segment_ = 0;
-  if (usual_ == nullptr) {
+  if (!schedules_) {
     first_node_ += count;
     block_.clear();
     return;

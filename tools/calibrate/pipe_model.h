@@ -8,7 +8,6 @@
 #include <array>
 #include <cstddef>
 #include <cstdint>
-#include <map>
 #include <unordered_map>
 #include <vector>
 
@@ -89,7 +88,7 @@ struct BranchWays {
   std::array<std::array<std::uint64_t, 2>, kWorkKindCount> by_kind{};
   [[nodiscard]] bool usual() const;  ///< true: it is taken more often than not
 };
-using Branches = std::map<Site, BranchWays>;
+using Branches = std::unordered_map<Site, BranchWays>;
 
 /// Schedules superblocks of at most `superblock_branches` basic blocks as a compiler would, longest chain first, and
 /// keeps what it costs by kind of work.
@@ -120,6 +119,11 @@ class PipeModel {
 
   // Values in memory, by quadword; stack addresses are registers until they are stored to as vectors.
   void set_stack(const void* base) { stack_base_ = reinterpret_cast<std::uintptr_t>(base); }
+  /// The local store. Scalars that lie neither there nor on the stack are constants.
+  void set_store(const void* store, std::size_t bytes) {
+    store_base_ = reinterpret_cast<std::uintptr_t>(store);
+    store_bytes_ = bytes;
+  }
   [[nodiscard]] Node scalar_at(const void* address, std::uint64_t tie);
   void set_scalar(const void* address, Node node, std::uint64_t tie);
   void make_register(const void* address, Node node);
@@ -152,10 +156,13 @@ class PipeModel {
     bool in_memory;
   };
   [[nodiscard]] bool on_stack(std::uintptr_t address) const { return stack_base_ - address < kStackBytes; }
+  [[nodiscard]] bool is_constant(std::uintptr_t address) const {
+    return !on_stack(address) && address - store_base_ >= store_bytes_;
+  }
   [[nodiscard]] Slot& slot_of(std::uintptr_t address) { return slots_[(address >> 2) % slots_.size()]; }
-  [[nodiscard]] Quad& quad_at(std::uintptr_t address, std::uint64_t tie);
+  [[nodiscard]] Quad& quad_at(std::uintptr_t address);
   [[nodiscard]] std::uint64_t ready_of(Node node) const;
-  [[nodiscard]] Node gather_addresses();
+  [[nodiscard]] std::array<Node, 2> gather_addresses();
   void schedule();
 
   static constexpr std::uintptr_t kStackBytes = std::uintptr_t{1} << 20;
@@ -163,18 +170,20 @@ class PipeModel {
 
   Totals totals_{};
   Work kind_ = Work::kWait;  // what is done before the first tile is not charged by the tile
-  const Branches* usual_;
+  bool schedules_;
+  std::unordered_map<Site, bool> usual_;
   std::uint32_t superblock_branches_;
   std::uint32_t segment_ = 0;
   std::vector<Op> block_;
   Node first_node_ = 1;  // of the block
   std::uint32_t block_number_ = 1;
   std::uint64_t clock_ = 0;                     // of the last issue
-  std::vector<std::uint64_t> ready_, history_;  // by node, of the last kRememberedNodes
+  std::vector<std::uint64_t> ready_, history_, depth_;  // by node, of the last kRememberedNodes
   std::vector<Node> conditions_;
   std::vector<Node> addresses_;
   bool addresses_used_ = false;
-  std::uintptr_t stack_base_ = 0;
+  std::uintptr_t stack_base_ = 0, store_base_ = 0;
+  std::size_t store_bytes_ = 0;
   std::vector<Slot> slots_;
   std::unordered_map<std::uintptr_t, Quad> quads_;
   Branches branches_;

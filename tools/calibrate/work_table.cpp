@@ -5,7 +5,9 @@
 #include <scene_makers/shapes.h>
 #include <work_table.h>
 
+#include <array>
 #include <cstdio>
+#include <fstream>
 #include <stdexcept>
 #include <string_view>
 #include <vector>
@@ -103,6 +105,31 @@ double per_unit(const KindTotals& totals, std::uint64_t value) {
   return per_unit(totals, static_cast<double>(value));
 }
 
+struct NamedFrame {
+  const char* name;
+  CountedFrame frame;
+};
+
+std::array<NamedFrame, 3> frames_of(const Scene& scene) {
+  const CountedFrame reference{.vertices = scene.vertices,
+                               .triangles = scene.triangles,
+                               .eye = kEye,
+                               .at = {0.25f, 1.5f, 0.0f},
+                               .tan_half_fov = 0.41421356f,
+                               .width = 96,
+                               .packet_width = 8,
+                               .accuracy = Accuracy::kStandard,
+                               .shading = Shading::kSimple,
+                               .techniques = kReference};
+  CountedFrame best = reference;
+  best.packet_width = 32;
+  best.techniques = kBest;
+  CountedFrame paper = reference;
+  paper.accuracy = Accuracy::kPaper;
+  paper.shading = Shading::kNone;
+  return {{{"reference", reference}, {"best", best}, {"paper", paper}}};
+}
+
 constexpr std::string_view kTableHead =
     R"(// What a unit of each kind of work costs on a core of two in-order pipes. Written by gridiron_calibrate from
 // counted operations of the kernel itself; do not edit. tools/calibrate/README.md says how, and where each constant
@@ -137,25 +164,8 @@ inline constexpr std::array<WorkCost, kWorkKindCount> kWorkCosts = {{
 
 Totals count_frames(std::uint32_t superblock_branches) {
   const Scene scene = make_scene();
-  const CountedFrame reference{.vertices = scene.vertices,
-                               .triangles = scene.triangles,
-                               .eye = kEye,
-                               .at = {0.25f, 1.5f, 0.0f},
-                               .tan_half_fov = 0.41421356f,
-                               .width = 96,
-                               .packet_width = 8,
-                               .accuracy = Accuracy::kStandard,
-                               .shading = Shading::kSimple,
-                               .techniques = kReference};
-  CountedFrame best = reference;
-  best.packet_width = 32;
-  best.techniques = kBest;
-  CountedFrame paper = reference;
-  paper.accuracy = Accuracy::kPaper;
-  paper.shading = Shading::kNone;
-
   Totals sum = count_exact(scene, superblock_branches);
-  for (const CountedFrame& frame : {reference, best, paper}) {
+  for (const auto& [name, frame] : frames_of(scene)) {
     const CountedPicture counted = render_counted(frame, superblock_branches);
     const CountedPicture plain = render_plain(frame);
     if (counted.pixels != plain.pixels) throw std::runtime_error("calibration: the counted picture is another one");
@@ -186,6 +196,26 @@ std::string table_text(const Totals& totals) {
                    name.c_str());
   }
   return text + "}};\n\n}  // namespace gridiron::sim\n";
+}
+
+void write_memories(const std::string& folder) {
+  const Scene scene = make_scene();
+  Totals totals{};
+  for (const auto& [name, frame] : frames_of(scene)) {
+    const std::vector<std::byte> memory = main_memory_of(frame);
+    std::ofstream file(folder + "/" + name + ".memory", std::ios::binary);
+    file.write(reinterpret_cast<const char*>(memory.data()), static_cast<std::streamsize>(memory.size()));
+    if (!file.flush()) throw std::runtime_error("calibration: cannot write into " + folder);
+    add(totals, render_counted(frame).totals);
+  }
+  std::ofstream file(folder + "/units");
+  for (std::size_t kind = 0; kind < kWorkKindCount; ++kind) {
+    const KindTotals& t = totals[kind];
+    if (!is_charged(kind)) continue;
+    file << kind << ' ' << tool::work_name(static_cast<Work>(kind)) << ' ' << t.units << ' '
+         << per_unit(t, t.even() + t.odd()) << '\n';
+  }
+  if (!file.flush()) throw std::runtime_error("calibration: cannot write into " + folder);
 }
 
 std::string report_text(const Totals& totals) {

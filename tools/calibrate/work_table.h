@@ -19,6 +19,10 @@ namespace gridiron::calibrate {
 /// @returns the generated source file, sim_platform/gridiron/sim/work_costs.h.
 [[nodiscard]] std::string table_text(const Totals& totals);
 
+/// Writes the frames' main memories, NAME.memory, and a file `units` (kind, name, units, counted operations per unit)
+/// into a folder, for second_opinion. Errors: std::runtime_error where a file cannot be written.
+void write_memories(const std::string& folder);
+
 /// @returns the same for people: every kind with its bounds and classes, and the rate of dual issue.
 [[nodiscard]] std::string report_text(const Totals& totals);
 

@@ -91,6 +91,9 @@ TEST(PipeModel, SuperblockMovesWorkAboveUsualBranchesButNoStores) {
 
 TEST_F(PipeModelTest, MemoryIsLoadedOnceAndForgotten) {
   alignas(16) static float words[8];
+  static float constant;
+  model_.set_store(words, sizeof(words));
+  EXPECT_EQ(model_.scalar_at(&constant, 0), 0u);
   const Node first = model_.scalar_at(words, 0);
   EXPECT_EQ(model_.scalar_at(words, 0), first);
   EXPECT_NE(model_.scalar_at(words + 1, 0), first) << "a scalar beside the first word is moved";

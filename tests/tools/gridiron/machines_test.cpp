@@ -1,6 +1,7 @@
 // machines and --machine: profiles that people print, edit and give back. SPDX-License-Identifier: Apache-2.0
 #include <gtest/gtest.h>
 
+#include <gridiron/sim/work_costs.h>
 #include <nlohmann/json.hpp>
 
 #include "run_program.h"
@@ -99,7 +100,7 @@ TEST(Machines, OneMachineAsJson) {
   ASSERT_EQ(document["machines"].size(), 1u);
   EXPECT_EQ(document["machines"][0]["name"], "mine");
   EXPECT_EQ(document["machines"][0]["master"]["step_cycles"]["cell_row"], 99.5);
-  EXPECT_EQ(document["machines"][0]["work_cycles"]["cell_step"], 24);
+  EXPECT_EQ(document["machines"][0]["work_cycles"]["cell_step"], sim::kWorkCosts[static_cast<std::size_t>(Work::kCellStep)].cycles);
 }
 
 TEST(Machines, TheExampleFileRenders) {

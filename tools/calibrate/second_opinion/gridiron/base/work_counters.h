@@ -1,0 +1,40 @@
+// Core's work counters with marks in the machine code: an instruction that does nothing and names the kind of work that
+// the following ones belong to. For second_opinion only.
+// Memory: inside the local store. Threads: one core. SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#define WorkCounters PlainWorkCounters
+#include "../../../../../core/gridiron/base/work_counters.h"
+#undef WorkCounters
+
+#include <cstdint>
+
+namespace gridiron {
+
+struct WorkCounters : PlainWorkCounters {
+  constexpr void add(Work kind, std::uint32_t amount = 1) {
+    mark(kind);
+    PlainWorkCounters::add(kind, amount);
+  }
+  constexpr void charge_to(Work kind) const { mark(kind); }
+
+ private:
+  // Hints 64 and up are not given to anything: no operation. A switch, as the number is part of the instruction; where
+  // the kind is known, and it nearly always is, one case is left of it.
+  static constexpr void mark(Work kind) {
+    if (!__builtin_is_constant_evaluated()) {
+      switch (static_cast<std::uint32_t>(kind)) {
+#define GRIDIRON_MARK(i) case i: asm volatile("hint %0" : : "n"(64 + i)); break;
+#define GRIDIRON_MARKS(i) GRIDIRON_MARK(i) GRIDIRON_MARK(i + 1) GRIDIRON_MARK(i + 2) GRIDIRON_MARK(i + 3) \
+  GRIDIRON_MARK(i + 4) GRIDIRON_MARK(i + 5) GRIDIRON_MARK(i + 6) GRIDIRON_MARK(i + 7)
+        GRIDIRON_MARKS(0) GRIDIRON_MARKS(8) GRIDIRON_MARKS(16) GRIDIRON_MARKS(24)
+#undef GRIDIRON_MARKS
+#undef GRIDIRON_MARK
+        default: break;
+      }
+    }
+  }
+};
+static_assert(kWorkKindCount <= 32);
+
+}  // namespace gridiron
