@@ -100,7 +100,8 @@ TEST(Machines, OneMachineAsJson) {
   ASSERT_EQ(document["machines"].size(), 1u);
   EXPECT_EQ(document["machines"][0]["name"], "mine");
   EXPECT_EQ(document["machines"][0]["master"]["step_cycles"]["cell_row"], 99.5);
-  EXPECT_EQ(document["machines"][0]["work_cycles"]["cell_step"], sim::kWorkCosts[static_cast<std::size_t>(Work::kCellStep)].cycles);
+  EXPECT_EQ(document["machines"][0]["work_cycles"]["cell_step"],
+            sim::kWorkCosts[static_cast<std::size_t>(Work::kCellStep)].cycles);
 }
 
 TEST(Machines, TheExampleFileRenders) {
