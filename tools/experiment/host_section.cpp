@@ -77,7 +77,8 @@ void write_host_figures(const Stage& stage, std::uint32_t threads, Book& book) {
       "Against coherent grid traversal on a general processor of its day the paper was almost four times faster [P]. "
       "The same kernel also runs directly on this host, without checks or a simulated clock, in the widest SIMD groups "
       "that it has; beside it Embree 3 renders the same frames on one thread with coherent packets of 16 rays and the "
-      "same simple shading, where the program was built with it. Those are times of one machine, whatever "
+      "same simple shading, where the program was built with it (rays and shading around Embree are compiled for any "
+      "host of the kind). Those are times of one machine, whatever "
       "else it was doing: they are kept in files whose names begin with host_, which alone differ from run to run, and "
       "are not repeated on this page.");
   book.linked_table(
