@@ -38,7 +38,7 @@ inline constexpr const char* kCostTableWords =
 /// The same of the kinds of work that only the rival has (sim_platform/gridiron/rival/rival_work.cpp).
 inline constexpr const char* kRivalCostWords =
     "The kinds of work that only the hierarchy has (caches, boxes, stack) are counted by hand on the algorithms; all "
-    "others cost what they cost the grid. Where the kernel's own kinds were first counted by hand, the count on the code "
+    "others cost what they cost the grid. Where the kernel's kinds were first counted by hand, the count on the code "
     "came out 1.0 to 4.6 times higher, so these figures favour the hierarchy.";
 
 [[nodiscard]] Writer plan_table1(Plan& plan, const Stage& stage);
