@@ -26,19 +26,6 @@ fs::path folder_of(const fs::path& path) {
   return path.has_parent_path() ? path.parent_path() : fs::path(".");
 }
 
-// Where the bytes really go: through symbolic links, also one that points at nothing yet.
-fs::path resolve_target(const fs::path& path) {
-  constexpr int kMostLinks = 40;
-  fs::path target = path;
-  std::error_code error;
-  for (int link = 0; link < kMostLinks && fs::is_symlink(target, error); ++link) {
-    const fs::path next = fs::read_symlink(target, error);
-    if (error) break;
-    target = next.is_absolute() ? next : folder_of(target) / next;
-  }
-  return target;
-}
-
 bool is_special_file(const fs::path& target) {
   std::error_code error;
   const fs::file_status status = fs::status(target, error);
@@ -57,6 +44,18 @@ bool write_all(int descriptor, std::span<const std::byte> bytes) {
 }
 
 }  // namespace
+
+fs::path resolve_target(const fs::path& path) {
+  constexpr int kMostLinks = 40;
+  fs::path target = path;
+  std::error_code error;
+  for (int link = 0; link < kMostLinks && fs::is_symlink(target, error); ++link) {
+    const fs::path next = fs::read_symlink(target, error);
+    if (error) break;
+    target = next.is_absolute() ? next : folder_of(target) / next;
+  }
+  return target;
+}
 
 AtomicFile::AtomicFile(fs::path path) : path_(std::move(path)), target_(resolve_target(path_)) {
   check_can_write(path_);

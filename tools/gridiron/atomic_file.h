@@ -43,6 +43,9 @@ class AtomicFile {
   int descriptor_ = -1;
 };
 
+/// @returns where bytes written to `path` really go: through symbolic links, also one that points at nothing yet.
+[[nodiscard]] std::filesystem::path resolve_target(const std::filesystem::path& path);
+
 /// Throws Failure (kBadInput) where no file of that name could be made, before the work for it is done: the folder is
 /// missing or closed, or the name is a folder.
 void check_can_write(const std::filesystem::path& path);
