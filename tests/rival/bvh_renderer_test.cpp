@@ -4,6 +4,7 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <cmath>
 #include <cstring>
 #include <numeric>
 #include <string>
@@ -225,9 +226,9 @@ TEST(BvhRenderer, FiguresAddUp) {
     init += timing.init_cycles;
     gets += timing.gets;
   }
-  // Cycles are work times its price, core's by the profile and the rival's by its own table, and commands and waits.
+  // Cycles, in steps of 1/1024, are work times its price, core's by the profile and the rival's by its own table, and commands and waits.
   for (std::size_t kind = 0; kind < kWorkKindCount; ++kind) {
-    charged += static_cast<double>(frame.work[kind]) * ps3().work_cycles[kind];
+    charged += static_cast<double>(frame.work[kind]) * std::round(ps3().work_cycles[kind] * 1024) / 1024;
   }
   for (std::uint32_t kind = 0; kind < kRivalWorkCount; ++kind) {
     charged += static_cast<double>(frame.rival_work[kind]) * cycles_of(static_cast<RivalWork>(kind));
