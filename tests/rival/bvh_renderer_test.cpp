@@ -226,7 +226,8 @@ TEST(BvhRenderer, FiguresAddUp) {
     init += timing.init_cycles;
     gets += timing.gets;
   }
-  // Cycles, in steps of 1/1024, are work times its price, core's by the profile and the rival's by its own table, and commands and waits.
+  // Cycles are work times its price in 1/1024, core's by the profile and the rival's by its own table, and commands and
+  // waits.
   for (std::size_t kind = 0; kind < kWorkKindCount; ++kind) {
     charged += static_cast<double>(frame.work[kind]) * std::round(ps3().work_cycles[kind] * 1024) / 1024;
   }
