@@ -1,10 +1,12 @@
 # gridiron_lanes_test(NAME sources... LIBS libs...): a test for the baseline and, where compiler and host have them,
-# once more for AVX2 and AVX-512, whose lanes take other code paths. Each is a program of its own, so that no function
+# once more for AVX2 with 8 lanes and AVX-512 with 16, which take other code paths. Each is a program of its own, so that no function
 # built for one instruction set can stand in for another's.
 include_guard(GLOBAL)
 include(CheckCXXSourceRuns)
 include(CMakePushCheckState)
 
+set(GRIDIRON_LANES_avx2 8)
+set(GRIDIRON_LANES_avx512 16)
 set(GRIDIRON_LANES_OPTIONS_avx2 -mavx2)
 set(GRIDIRON_LANES_OPTIONS_avx512 -mavx512f -mavx512bw -mavx512dq -mavx512vl)
 set(GRIDIRON_LANES_FEATURES_avx2 "__builtin_cpu_supports(\"avx2\")")
@@ -21,9 +23,10 @@ endforeach()
 function(gridiron_lanes_test name)
   gridiron_test(${name} ${ARGN})
   foreach(isa avx2 avx512)
-    if(GRIDIRON_HOST_RUNS_${isa})
+    if(GRIDIRON_WIDE_LANES AND GRIDIRON_HOST_RUNS_${isa})
       gridiron_test(${name}_${isa} OWN_INSTRUCTIONS ${ARGN})
       target_compile_options(${name}_${isa} PRIVATE ${GRIDIRON_LANES_OPTIONS_${isa}})
+      target_compile_definitions(${name}_${isa} PRIVATE GRIDIRON_TEST_LANES=${GRIDIRON_LANES_${isa}})
     endif()
   endforeach()
 endfunction()

@@ -244,7 +244,9 @@ Writer plan_table4(Plan& plan, const Stage& stage) {
                    " %, derived [D] from its Table 4: that follows from hidden share and gain if nothing but the "
                    "waiting changes. The share grows by " +
                    growth_range.text(1) + " percentage points from one core to six" +
-                   (growth_range.greatest() < 3 ? ": here, as in the paper, latency binds and not bandwidth." : "."));
+                   (growth_range.least() > -1 && growth_range.greatest() < 3
+                        ? ": here, as in the paper, latency binds and not bandwidth."
+                        : "."));
     book.paragraph(
         "What moves these shares can be measured. What is computed beside the transfers: with the paper's "
         "own test, the same transfers and less work, the shares are " +

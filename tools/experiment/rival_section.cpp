@@ -220,8 +220,9 @@ Writer plan_figure7(Plan& plan, const Stage& stage) {
             "The paper compares itself with a ray tracer that takes packets through a bounding volume hierarchy with "
             "software caches, measured by others on eight cores at 2.4 GHz, a chip of the same peak (profile "
             "cell-2006), and calls itself \"slow by half\" [P]; the heights of its bars are lost. Here that rival is "
-            "built anew and runs on the same simulated chip, under the same checks, with the same tiles, 8x8 packets, "
-            "exact test and shading: a hierarchy built by surface area, four children a node, 4-way set-associative "
+            "built anew and runs on the same simulated chip, under the same checks, with the same tiles, exact test "
+            "and shading, and with the reference's packets of 8x8 rays (best takes a whole tile): a hierarchy built by "
+            "surface area, four children a node, 4-way set-associative "
             "caches for nodes and triangles in the same 256 KB, and, with hyper-threading, a ring of packets of which "
             "one that misses makes way for the next. ") +
         kRivalCostWords +
@@ -232,7 +233,7 @@ Writer plan_figure7(Plan& plan, const Stage& stage) {
         "hyper-threading on eight at 2.4 GHz, gives " +
         paper_cases.text(2) + " of its frames; \"slow by half\" is about 0.5. With both on cell-2006, frame alone, " +
         score.text() + ". Hyper-threading gains the hierarchy " + gains.text(1) +
-        " % fps on both machines: its caches miss seldom, so that there is not much waiting to hide.");
+        " % fps on both machines; how often its caches hit is told below.");
     book.table(frames, "Frames a second without shading.");
     book.figure("fig7_cell_2006", bar_chart_svg(bare),
                 "Frames a second on the chip of the paper's rival, no shading, the structure being there already.");
@@ -250,7 +251,7 @@ Writer plan_figure7(Plan& plan, const Stage& stage) {
                 "Build and frame together on the chip of the paper's rival, frames a second.");
     const Range without_sweeps = write_build_steps(done, rows, rows.front().machine, book);
     book.paragraph(
-        "A builder that spends fewer bins on small nodes would be faster than the rival's. Even if sweeping "
+        "A builder that spends fewer bins on small nodes would be faster than the rival's. If sweeping "
         "bins cost nothing, its build would take " +
         without_sweeps.text(2) + " times as long as the grid's.");
     book.table(cycles, "Millions of cycles of a frame, all cores working at once.");

@@ -1,5 +1,5 @@
-// Footprint: which subpackets of a packet may touch a cell.
-// Source: the frustum's bound (frustum.h), for each subpacket by itself. Memory: values. Threads: any.
+// Footprint: which squares of 2x2 subpackets of a packet may touch a cell.
+// Source: the frustum's bound (frustum.h), for each square by itself. Memory: values. Threads: any.
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 

@@ -50,7 +50,7 @@ FarFilter set_up_far_filter(const float origin[3], float dir_max, const VertexTr
     edge1[i] = triangle.v[1][i] - triangle.v[0][i];
     edge2[i] = triangle.v[2][i] - triangle.v[0][i];
   }
-  float numerator = 0.0f, numerator_size = 0.0f, normal_size = 0.0f;
+  float numerator = 0.0f, numerator_size = 0.0f, normal_size = 0.0f, distance_size = 0.0f;
   for (int i = 0; i < 3; ++i) {
     const int j = i == 2 ? 0 : i + 1;
     const int k = j == 2 ? 0 : j + 1;
@@ -62,12 +62,13 @@ FarFilter set_up_far_filter(const float origin[3], float dir_max, const VertexTr
     normal_size += size;
     numerator += from_origin * filter.normal[i];
     numerator_size += magnitude(from_origin) * size;
+    distance_size += magnitude(from_origin);
   }
   const float denominator_size = dir_max * normal_size;
   filter.widening = kFarError * denominator_size;
   filter.nearest = magnitude(numerator) - kFarError * numerator_size;
-  const bool in_range = normal_size < 0x1p40f && dir_max < 0x1p40f && denominator_size > 0x1p-60f &&
-                        filter.nearest > 0x1p-40f && numerator_size < kFloatMax;
+  const bool in_range = normal_size < 0x1p40f && distance_size < 0x1p40f && dir_max < 0x1p40f &&
+                        denominator_size > 0x1p-60f && filter.nearest > 0x1p-40f;
   if (!in_range) filter.nearest = 0.0f;
   return filter;
 }

@@ -64,8 +64,8 @@ inline constexpr float kCornerErrorFactor = 5.0f * 0x1p-23f;
 
 /// The same for n . d evaluated as first + column * per_column + row * per_row. With D the largest sum of magnitudes
 /// that goes into a direction's component and scale = |F|max |S|1 >= |n|1 / 2: the rounding of n itself is within
-/// 16 e scale D; the direction differs from the linear form by less than 6 e D, 12 e scale D in all; and less than 12
-/// roundings of sums of at most 2 scale D each, 24 e scale D, happen on the way. 52 e covers all, 68 e is charged.
+/// 16 e scale D; the direction differs from the linear form by less than 6 e D, 12 e scale D in all; and at most 16
+/// roundings of sums of at most 2 scale D each, 32 e scale D, happen on the way. 60 e covers all, 68 e is charged.
 inline constexpr float kSubpacketErrorFactor = 68.0f * 0x1p-23f;
 
 /// @returns sign of det[a - o, b - o, c - o]: float filter by the caller, then double, then integers.
@@ -405,16 +405,16 @@ template <class L, class PacketType>
     if ((wanted & four) == 0) continue;
     work.add(Work::kSubpacketGroup);
     std::uint32_t outside = 0;
-    std::uint32_t uncovered = 0;
+    std::uint32_t inside = 0xF;
     for (std::uint32_t edge = 0; edge < 3; ++edge) {
       const std::uint32_t lane = first_lane + edge;
       const Float value = offset[edge] + Float(kSquareOrigins.column[square] * batch.per_column[lane] +
                                                kSquareOrigins.row[square] * batch.per_row[lane]);
       outside |= (value < limit[edge]).bits();
-      uncovered |= (value - span[edge] <= -limit[edge]).bits();
+      inside &= (value - span[edge] > -limit[edge]).bits();
     }
     near |= SubpacketSet{~outside & 0xFu} << (4 * square);
-    covered |= SubpacketSet{~uncovered & 0xFu} << (4 * square);
+    covered |= SubpacketSet{inside} << (4 * square);
   }
   return {near & wanted, covered & wanted, true};
 }

@@ -139,13 +139,13 @@ class PacketDriver {
     return Status::kOk;
   }
 
-  // Subpackets that have hit nothing in front of `entry` yet.
+  // Subpackets with a ray that has hit nothing in front of `entry` yet.
   [[nodiscard]] SubpacketSet open_subpackets(float entry) {
     if ((store_.frame.techniques & kUseSubpackets) == 0) return StorePacket::kAllSubpackets;
     return reaches_.template open<L>(frustum_, entry, store_.work);
   }
 
-  // Squares of subpackets that may touch a cell and have hit nothing in front of it yet.
+  // Squares of subpackets that may touch a cell and have a ray that has hit nothing in front of it yet.
   [[nodiscard]] std::uint32_t squares_that_see(const CellVisit& cell) {
     constexpr std::uint32_t kAllSquares = (1u << StorePacket::kSquareCount) - 1u;
     if ((store_.frame.techniques & kUseSubpackets) == 0) return kAllSquares;

@@ -253,7 +253,9 @@ class BvhCore {
         reinterpret_cast<const VertexTriangle*>(triangle_lines_ + context.slot * triangle_line_bytes());
     const VertexTriangle* const triangles = line + child.first_triangle() % settings().line_triangles;
     count(RivalWork::kLeafVisit);
-    const Culling culling{.corner_rays = true, .subpackets = settings().use_subpackets != 0};
+    // Subpackets do what corner rays would, and cheaper (as in the grid's configuration best).
+    const bool by_subpackets = settings().use_subpackets != 0;
+    const Culling culling{.corner_rays = !by_subpackets, .subpackets = by_subpackets};
     // Subpackets that the leaf's box may be met by, and that have not hit anything nearer.
     SubpacketSet open = 0;
     store_.work.add(Work::kReachGroup);

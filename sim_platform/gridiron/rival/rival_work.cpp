@@ -12,7 +12,7 @@ struct KindFacts {
   double cycles;
 };
 
-/// ESTIMATES by the rule of sim/machine_profile.cpp: even instructions, plus the odd ones that find no even partner,
+/// ESTIMATES, counted by hand: even instructions, plus the odd ones that find no even partner,
 /// plus half a branch miss (9) where a branch goes either way, plus latency that nothing covers.
 constexpr std::array<KindFacts, kRivalWorkCount> kFacts = {{
     // Set by multiply and mask 4, load of four tags 6, compare and gather 5, way by table 6, ages 6, slot address 3.

@@ -10,6 +10,7 @@
 #include <limits>
 #include <vector>
 
+#include "core/lane_types.h"
 #include "core/seeds.h"
 #include "support/test_mesh.h"
 
@@ -90,13 +91,6 @@ class LanesTest : public testing::Test {
   }
 };
 
-struct LaneNames {
-  template <class L>
-  static std::string GetName(int) {
-    return "W" + std::to_string(L::kCount);
-  }
-};
-using LaneTypes = testing::Types<Lanes<4>, Lanes<8>, Lanes<16>>;
 TYPED_TEST_SUITE(LanesTest, LaneTypes, LaneNames);
 
 TYPED_TEST(LanesTest, ArithmeticIsThatOfEachLane) {

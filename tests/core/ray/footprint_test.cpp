@@ -7,6 +7,7 @@
 #include <cstdlib>
 #include <string>
 
+#include "core/lane_types.h"
 #include "core/ray/exact_ray.h"
 #include "core/ray/frustum_cases.h"
 #include "core/seeds.h"
@@ -17,13 +18,6 @@ namespace {
 
 template <class L>
 class Footprint : public testing::Test {};
-struct LaneNames {
-  template <class L>
-  static std::string GetName(int) {
-    return "W" + std::to_string(L::kCount);
-  }
-};
-using LaneTypes = testing::Types<Lanes<4>, Lanes<8>, Lanes<16>>;
 TYPED_TEST_SUITE(Footprint, LaneTypes, LaneNames);
 
 TYPED_TEST(Footprint, SquaresBecomeTheirFourSubpackets) {

@@ -11,6 +11,7 @@
 #include <string>
 #include <vector>
 
+#include "core/lane_types.h"
 #include "core/ray/exact_ray.h"
 #include "core/ray/frustum_cases.h"
 #include "core/ray/reach_of.h"
@@ -52,13 +53,6 @@ void set_direction(SmallPacket& packet, std::uint32_t ray, float x, float y, flo
 
 template <class L>
 class FrustumTest : public testing::Test {};
-struct LaneNames {
-  template <class L>
-  static std::string GetName(int) {
-    return "W" + std::to_string(L::kCount);
-  }
-};
-using LaneTypes = testing::Types<Lanes<4>, Lanes<8>, Lanes<16>>;
 TYPED_TEST_SUITE(FrustumTest, LaneTypes, LaneNames);
 
 TYPED_TEST(FrustumTest, EveryRayIsTakenOnceInAtMostSixPasses) {

@@ -8,6 +8,7 @@
 #include <cstdint>
 #include <string>
 
+#include "core/lane_types.h"
 #include "core/ray/packet_cases.h"
 #include "core/seeds.h"
 #include "support/test_mesh.h"
@@ -87,13 +88,6 @@ class ProjectionTest : public testing::Test {
                          DVec3(packet_.dir[0][ray], packet_.dir[1][ray], packet_.dir[2][ray]), corners_);
   }
 };
-struct LaneNames {
-  template <class L>
-  static std::string GetName(int) {
-    return "W" + std::to_string(L::kCount);
-  }
-};
-using LaneTypes = testing::Types<Lanes<4>, Lanes<8>, Lanes<16>>;
 TYPED_TEST_SUITE(ProjectionTest, LaneTypes, LaneNames);
 
 TYPED_TEST(ProjectionTest, AgreesWithDoubleWhereTheCaseIsClear) {

@@ -11,6 +11,7 @@
 #include <string>
 #include <vector>
 
+#include "core/lane_types.h"
 #include "core/ray/packet_cases.h"
 #include "core/seeds.h"
 #include "support/test_mesh.h"
@@ -45,13 +46,6 @@ bool same_bits(float a, float b) {
 
 template <class L>
 class StandardTest : public testing::Test {};
-struct LaneNames {
-  template <class L>
-  static std::string GetName(int) {
-    return "W" + std::to_string(L::kCount);
-  }
-};
-using LaneTypes = testing::Types<Lanes<4>, Lanes<8>, Lanes<16>>;
 TYPED_TEST_SUITE(StandardTest, LaneTypes, LaneNames);
 
 TYPED_TEST(StandardTest, EveryRayHoldsTheLeastDistanceAndIdOfExactArithmetic) {

@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <string>
 
+#include "core/lane_types.h"
 #include "core/seeds.h"
 #include "support/test_mesh.h"
 
@@ -14,13 +15,6 @@ namespace {
 
 template <class L>
 class Reach : public testing::Test {};
-struct LaneNames {
-  template <class L>
-  static std::string GetName(int) {
-    return "W" + std::to_string(L::kCount);
-  }
-};
-using LaneTypes = testing::Types<Lanes<4>, Lanes<8>, Lanes<16>>;
 TYPED_TEST_SUITE(Reach, LaneTypes, LaneNames);
 
 template <class L, class PacketType>

@@ -1,0 +1,26 @@
+// The lane widths that a typed suite runs over: all of them in a program for the baseline, and in one for another
+// instruction set (wide_lanes.cmake) the width that it is there for.
+// Memory: none. Threads: any. SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <gridiron/base/lanes.h>
+#include <gtest/gtest.h>
+
+#include <string>
+
+namespace gridiron::test {
+
+#if defined(GRIDIRON_TEST_LANES)
+using LaneTypes = testing::Types<Lanes<GRIDIRON_TEST_LANES>>;
+#else
+using LaneTypes = testing::Types<Lanes<4>, Lanes<8>, Lanes<16>>;
+#endif
+
+struct LaneNames {
+  template <class L>
+  static std::string GetName(int) {
+    return "W" + std::to_string(L::kCount);
+  }
+};
+
+}  // namespace gridiron::test
