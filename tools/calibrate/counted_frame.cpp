@@ -66,11 +66,11 @@ void require(Status status) {
   if (status != Status::kOk) throw std::runtime_error("calibration: a frame cannot be rendered");
 }
 
-// Frame record, picture and scene image, one behind the other.
+// Frame record, picture, planes and scene image, one behind the other.
 struct MainMemory {
   LineBytes bytes;
   std::uint32_t tile_count;
-  std::size_t pixel_count;
+  std::size_t word_count;  ///< of picture and planes
 };
 constexpr std::uint64_t kPictureAddress = 512;
 
@@ -81,9 +81,10 @@ MainMemory make_memory(const CountedFrame& frame) {
   GridNeed need;
   require(count_scene_image(mesh, grid, need));
   const std::uint32_t tiles = (frame.width + 31) / 32 * ((frame.width + 31) / 32);
-  const std::size_t pixel_count = std::size_t{tiles} * 32 * 32;
-  const std::uint64_t image_address = kPictureAddress + pixel_count * 4;
-  MainMemory memory{LineBytes(image_address + need.image_bytes), tiles, pixel_count};
+  const std::size_t plane_bytes = std::size_t{tiles} * 32 * 32 * 4;
+  const std::size_t output_bytes = plane_bytes * (frame.has_planes ? 3 : 1);
+  const std::uint64_t image_address = kPictureAddress + output_bytes;
+  MainMemory memory{LineBytes(image_address + need.image_bytes), tiles, output_bytes / 4};
   const std::span<std::byte> image = memory.bytes.bytes().subspan(image_address);
   std::vector<std::byte> scratch(need.scratch_bytes);
   require(build_scene_image(mesh, grid, need, image, scratch));
@@ -99,13 +100,17 @@ MainMemory make_memory(const CountedFrame& frame) {
   settings.shading = frame.shading;
   settings.techniques = frame.techniques;
   settings.color = MainAddress{kPictureAddress};
+  if (frame.has_planes) {
+    settings.depth = MainAddress{kPictureAddress + plane_bytes};
+    settings.ids = MainAddress{kPictureAddress + 2 * plane_bytes};
+  }
   require(
       make_frame_record(settings, view, MainAddress{image_address}, *new (memory.bytes.bytes().data()) FrameRecord));
   return memory;
 }
 
 std::vector<std::uint32_t> pixels_of(const MainMemory& memory) {
-  std::vector<std::uint32_t> pixels(memory.pixel_count);
+  std::vector<std::uint32_t> pixels(memory.word_count);
   std::memcpy(pixels.data(), memory.bytes.bytes().data() + kPictureAddress, pixels.size() * 4);
   return pixels;
 }

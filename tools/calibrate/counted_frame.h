@@ -24,11 +24,12 @@ struct CountedFrame {
   Accuracy accuracy;
   Shading shading;
   std::uint32_t techniques;  ///< TechniqueBits
+  bool has_planes;           ///< depth and ids too, for which distances are exact
 };
 
 struct CountedPicture {
   Totals totals;
-  std::vector<std::uint32_t> pixels;  ///< tile-major, as the kernel puts them
+  std::vector<std::uint32_t> pixels;  ///< and planes, tile-major, as the kernel puts them
 };
 
 /// Renders on one core out of a 256 KB store, double-buffered, lambda 4, macrocells of width 6.

@@ -36,8 +36,16 @@ constexpr Vec3 kEye{2.0f, 3.0f, 8.0f};
 constexpr std::uint32_t kReference = kUseMailbox | kUseCornerCulling | kUseEmptySkip;
 constexpr std::uint32_t kBest = kUseMailbox | kUseEmptySkip | kUseSubpackets;
 
-void add(Totals& sum, const Totals& more) {
+// Work that only frames with exact distances have, or hardly any other.
+bool is_of_planes(std::size_t kind) {
+  const Work work = static_cast<Work>(kind);
+  return work == Work::kHitSetup || work == Work::kHitHalf || work == Work::kDepthGroup || work == Work::kIdGroup;
+}
+
+template <class Takes>
+void add(Totals& sum, const Totals& more, const Takes& takes) {
   for (std::size_t kind = 0; kind < kWorkKindCount; ++kind) {
+    if (!takes(kind)) continue;
     KindTotals& to = sum[kind];
     const KindTotals& from = more[kind];
     to.units += from.units;
@@ -108,9 +116,11 @@ double per_unit(const KindTotals& totals, std::uint64_t value) {
 struct NamedFrame {
   const char* name;
   CountedFrame frame;
+  /// Whether the frame stands for a kind of work: frames with planes for what only they do, the others for the rest.
+  [[nodiscard]] bool operator()(std::size_t kind) const { return frame.has_planes == is_of_planes(kind); }
 };
 
-std::array<NamedFrame, 3> frames_of(const Scene& scene) {
+std::array<NamedFrame, 4> frames_of(const Scene& scene) {
   const CountedFrame reference{.vertices = scene.vertices,
                                .triangles = scene.triangles,
                                .eye = kEye,
@@ -120,14 +130,17 @@ std::array<NamedFrame, 3> frames_of(const Scene& scene) {
                                .packet_width = 8,
                                .accuracy = Accuracy::kStandard,
                                .shading = Shading::kSimple,
-                               .techniques = kReference};
+                               .techniques = kReference,
+                               .has_planes = false};
   CountedFrame best = reference;
   best.packet_width = 32;
   best.techniques = kBest;
   CountedFrame paper = reference;
   paper.accuracy = Accuracy::kPaper;
   paper.shading = Shading::kNone;
-  return {{{"reference", reference}, {"best", best}, {"paper", paper}}};
+  CountedFrame planes = best;
+  planes.has_planes = true;
+  return {{{"reference", reference}, {"best", best}, {"paper", paper}, {"planes", planes}}};
 }
 
 constexpr std::string_view kTableHead =
@@ -165,16 +178,16 @@ inline constexpr std::array<WorkCost, kWorkKindCount> kWorkCosts = {{
 Totals count_frames(std::uint32_t superblock_branches) {
   const Scene scene = make_scene();
   Totals sum = count_exact(scene, superblock_branches);
-  for (const auto& [name, frame] : frames_of(scene)) {
-    const CountedPicture counted = render_counted(frame, superblock_branches);
-    const CountedPicture plain = render_plain(frame);
+  for (const NamedFrame& named : frames_of(scene)) {
+    const CountedPicture counted = render_counted(named.frame, superblock_branches);
+    const CountedPicture plain = render_plain(named.frame);
     if (counted.pixels != plain.pixels) throw std::runtime_error("calibration: the counted picture is another one");
     for (std::size_t kind = 0; kind < kWorkKindCount; ++kind) {
       if (is_charged(kind) && counted.totals[kind].units != plain.totals[kind].units) {
         throw std::runtime_error("calibration: the counted kernel did other work");
       }
     }
-    add(sum, counted.totals);
+    add(sum, counted.totals, named);
   }
   return sum;
 }
@@ -201,12 +214,12 @@ std::string table_text(const Totals& totals) {
 void write_memories(const std::string& folder) {
   const Scene scene = make_scene();
   Totals totals{};
-  for (const auto& [name, frame] : frames_of(scene)) {
-    const std::vector<std::byte> memory = main_memory_of(frame);
-    std::ofstream file(folder + "/" + name + ".memory", std::ios::binary);
+  for (const NamedFrame& named : frames_of(scene)) {
+    const std::vector<std::byte> memory = main_memory_of(named.frame);
+    std::ofstream file(folder + "/" + named.name + ".memory", std::ios::binary);
     file.write(reinterpret_cast<const char*>(memory.data()), static_cast<std::streamsize>(memory.size()));
     if (!file.flush()) throw std::runtime_error("calibration: cannot write into " + folder);
-    add(totals, render_counted(frame).totals);
+    add(totals, render_counted(named.frame).totals, named);
   }
   std::ofstream file(folder + "/units");
   for (std::size_t kind = 0; kind < kWorkKindCount; ++kind) {

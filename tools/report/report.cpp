@@ -159,14 +159,18 @@ std::string_view work_name(Work kind) {
       return "shaded_group";
     case Work::kShadedSimpleGroup:
       return "shaded_simple_group";
+    case Work::kDepthGroup:
+      return "depth_group";
+    case Work::kIdGroup:
+      return "id_group";
     case Work::kFootprintGroup:
       return "footprint_group";
     case Work::kRowGroup:
       return "row_group";
-    case Work::kFarSetup:
-      return "far_setup";
-    case Work::kFarGroup:
-      return "far_group";
+    case Work::kEstimateSetup:
+      return "estimate_setup";
+    case Work::kNormalSetup:
+      return "normal_setup";
     case Work::kHitHalf:
       return "hit_half";
     case Work::kGetIssue:

@@ -27,7 +27,7 @@ struct LaneVectors<4> {
   typedef std::int64_t LongVector __attribute__((vector_size(16)));
   typedef std::int32_t HalfIntVector __attribute__((vector_size(8)));
   typedef float FloatMemory __attribute__((vector_size(16), may_alias));
-  typedef float HalfFloatVector __attribute__((vector_size(8)));
+  typedef std::int32_t IntMemory __attribute__((vector_size(16), may_alias));
   typedef float HalfFloatMemory __attribute__((vector_size(8), may_alias));
   typedef std::int32_t HalfIntMemory __attribute__((vector_size(8), may_alias));
 };
@@ -39,7 +39,7 @@ struct LaneVectors<8> {
   typedef std::int64_t LongVector __attribute__((vector_size(32)));
   typedef std::int32_t HalfIntVector __attribute__((vector_size(16)));
   typedef float FloatMemory __attribute__((vector_size(32), may_alias));
-  typedef float HalfFloatVector __attribute__((vector_size(16)));
+  typedef std::int32_t IntMemory __attribute__((vector_size(32), may_alias));
   typedef float HalfFloatMemory __attribute__((vector_size(16), may_alias));
   typedef std::int32_t HalfIntMemory __attribute__((vector_size(16), may_alias));
 };
@@ -51,7 +51,7 @@ struct LaneVectors<16> {
   typedef std::int64_t LongVector __attribute__((vector_size(64)));
   typedef std::int32_t HalfIntVector __attribute__((vector_size(32)));
   typedef float FloatMemory __attribute__((vector_size(64), may_alias));
-  typedef float HalfFloatVector __attribute__((vector_size(32)));
+  typedef std::int32_t IntMemory __attribute__((vector_size(64), may_alias));
   typedef float HalfFloatMemory __attribute__((vector_size(32), may_alias));
   typedef std::int32_t HalfIntMemory __attribute__((vector_size(32), may_alias));
 };
@@ -107,7 +107,7 @@ struct Lanes {
   using LongVector = typename LaneVectors<W>::LongVector;
   using HalfIntVector = typename LaneVectors<W>::HalfIntVector;
   using FloatMemory = typename LaneVectors<W>::FloatMemory;
-  using HalfFloatVector = typename LaneVectors<W>::HalfFloatVector;
+  using IntMemory = typename LaneVectors<W>::IntMemory;
   using HalfFloatMemory = typename LaneVectors<W>::HalfFloatMemory;
   using HalfIntMemory = typename LaneVectors<W>::HalfIntMemory;
 
@@ -156,7 +156,17 @@ struct Lanes {
   /// W signed integers.
   struct Int {
     IntVector v;
+    /// The same word in every lane.
+    [[nodiscard]] static GRIDIRON_INLINE Int splat(std::uint32_t word) {
+      return {IntVector{} + static_cast<std::int32_t>(word)};
+    }
+    /// @param source  W words, aligned to 4 * W bytes.
+    [[nodiscard]] static GRIDIRON_INLINE Int load(const std::uint32_t* source) {
+      return {*reinterpret_cast<const IntMemory*>(source)};
+    }
     [[nodiscard]] GRIDIRON_INLINE std::int32_t operator[](int lane) const { return v[lane]; }
+    friend GRIDIRON_INLINE Int operator|(Int a, Int b) { return {a.v | b.v}; }
+    friend GRIDIRON_INLINE Int operator<<(Int a, int count) { return {a.v << count}; }
   };
   /// W / 2 integers of 64 bits. Comparisons give -1 in the lanes where they hold, else 0.
   struct Long {
@@ -194,10 +204,6 @@ struct Lanes {
   [[nodiscard]] static GRIDIRON_INLINE float lane(Float a, std::uint32_t lane) { return a.v[lane]; }
   /// Rounded towards zero. Precondition: the values fit.
   [[nodiscard]] static GRIDIRON_INLINE Int truncate(Float a) { return {__builtin_convertvector(a.v, IntVector)}; }
-  /// Stores W / 2 doubles, rounded to floats, aligned to 2 * W bytes.
-  static GRIDIRON_INLINE void store_floats(Double a, float* target) {
-    *reinterpret_cast<HalfFloatMemory*>(target) = __builtin_convertvector(a.v, HalfFloatVector);
-  }
   /// Stores the low halves of W / 2 integers of 64 bits as the patterns of floats, aligned to 2 * W bytes.
   static GRIDIRON_INLINE void store_patterns(Long patterns, float* target) {
     *reinterpret_cast<HalfIntMemory*>(target) = __builtin_convertvector(patterns.v, HalfIntVector);
@@ -213,6 +219,11 @@ struct Lanes {
     const IntVector magnitude = reinterpret_cast<IntVector>(a.v) & 0x7FFFFFFF;
     return Float(reinterpret_cast<FloatVector>(magnitude));
   }
+  /// Square roots, correctly rounded.
+  [[nodiscard]] static GRIDIRON_INLINE Float square_root(Float a) {
+    for (int i = 0; i < W; ++i) a.v[i] = __builtin_sqrtf(a.v[i]);
+    return a;
+  }
   /// Lane i of the result is a[i] where mask[i], else b[i].
   [[nodiscard]] static GRIDIRON_INLINE Float select(Mask mask, Float a, Float b) {
 #if defined(__AVX512F__)
@@ -221,6 +232,44 @@ struct Lanes {
     else
 #endif
       return Float(mask.v ? a.v : b.v);
+  }
+  [[nodiscard]] static GRIDIRON_INLINE Int select(Mask mask, Int a, Int b) {
+    const Float chosen = select(mask, Float(reinterpret_cast<FloatVector>(a.v)), Float(reinterpret_cast<FloatVector>(b.v)));
+    return {reinterpret_cast<IntVector>(chosen.v)};
+  }
+  /// Stores `value` in the lanes of the mask. @param target  W words, aligned to 4 * W bytes.
+  static GRIDIRON_INLINE void store_where(Mask mask, std::uint32_t value, std::uint32_t* target) {
+    *reinterpret_cast<IntMemory*>(target) = select(mask, Int::splat(value), Int::load(target)).v;
+  }
+  /// Stores each quad of lanes, aligned to 16 bytes, `stride` words behind the one before.
+  static GRIDIRON_INLINE void store_quads(Int a, std::uint32_t* target, std::uint32_t stride) {
+    using Quad = typename LaneVectors<4>::IntMemory;
+    const auto store = [&](int i, typename LaneVectors<4>::IntVector quad) GRIDIRON_INLINE_LAMBDA {
+      *reinterpret_cast<Quad*>(target + static_cast<std::uint32_t>(i) * stride) = quad;
+    };
+    if constexpr (W == 4) {
+      store(0, a.v);
+    } else {
+      store(0, __builtin_shufflevector(a.v, a.v, 0, 1, 2, 3));
+      store(1, __builtin_shufflevector(a.v, a.v, 4, 5, 6, 7));
+      if constexpr (W == 16) {
+        store(2, __builtin_shufflevector(a.v, a.v, 8, 9, 10, 11));
+        store(3, __builtin_shufflevector(a.v, a.v, 12, 13, 14, 15));
+      }
+    }
+  }
+  static GRIDIRON_INLINE void store_quads(Float a, float* target, std::uint32_t stride) {
+    store_quads(Int{reinterpret_cast<IntVector>(a.v)}, reinterpret_cast<std::uint32_t*>(target), stride);
+  }
+  /// Lanes whose word is `value`. @param words  W words, aligned to 4 * W bytes.
+  [[nodiscard]] static GRIDIRON_INLINE Mask equal(std::uint32_t value, const std::uint32_t* words) {
+    const IntVector loaded = Int::load(words).v, wanted = Int::splat(value).v;
+#if defined(__AVX512F__)
+    if constexpr (W == 16)
+      return {_mm512_cmpeq_epi32_mask(__m512i(loaded), __m512i(wanted))};
+    else
+#endif
+      return {loaded == wanted};
   }
   /// Mask with lane i set where bit i is.
   [[nodiscard]] static GRIDIRON_INLINE Mask mask_from_bits(std::uint32_t bits) {

@@ -17,6 +17,7 @@ using UVec3 = glm::uvec3;
 
 /// Largest finite float; used where "no limit" is meant, since a chip may have no infinity.
 inline constexpr float kFloatMax = 3.402823466e+38f;
+inline constexpr float kInfinity = __builtin_inff();
 
 /// Rounds `value` up to a multiple of `step` (a power of two).
 template <class Integer>

@@ -35,10 +35,12 @@ enum class Work : std::uint8_t {
   kReachGroup,        ///< SIMD groups of which the farthest hit was sought, or held against a cell's entry
   kShadedGroup,       ///< ray groups turned into pixels without shading
   kShadedSimpleGroup, ///< ray groups shaded by facing ratio
+  kDepthGroup,        ///< ray groups written to the depth plane
+  kIdGroup,           ///< ray groups written to the plane of triangle ids
   kFootprintGroup,    ///< SIMD groups of squares of subpackets held against a cell
   kRowGroup,          ///< subpackets whose rows were held against a triangle's edges
-  kFarSetup,          ///< triangles for which the float test of hits behind others was set up
-  kFarGroup,          ///< groups held against it
+  kEstimateSetup,     ///< triangles for which estimates of distances were set up
+  kNormalSetup,       ///< triangles whose unit normal was computed for shading
   kHitHalf,           ///< halves of groups of which distances were computed in double
   kGetIssue,          ///< get commands issued
   kPutIssue,          ///< put commands issued

@@ -5,17 +5,18 @@ namespace gridiron {
 namespace {
 
 // normal = (b - a) x (c - a) with, per component, the sum of the magnitudes of its two products.
-void normal_of(const VertexTriangle& triangle, double normal[3], double products[3]) {
-  double e1[3], e2[3];
+template <class Real>
+void normal_of(const VertexTriangle& triangle, Real normal[3], Real products[3]) {
+  Real e1[3], e2[3];
   for (int i = 0; i < 3; ++i) {
-    e1[i] = double{triangle.v[1][i]} - double{triangle.v[0][i]};
-    e2[i] = double{triangle.v[2][i]} - double{triangle.v[0][i]};
+    e1[i] = Real{triangle.v[1][i]} - Real{triangle.v[0][i]};
+    e2[i] = Real{triangle.v[2][i]} - Real{triangle.v[0][i]};
   }
   for (int i = 0; i < 3; ++i) {
     const int j = i == 2 ? 0 : i + 1;
     const int k = j == 2 ? 0 : j + 1;
-    const double first = e1[j] * e2[k];
-    const double second = e1[k] * e2[j];
+    const Real first = e1[j] * e2[k];
+    const Real second = e1[k] * e2[j];
     normal[i] = first - second;
     products[i] = magnitude(first) + magnitude(second);
   }
@@ -28,49 +29,58 @@ void set_up_distance(const float origin[3], float dir_max, const VertexTriangle&
   normal_of(triangle, setup.normal, products);
   double numerator = 0.0;
   double numerator_error = 0.0;
-  double squared_length = 0.0;
   for (int i = 0; i < 3; ++i) {
     const double a = double{triangle.v[0][i]} - double{origin[i]};
     numerator += a * setup.normal[i];
     numerator_error += magnitude(a) * products[i];
-    squared_length += setup.normal[i] * setup.normal[i];
   }
   setup.numerator = numerator;
   // A numerator of 0 makes these NaN or infinite: unsure, which is right.
   setup.relative_error = kDistanceError * numerator_error / magnitude(numerator) + 0x1p-50;
   setup.relative_error_per_t =
       kDistanceError * double{dir_max} * (products[0] + products[1] + products[2]) / magnitude(numerator);
-  setup.facing_scale = 1.0 / square_root(squared_length);
 }
 
-FarFilter set_up_far_filter(const float origin[3], float dir_max, const VertexTriangle& triangle) {
-  FarFilter filter;
-  float edge1[3], edge2[3];
+DistanceEstimate set_up_estimate(const float origin[3], float dir_max, const VertexTriangle& triangle) {
+  DistanceEstimate estimate;
+  float size[3];
+  normal_of(triangle, estimate.normal, size);
+  float numerator = 0.0f, numerator_size = 0.0f, distance_size = 0.0f;
   for (int i = 0; i < 3; ++i) {
-    edge1[i] = triangle.v[1][i] - triangle.v[0][i];
-    edge2[i] = triangle.v[2][i] - triangle.v[0][i];
-  }
-  float numerator = 0.0f, numerator_size = 0.0f, normal_size = 0.0f, distance_size = 0.0f;
-  for (int i = 0; i < 3; ++i) {
-    const int j = i == 2 ? 0 : i + 1;
-    const int k = j == 2 ? 0 : j + 1;
-    const float first = edge1[j] * edge2[k];
-    const float second = edge1[k] * edge2[j];
-    const float size = magnitude(first) + magnitude(second);
     const float from_origin = triangle.v[0][i] - origin[i];
-    filter.normal[i] = first - second;
-    normal_size += size;
-    numerator += from_origin * filter.normal[i];
-    numerator_size += magnitude(from_origin) * size;
+    numerator += from_origin * estimate.normal[i];
+    numerator_size += magnitude(from_origin) * size[i];
     distance_size += magnitude(from_origin);
   }
+  const float normal_size = size[0] + size[1] + size[2];
   const float denominator_size = dir_max * normal_size;
-  filter.widening = kFarError * denominator_size;
-  filter.nearest = magnitude(numerator) - kFarError * numerator_size;
-  const bool in_range = normal_size < 0x1p40f && distance_size < 0x1p40f && dir_max < 0x1p40f &&
-                        denominator_size > 0x1p-60f && filter.nearest > 0x1p-40f;
-  if (!in_range) filter.nearest = 0.0f;
-  return filter;
+  estimate.numerator = magnitude(numerator);
+  if (numerator < 0.0f) {
+    for (float& component : estimate.normal) component = -component;
+  }
+  estimate.least_denominator = kUncertain * denominator_size;
+  const bool is_close = normal_size < 0x1p40f && distance_size < 0x1p40f && dir_max < 0x1p40f &&
+                        denominator_size > 0x1p-60f && magnitude(numerator) > 0x1p-40f &&
+                        magnitude(numerator) > kUncertain * numerator_size;
+  if (!is_close) estimate.least_denominator = kInfinity;
+  return estimate;
+}
+
+void set_up_normal(const VertexTriangle& triangle, float normal[3]) {
+  float size[3];
+  normal_of(triangle, normal, size);
+  const float squared = normal[0] * normal[0] + normal[1] * normal[1] + normal[2] * normal[2];
+  const float normal_size = size[0] + size[1] + size[2];
+  // The error of a component is below 4 e normal_size: 2^-17 of a length of at least normal_size / 16.
+  if (normal_size > 0x1p-40f && normal_size < 0x1p40f && squared > 0x1p-8f * (normal_size * normal_size)) {
+    const float scale = 1.0f / square_root(squared);
+    for (int i = 0; i < 3; ++i) normal[i] *= scale;
+    return;
+  }
+  double exact[3], products[3];
+  normal_of(triangle, exact, products);
+  const double scale = 1.0 / square_root(exact[0] * exact[0] + exact[1] * exact[1] + exact[2] * exact[2]);
+  for (int i = 0; i < 3; ++i) normal[i] = static_cast<float>(exact[i] * scale);
 }
 
 // The float test's form and bound with u = 2^-52 in the place of 2^-23; nothing here can leave the range of a double.

@@ -84,44 +84,34 @@ struct DistanceSetup {
   double numerator;
   double relative_error;        ///< of the quotient, but for the denominator's part
   double relative_error_per_t;  ///< times the quotient: the denominator's part
-  double facing_scale;          ///< 1 / |normal|
 };
 inline constexpr double kDistanceError = 0x1p-48;
 
 void set_up_distance(const float origin[3], float dir_max, const VertexTriangle& triangle, DistanceSetup& setup);
 
-/// Whether sparing a distance in double is worth a float test and a branch. With four lanes it is: a core's doubles go
-/// two at a time, and slowly; wide hosts divide a whole group in the time of a mispredicted branch.
-template <class L>
-inline constexpr bool kSparesDoubles = L::kCount == 4;
-
-/// What tells in single precision that a triangle lies behind what a ray has hit already.
+/// The same in single precision: a ray's distance but for a relative error of kEstimateError, where that can be had.
 ///
-/// Errors as in DistanceSetup with e = 2^-23 in the place of u, twice that charged. Values below the least normal float
-/// may be lost; in the range that is asked for, that is less than what was charged too much: at most 2^-126 times 2^40
-/// is lost of sums above 2^-60.
-struct FarFilter {
+/// Errors as in DistanceSetup with e = 2^-23 in the place of u: 8 e and 7 e; 8.5 e is charged. Where neither numerator
+/// nor denominator is uncertain by more than 4/9 of kEstimateError, their quotient is within 9/10 of it, and within all
+/// of it once rounded. Values below the least normal float may be lost; in the range that is asked for, that is less
+/// than what was charged too much: at most 2^-126 times 2^40 is lost of sums above 2^-60. The quotient of a ray that
+/// passes the test lies above the least normal float; an infinite one is neither surely nearer nor surely behind.
+///
+/// Numerator and normal are signed so that a positive denominator means a hit in front of the origin.
+struct DistanceEstimate {
   float normal[3];
-  float nearest;   ///< |numerator| is surely not below it; 0: nothing can be told
-  float widening;  ///< |normal . d| is surely not above its computed value plus this
+  float numerator;          ///< not negative
+  float least_denominator;  ///< above it the quotient is that close, below its negative the hit is behind the origin;
+                            ///< infinite: nothing can be told
 };
-inline constexpr float kFarError = 16.0f * 0x1p-23f;
+inline constexpr float kFloatError = 8.5f * 0x1p-23f;
+inline constexpr float kUncertain = kFloatError * 2.25f / kEstimateError;
 
-[[nodiscard]] FarFilter set_up_far_filter(const float origin[3], float dir_max, const VertexTriangle& triangle);
+[[nodiscard]] DistanceEstimate set_up_estimate(const float origin[3], float dir_max, const VertexTriangle& triangle);
 
-/// @returns the lanes whose ray surely meets the triangle behind its hit: its distance, at least nearest / (|n . d| +
-/// widening), is above t (1 + 4 e), so that it does not even round to t.
-template <class L, class PacketType>
-[[nodiscard]] GRIDIRON_INLINE std::uint32_t lanes_behind(const PacketType& packet, std::uint32_t base,
-                                                         const FarFilter& filter) {
-  using Float = typename L::Float;
-  constexpr float kMargin = 1.0f + 8.0f * 0x1p-23f;  // 4 e, and the roundings of both products and the sum
-  const Float denominator = Float(filter.normal[0]) * Float::load(packet.dir[0] + base) +
-                            Float(filter.normal[1]) * Float::load(packet.dir[1] + base) +
-                            Float(filter.normal[2]) * Float::load(packet.dir[2] + base);
-  const Float largest = L::abs(denominator) + Float(filter.widening);
-  return (Float::load(packet.t + base) * largest * Float(kMargin) < Float(filter.nearest)).bits();
-}
+/// The unit normal of a triangle for shading, in single precision where the triangle's shape allows it to 2^-15, else
+/// from double: the same bits whoever asks.
+void set_up_normal(const VertexTriangle& triangle, float normal[3]);
 
 /// Prepares the edge functions of a batch of triangles for a packet, and holds them against its corner rays: where all
 /// four pass on the outside of one and the same edge, so does every ray between them (Dmitriev, Havran, Seidel 2004).
@@ -247,21 +237,20 @@ template <class L, class PacketType>
   return inside;
 }
 
-/// Distances of a group's rays to a triangle, rounded to the nearest float, and the rays' components along its normal,
-/// for the lanes in `bits`.
+/// Distances of a group's rays to a triangle, rounded to the nearest float, for the lanes in `bits`.
 ///
 /// The quotient in double comes with a relative error; where both ends of its interval round to the same float, that
 /// float is the answer, else integers give it. Rounding is done on bit patterns: no rounding mode can change it.
-template <class L, bool kWantFacing, class PacketType>
+template <class L, class PacketType>
 GRIDIRON_INLINE void distances_of(const PacketType& packet, std::uint32_t base, std::uint32_t bits,
                                   const VertexTriangle& triangle, const DistanceSetup& setup, float* distance,
-                                  float* along_normal, WorkCounters& work) {
+                                  WorkCounters& work) {
   using Double = typename L::Double;
   using Long = typename L::Long;
   constexpr std::uint32_t kHalf = L::kCount / 2;
   std::uint32_t unsure = 0;
   for (std::uint32_t half = 0; half < 2; ++half) {
-    if (kSparesDoubles<L> && (bits >> (half * kHalf) & ((1u << kHalf) - 1u)) == 0) continue;
+    if ((bits >> (half * kHalf) & ((1u << kHalf) - 1u)) == 0) continue;
     work.add(Work::kHitHalf);
     const std::uint32_t first = base + half * kHalf;
     const Double d_x = Double::load_floats(packet.dir[0] + first);
@@ -280,9 +269,6 @@ GRIDIRON_INLINE void distances_of(const PacketType& packet, std::uint32_t base, 
     const Long sure = (low == high) & (pattern >= 0x00800000) & (pattern <= 0x7F7FFFFF) & (relative < 0x1p-10);
     L::store_patterns(pattern, distance + half * kHalf);
     unsure |= L::half_bits(~sure) << (half * kHalf);
-    if constexpr (kWantFacing) {
-      L::store_floats(denominator * Double(setup.facing_scale), along_normal + half * kHalf);
-    }
   }
   unsure &= bits;
   for (std::uint32_t lane = 0; unsure != 0 && lane < L::kCount; ++lane) {
@@ -494,55 +480,145 @@ template <class L, class PacketType>
   return inside | settled;
 }
 
-/// What the hits of one triangle need, computed when the first of them does.
+/// What the hits of one triangle need, computed when the first of them does; numbers in all lanes.
+template <class L>
 struct HitSetups {
-  FarFilter far;
+  using Float = typename L::Float;
+  Float normal[3], numerator, least_denominator;  ///< DistanceEstimate
+  Float unit_normal[3];
   DistanceSetup distance;
-  bool has_far = false;
+  bool has_estimate = false;
   bool has_distance = false;
+  bool has_unit_normal = false;
 };
 
-/// Merges a triangle's hits into a group of rays: the least (t, id) stays. @returns whether one of them is nearer.
-template <class L, bool kWantFacing, class PacketType>
-[[nodiscard]] GRIDIRON_INLINE bool merge_hits(PacketType& packet, std::uint32_t base, std::uint32_t hit,
-                                              const VertexTriangle& triangle, HitSetups& setups, WorkCounters& work) {
-  using Float = typename L::Float;
-  work.add(Work::kHitGroup);
-  const Float old_t = Float::load(packet.t + base);
-  if (kSparesDoubles<L> && ((old_t < Float(kFloatMax)).bits() & hit) != 0) {
-    if (!setups.has_far) {
-      work.add(Work::kFarSetup);
-      setups.far = set_up_far_filter(packet.origin, packet.dir_max, triangle);
-      setups.has_far = true;
+/// Decides hits that lie too close to those that the rays had: both distances exact, then the least (t, id).
+///
+/// @param close     lanes. @param distance  of the new hits, exact. @returns the lanes whose new hit is nearer; t of the
+/// others becomes exact. Where a ray's old triangle is no longer at hand, the ray becomes unsure.
+template <class L, class PacketType>
+[[nodiscard]] std::uint32_t settle_close_hits(PacketType& packet, std::uint32_t base, std::uint32_t close,
+                                              std::uint32_t triangle_id, const float* distance, WorkCounters& work) {
+  std::uint32_t nearer = 0;
+  while (close != 0) {
+    const std::uint32_t old_id = packet.id[base + lowest_bit(close)];
+    std::uint32_t alike = 0;  // the lanes that had hit the same triangle
+    for (std::uint32_t rest = close; rest != 0; rest &= rest - 1) {
+      const std::uint32_t lane = lowest_bit(rest);
+      if (packet.id[base + lane] == old_id) alike |= 1u << lane;
     }
-    work.add(Work::kFarGroup);
-    hit &= ~lanes_behind<L>(packet, base, setups.far);
-    if (hit == 0) return false;
+    close &= ~alike;
+    alignas(64) float old_distance[L::kCount];
+    const VertexTriangle* const old_triangle = packet.find(old_id);
+    if (old_triangle != nullptr) {
+      work.add(Work::kHitSetup);
+      DistanceSetup setup;
+      set_up_distance(packet.origin, packet.dir_max, *old_triangle, setup);
+      distances_of<L>(packet, base, alike, *old_triangle, setup, old_distance, work);
+    }
+    work.charge_to(Work::kHitHalf);
+    for (std::uint32_t rest = alike; rest != 0; rest &= rest - 1) {
+      const std::uint32_t lane = lowest_bit(rest);
+      const std::uint32_t ray = base + lane;
+      if (old_triangle == nullptr) {
+        packet.unsure.insert(ray);
+        continue;
+      }
+      packet.t[ray] = old_distance[lane];
+      const bool is_tie = distance[lane] == old_distance[lane];
+      if (distance[lane] < old_distance[lane] || (is_tie && triangle_id < old_id)) nearer |= 1u << lane;
+    }
   }
+  return nearer;
+}
+
+/// Decides, by exact distances, the hits of a group that their estimates leave open.
+///
+/// @param open  lanes. @param distance  out, in these lanes. @returns the lanes that are nearer than what they had hit.
+template <class L, class PacketType>
+[[nodiscard]] GRIDIRON_INLINE std::uint32_t settle_hits(PacketType& packet, std::uint32_t base, std::uint32_t open,
+                                                        const VertexTriangle& triangle, HitSetups<L>& setups,
+                                                        float* distance, WorkCounters& work) {
+  using Float = typename L::Float;
   if (!setups.has_distance) {
     work.add(Work::kHitSetup);
     set_up_distance(packet.origin, packet.dir_max, triangle, setups.distance);
     setups.has_distance = true;
   }
-  alignas(64) float distance[L::kCount];
-  alignas(64) float along_normal[L::kCount];
-  distances_of<L, kWantFacing>(packet, base, hit, triangle, setups.distance, distance, along_normal, work);
-  work.charge_to(Work::kHitGroup);
+  distances_of<L>(packet, base, open, triangle, setups.distance, distance, work);
+  work.charge_to(Work::kHitHalf);
   const Float t = Float::load(distance);
-  const std::uint32_t in_front = (t > Float(0.0f)).bits() & hit;
-  std::uint32_t nearer = (t < old_t).bits() & in_front;
-  for (std::uint32_t ties = (t <= old_t).bits() & in_front & ~nearer; ties != 0; ties &= ties - 1) {
-    const std::uint32_t lane = lowest_bit(ties);
+  const Float old_t = Float::load(packet.t + base);
+  const std::uint32_t in_front = (t > Float(0.0f)).bits() & open;
+  std::uint32_t nearer = (t < old_t * Float(packet.surely_nearer)).bits() & in_front;
+  const std::uint32_t behind = (t > old_t * Float(packet.surely_behind)).bits();
+  std::uint32_t close = in_front & ~nearer & ~behind;
+  if (packet.estimates != 0) {
+    if (close == 0) [[likely]] return nearer;
+    return nearer | settle_close_hits<L>(packet, base, close, triangle.triangle_id, distance, work);
+  }
+  for (; close != 0; close &= close - 1) {
+    const std::uint32_t lane = lowest_bit(close);
     if (triangle.triangle_id < packet.id[base + lane]) nearer |= 1u << lane;
   }
-  if (nearer == 0) return false;
+  return nearer;
+}
+
+/// Merges a triangle's hits into a group of rays: the least (t, id) stays. @returns whether one of them is nearer.
+///
+/// An estimate of the distance decides nearly always; where it cannot, or where packet.estimates is 0 and t has to be
+/// exact, the distance is computed in double.
+template <class L, bool kWantFacing, class PacketType>
+[[nodiscard]] GRIDIRON_INLINE bool merge_hits(PacketType& packet, std::uint32_t base, std::uint32_t hit,
+                                              const VertexTriangle& triangle, HitSetups<L>& setups,
+                                              WorkCounters& work) {
+  using Float = typename L::Float;
+  if (!setups.has_estimate) {
+    work.add(Work::kEstimateSetup);
+    const DistanceEstimate estimate = set_up_estimate(packet.origin, packet.dir_max, triangle);
+    for (int axis = 0; axis < 3; ++axis) setups.normal[axis] = Float(estimate.normal[axis]);
+    setups.numerator = Float(estimate.numerator);
+    setups.least_denominator = Float(estimate.least_denominator);
+    packet.keep(triangle);
+    setups.has_estimate = true;
+  }
+  work.add(Work::kHitGroup);
+  const Float d_x = Float::load(packet.dir[0] + base);
+  const Float d_y = Float::load(packet.dir[1] + base);
+  const Float d_z = Float::load(packet.dir[2] + base);
+  const Float denominator = setups.normal[0] * d_x + setups.normal[1] * d_y + setups.normal[2] * d_z;
+  Float old_t = Float::load(packet.t + base);
+  Float t = setups.numerator / denominator;
+  const auto is_close = denominator > setups.least_denominator;
+  std::uint32_t nearer = (is_close & (t < old_t * Float(kSurelyNearer))).bits() & hit & packet.estimates;
+  if (nearer != hit) [[unlikely]] {
+    // A hit behind another or behind the origin, or of a triangle that comes again, changes nothing.
+    const auto is_behind = (denominator < -setups.least_denominator) | (is_close & (t > old_t * Float(kSurelyBehind)));
+    hit &= ~(is_behind | L::equal(triangle.triangle_id, packet.id + base)).bits();
+    if (nearer != hit) {
+      alignas(64) float distance[L::kCount];
+      const auto estimated = L::mask_from_bits(nearer);
+      nearer |= settle_hits<L>(packet, base, hit & ~nearer, triangle, setups, distance, work);
+      work.charge_to(Work::kHitGroup);
+      t = L::select(estimated, t, Float::load(distance));
+      old_t = Float::load(packet.t + base);  // may have become exact
+    }
+    if (nearer == 0) return false;
+  }
   const auto taken = L::mask_from_bits(nearer);
   L::select(taken, t, old_t).store(packet.t + base);
-  for (std::uint32_t rest = nearer; rest != 0; rest &= rest - 1) {
-    packet.id[base + lowest_bit(rest)] = triangle.triangle_id;
-  }
+  L::store_where(taken, triangle.triangle_id, packet.id + base);
   if constexpr (kWantFacing) {
-    const Float facing = L::abs(Float::load(along_normal));
+    if (!setups.has_unit_normal) {
+      work.add(Work::kNormalSetup);
+      float unit_normal[3];
+      set_up_normal(triangle, unit_normal);
+      for (int axis = 0; axis < 3; ++axis) setups.unit_normal[axis] = Float(unit_normal[axis]);
+      setups.has_unit_normal = true;
+      work.charge_to(Work::kHitGroup);
+    }
+    const Float facing =
+        L::abs(setups.unit_normal[0] * d_x + setups.unit_normal[1] * d_y + setups.unit_normal[2] * d_z);
     L::select(taken, facing, Float::load(packet.facing + base)).store(packet.facing + base);
   }
   return true;
@@ -559,7 +635,7 @@ template <class L, bool kWantFacing, class PacketType>
   constexpr bool kGroupsAreRows = L::kCount == kSubpacketWidth;
   work.charge_to(Work::kTriangleSetup);
   const SplatEdges<L> edges(batch, index);
-  HitSetups setups;
+  HitSetups<L> setups;
   SubpacketSet changed = 0;
   for_each_subpacket<PacketType::kSubpacketCount>(near.touching, [&](std::uint32_t subpacket) GRIDIRON_INLINE_LAMBDA {
     const std::uint32_t first_ray = subpacket * kSubpacketRays;

@@ -65,6 +65,12 @@ GRIDIRON_INLINE void for_each_subpacket(SubpacketSet set, Visit&& visit) {
   }
 }
 
+/// Relative error of a distance that was estimated.
+inline constexpr float kEstimateError = 0x1p-12f;
+/// Times a distance, either or both estimated: another one beyond it is surely nearer, or behind.
+inline constexpr float kSurelyNearer = 1.0f - 3.0f * kEstimateError;
+inline constexpr float kSurelyBehind = 1.0f + 3.0f * kEstimateError;
+
 /// Width x Width rays, SoA. World space, directions not normalised.
 template <std::uint32_t Width>
 struct alignas(128) Packet {
@@ -82,16 +88,42 @@ struct alignas(128) Packet {
     return subpacket_row(ray / kSubpacketRays) * kSubpacketWidth + ray % kSubpacketRays / kSubpacketWidth;
   }
 
+  /// Asks for distances as floats nearest to the exact ones, or for estimates of them. Before any ray is traced.
+  GRIDIRON_INLINE void ask_for_distances(bool exact) {
+    estimates = exact ? 0u : ~0u;
+    surely_nearer = exact ? 1.0f : kSurelyNearer;
+    surely_behind = exact ? 1.0f : kSurelyBehind;
+    for (VertexTriangle& triangle : recent) triangle.triangle_id = kNoTriangle;
+  }
+
   alignas(64) float dir[3][kRayCount];      ///< direction
-  alignas(64) float t[kRayCount];           ///< nearest hit so far; t_far before the first
+  alignas(64) float t[kRayCount];           ///< nearest hit so far, see `estimates`; t_far before the first
   alignas(64) std::uint32_t id[kRayCount];  ///< its triangle, kNoTriangle before the first
   alignas(64) float facing[kRayCount];      ///< |normal . dir| of the nearest hit, normal of length 1
   RaySet<kRayCount> active;                 ///< the rays of this pass
+  RaySet<kRayCount> unsure;                 ///< rays of which estimates could not tell the nearest hit
   alignas(16) float corner_dir[3][4];       ///< the four corner rays, for culling
   float origin[3];
   float dir_max;          ///< largest |component| of all active directions
   float range_factor;     ///< the larger of dir_max and 1
   float corner_widening;  ///< factor on edge errors that lets the corner rays speak for all
+
+  // Whether t may be off by kEstimateError of itself, or is the distance rounded to the nearest float.
+  std::uint32_t estimates;  ///< all bits, or none
+  float surely_nearer;      ///< times t: a distance below is nearer, whatever the error of t
+  float surely_behind;      ///< times t: a distance above is behind
+
+  // Triangles hit lately, each in the place that its id gives: where two estimates are too close to tell, the one that
+  // was there before can be measured again.
+  static constexpr std::uint32_t kRecentCount = Width == 32 ? 256 : 16;
+  alignas(16) VertexTriangle recent[kRecentCount];
+
+  GRIDIRON_INLINE void keep(const VertexTriangle& triangle) { recent[triangle.triangle_id % kRecentCount] = triangle; }
+  /// @returns the triangle if it is among the recent ones, else null.
+  [[nodiscard]] GRIDIRON_INLINE const VertexTriangle* find(std::uint32_t triangle_id) const {
+    const VertexTriangle& triangle = recent[triangle_id % kRecentCount];
+    return triangle.triangle_id == triangle_id && triangle_id != kNoTriangle ? &triangle : nullptr;
+  }
 
   // The rays as a linear function of column and row: first_dir + column * step_x + row * step_y.
   float first_dir[3];
@@ -105,5 +137,28 @@ struct alignas(128) Packet {
   alignas(64) float slope_low[2][kSquareCount];
   alignas(64) float slope_high[2][kSquareCount];
 };
+
+/// Prepares the rays that estimates left unsure for being traced again with exact distances.
+///
+/// What they have hit is forgotten, but for a bound: their nearest hit lies in front of it.
+/// @param unsure  out: these rays. @returns whether there are any.
+template <class PacketType>
+[[nodiscard]] bool take_unsure_rays(PacketType& packet, float t_far, RaySet<PacketType::kRayCount>& unsure) {
+  std::uint32_t any = 0;
+  for (std::uint32_t i = 0; i < unsure.kWordCount; ++i) any |= packet.unsure.words[i];
+  if (any == 0) [[likely]] return false;
+  unsure = packet.unsure;
+  packet.unsure.clear();
+  packet.ask_for_distances(true);
+  for (std::uint32_t i = 0; i < unsure.kWordCount; ++i) {
+    for (std::uint32_t rest = unsure.words[i]; rest != 0; rest &= rest - 1) {
+      const std::uint32_t ray = 32 * i + lowest_bit(rest);
+      const float bound = packet.t[ray] * (kSurelyBehind * kSurelyBehind);
+      packet.t[ray] = bound < t_far ? bound : t_far;
+      packet.id[ray] = kNoTriangle;
+    }
+  }
+  return true;
+}
 
 }  // namespace gridiron

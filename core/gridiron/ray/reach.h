@@ -11,7 +11,8 @@
 
 namespace gridiron {
 
-/// Per subpacket, the largest march distance of its active rays' nearest hits: beyond it nothing can be nearer.
+/// Per subpacket, the largest march distance of its active rays' nearest hits, were they as far as estimates may err:
+/// beyond it nothing can be nearer.
 template <class PacketType>
 struct SubpacketReach {
   static constexpr std::uint32_t kCount = PacketType::kSubpacketCount;
@@ -24,7 +25,7 @@ struct SubpacketReach {
   GRIDIRON_INLINE float update(const PacketType& packet, const Frustum& frustum, SubpacketSet changed,
                                WorkCounters& work) {
     using Float = typename L::Float;
-    const Float scale(frustum.depth_per_t);
+    const Float scale(frustum.depth_per_t * (1.0f + 2.0f * kEstimateError));
     for_each_subpacket<kCount>(changed, [&](std::uint32_t subpacket) GRIDIRON_INLINE_LAMBDA {
       const std::uint32_t first_ray = subpacket * kSubpacketRays;
       Float farthest(0.0f);

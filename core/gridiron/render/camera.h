@@ -33,7 +33,7 @@ inline constexpr SubpacketPixels kSubpacketPixels = [] {
 
 /// Generates the rays of the packet whose first pixel is (left, top).
 ///
-/// @param present  out: the rays whose pixels lie in the picture.
+/// @param present  out: the rays whose pixels lie in the picture. Distances are exact where the frame wants depth.
 /// The corner rays bound all others: each operation above is monotone in x and y, rounding included, so every
 /// component lies between the corners'; corner_widening covers what rounding moves a ray out of their hull.
 template <class L, class PacketType>
@@ -61,6 +61,8 @@ void generate_packet(const FrameRecord& frame, std::uint32_t left, std::uint32_t
   fill_words(packet.t, frame.t_far);
   fill_words(packet.id, kNoTriangle);
   fill_words(packet.facing, 0.0f);
+  packet.unsure.clear();
+  packet.ask_for_distances(frame.depth_address != 0);
   const std::uint32_t columns = frame.width - left;
   const std::uint32_t rows = frame.height - top;
   if (columns >= kWidth && rows >= kWidth) [[likely]] {

@@ -12,11 +12,23 @@
 
 namespace gridiron {
 
-/// Opaque grey of brightness [0, 1] as 0xAABBGGRR.
-[[nodiscard]] GRIDIRON_INLINE std::uint32_t grey(float brightness) {
-  const float scaled = brightness * 255.0f + 0.5f;
-  const std::uint32_t level = scaled < 255.0f ? static_cast<std::uint32_t>(scaled) : 255u;
-  return 0xFF000000u | (level << 16) | (level << 8) | level;
+/// Opaque grey of brightness [0, 1] as 0xAABBGGRR; brighter is white.
+template <class L>
+[[nodiscard]] GRIDIRON_INLINE typename L::Int grey(typename L::Float brightness) {
+  using Float = typename L::Float;
+  const Float scaled = brightness * Float(255.0f) + Float(0.5f);
+  const typename L::Int level = L::truncate(L::min(scaled, Float(255.0f)));
+  return level | (level << 8) | (level << 16) | L::Int::splat(0xFF000000u);
+}
+
+/// @returns the lengths of the directions of the group of rays that begins at `base`.
+template <class L, class PacketType>
+[[nodiscard]] GRIDIRON_INLINE typename L::Float direction_lengths(const PacketType& packet, std::uint32_t base) {
+  using Float = typename L::Float;
+  const Float x = Float::load(packet.dir[0] + base);
+  const Float y = Float::load(packet.dir[1] + base);
+  const Float z = Float::load(packet.dir[2] + base);
+  return L::square_root((x * x + y * y) + z * z);
 }
 
 /// Writes a packet's pixels into a tile.
@@ -26,29 +38,48 @@ namespace gridiron {
 template <class L, class PacketType, class TileOutput>
 void shade_packet(const FrameRecord& frame, const PacketType& packet, std::uint32_t x, std::uint32_t y,
                   TileOutput& output, WorkCounters& work) {
-  const bool simple = frame.shading == static_cast<std::uint32_t>(Shading::kSimple);
-  const bool wants_depth = frame.depth_address != 0;
-  work.add(simple ? Work::kShadedSimpleGroup : Work::kShadedGroup, PacketType::kRayCount / L::kCount);
-
-  for (std::uint32_t first = 0; first < PacketType::kRayCount; first += kSubpacketRays) {
-    alignas(64) float length[kSubpacketRays] = {};
-    if (simple || wants_depth) {
-      for (std::uint32_t i = 0; i < kSubpacketRays; ++i) {
-        const float d_x = packet.dir[0][first + i], d_y = packet.dir[1][first + i], d_z = packet.dir[2][first + i];
-        length[i] = square_root((d_x * d_x + d_y * d_y) + d_z * d_z);
+  using Float = typename L::Float;
+  using Int = typename L::Int;
+  constexpr std::uint32_t kGroups = PacketType::kRayCount / L::kCount;
+  // A group of lanes is one row of a subpacket, or several: one quad of pixels beneath the other.
+  const auto for_each_group = [&](auto&& write) GRIDIRON_INLINE_LAMBDA {
+    for (std::uint32_t first = 0; first < PacketType::kRayCount; first += kSubpacketRays) {
+      const std::uint32_t first_pixel =
+          (y + PacketType::row_of(first)) * frame.tile_width + x + PacketType::column_of(first);
+      for (std::uint32_t i = 0; i < kSubpacketRays; i += L::kCount) {
+        write(first + i, first_pixel + i / kSubpacketWidth * frame.tile_width);
       }
     }
-    const std::uint32_t first_pixel =
-        (y + PacketType::row_of(first)) * frame.tile_width + x + PacketType::column_of(first);
-    for (std::uint32_t i = 0; i < kSubpacketRays; ++i) {
-      const std::uint32_t ray = first + i;
-      const std::uint32_t pixel = first_pixel + i / kSubpacketWidth * frame.tile_width + i % kSubpacketWidth;
-      const bool hit = packet.id[ray] != kNoTriangle;
-      const std::uint32_t lit = simple ? grey(packet.facing[ray] / length[i]) : 0xFFFFFFFFu;
-      output.color[pixel] = hit ? lit : frame.background_rgba;
-      if (wants_depth) output.depth[pixel] = hit ? packet.t[ray] * length[i] : kFloatMax;
-      if (frame.id_address != 0) output.id[pixel] = packet.id[ray];
-    }
+  };
+  const Int background = Int::splat(frame.background_rgba);
+  if (frame.shading == static_cast<std::uint32_t>(Shading::kSimple)) {
+    work.add(Work::kShadedSimpleGroup, kGroups);
+    for_each_group([&](std::uint32_t base, std::uint32_t pixel) GRIDIRON_INLINE_LAMBDA {
+      const Int lit = grey<L>(Float::load(packet.facing + base) / direction_lengths<L>(packet, base));
+      const auto missed = L::equal(kNoTriangle, packet.id + base);
+      L::store_quads(L::select(missed, background, lit), output.color + pixel, frame.tile_width);
+    });
+  } else {
+    work.add(Work::kShadedGroup, kGroups);
+    const Int lit = Int::splat(0xFFFFFFFFu);
+    for_each_group([&](std::uint32_t base, std::uint32_t pixel) GRIDIRON_INLINE_LAMBDA {
+      const auto missed = L::equal(kNoTriangle, packet.id + base);
+      L::store_quads(L::select(missed, background, lit), output.color + pixel, frame.tile_width);
+    });
+  }
+  if (frame.depth_address != 0) {
+    work.add(Work::kDepthGroup, kGroups);
+    for_each_group([&](std::uint32_t base, std::uint32_t pixel) GRIDIRON_INLINE_LAMBDA {
+      const Float depth = Float::load(packet.t + base) * direction_lengths<L>(packet, base);
+      const auto missed = L::equal(kNoTriangle, packet.id + base);
+      L::store_quads(L::select(missed, Float(kFloatMax), depth), output.depth + pixel, frame.tile_width);
+    });
+  }
+  if (frame.id_address != 0) {
+    work.add(Work::kIdGroup, kGroups);
+    for_each_group([&](std::uint32_t base, std::uint32_t pixel) GRIDIRON_INLINE_LAMBDA {
+      L::store_quads(Int::load(packet.id + base), output.id + pixel, frame.tile_width);
+    });
   }
 }
 

@@ -95,11 +95,19 @@ class TileRenderer {
     if (!waits_for_output_) transfers_.reserve_for_output(commands);
   }
 
-  // Generates a packet and takes it through the grid, once per march axis and sign that its rays have.
+  // Generates a packet and traces it. Distances that nobody asks for are estimated; rays for which that leaves open
+  // what they hit are traced again, with exact ones.
   [[nodiscard]] Status trace_packet(std::uint32_t left, std::uint32_t top) {
     RaySet<StorePacket::kRayCount> waiting;
     generate_packet<L>(store_.frame, left, top, store_.packet, waiting, store_.work);
     store_.work.charge_to(Work::kPacketStart);
+    GRIDIRON_TRY(trace_rays(waiting));
+    if (!take_unsure_rays(store_.packet, store_.frame.t_far, waiting)) [[likely]] return Status::kOk;
+    return trace_rays(waiting);
+  }
+
+  // Takes rays through the grid, once per march axis and sign that they have.
+  [[nodiscard]] Status trace_rays(RaySet<StorePacket::kRayCount>& waiting) {
     store_.mailbox.clear();
     Frustum frustum;
     while (take_pass<L>(store_.frame.grid, waiting, store_.packet, frustum, store_.work)) {

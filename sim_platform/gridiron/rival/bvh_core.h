@@ -119,12 +119,16 @@ class BvhCore {
     const bool ray_tests = settings().ray_tests != RayTests::kNone;
     context.bounds.template set<L>(context.packet, extent_, dir_bound_, ray_tests);
     if (ray_tests) count(RivalWork::kReciprocalGroup, StorePacket::kRayCount / L::kCount);
+    start_at_root(context);
+    return true;
+  }
+
+  void start_at_root(PacketContext& context) {
     for (float& reach : context.reach) reach = frame().t_far;
     context.largest_reach = frame().t_far;
     context.stack_count = 0;
     context.current = {BvhChild::node(0), 0.0f, 0};
     context.state = State::kRunning;
-    return true;
   }
 
   // --- One packet -------------------------------------------------------------------------------------------------
@@ -152,6 +156,10 @@ class BvhCore {
         test_leaf<kWantFacing>(context);
         if (pop(context)) continue;
       } else if (step_down(context) || pop(context)) {
+        continue;
+      }
+      if (take_unsure_rays(context.packet, frame().t_far, context.packet.active)) {
+        start_at_root(context);
         continue;
       }
       shade_packet<L>(frame(), context.packet, context.x, context.y, store_.output[output_slot_], store_.work);
@@ -289,7 +297,7 @@ class BvhCore {
         const auto active = L::mask_from_bits(context.packet.active.template group<L>(base));
         farthest = L::max(farthest, L::select(active, Float::load(context.packet.t + base), Float(0.0f)));
       }
-      context.reach[subpacket] = L::horizontal_max(farthest);
+      context.reach[subpacket] = L::horizontal_max(farthest) * (1.0f + 2.0f * kEstimateError);
     });
     store_.work.add(Work::kReachGroup);
     context.largest_reach = 0.0f;

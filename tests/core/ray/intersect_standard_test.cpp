@@ -231,7 +231,7 @@ TYPED_TEST(StandardTest, FacingIsTheCosineOfTheUnitNormal) {
       }
       const double along =
           normal.x * packet.dir[0][ray] + normal.y * packet.dir[1][ray] + normal.z * packet.dir[2][ray];
-      ASSERT_NEAR(packet.facing[ray], std::fabs(along) / length, 1e-6 * packet.dir_max) << "seed " << seed;
+      ASSERT_NEAR(packet.facing[ray], std::fabs(along) / length, 0x1p-15 * packet.dir_max) << "seed " << seed;
     }
   });
 }
@@ -358,6 +358,7 @@ void expect_subpacket_culling_drops_no_hit() {
     const std::uint32_t top = PacketType::kWidth * random.below(frame.height / PacketType::kWidth + 1);
     if (left >= frame.width || top >= frame.height) return;
     generate_packet<L>(frame, left, top, packet, present, work);
+    packet.ask_for_distances(true);
     packet.active = present;
     const auto intersect = [&](const VertexTriangle& triangle, bool by_subpackets) {
       const VertexTriangle* const triangles[] = {&triangle};
@@ -395,38 +396,92 @@ TYPED_TEST(StandardTest, SubpacketCullingDropsNoHit) {
   expect_subpacket_culling_drops_no_hit<TypeParam, Packet<32>>();
 }
 
-TYPED_TEST(StandardTest, OnlyHitsBehindAnotherAreFilteredOut) {
-  std::uint64_t behind_count = 0;
-  std::uint64_t near_count = 0;  // distances next to the one the ray has
+TYPED_TEST(StandardTest, EstimatesAreAsCloseAsTheySay) {
+  std::uint64_t close_count = 0;
+  std::uint64_t open_count = 0;
   for_each_seed(4000, [&](std::uint64_t seed) {
     TestRandom random(seed);
     const TriangleCase shown = random_triangles(random, 2);
-    Packet<4> packet{};
+    SmallPacket packet{};
     aim_at(random, shown, packet);
     for (const VertexTriangle& triangle : shown.triangles) {
-      const FarFilter filter = set_up_far_filter(packet.origin, packet.dir_max, triangle);
-      float distance[kRays];
+      const DistanceEstimate estimate = set_up_estimate(packet.origin, packet.dir_max, triangle);
       for (std::uint32_t ray = 0; ray < kRays; ++ray) {
         const float direction[3] = {packet.dir[0][ray], packet.dir[1][ray], packet.dir[2][ray]};
-        distance[ray] = true_distance(packet.origin, direction, triangle);
-        packet.t[ray] = distance[ray] * (1.0f + std::ldexp(random.between(-1, 1), -static_cast<int>(random.below(26))));
-      }
-      for (std::uint32_t base = 0; base < kRays; base += TypeParam::kCount) {
-        const std::uint32_t behind = lanes_behind<TypeParam>(packet, base, filter);
-        for (std::uint32_t lane = 0; lane < TypeParam::kCount; ++lane) {
-          const std::uint32_t ray = base + lane;
-          if (!(distance[ray] > 0.0f)) continue;
-          near_count += std::fabs(packet.t[ray] - distance[ray]) < 1e-5f * distance[ray] ? 1u : 0u;
-          if ((behind >> lane & 1u) == 0) continue;
-          ++behind_count;
-          ASSERT_GT(distance[ray], packet.t[ray]) << std::hexfloat << "seed " << seed << ", ray " << ray;
+        const float distance = true_distance(packet.origin, direction, triangle);
+        if (!(distance > 0.0f)) continue;
+        const float denominator = estimate.normal[0] * direction[0] + estimate.normal[1] * direction[1] +
+                                  estimate.normal[2] * direction[2];
+        if (std::fabs(denominator) > estimate.least_denominator) {
+          ASSERT_GT(denominator, 0.0f) << "in front, seed " << seed << ", ray " << ray;
+        } else {
+          ++open_count;
+          continue;
         }
+        ++close_count;
+        const double error = double{estimate.numerator / denominator} - double{distance};
+        ASSERT_LE(std::fabs(error), double{kEstimateError} * double{distance})
+            << std::hexfloat << "seed " << seed << ", ray " << ray << ": " << distance;
       }
     }
   });
   if (all_seeds_run()) {
-    EXPECT_GT(behind_count, 1000u);
-    EXPECT_GT(near_count, 10000u);
+    EXPECT_GT(close_count, 5000u);
+    EXPECT_GT(open_count, 1000u);
+  }
+}
+
+// Estimates either find the exact winner or say that they cannot; then the exact pass finds it.
+TYPED_TEST(StandardTest, EstimatesFindTheWinnerOrLeaveItOpen) {
+  std::uint64_t hits = 0;
+  std::uint64_t unsure_count = 0;
+  std::uint64_t exact_groups = 0;
+  for_each_seed(3000, [&](std::uint64_t seed) {
+    TestRandom random(seed);
+    const TriangleCase shown = random_triangles(random, 6);
+    SmallPacket exact{};
+    aim_at(random, shown, exact);
+    activate_all(exact);
+    reset_hits(exact, kFloatMax);
+    SmallPacket packet = exact;
+    WorkCounters work;
+    for (const VertexTriangle& triangle : shown.triangles) {
+      (void)intersect_standard<TypeParam, true>(exact, triangle, false, work);
+    }
+    packet.ask_for_distances(false);
+    work = WorkCounters{};
+    for (const VertexTriangle& triangle : shown.triangles) {
+      (void)intersect_standard<TypeParam, true>(packet, triangle, false, work);
+    }
+    exact_groups += work[Work::kHitHalf];
+    const auto unsure_before = packet.unsure;
+    for (std::uint32_t ray = 0; ray < kRays; ++ray) {
+      if (packet.unsure.contains(ray)) continue;
+      hits += packet.id[ray] != kNoTriangle ? 1u : 0u;
+      ASSERT_EQ(packet.id[ray], exact.id[ray]) << "seed " << seed << ", ray " << ray;
+      ASSERT_LE(std::fabs(double{packet.t[ray]} - double{exact.t[ray]}), double{kEstimateError} * double{exact.t[ray]})
+          << "seed " << seed << ", ray " << ray;
+      ASSERT_TRUE(same_bits(packet.facing[ray], exact.facing[ray])) << "seed " << seed << ", ray " << ray;
+    }
+    RaySet<kRays> again;
+    if (!take_unsure_rays(packet, kFloatMax, again)) return;
+    packet.active = again;
+    for (const VertexTriangle& triangle : shown.triangles) {
+      (void)intersect_standard<TypeParam, true>(packet, triangle, false, work);
+    }
+    for (std::uint32_t ray = 0; ray < kRays; ++ray) {
+      ASSERT_EQ(again.contains(ray), unsure_before.contains(ray));
+      if (!again.contains(ray)) continue;
+      ++unsure_count;
+      ASSERT_EQ(packet.id[ray], exact.id[ray]) << "seed " << seed << ", ray " << ray;
+      ASSERT_TRUE(same_bits(packet.t[ray], exact.t[ray])) << "seed " << seed << ", ray " << ray;
+      ASSERT_TRUE(same_bits(packet.facing[ray], exact.facing[ray])) << "seed " << seed << ", ray " << ray;
+    }
+  });
+  if (all_seeds_run()) {
+    EXPECT_GT(hits, 10000u);
+    EXPECT_GT(unsure_count, 100u);
+    EXPECT_GT(exact_groups, 1000u);
   }
 }
 

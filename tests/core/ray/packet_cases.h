@@ -128,7 +128,7 @@ inline TriangleCase random_triangles(TestRandom& random, std::uint32_t count) {
   return result;
 }
 
-/// Fills what a packet knows of its directions as a whole.
+/// Fills what a packet knows of its directions as a whole, and asks for exact distances.
 template <class PacketType>
 void set_direction_bounds(PacketType& packet) {
   packet.dir_max = 0.0f;
@@ -136,6 +136,7 @@ void set_direction_bounds(PacketType& packet) {
     for (const float value : component) packet.dir_max = std::fmax(packet.dir_max, std::fabs(value));
   }
   packet.range_factor = std::fmax(packet.dir_max, 1.0f);
+  packet.ask_for_distances(true);
 }
 
 /// Directions at vertices, edges and insides of the triangles, in their planes, backwards, past them; of any length.

@@ -11,13 +11,17 @@
 namespace gridiron::test {
 namespace {
 
+std::uint32_t grey_of(float brightness) {
+  return static_cast<std::uint32_t>(grey<Lanes<4>>(Lanes<4>::Float(brightness))[2]);
+}
+
 TEST(Grey, IsTheNearestOf256Levels) {
-  EXPECT_EQ(grey(0.0f), 0xFF000000u);
-  EXPECT_EQ(grey(1.0f), 0xFFFFFFFFu);
-  EXPECT_EQ(grey(1.5f), 0xFFFFFFFFu);
-  EXPECT_EQ(grey(0.5f), 0xFF808080u);
+  EXPECT_EQ(grey_of(0.0f), 0xFF000000u);
+  EXPECT_EQ(grey_of(1.0f), 0xFFFFFFFFu);
+  EXPECT_EQ(grey_of(1.5f), 0xFFFFFFFFu);
+  EXPECT_EQ(grey_of(0.5f), 0xFF808080u);
   for (std::uint32_t level = 0; level < 256; ++level) {
-    EXPECT_EQ(grey(static_cast<float>(level) / 255.0f), 0xFF000000u | level * 0x010101u) << level;
+    EXPECT_EQ(grey_of(static_cast<float>(level) / 255.0f), 0xFF000000u | level * 0x010101u) << level;
   }
 }
 
@@ -54,6 +58,8 @@ TEST_P(ShadePacket, WritesItsPixelsAndNoOther) {
   const bool simple = GetParam() == Shading::kSimple;
   EXPECT_EQ(work[Work::kShadedSimpleGroup], simple ? 16u : 0u);
   EXPECT_EQ(work[Work::kShadedGroup], simple ? 0u : 16u);
+  EXPECT_EQ(work[Work::kDepthGroup], 16u);
+  EXPECT_EQ(work[Work::kIdGroup], 16u);
   for (std::uint32_t y = 0; y < Layout::kTileWidth; ++y) {
     for (std::uint32_t x = 0; x < Layout::kTileWidth; ++x) {
       const std::uint32_t pixel = y * Layout::kTileWidth + x;
@@ -71,7 +77,7 @@ TEST_P(ShadePacket, WritesItsPixelsAndNoOther) {
       }
       const float length = std::sqrt(packet_.dir[0][ray] * packet_.dir[0][ray] + 4.0f);
       ASSERT_EQ(output_->depth[pixel], packet_.t[ray] * length);
-      ASSERT_EQ(output_->color[pixel], simple ? grey(packet_.facing[ray] / length) : 0xFFFFFFFFu);
+      ASSERT_EQ(output_->color[pixel], simple ? grey_of(packet_.facing[ray] / length) : 0xFFFFFFFFu);
     }
   }
 }
@@ -85,6 +91,7 @@ TEST_P(ShadePacket, PlanesThatAreOffStayAsTheyAre) {
   std::memcpy(&depth_bits, &output_->depth[0], sizeof(depth_bits));
   EXPECT_EQ(depth_bits, 0x77777777u);
   EXPECT_EQ(output_->color[0], 0x12345678u);
+  EXPECT_EQ(work[Work::kDepthGroup] + work[Work::kIdGroup], 0u);
 }
 
 INSTANTIATE_TEST_SUITE_P(Both, ShadePacket, testing::Values(Shading::kNone, Shading::kSimple),

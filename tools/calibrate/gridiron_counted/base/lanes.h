@@ -89,6 +89,20 @@ struct Lanes {
       const std::int32_t value = v[lane];
       return Counted<std::int32_t>::made(value, lane == 0 ? node : emit(OpClass::kShuffle, bits_of(value), node));
     }
+    [[nodiscard]] static Int splat(std::uint32_t constant) { return {Native::Int::splat(constant), 0}; }
+    [[nodiscard]] static Int splat(const Counted<std::uint32_t>& word) {
+      return {Native::Int::splat(word.value), PipeModel::current().splat_of(&word.value, word.value)};
+    }
+    [[nodiscard]] static Int load(const Counted<std::uint32_t>* source) {
+      const Native::Int value = Native::Int::load(&source->value);
+      return {value, PipeModel::current().load_quad(source, tie(value.v))};
+    }
+    friend Int operator|(Int a, Int b) {
+      return {a.v | b.v, emit(OpClass::kFixed, tie((a.v | b.v).v), a.node, b.node)};
+    }
+    friend Int operator<<(Int a, int count) {
+      return {a.v << count, emit(OpClass::kShift, tie((a.v << count).v), a.node)};
+    }
   };
 
   /// Two integers of 64 bits. What a scalar of 64 bits takes, two of them take.
@@ -166,14 +180,6 @@ struct Lanes {
     PipeModel::current().store_quad(quad, merged, tie(patterns.v.v));
   }
 
-  /// Rounded, moved together, and half a quadword of memory replaced.
-  static void store_floats(Double a, Counted<float>* target) {
-    Native::store_floats(a.v, &target->value);
-    auto* quad = reinterpret_cast<Counted<float>*>(reinterpret_cast<std::uintptr_t>(target) / 16 * 16);
-    const Node rounded = emit(OpClass::kDouble, tie(a.v.v), a.node);
-    PipeModel::current().store_quad(quad, emit(OpClass::kShuffle, tie(a.v.v), rounded), tie(a.v.v));
-  }
-
   // Compare and select.
   [[nodiscard]] static Float min(Float a, Float b) {
     return make(OpClass::kFixed, Native::min(a.v, b.v), a, chosen(a, b));
@@ -188,6 +194,28 @@ struct Lanes {
   [[nodiscard]] static Float select(Mask mask, Float a, Float b) {
     const Native::Float value = Native::select(mask.v, a.v, b.v);
     return {value, emit(OpClass::kFixed, tie(value.v), mask.node, a.node, b.node)};
+  }
+  [[nodiscard]] static Mask equal(const Counted<std::uint32_t>& value, const Counted<std::uint32_t>* words) {
+    const Int wanted = Int::splat(value), loaded = Int::load(words);
+    const Native::Mask equal = Native::equal(plain(value), &words->value);
+    return {equal, emit(OpClass::kFixed, tie(equal.v), wanted.node, loaded.node)};
+  }
+  [[nodiscard]] static Int select(Mask mask, Int a, Int b) {
+    const Native::Int value = Native::select(mask.v, a.v, b.v);
+    return {value, emit(OpClass::kFixed, tie(value.v), mask.node, a.node, b.node)};
+  }
+  [[nodiscard]] static Float square_root(Float a) {
+    const Native::Float value = Native::square_root(a.v);
+    return {value, root_of_float(a.node, tie(value.v))};
+  }
+  /// There is one quad only, whatever the stride.
+  static void store_quads(Int a, Counted<std::uint32_t>* target, const Counted<std::uint32_t>&) {
+    Native::store_quads(a.v, &target->value, 0);
+    PipeModel::current().store_quad(target, a.node, tie(a.v.v));
+  }
+  static void store_quads(Float a, Counted<float>* target, const Counted<std::uint32_t>&) { a.store(target); }
+  static void store_where(Mask mask, const Counted<std::uint32_t>& value, Counted<std::uint32_t>* target) {
+    store_quads(select(mask, Int::splat(value), Int::load(target)), target, 0);
   }
   [[nodiscard]] static Mask mask_from_bits(const Counted<std::uint32_t>& bits) {
     return {Native::mask_from_bits(bits.value), emit(OpClass::kShuffle, bits.value, node_of(bits))};

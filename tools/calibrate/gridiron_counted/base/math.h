@@ -6,5 +6,6 @@
 namespace gridiron_counted {
 
 using gridiron::kFloatMax;
+using gridiron::kInfinity;
 
 }  // namespace gridiron_counted
