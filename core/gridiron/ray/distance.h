@@ -1,0 +1,241 @@
+// Distances: which of a ray's hits is the nearest. Estimates with a bound of their error, distances rounded correctly
+// where they leave it open or where t itself is wanted; so the least (t, id) is the one of exact arithmetic.
+// Source: own. Memory: values. Threads: one core. SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <gridiron/base/exact_sum.h>
+#include <gridiron/base/lanes.h>
+#include <gridiron/base/math.h>
+#include <gridiron/base/records.h>
+#include <gridiron/base/work_counters.h>
+#include <gridiron/ray/packet.h>
+
+#include <cstdint>
+
+namespace gridiron {
+
+/// What the distances of one triangle need, in double. Distance of a ray = numerator / (normal . d).
+///
+/// With u = 2^-52: normal = (b - a) x (c - a) has error 4 u M per component, M_x = |e1_y e2_z| + |e1_z e2_y|; the
+/// numerator (a - o) . normal 8 u sum |a_i| M_i; the denominator 7 u |d|max sum M_i. kDistanceError is twice that.
+struct DistanceSetup {
+  double normal[3];
+  double numerator;
+  double relative_error;        ///< of the quotient, but for the denominator's part
+  double relative_error_per_t;  ///< times the quotient: the denominator's part
+};
+inline constexpr double kDistanceError = 0x1p-48;
+
+void set_up_distance(const float origin[3], float dir_max, const VertexTriangle& triangle, DistanceSetup& setup);
+
+/// The same in single precision: a ray's distance but for a relative error of kEstimateError, where that can be had.
+///
+/// Errors as in DistanceSetup with e = 2^-23 in the place of u: 8 e and 7 e; 8.5 e is charged. Where neither numerator
+/// nor denominator is uncertain by more than 4/9 of kEstimateError, their quotient is within 9/10 of it, and within all
+/// of it once rounded. Values below the least normal float may be lost; in the range that is asked for, that is less
+/// than what was charged too much: at most 2^-126 times 2^40 is lost of sums above 2^-60. The quotient of a ray that
+/// passes the test lies above the least normal float; an infinite one is neither surely nearer nor surely behind.
+///
+/// Numerator and normal are signed so that a positive denominator means a hit in front of the origin.
+struct DistanceEstimate {
+  float normal[3];
+  float numerator;          ///< not negative
+  float least_denominator;  ///< above it the quotient is that close, below its negative the hit is behind the origin;
+                            ///< infinite: nothing can be told
+};
+inline constexpr float kFloatError = 8.5f * 0x1p-23f;
+inline constexpr float kUncertain = kFloatError * 2.25f / kEstimateError;
+
+[[nodiscard]] DistanceEstimate set_up_estimate(const float origin[3], float dir_max, const VertexTriangle& triangle);
+
+/// The unit normal of a triangle for shading, in single precision where the triangle's shape allows it to 2^-15, else
+/// from double: the same bits whoever asks.
+void set_up_normal(const VertexTriangle& triangle, float normal[3]);
+
+/// Distances of a group's rays to a triangle, rounded to the nearest float, for the lanes in `bits`.
+///
+/// The quotient in double comes with a relative error; where both ends of its interval round to the same float, that
+/// float is the answer, else integers give it. Rounding is done on bit patterns: no rounding mode can change it.
+template <class L, class PacketType>
+GRIDIRON_INLINE void distances_of(const PacketType& packet, std::uint32_t base, std::uint32_t bits,
+                                  const VertexTriangle& triangle, const DistanceSetup& setup, float* distance,
+                                  WorkCounters& work) {
+  using Double = typename L::Double;
+  using Long = typename L::Long;
+  constexpr std::uint32_t kHalf = L::kCount / 2;
+  std::uint32_t unsure = 0;
+  for (std::uint32_t half = 0; half < 2; ++half) {
+    if ((bits >> (half * kHalf) & ((1u << kHalf) - 1u)) == 0) continue;
+    work.add(Work::kHitHalf);
+    const std::uint32_t first = base + half * kHalf;
+    const Double d_x = Double::load_floats(packet.dir[0] + first);
+    const Double d_y = Double::load_floats(packet.dir[1] + first);
+    const Double d_z = Double::load_floats(packet.dir[2] + first);
+    const Double denominator =
+        d_x * Double(setup.normal[0]) + d_y * Double(setup.normal[1]) + d_z * Double(setup.normal[2]);
+    const Double quotient = Double(setup.numerator) / denominator;
+    // error(D) / |D| = error(D) |t| / |N|
+    const Double relative = quotient * Double(setup.relative_error_per_t) + Double(setup.relative_error);
+    constexpr std::int64_t kHalfStep = std::int64_t{1} << 28;
+    const Long low = ((quotient - quotient * relative).pattern() + kHalfStep) >> 29;
+    const Long high = ((quotient + quotient * relative).pattern() + kHalfStep) >> 29;
+    constexpr std::int64_t kRebias = std::int64_t{1023 - 127} << 23;
+    const Long pattern = low - kRebias;
+    const Long sure = (low == high) & (pattern >= 0x00800000) & (pattern <= 0x7F7FFFFF) & (relative < 0x1p-10);
+    L::store_patterns(pattern, distance + half * kHalf);
+    unsure |= L::half_bits(~sure) << (half * kHalf);
+  }
+  unsure &= bits;
+  for (std::uint32_t lane = 0; unsure != 0 && lane < L::kCount; ++lane) {
+    if (((unsure >> lane) & 1u) == 0) continue;
+    const float dir[3] = {packet.dir[0][base + lane], packet.dir[1][base + lane], packet.dir[2][base + lane]};
+    work.add(Work::kExactDistance);
+    distance[lane] = exact_distance(packet.origin, dir, triangle.v[0], triangle.v[1], triangle.v[2]);
+  }
+}
+
+/// What the hits of one triangle need, computed when the first of them does; numbers in all lanes.
+template <class L>
+struct HitSetups {
+  using Float = typename L::Float;
+  Float normal[3], numerator, least_denominator;  ///< DistanceEstimate
+  Float unit_normal[3];
+  DistanceSetup distance;
+  bool has_estimate = false;
+  bool has_distance = false;
+  bool has_unit_normal = false;
+};
+
+/// Decides hits that lie too close to those that the rays had: both distances exact, then the least (t, id).
+///
+/// @param close     lanes. @param distance  of the new hits, exact. @returns the lanes whose new hit is nearer; t of the
+/// others becomes exact. Where a ray's old triangle is no longer at hand, the ray becomes unsure.
+template <class L, class PacketType>
+[[nodiscard]] std::uint32_t settle_close_hits(PacketType& packet, std::uint32_t base, std::uint32_t close,
+                                              std::uint32_t triangle_id, const float* distance, WorkCounters& work) {
+  std::uint32_t nearer = 0;
+  while (close != 0) {
+    const std::uint32_t old_id = packet.id[base + lowest_bit(close)];
+    std::uint32_t alike = 0;  // the lanes that had hit the same triangle
+    for (std::uint32_t rest = close; rest != 0; rest &= rest - 1) {
+      const std::uint32_t lane = lowest_bit(rest);
+      if (packet.id[base + lane] == old_id) alike |= 1u << lane;
+    }
+    close &= ~alike;
+    alignas(64) float old_distance[L::kCount];
+    const VertexTriangle* const old_triangle = packet.find(old_id);
+    if (old_triangle != nullptr) {
+      work.add(Work::kHitSetup);
+      DistanceSetup setup;
+      set_up_distance(packet.origin, packet.dir_max, *old_triangle, setup);
+      distances_of<L>(packet, base, alike, *old_triangle, setup, old_distance, work);
+    }
+    work.charge_to(Work::kHitHalf);
+    for (std::uint32_t rest = alike; rest != 0; rest &= rest - 1) {
+      const std::uint32_t lane = lowest_bit(rest);
+      const std::uint32_t ray = base + lane;
+      if (old_triangle == nullptr) {
+        packet.unsure.insert(ray);
+        continue;
+      }
+      packet.t[ray] = old_distance[lane];
+      const bool is_tie = distance[lane] == old_distance[lane];
+      if (distance[lane] < old_distance[lane] || (is_tie && triangle_id < old_id)) nearer |= 1u << lane;
+    }
+  }
+  return nearer;
+}
+
+/// Decides, by exact distances, the hits of a group that their estimates leave open.
+///
+/// @param open  lanes. @param distance  out, in these lanes. @returns the lanes that are nearer than what they had hit.
+template <class L, class PacketType>
+[[nodiscard]] GRIDIRON_INLINE std::uint32_t settle_hits(PacketType& packet, std::uint32_t base, std::uint32_t open,
+                                                        const VertexTriangle& triangle, HitSetups<L>& setups,
+                                                        float* distance, WorkCounters& work) {
+  using Float = typename L::Float;
+  if (!setups.has_distance) {
+    work.add(Work::kHitSetup);
+    set_up_distance(packet.origin, packet.dir_max, triangle, setups.distance);
+    setups.has_distance = true;
+  }
+  distances_of<L>(packet, base, open, triangle, setups.distance, distance, work);
+  work.charge_to(Work::kHitHalf);
+  const Float t = Float::load(distance);
+  const Float old_t = Float::load(packet.t + base);
+  const std::uint32_t in_front = (t > Float(0.0f)).bits() & open;
+  std::uint32_t nearer = (t < old_t * Float(packet.surely_nearer)).bits() & in_front;
+  const std::uint32_t behind = (t > old_t * Float(packet.surely_behind)).bits();
+  std::uint32_t close = in_front & ~nearer & ~behind;
+  if (packet.estimates != 0) {
+    if (close == 0) [[likely]] return nearer;
+    return nearer | settle_close_hits<L>(packet, base, close, triangle.triangle_id, distance, work);
+  }
+  for (; close != 0; close &= close - 1) {
+    const std::uint32_t lane = lowest_bit(close);
+    if (triangle.triangle_id < packet.id[base + lane]) nearer |= 1u << lane;
+  }
+  return nearer;
+}
+
+/// Merges a triangle's hits into a group of rays: the least (t, id) stays. @returns whether one of them is nearer.
+///
+/// An estimate of the distance decides nearly always; where it cannot, or where packet.estimates is 0 and t has to be
+/// exact, the distance is computed in double.
+template <class L, bool kWantFacing, class PacketType>
+[[nodiscard]] GRIDIRON_INLINE bool merge_hits(PacketType& packet, std::uint32_t base, std::uint32_t hit,
+                                              const VertexTriangle& triangle, HitSetups<L>& setups,
+                                              WorkCounters& work) {
+  using Float = typename L::Float;
+  if (!setups.has_estimate) {
+    work.add(Work::kEstimateSetup);
+    const DistanceEstimate estimate = set_up_estimate(packet.origin, packet.dir_max, triangle);
+    for (int axis = 0; axis < 3; ++axis) setups.normal[axis] = Float(estimate.normal[axis]);
+    setups.numerator = Float(estimate.numerator);
+    setups.least_denominator = Float(estimate.least_denominator);
+    packet.keep(triangle);
+    setups.has_estimate = true;
+  }
+  work.add(Work::kHitGroup);
+  const Float d_x = Float::load(packet.dir[0] + base);
+  const Float d_y = Float::load(packet.dir[1] + base);
+  const Float d_z = Float::load(packet.dir[2] + base);
+  const Float denominator = setups.normal[0] * d_x + setups.normal[1] * d_y + setups.normal[2] * d_z;
+  Float old_t = Float::load(packet.t + base);
+  Float t = setups.numerator / denominator;
+  const auto is_close = denominator > setups.least_denominator;
+  std::uint32_t nearer = (is_close & (t < old_t * Float(kSurelyNearer))).bits() & hit & packet.estimates;
+  if (nearer != hit) [[unlikely]] {
+    // A hit behind another or behind the origin, or of a triangle that comes again, changes nothing.
+    const auto is_behind = (denominator < -setups.least_denominator) | (is_close & (t > old_t * Float(kSurelyBehind)));
+    hit &= ~(is_behind | L::equal(triangle.triangle_id, packet.id + base)).bits();
+    if (nearer != hit) {
+      alignas(64) float distance[L::kCount];
+      const auto estimated = L::mask_from_bits(nearer);
+      nearer |= settle_hits<L>(packet, base, hit & ~nearer, triangle, setups, distance, work);
+      work.charge_to(Work::kHitGroup);
+      t = L::select(estimated, t, Float::load(distance));
+      old_t = Float::load(packet.t + base);  // may have become exact
+    }
+    if (nearer == 0) return false;
+  }
+  const auto taken = L::mask_from_bits(nearer);
+  L::select(taken, t, old_t).store(packet.t + base);
+  L::store_where(taken, triangle.triangle_id, packet.id + base);
+  if constexpr (kWantFacing) {
+    if (!setups.has_unit_normal) {
+      work.add(Work::kNormalSetup);
+      float unit_normal[3];
+      set_up_normal(triangle, unit_normal);
+      for (int axis = 0; axis < 3; ++axis) setups.unit_normal[axis] = Float(unit_normal[axis]);
+      setups.has_unit_normal = true;
+      work.charge_to(Work::kHitGroup);
+    }
+    const Float facing =
+        L::abs(setups.unit_normal[0] * d_x + setups.unit_normal[1] * d_y + setups.unit_normal[2] * d_z);
+    L::select(taken, facing, Float::load(packet.facing + base)).store(packet.facing + base);
+  }
+  return true;
+}
+
+}  // namespace gridiron
