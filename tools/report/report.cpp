@@ -131,6 +131,8 @@ std::string_view work_name(Work kind) {
       return "mailbox_probe";
     case Work::kCullTest:
       return "cull_test";
+    case Work::kPixelBox:
+      return "pixel_box";
     case Work::kTriangleSetup:
       return "triangle_setup";
     case Work::kGroupTestStandard:

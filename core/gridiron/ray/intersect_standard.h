@@ -32,7 +32,8 @@ template <class L, bool kWantFacing, class PacketType>
     const bool is_covered = (near.covered >> subpacket & 1u) != 0;
     std::uint32_t rows = ~0u;
     if constexpr (kGroupsAreRows) {
-      if (near.is_linear && !is_covered) rows = rows_near(batch, index, subpacket, work);
+      rows = near.rows >> (kSubpacketWidth * subpacket_row(subpacket));
+      if (near.is_linear && !is_covered) rows &= rows_near(batch, index, subpacket, work);
     }
     work.charge_to(Work::kGroupTestStandard);
     for (std::uint32_t group = 0; group < kSubpacketRays / L::kCount; ++group) {
@@ -59,22 +60,49 @@ template <class L, bool kWantFacing, class PacketType>
                                                                     const VertexTriangle* const* triangles,
                                                                     const SubpacketSet* subpackets, std::uint32_t count,
                                                                     Culling culling, WorkCounters& work) {
-  EdgeBatch<L> batch;
-  const VertexTriangle* padded[EdgeBatch<L>::kTriangles];
-  for (std::uint32_t i = 0; i < EdgeBatch<L>::kTriangles; ++i) padded[i] = triangles[i < count ? i : 0];
-  work.add(Work::kTriangleSetup, count);
-  if (culling.corner_rays) work.add(Work::kCullTest, count);
+  constexpr std::uint32_t kTriangles = EdgeBatch<L>::kTriangles;
+  const VertexTriangle* padded[kTriangles];
+  for (std::uint32_t i = 0; i < kTriangles; ++i) padded[i] = triangles[i < count ? i : 0];
+  NearSubpackets near[kTriangles];
+  for (std::uint32_t i = 0; i < count; ++i) near[i] = {subpackets[i], 0, false, ~0u};
+
+  // 1. The pixels they can cover at all: most small triangles are done with here.
+  bool is_small[kTriangles] = {};
+  const bool has_boxes = PacketType::kHasBoxes && culling.subpackets;
+  if (has_boxes) work.add(Work::kPixelBox, count);
+  const VertexLanes<L> vertices(padded, packet.origin);
+  std::uint32_t open_count = count;
+  if (has_boxes) {
+    const PixelBoxes<L> boxes = pixel_boxes<L>(packet, vertices);
+    open_count = 0;
+    for (std::uint32_t i = 0; i < count; ++i) {
+      const PixelBox box(boxes, i);
+      near[i].touching &= box.subpackets();
+      if (near[i].touching == 0) continue;
+      ++open_count;
+      near[i].rows = box.rows();
+      is_small[i] = box.is_small();
+    }
+    if (open_count == 0) return 0;
+  }
+
+  // 2. Their edges, and what the packet or its subpackets tell of them.
+  work.add(Work::kTriangleSetup, open_count);
+  if (culling.corner_rays) work.add(Work::kCullTest, open_count);
   work.charge_to(Work::kTriangleSetup);
-  set_up_edges<L>(packet, padded, culling, batch, work);
+  EdgeBatch<L> batch;
+  set_up_edges<L>(packet, padded, vertices, culling, batch, work);
   SubpacketSet changed = 0;
   for (std::uint32_t i = 0; i < count; ++i) {
-    if (((batch.missed >> (4 * i)) & 0xFu) != 0 || batch.orientation[i] == 0) continue;
-    NearSubpackets near{subpackets[i], 0, false};
-    if (culling.subpackets) {
+    if (near[i].touching == 0 || ((batch.missed >> (4 * i)) & 0xFu) != 0 || batch.orientation[i] == 0) continue;
+    if (culling.subpackets && !is_small[i]) {
       work.add(Work::kSubpacketSetup);
-      near = subpackets_near<L, PacketType>(batch, i, subpackets[i], work);
+      const std::uint32_t rows = near[i].rows;
+      near[i] = subpackets_near<L, PacketType>(batch, i, near[i].touching, work);
+      near[i].rows = rows;
     }
-    changed |= test_groups<L, kWantFacing>(packet, *triangles[i], batch, i, near, work);
+    // 3. Its rays.
+    changed |= test_groups<L, kWantFacing>(packet, *triangles[i], batch, i, near[i], work);
   }
   return changed;
 }

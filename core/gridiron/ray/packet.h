@@ -71,6 +71,13 @@ inline constexpr float kEstimateError = 0x1p-12f;
 inline constexpr float kSurelyNearer = 1.0f - 3.0f * kEstimateError;
 inline constexpr float kSurelyBehind = 1.0f + 3.0f * kEstimateError;
 
+/// From points, less the origin, to pixels of a packet: pixel_box.h.
+struct PixelProjection {
+  float rows[3][3];      ///< depth, column times depth, row times depth
+  float margin;          ///< by how many pixels a place may be off
+  float most_per_depth;  ///< a point's largest component per depth, up to which the margin holds
+};
+
 /// Width x Width rays, SoA. World space, directions not normalised.
 template <std::uint32_t Width>
 struct alignas(128) Packet {
@@ -130,6 +137,10 @@ struct alignas(128) Packet {
   float step_x[3];
   float step_y[3];
   float subpacket_widening;  ///< factor on edge errors that covers this form and its evaluation
+
+  // For packets that are large beside the triangles: where these appear.
+  static constexpr bool kHasBoxes = kSubpacketCount >= 16;
+  PixelProjection projection;
 
   // Slopes of this pass, in cells along u and v per cell along the march: least and greatest of the active rays of each
   // square of 2x2 subpackets. Where none is active the least is above the greatest.

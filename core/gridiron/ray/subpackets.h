@@ -87,7 +87,8 @@ template <class L, class PacketType>
 struct NearSubpackets {
   SubpacketSet touching;  ///< may be touched
   SubpacketSet covered;   ///< of these, all rays surely pass inside all three edges
-  bool is_linear;         ///< the edge functions' linear form holds
+  bool is_linear;         ///< the edge functions' linear form holds, and is worth asking row by row
+  std::uint32_t rows;     ///< rows of the packet that may be touched, bit i = row i
 };
 
 /// @returns those of the `wanted` subpackets that triangle `index` of a batch may touch. One is left out where an edge
@@ -98,9 +99,9 @@ template <class L, class PacketType>
                                                              SubpacketSet wanted, WorkCounters& work) {
   using Four = Lanes<4>;
   using Float = Four::Float;
-  if constexpr (PacketType::kSubpacketCount < 4) return {wanted, 0, false};
+  if constexpr (PacketType::kSubpacketCount < 4) return {wanted, 0, false, ~0u};
   const std::uint32_t first_lane = 4 * index;
-  if (((batch.in_range >> first_lane) & 0xFu) != 0xFu) return {wanted, 0, false};
+  if (((batch.in_range >> first_lane) & 0xFu) != 0xFu) return {wanted, 0, false, ~0u};
   std::uint32_t squares = 1;
   if constexpr (PacketType::kSquareCount > 1) squares = squares_near<L, PacketType>(batch, index, work);
 
@@ -135,7 +136,7 @@ template <class L, class PacketType>
     near |= SubpacketSet{~outside & 0xFu} << (4 * square);
     covered |= SubpacketSet{inside} << (4 * square);
   }
-  return {near & wanted, covered & wanted, true};
+  return {near & wanted, covered & wanted, true, ~0u};
 }
 
 /// Origins of subpackets in a packet, in pixels, along the Z curve.

@@ -7,6 +7,7 @@
 #include <gridiron/base/work_counters.h>
 #include <gridiron/ray/intersect_standard.h>
 #include <gridiron/ray/packet.h>
+#include <gridiron/ray/pixel_box.h>
 
 #include <cstdint>
 
@@ -97,6 +98,7 @@ void generate_packet(const FrameRecord& frame, std::uint32_t left, std::uint32_t
     packet.step_x[axis] = frame.step_x[axis];
     packet.step_y[axis] = frame.step_y[axis];
   }
+  if constexpr (PacketType::kHasBoxes) set_up_projection(packet, dir_bound);
   packet.subpacket_widening = kSubpacketErrorFactor / kEdgeErrorFactor * (dir_bound / dir_max);
 }
 
