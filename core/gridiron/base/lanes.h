@@ -165,8 +165,17 @@ struct Lanes {
       return {*reinterpret_cast<const IntMemory*>(source)};
     }
     [[nodiscard]] GRIDIRON_INLINE std::int32_t operator[](int lane) const { return v[lane]; }
+    GRIDIRON_INLINE void store(std::uint32_t* target) const { *reinterpret_cast<IntMemory*>(target) = v; }
     friend GRIDIRON_INLINE Int operator|(Int a, Int b) { return {a.v | b.v}; }
     friend GRIDIRON_INLINE Int operator<<(Int a, int count) { return {a.v << count}; }
+    friend GRIDIRON_INLINE Mask operator<(Int a, Int b) {
+#if defined(__AVX512F__)
+      if constexpr (W == 16)
+        return {_mm512_cmplt_epi32_mask(__m512i(a.v), __m512i(b.v))};
+      else
+#endif
+        return {a.v < b.v};
+    }
   };
   /// W / 2 integers of 64 bits. Comparisons give -1 in the lanes where they hold, else 0.
   struct Long {

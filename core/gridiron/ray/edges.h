@@ -9,7 +9,6 @@
 #include <gridiron/base/records.h>
 #include <gridiron/base/work_counters.h>
 #include <gridiron/ray/packet.h>
-#include <gridiron/ray/pixel_box.h>
 
 #include <cstdint>
 
@@ -81,15 +80,26 @@ inline constexpr float kSubpacketErrorFactor = 68.0f * 0x1p-23f;
 ///
 /// @param triangles  EdgeBatch<L>::kTriangles of them; a shorter batch repeats one.
 template <class L, class PacketType>
-GRIDIRON_INLINE void set_up_edges(const PacketType& packet, const VertexTriangle* const* triangles,
-                                  const VertexLanes<L>& vertices, Culling culling, EdgeBatch<L>& batch,
-                                  WorkCounters& work) {
+GRIDIRON_INLINE void set_up_edges(const PacketType& packet, const VertexTriangle* const* triangles, Culling culling,
+                                  EdgeBatch<L>& batch, WorkCounters& work) {
   using Float = typename L::Float;
   constexpr std::uint32_t kTriangles = EdgeBatch<L>::kTriangles;
-  const Float x = vertices.x, y = vertices.y, z = vertices.z;
+  // A record's first 36 bytes are x0 y0 z0 x1 | y1 z1 x2 y2 | z2: turn them into one vector per axis.
+  const float* rows[3][kTriangles];
+  for (std::uint32_t i = 0; i < kTriangles; ++i) {
+    for (int row = 0; row < 3; ++row) rows[row][i] = &triangles[i]->v[0][0] + 4 * row;
+  }
+  const Float row0 = L::load_quads(rows[0]);
+  const Float row1 = L::load_quads(rows[1]);
+  const Float row2 = L::load_quads(rows[2]);
+  const Float x = L::template shuffle_quads<0, 3, 6, 6>(row0, row1);
+  const Float y = L::template shuffle_quads<1, 4, 7, 7>(row0, row1);
+  const Float z = L::template shuffle_quads<0, 1, 4, 4>(L::template shuffle_quads<2, 5, 5, 5>(row0, row1), row2);
   const auto next = [](Float value) { return L::template shuffle_quads<1, 2, 0, 0>(value); };
   const auto opposite = [](Float value) { return L::template shuffle_quads<2, 0, 1, 1>(value); };
-  const Float a_x = vertices.a_x, a_y = vertices.a_y, a_z = vertices.a_z;
+  const Float a_x = x - Float(packet.origin[0]);
+  const Float a_y = y - Float(packet.origin[1]);
+  const Float a_z = z - Float(packet.origin[2]);
   const Float s_x = a_x + next(a_x), s_y = a_y + next(a_y), s_z = a_z + next(a_z);
   const Float f_x = next(x) - x, f_y = next(y) - y, f_z = next(z) - z;
   const Float n_x = s_y * f_z - s_z * f_y;

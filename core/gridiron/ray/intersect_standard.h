@@ -8,6 +8,7 @@
 #include <gridiron/ray/distance.h>
 #include <gridiron/ray/edges.h>
 #include <gridiron/ray/packet.h>
+#include <gridiron/ray/pixel_box.h>
 #include <gridiron/ray/subpackets.h>
 
 #include <cstdint>
@@ -52,7 +53,36 @@ template <class L, bool kWantFacing, class PacketType>
   return changed;
 }
 
-/// Intersects 1..EdgeBatch<L>::kTriangles triangles with the active rays of a packet.
+/// A triangle of a batch that goes on to its edges.
+struct OpenTriangle {
+  const VertexTriangle* triangle;
+  SubpacketSet subpackets;  ///< to be looked at
+  std::uint32_t rows;       ///< of the packet, of these
+  bool is_small;            ///< too few of them to be worth asking which it touches
+};
+
+/// Leaves those of 1..L::kCount triangles out that cover no pixel of the subpackets wanted. @returns how many are open.
+template <class L, class PacketType>
+[[nodiscard]] GRIDIRON_INLINE std::uint32_t keep_covering(const PacketType& packet,
+                                                          const VertexTriangle* const* triangles,
+                                                          const SubpacketSet* subpackets, std::uint32_t count,
+                                                          OpenTriangle* open, WorkCounters& work) {
+  work.add(Work::kPixelBox, count);
+  const VertexTriangle* padded[L::kCount];
+  for (std::uint32_t i = 0; i < L::kCount; ++i) padded[i] = triangles[i < count ? i : 0];
+  PixelBoxes<L> boxes;
+  find_pixel_boxes<L>(packet, padded, boxes);
+  std::uint32_t open_count = 0;
+  for (std::uint32_t rest = boxes.covering & (~0u >> (32 - count)); rest != 0; rest &= rest - 1) {
+    const std::uint32_t i = lowest_bit(rest);
+    const PixelBox box{boxes.first_column[i], boxes.end_column[i], boxes.first_row[i], boxes.end_row[i]};
+    open[open_count] = {triangles[i], subpackets[i] & box.subpackets(), box.rows(), box.is_small()};
+    open_count += open[open_count].subpackets != 0 ? 1u : 0u;
+  }
+  return open_count;
+}
+
+/// Intersects 1..L::kCount triangles with the active rays of a packet.
 ///
 /// @param subpackets  per triangle, those to look at. @returns the subpackets of which a ray's hit changed.
 template <class L, bool kWantFacing, class PacketType>
@@ -61,48 +91,39 @@ template <class L, bool kWantFacing, class PacketType>
                                                                     const SubpacketSet* subpackets, std::uint32_t count,
                                                                     Culling culling, WorkCounters& work) {
   constexpr std::uint32_t kTriangles = EdgeBatch<L>::kTriangles;
-  const VertexTriangle* padded[kTriangles];
-  for (std::uint32_t i = 0; i < kTriangles; ++i) padded[i] = triangles[i < count ? i : 0];
-  NearSubpackets near[kTriangles];
-  for (std::uint32_t i = 0; i < count; ++i) near[i] = {subpackets[i], 0, false, ~0u};
-
-  // 1. The pixels they can cover at all: most small triangles are done with here.
-  bool is_small[kTriangles] = {};
-  const bool has_boxes = PacketType::kHasBoxes && culling.subpackets;
-  if (has_boxes) work.add(Work::kPixelBox, count);
-  const VertexLanes<L> vertices(padded, packet.origin);
+  OpenTriangle open[L::kCount];
   std::uint32_t open_count = count;
+  bool has_boxes = false;
+  if constexpr (PacketType::kHasBoxes) has_boxes = culling.subpackets;
   if (has_boxes) {
-    const PixelBoxes<L> boxes = pixel_boxes<L>(packet, vertices);
-    open_count = 0;
-    for (std::uint32_t i = 0; i < count; ++i) {
-      const PixelBox box(boxes, i);
-      near[i].touching &= box.subpackets();
-      if (near[i].touching == 0) continue;
-      ++open_count;
-      near[i].rows = box.rows();
-      is_small[i] = box.is_small();
-    }
-    if (open_count == 0) return 0;
+    open_count = keep_covering<L>(packet, triangles, subpackets, count, open, work);
+  } else {
+    for (std::uint32_t i = 0; i < count; ++i) open[i] = {triangles[i], subpackets[i], ~0u, false};
   }
-
-  // 2. Their edges, and what the packet or its subpackets tell of them.
-  work.add(Work::kTriangleSetup, open_count);
-  if (culling.corner_rays) work.add(Work::kCullTest, open_count);
-  work.charge_to(Work::kTriangleSetup);
-  EdgeBatch<L> batch;
-  set_up_edges<L>(packet, padded, vertices, culling, batch, work);
   SubpacketSet changed = 0;
-  for (std::uint32_t i = 0; i < count; ++i) {
-    if (near[i].touching == 0 || ((batch.missed >> (4 * i)) & 0xFu) != 0 || batch.orientation[i] == 0) continue;
-    if (culling.subpackets && !is_small[i]) {
-      work.add(Work::kSubpacketSetup);
-      const std::uint32_t rows = near[i].rows;
-      near[i] = subpackets_near<L, PacketType>(batch, i, near[i].touching, work);
-      near[i].rows = rows;
+  for (std::uint32_t first = 0; first < open_count; first += kTriangles) {
+    std::uint32_t in_batch = open_count - first;
+    if (in_batch > kTriangles) in_batch = kTriangles;
+    const VertexTriangle* batched[kTriangles];
+    for (std::uint32_t i = 0; i < kTriangles; ++i) {
+      const std::uint32_t place = i < in_batch ? first + i : first;
+      batched[i] = open[place].triangle;
     }
-    // 3. Its rays.
-    changed |= test_groups<L, kWantFacing>(packet, *triangles[i], batch, i, near[i], work);
+    work.add(Work::kTriangleSetup, in_batch);
+    if (culling.corner_rays) work.add(Work::kCullTest, in_batch);
+    work.charge_to(Work::kTriangleSetup);
+    EdgeBatch<L> batch;
+    set_up_edges<L>(packet, batched, culling, batch, work);
+    for (std::uint32_t i = 0; i < in_batch; ++i) {
+      if (((batch.missed >> (4 * i)) & 0xFu) != 0 || batch.orientation[i] == 0) continue;
+      const OpenTriangle& one = open[first + i];
+      NearSubpackets near{one.subpackets, 0, one.rows, false};
+      if (culling.subpackets && !one.is_small) {
+        work.add(Work::kSubpacketSetup);
+        near = subpackets_near<L, PacketType>(batch, i, one.subpackets, one.rows, work);
+      }
+      changed |= test_groups<L, kWantFacing>(packet, *one.triangle, batch, i, near, work);
+    }
   }
   return changed;
 }

@@ -11,33 +11,6 @@
 
 namespace gridiron {
 
-/// Vertices of L::kCount / 4 triangles as seen from a packet's origin, a quad of lanes each: 0, 1, 2, 2.
-template <class L>
-struct VertexLanes {
-  using Float = typename L::Float;
-  Float x, y, z;        ///< world space
-  Float a_x, a_y, a_z;  ///< less the origin
-
-  /// @param triangles  L::kCount / 4 of them.
-  GRIDIRON_INLINE VertexLanes(const VertexTriangle* const* triangles, const float origin[3]) {
-    // A record's first 36 bytes are x0 y0 z0 x1 | y1 z1 x2 y2 | z2: turn them into one vector per axis.
-    constexpr std::uint32_t kTriangles = L::kCount / 4;
-    const float* rows[3][kTriangles];
-    for (std::uint32_t i = 0; i < kTriangles; ++i) {
-      for (int row = 0; row < 3; ++row) rows[row][i] = &triangles[i]->v[0][0] + 4 * row;
-    }
-    const Float row0 = L::load_quads(rows[0]);
-    const Float row1 = L::load_quads(rows[1]);
-    const Float row2 = L::load_quads(rows[2]);
-    x = L::template shuffle_quads<0, 3, 6, 6>(row0, row1);
-    y = L::template shuffle_quads<1, 4, 7, 7>(row0, row1);
-    z = L::template shuffle_quads<0, 1, 4, 4>(L::template shuffle_quads<2, 5, 5, 5>(row0, row1), row2);
-    a_x = x - Float(origin[0]);
-    a_y = y - Float(origin[1]);
-    a_z = z - Float(origin[2]);
-  }
-};
-
 /// Prepares packet.projection from first_dir, step_x and step_y.
 ///
 /// With F, X, Y these three and det = F . (X x Y), the rows are W = (X x Y) / det, P = (Y x F) / det and
@@ -48,7 +21,7 @@ struct VertexLanes {
 /// rounded from doubles, e of themselves. A direction differs from the linear form by less than 6 e D: P . d is within
 /// 8 e D |P|1 of the column, W . d within 8 e D |W|1 of 1; at columns up to 32 that is 8 e D (|P|1 + 32 |W|1). The place
 /// of a point in the triangle lies between its vertices', as all have W . a > 0. A vertex less the origin, the products
-/// and sums carry 4 e |P|1 |a|max in the numerator, 4 e |W|1 |a|max in the denominator; where |a|max <= 2 D W . a, that
+/// and sums carry 4 e |P|1 |a|max in the numerator, 4 e |W|1 |a|max in the denominator; where |a|max < 2 D W . a, that
 /// is 8 e D |P|1 in all, and of the quotient itself 8 e D |W|1 + 3 e. The latter on quotients up to 64; those beyond
 /// stay beyond 32 as long as it is below a quarter. Sum: 16 e D |P|1 + 768 e D |W|1 + 192 e. Twice that is charged.
 template <class PacketType>
@@ -89,51 +62,94 @@ void set_up_projection(PacketType& packet, float dir_bound) {
   if (!is_good) projection.margin = kInfinity;
 }
 
-/// Boxes of pixels of L::kCount / 4 triangles, in the packet: from `first` to before `end`. Lane 4 i is the column, lane
-/// 4 i + 2 the row of triangle i.
+/// Boxes of L::kCount triangles, in pixels of the packet, one lane each: from `first` to before `end`.
 template <class L>
 struct PixelBoxes {
-  typename L::Int first, end;
+  alignas(64) std::uint32_t first_column[L::kCount];
+  alignas(64) std::uint32_t end_column[L::kCount];
+  alignas(64) std::uint32_t first_row[L::kCount];
+  alignas(64) std::uint32_t end_row[L::kCount];
+  std::uint32_t covering;  ///< lanes whose box is not empty
 };
 
-/// @returns for each triangle a box outside of which no ray of the packet can hit it; where that cannot be told, the
+/// Words of L::kCount triangles: element i of the result holds word first_word + i of each, one lane a triangle.
+template <class L>
+struct TransposedWords {
+  typename L::Float word[4];
+
+  GRIDIRON_INLINE TransposedWords(const VertexTriangle* const* triangles, std::uint32_t first_word) {
+    using Float = typename L::Float;
+    const auto rows_of = [&](std::uint32_t first) GRIDIRON_INLINE_LAMBDA {  // of triangles first, first + 4, ...
+      const float* rows[L::kCount / 4];
+      for (std::uint32_t quad = 0; quad < L::kCount / 4; ++quad) {
+        rows[quad] = &triangles[4 * quad + first]->v[0][0] + first_word;
+      }
+      return L::load_quads(rows);
+    };
+    const Float row0 = rows_of(0), row1 = rows_of(1), row2 = rows_of(2), row3 = rows_of(3);
+    const Float low01 = L::template shuffle_quads<0, 1, 4, 5>(row0, row1);
+    const Float low23 = L::template shuffle_quads<0, 1, 4, 5>(row2, row3);
+    const Float high01 = L::template shuffle_quads<2, 3, 6, 7>(row0, row1);
+    const Float high23 = L::template shuffle_quads<2, 3, 6, 7>(row2, row3);
+    word[0] = L::template shuffle_quads<0, 2, 4, 6>(low01, low23);
+    word[1] = L::template shuffle_quads<1, 3, 5, 7>(low01, low23);
+    word[2] = L::template shuffle_quads<0, 2, 4, 6>(high01, high23);
+    word[3] = L::template shuffle_quads<1, 3, 5, 7>(high01, high23);
+  }
+};
+
+/// Computes for each triangle a box outside of which no ray of the packet can hit it; where that cannot be told, the
 /// whole packet.
+///
+/// @param triangles  L::kCount of them; a shorter batch repeats one.
 template <class L, class PacketType>
-[[nodiscard]] GRIDIRON_INLINE PixelBoxes<L> pixel_boxes(const PacketType& packet, const VertexLanes<L>& vertices) {
+GRIDIRON_INLINE void find_pixel_boxes(const PacketType& packet, const VertexTriangle* const* triangles,
+                                      PixelBoxes<L>& boxes) {
   using Float = typename L::Float;
   const PixelProjection& projection = packet.projection;
-  const auto along = [&](int row) GRIDIRON_INLINE_LAMBDA {
-    return vertices.a_x * Float(projection.rows[row][0]) + vertices.a_y * Float(projection.rows[row][1]) +
-           vertices.a_z * Float(projection.rows[row][2]);
-  };
-  const Float depth = along(0);
-  const Float size = L::max(L::max(L::abs(vertices.a_x), L::abs(vertices.a_y)), L::abs(vertices.a_z));
-  // Below 2^-60 products may lose too much.
-  const auto is_sure = (size <= depth * Float(projection.most_per_depth)) & (depth >= Float(0x1p-60f));
-  const Float inverse = Float(1.0f) / depth;
-  const Float column = along(1) * inverse;
-  const Float row = along(2) * inverse;
-  // Per quad: columns of vertices 0 and 1, rows of 0 and 1; then of vertex 2.
-  const Float some = L::template shuffle_quads<0, 1, 4, 5>(column, row);
-  const Float last = L::template shuffle_quads<2, 2, 6, 6>(column, row);
-  Float low = L::min(some, last);
-  Float high = L::max(some, last);
-  low = L::min(low, L::template shuffle_quads<1, 0, 3, 2>(low)) - Float(projection.margin);
-  high = L::max(high, L::template shuffle_quads<1, 0, 3, 2>(high)) + Float(projection.margin);
-  const std::uint32_t unsure = ~is_sure.bits() & L::kAllBits;
-  if (unsure != 0) [[unlikely]] {
-    const std::uint32_t quads = (unsure | unsure >> 1 | unsure >> 2 | unsure >> 3) & 0x1111u;
-    const auto in_quad = L::mask_from_bits(quads * 0xFu);
-    low = L::select(in_quad, Float(-kInfinity), low);
-    high = L::select(in_quad, Float(kInfinity), high);
+  // A record's first 36 bytes are x0 y0 z0 x1 | y1 z1 x2 y2 | z2.
+  const TransposedWords<L> low_words(triangles, 0);
+  const TransposedWords<L> middle_words(triangles, 4);
+  const TransposedWords<L> high_words(triangles, 8);
+  const Float vertices[3][3] = {{low_words.word[0], low_words.word[1], low_words.word[2]},
+                                {low_words.word[3], middle_words.word[0], middle_words.word[1]},
+                                {middle_words.word[2], middle_words.word[3], high_words.word[0]}};
+  const Float origin_x(packet.origin[0]), origin_y(packet.origin[1]), origin_z(packet.origin[2]);
+  Float column[3], row[3];
+  auto is_sure = L::mask_from_bits(L::kAllBits);
+  for (int i = 0; i < 3; ++i) {
+    const Float x = vertices[i][0] - origin_x, y = vertices[i][1] - origin_y, z = vertices[i][2] - origin_z;
+    const auto along = [&](int k) GRIDIRON_INLINE_LAMBDA {
+      return x * Float(projection.rows[k][0]) + y * Float(projection.rows[k][1]) + z * Float(projection.rows[k][2]);
+    };
+    const Float depth = along(0);
+    const Float inverse = Float(1.0f) / depth;
+    column[i] = along(1) * inverse;
+    row[i] = along(2) * inverse;
+    const Float size = L::max(L::max(L::abs(x), L::abs(y)), L::abs(z));
+    // Below 2^-60 products may lose too much. NaNs are not sure.
+    is_sure = is_sure & (size < depth * Float(projection.most_per_depth)) & (depth > Float(0x1p-60f));
   }
-  constexpr float kWidth = static_cast<float>(PacketType::kWidth);
-  const auto pixel = [](Float value) GRIDIRON_INLINE_LAMBDA {
-    return L::truncate(L::min(L::max(value, Float(0.0f)), Float(kWidth)));
+  const auto range_of = [&](const Float* place, std::uint32_t* first, std::uint32_t* end) GRIDIRON_INLINE_LAMBDA {
+    const Float margin(projection.margin);
+    const Float low = L::min(L::min(place[0], place[1]), place[2]) - margin;
+    const Float high = L::max(L::max(place[0], place[1]), place[2]) + margin;
+    constexpr float kWidth = static_cast<float>(PacketType::kWidth);
+    const auto pixel = [](Float value) GRIDIRON_INLINE_LAMBDA {
+      return L::min(L::max(value, Float(0.0f)), Float(kWidth));
+    };
+    // The first pixel not before `low` is the whole part of low + 1, one less where low is whole itself; 1 - 2^-18 ends
+    // on a float at every column, so that rounding cannot carry a sum past it.
+    const Float first_pixel = L::select(is_sure, pixel(low + Float(1.0f - 0x1p-18f)), Float(0.0f));
+    const Float end_pixel = L::select(is_sure, pixel(high + Float(1.0f)), Float(kWidth));
+    const auto first_whole = L::truncate(first_pixel), end_whole = L::truncate(end_pixel);
+    first_whole.store(first);
+    end_whole.store(end);
+    return first_whole < end_whole;
   };
-  // The first pixel not before `low` is the whole part of low + 1, one less where low is whole itself; 1 - 2^-18 ends on
-  // a float at every column, so that rounding cannot carry a sum past it.
-  return {pixel(low + Float(1.0f - 0x1p-18f)), pixel(high + Float(1.0f))};
+  const auto has_columns = range_of(column, boxes.first_column, boxes.end_column);
+  const auto has_rows = range_of(row, boxes.first_row, boxes.end_row);
+  boxes.covering = (has_columns & has_rows).bits();
 }
 
 /// Subpackets in the columns, or rows, of subpackets before one.
@@ -153,21 +169,12 @@ inline constexpr SubpacketsBefore kSubpacketsBefore = [] {
   return before;
 }();
 
-/// One triangle's box, in pixels of the packet.
+/// One triangle's box, not empty, in pixels of the packet.
 struct PixelBox {
   std::uint32_t first_column, end_column, first_row, end_row;
 
-  template <class L>
-  GRIDIRON_INLINE PixelBox(const PixelBoxes<L>& boxes, std::uint32_t index) {
-    const int lane = static_cast<int>(4 * index);
-    first_column = static_cast<std::uint32_t>(boxes.first[lane]);
-    end_column = static_cast<std::uint32_t>(boxes.end[lane]);
-    first_row = static_cast<std::uint32_t>(boxes.first[lane + 2]);
-    end_row = static_cast<std::uint32_t>(boxes.end[lane + 2]);
-  }
   /// @returns the subpackets that it touches.
   [[nodiscard]] GRIDIRON_INLINE SubpacketSet subpackets() const {
-    if (first_column >= end_column || first_row >= end_row) return 0;
     constexpr std::uint32_t kLast = kSubpacketWidth - 1;
     const SubpacketSet before_end = kSubpacketsBefore.column[(end_column + kLast) / kSubpacketWidth] &
                                     kSubpacketsBefore.row[(end_row + kLast) / kSubpacketWidth];
@@ -180,7 +187,7 @@ struct PixelBox {
     return end_column - first_column / kSubpacketWidth * kSubpacketWidth <= 2 * kSubpacketWidth &&
            end_row - first_row / kSubpacketWidth * kSubpacketWidth <= 2 * kSubpacketWidth;
   }
-  /// @returns its rows, bit i = row i of the packet. Precondition: it is not empty.
+  /// @returns its rows, bit i = row i of the packet.
   [[nodiscard]] GRIDIRON_INLINE std::uint32_t rows() const {
     return (~0u >> (32 - (end_row - first_row))) << first_row;
   }

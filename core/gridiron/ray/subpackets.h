@@ -87,8 +87,8 @@ template <class L, class PacketType>
 struct NearSubpackets {
   SubpacketSet touching;  ///< may be touched
   SubpacketSet covered;   ///< of these, all rays surely pass inside all three edges
-  bool is_linear;         ///< the edge functions' linear form holds, and is worth asking row by row
-  std::uint32_t rows;     ///< rows of the packet that may be touched, bit i = row i
+  std::uint32_t rows;     ///< of these, rows of the packet that may be touched, bit i = row i
+  bool is_linear;         ///< rows may be asked for one by one: the edge functions' linear form holds
 };
 
 /// @returns those of the `wanted` subpackets that triangle `index` of a batch may touch. One is left out where an edge
@@ -96,12 +96,13 @@ struct NearSubpackets {
 /// least value, which shows that all are inside, at the opposite one.
 template <class L, class PacketType>
 [[nodiscard]] GRIDIRON_INLINE NearSubpackets subpackets_near(const EdgeBatch<L>& batch, std::uint32_t index,
-                                                             SubpacketSet wanted, WorkCounters& work) {
+                                                             SubpacketSet wanted, std::uint32_t rows,
+                                                             WorkCounters& work) {
   using Four = Lanes<4>;
   using Float = Four::Float;
-  if constexpr (PacketType::kSubpacketCount < 4) return {wanted, 0, false, ~0u};
+  if constexpr (PacketType::kSubpacketCount < 4) return {wanted, 0, rows, false};
   const std::uint32_t first_lane = 4 * index;
-  if (((batch.in_range >> first_lane) & 0xFu) != 0xFu) return {wanted, 0, false, ~0u};
+  if (((batch.in_range >> first_lane) & 0xFu) != 0xFu) return {wanted, 0, rows, false};
   std::uint32_t squares = 1;
   if constexpr (PacketType::kSquareCount > 1) squares = squares_near<L, PacketType>(batch, index, work);
 
@@ -136,7 +137,7 @@ template <class L, class PacketType>
     near |= SubpacketSet{~outside & 0xFu} << (4 * square);
     covered |= SubpacketSet{inside} << (4 * square);
   }
-  return {near & wanted, covered & wanted, true, ~0u};
+  return {near & wanted, covered & wanted, rows, true};
 }
 
 /// Origins of subpackets in a packet, in pixels, along the Z curve.

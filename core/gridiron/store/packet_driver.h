@@ -190,7 +190,7 @@ class PacketDriver {
   template <class Triangle, bool kWantFacing>
   [[nodiscard]] SubpacketSet test_each(const std::byte* records, std::uint32_t count, SubpacketSet open) {
     constexpr bool kPaper = std::is_same_v<Triangle, ProjectionTriangle>;
-    constexpr std::uint32_t kBatch = kPaper ? 1 : EdgeBatch<L>::kTriangles;
+    constexpr std::uint32_t kBatch = kPaper ? 1 : L::kCount;
     const Triangle* triangles = reinterpret_cast<const Triangle*>(records);
     const bool use_mailbox = (store_.frame.techniques & kUseMailbox) != 0;
     const Culling culling{.corner_rays = (store_.frame.techniques & kUseCornerCulling) != 0,

@@ -272,7 +272,7 @@ class BvhCore {
       if (context.current.entry <= context.reach[i]) open |= SubpacketSet{1} << i;
     }
     SubpacketSet changed = 0;
-    constexpr std::uint32_t kBatch = EdgeBatch<L>::kTriangles;
+    constexpr std::uint32_t kBatch = L::kCount;
     for (std::uint32_t i = 0; i < child.triangle_count(); i += kBatch) {
       const VertexTriangle* batch[kBatch];
       SubpacketSet subpackets[kBatch];

@@ -97,6 +97,10 @@ struct Lanes {
       const Native::Int value = Native::Int::load(&source->value);
       return {value, PipeModel::current().load_quad(source, tie(value.v))};
     }
+    void store(Counted<std::uint32_t>* target) const { store_quads(*this, target, 0); }
+    friend Mask operator<(Int a, Int b) {
+      return {a.v < b.v, emit(OpClass::kFixed, tie((a.v < b.v).v), a.node, b.node)};
+    }
     friend Int operator|(Int a, Int b) {
       return {a.v | b.v, emit(OpClass::kFixed, tie((a.v | b.v).v), a.node, b.node)};
     }
