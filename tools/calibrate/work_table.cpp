@@ -120,7 +120,7 @@ struct NamedFrame {
   [[nodiscard]] bool operator()(std::size_t kind) const { return frame.has_planes == is_of_planes(kind); }
 };
 
-std::array<NamedFrame, 4> frames_of(const Scene& scene) {
+std::array<NamedFrame, 5> frames_of(const Scene& scene) {
   const CountedFrame reference{.vertices = scene.vertices,
                                .triangles = scene.triangles,
                                .eye = kEye,
@@ -135,12 +135,14 @@ std::array<NamedFrame, 4> frames_of(const Scene& scene) {
   CountedFrame best = reference;
   best.packet_width = 32;
   best.techniques = kBest;
+  CountedFrame near = best;  // triangles as large as subpackets and larger
+  near.tan_half_fov = 0.06f;
   CountedFrame paper = reference;
   paper.accuracy = Accuracy::kPaper;
   paper.shading = Shading::kNone;
   CountedFrame planes = best;
   planes.has_planes = true;
-  return {{{"reference", reference}, {"best", best}, {"paper", paper}, {"planes", planes}}};
+  return {{{"reference", reference}, {"best", best}, {"near", near}, {"paper", paper}, {"planes", planes}}};
 }
 
 constexpr std::string_view kTableHead =

@@ -147,6 +147,8 @@ std::string_view work_name(Work kind) {
       return "group_test_paper";
     case Work::kHitGroup:
       return "hit_group";
+    case Work::kHitSubpacket:
+      return "hit_subpacket";
     case Work::kHitGroupPaper:
       return "hit_group_paper";
     case Work::kHitSetup:

@@ -28,6 +28,7 @@ enum class Work : std::uint8_t {
   kGroupTestStandard, ///< (group, triangle) tests, filtered edge functions
   kGroupTestPaper,    ///< (group, triangle) tests, precomputed projection
   kHitGroup,          ///< groups with hits to be merged, `standard` test
+  kHitSubpacket,      ///< whole subpackets inside a triangle, held against what they had hit
   kHitGroupPaper,     ///< groups of which hits were merged, precomputed projection
   kHitSetup,          ///< triangles for which the distance set-up was computed
   kDoubleSign,        ///< edge signs the float filter left open, tried in double

@@ -104,6 +104,26 @@ struct HitSetups {
   bool has_estimate = false;
   bool has_distance = false;
   bool has_unit_normal = false;
+
+  template <class PacketType>
+  GRIDIRON_INLINE void estimate(PacketType& packet, const VertexTriangle& triangle, WorkCounters& work) {
+    if (has_estimate) return;
+    work.add(Work::kEstimateSetup);
+    const DistanceEstimate found = set_up_estimate(packet.origin, packet.dir_max, triangle);
+    for (int axis = 0; axis < 3; ++axis) normal[axis] = Float(found.normal[axis]);
+    numerator = Float(found.numerator);
+    least_denominator = Float(found.least_denominator);
+    packet.keep(triangle);
+    has_estimate = true;
+  }
+  GRIDIRON_INLINE void find_normal(const VertexTriangle& triangle, WorkCounters& work) {
+    if (has_unit_normal) return;
+    work.add(Work::kNormalSetup);
+    float found[3];
+    set_up_normal(triangle, found);
+    for (int axis = 0; axis < 3; ++axis) unit_normal[axis] = Float(found[axis]);
+    has_unit_normal = true;
+  }
 };
 
 /// Decides hits that lie too close to those that the rays had: both distances exact, then the least (t, id).
@@ -187,15 +207,7 @@ template <class L, bool kWantFacing, class PacketType>
                                               const VertexTriangle& triangle, HitSetups<L>& setups,
                                               WorkCounters& work) {
   using Float = typename L::Float;
-  if (!setups.has_estimate) {
-    work.add(Work::kEstimateSetup);
-    const DistanceEstimate estimate = set_up_estimate(packet.origin, packet.dir_max, triangle);
-    for (int axis = 0; axis < 3; ++axis) setups.normal[axis] = Float(estimate.normal[axis]);
-    setups.numerator = Float(estimate.numerator);
-    setups.least_denominator = Float(estimate.least_denominator);
-    packet.keep(triangle);
-    setups.has_estimate = true;
-  }
+  setups.estimate(packet, triangle, work);
   work.add(Work::kHitGroup);
   const Float d_x = Float::load(packet.dir[0] + base);
   const Float d_y = Float::load(packet.dir[1] + base);
@@ -223,17 +235,50 @@ template <class L, bool kWantFacing, class PacketType>
   L::select(taken, t, old_t).store(packet.t + base);
   L::store_where(taken, triangle.triangle_id, packet.id + base);
   if constexpr (kWantFacing) {
-    if (!setups.has_unit_normal) {
-      work.add(Work::kNormalSetup);
-      float unit_normal[3];
-      set_up_normal(triangle, unit_normal);
-      for (int axis = 0; axis < 3; ++axis) setups.unit_normal[axis] = Float(unit_normal[axis]);
-      setups.has_unit_normal = true;
-      work.charge_to(Work::kHitGroup);
-    }
+    setups.find_normal(triangle, work);
+    work.charge_to(Work::kHitGroup);
     const Float facing =
         L::abs(setups.unit_normal[0] * d_x + setups.unit_normal[1] * d_y + setups.unit_normal[2] * d_z);
     L::select(taken, facing, Float::load(packet.facing + base)).store(packet.facing + base);
+  }
+  return true;
+}
+
+/// Takes a triangle's hits of a whole subpacket where it is surely the nearest of all its rays.
+/// @returns whether it is; where not, nothing has happened.
+template <class L, bool kWantFacing, class PacketType>
+[[nodiscard]] GRIDIRON_INLINE bool take_subpacket(PacketType& packet, std::uint32_t first_ray,
+                                                  const VertexTriangle& triangle, HitSetups<L>& setups,
+                                                  WorkCounters& work) {
+  using Float = typename L::Float;
+  constexpr std::uint32_t kGroups = kSubpacketRays / L::kCount;
+  setups.estimate(packet, triangle, work);
+  work.add(Work::kHitSubpacket);
+  Float t[kGroups];
+  auto is_nearer = L::mask_from_bits(packet.estimates);
+  for (std::uint32_t group = 0; group < kGroups; ++group) {
+    const std::uint32_t base = first_ray + group * L::kCount;
+    const Float denominator = setups.normal[0] * Float::load(packet.dir[0] + base) +
+                              setups.normal[1] * Float::load(packet.dir[1] + base) +
+                              setups.normal[2] * Float::load(packet.dir[2] + base);
+    t[group] = setups.numerator / denominator;
+    is_nearer = is_nearer & (denominator > setups.least_denominator) &
+                (t[group] < Float::load(packet.t + base) * Float(kSurelyNearer));
+  }
+  if (is_nearer.bits() != L::kAllBits) return false;
+  if constexpr (kWantFacing) setups.find_normal(triangle, work);
+  work.charge_to(Work::kHitSubpacket);
+  const typename L::Int id = L::Int::splat(triangle.triangle_id);
+  for (std::uint32_t group = 0; group < kGroups; ++group) {
+    const std::uint32_t base = first_ray + group * L::kCount;
+    t[group].store(packet.t + base);
+    id.store(packet.id + base);
+    if constexpr (kWantFacing) {
+      const Float facing = L::abs(setups.unit_normal[0] * Float::load(packet.dir[0] + base) +
+                                  setups.unit_normal[1] * Float::load(packet.dir[1] + base) +
+                                  setups.unit_normal[2] * Float::load(packet.dir[2] + base));
+      facing.store(packet.facing + base);
+    }
   }
   return true;
 }

@@ -36,6 +36,11 @@ template <class L, bool kWantFacing, class PacketType>
       rows = near.rows >> (kSubpacketWidth * subpacket_row(subpacket));
       if (near.is_linear && !is_covered) rows &= rows_near(batch, index, subpacket, work);
     }
+    if (is_covered && packet.active.subpacket(subpacket) == kAllSubpacketRays &&
+        take_subpacket<L, kWantFacing>(packet, first_ray, triangle, setups, work)) {
+      changed |= SubpacketSet{1} << subpacket;
+      return;
+    }
     work.charge_to(Work::kGroupTestStandard);
     for (std::uint32_t group = 0; group < kSubpacketRays / L::kCount; ++group) {
       const std::uint32_t base = first_ray + group * L::kCount;

@@ -31,6 +31,10 @@ struct RaySet {
   [[nodiscard]] GRIDIRON_INLINE std::uint32_t group(std::uint32_t base) const {
     return (words[base / 32] >> (base % 32)) & L::kAllBits;
   }
+  /// Bits of subpacket i, see below.
+  [[nodiscard]] GRIDIRON_INLINE std::uint32_t subpacket(std::uint32_t i) const {
+    return (words[i / 2] >> (16 * (i % 2))) & 0xFFFFu;
+  }
   template <class L>
   GRIDIRON_INLINE void set_group(std::uint32_t base, std::uint32_t bits) {
     words[base / 32] = (words[base / 32] & ~(L::kAllBits << (base % 32))) | (bits << (base % 32));
@@ -41,6 +45,7 @@ struct RaySet {
 /// other, row by row; subpackets follow each other along a Z curve, so that every four of them are a square too.
 inline constexpr std::uint32_t kSubpacketWidth = 4;
 inline constexpr std::uint32_t kSubpacketRays = kSubpacketWidth * kSubpacketWidth;
+inline constexpr std::uint32_t kAllSubpacketRays = (1u << kSubpacketRays) - 1u;
 
 /// Subpackets of a packet, bit i = subpacket i.
 using SubpacketSet = std::uint64_t;
