@@ -140,6 +140,7 @@ std::array<NamedFrame, 5> frames_of(const Scene& scene) {
   CountedFrame paper = reference;
   paper.accuracy = Accuracy::kPaper;
   paper.shading = Shading::kNone;
+  paper.width = 90;  // packets at the border are not whole
   CountedFrame planes = best;
   planes.has_planes = true;
   return {{{"reference", reference}, {"best", best}, {"near", near}, {"paper", paper}, {"planes", planes}}};

@@ -113,6 +113,8 @@ std::string_view work_name(Work kind) {
       return "packet_start";
     case Work::kPassGroup:
       return "pass_group";
+    case Work::kPassSquare:
+      return "pass_square";
     case Work::kMacroSliceStep:
       return "macro_slice_step";
     case Work::kMacroCellStep:

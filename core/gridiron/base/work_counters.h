@@ -12,6 +12,7 @@ enum class Work : std::uint8_t {
   kRayGenerated,      ///< primary ray groups generated                                     (initialisation)
   kPacketStart,       ///< packet passes begun: frustum, mailbox reset                      (initialisation)
   kPassGroup,         ///< ray groups held against a pass's march axis, and their slopes        (initialisation)
+  kPassSquare,        ///< squares of ray groups held against it by their corners              (initialisation)
   kMacroSliceStep,    ///< macro slices entered
   kMacroCellStep,     ///< macrocells looked up in the macrocell table
   kMacroCellVisit,    ///< non-empty macrocells whose cell block was walked

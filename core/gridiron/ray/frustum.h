@@ -7,6 +7,7 @@
 #include <gridiron/base/records.h>
 #include <gridiron/base/work_counters.h>
 #include <gridiron/ray/packet.h>
+#include <gridiron/ray/places.h>
 
 #include <cstdint>
 
@@ -27,9 +28,9 @@ struct Slab {
 ///
 /// Let o be the origin in cell space and s the slope of a ray (cells along u per cell along the march). In exact
 /// arithmetic the ray is at o_u + s x after marching x. Every quantity below carries at most a handful of roundings:
-/// o has 2, s has 3, x has 1 on |x| and 2 on |o_k|, the product and the sum one each. Their sum is at most
-/// e (6 |o_u| + |s| (8 |o_k| + 8 N_k)) with e = 2^-23, one unit in any rounding mode, the pad's own addition included.
-/// A slope may also be off by 2^-26 for good: what its numerator loses below the least normal float, 2^-149, over a
+/// o has 2, s has 4, x has 1 on |x| and 2 on |o_k|, the product and the sum one each. Their sum is at most
+/// e (6 |o_u| + |s| (9 |o_k| + 9 N_k)) with e = 2^-23, one unit in any rounding mode, the pad's own addition included.
+/// A slope may also be off by 2^-25 for good: what its numerator loses below the least normal float, 2^-148, over a
 /// march of at least 2^-123 (kLeastCellsPerUnit, directions of length 1 or more). Both are pad_u; pad_k likewise.
 struct Frustum {
   static constexpr float kReachFactor = 1.0f + 0x1p-20f;  ///< covers the roundings of a reach
@@ -82,6 +83,95 @@ struct Frustum {
   }
 };
 
+/// March axis and the two others, and what turns directions along them into cells; the march's is signed.
+struct PassAxes {
+  std::uint32_t k, u, v;
+  float march_scale, u_scale, v_scale;
+};
+
+/// Takes the rays of one square of 2x2 subpackets into a pass, each by itself, and finds the bounds of their slopes.
+template <class L, class PacketType>
+GRIDIRON_INLINE void take_square(const PassAxes& axes, std::uint32_t square, RaySet<PacketType::kRayCount>& waiting,
+                                 PacketType& packet, WorkCounters& work) {
+  using Float = typename L::Float;
+  constexpr std::uint32_t kSquareRays = PacketType::kRayCount / PacketType::kSquareCount;
+  Float low_u(kFloatMax), high_u(-kFloatMax), low_v(kFloatMax), high_v(-kFloatMax);
+  work.add(Work::kPassGroup, kSquareRays / L::kCount);
+  for (std::uint32_t base = square * kSquareRays; base < (square + 1) * kSquareRays; base += L::kCount) {
+    const Float march = Float::load(packet.dir[axes.k] + base) * Float(axes.march_scale);
+    const Float along_u = Float::load(packet.dir[axes.u] + base) * Float(axes.u_scale);
+    const Float along_v = Float::load(packet.dir[axes.v] + base) * Float(axes.v_scale);
+    const std::uint32_t bits = ((march > Float(0.0f)) & (march <= Float(0.5f * kFloatMax)) &
+                                (L::abs(along_u) <= march + march) & (L::abs(along_v) <= march + march))
+                                   .bits() &
+                               waiting.template group<L>(base);
+    packet.active.template set_group<L>(base, bits);
+    waiting.template set_group<L>(base, waiting.template group<L>(base) & ~bits);
+    const auto joined = L::mask_from_bits(bits);
+    const Float slope_u = along_u / march;
+    const Float slope_v = along_v / march;
+    low_u = L::min(low_u, L::select(joined, slope_u, Float(kFloatMax)));
+    high_u = L::max(high_u, L::select(joined, slope_u, Float(-kFloatMax)));
+    low_v = L::min(low_v, L::select(joined, slope_v, Float(kFloatMax)));
+    high_v = L::max(high_v, L::select(joined, slope_v, Float(-kFloatMax)));
+  }
+  packet.slope_low[0][square] = L::horizontal_min(low_u);
+  packet.slope_high[0][square] = L::horizontal_max(high_u);
+  packet.slope_low[1][square] = L::horizontal_min(low_v);
+  packet.slope_high[1][square] = L::horizontal_max(high_v);
+}
+
+/// The same for all rays of a square at once, from its corners, where all of them wait and surely join.
+///
+/// A direction is a linear function of the pixel within packet.linear_error, so that march and slopes over the square
+/// lie between those of its corners, but for what such an error makes of a quotient: with E its size in cells along an
+/// axis, at most (E_u + 2 E_k) / (march - E_k) at slopes up to 2. @returns whether they were taken.
+template <class PacketType>
+[[nodiscard]] GRIDIRON_INLINE bool take_whole_square(const PassAxes& axes, std::uint32_t square,
+                                                     RaySet<PacketType::kRayCount>& waiting, PacketType& packet,
+                                                     WorkCounters& work) {
+  using Four = Lanes<4>;
+  using Float = Four::Float;
+  constexpr std::uint32_t kSquareRays = PacketType::kRayCount / PacketType::kSquareCount;
+  if constexpr (kSquareRays != 64) return false;
+  std::uint32_t* const waiting_words = waiting.words + 2 * square;
+  if (!packet.is_linear || (waiting_words[0] & waiting_words[1]) != ~0u) return false;
+  work.add(Work::kPassSquare);
+  const Float column = Float(kSquareOrigins.column[square]) + Float::load(kLanePlaces.corner_column);
+  const Float row = Float(kSquareOrigins.row[square]) + Float::load(kLanePlaces.corner_row);
+  const auto cells_along = [&](std::uint32_t axis, float scale) GRIDIRON_INLINE_LAMBDA {
+    return (Float(packet.first_dir[axis]) + (column * Float(packet.step_x[axis]) + row * Float(packet.step_y[axis]))) *
+           Float(scale);
+  };
+  const Float march = cells_along(axes.k, axes.march_scale);
+  const Float along_u = cells_along(axes.u, axes.u_scale);
+  const Float along_v = cells_along(axes.v, axes.v_scale);
+  const Float error_k(packet.linear_error * magnitude(axes.march_scale));
+  const Float error_u(packet.linear_error * axes.u_scale);
+  const Float error_v(packet.linear_error * axes.v_scale);
+  const Float least_march = march - error_k;
+  const Float twice = least_march + least_march;
+  const std::uint32_t joining =
+      ((least_march > Float(0.0f)) & (march + error_k <= Float(0.25f * kFloatMax)) &
+       (Four::abs(along_u) + error_u <= twice) & (Four::abs(along_v) + error_v <= twice))
+          .bits();
+  if (joining != Four::kAllBits) return false;
+  const Float inverse = Float(1.0f) / march;
+  const Float slope_u = along_u * inverse;
+  const Float slope_v = along_v * inverse;
+  const Float errors = Four::max(error_u, error_v) + (error_k + error_k);
+  const float slack = Four::horizontal_max(errors / least_march);
+  packet.slope_low[0][square] = Four::horizontal_min(slope_u) - slack;
+  packet.slope_high[0][square] = Four::horizontal_max(slope_u) + slack;
+  packet.slope_low[1][square] = Four::horizontal_min(slope_v) - slack;
+  packet.slope_high[1][square] = Four::horizontal_max(slope_v) + slack;
+  for (std::uint32_t word = 0; word < 2; ++word) {
+    packet.active.words[2 * square + word] = ~0u;
+    waiting_words[word] = 0;
+  }
+  return true;
+}
+
 /// Takes a pass of rays out of `waiting`: the first waiting ray decides axis and sign, and every waiting ray that
 /// runs the same way along that axis at a slope of at most 2 joins. A ray whose own steepest axis it is always joins,
 /// so six passes empty any packet.
@@ -91,8 +181,6 @@ struct Frustum {
 template <class L, class PacketType>
 [[nodiscard]] bool take_pass(const GridRecord& grid, RaySet<PacketType::kRayCount>& waiting, PacketType& packet,
                              Frustum& frustum, WorkCounters& work) {
-  constexpr std::uint32_t kRays = PacketType::kRayCount;
-  constexpr std::uint32_t kSquareRays = kRays / PacketType::kSquareCount;
   work.charge_to(Work::kPacketStart);
   std::uint32_t word = 0;
   while (word < waiting.kWordCount && waiting.words[word] == 0) ++word;
@@ -110,39 +198,10 @@ template <class L, class PacketType>
   const std::uint32_t v = u == 2 ? 0 : u + 1;
   const bool reverse = packet.dir[k][leader] < 0.0f;
 
-  using Float = typename L::Float;
-  const Float march_scale(reverse ? -grid.cells_per_unit[k] : grid.cells_per_unit[k]);
-  const Float u_scale(grid.cells_per_unit[u]);
-  const Float v_scale(grid.cells_per_unit[v]);
-  Float low_u(kFloatMax), high_u(-kFloatMax), low_v(kFloatMax), high_v(-kFloatMax);
-  work.add(Work::kPassGroup, kRays / L::kCount);
-  for (std::uint32_t base = 0; base < kRays; base += L::kCount) {
-    if (base % kSquareRays == 0) {
-      low_u = low_v = Float(kFloatMax);
-      high_u = high_v = Float(-kFloatMax);
-    }
-    const Float march = Float::load(packet.dir[k] + base) * march_scale;
-    const Float along_u = Float::load(packet.dir[u] + base) * u_scale;
-    const Float along_v = Float::load(packet.dir[v] + base) * v_scale;
-    const std::uint32_t bits = ((march > Float(0.0f)) & (march <= Float(0.5f * kFloatMax)) &
-                                (L::abs(along_u) <= march + march) & (L::abs(along_v) <= march + march))
-                                   .bits() &
-                               waiting.template group<L>(base);
-    packet.active.template set_group<L>(base, bits);
-    waiting.template set_group<L>(base, waiting.template group<L>(base) & ~bits);
-    const auto joined = L::mask_from_bits(bits);
-    const Float slope_u = along_u / march;
-    const Float slope_v = along_v / march;
-    low_u = L::min(low_u, L::select(joined, slope_u, Float(kFloatMax)));
-    high_u = L::max(high_u, L::select(joined, slope_u, Float(-kFloatMax)));
-    low_v = L::min(low_v, L::select(joined, slope_v, Float(kFloatMax)));
-    high_v = L::max(high_v, L::select(joined, slope_v, Float(-kFloatMax)));
-    if ((base + L::kCount) % kSquareRays != 0) continue;
-    const std::uint32_t square = base / kSquareRays;
-    packet.slope_low[0][square] = L::horizontal_min(low_u);
-    packet.slope_high[0][square] = L::horizontal_max(high_u);
-    packet.slope_low[1][square] = L::horizontal_min(low_v);
-    packet.slope_high[1][square] = L::horizontal_max(high_v);
+  const PassAxes axes{k, u, v, reverse ? -grid.cells_per_unit[k] : grid.cells_per_unit[k], grid.cells_per_unit[u],
+                      grid.cells_per_unit[v]};
+  for (std::uint32_t square = 0; square < PacketType::kSquareCount; ++square) {
+    if (!take_whole_square(axes, square, waiting, packet, work)) take_square<L>(axes, square, waiting, packet, work);
   }
   work.charge_to(Work::kPacketStart);
   waiting.erase(leader);  // a direction that vanishes or overflows in cell space, or is not finite, is a miss
@@ -159,8 +218,8 @@ template <class L, class PacketType>
   frustum.reverse = reverse;
   frustum.origin_k = in_cells(k);
   constexpr float kUnit = 0x1p-23f;
-  constexpr float kSlopeLoss = 0x1p-26f / (8.0f * kUnit);  // in units of march_bound * kUnit
-  const float march_bound = 8.0f * (magnitude(frustum.origin_k) + static_cast<float>(frustum.cells_k));
+  constexpr float kSlopeLoss = 0x1p-25f / (9.0f * kUnit);  // in units of march_bound * kUnit
+  const float march_bound = 9.0f * (magnitude(frustum.origin_k) + static_cast<float>(frustum.cells_k));
   frustum.pad_k = kUnit * march_bound;
   const auto set_bounds = [&](std::uint32_t axis, std::uint32_t lane, float slope_min, float slope_max) {
     const float origin = in_cells(axis);

@@ -70,6 +70,10 @@ GRIDIRON_INLINE void for_each_subpacket(SubpacketSet set, Visit&& visit) {
   }
 }
 
+/// Error of a direction as a linear function of the pixel, in units of the largest sum of magnitudes that goes into a
+/// component: less than 6 e between the two, 4 e for the function's own sums and products, twice at most.
+inline constexpr float kLinearError = 16.0f * 0x1p-23f;
+
 /// Relative error of a distance that was estimated.
 inline constexpr float kEstimateError = 0x1p-12f;
 /// Times a distance, either or both estimated: another one beyond it is surely nearer, or behind.
@@ -137,10 +141,12 @@ struct alignas(128) Packet {
     return triangle.triangle_id == triangle_id && triangle_id != kNoTriangle ? &triangle : nullptr;
   }
 
-  // The rays as a linear function of column and row: first_dir + column * step_x + row * step_y.
+  // The rays as a linear function of column and row, where is_linear: first_dir + column * step_x + row * step_y.
   float first_dir[3];
   float step_x[3];
   float step_y[3];
+  bool is_linear;
+  float linear_error;        ///< by how much a component of a direction may differ from it, as evaluated in floats
   float subpacket_widening;  ///< factor on edge errors that covers this form and its evaluation
 
   // For packets that are large beside the triangles: where these appear.

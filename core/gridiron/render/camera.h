@@ -69,6 +69,7 @@ void generate_packet(const FrameRecord& frame, std::uint32_t left, std::uint32_t
   if (columns >= kWidth && rows >= kWidth) [[likely]] {
     present.fill();
   } else {
+    work.charge_to(Work::kPacketStart);
     present.clear();
     for (std::uint32_t ray = 0; ray < PacketType::kRayCount; ++ray) {
       if (PacketType::column_of(ray) < columns && PacketType::row_of(ray) < rows) present.insert(ray);
@@ -99,6 +100,8 @@ void generate_packet(const FrameRecord& frame, std::uint32_t left, std::uint32_t
     packet.step_y[axis] = frame.step_y[axis];
   }
   if constexpr (PacketType::kHasBoxes) set_up_projection(packet, dir_bound);
+  packet.is_linear = true;
+  packet.linear_error = kLinearError * dir_bound;
   packet.subpacket_widening = kSubpacketErrorFactor / kEdgeErrorFactor * (dir_bound / dir_max);
 }
 

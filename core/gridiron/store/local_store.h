@@ -23,7 +23,7 @@ struct StoreLayout256K {
   static constexpr std::uint32_t kStackBudgetBytes = 8 * 1024;
   static constexpr std::uint32_t kTileWidth = 32;
   static constexpr std::uint32_t kPacketWidth = PacketWidthV;
-  static constexpr std::uint32_t kMailboxSlots = PacketWidthV == 32 ? 256 : 64;
+  static constexpr std::uint32_t kMailboxSlots = PacketWidthV == 32 ? 1024 : 64;
   static constexpr std::uint32_t kTableEntries = 4096;  ///< 131,072 macrocells resident
   static constexpr std::uint32_t kMaxMacroWidth = 8;
   static constexpr std::uint32_t kMaxMacroDepth = 4;

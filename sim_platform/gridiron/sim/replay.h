@@ -23,7 +23,7 @@ inline constexpr std::size_t kWaitLevelCount = static_cast<std::size_t>(WaitLeve
 /// @returns true for the kinds of work that count as initialisation; all others are computation.
 [[nodiscard]] constexpr bool is_initialisation(Work kind) {
   return kind == Work::kTileStart || kind == Work::kRayGenerated || kind == Work::kPacketStart ||
-         kind == Work::kPassGroup;
+         kind == Work::kPassGroup || kind == Work::kPassSquare;
 }
 
 /// Where one core's cycles went: init + compute + sum of waits + idle = frame cycles, without any rounding.
