@@ -232,7 +232,7 @@ Writer plan_packet_sweep(Plan& plan, const Stage& stage) {
 }
 
 Writer plan_prefetch_sweeps(Plan& plan, const Stage& stage) {
-  const tool::StoreFacts facts = tool::store_facts(sim::StoreSize::k256KB, 32);
+  const tool::StoreFacts facts = tool::usual_store_facts(sim::StoreSize::k256KB, 32);
   std::vector<double> macro_depths, triangle_depths;
   for (std::uint32_t depth = 1; depth <= facts.max_macro_depth; ++depth) macro_depths.push_back(depth);
   for (std::uint32_t depth = 1; depth <= facts.max_triangle_depth; ++depth) triangle_depths.push_back(depth);
@@ -308,9 +308,10 @@ Writer plan_store_sweep(Plan& plan, const Stage& stage) {
     for (const char* configuration : kSweptConfigurations) {
       GridVariant small = grid_variant(configuration);
       small.store = sim::StoreSize::k64KB;
+      small.tile_width = 16;
       tool::Configuration& fitted = small.configuration;
-      fitted.packet_width = std::min(fitted.packet_width, tool::store_facts(sim::StoreSize::k64KB, 8).tile_width);
-      const tool::StoreFacts facts = tool::store_facts(sim::StoreSize::k64KB, fitted.packet_width);
+      fitted.packet_width = std::min(fitted.packet_width, tool::usual_store_facts(sim::StoreSize::k64KB, 8).tile_width);
+      const tool::StoreFacts facts = tool::usual_store_facts(sim::StoreSize::k64KB, fitted.packet_width);
       fitted.depths.macro = std::min(fitted.depths.macro, facts.max_macro_depth);
       fitted.depths.triangle = std::min(fitted.depths.triangle, facts.max_triangle_depth);
       small.key += "/store=64";
@@ -355,10 +356,10 @@ Writer plan_store_sweep(Plan& plan, const Stage& stage) {
       tool::StoreFacts facts;
     };
     const Layout layouts[] = {
-        {"reference_256", "reference, 256 KB", tool::store_facts(sim::StoreSize::k256KB, 8)},
-        {"best_256", "best, 256 KB", tool::store_facts(sim::StoreSize::k256KB, 32)},
-        {"reference_64", "reference, 64 KB", tool::store_facts(sim::StoreSize::k64KB, 8)},
-        {"best_64", "best, 64 KB", tool::store_facts(sim::StoreSize::k64KB, 16)},
+        {"reference_256", "reference, 256 KB", tool::usual_store_facts(sim::StoreSize::k256KB, 8)},
+        {"best_256", "best, 256 KB", tool::usual_store_facts(sim::StoreSize::k256KB, 32)},
+        {"reference_64", "reference, 64 KB", tool::usual_store_facts(sim::StoreSize::k64KB, 8)},
+        {"best_64", "best, 64 KB", tool::usual_store_facts(sim::StoreSize::k64KB, 16)},
     };
     Table map{"local_store_map", {{"region", "region"}}, {}};
     for (const Layout& layout : layouts) {

@@ -132,7 +132,7 @@ void print_text(const InfoArguments& arguments, const SceneFacts& facts, const S
 void run_command(const InfoArguments& arguments) {
   const SceneFacts facts = collect_scene_facts(arguments);
   const StoreFacts store =
-      store_facts(largest_store(*arguments.scene.machine), arguments.scene.configuration->packet_width);
+      usual_store_facts(largest_store(*arguments.scene.machine), arguments.scene.configuration->packet_width);
   arguments.json ? print_json(arguments, facts, store) : print_text(arguments, facts, store);
 }
 
