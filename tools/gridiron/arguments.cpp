@@ -367,7 +367,12 @@ void add_experiment_options(CLI::App& app, ExperimentArguments& experiment, std:
   add_parsed(app, "NAME", name, known, "an experiment; expected paper", "",
              "paper: Tables 1-4, Figs. 5-7 and sweeps, as CSV, SVG and index.html")
       ->required();
-  app.add_option("-o,--output", experiment.output, "folder, made where it is not there")->required()->type_name("DIR");
+  const auto folder = [](const std::string& text) {
+    return text.empty() ? std::nullopt : std::optional<std::filesystem::path>(text);
+  };
+  add_parsed(app, "-o,--output", experiment.output, folder, "the name of a folder", "DIR",
+             "folder, made where it is not there")
+      ->required();
   app.add_option("--scenes", experiment.scenes,
                  "folder of the scans (default: the environment's GRIDIRON_SCENES); scans that are not there are left "
                  "out, and without any a teapot and a torus knot are made")

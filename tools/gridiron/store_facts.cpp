@@ -22,6 +22,8 @@ StoreFacts facts_of() {
   facts.max_macro_depth = Layout::kMaxMacroDepth;
   facts.max_triangle_depth = Layout::kMaxTriangleDepth;
   facts.triangles_per_buffer = Layout::kTrianglesPerBuffer;
+  facts.mailbox_slots = Layout::kMailboxSlots;
+  facts.resident_macro_cells = 32 * Layout::kTableEntries;
   for_each_region<Layout>([&facts](const char* name, std::size_t offset_bytes, std::size_t bytes) {
     facts.regions.push_back({name, offset_bytes, bytes});
   });

@@ -14,8 +14,8 @@
 
 namespace gridiron {
 
-// A layout is a set of sizes. Those of a size of core have the tile's width as a parameter: which widths a core has room
-// for, kFitsArena tells. No layout changes a pixel.
+// A layout is a set of sizes; none changes a pixel. The tile's width is a parameter of each: which widths a core has
+// room for, kFitsArena tells.
 
 /// Sizes of a 256 KB core (Cho, Kim, Han 2012, section 6).
 /// @tparam PacketWidthV  rays along a packet's edge: 4, 8, 16, 32, at most the tile's width.

@@ -13,8 +13,9 @@
 
 extern "C" {
 
-/// Renders tiles until none is left. `layout` is a copy: instrumented code looks at the core's own memory alone. `store` is zeroed, kLineBytes-aligned, as large as the layout's LocalStore.
-/// Layouts: CommonLayouts, of checked_sweep SweepLayouts (compiled_layouts.h).
+/// Renders tiles until none is left. `store` is zeroed, kLineBytes-aligned, as large as the layout's LocalStore. The
+/// layout is one of CommonLayouts, of checked_sweep one of SweepLayouts (compiled_layouts.h); it is passed as a copy
+/// because instrumented code may look at a core's own memory only.
 /// Errors: kUnsupportedFrame for a layout that is not built; the kernel's.
 gridiron::Status gridiron_sim_render_checked_lanes4(gridiron::sim::LayoutChoice layout, std::byte* store,
                                                     gridiron::sim::SimCore& core, gridiron::MainAddress frame);

@@ -53,7 +53,7 @@ struct ChipOptions {
   std::uint32_t threads = 1;       ///< host threads, each one simulated core's worth of claims
   std::uint32_t lanes = 4;         ///< 4, 8, 16 (8 and 16 where the host has them, else kUnsupportedFrame)
   StoreSize store = StoreSize::k256KB;
-  std::uint32_t packet_width = 8;  ///< rays along a packet's edge; is_built tells which, the frame brings its tile width
+  std::uint32_t packet_width = 8;  ///< rays along a packet's edge; the frame brings its tile width
   Completion completion = Completion::kEarly;
   std::uint64_t seed = 0;          ///< of Completion::kRandom
   PlatformLimits limits;           ///< of the simulated platform
@@ -82,10 +82,10 @@ struct ChipResult {
 
 /// Renders the frame whose FrameRecord lies at `frame` in `memory`. The output lies in `memory` afterwards.
 ///
-/// Errors: kBadFrame (the record, or a part of memory that it names, is not there), kUnsupportedFrame (store, tile width,
-/// packet width, lanes or mode not built together, or not runnable on this host), kBadParameter (limits that are not a
-/// platform's, a tile that is not in the frame, no threads), kAborted, and whatever the kernel or a broken rule reports.
-/// When several tiles fail, the lowest one is told, with its violations, for any number of threads.
+/// Errors: kBadFrame (the record, or a part of memory that it names, is not there), kUnsupportedFrame (is_built says no
+/// of store, tile width, packet width, mode and lanes, or this host cannot run it), kBadParameter (limits that are not a
+/// platform's, a tile that is not in the frame, no threads), kAborted, and whatever the kernel or a broken rule
+/// reports. When several tiles fail, the lowest one is told, with its violations, for any number of threads.
 [[nodiscard]] ChipResult render_frame(SimMemory& memory, MainAddress frame, const ChipOptions& options);
 
 /// @returns whether the kernel was built for a layout in a mode and for a lane count, whatever this host can run.
