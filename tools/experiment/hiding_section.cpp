@@ -245,9 +245,9 @@ Writer plan_table4(Plan& plan, const Stage& stage) {
                   ", derived [D] from its Table 4: that follows from hidden share and gain if nothing but the waiting "
                   "changes";
     book.paragraph("A frame of the reference waits " + reference.single.percent(1) +
-                   " of its core cycles single-buffered and " + reference.hidden_wait.percent(1) +
-                   " double-buffered" + paper_words + ". The share grows by " +
-                   growth_range.text(1) + " percentage points from one core to six" +
+                   " of its core cycles single-buffered and " + reference.hidden_wait.percent(1) + " double-buffered" +
+                   paper_words + ". The share grows by " + growth_range.text(1) +
+                   " percentage points from one core to six" +
                    (growth_range.least() > -1 && growth_range.greatest() < 3
                         ? ": here, as in the paper, latency binds and not bandwidth."
                         : "."));

@@ -105,9 +105,8 @@ PaperResult run_paper_experiment(const PaperExperiment& experiment,
        {plan_table1, plan_table2, plan_table3, plan_figure5, plan_figure6, plan_table4, plan_best, plan_figure7}) {
     before_host.push_back(section(plan, stage));
   }
-  for (const auto section :
-       {plan_grid_sweeps, plan_packet_sweep, plan_tile_sweep, plan_prefetch_sweeps, plan_machine_sweeps,
-        plan_store_sweep}) {
+  for (const auto section : {plan_grid_sweeps, plan_packet_sweep, plan_tile_sweep, plan_prefetch_sweeps,
+                             plan_machine_sweeps, plan_store_sweep}) {
     after_host.push_back(section(plan, stage));
   }
 

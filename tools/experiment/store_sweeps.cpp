@@ -26,9 +26,7 @@ struct Place {
   sim::StoreSize store;
   std::uint32_t tile_width;
 
-  [[nodiscard]] bool is_usual() const {
-    return store == GridVariant{}.store && tile_width == GridVariant{}.tile_width;
-  }
+  [[nodiscard]] bool is_usual() const { return store == GridVariant{}.store && tile_width == GridVariant{}.tile_width; }
 };
 
 /// A frame of a sweep, or why there is none.
@@ -172,10 +170,9 @@ Table long_table(const Sweep& sweep, const Plan& done, const std::string& name) 
       row.insert(row.end(),
                  {std::uint64_t{point.layout->mailbox_slots}, std::uint64_t{point.fitted.depths.macro},
                   std::uint64_t{point.fitted.depths.triangle}, std::uint64_t{point.layout->triangles_per_buffer},
-                  run->fps(), usual != nullptr ? Cell{ratio_of(run->fps(), usual->fps())} : Cell{},
-                  run->wait_percent(), idle_percent(*run), megabytes_in(*run), run->facts.traversal_steps,
-                  run->facts.intersection_tests, is_same_picture(sweep, done, point) ? "yes" : "no",
-                  point.note.empty() ? Cell{} : Cell{point.note}});
+                  run->fps(), usual != nullptr ? Cell{ratio_of(run->fps(), usual->fps())} : Cell{}, run->wait_percent(),
+                  idle_percent(*run), megabytes_in(*run), run->facts.traversal_steps, run->facts.intersection_tests,
+                  is_same_picture(sweep, done, point) ? "yes" : "no", point.note.empty() ? Cell{} : Cell{point.note}});
     }
     table.add(std::move(row));
   }
@@ -322,14 +319,14 @@ Writer plan_tile_sweep(Plan& plan, const Stage& stage) {
         "word of bits, so that tiles of 64 pixels take four. Packets of 8x8 have mailboxes of 64 slots, wider ones of "
         "256. Two tiles of 64 pixels take 96 KB with their planes of colour, distance and triangle; beside them there "
         "is room for 8 triangle buffers instead of 12, which is what best uses.");
-    book.paragraph("Frames over those at 32 pixels, all views: the reference renders " +
-                   ratio_words(*sweep, done, "reference", fps_of) + "; best " +
-                   ratio_words(*sweep, done, "best", fps_of) + ". Traversal steps of best: " +
-                   ratio_words(*sweep, done, "best", steps_of) + ". Over all widths the reference stands idle for " +
-                   range_words(*sweep, done, "reference", idle_percent) + " of its core cycles and best for " +
-                   range_words(*sweep, done, "best", idle_percent) + ". Best is fastest with " +
-                   fastest_words(*sweep, done, "best") + ", the reference with " +
-                   fastest_words(*sweep, done, "reference") + ". " + picture_words(*sweep, done));
+    book.paragraph(
+        "Frames over those at 32 pixels, all views: the reference renders " +
+        ratio_words(*sweep, done, "reference", fps_of) + "; best " + ratio_words(*sweep, done, "best", fps_of) +
+        ". Traversal steps of best: " + ratio_words(*sweep, done, "best", steps_of) +
+        ". Over all widths the reference stands idle for " + range_words(*sweep, done, "reference", idle_percent) +
+        " of its core cycles and best for " + range_words(*sweep, done, "best", idle_percent) +
+        ". Best is fastest with " + fastest_words(*sweep, done, "best") + ", the reference with " +
+        fastest_words(*sweep, done, "reference") + ". " + picture_words(*sweep, done));
     book.shown_table(short_table(*sweep, done), "Widths of tiles, 256 KB, 6 cores, no shading.");
     for (const char* configuration : kSweptConfigurations) {
       book.figure(std::string("sweep_tile_width_") + configuration,
@@ -354,7 +351,6 @@ Table rival_map() {
   add_row("local store", rival::kArenaBytes);
   return map;
 }
-
 
 /// A layout as the maps show it.
 struct NamedLayout {
@@ -507,13 +503,13 @@ Writer plan_store_sweep(Plan& plan, const Stage& stage) {
         "fewer buffers than a configuration asks for, it is cut down to them; in 64 KB best traverses once per 16x16 "
         "tile.");
     const auto wait_of = [](const RunResult& run) { return run.wait_percent(); };
-    book.paragraph("Frames over those from 256 KB, all views: the reference renders " +
-                   ratio_words(*sweep, done, "reference", fps_of) + "; best " +
-                   ratio_words(*sweep, done, "best", fps_of) + ". Over all sizes the reference waits for " +
-                   range_words(*sweep, done, "reference", wait_of) + " of its core cycles and best for " +
-                   range_words(*sweep, done, "best", wait_of) + ". Intersection tests of best: " +
-                   ratio_words(*sweep, done, "best", tests_of) + ", of the reference " +
-                   ratio_words(*sweep, done, "reference", tests_of) + ". " + picture_words(*sweep, done));
+    book.paragraph(
+        "Frames over those from 256 KB, all views: the reference renders " +
+        ratio_words(*sweep, done, "reference", fps_of) + "; best " + ratio_words(*sweep, done, "best", fps_of) +
+        ". Over all sizes the reference waits for " + range_words(*sweep, done, "reference", wait_of) +
+        " of its core cycles and best for " + range_words(*sweep, done, "best", wait_of) +
+        ". Intersection tests of best: " + ratio_words(*sweep, done, "best", tests_of) + ", of the reference " +
+        ratio_words(*sweep, done, "reference", tests_of) + ". " + picture_words(*sweep, done));
     book.paragraph(
         "A mailbox that forgets has triangles tested again, so its size shows in those tests. The price of clearing it "
         "is that of the 256 KB layouts at every size.");
@@ -521,8 +517,7 @@ Writer plan_store_sweep(Plan& plan, const Stage& stage) {
     for (const char* configuration : kSweptConfigurations) {
       book.figure(std::string("sweep_local_store_") + configuration,
                   bar_chart(*sweep, done, configuration, "Local store"),
-                  std::string("Frames a second against the size of the local store, ") + configuration +
-                      ", 6 cores.");
+                  std::string("Frames a second against the size of the local store, ") + configuration + ", 6 cores.");
     }
     book.linked_table(long_table(*sweep, done, "sweep_local_store"), "every frame, with buffers, work and idle time.");
     write_maps(book);

@@ -172,10 +172,8 @@ void add_threads(CLI::App& app, std::uint32_t& threads) {
              "host threads (default: the host's); no result depends on it");
 }
 
-const Choices<StoreSize> kStores = {{"64", StoreSize::k64KB},
-                                    {"128", StoreSize::k128KB},
-                                    {"256", StoreSize::k256KB},
-                                    {"512", StoreSize::k512KB}};
+const Choices<StoreSize> kStores = {
+    {"64", StoreSize::k64KB}, {"128", StoreSize::k128KB}, {"256", StoreSize::k256KB}, {"512", StoreSize::k512KB}};
 
 void add_machine_options(CLI::App& app, RawRender& raw) {
   RenderArguments& render = raw.arguments;
@@ -183,7 +181,8 @@ void add_machine_options(CLI::App& app, RawRender& raw) {
   add_parsed(app, "--cores", render.cores, count_between(1, kMostCores), "a whole number from 1 to 1024", "N",
              "cores of the machine (default: the profile's)");
   add_threads(app, render.threads);
-  add_choice(app, "--store", raw.store, kStores, "local store in KB (default: the largest that the machine has room for)");
+  add_choice(app, "--store", raw.store, kStores,
+             "local store in KB (default: the largest that the machine has room for)");
   add_choice(app, "--mode", render.mode,
              Choices<Mode>{{"checked", Mode::kChecked}, {"plain", Mode::kPlain}, {"instrumented", Mode::kInstrumented}},
              "checked (default): every rule checked, work traced; plain: fast, no report; "

@@ -13,9 +13,8 @@ template <class... Layouts>
 struct LayoutList {};
 
 /// In every mode and for every lane count.
-using CommonLayouts =
-    LayoutList<StoreLayout64K<4>, StoreLayout64K<8>, StoreLayout64K<16>, StoreLayout256K<4>, StoreLayout256K<8>,
-               StoreLayout256K<16>, StoreLayout256K<32>>;
+using CommonLayouts = LayoutList<StoreLayout64K<4>, StoreLayout64K<8>, StoreLayout64K<16>, StoreLayout256K<4>,
+                                 StoreLayout256K<8>, StoreLayout256K<16>, StoreLayout256K<32>>;
 
 /// In Mode::kChecked with 4 lanes only: what sweeps of the store's and the tile's size are timed with.
 using SweepLayouts =

@@ -186,7 +186,8 @@ ChipResult render_frame(SimMemory& memory, MainAddress frame, const ChipOptions&
 
   if (options.mode == Mode::kPlain) {
     const RenderEntry<PlainCore> entry = plain_entry(options);
-    return entry == nullptr ? refuse(Status::kUnsupportedFrame) : render_plain(memory, frame, shape, layout, options, entry);
+    return entry == nullptr ? refuse(Status::kUnsupportedFrame)
+                            : render_plain(memory, frame, shape, layout, options, entry);
   }
   const RenderEntry<SimCore> entry = checked_entry(options, common);
   if (entry == nullptr) return refuse(Status::kUnsupportedFrame);

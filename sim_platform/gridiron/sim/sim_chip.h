@@ -83,8 +83,8 @@ struct ChipResult {
 /// Renders the frame whose FrameRecord lies at `frame` in `memory`. The output lies in `memory` afterwards.
 ///
 /// Errors: kBadFrame (the record, or a part of memory that it names, is not there), kUnsupportedFrame (is_built says no
-/// of store, tile width, packet width, mode and lanes, or this host cannot run it), kBadParameter (limits that are not a
-/// platform's, a tile that is not in the frame, no threads), kAborted, and whatever the kernel or a broken rule
+/// of store, tile width, packet width, mode and lanes, or this host cannot run it), kBadParameter (limits that are not
+/// a platform's, a tile that is not in the frame, no threads), kAborted, and whatever the kernel or a broken rule
 /// reports. When several tiles fail, the lowest one is told, with its violations, for any number of threads.
 [[nodiscard]] ChipResult render_frame(SimMemory& memory, MainAddress frame, const ChipOptions& options);
 
