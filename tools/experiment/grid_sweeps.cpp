@@ -219,7 +219,8 @@ Writer plan_packet_sweep(Plan& plan, const Stage& stage) {
     book.paragraph(
         "Rays along a packet's edge, with the two ways of culling a triangle: by the four corner rays of the packet "
         "(reference) or by subpackets of 4x4 rays (best). Wide packets fetch and walk less often; without subpackets "
-        "every triangle that touches the packet is then tested against all of its rays.");
+        "every triangle that touches the packet is then tested against all of its rays. Mailboxes have 64 slots for "
+        "packets of 4x4 and 8x8, 256 for wider ones.");
     book.table(table,
                "Packet size and culling, 6 cores, no shading. Double buffering: 2 cell blocks, 2 triangle buffers; "
                "deep prefetch: 4 and 8.");
