@@ -188,8 +188,10 @@ std::vector<Variation> make_variations() {
     std::uint32_t tile_width, packet_width;
   };
   for (const Place& place :
-       {Place{"store_128KB", sim::StoreSize::k128KB, 32, 8}, Place{"store_128KB_packet_32", sim::StoreSize::k128KB, 32, 32},
-        Place{"store_512KB", sim::StoreSize::k512KB, 32, 8}, Place{"store_512KB_packet_32", sim::StoreSize::k512KB, 32, 32},
+       {Place{"store_128KB", sim::StoreSize::k128KB, 32, 8},
+        Place{"store_128KB_packet_32", sim::StoreSize::k128KB, 32, 32},
+        Place{"store_512KB", sim::StoreSize::k512KB, 32, 8},
+        Place{"store_512KB_packet_32", sim::StoreSize::k512KB, 32, 32},
         Place{"store_512KB_tile_64", sim::StoreSize::k512KB, 64, 8},
         Place{"store_512KB_tile_64_packet_32", sim::StoreSize::k512KB, 64, 32},
         Place{"tile_8", sim::StoreSize::k256KB, 8, 8}, Place{"tile_16", sim::StoreSize::k256KB, 16, 8},

@@ -134,13 +134,13 @@ TEST(SimChip, PictureTraceAndTotalsAreTheSameForAnyThreadsCompletionAndSeed) {
 // What is built, written down a second time: store, tile width, packet width.
 bool is_built_here(const LayoutChoice& layout, Mode mode, std::uint32_t lanes) {
   const bool is_common = layout.store == StoreSize::k64KB ? layout.tile_width == 16 && layout.packet_width <= 16
-                                                          : layout.store == StoreSize::k256KB && layout.tile_width == 32 &&
-                                                                layout.packet_width <= 32;
+                                                          : layout.store == StoreSize::k256KB &&
+                                                                layout.tile_width == 32 && layout.packet_width <= 32;
   if (is_common) return mode != Mode::kInstrumented || (has_instrumented_mode() && lanes == 4);
   constexpr std::tuple<StoreSize, std::uint32_t, std::uint32_t> kSwept[] = {
-      {StoreSize::k128KB, 32, 8}, {StoreSize::k128KB, 32, 32}, {StoreSize::k512KB, 32, 8}, {StoreSize::k512KB, 32, 32},
-      {StoreSize::k512KB, 64, 8}, {StoreSize::k512KB, 64, 32}, {StoreSize::k256KB, 8, 8},  {StoreSize::k256KB, 16, 8},
-      {StoreSize::k256KB, 16, 16}, {StoreSize::k256KB, 64, 8}, {StoreSize::k256KB, 64, 32}};
+      {StoreSize::k128KB, 32, 8},  {StoreSize::k128KB, 32, 32}, {StoreSize::k512KB, 32, 8}, {StoreSize::k512KB, 32, 32},
+      {StoreSize::k512KB, 64, 8},  {StoreSize::k512KB, 64, 32}, {StoreSize::k256KB, 8, 8},  {StoreSize::k256KB, 16, 8},
+      {StoreSize::k256KB, 16, 16}, {StoreSize::k256KB, 64, 8},  {StoreSize::k256KB, 64, 32}};
   const std::tuple asked(layout.store, layout.tile_width, layout.packet_width);
   return mode == Mode::kChecked && lanes == 4 && std::ranges::find(kSwept, asked) != std::end(kSwept);
 }
