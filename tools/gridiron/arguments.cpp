@@ -174,6 +174,7 @@ void add_threads(CLI::App& app, std::uint32_t& threads) {
 
 const Choices<StoreSize> kStores = {
     {"64", StoreSize::k64KB}, {"128", StoreSize::k128KB}, {"256", StoreSize::k256KB}, {"512", StoreSize::k512KB}};
+constexpr const char* kStoreHelp = "local store in KB (default: the largest that the machine has room for)";
 
 void add_machine_options(CLI::App& app, RawRender& raw) {
   RenderArguments& render = raw.arguments;
@@ -181,8 +182,7 @@ void add_machine_options(CLI::App& app, RawRender& raw) {
   add_parsed(app, "--cores", render.cores, count_between(1, kMostCores), "a whole number from 1 to 1024", "N",
              "cores of the machine (default: the profile's)");
   add_threads(app, render.threads);
-  add_choice(app, "--store", raw.store, kStores,
-             "local store in KB (default: the largest that the machine has room for)");
+  add_choice(app, "--store", raw.store, kStores, kStoreHelp);
   add_choice(app, "--mode", render.mode,
              Choices<Mode>{{"checked", Mode::kChecked}, {"plain", Mode::kPlain}, {"instrumented", Mode::kInstrumented}},
              "checked (default): every rule checked, work traced; plain: fast, no report; "
@@ -283,14 +283,19 @@ std::string words_of_layout(const sim::LayoutChoice& layout) {
   usage_error(store + ": not built for " + words_of_layout(layout) + "; there are " + list);
 }
 
+// A machine has to have the store that was asked for.
+void require_room(const sim::MachineProfile& machine, std::optional<StoreSize> asked) {
+  if (asked && sim::arena_bytes(*asked) > machine.local_store_bytes) {
+    usage_error("--store: " + std::string(machine.name) + " has a local store of " +
+                std::to_string(machine.local_store_bytes >> 10) + " KB");
+  }
+}
+
 // Settles store, tile width and packet width: the store that was asked for, or the largest one of the machine that is
 // built for the other options.
 void choose_layout(RenderArguments& render, std::optional<StoreSize> asked) {
+  require_room(*render.scene.machine, asked);
   const std::uint32_t room_bytes = render.scene.machine->local_store_bytes;
-  if (asked && sim::arena_bytes(*asked) > room_bytes) {
-    usage_error("--store: " + std::string(render.scene.machine->name) + " has a local store of " +
-                std::to_string(room_bytes >> 10) + " KB");
-  }
   sim::LayoutChoice layout = layout_with(render, asked.value_or(largest_store(*render.scene.machine)));
   const auto is_built = [&render](const sim::LayoutChoice& choice) {
     return sim::is_built(choice, render.mode, render.lanes);
@@ -413,6 +418,8 @@ Command parse_arguments(int count, const char* const* values) {
   add_scene_options(*info, info_arguments.scene, info_machine);
   add_choice(*info, "--format", info_arguments.format, kFormats, "how triangles are stored (default vertices)");
   add_size(*info, info_arguments.width, info_arguments.height, "picture whose memory is told (default 1024x1024)");
+  std::optional<StoreSize> info_store;
+  add_choice(*info, "--store", info_store, kStores, kStoreHelp);
   info->add_flag("--json", info_arguments.json, "as JSON");
 
   PackArguments pack_arguments;
@@ -462,6 +469,8 @@ Command parse_arguments(int count, const char* const* values) {
   if (*render) return complete_render(raw, render->count("--seed") > 0);
   if (*info) {
     info_arguments.scene.machine = find_machine(info_machine);
+    require_room(*info_arguments.scene.machine, info_store);
+    info_arguments.store = info_store.value_or(largest_store(*info_arguments.scene.machine));
     return info_arguments;
   }
   if (*pack) {

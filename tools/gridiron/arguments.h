@@ -55,6 +55,7 @@ struct RenderArguments {
 
 struct InfoArguments {
   SceneArguments scene;
+  sim::StoreSize store = sim::StoreSize::k256KB;  ///< whose map is told
   TriangleFormat format = TriangleFormat::kVertices;
   std::uint32_t width = 1024, height = 1024;
   bool json = false;

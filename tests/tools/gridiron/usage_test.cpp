@@ -62,6 +62,7 @@ TEST(Usage, MistakesExitWithTwoAndSayWhy) {
       {{"render", "a.ply", "-o", ".//a.ply"}, "INPUT and -o name the same file"},
       {{"render", "a.ply", "--camera", "v.camera", "--depth", "v.camera"}, "--camera and --depth name the same file"},
       {{"info"}, "INPUT"},
+      {{"info", "a.ply", "--store", "512"}, "cell-ps3 has a local store of 256 KB"},
       {{"pack", "a.ply"}, "--output"},
       {{"pack", "a.ply", "-o", "a.ply"}, "INPUT and -o name the same file"},
       {{"pack", "a.ply", "-o", "a.gri", "--format", "lattice"}, "vertices|projection"},
