@@ -181,6 +181,33 @@ std::vector<Variation> make_variations() {
     chip.packet_width = 16;
     chip.completion = sim::Completion::kLate;
   });
+  // What only checked mode with 4 lanes is built for.
+  struct Place {
+    const char* name;
+    sim::StoreSize store;
+    std::uint32_t tile_width, packet_width;
+  };
+  for (const Place& place :
+       {Place{"store_128KB", sim::StoreSize::k128KB, 32, 8},
+        Place{"store_128KB_packet_32", sim::StoreSize::k128KB, 32, 32},
+        Place{"store_512KB", sim::StoreSize::k512KB, 32, 8},
+        Place{"store_512KB_packet_32", sim::StoreSize::k512KB, 32, 32},
+        Place{"store_512KB_tile_64", sim::StoreSize::k512KB, 64, 8},
+        Place{"store_512KB_tile_64_packet_32", sim::StoreSize::k512KB, 64, 32},
+        Place{"tile_8", sim::StoreSize::k256KB, 8, 8}, Place{"tile_16", sim::StoreSize::k256KB, 16, 8},
+        Place{"tile_16_packet_16", sim::StoreSize::k256KB, 16, 16}, Place{"tile_64", sim::StoreSize::k256KB, 64, 8},
+        Place{"tile_64_packet_32", sim::StoreSize::k256KB, 64, 32}}) {
+    for (const bool subpackets : {false, true}) {
+      add(std::string(place.name) + (subpackets ? "_subpackets_late" : ""), Keeps::kPicture,
+          [place, subpackets](Settings& settings, Chip& chip) {
+            settings.tile_width = place.tile_width;
+            if (subpackets) settings.techniques |= kUseSubpackets;
+            if (subpackets) chip.completion = sim::Completion::kLate;
+            chip.store = place.store;
+            chip.packet_width = place.packet_width;
+          });
+    }
+  }
   const auto buffering = [&add](std::string name, std::uint32_t output, std::uint32_t macro, std::uint32_t triangle) {
     for (const sim::Completion completion : {sim::Completion::kEarly, sim::Completion::kLate}) {
       add("buffering_" + name + (completion == sim::Completion::kEarly ? "" : "_late"), Keeps::kPicture,

@@ -75,7 +75,7 @@ SceneInMemory::SceneInMemory(const MeshView& mesh, const GridParameters& paramet
 PreparedFrame::PreparedFrame(sim::SimMemory* memory, const SceneImageView& image, MainAddress image_address,
                              FrameSettings settings, const sim::ChipOptions& chip, bool all_planes)
     : memory_(memory), mark_(memory->used_bytes()) {
-  settings.tile_width = tile_width_of(chip);
+  settings.tile_width = tile_width_of(settings, chip);
   const std::uint64_t plane_bytes = output_plane_bytes(settings.width, settings.height, settings.tile_width);
   const auto color = memory_->allocate(plane_bytes);
   const auto depth = memory_->allocate(all_planes ? plane_bytes : kLineBytes);
@@ -134,8 +134,9 @@ RenderedFrame SceneInMemory::render(const FrameSettings& settings, const sim::Ch
   return rendered;
 }
 
-std::uint32_t tile_width_of(const sim::ChipOptions& chip) {
-  return chip.store == sim::StoreSize::k64KB ? StoreLayout64K<>::kTileWidth : StoreLayout256K<>::kTileWidth;
+std::uint32_t tile_width_of(const FrameSettings& settings, const sim::ChipOptions& chip) {
+  const bool is_usual = settings.tile_width == FrameSettings{}.tile_width;
+  return is_usual ? sim::usual_tile_width(chip.store) : settings.tile_width;
 }
 
 std::string first_difference(const RenderedFrame& a, const RenderedFrame& b) {

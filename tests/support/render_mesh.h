@@ -96,8 +96,8 @@ class SceneInMemory {
   MainAddress image_address_;
 };
 
-/// @returns tile width of the store layout that `chip` asks for.
-std::uint32_t tile_width_of(const sim::ChipOptions& chip);
+/// @returns the tile width that a frame is made with: that of the settings; where it is the default, the store's usual.
+std::uint32_t tile_width_of(const FrameSettings& settings, const sim::ChipOptions& chip);
 
 /// @returns the first place where two frames differ, in words; empty where they are the same bit for bit.
 std::string first_difference(const RenderedFrame& a, const RenderedFrame& b);

@@ -29,18 +29,26 @@ class OutputFolder {
     if (!std::filesystem::is_directory(path_, error)) {
       throw Failure(ExitCode::kBadInput, path_.string() + ": is no folder");
     }
-    check_can_write(path_ / "index.html");
+    // Nobody should wait for an evaluation that cannot be written.
+    try {
+      for (const std::string& name : experiment::paper_file_names()) check_can_write(path_ / name);
+    } catch (...) {
+      remove_if_made();
+      throw;
+    }
   }
-  ~OutputFolder() {
-    std::error_code ignored;
-    if (made_ && !kept_) std::filesystem::remove(path_, ignored);  // only where empty
-  }
+  ~OutputFolder() { remove_if_made(); }
   OutputFolder(const OutputFolder&) = delete;
   OutputFolder& operator=(const OutputFolder&) = delete;
 
   void keep() { kept_ = true; }
 
  private:
+  void remove_if_made() {
+    std::error_code ignored;
+    if (made_ && !kept_) std::filesystem::remove(path_, ignored);  // only where empty
+  }
+
   std::filesystem::path path_;
   bool made_ = false, kept_ = false;
 };

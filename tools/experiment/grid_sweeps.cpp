@@ -1,7 +1,5 @@
-// Sweeps of what the grid traversal is built with: lambda, macrocells, packets, prefetch, local store.
+// Sweeps of what the grid traversal is built with: lambda, macrocells, packets, prefetch.
 // SPDX-License-Identifier: Apache-2.0
-#include <gridiron/rival/rival_store.h>
-
 #include <algorithm>
 #include <optional>
 
@@ -217,22 +215,20 @@ Writer plan_packet_sweep(Plan& plan, const Stage& stage) {
                  two.wait_percent(), deep.fps(), deep.wait_percent(),
                  static_cast<double>(deep.bytes_in()) / (1 << 20)});
     }
-    book.section("packets", "Sweep: packet and tile size");
+    book.section("packets", "Sweep: packet size");
     book.paragraph(
         "Rays along a packet's edge, with the two ways of culling a triangle: by the four corner rays of the packet "
         "(reference) or by subpackets of 4x4 rays (best). Wide packets fetch and walk less often; without subpackets "
-        "every triangle that touches the packet is then tested against all of its rays.");
+        "every triangle that touches the packet is then tested against all of its rays. Mailboxes have 64 slots for "
+        "packets of 4x4 and 8x8, 256 for wider ones.");
     book.table(table,
                "Packet size and culling, 6 cores, no shading. Double buffering: 2 cell blocks, 2 triangle buffers; "
                "deep prefetch: 4 and 8.");
-    book.paragraph(
-        "Tile size is not swept on its own: the compiled local-store layouts fix it, 32 pixels in the 256 KB store and "
-        "16 in the 64 KB store. The sweep of the local store below compares those two.");
   };
 }
 
 Writer plan_prefetch_sweeps(Plan& plan, const Stage& stage) {
-  const tool::StoreFacts facts = tool::store_facts(sim::StoreSize::k256KB, 32);
+  const tool::StoreFacts facts = tool::usual_store_facts(sim::StoreSize::k256KB, 32);
   std::vector<double> macro_depths, triangle_depths;
   for (std::uint32_t depth = 1; depth <= facts.max_macro_depth; ++depth) macro_depths.push_back(depth);
   for (std::uint32_t depth = 1; depth <= facts.max_triangle_depth; ++depth) triangle_depths.push_back(depth);
@@ -277,126 +273,6 @@ Writer plan_prefetch_sweeps(Plan& plan, const Stage& stage) {
     book.linked_table(step_table(done, macros, "sweep_macro_depth", {"macro_depth", "cell blocks", 0}), "cell blocks.");
     book.linked_table(step_table(done, triangles, "sweep_triangle_depth", {"triangle_depth", "triangle buffers", 0}),
                       "triangle buffers.");
-  };
-}
-
-namespace {
-
-Table rival_map() {
-  Table map{"local_store_map_bvh", {{"region", "region"}, {"offset", "offset"}, {"bytes", "bytes"}}, {}};
-  rival::for_each_region([&map](const char* name, std::size_t offset_bytes, std::size_t bytes) {
-    map.add({name, std::uint64_t{offset_bytes}, std::uint64_t{bytes}});
-  });
-  const auto add_row = [&map](const char* name, std::uint64_t bytes) { map.add({name, Cell{}, bytes}); };
-  add_row("code (budget)", rival::kCodeBudgetBytes);
-  add_row("stack (budget)", rival::kStackBudgetBytes);
-  add_row("free", rival::kArenaBytes - rival::kCodeBudgetBytes - rival::kStackBudgetBytes - sizeof(rival::RivalStore));
-  add_row("local store", rival::kArenaBytes);
-  return map;
-}
-
-}  // namespace
-
-Writer plan_store_sweep(Plan& plan, const Stage& stage) {
-  struct Row {
-    const View* view;
-    std::string configuration;
-    Plan::RunId small, large;
-  };
-  std::vector<Row> rows;
-  for (const View& view : stage.views()) {
-    for (const char* configuration : kSweptConfigurations) {
-      GridVariant small = grid_variant(configuration);
-      small.store = sim::StoreSize::k64KB;
-      tool::Configuration& fitted = small.configuration;
-      fitted.packet_width = std::min(fitted.packet_width, tool::store_facts(sim::StoreSize::k64KB, 8).tile_width);
-      const tool::StoreFacts facts = tool::store_facts(sim::StoreSize::k64KB, fitted.packet_width);
-      fitted.depths.macro = std::min(fitted.depths.macro, facts.max_macro_depth);
-      fitted.depths.triangle = std::min(fitted.depths.triangle, facts.max_triangle_depth);
-      small.key += "/store=64";
-      const auto add = [&](GridVariant variant) {
-        return plan.add(view, std::make_shared<GridSystem>(std::move(variant)), Shading::kNone, stage.machine,
-                        kPaperCores);
-      };
-      rows.push_back({&view, configuration, add(std::move(small)), add(grid_variant(configuration))});
-    }
-  }
-  return [rows](const Plan& done, Book& book) {
-    Table table{"sweep_local_store",
-                {{"view", "view"},
-                 {"configuration", "configuration"},
-                 {"store_64_fps", "64 KB, fps"},
-                 {"store_64_wait_percent", "wait, %"},
-                 {"store_64_fetched_mb", "fetched, MB", 1},
-                 {"store_256_fps", "256 KB, fps"},
-                 {"store_256_wait_percent", "wait, %"},
-                 {"store_256_fetched_mb", "fetched, MB", 1},
-                 {"same_picture", "same picture"}},
-                {}};
-    for (const Row& row : rows) {
-      const RunResult& small = done.result(row.small);
-      const RunResult& large = done.result(row.large);
-      constexpr double kMegabyte = 1 << 20;
-      table.add({row.view->title, row.configuration, small.fps(), small.wait_percent(),
-                 static_cast<double>(small.bytes_in()) / kMegabyte, large.fps(), large.wait_percent(),
-                 static_cast<double>(large.bytes_in()) / kMegabyte,
-                 small.facts.picture_hash == large.facts.picture_hash ? "yes" : "no"});
-    }
-    book.section("store", "Sweep: local store");
-    book.paragraph(
-        "The 64 KB layout has tiles of 16 pixels, triangle buffers of 16 records instead of 64, and at most two cell "
-        "blocks and four triangle buffers, to which the configurations are cut down; best then traverses once per "
-        "16x16 tile. Layouts for other sizes are not built, 512 KB among them.");
-    book.table(table, "The two compiled sizes of the local store, 6 cores, no shading.");
-
-    struct Layout {
-      const char* key;
-      const char* title;
-      tool::StoreFacts facts;
-    };
-    const Layout layouts[] = {
-        {"reference_256", "reference, 256 KB", tool::store_facts(sim::StoreSize::k256KB, 8)},
-        {"best_256", "best, 256 KB", tool::store_facts(sim::StoreSize::k256KB, 32)},
-        {"reference_64", "reference, 64 KB", tool::store_facts(sim::StoreSize::k64KB, 8)},
-        {"best_64", "best, 64 KB", tool::store_facts(sim::StoreSize::k64KB, 16)},
-    };
-    Table map{"local_store_map", {{"region", "region"}}, {}};
-    for (const Layout& layout : layouts) {
-      map.columns.push_back({std::string(layout.key) + "_offset", std::string(layout.title) + ": offset"});
-      map.columns.push_back({std::string(layout.key) + "_bytes", "bytes"});
-    }
-    for (std::size_t i = 0; i < layouts[0].facts.regions.size(); ++i) {
-      std::vector<Cell> cells = {layouts[0].facts.regions[i].name};
-      for (const Layout& layout : layouts) {
-        cells.emplace_back(layout.facts.regions[i].offset_bytes);
-        cells.emplace_back(layout.facts.regions[i].bytes);
-      }
-      map.add(std::move(cells));
-    }
-    const auto add_row = [&](const char* name, auto value) {
-      std::vector<Cell> cells = {name};
-      for (const Layout& layout : layouts) {
-        cells.emplace_back();
-        cells.emplace_back(std::uint64_t{value(layout.facts)});
-      }
-      map.add(std::move(cells));
-    };
-    add_row("code (budget)", [](const tool::StoreFacts& facts) { return facts.code_bytes; });
-    add_row("stack (budget)", [](const tool::StoreFacts& facts) { return facts.stack_bytes; });
-    add_row("free", [](const tool::StoreFacts& facts) {
-      return facts.arena_bytes - facts.code_bytes - facts.stack_bytes - facts.data_bytes();
-    });
-    add_row("local store", [](const tool::StoreFacts& facts) { return facts.arena_bytes; });
-    book.section("map", "The local store, byte by byte");
-    book.paragraph(
-        "Everything a core works in, in address order. The sizes are those of the compiled layouts, which hold the "
-        "deepest prefetch of every configuration, so reference and best differ only in packet and mailbox. Code and "
-        "stack are committed budgets that the cross builds prove.");
-    book.table(map, "A core's local store under the grid: where each region begins, and its bytes.");
-    book.paragraph(
-        "The hierarchy has a map of its own. The regions are as large as the largest ring and caches that it can be "
-        "asked for; its budgets for code and stack are the grid's, taken over and not proved by a cross build.");
-    book.table(rival_map(), "A core's local store under the hierarchy.");
   };
 }
 

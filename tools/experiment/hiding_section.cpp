@@ -228,30 +228,34 @@ Writer plan_table4(Plan& plan, const Stage& stage) {
                        done.result(pairs[v].unhidden[0]).wait_percent());
     }
     book.section("table4", "Table 4: waiting hidden by double buffering");
-    book.paragraph("Double buffering removes " + reference.hidden.text(1) +
-                   " % of the reference configuration's waiting (paper: " + std::string(kPaperHidden) +
-                   " [P]) and gains " + reference.gain.text(1) + " % fps (paper: " + std::string(kPaperFpsGain) +
-                   " [P]); with the paper's own intersection test it removes " + projection.hidden.text(1) +
-                   " % and gains " + projection.gain.text(1) +
-                   " %. The hidden share depends on how transfers and work interleave; the gain also depends on how "
+    book.paragraph("Double buffering removes " + reference.hidden.percent(1) +
+                   " of the reference configuration's waiting (paper: " + std::string(kPaperHidden) +
+                   " [P]) and gains " + reference.gain.percent(1) + " fps (paper: " + std::string(kPaperFpsGain) +
+                   " [P]); with the paper's own intersection test it removes " + projection.hidden.percent(1) +
+                   " and gains " + projection.gain.percent(1) +
+                   ". The hidden share depends on how transfers and work interleave; the gain also depends on how "
                    "much there was to hide, which is the next table.");
     book.table(hiding,
                "Share of the waiting that is hidden, and the fps it gains, against the same system without hiding.");
-    book.paragraph("A frame of the reference waits " + reference.single.text(1) +
-                   " % of its core cycles single-buffered and " + reference.hidden_wait.text(1) +
-                   " % double-buffered; the paper's frames waited " + of_paper.single.text(1) + " % and " +
-                   of_paper.hidden_wait.text(1) +
-                   " %, derived [D] from its Table 4: that follows from hidden share and gain if nothing but the "
-                   "waiting changes. The share grows by " +
-                   growth_range.text(1) + " percentage points from one core to six" +
+    // Views that the paper does not have leave nothing to compare with.
+    const std::string paper_words =
+        of_paper.single.empty()
+            ? ""
+            : "; the paper's frames waited " + of_paper.single.percent(1) + " and " + of_paper.hidden_wait.percent(1) +
+                  ", derived [D] from its Table 4: that follows from hidden share and gain if nothing but the waiting "
+                  "changes";
+    book.paragraph("A frame of the reference waits " + reference.single.percent(1) +
+                   " of its core cycles single-buffered and " + reference.hidden_wait.percent(1) + " double-buffered" +
+                   paper_words + ". The share grows by " + growth_range.text(1) +
+                   " percentage points from one core to six" +
                    (growth_range.least() > -1 && growth_range.greatest() < 3
                         ? ": here, as in the paper, latency binds and not bandwidth."
                         : "."));
     book.paragraph(
         "What moves these shares can be measured. What is computed beside the transfers: with the paper's "
         "own test, the same transfers and less work, the shares are " +
-        projection.single.text(1) + " % and " + projection.hidden_wait.text(1) +
-        " %. The latency, an assumption of 500 cycles: single-buffered on six cores, the reference waits " +
+        projection.single.percent(1) + " and " + projection.hidden_wait.percent(1) +
+        ". The latency, an assumption of 500 cycles: single-buffered on six cores, the reference waits " +
         latency_words(done, latencies) + ". The paper's views, which are unknown: the spread within a column. " +
         kCostTableWords);
     book.table(wait, "Share of core cycles spent waiting for DMA.");
@@ -313,8 +317,8 @@ Writer plan_best(Plan& plan, const Stage& stage) {
         "Configuration best is the same grid and the same exact test. It traverses the grid once per tile instead of "
         "once per 8x8 packet, so that what was fetched serves 1,024 rays, culls by subpackets of 4x4 rays, and "
         "prefetches four cell blocks and eight triangle buffers. On six cores it renders " +
-        ratios.text(2) + " times the frames of the reference, waits " + waits.text(2) + " % of its cycles, and " +
-        gone.text(1) + " % of the reference's single-buffered waiting (in core cycles) is gone. " +
+        ratios.text(2) + " times the frames of the reference, waits " + waits.percent(2) + " of its cycles, and " +
+        gone.percent(1) + " of the reference's single-buffered waiting (in core cycles) is gone. " +
         (all_same ? "All three runs of every row render the same picture, pixel for pixel."
                   : "NOT all runs render the same picture: see the last column."));
     book.table(table, "Six cores; speed-up against one core.");

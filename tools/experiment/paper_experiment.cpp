@@ -56,12 +56,41 @@ std::string Range::text(int decimals) const {
   return low == high ? low : low + " to " + high;
 }
 
+std::string Range::percent(int decimals) const {
+  return empty_ ? "none" : text(decimals) + " %";
+}
+
 double percent_less(double part, double whole) {
   return whole > 0 ? 100 * (1 - part / whole) : std::nan("");
 }
 
 double percent_more(double changed, double base) {
   return base > 0 ? 100 * (changed / base - 1) : std::nan("");
+}
+
+std::vector<std::string> paper_file_names() {
+  // clang-format off
+  std::vector<std::string> names = {
+      "best_against_reference.csv", "fig5_speedup.csv", "fig6_breakdown.csv", "fig7_build_steps.csv",
+      "fig7_caches.csv", "fig7_cell_2006.svg", "fig7_cycles.csv", "fig7_frames.csv", "fig7_with_build.csv",
+      "fig7_with_build.svg", "host_fig7.csv", "index.html", "local_store_fit.csv", "local_store_layouts.csv",
+      "local_store_map_best.csv", "local_store_map_bvh.csv", "local_store_map_reference.csv", "sweep_bandwidth.csv",
+      "sweep_lambda.csv", "sweep_lambda.svg", "sweep_latency.csv", "sweep_local_store.csv",
+      "sweep_local_store_best.svg", "sweep_local_store_reference.svg", "sweep_macro_depth.csv",
+      "sweep_macro_depth.svg", "sweep_macro_width.csv", "sweep_macro_width.svg", "sweep_packet.csv",
+      "sweep_tile_width.csv", "sweep_tile_width_best.svg", "sweep_tile_width_reference.svg",
+      "sweep_triangle_depth.csv", "sweep_triangle_depth.svg", "table1_build.svg", "table1_exponents.csv",
+      "table1_growth.csv", "table1_traversal.svg", "table2_scenes.csv", "table3_fps.csv", "table3_shading_cost.csv",
+      "table4_hiding.csv", "table4_wait_share.csv"};
+  // clang-format on
+  for (const Contender& contender : make_contenders()) {
+    names.push_back("fig5_" + contender.key + ".svg");
+    for (const char* cores : {"_1_core", "_6_cores"}) names.push_back("fig6_" + contender.key + cores + ".svg");
+  }
+  for (const std::string& view : known_view_keys()) {
+    for (const char* sweep : {"sweep_bandwidth_", "sweep_latency_"}) names.push_back(sweep + view + ".svg");
+  }
+  return names;
 }
 
 PaperResult run_paper_experiment(const PaperExperiment& experiment,
@@ -76,8 +105,8 @@ PaperResult run_paper_experiment(const PaperExperiment& experiment,
        {plan_table1, plan_table2, plan_table3, plan_figure5, plan_figure6, plan_table4, plan_best, plan_figure7}) {
     before_host.push_back(section(plan, stage));
   }
-  for (const auto section :
-       {plan_grid_sweeps, plan_packet_sweep, plan_prefetch_sweeps, plan_machine_sweeps, plan_store_sweep}) {
+  for (const auto section : {plan_grid_sweeps, plan_packet_sweep, plan_tile_sweep, plan_prefetch_sweeps,
+                             plan_machine_sweeps, plan_store_sweep}) {
     after_host.push_back(section(plan, stage));
   }
 
@@ -97,7 +126,7 @@ PaperResult run_paper_experiment(const PaperExperiment& experiment,
   for (const Writer& write : before_host) write(plan, book);
   write_host_figures(stage, experiment.threads, book);
   for (const Writer& write : after_host) write(plan, book);
-  return {book.finish(), plan.frame_count(), plan.run_count(), stage.found.missing};
+  return {book.finish(), plan.rendered_count(), plan.run_count(), stage.found.missing};
 }
 
 }  // namespace gridiron::experiment

@@ -22,9 +22,13 @@ struct PaperExperiment {
 /// What an experiment made, and what it did for it.
 struct PaperResult {
   std::vector<BookFile> files;
-  std::size_t frame_count = 0, run_count = 0;
+  std::size_t frame_count = 0;  ///< rendered on the simulated chip, those of the hierarchy included
+  std::size_t run_count = 0;
   std::vector<std::string> missing;  ///< a sentence for each view that was left out
 };
+
+/// @returns the names of all files that it may make: which views it has depends on the scenes.
+[[nodiscard]] std::vector<std::string> paper_file_names();
 
 /// Runs the experiment. Every file but host_*.csv is a function of scenes, size and largest_knot.
 ///

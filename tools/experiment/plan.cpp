@@ -83,6 +83,20 @@ void Plan::run_frame(const Frame& frame, const std::function<void()>& run_done) 
   }
 }
 
+std::size_t Plan::rendered_count() const {
+  std::size_t count = 0;
+  for (const Frame& frame : frames_) {
+    std::size_t anew = 0;
+    bool failed = false;
+    for (const Run& run : frame.runs) {
+      anew += results_[run.id].caches ? 1u : 0u;
+      failed = results_[run.id].failed();
+    }
+    count += anew > 0 ? anew : failed ? 0u : 1u;
+  }
+  return count;
+}
+
 void Plan::execute(std::uint32_t threads, const std::function<void(std::uint32_t, std::uint32_t)>& progress) {
   std::atomic<std::size_t> next_frame{0};
   std::atomic<bool> stop{false};

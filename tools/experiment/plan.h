@@ -70,6 +70,9 @@ class Plan {
 
   [[nodiscard]] const RunResult& result(RunId id) const { return results_[id]; }
   [[nodiscard]] std::size_t frame_count() const { return frames_.size(); }
+  /// @returns frames rendered by execute(): one for each that was recorded and replayed, and one for each run of a
+  /// system with caches, which is rendered anew for every machine.
+  [[nodiscard]] std::size_t rendered_count() const;
   [[nodiscard]] std::size_t run_count() const { return results_.size(); }
 
  private:

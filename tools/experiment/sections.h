@@ -56,10 +56,11 @@ inline constexpr const char* kRivalCostWords =
 void write_host_figures(const Stage& stage, std::uint32_t threads, Book& book);
 
 [[nodiscard]] Writer plan_grid_sweeps(Plan& plan, const Stage& stage);      ///< lambda, macrocell width
-[[nodiscard]] Writer plan_packet_sweep(Plan& plan, const Stage& stage);     ///< packets, subpackets, tiles
+[[nodiscard]] Writer plan_packet_sweep(Plan& plan, const Stage& stage);     ///< packets, subpackets
 [[nodiscard]] Writer plan_prefetch_sweeps(Plan& plan, const Stage& stage);  ///< cell blocks, triangle buffers
 [[nodiscard]] Writer plan_machine_sweeps(Plan& plan, const Stage& stage);   ///< latency, bandwidth
-[[nodiscard]] Writer plan_store_sweep(Plan& plan, const Stage& stage);      ///< 64 and 256 KB, the maps
+[[nodiscard]] Writer plan_tile_sweep(Plan& plan, const Stage& stage);       ///< tiles of 8 to 64 pixels
+[[nodiscard]] Writer plan_store_sweep(Plan& plan, const Stage& stage);      ///< 64 to 512 KB, the maps
 
 /// @returns the machine with another latency, under the key that all sections give it.
 [[nodiscard]] Machine machine_with_latency(const Machine& machine, double cycles);
@@ -72,6 +73,8 @@ class Range {
  public:
   void add(double value);  ///< what is not finite is left out
   [[nodiscard]] std::string text(int decimals) const;
+  [[nodiscard]] std::string percent(int decimals) const;  ///< the same with a percent sign behind a figure
+  [[nodiscard]] bool empty() const { return empty_; }
   [[nodiscard]] double least() const { return least_; }
   [[nodiscard]] double greatest() const { return greatest_; }
 

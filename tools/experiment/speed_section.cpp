@@ -77,7 +77,7 @@ Writer plan_table3(Plan& plan, const Stage& stage) {
         "reference configuration with the paper's own intersection test (precomputed projection, single precision, may "
         "leak); the others use the exact default, which costs more computation per triangle.");
     book.table(fps, "Frames a second.");
-    std::string words = "Here simple shading costs " + costs.text(1) + " % of the fps. ";
+    std::string words = "Here simple shading costs " + costs.percent(1) + " of the fps. ";
     if (costs.greatest() < 10) {
       words += "That is less than the paper's 10-20 %. In cycles it is " + pixel_cycles.text(1) +
                " a pixel; 10 to 20 % of the reference's fps would be " + paper_cycles.text(0) +

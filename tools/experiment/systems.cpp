@@ -34,6 +34,7 @@ tool::RenderArguments arguments_of(const GridVariant& variant, const View& view,
   arguments.accuracy = variant.accuracy;
   arguments.shading = request.shading;
   arguments.store = variant.store;
+  arguments.tile_width = variant.tile_width;
   return arguments;
 }
 

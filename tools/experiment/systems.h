@@ -97,6 +97,7 @@ struct GridVariant {
   tool::Configuration configuration;
   Accuracy accuracy = Accuracy::kStandard;
   sim::StoreSize store = sim::StoreSize::k256KB;
+  std::uint32_t tile_width = sim::usual_tile_width(sim::StoreSize::k256KB);
 };
 
 /// @returns the configuration of that name, e.g. "best". Precondition: there is one.

@@ -35,6 +35,14 @@ const KnownView kKnownViews[] = {
      {Vec3(1415, 389, -797), Vec3(-208, 160, -21), Vec3(0, 1, 0), 65.0f}},
 };
 
+// What is seen where there is no scan.
+constexpr const char* kTeapotKey = "teapot";
+constexpr std::uint32_t kKnotTriangles = 20'000;
+
+std::string knot_key(std::uint32_t triangle_count) {
+  return "knot_" + std::to_string(triangle_count);
+}
+
 std::shared_ptr<const tool::SceneInput> scene_of(const scene_makers::Mesh& made, const std::string& name) {
   tool::Mesh mesh;
   mesh.vertices.reserve(made.vertices.size());
@@ -50,6 +58,12 @@ std::shared_ptr<const tool::SceneInput> scene_of(const scene_makers::Mesh& made,
 }
 
 }  // namespace
+
+std::vector<std::string> known_view_keys() {
+  std::vector<std::string> keys = {kTeapotKey, knot_key(kKnotTriangles)};
+  for (const KnownView& known : kKnownViews) keys.emplace_back(known.key);
+  return keys;
+}
 
 FoundViews find_views(const std::filesystem::path& folder) {
   FoundViews found;
@@ -69,15 +83,14 @@ FoundViews find_views(const std::filesystem::path& folder) {
   if (!found.views.empty()) return found;
 
   constexpr std::uint32_t kTeapotSegments = 15;  // scenes/teapot.ply
-  constexpr std::uint32_t kKnotTriangles = 20'000;
   found.generated = true;
-  found.views.push_back({"teapot", "Teapot", scene_of(scene_makers::make_teapot(kTeapotSegments), "teapot"), {}});
+  found.views.push_back({kTeapotKey, "Teapot", scene_of(scene_makers::make_teapot(kTeapotSegments), "teapot"), {}});
   found.views.push_back(make_knot_view(kKnotTriangles));
   return found;
 }
 
 View make_knot_view(std::uint32_t triangle_count) {
-  const std::string key = "knot_" + std::to_string(triangle_count);
+  const std::string key = knot_key(triangle_count);
   return {key,
           "Torus knot of " + tool::words_of_count(triangle_count),
           scene_of(scene_makers::make_torus_knot(triangle_count), key),

@@ -30,6 +30,9 @@ struct FoundViews {
   bool generated = false;            ///< no scan was found: the views are a teapot and a torus knot
 };
 
+/// @returns the keys of all views that find_views() may find.
+[[nodiscard]] std::vector<std::string> known_view_keys();
+
 /// Looks for the scans of the paper's views in `folder`; an empty path finds none. A scan that is there and wrong is an
 /// error, one that is not there a sentence. Errors: Failure.
 [[nodiscard]] FoundViews find_views(const std::filesystem::path& folder);

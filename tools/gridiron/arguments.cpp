@@ -172,14 +172,17 @@ void add_threads(CLI::App& app, std::uint32_t& threads) {
              "host threads (default: the host's); no result depends on it");
 }
 
+const Choices<StoreSize> kStores = {
+    {"64", StoreSize::k64KB}, {"128", StoreSize::k128KB}, {"256", StoreSize::k256KB}, {"512", StoreSize::k512KB}};
+constexpr const char* kStoreHelp = "local store in KB (default: the largest that the machine has room for)";
+
 void add_machine_options(CLI::App& app, RawRender& raw) {
   RenderArguments& render = raw.arguments;
   constexpr std::uint32_t kMostCores = 1024;
   add_parsed(app, "--cores", render.cores, count_between(1, kMostCores), "a whole number from 1 to 1024", "N",
              "cores of the machine (default: the profile's)");
   add_threads(app, render.threads);
-  add_choice(app, "--store", raw.store, Choices<StoreSize>{{"64", StoreSize::k64KB}, {"256", StoreSize::k256KB}},
-             "local store in KB (default: the larger that the machine has)");
+  add_choice(app, "--store", raw.store, kStores, kStoreHelp);
   add_choice(app, "--mode", render.mode,
              Choices<Mode>{{"checked", Mode::kChecked}, {"plain", Mode::kPlain}, {"instrumented", Mode::kInstrumented}},
              "checked (default): every rule checked, work traced; plain: fast, no report; "
@@ -204,6 +207,9 @@ void add_algorithm_options(CLI::App& app, RawRender& raw) {
              "buffers of all three levels (default: the configuration's)");
   add_choice(app, "--packet", render.packet_width, Choices<std::uint32_t>{{"4", 4}, {"8", 8}, {"16", 16}, {"32", 32}},
              "rays along a packet's edge (default: the configuration's)");
+  add_choice(app, "--tile-width", render.tile_width,
+             Choices<std::uint32_t>{{"8", 8}, {"16", 16}, {"32", 32}, {"64", 64}},
+             "pixels along a tile's edge (default: 16 with --store 64, else 32)");
   add_choice(app, "--accuracy", render.accuracy,
              Choices<Accuracy>{{"standard", Accuracy::kStandard}, {"paper", Accuracy::kPaper}},
              "intersection test (default standard)");
@@ -251,20 +257,71 @@ void require_own_files(const std::vector<NamedFile>& inputs, const std::vector<N
   }
 }
 
+// The layout's part of the command line with a store: what was not asked for is the store's and the configuration's.
+sim::LayoutChoice layout_with(const RenderArguments& render, StoreSize store) {
+  const std::uint32_t tile_width = render.tile_width != 0 ? render.tile_width : sim::usual_tile_width(store);
+  // A packet is no wider than a tile.
+  const std::uint32_t fitting = std::min(render.scene.configuration->packet_width, tile_width);
+  return {store, tile_width, render.packet_width != 0 ? render.packet_width : fitting};
+}
+
+std::string words_of_layout(const sim::LayoutChoice& layout) {
+  return "tiles " + std::to_string(layout.tile_width) + " pixels wide and packets of " +
+         std::to_string(layout.packet_width) + "x" + std::to_string(layout.packet_width);
+}
+
+// Why a layout has no kernel, and which ones of its store have.
+[[noreturn]] void refuse_layout(const sim::LayoutChoice& layout) {
+  const std::string store = "--store " + std::to_string(sim::arena_bytes(layout.store) >> 10);
+  if (sim::is_built(layout, Mode::kChecked, 4)) {
+    usage_error(store + ": with " + words_of_layout(layout) + " it is built for --mode checked and --lanes 4 only");
+  }
+  std::string list;
+  for (const sim::LayoutChoice& built : built_layouts()) {
+    if (built.store == layout.store) list += (list.empty() ? "" : "; ") + words_of_layout(built);
+  }
+  usage_error(store + ": not built for " + words_of_layout(layout) + "; there are " + list);
+}
+
+// A machine has to have the store that was asked for.
+void require_room(const sim::MachineProfile& machine, std::optional<StoreSize> asked) {
+  if (asked && sim::arena_bytes(*asked) > machine.local_store_bytes) {
+    usage_error("--store: " + std::string(machine.name) + " has a local store of " +
+                std::to_string(machine.local_store_bytes >> 10) + " KB");
+  }
+}
+
+// Settles store, tile width and packet width: the store that was asked for, or the largest one of the machine that is
+// built for the other options.
+void choose_layout(RenderArguments& render, std::optional<StoreSize> asked) {
+  require_room(*render.scene.machine, asked);
+  const std::uint32_t room_bytes = render.scene.machine->local_store_bytes;
+  sim::LayoutChoice layout = layout_with(render, asked.value_or(largest_store(*render.scene.machine)));
+  const auto is_built = [&render](const sim::LayoutChoice& choice) {
+    return sim::is_built(choice, render.mode, render.lanes);
+  };
+  if (!asked && !is_built(layout)) {
+    for (const StoreSize store : sim::kStoreSizes) {
+      const sim::LayoutChoice smaller = layout_with(render, store);
+      if (sim::arena_bytes(store) <= room_bytes && is_built(smaller)) layout = smaller;
+    }
+  }
+  if (layout.packet_width > layout.tile_width) {
+    usage_error("--packet: tiles are " + std::to_string(layout.tile_width) + " pixels wide");
+  }
+  if (!is_built(layout)) refuse_layout(layout);
+  render.store = layout.store;
+  render.tile_width = layout.tile_width;
+  render.packet_width = layout.packet_width;
+}
+
 // Defaults that depend on other options, and combinations that make no sense.
 RenderArguments complete_render(const RawRender& raw, bool has_seed) {
   RenderArguments render = raw.arguments;
   const Configuration& configuration = *render.scene.configuration;
   render.scene.machine = find_machine(raw.machine_name);
-  render.store = raw.store.value_or(largest_store(*render.scene.machine));
   render.output = raw.output.empty() ? render.scene.input.stem().concat(".png") : std::filesystem::path(raw.output);
   render.depths = raw.buffering.value_or(configuration.depths);
-  // A packet is no wider than a tile.
-  const std::uint32_t tile_width = store_facts(render.store, 8).tile_width;
-  if (render.packet_width > tile_width) {
-    usage_error("--packet: tiles of this store are " + std::to_string(tile_width) + " pixels wide");
-  }
-  if (render.packet_width == 0) render.packet_width = std::min(configuration.packet_width, tile_width);
   render.techniques = configuration.techniques;
   if (raw.no_mailbox) render.techniques &= ~std::uint32_t{kUseMailbox};
   if (raw.no_culling) render.techniques &= ~std::uint32_t{kUseCornerCulling};
@@ -278,18 +335,16 @@ RenderArguments complete_render(const RawRender& raw, bool has_seed) {
   }
   if (render.mode == Mode::kInstrumented && render.lanes != 4) usage_error("--mode instrumented: has 4 lanes only");
   const bool wants_time = render.report || render.timeline;
+  if (render.mode == Mode::kInstrumented && !sim::has_instrumented_mode()) {
+    usage_error("--mode instrumented: this build has no instrumented kernel");
+  }
   if (wants_time && plain) usage_error("--report, --timeline: --mode plain records nothing to report");
   if (wants_time && render.lanes != 4) usage_error("--report, --timeline: time is told for --lanes 4 only");
   if (wants_time && render.tile) usage_error("--report, --timeline: not of one tile alone (--tile)");
   if (has_seed && render.completion != Completion::kRandom) usage_error("--seed: needs --completion random");
 
-  const std::uint32_t store_bytes = (render.store == StoreSize::k64KB ? 64u : 256u) << 10;
-  if (store_bytes > render.scene.machine->local_store_bytes) {
-    usage_error("--store: " + std::string(render.scene.machine->name) + " has a local store of " +
-                std::to_string(render.scene.machine->local_store_bytes >> 10) + " KB");
-  }
-
-  const StoreFacts facts = store_facts(render.store, render.packet_width);
+  choose_layout(render, raw.store);
+  const StoreFacts facts = *find_store_facts(render.layout());
   const std::uint32_t macro_width = render.scene.macro_width.value_or(configuration.macro_width);
   if (render.depths.output > facts.max_output_depth || render.depths.macro > facts.max_macro_depth ||
       render.depths.triangle > facts.max_triangle_depth || macro_width > facts.max_macro_width) {
@@ -297,7 +352,7 @@ RenderArguments complete_render(const RawRender& raw, bool has_seed) {
       return std::to_string(depth) + " cell blocks of macrocells of width " + std::to_string(width) + " and " +
              std::to_string(buffers) + " triangle buffers";
     };
-    usage_error("--store " + std::to_string(store_bytes >> 10) + ": holds at most " +
+    usage_error("--store " + std::to_string(facts.arena_bytes >> 10) + ": holds at most " +
                 blocks(facts.max_macro_depth, facts.max_macro_width, facts.max_triangle_depth) + "; " +
                 blocks(render.depths.macro, macro_width, render.depths.triangle) + " are asked for");
   }
@@ -316,7 +371,12 @@ void add_experiment_options(CLI::App& app, ExperimentArguments& experiment, std:
   add_parsed(app, "NAME", name, known, "an experiment; expected paper", "",
              "paper: Tables 1-4, Figs. 5-7 and sweeps, as CSV, SVG and index.html")
       ->required();
-  app.add_option("-o,--output", experiment.output, "folder, made where it is not there")->required()->type_name("DIR");
+  const auto folder = [](const std::string& text) {
+    return text.empty() ? std::nullopt : std::optional<std::filesystem::path>(text);
+  };
+  add_parsed(app, "-o,--output", experiment.output, folder, "the name of a folder", "DIR",
+             "folder, made where it is not there")
+      ->required();
   app.add_option("--scenes", experiment.scenes,
                  "folder of the scans (default: the environment's GRIDIRON_SCENES); scans that are not there are left "
                  "out, and without any a teapot and a torus knot are made")
@@ -358,6 +418,8 @@ Command parse_arguments(int count, const char* const* values) {
   add_scene_options(*info, info_arguments.scene, info_machine);
   add_choice(*info, "--format", info_arguments.format, kFormats, "how triangles are stored (default vertices)");
   add_size(*info, info_arguments.width, info_arguments.height, "picture whose memory is told (default 1024x1024)");
+  std::optional<StoreSize> info_store;
+  add_choice(*info, "--store", info_store, kStores, kStoreHelp);
   info->add_flag("--json", info_arguments.json, "as JSON");
 
   PackArguments pack_arguments;
@@ -407,6 +469,8 @@ Command parse_arguments(int count, const char* const* values) {
   if (*render) return complete_render(raw, render->count("--seed") > 0);
   if (*info) {
     info_arguments.scene.machine = find_machine(info_machine);
+    require_room(*info_arguments.scene.machine, info_store);
+    info_arguments.store = info_store.value_or(largest_store(*info_arguments.scene.machine));
     return info_arguments;
   }
   if (*pack) {

@@ -37,6 +37,7 @@ struct RenderArguments {
   std::uint32_t cores = 0;         ///< 0: the machine's
   std::uint32_t threads = 0;       ///< 0: the host's
   std::uint32_t lanes = 0;         ///< 0: 4 where time is told, else the widest of the host
+  std::uint32_t tile_width = 0;    ///< 0: the store's usual one
   std::uint32_t packet_width = 0;  ///< 0: the configuration's
   BufferDepths depths;
   std::uint32_t techniques = 0;
@@ -47,10 +48,14 @@ struct RenderArguments {
   sim::Completion completion = sim::Completion::kEarly;
   std::uint64_t seed = 0;
   bool quiet = false;
+
+  /// What the kernel is made for, once nothing is 0.
+  [[nodiscard]] sim::LayoutChoice layout() const { return {store, tile_width, packet_width}; }
 };
 
 struct InfoArguments {
   SceneArguments scene;
+  sim::StoreSize store = sim::StoreSize::k256KB;  ///< whose map is told
   TriangleFormat format = TriangleFormat::kVertices;
   std::uint32_t width = 1024, height = 1024;
   bool json = false;

@@ -8,7 +8,6 @@
 
 #include "failure.h"
 #include "stopwatch.h"
-#include "store_facts.h"
 #include "words.h"
 
 namespace gridiron::tool {
@@ -54,7 +53,7 @@ void prepare_frame(FrameMemory& frame, const SceneInput& input, const RenderArgu
                    const ViewRequest& view) {
   const std::uint32_t planes = 1u + (arguments.depth ? 1u : 0u) + (arguments.ids ? 1u : 0u);
   const std::uint64_t budget_bytes =
-      image_budget_bytes(*arguments.scene.machine, arguments.width, arguments.height, planes);
+      image_budget_bytes(*arguments.scene.machine, arguments.width, arguments.height, planes, arguments.tile_width);
   const MainAddress image_address = place_image(frame, input, arguments, budget_bytes);
 
   // Identifiers travel as floats in a PFM file.
@@ -69,7 +68,7 @@ void prepare_frame(FrameMemory& frame, const SceneInput& input, const RenderArgu
   settings.camera = frame_view(view, frame.image.grid.bounds_minimum, frame.image.grid.bounds_maximum);
   settings.width = arguments.width;
   settings.height = arguments.height;
-  settings.tile_width = store_facts(arguments.store, arguments.packet_width).tile_width;
+  settings.tile_width = arguments.tile_width;
   settings.accuracy = arguments.accuracy;
   settings.shading = arguments.shading;
   settings.techniques = arguments.techniques;

@@ -131,8 +131,7 @@ void print_text(const InfoArguments& arguments, const SceneFacts& facts, const S
 
 void run_command(const InfoArguments& arguments) {
   const SceneFacts facts = collect_scene_facts(arguments);
-  const StoreFacts store =
-      store_facts(largest_store(*arguments.scene.machine), arguments.scene.configuration->packet_width);
+  const StoreFacts store = usual_store_facts(arguments.store, arguments.scene.configuration->packet_width);
   arguments.json ? print_json(arguments, facts, store) : print_text(arguments, facts, store);
 }
 

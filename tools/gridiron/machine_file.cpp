@@ -277,7 +277,11 @@ Machine find_machine(const std::string& name_or_file) {
 }
 
 sim::StoreSize largest_store(const MachineProfile& machine) {
-  return machine.local_store_bytes >= 256u << 10 ? sim::StoreSize::k256KB : sim::StoreSize::k64KB;
+  sim::StoreSize largest = sim::StoreSize::k64KB;  // what a machine has at least
+  for (const sim::StoreSize store : sim::kStoreSizes) {
+    if (sim::arena_bytes(store) <= machine.local_store_bytes) largest = store;
+  }
+  return largest;
 }
 
 std::string machine_text(const MachineProfile& machine) {

@@ -22,7 +22,7 @@ using Machine = std::shared_ptr<const sim::MachineProfile>;
 /// Errors: Failure (kBadInput), `file:line: reason`.
 [[nodiscard]] Machine read_machine_file(const std::filesystem::path& path);
 
-/// @returns the larger of the stores core is built for that a core of the machine has room for.
+/// @returns the largest of the stores core is built for that a core of the machine has room for.
 [[nodiscard]] sim::StoreSize largest_store(const sim::MachineProfile& machine);
 
 /// @returns the profile in the same format, every constant in it; reading it gives the identical profile.

@@ -62,9 +62,6 @@ std::optional<std::uint32_t> chosen_tile(const RenderArguments& arguments, const
 }
 
 sim::ChipResult render_on_chip(FrameMemory& frame, const RenderArguments& arguments) {
-  if (arguments.mode == sim::Mode::kInstrumented && !sim::has_instrumented_mode()) {
-    throw Failure(ExitCode::kUsage, "--mode instrumented: this build has no instrumented kernel");
-  }
   Progress progress(!arguments.quiet);
   sim::ChipOptions options;
   options.mode = arguments.mode;
@@ -113,7 +110,7 @@ ReportInput collect_report(const RenderArguments& arguments, const SceneInput& i
   report.timing = timing;
   report.work = result.work;
   report.rays = {{"primary", std::uint64_t{arguments.width} * arguments.height}};
-  const StoreFacts store = store_facts(arguments.store, arguments.packet_width);
+  const StoreFacts store = *find_store_facts(arguments.layout());  // it has rendered
   report.arena_bytes = store.arena_bytes;
   report.regions = store.regions;
   report.code_bytes = store.code_bytes;

@@ -52,7 +52,7 @@ SceneFacts collect_scene_facts(const InfoArguments& arguments) {
     facts.scratch_bytes = choice.need.scratch_bytes;
     facts.fits = choice.fits();
   }
-  const std::uint32_t tile_width = store_facts(sim::StoreSize::k256KB, 8).tile_width;
+  const std::uint32_t tile_width = sim::usual_tile_width(sim::StoreSize::k256KB);
   facts.picture_bytes = output_plane_bytes(arguments.width, arguments.height, tile_width) + sizeof(FrameRecord);
   facts.bounds = bounds_of(facts.grid);
   return facts;

@@ -85,11 +85,11 @@ SceneInput read_scene_input(const std::filesystem::path& path) {
 }
 
 std::uint64_t image_budget_bytes(const sim::MachineProfile& machine, std::uint32_t width, std::uint32_t height,
-                                 std::uint32_t planes) {
-  constexpr std::uint32_t kUsualSize = 1024, kMostPlanes = 3, kTileWidth = 32;
+                                 std::uint32_t planes, std::uint32_t tile_width) {
+  constexpr std::uint32_t kUsualSize = 1024, kMostPlanes = 3;  // a multiple of every tile's width
   const std::uint64_t frame_bytes = round_up<std::uint64_t>(sizeof(FrameRecord), kLineBytes);
-  const std::uint64_t wanted = output_plane_bytes(width, height, kTileWidth) * planes + frame_bytes;
-  const std::uint64_t usual = output_plane_bytes(kUsualSize, kUsualSize, kTileWidth) * kMostPlanes + frame_bytes;
+  const std::uint64_t wanted = output_plane_bytes(width, height, tile_width) * planes + frame_bytes;
+  const std::uint64_t usual = output_plane_bytes(kUsualSize, kUsualSize, tile_width) * kMostPlanes + frame_bytes;
   const std::uint64_t memory = machine.main_memory_bytes - sim::SimMemory::kFirstAddress;
   if (wanted > memory) {
     throw Failure(ExitCode::kBadInput, "a picture of " + std::to_string(width) + "x" + std::to_string(height) +

@@ -61,7 +61,8 @@ struct GridChoice {
 ///        that, so that pack and render choose the same grid.
 /// Errors: Failure (kBadInput) where the picture alone does not fit.
 [[nodiscard]] std::uint64_t image_budget_bytes(const sim::MachineProfile& machine, std::uint32_t width,
-                                               std::uint32_t height, std::uint32_t planes);
+                                               std::uint32_t height, std::uint32_t planes,
+                                               std::uint32_t tile_width = 32);
 
 /// Chooses the grid of a mesh: the wanted lambda, halved until the image fits the budget unless the command line fixed
 /// it. Where nothing fits the choice says so and holds the least need found.

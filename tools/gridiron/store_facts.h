@@ -6,6 +6,7 @@
 #include <report/report.h>
 
 #include <cstdint>
+#include <optional>
 #include <vector>
 
 namespace gridiron::tool {
@@ -14,16 +15,35 @@ namespace gridiron::tool {
 struct StoreFacts {
   std::uint32_t arena_bytes = 0;
   std::uint32_t code_bytes = 0, stack_bytes = 0;  ///< committed budgets
-  std::uint32_t tile_width = 0;
+  std::uint32_t tile_width = 0, packet_width = 0;
   std::uint32_t max_macro_width = 0;
   std::uint32_t max_output_depth = 0, max_macro_depth = 0, max_triangle_depth = 0;
   std::uint32_t triangles_per_buffer = 0;
+  std::uint32_t mailbox_slots = 0;
+  std::uint32_t resident_macro_cells = 0;  ///< as many as the table tells of without being fetched again
   std::vector<LocalStoreRegion> regions;  ///< in address order
 
   [[nodiscard]] std::uint64_t data_bytes() const;
 };
 
-/// @param packet_width  4, 8, 16 or 32; 32 is 16 in the 64 KB store, whose tiles are no wider.
-[[nodiscard]] StoreFacts store_facts(sim::StoreSize size, std::uint32_t packet_width);
+/// @returns nothing where no kernel is built for the layout, in no mode.
+[[nodiscard]] std::optional<StoreFacts> find_store_facts(const sim::LayoutChoice& layout);
+
+/// Every layout that a kernel is built for, in whatever modes, the common ones first.
+[[nodiscard]] std::vector<sim::LayoutChoice> built_layouts();
+
+/// The layout with the store's usual tiles. @param packet_width  8 or 32; 32 is 16 where tiles are no wider.
+[[nodiscard]] StoreFacts usual_store_facts(sim::StoreSize store, std::uint32_t packet_width);
+
+/// Whether a core has room for a layout, built or not.
+struct LayoutFit {
+  sim::LayoutChoice layout;
+  std::uint64_t data_bytes = 0;  ///< what it takes
+  std::uint32_t room_bytes = 0;  ///< what code and stack leave
+  bool fits = false;
+};
+
+/// Each size of store with tiles of 8 to 64 pixels, and packets of 8x8 rays and as wide as the tile, 32 at most.
+[[nodiscard]] std::vector<LayoutFit> layout_fits();
 
 }  // namespace gridiron::tool

@@ -88,7 +88,8 @@ struct PixelProjection {
 };
 
 /// Width x Width rays, SoA. World space, directions not normalised.
-template <std::uint32_t Width>
+/// @tparam RecentCountV  how many triangles are kept of those hit lately, a power of two.
+template <std::uint32_t Width, std::uint32_t RecentCountV = 16>
 struct alignas(128) Packet {
   static constexpr std::uint32_t kWidth = Width;
   static constexpr std::uint32_t kRayCount = Width * Width;
@@ -131,7 +132,7 @@ struct alignas(128) Packet {
 
   // Triangles hit lately, each in the place that its id gives: where two estimates are too close to tell, the one that
   // was there before can be measured again.
-  static constexpr std::uint32_t kRecentCount = Width == 32 ? 256 : 16;
+  static constexpr std::uint32_t kRecentCount = RecentCountV;
   alignas(16) VertexTriangle recent[kRecentCount];
 
   GRIDIRON_INLINE void keep(const VertexTriangle& triangle) { recent[triangle.triangle_id % kRecentCount] = triangle; }

@@ -49,7 +49,7 @@ class TileRenderer {
 
  private:
   using Store = LocalStore<Layout>;
-  using StorePacket = Packet<Layout::kPacketWidth>;
+  using StorePacket = typename LocalStore<Layout>::StorePacket;
   using Table = MacroTableWindow<Layout::kTableEntries>;
   using TileOutput = typename Store::TileOutput;
   static constexpr std::uint32_t kPlaneBytes = Store::kTilePixels * sizeof(std::uint32_t);

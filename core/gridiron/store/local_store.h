@@ -14,38 +14,80 @@
 
 namespace gridiron {
 
+// A layout is a set of sizes; none changes a pixel. The tile's width is a parameter of each: which widths a core has
+// room for, kFitsArena tells.
+
 /// Sizes of a 256 KB core (Cho, Kim, Han 2012, section 6).
-/// @tparam PacketWidthV  rays along a packet's edge: 4, 8, 16, 32.
-template <std::uint32_t PacketWidthV = 8>
+/// @tparam PacketWidthV  rays along a packet's edge: 4, 8, 16, 32, at most the tile's width.
+/// @tparam TileWidthV    pixels along a tile's edge: 8, 16, 32, 64.
+template <std::uint32_t PacketWidthV = 8, std::uint32_t TileWidthV = 32>
 struct StoreLayout256K {
   static constexpr std::uint32_t kArenaBytes = 256 * 1024;
   static constexpr std::uint32_t kCodeBudgetBytes = 48 * 1024;
   static constexpr std::uint32_t kStackBudgetBytes = 8 * 1024;
-  static constexpr std::uint32_t kTileWidth = 32;
+  static constexpr std::uint32_t kTileWidth = TileWidthV;
   static constexpr std::uint32_t kPacketWidth = PacketWidthV;
-  static constexpr std::uint32_t kMailboxSlots = PacketWidthV == 32 ? 1024 : 64;
+  static constexpr std::uint32_t kMailboxSlots = PacketWidthV < 16 ? 64 : PacketWidthV == 32 && TileWidthV != 64 ? 1024 : 256;
+  static constexpr std::uint32_t kRecentTriangles = PacketWidthV == 32 && TileWidthV != 64 ? 256 : 32;
   static constexpr std::uint32_t kTableEntries = 4096;  ///< 131,072 macrocells resident
   static constexpr std::uint32_t kMaxMacroWidth = 8;
   static constexpr std::uint32_t kMaxMacroDepth = 4;
   static constexpr std::uint32_t kTrianglesPerBuffer = 64;
-  static constexpr std::uint32_t kMaxTriangleDepth = 12;
+  static constexpr std::uint32_t kMaxTriangleDepth = TileWidthV == 64 ? 8 : 12;  ///< two tiles of 64 take 96 KB
   static constexpr std::uint32_t kMaxOutputDepth = 2;
 };
 
-/// Sizes of a 64 KB core: smaller tiles and buffers, the same picture.
-template <std::uint32_t PacketWidthV = 8>
+/// Sizes of a 64 KB core: smaller tiles and buffers.
+template <std::uint32_t PacketWidthV = 8, std::uint32_t TileWidthV = 16>
 struct StoreLayout64K {
   static constexpr std::uint32_t kArenaBytes = 64 * 1024;
   static constexpr std::uint32_t kCodeBudgetBytes = 32 * 1024;
   static constexpr std::uint32_t kStackBudgetBytes = 6 * 1024;
-  static constexpr std::uint32_t kTileWidth = 16;
+  static constexpr std::uint32_t kTileWidth = TileWidthV;
   static constexpr std::uint32_t kPacketWidth = PacketWidthV;
-  static constexpr std::uint32_t kMailboxSlots = 64;
+  static constexpr std::uint32_t kMailboxSlots = PacketWidthV >= 16 ? 128 : 64;
+  static constexpr std::uint32_t kRecentTriangles = PacketWidthV >= 16 ? 4 : 16;
   static constexpr std::uint32_t kTableEntries = 512;  ///< 16,384 macrocells resident
   static constexpr std::uint32_t kMaxMacroWidth = 6;
   static constexpr std::uint32_t kMaxMacroDepth = 2;
   static constexpr std::uint32_t kTrianglesPerBuffer = 16;
   static constexpr std::uint32_t kMaxTriangleDepth = 4;
+  static constexpr std::uint32_t kMaxOutputDepth = 2;
+};
+
+/// Sizes of a 128 KB core: tiles and packets of the 256 KB one, more but shorter buffers than that of 64 KB.
+template <std::uint32_t PacketWidthV = 8, std::uint32_t TileWidthV = 32>
+struct StoreLayout128K {
+  static constexpr std::uint32_t kArenaBytes = 128 * 1024;
+  static constexpr std::uint32_t kCodeBudgetBytes = 48 * 1024;
+  static constexpr std::uint32_t kStackBudgetBytes = 8 * 1024;
+  static constexpr std::uint32_t kTileWidth = TileWidthV;
+  static constexpr std::uint32_t kPacketWidth = PacketWidthV;
+  static constexpr std::uint32_t kMailboxSlots = PacketWidthV >= 16 ? 256 : 64;
+  static constexpr std::uint32_t kRecentTriangles = PacketWidthV >= 16 ? 4 : 32;
+  static constexpr std::uint32_t kTableEntries = 768;  ///< 24,576 macrocells resident
+  static constexpr std::uint32_t kMaxMacroWidth = 6;
+  static constexpr std::uint32_t kMaxMacroDepth = 4;
+  static constexpr std::uint32_t kTrianglesPerBuffer = 15;  ///< with room to start 16 bytes later, six lines
+  static constexpr std::uint32_t kMaxTriangleDepth = 8;
+  static constexpr std::uint32_t kMaxOutputDepth = 2;
+};
+
+/// Sizes of a 512 KB core: a longer table, more and longer buffers, a larger mailbox.
+template <std::uint32_t PacketWidthV = 8, std::uint32_t TileWidthV = 32>
+struct StoreLayout512K {
+  static constexpr std::uint32_t kArenaBytes = 512 * 1024;
+  static constexpr std::uint32_t kCodeBudgetBytes = 48 * 1024;
+  static constexpr std::uint32_t kStackBudgetBytes = 8 * 1024;
+  static constexpr std::uint32_t kTileWidth = TileWidthV;
+  static constexpr std::uint32_t kPacketWidth = PacketWidthV;
+  static constexpr std::uint32_t kMailboxSlots = PacketWidthV >= 16 ? 1024 : 64;
+  static constexpr std::uint32_t kRecentTriangles = PacketWidthV >= 16 ? 256 : 32;
+  static constexpr std::uint32_t kTableEntries = 16384;  ///< 524,288 macrocells resident
+  static constexpr std::uint32_t kMaxMacroWidth = 8;
+  static constexpr std::uint32_t kMaxMacroDepth = 8;
+  static constexpr std::uint32_t kTrianglesPerBuffer = 128;
+  static constexpr std::uint32_t kMaxTriangleDepth = 15;
   static constexpr std::uint32_t kMaxOutputDepth = 2;
 };
 
@@ -55,6 +97,7 @@ struct StoreLayout64K {
 template <class LayoutType>
 struct alignas(128) LocalStore {
   using Layout = LayoutType;
+  using StorePacket = Packet<Layout::kPacketWidth, Layout::kRecentTriangles>;
   static constexpr std::uint32_t kTilePixels = Layout::kTileWidth * Layout::kTileWidth;
   static constexpr std::uint32_t kMacroCells = Layout::kMaxMacroWidth * Layout::kMaxMacroWidth * Layout::kMaxMacroWidth;
   static constexpr std::uint32_t kCellBlockBytes =
@@ -80,7 +123,7 @@ struct alignas(128) LocalStore {
   MacroTableWindow<Layout::kTableEntries> table;
   CellBlock cell_blocks[Layout::kMaxMacroDepth];
   TriangleBuffer triangles[Layout::kMaxTriangleDepth];
-  Packet<Layout::kPacketWidth> packet;
+  StorePacket packet;
   Mailbox<Layout::kMailboxSlots> mailbox;
   TileOutput output[Layout::kMaxOutputDepth];
 
@@ -90,14 +133,23 @@ struct alignas(128) LocalStore {
   static_assert(Layout::kTileWidth % Layout::kPacketWidth == 0);
 };
 
-/// The budget of a layout holds, or the build stops.
+/// Bytes that a layout leaves for data.
 template <class Layout>
-inline constexpr bool kFitsArena = sizeof(LocalStore<Layout>) + Layout::kCodeBudgetBytes + Layout::kStackBudgetBytes
-                                   <= Layout::kArenaBytes;
+inline constexpr std::uint32_t kDataRoomBytes =
+    Layout::kArenaBytes - Layout::kCodeBudgetBytes - Layout::kStackBudgetBytes;
+
+/// The budget of a layout holds. Of the layouts that are named here it does, or the build stops.
+template <class Layout>
+inline constexpr bool kFitsArena = sizeof(LocalStore<Layout>) <= kDataRoomBytes<Layout>;
 
 static_assert(kFitsArena<StoreLayout256K<4>> && kFitsArena<StoreLayout256K<8>> && kFitsArena<StoreLayout256K<16>> &&
               kFitsArena<StoreLayout256K<32>>);
+static_assert(kFitsArena<StoreLayout256K<8, 8>> && kFitsArena<StoreLayout256K<16, 16>> &&
+              kFitsArena<StoreLayout256K<8, 64>> && kFitsArena<StoreLayout256K<32, 64>>);
 static_assert(kFitsArena<StoreLayout64K<4>> && kFitsArena<StoreLayout64K<8>> && kFitsArena<StoreLayout64K<16>>);
+static_assert(kFitsArena<StoreLayout128K<8>> && kFitsArena<StoreLayout128K<32>>);
+static_assert(kFitsArena<StoreLayout512K<8>> && kFitsArena<StoreLayout512K<32>> && kFitsArena<StoreLayout512K<8, 64>> &&
+              kFitsArena<StoreLayout512K<32, 64>>);
 
 /// Calls visit(name, offset_bytes, bytes) for every region of the store, in address order.
 template <class Layout, class Visit>

@@ -51,7 +51,7 @@ class PacketDriver {
   }
 
  private:
-  using StorePacket = Packet<Layout::kPacketWidth>;
+  using StorePacket = typename LocalStore<Layout>::StorePacket;
   static constexpr std::uint32_t kRunTriangles = Layout::kTrianglesPerBuffer;
 
   struct TriangleRun {

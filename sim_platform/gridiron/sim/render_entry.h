@@ -13,27 +13,24 @@
 
 extern "C" {
 
-/// Renders tiles until none is left. `store` is zeroed, kLineBytes-aligned, as large as the layout's LocalStore.
-/// Errors: kUnsupportedFrame for a packet width that is not built; the kernel's.
-gridiron::Status gridiron_sim_render_checked_lanes4(gridiron::sim::StoreSize size, std::uint32_t packet_width,
-                                                    std::byte* store, gridiron::sim::SimCore& core,
-                                                    gridiron::MainAddress frame);
-gridiron::Status gridiron_sim_render_checked_lanes8(gridiron::sim::StoreSize size, std::uint32_t packet_width,
-                                                    std::byte* store, gridiron::sim::SimCore& core,
-                                                    gridiron::MainAddress frame);
-gridiron::Status gridiron_sim_render_checked_lanes16(gridiron::sim::StoreSize size, std::uint32_t packet_width,
-                                                     std::byte* store, gridiron::sim::SimCore& core,
-                                                     gridiron::MainAddress frame);
-gridiron::Status gridiron_sim_render_instrumented_lanes4(gridiron::sim::StoreSize size, std::uint32_t packet_width,
-                                                         std::byte* store, gridiron::sim::SimCore& core,
-                                                         gridiron::MainAddress frame);
-gridiron::Status gridiron_sim_render_plain_lanes4(gridiron::sim::StoreSize size, std::uint32_t packet_width,
-                                                  std::byte* store, gridiron::sim::PlainCore& core,
-                                                  gridiron::MainAddress frame);
-gridiron::Status gridiron_sim_render_plain_lanes8(gridiron::sim::StoreSize size, std::uint32_t packet_width,
-                                                  std::byte* store, gridiron::sim::PlainCore& core,
-                                                  gridiron::MainAddress frame);
-gridiron::Status gridiron_sim_render_plain_lanes16(gridiron::sim::StoreSize size, std::uint32_t packet_width,
-                                                   std::byte* store, gridiron::sim::PlainCore& core,
-                                                   gridiron::MainAddress frame);
+/// Renders tiles until none is left. `store` is zeroed, kLineBytes-aligned, as large as the layout's LocalStore. The
+/// layout is one of CommonLayouts, of checked_sweep one of SweepLayouts (compiled_layouts.h); it is passed as a copy
+/// because instrumented code may look at a core's own memory only.
+/// Errors: kUnsupportedFrame for a layout that is not built; the kernel's.
+gridiron::Status gridiron_sim_render_checked_lanes4(gridiron::sim::LayoutChoice layout, std::byte* store,
+                                                    gridiron::sim::SimCore& core, gridiron::MainAddress frame);
+gridiron::Status gridiron_sim_render_checked_lanes8(gridiron::sim::LayoutChoice layout, std::byte* store,
+                                                    gridiron::sim::SimCore& core, gridiron::MainAddress frame);
+gridiron::Status gridiron_sim_render_checked_lanes16(gridiron::sim::LayoutChoice layout, std::byte* store,
+                                                     gridiron::sim::SimCore& core, gridiron::MainAddress frame);
+gridiron::Status gridiron_sim_render_checked_sweep_lanes4(gridiron::sim::LayoutChoice layout, std::byte* store,
+                                                          gridiron::sim::SimCore& core, gridiron::MainAddress frame);
+gridiron::Status gridiron_sim_render_instrumented_lanes4(gridiron::sim::LayoutChoice layout, std::byte* store,
+                                                         gridiron::sim::SimCore& core, gridiron::MainAddress frame);
+gridiron::Status gridiron_sim_render_plain_lanes4(gridiron::sim::LayoutChoice layout, std::byte* store,
+                                                  gridiron::sim::PlainCore& core, gridiron::MainAddress frame);
+gridiron::Status gridiron_sim_render_plain_lanes8(gridiron::sim::LayoutChoice layout, std::byte* store,
+                                                  gridiron::sim::PlainCore& core, gridiron::MainAddress frame);
+gridiron::Status gridiron_sim_render_plain_lanes16(gridiron::sim::LayoutChoice layout, std::byte* store,
+                                                   gridiron::sim::PlainCore& core, gridiron::MainAddress frame);
 }

@@ -2,6 +2,7 @@
 // Memory: owns local stores for the time of the frame. Threads: starts its own. SPDX-License-Identifier: Apache-2.0
 #include <gridiron/base/math.h>
 #include <gridiron/base/records.h>
+#include <gridiron/sim/compiled_layouts.h>
 #include <gridiron/sim/core_runner.h>
 #include <gridiron/sim/plain_core.h>
 #include <gridiron/sim/render_entry.h>
@@ -20,7 +21,7 @@ namespace gridiron::sim {
 namespace {
 
 template <class Core>
-using RenderEntry = Status (*)(StoreSize, std::uint32_t, std::byte*, Core&, MainAddress);
+using RenderEntry = Status (*)(LayoutChoice, std::byte*, Core&, MainAddress);
 
 [[nodiscard]] bool host_runs_lanes(std::uint32_t lanes) {
 #if defined(GRIDIRON_SIM_WIDE_LANES)
@@ -35,14 +36,16 @@ using RenderEntry = Status (*)(StoreSize, std::uint32_t, std::byte*, Core&, Main
   return lanes == 4;
 }
 
-/// @returns null where nothing was built for these options.
-[[nodiscard]] RenderEntry<SimCore> checked_entry(const ChipOptions& options) {
+/// @returns null where this host cannot run what was built for these options.
+[[nodiscard]] RenderEntry<SimCore> checked_entry(const ChipOptions& options, bool is_common) {
   if (!host_runs_lanes(options.lanes)) return nullptr;
+  if (!is_common) return gridiron_sim_render_checked_sweep_lanes4;
   if (options.mode == Mode::kInstrumented) {
 #if defined(GRIDIRON_SIM_INSTRUMENTED)
-    if (options.lanes == 4) return gridiron_sim_render_instrumented_lanes4;
-#endif
+    return gridiron_sim_render_instrumented_lanes4;
+#else
     return nullptr;
+#endif
   }
 #if defined(GRIDIRON_SIM_WIDE_LANES)
   if (options.lanes == 8) return gridiron_sim_render_checked_lanes8;
@@ -60,35 +63,14 @@ using RenderEntry = Status (*)(StoreSize, std::uint32_t, std::byte*, Core&, Main
   return gridiron_sim_render_plain_lanes4;
 }
 
-struct StoreBytes {
-  std::uint32_t arena = 0;
-  std::uint32_t data = 0;  ///< 0: this packet width is not built
-};
-
-template <template <std::uint32_t> class Layout>
-[[nodiscard]] StoreBytes store_bytes(std::uint32_t packet_width) {
-  switch (packet_width) {
-    case 4:
-      return {Layout<4>::kArenaBytes, sizeof(LocalStore<Layout<4>>)};
-    case 8:
-      return {Layout<8>::kArenaBytes, sizeof(LocalStore<Layout<8>>)};
-    case 16:
-      return {Layout<16>::kArenaBytes, sizeof(LocalStore<Layout<16>>)};
-    case 32:
-      if constexpr (Layout<32>::kTileWidth >= 32) {
-        return {Layout<32>::kArenaBytes, sizeof(LocalStore<Layout<32>>)};
-      }
-      return {};
-    default:
-      return {};
-  }
+[[nodiscard]] bool is_common(const LayoutChoice& layout) {
+  return visit_layout(CommonLayouts{}, layout, []<class Layout>() {});
 }
 
 /// Reads the frame record and checks that everything it names lies in memory: the plain mode believes it.
-[[nodiscard]] Status describe_frame(SimMemory& memory, MainAddress address, FrameShape& shape) {
+[[nodiscard]] Status describe_frame(SimMemory& memory, MainAddress address, FrameRecord& frame, FrameShape& shape) {
   const std::span<std::byte> bytes = memory.bytes_at(address, sizeof(FrameRecord));
   if (bytes.empty() || address.value % kLineBytes != 0) return Status::kBadFrame;
-  FrameRecord frame;
   std::memcpy(&frame, bytes.data(), sizeof frame);
 
   const auto whole_tiles = [&](std::uint32_t pixels) { return (pixels + frame.tile_width - 1) / frame.tile_width; };
@@ -133,7 +115,8 @@ template <template <std::uint32_t> class Layout>
 }
 
 [[nodiscard]] ChipResult render_plain(SimMemory& memory, MainAddress frame, const FrameShape& shape,
-                                      const ChipOptions& options, RenderEntry<PlainCore> entry) {
+                                      const LayoutChoice& layout, const ChipOptions& options,
+                                      RenderEntry<PlainCore> entry) {
   ChipResult result;
   const bool one_tile = options.only_tile.has_value();
   const std::uint32_t first_tile = one_tile ? *options.only_tile : 0;
@@ -154,7 +137,7 @@ template <template <std::uint32_t> class Layout>
     run.core = std::make_unique<PlainCore>(memory.base(), options.limits, tiles);
   }
   const auto render = [&](Run& run) {
-    run.status = entry(options.store, options.packet_width, run.arena.get(), *run.core, frame);
+    run.status = entry(layout, run.arena.get(), *run.core, frame);
     if (run.status != Status::kOk) tiles.stop();
   };
   std::vector<std::thread> threads;
@@ -186,14 +169,16 @@ ChipResult render_frame(SimMemory& memory, MainAddress frame, const ChipOptions&
     result.status = status;
     return result;
   };
+  FrameRecord record;
   FrameShape shape;
-  const StoreBytes store = options.store == StoreSize::k64KB ? store_bytes<StoreLayout64K>(options.packet_width)
-                                                             : store_bytes<StoreLayout256K>(options.packet_width);
-  if (store.data == 0) return refuse(Status::kUnsupportedFrame);
-  shape.arena_bytes = store.arena;
-  shape.data_bytes = store.data;
-  const Status described = describe_frame(memory, frame, shape);
+  const Status described = describe_frame(memory, frame, record, shape);
   if (described != Status::kOk) return refuse(described);
+  const LayoutChoice layout = {options.store, record.tile_width, options.packet_width};
+  if (!is_built(layout, options.mode, options.lanes)) return refuse(Status::kUnsupportedFrame);
+  shape.arena_bytes = arena_bytes(options.store);
+  const auto take_data_bytes = [&shape]<class Layout>() { shape.data_bytes = sizeof(LocalStore<Layout>); };
+  const bool common = visit_layout(CommonLayouts{}, layout, take_data_bytes);
+  if (!common) visit_layout(SweepLayouts{}, layout, take_data_bytes);
   if (!are_limits_valid(options.limits) || options.threads == 0 ||
       (options.only_tile && *options.only_tile >= shape.tile_count)) {
     return refuse(Status::kBadParameter);
@@ -201,17 +186,29 @@ ChipResult render_frame(SimMemory& memory, MainAddress frame, const ChipOptions&
 
   if (options.mode == Mode::kPlain) {
     const RenderEntry<PlainCore> entry = plain_entry(options);
-    return entry == nullptr ? refuse(Status::kUnsupportedFrame) : render_plain(memory, frame, shape, options, entry);
+    return entry == nullptr ? refuse(Status::kUnsupportedFrame)
+                            : render_plain(memory, frame, shape, layout, options, entry);
   }
-  const RenderEntry<SimCore> entry = checked_entry(options);
+  const RenderEntry<SimCore> entry = checked_entry(options, common);
   if (entry == nullptr) return refuse(Status::kUnsupportedFrame);
   return run_cores(memory, shape, options, [&](SimCore& core, std::span<std::byte> data) {
     if (options.mode == Mode::kInstrumented) {
       const SimCore::AccessScope scope(core, __builtin_frame_address(0));
-      return entry(options.store, options.packet_width, data.data(), core, frame);
+      return entry(layout, data.data(), core, frame);
     }
-    return entry(options.store, options.packet_width, data.data(), core, frame);
+    return entry(layout, data.data(), core, frame);
   });
+}
+
+bool is_built(const LayoutChoice& layout, Mode mode, std::uint32_t lanes) {
+  const bool is_sweep = visit_layout(SweepLayouts{}, layout, []<class Layout>() {});
+  if (is_sweep) return mode == Mode::kChecked && lanes == 4;
+  if (!is_common(layout)) return false;
+  if (mode == Mode::kInstrumented) return has_instrumented_mode() && lanes == 4;
+#if defined(GRIDIRON_SIM_WIDE_LANES)
+  if (lanes == 8 || lanes == 16) return true;
+#endif
+  return lanes == 4;
 }
 
 std::uint32_t widest_lanes() {

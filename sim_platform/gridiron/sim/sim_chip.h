@@ -23,8 +23,24 @@ enum class Completion : std::uint8_t {
   kRandom,  ///< at a seeded random call in between
 };
 
-/// Which of the compiled store layouts the cores have.
-enum class StoreSize : std::uint8_t { k64KB, k256KB };
+/// How large a local store the cores have.
+enum class StoreSize : std::uint8_t { k64KB, k128KB, k256KB, k512KB };
+inline constexpr StoreSize kStoreSizes[] = {StoreSize::k64KB, StoreSize::k128KB, StoreSize::k256KB, StoreSize::k512KB};
+
+[[nodiscard]] constexpr std::uint32_t arena_bytes(StoreSize store) {
+  return (64u << 10) << static_cast<std::uint32_t>(store);
+}
+/// Pixels along a tile's edge unless one asks for others.
+[[nodiscard]] constexpr std::uint32_t usual_tile_width(StoreSize store) {
+  return store == StoreSize::k64KB ? 16 : 32;
+}
+
+/// What one build of the kernel is made for.
+struct LayoutChoice {
+  StoreSize store = StoreSize::k256KB;
+  std::uint32_t tile_width = 32;   ///< pixels along a tile's edge
+  std::uint32_t packet_width = 8;  ///< rays along a packet's edge
+};
 
 enum class Mode : std::uint8_t {
   kChecked,  ///< every rule checked, destinations poisoned until the wait, work traced
@@ -37,7 +53,7 @@ struct ChipOptions {
   std::uint32_t threads = 1;       ///< host threads, each one simulated core's worth of claims
   std::uint32_t lanes = 4;         ///< 4, 8, 16 (8 and 16 where the host has them, else kUnsupportedFrame)
   StoreSize store = StoreSize::k256KB;
-  std::uint32_t packet_width = 8;  ///< 4, 8, 16; 32 in the 256 KB store
+  std::uint32_t packet_width = 8;  ///< rays along a packet's edge; the frame brings its tile width
   Completion completion = Completion::kEarly;
   std::uint64_t seed = 0;          ///< of Completion::kRandom
   PlatformLimits limits;           ///< of the simulated platform
@@ -66,11 +82,16 @@ struct ChipResult {
 
 /// Renders the frame whose FrameRecord lies at `frame` in `memory`. The output lies in `memory` afterwards.
 ///
-/// Errors: kBadFrame (the record, or a part of memory that it names, is not there), kUnsupportedFrame (lanes, packet
-/// width or mode not built, or not runnable on this host), kBadParameter (limits that are not a platform's, a tile that
-/// is not in the frame, no threads), kAborted, and whatever the kernel or a broken rule reports. When several tiles
-/// fail, the lowest one is told, with its violations, for any number of threads.
+/// Errors: kBadFrame (the record, or a part of memory that it names, is not there), kUnsupportedFrame (is_built says no
+/// of store, tile width, packet width, mode and lanes, or this host cannot run it), kBadParameter (limits that are not
+/// a platform's, a tile that is not in the frame, no threads), kAborted, and whatever the kernel or a broken rule
+/// reports. When several tiles fail, the lowest one is told, with its violations, for any number of threads.
 [[nodiscard]] ChipResult render_frame(SimMemory& memory, MainAddress frame, const ChipOptions& options);
+
+/// @returns whether the kernel was built for a layout in a mode and for a lane count, whatever this host can run.
+/// Stores of 64 KB with tiles of 16 and of 256 KB with tiles of 32 pixels are built in every mode, the others in
+/// Mode::kChecked with 4 lanes.
+[[nodiscard]] bool is_built(const LayoutChoice& layout, Mode mode, std::uint32_t lanes);
 
 /// @returns the widest lane count this host can run: 4, 8 or 16.
 [[nodiscard]] std::uint32_t widest_lanes();

@@ -12,6 +12,7 @@
 
 #include "../gridiron/run_program.h"
 #include "../gridiron/temporary_folder.h"
+#include "experiment/paper_experiment.h"
 #include "markup.h"
 
 namespace gridiron::test {
@@ -107,6 +108,50 @@ void expect_rival(const fs::path& folder) {
   EXPECT_GT(sum, number_under(map, map.size() - 1, "bytes") - 128) << "padding of the last region at most";
 }
 
+// Store and tiles: every value has its frame on every view, figures follow from each other, and no pixel differs.
+void expect_sweeps(const fs::path& folder) {
+  for (const char* name : {"sweep_local_store.csv", "sweep_tile_width.csv"}) {
+    SCOPED_TRACE(name);
+    const auto rows = csv_rows(folder / name);
+    ASSERT_EQ(rows.size(), 1u + 2u * 2u * 4u) << "two views, two configurations, four values";
+    const auto column = [&rows](const char* key) {
+      return static_cast<std::size_t>(std::ranges::find(rows[0], key) - rows[0].begin());
+    };
+    const std::string swept = std::string(name) == "sweep_tile_width.csv" ? "tile_width" : "store_kb";
+    const std::vector<std::string> values = swept == "store_kb" ? std::vector<std::string>{"64", "128", "256", "512"}
+                                                                : std::vector<std::string>{"8", "16", "32", "64"};
+    const std::string usual = swept == "store_kb" ? "256" : "32";
+    for (std::size_t row = 1; row < rows.size(); ++row) {
+      SCOPED_TRACE(row);
+      EXPECT_EQ(rows[row][column(swept.c_str())], values[(row - 1) % 4]);
+      EXPECT_EQ(rows[row][column("same_picture")], "yes");
+      EXPECT_GT(number_under(rows, row, "fps"), 0);
+      const std::size_t usual_row = row - (row - 1) % 4 + 2;
+      EXPECT_EQ(rows[usual_row][column(swept.c_str())], usual);
+      EXPECT_NEAR(number_under(rows, row, "fps_over_usual") * number_under(rows, usual_row, "fps"),
+                  number_under(rows, row, "fps"), 1e-6);
+      const double tile = number_under(rows, row, "tile_width"), packet = number_under(rows, row, "packet_width");
+      EXPECT_EQ(packet, rows[row][1] == "reference" ? 8 : std::min(tile, 32.0));
+    }
+    // A frame must not be mistaken for another one: neighbours differ in time or in bytes.
+    EXPECT_NE(rows[1][column("fps")], rows[3][column("fps")]);
+  }
+  const auto fits = csv_rows(folder / "local_store_fit.csv");
+  ASSERT_EQ(fits.size(), 1u + 4u * 7u);
+  for (std::size_t row = 1; row < fits.size(); ++row) {
+    const bool fits_here = number_under(fits, row, "data_bytes") <= number_under(fits, row, "room_bytes");
+    EXPECT_EQ(fits[row][5], fits_here ? "yes" : "no") << row;
+  }
+  for (const char* configuration : {"reference", "best"}) {
+    const auto map = csv_rows(folder / ("local_store_map_" + std::string(configuration) + ".csv"));
+    EXPECT_EQ(map.at(0).size(), 1u + 2u * 4u);
+    for (const char* size : {"64", "128", "256", "512"}) {
+      const std::string key = std::string("store_") + size + "_bytes";
+      EXPECT_EQ(number_under(map, map.size() - 1, key), std::stod(size) * 1024) << configuration;
+    }
+  }
+}
+
 TEST(Experiment, FilesDoNotDependOnThreads) {
   const TemporaryFolder folder;
   for (const char* threads : {"1", "3"}) {
@@ -126,6 +171,13 @@ TEST(Experiment, FilesDoNotDependOnThreads) {
   EXPECT_EQ(names.count("host_fig7.csv"), 1u);
   expect_rival(folder.path("out1"));
 
+  // Every name was known before the work began.
+  const std::vector<std::string> known = experiment::paper_file_names();
+  EXPECT_EQ(std::set<std::string>(known.begin(), known.end()).size(), known.size()) << "each once";
+  for (const std::string& name : names) EXPECT_NE(std::ranges::find(known, name), known.end()) << name;
+  EXPECT_EQ(known.size() - names.size(), 2u * 5u) << "what is missing is of the five views that are not there";
+  expect_sweeps(folder.path("out1"));
+
   // The page names every file and nothing else; every plot is well formed, every table has rows of one length.
   std::set<std::string> linked = {"index.html"};
   for (const MarkupElement& element : parse_markup(read_file(folder.path("out1") / "index.html"))) {
@@ -144,7 +196,10 @@ TEST(Experiment, FilesDoNotDependOnThreads) {
       EXPECT_GE(std::ranges::count(content, '\n'), 2) << name << " has no rows";
     }
   }
-  EXPECT_NE(read_file(folder.path("out1") / "index.html").find("bunny.ply was not found"), std::string::npos);
+  const std::string page = read_file(folder.path("out1") / "index.html");
+  EXPECT_NE(page.find("bunny.ply was not found"), std::string::npos);
+  EXPECT_EQ(page.find("none %"), std::string::npos);
+  EXPECT_EQ(page.find("nan"), std::string::npos);
 }
 
 TEST(Experiment, MistakesAreTold) {
@@ -164,7 +219,9 @@ TEST(Experiment, MistakesAreTold) {
       {{"experiment", "paper", "-o", "out", "--size", "64"}, 2, "WxH"},
       {{"experiment", "paper", "-o", "out", "--scenes", "nowhere"}, 1, "nowhere: no such folder"},
       {{"experiment", "paper", "-o", "no/such/out"}, 1, "no/such/out"},
-      {{"experiment", "paper", "-o", "file"}, 1, "file"},
+      {{"experiment", "paper", "-o", "file"}, 1, "file: "},
+      {{"experiment", "paper", "-o", "file/out"}, 1, "file/out: cannot make the folder"},
+      {{"experiment", "paper", "-o", ""}, 2, "'' is not the name of a folder"},
   };
   for (const Case& mistake : cases) {
     const ProgramResult result = run_program(folder.folder(), mistake.arguments);
@@ -172,6 +229,25 @@ TEST(Experiment, MistakesAreTold) {
     EXPECT_NE(result.err.find(mistake.words), std::string::npos) << result.err;
   }
   EXPECT_EQ(folder.names(), std::vector<std::string>{"file"});
+}
+
+// Found before anything is read or rendered: the scan, which is wrong, is not even looked at.
+TEST(Experiment, AnOutputThatCannotBeIsToldFirst) {
+  const TemporaryFolder folder;
+  folder.write("bunny.ply", "nonsense");
+  for (const char* name : {"index.html", "sweep_local_store.csv", "fig6_best_6_cores.svg", "sweep_latency_bunny.svg"}) {
+    const fs::path obstacle = folder.path("out") / name;
+    fs::create_directories(obstacle);
+    const ProgramResult result = run_program(folder.folder(), tiny("out", "1"));
+    EXPECT_EQ(result.exit_code, 1) << name;
+    EXPECT_NE(result.err.find(std::string("out/") + name + ": cannot write: it is a folder"), std::string::npos)
+        << result.err;
+    fs::remove_all(folder.path("out"));
+  }
+  // A folder that was there stays, with what lies in it.
+  fs::create_directories(folder.path("out") / "index.html");
+  (void)run_program(folder.folder(), tiny("out", "1"));
+  EXPECT_EQ(names_in(folder.path("out")), std::set<std::string>{"index.html"});
 }
 
 TEST(Experiment, AWrongScanLeavesNothing) {

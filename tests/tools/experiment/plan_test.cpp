@@ -79,6 +79,38 @@ TEST(Plan, FramesAreRenderedOnceAndRunsAreShared) {
   EXPECT_EQ(plan.result(six).timing.cores.size(), 6u);
 }
 
+// What is rendered anew for each machine counts once a run, what is replayed once.
+class ReplayedRecording : public FakeRecording {
+ public:
+  [[nodiscard]] TimedFrame time(const sim::MachineProfile& machine, std::uint32_t core_count) const override {
+    return {FakeRecording::time(machine, core_count).timing, std::nullopt};
+  }
+};
+
+class ReplayedSystem : public System {
+ public:
+  [[nodiscard]] std::string key() const override { return "replayed"; }
+  [[nodiscard]] std::unique_ptr<Recording> record(const View&, const FrameRequest&) const override {
+    return std::make_unique<ReplayedRecording>();
+  }
+};
+
+TEST(Plan, RenderedFramesAreCounted) {
+  std::atomic<int> frames = 0;
+  const auto anew = std::make_shared<FakeSystem>("anew", frames);
+  const auto replayed = std::make_shared<ReplayedSystem>();
+  const View view = view_named("v"), too_big = view_named("too_big");
+  const Machine machine = built_in_machine("cell-ps3");
+  Plan plan(8, 8);
+  for (const std::uint32_t cores : {1u, 2u, 3u}) {
+    (void)plan.add(view, anew, Shading::kNone, machine, cores);
+    (void)plan.add(view, replayed, Shading::kNone, machine, cores);
+  }
+  (void)plan.add(too_big, anew, Shading::kNone, machine, 1);
+  plan.execute(1, kNoProgress);
+  EXPECT_EQ(plan.rendered_count(), 3u + 1u) << "three by the system with caches, one replayed, none that failed";
+}
+
 // The build has its price on the master of the run's machine, and caches are those of the run.
 TEST(Plan, BuildAndCachesBelongToTheRun) {
   std::atomic<int> frames = 0;

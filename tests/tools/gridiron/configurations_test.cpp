@@ -4,6 +4,10 @@
 #include <gridiron/base/records.h>
 #include <gtest/gtest.h>
 
+#include <algorithm>
+#include <optional>
+#include <vector>
+
 #include "gridiron/store_facts.h"
 
 namespace gridiron::test {
@@ -24,7 +28,7 @@ TEST(Configurations, ReferenceIsTheReferenceSystem) {
 
 TEST(Configurations, EachFitsTheDefaultStore) {
   for (const tool::Configuration& configuration : tool::configurations()) {
-    const tool::StoreFacts store = tool::store_facts(sim::StoreSize::k256KB, configuration.packet_width);
+    const tool::StoreFacts store = tool::usual_store_facts(sim::StoreSize::k256KB, configuration.packet_width);
     EXPECT_LE(configuration.macro_width, store.max_macro_width) << configuration.name;
     EXPECT_LE(configuration.depths.output, store.max_output_depth) << configuration.name;
     EXPECT_LE(configuration.depths.macro, store.max_macro_depth) << configuration.name;
@@ -39,22 +43,51 @@ TEST(Configurations, UnknownNamesAreNone) {
 }
 
 TEST(StoreFacts, RegionsFillTheStoreInOrderWithinTheArena) {
-  for (const sim::StoreSize size : {sim::StoreSize::k64KB, sim::StoreSize::k256KB}) {
-    for (const std::uint32_t packet_width : {4u, 8u, 16u}) {
-      const tool::StoreFacts store = tool::store_facts(size, packet_width);
-      ASSERT_FALSE(store.regions.empty());
-      std::uint64_t end_bytes = 0;
-      for (const tool::LocalStoreRegion& region : store.regions) {
-        EXPECT_GE(region.offset_bytes, end_bytes) << region.name;
-        EXPECT_GT(region.bytes, 0u) << region.name;
-        end_bytes = region.offset_bytes + region.bytes;
-      }
-      EXPECT_EQ(store.data_bytes(), end_bytes);
-      EXPECT_LE(store.data_bytes() + store.code_bytes + store.stack_bytes, store.arena_bytes);
+  const std::vector<sim::LayoutChoice> layouts = tool::built_layouts();
+  EXPECT_EQ(layouts.size(), 18u);
+  for (const sim::LayoutChoice& layout : layouts) {
+    const std::optional<tool::StoreFacts> store = tool::find_store_facts(layout);
+    ASSERT_TRUE(store.has_value());
+    ASSERT_FALSE(store->regions.empty());
+    std::uint64_t end_bytes = 0;
+    for (const tool::LocalStoreRegion& region : store->regions) {
+      EXPECT_GE(region.offset_bytes, end_bytes) << region.name;
+      EXPECT_GT(region.bytes, 0u) << region.name;
+      end_bytes = region.offset_bytes + region.bytes;
+    }
+    EXPECT_EQ(store->data_bytes(), end_bytes);
+    EXPECT_LE(store->data_bytes() + store->code_bytes + store->stack_bytes, store->arena_bytes);
+    EXPECT_EQ(store->arena_bytes, sim::arena_bytes(layout.store));
+    EXPECT_EQ(store->tile_width, layout.tile_width);
+    EXPECT_EQ(store->packet_width, layout.packet_width);
+    EXPECT_TRUE(sim::is_built(layout, sim::Mode::kChecked, 4));
+  }
+}
+
+TEST(StoreFacts, EveryStoreHasTheConfigurationsPackets) {
+  for (const sim::StoreSize size : sim::kStoreSizes) {
+    for (const tool::Configuration& configuration : tool::configurations()) {
+      const tool::StoreFacts store = tool::usual_store_facts(size, configuration.packet_width);
+      EXPECT_EQ(store.arena_bytes, sim::arena_bytes(size));
+      EXPECT_EQ(store.tile_width, size == sim::StoreSize::k64KB ? 16u : 32u);
+      EXPECT_EQ(store.packet_width, std::min(configuration.packet_width, store.tile_width));
     }
   }
-  EXPECT_EQ(tool::store_facts(sim::StoreSize::k64KB, 8).arena_bytes, 64u << 10);
-  EXPECT_EQ(tool::store_facts(sim::StoreSize::k256KB, 8).arena_bytes, 256u << 10);
+  EXPECT_FALSE(tool::find_store_facts({sim::StoreSize::k128KB, 64, 8}).has_value());
+}
+
+TEST(StoreFacts, FitsTellRoomAndNeed) {
+  const std::vector<tool::LayoutFit> fits = tool::layout_fits();
+  ASSERT_EQ(fits.size(), 4u * 7u);
+  std::size_t misfits = 0;
+  for (const tool::LayoutFit& fit : fits) {
+    EXPECT_EQ(fit.fits, fit.data_bytes <= fit.room_bytes);
+    EXPECT_LT(fit.room_bytes, sim::arena_bytes(fit.layout.store));
+    const std::optional<tool::StoreFacts> built = tool::find_store_facts(fit.layout);
+    EXPECT_TRUE(fit.fits || !built) << fit.layout.tile_width;
+    misfits += fit.fits ? 0u : 1u;
+  }
+  EXPECT_EQ(misfits, 6u) << "tiles of 32 and 64 in 64 KB, of 64 in 128 KB";
 }
 
 }  // namespace

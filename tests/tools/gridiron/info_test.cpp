@@ -54,6 +54,25 @@ TEST(Info, TellsWhatTheBuilderCounts) {
   EXPECT_EQ(info["local_store"]["regions"][0]["name"], "frame");
 }
 
+TEST(Info, EachStoreHasItsMap) {
+  const TemporaryFolder folder;
+  folder.write_ply("a.ply", make_scene());
+  folder.write("big.machine", "based_on cell-ps3\nlocal_store_bytes 524288\n");
+  const std::vector<std::string> command = {"a.ply", "--machine", "big.machine"};
+  EXPECT_EQ(info_json(folder, command)["local_store"]["arena_bytes"], 524288) << "the largest there is room for";
+  for (const int kilobytes : {64, 128, 256, 512}) {
+    std::vector<std::string> with_store = command;
+    with_store.insert(with_store.end(), {"--store", std::to_string(kilobytes), "--configuration", "best"});
+    const Json store = info_json(folder, with_store)["local_store"];
+    EXPECT_EQ(store["arena_bytes"], kilobytes * 1024);
+    const Json& last = store["regions"].back();
+    EXPECT_EQ(last["name"], "output");
+    EXPECT_LE(last["offset"].get<int>() + last["bytes"].get<int>() + store["code_bytes"].get<int>() +
+                  store["stack_bytes"].get<int>(),
+              kilobytes * 1024);
+  }
+}
+
 TEST(Info, APackedSceneTellsTheSameScene) {
   const TemporaryFolder folder;
   folder.write_ply("a.ply", make_scene());

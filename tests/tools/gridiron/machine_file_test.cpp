@@ -180,7 +180,11 @@ TEST(MachineFile, TheStoreFollowsTheMachine) {
   MachineProfile machine = *sim::find_machine_profile("cell-ps3");
   EXPECT_EQ(tool::largest_store(machine), sim::StoreSize::k256KB);
   machine.local_store_bytes = (256u << 10) - 1;
+  EXPECT_EQ(tool::largest_store(machine), sim::StoreSize::k128KB);
+  machine.local_store_bytes = (128u << 10) - 1;
   EXPECT_EQ(tool::largest_store(machine), sim::StoreSize::k64KB);
+  machine.local_store_bytes = 1u << 30;
+  EXPECT_EQ(tool::largest_store(machine), sim::StoreSize::k512KB);
 }
 
 }  // namespace

@@ -144,6 +144,9 @@ TEST(Render, TechniquesChangeTheWorkAndNotThePicture) {
                             {"--packet", "4"},
                             {"--packet", "16"},
                             {"--store", "64"},
+                            {"--store", "128", "--configuration", "best"},
+                            {"--tile-width", "8"},
+                            {"--tile-width", "64", "--configuration", "best"},
                             {"--lambda", "1"},
                             {"--macro-width", "4"},
                             {"--cores", "2"},
@@ -157,6 +160,12 @@ TEST(Render, TechniquesChangeTheWorkAndNotThePicture) {
   EXPECT_EQ(render_report(folder, scene + Words{"--no-culling"})["work"]["cull_test"], 0);
   EXPECT_EQ(render_report(folder, scene + Words{"--cores", "2"})["cores"].size(), 2u);
   EXPECT_EQ(render_report(folder, scene + Words{"--store", "64"})["local_store"]["arena_bytes"], 65536);
+  EXPECT_EQ(render_report(folder, scene + Words{"--store", "128"})["local_store"]["arena_bytes"], 131072);
+  folder.write("big.machine", "based_on cell-ps3\nlocal_store_bytes 600000\n");
+  const Words big = scene + Words{"--machine", "big.machine"};
+  EXPECT_EQ(render_report(folder, big)["local_store"]["arena_bytes"], 524288) << "the largest that there is room for";
+  EXPECT_EQ(render_report(folder, big + Words{"--packet", "4"})["local_store"]["arena_bytes"], 262144)
+      << "the largest that is built for what was asked";
   const Json paper = render_report(folder, scene + Words{"--accuracy", "paper"});
   EXPECT_EQ(paper["work"]["group_test_standard"], 0);
   EXPECT_GT(paper["work"]["group_test_paper"], 0);

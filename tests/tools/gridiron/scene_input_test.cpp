@@ -107,6 +107,10 @@ TEST_F(SceneInputTest, BudgetLeavesRoomForThePicture) {
   const std::uint64_t small = tool::image_budget_bytes(machine, 1, 1, 1);
   EXPECT_EQ(small, tool::image_budget_bytes(machine, 1024, 1024, 3)) << "pack and render agree";
   EXPECT_EQ(small - tool::image_budget_bytes(machine, 2048, 1024, 3), std::uint64_t{3} * 4 * 1024 * 1024);
+  EXPECT_EQ(small, tool::image_budget_bytes(machine, 1024, 1024, 3, 64));
+  EXPECT_EQ(tool::image_budget_bytes(machine, 2048, 1056, 3, 32) - tool::image_budget_bytes(machine, 2048, 1056, 3, 64),
+            std::uint64_t{3} * 4 * 2048 * 32)
+      << "whole tiles are counted";
   EXPECT_THROW((void)tool::image_budget_bytes(machine, 16384, 16384, 1), tool::Failure);
 }
 

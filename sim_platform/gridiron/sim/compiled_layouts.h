@@ -1,0 +1,37 @@
+// Compiled layouts: for which local stores the simulated chip has a kernel, and how one is picked at run time.
+// Memory: types alone. Threads: any. SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <gridiron/sim/sim_chip.h>
+#include <gridiron/store/local_store.h>
+
+#include <cstdint>
+
+namespace gridiron::sim {
+
+template <class... Layouts>
+struct LayoutList {};
+
+/// In every mode and for every lane count.
+using CommonLayouts = LayoutList<StoreLayout64K<4>, StoreLayout64K<8>, StoreLayout64K<16>, StoreLayout256K<4>,
+                                 StoreLayout256K<8>, StoreLayout256K<16>, StoreLayout256K<32>>;
+
+/// In Mode::kChecked with 4 lanes only: what sweeps of the store's and the tile's size are timed with.
+using SweepLayouts =
+    LayoutList<StoreLayout128K<8>, StoreLayout128K<32>, StoreLayout512K<8>, StoreLayout512K<32>, StoreLayout512K<8, 64>,
+               StoreLayout512K<32, 64>, StoreLayout256K<8, 8>, StoreLayout256K<8, 16>, StoreLayout256K<16, 16>,
+               StoreLayout256K<8, 64>, StoreLayout256K<32, 64>>;
+
+template <class Layout>
+[[nodiscard]] constexpr bool is_layout(const LayoutChoice& choice) {
+  return Layout::kArenaBytes == arena_bytes(choice.store) && Layout::kTileWidth == choice.tile_width &&
+         Layout::kPacketWidth == choice.packet_width;
+}
+
+/// Calls visit.operator()<Layout>() of the layout that was chosen. @returns false where the list does not hold it.
+template <class... Layouts, class Visit>
+constexpr bool visit_layout(LayoutList<Layouts...>, const LayoutChoice& choice, Visit&& visit) {
+  return ((is_layout<Layouts>(choice) && (visit.template operator()<Layouts>(), true)) || ...);
+}
+
+}  // namespace gridiron::sim

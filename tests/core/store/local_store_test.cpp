@@ -1,0 +1,85 @@
+// Local store: every layout's regions lie in its arena beside code and stack, and no region overlaps another.
+// SPDX-License-Identifier: Apache-2.0
+#include <gridiron/store/local_store.h>
+#include <gtest/gtest.h>
+
+#include <cstddef>
+#include <cstdint>
+#include <string>
+#include <vector>
+
+namespace gridiron::test {
+namespace {
+
+struct Region {
+  std::string name;
+  std::size_t offset_bytes, bytes;
+};
+
+template <class Layout>
+class LayoutTest : public testing::Test {};
+
+using Layouts =
+    testing::Types<StoreLayout64K<4>, StoreLayout64K<8>, StoreLayout64K<16>, StoreLayout64K<8, 8>, StoreLayout128K<8>,
+                   StoreLayout128K<32>, StoreLayout128K<16, 16>, StoreLayout256K<4>, StoreLayout256K<8>,
+                   StoreLayout256K<16>, StoreLayout256K<32>, StoreLayout256K<8, 8>, StoreLayout256K<8, 16>,
+                   StoreLayout256K<16, 16>, StoreLayout256K<8, 64>, StoreLayout256K<32, 64>, StoreLayout512K<8>,
+                   StoreLayout512K<32>, StoreLayout512K<8, 64>, StoreLayout512K<32, 64>>;
+TYPED_TEST_SUITE(LayoutTest, Layouts);
+
+TYPED_TEST(LayoutTest, RegionsLieInOrderBesideCodeAndStack) {
+  using Store = LocalStore<TypeParam>;
+  std::vector<Region> regions;
+  for_each_region<TypeParam>([&regions](const char* name, std::size_t offset_bytes, std::size_t bytes) {
+    regions.push_back({name, offset_bytes, bytes});
+  });
+  ASSERT_EQ(regions.size(), 8u);
+  std::size_t end_bytes = 0;
+  for (const Region& region : regions) {
+    EXPECT_GE(region.offset_bytes, end_bytes) << region.name;
+    EXPECT_LT(region.offset_bytes - end_bytes, kLineBytes) << region.name << ": a hole";
+    EXPECT_EQ(region.offset_bytes % kLineBytes, 0u) << region.name;
+    end_bytes = region.offset_bytes + region.bytes;
+  }
+  EXPECT_LE(end_bytes, sizeof(Store));
+  EXPECT_LE(sizeof(Store) + TypeParam::kCodeBudgetBytes + TypeParam::kStackBudgetBytes, TypeParam::kArenaBytes);
+  EXPECT_TRUE(kFitsArena<TypeParam>);
+}
+
+TYPED_TEST(LayoutTest, BuffersHoldWhatTheirNamesSay) {
+  using Store = LocalStore<TypeParam>;
+  constexpr std::uint32_t kPixels = TypeParam::kTileWidth * TypeParam::kTileWidth;
+  EXPECT_EQ(sizeof(Store::output), TypeParam::kMaxOutputDepth * kPixels * 12) << "colour, distance, triangle";
+  EXPECT_EQ(TypeParam::kTileWidth % TypeParam::kPacketWidth, 0u);
+  // A run of triangles starts anywhere on 16 bytes of a congruence of 32.
+  constexpr std::size_t kRunBytes = TypeParam::kTrianglesPerBuffer * kTriangleRecordBytes + 16;
+  EXPECT_GE(sizeof(typename Store::TriangleBuffer), kRunBytes);
+  constexpr std::size_t kCells = TypeParam::kMaxMacroWidth * TypeParam::kMaxMacroWidth * TypeParam::kMaxMacroWidth;
+  EXPECT_GE(sizeof(typename Store::CellBlock), kCells * sizeof(CellRecord));
+  EXPECT_EQ(TypeParam::kMailboxSlots & (TypeParam::kMailboxSlots - 1), 0u) << "a power of two";
+}
+
+TEST(Layouts, WhatDoesNotFitIsTold) {
+  EXPECT_FALSE((kFitsArena<StoreLayout64K<8, 32>>)) << "two tiles of 32 pixels take 24 KB";
+  EXPECT_FALSE((kFitsArena<StoreLayout128K<8, 64>>)) << "two tiles of 64 pixels take 96 KB";
+  EXPECT_FALSE((kFitsArena<StoreLayout128K<32, 64>>));
+}
+
+TEST(Layouts, AreAsLargeAsTheirNames) {
+  EXPECT_EQ(StoreLayout64K<>::kArenaBytes, 64u << 10);
+  EXPECT_EQ(StoreLayout128K<>::kArenaBytes, 128u << 10);
+  EXPECT_EQ(StoreLayout256K<>::kArenaBytes, 256u << 10);
+  EXPECT_EQ(StoreLayout512K<>::kArenaBytes, 512u << 10);
+}
+
+// The README and users of the 256 KB layout count on these places.
+TEST(Layouts, TheUsualMapStays) {
+  using Store = LocalStore<StoreLayout256K<8>>;
+  EXPECT_EQ(offsetof(Store, table), 640u);
+  EXPECT_EQ(offsetof(Store, triangles), 50'816u);
+  EXPECT_EQ(offsetof(Store, output), 91'776u);
+  EXPECT_EQ(sizeof(Store), 116'352u);
+}
+
+}  // namespace
+}  // namespace gridiron::test
