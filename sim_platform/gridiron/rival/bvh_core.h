@@ -51,7 +51,6 @@ class BvhCore {
 
  private:
   using StorePacket = PacketContext::StorePacket;
-  using State = PacketContext::State;
   static constexpr std::uint32_t kPlaneBytes = kTilePixels * sizeof(std::uint32_t);
 
   [[nodiscard]] const FrameRecord& frame() const { return store_.record.frame; }
@@ -60,6 +59,7 @@ class BvhCore {
     return settings().line_nodes * static_cast<std::uint32_t>(sizeof(BvhNode));
   }
   [[nodiscard]] std::uint32_t triangle_line_bytes() const { return settings().line_triangles * kTriangleRecordBytes; }
+  void charge_to(RivalWork kind) { store_.work.charge_to(carrier_of(kind)); }
   void count(RivalWork kind, std::uint32_t amount = 1) { store_.work.add(carrier_of(kind), amount); }
 
   // --- Tiles ------------------------------------------------------------------------------------------------------
@@ -80,6 +80,7 @@ class BvhCore {
     } else {
       GRIDIRON_TRY(trace_tile<false>());
     }
+    store_.work.charge_to(Work::kTileStart);
     GRIDIRON_TRY(put_tile(tile_id, tag));
     return waits_for_output_ ? transfers_.wait(tag) : Status::kOk;
   }
@@ -93,18 +94,19 @@ class BvhCore {
     std::uint32_t last = 0;
     for (std::uint32_t i = 0; live != 0; i = i + 1 == ring_size ? 0 : i + 1) {
       PacketContext& context = store_.contexts[i];
-      if (context.state == State::kIdle) continue;
+      if (context.state == PacketContext::kIdle) continue;
       if (i != last) count(RivalWork::kSwitch);
       last = i;
       GRIDIRON_TRY(run_packet<kWantFacing>(context, i));
-      if (context.state == State::kIdle) --live;
+      if (context.state == PacketContext::kIdle) --live;
     }
     return Status::kOk;
   }
 
   // The context's next packet of the tile. @returns false where there is none.
   [[nodiscard]] bool start_packet(PacketContext& context) {
-    context.state = State::kIdle;
+    store_.work.charge_to(Work::kPacketStart);
+    context.state = PacketContext::kIdle;
     if (next_y_ >= kTileWidth || top_ + next_y_ >= frame().height) return false;
     context.x = next_x_;
     context.y = next_y_;
@@ -123,7 +125,7 @@ class BvhCore {
     context.largest_reach = frame().t_far;
     context.stack_count = 0;
     context.current = {BvhChild::node(0), 0.0f, 0};
-    context.state = State::kRunning;
+    context.state = PacketContext::kRunning;
     return true;
   }
 
@@ -134,8 +136,8 @@ class BvhCore {
   [[nodiscard]] Status run_packet(PacketContext& context, std::uint32_t ring_index) {
     for (;;) {
       bool arrived = false;
-      if (context.state == State::kWaiting) {
-        context.state = State::kRunning;
+      if (context.state == PacketContext::kWaiting) {
+        context.state = PacketContext::kRunning;
         arrived = context.slot != kNoSlot;
         if (arrived) GRIDIRON_TRY(take_line(context));
       }
@@ -143,7 +145,7 @@ class BvhCore {
         bool is_there = false;
         GRIDIRON_TRY(look_up(context, ring_index, is_there));
         if (!is_there) {
-          context.state = State::kWaiting;
+          context.state = PacketContext::kWaiting;
           if (settings().ring_size > 1) return Status::kOk;
           continue;
         }
@@ -161,6 +163,7 @@ class BvhCore {
 
   // Looks for the line of context.current. Where it is not there, context.slot is the one to wait for, or kNoSlot.
   [[nodiscard]] Status look_up(PacketContext& context, std::uint32_t ring_index, bool& is_there) {
+    count(RivalWork::kCacheLookup);
     const BvhChild child = context.current.child;
     if (child.is_leaf()) {
       return look_up(store_.triangle_cache, child.first_triangle() / settings().line_triangles, triangle_lines_,
@@ -174,7 +177,6 @@ class BvhCore {
   template <class Cache>
   [[nodiscard]] Status look_up(Cache& cache, std::uint32_t line, std::byte* lines, std::uint32_t line_bytes,
                                std::uint64_t address, std::uint32_t tag, PacketContext& context, bool& is_there) {
-    count(RivalWork::kCacheLookup);
     const auto found = cache.find(line);
     context.slot = found.slot;
     is_there = found.answer == Cache::Answer::kHit;
@@ -182,7 +184,7 @@ class BvhCore {
     cache.pin(found.slot);
     if (found.answer == Cache::Answer::kPending) return Status::kOk;
     count(RivalWork::kRefill);
-    cache.begin_fill(found.slot, static_cast<std::uint8_t>(tag));
+    cache.begin_fill(found.slot, tag);
     return transfers_.get(lines + found.slot * line_bytes, MainAddress{address + std::uint64_t{line} * line_bytes},
                           line_bytes, static_cast<std::uint8_t>(tag));
   }
@@ -195,7 +197,7 @@ class BvhCore {
   template <class Cache>
   [[nodiscard]] Status take_line(Cache& cache, std::uint32_t slot) {
     if (cache.is_pending(slot)) {
-      GRIDIRON_TRY(transfers_.wait(cache.tag_of(slot)));
+      GRIDIRON_TRY(transfers_.wait(static_cast<std::uint8_t>(cache.tag_of(slot))));
       cache.end_fill(slot);
     }
     cache.unpin(slot);
@@ -214,33 +216,39 @@ class BvhCore {
     StackEntry sorted[kNodeWidth];
     std::uint32_t met_count = 0;
     for (; met != 0; met &= met - 1) {
-      const auto i = static_cast<std::uint32_t>(__builtin_ctz(met));
+      const auto i = lowest_bit(met);
       const BvhChild child = node.children[i];
       std::uint32_t group = context.current.first_group;
       const RayTests tests = settings().ray_tests;
       if (tests == RayTests::kAll || (tests == RayTests::kLeaves && child.is_leaf())) {
         std::uint32_t tested = 0;
-        group = context.bounds.template first_group_met<L>(context.packet, node, i, group, tested);
         count(RivalWork::kBoxSetup);
-        count(RivalWork::kBoxGroup, tested);
+        group = context.bounds.template first_group_met<L>(context.packet, node, i, group, tested, store_.work);
         if (group == PacketContext::StorePacket::kRayCount / L::kCount) continue;
       }
       count(RivalWork::kChildPush);
-      std::uint32_t position = met_count++;
+      std::uint32_t position = met_count;
+      ++met_count;
       for (; position > 0 && sorted[position - 1].entry < entry[i]; --position) sorted[position] = sorted[position - 1];
       sorted[position] = {child, entry[i], group};
     }
+    charge_to(RivalWork::kChildPush);
     if (met_count == 0) return false;
-    for (std::uint32_t i = 0; i + 1 < met_count; ++i) context.stack[context.stack_count++] = sorted[i];
+    for (std::uint32_t i = 0; i + 1 < met_count; ++i) {
+      context.stack[context.stack_count] = sorted[i];
+      ++context.stack_count;
+    }
     context.current = sorted[met_count - 1];
     return true;
   }
 
   // Takes the next entry that is not behind everything hit so far. @returns false where none is left.
   [[nodiscard]] bool pop(PacketContext& context) {
+    charge_to(RivalWork::kStackPop);
     while (context.stack_count != 0) {
       count(RivalWork::kStackPop);
-      context.current = context.stack[--context.stack_count];
+      --context.stack_count;
+      context.current = context.stack[context.stack_count];
       if (context.current.entry <= context.largest_reach) return true;
     }
     return false;
@@ -265,6 +273,7 @@ class BvhCore {
     }
     SubpacketSet changed = 0;
     constexpr std::uint32_t kBatch = EdgeBatch<L>::kTriangles;
+    charge_to(RivalWork::kLeafVisit);
     for (std::uint32_t i = 0; i < child.triangle_count(); i += kBatch) {
       const VertexTriangle* batch[kBatch];
       SubpacketSet subpackets[kBatch];
@@ -275,6 +284,7 @@ class BvhCore {
       }
       changed |= intersect_standard_batch<L, kWantFacing>(context.packet, batch, subpackets, in_batch, culling,
                                                           store_.work);
+      charge_to(RivalWork::kLeafVisit);
     }
     if (changed != 0) update_reach(context, changed);
   }

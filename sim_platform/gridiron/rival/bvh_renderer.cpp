@@ -38,8 +38,8 @@ template <class Element>
   return rows;
 }
 
-[[nodiscard]] Status make_record(const Bvh& bvh, FrameSettings settings, const RenderOptions& options,
-                                 sim::SimMemory& memory, FrameInMemory& parts) {
+[[nodiscard]] Status make_frame(const Bvh& bvh, FrameSettings settings, const RenderOptions& options,
+                                sim::SimMemory& memory, FrameInMemory& parts) {
   const std::uint64_t plane_bytes = output_plane_bytes(settings.width, settings.height, kTileWidth);
   const auto nodes = memory.allocate(bytes_of(bvh.nodes).size());
   const auto triangles = memory.allocate(bytes_of(bvh.triangles).size());
@@ -51,28 +51,11 @@ template <class Element>
   std::memcpy(nodes->bytes.data(), bvh.nodes.data(), nodes->bytes.size());
   std::memcpy(triangles->bytes.data(), bvh.triangles.data(), triangles->bytes.size());
 
-  settings.tile_width = kTileWidth;
-  settings.output_depth = kOutputDepth;
   settings.color = color->address;
   settings.depth = options.all_planes ? depth->address : MainAddress{};
   settings.ids = options.all_planes ? ids->address : MainAddress{};
-  // Core's own frame, of an image that is never opened: only camera, size and outputs are looked at.
-  SceneImageView no_image{};
-  no_image.grid.triangle_format = static_cast<std::uint32_t>(TriangleFormat::kVertices);
   RivalFrameRecord rival{};
-  GRIDIRON_TRY(make_frame_record(settings, no_image, MainAddress{}, rival.frame));
-  std::memcpy(rival.low, bvh.low, sizeof rival.low);
-  std::memcpy(rival.high, bvh.high, sizeof rival.high);
-  rival.nodes_address = nodes->address.value;
-  rival.triangles_address = triangles->address.value;
-  rival.settings = {.ring_size = options.hyper_threading ? options.ring_size : 1,
-                    .node_lines = options.caches.node_lines,
-                    .triangle_lines = options.caches.triangle_lines,
-                    .line_nodes = bvh.parameters.line_nodes,
-                    .line_triangles = bvh.parameters.line_triangles,
-                    .ray_tests = options.ray_tests,
-                    .use_subpackets = options.use_subpackets ? 1u : 0u,
-                    .reserved = 0};
+  GRIDIRON_TRY(make_rival_record(bvh, settings, options, nodes->address, triangles->address, rival));
   std::memcpy(record->bytes.data(), &rival, sizeof rival);
   parts = {*record, *color, *depth, *ids, rival.frame};
   return Status::kOk;
@@ -91,6 +74,29 @@ template <class Element>
 }
 
 }  // namespace
+
+Status make_rival_record(const Bvh& bvh, FrameSettings settings, const RenderOptions& options, MainAddress nodes,
+                         MainAddress triangles, RivalFrameRecord& rival) {
+  settings.tile_width = kTileWidth;
+  settings.output_depth = kOutputDepth;
+  // Core's own frame, of an image that is never opened: only camera, size and outputs are looked at.
+  SceneImageView no_image{};
+  no_image.grid.triangle_format = static_cast<std::uint32_t>(TriangleFormat::kVertices);
+  GRIDIRON_TRY(make_frame_record(settings, no_image, MainAddress{}, rival.frame));
+  std::memcpy(rival.low, bvh.low, sizeof rival.low);
+  std::memcpy(rival.high, bvh.high, sizeof rival.high);
+  rival.nodes_address = nodes.value;
+  rival.triangles_address = triangles.value;
+  rival.settings = {.ring_size = options.hyper_threading ? options.ring_size : 1,
+                    .node_lines = options.caches.node_lines,
+                    .triangle_lines = options.caches.triangle_lines,
+                    .line_nodes = bvh.parameters.line_nodes,
+                    .line_triangles = bvh.parameters.line_triangles,
+                    .ray_tests = options.ray_tests,
+                    .use_subpackets = options.use_subpackets ? 1u : 0u,
+                    .reserved = 0};
+  return Status::kOk;
+}
 
 BvhFrame render_bvh_frame(const Bvh& bvh, const FrameSettings& settings, const sim::MachineProfile& machine,
                           const RenderOptions& options) {
@@ -117,7 +123,7 @@ BvhFrame render_bvh_frame(const Bvh& bvh, const FrameSettings& settings, const s
   if (result.main_memory_bytes > machine.main_memory_bytes) return refuse(Status::kMemoryTooSmall);
   sim::SimMemory memory(result.main_memory_bytes + sim::SimMemory::kFirstAddress + kSlack);
   FrameInMemory parts;
-  const Status made = make_record(bvh, settings, options, memory, parts);
+  const Status made = make_frame(bvh, settings, options, memory, parts);
   if (made != Status::kOk) return refuse(made);
 
   // 2. The cores, in turn.

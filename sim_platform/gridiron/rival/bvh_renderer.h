@@ -59,6 +59,12 @@ struct BvhFrame {
   std::uint64_t main_memory_bytes = 0;      ///< nodes, triangles, planes
 };
 
+/// Writes what the cores of a frame need to know.
+/// @param settings  with the addresses of the planes; tile width and output depth are set here.
+/// @param nodes, triangles  where bvh.nodes and bvh.triangles lie in main memory. Errors: kBadFrame (settings).
+[[nodiscard]] Status make_rival_record(const Bvh& bvh, FrameSettings settings, const RenderOptions& options,
+                                       MainAddress nodes, MainAddress triangles, RivalFrameRecord& rival);
+
 /// Renders a frame on the simulated chip, every rule of the contract checked.
 ///
 /// Claims are granted by each core's clock without contention, so the run depends on `machine` and the options, and on

@@ -7,7 +7,8 @@
 #include <gridiron/base/math.h>
 #include <gridiron/base/records.h>
 #include <gridiron/ray/packet.h>
-#include <gridiron/rival/bvh.h>
+#include <gridiron/rival/bvh_node.h>
+#include <gridiron/rival/rival_work.h>
 
 #include <cstdint>
 
@@ -75,7 +76,7 @@ struct alignas(128) PacketBounds {
       }
       const float least = low > 0.0f ? low : high < 0.0f ? -high : 0.0f;
       const float largest = high < 0.0f ? -low : high;
-      near_side[axis] = high < 0.0f ? 1 : 0;
+      near_side[axis] = high < 0.0f ? 1u : 0u;
       entry_scale[axis] = entry_offset[axis] = exit_scale[axis] = 0.0f;
       exit_offset[axis] = kFloatMax;
       if (least > 0x1p-30f * dir_bound) {
@@ -114,7 +115,7 @@ struct alignas(128) PacketBounds {
     for (int axis = 0; axis < 3; ++axis) {
       const Float way_in = Float(entry_scale[axis]) * Float::load(node.bounds[near_side[axis]][axis]);
       nearest = Lanes<4>::max(nearest, way_in + Float(entry_offset[axis]));
-      const Float way_out = Float(exit_scale[axis]) * Float::load(node.bounds[1 - near_side[axis]][axis]);
+      const Float way_out = Float(exit_scale[axis]) * Float::load(node.bounds[1u - near_side[axis]][axis]);
       farthest = Lanes<4>::min(farthest, way_out + Float(exit_offset[axis]));
     }
     nearest.store(entry);
@@ -125,12 +126,13 @@ struct alignas(128) PacketBounds {
   /// kGroupCount where none does. @param tested  out: groups that were looked at.
   template <class L>
   [[nodiscard]] std::uint32_t first_group_met(const StorePacket& packet, const BvhNode& node, std::uint32_t child,
-                                              std::uint32_t first_group, std::uint32_t& tested) const {
+                                              std::uint32_t first_group, std::uint32_t& tested,
+                                              WorkCounters& work) const {
     using Float = typename L::Float;
     float near[3], far[3];
     for (int axis = 0; axis < 3; ++axis) {
       near[axis] = node.bounds[near_side[axis]][axis][child] - packet.origin[axis];
-      far[axis] = node.bounds[1 - near_side[axis]][axis][child] - packet.origin[axis];
+      far[axis] = node.bounds[1u - near_side[axis]][axis][child] - packet.origin[axis];
     }
     tested = 0;
     for (std::uint32_t group = first_group; group < kGroupCount<L>; ++group) {
@@ -138,6 +140,7 @@ struct alignas(128) PacketBounds {
       const std::uint32_t active = packet.active.template group<L>(base);
       if (active == 0) continue;
       ++tested;
+      work.add(carrier_of(RivalWork::kBoxGroup));
       Float entry(0.0f), exit(kFloatMax);
       for (int axis = 0; axis < 3; ++axis) {
         const Float scale = Float::load(reciprocal[axis] + base);
@@ -190,7 +193,7 @@ struct alignas(128) PacketBounds {
       for (int axis = 0; axis < 3; ++axis) {
         const float value = sure ? (flip ? -normal[axis] : normal[axis]) : 0.0f;
         plane[i][axis] = value;
-        plane_side[i][axis] = value > 0.0f ? 1 : 0;
+        plane_side[i][axis] = value > 0.0f ? 1u : 0u;
         constant -= value * packet.origin[axis];
       }
       plane[i][3] = constant;

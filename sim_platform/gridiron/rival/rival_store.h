@@ -5,7 +5,7 @@
 #include <gridiron/base/records.h>
 #include <gridiron/base/work_counters.h>
 #include <gridiron/ray/packet.h>
-#include <gridiron/rival/bvh.h>
+#include <gridiron/rival/bvh_node.h>
 #include <gridiron/rival/packet_bounds.h>
 #include <gridiron/rival/soft_cache.h>
 #include <gridiron/store/dma_tags.h>
@@ -24,8 +24,8 @@ inline constexpr std::uint32_t kTilePixels = kTileWidth * kTileWidth;
 inline constexpr std::uint32_t kMaxRing = 4;             ///< packets of the ring
 inline constexpr std::uint32_t kOutputDepth = 2;         ///< tiles in rotation
 inline constexpr std::uint32_t kCacheBytes = 144 * 1024; ///< both caches' lines
-inline constexpr std::uint32_t kMaxNodeLines = 1024;
-inline constexpr std::uint32_t kMaxTriangleLines = 512;
+inline constexpr std::uint32_t kMaxNodeLines = 512;
+inline constexpr std::uint32_t kMaxTriangleLines = 256;
 
 // The tags that the replay tells apart: node lines as cell blocks, triangle lines as triangle buffers.
 static_assert(kMaxRing <= kMacroTagCount && kMaxRing <= kTriangleTagCount && kOutputDepth <= kOutputTagCount);
@@ -74,7 +74,8 @@ struct alignas(128) PacketContext {
   StackEntry stack[kStackEntries];
   std::uint32_t stack_count;
   std::uint32_t slot;                         ///< of the line it waits for
-  enum class State : std::uint32_t { kIdle, kRunning, kWaiting } state;
+  std::uint32_t state;                        ///< kIdle, kRunning or kWaiting
+  static constexpr std::uint32_t kIdle = 0, kRunning = 1, kWaiting = 2;
 };
 
 /// Memory of one core.

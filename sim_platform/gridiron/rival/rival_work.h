@@ -23,6 +23,9 @@ enum class RivalWork : std::uint8_t {
   kBoxSetup,         ///< boxes prepared for tests by single groups
   kBoxGroup,         ///< groups of rays held against a box
   kLeafVisit,        ///< leaves whose triangles were tested
+  kTileStart,        ///< tiles begun
+  kPacketStart,      ///< packets begun: bounds
+  kReach,            ///< groups of rays whose farthest hit was sought, or ...
   kCount
 };
 inline constexpr std::uint32_t kRivalWorkCount = static_cast<std::uint32_t>(RivalWork::kCount);
@@ -31,7 +34,7 @@ inline constexpr std::uint32_t kRivalWorkCount = static_cast<std::uint32_t>(Riva
 [[nodiscard]] constexpr Work carrier_of(RivalWork kind) {
   constexpr std::array<Work, kRivalWorkCount> kCarriers = {
       Work::kMacroSliceStep, Work::kMacroCellStep, Work::kMacroCellVisit, Work::kSliceStep,     Work::kCellStep,
-      Work::kCellVisit,      Work::kTriangleBatch, Work::kMailboxProbe,   Work::kGroupTestPaper, Work::kHitGroupPaper};
+      Work::kCellVisit,      Work::kTriangleBatch, Work::kMailboxProbe,   Work::kGroupTestPaper, Work::kHitGroupPaper, Work::kTileStart, Work::kPacketStart, Work::kReachGroup};
   return kCarriers[static_cast<std::size_t>(kind)];
 }
 

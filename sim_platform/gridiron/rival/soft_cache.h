@@ -3,34 +3,13 @@
 // beside it. Threads: one core. SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <gridiron/rival/cache_counts.h>
+
 #include <cstdint>
 
 namespace gridiron::rival {
 
 inline constexpr std::uint32_t kCacheWays = 4;
-
-/// Look-ups of one cache and how they ended.
-struct CacheCounts {
-  std::uint64_t lookups = 0;
-  std::uint64_t hits = 0;          ///< the line was there
-  std::uint64_t pending_hits = 0;  ///< the line was on its way for another packet
-  std::uint64_t misses = 0;        ///< the line was fetched
-  std::uint64_t refusals = 0;      ///< every line of the set was waited for; the packet asks again
-
-  CacheCounts& operator+=(const CacheCounts& other) {
-    lookups += other.lookups;
-    hits += other.hits;
-    pending_hits += other.pending_hits;
-    misses += other.misses;
-    refusals += other.refusals;
-    return *this;
-  }
-  /// Look-ups that started no fetch, of those that found an answer. 1 where there were none.
-  [[nodiscard]] double hit_rate() const {
-    const std::uint64_t answered = hits + pending_hits + misses;
-    return answered == 0 ? 1.0 : 1.0 - static_cast<double>(misses) / static_cast<double>(answered);
-  }
-};
 
 /// Directory of a cache. Slot s holds one line; set i is slots [4 i, 4 i + 4); line l belongs to set l % (sets).
 ///
@@ -59,7 +38,7 @@ class alignas(128) SoftCache {
     counts_ = CacheCounts{};
     for (std::uint32_t slot = 0; slot < MaxLines; ++slot) {
       lines_[slot] = kNoLine;
-      state_[slot] = {static_cast<std::uint8_t>(slot % kCacheWays), 0, kNoTag};
+      state_[slot] = {slot % kCacheWays, 0, kNoTag};
     }
   }
 
@@ -89,10 +68,10 @@ class alignas(128) SoftCache {
   }
 
   /// The slot's line is on its way under `tag`.
-  void begin_fill(std::uint32_t slot, std::uint8_t tag) { state_[slot].tag = tag; }
+  void begin_fill(std::uint32_t slot, std::uint32_t tag) { state_[slot].tag = tag; }
   void end_fill(std::uint32_t slot) { state_[slot].tag = kNoTag; }
   [[nodiscard]] bool is_pending(std::uint32_t slot) const { return state_[slot].tag != kNoTag; }
-  [[nodiscard]] std::uint8_t tag_of(std::uint32_t slot) const { return state_[slot].tag; }
+  [[nodiscard]] std::uint32_t tag_of(std::uint32_t slot) const { return state_[slot].tag; }
 
   void pin(std::uint32_t slot) { ++state_[slot].pins; }
   void unpin(std::uint32_t slot) { --state_[slot].pins; }
@@ -102,12 +81,12 @@ class alignas(128) SoftCache {
  private:
   static constexpr std::uint32_t kNoLine = 0xFFFFFFFFu;
   static constexpr std::uint32_t kNoSlot = 0xFFFFFFFFu;
-  static constexpr std::uint8_t kNoTag = 0xFF;
+  static constexpr std::uint32_t kNoTag = 0xFF;
 
   struct SlotState {
-    std::uint8_t age;   ///< place of the slot in its set, 0 = most recently used
-    std::uint8_t pins;  ///< packets that wait for the line
-    std::uint8_t tag;   ///< that the line is on its way under
+    std::uint32_t age;   ///< place of the slot in its set, 0 = most recently used
+    std::uint32_t pins;  ///< packets that wait for the line
+    std::uint32_t tag;   ///< that the line is on its way under
   };
 
   void touch(std::uint32_t first, std::uint32_t slot) {
