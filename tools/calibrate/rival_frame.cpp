@@ -59,7 +59,7 @@ __attribute__((noinline)) Totals run_counted(RivalMemory& memory, PipeModel& mod
   auto& store = *::new (static_cast<void*>(bytes.bytes().data())) twin::rival::RivalStore;
   model.set_store(&store, sizeof(store));
   CopyCore core(memory.bytes.bytes(), memory.tile_count);
-  twin::rival::BvhCore<twin::Lanes<4>, CopyCore> program(store, core);
+  twin::rival::BvhCore<twin::Lanes<4>, rival::kPacketWidth, CopyCore> program(store, core);
   require(program.run(twin::MainAddress{0}));
   return model.finish();
 }
@@ -89,7 +89,7 @@ CountedPicture render_rival_plain(const RivalCountedFrame& frame) {
   LineBytes bytes(sizeof(rival::RivalStore));
   auto& store = *::new (static_cast<void*>(bytes.bytes().data())) rival::RivalStore;
   CopyCore core(memory.bytes.bytes(), memory.tile_count);
-  rival::BvhCore<Lanes<4>, CopyCore> program(store, core);
+  rival::BvhCore<Lanes<4>, rival::kPacketWidth, CopyCore> program(store, core);
   require(program.run(MainAddress{0}));
   Totals totals{};
   for (std::size_t kind = 0; kind < kWorkKindCount; ++kind) totals[kind].units = store.work.counts[kind];

@@ -299,6 +299,7 @@ class Builder {
         node.bounds[0][axis][i] = box.low[axis];
         node.bounds[1][axis][i] = box.high[axis];
       }
+      node.children[i].bits = BvhChild::kNone;
       if (i >= wide.count) continue;
       const PairNode& child = pairs_[wide.children[i]];
       if (child.first_child != 0) {

@@ -16,6 +16,7 @@ struct BvhChild {
   std::uint32_t bits;
 
   static constexpr std::uint32_t kFirstBits = 27;
+  static constexpr std::uint32_t kNone = 0xFFFFFFFFu;  ///< no child
   [[nodiscard]] static constexpr BvhChild node(std::uint32_t index) { return {index}; }
   [[nodiscard]] static constexpr BvhChild leaf(std::uint32_t first, std::uint32_t count) {
     return {1u << 31 | (count - 1) << kFirstBits | first};
@@ -28,11 +29,12 @@ struct BvhChild {
 
 /// A node as it lies in main memory: the boxes of its children, side by side in lanes. 128 bytes, 128-byte aligned.
 struct alignas(128) BvhNode {
-  float bounds[2][3][kNodeWidth];  ///< [low, high][axis][child], tight: the vertices' own floats
-  BvhChild children[kNodeWidth];   ///< the first child_count are there
+  alignas(16) float bounds[2][3][kNodeWidth];  ///< [low, high][axis][child], tight: the vertices' own floats
+  alignas(16) BvhChild children[kNodeWidth];   ///< the first child_count are there, the others kNone
   std::uint32_t child_count;       ///< 1..kNodeWidth
   std::uint32_t reserved[3];
 };
-static_assert(sizeof(BvhNode) == 128);
+inline constexpr std::uint32_t kNodeBytes = 128;
+static_assert(sizeof(BvhNode) == kNodeBytes);
 
 }  // namespace gridiron::rival

@@ -6,6 +6,7 @@
 #include <gridiron/rival/claim_order.h>
 #include <gridiron/sim/core_runner.h>
 
+#include <bit>
 #include <cstring>
 #include <mutex>
 #include <new>
@@ -61,16 +62,39 @@ template <class Element>
   return Status::kOk;
 }
 
+// The record's settings. Precondition: a line's counts are powers of two.
+[[nodiscard]] CoreSettings core_settings(const BvhParameters& bvh, const RenderOptions& options) {
+  return {.packet_width = options.packet_width,
+          .ring_size = options.hyper_threading ? options.ring_size : 1,
+          .node_lines = options.caches.node_lines,
+          .triangle_lines = options.caches.triangle_lines,
+          .log_line_nodes = static_cast<std::uint32_t>(std::countr_zero(bvh.line_nodes)),
+          .log_line_triangles = static_cast<std::uint32_t>(std::countr_zero(bvh.line_triangles)),
+          .use_subpackets = options.use_subpackets ? 1u : 0u,
+          .reserved = 0};
+}
+
 [[nodiscard]] bool are_options_valid(const Bvh& bvh, const RenderOptions& options) {
-  const auto lines_ok = [](std::uint32_t lines, std::uint32_t most) {
-    return lines >= kCacheWays && lines <= most && lines % kCacheWays == 0;
-  };
-  const std::uint64_t bytes =
-      std::uint64_t{options.caches.node_lines} * bvh.parameters.line_nodes * sizeof(BvhNode) +
-      std::uint64_t{options.caches.triangle_lines} * bvh.parameters.line_triangles * kTriangleRecordBytes;
-  const bool ring_ok = !options.hyper_threading || (options.ring_size >= 2 && options.ring_size <= kMaxRing);
-  return ring_ok && lines_ok(options.caches.node_lines, kMaxNodeLines) &&
-         lines_ok(options.caches.triangle_lines, kMaxTriangleLines) && bytes <= kCacheBytes && !bvh.nodes.empty();
+  if (options.packet_width != 8 && options.packet_width != 16) return false;
+  if (!std::has_single_bit(bvh.parameters.line_nodes) || !std::has_single_bit(bvh.parameters.line_triangles)) {
+    return false;
+  }
+  const bool ring_ok =
+      !options.hyper_threading || (options.ring_size >= 2 && options.ring_size <= (options.packet_width == 16 ? kRingOf<16> : kRingOf<8>));
+  return ring_ok && are_caches_valid(core_settings(bvh.parameters, options)) && !bvh.nodes.empty();
+}
+
+// What a core does. @returns its status, and adds its caches' counts.
+template <std::uint32_t Width>
+[[nodiscard]] Status run_core(std::span<std::byte> data, OrderedCore& platform, MainAddress record,
+                              std::mutex& mutex, BvhFrame& result) {
+  auto& store = *::new (static_cast<void*>(data.data())) PacketStore<Width>;
+  BvhCore<Lanes<4>, Width, OrderedCore> program(store, platform);
+  const Status status = program.run(record);
+  const std::scoped_lock lock(mutex);
+  result.node_cache += store.node_cache.counts();
+  result.triangle_cache += store.triangle_cache.counts();
+  return status;
 }
 
 }  // namespace
@@ -87,14 +111,7 @@ Status make_rival_record(const Bvh& bvh, FrameSettings settings, const RenderOpt
   std::memcpy(rival.high, bvh.high, sizeof rival.high);
   rival.nodes_address = nodes.value;
   rival.triangles_address = triangles.value;
-  rival.settings = {.ring_size = options.hyper_threading ? options.ring_size : 1,
-                    .node_lines = options.caches.node_lines,
-                    .triangle_lines = options.caches.triangle_lines,
-                    .line_nodes = bvh.parameters.line_nodes,
-                    .line_triangles = bvh.parameters.line_triangles,
-                    .ray_tests = options.ray_tests,
-                    .use_subpackets = options.use_subpackets ? 1u : 0u,
-                    .reserved = 0};
+  rival.settings = core_settings(bvh.parameters, options);
   return Status::kOk;
 }
 
@@ -136,7 +153,7 @@ BvhFrame render_bvh_frame(const Bvh& bvh, const FrameSettings& settings, const s
   shape.tile_count = parts.frame.tiles_x * parts.frame.tiles_y;
   shape.output_depth = kOutputDepth;
   shape.arena_bytes = kArenaBytes;
-  shape.data_bytes = sizeof(RivalStore);
+  shape.data_bytes = options.packet_width == 16 ? sizeof(PacketStore<16>) : sizeof(PacketStore<8>);
   for (const sim::MemoryRegion* plane : {&parts.color, &parts.depth, &parts.ids}) {
     if (plane != &parts.color && !options.all_planes) continue;
     shape.writable.push_back({plane->address.value, plane->address.value + plane->bytes.size()});
@@ -153,13 +170,8 @@ BvhFrame render_bvh_frame(const Bvh& bvh, const FrameSettings& settings, const s
       index = cores_begun++;
     }
     OrderedCore platform(core, index, order, priced, kOutputDepth, result.core_of_tile);
-    RivalStore& store = *::new (static_cast<void*>(data.data())) RivalStore;
-    BvhCore<Lanes<4>, OrderedCore> program(store, platform);
-    const Status status = program.run(parts.record.address);
-    const std::scoped_lock lock(mutex);
-    result.node_cache += store.node_cache.counts();
-    result.triangle_cache += store.triangle_cache.counts();
-    return status;
+    return options.packet_width == 16 ? run_core<16>(data, platform, parts.record.address, mutex, result)
+                                      : run_core<8>(data, platform, parts.record.address, mutex, result);
   });
   result.status = run.status;
   result.violations = std::move(run.violations);

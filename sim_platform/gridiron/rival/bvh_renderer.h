@@ -23,15 +23,15 @@ namespace gridiron::rival {
 /// when the hierarchy is built (BvhParameters::line_nodes, line_triangles).
 struct CacheGeometry {
   std::uint32_t node_lines = 64;
-  std::uint32_t triangle_lines = 100;
+  std::uint32_t triangle_lines = 64;
 };
 
 struct RenderOptions {
   std::uint32_t core_count = 0;     ///< 0: the profile's
   bool hyper_threading = true;      ///< packets take turns; else one after another
   std::uint32_t ring_size = 3;      ///< of them, 2..kMaxRing; without hyper-threading not looked at
+  std::uint32_t packet_width = 8;   ///< 8 or 16
   CacheGeometry caches;
-  RayTests ray_tests = RayTests::kAll;
   bool use_subpackets = true;       ///< cull triangles by 4x4 pixels too
   bool all_planes = false;          ///< depth and ids beside colour
   bool timeline = false;            ///< fill timing.timeline

@@ -12,17 +12,15 @@ struct CacheCounts {
   std::uint64_t hits = 0;          ///< the line was there
   std::uint64_t pending_hits = 0;  ///< the line was on its way for another packet
   std::uint64_t misses = 0;        ///< the line was fetched
-  std::uint64_t refusals = 0;      ///< every line of the set was waited for; the packet asks again
 
   CacheCounts& operator+=(const CacheCounts& other) {
     lookups += other.lookups;
     hits += other.hits;
     pending_hits += other.pending_hits;
     misses += other.misses;
-    refusals += other.refusals;
     return *this;
   }
-  /// Look-ups that started no fetch, of those that found an answer. 1 where there were none.
+  /// Look-ups that started no fetch. 1 where there were none.
   [[nodiscard]] double hit_rate() const {
     const std::uint64_t answered = hits + pending_hits + misses;
     return answered == 0 ? 1.0 : 1.0 - static_cast<double>(misses) / static_cast<double>(answered);

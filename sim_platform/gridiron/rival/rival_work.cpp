@@ -8,7 +8,8 @@ namespace gridiron::rival {
 
 std::string_view name_of(RivalWork kind) {
   constexpr std::array<std::string_view, kRivalWorkCount> kNames = {
-      "cache_lookup", "refill", "switch", "node_step", "child_push", "stack_pop", "reciprocal_group", "box_setup", "box_group", "leaf_visit", "tile_start", "packet_start", "reach"};
+      "tile_start", "packet_start", "mixed_start",  "node_step", "mixed_node_step", "children",     "stack_pop",
+      "cache_lookup", "miss",       "switch",       "leaf_visit", "leaf_triangle",  "reach"};
   return kNames[static_cast<std::size_t>(kind)];
 }
 
