@@ -8,12 +8,12 @@
 #include <gridiron/ray/intersect_standard.h>
 #include <gridiron/render/camera.h>
 #include <gridiron/render/shading.h>
+#include <gridiron/rival/child_order.h>
 #include <gridiron/rival/four_words.h>
 #include <gridiron/rival/rival_store.h>
 #include <gridiron/rival/rival_work.h>
 #include <gridiron/store/transfers.h>
 
-#include <bit>
 #include <cstdint>
 
 namespace gridiron::rival {
@@ -262,7 +262,7 @@ class BvhCore {
   // --- Traversal --------------------------------------------------------------------------------------------------
 
   // Holds the children of the current node against the packet; the nearest becomes the current one, the others go on
-  // the stack. @returns false where none is met.
+  // the stack, the nearer the higher. @returns false where none is met.
   [[nodiscard]] bool step_down(Context& context, Cursor& cursor, std::uint32_t slot) {
     const std::uint32_t place = (slot << log_line_nodes_) + (cursor.child.node_index() & node_mask_);
     if (context.bounds.is_mixed == 0) [[likely]] {
@@ -281,20 +281,13 @@ class BvhCore {
     const std::uint32_t children = met.none.bits() ^ kAllChildren;
     if (children == 0) return false;
     count(RivalWork::kChildren);
-    // The least entry, whose last bits say which child it is.
-    const FourWords marked = (FourWords::of(met.entry) & FourWords::splat(~kAllChildLanes)) | FourWords::load(kChildLanes.lane);
-    const FourWords keys = FourWords::select(met.none, FourWords::splat(kBehindAll), marked);
-    const std::uint32_t nearest = std::bit_cast<std::uint32_t>(Four::horizontal_min(keys.floats())) & kAllChildLanes;
-    const FourWords words = FourWords::load(&node.children[0].bits);
-    const std::uint32_t others = children & ~(1u << nearest);
-    // Where a child does not go on the stack, the next one takes its place.
-    const ColumnQuads quads(words.floats(), met.entry, met.missed.floats());
-    for (int i = 0; i < 4; ++i) {
-      quads.column[i].store(reinterpret_cast<float*>(context.stack + cursor.top));
-      cursor.top += others >> i & 1u;
-    }
-    cursor.child.bits = words.word(nearest);
-    cursor.missed = met.missed.word(nearest);
+    const OrderedChildren ordered(met.entry, met.none, FourWords::load(&node.children[0].bits), met.missed);
+    // What is not met lands above the top.
+    ordered.store(reinterpret_cast<float*>(context.stack + cursor.top));
+    const std::uint32_t nearest = count_bits(children) - 1u;
+    cursor.child.bits = ordered.child.word(nearest);
+    cursor.missed = ordered.missed.word(nearest);
+    cursor.top += nearest;
     return true;
   }
 
@@ -419,8 +412,6 @@ class BvhCore {
   }
 
   static constexpr std::uint32_t kAllChildren = (1u << kNodeWidth) - 1u;
-  static constexpr std::uint32_t kAllChildLanes = kNodeWidth - 1u;
-  static constexpr std::uint32_t kBehindAll = 0x7F7FFFFFu;  ///< kFloatMax
   PacketStore<Width>& store_;
   Transfers<P> transfers_;
   std::byte* triangle_lines_ = nullptr;

@@ -34,6 +34,10 @@ struct FourWords {
   [[nodiscard]] GRIDIRON_INLINE Four::Mask equal(FourWords other) const { return {v == other.v}; }
   /// As signed numbers.
   [[nodiscard]] GRIDIRON_INLINE Four::Mask less(FourWords other) const { return {v < other.v}; }
+  /// The same, turned around where `turned` is set.
+  [[nodiscard]] GRIDIRON_INLINE Four::Mask less_but(FourWords other, FourWords turned) const {
+    return {(v < other.v) ^ turned.v};
+  }
   [[nodiscard]] GRIDIRON_INLINE std::uint32_t word(std::uint32_t index) const {
     return static_cast<std::uint32_t>(v[index]);
   }

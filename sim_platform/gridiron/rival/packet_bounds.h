@@ -42,7 +42,8 @@ struct ChildrenMet {
 /// reached at t >= (low - o) / d by those that run up, d the greatest, the high side of one behind at t >= (high - o) / d,
 /// d the least; nothing is said of leaving. Directions are the rays' own: each operation of generate_packet is monotone in
 /// column and row, so a component's extremes over a quarter are at its corners, and are computed here by the same
-/// operations. Difference, reciprocal, its widening and product are 4 roundings, u = 2^-24 each; 8 u are charged.
+/// operations. Difference, reciprocal, its widening and product are 4 roundings, u = 2^-24 each, and OrderedChildren raises entries by less
+/// than 8 u; 16 u are charged.
 template <std::uint32_t Width>
 struct alignas(128) PacketBounds {
   // Per quarter and axis, the same in all four lanes.
@@ -59,8 +60,8 @@ struct alignas(128) PacketBounds {
   void set(const FrameRecord& frame, std::uint32_t left, std::uint32_t top, float least, WorkCounters& work) {
     using Four = Lanes<4>;
     using Float = Four::Float;
-    constexpr float kNarrow = 1.0f - 0x1p-21f;
-    constexpr float kWiden = 1.0f + 0x1p-21f;
+    constexpr float kNarrow = 1.0f - 0x1p-20f;
+    constexpr float kWiden = 1.0f + 0x1p-20f;
     constexpr float kQuarterWidth = Width / 2;
     const Float x_low = Float(static_cast<float>(left)) + Float::load(kQuarterPlaces.column) * Float(kQuarterWidth);
     const Float y_low = Float(static_cast<float>(top)) + Float::load(kQuarterPlaces.row) * Float(kQuarterWidth);

@@ -73,31 +73,10 @@ static_assert(sizeof(RivalFrameRecord) == 512);
 
 /// A quad of the stack: what is to be visited, and what has been found out about it.
 struct alignas(16) StackEntry {
-  BvhChild child;
   float entry;               ///< no ray meets it before this t
+  BvhChild child;
   std::uint32_t missed;      ///< quarters of the packet that do not meet it, a bit each
   std::uint32_t reserved;
-};
-
-/// Lanes of a node's children.
-struct ChildLanes {
-  alignas(16) std::uint32_t lane[kNodeWidth];
-};
-inline constexpr ChildLanes kChildLanes = {{0, 1, 2, 3}};
-
-/// The columns of three vectors as quads: (a i, b i, c i, c i).
-struct ColumnQuads {
-  Lanes<4>::Float column[4];
-
-  GRIDIRON_INLINE ColumnQuads(Lanes<4>::Float a, Lanes<4>::Float b, Lanes<4>::Float c) {
-    using Four = Lanes<4>;
-    const Four::Float low = Four::shuffle_quads<0, 4, 1, 5>(a, b);
-    const Four::Float high = Four::shuffle_quads<2, 6, 3, 7>(a, b);
-    column[0] = Four::shuffle_quads<0, 1, 4, 4>(low, c);
-    column[1] = Four::shuffle_quads<2, 3, 5, 5>(low, c);
-    column[2] = Four::shuffle_quads<0, 1, 6, 6>(high, c);
-    column[3] = Four::shuffle_quads<2, 3, 7, 7>(high, c);
-  }
 };
 
 /// One packet of the ring. Its stack never overflows: kStackEntries is the bound of the deepest tree.

@@ -38,6 +38,11 @@ struct FourWords {
   friend FourWords operator&(FourWords a, FourWords b) { return make(OpClass::kFixed, a.v & b.v, a.node, b.node); }
   [[nodiscard]] Four::Mask equal(FourWords other) const { return compared(v.equal(other.v), other); }
   [[nodiscard]] Four::Mask less(FourWords other) const { return compared(v.less(other.v), other); }
+  [[nodiscard]] Four::Mask less_but(FourWords other, FourWords turned) const {
+    const Four::Mask lesser = less(other);
+    const Four::Native::Mask mask = v.less_but(other.v, turned.v);
+    return {mask, emit(OpClass::kFixed, Four::tie(mask.v), lesser.node, turned.node)};
+  }
   /// A rotation.
   [[nodiscard]] Counted<std::uint32_t> word(const Counted<std::uint32_t>& index) const {
     const std::uint32_t value = v.word(index.value);
