@@ -19,18 +19,19 @@
 
 namespace gridiron::rival {
 
-/// Sizes of both caches. Lines: a multiple of kCacheWays; together at most kCacheBytes. What a line holds is decided
+/// Sizes of both caches. Lines: a power of two, kCacheWays..kMaxNodeLines, kMaxTriangleLines; together at most
+/// kCacheBytes. What a line holds is decided
 /// when the hierarchy is built (BvhParameters::line_nodes, line_triangles).
 struct CacheGeometry {
-  std::uint32_t node_lines = 64;
-  std::uint32_t triangle_lines = 64;
+  std::uint32_t node_lines = 32;
+  std::uint32_t triangle_lines = 32;
 };
 
 struct RenderOptions {
   std::uint32_t core_count = 0;     ///< 0: the profile's
   bool hyper_threading = true;      ///< packets take turns; else one after another
-  std::uint32_t ring_size = 3;      ///< of them, 2..kMaxRing; without hyper-threading not looked at
-  std::uint32_t packet_width = 8;   ///< 8 or 16
+  std::uint32_t ring_size = 3;      ///< of them, 2..kRingOf; without hyper-threading not looked at
+  std::uint32_t packet_width = kPacketWidth;  ///< 8 or 16
   CacheGeometry caches;
   bool use_subpackets = true;       ///< cull triangles by 4x4 pixels too
   bool all_planes = false;          ///< depth and ids beside colour

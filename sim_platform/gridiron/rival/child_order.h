@@ -27,9 +27,9 @@ struct OrderedChildren {
   /// @param entry  >= 0; raised by at most 3 units in its last place. @param none  children that are not met.
   GRIDIRON_INLINE OrderedChildren(Lanes<4>::Float entries, Lanes<4>::Mask none, FourWords children, FourWords misses)
       : child(children), missed(misses) {
-    // Different keys, so that of two lanes that exchange one takes where the other gives.
+    // Different keys, so that of two lanes that exchange one takes where the other gives. An entry may be -0.
     const FourWords marked =
-        (FourWords::of(entries) & FourWords::splat(~3u)) | FourWords::load(kChildLanes.lane);
+        (FourWords::of(entries) & FourWords::splat(0x7FFFFFFCu)) | FourWords::load(kChildLanes.lane);
     entry = marked | FourWords::where(none, 0x80000000u);
     exchange<1, 0, 3, 2>(FourWords::load(kChildLanes.lesser[0]));
     exchange<2, 3, 0, 1>(FourWords::load(kChildLanes.lesser[1]));

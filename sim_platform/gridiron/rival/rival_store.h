@@ -116,7 +116,7 @@ static_assert(sizeof(PacketStore<8>) + kCodeBudgetBytes + kStackBudgetBytes <= k
 static_assert(sizeof(PacketStore<16>) + kCodeBudgetBytes + kStackBudgetBytes <= kArenaBytes);
 
 /// That of the settings which win.
-inline constexpr std::uint32_t kPacketWidth = 8;
+inline constexpr std::uint32_t kPacketWidth = 16;
 using RivalStore = PacketStore<kPacketWidth>;
 
 /// Calls visit(name, offset_bytes, bytes) for every region of the store, in address order.
