@@ -40,7 +40,7 @@ struct ChildrenMet {
 /// rays of the quarter the fastest, and leaves it at t <= (far - o) / d, d the slowest; where either is behind the eye the
 /// sign is right all the same. On an axis on which rays of the packet run both ways, the low side of a box in front is
 /// reached at t >= (low - o) / d by those that run up, d the greatest, the high side of one behind at t >= (high - o) / d,
-/// d the least; nothing is said of leaving. Directions are the rays' own: each operation of generate_packet is monotone in
+/// d the least; nothing is said of leaving. Where no ray runs that way, d is taken for almost none. Directions are the rays' own: each operation of generate_packet is monotone in
 /// column and row, so a component's extremes over a quarter are at its corners, and are computed here by the same
 /// operations. Difference, reciprocal, its widening and product are 4 roundings, u = 2^-24 each, and OrderedChildren raises entries by less
 /// than 8 u; 16 u are charged.
@@ -56,7 +56,8 @@ struct alignas(128) PacketBounds {
   std::uint32_t far_side[3];
   std::uint32_t is_mixed;      ///< 1: along some axis rays of a quarter run both ways, or quarters apart
 
-  /// @param left, top  the packet's first pixel. @param least  directions below this are none: 2^-30 times the largest.
+  /// @param left, top  the packet's first pixel. @param least  > 0; rays run along an axis whose direction is above it:
+  /// 2^-30 times the largest.
   void set(const FrameRecord& frame, std::uint32_t left, std::uint32_t top, float least, WorkCounters& work) {
     using Four = Lanes<4>;
     using Float = Four::Float;
@@ -83,10 +84,9 @@ struct alignas(128) PacketBounds {
       far_side[axis] = (backward & 1u) ^ 1u;
       one_way[axis] = (low[axis] > Float(least)) | is_backward;
       all_one_way &= one_way[axis].bits();
-      const auto has_fastest = (high[axis] > Float(least)) | is_backward;
-      const Float fastest = one / Four::select(is_backward, low[axis], high[axis]) * Float(kNarrow);
+      const Float fastest = Four::select(is_backward, low[axis], Four::max(high[axis], Float(least)));
       const Float slowest = one / Four::select(is_backward, high[axis], low[axis]) * Float(kWiden);
-      store(Four::select(has_fastest, fastest, zero), enter, axis);
+      store(one / fastest * Float(kNarrow), enter, axis);
       store(Four::select(one_way[axis], slowest, zero), leave, axis);
     }
     is_mixed = 0;
@@ -95,7 +95,7 @@ struct alignas(128) PacketBounds {
     is_mixed = 1;
     work.add(carrier_of(RivalWork::kMixedStart));
     for (int axis = 0; axis < 3; ++axis) {
-      const Float back = Four::select(low[axis] < Float(-least), one / low[axis] * Float(kNarrow), zero);
+      const Float back = one / Four::min(low[axis], Float(-least)) * Float(kNarrow);
       store(Four::select(one_way[axis], zero, back), enter_back, axis);
       store(Four::select(one_way[axis], zero, Float(kFloatMax)), never_leave, axis);
     }
