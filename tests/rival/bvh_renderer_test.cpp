@@ -235,8 +235,8 @@ TEST(BvhRenderer, FiguresAddUp) {
     charged += static_cast<double>(frame.work[kind]) * std::round(ps3().work_cycles[kind] * 1024) / 1024;
   }
   for (std::uint32_t kind = 0; kind < kRivalWorkCount; ++kind) {
-    charged += static_cast<double>(frame.rival_work[kind]) *
-               std::round(cycles_of(static_cast<RivalWork>(kind)) * 1024) / 1024;
+    charged +=
+        static_cast<double>(frame.rival_work[kind]) * std::round(cycles_of(static_cast<RivalWork>(kind)) * 1024) / 1024;
   }
   const auto work = [&](Work kind) { return static_cast<double>(frame.work[static_cast<std::size_t>(kind)]); };
   charged += ps3().issue_cycles * (work(Work::kGetIssue) + work(Work::kPutIssue));

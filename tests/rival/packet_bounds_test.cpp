@@ -155,14 +155,14 @@ TEST(PacketBounds, BoxesBesideBehindAndBeyondAreLeftOut) {
     std::uint32_t missed;
   };
   const Case cases[8] = {
-      {{0.02f, 0.03f, -1.1f}, {0.08f, 0.08f, -1.0f}, 0b0000},         // in front
-      {{0.02f, 0.03f, 1.0f}, {0.08f, 0.08f, 1.1f}, 0b1111},           // behind
-      {{0.2f, 0.03f, -1.1f}, {0.3f, 0.05f, -1.0f}, 0b1111},           // right
-      {{0.02f, -0.3f, -1.1f}, {0.05f, -0.1f, -1.0f}, 0b1111},         // below
-      {{-1.9f, 0.03f, -1.1f}, {-0.1f, 0.05f, -1.0f}, 0b1111},         // left
-      {{0.02f, 0.065f, -1.01f}, {0.035f, 0.08f, -1.0f}, 0b1110},      // in the first quarter alone
-      {{0.065f, 0.025f, -1.01f}, {0.07f, 0.035f, -1.0f}, 0b0111},     // in the last
-      {{0.01f, 0.01f, -0.5f}, {0.045f, 0.045f, -0.49f}, 0b0000},      // nearer
+      {{0.02f, 0.03f, -1.1f}, {0.08f, 0.08f, -1.0f}, 0b0000},      // in front
+      {{0.02f, 0.03f, 1.0f}, {0.08f, 0.08f, 1.1f}, 0b1111},        // behind
+      {{0.2f, 0.03f, -1.1f}, {0.3f, 0.05f, -1.0f}, 0b1111},        // right
+      {{0.02f, -0.3f, -1.1f}, {0.05f, -0.1f, -1.0f}, 0b1111},      // below
+      {{-1.9f, 0.03f, -1.1f}, {-0.1f, 0.05f, -1.0f}, 0b1111},      // left
+      {{0.02f, 0.065f, -1.01f}, {0.035f, 0.08f, -1.0f}, 0b1110},   // in the first quarter alone
+      {{0.065f, 0.025f, -1.01f}, {0.07f, 0.035f, -1.0f}, 0b0111},  // in the last
+      {{0.01f, 0.01f, -0.5f}, {0.045f, 0.045f, -0.49f}, 0b0000},   // nearer
   };
   for (int half = 0; half < 2; ++half) {
     BvhNode node{};

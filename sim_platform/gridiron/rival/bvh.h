@@ -14,11 +14,11 @@
 namespace gridiron::rival {
 
 struct BvhParameters {
-  std::uint32_t bin_count = 6;           ///< per axis, 2..64
-  std::uint32_t leaf_triangles = 3;      ///< most triangles of a leaf, 1..kMaxLeafTriangles
-  float triangle_cost = 1;               ///< of a test, in tests of a child's box
-  std::uint32_t line_triangles = 32;     ///< records of a line of the triangle cache; a leaf lies in one line
-  std::uint32_t line_nodes = 16;         ///< nodes of a line of the node cache, neighbours in the tree
+  std::uint32_t bin_count = 6;        ///< per axis, 2..64
+  std::uint32_t leaf_triangles = 3;   ///< most triangles of a leaf, 1..kMaxLeafTriangles
+  float triangle_cost = 1;            ///< of a test, in tests of a child's box
+  std::uint32_t line_triangles = 32;  ///< records of a line of the triangle cache; a leaf lies in one line
+  std::uint32_t line_nodes = 16;      ///< nodes of a line of the node cache, neighbours in the tree
 };
 
 /// What a build did, for a price on a machine. Integers, the same on every host.
@@ -38,9 +38,9 @@ struct Bvh {
   std::vector<VertexTriangle> triangles;  ///< leaf by leaf, padded so that no leaf crosses a cache line
   BvhParameters parameters;
   BuildCounts counts;
-  float low[3] = {}, high[3] = {};        ///< bounds of everything
-  std::uint32_t depth = 0;                ///< nodes on the longest way to a leaf
-  std::uint32_t triangle_count = 0;       ///< of the mesh, dropped ones included
+  float low[3] = {}, high[3] = {};   ///< bounds of everything
+  std::uint32_t depth = 0;           ///< nodes on the longest way to a leaf
+  std::uint32_t triangle_count = 0;  ///< of the mesh, dropped ones included
 };
 
 /// Builds the hierarchy.

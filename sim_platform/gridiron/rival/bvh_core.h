@@ -319,8 +319,7 @@ class BvhCore {
     SubpacketSet changed = 0;
     for (std::uint32_t left = cursor.child.triangle_count(); left != 0; --left) {
       count(RivalWork::kLeafTriangle);
-      changed |=
-          intersect_standard_batch<L, kWantFacing>(context.packet, &triangle, &open, 1, culling, store_.work);
+      changed |= intersect_standard_batch<L, kWantFacing>(context.packet, &triangle, &open, 1, culling, store_.work);
       charge_to(RivalWork::kLeafTriangle);
       ++triangle;
     }

@@ -6,9 +6,9 @@
 
 namespace gridiron::rival {
 
-inline constexpr std::uint32_t kNodeWidth = 4;            ///< children a node has at most
-inline constexpr std::uint32_t kMaxLeafTriangles = 8;     ///< triangles a leaf has at most
-inline constexpr std::uint32_t kMaxBvhDepth = 40;         ///< nodes on any way from the root to a leaf
+inline constexpr std::uint32_t kNodeWidth = 4;         ///< children a node has at most
+inline constexpr std::uint32_t kMaxLeafTriangles = 8;  ///< triangles a leaf has at most
+inline constexpr std::uint32_t kMaxBvhDepth = 40;      ///< nodes on any way from the root to a leaf
 /// A traversal needs no more: each node on the way leaves all children but one, and writes one quad beyond them.
 inline constexpr std::uint32_t kStackEntries = (kNodeWidth - 1) * kMaxBvhDepth + 4;
 
@@ -32,7 +32,7 @@ struct BvhChild {
 struct alignas(128) BvhNode {
   alignas(16) float bounds[2][3][kNodeWidth];  ///< [low, high][axis][child], tight: the vertices' own floats
   alignas(16) BvhChild children[kNodeWidth];   ///< the first child_count are there, the others kNone
-  std::uint32_t child_count;       ///< 1..kNodeWidth
+  std::uint32_t child_count;                   ///< 1..kNodeWidth
   std::uint32_t reserved[3];
 };
 inline constexpr std::uint32_t kNodeBytes = 128;

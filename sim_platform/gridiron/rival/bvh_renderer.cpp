@@ -80,14 +80,15 @@ template <class Element>
     return false;
   }
   const bool ring_ok =
-      !options.hyper_threading || (options.ring_size >= 2 && options.ring_size <= (options.packet_width == 16 ? kRingOf<16> : kRingOf<8>));
+      !options.hyper_threading ||
+      (options.ring_size >= 2 && options.ring_size <= (options.packet_width == 16 ? kRingOf<16> : kRingOf<8>));
   return ring_ok && are_caches_valid(core_settings(bvh.parameters, options)) && !bvh.nodes.empty();
 }
 
 // What a core does. @returns its status, and adds its caches' counts.
 template <std::uint32_t Width>
-[[nodiscard]] Status run_core(std::span<std::byte> data, OrderedCore& platform, MainAddress record,
-                              std::mutex& mutex, BvhFrame& result) {
+[[nodiscard]] Status run_core(std::span<std::byte> data, OrderedCore& platform, MainAddress record, std::mutex& mutex,
+                              BvhFrame& result) {
   auto& store = *::new (static_cast<void*>(data.data())) PacketStore<Width>;
   BvhCore<Lanes<4>, Width, OrderedCore> program(store, platform);
   const Status status = program.run(record);
@@ -178,9 +179,9 @@ BvhFrame render_bvh_frame(const Bvh& bvh, const FrameSettings& settings, const s
   if (result.status != Status::kOk) return result;
 
   // 3. Time with contention, work by kind, the picture.
-  result.timing = sim::replay(run.trace, priced,
-                              {.core_count = chip.threads, .timeline = options.timeline,
-                               .core_of_tile = result.core_of_tile});
+  result.timing =
+      sim::replay(run.trace, priced,
+                  {.core_count = chip.threads, .timeline = options.timeline, .core_of_tile = result.core_of_tile});
   result.work = run.work;
   for (std::uint32_t i = 0; i < kRivalWorkCount; ++i) {
     std::uint64_t& carried = result.work[static_cast<std::size_t>(carrier_of(static_cast<RivalWork>(i)))];

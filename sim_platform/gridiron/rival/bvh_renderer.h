@@ -28,15 +28,15 @@ struct CacheGeometry {
 };
 
 struct RenderOptions {
-  std::uint32_t core_count = 0;     ///< 0: the profile's
-  bool hyper_threading = true;      ///< packets take turns; else one after another
-  std::uint32_t ring_size = 3;      ///< of them, 2..kRingOf; without hyper-threading not looked at
+  std::uint32_t core_count = 0;               ///< 0: the profile's
+  bool hyper_threading = true;                ///< packets take turns; else one after another
+  std::uint32_t ring_size = 3;                ///< of them, 2..kRingOf; without hyper-threading not looked at
   std::uint32_t packet_width = kPacketWidth;  ///< 8 or 16
   CacheGeometry caches;
-  bool use_subpackets = true;       ///< cull triangles by 4x4 pixels too
-  bool all_planes = false;          ///< depth and ids beside colour
-  bool timeline = false;            ///< fill timing.timeline
-  sim::Completion completion = sim::Completion::kEarly;   ///< changes nothing but when bytes move
+  bool use_subpackets = true;                            ///< cull triangles by 4x4 pixels too
+  bool all_planes = false;                               ///< depth and ids beside colour
+  bool timeline = false;                                 ///< fill timing.timeline
+  sim::Completion completion = sim::Completion::kEarly;  ///< changes nothing but when bytes move
   std::uint64_t seed = 0;
 };
 
@@ -51,9 +51,9 @@ struct BvhPicture {
 struct BvhFrame {
   Status status = Status::kOk;
   std::vector<sim::Violation> violations;
-  BvhPicture picture;                ///< depth and ids only where asked for
-  sim::FrameTiming timing;           ///< with contention; waits for node lines under kMacroCell, triangles kTriangle
-  sim::WorkTotals work{};            ///< core's kinds; those that carry the rival's are 0
+  BvhPicture picture;       ///< depth and ids only where asked for
+  sim::FrameTiming timing;  ///< with contention; waits for node lines under kMacroCell, triangles kTriangle
+  sim::WorkTotals work{};   ///< core's kinds; those that carry the rival's are 0
   std::array<std::uint64_t, kRivalWorkCount> rival_work{};
   CacheCounts node_cache, triangle_cache;   ///< over all cores
   std::vector<std::uint32_t> core_of_tile;  ///< which core rendered tile i

@@ -29,32 +29,33 @@ inline constexpr QuarterPlaces kQuarterPlaces = {{0, 1, 0, 1}, {0, 0, 1, 1}};
 
 /// How a node's children stand to a packet.
 struct ChildrenMet {
-  Lanes<4>::Float entry;       ///< per child, no ray meets it at a t below this
-  FourWords missed;            ///< per child, the quarters of which no ray meets it, a bit each
-  Lanes<4>::Mask none;         ///< children that no quarter meets
+  Lanes<4>::Float entry;  ///< per child, no ray meets it at a t below this
+  FourWords missed;       ///< per child, the quarters of which no ray meets it, a bit each
+  Lanes<4>::Mask none;    ///< children that no quarter meets
 };
 
 /// Conservative bound of a packet of primary rays, by quarters.
 ///
-/// Along an axis on which all rays run the same way, a ray meets the near side of a box at t >= (near - o) / d, d of all
-/// rays of the quarter the fastest, and leaves it at t <= (far - o) / d, d the slowest; where either is behind the eye the
-/// sign is right all the same. On an axis on which rays of the packet run both ways, the low side of a box in front is
-/// reached at t >= (low - o) / d by those that run up, d the greatest, the high side of one behind at t >= (high - o) / d,
-/// d the least; nothing is said of leaving. Where no ray runs that way, d is taken for almost none. Directions are the rays' own: each operation of generate_packet is monotone in
-/// column and row, so a component's extremes over a quarter are at its corners, and are computed here by the same
-/// operations. Difference, reciprocal, its widening and product are 4 roundings, u = 2^-24 each, and OrderedChildren raises entries by less
-/// than 8 u; 16 u are charged.
+/// Along an axis on which all rays run the same way, a ray meets the near side of a box at t >= (near - o) / d, d of
+/// all rays of the quarter the fastest, and leaves it at t <= (far - o) / d, d the slowest; where either is behind the
+/// eye the sign is right all the same. On an axis on which rays of the packet run both ways, the low side of a box in
+/// front is reached at t >= (low - o) / d by those that run up, d the greatest, the high side of one behind at t >=
+/// (high - o) / d, d the least; nothing is said of leaving. Where no ray runs that way, d is taken for almost none.
+/// Directions are the rays' own: each operation of generate_packet is monotone in column and row, so a component's
+/// extremes over a quarter are at its corners, and are computed here by the same operations. Difference, reciprocal,
+/// its widening and product are 4 roundings, u = 2^-24 each, and OrderedChildren raises entries by less than 8 u; 16 u
+/// are charged.
 template <std::uint32_t Width>
 struct alignas(128) PacketBounds {
   // Per quarter and axis, the same in all four lanes.
-  alignas(16) float enter[kQuarterCount][3][4];       ///< of the near side's distance: t of the earliest entry
-  alignas(16) float leave[kQuarterCount][3][4];       ///< of the far side's distance: t of the latest exit
+  alignas(16) float enter[kQuarterCount][3][4];  ///< of the near side's distance: t of the earliest entry
+  alignas(16) float leave[kQuarterCount][3][4];  ///< of the far side's distance: t of the latest exit
   // Of mixed packets only.
-  alignas(16) float enter_back[kQuarterCount][3][4];  ///< of the far side's distance: t of the earliest entry
-  alignas(16) float never_leave[kQuarterCount][3][4]; ///< added to the latest exit: 0 or kFloatMax
-  std::uint32_t near_side[3];  ///< bound that rays meet first: 0 low, 1 high
+  alignas(16) float enter_back[kQuarterCount][3][4];   ///< of the far side's distance: t of the earliest entry
+  alignas(16) float never_leave[kQuarterCount][3][4];  ///< added to the latest exit: 0 or kFloatMax
+  std::uint32_t near_side[3];                          ///< bound that rays meet first: 0 low, 1 high
   std::uint32_t far_side[3];
-  std::uint32_t is_mixed;      ///< 1: along some axis rays of a quarter run both ways, or quarters apart
+  std::uint32_t is_mixed;  ///< 1: along some axis rays of a quarter run both ways, or quarters apart
 
   /// @param left, top  the packet's first pixel. @param least  > 0; rays run along an axis whose direction is above it:
   /// 2^-30 times the largest.
@@ -104,7 +105,8 @@ struct alignas(128) PacketBounds {
   /// Holds the children of a node against the packet.
   /// @param reach  per quarter, the farthest hit that is still of interest. @tparam Mixed  is_mixed.
   template <bool Mixed>
-  [[nodiscard]] GRIDIRON_INLINE ChildrenMet children_met(const BvhNode& node, const float* origin, const float* reach) const {
+  [[nodiscard]] GRIDIRON_INLINE ChildrenMet children_met(const BvhNode& node, const float* origin,
+                                                         const float* reach) const {
     using Four = Lanes<4>;
     using Float = Four::Float;
     Float near[3], far[3];
@@ -115,9 +117,8 @@ struct alignas(128) PacketBounds {
     }
     ChildrenMet met{Float(kFloatMax), FourWords::splat(0u), {}};
     for (int quarter = 0; quarter < 4; ++quarter) {
-      const auto along = [&](const Float* distance, const float (&scale)[kQuarterCount][3][4], int axis) GRIDIRON_INLINE_LAMBDA {
-        return distance[axis] * Float::load(scale[quarter][axis]);
-      };
+      const auto along = [&](const Float* distance, const float(&scale)[kQuarterCount][3][4], int axis)
+                             GRIDIRON_INLINE_LAMBDA { return distance[axis] * Float::load(scale[quarter][axis]); };
       Float entry = Four::max(Four::max(along(near, enter, 0), along(near, enter, 1)),
                               Four::max(along(near, enter, 2), Float(0.0f)));
       Float exits[3] = {along(far, leave, 0), along(far, leave, 1), along(far, leave, 2)};

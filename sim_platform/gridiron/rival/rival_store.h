@@ -20,8 +20,8 @@ inline constexpr std::uint32_t kCodeBudgetBytes = 48 * 1024;
 inline constexpr std::uint32_t kStackBudgetBytes = 8 * 1024;
 inline constexpr std::uint32_t kTileWidth = 32;
 inline constexpr std::uint32_t kTilePixels = kTileWidth * kTileWidth;
-inline constexpr std::uint32_t kMaxRing = 4;              ///< packets of the ring
-inline constexpr std::uint32_t kOutputDepth = 2;          ///< tiles in rotation
+inline constexpr std::uint32_t kMaxRing = 4;      ///< packets of the ring
+inline constexpr std::uint32_t kOutputDepth = 2;  ///< tiles in rotation
 inline constexpr std::uint32_t kMaxNodeLines = 256;
 inline constexpr std::uint32_t kMaxTriangleLines = 256;
 inline constexpr std::uint32_t kMaxLogLineNodes = 5;      ///< 32 nodes, 4 KB
@@ -39,13 +39,13 @@ static_assert(kMaxRing <= kCacheWays);
 
 /// How a core runs; part of the frame's record. Sizes are powers of two.
 struct CoreSettings {
-  std::uint32_t packet_width;         ///< 8 or 16
-  std::uint32_t ring_size;            ///< packets that take turns, 1..kRingOf<packet_width>; 1: none
-  std::uint32_t node_lines;           ///< lines of the node cache, at least kCacheWays
-  std::uint32_t triangle_lines;       ///< of the triangle cache
-  std::uint32_t log_line_nodes;       ///< nodes of a line
-  std::uint32_t log_line_triangles;   ///< records of a line
-  std::uint32_t use_subpackets;       ///< cull triangles by subpackets too, as kUseSubpackets does for the grid
+  std::uint32_t packet_width;        ///< 8 or 16
+  std::uint32_t ring_size;           ///< packets that take turns, 1..kRingOf<packet_width>; 1: none
+  std::uint32_t node_lines;          ///< lines of the node cache, at least kCacheWays
+  std::uint32_t triangle_lines;      ///< of the triangle cache
+  std::uint32_t log_line_nodes;      ///< nodes of a line
+  std::uint32_t log_line_triangles;  ///< records of a line
+  std::uint32_t use_subpackets;      ///< cull triangles by subpackets too, as kUseSubpackets does for the grid
   std::uint32_t reserved;
 };
 
@@ -73,9 +73,9 @@ static_assert(sizeof(RivalFrameRecord) == 512);
 
 /// A quad of the stack: what is to be visited, and what has been found out about it.
 struct alignas(16) StackEntry {
-  float entry;               ///< no ray meets it before this t
+  float entry;  ///< no ray meets it before this t
   BvhChild child;
-  std::uint32_t missed;      ///< quarters of the packet that do not meet it, a bit each
+  std::uint32_t missed;  ///< quarters of the packet that do not meet it, a bit each
   std::uint32_t reserved;
 };
 
@@ -91,7 +91,7 @@ struct alignas(128) PacketContext {
   std::uint32_t missed;                    ///< quarters that do not
   std::uint32_t slot;                      ///< where the line it waits for will be
   std::uint32_t stack_count;
-  std::uint32_t state;                     ///< kIdle, kRunning or kWaiting
+  std::uint32_t state;  ///< kIdle, kRunning or kWaiting
   StackEntry stack[kStackEntries];
   static constexpr std::uint32_t kIdle = 0, kRunning = 1, kWaiting = 2;
 };

@@ -8,8 +8,8 @@ namespace gridiron::rival {
 
 std::string_view name_of(RivalWork kind) {
   constexpr std::array<std::string_view, kRivalWorkCount> kNames = {
-      "tile_start", "packet_start", "mixed_start",  "node_step", "mixed_node_step", "children",     "stack_pop",
-      "cache_lookup", "miss",       "switch",       "leaf_visit", "leaf_triangle",  "reach"};
+      "tile_start",   "packet_start", "mixed_start", "node_step",  "mixed_node_step", "children", "stack_pop",
+      "cache_lookup", "miss",         "switch",      "leaf_visit", "leaf_triangle",   "reach"};
   return kNames[static_cast<std::size_t>(kind)];
 }
 

@@ -33,9 +33,9 @@ inline constexpr std::uint32_t kRivalWorkCount = static_cast<std::uint32_t>(Riva
 /// A counter of core's that the grid's traversal alone uses carries the rival's kind through trace and replay.
 [[nodiscard]] constexpr Work carrier_of(RivalWork kind) {
   constexpr std::array<Work, kRivalWorkCount> kCarriers = {
-      Work::kTileStart,     Work::kPacketStart, Work::kPassGroup,  Work::kMacroSliceStep, Work::kMacroCellStep,
-      Work::kMacroCellVisit, Work::kSliceStep,   Work::kCellStep,   Work::kCellVisit,      Work::kTriangleBatch,
-      Work::kMailboxProbe,  Work::kFootprintGroup, Work::kReachGroup};
+      Work::kTileStart,      Work::kPacketStart,    Work::kPassGroup, Work::kMacroSliceStep, Work::kMacroCellStep,
+      Work::kMacroCellVisit, Work::kSliceStep,      Work::kCellStep,  Work::kCellVisit,      Work::kTriangleBatch,
+      Work::kMailboxProbe,   Work::kFootprintGroup, Work::kReachGroup};
   return kCarriers[static_cast<std::size_t>(kind)];
 }
 

@@ -34,7 +34,8 @@ class alignas(128) SoftCache {
     }
   }
 
-  /// @param line  below 2^27. @param now  grows from call to call, below 2^31. @returns its slot, kNoSlot where it is not there.
+  /// @param line  below 2^27. @param now  grows from call to call, below 2^31. @returns its slot, kNoSlot where it is
+  /// not there.
   [[nodiscard]] GRIDIRON_INLINE std::uint32_t find(std::uint32_t line, std::uint32_t now) {
     ++counts_.lookups;
     const std::uint32_t first = (line & set_mask_) * kCacheWays;
@@ -55,7 +56,8 @@ class alignas(128) SoftCache {
   [[nodiscard]] Claim claim(std::uint32_t line, std::uint32_t now, std::uint32_t filler) {
     const std::uint32_t first = (line & set_mask_) * kCacheWays;
     const FourWords lines = FourWords::load(lines_ + first);
-    const std::uint32_t pending = (lines & FourWords::splat(kOnItsWay | kLineBits)).equal(FourWords::splat(kOnItsWay | line)).bits();
+    const std::uint32_t pending =
+        (lines & FourWords::splat(kOnItsWay | kLineBits)).equal(FourWords::splat(kOnItsWay | line)).bits();
     if (pending != 0) {
       ++counts_.pending_hits;
       return {first + lowest_bit(pending), true};

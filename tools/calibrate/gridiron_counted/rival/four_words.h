@@ -57,7 +57,9 @@ struct FourWords {
   [[nodiscard]] static FourWords of(Four::Float floats) { return {Native::of(floats.v), floats.node}; }
 
  private:
-  static FourWords make(OpClass op, Native value, Node a, Node b) { return {value, emit(op, Four::tie(value.v), a, b)}; }
+  static FourWords make(OpClass op, Native value, Node a, Node b) {
+    return {value, emit(op, Four::tie(value.v), a, b)};
+  }
   Four::Mask compared(Four::Native::Mask mask, FourWords other) const {
     return {mask, emit(OpClass::kFixed, Four::tie(mask.v), node, other.node)};
   }
