@@ -9,7 +9,7 @@ namespace gridiron::rival {
 inline constexpr std::uint32_t kNodeWidth = 4;         ///< children a node has at most
 inline constexpr std::uint32_t kMaxLeafTriangles = 8;  ///< triangles a leaf has at most
 inline constexpr std::uint32_t kMaxBvhDepth = 40;      ///< nodes on any way from the root to a leaf
-/// A traversal needs no more: each node on the way leaves all children but one, and writes one quad beyond them.
+/// A traversal needs no more: each node on the way leaves all children but one, the last one writes all.
 inline constexpr std::uint32_t kStackEntries = (kNodeWidth - 1) * kMaxBvhDepth + 4;
 
 /// Names a node or a leaf: a node by its index, a leaf by its first triangle, their count and the top bit.

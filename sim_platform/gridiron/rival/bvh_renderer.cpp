@@ -108,8 +108,6 @@ Status make_rival_record(const Bvh& bvh, FrameSettings settings, const RenderOpt
   SceneImageView no_image{};
   no_image.grid.triangle_format = static_cast<std::uint32_t>(TriangleFormat::kVertices);
   GRIDIRON_TRY(make_frame_record(settings, no_image, MainAddress{}, rival.frame));
-  std::memcpy(rival.low, bvh.low, sizeof rival.low);
-  std::memcpy(rival.high, bvh.high, sizeof rival.high);
   rival.nodes_address = nodes.value;
   rival.triangles_address = triangles.value;
   rival.settings = core_settings(bvh.parameters, options);

@@ -64,7 +64,6 @@ struct CoreSettings {
 /// Everything a core needs to know. 128-byte aligned.
 struct alignas(128) RivalFrameRecord {
   FrameRecord frame;
-  float low[3], high[3];            ///< bounds of the scene
   std::uint64_t nodes_address;      ///< BvhNode[], node 0 is the root
   std::uint64_t triangles_address;  ///< VertexTriangle[]
   CoreSettings settings;

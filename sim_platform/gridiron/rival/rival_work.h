@@ -11,7 +11,7 @@
 
 namespace gridiron::rival {
 
-/// Work of the packet traversal and of its caches. Everything else is core's Work.
+/// Work of the rival's own code. Everything else is core's Work, done by core's code.
 enum class RivalWork : std::uint8_t {
   kTileStart,      ///< tiles begun
   kPacketStart,    ///< packets begun: bounds of their quarters
@@ -30,7 +30,7 @@ enum class RivalWork : std::uint8_t {
 };
 inline constexpr std::uint32_t kRivalWorkCount = static_cast<std::uint32_t>(RivalWork::kCount);
 
-/// A counter of core's that the grid's traversal alone uses carries the rival's kind through trace and replay.
+/// A counter of core's that only code counts which the rival does not run carries its kind through trace and replay.
 [[nodiscard]] constexpr Work carrier_of(RivalWork kind) {
   constexpr std::array<Work, kRivalWorkCount> kCarriers = {
       Work::kTileStart,      Work::kPacketStart,    Work::kPassGroup, Work::kMacroSliceStep, Work::kMacroCellStep,
@@ -42,7 +42,7 @@ inline constexpr std::uint32_t kRivalWorkCount = static_cast<std::uint32_t>(Riva
 /// Name of a kind in reports, snake_case.
 [[nodiscard]] std::string_view name_of(RivalWork kind);
 
-/// Cycles per unit, 4 lanes; each with its derivation in rival_work.cpp.
+/// Cycles per unit, 4 lanes: rival_costs.h, counted by tools/calibrate.
 [[nodiscard]] double cycles_of(RivalWork kind);
 
 /// @returns `machine` with the rival's costs in the places of the carriers; all other kinds keep theirs.
