@@ -15,6 +15,7 @@ TEST(BvhBuildWork, EachCountIsAStep) {
   BuildCounts counts;
   counts.bin_updates = 700;
   counts.bins_swept = 3 * 2 * 16 * 5;  // five nodes of three axes and 16 bins
+  counts.binary_nodes = 5;
   counts.triangles_moved = 30;
   counts.records_written = 11;
   const sim::BuildWork work = bvh_build_work(20, 12, counts);
@@ -30,15 +31,22 @@ TEST(BvhBuildWork, EachCountIsAStep) {
   EXPECT_EQ(bvh_build_work(20, 12, counts)[BuildStep::kNodeMade], 6u) << "a part of a sweep counts as one";
 }
 
-// No more sweeps than nodes, no fewer than inner nodes: those of leaves are priced only where a split was weighed.
+// With 16 bins, between all inner nodes swept and nothing else, and all nodes swept; with 6 bins less, but more than
+// in proportion, for the nodes are as many.
 TEST(BvhBuildWork, SweepsOfARealTree) {
   const test::TestMesh mesh = test::make_torus(80, 40, 1.0f, 0.35f);
-  Bvh bvh;
-  ASSERT_EQ(build_bvh(mesh.view(), {}, bvh), Status::kOk);
-  const sim::BuildWork work = bvh_build_work(mesh.view().vertices.size(), mesh.view().triangles.size(), bvh.counts);
+  const auto work_of = [&mesh](std::uint32_t bin_count, Bvh& bvh) {
+    EXPECT_EQ(build_bvh(mesh.view(), {.bin_count = bin_count}, bvh), Status::kOk);
+    return bvh_build_work(mesh.view().vertices.size(), mesh.view().triangles.size(), bvh.counts);
+  };
+  Bvh bvh, coarse;
+  const sim::BuildWork work = work_of(16, bvh);
   EXPECT_EQ(work[BuildStep::kTriangleWrite], mesh.view().triangles.size());
   EXPECT_LE(work[BuildStep::kNodeMade], bvh.counts.binary_nodes);
   EXPECT_GE(work[BuildStep::kNodeMade], bvh.counts.binary_nodes - bvh.counts.leaves - 1);
+  const std::uint64_t coarse_nodes = work_of(6, coarse)[BuildStep::kNodeMade];
+  EXPECT_LT(coarse_nodes, work[BuildStep::kNodeMade] * 6 / 10);
+  EXPECT_GT(coarse_nodes, work[BuildStep::kNodeMade] * 6 / 16);
   const sim::MasterProfile& master = sim::find_machine_profile("cell-ps3")->master;
   const double bins = master.step_cycles[static_cast<std::size_t>(BuildStep::kBinUpdate)] *
                       static_cast<double>(work[BuildStep::kBinUpdate]);

@@ -103,15 +103,15 @@ TEST(BvhRenderer, PicturesAreTheGridsBitForBit) {
   for (Scene& scene : scenes) {
     ASSERT_NO_FATAL_FAILURE(scene.prepare());
     const std::string name = "scene " + std::to_string(&scene - scenes);
-    for (const RayTests ray_tests : {RayTests::kNone, RayTests::kLeaves, RayTests::kAll}) {
+    for (const std::uint32_t packet_width : {8u, 16u}) {
       for (const bool hyper_threading : {false, true}) {
         for (const bool use_subpackets : {false, true}) {
           RenderOptions options;
           options.all_planes = true;
-          options.ray_tests = ray_tests;
+          options.packet_width = packet_width;
           options.hyper_threading = hyper_threading;
           options.use_subpackets = use_subpackets;
-          scene.expect_same_picture(options, name);
+          scene.expect_same_picture(options, name + ", packets of " + std::to_string(packet_width));
         }
       }
     }
@@ -128,10 +128,12 @@ TEST(BvhRenderer, PicturesOfRandomSoupsAreTheGridsBitForBit) {
                            random.between(0.1f, 1.0f)};
     Scene scene{test::make_random_soup(1 + random.below(1500), extent, seed), settings_of(camera, 90, 60)};
     scene.parameters.leaf_triangles = 1 + random.below(kMaxLeafTriangles);
+    scene.parameters.line_triangles = 8u << random.below(3);
     ASSERT_NO_FATAL_FAILURE(scene.prepare());
     RenderOptions options;
     options.all_planes = true;
-    options.ring_size = 2 + random.below(3);
+    options.packet_width = seed % 3 == 0 ? 8 : 16;
+    options.ring_size = 2 + random.below(options.packet_width == 8 ? 3 : 2);
     options.completion = static_cast<sim::Completion>(random.below(3));
     options.seed = seed;
     scene.expect_same_picture(options, "seed " + std::to_string(seed));
@@ -150,6 +152,7 @@ TEST(BvhRenderer, FourLinesOfEachCacheAreEnough) {
     options.completion = completion;
     for (const std::uint32_t ring_size : {2u, 3u, 4u}) {
       options.ring_size = ring_size;
+      options.packet_width = ring_size == 4 ? 8 : 16;
       scene.expect_same_picture(options, "ring of " + std::to_string(ring_size));
     }
     options.hyper_threading = false;
@@ -232,7 +235,8 @@ TEST(BvhRenderer, FiguresAddUp) {
     charged += static_cast<double>(frame.work[kind]) * std::round(ps3().work_cycles[kind] * 1024) / 1024;
   }
   for (std::uint32_t kind = 0; kind < kRivalWorkCount; ++kind) {
-    charged += static_cast<double>(frame.rival_work[kind]) * cycles_of(static_cast<RivalWork>(kind));
+    charged +=
+        static_cast<double>(frame.rival_work[kind]) * std::round(cycles_of(static_cast<RivalWork>(kind)) * 1024) / 1024;
   }
   const auto work = [&](Work kind) { return static_cast<double>(frame.work[static_cast<std::size_t>(kind)]); };
   charged += ps3().issue_cycles * (work(Work::kGetIssue) + work(Work::kPutIssue));
@@ -243,9 +247,11 @@ TEST(BvhRenderer, FiguresAddUp) {
   // Work of the caches.
   const auto rival_work = [&](RivalWork kind) { return frame.rival_work[static_cast<std::size_t>(kind)]; };
   EXPECT_EQ(rival_work(RivalWork::kCacheLookup), frame.node_cache.lookups + frame.triangle_cache.lookups);
-  EXPECT_EQ(rival_work(RivalWork::kRefill), frame.node_cache.misses + frame.triangle_cache.misses);
+  EXPECT_EQ(rival_work(RivalWork::kMiss), frame.node_cache.misses + frame.node_cache.pending_hits +
+                                              frame.triangle_cache.misses + frame.triangle_cache.pending_hits);
+  EXPECT_EQ(rival_work(RivalWork::kSwitch), rival_work(RivalWork::kMiss));
   for (const CacheCounts& cache : {frame.node_cache, frame.triangle_cache}) {
-    EXPECT_EQ(cache.lookups, cache.hits + cache.pending_hits + cache.misses + cache.refusals);
+    EXPECT_EQ(cache.lookups, cache.hits + cache.pending_hits + cache.misses);
     EXPECT_GT(cache.hit_rate(), 0.3);
   }
 }
@@ -269,15 +275,33 @@ TEST(BvhRenderer, RefusesWhatItCannotRender) {
   settings = good;
   settings.camera.at = settings.camera.eye;
   EXPECT_EQ(status_of(settings, options), Status::kBadFrame);
-  for (const std::uint32_t ring_size : {0u, 1u, kMaxRing + 1}) {
+  for (const std::uint32_t ring_size : {0u, 1u, kRingOf<16> + 1}) {
     options.ring_size = ring_size;
     EXPECT_EQ(status_of(good, options), Status::kBadParameter) << ring_size;
   }
+  options.packet_width = 8;
+  options.ring_size = kRingOf<8>;
+  EXPECT_EQ(status_of(good, options), Status::kOk);
+  options.ring_size = kRingOf<8> + 1;
+  EXPECT_EQ(status_of(good, options), Status::kBadParameter);
   options = {};
-  for (const std::uint32_t lines : {0u, 2u, 6u, 2048u, 144u}) {
+  for (const std::uint32_t width : {0u, 4u, 32u}) {
+    options.packet_width = width;
+    EXPECT_EQ(status_of(good, options), Status::kBadParameter) << width;
+  }
+  options = {};
+  for (const std::uint32_t lines : {0u, 2u, 6u, 24u, 64u, 1024u}) {
     options.caches.node_lines = lines;
     EXPECT_EQ(status_of(good, options), Status::kBadParameter) << lines;
   }
+  for (const std::uint32_t lines : {0u, 2u, 12u, 128u}) {
+    options.caches = {};
+    options.caches.triangle_lines = lines;
+    EXPECT_EQ(status_of(good, options), Status::kBadParameter) << lines;
+  }
+  Bvh odd;
+  ASSERT_EQ(build_bvh(mesh.view(), {.line_triangles = 24}, odd), Status::kOk);
+  EXPECT_EQ(render_bvh_frame(odd, good, ps3(), {}).status, Status::kBadParameter);
   sim::MachineProfile small = ps3();
   small.local_store_bytes = 64 * 1024;
   EXPECT_EQ(render_bvh_frame(bvh, good, small, {}).status, Status::kUnsupportedFrame);

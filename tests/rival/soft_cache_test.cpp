@@ -13,7 +13,7 @@ namespace gridiron::rival {
 namespace {
 
 using Cache = SoftCache<64>;
-using Answer = Cache::Answer;
+using Arrival = Cache::Arrival;
 
 /// Four-way sets as lists, most recently used first.
 class ListModel {
@@ -36,25 +36,30 @@ class ListModel {
 };
 
 TEST(SoftCache, ReplacesTheLeastRecentlyUsedOfASet) {
-  for (const std::uint32_t line_count : {4u, 8u, 20u, 64u}) {
+  for (const std::uint32_t line_count : {4u, 8u, 32u, 64u}) {
     const auto cache = std::make_unique<Cache>();
     cache->reset(line_count);
     ListModel model(line_count);
     test::TestRandom random(line_count);
-    std::vector<std::uint32_t> line_of_slot(line_count, 0xFFFFFFFFu);
+    std::vector<std::uint32_t> line_of_slot(line_count, kNoSlot);
     std::uint64_t hits = 0;
-    for (int i = 0; i < 20000; ++i) {
+    for (std::uint32_t i = 1; i <= 20000; ++i) {
       // Near lines often, far ones now and then.
       const std::uint32_t line = random.below(4) == 0 ? random.below(1000) : random.below(line_count + 8);
-      const auto found = cache->find(line);
+      std::uint32_t slot = cache->find(line, i);
       const bool expected = model.find(line);
-      ASSERT_EQ(found.answer, expected ? Answer::kHit : Answer::kMiss) << "step " << i << ", line " << line;
-      ASSERT_LT(found.slot, line_count);
+      ASSERT_EQ(slot != kNoSlot, expected) << "step " << i << ", line " << line;
       if (expected) {
-        ASSERT_EQ(line_of_slot[found.slot], line) << "step " << i;
+        ASSERT_EQ(line_of_slot[slot], line) << "step " << i;
+        ++hits;
+      } else {
+        const auto claim = cache->claim(line, i, 0);
+        ASSERT_FALSE(claim.is_on_its_way) << "step " << i;
+        slot = claim.slot;
+        cache->end_fill(slot);
       }
-      line_of_slot[found.slot] = line;
-      hits += expected ? 1 : 0;
+      ASSERT_LT(slot, line_count);
+      line_of_slot[slot] = line;
     }
     EXPECT_EQ(cache->counts().lookups, 20000u);
     EXPECT_EQ(cache->counts().hits, hits);
@@ -64,49 +69,51 @@ TEST(SoftCache, ReplacesTheLeastRecentlyUsedOfASet) {
   }
 }
 
-TEST(SoftCache, LineOnItsWayIsAPendingHit) {
+TEST(SoftCache, LineOnItsWayIsNoHitAndNotFetchedAgain) {
   const auto cache = std::make_unique<Cache>();
   cache->reset(8);
-  const auto first = cache->find(3);
-  ASSERT_EQ(first.answer, Answer::kMiss);
-  cache->pin(first.slot);
-  cache->begin_fill(first.slot, 7);
-  const auto second = cache->find(3);
-  EXPECT_EQ(second.answer, Answer::kPending);
+  ASSERT_EQ(cache->find(3, 1), kNoSlot);
+  const auto first = cache->claim(3, 1, 2);
+  ASSERT_FALSE(first.is_on_its_way);
+  EXPECT_EQ(cache->filler_of(first.slot), 2u);
+  EXPECT_EQ(cache->arrival(first.slot, 3), Arrival::kOnItsWay);
+  EXPECT_EQ(cache->find(3, 2), kNoSlot);
+  const auto second = cache->claim(3, 2, 1);
+  EXPECT_TRUE(second.is_on_its_way);
   EXPECT_EQ(second.slot, first.slot);
-  EXPECT_EQ(cache->tag_of(second.slot), 7);
+  EXPECT_EQ(cache->filler_of(first.slot), 2u);
   cache->end_fill(first.slot);
-  EXPECT_FALSE(cache->is_pending(first.slot));
-  EXPECT_EQ(cache->find(3).answer, Answer::kHit);
+  EXPECT_EQ(cache->arrival(first.slot, 3), Arrival::kThere);
+  EXPECT_EQ(cache->find(3, 3), first.slot);
   EXPECT_EQ(cache->counts().pending_hits, 1u);
+  EXPECT_EQ(cache->counts().misses, 1u);
 }
 
-TEST(SoftCache, PinnedLineStaysAndASetOfThemRefuses) {
+// The most there can be: three fetches of a set are under way while a fourth packet fetches line after line.
+TEST(SoftCache, LinesOnTheirWayStay) {
   const auto cache = std::make_unique<Cache>();
   cache->reset(4);
   std::vector<std::uint32_t> slots;
-  for (std::uint32_t line = 0; line < 3; ++line) {
-    slots.push_back(cache->find(line).slot);
-    cache->pin(slots.back());
-  }
-  // One way is free: lines 3..9 take it in turn.
+  for (std::uint32_t line = 0; line < 3; ++line) slots.push_back(cache->claim(line, line + 1, line).slot);
+  std::uint32_t now = 10;
   for (std::uint32_t line = 3; line < 10; ++line) {
-    const auto found = cache->find(line);
-    EXPECT_EQ(found.answer, Answer::kMiss);
-    EXPECT_EQ(std::count(slots.begin(), slots.end(), found.slot), 0) << line;
+    const auto claim = cache->claim(line, ++now, 3);
+    EXPECT_EQ(std::count(slots.begin(), slots.end(), claim.slot), 0) << line;
+    cache->end_fill(claim.slot);
   }
-  cache->pin(cache->find(9).slot);
-  EXPECT_EQ(cache->find(10).answer, Answer::kFull);
-  EXPECT_EQ(cache->counts().refusals, 1u);
-  cache->unpin(slots[1]);
-  const auto found = cache->find(10);
-  EXPECT_EQ(found.answer, Answer::kMiss);
-  EXPECT_EQ(found.slot, slots[1]);
+  for (std::uint32_t line = 0; line < 3; ++line) {
+    EXPECT_EQ(cache->arrival(slots[line], line), Arrival::kOnItsWay) << line;
+    EXPECT_EQ(cache->filler_of(slots[line]), line);
+  }
+  // One that has come is the oldest, and goes.
+  cache->end_fill(slots[1]);
+  EXPECT_EQ(cache->claim(10, ++now, 1).slot, slots[1]);
+  EXPECT_EQ(cache->arrival(slots[1], 1), Arrival::kReplaced);
 }
 
 TEST(SoftCache, HitRateCountsFetches) {
   EXPECT_EQ(CacheCounts{}.hit_rate(), 1.0);
-  const CacheCounts counts{.lookups = 12, .hits = 5, .pending_hits = 1, .misses = 2, .refusals = 4};
+  const CacheCounts counts{.lookups = 8, .hits = 5, .pending_hits = 1, .misses = 2};
   EXPECT_EQ(counts.hit_rate(), 0.75);
 }
 

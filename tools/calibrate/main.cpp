@@ -11,9 +11,11 @@
 namespace {
 
 constexpr std::string_view kUsage =
-    "usage: gridiron_calibrate [FILE | --memories FOLDER]\n"
+    "usage: gridiron_calibrate [--rival] [FILE | --memories FOLDER]\n"
     "Counts the operations of the kernel on three small frames and puts them through the pipeline model.\n"
-    "  FILE           write the table there: sim_platform/gridiron/sim/work_costs.h\n"
+    "  --rival        of the grid's rival instead, on four frames\n"
+    "  FILE           write the table there: sim_platform/gridiron/sim/work_costs.h, of the rival\n"
+    "                 sim_platform/gridiron/rival/rival_costs.h\n"
     "  --memories     write the frames' memories there, for second_opinion/run\n"
     "Without FILE: every kind of work with its operations by class, for superblocks of 1, 2, 4 and 8 basic blocks.\n";
 
@@ -23,6 +25,11 @@ int run(int argument_count, char** arguments) {
     calibrate::write_memories(arguments[2]);
     return 0;
   }
+  const bool of_rival = argument_count > 1 && std::string_view(arguments[1]) == "--rival";
+  if (of_rival) {
+    --argument_count;
+    ++arguments;
+  }
   if (argument_count > 2 || (argument_count == 2 && arguments[1][0] == '-')) {
     std::fputs(kUsage.data(), argument_count == 2 && std::string_view(arguments[1]) == "--help" ? stdout : stderr);
     return argument_count == 2 && std::string_view(arguments[1]) == "--help" ? 0 : 2;
@@ -31,11 +38,14 @@ int run(int argument_count, char** arguments) {
     for (const std::uint32_t branches : {1u, 2u, 4u, 8u}) {
       std::printf("superblocks of at most %u basic blocks%s\n%s\n", branches,
                   branches == calibrate::kSuperblockBranches ? " (charged)" : "",
-                  calibrate::report_text(calibrate::count_frames(branches)).c_str());
+                  (of_rival ? calibrate::rival_report_text(calibrate::count_rival_frames(branches))
+                            : calibrate::report_text(calibrate::count_frames(branches)))
+                      .c_str());
     }
     return 0;
   }
-  const std::string text = calibrate::table_text(calibrate::count_frames());
+  const std::string text = of_rival ? calibrate::rival_table_text(calibrate::count_rival_frames())
+                                    : calibrate::table_text(calibrate::count_frames());
   std::ofstream file(arguments[1], std::ios::binary);
   file << text;
   file.close();

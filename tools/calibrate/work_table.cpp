@@ -1,7 +1,9 @@
 // Frames, table and words: see the header. SPDX-License-Identifier: Apache-2.0
 #include <counted_frame.h>
+#include <gridiron/rival/rival_work.h>
 #include <gridiron_counted/base/exact_sum.h>
 #include <report/report.h>
+#include <rival_frame.h>
 #include <scene_makers/shapes.h>
 #include <work_table.h>
 
@@ -21,15 +23,18 @@ struct Scene {
   std::vector<UVec3> triangles;
 };
 
-Scene make_scene() {
-  constexpr std::uint32_t kSegments = 5;
-  const scene_makers::Mesh mesh = scene_makers::make_teapot(kSegments);
+Scene scene_of(const scene_makers::Mesh& mesh) {
   Scene scene;
   for (const auto& p : mesh.vertices) {
     scene.vertices.emplace_back(static_cast<float>(p[0]), static_cast<float>(p[1]), static_cast<float>(p[2]));
   }
   for (const auto& t : mesh.triangles) scene.triangles.emplace_back(t[0], t[1], t[2]);
   return scene;
+}
+
+Scene make_scene() {
+  constexpr std::uint32_t kSegments = 5;
+  return scene_of(scene_makers::make_teapot(kSegments));
 }
 
 constexpr Vec3 kEye{2.0f, 3.0f, 8.0f};
@@ -146,6 +151,15 @@ std::array<NamedFrame, 5> frames_of(const Scene& scene) {
   return {{{"reference", reference}, {"best", best}, {"near", near}, {"paper", paper}, {"planes", planes}}};
 }
 
+void require_same(const CountedPicture& counted, const CountedPicture& plain) {
+  if (counted.pixels != plain.pixels) throw std::runtime_error("calibration: the counted picture is another one");
+  for (std::size_t kind = 0; kind < kWorkKindCount; ++kind) {
+    if (is_charged(kind) && counted.totals[kind].units != plain.totals[kind].units) {
+      throw std::runtime_error("calibration: the counted twin did other work");
+    }
+  }
+}
+
 constexpr std::string_view kTableHead =
     R"(// What a unit of each kind of work costs on a core of two in-order pipes. Written by gridiron_calibrate from
 // counted operations of the kernel itself; do not edit. tools/calibrate/README.md says how, and where each constant
@@ -176,6 +190,33 @@ inline constexpr std::array<WorkCost, kWorkKindCount> kWorkCosts = {{
     //  cycles    least     most     even  doubles      odd branches   misses
 )";
 
+constexpr std::string_view kRivalTableHead =
+    R"(// What a unit of each of the rival's kinds of work costs on a core of two in-order pipes. Written by
+// gridiron_calibrate from counted operations of the rival itself; do not edit. tools/calibrate/README.md says how.
+// Memory: constants. Threads: any. SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <gridiron/rival/rival_work.h>
+#include <gridiron/sim/work_costs.h>
+
+#include <array>
+
+namespace gridiron::rival {
+
+/// By kind of work of the rival.
+inline constexpr std::array<sim::WorkCost, kRivalWorkCount> kRivalCosts = {{
+    //  cycles    least     most     even  doubles      odd branches   misses
+)";
+
+std::string table_row(const KindTotals& t, const std::string& name) {
+  if (t.units == 0) throw std::runtime_error("calibration: no unit of " + name + " in the frames");
+  return format("    {%7.1f, %7.1f, %7.1f, %7.2f, %7.2f, %7.2f, %7.2f, %7.2f},  // %s\n", per_unit(t, t.cycles()),
+                per_unit(t, t.resource_cycles()), per_unit(t, t.single_issue_cycles()), per_unit(t, t.even()),
+                per_unit(t, t.operations[static_cast<std::size_t>(OpClass::kDouble)]), per_unit(t, t.odd()),
+                per_unit(t, t.operations[static_cast<std::size_t>(OpClass::kBranch)]), per_unit(t, t.misses),
+                name.c_str());
+}
+
 }  // namespace
 
 Totals count_frames(std::uint32_t superblock_branches) {
@@ -183,14 +224,37 @@ Totals count_frames(std::uint32_t superblock_branches) {
   Totals sum = count_exact(scene, superblock_branches);
   for (const NamedFrame& named : frames_of(scene)) {
     const CountedPicture counted = render_counted(named.frame, superblock_branches);
-    const CountedPicture plain = render_plain(named.frame);
-    if (counted.pixels != plain.pixels) throw std::runtime_error("calibration: the counted picture is another one");
-    for (std::size_t kind = 0; kind < kWorkKindCount; ++kind) {
-      if (is_charged(kind) && counted.totals[kind].units != plain.totals[kind].units) {
-        throw std::runtime_error("calibration: the counted kernel did other work");
-      }
-    }
+    require_same(counted, render_plain(named.frame));
     add(sum, counted.totals, named);
+  }
+  return sum;
+}
+
+Totals count_rival_frames(std::uint32_t superblock_branches) {
+  constexpr std::uint32_t kKnotTriangles = 12'000;
+  constexpr std::uint32_t kRing = 3;
+  const Scene teapot = make_scene();
+  const Scene knot = scene_of(scene_makers::make_torus_knot(kKnotTriangles));
+  Totals sum{};
+  for (const std::uint32_t ring_size : {1u, kRing}) {
+    RivalCountedFrame frame{.vertices = teapot.vertices,
+                            .triangles = teapot.triangles,
+                            .eye = kEye,
+                            .at = {0.25f, 1.5f, 0.0f},
+                            .tan_half_fov = 0.41421356f,
+                            .width = 96,
+                            .ring_size = ring_size};
+    for (const Scene* scene : {&teapot, &knot}) {
+      if (scene == &knot) {
+        frame.eye = {3.0f, 2.0f, 8.0f};
+        frame.at = {0.0f, 0.0f, 0.0f};
+      }
+      frame.vertices = scene->vertices;
+      frame.triangles = scene->triangles;
+      const CountedPicture counted = render_rival_counted(frame, superblock_branches);
+      require_same(counted, render_rival_plain(frame));
+      add(sum, counted.totals, [](std::size_t) { return true; });
+    }
   }
   return sum;
 }
@@ -198,20 +262,23 @@ Totals count_frames(std::uint32_t superblock_branches) {
 std::string table_text(const Totals& totals) {
   std::string text(kTableHead);
   for (std::size_t kind = 0; kind < kWorkKindCount; ++kind) {
-    const KindTotals& t = totals[kind];
     const std::string name(tool::work_name(static_cast<Work>(kind)));
     if (!is_charged(kind)) {
       text += format("    {%7d, %7d, %7d, %7d, %7d, %7d, %7d, %7d},  // %s\n", 0, 0, 0, 0, 0, 0, 0, 0, name.c_str());
-      continue;
+    } else {
+      text += table_row(totals[kind], name);
     }
-    if (t.units == 0) throw std::runtime_error("calibration: no unit of " + name + " in the frames");
-    text += format("    {%7.1f, %7.1f, %7.1f, %7.2f, %7.2f, %7.2f, %7.2f, %7.2f},  // %s\n", per_unit(t, t.cycles()),
-                   per_unit(t, t.resource_cycles()), per_unit(t, t.single_issue_cycles()), per_unit(t, t.even()),
-                   per_unit(t, t.operations[static_cast<std::size_t>(OpClass::kDouble)]), per_unit(t, t.odd()),
-                   per_unit(t, t.operations[static_cast<std::size_t>(OpClass::kBranch)]), per_unit(t, t.misses),
-                   name.c_str());
   }
   return text + "}};\n\n}  // namespace gridiron::sim\n";
+}
+
+std::string rival_table_text(const Totals& totals) {
+  std::string text(kRivalTableHead);
+  for (std::uint32_t kind = 0; kind < rival::kRivalWorkCount; ++kind) {
+    const auto work = static_cast<rival::RivalWork>(kind);
+    text += table_row(totals[static_cast<std::size_t>(rival::carrier_of(work))], std::string(rival::name_of(work)));
+  }
+  return text + "}};\n\n}  // namespace gridiron::rival\n";
 }
 
 void write_memories(const std::string& folder) {
@@ -234,7 +301,10 @@ void write_memories(const std::string& folder) {
   if (!file.flush()) throw std::runtime_error("calibration: cannot write into " + folder);
 }
 
-std::string report_text(const Totals& totals) {
+namespace {
+
+template <class NameOf>
+std::string report_of(const Totals& totals, NameOf&& name_of) {
   std::string text = format("%-20s %8s %8s", "kind", "units", "cycles");
   for (const ClassFacts& facts : kClassFacts) text += format(" %8s", facts.name);
   text += format(" %8s\n", "misses");
@@ -243,7 +313,7 @@ std::string report_text(const Totals& totals) {
   for (std::size_t kind = 0; kind < kWorkKindCount; ++kind) {
     const KindTotals& t = totals[kind];
     if (t.units == 0 || !is_charged(kind)) continue;
-    const std::string name(tool::work_name(static_cast<Work>(kind)));
+    const std::string name = name_of(static_cast<Work>(kind));
     text +=
         format("%-20s %8llu %8.1f", name.c_str(), static_cast<unsigned long long>(t.units), per_unit(t, t.cycles()));
     for (const std::uint64_t count : t.operations) text += format(" %8.2f", per_unit(t, count));
@@ -252,6 +322,22 @@ std::string report_text(const Totals& totals) {
     pairs += static_cast<double>(t.pairs) / 2;
   }
   return text + format("dual issue in %.1f %% of all cycles\n", 100 * pairs / cycles);
+}
+
+}  // namespace
+
+std::string report_text(const Totals& totals) {
+  return report_of(totals, [](Work kind) { return std::string(tool::work_name(kind)); });
+}
+
+std::string rival_report_text(const Totals& totals) {
+  return report_of(totals, [](Work kind) {
+    for (std::uint32_t i = 0; i < rival::kRivalWorkCount; ++i) {
+      const auto work = static_cast<rival::RivalWork>(i);
+      if (rival::carrier_of(work) == kind) return "rival:" + std::string(rival::name_of(work));
+    }
+    return std::string(tool::work_name(kind));
+  });
 }
 
 }  // namespace gridiron::calibrate

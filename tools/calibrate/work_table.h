@@ -19,11 +19,19 @@ namespace gridiron::calibrate {
 /// @returns the generated source file, sim_platform/gridiron/sim/work_costs.h.
 [[nodiscard]] std::string table_text(const Totals& totals);
 
+/// The same for the rival: the teapot and a torus knot of 12,000 triangles, whose lines do not all fit the caches, each
+/// with packets one after another and in a ring. Carriers hold the rival's kinds (rival::carrier_of).
+[[nodiscard]] Totals count_rival_frames(std::uint32_t superblock_branches = kSuperblockBranches);
+
+/// @returns the generated source file, sim_platform/gridiron/rival/rival_costs.h.
+[[nodiscard]] std::string rival_table_text(const Totals& totals);
+
 /// Writes the frames' main memories, NAME.memory, and a file `units` (kind, name, units, counted operations per unit)
 /// into a folder, for second_opinion. Errors: std::runtime_error where a file cannot be written.
 void write_memories(const std::string& folder);
 
 /// @returns the same for people: every kind with its bounds and classes, and the rate of dual issue.
 [[nodiscard]] std::string report_text(const Totals& totals);
+[[nodiscard]] std::string rival_report_text(const Totals& totals);
 
 }  // namespace gridiron::calibrate

@@ -104,8 +104,8 @@ void write_caches(const Plan& done, const std::vector<Row>& rows, Book& book) {
     }
   }
   book.table(caches,
-             "Software caches of the hierarchy. A look-up hits where it starts no fetch; a packet is suspended where "
-             "another one of its core's ring goes on in its place.");
+             "Software caches of the hierarchy. A look-up hits where it starts no fetch; a packet is suspended until "
+             "its line has come.");
 }
 
 // How often each step of both builds is done, and its price. @returns BVH build over grid build, the sweeps over bins
@@ -221,8 +221,9 @@ Writer plan_figure7(Plan& plan, const Stage& stage) {
             "software caches, measured by others on eight cores at 2.4 GHz, a chip of the same peak (profile "
             "cell-2006), and calls itself \"slow by half\" [P]; the heights of its bars are lost. Here that rival is "
             "built anew and runs on the same simulated chip, under the same checks, with the same tiles, exact test "
-            "and shading, and with the reference's packets of 8x8 rays (best takes a whole tile): a hierarchy built by "
-            "surface area, four children a node, 4-way set-associative "
+            "and shading, with the packets that it is fastest with, of 16x16 rays (the reference's have 8x8, best "
+            "takes a "
+            "whole tile): a hierarchy built by surface area, four children a node, 4-way set-associative "
             "caches for nodes and triangles in the same 256 KB, and, with hyper-threading, a ring of packets of which "
             "one that misses makes way for the next. ") +
         kRivalCostWords +

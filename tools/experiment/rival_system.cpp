@@ -49,7 +49,8 @@ class RivalRecording : public Recording {
     // What is known without a clock comes from a frame at home; its time is kept for whoever asks for it.
     rival::BvhFrame frame = render(bvh_, settings_, hyper_threading_, *home_machine(), 0);
     const auto count_of = [&frame](rival::RivalWork kind) { return frame.rival_work[static_cast<std::size_t>(kind)]; };
-    facts_.traversal_steps = count_of(rival::RivalWork::kNodeStep) + count_of(rival::RivalWork::kLeafVisit);
+    facts_.traversal_steps = count_of(rival::RivalWork::kNodeStep) + count_of(rival::RivalWork::kMixedNodeStep) +
+                             count_of(rival::RivalWork::kLeafVisit);
     facts_.intersection_tests = frame.work[static_cast<std::size_t>(Work::kGroupTestStandard)];
     facts_.scene_bytes = bvh_.nodes.size() * sizeof(rival::BvhNode) + bvh_.triangles.size() * sizeof(VertexTriangle);
     facts_.dropped_triangles = bvh_.triangle_count - static_cast<std::uint32_t>(bvh_.counts.records_written);

@@ -46,7 +46,7 @@ struct FrameFacts {
 /// How software caches did, over all cores.
 struct CacheFacts {
   double node_hit_percent = 0, triangle_hit_percent = 0;  ///< look-ups that started no fetch
-  std::uint64_t suspended_packets = 0;                    ///< changes to another packet of the ring
+  std::uint64_t suspended_packets = 0;                    ///< times that a packet made way until its line had come
 };
 
 /// What a run on a machine gave.

@@ -209,8 +209,8 @@ class Builder {
         left_count += bins[i - 1].count;
         if (left_count == 0 || left_count == node.count) continue;
         // Two more boxes to test wherever the node is met.
-        const double cost = 2.0 * node.box.area() + double{parameters_.triangle_cost} *
-                                                        (left.area() * left_count + right_cost[i]);
+        const double cost =
+            2.0 * node.box.area() + double{parameters_.triangle_cost} * (left.area() * left_count + right_cost[i]);
         if (!best.found || cost < best.cost) best = {true, axis, i, cost};
       }
     }
@@ -299,6 +299,7 @@ class Builder {
         node.bounds[0][axis][i] = box.low[axis];
         node.bounds[1][axis][i] = box.high[axis];
       }
+      node.children[i].bits = BvhChild::kNone;
       if (i >= wide.count) continue;
       const PairNode& child = pairs_[wide.children[i]];
       if (child.first_child != 0) {
@@ -343,9 +344,9 @@ class Builder {
   const MeshView& mesh_;
   const BvhParameters& parameters_;
   Bvh& bvh_;
-  std::vector<Box> boxes_;           ///< of the triangles that are kept
-  std::vector<std::uint32_t> ids_;   ///< their places in the mesh
-  std::vector<std::uint32_t> order_; ///< of the kept triangles
+  std::vector<Box> boxes_;            ///< of the triangles that are kept
+  std::vector<std::uint32_t> ids_;    ///< their places in the mesh
+  std::vector<std::uint32_t> order_;  ///< of the kept triangles
   std::vector<PairNode> pairs_;
   std::vector<WideNode> wide_;
   std::vector<std::uint32_t> wide_of_pair_;

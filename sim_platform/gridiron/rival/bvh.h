@@ -5,6 +5,7 @@
 
 #include <gridiron/base/records.h>
 #include <gridiron/platform/status.h>
+#include <gridiron/rival/bvh_node.h>
 #include <gridiron/scene/mesh.h>
 
 #include <cstdint>
@@ -12,41 +13,12 @@
 
 namespace gridiron::rival {
 
-inline constexpr std::uint32_t kNodeWidth = 4;            ///< children a node has at most
-inline constexpr std::uint32_t kMaxLeafTriangles = 8;     ///< triangles a leaf has at most
-inline constexpr std::uint32_t kMaxBvhDepth = 40;         ///< nodes on any way from the root to a leaf
-inline constexpr std::uint32_t kStackEntries = (kNodeWidth - 1) * kMaxBvhDepth + 1;  ///< a traversal needs no more
-
-/// Names a node or a leaf: a node by its index, a leaf by its first triangle, their count and the top bit.
-struct BvhChild {
-  std::uint32_t bits;
-
-  static constexpr std::uint32_t kFirstBits = 27;
-  [[nodiscard]] static constexpr BvhChild node(std::uint32_t index) { return {index}; }
-  [[nodiscard]] static constexpr BvhChild leaf(std::uint32_t first, std::uint32_t count) {
-    return {1u << 31 | (count - 1) << kFirstBits | first};
-  }
-  [[nodiscard]] constexpr bool is_leaf() const { return (bits >> 31) != 0; }
-  [[nodiscard]] constexpr std::uint32_t node_index() const { return bits; }
-  [[nodiscard]] constexpr std::uint32_t first_triangle() const { return bits & ((1u << kFirstBits) - 1); }
-  [[nodiscard]] constexpr std::uint32_t triangle_count() const { return (bits >> kFirstBits & 0xFu) + 1; }
-};
-
-/// A node as it lies in main memory: the boxes of its children, side by side in lanes. 128 bytes, 128-byte aligned.
-struct alignas(128) BvhNode {
-  float bounds[2][3][kNodeWidth];  ///< [low, high][axis][child], tight: the vertices' own floats
-  BvhChild children[kNodeWidth];   ///< the first child_count are there
-  std::uint32_t child_count;       ///< 1..kNodeWidth
-  std::uint32_t reserved[3];
-};
-static_assert(sizeof(BvhNode) == 128);
-
 struct BvhParameters {
-  std::uint32_t bin_count = 16;          ///< per axis, 2..64
-  std::uint32_t leaf_triangles = 4;      ///< most triangles of a leaf, 1..kMaxLeafTriangles
-  float triangle_cost = 2;               ///< of a test, in tests of a child's box
-  std::uint32_t line_triangles = 16;     ///< records of a line of the triangle cache; a leaf lies in one line
-  std::uint32_t line_nodes = 8;          ///< nodes of a line of the node cache, neighbours in the tree
+  std::uint32_t bin_count = 6;        ///< per axis, 2..64
+  std::uint32_t leaf_triangles = 3;   ///< most triangles of a leaf, 1..kMaxLeafTriangles
+  float triangle_cost = 1;            ///< of a test, in tests of a child's box
+  std::uint32_t line_triangles = 32;  ///< records of a line of the triangle cache; a leaf lies in one line
+  std::uint32_t line_nodes = 16;      ///< nodes of a line of the node cache, neighbours in the tree
 };
 
 /// What a build did, for a price on a machine. Integers, the same on every host.
@@ -66,9 +38,9 @@ struct Bvh {
   std::vector<VertexTriangle> triangles;  ///< leaf by leaf, padded so that no leaf crosses a cache line
   BvhParameters parameters;
   BuildCounts counts;
-  float low[3] = {}, high[3] = {};        ///< bounds of everything
-  std::uint32_t depth = 0;                ///< nodes on the longest way to a leaf
-  std::uint32_t triangle_count = 0;       ///< of the mesh, dropped ones included
+  float low[3] = {}, high[3] = {};   ///< bounds of everything
+  std::uint32_t depth = 0;           ///< nodes on the longest way to a leaf
+  std::uint32_t triangle_count = 0;  ///< of the mesh, dropped ones included
 };
 
 /// Builds the hierarchy.

@@ -8,6 +8,8 @@
 #include <gridiron/ray/intersect_standard.h>
 #include <gridiron/render/camera.h>
 #include <gridiron/render/shading.h>
+#include <gridiron/rival/child_order.h>
+#include <gridiron/rival/four_words.h>
 #include <gridiron/rival/rival_store.h>
 #include <gridiron/rival/rival_work.h>
 #include <gridiron/store/transfers.h>
@@ -19,12 +21,14 @@ namespace gridiron::rival {
 /// Renders tiles of one frame on one core. The caches outlive a tile.
 ///
 /// A packet runs until a line that it needs is not there; it starts the get and the next packet of the ring runs. A
-/// packet alone waits at once. A line stays while a packet waits for it.
-/// @tparam L  Lanes<4>, as on the chip.
-template <class L, Platform P>
+/// packet alone waits at once.
+/// @tparam L  Lanes<4>, as on the chip. @tparam Width  of a packet, 8 or 16.
+template <class L, std::uint32_t Width, Platform P>
 class BvhCore {
+  static_assert(EdgeBatch<L>::kTriangles == 1 && (Width == 8 || Width == 16));
+
  public:
-  BvhCore(RivalStore& store, P& platform) : store_(store), transfers_(platform, store.work) {}
+  BvhCore(PacketStore<Width>& store, P& platform) : store_(store), transfers_(platform, store.work) {}
 
   /// Renders every tile this core can claim of the frame whose RivalFrameRecord lies at `record`.
   ///
@@ -37,9 +41,12 @@ class BvhCore {
     GRIDIRON_TRY(check_record());
     store_.node_cache.reset(settings().node_lines);
     store_.triangle_cache.reset(settings().triangle_lines);
-    triangle_lines_ = store_.lines + settings().node_lines * node_line_bytes();
-    extent_ = extent_of(store_.record.low, store_.record.high, frame().eye);
-    dir_bound_ = direction_bound(frame());
+    log_line_nodes_ = settings().log_line_nodes;
+    log_line_triangles_ = settings().log_line_triangles;
+    node_mask_ = (1u << log_line_nodes_) - 1u;
+    triangle_mask_ = (1u << log_line_triangles_) - 1u;
+    triangle_lines_ = store_.lines + (settings().node_lines << (log_line_nodes_ + kLogNodeBytes));
+    least_direction_ = kLeastDirection * direction_bound(frame());
     reserve_output();
     for (TileClaim claim = transfers_.claim_tile();; claim = transfers_.claim_tile()) {
       if (claim.kind == TileClaim::Kind::kAborted) return finish(Status::kAborted);
@@ -50,23 +57,24 @@ class BvhCore {
   }
 
  private:
-  using StorePacket = PacketContext::StorePacket;
-  using State = PacketContext::State;
+  using Four = Lanes<4>;
+  using StorePacket = Packet<Width>;
+  using Context = PacketContext<Width>;
   static constexpr std::uint32_t kPlaneBytes = kTilePixels * sizeof(std::uint32_t);
+  static constexpr std::uint32_t kLogNodeBytes = 7;
+  static_assert(sizeof(BvhNode) == 1u << kLogNodeBytes && kTriangleRecordBytes == 48);
+  static constexpr float kLeastDirection = 0x1p-30f;
 
   [[nodiscard]] const FrameRecord& frame() const { return store_.record.frame; }
   [[nodiscard]] const CoreSettings& settings() const { return store_.record.settings; }
-  [[nodiscard]] std::uint32_t node_line_bytes() const {
-    return settings().line_nodes * static_cast<std::uint32_t>(sizeof(BvhNode));
-  }
-  [[nodiscard]] std::uint32_t triangle_line_bytes() const { return settings().line_triangles * kTriangleRecordBytes; }
+  void charge_to(RivalWork kind) { store_.work.charge_to(carrier_of(kind)); }
   void count(RivalWork kind, std::uint32_t amount = 1) { store_.work.add(carrier_of(kind), amount); }
 
   // --- Tiles ------------------------------------------------------------------------------------------------------
 
   [[nodiscard]] Status render_tile(std::uint32_t tile_id) {
     if (tile_id >= frame().tiles_x * frame().tiles_y) return Status::kBadFrame;
-    store_.work.add(Work::kTileStart);
+    count(RivalWork::kTileStart);
     left_ = tile_id % frame().tiles_x * kTileWidth;
     top_ = tile_id / frame().tiles_x * kTileWidth;
     next_x_ = next_y_ = 0;
@@ -80,6 +88,7 @@ class BvhCore {
     } else {
       GRIDIRON_TRY(trace_tile<false>());
     }
+    charge_to(RivalWork::kTileStart);
     GRIDIRON_TRY(put_tile(tile_id, tag));
     return waits_for_output_ ? transfers_.wait(tag) : Status::kOk;
   }
@@ -89,220 +98,270 @@ class BvhCore {
   [[nodiscard]] Status trace_tile() {
     const std::uint32_t ring_size = settings().ring_size;
     std::uint32_t live = 0;
-    for (std::uint32_t i = 0; i < ring_size; ++i) live += start_packet(store_.contexts[i]) ? 1u : 0u;
-    std::uint32_t last = 0;
+    for (std::uint32_t i = 0; i < ring_size; ++i) {
+      if (start_packet(store_.contexts[i])) ++live;
+    }
     for (std::uint32_t i = 0; live != 0; i = i + 1 == ring_size ? 0 : i + 1) {
-      PacketContext& context = store_.contexts[i];
-      if (context.state == State::kIdle) continue;
-      if (i != last) count(RivalWork::kSwitch);
-      last = i;
+      Context& context = store_.contexts[i];
+      if (context.state == Context::kIdle) continue;
       GRIDIRON_TRY(run_packet<kWantFacing>(context, i));
-      if (context.state == State::kIdle) --live;
+      if (context.state == Context::kIdle) --live;
     }
     return Status::kOk;
   }
 
   // The context's next packet of the tile. @returns false where there is none.
-  [[nodiscard]] bool start_packet(PacketContext& context) {
-    context.state = State::kIdle;
+  [[nodiscard]] bool start_packet(Context& context) {
+    charge_to(RivalWork::kTileStart);
+    context.state = Context::kIdle;
     if (next_y_ >= kTileWidth || top_ + next_y_ >= frame().height) return false;
+    count(RivalWork::kPacketStart);
+    const std::uint32_t left = left_ + next_x_;
+    const std::uint32_t top = top_ + next_y_;
     context.x = next_x_;
     context.y = next_y_;
-    next_x_ += kPacketWidth;
+    next_x_ += Width;
     if (next_x_ >= kTileWidth || left_ + next_x_ >= frame().width) {
       next_x_ = 0;
-      next_y_ += kPacketWidth;
+      next_y_ += Width;
     }
-    generate_packet<L>(frame(), left_ + context.x, top_ + context.y, context.packet, context.packet.active,
-                       store_.work);
-    store_.work.add(Work::kPacketStart);
-    const bool ray_tests = settings().ray_tests != RayTests::kNone;
-    context.bounds.template set<L>(context.packet, extent_, dir_bound_, ray_tests);
-    if (ray_tests) count(RivalWork::kReciprocalGroup, StorePacket::kRayCount / L::kCount);
-    start_at_root(context);
-    return true;
-  }
-
-  void start_at_root(PacketContext& context) {
-    for (float& reach : context.reach) reach = frame().t_far;
-    context.largest_reach = frame().t_far;
+    context.child = BvhChild::node(0);
+    context.missed = 0;
     context.stack_count = 0;
-    context.current = {BvhChild::node(0), 0.0f, 0};
-    context.state = State::kRunning;
+    context.state = Context::kRunning;
+    Four::Float(frame().t_far).store(context.reach);
+    context.bounds.set(frame(), left, top, least_direction_, store_.work);
+    generate_packet<L>(frame(), left, top, context.packet, context.packet.active, store_.work);
+    return true;
   }
 
   // --- One packet -------------------------------------------------------------------------------------------------
 
-  // Runs a packet, and those of the tile that follow it in its context, until one has to wait or none is left.
+  // Where a running packet stands.
+  struct Cursor {
+    BvhChild child;        // to be visited
+    std::uint32_t missed;  // quarters that do not meet it
+    std::uint32_t top;     // entries on the stack
+  };
+
+  // Runs a packet, and those of the tile that follow it in its context, until one is suspended or none is left.
   template <bool kWantFacing>
-  [[nodiscard]] Status run_packet(PacketContext& context, std::uint32_t ring_index) {
+  [[nodiscard]] Status run_packet(Context& context, std::uint32_t ring_index) {
+    Cursor cursor{context.child, context.missed, context.stack_count};
+    std::uint32_t slot = kNoSlot;
+    if (context.state == Context::kWaiting) {
+      context.state = Context::kRunning;
+      GRIDIRON_TRY(resume(context, cursor.child, slot));
+    }
     for (;;) {
-      bool arrived = false;
-      if (context.state == State::kWaiting) {
-        context.state = State::kRunning;
-        arrived = context.slot != kNoSlot;
-        if (arrived) GRIDIRON_TRY(take_line(context));
-      }
-      if (!arrived) {
-        bool is_there = false;
-        GRIDIRON_TRY(look_up(context, ring_index, is_there));
-        if (!is_there) {
-          context.state = State::kWaiting;
-          if (settings().ring_size > 1) return Status::kOk;
-          continue;
+      bool goes_on = false;
+      if (cursor.child.is_leaf()) {
+        if (slot == kNoSlot) {
+          count(RivalWork::kCacheLookup);
+          const std::uint32_t line = triangle_line(cursor.child);
+          slot = store_.triangle_cache.find(line, ++now_);
+          if (slot == kNoSlot) [[unlikely]] {
+            GRIDIRON_TRY(fetch_triangles(line, ring_index, slot));
+            if (settings().ring_size > 1) return suspend(context, cursor, slot);
+          }
         }
+        test_leaf<kWantFacing>(context, cursor, slot);
+        goes_on = pop(context, cursor);
+      } else {
+        if (slot == kNoSlot) {
+          count(RivalWork::kCacheLookup);
+          const std::uint32_t line = node_line(cursor.child);
+          slot = store_.node_cache.find(line, ++now_);
+          if (slot == kNoSlot) [[unlikely]] {
+            GRIDIRON_TRY(fetch_nodes(line, ring_index, slot));
+            if (settings().ring_size > 1) return suspend(context, cursor, slot);
+          }
+        }
+        goes_on = step_down(context, cursor, slot);
+        if (!goes_on) goes_on = pop(context, cursor);
       }
-      if (context.current.child.is_leaf()) {
-        test_leaf<kWantFacing>(context);
-        if (pop(context)) continue;
-      } else if (step_down(context) || pop(context)) {
+      slot = kNoSlot;
+      if (goes_on) [[likely]]
         continue;
-      }
       if (take_unsure_rays(context.packet, frame().t_far, context.packet.active)) {
-        start_at_root(context);
+        cursor = {BvhChild::node(0), 0, 0};
+        Four::Float(frame().t_far).store(context.reach);
         continue;
       }
       shade_packet<L>(frame(), context.packet, context.x, context.y, store_.output[output_slot_], store_.work);
       if (!start_packet(context)) return Status::kOk;
+      cursor = {BvhChild::node(0), 0, 0};
     }
   }
 
-  // Looks for the line of context.current. Where it is not there, context.slot is the one to wait for, or kNoSlot.
-  [[nodiscard]] Status look_up(PacketContext& context, std::uint32_t ring_index, bool& is_there) {
-    const BvhChild child = context.current.child;
-    if (child.is_leaf()) {
-      return look_up(store_.triangle_cache, child.first_triangle() / settings().line_triangles, triangle_lines_,
-                     triangle_line_bytes(), store_.record.triangles_address, kFirstTriangleTag + ring_index, context,
-                     is_there);
-    }
-    return look_up(store_.node_cache, child.node_index() / settings().line_nodes, store_.lines, node_line_bytes(),
-                   store_.record.nodes_address, kFirstMacroTag + ring_index, context, is_there);
+  // --- Caches -----------------------------------------------------------------------------------------------------
+
+  [[nodiscard]] std::uint32_t node_line(BvhChild child) const { return child.node_index() >> log_line_nodes_; }
+  [[nodiscard]] std::uint32_t triangle_line(BvhChild child) const {
+    return child.first_triangle() >> log_line_triangles_;
   }
 
-  template <class Cache>
-  [[nodiscard]] Status look_up(Cache& cache, std::uint32_t line, std::byte* lines, std::uint32_t line_bytes,
-                               std::uint64_t address, std::uint32_t tag, PacketContext& context, bool& is_there) {
-    count(RivalWork::kCacheLookup);
-    const auto found = cache.find(line);
-    context.slot = found.slot;
-    is_there = found.answer == Cache::Answer::kHit;
-    if (is_there || found.answer == Cache::Answer::kFull) return Status::kOk;
-    cache.pin(found.slot);
-    if (found.answer == Cache::Answer::kPending) return Status::kOk;
-    count(RivalWork::kRefill);
-    cache.begin_fill(found.slot, static_cast<std::uint8_t>(tag));
-    return transfers_.get(lines + found.slot * line_bytes, MainAddress{address + std::uint64_t{line} * line_bytes},
-                          line_bytes, static_cast<std::uint8_t>(tag));
+  // Starts the get of a line that is not there, or finds it on its way. A packet alone waits for it.
+  [[nodiscard]] Status fetch_nodes(std::uint32_t line, std::uint32_t ring_index, std::uint32_t& slot) {
+    count(RivalWork::kMiss);
+    const auto claim = store_.node_cache.claim(line, now_, ring_index);
+    slot = claim.slot;
+    if (claim.is_on_its_way) return Status::kOk;
+    const std::uint32_t log_bytes = log_line_nodes_ + kLogNodeBytes;
+    const MainAddress address{store_.record.nodes_address + (std::uint64_t{line} << log_bytes)};
+    return fetch(store_.node_cache, store_.lines + (slot << log_bytes), address, 1u << log_bytes,
+                 kFirstMacroTag + ring_index, slot);
   }
-
-  // Waits for the line that the packet was suspended for, unless another packet has.
-  [[nodiscard]] Status take_line(PacketContext& context) {
-    return context.current.child.is_leaf() ? take_line(store_.triangle_cache, context.slot)
-                                           : take_line(store_.node_cache, context.slot);
+  [[nodiscard]] Status fetch_triangles(std::uint32_t line, std::uint32_t ring_index, std::uint32_t& slot) {
+    count(RivalWork::kMiss);
+    const auto claim = store_.triangle_cache.claim(line, now_, ring_index);
+    slot = claim.slot;
+    if (claim.is_on_its_way) return Status::kOk;
+    const std::uint64_t first = std::uint64_t{line} << log_line_triangles_;
+    const MainAddress address{store_.record.triangles_address + ((first << 4) + (first << 5))};
+    return fetch(store_.triangle_cache, triangle_lines_ + record_bytes(slot << log_line_triangles_), address,
+                 record_bytes(1u << log_line_triangles_), kFirstTriangleTag + ring_index, slot);
   }
   template <class Cache>
-  [[nodiscard]] Status take_line(Cache& cache, std::uint32_t slot) {
-    if (cache.is_pending(slot)) {
-      GRIDIRON_TRY(transfers_.wait(cache.tag_of(slot)));
-      cache.end_fill(slot);
-    }
-    cache.unpin(slot);
+  [[nodiscard]] Status fetch(Cache& cache, std::byte* target, MainAddress address, std::uint32_t bytes,
+                             std::uint32_t tag, std::uint32_t slot) {
+    GRIDIRON_TRY(transfers_.get(target, address, bytes, static_cast<std::uint8_t>(tag)));
+    if (settings().ring_size > 1) return Status::kOk;
+    GRIDIRON_TRY(transfers_.wait(static_cast<std::uint8_t>(tag)));
+    cache.end_fill(slot);
+    return Status::kOk;
+  }
+  [[nodiscard]] static std::uint32_t record_bytes(std::uint32_t records) { return (records << 4) + (records << 5); }
+
+  // Leaves the core to the next packet of the ring.
+  [[nodiscard]] Status suspend(Context& context, const Cursor& cursor, std::uint32_t slot) {
+    count(RivalWork::kSwitch);
+    context.child = cursor.child;
+    context.missed = cursor.missed;
+    context.stack_count = cursor.top;
+    context.slot = slot;
+    context.state = Context::kWaiting;
     return Status::kOk;
   }
 
+  // Waits for the line that the packet was suspended for, unless another packet has. @param slot  out: kNoSlot where it
+  // has come and gone again.
+  [[nodiscard]] Status resume(const Context& context, BvhChild child, std::uint32_t& slot) {
+    if (child.is_leaf()) {
+      return resume(store_.triangle_cache, triangle_line(child), kFirstTriangleTag, context.slot, slot);
+    }
+    return resume(store_.node_cache, node_line(child), kFirstMacroTag, context.slot, slot);
+  }
+  template <class Cache>
+  [[nodiscard]] Status resume(Cache& cache, std::uint32_t line, std::uint8_t first_tag, std::uint32_t waited_for,
+                              std::uint32_t& slot) {
+    const auto arrival = cache.arrival(waited_for, line);
+    if (arrival == Cache::Arrival::kReplaced) return Status::kOk;
+    slot = waited_for;
+    if (arrival == Cache::Arrival::kThere) return Status::kOk;
+    GRIDIRON_TRY(transfers_.wait(static_cast<std::uint8_t>(first_tag + cache.filler_of(slot))));
+    cache.end_fill(slot);
+    return Status::kOk;
+  }
+
+  // --- Traversal --------------------------------------------------------------------------------------------------
+
   // Holds the children of the current node against the packet; the nearest becomes the current one, the others go on
   // the stack, the nearer the higher. @returns false where none is met.
-  [[nodiscard]] bool step_down(PacketContext& context) {
-    const std::uint32_t place = context.current.child.node_index() % settings().line_nodes;
-    const BvhNode& node =
-        reinterpret_cast<const BvhNode*>(store_.lines + context.slot * node_line_bytes())[place];
-    count(RivalWork::kNodeStep);
-    alignas(16) float entry[kNodeWidth];
-    std::uint32_t met = context.bounds.children_met(node, context.largest_reach, entry);
-    StackEntry sorted[kNodeWidth];
-    std::uint32_t met_count = 0;
-    for (; met != 0; met &= met - 1) {
-      const auto i = static_cast<std::uint32_t>(__builtin_ctz(met));
-      const BvhChild child = node.children[i];
-      std::uint32_t group = context.current.first_group;
-      const RayTests tests = settings().ray_tests;
-      if (tests == RayTests::kAll || (tests == RayTests::kLeaves && child.is_leaf())) {
-        std::uint32_t tested = 0;
-        group = context.bounds.template first_group_met<L>(context.packet, node, i, group, tested);
-        count(RivalWork::kBoxSetup);
-        count(RivalWork::kBoxGroup, tested);
-        if (group == PacketContext::StorePacket::kRayCount / L::kCount) continue;
-      }
-      count(RivalWork::kChildPush);
-      std::uint32_t position = met_count++;
-      for (; position > 0 && sorted[position - 1].entry < entry[i]; --position) sorted[position] = sorted[position - 1];
-      sorted[position] = {child, entry[i], group};
+  [[nodiscard]] bool step_down(Context& context, Cursor& cursor, std::uint32_t slot) {
+    const std::uint32_t place = (slot << log_line_nodes_) + (cursor.child.node_index() & node_mask_);
+    if (context.bounds.is_mixed == 0) [[likely]] {
+      count(RivalWork::kNodeStep);
+      const BvhNode& node = *reinterpret_cast<const BvhNode*>(store_.lines + (place << kLogNodeBytes));
+      return take_nearest(context, cursor, node,
+                          context.bounds.template children_met<false>(node, context.packet.origin, context.reach));
     }
-    if (met_count == 0) return false;
-    for (std::uint32_t i = 0; i + 1 < met_count; ++i) context.stack[context.stack_count++] = sorted[i];
-    context.current = sorted[met_count - 1];
+    count(RivalWork::kMixedNodeStep);
+    const BvhNode& node = *reinterpret_cast<const BvhNode*>(store_.lines + (place << kLogNodeBytes));
+    return take_nearest(context, cursor, node,
+                        context.bounds.template children_met<true>(node, context.packet.origin, context.reach));
+  }
+
+  [[nodiscard]] bool take_nearest(Context& context, Cursor& cursor, const BvhNode& node, const ChildrenMet& met) {
+    const std::uint32_t children = met.none.bits() ^ kAllChildren;
+    if (children == 0) return false;
+    count(RivalWork::kChildren);
+    const OrderedChildren ordered(met.entry, met.none, FourWords::load(&node.children[0].bits), met.missed);
+    // What is not met lands above the top.
+    ordered.store(reinterpret_cast<float*>(context.stack + cursor.top));
+    const std::uint32_t nearest = count_bits(children) - 1u;
+    cursor.child.bits = ordered.child.word(nearest);
+    cursor.missed = ordered.missed.word(nearest);
+    cursor.top += nearest;
     return true;
   }
 
   // Takes the next entry that is not behind everything hit so far. @returns false where none is left.
-  [[nodiscard]] bool pop(PacketContext& context) {
-    while (context.stack_count != 0) {
+  [[nodiscard]] bool pop(const Context& context, Cursor& cursor) {
+    charge_to(RivalWork::kStackPop);
+    while (cursor.top != 0) {
       count(RivalWork::kStackPop);
-      context.current = context.stack[--context.stack_count];
-      if (context.current.entry <= context.largest_reach) return true;
+      --cursor.top;
+      const StackEntry& entry = context.stack[cursor.top];
+      const std::uint32_t behind = (Four::Float(entry.entry) > Four::Float::load(context.reach)).bits();
+      cursor.child = entry.child;
+      cursor.missed = entry.missed | behind;
+      if (cursor.missed != kAllQuarters) [[likely]]
+        return true;
     }
     return false;
   }
 
   template <bool kWantFacing>
-  void test_leaf(PacketContext& context) {
-    const BvhChild child = context.current.child;
-    const auto* const line =
-        reinterpret_cast<const VertexTriangle*>(triangle_lines_ + context.slot * triangle_line_bytes());
-    const VertexTriangle* const triangles = line + child.first_triangle() % settings().line_triangles;
+  void test_leaf(Context& context, const Cursor& cursor, std::uint32_t slot) {
     count(RivalWork::kLeafVisit);
+    const std::uint32_t first = (slot << log_line_triangles_) + (cursor.child.first_triangle() & triangle_mask_);
+    const auto* triangle = reinterpret_cast<const VertexTriangle*>(triangle_lines_ + record_bytes(first));
     // Subpackets do what corner rays would, and cheaper (as in the grid's configuration best).
     const bool by_subpackets = settings().use_subpackets != 0;
     const Culling culling{.corner_rays = !by_subpackets, .subpackets = by_subpackets};
-    // Subpackets that the leaf's box may be met by, and that have not hit anything nearer.
-    SubpacketSet open = 0;
-    store_.work.add(Work::kReachGroup);
-    for (std::uint32_t i = context.current.first_group * L::kCount / kSubpacketRays; i < StorePacket::kSubpacketCount;
-         ++i) {
-      if (context.current.entry <= context.reach[i]) open |= SubpacketSet{1} << i;
-    }
+    const SubpacketSet open = subpackets_of(cursor.missed ^ kAllQuarters);
     SubpacketSet changed = 0;
     constexpr std::uint32_t kBatch = L::kCount;
-    for (std::uint32_t i = 0; i < child.triangle_count(); i += kBatch) {
+    for (std::uint32_t left = cursor.child.triangle_count(); left != 0;) {
       const VertexTriangle* batch[kBatch];
       SubpacketSet subpackets[kBatch];
       std::uint32_t in_batch = 0;
-      for (; in_batch < kBatch && i + in_batch < child.triangle_count(); ++in_batch) {
-        batch[in_batch] = triangles + i + in_batch;
+      for (; in_batch < kBatch && left != 0; --left) {
+        batch[in_batch] = triangle++;
         subpackets[in_batch] = open;
+        ++in_batch;
       }
+      count(RivalWork::kLeafTriangle, in_batch);
       changed |= intersect_standard_batch<L, kWantFacing>(context.packet, batch, subpackets, in_batch, culling,
                                                           store_.work);
+      charge_to(RivalWork::kLeafTriangle);
     }
-    if (changed != 0) update_reach(context, changed);
+    if (changed != 0) update_reach(context, static_cast<std::uint32_t>(changed));
   }
 
-  void update_reach(PacketContext& context, SubpacketSet changed) {
-    using Float = typename L::Float;
-    for_each_subpacket<StorePacket::kSubpacketCount>(changed, [&](std::uint32_t subpacket) {
-      Float farthest(0.0f);
-      const std::uint32_t first_ray = subpacket * kSubpacketRays;
-      for (std::uint32_t base = first_ray; base < first_ray + kSubpacketRays; base += L::kCount) {
-        store_.work.add(Work::kReachGroup);
-        const auto active = L::mask_from_bits(context.packet.active.template group<L>(base));
-        farthest = L::max(farthest, L::select(active, Float::load(context.packet.t + base), Float(0.0f)));
-      }
-      context.reach[subpacket] = L::horizontal_max(farthest) * (1.0f + 2.0f * kEstimateError);
-    });
-    store_.work.add(Work::kReachGroup);
-    context.largest_reach = 0.0f;
-    for (const float reach : context.reach) {
-      context.largest_reach = reach > context.largest_reach ? reach : context.largest_reach;
+  // The subpackets of some quarters.
+  [[nodiscard]] static SubpacketSet subpackets_of(std::uint32_t quarters) {
+    if constexpr (Width == 8) return quarters;
+    // A bit becomes four.
+    const std::uint32_t pairs = (quarters | quarters << 6) & 0x0303u;
+    const std::uint32_t apart = (pairs | pairs << 3) & 0x1111u;
+    return (apart << 4) - apart;
+  }
+
+  // The farthest of the rays' nearest hits, of all quarters. Rays beyond the picture's edge stay at t_far.
+  void update_reach(Context& context, std::uint32_t changed) {
+    using Float = Four::Float;
+    constexpr std::uint32_t kQuarterRays = StorePacket::kRayCount / kQuarterCount;
+    constexpr std::uint32_t kQuarterSubpackets = StorePacket::kSubpacketCount / kQuarterCount;
+    constexpr std::uint32_t kSubpacketsOfQuarter = (1u << kQuarterSubpackets) - 1u;
+    for (std::uint32_t quarter = 0; quarter < kQuarterCount; ++quarter) {
+      if ((changed >> (quarter * kQuarterSubpackets) & kSubpacketsOfQuarter) == 0) continue;
+      count(RivalWork::kReach);
+      const float* const t = context.packet.t + quarter * kQuarterRays;
+      Float farthest = Float::load(t);
+      for (std::uint32_t ray = 4; ray < kQuarterRays; ray += 4) farthest = Four::max(farthest, Float::load(t + ray));
+      context.reach[quarter] = Four::horizontal_max(farthest) * (1.0f + 2.0f * kEstimateError);
     }
   }
 
@@ -323,7 +382,7 @@ class BvhCore {
   }
 
   [[nodiscard]] Status put_tile(std::uint32_t tile_id, std::uint8_t tag) {
-    const RivalStore::TileOutput& output = store_.output[output_slot_];
+    const auto& output = store_.output[output_slot_];
     const std::uint64_t offset = std::uint64_t{tile_id} * kPlaneBytes;
     GRIDIRON_TRY(transfers_.put(output.color, MainAddress{frame().color_address + offset}, kPlaneBytes, tag));
     if (frame().depth_address != 0) {
@@ -348,17 +407,8 @@ class BvhCore {
     const CoreSettings& core = settings();
     if (frame().magic != kFrameMagic || frame().version != kFrameVersion) return Status::kBadFrame;
     if (frame().tile_width != kTileWidth || frame().output_depth != kOutputDepth) return Status::kBadFrame;
-    if (core.ring_size < 1 || core.ring_size > kMaxRing) return Status::kBadFrame;
-    const auto lines_ok = [](std::uint32_t lines, std::uint32_t most) {
-      return lines >= kCacheWays && lines <= most && lines % kCacheWays == 0;
-    };
-    if (!lines_ok(core.node_lines, kMaxNodeLines) || !lines_ok(core.triangle_lines, kMaxTriangleLines) ||
-        core.line_nodes == 0 || core.line_triangles == 0) {
-      return Status::kBadFrame;
-    }
-    const std::uint64_t bytes = std::uint64_t{core.node_lines} * node_line_bytes() +
-                                std::uint64_t{core.triangle_lines} * triangle_line_bytes();
-    return bytes <= kCacheBytes ? Status::kOk : Status::kBadFrame;
+    if (core.packet_width != Width || core.ring_size < 1 || core.ring_size > kRingOf<Width>) return Status::kBadFrame;
+    return are_caches_valid(core) ? Status::kOk : Status::kBadFrame;
   }
 
   // The largest sum of magnitudes that goes into a component of a direction, over the whole picture.
@@ -374,12 +424,13 @@ class BvhCore {
     return bound;
   }
 
-  static constexpr std::uint32_t kNoSlot = 0xFFFFFFFFu;
-  RivalStore& store_;
+  static constexpr std::uint32_t kAllChildren = (1u << kNodeWidth) - 1u;
+  PacketStore<Width>& store_;
   Transfers<P> transfers_;
   std::byte* triangle_lines_ = nullptr;
-  SceneExtent extent_{};
-  float dir_bound_ = 0.0f;
+  std::uint32_t log_line_nodes_ = 0, log_line_triangles_ = 0, node_mask_ = 0, triangle_mask_ = 0;
+  float least_direction_ = 0.0f;  ///< directions below this are taken for none
+  std::uint32_t now_ = 0;         ///< look-ups
   std::uint32_t output_slot_ = kOutputDepth - 1;
   bool waits_for_output_ = true;
   std::uint32_t left_ = 0, top_ = 0;       ///< of the tile, in pixels

@@ -6,6 +6,7 @@
 #include <gridiron/rival/claim_order.h>
 #include <gridiron/sim/core_runner.h>
 
+#include <bit>
 #include <cstring>
 #include <mutex>
 #include <new>
@@ -38,8 +39,8 @@ template <class Element>
   return rows;
 }
 
-[[nodiscard]] Status make_record(const Bvh& bvh, FrameSettings settings, const RenderOptions& options,
-                                 sim::SimMemory& memory, FrameInMemory& parts) {
+[[nodiscard]] Status make_frame(const Bvh& bvh, FrameSettings settings, const RenderOptions& options,
+                                sim::SimMemory& memory, FrameInMemory& parts) {
   const std::uint64_t plane_bytes = output_plane_bytes(settings.width, settings.height, kTileWidth);
   const auto nodes = memory.allocate(bytes_of(bvh.nodes).size());
   const auto triangles = memory.allocate(bytes_of(bvh.triangles).size());
@@ -51,46 +52,67 @@ template <class Element>
   std::memcpy(nodes->bytes.data(), bvh.nodes.data(), nodes->bytes.size());
   std::memcpy(triangles->bytes.data(), bvh.triangles.data(), triangles->bytes.size());
 
-  settings.tile_width = kTileWidth;
-  settings.output_depth = kOutputDepth;
   settings.color = color->address;
   settings.depth = options.all_planes ? depth->address : MainAddress{};
   settings.ids = options.all_planes ? ids->address : MainAddress{};
-  // Core's own frame, of an image that is never opened: only camera, size and outputs are looked at.
-  SceneImageView no_image{};
-  no_image.grid.triangle_format = static_cast<std::uint32_t>(TriangleFormat::kVertices);
   RivalFrameRecord rival{};
-  GRIDIRON_TRY(make_frame_record(settings, no_image, MainAddress{}, rival.frame));
-  std::memcpy(rival.low, bvh.low, sizeof rival.low);
-  std::memcpy(rival.high, bvh.high, sizeof rival.high);
-  rival.nodes_address = nodes->address.value;
-  rival.triangles_address = triangles->address.value;
-  rival.settings = {.ring_size = options.hyper_threading ? options.ring_size : 1,
-                    .node_lines = options.caches.node_lines,
-                    .triangle_lines = options.caches.triangle_lines,
-                    .line_nodes = bvh.parameters.line_nodes,
-                    .line_triangles = bvh.parameters.line_triangles,
-                    .ray_tests = options.ray_tests,
-                    .use_subpackets = options.use_subpackets ? 1u : 0u,
-                    .reserved = 0};
+  GRIDIRON_TRY(make_rival_record(bvh, settings, options, nodes->address, triangles->address, rival));
   std::memcpy(record->bytes.data(), &rival, sizeof rival);
   parts = {*record, *color, *depth, *ids, rival.frame};
   return Status::kOk;
 }
 
+// The record's settings. Precondition: a line's counts are powers of two.
+[[nodiscard]] CoreSettings core_settings(const BvhParameters& bvh, const RenderOptions& options) {
+  return {.packet_width = options.packet_width,
+          .ring_size = options.hyper_threading ? options.ring_size : 1,
+          .node_lines = options.caches.node_lines,
+          .triangle_lines = options.caches.triangle_lines,
+          .log_line_nodes = static_cast<std::uint32_t>(std::countr_zero(bvh.line_nodes)),
+          .log_line_triangles = static_cast<std::uint32_t>(std::countr_zero(bvh.line_triangles)),
+          .use_subpackets = options.use_subpackets ? 1u : 0u,
+          .reserved = 0};
+}
+
 [[nodiscard]] bool are_options_valid(const Bvh& bvh, const RenderOptions& options) {
-  const auto lines_ok = [](std::uint32_t lines, std::uint32_t most) {
-    return lines >= kCacheWays && lines <= most && lines % kCacheWays == 0;
-  };
-  const std::uint64_t bytes =
-      std::uint64_t{options.caches.node_lines} * bvh.parameters.line_nodes * sizeof(BvhNode) +
-      std::uint64_t{options.caches.triangle_lines} * bvh.parameters.line_triangles * kTriangleRecordBytes;
-  const bool ring_ok = !options.hyper_threading || (options.ring_size >= 2 && options.ring_size <= kMaxRing);
-  return ring_ok && lines_ok(options.caches.node_lines, kMaxNodeLines) &&
-         lines_ok(options.caches.triangle_lines, kMaxTriangleLines) && bytes <= kCacheBytes && !bvh.nodes.empty();
+  if (options.packet_width != 8 && options.packet_width != 16) return false;
+  if (!std::has_single_bit(bvh.parameters.line_nodes) || !std::has_single_bit(bvh.parameters.line_triangles)) {
+    return false;
+  }
+  const bool ring_ok =
+      !options.hyper_threading ||
+      (options.ring_size >= 2 && options.ring_size <= (options.packet_width == 16 ? kRingOf<16> : kRingOf<8>));
+  return ring_ok && are_caches_valid(core_settings(bvh.parameters, options)) && !bvh.nodes.empty();
+}
+
+// What a core does. @returns its status, and adds its caches' counts.
+template <std::uint32_t Width>
+[[nodiscard]] Status run_core(std::span<std::byte> data, OrderedCore& platform, MainAddress record, std::mutex& mutex,
+                              BvhFrame& result) {
+  auto& store = *::new (static_cast<void*>(data.data())) PacketStore<Width>;
+  BvhCore<Lanes<4>, Width, OrderedCore> program(store, platform);
+  const Status status = program.run(record);
+  const std::scoped_lock lock(mutex);
+  result.node_cache += store.node_cache.counts();
+  result.triangle_cache += store.triangle_cache.counts();
+  return status;
 }
 
 }  // namespace
+
+Status make_rival_record(const Bvh& bvh, FrameSettings settings, const RenderOptions& options, MainAddress nodes,
+                         MainAddress triangles, RivalFrameRecord& rival) {
+  settings.tile_width = kTileWidth;
+  settings.output_depth = kOutputDepth;
+  // Core's own frame, of an image that is never opened: only camera, size and outputs are looked at.
+  SceneImageView no_image{};
+  no_image.grid.triangle_format = static_cast<std::uint32_t>(TriangleFormat::kVertices);
+  GRIDIRON_TRY(make_frame_record(settings, no_image, MainAddress{}, rival.frame));
+  rival.nodes_address = nodes.value;
+  rival.triangles_address = triangles.value;
+  rival.settings = core_settings(bvh.parameters, options);
+  return Status::kOk;
+}
 
 BvhFrame render_bvh_frame(const Bvh& bvh, const FrameSettings& settings, const sim::MachineProfile& machine,
                           const RenderOptions& options) {
@@ -117,7 +139,7 @@ BvhFrame render_bvh_frame(const Bvh& bvh, const FrameSettings& settings, const s
   if (result.main_memory_bytes > machine.main_memory_bytes) return refuse(Status::kMemoryTooSmall);
   sim::SimMemory memory(result.main_memory_bytes + sim::SimMemory::kFirstAddress + kSlack);
   FrameInMemory parts;
-  const Status made = make_record(bvh, settings, options, memory, parts);
+  const Status made = make_frame(bvh, settings, options, memory, parts);
   if (made != Status::kOk) return refuse(made);
 
   // 2. The cores, in turn.
@@ -130,7 +152,7 @@ BvhFrame render_bvh_frame(const Bvh& bvh, const FrameSettings& settings, const s
   shape.tile_count = parts.frame.tiles_x * parts.frame.tiles_y;
   shape.output_depth = kOutputDepth;
   shape.arena_bytes = kArenaBytes;
-  shape.data_bytes = sizeof(RivalStore);
+  shape.data_bytes = options.packet_width == 16 ? sizeof(PacketStore<16>) : sizeof(PacketStore<8>);
   for (const sim::MemoryRegion* plane : {&parts.color, &parts.depth, &parts.ids}) {
     if (plane != &parts.color && !options.all_planes) continue;
     shape.writable.push_back({plane->address.value, plane->address.value + plane->bytes.size()});
@@ -147,22 +169,17 @@ BvhFrame render_bvh_frame(const Bvh& bvh, const FrameSettings& settings, const s
       index = cores_begun++;
     }
     OrderedCore platform(core, index, order, priced, kOutputDepth, result.core_of_tile);
-    RivalStore& store = *::new (static_cast<void*>(data.data())) RivalStore;
-    BvhCore<Lanes<4>, OrderedCore> program(store, platform);
-    const Status status = program.run(parts.record.address);
-    const std::scoped_lock lock(mutex);
-    result.node_cache += store.node_cache.counts();
-    result.triangle_cache += store.triangle_cache.counts();
-    return status;
+    return options.packet_width == 16 ? run_core<16>(data, platform, parts.record.address, mutex, result)
+                                      : run_core<8>(data, platform, parts.record.address, mutex, result);
   });
   result.status = run.status;
   result.violations = std::move(run.violations);
   if (result.status != Status::kOk) return result;
 
   // 3. Time with contention, work by kind, the picture.
-  result.timing = sim::replay(run.trace, priced,
-                              {.core_count = chip.threads, .timeline = options.timeline,
-                               .core_of_tile = result.core_of_tile});
+  result.timing =
+      sim::replay(run.trace, priced,
+                  {.core_count = chip.threads, .timeline = options.timeline, .core_of_tile = result.core_of_tile});
   result.work = run.work;
   for (std::uint32_t i = 0; i < kRivalWorkCount; ++i) {
     std::uint64_t& carried = result.work[static_cast<std::size_t>(carrier_of(static_cast<RivalWork>(i)))];

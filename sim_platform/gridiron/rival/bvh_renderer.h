@@ -19,23 +19,24 @@
 
 namespace gridiron::rival {
 
-/// Sizes of both caches. Lines: a multiple of kCacheWays; together at most kCacheBytes. What a line holds is decided
+/// Sizes of both caches. Lines: a power of two, kCacheWays..kMaxNodeLines, kMaxTriangleLines; together at most
+/// kCacheBytes. What a line holds is decided
 /// when the hierarchy is built (BvhParameters::line_nodes, line_triangles).
 struct CacheGeometry {
-  std::uint32_t node_lines = 64;
-  std::uint32_t triangle_lines = 100;
+  std::uint32_t node_lines = 32;
+  std::uint32_t triangle_lines = 32;
 };
 
 struct RenderOptions {
-  std::uint32_t core_count = 0;     ///< 0: the profile's
-  bool hyper_threading = true;      ///< packets take turns; else one after another
-  std::uint32_t ring_size = 3;      ///< of them, 2..kMaxRing; without hyper-threading not looked at
+  std::uint32_t core_count = 0;               ///< 0: the profile's
+  bool hyper_threading = true;                ///< packets take turns; else one after another
+  std::uint32_t ring_size = 3;                ///< of them, 2..kRingOf; without hyper-threading not looked at
+  std::uint32_t packet_width = kPacketWidth;  ///< 8 or 16
   CacheGeometry caches;
-  RayTests ray_tests = RayTests::kAll;
-  bool use_subpackets = true;       ///< cull triangles by 4x4 pixels too
-  bool all_planes = false;          ///< depth and ids beside colour
-  bool timeline = false;            ///< fill timing.timeline
-  sim::Completion completion = sim::Completion::kEarly;   ///< changes nothing but when bytes move
+  bool use_subpackets = true;                            ///< cull triangles by 4x4 pixels too
+  bool all_planes = false;                               ///< depth and ids beside colour
+  bool timeline = false;                                 ///< fill timing.timeline
+  sim::Completion completion = sim::Completion::kEarly;  ///< changes nothing but when bytes move
   std::uint64_t seed = 0;
 };
 
@@ -50,14 +51,20 @@ struct BvhPicture {
 struct BvhFrame {
   Status status = Status::kOk;
   std::vector<sim::Violation> violations;
-  BvhPicture picture;                ///< depth and ids only where asked for
-  sim::FrameTiming timing;           ///< with contention; waits for node lines under kMacroCell, triangles kTriangle
-  sim::WorkTotals work{};            ///< core's kinds; those that carry the rival's are 0
+  BvhPicture picture;       ///< depth and ids only where asked for
+  sim::FrameTiming timing;  ///< with contention; waits for node lines under kMacroCell, triangles kTriangle
+  sim::WorkTotals work{};   ///< core's kinds; those that carry the rival's are 0
   std::array<std::uint64_t, kRivalWorkCount> rival_work{};
   CacheCounts node_cache, triangle_cache;   ///< over all cores
   std::vector<std::uint32_t> core_of_tile;  ///< which core rendered tile i
   std::uint64_t main_memory_bytes = 0;      ///< nodes, triangles, planes
 };
+
+/// Writes what the cores of a frame need to know.
+/// @param settings  with the addresses of the planes; tile width and output depth are set here.
+/// @param nodes, triangles  where bvh.nodes and bvh.triangles lie in main memory. Errors: kBadFrame (settings).
+[[nodiscard]] Status make_rival_record(const Bvh& bvh, FrameSettings settings, const RenderOptions& options,
+                                       MainAddress nodes, MainAddress triangles, RivalFrameRecord& rival);
 
 /// Renders a frame on the simulated chip, every rule of the contract checked.
 ///

@@ -1,200 +1,150 @@
-// What a packet can touch: four planes around it, the nearest way along each axis, and reciprocals of its rays.
-// Source: Wald, Boulos, Shirley 2007, section 3 (frustum test, first active ray). Memory: inside the local store.
-// Threads: one core. SPDX-License-Identifier: Apache-2.0
+// What a packet can touch: its four quarters, each as slopes along the axes, against the four boxes of a node at once.
+// Source: Wald, Boulos, Shirley 2007, section 3 (interval arithmetic); Benthin et al. 2006, section 4 (four boxes at
+// once). Memory: inside the local store. Threads: one core. SPDX-License-Identifier: Apache-2.0
 #pragma once
 
 #include <gridiron/base/lanes.h>
 #include <gridiron/base/math.h>
 #include <gridiron/base/records.h>
+#include <gridiron/base/work_counters.h>
 #include <gridiron/ray/packet.h>
-#include <gridiron/rival/bvh.h>
+#include <gridiron/rival/bvh_node.h>
+#include <gridiron/rival/four_words.h>
+#include <gridiron/rival/rival_work.h>
 
 #include <cstdint>
 
 namespace gridiron::rival {
 
-/// Extents of the scene as seen from the eye, for bounds of rounding. Largest components.
-struct SceneExtent {
-  float coordinate;  ///< |p| of any point of the scene, plus |eye|
-  float distance;    ///< |p - eye|
+/// A packet's quarters, in the order of its subpackets: of 8x8 rays its subpackets, of 16x16 its squares of them.
+inline constexpr std::uint32_t kQuarterCount = 4;
+inline constexpr std::uint32_t kAllQuarters = (1u << kQuarterCount) - 1u;
+
+/// Columns and rows of the quarters, in quarters.
+struct QuarterPlaces {
+  alignas(16) float column[4];
+  alignas(16) float row[4];
+};
+inline constexpr QuarterPlaces kQuarterPlaces = {{0, 1, 0, 1}, {0, 0, 1, 1}};
+
+/// How a node's children stand to a packet.
+struct ChildrenMet {
+  Lanes<4>::Float entry;  ///< per child, no ray meets it at a t below this
+  FourWords missed;       ///< per child, the quarters of which no ray meets it, a bit each
+  Lanes<4>::Mask none;    ///< children that no quarter meets
 };
 
-[[nodiscard]] inline SceneExtent extent_of(const float low[3], const float high[3], const float eye[3]) {
-  const auto larger = [](float a, float b) { return a > b ? a : b; };
-  SceneExtent extent{0.0f, 0.0f};
-  float point = 0.0f, origin = 0.0f;
-  for (int axis = 0; axis < 3; ++axis) {
-    point = larger(point, larger(magnitude(low[axis]), magnitude(high[axis])));
-    origin = larger(origin, magnitude(eye[axis]));
-    extent.distance = larger(extent.distance, magnitude(low[axis] - eye[axis]));
-    extent.distance = larger(extent.distance, magnitude(high[axis] - eye[axis]));
-  }
-  extent.coordinate = point + origin;
-  return extent;
-}
-
-/// Conservative bound of a packet of primary rays, held against boxes.
+/// Conservative bound of a packet of primary rays, by quarters.
 ///
-/// Planes: with c the direction at a corner of the packet and s a pixel step, n = c x s is the plane through one side
-/// of the packet. With e = 2^-23, D the largest sum of magnitudes that goes into a direction's component, S the largest
-/// |component| of a step: a component of n carries 4 e D S; a direction differs from the linear form of its pixel by
-/// less than 6 e D, from that seen from another corner by 12 e D. So n . d >= -(3 * 2 D S * 12 e D + 3 D * 4 e D S) =
-/// -84 e D^2 S for every ray. A direction is at least 1 long, its largest component above 0.57; a ray reaches a point
-/// of the scene at t < 1.76 R, R the extent from the eye: there n . (p - o) >= -148 e D^2 S R. The sum n . p - n . o
-/// of magnitudes below 6 D S (P + O) has less than 5 roundings: 30 e D S (P + O). A plane is passed on the outside
-/// where the sum is below -e S D (160 D R + 32 (P + O)).
-///
-/// Ways: along each axis on which all rays run the same way, t >= (near_k - o_k) / max |d_k| and, where a box is not
-/// behind the eye, t <= (far_k - o_k) / min |d_k|, give or take 4 roundings of magnitudes below P + O.
+/// Along an axis on which all rays run the same way, a ray meets the near side of a box at t >= (near - o) / d, d of
+/// all rays of the quarter the fastest, and leaves it at t <= (far - o) / d, d the slowest; where either is behind the
+/// eye the sign is right all the same. On an axis on which rays of the packet run both ways, the low side of a box in
+/// front is reached at t >= (low - o) / d by those that run up, d the greatest, the high side of one behind at t >=
+/// (high - o) / d, d the least; nothing is said of leaving. Where no ray runs that way, d is taken for almost none.
+/// Directions are the rays' own: each operation of generate_packet is monotone in column and row, so a component's
+/// extremes over a quarter are at its corners, and are computed here by the same operations. Difference, reciprocal,
+/// its widening and product are 4 roundings, u = 2^-24 each, and OrderedChildren raises entries by less than 8 u; 16 u
+/// are charged.
 template <std::uint32_t Width>
 struct alignas(128) PacketBounds {
-  using StorePacket = Packet<Width>;
-  static constexpr float kRayFactor = 0x1p-20f;  ///< covers the 4 roundings of a ray's distance to a plane
+  // Per quarter and axis, the same in all four lanes.
+  alignas(16) float enter[kQuarterCount][3][4];  ///< of the near side's distance: t of the earliest entry
+  alignas(16) float leave[kQuarterCount][3][4];  ///< of the far side's distance: t of the latest exit
+  // Of mixed packets only.
+  alignas(16) float enter_back[kQuarterCount][3][4];   ///< of the far side's distance: t of the earliest entry
+  alignas(16) float never_leave[kQuarterCount][3][4];  ///< added to the latest exit: 0 or kFloatMax
+  std::uint32_t near_side[3];                          ///< bound that rays meet first: 0 low, 1 high
+  std::uint32_t far_side[3];
+  std::uint32_t is_mixed;  ///< 1: along some axis rays of a quarter run both ways, or quarters apart
 
-  float plane[4][4];               ///< n and the constant: outside where n . p + constant < 0
-  std::uint32_t plane_side[4][3];  ///< bound that is farthest along n: 0 low, 1 high
-  float entry_scale[3];            ///< t >= near_k * scale + offset
-  float entry_offset[3];
-  float exit_scale[3];             ///< t <= far_k * scale + offset
-  float exit_offset[3];
-  std::uint32_t near_side[3];      ///< bound that the rays meet first
-  float far_bias[3];               ///< 0, or kFloatMax on an axis that says nothing about single rays
-  alignas(64) float reciprocal[3][StorePacket::kRayCount];  ///< 1 / direction; 0 on such an axis
-
-  /// @param dir_bound  D of the frame. @param ray_tests  whether the reciprocals are wanted.
-  template <class L>
-  void set(const StorePacket& packet, const SceneExtent& extent, float dir_bound, bool ray_tests) {
-    set_planes(packet, extent, dir_bound);
-    constexpr float kUnit = 0x1p-23f;
+  /// @param left, top  the packet's first pixel. @param least  > 0; rays run along an axis whose direction is above it:
+  /// 2^-30 times the largest.
+  void set(const FrameRecord& frame, std::uint32_t left, std::uint32_t top, float least, WorkCounters& work) {
+    using Four = Lanes<4>;
+    using Float = Four::Float;
+    constexpr float kNarrow = 1.0f - 0x1p-20f;
+    constexpr float kWiden = 1.0f + 0x1p-20f;
+    constexpr float kQuarterWidth = Width / 2;
+    const Float x_low = Float(static_cast<float>(left)) + Float::load(kQuarterPlaces.column) * Float(kQuarterWidth);
+    const Float y_low = Float(static_cast<float>(top)) + Float::load(kQuarterPlaces.row) * Float(kQuarterWidth);
+    const Float x_high = x_low + Float(kQuarterWidth - 1.0f);
+    const Float y_high = y_low + Float(kQuarterWidth - 1.0f);
+    const Float zero(0.0f), one(1.0f);
+    Float low[3], high[3];
+    Four::Mask one_way[3];
+    std::uint32_t all_one_way = kAllQuarters;
     for (int axis = 0; axis < 3; ++axis) {
-      float low = packet.corner_dir[axis][0], high = low;
-      for (int corner = 1; corner < 4; ++corner) {
-        const float value = packet.corner_dir[axis][corner];
-        low = value < low ? value : low;
-        high = value > high ? value : high;
-      }
-      const float least = low > 0.0f ? low : high < 0.0f ? -high : 0.0f;
-      const float largest = high < 0.0f ? -low : high;
-      near_side[axis] = high < 0.0f ? 1 : 0;
-      entry_scale[axis] = entry_offset[axis] = exit_scale[axis] = 0.0f;
-      exit_offset[axis] = kFloatMax;
-      if (least > 0x1p-30f * dir_bound) {
-        const float sign = high < 0.0f ? -1.0f : 1.0f;
-        const float slowest = (1.0f - 4.0f * kUnit) / largest;
-        const float fastest = (1.0f + 4.0f * kUnit) / least;
-        const float slack = 8.0f * kUnit * extent.coordinate;
-        entry_scale[axis] = sign * slowest;
-        entry_offset[axis] = -(packet.origin[axis] * entry_scale[axis]) - slack * slowest;
-        exit_scale[axis] = sign * fastest;
-        exit_offset[axis] = slack * fastest - packet.origin[axis] * exit_scale[axis];
-      }
-      if (!ray_tests) continue;
-      const bool usable = least > 0x1p-30f * dir_bound;
-      far_bias[axis] = usable ? 0.0f : kFloatMax;
-      using Float = typename L::Float;
-      for (std::uint32_t base = 0; base < StorePacket::kRayCount; base += L::kCount) {
-        const Float value = usable ? Float(1.0f) / Float::load(packet.dir[axis] + base) : Float(0.0f);
-        value.store(reciprocal[axis] + base);
-      }
+      const Float corner(frame.corner[axis]), step_x(frame.step_x[axis]), step_y(frame.step_y[axis]);
+      const Float left_part = corner + x_low * step_x, right_part = corner + x_high * step_x;
+      const Float top_part = y_low * step_y, bottom_part = y_high * step_y;
+      low[axis] = Four::min(left_part, right_part) + Four::min(top_part, bottom_part);
+      high[axis] = Four::max(left_part, right_part) + Four::max(top_part, bottom_part);
+      const std::uint32_t backward = (high[axis] < Float(-least)).bits() == kAllQuarters ? kAllQuarters : 0u;
+      const auto is_backward = Four::mask_from_bits(backward);
+      near_side[axis] = backward & 1u;
+      far_side[axis] = (backward & 1u) ^ 1u;
+      one_way[axis] = (low[axis] > Float(least)) | is_backward;
+      all_one_way &= one_way[axis].bits();
+      const Float fastest = Four::select(is_backward, low[axis], Four::max(high[axis], Float(least)));
+      const Float slowest = one / Four::select(is_backward, high[axis], low[axis]) * Float(kWiden);
+      store(one / fastest * Float(kNarrow), enter, axis);
+      store(Four::select(one_way[axis], slowest, zero), leave, axis);
+    }
+    is_mixed = 0;
+    if (all_one_way == kAllQuarters) [[likely]]
+      return;
+    is_mixed = 1;
+    work.add(carrier_of(RivalWork::kMixedStart));
+    for (int axis = 0; axis < 3; ++axis) {
+      const Float back = one / Four::min(low[axis], Float(-least)) * Float(kNarrow);
+      store(Four::select(one_way[axis], zero, back), enter_back, axis);
+      store(Four::select(one_way[axis], zero, Float(kFloatMax)), never_leave, axis);
     }
   }
 
-  /// Holds the children of a node against the packet. @param reach  the farthest hit that is still of interest.
-  /// @param entry  out: per child, a bound of t below which no ray meets it. @returns the children that may be met.
-  [[nodiscard]] std::uint32_t children_met(const BvhNode& node, float reach, float entry[kNodeWidth]) const {
-    using Float = Lanes<4>::Float;
-    std::uint32_t outside = 0;
-    for (int i = 0; i < 4; ++i) {
-      const Float x = Float(plane[i][0]) * Float::load(node.bounds[plane_side[i][0]][0]);
-      const Float y = Float(plane[i][1]) * Float::load(node.bounds[plane_side[i][1]][1]);
-      const Float z = Float(plane[i][2]) * Float::load(node.bounds[plane_side[i][2]][2]);
-      outside |= (x + y + z + Float(plane[i][3]) < Float(0.0f)).bits();
-    }
-    Float nearest(0.0f), farthest(reach);
+  /// Holds the children of a node against the packet.
+  /// @param reach  per quarter, the farthest hit that is still of interest. @tparam Mixed  is_mixed.
+  template <bool Mixed>
+  [[nodiscard]] GRIDIRON_INLINE ChildrenMet children_met(const BvhNode& node, const float* origin,
+                                                         const float* reach) const {
+    using Four = Lanes<4>;
+    using Float = Four::Float;
+    Float near[3], far[3];
     for (int axis = 0; axis < 3; ++axis) {
-      const Float way_in = Float(entry_scale[axis]) * Float::load(node.bounds[near_side[axis]][axis]);
-      nearest = Lanes<4>::max(nearest, way_in + Float(entry_offset[axis]));
-      const Float way_out = Float(exit_scale[axis]) * Float::load(node.bounds[1 - near_side[axis]][axis]);
-      farthest = Lanes<4>::min(farthest, way_out + Float(exit_offset[axis]));
+      const Float eye(origin[axis]);
+      near[axis] = Float::load(node.bounds[near_side[axis]][axis]) - eye;
+      far[axis] = Float::load(node.bounds[far_side[axis]][axis]) - eye;
     }
-    nearest.store(entry);
-    return ~outside & (nearest <= farthest).bits() & ((1u << node.child_count) - 1u);
-  }
-
-  /// @returns the first group of rays, from `first_group` on, of which one meets the box before its nearest hit;
-  /// kGroupCount where none does. @param tested  out: groups that were looked at.
-  template <class L>
-  [[nodiscard]] std::uint32_t first_group_met(const StorePacket& packet, const BvhNode& node, std::uint32_t child,
-                                              std::uint32_t first_group, std::uint32_t& tested) const {
-    using Float = typename L::Float;
-    float near[3], far[3];
-    for (int axis = 0; axis < 3; ++axis) {
-      near[axis] = node.bounds[near_side[axis]][axis][child] - packet.origin[axis];
-      far[axis] = node.bounds[1 - near_side[axis]][axis][child] - packet.origin[axis];
-    }
-    tested = 0;
-    for (std::uint32_t group = first_group; group < kGroupCount<L>; ++group) {
-      const std::uint32_t base = group * L::kCount;
-      const std::uint32_t active = packet.active.template group<L>(base);
-      if (active == 0) continue;
-      ++tested;
-      Float entry(0.0f), exit(kFloatMax);
-      for (int axis = 0; axis < 3; ++axis) {
-        const Float scale = Float::load(reciprocal[axis] + base);
-        entry = L::max(entry, Float(near[axis]) * scale);
-        exit = L::min(exit, Float(far[axis]) * scale + Float(far_bias[axis]));
+    ChildrenMet met{Float(kFloatMax), FourWords::splat(0u), {}};
+    for (int quarter = 0; quarter < 4; ++quarter) {
+      const auto along = [&](const Float* distance, const float(&scale)[kQuarterCount][3][4], int axis)
+                             GRIDIRON_INLINE_LAMBDA { return distance[axis] * Float::load(scale[quarter][axis]); };
+      Float entry = Four::max(Four::max(along(near, enter, 0), along(near, enter, 1)),
+                              Four::max(along(near, enter, 2), Float(0.0f)));
+      Float exits[3] = {along(far, leave, 0), along(far, leave, 1), along(far, leave, 2)};
+      if constexpr (Mixed) {
+        for (int axis = 0; axis < 3; ++axis) {
+          entry = Four::max(entry, along(far, enter_back, axis));
+          exits[axis] = exits[axis] + Float::load(never_leave[quarter][axis]);
+        }
       }
-      const Float last = L::min(exit + exit * Float(kRayFactor), Float::load(packet.t + base));
-      if (((entry - entry * Float(kRayFactor) <= last).bits() & active) != 0) return group;
+      const Float exit = Four::min(Four::min(exits[0], exits[1]), Four::min(exits[2], Float(reach[quarter])));
+      met.missed = met.missed | FourWords::where(entry > exit, 1u << quarter);
+      met.entry = Four::min(met.entry, entry);
     }
-    return kGroupCount<L>;
+    const auto absent = FourWords::load(&node.children[0].bits).equal(FourWords::splat(BvhChild::kNone));
+    met.missed = FourWords::select(absent, FourWords::splat(kAllQuarters), met.missed);
+    met.none = met.missed.equal(FourWords::splat(kAllQuarters));
+    return met;
   }
-
-  template <class L>
-  static constexpr std::uint32_t kGroupCount = StorePacket::kRayCount / L::kCount;
 
  private:
-  void set_planes(const StorePacket& packet, const SceneExtent& extent, float dir_bound) {
-    constexpr float kUnit = 0x1p-23f;
-    float step_max = 0.0f;
-    for (int axis = 0; axis < 3; ++axis) {
-      const float x = magnitude(packet.step_x[axis]), y = magnitude(packet.step_y[axis]);
-      step_max = x > step_max ? x : step_max;
-      step_max = y > step_max ? y : step_max;
-    }
-    const auto cross = [](const float a[3], const float b[3], float out[3]) {
-      out[0] = a[1] * b[2] - a[2] * b[1];
-      out[1] = a[2] * b[0] - a[0] * b[2];
-      out[2] = a[0] * b[1] - a[1] * b[0];
-    };
-    // Inside is where column and row grow from the first corner and fall from the others, up to the sign of the volume.
-    float normal[3];
-    cross(packet.step_x, packet.step_y, normal);
-    float volume = 0.0f;
-    for (int axis = 0; axis < 3; ++axis) volume += normal[axis] * packet.first_dir[axis];
-    const bool sure = magnitude(volume) > 64.0f * kUnit * dir_bound * step_max * step_max;
-    const float slack =
-        kUnit * step_max * dir_bound * (160.0f * dir_bound * extent.distance + 32.0f * extent.coordinate);
-    for (int i = 0; i < 4; ++i) {
-      // 0: row 0, d . (c x s_x) grows with the row; 1: the last row; 2: column 0; 3: the last column.
-      const int corner_index = i == 0 || i == 2 ? 0 : i == 1 ? 2 : 1;
-      const float corner[3] = {packet.corner_dir[0][corner_index], packet.corner_dir[1][corner_index],
-                               packet.corner_dir[2][corner_index]};
-      if (i < 2) {
-        cross(corner, packet.step_x, normal);
-      } else {
-        cross(packet.step_y, corner, normal);
-      }
-      const bool flip = (volume < 0.0f) != (i == 1 || i == 3);
-      float constant = slack;
-      for (int axis = 0; axis < 3; ++axis) {
-        const float value = sure ? (flip ? -normal[axis] : normal[axis]) : 0.0f;
-        plane[i][axis] = value;
-        plane_side[i][axis] = value > 0.0f ? 1 : 0;
-        constant -= value * packet.origin[axis];
-      }
-      plane[i][3] = constant;
-    }
+  static GRIDIRON_INLINE void store(Lanes<4>::Float value, float (&target)[kQuarterCount][3][4], int axis) {
+    using Four = Lanes<4>;
+    Four::shuffle_quads<0, 0, 0, 0>(value).store(target[0][axis]);
+    Four::shuffle_quads<1, 1, 1, 1>(value).store(target[1][axis]);
+    Four::shuffle_quads<2, 2, 2, 2>(value).store(target[2][axis]);
+    Four::shuffle_quads<3, 3, 3, 3>(value).store(target[3][axis]);
   }
 };
 

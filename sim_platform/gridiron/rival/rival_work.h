@@ -11,34 +11,38 @@
 
 namespace gridiron::rival {
 
-/// Work of the packet traversal and of its caches. Everything else is core's Work.
+/// Work of the rival's own code. Everything else is core's Work, done by core's code.
 enum class RivalWork : std::uint8_t {
-  kCacheLookup,      ///< look-ups in either cache
-  kRefill,           ///< lines replaced: victim, directory, address of the get
-  kSwitch,           ///< changes to another packet of the ring
-  kNodeStep,         ///< nodes whose children were held against the packet
-  kChildPush,        ///< children met, put in their place in the order
-  kStackPop,         ///< entries taken from the stack
-  kReciprocalGroup,  ///< groups of rays of which reciprocals were computed
-  kBoxSetup,         ///< boxes prepared for tests by single groups
-  kBoxGroup,         ///< groups of rays held against a box
-  kLeafVisit,        ///< leaves whose triangles were tested
+  kTileStart,      ///< tiles begun
+  kPacketStart,    ///< packets begun: bounds of their quarters
+  kMixedStart,     ///< packets whose rays run both ways along an axis: the rest of their bounds
+  kNodeStep,       ///< nodes whose children were held against the quarters of a packet
+  kMixedNodeStep,  ///< the same of those packets
+  kChildren,       ///< nodes of which a child was met: the nearest was taken, the others put on the stack
+  kStackPop,       ///< entries taken from the stack
+  kCacheLookup,    ///< look-ups in either cache
+  kMiss,           ///< those that did not hit: the line to be replaced, address and get, or the line is on its way
+  kSwitch,         ///< packets suspended and taken up again
+  kLeafVisit,      ///< leaves whose triangles were tested
+  kLeafTriangle,   ///< triangles of leaves
+  kReach,          ///< quarters of packets of which the farthest hit was sought
   kCount
 };
 inline constexpr std::uint32_t kRivalWorkCount = static_cast<std::uint32_t>(RivalWork::kCount);
 
-/// A counter of core's that the grid's traversal alone uses carries the rival's kind through trace and replay.
+/// A counter of core's that only code counts which the rival does not run carries its kind through trace and replay.
 [[nodiscard]] constexpr Work carrier_of(RivalWork kind) {
   constexpr std::array<Work, kRivalWorkCount> kCarriers = {
-      Work::kMacroSliceStep, Work::kMacroCellStep, Work::kMacroCellVisit, Work::kSliceStep,     Work::kCellStep,
-      Work::kCellVisit,      Work::kTriangleBatch, Work::kMailboxProbe,   Work::kGroupTestPaper, Work::kHitGroupPaper};
+      Work::kTileStart,      Work::kPacketStart,    Work::kPassGroup, Work::kMacroSliceStep, Work::kMacroCellStep,
+      Work::kMacroCellVisit, Work::kSliceStep,      Work::kCellStep,  Work::kCellVisit,      Work::kTriangleBatch,
+      Work::kMailboxProbe,   Work::kFootprintGroup, Work::kReachGroup};
   return kCarriers[static_cast<std::size_t>(kind)];
 }
 
 /// Name of a kind in reports, snake_case.
 [[nodiscard]] std::string_view name_of(RivalWork kind);
 
-/// Cycles per unit, 4 lanes; each with its derivation in rival_work.cpp.
+/// Cycles per unit, 4 lanes: rival_costs.h, counted by tools/calibrate.
 [[nodiscard]] double cycles_of(RivalWork kind);
 
 /// @returns `machine` with the rival's costs in the places of the carriers; all other kinds keep theirs.

@@ -3,123 +3,109 @@
 // beside it. Threads: one core. SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <gridiron/base/lanes.h>
+#include <gridiron/rival/cache_counts.h>
+#include <gridiron/rival/four_words.h>
+
 #include <cstdint>
 
 namespace gridiron::rival {
 
-inline constexpr std::uint32_t kCacheWays = 4;
-
-/// Look-ups of one cache and how they ended.
-struct CacheCounts {
-  std::uint64_t lookups = 0;
-  std::uint64_t hits = 0;          ///< the line was there
-  std::uint64_t pending_hits = 0;  ///< the line was on its way for another packet
-  std::uint64_t misses = 0;        ///< the line was fetched
-  std::uint64_t refusals = 0;      ///< every line of the set was waited for; the packet asks again
-
-  CacheCounts& operator+=(const CacheCounts& other) {
-    lookups += other.lookups;
-    hits += other.hits;
-    pending_hits += other.pending_hits;
-    misses += other.misses;
-    refusals += other.refusals;
-    return *this;
-  }
-  /// Look-ups that started no fetch, of those that found an answer. 1 where there were none.
-  [[nodiscard]] double hit_rate() const {
-    const std::uint64_t answered = hits + pending_hits + misses;
-    return answered == 0 ? 1.0 : 1.0 - static_cast<double>(misses) / static_cast<double>(answered);
-  }
-};
+inline constexpr std::uint32_t kCacheWays = 4;  ///< also the most lines that may be on their way at once
+inline constexpr std::uint32_t kNoSlot = 0xFFFFFFFFu;
 
 /// Directory of a cache. Slot s holds one line; set i is slots [4 i, 4 i + 4); line l belongs to set l % (sets).
 ///
-/// A line that a packet waits for is pinned: it stays until every such packet has gone on. A pending line is pinned.
-/// @tparam MaxLines  the most slots, a multiple of kCacheWays.
+/// A line on its way is never replaced. With at most kCacheWays fetches at once a line to replace is always there. One
+/// that has come may be replaced before the packet that asked for it goes on; the packet then asks again.
+/// @tparam MaxLines  the most slots, a power of two, at least kCacheWays.
 template <std::uint32_t MaxLines>
 class alignas(128) SoftCache {
  public:
-  static_assert(MaxLines % kCacheWays == 0);
-  static constexpr std::uint32_t kMaxLines = MaxLines;
+  static_assert(MaxLines >= kCacheWays && (MaxLines & (MaxLines - 1)) == 0);
 
-  enum class Answer : std::uint8_t {
-    kHit,      ///< slot holds the line
-    kPending,  ///< slot will hold it when its tag has been waited for
-    kMiss,     ///< slot was emptied for it; the caller fetches it
-    kFull,     ///< all lines of the set are pinned
-  };
-  struct Found {
-    Answer answer;
-    std::uint32_t slot;
-  };
-
-  /// Forgets everything. @param line_count  slots in use, a multiple of kCacheWays, 4..MaxLines.
+  /// Forgets everything. @param line_count  slots in use, a power of two, kCacheWays..MaxLines.
   void reset(std::uint32_t line_count) {
-    set_count_ = line_count / kCacheWays;
+    set_mask_ = line_count / kCacheWays - 1u;
     counts_ = CacheCounts{};
     for (std::uint32_t slot = 0; slot < MaxLines; ++slot) {
       lines_[slot] = kNoLine;
-      state_[slot] = {static_cast<std::uint8_t>(slot % kCacheWays), 0, kNoTag};
+      last_use_[slot] = 0;
     }
   }
 
-  /// Looks for a line and makes it the most recently used of its set. On kMiss the slot is the line's from now on.
-  [[nodiscard]] Found find(std::uint32_t line) {
+  /// @param line  below 2^27. @param now  grows from call to call, below 2^31. @returns its slot, kNoSlot where it is
+  /// not there.
+  [[nodiscard]] GRIDIRON_INLINE std::uint32_t find(std::uint32_t line, std::uint32_t now) {
     ++counts_.lookups;
-    const std::uint32_t first = line % set_count_ * kCacheWays;
-    std::uint32_t victim = kNoSlot;
-    for (std::uint32_t slot = first; slot < first + kCacheWays; ++slot) {
-      if (lines_[slot] == line) {
-        touch(first, slot);
-        const bool pending = state_[slot].tag != kNoTag;
-        ++(pending ? counts_.pending_hits : counts_.hits);
-        return {pending ? Answer::kPending : Answer::kHit, slot};
-      }
-      if (state_[slot].pins != 0) continue;
-      if (victim == kNoSlot || state_[slot].age > state_[victim].age) victim = slot;
-    }
-    if (victim == kNoSlot) {
-      ++counts_.refusals;
-      return {Answer::kFull, kNoSlot};
+    const std::uint32_t first = (line & set_mask_) * kCacheWays;
+    const auto found = FourWords::load(lines_ + first).equal(FourWords::splat(line));
+    const std::uint32_t ways = found.bits();
+    if (ways == 0) return kNoSlot;
+    ++counts_.hits;
+    FourWords::select(found, FourWords::splat(now), FourWords::load(last_use_ + first)).store(last_use_ + first);
+    return first + lowest_bit(ways);
+  }
+
+  /// Where a line will be that find() did not see.
+  struct Claim {
+    std::uint32_t slot;
+    bool is_on_its_way;  ///< another packet fetches it; else the caller does
+  };
+  /// @param filler  who asks, below kCacheWays.
+  [[nodiscard]] Claim claim(std::uint32_t line, std::uint32_t now, std::uint32_t filler) {
+    const std::uint32_t first = (line & set_mask_) * kCacheWays;
+    const FourWords lines = FourWords::load(lines_ + first);
+    const std::uint32_t pending =
+        (lines & FourWords::splat(kOnItsWay | kLineBits)).equal(FourWords::splat(kOnItsWay | line)).bits();
+    if (pending != 0) {
+      ++counts_.pending_hits;
+      return {first + lowest_bit(pending), true};
     }
     ++counts_.misses;
-    lines_[victim] = line;
-    touch(first, victim);
-    return {Answer::kMiss, victim};
+    const FourWords last_use = FourWords::load(last_use_ + first);
+    const auto stays = lines.less(FourWords::splat(0u));
+    const FourWords ages = FourWords::select(stays, FourWords::splat(kNever), last_use);
+    const std::uint32_t way = lowest_bit(ages.equal(least_of(ages)).bits());
+    lines_[first + way] = kOnItsWay | filler << kFillerShift | line;
+    last_use_[first + way] = now;
+    return {first + way, false};
   }
 
-  /// The slot's line is on its way under `tag`.
-  void begin_fill(std::uint32_t slot, std::uint8_t tag) { state_[slot].tag = tag; }
-  void end_fill(std::uint32_t slot) { state_[slot].tag = kNoTag; }
-  [[nodiscard]] bool is_pending(std::uint32_t slot) const { return state_[slot].tag != kNoTag; }
-  [[nodiscard]] std::uint8_t tag_of(std::uint32_t slot) const { return state_[slot].tag; }
-
-  void pin(std::uint32_t slot) { ++state_[slot].pins; }
-  void unpin(std::uint32_t slot) { --state_[slot].pins; }
+  /// What has become of a line that a packet was suspended for.
+  enum class Arrival : std::uint8_t { kOnItsWay, kThere, kReplaced };
+  [[nodiscard]] Arrival arrival(std::uint32_t slot, std::uint32_t line) const {
+    const std::uint32_t word = lines_[slot];
+    if (word == line) return Arrival::kThere;
+    return (word & (kOnItsWay | kLineBits)) == (kOnItsWay | line) ? Arrival::kOnItsWay : Arrival::kReplaced;
+  }
+  /// Who fetches the line of a slot that is on its way.
+  [[nodiscard]] std::uint32_t filler_of(std::uint32_t slot) const { return lines_[slot] >> kFillerShift & 3u; }
+  /// The line has come.
+  void end_fill(std::uint32_t slot) { lines_[slot] = lines_[slot] & kLineBits; }
 
   [[nodiscard]] const CacheCounts& counts() const { return counts_; }
 
  private:
-  static constexpr std::uint32_t kNoLine = 0xFFFFFFFFu;
-  static constexpr std::uint32_t kNoSlot = 0xFFFFFFFFu;
-  static constexpr std::uint8_t kNoTag = 0xFF;
+  // A directory word: the line; of one on its way the top bit and who fetches it beside that.
+  static constexpr std::uint32_t kLineBits = 0x0FFFFFFFu;
+  static constexpr std::uint32_t kFillerShift = 28;
+  static constexpr std::uint32_t kOnItsWay = 0x80000000u;
+  static constexpr std::uint32_t kNoLine = 0x0FFFFFFFu;
+  static constexpr std::uint32_t kNever = 0x7FFFFFFFu;
 
-  struct SlotState {
-    std::uint8_t age;   ///< place of the slot in its set, 0 = most recently used
-    std::uint8_t pins;  ///< packets that wait for the line
-    std::uint8_t tag;   ///< that the line is on its way under
-  };
-
-  void touch(std::uint32_t first, std::uint32_t slot) {
-    for (std::uint32_t other = first; other < first + kCacheWays; ++other) {
-      if (state_[other].age < state_[slot].age) ++state_[other].age;
-    }
-    state_[slot].age = 0;
+  // The least of four words, in all of them.
+  [[nodiscard]] static GRIDIRON_INLINE FourWords least_of(FourWords words) {
+    using Four = Lanes<4>;
+    const FourWords pairs = FourWords::of(Four::shuffle_quads<2, 3, 0, 1>(words.floats()));
+    const FourWords low = FourWords::select(words.less(pairs), words, pairs);
+    const FourWords other = FourWords::of(Four::shuffle_quads<1, 0, 3, 2>(low.floats()));
+    return FourWords::select(low.less(other), low, other);
   }
 
-  std::uint32_t lines_[MaxLines];
-  SlotState state_[MaxLines];
-  std::uint32_t set_count_ = 1;
+  alignas(16) std::uint32_t lines_[MaxLines];
+  alignas(16) std::uint32_t last_use_[MaxLines];
+  std::uint32_t set_mask_ = 0;
   CacheCounts counts_;
 };
 

@@ -1,10 +1,13 @@
 // The committed table of work costs is the one that the kernel's operations come to today.
 // SPDX-License-Identifier: Apache-2.0
+#include <gridiron/rival/rival_costs.h>
+#include <gridiron/rival/rival_work.h>
 #include <gridiron/sim/machine_profile.h>
 #include <gridiron/sim/work_costs.h>
 #include <gtest/gtest.h>
 #include <work_table.h>
 
+#include <array>
 #include <cstddef>
 #include <string>
 
@@ -13,29 +16,55 @@ namespace {
 
 // What is counted is the same with every compiler: it is compared to the last digit of the table. The schedule depends
 // a little on the order in which a compiler evaluates operands: up to 1 % between GCC and clang were seen.
-// count_frames() itself throws where the counted kernel renders another picture or does other work than the kernel.
-TEST(WorkTable, CommittedTableIsThatOfTodaysKernel) {
+void expect_same(const sim::WorkCost& cost, const KindTotals& counted) {
   constexpr double kLastDigit = 0.00501;
   constexpr double kScheduleTolerance = 0.02;
+  ASSERT_GT(counted.units, 0u);
+  const auto per_unit = [&](auto value) { return static_cast<double>(value) / static_cast<double>(counted.units); };
+  const auto count_of = [&](OpClass op) { return per_unit(counted.operations[static_cast<std::size_t>(op)]); };
+  EXPECT_NEAR(per_unit(counted.even()), cost.even, kLastDigit);
+  EXPECT_NEAR(count_of(OpClass::kDouble), cost.doubles, kLastDigit);
+  EXPECT_NEAR(per_unit(counted.odd()), cost.odd, kLastDigit);
+  EXPECT_NEAR(count_of(OpClass::kBranch), cost.branches, kLastDigit);
+  EXPECT_NEAR(per_unit(counted.misses), cost.misses, kLastDigit);
+  EXPECT_NEAR(per_unit(counted.cycles()), cost.cycles, kScheduleTolerance * cost.cycles);
+  EXPECT_NEAR(per_unit(counted.resource_cycles()), cost.least_cycles, 0.0501);
+}
+
+// count_frames() and count_rival_frames() throw where the counted twin renders another picture or does other work.
+TEST(WorkTable, CommittedTableIsThatOfTodaysKernel) {
   const Totals totals = count_frames();
   for (std::size_t kind = 0; kind < kWorkKindCount; ++kind) {
-    const sim::WorkCost& cost = sim::kWorkCosts[kind];
-    const KindTotals& counted = totals[kind];
-    if (cost.cycles == 0) continue;  // commands and waits
+    if (sim::kWorkCosts[kind].cycles == 0) continue;  // commands and waits
     SCOPED_TRACE("kind " + std::to_string(kind) +
                  ": if the kernel's operations changed, write the table anew with\n  build/host/bin/gridiron_calibrate "
                  "sim_platform/gridiron/sim/work_costs.h");
-    ASSERT_GT(counted.units, 0u);
-    const auto per_unit = [&](auto value) { return static_cast<double>(value) / static_cast<double>(counted.units); };
-    const auto count_of = [&](OpClass op) { return per_unit(counted.operations[static_cast<std::size_t>(op)]); };
-    EXPECT_NEAR(per_unit(counted.even()), cost.even, kLastDigit);
-    EXPECT_NEAR(count_of(OpClass::kDouble), cost.doubles, kLastDigit);
-    EXPECT_NEAR(per_unit(counted.odd()), cost.odd, kLastDigit);
-    EXPECT_NEAR(count_of(OpClass::kBranch), cost.branches, kLastDigit);
-    EXPECT_NEAR(per_unit(counted.misses), cost.misses, kLastDigit);
-    EXPECT_NEAR(per_unit(counted.cycles()), cost.cycles, kScheduleTolerance * cost.cycles);
-    EXPECT_NEAR(per_unit(counted.resource_cycles()), cost.least_cycles, 0.0501);
+    expect_same(sim::kWorkCosts[kind], totals[kind]);
   }
+}
+
+TEST(WorkTable, CommittedTableOfTheRivalIsThatOfToday) {
+  const Totals totals = count_rival_frames();
+  for (std::uint32_t i = 0; i < rival::kRivalWorkCount; ++i) {
+    const auto kind = static_cast<rival::RivalWork>(i);
+    SCOPED_TRACE(std::string(rival::name_of(kind)) +
+                 ": if the rival's operations changed, or the kernel's that it calls, write the table anew with\n"
+                 "  build/host/bin/gridiron_calibrate --rival sim_platform/gridiron/rival/rival_costs.h");
+    expect_same(rival::kRivalCosts[i], totals[static_cast<std::size_t>(rival::carrier_of(kind))]);
+  }
+}
+
+TEST(WorkTable, RivalChargesItsTableAndTheKernelsForAllElse) {
+  const sim::MachineProfile& machine = *sim::find_machine_profile("cell-ps3");
+  const sim::MachineProfile priced = rival::with_rival_costs(machine);
+  std::array<double, kWorkKindCount> expected = machine.work_cycles;
+  for (std::uint32_t i = 0; i < rival::kRivalWorkCount; ++i) {
+    const auto kind = static_cast<rival::RivalWork>(i);
+    expected[static_cast<std::size_t>(rival::carrier_of(kind))] = rival::kRivalCosts[i].cycles;
+    EXPECT_EQ(rival::cycles_of(kind), rival::kRivalCosts[i].cycles);
+    EXPECT_LE(rival::kRivalCosts[i].cycles, rival::kRivalCosts[i].most_cycles) << rival::name_of(kind);
+  }
+  EXPECT_EQ(priced.work_cycles, expected);
 }
 
 TEST(WorkTable, ProfileChargesTheTable) {

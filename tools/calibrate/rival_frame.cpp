@@ -1,0 +1,99 @@
+// Runs the counted rival and the rival: see the header. SPDX-License-Identifier: Apache-2.0
+#include <copy_core.h>
+#include <gridiron/frame/frame_setup.h>
+#include <gridiron/rival/bvh_core.h>
+#include <gridiron/rival/bvh_renderer.h>
+#include <gridiron_counted/rival/bvh_core.h>
+#include <rival_frame.h>
+
+#include <cstddef>
+#include <cstring>
+#include <new>
+#include <vector>
+
+namespace gridiron::calibrate {
+
+namespace {
+
+// Frame record, picture, nodes and triangles, one behind the other.
+struct RivalMemory {
+  LineBytes bytes;
+  std::uint32_t tile_count;
+  std::size_t pixel_count;
+};
+constexpr std::uint64_t kPictureAddress = sizeof(rival::RivalFrameRecord);
+
+RivalMemory make_memory(const RivalCountedFrame& frame) {
+  rival::Bvh bvh;
+  require(rival::build_bvh({frame.vertices, frame.triangles}, {}, bvh));
+  const std::uint32_t tiles_x = (frame.width + rival::kTileWidth - 1) / rival::kTileWidth;
+  const std::size_t pixel_count = std::size_t{tiles_x} * tiles_x * rival::kTilePixels;
+  const std::uint64_t nodes_address = kPictureAddress + pixel_count * sizeof(std::uint32_t);
+  const std::size_t node_bytes = bvh.nodes.size() * sizeof(rival::BvhNode);
+  const std::uint64_t triangles_address = nodes_address + node_bytes;
+  const std::size_t triangle_bytes = bvh.triangles.size() * sizeof(VertexTriangle);
+  RivalMemory memory{LineBytes(triangles_address + triangle_bytes), tiles_x * tiles_x, pixel_count};
+  std::byte* const bytes = memory.bytes.bytes().data();
+  std::memcpy(bytes + nodes_address, bvh.nodes.data(), node_bytes);
+  std::memcpy(bytes + triangles_address, bvh.triangles.data(), triangle_bytes);
+
+  FrameSettings settings;
+  settings.camera.eye = frame.eye;
+  settings.camera.at = frame.at;
+  settings.camera.tan_half_fov = frame.tan_half_fov;
+  settings.width = settings.height = frame.width;
+  settings.shading = Shading::kSimple;
+  settings.color = MainAddress{kPictureAddress};
+  rival::RenderOptions options;
+  options.hyper_threading = frame.ring_size > 1;
+  options.ring_size = frame.ring_size;
+  auto& record = *new (bytes) rival::RivalFrameRecord{};
+  require(rival::make_rival_record(bvh, settings, options, {nodes_address}, {triangles_address}, record));
+  return memory;
+}
+
+// On a model of its own. noinline: what it puts on the stack is below the stack base.
+__attribute__((noinline)) Totals run_counted(RivalMemory& memory, PipeModel& model) {
+  namespace twin = gridiron_counted;
+  LineBytes bytes(sizeof(twin::rival::RivalStore));
+  auto& store = *::new (static_cast<void*>(bytes.bytes().data())) twin::rival::RivalStore;
+  model.set_store(&store, sizeof(store));
+  CopyCore core(memory.bytes.bytes(), memory.tile_count);
+  twin::rival::BvhCore<twin::Lanes<4>, rival::kPacketWidth, CopyCore> program(store, core);
+  require(program.run(twin::MainAddress{0}));
+  return model.finish();
+}
+
+CountedPicture picture_of(const RivalMemory& memory, const Totals& totals) {
+  std::vector<std::uint32_t> pixels(memory.pixel_count);
+  std::memcpy(pixels.data(), memory.bytes.bytes().data() + kPictureAddress, pixels.size() * sizeof(std::uint32_t));
+  return {totals, std::move(pixels)};
+}
+
+}  // namespace
+
+// Twice: what the branches usually do, then what everything costs.
+CountedPicture render_rival_counted(const RivalCountedFrame& frame, std::uint32_t superblock_branches) {
+  RivalMemory memory = make_memory(frame);
+  const int stack_base = 0;
+  PipeModel first(nullptr);
+  first.set_stack(&stack_base);
+  (void)run_counted(memory, first);
+  PipeModel second(&first.branches(), superblock_branches);
+  second.set_stack(&stack_base);
+  return picture_of(memory, run_counted(memory, second));
+}
+
+CountedPicture render_rival_plain(const RivalCountedFrame& frame) {
+  RivalMemory memory = make_memory(frame);
+  LineBytes bytes(sizeof(rival::RivalStore));
+  auto& store = *::new (static_cast<void*>(bytes.bytes().data())) rival::RivalStore;
+  CopyCore core(memory.bytes.bytes(), memory.tile_count);
+  rival::BvhCore<Lanes<4>, rival::kPacketWidth, CopyCore> program(store, core);
+  require(program.run(MainAddress{0}));
+  Totals totals{};
+  for (std::size_t kind = 0; kind < kWorkKindCount; ++kind) totals[kind].units = store.work.counts[kind];
+  return picture_of(memory, totals);
+}
+
+}  // namespace gridiron::calibrate
