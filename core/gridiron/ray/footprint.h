@@ -13,15 +13,6 @@
 
 namespace gridiron {
 
-/// @returns the four subpackets of each square: bit i becomes bits 4 i to 4 i + 3. @param squares  16 bits.
-[[nodiscard]] GRIDIRON_INLINE constexpr SubpacketSet subpackets_of_squares(std::uint64_t squares) {
-  squares = (squares | squares << 24) & 0x000000FF000000FFu;
-  squares = (squares | squares << 12) & 0x000F000F000F000Fu;
-  squares = (squares | squares << 6) & 0x0303030303030303u;
-  squares = (squares | squares << 3) & 0x1111111111111111u;
-  return squares * 0xFu;
-}
-
 /// @returns a bit for each square of 2x2 subpackets of which an active ray may touch cell (u, v) of a slab.
 ///
 /// The frustum's pads cover each square: its rays are among those that the pads were made for.

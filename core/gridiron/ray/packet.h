@@ -58,6 +58,15 @@ using SubpacketSet = std::uint64_t;
   return subpacket_column(i >> 1);
 }
 
+/// @returns the four subpackets of each square: bit i becomes bits 4 i to 4 i + 3. @param squares  16 bits.
+[[nodiscard]] GRIDIRON_INLINE constexpr SubpacketSet subpackets_of_squares(std::uint64_t squares) {
+  squares = (squares | squares << 24) & 0x000000FF000000FFu;
+  squares = (squares | squares << 12) & 0x000F000F000F000Fu;
+  squares = (squares | squares << 6) & 0x0303030303030303u;
+  squares = (squares | squares << 3) & 0x1111111111111111u;
+  return squares * 0xFu;
+}
+
 /// Calls visit(i) for every subpacket i of a set, in order. Of few, each is asked for: the loop can be unrolled.
 template <std::uint32_t SubpacketCount, class Visit>
 GRIDIRON_INLINE void for_each_subpacket(SubpacketSet set, Visit&& visit) {

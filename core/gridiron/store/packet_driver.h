@@ -58,7 +58,7 @@ class PacketDriver {
     std::uint32_t count;
     std::uint32_t first_byte;  ///< where the run starts in its buffer
     float entry;               ///< march distance of its cell's slice
-    SubpacketSet touching;     ///< subpackets of the squares that may touch the cell
+    std::uint32_t touching;    ///< squares of subpackets that may touch the cell
   };
 
   // Starts the get of the next run of triangles, or sets cells_done_.
@@ -81,7 +81,7 @@ class PacketDriver {
                               std::uint64_t{cell_.first_triangle} * kTriangleRecordBytes};
     const std::uint32_t slot = triangle_ring_.push();
     const std::uint32_t first_byte = static_cast<std::uint32_t>(address.value % kPortableCongruenceBytes);
-    runs_[slot] = {count, first_byte, cell_.entry, subpackets_of_squares(touching_)};
+    runs_[slot] = {count, first_byte, cell_.entry, touching_};
     cell_.first_triangle += count;
     cell_.triangle_count -= count;
     return transfers_.get(store_.triangles[slot].bytes + first_byte, address, count * kTriangleRecordBytes,
@@ -139,10 +139,14 @@ class PacketDriver {
     return Status::kOk;
   }
 
-  // Subpackets with a ray that has hit nothing in front of `entry` yet.
-  [[nodiscard]] SubpacketSet open_subpackets(float entry) {
+  // Subpackets with a ray that has hit nothing in front of a run's cell yet; where the cell is not, squares of them.
+  [[nodiscard]] SubpacketSet open_subpackets(const TriangleRun& run) {
     if ((store_.frame.techniques & kUseSubpackets) == 0) return StorePacket::kAllSubpackets;
-    return reaches_.template open<L>(frustum_, entry, store_.work);
+    if constexpr (StorePacket::kSquareCount >= 4) {
+      return reaches_.open(frustum_, run.entry, run.touching, store_.work);
+    } else {
+      return reaches_.template open<L>(frustum_, run.entry, store_.work);
+    }
   }
 
   // Squares of subpackets that may touch a cell and have a ray that has hit nothing in front of it yet.
@@ -163,10 +167,10 @@ class PacketDriver {
     const TriangleRun& run = runs_[slot];
     if (!frustum_.beyond(Slab{run.entry, run.entry}, reach_)) {
       store_.work.add(Work::kTriangleBatch);
-      const SubpacketSet open = open_subpackets(run.entry);
+      const SubpacketSet open = open_subpackets(run);
       SubpacketSet changed = 0;
       // The other open subpackets are tested too, so that no triangle comes again for them from a later cell.
-      if ((open & run.touching) != 0) {
+      if ((open & subpackets_of_squares(run.touching)) != 0) {
         changed = test_run(store_.triangles[slot].bytes + run.first_byte, run.count, open);
       }
       if (changed != 0) reach_ = reaches_.template update<L>(store_.packet, frustum_, changed, store_.work);
