@@ -133,8 +133,8 @@ std::string_view work_name(Work kind) {
       return "mailbox_probe";
     case Work::kCullTest:
       return "cull_test";
-    case Work::kPixelBox:
-      return "pixel_box";
+    case Work::kPixelBoxGroup:
+      return "pixel_box_group";
     case Work::kTriangleSetup:
       return "triangle_setup";
     case Work::kGroupTestStandard:

@@ -22,7 +22,7 @@ enum class Work : std::uint8_t {
   kTriangleBatch,     ///< triangle buffers consumed
   kMailboxProbe,      ///< mailbox look-ups
   kCullTest,          ///< corner-ray culling tests, one per triangle
-  kPixelBox,          ///< triangles of which the pixels that they can cover were computed
+  kPixelBoxGroup,     ///< SIMD groups of triangles of which the pixels that they can cover were computed
   kTriangleSetup,     ///< per (packet, triangle) set-ups of the `standard` test
   kSubpacketSetup,    ///< triangles whose edge functions were made linear in the pixel, for culling subpackets
   kSubpacketGroup,    ///< SIMD groups of squares or subpackets held against a triangle's edges

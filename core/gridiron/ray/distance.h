@@ -34,7 +34,8 @@ void set_up_distance(const float origin[3], float dir_max, const VertexTriangle&
 /// nor denominator is uncertain by more than 4/9 of kEstimateError, their quotient is within 9/10 of it, and within all
 /// of it once rounded. Values below the least normal float may be lost; in the range that is asked for, that is less
 /// than what was charged too much: at most 2^-126 times 2^40 is lost of sums above 2^-60. The quotient of a ray that
-/// passes the test lies above the least normal float; an infinite one is neither surely nearer nor surely behind.
+/// passes the test lies above the least normal float. Held against a hit at t by numerator and t * denominator: where
+/// that product overflows, the quotient is nearer by far; where it vanishes, behind by far.
 ///
 /// Numerator and normal are signed so that a positive denominator means a hit in front of the origin.
 struct DistanceEstimate {
@@ -214,12 +215,16 @@ template <class L, bool kWantFacing, class PacketType>
   const Float d_z = Float::load(packet.dir[2] + base);
   const Float denominator = setups.normal[0] * d_x + setups.normal[1] * d_y + setups.normal[2] * d_z;
   Float old_t = Float::load(packet.t + base);
-  Float t = setups.numerator / denominator;
+  // Compared without the quotient, which need not be waited for.
+  const Float old_numerator = old_t * denominator;
   const auto is_close = denominator > setups.least_denominator;
-  std::uint32_t nearer = (is_close & (t < old_t * Float(kSurelyNearer))).bits() & hit & packet.estimates;
+  std::uint32_t nearer =
+      (is_close & (setups.numerator < old_numerator * Float(kSurelyNearer))).bits() & hit & packet.estimates;
+  Float t = setups.numerator / denominator;
   if (nearer != hit) [[unlikely]] {
     // A hit behind another or behind the origin, or of a triangle that comes again, changes nothing.
-    const auto is_behind = (denominator < -setups.least_denominator) | (is_close & (t > old_t * Float(kSurelyBehind)));
+    const auto is_behind = (denominator < -setups.least_denominator) | 
+                           (is_close & (setups.numerator > old_numerator * Float(kSurelyBehind)));
     hit &= ~(is_behind | L::equal(triangle.triangle_id, packet.id + base)).bits();
     if (nearer != hit) {
       alignas(64) float distance[L::kCount];
@@ -254,16 +259,16 @@ template <class L, bool kWantFacing, class PacketType>
   constexpr std::uint32_t kGroups = kSubpacketRays / L::kCount;
   setups.estimate(packet, triangle, work);
   work.add(Work::kHitSubpacket);
-  Float t[kGroups];
+  Float denominator[kGroups];
   auto is_nearer = L::mask_from_bits(packet.estimates);
   for (std::uint32_t group = 0; group < kGroups; ++group) {
     const std::uint32_t base = first_ray + group * L::kCount;
-    const Float denominator = setups.normal[0] * Float::load(packet.dir[0] + base) +
-                              setups.normal[1] * Float::load(packet.dir[1] + base) +
-                              setups.normal[2] * Float::load(packet.dir[2] + base);
-    t[group] = setups.numerator / denominator;
-    is_nearer = is_nearer & (denominator > setups.least_denominator) &
-                (t[group] < Float::load(packet.t + base) * Float(kSurelyNearer));
+    denominator[group] = setups.normal[0] * Float::load(packet.dir[0] + base) +
+                         setups.normal[1] * Float::load(packet.dir[1] + base) +
+                         setups.normal[2] * Float::load(packet.dir[2] + base);
+    const Float old_numerator = Float::load(packet.t + base) * denominator[group];
+    is_nearer = is_nearer & (denominator[group] > setups.least_denominator) &
+                (setups.numerator < old_numerator * Float(kSurelyNearer));
   }
   if (is_nearer.bits() != L::kAllBits) return false;
   if constexpr (kWantFacing) setups.find_normal(triangle, work);
@@ -271,7 +276,7 @@ template <class L, bool kWantFacing, class PacketType>
   const typename L::Int id = L::Int::splat(triangle.triangle_id);
   for (std::uint32_t group = 0; group < kGroups; ++group) {
     const std::uint32_t base = first_ray + group * L::kCount;
-    t[group].store(packet.t + base);
+    (setups.numerator / denominator[group]).store(packet.t + base);
     id.store(packet.id + base);
     if constexpr (kWantFacing) {
       const Float facing = L::abs(setups.unit_normal[0] * Float::load(packet.dir[0] + base) +

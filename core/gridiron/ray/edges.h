@@ -237,13 +237,13 @@ template <class L, class PacketType>
   std::uint32_t open = active & ~(outside & edges.known);
   if (open == 0) return 0;
   // 2. Three edges surely passed on the inside: a hit. Anything else is decided in double, then exactly.
-  const std::uint32_t sure_inside[3] = {(e0 > edges.error[0]).bits() & edges.known,
-                                        (e1 > edges.error[1]).bits() & edges.known,
-                                        (e2 > edges.error[2]).bits() & edges.known};
-  const std::uint32_t inside = open & sure_inside[0] & sure_inside[1] & sure_inside[2];
+  const auto inside0 = e0 > edges.error[0], inside1 = e1 > edges.error[1], inside2 = e2 > edges.error[2];
+  const std::uint32_t inside = (inside0 & inside1 & inside2).bits() & open & edges.known;
   open &= ~inside;
   if (open == 0) [[likely]]
     return inside;
+  const std::uint32_t sure_inside[3] = {inside0.bits() & edges.known, inside1.bits() & edges.known,
+                                        inside2.bits() & edges.known};
   const std::uint32_t settled = settle_open_lanes<L>(packet, base, open, sure_inside, triangle, orientation, work);
   work.charge_to(Work::kGroupTestStandard);
   return inside | settled;

@@ -72,11 +72,12 @@ template <class L, class PacketType>
                                                           const VertexTriangle* const* triangles,
                                                           const SubpacketSet* subpackets, std::uint32_t count,
                                                           OpenTriangle* open, WorkCounters& work) {
-  work.add(Work::kPixelBox, count);
+  work.add(Work::kPixelBoxGroup);
   const VertexTriangle* padded[L::kCount];
   for (std::uint32_t i = 0; i < L::kCount; ++i) padded[i] = triangles[i < count ? i : 0];
   PixelBoxes<L> boxes;
   find_pixel_boxes<L>(packet, padded, boxes);
+  work.charge_to(Work::kTriangleSetup);
   std::uint32_t open_count = 0;
   for (std::uint32_t rest = boxes.covering & (~0u >> (32 - count)); rest != 0; rest &= rest - 1) {
     const std::uint32_t i = lowest_bit(rest);
