@@ -72,6 +72,24 @@ struct SubpacketReach {
     return result;
   }
 
+  /// @returns the subpackets that still look beyond the march distance `entry`: of the squares `exactly`, those that
+  /// do; of the others, all of a square where one of them does.
+  [[nodiscard]] GRIDIRON_INLINE SubpacketSet open(const Frustum& frustum, float entry, std::uint32_t exactly,
+                                                  WorkCounters& work) const {
+    using Four = Lanes<4>;
+    using Float = Four::Float;
+    const std::uint32_t squares = open_squares(frustum, entry, work);
+    SubpacketSet result = subpackets_of_squares(squares);
+    for (std::uint32_t rest = squares & exactly; rest != 0; rest &= rest - 1) {
+      const std::uint32_t square = lowest_bit(rest);
+      work.add(Work::kReachGroup);
+      const Float limit = Float::load(reach + 4 * square) * Float(Frustum::kReachFactor) + Float(frustum.pad_k);
+      const std::uint32_t behind = ~(Float(entry) <= limit).bits() & 0xFu;
+      result &= ~(SubpacketSet{behind} << (4 * square));
+    }
+    return result;
+  }
+
   /// @returns the subpackets that still look beyond the march distance `entry`.
   template <class L>
   [[nodiscard]] GRIDIRON_INLINE SubpacketSet open(const Frustum& frustum, float entry, WorkCounters& work) const {

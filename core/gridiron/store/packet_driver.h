@@ -139,14 +139,13 @@ class PacketDriver {
     return Status::kOk;
   }
 
-  // Subpackets with a ray that has hit nothing in front of `entry` yet; of large packets, squares of them: telling the
-  // four apart costs more than it spares.
-  [[nodiscard]] SubpacketSet open_subpackets(float entry) {
+  // Subpackets with a ray that has hit nothing in front of a run's cell yet; where the cell is not, squares of them.
+  [[nodiscard]] SubpacketSet open_subpackets(const TriangleRun& run) {
     if ((store_.frame.techniques & kUseSubpackets) == 0) return StorePacket::kAllSubpackets;
     if constexpr (StorePacket::kSquareCount >= 4) {
-      return subpackets_of_squares(reaches_.open_squares(frustum_, entry, store_.work));
+      return reaches_.open(frustum_, run.entry, run.touching, store_.work);
     } else {
-      return reaches_.template open<L>(frustum_, entry, store_.work);
+      return reaches_.template open<L>(frustum_, run.entry, store_.work);
     }
   }
 
@@ -168,7 +167,7 @@ class PacketDriver {
     const TriangleRun& run = runs_[slot];
     if (!frustum_.beyond(Slab{run.entry, run.entry}, reach_)) {
       store_.work.add(Work::kTriangleBatch);
-      const SubpacketSet open = open_subpackets(run.entry);
+      const SubpacketSet open = open_subpackets(run);
       SubpacketSet changed = 0;
       // The other open subpackets are tested too, so that no triangle comes again for them from a later cell.
       if ((open & subpackets_of_squares(run.touching)) != 0) {
