@@ -25,18 +25,21 @@ struct SubpacketReach {
   GRIDIRON_INLINE float update(const PacketType& packet, const Frustum& frustum, SubpacketSet changed,
                                WorkCounters& work) {
     using Float = typename L::Float;
-    const Float scale(frustum.depth_per_t * (1.0f + 2.0f * kEstimateError));
+    const float scale = frustum.depth_per_t * (1.0f + 2.0f * kEstimateError);
     for_each_subpacket<kCount>(changed, [&](std::uint32_t subpacket) GRIDIRON_INLINE_LAMBDA {
       const std::uint32_t first_ray = subpacket * kSubpacketRays;
+      const bool is_whole = packet.active.subpacket(subpacket) == kAllSubpacketRays;
+      work.add(Work::kReachGroup, kSubpacketRays / L::kCount);
       Float farthest(0.0f);
       for (std::uint32_t base = first_ray; base < first_ray + kSubpacketRays; base += L::kCount) {
-        work.add(Work::kReachGroup);
-        const auto active = L::mask_from_bits(packet.active.template group<L>(base));
-        const Float distance =
-            Float::load(packet.t + base) * (L::abs(Float::load(packet.dir[frustum.axis_k] + base)) * scale);
-        farthest = L::max(farthest, L::select(active, distance, Float(0.0f)));
+        Float distance = Float::load(packet.t + base) * L::abs(Float::load(packet.dir[frustum.axis_k] + base));
+        if (!is_whole) [[unlikely]] {
+          const auto active = L::mask_from_bits(packet.active.template group<L>(base));
+          distance = L::select(active, distance, Float(0.0f));
+        }
+        farthest = L::max(farthest, distance);
       }
-      reach[subpacket] = L::horizontal_max(farthest);
+      reach[subpacket] = L::horizontal_max(farthest) * scale;
     });
     if constexpr (kCount < 4) {
       return reach[0];

@@ -46,9 +46,9 @@ void expect_reaches() {
         const std::uint32_t ray = subpacket * kSubpacketRays + i;
         if (!packet.active.contains(ray)) continue;
         const float t = (changed >> subpacket & 1u) != 0 ? packet.t[ray] : 2.0f * packet.t[ray];
-        const float scale = frustum.depth_per_t * (1.0f + 2.0f * kEstimateError);
-        expected = std::max(expected, t * (magnitude(packet.dir[frustum.axis_k][ray]) * scale));
+        expected = std::max(expected, t * magnitude(packet.dir[frustum.axis_k][ray]));
       }
+      expected *= frustum.depth_per_t * (1.0f + 2.0f * kEstimateError);
       ASSERT_EQ(reaches.reach[subpacket], expected) << "seed " << seed << ", subpacket " << subpacket;
       expected_largest = std::max(expected_largest, expected);
     }
