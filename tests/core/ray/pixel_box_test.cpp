@@ -5,6 +5,7 @@
 #include <gridiron/render/camera.h>
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 #include <cstdint>
 #include <cstdlib>
@@ -13,84 +14,13 @@
 #include <memory>
 
 #include "core/lane_types.h"
+#include "core/ray/frame_cases.h"
 #include "core/ray/packet_cases.h"
 #include "core/seeds.h"
 #include "support/test_mesh.h"
 
 namespace gridiron::test {
 namespace {
-
-enum class FrameKind : std::uint32_t {
-  kOrdinary,    // a camera as people have them
-  kExact,       // axis-aligned, everything a small multiple of a power of two
-  kNarrow,      // pixels that rounding moves
-  kWide,        // a packet sees up to almost half of the world
-  kFarOrigin,   // vertices keep few bits beside the eye's coordinates
-  kScaled,      // directions and places of any size
-  kFlat,        // steps almost parallel, or the picture almost edge-on
-  kDegenerate,  // no picture at all: steps parallel or 0, or a corner in their plane
-  kCount
-};
-
-FrameRecord make_frame(TestRandom& random, FrameKind kind) {
-  FrameRecord frame{};
-  frame.t_far = kFloatMax;
-  frame.width = frame.height = 8192;
-  Vec3 right = random_vec(random, 1.0f);
-  Vec3 down = random_vec(random, 1.0f);
-  const Vec3 normal(right.y * down.z - right.z * down.y, right.z * down.x - right.x * down.z,
-                    right.x * down.y - right.y * down.x);
-  down = Vec3(normal.y * right.z - normal.z * right.y, normal.z * right.x - normal.x * right.z,
-              normal.x * right.y - normal.y * right.x);
-  const auto unit = [](Vec3 v) { return v / std::sqrt(v.x * v.x + v.y * v.y + v.z * v.z); };
-  right = unit(right);
-  down = unit(down);
-  Vec3 forward = unit(normal);
-  Vec3 eye = random_vec(random, 4.0f);
-  float pixel = std::ldexp(1.0f + random.unit(), -8 - static_cast<int>(random.below(3)));
-  float half = 0.5f;  // tangent from the middle to the left and upper side
-  float scale = 1.0f;
-  if (kind == FrameKind::kExact) {
-    right = {1, 0, 0};
-    down = {0, -1, 0};
-    forward = {0, 0, -1};
-    eye = random.below(2) == 0 ? Vec3(0.0f) : Vec3(3.0f, -5.0f, 0.5f);
-    pixel = std::ldexp(1.0f, -6 - static_cast<int>(random.below(5)));
-  } else if (kind == FrameKind::kNarrow) {
-    pixel = std::ldexp(1.0f + random.unit(), -12 - static_cast<int>(random.below(14)));
-    half = random.below(2) == 0 ? 0.5f : 64.0f * pixel;
-  } else if (kind == FrameKind::kWide) {
-    pixel = std::ldexp(1.0f + random.unit(), -static_cast<int>(random.below(6)));
-    half = random.below(2) == 0 ? 16.0f * pixel : 2.0f;
-  } else if (kind == FrameKind::kFarOrigin) {
-    eye = random_vec(random, std::ldexp(1.0f, 10 + static_cast<int>(random.below(16))));
-  } else if (kind == FrameKind::kScaled) {
-    scale = std::ldexp(1.0f + random.unit(), static_cast<int>(random.below(161)) - 80);
-    pixel = std::ldexp(pixel, -static_cast<int>(random.below(8)));
-    eye = random.below(2) == 0 ? eye * scale : eye;
-  } else if (kind == FrameKind::kFlat) {
-    const float least = std::ldexp(random.unit(), -static_cast<int>(random.below(20)));
-    if (random.below(2) == 0) {
-      down = right + least * down;
-    } else {
-      forward = right + least * forward;
-    }
-  } else if (kind == FrameKind::kDegenerate) {
-    right = {1, 2, -3};
-    const std::uint32_t way = random.below(4);
-    down = way == 0 ? -2.0f * right : way == 1 ? Vec3(0.0f) : Vec3(2, 1, 1);
-    forward = way == 2 ? 16.0f * right + 4.0f * down : Vec3(1, 1, 1);
-    if (way == 3) forward = Vec3(0.0f);
-    pixel = 0x1p-8f;
-  }
-  for (int axis = 0; axis < 3; ++axis) {
-    frame.eye[axis] = eye[axis];
-    frame.step_x[axis] = right[axis] * pixel * scale;
-    frame.step_y[axis] = down[axis] * pixel * scale;
-    frame.corner[axis] = (forward[axis] - half * (right[axis] + down[axis])) * scale;
-  }
-  return frame;
-}
 
 // A point that a packet sees at a place of its pixels, as far as floats have it.
 template <class PacketType>
@@ -135,7 +65,12 @@ VertexTriangle make_triangle(TestRandom& random, const PacketType& packet) {
     }
     double at = depth;
     if (random.below(2) == 0) at *= double{random.between(0.9f, 1.1f)};
-    if (shape == 4) at *= double{random.between(-1, 1)};                             // some behind the eye
+    if (shape == 4) at *= double{random.between(-1, 1)};  // some behind the eye
+    if (shape == 4 && random.below(2) == 0) {             // as good as in the eye's plane, far out
+      const double far = std::ldexp(1.0, 4 + static_cast<int>(random.below(40)));
+      at /= far;
+      for (double& value : place) value *= far;
+    }
     if (shape == 5) at *= std::ldexp(1.0, static_cast<int>(random.below(40)) - 20);  // seen almost edge-on
     corners[i] = point_at(packet, at, place[0], place[1]);
   }
@@ -181,7 +116,7 @@ TYPED_TEST_SUITE(PixelBoxTest, LaneTypes, LaneNames);
 template <class L, class PacketType>
 struct BoxCase {
   std::unique_ptr<PacketType> packet = std::make_unique<PacketType>();
-  VertexTriangle triangles[L::kCount];
+  alignas(16) VertexTriangle triangles[L::kCount];
   PixelBoxes<L> boxes;
 
   BoxCase(TestRandom& random, FrameKind kind) {
@@ -350,6 +285,52 @@ void expect_tight_boxes() {
 TYPED_TEST(PixelBoxTest, BoxesAreHardlyLargerThanWhatIsCovered) {
   expect_tight_boxes<TypeParam, Packet<16>>();
   expect_tight_boxes<TypeParam, Packet<32>>();
+}
+
+// With a projection that does not round, a place on a pixel's centre counts as that pixel, and one behind it does not.
+TYPED_TEST(PixelBoxTest, PlacesOnCentersCount) {
+  using Wide = Packet<32>;
+  const auto packet = std::make_unique<Wide>();
+  packet->projection = PixelProjection{{{0, 0, 1}, {1, 0, 0}, {0, 1, 0}}, 0.0f, 1000.0f};
+  for (std::uint32_t pixel = 0; pixel < Wide::kWidth; ++pixel) {
+    const auto center = static_cast<float>(pixel);
+    const float least_past = std::nextafter(center, 100.0f);
+    struct Case {
+      float low, high;
+      std::uint32_t first, end;
+    };
+    const Case cases[] = {{center, center, pixel, pixel + 1},
+                          {center - 0.25f, center, pixel, pixel + 1},
+                          {center, center + 0.25f, pixel, pixel + 1},
+                          {least_past, center + 1.0f, pixel, pixel + 2},  // as good as on it
+                          {center + 0.125f, center + 1.0f, pixel + 1, pixel + 2},
+                          {center - 1.0f, center + 0.5f, pixel == 0 ? 0 : pixel - 1, pixel + 1},
+                          {center + 0.25f, center + 0.75f, pixel + 1, pixel + 1},
+                          {-5.0f, 50.0f, 0, Wide::kWidth}};
+    for (const Case& shown : cases) {
+      const std::uint32_t end = std::min(shown.end, Wide::kWidth), first = std::min(shown.first, Wide::kWidth);
+      for (const bool is_column : {true, false}) {
+        alignas(16) VertexTriangle triangle;
+        const auto at = [is_column](float value, float other) {
+          return is_column ? Vec3(value, other, 1) : Vec3(other, value, 1);
+        };
+        set_triangle(triangle, at(shown.low, 3), at(shown.high, 5), at(shown.high, 7), 1);
+        const VertexTriangle* pointers[TypeParam::kCount];
+        for (const VertexTriangle*& pointer : pointers) pointer = &triangle;
+        PixelBoxes<TypeParam> boxes;
+        find_pixel_boxes<TypeParam>(*packet, pointers, boxes);
+        ASSERT_EQ(boxes.covering, first < end ? TypeParam::kAllBits : 0u) << shown.low << " to " << shown.high;
+        for (int i = 0; i < TypeParam::kCount; ++i) {
+          const auto& firsts = is_column ? boxes.first_column : boxes.first_row;
+          const auto& ends = is_column ? boxes.end_column : boxes.end_row;
+          ASSERT_EQ(firsts[i], first) << shown.low << " to " << shown.high;
+          ASSERT_EQ(ends[i], end) << shown.low << " to " << shown.high;
+          ASSERT_EQ((is_column ? boxes.first_row : boxes.first_column)[i], 3u);
+          ASSERT_EQ((is_column ? boxes.end_row : boxes.end_column)[i], 8u);
+        }
+      }
+    }
+  }
 }
 
 // Every box in a packet of 32 x 32, against its pixels.
