@@ -27,7 +27,7 @@ bool bench_view(const BenchOptions& options, const test::SceneView& view) {
   sim::ChipOptions plain;
   plain.mode = sim::Mode::kPlain;
   plain.lanes = sim::widest_lanes();
-  test::PreparedFrame frame = scene.prepare(settings, plain, false);
+  test::PreparedFrame frame = scene.prepare(settings, plain, test::PlaneSet::kColor);
   sim::ChipOptions checked = plain;
   checked.mode = sim::Mode::kChecked;
   if (frame.status() != Status::kOk) {

@@ -67,6 +67,34 @@ TestMesh coplanar_stack() {
   return mesh;
 }
 
+// Triangles of one plane that overlap, some of them twice and turned over: whole numbers, so that it is one plane.
+TestMesh overlapping_in_a_plane(bool tilted) {
+  TestRandom random(21);
+  TestMesh mesh;
+  const auto corner = [&] {
+    const auto x = static_cast<float>(random.below(17)) - 8.0f;
+    const auto y = static_cast<float>(random.below(17)) - 8.0f;
+    return Vec3(x, y, tilted ? -x - y : 0.0f);
+  };
+  for (int i = 0; i < 60; ++i) {
+    const Vec3 a = corner(), b = corner(), c = corner();
+    mesh.append(make_triangle(a, b, c));
+    if (i % 4 == 0) mesh.append(make_triangle(a, c, b));
+  }
+  return mesh;
+}
+
+// Every triangle twice, its vertices a digit apart.
+TestMesh almost_twice(const TestMesh& mesh) {
+  TestMesh other = mesh;
+  TestRandom random(22);
+  for (Vec3& vertex : other.vertices) {
+    const auto axis = static_cast<int>(random.below(3));
+    vertex[axis] = std::nextafter(vertex[axis], random.below(2) == 0 ? 9.0f : -9.0f);
+  }
+  return joined(mesh, other);
+}
+
 // A triangle on a cell face, on a cell edge and at a corner of every kind: integer coordinates in an integer grid.
 TestMesh integer_lattice() {
   TestMesh mesh;
@@ -152,6 +180,8 @@ std::vector<SceneCase> make_cases() {
        look({0, 2e-38f, 3e-38f}, {0, 0, 0})},
       {"scale_1e35", [] { return moved(make_torus(32, 16, 1.0f, 0.4f), 1e35f, {}); },
        look({0, 2e35f, 3e35f}, {0, 0, 0})},
+      {"scale_1e33_far", [] { return moved(make_torus(16, 8, 1.0f, 0.4f), 1e33f, {}); },
+       look({7e35f, 5e35f, 8e35f}, {0, 0, 0}, 1.5e-3f)},
       {"grazing_1e35", [] { return moved(make_torus(16, 8, 1.0f, 0.4f), 1e35f, {}); },
        look({-1e29f, 0, -2e35f}, {0, 0, 3e35f}), 33, 33},
       {"flat_field", [] { return make_height_field(12, 0.0f, 1); }, look({0.5f, 1, 2}, {0, 0, 0})},
@@ -170,6 +200,15 @@ std::vector<SceneCase> make_cases() {
        look({0, 0, 3}, {0, 0, 0})},
       {"identical_spheres", [] { return repeated(make_sphere(12, 16, 1.0f), 3); }, look({1, 1, 4}, {0, 0, 0})},
       {"coplanar_stack", coplanar_stack, look({0, 0, 3}, {0, 0, 0})},
+      {"overlapping_in_z", [] { return overlapping_in_a_plane(false); }, look({3, 4, 30}, {0, 0, 0}, 0.4f)},
+      {"overlapping_tilted", [] { return overlapping_in_a_plane(true); }, look({20, 30, 12}, {0, 0, 0}, 0.4f)},
+      {"almost_twice", [soup] { return almost_twice(soup()); }, look({2, 2, 4}, {0, 0, 0})},
+      {"twice_and_turned", [soup] {
+         TestMesh turned = soup();
+         for (UVec3& triangle : turned.triangles) triangle = UVec3(triangle.z, triangle.y, triangle.x);
+         return joined(turned, soup());
+       },
+       look({2, 2, 4}, {0, 0, 0})},
       {"degenerate_in_front", with_degenerate_triangles, look({0, 0, 4}, {0, 0, 0})},
       {"everything_in_one_cell", soup, look({2, 2, 4}, {0, 0, 0}), 50, 37, grid_of(1e-6f, 6)},
       {"many_cells", soup, look({2, 2, 4}, {0, 0, 0}), 50, 37, grid_of(200.0f, 6)},
@@ -223,6 +262,51 @@ INSTANTIATE_TEST_SUITE_P(Cases, SmallScenesTest, testing::Range<std::size_t>(0, 
                            for (char& letter : name) letter = letter == '-' ? 'm' : letter;
                            return name;
                          });
+
+// Who asks for no distances gets estimates where these decide: not a pixel may tell.
+TEST_P(SmallScenesTest, WithoutDepthThePictureIsTheSame) {
+  const SceneCase c = make_cases()[GetParam()];
+  const TestMesh mesh = c.make();
+  SceneInMemory scene(mesh.view(), c.grid);
+  ASSERT_EQ(scene.status(), Status::kOk);
+  FrameSettings settings = settings_of(c);
+  settings.shading = Shading::kSimple;
+  const RenderedFrame expected = scene.render(settings, {});
+  ASSERT_EQ(expected.result.status, Status::kOk);
+  for (const std::uint32_t packet_width : {8u, 16u, 32u}) {
+    for (const PlaneSet planes : {PlaneSet::kAll, PlaneSet::kColorAndIds}) {
+      sim::ChipOptions chip;
+      chip.packet_width = packet_width;
+      chip.lanes = packet_width == 16 ? sim::widest_lanes() : 4;
+      if (packet_width > 8) settings.techniques |= kUseSubpackets;
+      const RenderedFrame rendered = scene.render(settings, chip, planes);
+      ASSERT_EQ(rendered.result.status, Status::kOk) << packet_width;
+      ASSERT_EQ(rendered.planes.depth.empty(), planes != PlaneSet::kAll);
+      EXPECT_EQ(rendered.planes.ids, expected.planes.ids) << packet_width;
+      EXPECT_EQ(rendered.planes.color, expected.planes.color) << packet_width;
+    }
+  }
+}
+
+TEST(SmallScenes, WithoutDepthHardlyADistanceIsExact) {
+  const TestMesh mesh = joined(make_torus(60, 30, 1.0f, 0.35f), make_random_soup(800, 0.15f, 3));
+  SceneInMemory scene(mesh.view(), {});
+  FrameSettings settings;
+  settings.camera = look({1.2f, 1.5f, 2.5f}, {0, 0, 0});
+  settings.width = settings.height = 128;
+  for (const std::uint32_t packet_width : {8u, 32u}) {
+    sim::ChipOptions chip;
+    chip.packet_width = packet_width;
+    if (packet_width > 8) settings.techniques |= kUseSubpackets;
+    const auto exact = static_cast<std::size_t>(Work::kHitHalf);
+    const RenderedFrame with = scene.render(settings, chip), without = scene.render(settings, chip, PlaneSet::kColor);
+    ASSERT_EQ(with.result.status, Status::kOk);
+    ASSERT_EQ(without.result.status, Status::kOk);
+    EXPECT_EQ(with.planes.color, without.planes.color);
+    EXPECT_GT(with.result.work[exact], 4000u) << packet_width;
+    EXPECT_LT(without.result.work[exact], with.result.work[exact] / 50) << packet_width;
+  }
+}
 
 // Scenes, cameras and grids drawn by a seed; a failure names it.
 TEST(RandomSmallScenes, EveryPixelEqualsTheTruth) {

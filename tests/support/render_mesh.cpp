@@ -73,13 +73,14 @@ SceneInMemory::SceneInMemory(const MeshView& mesh, const GridParameters& paramet
 }
 
 PreparedFrame::PreparedFrame(sim::SimMemory* memory, const SceneImageView& image, MainAddress image_address,
-                             FrameSettings settings, const sim::ChipOptions& chip, bool all_planes)
+                             FrameSettings settings, const sim::ChipOptions& chip, PlaneSet planes)
     : memory_(memory), mark_(memory->used_bytes()) {
   settings.tile_width = tile_width_of(settings, chip);
   const std::uint64_t plane_bytes = output_plane_bytes(settings.width, settings.height, settings.tile_width);
   const auto color = memory_->allocate(plane_bytes);
-  const auto depth = memory_->allocate(all_planes ? plane_bytes : kLineBytes);
-  const auto ids = memory_->allocate(all_planes ? plane_bytes : kLineBytes);
+  const bool has_depth = planes == PlaneSet::kAll, has_ids = planes != PlaneSet::kColor;
+  const auto depth = memory_->allocate(has_depth ? plane_bytes : kLineBytes);
+  const auto ids = memory_->allocate(has_ids ? plane_bytes : kLineBytes);
   const auto record = memory_->allocate(sizeof(FrameRecord));
   if (!color || !depth || !ids || !record) {
     status_ = Status::kMemoryTooSmall;
@@ -88,9 +89,11 @@ PreparedFrame::PreparedFrame(sim::SimMemory* memory, const SceneImageView& image
   color_ = color->bytes;
   settings.color = color->address;
   settings.depth = settings.ids = MainAddress{};
-  if (all_planes) {
+  if (has_depth) {
     depth_ = depth->bytes;
     settings.depth = depth->address;
+  }
+  if (has_ids) {
     ids_ = ids->bytes;
     settings.ids = ids->address;
   }
@@ -119,13 +122,13 @@ Planes PreparedFrame::planes() const {
   return planes;
 }
 
-PreparedFrame SceneInMemory::prepare(const FrameSettings& settings, const sim::ChipOptions& chip, bool all_planes) {
-  return {memory_.get(), view_, image_address_, settings, chip, all_planes};
+PreparedFrame SceneInMemory::prepare(const FrameSettings& settings, const sim::ChipOptions& chip, PlaneSet planes) {
+  return {memory_.get(), view_, image_address_, settings, chip, planes};
 }
 
-RenderedFrame SceneInMemory::render(const FrameSettings& settings, const sim::ChipOptions& chip) {
+RenderedFrame SceneInMemory::render(const FrameSettings& settings, const sim::ChipOptions& chip, PlaneSet planes) {
   RenderedFrame rendered;
-  PreparedFrame frame = prepare(settings, chip);
+  PreparedFrame frame = prepare(settings, chip, planes);
   rendered.result.status = frame.status();
   rendered.frame = frame.record();
   if (frame.status() != Status::kOk) return rendered;

@@ -27,6 +27,9 @@ struct Planes {
   friend bool operator==(const Planes&, const Planes&) = default;
 };
 
+/// Which planes a frame has. Without depth, distances are estimated where that decides.
+enum class PlaneSet : std::uint8_t { kColor, kColorAndIds, kAll };
+
 /// What rendering a frame gave.
 struct RenderedFrame {
   sim::ChipResult result;
@@ -45,7 +48,7 @@ class SceneInMemory;
 class PreparedFrame {
  public:
   PreparedFrame(sim::SimMemory* memory, const SceneImageView& image, MainAddress image_address, FrameSettings settings,
-                const sim::ChipOptions& chip, bool all_planes);
+                const sim::ChipOptions& chip, PlaneSet planes);
   ~PreparedFrame();
   PreparedFrame(const PreparedFrame&) = delete;
   PreparedFrame& operator=(const PreparedFrame&) = delete;
@@ -56,7 +59,7 @@ class PreparedFrame {
   /// Renders into the planes. Precondition: status() is kOk; `chip` has the store it was prepared for.
   [[nodiscard]] sim::ChipResult render(const sim::ChipOptions& chip);
 
-  /// @returns what the last render left; depth and ids are empty unless all planes were asked for.
+  /// @returns what the last render left; planes that were not asked for are empty.
   [[nodiscard]] Planes planes() const;
 
  private:
@@ -81,12 +84,12 @@ class SceneInMemory {
   [[nodiscard]] const GridNeed& need() const { return need_; }
 
   /// Sets up a frame. Tile width and output addresses are set here, whatever `settings` says.
-  /// @param all_planes  depth and ids beside colour.
   [[nodiscard]] PreparedFrame prepare(const FrameSettings& settings, const sim::ChipOptions& chip,
-                                      bool all_planes = true);
+                                      PlaneSet planes = PlaneSet::kAll);
 
-  /// Renders one frame with all planes.
-  [[nodiscard]] RenderedFrame render(const FrameSettings& settings, const sim::ChipOptions& chip);
+  /// Renders one frame.
+  [[nodiscard]] RenderedFrame render(const FrameSettings& settings, const sim::ChipOptions& chip,
+                                     PlaneSet planes = PlaneSet::kAll);
 
  private:
   Status status_ = Status::kOk;

@@ -91,9 +91,9 @@ inline constexpr float kSurelyBehind = 1.0f + 3.0f * kEstimateError;
 
 /// From points, less the origin, to pixels of a packet: pixel_box.h.
 struct PixelProjection {
-  float rows[3][3];      ///< depth, column times depth, row times depth
+  float rows[3][3];      ///< depth, column times depth, row times depth, all three times one factor
   float margin;          ///< by how many pixels a place may be off
-  float most_per_depth;  ///< a point's largest component per depth, up to which the margin holds
+  float most_per_depth;  ///< a point's largest component per such depth, up to which the margin holds; 0: for none
 };
 
 /// Width x Width rays, SoA. World space, directions not normalised.

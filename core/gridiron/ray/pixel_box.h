@@ -24,6 +24,9 @@ namespace gridiron {
 /// and sums carry 4 e |P|1 |a|max in the numerator, 4 e |W|1 |a|max in the denominator; where |a|max < 2 D W . a, that
 /// is 8 e D |P|1 in all, and of the quotient itself 8 e D |W|1 + 3 e. The latter on quotients up to 64; those beyond
 /// stay beyond 32 as long as it is below a quarter. Sum: 16 e D |P|1 + 768 e D |W|1 + 192 e. Twice that is charged.
+///
+/// Quotients are the same for rows times any factor; with that of the largest sum of magnitudes in a row 1, no
+/// coordinate up to 2^121 can overflow. Where the margin would be a pixel or more, nothing is sure about any point.
 template <class PacketType>
 void set_up_projection(PacketType& packet, float dir_bound) {
   double first[3], step_x[3], step_y[3];
@@ -41,25 +44,29 @@ void set_up_projection(PacketType& packet, float dir_bound) {
     rows[2][i] = first[j] * step_x[k] - first[k] * step_x[j];
   }
   const double det = first[0] * rows[0][0] + first[1] * rows[0][1] + first[2] * rows[0][2];
-  PixelProjection& projection = packet.projection;
-  float size[3] = {0.0f, 0.0f, 0.0f};
+  double size[3];
   for (int row = 0; row < 3; ++row) {
-    for (int axis = 0; axis < 3; ++axis) {
-      projection.rows[row][axis] = static_cast<float>(rows[row][axis] / det);
-      size[row] += magnitude(projection.rows[row][axis]);
-    }
+    size[row] = magnitude(rows[row][0]) + magnitude(rows[row][1]) + magnitude(rows[row][2]);
   }
-  const float along = size[1] > size[2] ? size[1] : size[2];
-  constexpr float kUnit = 0x1p-23f;
-  projection.margin = 32.0f * kUnit * (dir_bound * along) + 1536.0f * kUnit * (dir_bound * size[0]) + 400.0f * kUnit;
-  projection.most_per_depth = 2.0f * dir_bound;
+  const double along = size[1] > size[2] ? size[1] : size[2];
+  const double largest = size[0] > along ? size[0] : along;
+  const double bound_per_det = double{dir_bound} / magnitude(det);
+  constexpr double kUnit = 0x1p-23;
+  const double margin = kUnit * (bound_per_det * (32.0 * along + 1536.0 * size[0]) + 400.0);
   // What doubles lose in a matrix that is nearly singular must not count.
   double scale = 1.0;
   for (const double* const vector : {first, step_x, step_y}) {
     scale *= magnitude(vector[0]) + magnitude(vector[1]) + magnitude(vector[2]);
   }
-  const bool is_good = projection.margin < 1.0f && magnitude(det) > 0x1p-24 * scale && dir_bound < 0x1p60f;
-  if (!is_good) projection.margin = kInfinity;
+  PixelProjection& projection = packet.projection;
+  projection = PixelProjection{};
+  if (!(margin < 1.0 && magnitude(det) > 0x1p-24 * scale)) return;
+  const double scaled = (det < 0.0 ? -1.0 : 1.0) / largest;
+  for (int row = 0; row < 3; ++row) {
+    for (int axis = 0; axis < 3; ++axis) projection.rows[row][axis] = static_cast<float>(rows[row][axis] * scaled);
+  }
+  projection.margin = static_cast<float>(margin);
+  projection.most_per_depth = static_cast<float>(2.0 * bound_per_det * largest);
 }
 
 /// Boxes of L::kCount triangles, in pixels of the packet, one lane each: from `first` to before `end`.
@@ -127,8 +134,8 @@ GRIDIRON_INLINE void find_pixel_boxes(const PacketType& packet, const VertexTria
     column[i] = along(1) * inverse;
     row[i] = along(2) * inverse;
     const Float size = L::max(L::max(L::abs(x), L::abs(y)), L::abs(z));
-    // Below 2^-60 products may lose too much. NaNs are not sure.
-    is_sure = is_sure & (size < depth * Float(projection.most_per_depth)) & (depth > Float(0x1p-60f));
+    // Below 2^-80 products may lose too much. NaNs are not sure.
+    is_sure = is_sure & (size < depth * Float(projection.most_per_depth)) & (depth > Float(0x1p-80f));
   }
   const auto range_of = [&](const Float* place, std::uint32_t* first, std::uint32_t* end) GRIDIRON_INLINE_LAMBDA {
     const Float margin(projection.margin);

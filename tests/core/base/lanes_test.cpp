@@ -3,6 +3,7 @@
 #include <gridiron/base/lanes.h>
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <array>
 #include <bit>
 #include <cmath>
@@ -223,6 +224,107 @@ TYPED_TEST(LanesTest, HorizontalExtremesAreThoseOfAllLanes) {
     }
     EXPECT_EQ(TypeParam::horizontal_min(this->load(values)), least);
     EXPECT_EQ(TypeParam::horizontal_max(this->load(values)), largest);
+  });
+}
+
+// Words that are hard for signed and unsigned alike, one of them more often.
+std::uint32_t random_word(TestRandom& random) {
+  constexpr std::uint32_t kWords[] = {0, 1, 0x7FFFFFFF, 0x80000000, 0xFFFFFFFF, 0x3F800000, 0x7FC00000, 0xFFC00001};
+  return random.below(3) == 0 ? static_cast<std::uint32_t>(random.next()) : kWords[random.below(8)];
+}
+
+template <std::size_t kCount>
+struct alignas(64) Words {
+  std::uint32_t values[kCount];
+};
+
+template <std::size_t kCount>
+Words<kCount> random_words(TestRandom& random) {
+  Words<kCount> words;
+  for (std::uint32_t& word : words.values) word = random_word(random);
+  return words;
+}
+
+TYPED_TEST(LanesTest, WordsAreThoseOfEachLane) {
+  using Int = typename TypeParam::Int;
+  constexpr std::size_t kLanes = TypeParam::kCount;
+  for_each_seed(2000, [&](std::uint64_t seed) {
+    TestRandom random(seed);
+    const auto a = random_words<kLanes>(random), b = random_words<kLanes>(random);
+    const std::uint32_t word = random_word(random);
+    const Int first = Int::load(a.values), second = Int::load(b.values);
+    const int shift = static_cast<int>(random.below(32));
+    Words<kLanes> copied{}, joined{}, shifted{}, splat{};
+    first.store(copied.values);
+    (first | second).store(joined.values);
+    (first << shift).store(shifted.values);
+    Int::splat(word).store(splat.values);
+    const std::uint32_t less = (first < second).bits();
+    const std::uint32_t equal = TypeParam::equal(word, a.values).bits();
+    const auto mask = static_cast<std::uint32_t>(random.next()) & TypeParam::kAllBits;
+    Words<kLanes> chosen{}, where = a;
+    TypeParam::select(TypeParam::mask_from_bits(mask), first, second).store(chosen.values);
+    TypeParam::store_where(TypeParam::mask_from_bits(mask), word, where.values);
+    ASSERT_EQ((less | equal) & ~TypeParam::kAllBits, 0u);
+    for (std::size_t i = 0; i < kLanes; ++i) {
+      const bool is_set = (mask >> i & 1u) != 0;
+      ASSERT_EQ(first[static_cast<int>(i)], static_cast<std::int32_t>(a.values[i])) << "seed " << seed;
+      ASSERT_EQ(copied.values[i], a.values[i]) << "seed " << seed;
+      ASSERT_EQ(joined.values[i], a.values[i] | b.values[i]) << "seed " << seed;
+      ASSERT_EQ(shifted.values[i], a.values[i] << shift) << "seed " << seed;
+      ASSERT_EQ(splat.values[i], word) << "seed " << seed;
+      ASSERT_EQ((less >> i & 1u) != 0, static_cast<std::int32_t>(a.values[i]) < static_cast<std::int32_t>(b.values[i]))
+          << "seed " << seed;
+      ASSERT_EQ((equal >> i & 1u) != 0, a.values[i] == word) << "seed " << seed;
+      ASSERT_EQ(chosen.values[i], is_set ? a.values[i] : b.values[i]) << "seed " << seed;
+      ASSERT_EQ(where.values[i], is_set ? word : a.values[i]) << "seed " << seed;
+    }
+  });
+}
+
+TYPED_TEST(LanesTest, QuadsAreStoredAStrideApart) {
+  constexpr std::uint32_t kLanes = TypeParam::kCount;
+  constexpr std::uint32_t kUntouched = 0xA5A5A5A5u;
+  TestRandom random(7);
+  for (const std::uint32_t stride : {4u, 8u, 32u, 64u}) {
+    const auto words = random_words<kLanes>(random);
+    Words<256> target;
+    std::ranges::fill(target.values, kUntouched);
+    TypeParam::store_quads(TypeParam::Int::load(words.values), target.values + 4, stride);
+    struct alignas(64) {
+      float values[256];
+    } floats;
+    std::ranges::fill(floats.values, std::bit_cast<float>(kUntouched));
+    typename TypeParam::FloatVector lanes;
+    for (std::uint32_t i = 0; i < kLanes; ++i) lanes[i] = std::bit_cast<float>(words.values[i]);
+    TypeParam::store_quads(typename TypeParam::Float(lanes), floats.values + 4, stride);
+    std::vector<std::uint32_t> expected(256, kUntouched);
+    for (std::uint32_t i = 0; i < kLanes; ++i) expected[4 + i / 4 * stride + i % 4] = words.values[i];
+    for (std::size_t i = 0; i < 256; ++i) {
+      ASSERT_EQ(target.values[i], expected[i]) << "word " << i << ", stride " << stride;
+      ASSERT_EQ(std::bit_cast<std::uint32_t>(floats.values[i]), expected[i]) << "float " << i << ", stride " << stride;
+    }
+  }
+}
+
+TYPED_TEST(LanesTest, SquareRootsAndWholePartsAreThoseOfEachLane) {
+  this->expect_same([](auto a, auto) { return TypeParam::square_root(a); }, [](float a, float) { return std::sqrt(a); },
+                    "square root");
+  for_each_seed(2000, [&](std::uint64_t seed) {
+    TestRandom random(seed);
+    typename TestFixture::Array values, roots;
+    for (float& value : values) value = std::ldexp(random.unit(), static_cast<int>(random.below(250)) - 125);
+    roots = this->store(TypeParam::square_root(this->load(values)));
+    for (std::size_t i = 0; i < values.size(); ++i) {
+      // A float's square root in double is precise enough to be rounded a second time (2 * 24 + 2 <= 53 bits).
+      ASSERT_TRUE(same(roots[i], static_cast<float>(std::sqrt(double{values[i]})))) << "seed " << seed;
+    }
+    for (float& value : values) value = random.between(-1, 1) * std::ldexp(1.0f, static_cast<int>(random.below(31)));
+    const auto whole = TypeParam::truncate(this->load(values));
+    for (std::size_t i = 0; i < values.size(); ++i) {
+      ASSERT_EQ(whole[static_cast<int>(i)], static_cast<std::int32_t>(values[i])) << "seed " << seed;
+      ASSERT_EQ(TypeParam::lane(this->load(values), static_cast<std::uint32_t>(i)), values[i]) << "seed " << seed;
+    }
   });
 }
 

@@ -34,6 +34,7 @@ struct TinyLayout {
   static constexpr std::uint32_t kTrianglesPerBuffer = 3;
   static constexpr std::uint32_t kMaxTriangleDepth = 5;
   static constexpr std::uint32_t kMaxOutputDepth = 3;
+  static constexpr std::uint32_t kRecentTriangles = 2;
 };
 static_assert(kFitsArena<TinyLayout>);
 

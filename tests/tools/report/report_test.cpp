@@ -116,13 +116,15 @@ TEST(Report, HasExactlyTheDocumentedKeysInOrder) {
                                        "cores[].dma.bytes_out",
                                        "cores[].dma.line_bytes_in",
                                        "cores[].dma.line_bytes_out"};
-  for (const char* name : {"tile_start", "ray_generated", "packet_start", "pass_group", "macro_slice_step",
-                           "macro_cell_step", "macro_cell_visit", "slice_step", "cell_step", "cell_visit",
-                           "triangle_batch", "mailbox_probe", "cull_test", "triangle_setup", "subpacket_setup",
-                           "subpacket_group", "group_test_standard", "group_test_paper", "hit_group",
-                           "hit_group_paper", "hit_setup", "double_sign", "exact_sign", "exact_distance",
-                           "reach_group", "shaded_group", "shaded_simple_group", "footprint_group", "row_group",
-                           "far_setup", "far_group", "hit_half", "get_issue", "put_issue", "wait"}) {
+  for (const char* name :
+       {"tile_start",       "ray_generated",   "packet_start",     "pass_group",          "pass_square",
+        "macro_slice_step", "macro_cell_step", "macro_cell_visit", "slice_step",          "cell_step",
+        "cell_visit",       "triangle_batch",  "mailbox_probe",    "cull_test",           "pixel_box",
+        "triangle_setup",   "subpacket_setup", "subpacket_group",  "group_test_standard", "group_test_paper",
+        "hit_group",        "hit_subpacket",   "hit_group_paper",  "hit_setup",           "double_sign",
+        "exact_sign",       "exact_distance",  "reach_group",      "shaded_group",        "shaded_simple_group",
+        "depth_group",      "id_group",        "footprint_group",  "row_group",           "estimate_setup",
+        "normal_setup",     "hit_half",        "get_issue",        "put_issue",           "wait"}) {
     expected.push_back(std::string("work.") + name);
   }
   for (const char* path : {"effects.called_for[]", "effects.rays.primary", "local_store.arena_bytes",
