@@ -173,8 +173,8 @@ Writer plan_table1(Plan& plan, const Stage& stage) {
                    bvh_build.text(2) + "; traversing the grid with " + grid_walk.text(2) +
                    ", traversing the hierarchy with " + bvh_walk.text(2) +
                    ". The printed growth is that of one ray. A packet also visits what its other rays need, the more "
-                   "the narrower cells and boxes become beside it; how much that is shows in two configurations of one "
-                   "grid, reference with packets of " +
+                   "the narrower cells and boxes become beside it; how much that is shows in two configurations, "
+                   "reference with packets of " +
                    packet_words("reference") + " and best with " + packet_words("best") +
                    ". Skipping what is empty and stopping behind the last hit take steps away. The fits are "
                    "least squares of the logarithms; they hold for this mesh and this range only, and r squared tells "

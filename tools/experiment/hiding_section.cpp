@@ -314,9 +314,14 @@ Writer plan_best(Plan& plan, const Stage& stage) {
     }
     book.section("best", "Configuration best against the reference");
     book.paragraph(
-        "Configuration best is the same grid and the same exact test. It traverses the grid once per tile instead of "
-        "once per 8x8 packet, so that what was fetched serves 1,024 rays, culls by subpackets of 4x4 rays, and "
-        "prefetches four cell blocks and eight triangle buffers. On six cores it renders " +
+        "Configuration best has the same exact test and a coarser grid. It traverses the grid once per tile instead of "
+        "once per 8x8 packet, so that what was fetched serves 1,024 rays, culls by the pixels that a triangle can "
+        "cover and by subpackets of 4x4 rays, and keeps four cell blocks and three triangle buffers in rotation. "
+        "Packet and tile size, lambda, width of macrocells and depths are chosen by the sweeps below: as it tests a "
+        "triangle cheaply and walks for 1,024 rays at once, large cells cost it little, and one cell per triangle needs "
+        "less memory, fewer transfers and a shorter build than four; two triangle buffers hide nearly all waiting, a "
+        "third some of the rest, and more of them fetch what is not used. Records are the reference's, 48 bytes a "
+        "triangle and 8 a cell, and a cell's triangles come in one run. On six cores it renders " +
         ratios.text(2) + " times the frames of the reference, waits " + waits.percent(2) + " of its cycles, and " +
         gone.percent(1) + " of the reference's single-buffered waiting (in core cycles) is gone. " +
         (all_same ? "All three runs of every row render the same picture, pixel for pixel."

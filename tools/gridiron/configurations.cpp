@@ -18,7 +18,7 @@ constexpr Configuration kConfigurations[] = {
     {.name = "deep", .description = "the reference system, prefetching 4 cell blocks and 8 triangle buffers",
      .lambda = 4.0f, .macro_width = 6, .packet_width = 8,
      .depths = {.output = 2, .macro = 4, .triangle = 8}, .techniques = kReferenceTechniques},
-    {.name = "best", .description = "one traversal per tile for all its rays, culling by subpackets, deep prefetch",
+    {.name = "best", .description = "one traversal per tile for all its rays, a coarse grid, culling by pixels",
      .lambda = 1.0f, .macro_width = 4, .packet_width = 32,
      .depths = {.output = 2, .macro = 4, .triangle = 3},
      .techniques = kUseMailbox | kUseEmptySkip | kUseSubpackets},

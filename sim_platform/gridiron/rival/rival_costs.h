@@ -13,8 +13,8 @@ namespace gridiron::rival {
 /// By kind of work of the rival.
 inline constexpr std::array<sim::WorkCost, kRivalWorkCount> kRivalCosts = {{
     //  cycles    least     most     even  doubles      odd branches   misses
-    {  308.0,   202.1,   346.5,   87.61,    0.00,   80.36,   24.89,    6.36},  // tile_start
-    {  171.8,   154.0,   288.2,  139.50,    0.00,  133.79,    2.00,    0.81},  // packet_start
+    {  308.1,   202.1,   346.4,   87.61,    0.00,   80.36,   24.89,    6.36},  // tile_start
+    {  171.5,   154.0,   288.0,  139.50,    0.00,  133.79,    2.00,    0.81},  // packet_start
     {   46.2,    54.0,    90.0,   36.00,    0.00,   54.00,    0.00,    0.00},  // mixed_start
     {  121.2,   111.5,   149.4,  110.00,    0.00,   37.08,    1.04,    0.08},  // node_step
     {  168.9,   159.4,   211.6,  158.00,    0.00,   51.56,    1.04,    0.08},  // mixed_node_step
