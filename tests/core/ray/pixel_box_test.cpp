@@ -50,7 +50,7 @@ VertexTriangle make_triangle(TestRandom& random, const PacketType& packet) {
   const double size = std::ldexp(double{random.between(1, 2)}, static_cast<int>(random.below(12)) - 5);
   const std::uint32_t shape = random.below(9);
   const std::uint32_t far_axis = random.below(2);
-  const double far = std::ldexp(1.0, 4 + static_cast<int>(random.below(28)));
+  const double far = std::ldexp(1.0, 16 + static_cast<int>(random.below(10)));
   const double depth = random.below(4) == 0 ? std::ldexp(1.0, static_cast<int>(random.below(60)) - 30)
                                             : double{random.between(0.5f, 8.0f)};
   Vec3 corners[3];
