@@ -243,7 +243,8 @@ struct Lanes {
       return Float(mask.v ? a.v : b.v);
   }
   [[nodiscard]] static GRIDIRON_INLINE Int select(Mask mask, Int a, Int b) {
-    const Float chosen = select(mask, Float(reinterpret_cast<FloatVector>(a.v)), Float(reinterpret_cast<FloatVector>(b.v)));
+    const Float chosen =
+        select(mask, Float(reinterpret_cast<FloatVector>(a.v)), Float(reinterpret_cast<FloatVector>(b.v)));
     return {reinterpret_cast<IntVector>(chosen.v)};
   }
   /// Stores `value` in the lanes of the mask. @param target  W words, aligned to 4 * W bytes.

@@ -129,7 +129,7 @@ struct HitSetups {
 
 /// Decides hits that lie too close to those that the rays had: both distances exact, then the least (t, id).
 ///
-/// @param close     lanes. @param distance  of the new hits, exact. @returns the lanes whose new hit is nearer; t of the
+/// @param close  lanes. @param distance  of the new hits, exact. @returns the lanes whose new hit is nearer; t of the
 /// others becomes exact. Where a ray's old triangle is no longer at hand, the ray becomes unsure.
 template <class L, class PacketType>
 [[nodiscard]] std::uint32_t settle_close_hits(PacketType& packet, std::uint32_t base, std::uint32_t close,

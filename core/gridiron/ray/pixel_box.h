@@ -14,16 +14,17 @@ namespace gridiron {
 /// Prepares packet.projection from first_dir, step_x and step_y.
 ///
 /// With F, X, Y these three and det = F . (X x Y), the rows are W = (X x Y) / det, P = (Y x F) / det and
-/// Q = (F x X) / det: the direction F + c X + r Y has W . d = 1, P . d = c, Q . d = r, so that a point a in front of the
-/// origin appears at column P . a / W . a and row Q . a / W . a.
+/// Q = (F x X) / det: the direction F + c X + r Y has W . d = 1, P . d = c, Q . d = r, so that a point a in front of
+/// the origin appears at column P . a / W . a and row Q . a / W . a.
 ///
 /// Errors, e = 2^-23, D = dir_bound, the largest sum of magnitudes that goes into a direction's component. The rows are
 /// rounded from doubles, e of themselves. A direction differs from the linear form by less than 6 e D: P . d is within
-/// 8 e D |P|1 of the column, W . d within 8 e D |W|1 of 1; at columns up to 32 that is 8 e D (|P|1 + 32 |W|1). The place
-/// of a point in the triangle lies between its vertices', as all have W . a > 0. A vertex less the origin, the products
-/// and sums carry 4 e |P|1 |a|max in the numerator, 4 e |W|1 |a|max in the denominator; where |a|max < 2 D W . a, that
-/// is 8 e D |P|1 in all, and of the quotient itself 8 e D |W|1 + 3 e. The latter on quotients up to 64; those beyond
-/// stay beyond 32 as long as it is below a quarter. Sum: 16 e D |P|1 + 768 e D |W|1 + 192 e. Twice that is charged.
+/// 8 e D |P|1 of the column, W . d within 8 e D |W|1 of 1; at columns up to 32 that is 8 e D (|P|1 + 32 |W|1). The
+/// place of a point in the triangle lies between its vertices', as all have W . a > 0. A vertex less the origin, the
+/// products and sums carry 4 e |P|1 |a|max in the numerator, 4 e |W|1 |a|max in the denominator; where
+/// |a|max < 2 D W . a, that is 8 e D |P|1 in all, and of the quotient itself 8 e D |W|1 + 3 e. The latter on quotients
+/// up to 64; those beyond stay beyond 32 as long as it is below a quarter. Sum: 16 e D |P|1 + 768 e D |W|1 + 192 e.
+/// Twice that is charged.
 ///
 /// Quotients are the same for rows times any factor; with that of the largest sum of magnitudes in a row 1, no
 /// coordinate up to 2^121 can overflow. Where the margin would be a pixel or more, nothing is sure about any point.

@@ -27,7 +27,9 @@ struct StoreLayout256K {
   static constexpr std::uint32_t kStackBudgetBytes = 8 * 1024;
   static constexpr std::uint32_t kTileWidth = TileWidthV;
   static constexpr std::uint32_t kPacketWidth = PacketWidthV;
-  static constexpr std::uint32_t kMailboxSlots = PacketWidthV < 16 ? 64 : PacketWidthV == 32 && TileWidthV != 64 ? 1024 : 256;
+  static constexpr std::uint32_t kMailboxSlots = PacketWidthV < 16                        ? 64
+                                                 : PacketWidthV == 32 && TileWidthV != 64 ? 1024
+                                                                                          : 256;
   static constexpr std::uint32_t kRecentTriangles = PacketWidthV == 32 && TileWidthV != 64 ? 256 : 32;
   static constexpr std::uint32_t kTableEntries = 4096;  ///< 131,072 macrocells resident
   static constexpr std::uint32_t kMaxMacroWidth = 8;

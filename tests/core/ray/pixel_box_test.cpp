@@ -48,7 +48,9 @@ VertexTriangle make_triangle(TestRandom& random, const PacketType& packet) {
   constexpr std::uint32_t kWidth = PacketType::kWidth;
   const double center[2] = {random_place(random, kWidth), random_place(random, kWidth)};
   const double size = std::ldexp(double{random.between(1, 2)}, static_cast<int>(random.below(12)) - 5);
-  const std::uint32_t shape = random.below(8);
+  const std::uint32_t shape = random.below(9);
+  const std::uint32_t far_axis = random.below(2);
+  const double far = std::ldexp(1.0, 16 + static_cast<int>(random.below(10)));
   const double depth = random.below(4) == 0 ? std::ldexp(1.0, static_cast<int>(random.below(60)) - 30)
                                             : double{random.between(0.5f, 8.0f)};
   Vec3 corners[3];
@@ -66,10 +68,9 @@ VertexTriangle make_triangle(TestRandom& random, const PacketType& packet) {
     double at = depth;
     if (random.below(2) == 0) at *= double{random.between(0.9f, 1.1f)};
     if (shape == 4) at *= double{random.between(-1, 1)};  // some behind the eye
-    if (shape == 4 && random.below(2) == 0) {             // as good as in the eye's plane, far out
-      const double far = std::ldexp(1.0, 4 + static_cast<int>(random.below(40)));
+    if (shape == 8 && i != 0) {  // across the picture between two points as good as in the eye's plane
       at /= far;
-      for (double& value : place) value *= far;
+      place[far_axis] += (i == 1 ? far : -far) * double{random.between(1, 2)};
     }
     if (shape == 5) at *= std::ldexp(1.0, static_cast<int>(random.below(40)) - 20);  // seen almost edge-on
     corners[i] = point_at(packet, at, place[0], place[1]);
