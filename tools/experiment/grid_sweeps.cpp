@@ -153,8 +153,8 @@ Writer plan_grid_sweeps(Plan& plan, const Stage& stage) {
         "6, 4,096 at 8. Wide macrocells need fewer commands and carry more cells that nobody asks for. Most frames a "
         "second at " +
         best_values(done, widths) +
-        "; the reference uses 6, best 4. A view whose waiting jumps at width 2 has more macrocells than the local store "
-        "holds entries for (131,072), so that parts of their table are fetched again.");
+        "; the reference uses 6, best 4. A view whose waiting jumps at width 2 has more macrocells than the local "
+        "store holds entries for (131,072), so that parts of their table are fetched again.");
     book.figure("sweep_macro_width",
                 step_chart(done, widths,
                            {.title = "Macrocell size",

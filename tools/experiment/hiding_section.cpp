@@ -318,8 +318,9 @@ Writer plan_best(Plan& plan, const Stage& stage) {
         "once per 8x8 packet, so that what was fetched serves 1,024 rays, culls by the pixels that a triangle can "
         "cover and by subpackets of 4x4 rays, and keeps four cell blocks and three triangle buffers in rotation. "
         "Packet and tile size, lambda, width of macrocells and depths are chosen by the sweeps below: as it tests a "
-        "triangle cheaply and walks for 1,024 rays at once, large cells cost it little, and one cell per triangle needs "
-        "less memory, fewer transfers and a shorter build than four; two triangle buffers hide nearly all waiting, a "
+        "triangle cheaply and walks for 1,024 rays at once, large cells cost it little, and one cell per triangle "
+        "needs less memory, fewer transfers and a shorter build than four; two triangle buffers hide nearly all "
+        "waiting, a "
         "third some of the rest, and more of them fetch what is not used. Records are the reference's, 48 bytes a "
         "triangle and 8 a cell, and a cell's triangles come in one run. On six cores it renders " +
         ratios.text(2) + " times the frames of the reference, waits " + waits.percent(2) + " of its cycles, and " +

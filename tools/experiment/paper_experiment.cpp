@@ -119,8 +119,8 @@ PaperResult run_paper_experiment(const PaperExperiment& experiment,
       "Grid ray tracing from small local stores: the evaluation, run again",
       "Every figure below comes from one run of `gridiron experiment paper`: pictures of " + size +
           " rendered by the kernel's real code on the simulated chip " + stage.machine.key +
-          ", their recorded transfers and work replayed on the machine's clock. " +
-          kCostTableWords + " Nothing is fitted to the paper's figures. [P] marks what the paper prints, [D] what "
+          ", their recorded transfers and work replayed on the machine's clock. " + kCostTableWords +
+          " Nothing is fitted to the paper's figures. [P] marks what the paper prints, [D] what "
           "follows from what it prints. Paper: Cho, Kim, Han, Enhancing Visual Rendering on Multicore Accelerators "
           "with Explicitly Managed Memories, Journal of Information Science and Engineering 28 (2012), 895-909.");
   for (const Writer& write : before_host) write(plan, book);

@@ -317,8 +317,8 @@ Writer plan_tile_sweep(Plan& plan, const Stage& stage) {
         "Pixels along a tile's edge, in the store of 256 KB. The reference keeps its packets of 8x8; best traverses "
         "once per tile as far as packets go: they are as wide as the tile up to 32x32, whose 64 subpackets are one "
         "word of bits, so that tiles of 64 pixels take four. Packets of 8x8 have mailboxes of 64 slots, those of "
-        "16x16 and of tiles of 64 pixels 256, the others 1,024. Two tiles of 64 pixels take 96 KB with their planes of colour, distance and triangle; beside them there "
-        "is room for 8 triangle buffers instead of 12; best uses 3.");
+        "16x16 and of tiles of 64 pixels 256, the others 1,024. Two tiles of 64 pixels take 96 KB with their planes of "
+        "colour, distance and triangle; beside them there is room for 8 triangle buffers instead of 12; best uses 3.");
     book.paragraph(
         "Frames over those at 32 pixels, all views: the reference renders " +
         ratio_words(*sweep, done, "reference", fps_of) + "; best " + ratio_words(*sweep, done, "best", fps_of) +

@@ -115,9 +115,9 @@ void add_scene_options(CLI::App& app, SceneArguments& scene, std::string& machin
   std::string built_in;
   for (const sim::MachineProfile& machine : sim::machine_profiles()) built_in += std::string(machine.name) + "|";
   const auto any_name = [](const std::string& text) { return text.empty() ? std::nullopt : std::optional(text); };
-  add_parsed(app, "--machine", machine_name, any_name, "a machine's name or file", built_in + "FILE",
-             "machine profile, built in or a text file as 'gridiron machines NAME' prints (default " + machine_name +
-                 ")");
+  add_parsed(
+      app, "--machine", machine_name, any_name, "a machine's name or file", built_in + "FILE",
+      "machine profile, built in or a text file as 'gridiron machines NAME' prints (default " + machine_name + ")");
   add_choice(app, "--configuration", scene.configuration, sets,
              "named set of parameters (default " + std::string(scene.configuration->name) + ")");
   const auto lambda = [](const std::string& text) {

@@ -87,8 +87,8 @@ struct TextRequest {
   std::string text;
 };
 
-using Command = std::variant<RenderArguments, InfoArguments, PackArguments, MachinesArguments, ExperimentArguments,
-                             TextRequest>;
+using Command =
+    std::variant<RenderArguments, InfoArguments, PackArguments, MachinesArguments, ExperimentArguments, TextRequest>;
 
 /// Reads a machine file that is named. Errors: Failure, kUsage with what is wrong, kBadInput of a machine file.
 [[nodiscard]] Command parse_arguments(int count, const char* const* values);

@@ -21,7 +21,7 @@ struct StoreFacts {
   std::uint32_t triangles_per_buffer = 0;
   std::uint32_t mailbox_slots = 0;
   std::uint32_t resident_macro_cells = 0;  ///< as many as the table tells of without being fetched again
-  std::vector<LocalStoreRegion> regions;  ///< in address order
+  std::vector<LocalStoreRegion> regions;   ///< in address order
 
   [[nodiscard]] std::uint64_t data_bytes() const;
 };

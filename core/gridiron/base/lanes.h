@@ -210,9 +210,13 @@ struct Lanes {
   };
 
   /// Lane `lane` of a.
-  [[nodiscard]] static GRIDIRON_INLINE float lane(Float a, std::uint32_t lane) { return a.v[lane]; }
+  [[nodiscard]] static GRIDIRON_INLINE float lane(Float a, std::uint32_t lane) {
+    return a.v[lane];
+  }
   /// Rounded towards zero. Precondition: the values fit.
-  [[nodiscard]] static GRIDIRON_INLINE Int truncate(Float a) { return {__builtin_convertvector(a.v, IntVector)}; }
+  [[nodiscard]] static GRIDIRON_INLINE Int truncate(Float a) {
+    return {__builtin_convertvector(a.v, IntVector)};
+  }
   /// Stores the low halves of W / 2 integers of 64 bits as the patterns of floats, aligned to 2 * W bytes.
   static GRIDIRON_INLINE void store_patterns(Long patterns, float* target) {
     *reinterpret_cast<HalfIntMemory*>(target) = __builtin_convertvector(patterns.v, HalfIntVector);

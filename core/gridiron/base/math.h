@@ -5,13 +5,12 @@
 #ifndef GLM_FORCE_INLINE
 #define GLM_FORCE_INLINE
 #endif
-#include <glm/vec3.hpp>
-
 #include <cstdint>
+#include <glm/vec3.hpp>
 
 namespace gridiron {
 
-using Vec3 = glm::vec3;    ///< 12 bytes, x y z
+using Vec3 = glm::vec3;  ///< 12 bytes, x y z
 using DVec3 = glm::dvec3;
 using UVec3 = glm::uvec3;
 

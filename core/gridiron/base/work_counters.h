@@ -8,46 +8,46 @@ namespace gridiron {
 
 /// Kinds of work that cost time on a chip. "Group" is one SIMD group of kLaneCount rays.
 enum class Work : std::uint8_t {
-  kTileStart,         ///< tiles begun: parameter reset, output buffer turned over         (initialisation)
-  kRayGenerated,      ///< primary ray groups generated                                     (initialisation)
-  kPacketStart,       ///< packet passes begun: frustum, mailbox reset                      (initialisation)
-  kPassGroup,         ///< ray groups held against a pass's march axis, and their slopes        (initialisation)
-  kPassSquare,        ///< squares of ray groups held against it by their corners              (initialisation)
-  kMacroSliceStep,    ///< macro slices entered
-  kMacroCellStep,     ///< macrocells looked up in the macrocell table
-  kMacroCellVisit,    ///< non-empty macrocells whose cell block was walked
-  kSliceStep,         ///< slices entered inside a visited macrocell
-  kCellStep,          ///< cells looked up inside a visited macrocell
-  kCellVisit,         ///< non-empty cells visited
-  kTriangleBatch,     ///< triangle buffers consumed
-  kMailboxProbe,      ///< mailbox look-ups
-  kCullTest,          ///< corner-ray culling tests, one per triangle
-  kPixelBoxGroup,     ///< SIMD groups of triangles of which the pixels that they can cover were computed
-  kTriangleSetup,     ///< per (packet, triangle) set-ups of the `standard` test
-  kSubpacketSetup,    ///< triangles whose edge functions were made linear in the pixel, for culling subpackets
-  kSubpacketGroup,    ///< SIMD groups of squares or subpackets held against a triangle's edges
-  kGroupTestStandard, ///< (group, triangle) tests, filtered edge functions
-  kGroupTestPaper,    ///< (group, triangle) tests, precomputed projection
-  kHitGroup,          ///< groups with hits to be merged, `standard` test
-  kHitSubpacket,      ///< whole subpackets inside a triangle, held against what they had hit
-  kHitGroupPaper,     ///< groups of which hits were merged, precomputed projection
-  kHitSetup,          ///< triangles for which the distance set-up was computed
-  kDoubleSign,        ///< edge signs the float filter left open, tried in double
-  kExactSign,         ///< signs decided in integers
-  kExactDistance,     ///< distances rounded in integers
-  kReachGroup,        ///< SIMD groups of which the farthest hit was sought, or held against a cell's entry
-  kShadedGroup,       ///< ray groups turned into pixels without shading
-  kShadedSimpleGroup, ///< ray groups shaded by facing ratio
-  kDepthGroup,        ///< ray groups written to the depth plane
-  kIdGroup,           ///< ray groups written to the plane of triangle ids
-  kFootprintGroup,    ///< SIMD groups of squares of subpackets held against a cell
-  kRowGroup,          ///< subpackets whose rows were held against a triangle's edges
-  kEstimateSetup,     ///< triangles for which estimates of distances were set up
-  kNormalSetup,       ///< triangles whose unit normal was computed for shading
-  kHitHalf,           ///< halves of groups of which distances were computed in double
-  kGetIssue,          ///< get commands issued
-  kPutIssue,          ///< put commands issued
-  kWait,              ///< waits
+  kTileStart,          ///< tiles begun: parameter reset, output buffer turned over         (initialisation)
+  kRayGenerated,       ///< primary ray groups generated                                     (initialisation)
+  kPacketStart,        ///< packet passes begun: frustum, mailbox reset                      (initialisation)
+  kPassGroup,          ///< ray groups held against a pass's march axis, and their slopes        (initialisation)
+  kPassSquare,         ///< squares of ray groups held against it by their corners              (initialisation)
+  kMacroSliceStep,     ///< macro slices entered
+  kMacroCellStep,      ///< macrocells looked up in the macrocell table
+  kMacroCellVisit,     ///< non-empty macrocells whose cell block was walked
+  kSliceStep,          ///< slices entered inside a visited macrocell
+  kCellStep,           ///< cells looked up inside a visited macrocell
+  kCellVisit,          ///< non-empty cells visited
+  kTriangleBatch,      ///< triangle buffers consumed
+  kMailboxProbe,       ///< mailbox look-ups
+  kCullTest,           ///< corner-ray culling tests, one per triangle
+  kPixelBoxGroup,      ///< SIMD groups of triangles of which the pixels that they can cover were computed
+  kTriangleSetup,      ///< per (packet, triangle) set-ups of the `standard` test
+  kSubpacketSetup,     ///< triangles whose edge functions were made linear in the pixel, for culling subpackets
+  kSubpacketGroup,     ///< SIMD groups of squares or subpackets held against a triangle's edges
+  kGroupTestStandard,  ///< (group, triangle) tests, filtered edge functions
+  kGroupTestPaper,     ///< (group, triangle) tests, precomputed projection
+  kHitGroup,           ///< groups with hits to be merged, `standard` test
+  kHitSubpacket,       ///< whole subpackets inside a triangle, held against what they had hit
+  kHitGroupPaper,      ///< groups of which hits were merged, precomputed projection
+  kHitSetup,           ///< triangles for which the distance set-up was computed
+  kDoubleSign,         ///< edge signs the float filter left open, tried in double
+  kExactSign,          ///< signs decided in integers
+  kExactDistance,      ///< distances rounded in integers
+  kReachGroup,         ///< SIMD groups of which the farthest hit was sought, or held against a cell's entry
+  kShadedGroup,        ///< ray groups turned into pixels without shading
+  kShadedSimpleGroup,  ///< ray groups shaded by facing ratio
+  kDepthGroup,         ///< ray groups written to the depth plane
+  kIdGroup,            ///< ray groups written to the plane of triangle ids
+  kFootprintGroup,     ///< SIMD groups of squares of subpackets held against a cell
+  kRowGroup,           ///< subpackets whose rows were held against a triangle's edges
+  kEstimateSetup,      ///< triangles for which estimates of distances were set up
+  kNormalSetup,        ///< triangles whose unit normal was computed for shading
+  kHitHalf,            ///< halves of groups of which distances were computed in double
+  kGetIssue,           ///< get commands issued
+  kPutIssue,           ///< put commands issued
+  kWait,               ///< waits
   kCount
 };
 

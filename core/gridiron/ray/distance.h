@@ -189,7 +189,8 @@ template <class L, class PacketType>
   const std::uint32_t behind = (t > old_t * Float(packet.surely_behind)).bits();
   std::uint32_t close = in_front & ~nearer & ~behind;
   if (packet.estimates != 0) {
-    if (close == 0) [[likely]] return nearer;
+    if (close == 0) [[likely]]
+      return nearer;
     return nearer | settle_close_hits<L>(packet, base, close, triangle.triangle_id, distance, work);
   }
   for (; close != 0; close &= close - 1) {
@@ -223,7 +224,7 @@ template <class L, bool kWantFacing, class PacketType>
   Float t = setups.numerator / denominator;
   if (nearer != hit) [[unlikely]] {
     // A hit behind another or behind the origin, or of a triangle that comes again, changes nothing.
-    const auto is_behind = (denominator < -setups.least_denominator) | 
+    const auto is_behind = (denominator < -setups.least_denominator) |
                            (is_close & (setups.numerator > old_numerator * Float(kSurelyBehind)));
     hit &= ~(is_behind | L::equal(triangle.triangle_id, packet.id + base)).bits();
     if (nearer != hit) {

@@ -151,10 +151,9 @@ template <class PacketType>
   const Float error_v(packet.linear_error * axes.v_scale);
   const Float least_march = march - error_k;
   const Float twice = least_march + least_march;
-  const std::uint32_t joining =
-      ((least_march > Float(0.0f)) & (march + error_k <= Float(0.25f * kFloatMax)) &
-       (Four::abs(along_u) + error_u <= twice) & (Four::abs(along_v) + error_v <= twice))
-          .bits();
+  const std::uint32_t joining = ((least_march > Float(0.0f)) & (march + error_k <= Float(0.25f * kFloatMax)) &
+                                 (Four::abs(along_u) + error_u <= twice) & (Four::abs(along_v) + error_v <= twice))
+                                    .bits();
   if (joining != Four::kAllBits) return false;
   const Float inverse = Float(1.0f) / march;
   const Float slope_u = along_u * inverse;
@@ -198,7 +197,11 @@ template <class L, class PacketType>
   const std::uint32_t v = u == 2 ? 0 : u + 1;
   const bool reverse = packet.dir[k][leader] < 0.0f;
 
-  const PassAxes axes{k, u, v, reverse ? -grid.cells_per_unit[k] : grid.cells_per_unit[k], grid.cells_per_unit[u],
+  const PassAxes axes{k,
+                      u,
+                      v,
+                      reverse ? -grid.cells_per_unit[k] : grid.cells_per_unit[k],
+                      grid.cells_per_unit[u],
                       grid.cells_per_unit[v]};
   for (std::uint32_t square = 0; square < PacketType::kSquareCount; ++square) {
     if (!take_whole_square(axes, square, waiting, packet, work)) take_square<L>(axes, square, waiting, packet, work);

@@ -47,8 +47,7 @@ template <class L, bool kWantFacing, class PacketType>
       const std::uint32_t active = packet.active.template group<L>(base);
       if (active == 0 || (kGroupsAreRows && (rows >> group & 1u) == 0)) continue;
       const std::uint32_t hit =
-          is_covered ? active
-                     : lanes_inside<L>(packet, base, active, edges, triangle, batch.orientation[index], work);
+          is_covered ? active : lanes_inside<L>(packet, base, active, edges, triangle, batch.orientation[index], work);
       if (hit == 0) continue;
       if (merge_hits<L, kWantFacing>(packet, base, hit, triangle, setups, work)) {
         changed |= SubpacketSet{1} << subpacket;

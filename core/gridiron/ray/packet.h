@@ -178,7 +178,8 @@ template <class PacketType>
 [[nodiscard]] bool take_unsure_rays(PacketType& packet, float t_far, RaySet<PacketType::kRayCount>& unsure) {
   std::uint32_t any = 0;
   for (std::uint32_t i = 0; i < unsure.kWordCount; ++i) any |= packet.unsure.words[i];
-  if (any == 0) [[likely]] return false;
+  if (any == 0) [[likely]]
+    return false;
   unsure = packet.unsure;
   packet.unsure.clear();
   packet.ask_for_distances(true);

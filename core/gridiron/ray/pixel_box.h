@@ -143,9 +143,8 @@ GRIDIRON_INLINE void find_pixel_boxes(const PacketType& packet, const VertexTria
     const Float low = L::min(L::min(place[0], place[1]), place[2]) - margin;
     const Float high = L::max(L::max(place[0], place[1]), place[2]) + margin;
     constexpr float kWidth = static_cast<float>(PacketType::kWidth);
-    const auto pixel = [](Float value) GRIDIRON_INLINE_LAMBDA {
-      return L::min(L::max(value, Float(0.0f)), Float(kWidth));
-    };
+    const auto pixel = [](Float value)
+                           GRIDIRON_INLINE_LAMBDA { return L::min(L::max(value, Float(0.0f)), Float(kWidth)); };
     // The first pixel not before `low` is the whole part of low + 1, one less where low is whole itself; 1 - 2^-18 ends
     // on a float at every column, so that rounding cannot carry a sum past it.
     const Float first_pixel = L::select(is_sure, pixel(low + Float(1.0f - 0x1p-18f)), Float(0.0f));
@@ -186,8 +185,8 @@ struct PixelBox {
     constexpr std::uint32_t kLast = kSubpacketWidth - 1;
     const SubpacketSet before_end = kSubpacketsBefore.column[(end_column + kLast) / kSubpacketWidth] &
                                     kSubpacketsBefore.row[(end_row + kLast) / kSubpacketWidth];
-    const SubpacketSet before_first = kSubpacketsBefore.column[first_column / kSubpacketWidth] |
-                                      kSubpacketsBefore.row[first_row / kSubpacketWidth];
+    const SubpacketSet before_first =
+        kSubpacketsBefore.column[first_column / kSubpacketWidth] | kSubpacketsBefore.row[first_row / kSubpacketWidth];
     return before_end & ~before_first;
   }
   /// @returns whether these are at most two by two.

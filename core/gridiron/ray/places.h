@@ -33,8 +33,8 @@ struct LanePlaces {
   alignas(16) float corner_column[4];
   alignas(16) float corner_row[4];
 };
-inline constexpr LanePlaces kLanePlaces = {{0, 16, 0, 16}, {0, 0, 16, 16}, {0, 4, 0, 4}, {0, 0, 4, 4}, {0, 1, 2, 3},
-                                          {0, 7, 0, 7}, {0, 0, 7, 7}};
+inline constexpr LanePlaces kLanePlaces = {{0, 16, 0, 16}, {0, 0, 16, 16}, {0, 4, 0, 4}, {0, 0, 4, 4},
+                                           {0, 1, 2, 3},   {0, 7, 0, 7},   {0, 0, 7, 7}};
 
 /// Origins of subpackets in a packet, in pixels, along the Z curve.
 struct SubpacketOrigins {

@@ -43,9 +43,9 @@ template <class L, class PacketType>
   std::uint32_t far_quarters = 0;
   if constexpr (kByQuarters) {
     work.add(Work::kSubpacketGroup);
-    far_quarters = places_outside<L, Four>(batch, index, batch.first_quarter,
-                                           Four::Float::load(kLanePlaces.quarter_column),
-                                           Four::Float::load(kLanePlaces.quarter_row));
+    far_quarters =
+        places_outside<L, Four>(batch, index, batch.first_quarter, Four::Float::load(kLanePlaces.quarter_column),
+                                Four::Float::load(kLanePlaces.quarter_row));
   }
   std::uint32_t squares = 0;
   for (std::uint32_t base = 0; base < kSquares; base += L::kCount) {

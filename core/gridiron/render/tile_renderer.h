@@ -102,7 +102,8 @@ class TileRenderer {
     generate_packet<L>(store_.frame, left, top, store_.packet, waiting, store_.work);
     store_.work.charge_to(Work::kPacketStart);
     GRIDIRON_TRY(trace_rays(waiting));
-    if (!take_unsure_rays(store_.packet, store_.frame.t_far, waiting)) [[likely]] return Status::kOk;
+    if (!take_unsure_rays(store_.packet, store_.frame.t_far, waiting)) [[likely]]
+      return Status::kOk;
     return trace_rays(waiting);
   }
 

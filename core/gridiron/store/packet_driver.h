@@ -155,8 +155,8 @@ class PacketDriver {
     if ((store_.frame.techniques & kUseSubpackets) == 0) return kAllSquares;
     const std::uint32_t open = reaches_.open_squares(frustum_, cell.entry, store_.work);
     if (open == 0) return 0;
-    return open & squares_touching<L>(store_.packet, frustum_, Slab{cell.entry, cell.exit}, cell.u, cell.v,
-                                      store_.work);
+    return open &
+           squares_touching<L>(store_.packet, frustum_, Slab{cell.entry, cell.exit}, cell.u, cell.v, store_.work);
   }
 
   // Waits for the oldest run and tests it, unless every ray has meanwhile hit something in front of it.
@@ -238,10 +238,10 @@ class PacketDriver {
   CellWalk cell_walk_;
   MacroVisit visits_[Layout::kMaxMacroDepth];
   TriangleRun runs_[Layout::kMaxTriangleDepth];
-  CellVisit cell_{};  ///< the cell whose triangles are being fetched, what is left of it
+  CellVisit cell_{};            ///< the cell whose triangles are being fetched, what is left of it
   std::uint32_t touching_ = 0;  ///< squares of subpackets that may touch it
   SubpacketReach<StorePacket> reaches_;
-  float reach_ = 0.0f;  ///< the largest of them
+  float reach_ = 0.0f;    ///< the largest of them
   bool entered_ = false;  ///< the macrocell ring's front has been waited for
   bool walking_ = false;  ///< cell_walk_ has cells left
   bool macro_cells_done_ = false;

@@ -333,8 +333,8 @@ class BvhCore {
         ++in_batch;
       }
       count(RivalWork::kLeafTriangle, in_batch);
-      changed |= intersect_standard_batch<L, kWantFacing>(context.packet, batch, subpackets, in_batch, culling,
-                                                          store_.work);
+      changed |=
+          intersect_standard_batch<L, kWantFacing>(context.packet, batch, subpackets, in_batch, culling, store_.work);
       charge_to(RivalWork::kLeafTriangle);
     }
     if (changed != 0) update_reach(context, static_cast<std::uint32_t>(changed));

@@ -25,8 +25,8 @@ using RenderEntry = Status (*)(LayoutChoice, std::byte*, Core&, MainAddress);
 
 [[nodiscard]] bool host_runs_lanes(std::uint32_t lanes) {
 #if defined(GRIDIRON_SIM_WIDE_LANES)
-  const bool has_avx2 = __builtin_cpu_supports("avx2") != 0 && __builtin_cpu_supports("bmi") != 0 &&
-                        __builtin_cpu_supports("bmi2") != 0;
+  const bool has_avx2 =
+      __builtin_cpu_supports("avx2") != 0 && __builtin_cpu_supports("bmi") != 0 && __builtin_cpu_supports("bmi2") != 0;
   if (lanes == 8) return has_avx2;
   if (lanes == 16) {
     return has_avx2 && __builtin_cpu_supports("avx512f") != 0 && __builtin_cpu_supports("avx512bw") != 0 &&

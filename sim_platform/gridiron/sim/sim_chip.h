@@ -43,23 +43,23 @@ struct LayoutChoice {
 };
 
 enum class Mode : std::uint8_t {
-  kChecked,  ///< every rule checked, destinations poisoned until the wait, work traced
-  kPlain,    ///< plain copies: fast host rendering, no trace, no work totals
+  kChecked,       ///< every rule checked, destinations poisoned until the wait, work traced
+  kPlain,         ///< plain copies: fast host rendering, no trace, no work totals
   kInstrumented,  ///< kChecked, and every load and store of the kernel checked too; 4 lanes, see has_instrumented_mode
 };
 
 struct ChipOptions {
   Mode mode = Mode::kChecked;
-  std::uint32_t threads = 1;       ///< host threads, each one simulated core's worth of claims
-  std::uint32_t lanes = 4;         ///< 4, 8, 16 (8 and 16 where the host has them, else kUnsupportedFrame)
+  std::uint32_t threads = 1;  ///< host threads, each one simulated core's worth of claims
+  std::uint32_t lanes = 4;    ///< 4, 8, 16 (8 and 16 where the host has them, else kUnsupportedFrame)
   StoreSize store = StoreSize::k256KB;
   std::uint32_t packet_width = 8;  ///< rays along a packet's edge; the frame brings its tile width
   Completion completion = Completion::kEarly;
-  std::uint64_t seed = 0;          ///< of Completion::kRandom
-  PlatformLimits limits;           ///< of the simulated platform
-  std::uint64_t fail_transfer = 0; ///< n > 0: the n-th transfer started (over all threads) fails; checked modes only
-  std::optional<std::uint32_t> only_tile;  ///< render this tile alone
-  const std::atomic<bool>* abort = nullptr;             ///< stop between tiles when it becomes true
+  std::uint64_t seed = 0;           ///< of Completion::kRandom
+  PlatformLimits limits;            ///< of the simulated platform
+  std::uint64_t fail_transfer = 0;  ///< n > 0: the n-th transfer started (over all threads) fails; checked modes only
+  std::optional<std::uint32_t> only_tile;                                 ///< render this tile alone
+  const std::atomic<bool>* abort = nullptr;                               ///< stop between tiles when it becomes true
   std::function<void(std::uint32_t done, std::uint32_t total)> progress;  ///< called from any thread, serialised
 };
 
@@ -68,16 +68,16 @@ struct Violation {
   Status rule;
   std::uint32_t core;
   std::uint32_t tile_id;  ///< kNoTile before the first and after the last tile of a core
-  std::string detail;   ///< addresses and sizes, for people
+  std::string detail;     ///< addresses and sizes, for people
 };
 
 struct ChipResult {
   Status status = Status::kOk;
   std::uint32_t failed_core = 0, failed_tile = 0;  ///< meaningful when status is not kOk; lowest tile that failed
   std::vector<Violation> violations;
-  WorkTotals work{};                 ///< over all tiles; the same for any number of threads
-  FrameTrace trace;                  ///< Mode::kChecked only
-  std::uint64_t transfers = 0;       ///< gets + puts issued
+  WorkTotals work{};            ///< over all tiles; the same for any number of threads
+  FrameTrace trace;             ///< Mode::kChecked only
+  std::uint64_t transfers = 0;  ///< gets + puts issued
 };
 
 /// Renders the frame whose FrameRecord lies at `frame` in `memory`. The output lies in `memory` afterwards.

@@ -410,8 +410,8 @@ TYPED_TEST(StandardTest, EstimatesAreAsCloseAsTheySay) {
         const float direction[3] = {packet.dir[0][ray], packet.dir[1][ray], packet.dir[2][ray]};
         const float distance = true_distance(packet.origin, direction, triangle);
         if (!(distance > 0.0f)) continue;
-        const float denominator = estimate.normal[0] * direction[0] + estimate.normal[1] * direction[1] +
-                                  estimate.normal[2] * direction[2];
+        const float denominator =
+            estimate.normal[0] * direction[0] + estimate.normal[1] * direction[1] + estimate.normal[2] * direction[2];
         if (std::fabs(denominator) > estimate.least_denominator) {
           ASSERT_GT(denominator, 0.0f) << "in front, seed " << seed << ", ray " << ray;
         } else {

@@ -1,7 +1,7 @@
 // machines and --machine: profiles that people print, edit and give back. SPDX-License-Identifier: Apache-2.0
+#include <gridiron/sim/work_costs.h>
 #include <gtest/gtest.h>
 
-#include <gridiron/sim/work_costs.h>
 #include <nlohmann/json.hpp>
 
 #include "run_program.h"
