@@ -12,6 +12,8 @@
 
 #define GRIDIRON_INLINE inline __attribute__((always_inline))
 #define GRIDIRON_INLINE_LAMBDA __attribute__((always_inline))
+/// For what several instantiations share: one copy of it, for the sake of the local store.
+#define GRIDIRON_OUTLINE __attribute__((noinline))
 
 namespace gridiron {
 

@@ -171,9 +171,9 @@ template <class L, class PacketType>
 ///
 /// @param open  lanes. @param distance  out, in these lanes. @returns the lanes that are nearer than what they had hit.
 template <class L, class PacketType>
-[[nodiscard]] GRIDIRON_INLINE std::uint32_t settle_hits(PacketType& packet, std::uint32_t base, std::uint32_t open,
-                                                        const VertexTriangle& triangle, HitSetups<L>& setups,
-                                                        float* distance, WorkCounters& work) {
+[[nodiscard]] GRIDIRON_OUTLINE std::uint32_t settle_hits(PacketType& packet, std::uint32_t base, std::uint32_t open,
+                                                         const VertexTriangle& triangle, HitSetups<L>& setups,
+                                                         float* distance, WorkCounters& work) {
   using Float = typename L::Float;
   if (!setups.has_distance) {
     work.add(Work::kHitSetup);
@@ -200,14 +200,15 @@ template <class L, class PacketType>
   return nearer;
 }
 
-/// Merges a triangle's hits into a group of rays: the least (t, id) stays. @returns whether one of them is nearer.
+/// Merges a triangle's hits into a group of rays, all but facing: the least (t, id) stays. @returns those that are
+/// nearer.
 ///
 /// An estimate of the distance decides nearly always; where it cannot, or where packet.estimates is 0 and t has to be
 /// exact, the distance is computed in double.
-template <class L, bool kWantFacing, class PacketType>
-[[nodiscard]] GRIDIRON_INLINE bool merge_hits(PacketType& packet, std::uint32_t base, std::uint32_t hit,
-                                              const VertexTriangle& triangle, HitSetups<L>& setups,
-                                              WorkCounters& work) {
+template <class L, class PacketType>
+[[nodiscard]] GRIDIRON_OUTLINE std::uint32_t merge_distances(PacketType& packet, std::uint32_t base, std::uint32_t hit,
+                                                             const VertexTriangle& triangle, HitSetups<L>& setups,
+                                                             WorkCounters& work) {
   using Float = typename L::Float;
   setups.estimate(packet, triangle, work);
   work.add(Work::kHitGroup);
@@ -235,27 +236,47 @@ template <class L, bool kWantFacing, class PacketType>
       t = L::select(estimated, t, Float::load(distance));
       old_t = Float::load(packet.t + base);  // may have become exact
     }
-    if (nearer == 0) return false;
+    if (nearer == 0) return 0;
   }
   const auto taken = L::mask_from_bits(nearer);
   L::select(taken, t, old_t).store(packet.t + base);
   L::store_where(taken, triangle.triangle_id, packet.id + base);
-  if constexpr (kWantFacing) {
-    setups.find_normal(triangle, work);
-    work.charge_to(Work::kHitGroup);
-    const Float facing =
-        L::abs(setups.unit_normal[0] * d_x + setups.unit_normal[1] * d_y + setups.unit_normal[2] * d_z);
-    L::select(taken, facing, Float::load(packet.facing + base)).store(packet.facing + base);
-  }
-  return true;
+  return nearer;
 }
 
-/// Takes a triangle's hits of a whole subpacket where it is surely the nearest of all its rays.
-/// @returns whether it is; where not, nothing has happened.
+/// @returns the cosines of a group's directions with a triangle's unit normal, times their lengths.
+template <class L, class PacketType>
+[[nodiscard]] GRIDIRON_INLINE typename L::Float facing_of(const PacketType& packet, std::uint32_t base,
+                                                          const HitSetups<L>& setups) {
+  using Float = typename L::Float;
+  return L::abs(setups.unit_normal[0] * Float::load(packet.dir[0] + base) +
+                setups.unit_normal[1] * Float::load(packet.dir[1] + base) +
+                setups.unit_normal[2] * Float::load(packet.dir[2] + base));
+}
+
+/// Merges a triangle's hits into a group of rays: the least (t, id) stays. @returns whether one of them is nearer.
 template <class L, bool kWantFacing, class PacketType>
-[[nodiscard]] GRIDIRON_INLINE bool take_subpacket(PacketType& packet, std::uint32_t first_ray,
-                                                  const VertexTriangle& triangle, HitSetups<L>& setups,
-                                                  WorkCounters& work) {
+[[nodiscard]] GRIDIRON_INLINE bool merge_hits(PacketType& packet, std::uint32_t base, std::uint32_t hit,
+                                              const VertexTriangle& triangle, HitSetups<L>& setups,
+                                              WorkCounters& work) {
+  const std::uint32_t nearer = merge_distances<L>(packet, base, hit, triangle, setups, work);
+  if constexpr (kWantFacing) {
+    if (nearer == 0) return false;
+    using Float = typename L::Float;
+    setups.find_normal(triangle, work);
+    work.charge_to(Work::kHitGroup);
+    L::select(L::mask_from_bits(nearer), facing_of<L>(packet, base, setups), Float::load(packet.facing + base))
+        .store(packet.facing + base);
+  }
+  return nearer != 0;
+}
+
+/// Takes a triangle's hits of a whole subpacket, all but facing, where it is surely the nearest of all its rays.
+/// @returns whether it is; where not, nothing has happened.
+template <class L, class PacketType>
+[[nodiscard]] GRIDIRON_OUTLINE bool take_distances(PacketType& packet, std::uint32_t first_ray,
+                                                   const VertexTriangle& triangle, HitSetups<L>& setups,
+                                                   WorkCounters& work) {
   using Float = typename L::Float;
   constexpr std::uint32_t kGroups = kSubpacketRays / L::kCount;
   setups.estimate(packet, triangle, work);
@@ -272,18 +293,27 @@ template <class L, bool kWantFacing, class PacketType>
                 (setups.numerator < old_numerator * Float(kSurelyNearer));
   }
   if (is_nearer.bits() != L::kAllBits) return false;
-  if constexpr (kWantFacing) setups.find_normal(triangle, work);
-  work.charge_to(Work::kHitSubpacket);
   const typename L::Int id = L::Int::splat(triangle.triangle_id);
   for (std::uint32_t group = 0; group < kGroups; ++group) {
     const std::uint32_t base = first_ray + group * L::kCount;
     (setups.numerator / denominator[group]).store(packet.t + base);
     id.store(packet.id + base);
-    if constexpr (kWantFacing) {
-      const Float facing = L::abs(setups.unit_normal[0] * Float::load(packet.dir[0] + base) +
-                                  setups.unit_normal[1] * Float::load(packet.dir[1] + base) +
-                                  setups.unit_normal[2] * Float::load(packet.dir[2] + base));
-      facing.store(packet.facing + base);
+  }
+  return true;
+}
+
+/// Takes a triangle's hits of a whole subpacket where it is surely the nearest of all its rays.
+/// @returns whether it is; where not, nothing has happened.
+template <class L, bool kWantFacing, class PacketType>
+[[nodiscard]] GRIDIRON_INLINE bool take_subpacket(PacketType& packet, std::uint32_t first_ray,
+                                                  const VertexTriangle& triangle, HitSetups<L>& setups,
+                                                  WorkCounters& work) {
+  if (!take_distances<L>(packet, first_ray, triangle, setups, work)) return false;
+  if constexpr (kWantFacing) {
+    setups.find_normal(triangle, work);
+    work.charge_to(Work::kHitSubpacket);
+    for (std::uint32_t ray = first_ray; ray < first_ray + kSubpacketRays; ray += L::kCount) {
+      facing_of<L>(packet, ray, setups).store(packet.facing + ray);
     }
   }
   return true;

@@ -80,8 +80,8 @@ inline constexpr float kSubpacketErrorFactor = 68.0f * 0x1p-23f;
 ///
 /// @param triangles  EdgeBatch<L>::kTriangles of them; a shorter batch repeats one.
 template <class L, class PacketType>
-GRIDIRON_INLINE void set_up_edges(const PacketType& packet, const VertexTriangle* const* triangles, Culling culling,
-                                  EdgeBatch<L>& batch, WorkCounters& work) {
+GRIDIRON_OUTLINE void set_up_edges(const PacketType& packet, const VertexTriangle* const* triangles, Culling culling,
+                                   EdgeBatch<L>& batch, WorkCounters& work) {
   using Float = typename L::Float;
   constexpr std::uint32_t kTriangles = EdgeBatch<L>::kTriangles;
   // A record's first 36 bytes are x0 y0 z0 x1 | y1 z1 x2 y2 | z2: turn them into one vector per axis.
@@ -176,9 +176,11 @@ GRIDIRON_INLINE void set_up_edges(const PacketType& packet, const VertexTriangle
 ///
 /// @param sure_inside  per edge, the lanes whose float test surely passed on the inside.
 template <class L, class PacketType>
-[[nodiscard]] std::uint32_t settle_open_lanes(const PacketType& packet, std::uint32_t base, std::uint32_t open_bits,
-                                              const std::uint32_t sure_inside[3], const VertexTriangle& triangle,
-                                              int orientation, WorkCounters& work) {
+[[nodiscard]] GRIDIRON_OUTLINE std::uint32_t settle_open_lanes(const PacketType& packet, std::uint32_t base,
+                                                               std::uint32_t open_bits,
+                                                               const std::uint32_t sure_inside[3],
+                                                               const VertexTriangle& triangle, int orientation,
+                                                               WorkCounters& work) {
   std::uint32_t inside = 0;
   for (std::uint32_t rest = open_bits; rest != 0; rest &= rest - 1) {
     const std::uint32_t lane = lowest_bit(rest);

@@ -39,10 +39,10 @@ template <class L>
 
 /// Intersects one projected triangle with the active rays of some subpackets, keeping the least (t, id).
 /// @returns the subpackets of which a ray's hit changed. Errors: none (hot path).
-template <class L, bool kWantFacing, class PacketType>
-[[nodiscard]] GRIDIRON_INLINE SubpacketSet intersect_projection(PacketType& packet, const ProjectionTriangle& triangle,
-                                                                SubpacketSet subpackets, bool use_culling,
-                                                                WorkCounters& work) {
+template <class L, class PacketType>
+[[nodiscard]] GRIDIRON_OUTLINE SubpacketSet intersect_projection(PacketType& packet, const ProjectionTriangle& triangle,
+                                                                 SubpacketSet subpackets, bool use_culling,
+                                                                 bool want_facing, WorkCounters& work) {
   using Float = typename L::Float;
   const std::uint32_t k = triangle.axis_k;
   const std::uint32_t u = k == 2 ? 0 : k + 1;
@@ -89,7 +89,7 @@ template <class L, bool kWantFacing, class PacketType>
       packet.t[ray] = t;
       packet.id[ray] = triangle.triangle_id;
       changed |= subpacket;
-      if constexpr (kWantFacing) {
+      if (want_facing) {
         const float length = square_root(1.0f + triangle.n_u * triangle.n_u + triangle.n_v * triangle.n_v);
         const float cosine = L::lane(hit.denominator, lane) / length;
         packet.facing[ray] = cosine < 0.0f ? -cosine : cosine;

@@ -67,10 +67,10 @@ struct OpenTriangle {
 
 /// Leaves those of 1..L::kCount triangles out that cover no pixel of the subpackets wanted. @returns how many are open.
 template <class L, class PacketType>
-[[nodiscard]] GRIDIRON_INLINE std::uint32_t keep_covering(const PacketType& packet,
-                                                          const VertexTriangle* const* triangles,
-                                                          const SubpacketSet* subpackets, std::uint32_t count,
-                                                          OpenTriangle* open, WorkCounters& work) {
+[[nodiscard]] GRIDIRON_OUTLINE std::uint32_t keep_covering(const PacketType& packet,
+                                                           const VertexTriangle* const* triangles,
+                                                           const SubpacketSet* subpackets, std::uint32_t count,
+                                                           OpenTriangle* open, WorkCounters& work) {
   work.add(Work::kPixelBoxGroup);
   const VertexTriangle* padded[L::kCount];
   for (std::uint32_t i = 0; i < L::kCount; ++i) padded[i] = triangles[i < count ? i : 0];

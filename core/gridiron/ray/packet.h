@@ -175,7 +175,8 @@ struct alignas(128) Packet {
 /// What they have hit is forgotten, but for a bound: their nearest hit lies in front of it.
 /// @param unsure  out: these rays. @returns whether there are any.
 template <class PacketType>
-[[nodiscard]] bool take_unsure_rays(PacketType& packet, float t_far, RaySet<PacketType::kRayCount>& unsure) {
+[[nodiscard]] GRIDIRON_OUTLINE bool take_unsure_rays(PacketType& packet, float t_far,
+                                                     RaySet<PacketType::kRayCount>& unsure) {
   std::uint32_t any = 0;
   for (std::uint32_t i = 0; i < unsure.kWordCount; ++i) any |= packet.unsure.words[i];
   if (any == 0) [[likely]]

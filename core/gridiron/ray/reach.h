@@ -61,8 +61,8 @@ struct SubpacketReach {
   }
 
   /// @returns a bit for each square of which a subpacket still looks beyond the march distance `entry`.
-  [[nodiscard]] GRIDIRON_INLINE std::uint32_t open_squares(const Frustum& frustum, float entry,
-                                                           WorkCounters& work) const {
+  [[nodiscard]] GRIDIRON_OUTLINE std::uint32_t open_squares(const Frustum& frustum, float entry,
+                                                            WorkCounters& work) const {
     using Four = Lanes<4>;
     using Float = Four::Float;
     if constexpr (kSquareCount < 4) return (1u << kSquareCount) - 1u;

@@ -71,9 +71,9 @@ struct NearSubpackets {
 /// surely passes all its rays on the outside: the edge function is linear, so its largest value is at a corner, and its
 /// least value, which shows that all are inside, at the opposite one.
 template <class L, class PacketType>
-[[nodiscard]] GRIDIRON_INLINE NearSubpackets subpackets_near(const EdgeBatch<L>& batch, std::uint32_t index,
-                                                             SubpacketSet wanted, std::uint32_t rows,
-                                                             WorkCounters& work) {
+[[nodiscard]] GRIDIRON_OUTLINE NearSubpackets subpackets_near(const EdgeBatch<L>& batch, std::uint32_t index,
+                                                              SubpacketSet wanted, std::uint32_t rows,
+                                                              WorkCounters& work) {
   using Four = Lanes<4>;
   using Float = Four::Float;
   if constexpr (PacketType::kSubpacketCount < 4) return {wanted, 0, rows, false};

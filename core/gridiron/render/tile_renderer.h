@@ -108,7 +108,7 @@ class TileRenderer {
   }
 
   // Takes rays through the grid, once per march axis and sign that they have.
-  [[nodiscard]] Status trace_rays(RaySet<StorePacket::kRayCount>& waiting) {
+  [[nodiscard]] GRIDIRON_OUTLINE Status trace_rays(RaySet<StorePacket::kRayCount>& waiting) {
     store_.mailbox.clear();
     Frustum frustum;
     while (take_pass<L>(store_.frame.grid, waiting, store_.packet, frustum, store_.work)) {

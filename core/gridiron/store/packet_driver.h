@@ -214,8 +214,8 @@ class PacketDriver {
       if (subpackets[waiting_count] != 0) ++waiting_count;
       if (waiting_count < kBatch && (i + 1 < count || waiting_count == 0)) continue;
       if constexpr (kPaper) {
-        changed |= intersect_projection<L, kWantFacing>(store_.packet, *waiting[0], subpackets[0], culling.corner_rays,
-                                                        store_.work);
+        changed |= intersect_projection<L>(store_.packet, *waiting[0], subpackets[0], culling.corner_rays, kWantFacing,
+                                           store_.work);
       } else {
         changed |= intersect_standard_batch<L, kWantFacing>(store_.packet, waiting, subpackets, waiting_count, culling,
                                                             store_.work);

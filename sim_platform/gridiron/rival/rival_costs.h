@@ -13,7 +13,7 @@ namespace gridiron::rival {
 /// By kind of work of the rival.
 inline constexpr std::array<sim::WorkCost, kRivalWorkCount> kRivalCosts = {{
     //  cycles    least     most     even  doubles      odd branches   misses
-    {  308.1,   202.1,   346.4,   87.61,    0.00,   80.36,   24.89,    6.36},  // tile_start
+    {  308.1,   202.1,   346.5,   87.61,    0.00,   80.36,   24.89,    6.36},  // tile_start
     {  171.5,   154.0,   288.0,  139.50,    0.00,  133.79,    2.00,    0.81},  // packet_start
     {   46.2,    54.0,    90.0,   36.00,    0.00,   54.00,    0.00,    0.00},  // mixed_start
     {  121.2,   111.5,   149.4,  110.00,    0.00,   37.08,    1.04,    0.08},  // node_step
@@ -25,7 +25,7 @@ inline constexpr std::array<sim::WorkCost, kRivalWorkCount> kRivalCosts = {{
     {  107.7,    82.3,   119.9,   25.65,    0.00,   41.90,    9.61,    2.24},  // switch
     {   33.3,    32.0,    39.8,   32.02,    0.00,    2.00,    0.00,    0.00},  // leaf_visit
     {    9.5,     7.3,    10.0,    1.70,    0.00,    1.54,    1.23,    0.31},  // leaf_triangle
-    {   91.4,    58.0,   109.8,   56.20,    0.00,   23.10,    1.43,    0.10},  // reach
+    {   91.4,    58.0,   109.9,   56.20,    0.00,   23.22,    1.43,    0.10},  // reach
 }};
 
 }  // namespace gridiron::rival

@@ -101,8 +101,8 @@ TYPED_TEST(ProjectionTest, AgreesWithDoubleWhereTheCaseIsClear) {
     if (random.below(2) != 0) packet.active.erase(random.below(kRays));
     const bool use_culling = random.below(2) != 0;
     WorkCounters work;
-    const bool changed = intersect_projection<TypeParam, true>(packet, this->triangle_, SmallPacket::kAllSubpackets,
-                                                                   use_culling, work) != 0;
+    const bool changed = intersect_projection<TypeParam>(packet, this->triangle_, SmallPacket::kAllSubpackets,
+                                                         use_culling, true, work) != 0;
     culled += work[Work::kGroupTestPaper] == 0 ? 1u : 0u;
     bool any = false;
     for (std::uint32_t ray = 0; ray < kRays; ++ray) {
@@ -138,14 +138,14 @@ TYPED_TEST(ProjectionTest, LeastIdWinsATieAndTheLimitIsClosed) {
     this->draw(random);
     SmallPacket& packet = this->packet_;
     WorkCounters work;
-    (void)intersect_projection<TypeParam, false>(packet, this->triangle_, SmallPacket::kAllSubpackets, false, work);
+    (void)intersect_projection<TypeParam>(packet, this->triangle_, SmallPacket::kAllSubpackets, false, false, work);
     const SmallPacket first = packet;
     ProjectionTriangle twin = this->triangle_;
     twin.triangle_id = 9;
-    EXPECT_EQ((intersect_projection<TypeParam, false>(packet, twin, SmallPacket::kAllSubpackets, false, work)), 0u)
+    EXPECT_EQ((intersect_projection<TypeParam>(packet, twin, SmallPacket::kAllSubpackets, false, false, work)), 0u)
         << "seed " << seed;
     twin.triangle_id = 3;
-    (void)intersect_projection<TypeParam, false>(packet, twin, SmallPacket::kAllSubpackets, false, work);
+    (void)intersect_projection<TypeParam>(packet, twin, SmallPacket::kAllSubpackets, false, false, work);
     for (std::uint32_t ray = 0; ray < kRays; ++ray) {
       ASSERT_EQ(packet.t[ray], first.t[ray]) << "seed " << seed;
       ASSERT_EQ(packet.id[ray], first.id[ray] == 5 ? 3u : kNoTriangle) << "seed " << seed;
@@ -153,7 +153,7 @@ TYPED_TEST(ProjectionTest, LeastIdWinsATieAndTheLimitIsClosed) {
     // From t_far = t the same hits; from the float below none.
     this->reset();
     for (std::uint32_t ray = 0; ray < kRays; ++ray) packet.t[ray] = first.t[ray];
-    (void)intersect_projection<TypeParam, false>(packet, this->triangle_, SmallPacket::kAllSubpackets, false, work);
+    (void)intersect_projection<TypeParam>(packet, this->triangle_, SmallPacket::kAllSubpackets, false, false, work);
     for (std::uint32_t ray = 0; ray < kRays; ++ray) {
       ASSERT_EQ(packet.id[ray], first.id[ray]) << "seed " << seed;
       hits += first.id[ray] == 5 ? 1u : 0u;
@@ -161,9 +161,8 @@ TYPED_TEST(ProjectionTest, LeastIdWinsATieAndTheLimitIsClosed) {
       packet.t[ray] = std::nextafter(first.t[ray], 0.0f);
     }
     const SubpacketSet changed =
-        intersect_projection<TypeParam, false>(packet, this->triangle_, SmallPacket::kAllSubpackets, false, work);
-    EXPECT_EQ(changed, 0u)
-        << "seed " << seed;
+        intersect_projection<TypeParam>(packet, this->triangle_, SmallPacket::kAllSubpackets, false, false, work);
+    EXPECT_EQ(changed, 0u) << "seed " << seed;
   });
   if (std::getenv("GRIDIRON_TEST_SEED") == nullptr) {
     EXPECT_GT(hits, 2000u);
