@@ -8,6 +8,7 @@
 #include <gridiron/ray/packet.h>
 
 #include <cstdint>
+#include <initializer_list>
 
 namespace gridiron {
 
