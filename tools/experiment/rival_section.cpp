@@ -138,7 +138,8 @@ Range write_build_steps(const Plan& done, const std::vector<Row>& rows, const Ma
                           machine.profile.master.step_cycles[static_cast<std::size_t>(kSweep)];
     without_sweeps.add(ratio_of(bvh.build_cycles - sweeps, grid.build_cycles));
   }
-  book.linked_table(steps, "the steps of both builds, how often each is done and what it costs.");
+  book.linked_table(steps,
+                    "the steps of the builds of best and of the hierarchy, how often each is done and what it costs.");
   return without_sweeps;
 }
 
@@ -156,7 +157,8 @@ Writer plan_figure7(Plan& plan, const Stage& stage) {
     Table with_build{"fig7_with_build",
                      {{"machine", "machine"},
                       {"view", "view"},
-                      {"grid_build_ms", "grid: build, ms", 1},
+                      {"reference_build_ms", "grid, reference: build, ms", 1},
+                      {"best_build_ms", "grid, best: build, ms", 1},
                       {"bvh_build_ms", "BVH: build, ms", 1}},
                      {}};
     add_columns(with_build, "_with_build_fps", 2);
@@ -175,7 +177,7 @@ Writer plan_figure7(Plan& plan, const Stage& stage) {
       const auto run_of = [&](Side side) -> const RunResult& { return done.result(row.runs[side]); };
       std::vector<Cell> frame_cells = {row.machine.key, row.view->title}, cycle_cells = frame_cells;
       std::vector<Cell> build_cells = {row.machine.key, row.view->title, run_of(kReference).build_seconds * 1e3,
-                                       run_of(kBvh).build_seconds * 1e3};
+                                       run_of(kBest).build_seconds * 1e3, run_of(kBvh).build_seconds * 1e3};
       const bool is_rivals = row.machine.key != stage.machine.key;
       // The paper's own case: its six cores against the rival's eight.
       const RunResult& at_home = done.result(rows[i % stage.views().size() + stage.views().size()].runs[kReference]);
@@ -242,7 +244,7 @@ Writer plan_figure7(Plan& plan, const Stage& stage) {
         "The build is counted work, priced in cycles of the machine's one general core: the same table "
         "prices the steps of both structures. The hierarchy takes " +
         build_ratios.text(2) +
-        " times as long to build as the grid. Where every frame builds its structure anew and is rendered "
+        " times as long to build as the grid of best. Where every frame builds its structure anew and is rendered "
         "after that, " +
         build_score.text() +
         ". The general core builds alone in both cases, so the build is most of such a "
@@ -254,7 +256,7 @@ Writer plan_figure7(Plan& plan, const Stage& stage) {
     book.paragraph(
         "A builder that spends fewer bins on small nodes would be faster than the rival's. If sweeping "
         "bins cost nothing, its build would take " +
-        without_sweeps.text(2) + " times as long as the grid's.");
+        without_sweeps.text(2) + " times as long as that of best.");
     book.table(cycles, "Millions of cycles of a frame, all cores working at once.");
     write_caches(done, rows, book);
   };

@@ -119,7 +119,7 @@ TEST(Report, HasExactlyTheDocumentedKeysInOrder) {
   for (const char* name :
        {"tile_start",       "ray_generated",   "packet_start",     "pass_group",          "pass_square",
         "macro_slice_step", "macro_cell_step", "macro_cell_visit", "slice_step",          "cell_step",
-        "cell_visit",       "triangle_batch",  "mailbox_probe",    "cull_test",           "pixel_box",
+        "cell_visit",       "triangle_batch",  "mailbox_probe",    "cull_test",           "pixel_box_group",
         "triangle_setup",   "subpacket_setup", "subpacket_group",  "group_test_standard", "group_test_paper",
         "hit_group",        "hit_subpacket",   "hit_group_paper",  "hit_setup",           "double_sign",
         "exact_sign",       "exact_distance",  "reach_group",      "shaded_group",        "shaded_simple_group",
