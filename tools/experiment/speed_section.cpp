@@ -75,7 +75,7 @@ Writer plan_table3(Plan& plan, const Stage& stage) {
         ", one core and six. The numbers of the paper's Table 3 are lost in the text form that we have, so there is no "
         "column of its fps; what survives is that simple shading costs 10-20 % [P]. \"Projection test\" is the "
         "reference configuration with the paper's own intersection test (precomputed projection, single precision, may "
-        "leak); the others use the exact default, which costs more computation per triangle.");
+        "leak); the others use the exact default.");
     book.table(fps, "Frames a second.");
     std::string words = "Here simple shading costs " + costs.percent(1) + " of the fps. ";
     if (costs.greatest() < 10) {
