@@ -38,7 +38,8 @@ inline constexpr const char* kCostTableWords =
 /// The same of the rival (sim_platform/gridiron/rival/rival_costs.h).
 inline constexpr const char* kRivalCostWords =
     "What only the hierarchy does (caches, boxes, stack, ring) is counted on its own code by the same tool; rays, "
-    "triangle tests, hits and shading are the grid's code at the grid's prices, which are means over the grid's frames. "
+    "triangle tests, hits and shading are the grid's code at the grid's prices, which are means over the grid's "
+    "frames. "
     "It was written for vectors and tuned under counted costs, as the grid was.";
 
 [[nodiscard]] Writer plan_table1(Plan& plan, const Stage& stage);
