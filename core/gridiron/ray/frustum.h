@@ -45,7 +45,6 @@ struct Frustum {
   alignas(16) float slope_far[4];   ///< the same at the slab's exit
   alignas(16) float limit[4];       ///< cells_u, cells_u, cells_v, cells_v
   float pad_k;
-  float depth_per_t;  ///< factor |cells_per_unit_k|; times |dir_k| it turns t into march distance
 
   /// @param first, last  cells along k, inclusive.
   [[nodiscard]] GRIDIRON_INLINE Slab slab_of(std::int32_t first, std::int32_t last) const {
@@ -89,13 +88,14 @@ struct PassAxes {
   float march_scale, u_scale, v_scale;
 };
 
-/// Takes the rays of one square of 2x2 subpackets into a pass, each by itself, and finds the bounds of their slopes.
+/// Takes the rays of one square of 2x2 subpackets into a pass, each by itself, and finds the bounds of their slopes and
+/// the largest of their marches.
 template <class L, class PacketType>
 GRIDIRON_INLINE void take_square(const PassAxes& axes, std::uint32_t square, RaySet<PacketType::kRayCount>& waiting,
                                  PacketType& packet, WorkCounters& work) {
   using Float = typename L::Float;
   constexpr std::uint32_t kSquareRays = PacketType::kRayCount / PacketType::kSquareCount;
-  Float low_u(kFloatMax), high_u(-kFloatMax), low_v(kFloatMax), high_v(-kFloatMax);
+  Float low_u(kFloatMax), high_u(-kFloatMax), low_v(kFloatMax), high_v(-kFloatMax), high_march(0.0f);
   work.add(Work::kPassGroup, kSquareRays / L::kCount);
   for (std::uint32_t base = square * kSquareRays; base < (square + 1) * kSquareRays; base += L::kCount) {
     const Float march = Float::load(packet.dir[axes.k] + base) * Float(axes.march_scale);
@@ -108,6 +108,7 @@ GRIDIRON_INLINE void take_square(const PassAxes& axes, std::uint32_t square, Ray
     packet.active.template set_group<L>(base, bits);
     waiting.template set_group<L>(base, waiting.template group<L>(base) & ~bits);
     const auto joined = L::mask_from_bits(bits);
+    high_march = L::max(high_march, L::select(joined, march, Float(0.0f)));
     const Float slope_u = along_u / march;
     const Float slope_v = along_v / march;
     low_u = L::min(low_u, L::select(joined, slope_u, Float(kFloatMax)));
@@ -119,6 +120,7 @@ GRIDIRON_INLINE void take_square(const PassAxes& axes, std::uint32_t square, Ray
   packet.slope_high[0][square] = L::horizontal_max(high_u);
   packet.slope_low[1][square] = L::horizontal_min(low_v);
   packet.slope_high[1][square] = L::horizontal_max(high_v);
+  packet.march_high[square] = L::horizontal_max(high_march);
 }
 
 /// The same for all rays of a square at once, from its corners, where all of them wait and surely join.
@@ -164,6 +166,7 @@ template <class PacketType>
   packet.slope_high[0][square] = Four::horizontal_max(slope_u) + slack;
   packet.slope_low[1][square] = Four::horizontal_min(slope_v) - slack;
   packet.slope_high[1][square] = Four::horizontal_max(slope_v) + slack;
+  packet.march_high[square] = Four::horizontal_max(march + error_k);
   for (std::uint32_t word = 0; word < 2; ++word) {
     packet.active.words[2 * square + word] = ~0u;
     waiting_words[word] = 0;
@@ -248,7 +251,6 @@ template <class L, class PacketType>
   };
   set_bounds(u, 0, least(packet.slope_low[0]), greatest(packet.slope_high[0]));
   set_bounds(v, 2, least(packet.slope_low[1]), greatest(packet.slope_high[1]));
-  frustum.depth_per_t = grid.cells_per_unit[k];
   return true;
 }
 

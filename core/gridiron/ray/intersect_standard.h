@@ -65,15 +65,14 @@ struct OpenTriangle {
   bool is_small;            ///< too few of them to be worth asking which it touches
 };
 
-/// Leaves those of 1..L::kCount triangles out that cover no pixel of the subpackets wanted. @returns how many are open.
+/// Appends those of 1..L::kCount triangles that may cover a pixel of the subpackets wanted. @returns how many.
 template <class L, class PacketType>
-[[nodiscard]] GRIDIRON_OUTLINE std::uint32_t keep_covering(const PacketType& packet,
-                                                           const VertexTriangle* const* triangles,
-                                                           const SubpacketSet* subpackets, std::uint32_t count,
-                                                           OpenTriangle* open, WorkCounters& work) {
+[[nodiscard]] GRIDIRON_OUTLINE std::uint32_t keep_covering(const PacketType& packet, const VertexTriangle* triangles,
+                                                           std::uint32_t count, SubpacketSet wanted, OpenTriangle* open,
+                                                           WorkCounters& work) {
   work.add(Work::kPixelBoxGroup);
   const VertexTriangle* padded[L::kCount];
-  for (std::uint32_t i = 0; i < L::kCount; ++i) padded[i] = triangles[i < count ? i : 0];
+  for (std::uint32_t i = 0; i < L::kCount; ++i) padded[i] = i < count ? triangles + i : triangles;
   PixelBoxes<L> boxes;
   find_pixel_boxes<L>(packet, padded, boxes);
   work.charge_to(Work::kTriangleSetup);
@@ -81,30 +80,34 @@ template <class L, class PacketType>
   for (std::uint32_t rest = boxes.covering & (~0u >> (32 - count)); rest != 0; rest &= rest - 1) {
     const std::uint32_t i = lowest_bit(rest);
     const PixelBox box{boxes.first_column[i], boxes.end_column[i], boxes.first_row[i], boxes.end_row[i]};
-    open[open_count] = {triangles[i], subpackets[i] & box.subpackets(), box.rows(), box.is_small()};
+    open[open_count] = {triangles + i, wanted & box.subpackets(), box.rows(), box.is_small()};
     open_count += open[open_count].subpackets != 0 ? 1u : 0u;
   }
   return open_count;
 }
 
-/// Intersects 1..L::kCount triangles with the active rays of a packet.
+/// Finds those of 1..L::kCount triangles that some subpackets have to look at.
 ///
-/// @param subpackets  per triangle, those to look at. @returns the subpackets of which a ray's hit changed.
-template <class L, bool kWantFacing, class PacketType>
-[[nodiscard]] GRIDIRON_INLINE SubpacketSet intersect_standard_batch(PacketType& packet,
-                                                                    const VertexTriangle* const* triangles,
-                                                                    const SubpacketSet* subpackets, std::uint32_t count,
-                                                                    Culling culling, WorkCounters& work) {
-  constexpr std::uint32_t kTriangles = EdgeBatch<L>::kTriangles;
-  OpenTriangle open[L::kCount];
-  std::uint32_t open_count = count;
-  bool has_boxes = false;
-  if constexpr (PacketType::kHasBoxes) has_boxes = culling.subpackets;
-  if (has_boxes) {
-    open_count = keep_covering<L>(packet, triangles, subpackets, count, open, work);
-  } else {
-    for (std::uint32_t i = 0; i < count; ++i) open[i] = {triangles[i], subpackets[i], ~0u, false};
+/// @param triangles  records, one behind the other. @param open  out: room for `count`. @returns how many these are.
+template <class L, class PacketType>
+[[nodiscard]] GRIDIRON_INLINE std::uint32_t open_triangles(const PacketType& packet, const VertexTriangle* triangles,
+                                                           std::uint32_t count, SubpacketSet wanted, Culling culling,
+                                                           OpenTriangle* open, WorkCounters& work) {
+  if constexpr (PacketType::kHasBoxes) {
+    if (culling.subpackets) return keep_covering<L>(packet, triangles, count, wanted, open, work);
   }
+  for (std::uint32_t i = 0; i < count; ++i) open[i] = {triangles + i, wanted, ~0u, false};
+  return count;
+}
+
+/// Intersects triangles with the active rays of a packet.
+///
+/// @returns the subpackets of which a ray's hit changed.
+template <class L, bool kWantFacing, class PacketType>
+[[nodiscard]] GRIDIRON_INLINE SubpacketSet intersect_standard_batch(PacketType& packet, const OpenTriangle* open,
+                                                                    std::uint32_t open_count, Culling culling,
+                                                                    WorkCounters& work) {
+  constexpr std::uint32_t kTriangles = EdgeBatch<L>::kTriangles;
   SubpacketSet changed = 0;
   for (std::uint32_t first = 0; first < open_count; first += kTriangles) {
     std::uint32_t in_batch = open_count - first;
@@ -137,10 +140,9 @@ template <class L, bool kWantFacing, class PacketType>
 template <class L, bool kWantFacing, class PacketType>
 [[nodiscard]] GRIDIRON_INLINE bool intersect_standard(PacketType& packet, const VertexTriangle& triangle,
                                                       bool use_culling, WorkCounters& work) {
-  const VertexTriangle* const triangles[] = {&triangle};
-  const SubpacketSet subpackets[] = {PacketType::kAllSubpackets};
+  const OpenTriangle open{&triangle, PacketType::kAllSubpackets, ~0u, false};
   const Culling culling{.corner_rays = use_culling, .subpackets = false};
-  return intersect_standard_batch<L, kWantFacing>(packet, triangles, subpackets, 1, culling, work) != 0;
+  return intersect_standard_batch<L, kWantFacing>(packet, &open, 1, culling, work) != 0;
 }
 
 }  // namespace gridiron

@@ -84,7 +84,7 @@ GRIDIRON_INLINE void for_each_subpacket(SubpacketSet set, Visit&& visit) {
 inline constexpr float kLinearError = 16.0f * 0x1p-23f;
 
 /// Relative error of a distance that was estimated.
-inline constexpr float kEstimateError = 0x1p-12f;
+inline constexpr float kEstimateError = 0x1p-14f;
 /// Times a distance, either or both estimated: another one beyond it is surely nearer, or behind.
 inline constexpr float kSurelyNearer = 1.0f - 3.0f * kEstimateError;
 inline constexpr float kSurelyBehind = 1.0f + 3.0f * kEstimateError;
@@ -168,6 +168,8 @@ struct alignas(128) Packet {
   static constexpr std::uint32_t kSquareCount = kSubpacketCount < 4 ? 1 : kSubpacketCount / 4;
   alignas(64) float slope_low[2][kSquareCount];
   alignas(64) float slope_high[2][kSquareCount];
+  alignas(
+      16) float march_high[kSquareCount];  ///< the most cells along the march per unit of t; where none is active, 0
 };
 
 /// Prepares the rays that estimates left unsure for being traced again with exact distances.

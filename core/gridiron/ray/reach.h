@@ -11,8 +11,8 @@
 
 namespace gridiron {
 
-/// Per subpacket, the largest march distance of its active rays' nearest hits, were they as far as estimates may err:
-/// beyond it nothing can be nearer.
+/// Per subpacket, a march distance beyond which none of its active rays can have a nearer hit: the largest t of their
+/// nearest hits, were it as far as estimates may err, times the largest march of the rays of its square.
 template <class PacketType>
 struct SubpacketReach {
   static constexpr std::uint32_t kCount = PacketType::kSubpacketCount;
@@ -20,36 +20,29 @@ struct SubpacketReach {
   alignas(64) float reach[kCount];
   alignas(16) float square_reach[kSquareCount < 4 ? 4 : kSquareCount];  ///< the largest of each square's subpackets
 
-  /// Measures anew the subpackets whose hits changed. @returns the largest reach of the packet.
+  /// Measures anew the subpackets whose hits changed, and their neighbours in a square.
+  /// @returns the largest reach of the packet.
   template <class L>
-  GRIDIRON_INLINE float update(const PacketType& packet, const Frustum& frustum, SubpacketSet changed,
-                               WorkCounters& work) {
-    using Float = typename L::Float;
-    const float scale = frustum.depth_per_t * (1.0f + 2.0f * kEstimateError);
-    for_each_subpacket<kCount>(changed, [&](std::uint32_t subpacket) GRIDIRON_INLINE_LAMBDA {
-      const std::uint32_t first_ray = subpacket * kSubpacketRays;
-      const bool is_whole = packet.active.subpacket(subpacket) == kAllSubpacketRays;
-      work.add(Work::kReachGroup, kSubpacketRays / L::kCount);
-      Float farthest(0.0f);
-      for (std::uint32_t base = first_ray; base < first_ray + kSubpacketRays; base += L::kCount) {
-        Float distance = Float::load(packet.t + base) * L::abs(Float::load(packet.dir[frustum.axis_k] + base));
-        if (!is_whole) [[unlikely]] {
-          const auto active = L::mask_from_bits(packet.active.template group<L>(base));
-          distance = L::select(active, distance, Float(0.0f));
-        }
-        farthest = L::max(farthest, distance);
-      }
-      reach[subpacket] = L::horizontal_max(farthest) * scale;
-    });
+  GRIDIRON_OUTLINE float update(const PacketType& packet, SubpacketSet changed, WorkCounters& work) {
+    using Four = Lanes<4>;
     if constexpr (kCount < 4) {
+      work.add(Work::kReachGroup, kSubpacketRays / L::kCount);
+      reach[0] = L::horizontal_max(farthest_active<L>(packet, 0)) * scale_of(packet, 0);
       return reach[0];
     } else {
-      using Four = Lanes<4>;
-      for (std::uint32_t square = 0; square < kSquareCount; ++square) {
-        if ((changed >> (4 * square) & 0xFu) == 0) continue;
-        work.add(Work::kReachGroup);
-        square_reach[square] = Four::horizontal_max(Four::Float::load(reach + 4 * square));
-      }
+      for_each_square(changed, [&](std::uint32_t square) GRIDIRON_INLINE_LAMBDA {
+        work.add(Work::kReachGroup, 4 * kSubpacketRays / L::kCount);
+        const std::uint32_t first = 4 * square;
+        const bool is_whole = (packet.active.words[2 * square] & packet.active.words[2 * square + 1]) == ~0u;
+        typename L::Float farthest[4];
+        for (std::uint32_t i = 0; i < 4; ++i) {
+          farthest[i] = is_whole ? farthest_ray<L>(packet.t + (first + i) * kSubpacketRays)
+                                 : farthest_active<L>(packet, first + i);
+        }
+        const Four::Float scaled = largest_of<L>(farthest) * Four::Float(scale_of(packet, square));
+        scaled.store(reach + first);
+        square_reach[square] = Four::horizontal_max(scaled);
+      });
       if constexpr (kSquareCount == 1) return square_reach[0];
       work.add(Work::kReachGroup);
       Four::Float farthest = Four::Float::load(square_reach);
@@ -107,6 +100,63 @@ struct SubpacketReach {
         result |= SubpacketSet{(Float(entry) <= limit).bits()} << base;
       }
       return result;
+    }
+  }
+
+ private:
+  /// Calls visit(i) for every square i of which a subpacket is in the set.
+  template <class Visit>
+  static GRIDIRON_INLINE void for_each_square(SubpacketSet set, Visit&& visit) {
+    for (std::uint32_t base = 0; base < kSquareCount; base += 8) {
+      const std::uint32_t half = static_cast<std::uint32_t>(set >> (4 * base));
+      const std::uint32_t pairs = half | half >> 1;
+      for (std::uint32_t rest = (pairs | pairs >> 2) & 0x11111111u; rest != 0; rest &= rest - 1) {
+        visit(base + lowest_bit(rest) / 4);
+      }
+    }
+  }
+  [[nodiscard]] static GRIDIRON_INLINE float scale_of(const PacketType& packet, std::uint32_t square) {
+    return packet.march_high[square] * (1.0f + 2.0f * kEstimateError);
+  }
+  /// @returns in its lanes the largest t of a subpacket's active rays.
+  template <class L>
+  [[nodiscard]] static GRIDIRON_INLINE typename L::Float farthest_active(const PacketType& packet,
+                                                                         std::uint32_t subpacket) {
+    using Float = typename L::Float;
+    const std::uint32_t first_ray = subpacket * kSubpacketRays;
+    Float farthest(0.0f);
+    for (std::uint32_t base = first_ray; base < first_ray + kSubpacketRays; base += L::kCount) {
+      const auto active = L::mask_from_bits(packet.active.template group<L>(base));
+      farthest = L::max(farthest, L::select(active, Float::load(packet.t + base), Float(0.0f)));
+    }
+    return farthest;
+  }
+  /// The same where all are active. @param t  of its rays.
+  template <class L>
+  [[nodiscard]] static GRIDIRON_INLINE typename L::Float farthest_ray(const float* t) {
+    using Float = typename L::Float;
+    if constexpr (L::kCount == 16) {
+      return Float::load(t);
+    } else if constexpr (L::kCount == 8) {
+      return L::max(Float::load(t), Float::load(t + 8));
+    } else {
+      return L::max(L::max(Float::load(t), Float::load(t + 4)), L::max(Float::load(t + 8), Float::load(t + 12)));
+    }
+  }
+  /// @returns in lane i the largest lane of vector i.
+  template <class L>
+  [[nodiscard]] static GRIDIRON_INLINE Lanes<4>::Float largest_of(const typename L::Float* vectors) {
+    if constexpr (L::kCount == 4) {
+      const auto halves = [](typename L::Float low, typename L::Float high) GRIDIRON_INLINE_LAMBDA {
+        return L::max(L::template shuffle_quads<0, 1, 4, 5>(low, high),
+                      L::template shuffle_quads<2, 3, 6, 7>(low, high));
+      };
+      const typename L::Float ab = halves(vectors[0], vectors[1]), cd = halves(vectors[2], vectors[3]);
+      return L::max(L::template shuffle_quads<0, 2, 4, 6>(ab, cd), L::template shuffle_quads<1, 3, 5, 7>(ab, cd));
+    } else {
+      alignas(16) float largest[4];
+      for (std::uint32_t i = 0; i < 4; ++i) largest[i] = L::horizontal_max(vectors[i]);
+      return Lanes<4>::Float::load(largest);
     }
   }
 };

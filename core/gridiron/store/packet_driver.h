@@ -18,7 +18,6 @@
 #include <gridiron/traverse/slice_walk.h>
 
 #include <cstdint>
-#include <type_traits>
 
 namespace gridiron {
 
@@ -41,7 +40,7 @@ class PacketDriver {
   [[nodiscard]] Status run() {
     store_.work.charge_to(Work::kPacketStart);
     macro_walk_.begin(store_.frame.grid, frustum_);
-    reach_ = reaches_.template update<L>(store_.packet, frustum_, StorePacket::kAllSubpackets, store_.work);
+    reach_ = reaches_.template update<L>(store_.packet, StorePacket::kAllSubpackets, store_.work);
     for (;;) {
       while (!triangle_ring_.full() && !cells_done_) GRIDIRON_TRY(fetch_next_run());
       if (triangle_ring_.empty()) break;
@@ -173,7 +172,7 @@ class PacketDriver {
       if ((open & subpackets_of_squares(run.touching)) != 0) {
         changed = test_run(store_.triangles[slot].bytes + run.first_byte, run.count, open);
       }
-      if (changed != 0) reach_ = reaches_.template update<L>(store_.packet, frustum_, changed, store_.work);
+      if (changed != 0) reach_ = reaches_.template update<L>(store_.packet, changed, store_.work);
     }
     store_.work.charge_to(Work::kTriangleBatch);
     triangle_ring_.pop();
@@ -184,43 +183,58 @@ class PacketDriver {
   [[nodiscard]] SubpacketSet test_run(const std::byte* records, std::uint32_t count, SubpacketSet open) {
     const bool paper = store_.frame.accuracy == static_cast<std::uint32_t>(Accuracy::kPaper);
     const bool facing = store_.frame.shading != static_cast<std::uint32_t>(Shading::kNone);
-    if (paper)
-      return facing ? test_each<ProjectionTriangle, true>(records, count, open)
-                    : test_each<ProjectionTriangle, false>(records, count, open);
-    return facing ? test_each<VertexTriangle, true>(records, count, open)
-                  : test_each<VertexTriangle, false>(records, count, open);
+    if (paper) return test_each_projection(reinterpret_cast<const ProjectionTriangle*>(records), count, open, facing);
+    const auto* triangles = reinterpret_cast<const VertexTriangle*>(records);
+    return facing ? test_each<true>(triangles, count, open) : test_each<false>(triangles, count, open);
   }
 
-  template <class Triangle, bool kWantFacing>
-  [[nodiscard]] SubpacketSet test_each(const std::byte* records, std::uint32_t count, SubpacketSet open) {
-    constexpr bool kPaper = std::is_same_v<Triangle, ProjectionTriangle>;
-    constexpr std::uint32_t kBatch = kPaper ? 1 : L::kCount;
-    const Triangle* triangles = reinterpret_cast<const Triangle*>(records);
-    const bool use_mailbox = (store_.frame.techniques & kUseMailbox) != 0;
+  template <bool kWantFacing>
+  [[nodiscard]] SubpacketSet test_each(const VertexTriangle* triangles, std::uint32_t count, SubpacketSet wanted) {
     const Culling culling{.corner_rays = (store_.frame.techniques & kUseCornerCulling) != 0,
                           .subpackets = (store_.frame.techniques & kUseSubpackets) != 0};
-    if (use_mailbox) {
-      store_.work.add(Work::kMailboxProbe, count);
-      store_.work.charge_to(Work::kTriangleBatch);
+    OpenTriangle open[kRunTriangles];
+    const std::uint32_t open_count = keep_untested(triangles, count, wanted, culling, open);
+    return intersect_standard_batch<L, kWantFacing>(store_.packet, open, open_count, culling, store_.work);
+  }
+
+  // Finds those of a run that subpackets have to look at. Triangles that appear elsewhere need not be remembered: the
+  // mailbox is asked after their boxes. @returns how many these are.
+  [[nodiscard]] GRIDIRON_OUTLINE std::uint32_t keep_untested(const VertexTriangle* triangles, std::uint32_t count,
+                                                             SubpacketSet wanted, Culling culling, OpenTriangle* open) {
+    std::uint32_t open_count = 0;
+    for (std::uint32_t first = 0; first < count; first += L::kCount) {
+      std::uint32_t in_batch = count - first;
+      if (in_batch > L::kCount) in_batch = L::kCount;
+      open_count += open_triangles<L>(store_.packet, triangles + first, in_batch, wanted, culling, open + open_count,
+                                      store_.work);
     }
-    const Triangle* waiting[kBatch];
-    SubpacketSet subpackets[kBatch];
-    std::uint32_t waiting_count = 0;
+    if ((store_.frame.techniques & kUseMailbox) == 0) return open_count;
+    store_.work.add(Work::kMailboxProbe, open_count);
+    std::uint32_t untested_count = 0;
+    for (std::uint32_t i = 0; i < open_count; ++i) {
+      open[untested_count] = open[i];
+      const SubpacketSet untested = store_.mailbox.untested(open[i].triangle->triangle_id, open[i].subpackets);
+      open[untested_count].subpackets = untested;
+      untested_count += untested != 0 ? 1u : 0u;
+    }
+    return untested_count;
+  }
+
+  [[nodiscard]] SubpacketSet test_each_projection(const ProjectionTriangle* triangles, std::uint32_t count,
+                                                  SubpacketSet wanted, bool want_facing) {
+    const bool use_mailbox = (store_.frame.techniques & kUseMailbox) != 0;
+    const bool use_corner_rays = (store_.frame.techniques & kUseCornerCulling) != 0;
     SubpacketSet changed = 0;
     for (std::uint32_t i = 0; i < count; ++i) {
-      store_.work.charge_to(use_mailbox ? Work::kMailboxProbe : Work::kTriangleBatch);
-      waiting[waiting_count] = triangles + i;
-      subpackets[waiting_count] = use_mailbox ? store_.mailbox.untested(triangles[i].triangle_id, open) : open;
-      if (subpackets[waiting_count] != 0) ++waiting_count;
-      if (waiting_count < kBatch && (i + 1 < count || waiting_count == 0)) continue;
-      if constexpr (kPaper) {
-        changed |= intersect_projection<L>(store_.packet, *waiting[0], subpackets[0], culling.corner_rays, kWantFacing,
-                                           store_.work);
-      } else {
-        changed |= intersect_standard_batch<L, kWantFacing>(store_.packet, waiting, subpackets, waiting_count, culling,
-                                                            store_.work);
+      SubpacketSet untested = wanted;
+      if (use_mailbox) {
+        store_.work.add(Work::kMailboxProbe);
+        untested = store_.mailbox.untested(triangles[i].triangle_id, wanted);
       }
-      waiting_count = 0;
+      store_.work.charge_to(Work::kTriangleBatch);
+      if (untested == 0) continue;
+      changed |=
+          intersect_projection<L>(store_.packet, triangles[i], untested, use_corner_rays, want_facing, store_.work);
     }
     return changed;
   }
@@ -234,8 +248,8 @@ class PacketDriver {
   const Frustum& frustum_;
   BufferRing macro_ring_;
   BufferRing triangle_ring_;
-  MacroWalk macro_walk_;
-  CellWalk cell_walk_;
+  MacroWalk macro_walk_{};
+  CellWalk cell_walk_{};
   MacroVisit visits_[Layout::kMaxMacroDepth];
   TriangleRun runs_[Layout::kMaxTriangleDepth];
   CellVisit cell_{};            ///< the cell whose triangles are being fetched, what is left of it

@@ -324,18 +324,17 @@ class BvhCore {
     SubpacketSet changed = 0;
     constexpr std::uint32_t kBatch = L::kCount;
     for (std::uint32_t left = cursor.child.triangle_count(); left != 0;) {
-      const VertexTriangle* batch[kBatch];
-      SubpacketSet subpackets[kBatch];
-      std::uint32_t in_batch = 0;
-      for (; in_batch < kBatch && left != 0; --left) {
-        batch[in_batch] = triangle++;
-        subpackets[in_batch] = open;
-        ++in_batch;
-      }
+      std::uint32_t in_batch = left;
+      if (in_batch > kBatch) in_batch = kBatch;
       count(RivalWork::kLeafTriangle, in_batch);
+      OpenTriangle touching[kBatch];
+      const std::uint32_t touching_count =
+          open_triangles<L>(context.packet, triangle, in_batch, open, culling, touching, store_.work);
       changed |=
-          intersect_standard_batch<L, kWantFacing>(context.packet, batch, subpackets, in_batch, culling, store_.work);
+          intersect_standard_batch<L, kWantFacing>(context.packet, touching, touching_count, culling, store_.work);
       charge_to(RivalWork::kLeafTriangle);
+      triangle += in_batch;
+      left -= in_batch;
     }
     if (changed != 0) update_reach(context, static_cast<std::uint32_t>(changed));
   }

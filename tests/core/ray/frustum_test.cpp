@@ -282,7 +282,7 @@ void expect_slopes_of_squares(FrameKind kind) {
     std::uint32_t passes = 0;
     while (take_pass<L>(grid, waiting, *packet, frustum, work)) {
       std::uint32_t active_count = 0;
-      std::vector<long double> least[2], greatest[2];
+      std::vector<long double> least[2], greatest[2], farthest(PacketType::kSquareCount);
       for (int i = 0; i < 2; ++i) {
         least[i].assign(PacketType::kSquareCount, 4.0L);
         greatest[i].assign(PacketType::kSquareCount, -4.0L);
@@ -301,6 +301,8 @@ void expect_slopes_of_squares(FrameKind kind) {
         const long double march = frustum.reverse ? -cells(frustum.axis_k) : cells(frustum.axis_k);
         ASSERT_GT(march, 0.0L) << "seed " << seed << ", ray " << ray;
         const std::uint32_t square = ray / kSquareRays;
+        ASSERT_LE(march, packet->march_high[square] * (1.0L + 0x1p-23L)) << "seed " << seed << ", ray " << ray;
+        farthest[square] = std::fmax(farthest[square], march);
         const std::uint32_t axes[2] = {frustum.axis_u, frustum.axis_v};
         for (int i = 0; i < 2; ++i) {
           const long double slope = cells(axes[i]) / march;
@@ -319,6 +321,7 @@ void expect_slopes_of_squares(FrameKind kind) {
       ASSERT_LE(passes, 6u) << "seed " << seed;
       for (std::uint32_t square = 0; kind <= FrameKind::kExact && square < PacketType::kSquareCount; ++square) {
         if (least[0][square] > 2.5L) continue;  // none of its rays
+        ASSERT_LT(packet->march_high[square], farthest[square] * (1.0L + 0x1p-12L)) << "seed " << seed;
         for (int i = 0; i < 2; ++i) {
           ASSERT_GT(packet->slope_low[i][square], least[i][square] - 0x1p-12L) << "seed " << seed;
           ASSERT_LT(packet->slope_high[i][square], greatest[i][square] + 0x1p-12L) << "seed " << seed;
@@ -432,7 +435,7 @@ TYPED_TEST(FrustumTest, NoSlabWithAPointInReachIsBeyond) {
           const float t = entry / march * (1.0f + off);
           packet.t[ray] = t > 0.0f && t < kFloatMax ? t : 1.0f;
         }
-        const float reach = reach_of<TypeParam>(packet, frustum);
+        const float reach = reach_of<TypeParam>(packet);
         const bool beyond = frustum.beyond(frustum.slab_of(slices.first, slices.last), reach);
         bool any = false;
         for (std::uint32_t ray = 0; ray < kRays; ++ray) {
@@ -462,7 +465,7 @@ TEST(Frustum, BeyondIsBeyond) {
   Rays waiting = all_waiting();
   Frustum frustum;
   ASSERT_TRUE(take_pass<Lanes<4>>(grid, waiting, packet, frustum, pass_work));
-  const float reach = reach_of<Lanes<4>>(packet, frustum);
+  const float reach = reach_of<Lanes<4>>(packet);
   EXPECT_EQ(reach, 10.0f * (1.0f + 2.0f * kEstimateError));  // t may be an estimate
   EXPECT_FALSE(frustum.beyond(frustum.slab_of(40, 40), reach));
   EXPECT_TRUE(frustum.beyond(frustum.slab_of(39, 39), reach));

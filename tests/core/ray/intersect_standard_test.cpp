@@ -128,17 +128,15 @@ TYPED_TEST(StandardTest, ABatchIsItsTrianglesOneByOne) {
     const auto total = static_cast<std::uint32_t>(shown.triangles.size());
     for (std::uint32_t first = 0; first < total;) {
       const std::uint32_t count = std::min(1 + random.below(kBatch), total - first);
-      const VertexTriangle* batch[kBatch] = {};
-      SubpacketSet subpackets[kBatch] = {};
+      OpenTriangle batch[kBatch] = {};
       bool changed = false;
       for (std::uint32_t i = 0; i < count; ++i) {
-        batch[i] = &shown.triangles[first + i];
-        subpackets[i] = SmallPacket::kAllSubpackets;
-        changed |= intersect_standard<TypeParam, true>(single, *batch[i], use_culling, single_work);
+        batch[i] = {&shown.triangles[first + i], SmallPacket::kAllSubpackets, ~0u, false};
+        changed |= intersect_standard<TypeParam, true>(single, *batch[i].triangle, use_culling, single_work);
       }
       const Culling culling{.corner_rays = use_culling, .subpackets = false};
       const SubpacketSet batch_changed =
-          intersect_standard_batch<TypeParam, true>(batched, batch, subpackets, count, culling, batch_work);
+          intersect_standard_batch<TypeParam, true>(batched, batch, count, culling, batch_work);
       ASSERT_EQ(batch_changed != 0, changed) << "seed " << seed;
       first += count;
     }
@@ -361,12 +359,13 @@ void expect_subpacket_culling_drops_no_hit() {
     packet.ask_for_distances(true);
     packet.active = present;
     const auto intersect = [&](const VertexTriangle& triangle, bool by_subpackets) {
-      const VertexTriangle* const triangles[] = {&triangle};
-      const SubpacketSet all[] = {PacketType::kAllSubpackets};
       reset_hits(packet, kFloatMax);
       work = WorkCounters{};
-      return intersect_standard_batch<L, false>(packet, triangles, all, 1,
-                                                Culling{.corner_rays = false, .subpackets = by_subpackets}, work);
+      const Culling culling{.corner_rays = false, .subpackets = by_subpackets};
+      OpenTriangle open[1];
+      const std::uint32_t count =
+          open_triangles<L>(packet, &triangle, 1, PacketType::kAllSubpackets, culling, open, work);
+      return intersect_standard_batch<L, false>(packet, open, count, culling, work);
     };
     for (int i = 0; i < 40; ++i) {
       const VertexTriangle triangle = triangle_at_a_row(random, packet);

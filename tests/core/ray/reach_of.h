@@ -6,10 +6,10 @@
 namespace gridiron::test {
 
 template <class L, class PacketType>
-[[nodiscard]] float reach_of(const PacketType& packet, const Frustum& frustum) {
+[[nodiscard]] float reach_of(const PacketType& packet) {
   SubpacketReach<PacketType> reaches{};
   WorkCounters work;
-  return reaches.template update<L>(packet, frustum, PacketType::kAllSubpackets, work);
+  return reaches.template update<L>(packet, PacketType::kAllSubpackets, work);
 }
 
 }  // namespace gridiron::test

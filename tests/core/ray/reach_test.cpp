@@ -25,30 +25,30 @@ void expect_reaches() {
     TestRandom random(seed);
     PacketType packet{};
     Frustum frustum{};
-    frustum.axis_k = random.below(3);
-    frustum.depth_per_t = random.between(0.5f, 4.0f);
     frustum.pad_k = 0x1p-18f;
     for (std::uint32_t ray = 0; ray < PacketType::kRayCount; ++ray) {
-      packet.dir[frustum.axis_k][ray] = random.between(-2, 2);
       packet.t[ray] = random.between(1, 50);
       if (random.below(4) != 0) packet.active.insert(ray);
     }
+    for (float& march : packet.march_high) march = random.between(0.5f, 4.0f);
     Reaches reaches{};
     WorkCounters work;
-    (void)reaches.template update<L>(packet, frustum, PacketType::kAllSubpackets, work);
+    (void)reaches.template update<L>(packet, PacketType::kAllSubpackets, work);
     const SubpacketSet changed = random.below(0xFFFF) & PacketType::kAllSubpackets;
-    for (float& t : packet.t) t *= 0.5f;
-    const float largest = reaches.template update<L>(packet, frustum, changed, work);
+    for (std::uint32_t ray = 0; ray < PacketType::kRayCount; ++ray) {
+      if ((changed >> (ray / kSubpacketRays) & 1u) != 0) packet.t[ray] *= random.between(0.1f, 1.0f);
+    }
+    const float largest = reaches.template update<L>(packet, changed, work);
     float expected_largest = 0.0f;
     for (std::uint32_t subpacket = 0; subpacket < PacketType::kSubpacketCount; ++subpacket) {
       float expected = 0.0f;
       for (std::uint32_t i = 0; i < kSubpacketRays; ++i) {
         const std::uint32_t ray = subpacket * kSubpacketRays + i;
         if (!packet.active.contains(ray)) continue;
-        const float t = (changed >> subpacket & 1u) != 0 ? packet.t[ray] : 2.0f * packet.t[ray];
-        expected = std::max(expected, t * magnitude(packet.dir[frustum.axis_k][ray]));
+        expected = std::max(expected, packet.t[ray]);
       }
-      expected *= frustum.depth_per_t * (1.0f + 2.0f * kEstimateError);
+      const std::uint32_t square = PacketType::kSubpacketCount < 4 ? 0 : subpacket / 4;
+      expected *= packet.march_high[square] * (1.0f + 2.0f * kEstimateError);
       ASSERT_EQ(reaches.reach[subpacket], expected) << "seed " << seed << ", subpacket " << subpacket;
       expected_largest = std::max(expected_largest, expected);
     }

@@ -192,7 +192,7 @@ TEST(SliceWalk, VisitsEveryCellTouchedOnceAndInOrder) {
     waiting.words[0] = (1u << kRays) - 1;
     Frustum frustum;
     while (take_pass<Lanes<4>>(scene.grid, waiting, packet, frustum, pass_work)) {
-      check_pass(scene, packet, frustum, reach_of<Lanes<4>>(packet, frustum), touched);
+      check_pass(scene, packet, frustum, reach_of<Lanes<4>>(packet), touched);
       // The same with hits on the way.
       SmallPacket hit = packet;
       for (std::uint32_t ray = 0; ray < kRays; ++ray) {
@@ -201,7 +201,7 @@ TEST(SliceWalk, VisitsEveryCellTouchedOnceAndInOrder) {
         const float first = frustum.slab_of(0, frustum.cells_k - 1).entry;
         hit.t[ray] = march > 0.0f ? std::fmin((first + way) / march, kFloatMax) : 1.0f;
       }
-      check_pass(scene, hit, frustum, reach_of<Lanes<4>>(hit, frustum), touched);
+      check_pass(scene, hit, frustum, reach_of<Lanes<4>>(hit), touched);
       if (HasFatalFailure()) return;
     }
   });
