@@ -17,11 +17,9 @@ namespace gridiron::experiment {
 namespace {
 
 // Renders the frame on a machine. Errors: Failure; kBadInput where its main memory is too small.
-rival::BvhFrame render(const rival::Bvh& bvh, const FrameSettings& settings, bool hyper_threading,
+rival::BvhFrame render(const rival::Bvh& bvh, const FrameSettings& settings, rival::RenderOptions options,
                        const sim::MachineProfile& machine, std::uint32_t core_count) {
-  rival::RenderOptions options;
   options.core_count = core_count;
-  options.hyper_threading = hyper_threading;
   rival::BvhFrame frame = rival::render_bvh_frame(bvh, settings, machine, options);
   tool::stop_if_interrupted();
   if (frame.status == Status::kMemoryTooSmall) {
@@ -43,11 +41,12 @@ TimedFrame timed(rival::BvhFrame frame) {
 
 class RivalRecording : public Recording {
  public:
-  RivalRecording(rival::Bvh bvh, const sim::BuildWork& build, const FrameSettings& settings, bool hyper_threading)
-      : bvh_(std::move(bvh)), settings_(settings), hyper_threading_(hyper_threading) {
+  RivalRecording(rival::Bvh bvh, const sim::BuildWork& build, const FrameSettings& settings,
+                 const rival::RenderOptions& options)
+      : bvh_(std::move(bvh)), settings_(settings), options_(options) {
     facts_.build = build;
     // What is known without a clock comes from a frame at home; its time is kept for whoever asks for it.
-    rival::BvhFrame frame = render(bvh_, settings_, hyper_threading_, *home_machine(), 0);
+    rival::BvhFrame frame = render(bvh_, settings_, options_, *home_machine(), 0);
     const auto count_of = [&frame](rival::RivalWork kind) { return frame.rival_work[static_cast<std::size_t>(kind)]; };
     facts_.traversal_steps = count_of(rival::RivalWork::kNodeStep) + count_of(rival::RivalWork::kMixedNodeStep) +
                              count_of(rival::RivalWork::kLeafVisit);
@@ -62,13 +61,13 @@ class RivalRecording : public Recording {
   [[nodiscard]] TimedFrame time(const sim::MachineProfile& machine, std::uint32_t core_count) const override {
     const sim::MachineProfile& home = *home_machine();
     if (machine == home && (core_count == 0 || core_count == home.core_count)) return at_home_;
-    return timed(render(bvh_, settings_, hyper_threading_, machine, core_count));
+    return timed(render(bvh_, settings_, options_, machine, core_count));
   }
 
  private:
   rival::Bvh bvh_;
   FrameSettings settings_;
-  bool hyper_threading_;
+  rival::RenderOptions options_;
   FrameFacts facts_;
   TimedFrame at_home_;
 };
@@ -78,7 +77,7 @@ class RivalRecording : public Recording {
 std::unique_ptr<Recording> RivalSystem::record(const View& view, const FrameRequest& request) const {
   const tool::Mesh& mesh = view.mesh();
   rival::Bvh bvh;
-  const Status status = rival::build_bvh(mesh.view(), {}, bvh);
+  const Status status = rival::build_bvh(mesh.view(), variant_.build, bvh);
   if (status != Status::kOk) {
     throw tool::Failure(tool::ExitCode::kBadInput, view.scene->path.string() + ": " + tool::words_of(status));
   }
@@ -88,7 +87,7 @@ std::unique_ptr<Recording> RivalSystem::record(const View& view, const FrameRequ
   settings.height = request.height;
   settings.shading = request.shading;
   const sim::BuildWork build = rival::bvh_build_work(mesh.vertices.size(), mesh.triangles.size(), bvh.counts);
-  return std::make_unique<RivalRecording>(std::move(bvh), build, settings, hyper_threading_);
+  return std::make_unique<RivalRecording>(std::move(bvh), build, settings, variant_.options);
 }
 
 }  // namespace gridiron::experiment

@@ -3,24 +3,38 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <gridiron/rival/bvh.h>
+#include <gridiron/rival/bvh_renderer.h>
+
 #include <memory>
 #include <string>
+#include <utility>
 
 #include "experiment/systems.h"
 
 namespace gridiron::experiment {
 
+/// How the hierarchy is built and traced; as it is tuned unless said otherwise.
+struct RivalVariant {
+  std::string key;
+  rival::BvhParameters build;
+  rival::RenderOptions options;  ///< core_count is not looked at
+};
+
 /// Packets through a hierarchy of boxes, software caches for nodes and triangles (sim_platform/gridiron/rival). What a
 /// tile costs there depends on which core renders it, so each machine and core count is rendered anew, not replayed.
 class RivalSystem : public System {
  public:
+  explicit RivalSystem(RivalVariant variant) : variant_(std::move(variant)) {}
   /// @param hyper_threading  packets that miss make way for the next of a ring; else a core waits for every miss.
-  explicit RivalSystem(bool hyper_threading) : hyper_threading_(hyper_threading) {}
-  [[nodiscard]] std::string key() const override { return hyper_threading_ ? "bvh" : "bvh_single"; }
+  explicit RivalSystem(bool hyper_threading) : variant_{hyper_threading ? "bvh" : "bvh_single", {}, {}} {
+    variant_.options.hyper_threading = hyper_threading;
+  }
+  [[nodiscard]] std::string key() const override { return variant_.key; }
   [[nodiscard]] std::unique_ptr<Recording> record(const View& view, const FrameRequest& request) const override;
 
  private:
-  bool hyper_threading_;
+  RivalVariant variant_;
 };
 
 }  // namespace gridiron::experiment

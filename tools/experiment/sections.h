@@ -61,6 +61,7 @@ void write_host_figures(const Stage& stage, std::uint32_t threads, Book& book);
 [[nodiscard]] Writer plan_machine_sweeps(Plan& plan, const Stage& stage);   ///< latency, bandwidth
 [[nodiscard]] Writer plan_tile_sweep(Plan& plan, const Stage& stage);       ///< tiles of 8 to 64 pixels
 [[nodiscard]] Writer plan_store_sweep(Plan& plan, const Stage& stage);      ///< 64 to 512 KB, the maps
+[[nodiscard]] Writer plan_rival_sweep(Plan& plan, const Stage& stage);      ///< settings of the hierarchy
 
 /// @returns the machine with another latency, under the key that all sections give it.
 [[nodiscard]] Machine machine_with_latency(const Machine& machine, double cycles);
