@@ -224,7 +224,7 @@ ChoiceWords plan_choice_words(Plan& plan, const Stage& stage) {
              " of its cycles instead of the " + waits_at(done, steps, "best", 2).percent(2) + " with 2";
     };
     return "Its packets, tiles and grid are chosen by the sweeps below for frames a second, its depths for little "
-           "waiting at next to no cost in frames: against the fastest value of the sweep, on the views that are swept, "
+           "waiting: against the fastest value of the sweep, on the views that are swept, "
            "it loses " +
            lost_frames(done, lambdas, "best", static_cast<double>(best.lambda)).percent(2) + " for its lambda, " +
            lost_frames(done, widths, "best", best.macro_width).percent(2) + " for its width of macrocells, " +

@@ -246,8 +246,9 @@ Writer plan_table4(Plan& plan, const Stage& stage) {
                    " and gains " + projection.gain.percent(1) +
                    ". The hidden share depends on how transfers and work interleave; the gain also depends on how "
                    "much there was to hide, which is the next table.");
-    book.table(hiding,
-               "Share of the waiting that is hidden, and the fps it gains, against the same system without hiding.");
+    book.table(
+        hiding,
+        "Share of the waiting that hiding removes, and the fps it gains, against the same system without hiding.");
     // Views that the paper does not have leave nothing to compare with.
     const std::string paper_words =
         of_paper.single.empty()

@@ -375,7 +375,7 @@ RenderArguments complete_render(const RawRender& raw, bool has_seed) {
 void add_experiment_options(CLI::App& app, ExperimentArguments& experiment, std::string& name) {
   const auto known = [](const std::string& text) { return text == "paper" ? std::optional(text) : std::nullopt; };
   add_parsed(app, "NAME", name, known, "an experiment; expected paper", "",
-             "paper: Tables 1-4, Figs. 5-7 and sweeps, as CSV, SVG and index.html; some five minutes of processor "
+             "paper: Tables 1-4, Figs. 5-7 and sweeps, as CSV, SVG and index.html; some six minutes of processor "
              "time, of which nothing is told before the end where standard error is no terminal")
       ->required();
   const auto folder = [](const std::string& text) {

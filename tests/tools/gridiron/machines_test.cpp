@@ -65,6 +65,22 @@ TEST(Machines, InfoAndPackFitTheMachineOfAFile) {
   EXPECT_EQ(packed["grid"]["lambda"], info["grid"]["lambda"]);
 }
 
+// A short queue reaches the kernel, which keeps to it: it waits more often, and does nothing else more often.
+TEST(Machines, AShortQueueChangesWaitsAlone) {
+  const TemporaryFolder folder;
+  folder.write("short.machine", "based_on cell-ps3\nqueue_depth 1\n");
+  folder.write("far.machine", "based_on cell-ps3\nlatency_cycles 5000\n");
+  const Json usual = report_on(folder, "cell-ps3"), brief = report_on(folder, "short.machine");
+  EXPECT_EQ(report_on(folder, "far.machine")["work"], usual["work"]) << "times have no say in the work";
+  EXPECT_GT(brief["work"]["wait"], usual["work"]["wait"]);
+  EXPECT_EQ(brief["image_hash"], usual["image_hash"]);
+  for (const auto& [kind, count] : usual["work"].items()) {
+    if (kind != "wait") {
+      EXPECT_EQ(brief["work"][kind], count) << kind;
+    }
+  }
+}
+
 // The least that a machine file may say renders a small picture of a small scene, in every configuration.
 TEST(Machines, TheSmallestMachineRenders) {
   const TemporaryFolder folder;
