@@ -14,7 +14,7 @@ using sim::BuildStep;
 TEST(BvhBuildWork, EachCountIsAStep) {
   BuildCounts counts;
   counts.bin_updates = 700;
-  counts.bins_swept = 3 * 2 * 16 * 5;  // five nodes of three axes and 16 bins
+  counts.bins_swept = 480;
   counts.binary_nodes = 5;
   counts.triangles_moved = 30;
   counts.records_written = 11;
@@ -24,15 +24,12 @@ TEST(BvhBuildWork, EachCountIsAStep) {
   EXPECT_EQ(work[BuildStep::kTriangleWrite], 11u);
   EXPECT_EQ(work[BuildStep::kBinUpdate], 700u);
   EXPECT_EQ(work[BuildStep::kTriangleMoved], 30u);
+  EXPECT_EQ(work[BuildStep::kBinSwept], 480u);
   EXPECT_EQ(work[BuildStep::kNodeMade], 5u);
   EXPECT_EQ(work[BuildStep::kCellBox] + work[BuildStep::kReferenceSort] + work[BuildStep::kCheckedLine], 0u);
-
-  counts.bins_swept += 1;
-  EXPECT_EQ(bvh_build_work(20, 12, counts)[BuildStep::kNodeMade], 6u) << "a part of a sweep counts as one";
 }
 
-// With 16 bins, between all inner nodes swept and nothing else, and all nodes swept; with 6 bins less, but more than
-// in proportion, for the nodes are as many.
+// Nodes are those of the tree of pairs; every node that is no leaf was swept, over three axes, there and back at most.
 TEST(BvhBuildWork, SweepsOfARealTree) {
   const test::TestMesh mesh = test::make_torus(80, 40, 1.0f, 0.35f);
   const auto work_of = [&mesh](std::uint32_t bin_count, Bvh& bvh) {
@@ -42,11 +39,11 @@ TEST(BvhBuildWork, SweepsOfARealTree) {
   Bvh bvh, coarse;
   const sim::BuildWork work = work_of(16, bvh);
   EXPECT_EQ(work[BuildStep::kTriangleWrite], mesh.view().triangles.size());
-  EXPECT_LE(work[BuildStep::kNodeMade], bvh.counts.binary_nodes);
-  EXPECT_GE(work[BuildStep::kNodeMade], bvh.counts.binary_nodes - bvh.counts.leaves - 1);
-  const std::uint64_t coarse_nodes = work_of(6, coarse)[BuildStep::kNodeMade];
-  EXPECT_LT(coarse_nodes, work[BuildStep::kNodeMade] * 6 / 10);
-  EXPECT_GT(coarse_nodes, work[BuildStep::kNodeMade] * 6 / 16);
+  EXPECT_EQ(work[BuildStep::kNodeMade], bvh.counts.binary_nodes);
+  EXPECT_GE(work[BuildStep::kNodeMade], 2 * (work[BuildStep::kTriangleWrite] / bvh.parameters.leaf_triangles) - 1);
+  EXPECT_GE(work[BuildStep::kBinSwept], (bvh.counts.binary_nodes - bvh.counts.leaves) * 16);
+  EXPECT_LE(work[BuildStep::kBinSwept], bvh.counts.binary_nodes * 3 * 2 * 16);
+  EXPECT_LT(work_of(6, coarse)[BuildStep::kBinSwept], work[BuildStep::kBinSwept] / 2);
   const sim::MasterProfile& master = sim::find_machine_profile("cell-ps3")->master;
   const double bins = master.step_cycles[static_cast<std::size_t>(BuildStep::kBinUpdate)] *
                       static_cast<double>(work[BuildStep::kBinUpdate]);

@@ -20,6 +20,10 @@ struct Step {
   Plan::RunId run;
 };
 
+bool is_same_curve(const Step& a, const Step& b) {
+  return a.view == b.view && a.configuration == b.configuration;
+}
+
 // Plans each value for each swept view and configuration; `change` makes a variant, or nothing where there is none.
 template <class Change>
 std::vector<Step> plan_steps(Plan& plan, const Stage& stage, const std::vector<double>& values, const std::string& name,
@@ -93,13 +97,11 @@ double wait_of(const RunResult& run) {
   return run.wait_percent();
 }
 
-// "3 (Bunny, reference), ...": the value that gave each curve its most frames a second.
+// "3 (Bunny, reference), ...": the value that gave each curve its most frames a second; the ends of its range told.
 std::string best_values(const Plan& done, const std::vector<Step>& steps) {
   std::vector<const Step*> best;
   for (const Step& step : steps) {
-    const auto same = std::ranges::find_if(best, [&step](const Step* other) {
-      return other->view == step.view && other->configuration == step.configuration;
-    });
+    const auto same = std::ranges::find_if(best, [&step](const Step* other) { return is_same_curve(*other, step); });
     if (same == best.end()) {
       best.push_back(&step);
     } else if (!(done.result((*same)->run).fps() >= done.result(step.run).fps())) {  // also where that one failed
@@ -108,25 +110,132 @@ std::string best_values(const Plan& done, const std::vector<Step>& steps) {
   }
   std::string text;
   for (const Step* step : best) {
-    text += (text.empty() ? "" : ", ") + number_text(step->value) + " (" + step->view->title + ", " +
+    std::vector<double> values;
+    for (const Step& other : steps) {
+      if (is_same_curve(other, *step)) values.push_back(other.value);
+    }
+    text += (text.empty() ? "" : ", ") + swept_value_words(step->value, values) + " (" + step->view->title + ", " +
             step->configuration + ")";
   }
   return text;
 }
 
+// Of a configuration: what its own value has fewer frames than the fastest one, in percent, over the views.
+Range lost_frames(const Plan& done, const std::vector<Step>& steps, const std::string& configuration, double own) {
+  Range lost;
+  for (const Step& chosen : steps) {
+    if (chosen.configuration != configuration || chosen.value != own) continue;
+    double most = 0;
+    for (const Step& other : steps) {
+      const RunResult& run = done.result(other.run);
+      if (is_same_curve(other, chosen) && !run.failed()) most = std::max(most, run.fps());
+    }
+    lost.add(percent_less(done.result(chosen.run).fps(), most));
+  }
+  return lost;
+}
+
+// Waiting, in percent of core cycles, of a configuration at a value, over the views.
+Range waits_at(const Plan& done, const std::vector<Step>& steps, const std::string& configuration, double value) {
+  Range waits;
+  for (const Step& step : steps) {
+    if (step.configuration == configuration && step.value == value) waits.add(done.result(step.run).wait_percent());
+  }
+  return waits;
+}
+
+// "reference 5.5 to 30.1 %, best 0.5 to 3.3 %": what the last value fetches more than the first.
+std::string fetched_more(const Plan& done, const std::vector<Step>& steps) {
+  std::string text;
+  for (const char* configuration : kSweptConfigurations) {
+    Range more;
+    for (const Step& first : steps) {
+      if (first.configuration != configuration || first.value != steps.front().value) continue;
+      for (const Step& last : steps) {
+        if (!is_same_curve(last, first) || last.value != steps.back().value) continue;
+        more.add(percent_more(static_cast<double>(done.result(last.run).bytes_in()),
+                              static_cast<double>(done.result(first.run).bytes_in())));
+      }
+    }
+    text += (text.empty() ? "" : ", ") + std::string(configuration) + " " + more.percent(1);
+  }
+  return text;
+}
+
+std::vector<Step> plan_lambdas(Plan& plan, const Stage& stage) {
+  return plan_steps(plan, stage, {0.125, 0.25, 0.4, 0.7, 1, 2, 3, 4, 5, 6, 8, 16}, "lambda",
+                    [](GridVariant& variant, double value) {
+                      variant.configuration.lambda = static_cast<float>(value);
+                      return true;
+                    });
+}
+
+std::vector<Step> plan_widths(Plan& plan, const Stage& stage) {
+  return plan_steps(plan, stage, {2, 3, 4, 5, 6, 7, 8}, "macro_width", [](GridVariant& variant, double value) {
+    variant.configuration.macro_width = static_cast<std::uint32_t>(value);
+    return true;
+  });
+}
+
+// 1 to the most that the usual store has room for.
+std::vector<double> depths_up_to(std::uint32_t most) {
+  std::vector<double> depths;
+  for (std::uint32_t depth = 1; depth <= most; ++depth) depths.push_back(depth);
+  return depths;
+}
+
+std::vector<double> macro_depth_values() {
+  return depths_up_to(tool::usual_store_facts(sim::StoreSize::k256KB, 32).max_macro_depth);
+}
+
+std::vector<double> triangle_depth_values() {
+  return depths_up_to(tool::usual_store_facts(sim::StoreSize::k256KB, 32).max_triangle_depth);
+}
+
+std::vector<Step> plan_macro_depths(Plan& plan, const Stage& stage) {
+  return plan_steps(plan, stage, macro_depth_values(), "macro_depth", [](GridVariant& variant, double value) {
+    variant.configuration.depths.macro = static_cast<std::uint32_t>(value);
+    return true;
+  });
+}
+
+std::vector<Step> plan_triangle_depths(Plan& plan, const Stage& stage) {
+  return plan_steps(plan, stage, triangle_depth_values(), "triangle_depth", [](GridVariant& variant, double value) {
+    variant.configuration.depths.triangle = static_cast<std::uint32_t>(value);
+    return true;
+  });
+}
+
 }  // namespace
 
+std::string swept_value_words(double value, std::span<const double> values) {
+  return number_text(value) + (value == values.front()  ? ", the first of its sweep"
+                               : value == values.back() ? ", the last of its sweep"
+                                                        : "");
+}
+
+ChoiceWords plan_choice_words(Plan& plan, const Stage& stage) {
+  const auto lambdas = plan_lambdas(plan, stage), widths = plan_widths(plan, stage);
+  const auto macros = plan_macro_depths(plan, stage), triangles = plan_triangle_depths(plan, stage);
+  return [lambdas, widths, macros, triangles](const Plan& done) {
+    const tool::Configuration best = grid_variant("best").configuration;
+    const auto depth_words = [&done](const std::vector<Step>& steps, std::uint32_t own, const std::string& noun) {
+      return lost_frames(done, steps, "best", own).percent(2) + " for its " + std::to_string(own) + " " + noun +
+             ", with which it waits " + waits_at(done, steps, "best", own).percent(2) +
+             " of its cycles instead of the " + waits_at(done, steps, "best", 2).percent(2) + " with 2";
+    };
+    return "Its packets, tiles and grid are chosen by the sweeps below for frames a second, its depths for little "
+           "waiting: against the fastest value of the sweep, on the views that are swept, "
+           "it loses " +
+           lost_frames(done, lambdas, "best", static_cast<double>(best.lambda)).percent(2) + " for its lambda, " +
+           lost_frames(done, widths, "best", best.macro_width).percent(2) + " for its width of macrocells, " +
+           depth_words(macros, best.depths.macro, "cell blocks") + ", and " +
+           depth_words(triangles, best.depths.triangle, "triangle buffers") + ".";
+  };
+}
+
 Writer plan_grid_sweeps(Plan& plan, const Stage& stage) {
-  const auto lambdas =
-      plan_steps(plan, stage, {0.5, 1, 2, 3, 4, 5, 6, 8, 12, 16}, "lambda", [](GridVariant& variant, double value) {
-        variant.configuration.lambda = static_cast<float>(value);
-        return true;
-      });
-  const auto widths =
-      plan_steps(plan, stage, {2, 3, 4, 5, 6, 7, 8}, "macro_width", [](GridVariant& variant, double value) {
-        variant.configuration.macro_width = static_cast<std::uint32_t>(value);
-        return true;
-      });
+  const auto lambdas = plan_lambdas(plan, stage), widths = plan_widths(plan, stage);
   return [lambdas, widths](const Plan& done, Book& book) {
     book.section("lambda", "Sweep: cells per triangle");
     book.paragraph(
@@ -204,15 +313,16 @@ Writer plan_packet_sweep(Plan& plan, const Stage& stage) {
                  {"packet_width", "packet width"},
                  {"double_fps", "double buffering, fps"},
                  {"double_wait_percent", "wait, %"},
-                 {"deep_fps", "deep prefetch, fps"},
-                 {"deep_wait_percent", "wait, %"},
-                 {"fetched_mb", "fetched, MB", 1}},
+                 {"double_fetched_mb", "fetched, MB", 1},
+                 {"prefetch_fps", "prefetch of best, fps"},
+                 {"prefetch_wait_percent", "wait, %"},
+                 {"prefetch_fetched_mb", "fetched, MB", 1}},
                 {}};
     for (const Row& row : rows) {
       const RunResult& two = done.result(row.two);
       const RunResult& deep = done.result(row.deep);
       table.add({row.view->title, row.subpackets ? "subpackets" : "corner rays", std::uint64_t{row.width}, two.fps(),
-                 two.wait_percent(), deep.fps(), deep.wait_percent(),
+                 two.wait_percent(), static_cast<double>(two.bytes_in()) / (1 << 20), deep.fps(), deep.wait_percent(),
                  static_cast<double>(deep.bytes_in()) / (1 << 20)});
     }
     book.section("packets", "Sweep: packet size");
@@ -221,33 +331,23 @@ Writer plan_packet_sweep(Plan& plan, const Stage& stage) {
         "(reference) or by subpackets of 4x4 rays (best). Wide packets fetch and walk less often; without subpackets "
         "every triangle that touches the packet is then tested against all of its rays. Mailboxes have 64 slots for "
         "packets of 4x4 and 8x8, 256 for those of 16x16, 1,024 for those of 32x32.");
-    book.table(table,
-               "Packet size and culling, 6 cores, no shading. Double buffering: 2 cell blocks, 2 triangle buffers; "
-               "deep prefetch: 4 and 3.");
+    book.table(table, "Packet size and culling, 6 cores, no shading. Double buffering: " + buffer_words("reference") +
+                          "; prefetch of best: " + buffer_words("best") + ".");
   };
 }
 
 Writer plan_prefetch_sweeps(Plan& plan, const Stage& stage) {
-  const tool::StoreFacts facts = tool::usual_store_facts(sim::StoreSize::k256KB, 32);
-  std::vector<double> macro_depths, triangle_depths;
-  for (std::uint32_t depth = 1; depth <= facts.max_macro_depth; ++depth) macro_depths.push_back(depth);
-  for (std::uint32_t depth = 1; depth <= facts.max_triangle_depth; ++depth) triangle_depths.push_back(depth);
-  const auto macros = plan_steps(plan, stage, macro_depths, "macro_depth", [](GridVariant& variant, double value) {
-    variant.configuration.depths.macro = static_cast<std::uint32_t>(value);
-    return true;
-  });
-  const auto triangles =
-      plan_steps(plan, stage, triangle_depths, "triangle_depth", [](GridVariant& variant, double value) {
-        variant.configuration.depths.triangle = static_cast<std::uint32_t>(value);
-        return true;
-      });
-  return [macros, triangles, macro_depths, triangle_depths](const Plan& done, Book& book) {
+  const auto macros = plan_macro_depths(plan, stage), triangles = plan_triangle_depths(plan, stage);
+  return [macros, triangles](const Plan& done, Book& book) {
     book.section("prefetch", "Sweep: prefetch depth");
     book.paragraph(
         "Buffers in rotation at one level, the other levels as the configuration has them: 1 fetches, waits and uses, "
-        "2 is double buffering. Deeper prefetch fetches a little more than is used, because rays may end before the "
-        "prefetched cell. Most frames a second with this many cell blocks: " +
-        best_values(done, macros) + "; with this many triangle buffers: " + best_values(done, triangles) + ".");
+        "2 is double buffering. Deeper prefetch fetches more than is used, because rays may end before the prefetched "
+        "cell. From the least to the most cell blocks the bytes grow by: " +
+        fetched_more(done, macros) +
+        "; from the least to the most triangle buffers by: " + fetched_more(done, triangles) +
+        ". Most frames a second with this many cell blocks: " + best_values(done, macros) +
+        "; with this many triangle buffers: " + best_values(done, triangles) + ".");
     book.figure("sweep_macro_depth",
                 step_chart(done, macros,
                            {.title = "Prefetch of cell blocks",
@@ -256,7 +356,7 @@ Writer plan_prefetch_sweeps(Plan& plan, const Stage& stage) {
                             .series = {},
                             .log_x = false,
                             .log_y = false,
-                            .x_ticks = macro_depths},
+                            .x_ticks = macro_depth_values()},
                            wait_of),
                 "Share of waiting against the number of cell-block buffers, 6 cores, no shading.");
     book.figure("sweep_triangle_depth",
@@ -267,7 +367,7 @@ Writer plan_prefetch_sweeps(Plan& plan, const Stage& stage) {
                             .series = {},
                             .log_x = false,
                             .log_y = false,
-                            .x_ticks = triangle_depths},
+                            .x_ticks = triangle_depth_values()},
                            wait_of),
                 "Share of waiting against the number of triangle buffers, 6 cores, no shading.");
     book.linked_table(step_table(done, macros, "sweep_macro_depth", {"macro_depth", "cell blocks", 0}), "cell blocks.");

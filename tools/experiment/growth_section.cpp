@@ -23,7 +23,7 @@ std::string_view not_in_paper(const Contender&) {
 const Quantity kQuantities[] = {
     {"build steps", [](const Contender& contender) { return contender.paper_growth.build; },
      [](const RunResult& run) { return static_cast<double>(run.facts.build_steps()); }},
-    {"build cycles of the master", not_in_paper,
+    {"build cycles of the general core", not_in_paper,
      [](const RunResult& run) { return static_cast<double>(run.build_cycles); }},
     {"traversal steps", [](const Contender& contender) { return contender.paper_growth.traversal; },
      [](const RunResult& run) { return static_cast<double>(run.facts.traversal_steps); }},
@@ -88,7 +88,7 @@ Writer plan_table1(Plan& plan, const Stage& stage) {
                   {"cells", "cells"},
                   {"references", "references"},
                   {"build_steps", "build steps"},
-                  {"build_cycles", "build cycles of the master", 0},
+                  {"build_cycles", "build cycles of the general core", 0},
                   {"traversal_steps", "traversal steps"},
                   {"intersection_tests", "intersection tests"},
                   {"frame_cycles", "frame cycles", 0},
@@ -245,9 +245,12 @@ Writer plan_table2(Plan& plan, const Stage& stage) {
         "is the public version with more triangles than the paper's, many of them of zero area, which are dropped. The "
         "paper does not say from where it looks at its scenes; the views are ours, so single figures may differ from "
         "the paper's for that reason alone.");
-    book.table(table,
-               "Scenes and the grid of the reference configuration. Digits that the paper's text form lost (horse, "
-               "armadillo) are completed from the models themselves.");
+    book.table(
+        table,
+        "Scenes and the grid of the reference configuration. Of the paper's counts only the bunny's are whole in its "
+        "text: the first digits of the horse and the last of the armadillo are there, completed from the models "
+        "that it names, and of the conference room, one model in two columns, the first digits of one column "
+        "and the last of the other.");
   };
 }
 

@@ -88,17 +88,24 @@ Writer plan_figure6(Plan& plan, const Stage& stage) {
     for (const auto& [hiding, titles] : hidden_by) {
       hidings += (hidings.empty() ? "" : ", ") + hiding + " (" + titles + ")";
     }
+    Range growths;  // of computation, which hiding does not make less
+    for (const Pair& pair : pairs) {
+      for (std::size_t c = 0; c < stage.contenders.size(); ++c) {
+        growths.add(percent_more(Breakdown(done.result(pair.hidden[c])).compute,
+                                 Breakdown(done.result(pair.unhidden[c])).compute));
+      }
+    }
     book.section("fig6", "Fig. 6: where the time goes");
     book.paragraph(
         "The time of a frame, split as in the paper: initialisation (starting tiles and packets, generating rays), "
         "computation (traversal, intersection, issuing commands) and waiting for DMA. The left bar of each pair "
-        "fetches, waits and uses at all levels; the right bar hides latency: " +
-        hidings +
-        ". As in the paper it is the waiting that shrinks; computation grows a little: prefetch also walks cells that "
-        "turn out not to be needed, and packets that take turns cost their switching. A fourth part, idle, is what the "
-        "dynamic "
-        "distribution of tiles leaves at the end of a frame; the paper does not show it. All values are of the mean "
-        "core, without shading.");
+        "fetches, waits and uses at all levels that it fetches at; of the output, the grid's left bars wait for every "
+        "tile to be written, while the hierarchy writes from two buffers in both of its bars. The right bar hides "
+        "latency: " +
+        hidings + ". As in the paper it is the waiting that shrinks; computation changes by " + growths.percent(1) +
+        ": prefetch also walks cells that turn out not to be needed, and packets that take turns cost their "
+        "switching. A fourth part, idle, is what the dynamic distribution of tiles leaves at the end of a frame; the "
+        "paper does not show it. All values are of the mean core, without shading.");
     for (std::size_t c = 0; c < stage.contenders.size(); ++c) {
       for (std::size_t i = 0; i < std::size(kPaperCoreCounts); ++i) {
         BarChart chart;
@@ -166,24 +173,24 @@ Writer plan_table4(Plan& plan, const Stage& stage) {
     Table hiding{"table4_hiding", {{"view", "view"}, {"cores", "cores"}}, {}};
     Table wait{"table4_wait_share", {{"view", "view"}, {"cores", "cores"}}, {}};
     for (const Contender& contender : stage.contenders) {
-      hiding.columns.push_back({contender.key + "_hidden_percent", contender.title + ": hidden, %", 1});
-      wait.columns.push_back({contender.key + "_single_percent", contender.title + ": single, %", 1});
+      hiding.columns.push_back({contender.key + "_hidden_percent", contender.title + ": waiting removed, %", 1});
+      wait.columns.push_back({contender.key + "_single_wait_percent", contender.title + ": waiting, single, %", 1});
     }
-    hiding.columns.push_back({"paper_hidden_percent_printed", "paper: hidden, % [P]", 1});
-    wait.columns.push_back({"paper_single_percent_derived", "paper: single, % [D]", 1});
+    hiding.columns.push_back({"paper_hidden_percent_printed", "paper: waiting removed, % [P]", 1});
+    wait.columns.push_back({"paper_single_wait_percent_derived", "paper: waiting, single, % [D]", 1});
     for (const Contender& contender : stage.contenders) {
       hiding.columns.push_back({contender.key + "_fps_gain_percent", contender.title + ": fps gain, %", 1});
-      wait.columns.push_back({contender.key + "_hidden_percent", contender.title + ": hidden, %", 1});
+      wait.columns.push_back({contender.key + "_hidden_wait_percent", contender.title + ": waiting, hidden, %", 1});
     }
     hiding.columns.push_back({"paper_fps_gain_percent_printed", "paper: fps gain, % [P]", 1});
-    wait.columns.push_back({"paper_double_percent_derived", "paper: double, % [D]", 1});
+    wait.columns.push_back({"paper_hidden_wait_percent_derived", "paper: waiting, hidden, % [D]", 1});
 
     // For the words: of the reference, of the same with the paper's own test, and of the paper.
     struct Ranges {
       Range hidden, gain, single, hidden_wait;
     };
     Ranges reference, projection, of_paper;
-    Range growth_range;
+    Range growth_range, byte_ratios, work_ratios;  // the last two: projection over reference
     for (const Pair& pair : pairs) {
       const PaperView* paper = find_paper_view(pair.view->key);
       std::vector<Cell> hidden = {pair.view->title, std::uint64_t{pair.cores()}};
@@ -205,6 +212,10 @@ Writer plan_table4(Plan& plan, const Stage& stage) {
         ranges.gain.add(gain_percent);
         ranges.single.add(before.wait_percent());
         ranges.hidden_wait.add(after.wait_percent());
+        if (key != "projection") continue;
+        const RunResult& other = done.result(pair.hidden[c - 1]);
+        byte_ratios.add(ratio_of(static_cast<double>(after.bytes_in()), static_cast<double>(other.bytes_in())));
+        work_ratios.add(ratio_of(Breakdown(after).compute, Breakdown(other).compute));
       }
       if (paper != nullptr) {
         of_paper.single.add(derived_single_wait_percent(*paper, pair.cores_index));
@@ -235,8 +246,9 @@ Writer plan_table4(Plan& plan, const Stage& stage) {
                    " and gains " + projection.gain.percent(1) +
                    ". The hidden share depends on how transfers and work interleave; the gain also depends on how "
                    "much there was to hide, which is the next table.");
-    book.table(hiding,
-               "Share of the waiting that is hidden, and the fps it gains, against the same system without hiding.");
+    book.table(
+        hiding,
+        "Share of the waiting that hiding removes, and the fps it gains, against the same system without hiding.");
     // Views that the paper does not have leave nothing to compare with.
     const std::string paper_words =
         of_paper.single.empty()
@@ -252,11 +264,16 @@ Writer plan_table4(Plan& plan, const Stage& stage) {
                         ? ": here, as in the paper, latency binds and not bandwidth."
                         : "."));
     book.paragraph(
-        "What moves these shares can be measured. What is computed beside the transfers: with the paper's "
-        "own test, the same transfers and less work, the shares are " +
-        projection.single.percent(1) + " and " + projection.hidden_wait.percent(1) +
+        "What moves these shares can be measured. What is computed beside the transfers: with the paper's own test, "
+        "which fetches " +
+        byte_ratios.text(3) + " times the reference's bytes and computes for " + work_ratios.text(2) +
+        " times its cycles, the shares are " + projection.single.percent(1) + " and " +
+        projection.hidden_wait.percent(1) +
         ". The latency, an assumption of 500 cycles: single-buffered on six cores, the reference waits " +
-        latency_words(done, latencies) + ". The paper's views, which are unknown: the spread within a column. " +
+        latency_words(done, latencies) +
+        ". The view: how far the shares are apart within a column shows what it can do, and the paper does not tell "
+        "its "
+        "views. " +
         kCostTableWords);
     book.table(wait, "Share of core cycles spent waiting for DMA.");
   };
@@ -279,7 +296,8 @@ Writer plan_best(Plan& plan, const Stage& stage) {
                       plan.add(view, best.system, shading, stage.machine, 1)});
     }
   }
-  return [rows](const Plan& done, Book& book) {
+  const ChoiceWords choice_words = plan_choice_words(plan, stage);
+  return [rows, choice_words](const Plan& done, Book& book) {
     Table table{"best_against_reference",
                 {{"shading", "shading"},
                  {"view", "view"},
@@ -316,13 +334,14 @@ Writer plan_best(Plan& plan, const Stage& stage) {
     book.paragraph(
         "Configuration best has the same exact test and a coarser grid. It traverses the grid once per tile instead of "
         "once per 8x8 packet, so that what was fetched serves 1,024 rays, culls by the pixels that a triangle can "
-        "cover and by subpackets of 4x4 rays, and keeps four cell blocks and three triangle buffers in rotation. "
-        "Packet and tile size, lambda, width of macrocells and depths are chosen by the sweeps below: as it tests a "
-        "triangle cheaply and walks for 1,024 rays at once, large cells cost it little, and one cell per triangle "
-        "needs less memory, fewer transfers and a shorter build than four; two triangle buffers hide nearly all "
-        "waiting, a "
-        "third some of the rest, and more of them fetch what is not used. Records are the reference's, 48 bytes a "
-        "triangle and 8 a cell, and a cell's triangles come in one run. On six cores it renders " +
+        "cover and by subpackets of 4x4 rays, and keeps " +
+        buffer_words("best") +
+        " in rotation. As it tests a triangle cheaply and walks for 1,024 rays at once, large "
+        "cells cost it little, and one cell per triangle needs less memory, fewer transfers and a shorter build than "
+        "four. " +
+        choice_words(done) +
+        " Records are the reference's, 48 bytes a triangle and 8 a cell, and a cell's triangles come in one run. On "
+        "six cores it renders " +
         ratios.text(2) + " times the frames of the reference, waits " + waits.percent(2) + " of its cycles, and " +
         gone.percent(1) + " of the reference's single-buffered waiting (in core cycles) is gone. " +
         (all_same ? "All three runs of every row render the same picture, pixel for pixel."

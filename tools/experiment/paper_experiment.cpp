@@ -60,6 +60,10 @@ std::string Range::percent(int decimals) const {
   return empty_ ? "none" : text(decimals) + " %";
 }
 
+double ratio_of(double part, double whole) {
+  return whole > 0 ? part / whole : std::nan("");
+}
+
 double percent_less(double part, double whole) {
   return whole > 0 ? 100 * (1 - part / whole) : std::nan("");
 }
@@ -85,7 +89,7 @@ std::vector<std::string> paper_file_names() {
       "table4_hiding.csv", "table4_wait_share.csv"};
   // clang-format on
   for (const Contender& contender : make_contenders()) {
-    names.push_back("fig5_" + contender.key + ".svg");
+    for (const char* kind : {"", "_efficiency"}) names.push_back("fig5_" + contender.key + kind + ".svg");
     for (const char* cores : {"_1_core", "_6_cores"}) names.push_back("fig6_" + contender.key + cores + ".svg");
   }
   for (const std::string& view : known_view_keys()) {
@@ -121,8 +125,12 @@ PaperResult run_paper_experiment(const PaperExperiment& experiment,
       "Every figure below comes from one run of `gridiron experiment paper`: pictures of " + size +
           " rendered by the kernel's real code on the simulated chip " + stage.machine.key +
           ", their recorded transfers and work replayed on the machine's clock. " + kCostTableWords +
-          " Nothing is fitted to the paper's figures. [P] marks what the paper prints, [D] what "
-          "follows from what it prints. Paper: Cho, Kim, Han, Enhancing Visual Rendering on Multicore Accelerators "
+          " Nothing is fitted to the paper's figures. [P] marks what the paper prints, as far as its text shows it: "
+          "the "
+          "copy that these figures were taken from has lost digits of Table 2, all of Table 3 and the plots of Figs. 5 "
+          "to 7. [D] marks what follows from what it prints. MB are 2^20 bytes, GB/s 10^9 bytes a second; an "
+          "intersection test is one of a SIMD group of four rays with a triangle. Paper: Cho, Kim, Han, Enhancing "
+          "Visual Rendering on Multicore Accelerators "
           "with Explicitly Managed Memories, Journal of Information Science and Engineering 28 (2012), 895-909.");
   for (const Writer& write : before_host) write(plan, book);
   write_host_figures(stage, experiment.threads, book);

@@ -6,8 +6,9 @@
 namespace gridiron::experiment {
 namespace {
 
-// Table 2: the text form of the paper keeps these digits of the horse (48,...; 96,...) and of the armadillo (...,974;
-// ...,944); the counts are those of the models it names. Tables 3 and Figs. 5-7 lost their numbers altogether.
+// Table 2: the paper's text keeps these digits of the horse (48,...; 96,...) and of the armadillo (...,974; ...,944);
+// the counts are those of the models it names. The conference room's begin in one of its two columns and end in the
+// other (166,...; ...,867; 282,...; ...,755). Table 3 and Figs. 5-7 lost their numbers altogether.
 constexpr std::array<PaperView, 5> kViews = {{
     {"bunny", 35'947, 69'451, {71.7, 71.2}, {15.4, 15.6}},
     {"horse", 48'485, 96'966, {75.2, 73.8}, {14.1, 14.7}},

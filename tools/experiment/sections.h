@@ -4,6 +4,9 @@
 
 #include <cstdint>
 #include <functional>
+#include <span>
+#include <string>
+#include <string_view>
 #include <vector>
 
 #include "experiment/book.h"
@@ -63,6 +66,16 @@ void write_host_figures(const Stage& stage, std::uint32_t threads, Book& book);
 [[nodiscard]] Writer plan_store_sweep(Plan& plan, const Stage& stage);      ///< 64 to 512 KB, the maps
 [[nodiscard]] Writer plan_rival_sweep(Plan& plan, const Stage& stage);      ///< settings of the hierarchy
 
+/// Words about the parameters that configuration best was given: what they cost and bring against the others of their
+/// sweeps.
+using ChoiceWords = std::function<std::string(const Plan&)>;
+[[nodiscard]] ChoiceWords plan_choice_words(Plan& plan, const Stage& stage);
+
+/// @returns the value as a sweep's words give it: "16", or "16, the last of its sweep", where nobody knows what is
+/// behind.
+/// @param values  the sweep's, rising, not empty.
+[[nodiscard]] std::string swept_value_words(double value, std::span<const double> values);
+
 /// @returns the machine with another latency, under the key that all sections give it.
 [[nodiscard]] Machine machine_with_latency(const Machine& machine, double cycles);
 
@@ -84,6 +97,8 @@ class Range {
   double least_ = 0, greatest_ = 0;
 };
 
+/// @returns part / whole, not a number where whole is none or not above 0.
+[[nodiscard]] double ratio_of(double part, double whole);
 /// @returns 100 * (1 - part / whole), not a number where whole is none or not above 0.
 [[nodiscard]] double percent_less(double part, double whole);
 /// @returns 100 * (changed / base - 1), not a number where base is none or not above 0.

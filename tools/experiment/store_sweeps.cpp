@@ -125,10 +125,6 @@ double idle_percent(const RunResult& run) {
   return 100 * idle / (run.timing.frame_cycles * static_cast<double>(run.timing.cores.size()));
 }
 
-double ratio_of(double value, double usual) {
-  return usual > 0 ? value / usual : std::nan("");
-}
-
 bool is_same_picture(const Sweep& sweep, const Plan& done, const Point& point) {
   const RunResult* run = Sweep::result(done, point);
   const RunResult* usual = sweep.usual_result(done, point);
@@ -465,12 +461,40 @@ std::string widest_tiles() {
   return text;
 }
 
+// "; 64 KB hold fewer than best asks for": where a configuration is cut down.
+std::string short_store_words() {
+  std::string stores;
+  const tool::BufferDepths wanted = grid_variant("best").configuration.depths;
+  for (const NamedLayout& layout : layouts_of("best")) {
+    const bool is_short =
+        layout.facts.max_macro_depth < wanted.macro || layout.facts.max_triangle_depth < wanted.triangle;
+    if (is_short) stores += (stores.empty() ? "" : ", ") + layout.title;
+  }
+  return stores.empty() ? "" : "; " + stores + " have fewer than the " + buffer_words("best") + " of best";
+}
+
+// "64 KB: packet; ...": which regions have other sizes for reference and best.
+std::string differing_regions() {
+  std::string text;
+  const std::vector<NamedLayout> reference = layouts_of("reference"), best = layouts_of("best");
+  for (std::size_t i = 0; i < best.size(); ++i) {
+    std::string names;
+    const auto &ours = best[i].facts.regions, &theirs = reference[i].facts.regions;
+    for (std::size_t r = 0; r < ours.size(); ++r) {
+      if (ours[r].bytes != theirs[r].bytes) names += (names.empty() ? "" : ", ") + ours[r].name;
+    }
+    text += (text.empty() ? "" : "; ") + best[i].title + ": " + (names.empty() ? "none" : names);
+  }
+  return text;
+}
+
 void write_maps(Book& book) {
   book.section("map", "The local store, byte by byte");
   book.paragraph(
-      "Everything a core works in, in address order. The sizes are those of the compiled layouts, which hold the "
-      "deepest prefetch of a configuration, so reference and best differ only in packet, mailbox and, in 64 KB, the "
-      "buffers they use. Code and stack are committed budgets; the cross builds prove those of the layouts of 256 KB "
+      "Everything a core works in, in address order. The sizes are those of the compiled layouts, whose buffers are as "
+      "many as the first table tells, however many of them a configuration uses" +
+      short_store_words() + ". The layouts of reference and best differ in these regions: " + differing_regions() +
+      ". Code and stack are committed budgets; the cross builds prove those of the layouts of 256 KB "
       "with packets of 8x8 and 32x32, and of no others.");
   book.table(contents_table(), "What each layout holds.");
   for (const char* configuration : kSweptConfigurations) {

@@ -129,6 +129,17 @@ Axis fit_axis(double least, double greatest, bool logarithmic, double begin, dou
   return axis;
 }
 
+// A linear axis from the tick step below the least value to the one above the greatest.
+Axis span_axis(double least, double greatest, double begin, double end) {
+  const std::vector<double> ticks = tick_values(least, greatest, false);
+  const double step = ticks.size() > 1 ? ticks[1] - ticks[0] : greatest - least;
+  return {.low = std::floor(least / step + 1e-9) * step,
+          .high = std::ceil(greatest / step - 1e-9) * step,
+          .begin = begin,
+          .end = end,
+          .logarithmic = false};
+}
+
 bool can_show(double value, bool logarithmic) {
   return std::isfinite(value) && (logarithmic ? value > 0 : value >= 0);
 }
@@ -225,7 +236,9 @@ std::string line_chart_svg(const LineChart& chart) {
   }
   Axis x = fit_axis(x_least, x_greatest, chart.log_x, area.left, area.right);
   if (!chart.x_ticks.empty() && !chart.log_x) x.high = std::max(x_greatest, chart.x_ticks.back());
-  const Axis y = fit_axis(y_least, y_greatest, chart.log_y, area.bottom, area.top);
+  const Axis y = chart.zoom_y && !chart.log_y && y_greatest > y_least
+                     ? span_axis(y_least, y_greatest, area.bottom, area.top)
+                     : fit_axis(y_least, y_greatest, chart.log_y, area.bottom, area.top);
 
   // 2. Axes, ticks, titles.
   Drawing drawing(chart.title);
@@ -240,7 +253,7 @@ std::string line_chart_svg(const LineChart& chart) {
   drawing.line(area.left, area.bottom, area.right, area.bottom, kFrame);
   drawing.line(area.left, area.top, area.left, area.bottom, kFrame);
 
-  // 3. Curves. A dashed series has the colour of the last solid one that has its name, or grey.
+  // 3. Curves. Dashed ones are grey, the others take the colours in turn.
   std::vector<LegendEntry> legend;
   std::size_t color_count = 0;
   for (const Series& series : chart.series) {

@@ -44,6 +44,7 @@ struct LineChart {
   std::string title, x_title, y_title;
   std::vector<Series> series;
   bool log_x = false, log_y = false;  ///< linear axes start at 0
+  bool zoom_y = false;                ///< the linear y axis spans its values instead
   std::vector<double> x_ticks;        ///< empty: chosen
 };
 

@@ -16,6 +16,7 @@
 #include "gridiron/interrupt.h"
 #include "gridiron/stopwatch.h"
 #include "gridiron/untile.h"
+#include "gridiron/words.h"
 
 namespace gridiron::experiment {
 namespace {
@@ -112,12 +113,18 @@ GridVariant grid_variant(std::string_view configuration) {
   return {std::string(configuration), *tool::find_configuration(configuration)};
 }
 
+std::string buffer_words(std::string_view configuration) {
+  const tool::BufferDepths depths = grid_variant(configuration).configuration.depths;
+  return tool::words_of_count(depths.macro, "cell block") + " and " +
+         tool::words_of_count(depths.triangle, "triangle buffer");
+}
+
 std::vector<Contender> make_contenders() {
   GridVariant projection = grid_variant("reference");
   projection.accuracy = Accuracy::kPaper;
   return {grid_contender("reference", "reference", "double buffering", grid_variant("reference")),
           grid_contender("projection", "reference, projection test", "double buffering", projection),
-          grid_contender("best", "best", "deep prefetch", grid_variant("best")), bvh_contender()};
+          grid_contender("best", "best", buffer_words("best"), grid_variant("best")), bvh_contender()};
 }
 
 std::unique_ptr<Recording> GridSystem::record(const View& view, const FrameRequest& request) const {

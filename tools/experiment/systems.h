@@ -103,6 +103,9 @@ struct GridVariant {
 /// @returns the configuration of that name, e.g. "best". Precondition: there is one.
 [[nodiscard]] GridVariant grid_variant(std::string_view configuration);
 
+/// @returns "4 cell blocks and 3 triangle buffers": what a configuration keeps in rotation. Precondition as above.
+[[nodiscard]] std::string buffer_words(std::string_view configuration);
+
 /// The grid traversal of core, rendered in checked mode with 4 lanes and given a time by replay.
 class GridSystem : public System {
  public:

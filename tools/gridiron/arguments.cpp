@@ -166,10 +166,10 @@ void add_output_options(CLI::App& app, RawRender& raw) {
   app.add_flag("--quiet", render.quiet, "print nothing but errors");
 }
 
-void add_threads(CLI::App& app, std::uint32_t& threads) {
+void add_threads(CLI::App& app, std::uint32_t& threads, const std::string& effect) {
   constexpr std::uint32_t kMostThreads = 256;
   add_parsed(app, "--threads", threads, count_between(1, kMostThreads), "a whole number from 1 to 256", "N",
-             "host threads (default: the host's); no result depends on it");
+             "host threads (default: the host's); " + effect);
 }
 
 const Choices<StoreSize> kStores = {
@@ -181,7 +181,7 @@ void add_machine_options(CLI::App& app, RawRender& raw) {
   constexpr std::uint32_t kMostCores = 1024;
   add_parsed(app, "--cores", render.cores, count_between(1, kMostCores), "a whole number from 1 to 1024", "N",
              "cores of the machine (default: the profile's)");
-  add_threads(app, render.threads);
+  add_threads(app, render.threads, "no result depends on it");
   add_choice(app, "--store", raw.store, kStores, kStoreHelp);
   add_choice(app, "--mode", render.mode,
              Choices<Mode>{{"checked", Mode::kChecked}, {"plain", Mode::kPlain}, {"instrumented", Mode::kInstrumented}},
@@ -345,6 +345,12 @@ RenderArguments complete_render(const RawRender& raw, bool has_seed) {
 
   choose_layout(render, raw.store);
   const StoreFacts facts = *find_store_facts(render.layout());
+  render.wanted_depths = render.depths;
+  if (!raw.buffering) {  // a name promises a way of rendering; how deep it goes is the store's to say
+    render.depths.output = std::min(render.depths.output, facts.max_output_depth);
+    render.depths.macro = std::min(render.depths.macro, facts.max_macro_depth);
+    render.depths.triangle = std::min(render.depths.triangle, facts.max_triangle_depth);
+  }
   const std::uint32_t macro_width = render.scene.macro_width.value_or(configuration.macro_width);
   if (render.depths.output > facts.max_output_depth || render.depths.macro > facts.max_macro_depth ||
       render.depths.triangle > facts.max_triangle_depth || macro_width > facts.max_macro_width) {
@@ -369,7 +375,8 @@ RenderArguments complete_render(const RawRender& raw, bool has_seed) {
 void add_experiment_options(CLI::App& app, ExperimentArguments& experiment, std::string& name) {
   const auto known = [](const std::string& text) { return text == "paper" ? std::optional(text) : std::nullopt; };
   add_parsed(app, "NAME", name, known, "an experiment; expected paper", "",
-             "paper: Tables 1-4, Figs. 5-7 and sweeps, as CSV, SVG and index.html")
+             "paper: Tables 1-4, Figs. 5-7 and sweeps, as CSV, SVG and index.html; some six minutes of processor "
+             "time, of which nothing is told before the end where standard error is no terminal")
       ->required();
   const auto folder = [](const std::string& text) {
     return text.empty() ? std::nullopt : std::optional<std::filesystem::path>(text);
@@ -381,7 +388,7 @@ void add_experiment_options(CLI::App& app, ExperimentArguments& experiment, std:
                  "folder of the scans (default: the environment's GRIDIRON_SCENES); scans that are not there are left "
                  "out, and without any a teapot and a torus knot are made")
       ->type_name("DIR");
-  add_threads(app, experiment.threads);
+  add_threads(app, experiment.threads, "no file but host_*.csv, which measures this host, depends on it");
   add_size(app, experiment.width, experiment.height, "pictures in pixels (default 1024x1024)");
   add_parsed(app, "--largest", experiment.largest_knot, count_between(6'000, 10'000'000),
              "a whole number from 6000 to 10000000", "N", "triangles of the largest mesh of Table 1 (default 1000000)");

@@ -40,6 +40,7 @@ struct RenderArguments {
   std::uint32_t tile_width = 0;    ///< 0: the store's usual one
   std::uint32_t packet_width = 0;  ///< 0: the configuration's
   BufferDepths depths;
+  BufferDepths wanted_depths;  ///< the configuration's or the command line's; `depths` where the store holds fewer
   std::uint32_t techniques = 0;
   Accuracy accuracy = Accuracy::kStandard;
   Shading shading = Shading::kSimple;

@@ -19,7 +19,7 @@ constexpr Configuration kConfigurations[] = {
      .lambda = 4.0f, .macro_width = 6, .packet_width = 8,
      .depths = {.output = 2, .macro = 4, .triangle = 8}, .techniques = kReferenceTechniques},
     {.name = "best", .description = "one traversal per tile for all its rays, a coarse grid, culling by pixels",
-     .lambda = 1.0f, .macro_width = 4, .packet_width = 32,
+     .lambda = 0.4f, .macro_width = 4, .packet_width = 32,
      .depths = {.output = 2, .macro = 4, .triangle = 3},
      .techniques = kUseMailbox | kUseEmptySkip | kUseSubpackets},
 };

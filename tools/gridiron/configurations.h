@@ -13,6 +13,8 @@ struct BufferDepths {
   std::uint32_t output = 2;    ///< finished tiles
   std::uint32_t macro = 2;     ///< cell blocks
   std::uint32_t triangle = 2;  ///< triangle buffers
+
+  bool operator==(const BufferDepths&) const = default;
 };
 
 /// What a frame is rendered with unless an option of the command line says otherwise.

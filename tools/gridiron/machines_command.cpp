@@ -21,7 +21,7 @@ nlohmann::ordered_json json_of(const sim::MachineProfile& machine) {
   }
   return {{"name", machine.name},
           {"description", machine.description},
-          {"cores", machine.core_count},
+          {"core_count", machine.core_count},
           {"clock_hz", machine.clock_hz},
           {"main_memory_bytes", machine.main_memory_bytes},
           {"local_store_bytes", machine.local_store_bytes},
@@ -48,7 +48,7 @@ void run_command(const MachinesArguments& arguments) {
     } else {
       for (const sim::MachineProfile& machine : sim::machine_profiles()) list.push_back(json_of(machine));
     }
-    const nlohmann::ordered_json document = {{"version", 1}, {"machines", list}};
+    const nlohmann::ordered_json document = {{"version", 2}, {"machines", list}};
     std::printf("%s\n", document.dump(2).c_str());
     return;
   }

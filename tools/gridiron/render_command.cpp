@@ -37,6 +37,18 @@ void check_outputs(const RenderArguments& arguments) {
   }
 }
 
+// A named configuration that the store has too few buffers for is used with those that there are.
+void tell_fewer_buffers(const RenderArguments& arguments) {
+  if (arguments.depths == arguments.wanted_depths) return;
+  const auto blocks = [](const BufferDepths& depths) {
+    return words_of_count(depths.macro, "cell block") + " and " + words_of_count(depths.triangle, "triangle buffer");
+  };
+  std::fprintf(stderr, "%s: configuration %s has %s; a local store of %u KB holds %s for it\n",
+               arguments.scene.input.c_str(), std::string(arguments.scene.configuration->name).c_str(),
+               blocks(arguments.wanted_depths).c_str(), sim::arena_bytes(arguments.store) >> 10,
+               blocks(arguments.depths).c_str());
+}
+
 // The camera file's view with the parts that the command line replaces.
 ViewRequest join_view(const RenderArguments& arguments) {
   ViewRequest view = arguments.camera ? read_camera_file(*arguments.camera) : ViewRequest{};
@@ -143,6 +155,7 @@ void run_command(const RenderArguments& arguments) {
   check_outputs(arguments);
   const ViewRequest view = join_view(arguments);
   const SceneInput input = read_scene_input(arguments.scene.input);
+  tell_fewer_buffers(arguments);
   FrameMemory frame(arguments.scene.machine->main_memory_bytes);
   prepare_frame(frame, input, arguments, view);
 

@@ -65,6 +65,13 @@ std::string text_of(float number) {
   return text;
 }
 
+std::string words_of_budget(const sim::MachineProfile& machine, std::uint64_t budget_bytes) {
+  return std::string(machine.name) + " has " + words_of_bytes(budget_bytes) + " for it: of its " +
+         words_of_bytes(machine.main_memory_bytes) + " of main memory " +
+         words_of_bytes(machine.main_memory_bytes - budget_bytes) +
+         " are kept for pictures and the frame record (see 'gridiron machines')";
+}
+
 }  // namespace
 
 SceneInput read_scene_input(const std::filesystem::path& path) {
@@ -97,8 +104,7 @@ std::uint64_t image_budget_bytes(const sim::MachineProfile& machine, std::uint32
                                            std::string(machine.name) + " has " +
                                            words_of_bytes(machine.main_memory_bytes));
   }
-  const std::uint64_t reserved = std::max(wanted, usual);
-  return memory > reserved ? memory - reserved : 0;
+  return memory - std::max(wanted, std::min(usual, memory / 2));
 }
 
 GridChoice choose_grid(const SceneInput& input, const Mesh& mesh, const SceneArguments& arguments,
@@ -127,9 +133,8 @@ GridChoice choose_grid(const SceneInput& input, const Mesh& mesh, const SceneArg
 void require_fit(const GridChoice& choice, const SceneArguments& arguments) {
   if (!choice.fits()) {
     fail(arguments.input, "the scene needs " + words_of_bytes(choice.need.image_bytes) + " at lambda " +
-                              text_of(choice.parameters.lambda) + "; " + std::string(arguments.machine->name) +
-                              " has " + words_of_bytes(choice.budget_bytes) +
-                              " beside the picture (see 'gridiron machines')");
+                              text_of(choice.parameters.lambda) + "; " +
+                              words_of_budget(*arguments.machine, choice.budget_bytes));
   }
   if (!choice.is_reduced()) return;
   std::fprintf(stderr, "%s: lambda reduced from %g to %g so that the scene fits the main memory of %s\n",
@@ -170,8 +175,7 @@ void check_packed(const SceneInput& input, const PackedScene& packed, const Scen
   }
   if (packed.view.header.image_bytes > budget_bytes) {
     fail(input.path, "the scene needs " + words_of_bytes(packed.view.header.image_bytes) + "; " +
-                         std::string(arguments.machine->name) + " has " + words_of_bytes(budget_bytes) +
-                         " beside the picture (see 'gridiron machines')");
+                         words_of_budget(*arguments.machine, budget_bytes));
   }
 }
 

@@ -57,8 +57,9 @@ struct GridChoice {
 
 /// Bytes of main memory that a scene image may take.
 ///
-/// @param planes  output planes of the frame, 1..3. A picture smaller than 1024x1024 with three planes is counted as
-///        that, so that pack and render choose the same grid.
+/// @param planes  output planes of the frame, 1..3. Room for a picture of 1024x1024 with three planes is always kept,
+///        or half of the main memory where that is less, so that pack and render choose the same grid for every
+///        picture that this holds.
 /// Errors: Failure (kBadInput) where the picture alone does not fit.
 [[nodiscard]] std::uint64_t image_budget_bytes(const sim::MachineProfile& machine, std::uint32_t width,
                                                std::uint32_t height, std::uint32_t planes,

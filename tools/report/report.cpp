@@ -219,6 +219,8 @@ std::string_view build_step_name(sim::BuildStep step) {
       return "bin_update";
     case sim::BuildStep::kTriangleMoved:
       return "triangle_moved";
+    case sim::BuildStep::kBinSwept:
+      return "bin_swept";
     case sim::BuildStep::kNodeMade:
       return "node_made";
     case sim::BuildStep::kCount:

@@ -13,15 +13,16 @@
 
 namespace gridiron {
 
-/// @returns a bit for each square of 2x2 subpackets of which an active ray may touch cell (u, v) of a slab.
+/// @returns a bit for each of the `wanted` squares of 2x2 subpackets of which an active ray may touch cell (u, v) of a
+/// slab.
 ///
 /// The frustum's pads cover each square: its rays are among those that the pads were made for.
 template <class L, class PacketType>
 [[nodiscard]] GRIDIRON_INLINE std::uint32_t squares_touching(const PacketType& packet, const Frustum& frustum,
                                                              const Slab& slab, std::int32_t u, std::int32_t v,
-                                                             WorkCounters& work) {
+                                                             std::uint32_t wanted, WorkCounters& work) {
   constexpr std::uint32_t kSquares = PacketType::kSquareCount;
-  if constexpr (kSquares < 4) return (1u << kSquares) - 1u;
+  if constexpr (kSquares < 4) return wanted;
   using S = std::conditional_t<(kSquares >= L::kCount), L, Lanes<4>>;
   using Float = typename S::Float;
   const Float near(slab.entry);
@@ -30,6 +31,7 @@ template <class L, class PacketType>
   const Float last[2] = {Float(static_cast<float>(u + 1)), Float(static_cast<float>(v + 1))};
   std::uint32_t squares = 0;
   for (std::uint32_t base = 0; base < kSquares; base += S::kCount) {
+    if ((wanted >> base & S::kAllBits) == 0) continue;
     work.add(Work::kFootprintGroup);
     std::uint32_t outside = 0;
     for (std::uint32_t axis = 0; axis < 2; ++axis) {
@@ -41,7 +43,7 @@ template <class L, class PacketType>
     }
     squares |= (~outside & S::kAllBits) << base;
   }
-  return squares;
+  return squares & wanted;
 }
 
 }  // namespace gridiron

@@ -154,8 +154,7 @@ class PacketDriver {
     if ((store_.frame.techniques & kUseSubpackets) == 0) return kAllSquares;
     const std::uint32_t open = reaches_.open_squares(frustum_, cell.entry, store_.work);
     if (open == 0) return 0;
-    return open &
-           squares_touching<L>(store_.packet, frustum_, Slab{cell.entry, cell.exit}, cell.u, cell.v, store_.work);
+    return squares_touching<L>(store_.packet, frustum_, Slab{cell.entry, cell.exit}, cell.u, cell.v, open, store_.work);
   }
 
   // Waits for the oldest run and tests it, unless every ray has meanwhile hit something in front of it.

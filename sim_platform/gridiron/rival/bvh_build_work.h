@@ -9,9 +9,8 @@
 
 namespace gridiron::rival {
 
-/// Steps of build_bvh. A kNodeMade of the table is a node with a sweep over 16 bins of three axes, there and back;
-/// smaller sweeps and nodes without one count in proportion. What has no step of its own is left out, in the rival's
-/// favour: bounds of centres, merging to four children and writing these nodes.
+/// Steps of build_bvh. What has no step of its own is left out, in the rival's favour: bounds of centres, merging to
+/// four children and writing these nodes.
 ///
 /// @param vertex_count, triangle_count  of the mesh, dropped triangles included.
 [[nodiscard]] sim::BuildWork bvh_build_work(std::uint64_t vertex_count, std::uint64_t triangle_count,

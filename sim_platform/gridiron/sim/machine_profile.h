@@ -27,7 +27,8 @@ enum class BuildStep : std::uint8_t {
   kCheckedLine,      ///< 128-byte lines of the scene image cleared and added to its check value
   kBinUpdate,        ///< hierarchy: (triangle, axis) entered into a bin of the surface area heuristic
   kTriangleMoved,    ///< hierarchy: triangles moved to their side of a split
-  kNodeMade,         ///< hierarchy: nodes written, inner and leaf, the sweep over an inner node's bins included
+  kBinSwept,         ///< hierarchy: bins merged when the splits of a node are priced, there and back
+  kNodeMade,         ///< hierarchy: nodes of the binary tree, inner and leaf, without their sweeps
   kCount
 };
 inline constexpr std::size_t kBuildStepCount = static_cast<std::size_t>(BuildStep::kCount);
@@ -49,11 +50,11 @@ struct MachineProfile {
   std::uint64_t main_memory_bytes;
   std::uint32_t local_store_bytes;
   std::uint32_t line_bytes;             ///< a transfer costs whole lines of this size
-  std::uint32_t queue_depth;            ///< commands pending per core; issuing to a full queue stalls
+  std::uint32_t queue_depth;            ///< commands pending per core; the kernel keeps to it, a replay of more stalls
   std::uint32_t lines_in_flight;        ///< per core
   double issue_cycles;                  ///< per command, on the core
   double wait_cycles;                   ///< per wait, on the core, even when nothing is pending
-  double latency_cycles;                ///< from a line's turn on the channel to its arrival
+  double latency_cycles;                ///< from the end of a line's turn on the channel to its arrival
   double channel_bytes_per_cycle;       ///< shared by all cores
   double core_line_interval_cycles;     ///< least distance between two lines of one core
   double claim_cycles;                  ///< from asking for a tile to having it

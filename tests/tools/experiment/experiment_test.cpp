@@ -13,6 +13,7 @@
 #include "../gridiron/run_program.h"
 #include "../gridiron/temporary_folder.h"
 #include "experiment/paper_experiment.h"
+#include "experiment/sections.h"
 #include "markup.h"
 
 namespace gridiron::test {
@@ -152,6 +153,97 @@ void expect_sweeps(const fs::path& folder) {
   }
 }
 
+// Least and greatest of what rows have under a key, as the page's words give them.
+experiment::Range range_under(const std::vector<std::vector<std::string>>& rows, const std::string& key) {
+  experiment::Range range;
+  for (std::size_t row = 1; row < rows.size(); ++row) range.add(number_under(rows, row, key));
+  return range;
+}
+
+// Rows that have a word in a column, the keys in front.
+std::vector<std::vector<std::string>> rows_of(const std::vector<std::vector<std::string>>& rows, std::size_t column,
+                                              const std::string& word) {
+  std::vector<std::vector<std::string>> chosen = {rows.at(0)};
+  for (const auto& row : rows) {
+    if (row.at(column) == word) chosen.push_back(row);
+  }
+  return chosen;
+}
+
+// What sentences of the page say follows from the tables beside them.
+void expect_words(const fs::path& folder, const std::string& page) {
+  const auto expect = [&page](const std::string& words) { EXPECT_NE(page.find(words), std::string::npos) << words; };
+  // Table 3: the paper's systems apart from the others.
+  const auto costs = csv_rows(folder / "table3_shading_cost.csv");
+  experiment::Range of_paper = range_under(costs, "reference_percent"), others = range_under(costs, "best_percent");
+  for (std::size_t row = 1; row < costs.size(); ++row) {
+    of_paper.add(number_under(costs, row, "projection_percent"));
+    others.add(number_under(costs, row, "bvh_percent"));
+  }
+  expect("costs the reference, with either test, " + of_paper.percent(1) +
+         " of its fps, and the other systems, whose " + "frames are shorter, " + others.percent(1));
+  EXPECT_EQ(page.find("For the reference that is less than the paper's") != std::string::npos,
+            of_paper.greatest() < 10);
+
+  // Fig. 6 and Table 4: computation grows by, and the paper's own test against the reference's.
+  const auto bars = csv_rows(folder / "fig6_breakdown.csv");
+  experiment::Range growths, work_ratios;
+  for (std::size_t row = 1; row + 1 < bars.size(); row += 2) {
+    ASSERT_EQ(bars[row][3] + bars[row + 1][3], "singlehidden");
+    const double hidden = number_under(bars, row + 1, "compute_ms");
+    growths.add(experiment::percent_more(hidden, number_under(bars, row, "compute_ms")));
+    for (std::size_t other = 1; other < bars.size(); ++other) {
+      const bool same = bars[other][1] == bars[row][1] && bars[other][2] == bars[row][2] && bars[other][3] == "hidden";
+      if (bars[row][0] != "projection" || bars[other][0] != "reference" || !same) continue;
+      work_ratios.add(hidden / number_under(bars, other, "compute_ms"));
+    }
+  }
+  expect("computation changes by " + growths.percent(1));
+  expect("times the reference's bytes and computes for " + work_ratios.text(2) + " times its cycles");
+
+  // Best: what its depths cost and bring; the sweeps' tables have the same frames.
+  const auto depths = rows_of(csv_rows(folder / "sweep_macro_depth.csv"), 1, "best");
+  experiment::Range lost, waits;
+  for (std::size_t row = 1; row < depths.size(); ++row) {
+    if (depths[row][2] != "4") continue;
+    waits.add(number_under(depths, row, "wait_percent"));
+    double most = 0;
+    for (std::size_t other = 1; other < depths.size(); ++other) {
+      if (depths[other][0] == depths[row][0]) most = std::max(most, number_under(depths, other, "fps"));
+    }
+    lost.add(experiment::percent_less(number_under(depths, row, "fps"), most));
+  }
+  expect(lost.percent(2) + " for its 4 cell blocks, with which it waits " + waits.percent(2));
+
+  // Fig. 7: a reason where the reference is far from the paper's half.
+  const auto frames = rows_of(csv_rows(folder / "fig7_frames.csv"), 0, "cell-2006");
+  const experiment::Range cases = range_under(frames, "paper_case_ratio");
+  expect("gives " + cases.text(2) + " of its frames");
+  EXPECT_EQ(page.find("The difference is the rival's") != std::string::npos, cases.greatest() < 0.4);
+
+  // Latency: the hierarchy without and with its ring.
+  const auto caches = rows_of(csv_rows(folder / "fig7_caches.csv"), 0, "cell-ps3");
+  expect("for " + range_under(rows_of(caches, 2, "one at a time"), "wait_percent").percent(1) +
+         " of its cycles with one packet at a time and for " +
+         range_under(rows_of(caches, 2, "take turns"), "wait_percent").percent(1) + " with its ring of packets");
+
+  // Bandwidth: double against single buffering where it is scarcest.
+  const auto scarce = rows_of(rows_of(csv_rows(folder / "sweep_bandwidth.csv"), 2, "1.44"), 1, "6");
+  experiment::Range gains;
+  for (std::size_t row = 1; row < scarce.size(); ++row) {
+    gains.add(number_under(scarce, row, "reference_fps") / number_under(scarce, row, "reference_single_fps"));
+  }
+  expect("gives the reference " + gains.text(2) + " times the frames of single buffering");
+
+  // Both runs of a row of the packet sweep tell their bytes; deeper prefetch never fetches less.
+  const auto packets = csv_rows(folder / "sweep_packet.csv");
+  for (std::size_t row = 1; row < packets.size(); ++row) {
+    EXPECT_GE(number_under(packets, row, "prefetch_fetched_mb"), number_under(packets, row, "double_fetched_mb"));
+  }
+  // Words of a workplace.
+  for (const char* words : {"that we have", "master", "deep prefetch"}) EXPECT_EQ(page.find(words), std::string::npos);
+}
+
 TEST(Experiment, FilesDoNotDependOnThreads) {
   const TemporaryFolder folder;
   for (const char* threads : {"1", "3"}) {
@@ -200,6 +292,7 @@ TEST(Experiment, FilesDoNotDependOnThreads) {
   EXPECT_NE(page.find("bunny.ply was not found"), std::string::npos);
   EXPECT_EQ(page.find("none %"), std::string::npos);
   EXPECT_EQ(page.find("nan"), std::string::npos);
+  expect_words(folder.path("out1"), page);
 }
 
 TEST(Experiment, MistakesAreTold) {

@@ -47,12 +47,13 @@ TEST(RivalSystem, BuildIsCountedInStepsOfBothStructures) {
   }
   EXPECT_GT(rival.build[sim::BuildStep::kBinUpdate], 0u);
   EXPECT_GT(rival.build[sim::BuildStep::kNodeMade], 0u);
+  EXPECT_GT(rival.build[sim::BuildStep::kBinSwept], rival.build[sim::BuildStep::kNodeMade]);
   EXPECT_EQ(grid.build[sim::BuildStep::kBinUpdate], 0u);
   EXPECT_GT(grid.build[sim::BuildStep::kReferenceSort], 0u);
   EXPECT_EQ(rival.build_steps(),
             rival.build[sim::BuildStep::kVertexCheck] + 6000 + rival.build[sim::BuildStep::kTriangleWrite] +
                 rival.build[sim::BuildStep::kBinUpdate] + rival.build[sim::BuildStep::kTriangleMoved] +
-                rival.build[sim::BuildStep::kNodeMade]);
+                rival.build[sim::BuildStep::kBinSwept] + rival.build[sim::BuildStep::kNodeMade]);
 }
 
 // The time that was kept from the first frame is that of a frame rendered anew.

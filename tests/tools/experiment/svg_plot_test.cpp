@@ -64,6 +64,7 @@ TEST(SvgPlot, LinesGoThroughTheirPoints) {
                            .series = {{"one", {{0, 0}, {5, 5}, {10, 10}}, false}, {"two", {{0, 10}, {10, 0}}, true}},
                            .log_x = false,
                            .log_y = false,
+                           .zoom_y = false,
                            .x_ticks = {0, 5, 10}};
   const auto elements = parse_markup(line_chart_svg(chart));
   text_element(elements, "A < B & \"C\"");
@@ -89,6 +90,26 @@ TEST(SvgPlot, LinesGoThroughTheirPoints) {
   text_element(elements, "two");
 }
 
+// Curves that lie close together far from 0.
+TEST(SvgPlot, AZoomedAxisSpansItsValues) {
+  const PlotArea area;
+  LineChart chart = {.title = "t",
+                     .x_title = "x",
+                     .y_title = "y",
+                     .series = {{"s", {{1, 100}, {2, 99.5}, {3, 97.2}}, false}},
+                     .log_x = false,
+                     .log_y = false,
+                     .zoom_y = true,
+                     .x_ticks = {}};
+  const auto elements = parse_markup(line_chart_svg(chart));
+  const auto points = points_of(elements_named(elements, "polyline").at(0));
+  EXPECT_NEAR(points[0].y, area.top, 0.01);
+  EXPECT_NEAR(points[2].y, area.bottom - (97.2 - 97) / 3 * (area.bottom - area.top), 0.01) << "97 is the tick below";
+  text_element(elements, "97");
+  chart.series[0].points = {{1, 100}, {2, 100}};
+  EXPECT_FALSE(parse_markup(line_chart_svg(chart)).empty()) << "nothing to span";
+}
+
 TEST(SvgPlot, LogarithmicAxesSpaceFactorsEvenly) {
   const LineChart chart = {.title = "t",
                            .x_title = "x",
@@ -96,6 +117,7 @@ TEST(SvgPlot, LogarithmicAxesSpaceFactorsEvenly) {
                            .series = {{"s", {{1, 10}, {10, 100}, {100, 1000}, {-1, 5}, {5, 0}}, false}},
                            .log_x = true,
                            .log_y = true,
+                           .zoom_y = false,
                            .x_ticks = {}};
   const auto elements = parse_markup(line_chart_svg(chart));
   const auto points = points_of(elements_named(elements, "polyline").at(0));
@@ -137,11 +159,15 @@ TEST(SvgPlot, BarsStandOnTheAxisAndStack) {
 }
 
 TEST(SvgPlot, ChartsOfNothingAreStillDocuments) {
-  EXPECT_FALSE(
-      parse_markup(
-          line_chart_svg(
-              {.title = "t", .x_title = "", .y_title = "", .series = {}, .log_x = true, .log_y = true, .x_ticks = {}}))
-          .empty());
+  EXPECT_FALSE(parse_markup(line_chart_svg({.title = "t",
+                                            .x_title = "",
+                                            .y_title = "",
+                                            .series = {},
+                                            .log_x = true,
+                                            .log_y = true,
+                                            .zoom_y = false,
+                                            .x_ticks = {}}))
+                   .empty());
   EXPECT_FALSE(parse_markup(bar_chart_svg({})).empty());
 }
 

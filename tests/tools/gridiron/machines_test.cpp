@@ -3,6 +3,8 @@
 #include <gtest/gtest.h>
 
 #include <nlohmann/json.hpp>
+#include <set>
+#include <string>
 
 #include "run_program.h"
 #include "temporary_folder.h"
@@ -51,7 +53,7 @@ TEST(Machines, EditedFiguresCount) {
 
 TEST(Machines, InfoAndPackFitTheMachineOfAFile) {
   const TemporaryFolder folder;
-  folder.write_ply("a.ply", make_torus(24, 16, 1.0f, 0.4f));
+  folder.write_ply("a.ply", make_torus(240, 120, 1.0f, 0.4f));
   folder.write("small.machine", "based_on cell-ps3\nmain_memory_bytes 12650000\nlocal_store_bytes 65536\n");
   const Json info = Json::parse(run(folder, {"info", "a.ply", "--json", "--machine", "small.machine"}).out);
   EXPECT_EQ(info["main_memory"]["machine"], "small");
@@ -61,6 +63,56 @@ TEST(Machines, InfoAndPackFitTheMachineOfAFile) {
   run(folder, {"pack", "a.ply", "-o", "a.gri", "--machine", "small.machine"});
   const Json packed = Json::parse(run(folder, {"info", "a.gri", "--json"}).out);
   EXPECT_EQ(packed["grid"]["lambda"], info["grid"]["lambda"]);
+}
+
+// A short queue reaches the kernel, which keeps to it: it waits more often, and does nothing else more often.
+TEST(Machines, AShortQueueChangesWaitsAlone) {
+  const TemporaryFolder folder;
+  folder.write("short.machine", "based_on cell-ps3\nqueue_depth 1\n");
+  folder.write("far.machine", "based_on cell-ps3\nlatency_cycles 5000\n");
+  const Json usual = report_on(folder, "cell-ps3"), brief = report_on(folder, "short.machine");
+  EXPECT_EQ(report_on(folder, "far.machine")["work"], usual["work"]) << "times have no say in the work";
+  EXPECT_GT(brief["work"]["wait"], usual["work"]["wait"]);
+  EXPECT_EQ(brief["image_hash"], usual["image_hash"]);
+  for (const auto& [kind, count] : usual["work"].items()) {
+    if (kind != "wait") {
+      EXPECT_EQ(brief["work"][kind], count) << kind;
+    }
+  }
+}
+
+// The least that a machine file may say renders a small picture of a small scene, in every configuration.
+TEST(Machines, TheSmallestMachineRenders) {
+  const TemporaryFolder folder;
+  folder.write_ply("a.ply", make_torus(24, 16, 1.0f, 0.4f));
+  folder.write("least.machine", "based_on cell-ps3\nmain_memory_bytes 1048576\nlocal_store_bytes 65536\n");
+  const struct {
+    const char* configuration;
+    const char* words;
+  } cases[] = {
+      {"reference", ""},
+      {"best",
+       "a.ply: configuration best has 4 cell blocks and 3 triangle buffers; a local store of 64 KB holds 2 cell blocks "
+       "and 3 triangle buffers for it\n"},
+      {"deep",
+       "a.ply: configuration deep has 4 cell blocks and 8 triangle buffers; a local store of 64 KB holds 2 cell blocks "
+       "and 4 triangle buffers for it\n"}};
+  std::set<std::string> hashes;
+  for (const auto& each : cases) {
+    const ProgramResult result =
+        run(folder, {"render", "a.ply", "-o", "a.png", "--size", "128x128", "--machine", "least.machine",
+                     "--configuration", each.configuration, "--report", "r.json", "--quiet"});
+    EXPECT_EQ(result.err, each.words);
+    const Json report = Json::parse(read_file(folder.path("r.json")));
+    EXPECT_EQ(report["scene"]["grid"]["lambda"], report["scene"]["grid"]["wanted_lambda"]);
+    hashes.insert(report["image_hash"].get<std::string>());
+  }
+  EXPECT_EQ(hashes.size(), 1u);
+  // Whoever asks for buffers by name of their number gets them.
+  EXPECT_EQ(run(folder, {"render", "a.ply", "-o", "a.png", "--size", "128x128", "--machine", "least.machine",
+                         "--configuration", "best", "--buffering", "double", "--quiet"})
+                .err,
+            "");
 }
 
 TEST(Machines, BadFilesEndWithOneAndRenderNothing) {

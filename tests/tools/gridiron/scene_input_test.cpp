@@ -114,5 +114,26 @@ TEST_F(SceneInputTest, BudgetLeavesRoomForThePicture) {
   EXPECT_THROW((void)tool::image_budget_bytes(machine, 16384, 16384, 1), tool::Failure);
 }
 
+TEST_F(SceneInputTest, ASmallMemoryKeepsHalfOfItselfForThePicture) {
+  sim::MachineProfile small = *arguments_.machine;
+  small.main_memory_bytes = 1 << 20;
+  const std::uint64_t budget_bytes = tool::image_budget_bytes(small, 128, 128, 1);
+  EXPECT_NEAR(static_cast<double>(budget_bytes), 0.5 * (1 << 20), 4096);
+  EXPECT_EQ(budget_bytes, tool::image_budget_bytes(small, 1, 1, 1)) << "pack and render agree";
+  EXPECT_LT(tool::image_budget_bytes(small, 448, 448, 1), budget_bytes) << "a picture of more than half";
+  EXPECT_THROW((void)tool::image_budget_bytes(small, 512, 512, 1), tool::Failure);
+  // What is missing is told with what is kept.
+  arguments_.machine = std::make_shared<sim::MachineProfile>(small);
+  arguments_.lambda = 64.0f;
+  try {
+    tool::require_fit(choose(budget_bytes), arguments_);
+    ADD_FAILURE();
+  } catch (const tool::Failure& failure) {
+    const std::string words = failure.what();
+    EXPECT_NE(words.find("of its 1.0 MB of main memory 51"), std::string::npos) << words;
+    EXPECT_NE(words.find("KB are kept for pictures"), std::string::npos) << words;
+  }
+}
+
 }  // namespace
 }  // namespace gridiron::test

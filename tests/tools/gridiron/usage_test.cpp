@@ -56,7 +56,6 @@ TEST(Usage, MistakesExitWithTwoAndSayWhy) {
       {{"render", "a.ply", "--tile", "3"}, "X,Y"},
       {{"render", "a.ply", "--mode", "plain", "--report", "r.json"}, "plain"},
       {{"render", "a.ply", "--tile", "0,0", "--timeline", "t.json"}, "--tile"},
-      {{"render", "a.ply", "--store", "64", "--configuration", "deep"}, "--store 64"},
       {{"render", "a.ply", "--store", "64", "--macro-width", "8"}, "width 8"},
       {{"render", "a.ply", "-o", "x", "--report", "./x"}, "-o and --report name the same file"},
       {{"render", "a.ply", "-o", ".//a.ply"}, "INPUT and -o name the same file"},
@@ -115,16 +114,27 @@ TEST(Usage, HelpAndVersionAreAnswers) {
   EXPECT_EQ(version.out.find("gridiron "), 0u);
 }
 
+// One experiment measures this host: there the number of threads is part of what is measured.
+TEST(Usage, HelpTellsWhatThreadsChange) {
+  const TemporaryFolder folder;
+  const std::string render = run_program(folder.folder(), {"render", "--help"}).out;
+  EXPECT_NE(render.find("no result depends on it"), std::string::npos) << render;
+  const std::string experiment = run_program(folder.folder(), {"experiment", "--help"}).out;
+  EXPECT_EQ(experiment.find("no result depends on it"), std::string::npos) << experiment;
+  EXPECT_NE(experiment.find("host_*.csv"), std::string::npos) << experiment;
+  EXPECT_NE(experiment.find("minutes"), std::string::npos) << experiment;
+}
+
 TEST(Usage, MachinesAreListed) {
   const TemporaryFolder folder;
   EXPECT_NE(run_program(folder.folder(), {"machines"}).out.find("cell-ps3-2gb"), std::string::npos);
   const ProgramResult result = run_program(folder.folder(), {"machines", "--json"});
   ASSERT_EQ(result.exit_code, 0);
   const auto document = nlohmann::json::parse(result.out);
-  EXPECT_EQ(document["version"], 1);
+  EXPECT_EQ(document["version"], 2);
   const auto& first = document["machines"][0];
   EXPECT_EQ(first["name"], "cell-ps3");
-  EXPECT_EQ(first["cores"], 6);
+  EXPECT_EQ(first["core_count"], 6) << "the word of machine files";
   EXPECT_EQ(first["clock_hz"], 3.2e9);
   EXPECT_EQ(first["main_memory_bytes"], 256u << 20);
   EXPECT_TRUE(first["work_cycles"]["group_test_standard"].is_number());

@@ -1,0 +1,99 @@
+// What tools/calibrate/README.md repeats of the tables is what stands in them. SPDX-License-Identifier: Apache-2.0
+#include <gridiron/rival/rival_costs.h>
+#include <gridiron/rival/rival_work.h>
+#include <gridiron/sim/work_costs.h>
+#include <gtest/gtest.h>
+#include <report/report.h>
+
+#include <cstdio>
+#include <fstream>
+#include <iterator>
+#include <map>
+#include <regex>
+#include <set>
+#include <string>
+
+namespace gridiron::calibrate {
+namespace {
+
+std::string readme_text() {
+  std::ifstream file(GRIDIRON_SOURCE_DIR "/tools/calibrate/README.md", std::ios::binary);
+  return {std::istreambuf_iterator<char>(file), {}};
+}
+
+/// @returns what stands between two marks; fails where one of them is missing.
+std::string between(const std::string& text, const std::string& from, const std::string& to) {
+  const std::size_t begin = text.find(from), end = text.find(to, begin);
+  EXPECT_NE(begin, std::string::npos) << from;
+  EXPECT_NE(end, std::string::npos) << to;
+  return begin == std::string::npos ? "" : text.substr(begin, end - begin);
+}
+
+std::set<std::string> quoted_words(const std::string& text) {
+  std::set<std::string> words;
+  const std::regex quoted("`([a-z_]+)`");
+  for (std::sregex_iterator match(text.begin(), text.end(), quoted), end; match != end; ++match)
+    words.insert((*match)[1]);
+  return words;
+}
+
+/// A row of the table "Second opinion".
+struct Opinion {
+  double cycles, operations, instructions, ratio;
+};
+
+std::map<std::string, Opinion> opinions(const std::string& text) {
+  std::map<std::string, Opinion> rows;
+  const std::regex row(R"(\| `([a-z_]+)` \| ([0-9.]+) \| ([0-9.]+) \| ([0-9.]+) \| ([0-9.]+) \|)");
+  for (std::sregex_iterator match(text.begin(), text.end(), row), end; match != end; ++match) {
+    rows[(*match)[1]] = {std::stod((*match)[2]), std::stod((*match)[3]), std::stod((*match)[4]),
+                         std::stod((*match)[5])};
+  }
+  return rows;
+}
+
+// One digit behind the point stands there, and two in the table of operations.
+constexpr double kLastDigit = 0.0601;
+
+// The instructions themselves come from tools/calibrate/second_opinion/run; that needs a cross compiler.
+TEST(CalibrateReadme, SecondOpinionStandsBesideTheTableOfToday) {
+  const std::string text = readme_text();
+  const std::map<std::string, Opinion> rows = opinions(text);
+  std::set<std::string> apart;
+  for (std::size_t i = 0; i < kWorkKindCount; ++i) {
+    const auto kind = static_cast<Work>(i);
+    const sim::WorkCost& cost = sim::kWorkCosts[i];
+    const bool is_exact = kind == Work::kExactSign || kind == Work::kExactDistance;
+    if (cost.cycles == 0 || is_exact) continue;  // commands and waits; what the five frames hardly do
+    const std::string name(tool::work_name(kind));
+    SCOPED_TRACE(name + ": run tools/calibrate/second_opinion/run and write the README's table anew");
+    const auto row = rows.find(name);
+    ASSERT_NE(row, rows.end());
+    EXPECT_NEAR(row->second.cycles, cost.cycles, kLastDigit);
+    EXPECT_NEAR(row->second.operations, cost.even + cost.odd, kLastDigit);
+    // Instructions and operations are rounded, the ratio is that of the figures behind them.
+    EXPECT_NEAR(row->second.ratio, row->second.instructions / row->second.operations,
+                0.006 + 0.06 * (1 + row->second.ratio) / row->second.operations);
+    if (row->second.ratio > 1.5) apart.insert(name);
+  }
+  std::set<std::string> explained =
+      quoted_words(between(text, "Where they are apart by more than 1.5", "These reasons are read from"));
+  for (const char* word : {"issue_cycles"}) explained.erase(word);
+  for (const std::string& name : apart) EXPECT_EQ(explained.count(name), 1u) << name << " has no reason";
+  for (const std::string& name : explained) EXPECT_EQ(apart.count(name), 1u) << name << " is not apart";
+}
+
+TEST(CalibrateReadme, KindsBelowTheirLeastAreNamed) {
+  std::set<std::string> below;
+  const auto add = [&below](const sim::WorkCost& cost, std::string_view name) {
+    if (cost.cycles > 0 && cost.cycles < 0.98 * cost.least_cycles) below.insert(std::string(name));
+  };
+  for (std::size_t i = 0; i < kWorkKindCount; ++i) add(sim::kWorkCosts[i], tool::work_name(static_cast<Work>(i)));
+  for (std::uint32_t i = 0; i < rival::kRivalWorkCount; ++i) {
+    add(rival::kRivalCosts[i], rival::name_of(static_cast<rival::RivalWork>(i)));
+  }
+  EXPECT_EQ(quoted_words(between(readme_text(), "More than 2 % less:", "\n\n")), below);
+}
+
+}  // namespace
+}  // namespace gridiron::calibrate
