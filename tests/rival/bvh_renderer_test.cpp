@@ -188,6 +188,22 @@ TEST(BvhRenderer, FiguresAreTheSameInEveryRun) {
   }
 }
 
+// A claim that takes far longer than any tile's work deals the tiles out evenly.
+TEST(BvhRenderer, ClaimLatencyCountsInTheOrderOfClaims) {
+  const test::TestMesh mesh = make_mixed_mesh();
+  Bvh bvh;
+  ASSERT_EQ(build_bvh(mesh.view(), BvhParameters{}, bvh), Status::kOk);
+  sim::MachineProfile machine = ps3();
+  machine.claim_cycles = 1 << 20;
+  for (double& cycles : machine.work_cycles) cycles /= 100;
+  const BvhFrame frame = render_bvh_frame(bvh, settings_of(kMixedCamera, 320, 320), machine, RenderOptions{});
+  ASSERT_EQ(frame.status, Status::kOk);
+  for (const sim::CoreTiming& core : frame.timing.cores) {
+    EXPECT_GE(core.tiles, 100 / machine.core_count);
+    EXPECT_LE(core.tiles, 100 / machine.core_count + 1);
+  }
+}
+
 TEST(BvhRenderer, HyperThreadingWaitsLess) {
   const test::TestMesh mesh = test::make_height_field(120, 0.3f, 6);
   Bvh bvh;
