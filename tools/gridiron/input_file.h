@@ -30,7 +30,8 @@ struct InputFile {
 };
 
 /// Reads a whole file. Errors: Failure (kBadInput) that names the file and the reason, also where it is larger than
-/// `most_bytes`; a missing scan of the reference figures is told how to get.
+/// `most_bytes`; a missing scan of the reference figures is told how to get. A pipe is read to its end; a signal ends
+/// the wait for it as stop_if_interrupted() does.
 [[nodiscard]] InputFile read_input_file(const std::filesystem::path& path,
                                         std::size_t most_bytes = std::numeric_limits<std::size_t>::max());
 
