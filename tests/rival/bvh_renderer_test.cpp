@@ -4,6 +4,7 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <atomic>
 #include <cmath>
 #include <cstring>
 #include <numeric>
@@ -272,6 +273,22 @@ TEST(BvhRenderer, FiguresAddUp) {
     EXPECT_EQ(cache.lookups, cache.hits + cache.pending_hits + cache.misses);
     EXPECT_GT(cache.hit_rate(), 0.3);
   }
+}
+
+TEST(BvhRenderer, StopsWhenAsked) {
+  const test::TestMesh mesh = make_mixed_mesh();
+  Bvh bvh;
+  std::atomic<bool> abort{false};
+  ASSERT_EQ(build_bvh(mesh.view(), {}, bvh, &abort), Status::kOk);
+  RenderOptions options;
+  options.abort = &abort;
+  EXPECT_EQ(render_bvh_frame(bvh, settings_of(kMixedCamera, 96, 96), ps3(), options).status, Status::kOk);
+  abort = true;
+  const BvhFrame frame = render_bvh_frame(bvh, settings_of(kMixedCamera, 96, 96), ps3(), options);
+  EXPECT_EQ(frame.status, Status::kAborted);
+  EXPECT_TRUE(frame.violations.empty());
+  EXPECT_TRUE(frame.picture.color.empty());
+  EXPECT_EQ(build_bvh(mesh.view(), {}, bvh, &abort), Status::kAborted);
 }
 
 TEST(BvhRenderer, RefusesWhatItCannotRender) {
