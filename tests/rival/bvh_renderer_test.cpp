@@ -4,6 +4,7 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <atomic>
 #include <cmath>
 #include <cstring>
 #include <numeric>
@@ -41,7 +42,7 @@ const Camera kMixedCamera = {{1.2f, 1.5f, 2.5f}, {0, 0, 0}, {0, 1, 0}, 0.5f};
 
 template <class Element>
 bool same_bits(const std::vector<Element>& a, const std::vector<Element>& b) {
-  return a.size() == b.size() && std::memcmp(a.data(), b.data(), a.size() * sizeof(Element)) == 0;
+  return a.size() == b.size() && (a.empty() || std::memcmp(a.data(), b.data(), a.size() * sizeof(Element)) == 0);
 }
 
 double wait_cycles(const sim::FrameTiming& timing) {
@@ -67,13 +68,18 @@ struct Scene {
     expected = scene.render(settings, {});
     ASSERT_EQ(expected.result.status, Status::kOk);
   }
-  void expect_same_picture(const RenderOptions& options, const std::string& name) const {
-    const BvhFrame frame = render_bvh_frame(bvh, settings, ps3(), options);
-    ASSERT_EQ(frame.status, Status::kOk) << name;
-    EXPECT_TRUE(frame.violations.empty()) << name << ": " << frame.violations.front().detail;
-    EXPECT_TRUE(same_bits(frame.picture.color, expected.planes.color)) << name;
-    EXPECT_TRUE(same_bits(frame.picture.depth, expected.planes.depth)) << name;
-    EXPECT_TRUE(same_bits(frame.picture.ids, expected.planes.ids)) << name;
+  // With the planes of depth and ids, and without.
+  void expect_same_picture(RenderOptions options, const std::string& name) const {
+    for (const bool all_planes : {true, false}) {
+      SCOPED_TRACE(name + (all_planes ? ", all planes" : ", colour alone"));
+      options.all_planes = all_planes;
+      const BvhFrame frame = render_bvh_frame(bvh, settings, ps3(), options);
+      ASSERT_EQ(frame.status, Status::kOk);
+      EXPECT_TRUE(frame.violations.empty()) << frame.violations.front().detail;
+      EXPECT_TRUE(same_bits(frame.picture.color, expected.planes.color));
+      EXPECT_TRUE(same_bits(frame.picture.depth, all_planes ? expected.planes.depth : std::vector<float>{}));
+      EXPECT_TRUE(same_bits(frame.picture.ids, all_planes ? expected.planes.ids : std::vector<std::uint32_t>{}));
+    }
   }
 };
 
@@ -107,7 +113,6 @@ TEST(BvhRenderer, PicturesAreTheGridsBitForBit) {
       for (const bool hyper_threading : {false, true}) {
         for (const bool use_subpackets : {false, true}) {
           RenderOptions options;
-          options.all_planes = true;
           options.packet_width = packet_width;
           options.hyper_threading = hyper_threading;
           options.use_subpackets = use_subpackets;
@@ -131,7 +136,6 @@ TEST(BvhRenderer, PicturesOfRandomSoupsAreTheGridsBitForBit) {
     scene.parameters.line_triangles = 8u << random.below(3);
     ASSERT_NO_FATAL_FAILURE(scene.prepare());
     RenderOptions options;
-    options.all_planes = true;
     options.packet_width = seed % 3 == 0 ? 8 : 16;
     options.ring_size = 2 + random.below(options.packet_width == 8 ? 3 : 2);
     options.completion = static_cast<sim::Completion>(random.below(3));
@@ -146,7 +150,6 @@ TEST(BvhRenderer, FourLinesOfEachCacheAreEnough) {
   scene.parameters.line_nodes = 1;
   ASSERT_NO_FATAL_FAILURE(scene.prepare());
   RenderOptions options;
-  options.all_planes = true;
   options.caches = {.node_lines = 4, .triangle_lines = 4};
   for (const sim::Completion completion : {sim::Completion::kEarly, sim::Completion::kLate, sim::Completion::kRandom}) {
     options.completion = completion;
@@ -185,6 +188,22 @@ TEST(BvhRenderer, FiguresAreTheSameInEveryRun) {
         EXPECT_EQ(again.timing.cores[core].bytes_in, first.timing.cores[core].bytes_in) << core;
       }
     }
+  }
+}
+
+// A claim that takes far longer than any tile's work deals the tiles out evenly.
+TEST(BvhRenderer, ClaimLatencyCountsInTheOrderOfClaims) {
+  const test::TestMesh mesh = make_mixed_mesh();
+  Bvh bvh;
+  ASSERT_EQ(build_bvh(mesh.view(), BvhParameters{}, bvh), Status::kOk);
+  sim::MachineProfile machine = ps3();
+  machine.claim_cycles = 1 << 20;
+  for (double& cycles : machine.work_cycles) cycles /= 100;
+  const BvhFrame frame = render_bvh_frame(bvh, settings_of(kMixedCamera, 320, 320), machine, RenderOptions{});
+  ASSERT_EQ(frame.status, Status::kOk);
+  for (const sim::CoreTiming& core : frame.timing.cores) {
+    EXPECT_GE(core.tiles, 100 / machine.core_count);
+    EXPECT_LE(core.tiles, 100 / machine.core_count + 1);
   }
 }
 
@@ -254,6 +273,22 @@ TEST(BvhRenderer, FiguresAddUp) {
     EXPECT_EQ(cache.lookups, cache.hits + cache.pending_hits + cache.misses);
     EXPECT_GT(cache.hit_rate(), 0.3);
   }
+}
+
+TEST(BvhRenderer, StopsWhenAsked) {
+  const test::TestMesh mesh = make_mixed_mesh();
+  Bvh bvh;
+  std::atomic<bool> abort{false};
+  ASSERT_EQ(build_bvh(mesh.view(), {}, bvh, &abort), Status::kOk);
+  RenderOptions options;
+  options.abort = &abort;
+  EXPECT_EQ(render_bvh_frame(bvh, settings_of(kMixedCamera, 96, 96), ps3(), options).status, Status::kOk);
+  abort = true;
+  const BvhFrame frame = render_bvh_frame(bvh, settings_of(kMixedCamera, 96, 96), ps3(), options);
+  EXPECT_EQ(frame.status, Status::kAborted);
+  EXPECT_TRUE(frame.violations.empty());
+  EXPECT_TRUE(frame.picture.color.empty());
+  EXPECT_EQ(build_bvh(mesh.view(), {}, bvh, &abort), Status::kAborted);
 }
 
 TEST(BvhRenderer, RefusesWhatItCannotRender) {

@@ -80,6 +80,37 @@ TEST(CoreClock, IsTheReplayOfOneCore) {
   }
 }
 
+// Tiles of a put and a wait alone: nothing but the window of lines and the put two tiles ago holds the core.
+TEST(CoreClock, WindowOfLinesAndRotatingTagsHoldTheCore) {
+  for (const std::uint32_t lines_in_flight : {1u, 2u, 7u, 40u}) {
+    sim::MachineProfile machine = *sim::find_machine_profile("cell-ps3");
+    machine.lines_in_flight = lines_in_flight;
+    machine.latency_cycles = 20000;
+    sim::FrameTrace trace;
+    trace.output_depth = 2;
+    CoreClock clock(machine, 2);
+    clock.take_claim();
+    for (std::uint32_t tile = 0; tile < 6; ++tile) {
+      sim::TileTrace steps;
+      steps.tile_id = tile;
+      sim::TraceEvent put{};
+      put.kind = sim::EventKind::kPut;
+      put.rotating = true;
+      put.bytes = 4096;
+      put.address = 65536;
+      sim::TraceEvent wait{};
+      wait.kind = sim::EventKind::kWait;
+      wait.rotating_tags = 2;
+      steps.events = {put, wait};
+      trace.tiles.push_back(steps);
+      clock.take(steps, 0, tile);
+      clock.take_claim();
+    }
+    const double cycles = static_cast<double>(clock.now()) / CoreClock::kTicksPerCycle;
+    EXPECT_EQ(cycles, sim::replay(trace, machine, {.core_count = 1}).frame_cycles) << lines_in_flight;
+  }
+}
+
 TEST(ClaimOrder, TheLeastClockGoesFirstWhateverTheThreadsDo) {
   constexpr std::uint32_t kCores = 5;
   std::vector<std::uint32_t> expected;

@@ -4,9 +4,11 @@
 
 #include <cstdio>
 #include <exception>
-#include <fstream>
 #include <string>
 #include <string_view>
+
+#include "gridiron/atomic_file.h"
+#include "gridiron/failure.h"
 
 namespace {
 
@@ -44,15 +46,13 @@ int run(int argument_count, char** arguments) {
     }
     return 0;
   }
+  // Nobody should wait for a count that cannot be written.
+  gridiron::tool::check_can_write(arguments[1]);
   const std::string text = of_rival ? calibrate::rival_table_text(calibrate::count_rival_frames())
                                     : calibrate::table_text(calibrate::count_frames());
-  std::ofstream file(arguments[1], std::ios::binary);
-  file << text;
-  file.close();
-  if (!file) {
-    std::fprintf(stderr, "%s: cannot be written\n", arguments[1]);
-    return 1;
-  }
+  gridiron::tool::AtomicFile file(arguments[1]);
+  file.write(text);
+  file.commit();
   return 0;
 }
 
@@ -61,6 +61,9 @@ int run(int argument_count, char** arguments) {
 int main(int argument_count, char** arguments) {
   try {
     return run(argument_count, arguments);
+  } catch (const gridiron::tool::Failure& failure) {
+    std::fprintf(stderr, "%s\n", failure.what());
+    return static_cast<int>(failure.code());
   } catch (const std::exception& error) {
     std::fprintf(stderr, "gridiron_calibrate: %s\n", error.what());
     return 1;

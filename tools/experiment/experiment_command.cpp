@@ -2,8 +2,11 @@
 #include <algorithm>
 #include <cstdio>
 #include <filesystem>
+#include <string>
 #include <system_error>
 #include <thread>
+#include <utility>
+#include <vector>
 
 #include "experiment/paper_experiment.h"
 #include "gridiron/atomic_file.h"
@@ -53,6 +56,21 @@ class OutputFolder {
   bool made_ = false, kept_ = false;
 };
 
+// Removes what an earlier evaluation left under names that this one could have written and did not; nothing else.
+void remove_stale_files(const std::filesystem::path& folder, const std::vector<experiment::BookFile>& written) {
+  for (const std::string& name : experiment::paper_file_names()) {
+    if (std::ranges::find(written, name, &experiment::BookFile::name) != written.end()) continue;
+    const std::filesystem::path path = folder / name;
+    std::error_code error;
+    const std::filesystem::file_status status = std::filesystem::symlink_status(path, error);
+    if (!std::filesystem::is_regular_file(status) && !std::filesystem::is_symlink(status)) continue;
+    if (!std::filesystem::remove(path, error) && error) {
+      throw Failure(ExitCode::kBadInput,
+                    path.string() + ": is of an earlier evaluation and cannot be removed: " + error.message());
+    }
+  }
+}
+
 void check_scenes(const std::filesystem::path& folder) {
   std::error_code ignored;
   if (!folder.empty() && !std::filesystem::is_directory(folder, ignored)) {
@@ -81,6 +99,7 @@ void run_command(const ExperimentArguments& arguments) {
   }
   experiment::write_files(arguments.output, result.files);
   folder.keep();
+  remove_stale_files(arguments.output, result.files);
   if (arguments.quiet) return;
   for (const std::string& sentence : result.missing) std::printf("%s\n", sentence.c_str());
   std::printf("%s: %s, %s rendered, %s of the machine, %.1f s\n", (arguments.output / "index.html").c_str(),

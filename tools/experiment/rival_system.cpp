@@ -20,6 +20,7 @@ namespace {
 rival::BvhFrame render(const rival::Bvh& bvh, const FrameSettings& settings, rival::RenderOptions options,
                        const sim::MachineProfile& machine, std::uint32_t core_count) {
   options.core_count = core_count;
+  options.abort = &tool::interrupt_flag();
   rival::BvhFrame frame = rival::render_bvh_frame(bvh, settings, machine, options);
   tool::stop_if_interrupted();
   if (frame.status == Status::kMemoryTooSmall) {
@@ -77,7 +78,8 @@ class RivalRecording : public Recording {
 std::unique_ptr<Recording> RivalSystem::record(const View& view, const FrameRequest& request) const {
   const tool::Mesh& mesh = view.mesh();
   rival::Bvh bvh;
-  const Status status = rival::build_bvh(mesh.view(), variant_.build, bvh);
+  const Status status = rival::build_bvh(mesh.view(), variant_.build, bvh, &tool::interrupt_flag());
+  tool::stop_if_interrupted();
   if (status != Status::kOk) {
     throw tool::Failure(tool::ExitCode::kBadInput, view.scene->path.string() + ": " + tool::words_of(status));
   }

@@ -150,6 +150,7 @@ std::unique_ptr<Recording> GridSystem::record(const View& view, const FrameReque
 HostSeconds least_host_seconds(std::uint32_t repeats, const std::function<void()>& work) {
   HostSeconds least;
   for (std::uint32_t i = 0; i < repeats; ++i) {
+    tool::stop_if_interrupted();
     const tool::Stopwatch stopwatch;
     const std::clock_t begin = std::clock();
     work();

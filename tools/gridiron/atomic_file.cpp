@@ -12,6 +12,7 @@
 #include <utility>
 
 #include "failure.h"
+#include "interrupt.h"
 
 namespace gridiron::tool {
 namespace {
@@ -32,9 +33,19 @@ bool is_special_file(const fs::path& target) {
   return fs::exists(status) && !fs::is_regular_file(status) && !fs::is_directory(status);
 }
 
-// Writes all bytes or returns false with errno set.
+// Waits where the target is a pipe that nobody reads from yet.
+int open_for_writing(const fs::path& target) {
+  while (true) {
+    stop_if_interrupted();
+    const int descriptor = ::open(target.c_str(), O_WRONLY | O_CLOEXEC);
+    if (descriptor >= 0 || errno != EINTR) return descriptor;
+  }
+}
+
+// Writes all bytes or returns false with errno set. Errors: Failure where a signal ends the wait for a pipe's reader.
 bool write_all(int descriptor, std::span<const std::byte> bytes) {
   while (!bytes.empty()) {
+    stop_if_interrupted();  // a signal also ends a write of which a part is done
     const ssize_t written = ::write(descriptor, bytes.data(), bytes.size());
     if (written < 0 && errno == EINTR) continue;
     if (written <= 0) return false;
@@ -95,12 +106,12 @@ void AtomicFile::write(std::string_view text) {
 
 void AtomicFile::commit() {
   if (is_special_) {
-    descriptor_ = ::open(target_.c_str(), O_WRONLY | O_CLOEXEC);
+    descriptor_ = open_for_writing(target_);
     if (descriptor_ < 0 || !write_all(descriptor_, deferred_)) fail("write");
   }
-  // Some file systems report a full disk only here.
+  // Some file systems report a full disk only here. After a signal the descriptor is closed all the same.
   const int closed = ::close(std::exchange(descriptor_, -1));
-  if (closed != 0) fail("close");
+  if (closed != 0 && errno != EINTR) fail("close");
   if (is_special_) return;
   if (::rename(temporary_.c_str(), target_.c_str()) != 0) fail("rename into place");
   temporary_.clear();

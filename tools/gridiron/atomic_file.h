@@ -14,7 +14,8 @@ namespace gridiron::tool {
 /// Bytes on their way to `path`: written under another name in the same folder, renamed by commit().
 ///
 /// A path that is a device or a pipe is written through at commit, since renaming over it would replace it. A symbolic
-/// link is followed. Errors: Failure (kBadInput) with path and reason; nothing is left behind then.
+/// link is followed. Errors: Failure (kBadInput) with path and reason, or stop_if_interrupted()'s where a signal ends
+/// the wait for a pipe's reader; nothing is left behind then.
 class AtomicFile {
  public:
   /// Opens the temporary file.

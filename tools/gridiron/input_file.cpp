@@ -38,6 +38,15 @@ class Descriptor {
   int value_;
 };
 
+// Waits where the path is a pipe that nobody writes to yet.
+int open_for_reading(const std::filesystem::path& path) {
+  while (true) {
+    stop_if_interrupted();
+    const int descriptor = ::open(path.c_str(), O_RDONLY | O_CLOEXEC);
+    if (descriptor >= 0 || errno != EINTR) return descriptor;
+  }
+}
+
 [[noreturn]] void fail(const std::filesystem::path& path, int error) {
   std::string message = path.string() + ": " + std::strerror(error);
   const std::string name = path.filename().string();
@@ -53,7 +62,7 @@ class Descriptor {
 }  // namespace
 
 InputFile read_input_file(const std::filesystem::path& path, std::size_t most_bytes) {
-  const Descriptor file(::open(path.c_str(), O_RDONLY | O_CLOEXEC));
+  const Descriptor file(open_for_reading(path));
   struct stat status {};
   if (file.value() < 0 || ::fstat(file.value(), &status) != 0) fail(path, errno);
   if (S_ISDIR(status.st_mode)) fail(path, EISDIR);

@@ -23,7 +23,7 @@ void watch_for_interrupt() {
   struct sigaction action {};
   action.sa_handler = note_interrupt;
   sigemptyset(&action.sa_mask);
-  action.sa_flags = SA_RESTART;
+  action.sa_flags = 0;  // no SA_RESTART: a call that blocks, on a pipe say, ends with EINTR
   sigaction(SIGINT, &action, nullptr);
   sigaction(SIGTERM, &action, nullptr);
   std::signal(SIGPIPE, SIG_IGN);
@@ -33,9 +33,9 @@ const std::atomic<bool>& interrupt_flag() {
   return interrupted;
 }
 
-void stop_if_interrupted() {
+void stop_if_interrupted(const char* words) {
   if (!interrupted.load()) return;
-  throw Failure(terminated.load() ? ExitCode::kTerminated : ExitCode::kInterrupted, "interrupted; no file was written");
+  throw Failure(terminated.load() ? ExitCode::kTerminated : ExitCode::kInterrupted, words);
 }
 
 }  // namespace gridiron::tool

@@ -6,13 +6,14 @@
 
 namespace gridiron::tool {
 
-/// Lets SIGINT and SIGTERM set the flag from now on, and SIGPIPE be an error of the write instead of the end.
+/// Lets SIGINT and SIGTERM set the flag from now on, and SIGPIPE be an error of the write instead of the end. Calls
+/// that block end with EINTR when a signal comes; whoever repeats one calls stop_if_interrupted() first.
 void watch_for_interrupt();
 
 /// @returns the flag: true once a signal has come.
 [[nodiscard]] const std::atomic<bool>& interrupt_flag();
 
 /// Throws Failure (kInterrupted, kTerminated) once a signal has come.
-void stop_if_interrupted();
+void stop_if_interrupted(const char* words = "interrupted; no file was written");
 
 }  // namespace gridiron::tool

@@ -135,6 +135,39 @@ bool is_name(std::string_view word) {
   return !word.empty() && word.size() <= kMaxNameBytes && std::ranges::all_of(word, fits);
 }
 
+// @returns why text cannot be shown on a terminal and in JSON as it stands, null where it can.
+const char* text_defect(std::string_view text) {
+  std::size_t at = 0;
+  while (at < text.size()) {
+    const auto byte = [&text](std::size_t i) { return static_cast<unsigned char>(text[i]); };
+    const unsigned first = byte(at++);
+    if (first < 0x80) {
+      if (first == 0x7F) return "has a control character";
+      continue;
+    }
+    // Unicode, table 3-7: bytes that follow, and the range of the first of these.
+    const std::size_t followers = first < 0xE0 ? 1 : first < 0xF0 ? 2 : 3;
+    if (first < 0xC2 || first > 0xF4 || text.size() - at < followers) return "is not UTF-8";
+    const unsigned second = byte(at);
+    const unsigned least = first == 0xE0 ? 0xA0 : first == 0xF0 ? 0x90 : 0x80;
+    const unsigned most = first == 0xED ? 0x9F : first == 0xF4 ? 0x8F : 0xBF;
+    if (second < least || second > most) return "is not UTF-8";
+    if (first == 0xC2 && second < 0xA0) return "has a control character";  // C1: U+0080 to U+009F
+    for (std::size_t i = 1; i < followers; ++i) {
+      if (byte(at + i) < 0x80 || byte(at + i) > 0xBF) return "is not UTF-8";
+    }
+    at += followers;
+  }
+  return nullptr;
+}
+
+// @returns whether both are the same machine, whatever it is called.
+bool has_same_values(MachineProfile a, const MachineProfile& b) {
+  a.name = b.name;
+  a.description = b.description;
+  return a == b;
+}
+
 // Reads one file, line by line.
 class Reader {
  public:
@@ -183,6 +216,8 @@ class Reader {
       if (!target.empty()) fail("second " + quoted);
       if (value.empty()) fail(quoted + " has no value");
       if (key == "name" && !is_name(value)) fail("'name' takes one word of at most 64 printable characters");
+      if (key == "name") name_line_ = line_number_;
+      if (const char* defect = text_defect(value)) fail(quoted + " " + defect);
       target = value;
       return;
     }
@@ -237,8 +272,18 @@ class Reader {
           fail("the file ends without '" + fields_[i].key + "', and has no 'based_on' to take it from");
       }
     }
-    // A base lends its figures, not its name.
-    if (machine_->name.empty()) machine_->name = is_name(path_.stem().string()) ? path_.stem().string() : "unnamed";
+    // A base lends its figures, not its name; and no built-in machine lends its name to other figures.
+    const auto is_taken = [this](std::string_view name) {
+      const MachineProfile* built_in = sim::find_machine_profile(name);
+      return built_in != nullptr && !has_same_values(machine_->profile, *built_in);
+    };
+    if (machine_->name.empty()) {
+      const std::string stem = path_.stem().string();
+      machine_->name = is_name(stem) && !is_taken(stem) ? stem : "unnamed";
+    } else if (is_taken(machine_->name)) {
+      line_number_ = name_line_;
+      fail(in_quotes(machine_->name) + " is a built-in machine with other values; give this one a name of its own");
+    }
     if (machine_->description.empty()) {
       machine_->description = has_base_ ? "based on " : "from a machine file";
       if (has_base_) machine_->description += machine_->profile.name;
@@ -251,7 +296,7 @@ class Reader {
   std::shared_ptr<OwnedMachine> machine_;
   std::vector<Field> fields_;
   std::vector<bool> is_given_;
-  std::size_t line_number_ = 0;
+  std::size_t line_number_ = 0, name_line_ = 0;
   bool is_first_key_ = true;
   bool has_base_ = false;
 };

@@ -20,7 +20,8 @@ ExitCode run(int count, const char* const* values) {
     const gridiron::tool::Command command = gridiron::tool::parse_arguments(count, values);
     std::visit([](const auto& arguments) { gridiron::tool::run_command(arguments); }, command);
     // Text for a full disk or a closed pipe is lost only here.
-    if (std::fflush(stdout) != 0) {
+    if (std::fflush(stdout) != 0 || std::ferror(stdout) != 0) {
+      gridiron::tool::stop_if_interrupted("interrupted while writing to standard output");
       std::fputs("gridiron: cannot write to standard output\n", stderr);
       return ExitCode::kBadInput;
     }

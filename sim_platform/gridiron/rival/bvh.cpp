@@ -57,17 +57,20 @@ struct Split {
 
 class Builder {
  public:
-  Builder(const MeshView& mesh, const BvhParameters& parameters, Bvh& bvh)
-      : mesh_(mesh), parameters_(parameters), bvh_(bvh) {}
+  Builder(const MeshView& mesh, const BvhParameters& parameters, Bvh& bvh, const std::atomic<bool>* abort)
+      : mesh_(mesh), parameters_(parameters), bvh_(bvh), abort_(abort) {}
 
   [[nodiscard]] Status build() {
     GRIDIRON_TRY(take_triangles());
-    build_pairs();
+    GRIDIRON_TRY(build_pairs());
     merge_to_four();
+    if (is_aborted()) return Status::kAborted;
     return lay_out();
   }
 
  private:
+  [[nodiscard]] bool is_aborted() const { return abort_ != nullptr && abort_->load(std::memory_order_relaxed); }
+
   [[nodiscard]] Status take_triangles() {
     for (const Vec3& vertex : mesh_.vertices) {
       for (int axis = 0; axis < 3; ++axis) {
@@ -96,7 +99,7 @@ class Builder {
   }
 
   // Top down, a list of open nodes in place of recursion.
-  void build_pairs() {
+  [[nodiscard]] Status build_pairs() {
     struct Open {
       std::uint32_t node, depth;
     };
@@ -106,6 +109,7 @@ class Builder {
     pairs_.push_back({bounds_of(0, count), 0, 0, count});
     std::vector<Open> open = {{0, 1}};
     while (!open.empty()) {
+      if (is_aborted()) return Status::kAborted;
       const auto [index, depth] = open.back();
       open.pop_back();
       const PairNode node = pairs_[index];
@@ -120,6 +124,7 @@ class Builder {
       open.push_back({first_child, depth + 1});
     }
     bvh_.counts.binary_nodes = pairs_.size();
+    return Status::kOk;
   }
 
   [[nodiscard]] Box bounds_of(std::uint32_t first, std::uint32_t count) const {
@@ -344,6 +349,7 @@ class Builder {
   const MeshView& mesh_;
   const BvhParameters& parameters_;
   Bvh& bvh_;
+  const std::atomic<bool>* abort_;
   std::vector<Box> boxes_;            ///< of the triangles that are kept
   std::vector<std::uint32_t> ids_;    ///< their places in the mesh
   std::vector<std::uint32_t> order_;  ///< of the kept triangles
@@ -354,7 +360,7 @@ class Builder {
 
 }  // namespace
 
-Status build_bvh(const MeshView& mesh, const BvhParameters& parameters, Bvh& bvh) {
+Status build_bvh(const MeshView& mesh, const BvhParameters& parameters, Bvh& bvh, const std::atomic<bool>* abort) {
   const auto in_range = [](std::uint32_t value, std::uint32_t least, std::uint32_t most) {
     return value >= least && value <= most;
   };
@@ -366,7 +372,7 @@ Status build_bvh(const MeshView& mesh, const BvhParameters& parameters, Bvh& bvh
   }
   bvh = Bvh{};
   bvh.parameters = parameters;
-  return Builder(mesh, bvh.parameters, bvh).build();
+  return Builder(mesh, bvh.parameters, bvh, abort).build();
 }
 
 }  // namespace gridiron::rival

@@ -8,6 +8,7 @@
 #include <gridiron/rival/bvh_node.h>
 #include <gridiron/scene/mesh.h>
 
+#include <atomic>
 #include <cstdint>
 #include <vector>
 
@@ -45,8 +46,10 @@ struct Bvh {
 
 /// Builds the hierarchy.
 ///
+/// @param abort  stop between two nodes when it becomes true; may be null.
 /// Errors: kBadParameter, kTooManyTriangles (2^27 records), kBadIndex, kBadVertex (not finite), kNoTriangles (none has
-/// an area). Cost: some 20 passes over the triangles.
-[[nodiscard]] Status build_bvh(const MeshView& mesh, const BvhParameters& parameters, Bvh& bvh);
+/// an area), kAborted. Cost: some 20 passes over the triangles.
+[[nodiscard]] Status build_bvh(const MeshView& mesh, const BvhParameters& parameters, Bvh& bvh,
+                               const std::atomic<bool>* abort = nullptr);
 
 }  // namespace gridiron::rival

@@ -148,6 +148,7 @@ BvhFrame render_bvh_frame(const Bvh& bvh, const FrameSettings& settings, const s
   chip.threads = options.core_count != 0 ? options.core_count : machine.core_count;
   chip.completion = options.completion;
   chip.seed = options.seed;
+  chip.abort = options.abort;
   sim::FrameShape shape;
   shape.tile_count = parts.frame.tiles_x * parts.frame.tiles_y;
   shape.output_depth = kOutputDepth;

@@ -14,6 +14,7 @@
 #include <gridiron/sim/sim_chip.h>
 
 #include <array>
+#include <atomic>
 #include <cstdint>
 #include <vector>
 
@@ -38,6 +39,7 @@ struct RenderOptions {
   bool timeline = false;                                 ///< fill timing.timeline
   sim::Completion completion = sim::Completion::kEarly;  ///< changes nothing but when bytes move
   std::uint64_t seed = 0;
+  const std::atomic<bool>* abort = nullptr;  ///< stop between tiles when it becomes true
 };
 
 /// A frame's planes, row-major, row 0 on top. The same bits as core's picture of the same frame.
@@ -73,7 +75,7 @@ struct BvhFrame {
 /// @param settings  camera, size, shading, t_far, background; accuracy kStandard. What a grid needs is not looked at;
 /// tile width, output depth and addresses are set here.
 /// Errors: kUnsupportedFrame (accuracy; a machine with less than 256 KB of local store), kBadParameter (options),
-/// kMemoryTooSmall (main memory of the machine), kBadFrame (settings), and what a broken rule reports.
+/// kMemoryTooSmall (main memory of the machine), kBadFrame (settings), kAborted, and what a broken rule reports.
 [[nodiscard]] BvhFrame render_bvh_frame(const Bvh& bvh, const FrameSettings& settings,
                                         const sim::MachineProfile& machine, const RenderOptions& options);
 

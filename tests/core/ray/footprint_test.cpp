@@ -60,7 +60,11 @@ void expect_no_touch_left_out(std::uint64_t seed_count, std::uint32_t ray_stride
           if (!box) continue;
           for (const std::int32_t u : {box->u.first, box->u.last}) {
             for (const std::int32_t v : {box->v.first, box->v.last}) {
-              const std::uint32_t squares = squares_touching<L>(packet, frustum, slab, u, v, work);
+              constexpr std::uint32_t kAllSquares = (1u << PacketType::kSquareCount) - 1u;
+              const std::uint32_t squares = squares_touching<L>(packet, frustum, slab, u, v, kAllSquares, work);
+              const std::uint32_t wanted = random.below(kAllSquares + 1);
+              ASSERT_EQ(squares_touching<L>(packet, frustum, slab, u, v, wanted, work), squares & wanted)
+                  << "seed " << seed << ", wanted " << wanted;
               const SubpacketSet touching = subpackets_of_squares(squares) & PacketType::kAllSubpackets;
               ++touches;
               left_out += PacketType::kSubpacketCount - static_cast<std::uint32_t>(std::popcount(touching));

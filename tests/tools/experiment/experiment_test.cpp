@@ -246,11 +246,20 @@ void expect_words(const fs::path& folder, const std::string& page) {
 
 TEST(Experiment, FilesDoNotDependOnThreads) {
   const TemporaryFolder folder;
+  // What lies in a folder already: files of an evaluation with other scenes go, everything else stays.
+  fs::create_directory(folder.path("out3"));
+  folder.write("out3/sweep_latency_bunny.svg", "earlier");
+  folder.write("out3/table3_fps.csv", "earlier");
+  fs::create_symlink("../kept.svg", folder.path("out3") / "sweep_latency_horse.svg");
+  folder.write("kept.svg", "not of the folder");
+  folder.write("out3/sweep_latency_mine.svg", "somebody's");
   for (const char* threads : {"1", "3"}) {
     const ProgramResult result = run_program(folder.folder(), tiny(std::string("out") + threads, threads));
     ASSERT_EQ(result.exit_code, 0) << result.err;
     EXPECT_EQ(result.out, "");
   }
+  EXPECT_EQ(read_file(folder.path("kept.svg")), "not of the folder");
+  EXPECT_TRUE(fs::remove(folder.path("out3") / "sweep_latency_mine.svg"));
   const std::set<std::string> names = names_in(folder.path("out1"));
   EXPECT_EQ(names, names_in(folder.path("out3")));
   int compared = 0;

@@ -5,9 +5,14 @@
 #include <gridiron/sim/build_work.h>
 #include <gtest/gtest.h>
 
+#include <chrono>
+#include <csignal>
+#include <cstdlib>
 #include <memory>
+#include <thread>
 
 #include "gridiron/failure.h"
+#include "gridiron/interrupt.h"
 
 namespace gridiron::test {
 namespace {
@@ -86,6 +91,37 @@ TEST(RivalSystem, HyperThreadingHidesMissesAndIsCounted) {
     EXPECT_LT(frame->caches->triangle_hit_percent, 100);
   }
   EXPECT_LT(wait_of(turns.timing), wait_of(single.timing));
+}
+
+// Renders a frame twice, interrupted after a quarter of it the second time. Ends the process with the failure's code; 1
+// where the frame went on for longer than another quarter.
+[[noreturn]] void render_interrupted() {
+  using Clock = std::chrono::steady_clock;
+  const View knot = make_knot_view(6000);
+  const FrameRequest large = {.width = 3072, .height = 3072, .shading = Shading::kSimple};
+  const Clock::time_point begin = Clock::now();
+  (void)RivalSystem(true).record(knot, large);
+  const Clock::duration quarter = (Clock::now() - begin) / 4;
+  tool::watch_for_interrupt();
+  Clock::time_point sent;
+  std::thread sender([&] {
+    std::this_thread::sleep_for(quarter);
+    sent = Clock::now();
+    std::raise(SIGINT);
+  });
+  int code = 0;
+  try {
+    (void)RivalSystem(true).record(knot, large);
+  } catch (const tool::Failure& failure) {
+    code = static_cast<int>(failure.code());
+  }
+  const Clock::time_point end = Clock::now();
+  sender.join();
+  std::_Exit(end - sent < quarter ? code : 1);
+}
+
+TEST(RivalSystemDeathTest, AnInterruptStopsBetweenTiles) {
+  EXPECT_EXIT(render_interrupted(), testing::ExitedWithCode(130), "");
 }
 
 TEST(RivalSystem, AMachineThatIsTooSmallIsTold) {

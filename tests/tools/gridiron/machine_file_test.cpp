@@ -39,6 +39,7 @@ TEST(MachineFile, BuiltInProfilesReadBackIdentical) {
 
 TEST(MachineFile, EveryDigitReadsBackIdentical) {
   MachineProfile machine = *sim::find_machine_profile("cell-ps3");
+  machine.name = "mine";
   machine.clock_hz = 1e9 / 3;
   machine.latency_cycles = 0.1 + 0.2;
   machine.channel_bytes_per_cycle = 65536;
@@ -75,6 +76,23 @@ TEST(MachineFile, NamesAndDescriptionsAreText) {
   EXPECT_EQ(machine->name, "chip-7");
   EXPECT_EQ(machine->description, "8 cores, as we think of them");
   EXPECT_EQ(tool::read_machine_file(folder.write("two words.machine", "based_on cell-2006\n"))->name, "unnamed");
+  // The ends of every range of UTF-8.
+  const std::string text =
+      "~ \xC2\xA0.\xDF\xBF \xE0\xA0\x80 \xEC\xBF\xBF \xED\x9F\xBF \xEE\x80\x80 \xF0\x90\x80\x80 \xF4\x8F\xBF\xBF";
+  EXPECT_EQ(tool::read_machine_file(folder.write("b.machine", "based_on cell-2006\ndescription " + text))->description,
+            text);
+}
+
+// A name tells the figures: who has that of a built-in machine has its figures.
+TEST(MachineFile, NamesOfBuiltInMachinesAreTheirs) {
+  const TemporaryFolder folder;
+  const Machine same = tool::read_machine_file(
+      folder.write("a.machine", "based_on cell-2006\nname cell-2006\ndescription in other words\n"));
+  EXPECT_EQ(same->name, "cell-2006");
+  EXPECT_EQ(same->description, "in other words");
+  EXPECT_EQ(tool::read_machine_file(folder.write("cell-2006.machine", "based_on cell-2006\n"))->name, "cell-2006");
+  const auto other = folder.write("cell-ps3.machine", "based_on cell-2006\n");
+  EXPECT_EQ(tool::read_machine_file(other)->name, "unnamed") << "the file's name is not the machine's";
 }
 
 TEST(MachineFile, WithoutABaseEveryKeyIsAsked) {
@@ -116,6 +134,29 @@ TEST(MachineFile, NamesTheLineOfEveryDefect) {
       {base + "core_count\n", ":2: 'core_count' has no value"},
       {base + "name # none\n", ":2: 'name' has no value"},
       {base + "name two words\n", ":2: 'name' takes one word"},
+      {base + "name caf\xC3\xA9\n", ":2: 'name' takes one word"},
+      {base + "name a\x7F\n", ":2: 'name' takes one word"},
+      {base + "name cell-2006\n", ":2: 'cell-2006' is a built-in machine with other values; give this one a name"},
+      {base + "name cell-ps3\ndescription mine\n\ncore_count 5\n", ":2: 'cell-ps3' is a built-in machine with other"},
+      {base + "core_count 5\nname cell-ps3\n# the end\n", ":3: 'cell-ps3' is a built-in machine with other values"},
+      {base + "description a\x7F\n", ":2: 'description' has a control character"},
+      {base + "description a\x1B[2J\n", ":2: not a text file"},
+      {base + "description a\xC2\x80\n", ":2: 'description' has a control character"},
+      {base + "description a\xC2\x9F\n", ":2: 'description' has a control character"},
+      {base + "\ndescription caf\xE9\n", ":3: 'description' is not UTF-8"},
+      {base + "description \x80\n", ":2: 'description' is not UTF-8"},
+      {base + "description \xC0\xAF\n", ":2: 'description' is not UTF-8"},
+      {base + "description \xC1\xBF\n", ":2: 'description' is not UTF-8"},
+      {base + "description \xC3\n", ":2: 'description' is not UTF-8"},
+      {base + "description \xC3(\n", ":2: 'description' is not UTF-8"},
+      {base + "description \xE0\x9F\xBF\n", ":2: 'description' is not UTF-8"},
+      {base + "description \xE2\x82\n", ":2: 'description' is not UTF-8"},
+      {base + "description \xE2\x82(\n", ":2: 'description' is not UTF-8"},
+      {base + "description \xED\xA0\x80\n", ":2: 'description' is not UTF-8"},
+      {base + "description \xF0\x8F\xBF\xBF\n", ":2: 'description' is not UTF-8"},
+      {base + "description \xF0\x9F\x98\xC0\n", ":2: 'description' is not UTF-8"},
+      {base + "description \xF4\x90\x80\x80\n", ":2: 'description' is not UTF-8"},
+      {base + "description \xF5\x80\x80\x80\n", ":2: 'description' is not UTF-8"},
       {base + "core_count 4 5\n", ":2: 'core_count' takes one number"},
       {base + "core_count four\n", ":2: 'four' is not a whole number"},
       {base + "core_count 4.5\n", ":2: '4.5' is not a whole number"},

@@ -1,10 +1,16 @@
 // machines and --machine: profiles that people print, edit and give back. SPDX-License-Identifier: Apache-2.0
+#include <fcntl.h>
 #include <gridiron/sim/work_costs.h>
 #include <gtest/gtest.h>
+#include <sys/stat.h>
+#include <unistd.h>
 
+#include <chrono>
+#include <fstream>
 #include <nlohmann/json.hpp>
 #include <set>
 #include <string>
+#include <thread>
 
 #include "run_program.h"
 #include "temporary_folder.h"
@@ -38,6 +44,21 @@ TEST(Machines, APrintedProfileRendersTheSameFrame) {
     EXPECT_EQ(run(folder, {"machines", "copy.machine"}).out, text);
     EXPECT_EQ(report_on(folder, "copy.machine"), report_on(folder, name)) << name;
   }
+}
+
+TEST(Machines, AProfileComesThroughAPipe) {
+  const TemporaryFolder folder;
+  const std::string text = run(folder, {"machines", "cell-2006"}).out;
+  const std::filesystem::path pipe = folder.path("pipe");
+  ASSERT_EQ(::mkfifo(pipe.c_str(), 0600), 0);
+  std::thread writer([&] { std::ofstream(pipe) << text; });
+  RunningProgram program(folder.folder(), {"machines", "pipe"});
+  const ProgramResult result = program.wait(std::chrono::seconds(10));
+  EXPECT_EQ(result.exit_code, 0) << result.err;
+  EXPECT_EQ(result.out, text);
+  const int reader = ::open(pipe.c_str(), O_RDONLY | O_NONBLOCK | O_CLOEXEC);  // lets the writer end in any case
+  writer.join();
+  ::close(reader);
 }
 
 TEST(Machines, EditedFiguresCount) {

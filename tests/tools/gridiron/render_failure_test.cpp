@@ -1,6 +1,9 @@
 // render that cannot: exit codes, words, and no file left behind. SPDX-License-Identifier: Apache-2.0
+#include <fcntl.h>
 #include <gtest/gtest.h>
 #include <signal.h>
+#include <sys/stat.h>
+#include <unistd.h>
 
 #include <chrono>
 #include <thread>
@@ -139,6 +142,49 @@ void expect_interrupt(int signal, std::chrono::milliseconds delay) {
 TEST(RenderFailure, AnInterruptStopsBetweenTilesAndLeavesNothing) {
   expect_interrupt(SIGINT, std::chrono::milliseconds(300));
   expect_interrupt(SIGTERM, std::chrono::milliseconds(400));
+}
+
+// A named pipe whose other end is open where `is_open`, so that only the bytes are missing.
+class Pipe {
+ public:
+  Pipe(const std::filesystem::path& path, bool is_open) {
+    EXPECT_EQ(::mkfifo(path.c_str(), 0600), 0) << path;
+    if (is_open) descriptor_ = ::open(path.c_str(), O_RDWR | O_CLOEXEC);
+  }
+  ~Pipe() {
+    if (descriptor_ >= 0) ::close(descriptor_);
+  }
+  Pipe(const Pipe&) = delete;
+  Pipe& operator=(const Pipe&) = delete;
+
+ private:
+  int descriptor_ = -1;
+};
+
+TEST(RenderFailure, AnInterruptEndsTheWaitForAPipe) {
+  const Words cases[] = {
+      {"machines", "pipe.ply"},
+      {"info", "pipe.ply"},
+      {"render", "pipe.ply", "-o", "a.png"},
+      {"render", "a.ply", "-o", "a.png", "--camera", "pipe.ply"},
+      {"render", "a.ply", "-o", "a.png", "--machine", "pipe.ply"},
+      {"render", "a.ply", "-o", "a.png", "--size", "256x256", "--depth", "pipe.ply"},  // more than a pipe holds
+  };
+  for (const Words& arguments : cases) {
+    for (const bool is_open : {false, true}) {
+      SCOPED_TRACE(arguments[0] + " " + arguments.back() + (is_open ? ", open" : ", not open"));
+      const TemporaryFolder folder;
+      folder.write_ply("a.ply", make_sphere(8, 12, 1.0f));
+      const Pipe pipe(folder.path("pipe.ply"), is_open);
+      RunningProgram program(folder.folder(), arguments);
+      std::this_thread::sleep_for(std::chrono::milliseconds(300));
+      program.send(is_open ? SIGTERM : SIGINT);
+      const ProgramResult result = program.wait(std::chrono::seconds(5));
+      EXPECT_EQ(result.exit_code, is_open ? 143 : 130) << result.err;
+      EXPECT_EQ(result.err, "interrupted; no file was written\n");
+      EXPECT_EQ(folder.names(), (Words{"a.ply", "pipe.ply"}));
+    }
+  }
 }
 
 TEST(RenderFailure, AnInterruptAtAnyTimeLeavesAllOrNothing) {

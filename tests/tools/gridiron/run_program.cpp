@@ -8,6 +8,8 @@
 #include <sys/wait.h>
 #include <unistd.h>
 
+#include <thread>
+
 namespace gridiron::test {
 namespace {
 
@@ -66,6 +68,19 @@ ProgramResult RunningProgram::wait() {
   result.out = take_text(out_);
   result.err = take_text(err_);
   return result;
+}
+
+ProgramResult RunningProgram::wait(std::chrono::milliseconds most) {
+  const auto end = std::chrono::steady_clock::now() + most;
+  siginfo_t info{};
+  const auto has_ended = [&] {
+    return ::waitid(P_PID, static_cast<id_t>(process_), &info, WEXITED | WNOHANG | WNOWAIT) == 0 && info.si_pid != 0;
+  };
+  while (!has_ended() && std::chrono::steady_clock::now() < end) {
+    std::this_thread::sleep_for(std::chrono::milliseconds(5));
+  }
+  if (!has_ended()) send(SIGKILL);
+  return wait();
 }
 
 ProgramResult run_program(const std::filesystem::path& folder, const std::vector<std::string>& arguments) {

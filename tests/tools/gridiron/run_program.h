@@ -4,6 +4,7 @@
 
 #include <sys/types.h>
 
+#include <chrono>
 #include <filesystem>
 #include <string>
 #include <vector>
@@ -25,6 +26,8 @@ class RunningProgram {
 
   void send(int signal) const;
   [[nodiscard]] ProgramResult wait();
+  /// Waits so long at most, then kills it: exit_code is -SIGKILL.
+  [[nodiscard]] ProgramResult wait(std::chrono::milliseconds most);
 
  private:
   pid_t process_ = -1;
