@@ -32,6 +32,8 @@ std::vector<Change> make_changes() {
     return std::to_string(records) + " a line, " + std::to_string(count) + " lines";
   };
 
+  const auto hundredths = [](float value) { return number_text(std::round(100.0 * double{value}) / 100.0); };
+
   add("rays of a packet", square(8), square(options.packet_width),
       [](RivalVariant& variant) { variant.options.packet_width = 8; });
   add("packets taking turns", "1", std::to_string(options.ring_size),
@@ -49,7 +51,7 @@ std::vector<Change> make_changes() {
           variant.options.caches.node_lines = count;
         });
   }
-  for (const auto& [records, count] : {Lines{16, 64}, Lines{64, 16}, Lines{32, 16}}) {
+  for (const auto& [records, count] : {Lines{16, 64}, Lines{32, 32}, Lines{64, 8}}) {
     add("triangle cache", lines(records, count), lines(build.line_triangles, options.caches.triangle_lines),
         [records = records, count = count](RivalVariant& variant) {
           variant.build.line_triangles = records;
@@ -58,13 +60,12 @@ std::vector<Change> make_changes() {
   }
   add("triangles culled by", "corner rays", "subpackets",
       [](RivalVariant& variant) { variant.options.use_subpackets = false; });
-  for (const std::uint32_t count : {1u, 2u, 4u, 6u}) {
+  for (const std::uint32_t count : {2u, 4u, 6u}) {
     add("triangles of a leaf, at most", std::to_string(count), std::to_string(build.leaf_triangles),
         [count](RivalVariant& variant) { variant.build.leaf_triangles = count; });
   }
-  for (const float cost : {0.5f, 0.7f, 1.5f, 3.0f}) {
-    add("cost of a triangle, in boxes", number_text(std::round(10.0 * double{cost}) / 10.0),
-        number_text(double{build.triangle_cost}),
+  for (const float cost : {0.25f, 0.5f, 1.0f, 2.0f}) {
+    add("cost of a triangle, in boxes", hundredths(cost), hundredths(build.triangle_cost),
         [cost](RivalVariant& variant) { variant.build.triangle_cost = cost; });
   }
   for (const std::uint32_t count : {4u, 8u, 16u}) {

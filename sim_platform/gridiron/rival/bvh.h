@@ -16,9 +16,9 @@ namespace gridiron::rival {
 
 struct BvhParameters {
   std::uint32_t bin_count = 6;        ///< per axis, 2..64
-  std::uint32_t leaf_triangles = 3;   ///< most triangles of a leaf, 1..kMaxLeafTriangles
-  float triangle_cost = 1;            ///< of a test, in tests of a child's box
-  std::uint32_t line_triangles = 32;  ///< records of a line of the triangle cache; a leaf lies in one line
+  std::uint32_t leaf_triangles = 8;   ///< most triangles of a leaf, 1..kMaxLeafTriangles
+  float triangle_cost = 0.35f;        ///< of a test, in tests of a child's box
+  std::uint32_t line_triangles = 64;  ///< records of a line of the triangle cache; a leaf lies in one line
   std::uint32_t line_nodes = 16;      ///< nodes of a line of the node cache, neighbours in the tree
 };
 

@@ -25,7 +25,7 @@ namespace gridiron::rival {
 /// when the hierarchy is built (BvhParameters::line_nodes, line_triangles).
 struct CacheGeometry {
   std::uint32_t node_lines = 32;
-  std::uint32_t triangle_lines = 32;
+  std::uint32_t triangle_lines = 16;
 };
 
 struct RenderOptions {
