@@ -304,7 +304,7 @@ TEST(SmallScenes, WithoutDepthHardlyADistanceIsExact) {
     ASSERT_EQ(without.result.status, Status::kOk);
     EXPECT_EQ(with.planes.color, without.planes.color);
     EXPECT_GT(with.result.work[exact], 4000u) << packet_width;
-    EXPECT_LT(without.result.work[exact], with.result.work[exact] / 50) << packet_width;
+    EXPECT_LT(without.result.work[exact], with.result.work[exact] / 40) << packet_width;
   }
 }
 
