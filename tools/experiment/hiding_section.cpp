@@ -1,6 +1,5 @@
 // Fig. 6, Table 4 and configuration best: where the time goes, and how much of the waiting is hidden.
 // SPDX-License-Identifier: Apache-2.0
-#include <cmath>
 #include <map>
 #include <string>
 
@@ -331,8 +330,6 @@ Writer plan_best(Plan& plan, const Stage& stage) {
                  best_run.fps(), ratio, best_run.wait_percent(), gone_percent, one > 0 ? best_run.fps() / one : 0.0,
                  fetched > 0 ? static_cast<double>(best_run.bytes_in()) / fetched : 0.0, same ? "yes" : "no"});
     }
-    const auto best_lambda = static_cast<double>(grid_variant("best").configuration.lambda);
-    const auto reference_lambda = static_cast<double>(grid_variant("reference").configuration.lambda);
     book.section("best", "Configuration best against the reference");
     book.paragraph(
         "Configuration best has the same exact test and a coarser grid. It traverses the grid once per tile instead of "
@@ -341,9 +338,9 @@ Writer plan_best(Plan& plan, const Stage& stage) {
         buffer_words("best") +
         " in rotation. As it tests a triangle cheaply and walks for 1,024 rays at once, large "
         "cells cost it little: " +
-        number_text(std::round(10.0 * best_lambda) / 10.0) +
+        number_text(grid_variant("best").configuration.lambda) +
         " cells per triangle need less memory, fewer transfers and a shorter build than the reference's " +
-        number_text(reference_lambda) + ". " + choice_words(done) +
+        number_text(grid_variant("reference").configuration.lambda) + ". " + choice_words(done) +
         " Records are the reference's, 48 bytes a triangle and 8 a cell, and a cell's triangles come in one run. On "
         "six cores it renders " +
         ratios.text(2) + " times the frames of the reference, waits " + waits.percent(2) + " of its cycles, and " +

@@ -42,16 +42,16 @@ struct PaperView {
 [[nodiscard]] double derived_double_wait_percent(const PaperView& view, std::size_t cores_index);
 
 /// Statements of the paper in words, each [P].
-inline constexpr std::string_view kPaperShadingCost = "10-20 %";       ///< section 6.1
-inline constexpr std::string_view kPaperHidden = "60-76 %";            ///< section 6.2
-inline constexpr std::string_view kPaperAgainstBvh = "slow by half";   ///< section 6.3
-inline constexpr std::string_view kPaperFpsGain = "10-22 %";           ///< section 6.2
+inline constexpr std::string_view kPaperShadingCost = "10-20 %";      ///< section 6.1
+inline constexpr std::string_view kPaperHidden = "60-76 %";           ///< section 6.2
+inline constexpr std::string_view kPaperAgainstBvh = "slow by half";  ///< section 6.3
+inline constexpr std::string_view kPaperFpsGain = "10-22 %";          ///< section 6.2
 
 /// What Table 1 says of a structure: n is the number of triangles.
 struct PaperGrowth {
   std::string_view build, traversal;
 };
-inline constexpr PaperGrowth kPaperGridGrowth = {"O(n)", "O(n^(1/3))"};    ///< [P]
+inline constexpr PaperGrowth kPaperGridGrowth = {"O(n)", "O(n^(1/3))"};     ///< [P]
 inline constexpr PaperGrowth kPaperBvhGrowth = {"O(n log n)", "O(log n)"};  ///< [P]
 
 }  // namespace gridiron::experiment

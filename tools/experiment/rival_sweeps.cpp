@@ -32,8 +32,6 @@ std::vector<Change> make_changes() {
     return std::to_string(records) + " a line, " + std::to_string(count) + " lines";
   };
 
-  const auto hundredths = [](float value) { return number_text(std::round(100.0 * double{value}) / 100.0); };
-
   add("rays of a packet", square(8), square(options.packet_width),
       [](RivalVariant& variant) { variant.options.packet_width = 8; });
   add("packets taking turns", "1", std::to_string(options.ring_size),
@@ -65,7 +63,7 @@ std::vector<Change> make_changes() {
         [count](RivalVariant& variant) { variant.build.leaf_triangles = count; });
   }
   for (const float cost : {0.25f, 0.5f, 1.0f, 2.0f}) {
-    add("cost of a triangle, in boxes", hundredths(cost), hundredths(build.triangle_cost),
+    add("cost of a triangle, in boxes", number_text(cost), number_text(build.triangle_cost),
         [cost](RivalVariant& variant) { variant.build.triangle_cost = cost; });
   }
   for (const std::uint32_t count : {4u, 8u, 16u}) {

@@ -25,13 +25,22 @@ std::string field_of(const Cell& cell) {
   return "";
 }
 
-}  // namespace
-
-std::string number_text(double number) {
+template <class Number>
+std::string shortest_text(Number number) {
   if (!std::isfinite(number)) return "";
   std::array<char, 32> text{};
   const auto [end, error] = std::to_chars(text.data(), text.data() + text.size(), number);
   return error == std::errc{} ? std::string(text.data(), end) : "";
+}
+
+}  // namespace
+
+std::string number_text(double number) {
+  return shortest_text(number);
+}
+
+std::string number_text(float number) {
+  return shortest_text(number);
 }
 
 std::string fixed_text(double number, int decimals) {

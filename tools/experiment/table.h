@@ -30,6 +30,8 @@ struct Table {
 
 /// @returns the shortest decimal text that reads back as the same number (std::to_chars), "" where it is not finite.
 [[nodiscard]] std::string number_text(double number);
+/// The same for a float: as short as a float needs.
+[[nodiscard]] std::string number_text(float number);
 
 /// @returns the number with exactly `decimals` digits behind the point.
 [[nodiscard]] std::string fixed_text(double number, int decimals);
