@@ -59,6 +59,15 @@ void add_volume(ExactSum& sum, const float org[3], const float a[3], const float
   sum.add_determinant(-1, a, b, org);
 }
 
+// The distance at which a ray meets a triangle's plane is numerator / denominator.
+void add_quotient(const float org[3], const float dir[3], const float a[3], const float b[3], const float c[3],
+                  ExactSum& numerator, ExactSum& denominator) {
+  add_volume(numerator, org, a, b, c);
+  denominator.add_determinant(1, dir, b, c);  // det[d, b-a, c-a] = det[d,b,c] - det[d,a,c] - det[d,b,a]
+  denominator.add_determinant(-1, dir, a, c);
+  denominator.add_determinant(-1, dir, b, a);
+}
+
 }  // namespace
 
 void ExactSum::add_product(int sign, float a, float b, float c) {
@@ -146,12 +155,8 @@ bool exact_zero_area(const float a[3], const float b[3], const float c[3]) {
 }
 
 float exact_distance(const float org[3], const float dir[3], const float a[3], const float b[3], const float c[3]) {
-  ExactSum numerator;
-  add_volume(numerator, org, a, b, c);
-  ExactSum denominator;  // det[d, b-a, c-a] = det[d,b,c] - det[d,a,c] - det[d,b,a]
-  denominator.add_determinant(1, dir, b, c);
-  denominator.add_determinant(-1, dir, a, c);
-  denominator.add_determinant(-1, dir, b, a);
+  ExactSum numerator, denominator;
+  add_quotient(org, dir, a, b, c, numerator, denominator);
   const int numerator_sign = numerator.take_magnitude();
   const int denominator_sign = denominator.take_magnitude();
   if (numerator_sign == 0 || denominator_sign == 0 || numerator_sign != denominator_sign) return 0.0f;
@@ -177,6 +182,37 @@ float exact_distance(const float org[3], const float dir[3], const float a[3], c
     }
   }
   return low < kLeastNormal ? 0.0f : std::bit_cast<float>(low);
+}
+
+int exact_distance_order(const float org[3], const float dir[3], const float (&first)[3][3],
+                         const float (&second)[3][3]) {
+  ExactSum numerators[2], denominators[2];
+  add_quotient(org, dir, first[0], first[1], first[2], numerators[0], denominators[0]);
+  add_quotient(org, dir, second[0], second[1], second[2], numerators[1], denominators[1]);
+  for (int i = 0; i < 2; ++i) {
+    (void)numerators[i].take_magnitude();
+    (void)denominators[i].take_magnitude();
+  }
+  // The sign of N0 D1 - N1 D0, column by column from the lowest: sums of halves of at most 27 products each.
+  constexpr int kLimbs = ExactSum::kLimbCount;
+  std::int64_t carry = 0;
+  std::uint32_t any = 0;
+  for (int column = 0; column < 2 * kLimbs; ++column) {
+    std::int64_t low = carry, high = 0;
+    const int begin = column < kLimbs ? 0 : column - kLimbs + 1;
+    const int end = column < kLimbs ? column + 1 : kLimbs;
+    for (int i = begin; i < end; ++i) {
+      const int j = column - i;
+      const std::uint64_t left = std::uint64_t{numerators[0].limb(i)} * denominators[1].limb(j);
+      const std::uint64_t right = std::uint64_t{numerators[1].limb(i)} * denominators[0].limb(j);
+      low += static_cast<std::int64_t>(left & 0xFFFFFFFFu) - static_cast<std::int64_t>(right & 0xFFFFFFFFu);
+      high += static_cast<std::int64_t>(left >> 32) - static_cast<std::int64_t>(right >> 32);
+    }
+    any |= static_cast<std::uint32_t>(low);
+    carry = (low >> 32) + high;
+  }
+  if (carry < 0) return -1;
+  return carry > 0 || any != 0 ? 1 : 0;
 }
 
 }  // namespace gridiron

@@ -55,4 +55,11 @@ class ExactSum {
 [[nodiscard]] float exact_distance(const float org[3], const float dir[3], const float a[3], const float b[3],
                                    const float c[3]);
 
+/// Order of the distances N / D, as in exact_distance, at which a ray meets the planes of two triangles.
+///
+/// @param first, second  vertices. Precondition: N and D of each have the same sign, not 0.
+/// @returns -1 where the first is nearer, 0 where they are equal, +1. Cost: two products of big integers.
+[[nodiscard]] int exact_distance_order(const float org[3], const float dir[3], const float (&first)[3][3],
+                                       const float (&second)[3][3]);
+
 }  // namespace gridiron

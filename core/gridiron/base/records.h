@@ -131,6 +131,7 @@ inline constexpr std::uint32_t kFrameVersion = 1;
 enum class Accuracy : std::uint32_t {
   kStandard = 0,  ///< filtered edge signs with exact ones behind them, correctly rounded distance
   kPaper = 1,     ///< precomputed projection in single precision; may leak
+  kExact = 2,     ///< as kStandard, and of equal rounded distances the exact ones decide
 };
 
 enum class Shading : std::uint32_t {

@@ -127,13 +127,29 @@ struct HitSetups {
   }
 };
 
+/// @returns whether it shows at once that two triangles lie in one plane: across an axis, or by equal vertices.
+[[nodiscard]] bool in_one_plane(const VertexTriangle& first, const VertexTriangle& second);
+
+/// @returns whether of two triangles that a ray meets at the same rounded distance the first one is its hit.
+template <class PacketType>
+[[nodiscard]] bool comes_first(const PacketType& packet, std::uint32_t ray, const VertexTriangle& first,
+                               const VertexTriangle& second, WorkCounters& work) {
+  const bool has_lower_id = first.triangle_id < second.triangle_id;
+  if (!packet.breaks_ties || in_one_plane(first, second)) return has_lower_id;
+  work.add(Work::kExactDistance);
+  const float dir[3] = {packet.dir[0][ray], packet.dir[1][ray], packet.dir[2][ray]};
+  const int order = exact_distance_order(packet.origin, dir, first.v, second.v);
+  return order < 0 || (order == 0 && has_lower_id);
+}
+
 /// Decides hits that lie too close to those that the rays had: both distances exact, then the least (t, id).
 ///
 /// @param close  lanes. @param distance  of the new hits, exact. @returns the lanes whose new hit is nearer; t of the
 /// others becomes exact. Where a ray's old triangle is no longer at hand, the ray becomes unsure.
 template <class L, class PacketType>
 [[nodiscard]] std::uint32_t settle_close_hits(PacketType& packet, std::uint32_t base, std::uint32_t close,
-                                              std::uint32_t triangle_id, const float* distance, WorkCounters& work) {
+                                              const VertexTriangle& triangle, const float* distance,
+                                              WorkCounters& work) {
   std::uint32_t nearer = 0;
   while (close != 0) {
     const std::uint32_t old_id = packet.id[base + lowest_bit(close)];
@@ -161,7 +177,9 @@ template <class L, class PacketType>
       }
       packet.t[ray] = old_distance[lane];
       const bool is_tie = distance[lane] == old_distance[lane];
-      if (distance[lane] < old_distance[lane] || (is_tie && triangle_id < old_id)) nearer |= 1u << lane;
+      if (distance[lane] < old_distance[lane] || (is_tie && comes_first(packet, ray, triangle, *old_triangle, work))) {
+        nearer |= 1u << lane;
+      }
     }
   }
   return nearer;
@@ -191,12 +209,22 @@ template <class L, class PacketType>
   if (packet.estimates != 0) {
     if (close == 0) [[likely]]
       return nearer;
-    return nearer | settle_close_hits<L>(packet, base, close, triangle.triangle_id, distance, work);
+    return nearer | settle_close_hits<L>(packet, base, close, triangle, distance, work);
   }
   for (; close != 0; close &= close - 1) {
-    const std::uint32_t lane = lowest_bit(close);
-    if (triangle.triangle_id < packet.id[base + lane]) nearer |= 1u << lane;
+    const std::uint32_t ray = base + lowest_bit(close);
+    const VertexTriangle* const old_triangle = packet.find(packet.id[ray]);
+    bool is_first = triangle.triangle_id < packet.id[ray];
+    if (packet.breaks_ties && packet.id[ray] != kNoTriangle) {
+      if (old_triangle == nullptr) {
+        packet.unsure.insert(ray);
+        continue;
+      }
+      is_first = comes_first(packet, ray, triangle, *old_triangle, work);
+    }
+    if (is_first) nearer |= 1u << (ray - base);
   }
+  if (packet.breaks_ties && nearer != 0) packet.taken = triangle;
   return nearer;
 }
 

@@ -66,6 +66,22 @@ DistanceEstimate set_up_estimate(const float origin[3], float dir_max, const Ver
   return estimate;
 }
 
+bool in_one_plane(const VertexTriangle& first, const VertexTriangle& second) {
+  for (int axis = 0; axis < 3; ++axis) {
+    const float place = first.v[0][axis];
+    bool is_across = true;
+    for (int i = 0; i < 3; ++i) is_across = is_across && first.v[i][axis] == place && second.v[i][axis] == place;
+    if (is_across) return true;
+  }
+  int equal_count = 0;
+  for (const float(&a)[3] : first.v) {
+    for (const float(&b)[3] : second.v) {
+      equal_count += a[0] == b[0] && a[1] == b[1] && a[2] == b[2] ? 1 : 0;
+    }
+  }
+  return equal_count == 3;
+}
+
 void set_up_normal(const VertexTriangle& triangle, float normal[3]) {
   float size[3];
   normal_of(triangle, normal, size);

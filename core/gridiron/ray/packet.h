@@ -120,6 +120,7 @@ struct alignas(128) Packet {
     surely_nearer = exact ? 1.0f : kSurelyNearer;
     surely_behind = exact ? 1.0f : kSurelyBehind;
     for (VertexTriangle& triangle : recent) triangle.triangle_id = kNoTriangle;
+    taken.triangle_id = kNoTriangle;
   }
 
   alignas(64) float dir[3][kRayCount];      ///< direction
@@ -138,16 +139,18 @@ struct alignas(128) Packet {
   std::uint32_t estimates;  ///< all bits, or none
   float surely_nearer;      ///< times t: a distance below is nearer, whatever the error of t
   float surely_behind;      ///< times t: a distance above is behind
+  bool breaks_ties;         ///< of equal rounded distances the exact ones decide, not the triangles' ids
 
   // Triangles hit lately, each in the place that its id gives: where two estimates are too close to tell, the one that
   // was there before can be measured again.
   static constexpr std::uint32_t kRecentCount = RecentCountV;
   alignas(16) VertexTriangle recent[kRecentCount];
+  VertexTriangle taken;  ///< the one whose exact distance was nearer last: with one ray alive, its nearest hit
 
   GRIDIRON_INLINE void keep(const VertexTriangle& triangle) { recent[triangle.triangle_id % kRecentCount] = triangle; }
   /// @returns the triangle if it is among the recent ones, else null.
   [[nodiscard]] GRIDIRON_INLINE const VertexTriangle* find(std::uint32_t triangle_id) const {
-    const VertexTriangle& triangle = recent[triangle_id % kRecentCount];
+    const VertexTriangle& triangle = taken.triangle_id == triangle_id ? taken : recent[triangle_id % kRecentCount];
     return triangle.triangle_id == triangle_id && triangle_id != kNoTriangle ? &triangle : nullptr;
   }
 

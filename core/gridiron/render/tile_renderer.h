@@ -96,7 +96,8 @@ class TileRenderer {
   }
 
   // Generates a packet and traces it. Distances that nobody asks for are estimated; rays for which that leaves open
-  // what they hit are traced again, with exact ones.
+  // what they hit are traced again, with exact ones. Where ties are to be broken, a ray of which one still is open goes
+  // alone: then its nearest triangle stays at hand.
   [[nodiscard]] Status trace_packet(std::uint32_t left, std::uint32_t top) {
     RaySet<StorePacket::kRayCount> waiting;
     generate_packet<L>(store_.frame, left, top, store_.packet, waiting, store_.work);
@@ -104,7 +105,17 @@ class TileRenderer {
     GRIDIRON_TRY(trace_rays(waiting));
     if (!take_unsure_rays(store_.packet, store_.frame.t_far, waiting)) [[likely]]
       return Status::kOk;
-    return trace_rays(waiting);
+    GRIDIRON_TRY(trace_rays(waiting));
+    if (!store_.packet.breaks_ties) return Status::kOk;
+    RaySet<StorePacket::kRayCount> open;
+    if (!take_unsure_rays(store_.packet, store_.frame.t_far, open)) return Status::kOk;
+    for (std::uint32_t ray = 0; ray < StorePacket::kRayCount; ++ray) {
+      if (!open.contains(ray)) continue;
+      waiting.clear();
+      waiting.insert(ray);
+      GRIDIRON_TRY(trace_rays(waiting));
+    }
+    return Status::kOk;
   }
 
   // Takes rays through the grid, once per march axis and sign that they have.
@@ -154,7 +165,7 @@ class TileRenderer {
       return Status::kUnsupportedFrame;
     }
     if (!(frame.t_far > 0.0f) || frame.color_address == 0) return Status::kBadFrame;
-    if (frame.accuracy > static_cast<std::uint32_t>(Accuracy::kPaper) ||
+    if (frame.accuracy > static_cast<std::uint32_t>(Accuracy::kExact) ||
         frame.shading > static_cast<std::uint32_t>(Shading::kSimple)) {
       return Status::kUnsupportedFrame;
     }
