@@ -210,9 +210,10 @@ void add_algorithm_options(CLI::App& app, RawRender& raw) {
   add_choice(app, "--tile-width", render.tile_width,
              Choices<std::uint32_t>{{"8", 8}, {"16", 16}, {"32", 32}, {"64", 64}},
              "pixels along a tile's edge (default: 16 with --store 64, else 32)");
-  add_choice(app, "--accuracy", render.accuracy,
-             Choices<Accuracy>{{"standard", Accuracy::kStandard}, {"paper", Accuracy::kPaper}, {"exact", Accuracy::kExact}},
-             "intersection test (default standard)");
+  add_choice(
+      app, "--accuracy", render.accuracy,
+      Choices<Accuracy>{{"standard", Accuracy::kStandard}, {"paper", Accuracy::kPaper}, {"exact", Accuracy::kExact}},
+      "intersection test (default standard)");
   add_choice(app, "--shading", render.shading, Choices<Shading>{{"none", Shading::kNone}, {"simple", Shading::kSimple}},
              "none: hit or background; simple: facing ratio (default)");
   app.add_flag("--no-mailbox", raw.no_mailbox, "test a triangle again in every cell that holds it");

@@ -74,9 +74,9 @@ void ExactSum::add_product(int sign, float a, float b, float c) {
   const Decomposed x = decompose(a);
   const Decomposed y = decompose(b);
   const Decomposed z = decompose(c);
-  const std::uint64_t xy = std::uint64_t{x.mantissa} * y.mantissa;   // 48 bits
-  const std::uint64_t low = (xy & 0xFFFFFFFFu) * z.mantissa;         // 56 bits
-  const std::uint64_t high = (xy >> 32) * z.mantissa + (low >> 32);  // product = high * 2^32 + low's 32 bits
+  const std::uint64_t xy = std::uint64_t{x.mantissa} * y.mantissa;              // 48 bits
+  const std::uint64_t low = (xy & 0xFFFFFFFFu) * z.mantissa;                    // 56 bits
+  const std::uint64_t high = (xy >> 32) * z.mantissa + (low >> 32);             // product = high * 2^32 + low's 32 bits
   const int position = x.exponent + y.exponent + z.exponent - kLowestExponent;  // 0..759
   const int index = position / 32;
   const int shift = position % 32;
@@ -172,9 +172,8 @@ float exact_distance(const float org[3], const float dir[3], const float a[3], c
     const std::uint32_t mantissa = (middle & 0x7FFFFFu) | 0x800000u;
     const int exponent = static_cast<int>(middle >> 23) - 150;
     const bool power_of_two = mantissa == 0x800000u;
-    const int order = power_of_two
-                          ? compare_with_multiple(numerator, denominator, 4 * mantissa - 1, exponent - 2)
-                          : compare_with_multiple(numerator, denominator, 2 * mantissa - 1, exponent - 1);
+    const int order = power_of_two ? compare_with_multiple(numerator, denominator, 4 * mantissa - 1, exponent - 2)
+                                   : compare_with_multiple(numerator, denominator, 2 * mantissa - 1, exponent - 1);
     if (order >= 0) {
       low = middle;
     } else {

@@ -55,11 +55,15 @@ float rounded(const Rational& value) {
   return result.convert_to<float>();
 }
 
-float distance_by_rationals(const Floats& o, const Floats& d, const Floats& a, const Floats& b, const Floats& c) {
+// Where a ray meets a triangle's plane, 0 where it does not or the triangle has no area.
+Rational exact_quotient(const Floats& o, const Floats& d, const Floats& a, const Floats& b, const Floats& c) {
   const Rational n = determinant(minus(exact(a), exact(o)), minus(exact(b), exact(o)), minus(exact(c), exact(o)));
   const Rational m = determinant(exact(d), minus(exact(b), exact(a)), minus(exact(c), exact(a)));
-  if (n == 0 || m == 0) return 0.0f;
-  return rounded(n / m);
+  return n == 0 || m == 0 ? Rational(0) : Rational(n / m);
+}
+
+float distance_by_rationals(const Floats& o, const Floats& d, const Floats& a, const Floats& b, const Floats& c) {
+  return rounded(exact_quotient(o, d, a, b, c));
 }
 
 // Any finite float, all bit patterns alike: denormals, zeros of both signs and the largest included.
@@ -138,6 +142,50 @@ TEST_P(Sources, DistanceIsTheRationalOneRounded) {
     if (expected > 0) ++positive;
   }
   EXPECT_GT(positive, 0);
+}
+
+TEST_P(Sources, OrderIsThatOfTheRationalDistances) {
+  int compared = 0;
+  for (int seed = 0; seed < GetParam().seeds; ++seed) {
+    TestRandom random(static_cast<std::uint64_t>(seed) + 3000000);
+    const Floats o = point(random), d = point(random);
+    const std::array<Floats, 3> one = {point(random), point(random), point(random)};
+    std::array<Floats, 3> other = {point(random), point(random), point(random)};
+    if (seed % 4 == 1) other = {one[1], one[2], one[0]};
+    if (seed % 4 == 2) other = {one[0], one[1], other[2]};
+    if (seed % 4 == 3) {  // one unit in the last place apart
+      other = one;
+      other[random.below(3)][random.below(3)] = std::nextafter(one[0][0], 0.0f);
+    }
+    const Rational first = exact_quotient(o, d, one[0], one[1], one[2]);
+    const Rational second = exact_quotient(o, d, other[0], other[1], other[2]);
+    if (first <= 0 || second <= 0) continue;
+    float vertices[2][3][3];
+    for (std::size_t i = 0; i < 9; ++i) {
+      vertices[0][i / 3][i % 3] = one[i / 3][i % 3];
+      vertices[1][i / 3][i % 3] = other[i / 3][i % 3];
+    }
+    const int expected = sign_of(first - second);
+    EXPECT_EQ(exact_distance_order(o.data(), d.data(), vertices[0], vertices[1]), expected)
+        << GetParam().name << " seed " << seed;
+    EXPECT_EQ(exact_distance_order(o.data(), d.data(), vertices[1], vertices[0]), -expected)
+        << GetParam().name << " seed " << seed;
+    ++compared;
+  }
+  EXPECT_GT(compared, 0);
+}
+
+// Distances that are the same float and not the same number.
+TEST(ExactDistanceOrder, TellsApartWhatRoundsAlike) {
+  const Floats o = {0, 0, 0}, d = {0, 0, 1};
+  const float near[3][3] = {{-1, -1, 1}, {1, -1, 1}, {0, 2, 1}};
+  float far[3][3] = {{-1, -1, 1}, {1, -1, 1}, {0, 0x1p30f, 0x1.000002p0f}};
+  EXPECT_EQ(exact_distance(o.data(), d.data(), far[0], far[1], far[2]), 1.0f);
+  EXPECT_EQ(exact_distance_order(o.data(), d.data(), near, far), -1);
+  EXPECT_EQ(exact_distance_order(o.data(), d.data(), far, near), 1);
+  EXPECT_EQ(exact_distance_order(o.data(), d.data(), far, far), 0);
+  far[2][2] = 1;
+  EXPECT_EQ(exact_distance_order(o.data(), d.data(), near, far), 0);
 }
 
 INSTANTIATE_TEST_SUITE_P(
