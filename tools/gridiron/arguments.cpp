@@ -212,7 +212,7 @@ void add_algorithm_options(CLI::App& app, RawRender& raw) {
              "pixels along a tile's edge (default: 16 with --store 64, else 32)");
   add_choice(
       app, "--accuracy", render.accuracy,
-      Choices<Accuracy>{{"standard", Accuracy::kStandard}, {"paper", Accuracy::kPaper}, {"exact", Accuracy::kExact}},
+      Choices<Accuracy>{{"standard", Accuracy::kStandard}, {"paper", Accuracy::kPaper}, {"exact", Accuracy::kExact}, {"fast", Accuracy::kFast}},
       "intersection test (default standard)");
   add_choice(app, "--shading", render.shading, Choices<Shading>{{"none", Shading::kNone}, {"simple", Shading::kSimple}},
              "none: hit or background; simple: facing ratio (default)");

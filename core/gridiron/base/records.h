@@ -132,6 +132,7 @@ enum class Accuracy : std::uint32_t {
   kStandard = 0,  ///< filtered edge signs with exact ones behind them, correctly rounded distance
   kPaper = 1,     ///< precomputed projection in single precision; may leak
   kExact = 2,     ///< as kStandard, and of equal rounded distances the exact ones decide
+  kFast = 3,      ///< signs and distances as single precision gives them; may leak at edges, distances unbounded
 };
 
 enum class Shading : std::uint32_t {

@@ -113,7 +113,7 @@ struct HitSetups {
     const DistanceEstimate found = set_up_estimate(packet.origin, packet.dir_max, triangle);
     for (int axis = 0; axis < 3; ++axis) normal[axis] = Float(found.normal[axis]);
     numerator = Float(found.numerator);
-    least_denominator = Float(found.least_denominator);
+    least_denominator = Float(packet.trusts_floats ? 0.0f : found.least_denominator);
     packet.keep(triangle);
     has_estimate = true;
   }
@@ -256,7 +256,9 @@ template <class L, class PacketType>
     const auto is_behind = (denominator < -setups.least_denominator) |
                            (is_close & (setups.numerator > old_numerator * Float(kSurelyBehind)));
     hit &= ~(is_behind | L::equal(triangle.triangle_id, packet.id + base)).bits();
-    if (nearer != hit) {
+    if (packet.trusts_floats) {
+      nearer = (is_close & (setups.numerator < old_numerator)).bits() & hit;
+    } else if (nearer != hit) {
       alignas(64) float distance[L::kCount];
       const auto estimated = L::mask_from_bits(nearer);
       nearer |= settle_hits<L>(packet, base, hit & ~nearer, triangle, setups, distance, work);

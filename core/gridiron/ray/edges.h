@@ -123,7 +123,7 @@ GRIDIRON_OUTLINE void set_up_edges(const PacketType& packet, const VertexTriangl
   for (std::uint32_t i = 0; i < kTriangles; ++i) {
     const std::uint32_t first_lane = 4 * i;
     batch.orientation[i] = ((negative >> first_lane) & 1u) != 0 ? -1 : 1;
-    if (((sure >> first_lane) & 1u) != 0) [[likely]]
+    if (((sure >> first_lane) & 1u) != 0 || packet.trusts_floats) [[likely]]
       continue;
     batch.orientation[i] = volume_sign_in_double(packet.origin, *triangles[i], work);
     flipped &= ~(0xFu << first_lane);
@@ -244,6 +244,9 @@ template <class L, class PacketType>
   open &= ~inside;
   if (open == 0) [[likely]]
     return inside;
+  if (packet.trusts_floats) {
+    return inside | (((e0 >= Float(0.0f)) & (e1 >= Float(0.0f)) & (e2 >= Float(0.0f))).bits() & open);
+  }
   const std::uint32_t sure_inside[3] = {inside0.bits() & edges.known, inside1.bits() & edges.known,
                                         inside2.bits() & edges.known};
   const std::uint32_t settled = settle_open_lanes<L>(packet, base, open, sure_inside, triangle, orientation, work);

@@ -139,6 +139,7 @@ struct alignas(128) Packet {
   std::uint32_t estimates;  ///< all bits, or none
   float surely_nearer;      ///< times t: a distance below is nearer, whatever the error of t
   float surely_behind;      ///< times t: a distance above is behind
+  bool trusts_floats;       ///< nothing is settled beyond single precision
   bool breaks_ties;         ///< of equal rounded distances the exact ones decide, not the triangles' ids
 
   // Triangles hit lately, each in the place that its id gives: where two estimates are too close to tell, the one that

@@ -64,7 +64,8 @@ void generate_packet(const FrameRecord& frame, std::uint32_t left, std::uint32_t
   fill_words(packet.facing, 0.0f);
   packet.unsure.clear();
   packet.breaks_ties = frame.accuracy == static_cast<std::uint32_t>(Accuracy::kExact);
-  packet.ask_for_distances(frame.depth_address != 0);
+  packet.trusts_floats = frame.accuracy == static_cast<std::uint32_t>(Accuracy::kFast);
+  packet.ask_for_distances(frame.depth_address != 0 && !packet.trusts_floats);
   const std::uint32_t columns = frame.width - left;
   const std::uint32_t rows = frame.height - top;
   if (columns >= kWidth && rows >= kWidth) [[likely]] {

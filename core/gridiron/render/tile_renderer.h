@@ -165,7 +165,7 @@ class TileRenderer {
       return Status::kUnsupportedFrame;
     }
     if (!(frame.t_far > 0.0f) || frame.color_address == 0) return Status::kBadFrame;
-    if (frame.accuracy > static_cast<std::uint32_t>(Accuracy::kExact) ||
+    if (frame.accuracy > static_cast<std::uint32_t>(Accuracy::kFast) ||
         frame.shading > static_cast<std::uint32_t>(Shading::kSimple)) {
       return Status::kUnsupportedFrame;
     }
