@@ -337,6 +337,7 @@ TEST(RandomSmallScenes, EveryPixelEqualsTheTruth) {
     chip.packet_width = 4u << random.below(4);
     if (random.below(2) == 0) settings.techniques |= kUseSubpackets;
     if (random.below(2) == 0) settings.techniques &= ~std::uint32_t{kUseCornerCulling};
+    if (random.below(2) == 0) settings.accuracy = Accuracy::kExact;
     chip.completion = sim::Completion::kRandom;
     chip.seed = seed;
     const RenderedFrame rendered = scene.render(settings, chip);
@@ -344,6 +345,49 @@ TEST(RandomSmallScenes, EveryPixelEqualsTheTruth) {
     EXPECT_TRUE(rendered.result.violations.empty()) << "seed " << seed;
     const TruthReport report = check_against_truth(rendered, mesh.view(), all_pixels(rendered.frame));
     EXPECT_EQ(report.mismatches, 0u) << "seed " << seed << ": " << report.first_mismatch;
+  }
+}
+
+// Sheets a few units in the last place apart, tilted against each other: rounded distances are equal nearly everywhere,
+// and which sheet is nearest changes all over the picture.
+TEST(SmallScenes, ExactTellsSheetsApartThatRoundAlike) {
+  for (const std::uint32_t packet_width : {8u, 32u}) {
+    TestMesh mesh;
+    TestRandom random(packet_width);
+    for (std::uint32_t sheet = 0; sheet < 40; ++sheet) {
+      const std::uint32_t first = static_cast<std::uint32_t>(mesh.vertices.size());
+      constexpr float kCorners[4][2] = {{-1, -1}, {1, -1}, {1, 1}, {-1, 1}};
+      for (const auto& [x, y] : kCorners) {
+        const float lift = 0x1p-22f * static_cast<float>(random.below(5));
+        mesh.vertices.emplace_back(x, y, 0.3f * x + 0.1f * y + 0.5f + lift);
+      }
+      mesh.triangles.emplace_back(first, first + 1, first + 2);
+      mesh.triangles.emplace_back(first, first + 2, first + 3);
+    }
+    SceneInMemory scene(mesh.view(), grid_of(0.5f, 2));
+    ASSERT_EQ(scene.status(), Status::kOk);
+    FrameSettings settings;
+    settings.camera = look({0.1f, 0.2f, 3}, {0, 0, 0}, 0.5f);
+    settings.width = settings.height = 48;
+    sim::ChipOptions chip;
+    chip.packet_width = packet_width;
+    if (packet_width > 8) settings.techniques |= kUseSubpackets;
+    const RenderedFrame standard = scene.render(settings, chip);
+    settings.accuracy = Accuracy::kExact;
+    for (const PlaneSet planes : {PlaneSet::kAll, PlaneSet::kColorAndIds}) {
+      const RenderedFrame exact = scene.render(settings, chip, planes);
+      ASSERT_EQ(exact.result.status, Status::kOk);
+      if (planes == PlaneSet::kAll) {
+        const TruthReport report = check_against_truth(exact, mesh.view(), all_pixels(exact.frame));
+        EXPECT_EQ(report.mismatches, 0u) << report.first_mismatch;
+      } else {
+        EXPECT_EQ(exact.planes.ids, scene.render(settings, chip).planes.ids);
+      }
+      std::size_t changed = 0;
+      for (std::size_t i = 0; i < exact.planes.ids.size(); ++i)
+        changed += exact.planes.ids[i] != standard.planes.ids[i];
+      EXPECT_GT(changed, exact.planes.ids.size() / 8) << "ties that the test is about";
+    }
   }
 }
 

@@ -103,15 +103,15 @@ BoundedDouble determinant(const DVec3& a, const DVec3& b, const DVec3& c) {
 }
 
 struct Corners {
-  float a[3], b[3], c[3];
+  float v[3][3];
 };
 
 Corners corners_of(const MeshView& mesh, const UVec3& triangle) {
   Corners corners;
   for (int axis = 0; axis < 3; ++axis) {
-    corners.a[axis] = mesh.vertices[triangle.x][axis];
-    corners.b[axis] = mesh.vertices[triangle.y][axis];
-    corners.c[axis] = mesh.vertices[triangle.z][axis];
+    corners.v[0][axis] = mesh.vertices[triangle.x][axis];
+    corners.v[1][axis] = mesh.vertices[triangle.y][axis];
+    corners.v[2][axis] = mesh.vertices[triangle.z][axis];
   }
   return corners;
 }
@@ -122,17 +122,9 @@ bool signs_mean_hit(int s0, int s1, int s2) {
   return some_positive != some_negative;
 }
 
-void merge(TrueHit& best, std::size_t triangle, float distance, float t_far) {
-  const auto triangle_id = static_cast<std::uint32_t>(triangle);
-  if (!(distance > 0.0f) || !(distance <= t_far)) return;
-  if (distance < best.distance || (distance == best.distance && triangle_id < best.triangle_id)) {
-    best = {triangle_id, distance};
-  }
-}
-
 }  // namespace
 
-BruteForce::BruteForce(const MeshView& mesh, Vec3 origin) : mesh_(mesh), origin_(origin) {
+BruteForce::BruteForce(const MeshView& mesh, Vec3 origin, TieRule ties) : mesh_(mesh), origin_(origin), ties_(ties) {
   groups_.resize((mesh.triangles.size() + kWidth - 1) / kWidth);
   const DVec3 o(origin);
   for (std::size_t i = 0; i < groups_.size() * kWidth; ++i) {
@@ -237,15 +229,30 @@ void BruteForce::settle_candidate(std::size_t triangle, Vec3 direction, float t_
     const Corners p = corners_of(mesh_, mesh_.triangles[triangle]);
     const float o[3] = {origin_.x, origin_.y, origin_.z};
     const float d[3] = {direction.x, direction.y, direction.z};
-    const float* corner[3] = {p.a, p.b, p.c};
     for (std::size_t edge = 0; edge < 3; ++edge) {
       if (side[edge] != 0) continue;
-      side[edge] = exact_edge_sign(o, d, corner[edge], corner[(edge + 1) % 3]);
+      side[edge] = exact_edge_sign(o, d, p.v[edge], p.v[(edge + 1) % 3]);
       ++counts.exact_signs;
     }
   }
   if (!signs_mean_hit(side[0], side[1], side[2])) return;
-  merge(best, triangle, rounded_distance(mesh_.triangles[triangle], direction, counts), t_far);
+  merge(best, triangle, rounded_distance(mesh_.triangles[triangle], direction, counts), direction, t_far);
+}
+
+void BruteForce::merge(TrueHit& best, std::size_t triangle, float distance, Vec3 direction, float t_far) const {
+  const auto triangle_id = static_cast<std::uint32_t>(triangle);
+  if (!(distance > 0.0f) || !(distance <= t_far) || distance > best.distance) return;
+  if (distance == best.distance && best.triangle_id != kNoTriangle) {
+    int order = 0;
+    if (ties_ == TieRule::kExactOrder) {
+      const float o[3] = {origin_.x, origin_.y, origin_.z};
+      const float d[3] = {direction.x, direction.y, direction.z};
+      order = exact_distance_order(o, d, corners_of(mesh_, mesh_.triangles[triangle]).v,
+                                   corners_of(mesh_, mesh_.triangles[best.triangle_id]).v);
+    }
+    if (order > 0 || (order == 0 && triangle_id > best.triangle_id)) return;
+  }
+  best = {triangle_id, distance};
 }
 
 float BruteForce::rounded_distance(const UVec3& triangle, Vec3 direction, BruteForceCounts& counts) const {
@@ -276,7 +283,7 @@ float BruteForce::rounded_distance(const UVec3& triangle, Vec3 direction, BruteF
   const Corners p = corners_of(mesh_, triangle);
   const float org[3] = {origin_.x, origin_.y, origin_.z};
   const float dir[3] = {direction.x, direction.y, direction.z};
-  return exact_distance(org, dir, p.a, p.b, p.c);
+  return exact_distance(org, dir, p.v[0], p.v[1], p.v[2]);
 }
 
 TrueHit BruteForce::trace_in_integers(Vec3 direction, float t_far) const {
@@ -285,9 +292,9 @@ TrueHit BruteForce::trace_in_integers(Vec3 direction, float t_far) const {
   const float d[3] = {direction.x, direction.y, direction.z};
   for (std::size_t i = 0; i < mesh_.triangles.size(); ++i) {
     const Corners p = corners_of(mesh_, mesh_.triangles[i]);
-    const bool hit = signs_mean_hit(exact_edge_sign(o, d, p.a, p.b), exact_edge_sign(o, d, p.b, p.c),
-                                    exact_edge_sign(o, d, p.c, p.a));
-    if (hit) merge(best, i, exact_distance(o, d, p.a, p.b, p.c), t_far);
+    const bool hit = signs_mean_hit(exact_edge_sign(o, d, p.v[0], p.v[1]), exact_edge_sign(o, d, p.v[1], p.v[2]),
+                                    exact_edge_sign(o, d, p.v[2], p.v[0]));
+    if (hit) merge(best, i, exact_distance(o, d, p.v[0], p.v[1], p.v[2]), direction, t_far);
   }
   return best;
 }

@@ -1,5 +1,5 @@
-// Ground truth of accuracy `standard`: every ray against every triangle. No grid, packet or transfer code.
-// Memory: std::vector, 96 bytes a triangle. Threads: starts its own. SPDX-License-Identifier: Apache-2.0
+// Ground truth of accuracies `standard` and `exact`: every ray against every triangle. No grid, packet or transfer
+// code. Memory: std::vector, 96 bytes a triangle. Threads: starts its own. SPDX-License-Identifier: Apache-2.0
 #pragma once
 
 #include <gridiron/base/records.h>
@@ -11,6 +11,12 @@
 #include <vector>
 
 namespace gridiron::test {
+
+/// Which of two triangles at the same rounded distance is a ray's hit.
+enum class TieRule : std::uint8_t {
+  kLeastId,     ///< that of the lower id: `standard`
+  kExactOrder,  ///< that which is nearer before rounding, of equals that of the lower id: `exact`
+};
 
 /// Nearest hit of a ray: least (distance, triangle_id).
 struct TrueHit {
@@ -41,7 +47,7 @@ class BruteForce {
  public:
   /// @param mesh    borrowed for the object's life; finite vertices, indices in range.
   /// @param origin  finite.
-  BruteForce(const MeshView& mesh, Vec3 origin);
+  BruteForce(const MeshView& mesh, Vec3 origin, TieRule ties = TieRule::kLeastId);
 
   /// Nearest hits of rays origin + t * direction, 0 < t <= t_far. A filter in double precision with a proven error
   /// bound rejects most pairs; integers decide wherever doubles are unsure.
@@ -58,10 +64,12 @@ class BruteForce {
                    BruteForceCounts& counts) const;
   void settle_candidate(std::size_t triangle, Vec3 direction, float t_far, TrueHit& best,
                         BruteForceCounts& counts) const;
+  void merge(TrueHit& best, std::size_t triangle, float distance, Vec3 direction, float t_far) const;
   float rounded_distance(const UVec3& triangle, Vec3 direction, BruteForceCounts& counts) const;
 
   MeshView mesh_;
   Vec3 origin_;
+  TieRule ties_;
   std::vector<FilterGroup> groups_;
 };
 

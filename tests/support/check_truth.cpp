@@ -35,7 +35,9 @@ TruthReport check_against_truth(const RenderedFrame& rendered, const MeshView& m
   }
   TruthReport report;
   report.pixels = pixels.size();
-  const BruteForce truth(mesh, {frame.eye[0], frame.eye[1], frame.eye[2]});
+  const bool is_exact = frame.accuracy == static_cast<std::uint32_t>(Accuracy::kExact);
+  const BruteForce truth(mesh, {frame.eye[0], frame.eye[1], frame.eye[2]},
+                         is_exact ? TieRule::kExactOrder : TieRule::kLeastId);
   const std::vector<TrueHit> hits =
       truth.trace(directions, frame.t_far, std::max(1u, std::thread::hardware_concurrency()), &report.work);
   for (std::size_t i = 0; i < pixels.size(); ++i) {

@@ -24,8 +24,8 @@ struct TruthReport {
   BruteForceCounts work;
 };
 
-/// Checks triangle and depth of `pixels` (row-major indices) of a frame of accuracy `standard`, and that the colour is
-/// the background's where nothing is hit.
+/// Checks triangle and depth of `pixels` (row-major indices) of a frame of accuracy `standard` or `exact`, and that the
+/// colour is the background's where nothing is hit.
 TruthReport check_against_truth(const RenderedFrame& rendered, const MeshView& mesh,
                                 std::span<const std::size_t> pixels);
 
