@@ -48,11 +48,11 @@ inline constexpr PictureCase kCornerCases[] = {
      4064,
      6,
      7,
-     {0x1.25c9a8p+10f, -0x1.8526e8p+7f, -0x1.0168b2p+12f},
-     {0x1.e18e9ep-2f, 0x1.5bea7cp-2f, -0x1.265a38p-3f},
-     {-0x1.2da134p-2f, 0x1.70b836p-5f, 0x1.03458cp+0f},
-     {-0x1.7bf84cp+3f, 0x1.bb691ep+1f, -0x1.0c2242p+1f},
-     {-0x1.76252ap+3f, 0x1.43d84p+1f, -0x1.a4d5cp+0f}},
+     {0x1.25c9fcp+10f, -0x1.8526e6p+7f, -0x1.0168b4p+12f},
+     {0x1.e18ceep-2f, 0x1.5beacap-2f, -0x1.263fa2p-3f},
+     {-0x1.2da13ep-2f, 0x1.70b854p-5f, 0x1.034586p+0f},
+     {-0x1.7c0112p+3f, 0x1.bb65bap+1f, -0x1.0c2168p+1f},
+     {-0x1.761d66p+3f, 0x1.43d65ap+1f, -0x1.a4d922p+0f}},
     {8,
      0,
      256,
@@ -137,6 +137,17 @@ inline constexpr PictureCase kSubpacketCases[] = {
      {-0x1.7ab2cap+1f, 0x1.45286ap+2f, -0x1.23f81p+2f},
      {-0x1.1279c4p+0f, 0x1.a8bf7p+2f, -0x1.9e205ep+2f}},
 };
+inline constexpr double kRoundingShare = 0.32;  ///< of the same, if all roundings went the wrong way
+inline constexpr PictureCase kWorstSubpacketCase = {32,
+                                                    8160,
+                                                    0,
+                                                    22,
+                                                    31,
+                                                    {0.0f, 0.0f, 0.0f},
+                                                    {0.0f, 0x1.5b1ad4p-13f, -0x1.c4d306p-25f},
+                                                    {-0x1.681fc6p-5f, 0x1.390288p-21f, -0x1.68029p-5f},
+                                                    {0.0f, 0.0f, 0x1.c28d3ap+0f},
+                                                    {0x1.5075acp-2f, -0x1.4e5a54p-2f, 0x1.6e6fdp+0f}};
 inline constexpr double kPlaceShare = 0.081;  ///< of a projection's margin
 /// Corners of triangles on a ray.
 inline constexpr PictureCase kPlaceCases[] = {
