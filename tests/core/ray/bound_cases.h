@@ -74,7 +74,7 @@ inline constexpr PictureCase kCornerCases[] = {
      {-0x1.05fde4p+1f, 0x1.07c992p+1f, 0x1.05abb4p+1f},
      {0x1.8c41d4p-29f, -0x1.001afp-23f, -0x1.fea518p-24f}},
 };
-inline constexpr double kSubpacketShare = 0.028;  ///< of kSubpacketErrorFactor's 68 e
+inline constexpr double kSubpacketShare = 0.034;  ///< of kSubpacketErrorFactor's 68 e
 inline constexpr PictureCase kSubpacketCases[] = {
     {32,
      4064,

@@ -1,5 +1,5 @@
 // Error bounds of the kernel at the inputs found to come closest to them: every decision is still the exact one, and
-// the errors are a stated share of their bounds, and their shares of these bounds are stated.
+// the errors are the shares of their bounds that bound_cases.h states.
 //
 // Found by hill climbing over the bits of the inputs, from thousands of starts at numbers just above powers of two,
 // for the largest error as a share of its bound or, with the bound lowered as far as a case says, for a wrong decision.
