@@ -3,7 +3,9 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstddef>
 #include <optional>
+#include <utility>
 
 #include "core/ray/exact_ray.h"
 
@@ -40,6 +42,8 @@ class CellWalk {
   std::vector<CellIndex> walk() {
     CellSpan spans[3];
     if (!enter(spans)) return {};
+    cells_.reserve(static_cast<std::size_t>(count_[0]) + static_cast<std::size_t>(count_[1]) +
+                   static_cast<std::size_t>(count_[2]) + 8);
     emit(spans, nullptr);
     Moment next[3];
     std::int32_t current[3];
@@ -68,7 +72,7 @@ class CellWalk {
       if (first < 0 || compare(next[first], end) > 0) break;
       // At this point both cells beside each plane crossed are touched.
       bool leaves = false;
-      CellSpan before[3] = {spans[0], spans[1], spans[2]};
+      const CellSpan before[3] = {spans[0], spans[1], spans[2]};
       for (int axis = 0; axis < 3; ++axis) {
         if (!is_tied[axis]) continue;
         current[axis] += is_upward(axis) ? 1 : -1;

@@ -1,9 +1,11 @@
-// How fast the oracle answers: rays per second on this machine. Not a test; README.md shows its table.
+// How fast the oracle answers: CPU time on this machine. Not a test; README.md shows its table.
 //   oracle_rate [RAYS]      RAYS: of each kind, default 100000
 // SPDX-License-Identifier: Apache-2.0
-#include <chrono>
+#include <cmath>
+#include <cstdint>
 #include <cstdio>
 #include <cstdlib>
+#include <ctime>
 #include <utility>
 #include <vector>
 
@@ -15,14 +17,13 @@
 namespace gridiron::test {
 namespace {
 
+// CPU time, so that other programs on the machine do not count.
 class Clock {
  public:
-  [[nodiscard]] double seconds() const {
-    return std::chrono::duration<double>(std::chrono::steady_clock::now() - start_).count();
-  }
+  [[nodiscard]] double seconds() const { return static_cast<double>(std::clock() - start_) / CLOCKS_PER_SEC; }
 
  private:
-  std::chrono::steady_clock::time_point start_ = std::chrono::steady_clock::now();
+  std::clock_t start_ = std::clock();
 };
 
 double share(std::uint64_t part, std::uint64_t whole) {

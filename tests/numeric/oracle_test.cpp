@@ -368,11 +368,16 @@ TEST(Oracle, WhatIsNotFiniteIsNotThere) {
   TestMesh mesh = make_triangle({0, 0, 1}, {4, 0, 1}, {0, 4, 1});
   mesh.append(mesh);
   mesh.vertices[0].y = kNan;
-  const Oracle oracle(mesh.view());
-  EXPECT_EQ(ids_of(oracle.hits(ray_of({1, 1, 0}, {0, 0, 1}))), (Ids{1}));
-  for (const float bad : {kNan, kInfinity, -kInfinity}) {
-    EXPECT_TRUE(oracle.hits(ray_of({bad, 1, 0}, {0, 0, 1})).empty());
-    EXPECT_TRUE(oracle.nearest(ray_of({1, 1, 0}, {0, bad, 1})).ties.empty());
+  for (const bool use_boxes : {true, false}) {
+    const Oracle oracle(mesh.view(), {.use_boxes = use_boxes});
+    EXPECT_EQ(ids_of(oracle.hits(ray_of({1, 1, 0}, {0, 0, 1}))), (Ids{1}));
+    EXPECT_EQ(ids_of(oracle.hits(ray_of({1, 100, 0}, {0, 0, 1}))), Ids{}) << "a hit, were the bits a number";
+    for (const float bad : {kNan, kInfinity, -kInfinity}) {
+      EXPECT_TRUE(oracle.hits(ray_of({bad, 1, 0}, {0, 0, 1})).empty());
+      EXPECT_TRUE(oracle.nearest(ray_of({1, 1, 0}, {0, bad, 1})).ties.empty());
+      EXPECT_TRUE(oracle.hits(ray_of({1, 1, 0}, {0, 0, bad})).empty());
+      EXPECT_TRUE(oracle.nearest(ray_of({1, 1, 0}, {0, 0, bad})).ties.empty());
+    }
   }
   const TestMesh none;
   EXPECT_TRUE(Oracle(none.view()).hits(ray_of({1, 1, 0}, {0, 0, 1})).empty());
