@@ -109,6 +109,15 @@ TEST(ExactDistance, EndsAndTies) {
   both(0x1p-1022, 0.0f, 0.0f);
 }
 
+TEST(ExactDistance, WhatLiesFarBehindAHalfCounts) {
+  const WideInt one = WideInt(1) << 100;
+  const WideInt half = one + (WideInt(1) << 76);  // between 1 and the float above
+  EXPECT_EQ((ExactDistance{half, one}).rounded(Reading::kExact), 1.0f);
+  EXPECT_EQ((ExactDistance{half, one}).rounded(Reading::kStandard), 0x1.000002p0f);
+  EXPECT_EQ((ExactDistance{half + 1, one}).rounded(Reading::kExact), 0x1.000002p0f);
+  EXPECT_EQ((ExactDistance{half - 1, one}).rounded(Reading::kStandard), 1.0f);
+}
+
 TEST(ExactDistance, OrderIsThatOfTheFractions) {
   for_each_seed(5000, [](std::uint64_t seed) {
     TestRandom random(seed);
