@@ -123,6 +123,22 @@ TEST(ExactCells, FilterChangesNothing) {
   EXPECT_LT(fast.exact_orders * 3, slow.exact_orders);
 }
 
+TEST(ExactCells, TiesThatDoublesMissAreTies) {
+  // Cells of 1/3, 1/7 and 1/5, no floats, and a ray along their diagonal: it passes every corner on its way.
+  constexpr std::uint32_t kCells = 100;
+  const float minimum[3] = {0.1f, -3.7f, 1000.0f};
+  const float scale[3] = {3.0f, 7.0f, 5.0f};
+  GridRecord grid{};
+  for (int axis = 0; axis < 3; ++axis) {
+    grid.minimum[axis] = minimum[axis];
+    grid.cells_per_unit[axis] = scale[axis];
+    grid.cell_count[axis] = kCells;
+  }
+  const OracleRay ray = {{0.1f, -3.7f, 1000.0f}, {35.0f, 15.0f, 21.0f}};
+  EXPECT_EQ(touched_cells(grid, ray).size(), 1u + 7u * (kCells - 1));
+  EXPECT_EQ(touched_cells(grid, ray), touched_cells(grid, ray, false));
+}
+
 TEST(ExactCells, FacesEdgesAndCornersBelongToAllBeside) {
   GridRecord grid{};
   for (int axis = 0; axis < 3; ++axis) {
