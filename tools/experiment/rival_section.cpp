@@ -224,7 +224,7 @@ Writer plan_figure7(Plan& plan, const Stage& stage) {
             "software caches, measured by others on eight cores at 2.4 GHz, a chip of the same peak (profile "
             "cell-2006), and calls itself \"slow by half\" [P]. Here that rival is "
             "built anew and runs on the same simulated chip, under the same checks, with the same tiles, exact test "
-            "and shading, with packets of 16x16 rays, which its own sweeps chose (sim_platform/README.md; the "
+            "and shading, with packets of 16x16 rays, which its own sweep, at the end of this page, chose (the "
             "reference's have 8x8, best takes a whole tile): a hierarchy built by surface area, four children a node, "
             "4-way set-associative "
             "caches for nodes and triangles in the same 256 KB, and, with hyper-threading, a ring of packets of which "

@@ -13,7 +13,7 @@ namespace gridiron::sim {
 /// Means over the units of the counted frames.
 struct WorkCost {
   double cycles;        ///< charged: superblock schedule, branch misses included
-  double least_cycles;  ///< the fuller pipe never idle; a little too much where a neighbour fills gaps
+  double least_cycles;  ///< the fuller pipe never idle; too much where these operations fill the gaps of a neighbour
   double most_cycles;   ///< bound: nothing issued together
   double even;          ///< operations of the even pipe, and of these:
   double doubles;       ///< in double precision

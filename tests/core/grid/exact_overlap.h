@@ -6,13 +6,13 @@
 #include <gridiron/base/records.h>
 
 #include <array>
-#include <boost/multiprecision/cpp_int.hpp>
 #include <cstddef>
 #include <vector>
 
+#include "numeric/exact_numbers.h"
+
 namespace gridiron::test {
 
-using Rational = boost::multiprecision::cpp_rational;
 using RationalPoint = std::array<Rational, 3>;
 
 /// The point's exact place in cell space.
@@ -20,7 +20,7 @@ inline RationalPoint exact_cell_point(const GridRecord& grid, const Vec3& p) {
   RationalPoint cell;
   for (int axis = 0; axis < 3; ++axis) {
     const auto i = static_cast<std::size_t>(axis);
-    cell[i] = (Rational(p[axis]) - Rational(grid.minimum[i])) * Rational(grid.cells_per_unit[i]);
+    cell[i] = (exact_rational(p[axis]) - exact_rational(grid.minimum[i])) * exact_rational(grid.cells_per_unit[i]);
   }
   return cell;
 }

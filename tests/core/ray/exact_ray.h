@@ -5,14 +5,12 @@
 
 #include <gridiron/base/records.h>
 
-#include <boost/multiprecision/cpp_int.hpp>
-#include <cmath>
 #include <cstdint>
 #include <optional>
 
-namespace gridiron::test {
+#include "numeric/exact_numbers.h"
 
-using BigInt = boost::multiprecision::cpp_int;
+namespace gridiron::test {
 
 /// Cells along one axis, inclusive; empty where first > last.
 struct CellSpan {
@@ -25,57 +23,13 @@ struct CellBox {
   CellSpan u, v;
 };
 
-namespace exact_detail {
-
-/// value = mantissa * 2^exponent, exactly.
-struct Dyadic {
-  std::int64_t mantissa;
-  int exponent;
-
-  explicit Dyadic(float value) {
-    int power = 0;
-    const float fraction = std::frexp(value, &power);
-    mantissa = static_cast<std::int64_t>(std::ldexp(fraction, 24));
-    exponent = power - 24;
-    while (mantissa != 0 && mantissa % 2 == 0) {
-      mantissa /= 2;
-      ++exponent;
-    }
-  }
-  /// value * 2^-unit. Precondition: unit <= exponent, or the value is 0.
-  [[nodiscard]] BigInt in_units_of(int unit) const {
-    return mantissa == 0 ? BigInt(0) : BigInt(mantissa) << static_cast<unsigned>(exponent - unit);
-  }
-};
-
-/// The least exponent of some floats, so that all are integers in units of 2 to that power.
-inline int common_unit(std::initializer_list<const float*> vectors) {
-  int unit = 1000;
-  for (const float* vector : vectors) {
-    for (int axis = 0; axis < 3; ++axis) {
-      const Dyadic value(vector[axis]);
-      if (value.mantissa != 0 && value.exponent < unit) unit = value.exponent;
-    }
-  }
-  return unit == 1000 ? 0 : unit;
-}
-
-inline BigInt floor_of(const BigInt& numerator, const BigInt& denominator) {
-  BigInt quotient, remainder;
-  boost::multiprecision::divide_qr(numerator, denominator, quotient, remainder);
-  return remainder < 0 ? BigInt(quotient - 1) : quotient;
-}
-
-}  // namespace exact_detail
-
 /// A ray in the cell space of a grid, origin + s * direction with s >= 0.
 class ExactRay {
  public:
   ExactRay(const GridRecord& grid, const float origin[3], const float direction[3]) {
-    using exact_detail::Dyadic;
-    const int place_unit = exact_detail::common_unit({origin, grid.minimum});
-    const int scale_unit = exact_detail::common_unit({grid.cells_per_unit});
-    const int direction_unit = exact_detail::common_unit({direction});
+    const int place_unit = common_unit({origin, grid.minimum});
+    const int scale_unit = common_unit({grid.cells_per_unit});
+    const int direction_unit = common_unit({direction});
     // One cell is `cell_` units of 2^(place_unit + scale_unit), or those are cells already.
     const int unit = place_unit + scale_unit;
     cell_ = unit < 0 ? BigInt(1) << static_cast<unsigned>(-unit) : BigInt(1);
@@ -89,6 +43,46 @@ class ExactRay {
       step_[axis] = Dyadic(direction[axis]).in_units_of(direction_unit) * scale;
       cells_[axis] = static_cast<std::int32_t>(grid.cell_count[axis]);
     }
+  }
+
+  /// A parameter t as numerator / denominator * 2^n, n the same for all of a ray. The denominator is positive.
+  struct Parameter {
+    BigInt numerator, denominator;
+  };
+  /// Where the ray meets plane `plane` of an axis along which it moves.
+  [[nodiscard]] Parameter crossing(std::uint32_t axis, std::int32_t plane) const {
+    Parameter result{plane * cell_ - place_[axis], step_[axis] * cell_};
+    if (result.denominator < 0) {
+      result.numerator = -result.numerator;
+      result.denominator = -result.denominator;
+    }
+    return result;
+  }
+
+  /// A parameter in the same terms.
+  [[nodiscard]] Parameter parameter(float t) const {
+    const Dyadic value(t);
+    const int shift = value.exponent + step_unit_;
+    if (shift >= 0) return {BigInt(value.mantissa) << static_cast<unsigned>(shift), 1};
+    return {value.mantissa, BigInt(1) << static_cast<unsigned>(-shift)};
+  }
+
+  /// @returns -1, 0 or 1: the order of two such parameters.
+  [[nodiscard]] static int compare(const Parameter& a, const Parameter& b) {
+    return BigInt(a.numerator * b.denominator).compare(BigInt(b.numerator * a.denominator));
+  }
+
+  /// The one or two closed cells along `axis` that hold the ray's point at a parameter, not clipped to the grid but for
+  /// numbers that lie outside of [-1, cell_count].
+  [[nodiscard]] CellSpan cells_at(std::uint32_t axis, const Parameter& at) const {
+    const BigInt place = place_[axis] * at.denominator + step_[axis] * cell_ * at.numerator;
+    // In units of cell_ * at.denominator.
+    const BigInt denominator = cell_ * at.denominator;
+    const auto clipped = [&](const BigInt& cell) {
+      if (cell < -1) return std::int32_t{-1};
+      return cell > cells_[axis] ? cells_[axis] : static_cast<std::int32_t>(cell);
+    };
+    return {clipped(-floor_of(-place, denominator) - 1), clipped(floor_of(place, denominator))};
   }
 
   /// The closed cells of the plane u, v that the ray's piece with first <= k <= last + 1 touches, clipped to the grid:
@@ -126,7 +120,7 @@ class ExactRay {
     }
     if (way <= 0) return true;
     // way / cell_ <= t * |step| * 2^step_unit_
-    const exact_detail::Dyadic limit(t);
+    const Dyadic limit(t);
     BigInt march = limit.mantissa * abs(step_[k]) * cell_;
     const int shift = limit.exponent + step_unit_;
     if (shift >= 0) {
@@ -149,8 +143,8 @@ class ExactRay {
     const BigInt& most = at_low < at_high ? at_high : at_low;
     if (most < 0 || least > cells_[axis] * denominator) return {1, 0};
     // A point on a face belongs to both cells: up to and with ceil(least) - 1.
-    BigInt first = -exact_detail::floor_of(-least, denominator) - 1;
-    BigInt last = exact_detail::floor_of(most, denominator);
+    BigInt first = -floor_of(-least, denominator) - 1;
+    BigInt last = floor_of(most, denominator);
     if (first < 0) first = 0;
     if (last > cells_[axis] - 1) last = cells_[axis] - 1;
     return {static_cast<std::int32_t>(first), static_cast<std::int32_t>(last)};

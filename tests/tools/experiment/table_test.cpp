@@ -22,8 +22,9 @@ using experiment::Table;
 TEST(Table, NumbersAreShortestAndReadBackTheSame) {
   EXPECT_EQ(number_text(0.1), "0.1");
   EXPECT_EQ(number_text(1.0 / 3.0), "0.3333333333333333");
-  EXPECT_EQ(number_text(100), "100");
+  EXPECT_EQ(number_text(100.0), "100");
   EXPECT_EQ(number_text(-2.5), "-2.5");
+  EXPECT_EQ(number_text(0.4f), "0.4") << "as a float, not as the double that it is";
   EXPECT_EQ(number_text(5e-324), "5e-324");
   EXPECT_EQ(number_text(std::nan("")), "");
   EXPECT_EQ(number_text(std::numeric_limits<double>::infinity()), "");
