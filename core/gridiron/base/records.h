@@ -16,8 +16,9 @@ inline constexpr std::uint32_t kMaxSectionCount = 32;  ///< entries of a section
 
 /// How a triangle is stored in the kTriangles section. Fixed at build time; a frame may ask only for what is stored.
 enum class TriangleFormat : std::uint32_t {
-  kVertices = 1,    ///< VertexTriangle: `standard`
+  kVertices = 1,    ///< VertexTriangle: `standard`, `exact`, `fast`
   kProjection = 2,  ///< ProjectionTriangle: `paper`
+  kLattice = 3,     ///< LatticeTriangle: `compact`
 };
 
 enum class SectionKind : std::uint32_t {
@@ -133,6 +134,7 @@ enum class Accuracy : std::uint32_t {
   kPaper = 1,     ///< precomputed projection in single precision; may leak
   kExact = 2,     ///< as kStandard, and of equal rounded distances the exact ones decide
   kFast = 3,      ///< signs and distances as single precision gives them; may leak at edges, distances unbounded
+  kCompact = 4,   ///< as kStandard, of triangles on the scene's lattice
 };
 
 enum class Shading : std::uint32_t {
