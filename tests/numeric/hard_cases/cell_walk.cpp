@@ -127,10 +127,12 @@ WalkTally walk(const GridRecord& grid, const std::vector<Rays>& all_rays) {
       walk_packet<Packet<4>>(grid, one, 0, {cells}, block, tally);
     }
     tally.rays += rays.directions.size();
-    for (std::size_t first = 0; first < rays.directions.size(); first += 16) {
+    // Side by side: of rays of all directions, whose frustum is the whole grid, once.
+    const std::size_t together = rays.columns == 0 ? std::min<std::size_t>(16, touched.size()) : touched.size();
+    for (std::size_t first = 0; first < together; first += 16) {
       walk_packet<Packet<4>>(grid, rays, first, touched, block, tally);
     }
-    for (std::size_t first = 0; first < rays.directions.size(); first += 64) {
+    for (std::size_t first = 0; rays.columns != 0 && first < together; first += 64) {
       walk_packet<Packet<8>>(grid, rays, first, touched, block, tally);
     }
     if (testing::Test::HasFailure()) return tally;

@@ -32,6 +32,9 @@ const char* Judge::fault_of(const Rays& rays, std::size_t ray, const Answer& ans
   const bool is_hit = answer.id != kNoTriangle;
   const std::uint32_t wanted = true_id(truth);
   differing_ += answer.id != wanted;
+  if (is_hit && answer.id == wanted && form == Form::kDistance) {
+    largest_error_ = std::fmax(largest_error_, std::fabs(double{answer.t} - double{truth.t}) / double{truth.t});
+  }
   // C: whoever promises more keeps this too.
   if (is_hit && answer.id >= target_.mesh().triangles.size()) return "no such triangle";
   if (is_hit && !target_.has_area(answer.id)) return "a triangle without area";

@@ -34,6 +34,8 @@ class Judge {
   [[nodiscard]] std::uint64_t failures() const { return failures_; }
   /// Answers whose triangle is not the oracle's; where only C is promised, no failure.
   [[nodiscard]] std::uint64_t differing() const { return differing_; }
+  /// The largest relative error of a distance, among answers whose triangle is the oracle's.
+  [[nodiscard]] double largest_error() const { return largest_error_; }
 
  private:
   // Why an answer breaks the promise; null where it does not.
@@ -44,6 +46,7 @@ class Judge {
   Grade grade_;
   std::span<const NearestHit> truth_;
   std::uint64_t checked_ = 0, failures_ = 0, differing_ = 0;
+  double largest_error_ = 0.0;
 };
 
 }  // namespace gridiron::test

@@ -181,6 +181,33 @@ Rays picture_of_triangle(const TestMesh& mesh, std::uint32_t triangle, Vec3 orig
   return picture(origin, (a - origin) - 2.0f * step_x - 2.0f * step_y, step_x, step_y, kColumns, kColumns);
 }
 
+Rays one_ray(Vec3 origin, Vec3 direction) {
+  Rays rays;
+  rays.origin = origin;
+  rays.directions = {direction};
+  return rays;
+}
+
+std::vector<Rays> with_unit_directions(std::vector<Rays> all) {
+  const auto exponent_of = [](const Vec3& d) {
+    return -std::ilogb(std::fmax(std::fmax(std::fabs(d.x), std::fabs(d.y)), std::fabs(d.z)));
+  };
+  const auto scale = [](Vec3& d, int exponent) {
+    for (int axis = 0; axis < 3; ++axis) d[axis] = std::ldexp(d[axis], exponent);
+  };
+  for (Rays& rays : all) {
+    if (rays.columns != 0) {
+      const int exponent = exponent_of(rays.corner);
+      for (Vec3* const vector : {&rays.corner, &rays.step_x, &rays.step_y}) scale(*vector, exponent);
+      const auto rows = static_cast<std::uint32_t>(rays.directions.size()) / rays.columns;
+      rays = picture(rays.origin, rays.corner, rays.step_x, rays.step_y, rays.columns, rows);
+    } else {
+      for (Vec3& direction : rays.directions) scale(direction, exponent_of(direction));
+    }
+  }
+  return all;
+}
+
 std::vector<Rays> salvo(const TestMesh& mesh, Vec3 middle, float room, const Salvo& count, std::uint64_t seed) {
   TestRandom random(seed);
   std::vector<Rays> all;

@@ -175,7 +175,7 @@ Tally shoot(const Trial& trial) {
     tally.frames += target.frames();
     if (!profile.is_exact) {
       std::ostringstream share;
-      share << profile.name << '=' << judge.differing() << '/' << judge.checked();
+      share << profile.name << '=' << judge.differing() << '/' << judge.checked() << '/' << judge.largest_error();
       shares.push_back(share.str());
     }
     if (&profile != kProfiles) continue;
