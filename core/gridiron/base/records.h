@@ -143,13 +143,6 @@ static_assert(sizeof(LatticeTriangle) == 24);
 /// The longest triangle record. Each ends with its triangle_id.
 inline constexpr std::uint32_t kTriangleRecordBytes = 48;
 
-/// @returns bytes of a triangle record.
-[[nodiscard]] constexpr std::uint32_t triangle_bytes_of(TriangleFormat format) {
-  constexpr std::uint32_t kLatticeBytes = sizeof(LatticeTriangle);
-  if (format == TriangleFormat::kLattice) return kLatticeBytes;
-  return kTriangleRecordBytes;
-}
-
 // --- Frame ------------------------------------------------------------------------------------------------------
 
 inline constexpr std::uint32_t kFrameMagic = 0x4d524647;  ///< "GFRM" as bytes
@@ -162,13 +155,6 @@ enum class Accuracy : std::uint32_t {
   kFast = 3,      ///< signs and distances as single precision gives them; may leak at edges, distances unbounded
   kCompact = 4,   ///< as kStandard, of triangles on the scene's lattice
 };
-
-/// @returns the stored form that an accuracy works on.
-[[nodiscard]] constexpr TriangleFormat format_of(Accuracy accuracy) {
-  if (accuracy == Accuracy::kPaper) return TriangleFormat::kProjection;
-  if (accuracy == Accuracy::kCompact) return TriangleFormat::kLattice;
-  return TriangleFormat::kVertices;
-}
 
 enum class Shading : std::uint32_t {
   kNone = 0,    ///< hit or background

@@ -4,6 +4,7 @@
 #include <gridiron/grid/lattice.h>
 #include <gridiron/grid/triangle_records.h>
 #include <gridiron/base/check_value.h>
+#include <gridiron/base/triangle_formats.h>
 
 #include <bit>
 

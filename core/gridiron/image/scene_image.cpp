@@ -1,6 +1,7 @@
 // Scene image validation: see the header. SPDX-License-Identifier: Apache-2.0
 #include <gridiron/base/math.h>
 #include <gridiron/base/check_value.h>
+#include <gridiron/base/triangle_formats.h>
 #include <gridiron/image/scene_image.h>
 
 #include <gridiron/base/lanes.h>

@@ -170,8 +170,12 @@ class TileRenderer {
       return Status::kUnsupportedFrame;
     }
     const GridRecord& grid = frame.grid;
-    const TriangleFormat format = format_of(static_cast<Accuracy>(frame.accuracy));
-    if (grid.triangle_format != static_cast<std::uint32_t>(format)) return Status::kUnsupportedImage;
+    const bool wants_projection = frame.accuracy == static_cast<std::uint32_t>(Accuracy::kPaper);
+    const bool wants_lattice = frame.accuracy == static_cast<std::uint32_t>(Accuracy::kCompact);
+    if (wants_projection != (grid.triangle_format == static_cast<std::uint32_t>(TriangleFormat::kProjection)) ||
+        wants_lattice != (grid.triangle_format == static_cast<std::uint32_t>(TriangleFormat::kLattice))) {
+      return Status::kUnsupportedImage;
+    }
     if (grid.macro_width == 0 || grid.macro_width > Layout::kMaxMacroWidth ||
         grid.cell_block_bytes > Store::kCellBlockBytes) {
       return Status::kUnsupportedImage;

@@ -190,12 +190,12 @@ class PacketDriver {
                                       SubpacketSet open) {
     const std::byte* const records = buffer + first_byte;
     const bool facing = store_.frame.shading != static_cast<std::uint32_t>(Shading::kNone);
-    const TriangleFormat format = static_cast<TriangleFormat>(store_.frame.grid.triangle_format);
-    if (format == TriangleFormat::kProjection) {
+    const std::uint32_t format = store_.frame.grid.triangle_format;
+    if (format == static_cast<std::uint32_t>(TriangleFormat::kProjection)) {
       return test_each_projection(reinterpret_cast<const ProjectionTriangle*>(records), count, open, facing);
     }
     const auto* triangles = reinterpret_cast<const VertexTriangle*>(records);
-    if (format == TriangleFormat::kLattice) {
+    if (format == static_cast<std::uint32_t>(TriangleFormat::kLattice)) {
       store_.work.add(Work::kLatticeTriangle, count);
       triangles = spread_lattice_run(store_.frame.grid.lattice, buffer, first_byte, count);
     }
