@@ -1,4 +1,6 @@
 // Target: a mesh in all the forms that rays can be shot at. SPDX-License-Identifier: Apache-2.0
+#include <gridiron/base/triangle_formats.h>
+#include <gridiron/grid/lattice.h>
 #include <gridiron/grid/triangle_records.h>
 #include <gridiron/ray/intersect_projection.h>
 #include <gridiron/ray/intersect_standard.h>
@@ -31,10 +33,6 @@ bool is_ray(const Vec3& origin, const Vec3& direction) {
          (direction.x != 0.0f || direction.y != 0.0f || direction.z != 0.0f);
 }
 
-TriangleFormat format_of(Accuracy accuracy) {
-  return accuracy == Accuracy::kPaper ? TriangleFormat::kProjection : TriangleFormat::kVertices;
-}
-
 }  // namespace
 
 std::span<const PipelineWay> pipeline_ways() {
@@ -58,6 +56,9 @@ Target::Target(const TestMesh& mesh, const GridParameters& grid, const Profile& 
   GridParameters parameters = grid;
   parameters.format = format_of(profile.accuracy);
   scene_ = std::make_unique<SceneInMemory>(mesh.view(), parameters, std::uint64_t{1} << 21);
+  if (parameters.format == TriangleFormat::kLattice && status() == Status::kOk) {
+    for (Vec3& vertex : mesh_.vertices) vertex = snap(scene_->need().grid.lattice, vertex);
+  }
   TestRandom random(mesh_.triangles.size());
   for (std::size_t i = 0; i < mesh_.triangles.size(); ++i) {
     const UVec3& t = mesh_.triangles[i];

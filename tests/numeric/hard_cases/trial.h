@@ -34,10 +34,8 @@ struct Profile {
   bool is_exact;
 };
 inline constexpr Profile kProfiles[] = {
-    {"standard", Accuracy::kStandard, true},
-    {"exact", Accuracy::kExact, true},
-    {"fast", Accuracy::kFast, false},
-    {"paper", Accuracy::kPaper, false},
+    {"standard", Accuracy::kStandard, true}, {"exact", Accuracy::kExact, true},  {"compact", Accuracy::kCompact, true},
+    {"fast", Accuracy::kFast, false},        {"paper", Accuracy::kPaper, false},
 };
 
 /// Rays from one point: any directions, or the pixels of a picture.
