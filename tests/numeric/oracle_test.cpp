@@ -12,7 +12,7 @@
 
 #include "core/seeds.h"
 #include "numeric/hard_rays.h"
-#include "numeric/rounding_guard.h"
+#include "numeric/rounding_scope.h"
 #include "support/test_mesh.h"
 
 namespace gridiron::test {
@@ -183,7 +183,7 @@ TEST(Oracle, RoundingModesAndFlushingChangeNothing) {
     for (const int mode : kRoundingModes) {
       std::vector<NearestHit> found;
       {
-        const RoundingGuard guard(mode, true);
+        const RoundingScope scope(mode, true);
         const Oracle oracle(hard.mesh.view());
         for (const OracleRay& ray : hard.rays) found.push_back(oracle.nearest(ray));
       }

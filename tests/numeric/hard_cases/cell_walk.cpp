@@ -10,7 +10,7 @@
 
 #include "core/ray/packet_cases.h"
 
-namespace gridiron::test {
+namespace gridiron::test::hard {
 namespace {
 
 // A macrocell table in which none is empty: block = macrocell + 1.
@@ -139,4 +139,4 @@ WalkTally walk(const GridRecord& grid, const std::vector<Rays>& all_rays) {
   return tally;
 }
 
-}  // namespace gridiron::test
+}  // namespace gridiron::test::hard

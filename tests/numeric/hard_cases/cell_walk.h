@@ -11,7 +11,7 @@
 #include "numeric/exact_cells.h"
 #include "numeric/hard_cases/trial.h"
 
-namespace gridiron::test {
+namespace gridiron::test::hard {
 
 /// What walks came by.
 struct WalkTally {
@@ -28,4 +28,4 @@ GridRecord grid_of(Vec3 minimum, Vec3 cells_per_unit, const UVec3& cell_count, s
 /// test.
 WalkTally walk(const GridRecord& grid, const std::vector<Rays>& all_rays);
 
-}  // namespace gridiron::test
+}  // namespace gridiron::test::hard

@@ -8,7 +8,7 @@
 #include "numeric/hard_cases/shapes.h"
 #include "numeric/hard_cases/trial.h"
 
-namespace gridiron::test {
+namespace gridiron::test::hard {
 namespace {
 
 constexpr float kNaN = std::numeric_limits<float>::quiet_NaN();
@@ -378,4 +378,4 @@ TEST(HardCase38, MixedPackets) {
 }
 
 }  // namespace
-}  // namespace gridiron::test
+}  // namespace gridiron::test::hard

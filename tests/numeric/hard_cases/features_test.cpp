@@ -7,7 +7,7 @@
 #include "numeric/hard_cases/shapes.h"
 #include "numeric/hard_cases/trial.h"
 
-namespace gridiron::test {
+namespace gridiron::test::hard {
 namespace {
 
 // From inside of closed meshes: a salvo, and pictures whose pixels are the eighths of triangles.
@@ -45,7 +45,7 @@ TEST(HardCase02, RayThroughSharedVertex) {
                      0.25f});
   targets.push_back({"octahedron", on_lattice(make_sphere(2, 4, 1.0f), 1.0f), Vec3(0.0f), 0.3f});
   targets.push_back({"sphere of 200 segments", make_sphere(5, 200, 1.0f), Vec3(0.0f), 0.5f});
-  Tally tally = shoot_from_inside(targets, {{Aim::kVertex}, times(8), 32, 1}, 2);
+  Tally tally = shoot_from_inside(targets, {{Aim::kVertex}, times(5), 40, 1}, 2);
   const TestMesh sphere = make_sphere(5, 200, 1.0f);
   tally += shoot({.mesh = sphere, .grade = Grade::kClosed, .aim = [](const TestMesh& mesh) {
                     std::vector<Rays> rays;
@@ -67,7 +67,7 @@ TEST(HardCase02, RayThroughSharedVertex) {
                     return rays;
                   }});
   EXPECT_EQ(tally.hits, tally.rays);
-  EXPECT_GT(tally.rays, 20000u);
+  EXPECT_GT(tally.rays, 15000u);
   EXPECT_GT(tally.ties, 1000u);
 }
 
@@ -84,7 +84,7 @@ TEST(HardCase03, RayAlongEdgeAndInPlane) {
     inside += shoot({.mesh = cubes, .grade = Grade::kClosed, .aim = [&](const TestMesh&) {
                        TestRandom random(seed);
                        std::vector<Rays> all;
-                       for (std::uint32_t i = 0; i < 12; ++i) {
+                       for (std::uint32_t i = 0; i < 8; ++i) {
                          Rays rays;
                          rays.origin = Vec3(3.0f);
                          if (i % 2 == 1)
@@ -111,7 +111,7 @@ TEST(HardCase03, RayAlongEdgeAndInPlane) {
     outside += shoot({.mesh = solid.mesh, .aim = [&](const TestMesh& mesh) {
                         TestRandom random(3);
                         std::vector<Rays> all;
-                        for (std::uint32_t i = 0; i < times(200); ++i) {
+                        for (std::uint32_t i = 0; i < times(120); ++i) {
                           const UVec3& t =
                               mesh.triangles[random.below(static_cast<std::uint32_t>(mesh.triangles.size()))];
                           const Vec3 a = mesh.vertices[t.x], b = mesh.vertices[t.y], c = mesh.vertices[t.z];
@@ -149,4 +149,4 @@ TEST(HardCase04, TriangleEdgeOn) {
 }
 
 }  // namespace
-}  // namespace gridiron::test
+}  // namespace gridiron::test::hard

@@ -14,9 +14,9 @@
 #include "core/grid/built_image.h"
 #include "numeric/hard_cases/shapes.h"
 #include "numeric/hard_cases/trial.h"
-#include "numeric/rounding_guard.h"
+#include "numeric/rounding_scope.h"
 
-namespace gridiron::test {
+namespace gridiron::test::hard {
 namespace {
 
 // Every rounding mode, denormals kept and flushed, from the builder to the pixels.
@@ -46,9 +46,9 @@ TEST(HardCase39, RoundingModesAndFlushing) {
 template <class L>
 void check_estimates(int mode) {
   using Float = typename L::Float;
-  const RoundingGuard guard(mode, false);
+  const RoundingScope scope(mode, false);
   double worst = 0.0, worst_refined = 0.0;
-  for (const int exponent : {-100, -1, 0, 1, 100}) {
+  for (const int exponent : {-100, 0, 100}) {
     for (std::uint32_t mantissa = 0; mantissa < 1u << 23; mantissa += L::kCount) {
       alignas(64) float values[L::kCount], estimates[L::kCount], refined[L::kCount];
       for (std::uint32_t i = 0; i < L::kCount; ++i) {
@@ -133,4 +133,4 @@ TEST(HardCase44, QuantisedVertices) {
 }
 
 }  // namespace
-}  // namespace gridiron::test
+}  // namespace gridiron::test::hard

@@ -8,7 +8,7 @@
 #include <cmath>
 #include <ios>
 
-namespace gridiron::test {
+namespace gridiron::test::hard {
 namespace {
 
 bool is_same(float a, float b) {
@@ -21,6 +21,13 @@ float length_of(const Vec3& d) {
 }
 
 }  // namespace
+
+Judge::Judge(const Target& target, Grade grade) : target_(target), grade_(grade) {
+  float size = 0.0f;
+  for (const Vec3& v : target.mesh().vertices)
+    size = std::fmax(size, std::fmax(std::fabs(v.x), std::fmax(std::fabs(v.y), std::fabs(v.z))));
+  overflows_ = target.profile().accuracy == Accuracy::kFast && !(size > 0x1p-40f && size < 0x1p40f);
+}
 
 std::uint32_t Judge::true_id(const NearestHit& truth) const {
   if (truth.float_ties.empty()) return kNoTriangle;
@@ -38,7 +45,8 @@ const char* Judge::fault_of(const Rays& rays, std::size_t ray, const Answer& ans
   // C: whoever promises more keeps this too.
   if (is_hit && answer.id >= target_.mesh().triangles.size()) return "no such triangle";
   if (is_hit && !target_.has_area(answer.id)) return "a triangle without area";
-  if (form == Form::kDistance && is_hit && !(answer.t > 0.0f && answer.t <= rays.t_far))
+  if (form == Form::kDistance && is_hit &&
+      !(answer.t <= rays.t_far && (answer.t > 0.0f || (answer.t == 0.0f && overflows_))))
     return "a distance that is none";
   if (form == Form::kDepth && !(answer.t >= 0.0f)) return "a depth that is none";
   if (!target_.profile().is_exact) return nullptr;
@@ -73,4 +81,4 @@ void Judge::check(const Rays& rays, std::span<const Answer> answers, std::span<c
   }
 }
 
-}  // namespace gridiron::test
+}  // namespace gridiron::test::hard

@@ -9,7 +9,7 @@
 
 #include "numeric/hard_cases/trial.h"
 
-namespace gridiron::test {
+namespace gridiron::test::hard {
 
 /// Counts what differs and lets the running test fail by it, with the first ray of it in full.
 class Judge {
@@ -21,7 +21,7 @@ class Judge {
     kTriangle,  ///< nothing
   };
 
-  Judge(const Target& target, Grade grade) : target_(target), grade_(grade) {}
+  Judge(const Target& target, Grade grade);
 
   /// The oracle's answers for the rays that are checked next.
   void set_truth(std::span<const NearestHit> truth) { truth_ = truth; }
@@ -44,9 +44,10 @@ class Judge {
 
   const Target& target_;
   Grade grade_;
+  bool overflows_;  // products of three coordinates leave the floats, so that those of `fast` say nothing
   std::span<const NearestHit> truth_;
   std::uint64_t checked_ = 0, failures_ = 0, differing_ = 0;
   double largest_error_ = 0.0;
 };
 
-}  // namespace gridiron::test
+}  // namespace gridiron::test::hard

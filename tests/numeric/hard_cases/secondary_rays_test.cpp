@@ -10,7 +10,7 @@
 #include "numeric/hard_cases/shapes.h"
 #include "numeric/hard_cases/trial.h"
 
-namespace gridiron::test {
+namespace gridiron::test::hard {
 namespace {
 
 VertexTriangle triangle_of(const TestMesh& mesh, std::uint32_t id) {
@@ -27,26 +27,29 @@ struct SurfacePoint {
   std::uint32_t triangle_id;
 };
 
-// Shoots features of a mesh from around a place and collects where it is hit.
-std::vector<SurfacePoint> surface_points(const TestMesh& mesh, Vec3 middle, float room, std::uint32_t count,
-                                         std::uint64_t seed) {
+// Shoots features of a mesh from around a place and collects where it is hit: on faces that turn the outside, or the
+// inside, to where the ray comes from. One that passes a silhouette's vertex exactly meets others there too.
+std::vector<SurfacePoint> surface_points(const TestMesh& mesh, Vec3 middle, float room, bool is_inside,
+                                         std::uint32_t count, std::uint64_t seed) {
   const Oracle oracle(mesh.view(), {.reading = Reading::kStandard});
   std::vector<SurfacePoint> points;
   for (const Rays& rays : salvo(mesh, middle, room, {{Aim::kEdge, Aim::kVertex, Aim::kInside}, count, 8, 0}, seed)) {
     for (std::size_t i = 0; i < rays.directions.size(); ++i) {
-      const NearestHit hit = oracle.nearest(oracle_ray(rays, i));
-      if (hit.float_ties.empty()) continue;
-      const VertexTriangle triangle = triangle_of(mesh, hit.float_ties.front());
       const Vec3& d = rays.directions[i];
       const float origin[3] = {rays.origin.x, rays.origin.y, rays.origin.z}, dir[3] = {d.x, d.y, d.z};
-      WorkCounters work;
-      const SecondaryOrigin begin = secondary_origin(triangle, origin, dir, false, work);
-      float normal[3];
-      set_up_normal(triangle, normal);
-      const bool is_along = exact_volume_sign(origin, triangle.v[0], triangle.v[1], triangle.v[2]) > 0;
-      points.push_back({{begin.point[0], begin.point[1], begin.point[2]},
-                        (is_along ? -1.0f : 1.0f) * Vec3(normal[0], normal[1], normal[2]),
-                        triangle.triangle_id});
+      for (const std::uint32_t id : oracle.nearest(oracle_ray(rays, i)).float_ties) {
+        const VertexTriangle triangle = triangle_of(mesh, id);
+        const bool is_along = exact_volume_sign(origin, triangle.v[0], triangle.v[1], triangle.v[2]) > 0;
+        if (is_along != is_inside) continue;
+        WorkCounters work;
+        const SecondaryOrigin begin = secondary_origin(triangle, origin, dir, false, work);
+        float normal[3];
+        set_up_normal(triangle, normal);
+        points.push_back({{begin.point[0], begin.point[1], begin.point[2]},
+                          (is_along ? -1.0f : 1.0f) * Vec3(normal[0], normal[1], normal[2]),
+                          id});
+        break;
+      }
     }
   }
   return points;
@@ -79,8 +82,10 @@ TEST(HardCase35, SecondaryRaysLeaveTheSurface) {
       const TestMesh mesh = moved(body, 64.0f, place);  // whole numbers, so that it stays convex
       const auto rays_of = [&](const TestMesh& stored, bool is_inside) {
         TestRandom random(35);
+        const Vec3 from = is_inside ? place : place + Vec3(0, 0, 200);
         std::vector<Rays> all;
-        for (const SurfacePoint& at : surface_points(stored, place, is_inside ? 16.0f : 300.0f, times(3), 35)) {
+        for (const SurfacePoint& at :
+             surface_points(stored, from, is_inside ? 16.0f : 100.0f, is_inside, times(3), 35)) {
           Rays rays;
           rays.origin = at.point;
           rays.directions = directions_above(at.normal, random, 12);
@@ -109,8 +114,9 @@ TEST(HardCase36, LightOnTheSurface) {
   const TestMesh sphere = make_sphere(10, 13, 1.0f);
   const Tally tally =
       shoot({.mesh = sphere, .aim = [](const TestMesh& mesh) {
-               std::vector<SurfacePoint> points = surface_points(mesh, Vec3(0.0f), 0.5f, times(6), 36);
-               const std::vector<SurfacePoint> from_outside = surface_points(mesh, Vec3(0, 0, 3), 1.0f, times(6), 37);
+               std::vector<SurfacePoint> points = surface_points(mesh, Vec3(0.0f), 0.5f, true, times(6), 36);
+               const std::vector<SurfacePoint> from_outside =
+                   surface_points(mesh, Vec3(0, 0, 3), 1.0f, false, times(6), 37);
                points.insert(points.end(), from_outside.begin(), from_outside.end());
                std::vector<Rays> all;
                TestRandom random(36);
@@ -191,4 +197,4 @@ TEST(HardCase37, ParallelMirrors) {
 }
 
 }  // namespace
-}  // namespace gridiron::test
+}  // namespace gridiron::test::hard

@@ -6,7 +6,7 @@
 #include <map>
 #include <utility>
 
-namespace gridiron::test {
+namespace gridiron::test::hard {
 namespace {
 
 std::array<std::uint32_t, 3> corners_of(const UVec3& t) {
@@ -225,4 +225,4 @@ std::vector<Rays> salvo(const TestMesh& mesh, Vec3 middle, float room, const Sal
   return all;
 }
 
-}  // namespace gridiron::test
+}  // namespace gridiron::test::hard

@@ -10,7 +10,7 @@
 #include "numeric/hard_rays.h"
 #include "support/test_mesh.h"
 
-namespace gridiron::test {
+namespace gridiron::test::hard {
 
 /// @returns whether a mesh has an edge and every one is passed as often in one direction as in the other.
 bool is_closed(const TestMesh& mesh);
@@ -72,4 +72,4 @@ std::vector<Rays> with_unit_directions(std::vector<Rays> all);
 /// A salvo from origins within `room` of a place; every fourth origin is rounded to eighths of the room.
 std::vector<Rays> salvo(const TestMesh& mesh, Vec3 middle, float room, const Salvo& count, std::uint64_t seed);
 
-}  // namespace gridiron::test
+}  // namespace gridiron::test::hard

@@ -15,7 +15,7 @@
 #include "core/ray/packet_cases.h"
 #include "numeric/hard_cases/trial.h"
 
-namespace gridiron::test {
+namespace gridiron::test::hard {
 namespace {
 
 constexpr std::uint32_t kAllTechniques = kUseMailbox | kUseCornerCulling | kUseEmptySkip | kUseSubpackets;
@@ -347,4 +347,4 @@ std::vector<Answer> Target::by_pipeline(const Rays& rays, const PipelineWay& way
   return answers;
 }
 
-}  // namespace gridiron::test
+}  // namespace gridiron::test::hard

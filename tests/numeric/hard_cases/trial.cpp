@@ -15,9 +15,9 @@
 #include <string>
 
 #include "numeric/hard_cases/judge.h"
-#include "numeric/rounding_guard.h"
+#include "numeric/rounding_scope.h"
 
-namespace gridiron::test {
+namespace gridiron::test::hard {
 namespace {
 
 constexpr IntersectorWay kIntersectorWays[] = {{4, 8, IntersectorWay::Order::kAscending},
@@ -86,7 +86,7 @@ void shoot_by_pipeline(Judge& judge, Target& target, const Rays& rays, std::size
 
 // The rays as a frame has them: rounded, and flushed, as it computes their directions.
 Rays as_in_frame(const Rays& rays, const Trial& trial) {
-  const RoundingGuard guard(trial.rounding, trial.flush);
+  const RoundingScope scope(trial.rounding, trial.flush);
   if (rays.columns != 0) {
     const auto rows = static_cast<std::uint32_t>(rays.directions.size()) / rays.columns;
     Rays computed = picture(rays.origin, rays.corner, rays.step_x, rays.step_y, rays.columns, rows);
@@ -174,7 +174,7 @@ Tally shoot(const Trial& trial) {
   for (const Profile& profile : kProfiles) {
     std::optional<Target> built;
     {
-      const RoundingGuard guard(trial.rounding, trial.flush);
+      const RoundingScope scope(trial.rounding, trial.flush && trial.flush_builder);
       built.emplace(trial.mesh, trial.grid, profile);
     }
     Target& target = *built;
@@ -200,11 +200,11 @@ Tally shoot(const Trial& trial) {
     const bool all_ways = all_rays.size() < kFewRays;
     for (std::size_t i = 0; i < all_rays.size(); ++i) {
       {
-        const RoundingGuard guard(trial.rounding, trial.flush);
+        const RoundingScope scope(trial.rounding, trial.flush);
         judge.set_truth(truths[i]);
         shoot_by_intersector(judge, target, all_rays[i], i, all_ways);
       }
-      const RoundingGuard guard(trial.rounding, trial.flush);
+      const RoundingScope scope(trial.rounding, trial.flush);
       judge.set_truth(frame_truths[i]);
       shoot_by_pipeline(judge, target, all_rays[i], i, all_ways);
     }
@@ -229,4 +229,4 @@ Tally shoot(const Trial& trial) {
   return tally;
 }
 
-}  // namespace gridiron::test
+}  // namespace gridiron::test::hard

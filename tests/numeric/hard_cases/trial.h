@@ -17,7 +17,7 @@
 #include "support/render_mesh.h"
 #include "support/test_mesh.h"
 
-namespace gridiron::test {
+namespace gridiron::test::hard {
 
 /// What is asked of a case, in the letters of README.md.
 enum class Grade : std::uint8_t {
@@ -133,6 +133,7 @@ struct Trial {
   GridParameters grid = {};
   int rounding = FE_TONEAREST;  ///< while the scene is built and rays are traced
   bool flush = false;           ///< denormals, likewise
+  bool flush_builder = true;    ///< as for the rays; else the builder keeps them
 };
 
 /// What was shot, by all profiles together where nothing else is said.
@@ -153,4 +154,4 @@ Tally shoot(const Trial& trial);
 /// As many as a test asks for, times GRIDIRON_HARD_CASES_FACTOR where that is set.
 std::uint32_t times(std::uint32_t count);
 
-}  // namespace gridiron::test
+}  // namespace gridiron::test::hard

@@ -15,9 +15,9 @@ namespace gridiron::test {
 inline constexpr int kRoundingModes[] = {FE_TONEAREST, FE_TOWARDZERO, FE_UPWARD, FE_DOWNWARD};
 
 /// Sets a rounding mode, and that denormals are flushed where the processor can, for as long as it lives.
-class RoundingGuard {
+class RoundingScope {
  public:
-  explicit RoundingGuard(int mode, bool flush) {
+  explicit RoundingScope(int mode, bool flush) {
 #if defined(__SSE2__)
     had_ = _mm_getcsr();
     if (flush) _mm_setcsr(had_ | 0x8040u);
@@ -26,14 +26,14 @@ class RoundingGuard {
 #endif
     EXPECT_EQ(std::fesetround(mode), 0);
   }
-  ~RoundingGuard() {
+  ~RoundingScope() {
     std::fesetround(FE_TONEAREST);
 #if defined(__SSE2__)
     _mm_setcsr(had_);
 #endif
   }
-  RoundingGuard(const RoundingGuard&) = delete;
-  RoundingGuard& operator=(const RoundingGuard&) = delete;
+  RoundingScope(const RoundingScope&) = delete;
+  RoundingScope& operator=(const RoundingScope&) = delete;
 
  private:
   unsigned had_ = 0;
