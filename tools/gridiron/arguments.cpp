@@ -131,7 +131,8 @@ void add_scene_options(CLI::App& app, SceneArguments& scene, std::string& machin
 }
 
 const Choices<TriangleFormat> kFormats = {{"vertices", TriangleFormat::kVertices},
-                                          {"projection", TriangleFormat::kProjection}};
+                                          {"projection", TriangleFormat::kProjection},
+                                          {"lattice", TriangleFormat::kLattice}};
 
 void add_view_options(CLI::App& app, RenderArguments& render) {
   const std::string vector = "x,y,z with three finite numbers";
@@ -212,8 +213,12 @@ void add_algorithm_options(CLI::App& app, RawRender& raw) {
              "pixels along a tile's edge (default: 16 with --store 64, else 32)");
   add_choice(
       app, "--accuracy", render.accuracy,
-      Choices<Accuracy>{{"standard", Accuracy::kStandard}, {"paper", Accuracy::kPaper}, {"exact", Accuracy::kExact}, {"fast", Accuracy::kFast}},
-      "intersection test (default standard)");
+      Choices<Accuracy>{{"paper", Accuracy::kPaper},
+                        {"fast", Accuracy::kFast},
+                        {"standard", Accuracy::kStandard},
+                        {"exact", Accuracy::kExact},
+                        {"compact", Accuracy::kCompact}},
+      "what is decided how exactly (default standard); see tools/README.md");
   add_choice(app, "--shading", render.shading, Choices<Shading>{{"none", Shading::kNone}, {"simple", Shading::kSimple}},
              "none: hit or background; simple: facing ratio (default)");
   app.add_flag("--no-mailbox", raw.no_mailbox, "test a triangle again in every cell that holds it");
@@ -436,7 +441,7 @@ Command parse_arguments(int count, const char* const* values) {
   add_scene_options(*pack, pack_arguments.scene, pack_machine);
   pack->add_option("-o,--output", pack_arguments.output, "scene image")->required()->type_name("FILE");
   add_choice(*pack, "--format", pack_arguments.format, kFormats,
-             "vertices (default): for --accuracy standard; projection: for --accuracy paper");
+             "vertices (default): for --accuracy standard, exact, fast; projection: for paper; lattice: for compact");
 
   MachinesArguments machines_arguments;
   std::string machine;

@@ -25,7 +25,7 @@ sim::MemoryRegion allocate(sim::SimMemory& memory, std::uint64_t bytes) {
 MainAddress place_image(FrameMemory& frame, const SceneInput& input, const RenderArguments& arguments,
                         std::uint64_t budget_bytes) {
   const TriangleFormat format =
-      arguments.accuracy == Accuracy::kPaper ? TriangleFormat::kProjection : TriangleFormat::kVertices;
+      format_of(arguments.accuracy);
   if (const PackedScene* packed = std::get_if<PackedScene>(&input.content)) {
     check_packed(input, *packed, arguments.scene, format, budget_bytes);
     const std::uint64_t image_bytes = packed->view.header.image_bytes;

@@ -13,10 +13,6 @@ namespace {
 
 using Json = nlohmann::ordered_json;
 
-const char* name_of_format(std::uint32_t format) {
-  return format == static_cast<std::uint32_t>(TriangleFormat::kProjection) ? "projection" : "vertices";
-}
-
 template <class Number>
 Json json_of(const Number (&vector)[3]) {
   return {vector[0], vector[1], vector[2]};
@@ -63,7 +59,7 @@ void print_json(const InfoArguments& arguments, const SceneFacts& facts, const S
         {"macrocells", facts.bounds.macro_cells_per_pass},
         {"cell_blocks", grid.cell_block_count},
         {"references", grid.reference_count},
-        {"triangle_format", name_of_format(grid.triangle_format)}}},
+        {"triangle_format", word_of(static_cast<TriangleFormat>(grid.triangle_format))}}},
       {"main_memory",
        {{"machine", arguments.scene.machine->name},
         {"capacity_bytes", arguments.scene.machine->main_memory_bytes},
@@ -97,7 +93,7 @@ void print_text(const InfoArguments& arguments, const SceneFacts& facts, const S
   print_line("bounds", text);
   std::snprintf(text, sizeof text, ", lambda %g", static_cast<double>(grid.lambda));
   print_line("grid", joined(grid.cell_count) + " cells" + text + ", " + words_of_count(grid.reference_count) +
-                         " references stored as " + name_of_format(grid.triangle_format));
+                         " references stored as " + word_of(static_cast<TriangleFormat>(grid.triangle_format)));
   if (grid.lambda != facts.wanted_lambda) {
     std::snprintf(text, sizeof text, "reduced from lambda %g to fit the main memory",
                   static_cast<double>(facts.wanted_lambda));

@@ -162,9 +162,8 @@ void check_packed(const SceneInput& input, const PackedScene& packed, const Scen
                   TriangleFormat format, std::uint64_t budget_bytes) {
   const GridRecord& grid = packed.view.grid;
   if (grid.triangle_format != static_cast<std::uint32_t>(format)) {
-    const bool wants_projection = format == TriangleFormat::kProjection;
-    fail(input.path, std::string("was packed with --format ") + (wants_projection ? "vertices" : "projection") +
-                         "; this needs --format " + (wants_projection ? "projection" : "vertices"));
+    fail(input.path, "was packed with --format " + word_of(static_cast<TriangleFormat>(grid.triangle_format)) +
+                         "; this needs --format " + word_of(format));
   }
   if (arguments.lambda && *arguments.lambda != grid.lambda) {
     fail(input.path, "was packed with lambda " + text_of(grid.lambda) + "; --lambda cannot change it");
