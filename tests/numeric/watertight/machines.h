@@ -15,11 +15,13 @@ struct Profile {
   const char* name;
   Accuracy accuracy;
   bool is_watertight;  ///< else what it misses is only counted
+  bool is_on_lattice;  ///< of meshes whose vertices have been moved to their lattice
 };
-inline constexpr Profile kProfiles[] = {{"standard", Accuracy::kStandard, true},
-                                        {"exact", Accuracy::kExact, true},
-                                        {"fast", Accuracy::kFast, false},
-                                        {"paper", Accuracy::kPaper, false}};
+inline constexpr Profile kProfiles[] = {{"standard", Accuracy::kStandard, true, false},
+                                        {"exact", Accuracy::kExact, true, false},
+                                        {"compact", Accuracy::kCompact, true, true},
+                                        {"fast", Accuracy::kFast, false, false},
+                                        {"paper", Accuracy::kPaper, false, false}};
 
 /// A build of the intersectors, and the rules of floating point that hold while it runs.
 struct Machine {

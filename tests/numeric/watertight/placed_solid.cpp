@@ -2,20 +2,23 @@
 #include "numeric/watertight/placed_solid.h"
 
 #include <gridiron/base/records.h>
+#include <gridiron/grid/lattice.h>
 #include <gridiron/grid/triangle_records.h>
 
 #include <algorithm>
 #include <cmath>
 #include <cstring>
+#include <stdexcept>
 
 namespace gridiron::test {
 namespace {
 
-TestMesh placed(const Solid& solid, const Placement& placement) {
+TestMesh placed(const Solid& solid, const Placement& placement, Vertices vertices) {
   TestMesh mesh = solid.mesh;
   for (Vec3& vertex : mesh.vertices) {
     vertex = Vec3(DVec3(vertex) * std::ldexp(1.0, placement.exponent) + DVec3(placement.offset));
   }
+  if (vertices == Vertices::kOnLattice) mesh.snap();
   return mesh;
 }
 
@@ -52,8 +55,8 @@ Determinant determinant(const DVec3& a, const DVec3& b, const DVec3& c) {
 
 }  // namespace
 
-PlacedSolid::PlacedSolid(const Solid& solid, const Placement& placement)
-    : mesh_(placed(solid, placement)),
+PlacedSolid::PlacedSolid(const Solid& solid, const Placement& placement, Vertices vertices)
+    : mesh_(placed(solid, placement, vertices)),
       tree_(mesh_.view(), kept_triangles(mesh_)),
       oracle_(mesh_.view(), {.reading = Reading::kStandard}),
       vertices_(mesh_.triangles.size()),
@@ -74,6 +77,7 @@ PlacedSolid::PlacedSolid(const Solid& solid, const Placement& placement)
     static_assert(sizeof(projection) == sizeof(watertight::ProjectionRecord));
     std::memcpy(&projections_[id], &projection, sizeof(projection));
   }
+  if (vertices == Vertices::kOnLattice) find_places();
   for (const Vec3& vertex : mesh_.vertices) {
     for (int axis = 0; axis < 3; ++axis) {
       low_[axis] = std::fmin(low_[axis], vertex[axis]);
@@ -123,20 +127,39 @@ Surroundings PlacedSolid::look_around(const Vec3& point, TestRandom& random) con
   return {false, 0};
 }
 
-void PlacedSolid::add_candidates(watertight::Shot& shot, std::vector<std::uint32_t>& ids,
-                                 std::vector<watertight::VertexRecord>& vertices,
-                                 std::vector<watertight::ProjectionRecord>& projections) const {
-  ids.clear();
-  vertices.clear();
-  projections.clear();
-  tree_.find(shot, ids);
-  for (const std::uint32_t id : ids) {
-    vertices.push_back(vertices_[id]);
-    projections.push_back(projections_[id]);
+// The lattice that the builder would find for the mesh as it is now: every vertex has a place on it.
+void PlacedSolid::find_places() {
+  if (find_lattice(mesh_.view(), lattice_) != Status::kOk) throw std::logic_error("a mesh without a lattice");
+  places_.resize(mesh_.triangles.size());
+  for (std::uint32_t id = 0; id < places_.size(); ++id) {
+    const UVec3& t = mesh_.triangles[id];
+    for (int corner = 0; corner < 3; ++corner) {
+      const Vec3& vertex = mesh_.vertices[t[corner]];
+      if (snap(lattice_, vertex) != vertex) throw std::logic_error("a vertex beside the lattice");
+      const LatticePoint point = lattice_point(lattice_, vertex);
+      for (int axis = 0; axis < 3; ++axis) places_[id].v[corner][axis] = point.place[axis];
+    }
+    places_[id].triangle_id = id;
   }
-  shot.vertices = vertices.data();
-  shot.projections = projections.data();
-  shot.triangle_count = static_cast<std::uint32_t>(ids.size());
+}
+
+void PlacedSolid::add_candidates(watertight::Shot& shot, CandidateRecords& records) const {
+  records.ids.clear();
+  records.vertices.clear();
+  records.projections.clear();
+  records.places.clear();
+  tree_.find(shot, records.ids);
+  for (const std::uint32_t id : records.ids) {
+    records.vertices.push_back(vertices_[id]);
+    records.projections.push_back(projections_[id]);
+    if (is_on_lattice()) records.places.push_back(places_[id]);
+  }
+  shot.vertices = records.vertices.data();
+  shot.projections = records.projections.data();
+  shot.places = records.places.data();
+  static_assert(sizeof(shot.lattice) == sizeof(lattice_));
+  std::memcpy(shot.lattice, &lattice_, sizeof(lattice_));
+  shot.triangle_count = static_cast<std::uint32_t>(records.ids.size());
 }
 
 }  // namespace gridiron::test

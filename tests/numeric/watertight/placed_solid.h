@@ -2,8 +2,9 @@
 // Memory: std::vector, some 400 bytes a triangle. Threads: any, once built. SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <gridiron/base/records.h>
+
 #include <cstdint>
-#include <string>
 #include <vector>
 
 #include "numeric/oracle.h"
@@ -20,9 +21,20 @@ struct Surroundings {
   std::uint32_t seen_triangle;  ///< one that is seen from there
 };
 
+/// Whether vertices stay where they are put, or are moved to the lattice that `compact` stores them on.
+enum class Vertices : std::uint8_t { kAsPlaced, kOnLattice };
+
+/// The records of a shot's candidates.
+struct CandidateRecords {
+  std::vector<std::uint32_t> ids;
+  std::vector<watertight::VertexRecord> vertices;
+  std::vector<watertight::ProjectionRecord> projections;
+  std::vector<watertight::LatticeRecord> places;
+};
+
 class PlacedSolid {
  public:
-  PlacedSolid(const Solid& solid, const Placement& placement);
+  PlacedSolid(const Solid& solid, const Placement& placement, Vertices vertices = Vertices::kAsPlaced);
   PlacedSolid(const PlacedSolid&) = delete;
   PlacedSolid& operator=(const PlacedSolid&) = delete;
 
@@ -40,19 +52,22 @@ class PlacedSolid {
   /// the signs with which the triangles it hits, by the oracle, are crossed.
   [[nodiscard]] Surroundings look_around(const Vec3& point, TestRandom& random) const;
 
-  /// Fills in the records of a shot's candidates. @param ids, vertices, projections  what holds them.
-  void add_candidates(watertight::Shot& shot, std::vector<std::uint32_t>& ids,
-                      std::vector<watertight::VertexRecord>& vertices,
-                      std::vector<watertight::ProjectionRecord>& projections) const;
+  [[nodiscard]] bool is_on_lattice() const { return !places_.empty(); }
+
+  /// Gives a shot its candidates. @param records  what holds them.
+  void add_candidates(watertight::Shot& shot, CandidateRecords& records) const;
 
  private:
   [[nodiscard]] bool may_be_on_surface(const Vec3& point) const;
+  void find_places();
 
   TestMesh mesh_;
   CandidateTree tree_;
   Oracle oracle_;
   std::vector<watertight::VertexRecord> vertices_;
   std::vector<watertight::ProjectionRecord> projections_;
+  std::vector<watertight::LatticeRecord> places_;  // on a lattice alone
+  Lattice lattice_{};
   Vec3 low_, high_;
   float width_;
 };

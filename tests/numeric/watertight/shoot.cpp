@@ -5,7 +5,9 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <gridiron/ray/intersect_projection.h>
 #include <gridiron/ray/intersect_standard.h>
+#include <gridiron/ray/lattice_run.h>
 
+#include <cstddef>
 #include <cstring>
 
 #include "numeric/watertight/shot.h"
@@ -18,11 +20,32 @@ using ShotPacket = Packet<4>;
 static_assert(ShotPacket::kRayCount == watertight::kShotRays);
 static_assert(sizeof(watertight::VertexRecord) == sizeof(VertexTriangle));
 static_assert(sizeof(watertight::ProjectionRecord) == sizeof(ProjectionTriangle));
+static_assert(sizeof(watertight::LatticeRecord) == sizeof(LatticeTriangle));
+static_assert(sizeof(watertight::Shot::lattice) == sizeof(Lattice));
+
+constexpr std::uint32_t kBlock = 32;
+
+// Some of a shot's triangles as the standard test takes them.
+struct Block {
+  alignas(16) std::byte bytes[kBlock * sizeof(VertexTriangle)];
+
+  const VertexTriangle* load(const watertight::Shot& shot, std::uint32_t first, std::uint32_t count,
+                             Accuracy accuracy) {
+    if (accuracy == Accuracy::kCompact) {
+      Lattice lattice;
+      std::memcpy(static_cast<void*>(&lattice), shot.lattice, sizeof(lattice));
+      constexpr std::uint32_t kFirstByte = 16;
+      std::memcpy(bytes + kFirstByte, shot.places + first, count * sizeof(LatticeTriangle));
+      return spread_lattice_run(lattice, bytes, kFirstByte, count);
+    }
+    std::memcpy(bytes, shot.vertices + first, count * sizeof(VertexTriangle));
+    return reinterpret_cast<const VertexTriangle*>(bytes);
+  }
+};
 
 // Everything against everything: no grid, no culling.
 void test_all(const watertight::Shot& shot, Accuracy accuracy, ShotPacket& packet) {
   WorkCounters work;
-  constexpr std::uint32_t kBlock = 32;
   for (std::uint32_t first = 0; first < shot.triangle_count; first += kBlock) {
     const std::uint32_t count = shot.triangle_count - first < kBlock ? shot.triangle_count - first : kBlock;
     if (accuracy == Accuracy::kPaper) {
@@ -33,8 +56,8 @@ void test_all(const watertight::Shot& shot, Accuracy accuracy, ShotPacket& packe
       }
       continue;
     }
-    alignas(16) VertexTriangle triangles[kBlock];
-    std::memcpy(static_cast<void*>(triangles), shot.vertices + first, count * sizeof(VertexTriangle));
+    Block block;
+    const VertexTriangle* const triangles = block.load(shot, first, count, accuracy);
     OpenTriangle open[kBlock];
     for (std::uint32_t i = 0; i < count; ++i) open[i] = {triangles + i, ShotPacket::kAllSubpackets, ~0u, false};
     (void)intersect_standard_batch<L, false>(packet, open, count, {.corner_rays = false, .subpackets = false}, work);

@@ -24,6 +24,13 @@ struct ProjectionRecord {
   std::uint32_t triangle_id;
 };
 
+/// The bytes of core's LatticeTriangle.
+struct LatticeRecord {
+  std::uint16_t v[3][3];
+  std::uint16_t reserved;
+  std::uint32_t triangle_id;
+};
+
 /// A packet and the triangles to hold against it.
 struct Shot {
   float origin[3];
@@ -32,6 +39,8 @@ struct Shot {
   bool with_distances;   ///< t is wanted, as if a frame had a depth plane; else it may be an estimate
   const VertexRecord* vertices;
   const ProjectionRecord* projections;  ///< the same triangles
+  const LatticeRecord* places;          ///< the same, where they lie on a lattice; else null
+  float lattice[4];                     ///< the bytes of core's Lattice
   std::uint32_t triangle_count;
 };
 

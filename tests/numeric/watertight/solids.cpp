@@ -82,24 +82,20 @@ TestMesh make_height_solid(std::uint32_t cells, float height, std::uint64_t seed
   TestMesh mesh = make_height_field(cells, height, seed);
   const std::vector<Edge> edges = sorted_edges(mesh);
   const float floor = -1.0f - 2.0f * height;
-  const auto field_count = static_cast<std::uint32_t>(mesh.vertices.size());
-  std::vector<std::uint32_t> below(field_count, 0);
-  const auto middle = field_count;
-  mesh.vertices.push_back({0.0f, floor, 0.0f});
-  const auto drop = [&](std::uint32_t vertex) {
-    if (below[vertex] == 0) {
-      below[vertex] = static_cast<std::uint32_t>(mesh.vertices.size());
-      mesh.vertices.push_back({mesh.vertices[vertex].x, floor, mesh.vertices[vertex].z});
-    }
-    return below[vertex];
-  };
+  const std::size_t field_vertices = mesh.vertices.size(), field_triangles = mesh.triangles.size();
+  const auto below = [&](std::uint32_t vertex) { return vertex + static_cast<std::uint32_t>(field_vertices); };
+  for (std::size_t i = 0; i < field_vertices; ++i) {
+    mesh.vertices.push_back({mesh.vertices[i].x, floor, mesh.vertices[i].z});
+  }
+  for (std::size_t i = 0; i < field_triangles; ++i) {
+    const UVec3 t = mesh.triangles[i];
+    mesh.triangles.push_back({below(t.x), below(t.z), below(t.y)});
+  }
   for (const Edge& edge : edges) {
     if (holds(edges, turned(edge))) continue;
     const auto [a, b] = edge;
-    const std::uint32_t under_a = drop(a), under_b = drop(b);
-    mesh.triangles.push_back({b, a, under_a});
-    mesh.triangles.push_back({b, under_a, under_b});
-    mesh.triangles.push_back({under_b, under_a, middle});
+    mesh.triangles.push_back({b, a, below(a)});
+    mesh.triangles.push_back({b, below(a), below(b)});
   }
   return mesh;
 }
@@ -123,7 +119,7 @@ std::vector<Solid> make_solids(Detail detail) {
   solids.push_back({"sphere", full ? make_sphere(72, 71, 1.0f) : make_sphere(20, 21, 1.0f)});
   solids.push_back({"torus", full ? make_torus(96, 64, 0.7f, 0.3f) : make_torus(24, 16, 0.7f, 0.3f)});
   solids.push_back({"fan", full ? make_fan_solid(128, 1e-5f) : make_fan_solid(24, 1e-5f)});
-  solids.push_back({"heights", full ? make_height_solid(256, 0.1f, 1) : make_height_solid(24, 0.1f, 1)});
+  solids.push_back({"heights", full ? make_height_solid(192, 0.1f, 1) : make_height_solid(24, 0.1f, 1)});
   for (Solid& solid : solids) centre(solid.mesh);
   return solids;
 }

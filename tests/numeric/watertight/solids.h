@@ -21,7 +21,8 @@ std::string why_not_closed(const TestMesh& mesh);
 /// slivers, their apexes of valence count + 4.
 TestMesh make_fan_solid(std::uint32_t count, float thickness);
 
-/// make_height_field's hills on a block: skirts down to a floor of triangles around its middle.
+/// make_height_field's hills on a block: skirts of one cell's width down to a floor of the same cells, all in one
+/// plane.
 TestMesh make_height_solid(std::uint32_t cells, float height, std::uint64_t seed);
 
 /// Moves the middle of a mesh's bounds to 0 and scales it by a power of two, so that half its largest extent is in

@@ -57,7 +57,7 @@ Hits oracle_hits(const PlacedSolid& solid, const Shot& shot, Accuracy accuracy) 
 // Shoots one packet at a time; a thread has its own.
 class Shooting {
  public:
-  Shooting(const PlacedSolid& solid, RayKind kind, std::span<const Machine> machines, std::span<const NamedPeer> peers,
+  Shooting(const PlacedSolid& solid, RayKind kind, std::span<const Machine> machines, std::span<const Peer> peers,
            const TallyOptions& options)
       : solid_(solid), kind_(kind), machines_(machines), peers_(peers), options_(options) {
     tally_.machines.resize(machines.size());
@@ -73,7 +73,7 @@ class Shooting {
       ++tally_.lost_packets;
       return;
     }
-    solid_.add_candidates(shot, ids_, vertices_, projections_);
+    solid_.add_candidates(shot, records_);
     ++tally_.packets;
     tally_.rays += static_cast<std::uint64_t>(std::popcount(shot.active));
     Hits first[kProfileCount];
@@ -82,6 +82,7 @@ class Shooting {
       MachineTally& own = tally_.machines[i];
       const RoundingGuard guard(machine);
       for (std::size_t p = 0; p < kProfileCount; ++p) {
+        if (!takes_part(p)) continue;
         Hits hits;
         machine.shoot(shot, static_cast<std::uint32_t>(kProfiles[p].accuracy), hits);
         if (i == 0) first[p] = hits;
@@ -95,7 +96,7 @@ class Shooting {
       }
       if (i > 0 && !shoots_anew(machine)) continue;
       for (std::size_t p = 0; p < peers_.size(); ++p) {
-        const std::uint32_t missed = shot.active & ~peers_[p].shoot(shot, machine.peer_width);
+        const std::uint32_t missed = shot.active & ~peers_[p](shot, machine.peer_width);
         own.peer_misses[p] += static_cast<std::uint64_t>(std::popcount(missed));
       }
     }
@@ -111,6 +112,9 @@ class Shooting {
   }
 
  private:
+  [[nodiscard]] bool takes_part(std::size_t profile) const {
+    return kProfiles[profile].is_on_lattice == solid_.is_on_lattice();
+  }
   [[nodiscard]] bool shoots_anew(const Machine& machine) const {
     return machine.rounding != machines_[0].rounding || machine.flushes_denormals ||
            machine.peer_width != machines_[0].peer_width;
@@ -119,7 +123,7 @@ class Shooting {
   void ask_oracle(std::uint64_t seed, const Shot& shot, const Hits (&first)[kProfileCount]) {
     tally_.asked_rays += static_cast<std::uint64_t>(std::popcount(shot.active));
     for (std::size_t p = 0; p < kProfileCount; ++p) {
-      if (!kProfiles[p].is_watertight) continue;
+      if (!kProfiles[p].is_watertight || !takes_part(p)) continue;
       const std::uint32_t wrong = rays_that_differ(shot, first[p], oracle_hits(solid_, shot, kProfiles[p].accuracy));
       tally_.oracle_differences[p] += static_cast<std::uint64_t>(std::popcount(wrong));
       if (wrong != 0) fail(seed, "not the oracle's hit", machines_[0].name, p, wrong, shot);
@@ -142,12 +146,10 @@ class Shooting {
   const PlacedSolid& solid_;
   RayKind kind_;
   std::span<const Machine> machines_;
-  std::span<const NamedPeer> peers_;
+  std::span<const Peer> peers_;
   const TallyOptions& options_;
   Tally tally_;
-  std::vector<std::uint32_t> ids_;
-  std::vector<watertight::VertexRecord> vertices_;
-  std::vector<watertight::ProjectionRecord> projections_;
+  CandidateRecords records_;
 };
 
 }  // namespace
@@ -172,8 +174,8 @@ void Tally::add(const Tally& other) {
   if (first_failure.empty()) first_failure = other.first_failure;
 }
 
-Tally shoot_all(const PlacedSolid& solid, RayKind kind, std::span<const Machine> machines,
-                std::span<const NamedPeer> peers, const TallyOptions& options) {
+Tally shoot_all(const PlacedSolid& solid, RayKind kind, std::span<const Machine> machines, std::span<const Peer> peers,
+                const TallyOptions& options) {
   const std::uint64_t packets = (options.rays + rays_of(kind) - 1) / rays_of(kind);
   const std::uint64_t chunks = (packets + kChunkPackets - 1) / kChunkPackets;
   std::vector<Tally> parts(chunks);

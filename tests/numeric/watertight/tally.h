@@ -19,10 +19,6 @@ inline constexpr std::size_t kProfileCount = std::size(kProfiles);
 
 /// Someone else's intersectors beside ours. @param width  the rays of one call. @returns the rays that hit something.
 using Peer = std::function<std::uint32_t(const watertight::Shot& shot, std::uint32_t width)>;
-struct NamedPeer {
-  std::string name;
-  Peer shoot;
-};
 
 /// What happened under one machine.
 struct MachineTally {
@@ -52,10 +48,11 @@ struct TallyOptions {
   std::uint32_t oracle_stride = 64;  ///< every so manieth packet is shown to the oracle; 0: none
 };
 
-/// Shoots rays. The same tally for any number of threads.
+/// Shoots rays. The same tally for any number of threads. Profiles on a lattice shoot at a solid that is on its
+/// lattice, the others at one that is not.
 ///
 /// @param machines  the first is what the others, and the oracle, are held against.
 [[nodiscard]] Tally shoot_all(const PlacedSolid& solid, RayKind kind, std::span<const Machine> machines,
-                              std::span<const NamedPeer> peers, const TallyOptions& options);
+                              std::span<const Peer> peers, const TallyOptions& options);
 
 }  // namespace gridiron::test

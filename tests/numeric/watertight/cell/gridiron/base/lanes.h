@@ -1,4 +1,4 @@
-// Lanes over the Cell's numbers: the interface of core's lanes.h, one lane after another.
+// Lanes over the Cell's numbers: the interface of core's lanes.h.
 // Memory: values. Threads: any. SPDX-License-Identifier: Apache-2.0
 #pragma once
 
@@ -7,6 +7,7 @@
 #include <cstdint>
 
 #include "numeric/watertight/cell/cell_float.h"
+#include "numeric/watertight/cell/cell_vector.h"
 
 #define GRIDIRON_INLINE inline
 #define GRIDIRON_INLINE_LAMBDA
@@ -16,6 +17,11 @@ namespace gridiron {
 
 using watertight::CellDouble;
 using watertight::CellFloat;
+using watertight::CellVector;
+
+[[nodiscard]] inline CellFloat magnitude(CellFloat value) {
+  return CellFloat::from_bits(value.bits() & 0x7FFFFFFFu);
+}
 
 template <int W>
 struct Lanes {
@@ -33,42 +39,23 @@ struct Lanes {
   };
 
   struct Float {
-    CellFloat v[kWidth];
+    CellVector v;
 
     Float() = default;
-    explicit Float(CellFloat value) {
-      for (CellFloat& lane : v) lane = value;
-    }
-    [[nodiscard]] static Float load(const CellFloat* source) {
-      return each([&](int i) { return source[i]; });
-    }
-    void store(CellFloat* target) const {
-      for (int i = 0; i < W; ++i) target[i] = v[i];
-    }
+    explicit Float(CellVector vector) : v(vector) {}
+    explicit Float(CellFloat value) : v(value) {}
+    [[nodiscard]] static Float load(const CellFloat* source) { return Float(CellVector::load(source)); }
+    void store(CellFloat* target) const { v.store(target); }
 
-    friend Float operator+(const Float& a, const Float& b) {
-      return each([&](int i) { return a.v[i] + b.v[i]; });
-    }
-    friend Float operator-(const Float& a, const Float& b) {
-      return each([&](int i) { return a.v[i] - b.v[i]; });
-    }
-    friend Float operator*(const Float& a, const Float& b) {
-      return each([&](int i) { return a.v[i] * b.v[i]; });
-    }
-    friend Float operator/(const Float& a, const Float& b) {
-      return each([&](int i) { return a.v[i] / b.v[i]; });
-    }
-    friend Float operator-(const Float& a) {
-      return each([&](int i) { return -a.v[i]; });
-    }
-    friend Mask operator<(const Float& a, const Float& b) {
-      return where([&](int i) { return a.v[i] < b.v[i]; });
-    }
-    friend Mask operator>(const Float& a, const Float& b) { return b < a; }
-    friend Mask operator<=(const Float& a, const Float& b) {
-      return where([&](int i) { return a.v[i] <= b.v[i]; });
-    }
-    friend Mask operator>=(const Float& a, const Float& b) { return b <= a; }
+    friend Float operator+(Float a, Float b) { return Float(a.v + b.v); }
+    friend Float operator-(Float a, Float b) { return Float(a.v - b.v); }
+    friend Float operator*(Float a, Float b) { return Float(a.v * b.v); }
+    friend Float operator/(Float a, Float b) { return Float(a.v / b.v); }
+    friend Float operator-(Float a) { return Float(-a.v); }
+    friend Mask operator<(Float a, Float b) { return {a.v < b.v}; }
+    friend Mask operator>(Float a, Float b) { return {b.v < a.v}; }
+    friend Mask operator<=(Float a, Float b) { return {a.v <= b.v}; }
+    friend Mask operator>=(Float a, Float b) { return {b.v <= a.v}; }
   };
 
   struct Int {
@@ -129,12 +116,12 @@ struct Lanes {
     friend Long operator<(Double a, CellDouble b) { return {{-(a.v[0] < b), -(a.v[1] < b)}}; }
   };
 
-  /// A lane of each, by a function of its number.
+  /// Lane i by a function of i.
   template <class Function>
   [[nodiscard]] static Float each(Function&& function) {
-    Float result;
-    for (int i = 0; i < W; ++i) result.v[i] = function(i);
-    return result;
+    CellVector::Bits bits{};
+    for (std::uint32_t i = 0; i < 4; ++i) bits[i] = function(i).bits();
+    return Float(CellVector(bits));
   }
   template <class Function>
   [[nodiscard]] static Mask where(Function&& function) {
@@ -143,27 +130,22 @@ struct Lanes {
     return {bits};
   }
 
-  [[nodiscard]] static CellFloat lane(const Float& a, std::uint32_t lane) { return a.v[lane]; }
-  [[nodiscard]] static Int truncate(const Float& a) {
+  [[nodiscard]] static CellFloat lane(Float a, std::uint32_t lane) { return a.v.lane(lane); }
+  [[nodiscard]] static Int truncate(Float a) {
     Int result;
-    for (int i = 0; i < W; ++i) result.v[i] = static_cast<std::int32_t>(a.v[i].value());
+    for (std::uint32_t i = 0; i < 4; ++i) result.v[i] = static_cast<std::int32_t>(a.v.lane(i).value());
     return result;
   }
   static void store_patterns(Long patterns, CellFloat* target) {
     for (std::size_t i = 0; i < kHalf; ++i) target[i] = CellFloat::from_bits(static_cast<std::uint32_t>(patterns.v[i]));
   }
 
-  [[nodiscard]] static Float min(const Float& a, const Float& b) {
-    return each([&](int i) { return a.v[i] < b.v[i] ? a.v[i] : b.v[i]; });
-  }
-  [[nodiscard]] static Float max(const Float& a, const Float& b) {
-    return each([&](int i) { return a.v[i] > b.v[i] ? a.v[i] : b.v[i]; });
-  }
-  [[nodiscard]] static Float abs(const Float& a) {
-    return each([&](int i) { return CellFloat::from_bits(a.v[i].bits() & 0x7FFFFFFFu); });
-  }
-  [[nodiscard]] static Float select(Mask mask, const Float& a, const Float& b) {
-    return each([&](int i) { return (mask.m >> i & 1u) != 0 ? a.v[i] : b.v[i]; });
+  [[nodiscard]] static Float min(Float a, Float b) { return select(a < b, a, b); }
+  [[nodiscard]] static Float max(Float a, Float b) { return select(a > b, a, b); }
+  [[nodiscard]] static Float abs(Float a) { return Float(CellVector(a.v.bits() & 0x7FFFFFFFu)); }
+  [[nodiscard]] static Float select(Mask mask, Float a, Float b) {
+    constexpr CellVector::Bits kLanes = {1, 2, 4, 8};
+    return Float(CellVector((kLanes & mask.m) != 0 ? a.v.bits() : b.v.bits()));
   }
   static void store_where(Mask mask, std::uint32_t value, std::uint32_t* target) {
     for (int i = 0; i < W; ++i) {
@@ -175,17 +157,26 @@ struct Lanes {
   }
   [[nodiscard]] static Mask mask_from_bits(std::uint32_t bits) { return {bits & kAllBits}; }
   [[nodiscard]] static std::uint32_t half_bits(Long a) { return (a.v[0] < 0 ? 1u : 0u) | (a.v[1] < 0 ? 2u : 0u); }
+  [[nodiscard]] static Float load_halves(const std::uint16_t* source) {
+    return each([&](std::uint32_t i) { return CellFloat(source[i]); });
+  }
+  [[nodiscard]] static Float reciprocal_estimate(Float a) {
+    const Float size = abs(a);
+    const Float first(CellVector(0x7EF311C7u - size.v.bits()));
+    const Float error = Float(1.0f) - size * first;
+    const Float better = first + first * (error + error * error);
+    return Float(CellVector(better.v.bits() | (a.v.bits() & 0x80000000u)));
+  }
   [[nodiscard]] static Float load_quads(const CellFloat* const* sources) { return Float::load(sources[0]); }
   template <int I0, int I1, int I2, int I3>
-  [[nodiscard]] static Float shuffle_quads(const Float& a, const Float& b) {
-    constexpr int kFrom[kWidth] = {I0, I1, I2, I3};
-    return each([&](int i) { return kFrom[i] < W ? a.v[kFrom[i]] : b.v[kFrom[i] - W]; });
+  [[nodiscard]] static Float shuffle_quads(Float a, Float b) {
+    return Float(CellVector(__builtin_shufflevector(a.v.bits(), b.v.bits(), I0, I1, I2, I3)));
   }
   template <int I0, int I1, int I2, int I3>
-  [[nodiscard]] static Float shuffle_quads(const Float& a) {
+  [[nodiscard]] static Float shuffle_quads(Float a) {
     return shuffle_quads<I0, I1, I2, I3>(a, a);
   }
-  [[nodiscard]] static Float flip_sign(Mask mask, const Float& a) { return select(mask, -a, a); }
+  [[nodiscard]] static Float flip_sign(Mask mask, Float a) { return select(mask, -a, a); }
 };
 
 /// To nearest in double, then rounded as all else. No part of what is shot here takes a root.
@@ -194,9 +185,6 @@ struct Lanes {
 }
 [[nodiscard]] inline CellDouble square_root(CellDouble value) {
   return __builtin_sqrt(value.value());
-}
-[[nodiscard]] inline CellFloat magnitude(CellFloat value) {
-  return CellFloat::from_bits(value.bits() & 0x7FFFFFFFu);
 }
 [[nodiscard]] inline CellDouble magnitude(CellDouble value) {
   return __builtin_fabs(value.value());
