@@ -73,10 +73,10 @@ bool in_one_plane(const VertexTriangle& first, const VertexTriangle& second) {
     for (int i = 0; i < 3; ++i) is_across = is_across && first.v[i][axis] == place && second.v[i][axis] == place;
     if (is_across) return true;
   }
-  int equal_count = 0;
+  std::uint32_t equal_count = 0;
   for (const float(&a)[3] : first.v) {
     for (const float(&b)[3] : second.v) {
-      equal_count += a[0] == b[0] && a[1] == b[1] && a[2] == b[2] ? 1 : 0;
+      equal_count += a[0] == b[0] && a[1] == b[1] && a[2] == b[2] ? 1u : 0u;
     }
   }
   return equal_count == 3;
