@@ -211,14 +211,13 @@ void add_algorithm_options(CLI::App& app, RawRender& raw) {
   add_choice(app, "--tile-width", render.tile_width,
              Choices<std::uint32_t>{{"8", 8}, {"16", 16}, {"32", 32}, {"64", 64}},
              "pixels along a tile's edge (default: 16 with --store 64, else 32)");
-  add_choice(
-      app, "--accuracy", render.accuracy,
-      Choices<Accuracy>{{"paper", Accuracy::kPaper},
-                        {"fast", Accuracy::kFast},
-                        {"standard", Accuracy::kStandard},
-                        {"exact", Accuracy::kExact},
-                        {"compact", Accuracy::kCompact}},
-      "what is decided how exactly (default standard); see tools/README.md");
+  add_choice(app, "--accuracy", render.accuracy,
+             Choices<Accuracy>{{"paper", Accuracy::kPaper},
+                               {"fast", Accuracy::kFast},
+                               {"standard", Accuracy::kStandard},
+                               {"exact", Accuracy::kExact},
+                               {"compact", Accuracy::kCompact}},
+             "what is decided how exactly (default standard); see tools/README.md");
   add_choice(app, "--shading", render.shading, Choices<Shading>{{"none", Shading::kNone}, {"simple", Shading::kSimple}},
              "none: hit or background; simple: facing ratio (default)");
   app.add_flag("--no-mailbox", raw.no_mailbox, "test a triangle again in every cell that holds it");

@@ -188,8 +188,8 @@ class PacketDriver {
     return Status::kOk;
   }
 
-  // Tests a run, `first_byte` into its buffer, against the rays of the open subpackets. @returns the subpackets of which
-  // a hit changed.
+  // Tests a run, `first_byte` into its buffer, against the rays of the open subpackets. @returns the subpackets of
+  // which a hit changed.
   [[nodiscard]] SubpacketSet test_run(std::byte* buffer, std::uint32_t first_byte, std::uint32_t count,
                                       SubpacketSet open) {
     const std::byte* const records = buffer + first_byte;
