@@ -4,6 +4,7 @@
 #include <report/report.h>
 
 #include <algorithm>
+#include <bit>
 #include <ctime>
 #include <numeric>
 #include <utility>
@@ -15,6 +16,7 @@
 #include "gridiron/frame_memory.h"
 #include "gridiron/interrupt.h"
 #include "gridiron/stopwatch.h"
+#include "gridiron/store_facts.h"
 #include "gridiron/untile.h"
 #include "gridiron/words.h"
 
@@ -36,6 +38,7 @@ tool::RenderArguments arguments_of(const GridVariant& variant, const View& view,
   arguments.shading = request.shading;
   arguments.store = variant.store;
   arguments.tile_width = variant.tile_width;
+  if (variant.depth) arguments.depth.emplace();
   return arguments;
 }
 
@@ -59,6 +62,19 @@ std::uint64_t sum_of(const sim::WorkTotals& work, std::initializer_list<Work> ki
   std::uint64_t sum = 0;
   for (const Work kind : kinds) sum += work[static_cast<std::size_t>(kind)];
   return sum;
+}
+
+// Bytes that gets of triangle records ask for. The prologue of a core has none.
+std::uint64_t fetched_triangle_bytes(const sim::FrameTrace& trace) {
+  std::uint64_t bytes = 0;
+  for (const sim::TileTrace& tile : trace.tiles) {
+    for (const sim::TraceEvent& event : tile.events) {
+      const bool is_triangles = event.kind == sim::EventKind::kGet && !event.rotating &&
+                                sim::wait_level_of_tag(event.tag) == sim::WaitLevel::kTriangle;
+      if (is_triangles) bytes += event.bytes;
+    }
+  }
+  return bytes;
 }
 
 class GridRecording : public Recording {
@@ -141,10 +157,32 @@ std::unique_ptr<Recording> GridSystem::record(const View& view, const FrameReque
   facts.scene_bytes = frame.image.header.image_bytes;
   facts.dropped_triangles = frame.image.header.dropped_triangle_count;
   facts.grid = frame.image.grid;
+  facts.triangle_bytes = std::uint64_t{frame.image.grid.triangle_bytes} * frame.image.grid.reference_count;
+  facts.fetched_triangle_bytes = fetched_triangle_bytes(result.trace);
+  facts.main_memory_bytes = frame.memory.used_bytes();
+  const tool::StoreFacts store = *tool::find_store_facts(arguments.layout());  // it has rendered
+  facts.local_store_bytes = store.data_bytes() + store.code_bytes + store.stack_bytes;
   const auto picture = tool::untile<std::uint32_t>(frame.record, frame.color.bytes, std::nullopt,
                                                    [](std::uint32_t word) { return word; });
   facts.picture_hash = tool::image_hash(picture.pixels);
   return std::make_unique<GridRecording>(std::move(facts), std::move(result.trace));
+}
+
+Answers render_answers(const GridVariant& variant, const View& view, const FrameRequest& request) {
+  tool::RenderArguments arguments = arguments_of(variant, view, request);
+  arguments.depth.emplace();
+  arguments.ids.emplace();
+  tool::FrameMemory frame(home_machine()->main_memory_bytes);
+  tool::prepare_frame(frame, *view.scene, arguments, view.camera);
+  (void)run_chip(frame, arguments, sim::Mode::kPlain, 4, 1);
+  const auto words_of = [&frame](const sim::MemoryRegion& plane) {
+    return tool::untile<std::uint32_t>(frame.record, plane.bytes, std::nullopt, [](std::uint32_t word) { return word; })
+        .pixels;
+  };
+  return {words_of(frame.color), words_of(frame.ids),
+          tool::untile<float>(frame.record, frame.depth.bytes, std::nullopt, [](std::uint32_t word) {
+            return std::bit_cast<float>(word);
+          }).pixels};
 }
 
 HostSeconds least_host_seconds(std::uint32_t repeats, const std::function<void()>& work) {

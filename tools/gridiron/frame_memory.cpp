@@ -6,6 +6,7 @@
 #include <cstring>
 #include <string>
 
+#include "accuracies.h"
 #include "failure.h"
 #include "stopwatch.h"
 #include "words.h"
@@ -24,8 +25,7 @@ sim::MemoryRegion allocate(sim::SimMemory& memory, std::uint64_t bytes) {
 // Puts the scene image into main memory. @returns where it lies.
 MainAddress place_image(FrameMemory& frame, const SceneInput& input, const RenderArguments& arguments,
                         std::uint64_t budget_bytes) {
-  const TriangleFormat format =
-      arguments.accuracy == Accuracy::kPaper ? TriangleFormat::kProjection : TriangleFormat::kVertices;
+  const TriangleFormat format = format_of(arguments.accuracy);
   if (const PackedScene* packed = std::get_if<PackedScene>(&input.content)) {
     check_packed(input, *packed, arguments.scene, format, budget_bytes);
     const std::uint64_t image_bytes = packed->view.header.image_bytes;

@@ -3,6 +3,7 @@
 #include <nlohmann/json.hpp>
 #include <string>
 
+#include "accuracies.h"
 #include "commands.h"
 #include "scene_facts.h"
 #include "store_facts.h"
@@ -13,8 +14,8 @@ namespace {
 
 using Json = nlohmann::ordered_json;
 
-const char* name_of_format(std::uint32_t format) {
-  return format == static_cast<std::uint32_t>(TriangleFormat::kProjection) ? "projection" : "vertices";
+std::string name_of_format(std::uint32_t format) {
+  return std::string(name_of(static_cast<TriangleFormat>(format)));
 }
 
 template <class Number>
