@@ -29,7 +29,13 @@ void write_method(const PriceList& list, Book& book) {
       "A ray that hits something in truth and nothing here is a hole, one that hits nothing in truth and something "
       "here "
       "a false hit; one that hits another triangle than in truth has a wrong triangle, even where the distance is the "
-      "same float. There are as many rays as pixels, so the least share that can be told is one ray of a frame.");
+      "same float, and sees through what it should hit where that triangle is farther away by more than a thousandth: "
+      "in a solid a leak shows the far side, not a hole. A picture's rays hardly ever meet an edge, so as many rays "
+      "again are aimed at edges and, a quarter of them, at vertices of triangles that the picture shows: pictures of " +
+      std::to_string(CloseLook::kWidth) + "x" + std::to_string(CloseLook::kWidth) +
+      " pixels from the same eye, with distances, so small that all of their rays pass the point within a few "
+      "roundings, "
+      "through the same grid and the same code. The least share that can be told is one ray of a picture.");
   book.paragraph(
       "The plane of distances holds t times the length of the ray's direction, each rounded to a float; the length is "
       "the same for all profiles, so what differs is t. An ulp is a step from one float to the next in that plane. An "
@@ -67,14 +73,15 @@ void write_method(const PriceList& list, Book& book) {
 }  // namespace
 
 std::vector<std::string> accuracy_file_names() {
-  std::vector<std::string> names = {"host_prices.csv",  "index.html", "overview.csv", "pareto.csv",      "pareto_t.svg",
-                                    "pareto_wrong.svg", "prices.csv", "starved.csv",  "t_histogram.csv", "targets.csv"};
+  std::vector<std::string> names = {"host_prices.csv", "index.html",  "overview.csv", "pareto.csv",
+                                    "prices.csv",      "starved.csv", "targets.csv",  "t_histogram.csv"};
+  for (const char* front : {"pixels", "edges", "t"}) names.push_back("pareto_" + std::string(front) + ".svg");
   for (const std::string& view : known_view_keys()) {
     names.push_back(price_text_name(view));
     for (const char* configuration : kPricedConfigurations) {
       names.push_back("errors_" + std::string(configuration) + "_" + view + ".svg");
     }
-    for (const char* front : {"pareto_wrong_", "pareto_t_"}) names.push_back(front + view + ".svg");
+    for (const char* front : {"pareto_pixels_", "pareto_edges_", "pareto_t_"}) names.push_back(front + view + ".svg");
   }
   return names;
 }

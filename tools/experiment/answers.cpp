@@ -32,24 +32,35 @@ std::size_t ulp_bin(std::uint64_t ulps) {
   return std::min<std::size_t>(static_cast<std::size_t>(std::bit_width(ulps)), kUlpBinCount - 1);
 }
 
-double Comparison::per_million(std::uint64_t count) const {
+double HitCounts::per_million(std::uint64_t count) const {
   return rays == 0 ? 0.0 : 1e6 * static_cast<double>(count) / static_cast<double>(rays);
+}
+
+HitCounts count_hits(const Answers& truth, const Answers& answers) {
+  HitCounts counts;
+  counts.rays = truth.ids.size();
+  for (std::size_t i = 0; i < truth.ids.size(); ++i) {
+    const bool is_true_hit = truth.ids[i] != kNoTriangle, is_hit = answers.ids[i] != kNoTriangle;
+    counts.true_hits += is_true_hit ? 1u : 0u;
+    counts.holes += is_true_hit && !is_hit ? 1u : 0u;
+    counts.false_hits += is_hit && !is_true_hit ? 1u : 0u;
+    if (!is_true_hit || !is_hit || truth.ids[i] == answers.ids[i]) continue;
+    ++counts.wrong_triangles;
+    counts.seen_through += double{answers.depth[i]} > double{truth.depth[i]} * (1 + kBehind) ? 1u : 0u;
+  }
+  return counts;
 }
 
 Comparison compare_answers(const Answers& truth, const Answers& answers) {
   Comparison found;
-  found.rays = truth.ids.size();
+  found.hits = count_hits(truth, answers);
   std::vector<double> ulps, relative, all_ulps, all_relative;
   for (std::size_t i = 0; i < truth.ids.size(); ++i) {
-    const bool is_true_hit = truth.ids[i] != kNoTriangle, is_hit = answers.ids[i] != kNoTriangle;
-    found.true_hits += is_true_hit ? 1u : 0u;
-    if (is_true_hit != is_hit) ++(is_true_hit ? found.holes : found.false_hits);
-    if (!is_true_hit || !is_hit) continue;
+    if (truth.ids[i] == kNoTriangle || answers.ids[i] == kNoTriangle) continue;
     const std::uint64_t distance = ulp_distance(answers.depth[i], truth.depth[i]);
     all_ulps.push_back(static_cast<double>(distance));
     all_relative.push_back(relative_error(answers.depth[i], truth.depth[i]));
     if (truth.ids[i] != answers.ids[i]) {
-      ++found.wrong_triangles;
       found.wrong_at_true_depth += distance == 0 ? 1u : 0u;
       continue;
     }

@@ -69,6 +69,18 @@ class Fields {
   std::vector<Field> fields_;
 };
 
+struct NamedCount {
+  const char* name;
+  std::uint64_t HitCounts::*count;
+};
+constexpr NamedCount kHitCounts[] = {{"rays", &HitCounts::rays},
+                                     {"true_hits", &HitCounts::true_hits},
+                                     {"holes", &HitCounts::holes},
+                                     {"false_hits", &HitCounts::false_hits},
+                                     {"wrong_triangles", &HitCounts::wrong_triangles},
+                                     {"seen_through", &HitCounts::seen_through}};
+constexpr std::span<const NamedCount> kWrongCounts = std::span(kHitCounts).subspan(2);
+
 double million_cycles(const RunResult& run) {
   return run.timing.frame_cycles / 1e6;
 }
@@ -104,16 +116,20 @@ Table all_prices(const PriceList& list) {
   add_bytes("scene_bytes", &PriceList::frame, [](const RunResult& run) { return run.facts.scene_bytes; });
   add_bytes("triangle_bytes", &PriceList::frame, [](const RunResult& run) { return run.facts.triangle_bytes; });
 
-  fields.add_error({"rays", ""}, [](const Comparison& found) { return found.rays; });
-  fields.add_error({"true_hits", ""}, [](const Comparison& found) { return found.true_hits; });
-  const auto add_count = [&fields](const std::string& key, std::uint64_t Comparison::*count) {
-    fields.add_error({key, ""}, [count](const Comparison& found) { return found.*count; });
-    fields.add_error({key + "_per_million", ""},
-                     [count](const Comparison& found) { return found.per_million(found.*count); });
+  const auto add_hits = [&fields](const std::string& prefix, const HitCounts& (*counts)(const Price&)) {
+    for (const auto& [name, count] : kHitCounts) {
+      fields.add({prefix + name, ""}, [counts, count = count](const Price& price) -> Cell {
+        return price.errors ? Cell{counts(price).*count} : Cell{};
+      });
+    }
+    for (const auto& [name, count] : kWrongCounts) {
+      fields.add({prefix + name + "_per_million", ""}, [counts, count = count](const Price& price) -> Cell {
+        return price.errors ? Cell{counts(price).per_million(counts(price).*count)} : Cell{};
+      });
+    }
   };
-  add_count("holes", &Comparison::holes);
-  add_count("false_hits", &Comparison::false_hits);
-  add_count("wrong_triangles", &Comparison::wrong_triangles);
+  add_hits("", [](const Price& price) -> const HitCounts& { return price.errors->hits; });
+  add_hits("edge_", [](const Price& price) -> const HitCounts& { return price.at_edges; });
   fields.add_error({"wrong_triangles_at_true_distance", ""},
                    [](const Comparison& found) { return found.wrong_at_true_depth; });
   const auto add_spread = [&fields](const std::string& key, Spread Comparison::*spread) {
@@ -134,7 +150,9 @@ Table all_prices(const PriceList& list) {
 
 std::string bin_name(std::size_t bin) {
   if (bin == 0) return "0";
-  const std::string least = tick_text(static_cast<double>(std::uint64_t{1} << (bin - 1)));
+  constexpr std::size_t kPlain = 11;
+  const std::string least =
+      bin <= kPlain ? std::to_string(std::uint64_t{1} << (bin - 1)) : "2^" + std::to_string(bin - 1);
   return bin + 1 == kUlpBinCount ? least + "+" : least;
 }
 
@@ -153,7 +171,7 @@ Table histogram_table(const PriceList& list) {
 std::string histogram_svg(const PriceList& list, std::size_t view, std::size_t configuration) {
   HistogramChart chart;
   chart.title = list.views()[view].title + ", configuration " + kPricedConfigurations[configuration];
-  chart.bin_title = "rays by error of t, ulp (heights: logarithms)";
+  chart.bin_title = "pixels by error of t, ulp (log heights)";
   chart.cost_title = "million cycles a frame";
   for (std::size_t bin = 0; bin < kUlpBinCount; ++bin) chart.bins.push_back(bin_name(bin));
   for (const char* name : {"wrong triangle", "hole", "false hit"}) chart.bins.emplace_back(name);
@@ -164,7 +182,7 @@ std::string histogram_svg(const PriceList& list, std::size_t view, std::size_t c
     HistogramChart::Row row{list.profiles()[profile].key, {}, {}};
     const Comparison errors = price.errors.value_or(Comparison{});
     for (const std::uint64_t count : errors.ulp_histogram) row.counts.push_back(static_cast<double>(count));
-    for (const std::uint64_t count : {errors.wrong_triangles, errors.holes, errors.false_hits}) {
+    for (const std::uint64_t count : {errors.hits.wrong_triangles, errors.hits.holes, errors.hits.false_hits}) {
       row.counts.push_back(static_cast<double>(count));
     }
     for (const RunResult* run : {&list.frame(price), &list.with_distances(price)}) {
@@ -180,14 +198,16 @@ struct Front {
   std::string key;  ///< of files
   std::string error, time;
   RunOf run;
-  double (*value)(const Comparison&);
+  double (*value)(const Price&);  ///< of a price that has errors
 };
 
 std::vector<Front> make_fronts() {
-  return {{"wrong", "rays with a wrong answer, of a million", "million cycles a frame", &PriceList::frame,
-           [](const Comparison& found) { return found.per_million(found.wrong_rays()); }},
-          {"t", "error of t in 99 of 100 rays, ulp", "million cycles a frame with distances",
-           &PriceList::with_distances, [](const Comparison& found) { return found.ulps.percentile_99; }}};
+  return {{"pixels", "wrong pixels of a million", "million cycles a frame", &PriceList::frame,
+           [](const Price& price) { return price.errors->hits.per_million(price.errors->hits.wrong_rays()); }},
+          {"edges", "leaks of a million rays at edges", "million cycles a frame", &PriceList::frame,
+           [](const Price& price) { return price.at_edges.per_million(price.at_edges.leaks()); }},
+          {"t", "error of t in 99 of 100 pixels, ulp", "million cycles a frame with distances",
+           &PriceList::with_distances, [](const Price& price) { return price.errors->ulps.percentile_99; }}};
 }
 
 /// One profile in one configuration, in one view or over all.
@@ -210,7 +230,7 @@ std::vector<FrontPoint> front_points(const PriceList& list, const Front& front, 
         if (view && each != *view) continue;
         const Price& price = list.price(each, configuration, profile);
         const RunResult& run = (list.*front.run)(price);
-        const double error = price.errors ? front.value(*price.errors) : std::nan("");
+        const double error = price.errors ? front.value(price) : std::nan("");
         if (run.failed() || !std::isfinite(error)) {
           whole = false;
           continue;
@@ -269,11 +289,12 @@ std::string front_words(const PriceList& list, const std::vector<FrontPoint>& po
   return "On the front: " + (front.empty() ? "none" : front) + "." + (beaten.empty() ? "" : " Beaten: " + beaten + ".");
 }
 
-double geometric_mean(const PriceList& list, RunOf run, std::size_t configuration, std::size_t profile) {
+// Geometric mean over the views, not a number where one has none.
+double mean_mcycles(const PriceList& list, RunOf run, std::size_t configuration, std::size_t profile) {
   double sum = 0;
   for (std::size_t view = 0; view < list.views().size(); ++view) {
     const RunResult& result = (list.*run)(list.price(view, configuration, profile));
-    sum += result.failed() ? std::nan("") : std::log(result.timing.frame_cycles);
+    sum += result.failed() ? std::nan("") : std::log(million_cycles(result));
   }
   return std::exp(sum / static_cast<double>(list.views().size()));
 }
@@ -284,94 +305,116 @@ std::string price_text_name(const std::string& view_key) {
   return "prices_" + view_key + ".txt";
 }
 
-Table view_prices(const PriceList& list, std::size_t view) {
+Table view_costs(const PriceList& list, std::size_t view) {
   Fields fields(list);
   fields.add_names(false);
+  const auto add_bytes = [&fields](const char* title, double (*bytes)(const RunResult&)) {
+    fields.add_run({"", title, 1}, &PriceList::frame, [bytes](const RunResult& run) { return bytes(run) / kMegabyte; });
+  };
   fields.add_run({"", "Mcycles"}, &PriceList::frame, million_cycles);
   fields.add_run({"", "fps", 1}, &PriceList::frame, fps);
   fields.add_run({"", "with t"}, &PriceList::with_distances, million_cycles);
-  fields.add_run({"", "DMA MB", 1}, &PriceList::frame,
-                 [](const RunResult& run) { return static_cast<double>(run.moved_bytes()) / kMegabyte; });
-  fields.add_run({"", "RAM MB", 1}, &PriceList::frame,
-                 [](const RunResult& run) { return static_cast<double>(run.facts.main_memory_bytes) / kMegabyte; });
-  const auto add_share = [&fields](const char* title, std::uint64_t Comparison::*count) {
-    fields.add_error({"", title, 1}, [count](const Comparison& found) { return found.per_million(found.*count); });
+  fields.add_run({"", "starved"}, &PriceList::on_starved, million_cycles);
+  add_bytes("DMA MB", [](const RunResult& run) { return static_cast<double>(run.moved_bytes()); });
+  add_bytes("triangle MB", [](const RunResult& run) { return static_cast<double>(run.facts.fetched_triangle_bytes); });
+  add_bytes("main MB", [](const RunResult& run) { return static_cast<double>(run.facts.main_memory_bytes); });
+  fields.add_run({"", "local KB", 0}, &PriceList::frame,
+                 [](const RunResult& run) { return static_cast<double>(run.facts.local_store_bytes) / 1024; });
+  return fields.table("", [view](const Price& price) { return price.view == view; });
+}
+
+Table view_errors(const PriceList& list, std::size_t view) {
+  Fields fields(list);
+  fields.add_names(false);
+  const auto add_shares = [&fields](const std::string& where, const HitCounts& (*counts)(const Price&)) {
+    for (const auto& [name, count] : {NamedCount{"holes", &HitCounts::holes},
+                                      {"through", &HitCounts::seen_through},
+                                      {"false", &HitCounts::false_hits}}) {
+      fields.add({"", where + name, 0}, [counts, count = count](const Price& price) -> Cell {
+        return price.errors ? Cell{counts(price).per_million(counts(price).*count)} : Cell{};
+      });
+    }
   };
-  add_share("holes", &Comparison::holes);
-  add_share("false", &Comparison::false_hits);
-  add_share("wrong", &Comparison::wrong_triangles);
+  add_shares("edge ", [](const Price& price) -> const HitCounts& { return price.at_edges; });
+  add_shares("", [](const Price& price) -> const HitCounts& { return price.errors->hits; });
+  fields.add_error({"", "wrong", 1},
+                   [](const Comparison& found) { return found.hits.per_million(found.hits.wrong_triangles); });
   fields.add_error({"", "ulp 50 %", 0}, [](const Comparison& found) { return found.ulps.median; });
   fields.add_error({"", "99 %", 0}, [](const Comparison& found) { return found.ulps.percentile_99; });
   fields.add_error({"", "max", 0}, [](const Comparison& found) { return found.ulps.greatest; });
-  fields.add_error({"", "relative", -2}, [](const Comparison& found) { return found.relative.percentile_99; });
+  fields.add_error({"", "t 99 %", -2}, [](const Comparison& found) { return found.relative.percentile_99; });
   fields.add_error({"", "PSNR dB", 1}, [](const Comparison& found) { return found.psnr_db; });
   fields.add_error({"", "pixel"}, [](const Comparison& found) { return std::uint64_t{found.greatest_pixel_error}; });
   return fields.table("", [view](const Price& price) { return price.view == view; });
 }
 
 void write_overview(const PriceList& list, Book& book) {
-  Table table{"overview",
-              {{"configuration", "configuration"},
-               {"profile", "profile"},
-               {"mean_mcycles", "Mcycles"},
-               {"mean_fps", "fps", 1},
-               {"with_distances_mean_mcycles", "with t"},
-               {"starved_mean_mcycles", "starved"},
-               {"most_holes_per_million", "holes", 1},
-               {"most_false_hits_per_million", "false hits", 1},
-               {"most_wrong_triangles_per_million", "wrong triangles", 1},
-               {"most_t_ulp_median", "t: ulp, median", 0},
-               {"most_t_ulp_p99", "99 %", 0},
-               {"most_t_ulp_max", "greatest", 0},
-               {"most_t_relative_p99", "99 %, relative", -2},
-               {"least_psnr_db", "PSNR, dB", 1},
-               {"greatest_pixel_error", "pixel", 0}},
-              {}};
+  Table table{"overview", {{"configuration", "configuration"}, {"profile", "profile"}}, {}};
+  struct Time {
+    const char *key, *title;
+    RunOf run;
+  };
+  const Time times[] = {{"mean_mcycles", "Mcycles", &PriceList::frame},
+                        {"with_distances_mean_mcycles", "with t", &PriceList::with_distances},
+                        {"starved_mean_mcycles", "starved", &PriceList::on_starved}};
+  struct Worst {
+    Column column;
+    double (*value)(const Price&);  ///< of a price that has errors
+    bool least = false;             ///< less is worse
+  };
+  const Worst worsts[] = {
+      {{"most_edge_holes_per_million", "edges: holes", 0},
+       [](const Price& price) { return price.at_edges.per_million(price.at_edges.holes); }},
+      {{"most_edge_seen_through_per_million", "through", 0},
+       [](const Price& price) { return price.at_edges.per_million(price.at_edges.seen_through); }},
+      {{"most_edge_false_hits_per_million", "false", 0},
+       [](const Price& price) { return price.at_edges.per_million(price.at_edges.false_hits); }},
+      {{"most_holes_per_million", "pixels: holes", 0},
+       [](const Price& price) { return price.errors->hits.per_million(price.errors->hits.holes); }},
+      {{"most_seen_through_per_million", "through", 0},
+       [](const Price& price) { return price.errors->hits.per_million(price.errors->hits.seen_through); }},
+      {{"most_false_hits_per_million", "false", 0},
+       [](const Price& price) { return price.errors->hits.per_million(price.errors->hits.false_hits); }},
+      {{"most_wrong_triangles_per_million", "wrong", 1},
+       [](const Price& price) { return price.errors->hits.per_million(price.errors->hits.wrong_triangles); }},
+      {{"most_t_ulp_median", "t: ulp, median", 0}, [](const Price& price) { return price.errors->ulps.median; }},
+      {{"most_t_ulp_p99", "99 %", 0}, [](const Price& price) { return price.errors->ulps.percentile_99; }},
+      {{"most_t_ulp_max", "most", 0}, [](const Price& price) { return price.errors->ulps.greatest; }},
+      {{"most_t_relative_p99", "99 %, relative", -2},
+       [](const Price& price) { return price.errors->relative.percentile_99; }},
+      {{"least_psnr_db", "PSNR, dB", 1}, [](const Price& price) { return price.errors->psnr_db; }, true},
+      {{"greatest_pixel_error", "colour", 0},
+       [](const Price& price) { return static_cast<double>(price.errors->greatest_pixel_error); }},
+  };
+  for (const Time& time : times) table.columns.push_back({time.key, time.title});
+  for (const Worst& worst : worsts) table.columns.push_back(worst.column);
   for (std::size_t configuration = 0; configuration < std::size(kPricedConfigurations); ++configuration) {
     for (std::size_t profile = 0; profile < list.profiles().size(); ++profile) {
-      const double cycles = geometric_mean(list, &PriceList::frame, configuration, profile);
-      Range psnr;
-      const auto most = [&](auto value) {
+      std::vector<Cell> row = {std::string(kPricedConfigurations[configuration]), list.profiles()[profile].key};
+      for (const Time& time : times) row.emplace_back(mean_mcycles(list, time.run, configuration, profile));
+      for (const Worst& worst : worsts) {
         Range range;
         for (std::size_t view = 0; view < list.views().size(); ++view) {
           const Price& price = list.price(view, configuration, profile);
-          if (price.errors) range.add(value(*price.errors));
+          if (price.errors) range.add(worst.value(price));
         }
-        return range.empty() ? Cell{} : Cell{range.greatest()};
-      };
-      for (std::size_t view = 0; view < list.views().size(); ++view) {
-        const Price& price = list.price(view, configuration, profile);
-        if (price.errors) psnr.add(price.errors->psnr_db);
+        row.emplace_back(range.empty() ? std::nan("") : worst.least ? range.least() : range.greatest());
       }
-      table.add({std::string(kPricedConfigurations[configuration]), list.profiles()[profile].key, cycles / 1e6,
-                 list.machine().profile.clock_hz / cycles,
-                 geometric_mean(list, &PriceList::with_distances, configuration, profile) / 1e6,
-                 geometric_mean(list, &PriceList::on_starved, configuration, profile) / 1e6,
-                 most([](const Comparison& found) { return found.per_million(found.holes); }),
-                 most([](const Comparison& found) { return found.per_million(found.false_hits); }),
-                 most([](const Comparison& found) { return found.per_million(found.wrong_triangles); }),
-                 most([](const Comparison& found) { return found.ulps.median; }),
-                 most([](const Comparison& found) { return found.ulps.percentile_99; }),
-                 most([](const Comparison& found) { return found.ulps.greatest; }),
-                 most([](const Comparison& found) { return found.relative.percentile_99; }),
-                 psnr.empty() ? Cell{} : Cell{psnr.least()},
-                 most([](const Comparison& found) { return static_cast<double>(found.greatest_pixel_error); })});
+      table.add(std::move(row));
     }
   }
   book.section("prices", "The price list");
-  std::string words;
-  for (const Profile& profile : list.profiles())
-    words += (words.empty() ? "" : "; ") + profile.key + ": " + profile.words;
-  book.paragraph(words + ".");
+  for (const Profile& profile : list.profiles()) book.paragraph(profile.key + ": " + profile.words + ".");
   book.table(table,
-             "All views: geometric means of the cycles of a frame without distances, with them (with t) and without "
-             "them on the starved machine; of the errors those of the worst view. Holes, false hits and wrong "
-             "triangles of a million rays; PSNR is empty where no pixel differs in any view; pixel: the greatest "
-             "difference of a channel, of 255.");
+             "Over all views: geometric means of the million cycles of a frame without distances, with them (with t), "
+             "and without them on the starved machine; the errors of the worst view. Holes, what is seen through them, "
+             "false hits and wrong triangles are of a million rays, those aimed at edges and those of the picture's "
+             "pixels; PSNR is empty where no pixel differs in any view; colour: the greatest difference of a channel, "
+             "of 255.");
   book.linked_table(all_prices(list), "every view, profile and configuration with every figure.");
   book.linked_table(histogram_table(list),
-                    "rays that hit the true triangle by their error of t: a column holds those "
-                    "from its ulp up to the next column's.");
+                    "pixels that show the true triangle by their error of t: a column holds those from its ulp up to "
+                    "the next column's.");
 }
 
 void write_targets(const PriceList& list, Book& book) {
@@ -420,9 +463,11 @@ void write_fronts(const PriceList& list, Book& book) {
   book.section("fronts", "Error against time");
   book.paragraph(
       "Who is on a Pareto front is not beaten: no other profile, in either configuration, is as fast and as accurate "
-      "and better in one of them. Two errors are told: rays whose answer is wrong (a hole, a false hit or another "
-      "triangle) against the time of a frame that gives a picture alone, and the error of t against that of a frame "
-      "that gives distances too. Times are geometric means over the views, errors those of the worst view.");
+      "and better in one of them. Three errors are told: wrong pixels (a hole, a false hit or another triangle) and "
+      "leaks of rays aimed at edges (a hole, or something farther away seen through it), both against the time of a "
+      "frame that gives a picture alone, and the error of t against that of a frame that gives distances too. Times "
+      "are "
+      "geometric means over the views, errors those of the worst view.");
   for (const Front& front : make_fronts()) {
     const std::vector<FrontPoint> over_all = front_points(list, front, std::nullopt);
     book.figure("pareto_" + front.key, front_svg(list, front, "all views", over_all),
@@ -459,7 +504,7 @@ void write_starved(const PriceList& list, Book& book) {
   const Table table = fields.table("starved", [](const Price&) { return true; });
   const double gigabytes = list.starved().profile.channel_bytes_per_cycle * list.starved().profile.clock_hz / 1e9;
   book.section("starved", "Where memory is slow");
-  book.paragraph("The same frames, replayed on " + std::string(list.machine().profile.name) +
+  book.paragraph("The same frames without distances, replayed on " + std::string(list.machine().profile.name) +
                  " with an eighth of its bandwidth: " + fixed_text(gigabytes, 2) + " GB/s for all cores together. " +
                  starved_words(list));
   book.table(table, "Frames without distances at an eighth of the bandwidth.");
@@ -468,19 +513,26 @@ void write_starved(const PriceList& list, Book& book) {
 void write_views(const PriceList& list, Book& book) {
   for (std::size_t view = 0; view < list.views().size(); ++view) {
     const View& shown = list.views()[view];
-    const Table table = view_prices(list, view);
+    const Table costs = view_costs(list, view), errors = view_errors(list, view);
     book.section("view_" + shown.key, shown.title);
-    book.shown_table(table,
-                     "Million cycles and frames a second, without distances; million cycles with them (with t); MB "
-                     "moved by DMA and MB of main memory, both without distances; holes, false hits and wrong "
-                     "triangles of a million rays; error of t where the true triangle is hit: median, 99th percentile "
-                     "and greatest in ulp, 99th percentile as a share; PSNR (empty where no pixel differs) and the "
-                     "greatest difference of a channel, of 255.");
-    book.text(price_text_name(shown.key), aligned_text(table), "the same as plain text.");
+    book.shown_table(
+        costs,
+        "Million cycles and frames a second without distances, million cycles with them (with t) and "
+        "without them on the starved machine; MB moved by DMA, of these MB of triangles, MB of main memory "
+        "and KB of local store, all without distances.");
+    book.shown_table(
+        errors,
+        "Holes, rays that see through and false hits of a million rays aimed at edges; the same of a million pixels, "
+        "and "
+        "wrong triangles; error of t where the true triangle is shown: median, 99th percentile and greatest in ulp, "
+        "99th "
+        "percentile as a share; PSNR (empty where no pixel differs) and the greatest difference of a channel, of 255.");
+    book.text(price_text_name(shown.key), aligned_text(costs) + "\n" + aligned_text(errors),
+              "both tables as plain text.");
     for (std::size_t configuration = 0; configuration < std::size(kPricedConfigurations); ++configuration) {
       const std::string name = kPricedConfigurations[configuration];
       book.figure("errors_" + name + "_" + shown.key, histogram_svg(list, view, configuration),
-                  shown.title + ", configuration " + name + ": rays by the error of their t, beside what they cost.");
+                  shown.title + ", configuration " + name + ": pixels by the error of their t, beside what they cost.");
     }
     for (const Front& front : make_fronts()) {
       const std::vector<FrontPoint> points = front_points(list, front, view);

@@ -12,9 +12,11 @@
 
 namespace gridiron::experiment {
 
-/// @returns a view's prices and errors, a row for each profile in each configuration.
-[[nodiscard]] Table view_prices(const PriceList& list, std::size_t view);
+/// @returns what a view's frames cost and what is wrong with them, a row for each configuration and profile.
+[[nodiscard]] Table view_costs(const PriceList& list, std::size_t view);
+[[nodiscard]] Table view_errors(const PriceList& list, std::size_t view);
 
+/// Each writes a section or more. What the words say follows from the list.
 void write_overview(const PriceList& list, Book& book);
 void write_targets(const PriceList& list, Book& book);
 void write_steps(const PriceList& list, Book& book);

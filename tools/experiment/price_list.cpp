@@ -7,6 +7,7 @@
 #include <mutex>
 #include <utility>
 
+#include "experiment/edge_points.h"
 #include "experiment/sections.h"
 #include "experiment/workers.h"
 #include "gridiron/accuracies.h"
@@ -66,7 +67,8 @@ PriceList::PriceList(std::vector<View> views, std::uint32_t width, std::uint32_t
                            .frame = add(system, machine_),
                            .with_distances = add(deep_system, machine_),
                            .starved = add(system, starved_),
-                           .errors = std::nullopt});
+                           .errors = std::nullopt,
+                           .at_edges = {}});
       }
     }
   }
@@ -85,6 +87,13 @@ std::optional<std::size_t> PriceList::find_profile(std::string_view key) const {
   return found == profiles_.end() ? std::nullopt : std::optional(static_cast<std::size_t>(found - profiles_.begin()));
 }
 
+Answers PriceList::answers_at(const std::vector<Vec3>& points, const Price& price) const {
+  CloseLook look(price.variant, views_[price.view]);
+  Answers answers;
+  for (const Vec3& point : points) look.look_at(point, answers);
+  return answers;
+}
+
 void PriceList::compare_view(std::size_t view, const std::function<void()>& step_done) {
   // A frame that was not rendered for the clock is not rendered for its answers; why is among the results of its runs.
   const auto answers_of = [&](const Price& price) -> std::optional<Answers> {
@@ -92,12 +101,21 @@ void PriceList::compare_view(std::size_t view, const std::function<void()>& step
     if (frame(price).failed()) return std::nullopt;
     return render_answers(price.variant, views_[view], request());
   };
-  const std::optional<Answers> truth = answers_of(price(view, 0, *find_profile(kTruth)));
+  const Price& true_price = price(view, 0, *find_profile(kTruth));
+  const std::optional<Answers> truth = answers_of(true_price);
+  std::vector<Vec3> points;
+  Answers truth_at_edges;
+  if (truth) {
+    constexpr std::size_t kRays = std::size_t{CloseLook::kWidth} * CloseLook::kWidth;
+    points = edge_points(views_[view].mesh().view(), truth->ids, (truth->ids.size() + kRays - 1) / kRays);
+    truth_at_edges = answers_at(points, true_price);
+  }
   for (Price& price : prices_) {
     if (price.view != view) continue;
     const std::optional<Answers> answers = truth ? answers_of(price) : std::nullopt;
     if (answers) {
       price.errors = compare_answers(*truth, *answers);
+      price.at_edges = count_hits(truth_at_edges, answers_at(points, price));
       const std::uint64_t hash = tool::image_hash(answers->color);
       price.same_picture = hash == frame(price).facts.picture_hash && hash == with_distances(price).facts.picture_hash;
     }

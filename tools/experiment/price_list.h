@@ -38,6 +38,7 @@ struct Price {
   GridVariant variant;
   Plan::RunId frame, with_distances, starved;  ///< the last: `frame` on the starved machine
   std::optional<Comparison> errors;            ///< nothing where the frame or its truth cannot be rendered
+  HitCounts at_edges;                          ///< of rays aimed at edges and vertices, about as many as pixels
   bool same_picture = false;                   ///< with distances and without
 };
 
@@ -71,6 +72,7 @@ class PriceList {
 
  private:
   void compare_view(std::size_t view, const std::function<void()>& step_done);
+  [[nodiscard]] Answers answers_at(const std::vector<Vec3>& points, const Price& price) const;
 
   std::vector<View> views_;
   std::vector<Profile> profiles_;

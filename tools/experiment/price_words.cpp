@@ -50,25 +50,31 @@ std::string joined(const std::vector<std::string>& words, const char* separator)
 std::vector<Metric> price_metrics() {
   const auto cycles = [](const RunResult& run) { return run.timing.frame_cycles; };
   const auto moved = [](const RunResult& run) { return static_cast<double>(run.moved_bytes()); };
-  const auto triangles = [](const RunResult& run) { return static_cast<double>(run.facts.fetched_triangle_bytes); };
   const auto memory = [](const RunResult& run) { return static_cast<double>(run.facts.main_memory_bytes); };
+  const auto at_edges = [](std::string words, std::uint64_t HitCounts::*count) {
+    return Metric{std::move(words), false, 1, [count](const PriceList&, const Price& price) {
+                    return price.errors ? price.at_edges.per_million(price.at_edges.*count) : std::nan("");
+                  }};
+  };
   return {
       cost("cycles a frame", &PriceList::frame, cycles),
       cost("cycles of a frame with distances", &PriceList::with_distances, cycles),
-      cost("cycles a frame where memory is slow", &PriceList::on_starved, cycles),
       cost("bytes moved by DMA", &PriceList::frame, moved),
-      cost("bytes of triangles fetched", &PriceList::frame, triangles),
       cost("bytes of main memory", &PriceList::frame, memory),
-      error("holes a million rays", 1, [](const Comparison& found) { return found.per_million(found.holes); }),
-      error("false hits a million rays", 1,
-            [](const Comparison& found) { return found.per_million(found.false_hits); }),
-      error("wrong triangles a million rays", 1,
-            [](const Comparison& found) { return found.per_million(found.wrong_triangles); }),
+      at_edges("holes a million rays at edges", &HitCounts::holes),
+      at_edges("rays at edges a million that see through", &HitCounts::seen_through),
+      at_edges("false hits a million rays at edges", &HitCounts::false_hits),
+      error("holes a million pixels", 1,
+            [](const Comparison& found) { return found.hits.per_million(found.hits.holes); }),
+      error("false hits a million pixels", 1,
+            [](const Comparison& found) { return found.hits.per_million(found.hits.false_hits); }),
+      error("wrong triangles a million pixels", 1,
+            [](const Comparison& found) { return found.hits.per_million(found.hits.wrong_triangles); }),
       error("ulp of error of t in the median", 0, [](const Comparison& found) { return found.ulps.median; }),
-      error("ulp of error of t in 99 of 100 rays", 0, [](const Comparison& found) { return found.ulps.percentile_99; }),
-      error("ulp of error of t at most", 0, [](const Comparison& found) { return found.ulps.greatest; }),
+      error("ulp in 99 of 100 pixels", 0, [](const Comparison& found) { return found.ulps.percentile_99; }),
+      error("ulp at most", 0, [](const Comparison& found) { return found.ulps.greatest; }),
       error("pixels of another colour a million", 1,
-            [](const Comparison& found) { return found.per_million(found.differing_pixels); }),
+            [](const Comparison& found) { return found.hits.per_million(found.differing_pixels); }),
   };
 }
 
@@ -102,7 +108,9 @@ std::string step_words(const PriceList& list, std::size_t configuration, std::si
       rises = rises || is > was;
     }
     if (before.empty()) continue;
-    if (!falls && !rises) {
+    // A change that no digit of the text would show is none.
+    const bool too_small = metric.is_cost && percents.text(metric.decimals) == fixed_text(0, metric.decimals);
+    if ((!falls && !rises) || too_small) {
       kept.push_back(metric.words + (metric.is_cost ? "" : " (" + after.text(metric.decimals) + ")"));
       continue;
     }

@@ -388,6 +388,7 @@ std::string scatter_chart_svg(const ScatterChart& chart) {
     y_greatest = std::max(y_greatest, point.y);
   }
   const Axis x = fit_axis(x_least, x_greatest, true, area.left, area.right);
+  y_least = std::min(y_least, y_greatest / 10);  // a tick or two at least
   const Axis y = fit_axis(y_least, y_greatest, true, area.bottom - kLaneHeight, area.top + 12);
   const auto place_of = [&](const ScatterChart::Point& point) {
     return Point2{x.place(point.x), point.y > 0 ? y.place(point.y) : lane};
@@ -455,7 +456,7 @@ std::string histogram_chart_svg(const HistogramChart& chart) {
       drawing.write(middle + 4, area.bottom + 8, chart.bins[bin], "end",
                     "fill=\"#444444\" font-size=\"11\" transform=\"rotate(-90 " + units(middle + 4) + " " +
                         units(area.bottom + 8) + ")\"");
-    } else if (bin % 4 == 0 || bin + 1 == joined) {
+    } else if (bin % 4 == 0) {
       drawing.write(middle, area.bottom + 16, chart.bins[bin], "middle", "fill=\"#444444\" font-size=\"11\"");
     }
   }

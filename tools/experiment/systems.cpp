@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <bit>
 #include <ctime>
+#include <glm/common.hpp>
 #include <numeric>
 #include <utility>
 
@@ -56,6 +57,16 @@ sim::ChipResult run_chip(tool::FrameMemory& frame, const tool::RenderArguments& 
   tool::stop_if_interrupted();
   if (const std::optional<tool::Failure> failure = tool::frame_failure(result)) throw *failure;
   return result;
+}
+
+std::vector<std::uint32_t> words_of(const tool::FrameMemory& frame, const sim::MemoryRegion& plane) {
+  const auto same = [](std::uint32_t word) { return word; };
+  return tool::untile<std::uint32_t>(frame.record, plane.bytes, std::nullopt, same).pixels;
+}
+
+std::vector<float> depth_of(const tool::FrameMemory& frame) {
+  const auto to_float = [](std::uint32_t word) { return std::bit_cast<float>(word); };
+  return tool::untile<float>(frame.record, frame.depth.bytes, std::nullopt, to_float).pixels;
 }
 
 std::uint64_t sum_of(const sim::WorkTotals& work, std::initializer_list<Work> kinds) {
@@ -162,9 +173,7 @@ std::unique_ptr<Recording> GridSystem::record(const View& view, const FrameReque
   facts.main_memory_bytes = frame.memory.used_bytes();
   const tool::StoreFacts store = *tool::find_store_facts(arguments.layout());  // it has rendered
   facts.local_store_bytes = store.data_bytes() + store.code_bytes + store.stack_bytes;
-  const auto picture = tool::untile<std::uint32_t>(frame.record, frame.color.bytes, std::nullopt,
-                                                   [](std::uint32_t word) { return word; });
-  facts.picture_hash = tool::image_hash(picture.pixels);
+  facts.picture_hash = tool::image_hash(words_of(frame, frame.color));
   return std::make_unique<GridRecording>(std::move(facts), std::move(result.trace));
 }
 
@@ -175,14 +184,42 @@ Answers render_answers(const GridVariant& variant, const View& view, const Frame
   tool::FrameMemory frame(home_machine()->main_memory_bytes);
   tool::prepare_frame(frame, *view.scene, arguments, view.camera);
   (void)run_chip(frame, arguments, sim::Mode::kPlain, 4, 1);
-  const auto words_of = [&frame](const sim::MemoryRegion& plane) {
-    return tool::untile<std::uint32_t>(frame.record, plane.bytes, std::nullopt, [](std::uint32_t word) { return word; })
-        .pixels;
-  };
-  return {words_of(frame.color), words_of(frame.ids),
-          tool::untile<float>(frame.record, frame.depth.bytes, std::nullopt, [](std::uint32_t word) {
-            return std::bit_cast<float>(word);
-          }).pixels};
+  return {words_of(frame, frame.color), words_of(frame, frame.ids), depth_of(frame)};
+}
+
+struct CloseLook::Parts {
+  Parts(const GridVariant& variant, const View& view)
+      : arguments(arguments_of(variant, view, {.width = kWidth, .height = kWidth, .shading = Shading::kNone})),
+        frame(home_machine()->main_memory_bytes) {
+    arguments.depth.emplace();
+    arguments.ids.emplace();
+    tool::prepare_frame(frame, *view.scene, arguments, view.camera);
+  }
+  tool::RenderArguments arguments;
+  tool::FrameMemory frame;
+};
+
+CloseLook::CloseLook(const GridVariant& variant, const View& view) : parts_(std::make_unique<Parts>(variant, view)) {}
+CloseLook::~CloseLook() = default;
+
+void CloseLook::look_at(const Vec3& point, Answers& answers) {
+  tool::FrameMemory& frame = parts_->frame;
+  Camera camera = frame.settings.camera;
+  camera.at = point;
+  // Any direction across the view is up.
+  const Vec3 forward = glm::abs(camera.at - camera.eye);
+  camera.up = forward.x <= forward.y && forward.x <= forward.z ? Vec3(1, 0, 0)
+              : forward.y <= forward.z                         ? Vec3(0, 1, 0)
+                                                               : Vec3(0, 0, 1);
+  // A direction's greatest component lies between 1/2 and 1, its floats 2^-24 apart.
+  constexpr float kPixel = 0x1p-25f;
+  camera.tan_half_fov = kPixel * kWidth / 2;
+  tool::aim_camera(frame, camera);
+  (void)run_chip(frame, parts_->arguments, sim::Mode::kPlain, 4, 1);
+  const std::vector<std::uint32_t> ids = words_of(frame, frame.ids);
+  const std::vector<float> depth = depth_of(frame);
+  answers.ids.insert(answers.ids.end(), ids.begin(), ids.end());
+  answers.depth.insert(answers.depth.end(), depth.begin(), depth.end());
 }
 
 HostSeconds least_host_seconds(std::uint32_t repeats, const std::function<void()>& work) {

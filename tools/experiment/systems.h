@@ -127,6 +127,25 @@ class GridSystem : public System {
 /// Errors: Failure; kBadInput where the scene does not fit the machine.
 [[nodiscard]] Answers render_answers(const GridVariant& variant, const View& view, const FrameRequest& request);
 
+/// A profile's answers about rays that all but meet a point.
+///
+/// A look is a picture of kWidth x kWidth pixels from the eye of a view, so small that all of its rays pass the point
+/// looked at within a few roundings of their directions.
+class CloseLook {
+ public:
+  static constexpr std::uint32_t kWidth = 32;
+  /// Errors: Failure; kBadInput where the scene does not fit the machine.
+  CloseLook(const GridVariant& variant, const View& view);
+  ~CloseLook();
+
+  /// Appends the answers about the rays of a look, but for colours. Errors: Failure.
+  void look_at(const Vec3& point, Answers& answers);
+
+ private:
+  struct Parts;
+  std::unique_ptr<Parts> parts_;
+};
+
 /// Seconds of something on this host, by the wall clock and of its processors, all threads together.
 struct HostSeconds {
   double wall = 0, processor = 0;
