@@ -432,7 +432,7 @@ std::string scatter_chart_svg(const ScatterChart& chart) {
 
 std::string histogram_chart_svg(const HistogramChart& chart) {
   const PlotArea area{.left = 84, .top = 66, .right = 452, .bottom = 342};
-  constexpr double kCostLeft = 486, kCostRight = 634, kSeparation = 10;
+  constexpr double kCostLeft = 486, kCostRight = 634, kSeparation = 18;
   const auto log_of = [](double count) { return std::log10(1 + count); };
   double most = 1, dearest = 0;
   for (const HistogramChart::Row& row : chart.rows) {

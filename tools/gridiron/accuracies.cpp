@@ -8,7 +8,7 @@ namespace {
 
 // clang-format off
 constexpr NamedAccuracy kAccuracies[] = {
-    {"standard", Accuracy::kStandard, "the triangles that exact arithmetic hits; of distances that round alike the lower id"},
+    {"standard", Accuracy::kStandard, "the triangles that exact arithmetic hits; where distances round alike, the lower id"},
     {"paper", Accuracy::kPaper, "precomputed projection in single precision; may leak"},
     {"exact", Accuracy::kExact, "as standard, and of distances that round alike the exact ones decide"},
     {"fast", Accuracy::kFast, "edges and distances as single precision gives them; may leak at edges"},
