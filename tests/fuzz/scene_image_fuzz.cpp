@@ -50,8 +50,9 @@ void read_all(std::span<const std::byte> bytes, const SceneImageView& view) {
           bytes, view.cell_blocks_offset_bytes + block * grid.cell_block_bytes + cell * sizeof(CellRecord));
       for (std::uint64_t i = 0; i < record.triangle_count; ++i) {
         const std::uint64_t place = record.first_triangle + i;
-        const auto triangle = read<VertexTriangle>(bytes, view.triangles_offset_bytes + place * kTriangleRecordBytes);
-        require(triangle.triangle_id < view.header.triangle_count, "a triangle does not exist");
+        const auto triangle_id = read<std::uint32_t>(
+            bytes, view.triangles_offset_bytes + (place + 1) * grid.triangle_bytes - sizeof(std::uint32_t));
+        require(triangle_id < view.header.triangle_count, "a triangle does not exist");
         ++references;
       }
     }

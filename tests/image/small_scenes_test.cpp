@@ -328,16 +328,19 @@ TEST(RandomSmallScenes, EveryPixelEqualsTheTruth) {
     settings.width = 1 + random.below(60);
     settings.height = 1 + random.below(60);
     GridParameters grid = grid_of(random.between(0.1f, 12.0f), 1 + random.below(8));
+    constexpr Accuracy kAccuracies[] = {Accuracy::kStandard, Accuracy::kExact, Accuracy::kCompact};
+    settings.accuracy = kAccuracies[random.below(3)];
+    grid.format = format_of(settings.accuracy);
 
     SceneInMemory scene(mesh.view(), grid);
     if (scene.status() == Status::kNoTriangles) continue;
+    if (settings.accuracy == Accuracy::kCompact) mesh.snap();
     ASSERT_EQ(scene.status(), Status::kOk) << "seed " << seed;
     sim::ChipOptions chip;
     chip.lanes = random.below(2) == 0 ? 4u : sim::widest_lanes();
     chip.packet_width = 4u << random.below(4);
     if (random.below(2) == 0) settings.techniques |= kUseSubpackets;
     if (random.below(2) == 0) settings.techniques &= ~std::uint32_t{kUseCornerCulling};
-    if (random.below(2) == 0) settings.accuracy = Accuracy::kExact;
     chip.completion = sim::Completion::kRandom;
     chip.seed = seed;
     const RenderedFrame rendered = scene.render(settings, chip);

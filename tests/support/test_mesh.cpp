@@ -1,8 +1,11 @@
 // Generated meshes: see the header. SPDX-License-Identifier: Apache-2.0
 #include "support/test_mesh.h"
 
+#include <gridiron/grid/lattice.h>
+
 #include <cmath>
 #include <numbers>
+#include <stdexcept>
 
 namespace gridiron::test {
 namespace {
@@ -27,6 +30,12 @@ void TestMesh::append(const TestMesh& other) {
   const auto base = static_cast<std::uint32_t>(vertices.size());
   vertices.insert(vertices.end(), other.vertices.begin(), other.vertices.end());
   for (const UVec3& t : other.triangles) triangles.push_back({t.x + base, t.y + base, t.z + base});
+}
+
+void TestMesh::snap() {
+  Lattice lattice{};
+  if (find_lattice(view(), lattice) != Status::kOk) throw std::invalid_argument("a mesh without a lattice");
+  for (Vec3& vertex : vertices) vertex = gridiron::snap(lattice, vertex);
 }
 
 void TestMesh::transform(float scale, Vec3 offset) {

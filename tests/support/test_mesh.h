@@ -19,6 +19,9 @@ struct TestMesh {
   /// Appends the triangles of `other` behind the own ones.
   void append(const TestMesh& other);
 
+  /// Replaces every vertex that a triangle has by its place on the mesh's own lattice.
+  void snap();
+
   /// Replaces every vertex p by the floats nearest to p * scale + offset.
   void transform(float scale, Vec3 offset);
 };

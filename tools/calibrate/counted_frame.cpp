@@ -27,7 +27,7 @@ constexpr std::uint64_t kPictureAddress = 512;
 MainMemory make_memory(const CountedFrame& frame) {
   const MeshView mesh{frame.vertices, frame.triangles};
   GridParameters grid;
-  grid.format = frame.accuracy == Accuracy::kPaper ? TriangleFormat::kProjection : TriangleFormat::kVertices;
+  grid.format = format_of(frame.accuracy);
   GridNeed need;
   require(count_scene_image(mesh, grid, need));
   const std::uint32_t tiles = (frame.width + 31) / 32 * ((frame.width + 31) / 32);

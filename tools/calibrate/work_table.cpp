@@ -84,6 +84,14 @@ __attribute__((noinline)) void decide_exactly(const Scene& scene) {
     (void)gridiron_counted::exact_edge_sign(eye, direction, a, b);
     PipeModel::current().add_units(Work::kExactDistance, 1);
     (void)gridiron_counted::exact_distance(eye, direction, a, b, c);
+    // The other triangle is the same one from another corner: its distance is equal, and told by other numbers.
+    Counted<float> first[3][3], second[3][3];
+    for (int axis = 0; axis < 3; ++axis) {
+      first[0][axis] = a[axis], first[1][axis] = b[axis], first[2][axis] = c[axis];
+      second[0][axis] = b[axis], second[1][axis] = c[axis], second[2][axis] = a[axis];
+    }
+    PipeModel::current().add_units(Work::kExactOrder, 1);
+    (void)gridiron_counted::exact_distance_order(eye, direction, first, second);
   }
 }
 
@@ -121,11 +129,15 @@ double per_unit(const KindTotals& totals, std::uint64_t value) {
 struct NamedFrame {
   const char* name;
   CountedFrame frame;
-  /// Whether the frame stands for a kind of work: frames with planes for what only they do, the others for the rest.
-  [[nodiscard]] bool operator()(std::size_t kind) const { return frame.has_planes == is_of_planes(kind); }
+  /// Whether the frame stands for a kind of work: frames with planes, or on a lattice, for what only they do, the others
+  /// for the rest.
+  [[nodiscard]] bool operator()(std::size_t kind) const {
+    const bool is_of_lattice = static_cast<Work>(kind) == Work::kLatticeTriangle;
+    return frame.has_planes == is_of_planes(kind) && (frame.accuracy == Accuracy::kCompact) == is_of_lattice;
+  }
 };
 
-std::array<NamedFrame, 5> frames_of(const Scene& scene) {
+std::array<NamedFrame, 6> frames_of(const Scene& scene) {
   const CountedFrame reference{.vertices = scene.vertices,
                                .triangles = scene.triangles,
                                .eye = kEye,
@@ -148,7 +160,14 @@ std::array<NamedFrame, 5> frames_of(const Scene& scene) {
   paper.width = 90;  // packets at the border are not whole
   CountedFrame planes = best;
   planes.has_planes = true;
-  return {{{"reference", reference}, {"best", best}, {"near", near}, {"paper", paper}, {"planes", planes}}};
+  CountedFrame compact = best;
+  compact.accuracy = Accuracy::kCompact;
+  return {{{"reference", reference},
+           {"best", best},
+           {"near", near},
+           {"paper", paper},
+           {"planes", planes},
+           {"compact", compact}}};
 }
 
 void require_same(const CountedPicture& counted, const CountedPicture& plain) {

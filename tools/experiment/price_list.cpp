@@ -31,10 +31,8 @@ Machine make_starved(const Machine& machine) {
 
 std::vector<Profile> make_profiles() {
   std::vector<Profile> profiles;
-  for (const char* key : {"paper", "fast", "standard", "exact", "compact"}) {
-    for (const tool::NamedAccuracy& named : tool::accuracies()) {
-      if (named.name == key) profiles.push_back({key, named.accuracy, std::string(named.description)});
-    }
+  for (const tool::NamedAccuracy& named : tool::accuracies()) {
+    profiles.push_back({std::string(named.name), named.accuracy, std::string(named.description)});
   }
   return profiles;
 }

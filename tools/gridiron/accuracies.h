@@ -1,5 +1,5 @@
-// Accuracies: the accuracy profiles and the formats of triangles by name.
-// Memory: two tables. Threads: any. SPDX-License-Identifier: Apache-2.0
+// Accuracies: the accuracy profiles by name.
+// Memory: one table. Threads: any. SPDX-License-Identifier: Apache-2.0
 #pragma once
 
 #include <gridiron/base/records.h>
@@ -15,21 +15,7 @@ struct NamedAccuracy {
   std::string_view description;
 };
 
-/// All accuracy profiles, `standard` (the default) first.
+/// All accuracy profiles, from the paper's to the exact one, then those that change the geometry.
 [[nodiscard]] std::span<const NamedAccuracy> accuracies();
-
-struct NamedFormat {
-  std::string_view name;
-  TriangleFormat format;
-};
-
-/// All ways of storing triangles, the default first.
-[[nodiscard]] std::span<const NamedFormat> triangle_formats();
-
-/// @returns what the triangles must be stored as for a frame of that accuracy.
-[[nodiscard]] TriangleFormat format_of(Accuracy accuracy);
-
-/// @returns the format's name, "unknown" where it has none.
-[[nodiscard]] std::string_view name_of(TriangleFormat format);
 
 }  // namespace gridiron::tool

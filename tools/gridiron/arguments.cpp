@@ -131,23 +131,19 @@ void add_scene_options(CLI::App& app, SceneArguments& scene, std::string& machin
              "N", "cells along a macrocell's edge");
 }
 
-Choices<TriangleFormat> format_choices() {
-  Choices<TriangleFormat> choices;
-  for (const NamedFormat& format : triangle_formats()) choices.emplace_back(format.name, format.format);
-  return choices;
-}
+const Choices<TriangleFormat> kFormats = {{"vertices", TriangleFormat::kVertices},
+                                          {"projection", TriangleFormat::kProjection},
+                                          {"lattice", TriangleFormat::kLattice}};
 
 // "vertices (default): for --accuracy standard, exact; projection: ..."
 std::string format_help() {
   std::string help;
-  for (const NamedFormat& format : triangle_formats()) {
+  for (const auto& [name, format] : kFormats) {
     std::string readers;
     for (const NamedAccuracy& named : accuracies()) {
-      if (format_of(named.accuracy) == format.format)
-        readers += (readers.empty() ? " " : ", ") + std::string(named.name);
+      if (format_of(named.accuracy) == format) readers += (readers.empty() ? " " : ", ") + std::string(named.name);
     }
-    help += (help.empty() ? "" : "; ") + std::string(format.name) + (help.empty() ? " (default)" : "") +
-            ": for --accuracy" + readers;
+    help += (help.empty() ? "" : "; ") + name + (help.empty() ? " (default)" : "") + ": for --accuracy" + readers;
   }
   return help;
 }
@@ -229,14 +225,15 @@ void add_algorithm_options(CLI::App& app, RawRender& raw) {
   add_choice(app, "--tile-width", render.tile_width,
              Choices<std::uint32_t>{{"8", 8}, {"16", 16}, {"32", 32}, {"64", 64}},
              "pixels along a tile's edge (default: 16 with --store 64, else 32)");
-  Choices<Accuracy> named_accuracies;
-  std::string accuracy_help;
+  Choices<Accuracy> choices;
+  std::string help;
   for (const NamedAccuracy& named : accuracies()) {
-    accuracy_help += (accuracy_help.empty() ? "" : "; ") + std::string(named.name) +
-                     (accuracy_help.empty() ? " (default): " : ": ") + std::string(named.description);
-    named_accuracies.emplace_back(named.name, named.accuracy);
+    const bool is_default = named.accuracy == render.accuracy;
+    help += (help.empty() ? "" : "; ") + std::string(named.name) + (is_default ? " (default): " : ": ") +
+            std::string(named.description);
+    choices.emplace_back(named.name, named.accuracy);
   }
-  add_choice(app, "--accuracy", render.accuracy, named_accuracies, accuracy_help);
+  add_choice(app, "--accuracy", render.accuracy, choices, help);
   add_choice(app, "--shading", render.shading, Choices<Shading>{{"none", Shading::kNone}, {"simple", Shading::kSimple}},
              "none: hit or background; simple: facing ratio (default)");
   app.add_flag("--no-mailbox", raw.no_mailbox, "test a triangle again in every cell that holds it");
@@ -450,7 +447,7 @@ Command parse_arguments(int count, const char* const* values) {
   std::string info_machine;
   CLI::App* info = app.add_subcommand("info", "tells what a scene holds and what it needs");
   add_scene_options(*info, info_arguments.scene, info_machine);
-  add_choice(*info, "--format", info_arguments.format, format_choices(), "how triangles are stored; " + format_help());
+  add_choice(*info, "--format", info_arguments.format, kFormats, "how triangles are stored; " + format_help());
   add_size(*info, info_arguments.width, info_arguments.height, "picture whose memory is told (default 1024x1024)");
   std::optional<StoreSize> info_store;
   add_choice(*info, "--store", info_store, kStores, kStoreHelp);
@@ -461,7 +458,7 @@ Command parse_arguments(int count, const char* const* values) {
   CLI::App* pack = app.add_subcommand("pack", "makes a scene image (.gri) that render and firmware read as it is");
   add_scene_options(*pack, pack_arguments.scene, pack_machine);
   pack->add_option("-o,--output", pack_arguments.output, "scene image")->required()->type_name("FILE");
-  add_choice(*pack, "--format", pack_arguments.format, format_choices(), format_help());
+  add_choice(*pack, "--format", pack_arguments.format, kFormats, format_help());
 
   MachinesArguments machines_arguments;
   std::string machine;

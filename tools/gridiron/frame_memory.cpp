@@ -4,7 +4,6 @@
 #include <cstring>
 #include <string>
 
-#include "accuracies.h"
 #include "failure.h"
 #include "stopwatch.h"
 #include "words.h"

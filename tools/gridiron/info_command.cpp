@@ -3,7 +3,6 @@
 #include <nlohmann/json.hpp>
 #include <string>
 
-#include "accuracies.h"
 #include "commands.h"
 #include "scene_facts.h"
 #include "store_facts.h"
@@ -13,10 +12,6 @@ namespace gridiron::tool {
 namespace {
 
 using Json = nlohmann::ordered_json;
-
-std::string name_of_format(std::uint32_t format) {
-  return std::string(name_of(static_cast<TriangleFormat>(format)));
-}
 
 template <class Number>
 Json json_of(const Number (&vector)[3]) {
@@ -64,7 +59,7 @@ void print_json(const InfoArguments& arguments, const SceneFacts& facts, const S
         {"macrocells", facts.bounds.macro_cells_per_pass},
         {"cell_blocks", grid.cell_block_count},
         {"references", grid.reference_count},
-        {"triangle_format", name_of_format(grid.triangle_format)}}},
+        {"triangle_format", word_of(static_cast<TriangleFormat>(grid.triangle_format))}}},
       {"main_memory",
        {{"machine", arguments.scene.machine->name},
         {"capacity_bytes", arguments.scene.machine->main_memory_bytes},
@@ -98,7 +93,7 @@ void print_text(const InfoArguments& arguments, const SceneFacts& facts, const S
   print_line("bounds", text);
   std::snprintf(text, sizeof text, ", lambda %g", static_cast<double>(grid.lambda));
   print_line("grid", joined(grid.cell_count) + " cells" + text + ", " + words_of_count(grid.reference_count) +
-                         " references stored as " + name_of_format(grid.triangle_format));
+                         " references stored as " + word_of(static_cast<TriangleFormat>(grid.triangle_format)));
   if (grid.lambda != facts.wanted_lambda) {
     std::snprintf(text, sizeof text, "reduced from lambda %g to fit the main memory",
                   static_cast<double>(facts.wanted_lambda));

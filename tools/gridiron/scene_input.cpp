@@ -9,7 +9,6 @@
 #include <cstdio>
 #include <string>
 
-#include "accuracies.h"
 #include "failure.h"
 #include "interrupt.h"
 #include "stopwatch.h"
@@ -163,9 +162,8 @@ void check_packed(const SceneInput& input, const PackedScene& packed, const Scen
                   TriangleFormat format, std::uint64_t budget_bytes) {
   const GridRecord& grid = packed.view.grid;
   if (grid.triangle_format != static_cast<std::uint32_t>(format)) {
-    fail(input.path, "was packed with --format " +
-                         std::string(name_of(static_cast<TriangleFormat>(grid.triangle_format))) +
-                         "; this needs --format " + std::string(name_of(format)));
+    fail(input.path, "was packed with --format " + word_of(static_cast<TriangleFormat>(grid.triangle_format)) +
+                         "; this needs --format " + word_of(format));
   }
   if (arguments.lambda && *arguments.lambda != grid.lambda) {
     fail(input.path, "was packed with lambda " + text_of(grid.lambda) + "; --lambda cannot change it");

@@ -70,6 +70,18 @@ const char* words_of(PlyError error) {
   return ply_error_reason(error);
 }
 
+std::string word_of(TriangleFormat format) {
+  switch (format) {
+    case TriangleFormat::kVertices:
+      return "vertices";
+    case TriangleFormat::kProjection:
+      return "projection";
+    case TriangleFormat::kLattice:
+      return "lattice";
+  }
+  return "unknown";
+}
+
 std::string words_of_bytes(std::uint64_t bytes) {
   constexpr const char* kUnits[] = {"bytes", "KB", "MB", "GB", "TB"};
   if (bytes < 1024) return std::to_string(bytes) + " bytes";

@@ -1,7 +1,8 @@
-// Words: what every Status and every PlyError means to people.
+// Words: what Status, PlyError and counts are to people.
 // Memory: static text. Threads: any. SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <gridiron/base/records.h>
 #include <gridiron/io/ply_types.h>
 #include <gridiron/platform/status.h>
 
@@ -14,6 +15,9 @@ namespace gridiron::tool {
 /// @returns a phrase without capital or full stop; never nullptr.
 [[nodiscard]] const char* words_of(Status status);
 [[nodiscard]] const char* words_of(PlyError error);
+
+/// @returns what --format calls it.
+[[nodiscard]] std::string word_of(TriangleFormat format);
 
 /// @returns "12.3 MB" and the like; 1 MB = 2^20 bytes.
 [[nodiscard]] std::string words_of_bytes(std::uint64_t bytes);

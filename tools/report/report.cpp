@@ -179,6 +179,10 @@ std::string_view work_name(Work kind) {
       return "normal_setup";
     case Work::kHitHalf:
       return "hit_half";
+    case Work::kExactOrder:
+      return "exact_order";
+    case Work::kLatticeTriangle:
+      return "lattice_triangle";
     case Work::kGetIssue:
       return "get_issue";
     case Work::kPutIssue:

@@ -32,6 +32,7 @@ struct LaneVectors<4> {
   typedef std::int32_t IntMemory __attribute__((vector_size(16), may_alias));
   typedef float HalfFloatMemory __attribute__((vector_size(8), may_alias));
   typedef std::int32_t HalfIntMemory __attribute__((vector_size(8), may_alias));
+  typedef std::uint16_t HalvesMemory __attribute__((vector_size(8), may_alias));
 };
 template <>
 struct LaneVectors<8> {
@@ -44,6 +45,7 @@ struct LaneVectors<8> {
   typedef std::int32_t IntMemory __attribute__((vector_size(32), may_alias));
   typedef float HalfFloatMemory __attribute__((vector_size(16), may_alias));
   typedef std::int32_t HalfIntMemory __attribute__((vector_size(16), may_alias));
+  typedef std::uint16_t HalvesMemory __attribute__((vector_size(16), may_alias));
 };
 template <>
 struct LaneVectors<16> {
@@ -56,6 +58,7 @@ struct LaneVectors<16> {
   typedef std::int32_t IntMemory __attribute__((vector_size(64), may_alias));
   typedef float HalfFloatMemory __attribute__((vector_size(32), may_alias));
   typedef std::int32_t HalfIntMemory __attribute__((vector_size(32), may_alias));
+  typedef std::uint16_t HalvesMemory __attribute__((vector_size(32), may_alias));
 };
 
 /// W truth values; bit i of bits() = lane i.
@@ -315,6 +318,26 @@ struct Lanes {
     std::uint32_t result = 0;
     for (int i = 0; i < W / 2; ++i) result |= (v[i] < 0 ? 1u : 0u) << i;
     return result;
+  }
+  /// W whole numbers of 16 bits. @param source  W of them, aligned to 2 * W bytes.
+  [[nodiscard]] static GRIDIRON_INLINE Float load_halves(const std::uint16_t* source) {
+    using Halves = typename LaneVectors<W>::HalvesMemory;
+    return Float(__builtin_convertvector(*reinterpret_cast<const Halves*>(source), FloatVector));
+  }
+  /// Reciprocals, off by less than 2^-12 of themselves where these are normal; the same bits on every target.
+  ///
+  /// The pattern's complement is linear between powers of two and within e0 = 0.0506 of 1 / a; with r the first value and
+  /// e = 1 - |a| r, |e| <= e0, r (1 + e + e^2) is off by e0^3 < 2^-12.9. What is not normal, or above 2^125, gives any
+  /// pattern.
+  [[nodiscard]] static GRIDIRON_INLINE Float reciprocal_estimate(Float a) {
+    const IntVector bits = reinterpret_cast<IntVector>(a.v);
+    const IntVector sign = bits & static_cast<std::int32_t>(0x80000000u);
+    const IntVector pattern = 0x7EF311C7 - (bits & 0x7FFFFFFF);
+    const Float size = abs(a);
+    const Float first(reinterpret_cast<FloatVector>(pattern));
+    const Float error = Float(1.0f) - size * first;
+    const Float better = first + first * (error + error * error);
+    return Float(reinterpret_cast<FloatVector>(reinterpret_cast<IntVector>(better.v) | sign));
   }
   /// W / 4 quads of lanes, each loaded from four floats at sources[quad], aligned to 16 bytes.
   [[nodiscard]] static GRIDIRON_INLINE Float load_quads(const float* const* sources) {

@@ -61,6 +61,16 @@ inline constexpr float kGreatestCellsPerUnit = 0x1p100f;  ///< smaller meshes ge
 inline constexpr double kCellSpaceLimit = 0x1p120;        ///< |eye|, in cells
 inline constexpr double kCellDirectionLimit = 0x1p124;    ///< |direction|, in cells
 
+/// Where stored vertices can lie: origin + step * k, k whole, 0..65535 on each axis. Every such value is a float: step is
+/// a power of two, origin a multiple of it, and no value beyond 2^24 steps.
+struct Lattice {
+  float origin[3];
+  float step;                      ///< kLeastLatticeStep or more
+};
+inline constexpr float kLeastLatticeStep = 0x1p-126f;
+inline constexpr std::uint32_t kLatticePlaces = 65536;    ///< along each axis
+inline constexpr float kMostStepsFromZero = 0x1p23f;      ///< |origin| / step is at most one more
+
 /// The grid. Cell (x, y, z) covers, in cell space, the closed box [x, x+1] x [y, y+1] x [z, z+1]; cell space is the
 /// exact map p -> (p - minimum) * cells_per_unit of world space, taken with real numbers.
 struct GridRecord {
@@ -72,12 +82,13 @@ struct GridRecord {
   std::uint32_t cell_block_bytes;  ///< m^3 * sizeof(CellRecord), rounded up to kLineBytes
   std::uint32_t cell_block_count;  ///< non-empty macrocells + 1
   std::uint32_t triangle_format;   ///< TriangleFormat
-  std::uint32_t triangle_bytes;    ///< record size
+  std::uint32_t triangle_bytes;    ///< record size, triangle_bytes_of(triangle_format)
   std::uint32_t reference_count;   ///< triangle records in the image
   float bounds_minimum[3];         ///< tight bounds of the kept triangles, world space
   float bounds_maximum[3];
   float lambda;                    ///< Eq. (1) of the paper
-  std::uint32_t reserved[7];
+  Lattice lattice;                 ///< of kLattice; all zero in other formats
+  std::uint32_t reserved[3];
 };
 static_assert(sizeof(GridRecord) == 128);
 
@@ -121,7 +132,15 @@ struct ProjectionTriangle {
 };
 static_assert(sizeof(ProjectionTriangle) == 48);
 
-/// Every triangle record is this long and ends with its triangle_id.
+/// A triangle by its vertices' places on the grid's lattice.
+struct LatticeTriangle {
+  std::uint16_t v[3][3];
+  std::uint16_t reserved;
+  std::uint32_t triangle_id;
+};
+static_assert(sizeof(LatticeTriangle) == 24);
+
+/// The longest triangle record. Each ends with its triangle_id.
 inline constexpr std::uint32_t kTriangleRecordBytes = 48;
 
 // --- Frame ------------------------------------------------------------------------------------------------------
@@ -131,7 +150,7 @@ inline constexpr std::uint32_t kFrameVersion = 1;
 
 enum class Accuracy : std::uint32_t {
   kStandard = 0,  ///< filtered edge signs with exact ones behind them, correctly rounded distance
-  kPaper = 1,     ///< precomputed projection in single precision; may leak
+  kPaper = 1,     ///< precomputed projection, reciprocals estimated, single precision; may leak
   kExact = 2,     ///< as kStandard, and of equal rounded distances the exact ones decide
   kFast = 3,      ///< signs and distances as single precision gives them; may leak at edges, distances unbounded
   kCompact = 4,   ///< as kStandard, of triangles on the scene's lattice

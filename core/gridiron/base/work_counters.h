@@ -45,6 +45,8 @@ enum class Work : std::uint8_t {
   kEstimateSetup,      ///< triangles for which estimates of distances were set up
   kNormalSetup,        ///< triangles whose unit normal was computed for shading
   kHitHalf,            ///< halves of groups of which distances were computed in double
+  kExactOrder,         ///< pairs of distances, equal once rounded, of which integers told the nearer
+  kLatticeTriangle,    ///< triangles made of their vertices' places on a lattice
   kGetIssue,           ///< get commands issued
   kPutIssue,           ///< put commands issued
   kWait,               ///< waits

@@ -43,9 +43,9 @@ Status make_frame_record(const FrameSettings& settings, const SceneImageView& im
       !is_finite(double{settings.camera.tan_half_fov})) {
     return Status::kBadFrame;
   }
-  const auto needed =
-      settings.accuracy == Accuracy::kPaper ? TriangleFormat::kProjection : TriangleFormat::kVertices;
-  if (image.grid.triangle_format != static_cast<std::uint32_t>(needed)) return Status::kUnsupportedImage;
+  if (image.grid.triangle_format != static_cast<std::uint32_t>(format_of(settings.accuracy))) {
+    return Status::kUnsupportedImage;
+  }
 
   // Orthonormal frame of the camera; double keeps the steps exact to a float ulp whatever the distance.
   const DVec3 forward_raw = DVec3(settings.camera.at) - DVec3(settings.camera.eye);

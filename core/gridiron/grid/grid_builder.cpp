@@ -1,8 +1,10 @@
 // Grid builder: see the header. SPDX-License-Identifier: Apache-2.0
 #include <gridiron/grid/cell_rows.h>
 #include <gridiron/grid/grid_builder.h>
+#include <gridiron/grid/lattice.h>
 #include <gridiron/grid/triangle_records.h>
 #include <gridiron/base/check_value.h>
+#include <gridiron/base/triangle_formats.h>
 
 #include <bit>
 
@@ -106,7 +108,7 @@ ImageLayout layout_of(const GridRecord& grid) {
       round_up(layout.macro_table_offset + layout.macro_table_entries * sizeof(MacroTableEntry), kLine);
   layout.triangles_offset = layout.cell_blocks_offset + std::uint64_t{grid.cell_block_count} * grid.cell_block_bytes;
   layout.image_bytes =
-      round_up(layout.triangles_offset + std::uint64_t{grid.reference_count} * kTriangleRecordBytes, kLine);
+      round_up(layout.triangles_offset + std::uint64_t{grid.reference_count} * grid.triangle_bytes, kLine);
   return layout;
 }
 
@@ -150,8 +152,9 @@ std::uint32_t bit_count(std::uint32_t bits) {
 Status check_parameters(const GridParameters& parameters) {
   const bool lambda_ok = parameters.lambda >= kLeastLambda && parameters.lambda <= kGreatestLambda;
   const bool width_ok = parameters.macro_width >= 1 && parameters.macro_width <= kMaxMacroWidth;
-  const bool format_ok =
-      parameters.format == TriangleFormat::kVertices || parameters.format == TriangleFormat::kProjection;
+  const bool format_ok = parameters.format == TriangleFormat::kVertices ||
+                         parameters.format == TriangleFormat::kProjection ||
+                         parameters.format == TriangleFormat::kLattice;
   return lambda_ok && width_ok && format_ok ? Status::kOk : Status::kBadParameter;
 }
 
@@ -166,6 +169,8 @@ bool all_in_range(std::span<const Vec3> vertices) {
   return outside == 0;
 }
 
+// A mesh below is a MeshView, or a LatticeMesh of one: the triangles as they will be stored.
+
 // Indices, zero areas, and the tight bounds of the triangles that are kept.
 struct KeptTriangles {
   std::uint64_t count = 0;
@@ -173,7 +178,8 @@ struct KeptTriangles {
   Vec3 maximum{-kFloatMax, -kFloatMax, -kFloatMax};
 };
 
-Status survey(const MeshView& mesh, KeptTriangles& kept) {
+template <class Mesh>
+Status survey(const Mesh& mesh, KeptTriangles& kept) {
   const std::uint64_t vertex_count = mesh.vertices.size();
   for (const UVec3& t : mesh.triangles) {
     if (t.x >= vertex_count || t.y >= vertex_count || t.z >= vertex_count) return Status::kBadIndex;
@@ -230,7 +236,8 @@ struct Sweep {
   std::uint64_t next_begin = ~std::uint64_t{0};  // no macrocell between the window's end and this one is touched
 };
 
-Status sweep_window(const MeshView& mesh, const GridRecord& grid, MacroWindow& window, Sweep& sweep) {
+template <class Mesh>
+Status sweep_window(const Mesh& mesh, const GridRecord& grid, MacroWindow& window, Sweep& sweep) {
   const CellSpace space = CellSpace::of(grid);
   const MacroMap macros(grid);
   const bool first_sweep = window.begin() == 0;
@@ -281,7 +288,8 @@ SectionEntry section(SectionKind kind, std::uint64_t element_bytes, std::uint64_
           end - begin};
 }
 
-void write_directory(const MeshView& mesh, const GridNeed& need, const ImageLayout& layout, std::byte* image) {
+template <class Mesh>
+void write_directory(const Mesh& mesh, const GridNeed& need, const ImageLayout& layout, std::byte* image) {
   const GridRecord& grid = need.grid;
   clear(image, 0, layout.cell_blocks_offset);
   ImageHeader header{};
@@ -300,30 +308,31 @@ void write_directory(const MeshView& mesh, const GridNeed& need, const ImageLayo
               layout.cell_blocks_offset),
       section(SectionKind::kCellBlocks, grid.cell_block_bytes, grid.cell_block_count, layout.cell_blocks_offset,
               layout.triangles_offset),
-      section(SectionKind::kTriangles, kTriangleRecordBytes, grid.reference_count, layout.triangles_offset,
+      section(SectionKind::kTriangles, grid.triangle_bytes, grid.reference_count, layout.triangles_offset,
               layout.image_bytes)};
   store(image, layout.section_table_offset, sections);
   store(image, layout.grid_offset, grid);
 }
 
 // The lists of references before they become triangle records. They lie in the triangle section itself, which has room
-// for twelve words per reference: keys in words [0, 2 n), ids in [2 n, 3 n), ids by cell in [11 n, 12 n). Writing
-// record i over words [12 i, 12 i + 12) never reaches the ids by cell that are still to be read, word 11 n + i and
-// later.
+// for w words per reference, 12 or 6: keys in words [0, 2 n), ids in [2 n, 3 n), ids by cell in [(w - 1) n, w n).
+// Writing record i over words [w i, w i + w) never reaches the ids by cell that are still to be read, word
+// (w - 1) n + i + 1 and later.
 struct ReferenceLists {
   std::uint64_t* keys;
   std::uint32_t* ids;
   std::uint32_t* ids_by_cell;
 
-  ReferenceLists(std::byte* triangles, std::uint64_t count)
+  ReferenceLists(std::byte* triangles, std::uint64_t count, std::uint32_t triangle_bytes)
       : keys(reinterpret_cast<std::uint64_t*>(triangles)),
         ids(reinterpret_cast<std::uint32_t*>(triangles + 8 * count)),
-        ids_by_cell(reinterpret_cast<std::uint32_t*>(triangles + 44 * count)) {}
+        ids_by_cell(reinterpret_cast<std::uint32_t*>(triangles + (triangle_bytes - 4) * count)) {}
 };
 
 // Lists (cell, triangle) for every reference, by ascending triangle, and marks the macrocells.
 // Errors: kBadParameter where there are more or fewer than counted.
-Status list_references(const MeshView& mesh, const GridRecord& grid, const ReferenceLists& lists,
+template <class Mesh>
+Status list_references(const Mesh& mesh, const GridRecord& grid, const ReferenceLists& lists,
                        MacroTableEntry* macro_table) {
   const CellSpace space = CellSpace::of(grid);
   const MacroMap macros(grid);
@@ -418,12 +427,26 @@ void sort_references(const GridRecord& grid, const ReferenceLists& lists, const 
   }
 }
 
+LatticeTriangle lattice_triangle(const Lattice& lattice, const Vec3& a, const Vec3& b, const Vec3& c,
+                                 std::uint32_t id) {
+  LatticeTriangle record{};
+  const LatticePoint corners[3] = {lattice_point(lattice, a), lattice_point(lattice, b), lattice_point(lattice, c)};
+  for (int corner = 0; corner < 3; ++corner) {
+    for (int axis = 0; axis < 3; ++axis) record.v[corner][axis] = corners[corner].place[axis];
+  }
+  record.triangle_id = id;
+  return record;
+}
+
 // Writes the triangle records front to back and adds them to the check value while they are near.
-void write_triangles(const MeshView& mesh, const GridRecord& grid, const std::uint32_t* ids_by_cell,
-                     std::byte* triangles, CheckValue& check) {
+template <class Mesh>
+void write_triangles(const Mesh& mesh, const GridRecord& grid, const std::uint32_t* ids_by_cell, std::byte* triangles,
+                     CheckValue& check) {
   constexpr std::uint64_t kPieceRecords = 256;  // a multiple of kGroupBytes in bytes
-  static_assert(kPieceRecords * kTriangleRecordBytes % CheckValue::kGroupBytes == 0);
+  static_assert(kPieceRecords * sizeof(LatticeTriangle) % CheckValue::kGroupBytes == 0);
   const bool projection = grid.triangle_format == static_cast<std::uint32_t>(TriangleFormat::kProjection);
+  const bool lattice = grid.triangle_format == static_cast<std::uint32_t>(TriangleFormat::kLattice);
+  const std::uint64_t triangle_bytes = grid.triangle_bytes;
   std::uint64_t checked_bytes = 0;
   for (std::uint64_t i = 0; i < grid.reference_count; ++i) {
     const std::uint32_t id = ids_by_cell[i];
@@ -434,35 +457,33 @@ void write_triangles(const MeshView& mesh, const GridRecord& grid, const std::ui
     if (projection) {
       ProjectionTriangle record;
       make_projection_triangle(a, b, c, id, record);
-      store(triangles, i * kTriangleRecordBytes, record);
+      store(triangles, i * triangle_bytes, record);
+    } else if (lattice) {
+      store(triangles, i * triangle_bytes, lattice_triangle(grid.lattice, a, b, c, id));
     } else {
       const VertexTriangle record{{{a.x, a.y, a.z}, {b.x, b.y, b.z}, {c.x, c.y, c.z}}, {0, 0}, id};
-      store(triangles, i * kTriangleRecordBytes, record);
+      store(triangles, i * triangle_bytes, record);
     }
     if ((i + 1) % kPieceRecords == 0) {
-      const std::uint64_t end = (i + 1) * kTriangleRecordBytes;
+      const std::uint64_t end = (i + 1) * triangle_bytes;
       check.add({triangles + checked_bytes, static_cast<std::size_t>(end - checked_bytes)});
       checked_bytes = end;
     }
   }
-  const std::uint64_t end = grid.reference_count * std::uint64_t{kTriangleRecordBytes};
+  const std::uint64_t end = grid.reference_count * triangle_bytes;
   const std::uint64_t padded_end = round_up<std::uint64_t>(end, kLineBytes);
   clear(triangles, end, padded_end);
   check.add({triangles + checked_bytes, static_cast<std::size_t>(padded_end - checked_bytes)});
 }
 
-}  // namespace
-
-Status count_scene_image(const MeshView& mesh, const GridParameters& parameters, GridNeed& need) {
-  GRIDIRON_TRY(check_parameters(parameters));
-  if (mesh.triangles.size() > kMaxCount || mesh.vertices.size() > kMaxCount) return Status::kTooManyTriangles;
-  if (!all_in_range(mesh.vertices)) return Status::kBadVertex;
+// Counts what a mesh will need. @param grid  so far: the lattice.
+template <class Mesh>
+Status count_image(const Mesh& mesh, const GridParameters& parameters, GridRecord grid, GridNeed& need) {
   KeptTriangles kept;
   GRIDIRON_TRY(survey(mesh, kept));
   if (kept.count == 0) return Status::kNoTriangles;
 
   // The grid: Eq. (1) over the bounds of what is kept.
-  GridRecord grid{};
   double extent[3];
   for (int axis = 0; axis < 3; ++axis) {
     grid.bounds_minimum[axis] = kept.minimum[axis] + 0.0f;  // no negative zero
@@ -489,7 +510,7 @@ Status count_scene_image(const MeshView& mesh, const GridParameters& parameters,
   grid.macro_width = width;
   grid.cell_block_bytes = round_up(width * width * width * static_cast<std::uint32_t>(sizeof(CellRecord)), kLineBytes);
   grid.triangle_format = static_cast<std::uint32_t>(parameters.format);
-  grid.triangle_bytes = kTriangleRecordBytes;
+  grid.triangle_bytes = triangle_bytes_of(parameters.format);
   grid.lambda = parameters.lambda;
 
   // References and non-empty macrocells; the first sweep meets every triangle, the others those beyond its window.
@@ -522,26 +543,17 @@ Status count_scene_image(const MeshView& mesh, const GridParameters& parameters,
   return Status::kOk;
 }
 
-Status build_scene_image(const MeshView& mesh, const GridParameters& parameters, const GridNeed& need,
-                         std::span<std::byte> image, std::span<std::byte> scratch) {
-  GRIDIRON_TRY(check_parameters(parameters));
+// Writes all of the image. Errors: kBadParameter where the mesh is not the one that was counted.
+template <class Mesh>
+Status write_image(const Mesh& mesh, const GridNeed& need, const ImageLayout& layout, std::byte* bytes) {
   const GridRecord& grid = need.grid;
-  const ImageLayout layout = layout_of(grid);
-  const bool need_ok = grid.lambda == parameters.lambda && grid.macro_width == parameters.macro_width &&
-                       grid.triangle_format == static_cast<std::uint32_t>(parameters.format) &&
-                       need.image_bytes == layout.image_bytes && need.dropped_triangle_count < mesh.triangles.size() &&
-                       mesh.triangles.size() <= kMaxCount && mesh.vertices.size() <= kMaxCount;
-  if (!need_ok || reinterpret_cast<std::uintptr_t>(image.data()) % kLineBytes != 0) return Status::kBadParameter;
-  if (image.size() < need.image_bytes || scratch.size() < need.scratch_bytes) return Status::kMemoryTooSmall;
-
-  std::byte* const bytes = image.data();
   std::byte* const triangles = bytes + layout.triangles_offset;
   write_directory(mesh, need, layout, bytes);
   clear(bytes, layout.cell_blocks_offset, layout.triangles_offset);
   auto* const macro_table = reinterpret_cast<MacroTableEntry*>(bytes + layout.macro_table_offset);
   auto* const cells = reinterpret_cast<CellRecord*>(bytes + layout.cell_blocks_offset);
 
-  const ReferenceLists lists(triangles, grid.reference_count);
+  const ReferenceLists lists(triangles, grid.reference_count, grid.triangle_bytes);
   GRIDIRON_TRY(list_references(mesh, grid, lists, macro_table));
   if (number_blocks(macro_table, layout.macro_table_entries) != grid.cell_block_count) return Status::kBadParameter;
   sort_references(grid, lists, macro_table, cells);
@@ -551,6 +563,36 @@ Status build_scene_image(const MeshView& mesh, const GridParameters& parameters,
   write_triangles(mesh, grid, lists.ids_by_cell, triangles, check);
   store(bytes, offsetof(ImageHeader, check_value), check.value());
   return Status::kOk;
+}
+
+}  // namespace
+
+Status count_scene_image(const MeshView& mesh, const GridParameters& parameters, GridNeed& need) {
+  GRIDIRON_TRY(check_parameters(parameters));
+  if (mesh.triangles.size() > kMaxCount || mesh.vertices.size() > kMaxCount) return Status::kTooManyTriangles;
+  if (!all_in_range(mesh.vertices)) return Status::kBadVertex;
+  GridRecord grid{};
+  if (parameters.format != TriangleFormat::kLattice) return count_image(mesh, parameters, grid, need);
+  GRIDIRON_TRY(find_lattice(mesh, grid.lattice));
+  return count_image(LatticeMesh{{mesh.vertices, grid.lattice}, mesh.triangles}, parameters, grid, need);
+}
+
+Status build_scene_image(const MeshView& mesh, const GridParameters& parameters, const GridNeed& need,
+                         std::span<std::byte> image, std::span<std::byte> scratch) {
+  GRIDIRON_TRY(check_parameters(parameters));
+  const GridRecord& grid = need.grid;
+  const ImageLayout layout = layout_of(grid);
+  const bool need_ok = grid.lambda == parameters.lambda && grid.macro_width == parameters.macro_width &&
+                       grid.triangle_format == static_cast<std::uint32_t>(parameters.format) &&
+                       grid.triangle_bytes == triangle_bytes_of(parameters.format) &&
+                       need.image_bytes == layout.image_bytes && need.dropped_triangle_count < mesh.triangles.size() &&
+                       mesh.triangles.size() <= kMaxCount && mesh.vertices.size() <= kMaxCount;
+  if (!need_ok || reinterpret_cast<std::uintptr_t>(image.data()) % kLineBytes != 0) return Status::kBadParameter;
+  if (image.size() < need.image_bytes || scratch.size() < need.scratch_bytes) return Status::kMemoryTooSmall;
+
+  if (parameters.format != TriangleFormat::kLattice) return write_image(mesh, need, layout, image.data());
+  if (!(grid.lattice.step >= kLeastLatticeStep)) return Status::kBadParameter;
+  return write_image(LatticeMesh{{mesh.vertices, grid.lattice}, mesh.triangles}, need, layout, image.data());
 }
 
 }  // namespace gridiron

@@ -1,6 +1,7 @@
 // Scene image validation: see the header. SPDX-License-Identifier: Apache-2.0
 #include <gridiron/base/math.h>
 #include <gridiron/base/check_value.h>
+#include <gridiron/base/triangle_formats.h>
 #include <gridiron/image/scene_image.h>
 
 #include <gridiron/base/lanes.h>
@@ -140,6 +141,33 @@ bool check_elements(Checker& checker, const Sections& sections, SectionKind kind
 
 // --- Grid ---------------------------------------------------------------------------------------------------------
 
+bool is_power_of_two(float value) {
+  return value > 0.0f && (std::bit_cast<std::uint32_t>(value) & 0x007FFFFFu) == 0;
+}
+
+// A lattice whose every value is a float within the limits of coordinates, or none.
+bool check_lattice(Checker& checker, std::uint64_t base, const GridRecord& grid) {
+  const Lattice& lattice = grid.lattice;
+  if (grid.triangle_format != static_cast<std::uint32_t>(TriangleFormat::kLattice)) {
+    const bool none = lattice.step == 0.0f && lattice.origin[0] == 0.0f && lattice.origin[1] == 0.0f &&
+                      lattice.origin[2] == 0.0f;
+    GRIDIRON_REQUIRE(none, base, GridRecord, lattice, "grid.lattice");
+    return true;
+  }
+  GRIDIRON_REQUIRE(lattice.step >= kLeastLatticeStep && lattice.step <= kCoordinateLimit &&
+                       is_power_of_two(lattice.step),
+                   base, GridRecord, lattice.step, "grid.lattice.step");
+  for (const float origin : lattice.origin) {
+    const double steps = double{origin} / double{lattice.step};
+    const double last = double{origin} + double{lattice.step} * (kLatticePlaces - 1);
+    const bool in_range = magnitude(origin) <= kCoordinateLimit && last <= 2.0 * double{kCoordinateLimit} &&
+                          magnitude(steps) <= double{kMostStepsFromZero} + 1.0;
+    GRIDIRON_REQUIRE(in_range && steps == static_cast<double>(static_cast<std::int32_t>(steps)), base, GridRecord,
+                     lattice.origin, "grid.lattice.origin");
+  }
+  return true;
+}
+
 bool check_grid(Checker& checker, const Sections& sections, GridRecord& grid) {
   if (!check_elements(checker, sections, SectionKind::kGrid, sizeof(GridRecord), 1)) return false;
   const std::uint64_t base = sections.entry(SectionKind::kGrid).offset_bytes;
@@ -170,12 +198,14 @@ bool check_grid(Checker& checker, const Sections& sections, GridRecord& grid) {
                    "grid.cell_block_bytes");
   GRIDIRON_REQUIRE(grid.cell_block_count >= 1, base, GridRecord, cell_block_count, "grid.cell_block_count");
   GRIDIRON_REQUIRE(grid.triangle_format == static_cast<std::uint32_t>(TriangleFormat::kVertices) ||
-                       grid.triangle_format == static_cast<std::uint32_t>(TriangleFormat::kProjection),
+                       grid.triangle_format == static_cast<std::uint32_t>(TriangleFormat::kProjection) ||
+                       grid.triangle_format == static_cast<std::uint32_t>(TriangleFormat::kLattice),
                    base, GridRecord, triangle_format, "grid.triangle_format");
-  GRIDIRON_REQUIRE(grid.triangle_bytes == kTriangleRecordBytes, base, GridRecord, triangle_bytes,
-                   "grid.triangle_bytes");
+  GRIDIRON_REQUIRE(grid.triangle_bytes == triangle_bytes_of(static_cast<TriangleFormat>(grid.triangle_format)), base,
+                   GridRecord, triangle_bytes, "grid.triangle_bytes");
+  if (!check_lattice(checker, base, grid)) return false;
   GRIDIRON_REQUIRE(is_finite(grid.lambda) && grid.lambda > 0.0f, base, GridRecord, lambda, "grid.lambda");
-  GRIDIRON_REQUIRE(all_zero(grid.reserved, 7), base, GridRecord, reserved, "grid.reserved");
+  GRIDIRON_REQUIRE(all_zero(grid.reserved, 3), base, GridRecord, reserved, "grid.reserved");
 
   // What the other sections must hold, in numbers that cannot overflow: at most 2^33 macrocells.
   const std::uint64_t macro_cells =
@@ -197,9 +227,10 @@ bool finite_fields(const float* values, int count) {
 // Triangle records [first, first + count) of one cell: finite, known ids, ascending.
 bool check_triangles(Checker& checker, const SceneImageView& view, std::uint64_t first, std::uint64_t count) {
   const bool projection = view.grid.triangle_format == static_cast<std::uint32_t>(TriangleFormat::kProjection);
+  const bool lattice = view.grid.triangle_format == static_cast<std::uint32_t>(TriangleFormat::kLattice);
   std::uint64_t least_id = 0;
   for (std::uint64_t i = first; i < first + count; ++i) {
-    const std::uint64_t base = view.triangles_offset_bytes + i * kTriangleRecordBytes;
+    const std::uint64_t base = view.triangles_offset_bytes + i * view.grid.triangle_bytes;
     std::uint32_t id = 0;
     if (projection) {
       const auto triangle = checker.read<ProjectionTriangle>(base);
@@ -209,6 +240,10 @@ bool check_triangles(Checker& checker, const SceneImageView& view, std::uint64_t
       GRIDIRON_REQUIRE(triangle.axis_k < 3, base, ProjectionTriangle, axis_k, "triangle.axis_k");
       GRIDIRON_REQUIRE(triangle.reserved == 0, base, ProjectionTriangle, reserved, "triangle.reserved");
       id = triangle.triangle_id;
+    } else if (lattice) {
+      const auto triangle = checker.read<LatticeTriangle>(base);
+      GRIDIRON_REQUIRE(triangle.reserved == 0, base, LatticeTriangle, reserved, "triangle.reserved");
+      id = triangle.triangle_id;
     } else {
       const auto triangle = checker.read<VertexTriangle>(base);
       bool finite = true;
@@ -217,8 +252,10 @@ bool check_triangles(Checker& checker, const SceneImageView& view, std::uint64_t
       GRIDIRON_REQUIRE(all_zero(triangle.reserved, 2), base, VertexTriangle, reserved, "triangle.reserved");
       id = triangle.triangle_id;
     }
-    GRIDIRON_REQUIRE(id >= least_id && id < view.header.triangle_count, base, VertexTriangle, triangle_id,
-                     "triangle.triangle_id");
+    const std::uint64_t id_place = base + view.grid.triangle_bytes - sizeof(id);
+    if (!checker.require(id >= least_id && id < view.header.triangle_count, id_place, "triangle.triangle_id")) {
+      return false;
+    }
     least_id = std::uint64_t{id} + 1;
   }
   return true;

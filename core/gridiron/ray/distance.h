@@ -136,7 +136,7 @@ template <class PacketType>
                                const VertexTriangle& second, WorkCounters& work) {
   const bool has_lower_id = first.triangle_id < second.triangle_id;
   if (!packet.breaks_ties || in_one_plane(first, second)) return has_lower_id;
-  work.add(Work::kExactDistance);
+  work.add(Work::kExactOrder);
   const float dir[3] = {packet.dir[0][ray], packet.dir[1][ray], packet.dir[2][ray]};
   const int order = exact_distance_order(packet.origin, dir, first.v, second.v);
   return order < 0 || (order == 0 && has_lower_id);

@@ -165,14 +165,17 @@ class TileRenderer {
       return Status::kUnsupportedFrame;
     }
     if (!(frame.t_far > 0.0f) || frame.color_address == 0) return Status::kBadFrame;
-    if (frame.accuracy > static_cast<std::uint32_t>(Accuracy::kFast) ||
+    if (frame.accuracy > static_cast<std::uint32_t>(Accuracy::kCompact) ||
         frame.shading > static_cast<std::uint32_t>(Shading::kSimple)) {
       return Status::kUnsupportedFrame;
     }
     const GridRecord& grid = frame.grid;
     const bool wants_projection = frame.accuracy == static_cast<std::uint32_t>(Accuracy::kPaper);
-    const TriangleFormat format = wants_projection ? TriangleFormat::kProjection : TriangleFormat::kVertices;
-    if (grid.triangle_format != static_cast<std::uint32_t>(format)) return Status::kUnsupportedImage;
+    const bool wants_lattice = frame.accuracy == static_cast<std::uint32_t>(Accuracy::kCompact);
+    if (wants_projection != (grid.triangle_format == static_cast<std::uint32_t>(TriangleFormat::kProjection)) ||
+        wants_lattice != (grid.triangle_format == static_cast<std::uint32_t>(TriangleFormat::kLattice))) {
+      return Status::kUnsupportedImage;
+    }
     if (grid.macro_width == 0 || grid.macro_width > Layout::kMaxMacroWidth ||
         grid.cell_block_bytes > Store::kCellBlockBytes) {
       return Status::kUnsupportedImage;

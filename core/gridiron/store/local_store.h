@@ -23,7 +23,7 @@ namespace gridiron {
 template <std::uint32_t PacketWidthV = 8, std::uint32_t TileWidthV = 32>
 struct StoreLayout256K {
   static constexpr std::uint32_t kArenaBytes = 256 * 1024;
-  static constexpr std::uint32_t kCodeBudgetBytes = 48 * 1024;
+  static constexpr std::uint32_t kCodeBudgetBytes = 52 * 1024;
   static constexpr std::uint32_t kStackBudgetBytes = 8 * 1024;
   static constexpr std::uint32_t kTileWidth = TileWidthV;
   static constexpr std::uint32_t kPacketWidth = PacketWidthV;
@@ -35,7 +35,7 @@ struct StoreLayout256K {
   static constexpr std::uint32_t kMaxMacroWidth = 8;
   static constexpr std::uint32_t kMaxMacroDepth = 4;
   static constexpr std::uint32_t kTrianglesPerBuffer = 64;
-  static constexpr std::uint32_t kMaxTriangleDepth = TileWidthV == 64 ? 8 : 12;  ///< two tiles of 64 take 96 KB
+  static constexpr std::uint32_t kMaxTriangleDepth = TileWidthV == 64 ? 6 : 12;  ///< two tiles of 64 take 96 KB
   static constexpr std::uint32_t kMaxOutputDepth = 2;
 };
 
@@ -61,17 +61,17 @@ struct StoreLayout64K {
 template <std::uint32_t PacketWidthV = 8, std::uint32_t TileWidthV = 32>
 struct StoreLayout128K {
   static constexpr std::uint32_t kArenaBytes = 128 * 1024;
-  static constexpr std::uint32_t kCodeBudgetBytes = 48 * 1024;
+  static constexpr std::uint32_t kCodeBudgetBytes = 52 * 1024;
   static constexpr std::uint32_t kStackBudgetBytes = 8 * 1024;
   static constexpr std::uint32_t kTileWidth = TileWidthV;
   static constexpr std::uint32_t kPacketWidth = PacketWidthV;
   static constexpr std::uint32_t kMailboxSlots = PacketWidthV >= 16 ? 256 : 64;
   static constexpr std::uint32_t kRecentTriangles = PacketWidthV >= 16 ? 4 : 32;
-  static constexpr std::uint32_t kTableEntries = 768;  ///< 24,576 macrocells resident
+  static constexpr std::uint32_t kTableEntries = 512;  ///< 16,384 macrocells resident
   static constexpr std::uint32_t kMaxMacroWidth = 6;
-  static constexpr std::uint32_t kMaxMacroDepth = 4;
+  static constexpr std::uint32_t kMaxMacroDepth = 3;
   static constexpr std::uint32_t kTrianglesPerBuffer = 15;  ///< with room to start 16 bytes later, six lines
-  static constexpr std::uint32_t kMaxTriangleDepth = 8;
+  static constexpr std::uint32_t kMaxTriangleDepth = 6;
   static constexpr std::uint32_t kMaxOutputDepth = 2;
 };
 
@@ -79,7 +79,7 @@ struct StoreLayout128K {
 template <std::uint32_t PacketWidthV = 8, std::uint32_t TileWidthV = 32>
 struct StoreLayout512K {
   static constexpr std::uint32_t kArenaBytes = 512 * 1024;
-  static constexpr std::uint32_t kCodeBudgetBytes = 48 * 1024;
+  static constexpr std::uint32_t kCodeBudgetBytes = 52 * 1024;
   static constexpr std::uint32_t kStackBudgetBytes = 8 * 1024;
   static constexpr std::uint32_t kTileWidth = TileWidthV;
   static constexpr std::uint32_t kPacketWidth = PacketWidthV;

@@ -11,6 +11,7 @@
 #include <gridiron/ray/frustum.h>
 #include <gridiron/ray/intersect_projection.h>
 #include <gridiron/ray/intersect_standard.h>
+#include <gridiron/ray/lattice_run.h>
 #include <gridiron/ray/reach.h>
 #include <gridiron/store/buffer_ring.h>
 #include <gridiron/store/local_store.h>
@@ -52,6 +53,7 @@ class PacketDriver {
  private:
   using StorePacket = typename LocalStore<Layout>::StorePacket;
   static constexpr std::uint32_t kRunTriangles = Layout::kTrianglesPerBuffer;
+  static constexpr std::uint32_t kTransferStep = 16;  ///< addresses and sizes of transfers are multiples of it
 
   struct TriangleRun {
     std::uint32_t count;
@@ -76,14 +78,18 @@ class PacketDriver {
     }
     store_.work.charge_to(Work::kCellVisit);
     const std::uint32_t count = cell_.triangle_count < kRunTriangles ? cell_.triangle_count : kRunTriangles;
-    const MainAddress address{store_.frame.triangles_address +
-                              std::uint64_t{cell_.first_triangle} * kTriangleRecordBytes};
+    // Records of 24 bytes start and end between the 16 bytes that a transfer moves.
+    const std::uint32_t triangle_bytes = store_.frame.grid.triangle_bytes;
+    const std::uint64_t begin =
+        store_.frame.triangles_address + std::uint64_t{cell_.first_triangle} * triangle_bytes;
+    const std::uint32_t first_byte = static_cast<std::uint32_t>(begin % kPortableCongruenceBytes);
+    const std::uint32_t slack = first_byte % kTransferStep;
+    const std::uint32_t bytes = (slack + count * triangle_bytes + (kTransferStep - 1)) & ~(kTransferStep - 1);
     const std::uint32_t slot = triangle_ring_.push();
-    const std::uint32_t first_byte = static_cast<std::uint32_t>(address.value % kPortableCongruenceBytes);
     runs_[slot] = {count, first_byte, cell_.entry, touching_};
     cell_.first_triangle += count;
     cell_.triangle_count -= count;
-    return transfers_.get(store_.triangles[slot].bytes + first_byte, address, count * kTriangleRecordBytes,
+    return transfers_.get(store_.triangles[slot].bytes + (first_byte - slack), MainAddress{begin - slack}, bytes,
                           static_cast<std::uint8_t>(kFirstTriangleTag + slot));
   }
 
@@ -169,7 +175,7 @@ class PacketDriver {
       SubpacketSet changed = 0;
       // The other open subpackets are tested too, so that no triangle comes again for them from a later cell.
       if ((open & subpackets_of_squares(run.touching)) != 0) {
-        changed = test_run(store_.triangles[slot].bytes + run.first_byte, run.count, open);
+        changed = test_run(store_.triangles[slot].bytes, run.first_byte, run.count, open);
       }
       if (changed != 0) reach_ = reaches_.template update<L>(store_.packet, changed, store_.work);
     }
@@ -178,12 +184,21 @@ class PacketDriver {
     return Status::kOk;
   }
 
-  // Tests a run against the rays of the open subpackets. @returns the subpackets of which a hit changed.
-  [[nodiscard]] SubpacketSet test_run(const std::byte* records, std::uint32_t count, SubpacketSet open) {
-    const bool paper = store_.frame.accuracy == static_cast<std::uint32_t>(Accuracy::kPaper);
+  // Tests a run, `first_byte` into its buffer, against the rays of the open subpackets. @returns the subpackets of which
+  // a hit changed.
+  [[nodiscard]] SubpacketSet test_run(std::byte* buffer, std::uint32_t first_byte, std::uint32_t count,
+                                      SubpacketSet open) {
+    const std::byte* const records = buffer + first_byte;
     const bool facing = store_.frame.shading != static_cast<std::uint32_t>(Shading::kNone);
-    if (paper) return test_each_projection(reinterpret_cast<const ProjectionTriangle*>(records), count, open, facing);
+    const std::uint32_t format = store_.frame.grid.triangle_format;
+    if (format == static_cast<std::uint32_t>(TriangleFormat::kProjection)) {
+      return test_each_projection(reinterpret_cast<const ProjectionTriangle*>(records), count, open, facing);
+    }
     const auto* triangles = reinterpret_cast<const VertexTriangle*>(records);
+    if (format == static_cast<std::uint32_t>(TriangleFormat::kLattice)) {
+      store_.work.add(Work::kLatticeTriangle, count);
+      triangles = spread_lattice_run(store_.frame.grid.lattice, buffer, first_byte, count);
+    }
     return facing ? test_each<true>(triangles, count, open) : test_each<false>(triangles, count, open);
   }
 

@@ -61,9 +61,9 @@ inline std::vector<std::vector<std::uint32_t>> read_cells(std::span<const std::b
             bytes, view.cell_blocks_offset_bytes + block * grid.cell_block_bytes + local * sizeof(CellRecord));
         for (std::uint32_t i = 0; i < record.triangle_count; ++i) {
           const std::uint64_t place = std::uint64_t{record.first_triangle} + i;
-          cells[index].push_back(
-              read_record<VertexTriangle>(bytes, view.triangles_offset_bytes + place * kTriangleRecordBytes)
-                  .triangle_id);
+          // Every record ends with its id.
+          cells[index].push_back(read_record<std::uint32_t>(
+              bytes, view.triangles_offset_bytes + (place + 1) * grid.triangle_bytes - sizeof(std::uint32_t)));
         }
       }
     }

@@ -92,7 +92,7 @@ TEST_P(Formats, EveryChangedByteIsRefusedOrHarmless) {
   EXPECT_GT(refused, 500);
 }
 
-INSTANTIATE_TEST_SUITE_P(All, Formats, ::testing::Values(TriangleFormat::kVertices, TriangleFormat::kProjection));
+INSTANTIATE_TEST_SUITE_P(All, Formats, ::testing::Values(TriangleFormat::kVertices, TriangleFormat::kProjection, TriangleFormat::kLattice));
 
 TEST(SceneImage, EveryTruncationIsRefused) {
   const BuiltImage built = small_image(TriangleFormat::kVertices);
@@ -217,14 +217,17 @@ const Damage kDamages[] = {
     GRID_DAMAGE("macro_width_nine", macro_width, r.macro_width = 9),
     GRID_DAMAGE("block_bytes", cell_block_bytes, r.cell_block_bytes += kLineBytes),
     GRID_DAMAGE("no_blocks", cell_block_count, r.cell_block_count = 0),
-    GRID_DAMAGE("format", triangle_format, r.triangle_format = 3),
+    GRID_DAMAGE("format", triangle_format, r.triangle_format = 4),
+    GRID_DAMAGE("another_format", triangle_bytes, r.triangle_format = 3),
     GRID_DAMAGE("triangle_bytes", triangle_bytes, r.triangle_bytes = 64),
     GRID_DAMAGE("bounds_below", bounds_minimum, r.bounds_minimum[0] = r.minimum[0] - 1),
     GRID_DAMAGE("bounds_nan", bounds_maximum, r.bounds_maximum[0] = kNan),
     GRID_DAMAGE("bounds_above", bounds_maximum, r.bounds_maximum[1] *= 1.5f),
     GRID_DAMAGE("bounds_reversed", bounds_maximum, r.bounds_maximum[1] = r.bounds_minimum[1] - 1),
     GRID_DAMAGE("lambda", lambda, r.lambda = kNan),
-    GRID_DAMAGE("grid_reserved", reserved, r.reserved[6] = 1),
+    GRID_DAMAGE("lattice_of_vertices", lattice, r.lattice.step = 1.0f),
+    GRID_DAMAGE("lattice_origin_of_vertices", lattice, r.lattice.origin[2] = kNan),
+    GRID_DAMAGE("grid_reserved", reserved, r.reserved[2] = 1),
     DAMAGE_IN("first_block", "macro_table.first_block", MacroTableEntry, first_block, view.macro_table_offset_bytes,
               r.first_block = 2),
     DAMAGE_IN("occupied_beyond", "macro_table.occupied", MacroTableEntry, occupied, view.macro_table_offset_bytes,
@@ -267,6 +270,41 @@ TEST(SceneImage, ProjectionAxisAboveTwoIsRefused) {
   SceneImageError error;
   EXPECT_EQ(open_and_read(built.image, error), Status::kBadImage);
   EXPECT_STREQ(error.field, "triangle.axis_k");
+}
+
+TEST(SceneImage, LatticesWhoseValuesAreNoFloatsAreRefused) {
+  struct Case {
+    const char* field;
+    std::function<void(Lattice&)> damage;
+  };
+  const Case cases[] = {
+      {"grid.lattice.step", [](Lattice& l) { l.step = 0.0f; }},
+      {"grid.lattice.step", [](Lattice& l) { l.step = kNan; }},
+      {"grid.lattice.step", [](Lattice& l) { l.step = -l.step; }},
+      {"grid.lattice.step", [](Lattice& l) { l.step *= 1.5f; }},
+      {"grid.lattice.step", [](Lattice& l) { l.step = 0x1p-127f; }},
+      {"grid.lattice.step", [](Lattice& l) { l.step = 0x1p121f; }},
+      {"grid.lattice.origin", [](Lattice& l) { l.origin[0] += 0.5f * l.step; }},
+      {"grid.lattice.origin", [](Lattice& l) { l.origin[1] = (0x1p23f + 2.0f) * l.step; }},
+      {"grid.lattice.origin", [](Lattice& l) { l.origin[2] = -(0x1p23f + 2.0f) * l.step; }},
+      {"grid.lattice.origin", [](Lattice& l) { l.origin[2] = kInfinity; }},
+      {"grid.lattice.origin", [](Lattice& l) { l.origin[2] = kNan; }},
+  };
+  for (const Case& c : cases) {
+    BuiltImage built = small_image(TriangleFormat::kLattice);
+    edit<GridRecord>(built.image, kGridOffset, [&](GridRecord& grid) { c.damage(grid.lattice); });
+    renew_check_value(built.image);
+    SceneImageError error;
+    EXPECT_EQ(open_and_read(built.image, error), Status::kBadImage);
+    EXPECT_STREQ(error.field, c.field);
+  }
+  BuiltImage built = small_image(TriangleFormat::kLattice);
+  edit<LatticeTriangle>(built.image, built.view.triangles_offset_bytes + 24, [](auto& r) { r.reserved = 1; });
+  renew_check_value(built.image);
+  SceneImageError error;
+  EXPECT_EQ(open_and_read(built.image, error), Status::kBadImage);
+  EXPECT_STREQ(error.field, "triangle.reserved");
+  EXPECT_EQ(error.byte_offset, built.view.triangles_offset_bytes + 24 + offsetof(LatticeTriangle, reserved));
 }
 
 TEST(SceneImage, IdsMustAscendWithinACell) {

@@ -228,6 +228,18 @@ struct Lanes {
     const std::uint32_t bits = Native::half_bits(v.v);
     return Counted<std::uint32_t>::made(bits, emit(OpClass::kShuffle, bits, v.node));
   }
+  /// Halves of a quadword moved apart, then converted.
+  [[nodiscard]] static Float load_halves(const std::uint16_t* source) {
+    const Native::Float value = Native::load_halves(source);
+    const auto* quad = reinterpret_cast<const Counted<float>*>(reinterpret_cast<std::uintptr_t>(source) / 16 * 16);
+    const Node loaded = PipeModel::current().load_quad(quad, tie(value.v));
+    return {value, emit(OpClass::kConvert, tie(value.v), emit(OpClass::kShuffle, tie(value.v), loaded))};
+  }
+  /// Estimate and interpolation.
+  [[nodiscard]] static Float reciprocal_estimate(Float a) {
+    const Native::Float value = Native::reciprocal_estimate(a.v);
+    return {value, emit(OpClass::kConvert, tie(value.v), a.node, emit(OpClass::kShuffle, tie(value.v), a.node))};
+  }
   [[nodiscard]] static Float load_quads(const Counted<float>* const* sources) { return Float::load(sources[0]); }
   template <int I0, int I1, int I2, int I3>
   [[nodiscard]] static Float shuffle_quads(Float a, Float b) {
