@@ -404,7 +404,11 @@ void write_overview(const PriceList& list, Book& book) {
     }
   }
   book.section("prices", "The price list");
-  for (const Profile& profile : list.profiles()) book.paragraph(profile.key + ": " + profile.words + ".");
+  for (std::size_t profile = 0; profile < list.profiles().size(); ++profile) {
+    const std::string lattice = lattice_words(list, profile);
+    book.paragraph(list.profiles()[profile].key + ": " + list.profiles()[profile].words + "." +
+                   (lattice.empty() ? "" : " " + lattice));
+  }
   book.table(table,
              "Over all views: geometric means of the million cycles of a frame without distances, with them (with t), "
              "and without them on the starved machine; the errors of the worst view. Holes, what is seen through them, "

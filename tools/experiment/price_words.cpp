@@ -6,6 +6,7 @@
 #include <utility>
 
 #include "experiment/table.h"
+#include "gridiron/words.h"
 
 namespace gridiron::experiment {
 namespace {
@@ -196,6 +197,29 @@ std::string target_words(const PriceList& list, const Target& target) {
                            "; ";
   if (changes.empty()) return text + "not measured.";
   return text + (missed.empty() ? "met in every view." : "missed in " + joined(missed, ", ") + ".");
+}
+
+std::string lattice_words(const PriceList& list, std::size_t profile) {
+  std::vector<std::string> views;
+  for (std::size_t view = 0; view < list.views().size(); ++view) {
+    const RunResult& run = list.frame(list.price(view, 0, profile));
+    if (run.failed() || !run.facts.grid || !(run.facts.grid->lattice.step > 0)) continue;
+    const GridRecord& grid = *run.facts.grid;
+    float longest = 0;
+    for (int axis = 0; axis < 3; ++axis) {
+      longest = std::max(longest, grid.bounds_maximum[axis] - grid.bounds_minimum[axis]);
+    }
+    const RunResult& exact = list.frame(list.price(view, 0, *list.find_profile("exact")));
+    const std::uint32_t lost =
+        run.facts.dropped_triangles - std::min(run.facts.dropped_triangles, exact.facts.dropped_triangles);
+    views.push_back(list.views()[view].title + " " + number_text(grid.lattice.step) + ", " +
+                    tool::words_of_count(static_cast<std::uint64_t>(longest / grid.lattice.step)) +
+                    " of them along its longest side, " + tool::words_of_count(lost, "triangle") +
+                    " without area on it");
+  }
+  return views.empty() ? ""
+                       : "Its vertices move by half a step of the scene's lattice at most, on each axis. Steps: " +
+                             joined(views, "; ") + ".";
 }
 
 std::string starved_words(const PriceList& list) {

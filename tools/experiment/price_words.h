@@ -53,6 +53,9 @@ struct Target {
 /// @returns measured value, target and outcome as a sentence; the views that miss it by name.
 [[nodiscard]] std::string target_words(const PriceList& list, const Target& target);
 
+/// @returns what the lattice of a profile does to each view, nothing where it has none.
+[[nodiscard]] std::string lattice_words(const PriceList& list, std::size_t profile);
+
 /// @returns compact beside standard where memory is slow, nothing where there is no compact.
 [[nodiscard]] std::string starved_words(const PriceList& list);
 

@@ -13,7 +13,10 @@ void share_work(std::uint32_t threads, std::size_t count, const std::function<vo
   std::atomic<bool> stop{false};
   std::vector<std::exception_ptr> errors(count);
   const auto run = [&] {
-    for (std::size_t i = next++; i < count && !stop; i = next++) {
+    while (!stop) {
+      // What is claimed is done, whoever fails meanwhile: of pieces that fail the lowest is always among them.
+      const std::size_t i = next++;
+      if (i >= count) return;
       try {
         work(i);
       } catch (...) {
