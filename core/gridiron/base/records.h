@@ -61,15 +61,15 @@ inline constexpr float kGreatestCellsPerUnit = 0x1p100f;  ///< smaller meshes ge
 inline constexpr double kCellSpaceLimit = 0x1p120;        ///< |eye|, in cells
 inline constexpr double kCellDirectionLimit = 0x1p124;    ///< |direction|, in cells
 
-/// Where stored vertices can lie: origin + step * k, k whole, 0..65535 on each axis. Every such value is a float: step is
-/// a power of two, origin a multiple of it, and no value beyond 2^24 steps.
+/// Where stored vertices can lie: origin + step * k, k whole, 0..65535 on each axis. Every such value is a float: step
+/// is a power of two, origin a multiple of it, and no value beyond 2^24 steps.
 struct Lattice {
   float origin[3];
   float step;                      ///< kLeastLatticeStep or more
 };
 inline constexpr float kLeastLatticeStep = 0x1p-126f;
 inline constexpr std::uint32_t kLatticePlaces = 65536;    ///< along each axis
-inline constexpr float kMostStepsFromZero = 0x1p23f;      ///< |origin| / step is at most one more
+inline constexpr float kMostStepsFromZero = 0x1p24f - 0x1p17f;  ///< |vertex| / step; |origin| / step: one more
 
 /// The grid. Cell (x, y, z) covers, in cell space, the closed box [x, x+1] x [y, y+1] x [z, z+1]; cell space is the
 /// exact map p -> (p - minimum) * cells_per_unit of world space, taken with real numbers.
@@ -143,13 +143,6 @@ static_assert(sizeof(LatticeTriangle) == 24);
 /// The longest triangle record. Each ends with its triangle_id.
 inline constexpr std::uint32_t kTriangleRecordBytes = 48;
 
-/// @returns bytes of a triangle record.
-[[nodiscard]] constexpr std::uint32_t triangle_bytes_of(TriangleFormat format) {
-  constexpr std::uint32_t kLatticeBytes = sizeof(LatticeTriangle);
-  if (format == TriangleFormat::kLattice) return kLatticeBytes;
-  return kTriangleRecordBytes;
-}
-
 // --- Frame ------------------------------------------------------------------------------------------------------
 
 inline constexpr std::uint32_t kFrameMagic = 0x4d524647;  ///< "GFRM" as bytes
@@ -162,13 +155,6 @@ enum class Accuracy : std::uint32_t {
   kFast = 3,      ///< signs and distances as single precision gives them; may leak at edges, distances unbounded
   kCompact = 4,   ///< as kStandard, of triangles on the scene's lattice
 };
-
-/// @returns the stored form that an accuracy works on.
-[[nodiscard]] constexpr TriangleFormat format_of(Accuracy accuracy) {
-  if (accuracy == Accuracy::kPaper) return TriangleFormat::kProjection;
-  if (accuracy == Accuracy::kCompact) return TriangleFormat::kLattice;
-  return TriangleFormat::kVertices;
-}
 
 enum class Shading : std::uint32_t {
   kNone = 0,    ///< hit or background

@@ -4,6 +4,7 @@
 
 #include <gridiron/base/math.h>
 #include <gridiron/base/records.h>
+#include <gridiron/base/triangle_formats.h>
 #include <gridiron/image/scene_image.h>
 #include <gridiron/platform/contract.h>
 
