@@ -3,7 +3,6 @@
 
 #include <gridiron/atomic_file.h>
 #include <gridiron/interrupt.h>
-#include <gridiron/words.h>
 
 #include <list>
 #include <utility>
@@ -32,29 +31,6 @@ th { border-bottom: 2px solid #999; font-weight: 600; }
 td.number, th.number { text-align: right; }
 tbody tr:hover { background: #f5f8fb; }
 )";
-
-std::string text_of(const Cell& cell, int decimals) {
-  if (const auto* words = std::get_if<std::string>(&cell)) return escape_markup(*words);
-  if (const auto* count = std::get_if<std::uint64_t>(&cell)) return tool::words_of_count(*count);
-  if (const auto* measure = std::get_if<double>(&cell)) {
-    constexpr double kMostWhole = 1e15;
-    const bool groups = decimals == 0 && *measure >= 0 && *measure < kMostWhole;
-    return groups ? tool::words_of_count(static_cast<std::uint64_t>(*measure + 0.5)) : fixed_text(*measure, decimals);
-  }
-  return "";
-}
-
-bool is_number(const Cell& cell) {
-  return std::holds_alternative<std::uint64_t>(cell) || std::holds_alternative<double>(cell);
-}
-
-// A column is set like its first cell that is not empty.
-bool is_number_column(const Table& table, std::size_t column) {
-  for (const std::vector<Cell>& row : table.rows) {
-    if (!std::holds_alternative<std::monostate>(row[column])) return is_number(row[column]);
-  }
-  return false;
-}
 
 }  // namespace
 
@@ -99,7 +75,7 @@ void Book::add_rows(const Table& table, std::string_view caption) {
   for (const std::vector<Cell>& row : table.rows) {
     body_ += "<tr>";
     for (std::size_t i = 0; i < row.size(); ++i) {
-      body_ += "<td" + cells_begin[i] + text_of(row[i], table.columns[i].decimals) + "</td>";
+      body_ += "<td" + cells_begin[i] + escape_markup(shown_text(row[i], table.columns[i].decimals)) + "</td>";
     }
     body_ += "</tr>\n";
   }
@@ -111,6 +87,12 @@ void Book::figure(std::string_view name, std::string svg, std::string_view capti
   body_ += "<figure><img src=\"" + file + "\" alt=\"" + escape_markup(caption) + "\"/><figcaption>" +
            escape_markup(caption) + "</figcaption></figure>\n";
   files_.push_back({file, std::move(svg)});
+}
+
+void Book::text(std::string_view name, std::string content, std::string_view caption) {
+  body_ +=
+      "<p><a href=\"" + std::string(name) + "\">" + std::string(name) + "</a>: " + escape_markup(caption) + "</p>\n";
+  files_.push_back({std::string(name), std::move(content)});
 }
 
 std::vector<BookFile> Book::finish() {

@@ -34,6 +34,8 @@ class Book {
   void shown_table(const Table& table, std::string_view caption);
   /// Adds NAME.svg.
   void figure(std::string_view name, std::string svg, std::string_view caption);
+  /// Adds a file of plain text under its whole name, and a link to it.
+  void text(std::string_view name, std::string content, std::string_view caption);
 
   /// @returns every file, index.html last. The book ends with it.
   [[nodiscard]] std::vector<BookFile> finish();

@@ -8,6 +8,7 @@
 #include <utility>
 #include <vector>
 
+#include "experiment/accuracy_experiment.h"
 #include "experiment/paper_experiment.h"
 #include "gridiron/atomic_file.h"
 #include "gridiron/commands.h"
@@ -23,7 +24,8 @@ namespace {
 // The folder of an experiment: made where it is not there, gone again where nothing was written into it.
 class OutputFolder {
  public:
-  explicit OutputFolder(std::filesystem::path path) : path_(std::move(path)) {
+  /// @param names  of the files that may be written into it.
+  OutputFolder(std::filesystem::path path, const std::vector<std::string>& names) : path_(std::move(path)) {
     std::error_code error;
     made_ = std::filesystem::create_directory(path_, error);
     if (error) {
@@ -32,9 +34,9 @@ class OutputFolder {
     if (!std::filesystem::is_directory(path_, error)) {
       throw Failure(ExitCode::kBadInput, path_.string() + ": is no folder");
     }
-    // Nobody should wait for an evaluation that cannot be written.
+    // Nobody should wait for an experiment that cannot be written.
     try {
-      for (const std::string& name : experiment::paper_file_names()) check_can_write(path_ / name);
+      for (const std::string& name : names) check_can_write(path_ / name);
     } catch (...) {
       remove_if_made();
       throw;
@@ -56,9 +58,10 @@ class OutputFolder {
   bool made_ = false, kept_ = false;
 };
 
-// Removes what an earlier evaluation left under names that this one could have written and did not; nothing else.
-void remove_stale_files(const std::filesystem::path& folder, const std::vector<experiment::BookFile>& written) {
-  for (const std::string& name : experiment::paper_file_names()) {
+// Removes what an earlier run left under names that this one could have written and did not; nothing else.
+void remove_stale_files(const std::filesystem::path& folder, const std::vector<std::string>& names,
+                        const std::vector<experiment::BookFile>& written) {
+  for (const std::string& name : names) {
     if (std::ranges::find(written, name, &experiment::BookFile::name) != written.end()) continue;
     const std::filesystem::path path = folder / name;
     std::error_code error;
@@ -66,7 +69,7 @@ void remove_stale_files(const std::filesystem::path& folder, const std::vector<e
     if (!std::filesystem::is_regular_file(status) && !std::filesystem::is_symlink(status)) continue;
     if (!std::filesystem::remove(path, error) && error) {
       throw Failure(ExitCode::kBadInput,
-                    path.string() + ": is of an earlier evaluation and cannot be removed: " + error.message());
+                    path.string() + ": is of an earlier run and cannot be removed: " + error.message());
     }
   }
 }
@@ -78,28 +81,41 @@ void check_scenes(const std::filesystem::path& folder) {
   }
 }
 
+std::vector<std::string> file_names_of(ExperimentName name) {
+  return name == ExperimentName::kPaper ? experiment::paper_file_names() : experiment::accuracy_file_names();
+}
+
+experiment::ExperimentResult run(const ExperimentArguments& arguments, const experiment::ProgressCall& progress) {
+  const std::uint32_t threads =
+      arguments.threads != 0 ? arguments.threads : std::max(1u, std::thread::hardware_concurrency());
+  if (arguments.name == ExperimentName::kAccuracy) {
+    return experiment::run_accuracy_experiment(
+        {.scenes = arguments.scenes, .threads = threads, .width = arguments.width, .height = arguments.height},
+        progress);
+  }
+  return experiment::run_paper_experiment({.scenes = arguments.scenes,
+                                           .threads = threads,
+                                           .width = arguments.width,
+                                           .height = arguments.height,
+                                           .largest_knot = arguments.largest_knot},
+                                          progress);
+}
+
 }  // namespace
 
 void run_command(const ExperimentArguments& arguments) {
   check_scenes(arguments.scenes);
-  OutputFolder folder(arguments.output);
+  const std::vector<std::string> names = file_names_of(arguments.name);
+  OutputFolder folder(arguments.output, names);
   const Stopwatch stopwatch;
-  experiment::PaperExperiment settings;
-  settings.scenes = arguments.scenes;
-  settings.threads = arguments.threads != 0 ? arguments.threads : std::max(1u, std::thread::hardware_concurrency());
-  settings.width = arguments.width;
-  settings.height = arguments.height;
-  settings.largest_knot = arguments.largest_knot;
-
-  experiment::PaperResult result;
+  experiment::ExperimentResult result;
   {
     Progress progress(!arguments.quiet, "run");
-    result = experiment::run_paper_experiment(
-        settings, [&progress](std::uint32_t done, std::uint32_t total) { progress.update(done, total); });
+    result = run(arguments, [&progress](std::uint32_t done, std::uint32_t total) { progress.update(done, total); });
   }
   experiment::write_files(arguments.output, result.files);
   folder.keep();
-  remove_stale_files(arguments.output, result.files);
+  remove_stale_files(arguments.output, names, result.files);
   if (arguments.quiet) return;
   for (const std::string& sentence : result.missing) std::printf("%s\n", sentence.c_str());
   std::printf("%s: %s, %s rendered, %s of the machine, %.1f s\n", (arguments.output / "index.html").c_str(),

@@ -98,8 +98,7 @@ std::vector<std::string> paper_file_names() {
   return names;
 }
 
-PaperResult run_paper_experiment(const PaperExperiment& experiment,
-                                 const std::function<void(std::uint32_t, std::uint32_t)>& progress) {
+ExperimentResult run_paper_experiment(const PaperExperiment& experiment, const ProgressCall& progress) {
   Stage stage = make_stage(experiment);
   stage.sweep_views = choose_sweep_views(stage.found.views);
 

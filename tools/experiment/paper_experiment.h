@@ -4,11 +4,10 @@
 
 #include <cstdint>
 #include <filesystem>
-#include <functional>
 #include <string>
 #include <vector>
 
-#include "experiment/book.h"
+#include "experiment/experiment.h"
 
 namespace gridiron::experiment {
 
@@ -19,14 +18,6 @@ struct PaperExperiment {
   std::uint32_t largest_knot = 1'000'000;  ///< triangles of the largest mesh of Table 1
 };
 
-/// What an experiment made, and what it did for it.
-struct PaperResult {
-  std::vector<BookFile> files;
-  std::size_t frame_count = 0;  ///< rendered on the simulated chip, those of the hierarchy included
-  std::size_t run_count = 0;
-  std::vector<std::string> missing;  ///< a sentence for each view that was left out
-};
-
 /// @returns the names of all files that it may make: which views it has depends on the scenes.
 [[nodiscard]] std::vector<std::string> paper_file_names();
 
@@ -34,7 +25,6 @@ struct PaperResult {
 ///
 /// @param progress  called serialised with steps done and steps in all.
 /// Errors: Failure.
-[[nodiscard]] PaperResult run_paper_experiment(const PaperExperiment& experiment,
-                                               const std::function<void(std::uint32_t, std::uint32_t)>& progress);
+[[nodiscard]] ExperimentResult run_paper_experiment(const PaperExperiment& experiment, const ProgressCall& progress);
 
 }  // namespace gridiron::experiment

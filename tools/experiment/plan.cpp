@@ -2,13 +2,11 @@
 #include "experiment/plan.h"
 
 #include <algorithm>
-#include <atomic>
 #include <cmath>
-#include <exception>
 #include <mutex>
-#include <thread>
 #include <utility>
 
+#include "experiment/workers.h"
 #include "gridiron/failure.h"
 #include "gridiron/interrupt.h"
 
@@ -42,6 +40,12 @@ double RunResult::wait_percent() const {
 std::uint64_t RunResult::bytes_in() const {
   std::uint64_t bytes = 0;
   for (const sim::CoreTiming& core : timing.cores) bytes += core.bytes_in;
+  return bytes;
+}
+
+std::uint64_t RunResult::moved_bytes() const {
+  std::uint64_t bytes = bytes_in();
+  for (const sim::CoreTiming& core : timing.cores) bytes += core.bytes_out;
   return bytes;
 }
 
@@ -98,33 +102,14 @@ std::size_t Plan::rendered_count() const {
 }
 
 void Plan::execute(std::uint32_t threads, const std::function<void(std::uint32_t, std::uint32_t)>& progress) {
-  std::atomic<std::size_t> next_frame{0};
-  std::atomic<bool> stop{false};
   std::mutex mutex;
   std::uint32_t done = 0;
-  std::vector<std::exception_ptr> errors(frames_.size());
   const auto total = static_cast<std::uint32_t>(results_.size());
   const auto run_done = [&] {
     const std::lock_guard lock(mutex);
     progress(++done, total);
   };
-  const auto work = [&] {
-    for (std::size_t i = next_frame++; i < frames_.size() && !stop; i = next_frame++) {
-      try {
-        run_frame(frames_[i], run_done);
-      } catch (...) {
-        errors[i] = std::current_exception();
-        stop = true;
-      }
-    }
-  };
-  std::vector<std::thread> workers;
-  for (std::uint32_t i = 1; i < threads; ++i) workers.emplace_back(work);
-  work();
-  for (std::thread& worker : workers) worker.join();
-  for (const std::exception_ptr& error : errors) {
-    if (error != nullptr) std::rethrow_exception(error);
-  }
+  share_work(threads, frames_.size(), [&](std::size_t i) { run_frame(frames_[i], run_done); });
 }
 
 }  // namespace gridiron::experiment

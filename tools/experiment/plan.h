@@ -48,6 +48,8 @@ struct RunResult {
   [[nodiscard]] double wait_percent() const;
   /// Bytes requested by gets, all cores.
   [[nodiscard]] std::uint64_t bytes_in() const;
+  /// Bytes requested by gets and puts, all cores.
+  [[nodiscard]] std::uint64_t moved_bytes() const;
 };
 
 class Plan {

@@ -66,6 +66,11 @@ class Drawing {
              std::string(color) + "\"><title>" + escape_markup(words) + "</title></circle>\n";
   }
 
+  void circle(const Point2& place, double radius, std::string_view style, std::string_view words) {
+    text_ += "<circle cx=\"" + units(place.x) + "\" cy=\"" + units(place.y) + "\" r=\"" + units(radius) + "\" " +
+             std::string(style) + "><title>" + escape_markup(words) + "</title></circle>\n";
+  }
+
   [[nodiscard]] std::string finish() { return text_ + "</svg>\n"; }
 
  private:
@@ -87,11 +92,22 @@ void draw_y_axis(Drawing& drawing, const PlotArea& area, const Axis& y, std::str
 }
 
 // Names and colours in rows below the plot.
+enum class Mark : std::uint8_t { kLine, kDashes, kDot, kHollowDot, kRing };
+
 struct LegendEntry {
   std::string name;
   std::string_view color;
-  bool dashed = false;
+  Mark mark = Mark::kLine;
 };
+
+constexpr double kRingRadius = 9;
+
+std::string dot_style(std::string_view color, bool hollow) {
+  return hollow ? "fill=\"#ffffff\" stroke=\"" + std::string(color) + "\" stroke-width=\"2\""
+                : "fill=\"" + std::string(color) + "\"";
+}
+
+constexpr std::string_view kRingStyle = "fill=\"none\" stroke=\"#444444\" stroke-width=\"1.3\"";
 
 void draw_legend(Drawing& drawing, const PlotArea& area, const std::vector<LegendEntry>& entries) {
   double x = area.left;
@@ -102,10 +118,18 @@ void draw_legend(Drawing& drawing, const PlotArea& area, const std::vector<Legen
       x = area.left;
       y += 20;
     }
-    const std::string dash = entry.dashed ? " stroke-dasharray=\"5 4\"" : "";
-    drawing.line(
-        x, y - 4.5, x + 18, y - 4.5,
-        "stroke=\"" + std::string(entry.color) + "\" stroke-width=\"" + (entry.dashed ? "1.5" : "4") + "\"" + dash);
+    const bool dashed = entry.mark == Mark::kDashes;
+    if (dashed || entry.mark == Mark::kLine) {
+      const std::string dash = dashed ? " stroke-dasharray=\"5 4\"" : "";
+      drawing.line(
+          x, y - 4.5, x + 18, y - 4.5,
+          "stroke=\"" + std::string(entry.color) + "\" stroke-width=\"" + (dashed ? "1.5" : "4") + "\"" + dash);
+    } else {
+      const bool ring = entry.mark == Mark::kRing;
+      drawing.circle({x + 9, y - 4.5}, ring ? kRingRadius - 2 : 5,
+                     ring ? std::string(kRingStyle) : dot_style(entry.color, entry.mark == Mark::kHollowDot),
+                     entry.name);
+    }
     drawing.write(x + 24, y, entry.name, "start", kLabel);
     x += width + 8;
   }
@@ -138,6 +162,18 @@ Axis span_axis(double least, double greatest, double begin, double end) {
           .begin = begin,
           .end = end,
           .logarithmic = false};
+}
+
+void draw_x_axis(Drawing& drawing, const PlotArea& area, const Axis& x, const std::vector<double>& ticks,
+                 std::string_view title) {
+  for (const double value : ticks) {
+    const double place = x.place(value);
+    drawing.line(place, area.bottom, place, area.bottom + 5, kFrame);
+    drawing.write(place, area.bottom + 20, tick_text(value), "middle", kLabel);
+  }
+  drawing.write((area.left + area.right) / 2, area.bottom + 42, title, "middle", kLabel);
+  drawing.line(area.left, area.bottom, area.right, area.bottom, kFrame);
+  drawing.line(area.left, area.top, area.left, area.bottom, kFrame);
 }
 
 bool can_show(double value, bool logarithmic) {
@@ -244,14 +280,7 @@ std::string line_chart_svg(const LineChart& chart) {
   Drawing drawing(chart.title);
   draw_y_axis(drawing, area, y, chart.y_title);
   const std::vector<double> ticks = chart.x_ticks.empty() ? tick_values(x.low, x.high, x.logarithmic) : chart.x_ticks;
-  for (const double value : ticks) {
-    const double place = x.place(value);
-    drawing.line(place, area.bottom, place, area.bottom + 5, kFrame);
-    drawing.write(place, area.bottom + 20, tick_text(value), "middle", kLabel);
-  }
-  drawing.write((area.left + area.right) / 2, area.bottom + 42, chart.x_title, "middle", kLabel);
-  drawing.line(area.left, area.bottom, area.right, area.bottom, kFrame);
-  drawing.line(area.left, area.top, area.left, area.bottom, kFrame);
+  draw_x_axis(drawing, area, x, ticks, chart.x_title);
 
   // 3. Curves. Dashed ones are grey, the others take the colours in turn.
   std::vector<LegendEntry> legend;
@@ -272,7 +301,7 @@ std::string line_chart_svg(const LineChart& chart) {
                     series.name + ": " + number_text(point.x) + ", " + number_text(point.y));
       }
     }
-    legend.push_back({series.name, color, series.dashed});
+    legend.push_back({series.name, color, series.dashed ? Mark::kDashes : Mark::kLine});
   }
   draw_legend(drawing, area, legend);
   return drawing.finish();
@@ -338,8 +367,133 @@ std::string bar_chart_svg(const BarChart& chart) {
 
   std::vector<LegendEntry> legend;
   const std::vector<std::string>& names = stacked ? chart.parts : chart.bars;
-  for (std::size_t i = 0; i < names.size(); ++i) legend.push_back({names[i], color_of(i), false});
+  for (std::size_t i = 0; i < names.size(); ++i) legend.push_back({names[i], color_of(i), Mark::kLine});
   draw_legend(drawing, area, legend);
+  return drawing.finish();
+}
+
+std::string scatter_chart_svg(const ScatterChart& chart) {
+  PlotArea area;
+  constexpr double kLaneHeight = 34;
+  const double lane = area.bottom - kLaneHeight / 2;
+  const auto shown = [](const ScatterChart::Point& point) {
+    return can_show(point.x, true) && can_show(point.y, false);
+  };
+  double x_least = HUGE_VAL, x_greatest = 0, y_least = HUGE_VAL, y_greatest = 0;
+  for (const ScatterChart::Point& point : chart.points) {
+    if (!shown(point)) continue;
+    x_least = std::min(x_least, point.x);
+    x_greatest = std::max(x_greatest, point.x);
+    if (point.y > 0) y_least = std::min(y_least, point.y);
+    y_greatest = std::max(y_greatest, point.y);
+  }
+  const Axis x = fit_axis(x_least, x_greatest, true, area.left, area.right);
+  y_least = std::min(y_least, y_greatest / 10);  // a tick or two at least
+  const Axis y = fit_axis(y_least, y_greatest, true, area.bottom - kLaneHeight, area.top + 12);
+  const auto place_of = [&](const ScatterChart::Point& point) {
+    return Point2{x.place(point.x), point.y > 0 ? y.place(point.y) : lane};
+  };
+
+  Drawing drawing(chart.title);
+  if (y_greatest > 0) {
+    draw_y_axis(drawing, area, y, chart.y_title);
+  } else {
+    draw_y_axis(drawing, area, {.low = 0, .high = 0, .begin = 0, .end = 0, .logarithmic = false}, chart.y_title);
+  }
+  drawing.line(area.left, lane, area.right, lane, kGridLine);
+  drawing.write(area.left - 8, lane + 4.5, "0", "end", kLabel);
+  draw_x_axis(drawing, area, x, tick_values(x.low, x.high, true), chart.x_title);
+
+  // The front first, so that it lies below the points.
+  std::vector<const ScatterChart::Point*> front;
+  for (const ScatterChart::Point& point : chart.points) {
+    if (shown(point) && point.ringed) front.push_back(&point);
+  }
+  std::ranges::sort(front, {}, [](const ScatterChart::Point* point) { return std::pair(point->x, -point->y); });
+  std::vector<Point2> places;
+  for (const ScatterChart::Point* point : front) places.push_back(place_of(*point));
+  drawing.curve(places, "stroke=\"#888888\" stroke-width=\"1.2\" stroke-dasharray=\"5 4\"");
+  for (const Point2& place : places) drawing.circle(place, kRingRadius, kRingStyle, chart.ring);
+  for (const ScatterChart::Point& point : chart.points) {
+    if (!shown(point)) continue;
+    // Later colours are drawn smaller: of points in one place all are seen.
+    const double radius = std::max(2.5, 6.5 - static_cast<double>(point.color));
+    drawing.circle(place_of(point), radius, dot_style(color_of(point.color), point.hollow),
+                   point.name + ": " + number_text(point.x) + ", " + number_text(point.y));
+  }
+  std::vector<LegendEntry> legend;
+  for (std::size_t i = 0; i < chart.colors.size(); ++i) legend.push_back({chart.colors[i], color_of(i), Mark::kLine});
+  if (!chart.filled.empty()) legend.push_back({chart.filled, "#444444", Mark::kDot});
+  if (!chart.hollow.empty()) legend.push_back({chart.hollow, "#444444", Mark::kHollowDot});
+  if (!chart.ring.empty()) legend.push_back({chart.ring, "#444444", Mark::kRing});
+  draw_legend(drawing, area, legend);
+  return drawing.finish();
+}
+
+std::string histogram_chart_svg(const HistogramChart& chart) {
+  const PlotArea area{.left = 84, .top = 66, .right = 452, .bottom = 342};
+  constexpr double kCostLeft = 486, kCostRight = 634, kSeparation = 18;
+  const auto log_of = [](double count) { return std::log10(1 + count); };
+  double most = 1, dearest = 0;
+  for (const HistogramChart::Row& row : chart.rows) {
+    for (const double count : row.counts) most = std::max(most, count);
+    for (const double cost : row.costs) dearest = can_show(cost, false) ? std::max(dearest, cost) : dearest;
+  }
+  const std::size_t joined = chart.bins.size() - std::min(chart.separate_bins, chart.bins.size());
+  const double bin_width =
+      (area.right - area.left - kSeparation) / static_cast<double>(std::max<std::size_t>(1, chart.bins.size()));
+  const auto left_of = [&](std::size_t bin) {
+    return area.left + bin_width * static_cast<double>(bin) + (bin >= joined ? kSeparation : 0);
+  };
+
+  // 1. Names of the bins: every fourth of those in a row, the others upright.
+  Drawing drawing(chart.title);
+  drawing.write(area.left, area.top - 14, chart.bin_title, "start", kLabel);
+  drawing.write(kCostLeft, area.top - 14, chart.cost_title, "start", kLabel);
+  for (std::size_t bin = 0; bin < chart.bins.size(); ++bin) {
+    const double middle = left_of(bin) + bin_width / 2;
+    if (bin >= joined) {
+      drawing.write(middle + 4, area.bottom + 8, chart.bins[bin], "end",
+                    "fill=\"#444444\" font-size=\"11\" transform=\"rotate(-90 " + units(middle + 4) + " " +
+                        units(area.bottom + 8) + ")\"");
+    } else if (bin % 4 == 0) {
+      drawing.write(middle, area.bottom + 16, chart.bins[bin], "middle", "fill=\"#444444\" font-size=\"11\"");
+    }
+  }
+
+  // 2. Rows, each on a line of its own.
+  const double row_height = (area.bottom - area.top) / static_cast<double>(std::max<std::size_t>(1, chart.rows.size()));
+  for (std::size_t i = 0; i < chart.rows.size(); ++i) {
+    const HistogramChart::Row& row = chart.rows[i];
+    const double bottom = area.top + row_height * static_cast<double>(i + 1);
+    drawing.write(area.left - 8, bottom - row_height * 0.35, row.name, "end", kLabel);
+    drawing.line(area.left, bottom, area.right, bottom, kFrame);
+    drawing.line(kCostLeft, bottom - row_height * 0.85, kCostLeft, bottom - row_height * 0.1, kFrame);
+    for (std::size_t bin = 0; bin < row.counts.size(); ++bin) {
+      if (!(row.counts[bin] > 0)) continue;
+      const double height = row_height * 0.85 * log_of(row.counts[bin]) / log_of(most);
+      drawing.bar(left_of(bin) + bin_width * 0.08, bottom - height, bin_width * 0.84, height,
+                  bin >= joined ? color_of(1) : color_of(0),
+                  row.name + ", " + chart.bins[bin] + ": " + number_text(row.counts[bin]));
+    }
+    const double part_height = row_height * 0.7 / static_cast<double>(std::max<std::size_t>(1, row.costs.size()));
+    for (std::size_t part = 0; part < row.costs.size(); ++part) {
+      if (!can_show(row.costs[part], false) || dearest <= 0) continue;
+      const double width = (kCostRight - kCostLeft) * row.costs[part] / dearest;
+      const double top = bottom - row_height * 0.82 + part_height * static_cast<double>(part);
+      drawing.bar(kCostLeft, top, width, part_height * 0.86, color_of(part + 2),
+                  row.name + ", " + chart.parts[part] + ": " + number_text(row.costs[part]));
+      drawing.write(kCostLeft + width + 6, top + part_height * 0.43 + 4, fixed_text(row.costs[part], 1), "start",
+                    "fill=\"#444444\" font-size=\"11\"");
+    }
+  }
+  std::vector<LegendEntry> legend;
+  for (std::size_t part = 0; part < chart.parts.size(); ++part) {
+    legend.push_back({chart.parts[part], color_of(part + 2), Mark::kLine});
+  }
+  PlotArea below = area;
+  below.bottom += 40;  // of the upright names
+  draw_legend(drawing, below, legend);
   return drawing.finish();
 }
 

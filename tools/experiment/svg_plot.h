@@ -58,6 +58,43 @@ struct BarChart {
   bool labels = false;              ///< the bar's height in figures above it, where bars are wide enough
 };
 
+/// Single points: how much of one thing is had for how much of another.
+struct ScatterChart {
+  struct Point {
+    double x = 0, y = 0;
+    std::string name;       ///< shown where the pointer rests
+    std::size_t color = 0;  ///< index into `colors`
+    bool hollow = false;
+    bool ringed = false;
+  };
+  std::string title, x_title, y_title;
+  std::vector<std::string> colors;   ///< what each colour stands for
+  std::string filled, hollow, ring;  ///< what these stand for; no words: not told
+  std::vector<Point> points;
+};
+
+/// Rows, each with a histogram on the left and bars of a cost on the right.
+struct HistogramChart {
+  struct Row {
+    std::string name;
+    std::vector<double> counts;  ///< by bin
+    std::vector<double> costs;   ///< by part, one bar below the other; NaN: no bar
+  };
+  std::string title, bin_title, cost_title;
+  std::vector<std::string> bins;   ///< names
+  std::size_t separate_bins = 0;   ///< so many of the last bins stand apart from the others, their names upright
+  std::vector<std::string> parts;  ///< of the cost
+  std::vector<Row> rows;
+};
+
+/// @returns a whole SVG document, both axes logarithmic; a y of 0 has a lane of its own below them. Points with an x or
+/// y that cannot be shown are left out; those ringed are joined in the order of x.
+[[nodiscard]] std::string scatter_chart_svg(const ScatterChart& chart);
+
+/// @returns a whole SVG document. Counts are drawn by their logarithms, costs from 0.
+/// Precondition: each row has a count for each bin and a cost for each part.
+[[nodiscard]] std::string histogram_chart_svg(const HistogramChart& chart);
+
 /// @returns a whole SVG document. Points with a value that the axis cannot show are left out.
 [[nodiscard]] std::string line_chart_svg(const LineChart& chart);
 

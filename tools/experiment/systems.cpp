@@ -4,7 +4,9 @@
 #include <report/report.h>
 
 #include <algorithm>
+#include <bit>
 #include <ctime>
+#include <glm/common.hpp>
 #include <numeric>
 #include <utility>
 
@@ -15,6 +17,7 @@
 #include "gridiron/frame_memory.h"
 #include "gridiron/interrupt.h"
 #include "gridiron/stopwatch.h"
+#include "gridiron/store_facts.h"
 #include "gridiron/untile.h"
 #include "gridiron/words.h"
 
@@ -36,6 +39,7 @@ tool::RenderArguments arguments_of(const GridVariant& variant, const View& view,
   arguments.shading = request.shading;
   arguments.store = variant.store;
   arguments.tile_width = variant.tile_width;
+  if (variant.depth) arguments.depth.emplace();
   return arguments;
 }
 
@@ -55,10 +59,33 @@ sim::ChipResult run_chip(tool::FrameMemory& frame, const tool::RenderArguments& 
   return result;
 }
 
+std::vector<std::uint32_t> words_of(const tool::FrameMemory& frame, const sim::MemoryRegion& plane) {
+  const auto same = [](std::uint32_t word) { return word; };
+  return tool::untile<std::uint32_t>(frame.record, plane.bytes, std::nullopt, same).pixels;
+}
+
+std::vector<float> depth_of(const tool::FrameMemory& frame) {
+  const auto to_float = [](std::uint32_t word) { return std::bit_cast<float>(word); };
+  return tool::untile<float>(frame.record, frame.depth.bytes, std::nullopt, to_float).pixels;
+}
+
 std::uint64_t sum_of(const sim::WorkTotals& work, std::initializer_list<Work> kinds) {
   std::uint64_t sum = 0;
   for (const Work kind : kinds) sum += work[static_cast<std::size_t>(kind)];
   return sum;
+}
+
+// Bytes that gets of triangle records ask for. The prologue of a core has none.
+std::uint64_t fetched_triangle_bytes(const sim::FrameTrace& trace) {
+  std::uint64_t bytes = 0;
+  for (const sim::TileTrace& tile : trace.tiles) {
+    for (const sim::TraceEvent& event : tile.events) {
+      const bool is_triangles = event.kind == sim::EventKind::kGet && !event.rotating &&
+                                sim::wait_level_of_tag(event.tag) == sim::WaitLevel::kTriangle;
+      if (is_triangles) bytes += event.bytes;
+    }
+  }
+  return bytes;
 }
 
 class GridRecording : public Recording {
@@ -141,10 +168,58 @@ std::unique_ptr<Recording> GridSystem::record(const View& view, const FrameReque
   facts.scene_bytes = frame.image.header.image_bytes;
   facts.dropped_triangles = frame.image.header.dropped_triangle_count;
   facts.grid = frame.image.grid;
-  const auto picture = tool::untile<std::uint32_t>(frame.record, frame.color.bytes, std::nullopt,
-                                                   [](std::uint32_t word) { return word; });
-  facts.picture_hash = tool::image_hash(picture.pixels);
+  facts.triangle_bytes = std::uint64_t{frame.image.grid.triangle_bytes} * frame.image.grid.reference_count;
+  facts.fetched_triangle_bytes = fetched_triangle_bytes(result.trace);
+  facts.main_memory_bytes = frame.memory.used_bytes();
+  const tool::StoreFacts store = *tool::find_store_facts(arguments.layout());  // it has rendered
+  facts.local_store_bytes = store.data_bytes() + store.code_bytes + store.stack_bytes;
+  facts.picture_hash = tool::image_hash(words_of(frame, frame.color));
   return std::make_unique<GridRecording>(std::move(facts), std::move(result.trace));
+}
+
+Answers render_answers(const GridVariant& variant, const View& view, const FrameRequest& request) {
+  tool::RenderArguments arguments = arguments_of(variant, view, request);
+  arguments.depth.emplace();
+  arguments.ids.emplace();
+  tool::FrameMemory frame(home_machine()->main_memory_bytes);
+  tool::prepare_frame(frame, *view.scene, arguments, view.camera);
+  (void)run_chip(frame, arguments, sim::Mode::kPlain, 4, 1);
+  return {words_of(frame, frame.color), words_of(frame, frame.ids), depth_of(frame)};
+}
+
+struct CloseLook::Parts {
+  Parts(const GridVariant& variant, const View& view)
+      : arguments(arguments_of(variant, view, {.width = kWidth, .height = kWidth, .shading = Shading::kNone})),
+        frame(home_machine()->main_memory_bytes) {
+    arguments.depth.emplace();
+    arguments.ids.emplace();
+    tool::prepare_frame(frame, *view.scene, arguments, view.camera);
+  }
+  tool::RenderArguments arguments;
+  tool::FrameMemory frame;
+};
+
+CloseLook::CloseLook(const GridVariant& variant, const View& view) : parts_(std::make_unique<Parts>(variant, view)) {}
+CloseLook::~CloseLook() = default;
+
+void CloseLook::look_at(const Vec3& point, Answers& answers) {
+  tool::FrameMemory& frame = parts_->frame;
+  Camera camera = frame.settings.camera;
+  camera.at = point;
+  // Any direction across the view is up.
+  const Vec3 forward = glm::abs(camera.at - camera.eye);
+  camera.up = forward.x <= forward.y && forward.x <= forward.z ? Vec3(1, 0, 0)
+              : forward.y <= forward.z                         ? Vec3(0, 1, 0)
+                                                               : Vec3(0, 0, 1);
+  // A direction's greatest component lies between 1/2 and 1, its floats 2^-24 apart.
+  constexpr float kPixel = 0x1p-25f;
+  camera.tan_half_fov = kPixel * kWidth / 2;
+  tool::aim_camera(frame, camera);
+  (void)run_chip(frame, parts_->arguments, sim::Mode::kPlain, 4, 1);
+  const std::vector<std::uint32_t> ids = words_of(frame, frame.ids);
+  const std::vector<float> depth = depth_of(frame);
+  answers.ids.insert(answers.ids.end(), ids.begin(), ids.end());
+  answers.depth.insert(answers.depth.end(), depth.begin(), depth.end());
 }
 
 HostSeconds least_host_seconds(std::uint32_t repeats, const std::function<void()>& work) {

@@ -16,6 +16,7 @@
 #include <string>
 #include <vector>
 
+#include "experiment/answers.h"
 #include "experiment/paper_values.h"
 #include "experiment/views.h"
 #include "gridiron/configurations.h"
@@ -38,6 +39,10 @@ struct FrameFacts {
   std::uint64_t picture_hash = 0;
   std::uint32_t dropped_triangles = 0;  ///< of zero area
   std::optional<GridRecord> grid;       ///< of systems that have one
+  std::uint64_t triangle_bytes = 0;     ///< of the scene: triangle records; known of the grid alone, as what follows
+  std::uint64_t fetched_triangle_bytes = 0;  ///< requested by gets of triangle records
+  std::uint64_t main_memory_bytes = 0;       ///< scene, frame record and output planes
+  std::uint64_t local_store_bytes = 0;       ///< data, and the budgets of code and stack
 
   /// Counted steps of the build, of all kinds.
   [[nodiscard]] std::uint64_t build_steps() const;
@@ -98,6 +103,7 @@ struct GridVariant {
   Accuracy accuracy = Accuracy::kStandard;
   sim::StoreSize store = sim::StoreSize::k256KB;
   std::uint32_t tile_width = sim::usual_tile_width(sim::StoreSize::k256KB);
+  bool depth = false;  ///< distances are asked for, beside the picture
 };
 
 /// @returns the configuration of that name, e.g. "best". Precondition: there is one.
@@ -115,6 +121,29 @@ class GridSystem : public System {
 
  private:
   GridVariant variant_;
+};
+
+/// Renders the frame with all of its planes, without a clock: in plain mode, in the chip's own groups of 4 rays.
+/// Errors: Failure; kBadInput where the scene does not fit the machine.
+[[nodiscard]] Answers render_answers(const GridVariant& variant, const View& view, const FrameRequest& request);
+
+/// A profile's answers about rays that all but meet a point.
+///
+/// A look is a picture of kWidth x kWidth pixels from the eye of a view, so small that all of its rays pass the point
+/// looked at within a few roundings of their directions.
+class CloseLook {
+ public:
+  static constexpr std::uint32_t kWidth = 32;
+  /// Errors: Failure; kBadInput where the scene does not fit the machine.
+  CloseLook(const GridVariant& variant, const View& view);
+  ~CloseLook();
+
+  /// Appends the answers about the rays of a look, but for colours. Errors: Failure.
+  void look_at(const Vec3& point, Answers& answers);
+
+ private:
+  struct Parts;
+  std::unique_ptr<Parts> parts_;
 };
 
 /// Seconds of something on this host, by the wall clock and of its processors, all threads together.

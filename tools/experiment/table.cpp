@@ -1,9 +1,12 @@
 // Table. SPDX-License-Identifier: Apache-2.0
 #include "experiment/table.h"
 
+#include <algorithm>
 #include <array>
 #include <charconv>
 #include <cmath>
+
+#include "gridiron/words.h"
 
 namespace gridiron::experiment {
 namespace {
@@ -54,6 +57,14 @@ std::string fixed_text(double number, int decimals) {
   return fixed;
 }
 
+std::string scientific_text(double number, int digits) {
+  if (!std::isfinite(number)) return "";
+  std::array<char, 400> text{};
+  const auto [end, error] =
+      std::to_chars(text.data(), text.data() + text.size(), number, std::chars_format::scientific, digits - 1);
+  return error == std::errc{} ? std::string(text.data(), end) : "";
+}
+
 std::string csv_text(const Table& table) {
   std::string text;
   for (std::size_t i = 0; i < table.columns.size(); ++i) {
@@ -67,6 +78,52 @@ std::string csv_text(const Table& table) {
       text += field_of(row[i]);
     }
     text += '\n';
+  }
+  return text;
+}
+
+std::string shown_text(const Cell& cell, int decimals) {
+  if (const auto* words = std::get_if<std::string>(&cell)) return *words;
+  if (const auto* count = std::get_if<std::uint64_t>(&cell)) return tool::words_of_count(*count);
+  if (const auto* measure = std::get_if<double>(&cell)) {
+    if (decimals < 0) return *measure == 0 ? "0" : scientific_text(*measure, -decimals);
+    constexpr double kMostWhole = 1e15;
+    const bool groups = decimals == 0 && *measure >= 0 && *measure < kMostWhole;
+    return groups ? tool::words_of_count(static_cast<std::uint64_t>(*measure + 0.5)) : fixed_text(*measure, decimals);
+  }
+  return "";
+}
+
+bool is_number_column(const Table& table, std::size_t column) {
+  for (const std::vector<Cell>& row : table.rows) {
+    if (std::holds_alternative<std::monostate>(row[column])) continue;
+    return !std::holds_alternative<std::string>(row[column]);
+  }
+  return false;
+}
+
+std::string aligned_text(const Table& table) {
+  const std::size_t count = table.columns.size();
+  std::vector<std::size_t> widths;
+  for (std::size_t i = 0; i < count; ++i) {
+    widths.push_back(table.columns[i].title.size());
+    for (const std::vector<Cell>& row : table.rows) {
+      widths[i] = std::max(widths[i], shown_text(row[i], table.columns[i].decimals).size());
+    }
+  }
+  std::string text;
+  const auto add_line = [&](auto cell_of) {
+    std::string line;
+    for (std::size_t i = 0; i < count; ++i) {
+      const std::string cell = cell_of(i);
+      const std::string padding(widths[i] - cell.size(), ' ');
+      line += (i == 0 ? "" : "  ") + (is_number_column(table, i) ? padding + cell : cell + padding);
+    }
+    text += line.substr(0, line.find_last_not_of(' ') + 1) + "\n";
+  };
+  add_line([&](std::size_t i) { return table.columns[i].title; });
+  for (const std::vector<Cell>& row : table.rows) {
+    add_line([&](std::size_t i) { return shown_text(row[i], table.columns[i].decimals); });
   }
   return text;
 }

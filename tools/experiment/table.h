@@ -16,7 +16,7 @@ using Cell = std::variant<std::monostate, std::string, std::uint64_t, double>;
 struct Column {
   std::string key;    ///< snake_case with the unit as its suffix: the header of the CSV file
   std::string title;  ///< for people
-  int decimals = 2;   ///< of measures on the page; the CSV file always holds all digits
+  int decimals = 2;   ///< of measures on the page, below 0: digits of 1.2e-07; the CSV file always holds all digits
 };
 
 struct Table {
@@ -36,8 +36,20 @@ struct Table {
 /// @returns the number with exactly `decimals` digits behind the point.
 [[nodiscard]] std::string fixed_text(double number, int decimals);
 
+/// @returns the number with exactly `digits` digits as 1.2e-07. Precondition: digits > 0.
+[[nodiscard]] std::string scientific_text(double number, int digits);
+
 /// @returns the table as CSV (RFC 4180 with plain line feeds): a header of keys, then the rows. A field with a comma, a
 /// quote or a line break stands in quotes, quotes inside it are doubled.
 [[nodiscard]] std::string csv_text(const Table& table);
+
+/// @returns a cell for people: measures with the column's digits, counts with separators.
+[[nodiscard]] std::string shown_text(const Cell& cell, int decimals);
+
+/// @returns whether a column is set like numbers: by its first cell that is not empty.
+[[nodiscard]] bool is_number_column(const Table& table, std::size_t column);
+
+/// @returns the table in columns of plain text, titles first, two spaces between columns, numbers to the right.
+[[nodiscard]] std::string aligned_text(const Table& table);
 
 }  // namespace gridiron::experiment

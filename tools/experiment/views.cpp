@@ -7,6 +7,7 @@
 #include <system_error>
 #include <utility>
 
+#include "gridiron/failure.h"
 #include "gridiron/words.h"
 
 namespace gridiron::experiment {
@@ -95,6 +96,19 @@ View make_knot_view(std::uint32_t triangle_count) {
           "Torus knot of " + tool::words_of_count(triangle_count),
           scene_of(scene_makers::make_torus_knot(triangle_count), key),
           {}};
+}
+
+View with_fixed_camera(View view) {
+  // One cell: the bounds of what can be hit are the same in every grid.
+  GridNeed need;
+  const Status status = count_scene_image(view.mesh().view(), {.lambda = 1e-6f}, need);
+  if (status != Status::kOk) {
+    throw tool::Failure(tool::ExitCode::kBadInput, view.scene->path.string() + ": " + tool::words_of(status));
+  }
+  const Camera camera = tool::frame_view(view.camera, need.grid.bounds_minimum, need.grid.bounds_maximum);
+  view.camera.eye = camera.eye;
+  view.camera.at = camera.at;
+  return view;
 }
 
 std::vector<std::uint32_t> growth_counts(std::uint32_t largest) {

@@ -40,6 +40,10 @@ struct FoundViews {
 /// @returns a torus knot of `triangle_count` (even) triangles, framed; key "knot_COUNT".
 [[nodiscard]] View make_knot_view(std::uint32_t triangle_count);
 
+/// @returns the view with a camera that does not depend on how a system stores the mesh: where it is framed, the frame
+/// of the mesh as it was read. Errors: Failure (kBadInput) where there is nothing to see.
+[[nodiscard]] View with_fixed_camera(View view);
+
 /// Triangle counts of Table 1: largest times 1/100, 1/50, 1/20, 1/10, 1/5, 1/2 and 1, even, those below the smallest
 /// knot left out.
 [[nodiscard]] std::vector<std::uint32_t> growth_counts(std::uint32_t largest);

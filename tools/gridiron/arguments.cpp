@@ -9,6 +9,7 @@
 #include <utility>
 #include <vector>
 
+#include "accuracies.h"
 #include "atomic_file.h"
 #include "failure.h"
 #include "store_facts.h"
@@ -134,6 +135,19 @@ const Choices<TriangleFormat> kFormats = {{"vertices", TriangleFormat::kVertices
                                           {"projection", TriangleFormat::kProjection},
                                           {"lattice", TriangleFormat::kLattice}};
 
+// "vertices (default): for --accuracy standard, exact; projection: ..."
+std::string format_help() {
+  std::string help;
+  for (const auto& [name, format] : kFormats) {
+    std::string readers;
+    for (const NamedAccuracy& named : accuracies()) {
+      if (format_of(named.accuracy) == format) readers += (readers.empty() ? " " : ", ") + std::string(named.name);
+    }
+    help += (help.empty() ? "" : "; ") + name + (help.empty() ? " (default)" : "") + ": for --accuracy" + readers;
+  }
+  return help;
+}
+
 void add_view_options(CLI::App& app, RenderArguments& render) {
   const std::string vector = "x,y,z with three finite numbers";
   add_parsed(
@@ -211,14 +225,15 @@ void add_algorithm_options(CLI::App& app, RawRender& raw) {
   add_choice(app, "--tile-width", render.tile_width,
              Choices<std::uint32_t>{{"8", 8}, {"16", 16}, {"32", 32}, {"64", 64}},
              "pixels along a tile's edge (default: 16 with --store 64, else 32)");
-  add_choice(
-      app, "--accuracy", render.accuracy,
-      Choices<Accuracy>{{"paper", Accuracy::kPaper},
-                        {"fast", Accuracy::kFast},
-                        {"standard", Accuracy::kStandard},
-                        {"exact", Accuracy::kExact},
-                        {"compact", Accuracy::kCompact}},
-      "what is decided how exactly (default standard); see tools/README.md");
+  Choices<Accuracy> choices;
+  std::string help;
+  for (const NamedAccuracy& named : accuracies()) {
+    const bool is_default = named.accuracy == render.accuracy;
+    help += (help.empty() ? "" : "; ") + std::string(named.name) + (is_default ? " (default): " : ": ") +
+            std::string(named.description);
+    choices.emplace_back(named.name, named.accuracy);
+  }
+  add_choice(app, "--accuracy", render.accuracy, choices, help);
   add_choice(app, "--shading", render.shading, Choices<Shading>{{"none", Shading::kNone}, {"simple", Shading::kSimple}},
              "none: hit or background; simple: facing ratio (default)");
   app.add_flag("--no-mailbox", raw.no_mailbox, "test a triangle again in every cell that holds it");
@@ -378,11 +393,12 @@ RenderArguments complete_render(const RawRender& raw, bool has_seed) {
   return render;
 }
 
-void add_experiment_options(CLI::App& app, ExperimentArguments& experiment, std::string& name) {
-  const auto known = [](const std::string& text) { return text == "paper" ? std::optional(text) : std::nullopt; };
-  add_parsed(app, "NAME", name, known, "an experiment; expected paper", "",
-             "paper: Tables 1-4, Figs. 5-7 and sweeps, as CSV, SVG and index.html; some six minutes of processor "
-             "time, of which nothing is told before the end where standard error is no terminal")
+void add_experiment_options(CLI::App& app, ExperimentArguments& experiment) {
+  add_choice(app, "NAME", experiment.name,
+             Choices<ExperimentName>{{"paper", ExperimentName::kPaper}, {"accuracy", ExperimentName::kAccuracy}},
+             "paper: Tables 1-4, Figs. 5-7 and sweeps; some six minutes of processor time with the scans. accuracy: "
+             "what each accuracy profile costs and what is wrong with its answers; some two minutes. Both leave CSV, "
+             "SVG and index.html; nothing is told before the end where standard error is no terminal")
       ->required();
   const auto folder = [](const std::string& text) {
     return text.empty() ? std::nullopt : std::optional<std::filesystem::path>(text);
@@ -397,11 +413,13 @@ void add_experiment_options(CLI::App& app, ExperimentArguments& experiment, std:
   add_threads(app, experiment.threads, "no file but host_*.csv, which measures this host, depends on it");
   add_size(app, experiment.width, experiment.height, "pictures in pixels (default 1024x1024)");
   add_parsed(app, "--largest", experiment.largest_knot, count_between(6'000, 10'000'000),
-             "a whole number from 6000 to 10000000", "N", "triangles of the largest mesh of Table 1 (default 1000000)");
+             "a whole number from 6000 to 10000000", "N",
+             "paper: triangles of the largest mesh of Table 1 (default 1000000)");
   app.add_flag("--quiet", experiment.quiet, "print nothing but errors");
 }
 
-ExperimentArguments complete_experiment(ExperimentArguments experiment) {
+ExperimentArguments complete_experiment(ExperimentArguments experiment, bool has_largest) {
+  if (has_largest && experiment.name != ExperimentName::kPaper) usage_error("--largest: is of experiment paper alone");
   if (experiment.scenes.empty()) {
     const char* scenes = std::getenv("GRIDIRON_SCENES");
     if (scenes != nullptr) experiment.scenes = scenes;
@@ -429,7 +447,7 @@ Command parse_arguments(int count, const char* const* values) {
   std::string info_machine;
   CLI::App* info = app.add_subcommand("info", "tells what a scene holds and what it needs");
   add_scene_options(*info, info_arguments.scene, info_machine);
-  add_choice(*info, "--format", info_arguments.format, kFormats, "how triangles are stored (default vertices)");
+  add_choice(*info, "--format", info_arguments.format, kFormats, "how triangles are stored; " + format_help());
   add_size(*info, info_arguments.width, info_arguments.height, "picture whose memory is told (default 1024x1024)");
   std::optional<StoreSize> info_store;
   add_choice(*info, "--store", info_store, kStores, kStoreHelp);
@@ -440,8 +458,7 @@ Command parse_arguments(int count, const char* const* values) {
   CLI::App* pack = app.add_subcommand("pack", "makes a scene image (.gri) that render and firmware read as it is");
   add_scene_options(*pack, pack_arguments.scene, pack_machine);
   pack->add_option("-o,--output", pack_arguments.output, "scene image")->required()->type_name("FILE");
-  add_choice(*pack, "--format", pack_arguments.format, kFormats,
-             "vertices (default): for --accuracy standard, exact, fast; projection: for paper; lattice: for compact");
+  add_choice(*pack, "--format", pack_arguments.format, kFormats, format_help());
 
   MachinesArguments machines_arguments;
   std::string machine;
@@ -453,10 +470,8 @@ Command parse_arguments(int count, const char* const* values) {
   machines->add_flag("--json", machines_arguments.json, "as JSON");
 
   ExperimentArguments experiment_arguments;
-  std::string experiment_name;
-  CLI::App* experiment =
-      app.add_subcommand("experiment", "runs the paper's evaluation again: tables, plots and a page in a folder");
-  add_experiment_options(*experiment, experiment_arguments, experiment_name);
+  CLI::App* experiment = app.add_subcommand("experiment", "runs an experiment: tables, plots and a page in a folder");
+  add_experiment_options(*experiment, experiment_arguments);
 
   // CLI11 would only say that a subcommand is required.
   const std::string first = count > 1 ? values[1] : "";
@@ -492,7 +507,7 @@ Command parse_arguments(int count, const char* const* values) {
                       {{"-o", pack_arguments.output}});
     return pack_arguments;
   }
-  if (*experiment) return complete_experiment(experiment_arguments);
+  if (*experiment) return complete_experiment(experiment_arguments, experiment->count("--largest") > 0);
   if (machines->count("MACHINE") > 0) machines_arguments.machine = find_machine(machine);
   return machines_arguments;
 }

@@ -73,13 +73,15 @@ struct MachinesArguments {
   bool json = false;
 };
 
-/// The paper's evaluation, run again.
+enum class ExperimentName { kPaper, kAccuracy };
+
 struct ExperimentArguments {
+  ExperimentName name = ExperimentName::kPaper;
   std::filesystem::path output;  ///< folder
   std::filesystem::path scenes;  ///< folder of scans; empty: none
   std::uint32_t threads = 0;     ///< 0: the host's
   std::uint32_t width = 1024, height = 1024;
-  std::uint32_t largest_knot = 1'000'000;  ///< triangles of the largest mesh of Table 1
+  std::uint32_t largest_knot = 1'000'000;  ///< kPaper: triangles of the largest mesh of Table 1
   bool quiet = false;
 };
 

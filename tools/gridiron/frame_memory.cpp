@@ -1,8 +1,6 @@
 // Frame memory. SPDX-License-Identifier: Apache-2.0
 #include "frame_memory.h"
 
-#include <gridiron/frame/frame_setup.h>
-
 #include <cstring>
 #include <string>
 
@@ -24,8 +22,7 @@ sim::MemoryRegion allocate(sim::SimMemory& memory, std::uint64_t bytes) {
 // Puts the scene image into main memory. @returns where it lies.
 MainAddress place_image(FrameMemory& frame, const SceneInput& input, const RenderArguments& arguments,
                         std::uint64_t budget_bytes) {
-  const TriangleFormat format =
-      format_of(arguments.accuracy);
+  const TriangleFormat format = format_of(arguments.accuracy);
   if (const PackedScene* packed = std::get_if<PackedScene>(&input.content)) {
     check_packed(input, *packed, arguments.scene, format, budget_bytes);
     const std::uint64_t image_bytes = packed->view.header.image_bytes;
@@ -47,6 +44,20 @@ MainAddress place_image(FrameMemory& frame, const SceneInput& input, const Rende
   return region.address;
 }
 
+// Makes the record of the frame's settings. @param source  the scene, for people.
+void make_record(FrameMemory& frame, const std::filesystem::path& source) {
+  const Status status = make_frame_record(frame.settings, frame.image, frame.image_address, frame.record);
+  if (status == Status::kBadFrame) {
+    throw Failure(ExitCode::kUsage, "view: no camera can be made of it; eye, at, up or the scene's bounds are extreme");
+  }
+  if (status != Status::kOk) throw Failure(ExitCode::kBadInput, source.string() + ": " + words_of(status));
+}
+
+void store_record(FrameMemory& frame) {
+  const std::span<std::byte> bytes = frame.memory.bytes_at(frame.record_address, sizeof(FrameRecord));
+  std::memcpy(bytes.data(), &frame.record, sizeof(FrameRecord));
+}
+
 }  // namespace
 
 void prepare_frame(FrameMemory& frame, const SceneInput& input, const RenderArguments& arguments,
@@ -54,7 +65,7 @@ void prepare_frame(FrameMemory& frame, const SceneInput& input, const RenderArgu
   const std::uint32_t planes = 1u + (arguments.depth ? 1u : 0u) + (arguments.ids ? 1u : 0u);
   const std::uint64_t budget_bytes =
       image_budget_bytes(*arguments.scene.machine, arguments.width, arguments.height, planes, arguments.tile_width);
-  const MainAddress image_address = place_image(frame, input, arguments, budget_bytes);
+  frame.image_address = place_image(frame, input, arguments, budget_bytes);
 
   // Identifiers travel as floats in a PFM file.
   constexpr std::uint32_t kMostExactIds = 1u << 24;
@@ -64,7 +75,7 @@ void prepare_frame(FrameMemory& frame, const SceneInput& input, const RenderArgu
                                            " triangles; the floats of a PFM file tell at most 16,777,216 apart");
   }
 
-  FrameSettings settings;
+  FrameSettings& settings = frame.settings;
   settings.camera = frame_view(view, frame.image.grid.bounds_minimum, frame.image.grid.bounds_maximum);
   settings.width = arguments.width;
   settings.height = arguments.height;
@@ -84,16 +95,15 @@ void prepare_frame(FrameMemory& frame, const SceneInput& input, const RenderArgu
   settings.depth = frame.depth.address;
   settings.ids = frame.ids.address;
 
-  const Status status = make_frame_record(settings, frame.image, image_address, frame.record);
-  if (status == Status::kBadFrame) {
-    throw Failure(ExitCode::kUsage, "view: no camera can be made of it; eye, at, up or the scene's bounds are extreme");
-  }
-  if (status != Status::kOk) {
-    throw Failure(ExitCode::kBadInput, input.path.string() + ": " + words_of(status));
-  }
-  const sim::MemoryRegion record = allocate(frame.memory, sizeof(FrameRecord));
-  std::memcpy(record.bytes.data(), &frame.record, sizeof(FrameRecord));
-  frame.record_address = record.address;
+  make_record(frame, input.path);
+  frame.record_address = allocate(frame.memory, sizeof(FrameRecord)).address;
+  store_record(frame);
+}
+
+void aim_camera(FrameMemory& frame, const Camera& camera) {
+  frame.settings.camera = camera;
+  make_record(frame, {});
+  store_record(frame);
 }
 
 }  // namespace gridiron::tool

@@ -3,6 +3,7 @@
 #pragma once
 
 #include <gridiron/base/records.h>
+#include <gridiron/frame/frame_setup.h>
 #include <gridiron/grid/grid_builder.h>
 #include <gridiron/image/scene_image.h>
 #include <gridiron/sim/sim_memory.h>
@@ -21,9 +22,10 @@ struct FrameMemory {
 
   sim::SimMemory memory;
   SceneImageView image{};
-  GridNeed need{};                      ///< of the image; nothing where it was packed
+  GridNeed need{};  ///< of the image; nothing where it was packed
+  FrameSettings settings{};
   FrameRecord record{};
-  MainAddress record_address{};
+  MainAddress image_address{}, record_address{};
   sim::MemoryRegion color, depth, ids;  ///< depth, ids: no bytes where not asked for
   float wanted_lambda = 0;              ///< the image's own is image.grid.lambda
   double build_seconds = 0;             ///< host time of building the image, 0 for a packed scene
@@ -33,5 +35,8 @@ struct FrameMemory {
 /// Errors: Failure.
 void prepare_frame(FrameMemory& frame, const SceneInput& input, const RenderArguments& arguments,
                    const ViewRequest& view);
+
+/// Gives a prepared frame another camera. Errors: Failure (kUsage) where the frame can have none such.
+void aim_camera(FrameMemory& frame, const Camera& camera);
 
 }  // namespace gridiron::tool

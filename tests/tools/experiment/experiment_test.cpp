@@ -12,6 +12,7 @@
 
 #include "../gridiron/run_program.h"
 #include "../gridiron/temporary_folder.h"
+#include "csv_rows.h"
 #include "experiment/paper_experiment.h"
 #include "experiment/sections.h"
 #include "markup.h"
@@ -31,37 +32,6 @@ std::set<std::string> names_in(const fs::path& folder) {
   std::set<std::string> names;
   for (const auto& entry : fs::directory_iterator(folder)) names.insert(entry.path().filename().string());
   return names;
-}
-
-// Rows of a CSV file, quoted fields without their quotes; the first row holds the keys.
-std::vector<std::vector<std::string>> csv_rows(const fs::path& path) {
-  std::vector<std::vector<std::string>> rows = {{""}};
-  bool quoted = false;
-  for (const char letter : read_file(path)) {
-    if (letter == '"') {
-      quoted = !quoted;
-    } else if (letter == ',' && !quoted) {
-      rows.back().emplace_back();
-    } else if (letter == '\n') {
-      rows.push_back({""});
-    } else {
-      rows.back().back() += letter;
-    }
-  }
-  rows.pop_back();  // behind the last end of line
-  return rows;
-}
-
-// The number in a row under a key; fails where there is none.
-double number_under(const std::vector<std::vector<std::string>>& rows, std::size_t row, const std::string& key) {
-  const auto found = std::ranges::find(rows.at(0), key);
-  if (found == rows.at(0).end()) {
-    ADD_FAILURE() << "no column " << key;
-    return 0;
-  }
-  const std::string& text = rows.at(row).at(static_cast<std::size_t>(found - rows.at(0).begin()));
-  EXPECT_FALSE(text.empty()) << key << " in row " << row;
-  return text.empty() ? 0 : std::stod(text);
 }
 
 // What stands about the rival: every table has it, and what follows from two columns does follow.
@@ -315,7 +285,7 @@ TEST(Experiment, MistakesAreTold) {
   const Case cases[] = {
       {{"experiment"}, 2, "NAME"},
       {{"experiment", "paper"}, 2, "--output"},
-      {{"experiment", "accuracy", "-o", "out"}, 2, "expected paper"},
+      {{"experiment", "speed", "-o", "out"}, 2, "'speed' is not one of paper|accuracy"},
       {{"experiment", "paper", "-o", "out", "--threads", "0"}, 2, "1 to 256"},
       {{"experiment", "paper", "-o", "out", "--largest", "10"}, 2, "6000"},
       {{"experiment", "paper", "-o", "out", "--size", "64"}, 2, "WxH"},

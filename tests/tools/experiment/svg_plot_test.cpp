@@ -158,6 +158,84 @@ TEST(SvgPlot, BarsStandOnTheAxisAndStack) {
   }
 }
 
+// What is had for nothing has a lane of its own below a logarithmic axis.
+TEST(SvgPlot, PointsLieWhereTheirValuesAre) {
+  const PlotArea area;
+  const ScatterChart chart = {.title = "t",
+                              .x_title = "x",
+                              .y_title = "y",
+                              .colors = {"one", "two"},
+                              .filled = "full",
+                              .hollow = "empty",
+                              .ring = "front",
+                              .points = {{10, 1000, "a", 0, false, true},
+                                         {100, 10, "b", 1, true, false},
+                                         {1000, 0, "c", 0, false, true},
+                                         {-1, 5, "left out", 0, false, true},
+                                         {5, std::nan(""), "left out", 0, false, false}}};
+  const auto elements = parse_markup(scatter_chart_svg(chart));
+  std::vector<MarkupElement> dots, rings;
+  for (const MarkupElement& circle : elements_named(elements, "circle")) {
+    if (circle.number("cy") > area.bottom) continue;  // of the legend
+    (circle.attributes.at("fill") == "none" ? rings : dots).push_back(circle);
+  }
+  ASSERT_EQ(dots.size(), 3u);
+  ASSERT_EQ(rings.size(), 2u);
+  EXPECT_NEAR(dots[1].number("cx") - dots[0].number("cx"), dots[2].number("cx") - dots[1].number("cx"), 0.02);
+  EXPECT_LT(dots[0].number("cy"), dots[1].number("cy"));
+  EXPECT_LT(dots[1].number("cy"), dots[2].number("cy") - 15) << "below every positive value";
+  EXPECT_LT(dots[2].number("cy"), area.bottom);
+  EXPECT_EQ(dots[1].attributes.at("fill"), "#ffffff") << "hollow";
+  EXPECT_NE(dots[0].attributes.at("fill"), "#ffffff");
+  EXPECT_EQ(rings[0].attributes.at("cx"), dots[0].attributes.at("cx"));
+  EXPECT_EQ(rings[1].attributes.at("cy"), dots[2].attributes.at("cy"));
+  const auto front = points_of(elements_named(elements, "polyline").at(0));
+  ASSERT_EQ(front.size(), 2u) << "the ringed ones, joined";
+  EXPECT_NEAR(front[1].x, dots[2].number("cx"), 0.01);
+  for (const char* words : {"0", "one", "two", "full", "empty", "front"}) text_element(elements, words);
+}
+
+TEST(SvgPlot, PointsOfNoErrorAtAllNeedNoAxis) {
+  ScatterChart chart;
+  chart.points = {{10, 0, "a", 0, false, true}, {20, 0, "b", 1, false, false}};
+  const auto elements = parse_markup(scatter_chart_svg(chart));
+  int dots = 0;
+  for (const MarkupElement& circle : elements_named(elements, "circle")) {
+    EXPECT_TRUE(std::isfinite(circle.number("cx")) && std::isfinite(circle.number("cy")));
+    ++dots;
+  }
+  EXPECT_EQ(dots, 3);
+  EXPECT_FALSE(parse_markup(scatter_chart_svg({})).empty());
+}
+
+TEST(SvgPlot, HistogramsStandBesideCosts) {
+  const HistogramChart chart = {
+      .title = "t",
+      .bin_title = "bins",
+      .cost_title = "cost",
+      .bins = {"0", "1", "2", "far"},
+      .separate_bins = 1,
+      .parts = {"p", "q"},
+      .rows = {{"first", {99, 9, 0, 0}, {10, 20}}, {"second", {9, 0, 0, 9}, {5, std::nan("")}}}};
+  const auto elements = parse_markup(histogram_chart_svg(chart));
+  std::vector<MarkupElement> bars;
+  for (const MarkupElement& rect : elements_named(elements, "rect")) {
+    if (rect.attributes.count("x") == 1) bars.push_back(rect);
+  }
+  ASSERT_EQ(bars.size(), 2u + 2u + 2u + 1u) << "no bar for no count and no cost";
+  EXPECT_NEAR(bars[0].number("height"), 2 * bars[1].number("height"), 0.02) << "logarithms of 100 and of 10";
+  EXPECT_NEAR(bars[0].number("y") + bars[0].number("height"), bars[1].number("y") + bars[1].number("height"), 0.02);
+  EXPECT_NEAR(bars[3].number("width"), 2 * bars[2].number("width"), 0.02) << "costs are linear";
+  EXPECT_NEAR(bars[2].number("width"), 2 * bars[6].number("width"), 0.02) << "and have one scale in all rows";
+  EXPECT_NEAR(bars[4].number("height"), bars[1].number("height"), 0.02) << "so have counts";
+  EXPECT_EQ(bars[4].attributes.at("x"), bars[0].attributes.at("x")) << "a bin is a column";
+  EXPECT_LT(bars[1].number("x") + 2 * bars[1].number("width"), bars[5].number("x"));
+  EXPECT_GT(bars[5].number("y"), bars[0].number("y")) << "rows lie below each other";
+  EXPECT_NE(bars[5].attributes.at("fill"), bars[0].attributes.at("fill"));
+  for (const char* words : {"first", "second", "bins", "cost", "far", "p", "q", "20.0"}) text_element(elements, words);
+  EXPECT_FALSE(parse_markup(histogram_chart_svg({})).empty());
+}
+
 TEST(SvgPlot, ChartsOfNothingAreStillDocuments) {
   EXPECT_FALSE(parse_markup(line_chart_svg({.title = "t",
                                             .x_title = "",

@@ -49,6 +49,29 @@ TEST(Table, FixedNumbersAreRoundedAndZeroHasNoSign) {
   EXPECT_EQ(fixed_text(std::nan(""), 2), "");
 }
 
+TEST(Table, SmallNumbersHaveDigitsNotZeroes) {
+  EXPECT_EQ(experiment::scientific_text(1.26e-7, 2), "1.3e-07");
+  EXPECT_EQ(experiment::scientific_text(1.0, 3), "1.00e+00");
+  EXPECT_EQ(experiment::scientific_text(std::nan(""), 3), "");
+  EXPECT_EQ(experiment::shown_text(1.26e-7, -2), "1.3e-07");
+  EXPECT_EQ(experiment::shown_text(0.0, -2), "0");
+  EXPECT_EQ(experiment::shown_text(0.0, 2), "0.00");
+  EXPECT_EQ(experiment::shown_text(12345.6, 0), "12,346");
+  EXPECT_EQ(experiment::shown_text(std::uint64_t{12345}, 2), "12,345");
+  EXPECT_EQ(experiment::shown_text(std::string("a<b"), 2), "a<b");
+  EXPECT_EQ(experiment::shown_text(experiment::Cell{}, 2), "");
+}
+
+TEST(Table, PlainTextStandsInColumns) {
+  Table table{"", {{"", "name"}, {"", "cost", 1}, {"", "whole"}, {"", "last"}}, {}};
+  table.add({"a", 1.25, std::uint64_t{7}, experiment::Cell{}});
+  table.add({"longer", 100.0, experiment::Cell{}, experiment::Cell{}});
+  EXPECT_EQ(experiment::aligned_text(table),
+            "name     cost  whole  last\n"
+            "a         1.2      7\n"
+            "longer  100.0\n");
+}
+
 TEST(Table, FieldsAreQuotedWhereTheyMustBe) {
   Table table{"t", {{"a", "A"}, {"b,c", "B"}}, {}};
   table.add({"plain", 1.5});

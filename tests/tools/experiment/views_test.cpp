@@ -67,6 +67,28 @@ TEST(Views, CamerasAreThoseOfTheCameraFiles) {
   }
 }
 
+// The camera of a framed mesh, whoever asks: what it was, with a triangle of no area that no frame may see.
+TEST(Views, AFixedCameraIsTheFramesOwn) {
+  View view = make_knot_view(600);
+  tool::Mesh mesh = view.mesh();
+  const auto first = static_cast<std::uint32_t>(mesh.vertices.size());
+  mesh.vertices.insert(mesh.vertices.end(), {Vec3(0, 0, 0), Vec3(50, 0, 0), Vec3(100, 0, 0)});
+  mesh.triangles.emplace_back(first, first + 1, first + 2);
+  view.scene = std::make_shared<const tool::SceneInput>(tool::SceneInput{"knot", std::move(mesh), 0});
+  GridNeed need;
+  ASSERT_EQ(count_scene_image(view.mesh().view(), {}, need), Status::kOk);
+  const Camera framed = tool::frame_view(view.camera, need.grid.bounds_minimum, need.grid.bounds_maximum);
+  const View fixed = with_fixed_camera(view);
+  EXPECT_EQ(fixed.camera.eye, framed.eye);
+  EXPECT_EQ(fixed.camera.at, framed.at);
+  EXPECT_EQ(fixed.scene, view.scene);
+
+  view.camera.eye = Vec3(1, 2, 30);
+  EXPECT_EQ(with_fixed_camera(view).camera.eye, Vec3(1, 2, 30)) << "what was asked for stays";
+  view.scene = std::make_shared<const tool::SceneInput>(tool::SceneInput{"nothing", tool::Mesh{}, 0});
+  EXPECT_THROW((void)with_fixed_camera(view), tool::Failure);
+}
+
 TEST(Views, GrowthCountsAreEvenAndRise) {
   EXPECT_EQ(growth_counts(1'000'000),
             (std::vector<std::uint32_t>{10'000, 20'000, 50'000, 100'000, 200'000, 500'000, 1'000'000}));

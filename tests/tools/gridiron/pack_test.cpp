@@ -26,6 +26,9 @@ TEST(Pack, RendersTheSamePictureAsTheMesh) {
   } cases[] = {
       {{}, {}},
       {{"--format", "projection"}, {"--accuracy", "paper"}},
+      {{"--format", "lattice"}, {"--accuracy", "compact"}},
+      {{}, {"--accuracy", "exact"}},
+      {{"--format", "vertices"}, {"--accuracy", "fast"}},
       {{"--lambda", "1", "--macro-width", "4"}, {}},
   };
   for (const auto& choice : cases) {
@@ -57,7 +60,8 @@ TEST(Pack, ImagesAreUsedAsTheyWerePacked) {
     Words arguments;
     const char* words;
   } cases[] = {
-      {{"render", "a.gri", "--accuracy", "paper"}, "needs --format projection"},
+      {{"render", "a.gri", "--accuracy", "paper"}, "with --format vertices; this needs --format projection"},
+      {{"render", "a.gri", "--accuracy", "compact"}, "needs --format lattice"},
       {{"render", "a.gri", "--lambda", "2"}, "packed with lambda 4"},
       {{"render", "a.gri", "--macro-width", "4"}, "width 6"},
       {{"pack", "a.gri", "-o", "b.gri"}, "already"},

@@ -35,7 +35,7 @@ TEST(Usage, MistakesExitWithTwoAndSayWhy) {
       {{"render", "a.ply", "--machine", ""}, "a machine's name or file"},
       {{"render", "a.ply", "--configuration", "fastest"}, "reference|deep"},
       {{"render", "a.ply", "--buffering", "triple"}, "single|double"},
-      {{"render", "a.ply", "--accuracy", "exact"}, "standard|paper"},
+      {{"render", "a.ply", "--accuracy", "exactly"}, "paper|fast|standard|exact|compact"},
       {{"render", "a.ply", "--shading", "scene"}, "none|simple"},
       {{"render", "a.ply", "--lanes", "5"}, "4|8|16"},
       {{"render", "a.ply", "--store", "96"}, "64|128|256|512"},
@@ -64,7 +64,7 @@ TEST(Usage, MistakesExitWithTwoAndSayWhy) {
       {{"info", "a.ply", "--store", "512"}, "cell-ps3 has a local store of 256 KB"},
       {{"pack", "a.ply"}, "--output"},
       {{"pack", "a.ply", "-o", "a.ply"}, "INPUT and -o name the same file"},
-      {{"pack", "a.ply", "-o", "a.gri", "--format", "lattice"}, "vertices|projection"},
+      {{"pack", "a.ply", "-o", "a.gri", "--format", "floats"}, "vertices|projection|lattice"},
       {{"machines", "cell-ps3", "cell-2006"}, "cell-2006"},
   };
   const TemporaryFolder folder;

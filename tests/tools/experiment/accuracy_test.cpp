@@ -1,0 +1,229 @@
+// The accuracy experiment as a program: a tiny one, on generated scenes. SPDX-License-Identifier: Apache-2.0
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <filesystem>
+#include <set>
+#include <string>
+#include <vector>
+
+#include "../gridiron/run_program.h"
+#include "../gridiron/temporary_folder.h"
+#include "csv_rows.h"
+#include "experiment/accuracy_experiment.h"
+#include "experiment/table.h"
+#include "gridiron/accuracies.h"
+#include "markup.h"
+
+namespace gridiron::test {
+namespace {
+
+namespace fs = std::filesystem;
+using Rows = std::vector<std::vector<std::string>>;
+
+std::vector<std::string> tiny(const std::string& output, const std::string& threads) {
+  // The folder itself holds no scans, so that GRIDIRON_SCENES does not matter.
+  return {"experiment", "accuracy", "-o", output, "--scenes", ".", "--size", "64x48", "--threads", threads, "--quiet"};
+}
+
+std::set<std::string> names_in(const fs::path& folder) {
+  std::set<std::string> names;
+  for (const auto& entry : fs::directory_iterator(folder)) names.insert(entry.path().filename().string());
+  return names;
+}
+
+// Every view has every profile in both configurations, and figures follow from each other.
+void expect_prices(const Rows& rows) {
+  const std::size_t profiles = tool::accuracies().size();
+  ASSERT_EQ(rows.size(), 1 + 2 * 2 * profiles);
+  for (std::size_t row = 1; row < rows.size(); ++row) {
+    SCOPED_TRACE(row);
+    const std::string profile = text_under(rows, row, "profile");
+    EXPECT_EQ(profile, tool::accuracies()[(row - 1) % profiles].name);
+    EXPECT_EQ(text_under(rows, row, "configuration"), (row - 1) / profiles % 2 == 0 ? "best" : "reference");
+    for (const std::string frame : {"", "with_distances_", "starved_"}) {
+      EXPECT_NEAR(number_under(rows, row, frame + "cycles") * number_under(rows, row, frame + "fps"), 3.2e9, 1);
+    }
+    EXPECT_LT(number_under(rows, row, "cycles"), number_under(rows, row, "with_distances_cycles"));
+    EXPECT_LT(number_under(rows, row, "dma_triangle_bytes"), number_under(rows, row, "dma_in_bytes"));
+    EXPECT_LT(number_under(rows, row, "dma_in_bytes"), number_under(rows, row, "dma_bytes"));
+    EXPECT_LT(number_under(rows, row, "triangle_bytes"), number_under(rows, row, "scene_bytes"));
+    EXPECT_LT(number_under(rows, row, "scene_bytes"), number_under(rows, row, "main_memory_bytes"));
+    EXPECT_LE(number_under(rows, row, "local_store_bytes"), 256 * 1024);
+    for (const std::string where : {"", "edge_"}) {
+      const double rays = number_under(rows, row, where + "rays");
+      EXPECT_GE(rays, 64 * 48);
+      for (const std::string what : {"holes", "false_hits", "wrong_triangles", "seen_through"}) {
+        EXPECT_NEAR(number_under(rows, row, where + what + "_per_million") * rays / 1e6,
+                    number_under(rows, row, where + what), 1e-6);
+      }
+      if (profile == "exact") EXPECT_EQ(number_under(rows, row, where + "wrong_triangles"), 0);
+    }
+    EXPECT_LE(number_under(rows, row, "t_ulp_median"), number_under(rows, row, "t_ulp_p99"));
+    EXPECT_LE(number_under(rows, row, "t_ulp_p99"), number_under(rows, row, "t_ulp_max"));
+    EXPECT_LE(number_under(rows, row, "t_ulp_max"), number_under(rows, row, "t_all_hits_ulp_max"));
+    const bool same = number_under(rows, row, "differing_pixels") == 0;
+    EXPECT_EQ(text_under(rows, row, "psnr_db").empty(), same);
+    EXPECT_EQ(number_under(rows, row, "greatest_pixel_error") == 0, same);
+    if (profile == "exact" || profile == "standard") EXPECT_EQ(number_under(rows, row, "t_ulp_max"), 0);
+  }
+}
+
+// What the page says of the targets is what their table says, and that what the prices say.
+void expect_targets(const fs::path& folder, const std::string& page) {
+  const Rows targets = csv_rows(folder / "targets.csv"), prices = csv_rows(folder / "prices.csv");
+  EXPECT_EQ(targets.size(), 1u + 8u + 3u);
+  std::size_t met = 0;
+  for (std::size_t row = 1; row < targets.size(); ++row) {
+    const bool is_met = number_under(targets, row, "worst_percent") <= number_under(targets, row, "limit_percent");
+    EXPECT_EQ(text_under(targets, row, "met"), is_met ? "yes" : "no");
+    met += is_met ? 1u : 0u;
+    if (text_under(targets, row, "what") != "bytes moved by DMA a frame") continue;
+    double worst = -100;
+    for (std::size_t from = 1; from < prices.size(); ++from) {
+      for (std::size_t to = 1; to < prices.size(); ++to) {
+        const bool pair = prices[from][0] == prices[to][0] && prices[from][1] + prices[to][1] == "bestbest" &&
+                          prices[from][2] == "standard" && prices[to][2] == "compact";
+        if (!pair) continue;
+        const double change = number_under(prices, to, "dma_bytes") / number_under(prices, from, "dma_bytes");
+        worst = std::max(worst, 100 * (change - 1));
+      }
+    }
+    EXPECT_NEAR(number_under(targets, row, "worst_percent"), worst, 1e-9);
+  }
+  std::size_t said = 0;
+  for (std::size_t place = page.find("met in every view"); place != std::string::npos;
+       place = page.find("met in every view", place + 1)) {
+    ++said;
+  }
+  EXPECT_EQ(said, met);
+}
+
+TEST(AccuracyExperiment, FilesDoNotDependOnThreads) {
+  const TemporaryFolder folder;
+  // Files of a run with other scenes go, everything else stays: another experiment's too.
+  fs::create_directory(folder.path("out3"));
+  folder.write("out3/pareto_t_bunny.svg", "earlier");
+  folder.write("out3/table3_fps.csv", "of another experiment");
+  for (const char* threads : {"1", "3"}) {
+    const ProgramResult result = run_program(folder.folder(), tiny(std::string("out") + threads, threads));
+    ASSERT_EQ(result.exit_code, 0) << result.err;
+    EXPECT_EQ(result.out, "");
+  }
+  EXPECT_TRUE(fs::remove(folder.path("out3") / "table3_fps.csv"));
+  const std::set<std::string> names = names_in(folder.path("out1"));
+  EXPECT_EQ(names, names_in(folder.path("out3")));
+  const std::vector<std::string> known = experiment::accuracy_file_names();
+  EXPECT_EQ(std::set<std::string>(known.begin(), known.end()).size(), known.size()) << "each once";
+  for (const std::string& name : names) {
+    EXPECT_NE(std::ranges::find(known, name), known.end()) << name;
+    const std::string content = read_file(folder.path("out1") / name);
+    if (!name.starts_with("host_")) EXPECT_TRUE(content == read_file(folder.path("out3") / name)) << name;
+    if (name.ends_with(".csv")) EXPECT_GE(std::ranges::count(content, '\n'), 2) << name << " has no rows";
+    if (name.ends_with(".svg")) EXPECT_FALSE(parse_markup(content).empty()) << name;
+  }
+  EXPECT_EQ(names.count("host_prices.csv"), 1u);
+  EXPECT_EQ(known.size() - names.size(), 5u * 6u) << "what is missing is of the five views that are not there";
+
+  // The page names every file and nothing else.
+  const std::string page = read_file(folder.path("out1") / "index.html");
+  std::set<std::string> linked = {"index.html"};
+  for (const MarkupElement& element : parse_markup(page)) {
+    for (const char* key : {"href", "src"}) {
+      const auto found = element.attributes.find(key);
+      if (found != element.attributes.end() && found->second.front() != '#') linked.insert(found->second);
+    }
+  }
+  EXPECT_EQ(linked, names);
+  EXPECT_NE(page.find("bunny.ply was not found"), std::string::npos);
+  EXPECT_EQ(page.find("nan"), std::string::npos);
+  EXPECT_EQ(page.find("none %"), std::string::npos);
+  expect_prices(csv_rows(folder.path("out1") / "prices.csv"));
+  expect_targets(folder.path("out1"), page);
+
+  // The histogram holds each pixel of the true triangle once; points on a front are those that the table says.
+  const Rows histogram = csv_rows(folder.path("out1") / "t_histogram.csv");
+  const Rows prices = csv_rows(folder.path("out1") / "prices.csv");
+  ASSERT_EQ(histogram.size(), prices.size());
+  for (std::size_t row = 1; row < prices.size(); ++row) {
+    double sum = 0;
+    for (std::size_t column = 3; column < histogram[row].size(); ++column) sum += std::stod(histogram[row][column]);
+    EXPECT_EQ(sum, number_under(prices, row, "true_hits") - number_under(prices, row, "holes") -
+                       number_under(prices, row, "wrong_triangles"));
+  }
+  const Rows fronts = csv_rows(folder.path("out1") / "pareto.csv");
+  EXPECT_EQ(fronts.size(), 1 + 3 * 3 * 2 * tool::accuracies().size()) << "three errors; two views, and all";
+  for (std::size_t row = 1; row < fronts.size(); ++row) {
+    bool beaten = false;
+    for (std::size_t other = 1; other < fronts.size(); ++other) {
+      if (fronts[other][0] != fronts[row][0] || fronts[other][1] != fronts[row][1]) continue;
+      const double x = number_under(fronts, row, "mcycles"), other_x = number_under(fronts, other, "mcycles");
+      const double y = number_under(fronts, row, "error_value"), other_y = number_under(fronts, other, "error_value");
+      beaten = beaten || (other_x <= x && other_y <= y && (other_x < x || other_y < y));
+    }
+    EXPECT_EQ(text_under(fronts, row, "on_front"), beaten ? "no" : "yes") << row;
+  }
+
+  // The plain text is as wide as a README, and shows both tables.
+  const std::string text = read_file(folder.path("out1") / "prices_teapot.txt");
+  std::size_t line_begin = 0;
+  for (std::size_t end = text.find('\n'); end != std::string::npos; end = text.find('\n', line_begin)) {
+    EXPECT_LE(end - line_begin, 120u);
+    line_begin = end + 1;
+  }
+  EXPECT_EQ(static_cast<std::size_t>(std::ranges::count(text, '\n')), 2 * (1 + 2 * tool::accuracies().size()) + 1);
+}
+
+TEST(AccuracyExperiment, MistakesAreTold) {
+  const TemporaryFolder folder;
+  struct Case {
+    std::vector<std::string> arguments;
+    int exit_code;
+    const char* words;
+  };
+  const Case cases[] = {
+      {{"experiment", "accuracy"}, 2, "--output"},
+      {{"experiment", "accuracy", "-o", "out", "--largest", "6000"}, 2, "--largest: is of experiment paper alone"},
+      {{"experiment", "accuracy", "-o", "out", "--size", "0x9"}, 2, "WxH"},
+      {{"experiment", "accuracy", "-o", "out", "--scenes", "nowhere"}, 1, "nowhere: no such folder"},
+      {{"experiment", "accuracy", "-o", "no/such/out"}, 1, "no/such/out"},
+  };
+  for (const Case& mistake : cases) {
+    const ProgramResult result = run_program(folder.folder(), mistake.arguments);
+    EXPECT_EQ(result.exit_code, mistake.exit_code) << result.err;
+    EXPECT_NE(result.err.find(mistake.words), std::string::npos) << result.err;
+  }
+  EXPECT_EQ(folder.names(), std::vector<std::string>{});
+}
+
+// Found before anything is read or rendered: the scan, which is wrong, is not even looked at.
+TEST(AccuracyExperiment, AnOutputThatCannotBeIsToldFirst) {
+  const TemporaryFolder folder;
+  folder.write("bunny.ply", "nonsense");
+  for (const char* name : {"index.html", "host_prices.csv", "errors_best_bunny.svg", "prices_conference_2.txt"}) {
+    fs::create_directories(folder.path("out") / name);
+    const ProgramResult result = run_program(folder.folder(), tiny("out", "1"));
+    EXPECT_EQ(result.exit_code, 1) << name;
+    EXPECT_NE(result.err.find(std::string("out/") + name + ": cannot write: it is a folder"), std::string::npos)
+        << result.err;
+    fs::remove_all(folder.path("out"));
+  }
+}
+
+// Where there is a scan nothing is made.
+TEST(AccuracyExperiment, ScansAreTheViews) {
+  const TemporaryFolder folder;
+  folder.write_ply("bunny.ply", make_torus(24, 16, 1.0f, 0.4f));
+  std::vector<std::string> arguments = tiny("out", "2");
+  arguments.pop_back();
+  const ProgramResult result = run_program(folder.folder(), arguments);
+  ASSERT_EQ(result.exit_code, 0) << result.err;
+  EXPECT_NE(result.out.find("Horse is left out"), std::string::npos) << result.out;
+  EXPECT_NE(result.out.find("out/index.html: "), std::string::npos) << result.out;
+  const std::set<std::string> names = names_in(folder.path("out"));
+  EXPECT_EQ(names.count("prices_bunny.txt"), 1u);
+  EXPECT_EQ(names.count("prices_teapot.txt"), 0u);
+}
+
+}  // namespace
+}  // namespace gridiron::test

@@ -1,0 +1,21 @@
+// Edge points: places on edges and vertices of a mesh that a picture shows.
+// Memory: std::vector. Threads: any, no shared state. SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <gridiron/base/math.h>
+#include <gridiron/scene/mesh.h>
+
+#include <cstddef>
+#include <cstdint>
+#include <span>
+#include <vector>
+
+namespace gridiron::experiment {
+
+/// @returns `count` points on edges of triangles that a picture shows, spread evenly over its pixels, every fourth of
+/// them a vertex; none where nothing is shown. Rounded to floats, so beside the edge by as much.
+/// @param ids  the picture's triangles, kNoTriangle where nothing is hit.
+[[nodiscard]] std::vector<Vec3> edge_points(const MeshView& mesh, std::span<const std::uint32_t> ids,
+                                            std::size_t count);
+
+}  // namespace gridiron::experiment

@@ -1,0 +1,33 @@
+// Price book: the price list as tables, plots and a page.
+// Memory: the book's. Threads: one. SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <cstdint>
+#include <string>
+#include <vector>
+
+#include "experiment/book.h"
+#include "experiment/price_list.h"
+#include "experiment/table.h"
+
+namespace gridiron::experiment {
+
+/// @returns what a view's frames cost and what is wrong with them, a row for each configuration and profile.
+[[nodiscard]] Table view_costs(const PriceList& list, std::size_t view);
+[[nodiscard]] Table view_errors(const PriceList& list, std::size_t view);
+
+/// Each writes a section or more. What the words say follows from the list.
+void write_overview(const PriceList& list, Book& book);
+void write_targets(const PriceList& list, Book& book);
+void write_steps(const PriceList& list, Book& book);
+void write_fronts(const PriceList& list, Book& book);
+void write_starved(const PriceList& list, Book& book);
+void write_views(const PriceList& list, Book& book);
+
+/// Times of this host: one frame after another on one thread, nothing beside it. Errors: Failure.
+void write_host_prices(const PriceList& list, Book& book);
+
+/// @returns the name of the file that shows a view's prices as plain text.
+[[nodiscard]] std::string price_text_name(const std::string& view_key);
+
+}  // namespace gridiron::experiment

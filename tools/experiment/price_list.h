@@ -1,0 +1,85 @@
+// Price list: what every accuracy profile costs on the simulated chip, and what is wrong with its answers.
+// Memory: owns views and results. Threads: collect() starts its own. SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <gridiron/base/records.h>
+
+#include <cstddef>
+#include <cstdint>
+#include <functional>
+#include <optional>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "experiment/answers.h"
+#include "experiment/plan.h"
+#include "experiment/systems.h"
+#include "experiment/views.h"
+
+namespace gridiron::experiment {
+
+/// An accuracy profile as the list shows it.
+struct Profile {
+  std::string key;  ///< its name on the command line
+  Accuracy accuracy;
+  std::string words;  ///< what it does
+};
+
+/// @returns all accuracy profiles, the least accurate first; those with a geometry of their own last.
+[[nodiscard]] std::vector<Profile> make_profiles();
+
+/// Names of the configurations that each profile is rendered with.
+inline constexpr const char* kPricedConfigurations[] = {"best", "reference"};
+
+/// One profile in one configuration on one view.
+struct Price {
+  std::size_t view, configuration, profile;  ///< indices
+  GridVariant variant;
+  Plan::RunId frame, with_distances, starved;  ///< the last: `frame` on the starved machine
+  std::optional<Comparison> errors;            ///< nothing where the frame or its truth cannot be rendered
+  HitCounts at_edges;                          ///< of rays aimed at edges and vertices, about as many as pixels
+  bool same_picture = false;                   ///< with distances and without
+};
+
+/// What is timed, and once it is, what it came to.
+class PriceList {
+ public:
+  /// Plans all frames. @param views  not empty; with cameras that no profile moves.
+  PriceList(std::vector<View> views, std::uint32_t width, std::uint32_t height);
+
+  /// Runs everything. Results do not depend on `threads`.
+  /// @param step_done  called serialised after each of step_count() steps.
+  /// Errors: as Plan::execute().
+  void collect(std::uint32_t threads, const std::function<void()>& step_done);
+  [[nodiscard]] std::size_t step_count() const { return plan_.run_count() + prices_.size(); }
+
+  [[nodiscard]] const std::vector<View>& views() const { return views_; }
+  [[nodiscard]] const std::vector<Profile>& profiles() const { return profiles_; }
+  [[nodiscard]] const std::vector<Price>& prices() const { return prices_; }  ///< by view, configuration, profile
+  [[nodiscard]] const Machine& machine() const { return machine_; }
+  [[nodiscard]] const Machine& starved() const { return starved_; }
+  [[nodiscard]] const Plan& plan() const { return plan_; }
+  [[nodiscard]] FrameRequest request() const;
+
+  [[nodiscard]] const Price& price(std::size_t view, std::size_t configuration, std::size_t profile) const;
+  /// @returns the profile's index, nothing where there is no such profile.
+  [[nodiscard]] std::optional<std::size_t> find_profile(std::string_view key) const;
+
+  [[nodiscard]] const RunResult& frame(const Price& price) const { return plan_.result(price.frame); }
+  [[nodiscard]] const RunResult& with_distances(const Price& price) const { return plan_.result(price.with_distances); }
+  [[nodiscard]] const RunResult& on_starved(const Price& price) const { return plan_.result(price.starved); }
+
+ private:
+  void compare_view(std::size_t view, const std::function<void()>& step_done);
+  [[nodiscard]] Answers answers_at(const std::vector<Vec3>& points, const Price& price) const;
+
+  std::vector<View> views_;
+  std::vector<Profile> profiles_;
+  Machine machine_, starved_;
+  std::uint32_t width_, height_;
+  Plan plan_;
+  std::vector<Price> prices_;
+};
+
+}  // namespace gridiron::experiment
