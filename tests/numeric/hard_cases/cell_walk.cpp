@@ -127,13 +127,12 @@ WalkTally walk(const GridRecord& grid, const std::vector<Rays>& all_rays) {
       walk_packet<Packet<4>>(grid, one, 0, {cells}, block, tally);
     }
     tally.rays += rays.directions.size();
-    // Side by side: of rays of all directions, whose frustum is the whole grid, once.
-    const std::size_t together = rays.columns == 0 ? std::min<std::size_t>(16, touched.size()) : touched.size();
-    for (std::size_t first = 0; first < together; first += 16) {
-      walk_packet<Packet<4>>(grid, rays, first, touched, block, tally);
-    }
-    for (std::size_t first = 0; rays.columns != 0 && first < together; first += 64) {
+    // Side by side, but for rays of all directions: the frustum of those is the whole grid.
+    for (std::size_t first = 0; rays.columns != 0 && first < touched.size(); first += 64) {
       walk_packet<Packet<8>>(grid, rays, first, touched, block, tally);
+      for (std::size_t i = first; i < first + 64 && i < touched.size(); i += 16) {
+        walk_packet<Packet<4>>(grid, rays, i, touched, block, tally);
+      }
     }
     if (testing::Test::HasFailure()) return tally;
   }

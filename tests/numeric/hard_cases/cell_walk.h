@@ -23,7 +23,7 @@ struct WalkTally {
 /// A grid of cells of any size, its origin at `minimum`.
 GridRecord grid_of(Vec3 minimum, Vec3 cells_per_unit, const UVec3& cell_count, std::uint32_t macro_width);
 
-/// Takes every ray through the grid, alone and, in packets of 16 and, of a picture, of 64, beside its neighbours. Each
+/// Takes every ray through the grid alone and, in a picture, beside its neighbours in packets of 16 and 64. Each
 /// cell touched has to be visited; each cell visited is one of the grid, visited once. What is not so fails the running
 /// test.
 WalkTally walk(const GridRecord& grid, const std::vector<Rays>& all_rays);

@@ -38,7 +38,7 @@ const char* Judge::fault_of(const Rays& rays, std::size_t ray, const Answer& ans
   // C: whoever promises more keeps this too.
   if (is_hit && answer.id >= target_.mesh().triangles.size()) return "no such triangle";
   if (is_hit && !target_.has_area(answer.id)) return "a triangle without area";
-  if (form == Form::kDistance && is_hit && !(answer.t >= 0.0f && answer.t <= rays.t_far))
+  if (form == Form::kDistance && is_hit && !(answer.t > 0.0f && answer.t <= rays.t_far))
     return "a distance that is none";
   if (form == Form::kDepth && !(answer.t >= 0.0f)) return "a depth that is none";
   if (!target_.profile().is_exact) return nullptr;

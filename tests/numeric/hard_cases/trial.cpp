@@ -8,8 +8,9 @@
 #include <bit>
 #include <cmath>
 #include <cstdlib>
+#include <cstring>
 #include <fstream>
-#include <numeric>
+#include <optional>
 #include <sstream>
 #include <string>
 
@@ -83,6 +84,32 @@ void shoot_by_pipeline(Judge& judge, Target& target, const Rays& rays, std::size
   }
 }
 
+// The rays as a frame has them: rounded, and flushed, as it computes their directions.
+Rays as_in_frame(const Rays& rays, const Trial& trial) {
+  const RoundingGuard guard(trial.rounding, trial.flush);
+  if (rays.columns != 0) {
+    const auto rows = static_cast<std::uint32_t>(rays.directions.size()) / rays.columns;
+    Rays computed = picture(rays.origin, rays.corner, rays.step_x, rays.step_y, rays.columns, rows);
+    computed.t_far = rays.t_far;
+    return computed;
+  }
+  Rays computed = rays;
+  for (std::size_t i = 0; i < rays.directions.size(); ++i) {
+    computed.directions[i] = picture(rays.origin, rays.directions[i], Vec3(0.0f), Vec3(0.0f), 1, 1).directions[0];
+  }
+  return computed;
+}
+
+bool has_same_directions(const Rays& a, const Rays& b) {
+  return std::memcmp(a.directions.data(), b.directions.data(), a.directions.size() * sizeof(Vec3)) == 0;
+}
+
+std::vector<NearestHit> ask(const Oracle& oracle, const Rays& rays) {
+  std::vector<OracleRay> asked;
+  for (std::size_t i = 0; i < rays.directions.size(); ++i) asked.push_back(oracle_ray(rays, i));
+  return oracle.nearest(asked, 1);
+}
+
 void append_to_table(const Trial& trial, const Tally& tally, const std::vector<std::string>& shares) {
   const char* path = std::getenv("GRIDIRON_HARD_CASES_TABLE");
   if (path == nullptr) return;
@@ -142,10 +169,15 @@ Tally shoot(const Trial& trial) {
   std::vector<std::string> shares;
   const TestMesh* truth_mesh = nullptr;
   std::vector<Rays> all_rays;
-  std::vector<std::vector<NearestHit>> truths;
+  std::vector<std::vector<NearestHit>> truths, frame_truths;
   TestMesh last_mesh;
   for (const Profile& profile : kProfiles) {
-    Target target(trial.mesh, trial.grid, profile);
+    std::optional<Target> built;
+    {
+      const RoundingGuard guard(trial.rounding, trial.flush);
+      built.emplace(trial.mesh, trial.grid, profile);
+    }
+    Target& target = *built;
     if (target.status() == Status::kNoTriangles && &profile != kProfiles) continue;  // rounding left no area
     EXPECT_EQ(target.status(), Status::kOk) << profile.name;
     if (target.status() != Status::kOk) return tally;
@@ -156,18 +188,24 @@ Tally shoot(const Trial& trial) {
       all_rays = trial.aim(mesh);
       const Oracle oracle(mesh.view(), {.reading = Reading::kStandard});
       truths.clear();
-      for (const Rays& rays : all_rays) {
-        std::vector<OracleRay> asked;
-        for (std::size_t i = 0; i < rays.directions.size(); ++i) asked.push_back(oracle_ray(rays, i));
-        truths.push_back(oracle.nearest(asked, 1));
+      frame_truths.clear();
+      for (Rays& rays : all_rays) {
+        const Rays in_frame = as_in_frame(rays, trial);
+        if (rays.columns != 0) rays = in_frame;
+        truths.push_back(ask(oracle, rays));
+        frame_truths.push_back(has_same_directions(rays, in_frame) ? truths.back() : ask(oracle, in_frame));
       }
     }
     Judge judge(target, trial.grade);
     const bool all_ways = all_rays.size() < kFewRays;
     for (std::size_t i = 0; i < all_rays.size(); ++i) {
+      {
+        const RoundingGuard guard(trial.rounding, trial.flush);
+        judge.set_truth(truths[i]);
+        shoot_by_intersector(judge, target, all_rays[i], i, all_ways);
+      }
       const RoundingGuard guard(trial.rounding, trial.flush);
-      judge.set_truth(truths[i]);
-      shoot_by_intersector(judge, target, all_rays[i], i, all_ways);
+      judge.set_truth(frame_truths[i]);
       shoot_by_pipeline(judge, target, all_rays[i], i, all_ways);
     }
     EXPECT_EQ(judge.failures(), 0u) << profile.name;

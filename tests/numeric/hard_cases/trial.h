@@ -131,7 +131,7 @@ struct Trial {
   Grade grade = Grade::kEqual;
   std::function<std::vector<Rays>(const TestMesh&)> aim;  ///< at the mesh as an accuracy stores it
   GridParameters grid = {};
-  int rounding = FE_TONEAREST;  ///< while rays are traced
+  int rounding = FE_TONEAREST;  ///< while the scene is built and rays are traced
   bool flush = false;           ///< denormals, likewise
 };
 
