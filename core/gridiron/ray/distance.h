@@ -17,7 +17,9 @@ namespace gridiron {
 /// What the distances of one triangle need, in double. Distance of a ray = numerator / (normal . d).
 ///
 /// With u = 2^-52: normal = (b - a) x (c - a) has error 4 u M per component, M_x = |e1_y e2_z| + |e1_z e2_y|; the
-/// numerator (a - o) . normal 8 u sum |a_i| M_i; the denominator 7 u |d|max sum M_i. kDistanceError is twice that.
+/// numerator (a - o) . normal 8 u sum |a_i| M_i; the denominator 7 u |d|max sum M_i. kDistanceError is twice that; the
+/// quotient's own rounding and those of the interval around it are below the 4 u added. u is one unit in any rounding
+/// mode. No product leaves the range of a double; with denormals flushed the coordinates must be as in edges.h.
 struct DistanceSetup {
   double normal[3];
   double numerator;

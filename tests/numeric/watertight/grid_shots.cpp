@@ -1,6 +1,7 @@
 // Shots through the grid: see the header. SPDX-License-Identifier: Apache-2.0
 #include "numeric/watertight/grid_shots.h"
 
+#include <gridiron/base/triangle_formats.h>
 #include <gridiron/frame/frame_setup.h>
 #include <gridiron/grid/grid_builder.h>
 #include <gridiron/image/scene_image.h>
@@ -234,19 +235,19 @@ class GridShooting {
     for (std::size_t i = 0; i < machines_.size(); ++i) {
       const std::vector<std::uint32_t> ids = render(profile, machines_[i], rays, frame);
       if (i == 0) first = ids;
-      hold_against(tally, i, seed, "another hit than to nearest", ids, first, p);
       const auto misses = static_cast<std::uint64_t>(std::ranges::count(ids, kNoTriangle));
       tally.machines[i].misses[p] += misses;
-      if (misses == 0 || !profile.is_watertight) continue;
-      fail(tally, seed, "a miss", profile.name,
-           static_cast<std::uint32_t>(std::ranges::find(ids, kNoTriangle) - ids.begin()));
+      if (!profile.is_watertight) continue;
+      if (misses != 0) {
+        fail(tally, seed, "a miss", profile.name, machines_[i].name,
+             static_cast<std::uint32_t>(std::ranges::find(ids, kNoTriangle) - ids.begin()));
+      }
+      if (options_.oracle_stride != 0 && frame % kOracleStride == 0) ask_oracle(tally, seed, rays, ids, p, i);
     }
     if (!profile.is_watertight) return;
     for (std::uint64_t other = 1; frame % kTurnStride == 0 && other < kTurns; ++other) {
-      hold_against(tally, 0, seed, "another hit by another turn", render(profile, machines_[0], rays, frame + other),
-                   first, p);
+      hold_against(tally, seed, render(profile, machines_[0], rays, frame + other), first, p);
     }
-    if (options_.oracle_stride != 0 && frame % kOracleStride == 0) ask_oracle(tally, seed, rays, first, p);
   }
 
   // The triangles of a frame's pixels. @param turn  says which packets, lanes and planes it has.
@@ -267,43 +268,47 @@ class GridShooting {
                                                                                   machine);
   }
 
-  void hold_against(Tally& tally, std::size_t machine, std::uint64_t seed, const char* what,
-                    const std::vector<std::uint32_t>& ids, const std::vector<std::uint32_t>& wanted, std::size_t p) {
+  void hold_against(Tally& tally, std::uint64_t seed, const std::vector<std::uint32_t>& ids,
+                    const std::vector<std::uint32_t>& wanted, std::size_t p) {
     for (std::uint32_t pixel = 0; pixel < kPixels; ++pixel) {
       if (ids[pixel] == wanted[pixel]) continue;
-      ++tally.machines[machine].differences[p];
-      if (kProfiles[p].is_watertight) fail(tally, seed, what, kProfiles[p].name, pixel);
+      ++tally.machines[0].differences[p];
+      fail(tally, seed, "another hit by another turn", kProfiles[p].name, machines_[0].name, pixel);
     }
   }
 
+  // The rays are those that the machine makes: it rounds their directions, too.
   void ask_oracle(Tally& tally, std::uint64_t seed, const PixelRays& rays, const std::vector<std::uint32_t>& ids,
-                  std::size_t p) {
+                  std::size_t p, std::size_t machine) {
     TestRandom random(seed);
     for (int i = 0; i < 64; ++i) {
       const std::uint32_t pixel = random.below(kPixels);
       OracleRay ray{{rays.eye[0], rays.eye[1], rays.eye[2]}, {}};
-      for (int axis = 0; axis < 3; ++axis) ray.direction[axis] = rays.direction(axis, pixel);
+      {
+        const RoundingGuard guard(machines_[machine]);
+        for (int axis = 0; axis < 3; ++axis) ray.direction[axis] = rays.direction(axis, pixel);
+      }
       const NearestHit nearest = solid_.oracle().nearest(ray);
       const auto& ties = kProfiles[p].accuracy == Accuracy::kExact ? nearest.ties : nearest.float_ties;
       ++tally.asked_rays;
       if (ids[pixel] == (ties.empty() ? kNoTriangle : ties.front())) continue;
-      ++tally.oracle_differences[p];
-      fail(tally, seed, "not the oracle's hit", kProfiles[p].name, pixel);
+      ++tally.machines[machine].differences[p];
+      fail(tally, seed, "not the oracle's hit", kProfiles[p].name, machines_[machine].name, pixel);
     }
   }
 
   void shoot_peers(Tally& tally, const PixelRays& rays) {
-    for (std::uint32_t first = 0; first < kPixels && !peers_.empty(); first += watertight::kShotRays) {
-      watertight::Shot shot{};
-      shot.active = (1u << watertight::kShotRays) - 1u;
-      for (int axis = 0; axis < 3; ++axis) {
-        shot.origin[axis] = rays.eye[axis];
-        for (std::uint32_t ray = 0; ray < watertight::kShotRays; ++ray) {
-          shot.dir[axis][ray] = rays.direction(axis, first + ray);
+    for (std::size_t i = 0; i < machines_.size(); ++i) {
+      const RoundingGuard guard(machines_[i]);
+      for (std::uint32_t first = 0; first < kPixels && !peers_.empty(); first += watertight::kShotRays) {
+        watertight::Shot shot{};
+        shot.active = (1u << watertight::kShotRays) - 1u;
+        for (int axis = 0; axis < 3; ++axis) {
+          shot.origin[axis] = rays.eye[axis];
+          for (std::uint32_t ray = 0; ray < watertight::kShotRays; ++ray) {
+            shot.dir[axis][ray] = rays.direction(axis, first + ray);
+          }
         }
-      }
-      for (std::size_t i = 0; i < machines_.size(); ++i) {
-        const RoundingGuard guard(machines_[i]);
         for (std::size_t p = 0; p < peers_.size(); ++p) {
           const std::uint32_t missed = shot.active & ~peers_[p](shot, 1);
           tally.machines[i].peer_misses[p] += static_cast<std::uint64_t>(std::popcount(missed));
@@ -312,10 +317,11 @@ class GridShooting {
     }
   }
 
-  static void fail(Tally& tally, std::uint64_t seed, const char* what, const char* profile, std::uint32_t pixel) {
+  static void fail(Tally& tally, std::uint64_t seed, const char* what, const char* profile, const char* machine,
+                   std::uint32_t pixel) {
     if (!tally.first_failure.empty()) return;
     std::ostringstream words;
-    words << profile << ", through the grid: " << what << ", seed " << seed << ", pixel " << pixel;
+    words << profile << ", through the grid, " << machine << ": " << what << ", seed " << seed << ", pixel " << pixel;
     tally.first_failure = words.str();
   }
 

@@ -118,7 +118,7 @@ std::vector<Solid> make_solids(Detail detail) {
   std::vector<Solid> solids;
   solids.push_back({"sphere", full ? make_sphere(72, 71, 1.0f) : make_sphere(20, 21, 1.0f)});
   solids.push_back({"torus", full ? make_torus(96, 64, 0.7f, 0.3f) : make_torus(24, 16, 0.7f, 0.3f)});
-  solids.push_back({"fan", full ? make_fan_solid(128, 1e-5f) : make_fan_solid(24, 1e-5f)});
+  solids.push_back({"fan", full ? make_fan_solid(64, 1e-5f) : make_fan_solid(24, 1e-5f)});
   solids.push_back({"heights", full ? make_height_solid(192, 0.1f, 1) : make_height_solid(24, 0.1f, 1)});
   for (Solid& solid : solids) centre(solid.mesh);
   return solids;

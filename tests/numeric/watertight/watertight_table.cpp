@@ -8,8 +8,9 @@
 #include <cstdlib>
 #include <fstream>
 #include <iostream>
-#include <map>
 #include <memory>
+#include <sstream>
+#include <stdexcept>
 #include <string>
 #include <vector>
 
@@ -26,11 +27,13 @@ namespace {
 struct Arguments {
   unsigned threads = 1;
   std::uint64_t rays = 1000000;
+  std::uint64_t placed_rays = 1000000;
   std::uint64_t grid_rays = 1000000;
   std::uint64_t seed = 1;
   std::string scenes;
   std::string csv;
-  std::string only_solid, only_kind, only_factor;  // what their names hold
+  std::string only_solid, only_place, only_kind, only_factor;  // what their names hold
+  std::vector<std::string> read;
 };
 
 // A row of the table: misses of each profile, then of each peer.
@@ -151,6 +154,33 @@ class Table {
   }
   [[nodiscard]] bool is_broken() const { return broken_; }
 
+  // Adds the rows of a file that an earlier run has written.
+  void read(const std::string& name) {
+    std::ifstream in(name);
+    std::string line;
+    if (!std::getline(in, line)) throw std::runtime_error(name + " cannot be read");
+    while (std::getline(in, line)) {
+      std::istringstream fields(line);
+      std::string solid, kind, factor, number;
+      std::getline(fields, solid, ',');
+      std::getline(fields, kind, ',');
+      fields.ignore();
+      std::getline(fields, factor, '"');
+      fields.ignore();
+      std::vector<std::uint64_t> numbers;
+      while (std::getline(fields, number, ',')) numbers.push_back(std::stoull(number));
+      if (numbers.size() != 4 + column_names().size()) throw std::runtime_error(name + ": " + line);
+      Row row;
+      row.rays = numbers[0];
+      row.lattice_rays = numbers[1];
+      row.misses.assign(numbers.begin() + 2, numbers.end() - 2);
+      row.differences = numbers[numbers.size() - 2];
+      row.asked_rays = numbers.back();
+      for (const Machine& machine : machines()) row.is_promised &= machine.is_promised || machine.name != factor;
+      add(solid, kind, factor, row);
+    }
+  }
+
  private:
   using Sums = std::vector<std::pair<std::string, Row>>;
 
@@ -177,6 +207,11 @@ class Run {
   explicit Run(const Arguments& arguments) : arguments_(arguments), table_(arguments.csv) {}
 
   int run() {
+    for (const std::string& file : arguments_.read) table_.read(file);
+    if (!arguments_.read.empty()) {
+      table_.print_sums();
+      return table_.is_broken() ? 1 : 0;
+    }
     std::vector<Solid> solids = make_solids(Detail::kFull);
     for (const Solid& solid : solids) {
       const std::string reason = why_not_closed(solid.mesh);
@@ -193,7 +228,8 @@ class Run {
     bool is_base = true;
     for (const Placement& placement : all_placements()) {
       for (const Solid& solid : solids) {
-        if (holds(solid.name, arguments_.only_solid)) shoot(solid, placement, is_base);
+        if (!holds(placement.name, arguments_.only_place) || !holds(solid.name, arguments_.only_solid)) continue;
+        shoot(solid, placement, is_base);
       }
       is_base = false;
     }
@@ -211,7 +247,6 @@ class Run {
       const std::string factor = is_base ? machines()[i].name : placement.name;
       if (i == 0 || holds(factor, arguments_.only_factor)) wanted.push_back(i);
     }
-    if (!is_base && !holds(placement.name, arguments_.only_factor)) return;
     std::vector<Machine> chosen;
     for (const std::size_t i : wanted) chosen.push_back(machines()[i]);
     const PlacedSolid placed(solid, placement);
@@ -220,8 +255,10 @@ class Run {
     for (const RayKind kind : kRayKinds) {
       if (!holds(name_of(kind), arguments_.only_kind)) continue;
       const auto start = Clock::now();
-      const TallyOptions options{
-          .rays = arguments_.rays, .first_seed = arguments_.seed, .threads = arguments_.threads, .oracle_stride = 64};
+      const TallyOptions options{.rays = is_base ? arguments_.rays : arguments_.placed_rays,
+                                 .first_seed = arguments_.seed,
+                                 .threads = arguments_.threads,
+                                 .oracle_stride = 64};
       const Tally tally = shoot_all(placed, kind, chosen, peers.list(), options);
       const Tally lattice_tally = shoot_all(on_lattice, kind, chosen, {}, options);
       report(solid, name_of(kind), placement, tally, lattice_tally, start);
@@ -271,14 +308,17 @@ int main(int argc, char** argv) {
   if (const char* scenes = std::getenv("GRIDIRON_SCENES")) arguments.scenes = scenes;
   CLI::App app("Rays from inside closed meshes that hit nothing: ours under every machine, and Embree's");
   app.add_option("--threads", arguments.threads, "threads to shoot with")->check(CLI::Range(1, 1024));
-  app.add_option("--rays", arguments.rays, "rays of each kind");
+  app.add_option("--rays", arguments.rays, "rays of each kind in the base case, under each machine");
+  app.add_option("--placed-rays", arguments.placed_rays, "rays of each kind in each other place and size");
   app.add_option("--grid-rays", arguments.grid_rays, "rays through the grid");
   app.add_option("--seed", arguments.seed, "of the first packet");
   app.add_option("--scenes", arguments.scenes, "directory of scans; default: $GRIDIRON_SCENES");
   app.add_option("--csv", arguments.csv, "a file for the whole table");
   app.add_option("--solid", arguments.only_solid, "only solids whose name holds this");
+  app.add_option("--place", arguments.only_place, "only places and sizes whose name holds this");
   app.add_option("--kind", arguments.only_kind, "only kinds of rays whose name holds this");
-  app.add_option("--factor", arguments.only_factor, "only factors whose name holds this");
+  app.add_option("--factor", arguments.only_factor, "only machines, of the base case, whose name holds this");
+  app.add_option("--read", arguments.read, "shoots nothing: sums up these files");
   CLI11_PARSE(app, argc, argv);
   try {
     return gridiron::test::Run(arguments).run();
