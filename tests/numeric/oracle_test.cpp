@@ -6,17 +6,13 @@
 
 #include <array>
 #include <bit>
-#include <cfenv>
 #include <cmath>
 #include <limits>
 #include <optional>
 
-#if defined(__SSE2__)
-#include <xmmintrin.h>
-#endif
-
 #include "core/seeds.h"
 #include "numeric/hard_rays.h"
+#include "numeric/rounding_guard.h"
 #include "support/test_mesh.h"
 
 namespace gridiron::test {
@@ -177,31 +173,6 @@ TEST(Oracle, BoxesAndThreadsChangeNothingOnWholeMeshes) {
   EXPECT_LT(boxed.pairs * 5, plain.pairs);
 }
 
-// Sets a rounding mode, and that denormals are flushed where the processor can, for as long as it lives.
-class RoundingGuard {
- public:
-  explicit RoundingGuard(int mode, bool flush) {
-#if defined(__SSE2__)
-    had_ = _mm_getcsr();
-    if (flush) _mm_setcsr(had_ | 0x8040u);
-#else
-    (void)flush;
-#endif
-    EXPECT_EQ(std::fesetround(mode), 0);
-  }
-  ~RoundingGuard() {
-    std::fesetround(FE_TONEAREST);
-#if defined(__SSE2__)
-    _mm_setcsr(had_);
-#endif
-  }
-  RoundingGuard(const RoundingGuard&) = delete;
-  RoundingGuard& operator=(const RoundingGuard&) = delete;
-
- private:
-  unsigned had_ = 0;
-};
-
 TEST(Oracle, RoundingModesAndFlushingChangeNothing) {
   std::uint64_t rays = 0;
   for_each_seed(600, [&](std::uint64_t seed) {
@@ -209,7 +180,7 @@ TEST(Oracle, RoundingModesAndFlushingChangeNothing) {
     const Oracle nearest(hard.mesh.view());
     std::vector<NearestHit> wanted;
     for (const OracleRay& ray : hard.rays) wanted.push_back(nearest.nearest(ray));
-    for (const int mode : {FE_TONEAREST, FE_TOWARDZERO, FE_UPWARD, FE_DOWNWARD}) {
+    for (const int mode : kRoundingModes) {
       std::vector<NearestHit> found;
       {
         const RoundingGuard guard(mode, true);

@@ -21,9 +21,9 @@ struct Place {
 };
 // Scales by powers of two, and offsets in units of the scaled body.
 const Place kPlaces[] = {
-    {1.0f, {0, 0, 0}},      {1.0f, {16, -16, 16}},     {1.0f, {1e3f, 1e3f, 1e3f}}, {1.0f, {148376, 1234, -223423}},
-    {1.0f, {1e6f, 0, 1e6f}}, {0x1p-50f, {0, 0, 0}},    {0x1p50f, {0, 0, 0}},       {0x1p-100f, {0, 0, 0}},
-    {0x1p100f, {0, 0, 0}},  {0x1p-20f, {100, -7, 1e3f}}, {0x1p20f, {100, -7, 1e3f}},
+    {1.0f, {0, 0, 0}},       {1.0f, {16, -16, 16}},       {1.0f, {1e3f, 1e3f, 1e3f}}, {1.0f, {148376, 1234, -223423}},
+    {1.0f, {1e6f, 0, 1e6f}}, {0x1p-50f, {0, 0, 0}},       {0x1p50f, {0, 0, 0}},       {0x1p-100f, {0, 0, 0}},
+    {0x1p100f, {0, 0, 0}},   {0x1p-20f, {100, -7, 1e3f}}, {0x1p20f, {100, -7, 1e3f}},
 };
 
 TestMesh placed(TestMesh mesh, const Place& place) {
@@ -56,7 +56,8 @@ Vec3 random_direction(TestRandom& random) {
 // A convex body turned so that its faces lie along no axis; each vertex is one float triple for all its faces.
 TestMesh turned(TestMesh mesh) {
   for (Vec3& v : mesh.vertices) {
-    const Vec3 p{0.36f * v.x + 0.48f * v.y - 0.8f * v.z, -0.8f * v.x + 0.6f * v.y, 0.48f * v.x + 0.64f * v.y + 0.6f * v.z};
+    const Vec3 p{0.36f * v.x + 0.48f * v.y - 0.8f * v.z, -0.8f * v.x + 0.6f * v.y,
+                 0.48f * v.x + 0.64f * v.y + 0.6f * v.z};
     v = p;
   }
   return mesh;
@@ -72,11 +73,11 @@ TestMesh make_octahedron() {
 TestMesh make_icosahedron() {
   TestMesh mesh;
   const float g = 1.618034f;
-  mesh.vertices = {{-1, g, 0}, {1, g, 0}, {-1, -g, 0}, {1, -g, 0}, {0, -1, g}, {0, 1, g},
-                   {0, -1, -g}, {0, 1, -g}, {g, 0, -1}, {g, 0, 1}, {-g, 0, -1}, {-g, 0, 1}};
-  mesh.triangles = {{0, 11, 5}, {0, 5, 1}, {0, 1, 7}, {0, 7, 10}, {0, 10, 11}, {1, 5, 9}, {5, 11, 4},
-                    {11, 10, 2}, {10, 7, 6}, {7, 1, 8}, {3, 9, 4}, {3, 4, 2}, {3, 2, 6}, {3, 6, 8},
-                    {3, 8, 9}, {4, 9, 5}, {2, 4, 11}, {6, 2, 10}, {8, 6, 7}, {9, 8, 1}};
+  mesh.vertices = {{-1, g, 0},  {1, g, 0},  {-1, -g, 0}, {1, -g, 0}, {0, -1, g},  {0, 1, g},
+                   {0, -1, -g}, {0, 1, -g}, {g, 0, -1},  {g, 0, 1},  {-g, 0, -1}, {-g, 0, 1}};
+  mesh.triangles = {{0, 11, 5},  {0, 5, 1},  {0, 1, 7},  {0, 7, 10}, {0, 10, 11}, {1, 5, 9}, {5, 11, 4},
+                    {11, 10, 2}, {10, 7, 6}, {7, 1, 8},  {3, 9, 4},  {3, 4, 2},   {3, 2, 6}, {3, 6, 8},
+                    {3, 8, 9},   {4, 9, 5},  {2, 4, 11}, {6, 2, 10}, {8, 6, 7},   {9, 8, 1}};
   return mesh;
 }
 
@@ -118,11 +119,15 @@ bool is_convex(const TestMesh& mesh) {
 }
 
 // Length of the part of `v` along unit vector `n`, doubles.
-double along(const DVec3& v, const DVec3& n) { return v.x * n.x + v.y * n.y + v.z * n.z; }
+double along(const DVec3& v, const DVec3& n) {
+  return v.x * n.x + v.y * n.y + v.z * n.z;
+}
 DVec3 cross(const DVec3& a, const DVec3& b) {
   return {a.y * b.z - a.z * b.y, a.z * b.x - a.x * b.z, a.x * b.y - a.y * b.x};
 }
-DVec3 unit(const DVec3& v) { return v / std::sqrt(along(v, v)); }
+DVec3 unit(const DVec3& v) {
+  return v / std::sqrt(along(v, v));
+}
 
 // Where a point lies by a triangle: above its plane, and inside its nearest edge.
 struct Standing {
@@ -308,7 +313,8 @@ TEST(SecondaryOrigin, LetsNoLightThroughAClosedBody) {
         const OracleRay ray = ray_at(mesh, middle, aim, random);
         const NearestHit seen = oracle.nearest(ray);
         ASSERT_FALSE(seen.ties.empty()) << body.name;
-        const VertexTriangle triangle = triangle_of(mesh, seen.ties[random.below(static_cast<std::uint32_t>(seen.ties.size()))]);
+        const VertexTriangle triangle =
+            triangle_of(mesh, seen.ties[random.below(static_cast<std::uint32_t>(seen.ties.size()))]);
         const SecondaryOrigin begun = begin(triangle, ray, false);
         // Faces lower than the least that is promised for; a wedge of 25 degrees far out is not what it was.
         if (body.name == "wedge" && least_height(triangle) < 60.0 * double{begun.error}) continue;

@@ -110,6 +110,11 @@ PreparedFrame::~PreparedFrame() {
   memory_->release_to(mark_);
 }
 
+void PreparedFrame::set_record(const FrameRecord& record) {
+  record_ = record;
+  std::memcpy(memory_->bytes_at(record_address_, sizeof(FrameRecord)).data(), &record_, sizeof(FrameRecord));
+}
+
 sim::ChipResult PreparedFrame::render(const sim::ChipOptions& chip) {
   return sim::render_frame(*memory_, record_address_, chip);
 }

@@ -56,6 +56,10 @@ class PreparedFrame {
   [[nodiscard]] Status status() const { return status_; }
   [[nodiscard]] const FrameRecord& record() const { return record_; }
 
+  /// Puts another record in the place of the own one: other rays, or what make_frame_record would refuse. Size, tile
+  /// width and the addresses of planes stay as they are; a plane may be switched off by an address of 0.
+  void set_record(const FrameRecord& record);
+
   /// Renders into the planes. Precondition: status() is kOk; `chip` has the store it was prepared for.
   [[nodiscard]] sim::ChipResult render(const sim::ChipOptions& chip);
 

@@ -129,8 +129,8 @@ double per_unit(const KindTotals& totals, std::uint64_t value) {
 struct NamedFrame {
   const char* name;
   CountedFrame frame;
-  /// Whether the frame stands for a kind of work: frames with planes, or on a lattice, for what only they do, the others
-  /// for the rest.
+  /// Whether the frame stands for a kind of work: frames with planes, or on a lattice, for what only they do, the
+  /// others for the rest.
   [[nodiscard]] bool operator()(std::size_t kind) const {
     const bool is_of_lattice = static_cast<Work>(kind) == Work::kLatticeTriangle;
     return frame.has_planes == is_of_planes(kind) && (frame.accuracy == Accuracy::kCompact) == is_of_lattice;

@@ -198,8 +198,9 @@ int exact_distance_order(const float org[3], const float dir[3], const float (&f
   std::uint32_t any = 0;
   for (int column = 0; column < 2 * kLimbs; ++column) {
     std::int64_t low = carry, high = 0;
-    const int begin = column < kLimbs ? 0 : column - kLimbs + 1;
-    const int end = column < kLimbs ? column + 1 : kLimbs;
+    int begin = column - kLimbs + 1, end = column + 1;
+    if (begin < 0) begin = 0;
+    if (end > kLimbs) end = kLimbs;
     for (int i = begin; i < end; ++i) {
       const int j = column - i;
       const std::uint64_t left = std::uint64_t{numerators[0].limb(i)} * denominators[1].limb(j);

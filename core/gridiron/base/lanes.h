@@ -326,9 +326,9 @@ struct Lanes {
   }
   /// Reciprocals, off by less than 2^-12 of themselves where these are normal; the same bits on every target.
   ///
-  /// The pattern's complement is linear between powers of two and within e0 = 0.0506 of 1 / a; with r the first value and
-  /// e = 1 - |a| r, |e| <= e0, r (1 + e + e^2) is off by e0^3 < 2^-12.9. What is not normal, or above 2^125, gives any
-  /// pattern.
+  /// The pattern's complement is linear between powers of two and within e0 = 0.0506 of 1 / a; with r the first value
+  /// and e = 1 - |a| r, |e| <= e0, r (1 + e + e^2) is off by e0^3 < 2^-12.9. What is not normal, or above 2^125, gives
+  /// any pattern.
   [[nodiscard]] static GRIDIRON_INLINE Float reciprocal_estimate(Float a) {
     const IntVector bits = reinterpret_cast<IntVector>(a.v);
     const IntVector sign = bits & static_cast<std::int32_t>(0x80000000u);

@@ -61,15 +61,15 @@ inline constexpr float kGreatestCellsPerUnit = 0x1p100f;  ///< smaller meshes ge
 inline constexpr double kCellSpaceLimit = 0x1p120;        ///< |eye|, in cells
 inline constexpr double kCellDirectionLimit = 0x1p124;    ///< |direction|, in cells
 
-/// Where stored vertices can lie: origin + step * k, k whole, 0..65535 on each axis. Every such value is a float: step is
-/// a power of two, origin a multiple of it, and no value beyond 2^24 steps.
+/// Where stored vertices can lie: origin + step * k, k whole, 0..65535 on each axis. Every such value is a float: step
+/// is a power of two, origin a multiple of it, and no value beyond 2^24 steps.
 struct Lattice {
   float origin[3];
   float step;                      ///< kLeastLatticeStep or more
 };
 inline constexpr float kLeastLatticeStep = 0x1p-126f;
 inline constexpr std::uint32_t kLatticePlaces = 65536;    ///< along each axis
-inline constexpr float kMostStepsFromZero = 0x1p23f;      ///< |origin| / step is at most one more
+inline constexpr float kMostStepsFromZero = 0x1p24f - 0x1p17f;  ///< |vertex| / step; |origin| / step: one more
 
 /// The grid. Cell (x, y, z) covers, in cell space, the closed box [x, x+1] x [y, y+1] x [z, z+1]; cell space is the
 /// exact map p -> (p - minimum) * cells_per_unit of world space, taken with real numbers.

@@ -1,10 +1,10 @@
 // Grid builder: see the header. SPDX-License-Identifier: Apache-2.0
+#include <gridiron/base/check_value.h>
+#include <gridiron/base/triangle_formats.h>
 #include <gridiron/grid/cell_rows.h>
 #include <gridiron/grid/grid_builder.h>
 #include <gridiron/grid/lattice.h>
 #include <gridiron/grid/triangle_records.h>
-#include <gridiron/base/check_value.h>
-#include <gridiron/base/triangle_formats.h>
 
 #include <bit>
 

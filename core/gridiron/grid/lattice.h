@@ -15,7 +15,7 @@
 namespace gridiron {
 
 /// The finest lattice over the vertices that triangles of a mesh have: the least step that spans them with its places,
-/// keeps them within 2^23 steps of zero and is not below kLeastLatticeStep.
+/// keeps them within kMostStepsFromZero steps of zero and is not below kLeastLatticeStep.
 ///
 /// Errors: kBadIndex; kBadVertex where a coordinate is beyond kCoordinateLimit. Cost: linear.
 [[nodiscard]] Status find_lattice(const MeshView& mesh, Lattice& lattice);

@@ -1,10 +1,9 @@
 // Scene image validation: see the header. SPDX-License-Identifier: Apache-2.0
-#include <gridiron/base/math.h>
 #include <gridiron/base/check_value.h>
+#include <gridiron/base/lanes.h>
+#include <gridiron/base/math.h>
 #include <gridiron/base/triangle_formats.h>
 #include <gridiron/image/scene_image.h>
-
-#include <gridiron/base/lanes.h>
 
 #include <bit>
 
@@ -149,14 +148,14 @@ bool is_power_of_two(float value) {
 bool check_lattice(Checker& checker, std::uint64_t base, const GridRecord& grid) {
   const Lattice& lattice = grid.lattice;
   if (grid.triangle_format != static_cast<std::uint32_t>(TriangleFormat::kLattice)) {
-    const bool none = lattice.step == 0.0f && lattice.origin[0] == 0.0f && lattice.origin[1] == 0.0f &&
-                      lattice.origin[2] == 0.0f;
+    const bool none =
+        lattice.step == 0.0f && lattice.origin[0] == 0.0f && lattice.origin[1] == 0.0f && lattice.origin[2] == 0.0f;
     GRIDIRON_REQUIRE(none, base, GridRecord, lattice, "grid.lattice");
     return true;
   }
-  GRIDIRON_REQUIRE(lattice.step >= kLeastLatticeStep && lattice.step <= kCoordinateLimit &&
-                       is_power_of_two(lattice.step),
-                   base, GridRecord, lattice.step, "grid.lattice.step");
+  GRIDIRON_REQUIRE(
+      lattice.step >= kLeastLatticeStep && lattice.step <= kCoordinateLimit && is_power_of_two(lattice.step), base,
+      GridRecord, lattice.step, "grid.lattice.step");
   for (const float origin : lattice.origin) {
     const double steps = double{origin} / double{lattice.step};
     const double last = double{origin} + double{lattice.step} * (kLatticePlaces - 1);

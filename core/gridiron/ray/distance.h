@@ -113,7 +113,9 @@ struct HitSetups {
     const DistanceEstimate found = set_up_estimate(packet.origin, packet.dir_max, triangle);
     for (int axis = 0; axis < 3; ++axis) normal[axis] = Float(found.normal[axis]);
     numerator = Float(found.numerator);
-    least_denominator = Float(packet.trusts_floats ? 0.0f : found.least_denominator);
+    // A numerator of 0, the origin in the plane, leaves the latter infinite: t > 0 holds for floats too.
+    const bool trusts_quotient = packet.trusts_floats && found.numerator > 0.0f;
+    least_denominator = Float(trusts_quotient ? 0.0f : found.least_denominator);
     packet.keep(triangle);
     has_estimate = true;
   }

@@ -1,6 +1,8 @@
 // The parts of the `standard` test that run once per triangle. SPDX-License-Identifier: Apache-2.0
 #include <gridiron/ray/intersect_standard.h>
 
+#include <bit>
+
 namespace gridiron {
 namespace {
 
@@ -20,6 +22,13 @@ void normal_of(const VertexTriangle& triangle, Real normal[3], Real products[3])
     normal[i] = first - second;
     products[i] = magnitude(first) + magnitude(second);
   }
+}
+
+// By the bits: where denormals are flushed, they compare equal to zero and to each other.
+bool is_same(float a, float b) {
+  const std::uint32_t bits_a = std::bit_cast<std::uint32_t>(a);
+  const std::uint32_t bits_b = std::bit_cast<std::uint32_t>(b);
+  return bits_a == bits_b;
 }
 
 }  // namespace
@@ -70,13 +79,15 @@ bool in_one_plane(const VertexTriangle& first, const VertexTriangle& second) {
   for (int axis = 0; axis < 3; ++axis) {
     const float place = first.v[0][axis];
     bool is_across = true;
-    for (int i = 0; i < 3; ++i) is_across = is_across && first.v[i][axis] == place && second.v[i][axis] == place;
+    for (int i = 0; i < 3; ++i) {
+      is_across = is_across && is_same(first.v[i][axis], place) && is_same(second.v[i][axis], place);
+    }
     if (is_across) return true;
   }
-  int equal_count = 0;
+  std::uint32_t equal_count = 0;
   for (const float(&a)[3] : first.v) {
     for (const float(&b)[3] : second.v) {
-      equal_count += a[0] == b[0] && a[1] == b[1] && a[2] == b[2] ? 1 : 0;
+      equal_count += is_same(a[0], b[0]) && is_same(a[1], b[1]) && is_same(a[2], b[2]) ? 1u : 0u;
     }
   }
   return equal_count == 3;

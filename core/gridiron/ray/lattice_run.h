@@ -11,9 +11,9 @@
 
 namespace gridiron {
 
-/// Spreads LatticeTriangles over the buffer they lie in, from the last to the first: triangle i, `first_byte` + 24 i in,
-/// goes to 48 i, where no record lies that is still to be read (first_byte <= 24). Every place is a float, so nothing
-/// is rounded, and triangles that shared a vertex still do.
+/// Spreads LatticeTriangles over the buffer they lie in, from the last to the first: triangle i, `first_byte` + 24 i
+/// in, goes to 48 i, where no record lies that is still to be read (first_byte <= 24). Every place is a float, so
+/// nothing is rounded, and triangles that shared a vertex still do.
 ///
 /// @param buffer  16-byte aligned, room for 48 count bytes; its records at first_byte, a multiple of 8 up to 24.
 /// @returns the first of `count` triangles, at the buffer's first byte. Cost: linear.

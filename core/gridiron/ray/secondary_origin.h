@@ -127,7 +127,8 @@ namespace secondary_origin_detail {
   set_up_normal(triangle, normal);
   float facing = 0.0f;
   for (int i = 0; i < 3; ++i) facing += normal[i] * (dir[i] * dir_to_one);
-  // The normal is off by 2^-14 at most, so is the sum of three such products below 2 by 2^-11; grazing rays ask for more.
+  // The normal is off by 2^-14 at most, so is the sum of three such products below 2 by 2^-11; grazing rays ask for
+  // more.
   bool leads_along = facing > 0.0f;
   if (magnitude(facing) < 0x1p-10f) leads_along = volume_sign_in_double(origin, triangle, work) > 0;
   const bool is_along = leads_along == through;

@@ -170,12 +170,14 @@ class TileRenderer {
       return Status::kUnsupportedFrame;
     }
     const GridRecord& grid = frame.grid;
-    const bool wants_projection = frame.accuracy == static_cast<std::uint32_t>(Accuracy::kPaper);
-    const bool wants_lattice = frame.accuracy == static_cast<std::uint32_t>(Accuracy::kCompact);
-    if (wants_projection != (grid.triangle_format == static_cast<std::uint32_t>(TriangleFormat::kProjection)) ||
-        wants_lattice != (grid.triangle_format == static_cast<std::uint32_t>(TriangleFormat::kLattice))) {
-      return Status::kUnsupportedImage;
+    std::uint32_t format = static_cast<std::uint32_t>(TriangleFormat::kVertices);
+    if (frame.accuracy == static_cast<std::uint32_t>(Accuracy::kPaper)) {
+      format = static_cast<std::uint32_t>(TriangleFormat::kProjection);
     }
+    if (frame.accuracy == static_cast<std::uint32_t>(Accuracy::kCompact)) {
+      format = static_cast<std::uint32_t>(TriangleFormat::kLattice);
+    }
+    if (grid.triangle_format != format) return Status::kUnsupportedImage;
     if (grid.macro_width == 0 || grid.macro_width > Layout::kMaxMacroWidth ||
         grid.cell_block_bytes > Store::kCellBlockBytes) {
       return Status::kUnsupportedImage;

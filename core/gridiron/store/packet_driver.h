@@ -78,13 +78,17 @@ class PacketDriver {
     }
     store_.work.charge_to(Work::kCellVisit);
     const std::uint32_t count = cell_.triangle_count < kRunTriangles ? cell_.triangle_count : kRunTriangles;
-    // Records of 24 bytes start and end between the 16 bytes that a transfer moves.
-    const std::uint32_t triangle_bytes = store_.frame.grid.triangle_bytes;
-    const std::uint64_t begin =
-        store_.frame.triangles_address + std::uint64_t{cell_.first_triangle} * triangle_bytes;
+    std::uint64_t offset = std::uint64_t{cell_.first_triangle} * kTriangleRecordBytes;
+    std::uint32_t bytes = count * kTriangleRecordBytes;
+    std::uint32_t slack = 0;
+    if (is_on_lattice()) {
+      // Records half as long start and end between the 16 bytes that a transfer moves.
+      offset = offset / 2;
+      slack = static_cast<std::uint32_t>(offset % kTransferStep);
+      bytes = (slack + bytes / 2 + (kTransferStep - 1)) & ~(kTransferStep - 1);
+    }
+    const std::uint64_t begin = store_.frame.triangles_address + offset;
     const std::uint32_t first_byte = static_cast<std::uint32_t>(begin % kPortableCongruenceBytes);
-    const std::uint32_t slack = first_byte % kTransferStep;
-    const std::uint32_t bytes = (slack + count * triangle_bytes + (kTransferStep - 1)) & ~(kTransferStep - 1);
     const std::uint32_t slot = triangle_ring_.push();
     runs_[slot] = {count, first_byte, cell_.entry, touching_};
     cell_.first_triangle += count;
@@ -184,18 +188,17 @@ class PacketDriver {
     return Status::kOk;
   }
 
-  // Tests a run, `first_byte` into its buffer, against the rays of the open subpackets. @returns the subpackets of which
-  // a hit changed.
+  // Tests a run, `first_byte` into its buffer, against the rays of the open subpackets. @returns the subpackets of
+  // which a hit changed.
   [[nodiscard]] SubpacketSet test_run(std::byte* buffer, std::uint32_t first_byte, std::uint32_t count,
                                       SubpacketSet open) {
     const std::byte* const records = buffer + first_byte;
     const bool facing = store_.frame.shading != static_cast<std::uint32_t>(Shading::kNone);
-    const std::uint32_t format = store_.frame.grid.triangle_format;
-    if (format == static_cast<std::uint32_t>(TriangleFormat::kProjection)) {
+    if (store_.frame.accuracy == static_cast<std::uint32_t>(Accuracy::kPaper)) {
       return test_each_projection(reinterpret_cast<const ProjectionTriangle*>(records), count, open, facing);
     }
     const auto* triangles = reinterpret_cast<const VertexTriangle*>(records);
-    if (format == static_cast<std::uint32_t>(TriangleFormat::kLattice)) {
+    if (is_on_lattice()) {
       store_.work.add(Work::kLatticeTriangle, count);
       triangles = spread_lattice_run(store_.frame.grid.lattice, buffer, first_byte, count);
     }
@@ -251,6 +254,11 @@ class PacketDriver {
           intersect_projection<L>(store_.packet, triangles[i], untested, use_corner_rays, want_facing, store_.work);
     }
     return changed;
+  }
+
+  [[nodiscard]] bool is_on_lattice() const {
+    static_assert(2 * sizeof(LatticeTriangle) == kTriangleRecordBytes);
+    return store_.frame.accuracy == static_cast<std::uint32_t>(Accuracy::kCompact);
   }
 
   [[nodiscard]] const CellRecord* front_cells() const {

@@ -390,9 +390,10 @@ TEST(Errors, Parameters) {
   EXPECT_EQ(status(4.0f, 0, 1), Status::kBadParameter);
   EXPECT_EQ(status(4.0f, kMaxMacroWidth + 1, 1), Status::kBadParameter);
   EXPECT_EQ(status(4.0f, 6, 0), Status::kBadParameter);
-  EXPECT_EQ(status(4.0f, 6, 3), Status::kBadParameter);
+  EXPECT_EQ(status(4.0f, 6, 4), Status::kBadParameter);
   EXPECT_EQ(status(1e-6f, 1, 1), Status::kOk);
   EXPECT_EQ(status(1e5f, 8, 2), Status::kOk);
+  EXPECT_EQ(status(1e5f, 8, 3), Status::kOk);
 }
 
 TEST(Errors, MoreTrianglesThanIdsAreRefusedUnread) {

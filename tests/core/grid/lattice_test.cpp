@@ -65,6 +65,8 @@ TEST(Lattice, HasTheLeastStepThatSpansTheMesh) {
   EXPECT_EQ(step_of(65534.0f, 0.25f), 1.0f);
   EXPECT_EQ(step_of(1.0f, 0x1p23f), 1.0f) << "no finer than floats are there";
   EXPECT_EQ(step_of(1.0f, 0x1p22f), 0.5f);
+  EXPECT_EQ(step_of(1.0f, 0x1p24f - 0x1p17f - 1.0f), 1.0f);
+  EXPECT_EQ(step_of(2.0f, 0x1p24f - 0x1p17f), 2.0f);
 }
 
 TEST(Lattice, OfVerticesThatNoTriangleHasTakesNoNotice) {
@@ -81,7 +83,8 @@ TEST(Lattice, OfBadMeshesIsRefused) {
   TestMesh mesh = make_triangle({0, 0, 0}, {1, 0, 0}, {0, 1, 0});
   mesh.triangles[0].y = 3;
   EXPECT_EQ(find_lattice(mesh.view(), lattice), Status::kBadIndex);
-  for (const float bad : {std::numeric_limits<float>::quiet_NaN(), std::numeric_limits<float>::infinity(), 0x1.8p120f}) {
+  for (const float bad :
+       {std::numeric_limits<float>::quiet_NaN(), std::numeric_limits<float>::infinity(), 0x1.8p120f}) {
     mesh = make_triangle({0, 0, 0}, {1, bad, 0}, {0, 1, 0});
     EXPECT_EQ(find_lattice(mesh.view(), lattice), Status::kBadVertex);
     GridNeed need{};
@@ -113,7 +116,8 @@ TEST(LatticeImage, IsTheSnappedMeshInHalfTheBytes) {
     EXPECT_EQ(built.cells, plain.cells) << place.name;
     for (std::uint64_t i = 0; i < grid.reference_count; ++i) {
       const auto record = read_record<LatticeTriangle>(built.image.bytes(), built.view.triangles_offset_bytes + i * 24);
-      const auto vertices = read_record<VertexTriangle>(plain.image.bytes(), plain.view.triangles_offset_bytes + i * 48);
+      const auto vertices =
+          read_record<VertexTriangle>(plain.image.bytes(), plain.view.triangles_offset_bytes + i * 48);
       ASSERT_EQ(record.triangle_id, vertices.triangle_id) << place.name;
       EXPECT_EQ(record.reserved, 0);
       for (int corner = 0; corner < 3; ++corner) {

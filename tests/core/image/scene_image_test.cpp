@@ -92,7 +92,9 @@ TEST_P(Formats, EveryChangedByteIsRefusedOrHarmless) {
   EXPECT_GT(refused, 500);
 }
 
-INSTANTIATE_TEST_SUITE_P(All, Formats, ::testing::Values(TriangleFormat::kVertices, TriangleFormat::kProjection, TriangleFormat::kLattice));
+INSTANTIATE_TEST_SUITE_P(All, Formats,
+                         ::testing::Values(TriangleFormat::kVertices, TriangleFormat::kProjection,
+                                           TriangleFormat::kLattice));
 
 TEST(SceneImage, EveryTruncationIsRefused) {
   const BuiltImage built = small_image(TriangleFormat::kVertices);
@@ -285,8 +287,8 @@ TEST(SceneImage, LatticesWhoseValuesAreNoFloatsAreRefused) {
       {"grid.lattice.step", [](Lattice& l) { l.step = 0x1p-127f; }},
       {"grid.lattice.step", [](Lattice& l) { l.step = 0x1p121f; }},
       {"grid.lattice.origin", [](Lattice& l) { l.origin[0] += 0.5f * l.step; }},
-      {"grid.lattice.origin", [](Lattice& l) { l.origin[1] = (0x1p23f + 2.0f) * l.step; }},
-      {"grid.lattice.origin", [](Lattice& l) { l.origin[2] = -(0x1p23f + 2.0f) * l.step; }},
+      {"grid.lattice.origin", [](Lattice& l) { l.origin[1] = 0x1p24f * l.step; }},
+      {"grid.lattice.origin", [](Lattice& l) { l.origin[2] = -0x1p24f * l.step; }},
       {"grid.lattice.origin", [](Lattice& l) { l.origin[2] = kInfinity; }},
       {"grid.lattice.origin", [](Lattice& l) { l.origin[2] = kNan; }},
   };

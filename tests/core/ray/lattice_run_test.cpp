@@ -19,7 +19,8 @@ TEST(LatticeRun, GivesEveryTriangleWhereverTheRunStarts) {
     for (std::uint32_t first_byte = 0; first_byte <= 24; first_byte += 8) {
       Lattice lattice{{0.0f, 0.0f, 0.0f}, 0x1p-9f};
       for (float& origin : lattice.origin) {
-        origin = lattice.step * (static_cast<float>(random.below(1u << 24)) - 0x1p23f);
+        origin = lattice.step *
+                 (static_cast<float>(random.below((1u << 24) - (1u << 17))) * (random.below(2) == 0 ? 1.0f : -1.0f));
       }
       std::vector<LatticeTriangle> run(count);
       for (LatticeTriangle& triangle : run) {

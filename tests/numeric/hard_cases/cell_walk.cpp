@@ -1,0 +1,143 @@
+// Cell walks: see the header. SPDX-License-Identifier: Apache-2.0
+#include "numeric/hard_cases/cell_walk.h"
+
+#include <gridiron/ray/frustum.h>
+#include <gridiron/traverse/slice_walk.h>
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <memory>
+
+#include "core/ray/packet_cases.h"
+
+namespace gridiron::test {
+namespace {
+
+// A macrocell table in which none is empty: block = macrocell + 1.
+struct FullTable {
+  [[nodiscard]] static std::uint32_t chunk_of(std::uint32_t) { return 0; }
+  [[nodiscard]] static bool holds(std::uint32_t) { return true; }
+  [[nodiscard]] static std::uint32_t block_of(std::uint32_t macro_cell) { return macro_cell + 1; }
+};
+
+std::uint64_t cell_id(const GridRecord& grid, const std::uint32_t cell[3]) {
+  return (std::uint64_t{cell[2]} * grid.cell_count[1] + cell[1]) * grid.cell_count[0] + cell[0];
+}
+
+// Cells that a frustum's walk visits, sorted.
+std::vector<std::uint64_t> visited_cells(const GridRecord& grid, const Frustum& frustum,
+                                         const std::vector<CellRecord>& block) {
+  std::vector<std::uint64_t> cells;
+  const std::uint32_t m = grid.macro_width;
+  WorkCounters work;
+  MacroWalk macro_walk{};
+  macro_walk.begin(grid, frustum);
+  MacroVisit visit{};
+  while (macro_walk.next(frustum, FullTable{}, kFloatMax, true, visit, work) == WalkStep::kFound) {
+    std::uint32_t corner[3];
+    corner[frustum.axis_k] = static_cast<std::uint32_t>(visit.k_first);
+    corner[frustum.axis_u] = static_cast<std::uint32_t>(visit.u_first);
+    corner[frustum.axis_v] = static_cast<std::uint32_t>(visit.v_first);
+    CellWalk cell_walk{};
+    cell_walk.begin(grid, frustum, visit);
+    CellVisit found{};
+    while (cell_walk.next(frustum, block.data(), kFloatMax, found, work)) {
+      const std::uint32_t i = found.first_triangle;  // place in the block
+      const std::uint32_t cell[3] = {corner[0] + i % m, corner[1] + i / m % m, corner[2] + i / m / m};
+      for (int axis = 0; axis < 3; ++axis) EXPECT_LT(cell[axis], grid.cell_count[axis]) << "a cell beyond the grid";
+      cells.push_back(cell_id(grid, cell));
+    }
+  }
+  std::sort(cells.begin(), cells.end());
+  EXPECT_TRUE(std::adjacent_find(cells.begin(), cells.end()) == cells.end()) << "a cell was visited twice";
+  return cells;
+}
+
+// Cells that a packet's rays touch, by the oracle.
+using TouchedCells = std::vector<std::vector<std::uint64_t>>;
+
+template <class PacketType>
+void walk_packet(const GridRecord& grid, const Rays& rays, std::size_t first, const TouchedCells& touched,
+                 const std::vector<CellRecord>& block, WalkTally& tally) {
+  auto packet = std::make_unique<PacketType>();
+  RaySet<PacketType::kRayCount> waiting;
+  waiting.clear();
+  for (std::uint32_t ray = 0; ray < PacketType::kRayCount && first + ray < rays.directions.size(); ++ray) {
+    for (int axis = 0; axis < 3; ++axis) packet->dir[axis][ray] = rays.directions[first + ray][axis];
+    waiting.insert(ray);
+  }
+  for (int axis = 0; axis < 3; ++axis) packet->origin[axis] = rays.origin[axis];
+  packet->is_linear = false;
+  set_direction_bounds(*packet);
+  Frustum frustum;
+  WorkCounters work;
+  while (take_pass<Lanes<4>>(grid, waiting, *packet, frustum, work)) {
+    const std::vector<std::uint64_t> visited = visited_cells(grid, frustum, block);
+    tally.visited += visited.size();
+    for (std::uint32_t ray = 0; ray < PacketType::kRayCount; ++ray) {
+      if (!packet->active.contains(ray)) continue;
+      const std::vector<std::uint64_t>& cells = touched[first + ray];
+      if (std::includes(visited.begin(), visited.end(), cells.begin(), cells.end())) continue;
+      const Vec3& o = rays.origin;
+      const Vec3& d = rays.directions[first + ray];
+      ADD_FAILURE() << "a cell touched is not visited, packet of " << PacketType::kRayCount << ", ray from "
+                    << std::hexfloat << o.x << ", " << o.y << ", " << o.z << " along " << d.x << ", " << d.y << ", "
+                    << d.z;
+      return;
+    }
+  }
+}
+
+}  // namespace
+
+GridRecord grid_of(Vec3 minimum, Vec3 cells_per_unit, const UVec3& cell_count, std::uint32_t macro_width) {
+  GridRecord grid{};
+  for (int axis = 0; axis < 3; ++axis) {
+    grid.minimum[axis] = minimum[axis];
+    grid.cells_per_unit[axis] = cells_per_unit[axis];
+    grid.cell_count[axis] = cell_count[axis];
+    grid.macro_cell_count[axis] = (cell_count[axis] + macro_width - 1) / macro_width;
+  }
+  grid.macro_width = macro_width;
+  return grid;
+}
+
+WalkTally walk(const GridRecord& grid, const std::vector<Rays>& all_rays) {
+  WalkTally tally;
+  const std::uint32_t m = grid.macro_width;
+  std::vector<CellRecord> block(std::size_t{m} * m * m);
+  for (std::uint32_t i = 0; i < block.size(); ++i) block[i] = {i, 1};
+  for (const Rays& rays : all_rays) {
+    TouchedCells touched;
+    for (std::size_t ray = 0; ray < rays.directions.size(); ++ray) {
+      std::vector<std::uint64_t>& cells = touched.emplace_back();
+      OracleRay asked = oracle_ray(rays, ray);
+      asked.t_max = kFloatMax;
+      for (const CellIndex& cell : touched_cells(grid, asked)) {
+        const std::uint32_t place[3] = {static_cast<std::uint32_t>(cell[0]), static_cast<std::uint32_t>(cell[1]),
+                                        static_cast<std::uint32_t>(cell[2])};
+        cells.push_back(cell_id(grid, place));
+      }
+      std::sort(cells.begin(), cells.end());
+      tally.touched += cells.size();
+      // Alone: the narrowest frustum that there is.
+      Rays one;
+      one.origin = rays.origin;
+      one.directions = {rays.directions[ray]};
+      walk_packet<Packet<4>>(grid, one, 0, {cells}, block, tally);
+    }
+    tally.rays += rays.directions.size();
+    // Side by side: of rays of all directions, whose frustum is the whole grid, once.
+    const std::size_t together = rays.columns == 0 ? std::min<std::size_t>(16, touched.size()) : touched.size();
+    for (std::size_t first = 0; first < together; first += 16) {
+      walk_packet<Packet<4>>(grid, rays, first, touched, block, tally);
+    }
+    for (std::size_t first = 0; rays.columns != 0 && first < together; first += 64) {
+      walk_packet<Packet<8>>(grid, rays, first, touched, block, tally);
+    }
+    if (testing::Test::HasFailure()) return tally;
+  }
+  return tally;
+}
+
+}  // namespace gridiron::test

@@ -1,0 +1,31 @@
+// The traversal by itself: macrocell walk and cell walk over a grid whose every cell holds something, held against the
+// cells that the oracle says the rays touch.
+// Memory: std::vector. Threads: any. SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <gridiron/base/records.h>
+
+#include <cstdint>
+#include <vector>
+
+#include "numeric/exact_cells.h"
+#include "numeric/hard_cases/trial.h"
+
+namespace gridiron::test {
+
+/// What walks came by.
+struct WalkTally {
+  std::uint64_t rays = 0;
+  std::uint64_t touched = 0;  ///< cells, by the oracle
+  std::uint64_t visited = 0;  ///< cells, by the walks
+};
+
+/// A grid of cells of any size, its origin at `minimum`.
+GridRecord grid_of(Vec3 minimum, Vec3 cells_per_unit, const UVec3& cell_count, std::uint32_t macro_width);
+
+/// Takes every ray through the grid, alone and, in packets of 16 and, of a picture, of 64, beside its neighbours. Each
+/// cell touched has to be visited; each cell visited is one of the grid, visited once. What is not so fails the running
+/// test.
+WalkTally walk(const GridRecord& grid, const std::vector<Rays>& all_rays);
+
+}  // namespace gridiron::test

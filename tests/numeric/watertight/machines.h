@@ -1,0 +1,55 @@
+// Machines: the builds of core's intersectors and the floating-point rules that the suite runs them under.
+// Memory: constants. Threads: any; a RoundingGuard is the calling thread's. SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <gridiron/base/records.h>
+
+#include <span>
+
+#include "numeric/watertight/shot.h"
+
+namespace gridiron::test {
+
+/// An accuracy that is shot with, and what it promises of rays from inside a closed mesh.
+struct Profile {
+  const char* name;
+  Accuracy accuracy;
+  bool is_watertight;  ///< else what it misses is only counted
+  bool is_on_lattice;  ///< of meshes whose vertices have been moved to their lattice
+};
+inline constexpr Profile kProfiles[] = {{"standard", Accuracy::kStandard, true, false},
+                                        {"exact", Accuracy::kExact, true, false},
+                                        {"compact", Accuracy::kCompact, true, true},
+                                        {"fast", Accuracy::kFast, false, false},
+                                        {"paper", Accuracy::kPaper, false, false}};
+
+/// A build of the intersectors, and the rules of floating point that hold while it runs.
+struct Machine {
+  const char* name;
+  watertight::Shooter shoot;
+  int rounding;            ///< of <cfenv>
+  bool flushes_denormals;  ///< to zero, those that go in and those that come out
+  bool is_promised;        ///< false: it shows what would break
+  /// The rays of Embree's calls beside it.
+  std::uint32_t peer_width = 1;
+};
+
+/// The first is the base case: four lanes, to nearest. Then eight and sixteen lanes; to zero, up and down; with
+/// instructions that fuse, unused and used; over numbers that are as the Cell's. Those that this host cannot run are
+/// not there.
+[[nodiscard]] std::span<const Machine> machines();
+
+/// Sets a machine's rules of floating point for as long as it lives.
+class RoundingGuard {
+ public:
+  explicit RoundingGuard(const Machine& machine);
+  ~RoundingGuard();
+  RoundingGuard(const RoundingGuard&) = delete;
+  RoundingGuard& operator=(const RoundingGuard&) = delete;
+
+ private:
+  unsigned control_ = 0;
+  int rounding_ = 0;
+};
+
+}  // namespace gridiron::test
