@@ -35,7 +35,10 @@ void write_method(const PriceList& list, Book& book) {
       std::to_string(CloseLook::kWidth) + "x" + std::to_string(CloseLook::kWidth) +
       " pixels from the same eye, with distances, so small that all of their rays pass the point within a few "
       "roundings, "
-      "through the same grid and the same code. The least share that can be told is one ray of a picture.");
+      "through the same grid and the same code. A profile that moves vertices moves outlines and edges with them: what "
+      "it "
+      "misses there is its geometry's error, not a crack in it. The least share that can be told is one ray of a "
+      "picture.");
   book.paragraph(
       "The plane of distances holds t times the length of the ray's direction, each rounded to a float; the length is "
       "the same for all profiles, so what differs is t. An ulp is a step from one float to the next in that plane. An "

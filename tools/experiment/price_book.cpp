@@ -323,17 +323,22 @@ Table view_costs(const PriceList& list, std::size_t view) {
   return fields.table("", [view](const Price& price) { return price.view == view; });
 }
 
-Table view_errors(const PriceList& list, std::size_t view) {
+Table view_errors(const PriceList& list, std::size_t view, bool split_leaks) {
   Fields fields(list);
   fields.add_names(false);
-  const auto add_shares = [&fields](const std::string& where, const HitCounts& (*counts)(const Price&)) {
-    for (const auto& [name, count] : {NamedCount{"holes", &HitCounts::holes},
-                                      {"through", &HitCounts::seen_through},
-                                      {"false", &HitCounts::false_hits}}) {
-      fields.add({"", where + name, 0}, [counts, count = count](const Price& price) -> Cell {
-        return price.errors ? Cell{counts(price).per_million(counts(price).*count)} : Cell{};
+  const auto add_shares = [&fields, split_leaks](const std::string& where, const HitCounts& (*counts)(const Price&)) {
+    const auto add = [&](const std::string& title, std::uint64_t (*count)(const HitCounts&)) {
+      fields.add({"", where + title, 0}, [counts, count](const Price& price) -> Cell {
+        return price.errors ? Cell{counts(price).per_million(count(counts(price)))} : Cell{};
       });
+    };
+    if (split_leaks) {
+      add("holes", [](const HitCounts& hits) { return hits.holes; });
+      add("through", [](const HitCounts& hits) { return hits.seen_through; });
+    } else {
+      add("leaks", [](const HitCounts& hits) { return hits.leaks(); });
     }
+    add("false", [](const HitCounts& hits) { return hits.false_hits; });
   };
   add_shares("edge ", [](const Price& price) -> const HitCounts& { return price.at_edges; });
   add_shares("", [](const Price& price) -> const HitCounts& { return price.errors->hits; });
@@ -517,7 +522,7 @@ void write_starved(const PriceList& list, Book& book) {
 void write_views(const PriceList& list, Book& book) {
   for (std::size_t view = 0; view < list.views().size(); ++view) {
     const View& shown = list.views()[view];
-    const Table costs = view_costs(list, view), errors = view_errors(list, view);
+    const Table costs = view_costs(list, view), errors = view_errors(list, view, true);
     book.section("view_" + shown.key, shown.title);
     book.shown_table(
         costs,
@@ -531,8 +536,8 @@ void write_views(const PriceList& list, Book& book) {
         "wrong triangles; error of t where the true triangle is shown: median, 99th percentile and greatest in ulp, "
         "99th "
         "percentile as a share; PSNR (empty where no pixel differs) and the greatest difference of a channel, of 255.");
-    book.text(price_text_name(shown.key), aligned_text(costs) + "\n" + aligned_text(errors),
-              "both tables as plain text.");
+    book.text(price_text_name(shown.key), aligned_text(costs) + "\n" + aligned_text(view_errors(list, view, false)),
+              "both tables as plain text, leaks being holes and what is seen through.");
     for (std::size_t configuration = 0; configuration < std::size(kPricedConfigurations); ++configuration) {
       const std::string name = kPricedConfigurations[configuration];
       book.figure("errors_" + name + "_" + shown.key, histogram_svg(list, view, configuration),

@@ -14,7 +14,8 @@ namespace gridiron::experiment {
 
 /// @returns what a view's frames cost and what is wrong with them, a row for each configuration and profile.
 [[nodiscard]] Table view_costs(const PriceList& list, std::size_t view);
-[[nodiscard]] Table view_errors(const PriceList& list, std::size_t view);
+/// @param split_leaks  holes and rays that see through stand apart.
+[[nodiscard]] Table view_errors(const PriceList& list, std::size_t view, bool split_leaks);
 
 /// Each writes a section or more. What the words say follows from the list.
 void write_overview(const PriceList& list, Book& book);

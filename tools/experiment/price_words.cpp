@@ -53,7 +53,7 @@ std::vector<Metric> price_metrics() {
   const auto moved = [](const RunResult& run) { return static_cast<double>(run.moved_bytes()); };
   const auto memory = [](const RunResult& run) { return static_cast<double>(run.facts.main_memory_bytes); };
   const auto at_edges = [](std::string words, std::uint64_t HitCounts::*count) {
-    return Metric{std::move(words), false, 1, [count](const PriceList&, const Price& price) {
+    return Metric{std::move(words), false, 0, [count](const PriceList&, const Price& price) {
                     return price.errors ? price.at_edges.per_million(price.at_edges.*count) : std::nan("");
                   }};
   };
@@ -175,6 +175,8 @@ std::vector<Target> price_targets(const PriceList& list) {
       bytes([](const RunResult& run) { return run.facts.triangle_bytes; }));
   add("standard", "compact", "bytes of triangles fetched a frame", -45, kBest,
       bytes([](const RunResult& run) { return run.facts.fetched_triangle_bytes; }));
+  add("standard", "compact", "bytes fetched by DMA a frame", -35, kBest,
+      bytes([](const RunResult& run) { return run.bytes_in(); }));
   add("standard", "compact", "bytes moved by DMA a frame", -35, kBest,
       bytes([](const RunResult& run) { return run.moved_bytes(); }));
   return targets;

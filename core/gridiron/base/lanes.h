@@ -316,7 +316,10 @@ struct Lanes {
     if constexpr (W == 4) return static_cast<std::uint32_t>(_mm_movemask_pd(reinterpret_cast<__m128d>(v)));
 #endif
     std::uint32_t result = 0;
-    for (int i = 0; i < W / 2; ++i) result |= (v[i] < 0 ? 1u : 0u) << i;
+    for (int i = 0; i < W / 2; ++i) {
+      const std::int64_t lane = v[i];
+      result |= (lane < 0 ? 1u : 0u) << i;
+    }
     return result;
   }
   /// W whole numbers of 16 bits. @param source  W of them, aligned to 2 * W bytes.

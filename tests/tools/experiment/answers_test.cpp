@@ -1,6 +1,7 @@
 // Answers: every kind of mistake is counted where it belongs. SPDX-License-Identifier: Apache-2.0
 #include "experiment/answers.h"
 
+#include <gridiron/base/math.h>
 #include <gridiron/base/records.h>
 #include <gtest/gtest.h>
 
