@@ -41,6 +41,9 @@ class CellFloat {
                                  std::uint64_t{bits_ & 0x7FFFFFu} << 29);
   }
 
+  /// The whole part, where 32 bits hold it.
+  constexpr explicit operator std::int32_t() const { return static_cast<std::int32_t>(value()); }
+
   friend constexpr CellFloat operator+(CellFloat a, CellFloat b) { return sum(a.value(), b.value()); }
   friend constexpr CellFloat operator-(CellFloat a, CellFloat b) { return sum(a.value(), -b.value()); }
   /// 48 bits: exact in double.

@@ -142,6 +142,12 @@ struct Lanes {
 
   [[nodiscard]] static Float min(Float a, Float b) { return select(a < b, a, b); }
   [[nodiscard]] static Float max(Float a, Float b) { return select(a > b, a, b); }
+  [[nodiscard]] static CellFloat horizontal_min(Float a) {
+    CellFloat least = lane(a, 0);
+    for (std::uint32_t i = 1; i < 4; ++i) least = lane(a, i) < least ? lane(a, i) : least;
+    return least;
+  }
+  [[nodiscard]] static CellFloat horizontal_max(Float a) { return -horizontal_min(-a); }
   [[nodiscard]] static Float abs(Float a) { return Float(CellVector(a.v.bits() & 0x7FFFFFFFu)); }
   [[nodiscard]] static Float select(Mask mask, Float a, Float b) {
     constexpr CellVector::Bits kLanes = {1, 2, 4, 8};
