@@ -1,6 +1,6 @@
 // Core's walks over the Cell's numbers, as tests/numeric/watertight transcribes them. Numbers alone, none of core's
-// types: core is compiled for it in a namespace of its own. Memory: std::vector. Threads: any. SPDX-License-Identifier:
-// Apache-2.0
+// types: core is compiled for it in a namespace of its own. Memory: std::vector. Threads: any.
+// SPDX-License-Identifier: Apache-2.0
 #pragma once
 
 #include <cstdint>

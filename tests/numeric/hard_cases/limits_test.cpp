@@ -1,5 +1,5 @@
-// Limits: nothing to see, vertices that are no numbers, counts that no integer holds. SPDX-License-Identifier:
-// Apache-2.0
+// Limits: nothing to see, vertices that are no numbers, counts that no integer holds.
+// SPDX-License-Identifier: Apache-2.0
 #include <gridiron/frame/frame_setup.h>
 #include <gridiron/grid/grid_builder.h>
 #include <gridiron/image/scene_image.h>

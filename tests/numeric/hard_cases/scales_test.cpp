@@ -1,5 +1,5 @@
-// Scales and places: tiny, huge, mixed, far from the origin, far from the eye, denormal. SPDX-License-Identifier:
-// Apache-2.0
+// Scales and places: tiny, huge, mixed, far from the origin, far from the eye, denormal.
+// SPDX-License-Identifier: Apache-2.0
 #include <gtest/gtest.h>
 
 #include <cmath>
