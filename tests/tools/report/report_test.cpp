@@ -116,6 +116,7 @@ TEST(Report, HasExactlyTheDocumentedKeysInOrder) {
                                        "cores[].dma.bytes_out",
                                        "cores[].dma.line_bytes_in",
                                        "cores[].dma.line_bytes_out"};
+  // clang-format off
   for (const char* name :
        {"tile_start",       "ray_generated",   "packet_start",     "pass_group",          "pass_square",
         "macro_slice_step", "macro_cell_step", "macro_cell_visit", "slice_step",          "cell_step",
@@ -124,9 +125,11 @@ TEST(Report, HasExactlyTheDocumentedKeysInOrder) {
         "hit_group",        "hit_subpacket",   "hit_group_paper",  "hit_setup",           "double_sign",
         "exact_sign",       "exact_distance",  "reach_group",      "shaded_group",        "shaded_simple_group",
         "depth_group",      "id_group",        "footprint_group",  "row_group",           "estimate_setup",
-        "normal_setup",     "hit_half",        "get_issue",        "put_issue",           "wait"}) {
+        "normal_setup",     "hit_half",        "exact_order",      "lattice_triangle",    "get_issue",
+        "put_issue",        "wait"}) {
     expected.push_back(std::string("work.") + name);
   }
+  // clang-format on
   for (const char* path : {"effects.called_for[]", "effects.rays.primary", "local_store.arena_bytes",
                            "local_store.regions[].name", "local_store.regions[].offset", "local_store.regions[].bytes",
                            "local_store.code_bytes", "local_store.stack_bytes", "host.load_seconds",

@@ -27,7 +27,8 @@ struct WorkCounters : PlainWorkCounters {
 #define GRIDIRON_MARK(i) case i: asm volatile("hint %0" : : "n"(64 + i)); break;
 #define GRIDIRON_MARKS(i) GRIDIRON_MARK(i) GRIDIRON_MARK(i + 1) GRIDIRON_MARK(i + 2) GRIDIRON_MARK(i + 3) \
   GRIDIRON_MARK(i + 4) GRIDIRON_MARK(i + 5) GRIDIRON_MARK(i + 6) GRIDIRON_MARK(i + 7)
-        GRIDIRON_MARKS(0) GRIDIRON_MARKS(8) GRIDIRON_MARKS(16) GRIDIRON_MARKS(24) GRIDIRON_MARKS(32)
+        GRIDIRON_MARKS(0) GRIDIRON_MARKS(8) GRIDIRON_MARKS(16) GRIDIRON_MARKS(24) GRIDIRON_MARKS(32) \
+          GRIDIRON_MARKS(40)
 #undef GRIDIRON_MARKS
 #undef GRIDIRON_MARK
         default: break;
@@ -35,6 +36,6 @@ struct WorkCounters : PlainWorkCounters {
     }
   }
 };
-static_assert(kWorkKindCount <= 40);
+static_assert(kWorkKindCount <= 48);
 
 }  // namespace gridiron
