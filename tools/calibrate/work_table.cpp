@@ -132,7 +132,8 @@ struct NamedFrame {
   /// Whether the frame stands for a kind of work: frames with planes, or on a lattice, for what only they do, the
   /// others for the rest.
   [[nodiscard]] bool operator()(std::size_t kind) const {
-    const bool is_of_lattice = static_cast<Work>(kind) == Work::kLatticeTriangle;
+    const Work work = static_cast<Work>(kind);
+    const bool is_of_lattice = work == Work::kLatticeTriangle || work == Work::kCellBoundStep;
     return frame.has_planes == is_of_planes(kind) && (frame.accuracy == Accuracy::kCompact) == is_of_lattice;
   }
 };

@@ -183,6 +183,8 @@ std::string_view work_name(Work kind) {
       return "exact_order";
     case Work::kLatticeTriangle:
       return "lattice_triangle";
+    case Work::kCellBoundStep:
+      return "cell_bound_step";
     case Work::kGetIssue:
       return "get_issue";
     case Work::kPutIssue:

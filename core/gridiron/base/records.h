@@ -79,7 +79,7 @@ struct GridRecord {
   std::uint32_t cell_count[3];     ///< 1..kMaxCellsPerAxis
   std::uint32_t macro_cell_count[3];       ///< ceil(cell_count / macro_width)
   std::uint32_t macro_width;       ///< m, cells along a macrocell's edge, 1..kMaxMacroWidth
-  std::uint32_t cell_block_bytes;  ///< m^3 * sizeof(CellRecord), rounded up to kLineBytes
+  std::uint32_t cell_block_bytes;  ///< cell_block_bytes_of(triangle_format, m)
   std::uint32_t cell_block_count;  ///< non-empty macrocells + 1
   std::uint32_t triangle_format;   ///< TriangleFormat
   std::uint32_t triangle_bytes;    ///< record size, triangle_bytes_of(triangle_format)
@@ -110,6 +110,13 @@ struct CellRecord {
   std::uint32_t triangle_count;
 };
 static_assert(sizeof(CellRecord) == 8);
+
+/// The same in half the bytes, beside lattice triangles: a cell ends where the next one of its block begins. A block has
+/// m^3 + 1 of them; the last is where its last cell ends.
+struct CellBound {
+  std::uint32_t first_triangle;    ///< index into kTriangles
+};
+static_assert(sizeof(CellBound) == 4);
 
 /// A triangle by its input vertices (bit for bit).
 struct VertexTriangle {

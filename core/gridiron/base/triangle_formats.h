@@ -1,4 +1,4 @@
-// What the stored forms of a triangle take, and which an accuracy works on.
+// What the stored forms of triangles and of the cells beside them take, and which an accuracy works on.
 // Memory: none. Threads: any. SPDX-License-Identifier: Apache-2.0
 #pragma once
 
@@ -18,6 +18,16 @@ namespace gridiron {
   if (accuracy == Accuracy::kPaper) return TriangleFormat::kProjection;
   if (accuracy == Accuracy::kCompact) return TriangleFormat::kLattice;
   return TriangleFormat::kVertices;
+}
+
+/// @returns bytes of a block of macro_width^3 cells: CellRecords up to a line's end, or beside lattice triangles
+/// CellBounds up to a multiple of 32 bytes, modulo which every platform's transfers are congruent.
+[[nodiscard]] constexpr std::uint32_t cell_block_bytes_of(TriangleFormat format, std::uint32_t macro_width) {
+  const std::uint32_t cells = macro_width * macro_width * macro_width;
+  if (format == TriangleFormat::kLattice) {
+    return ((cells + 1) * std::uint32_t{sizeof(CellBound)} + 31) / 32 * 32;
+  }
+  return (cells * std::uint32_t{sizeof(CellRecord)} + kLineBytes - 1) / kLineBytes * kLineBytes;
 }
 
 }  // namespace gridiron

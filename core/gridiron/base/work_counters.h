@@ -47,6 +47,7 @@ enum class Work : std::uint8_t {
   kHitHalf,            ///< halves of groups of which distances were computed in double
   kExactOrder,         ///< pairs of distances, equal once rounded, of which integers told the nearer
   kLatticeTriangle,    ///< triangles made of their vertices' places on a lattice
+  kCellBoundStep,      ///< cells looked up inside a visited macrocell by their bounds, beside lattice triangles
   kGetIssue,           ///< get commands issued
   kPutIssue,           ///< put commands issued
   kWait,               ///< waits

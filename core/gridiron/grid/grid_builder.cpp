@@ -106,7 +106,8 @@ ImageLayout layout_of(const GridRecord& grid) {
   layout.macro_table_offset = round_up(layout.grid_offset + sizeof(GridRecord), kLine);
   layout.cell_blocks_offset =
       round_up(layout.macro_table_offset + layout.macro_table_entries * sizeof(MacroTableEntry), kLine);
-  layout.triangles_offset = layout.cell_blocks_offset + std::uint64_t{grid.cell_block_count} * grid.cell_block_bytes;
+  layout.triangles_offset =
+      round_up(layout.cell_blocks_offset + std::uint64_t{grid.cell_block_count} * grid.cell_block_bytes, kLine);
   layout.image_bytes =
       round_up(layout.triangles_offset + std::uint64_t{grid.reference_count} * grid.triangle_bytes, kLine);
   return layout;
@@ -386,28 +387,32 @@ std::uint64_t number_blocks(MacroTableEntry* macro_table, std::uint64_t entry_co
   return block;
 }
 
+// Turns the keys into indices of cells: that many, of cell_bytes each, from the start of block 0.
+void find_cells(const GridRecord& grid, const ReferenceLists& lists, const MacroTableEntry* macro_table,
+                std::uint64_t cell_bytes) {
+  const std::uint64_t cells_per_block = grid.cell_block_bytes / cell_bytes;  // with those that fill it up
+  std::uint64_t last_macro_cell = ~std::uint64_t{0};
+  std::uint64_t first_cell = 0;
+  for (std::uint64_t i = 0; i < grid.reference_count; ++i) {
+    const std::uint64_t macro_cell = lists.keys[i] >> kCellBits;
+    if (macro_cell != last_macro_cell) {
+      const MacroTableEntry& entry = macro_table[macro_cell / 32];
+      const std::uint32_t below = entry.occupied & ((1u << (macro_cell % 32)) - 1);
+      first_cell = (std::uint64_t{entry.first_block} + bit_count(below)) * cells_per_block;
+      last_macro_cell = macro_cell;
+    }
+    lists.keys[i] = first_cell + (lists.keys[i] & ((1u << kCellBits) - 1));
+  }
+}
+
 // Counting sort of the references by the order of cells in the blocks; stable, so ids ascend within a cell.
 void sort_references(const GridRecord& grid, const ReferenceLists& lists, const MacroTableEntry* macro_table,
                      CellRecord* cells) {
   const std::uint64_t count = grid.reference_count;
   const std::uint64_t records_per_block = grid.cell_block_bytes / sizeof(CellRecord);
   const std::uint64_t cells_per_block = std::uint64_t{grid.macro_width} * grid.macro_width * grid.macro_width;
-
-  // Keys become indices of cell records; each cell counts its references.
-  std::uint64_t last_macro_cell = ~std::uint64_t{0};
-  std::uint64_t first_record = 0;
-  for (std::uint64_t i = 0; i < count; ++i) {
-    const std::uint64_t macro_cell = lists.keys[i] >> kCellBits;
-    if (macro_cell != last_macro_cell) {
-      const MacroTableEntry& entry = macro_table[macro_cell / 32];
-      const std::uint32_t below = entry.occupied & ((1u << (macro_cell % 32)) - 1);
-      first_record = (std::uint64_t{entry.first_block} + bit_count(below)) * records_per_block;
-      last_macro_cell = macro_cell;
-    }
-    const std::uint64_t record = first_record + (lists.keys[i] & ((1u << kCellBits) - 1));
-    lists.keys[i] = record;
-    ++cells[record].triangle_count;
-  }
+  find_cells(grid, lists, macro_table, sizeof(CellRecord));
+  for (std::uint64_t i = 0; i < count; ++i) ++cells[lists.keys[i]].triangle_count;
 
   // Counts become first triangles.
   std::uint32_t running = 0;
@@ -424,6 +429,31 @@ void sort_references(const GridRecord& grid, const ReferenceLists& lists, const 
   for (std::uint64_t i = 0; i < count; ++i) {
     CellRecord& record = cells[lists.keys[i]];
     lists.ids_by_cell[record.first_triangle + record.triangle_count++] = lists.ids[i];
+  }
+}
+
+// The same where cells are known by their bounds. A cell's references are counted in the bound behind it, which then
+// says where the cell's next reference goes, and in the end where the cell ends.
+void sort_references(const GridRecord& grid, const ReferenceLists& lists, const MacroTableEntry* macro_table,
+                     CellBound* bounds) {
+  const std::uint64_t count = grid.reference_count;
+  const std::uint64_t bounds_per_block = grid.cell_block_bytes / sizeof(CellBound);
+  const std::uint64_t cells_per_block = std::uint64_t{grid.macro_width} * grid.macro_width * grid.macro_width;
+  find_cells(grid, lists, macro_table, sizeof(CellBound));
+  CellBound* const ends = bounds + 1;
+  for (std::uint64_t i = 0; i < count; ++i) ++ends[lists.keys[i]].first_triangle;
+  std::uint32_t running = 0;
+  for (std::uint64_t block = 1; block < grid.cell_block_count; ++block) {
+    bounds[block * bounds_per_block].first_triangle = running;
+    for (std::uint64_t cell = 0; cell < cells_per_block; ++cell) {
+      CellBound& end = ends[block * bounds_per_block + cell];
+      const std::uint32_t begin = running;
+      running += end.first_triangle;
+      end.first_triangle = begin;
+    }
+  }
+  for (std::uint64_t i = 0; i < count; ++i) {
+    lists.ids_by_cell[ends[lists.keys[i]].first_triangle++] = lists.ids[i];
   }
 }
 
@@ -476,11 +506,10 @@ void write_triangles(const Mesh& mesh, const GridRecord& grid, const std::uint32
   check.add({triangles + checked_bytes, static_cast<std::size_t>(padded_end - checked_bytes)});
 }
 
-// Counts what a mesh will need. @param grid  so far: the lattice.
+// Counts what a mesh will need. @param resolved_count  n of Eq. (1). @param grid  so far: the lattice.
 template <class Mesh>
-Status count_image(const Mesh& mesh, const GridParameters& parameters, GridRecord grid, GridNeed& need) {
-  KeptTriangles kept;
-  GRIDIRON_TRY(survey(mesh, kept));
+Status count_image(const Mesh& mesh, const GridParameters& parameters, const KeptTriangles& kept,
+                   std::uint64_t resolved_count, GridRecord grid, GridNeed& need) {
   if (kept.count == 0) return Status::kNoTriangles;
 
   // The grid: Eq. (1) over the bounds of what is kept.
@@ -491,7 +520,7 @@ Status count_image(const Mesh& mesh, const GridParameters& parameters, GridRecor
     grid.minimum[axis] = grid.bounds_minimum[axis];
     extent[axis] = double{kept.maximum[axis]} - double{kept.minimum[axis]};
   }
-  solve_resolution(extent, double{parameters.lambda} * static_cast<double>(kept.count), grid.cell_count);
+  solve_resolution(extent, double{parameters.lambda} * static_cast<double>(resolved_count), grid.cell_count);
   const std::uint32_t width = parameters.macro_width;
   // An axis of one cell is scaled like the others: a mesh that is almost flat leaves most of that cell empty.
   float greatest = 0.0f;
@@ -508,7 +537,7 @@ Status count_image(const Mesh& mesh, const GridParameters& parameters, GridRecor
     grid.macro_cell_count[axis] = (grid.cell_count[axis] + width - 1) / width;
   }
   grid.macro_width = width;
-  grid.cell_block_bytes = round_up(width * width * width * static_cast<std::uint32_t>(sizeof(CellRecord)), kLineBytes);
+  grid.cell_block_bytes = cell_block_bytes_of(parameters.format, width);
   grid.triangle_format = static_cast<std::uint32_t>(parameters.format);
   grid.triangle_bytes = triangle_bytes_of(parameters.format);
   grid.lambda = parameters.lambda;
@@ -551,12 +580,16 @@ Status write_image(const Mesh& mesh, const GridNeed& need, const ImageLayout& la
   write_directory(mesh, need, layout, bytes);
   clear(bytes, layout.cell_blocks_offset, layout.triangles_offset);
   auto* const macro_table = reinterpret_cast<MacroTableEntry*>(bytes + layout.macro_table_offset);
-  auto* const cells = reinterpret_cast<CellRecord*>(bytes + layout.cell_blocks_offset);
+  std::byte* const cells = bytes + layout.cell_blocks_offset;
 
   const ReferenceLists lists(triangles, grid.reference_count, grid.triangle_bytes);
   GRIDIRON_TRY(list_references(mesh, grid, lists, macro_table));
   if (number_blocks(macro_table, layout.macro_table_entries) != grid.cell_block_count) return Status::kBadParameter;
-  sort_references(grid, lists, macro_table, cells);
+  if (grid.triangle_format == static_cast<std::uint32_t>(TriangleFormat::kLattice)) {
+    sort_references(grid, lists, macro_table, reinterpret_cast<CellBound*>(cells));
+  } else {
+    sort_references(grid, lists, macro_table, reinterpret_cast<CellRecord*>(cells));
+  }
 
   CheckValue check;
   check.add({bytes, static_cast<std::size_t>(layout.triangles_offset)});
@@ -572,9 +605,17 @@ Status count_scene_image(const MeshView& mesh, const GridParameters& parameters,
   if (mesh.triangles.size() > kMaxCount || mesh.vertices.size() > kMaxCount) return Status::kTooManyTriangles;
   if (!all_in_range(mesh.vertices)) return Status::kBadVertex;
   GridRecord grid{};
-  if (parameters.format != TriangleFormat::kLattice) return count_image(mesh, parameters, grid, need);
+  KeptTriangles kept;
+  GRIDIRON_TRY(survey(mesh, kept));
+  if (parameters.format != TriangleFormat::kLattice) {
+    return count_image(mesh, parameters, kept, kept.count, grid, need);
+  }
+  // As many cells as without a lattice: what loses its area on it leaves gaps, not larger triangles.
   GRIDIRON_TRY(find_lattice(mesh, grid.lattice));
-  return count_image(LatticeMesh{{mesh.vertices, grid.lattice}, mesh.triangles}, parameters, grid, need);
+  const LatticeMesh moved{{mesh.vertices, grid.lattice}, mesh.triangles};
+  KeptTriangles moved_kept;
+  GRIDIRON_TRY(survey(moved, moved_kept));
+  return count_image(moved, parameters, moved_kept, kept.count, grid, need);
 }
 
 Status build_scene_image(const MeshView& mesh, const GridParameters& parameters, const GridNeed& need,

@@ -191,10 +191,6 @@ bool check_grid(Checker& checker, const Sections& sections, GridRecord& grid) {
     GRIDIRON_REQUIRE(high <= kCoordinateLimit && high >= low && fits, base, GridRecord, bounds_maximum,
                      "grid.bounds_maximum");
   }
-  const std::uint32_t cells_per_block = grid.macro_width * grid.macro_width * grid.macro_width;
-  const std::uint32_t block_bytes = cells_per_block * static_cast<std::uint32_t>(sizeof(CellRecord));
-  GRIDIRON_REQUIRE(grid.cell_block_bytes == round_up(block_bytes, kLineBytes), base, GridRecord, cell_block_bytes,
-                   "grid.cell_block_bytes");
   GRIDIRON_REQUIRE(grid.cell_block_count >= 1, base, GridRecord, cell_block_count, "grid.cell_block_count");
   GRIDIRON_REQUIRE(grid.triangle_format == static_cast<std::uint32_t>(TriangleFormat::kVertices) ||
                        grid.triangle_format == static_cast<std::uint32_t>(TriangleFormat::kProjection) ||
@@ -202,6 +198,9 @@ bool check_grid(Checker& checker, const Sections& sections, GridRecord& grid) {
                    base, GridRecord, triangle_format, "grid.triangle_format");
   GRIDIRON_REQUIRE(grid.triangle_bytes == triangle_bytes_of(static_cast<TriangleFormat>(grid.triangle_format)), base,
                    GridRecord, triangle_bytes, "grid.triangle_bytes");
+  GRIDIRON_REQUIRE(
+      grid.cell_block_bytes == cell_block_bytes_of(static_cast<TriangleFormat>(grid.triangle_format), grid.macro_width),
+      base, GridRecord, cell_block_bytes, "grid.cell_block_bytes");
   if (!check_lattice(checker, base, grid)) return false;
   GRIDIRON_REQUIRE(is_finite(grid.lambda) && grid.lambda > 0.0f, base, GridRecord, lambda, "grid.lambda");
   GRIDIRON_REQUIRE(all_zero(grid.reserved, 3), base, GridRecord, reserved, "grid.reserved");
@@ -260,17 +259,27 @@ bool check_triangles(Checker& checker, const SceneImageView& view, std::uint64_t
   return true;
 }
 
+// The cell whose record, or bound and the next one, lies at `place`. Bounds that go down: more triangles than any image
+// has.
+CellRecord read_cell(Checker& checker, bool is_bound, std::uint64_t place) {
+  if (!is_bound) return checker.read<CellRecord>(place);
+  const std::uint32_t first = checker.read<CellBound>(place).first_triangle;
+  const std::uint32_t end = checker.read<CellBound>(place + sizeof(CellBound)).first_triangle;
+  return {first, end >= first ? end - first : ~0u};
+}
+
 // One block: cells inside the grid hold running ranges of triangles, cells beyond its edge hold none.
 bool check_block(Checker& checker, const SceneImageView& view, std::uint64_t block, const std::uint32_t macro_cell[3],
                  std::uint64_t& running) {
   const GridRecord& grid = view.grid;
   const std::uint32_t width = grid.macro_width;
   const std::uint64_t begin = running;
+  const bool is_bound = grid.triangle_format == static_cast<std::uint32_t>(TriangleFormat::kLattice);
   std::uint64_t base = view.cell_blocks_offset_bytes + block * grid.cell_block_bytes;
   for (std::uint32_t z = 0; z < width; ++z) {
     for (std::uint32_t y = 0; y < width; ++y) {
       for (std::uint32_t x = 0; x < width; ++x) {
-        const auto cell = checker.read<CellRecord>(base);
+        const CellRecord cell = read_cell(checker, is_bound, base);
         const bool inside = macro_cell[0] * width + x < grid.cell_count[0] &&
                             macro_cell[1] * width + y < grid.cell_count[1] &&
                             macro_cell[2] * width + z < grid.cell_count[2];
@@ -279,7 +288,7 @@ bool check_block(Checker& checker, const SceneImageView& view, std::uint64_t blo
                          base, CellRecord, triangle_count, "cell.triangle_count");
         if (!check_triangles(checker, view, running, cell.triangle_count)) return false;
         running += cell.triangle_count;
-        base += sizeof(CellRecord);
+        base += is_bound ? sizeof(CellBound) : sizeof(CellRecord);
       }
     }
   }

@@ -131,8 +131,18 @@ struct HitSetups {
   }
 };
 
+/// What a ray's distance to a triangle lies between, by double.
+struct DistanceInterval {
+  double low, high;
+};
+[[nodiscard]] DistanceInterval distance_interval(const float origin[3], float dir_max, const float dir[3],
+                                                 const VertexTriangle& triangle);
+
 /// @returns whether it shows at once that two triangles lie in one plane: across an axis, or by equal vertices.
 [[nodiscard]] bool in_one_plane(const VertexTriangle& first, const VertexTriangle& second);
+
+/// @returns whether they do, decided exactly: planes that meet in all corners of the second.
+[[nodiscard]] bool surely_in_one_plane(const VertexTriangle& first, const VertexTriangle& second, WorkCounters& work);
 
 /// @returns whether of two triangles that a ray meets at the same rounded distance the first one is its hit.
 template <class PacketType>
@@ -140,8 +150,15 @@ template <class PacketType>
                                const VertexTriangle& second, WorkCounters& work) {
   const bool has_lower_id = first.triangle_id < second.triangle_id;
   if (!packet.breaks_ties || in_one_plane(first, second)) return has_lower_id;
-  work.add(Work::kExactOrder);
+  work.add(Work::kHitSetup, 2);
+  work.add(Work::kHitHalf);
   const float dir[3] = {packet.dir[0][ray], packet.dir[1][ray], packet.dir[2][ray]};
+  const DistanceInterval one = distance_interval(packet.origin, packet.dir_max, dir, first);
+  const DistanceInterval other = distance_interval(packet.origin, packet.dir_max, dir, second);
+  if (one.high < other.low) return true;
+  if (other.high < one.low) return false;
+  if (surely_in_one_plane(first, second, work)) return has_lower_id;
+  work.add(Work::kExactOrder);
   const int order = exact_distance_order(packet.origin, dir, first.v, second.v);
   return order < 0 || (order == 0 && has_lower_id);
 }

@@ -50,6 +50,18 @@ void set_up_distance(const float origin[3], float dir_max, const VertexTriangle&
       kDistanceError * double{dir_max} * (products[0] + products[1] + products[2]) / magnitude(numerator);
 }
 
+DistanceInterval distance_interval(const float origin[3], float dir_max, const float dir[3],
+                                   const VertexTriangle& triangle) {
+  DistanceSetup setup;
+  set_up_distance(origin, dir_max, triangle, setup);
+  const double quotient = setup.numerator / (double{dir[0]} * setup.normal[0] + double{dir[1]} * setup.normal[1] +
+                                             double{dir[2]} * setup.normal[2]);
+  const double relative = quotient * setup.relative_error_per_t + setup.relative_error;
+  // False for NaN too: then it is anywhere.
+  if (!(quotient > 0.0 && relative < 0x1p-10)) return {0.0, double{kInfinity}};
+  return {quotient - quotient * relative, quotient + quotient * relative};
+}
+
 DistanceEstimate set_up_estimate(const float origin[3], float dir_max, const VertexTriangle& triangle) {
   DistanceEstimate estimate;
   float size[3];
@@ -91,6 +103,18 @@ bool in_one_plane(const VertexTriangle& first, const VertexTriangle& second) {
     }
   }
   return equal_count == 3;
+}
+
+bool surely_in_one_plane(const VertexTriangle& first, const VertexTriangle& second, WorkCounters& work) {
+  for (const float(&corner)[3] : second.v) {
+    bool is_shared = false;
+    for (const float(&other)[3] : first.v) {
+      is_shared =
+          is_shared || (is_same(corner[0], other[0]) && is_same(corner[1], other[1]) && is_same(corner[2], other[2]));
+    }
+    if (!is_shared && volume_sign_in_double(corner, first, work) != 0) return false;
+  }
+  return true;
 }
 
 void set_up_normal(const VertexTriangle& triangle, float normal[3]) {

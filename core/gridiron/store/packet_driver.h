@@ -66,7 +66,7 @@ class PacketDriver {
   [[nodiscard]] Status fetch_next_run() {
     if (frustum_.beyond(Slab{cell_.entry, cell_.entry}, reach_)) cell_.triangle_count = 0;
     while (cell_.triangle_count == 0) {
-      if (walking_ && cell_walk_.next(frustum_, front_cells(), reach_, cell_, store_.work)) {
+      if (walking_ && find_next_cell()) {
         touching_ = squares_that_see(cell_);
         if (touching_ != 0) break;
         cell_.triangle_count = 0;
@@ -95,6 +95,14 @@ class PacketDriver {
     cell_.triangle_count -= count;
     return transfers_.get(store_.triangles[slot].bytes + (first_byte - slack), MainAddress{begin - slack}, bytes,
                           static_cast<std::uint8_t>(kFirstTriangleTag + slot));
+  }
+
+  [[nodiscard]] bool find_next_cell() {
+    const std::byte* const block = store_.cell_blocks[macro_ring_.front()].bytes;
+    if (is_on_lattice()) {
+      return cell_walk_.next(frustum_, reinterpret_cast<const CellBound*>(block), reach_, cell_, store_.work);
+    }
+    return cell_walk_.next(frustum_, reinterpret_cast<const CellRecord*>(block), reach_, cell_, store_.work);
   }
 
   // Leaves the macrocell that was walked, keeps the ring filled, and waits for the next block; or sets cells_done_.
@@ -259,10 +267,6 @@ class PacketDriver {
   [[nodiscard]] bool is_on_lattice() const {
     static_assert(2 * sizeof(LatticeTriangle) == kTriangleRecordBytes);
     return store_.frame.accuracy == static_cast<std::uint32_t>(Accuracy::kCompact);
-  }
-
-  [[nodiscard]] const CellRecord* front_cells() const {
-    return reinterpret_cast<const CellRecord*>(store_.cell_blocks[macro_ring_.front()].bytes);
   }
 
   LocalStore<Layout>& store_;

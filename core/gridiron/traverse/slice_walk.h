@@ -127,6 +127,20 @@ class MacroWalk {
   std::uint32_t needed_chunk_;
 };
 
+/// How many triangles a cell of a block has, and the work of looking it up.
+[[nodiscard]] GRIDIRON_INLINE std::uint32_t triangle_count_of(const CellRecord* cell) {
+  return cell->triangle_count;
+}
+[[nodiscard]] GRIDIRON_INLINE std::uint32_t triangle_count_of(const CellBound* cell) {
+  return cell[1].first_triangle - cell[0].first_triangle;
+}
+[[nodiscard]] GRIDIRON_INLINE constexpr Work step_kind_of(const CellRecord*) {
+  return Work::kCellStep;
+}
+[[nodiscard]] GRIDIRON_INLINE constexpr Work step_kind_of(const CellBound*) {
+  return Work::kCellBoundStep;
+}
+
 /// Walks the slices of one macrocell front to back and the non-empty cells of the frustum's rectangle in each.
 ///
 /// Bound: m slices, m^3 cells.
@@ -146,18 +160,21 @@ class CellWalk {
     u_last_ = -1;
   }
 
-  /// @param cells  the macrocell's block. @returns false when no cell is left.
-  [[nodiscard]] bool next(const Frustum& frustum, const CellRecord* cells, float reach, CellVisit& found,
+  /// @tparam Cell  CellRecord or CellBound. @param cells  the macrocell's block. @returns false when no cell is left.
+  template <class Cell>
+  [[nodiscard]] bool next(const Frustum& frustum, const Cell* cells, float reach, CellVisit& found,
                           WorkCounters& work) {
     const std::int32_t slice_count = visit_.k_last - visit_.k_first + 1;
     for (;;) {
       for (; v_ <= v_last_; ++v_, u_ = u_first_) {
         for (; u_ <= u_last_; ++u_) {
-          work.add(Work::kCellStep);
-          const CellRecord& cell = cells[row_ + (u_ - visit_.u_first) * stride_u_ + (v_ - visit_.v_first) * stride_v_];
-          if (cell.triangle_count == 0) continue;
+          work.add(step_kind_of(cells));
+          const Cell* const cell =
+              cells + (row_ + (u_ - visit_.u_first) * stride_u_ + (v_ - visit_.v_first) * stride_v_);
+          const std::uint32_t triangle_count = triangle_count_of(cell);
+          if (triangle_count == 0) continue;
           work.add(Work::kCellVisit);
-          found = {cell.first_triangle, cell.triangle_count, slab_.entry, slab_.exit, u_, v_};
+          found = {cell->first_triangle, triangle_count, slab_.entry, slab_.exit, u_, v_};
           ++u_;
           return true;
         }

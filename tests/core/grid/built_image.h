@@ -57,8 +57,16 @@ inline std::vector<std::vector<std::uint32_t>> read_cells(std::span<const std::b
         const std::uint64_t block =
             std::uint64_t{entry.first_block} + static_cast<std::uint32_t>(std::popcount(entry.occupied & (bit - 1)));
         const std::uint32_t local = ((z % m) * m + y % m) * m + x % m;
-        const auto record = read_record<CellRecord>(
-            bytes, view.cell_blocks_offset_bytes + block * grid.cell_block_bytes + local * sizeof(CellRecord));
+        const std::uint64_t base = view.cell_blocks_offset_bytes + block * grid.cell_block_bytes;
+        CellRecord record;
+        if (grid.triangle_format == static_cast<std::uint32_t>(TriangleFormat::kLattice)) {
+          const auto bound = [&](std::uint32_t i) {
+            return read_record<CellBound>(bytes, base + i * sizeof(CellBound)).first_triangle;
+          };
+          record = {bound(local), bound(local + 1) - bound(local)};
+        } else {
+          record = read_record<CellRecord>(bytes, base + local * sizeof(CellRecord));
+        }
         for (std::uint32_t i = 0; i < record.triangle_count; ++i) {
           const std::uint64_t place = std::uint64_t{record.first_triangle} + i;
           // Every record ends with its id.

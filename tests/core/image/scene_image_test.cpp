@@ -309,6 +309,32 @@ TEST(SceneImage, LatticesWhoseValuesAreNoFloatsAreRefused) {
   EXPECT_EQ(error.byte_offset, built.view.triangles_offset_bytes + 24 + offsetof(LatticeTriangle, reserved));
 }
 
+TEST(SceneImage, CellsOnALatticeMustEndWhereTheNextOneBegins) {
+  const std::uint64_t block = small_image(TriangleFormat::kLattice).view.grid.cell_block_bytes / sizeof(CellBound);
+  struct Case {
+    const char* what;
+    const char* field;
+    std::uint64_t bound;  // of the section
+    std::uint32_t value;
+  };
+  const Case cases[] = {
+      {"a triangle in the empty block", "cell.triangle_count", 1, 1},
+      {"a first cell that begins later", "cell.first_triangle", block, 1},
+      {"a cell that ends behind all triangles", "cell.triangle_count", block + 1, 1000},
+      {"a last cell that ends before it begins", "cell.triangle_count", block + 8, 0},
+  };
+  for (const Case& c : cases) {
+    BuiltImage built = small_image(TriangleFormat::kLattice);
+    const std::uint64_t place = built.view.cell_blocks_offset_bytes + c.bound * sizeof(CellBound);
+    edit<CellBound>(built.image, place, [&](auto& r) { r.first_triangle = c.value; });
+    renew_check_value(built.image);
+    SceneImageError error;
+    EXPECT_EQ(open_and_read(built.image, error), Status::kBadImage) << c.what;
+    EXPECT_STREQ(error.field, c.field) << c.what;
+    EXPECT_EQ(error.byte_offset, place) << c.what;
+  }
+}
+
 TEST(SceneImage, IdsMustAscendWithinACell) {
   TestMesh mesh = make_triangle({0, 0, 0}, {1, 0, 0}, {0, 1, 0});
   mesh.triangles.push_back(mesh.triangles[0]);

@@ -125,8 +125,8 @@ TEST(Report, HasExactlyTheDocumentedKeysInOrder) {
         "hit_group",        "hit_subpacket",   "hit_group_paper",  "hit_setup",           "double_sign",
         "exact_sign",       "exact_distance",  "reach_group",      "shaded_group",        "shaded_simple_group",
         "depth_group",      "id_group",        "footprint_group",  "row_group",           "estimate_setup",
-        "normal_setup",     "hit_half",        "exact_order",      "lattice_triangle",    "get_issue",
-        "put_issue",        "wait"}) {
+        "normal_setup",     "hit_half",        "exact_order",      "lattice_triangle",    "cell_bound_step",
+        "get_issue",        "put_issue",       "wait"}) {
     expected.push_back(std::string("work.") + name);
   }
   // clang-format on
