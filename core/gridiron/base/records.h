@@ -111,8 +111,8 @@ struct CellRecord {
 };
 static_assert(sizeof(CellRecord) == 8);
 
-/// The same in half the bytes, beside lattice triangles: a cell ends where the next one of its block begins. A block has
-/// m^3 + 1 of them; the last is where its last cell ends.
+/// The same in half the bytes, beside lattice triangles: a cell ends where the next one of its block begins. A block
+/// has m^3 + 1 of them; the last is where its last cell ends.
 struct CellBound {
   std::uint32_t first_triangle;    ///< index into kTriangles
 };
