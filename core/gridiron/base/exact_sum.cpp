@@ -59,13 +59,33 @@ void add_volume(ExactSum& sum, const float org[3], const float a[3], const float
   sum.add_determinant(-1, a, b, org);
 }
 
-// The distance at which a ray meets a triangle's plane is numerator / denominator.
-void add_quotient(const float org[3], const float dir[3], const float a[3], const float b[3], const float c[3],
-                  ExactSum& numerator, ExactSum& denominator) {
-  add_volume(numerator, org, a, b, c);
-  denominator.add_determinant(1, dir, b, c);  // det[d, b-a, c-a] = det[d,b,c] - det[d,a,c] - det[d,b,a]
-  denominator.add_determinant(-1, dir, a, c);
-  denominator.add_determinant(-1, dir, b, a);
+// The distance at which a ray meets a triangle's plane is that volume over this one.
+void add_slope(ExactSum& sum, const float dir[3], const float a[3], const float b[3], const float c[3]) {
+  sum.add_determinant(1, dir, b, c);  // det[d, b-a, c-a] = det[d,b,c] - det[d,a,c] - det[d,b,a]
+  sum.add_determinant(-1, dir, a, c);
+  sum.add_determinant(-1, dir, b, a);
+}
+
+// A magnitude in half the bytes of its sum: four of them are in hand at once.
+struct Digits {
+  std::uint32_t digits[ExactSum::kLimbCount];
+};
+
+[[gnu::noinline]] void store_magnitude(ExactSum& sum, Digits& magnitude) {
+  (void)sum.take_magnitude();
+  for (int i = 0; i < ExactSum::kLimbCount; ++i) magnitude.digits[i] = sum.limb(i);
+}
+
+[[gnu::noinline]] void store_quotient(const float org[3], const float dir[3], const float (&v)[3][3], Digits& numerator,
+                                      Digits& denominator) {
+  {
+    ExactSum sum;
+    add_volume(sum, org, v[0], v[1], v[2]);
+    store_magnitude(sum, numerator);
+  }
+  ExactSum sum;
+  add_slope(sum, dir, v[0], v[1], v[2]);
+  store_magnitude(sum, denominator);
 }
 
 }  // namespace
@@ -156,7 +176,8 @@ bool exact_zero_area(const float a[3], const float b[3], const float c[3]) {
 
 float exact_distance(const float org[3], const float dir[3], const float a[3], const float b[3], const float c[3]) {
   ExactSum numerator, denominator;
-  add_quotient(org, dir, a, b, c, numerator, denominator);
+  add_volume(numerator, org, a, b, c);
+  add_slope(denominator, dir, a, b, c);
   const int numerator_sign = numerator.take_magnitude();
   const int denominator_sign = denominator.take_magnitude();
   if (numerator_sign == 0 || denominator_sign == 0 || numerator_sign != denominator_sign) return 0.0f;
@@ -185,13 +206,9 @@ float exact_distance(const float org[3], const float dir[3], const float a[3], c
 
 int exact_distance_order(const float org[3], const float dir[3], const float (&first)[3][3],
                          const float (&second)[3][3]) {
-  ExactSum numerators[2], denominators[2];
-  add_quotient(org, dir, first[0], first[1], first[2], numerators[0], denominators[0]);
-  add_quotient(org, dir, second[0], second[1], second[2], numerators[1], denominators[1]);
-  for (int i = 0; i < 2; ++i) {
-    (void)numerators[i].take_magnitude();
-    (void)denominators[i].take_magnitude();
-  }
+  Digits numerators[2], denominators[2];
+  store_quotient(org, dir, first, numerators[0], denominators[0]);
+  store_quotient(org, dir, second, numerators[1], denominators[1]);
   // The sign of N0 D1 - N1 D0, column by column from the lowest: sums of halves of at most 27 products each.
   constexpr int kLimbs = ExactSum::kLimbCount;
   std::int64_t carry = 0;
@@ -203,8 +220,8 @@ int exact_distance_order(const float org[3], const float dir[3], const float (&f
     if (end > kLimbs) end = kLimbs;
     for (int i = begin; i < end; ++i) {
       const int j = column - i;
-      const std::uint64_t left = std::uint64_t{numerators[0].limb(i)} * denominators[1].limb(j);
-      const std::uint64_t right = std::uint64_t{numerators[1].limb(i)} * denominators[0].limb(j);
+      const std::uint64_t left = std::uint64_t{numerators[0].digits[i]} * denominators[1].digits[j];
+      const std::uint64_t right = std::uint64_t{numerators[1].digits[i]} * denominators[0].digits[j];
       low += static_cast<std::int64_t>(left & 0xFFFFFFFFu) - static_cast<std::int64_t>(right & 0xFFFFFFFFu);
       high += static_cast<std::int64_t>(left >> 32) - static_cast<std::int64_t>(right >> 32);
     }

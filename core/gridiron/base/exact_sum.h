@@ -39,10 +39,12 @@ class ExactSum {
 };
 
 /// @returns sign of det[dir, a - org, b - org], exactly: the side of edge (a, b) on which the ray passes.
-[[nodiscard]] int exact_edge_sign(const float org[3], const float dir[3], const float a[3], const float b[3]);
+[[nodiscard, gnu::cold]] int exact_edge_sign(const float org[3], const float dir[3], const float a[3],
+                                             const float b[3]);
 
 /// @returns sign of det[a - org, b - org, c - org], exactly: the side of the triangle's plane on which org lies.
-[[nodiscard]] int exact_volume_sign(const float org[3], const float a[3], const float b[3], const float c[3]);
+[[nodiscard, gnu::cold]] int exact_volume_sign(const float org[3], const float a[3], const float b[3],
+                                               const float c[3]);
 
 /// @returns true where (b - a) x (c - a) is exactly zero: the triangle has no area.
 [[nodiscard]] bool exact_zero_area(const float a[3], const float b[3], const float c[3]);
@@ -52,14 +54,14 @@ class ExactSum {
 /// @returns N / D with N = det[a - org, b - org, c - org], D = det[dir, b - a, c - a]: positive when both have the same
 ///          sign; 0 when N is zero, D is zero, the quotient is negative, or it rounds below the least normal float;
 ///          kFloatMax when it is larger. Cost: bounded, at most 31 comparisons of big integers.
-[[nodiscard]] float exact_distance(const float org[3], const float dir[3], const float a[3], const float b[3],
-                                   const float c[3]);
+[[nodiscard, gnu::cold]] float exact_distance(const float org[3], const float dir[3], const float a[3],
+                                              const float b[3], const float c[3]);
 
 /// Order of the distances N / D, as in exact_distance, at which a ray meets the planes of two triangles.
 ///
 /// @param first, second  vertices. Precondition: N and D of each have the same sign, not 0.
 /// @returns -1 where the first is nearer, 0 where they are equal, +1. Cost: two products of big integers.
-[[nodiscard]] int exact_distance_order(const float org[3], const float dir[3], const float (&first)[3][3],
-                                       const float (&second)[3][3]);
+[[nodiscard, gnu::cold]] int exact_distance_order(const float org[3], const float dir[3], const float (&first)[3][3],
+                                                  const float (&second)[3][3]);
 
 }  // namespace gridiron

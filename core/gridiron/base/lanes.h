@@ -14,6 +14,8 @@
 #define GRIDIRON_INLINE_LAMBDA __attribute__((always_inline))
 /// For what several instantiations share: one copy of it, for the sake of the local store.
 #define GRIDIRON_OUTLINE __attribute__((noinline))
+/// The same for code that hardly ever runs: as short as it can be.
+#define GRIDIRON_RARE __attribute__((noinline, cold))
 
 namespace gridiron {
 

@@ -146,8 +146,8 @@ struct DistanceInterval {
 
 /// @returns whether of two triangles that a ray meets at the same rounded distance the first one is its hit.
 template <class PacketType>
-[[nodiscard]] bool comes_first(const PacketType& packet, std::uint32_t ray, const VertexTriangle& first,
-                               const VertexTriangle& second, WorkCounters& work) {
+[[nodiscard]] GRIDIRON_RARE bool comes_first(const PacketType& packet, std::uint32_t ray, const VertexTriangle& first,
+                                             const VertexTriangle& second, WorkCounters& work) {
   const bool has_lower_id = first.triangle_id < second.triangle_id;
   if (!packet.breaks_ties || in_one_plane(first, second)) return has_lower_id;
   work.add(Work::kHitSetup, 2);
@@ -168,9 +168,9 @@ template <class PacketType>
 /// @param close  lanes. @param distance  of the new hits, exact. @returns the lanes whose new hit is nearer; t of the
 /// others becomes exact. Where a ray's old triangle is no longer at hand, the ray becomes unsure.
 template <class L, class PacketType>
-[[nodiscard]] std::uint32_t settle_close_hits(PacketType& packet, std::uint32_t base, std::uint32_t close,
-                                              const VertexTriangle& triangle, const float* distance,
-                                              WorkCounters& work) {
+[[nodiscard]] GRIDIRON_RARE std::uint32_t settle_close_hits(PacketType& packet, std::uint32_t base, std::uint32_t close,
+                                                            const VertexTriangle& triangle, const float* distance,
+                                                            WorkCounters& work) {
   std::uint32_t nearer = 0;
   while (close != 0) {
     const std::uint32_t old_id = packet.id[base + lowest_bit(close)];

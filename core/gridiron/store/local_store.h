@@ -23,8 +23,8 @@ namespace gridiron {
 template <std::uint32_t PacketWidthV = 8, std::uint32_t TileWidthV = 32>
 struct StoreLayout256K {
   static constexpr std::uint32_t kArenaBytes = 256 * 1024;
-  static constexpr std::uint32_t kCodeBudgetBytes = 52 * 1024;
-  static constexpr std::uint32_t kStackBudgetBytes = 8 * 1024;
+  static constexpr std::uint32_t kCodeBudgetBytes = 53 * 1024;
+  static constexpr std::uint32_t kStackBudgetBytes = 8704;
   static constexpr std::uint32_t kTileWidth = TileWidthV;
   static constexpr std::uint32_t kPacketWidth = PacketWidthV;
   static constexpr std::uint32_t kMailboxSlots = PacketWidthV < 16                        ? 64
@@ -61,8 +61,8 @@ struct StoreLayout64K {
 template <std::uint32_t PacketWidthV = 8, std::uint32_t TileWidthV = 32>
 struct StoreLayout128K {
   static constexpr std::uint32_t kArenaBytes = 128 * 1024;
-  static constexpr std::uint32_t kCodeBudgetBytes = 52 * 1024;
-  static constexpr std::uint32_t kStackBudgetBytes = 8 * 1024;
+  static constexpr std::uint32_t kCodeBudgetBytes = 53 * 1024;
+  static constexpr std::uint32_t kStackBudgetBytes = 8704;
   static constexpr std::uint32_t kTileWidth = TileWidthV;
   static constexpr std::uint32_t kPacketWidth = PacketWidthV;
   static constexpr std::uint32_t kMailboxSlots = PacketWidthV >= 16 ? 256 : 64;
@@ -79,8 +79,8 @@ struct StoreLayout128K {
 template <std::uint32_t PacketWidthV = 8, std::uint32_t TileWidthV = 32>
 struct StoreLayout512K {
   static constexpr std::uint32_t kArenaBytes = 512 * 1024;
-  static constexpr std::uint32_t kCodeBudgetBytes = 52 * 1024;
-  static constexpr std::uint32_t kStackBudgetBytes = 8 * 1024;
+  static constexpr std::uint32_t kCodeBudgetBytes = 53 * 1024;
+  static constexpr std::uint32_t kStackBudgetBytes = 8704;
   static constexpr std::uint32_t kTileWidth = TileWidthV;
   static constexpr std::uint32_t kPacketWidth = PacketWidthV;
   static constexpr std::uint32_t kMailboxSlots = PacketWidthV >= 16 ? 1024 : 64;

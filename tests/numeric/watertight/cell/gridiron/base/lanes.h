@@ -12,6 +12,7 @@
 #define GRIDIRON_INLINE inline
 #define GRIDIRON_INLINE_LAMBDA
 #define GRIDIRON_OUTLINE inline
+#define GRIDIRON_RARE inline
 
 namespace gridiron {
 
