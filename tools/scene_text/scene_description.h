@@ -20,10 +20,10 @@ inline constexpr std::uint32_t kMostSceneTriangles = 1u << 26;  ///< after tesse
 inline constexpr std::uint32_t kMostSceneVertices = 1u << 26;   ///< and as many normals
 inline constexpr std::uint32_t kMostSceneLights = 256;          ///< point and area lights together
 inline constexpr std::uint32_t kMostEffectSamples = 64;         ///< of an area light, of ambient occlusion
-inline constexpr std::uint32_t kMostRecursionDepth = 8;
-inline constexpr std::uint32_t kDefaultRecursionDepth = 5;    ///< what readers of NFF use by custom
-inline constexpr std::uint32_t kMostEnvironmentWidth = 1024;  ///< texels of a face's edge
-inline constexpr float kMostSceneCoordinate = 1e18f;          ///< |x|, so that squares of lengths stay finite
+inline constexpr std::uint32_t kMostRecursionDepth = 8;         ///< the eye ray is of depth 1
+inline constexpr std::uint32_t kDefaultRecursionDepth = 5;      ///< what readers of NFF use by custom
+inline constexpr std::uint32_t kMostEnvironmentWidth = 1024;    ///< texels of a face's edge
+inline constexpr float kMostSceneCoordinate = 1e18f;            ///< |x|, so that squares of lengths stay finite
 inline constexpr float kLeastRefraction = 0.1f, kMostRefraction = 10.0f;
 inline constexpr float kMostShine = 1e5f;
 inline constexpr float kMostLightColor = 1e6f;
@@ -64,9 +64,8 @@ struct SceneMaterial {
   friend bool operator==(const SceneMaterial&, const SceneMaterial&) = default;
 };
 
-/// Faces of an environment cube, in the order of the `e` line. What a face's picture shows as right and up:
-/// kPlusX -z y, kMinusX z y, kPlusY x -z, kMinusY x z, kPlusZ x y, kMinusZ -x y (cube maps as usual, seen from inside
-/// with x to the right for kPlusZ).
+/// Faces of an environment cube, in the order of the `e` line. A face's picture is what a camera in the middle sees:
+/// 90 degrees, up y; for the faces of y up is z (kPlusY) and -z (kMinusY). So right is z, -z, x, x, -x, x.
 enum class CubeFace : std::uint8_t { kPlusX, kMinusX, kPlusY, kMinusY, kPlusZ, kMinusZ };
 inline constexpr std::uint32_t kCubeFaceCount = 6;
 
@@ -87,7 +86,7 @@ inline constexpr std::uint32_t kNoNormal = std::numeric_limits<std::uint32_t>::m
 
 /// All geometry. Triangles are counter-clockwise seen from outside, in the file's order. Closed shapes share vertices.
 struct SceneGeometry {
-  std::vector<Vec3> vertices;                     ///< finite, |x| <= kMostSceneCoordinate
+  std::vector<Vec3> vertices;                     ///< finite, |x| <= 2 kMostSceneCoordinate
   std::vector<UVec3> triangles;                   ///< of indices into vertices
   std::vector<std::uint16_t> triangle_materials;  ///< one per triangle, of SceneDescription::materials
   std::vector<Vec3> normals;                      ///< unit to float rounding, outwards
@@ -118,7 +117,7 @@ struct SceneDescription {
   std::optional<EnvironmentMap> environment;
   std::optional<AmbientOcclusion> ambient_occlusion;
   std::uint32_t samples_per_pixel = 1;                     ///< 1, 4 or 16
-  std::uint32_t recursion_depth = kDefaultRecursionDepth;  ///< most mirror and refraction events of a path, 0..8
+  std::uint32_t recursion_depth = kDefaultRecursionDepth;  ///< of a path of rays; the eye ray is of depth 1: 1..8
   bool shadows = true;
   SceneGeometry geometry;  ///< at least one triangle
 
