@@ -327,7 +327,8 @@ class Flattener {
     cut_.clear();
     const PolygonResult result = triangulate_polygon(corners_, cut_);
     const std::string name = is_patch ? "patch" : "polygon";
-    if (result.defect == PolygonDefect::kCrosses) fail(shape.line, "the outline of the " + name + " crosses itself");
+    if (result.defect == PolygonDefect::kCrosses)
+      fail(shape.line, "the outline of the " + name + " crosses or retraces itself");
     if (result.defect == PolygonDefect::kNoArea) return note(shape.line, name + " without area left out");
     if (result.plane_distance > static_cast<double>(scene_.tolerance)) {
       if (!is_patch) ++scene_.counts.non_planar_polygons;

@@ -44,10 +44,27 @@ class Outline {
   Outline(std::vector<Place> places, std::vector<std::uint32_t> corners)
       : places_(std::move(places)), corners_(std::move(corners)) {}
 
+  // Removes corners where the outline turns back on itself, and what then repeats the corner before.
+  void remove_spikes() {
+    std::size_t kept = 0;  // corners in a row that are no spikes
+    for (std::size_t at = 0; corners_.size() > 2 && kept < corners_.size();) {
+      if (place(at) == place(previous(at)) || is_spike(at)) {
+        remove(at);
+        at = at == 0 ? corners_.size() - 1 : at - 1;  // the corner before may be one now
+        kept = 0;
+      } else {
+        at = following(at);
+        ++kept;
+      }
+    }
+  }
+
   // Cuts until nothing is left. @returns false where it gets stuck: the outline crosses itself.
   bool clip(std::vector<UVec3>& triangles) {
     Strictness strictness = Strictness::kBoundary;
     std::size_t at = 0, refused = 0;
+    remove_spikes();
+    if (corners_.size() < 3) return true;
     while (corners_.size() > 3) {
       if (is_ear(at, strictness)) {
         const std::size_t before = previous(at);
@@ -97,6 +114,14 @@ class Outline {
       }
     }
     return false;
+  }
+
+  [[nodiscard]] bool is_spike(std::size_t at) const {
+    const Place &a = place(previous(at)), &b = place(at), &c = place(following(at));
+    const auto same_side = [](float from, float middle, float to) {
+      return (from < middle && to < middle) || (from > middle && to > middle);
+    };
+    return turn(a, b, c) == 0 && (same_side(a.x, b.x, c.x) || same_side(a.y, b.y, c.y));
   }
 
   [[nodiscard]] bool is_ear(std::size_t at, Strictness strictness) const {
@@ -154,6 +179,12 @@ DVec3 newell_normal(std::span<const Vec3> corners) {
   return sum;
 }
 
+bool are_on_a_line(std::span<const Vec3> corners, const std::vector<std::uint32_t>& kept) {
+  const Vec3 &first = corners[kept[0]], &second = corners[kept[1]];
+  return std::all_of(kept.begin(), kept.end(),
+                     [&](std::uint32_t i) { return exact_zero_area(&first.x, &second.x, &corners[i].x); });
+}
+
 double largest_plane_distance(std::span<const Vec3> corners, const DVec3& unit_normal) {
   const DVec3 origin(corners[0]);
   double mean = 0;
@@ -179,7 +210,8 @@ PolygonResult triangulate_polygon(std::span<const Vec3> corners, std::vector<UVe
 
   const DVec3 normal = newell_normal(corners);
   const double length = glm::length(normal);
-  if (!(length > 0)) return {PolygonDefect::kNoArea, 0};
+  if (are_on_a_line(corners, kept)) return {PolygonDefect::kNoArea, 0};
+  if (!(length > 0)) return {PolygonDefect::kCrosses, 0};
   const DVec3 size = glm::abs(normal);
   const int axis = size.x >= size.y && size.x >= size.z ? 0 : size.y >= size.z ? 1 : 2;
   const int x = (axis + (normal[axis] > 0 ? 1 : 2)) % 3, y = (axis + (normal[axis] > 0 ? 2 : 1)) % 3;

@@ -14,8 +14,8 @@ inline constexpr std::uint32_t kMostPolygonCorners = 1024;  ///< clipping costs 
 
 enum class PolygonDefect : std::uint8_t {
   kNone,
-  kNoArea,   ///< all corners on a line, or the parts of the outline cancel
-  kCrosses,  ///< the outline crosses itself
+  kNoArea,   ///< all corners on a line
+  kCrosses,  ///< the outline crosses itself, or runs back on itself so that nothing is inside
 };
 
 /// What triangulate_polygon made.

@@ -23,7 +23,7 @@ inline constexpr std::uint32_t kMostEffectSamples = 64;         ///< of an area 
 inline constexpr std::uint32_t kMostRecursionDepth = 8;         ///< the eye ray is of depth 1
 inline constexpr std::uint32_t kDefaultRecursionDepth = 5;      ///< what readers of NFF use by custom
 inline constexpr std::uint32_t kMostEnvironmentWidth = 1024;    ///< texels of a face's edge
-inline constexpr float kMostSceneCoordinate = 1e18f;            ///< |x|, so that squares of lengths stay finite
+inline constexpr double kMostSceneCoordinate = 1e18;            ///< |x|, so that squares of lengths stay finite
 inline constexpr float kLeastRefraction = 0.1f, kMostRefraction = 10.0f;
 inline constexpr float kMostShine = 1e5f;
 inline constexpr float kMostLightColor = 1e6f;

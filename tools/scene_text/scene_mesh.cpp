@@ -63,7 +63,7 @@ SceneMesh read_scene_mesh(const std::filesystem::path& path, const std::optional
   for (Vec3& vertex : mesh.vertices) {
     const DVec3 place = matrix ? moved(*matrix, DVec3(vertex)) : DVec3(vertex);
     for (int axis = 0; axis < 3; ++axis) {
-      if (!(std::fabs(place[axis]) <= static_cast<double>(kMostSceneCoordinate))) {
+      if (!(std::fabs(place[axis]) <= kMostSceneCoordinate)) {
         throw Failure(ExitCode::kBadInput, path.string() + ": a vertex lies farther than 1e18 from the origin");
       }
     }

@@ -139,8 +139,7 @@ class Parser {
                     "angle must lie between 0 and 180 degrees, not be " + in_quotes(number.word.text));
       }
     } else if (part.text == "hither") {
-      const double most = static_cast<double>(kMostSceneCoordinate);
-      view.hither = static_cast<float>(words_.take_in_range(entity, "hither", 0, most));
+      view.hither = static_cast<float>(words_.take_in_range(entity, "hither", 0, kMostSceneCoordinate));
     } else {
       view.width = words_.take_count(entity, "the resolution's width", 1, kMaxPictureWidth);
       view.height = words_.take_count(entity, "the resolution's height", 1, kMaxPictureWidth);
@@ -266,8 +265,7 @@ class Parser {
 
   double take_positive(SceneEntity& entity, const char* name) {
     const SceneNumber number = words_.take_number(entity);
-    const double most = static_cast<double>(kMostSceneCoordinate);
-    if (!(static_cast<float>(number.value) > 0 && number.value <= most)) {
+    if (!(static_cast<float>(number.value) > 0 && number.value <= kMostSceneCoordinate)) {
       words_.fail(number.word.line, std::string(name) + " of '" + std::string(entity.keyword.text) +
                                         "' must be greater than 0 and at most 1e18, not " +
                                         in_quotes(number.word.text));
@@ -284,9 +282,9 @@ class Parser {
   }
 
   void add_center(SceneEntity& entity) {
-    const double most = static_cast<double>(kMostSceneCoordinate);
     for (int axis = 0; axis < 3; ++axis) {
-      result_.numbers.push_back(words_.take_in_range(entity, "a coordinate", -most, most));
+      result_.numbers.push_back(
+          words_.take_in_range(entity, "a coordinate", -kMostSceneCoordinate, kMostSceneCoordinate));
     }
   }
 
@@ -294,10 +292,9 @@ class Parser {
     require_fill(entity);
     const std::size_t first = result_.numbers.size();
     add_shape(entity, ShapeKind::kCone, first);
-    const double most = static_cast<double>(kMostSceneCoordinate);
     for (const char* name : {"the base radius", "the apex radius"}) {
       add_center(entity);
-      result_.numbers.push_back(words_.take_in_range(entity, name, 0, most));
+      result_.numbers.push_back(words_.take_in_range(entity, name, 0, kMostSceneCoordinate));
     }
     const double* n = result_.numbers.data() + first;
     if (n[3] == 0 && n[7] == 0) words_.fail(entity.keyword.line, "both radii of 'c' are 0");
@@ -336,8 +333,8 @@ class Parser {
     if (looks_like_number(words_.next().text)) {
       entity.wanted = 12;
       matrix.emplace();
-      const double most = static_cast<double>(kMostSceneCoordinate);
-      for (double& number : *matrix) number = words_.take_in_range(entity, "the matrix", -most, most);
+      for (double& number : *matrix)
+        number = words_.take_in_range(entity, "the matrix", -kMostSceneCoordinate, kMostSceneCoordinate);
       if (!is_invertible(*matrix)) words_.fail(entity.keyword.line, "the matrix of 'm' flattens the mesh");
     }
     const std::filesystem::path path = folder_ / std::filesystem::path(name.text);

@@ -14,6 +14,7 @@ namespace gridiron::tool {
 namespace {
 
 constexpr std::size_t kMostWordBytes = 4096;  // as long as a path may be
+constexpr const char* kHoldsZero = "not a text file: it holds a byte 0";
 
 bool is_line_end(char c) {
   return c == '\n' || c == '\r';
@@ -84,12 +85,14 @@ void SceneWords::advance() {
     } else if (!in_comment && !is_white(c)) {
       break;
     }
-    if (c == '\0') fail(line_, "not a text file: it holds a byte 0");
+    if (c == '\0') fail(line_, kHoldsZero);
   }
   rest_.remove_prefix(at);
   std::size_t bytes = 0;
   while (bytes < rest_.size() && !is_white(rest_[bytes]) && rest_[bytes] != '#') {
-    if (is_control(rest_[bytes])) fail(line_, "not a text file: it holds a control character");
+    if (is_control(rest_[bytes])) {
+      fail(line_, rest_[bytes] == '\0' ? kHoldsZero : "not a text file: it holds a control character");
+    }
     if (++bytes > kMostWordBytes) fail(line_, "word of more than " + std::to_string(kMostWordBytes) + " bytes");
   }
   next_ = {rest_.substr(0, bytes), line_};
@@ -154,8 +157,8 @@ std::uint32_t SceneWords::take_count(SceneEntity& entity, const char* name, std:
 Vec3 SceneWords::take_point(SceneEntity& entity) {
   Vec3 point{};
   for (int axis = 0; axis < 3; ++axis) {
-    const double most = static_cast<double>(kMostSceneCoordinate);
-    point[axis] = static_cast<float>(take_in_range(entity, "a coordinate", -most, most));
+    point[axis] =
+        static_cast<float>(take_in_range(entity, "a coordinate", -kMostSceneCoordinate, kMostSceneCoordinate));
   }
   return point;
 }
