@@ -141,6 +141,9 @@ TEST(SceneReader, KeepsEachMaterialOnceAndOnlyThoseInUse) {
   ASSERT_EQ(read.materials.size(), 2u);
   EXPECT_EQ(read.materials[0].color, Vec3(1, 0, 0));
   EXPECT_EQ(read.materials[1].color, Vec3(0, 0, 1));
+  const std::vector<std::uint16_t>& of = read.geometry.triangle_materials;
+  ASSERT_EQ(of.size() % 4, 0u);
+  for (std::size_t i = 0; i < of.size(); ++i) ASSERT_EQ(of[i], i < of.size() / 4 * 3 ? 0 : 1) << "triangle " << i;
 }
 
 TEST(SceneReader, SmoothNormalsFollowTheSwitch) {
