@@ -97,6 +97,8 @@ class Flattener {
       const Bounds bounds = bounds_of_shapes();
       const double diagonal = glm::length(bounds.high - bounds.low);
       scene_.tolerance = static_cast<float>(diagonal * static_cast<double>(options.relative_tolerance));
+      // A scene in one point, or nearly: whether that can be rendered is said where its objects are.
+      if (options.relative_tolerance > 0) scene_.tolerance = std::max(scene_.tolerance, FLT_MIN);
     }
     if (!(scene_.tolerance > 0 && std::isfinite(scene_.tolerance))) {
       fail(1, "the tolerance of round shapes must be a number greater than 0, not " +

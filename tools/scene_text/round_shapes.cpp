@@ -11,7 +11,7 @@
 namespace gridiron::tool {
 namespace {
 
-constexpr std::uint32_t kCornerCount = 12, kEdgeCount = 30;
+constexpr std::uint32_t kCornerCount = 12;
 
 using Corners = std::array<DVec3, kCornerCount>;
 

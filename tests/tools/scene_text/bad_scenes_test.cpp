@@ -192,6 +192,10 @@ TEST(BadScenes, Objects) {
       kGoodLine);
   EXPECT_EQ(complaint(std::string(kViewAndFill) + "\np 3 0 0 0 1 1 1 2 2 2"),
             "test.nff:2: the scene has no triangle: none of its polygons has an area");
+  EXPECT_EQ(complaint(std::string(kViewAndFill) + "\np 3 1 1 1 1 1 1 1 1 1"),
+            "test.nff:2: the scene has no triangle: none of its polygons has an area");
+  EXPECT_EQ(complaint(std::string(kViewAndFill) + "\ns 0 0 0 1e-44").substr(0, 41),
+            "test.nff:2: a radius of 1e-44 is finer th");
 }
 
 TEST(BadScenes, ShapesThatDoNotFit) {
