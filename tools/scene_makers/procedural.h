@@ -1,0 +1,40 @@
+// Scenes of the Standard Procedural Databases as NFF text, at any size, and a sky for environment cubes.
+// Made with the four operations and square roots only: the same bytes everywhere.
+// Source: E. Haines, "A Proposal for Standard Graphics Environments", 1987, and the descriptions published with it.
+// Memory: std::vector, std::string. Threads: any. SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <string>
+#include <vector>
+
+namespace gridiron::scene_makers {
+
+// Largest sizes: what a reader of this project still takes (2^24 objects, 1 GB of text).
+inline constexpr std::uint32_t kMostBallsSize = 7, kMostTetraSize = 11, kMostMountSize = 11, kMostRingsSize = 90;
+
+/// The sphereflake: a ball of radius 1/2 that carries nine of a third of its radius, and so on, `size` times over a
+/// square floor. 1 + 9 + ... + 9^size spheres, 1 polygon, 3 lights, mirrors. @param size  0..kMostBallsSize.
+[[nodiscard]] std::string make_balls(std::uint32_t size);
+
+/// The tetrahedral pyramid of Sierpinski: 4^size triangles, 4 to a tetrahedron; 1 light. @param
+/// size  1..kMostTetraSize.
+[[nodiscard]] std::string make_tetra(std::uint32_t size);
+
+/// A fractal mountain of 2 * 4^size triangles behind a pyramid of four glass balls; 1 light. The heights are of our own
+/// hash, not of the original's. @param size  1..kMostMountSize.
+[[nodiscard]] std::string make_mount(std::uint32_t size);
+
+/// A pyramid of 1 + 4 + ... + size^2 objects before a wall, seen from its tip. Each is six pentagonal rings through the
+/// midpoints of a dodecahedron's edges: 30 cylinders and 30 spheres; 3 lights, mirrors. @param size  1..kMostRingsSize.
+[[nodiscard]] std::string make_rings(std::uint32_t size);
+
+/// Names of the six faces of an environment cube in the order in which scenes name them.
+inline constexpr std::array<const char*, 6> kFaceNames = {"px", "nx", "py", "ny", "pz", "nz"};
+
+/// A blue sky with a sun brighter than 1 over a brown ground. @param face  0..5. @param width  texels, >= 1.
+/// @returns the bytes of a PFM file: colour, little-endian.
+[[nodiscard]] std::vector<char> make_sky_face(std::uint32_t face, std::uint32_t width);
+
+}  // namespace gridiron::scene_makers

@@ -1,0 +1,45 @@
+// Reader of text scenes: the Neutral File Format and the lines that tools/scene_text/README.md adds.
+// Source: E. Haines, "Neutral File Format", version 3.1, in the Standard Procedural Databases.
+// Memory: std::vector. Threads: one. SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <cstdint>
+#include <filesystem>
+#include <optional>
+#include <string_view>
+
+#include "scene_text/scene_description.h"
+#include "scene_text/scene_entities.h"
+
+namespace gridiron::tool {
+
+inline constexpr std::size_t kMostSceneBytes = std::size_t{1} << 30;
+inline constexpr std::uint32_t kMostSceneShapes = 1u << 24;
+
+/// How round shapes become triangles.
+struct SceneOptions {
+  /// Largest distance of a facet from the sphere or cone that it stands for, world units, > 0. Where it is not given:
+  /// relative_tolerance times the diagonal of the bounding box of all objects.
+  std::optional<float> tolerance;
+  float relative_tolerance = 1e-4f;
+  std::uint32_t most_triangles = kMostSceneTriangles;  ///< at most kMostSceneTriangles
+};
+
+/// Reads a text scene and the files that it names, checks them and makes triangles of all shapes.
+///
+/// Errors: Failure (kBadInput): `file:line: reason` for everything that the text says, `file: reason` where it cannot
+/// be read, is empty or larger than kMostSceneBytes. Interrupts as stop_if_interrupted().
+[[nodiscard]] SceneDescription read_scene_text(const std::filesystem::path& path, const SceneOptions& options = {});
+
+/// The same for a text in memory. @param path  what messages call it; its folder is where files are looked for.
+[[nodiscard]] SceneDescription read_scene_text(std::string_view text, const std::filesystem::path& path,
+                                               const SceneOptions& options);
+
+/// The first half: parses and checks each entity, reads meshes and environment.
+[[nodiscard]] SceneEntities parse_scene_text(std::string_view text, const std::filesystem::path& path);
+
+/// The second half: makes the triangles. @param path  what messages call the text.
+[[nodiscard]] SceneDescription flatten_scene(SceneEntities entities, const std::filesystem::path& path,
+                                             const SceneOptions& options);
+
+}  // namespace gridiron::tool
