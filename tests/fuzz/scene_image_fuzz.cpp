@@ -46,15 +46,15 @@ void read_all(std::span<const std::byte> bytes, const SceneImageView& view) {
         std::uint64_t{entry.first_block} + static_cast<std::uint32_t>(std::popcount(entry.occupied & (bit - 1)));
     require(block >= 1 && block < grid.cell_block_count, "a block does not exist");
     for (std::uint64_t cell = 0; cell < cells; ++cell) {
-      const std::uint64_t place = view.cell_blocks_offset_bytes + block * grid.cell_block_bytes;
+      const std::uint64_t base = view.cell_blocks_offset_bytes + block * grid.cell_block_bytes;
       CellRecord record;
       if (grid.triangle_format == static_cast<std::uint32_t>(TriangleFormat::kLattice)) {
         const auto bound = [&](std::uint64_t i) {
-          return read<CellBound>(bytes, place + i * sizeof(CellBound)).first_triangle;
+          return read<CellBound>(bytes, base + i * sizeof(CellBound)).first_triangle;
         };
         record = {bound(cell), bound(cell + 1) - bound(cell)};
       } else {
-        record = read<CellRecord>(bytes, place + cell * sizeof(CellRecord));
+        record = read<CellRecord>(bytes, base + cell * sizeof(CellRecord));
       }
       for (std::uint64_t i = 0; i < record.triangle_count; ++i) {
         const std::uint64_t place = record.first_triangle + i;

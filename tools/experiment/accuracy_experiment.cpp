@@ -42,7 +42,8 @@ void write_method(const PriceList& list, Book& book) {
   book.paragraph(
       "The plane of distances holds t times the length of the ray's direction, each rounded to a float; the length is "
       "the same for all profiles, so what differs is t. An ulp is a step from one float to the next in that plane. An "
-      "error of 0 ulp means: the float nearest to the exact t. Where distances are asked for, standard and exact round "
+      "error of 0 ulp means: the float that exact has there; as the product is rounded again, an error of t of one ulp "
+      "may show as 0, 1 or 2. Where distances are asked for, standard and exact round "
       "t correctly, and that is what they are timed for in frames with distances. Frames without distances estimate "
       "them (relative error 2^-14 at most) to choose triangles, and compute more where that leaves a choice open; they "
       "show the same triangles and give no t that could be wrong. Profile fast has floats for both, and paper too. So "
@@ -99,11 +100,13 @@ ExperimentResult run_accuracy_experiment(const AccuracyExperiment& experiment, c
   list.collect(experiment.threads, [&] { progress(++done, total); });
 
   const std::string size = std::to_string(experiment.width) + "x" + std::to_string(experiment.height);
-  Book book("What accuracy costs",
-            "Every figure below comes from one run of `gridiron experiment accuracy`: pictures of " + size +
-                " rendered by the kernel's real code on the simulated chip " + list.machine().key +
-                " with six cores, in each of its accuracy profiles, and held against exact arithmetic pixel by pixel. "
-                "MB are 2^20 bytes, GB/s 10^9 bytes a second.");
+  Book book(
+      "What accuracy costs",
+      "Every figure below comes from one run of `gridiron experiment accuracy`: pictures of " + size +
+          " rendered by the kernel's real code on the simulated chip " + list.machine().key +
+          " with six cores, in each of its accuracy profiles, and held pixel by pixel against the frame of profile "
+          "exact in configuration best, which the project's tests hold against integers. "
+          "MB are 2^20 bytes, GB/s 10^9 bytes a second.");
   write_overview(list, book);
   write_targets(list, book);
   write_steps(list, book);

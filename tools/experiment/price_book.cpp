@@ -46,7 +46,7 @@ class Fields {
   void add_names(bool with_view) {
     if (with_view)
       add({"view", "view"}, [&list = list_](const Price& price) { return list.views()[price.view].title; });
-    add({"configuration", "configuration"},
+    add({"configuration", with_view ? "configuration" : "config"},
         [](const Price& price) { return std::string(kPricedConfigurations[price.configuration]); });
     add({"profile", "profile"}, [&list = list_](const Price& price) { return list.profiles()[price.profile].key; });
   }
@@ -327,8 +327,8 @@ Table view_errors(const PriceList& list, std::size_t view, bool split_leaks) {
   Fields fields(list);
   fields.add_names(false);
   const auto add_shares = [&fields, split_leaks](const std::string& where, const HitCounts& (*counts)(const Price&)) {
-    const auto add = [&](const std::string& title, std::uint64_t (*count)(const HitCounts&)) {
-      fields.add({"", where + title, 0}, [counts, count](const Price& price) -> Cell {
+    const auto add = [&](const std::string& title, std::uint64_t (*count)(const HitCounts&), int decimals = 0) {
+      fields.add({"", where + title, decimals}, [counts, count](const Price& price) -> Cell {
         return price.errors ? Cell{counts(price).per_million(count(counts(price)))} : Cell{};
       });
     };
@@ -336,19 +336,19 @@ Table view_errors(const PriceList& list, std::size_t view, bool split_leaks) {
       add("holes", [](const HitCounts& hits) { return hits.holes; });
       add("through", [](const HitCounts& hits) { return hits.seen_through; });
     } else {
-      add("leaks", [](const HitCounts& hits) { return hits.leaks(); });
+      add("leak", [](const HitCounts& hits) { return hits.leaks(); });
     }
     add("false", [](const HitCounts& hits) { return hits.false_hits; });
+    add(
+        "wrong", [](const HitCounts& hits) { return hits.wrong_triangles; }, where.empty() ? 1 : 0);
   };
   add_shares("edge ", [](const Price& price) -> const HitCounts& { return price.at_edges; });
   add_shares("", [](const Price& price) -> const HitCounts& { return price.errors->hits; });
-  fields.add_error({"", "wrong", 1},
-                   [](const Comparison& found) { return found.hits.per_million(found.hits.wrong_triangles); });
-  fields.add_error({"", "ulp 50 %", 0}, [](const Comparison& found) { return found.ulps.median; });
-  fields.add_error({"", "99 %", 0}, [](const Comparison& found) { return found.ulps.percentile_99; });
+  fields.add_error({"", "ulp 50%", 0}, [](const Comparison& found) { return found.ulps.median; });
+  fields.add_error({"", "99%", 0}, [](const Comparison& found) { return found.ulps.percentile_99; });
   fields.add_error({"", "max", 0}, [](const Comparison& found) { return found.ulps.greatest; });
-  fields.add_error({"", "t 99 %", -2}, [](const Comparison& found) { return found.relative.percentile_99; });
-  fields.add_error({"", "PSNR dB", 1}, [](const Comparison& found) { return found.psnr_db; });
+  fields.add_error({"", "t 99%", -2}, [](const Comparison& found) { return found.relative.percentile_99; });
+  fields.add_error({"", "PSNR", 1}, [](const Comparison& found) { return found.psnr_db; });
   fields.add_error({"", "pixel"}, [](const Comparison& found) { return std::uint64_t{found.greatest_pixel_error}; });
   return fields.table("", [view](const Price& price) { return price.view == view; });
 }
@@ -374,6 +374,8 @@ void write_overview(const PriceList& list, Book& book) {
        [](const Price& price) { return price.at_edges.per_million(price.at_edges.seen_through); }},
       {{"most_edge_false_hits_per_million", "false", 0},
        [](const Price& price) { return price.at_edges.per_million(price.at_edges.false_hits); }},
+      {{"most_edge_wrong_triangles_per_million", "wrong", 0},
+       [](const Price& price) { return price.at_edges.per_million(price.at_edges.wrong_triangles); }},
       {{"most_holes_per_million", "pixels: holes", 0},
        [](const Price& price) { return price.errors->hits.per_million(price.errors->hits.holes); }},
       {{"most_seen_through_per_million", "through", 0},
@@ -453,6 +455,7 @@ void write_steps(const PriceList& list, Book& book) {
     const auto base = list.find_profile(from), changed = list.find_profile(to);
     if (!base || !changed) continue;
     for (std::size_t configuration = 0; configuration < std::size(kPricedConfigurations); ++configuration) {
+      if (!is_at_home(from, configuration)) continue;
       book.paragraph("From " + std::string(from) + " to " + to + ", configuration " +
                      kPricedConfigurations[configuration] + ". " + step_words(list, configuration, *base, *changed));
     }
@@ -531,11 +534,11 @@ void write_views(const PriceList& list, Book& book) {
         "and KB of local store, all without distances.");
     book.shown_table(
         errors,
-        "Holes, rays that see through and false hits of a million rays aimed at edges; the same of a million pixels, "
-        "and "
-        "wrong triangles; error of t where the true triangle is shown: median, 99th percentile and greatest in ulp, "
+        "Holes, rays that see through, false hits and wrong triangles of a million rays aimed at edges; the same of a "
+        "million pixels; error of t where the true triangle is shown: median, 99th percentile and greatest in ulp, "
         "99th "
-        "percentile as a share; PSNR (empty where no pixel differs) and the greatest difference of a channel, of 255.");
+        "percentile as a share; PSNR in dB (empty where no pixel differs) and the greatest difference of a channel, of "
+        "255.");
     book.text(price_text_name(shown.key), aligned_text(costs) + "\n" + aligned_text(view_errors(list, view, false)),
               "both tables as plain text, leaks being holes and what is seen through.");
     for (std::size_t configuration = 0; configuration < std::size(kPricedConfigurations); ++configuration) {

@@ -5,6 +5,7 @@
 #include <cstddef>
 #include <functional>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include "experiment/price_list.h"
@@ -30,6 +31,10 @@ struct Metric {
 /// @returns what is bought, what is paid and what stays by choosing `to` instead of `from`, over all views.
 [[nodiscard]] std::string step_words(const PriceList& list, std::size_t configuration, std::size_t from,
                                      std::size_t to);
+
+/// @returns whether a configuration is one that a profile can be judged by: `best` culls by vertices, which the records
+/// of `paper` do not have.
+[[nodiscard]] bool is_at_home(std::string_view profile, std::size_t configuration);
 
 /// A change from one profile to another of which it was said beforehand how far it may go.
 struct Target {

@@ -396,7 +396,7 @@ RenderArguments complete_render(const RawRender& raw, bool has_seed) {
 void add_experiment_options(CLI::App& app, ExperimentArguments& experiment) {
   add_choice(app, "NAME", experiment.name,
              Choices<ExperimentName>{{"paper", ExperimentName::kPaper}, {"accuracy", ExperimentName::kAccuracy}},
-             "paper: Tables 1-4, Figs. 5-7 and sweeps; some six minutes of processor time with the scans. accuracy: "
+             "paper: Tables 1-4, Figs. 5-7 and sweeps; some eight minutes of processor time with the scans. accuracy: "
              "what each accuracy profile costs and what is wrong with its answers; some two minutes. Both leave CSV, "
              "SVG and index.html; nothing is told before the end where standard error is no terminal")
       ->required();

@@ -1,4 +1,5 @@
 // info: what a scene holds and what it needs, for people or as JSON. SPDX-License-Identifier: Apache-2.0
+#include <algorithm>
 #include <cstdio>
 #include <nlohmann/json.hpp>
 #include <string>
@@ -59,7 +60,8 @@ void print_json(const InfoArguments& arguments, const SceneFacts& facts, const S
         {"macrocells", facts.bounds.macro_cells_per_pass},
         {"cell_blocks", grid.cell_block_count},
         {"references", grid.reference_count},
-        {"triangle_format", word_of(static_cast<TriangleFormat>(grid.triangle_format))}}},
+        {"triangle_format", word_of(static_cast<TriangleFormat>(grid.triangle_format))},
+        {"lattice_step", grid.lattice.step}}},
       {"main_memory",
        {{"machine", arguments.scene.machine->name},
         {"capacity_bytes", arguments.scene.machine->main_memory_bytes},
@@ -94,6 +96,16 @@ void print_text(const InfoArguments& arguments, const SceneFacts& facts, const S
   std::snprintf(text, sizeof text, ", lambda %g", static_cast<double>(grid.lambda));
   print_line("grid", joined(grid.cell_count) + " cells" + text + ", " + words_of_count(grid.reference_count) +
                          " references stored as " + word_of(static_cast<TriangleFormat>(grid.triangle_format)));
+  if (grid.lattice.step > 0.0f) {
+    float longest = 0.0f;
+    for (int axis = 0; axis < 3; ++axis) {
+      longest = std::max(longest, grid.bounds_maximum[axis] - grid.bounds_minimum[axis]);
+    }
+    const double places = static_cast<double>(longest) / static_cast<double>(grid.lattice.step);
+    std::snprintf(text, sizeof text, "step %g, ", static_cast<double>(grid.lattice.step));
+    print_line("lattice", text + words_of_count(static_cast<std::uint64_t>(places)) +
+                              " of them along the longest side; what has no area there is dropped");
+  }
   if (grid.lambda != facts.wanted_lambda) {
     std::snprintf(text, sizeof text, "reduced from lambda %g to fit the main memory",
                   static_cast<double>(facts.wanted_lambda));

@@ -32,9 +32,13 @@ void run_command(const PackArguments& arguments) {
   file.write(image);
   stop_if_interrupted();
   file.commit();
-  std::printf("%s: %s, %s triangles, %s references, lambda %g\n", arguments.output.c_str(),
-              words_of_bytes(image.size()).c_str(), words_of_count(mesh->triangles.size()).c_str(),
-              words_of_count(choice.need.grid.reference_count).c_str(), static_cast<double>(choice.parameters.lambda));
+  std::string triangles = words_of_count(mesh->triangles.size()) + " triangles";
+  if (choice.need.dropped_triangle_count != 0) {
+    triangles += " (" + words_of_count(choice.need.dropped_triangle_count) + " of zero area dropped)";
+  }
+  std::printf("%s: %s, %s, %s references, lambda %g\n", arguments.output.c_str(), words_of_bytes(image.size()).c_str(),
+              triangles.c_str(), words_of_count(choice.need.grid.reference_count).c_str(),
+              static_cast<double>(choice.parameters.lambda));
 }
 
 }  // namespace gridiron::tool

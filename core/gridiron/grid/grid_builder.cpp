@@ -610,7 +610,7 @@ Status count_scene_image(const MeshView& mesh, const GridParameters& parameters,
   if (parameters.format != TriangleFormat::kLattice) {
     return count_image(mesh, parameters, kept, kept.count, grid, need);
   }
-  // As many cells as without a lattice: what loses its area on it leaves gaps, not larger triangles.
+  // As many cells as without a lattice: fewer triangles are left on it, not larger ones.
   GRIDIRON_TRY(find_lattice(mesh, grid.lattice));
   const LatticeMesh moved{{mesh.vertices, grid.lattice}, mesh.triangles};
   KeptTriangles moved_kept;

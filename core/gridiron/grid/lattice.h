@@ -14,7 +14,7 @@
 
 namespace gridiron {
 
-/// The finest lattice over the vertices that triangles of a mesh have: the least step that spans them with its places,
+/// The finest lattice over the vertices that triangles of a mesh have: the least power of two that spans them with its places,
 /// keeps them within kMostStepsFromZero steps of zero and is not below kLeastLatticeStep.
 ///
 /// Errors: kBadIndex; kBadVertex where a coordinate is beyond kCoordinateLimit. Cost: linear.

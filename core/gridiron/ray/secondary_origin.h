@@ -36,7 +36,7 @@ struct SecondaryOrigin {
 
 namespace secondary_origin_detail {
 
-/// @returns the power of two that brings a size into [1, 2); 1 for what is not normal.
+/// @returns the power of two that brings a normal size into [1, 2), or nearest to it.
 [[nodiscard]] inline float scale_to_one(float size) {
   const std::uint32_t exponent = std::bit_cast<std::uint32_t>(size) >> 23;
   if (exponent == 0 || exponent >= 254) return exponent == 0 ? 0x1p126f : 0x1p-127f;

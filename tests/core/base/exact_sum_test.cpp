@@ -234,6 +234,21 @@ TEST(ExactDistance, HalvesGoAwayFromZero) {
   }
 }
 
+// Below a power of two floats are twice as close as above it, and so is the place where rounding changes.
+TEST(ExactDistance, BelowAPowerOfTwoStepsAreHalfAsLong) {
+  for (const float scale : {1.0f, 0x1p20f, 0x1p-60f}) {
+    for (int eighths = 1; eighths <= 16; ++eighths) {
+      // From x = eighths 2^-27 to the plane x = 1; 2^-24 is the step below 1.
+      const Floats o = {scale * 0x1p-27f * static_cast<float>(eighths), 0, 0}, dir = {1, 0, 0};
+      const Floats a = {scale, 0, 0}, b = {scale, 1, 0}, c = {scale, 0, 1};
+      const float expected = eighths <= 4 ? 1.0f : eighths <= 12 ? 1.0f - 0x1p-24f : 1.0f - 0x1p-23f;
+      const float got = exact_distance(o.data(), dir.data(), a.data(), b.data(), c.data());
+      EXPECT_EQ(got, expected * scale) << eighths;
+      EXPECT_EQ(got, distance_by_rationals(o, dir, a, b, c)) << eighths;
+    }
+  }
+}
+
 TEST(ExactDistance, EndsOfTheRange) {
   const float least = std::numeric_limits<float>::min();
   const float tiniest = std::numeric_limits<float>::denorm_min();

@@ -76,7 +76,7 @@ void expect_prices(const Rows& rows) {
 // What the page says of the targets is what their table says, and that what the prices say.
 void expect_targets(const fs::path& folder, const std::string& page) {
   const Rows targets = csv_rows(folder / "targets.csv"), prices = csv_rows(folder / "prices.csv");
-  EXPECT_EQ(targets.size(), 1u + 8u + 4u);
+  EXPECT_EQ(targets.size(), 1u + 6u + 4u);
   std::size_t met = 0;
   for (std::size_t row = 1; row < targets.size(); ++row) {
     const bool is_met = number_under(targets, row, "worst_percent") <= number_under(targets, row, "limit_percent");
