@@ -10,8 +10,9 @@
 
 namespace gridiron::calibrate {
 
-/// Counts the frames that the table is made from: the teapot, 1,640 triangles on 96 x 96 pixels, as `reference`,
-/// as `best`, from near, with the paper's test, with planes and on a lattice, and the exact decisions on 64 rays and triangles of it.
+/// Counts the frames that the table is made from: the teapot, 1,640 triangles on 96 x 96 pixels, as `reference`, as
+/// `best`, from near, with the paper's test, with planes and on a lattice, and the exact decisions on 64 rays and
+/// triangles of it.
 ///
 /// @returns the sum over the frames. Errors: std::runtime_error where a counted picture differs from the kernel's.
 [[nodiscard]] Totals count_frames(std::uint32_t superblock_branches = kSuperblockBranches);

@@ -14,8 +14,8 @@
 
 namespace gridiron {
 
-/// The finest lattice over the vertices that triangles of a mesh have: the least power of two that spans them with its places,
-/// keeps them within kMostStepsFromZero steps of zero and is not below kLeastLatticeStep.
+/// The finest lattice over the vertices that triangles of a mesh have: its step is the least power of two that spans
+/// them with its places, keeps them within kMostStepsFromZero steps of zero and is not below kLeastLatticeStep.
 ///
 /// Errors: kBadIndex; kBadVertex where a coordinate is beyond kCoordinateLimit. Cost: linear.
 [[nodiscard]] Status find_lattice(const MeshView& mesh, Lattice& lattice);
