@@ -66,6 +66,16 @@ void add_slope(ExactSum& sum, const float dir[3], const float a[3], const float 
   sum.add_determinant(-1, dir, b, a);
 }
 
+// Adds the component of (b - a) x (c - a) along the axis before v and w; the product a_v * a_w cancels.
+void add_normal_component(ExactSum& sum, const float a[3], const float b[3], const float c[3], int v, int w) {
+  sum.add_product(1, b[v], c[w], 1.0f);
+  sum.add_product(-1, b[v], a[w], 1.0f);
+  sum.add_product(-1, a[v], c[w], 1.0f);
+  sum.add_product(-1, b[w], c[v], 1.0f);
+  sum.add_product(1, b[w], a[v], 1.0f);
+  sum.add_product(1, a[w], c[v], 1.0f);
+}
+
 // A magnitude in half the bytes of its sum: four of them are in hand at once.
 struct Digits {
   std::uint32_t digits[ExactSum::kLimbCount];
@@ -161,17 +171,34 @@ int exact_volume_sign(const float org[3], const float a[3], const float b[3], co
 
 bool exact_zero_area(const float a[3], const float b[3], const float c[3]) {
   for (int u = 0; u < 3; ++u) {
-    const int v = (u + 1) % 3;
-    ExactSum sum;  // one component of (b-a) x (c-a); the product a_u * a_v cancels
-    sum.add_product(1, b[u], c[v], 1.0f);
-    sum.add_product(-1, b[u], a[v], 1.0f);
-    sum.add_product(-1, a[u], c[v], 1.0f);
-    sum.add_product(-1, b[v], c[u], 1.0f);
-    sum.add_product(1, b[v], a[u], 1.0f);
-    sum.add_product(1, a[v], c[u], 1.0f);
+    ExactSum sum;
+    add_normal_component(sum, a, b, c, u, u == 2 ? 0 : u + 1);
     if (sum.sign() != 0) return false;
   }
   return true;
+}
+
+void exact_normal(const float a[3], const float b[3], const float c[3], double normal[3]) {
+  Digits magnitudes[3];
+  int signs[3];
+  int top = 2;
+  for (int u = 0; u < 3; ++u) {
+    const int v = u == 2 ? 0 : u + 1;
+    const int w = v == 2 ? 0 : v + 1;
+    ExactSum sum;
+    add_normal_component(sum, a, b, c, v, w);
+    signs[u] = sum.take_magnitude();
+    for (int i = 0; i < ExactSum::kLimbCount; ++i) {
+      magnitudes[u].digits[i] = sum.limb(i);
+      if (magnitudes[u].digits[i] != 0 && i > top) top = i;
+    }
+  }
+  for (int u = 0; u < 3; ++u) {
+    const std::uint32_t* const digits = magnitudes[u].digits;
+    const auto part = [&](int i) { return static_cast<double>(digits[i]); };
+    const double size = part(top) + (part(top - 1) + part(top - 2) * 0x1p-32) * 0x1p-32;
+    normal[u] = signs[u] < 0 ? -size : size;
+  }
 }
 
 float exact_distance(const float org[3], const float dir[3], const float a[3], const float b[3], const float c[3]) {

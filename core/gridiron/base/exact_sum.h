@@ -49,6 +49,10 @@ class ExactSum {
 /// @returns true where (b - a) x (c - a) is exactly zero: the triangle has no area.
 [[nodiscard]] bool exact_zero_area(const float a[3], const float b[3], const float c[3]);
 
+/// The direction of (b - a) x (c - a): a positive multiple of it, its largest component in [1, 2^32), but for
+/// rounding to 2^-50 of that. All zero where the triangle has no area.
+[[gnu::cold]] void exact_normal(const float a[3], const float b[3], const float c[3], double normal[3]);
+
 /// Distance at which a ray meets the plane of a triangle, rounded to the nearest float (halves away from zero).
 ///
 /// @returns N / D with N = det[a - org, b - org, c - org], D = det[dir, b - a, c - a]: positive when both have the same

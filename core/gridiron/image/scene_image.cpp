@@ -159,7 +159,7 @@ bool check_lattice(Checker& checker, std::uint64_t base, const GridRecord& grid)
   for (const float origin : lattice.origin) {
     const double steps = double{origin} / double{lattice.step};
     const double last = double{origin} + double{lattice.step} * (kLatticePlaces - 1);
-    const bool in_range = magnitude(origin) <= kCoordinateLimit && last <= 2.0 * double{kCoordinateLimit} &&
+    const bool in_range = magnitude(origin) <= kCoordinateLimit && last <= 8.0 * double{kCoordinateLimit} &&
                           magnitude(steps) <= double{kMostStepsFromZero} + 1.0;
     GRIDIRON_REQUIRE(in_range && steps == static_cast<double>(static_cast<std::int32_t>(steps)), base, GridRecord,
                      lattice.origin, "grid.lattice.origin");

@@ -51,8 +51,8 @@ inline constexpr float kUncertain = kFloatError * 2.25f / kEstimateError;
 
 [[nodiscard]] DistanceEstimate set_up_estimate(const float origin[3], float dir_max, const VertexTriangle& triangle);
 
-/// The unit normal of a triangle for shading, in single precision where the triangle's shape allows it to 2^-15, else
-/// from double: the same bits whoever asks.
+/// The unit normal of a triangle that has an area, to 2^-15: in single precision where the triangle's shape allows it,
+/// else in double, else from integers: the same bits whoever asks.
 void set_up_normal(const VertexTriangle& triangle, float normal[3]);
 
 /// Distances of a group's rays to a triangle, rounded to the nearest float, for the lanes in `bits`.

@@ -27,6 +27,7 @@ namespace gridiron {
 /// - inset = 16 E: the weights are drawn to their middle until the point is that far from each edge of the triangle.
 ///   Where another face meets an edge at an angle a on this side, the point is away from it by
 ///   16 E sin a - 4 E cos a - 2 E > 0 from a = 22 degrees on: no ray begins behind the neighbouring face.
+/// - M + 8 L is 2^-126 or more: of anything smaller E would be less than the least float.
 /// - A triangle lower than 48 E has no such point; its middle is taken, and of neighbouring faces nothing is promised.
 struct SecondaryOrigin {
   float point[3];

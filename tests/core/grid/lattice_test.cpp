@@ -140,6 +140,20 @@ TEST(LatticeImage, IsTheSnappedMeshInHalfTheBytes) {
   EXPECT_GT(other_cells, 0);
 }
 
+// The widest meshes there are: the lattice reaches beyond the limit of coordinates, its triangles do not.
+TEST(LatticeImage, OfMeshesAsWideAsCoordinatesGoIsValid) {
+  const float end = kCoordinateLimit;
+  const TestMesh meshes[] = {
+      make_triangle({0x1p118f, 0, 0}, {0x1p119f, 0, 0}, {0x1p118f, end, 0}),
+      make_triangle({0x1p119f, 0, 0}, {end, 0, 0}, {0x1p119f, end, 1}),
+      make_triangle({-end, 0, 0}, {end, 0, 0}, {0x1p119f, end, 0x1p110f}),
+  };
+  for (const TestMesh& mesh : meshes) {
+    const BuiltImage built = build_image(mesh.view(), {4.0f, 6, TriangleFormat::kLattice});
+    EXPECT_GE(built.view.grid.reference_count, 1u);
+  }
+}
+
 // What mixed scales lose: a small thing in a large room keeps few places.
 TEST(LatticeImage, LosesWhatIsSmallerThanAStep) {
   TestMesh mesh = make_box({-100, -100, -100}, {100, 100, 100});
