@@ -172,7 +172,7 @@ int exact_volume_sign(const float org[3], const float a[3], const float b[3], co
 bool exact_zero_area(const float a[3], const float b[3], const float c[3]) {
   for (int u = 0; u < 3; ++u) {
     ExactSum sum;
-    add_normal_component(sum, a, b, c, u, u == 2 ? 0 : u + 1);
+    add_normal_component(sum, a, b, c, u, (u + 1) % 3);
     if (sum.sign() != 0) return false;
   }
   return true;
@@ -183,10 +183,8 @@ void exact_normal(const float a[3], const float b[3], const float c[3], double n
   int signs[3];
   int top = 2;
   for (int u = 0; u < 3; ++u) {
-    const int v = u == 2 ? 0 : u + 1;
-    const int w = v == 2 ? 0 : v + 1;
     ExactSum sum;
-    add_normal_component(sum, a, b, c, v, w);
+    add_normal_component(sum, a, b, c, (u + 1) % 3, (u + 2) % 3);
     signs[u] = sum.take_magnitude();
     for (int i = 0; i < ExactSum::kLimbCount; ++i) {
       magnitudes[u].digits[i] = sum.limb(i);
