@@ -209,7 +209,7 @@ TEST(CloseLook, LooksAtItsPoint) {
     // Several triangles meet in an edge: a look that missed it would see one.
     std::vector<std::uint32_t> seen = answers.ids;
     std::ranges::sort(seen);
-    seen.erase(std::ranges::unique(seen).begin(), seen.end());
+    seen.erase(std::unique(seen.begin(), seen.end()), seen.end());
     split += seen.size() >= 2 ? 1 : 0;
   }
   EXPECT_GE(met, 15) << "the others are hidden by something nearer";
