@@ -90,7 +90,7 @@ template <class Aim>
 Tally shoot_on_faces(std::uint64_t first_seed, Aim&& aim) {
   for (const GridRecord& grid : exact_grids()) {
     const WalkTally walked = walk(grid, in_cells(grid, aim()));
-    EXPECT_GT(walked.touched, walked.rays);
+    EXPECT_GT(2 * walked.touched, walked.rays) << "many leave the grid at once, not most";
   }
   Tally tally;
   for (std::uint64_t seed = first_seed; seed < first_seed + 3; ++seed) {

@@ -1,6 +1,7 @@
 // Shapes: see the header. SPDX-License-Identifier: Apache-2.0
 #include "numeric/hard_cases/shapes.h"
 
+#include <algorithm>
 #include <array>
 #include <cmath>
 #include <map>
@@ -150,7 +151,11 @@ Rays rays_at(const TestMesh& mesh, Vec3 origin, Aim aim, std::uint32_t count, Te
   Rays rays;
   rays.origin = origin;
   for (std::uint32_t i = 0; i < count; ++i) {
-    const OracleRay ray = ray_at(mesh, origin, aim, random);
+    OracleRay ray = ray_at(mesh, origin, aim, random);
+    // What is aimed at may be where the ray starts: that is no direction.
+    while (ray.direction[0] == 0 && ray.direction[1] == 0 && ray.direction[2] == 0) {
+      ray = ray_at(mesh, origin, aim, random);
+    }
     rays.directions.push_back({ray.direction[0], ray.direction[1], ray.direction[2]});
   }
   return rays;
@@ -167,9 +172,13 @@ Rays picture_at(const TestMesh& mesh, Vec3 origin, Aim aim, TestRandom& random) 
     const Vec3 along = random.below(2) == 0 ? any : mesh.vertices[t.y] - mesh.vertices[t.x];
     return std::ldexp(1.0f, kExponents[random.below(5)]) * along;
   };
-  const Vec3 step_x = step(), step_y = step();
-  const Vec3 corner = center - static_cast<float>(kColumns / 2) * step_x - static_cast<float>(kRows / 2) * step_y;
-  return picture(origin, corner, step_x, step_y, kColumns, kRows);
+  for (;;) {
+    const Vec3 step_x = step(), step_y = step();
+    const Vec3 corner = center - static_cast<float>(kColumns / 2) * step_x - static_cast<float>(kRows / 2) * step_y;
+    Rays rays = picture(origin, corner, step_x, step_y, kColumns, kRows);
+    // Steps that are whole numbers may meet the eye itself: that is no direction.
+    if (std::ranges::find(rays.directions, Vec3(0.0f)) == rays.directions.end()) return rays;
+  }
 }
 
 Rays picture_of_triangle(const TestMesh& mesh, std::uint32_t triangle, Vec3 origin) {
