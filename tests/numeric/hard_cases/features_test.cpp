@@ -21,7 +21,8 @@ Tally shoot_from_inside(const std::vector<Solid>& targets, const Salvo& count, s
                       TestRandom random(seed);
                       for (std::uint32_t i = 0; i < times(6); ++i) {
                         const auto triangle = random.below(static_cast<std::uint32_t>(mesh.triangles.size()));
-                        rays.push_back(picture_of_triangle(mesh, triangle, solid.middle));
+                        const Rays one = picture_of_triangle(mesh, triangle, solid.middle);
+                        if (are_rays(one)) rays.push_back(one);
                       }
                       return rays;
                     }});

@@ -161,6 +161,10 @@ Rays rays_at(const TestMesh& mesh, Vec3 origin, Aim aim, std::uint32_t count, Te
   return rays;
 }
 
+bool are_rays(const Rays& rays) {
+  return std::ranges::find(rays.directions, Vec3(0.0f)) == rays.directions.end();
+}
+
 Rays picture_at(const TestMesh& mesh, Vec3 origin, Aim aim, TestRandom& random) {
   constexpr std::uint32_t kColumns = 20, kRows = 12;
   const UVec3& t = mesh.triangles[random.below(static_cast<std::uint32_t>(mesh.triangles.size()))];
@@ -177,7 +181,7 @@ Rays picture_at(const TestMesh& mesh, Vec3 origin, Aim aim, TestRandom& random) 
     const Vec3 corner = center - static_cast<float>(kColumns / 2) * step_x - static_cast<float>(kRows / 2) * step_y;
     Rays rays = picture(origin, corner, step_x, step_y, kColumns, kRows);
     // Steps that are whole numbers may meet the eye itself: that is no direction.
-    if (std::ranges::find(rays.directions, Vec3(0.0f)) == rays.directions.end()) return rays;
+    if (are_rays(rays)) return rays;
   }
 }
 

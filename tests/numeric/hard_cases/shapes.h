@@ -51,6 +51,9 @@ Rays rays_at(const TestMesh& mesh, Vec3 origin, Aim aim, std::uint32_t count, Te
 /// A picture of 20 x 12 pixels around a feature, from steps as long as its triangle to steps of a float or two.
 Rays picture_at(const TestMesh& mesh, Vec3 origin, Aim aim, TestRandom& random);
 
+/// @returns whether every direction is one: a pixel may lie where the eye is.
+[[nodiscard]] bool are_rays(const Rays& rays);
+
 /// A picture whose pixels lie on a triangle, its corner, an edge and their neighbours exactly in the pixels' middles,
 /// as far as floats allow it.
 Rays picture_of_triangle(const TestMesh& mesh, std::uint32_t triangle, Vec3 origin);
