@@ -26,6 +26,13 @@ enum class SectionKind : std::uint32_t {
   kMacroTable = 2,  ///< MacroTableEntry[ceil(macro_cell_count / 32)]
   kCellBlocks = 3,  ///< cell blocks of cell_block_bytes each; block 0 is the empty one (all zero)
   kTriangles = 4,   ///< triangle records, grouped by cell, in the order of the cells in the blocks
+  // Effects (base/effect_records.h): all of those that the EffectsRecord says are not empty, or none.
+  kEffects = 5,      ///< one EffectsRecord
+  kMaterials = 6,    ///< MaterialRecord[]
+  kLights = 7,       ///< LightRecord[]
+  kSurfaces = 8,     ///< SurfaceRecord[triangle_count]
+  kNormals = 9,      ///< NormalRecord[]
+  kEnvironmentMap = 10,  ///< EnvironmentBlock[]
 };
 
 /// First bytes of a scene image. 64 bytes, 128-byte aligned.
@@ -166,6 +173,7 @@ enum class Accuracy : std::uint32_t {
 enum class Shading : std::uint32_t {
   kNone = 0,    ///< hit or background
   kSimple = 1,  ///< facing ratio with the geometric normal
+  kScene = 2,   ///< the effects of the scene, core/EFFECTS.md
 };
 
 /// Techniques of the traversal that a frame can switch off to measure their gain.
@@ -206,9 +214,12 @@ struct FrameRecord {
   std::uint64_t macro_table_address;
   std::uint64_t cell_blocks_address;
   std::uint64_t triangles_address;
-  std::uint64_t reserved1[4];
+  std::uint64_t effects_address;       ///< EffectsRecord, of Shading::kScene; else 0
+  std::uint64_t image_address;         ///< what its offsets count from; else 0
+  std::uint64_t reserved1[2];
   GridRecord grid;
-  std::uint32_t reserved2[16];
+  std::uint32_t walk_depth;            ///< walks of secondary rays under way at once; of Shading::kScene, else 0
+  std::uint32_t reserved2[15];
 };
 static_assert(sizeof(FrameRecord) == 384);
 

@@ -48,6 +48,24 @@ enum class Work : std::uint8_t {
   kExactOrder,         ///< pairs of distances, equal once rounded, of which integers told the nearer
   kLatticeTriangle,    ///< triangles made of their vertices' places on a lattice
   kCellBoundStep,      ///< cells looked up inside a visited macrocell by their bounds, beside lattice triangles
+  // Effects.
+  kWaveRay,            ///< rays of a wave taken from pixels or from the queue
+  kQueuedRay,          ///< reflected and refracted rays made, and put into the queue
+  kWalkPass,           ///< walks of up to 16 secondary rays begun: axis, shaft
+  kShaftGroup,         ///< SIMD groups of secondary rays held against a slab of the grid
+  kRayGroupTest,       ///< (group, triangle) tests of rays with origins of their own
+  kRayDistance,        ///< distances of single secondary rays, in double
+  kSurfacePoint,       ///< hits of which point, normal and material were found
+  kSmoothNormal,       ///< hits of which the normal was interpolated
+  kShadowRay,          ///< shadow rays made, of point and area lights
+  kLightSample,        ///< lights, or samples of them, that light a point: their share of the colour
+  kHighlight,          ///< of these, highlights
+  kOcclusionRay,       ///< rays of ambient occlusion made
+  kMirrorRay,          ///< reflected rays made
+  kRefractedRay,       ///< refracted rays made
+  kEnvironmentLookup,  ///< colours looked up in the environment map
+  kColorAdded,         ///< colours added to a pixel's sum
+  kColorGroup,         ///< SIMD groups of pixels made of their sums
   kGetIssue,           ///< get commands issued
   kPutIssue,           ///< put commands issued
   kWait,               ///< waits

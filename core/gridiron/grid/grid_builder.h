@@ -4,6 +4,7 @@
 
 #include <gridiron/base/records.h>
 #include <gridiron/platform/status.h>
+#include <gridiron/scene/effects.h>
 #include <gridiron/scene/mesh.h>
 
 #include <cstddef>
@@ -37,17 +38,20 @@ struct GridNeed {
 
 /// Counts what build_scene_image will need. Itself needs no memory beyond a fixed stack frame.
 ///
-/// Errors: kBadVertex, kBadIndex, kBadParameter, kNoTriangles, kTooManyTriangles. Cost: linear in triangles +
+/// @param effects  of the scene; null: the image holds geometry alone.
+/// Errors: kBadEffects, kBadVertex, kBadIndex, kBadParameter, kNoTriangles, kTooManyTriangles. Cost: linear in triangles +
 /// references.
-[[nodiscard]] Status count_scene_image(const MeshView& mesh, const GridParameters& parameters, GridNeed& need);
+[[nodiscard]] Status count_scene_image(const MeshView& mesh, const GridParameters& parameters, GridNeed& need,
+                                       const EffectsView* effects = nullptr);
 
 /// Writes the scene image. Same bytes for the same input on every host.
 ///
-/// @param need     from count_scene_image with the same mesh and parameters.
+/// @param need     from count_scene_image with the same mesh, parameters and effects.
 /// @param image    kLineBytes-aligned, at least need.image_bytes; only the first image_bytes are written.
 /// @param scratch  8-byte aligned, at least need.scratch_bytes.
 /// Errors: kMemoryTooSmall (nothing is touched), kBadParameter. Cost: linear.
 [[nodiscard]] Status build_scene_image(const MeshView& mesh, const GridParameters& parameters, const GridNeed& need,
-                                       std::span<std::byte> image, std::span<std::byte> scratch);
+                                       std::span<std::byte> image, std::span<std::byte> scratch,
+                                       const EffectsView* effects = nullptr);
 
 }  // namespace gridiron

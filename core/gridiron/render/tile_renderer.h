@@ -24,7 +24,8 @@ namespace gridiron {
 template <class L, class Layout, Platform P>
 class TileRenderer {
  public:
-  TileRenderer(LocalStore<Layout>& store, P& platform) : store_(store), transfers_(platform, store.work) {}
+  TileRenderer(LocalStore<Layout>& store, P& platform, SpillRegion spill)
+      : store_(store), transfers_(platform, store.work), spill_(spill) {}
 
   /// Renders every tile this core can claim of the frame whose FrameRecord lies at `frame`.
   ///
@@ -211,15 +212,19 @@ class TileRenderer {
 
   Store& store_;
   Transfers<P> transfers_;
+  [[maybe_unused]] SpillRegion spill_;
   std::uint32_t output_slot_ = 0;
   bool table_resident_ = false;
   bool waits_for_output_ = true;
 };
 
 /// Renders tiles of the frame at `frame` on the calling core until none is left. See TileRenderer.
+///
+/// @param spill  main memory of this core alone, for a frame with effects.
 template <class L, class Layout, Platform P>
-[[nodiscard]] Status render_tiles(LocalStore<Layout>& store, P& platform, MainAddress frame) {
-  TileRenderer<L, Layout, P> renderer(store, platform);
+[[nodiscard]] Status render_tiles(LocalStore<Layout>& store, P& platform, MainAddress frame,
+                                  SpillRegion spill = {}) {
+  TileRenderer<L, Layout, P> renderer(store, platform, spill);
   return renderer.run(frame);
 }
 

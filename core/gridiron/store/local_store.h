@@ -2,8 +2,10 @@
 // Memory: is the memory. Threads: one core. SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <gridiron/base/effect_records.h>
 #include <gridiron/base/records.h>
 #include <gridiron/base/work_counters.h>
+#include <gridiron/platform/contract.h>
 #include <gridiron/ray/packet.h>
 #include <gridiron/store/dma_tags.h>
 #include <gridiron/traverse/macro_table.h>
@@ -22,6 +24,7 @@ namespace gridiron {
 /// @tparam TileWidthV    pixels along a tile's edge: 8, 16, 32, 64.
 template <std::uint32_t PacketWidthV = 8, std::uint32_t TileWidthV = 32>
 struct StoreLayout256K {
+  static constexpr std::uint32_t kEffects = 0;  ///< EffectBits it is built for
   static constexpr std::uint32_t kArenaBytes = 256 * 1024;
   static constexpr std::uint32_t kCodeBudgetBytes = 53 * 1024;
   static constexpr std::uint32_t kStackBudgetBytes = 8704;
@@ -42,6 +45,7 @@ struct StoreLayout256K {
 /// Sizes of a 64 KB core: smaller tiles and buffers.
 template <std::uint32_t PacketWidthV = 8, std::uint32_t TileWidthV = 16>
 struct StoreLayout64K {
+  static constexpr std::uint32_t kEffects = 0;  ///< EffectBits it is built for
   static constexpr std::uint32_t kArenaBytes = 64 * 1024;
   static constexpr std::uint32_t kCodeBudgetBytes = 32 * 1024;
   static constexpr std::uint32_t kStackBudgetBytes = 6 * 1024;
@@ -60,6 +64,7 @@ struct StoreLayout64K {
 /// Sizes of a 128 KB core: tiles and packets of the 256 KB one, more but shorter buffers than that of 64 KB.
 template <std::uint32_t PacketWidthV = 8, std::uint32_t TileWidthV = 32>
 struct StoreLayout128K {
+  static constexpr std::uint32_t kEffects = 0;  ///< EffectBits it is built for
   static constexpr std::uint32_t kArenaBytes = 128 * 1024;
   static constexpr std::uint32_t kCodeBudgetBytes = 53 * 1024;
   static constexpr std::uint32_t kStackBudgetBytes = 8704;
@@ -78,6 +83,7 @@ struct StoreLayout128K {
 /// Sizes of a 512 KB core: a longer table, more and longer buffers, a larger mailbox.
 template <std::uint32_t PacketWidthV = 8, std::uint32_t TileWidthV = 32>
 struct StoreLayout512K {
+  static constexpr std::uint32_t kEffects = 0;  ///< EffectBits it is built for
   static constexpr std::uint32_t kArenaBytes = 512 * 1024;
   static constexpr std::uint32_t kCodeBudgetBytes = 53 * 1024;
   static constexpr std::uint32_t kStackBudgetBytes = 8704;
@@ -91,6 +97,27 @@ struct StoreLayout512K {
   static constexpr std::uint32_t kTrianglesPerBuffer = 128;
   static constexpr std::uint32_t kMaxTriangleDepth = 15;
   static constexpr std::uint32_t kMaxOutputDepth = 2;
+};
+
+/// Sizes of a 256 KB core that renders effects.
+/// @tparam BuiltV  EffectBits: what it is built for, kSceneShading among them.
+template <std::uint32_t BuiltV, std::uint32_t PacketWidthV = 32>
+struct EffectLayout256K {
+  static constexpr std::uint32_t kEffects = BuiltV;
+  static constexpr std::uint32_t kArenaBytes = 256 * 1024;
+  static constexpr std::uint32_t kCodeBudgetBytes = 96 * 1024;
+  static constexpr std::uint32_t kStackBudgetBytes = 12 * 1024;
+  static constexpr std::uint32_t kTileWidth = 32;
+  static constexpr std::uint32_t kPacketWidth = PacketWidthV;
+  static constexpr std::uint32_t kMailboxSlots = PacketWidthV < 16 ? 64 : 256;
+  static constexpr std::uint32_t kRecentTriangles = 32;
+  static constexpr std::uint32_t kTableEntries = 2048;  ///< 65,536 macrocells resident
+  static constexpr std::uint32_t kMaxMacroWidth = 6;
+  static constexpr std::uint32_t kMaxMacroDepth = 8;
+  static constexpr std::uint32_t kTrianglesPerBuffer = 40;
+  static constexpr std::uint32_t kMaxTriangleDepth = 8;
+  static constexpr std::uint32_t kMaxOutputDepth = 2;
+  static_assert((BuiltV & kSceneShading) != 0);
 };
 
 /// Memory of one core. Buffers for transfers are congruent with main memory modulo kPortableCongruenceBytes: cell
@@ -133,6 +160,12 @@ struct alignas(128) LocalStore {
   static_assert(Layout::kMaxTriangleDepth <= kTriangleTagCount);
   static_assert(Layout::kMaxOutputDepth <= kOutputTagCount);
   static_assert(Layout::kTileWidth % Layout::kPacketWidth == 0);
+};
+
+/// Main memory of one core for secondary rays that wait; of frames without effects, none.
+struct SpillRegion {
+  MainAddress address{};    ///< a multiple of kSpillAlignment
+  std::uint64_t bytes = 0;  ///< at least spill_bytes(recursion_depth) of the frame's scene
 };
 
 /// Bytes that a layout leaves for data.

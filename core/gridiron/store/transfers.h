@@ -3,6 +3,7 @@
 #pragma once
 
 #include <gridiron/base/lanes.h>
+#include <gridiron/base/stages.h>
 #include <gridiron/base/work_counters.h>
 #include <gridiron/platform/contract.h>
 #include <gridiron/store/dma_tags.h>
@@ -72,6 +73,14 @@ class Transfers {
     if (is_counted(tag)) pending_count_ -= pending_[tag];
     pending_[tag] = 0;
     return platform_.wait(TagMask::of(Tag{tag}));
+  }
+
+  /// Tells a platform that listens what the core is busy with from now on.
+  GRIDIRON_INLINE void note_stage(Stage stage) {
+    if constexpr (StageObserver<P>) {
+      note_work();
+      platform_.note_stage(static_cast<std::uint8_t>(stage));
+    }
   }
 
   [[nodiscard]] TileClaim claim_tile() {

@@ -93,4 +93,11 @@ concept WorkObserver = requires(P& platform, const std::uint32_t* counts, std::u
   { platform.note_work(counts, count) } -> std::same_as<void>;
 };
 
+/// A platform that also wants to know what the core is busy with. Core calls it where that changes, within a tile;
+/// every tile begins and ends with stage 0. `stage` is a Stage (base/stages.h) as a number. Optional, as above.
+template <class P>
+concept StageObserver = requires(P& platform, std::uint8_t stage) {
+  { platform.note_stage(stage) } -> std::same_as<void>;
+};
+
 }  // namespace gridiron

@@ -33,6 +33,19 @@ enum class [[nodiscard]] Status : std::uint8_t {
   kDeadline,            ///< the frame's deadline passed between two tiles
   kIncompleteFrame,     ///< the cores ended well, but part of the picture was not written (platforms that check)
 
+  // Effects (kernel): the frame's scene calls for one that this renderer was built without.
+  kNeedsSceneShading,      ///< lights, materials and the background
+  kNeedsPointShadows,
+  kNeedsAreaLights,
+  kNeedsReflection,
+  kNeedsRefraction,
+  kNeedsAmbientOcclusion,
+  kNeedsEnvironment,
+  kNeedsSmoothNormals,
+  kNeedsHighlights,
+  kNeedsMultisampling,
+  kSpillTooSmall,          ///< main memory given for rays that wait is less than the scene's depth asks for
+
   // Readers and builders (prepare).
   kMemoryTooSmall,      ///< the caller's span is smaller than the counted need; nothing was written
   kTooManyTriangles,    ///< more triangles or references than 32-bit counts can address
@@ -40,6 +53,7 @@ enum class [[nodiscard]] Status : std::uint8_t {
   kBadVertex,           ///< a vertex coordinate is NaN, infinite or beyond +-2^120
   kBadIndex,            ///< a triangle names a vertex that does not exist
   kBadParameter,        ///< a parameter is outside its documented range
+  kBadEffects,          ///< a light, material, normal, texel or count of a scene is outside its documented range
 };
 
 }  // namespace gridiron

@@ -1,0 +1,144 @@
+// Effects in main memory: what a scene calls for, its lights, materials, surfaces, normals and environment. Layout as
+// core/SPEC.md tells it; what they mean as core/EFFECTS.md does.
+// Memory: described, not owned. Threads: read-only during a frame. SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <cstdint>
+
+namespace gridiron {
+
+/// Effects, as bits of a set. Plain light of point lights, without shadows, is no effect.
+enum EffectBits : std::uint32_t {
+  kPointShadows = 1u << 0,
+  kAreaLights = 1u << 1,         ///< sampled, with shadows or without
+  kReflection = 1u << 2,
+  kRefraction = 1u << 3,
+  kAmbientOcclusion = 1u << 4,
+  kEnvironment = 1u << 5,
+  kSmoothNormals = 1u << 6,
+  kHighlights = 1u << 7,         ///< Blinn-Phong
+  kMultisampling = 1u << 8,
+  kSceneShading = 1u << 9,       ///< light of point lights and the background; every scene with effects needs it
+};
+inline constexpr std::uint32_t kEffectCount = 10;
+inline constexpr std::uint32_t kAllEffects = (1u << kEffectCount) - 1u;
+
+inline constexpr std::uint32_t kMaxMaterials = 65535;
+inline constexpr std::uint32_t kMaxLights = 256;           ///< point and area lights together
+inline constexpr std::uint32_t kMaxEffectSamples = 64;     ///< of an area light, of ambient occlusion
+inline constexpr std::uint32_t kMaxRecursionDepth = 8;     ///< the eye ray is of depth 1
+inline constexpr std::uint32_t kMaxEnvironmentWidth = 1024;
+inline constexpr float kAmbientLight = 0.5f;
+inline constexpr float kMaxLightColor = 1e6f;
+
+/// One for a scene with effects. 128 bytes.
+struct EffectsRecord {
+  std::uint32_t called_for;          ///< EffectBits
+  std::uint32_t material_count;      ///< 1..kMaxMaterials
+  std::uint32_t light_count;         ///< 0..kMaxLights, point lights first
+  std::uint32_t point_light_count;
+  std::uint32_t recursion_depth;     ///< 1..kMaxRecursionDepth
+  std::uint32_t samples_per_pixel;   ///< 1, 4, 16
+  std::uint32_t occlusion_samples;   ///< 0: no ambient occlusion; ..kMaxEffectSamples
+  float occlusion_radius;            ///< > 0 where there is
+  float background[3];               ///< 0..1
+  std::uint32_t has_shadows;         ///< 0, 1
+  std::uint32_t environment_width;   ///< texels of a face's edge, 0: no environment; ..kMaxEnvironmentWidth
+  std::uint32_t smooth_triangle_count;  ///< records of the kNormals section
+  // Where the sections lie, from the image's first byte. 0 where a section is empty.
+  std::uint64_t materials_offset_bytes;    ///< MaterialRecord[material_count]
+  std::uint64_t lights_offset_bytes;       ///< LightRecord[light_count]
+  std::uint64_t surfaces_offset_bytes;     ///< SurfaceRecord[triangle_count], by triangle_id
+  std::uint64_t normals_offset_bytes;      ///< NormalRecord[smooth_triangle_count]
+  std::uint64_t environment_offset_bytes;  ///< EnvironmentBlock[6 * blocks * blocks], face, row, column
+  std::uint32_t reserved[8];
+};
+static_assert(sizeof(EffectsRecord) == 128);
+
+/// What a surface does with light. diffuse and transmitted hold the shares already: see core/EFFECTS.md.
+struct MaterialRecord {
+  float diffuse[3];      ///< kd times colour, 0..1
+  float specular;        ///< ks, 0..1; of highlight and mirror
+  float transmitted[3];  ///< T times colour, 0..1
+  float transmittance;   ///< T, 0..1
+  float shine;           ///< exponent of the highlight, 0: none; ..1e5
+  float index;           ///< of refraction, of the inside to the outside; 0.1..10
+  std::uint32_t is_smooth;  ///< 0, 1: triangles have normals
+  std::uint32_t reserved;
+};
+static_assert(sizeof(MaterialRecord) == 48);
+
+/// A point light (samples = 0) or an area light, corner + a edge_u + b edge_v.
+struct LightRecord {
+  float corner[3];
+  std::uint32_t samples;    ///< 0: a point; 1..kMaxEffectSamples
+  float color[3];           ///< 0..kMaxLightColor; of an area light that of one sample
+  std::uint32_t is_near;    ///< 0, 1; shadow rays run from the light: it is about as near to 0 as the scene is
+  float edge_u[3];
+  std::uint32_t reserved0;
+  float edge_v[3];
+  std::uint32_t reserved1;
+};
+static_assert(sizeof(LightRecord) == 64);
+
+/// A point light is near where its largest coordinate is at most this times that of the scene.
+inline constexpr float kNearLightFactor = 4.0f;
+
+/// A triangle as shading needs it. Vertices as the grid's triangles have them: moved ones for lattice triangles.
+struct SurfaceRecord {
+  float v[3][3];
+  std::uint32_t material;      ///< index
+  std::uint32_t normals;       ///< index in the kNormals section, kNoNormals where flat
+  std::uint32_t reserved;
+};
+static_assert(sizeof(SurfaceRecord) == 48);
+inline constexpr std::uint32_t kNoNormals = 0xFFFFFFFFu;
+
+/// Normals at a triangle's corners, unit to rounding, outwards.
+struct NormalRecord {
+  float n[3][3];
+  std::uint32_t reserved[3];
+};
+static_assert(sizeof(NormalRecord) == 48);
+
+/// 8 x 8 texels of a face, of which 7 x 7 begin a bilinear patch: block (i, j) holds columns 7 i..7 i + 7 and rows
+/// 7 j..7 j + 7, those beyond the face repeat its last. 768 bytes.
+struct EnvironmentBlock {
+  float texels[8][8][3];  ///< row, column; finite, >= 0
+};
+static_assert(sizeof(EnvironmentBlock) == 768);
+inline constexpr std::uint32_t kEnvironmentPatches = 7;
+
+/// Blocks along a face's edge: patches begin at texels 0..width - 2; a face of one texel has one block.
+[[nodiscard]] constexpr std::uint32_t environment_blocks(std::uint32_t width) {
+  return width <= 2 ? 1 : (width - 2) / kEnvironmentPatches + 1;
+}
+
+/// A ray that waits for its turn, in a queue of the local store or in main memory.
+struct QueuedRay {
+  float origin[3];
+  float dir[3];
+  float weight[3];         ///< what it adds is worth
+  std::uint32_t pixel;     ///< row-major index in its tile | depth << 16
+  std::uint32_t path;      ///< core/EFFECTS.md
+  std::uint32_t reserved;
+};
+static_assert(sizeof(QueuedRay) == 48);
+
+/// Secondary rays are traced in waves of up to this many, the deepest first.
+inline constexpr std::uint32_t kWaveRays = 256;
+
+/// Rays that can wait at once on a core. The queue is a stack ordered by depth: rays of depth k are pushed only by a
+/// wave that holds one of depth k - 1, and then none deeper than that one is left below; a wave pushes two a ray.
+[[nodiscard]] constexpr std::uint32_t most_waiting_rays(std::uint32_t recursion_depth) {
+  return recursion_depth <= 1 ? 0 : 2 * kWaveRays * (recursion_depth - 1);
+}
+
+/// Bytes of main memory that each core needs for waiting rays that its local store has no room for. The region begins
+/// at a multiple of kSpillAlignment, so that every core's transfers are cut alike.
+[[nodiscard]] constexpr std::uint64_t spill_bytes(std::uint32_t recursion_depth) {
+  return (std::uint64_t{most_waiting_rays(recursion_depth)} * sizeof(QueuedRay) + 4095) / 4096 * 4096;
+}
+inline constexpr std::uint32_t kSpillAlignment = 4096;
+
+}  // namespace gridiron
