@@ -80,6 +80,8 @@ struct Frustum {
     const Four::Int cell = Four::truncate(inside);
     return {cell[0], cell[1], cell[2], cell[3]};
   }
+  /// As walks ask any bound: the work of this one is part of a step's.
+  [[nodiscard]] GRIDIRON_INLINE CellRect rect_of(const Slab& slab, WorkCounters&) const { return rect_of(slab); }
 };
 
 /// March axis and the two others, and what turns directions along them into cells; the march's is signed.

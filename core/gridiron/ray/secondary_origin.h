@@ -35,6 +35,16 @@ struct SecondaryOrigin {
   float error;  ///< E
 };
 
+/// The same on both sides of the surface, and what shading needs besides.
+struct SurfacePoint {
+  float before[3];    ///< on the side that the ray comes from
+  float behind[3];    ///< on the other
+  float normal[3];    ///< unit, by the winding of the corners
+  float weights[2];   ///< of corners 1 and 2
+  bool enters;        ///< the ray runs against the normal
+  float lift, error;  ///< as above
+};
+
 namespace secondary_origin_detail {
 
 /// @returns the power of two that brings a normal size into [1, 2), or nearest to it.
@@ -52,14 +62,14 @@ namespace secondary_origin_detail {
 }  // namespace secondary_origin_detail
 
 /// @param origin, dir  the ray that hits. Precondition: the triangle has an area, the ray hits it (`standard`).
-/// @param through      whether to begin on the far side of the surface, as refracted rays do.
-[[nodiscard]] inline SecondaryOrigin secondary_origin(const VertexTriangle& triangle, const float origin[3],
-                                                      const float dir[3], bool through, WorkCounters& work) {
+/// @param least_size   a size that E allows for besides M: of points that rays come from which end here.
+[[nodiscard]] inline SurfacePoint surface_point(const VertexTriangle& triangle, const float origin[3],
+                                                const float dir[3], float least_size, WorkCounters& work) {
   using secondary_origin_detail::largest;
   using secondary_origin_detail::scale_to_one;
   // Edges from v0, and the sizes that bound all rounding.
   float e1[3], e2[3], e3[3], seen[3][3];
-  float vertex_size = 0.0f, seen_size = 0.0f;
+  float vertex_size = least_size, seen_size = 0.0f;
   for (int i = 0; i < 3; ++i) {
     e1[i] = triangle.v[1][i] - triangle.v[0][i];
     e2[i] = triangle.v[2][i] - triangle.v[0][i];
@@ -73,7 +83,7 @@ namespace secondary_origin_detail {
   float edge_size = largest(e1);
   edge_size = largest(e2) > edge_size ? largest(e2) : edge_size;
   edge_size = largest(e3) > edge_size ? largest(e3) : edge_size;
-  SecondaryOrigin result;
+  SurfacePoint result;
   result.error = 0x1p-23f * (vertex_size + 8.0f * edge_size);
   result.lift = 4.0f * result.error;
 
@@ -124,21 +134,31 @@ namespace secondary_origin_detail {
   weight1 += (third - weight1) * drawn;
   weight2 += (third - weight2) * drawn;
 
-  float normal[3];
-  set_up_normal(triangle, normal);
+  set_up_normal(triangle, result.normal);
   float facing = 0.0f;
-  for (int i = 0; i < 3; ++i) facing += normal[i] * (dir[i] * dir_to_one);
+  for (int i = 0; i < 3; ++i) facing += result.normal[i] * (dir[i] * dir_to_one);
   // The normal is off by 2^-14 at most, so is the sum of three such products below 2 by 2^-11; grazing rays ask for
   // more.
   bool leads_along = facing > 0.0f;
   if (magnitude(facing) < 0x1p-10f) leads_along = volume_sign_in_double(origin, triangle, work) > 0;
-  const bool is_along = leads_along == through;
-  const float lift = is_along ? result.lift : -result.lift;
+  result.enters = !leads_along;
+  result.weights[0] = weight1;
+  result.weights[1] = weight2;
+  const float lift = leads_along ? -result.lift : result.lift;
   for (int i = 0; i < 3; ++i) {
     const float in_triangle = weight1 * e1[i] + weight2 * e2[i];
-    result.point[i] = triangle.v[0][i] + (in_triangle + lift * normal[i]);
+    result.before[i] = triangle.v[0][i] + (in_triangle + lift * result.normal[i]);
+    result.behind[i] = triangle.v[0][i] + (in_triangle - lift * result.normal[i]);
   }
   return result;
+}
+
+/// @param through  whether to begin on the far side of the surface, as refracted rays do.
+[[nodiscard]] inline SecondaryOrigin secondary_origin(const VertexTriangle& triangle, const float origin[3],
+                                                      const float dir[3], bool through, WorkCounters& work) {
+  const SurfacePoint found = surface_point(triangle, origin, dir, 0.0f, work);
+  const float* const point = through ? found.behind : found.before;
+  return {{point[0], point[1], point[2]}, found.lift, found.error};
 }
 
 }  // namespace gridiron

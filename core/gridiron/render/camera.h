@@ -34,17 +34,18 @@ inline constexpr SubpacketPixels kSubpacketPixels = [] {
 
 /// Generates the rays of the packet whose first pixel is (left, top).
 ///
+/// @param dx, dy   from the pixels' centres to where the rays go through, in pixels: multiples of 1/32 within a half.
 /// @param present  out: the rays whose pixels lie in the picture. Distances are exact where the frame wants depth.
 /// The corner rays bound all others: each operation above is monotone in x and y, rounding included, so every
 /// component lies between the corners'; corner_widening covers what rounding moves a ray out of their hull.
 template <class L, class PacketType>
 void generate_packet(const FrameRecord& frame, std::uint32_t left, std::uint32_t top, PacketType& packet,
-                     RaySet<PacketType::kRayCount>& present, WorkCounters& work) {
+                     RaySet<PacketType::kRayCount>& present, WorkCounters& work, float dx = 0.0f, float dy = 0.0f) {
   using Float = typename L::Float;
   constexpr std::uint32_t kWidth = PacketType::kWidth;
   work.add(Work::kRayGenerated, PacketType::kRayCount / L::kCount);
-  const float x0 = static_cast<float>(left);
-  const float y0 = static_cast<float>(top);
+  const float x0 = static_cast<float>(left) + dx;
+  const float y0 = static_cast<float>(top) + dy;
   for (int axis = 0; axis < 3; ++axis) {
     packet.origin[axis] = frame.eye[axis];
     for (std::uint32_t first = 0; first < PacketType::kRayCount; first += kSubpacketRays) {

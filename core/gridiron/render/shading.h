@@ -31,7 +31,7 @@ template <class L, class PacketType>
   return L::square_root((x * x + y * y) + z * z);
 }
 
-/// Writes a packet's pixels into a tile.
+/// Writes a packet's pixels into a tile; colours of frames that the scene shades are not among them.
 ///
 /// @param x, y    the packet's first pixel inside the tile.
 /// @param output  a LocalStore::TileOutput. Depth and ids are written only where the frame wants them.
@@ -59,7 +59,7 @@ void shade_packet(const FrameRecord& frame, const PacketType& packet, std::uint3
       const auto missed = L::equal(kNoTriangle, packet.id + base);
       L::store_quads(L::select(missed, background, lit), output.color + pixel, frame.tile_width);
     });
-  } else {
+  } else if (frame.shading == static_cast<std::uint32_t>(Shading::kNone)) {
     work.add(Work::kShadedGroup, kGroups);
     const Int lit = Int::splat(0xFFFFFFFFu);
     for_each_group([&](std::uint32_t base, std::uint32_t pixel) GRIDIRON_INLINE_LAMBDA {
@@ -80,6 +80,19 @@ void shade_packet(const FrameRecord& frame, const PacketType& packet, std::uint3
     for_each_group([&](std::uint32_t base, std::uint32_t pixel) GRIDIRON_INLINE_LAMBDA {
       L::store_quads(Int::load(packet.id + base), output.id + pixel, frame.tile_width);
     });
+  }
+}
+
+/// Writes the triangles that a packet's rays hit into a tile of ids.
+template <class PacketType>
+void keep_hits(const PacketType& packet, std::uint32_t x, std::uint32_t y, std::uint32_t tile_width,
+               std::uint32_t* ids, WorkCounters& work) {
+  using Four = Lanes<4>;
+  work.add(Work::kIdGroup, PacketType::kRayCount / 4);
+  work.charge_to(Work::kIdGroup);
+  for (std::uint32_t ray = 0; ray < PacketType::kRayCount; ray += 4) {
+    const std::uint32_t place = (y + PacketType::row_of(ray)) * tile_width + x + PacketType::column_of(ray);
+    Four::store_quads(Four::Int::load(packet.id + ray), ids + place, tile_width);
   }
 }
 

@@ -4,6 +4,7 @@
 #pragma once
 
 #include <gridiron/base/records.h>
+#include <gridiron/effects/effect_renderer.h>
 #include <gridiron/platform/contract.h>
 #include <gridiron/ray/frustum.h>
 #include <gridiron/render/camera.h>
@@ -14,6 +15,7 @@
 
 #include <cstdint>
 #include <initializer_list>
+#include <type_traits>
 
 namespace gridiron {
 
@@ -25,7 +27,7 @@ template <class L, class Layout, Platform P>
 class TileRenderer {
  public:
   TileRenderer(LocalStore<Layout>& store, P& platform, SpillRegion spill)
-      : store_(store), transfers_(platform, store.work), spill_(spill) {}
+      : store_(store), transfers_(platform, store.work), effects_(make_effects(spill)) {}
 
   /// Renders every tile this core can claim of the frame whose FrameRecord lies at `frame`.
   ///
@@ -38,6 +40,9 @@ class TileRenderer {
     GRIDIRON_TRY(transfers_.wait(kSetupTag));
     GRIDIRON_TRY(check_frame());
     GRIDIRON_TRY(load_table());
+    if constexpr (kHasEffects) {
+      if (is_scene_shaded()) GRIDIRON_TRY(effects_.begin_frame());
+    }
     share_queue();
     // 2. Tiles.
     for (TileClaim claim = transfers_.claim_tile();; claim = transfers_.claim_tile()) {
@@ -70,15 +75,45 @@ class TileRenderer {
     output_slot_ = output_slot_ + 1 == frame.output_depth ? 0 : output_slot_ + 1;
     GRIDIRON_TRY(transfers_.wait(tag));
 
-    for (std::uint32_t y = 0; y < Layout::kTileWidth && top + y < frame.height; y += Layout::kPacketWidth) {
-      for (std::uint32_t x = 0; x < Layout::kTileWidth && left + x < frame.width; x += Layout::kPacketWidth) {
-        GRIDIRON_TRY(trace_packet(left + x, top + y));
+    if (is_scene_shaded()) {
+      if constexpr (kHasEffects) GRIDIRON_TRY(render_effects(left, top, store_.output[slot]));
+    } else {
+      GRIDIRON_TRY(trace_tile(left, top, {}, [&](std::uint32_t x, std::uint32_t y) {
         shade_packet<L>(frame, store_.packet, x, y, store_.output[slot], store_.work);
-      }
+      }));
     }
     store_.work.charge_to(Work::kTileStart);
     GRIDIRON_TRY(put_tile(tile_id, slot, tag));
     return waits_for_output_ ? transfers_.wait(tag) : Status::kOk;
+  }
+
+  // Traces the packets of a tile; done(x, y) is told each, by its first pixel in the tile.
+  template <class Done>
+  [[nodiscard]] Status trace_tile(std::uint32_t left, std::uint32_t top, PixelOffset offset, Done&& done) {
+    const FrameRecord& frame = store_.frame;
+    for (std::uint32_t y = 0; y < Layout::kTileWidth && top + y < frame.height; y += Layout::kPacketWidth) {
+      for (std::uint32_t x = 0; x < Layout::kTileWidth && left + x < frame.width; x += Layout::kPacketWidth) {
+        GRIDIRON_TRY(trace_packet(left + x, top + y, offset));
+        done(x, y);
+      }
+    }
+    return Status::kOk;
+  }
+
+  // A tile as the scene shades it: eye rays and what becomes of them, sample by sample. Depth and ids are those of the
+  // first.
+  [[nodiscard]] Status render_effects(std::uint32_t left, std::uint32_t top, TileOutput& output) {
+    effects_.begin_tile(left, top);
+    const std::uint32_t sample_count = effects_.samples_per_pixel();
+    for (std::uint32_t sample = 0; sample < sample_count; ++sample) {
+      GRIDIRON_TRY(trace_tile(left, top, pixel_offset(sample_count, sample), [&](std::uint32_t x, std::uint32_t y) {
+        if (sample == 0) shade_packet<L>(store_.frame, store_.packet, x, y, output, store_.work);
+        keep_hits(store_.packet, x, y, Layout::kTileWidth, store_.effects.hit_ids, store_.work);
+      }));
+      GRIDIRON_TRY(effects_.shade_sample(sample));
+    }
+    effects_.finish_tile(output.color);
+    return Status::kOk;
   }
 
   // What is waited for during a tile must not depend on the tiles before it: either those have places of their own in
@@ -99,9 +134,9 @@ class TileRenderer {
   // Generates a packet and traces it. Distances that nobody asks for are estimated; rays for which that leaves open
   // what they hit are traced again, with exact ones. Where ties are to be broken, a ray of which one still is open goes
   // alone: then its nearest triangle stays at hand.
-  [[nodiscard]] Status trace_packet(std::uint32_t left, std::uint32_t top) {
+  [[nodiscard]] Status trace_packet(std::uint32_t left, std::uint32_t top, PixelOffset offset) {
     RaySet<StorePacket::kRayCount> waiting;
-    generate_packet<L>(store_.frame, left, top, store_.packet, waiting, store_.work);
+    generate_packet<L>(store_.frame, left, top, store_.packet, waiting, store_.work, offset.dx, offset.dy);
     store_.work.charge_to(Work::kPacketStart);
     GRIDIRON_TRY(trace_rays(waiting));
     if (!take_unsure_rays(store_.packet, store_.frame.t_far, waiting)) [[likely]]
@@ -167,9 +202,10 @@ class TileRenderer {
     }
     if (!(frame.t_far > 0.0f) || frame.color_address == 0) return Status::kBadFrame;
     if (frame.accuracy > static_cast<std::uint32_t>(Accuracy::kCompact) ||
-        frame.shading > static_cast<std::uint32_t>(Shading::kSimple)) {
+        frame.shading > static_cast<std::uint32_t>(Shading::kScene)) {
       return Status::kUnsupportedFrame;
     }
+    if (is_scene_shaded() && !kHasEffects) return Status::kNeedsSceneShading;
     const GridRecord& grid = frame.grid;
     std::uint32_t format = static_cast<std::uint32_t>(TriangleFormat::kVertices);
     if (frame.accuracy == static_cast<std::uint32_t>(Accuracy::kPaper)) {
@@ -210,9 +246,24 @@ class TileRenderer {
     return outcome;
   }
 
+  static constexpr bool kHasEffects = Layout::kEffects != 0;
+  struct NoEffects {};
+  using Effects = std::conditional_t<kHasEffects, EffectRenderer<L, Layout, P>, NoEffects>;
+
+  [[nodiscard]] Effects make_effects([[maybe_unused]] SpillRegion spill) {
+    if constexpr (kHasEffects) {
+      return Effects(store_, transfers_, spill);
+    } else {
+      return Effects{};
+    }
+  }
+  [[nodiscard]] bool is_scene_shaded() const {
+    return store_.frame.shading == static_cast<std::uint32_t>(Shading::kScene);
+  }
+
   Store& store_;
   Transfers<P> transfers_;
-  [[maybe_unused]] SpillRegion spill_;
+  [[no_unique_address]] Effects effects_;
   std::uint32_t output_slot_ = 0;
   bool table_resident_ = false;
   bool waits_for_output_ = true;

@@ -8,11 +8,13 @@
 #include <gridiron/platform/contract.h>
 #include <gridiron/ray/packet.h>
 #include <gridiron/store/dma_tags.h>
+#include <gridiron/store/effect_store.h>
 #include <gridiron/traverse/macro_table.h>
 #include <gridiron/traverse/mailbox.h>
 
 #include <cstddef>
 #include <cstdint>
+#include <type_traits>
 
 namespace gridiron {
 
@@ -111,7 +113,7 @@ struct EffectLayout256K {
   static constexpr std::uint32_t kPacketWidth = PacketWidthV;
   static constexpr std::uint32_t kMailboxSlots = PacketWidthV < 16 ? 64 : 256;
   static constexpr std::uint32_t kRecentTriangles = 32;
-  static constexpr std::uint32_t kTableEntries = 2048;  ///< 65,536 macrocells resident
+  static constexpr std::uint32_t kTableEntries = 1024;  ///< 32,768 macrocells resident
   static constexpr std::uint32_t kMaxMacroWidth = 6;
   static constexpr std::uint32_t kMaxMacroDepth = 8;
   static constexpr std::uint32_t kTrianglesPerBuffer = 40;
@@ -119,6 +121,11 @@ struct EffectLayout256K {
   static constexpr std::uint32_t kMaxOutputDepth = 2;
   static_assert((BuiltV & kSceneShading) != 0);
 };
+
+/// Walks of secondary rays that a layout has buffers for.
+template <class Layout>
+inline constexpr std::uint32_t kWalkCount =
+    Layout::kMaxMacroDepth < Layout::kMaxTriangleDepth ? Layout::kMaxMacroDepth : Layout::kMaxTriangleDepth;
 
 /// Memory of one core. Buffers for transfers are congruent with main memory modulo kPortableCongruenceBytes: cell
 /// blocks and tiles start on lines there and here; triangle runs start anywhere on 16 bytes, so their buffers have room
@@ -133,6 +140,9 @@ struct alignas(128) LocalStore {
       (kMacroCells * static_cast<std::uint32_t>(sizeof(CellRecord)) + kLineBytes - 1) / kLineBytes * kLineBytes;
   static constexpr std::uint32_t kTriangleBufferBytes =
       (Layout::kTrianglesPerBuffer * kTriangleRecordBytes + 32 + kLineBytes - 1) / kLineBytes * kLineBytes;
+
+  using Effects = std::conditional_t<Layout::kEffects != 0, EffectStore<kTilePixels>, NoEffectStore>;
+  using StoreWave = std::conditional_t<Layout::kEffects != 0, Wave<kWalkCount<Layout>>, NoWave>;
 
   struct alignas(128) CellBlock {
     std::byte bytes[kCellBlockBytes];
@@ -152,9 +162,13 @@ struct alignas(128) LocalStore {
   MacroTableWindow<Layout::kTableEntries> table;
   CellBlock cell_blocks[Layout::kMaxMacroDepth];
   TriangleBuffer triangles[Layout::kMaxTriangleDepth];
-  StorePacket packet;
+  union {
+    StorePacket packet;  ///< while eye rays are traced
+    StoreWave wave;      ///< while what they hit is worked on
+  };
   Mailbox<Layout::kMailboxSlots> mailbox;
   TileOutput output[Layout::kMaxOutputDepth];
+  [[no_unique_address]] Effects effects;
 
   static_assert(Layout::kMaxMacroDepth <= kMacroTagCount);
   static_assert(Layout::kMaxTriangleDepth <= kTriangleTagCount);
@@ -183,6 +197,7 @@ static_assert(kFitsArena<StoreLayout256K<8, 8>> && kFitsArena<StoreLayout256K<16
               kFitsArena<StoreLayout256K<8, 64>> && kFitsArena<StoreLayout256K<32, 64>>);
 static_assert(kFitsArena<StoreLayout64K<4>> && kFitsArena<StoreLayout64K<8>> && kFitsArena<StoreLayout64K<16>>);
 static_assert(kFitsArena<StoreLayout128K<8>> && kFitsArena<StoreLayout128K<32>>);
+static_assert(kFitsArena<EffectLayout256K<kAllEffects, 8>> && kFitsArena<EffectLayout256K<kAllEffects, 32>>);
 static_assert(kFitsArena<StoreLayout512K<8>> && kFitsArena<StoreLayout512K<32>> && kFitsArena<StoreLayout512K<8, 64>> &&
               kFitsArena<StoreLayout512K<32, 64>>);
 
@@ -195,9 +210,16 @@ constexpr void for_each_region(Visit&& visit) {
   visit("macro_table", offsetof(Store, table), sizeof(Store::table));
   visit("cell_blocks", offsetof(Store, cell_blocks), sizeof(Store::cell_blocks));
   visit("triangles", offsetof(Store, triangles), sizeof(Store::triangles));
-  visit("packet", offsetof(Store, packet), sizeof(Store::packet));
+  if constexpr (Layout::kEffects == 0) {
+    visit("packet", offsetof(Store, packet), sizeof(Store::packet));
+  } else {
+    constexpr bool kWaveIsLarger = sizeof(typename Store::StoreWave) > sizeof(typename Store::StorePacket);
+    visit("packet_or_wave", offsetof(Store, packet),
+          kWaveIsLarger ? sizeof(typename Store::StoreWave) : sizeof(typename Store::StorePacket));
+  }
   visit("mailbox", offsetof(Store, mailbox), sizeof(Store::mailbox));
   visit("output", offsetof(Store, output), sizeof(Store::output));
+  if constexpr (Layout::kEffects != 0) visit("effects", offsetof(Store, effects), sizeof(Store::effects));
 }
 
 }  // namespace gridiron

@@ -16,6 +16,7 @@
 #include <gridiron/store/buffer_ring.h>
 #include <gridiron/store/local_store.h>
 #include <gridiron/store/transfers.h>
+#include <gridiron/store/triangle_run.h>
 #include <gridiron/traverse/slice_walk.h>
 
 #include <cstdint>
@@ -53,7 +54,6 @@ class PacketDriver {
  private:
   using StorePacket = typename LocalStore<Layout>::StorePacket;
   static constexpr std::uint32_t kRunTriangles = Layout::kTrianglesPerBuffer;
-  static constexpr std::uint32_t kTransferStep = 16;  ///< addresses and sizes of transfers are multiples of it
 
   struct TriangleRun {
     std::uint32_t count;
@@ -78,28 +78,18 @@ class PacketDriver {
     }
     store_.work.charge_to(Work::kCellVisit);
     const std::uint32_t count = cell_.triangle_count < kRunTriangles ? cell_.triangle_count : kRunTriangles;
-    std::uint64_t offset = std::uint64_t{cell_.first_triangle} * kTriangleRecordBytes;
-    std::uint32_t bytes = count * kTriangleRecordBytes;
-    std::uint32_t slack = 0;
-    if (is_on_lattice()) {
-      // Records half as long start and end between the 16 bytes that a transfer moves.
-      offset = offset / 2;
-      slack = static_cast<std::uint32_t>(offset % kTransferStep);
-      bytes = (slack + bytes / 2 + (kTransferStep - 1)) & ~(kTransferStep - 1);
-    }
-    const std::uint64_t begin = store_.frame.triangles_address + offset;
-    const std::uint32_t first_byte = static_cast<std::uint32_t>(begin % kPortableCongruenceBytes);
+    const RunPlace place = run_place(store_.frame, cell_.first_triangle, count);
     const std::uint32_t slot = triangle_ring_.push();
-    runs_[slot] = {count, first_byte, cell_.entry, touching_};
+    runs_[slot] = {count, place.first_byte, cell_.entry, touching_};
     cell_.first_triangle += count;
     cell_.triangle_count -= count;
-    return transfers_.get(store_.triangles[slot].bytes + (first_byte - slack), MainAddress{begin - slack}, bytes,
+    return transfers_.get(store_.triangles[slot].bytes + (place.first_byte - place.slack), place.begin, place.bytes,
                           static_cast<std::uint8_t>(kFirstTriangleTag + slot));
   }
 
   [[nodiscard]] bool find_next_cell() {
     const std::byte* const block = store_.cell_blocks[macro_ring_.front()].bytes;
-    if (is_on_lattice()) {
+    if (is_on_lattice(store_.frame)) {
       return cell_walk_.next(frustum_, reinterpret_cast<const CellBound*>(block), reach_, cell_, store_.work);
     }
     return cell_walk_.next(frustum_, reinterpret_cast<const CellRecord*>(block), reach_, cell_, store_.work);
@@ -201,12 +191,12 @@ class PacketDriver {
   [[nodiscard]] SubpacketSet test_run(std::byte* buffer, std::uint32_t first_byte, std::uint32_t count,
                                       SubpacketSet open) {
     const std::byte* const records = buffer + first_byte;
-    const bool facing = store_.frame.shading != static_cast<std::uint32_t>(Shading::kNone);
+    const bool facing = store_.frame.shading == static_cast<std::uint32_t>(Shading::kSimple);
     if (store_.frame.accuracy == static_cast<std::uint32_t>(Accuracy::kPaper)) {
       return test_each_projection(reinterpret_cast<const ProjectionTriangle*>(records), count, open, facing);
     }
     const auto* triangles = reinterpret_cast<const VertexTriangle*>(records);
-    if (is_on_lattice()) {
+    if (is_on_lattice(store_.frame)) {
       store_.work.add(Work::kLatticeTriangle, count);
       triangles = spread_lattice_run(store_.frame.grid.lattice, buffer, first_byte, count);
     }
@@ -262,11 +252,6 @@ class PacketDriver {
           intersect_projection<L>(store_.packet, triangles[i], untested, use_corner_rays, want_facing, store_.work);
     }
     return changed;
-  }
-
-  [[nodiscard]] bool is_on_lattice() const {
-    static_assert(2 * sizeof(LatticeTriangle) == kTriangleRecordBytes);
-    return store_.frame.accuracy == static_cast<std::uint32_t>(Accuracy::kCompact);
   }
 
   LocalStore<Layout>& store_;

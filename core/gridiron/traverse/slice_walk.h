@@ -39,7 +39,8 @@ enum class WalkStep : std::uint8_t {
 /// Bound: at most macro_cell_count_k slices and as many steps as there are macrocells.
 class MacroWalk {
  public:
-  void begin(const GridRecord& grid, const Frustum& frustum) {
+  template <class Bound>
+  void begin(const GridRecord& grid, const Bound& frustum) {
     const auto macro_count = [&](std::uint32_t axis) { return static_cast<std::int32_t>(grid.macro_cell_count[axis]); };
     macro_width_ = static_cast<std::int32_t>(grid.macro_width);
     macro_per_cell_ = 1.0f / static_cast<float>(macro_width_);
@@ -56,9 +57,9 @@ class MacroWalk {
   }
 
   /// @param reach  march distance beyond which no ray needs to look. @param skip_empty  empty macrocells are passed
-  /// over.
-  template <class Table>
-  [[nodiscard]] WalkStep next(const Frustum& frustum, const Table& table, float reach, bool skip_empty,
+  /// over. @tparam Bound  Frustum, or Shaft.
+  template <class Bound, class Table>
+  [[nodiscard]] WalkStep next(const Bound& frustum, const Table& table, float reach, bool skip_empty,
                               MacroVisit& visit, WorkCounters& work) {
     for (;;) {
       // 1. The rest of the current macro slice.
@@ -100,7 +101,7 @@ class MacroWalk {
         return WalkStep::kDone;
       }
       work.add(Work::kMacroSliceStep);
-      const CellRect rect = frustum.rect_of(slab);
+      const CellRect rect = frustum.rect_of(slab, work);
       if (rect.empty()) continue;
       u_first_ = macro_of(rect.u_first);
       u_last_ = macro_of(rect.u_last);
@@ -146,7 +147,8 @@ class MacroWalk {
 /// Bound: m slices, m^3 cells.
 class CellWalk {
  public:
-  void begin(const GridRecord& grid, const Frustum& frustum, const MacroVisit& visit) {
+  template <class Bound>
+  void begin(const GridRecord& grid, const Bound& frustum, const MacroVisit& visit) {
     visit_ = visit;
     const std::int32_t m = static_cast<std::int32_t>(grid.macro_width);
     const std::int32_t stride[3] = {1, m, m * m};
@@ -161,8 +163,8 @@ class CellWalk {
   }
 
   /// @tparam Cell  CellRecord or CellBound. @param cells  the macrocell's block. @returns false when no cell is left.
-  template <class Cell>
-  [[nodiscard]] bool next(const Frustum& frustum, const Cell* cells, float reach, CellVisit& found,
+  template <class Bound, class Cell>
+  [[nodiscard]] bool next(const Bound& frustum, const Cell* cells, float reach, CellVisit& found,
                           WorkCounters& work) {
     const std::int32_t slice_count = visit_.k_last - visit_.k_first + 1;
     for (;;) {
@@ -190,7 +192,7 @@ class CellWalk {
         return false;
       }
       work.add(Work::kSliceStep);
-      const CellRect rect = frustum.rect_of(slab);
+      const CellRect rect = frustum.rect_of(slab, work);
       u_first_ = rect.u_first > visit_.u_first ? rect.u_first : visit_.u_first;
       u_last_ = rect.u_last < visit_.u_last ? rect.u_last : visit_.u_last;
       v_ = rect.v_first > visit_.v_first ? rect.v_first : visit_.v_first;

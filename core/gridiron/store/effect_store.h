@@ -1,0 +1,87 @@
+// What effects keep in the local store: the scene's record, materials and lights at hand, sums of pixels, a queue of
+// rays; and the wave, the rays and hits being worked on, which lies where the packet does while eye rays are traced.
+// Memory: is the memory. Threads: one core. SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <gridiron/base/effect_records.h>
+#include <gridiron/base/lanes.h>
+#include <gridiron/base/records.h>
+#include <gridiron/platform/contract.h>
+#include <gridiron/store/dma_tags.h>
+#include <gridiron/store/ray_walk.h>
+
+#include <cstddef>
+#include <cstdint>
+
+namespace gridiron {
+
+/// What a hit does with light: shares of what the ray is worth.
+struct LitHit {
+  float diffuse[3];
+  float specular[3];
+  float shine;
+};
+
+/// A hit whose shading normal is still to be made of its triangle's.
+struct PendingHit {
+  float behind[3];  ///< origin of refracted rays
+  float weight[3];  ///< of the ray
+  std::uint32_t normals;   ///< record of the triangle's normals
+  std::uint32_t material;  ///< index | enters << 31: the ray ran against the winding's normal
+};
+
+/// A hit, as light and secondary rays need it. Directions are unit to rounding.
+struct WavePoint {
+  float point[3];    ///< on the side that the ray came from, lifted
+  float face[3];     ///< the triangle's normal on the ray's side
+  float shading[3];  ///< the normal of light; while the hit is pending the corners' weights
+  float view[3];     ///< against the ray
+  std::uint32_t pixel;  ///< as in QueuedRay
+  std::uint32_t path;
+  union {
+    PendingHit pending;
+    LitHit lit;
+  };
+  std::uint32_t is_pending;  ///< 0, 1
+};
+
+/// A ray of a wave becomes its hit, where there is one.
+union WaveItem {
+  QueuedRay ray;
+  WavePoint point;
+};
+
+template <std::uint32_t WalkCount>
+struct alignas(128) Wave {
+  RayWalk walks[WalkCount];
+  std::uint32_t ids[kWaveRays];  ///< triangles hit, kNoTriangle where none
+  WaveItem items[kWaveRays];
+};
+
+/// Rays that the queue moves to or from main memory at once.
+inline constexpr std::uint32_t kSpillBlockRays = 128;
+
+/// What a layout with effects keeps besides.
+template <std::uint32_t TilePixels>
+struct alignas(128) EffectStore {
+  static constexpr std::uint32_t kMaterialSlots = 64;
+  static constexpr std::uint32_t kLightSlots = 16;
+  static constexpr std::uint32_t kQueueRays = 3 * kSpillBlockRays;
+  static constexpr std::uint32_t kNoMaterial = 0xFFFFFFFFu;
+
+  alignas(128) EffectsRecord scene;
+  alignas(128) MaterialRecord materials[kMaterialSlots];  ///< direct-mapped by index
+  alignas(128) LightRecord lights[kLightSlots];           ///< first_light and those that follow it
+  alignas(128) QueuedRay queue[kQueueRays];
+  alignas(128) std::uint32_t sums[3][TilePixels];  ///< RGB, steps of 2^-20, what all samples of a pixel add up to
+  std::uint32_t hit_ids[TilePixels];               ///< of the eye rays of one sample
+  std::uint32_t material_of_slot[kMaterialSlots];
+  std::uint32_t first_light;
+  alignas(32) std::byte surface_bytes[sizeof(SurfaceRecord) + 16];  ///< a surface that a tie is settled with
+};
+
+/// Stands where a layout has no effects.
+struct NoEffectStore {};
+union NoWave {};
+
+}  // namespace gridiron

@@ -1,0 +1,44 @@
+// One ray walk: up to 16 secondary rays, how far they have come, what they wait for.
+// Memory: inside the local store. Threads: one core. SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <gridiron/ray/walk_rays.h>
+#include <gridiron/traverse/slice_walk.h>
+
+#include <cstdint>
+
+namespace gridiron {
+
+/// Where a walk stands: what it does when its turn comes.
+enum class WalkState : std::uint32_t {
+  kIdle,        ///< has no rays
+  kNextPass,    ///< takes the next of its rays that run alike
+  kNextMacro,   ///< looks for its next macrocell
+  kHasBlock,    ///< waits for a cell block
+  kNextCell,    ///< looks for the next cell of it
+  kHasRun,      ///< waits for triangles
+  kDone,        ///< every ray has its answer
+};
+
+/// One walk: rays, where they are, what they wait for.
+struct alignas(128) RayWalk {
+  static constexpr std::uint32_t kMailboxSlots = 32;
+
+  WalkRays rays;
+  Shaft shaft;
+  MacroWalk macro_walk;
+  CellWalk cell_walk;
+  MacroVisit visit;
+  CellVisit cell;  ///< what is left of the cell whose triangles are being fetched
+  std::uint32_t run_count;
+  std::uint32_t run_first_byte;
+  float reach;
+  WalkState state;
+  std::uint32_t ray_count;
+  std::uint32_t waiting;  ///< rays not taken into a pass yet, bit i = ray i
+  std::uint32_t active;   ///< rays of this pass without an answer
+  std::uint32_t purpose;  ///< what the rays are for: nothing to the walk
+  std::uint32_t mailbox[kMailboxSlots];  ///< triangles that this pass was held against
+};
+
+}  // namespace gridiron
