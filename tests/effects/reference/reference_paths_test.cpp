@@ -1,0 +1,1 @@
+// Paths of the reference against closed forms. SPDX-License-Identifier: Apache-2.0

@@ -1,0 +1,1 @@
+// Light of the reference against closed forms. SPDX-License-Identifier: Apache-2.0
