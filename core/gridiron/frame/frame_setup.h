@@ -29,6 +29,7 @@ struct FrameSettings {
   Shading shading = Shading::kSimple;
   std::uint32_t techniques = kUseMailbox | kUseCornerCulling | kUseEmptySkip;
   std::uint32_t output_depth = 2, macro_depth = 2, triangle_depth = 2;
+  std::uint32_t walk_depth = 2;  ///< walks of secondary rays under way at once, of Shading::kScene
   std::uint32_t background_rgba = 0xFF000000u;
   float t_far = kFloatMax;
   MainAddress color{}, depth{}, ids{}; ///< depth, ids: value 0 = not wanted
