@@ -46,6 +46,11 @@ Status make_frame_record(const FrameSettings& settings, const SceneImageView& im
   if (image.grid.triangle_format != static_cast<std::uint32_t>(format_of(settings.accuracy))) {
     return Status::kUnsupportedImage;
   }
+  const bool scene_shading = settings.shading == Shading::kScene;
+  if (scene_shading) {
+    if (!image.has_effects || settings.accuracy == Accuracy::kPaper) return Status::kUnsupportedImage;
+    if (settings.walk_depth < 1) return Status::kBadFrame;
+  }
 
   // Orthonormal frame of the camera; double keeps the steps exact to a float ulp whatever the distance.
   const DVec3 forward_raw = DVec3(settings.camera.at) - DVec3(settings.camera.eye);
@@ -100,6 +105,11 @@ Status make_frame_record(const FrameSettings& settings, const SceneImageView& im
   frame.cell_blocks_address = image_address.value + image.cell_blocks_offset_bytes;
   frame.triangles_address = image_address.value + image.triangles_offset_bytes;
   frame.grid = image.grid;
+  if (scene_shading) {
+    frame.effects_address = image_address.value + image.effects_offset_bytes;
+    frame.image_address = image_address.value;
+    frame.walk_depth = settings.walk_depth;
+  }
   return Status::kOk;
 }
 

@@ -29,7 +29,7 @@ struct FrameSettings {
   Shading shading = Shading::kSimple;
   std::uint32_t techniques = kUseMailbox | kUseCornerCulling | kUseEmptySkip;
   std::uint32_t output_depth = 2, macro_depth = 2, triangle_depth = 2;
-  std::uint32_t walk_depth = 2;  ///< walks of secondary rays under way at once, of Shading::kScene
+  std::uint32_t walk_depth = 2;        ///< walks of secondary rays under way at once, 1 or more; of Shading::kScene
   std::uint32_t background_rgba = 0xFF000000u;
   float t_far = kFloatMax;
   MainAddress color{}, depth{}, ids{}; ///< depth, ids: value 0 = not wanted
@@ -46,8 +46,8 @@ struct FrameSettings {
 ///
 /// @param image_address  where `image` lies in main memory, kLineBytes-aligned.
 /// Errors: kBadFrame (size, camera degenerate, not finite or so far away that its place in cells exceeds
-/// kCellSpaceLimit, t_far not above 0), kUnsupportedImage (accuracy needs
-/// another triangle format).
+/// kCellSpaceLimit, t_far not above 0, walk_depth of Shading::kScene 0), kUnsupportedImage (accuracy needs
+/// another triangle format; Shading::kScene an image with effects, and an accuracy other than kPaper).
 [[nodiscard]] Status make_frame_record(const FrameSettings& settings, const SceneImageView& image,
                                        MainAddress image_address, FrameRecord& frame);
 

@@ -2,6 +2,7 @@
 #include <gridiron/base/check_value.h>
 #include <gridiron/base/triangle_formats.h>
 #include <gridiron/grid/cell_rows.h>
+#include <gridiron/grid/effect_sections.h>
 #include <gridiron/grid/grid_builder.h>
 #include <gridiron/grid/lattice.h>
 #include <gridiron/grid/triangle_records.h>
@@ -12,7 +13,7 @@ namespace gridiron {
 namespace {
 
 constexpr std::uint64_t kMaxCount = 0xFFFFFFFFu;
-constexpr std::uint32_t kSectionCount = 4;
+constexpr std::uint32_t kSectionCount = 4;  // of geometry
 constexpr float kLeastLambda = 1e-6f;
 constexpr float kGreatestLambda = 1e6f;
 
@@ -90,6 +91,8 @@ float cells_per_unit_of(double extent, float greatest, std::uint32_t& cell_count
 struct ImageLayout {
   std::uint64_t section_table_offset, grid_offset, macro_table_offset, cell_blocks_offset, triangles_offset;
   std::uint64_t macro_table_entries;
+  std::uint32_t section_count;
+  EffectSections effects;  // from the end of the triangles to the end of the image
   std::uint64_t image_bytes;
 };
 
@@ -97,19 +100,27 @@ std::uint64_t macro_cell_total(const GridRecord& grid) {
   return std::uint64_t{grid.macro_cell_count[0]} * grid.macro_cell_count[1] * grid.macro_cell_count[2];
 }
 
-ImageLayout layout_of(const GridRecord& grid) {
+// @param effects  as counted; null: none.
+ImageLayout layout_of(const GridRecord& grid, const EffectsRecord* effects, std::uint64_t triangle_count) {
   constexpr std::uint64_t kLine = kLineBytes;
   ImageLayout layout{};
   layout.macro_table_entries = (macro_cell_total(grid) + 31) / 32;
   layout.section_table_offset = round_up<std::uint64_t>(sizeof(ImageHeader), kLine);
-  layout.grid_offset = round_up(layout.section_table_offset + kSectionCount * sizeof(SectionEntry), kLine);
+  layout.section_count = kSectionCount + (effects != nullptr ? effect_section_count(*effects) : 0);
+  layout.grid_offset = round_up(layout.section_table_offset + layout.section_count * sizeof(SectionEntry), kLine);
   layout.macro_table_offset = round_up(layout.grid_offset + sizeof(GridRecord), kLine);
   layout.cell_blocks_offset =
       round_up(layout.macro_table_offset + layout.macro_table_entries * sizeof(MacroTableEntry), kLine);
   layout.triangles_offset =
       round_up(layout.cell_blocks_offset + std::uint64_t{grid.cell_block_count} * grid.cell_block_bytes, kLine);
-  layout.image_bytes =
+  const std::uint64_t triangles_end =
       round_up(layout.triangles_offset + std::uint64_t{grid.reference_count} * grid.triangle_bytes, kLine);
+  layout.effects.begin_bytes = triangles_end;
+  layout.effects.end_bytes = triangles_end;
+  if (effects != nullptr) {
+    layout.effects = place_effect_sections(*effects, static_cast<std::uint32_t>(triangle_count), triangles_end);
+  }
+  layout.image_bytes = layout.effects.end_bytes;
   return layout;
 }
 
@@ -297,7 +308,7 @@ void write_directory(const Mesh& mesh, const GridNeed& need, const ImageLayout& 
   header.magic = kImageMagic;
   header.version = kImageVersion;
   header.image_bytes = layout.image_bytes;
-  header.section_count = kSectionCount;
+  header.section_count = layout.section_count;
   header.section_table_offset_bytes = static_cast<std::uint32_t>(layout.section_table_offset);
   header.triangle_count = static_cast<std::uint32_t>(mesh.triangles.size());
   header.vertex_count = static_cast<std::uint32_t>(mesh.vertices.size());
@@ -310,8 +321,11 @@ void write_directory(const Mesh& mesh, const GridNeed& need, const ImageLayout& 
       section(SectionKind::kCellBlocks, grid.cell_block_bytes, grid.cell_block_count, layout.cell_blocks_offset,
               layout.triangles_offset),
       section(SectionKind::kTriangles, grid.triangle_bytes, grid.reference_count, layout.triangles_offset,
-              layout.image_bytes)};
+              layout.effects.begin_bytes)};
   store(image, layout.section_table_offset, sections);
+  for (std::uint32_t i = 0; i < layout.effects.section_count; ++i) {
+    store(image, layout.section_table_offset + (kSectionCount + i) * sizeof(SectionEntry), layout.effects.entries[i]);
+  }
   store(image, layout.grid_offset, grid);
 }
 
@@ -566,15 +580,17 @@ Status count_image(const Mesh& mesh, const GridParameters& parameters, const Kep
 
   need.grid = grid;
   need.dropped_triangle_count = static_cast<std::uint32_t>(mesh.triangles.size() - kept.count);
-  need.image_bytes = layout_of(grid).image_bytes;
+  need.image_bytes = layout_of(grid, nullptr, mesh.triangles.size()).image_bytes;
   need.scratch_bytes = 0;
   need.steps = steps;
   return Status::kOk;
 }
 
-// Writes all of the image. Errors: kBadParameter where the mesh is not the one that was counted.
+// Writes all of the image but the sections of effects, and adds it to the check value.
+// Errors: kBadParameter where the mesh is not the one that was counted.
 template <class Mesh>
-Status write_image(const Mesh& mesh, const GridNeed& need, const ImageLayout& layout, std::byte* bytes) {
+Status write_image(const Mesh& mesh, const GridNeed& need, const ImageLayout& layout, std::byte* bytes,
+                   CheckValue& check) {
   const GridRecord& grid = need.grid;
   std::byte* const triangles = bytes + layout.triangles_offset;
   write_directory(mesh, need, layout, bytes);
@@ -591,19 +607,12 @@ Status write_image(const Mesh& mesh, const GridNeed& need, const ImageLayout& la
     sort_references(grid, lists, macro_table, reinterpret_cast<CellRecord*>(cells));
   }
 
-  CheckValue check;
   check.add({bytes, static_cast<std::size_t>(layout.triangles_offset)});
   write_triangles(mesh, grid, lists.ids_by_cell, triangles, check);
-  store(bytes, offsetof(ImageHeader, check_value), check.value());
   return Status::kOk;
 }
 
-}  // namespace
-
-Status count_scene_image(const MeshView& mesh, const GridParameters& parameters, GridNeed& need) {
-  GRIDIRON_TRY(check_parameters(parameters));
-  if (mesh.triangles.size() > kMaxCount || mesh.vertices.size() > kMaxCount) return Status::kTooManyTriangles;
-  if (!all_in_range(mesh.vertices)) return Status::kBadVertex;
+Status count_geometry(const MeshView& mesh, const GridParameters& parameters, GridNeed& need) {
   GridRecord grid{};
   KeptTriangles kept;
   GRIDIRON_TRY(survey(mesh, kept));
@@ -618,11 +627,39 @@ Status count_scene_image(const MeshView& mesh, const GridParameters& parameters,
   return count_image(moved, parameters, moved_kept, kept.count, grid, need);
 }
 
+// Surfaces are told by their vertices, which a projection has not.
+bool may_have_effects(const GridParameters& parameters) { return parameters.format != TriangleFormat::kProjection; }
+
+}  // namespace
+
+Status count_scene_image(const MeshView& mesh, const GridParameters& parameters, GridNeed& need,
+                         const EffectsView* effects) {
+  GRIDIRON_TRY(check_parameters(parameters));
+  if (effects != nullptr && !may_have_effects(parameters)) return Status::kBadParameter;
+  if (mesh.triangles.size() > kMaxCount || mesh.vertices.size() > kMaxCount) return Status::kTooManyTriangles;
+  if (!all_in_range(mesh.vertices)) return Status::kBadVertex;
+  if (effects == nullptr) return count_geometry(mesh, parameters, need);
+
+  GRIDIRON_TRY(check_effects(mesh, *effects));
+  GridNeed counted{};
+  GRIDIRON_TRY(count_geometry(mesh, parameters, counted));
+  GRIDIRON_TRY(check_reach(*effects, counted.grid));
+  const EffectsRecord record = count_effects(*effects);
+  counted.image_bytes = layout_of(counted.grid, &record, mesh.triangles.size()).image_bytes;
+  need = counted;
+  return Status::kOk;
+}
+
 Status build_scene_image(const MeshView& mesh, const GridParameters& parameters, const GridNeed& need,
-                         std::span<std::byte> image, std::span<std::byte> scratch) {
+                         std::span<std::byte> image, std::span<std::byte> scratch, const EffectsView* effects) {
   GRIDIRON_TRY(check_parameters(parameters));
   const GridRecord& grid = need.grid;
-  const ImageLayout layout = layout_of(grid);
+  EffectsRecord record{};
+  if (effects != nullptr) {
+    if (!may_have_effects(parameters) || check_effects(mesh, *effects) != Status::kOk) return Status::kBadParameter;
+    record = count_effects(*effects);
+  }
+  const ImageLayout layout = layout_of(grid, effects != nullptr ? &record : nullptr, mesh.triangles.size());
   const bool need_ok = grid.lambda == parameters.lambda && grid.macro_width == parameters.macro_width &&
                        grid.triangle_format == static_cast<std::uint32_t>(parameters.format) &&
                        grid.triangle_bytes == triangle_bytes_of(parameters.format) &&
@@ -631,9 +668,21 @@ Status build_scene_image(const MeshView& mesh, const GridParameters& parameters,
   if (!need_ok || reinterpret_cast<std::uintptr_t>(image.data()) % kLineBytes != 0) return Status::kBadParameter;
   if (image.size() < need.image_bytes || scratch.size() < need.scratch_bytes) return Status::kMemoryTooSmall;
 
-  if (parameters.format != TriangleFormat::kLattice) return write_image(mesh, need, layout, image.data());
-  if (!(grid.lattice.step >= kLeastLatticeStep)) return Status::kBadParameter;
-  return write_image(LatticeMesh{{mesh.vertices, grid.lattice}, mesh.triangles}, need, layout, image.data());
+  CheckValue check;
+  if (parameters.format != TriangleFormat::kLattice) {
+    GRIDIRON_TRY(write_image(mesh, need, layout, image.data(), check));
+  } else {
+    if (!(grid.lattice.step >= kLeastLatticeStep)) return Status::kBadParameter;
+    const LatticeMesh moved{{mesh.vertices, grid.lattice}, mesh.triangles};
+    GRIDIRON_TRY(write_image(moved, need, layout, image.data(), check));
+  }
+  if (effects != nullptr) {
+    write_effect_sections(mesh, *effects, grid, layout.effects, image.data());
+    const std::uint64_t bytes = layout.effects.end_bytes - layout.effects.begin_bytes;
+    check.add({image.data() + layout.effects.begin_bytes, static_cast<std::size_t>(bytes)});
+  }
+  store(image.data(), offsetof(ImageHeader, check_value), check.value());
+  return Status::kOk;
 }
 
 }  // namespace gridiron

@@ -39,8 +39,9 @@ struct GridNeed {
 /// Counts what build_scene_image will need. Itself needs no memory beyond a fixed stack frame.
 ///
 /// @param effects  of the scene; null: the image holds geometry alone.
-/// Errors: kBadEffects, kBadVertex, kBadIndex, kBadParameter, kNoTriangles, kTooManyTriangles. Cost: linear in triangles +
-/// references.
+/// Errors: kBadEffects (check_effects; a light farther from the grid than an eye may be), kBadVertex, kBadIndex,
+/// kBadParameter (also effects beside TriangleFormat::kProjection), kNoTriangles, kTooManyTriangles. Cost: linear in
+/// triangles + references.
 [[nodiscard]] Status count_scene_image(const MeshView& mesh, const GridParameters& parameters, GridNeed& need,
                                        const EffectsView* effects = nullptr);
 

@@ -3,6 +3,7 @@
 #include <gridiron/base/lanes.h>
 #include <gridiron/base/math.h>
 #include <gridiron/base/triangle_formats.h>
+#include <gridiron/image/image_checker.h>
 #include <gridiron/image/scene_image.h>
 
 #include <bit>
@@ -10,47 +11,9 @@
 namespace gridiron {
 namespace {
 
-bool is_finite(float value) {
-  return (std::bit_cast<std::uint32_t>(value) & 0x7F800000u) != 0x7F800000u;
-}
-
-// Reads records out of the image and remembers what was wrong, and where.
-class Checker {
- public:
-  Checker(std::span<const std::byte> image, SceneImageError& error) : image_(image), error_(error) {}
-
-  /// Precondition: [offset, offset + sizeof(Record)) lies inside the image.
-  template <class Record>
-  [[nodiscard]] Record read(std::uint64_t offset) const {
-    Record record;
-    __builtin_memcpy(&record, image_.data() + offset, sizeof(Record));
-    return record;
-  }
-
-  [[nodiscard]] bool require(bool holds, std::uint64_t byte_offset, const char* field) {
-    if (!holds) error_ = {Status::kBadImage, byte_offset, field};
-    return holds;
-  }
-
-  [[nodiscard]] std::span<const std::byte> image() const { return image_; }
-
- private:
-  std::span<const std::byte> image_;
-  SceneImageError& error_;
-};
-
-#define GRIDIRON_REQUIRE(holds, base, record_type, member, name) \
-  if (!checker.require((holds), (base) + offsetof(record_type, member), (name))) return false
-
 // --- Header and sections ------------------------------------------------------------------------------------------
 
-bool all_zero(const std::uint32_t* words, int count) {
-  std::uint32_t any = 0;
-  for (int i = 0; i < count; ++i) any |= words[i];
-  return any == 0;
-}
-
-bool check_header(Checker& checker, ImageHeader& header) {
+bool check_header(ImageChecker& checker, ImageHeader& header) {
   const std::uint64_t available = checker.image().size();
   const bool aligned = reinterpret_cast<std::uintptr_t>(checker.image().data()) % kLineBytes == 0;
   if (!checker.require(aligned && available >= sizeof(ImageHeader), 0, "image")) return false;
@@ -76,19 +39,7 @@ bool check_header(Checker& checker, ImageHeader& header) {
   return true;
 }
 
-// The known sections by kind, and where their entries stand.
-struct Sections {
-  static constexpr std::uint32_t kKnownCount = 4;
-  SectionEntry entries[kKnownCount] = {};
-  std::uint64_t entry_offsets[kKnownCount] = {};
-  bool found[kKnownCount] = {};
-
-  [[nodiscard]] static std::uint32_t index_of(SectionKind kind) { return static_cast<std::uint32_t>(kind) - 1; }
-  [[nodiscard]] const SectionEntry& entry(SectionKind kind) const { return entries[index_of(kind)]; }
-  [[nodiscard]] std::uint64_t entry_offset(SectionKind kind) const { return entry_offsets[index_of(kind)]; }
-};
-
-bool check_sections(Checker& checker, const ImageHeader& header, Sections& sections) {
+bool check_sections(ImageChecker& checker, const ImageHeader& header, Sections& sections) {
   const std::uint64_t table_begin = header.section_table_offset_bytes;
   const std::uint64_t table_end = table_begin + std::uint64_t{header.section_count} * sizeof(SectionEntry);
   for (std::uint32_t i = 0; i < header.section_count; ++i) {
@@ -123,18 +74,9 @@ bool check_sections(Checker& checker, const ImageHeader& header, Sections& secti
     sections.entries[index] = entry;
     sections.entry_offsets[index] = place;
   }
-  for (const bool found : sections.found) {
-    GRIDIRON_REQUIRE(found, 0, ImageHeader, section_count, "header.section_count");
+  for (std::uint32_t i = 0; i < Sections::kGeometryCount; ++i) {
+    GRIDIRON_REQUIRE(sections.found[i], 0, ImageHeader, section_count, "header.section_count");
   }
-  return true;
-}
-
-bool check_elements(Checker& checker, const Sections& sections, SectionKind kind, std::uint64_t element_bytes,
-                    std::uint64_t element_count) {
-  const SectionEntry& entry = sections.entry(kind);
-  const std::uint64_t place = sections.entry_offset(kind);
-  GRIDIRON_REQUIRE(entry.element_bytes == element_bytes, place, SectionEntry, element_bytes, "section.element_bytes");
-  GRIDIRON_REQUIRE(entry.element_count == element_count, place, SectionEntry, element_count, "section.element_count");
   return true;
 }
 
@@ -145,7 +87,7 @@ bool is_power_of_two(float value) {
 }
 
 // A lattice whose every value is a float within the limits of coordinates, or none.
-bool check_lattice(Checker& checker, std::uint64_t base, const GridRecord& grid) {
+bool check_lattice(ImageChecker& checker, std::uint64_t base, const GridRecord& grid) {
   const Lattice& lattice = grid.lattice;
   if (grid.triangle_format != static_cast<std::uint32_t>(TriangleFormat::kLattice)) {
     const bool none =
@@ -167,7 +109,7 @@ bool check_lattice(Checker& checker, std::uint64_t base, const GridRecord& grid)
   return true;
 }
 
-bool check_grid(Checker& checker, const Sections& sections, GridRecord& grid) {
+bool check_grid(ImageChecker& checker, const Sections& sections, GridRecord& grid) {
   if (!check_elements(checker, sections, SectionKind::kGrid, sizeof(GridRecord), 1)) return false;
   const std::uint64_t base = sections.entry(SectionKind::kGrid).offset_bytes;
   grid = checker.read<GridRecord>(base);
@@ -216,14 +158,8 @@ bool check_grid(Checker& checker, const Sections& sections, GridRecord& grid) {
 
 // --- Cells and triangles ------------------------------------------------------------------------------------------
 
-bool finite_fields(const float* values, int count) {
-  bool finite = true;
-  for (int i = 0; i < count; ++i) finite = finite && is_finite(values[i]);
-  return finite;
-}
-
 // Triangle records [first, first + count) of one cell: finite, known ids, ascending.
-bool check_triangles(Checker& checker, const SceneImageView& view, std::uint64_t first, std::uint64_t count) {
+bool check_triangles(ImageChecker& checker, const SceneImageView& view, std::uint64_t first, std::uint64_t count) {
   const bool projection = view.grid.triangle_format == static_cast<std::uint32_t>(TriangleFormat::kProjection);
   const bool lattice = view.grid.triangle_format == static_cast<std::uint32_t>(TriangleFormat::kLattice);
   std::uint64_t least_id = 0;
@@ -261,7 +197,7 @@ bool check_triangles(Checker& checker, const SceneImageView& view, std::uint64_t
 
 // The cell whose record, or bound and the next one, lies at `place`. Bounds that go down: more triangles than any image
 // has.
-CellRecord read_cell(Checker& checker, bool is_bound, std::uint64_t place) {
+CellRecord read_cell(ImageChecker& checker, bool is_bound, std::uint64_t place) {
   if (!is_bound) return checker.read<CellRecord>(place);
   const std::uint32_t first = checker.read<CellBound>(place).first_triangle;
   const std::uint32_t end = checker.read<CellBound>(place + sizeof(CellBound)).first_triangle;
@@ -269,8 +205,8 @@ CellRecord read_cell(Checker& checker, bool is_bound, std::uint64_t place) {
 }
 
 // One block: cells inside the grid hold running ranges of triangles, cells beyond its edge hold none.
-bool check_block(Checker& checker, const SceneImageView& view, std::uint64_t block, const std::uint32_t macro_cell[3],
-                 std::uint64_t& running) {
+bool check_block(ImageChecker& checker, const SceneImageView& view, std::uint64_t block,
+                 const std::uint32_t macro_cell[3], std::uint64_t& running) {
   const GridRecord& grid = view.grid;
   const std::uint32_t width = grid.macro_width;
   const std::uint64_t begin = running;
@@ -297,7 +233,7 @@ bool check_block(Checker& checker, const SceneImageView& view, std::uint64_t blo
 }
 
 // The macro table against the blocks, the blocks against the triangles.
-bool check_cells(Checker& checker, const Sections& sections, const SceneImageView& view) {
+bool check_cells(ImageChecker& checker, const Sections& sections, const SceneImageView& view) {
   const GridRecord& grid = view.grid;
   for (std::uint64_t offset = 0; offset < grid.cell_block_bytes; offset += sizeof(CellRecord)) {
     const std::uint64_t base = view.cell_blocks_offset_bytes + offset;
@@ -334,13 +270,11 @@ bool check_cells(Checker& checker, const Sections& sections, const SceneImageVie
   return true;
 }
 
-#undef GRIDIRON_REQUIRE
-
 }  // namespace
 
 Status open_scene_image(std::span<const std::byte> image, SceneImageView& view, SceneImageError& error) {
   error = SceneImageError{};
-  Checker checker(image, error);
+  ImageChecker checker(image, error);
   SceneImageView opened{};
   Sections sections;
   if (!check_header(checker, opened.header) || !check_sections(checker, opened.header, sections) ||
@@ -350,7 +284,9 @@ Status open_scene_image(std::span<const std::byte> image, SceneImageView& view, 
   opened.macro_table_offset_bytes = sections.entry(SectionKind::kMacroTable).offset_bytes;
   opened.cell_blocks_offset_bytes = sections.entry(SectionKind::kCellBlocks).offset_bytes;
   opened.triangles_offset_bytes = sections.entry(SectionKind::kTriangles).offset_bytes;
-  if (!check_cells(checker, sections, opened)) return Status::kBadImage;
+  if (!check_cells(checker, sections, opened) || !check_effect_sections(checker, sections, opened)) {
+    return Status::kBadImage;
+  }
   view = opened;
   return Status::kOk;
 }

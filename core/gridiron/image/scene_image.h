@@ -2,6 +2,7 @@
 // Memory: borrowed. Threads: read-only. SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <gridiron/base/effect_records.h>
 #include <gridiron/base/records.h>
 #include <gridiron/platform/status.h>
 
@@ -11,20 +12,24 @@
 
 namespace gridiron {
 
-/// A validated scene image: header, grid and where each section lies. Offsets count from the image's first byte.
+/// A validated scene image: header, grid, effects and where each section lies. Offsets count from the
+/// image's first byte.
 struct SceneImageView {
   ImageHeader header;
   GridRecord grid;
   std::uint64_t macro_table_offset_bytes;
   std::uint64_t cell_blocks_offset_bytes;
   std::uint64_t triangles_offset_bytes;
+  bool has_effects;
+  EffectsRecord effects;               ///< all zero where the image has none
+  std::uint64_t effects_offset_bytes;  ///< of that record; 0 where the image has none
 };
 
 /// What was wrong with an image: for the words of tools.
 struct SceneImageError {
   Status status = Status::kOk;
-  std::uint64_t byte_offset = 0;    ///< place of the offending field
-  const char* field = "";           ///< its name in SPEC.md
+  std::uint64_t byte_offset = 0;  ///< place of the offending field
+  const char* field = "";         ///< its name in SPEC.md
 };
 
 /// Checks every byte of an image that the kernel will rely on, once; afterwards the hot path checks nothing.

@@ -1,0 +1,72 @@
+// What holds for effects wherever they are: in a scene as it comes, in an image as it is written and as it is checked.
+// Source: core/EFFECTS.md. Memory: values. Threads: any. SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <gridiron/base/effect_records.h>
+#include <gridiron/base/records.h>
+#include <gridiron/scene/effects.h>
+
+#include <cstdint>
+
+namespace gridiron {
+
+inline constexpr float kMaxShine = 1e5f;
+inline constexpr float kLeastIndex = 0.1f;
+inline constexpr float kGreatestIndex = 10.0f;
+inline constexpr float kMaxShareSum = 1.0f + 0x1p-20f;  ///< of scaled shares: 1 and their roundings
+
+/// @returns whether low <= value <= high; never for NaN.
+[[nodiscard]] constexpr bool within(float value, float low, float high) {
+  return value >= low && value <= high;
+}
+
+/// Shares divided by m = max(1, (kd + ks) + T), each on its own; then diffuse = (kd / m) color and transmitted =
+/// (T / m) color. Every operation is rounded to float. An index that nothing is refracted by becomes 1.
+[[nodiscard]] MaterialRecord scaled_material(const Material& material);
+
+/// @returns the light as the image holds it: an area light's color divided by its samples, edges of a point light 0.
+/// @param grid  decides is_near: its bounds.
+[[nodiscard]] LightRecord light_record(const Light& light, const GridRecord& grid);
+
+/// @returns 1 where no coordinate of the light's point, or of an area light's four corners, is beyond kNearLightFactor
+/// times the largest of the bounds of the grid.
+[[nodiscard]] std::uint32_t light_is_near(const LightRecord& light, const GridRecord& grid);
+
+/// @returns whether no coordinate of the light's point or corners is beyond kCoordinateLimit, and an area light's edges
+/// span a parallelogram (decided exactly).
+[[nodiscard]] bool light_has_place(const LightRecord& light);
+
+/// @returns whether the light's point or corners lie within kCellSpaceLimit cells of the grid, as an eye must.
+[[nodiscard]] bool light_is_in_reach(const LightRecord& light, const GridRecord& grid);
+
+/// @returns whether directions as long as the radius of ambient occlusion stay within kCellDirectionLimit.
+[[nodiscard]] bool radius_is_in_reach(float radius, const GridRecord& grid);
+
+/// @returns whether a normal's length differs from 1 by 2^-10 at most.
+[[nodiscard]] bool is_unit(const float normal[3]);
+
+/// What decides which effects a scene calls for: its lights, and the materials in use.
+struct EffectsCall {
+  bool point_light = false, area_light = false;  ///< of a color that is not 0
+  bool reflects = false, refracts = false, shines = false, smooth = false;
+
+  void add_light(const LightRecord& light);
+  void add_material(const MaterialRecord& material);
+
+  /// @returns EffectBits. @param scene  recursion_depth, samples_per_pixel, occlusion_samples, has_shadows and
+  /// environment_width.
+  [[nodiscard]] std::uint32_t called_for(const EffectsRecord& scene) const;
+};
+
+/// @returns what of the record stands in the view itself; counts of triangles, called_for and offsets are 0.
+[[nodiscard]] EffectsRecord scene_settings(const EffectsView& effects);
+
+/// @returns whether the record's settings are within their ranges; else names the first field that is not, its place
+/// in the record beside it.
+struct SettingsError {
+  const char* field = "";
+  std::uint32_t offset = 0;
+};
+[[nodiscard]] bool settings_are_in_range(const EffectsRecord& scene, SettingsError& error);
+
+}  // namespace gridiron
