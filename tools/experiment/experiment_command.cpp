@@ -14,49 +14,13 @@
 #include "gridiron/commands.h"
 #include "gridiron/failure.h"
 #include "gridiron/interrupt.h"
+#include "gridiron/output_folder.h"
 #include "gridiron/progress.h"
 #include "gridiron/stopwatch.h"
 #include "gridiron/words.h"
 
 namespace gridiron::tool {
 namespace {
-
-// The folder of an experiment: made where it is not there, gone again where nothing was written into it.
-class OutputFolder {
- public:
-  /// @param names  of the files that may be written into it.
-  OutputFolder(std::filesystem::path path, const std::vector<std::string>& names) : path_(std::move(path)) {
-    std::error_code error;
-    made_ = std::filesystem::create_directory(path_, error);
-    if (error) {
-      throw Failure(ExitCode::kBadInput, path_.string() + ": cannot make the folder: " + error.message());
-    }
-    if (!std::filesystem::is_directory(path_, error)) {
-      throw Failure(ExitCode::kBadInput, path_.string() + ": is no folder");
-    }
-    // Nobody should wait for an experiment that cannot be written.
-    try {
-      for (const std::string& name : names) check_can_write(path_ / name);
-    } catch (...) {
-      remove_if_made();
-      throw;
-    }
-  }
-  ~OutputFolder() { remove_if_made(); }
-  OutputFolder(const OutputFolder&) = delete;
-  OutputFolder& operator=(const OutputFolder&) = delete;
-
-  void keep() { kept_ = true; }
-
- private:
-  void remove_if_made() {
-    std::error_code ignored;
-    if (made_ && !kept_) std::filesystem::remove(path_, ignored);  // only where empty
-  }
-
-  std::filesystem::path path_;
-  bool made_ = false, kept_ = false;
-};
 
 // Removes what an earlier run left under names that this one could have written and did not; nothing else.
 void remove_stale_files(const std::filesystem::path& folder, const std::vector<std::string>& names,

@@ -12,6 +12,8 @@
 #include "accuracies.h"
 #include "atomic_file.h"
 #include "failure.h"
+#include "layout_choice.h"
+#include "scene_input.h"
 #include "store_facts.h"
 #include "version.h"
 
@@ -26,14 +28,12 @@ using sim::StoreSize;
 struct RawRender {
   RenderArguments arguments;
   std::string output;
-  std::optional<BufferDepths> buffering;
   std::string machine_name;
-  std::optional<StoreSize> store;
   bool no_mailbox = false, no_culling = false, no_subpackets = false, no_empty_skip = false;
 };
 
-constexpr BufferDepths kSingleBuffering = {.output = 1, .macro = 1, .triangle = 1};
-constexpr BufferDepths kDoubleBuffering = {.output = 2, .macro = 2, .triangle = 2};
+constexpr BufferDepths kSingleBuffering = {.output = 1, .macro = 1, .triangle = 1, .walks = 1};
+constexpr BufferDepths kDoubleBuffering = {.output = 2, .macro = 2, .triangle = 2, .walks = 2};
 
 constexpr const char* kMachineFormat = R"(A machine file holds one 'key value' per line; # opens a comment.
 Units are in the keys: _hz, _bytes, _cycles (of the core clock; under master. of the general core's own).
@@ -107,8 +107,20 @@ void add_size(CLI::App& app, std::uint32_t& width, std::uint32_t& height, const 
   app.add_option_function<std::string>("--size", set, help)->type_name("WxH")->expected(1);
 }
 
-void add_scene_options(CLI::App& app, SceneArguments& scene, std::string& machine_name) {
-  app.add_option("INPUT", scene.input, "scene: .ply (mesh) or .gri (made by pack)")->required()->type_name("");
+void add_input(CLI::App& app, SceneArguments& scene) {
+  app.add_option("INPUT", scene.input, "scene: .ply (mesh), .nff (text scene) or .gri (made by pack)")
+      ->required()
+      ->type_name("");
+  const auto tolerance = [](const std::string& text) {
+    const std::optional<float> value = parse_float(text);
+    return value && *value > 0 ? value : std::nullopt;
+  };
+  add_parsed(app, "--tolerance", scene.tolerance, tolerance, "a number above 0", "NUMBER",
+             "text scenes: largest distance of a facet from its sphere or cone, world units (default: 1e-4 of the "
+             "scene's diagonal)");
+}
+
+void add_grid_options(CLI::App& app, SceneArguments& scene, std::string& machine_name) {
   Choices<const Configuration*> sets;
   for (const Configuration& configuration : configurations()) sets.emplace_back(configuration.name, &configuration);
   machine_name = sim::machine_profiles().front().name;
@@ -153,9 +165,9 @@ void add_view_options(CLI::App& app, RenderArguments& render) {
   add_parsed(
       app, "--camera", render.camera,
       [](const std::string& text) { return std::optional<std::filesystem::path>(text); }, "a file name", "FILE",
-      "view from a text file; --eye, --at, --up and --fov replace parts of it");
-  add_parsed(app, "--eye", render.view.eye, parse_vector, vector, "x,y,z", "position of the camera (default: framed)");
-  add_parsed(app, "--at", render.view.at, parse_vector, vector, "x,y,z", "point looked at (default: framed)");
+      "view from a file of its own; --eye, --at, --up and --fov replace parts of it");
+  add_parsed(app, "--eye", render.view.eye, parse_vector, vector, "x,y,z", "position of the camera (default: a text scene's own, else framed)");
+  add_parsed(app, "--at", render.view.at, parse_vector, vector, "x,y,z", "point looked at (default: a text scene's own, else framed)");
   add_parsed(app, "--up", render.view.up, parse_vector, vector, "x,y,z", "direction that is up (default 0,1,0)");
   const auto fov = [](const std::string& text) {
     const std::optional<float> value = parse_float(text);
@@ -187,17 +199,21 @@ void add_threads(CLI::App& app, std::uint32_t& threads, const std::string& effec
              "host threads (default: the host's); " + effect);
 }
 
+void add_cores(CLI::App& app, std::uint32_t& cores) {
+  constexpr std::uint32_t kMostCores = 1024;
+  add_parsed(app, "--cores", cores, count_between(1, kMostCores), "a whole number from 1 to 1024", "N",
+             "cores of the machine (default: the profile's)");
+}
+
 const Choices<StoreSize> kStores = {
     {"64", StoreSize::k64KB}, {"128", StoreSize::k128KB}, {"256", StoreSize::k256KB}, {"512", StoreSize::k512KB}};
 constexpr const char* kStoreHelp = "local store in KB (default: the largest that the machine has room for)";
 
 void add_machine_options(CLI::App& app, RawRender& raw) {
   RenderArguments& render = raw.arguments;
-  constexpr std::uint32_t kMostCores = 1024;
-  add_parsed(app, "--cores", render.cores, count_between(1, kMostCores), "a whole number from 1 to 1024", "N",
-             "cores of the machine (default: the profile's)");
+  add_cores(app, render.cores);
   add_threads(app, render.threads, "no result depends on it");
-  add_choice(app, "--store", raw.store, kStores, kStoreHelp);
+  add_choice(app, "--store", render.asked.store, kStores, kStoreHelp);
   add_choice(app, "--mode", render.mode,
              Choices<Mode>{{"checked", Mode::kChecked}, {"plain", Mode::kPlain}, {"instrumented", Mode::kInstrumented}},
              "checked (default): every rule checked, work traced; plain: fast, no report; "
@@ -217,12 +233,12 @@ void add_machine_options(CLI::App& app, RawRender& raw) {
 
 void add_algorithm_options(CLI::App& app, RawRender& raw) {
   RenderArguments& render = raw.arguments;
-  add_choice(app, "--buffering", raw.buffering,
+  add_choice(app, "--buffering", render.asked.depths,
              Choices<BufferDepths>{{"single", kSingleBuffering}, {"double", kDoubleBuffering}},
              "buffers of all three levels (default: the configuration's)");
-  add_choice(app, "--packet", render.packet_width, Choices<std::uint32_t>{{"4", 4}, {"8", 8}, {"16", 16}, {"32", 32}},
+  add_choice(app, "--packet", render.asked.packet_width, Choices<std::uint32_t>{{"4", 4}, {"8", 8}, {"16", 16}, {"32", 32}},
              "rays along a packet's edge (default: the configuration's)");
-  add_choice(app, "--tile-width", render.tile_width,
+  add_choice(app, "--tile-width", render.asked.tile_width,
              Choices<std::uint32_t>{{"8", 8}, {"16", 16}, {"32", 32}, {"64", 64}},
              "pixels along a tile's edge (default: 16 with --store 64, else 32)");
   Choices<Accuracy> choices;
@@ -234,8 +250,10 @@ void add_algorithm_options(CLI::App& app, RawRender& raw) {
     choices.emplace_back(named.name, named.accuracy);
   }
   add_choice(app, "--accuracy", render.accuracy, choices, help);
-  add_choice(app, "--shading", render.shading, Choices<Shading>{{"none", Shading::kNone}, {"simple", Shading::kSimple}},
-             "none: hit or background; simple: facing ratio (default)");
+  add_choice(app, "--shading", render.shading,
+             Choices<Shading>{{"none", Shading::kNone}, {"simple", Shading::kSimple}, {"scene", Shading::kScene}},
+             "none: hit or background; simple: facing ratio (default of meshes); scene: lights, materials and effects "
+             "of the scene (default where it has any)");
   app.add_flag("--no-mailbox", raw.no_mailbox, "test a triangle again in every cell that holds it");
   app.add_flag("--no-culling", raw.no_culling, "do not cull triangles by the corner rays");
   app.add_flag("--no-subpackets", raw.no_subpackets, "do not cull subpackets of a packet");
@@ -278,71 +296,21 @@ void require_own_files(const std::vector<NamedFile>& inputs, const std::vector<N
   }
 }
 
-// The layout's part of the command line with a store: what was not asked for is the store's and the configuration's.
-sim::LayoutChoice layout_with(const RenderArguments& render, StoreSize store) {
-  const std::uint32_t tile_width = render.tile_width != 0 ? render.tile_width : sim::usual_tile_width(store);
-  // A packet is no wider than a tile.
-  const std::uint32_t fitting = std::min(render.scene.configuration->packet_width, tile_width);
-  return {store, tile_width, render.packet_width != 0 ? render.packet_width : fitting};
-}
-
-std::string words_of_layout(const sim::LayoutChoice& layout) {
-  return "tiles " + std::to_string(layout.tile_width) + " pixels wide and packets of " +
-         std::to_string(layout.packet_width) + "x" + std::to_string(layout.packet_width);
-}
-
-// Why a layout has no kernel, and which ones of its store have.
-[[noreturn]] void refuse_layout(const sim::LayoutChoice& layout) {
-  const std::string store = "--store " + std::to_string(sim::arena_bytes(layout.store) >> 10);
-  if (sim::is_built(layout, Mode::kChecked, 4)) {
-    usage_error(store + ": with " + words_of_layout(layout) + " it is built for --mode checked and --lanes 4 only");
-  }
-  std::string list;
-  for (const sim::LayoutChoice& built : built_layouts()) {
-    if (built.store == layout.store) list += (list.empty() ? "" : "; ") + words_of_layout(built);
-  }
-  usage_error(store + ": not built for " + words_of_layout(layout) + "; there are " + list);
-}
-
-// A machine has to have the store that was asked for.
-void require_room(const sim::MachineProfile& machine, std::optional<StoreSize> asked) {
-  if (asked && sim::arena_bytes(*asked) > machine.local_store_bytes) {
-    usage_error("--store: " + std::string(machine.name) + " has a local store of " +
-                std::to_string(machine.local_store_bytes >> 10) + " KB");
-  }
-}
-
-// Settles store, tile width and packet width: the store that was asked for, or the largest one of the machine that is
-// built for the other options.
-void choose_layout(RenderArguments& render, std::optional<StoreSize> asked) {
-  require_room(*render.scene.machine, asked);
-  const std::uint32_t room_bytes = render.scene.machine->local_store_bytes;
-  sim::LayoutChoice layout = layout_with(render, asked.value_or(largest_store(*render.scene.machine)));
-  const auto is_built = [&render](const sim::LayoutChoice& choice) {
-    return sim::is_built(choice, render.mode, render.lanes);
-  };
-  if (!asked && !is_built(layout)) {
-    for (const StoreSize store : sim::kStoreSizes) {
-      const sim::LayoutChoice smaller = layout_with(render, store);
-      if (sim::arena_bytes(store) <= room_bytes && is_built(smaller)) layout = smaller;
-    }
-  }
-  if (layout.packet_width > layout.tile_width) {
-    usage_error("--packet: tiles are " + std::to_string(layout.tile_width) + " pixels wide");
-  }
-  if (!is_built(layout)) refuse_layout(layout);
-  render.store = layout.store;
-  render.tile_width = layout.tile_width;
-  render.packet_width = layout.packet_width;
+void require_tolerance(const SceneArguments& scene) {
+  if (scene.tolerance && !is_text_scene(scene.input)) usage_error("--tolerance: is of text scenes (.nff) alone");
 }
 
 // Defaults that depend on other options, and combinations that make no sense.
-RenderArguments complete_render(const RawRender& raw, bool has_seed) {
+RenderArguments complete_render(const RawRender& raw, const CLI::App& app) {
+  const auto is_given = [&app](const char* name) { return app.get_option_no_throw(name) != nullptr && app.count(name) > 0; };
   RenderArguments render = raw.arguments;
+  render.has_size = is_given("--size");
+  render.has_shading = is_given("--shading");
+  if (!render.has_shading && is_text_scene(render.scene.input)) render.shading = Shading::kScene;
+  require_tolerance(render.scene);
   const Configuration& configuration = *render.scene.configuration;
   render.scene.machine = find_machine(raw.machine_name);
   render.output = raw.output.empty() ? render.scene.input.stem().concat(".png") : std::filesystem::path(raw.output);
-  render.depths = raw.buffering.value_or(configuration.depths);
   render.techniques = configuration.techniques;
   if (raw.no_mailbox) render.techniques &= ~std::uint32_t{kUseMailbox};
   if (raw.no_culling) render.techniques &= ~std::uint32_t{kUseCornerCulling};
@@ -362,28 +330,9 @@ RenderArguments complete_render(const RawRender& raw, bool has_seed) {
   if (wants_time && plain) usage_error("--report, --timeline: --mode plain records nothing to report");
   if (wants_time && render.lanes != 4) usage_error("--report, --timeline: time is told for --lanes 4 only");
   if (wants_time && render.tile) usage_error("--report, --timeline: not of one tile alone (--tile)");
-  if (has_seed && render.completion != Completion::kRandom) usage_error("--seed: needs --completion random");
+  if (is_given("--seed") && render.completion != Completion::kRandom) usage_error("--seed: needs --completion random");
 
-  choose_layout(render, raw.store);
-  const StoreFacts facts = *find_store_facts(render.layout());
-  render.wanted_depths = render.depths;
-  if (!raw.buffering) {  // a name promises a way of rendering; how deep it goes is the store's to say
-    render.depths.output = std::min(render.depths.output, facts.max_output_depth);
-    render.depths.macro = std::min(render.depths.macro, facts.max_macro_depth);
-    render.depths.triangle = std::min(render.depths.triangle, facts.max_triangle_depth);
-  }
-  const std::uint32_t macro_width = render.scene.macro_width.value_or(configuration.macro_width);
-  if (render.depths.output > facts.max_output_depth || render.depths.macro > facts.max_macro_depth ||
-      render.depths.triangle > facts.max_triangle_depth || macro_width > facts.max_macro_width) {
-    const auto blocks = [](std::uint32_t depth, std::uint32_t width, std::uint32_t buffers) {
-      return std::to_string(depth) + " cell blocks of macrocells of width " + std::to_string(width) + " and " +
-             std::to_string(buffers) + " triangle buffers";
-    };
-    usage_error("--store " + std::to_string(facts.arena_bytes >> 10) + ": holds at most " +
-                blocks(facts.max_macro_depth, facts.max_macro_width, facts.max_triangle_depth) + "; " +
-                blocks(render.depths.macro, macro_width, render.depths.triangle) + " are asked for");
-  }
-
+  settle_layout(render);
   require_own_files({{"INPUT", render.scene.input}, {"--camera", render.camera}, {"--machine", raw.machine_name}},
                     {{"-o", render.output},
                      {"--depth", render.depth},
@@ -391,6 +340,32 @@ RenderArguments complete_render(const RawRender& raw, bool has_seed) {
                      {"--report", render.report},
                      {"--timeline", render.timeline}});
   return render;
+}
+
+void add_animate_options(CLI::App& app, AnimateArguments& animate, RawRender& raw) {
+  app.add_option("FRAMES", animate.inputs, "meshes (.ply) in the order of their frames; of a folder all, by name")
+      ->required()
+      ->type_name("");
+  const auto folder = [](const std::string& text) {
+    return text.empty() ? std::nullopt : std::optional<std::filesystem::path>(text);
+  };
+  add_parsed(app, "-o,--output", animate.output, folder, "the name of a folder", "DIR",
+             "folder of the pictures and animation.csv, made where it is not there")
+      ->required();
+  add_grid_options(app, raw.arguments.scene, raw.machine_name);
+  add_size(app, raw.arguments.width, raw.arguments.height, "pictures in pixels (default 1024x1024)");
+  add_view_options(app, raw.arguments);
+  add_cores(app, raw.arguments.cores);
+  add_threads(app, raw.arguments.threads, "no result depends on it");
+  add_choice(app, "--store", raw.arguments.asked.store, kStores, kStoreHelp);
+  add_algorithm_options(app, raw);
+  app.add_flag("--quiet", raw.arguments.quiet, "print nothing but errors");
+}
+
+AnimateArguments complete_animate(AnimateArguments animate, const RawRender& raw, const CLI::App& app) {
+  if (raw.arguments.shading == Shading::kScene) usage_error("--shading: meshes have no scene's shading");
+  animate.render = complete_render(raw, app);
+  return animate;
 }
 
 void add_experiment_options(CLI::App& app, ExperimentArguments& experiment) {
@@ -436,19 +411,27 @@ Command parse_arguments(int count, const char* const* values) {
 
   RawRender raw;
   CLI::App* render = app.add_subcommand("render", "renders a scene and tells what the frame costs on the chip");
-  add_scene_options(*render, raw.arguments.scene, raw.machine_name);
+  add_input(*render, raw.arguments.scene);
+  add_grid_options(*render, raw.arguments.scene, raw.machine_name);
   add_output_options(*render, raw);
-  add_size(*render, raw.arguments.width, raw.arguments.height, "picture in pixels (default 1024x1024)");
+  add_size(*render, raw.arguments.width, raw.arguments.height, "picture in pixels (default: a text scene's own, else 1024x1024)");
   add_view_options(*render, raw.arguments);
   add_machine_options(*render, raw);
   add_algorithm_options(*render, raw);
 
+  RawRender animate_raw;
+  AnimateArguments animate_arguments;
+  CLI::App* animate =
+      app.add_subcommand("animate", "renders a mesh a frame, its grid built anew, and tells what the frames cost");
+  add_animate_options(*animate, animate_arguments, animate_raw);
+
   InfoArguments info_arguments;
   std::string info_machine;
   CLI::App* info = app.add_subcommand("info", "tells what a scene holds and what it needs");
-  add_scene_options(*info, info_arguments.scene, info_machine);
+  add_input(*info, info_arguments.scene);
+  add_grid_options(*info, info_arguments.scene, info_machine);
   add_choice(*info, "--format", info_arguments.format, kFormats, "how triangles are stored; " + format_help());
-  add_size(*info, info_arguments.width, info_arguments.height, "picture whose memory is told (default 1024x1024)");
+  add_size(*info, info_arguments.width, info_arguments.height, "picture whose memory is told (default: a text scene's own, else 1024x1024)");
   std::optional<StoreSize> info_store;
   add_choice(*info, "--store", info_store, kStores, kStoreHelp);
   info->add_flag("--json", info_arguments.json, "as JSON");
@@ -456,7 +439,8 @@ Command parse_arguments(int count, const char* const* values) {
   PackArguments pack_arguments;
   std::string pack_machine;
   CLI::App* pack = app.add_subcommand("pack", "makes a scene image (.gri) that render and firmware read as it is");
-  add_scene_options(*pack, pack_arguments.scene, pack_machine);
+  add_input(*pack, pack_arguments.scene);
+  add_grid_options(*pack, pack_arguments.scene, pack_machine);
   pack->add_option("-o,--output", pack_arguments.output, "scene image")->required()->type_name("FILE");
   add_choice(*pack, "--format", pack_arguments.format, kFormats, format_help());
 
@@ -479,7 +463,7 @@ Command parse_arguments(int count, const char* const* values) {
   const bool is_command =
       std::ranges::any_of(all, [&first](const CLI::App* each) { return each->get_name() == first; });
   if (!first.empty() && first.front() != '-' && !is_command) {
-    usage_error("'" + first + "' is not a command; expected render, info, pack, machines or experiment");
+    usage_error("'" + first + "' is not a command; expected render, animate, info, pack, machines or experiment");
   }
 
   try {
@@ -494,15 +478,19 @@ Command parse_arguments(int count, const char* const* values) {
     const std::string command = chosen.empty() ? "" : " " + chosen.front()->get_name();
     usage_error(std::string(error.what()) + "\nrun 'gridiron" + command + " --help' for the options");
   }
-  if (*render) return complete_render(raw, render->count("--seed") > 0);
+  if (*render) return complete_render(raw, *render);
+  if (*animate) return complete_animate(std::move(animate_arguments), animate_raw, *animate);
   if (*info) {
     info_arguments.scene.machine = find_machine(info_machine);
+    info_arguments.has_size = info->count("--size") > 0;
+    require_tolerance(info_arguments.scene);
     require_room(*info_arguments.scene.machine, info_store);
     info_arguments.store = info_store.value_or(largest_store(*info_arguments.scene.machine));
     return info_arguments;
   }
   if (*pack) {
     pack_arguments.scene.machine = find_machine(pack_machine);
+    require_tolerance(pack_arguments.scene);
     require_own_files({{"INPUT", pack_arguments.scene.input}, {"--machine", pack_machine}},
                       {{"-o", pack_arguments.output}});
     return pack_arguments;

@@ -9,6 +9,7 @@
 #include <optional>
 #include <string>
 #include <variant>
+#include <vector>
 
 #include "configurations.h"
 #include "machine_file.h"
@@ -24,10 +25,20 @@ struct SceneArguments {
   const Configuration* configuration = nullptr;
   std::optional<float> lambda;
   std::optional<std::uint32_t> macro_width;
+  std::optional<float> tolerance;  ///< of round shapes in a text scene, world units; nothing: the reader's own
+};
+
+/// What the command line fixes of the kernel and its buffers; the rest is the scene's, machine's and configuration's.
+struct AskedLayout {
+  std::optional<sim::StoreSize> store;
+  std::uint32_t tile_width = 0, packet_width = 0;  ///< 0: not asked for
+  std::optional<BufferDepths> depths;
 };
 
 struct RenderArguments {
   SceneArguments scene;
+  AskedLayout asked;
+  bool has_size = false, has_shading = false;  ///< asked for; else they are the scene's
   std::filesystem::path output;  ///< never empty
   std::optional<std::filesystem::path> depth, ids, report, timeline;
   std::optional<std::filesystem::path> camera;
@@ -37,8 +48,8 @@ struct RenderArguments {
   std::uint32_t cores = 0;         ///< 0: the machine's
   std::uint32_t threads = 0;       ///< 0: the host's
   std::uint32_t lanes = 0;         ///< 0: 4 where time is told, else the widest of the host
-  std::uint32_t tile_width = 0;    ///< 0: the store's usual one
-  std::uint32_t packet_width = 0;  ///< 0: the configuration's
+  std::uint32_t tile_width = 0;    ///< as all that follows: settled by settle_layout()
+  std::uint32_t packet_width = 0;
   BufferDepths depths;
   BufferDepths wanted_depths;  ///< the configuration's or the command line's; `depths` where the store holds fewer
   std::uint32_t techniques = 0;
@@ -51,7 +62,16 @@ struct RenderArguments {
   bool quiet = false;
 
   /// What the kernel is made for, once nothing is 0.
-  [[nodiscard]] sim::LayoutChoice layout() const { return {store, tile_width, packet_width}; }
+  [[nodiscard]] sim::LayoutChoice layout() const {
+    return {store, tile_width, packet_width, shading == Shading::kScene};
+  }
+};
+
+/// A frame for each mesh, with the grid of each built for it.
+struct AnimateArguments {
+  RenderArguments render;                     ///< of every frame; its input is the frame's
+  std::vector<std::filesystem::path> inputs;  ///< meshes, and folders of them
+  std::filesystem::path output;               ///< folder, never empty
 };
 
 struct InfoArguments {
@@ -59,6 +79,7 @@ struct InfoArguments {
   sim::StoreSize store = sim::StoreSize::k256KB;  ///< whose map is told
   TriangleFormat format = TriangleFormat::kVertices;
   std::uint32_t width = 1024, height = 1024;
+  bool has_size = false;  ///< asked for; else it is a text scene's own
   bool json = false;
 };
 
@@ -91,7 +112,8 @@ struct TextRequest {
 };
 
 using Command =
-    std::variant<RenderArguments, InfoArguments, PackArguments, MachinesArguments, ExperimentArguments, TextRequest>;
+    std::variant<RenderArguments, AnimateArguments, InfoArguments, PackArguments, MachinesArguments,
+                 ExperimentArguments, TextRequest>;
 
 /// Reads a machine file that is named. Errors: Failure, kUsage with what is wrong, kBadInput of a machine file.
 [[nodiscard]] Command parse_arguments(int count, const char* const* values);

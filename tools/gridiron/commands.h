@@ -7,6 +7,7 @@
 namespace gridiron::tool {
 
 void run_command(const RenderArguments& arguments);
+void run_command(const AnimateArguments& arguments);
 void run_command(const InfoArguments& arguments);
 void run_command(const PackArguments& arguments);
 void run_command(const MachinesArguments& arguments);

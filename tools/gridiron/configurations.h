@@ -13,6 +13,7 @@ struct BufferDepths {
   std::uint32_t output = 2;    ///< finished tiles
   std::uint32_t macro = 2;     ///< cell blocks
   std::uint32_t triangle = 2;  ///< triangle buffers
+  std::uint32_t walks = 2;     ///< walks of secondary rays under way at once
 
   bool operator==(const BufferDepths&) const = default;
 };

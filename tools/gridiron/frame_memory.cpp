@@ -1,6 +1,7 @@
 // Frame memory. SPDX-License-Identifier: Apache-2.0
 #include "frame_memory.h"
 
+#include <algorithm>
 #include <cstring>
 #include <string>
 
@@ -11,12 +12,29 @@
 namespace gridiron::tool {
 namespace {
 
-sim::MemoryRegion allocate(sim::SimMemory& memory, std::uint64_t bytes) {
-  const std::optional<sim::MemoryRegion> region = memory.allocate(bytes, kLineBytes);
+sim::MemoryRegion allocate(sim::SimMemory& memory, std::uint64_t bytes, std::uint64_t alignment = kLineBytes) {
+  const std::optional<sim::MemoryRegion> region = memory.allocate(bytes, alignment);
   if (!region) {
     throw Failure(ExitCode::kBadInput, "the main memory of " + words_of_bytes(memory.capacity_bytes()) + " is full");
   }
   return *region;
+}
+
+std::uint32_t core_count(const RenderArguments& arguments) {
+  return arguments.cores != 0 ? arguments.cores : arguments.scene.machine->core_count;
+}
+
+// Of rays that wait, 1 where none do.
+std::uint32_t recursion_depth(const SceneInput& input, const RenderArguments& arguments) {
+  if (arguments.shading != Shading::kScene) return 1;
+  if (input.text) return input.text->effects.recursion_depth;
+  const PackedScene* packed = std::get_if<PackedScene>(&input.content);
+  const std::optional<EffectsRecord> effects = packed != nullptr ? find_effects(packed->file.bytes) : std::nullopt;
+  if (!effects) {
+    throw Failure(ExitCode::kUsage, "--shading scene: " + input.path.string() +
+                                        " has no lights and materials; text scenes (.nff) have");
+  }
+  return effects->recursion_depth;
 }
 
 // Puts the scene image into main memory. @returns where it lies.
@@ -34,10 +52,16 @@ MainAddress place_image(FrameMemory& frame, const SceneInput& input, const Rende
   }
   const Stopwatch stopwatch;
   const Mesh& mesh = std::get<Mesh>(input.content);
-  const GridChoice choice = choose_grid(input, mesh, arguments.scene, format, budget_bytes);
+  EffectsView view;
+  const EffectsView* effects = nullptr;
+  if (arguments.shading == Shading::kScene) {
+    view = input.text->effects.view();
+    effects = &view;
+  }
+  const GridChoice choice = choose_grid(input, mesh, arguments.scene, format, budget_bytes, effects);
   require_fit(choice, arguments.scene);
   const sim::MemoryRegion region = allocate(frame.memory, choice.need.image_bytes);
-  frame.image = build_image(input, mesh, choice, region.bytes);
+  frame.image = build_image(input, mesh, choice, region.bytes, effects);
   frame.need = choice.need;
   frame.wanted_lambda = choice.wanted_lambda;
   frame.build_seconds = stopwatch.seconds();
@@ -60,11 +84,19 @@ void store_record(FrameMemory& frame) {
 
 }  // namespace
 
+std::uint64_t frame_memory_bytes(const SceneInput& input, const RenderArguments& arguments) {
+  const std::uint32_t cores = core_count(arguments);
+  const std::uint32_t more = arguments.threads > cores ? arguments.threads - cores : 0;
+  return arguments.scene.machine->main_memory_bytes + more * spill_bytes(recursion_depth(input, arguments));
+}
+
 void prepare_frame(FrameMemory& frame, const SceneInput& input, const RenderArguments& arguments,
                    const ViewRequest& view) {
+  const std::uint32_t depth = recursion_depth(input, arguments);
   const std::uint32_t planes = 1u + (arguments.depth ? 1u : 0u) + (arguments.ids ? 1u : 0u);
   const std::uint64_t budget_bytes =
-      image_budget_bytes(*arguments.scene.machine, arguments.width, arguments.height, planes, arguments.tile_width);
+      image_budget_bytes(*arguments.scene.machine, arguments.width, arguments.height, planes, arguments.tile_width,
+                         spill_bytes_of(core_count(arguments), depth));
   frame.image_address = place_image(frame, input, arguments, budget_bytes);
 
   // Identifiers travel as floats in a PFM file.
@@ -86,6 +118,7 @@ void prepare_frame(FrameMemory& frame, const SceneInput& input, const RenderArgu
   settings.output_depth = arguments.depths.output;
   settings.macro_depth = arguments.depths.macro;
   settings.triangle_depth = arguments.depths.triangle;
+  settings.walk_depth = arguments.depths.walks;
 
   const std::uint64_t plane_bytes = output_plane_bytes(settings.width, settings.height, settings.tile_width);
   frame.color = allocate(frame.memory, plane_bytes);
@@ -94,6 +127,12 @@ void prepare_frame(FrameMemory& frame, const SceneInput& input, const RenderArgu
   settings.color = frame.color.address;
   settings.depth = frame.depth.address;
   settings.ids = frame.ids.address;
+
+  frame.spill_bytes_per_core = spill_bytes(depth);
+  if (frame.spill_bytes_per_core != 0) {
+    const std::uint32_t threads = std::max(arguments.threads, 1u);
+    frame.spill = allocate(frame.memory, threads * frame.spill_bytes_per_core, kSpillAlignment);
+  }
 
   make_record(frame, input.path);
   frame.record_address = allocate(frame.memory, sizeof(FrameRecord)).address;

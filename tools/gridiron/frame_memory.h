@@ -27,11 +27,18 @@ struct FrameMemory {
   FrameRecord record{};
   MainAddress image_address{}, record_address{};
   sim::MemoryRegion color, depth, ids;  ///< depth, ids: no bytes where not asked for
+  sim::MemoryRegion spill;              ///< for waiting rays of each host thread; no bytes without them
+  std::uint64_t spill_bytes_per_core = 0;
   float wanted_lambda = 0;              ///< the image's own is image.grid.lambda
   double build_seconds = 0;             ///< host time of building the image, 0 for a packed scene
 };
 
-/// Fills `frame` for a render. @param view  parts of the view that were asked for.
+/// @returns bytes to make a frame's memory of: the machine's, and room for waiting rays of the host threads that it has
+/// no cores for.
+[[nodiscard]] std::uint64_t frame_memory_bytes(const SceneInput& input, const RenderArguments& arguments);
+
+/// Fills `frame` for a render; with Shading::kScene room for waiting rays of arguments.threads cores.
+/// @param view  parts of the view that were asked for.
 /// Errors: Failure.
 void prepare_frame(FrameMemory& frame, const SceneInput& input, const RenderArguments& arguments,
                    const ViewRequest& view);

@@ -13,20 +13,28 @@ namespace gridiron::tool {
 
 void run_command(const PackArguments& arguments) {
   check_can_write(arguments.output);
-  const SceneInput input = read_scene_input(arguments.scene.input);
+  const SceneInput input = read_scene_input(arguments.scene.input, arguments.scene.tolerance);
   const Mesh* mesh = std::get_if<Mesh>(&input.content);
   if (mesh == nullptr) {
-    throw Failure(ExitCode::kBadInput, input.path.string() + ": is a scene image already; pack takes a mesh (.ply)");
+    throw Failure(ExitCode::kBadInput, input.path.string() + ": is a scene image already; pack takes a mesh (.ply) or a text scene (.nff)");
   }
 
+  tell_notes(input);
+
   // The budget of an ordinary picture, so that render would choose the same grid.
-  const std::uint64_t budget_bytes = image_budget_bytes(*arguments.scene.machine, 1, 1, 1);
-  const GridChoice choice = choose_grid(input, *mesh, arguments.scene, arguments.format, budget_bytes);
+  const sim::MachineProfile& machine = *arguments.scene.machine;
+  constexpr std::uint32_t kUsualTileWidth = 32;
+  const std::uint32_t depth = input.text ? input.text->effects.recursion_depth : 1;
+  const std::uint64_t budget_bytes =
+      image_budget_bytes(machine, 1, 1, 1, kUsualTileWidth, spill_bytes_of(machine.core_count, depth));
+  const EffectsView view = input.text ? input.text->effects.view() : EffectsView{};
+  const EffectsView* effects = input.text ? &view : nullptr;
+  const GridChoice choice = choose_grid(input, *mesh, arguments.scene, arguments.format, budget_bytes, effects);
   require_fit(choice, arguments.scene);
 
   const AlignedBytes storage = allocate_aligned(choice.need.image_bytes);
   const std::span<std::byte> image(storage.get(), choice.need.image_bytes);
-  (void)build_image(input, *mesh, choice, image);
+  (void)build_image(input, *mesh, choice, image, effects);
 
   AtomicFile file(arguments.output);
   file.write(image);

@@ -4,21 +4,21 @@
 #include <report/report.h>
 #include <report/timeline.h>
 
-#include <algorithm>
 #include <bit>
 #include <cstdio>
 #include <limits>
 #include <list>
 #include <string>
-#include <thread>
 
 #include "atomic_file.h"
+#include "chip_frame.h"
 #include "commands.h"
 #include "failure.h"
-#include "frame_failure.h"
 #include "frame_memory.h"
+#include "hither.h"
 #include "image_files.h"
 #include "interrupt.h"
+#include "layout_choice.h"
 #include "progress.h"
 #include "scene_input.h"
 #include "stopwatch.h"
@@ -49,49 +49,31 @@ void tell_fewer_buffers(const RenderArguments& arguments) {
                blocks(arguments.depths).c_str());
 }
 
-// The camera file's view with the parts that the command line replaces.
-ViewRequest join_view(const RenderArguments& arguments) {
-  ViewRequest view = arguments.camera ? read_camera_file(*arguments.camera) : ViewRequest{};
-  if (arguments.view.eye) view.eye = arguments.view.eye;
-  if (arguments.view.at) view.at = arguments.view.at;
-  if (arguments.view.up) view.up = arguments.view.up;
-  if (arguments.view.fov_degrees) view.fov_degrees = arguments.view.fov_degrees;
-  return view;
+ViewRequest view_of(const SceneView& view) {
+  return {.eye = view.from, .at = view.at, .up = view.up, .fov_degrees = view.angle_degrees};
 }
 
-std::uint32_t host_threads(const RenderArguments& arguments) {
-  if (arguments.threads != 0) return arguments.threads;
-  return std::max(1u, std::thread::hardware_concurrency());
-}
-
-std::optional<std::uint32_t> chosen_tile(const RenderArguments& arguments, const FrameRecord& record) {
-  if (!arguments.tile) return std::nullopt;
-  if (arguments.tile->x >= record.tiles_x || arguments.tile->y >= record.tiles_y) {
-    throw Failure(ExitCode::kUsage, "--tile: the picture has " + std::to_string(record.tiles_x) + " columns and " +
-                                        std::to_string(record.tiles_y) + " rows of tiles, counted from 0,0");
+// What the command line left to the scene and the host.
+RenderArguments complete_arguments(const RenderArguments& asked, const SceneInput& input) {
+  RenderArguments arguments = asked;
+  if (input.text && !arguments.has_size) {
+    arguments.width = input.text->view.width;
+    arguments.height = input.text->view.height;
   }
-  return arguments.tile->y * record.tiles_x + arguments.tile->x;
+  if (arguments.threads == 0) arguments.threads = host_threads();
+  const PackedScene* packed = std::get_if<PackedScene>(&input.content);
+  if (!arguments.has_shading && packed != nullptr && find_effects(packed->file.bytes)) {
+    arguments.shading = Shading::kScene;
+    settle_layout(arguments);
+  }
+  return arguments;
 }
 
-sim::ChipResult render_on_chip(FrameMemory& frame, const RenderArguments& arguments) {
-  Progress progress(!arguments.quiet);
-  sim::ChipOptions options;
-  options.mode = arguments.mode;
-  options.threads = host_threads(arguments);
-  options.lanes = arguments.lanes;
-  options.store = arguments.store;
-  options.packet_width = arguments.packet_width;
-  options.completion = arguments.completion;
-  options.seed = arguments.seed;
-  options.limits.queue_depth = arguments.scene.machine->queue_depth;
-  options.only_tile = chosen_tile(arguments, frame.record);
-  options.abort = &interrupt_flag();
-  options.progress = [&progress](std::uint32_t done, std::uint32_t total) { progress.update(done, total); };
-  stop_if_interrupted();
-  sim::ChipResult result = sim::render_frame(frame.memory, frame.record_address, options);
-  stop_if_interrupted();
-  if (const std::optional<Failure> failure = frame_failure(result)) throw *failure;
-  return result;
+// Another place to look from has no use for the scene's near plane.
+void check_scene_view(const RenderArguments& arguments, const SceneInput& input, const ViewRequest& view) {
+  if (!input.text || arguments.camera || arguments.view.eye) return;
+  const float no_bounds[3] = {};  // nothing is left to be framed
+  check_hither(input, frame_view(view, no_bounds, no_bounds), arguments.width, arguments.height);
 }
 
 float depth_of_word(std::uint32_t word) {
@@ -129,7 +111,7 @@ ReportInput collect_report(const RenderArguments& arguments, const SceneInput& i
   report.stack_bytes = store.stack_bytes;
   report.load_seconds = input.load_seconds;
   report.build_seconds = frame.build_seconds;
-  report.host_threads = host_threads(arguments);
+  report.host_threads = arguments.threads;
   return report;
 }
 
@@ -151,16 +133,25 @@ void print_timing(const RenderArguments& arguments, const sim::FrameTiming& timi
 
 }  // namespace
 
-void run_command(const RenderArguments& arguments) {
-  check_outputs(arguments);
-  const ViewRequest view = join_view(arguments);
-  const SceneInput input = read_scene_input(arguments.scene.input);
+void run_command(const RenderArguments& asked) {
+  check_outputs(asked);
+  const ViewRequest camera = asked.camera ? read_camera_file(*asked.camera) : ViewRequest{};
+  const SceneInput input = read_scene_input(asked.scene.input, asked.scene.tolerance);
+  const RenderArguments arguments = complete_arguments(asked, input);
+  const bool has_own_view = input.text && !arguments.camera;
+  const ViewRequest view = join_view(arguments.view, has_own_view ? view_of(input.text->view) : camera);
+  check_scene_view(arguments, input, view);
+  if (!arguments.quiet) tell_notes(input);
   tell_fewer_buffers(arguments);
-  FrameMemory frame(arguments.scene.machine->main_memory_bytes);
+  FrameMemory frame(frame_memory_bytes(input, arguments));
   prepare_frame(frame, input, arguments, view);
 
   const Stopwatch render_stopwatch;
-  const sim::ChipResult result = render_on_chip(frame, arguments);
+  const sim::ChipResult result = [&frame, &arguments] {
+    Progress progress(!arguments.quiet);
+    return render_on_chip(frame, arguments,
+                          [&progress](std::uint32_t done, std::uint32_t total) { progress.update(done, total); });
+  }();
   const double render_seconds = render_stopwatch.seconds();
 
   const auto color =
@@ -206,7 +197,7 @@ void run_command(const RenderArguments& arguments) {
   print_picture(arguments, color, hash);
   if (has_time(arguments)) print_timing(arguments, timing);
   std::printf("host: %.3f s to load, %.3f s to build, %.3f s to render on %s\n", input.load_seconds,
-              frame.build_seconds, render_seconds, words_of_count(host_threads(arguments), "thread").c_str());
+              frame.build_seconds, render_seconds, words_of_count(arguments.threads, "thread").c_str());
 }
 
 }  // namespace gridiron::tool

@@ -7,10 +7,13 @@
 #include <algorithm>
 #include <cctype>
 #include <cstdio>
+#include <cstring>
 #include <string>
+#include <utility>
 
 #include "failure.h"
 #include "interrupt.h"
+#include "scene_text/scene_reader.h"
 #include "stopwatch.h"
 #include "words.h"
 
@@ -40,11 +43,23 @@ PackedScene read_packed_scene(const std::filesystem::path& path) {
   return packed;
 }
 
+// The triangles go to `mesh`, the rest to @returns.
+TextScene read_text_scene(const std::filesystem::path& path, std::optional<float> tolerance, Mesh& mesh) {
+  SceneOptions options;
+  options.tolerance = tolerance;
+  SceneDescription scene = read_scene_text(path, options);
+  TextScene text{scene.view, take_scene_effects(scene), std::move(scene.notes), scene.note_count};
+  mesh.vertices = std::move(scene.geometry.vertices);
+  mesh.triangles = std::move(scene.geometry.triangles);
+  return text;
+}
+
 // @returns false where the grid's references outgrow their 32 bits; `need` is zero then.
-bool count_need(const SceneInput& input, const Mesh& mesh, const GridParameters& parameters, GridNeed& need) {
+bool count_need(const SceneInput& input, const Mesh& mesh, const GridParameters& parameters,
+                const EffectsView* effects, GridNeed& need) {
   stop_if_interrupted();
   need = {};
-  const Status status = count_scene_image(mesh.view(), parameters, need);
+  const Status status = count_scene_image(mesh.view(), parameters, need, effects);
   if (status == Status::kTooManyTriangles) return false;
   if (status == Status::kNoTriangles) {
     fail(input.path, mesh.triangles.empty()
@@ -69,35 +84,73 @@ std::string words_of_budget(const sim::MachineProfile& machine, std::uint64_t bu
   return std::string(machine.name) + " has " + words_of_bytes(budget_bytes) + " for it: of its " +
          words_of_bytes(machine.main_memory_bytes) + " of main memory " +
          words_of_bytes(machine.main_memory_bytes - budget_bytes) +
-         " are kept for pictures and the frame record (see 'gridiron machines')";
+         " are kept for pictures, the frame record and rays that wait (see 'gridiron machines')";
 }
 
 }  // namespace
 
-SceneInput read_scene_input(const std::filesystem::path& path) {
+bool is_text_scene(const std::filesystem::path& path) {
+  return lower_extension(path) == ".nff";
+}
+
+SceneInput read_scene_input(const std::filesystem::path& path, std::optional<float> tolerance) {
   const Stopwatch stopwatch;
-  SceneInput input{path, Mesh{}, 0};
+  SceneInput input{path, Mesh{}, 0, std::nullopt};
   const std::string extension = lower_extension(path);
   if (extension == ".ply") {
     input.content = read_ply_mesh(path);
   } else if (extension == ".gri") {
     input.content = read_packed_scene(path);
   } else if (extension == ".nff") {
-    fail(path, "NFF scenes are not supported; expected .ply or .gri");
+    input.text = read_text_scene(path, tolerance, std::get<Mesh>(input.content));
   } else {
-    fail(path, "unknown kind of scene; expected .ply or .gri");
+    fail(path, "unknown kind of scene; expected .ply, .nff or .gri");
   }
   input.load_seconds = stopwatch.seconds();
   return input;
 }
 
+void tell_notes(const SceneInput& input) {
+  if (!input.text) return;
+  for (const SceneNote& note : input.text->notes) {
+    std::fprintf(stderr, "%s:%llu: note: %s\n", input.path.c_str(), static_cast<unsigned long long>(note.line),
+                 note.text.c_str());
+  }
+  const std::uint64_t more = input.text->note_count - input.text->notes.size();
+  if (more != 0) std::fprintf(stderr, "%s: %s\n", input.path.c_str(), words_of_count(more, "more note").c_str());
+}
+
+std::optional<EffectsRecord> find_effects(std::span<const std::byte> image) {
+  ImageHeader header;
+  std::memcpy(&header, image.data(), sizeof header);
+  for (std::uint32_t i = 0; i < header.section_count; ++i) {
+    SectionEntry entry;
+    std::memcpy(&entry, image.data() + header.section_table_offset_bytes + i * sizeof entry, sizeof entry);
+    if (entry.kind != static_cast<std::uint32_t>(SectionKind::kEffects)) continue;
+    EffectsRecord effects;
+    std::memcpy(&effects, image.data() + entry.offset_bytes, sizeof effects);
+    return effects;
+  }
+  return std::nullopt;
+}
+
+std::uint64_t spill_bytes_of(std::uint32_t core_count, std::uint32_t recursion_depth) {
+  const std::uint64_t bytes = spill_bytes(recursion_depth) * core_count;
+  return bytes == 0 ? 0 : bytes + kSpillAlignment;
+}
+
 std::uint64_t image_budget_bytes(const sim::MachineProfile& machine, std::uint32_t width, std::uint32_t height,
-                                 std::uint32_t planes, std::uint32_t tile_width) {
+                                 std::uint32_t planes, std::uint32_t tile_width, std::uint64_t spill_bytes) {
   constexpr std::uint32_t kUsualSize = 1024, kMostPlanes = 3;  // a multiple of every tile's width
   const std::uint64_t frame_bytes = round_up<std::uint64_t>(sizeof(FrameRecord), kLineBytes);
   const std::uint64_t wanted = output_plane_bytes(width, height, tile_width) * planes + frame_bytes;
   const std::uint64_t usual = output_plane_bytes(kUsualSize, kUsualSize, tile_width) * kMostPlanes + frame_bytes;
-  const std::uint64_t memory = machine.main_memory_bytes - sim::SimMemory::kFirstAddress;
+  if (spill_bytes >= machine.main_memory_bytes - sim::SimMemory::kFirstAddress) {
+    throw Failure(ExitCode::kBadInput, "rays that wait need " + words_of_bytes(spill_bytes) + " of main memory; " +
+                                           std::string(machine.name) + " has " +
+                                           words_of_bytes(machine.main_memory_bytes));
+  }
+  const std::uint64_t memory = machine.main_memory_bytes - sim::SimMemory::kFirstAddress - spill_bytes;
   if (wanted > memory) {
     throw Failure(ExitCode::kBadInput, "a picture of " + std::to_string(width) + "x" + std::to_string(height) +
                                            " needs " + words_of_bytes(wanted) + " of main memory; " +
@@ -108,7 +161,7 @@ std::uint64_t image_budget_bytes(const sim::MachineProfile& machine, std::uint32
 }
 
 GridChoice choose_grid(const SceneInput& input, const Mesh& mesh, const SceneArguments& arguments,
-                       TriangleFormat format, std::uint64_t budget_bytes) {
+                       TriangleFormat format, std::uint64_t budget_bytes, const EffectsView* effects) {
   GridChoice choice;
   choice.wanted_lambda = arguments.lambda.value_or(arguments.configuration->lambda);
   choice.parameters.lambda = choice.wanted_lambda;
@@ -116,12 +169,12 @@ GridChoice choose_grid(const SceneInput& input, const Mesh& mesh, const SceneArg
   choice.parameters.format = format;
   choice.budget_bytes = budget_bytes;
   float& lambda = choice.parameters.lambda;
-  bool is_counted = count_need(input, mesh, choice.parameters, choice.need);
+  bool is_counted = count_need(input, mesh, choice.parameters, effects, choice.need);
   // Fewer cells, fewer references: down to one cell, where one record per triangle is left.
   while ((!is_counted || !choice.fits()) && !arguments.lambda && lambda > kLeastLambda &&
          !has_one_cell(choice.need.grid)) {
     lambda = std::max(lambda * 0.5f, kLeastLambda);
-    is_counted = count_need(input, mesh, choice.parameters, choice.need);
+    is_counted = count_need(input, mesh, choice.parameters, effects, choice.need);
   }
   if (!is_counted) {
     fail(input.path, std::string(words_of(Status::kTooManyTriangles)) + " at lambda " + text_of(lambda) +
@@ -143,11 +196,11 @@ void require_fit(const GridChoice& choice, const SceneArguments& arguments) {
 }
 
 SceneImageView build_image(const SceneInput& input, const Mesh& mesh, const GridChoice& choice,
-                           std::span<std::byte> image) {
+                           std::span<std::byte> image, const EffectsView* effects) {
   stop_if_interrupted();
   std::vector<std::uint64_t> scratch((choice.need.scratch_bytes + 7) / 8);
-  const Status status =
-      build_scene_image(mesh.view(), choice.parameters, choice.need, image, std::as_writable_bytes(std::span(scratch)));
+  const Status status = build_scene_image(mesh.view(), choice.parameters, choice.need, image,
+                                          std::as_writable_bytes(std::span(scratch)), effects);
   if (status != Status::kOk) fail(input.path, std::string("cannot build the grid: ") + words_of(status));
   SceneImageView view{};
   SceneImageError error;

@@ -1,4 +1,5 @@
-// Scene input: a mesh (.ply) or a packed scene (.gri), read and checked, and the grid that fits a machine.
+// Scene input: a mesh (.ply), a text scene (.nff) or a packed scene (.gri), read and checked, and the grid that fits a
+// machine.
 // Memory: owns mesh or file. Threads: one. SPDX-License-Identifier: Apache-2.0
 #pragma once
 
@@ -15,6 +16,8 @@
 
 #include "arguments.h"
 #include "input_file.h"
+#include "scene_text/scene_description.h"
+#include "scene_text/scene_effects.h"
 
 namespace gridiron::tool {
 
@@ -32,14 +35,34 @@ struct PackedScene {
   SceneImageView view;
 };
 
+/// What a text scene holds beside its triangles.
+struct TextScene {
+  SceneView view;
+  SceneEffects effects;
+  std::vector<SceneNote> notes;
+  std::uint64_t note_count = 0;
+};
+
 struct SceneInput {
   std::filesystem::path path;
   std::variant<Mesh, PackedScene> content;
-  double load_seconds = 0;  ///< host time of reading and checking
+  double load_seconds = 0;       ///< host time of reading and checking
+  std::optional<TextScene> text; ///< beside a Mesh
 };
 
-/// Reads the scene. Errors: Failure (kBadInput), `file:line: reason` or `file:byte N: reason`.
-[[nodiscard]] SceneInput read_scene_input(const std::filesystem::path& path);
+/// @returns whether a file is a text scene by its name.
+[[nodiscard]] bool is_text_scene(const std::filesystem::path& path);
+
+/// Reads the scene. @param tolerance  of round shapes in a text scene; nothing: the reader's own.
+/// Errors: Failure (kBadInput), `file:line: reason` or `file:byte N: reason`.
+[[nodiscard]] SceneInput read_scene_input(const std::filesystem::path& path,
+                                          std::optional<float> tolerance = std::nullopt);
+
+/// Says on standard error what is odd in a text scene: `file:line: note: text`, one line each.
+void tell_notes(const SceneInput& input);
+
+/// @returns the record of a scene image's effects, nothing where it has none. @param image  a validated one.
+[[nodiscard]] std::optional<EffectsRecord> find_effects(std::span<const std::byte> image);
 
 /// @returns the mesh of a PLY file. Errors as read_scene_input.
 [[nodiscard]] Mesh read_ply_mesh(const std::filesystem::path& path);
@@ -55,30 +78,36 @@ struct GridChoice {
   [[nodiscard]] bool is_reduced() const { return parameters.lambda != wanted_lambda; }
 };
 
+/// Bytes of main memory that waiting rays of all cores may take, what alignment may waste included.
+[[nodiscard]] std::uint64_t spill_bytes_of(std::uint32_t core_count, std::uint32_t recursion_depth);
+
 /// Bytes of main memory that a scene image may take.
 ///
+/// @param spill_bytes  of all cores, kept for waiting rays.
 /// @param planes  output planes of the frame, 1..3. Room for a picture of 1024x1024 with three planes is always kept,
 ///        or half of the main memory where that is less, so that pack and render choose the same grid for every
 ///        picture that this holds.
 /// Errors: Failure (kBadInput) where the picture alone does not fit.
 [[nodiscard]] std::uint64_t image_budget_bytes(const sim::MachineProfile& machine, std::uint32_t width,
                                                std::uint32_t height, std::uint32_t planes,
-                                               std::uint32_t tile_width = 32);
+                                               std::uint32_t tile_width = 32, std::uint64_t spill_bytes = 0);
 
 /// Chooses the grid of a mesh: the wanted lambda, halved until the image fits the budget unless the command line fixed
 /// it. Where nothing fits the choice says so and holds the least need found.
+/// @param effects  that the image will hold; null: none.
 /// Errors: Failure (kBadInput) where there is nothing to trace.
 [[nodiscard]] GridChoice choose_grid(const SceneInput& input, const Mesh& mesh, const SceneArguments& arguments,
-                                     TriangleFormat format, std::uint64_t budget_bytes);
+                                     TriangleFormat format, std::uint64_t budget_bytes,
+                                     const EffectsView* effects = nullptr);
 
 /// Says in one line of standard error that the grid was reduced; nothing where it was not.
 /// Errors: Failure (kBadInput) where the choice does not fit.
 void require_fit(const GridChoice& choice, const SceneArguments& arguments);
 
-/// Builds the image of a mesh. @param image  kLineBytes-aligned, choice.need.image_bytes.
+/// Builds the image of a mesh. @param image  kLineBytes-aligned, choice.need.image_bytes. @param effects  the choice's.
 /// @returns its validated view. Errors: Failure.
 [[nodiscard]] SceneImageView build_image(const SceneInput& input, const Mesh& mesh, const GridChoice& choice,
-                                         std::span<std::byte> image);
+                                         std::span<std::byte> image, const EffectsView* effects = nullptr);
 
 /// Throws Failure (kBadInput) where a packed scene cannot be used as asked: stored in another format, made with other
 /// grid parameters than the command line fixes, or larger than the budget.

@@ -9,6 +9,9 @@
 namespace gridiron::tool {
 namespace {
 
+// The map of a renderer with every effect; those with fewer keep the same sizes.
+using EffectLayouts = sim::LayoutList<EffectLayout256K<kAllEffects, 8>, EffectLayout256K<kAllEffects, 32>>;
+
 template <class Layout>
 StoreFacts facts_of() {
   StoreFacts facts;
@@ -70,7 +73,11 @@ std::uint64_t StoreFacts::data_bytes() const {
 std::optional<StoreFacts> find_store_facts(const sim::LayoutChoice& layout) {
   std::optional<StoreFacts> facts;
   const auto take = [&facts]<class Layout>() { facts = facts_of<Layout>(); };
-  if (!sim::visit_layout(sim::CommonLayouts{}, layout, take)) sim::visit_layout(sim::SweepLayouts{}, layout, take);
+  if (layout.has_effects) {
+    sim::visit_layout(EffectLayouts{}, layout, take);
+  } else if (!sim::visit_layout(sim::CommonLayouts{}, layout, take)) {
+    sim::visit_layout(sim::SweepLayouts{}, layout, take);
+  }
   return facts;
 }
 
@@ -78,7 +85,15 @@ std::vector<sim::LayoutChoice> built_layouts() {
   std::vector<sim::LayoutChoice> choices;
   add_choices(choices, sim::CommonLayouts{});
   add_choices(choices, sim::SweepLayouts{});
+  for (const std::uint32_t packet_width : {8u, 32u}) {
+    const sim::LayoutChoice choice = {sim::StoreSize::k256KB, 32, packet_width, true};
+    if (sim::is_built(choice, sim::Mode::kChecked, 4)) choices.push_back(choice);
+  }
   return choices;
+}
+
+StoreFacts effect_store_facts(std::uint32_t packet_width) {
+  return *find_store_facts({sim::StoreSize::k256KB, 32, packet_width, true});
 }
 
 StoreFacts usual_store_facts(sim::StoreSize store, std::uint32_t packet_width) {

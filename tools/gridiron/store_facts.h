@@ -26,7 +26,7 @@ struct StoreFacts {
   [[nodiscard]] std::uint64_t data_bytes() const;
 };
 
-/// @returns nothing where no kernel is built for the layout, in no mode.
+/// @returns nothing where no kernel is built for the layout, in no mode. With effects: the map that has room for all.
 [[nodiscard]] std::optional<StoreFacts> find_store_facts(const sim::LayoutChoice& layout);
 
 /// Every layout that a kernel is built for, in whatever modes, the common ones first.
@@ -34,6 +34,9 @@ struct StoreFacts {
 
 /// The layout with the store's usual tiles. @param packet_width  8 or 32; 32 is 16 where tiles are no wider.
 [[nodiscard]] StoreFacts usual_store_facts(sim::StoreSize store, std::uint32_t packet_width);
+
+/// The layout that renders effects. @param packet_width  8 or 32.
+[[nodiscard]] StoreFacts effect_store_facts(std::uint32_t packet_width);
 
 /// Whether a core has room for a layout, built or not.
 struct LayoutFit {

@@ -21,6 +21,14 @@ const char* view_defect(const Vec3& eye, const Vec3& at, const Vec3& up) {
   return nullptr;
 }
 
+ViewRequest join_view(const ViewRequest& parts, ViewRequest base) {
+  if (parts.eye) base.eye = parts.eye;
+  if (parts.at) base.at = parts.at;
+  if (parts.up) base.up = parts.up;
+  if (parts.fov_degrees) base.fov_degrees = parts.fov_degrees;
+  return base;
+}
+
 Camera frame_view(const ViewRequest& request, const float bounds_minimum[3], const float bounds_maximum[3]) {
   // Double, so that bounds near the largest float neither overflow nor lose the centre.
   const DVec3 minimum(bounds_minimum[0], bounds_minimum[1], bounds_minimum[2]);

@@ -24,6 +24,9 @@ inline constexpr float kDefaultFovDegrees = 45.0f;
 /// @returns why no camera can look like that, nullptr where it can: eye on at, up of length 0 or along the view.
 [[nodiscard]] const char* view_defect(const Vec3& eye, const Vec3& at, const Vec3& up);
 
+/// @returns `base` with the parts that `parts` has.
+[[nodiscard]] ViewRequest join_view(const ViewRequest& parts, ViewRequest base);
+
 /// Completes a view: at = centre of the bounds, eye = at + 1.05 diagonal (0.35, 0.25, 1) / |...|, up = y, fov = 45.
 ///
 /// @param bounds_minimum, bounds_maximum  of the triangles that can be hit: zero-area ones do not move the camera, so

@@ -49,6 +49,28 @@ const char* words_of(Status status) {
       return "deadline passed between two tiles";
     case Status::kIncompleteFrame:
       return "picture of which no core wrote a part";
+    case Status::kNeedsSceneShading:
+      return "the scene calls for scene shading, which this renderer was built without";
+    case Status::kNeedsPointShadows:
+      return "the scene calls for shadows of point lights, which this renderer was built without";
+    case Status::kNeedsAreaLights:
+      return "the scene calls for area lights, which this renderer was built without";
+    case Status::kNeedsReflection:
+      return "the scene calls for reflection, which this renderer was built without";
+    case Status::kNeedsRefraction:
+      return "the scene calls for refraction, which this renderer was built without";
+    case Status::kNeedsAmbientOcclusion:
+      return "the scene calls for ambient occlusion, which this renderer was built without";
+    case Status::kNeedsEnvironment:
+      return "the scene calls for an environment, which this renderer was built without";
+    case Status::kNeedsSmoothNormals:
+      return "the scene calls for smooth normals, which this renderer was built without";
+    case Status::kNeedsHighlights:
+      return "the scene calls for highlights, which this renderer was built without";
+    case Status::kNeedsMultisampling:
+      return "the scene calls for several samples a pixel, which this renderer was built without";
+    case Status::kSpillTooSmall:
+      return "less main memory for rays that wait than the scene's depth of recursion asks for";
     case Status::kMemoryTooSmall:
       return "memory smaller than the counted need";
     case Status::kTooManyTriangles:
@@ -58,9 +80,11 @@ const char* words_of(Status status) {
     case Status::kBadVertex:
       return "vertex coordinate that is no number between -2^120 and 2^120";
     case Status::kBadIndex:
-      return "triangle that names a vertex that does not exist";
+      return "triangle that names a vertex, material or normal that does not exist";
     case Status::kBadParameter:
       return "parameter outside its range";
+    case Status::kBadEffects:
+      return "light, material, normal, texel or count of a scene outside its range";
   }
   return "unknown status";
 }

@@ -34,6 +34,7 @@ struct SceneView {
   float angle_degrees = 45.0f;          ///< between the top and the bottom edge of the picture, in (0, 180)
   float hither = 0.0f;                  ///< >= 0: what lies nearer along at - from is not seen
   std::uint32_t width = 0, height = 0;  ///< pixels, 1..kMaxPictureWidth
+  std::uint64_t line = 0;               ///< of the text
 };
 
 /// Light from a point. It does not fall off with distance.

@@ -102,6 +102,7 @@ class Parser {
 
   void read_view(SceneEntity& entity) {
     SceneView& view = result_.scene.view;
+    view.line = entity.keyword.line;
     constexpr std::array<std::string_view, 6> kParts = {"from", "at", "up", "angle", "hither", "resolution"};
     std::array<bool, kParts.size()> is_given{};
     for (std::size_t i = 0; i < kParts.size(); ++i) {

@@ -25,7 +25,7 @@ using SweepLayouts =
 template <class Layout>
 [[nodiscard]] constexpr bool is_layout(const LayoutChoice& choice) {
   return Layout::kArenaBytes == arena_bytes(choice.store) && Layout::kTileWidth == choice.tile_width &&
-         Layout::kPacketWidth == choice.packet_width;
+         Layout::kPacketWidth == choice.packet_width && (Layout::kEffects != 0) == choice.has_effects;
 }
 
 /// Calls visit.operator()<Layout>() of the layout that was chosen. @returns false where the list does not hold it.

@@ -11,10 +11,20 @@ namespace {
 
 TEST(Words, EveryStatusHasItsOwn) {
   std::set<std::string> phrases;
-  for (int value = 0; value <= static_cast<int>(Status::kBadParameter); ++value) {
+  for (int value = 0; value <= static_cast<int>(Status::kBadEffects); ++value) {
     const std::string phrase = tool::words_of(static_cast<Status>(value));
     EXPECT_NE(phrase, "unknown status") << value;
     EXPECT_TRUE(phrases.insert(phrase).second) << phrase;
+  }
+}
+
+TEST(Words, AMissingEffectIsNamed) {
+  EXPECT_STREQ(tool::words_of(Status::kNeedsReflection),
+               "the scene calls for reflection, which this renderer was built without");
+  for (int value = static_cast<int>(Status::kNeedsSceneShading); value <= static_cast<int>(Status::kNeedsMultisampling);
+       ++value) {
+    const std::string phrase = tool::words_of(static_cast<Status>(value));
+    EXPECT_EQ(phrase.find("the scene calls for "), 0u) << phrase;
   }
 }
 

@@ -1,0 +1,212 @@
+// animate: a mesh a frame, the grid built anew for each; what the frames cost. SPDX-License-Identifier: Apache-2.0
+#include <gridiron/sim/build_work.h>
+#include <gridiron/sim/replay.h>
+#include <report/report.h>
+
+#include <algorithm>
+#include <array>
+#include <charconv>
+#include <cstdio>
+#include <limits>
+#include <set>
+#include <string>
+#include <vector>
+
+#include "atomic_file.h"
+#include "chip_frame.h"
+#include "commands.h"
+#include "failure.h"
+#include "frame_memory.h"
+#include "image_files.h"
+#include "interrupt.h"
+#include "output_folder.h"
+#include "progress.h"
+#include "scene_input.h"
+#include "untile.h"
+#include "words.h"
+
+namespace gridiron::tool {
+namespace {
+
+constexpr const char* kTableName = "animation.csv";
+
+struct AnimationFrame {
+  std::filesystem::path input;
+  std::string picture;  ///< file name
+  std::uint64_t triangles = 0;
+  float lambda = 0;
+  double build_cycles = 0, build_seconds = 0;    ///< of the machine's general core
+  double render_cycles = 0, render_seconds = 0;  ///< of its cores
+  std::uint64_t hash = 0;
+
+  [[nodiscard]] double seconds() const { return build_seconds + render_seconds; }
+  [[nodiscard]] double fps() const { return seconds() > 0 ? 1 / seconds() : 0; }
+};
+
+bool is_mesh(const std::filesystem::path& path) {
+  std::string extension = path.extension().string();
+  std::ranges::transform(extension, extension.begin(),
+                         [](char letter) { return letter >= 'A' && letter <= 'Z' ? char(letter - 'A' + 'a') : letter; });
+  return extension == ".ply";
+}
+
+// Folders give their meshes by name. Pictures are called after the meshes.
+std::vector<AnimationFrame> collect_frames(const AnimateArguments& arguments) {
+  std::vector<AnimationFrame> frames;
+  for (const std::filesystem::path& input : arguments.inputs) {
+    std::error_code error;
+    if (!std::filesystem::is_directory(input, error)) {
+      if (!is_mesh(input)) {
+        throw Failure(ExitCode::kBadInput, input.string() + ": is no mesh; animate takes .ply files and folders of them");
+      }
+      frames.push_back({.input = input});
+      continue;
+    }
+    std::vector<std::filesystem::path> files;
+    for (std::filesystem::directory_iterator entry(input, error), end; !error && entry != end; entry.increment(error)) {
+      if (is_mesh(entry->path())) files.push_back(entry->path());
+    }
+    if (error) throw Failure(ExitCode::kBadInput, input.string() + ": cannot be read: " + error.message());
+    if (files.empty()) throw Failure(ExitCode::kBadInput, input.string() + ": holds no mesh (.ply)");
+    std::ranges::sort(files);
+    for (const std::filesystem::path& file : files) frames.push_back({.input = file});
+  }
+  std::set<std::string> pictures;
+  for (AnimationFrame& frame : frames) {
+    frame.picture = frame.input.stem().string() + ".png";
+    if (!pictures.insert(frame.picture).second) {
+      throw Failure(ExitCode::kUsage, "two frames would be called " + frame.picture);
+    }
+  }
+  return frames;
+}
+
+// One camera for all frames: that of the box around all of them, where it was not asked for.
+ViewRequest common_view(const std::vector<AnimationFrame>& frames, const RenderArguments& arguments) {
+  ViewRequest view = join_view(arguments.view, arguments.camera ? read_camera_file(*arguments.camera) : ViewRequest{});
+  if (view.eye && view.at) return view;
+  constexpr float kMost = std::numeric_limits<float>::max();
+  std::array<float, 3> minimum = {kMost, kMost, kMost}, maximum = {-kMost, -kMost, -kMost};
+  GridParameters coarse;  // of which the bounds alone are wanted
+  coarse.lambda = 1e-6f;
+  for (const AnimationFrame& frame : frames) {
+    stop_if_interrupted();
+    const SceneInput input = read_scene_input(frame.input);
+    GridNeed need{};
+    const Status status = count_scene_image(std::get<Mesh>(input.content).view(), coarse, need);
+    if (status != Status::kOk) throw Failure(ExitCode::kBadInput, frame.input.string() + ": " + words_of(status));
+    for (std::size_t axis = 0; axis < 3; ++axis) {
+      minimum[axis] = std::min(minimum[axis], need.grid.bounds_minimum[axis]);
+      maximum[axis] = std::max(maximum[axis], need.grid.bounds_maximum[axis]);
+    }
+  }
+  const Camera camera = frame_view(view, minimum.data(), maximum.data());
+  view.eye = camera.eye;
+  view.at = camera.at;
+  return view;
+}
+
+void render(AnimationFrame& frame, RenderArguments arguments, const ViewRequest& view,
+            const std::filesystem::path& folder) {
+  arguments.scene.input = frame.input;
+  const SceneInput input = read_scene_input(frame.input);
+  const Mesh& mesh = std::get<Mesh>(input.content);
+  FrameMemory memory(frame_memory_bytes(input, arguments));
+  prepare_frame(memory, input, arguments, view);
+  const sim::ChipResult result = render_on_chip(memory, arguments, {});
+
+  const sim::MachineProfile& machine = *arguments.scene.machine;
+  const sim::BuildWork build = sim::grid_build_work(mesh.vertices.size(), mesh.triangles.size(), memory.need);
+  const sim::FrameTiming timing = sim::replay(result.trace, machine, {.core_count = arguments.cores});
+  frame.triangles = mesh.triangles.size();
+  frame.lambda = memory.image.grid.lambda;
+  frame.build_cycles = sim::build_cycles(machine.master, build);
+  frame.build_seconds = sim::build_seconds(machine.master, build);
+  frame.render_cycles = timing.frame_cycles;
+  frame.render_seconds = timing.seconds;
+
+  const auto color =
+      untile<std::uint32_t>(memory.record, memory.color.bytes, std::nullopt, [](std::uint32_t word) { return word; });
+  frame.hash = image_hash(color.pixels);
+  AtomicFile file(folder / frame.picture);
+  file.write(encode_png(color));
+  file.commit();
+}
+
+// The shortest decimals that read back as the same number.
+template <class Number>
+std::string text_of(Number number) {
+  char text[32];
+  return {text, std::to_chars(text, text + sizeof text, number).ptr};
+}
+
+// A name as a field of CSV.
+std::string in_csv(const std::string& text) {
+  if (text.find_first_of(",\"\r\n") == std::string::npos) return text;
+  std::string quoted = "\"";
+  for (const char letter : text) quoted.append(letter == '"' ? 2 : 1, letter);
+  return quoted + "\"";
+}
+
+std::string table_of(const std::vector<AnimationFrame>& frames, const sim::MachineProfile& machine) {
+  std::string table =
+      "frame,mesh,triangles,lambda,build_cycles,render_cycles,total_cycles,build_seconds,render_seconds,seconds,fps,"
+      "hash\n";
+  for (std::size_t i = 0; i < frames.size(); ++i) {
+    const AnimationFrame& frame = frames[i];
+    // The general core may have another clock: the total is told in the cores'.
+    const double total_cycles = frame.build_seconds * machine.clock_hz + frame.render_cycles;
+    for (const std::string& field :
+         {text_of(i), in_csv(frame.input.filename().string()), text_of(frame.triangles), text_of(frame.lambda),
+          text_of(frame.build_cycles), text_of(frame.render_cycles), text_of(total_cycles),
+          text_of(frame.build_seconds), text_of(frame.render_seconds), text_of(frame.seconds()), text_of(frame.fps())}) {
+      table += field + ",";
+    }
+    table += hash_text(frame.hash) + "\n";
+  }
+  return table;
+}
+
+void print_frames(const std::vector<AnimationFrame>& frames, const RenderArguments& arguments) {
+  const auto cycles = [](double count) { return words_of_count(static_cast<std::uint64_t>(count)); };
+  std::printf("%-24s %14s %14s %9s\n", "frame", "build cycles", "render cycles", "frames/s");
+  double seconds = 0;
+  for (const AnimationFrame& frame : frames) {
+    std::printf("%-24s %14s %14s %9.2f\n", frame.picture.c_str(), cycles(frame.build_cycles).c_str(),
+                cycles(frame.render_cycles).c_str(), frame.fps());
+    seconds += frame.seconds();
+  }
+  const std::uint32_t cores = arguments.cores != 0 ? arguments.cores : arguments.scene.machine->core_count;
+  std::printf("%s, %s: %s in %.2f ms, %.2f frames/s with their builds\n",
+              std::string(arguments.scene.machine->name).c_str(), words_of_count(cores, "core").c_str(),
+              words_of_count(frames.size(), "frame").c_str(), seconds * 1e3,
+              seconds > 0 ? static_cast<double>(frames.size()) / seconds : 0.0);
+}
+
+}  // namespace
+
+void run_command(const AnimateArguments& arguments) {
+  RenderArguments each = arguments.render;
+  if (each.threads == 0) each.threads = host_threads();
+  std::vector<AnimationFrame> frames = collect_frames(arguments);
+  std::vector<std::string> names = {kTableName};
+  for (const AnimationFrame& frame : frames) names.push_back(frame.picture);
+  OutputFolder folder(arguments.output, names);
+  const ViewRequest view = common_view(frames, each);
+  {
+    Progress progress(!each.quiet, "frame");
+    const auto total = static_cast<std::uint32_t>(frames.size());
+    for (std::uint32_t i = 0; i < total; ++i) {
+      progress.update(i, total);
+      render(frames[i], each, view, arguments.output);
+    }
+  }
+  AtomicFile table(arguments.output / kTableName);
+  table.write(table_of(frames, *each.scene.machine));
+  stop_if_interrupted();
+  table.commit();
+  folder.keep();
+  if (!each.quiet) print_frames(frames, each);
+}
+
+}  // namespace gridiron::tool

@@ -1,0 +1,53 @@
+// Chip frame. SPDX-License-Identifier: Apache-2.0
+#include "chip_frame.h"
+
+#include <algorithm>
+#include <optional>
+#include <string>
+#include <thread>
+#include <utility>
+
+#include "failure.h"
+#include "frame_failure.h"
+#include "interrupt.h"
+
+namespace gridiron::tool {
+namespace {
+
+std::optional<std::uint32_t> chosen_tile(const RenderArguments& arguments, const FrameRecord& record) {
+  if (!arguments.tile) return std::nullopt;
+  if (arguments.tile->x >= record.tiles_x || arguments.tile->y >= record.tiles_y) {
+    throw Failure(ExitCode::kUsage, "--tile: the picture has " + std::to_string(record.tiles_x) + " columns and " +
+                                        std::to_string(record.tiles_y) + " rows of tiles, counted from 0,0");
+  }
+  return arguments.tile->y * record.tiles_x + arguments.tile->x;
+}
+
+}  // namespace
+
+sim::ChipResult render_on_chip(FrameMemory& frame, const RenderArguments& arguments,
+                               std::function<void(std::uint32_t done, std::uint32_t total)> progress) {
+  sim::ChipOptions options;
+  options.mode = arguments.mode;
+  options.threads = arguments.threads;
+  options.lanes = arguments.lanes;
+  options.store = arguments.store;
+  options.packet_width = arguments.packet_width;
+  options.completion = arguments.completion;
+  options.seed = arguments.seed;
+  options.limits.queue_depth = arguments.scene.machine->queue_depth;
+  options.only_tile = chosen_tile(arguments, frame.record);
+  options.abort = &interrupt_flag();
+  options.progress = std::move(progress);
+  stop_if_interrupted();
+  sim::ChipResult result = sim::render_frame(frame.memory, frame.record_address, options);
+  stop_if_interrupted();
+  if (const std::optional<Failure> failure = frame_failure(result)) throw *failure;
+  return result;
+}
+
+std::uint32_t host_threads() {
+  return std::max(1u, std::thread::hardware_concurrency());
+}
+
+}  // namespace gridiron::tool

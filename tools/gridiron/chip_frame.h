@@ -1,0 +1,24 @@
+// Chip frame: a prepared frame rendered on the simulated chip as the command line asks.
+// Memory: the frame's. Threads: starts the chip's. SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <gridiron/sim/sim_chip.h>
+
+#include <cstdint>
+#include <functional>
+
+#include "arguments.h"
+#include "frame_memory.h"
+
+namespace gridiron::tool {
+
+/// Renders. @param arguments  those that the frame was prepared with, threads above 0.
+/// @param progress  of tiles; may be empty.
+/// Errors: Failure where the frame failed, of stop_if_interrupted(), kUsage for a tile that is not there.
+[[nodiscard]] sim::ChipResult render_on_chip(FrameMemory& frame, const RenderArguments& arguments,
+                                             std::function<void(std::uint32_t done, std::uint32_t total)> progress);
+
+/// @returns what the host has, at least 1.
+[[nodiscard]] std::uint32_t host_threads();
+
+}  // namespace gridiron::tool

@@ -1,0 +1,36 @@
+// Effect names: what EffectBits are to people, in JSON and in C++.
+// Memory: static text. Threads: any. SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <gridiron/base/effect_records.h>
+
+#include <cstdint>
+#include <span>
+#include <string>
+#include <string_view>
+#include <vector>
+
+namespace gridiron::tool {
+
+struct EffectName {
+  EffectBits bit;
+  std::string_view name;      ///< one word: "point_shadows"
+  std::string_view constant;  ///< as C++ has it: "kPointShadows"
+};
+
+/// All effects, scene shading first, then in the order of their bits.
+[[nodiscard]] std::span<const EffectName> effects();
+
+/// @returns the names of a set, in the order of effects().
+[[nodiscard]] std::vector<std::string_view> effect_names(std::uint32_t bits);
+
+/// @returns "scene_shading, reflection", "none" for no effect.
+[[nodiscard]] std::string words_of_effects(std::uint32_t bits);
+
+/// @returns the layout of a local store that renders a scene, as firmware writes it:
+/// `EffectLayout256K<kSceneShading | kReflection, 8>`, or `StoreLayout128K<8>` where no effect is called for.
+/// @param store_kilobytes  64, 128, 256 or 512; with effects it is 256 always.
+[[nodiscard]] std::string renderer_type(std::uint32_t called_for, std::uint32_t store_kilobytes,
+                                        std::uint32_t packet_width);
+
+}  // namespace gridiron::tool

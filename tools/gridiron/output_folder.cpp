@@ -1,0 +1,34 @@
+// Output folder. SPDX-License-Identifier: Apache-2.0
+#include "output_folder.h"
+
+#include <system_error>
+#include <utility>
+
+#include "atomic_file.h"
+#include "failure.h"
+
+namespace gridiron::tool {
+
+OutputFolder::OutputFolder(std::filesystem::path path, const std::vector<std::string>& names) : path_(std::move(path)) {
+  std::error_code error;
+  made_ = std::filesystem::create_directory(path_, error);
+  if (error) {
+    throw Failure(ExitCode::kBadInput, path_.string() + ": cannot make the folder: " + error.message());
+  }
+  if (!std::filesystem::is_directory(path_, error)) {
+    throw Failure(ExitCode::kBadInput, path_.string() + ": is no folder");
+  }
+  try {
+    for (const std::string& name : names) check_can_write(path_ / name);
+  } catch (...) {
+    remove_if_made();
+    throw;
+  }
+}
+
+void OutputFolder::remove_if_made() {
+  std::error_code ignored;
+  if (made_ && !kept_) std::filesystem::remove(path_, ignored);  // only where empty
+}
+
+}  // namespace gridiron::tool

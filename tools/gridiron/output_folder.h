@@ -1,0 +1,29 @@
+// Output folder: made where it is not there, gone again where nothing was written into it.
+// Memory: its path. Threads: one. SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <filesystem>
+#include <string>
+#include <vector>
+
+namespace gridiron::tool {
+
+class OutputFolder {
+ public:
+  /// @param names  of the files that may be written into it: nobody should wait for what cannot be written.
+  /// Errors: Failure (kBadInput).
+  OutputFolder(std::filesystem::path path, const std::vector<std::string>& names);
+  ~OutputFolder() { remove_if_made(); }
+  OutputFolder(const OutputFolder&) = delete;
+  OutputFolder& operator=(const OutputFolder&) = delete;
+
+  void keep() { kept_ = true; }
+
+ private:
+  void remove_if_made();
+
+  std::filesystem::path path_;
+  bool made_ = false, kept_ = false;
+};
+
+}  // namespace gridiron::tool
