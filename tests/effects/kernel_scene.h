@@ -1,0 +1,190 @@
+// Renders a scene with the kernel's effects on one core, without a simulated chip: for any set of effects built, any
+// lane type, any number of walks under way.
+// Memory: std::vector. Threads: any. SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <gridiron/base/lanes.h>
+#include <gridiron/base/stages.h>
+#include <gridiron/base/work_counters.h>
+#include <gridiron/frame/frame_setup.h>
+#include <gridiron/grid/grid_builder.h>
+#include <gridiron/image/scene_image.h>
+#include <gridiron/render/tile_renderer.h>
+#include <gridiron/store/local_store.h>
+
+#include <array>
+#include <cstddef>
+#include <cstdint>
+#include <cstring>
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "scene_text/scene_description.h"
+#include "scene_text/scene_effects.h"
+
+namespace gridiron::test {
+
+struct KernelOptions {
+  Accuracy accuracy = Accuracy::kStandard;
+  float lambda = 2.0f;
+  std::uint32_t macro_width = 4;
+  std::uint32_t walk_depth = 8, macro_depth = 2, triangle_depth = 4;
+  std::uint32_t queue_depth = 16;
+  bool moves_late = false;   ///< a get's bytes come at the wait, garbage before
+  std::uint64_t spill_bytes = ~0ull;  ///< ~0: what the scene asks for
+  bool wants_planes = false;          ///< depth and ids too
+  Shading shading = Shading::kScene;
+};
+
+/// A scene's image and what it was made of.
+struct KernelScene {
+  std::vector<std::byte> memory;  ///< the image
+  SceneImageView view;
+  std::uint32_t called_for = 0;
+  Status status = Status::kOk;
+
+  [[nodiscard]] std::byte* image() {
+    const auto start = reinterpret_cast<std::uintptr_t>(memory.data());
+    return memory.data() + (kLineBytes - start % kLineBytes) % kLineBytes;
+  }
+};
+
+[[nodiscard]] KernelScene build_kernel_scene(const tool::SceneDescription& scene, const KernelOptions& options);
+
+/// What a frame came to.
+struct KernelPicture {
+  Status status = Status::kOk;
+  std::string violation;             ///< the first broken rule of transfers
+  std::vector<std::uint32_t> color;  ///< row-major, 0xAABBGGRR
+  std::vector<float> depth;          ///< where wanted
+  std::vector<std::uint32_t> ids;
+  WorkCounters work;
+  std::array<std::uint64_t, kStageCount> stage_bytes{};  ///< moved in and out
+  std::array<std::uint64_t, kStageCount> stage_transfers{};
+};
+
+/// One core with its main memory: addresses are offsets into it.
+class KernelBoard {
+ public:
+  KernelBoard(std::vector<std::byte>& memory, const KernelOptions& options, std::uint32_t tile_count)
+      : memory_(memory), options_(options), tile_count_(tile_count) {}
+
+  [[nodiscard]] PlatformLimits limits() const {
+    PlatformLimits limits;
+    limits.queue_depth = options_.queue_depth;
+    return limits;
+  }
+  Status get(void* local, MainAddress address, std::uint32_t bytes, Tag tag) {
+    check(local, address, bytes);
+    if (!violation.empty()) return Status::kTransferAlignment;
+    if (options_.moves_late) {
+      std::memset(local, 0xA5, bytes);
+    } else {
+      std::memcpy(local, base() + address.value, bytes);
+    }
+    pending_.push_back({static_cast<std::byte*>(local), address.value, bytes, tag.index, true});
+    if (pending_.size() > options_.queue_depth) violation = "queue depth";
+    return Status::kOk;
+  }
+  Status put(const void* local, MainAddress address, std::uint32_t bytes, Tag tag) {
+    check(local, address, bytes);
+    if (!violation.empty()) return Status::kTransferAlignment;
+    std::memcpy(base() + address.value, local, bytes);
+    pending_.push_back({nullptr, address.value, bytes, tag.index, false});
+    if (pending_.size() > options_.queue_depth) violation = "queue depth";
+    return Status::kOk;
+  }
+  Status wait(TagMask tags) {
+    std::size_t kept = 0;
+    for (const Pending& transfer : pending_) {
+      if ((tags.bits >> transfer.tag & 1u) == 0) {
+        pending_[kept++] = transfer;
+      } else if (transfer.is_get && options_.moves_late) {
+        std::memcpy(transfer.local, base() + transfer.address, transfer.bytes);
+      }
+    }
+    pending_.resize(kept);
+    return Status::kOk;
+  }
+  TileClaim claim_tile() {
+    if (next_tile_ == tile_count_) return {};
+    return {TileClaim::Kind::kTile, next_tile_++};
+  }
+  void note_stage(std::uint8_t stage) { stage_ = stage; }
+
+  [[nodiscard]] std::byte* base() {
+    const auto start = reinterpret_cast<std::uintptr_t>(memory_.data());
+    return memory_.data() + (4096 - start % 4096) % 4096;
+  }
+
+  std::string violation;
+  std::array<std::uint64_t, kStageCount> stage_bytes{};
+  std::array<std::uint64_t, kStageCount> stage_transfers{};
+
+ private:
+  struct Pending {
+    std::byte* local;
+    std::uint64_t address;
+    std::uint32_t bytes;
+    std::uint8_t tag;
+    bool is_get;
+  };
+  void check(const void* local, MainAddress address, std::uint32_t bytes) {
+    const auto place = reinterpret_cast<std::uintptr_t>(local);
+    if (bytes == 0 || bytes % kPortableGranuleBytes != 0 || bytes > kPortableMaxTransferBytes) violation = "size";
+    if (place % kPortableGranuleBytes != 0 || address.value % kPortableGranuleBytes != 0) violation = "alignment";
+    if ((place - address.value) % kPortableCongruenceBytes != 0) violation = "congruence";
+    if (address.value / kPortableBoundaryBytes != (address.value + bytes - 1) / kPortableBoundaryBytes) {
+      violation = "boundary";
+    }
+    if (address.value == 0 || address.value + bytes > memory_.size() - 4096) violation = "beyond main memory";
+    stage_bytes[stage_] += bytes;
+    ++stage_transfers[stage_];
+  }
+
+  std::vector<std::byte>& memory_;
+  const KernelOptions& options_;
+  std::uint32_t tile_count_;
+  std::uint32_t next_tile_ = 0;
+  std::uint8_t stage_ = 0;
+  std::vector<Pending> pending_;
+};
+
+/// Main memory of one frame: image, frame record, planes, waiting rays.
+struct KernelFrame {
+  std::vector<std::byte> memory;
+  std::uint64_t frame_address = 0;
+  SpillRegion spill;
+  std::uint64_t color = 0, depth = 0, ids = 0;
+  std::uint32_t tile_count = 0;
+  Status status = Status::kOk;
+};
+[[nodiscard]] KernelFrame make_kernel_frame(KernelScene& scene, const Camera& camera, std::uint32_t width,
+                                            std::uint32_t height, std::uint32_t tile_width,
+                                            const KernelOptions& options);
+[[nodiscard]] Camera camera_of(const tool::SceneView& view);
+void read_kernel_planes(const KernelFrame& frame, std::byte* base, std::uint32_t width, std::uint32_t height,
+                        std::uint32_t tile_width, KernelPicture& picture);
+
+/// Renders a scene with a layout and lanes.
+template <class Layout, class L = Lanes<4>>
+[[nodiscard]] KernelPicture render_kernel(KernelScene& scene, const Camera& camera, std::uint32_t width,
+                                          std::uint32_t height, const KernelOptions& options = {}) {
+  KernelPicture picture;
+  KernelFrame frame = make_kernel_frame(scene, camera, width, height, Layout::kTileWidth, options);
+  picture.status = frame.status;
+  if (frame.status != Status::kOk) return picture;
+  KernelBoard board(frame.memory, options, frame.tile_count);
+  const auto store = std::make_unique<LocalStore<Layout>>();
+  std::memset(static_cast<void*>(store.get()), 0xC3, sizeof(*store));
+  picture.status = render_tiles<L>(*store, board, MainAddress{frame.frame_address}, frame.spill);
+  picture.violation = board.violation;
+  picture.work = store->work;
+  picture.stage_bytes = board.stage_bytes;
+  picture.stage_transfers = board.stage_transfers;
+  read_kernel_planes(frame, board.base(), width, height, Layout::kTileWidth, picture);
+  return picture;
+}
+
+}  // namespace gridiron::test
