@@ -176,6 +176,14 @@ TEST(Tangents, AreUnitAndPerpendicular) {
   for (int i = 0; i < 200000; ++i) normals.push_back(random_unit(random));
   for (const Vector3 n : normals) {
     const Tangents t = tangents_of(n);
+    // Those of the formula, not any: images depend on it. 1 / (g + z) is at most 1.
+    const double x = n.x, y = n.y, z = n.z, g = z >= 0 ? 1 : -1, q = -1 / (g + z);
+    ASSERT_NEAR(t.a.x, 1 + g * x * x * q, 0x1p-21);
+    ASSERT_NEAR(t.a.y, g * x * y * q, 0x1p-21);
+    ASSERT_NEAR(t.a.z, -g * x, 0x1p-21);
+    ASSERT_NEAR(t.b.x, x * y * q, 0x1p-21);
+    ASSERT_NEAR(t.b.y, g + y * y * q, 0x1p-21);
+    ASSERT_NEAR(t.b.z, -y, 0x1p-21);
     ASSERT_NEAR(dot_of(t.a, t.a), 1.0, 0x1p-20) << n.x << " " << n.y << " " << n.z;
     ASSERT_NEAR(dot_of(t.b, t.b), 1.0, 0x1p-20) << n.x << " " << n.y << " " << n.z;
     ASSERT_NEAR(dot_of(t.a, t.b), 0.0, 0x1p-20) << n.x << " " << n.y << " " << n.z;

@@ -3,7 +3,7 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
-#include <cstdint>
+#include <limits>
 #include <random>
 
 namespace gridiron::test {
@@ -39,6 +39,14 @@ TEST(Normalized, IsUnitWhateverTheSize) {
       ASSERT_NEAR(std::sqrt(ux * ux + uy * uy + uz * uz), 1.0, 0x1p-21) << power << " " << i;
     }
   }
+}
+
+TEST(Normalized, IsUnitForTheGreatestFloats) {
+  const float most = std::numeric_limits<float>::max();
+  const Vector3 unit = normalized({most, -most, most});
+  EXPECT_NEAR(unit.x, std::sqrt(1.0 / 3.0), 0x1p-22);
+  EXPECT_NEAR(unit.y, -std::sqrt(1.0 / 3.0), 0x1p-22);
+  EXPECT_EQ(normalized({0.0f, most, 0.0f}).y, 1.0f);
 }
 
 TEST(Normalized, LeavesTheZeroVector) {
