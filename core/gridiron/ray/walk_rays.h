@@ -83,6 +83,30 @@ struct Shaft {
     return {cell_of(u0, most_u), cell_of(u1, most_u), cell_of(v0, most_v), cell_of(v1, most_v)};
   }
 
+  /// @returns the rays that may touch cell (u, v) of a slab, bit i = ray i.
+  template <class L>
+  [[nodiscard]] GRIDIRON_OUTLINE std::uint32_t rays_touching(const Slab& slab, std::int32_t u, std::int32_t v,
+                                                             WorkCounters& work) const {
+    using Float = typename L::Float;
+    work.add(Work::kShaftGroup, kWalkRays / L::kCount);
+    const Float first_u(static_cast<float>(u) - pad_u), last_u(static_cast<float>(u + 1) + pad_u);
+    const Float first_v(static_cast<float>(v) - pad_v), last_v(static_cast<float>(v + 1) + pad_v);
+    std::uint32_t touching = 0;
+    for (std::uint32_t base = 0; base < kWalkRays; base += L::kCount) {
+      const Float from = Float::load(start + base);
+      const Float near = L::max(Float(slab.entry) - from, Float(0.0f));
+      const Float far = L::max(Float(slab.exit) - from, Float(0.0f));
+      const auto meets = [&](std::uint32_t axis, Float first, Float last) GRIDIRON_INLINE_LAMBDA {
+        const Float begin = Float::load(place[axis] + base), along = Float::load(slope[axis] + base);
+        const Float a = begin + along * near, b = begin + along * far;
+        return (L::min(a, b) <= last) & (L::max(a, b) >= first);
+      };
+      const auto present = (Float::load(end + base) >= Float(slab.entry - pad_k)) & (from <= Float(slab.exit + pad_k));
+      touching |= (present & meets(0, first_u, last_u) & meets(1, first_v, last_v)).bits() << base;
+    }
+    return touching;
+  }
+
   /// @returns the largest end of the rays in `active`, -kFloatMax where there is none.
   template <class L>
   [[nodiscard]] GRIDIRON_INLINE float reach() const {

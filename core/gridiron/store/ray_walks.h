@@ -172,6 +172,12 @@ class RayWalks {
         walk.state = WalkState::kNextMacro;
         return Status::kOk;
       }
+      walk.touching = walk.shaft.rays_touching<L>(Slab{walk.cell.entry, walk.cell.exit}, walk.cell.u, walk.cell.v,
+                                                  store_.work);
+      if (walk.touching == 0) {
+        walk.cell.triangle_count = 0;
+        return Status::kOk;
+      }
     }
     store_.work.charge_to(Work::kCellVisit);
     constexpr std::uint32_t kRunTriangles = Layout::kTrianglesPerBuffer;
@@ -200,12 +206,16 @@ class RayWalks {
     bool has_changed = false;
     for (std::uint32_t index = 0; index < walk.run_count && walk.active != 0; ++index) {
       const VertexTriangle& triangle = triangles[index];
-      std::uint32_t& slot = walk.mailbox[triangle.triangle_id % RayWalk::kMailboxSlots];
+      const std::uint32_t slot = triangle.triangle_id % RayWalk::kMailboxSlots;
       store_.work.add(Work::kMailboxProbe);
-      if (slot == triangle.triangle_id) continue;
-      slot = triangle.triangle_id;
+      std::uint32_t wanted = walk.active & walk.touching;
+      const std::uint32_t tested = walk.mailbox[slot] == triangle.triangle_id ? walk.tested[slot] : 0;
+      walk.mailbox[slot] = triangle.triangle_id;
+      walk.tested[slot] = tested | wanted;
+      wanted &= ~tested;
+      if (wanted == 0) continue;
       std::uint32_t settled = 0;
-      std::uint32_t open = rays_near<L>(walk.rays, walk.active, triangle, question.trusts_floats, settled, store_.work);
+      std::uint32_t open = rays_near<L>(walk.rays, wanted, triangle, question.trusts_floats, settled, store_.work);
       if ((open | settled) == 0) continue;
       if (!question.any_hit) {
         open |= settled;
