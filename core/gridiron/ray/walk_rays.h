@@ -142,8 +142,8 @@ struct ShaftBound {
 };
 
 /// Rays go together where their origins are at most this many cells apart and their slopes differ by no more.
-inline constexpr float kTogetherCells = 3.0f;
-inline constexpr float kTogetherSlope = 0.25f;
+inline constexpr float kTogetherCells = 4.0f;
+inline constexpr float kTogetherSlope = 0.5f;
 
 /// Takes a pass of rays out of `waiting`: the first waiting ray decides axis and sign; those that run alike along that
 /// axis, from nearby, at slopes of at most 2, join. A ray that none runs alike with goes alone.
