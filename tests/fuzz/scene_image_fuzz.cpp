@@ -111,7 +111,7 @@ bool change_effects(std::span<std::byte> bytes, unsigned seed) {
     std::memcpy(&entry, bytes.data() + table + i * sizeof(entry), sizeof(entry));
     const bool of_effects = entry.kind >= static_cast<std::uint32_t>(SectionKind::kEffects) &&
                             entry.kind <= static_cast<std::uint32_t>(SectionKind::kEnvironmentMap);
-    const bool inside = entry.section_bytes != 0 && entry.offset_bytes <= bytes.size() &&
+    const bool inside = entry.section_bytes >= 4 && entry.offset_bytes <= bytes.size() &&
                         entry.section_bytes <= bytes.size() - entry.offset_bytes;
     if (!of_effects || !inside) continue;
     found = entry;
