@@ -12,6 +12,8 @@
 #include <span>
 
 #include "core/grid/line_buffer.h"
+#include "core/image/effects_oracle.h"
+#include "core/scene/test_effects.h"
 
 namespace gridiron::test {
 namespace {
@@ -66,6 +68,64 @@ void read_all(std::span<const std::byte> bytes, const SceneImageView& view) {
     }
   }
   require(references == grid.reference_count, "references are miscounted");
+  const char* const broken = broken_effects(bytes.first(static_cast<std::size_t>(view.header.image_bytes)), view);
+  require(broken == nullptr, broken);
+}
+
+// A valid image, where it fits. @returns its size, else 0.
+std::size_t write_image(std::uint8_t* data, std::size_t max_size, const MeshView& mesh,
+                        const GridParameters& parameters, const EffectsView* effects) {
+  GridNeed need{};
+  if (count_scene_image(mesh, parameters, need, effects) != Status::kOk || need.image_bytes > max_size) return 0;
+  LineBuffer image(static_cast<std::size_t>(need.image_bytes));
+  if (build_scene_image(mesh, parameters, need, image.bytes(), {}, effects) != Status::kOk) std::abort();
+  std::memcpy(data, image.bytes().data(), image.bytes().size());
+  return image.bytes().size();
+}
+
+// One with effects; what a scene may leave out is left out by bits of the seed.
+std::size_t write_image_with_effects(std::uint8_t* data, std::size_t max_size, unsigned seed) {
+  TestEffects scene = all_effects(seed % 4);
+  if ((seed & 4) != 0) scene.lights.clear();
+  if ((seed & 8) != 0) scene.triangle_materials.assign(scene.triangles.size(), 0);
+  if ((seed & 8) != 0) scene.triangle_normals.clear();
+  if ((seed & 16) != 0) scene.settings.occlusion_samples = 0;
+  if ((seed & 32) != 0) scene.settings.recursion_depth = 1;
+  const TriangleFormat format = (seed & 64) != 0 ? TriangleFormat::kVertices : TriangleFormat::kLattice;
+  const EffectsView view = scene.view();
+  return write_image(data, max_size, scene.mesh(), {2.0f, 1 + (seed >> 8) % 3, format}, &view);
+}
+
+// Changes one word of the sections of effects to what floats, counts and offsets are worst at, or by one bit: blind
+// changes meet grid and cells, which refuse nearly all. @returns whether there are any.
+bool change_effects(std::span<std::byte> bytes, unsigned seed) {
+  if (bytes.size() < 2 * kLineBytes) return false;
+  ImageHeader header;
+  std::memcpy(&header, bytes.data(), sizeof(header));
+  const std::uint64_t table = header.section_table_offset_bytes;
+  SectionEntry found{};
+  std::uint32_t pick = seed % 7;
+  for (std::uint32_t i = 0; i < header.section_count && i < kMaxSectionCount; ++i) {
+    SectionEntry entry;
+    if (table + (i + 1) * sizeof(entry) > bytes.size()) break;
+    std::memcpy(&entry, bytes.data() + table + i * sizeof(entry), sizeof(entry));
+    const bool of_effects = entry.kind >= static_cast<std::uint32_t>(SectionKind::kEffects) &&
+                            entry.kind <= static_cast<std::uint32_t>(SectionKind::kEnvironmentMap);
+    const bool inside = entry.section_bytes >= 4 && entry.offset_bytes <= bytes.size() &&
+                        entry.section_bytes <= bytes.size() - entry.offset_bytes;
+    if (!of_effects || !inside) continue;
+    found = entry;
+    if (pick-- == 0) break;
+  }
+  if (found.section_bytes == 0) return false;
+  const std::uint32_t worst[] = {0u, 1u, 0x7F800000u, 0x7FC00000u, 0xFFFFFFFFu, 0x7F7FFFFFu, 0x80000000u, 0x3F800001u};
+  const std::uint64_t words = found.section_bytes / 4;
+  std::byte* const place = bytes.data() + found.offset_bytes + (seed >> 8) % words * 4;
+  std::uint32_t word;
+  std::memcpy(&word, place, sizeof(word));
+  word = seed % 2 == 0 ? worst[seed / 2 % 8] : word ^ (1u << (seed / 2 % 32));
+  std::memcpy(place, &word, sizeof(word));
+  return true;
 }
 
 // A valid image of a few triangles, so that the search needs no seeds. @returns its size, 0 where it does not fit.
@@ -84,12 +144,7 @@ std::size_t write_valid_image(std::uint8_t* data, std::size_t max_size, unsigned
   const MeshView mesh{vertices, {triangles, triangle_count}};
   const GridParameters parameters{2.0f, 1 + (seed >> 8) % kMaxMacroWidth,
                                   (seed >> 16) % 2 == 0 ? TriangleFormat::kVertices : TriangleFormat::kProjection};
-  GridNeed need{};
-  if (count_scene_image(mesh, parameters, need) != Status::kOk || need.image_bytes > max_size) return 0;
-  LineBuffer image(static_cast<std::size_t>(need.image_bytes));
-  if (build_scene_image(mesh, parameters, need, image.bytes(), {}) != Status::kOk) std::abort();
-  std::memcpy(data, image.bytes().data(), image.bytes().size());
-  return image.bytes().size();
+  return write_image(data, max_size, mesh, parameters, nullptr);
 }
 
 void open(std::span<const std::byte> bytes) {
@@ -110,8 +165,12 @@ extern "C" std::size_t LLVMFuzzerMutate(std::uint8_t* data, std::size_t size, st
 extern "C" std::size_t LLVMFuzzerCustomMutator(std::uint8_t* data, std::size_t size, std::size_t max_size,
                                                unsigned int seed) {
   if (size < sizeof(gridiron::ImageHeader) || seed % 64 == 0) {
-    const std::size_t valid = gridiron::test::write_valid_image(data, max_size, seed / 64);
+    const std::size_t valid = seed / 64 % 2 == 0 ? gridiron::test::write_valid_image(data, max_size, seed / 128)
+                                                 : gridiron::test::write_image_with_effects(data, max_size, seed / 128);
     if (valid != 0) return valid;
+  }
+  if (seed % 4 == 1 && gridiron::test::change_effects(std::as_writable_bytes(std::span(data, size)), seed / 4)) {
+    return size;
   }
   return LLVMFuzzerMutate(data, size, max_size);
 }

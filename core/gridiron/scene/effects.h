@@ -53,8 +53,10 @@ struct EffectsView {
 /// Reflection and refraction: where a material in use has a share of them and the depth of recursion allows.
 [[nodiscard]] std::uint32_t effects_called_for(const EffectsView& effects);
 
-/// Checks every range and count against the mesh. Errors: kBadEffects, kBadIndex (a normal, a material that is not
-/// there).
+/// Checks every range and count against the mesh, materials in use or not. Lights, all corners of area lights, lie
+/// within kCoordinateLimit, edges of area lights are not parallel; a triangle has normals where its material is
+/// smooth, and only there. What depends on the grid is count_scene_image's.
+/// Errors: kBadEffects, kBadIndex (a normal, a material that is not there). Cost: linear.
 [[nodiscard]] Status check_effects(const MeshView& mesh, const EffectsView& effects);
 
 }  // namespace gridiron

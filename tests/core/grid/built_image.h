@@ -81,15 +81,15 @@ inline std::vector<std::vector<std::uint32_t>> read_cells(std::span<const std::b
 
 /// Counts, builds in exactly the counted memory, opens and reads. Failures are reported to GoogleTest.
 inline BuiltImage build_image(const MeshView& mesh, const GridParameters& parameters = {},
-                              std::byte fill = std::byte{0xCD}) {
+                              std::byte fill = std::byte{0xCD}, const EffectsView* effects = nullptr) {
   BuiltImage built;
-  EXPECT_EQ(count_scene_image(mesh, parameters, built.need), Status::kOk);
+  EXPECT_EQ(count_scene_image(mesh, parameters, built.need, effects), Status::kOk);
   if (::testing::Test::HasFailure()) return built;
   built.image = LineBuffer(static_cast<std::size_t>(built.need.image_bytes), fill);
   std::vector<std::uint64_t> scratch(static_cast<std::size_t>((built.need.scratch_bytes + 7) / 8));
-  EXPECT_EQ(
-      build_scene_image(mesh, parameters, built.need, built.image.bytes(), std::as_writable_bytes(std::span(scratch))),
-      Status::kOk);
+  EXPECT_EQ(build_scene_image(mesh, parameters, built.need, built.image.bytes(),
+                              std::as_writable_bytes(std::span(scratch)), effects),
+            Status::kOk);
   SceneImageError error;
   EXPECT_EQ(open_scene_image(built.image.bytes(), built.view, error), Status::kOk)
       << error.field << " at byte " << error.byte_offset;
