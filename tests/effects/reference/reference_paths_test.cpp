@@ -168,6 +168,26 @@ TEST(ReferencePaths, BeyondTheCriticalAngleAllIsReflected) {
   EXPECT_LE(picture.counts.refracted, kWidth * kWidth - total);
 }
 
+// Jitter of an area light tells a path's number: straight down, through glass (path 3) or glass seen from beneath
+// after a mirror (paths 2, then 5).
+TEST(ReferencePaths, PathsAreNumberedAsABinaryTree) {
+  for (const bool is_mirrored : {false, true}) {
+    SceneDescription scene = empty_scene({0, 0, 3}, {0, 0, 0}, {0, 1, 0}, 1);
+    scene.shadows = false;
+    const std::uint16_t clear = add_material(scene, glass(1.0f));  // index 1: nothing is reflected
+    const std::uint16_t floor = add_material(scene, {});
+    const std::uint16_t silver = add_material(scene, mirror());
+    if (is_mirrored) add_sheet(scene, 0, silver);
+    add_sheet(scene, is_mirrored ? 3.5f : 1.0f, clear);
+    add_sheet(scene, is_mirrored ? 4.0f : 0.0f, floor);
+    scene.area_lights.push_back({{0.5f, 0.5f, 2}, {2, 0, 0}, {0, 2, 0}, Vec3(1), 1});
+    const ReferencePicture picture = render_reference(scene, 1, 1);
+    const ReferenceJitter jitter = reference_jitter(is_mirrored ? 5 : 3, 0, 0, 1);
+    const DVec3 light(0.5 + 2 * jitter.j1, 0.5 + 2 * jitter.j2, 2);
+    EXPECT_NEAR(picture.linear[0].x, 2.0 / glm::length(light - DVec3(0, 0, is_mirrored ? 4 : 0)), 1e-9);
+  }
+}
+
 TEST(ReferencePaths, DepthOfRecursionCutsAPathBetweenMirrors) {
   // Straight down between two mirrors, the upper one behind the eye: n reflections, then nothing is added.
   SceneDescription scene = empty_scene({0, 0, 1}, {0, 0, 0}, {0, 1, 0}, 5);

@@ -78,6 +78,20 @@ TEST(ReferenceLight, NoneComesFromBehindTheSideThatIsSeen) {
   EXPECT_NEAR(below.linear[12].x, 1.0, kNear);
 }
 
+TEST(ReferenceLight, WhatLiesBeyondALightCastsNoShadow) {
+  SceneDescription scene = scene_from_above(4);
+  const std::uint16_t white = add_material(scene, matt(Vec3(1)));
+  add_floor(scene, white);
+  add_parallelogram(scene, {1, -9, 0}, {0, 18, 0}, {0, 0, 18}, white);  // a wall, x = 1
+  scene.point_lights.push_back({{0.9f, 0, 1}, Vec3(1)});
+  const ReferencePicture picture = render_reference(scene, kWidth, kWidth);
+  for (std::size_t i = 0; i < picture.ids.size(); ++i) {
+    if (picture.ids[i] < 2) {
+      EXPECT_GT(picture.linear[i].x, 0.0) << i;
+    }
+  }
+}
+
 TEST(ReferenceLight, HighlightsAreBlinnsAndSharesAreScaled) {
   SceneDescription scene = scene_from_above(4, 40);
   SceneMaterial shiny = matt(Vec3(0.5f), 0.9f);
