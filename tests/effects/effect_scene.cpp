@@ -13,23 +13,6 @@ namespace {
 using tool::SceneDescription;
 using tool::SceneMaterial;
 
-// Whether triangles have entries for normals. From the first smooth one on all have.
-void add_normals(SceneDescription& scene, UVec3 normals) {
-  auto& entries = scene.geometry.triangle_normals;
-  const bool is_smooth = normals.x != tool::kNoNormal;
-  if (!is_smooth && entries.empty()) return;
-  entries.resize(scene.geometry.triangles.size() - 1, UVec3(tool::kNoNormal));
-  entries.push_back(normals);
-}
-
-std::uint32_t add_indexed(SceneDescription& scene, UVec3 corners, UVec3 normals, std::uint16_t material) {
-  const auto id = static_cast<std::uint32_t>(scene.geometry.triangles.size());
-  scene.geometry.triangles.push_back(corners);
-  scene.geometry.triangle_materials.push_back(material);
-  add_normals(scene, normals);
-  return id;
-}
-
 std::uint32_t add_vertex(SceneDescription& scene, Vec3 vertex) {
   scene.geometry.vertices.push_back(vertex);
   return static_cast<std::uint32_t>(scene.geometry.vertices.size() - 1);
@@ -38,6 +21,26 @@ std::uint32_t add_vertex(SceneDescription& scene, Vec3 vertex) {
 std::uint32_t add_normal(SceneDescription& scene, Vec3 normal) {
   scene.geometry.normals.push_back(normal);
   return static_cast<std::uint32_t>(scene.geometry.normals.size() - 1);
+}
+
+// Without normals of its own, a triangle of a smooth material gets that of its plane three times.
+std::uint32_t add_indexed(SceneDescription& scene, UVec3 corners, UVec3 normals, std::uint16_t material) {
+  auto& geometry = scene.geometry;
+  const auto id = static_cast<std::uint32_t>(geometry.triangles.size());
+  if (scene.materials[material].smooth_normals) {
+    if (normals.x == tool::kNoNormal) {
+      const auto v = [&](int k) { return DVec3(geometry.vertices[corners[k]]); };
+      const DVec3 normal = glm::normalize(glm::cross(v(1) - v(0), v(2) - v(0)));
+      normals = UVec3(add_normal(scene, Vec3(normal)));
+    }
+    geometry.triangle_normals.resize(id, UVec3(tool::kNoNormal));
+  }
+  geometry.triangles.push_back(corners);
+  geometry.triangle_materials.push_back(material);
+  if (scene.materials[material].smooth_normals || !geometry.triangle_normals.empty()) {
+    geometry.triangle_normals.push_back(normals);
+  }
+  return id;
 }
 
 void add_point_light(SceneDescription& scene, Vec3 position, Vec3 color) {

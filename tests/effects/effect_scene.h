@@ -19,7 +19,8 @@ namespace gridiron::test {
 /// @returns the material's index.
 std::uint16_t add_material(tool::SceneDescription& scene, const tool::SceneMaterial& material);
 
-/// Appends a triangle; of a smooth material, with these normals (unit).
+/// Appends a triangle; of a smooth material, with these normals (unit), or with that of its plane where none are
+/// given, as parallelograms and boxes have them. Normals are for smooth materials only.
 /// @returns its id.
 std::uint32_t add_triangle(tool::SceneDescription& scene, const Vec3 (&corners)[3], std::uint16_t material);
 std::uint32_t add_triangle(tool::SceneDescription& scene, const Vec3 (&corners)[3], const Vec3 (&normals)[3],

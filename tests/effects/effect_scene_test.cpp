@@ -80,6 +80,9 @@ TEST(EffectScene, FlatTrianglesBesideSmoothOnesHaveNoNormals) {
   for (std::size_t id = 0; id < 12; ++id) {
     EXPECT_EQ(scene.geometry.triangle_normals[id].x == tool::kNoNormal, id < 2 || id >= 10);
   }
+  const std::uint32_t id = add_box(scene, Vec3(0), Vec3(1), smooth_material);
+  ASSERT_EQ(scene.geometry.triangle_normals.size(), 24u);
+  EXPECT_EQ(scene.geometry.normals[scene.geometry.triangle_normals[id].x], Vec3(-1, 0, 0));
 }
 
 // Nothing between the ball and a light right behind the eye, wherever the ball is and whatever its size.
