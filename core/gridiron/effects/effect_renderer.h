@@ -113,7 +113,7 @@ class EffectRenderer {
     std::uint32_t place = 0;  // along a Z curve of squares, so that neighbours go together
     while (place < kPixels) {
       std::uint32_t count = 0;
-      for (; place < kPixels && count < kWaveRays; ++place) {
+      for (; place < kPixels && count < Layout::kWaveRays; ++place) {
         const std::uint32_t square = place / kSubpacketRays, rest = place % kSubpacketRays;
         const std::uint32_t x = subpacket_column(square) * kSubpacketWidth + rest % kSubpacketWidth;
         const std::uint32_t y = subpacket_row(square) * kSubpacketWidth + rest / kSubpacketWidth;
@@ -129,9 +129,12 @@ class EffectRenderer {
         }
         ray.pixel = (y * Layout::kTileWidth + x) | 1u << 16;
         ray.path = 1;
-        store_.wave.ids[count] = store_.effects.hit_ids[y * Layout::kTileWidth + x];
+        if constexpr (kHasPackets<Layout>) {
+          store_.wave.ids[count] = store_.effects.hit_ids[y * Layout::kTileWidth + x];
+        }
         ++count;
       }
+      if constexpr (!kHasPackets<Layout>) GRIDIRON_TRY(trace_eye_rays(count, sample));
       GRIDIRON_TRY(finish_wave(count, sample));
       GRIDIRON_TRY(empty_queue(sample));
     }
@@ -207,7 +210,7 @@ class EffectRenderer {
         GRIDIRON_TRY(queue_.pop_wave(count, [&](std::uint32_t i, const QueuedRay& ray) {
           store_.wave.items[i].ray = ray;
         }));
-        BounceJobs<Store> jobs(store_, count);
+        BounceJobs<Store> jobs(store_, count, kFloatMax);
         GRIDIRON_TRY(walks().run(question(false), jobs));
         GRIDIRON_TRY(finish_wave(count, sample));
       }
@@ -217,6 +220,17 @@ class EffectRenderer {
   }
 
   [[nodiscard]] RayWalks<L, Store, P> walks() { return RayWalks<L, Store, P>(store_, transfers_); }
+
+  // Where there are no packets, eye rays are walked like all others; of the first sample's hits the tile keeps ids.
+  [[nodiscard]] Status trace_eye_rays(std::uint32_t ray_count, std::uint32_t sample) {
+    transfers_.note_stage(Stage::kPrimary);
+    BounceJobs<Store> jobs(store_, ray_count, store_.frame.t_far);
+    GRIDIRON_TRY(walks().run(question(false), jobs));
+    for (std::uint32_t i = 0; i < ray_count && sample == 0; ++i) {
+      store_.effects.hit_ids[store_.wave.items[i].ray.pixel & 0xFFFFu] = store_.wave.ids[i];
+    }
+    return Status::kOk;
+  }
 
   // Everything that happens to the rays of a wave once it is known what they hit.
   [[nodiscard]] GRIDIRON_OUTLINE Status finish_wave(std::uint32_t ray_count, std::uint32_t sample) {

@@ -224,11 +224,12 @@ class OcclusionJobs {
   std::uint32_t sample_ = 0, first_point_ = 0;
 };
 
-/// The rays of a wave taken from the queue, neighbours together; their hits go to the wave's ids.
+/// The rays of a wave, neighbours together; their hits go to the wave's ids.
 template <class Store>
 class BounceJobs {
  public:
-  BounceJobs(Store& store, std::uint32_t ray_count) : store_(store), ray_count_(ray_count) {}
+  BounceJobs(Store& store, std::uint32_t ray_count, float t_far)
+      : store_(store), ray_count_(ray_count), t_far_(t_far) {}
 
   [[nodiscard]] GRIDIRON_OUTLINE std::uint32_t next(WalkRays& rays, std::uint32_t& purpose) {
     purpose = 0;
@@ -237,7 +238,7 @@ class BounceJobs {
     store_.work.charge_to(Work::kWaveRay);
     for (std::uint32_t i = 0; i < count; ++i) {
       const QueuedRay& ray = store_.wave.items[first_ + i].ray;
-      set_walk_ray(rays, i, vector_of(ray.origin), vector_of(ray.dir), kFloatMax, first_ + i);
+      set_walk_ray(rays, i, vector_of(ray.origin), vector_of(ray.dir), t_far_, first_ + i);
     }
     first_ += count;
     return count;
@@ -250,6 +251,7 @@ class BounceJobs {
  private:
   Store& store_;
   std::uint32_t ray_count_;
+  float t_far_;
   std::uint32_t first_ = 0;
 };
 

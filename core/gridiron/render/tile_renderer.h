@@ -77,7 +77,7 @@ class TileRenderer {
 
     if (is_scene_shaded()) {
       if constexpr (kHasEffects) GRIDIRON_TRY(render_effects(left, top, store_.output[slot]));
-    } else {
+    } else if constexpr (kHasPackets<Layout>) {
       GRIDIRON_TRY(trace_tile(left, top, {}, [&](std::uint32_t x, std::uint32_t y) {
         shade_packet<L>(frame, store_.packet, x, y, store_.output[slot], store_.work);
       }));
@@ -106,11 +106,16 @@ class TileRenderer {
     effects_.begin_tile(left, top);
     const std::uint32_t sample_count = effects_.samples_per_pixel();
     for (std::uint32_t sample = 0; sample < sample_count; ++sample) {
-      GRIDIRON_TRY(trace_tile(left, top, pixel_offset(sample_count, sample), [&](std::uint32_t x, std::uint32_t y) {
-        if (sample == 0) shade_packet<L>(store_.frame, store_.packet, x, y, output, store_.work);
-        keep_hits(store_.packet, x, y, Layout::kTileWidth, store_.effects.hit_ids, store_.work);
-      }));
+      if constexpr (kHasPackets<Layout>) {
+        GRIDIRON_TRY(trace_tile(left, top, pixel_offset(sample_count, sample), [&](std::uint32_t x, std::uint32_t y) {
+          if (sample == 0) shade_packet<L>(store_.frame, store_.packet, x, y, output, store_.work);
+          keep_hits(store_.packet, x, y, Layout::kTileWidth, store_.effects.hit_ids, store_.work);
+        }));
+      }
       GRIDIRON_TRY(effects_.shade_sample(sample));
+      if constexpr (!kHasPackets<Layout>) {
+        if (sample == 0) copy_words(store_.effects.hit_ids, output.id);
+      }
     }
     effects_.finish_tile(output.color);
     return Status::kOk;
@@ -206,6 +211,8 @@ class TileRenderer {
       return Status::kUnsupportedFrame;
     }
     if (is_scene_shaded() && !kHasEffects) return Status::kNeedsSceneShading;
+    // Without packets there is no other shading, and no exact distance of eye rays.
+    if (!kHasPackets<Layout> && (!is_scene_shaded() || frame.depth_address != 0)) return Status::kUnsupportedFrame;
     const GridRecord& grid = frame.grid;
     std::uint32_t format = static_cast<std::uint32_t>(TriangleFormat::kVertices);
     if (frame.accuracy == static_cast<std::uint32_t>(Accuracy::kPaper)) {

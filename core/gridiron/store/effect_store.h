@@ -51,37 +51,42 @@ union WaveItem {
   WavePoint point;
 };
 
-template <std::uint32_t WalkCount>
+template <std::uint32_t WalkCount, std::uint32_t WaveRayCount>
 struct alignas(128) Wave {
   RayWalk walks[WalkCount];
-  std::uint32_t ids[kWaveRays];  ///< triangles hit, kNoTriangle where none
-  WaveItem items[kWaveRays];
+  std::uint32_t ids[WaveRayCount];  ///< triangles hit, kNoTriangle where none
+  WaveItem items[WaveRayCount];
 };
 
-/// Rays that the queue moves to or from main memory at once.
-inline constexpr std::uint32_t kSpillBlockRays = 128;
-
 /// What a layout with effects keeps besides.
-template <std::uint32_t TilePixels>
+template <class Layout>
 struct alignas(128) EffectStore {
-  static constexpr std::uint32_t kMaterialSlots = 64;
-  static constexpr std::uint32_t kLightSlots = 16;
+  static constexpr std::uint32_t kTilePixels = Layout::kTileWidth * Layout::kTileWidth;
+  static constexpr std::uint32_t kWaveRays = Layout::kWaveRays;
+  static constexpr std::uint32_t kMaterialSlots = Layout::kMaterialSlots;
+  static constexpr std::uint32_t kLightSlots = Layout::kLightSlots;
+  static constexpr std::uint32_t kSpillBlockRays = kWaveRays / 2;  ///< moved to or from main memory at once
   static constexpr std::uint32_t kQueueRays = 3 * kSpillBlockRays;
   static constexpr std::uint32_t kNoMaterial = 0xFFFFFFFFu;
+  static_assert(kWaveRays <= kMostWaveRays && kWaveRays % (2 * kWalkRays) == 0 && kMaterialSlots % 2 == 0);
 
   alignas(128) EffectsRecord scene;
   alignas(128) MaterialRecord materials[kMaterialSlots];  ///< direct-mapped by index
   alignas(128) LightRecord lights[kLightSlots];           ///< first_light and those that follow it
   alignas(128) QueuedRay queue[kQueueRays];
-  alignas(128) std::uint32_t sums[3][TilePixels];  ///< RGB, steps of 2^-20, what all samples of a pixel add up to
-  std::uint32_t hit_ids[TilePixels];               ///< of the eye rays of one sample
+  alignas(128) std::uint32_t sums[3][kTilePixels];  ///< RGB, steps of 2^-20, what all samples of a pixel add up to
+  std::uint32_t hit_ids[kTilePixels];               ///< of the eye rays of one sample
   std::uint32_t material_of_slot[kMaterialSlots];
   std::uint32_t first_light;
   alignas(32) std::byte surface_bytes[sizeof(SurfaceRecord) + 16];  ///< a surface that a tie is settled with
 };
 
-/// Stands where a layout has no effects.
+/// Stand where a layout has no effects, or no packets.
 struct NoEffectStore {};
-union NoWave {};
+struct NoWave {};
+struct NoPacket {
+  static constexpr std::uint32_t kRayCount = 32;
+};
+struct NoMailbox {};
 
 }  // namespace gridiron

@@ -119,13 +119,79 @@ struct EffectLayout256K {
   static constexpr std::uint32_t kTrianglesPerBuffer = 40;
   static constexpr std::uint32_t kMaxTriangleDepth = 8;
   static constexpr std::uint32_t kMaxOutputDepth = 2;
+  static constexpr std::uint32_t kWaveRays = 256;
+  static constexpr std::uint32_t kMaterialSlots = 64;
+  static constexpr std::uint32_t kLightSlots = 16;
   static_assert((BuiltV & kSceneShading) != 0);
 };
+
+/// Sizes of a 64 KB core that renders effects: no packets, all rays by walks, whose code is shorter.
+/// @tparam BuiltV  as above; which sets fit is for the code budget to say.
+template <std::uint32_t BuiltV>
+struct EffectLayout64K {
+  static constexpr std::uint32_t kEffects = BuiltV;
+  static constexpr std::uint32_t kArenaBytes = 64 * 1024;
+  static constexpr std::uint32_t kCodeBudgetBytes = 36 * 1024 + 512;
+  static constexpr std::uint32_t kStackBudgetBytes = 4608;
+  static constexpr std::uint32_t kTileWidth = 8;
+  static constexpr std::uint32_t kPacketWidth = 0;
+  static constexpr std::uint32_t kTableEntries = 256;  ///< 8,192 macrocells resident
+  static constexpr std::uint32_t kMaxMacroWidth = 4;
+  static constexpr std::uint32_t kMaxMacroDepth = 2;
+  static constexpr std::uint32_t kTrianglesPerBuffer = 16;
+  static constexpr std::uint32_t kMaxTriangleDepth = 2;
+  static constexpr std::uint32_t kMaxOutputDepth = 2;
+  static constexpr std::uint32_t kWaveRays = 64;
+  static constexpr std::uint32_t kMaterialSlots = 8;
+  static constexpr std::uint32_t kLightSlots = 4;
+  static_assert((BuiltV & kSceneShading) != 0);
+};
+
+/// A layout whose packets have no width traces all rays by walks.
+template <class Layout>
+inline constexpr bool kHasPackets = Layout::kPacketWidth != 0;
+
+/// Parts of a local store that depend on what its layout is for.
+template <class Layout>
+struct StoreParts;
 
 /// Walks of secondary rays that a layout has buffers for.
 template <class Layout>
 inline constexpr std::uint32_t kWalkCount =
     Layout::kMaxMacroDepth < Layout::kMaxTriangleDepth ? Layout::kMaxMacroDepth : Layout::kMaxTriangleDepth;
+
+template <class Layout>
+struct StoreParts {
+  template <bool kHas>
+  static auto* packet_of() {
+    if constexpr (kHas) {
+      static_assert(Layout::kTileWidth % Layout::kPacketWidth == 0);
+      return static_cast<Packet<Layout::kPacketWidth, Layout::kRecentTriangles>*>(nullptr);
+    } else {
+      return static_cast<NoPacket*>(nullptr);
+    }
+  }
+  template <bool kHas>
+  static auto* mailbox_of() {
+    if constexpr (kHas) {
+      return static_cast<Mailbox<Layout::kMailboxSlots>*>(nullptr);
+    } else {
+      return static_cast<NoMailbox*>(nullptr);
+    }
+  }
+  template <bool kHas>
+  static auto* wave_of() {
+    if constexpr (kHas) {
+      return static_cast<Wave<kWalkCount<Layout>, Layout::kWaveRays>*>(nullptr);
+    } else {
+      return static_cast<NoWave*>(nullptr);
+    }
+  }
+  using StorePacket = std::remove_pointer_t<decltype(packet_of<kHasPackets<Layout>>())>;
+  using StoreMailbox = std::remove_pointer_t<decltype(mailbox_of<kHasPackets<Layout>>())>;
+  using StoreWave = std::remove_pointer_t<decltype(wave_of<(Layout::kEffects != 0)>())>;
+  using Effects = std::conditional_t<Layout::kEffects != 0, EffectStore<Layout>, NoEffectStore>;
+};
 
 /// Memory of one core. Buffers for transfers are congruent with main memory modulo kPortableCongruenceBytes: cell
 /// blocks and tiles start on lines there and here; triangle runs start anywhere on 16 bytes, so their buffers have room
@@ -133,7 +199,7 @@ inline constexpr std::uint32_t kWalkCount =
 template <class LayoutType>
 struct alignas(128) LocalStore {
   using Layout = LayoutType;
-  using StorePacket = Packet<Layout::kPacketWidth, Layout::kRecentTriangles>;
+  using StorePacket = typename StoreParts<Layout>::StorePacket;
   static constexpr std::uint32_t kTilePixels = Layout::kTileWidth * Layout::kTileWidth;
   static constexpr std::uint32_t kMacroCells = Layout::kMaxMacroWidth * Layout::kMaxMacroWidth * Layout::kMaxMacroWidth;
   static constexpr std::uint32_t kCellBlockBytes =
@@ -141,8 +207,8 @@ struct alignas(128) LocalStore {
   static constexpr std::uint32_t kTriangleBufferBytes =
       (Layout::kTrianglesPerBuffer * kTriangleRecordBytes + 32 + kLineBytes - 1) / kLineBytes * kLineBytes;
 
-  using Effects = std::conditional_t<Layout::kEffects != 0, EffectStore<kTilePixels>, NoEffectStore>;
-  using StoreWave = std::conditional_t<Layout::kEffects != 0, Wave<kWalkCount<Layout>>, NoWave>;
+  using Effects = typename StoreParts<Layout>::Effects;
+  using StoreWave = typename StoreParts<Layout>::StoreWave;
 
   struct alignas(128) CellBlock {
     std::byte bytes[kCellBlockBytes];
@@ -166,14 +232,13 @@ struct alignas(128) LocalStore {
     StorePacket packet;  ///< while eye rays are traced
     StoreWave wave;      ///< while what they hit is worked on
   };
-  Mailbox<Layout::kMailboxSlots> mailbox;
+  [[no_unique_address]] typename StoreParts<Layout>::StoreMailbox mailbox;
   TileOutput output[Layout::kMaxOutputDepth];
   [[no_unique_address]] Effects effects;
 
   static_assert(Layout::kMaxMacroDepth <= kMacroTagCount);
   static_assert(Layout::kMaxTriangleDepth <= kTriangleTagCount);
   static_assert(Layout::kMaxOutputDepth <= kOutputTagCount);
-  static_assert(Layout::kTileWidth % Layout::kPacketWidth == 0);
 };
 
 /// Main memory of one core for secondary rays that wait; of frames without effects, none.
@@ -197,7 +262,8 @@ static_assert(kFitsArena<StoreLayout256K<8, 8>> && kFitsArena<StoreLayout256K<16
               kFitsArena<StoreLayout256K<8, 64>> && kFitsArena<StoreLayout256K<32, 64>>);
 static_assert(kFitsArena<StoreLayout64K<4>> && kFitsArena<StoreLayout64K<8>> && kFitsArena<StoreLayout64K<16>>);
 static_assert(kFitsArena<StoreLayout128K<8>> && kFitsArena<StoreLayout128K<32>>);
-static_assert(kFitsArena<EffectLayout256K<kAllEffects, 8>> && kFitsArena<EffectLayout256K<kAllEffects, 32>>);
+static_assert(kFitsArena<EffectLayout256K<kAllEffects, 8>> && kFitsArena<EffectLayout256K<kAllEffects, 32>> &&
+              kFitsArena<EffectLayout64K<kAllEffects>>);
 static_assert(kFitsArena<StoreLayout512K<8>> && kFitsArena<StoreLayout512K<32>> && kFitsArena<StoreLayout512K<8, 64>> &&
               kFitsArena<StoreLayout512K<32, 64>>);
 
@@ -213,11 +279,11 @@ constexpr void for_each_region(Visit&& visit) {
   if constexpr (Layout::kEffects == 0) {
     visit("packet", offsetof(Store, packet), sizeof(Store::packet));
   } else {
-    constexpr bool kWaveIsLarger = sizeof(typename Store::StoreWave) > sizeof(typename Store::StorePacket);
+    constexpr bool kWaveIsLarger = !kHasPackets<Layout> || sizeof(typename Store::StoreWave) > sizeof(typename Store::StorePacket);
     visit("packet_or_wave", offsetof(Store, packet),
           kWaveIsLarger ? sizeof(typename Store::StoreWave) : sizeof(typename Store::StorePacket));
   }
-  visit("mailbox", offsetof(Store, mailbox), sizeof(Store::mailbox));
+  if constexpr (kHasPackets<Layout>) visit("mailbox", offsetof(Store, mailbox), sizeof(Store::mailbox));
   visit("output", offsetof(Store, output), sizeof(Store::output));
   if constexpr (Layout::kEffects != 0) visit("effects", offsetof(Store, effects), sizeof(Store::effects));
 }

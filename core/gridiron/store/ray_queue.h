@@ -27,8 +27,8 @@ class RayQueue {
       GRIDIRON_TRY(transfers_.put(store_.queue + first_, spill_place(spilled_blocks_), kBlockBytes, kSetupTag));
       GRIDIRON_TRY(transfers_.wait(kSetupTag));
       ++spilled_blocks_;
-      first_ = place_of(kSpillBlockRays);
-      count_ -= kSpillBlockRays;
+      first_ = place_of(Store::kSpillBlockRays);
+      count_ -= Store::kSpillBlockRays;
     }
     store_.queue[place_of(count_)] = ray;
     ++count_;
@@ -38,22 +38,22 @@ class RayQueue {
   /// Takes up to kWaveRays rays off the top, those pushed last; take(i, ray) is given them in the order of pushing.
   template <class Take>
   [[nodiscard]] Status pop_wave(std::uint32_t& taken, Take&& take) {
-    while (spilled_blocks_ != 0 && count_ < kWaveRays && count_ + kSpillBlockRays <= Store::kQueueRays) {
+    while (spilled_blocks_ != 0 && count_ < Store::kWaveRays && count_ + Store::kSpillBlockRays <= Store::kQueueRays) {
       --spilled_blocks_;
-      first_ = first_ == 0 ? Store::kQueueRays - kSpillBlockRays : first_ - kSpillBlockRays;
-      count_ += kSpillBlockRays;
+      first_ = first_ == 0 ? Store::kQueueRays - Store::kSpillBlockRays : first_ - Store::kSpillBlockRays;
+      count_ += Store::kSpillBlockRays;
       GRIDIRON_TRY(transfers_.get(store_.queue + first_, spill_place(spilled_blocks_), kBlockBytes, kSetupTag));
       GRIDIRON_TRY(transfers_.wait(kSetupTag));
     }
-    taken = count_ < kWaveRays ? count_ : kWaveRays;
+    taken = count_ < Store::kWaveRays ? count_ : Store::kWaveRays;
     count_ -= taken;
     for (std::uint32_t i = 0; i < taken; ++i) take(i, store_.queue[place_of(count_ + i)]);
     return Status::kOk;
   }
 
  private:
-  static constexpr std::uint32_t kBlockBytes = kSpillBlockRays * static_cast<std::uint32_t>(sizeof(QueuedRay));
-  static_assert(Store::kQueueRays % kSpillBlockRays == 0);
+  static constexpr std::uint32_t kBlockBytes = Store::kSpillBlockRays * static_cast<std::uint32_t>(sizeof(QueuedRay));
+  static_assert(Store::kQueueRays % Store::kSpillBlockRays == 0);
 
   // The i-th oldest ray here, in a ring.
   [[nodiscard]] std::uint32_t place_of(std::uint32_t i) const {
@@ -67,7 +67,7 @@ class RayQueue {
   Store& store_;
   Transfers<P>& transfers_;
   MainAddress spill_;
-  std::uint32_t first_ = 0;  ///< of the ring, a multiple of kSpillBlockRays
+  std::uint32_t first_ = 0;  ///< of the ring, a multiple of Store::kSpillBlockRays
   std::uint32_t count_ = 0;  ///< rays in it
   std::uint32_t spilled_blocks_ = 0;
 };
