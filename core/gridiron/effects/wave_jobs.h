@@ -72,8 +72,9 @@ class LightJobs {
   /// The next rays of up to 16 neighbouring hits to one place. @returns how many, 0: no more.
   [[nodiscard]] GRIDIRON_OUTLINE std::uint32_t next(WalkRays& rays, std::uint32_t& purpose) {
     while (light_ < light_count_) {
-      const LightRecord& light = context_.store.effects.lights[light_];
-      purpose = light_;
+      const std::uint32_t index = light_;
+      const LightRecord& light = context_.store.effects.lights[index];
+      purpose = index;
       const std::uint32_t first = first_point_, sample = sample_;
       step(light);
       std::uint32_t count = 0;
@@ -81,7 +82,7 @@ class LightJobs {
       if (end > context_.point_count) end = context_.point_count;
       for (std::uint32_t i = first; i < end; ++i) {
         const WavePoint& point = context_.point(i);
-        const Vector3 to_light = place_of(light, sample, point) - vector_of(point.point);
+        const Vector3 to_light = place_of(index, sample, point) - vector_of(point.point);
         context_.store.work.charge_to(Work::kShadowRay);
         const bool is_lit =
             dot(to_light, vector_of(point.face)) > 0.0f && dot(to_light, vector_of(point.shading)) > 0.0f;
@@ -113,14 +114,15 @@ class LightJobs {
   /// The same without shadows.
   void light_all() {
     while (light_ < light_count_) {
-      const LightRecord& light = context_.store.effects.lights[light_];
+      const std::uint32_t index = light_;
+      const LightRecord& light = context_.store.effects.lights[index];
       const std::uint32_t first = first_point_, sample = sample_;
       step(light);
       std::uint32_t end = first + kWalkRays;
       if (end > context_.point_count) end = context_.point_count;
       for (std::uint32_t i = first; i < end; ++i) {
         const WavePoint& point = context_.point(i);
-        const Vector3 to_light = place_of(light, sample, point) - vector_of(point.point);
+        const Vector3 to_light = place_of(index, sample, point) - vector_of(point.point);
         if (dot(to_light, vector_of(point.face)) > 0.0f) light_point(light, point, to_light);
       }
     }
@@ -138,11 +140,12 @@ class LightJobs {
     ++light_;
   }
 
-  [[nodiscard]] Vector3 place_of(const LightRecord& light, std::uint32_t sample, const WavePoint& point) const {
+  [[nodiscard]] Vector3 place_of(std::uint32_t index, std::uint32_t sample, const WavePoint& point) const {
+    const LightRecord& light = context_.store.effects.lights[index];
     const Vector3 corner = vector_of(light.corner);
     if constexpr ((Built & kAreaLights) != 0) {
       if (light.samples != 0) {
-        const Jitter jitter = context_.jitter(point, area_light_purpose(first_light_ + light_));
+        const Jitter jitter = context_.jitter(point, area_light_purpose(first_light_ + index));
         const SquarePlace place = area_light_place(sample, light.samples, jitter);
         return corner + (place.a * vector_of(light.edge_u) + place.b * vector_of(light.edge_v));
       }
