@@ -32,7 +32,7 @@ constexpr const char* kTableName = "animation.csv";
 
 struct AnimationFrame {
   std::filesystem::path input;
-  std::string picture;  ///< file name
+  std::string picture{};  ///< file name
   std::uint64_t triangles = 0;
   float lambda = 0;
   double build_cycles = 0, build_seconds = 0;    ///< of the machine's general core

@@ -7,7 +7,6 @@
 #include <algorithm>
 #include <cctype>
 #include <cstdio>
-#include <cstring>
 #include <string>
 #include <utility>
 
@@ -118,20 +117,6 @@ void tell_notes(const SceneInput& input) {
   }
   const std::uint64_t more = input.text->note_count - input.text->notes.size();
   if (more != 0) std::fprintf(stderr, "%s: %s\n", input.path.c_str(), words_of_count(more, "more note").c_str());
-}
-
-std::optional<EffectsRecord> find_effects(std::span<const std::byte> image) {
-  ImageHeader header;
-  std::memcpy(&header, image.data(), sizeof header);
-  for (std::uint32_t i = 0; i < header.section_count; ++i) {
-    SectionEntry entry;
-    std::memcpy(&entry, image.data() + header.section_table_offset_bytes + i * sizeof entry, sizeof entry);
-    if (entry.kind != static_cast<std::uint32_t>(SectionKind::kEffects)) continue;
-    EffectsRecord effects;
-    std::memcpy(&effects, image.data() + entry.offset_bytes, sizeof effects);
-    return effects;
-  }
-  return std::nullopt;
 }
 
 std::uint64_t spill_bytes_of(std::uint32_t core_count, std::uint32_t recursion_depth) {

@@ -46,8 +46,8 @@ struct TextScene {
 struct SceneInput {
   std::filesystem::path path;
   std::variant<Mesh, PackedScene> content;
-  double load_seconds = 0;       ///< host time of reading and checking
-  std::optional<TextScene> text; ///< beside a Mesh
+  double load_seconds = 0;          ///< host time of reading and checking
+  std::optional<TextScene> text{};  ///< beside a Mesh
 };
 
 /// @returns whether a file is a text scene by its name.
@@ -60,9 +60,6 @@ struct SceneInput {
 
 /// Says on standard error what is odd in a text scene: `file:line: note: text`, one line each.
 void tell_notes(const SceneInput& input);
-
-/// @returns the record of a scene image's effects, nothing where it has none. @param image  a validated one.
-[[nodiscard]] std::optional<EffectsRecord> find_effects(std::span<const std::byte> image);
 
 /// @returns the mesh of a PLY file. Errors as read_scene_input.
 [[nodiscard]] Mesh read_ply_mesh(const std::filesystem::path& path);
