@@ -43,20 +43,13 @@ struct AnimationFrame {
   [[nodiscard]] double fps() const { return seconds() > 0 ? 1 / seconds() : 0; }
 };
 
-bool is_mesh(const std::filesystem::path& path) {
-  std::string extension = path.extension().string();
-  std::ranges::transform(extension, extension.begin(),
-                         [](char letter) { return letter >= 'A' && letter <= 'Z' ? char(letter - 'A' + 'a') : letter; });
-  return extension == ".ply";
-}
-
 // Folders give their meshes by name. Pictures are called after the meshes.
 std::vector<AnimationFrame> collect_frames(const AnimateArguments& arguments) {
   std::vector<AnimationFrame> frames;
   for (const std::filesystem::path& input : arguments.inputs) {
     std::error_code error;
     if (!std::filesystem::is_directory(input, error)) {
-      if (!is_mesh(input)) {
+      if (!is_mesh_file(input)) {
         throw Failure(ExitCode::kBadInput, input.string() + ": is no mesh; animate takes .ply files and folders of them");
       }
       frames.push_back({.input = input});
@@ -64,7 +57,7 @@ std::vector<AnimationFrame> collect_frames(const AnimateArguments& arguments) {
     }
     std::vector<std::filesystem::path> files;
     for (std::filesystem::directory_iterator entry(input, error), end; !error && entry != end; entry.increment(error)) {
-      if (is_mesh(entry->path())) files.push_back(entry->path());
+      if (is_mesh_file(entry->path())) files.push_back(entry->path());
     }
     if (error) throw Failure(ExitCode::kBadInput, input.string() + ": cannot be read: " + error.message());
     if (files.empty()) throw Failure(ExitCode::kBadInput, input.string() + ": holds no mesh (.ply)");

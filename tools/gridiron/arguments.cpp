@@ -308,6 +308,9 @@ RenderArguments complete_render(const RawRender& raw, const CLI::App& app) {
   render.has_shading = is_given("--shading");
   if (!render.has_shading && is_text_scene(render.scene.input)) render.shading = Shading::kScene;
   require_tolerance(render.scene);
+  if (render.shading == Shading::kScene && is_mesh_file(render.scene.input)) {
+    usage_error("--shading scene: a mesh has no lights and materials; text scenes (.nff) have");
+  }
   const Configuration& configuration = *render.scene.configuration;
   render.scene.machine = find_machine(raw.machine_name);
   render.output = raw.output.empty() ? render.scene.input.stem().concat(".png") : std::filesystem::path(raw.output);
@@ -363,7 +366,9 @@ void add_animate_options(CLI::App& app, AnimateArguments& animate, RawRender& ra
 }
 
 AnimateArguments complete_animate(AnimateArguments animate, const RawRender& raw, const CLI::App& app) {
-  if (raw.arguments.shading == Shading::kScene) usage_error("--shading: meshes have no scene's shading");
+  if (raw.arguments.shading == Shading::kScene) {
+    usage_error("--shading scene: a mesh has no lights and materials; text scenes (.nff) have");
+  }
   animate.render = complete_render(raw, app);
   return animate;
 }

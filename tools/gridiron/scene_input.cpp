@@ -92,6 +92,10 @@ bool is_text_scene(const std::filesystem::path& path) {
   return lower_extension(path) == ".nff";
 }
 
+bool is_mesh_file(const std::filesystem::path& path) {
+  return lower_extension(path) == ".ply";
+}
+
 SceneInput read_scene_input(const std::filesystem::path& path, std::optional<float> tolerance) {
   const Stopwatch stopwatch;
   SceneInput input{path, Mesh{}, 0, std::nullopt};

@@ -50,8 +50,9 @@ struct SceneInput {
   std::optional<TextScene> text{};  ///< beside a Mesh
 };
 
-/// @returns whether a file is a text scene by its name.
+/// @returns whether a file is a text scene, or a mesh, by its name.
 [[nodiscard]] bool is_text_scene(const std::filesystem::path& path);
+[[nodiscard]] bool is_mesh_file(const std::filesystem::path& path);
 
 /// Reads the scene. @param tolerance  of round shapes in a text scene; nothing: the reader's own.
 /// Errors: Failure (kBadInput), `file:line: reason` or `file:byte N: reason`.
