@@ -45,7 +45,7 @@ std::string words_of_layout(const sim::LayoutChoice& layout) {
       list += (list.empty() ? "" : "; ") + words_of_layout(built);
     }
   }
-  if (list.empty()) usage_error(store + shading + ": effects need a local store of 256 KB (--store 256)");
+  if (list.empty()) usage_error(store + shading + ": effects need a local store of 256 KB; --shading simple does without them");
   usage_error(store + shading + ": not built for " + words_of_layout(layout) + "; there are " + list);
 }
 

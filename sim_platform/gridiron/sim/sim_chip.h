@@ -40,7 +40,7 @@ struct LayoutChoice {
   StoreSize store = StoreSize::k256KB;
   std::uint32_t tile_width = 32;   ///< pixels along a tile's edge
   std::uint32_t packet_width = 8;  ///< rays along a packet's edge
-  bool has_effects = false;        ///< of Shading::kScene
+  bool has_effects = false;        ///< renders Shading::kScene
 };
 
 enum class Mode : std::uint8_t {
