@@ -50,7 +50,8 @@ std::vector<AnimationFrame> collect_frames(const AnimateArguments& arguments) {
     std::error_code error;
     if (!std::filesystem::is_directory(input, error)) {
       if (!is_mesh_file(input)) {
-        throw Failure(ExitCode::kBadInput, input.string() + ": is no mesh; animate takes .ply files and folders of them");
+        throw Failure(ExitCode::kBadInput,
+                      input.string() + ": is no mesh; animate takes .ply files and folders of them");
       }
       frames.push_back({.input = input});
       continue;
@@ -149,10 +150,10 @@ std::string table_of(const std::vector<AnimationFrame>& frames, const sim::Machi
     const AnimationFrame& frame = frames[i];
     // The general core may have another clock: the total is told in the cores'.
     const double total_cycles = frame.build_seconds * machine.clock_hz + frame.render_cycles;
-    for (const std::string& field :
-         {text_of(i), in_csv(frame.input.filename().string()), text_of(frame.triangles), text_of(frame.lambda),
-          text_of(frame.build_cycles), text_of(frame.render_cycles), text_of(total_cycles),
-          text_of(frame.build_seconds), text_of(frame.render_seconds), text_of(frame.seconds()), text_of(frame.fps())}) {
+    for (const std::string& field : {text_of(i), in_csv(frame.input.filename().string()), text_of(frame.triangles),
+                                     text_of(frame.lambda), text_of(frame.build_cycles), text_of(frame.render_cycles),
+                                     text_of(total_cycles), text_of(frame.build_seconds), text_of(frame.render_seconds),
+                                     text_of(frame.seconds()), text_of(frame.fps())}) {
       table += field + ",";
     }
     table += hash_text(frame.hash) + "\n";

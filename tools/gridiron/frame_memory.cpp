@@ -30,8 +30,8 @@ std::uint32_t recursion_depth(const SceneInput& input, const RenderArguments& ar
   if (input.text) return input.text->effects.recursion_depth;
   const PackedScene* packed = std::get_if<PackedScene>(&input.content);
   if (packed == nullptr || !packed->view.has_effects) {
-    throw Failure(ExitCode::kUsage, "--shading scene: " + input.path.string() +
-                                        " has no lights and materials; text scenes (.nff) have");
+    throw Failure(ExitCode::kUsage,
+                  "--shading scene: " + input.path.string() + " has no lights and materials; text scenes (.nff) have");
   }
   return packed->view.effects.recursion_depth;
 }

@@ -133,8 +133,7 @@ void print_effects(const InfoArguments& arguments, const SceneFacts& facts, cons
   const std::uint32_t area_lights = record.light_count - record.point_light_count;
   print_line("materials", words_of_count(record.material_count) + ", " +
                               words_of_count(record.smooth_triangle_count, "triangle") + " with normals");
-  print_line("lights", words_of_count(record.point_light_count, "point") + ", " +
-                           words_of_count(area_lights, "area"));
+  print_line("lights", words_of_count(record.point_light_count, "point") + ", " + words_of_count(area_lights, "area"));
   print_line("rays", "depth of recursion " + std::to_string(record.recursion_depth) + ", " +
                          words_of_count(record.samples_per_pixel, "sample") + " a pixel" +
                          (record.occlusion_samples == 0

@@ -54,8 +54,8 @@ TextScene read_text_scene(const std::filesystem::path& path, std::optional<float
 }
 
 // @returns false where the grid's references outgrow their 32 bits; `need` is zero then.
-bool count_need(const SceneInput& input, const Mesh& mesh, const GridParameters& parameters,
-                const EffectsView* effects, GridNeed& need) {
+bool count_need(const SceneInput& input, const Mesh& mesh, const GridParameters& parameters, const EffectsView* effects,
+                GridNeed& need) {
   stop_if_interrupted();
   need = {};
   const Status status = count_scene_image(mesh.view(), parameters, need, effects);

@@ -79,8 +79,9 @@ TEST(Hither, AgreesWithPoints) {
     constexpr int kSteps = 60;
     for (int i = 0; i <= kSteps; ++i) {
       for (int j = 0; i + j <= kSteps; ++j) {
-        const DVec3 p = (DVec3(a) * double(i) + DVec3(b) * double(j) + DVec3(c) * double(kSteps - i - j)) / double(kSteps) -
-                        DVec3(eye);
+        const DVec3 p =
+            (DVec3(a) * double(i) + DVec3(b) * double(j) + DVec3(c) * double(kSteps - i - j)) / double(kSteps) -
+            DVec3(eye);
         const double depth = -p.z;
         const auto is_inside = [&](double room) {
           return depth > -room && depth < hither + room && std::abs(p.x) <= 2 * depth + room &&

@@ -52,8 +52,9 @@ void expect_failure(const TemporaryFolder& folder, const Words& arguments, int e
 TEST(TextScene, BringsViewAndSize) {
   const TemporaryFolder folder;
   folder.write_ply("ball.ply", make_sphere(12, 16, 1.0f));
-  folder.write("a.nff", "v from 1 2 6 at 0.1 0 0 up 0 1 0.1 angle 30 hither 0 resolution 40 24\n"
-                        "f 1 1 1 1 0 0 0 0 m ball.ply\n");
+  folder.write("a.nff",
+               "v from 1 2 6 at 0.1 0 0 up 0 1 0.1 angle 30 hither 0 resolution 40 24\n"
+               "f 1 1 1 1 0 0 0 0 m ball.ply\n");
   const Words view = {"--eye", "1,2,6", "--at", "0.1,0,0", "--up", "0,1,0.1", "--fov", "30", "--size", "40x24"};
   const auto with = [](Words a, const Words& b) {
     a.insert(a.end(), b.begin(), b.end());
@@ -68,10 +69,8 @@ TEST(TextScene, BringsViewAndSize) {
   const struct {
     Words nff, ply;
   } cases[] = {
-      {{"--size", "50x20"}, {"--size", "50x20"}},
-      {{"--eye", "2,0,5"}, {"--eye", "2,0,5"}},
-      {{"--at", "0,0.2,0"}, {"--at", "0,0.2,0"}},
-      {{"--up", "1,0,0"}, {"--up", "1,0,0"}},
+      {{"--size", "50x20"}, {"--size", "50x20"}}, {{"--eye", "2,0,5"}, {"--eye", "2,0,5"}},
+      {{"--at", "0,0.2,0"}, {"--at", "0,0.2,0"}}, {{"--up", "1,0,0"}, {"--up", "1,0,0"}},
       {{"--fov", "50"}, {"--fov", "50"}},
   };
   for (const auto& part : cases) {

@@ -1,4 +1,5 @@
-// Scene effects: text scenes as the image builder takes them, and what they call for. SPDX-License-Identifier: Apache-2.0
+// Scene effects: text scenes as the image builder takes them, and what they call for.
+// SPDX-License-Identifier: Apache-2.0
 #include "scene_text/scene_effects.h"
 
 #include <gtest/gtest.h>
@@ -23,16 +24,11 @@ TEST(SceneEffects, EachSceneCallsForItsEffect) {
     const char* name;
     std::uint32_t effects;
   } cases[] = {
-      {"shadow", kPointShadows},
-      {"area_light", kAreaLights},
-      {"mirror", kReflection},
-      {"glass", kRefraction | kReflection},  // glass mirrors, too
-      {"highlight", kHighlights},
-      {"ambient_occlusion", kAmbientOcclusion},
-      {"environment", kEnvironment},
-      {"smooth_normals", kSmoothNormals},
-      {"multisampling", kMultisampling},
-      {"everything", kAllEffects},
+      {"shadow", kPointShadows},         {"area_light", kAreaLights},
+      {"mirror", kReflection},           {"glass", kRefraction | kReflection},  // glass mirrors, too
+      {"highlight", kHighlights},        {"ambient_occlusion", kAmbientOcclusion},
+      {"environment", kEnvironment},     {"smooth_normals", kSmoothNormals},
+      {"multisampling", kMultisampling}, {"everything", kAllEffects},
   };
   for (const auto& of : cases) {
     SCOPED_TRACE(of.name);
