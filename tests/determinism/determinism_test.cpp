@@ -88,6 +88,8 @@ std::string first_difference(const sim::TileTrace& a, const sim::TileTrace& b) {
       same = same && x.tag == y.tag && x.rotating == y.rotating && x.bytes == y.bytes && x.address == y.address;
     } else if (x.kind == sim::EventKind::kWait) {
       same = same && x.tags == y.tags && x.rotating_tags == y.rotating_tags;
+    } else if (x.kind == sim::EventKind::kStage) {
+      same = same && x.stage == y.stage;
     } else {
       same = same && x.first_work == y.first_work && x.work_count == y.work_count;
     }

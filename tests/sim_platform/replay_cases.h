@@ -70,6 +70,12 @@ class Steps {
     tile_.events.push_back(event);
     return *this;
   }
+  Steps& stage(Stage stage) {
+    TraceEvent event = blank(EventKind::kStage);
+    event.stage = stage;
+    tile_.events.push_back(event);
+    return *this;
+  }
   operator TileTrace() const { return tile_; }
 
  private:

@@ -7,6 +7,7 @@
 #include <algorithm>
 #include <atomic>
 #include <cstdint>
+#include <cstring>
 #include <ostream>
 #include <string>
 #include <tuple>
@@ -21,7 +22,8 @@ namespace gridiron::sim {
 
 // Traces are compared field by field.
 [[nodiscard]] static auto fields(const TraceEvent& e) {
-  return std::tuple(e.kind, e.tag, e.rotating, e.bytes, e.address, e.tags, e.rotating_tags, e.first_work, e.work_count);
+  return std::tuple(e.kind, e.tag, e.rotating, e.stage, e.bytes, e.address, e.tags, e.rotating_tags, e.first_work,
+                    e.work_count);
 }
 [[nodiscard]] static std::string difference(const TileTrace& a, const TileTrace& b) {
   if (a.tile_id != b.tile_id) return "tile_id";
@@ -265,6 +267,118 @@ TEST(SimChip, RefusesWhatItCannotRender) {
     ChipOptions options;
     options.mode = mode;
     EXPECT_EQ(render_frame(memory, record.address, options).status, Status::kBadFrame);
+  }
+}
+
+// --- Frames with effects ----------------------------------------------------------------------------------------
+
+TEST(SimChipEffects, HaveLayoutsOfTheirOwn) {
+  for (const Mode mode : {Mode::kChecked, Mode::kPlain, Mode::kInstrumented}) {
+    for (const std::uint32_t lanes : {4u, 8u, 16u}) {
+      if (lanes > widest_lanes()) continue;
+      for (const StoreSize store : kStoreSizes) {
+        for (const std::uint32_t tile_width : {8u, 16u, 32u, 64u}) {
+          for (const std::uint32_t packet_width : {4u, 8u, 16u, 32u, 64u}) {
+            const bool has_layout =
+                store == StoreSize::k256KB && tile_width == 32 && (packet_width == 8 || packet_width == 32);
+            const bool has_mode = mode == Mode::kPlain || (lanes == 4 && (mode == Mode::kChecked || has_instrumented_mode()));
+            EXPECT_EQ(is_built({store, tile_width, packet_width, true}, mode, lanes), has_layout && has_mode);
+          }
+        }
+      }
+    }
+  }
+}
+
+/// A frame with effects of which only the records are there: what is looked at before a core sees it.
+class EffectsFrame {
+ public:
+  static constexpr std::uint32_t kTriangles = 30;
+  static constexpr std::uint64_t kSurfaceBytes = 1536;  // of 30 surfaces, in whole lines
+
+  EffectsFrame() : memory_(1 << 20), image_(*memory_.allocate(64 * 1024)), color_(*memory_.allocate(32 * 32 * 4)) {
+    image.magic = kImageMagic;
+    image.image_bytes = 48 * 1024;
+    image.triangle_count = kTriangles;
+    effects.material_count = 3;
+    effects.light_count = 2;
+    effects.smooth_triangle_count = 5;
+    effects.environment_width = 16;  // 6 faces of 3x3 blocks of 768 bytes
+    effects.materials_offset_bytes = 1024;
+    effects.lights_offset_bytes = 1280;
+    effects.surfaces_offset_bytes = 1408;
+    effects.normals_offset_bytes = 2944;
+    effects.environment_offset_bytes = 4096;
+    frame.magic = kFrameMagic;
+    frame.version = kFrameVersion;
+    frame.width = frame.height = frame.tile_width = 32;
+    frame.tiles_x = frame.tiles_y = frame.output_depth = 1;
+    frame.shading = static_cast<std::uint32_t>(Shading::kScene);
+    frame.color_address = color_.address.value;
+    frame.effects_address = image_.address.value + 512;
+    frame.image_address = image_.address.value;
+  }
+
+  /// @returns kBadParameter where the frame is sound: the spill memory is not, and that is looked at last.
+  [[nodiscard]] Status status(Mode mode = Mode::kChecked) {
+    std::memcpy(image_.bytes.data(), &image, sizeof image);
+    std::memcpy(image_.bytes.data() + 512, &effects, sizeof effects);
+    const std::uint64_t mark = memory_.used_bytes();
+    const MemoryRegion record = *memory_.allocate(sizeof frame);
+    std::memcpy(record.bytes.data(), &frame, sizeof frame);
+    ChipOptions options;
+    options.mode = mode;
+    options.spill = {MainAddress{4096 + 128}, 4096};
+    const Status status = render_frame(memory_, record.address, options).status;
+    memory_.release_to(mark);
+    return status;
+  }
+
+  ImageHeader image{};
+  EffectsRecord effects{};
+  FrameRecord frame{};
+
+ private:
+  SimMemory memory_;
+  MemoryRegion image_, color_;
+};
+
+TEST(SimChipEffects, WhatAFrameNamesMustLieInMemory) {
+  for (const Mode mode : {Mode::kChecked, Mode::kPlain}) {
+    ASSERT_EQ(EffectsFrame().status(mode), Status::kBadParameter) << "the frame itself is sound";
+    const auto status_of = [&](auto change) {
+      EffectsFrame frame;
+      change(frame);
+      return frame.status(mode);
+    };
+    using F = EffectsFrame;
+    EXPECT_EQ(status_of([](F& f) { f.frame.effects_address = 0; }), Status::kBadFrame);
+    EXPECT_EQ(status_of([](F& f) { f.frame.effects_address = ~std::uint64_t{0} - 63; }), Status::kBadFrame);
+    EXPECT_EQ(status_of([](F& f) { f.frame.image_address = 0; }), Status::kBadFrame);
+    EXPECT_EQ(status_of([](F& f) { f.frame.image_address = 1 << 20; }), Status::kBadFrame);
+    EXPECT_EQ(status_of([](F& f) { f.image.magic = 0; }), Status::kBadFrame);
+    EXPECT_EQ(status_of([](F& f) { f.image.image_bytes = 1 << 20; }), Status::kBadFrame);
+    EXPECT_EQ(status_of([](F& f) { f.image.triangle_count = 1 << 20; }), Status::kBadFrame);
+    EXPECT_EQ(status_of([](F& f) { f.effects.material_count = kMaxMaterials; }), Status::kBadFrame);
+    EXPECT_EQ(status_of([](F& f) { f.effects.material_count = ~0u; }), Status::kBadFrame);
+    EXPECT_EQ(status_of([](F& f) { f.effects.light_count = kMaxLights + 1; }), Status::kBadFrame);
+    EXPECT_EQ(status_of([](F& f) { f.effects.smooth_triangle_count = 1 << 20; }), Status::kBadFrame);
+    EXPECT_EQ(status_of([](F& f) { f.effects.environment_width = kMaxEnvironmentWidth; }), Status::kBadFrame);
+    EXPECT_EQ(status_of([](F& f) { f.effects.environment_width = ~0u; }), Status::kBadFrame);
+    const std::uint64_t end = 48 * 1024;
+    EXPECT_EQ(status_of([&](F& f) { f.effects.materials_offset_bytes = end - 128; }), Status::kBadFrame);
+    EXPECT_EQ(status_of([&](F& f) { f.effects.lights_offset_bytes = ~std::uint64_t{0}; }), Status::kBadFrame);
+    EXPECT_EQ(status_of([&](F& f) { f.effects.surfaces_offset_bytes = end - F::kSurfaceBytes + 128; }),
+              Status::kBadFrame);
+    EXPECT_EQ(status_of([&](F& f) { f.effects.surfaces_offset_bytes = end - F::kSurfaceBytes; }),
+              Status::kBadParameter);
+    EXPECT_EQ(status_of([&](F& f) { f.effects.normals_offset_bytes = end - 128; }), Status::kBadFrame);
+    EXPECT_EQ(status_of([&](F& f) { f.effects.environment_offset_bytes = end - 6 * 9 * 768 + 128; }),
+              Status::kBadFrame);
+    EXPECT_EQ(status_of([&](F& f) { f.effects.environment_offset_bytes = end - 6 * 9 * 768; }),
+              Status::kBadParameter);
+    // Other shadings have neither effects nor spill memory.
+    EXPECT_NE(status_of([](F& f) { f.frame.shading = 1, f.frame.effects_address = 0; }), Status::kBadParameter);
   }
 }
 

@@ -32,7 +32,7 @@ constexpr const char* kTableName = "animation.csv";
 
 struct AnimationFrame {
   std::filesystem::path input;
-  std::string picture;  ///< file name
+  std::string picture{};  ///< file name
   std::uint64_t triangles = 0;
   float lambda = 0;
   double build_cycles = 0, build_seconds = 0;    ///< of the machine's general core
@@ -43,28 +43,22 @@ struct AnimationFrame {
   [[nodiscard]] double fps() const { return seconds() > 0 ? 1 / seconds() : 0; }
 };
 
-bool is_mesh(const std::filesystem::path& path) {
-  std::string extension = path.extension().string();
-  std::ranges::transform(extension, extension.begin(),
-                         [](char letter) { return letter >= 'A' && letter <= 'Z' ? char(letter - 'A' + 'a') : letter; });
-  return extension == ".ply";
-}
-
 // Folders give their meshes by name. Pictures are called after the meshes.
 std::vector<AnimationFrame> collect_frames(const AnimateArguments& arguments) {
   std::vector<AnimationFrame> frames;
   for (const std::filesystem::path& input : arguments.inputs) {
     std::error_code error;
     if (!std::filesystem::is_directory(input, error)) {
-      if (!is_mesh(input)) {
-        throw Failure(ExitCode::kBadInput, input.string() + ": is no mesh; animate takes .ply files and folders of them");
+      if (!is_mesh_file(input)) {
+        throw Failure(ExitCode::kBadInput,
+                      input.string() + ": is no mesh; animate takes .ply files and folders of them");
       }
       frames.push_back({.input = input});
       continue;
     }
     std::vector<std::filesystem::path> files;
     for (std::filesystem::directory_iterator entry(input, error), end; !error && entry != end; entry.increment(error)) {
-      if (is_mesh(entry->path())) files.push_back(entry->path());
+      if (is_mesh_file(entry->path())) files.push_back(entry->path());
     }
     if (error) throw Failure(ExitCode::kBadInput, input.string() + ": cannot be read: " + error.message());
     if (files.empty()) throw Failure(ExitCode::kBadInput, input.string() + ": holds no mesh (.ply)");
@@ -156,10 +150,10 @@ std::string table_of(const std::vector<AnimationFrame>& frames, const sim::Machi
     const AnimationFrame& frame = frames[i];
     // The general core may have another clock: the total is told in the cores'.
     const double total_cycles = frame.build_seconds * machine.clock_hz + frame.render_cycles;
-    for (const std::string& field :
-         {text_of(i), in_csv(frame.input.filename().string()), text_of(frame.triangles), text_of(frame.lambda),
-          text_of(frame.build_cycles), text_of(frame.render_cycles), text_of(total_cycles),
-          text_of(frame.build_seconds), text_of(frame.render_seconds), text_of(frame.seconds()), text_of(frame.fps())}) {
+    for (const std::string& field : {text_of(i), in_csv(frame.input.filename().string()), text_of(frame.triangles),
+                                     text_of(frame.lambda), text_of(frame.build_cycles), text_of(frame.render_cycles),
+                                     text_of(total_cycles), text_of(frame.build_seconds), text_of(frame.render_seconds),
+                                     text_of(frame.seconds()), text_of(frame.fps())}) {
       table += field + ",";
     }
     table += hash_text(frame.hash) + "\n";

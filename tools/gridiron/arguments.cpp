@@ -166,8 +166,10 @@ void add_view_options(CLI::App& app, RenderArguments& render) {
       app, "--camera", render.camera,
       [](const std::string& text) { return std::optional<std::filesystem::path>(text); }, "a file name", "FILE",
       "view from a file of its own; --eye, --at, --up and --fov replace parts of it");
-  add_parsed(app, "--eye", render.view.eye, parse_vector, vector, "x,y,z", "position of the camera (default: a text scene's own, else framed)");
-  add_parsed(app, "--at", render.view.at, parse_vector, vector, "x,y,z", "point looked at (default: a text scene's own, else framed)");
+  add_parsed(app, "--eye", render.view.eye, parse_vector, vector, "x,y,z",
+             "position of the camera (default: a text scene's own, else framed)");
+  add_parsed(app, "--at", render.view.at, parse_vector, vector, "x,y,z",
+             "point looked at (default: a text scene's own, else framed)");
   add_parsed(app, "--up", render.view.up, parse_vector, vector, "x,y,z", "direction that is up (default 0,1,0)");
   const auto fov = [](const std::string& text) {
     const std::optional<float> value = parse_float(text);
@@ -236,7 +238,8 @@ void add_algorithm_options(CLI::App& app, RawRender& raw) {
   add_choice(app, "--buffering", render.asked.depths,
              Choices<BufferDepths>{{"single", kSingleBuffering}, {"double", kDoubleBuffering}},
              "buffers of all three levels (default: the configuration's)");
-  add_choice(app, "--packet", render.asked.packet_width, Choices<std::uint32_t>{{"4", 4}, {"8", 8}, {"16", 16}, {"32", 32}},
+  add_choice(app, "--packet", render.asked.packet_width,
+             Choices<std::uint32_t>{{"4", 4}, {"8", 8}, {"16", 16}, {"32", 32}},
              "rays along a packet's edge (default: the configuration's)");
   add_choice(app, "--tile-width", render.asked.tile_width,
              Choices<std::uint32_t>{{"8", 8}, {"16", 16}, {"32", 32}, {"64", 64}},
@@ -302,12 +305,17 @@ void require_tolerance(const SceneArguments& scene) {
 
 // Defaults that depend on other options, and combinations that make no sense.
 RenderArguments complete_render(const RawRender& raw, const CLI::App& app) {
-  const auto is_given = [&app](const char* name) { return app.get_option_no_throw(name) != nullptr && app.count(name) > 0; };
+  const auto is_given = [&app](const char* name) {
+    return app.get_option_no_throw(name) != nullptr && app.count(name) > 0;
+  };
   RenderArguments render = raw.arguments;
   render.has_size = is_given("--size");
   render.has_shading = is_given("--shading");
   if (!render.has_shading && is_text_scene(render.scene.input)) render.shading = Shading::kScene;
   require_tolerance(render.scene);
+  if (render.shading == Shading::kScene && is_mesh_file(render.scene.input)) {
+    usage_error("--shading scene: a mesh has no lights and materials; text scenes (.nff) have");
+  }
   const Configuration& configuration = *render.scene.configuration;
   render.scene.machine = find_machine(raw.machine_name);
   render.output = raw.output.empty() ? render.scene.input.stem().concat(".png") : std::filesystem::path(raw.output);
@@ -363,7 +371,9 @@ void add_animate_options(CLI::App& app, AnimateArguments& animate, RawRender& ra
 }
 
 AnimateArguments complete_animate(AnimateArguments animate, const RawRender& raw, const CLI::App& app) {
-  if (raw.arguments.shading == Shading::kScene) usage_error("--shading: meshes have no scene's shading");
+  if (raw.arguments.shading == Shading::kScene) {
+    usage_error("--shading scene: a mesh has no lights and materials; text scenes (.nff) have");
+  }
   animate.render = complete_render(raw, app);
   return animate;
 }
@@ -414,7 +424,8 @@ Command parse_arguments(int count, const char* const* values) {
   add_input(*render, raw.arguments.scene);
   add_grid_options(*render, raw.arguments.scene, raw.machine_name);
   add_output_options(*render, raw);
-  add_size(*render, raw.arguments.width, raw.arguments.height, "picture in pixels (default: a text scene's own, else 1024x1024)");
+  add_size(*render, raw.arguments.width, raw.arguments.height,
+           "picture in pixels (default: a text scene's own, else 1024x1024)");
   add_view_options(*render, raw.arguments);
   add_machine_options(*render, raw);
   add_algorithm_options(*render, raw);
@@ -431,7 +442,8 @@ Command parse_arguments(int count, const char* const* values) {
   add_input(*info, info_arguments.scene);
   add_grid_options(*info, info_arguments.scene, info_machine);
   add_choice(*info, "--format", info_arguments.format, kFormats, "how triangles are stored; " + format_help());
-  add_size(*info, info_arguments.width, info_arguments.height, "picture whose memory is told (default: a text scene's own, else 1024x1024)");
+  add_size(*info, info_arguments.width, info_arguments.height,
+           "picture whose memory is told (default: a text scene's own, else 1024x1024)");
   std::optional<StoreSize> info_store;
   add_choice(*info, "--store", info_store, kStores, kStoreHelp);
   info->add_flag("--json", info_arguments.json, "as JSON");

@@ -39,16 +39,16 @@ struct RenderArguments {
   SceneArguments scene;
   AskedLayout asked;
   bool has_size = false, has_shading = false;  ///< asked for; else they are the scene's
-  std::filesystem::path output;  ///< never empty
+  std::filesystem::path output;                ///< never empty
   std::optional<std::filesystem::path> depth, ids, report, timeline;
   std::optional<std::filesystem::path> camera;
   ViewRequest view;
   std::uint32_t width = 1024, height = 1024;
-  std::optional<CountPair> tile;   ///< column and row of the one tile to render
-  std::uint32_t cores = 0;         ///< 0: the machine's
-  std::uint32_t threads = 0;       ///< 0: the host's
-  std::uint32_t lanes = 0;         ///< 0: 4 where time is told, else the widest of the host
-  std::uint32_t tile_width = 0;    ///< as all that follows: settled by settle_layout()
+  std::optional<CountPair> tile;  ///< column and row of the one tile to render
+  std::uint32_t cores = 0;        ///< 0: the machine's
+  std::uint32_t threads = 0;      ///< 0: the host's
+  std::uint32_t lanes = 0;        ///< 0: 4 where time is told, else the widest of the host
+  std::uint32_t tile_width = 0;   ///< as all that follows: settled by settle_layout()
   std::uint32_t packet_width = 0;
   BufferDepths depths;
   BufferDepths wanted_depths;  ///< the configuration's or the command line's; `depths` where the store holds fewer
@@ -111,9 +111,8 @@ struct TextRequest {
   std::string text;
 };
 
-using Command =
-    std::variant<RenderArguments, AnimateArguments, InfoArguments, PackArguments, MachinesArguments,
-                 ExperimentArguments, TextRequest>;
+using Command = std::variant<RenderArguments, AnimateArguments, InfoArguments, PackArguments, MachinesArguments,
+                             ExperimentArguments, TextRequest>;
 
 /// Reads a machine file that is named. Errors: Failure, kUsage with what is wrong, kBadInput of a machine file.
 [[nodiscard]] Command parse_arguments(int count, const char* const* values);

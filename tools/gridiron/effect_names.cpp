@@ -7,16 +7,11 @@ namespace gridiron::tool {
 namespace {
 
 constexpr EffectName kEffects[] = {
-    {kSceneShading, "scene_shading", "kSceneShading"},
-    {kPointShadows, "point_shadows", "kPointShadows"},
-    {kAreaLights, "area_lights", "kAreaLights"},
-    {kReflection, "reflection", "kReflection"},
-    {kRefraction, "refraction", "kRefraction"},
-    {kAmbientOcclusion, "ambient_occlusion", "kAmbientOcclusion"},
-    {kEnvironment, "environment", "kEnvironment"},
-    {kSmoothNormals, "smooth_normals", "kSmoothNormals"},
-    {kHighlights, "highlights", "kHighlights"},
-    {kMultisampling, "multisampling", "kMultisampling"},
+    {kSceneShading, "scene_shading", "kSceneShading"}, {kPointShadows, "point_shadows", "kPointShadows"},
+    {kAreaLights, "area_lights", "kAreaLights"},       {kReflection, "reflection", "kReflection"},
+    {kRefraction, "refraction", "kRefraction"},        {kAmbientOcclusion, "ambient_occlusion", "kAmbientOcclusion"},
+    {kEnvironment, "environment", "kEnvironment"},     {kSmoothNormals, "smooth_normals", "kSmoothNormals"},
+    {kHighlights, "highlights", "kHighlights"},        {kMultisampling, "multisampling", "kMultisampling"},
 };
 static_assert(std::size(kEffects) == kEffectCount);
 

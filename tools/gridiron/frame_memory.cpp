@@ -29,12 +29,11 @@ std::uint32_t recursion_depth(const SceneInput& input, const RenderArguments& ar
   if (arguments.shading != Shading::kScene) return 1;
   if (input.text) return input.text->effects.recursion_depth;
   const PackedScene* packed = std::get_if<PackedScene>(&input.content);
-  const std::optional<EffectsRecord> effects = packed != nullptr ? find_effects(packed->file.bytes) : std::nullopt;
-  if (!effects) {
-    throw Failure(ExitCode::kUsage, "--shading scene: " + input.path.string() +
-                                        " has no lights and materials; text scenes (.nff) have");
+  if (packed == nullptr || !packed->view.has_effects) {
+    throw Failure(ExitCode::kUsage,
+                  "--shading scene: " + input.path.string() + " has no lights and materials; text scenes (.nff) have");
   }
-  return effects->recursion_depth;
+  return packed->view.effects.recursion_depth;
 }
 
 // Puts the scene image into main memory. @returns where it lies.

@@ -5,6 +5,7 @@
 #include <string>
 
 #include "commands.h"
+#include "effect_names.h"
 #include "scene_facts.h"
 #include "store_facts.h"
 #include "words.h"
@@ -30,6 +31,11 @@ Json json_of(const StoreFacts& store) {
           {"stack_bytes", store.stack_bytes}};
 }
 
+// Whether the machine, and the store asked for, have room for a renderer of effects.
+bool has_effect_store(const InfoArguments& arguments) {
+  return sim::arena_bytes(arguments.store) >= sim::arena_bytes(sim::StoreSize::k256KB);
+}
+
 Json json_of(const LoopBounds& bounds) {
   return {{"passes_per_packet", bounds.passes_per_packet},
           {"macro_slices_per_pass", bounds.macro_slices_per_pass},
@@ -37,6 +43,37 @@ Json json_of(const LoopBounds& bounds) {
           {"slices_per_pass", bounds.slices_per_pass},
           {"cells_per_pass", bounds.cells_per_pass},
           {"triangle_tests_per_pass", bounds.triangle_tests_per_pass}};
+}
+
+// The local store and packets of the renderer that would do: effects have those of 256 KB alone.
+std::string renderer_of(const InfoArguments& arguments, const SceneFacts& facts, const StoreFacts& store) {
+  return renderer_type(facts.effects.record.called_for, sim::arena_bytes(arguments.store) >> 10, store.packet_width);
+}
+
+Json effects_json(const InfoArguments& arguments, const SceneFacts& facts, const StoreFacts& store) {
+  const EffectFacts& effects = facts.effects;
+  Json json = {{"called_for", Json(effect_names(effects.record.called_for))},
+               {"renderer", renderer_of(arguments, facts, store)}};
+  if (!effects.has_effects) return json;
+  const EffectsRecord& record = effects.record;
+  json["materials"] = record.material_count;
+  json["point_lights"] = record.point_light_count;
+  json["area_lights"] = record.light_count - record.point_light_count;
+  json["smooth_triangles"] = record.smooth_triangle_count;
+  json["recursion_depth"] = record.recursion_depth;
+  json["samples_per_pixel"] = record.samples_per_pixel;
+  json["occlusion_samples"] = record.occlusion_samples;
+  json["environment_width"] = record.environment_width;
+  json["environment_bytes"] = effects.bytes_of("environment");
+  json["section_bytes"] = effects.section_bytes;
+  Json sections = Json::array();
+  for (const EffectSectionFact& section : effects.sections) {
+    sections.push_back({{"name", section.name}, {"bytes", section.bytes}});
+  }
+  json["sections"] = sections;
+  json["spill_bytes_per_core"] = effects.spill_bytes_per_core;
+  json["has_room"] = has_effect_store(arguments);
+  return json;
 }
 
 void print_json(const InfoArguments& arguments, const SceneFacts& facts, const StoreFacts& store) {
@@ -70,7 +107,7 @@ void print_json(const InfoArguments& arguments, const SceneFacts& facts, const S
         {"picture_bytes", facts.picture_bytes},
         {"fits", facts.fits}}},
       {"local_store", json_of(store)},
-      {"effects", {{"called_for", Json::array()}}},
+      {"effects", effects_json(arguments, facts, store)},
       {"loop_bounds", json_of(facts.bounds)}};
   std::printf("%s\n", document.dump(2).c_str());
 }
@@ -81,6 +118,38 @@ std::string joined(const std::uint32_t (&counts)[3]) {
 
 void print_line(const char* name, const std::string& text) {
   std::printf("%-14s %s\n", name, text.c_str());
+}
+
+void print_effects(const InfoArguments& arguments, const SceneFacts& facts, const StoreFacts& store) {
+  const EffectFacts& effects = facts.effects;
+  const EffectsRecord& record = effects.record;
+  print_line("effects", effects.has_effects ? words_of_effects(record.called_for) : "none called for");
+  print_line("renderer", renderer_of(arguments, facts, store));
+  if (!effects.has_effects) return;
+  if (!has_effect_store(arguments)) {
+    print_line("", "does NOT fit the local store of " + std::string(arguments.scene.machine->name) +
+                       ": effects need one of 256 KB");
+  }
+  const std::uint32_t area_lights = record.light_count - record.point_light_count;
+  print_line("materials", words_of_count(record.material_count) + ", " +
+                              words_of_count(record.smooth_triangle_count, "triangle") + " with normals");
+  print_line("lights", words_of_count(record.point_light_count, "point") + ", " + words_of_count(area_lights, "area"));
+  print_line("rays", "depth of recursion " + std::to_string(record.recursion_depth) + ", " +
+                         words_of_count(record.samples_per_pixel, "sample") + " a pixel" +
+                         (record.occlusion_samples == 0
+                              ? ""
+                              : ", " + words_of_count(record.occlusion_samples, "ray") + " of ambient occlusion"));
+  if (record.environment_width != 0) {
+    const std::string width = std::to_string(record.environment_width);
+    print_line("environment",
+               "6 faces of " + width + "x" + width + ", " + words_of_bytes(effects.bytes_of("environment")));
+  }
+  std::string parts;
+  for (const EffectSectionFact& section : effects.sections) {
+    parts += (parts.empty() ? "" : ", ") + std::string(section.name) + " " + words_of_bytes(section.bytes);
+  }
+  print_line("effect memory", words_of_bytes(effects.section_bytes) + " of the image: " + parts);
+  print_line("", words_of_bytes(effects.spill_bytes_per_core) + " a core for rays that wait");
 }
 
 void print_text(const InfoArguments& arguments, const SceneFacts& facts, const StoreFacts& store) {
@@ -115,7 +184,7 @@ void print_text(const InfoArguments& arguments, const SceneFacts& facts, const S
                                words_of_count(grid.cell_block_count - 1) + " of them hold triangles");
   print_line("main memory", words_of_bytes(facts.image_bytes) + " scene image, " + words_of_bytes(facts.scratch_bytes) +
                                 " while it is built, " + words_of_bytes(facts.picture_bytes) + " picture of " +
-                                std::to_string(arguments.width) + "x" + std::to_string(arguments.height));
+                                std::to_string(facts.width) + "x" + std::to_string(facts.height));
   print_line("", std::string(facts.fits ? "fits" : "does NOT fit") + " the " +
                      words_of_bytes(arguments.scene.machine->main_memory_bytes) + " of " +
                      std::string(arguments.scene.machine->name));
@@ -126,7 +195,7 @@ void print_text(const InfoArguments& arguments, const SceneFacts& facts, const S
     std::printf("%14s %8s  %s\n", "", words_of_count(region.bytes).c_str(),
                 (region.name + " at " + words_of_count(region.offset_bytes)).c_str());
   }
-  print_line("effects", "none called for");
+  print_effects(arguments, facts, store);
   print_line("loop bounds", "per packet " + std::to_string(facts.bounds.passes_per_packet) + " passes; per pass " +
                                 words_of_count(facts.bounds.macro_slices_per_pass) + " macro slices, " +
                                 words_of_count(facts.bounds.macro_cells_per_pass) + " macrocells, " +
@@ -139,7 +208,9 @@ void print_text(const InfoArguments& arguments, const SceneFacts& facts, const S
 
 void run_command(const InfoArguments& arguments) {
   const SceneFacts facts = collect_scene_facts(arguments);
-  const StoreFacts store = usual_store_facts(arguments.store, arguments.scene.configuration->packet_width);
+  const std::uint32_t packet_width = arguments.scene.configuration->packet_width;
+  const StoreFacts store = facts.effects.record.called_for != 0 ? effect_store_facts(packet_width)
+                                                                : usual_store_facts(arguments.store, packet_width);
   arguments.json ? print_json(arguments, facts, store) : print_text(arguments, facts, store);
 }
 

@@ -22,8 +22,7 @@ sim::LayoutChoice layout_with(const RenderArguments& render, StoreSize store) {
   const std::uint32_t tile_width = asked.tile_width != 0 ? asked.tile_width : sim::usual_tile_width(store);
   // A packet is no wider than a tile.
   const std::uint32_t fitting = std::min(render.scene.configuration->packet_width, tile_width);
-  return {store, tile_width, asked.packet_width != 0 ? asked.packet_width : fitting,
-          render.shading == Shading::kScene};
+  return {store, tile_width, asked.packet_width != 0 ? asked.packet_width : fitting, render.shading == Shading::kScene};
 }
 
 std::string words_of_layout(const sim::LayoutChoice& layout) {
@@ -45,7 +44,8 @@ std::string words_of_layout(const sim::LayoutChoice& layout) {
       list += (list.empty() ? "" : "; ") + words_of_layout(built);
     }
   }
-  if (list.empty()) usage_error(store + shading + ": effects need a local store of 256 KB (--store 256)");
+  if (list.empty())
+    usage_error(store + shading + ": effects need a local store of 256 KB; --shading simple does without them");
   usage_error(store + shading + ": not built for " + words_of_layout(layout) + "; there are " + list);
 }
 

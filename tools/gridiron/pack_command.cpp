@@ -16,7 +16,8 @@ void run_command(const PackArguments& arguments) {
   const SceneInput input = read_scene_input(arguments.scene.input, arguments.scene.tolerance);
   const Mesh* mesh = std::get_if<Mesh>(&input.content);
   if (mesh == nullptr) {
-    throw Failure(ExitCode::kBadInput, input.path.string() + ": is a scene image already; pack takes a mesh (.ply) or a text scene (.nff)");
+    throw Failure(ExitCode::kBadInput,
+                  input.path.string() + ": is a scene image already; pack takes a mesh (.ply) or a text scene (.nff)");
   }
 
   tell_notes(input);

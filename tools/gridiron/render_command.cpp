@@ -9,10 +9,12 @@
 #include <limits>
 #include <list>
 #include <string>
+#include <string_view>
 
 #include "atomic_file.h"
 #include "chip_frame.h"
 #include "commands.h"
+#include "effect_names.h"
 #include "failure.h"
 #include "frame_memory.h"
 #include "hither.h"
@@ -62,7 +64,7 @@ RenderArguments complete_arguments(const RenderArguments& asked, const SceneInpu
   }
   if (arguments.threads == 0) arguments.threads = host_threads();
   const PackedScene* packed = std::get_if<PackedScene>(&input.content);
-  if (!arguments.has_shading && packed != nullptr && find_effects(packed->file.bytes)) {
+  if (!arguments.has_shading && packed != nullptr && packed->view.has_effects) {
     arguments.shading = Shading::kScene;
     settle_layout(arguments);
   }
@@ -103,7 +105,11 @@ ReportInput collect_report(const RenderArguments& arguments, const SceneInput& i
   report.machine = *arguments.scene.machine;
   report.timing = timing;
   report.work = result.work;
-  report.rays = {{"primary", std::uint64_t{arguments.width} * arguments.height}};
+  for (const std::string_view name : effect_names(frame.image.effects.called_for)) {
+    report.effects_called_for.emplace_back(name);
+  }
+  const std::uint32_t samples = arguments.shading == Shading::kScene ? frame.image.effects.samples_per_pixel : 1;
+  report.rays = {{"primary", std::uint64_t{arguments.width} * arguments.height * samples}};
   const StoreFacts store = *find_store_facts(arguments.layout());  // it has rendered
   report.arena_bytes = store.arena_bytes;
   report.regions = store.regions;

@@ -2,6 +2,7 @@
 #include "scene_facts.h"
 
 #include <gridiron/frame/frame_setup.h>
+#include <gridiron/grid/effect_sections.h>
 
 #include <algorithm>
 
@@ -24,12 +25,63 @@ LoopBounds bounds_of(const GridRecord& grid) {
   return bounds;
 }
 
+std::string_view name_of(SectionKind kind) {
+  switch (kind) {
+    case SectionKind::kEffects:
+      return "effects";
+    case SectionKind::kMaterials:
+      return "materials";
+    case SectionKind::kLights:
+      return "lights";
+    case SectionKind::kSurfaces:
+      return "surfaces";
+    case SectionKind::kNormals:
+      return "normals";
+    case SectionKind::kEnvironmentMap:
+      return "environment";
+    default:
+      return "other";
+  }
+}
+
+EffectFacts effects_of(const EffectsRecord& record, std::uint32_t triangle_count) {
+  EffectFacts facts;
+  facts.has_effects = true;
+  facts.record = record;
+  const EffectSections sections = place_effect_sections(record, triangle_count, 0);
+  for (std::uint32_t i = 0; i < sections.section_count; ++i) {
+    const SectionEntry& entry = sections.entries[i];
+    facts.sections.push_back({name_of(static_cast<SectionKind>(entry.kind)), entry.section_bytes});
+  }
+  facts.section_bytes = sections.end_bytes - sections.begin_bytes;
+  facts.spill_bytes_per_core = spill_bytes(record.recursion_depth);
+  return facts;
+}
+
+std::uint32_t recursion_depth(const SceneInput& input) {
+  if (input.text) return input.text->effects.recursion_depth;
+  const PackedScene* packed = std::get_if<PackedScene>(&input.content);
+  return packed != nullptr && packed->view.has_effects ? packed->view.effects.recursion_depth : 1;
+}
+
 }  // namespace
 
+std::uint64_t EffectFacts::bytes_of(std::string_view section) const {
+  const auto found = std::ranges::find(sections, section, &EffectSectionFact::name);
+  return found == sections.end() ? 0 : found->bytes;
+}
+
 SceneFacts collect_scene_facts(const InfoArguments& arguments) {
-  const SceneInput input = read_scene_input(arguments.scene.input);
-  const std::uint64_t budget_bytes = image_budget_bytes(*arguments.scene.machine, arguments.width, arguments.height, 1);
+  const SceneInput input = read_scene_input(arguments.scene.input, arguments.scene.tolerance);
+  tell_notes(input);
   SceneFacts facts;
+  const bool has_own_size = input.text && !arguments.has_size;
+  facts.width = has_own_size ? input.text->view.width : arguments.width;
+  facts.height = has_own_size ? input.text->view.height : arguments.height;
+  const sim::MachineProfile& machine = *arguments.scene.machine;
+  const std::uint32_t tile_width = sim::usual_tile_width(sim::StoreSize::k256KB);
+  const std::uint64_t budget_bytes = image_budget_bytes(machine, facts.width, facts.height, 1, tile_width,
+                                                        spill_bytes_of(machine.core_count, recursion_depth(input)));
   if (const PackedScene* packed = std::get_if<PackedScene>(&input.content)) {
     const ImageHeader& header = packed->view.header;
     facts.is_packed = true;
@@ -40,9 +92,12 @@ SceneFacts collect_scene_facts(const InfoArguments& arguments) {
     facts.wanted_lambda = facts.grid.lambda;
     facts.image_bytes = header.image_bytes;
     facts.fits = header.image_bytes <= budget_bytes;
+    if (packed->view.has_effects) facts.effects = effects_of(packed->view.effects, header.triangle_count);
   } else {
     const Mesh& mesh = std::get<Mesh>(input.content);
-    const GridChoice choice = choose_grid(input, mesh, arguments.scene, arguments.format, budget_bytes);
+    const EffectsView view = input.text ? input.text->effects.view() : EffectsView{};
+    const EffectsView* effects = input.text ? &view : nullptr;
+    const GridChoice choice = choose_grid(input, mesh, arguments.scene, arguments.format, budget_bytes, effects);
     facts.vertices = mesh.vertices.size();
     facts.triangles = mesh.triangles.size();
     facts.dropped_triangles = choice.need.dropped_triangle_count;
@@ -51,9 +106,11 @@ SceneFacts collect_scene_facts(const InfoArguments& arguments) {
     facts.image_bytes = choice.need.image_bytes;
     facts.scratch_bytes = choice.need.scratch_bytes;
     facts.fits = choice.fits();
+    if (effects != nullptr) {
+      facts.effects = effects_of(count_effects(view), static_cast<std::uint32_t>(mesh.triangles.size()));
+    }
   }
-  const std::uint32_t tile_width = sim::usual_tile_width(sim::StoreSize::k256KB);
-  facts.picture_bytes = output_plane_bytes(arguments.width, arguments.height, tile_width) + sizeof(FrameRecord);
+  facts.picture_bytes = output_plane_bytes(facts.width, facts.height, tile_width) + sizeof(FrameRecord);
   facts.bounds = bounds_of(facts.grid);
   return facts;
 }

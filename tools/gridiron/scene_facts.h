@@ -2,9 +2,12 @@
 // Memory: plain values. Threads: any. SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <gridiron/base/effect_records.h>
 #include <gridiron/base/records.h>
 
 #include <cstdint>
+#include <string_view>
+#include <vector>
 
 #include "arguments.h"
 #include "scene_input.h"
@@ -21,6 +24,23 @@ struct LoopBounds {
   std::uint64_t triangle_tests_per_pass = 0;  ///< references
 };
 
+/// A section of a scene image that is of its effects.
+struct EffectSectionFact {
+  std::string_view name;    ///< "materials"
+  std::uint64_t bytes = 0;  ///< in main memory
+};
+
+/// What a scene with effects asks for; all empty where it has none.
+struct EffectFacts {
+  bool has_effects = false;
+  EffectsRecord record{};  ///< without its offsets
+  std::vector<EffectSectionFact> sections;
+  std::uint64_t section_bytes = 0;         ///< of all of them
+  std::uint64_t spill_bytes_per_core = 0;  ///< for rays that wait
+
+  [[nodiscard]] std::uint64_t bytes_of(std::string_view section) const;
+};
+
 struct SceneFacts {
   std::uint64_t vertices = 0, triangles = 0, dropped_triangles = 0;
   GridRecord grid{};
@@ -31,6 +51,8 @@ struct SceneFacts {
   std::uint64_t picture_bytes = 0;  ///< colour plane and frame record
   bool fits = false;                ///< in the machine's main memory
   LoopBounds bounds;
+  EffectFacts effects;
+  std::uint32_t width = 0, height = 0;  ///< of the picture
 };
 
 /// Reads the scene and counts; builds nothing. Errors: Failure.

@@ -7,7 +7,6 @@
 #include <algorithm>
 #include <cctype>
 #include <cstdio>
-#include <cstring>
 #include <string>
 #include <utility>
 
@@ -55,8 +54,8 @@ TextScene read_text_scene(const std::filesystem::path& path, std::optional<float
 }
 
 // @returns false where the grid's references outgrow their 32 bits; `need` is zero then.
-bool count_need(const SceneInput& input, const Mesh& mesh, const GridParameters& parameters,
-                const EffectsView* effects, GridNeed& need) {
+bool count_need(const SceneInput& input, const Mesh& mesh, const GridParameters& parameters, const EffectsView* effects,
+                GridNeed& need) {
   stop_if_interrupted();
   need = {};
   const Status status = count_scene_image(mesh.view(), parameters, need, effects);
@@ -93,6 +92,10 @@ bool is_text_scene(const std::filesystem::path& path) {
   return lower_extension(path) == ".nff";
 }
 
+bool is_mesh_file(const std::filesystem::path& path) {
+  return lower_extension(path) == ".ply";
+}
+
 SceneInput read_scene_input(const std::filesystem::path& path, std::optional<float> tolerance) {
   const Stopwatch stopwatch;
   SceneInput input{path, Mesh{}, 0, std::nullopt};
@@ -118,20 +121,6 @@ void tell_notes(const SceneInput& input) {
   }
   const std::uint64_t more = input.text->note_count - input.text->notes.size();
   if (more != 0) std::fprintf(stderr, "%s: %s\n", input.path.c_str(), words_of_count(more, "more note").c_str());
-}
-
-std::optional<EffectsRecord> find_effects(std::span<const std::byte> image) {
-  ImageHeader header;
-  std::memcpy(&header, image.data(), sizeof header);
-  for (std::uint32_t i = 0; i < header.section_count; ++i) {
-    SectionEntry entry;
-    std::memcpy(&entry, image.data() + header.section_table_offset_bytes + i * sizeof entry, sizeof entry);
-    if (entry.kind != static_cast<std::uint32_t>(SectionKind::kEffects)) continue;
-    EffectsRecord effects;
-    std::memcpy(&effects, image.data() + entry.offset_bytes, sizeof effects);
-    return effects;
-  }
-  return std::nullopt;
 }
 
 std::uint64_t spill_bytes_of(std::uint32_t core_count, std::uint32_t recursion_depth) {

@@ -46,12 +46,13 @@ struct TextScene {
 struct SceneInput {
   std::filesystem::path path;
   std::variant<Mesh, PackedScene> content;
-  double load_seconds = 0;       ///< host time of reading and checking
-  std::optional<TextScene> text; ///< beside a Mesh
+  double load_seconds = 0;          ///< host time of reading and checking
+  std::optional<TextScene> text{};  ///< beside a Mesh
 };
 
-/// @returns whether a file is a text scene by its name.
+/// @returns whether a file is a text scene, or a mesh, by its name.
 [[nodiscard]] bool is_text_scene(const std::filesystem::path& path);
+[[nodiscard]] bool is_mesh_file(const std::filesystem::path& path);
 
 /// Reads the scene. @param tolerance  of round shapes in a text scene; nothing: the reader's own.
 /// Errors: Failure (kBadInput), `file:line: reason` or `file:byte N: reason`.
@@ -60,9 +61,6 @@ struct SceneInput {
 
 /// Says on standard error what is odd in a text scene: `file:line: note: text`, one line each.
 void tell_notes(const SceneInput& input);
-
-/// @returns the record of a scene image's effects, nothing where it has none. @param image  a validated one.
-[[nodiscard]] std::optional<EffectsRecord> find_effects(std::span<const std::byte> image);
 
 /// @returns the mesh of a PLY file. Errors as read_scene_input.
 [[nodiscard]] Mesh read_ply_mesh(const std::filesystem::path& path);

@@ -9,6 +9,7 @@
 #include <string>
 #include <string_view>
 #include <utility>
+#include <vector>
 
 namespace gridiron::tool {
 
@@ -58,10 +59,43 @@ Json work_json(const sim::WorkTotals& work) {
   return json;
 }
 
+Json stages_json(const std::vector<sim::CoreTiming>& cores) {
+  Json stages = Json::array();
+  for (std::uint32_t stage = 0; stage < kStageCount; ++stage) {
+    sim::StageTiming sum;
+    for (const sim::CoreTiming& core : cores) {
+      const sim::StageTiming& part = core.stages[stage];
+      sum.compute_cycles += part.compute_cycles;
+      sum.wait_cycles += part.wait_cycles;
+      sum.bytes_in += part.bytes_in;
+      sum.bytes_out += part.bytes_out;
+    }
+    stages.push_back(Json{{"name", std::string(stage_name(static_cast<Stage>(stage)))},
+                          {"compute_cycles", sum.compute_cycles},
+                          {"dma_wait_cycles", sum.wait_cycles},
+                          {"bytes_in", sum.bytes_in},
+                          {"bytes_out", sum.bytes_out}});
+  }
+  return stages;
+}
+
 Json effects_json(const ReportInput& input) {
   Json rays = Json::object();
   for (const RayCount& ray : input.rays) rays[ray.kind] = ray.count;
-  return {{"called_for", input.effects_called_for}, {"rays", std::move(rays)}};
+  Json effects = {{"called_for", input.effects_called_for}};
+  if (!input.is_scene_shaded) {
+    effects["rays"] = std::move(rays);
+    return effects;
+  }
+  const auto count = [&input](Work kind) { return input.work[static_cast<std::size_t>(kind)]; };
+  rays["shadow"] = count(Work::kShadowRay);
+  rays["occlusion"] = count(Work::kOcclusionRay);
+  rays["reflected"] = count(Work::kMirrorRay);
+  rays["refracted"] = count(Work::kRefractedRay);
+  effects["rays"] = std::move(rays);
+  effects["environment_lookups"] = count(Work::kEnvironmentLookup);
+  effects["stages"] = stages_json(input.timing.cores);
+  return effects;
 }
 
 Json local_store_json(const ReportInput& input) {
@@ -185,6 +219,40 @@ std::string_view work_name(Work kind) {
       return "lattice_triangle";
     case Work::kCellBoundStep:
       return "cell_bound_step";
+    case Work::kWaveRay:
+      return "wave_ray";
+    case Work::kQueuedRay:
+      return "queued_ray";
+    case Work::kWalkPass:
+      return "walk_pass";
+    case Work::kShaftGroup:
+      return "shaft_group";
+    case Work::kRayGroupTest:
+      return "ray_group_test";
+    case Work::kRayDistance:
+      return "ray_distance";
+    case Work::kSurfacePoint:
+      return "surface_point";
+    case Work::kSmoothNormal:
+      return "smooth_normal";
+    case Work::kShadowRay:
+      return "shadow_ray";
+    case Work::kLightSample:
+      return "light_sample";
+    case Work::kHighlight:
+      return "highlight";
+    case Work::kOcclusionRay:
+      return "occlusion_ray";
+    case Work::kMirrorRay:
+      return "mirror_ray";
+    case Work::kRefractedRay:
+      return "refracted_ray";
+    case Work::kEnvironmentLookup:
+      return "environment_lookup";
+    case Work::kColorAdded:
+      return "color_added";
+    case Work::kColorGroup:
+      return "color_group";
     case Work::kGetIssue:
       return "get_issue";
     case Work::kPutIssue:
@@ -192,6 +260,28 @@ std::string_view work_name(Work kind) {
     case Work::kWait:
       return "wait";
     case Work::kCount:
+      break;
+  }
+  return "";
+}
+
+std::string_view stage_name(Stage stage) {
+  switch (stage) {
+    case Stage::kPrimary:
+      return "primary";
+    case Stage::kSurface:
+      return "surface";
+    case Stage::kShadow:
+      return "shadow";
+    case Stage::kOcclusion:
+      return "occlusion";
+    case Stage::kBounce:
+      return "bounce";
+    case Stage::kEnvironment:
+      return "environment";
+    case Stage::kOutput:
+      return "output";
+    case Stage::kCount:
       break;
   }
   return "";

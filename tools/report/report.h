@@ -3,6 +3,7 @@
 #pragma once
 
 #include <gridiron/base/records.h>
+#include <gridiron/base/stages.h>
 #include <gridiron/base/work_counters.h>
 #include <gridiron/sim/machine_profile.h>
 #include <gridiron/sim/replay.h>
@@ -28,7 +29,7 @@ struct LocalStoreRegion {
 
 /// Rays of one kind that a frame traced.
 struct RayCount {
-  std::string kind;  ///< snake_case: primary, shadow, ...
+  std::string kind;  ///< snake_case: primary
   std::uint64_t count = 0;
 };
 
@@ -46,7 +47,8 @@ struct ReportInput {
   sim::WorkTotals work{};
 
   std::vector<std::string> effects_called_for;
-  std::vector<RayCount> rays;
+  bool is_scene_shaded = false;  ///< Shading::kScene: rays of effects and stages are told
+  std::vector<RayCount> rays;    ///< primary ones; those of effects are taken from `work`
 
   std::uint64_t arena_bytes = 0;
   std::vector<LocalStoreRegion> regions;
@@ -63,6 +65,9 @@ struct ReportInput {
 
 /// @returns the stable snake_case name of a kind of work.
 [[nodiscard]] std::string_view work_name(Work kind);
+
+/// @returns the stable snake_case name of a stage of a frame with effects.
+[[nodiscard]] std::string_view stage_name(Stage stage);
 
 /// @returns the stable snake_case name of a step of a build.
 [[nodiscard]] std::string_view build_step_name(sim::BuildStep step);

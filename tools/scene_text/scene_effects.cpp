@@ -10,7 +10,8 @@ namespace {
 static_assert(kMostSceneMaterials <= kMaxMaterials && kMostSceneLights <= kMaxLights);
 static_assert(kMostEffectSamples <= kMaxEffectSamples && kMostRecursionDepth <= kMaxRecursionDepth);
 static_assert(kMostEnvironmentWidth <= kMaxEnvironmentWidth && kMostLightColor <= kMaxLightColor);
-static_assert(kNoNormal == kNoNormals && kCubeFaceCount == std::tuple_size_v<decltype(SceneEffects::environment_faces)>);
+static_assert(kNoNormal == kNoNormals &&
+              kCubeFaceCount == std::tuple_size_v<decltype(SceneEffects::environment_faces)>);
 
 Material material_of(const SceneMaterial& material) {
   return {.color = material.color,

@@ -59,6 +59,8 @@ class FaultInjection {
     inner_.note_work(counts, count);
   }
 
+  void note_stage(std::uint8_t stage) requires StageObserver<P> { inner_.note_stage(stage); }
+
   /// Gets and puts so far, refused ones included.
   [[nodiscard]] std::uint64_t transfers() const { return transfers_; }
 

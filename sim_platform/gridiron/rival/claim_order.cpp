@@ -63,6 +63,8 @@ void CoreClock::take(const sim::TileTrace& trace, std::size_t first, std::uint32
       case sim::EventKind::kPut:
         issue(event.address, event.bytes, event.rotating ? rotated(event.tag) : event.tag % 32);
         break;
+      case sim::EventKind::kStage:
+        break;
       case sim::EventKind::kWait:
         for (std::uint32_t tag = 0; tag < 32; ++tag) {
           if ((event.tags >> tag & 1u) != 0) wait_until(done_of_tag_[tag]);

@@ -22,6 +22,9 @@ using SweepLayouts =
                StoreLayout512K<32, 64>, StoreLayout256K<8, 8>, StoreLayout256K<8, 16>, StoreLayout256K<16, 16>,
                StoreLayout256K<8, 64>, StoreLayout256K<32, 64>>;
 
+/// For frames with effects: in Mode::kPlain for every lane count, in the others with 4 lanes.
+using EffectLayouts = LayoutList<EffectLayout256K<kAllEffects, 8>, EffectLayout256K<kAllEffects, 32>>;
+
 template <class Layout>
 [[nodiscard]] constexpr bool is_layout(const LayoutChoice& choice) {
   return Layout::kArenaBytes == arena_bytes(choice.store) && Layout::kTileWidth == choice.tile_width &&

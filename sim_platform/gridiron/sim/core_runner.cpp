@@ -122,12 +122,26 @@ bool are_limits_valid(const PlatformLimits& limits) {
          limits.tag_count <= 32 && limits.queue_depth >= 1 && limits.congruence_bytes <= kLineBytes;
 }
 
+bool is_spill_valid(SimMemory& memory, const SpillMemory& spill, std::uint32_t cores,
+                    std::span<const MainRange> writable) {
+  if (spill.bytes_per_core == 0) return true;
+  // More than the memory holds is refused before anything is multiplied or rounded.
+  if (spill.bytes_per_core > memory.capacity_bytes() || cores == 0) return false;
+  const std::uint64_t begin = spill.address.value, slice_bytes = spill.slice_bytes();
+  if (begin == 0 || begin % kSpillAlignment != 0 || slice_bytes > memory.capacity_bytes() / cores) return false;
+  const std::uint64_t end = begin + slice_bytes * cores;
+  if (memory.bytes_at(spill.address, end - begin).empty()) return false;
+  return std::none_of(writable.begin(), writable.end(),
+                      [&](const MainRange& range) { return range.begin < end && begin < range.end; });
+}
+
 ChipResult run_cores(SimMemory& memory, const FrameShape& shape, const ChipOptions& options,
                      const CoreProgram& program) {
   ChipResult result;
   const bool one_tile = options.only_tile.has_value();
   if (!are_limits_valid(options.limits) || options.threads == 0 || shape.output_depth == 0 || shape.data_bytes == 0 ||
-      shape.data_bytes > shape.arena_bytes || (one_tile && *options.only_tile >= shape.tile_count)) {
+      shape.data_bytes > shape.arena_bytes ||
+      !is_spill_valid(memory, options.spill, options.threads, shape.writable) || (one_tile && *options.only_tile >= shape.tile_count)) {
     result.status = Status::kBadParameter;
     return result;
   }
@@ -139,6 +153,8 @@ ChipResult run_cores(SimMemory& memory, const FrameShape& shape, const ChipOptio
   frame.memory = &memory;
   frame.tiles = &tiles;
   frame.writable = shape.writable;
+  frame.spill = options.spill;
+  frame.core_count = options.threads;
   frame.limits = options.limits;
   frame.completion = options.completion;
   frame.seed = options.seed;

@@ -29,10 +29,16 @@ using CoreProgram = std::function<Status(SimCore& core, std::span<std::byte> dat
 /// Runs `program` on options.threads cores (options.mode, lanes, store and packet_width are not looked at). The bytes
 /// around a core's data carry a pattern that is checked at the end.
 ///
+/// Errors: kBadParameter as of render_frame; the program's, and those of the rules that it broke.
+///
 /// What a core puts before its first tile or after its last belongs to no tile: two cores that do so and overlap are
 /// told, but whether there are two of them is the caller's choice.
 [[nodiscard]] ChipResult run_cores(SimMemory& memory, const FrameShape& shape, const ChipOptions& options,
                                    const CoreProgram& program);
+
+/// @returns whether spill memory is none, or `cores` slices of it are aligned, allocated and apart from `writable`.
+[[nodiscard]] bool is_spill_valid(SimMemory& memory, const SpillMemory& spill, std::uint32_t cores,
+                                  std::span<const MainRange> writable);
 
 /// @returns whether `limits` describe a platform at all: powers of two, and counts above zero.
 [[nodiscard]] bool are_limits_valid(const PlatformLimits& limits);

@@ -64,5 +64,6 @@ class PlainCore {
 };
 
 static_assert(Platform<PlainCore>);
+static_assert(!WorkObserver<PlainCore> && !StageObserver<PlainCore>, "no time is kept, so nobody listens");
 
 }  // namespace gridiron::sim

@@ -14,15 +14,16 @@ namespace gridiron::sim {
 namespace {
 
 template <class Layout, Platform P>
-Status render_in(std::byte* store, P& core, MainAddress frame) {
-  return render_tiles<Lanes<GRIDIRON_ENTRY_LANES>>(*::new (static_cast<void*>(store)) LocalStore<Layout>, core, frame);
+Status render_in(std::byte* store, P& core, MainAddress frame, SpillRegion spill) {
+  return render_tiles<Lanes<GRIDIRON_ENTRY_LANES>>(*::new (static_cast<void*>(store)) LocalStore<Layout>, core, frame,
+                                                   spill);
 }
 
 template <Platform P>
-Status render(LayoutChoice layout, std::byte* store, P& core, MainAddress frame) {
+Status render(LayoutChoice layout, std::byte* store, P& core, MainAddress frame, SpillRegion spill) {
   Status status = Status::kUnsupportedFrame;
   visit_layout(GRIDIRON_ENTRY_LAYOUTS{}, layout,
-               [&]<class Layout>() { status = render_in<Layout>(store, core, frame); });
+               [&]<class Layout>() { status = render_in<Layout>(store, core, frame, spill); });
   return status;
 }
 
@@ -31,6 +32,7 @@ Status render(LayoutChoice layout, std::byte* store, P& core, MainAddress frame)
 }  // namespace gridiron::sim
 
 gridiron::Status GRIDIRON_ENTRY_NAME(gridiron::sim::LayoutChoice layout, std::byte* store,
-                                     gridiron::sim::GRIDIRON_ENTRY_CORE& core, gridiron::MainAddress frame) {
-  return gridiron::sim::render(layout, store, core, frame);
+                                     gridiron::sim::GRIDIRON_ENTRY_CORE& core, gridiron::MainAddress frame,
+                                     gridiron::SpillRegion spill) {
+  return gridiron::sim::render(layout, store, core, frame, spill);
 }

@@ -7,6 +7,7 @@
 #include <gridiron/sim/plain_core.h>
 #include <gridiron/sim/sim_chip.h>
 #include <gridiron/sim/sim_core.h>
+#include <gridiron/store/local_store.h>
 
 #include <cstddef>
 #include <cstdint>
@@ -14,23 +15,46 @@
 extern "C" {
 
 /// Renders tiles until none is left. `store` is zeroed, kLineBytes-aligned, as large as the layout's LocalStore. The
-/// layout is one of CommonLayouts, of checked_sweep one of SweepLayouts (compiled_layouts.h); it is passed as a copy
-/// because instrumented code may look at a core's own memory only.
+/// layout is one of CommonLayouts, of ..._sweep one of SweepLayouts, of ..._effects one of EffectLayouts
+/// (compiled_layouts.h); it is passed as a copy because instrumented code may look at a core's own memory only.
 /// Errors: kUnsupportedFrame for a layout that is not built; the kernel's.
 gridiron::Status gridiron_sim_render_checked_lanes4(gridiron::sim::LayoutChoice layout, std::byte* store,
-                                                    gridiron::sim::SimCore& core, gridiron::MainAddress frame);
+                                                    gridiron::sim::SimCore& core, gridiron::MainAddress frame,
+                                                    gridiron::SpillRegion spill);
 gridiron::Status gridiron_sim_render_checked_lanes8(gridiron::sim::LayoutChoice layout, std::byte* store,
-                                                    gridiron::sim::SimCore& core, gridiron::MainAddress frame);
+                                                    gridiron::sim::SimCore& core, gridiron::MainAddress frame,
+                                                    gridiron::SpillRegion spill);
 gridiron::Status gridiron_sim_render_checked_lanes16(gridiron::sim::LayoutChoice layout, std::byte* store,
-                                                     gridiron::sim::SimCore& core, gridiron::MainAddress frame);
+                                                     gridiron::sim::SimCore& core, gridiron::MainAddress frame,
+                                                     gridiron::SpillRegion spill);
 gridiron::Status gridiron_sim_render_checked_sweep_lanes4(gridiron::sim::LayoutChoice layout, std::byte* store,
-                                                          gridiron::sim::SimCore& core, gridiron::MainAddress frame);
+                                                          gridiron::sim::SimCore& core, gridiron::MainAddress frame,
+                                                          gridiron::SpillRegion spill);
+gridiron::Status gridiron_sim_render_checked_effects_lanes4(gridiron::sim::LayoutChoice layout, std::byte* store,
+                                                            gridiron::sim::SimCore& core, gridiron::MainAddress frame,
+                                                            gridiron::SpillRegion spill);
 gridiron::Status gridiron_sim_render_instrumented_lanes4(gridiron::sim::LayoutChoice layout, std::byte* store,
-                                                         gridiron::sim::SimCore& core, gridiron::MainAddress frame);
+                                                         gridiron::sim::SimCore& core, gridiron::MainAddress frame,
+                                                         gridiron::SpillRegion spill);
+gridiron::Status gridiron_sim_render_instrumented_effects_lanes4(gridiron::sim::LayoutChoice layout, std::byte* store,
+                                                                 gridiron::sim::SimCore& core, gridiron::MainAddress frame,
+                                                                 gridiron::SpillRegion spill);
 gridiron::Status gridiron_sim_render_plain_lanes4(gridiron::sim::LayoutChoice layout, std::byte* store,
-                                                  gridiron::sim::PlainCore& core, gridiron::MainAddress frame);
+                                                  gridiron::sim::PlainCore& core, gridiron::MainAddress frame,
+                                                  gridiron::SpillRegion spill);
 gridiron::Status gridiron_sim_render_plain_lanes8(gridiron::sim::LayoutChoice layout, std::byte* store,
-                                                  gridiron::sim::PlainCore& core, gridiron::MainAddress frame);
+                                                  gridiron::sim::PlainCore& core, gridiron::MainAddress frame,
+                                                  gridiron::SpillRegion spill);
 gridiron::Status gridiron_sim_render_plain_lanes16(gridiron::sim::LayoutChoice layout, std::byte* store,
-                                                   gridiron::sim::PlainCore& core, gridiron::MainAddress frame);
+                                                   gridiron::sim::PlainCore& core, gridiron::MainAddress frame,
+                                                   gridiron::SpillRegion spill);
+gridiron::Status gridiron_sim_render_plain_effects_lanes4(gridiron::sim::LayoutChoice layout, std::byte* store,
+                                                          gridiron::sim::PlainCore& core, gridiron::MainAddress frame,
+                                                          gridiron::SpillRegion spill);
+gridiron::Status gridiron_sim_render_plain_effects_lanes8(gridiron::sim::LayoutChoice layout, std::byte* store,
+                                                          gridiron::sim::PlainCore& core, gridiron::MainAddress frame,
+                                                          gridiron::SpillRegion spill);
+gridiron::Status gridiron_sim_render_plain_effects_lanes16(gridiron::sim::LayoutChoice layout, std::byte* store,
+                                                           gridiron::sim::PlainCore& core, gridiron::MainAddress frame,
+                                                           gridiron::SpillRegion spill);
 }

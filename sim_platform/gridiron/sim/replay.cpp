@@ -91,6 +91,8 @@ struct Core {
   CoreTiming timing;
   Ticks init = 0, compute = 0, idle = 0;
   std::array<Ticks, kWaitLevelCount> waits{};
+  Stage stage = Stage::kPrimary;
+  std::array<Ticks, kStageCount> stage_compute{}, stage_waits{};
   std::vector<TimelineSpan> timeline;
   std::size_t tile_span = 0;
 };
@@ -155,6 +157,7 @@ class Replay {
     core.idle += constants_.claim;
     core.ordinal = core.timing.tiles;
     core.next_step = 0;
+    core.stage = Stage::kPrimary;
     if (const TileTrace* const tile = next_tile_of(core); tile != nullptr) {
       core.phase = Phase::kTile;
       core.steps = tile;
@@ -248,6 +251,9 @@ class Replay {
         return take_transfer(core, event);
       case EventKind::kWait:
         return take_wait(core, event);
+      case EventKind::kStage:
+        core.stage = event.stage;
+        return true;
     }
     return true;
   }
@@ -284,6 +290,9 @@ class Replay {
     (is_get ? timing.gets : timing.puts) += 1;
     (is_get ? timing.bytes_in : timing.bytes_out) += event.bytes;
     (is_get ? timing.line_bytes_in : timing.line_bytes_out) += lines * constants_.line_bytes;
+    StageTiming& stage = timing.stages[static_cast<std::size_t>(core.stage)];
+    (is_get ? stage.gets : stage.puts) += 1;
+    (is_get ? stage.bytes_in : stage.bytes_out) += event.bytes;
     return true;
   }
 
@@ -327,6 +336,8 @@ class Replay {
     if (ticks == 0) return;
     const Ticks begin = core.now;
     core.now += ticks;
+    const bool is_wait = kind == TimelineSpan::Kind::kWait;
+    (is_wait ? core.stage_waits : core.stage_compute)[static_cast<std::size_t>(core.stage)] += ticks;
     switch (kind) {
       case TimelineSpan::Kind::kInit:
         core.init += ticks;
@@ -375,6 +386,10 @@ class Replay {
       timing.idle_cycles = cycles_from_ticks(core.idle + (end - core.now));
       for (std::size_t level = 0; level < kWaitLevelCount; ++level) {
         timing.dma_wait_cycles[level] = cycles_from_ticks(core.waits[level]);
+      }
+      for (std::size_t stage = 0; stage < kStageCount; ++stage) {
+        timing.stages[stage].compute_cycles = cycles_from_ticks(core.stage_compute[stage]);
+        timing.stages[stage].wait_cycles = cycles_from_ticks(core.stage_waits[stage]);
       }
       frame.cores.push_back(timing);
       frame.timeline.insert(frame.timeline.end(), core.timeline.begin(), core.timeline.end());

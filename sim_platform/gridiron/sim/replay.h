@@ -2,9 +2,11 @@
 // Memory: std::vector. Threads: any, no shared state. SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <gridiron/base/stages.h>
 #include <gridiron/sim/machine_profile.h>
 #include <gridiron/sim/trace.h>
 
+#include <array>
 #include <cstddef>
 #include <cstdint>
 #include <span>
@@ -26,6 +28,14 @@ inline constexpr std::size_t kWaitLevelCount = static_cast<std::size_t>(WaitLeve
          kind == Work::kPassGroup || kind == Work::kPassSquare;
 }
 
+/// What one core did in one stage: a cycle and a command belong to the stage in which the core was.
+struct StageTiming {
+  double compute_cycles = 0;  ///< initialisation included
+  double wait_cycles = 0;     ///< of all levels
+  std::uint64_t gets = 0, puts = 0;
+  std::uint64_t bytes_in = 0, bytes_out = 0;  ///< as requested
+};
+
 /// Where one core's cycles went: init + compute + sum of waits + idle = frame cycles, without any rounding.
 ///
 /// Cycles that the core spends on transfers itself (issuing a command, asking whether tags are done) are computation:
@@ -40,6 +50,8 @@ struct CoreTiming {
   std::uint64_t gets = 0, puts = 0;
   std::uint64_t bytes_in = 0, bytes_out = 0;            ///< as requested
   std::uint64_t line_bytes_in = 0, line_bytes_out = 0;  ///< in whole lines
+  /// By Stage: the sums over them are init + compute, all waits, bytes and commands of the core, without any rounding.
+  std::array<StageTiming, kStageCount> stages{};
 };
 
 /// One bar of the timeline. A kTile span encloses the spans of its tile; the others do not overlap on one core. What no
@@ -86,7 +98,7 @@ struct ReplayOptions {
 /// nothing else. Values of the profile that mean nothing are taken as the nearest that does: cycles below 0 as 0 and
 /// above 2^20 as 2^20, counts of 0 as 1, queue_depth and lines_in_flight above 65,536 as that;
 /// channel_bytes_per_cycle <= 0 is a channel that costs no time. Preconditions: a frame shorter than 2^43 cycles; tags
-/// below 32; ranges of work inside TileTrace::work. Cost: linear in events and lines, times core_count.
+/// below 32; stages below kCount; ranges of work inside TileTrace::work. Cost: linear in events and lines, times core_count.
 [[nodiscard]] FrameTiming replay(const FrameTrace& trace, const MachineProfile& machine, const ReplayOptions& options);
 
 }  // namespace gridiron::sim

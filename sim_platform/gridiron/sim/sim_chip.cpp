@@ -21,7 +21,18 @@ namespace gridiron::sim {
 namespace {
 
 template <class Core>
-using RenderEntry = Status (*)(LayoutChoice, std::byte*, Core&, MainAddress);
+using RenderEntry = Status (*)(LayoutChoice, std::byte*, Core&, MainAddress, SpillRegion);
+
+/// Which list of compiled_layouts.h a layout stands in, and so which build of the kernel has it.
+enum class LayoutGroup : std::uint8_t { kCommon, kSweep, kEffects, kNone };
+
+[[nodiscard]] LayoutGroup group_of(const LayoutChoice& layout) {
+  const auto ignore = []<class Layout>() {};
+  if (visit_layout(CommonLayouts{}, layout, ignore)) return LayoutGroup::kCommon;
+  if (visit_layout(SweepLayouts{}, layout, ignore)) return LayoutGroup::kSweep;
+  if (visit_layout(EffectLayouts{}, layout, ignore)) return LayoutGroup::kEffects;
+  return LayoutGroup::kNone;
+}
 
 [[nodiscard]] bool host_runs_lanes(std::uint32_t lanes) {
 #if defined(GRIDIRON_SIM_WIDE_LANES)
@@ -37,16 +48,18 @@ using RenderEntry = Status (*)(LayoutChoice, std::byte*, Core&, MainAddress);
 }
 
 /// @returns null where this host cannot run what was built for these options.
-[[nodiscard]] RenderEntry<SimCore> checked_entry(const ChipOptions& options, bool is_common) {
+[[nodiscard]] RenderEntry<SimCore> checked_entry(const ChipOptions& options, LayoutGroup group) {
   if (!host_runs_lanes(options.lanes)) return nullptr;
-  if (!is_common) return gridiron_sim_render_checked_sweep_lanes4;
+  if (group == LayoutGroup::kSweep) return gridiron_sim_render_checked_sweep_lanes4;
+  const bool has_effects = group == LayoutGroup::kEffects;
   if (options.mode == Mode::kInstrumented) {
 #if defined(GRIDIRON_SIM_INSTRUMENTED)
-    return gridiron_sim_render_instrumented_lanes4;
+    return has_effects ? gridiron_sim_render_instrumented_effects_lanes4 : gridiron_sim_render_instrumented_lanes4;
 #else
     return nullptr;
 #endif
   }
+  if (has_effects) return gridiron_sim_render_checked_effects_lanes4;
 #if defined(GRIDIRON_SIM_WIDE_LANES)
   if (options.lanes == 8) return gridiron_sim_render_checked_lanes8;
   if (options.lanes == 16) return gridiron_sim_render_checked_lanes16;
@@ -54,17 +67,51 @@ using RenderEntry = Status (*)(LayoutChoice, std::byte*, Core&, MainAddress);
   return gridiron_sim_render_checked_lanes4;
 }
 
-[[nodiscard]] RenderEntry<PlainCore> plain_entry(const ChipOptions& options) {
+[[nodiscard]] RenderEntry<PlainCore> plain_entry(const ChipOptions& options, LayoutGroup group) {
   if (!host_runs_lanes(options.lanes)) return nullptr;
+  const bool has_effects = group == LayoutGroup::kEffects;
 #if defined(GRIDIRON_SIM_WIDE_LANES)
-  if (options.lanes == 8) return gridiron_sim_render_plain_lanes8;
-  if (options.lanes == 16) return gridiron_sim_render_plain_lanes16;
+  if (options.lanes == 8) return has_effects ? gridiron_sim_render_plain_effects_lanes8 : gridiron_sim_render_plain_lanes8;
+  if (options.lanes == 16) {
+    return has_effects ? gridiron_sim_render_plain_effects_lanes16 : gridiron_sim_render_plain_lanes16;
+  }
 #endif
-  return gridiron_sim_render_plain_lanes4;
+  return has_effects ? gridiron_sim_render_plain_effects_lanes4 : gridiron_sim_render_plain_lanes4;
 }
 
-[[nodiscard]] bool is_common(const LayoutChoice& layout) {
-  return visit_layout(CommonLayouts{}, layout, []<class Layout>() {});
+/// Whether everything that a frame with effects names lies in memory. The image's header says how many surfaces and
+/// how many bytes there are.
+[[nodiscard]] bool are_effects_in_memory(SimMemory& memory, const FrameRecord& frame) {
+  EffectsRecord effects;
+  ImageHeader image;
+  const auto read = [&](void* record, std::uint64_t address, std::size_t byte_count) {
+    const std::span<std::byte> bytes = memory.bytes_at(MainAddress{address}, byte_count);
+    if (!bytes.empty()) std::memcpy(record, bytes.data(), byte_count);
+    return !bytes.empty();
+  };
+  if (!read(&effects, frame.effects_address, sizeof effects) || !read(&image, frame.image_address, sizeof image) ||
+      image.magic != kImageMagic || memory.bytes_at(MainAddress{frame.image_address}, image.image_bytes).empty()) {
+    return false;
+  }
+  if (effects.material_count > kMaxMaterials || effects.light_count > kMaxLights ||
+      effects.environment_width > kMaxEnvironmentWidth) {
+    return false;
+  }
+  const std::uint64_t blocks = effects.environment_width == 0 ? 0 : environment_blocks(effects.environment_width);
+  // Images are made of whole lines, and sections begin on them, so cores may read whole lines.
+  const auto lies_in_image = [&](std::uint64_t offset, std::uint64_t count, std::uint64_t record_bytes) {
+    const std::uint64_t bytes = round_up<std::uint64_t>(count * record_bytes, kLineBytes);
+    return offset <= image.image_bytes && bytes <= image.image_bytes - offset;
+  };
+  return lies_in_image(effects.materials_offset_bytes, effects.material_count, sizeof(MaterialRecord)) &&
+         lies_in_image(effects.lights_offset_bytes, effects.light_count, sizeof(LightRecord)) &&
+         lies_in_image(effects.surfaces_offset_bytes, image.triangle_count, sizeof(SurfaceRecord)) &&
+         lies_in_image(effects.normals_offset_bytes, effects.smooth_triangle_count, sizeof(NormalRecord)) &&
+         lies_in_image(effects.environment_offset_bytes, 6 * blocks * blocks, sizeof(EnvironmentBlock));
+}
+
+[[nodiscard]] bool is_scene_shaded(const FrameRecord& frame) {
+  return frame.shading == static_cast<std::uint32_t>(Shading::kScene);
 }
 
 /// Reads the frame record and checks that everything it names lies in memory: the plain mode believes it.
@@ -111,6 +158,7 @@ using RenderEntry = Status (*)(LayoutChoice, std::byte*, Core&, MainAddress);
       !lies_in_memory(frame.triangles_address, std::uint64_t{grid.reference_count} * grid.triangle_bytes)) {
     return Status::kBadFrame;
   }
+  if (is_scene_shaded(frame) && !are_effects_in_memory(memory, frame)) return Status::kBadFrame;
   return Status::kOk;
 }
 
@@ -136,13 +184,17 @@ using RenderEntry = Status (*)(LayoutChoice, std::byte*, Core&, MainAddress);
     std::memset(run.arena.get(), 0, shape.data_bytes);
     run.core = std::make_unique<PlainCore>(memory.base(), options.limits, tiles);
   }
-  const auto render = [&](Run& run) {
-    run.status = entry(layout, run.arena.get(), *run.core, frame);
+  const std::uint64_t slice_bytes = options.spill.slice_bytes();
+  const auto render = [&](std::uint32_t i) {
+    Run& run = runs[i];
+    const SpillRegion spill =
+        slice_bytes == 0 ? SpillRegion{} : SpillRegion{options.spill.address.offset_by(i * slice_bytes), slice_bytes};
+    run.status = entry(layout, run.arena.get(), *run.core, frame, spill);
     if (run.status != Status::kOk) tiles.stop();
   };
   std::vector<std::thread> threads;
-  for (std::uint32_t i = 1; i < options.threads; ++i) threads.emplace_back([&, i] { render(runs[i]); });
-  render(runs[0]);
+  for (std::uint32_t i = 1; i < options.threads; ++i) threads.emplace_back([&, i] { render(i); });
+  render(0);
   for (std::thread& thread : threads) thread.join();
 
   for (std::uint32_t i = 0; i < options.threads; ++i) {
@@ -163,7 +215,7 @@ using RenderEntry = Status (*)(LayoutChoice, std::byte*, Core&, MainAddress);
 
 }  // namespace
 
-ChipResult render_frame(SimMemory& memory, MainAddress frame, const ChipOptions& options) {
+ChipResult render_frame(SimMemory& memory, MainAddress frame, const ChipOptions& asked) {
   ChipResult result;
   const auto refuse = [&](Status status) {
     result.status = status;
@@ -173,37 +225,45 @@ ChipResult render_frame(SimMemory& memory, MainAddress frame, const ChipOptions&
   FrameShape shape;
   const Status described = describe_frame(memory, frame, record, shape);
   if (described != Status::kOk) return refuse(described);
-  const LayoutChoice layout = {options.store, record.tile_width, options.packet_width};
+  const bool has_effects = is_scene_shaded(record);
+  ChipOptions options = asked;
+  if (!has_effects) options.spill = {};
+  const LayoutChoice layout = {options.store, record.tile_width, options.packet_width, has_effects};
   if (!is_built(layout, options.mode, options.lanes)) return refuse(Status::kUnsupportedFrame);
   shape.arena_bytes = arena_bytes(options.store);
   const auto take_data_bytes = [&shape]<class Layout>() { shape.data_bytes = sizeof(LocalStore<Layout>); };
-  const bool common = visit_layout(CommonLayouts{}, layout, take_data_bytes);
-  if (!common) visit_layout(SweepLayouts{}, layout, take_data_bytes);
+  visit_layout(CommonLayouts{}, layout, take_data_bytes);
+  visit_layout(SweepLayouts{}, layout, take_data_bytes);
+  visit_layout(EffectLayouts{}, layout, take_data_bytes);
+  const LayoutGroup group = group_of(layout);
   if (!are_limits_valid(options.limits) || options.threads == 0 ||
+      !is_spill_valid(memory, options.spill, options.threads, shape.writable) ||
       (options.only_tile && *options.only_tile >= shape.tile_count)) {
     return refuse(Status::kBadParameter);
   }
 
   if (options.mode == Mode::kPlain) {
-    const RenderEntry<PlainCore> entry = plain_entry(options);
+    const RenderEntry<PlainCore> entry = plain_entry(options, group);
     return entry == nullptr ? refuse(Status::kUnsupportedFrame)
                             : render_plain(memory, frame, shape, layout, options, entry);
   }
-  const RenderEntry<SimCore> entry = checked_entry(options, common);
+  const RenderEntry<SimCore> entry = checked_entry(options, group);
   if (entry == nullptr) return refuse(Status::kUnsupportedFrame);
   return run_cores(memory, shape, options, [&](SimCore& core, std::span<std::byte> data) {
+    const SpillRegion spill = core.spill();
     if (options.mode == Mode::kInstrumented) {
       const SimCore::AccessScope scope(core, __builtin_frame_address(0));
-      return entry(layout, data.data(), core, frame);
+      return entry(layout, data.data(), core, frame, spill);
     }
-    return entry(layout, data.data(), core, frame);
+    return entry(layout, data.data(), core, frame, spill);
   });
 }
 
 bool is_built(const LayoutChoice& layout, Mode mode, std::uint32_t lanes) {
-  const bool is_sweep = visit_layout(SweepLayouts{}, layout, []<class Layout>() {});
-  if (is_sweep) return mode == Mode::kChecked && lanes == 4;
-  if (!is_common(layout)) return false;
+  const LayoutGroup group = group_of(layout);
+  if (group == LayoutGroup::kNone) return false;
+  if (group == LayoutGroup::kSweep) return mode == Mode::kChecked && lanes == 4;
+  if (group == LayoutGroup::kEffects && mode == Mode::kChecked) return lanes == 4;
   if (mode == Mode::kInstrumented) return has_instrumented_mode() && lanes == 4;
 #if defined(GRIDIRON_SIM_WIDE_LANES)
   if (lanes == 8 || lanes == 16) return true;

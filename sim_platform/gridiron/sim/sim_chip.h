@@ -2,6 +2,7 @@
 // Memory: owns local stores, borrows SimMemory. Threads: starts its own. SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <gridiron/base/effect_records.h>
 #include <gridiron/base/records.h>
 #include <gridiron/platform/contract.h>
 #include <gridiron/sim/sim_memory.h>
@@ -40,13 +41,25 @@ struct LayoutChoice {
   StoreSize store = StoreSize::k256KB;
   std::uint32_t tile_width = 32;   ///< pixels along a tile's edge
   std::uint32_t packet_width = 8;  ///< rays along a packet's edge
-  bool has_effects = false;        ///< of Shading::kScene
+  bool has_effects = false;        ///< renders Shading::kScene
 };
 
 enum class Mode : std::uint8_t {
   kChecked,       ///< every rule checked, destinations poisoned until the wait, work traced
   kPlain,         ///< plain copies: fast host rendering, no trace, no work totals
   kInstrumented,  ///< kChecked, and every load and store of the kernel checked too; 4 lanes, see has_instrumented_mode
+};
+
+/// Main memory in which cores lay down rays that wait (SpillRegion), a slice for each: core i's begins at
+/// address + i * slice_bytes(). Bytes are put and got there by that core alone, and a tile gets only what it has put.
+struct SpillMemory {
+  MainAddress address{};             ///< a multiple of kSpillAlignment
+  std::uint64_t bytes_per_core = 0;  ///< spill_bytes() of the frame's scene or more; 0: there is none
+
+  /// From one core's slice to the next: bytes_per_core in whole kSpillAlignment.
+  [[nodiscard]] constexpr std::uint64_t slice_bytes() const {
+    return (bytes_per_core / kSpillAlignment + (bytes_per_core % kSpillAlignment != 0 ? 1 : 0)) * kSpillAlignment;
+  }
 };
 
 struct ChipOptions {
@@ -58,6 +71,7 @@ struct ChipOptions {
   Completion completion = Completion::kEarly;
   std::uint64_t seed = 0;           ///< of Completion::kRandom
   PlatformLimits limits;            ///< of the simulated platform
+  SpillMemory spill;                ///< one slice a thread; looked at for frames with effects only
   std::uint64_t fail_transfer = 0;  ///< n > 0: the n-th transfer started (over all threads) fails; checked modes only
   std::optional<std::uint32_t> only_tile;                                 ///< render this tile alone
   const std::atomic<bool>* abort = nullptr;                               ///< stop between tiles when it becomes true
@@ -84,14 +98,15 @@ struct ChipResult {
 /// Renders the frame whose FrameRecord lies at `frame` in `memory`. The output lies in `memory` afterwards.
 ///
 /// Errors: kBadFrame (the record, or a part of memory that it names, is not there), kUnsupportedFrame (is_built says no
-/// of store, tile width, packet width, mode and lanes, or this host cannot run it), kBadParameter (limits that are not
-/// a platform's, a tile that is not in the frame, no threads), kAborted, and whatever the kernel or a broken rule
-/// reports. When several tiles fail, the lowest one is told, with its violations, for any number of threads.
+/// of store, tile width, packet width, shading, mode and lanes, or this host cannot run it), kBadParameter (limits that
+/// are not a platform's, a tile that is not in the frame, no threads, spill memory that is misaligned, not allocated or
+/// part of the picture), kAborted, and whatever the kernel or a broken rule reports. When several tiles fail, the lowest one is told, with its violations, for any number of threads.
 [[nodiscard]] ChipResult render_frame(SimMemory& memory, MainAddress frame, const ChipOptions& options);
 
 /// @returns whether the kernel was built for a layout in a mode and for a lane count, whatever this host can run.
 /// Stores of 64 KB with tiles of 16 and of 256 KB with tiles of 32 pixels are built in every mode, the others in
-/// Mode::kChecked with 4 lanes.
+/// Mode::kChecked with 4 lanes. With effects: 256 KB, tiles of 32 pixels, packets of 8 and 32 rays; of several lane
+/// counts in Mode::kPlain alone, else with 4 lanes.
 [[nodiscard]] bool is_built(const LayoutChoice& layout, Mode mode, std::uint32_t lanes);
 
 /// @returns the widest lane count this host can run: 4, 8 or 16.

@@ -60,12 +60,18 @@ SimCore::SimCore(SimFrame& frame, std::uint32_t core, std::span<std::byte> arena
   prologue.tile_id = kNoTile;
   epilogue.tile_id = kNoTile;
   random_state_ = frame.seed ^ 0x9E3779B97F4A7C15u;
+  spill_puts_.assign(frame.spill.slice_bytes() / kGranuleBytes, 0);
 }
 
 SimCore::~SimCore() = default;
 
 PlatformLimits SimCore::limits() const {
   return frame_->limits;
+}
+
+SpillRegion SimCore::spill() const {
+  const std::uint64_t bytes = frame_->spill.slice_bytes();
+  return bytes == 0 ? SpillRegion{} : SpillRegion{frame_->spill.address.offset_by(core_ * bytes), bytes};
 }
 
 // --- Rules ------------------------------------------------------------------------------------------------------
@@ -119,7 +125,11 @@ Status SimCore::check_rules(const std::byte* local, std::uint64_t address, std::
   if (frame_->memory->bytes_at(MainAddress{address}, bytes).empty()) {
     return broken(Status::kTransferMainRange, "the main side is not inside allocated memory");
   }
-  if (!is_get) {
+  if (meets_spill(address, bytes)) {
+    if (!is_own_spill(address, bytes)) {
+      return broken(Status::kTransferMainRange, "the main side is not inside the core's own slice of spill memory");
+    }
+  } else if (!is_get) {
     const auto& writable = frame_->writable;
     const auto inside = [&](const MainRange& range) { return range.begin <= address && address + bytes <= range.end; };
     if (std::none_of(writable.begin(), writable.end(), inside)) {
@@ -129,7 +139,34 @@ Status SimCore::check_rules(const std::byte* local, std::uint64_t address, std::
   if (pending_count_ == pending_.size()) {
     return broken(Status::kTransferQueueFull, std::to_string(pending_count_) + " commands are pending already");
   }
-  return check_overlap(local, address, bytes, tag, is_get);
+  GRIDIRON_TRY(check_overlap(local, address, bytes, tag, is_get));
+  return is_own_spill(address, bytes) ? use_spill(local, address, bytes, tag, is_get) : Status::kOk;
+}
+
+bool SimCore::meets_spill(std::uint64_t address, std::uint32_t bytes) const {
+  const std::uint64_t all_bytes = frame_->spill.slice_bytes() * frame_->core_count;
+  return all_bytes != 0 && overlap(frame_->spill.address.value, all_bytes, address, bytes);
+}
+
+bool SimCore::is_own_spill(std::uint64_t address, std::uint32_t bytes) const {
+  const SpillRegion own = spill();
+  return own.bytes != 0 && own.address.value <= address && address + bytes <= own.address.value + own.bytes;
+}
+
+/// What an earlier tile left behind depends on the host's timing, so no tile may look at it.
+Status SimCore::use_spill(const std::byte* local, std::uint64_t address, std::uint32_t bytes, Tag tag, bool is_get) {
+  const std::uint64_t offset = address - spill().address.value;
+  const std::uint64_t end = (offset + bytes + kGranuleBytes - 1) / kGranuleBytes;
+  for (std::uint64_t granule = offset / kGranuleBytes; granule < end; ++granule) {
+    if (!is_get) {
+      spill_puts_[granule] = claims_;
+    } else if (spill_puts_[granule] != claims_) {
+      return violate(Status::kTransferMainRange, tile_id_,
+                     describe(is_get, local, address, bytes, tag.index) + ": the tile has not put byte " +
+                         std::to_string(std::max(offset, granule * kGranuleBytes) - offset) + " of it to spill memory");
+    }
+  }
+  return Status::kOk;
 }
 
 Status SimCore::check_overlap(const std::byte* local, std::uint64_t address, std::uint32_t bytes, Tag tag,
@@ -354,14 +391,17 @@ void SimCore::leave_tile() {
 
 TileClaim SimCore::claim_tile() {
   leave_tile();
+  ++claims_;
   TileClaim claim = sticky_error_ == Status::kOk ? frame_->tiles->claim() : TileClaim{TileClaim::Kind::kAborted, 0};
   if (claim.kind == TileClaim::Kind::kTile) {
     in_tile_ = true;
     tile_id_ = claim.tile_id;
+    stage_ = 0;
     traces.emplace_back().tile_id = claim.tile_id;
     random_state_ = frame_->seed ^ (0xD1B54A32D192ED03u * (std::uint64_t{claim.tile_id} + 1));
   } else {
     tile_id_ = kNoTile;
+    stage_ = 0;
     after_last_tile_ = true;
   }
   return claim;
@@ -391,12 +431,26 @@ void SimCore::note_work(const std::uint32_t* counts, std::uint32_t count) {
   target.events.push_back(event);
 }
 
+void SimCore::note_stage(std::uint8_t stage) {
+  if (stage == stage_) return;
+  if (stage >= kStageCount) {
+    const Status status = violate(Status::kBadParameter, tile_id_, "there is no stage " + std::to_string(stage));
+    if (sticky_error_ == Status::kOk) sticky_error_ = status;
+    return;
+  }
+  stage_ = stage;
+  TraceEvent event{};
+  event.kind = EventKind::kStage;
+  event.stage = static_cast<Stage>(stage);
+  trace().events.push_back(event);
+}
+
 void SimCore::trace_transfer(EventKind kind, Tag tag, std::uint32_t bytes, std::uint64_t address) {
   TraceEvent event{};
   event.kind = kind;
   event.tag = tag.index;
   event.bytes = bytes;
-  event.address = address;
+  event.address = is_own_spill(address, bytes) ? address - core_ * frame_->spill.slice_bytes() : address;
   const std::uint32_t depth = frame_->output_depth;
   if (tag.index >= kFirstRotatingTag && tag.index - kFirstRotatingTag < depth) {
     const std::uint32_t slot = tag.index - kFirstRotatingTag;

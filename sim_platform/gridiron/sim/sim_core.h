@@ -8,6 +8,7 @@
 #include <gridiron/sim/sim_memory.h>
 #include <gridiron/sim/tile_source.h>
 #include <gridiron/sim/trace.h>
+#include <gridiron/store/local_store.h>
 
 #include <array>
 #include <atomic>
@@ -33,6 +34,8 @@ struct SimFrame {
   SimMemory* memory = nullptr;
   TileSource* tiles = nullptr;
   std::vector<MainRange> writable;  ///< where puts may go; sorted, disjoint
+  SpillMemory spill;                ///< a slice a core, apart from writable; checked by run_cores
+  std::uint32_t core_count = 1;     ///< slices of spill
   PlatformLimits limits;
   Completion completion = Completion::kEarly;
   std::uint64_t seed = 0;           ///< of Completion::kRandom, mixed with the tile, so that cores do not matter
@@ -53,7 +56,7 @@ struct TileFootprint {
 /// The platform of Mode::kChecked and Mode::kInstrumented.
 ///
 /// Each call checks its rules, in this order: size, tag, alignment and congruence, boundary, local range, main range,
-/// queue depth, overlap with pending transfers; the first broken one is recorded as a Violation and returned, and
+/// queue depth, overlap with pending transfers, use of spill memory; the first broken one is recorded as a Violation and returned, and
 /// nothing is started. A wait checks that neither the sources of its puts nor the destinations of its gets were touched
 /// meanwhile. finish() checks that nothing is left pending.
 ///
@@ -66,13 +69,17 @@ class SimCore {
   SimCore(const SimCore&) = delete;
   SimCore& operator=(const SimCore&) = delete;
 
-  // Platform, WorkObserver.
+  // Platform, WorkObserver, StageObserver.
   [[nodiscard]] PlatformLimits limits() const;
   Status get(void* local, MainAddress address, std::uint32_t bytes, Tag tag);
   Status put(const void* local, MainAddress address, std::uint32_t bytes, Tag tag);
   Status wait(TagMask tags);
   TileClaim claim_tile();
   void note_work(const std::uint32_t* counts, std::uint32_t count);
+  void note_stage(std::uint8_t stage);
+
+  /// The core's own slice of the frame's spill memory; none where the frame has none.
+  [[nodiscard]] SpillRegion spill() const;
 
   /// Ends the core's part of the frame. Pending transfers end, unreported but for Status::kTransferPending.
   /// @param clean  false where the core gave up with an error, so that pending transfers are no second error.
@@ -126,6 +133,7 @@ class SimCore {
   Status start(std::byte* local, MainAddress address, std::uint32_t bytes, Tag tag, bool is_get);
   Status check_rules(const std::byte* local, std::uint64_t address, std::uint32_t bytes, Tag tag, bool is_get);
   Status check_overlap(const std::byte* local, std::uint64_t address, std::uint32_t bytes, Tag tag, bool is_get);
+  Status use_spill(const std::byte* local, std::uint64_t address, std::uint32_t bytes, Tag tag, bool is_get);
   Status violate(Status rule, std::uint32_t tile, std::string detail);
   void record_error(Status status, std::uint32_t tile);
   [[nodiscard]] std::string describe_local(std::uintptr_t local) const;
@@ -141,6 +149,8 @@ class SimCore {
   void note_footprint(std::uint64_t address, std::uint32_t bytes, bool is_get);
   void mark(const Pending& pending, std::uint8_t state);
   void unmark(const Pending& pending);
+  [[nodiscard]] bool meets_spill(std::uint64_t address, std::uint32_t bytes) const;
+  [[nodiscard]] bool is_own_spill(std::uint64_t address, std::uint32_t bytes) const;
   void leave_tile();
   std::uint64_t next_random();
   TileTrace& trace();
@@ -156,6 +166,9 @@ class SimCore {
   std::uint32_t tile_ordinal_ = 0;  ///< tiles begun before the current one
   bool in_tile_ = false;
   bool after_last_tile_ = false;
+  std::uint8_t stage_ = 0;  ///< Stage
+  std::uint32_t claims_ = 1;               ///< plus one
+  std::vector<std::uint32_t> spill_puts_;  ///< per 16 bytes of the slice: claims_ when they were put last
   std::uint64_t transfers_ = 0;
   std::uint64_t random_state_ = 0;
   std::array<std::uint32_t, kWorkKindCount> last_counts_{};
@@ -170,6 +183,7 @@ class SimCore {
 
 static_assert(Platform<SimCore>);
 static_assert(WorkObserver<SimCore>);
+static_assert(StageObserver<SimCore>);
 
 /// Checks that no tile put to bytes that another tile put or got. The answer depends on the footprints only, not on
 /// the order in which tiles were rendered.

@@ -26,6 +26,24 @@ TEST(Configurations, ReferenceIsTheReferenceSystem) {
   EXPECT_EQ(reference->techniques, std::uint32_t{kUseMailbox} | kUseCornerCulling | kUseEmptySkip);
 }
 
+TEST(Configurations, DeeperOnesWalkMoreSecondaryRays) {
+  const auto walks = [](const char* name) { return tool::find_configuration(name)->depths.walks; };
+  EXPECT_EQ(walks("reference"), 2u);
+  EXPECT_EQ(walks("deep"), 4u);
+  EXPECT_EQ(walks("best"), 8u);
+}
+
+TEST(Configurations, EachFitsAStoreWithEffects) {
+  for (const tool::Configuration& configuration : tool::configurations()) {
+    const tool::StoreFacts store = tool::effect_store_facts(configuration.packet_width);
+    EXPECT_EQ(store.packet_width, configuration.packet_width);
+    EXPECT_LE(configuration.macro_width, store.max_macro_width) << configuration.name;
+    EXPECT_LE(configuration.depths.macro, store.max_macro_depth) << configuration.name;
+    EXPECT_LE(configuration.depths.triangle, store.max_triangle_depth) << configuration.name;
+    EXPECT_LE(store.data_bytes() + store.code_bytes + store.stack_bytes, store.arena_bytes);
+  }
+}
+
 TEST(Configurations, EachFitsTheDefaultStore) {
   for (const tool::Configuration& configuration : tool::configurations()) {
     const tool::StoreFacts store = tool::usual_store_facts(sim::StoreSize::k256KB, configuration.packet_width);
@@ -44,7 +62,7 @@ TEST(Configurations, UnknownNamesAreNone) {
 
 TEST(StoreFacts, RegionsFillTheStoreInOrderWithinTheArena) {
   const std::vector<sim::LayoutChoice> layouts = tool::built_layouts();
-  EXPECT_EQ(layouts.size(), 18u);
+  EXPECT_EQ(layouts.size(), 20u);
   for (const sim::LayoutChoice& layout : layouts) {
     const std::optional<tool::StoreFacts> store = tool::find_store_facts(layout);
     ASSERT_TRUE(store.has_value());

@@ -50,7 +50,7 @@ TEST(RenderFailure, BadInputNamesFileAndLineOrByte) {
       {"short.ply", "short.ply:byte " + std::to_string(whole.size() - 1) + ": "},
       {"empty.ply", "empty.ply:1: "},
       {"folder.ply", "folder.ply: Is a directory"},
-      {"a.nff", "a.nff: NFF"},
+      {"a.nff", "a.nff:1: the file ends inside 'v'"},
       {"a.txt", "a.txt: unknown kind of scene"},
   };
   for (const auto& input : cases) {

@@ -126,6 +126,10 @@ TEST(Report, HasExactlyTheDocumentedKeysInOrder) {
         "exact_sign",       "exact_distance",  "reach_group",      "shaded_group",        "shaded_simple_group",
         "depth_group",      "id_group",        "footprint_group",  "row_group",           "estimate_setup",
         "normal_setup",     "hit_half",        "exact_order",      "lattice_triangle",    "cell_bound_step",
+        "wave_ray", "queued_ray", "walk_pass", "shaft_group", "ray_group_test",
+        "ray_distance", "surface_point", "smooth_normal", "shadow_ray", "light_sample",
+        "highlight", "occlusion_ray", "mirror_ray", "refracted_ray", "environment_lookup",
+        "color_added", "color_group",
         "get_issue",        "put_issue",       "wait"}) {
     expected.push_back(std::string("work.") + name);
   }
@@ -193,6 +197,49 @@ TEST(Report, CyclesOfACoreAddUpToTheFrame) {
   }
 }
 
+/// A frame with effects: what the other keys tell stays as it is.
+ReportInput effects_sample() {
+  ReportInput input = sample();
+  input.is_scene_shaded = true;
+  for (std::uint32_t stage = 0; stage < kStageCount; ++stage) {
+    input.timing.cores[0].stages[stage] = {
+        .compute_cycles = 10.5 + stage, .wait_cycles = 0.25, .bytes_in = 16ull * stage, .bytes_out = 1};
+    input.timing.cores[1].stages[stage] = {
+        .compute_cycles = 100, .wait_cycles = 1.0 * stage, .bytes_in = 1000, .bytes_out = 16ull * stage};
+  }
+  return input;
+}
+
+TEST(Report, EffectsTellRaysAndStagesOverAllCores) {
+  const ReportInput input = effects_sample();
+  const Json report = Json::parse(report_json(input));
+  Json effects = report["effects"];
+  const auto work = [&input](Work kind) { return input.work[static_cast<std::size_t>(kind)]; };
+  EXPECT_EQ(effects["rays"]["primary"], 1048576);
+  EXPECT_EQ(effects["rays"]["shadow"], work(Work::kShadowRay));
+  EXPECT_EQ(effects["rays"]["occlusion"], work(Work::kOcclusionRay));
+  EXPECT_EQ(effects["rays"]["reflected"], work(Work::kMirrorRay));
+  EXPECT_EQ(effects["rays"]["refracted"], work(Work::kRefractedRay));
+  EXPECT_EQ(effects["rays"].size(), 5u);
+  EXPECT_EQ(effects["environment_lookups"], work(Work::kEnvironmentLookup));
+  const char* const names[] = {"primary", "surface", "shadow", "occlusion", "bounce", "environment", "output"};
+  ASSERT_EQ(effects["stages"].size(), kStageCount);
+  for (std::uint32_t stage = 0; stage < kStageCount; ++stage) {
+    const Json& told = effects["stages"][stage];
+    EXPECT_EQ(told["name"], names[stage]);
+    EXPECT_EQ(told["compute_cycles"], 110.5 + stage);
+    EXPECT_EQ(told["dma_wait_cycles"], 0.25 + stage);
+    EXPECT_EQ(told["bytes_in"], 1000 + 16 * stage);
+    EXPECT_EQ(told["bytes_out"], 1 + 16 * stage);
+  }
+
+  Json others = report;
+  others.erase("effects");
+  Json plain = Json::parse(report_json(sample()));
+  plain.erase("effects");
+  EXPECT_EQ(others, plain);
+}
+
 TEST(Report, CyclesSurviveTheText) {
   ReportInput input = sample();
   input.timing.frame_cycles = 8796093022207.9990234375;  // 2^43 - 1/1024
@@ -236,7 +283,7 @@ TEST(Report, EveryKeyIsDocumented) {
   text << file.rdbuf();
   const std::string readme = text.str();
   std::vector<std::string> paths;
-  collect_paths(Json::parse(report_json(sample())), "", paths);
+  collect_paths(Json::parse(report_json(effects_sample())), "", paths);
   for (const std::string& path : paths) {
     const std::string key = path.starts_with("work.") ? path.substr(5) : path;
     EXPECT_NE(readme.find("`" + key + "`"), std::string::npos) << key;

@@ -1,0 +1,45 @@
+// Effect names: each effect has its own, and renderers are told as C++ has them. SPDX-License-Identifier: Apache-2.0
+#include "gridiron/effect_names.h"
+
+#include <gtest/gtest.h>
+
+#include <set>
+
+namespace gridiron::test {
+namespace {
+
+TEST(EffectNames, EveryBitHasItsOwn) {
+  std::uint32_t bits = 0;
+  std::set<std::string_view> names, constants;
+  for (const tool::EffectName& effect : tool::effects()) {
+    EXPECT_EQ(bits & effect.bit, 0u) << effect.name;
+    bits |= effect.bit;
+    EXPECT_TRUE(names.insert(effect.name).second) << effect.name;
+    EXPECT_TRUE(constants.insert(effect.constant).second) << effect.constant;
+    // "point_shadows" and "kPointShadows" are one word.
+    std::string word = "k";
+    bool is_first = true;
+    for (const char letter : effect.name) {
+      if (letter != '_') word += is_first ? static_cast<char>(letter - 'a' + 'A') : letter;
+      is_first = letter == '_';
+    }
+    EXPECT_EQ(word, effect.constant);
+  }
+  EXPECT_EQ(bits, kAllEffects);
+}
+
+TEST(EffectNames, SetsAreLists) {
+  EXPECT_EQ(tool::words_of_effects(0), "none");
+  EXPECT_EQ(tool::words_of_effects(kReflection | kSceneShading), "scene_shading, reflection");
+  EXPECT_EQ(tool::effect_names(kAllEffects).size(), kEffectCount);
+}
+
+TEST(EffectNames, RenderersAreTypes) {
+  EXPECT_EQ(tool::renderer_type(0, 128, 8), "StoreLayout128K<8>");
+  EXPECT_EQ(tool::renderer_type(kSceneShading, 256, 32), "EffectLayout256K<kSceneShading>");
+  EXPECT_EQ(tool::renderer_type(kSceneShading | kPointShadows | kHighlights, 512, 8),
+            "EffectLayout256K<kSceneShading | kPointShadows | kHighlights, 8>");
+}
+
+}  // namespace
+}  // namespace gridiron::test
