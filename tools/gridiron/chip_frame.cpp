@@ -36,6 +36,7 @@ sim::ChipResult render_on_chip(FrameMemory& frame, const RenderArguments& argume
   options.completion = arguments.completion;
   options.seed = arguments.seed;
   options.limits.queue_depth = arguments.scene.machine->queue_depth;
+  options.spill = {.address = frame.spill.address, .bytes_per_core = frame.spill_bytes_per_core};
   options.only_tile = chosen_tile(arguments, frame.record);
   options.abort = &interrupt_flag();
   options.progress = std::move(progress);

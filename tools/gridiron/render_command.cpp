@@ -108,7 +108,8 @@ ReportInput collect_report(const RenderArguments& arguments, const SceneInput& i
   for (const std::string_view name : effect_names(frame.image.effects.called_for)) {
     report.effects_called_for.emplace_back(name);
   }
-  const std::uint32_t samples = arguments.shading == Shading::kScene ? frame.image.effects.samples_per_pixel : 1;
+  report.is_scene_shaded = arguments.shading == Shading::kScene;
+  const std::uint32_t samples = report.is_scene_shaded ? frame.image.effects.samples_per_pixel : 1;
   report.rays = {{"primary", std::uint64_t{arguments.width} * arguments.height * samples}};
   const StoreFacts store = *find_store_facts(arguments.layout());  // it has rendered
   report.arena_bytes = store.arena_bytes;

@@ -9,9 +9,6 @@
 namespace gridiron::tool {
 namespace {
 
-// The map of a renderer with every effect; those with fewer keep the same sizes.
-using EffectLayouts = sim::LayoutList<EffectLayout256K<kAllEffects, 8>, EffectLayout256K<kAllEffects, 32>>;
-
 template <class Layout>
 StoreFacts facts_of() {
   StoreFacts facts;
@@ -45,10 +42,10 @@ template <class... Layouts>
 void add_choices(std::vector<sim::LayoutChoice>& choices, sim::LayoutList<Layouts...>) {
   for (const sim::StoreSize store : sim::kStoreSizes) {
     const auto add_if = [&choices, store](std::uint32_t arena_bytes, std::uint32_t tile_width,
-                                          std::uint32_t packet_width) {
-      if (arena_bytes == sim::arena_bytes(store)) choices.push_back({store, tile_width, packet_width});
+                                          std::uint32_t packet_width, bool has_effects) {
+      if (arena_bytes == sim::arena_bytes(store)) choices.push_back({store, tile_width, packet_width, has_effects});
     };
-    (add_if(Layouts::kArenaBytes, Layouts::kTileWidth, Layouts::kPacketWidth), ...);
+    (add_if(Layouts::kArenaBytes, Layouts::kTileWidth, Layouts::kPacketWidth, Layouts::kEffects != 0), ...);
   }
 }
 
@@ -74,7 +71,7 @@ std::optional<StoreFacts> find_store_facts(const sim::LayoutChoice& layout) {
   std::optional<StoreFacts> facts;
   const auto take = [&facts]<class Layout>() { facts = facts_of<Layout>(); };
   if (layout.has_effects) {
-    sim::visit_layout(EffectLayouts{}, layout, take);
+    sim::visit_layout(sim::EffectLayouts{}, layout, take);
   } else if (!sim::visit_layout(sim::CommonLayouts{}, layout, take)) {
     sim::visit_layout(sim::SweepLayouts{}, layout, take);
   }
@@ -85,10 +82,7 @@ std::vector<sim::LayoutChoice> built_layouts() {
   std::vector<sim::LayoutChoice> choices;
   add_choices(choices, sim::CommonLayouts{});
   add_choices(choices, sim::SweepLayouts{});
-  for (const std::uint32_t packet_width : {8u, 32u}) {
-    const sim::LayoutChoice choice = {sim::StoreSize::k256KB, 32, packet_width, true};
-    if (sim::is_built(choice, sim::Mode::kChecked, 4)) choices.push_back(choice);
-  }
+  add_choices(choices, sim::EffectLayouts{});
   return choices;
 }
 
