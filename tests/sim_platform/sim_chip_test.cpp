@@ -281,7 +281,8 @@ TEST(SimChipEffects, HaveLayoutsOfTheirOwn) {
           for (const std::uint32_t packet_width : {4u, 8u, 16u, 32u, 64u}) {
             const bool has_layout =
                 store == StoreSize::k256KB && tile_width == 32 && (packet_width == 8 || packet_width == 32);
-            const bool has_mode = mode == Mode::kPlain || (lanes == 4 && (mode == Mode::kChecked || has_instrumented_mode()));
+            const bool has_mode =
+                mode == Mode::kPlain || (lanes == 4 && (mode == Mode::kChecked || has_instrumented_mode()));
             EXPECT_EQ(is_built({store, tile_width, packet_width, true}, mode, lanes), has_layout && has_mode);
           }
         }
@@ -375,8 +376,7 @@ TEST(SimChipEffects, WhatAFrameNamesMustLieInMemory) {
     EXPECT_EQ(status_of([&](F& f) { f.effects.normals_offset_bytes = end - 128; }), Status::kBadFrame);
     EXPECT_EQ(status_of([&](F& f) { f.effects.environment_offset_bytes = end - 6 * 9 * 768 + 128; }),
               Status::kBadFrame);
-    EXPECT_EQ(status_of([&](F& f) { f.effects.environment_offset_bytes = end - 6 * 9 * 768; }),
-              Status::kBadParameter);
+    EXPECT_EQ(status_of([&](F& f) { f.effects.environment_offset_bytes = end - 6 * 9 * 768; }), Status::kBadParameter);
     // Other shadings have neither effects nor spill memory.
     EXPECT_NE(status_of([](F& f) { f.frame.shading = 1, f.frame.effects_address = 0; }), Status::kBadParameter);
   }

@@ -1,5 +1,5 @@
-// Stages: what a core says it is busy with stands in its trace, and the replay gives every cycle, byte and command to one.
-// SPDX-License-Identifier: Apache-2.0
+// Stages: what a core says it is busy with stands in its trace, and the replay gives every cycle, byte and command to
+// one. SPDX-License-Identifier: Apache-2.0
 #include <gridiron/platform/fault_injection.h>
 #include <gridiron/sim/core_runner.h>
 #include <gridiron/sim/plain_core.h>
@@ -74,9 +74,9 @@ TEST(Stages, StandInTheTraceWhereTheyChange) {
       ProgramBench bench;
       const ChipResult result = run_in_stages(bench, threads, ends_elsewhere);
       ASSERT_EQ(result.status, Status::kOk) << words(result);
-      std::vector<EventKind> expected = {EventKind::kWork, EventKind::kStage, EventKind::kWork, EventKind::kGet,
-                                         EventKind::kWait, EventKind::kStage, EventKind::kWork, EventKind::kPut,
-                                         EventKind::kWait};
+      std::vector<EventKind> expected = {EventKind::kWork, EventKind::kStage, EventKind::kWork,
+                                         EventKind::kGet,  EventKind::kWait,  EventKind::kStage,
+                                         EventKind::kWork, EventKind::kPut,   EventKind::kWait};
       if (!ends_elsewhere) expected.push_back(EventKind::kStage);
       for (const TileTrace& tile : result.trace.tiles) {
         std::vector<EventKind> kinds;
@@ -169,7 +169,8 @@ TEST(Stages, SumsAreTheTotalsWithoutRounding) {
             tile.stage(static_cast<Stage>(random() % kStageCount));
             break;
           case 1:
-            tile.work(static_cast<std::uint32_t>(random() % 90), random() % 2 != 0 ? Work::kTileStart : Work::kShadowRay);
+            tile.work(static_cast<std::uint32_t>(random() % 90),
+                      random() % 2 != 0 ? Work::kTileStart : Work::kShadowRay);
             break;
           case 2:
             tile.put(static_cast<std::uint32_t>(16 + random() % 64 * 16), tag);
@@ -201,7 +202,8 @@ TEST(Stages, SumsAreTheTotalsWithoutRounding) {
           sum.bytes_out += stage.bytes_out;
         }
         EXPECT_EQ(sum.compute_cycles, core.init_cycles + core.compute_cycles) << "seed " << seed;
-        EXPECT_EQ(sum.wait_cycles, std::accumulate(std::begin(core.dma_wait_cycles), std::end(core.dma_wait_cycles), 0.0))
+        EXPECT_EQ(sum.wait_cycles,
+                  std::accumulate(std::begin(core.dma_wait_cycles), std::end(core.dma_wait_cycles), 0.0))
             << "seed " << seed;
         EXPECT_EQ(sum.gets, core.gets);
         EXPECT_EQ(sum.puts, core.puts);

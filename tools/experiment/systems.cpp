@@ -164,7 +164,8 @@ std::unique_ptr<Recording> GridSystem::record(const View& view, const FrameReque
   facts.build = sim::grid_build_work(view.mesh().vertices.size(), view.mesh().triangles.size(), frame.need);
   facts.traversal_steps = sum_of(result.work, {Work::kMacroSliceStep, Work::kMacroCellStep, Work::kSliceStep,
                                                Work::kCellStep, Work::kCellBoundStep});
-  facts.intersection_tests = sum_of(result.work, {Work::kGroupTestStandard, Work::kGroupTestPaper, Work::kRayGroupTest});
+  facts.intersection_tests =
+      sum_of(result.work, {Work::kGroupTestStandard, Work::kGroupTestPaper, Work::kRayGroupTest});
   facts.scene_bytes = frame.image.header.image_bytes;
   facts.dropped_triangles = frame.image.header.dropped_triangle_count;
   facts.grid = frame.image.grid;

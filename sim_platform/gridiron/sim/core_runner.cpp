@@ -140,8 +140,8 @@ ChipResult run_cores(SimMemory& memory, const FrameShape& shape, const ChipOptio
   ChipResult result;
   const bool one_tile = options.only_tile.has_value();
   if (!are_limits_valid(options.limits) || options.threads == 0 || shape.output_depth == 0 || shape.data_bytes == 0 ||
-      shape.data_bytes > shape.arena_bytes ||
-      !is_spill_valid(memory, options.spill, options.threads, shape.writable) || (one_tile && *options.only_tile >= shape.tile_count)) {
+      shape.data_bytes > shape.arena_bytes || !is_spill_valid(memory, options.spill, options.threads, shape.writable) ||
+      (one_tile && *options.only_tile >= shape.tile_count)) {
     result.status = Status::kBadParameter;
     return result;
   }

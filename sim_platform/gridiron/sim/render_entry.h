@@ -37,7 +37,8 @@ gridiron::Status gridiron_sim_render_instrumented_lanes4(gridiron::sim::LayoutCh
                                                          gridiron::sim::SimCore& core, gridiron::MainAddress frame,
                                                          gridiron::SpillRegion spill);
 gridiron::Status gridiron_sim_render_instrumented_effects_lanes4(gridiron::sim::LayoutChoice layout, std::byte* store,
-                                                                 gridiron::sim::SimCore& core, gridiron::MainAddress frame,
+                                                                 gridiron::sim::SimCore& core,
+                                                                 gridiron::MainAddress frame,
                                                                  gridiron::SpillRegion spill);
 gridiron::Status gridiron_sim_render_plain_lanes4(gridiron::sim::LayoutChoice layout, std::byte* store,
                                                   gridiron::sim::PlainCore& core, gridiron::MainAddress frame,

@@ -98,7 +98,8 @@ struct ReplayOptions {
 /// nothing else. Values of the profile that mean nothing are taken as the nearest that does: cycles below 0 as 0 and
 /// above 2^20 as 2^20, counts of 0 as 1, queue_depth and lines_in_flight above 65,536 as that;
 /// channel_bytes_per_cycle <= 0 is a channel that costs no time. Preconditions: a frame shorter than 2^43 cycles; tags
-/// below 32; stages below kCount; ranges of work inside TileTrace::work. Cost: linear in events and lines, times core_count.
+/// below 32; stages below kCount; ranges of work inside TileTrace::work. Cost: linear in events and lines, times
+/// core_count.
 [[nodiscard]] FrameTiming replay(const FrameTrace& trace, const MachineProfile& machine, const ReplayOptions& options);
 
 }  // namespace gridiron::sim

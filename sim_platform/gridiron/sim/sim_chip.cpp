@@ -71,7 +71,8 @@ enum class LayoutGroup : std::uint8_t { kCommon, kSweep, kEffects, kNone };
   if (!host_runs_lanes(options.lanes)) return nullptr;
   const bool has_effects = group == LayoutGroup::kEffects;
 #if defined(GRIDIRON_SIM_WIDE_LANES)
-  if (options.lanes == 8) return has_effects ? gridiron_sim_render_plain_effects_lanes8 : gridiron_sim_render_plain_lanes8;
+  if (options.lanes == 8)
+    return has_effects ? gridiron_sim_render_plain_effects_lanes8 : gridiron_sim_render_plain_lanes8;
   if (options.lanes == 16) {
     return has_effects ? gridiron_sim_render_plain_effects_lanes16 : gridiron_sim_render_plain_lanes16;
   }

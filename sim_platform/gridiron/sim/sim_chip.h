@@ -100,7 +100,8 @@ struct ChipResult {
 /// Errors: kBadFrame (the record, or a part of memory that it names, is not there), kUnsupportedFrame (is_built says no
 /// of store, tile width, packet width, shading, mode and lanes, or this host cannot run it), kBadParameter (limits that
 /// are not a platform's, a tile that is not in the frame, no threads, spill memory that is misaligned, not allocated or
-/// part of the picture), kAborted, and whatever the kernel or a broken rule reports. When several tiles fail, the lowest one is told, with its violations, for any number of threads.
+/// part of the picture), kAborted, and whatever the kernel or a broken rule reports. When several tiles fail, the
+/// lowest one is told, with its violations, for any number of threads.
 [[nodiscard]] ChipResult render_frame(SimMemory& memory, MainAddress frame, const ChipOptions& options);
 
 /// @returns whether the kernel was built for a layout in a mode and for a lane count, whatever this host can run.

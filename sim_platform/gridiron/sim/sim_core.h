@@ -56,9 +56,9 @@ struct TileFootprint {
 /// The platform of Mode::kChecked and Mode::kInstrumented.
 ///
 /// Each call checks its rules, in this order: size, tag, alignment and congruence, boundary, local range, main range,
-/// queue depth, overlap with pending transfers, use of spill memory; the first broken one is recorded as a Violation and returned, and
-/// nothing is started. A wait checks that neither the sources of its puts nor the destinations of its gets were touched
-/// meanwhile. finish() checks that nothing is left pending.
+/// queue depth, overlap with pending transfers, use of spill memory; the first broken one is recorded as a Violation
+/// and returned, and nothing is started. A wait checks that neither the sources of its puts nor the destinations of its
+/// gets were touched meanwhile. finish() checks that nothing is left pending.
 ///
 /// Functions are out of line: the kernel that calls them may be compiled with instrumentation, they are not.
 class SimCore {
@@ -166,7 +166,7 @@ class SimCore {
   std::uint32_t tile_ordinal_ = 0;  ///< tiles begun before the current one
   bool in_tile_ = false;
   bool after_last_tile_ = false;
-  std::uint8_t stage_ = 0;  ///< Stage
+  std::uint8_t stage_ = 0;                 ///< Stage
   std::uint32_t claims_ = 1;               ///< plus one
   std::vector<std::uint32_t> spill_puts_;  ///< per 16 bytes of the slice: claims_ when they were put last
   std::uint64_t transfers_ = 0;

@@ -21,13 +21,13 @@ inline constexpr std::uint32_t kNoTile = 0xFFFFFFFFu;
 enum class EventKind : std::uint8_t { kWork, kGet, kPut, kWait, kStage };
 
 /// One step of a core. Tags of output buffers are stored relative to the core's tile ordinal (rotated), so that a
-/// trace does not depend on which core rendered the tile; all others are stored as they are. So are addresses of a
-/// core's spill memory: as if core 0 had rendered the tile. Every tile, prologue and epilogue starts in stage kPrimary.
+/// trace does not depend on which core rendered the tile; all others are stored as they are. Addresses of spill memory
+/// are stored as if core 0 had rendered the tile. Every tile, prologue and epilogue starts in stage kPrimary.
 struct TraceEvent {
   EventKind kind;
   std::uint8_t tag;            ///< kGet, kPut: tag index
   bool rotating;               ///< kGet, kPut: tag is relative to the tile ordinal; kWait: see rotating_tags
-  Stage stage = Stage::kPrimary;  ///< kStage: what the core is busy with from here on
+  Stage stage = {};            ///< kStage: what the core is busy with from here on
   std::uint32_t bytes;         ///< kGet, kPut
   std::uint64_t address;       ///< kGet, kPut: main memory
   std::uint32_t tags;          ///< kWait: mask of plain tags
