@@ -99,20 +99,21 @@ std::optional<ReferenceHit> ReferenceGeometry::hit(const Triangle& triangle, con
   // Volumes spanned with the edges, twice over: of an edge taken the other way round exactly the negative. Around a
   // corner not even that keeps rays from slipping through, so what is outside by rounding counts as inside.
   double volume[3];
-  bool has_positive = false, has_negative = false;
   for (int k = 0; k < 3; ++k) {
-    const glm::dvec3 middle = seen[(k + 1) % 3] + seen[(k + 2) % 3];
     const glm::dvec3 edge = triangle.v[(k + 2) % 3] - triangle.v[(k + 1) % 3];
-    volume[k] = glm::dot(glm::cross(middle, edge), ray.dir);
-    const double rounding = kRounding * glm::length(middle) * glm::length(edge) * glm::length(ray.dir);
-    has_positive = has_positive || volume[k] > rounding;
-    has_negative = has_negative || volume[k] < -rounding;
-    if (std::abs(volume[k]) <= rounding) volume[k] = 0.0;
+    volume[k] = glm::dot(glm::cross(seen[(k + 1) % 3] + seen[(k + 2) % 3], edge), ray.dir);
   }
-  const bool is_inside = !(has_positive && has_negative);
+  const auto is_inside = [&volume] {
+    return !(std::max({volume[0], volume[1], volume[2]}) > 0.0 && std::min({volume[0], volume[1], volume[2]}) < 0.0);
+  };
+  for (int k = 0; k < 3 && !is_inside(); ++k) {
+    const double sizes = glm::length(seen[(k + 1) % 3] + seen[(k + 2) % 3]) * glm::length(ray.dir) *
+                         glm::length(triangle.v[(k + 2) % 3] - triangle.v[(k + 1) % 3]);
+    if (std::abs(volume[k]) <= kRounding * sizes) volume[k] = 0.0;
+  }
   const double sum = volume[0] + volume[1] + volume[2];
   const double along = glm::dot(triangle.normal, ray.dir);
-  if (!is_inside || sum == 0.0 || along == 0.0) return std::nullopt;
+  if (!is_inside() || sum == 0.0 || along == 0.0) return std::nullopt;
   ReferenceHit result;
   result.id = triangle.id;
   result.t = glm::dot(triangle.normal, seen[0]) / along;
@@ -124,8 +125,18 @@ std::optional<ReferenceHit> ReferenceGeometry::hit(const Triangle& triangle, con
 template <class Take>
 bool ReferenceGeometry::visit(std::uint32_t index, ReferenceRay& ray, const Take& take) const {
   const Node& node = nodes_[index];
-  if (!(entry(node.low, node.high, ray) <= ray.most_t)) return true;
-  if (node.left != 0) return visit(node.left, ray, take) && visit(node.right, ray, take);
+  if (node.left != 0) {
+    const double left = entry(nodes_[node.left].low, nodes_[node.left].high, ray);
+    const double right = entry(nodes_[node.right].low, nodes_[node.right].high, ray);
+    const bool is_left_first = left <= right;
+    const double far = is_left_first ? right : left;
+    if (std::isfinite(std::min(left, right)) && std::min(left, right) <= ray.most_t &&
+        !visit(is_left_first ? node.left : node.right, ray, take)) {
+      return false;
+    }
+    // The nearer one may have brought the end nearer.
+    return !std::isfinite(far) || far > ray.most_t || visit(is_left_first ? node.right : node.left, ray, take);
+  }
   for (std::uint32_t i = node.first; i < node.first + node.count; ++i) {
     if (!take(triangles_[i])) return false;
   }
