@@ -128,10 +128,13 @@ static_assert(sizeof(QueuedRay) == 48);
 /// Secondary rays are traced in waves, the deepest first; a layout's are of at most this many.
 inline constexpr std::uint32_t kMostWaveRays = 256;
 
-/// Rays that can wait at once on a core. The queue is a stack ordered by depth: rays of depth k are pushed only by a
-/// wave that holds one of depth k - 1, and then none deeper than that one is left below; a wave pushes two a ray.
+inline constexpr std::uint32_t kMostEffectTilePixels = 1024;  ///< of a layout with effects
+
+/// Rays that can wait at once on a core: two for each pixel of a tile, of depth 2, and then two a ray of a wave for each
+/// depth more. For the queue is a stack ordered by depth: rays of depth k are pushed only by a wave that holds one of
+/// depth k - 1, and then none deeper than that one is left below.
 [[nodiscard]] constexpr std::uint32_t most_waiting_rays(std::uint32_t recursion_depth) {
-  return recursion_depth <= 1 ? 0 : 2 * kMostWaveRays * (recursion_depth - 1);
+  return recursion_depth <= 1 ? 0 : 2 * kMostEffectTilePixels + 2 * kMostWaveRays * (recursion_depth - 2);
 }
 
 /// Bytes of main memory that each core needs for waiting rays that its local store has no room for. The region begins

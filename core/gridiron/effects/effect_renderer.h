@@ -136,9 +136,9 @@ class EffectRenderer {
       }
       if constexpr (!kHasPackets<Layout>) GRIDIRON_TRY(trace_eye_rays(count, sample));
       GRIDIRON_TRY(finish_wave(count, sample));
-      GRIDIRON_TRY(empty_queue(sample));
     }
-    return Status::kOk;
+    // Not before: so that waves are full.
+    return empty_queue(sample);
   }
 
   /// Makes pixels of the sums.
