@@ -206,6 +206,7 @@ Run trace(const WalkScene& scene, const std::vector<OracleRay>& rays, const RunO
     EXPECT_EQ(platform.wait(TagMask{~0u}), Status::kOk);
     EXPECT_EQ(platform.pending(), 0u);
     platform.failing_command.reset();
+    if (!scene.table_fits()) store->table.forget();  // as every tile does
     const Run again = finish_run(*store, platform, rays, options.any_hit, walk);
     EXPECT_EQ(again.status, Status::kOk);
     EXPECT_EQ(again.violation, "");
@@ -277,7 +278,7 @@ TYPED_TEST(RayWalksTest, WalksAndTransfersChangeNothing) {
         EXPECT_EQ(run.violation, "") << walks << " walks, queue of " << queue_depth;
         EXPECT_EQ(run.left_pending, 0u);
         EXPECT_EQ(run.most_under_way, walks);
-        EXPECT_EQ(run.answers, first.answers) << walks << " walks, queue of " << queue_depth;
+        EXPECT_TRUE(run.answers == first.answers) << walks << " walks, queue of " << queue_depth;
         for (std::uint32_t kind = 0; kind < kWorkKindCount; ++kind) {
           const auto work = static_cast<Work>(kind);
           // A full queue is waited for, and a transfer may take two commands; groups are as wide as the lanes.
@@ -303,7 +304,7 @@ TYPED_TEST(RayWalksTest, TablesLargerThanTheStore) {
       const Run other = trace<TypeParam>(scene, rays, {.any_hit = any_hit, .walks = walks, .queue_depth = walks});
       ASSERT_EQ(other.status, Status::kOk);
       EXPECT_EQ(other.violation, "");
-      EXPECT_EQ(other.answers, run.answers) << walks;
+      EXPECT_TRUE(other.answers == run.answers) << walks;
     }
   }
 }
@@ -326,7 +327,7 @@ TYPED_TEST(RayWalksTest, FailuresAreReported) {
       ASSERT_EQ(run.status, Status::kTransferFailed) << "command " << i;
       EXPECT_EQ(run.commands, i + 1) << "goes on after a failure";
       EXPECT_EQ(run.violation, "");
-      EXPECT_EQ(run.answers, whole.answers) << "command " << i;
+      EXPECT_TRUE(run.answers == whole.answers) << "command " << i;
     }
   }
 }
