@@ -15,7 +15,7 @@ constexpr KernelVariant variant(std::string_view name) {
 constexpr KernelVariant kVariants[] = {
     variant<kSceneShading | kEnvironment>("environment"),
     variant<kSceneShading | kSmoothNormals>("smooth_normals"),
-    variant<kSceneShading | kReflection | kHighlights>("highlight"),
+    variant<kSceneShading | kHighlights>("highlight"),
 };
 
 }  // namespace
