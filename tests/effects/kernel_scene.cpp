@@ -62,7 +62,7 @@ KernelFrame make_kernel_frame(KernelScene& scene, const Camera& camera, std::uin
     frame.depth = place(plane);
     frame.ids = place(plane);
   }
-  frame.spill.address = MainAddress{place(frame.spill.bytes)};
+  frame.spill.address = MainAddress{place(frame.spill.bytes + options.spill_shift) + options.spill_shift};
   frame.memory.resize(end + 2 * 4096);
   const auto start = reinterpret_cast<std::uintptr_t>(frame.memory.data());
   std::byte* const base = frame.memory.data() + (4096 - start % 4096) % 4096;
@@ -84,6 +84,7 @@ KernelFrame make_kernel_frame(KernelScene& scene, const Camera& camera, std::uin
   FrameRecord record;
   frame.status = make_frame_record(settings, scene.view, MainAddress{image}, record);
   if (frame.status != Status::kOk) return frame;
+  if (options.alter != nullptr) options.alter(record);
   std::memcpy(base + frame.frame_address, &record, sizeof(record));
   frame.tile_count = record.tiles_x * record.tiles_y;
   return frame;

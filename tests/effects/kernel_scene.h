@@ -33,8 +33,10 @@ struct KernelOptions {
   std::uint32_t queue_depth = 16;
   bool moves_late = false;   ///< a get's bytes come at the wait, garbage before
   std::uint64_t spill_bytes = ~0ull;  ///< ~0: what the scene asks for
+  std::uint64_t spill_shift = 0;      ///< of the region from a multiple of kSpillAlignment
   bool wants_planes = false;          ///< depth and ids too
   Shading shading = Shading::kScene;
+  void (*alter)(FrameRecord& record) = nullptr;  ///< breaks a frame that its set-up would not have made
 };
 
 /// A scene's image and what it was made of.
@@ -62,6 +64,8 @@ struct KernelPicture {
   WorkCounters work;
   std::array<std::uint64_t, kStageCount> stage_bytes{};  ///< moved in and out
   std::array<std::uint64_t, kStageCount> stage_transfers{};
+  std::vector<std::uint64_t> tile_bytes;  ///< moved from the claim of each tile to that of the next
+  std::uint64_t spilled_bytes = 0;        ///< put where rays wait
 };
 
 /// One core with its main memory: addresses are offsets into it.
@@ -93,6 +97,9 @@ class KernelBoard {
     std::memcpy(base() + address.value, local, bytes);
     pending_.push_back({nullptr, address.value, bytes, tag.index, false});
     if (pending_.size() > options_.queue_depth) violation = "queue depth";
+    if (address.value >= spill.address.value && address.value < spill.address.value + spill.bytes) {
+      spilled_bytes += bytes;
+    }
     return Status::kOk;
   }
   Status wait(TagMask tags) {
@@ -109,6 +116,7 @@ class KernelBoard {
   }
   TileClaim claim_tile() {
     if (next_tile_ == tile_count_) return {};
+    tile_bytes.push_back(0);
     return {TileClaim::Kind::kTile, next_tile_++};
   }
   void note_stage(std::uint8_t stage) { stage_ = stage; }
@@ -121,6 +129,9 @@ class KernelBoard {
   std::string violation;
   std::array<std::uint64_t, kStageCount> stage_bytes{};
   std::array<std::uint64_t, kStageCount> stage_transfers{};
+  std::vector<std::uint64_t> tile_bytes;
+  SpillRegion spill;  ///< puts to it are counted
+  std::uint64_t spilled_bytes = 0;
 
  private:
   struct Pending {
@@ -140,6 +151,7 @@ class KernelBoard {
     }
     if (address.value == 0 || address.value + bytes > memory_.size() - 4096) violation = "beyond main memory";
     stage_bytes[stage_] += bytes;
+    if (!tile_bytes.empty()) tile_bytes.back() += bytes;
     ++stage_transfers[stage_];
   }
 
@@ -176,6 +188,7 @@ template <class Layout, class L = Lanes<4>>
   picture.status = frame.status;
   if (frame.status != Status::kOk) return picture;
   KernelBoard board(frame.memory, options, frame.tile_count);
+  board.spill = frame.spill;
   const auto store = std::make_unique<LocalStore<Layout>>();
   std::memset(static_cast<void*>(store.get()), 0xC3, sizeof(*store));
   picture.status = render_tiles<L>(*store, board, MainAddress{frame.frame_address}, frame.spill);
@@ -183,6 +196,8 @@ template <class Layout, class L = Lanes<4>>
   picture.work = store->work;
   picture.stage_bytes = board.stage_bytes;
   picture.stage_transfers = board.stage_transfers;
+  picture.tile_bytes = board.tile_bytes;
+  picture.spilled_bytes = board.spilled_bytes;
   read_kernel_planes(frame, board.base(), width, height, Layout::kTileWidth, picture);
   return picture;
 }

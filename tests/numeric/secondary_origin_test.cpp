@@ -219,6 +219,99 @@ TEST(SecondaryOrigin, LiesInItsTriangleOnTheRaysSideWithinTheBound) {
   EXPECT_GT(inset_tested, 2000u);
 }
 
+// Both sides at once, what shading needs besides, and room for points that rays end at.
+TEST(SecondaryOrigin, SurfacePointsKnowTheirSides) {
+  TestRandom random(41);
+  std::uint32_t tested = 0, entering = 0, grazing = 0, widened = 0;
+  for (std::uint32_t round = 0; round < 6000; ++round) {
+    const Place& place = kPlaces[round % std::size(kPlaces)];
+    TestMesh mesh = make_random_soup(1, random.below(2) == 0 ? 1.0f : 0.05f, random.next());
+    if (random.below(4) == 0) {  // a sliver
+      mesh.vertices[2] = mesh.vertices[0] + random.unit() * (mesh.vertices[1] - mesh.vertices[0]) +
+                         Vec3{1e-4f, 2e-4f, -1e-4f} * random.unit();
+    }
+    mesh = placed(mesh, place);
+    const VertexTriangle triangle = triangle_of(mesh, 0);
+    if (exact_zero_area(triangle.v[0], triangle.v[1], triangle.v[2])) continue;
+    const OracleRay ray = ray_onto(mesh, 0, random);
+    if (Oracle(mesh.view()).hits(ray).empty()) continue;
+    ++tested;
+    float vertex_size = 0.0f;
+    for (const auto& corner : triangle.v) {
+      for (const float value : corner) vertex_size = std::fmax(vertex_size, std::fabs(value));
+    }
+    const bool is_wider = random.below(3) == 0;
+    const float least_size = is_wider ? std::ldexp(vertex_size, static_cast<int>(random.below(8)) - 2) : 0.0f;
+    WorkCounters work;
+    const SurfacePoint found = surface_point(triangle, ray.origin, ray.direction, least_size, work);
+    const int side = side_of(ray.origin, triangle);
+    EXPECT_EQ(side_of(found.before, triangle), side) << "round " << round;
+    EXPECT_EQ(side_of(found.behind, triangle), -side) << "round " << round;
+    // Of a hit, det[a - o, b - o, c - o] has the sign of dir . normal.
+    EXPECT_EQ(found.enters, side < 0) << "round " << round;
+    entering += found.enters ? 1u : 0u;
+    const DVec3 d{ray.direction[0], ray.direction[1], ray.direction[2]};
+    const DVec3 normal{found.normal[0], found.normal[1], found.normal[2]};
+    EXPECT_NEAR(along(normal, normal), 1.0, 0x1p-12) << "round " << round;
+    grazing += std::fabs(along(unit(d), normal)) < 0x1p-11 ? 1u : 0u;
+    const float w1 = found.weights[0], w2 = found.weights[1];
+    EXPECT_TRUE(w1 >= 0.0f && w1 <= 1.0f && w2 >= 0.0f && w2 <= 1.0f) << w1 << ' ' << w2 << ", round " << round;
+    EXPECT_LE(w1 + w2, 1.0f + 0x1p-20f) << "round " << round;
+    const double error = double{found.error};
+    EXPECT_GE(error, 0x1p-23 * std::fmax(double{least_size}, double{vertex_size})) << "round " << round;
+    EXPECT_EQ(found.lift, 4.0f * found.error);
+    for (const auto* point : {&found.before, &found.behind}) {
+      const Standing standing = stand(triangle, {(*point)[0], (*point)[1], (*point)[2]});
+      EXPECT_GE(std::fabs(standing.height), 2.0 * error * 0.999) << "round " << round;
+      EXPECT_LE(std::fabs(standing.height), 6.0 * error * 1.001) << "round " << round;
+      EXPECT_GE(standing.inset, -2.0 * error) << "round " << round;
+    }
+    if (is_wider) {
+      widened += found.error > surface_point(triangle, ray.origin, ray.direction, 0.0f, work).error ? 1u : 0u;
+      continue;
+    }
+    for (const bool through : {false, true}) {
+      const SecondaryOrigin begun = begin(triangle, ray, through);
+      const auto& point = through ? found.behind : found.before;
+      for (int axis = 0; axis < 3; ++axis) EXPECT_EQ(begun.point[axis], point[axis]) << "round " << round;
+    }
+  }
+  EXPECT_GT(tested, 3000u);
+  EXPECT_GT(entering, tested / 4);
+  EXPECT_LT(entering, tested - tested / 4);
+  EXPECT_GT(grazing, 50u);
+  EXPECT_GT(widened, 300u);
+}
+
+// Weights are where the ray meets the triangle, but for what is drawn to its middle.
+TEST(SecondaryOrigin, WeightsAreThoseOfTheHit) {
+  TestRandom random(43);
+  std::uint32_t tested = 0;
+  for (std::uint32_t round = 0; round < 4000; ++round) {
+    const TestMesh mesh = placed(make_random_soup(1, 1.0f, random.next()), kPlaces[round % 3 == 0 ? 0 : 5 + round % 4]);
+    const VertexTriangle triangle = triangle_of(mesh, 0);
+    const OracleRay ray = ray_onto(mesh, 0, random);
+    const Oracle oracle(mesh.view());
+    const auto hits = oracle.hits(ray);
+    if (hits.empty()) continue;
+    DVec3 v[3];
+    for (int i = 0; i < 3; ++i) v[i] = {triangle.v[i][0], triangle.v[i][1], triangle.v[i][2]};
+    const DVec3 d{ray.direction[0], ray.direction[1], ray.direction[2]};
+    const DVec3 n = cross(v[1] - v[0], v[2] - v[0]);
+    const double edge = std::sqrt(std::fmax(along(v[1] - v[0], v[1] - v[0]), along(v[2] - v[0], v[2] - v[0])));
+    if (std::sqrt(along(n, n)) < 0.05 * edge * edge || std::fabs(along(unit(d), unit(n))) < 0.05) continue;
+    ++tested;
+    WorkCounters work;
+    const SurfacePoint found = surface_point(triangle, ray.origin, ray.direction, 0.0f, work);
+    const DVec3 hit = DVec3{ray.origin[0], ray.origin[1], ray.origin[2]} + hits[0].low * d - v[0];
+    const double w1 = along(cross(hit, v[2] - v[0]), n) / along(n, n);
+    const double w2 = along(cross(v[1] - v[0], hit), n) / along(n, n);
+    EXPECT_NEAR(double{found.weights[0]}, w1, 1e-3) << "round " << round;
+    EXPECT_NEAR(double{found.weights[1]}, w2, 1e-3) << "round " << round;
+  }
+  EXPECT_GT(tested, 500u);
+}
+
 TEST(SecondaryOrigin, StaysNearTheHit) {
   TestRandom random(23);
   std::uint32_t tested = 0;

@@ -299,7 +299,8 @@ TYPED_TEST(IntersectRaysTest, NoRayLeavesAClosedMesh) {
         WalkRays rays{};
         const int stretch = random.below(3) == 0 ? static_cast<int>(random.below(41)) - 20 : 0;
         for (std::uint32_t i = 0; i < kWalkRays; ++i) {
-          OracleRay ray = ray_at(mesh, put(body.inside(random)), random.below(2) != 0 ? Aim::kVertex : Aim::kEdge, random);
+          const Aim aim = random.below(2) != 0 ? Aim::kVertex : Aim::kEdge;
+          OracleRay ray = ray_at(mesh, put(body.inside(random)), aim, random);
           for (float& value : ray.direction) value = std::ldexp(value, stretch);
           set_ray(rays, i, ray);
         }

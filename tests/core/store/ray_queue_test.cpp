@@ -4,6 +4,7 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <cstddef>
 #include <cstdint>
 #include <cstring>
 #include <memory>
@@ -149,8 +150,10 @@ TEST(RayQueue, IsAStackWhateverIsSpilled) {
 }
 
 // Grows a tree of rays wave by wave; children_of(ray) says how many each has. @returns most rays that waited.
+// Where `some_wait`, a third of a wave has its children after the others, as hits on smooth surfaces have: then the
+// queue is not ordered by depth.
 template <class ChildrenOf>
-std::size_t grow(QueueRig& rig, std::uint32_t recursion_depth, ChildrenOf&& children_of) {
+std::size_t grow(QueueRig& rig, std::uint32_t recursion_depth, bool some_wait, ChildrenOf&& children_of) {
   std::vector<QueuedRay> wave;
   std::size_t most = 0;
   const auto push_children = [&](const QueuedRay& parent) {
@@ -162,7 +165,11 @@ std::size_t grow(QueueRig& rig, std::uint32_t recursion_depth, ChildrenOf&& chil
   for (std::uint32_t i = 0; i < kWaveRays; ++i) push_children(make_ray(i, 1));
   while (!rig.queue.empty() && !testing::Test::HasFailure()) {
     EXPECT_EQ(rig.pop(wave), Status::kOk);
-    for (const QueuedRay& ray : wave) push_children(ray);
+    for (const bool waited : {false, true}) {
+      for (const QueuedRay& ray : wave) {
+        if ((some_wait && ray.path % 3 == 0) == waited) push_children(ray);
+      }
+    }
   }
   return most;
 }
@@ -170,7 +177,7 @@ std::size_t grow(QueueRig& rig, std::uint32_t recursion_depth, ChildrenOf&& chil
 TEST(RayQueue, TwoChildrenARayFitTheRegion) {
   for (std::uint32_t depth = 2; depth <= kMaxRecursionDepth; ++depth) {
     QueueRig rig(16, Moves::kAtTheWait, spill_bytes(depth));
-    const std::size_t most = grow(rig, depth, [](const QueuedRay&) { return 2u; });
+    const std::size_t most = grow(rig, depth, false, [](const QueuedRay&) { return 2u; });
     // A wave of each depth but the last waits under twice as many of that.
     EXPECT_EQ(most, kWaveRays * depth) << "depth " << depth;
     EXPECT_LE(most, most_waiting_rays(depth)) << "depth " << depth;
@@ -191,7 +198,7 @@ TEST(RayQueue, AnyTreeFitsTheRegion) {
     const std::uint32_t depth = 2 + random.below(kMaxRecursionDepth - 1);
     const std::uint32_t kind = random.below(3), share = 90 + random.below(60);
     QueueRig rig(1 + random.below(16), Moves::kAtTheWait, spill_bytes(depth));
-    const std::size_t most = grow(rig, depth, [&](const QueuedRay& ray) -> std::uint32_t {
+    const std::size_t most = grow(rig, depth, random.below(2) != 0, [&](const QueuedRay& ray) -> std::uint32_t {
       if (kind == 0) return random.below(3);
       if (kind == 1) return random.below(200) < share ? 2 : 0;
       return ((ray.pixel >> 16) % 2 != 0 || random.below(100) < share - 60) ? 2 : random.below(2);

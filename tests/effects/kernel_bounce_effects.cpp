@@ -1,0 +1,25 @@
+// Kernels built with the effects of single scenes: reflection, refraction, ambient occlusion. SPDX-License-Identifier: Apache-2.0
+#include "effects/kernel_variants.h"
+
+namespace gridiron::test {
+namespace {
+
+template <std::uint32_t Effects>
+constexpr KernelVariant variant(std::string_view name) {
+  return {name, Effects, +[](KernelScene& scene, const Camera& camera, std::uint32_t width, std::uint32_t height,
+                             const KernelOptions& options) {
+            return render_kernel<EffectLayout256K<Effects>, Lanes<4>>(scene, camera, width, height, options);
+          }};
+}
+
+constexpr KernelVariant kVariants[] = {
+    variant<kSceneShading | kReflection>("mirror"),
+    variant<kSceneShading | kReflection | kRefraction>("glass"),
+    variant<kSceneShading | kAmbientOcclusion>("ambient_occlusion"),
+};
+
+}  // namespace
+
+std::span<const KernelVariant> bounce_variants() { return kVariants; }
+
+}  // namespace gridiron::test

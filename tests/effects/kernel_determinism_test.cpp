@@ -1,0 +1,263 @@
+// The same picture and the same work, however a core is built and whatever its platform is like.
+// SPDX-License-Identifier: Apache-2.0
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <map>
+#include <string>
+#include <utility>
+
+#include "effects/effect_scene.h"
+#include "effects/kernel_check.h"
+#include "effects/kernel_variants.h"
+
+namespace gridiron::test {
+namespace {
+
+using tool::SceneDescription;
+
+// A picture of each accuracy of a scene that calls for everything, with what stays the same in all of them.
+struct Base {
+  SceneDescription description;
+  Camera camera;
+  KernelScene scene;
+  KernelPicture picture;
+};
+constexpr std::uint32_t kWidth = 40, kHeight = 34;  // 2 x 2 tiles, cut
+
+SceneDescription everything_small() {
+  // Not the shipped one: its triangles are many. All effects, all kinds of walks.
+  SceneDescription scene = glass_ball_scene(/*is_smooth=*/true, 4);
+  tool::SceneMaterial mirror;
+  mirror.kd = 0.3f;
+  mirror.ks = 0.6f;
+  mirror.shine = 20.0f;
+  add_box(scene, {-1.8f, -0.7f, -1.6f}, {-0.7f, 1.5f, -0.8f}, add_material(scene, mirror));
+  scene.area_lights.push_back({{1, 4, 1}, {1, 0, 0}, {0, 0, 1}, {0.5f, 0.4f, 0.3f}, 4});
+  scene.ambient_occlusion = tool::AmbientOcclusion{4, 1.5f};
+  scene.samples_per_pixel = 4;
+  set_environment(scene, Vec3(0.4f), 9);
+  for (std::size_t face = 0; face < tool::kCubeFaceCount; ++face) {
+    for (std::size_t i = 0; i < 81; ++i) {
+      scene.environment->texels[face][i] = Vec3(static_cast<float>((i * 7 + face * 5) % 11) / 10.0f);
+    }
+  }
+  return scene;
+}
+
+Base& base(Accuracy accuracy) {
+  static std::map<Accuracy, Base> known;
+  const auto [entry, is_new] = known.try_emplace(accuracy);
+  Base& made = entry->second;
+  if (!is_new) return made;
+  KernelOptions options;
+  options.accuracy = accuracy;
+  made.description = everything_small();
+  made.camera = camera_of(made.description.view);
+  made.scene = build_kernel_scene(made.description, options);
+  EXPECT_EQ(made.scene.called_for, kAllEffects);
+  made.picture = render_all_effects(made.scene, made.camera, kWidth, kHeight, options);
+  EXPECT_EQ(made.picture.status, Status::kOk);
+  return made;
+}
+
+class KernelDeterminism : public testing::TestWithParam<Accuracy> {
+ protected:
+  // Renders another way and holds picture, ids and work against the base; kWait alone may differ: on demand.
+  void expect_same(const KernelOptions& changed, bool waits_alike, const std::string& what,
+                   RenderKernel* render = render_all_effects) {
+    SCOPED_TRACE(what);
+    Base& scene = base(GetParam());
+    KernelOptions options = changed;
+    options.accuracy = GetParam();
+    const KernelPicture picture = render(scene.scene, scene.camera, kWidth, kHeight, options);
+    ASSERT_EQ(picture.status, Status::kOk) << picture.violation;
+    EXPECT_EQ(picture.violation, "");
+    EXPECT_EQ(picture.color, scene.picture.color);
+    EXPECT_EQ(different_work(picture.work, scene.picture.work, waits_alike ? Work::kCount : Work::kWait), "");
+    EXPECT_EQ(picture.stage_bytes, scene.picture.stage_bytes);
+    EXPECT_EQ(picture.stage_transfers, scene.picture.stage_transfers);
+  }
+};
+
+TEST_P(KernelDeterminism, TheNumberOfWalksChangesNoWork) {
+  for (const std::uint32_t depth : {1u, 2u, 3u, 5u, 8u}) {
+    KernelOptions options;
+    options.walk_depth = depth;
+    // Eight walks fetch blocks of the environment in up to two commands each: more than the queue takes.
+    expect_same(options, /*waits_alike=*/false, "walks: " + std::to_string(depth));
+    options.queue_depth = 32;
+    expect_same(options, /*waits_alike=*/false, "walks: " + std::to_string(depth) + ", a longer queue");
+  }
+}
+
+// A queue that is full waits for what began first: waits more, and nothing else.
+TEST_P(KernelDeterminism, TheQueueOfTransfersChangesWaitsAlone) {
+  for (const std::uint32_t depth : {1u, 2u, 16u}) {
+    KernelOptions options;
+    options.queue_depth = depth;
+    expect_same(options, /*waits_alike=*/false, "commands: " + std::to_string(depth));
+    options.walk_depth = 3;
+    options.moves_late = true;
+    expect_same(options, /*waits_alike=*/false, "late, commands: " + std::to_string(depth));
+  }
+}
+
+// Nothing is read before it was waited for.
+TEST_P(KernelDeterminism, BytesThatComeLateChangeNothing) {
+  KernelOptions options;
+  options.moves_late = true;
+  expect_same(options, /*waits_alike=*/true, "late");
+}
+
+// Where the queue is long enough, how many walks there are does not even change waits.
+TEST_P(KernelDeterminism, InALongQueueWaitsAreAlike) {
+  KernelOptions options;
+  options.accuracy = GetParam();
+  options.queue_depth = 32;
+  Base& scene = base(GetParam());
+  options.walk_depth = 1;
+  const KernelPicture one = render_all_effects(scene.scene, scene.camera, kWidth, kHeight, options);
+  options.walk_depth = 8;
+  const KernelPicture eight = render_all_effects(scene.scene, scene.camera, kWidth, kHeight, options);
+  EXPECT_EQ(different_work(one.work, eight.work), "");
+}
+
+// Packets and lanes change how eye rays and groups are counted; pixels and rays they do not.
+TEST_P(KernelDeterminism, PacketsAndLanesChangeNoPixelAndNoRay) {
+  Base& scene = base(GetParam());
+  KernelOptions options;
+  options.accuracy = GetParam();
+  const std::pair<const char*, RenderKernel*> kernels[] = {{"packets of 8", render_packets_of_8},
+                                                           {"packets of 16", render_packets_of_16},
+                                                           {"8 lanes", render_eight_lanes},
+                                                           {"16 lanes", render_sixteen_lanes}};
+  for (const auto& [name, render] : kernels) {
+    SCOPED_TRACE(name);
+    const KernelPicture picture = render(scene.scene, scene.camera, kWidth, kHeight, options);
+    ASSERT_EQ(picture.status, Status::kOk) << picture.violation;
+    EXPECT_EQ(picture.color, scene.picture.color);
+    EXPECT_EQ(rays_of(picture), rays_of(scene.picture)) << words_of(rays_of(picture));
+    EXPECT_EQ(picture.work[Work::kLightSample], scene.picture.work[Work::kLightSample]);
+    EXPECT_EQ(picture.work[Work::kColorAdded], scene.picture.work[Work::kColorAdded]);
+    EXPECT_EQ(picture.work[Work::kWalkPass], scene.picture.work[Work::kWalkPass]);
+  }
+}
+
+INSTANTIATE_TEST_SUITE_P(Accuracies, KernelDeterminism,
+                         testing::Values(Accuracy::kStandard, Accuracy::kExact, Accuracy::kCompact, Accuracy::kFast),
+                         [](const auto& accuracy) {
+                           switch (accuracy.param) {
+                             case Accuracy::kExact: return "exact";
+                             case Accuracy::kCompact: return "compact";
+                             case Accuracy::kFast: return "fast";
+                             default: return "standard";
+                           }
+                         });
+
+// Of one scene in several grids: `compact` moves vertices by its grid, so it is not among them.
+TEST(KernelGrids, ChangeNoPixelAndNoRay) {
+  for (const Accuracy accuracy : {Accuracy::kStandard, Accuracy::kExact}) {
+    Base& scene = base(accuracy);
+    for (const auto& [lambda, macro_width] : {std::pair{0.5f, 4u}, {2.0f, 2u}, {2.0f, 6u}, {8.0f, 4u}, {8.0f, 6u}}) {
+      SCOPED_TRACE(testing::Message() << "lambda " << lambda << ", macrocells of " << macro_width);
+      KernelOptions options;
+      options.accuracy = accuracy;
+      options.lambda = lambda;
+      options.macro_width = macro_width;
+      const KernelPicture picture = render_scene(scene.description, kWidth, kHeight, options);
+      ASSERT_EQ(picture.status, Status::kOk) << picture.violation;
+      EXPECT_EQ(picture.color, scene.picture.color);
+      EXPECT_EQ(rays_of(picture), rays_of(scene.picture)) << words_of(rays_of(picture));
+    }
+  }
+}
+
+// --- More than the local store has room for.
+
+// 200 materials where 64 are kept: equal to the reference, and the same by other orders of work.
+TEST(KernelRoom, MoreMaterialsThanSlots) {
+  SceneDescription scene = empty_scene({0, 0, 6}, {0, 0, 0}, {0, 1, 0}, 40);
+  scene.point_lights.push_back({{1, 2, 5}, Vec3(1)});
+  for (std::uint32_t i = 0; i < 200; ++i) {
+    tool::SceneMaterial material;
+    material.color = Vec3(static_cast<float>(i % 7) / 6, static_cast<float>(i % 11) / 10, static_cast<float>(i) / 199);
+    material.smooth_normals = i % 3 == 0;
+    material.ks = i % 5 == 0 ? 0.3f : 0.0f;
+    // Neighbours 64 apart share a slot.
+    const std::uint32_t place = i % 2 == 0 ? i / 2 : 199 - i / 2;
+    const Vec3 center(static_cast<float>(place % 20) * 0.2f - 1.9f, static_cast<float>(place / 20) * 0.4f - 1.8f, 0);
+    add_ball(scene, center, 0.12f, 1, add_material(scene, material));
+  }
+  expect_reference(scene, 64, 64, {4, 2e-3, 0.1});
+  KernelOptions one_walk;
+  one_walk.walk_depth = 1;
+  EXPECT_EQ(render_scene(scene, 64, 64).color, render_scene(scene, 64, 64, one_walk).color);
+}
+
+TEST(KernelRoom, MoreLightsThanSlots) {
+  SceneDescription scene = mirror_room_scene();
+  scene.recursion_depth = 2;
+  scene.point_lights.clear();
+  for (std::uint32_t i = 0; i < 37; ++i) {
+    const float turn = static_cast<float>(i) * 0.17f;
+    scene.point_lights.push_back({{1.5f * std::cos(turn), 1.7f - 0.05f * static_cast<float>(i), 1.5f * std::sin(turn)},
+                                  Vec3(static_cast<float>(i % 3 + 1), static_cast<float>(i % 5 + 1), 3) * 0.012f});
+  }
+  for (std::uint32_t i = 0; i < 5; ++i) {
+    scene.area_lights.push_back({{static_cast<float>(i) * 0.4f - 1, 1.8f, 0}, {0.3f, 0, 0}, {0, 0, 0.3f},
+                                 Vec3(0.05f, 0.02f * static_cast<float>(i), 0.04f), 3});
+  }
+  // 52 rays from each point, many of them through corners of the room.
+  expect_reference(scene, 48, 48, {10, 1e-3, 0.12});
+}
+
+TEST(KernelRoom, AllLightsThatAreAllowed) {
+  SceneDescription scene = acne_scene(AcneLight::kPoint, 1, Vec3(0), 4);
+  scene.point_lights.clear();
+  for (std::uint32_t i = 0; i < kMaxLights; ++i) {
+    const float turn = static_cast<float>(i) * 0.024543693f;
+    scene.point_lights.push_back({{6 * std::cos(turn), 3, 6 * std::sin(turn)}, Vec3(0.006f)});
+  }
+  expect_reference(scene, 32, 32, {2, 1e-3, 0.12});
+}
+
+// Rays that wait overflow the local store, and come back: a stack of panes of glass that all reflect and refract.
+TEST(KernelRoom, RaysThatWaitInMainMemory) {
+  SceneDescription scene = empty_scene({0.2f, 0.3f, 4}, {0, 0, 0}, {0, 1, 0}, 30);
+  tool::SceneMaterial glass;
+  glass.color = {0.9f, 0.95f, 1};
+  glass.kd = 0.1f;
+  glass.ks = 0.2f;
+  glass.transmittance = 0.7f;
+  glass.index_of_refraction = 1.2f;
+  const std::uint16_t index = add_material(scene, glass);
+  for (int i = 0; i < 5; ++i) {
+    const float z = 1.0f - 0.5f * static_cast<float>(i);
+    add_box(scene, {-3, -3, z}, {3, 3, z + 0.2f}, index);
+  }
+  scene.recursion_depth = 8;
+  scene.shadows = false;
+  scene.background = {0.9f, 0.6f, 0.3f};
+  scene.point_lights.push_back({{1, 2, 6}, Vec3(0.7f)});
+  const KernelPicture picture = render_scene(scene, 40, 40);
+  ASSERT_EQ(picture.status, Status::kOk) << picture.violation;
+  ASSERT_GT(picture.spilled_bytes, 100u * 128 * sizeof(QueuedRay));
+  // What was put came back, all of it.
+  expect_reference(scene, 40, 40, {0, 0.0, 0.12});
+  for (const std::uint32_t depth : {1u, 3u}) {
+    KernelOptions options;
+    options.walk_depth = depth;
+    options.moves_late = true;
+    options.queue_depth = depth;
+    const KernelPicture other = render_scene(scene, 40, 40, options);
+    EXPECT_EQ(other.color, picture.color);
+    EXPECT_EQ(other.spilled_bytes, picture.spilled_bytes);
+    EXPECT_EQ(different_work(other.work, picture.work, Work::kWait), "");
+  }
+  // A room of half mirrors makes one ray of one: nothing to spill.
+  EXPECT_EQ(render_scene(mirror_room_scene(), 40, 40).spilled_bytes, 0u);
+}
+
+}  // namespace
+}  // namespace gridiron::test

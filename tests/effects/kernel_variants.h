@@ -1,0 +1,39 @@
+// Kernels compiled for the tests of effects: every set of effects, packet width and lane type that they ask for, each
+// once. Memory: none. Threads: any. SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <cstdint>
+#include <span>
+#include <string_view>
+
+#include "effects/kernel_scene.h"
+
+namespace gridiron::test {
+
+/// A kernel as one translation unit instantiates it.
+using RenderKernel = KernelPicture(KernelScene& scene, const Camera& camera, std::uint32_t width, std::uint32_t height,
+                                   const KernelOptions& options);
+
+struct KernelVariant {
+  std::string_view name;  ///< of the scene in scenes/ that calls for just these effects, without .nff
+  std::uint32_t effects;  ///< EffectBits built
+  RenderKernel* render;   ///< packets of 32, four lanes
+};
+
+/// Built with all effects; packets of 32, four lanes.
+[[nodiscard]] RenderKernel render_all_effects;
+/// The same with packets of 8 and of 16.
+[[nodiscard]] RenderKernel render_packets_of_8;
+[[nodiscard]] RenderKernel render_packets_of_16;
+/// The same as the first with 8 and with 16 lanes.
+[[nodiscard]] RenderKernel render_eight_lanes;
+[[nodiscard]] RenderKernel render_sixteen_lanes;
+/// Built without effects.
+[[nodiscard]] RenderKernel render_without_effects;
+
+/// One for each scene of scenes/ but for the one that calls for everything.
+[[nodiscard]] std::span<const KernelVariant> plain_variants();    ///< no ray beyond shadow rays
+[[nodiscard]] std::span<const KernelVariant> bounce_variants();   ///< reflection, refraction, ambient occlusion
+[[nodiscard]] std::span<const KernelVariant> shading_variants();  ///< environment, normals, highlights, samples
+
+}  // namespace gridiron::test
