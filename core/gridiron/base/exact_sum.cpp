@@ -66,16 +66,6 @@ void add_slope(ExactSum& sum, const float dir[3], const float a[3], const float 
   sum.add_determinant(-1, dir, b, a);
 }
 
-// Adds the component of (b - a) x (c - a) along the axis before v and w; the product a_v * a_w cancels.
-void add_normal_component(ExactSum& sum, const float a[3], const float b[3], const float c[3], int v, int w) {
-  sum.add_product(1, b[v], c[w], 1.0f);
-  sum.add_product(-1, b[v], a[w], 1.0f);
-  sum.add_product(-1, a[v], c[w], 1.0f);
-  sum.add_product(-1, b[w], c[v], 1.0f);
-  sum.add_product(1, b[w], a[v], 1.0f);
-  sum.add_product(1, a[w], c[v], 1.0f);
-}
-
 // A magnitude in half the bytes of its sum: four of them are in hand at once.
 struct Digits {
   std::uint32_t digits[ExactSum::kLimbCount];
@@ -130,6 +120,16 @@ void ExactSum::add_determinant(int sign, const float a[3], const float b[3], con
   add_product(-sign, a[0], b[2], c[1]);
 }
 
+void ExactSum::add_normal_component(const float a[3], const float b[3], const float c[3], int v, int w) {
+  // a_v * a_w cancels.
+  add_product(1, b[v], c[w], 1.0f);
+  add_product(-1, b[v], a[w], 1.0f);
+  add_product(-1, a[v], c[w], 1.0f);
+  add_product(-1, b[w], c[v], 1.0f);
+  add_product(1, b[w], a[v], 1.0f);
+  add_product(1, a[w], c[v], 1.0f);
+}
+
 int ExactSum::sign() {
   std::int64_t carry = 0;
   std::uint32_t any = 0;
@@ -172,7 +172,7 @@ int exact_volume_sign(const float org[3], const float a[3], const float b[3], co
 bool exact_zero_area(const float a[3], const float b[3], const float c[3]) {
   for (int u = 0; u < 3; ++u) {
     ExactSum sum;
-    add_normal_component(sum, a, b, c, u, (u + 1) % 3);
+    sum.add_normal_component(a, b, c, u, (u + 1) % 3);
     if (sum.sign() != 0) return false;
   }
   return true;
@@ -184,7 +184,7 @@ void exact_normal(const float a[3], const float b[3], const float c[3], double n
   int top = 2;
   for (int u = 0; u < 3; ++u) {
     ExactSum sum;
-    add_normal_component(sum, a, b, c, (u + 1) % 3, (u + 2) % 3);
+    sum.add_normal_component(a, b, c, (u + 1) % 3, (u + 2) % 3);
     signs[u] = sum.take_magnitude();
     for (int i = 0; i < ExactSum::kLimbCount; ++i) {
       magnitudes[u].digits[i] = sum.limb(i);

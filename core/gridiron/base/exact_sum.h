@@ -25,6 +25,9 @@ class ExactSum {
   /// Adds sign * det[a, b, c], six products.
   void add_determinant(int sign, const float a[3], const float b[3], const float c[3]);
 
+  /// Adds the component of (b - a) x (c - a) along the axis before v and w, six products.
+  void add_normal_component(const float a[3], const float b[3], const float c[3], int v, int w);
+
   /// @returns -1, 0 or +1: the sign of the exact sum. Carries are settled as a side effect.
   [[nodiscard]] int sign();
 

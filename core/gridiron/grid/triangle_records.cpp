@@ -34,12 +34,8 @@ void edges_of(const Vec3& a, const Vec3& b, const Vec3& c, double e1[3], double 
 // One component of (b - a) x (c - a), from its exact value: off by a few units of double's last place.
 double exact_normal_component(const Vec3& a, const Vec3& b, const Vec3& c, int u, int v) {
   ExactSum sum;
-  sum.add_product(1, b[u], c[v], 1.0f);
-  sum.add_product(-1, b[u], a[v], 1.0f);
-  sum.add_product(-1, a[u], c[v], 1.0f);
-  sum.add_product(-1, b[v], c[u], 1.0f);
-  sum.add_product(1, b[v], a[u], 1.0f);
-  sum.add_product(1, a[v], c[u], 1.0f);
+  const float corners[3][3] = {{a.x, a.y, a.z}, {b.x, b.y, b.z}, {c.x, c.y, c.z}};
+  sum.add_normal_component(corners[0], corners[1], corners[2], u, v);
   const int sign = sum.take_magnitude();
   // The product of two floats spans 2^-298 to 2^256: all within the range of double, limb by limb, above 2^-479.
   double value = 0.0;

@@ -132,13 +132,13 @@ void set_up_normal(const VertexTriangle& triangle, float normal[3]) {
   double sure[3], products[3];
   normal_of(triangle, sure, products);
   const double sure_size = products[0] + products[1] + products[2];
-  double length = sure[0] * sure[0] + sure[1] * sure[1] + sure[2] * sure[2];
+  double squared_length = sure[0] * sure[0] + sure[1] * sure[1] + sure[2] * sure[2];
   // The error of a component is below 2^-50 of that size: beyond 2^-20 of the length only integers tell.
-  if (!(length > 0x1p-60 * (sure_size * sure_size))) {
+  if (!(squared_length > 0x1p-60 * (sure_size * sure_size))) {
     exact_normal(triangle.v[0], triangle.v[1], triangle.v[2], sure);
-    length = sure[0] * sure[0] + sure[1] * sure[1] + sure[2] * sure[2];
+    squared_length = sure[0] * sure[0] + sure[1] * sure[1] + sure[2] * sure[2];
   }
-  const double scale = length > 0.0 ? 1.0 / square_root(length) : 0.0;
+  const double scale = squared_length > 0.0 ? 1.0 / square_root(squared_length) : 0.0;
   for (int i = 0; i < 3; ++i) normal[i] = static_cast<float>(sure[i] * scale);
 }
 

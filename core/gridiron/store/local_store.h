@@ -279,7 +279,8 @@ constexpr void for_each_region(Visit&& visit) {
   if constexpr (Layout::kEffects == 0) {
     visit("packet", offsetof(Store, packet), sizeof(Store::packet));
   } else {
-    constexpr bool kWaveIsLarger = !kHasPackets<Layout> || sizeof(typename Store::StoreWave) > sizeof(typename Store::StorePacket);
+    constexpr bool kWaveIsLarger =
+        !kHasPackets<Layout> || sizeof(typename Store::StoreWave) > sizeof(typename Store::StorePacket);
     visit("packet_or_wave", offsetof(Store, packet),
           kWaveIsLarger ? sizeof(typename Store::StoreWave) : sizeof(typename Store::StorePacket));
   }
