@@ -34,9 +34,10 @@ SceneMaterial shares(float kd, float ks, float transmittance, float index, bool 
 
 TEST(KernelFurnace, EnergyNeverGrows) {
   const SceneMaterial materials[] = {
-      shares(0, 1, 0, 1),          shares(0, 1, 0, 1, true),     shares(0, 0, 1, 1.5f),    shares(0, 0.1f, 0.9f, 1.5f),
-      shares(0, 0, 1, 1.5f, true), shares(0, 0.5f, 0.5f, 10.0f), shares(0, 0, 1, 0.1f),    shares(0, 0.3f, 0.7f, 0.1f, true),
-      shares(0, 1, 1, 1.3f),       shares(0, 0.9f, 0.6f, 2.4f),  shares(1, 1, 1, 1.5f),    shares(0, 0, 1, 1),
+      shares(0, 1, 0, 1),          shares(0, 1, 0, 1, true),          shares(0, 0, 1, 1.5f),
+      shares(0, 0.1f, 0.9f, 1.5f), shares(0, 0, 1, 1.5f, true),       shares(0, 0.5f, 0.5f, 10.0f),
+      shares(0, 0, 1, 0.1f),       shares(0, 0.3f, 0.7f, 0.1f, true), shares(0, 1, 1, 1.3f),
+      shares(0, 0.9f, 0.6f, 2.4f), shares(1, 1, 1, 1.5f),             shares(0, 0, 1, 1),
   };
   for (std::size_t i = 0; i < std::size(materials); ++i) {
     for (const bool is_ball : {false, true}) {
