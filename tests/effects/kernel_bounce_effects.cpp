@@ -1,4 +1,5 @@
-// Kernels built with the effects of single scenes: reflection, refraction, ambient occlusion. SPDX-License-Identifier: Apache-2.0
+// Kernels built with the effects of single scenes: reflection, refraction, ambient occlusion.
+// SPDX-License-Identifier: Apache-2.0
 #include "effects/kernel_variants.h"
 
 namespace gridiron::test {

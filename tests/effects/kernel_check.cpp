@@ -108,7 +108,7 @@ void expect_reference(const tool::SceneDescription& scene, std::uint32_t width, 
   EXPECT_LE(images->failed, tolerance.off_by_more_than_1);
   EXPECT_LE(images->mean_error, 1.0 / 255.0);
   if (std::getenv("GRIDIRON_TELL_PICTURES") != nullptr) {
-    std::printf("%ux%u: %zu pixels off by more than 1 (%zu by more than 8), rmse of the others %.4f, rays off by %.2g\n",
+    std::printf("%ux%u: %zu pixels off by more than 1 (%zu by more than 8), rmse of the others %.4f, rays off %.2g\n",
                 width, height, steps->off_by_more_than_1, steps->off_by_more_than_8, rmse, share);
   }
 }

@@ -40,13 +40,13 @@ SceneDescription shipped(float tolerance) {
 
 // A pixel may be off by more than a step only beside a discontinuity. The kernel's secondary rays begin at points that
 // are off by some 1e-6 of the scene's size, lifted and drawn away from edges (ray/secondary_origin.h), and run along
-// directions off by 1e-7; the reference begins at the hit itself. So a ray that passes an edge, the foot of a box or the
-// rim of a shadow that near sees something else. Rays of a regular picture do so in one pixel of some thousands; where
-// 16 or 64 rays are cast from each pixel in proportion more, but then by a 16th of the light each. Flat mirrors and glass
-// keep deviations as they are; each reflection off a curved one of radius r at distance d multiplies them by 2 d / r or
-// more: of `rings`, tubes of 1/50 of the scene that mirror one another five times over, 2 pixels in 100 are off, with
-// depth 2 two in 1,000, and with flat triangles one in 1,000. The numbers are those measured, and half of that more.
-// Numbers of rays are equal but where a ray that sees something else goes on.
+// directions off by 1e-7; the reference begins at the hit itself. So a ray that passes an edge, the foot of a box or
+// the rim of a shadow that near sees something else. Rays of a regular picture do so in one pixel of some thousands;
+// where 16 or 64 rays are cast from each pixel in proportion more, but then by a 16th of the light each. Flat mirrors
+// and glass keep deviations as they are; each reflection off a curved one of radius r at distance d multiplies them by
+// 2 d / r or more: of `rings`, tubes of 1/50 of the scene that mirror one another five times over, 2 pixels in 100 are
+// off, with depth 2 two in 1,000, and with flat triangles one in 1,000. The numbers are those measured, and half of
+// that more. Numbers of rays are equal but where a ray that sees something else goes on.
 const PictureCase kCases[] = {
     {"shadow", shipped<0>, 96, {}},
     {"area_light", shipped<1>, 64, {2, 0.0, 0.1}},
