@@ -46,6 +46,7 @@ std::string renderer_type(std::uint32_t called_for, std::uint32_t store_kilobyte
   for (const EffectName& effect : kEffects) {
     if (effect.bit != kSceneShading && (called_for & effect.bit) != 0) constants.append(" | ").append(effect.constant);
   }
+  if (packet_width == 0) return "EffectLayout64K<" + constants + ">";
   constexpr std::uint32_t kDefaultPacketWidth = 32;  // of the template
   if (packet_width != kDefaultPacketWidth) constants.append(", ").append(std::to_string(packet_width));
   return "EffectLayout256K<" + constants + ">";

@@ -31,9 +31,10 @@ Json json_of(const StoreFacts& store) {
           {"stack_bytes", store.stack_bytes}};
 }
 
-// Whether the machine, and the store asked for, have room for a renderer of effects.
-bool has_effect_store(const InfoArguments& arguments) {
-  return sim::arena_bytes(arguments.store) >= sim::arena_bytes(sim::StoreSize::k256KB);
+// Whether the machine, and the store asked for, have room for a renderer of these effects.
+bool has_effect_store(const InfoArguments& arguments, std::uint32_t called_for) {
+  const bool fits_64k = arguments.store == sim::StoreSize::k64KB && (called_for & ~kEffectsOf64K) == 0;
+  return fits_64k || sim::arena_bytes(arguments.store) >= sim::arena_bytes(sim::StoreSize::k256KB);
 }
 
 Json json_of(const LoopBounds& bounds) {
@@ -45,7 +46,7 @@ Json json_of(const LoopBounds& bounds) {
           {"triangle_tests_per_pass", bounds.triangle_tests_per_pass}};
 }
 
-// The local store and packets of the renderer that would do: effects have those of 256 KB alone.
+// The local store and packets of the renderer that would do.
 std::string renderer_of(const InfoArguments& arguments, const SceneFacts& facts, const StoreFacts& store) {
   return renderer_type(facts.effects.record.called_for, sim::arena_bytes(arguments.store) >> 10, store.packet_width);
 }
@@ -72,7 +73,7 @@ Json effects_json(const InfoArguments& arguments, const SceneFacts& facts, const
   }
   json["sections"] = sections;
   json["spill_bytes_per_core"] = effects.spill_bytes_per_core;
-  json["has_room"] = has_effect_store(arguments);
+  json["has_room"] = has_effect_store(arguments, facts.effects.record.called_for);
   return json;
 }
 
@@ -126,9 +127,9 @@ void print_effects(const InfoArguments& arguments, const SceneFacts& facts, cons
   print_line("effects", effects.has_effects ? words_of_effects(record.called_for) : "none called for");
   print_line("renderer", renderer_of(arguments, facts, store));
   if (!effects.has_effects) return;
-  if (!has_effect_store(arguments)) {
+  if (!has_effect_store(arguments, facts.effects.record.called_for)) {
     print_line("", "does NOT fit the local store of " + std::string(arguments.scene.machine->name) +
-                       ": effects need one of 256 KB");
+                       ": 64 KB hold " + words_of_effects(kEffectsOf64K) + ", 256 KB all effects");
   }
   const std::uint32_t area_lights = record.light_count - record.point_light_count;
   print_line("materials", words_of_count(record.material_count) + ", " +
@@ -209,8 +210,11 @@ void print_text(const InfoArguments& arguments, const SceneFacts& facts, const S
 void run_command(const InfoArguments& arguments) {
   const SceneFacts facts = collect_scene_facts(arguments);
   const std::uint32_t packet_width = arguments.scene.configuration->packet_width;
-  const StoreFacts store = facts.effects.record.called_for != 0 ? effect_store_facts(packet_width)
-                                                                : usual_store_facts(arguments.store, packet_width);
+  const std::uint32_t called_for = facts.effects.record.called_for;
+  const sim::StoreSize effect_store =
+      has_effect_store(arguments, called_for) ? arguments.store : sim::StoreSize::k256KB;
+  const StoreFacts store = called_for != 0 ? effect_store_facts(effect_store, packet_width)
+                                           : usual_store_facts(arguments.store, packet_width);
   arguments.json ? print_json(arguments, facts, store) : print_text(arguments, facts, store);
 }
 

@@ -19,6 +19,10 @@ using sim::StoreSize;
 // The layout with a store: what was not asked for is the store's and the configuration's.
 sim::LayoutChoice layout_with(const RenderArguments& render, StoreSize store) {
   const AskedLayout& asked = render.asked;
+  // Effects out of 64 KB: all rays by walks, without packets.
+  if (render.shading == Shading::kScene && store == StoreSize::k64KB) {
+    return {store, asked.tile_width != 0 ? asked.tile_width : 8, asked.packet_width, true};
+  }
   const std::uint32_t tile_width = asked.tile_width != 0 ? asked.tile_width : sim::usual_tile_width(store);
   // A packet is no wider than a tile.
   const std::uint32_t fitting = std::min(render.scene.configuration->packet_width, tile_width);
@@ -26,6 +30,7 @@ sim::LayoutChoice layout_with(const RenderArguments& render, StoreSize store) {
 }
 
 std::string words_of_layout(const sim::LayoutChoice& layout) {
+  if (layout.packet_width == 0) return "tiles " + std::to_string(layout.tile_width) + " pixels wide and no packets";
   return "tiles " + std::to_string(layout.tile_width) + " pixels wide and packets of " +
          std::to_string(layout.packet_width) + "x" + std::to_string(layout.packet_width);
 }
@@ -79,6 +84,10 @@ void choose_depths(RenderArguments& render) {
     render.depths.output = std::min(render.depths.output, facts.max_output_depth);
     render.depths.macro = std::min(render.depths.macro, facts.max_macro_depth);
     render.depths.triangle = std::min(render.depths.triangle, facts.max_triangle_depth);
+    if (render.shading == Shading::kScene) render.depths.walks = std::min(render.depths.walks, facts.max_walks);
+  }
+  if (render.shading == Shading::kScene && !render.scene.macro_width) {
+    render.scene.macro_width = std::min(configuration.macro_width, facts.max_macro_width);
   }
   const std::uint32_t macro_width = render.scene.macro_width.value_or(configuration.macro_width);
   if (render.depths.output > facts.max_output_depth || render.depths.macro > facts.max_macro_depth ||

@@ -22,7 +22,8 @@ StoreFacts facts_of() {
   facts.max_macro_depth = Layout::kMaxMacroDepth;
   facts.max_triangle_depth = Layout::kMaxTriangleDepth;
   facts.triangles_per_buffer = Layout::kTrianglesPerBuffer;
-  facts.mailbox_slots = Layout::kMailboxSlots;
+  if constexpr (Layout::kEffects != 0) facts.max_walks = kWalkCount<Layout>;
+  if constexpr (kHasPackets<Layout>) facts.mailbox_slots = Layout::kMailboxSlots;
   facts.resident_macro_cells = 32 * Layout::kTableEntries;
   for_each_region<Layout>([&facts](const char* name, std::size_t offset_bytes, std::size_t bytes) {
     facts.regions.push_back({name, offset_bytes, bytes});
@@ -86,7 +87,8 @@ std::vector<sim::LayoutChoice> built_layouts() {
   return choices;
 }
 
-StoreFacts effect_store_facts(std::uint32_t packet_width) {
+StoreFacts effect_store_facts(sim::StoreSize store, std::uint32_t packet_width) {
+  if (store == sim::StoreSize::k64KB) return *find_store_facts({store, 8, 0, true});
   return *find_store_facts({sim::StoreSize::k256KB, 32, packet_width, true});
 }
 

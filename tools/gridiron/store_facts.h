@@ -18,6 +18,7 @@ struct StoreFacts {
   std::uint32_t tile_width = 0, packet_width = 0;
   std::uint32_t max_macro_width = 0;
   std::uint32_t max_output_depth = 0, max_macro_depth = 0, max_triangle_depth = 0;
+  std::uint32_t max_walks = 0;  ///< of secondary rays under way at once; 0: renders no effects
   std::uint32_t triangles_per_buffer = 0;
   std::uint32_t mailbox_slots = 0;
   std::uint32_t resident_macro_cells = 0;  ///< as many as the table tells of without being fetched again
@@ -35,8 +36,9 @@ struct StoreFacts {
 /// The layout with the store's usual tiles. @param packet_width  8 or 32; 32 is 16 where tiles are no wider.
 [[nodiscard]] StoreFacts usual_store_facts(sim::StoreSize store, std::uint32_t packet_width);
 
-/// The layout that renders effects. @param packet_width  8 or 32.
-[[nodiscard]] StoreFacts effect_store_facts(std::uint32_t packet_width);
+/// The layout that renders effects. @param store  64 KB, else the one of 256 KB is meant. @param packet_width  8 or 32;
+/// 64 KB have no packets.
+[[nodiscard]] StoreFacts effect_store_facts(sim::StoreSize store, std::uint32_t packet_width);
 
 /// Whether a core has room for a layout, built or not.
 struct LayoutFit {

@@ -147,6 +147,9 @@ struct EffectLayout64K {
   static_assert((BuiltV & kSceneShading) != 0);
 };
 
+/// Effects that a 64 KB core has room for together: what builds for it are made with unless a device asks for fewer.
+inline constexpr std::uint32_t kEffectsOf64K = kSceneShading | kPointShadows | kReflection | kAmbientOcclusion;
+
 /// A layout whose packets have no width traces all rays by walks.
 template <class Layout>
 inline constexpr bool kHasPackets = Layout::kPacketWidth != 0;
