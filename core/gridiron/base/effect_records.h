@@ -131,8 +131,8 @@ inline constexpr std::uint32_t kMostWaveRays = 256;
 inline constexpr std::uint32_t kMostEffectTilePixels = 1024;  ///< of a layout with effects
 
 /// Rays that can wait at once on a core: two for each pixel of a tile, of depth 2, and two a ray of a wave for each
-/// depth more. For the queue is a stack: a wave of which pushed rays are left below was followed by one made of rays that
-/// it pushed alone, all of them deeper than its least deep; so at most one wave for each depth has some left.
+/// depth more. For the queue is a stack: a wave of which pushed rays are left below was followed by one made of those
+/// alone, all of them deeper than its least deep; so at most one wave for each depth has some left.
 [[nodiscard]] constexpr std::uint32_t most_waiting_rays(std::uint32_t recursion_depth) {
   return recursion_depth <= 1 ? 0 : 2 * kMostEffectTilePixels + 2 * kMostWaveRays * (recursion_depth - 2);
 }

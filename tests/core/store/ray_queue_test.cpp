@@ -1,5 +1,6 @@
 // Ray queue: a stack, whatever part of it lies in main memory, within the region that the depth of recursion asks for.
 // SPDX-License-Identifier: Apache-2.0
+#include <gridiron/store/local_store.h>
 #include <gridiron/store/ray_queue.h>
 #include <gtest/gtest.h>
 
@@ -18,9 +19,10 @@
 namespace gridiron::test {
 namespace {
 
-using Store = EffectStore<64>;
+using Store = EffectStore<EffectLayout256K<kAllEffects>>;
 using Queue = RayQueue<Store, TestPlatform>;
 
+constexpr std::uint32_t kWaveRays = Store::kWaveRays, kSpillBlockRays = Store::kSpillBlockRays;
 constexpr std::uint64_t kSpill = kSpillAlignment;
 constexpr std::byte kFill{0x5A};
 
@@ -162,7 +164,7 @@ std::size_t grow(QueueRig& rig, std::uint32_t recursion_depth, bool some_wait, C
     for (std::uint32_t i = children_of(parent); i > 0; --i) ASSERT_EQ(rig.push(depth + 1), Status::kOk);
     most = std::max(most, rig.model.size());
   };
-  for (std::uint32_t i = 0; i < kWaveRays; ++i) push_children(make_ray(i, 1));
+  for (std::uint32_t i = 0; i < kMostEffectTilePixels; ++i) push_children(make_ray(i, 1));
   while (!rig.queue.empty() && !testing::Test::HasFailure()) {
     EXPECT_EQ(rig.pop(wave), Status::kOk);
     for (const bool waited : {false, true}) {
@@ -178,8 +180,8 @@ TEST(RayQueue, TwoChildrenARayFitTheRegion) {
   for (std::uint32_t depth = 2; depth <= kMaxRecursionDepth; ++depth) {
     QueueRig rig(16, Moves::kAtTheWait, spill_bytes(depth));
     const std::size_t most = grow(rig, depth, false, [](const QueuedRay&) { return 2u; });
-    // A wave of each depth but the last waits under twice as many of that.
-    EXPECT_EQ(most, kWaveRays * depth) << "depth " << depth;
+    // All of depth 2, and of each depth more twice a wave in the place of one.
+    EXPECT_EQ(most, 2 * kMostEffectTilePixels + kWaveRays * (depth - 2)) << "depth " << depth;
     EXPECT_LE(most, most_waiting_rays(depth)) << "depth " << depth;
     EXPECT_LE(rig.used_bytes(), spill_bytes(depth)) << "depth " << depth;
     // The ring is full before a block leaves, and then only whole ones do.
