@@ -4,6 +4,7 @@
 // Memory: the arena that the loader gives. Threads: one core. SPDX-License-Identifier: Apache-2.0
 #include <gridiron/base/effect_records.h>
 #include <gridiron/base/lanes.h>
+#include <gridiron/base/one_lane.h>
 #include <gridiron/render/tile_renderer.h>
 #include <gridiron/store/local_store.h>
 
@@ -22,6 +23,12 @@ using FirmwareLayout = EffectLayout64K<GRIDIRON_EFFECTS>;
 #else
 using FirmwareLayout = EffectLayout256K<GRIDIRON_EFFECTS, GRIDIRON_PACKET_WIDTH>;
 #endif
+// Lanes of a core without vectors only make its code longer; packets are not for such a core.
+#if defined(GRIDIRON_64K) && !defined(__ARM_NEON) && !defined(__SSE2__)
+using FirmwareLanes = Lanes<1>;
+#else
+using FirmwareLanes = Lanes<4>;
+#endif
 using FirmwareStore = LocalStore<FirmwareLayout>;
 
 /// Renders the core's share of a frame.
@@ -37,7 +44,7 @@ Status render_on_template_board(FirmwareStore& store, volatile EngineRegisters* 
                                 std::uint32_t core_index, MainAddress frame) {
   TemplateBoard board(engine, control, reinterpret_cast<std::uintptr_t>(&store), sizeof store);
   TemplatePort<TemplateBoard> port(board);
-  return render_tiles<Lanes<4>>(store, port, frame, board.spill_region(core_index));
+  return render_tiles<FirmwareLanes>(store, port, frame, board.spill_region(core_index));
 }
 
 }  // namespace gridiron::port
