@@ -1,5 +1,5 @@
 // Renderers built for a set of effects, and that of a 64 KB core: the same pictures from less code, and a name for what
-// was left out. core/README.md shows the first lines of this file's example.
+// was left out. The example is that of core/README.md.
 // SPDX-License-Identifier: Apache-2.0
 #include <gridiron/base/one_lane.h>
 #include <gridiron/render/tile_renderer.h>
@@ -7,7 +7,10 @@
 #include <gtest/gtest.h>
 
 #include <cstdint>
+#include <fstream>
+#include <iterator>
 #include <memory>
+#include <string>
 
 #include "effects/effect_scene.h"
 #include "effects/kernel_scene.h"
@@ -15,14 +18,13 @@
 namespace gridiron::test {
 namespace {
 
-// [example: a renderer of plain light, shadows of point lights and nothing else]
+// A renderer of plain light, shadows of point lights and nothing else.
 using ShadowStore = LocalStore<EffectLayout256K<kSceneShading | kPointShadows>>;
 
 template <Platform P>
 Status render_shadows(ShadowStore& store, P& platform, MainAddress frame) {
   return render_tiles<Lanes<4>>(store, platform, frame);
 }
-// [end of example]
 
 constexpr std::uint32_t kWidth = 52, kHeight = 36;
 
@@ -117,6 +119,22 @@ TEST(Builds, WhatWasLeftOutIsNamed) {
   const auto store = std::make_unique<ShadowStore>();
   NoPlatform platform;
   EXPECT_EQ(render_shadows(*store, platform, MainAddress{4096}), Status::kTransferFailed);
+}
+
+TEST(Builds, TheReadmeShowsWhatIsCompiledHere) {
+  const auto text_of = [](const char* name) {
+    std::ifstream file(std::string(GRIDIRON_SOURCE_DIR) + "/" + name);
+    return std::string(std::istreambuf_iterator<char>(file), {});
+  };
+  const std::string readme = text_of("core/README.md");
+  const std::string opening = "```cpp\n";
+  const std::size_t begin = readme.find(opening);
+  ASSERT_NE(begin, std::string::npos);
+  const std::size_t end = readme.find("```", begin + opening.size());
+  ASSERT_NE(end, std::string::npos);
+  const std::string block = readme.substr(begin + opening.size(), end - begin - opening.size());
+  EXPECT_GT(block.size(), 100u);
+  EXPECT_NE(text_of("tests/effects/builds_test.cpp").find(block), std::string::npos) << block;
 }
 
 TEST(Builds, QueuesAreForThoseThatCastRays) {
