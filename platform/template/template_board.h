@@ -2,6 +2,9 @@
 // Memory: registers at fixed addresses. Threads: one core. SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <gridiron/platform/contract.h>
+#include <gridiron/store/local_store.h>
+
 #include <cstdint>
 
 #include "template_port.h"
@@ -22,6 +25,9 @@ struct FrameControl {
   std::uint32_t next_tile;  ///< set to 0 by the host before the frame
   std::uint32_t tile_count;
   std::uint32_t stop;  ///< set by the host to end the frame between tiles
+  std::uint32_t core_count;      ///< cores that take part
+  std::uint64_t spill_address;   ///< memory for rays that wait, a multiple of kSpillAlignment; 0: none, no effects
+  std::uint64_t spill_bytes;     ///< of each core, one after the other; spill_bytes(recursion_depth) of the scene
 };
 
 /// Replace the addresses, bits and bodies by those of your chip.
@@ -64,6 +70,14 @@ class TemplateBoard {
   }
   [[nodiscard]] bool must_stop() { return __atomic_load_n(&control_->stop, __ATOMIC_RELAXED) != 0; }
   [[nodiscard]] std::uint32_t tile_count() const { return control_->tile_count; }
+
+  /// The core's part of the memory for rays that wait; no board needs it for frames without effects. A core that is not
+  /// counted has none.
+  [[nodiscard]] SpillRegion spill_region(std::uint32_t core_index) const {
+    if (core_index >= control_->core_count) return {};
+    return {MainAddress{control_->spill_address + std::uint64_t{core_index} * control_->spill_bytes},
+            control_->spill_bytes};
+  }
 
  private:
   volatile EngineRegisters* engine_;

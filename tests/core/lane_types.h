@@ -4,16 +4,20 @@
 #pragma once
 
 #include <gridiron/base/lanes.h>
+#include <gridiron/base/one_lane.h>
 #include <gtest/gtest.h>
 
 #include <string>
 
 namespace gridiron::test {
 
+// Of rays that are walked, one lane too.
 #if defined(GRIDIRON_TEST_LANES)
 using LaneTypes = testing::Types<Lanes<GRIDIRON_TEST_LANES>>;
+using WalkLaneTypes = LaneTypes;
 #else
 using LaneTypes = testing::Types<Lanes<4>, Lanes<8>, Lanes<16>>;
+using WalkLaneTypes = testing::Types<Lanes<1>, Lanes<4>, Lanes<8>, Lanes<16>>;
 #endif
 
 struct LaneNames {

@@ -8,15 +8,20 @@
 namespace gridiron::test {
 namespace {
 
-// Compiles `text` as if it were the kernel of a cross build and checks its budgets.
-ScriptResult check_budgets_of(const std::string& text) {
-  const ScratchDirectory scratch;
-  scratch.write("gridiron_kernel.dir/a.cpp", text);
-  const std::string directory = scratch.path().string();
-  const ScriptResult built = run_script("cd '" + directory +
-                                        "/gridiron_kernel.dir' && " GRIDIRON_CXX_COMPILER
+void compile_as(const ScratchDirectory& scratch, const std::string& target, const std::string& text) {
+  scratch.write(target + ".dir/a.cpp", text);
+  const ScriptResult built = run_script("cd '" + scratch.path().string() + "/" + target +
+                                        ".dir' && " GRIDIRON_CXX_COMPILER
                                         " -std=c++20 -O1 -fcallgraph-info=su,da -c a.cpp -o a.obj");
   EXPECT_EQ(built.exit_code, 0) << built.output;
+}
+
+// Compiles `text` as if it were the kernel of a cross build, and a port where one is named, and checks their budgets.
+ScriptResult check_budgets_of(const std::string& text, const std::string& port = "", const std::string& port_text = "") {
+  const ScratchDirectory scratch;
+  compile_as(scratch, "gridiron_kernel", text);
+  if (!port.empty()) compile_as(scratch, "gridiron_template_port_" + port, port_text);
+  const std::string directory = scratch.path().string();
   return run_script(source_path("tools/house/check_budgets") + " size '" + directory + "'");
 }
 
@@ -52,6 +57,25 @@ TEST_F(Budgets, TooMuchStackAndTooMuchCodeFail) {
                 .exit_code,
             1);
   EXPECT_EQ(check_budgets_of("extern const char table[60000]; const char table[60000] = {1};").exit_code, 1);
+}
+
+// A port of 60,000 bytes of constants is within the budget of all effects in 256 KB and beyond the others'.
+TEST_F(Budgets, EachPortIsHeldAgainstItsOwnLayout) {
+  const std::string small = "int f(int x) { return x + 1; }";
+  const std::string table = "extern const char table[60000]; const char table[60000] = {1}; int g() { return 1; }";
+  const ScriptResult effects = check_budgets_of(small, "effects", table);
+  EXPECT_EQ(effects.exit_code, 0) << effects.output;
+  EXPECT_NE(effects.output.find("effects: code "), std::string::npos) << effects.output;
+  EXPECT_NE(effects.output.find(" of 94208 bytes, stack "), std::string::npos) << effects.output;
+  const ScriptResult effects64k = check_budgets_of(small, "effects64k", table);
+  EXPECT_EQ(effects64k.exit_code, 1);
+  EXPECT_NE(effects64k.output.find(" of 44544 bytes, stack "), std::string::npos) << effects64k.output;
+  EXPECT_EQ(check_budgets_of(small, "packet32", table).exit_code, 1);
+  EXPECT_EQ(check_budgets_of(small, "packet32", small).exit_code, 0);
+  // Stacks too: 5,000 bytes are too much for 64 KB alone.
+  const std::string deep = "extern void use(char*) asm(\"memset\"); int g(int x) { char a[5000]; use(a); return a[x]; }";
+  EXPECT_EQ(check_budgets_of(small, "effects", deep).exit_code, 0);
+  EXPECT_EQ(check_budgets_of(small, "effects64k", deep).exit_code, 1);
 }
 
 TEST_F(Budgets, RecursionPointersAndFramesOfNoFixedSizeAreNamed) {

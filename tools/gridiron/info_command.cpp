@@ -31,10 +31,9 @@ Json json_of(const StoreFacts& store) {
           {"stack_bytes", store.stack_bytes}};
 }
 
-// Whether the machine, and the store asked for, have room for a renderer of these effects.
-bool has_effect_store(const InfoArguments& arguments, std::uint32_t called_for) {
-  const bool fits_64k = arguments.store == sim::StoreSize::k64KB && (called_for & ~kEffectsOf64K) == 0;
-  return fits_64k || sim::arena_bytes(arguments.store) >= sim::arena_bytes(sim::StoreSize::k256KB);
+// Whether there is a renderer of effects for the store asked for.
+bool has_effect_store(const InfoArguments& arguments) {
+  return arguments.store != sim::StoreSize::k128KB;
 }
 
 Json json_of(const LoopBounds& bounds) {
@@ -73,7 +72,7 @@ Json effects_json(const InfoArguments& arguments, const SceneFacts& facts, const
   }
   json["sections"] = sections;
   json["spill_bytes_per_core"] = effects.spill_bytes_per_core;
-  json["has_room"] = has_effect_store(arguments, facts.effects.record.called_for);
+  json["has_room"] = has_effect_store(arguments);
   return json;
 }
 
@@ -127,9 +126,9 @@ void print_effects(const InfoArguments& arguments, const SceneFacts& facts, cons
   print_line("effects", effects.has_effects ? words_of_effects(record.called_for) : "none called for");
   print_line("renderer", renderer_of(arguments, facts, store));
   if (!effects.has_effects) return;
-  if (!has_effect_store(arguments, facts.effects.record.called_for)) {
+  if (!has_effect_store(arguments)) {
     print_line("", "does NOT fit the local store of " + std::string(arguments.scene.machine->name) +
-                       ": 64 KB hold " + words_of_effects(kEffectsOf64K) + ", 256 KB all effects");
+                       ": effects need one of 64 or of 256 KB");
   }
   const std::uint32_t area_lights = record.light_count - record.point_light_count;
   print_line("materials", words_of_count(record.material_count) + ", " +
@@ -212,7 +211,7 @@ void run_command(const InfoArguments& arguments) {
   const std::uint32_t packet_width = arguments.scene.configuration->packet_width;
   const std::uint32_t called_for = facts.effects.record.called_for;
   const sim::StoreSize effect_store =
-      has_effect_store(arguments, called_for) ? arguments.store : sim::StoreSize::k256KB;
+      has_effect_store(arguments) ? arguments.store : sim::StoreSize::k256KB;
   const StoreFacts store = called_for != 0 ? effect_store_facts(effect_store, packet_width)
                                            : usual_store_facts(arguments.store, packet_width);
   arguments.json ? print_json(arguments, facts, store) : print_text(arguments, facts, store);

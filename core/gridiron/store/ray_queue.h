@@ -53,7 +53,7 @@ class RayQueue {
 
  private:
   static constexpr std::uint32_t kBlockBytes = Store::kSpillBlockRays * static_cast<std::uint32_t>(sizeof(QueuedRay));
-  static_assert(Store::kQueueRays % Store::kSpillBlockRays == 0);
+  static_assert(!Store::kHasQueue || Store::kQueueRays % Store::kSpillBlockRays == 0);
 
   // The i-th oldest ray here, in a ring.
   [[nodiscard]] std::uint32_t place_of(std::uint32_t i) const {

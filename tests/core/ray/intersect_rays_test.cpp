@@ -24,7 +24,7 @@ constexpr std::uint32_t kAll = (1u << kWalkRays) - 1;
 
 template <class L>
 class IntersectRaysTest : public testing::Test {};
-TYPED_TEST_SUITE(IntersectRaysTest, LaneTypes, LaneNames);
+TYPED_TEST_SUITE(IntersectRaysTest, WalkLaneTypes, LaneNames);
 
 VertexTriangle triangle_of(const TestMesh& mesh, std::uint32_t id) {
   VertexTriangle triangle{};

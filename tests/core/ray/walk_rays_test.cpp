@@ -28,7 +28,7 @@ constexpr float kNaN = std::numeric_limits<float>::quiet_NaN();
 
 template <class L>
 class WalkRaysTest : public testing::Test {};
-TYPED_TEST_SUITE(WalkRaysTest, LaneTypes, LaneNames);
+TYPED_TEST_SUITE(WalkRaysTest, WalkLaneTypes, LaneNames);
 
 GridRecord unit_grid(std::uint32_t cells) {
   GridRecord grid{};

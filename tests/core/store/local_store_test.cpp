@@ -65,6 +65,16 @@ TEST(Layouts, WhatDoesNotFitIsTold) {
   EXPECT_FALSE((kFitsArena<StoreLayout128K<32, 64>>));
 }
 
+// One more wave does not fit beside the code of all effects; a queue that nothing waits in costs next to nothing.
+TEST(Layouts, EffectsIn64KbHaveShortWaves) {
+  EXPECT_TRUE((kFitsArena<EffectLayout64K<kAllEffects>>));
+  EXPECT_TRUE((kFitsArena<EffectLayout64K<kSceneShading>>));
+  EXPECT_FALSE((kFitsArena<EffectLayout64K<kAllEffects, 64>>));
+  EXPECT_FALSE(LocalStore<EffectLayout64K<kSceneShading>>::Effects::kHasQueue);
+  EXPECT_LE(LocalStore<EffectLayout64K<kSceneShading>>::Effects::kQueueRays, 1u);
+  EXPECT_EQ(LocalStore<EffectLayout64K<kSceneShading | kRefraction>>::Effects::kQueueRays, 48u);
+}
+
 TEST(Layouts, AreAsLargeAsTheirNames) {
   EXPECT_EQ(StoreLayout64K<>::kArenaBytes, 64u << 10);
   EXPECT_EQ(StoreLayout128K<>::kArenaBytes, 128u << 10);
