@@ -23,6 +23,7 @@ struct Configuration {
   std::string_view name;
   std::string_view description;
   float lambda;                ///< cells per triangle, Eq. (1)
+  float walk_lambda;           ///< the same of scenes that cast secondary rays: each by itself, these want small cells
   std::uint32_t macro_width;   ///< cells along a macrocell's edge
   std::uint32_t packet_width;  ///< rays along a packet's edge
   BufferDepths depths;

@@ -152,7 +152,10 @@ std::uint64_t image_budget_bytes(const sim::MachineProfile& machine, std::uint32
 GridChoice choose_grid(const SceneInput& input, const Mesh& mesh, const SceneArguments& arguments,
                        TriangleFormat format, std::uint64_t budget_bytes, const EffectsView* effects) {
   GridChoice choice;
-  choice.wanted_lambda = arguments.lambda.value_or(arguments.configuration->lambda);
+  constexpr std::uint32_t kWalked = kPointShadows | kAreaLights | kReflection | kRefraction | kAmbientOcclusion;
+  const bool casts_rays = effects != nullptr && (effects_called_for(*effects) & kWalked) != 0;
+  const Configuration& configuration = *arguments.configuration;
+  choice.wanted_lambda = arguments.lambda.value_or(casts_rays ? configuration.walk_lambda : configuration.lambda);
   choice.parameters.lambda = choice.wanted_lambda;
   choice.parameters.macro_width = arguments.macro_width.value_or(arguments.configuration->macro_width);
   choice.parameters.format = format;
