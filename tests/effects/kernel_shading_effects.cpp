@@ -1,5 +1,4 @@
-// Kernels built with the effects of single scenes: environment, normals, highlights.
-// SPDX-License-Identifier: Apache-2.0
+// Kernels with effects of single scenes: environment, normals, highlights. SPDX-License-Identifier: Apache-2.0
 #include "effects/kernel_variants.h"
 
 namespace gridiron::test {
