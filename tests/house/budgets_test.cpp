@@ -17,7 +17,8 @@ void compile_as(const ScratchDirectory& scratch, const std::string& target, cons
 }
 
 // Compiles `text` as if it were the kernel of a cross build, and a port where one is named, and checks their budgets.
-ScriptResult check_budgets_of(const std::string& text, const std::string& port = "", const std::string& port_text = "") {
+ScriptResult check_budgets_of(const std::string& text, const std::string& port = "",
+                              const std::string& port_text = "") {
   const ScratchDirectory scratch;
   compile_as(scratch, "gridiron_kernel", text);
   if (!port.empty()) compile_as(scratch, "gridiron_template_port_" + port, port_text);
@@ -73,7 +74,8 @@ TEST_F(Budgets, EachPortIsHeldAgainstItsOwnLayout) {
   EXPECT_EQ(check_budgets_of(small, "packet32", table).exit_code, 1);
   EXPECT_EQ(check_budgets_of(small, "packet32", small).exit_code, 0);
   // Stacks too: 5,000 bytes are too much for 64 KB alone.
-  const std::string deep = "extern void use(char*) asm(\"memset\"); int g(int x) { char a[5000]; use(a); return a[x]; }";
+  const std::string deep =
+      "extern void use(char*) asm(\"memset\"); int g(int x) { char a[5000]; use(a); return a[x]; }";
   EXPECT_EQ(check_budgets_of(small, "effects", deep).exit_code, 0);
   EXPECT_EQ(check_budgets_of(small, "effects64k", deep).exit_code, 1);
 }

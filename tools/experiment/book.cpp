@@ -23,6 +23,9 @@ nav ul { columns: 2; padding-left: 1.2rem; }
 a { color: #0057a3; }
 figure { margin: 1.4rem 0 2rem; }
 figure img { width: 100%; max-width: 45rem; height: auto; display: block; }
+.strip { display: flex; flex-wrap: wrap; gap: 0.8rem; }
+.strip figure { margin: 0; width: 9.5rem; }
+.strip img { image-rendering: pixelated; }
 figcaption, caption { color: #555; font-size: 0.92rem; text-align: left; max-width: 48rem; padding: 0.3rem 0; }
 .scroll { overflow-x: auto; margin: 1.2rem 0; }
 table { border-collapse: collapse; font-size: 0.9rem; font-variant-numeric: tabular-nums; }
@@ -87,6 +90,16 @@ void Book::figure(std::string_view name, std::string svg, std::string_view capti
   body_ += "<figure><img src=\"" + file + "\" alt=\"" + escape_markup(caption) + "\"/><figcaption>" +
            escape_markup(caption) + "</figcaption></figure>\n";
   files_.push_back({file, std::move(svg)});
+}
+
+void Book::pictures(std::vector<BookPicture> row) {
+  body_ += "<div class=\"strip\">\n";
+  for (BookPicture& picture : row) {
+    const std::string file = picture.name + ".png", words = escape_markup(picture.words);
+    body_ += "<figure><img src=\"" + file + "\" alt=\"" + words + "\"/><figcaption>" + words + "</figcaption></figure>\n";
+    files_.push_back({file, std::move(picture.png)});
+  }
+  body_ += "</div>\n";
 }
 
 void Book::text(std::string_view name, std::string content, std::string_view caption) {

@@ -16,6 +16,13 @@ struct BookFile {
   std::string content;
 };
 
+/// A picture of a row: NAME.png.
+struct BookPicture {
+  std::string name;  ///< without extension
+  std::string png;   ///< bytes of the file
+  std::string words;
+};
+
 /// Text goes in as plain words; what has a meaning in HTML is escaped here.
 class Book {
  public:
@@ -34,6 +41,8 @@ class Book {
   void shown_table(const Table& table, std::string_view caption);
   /// Adds NAME.svg.
   void figure(std::string_view name, std::string svg, std::string_view caption);
+  /// Adds a PNG file for each picture; they stand side by side, their words below them.
+  void pictures(std::vector<BookPicture> row);
   /// Adds a file of plain text under its whole name, and a link to it.
   void text(std::string_view name, std::string content, std::string_view caption);
 

@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "experiment/accuracy_experiment.h"
+#include "experiment/effects_experiment.h"
 #include "experiment/paper_experiment.h"
 #include "gridiron/atomic_file.h"
 #include "gridiron/commands.h"
@@ -46,6 +47,7 @@ void check_scenes(const std::filesystem::path& folder) {
 }
 
 std::vector<std::string> file_names_of(ExperimentName name) {
+  if (name == ExperimentName::kEffects) return experiment::effects_file_names();
   return name == ExperimentName::kPaper ? experiment::paper_file_names() : experiment::accuracy_file_names();
 }
 
@@ -56,6 +58,10 @@ experiment::ExperimentResult run(const ExperimentArguments& arguments, const exp
     return experiment::run_accuracy_experiment(
         {.scenes = arguments.scenes, .threads = threads, .width = arguments.width, .height = arguments.height},
         progress);
+  }
+  if (arguments.name == ExperimentName::kEffects) {
+    return experiment::run_effects_experiment(
+        {.threads = threads, .width = arguments.width, .height = arguments.height}, progress);
   }
   return experiment::run_paper_experiment({.scenes = arguments.scenes,
                                            .threads = threads,

@@ -380,9 +380,12 @@ AnimateArguments complete_animate(AnimateArguments animate, const RawRender& raw
 
 void add_experiment_options(CLI::App& app, ExperimentArguments& experiment) {
   add_choice(app, "NAME", experiment.name,
-             Choices<ExperimentName>{{"paper", ExperimentName::kPaper}, {"accuracy", ExperimentName::kAccuracy}},
+             Choices<ExperimentName>{{"paper", ExperimentName::kPaper},
+                                     {"accuracy", ExperimentName::kAccuracy},
+                                     {"effects", ExperimentName::kEffects}},
              "paper: Tables 1-4, Figs. 5-7 and sweeps; some eight minutes of processor time with the scans. accuracy: "
-             "what each accuracy profile costs and what is wrong with its answers; some two minutes. Both leave CSV, "
+             "what each accuracy profile costs and what is wrong with its answers; some two minutes. effects: what "
+             "each effect costs, and that one that is off costs nothing; some two minutes, no scans. All leave CSV, "
              "SVG and index.html; nothing is told before the end where standard error is no terminal")
       ->required();
   const auto folder = [](const std::string& text) {
@@ -393,18 +396,25 @@ void add_experiment_options(CLI::App& app, ExperimentArguments& experiment) {
       ->required();
   app.add_option("--scenes", experiment.scenes,
                  "folder of the scans (default: the environment's GRIDIRON_SCENES); scans that are not there are left "
-                 "out, and without any a teapot and a torus knot are made")
+                 "out, and without any a teapot and a torus knot are made; effects makes its own scenes")
       ->type_name("DIR");
   add_threads(app, experiment.threads, "no file but host_*.csv, which measures this host, depends on it");
-  add_size(app, experiment.width, experiment.height, "pictures in pixels (default 1024x1024)");
+  add_size(app, experiment.width, experiment.height, "pictures in pixels (default 1024x1024; effects: 96x96)");
   add_parsed(app, "--largest", experiment.largest_knot, count_between(6'000, 10'000'000),
              "a whole number from 6000 to 10000000", "N",
              "paper: triangles of the largest mesh of Table 1 (default 1000000)");
   app.add_flag("--quiet", experiment.quiet, "print nothing but errors");
 }
 
-ExperimentArguments complete_experiment(ExperimentArguments experiment, bool has_largest) {
-  if (has_largest && experiment.name != ExperimentName::kPaper) usage_error("--largest: is of experiment paper alone");
+ExperimentArguments complete_experiment(ExperimentArguments experiment, const CLI::App& app) {
+  if (app.count("--largest") > 0 && experiment.name != ExperimentName::kPaper) {
+    usage_error("--largest: is of experiment paper alone");
+  }
+  if (experiment.name == ExperimentName::kEffects) {
+    if (app.count("--scenes") > 0) usage_error("--scenes: experiment effects makes its own");
+    if (app.count("--size") == 0) experiment.width = experiment.height = 96;
+    return experiment;
+  }
   if (experiment.scenes.empty()) {
     const char* scenes = std::getenv("GRIDIRON_SCENES");
     if (scenes != nullptr) experiment.scenes = scenes;
@@ -507,7 +517,7 @@ Command parse_arguments(int count, const char* const* values) {
                       {{"-o", pack_arguments.output}});
     return pack_arguments;
   }
-  if (*experiment) return complete_experiment(experiment_arguments, experiment->count("--largest") > 0);
+  if (*experiment) return complete_experiment(experiment_arguments, *experiment);
   if (machines->count("MACHINE") > 0) machines_arguments.machine = find_machine(machine);
   return machines_arguments;
 }

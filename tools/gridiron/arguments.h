@@ -94,12 +94,12 @@ struct MachinesArguments {
   bool json = false;
 };
 
-enum class ExperimentName { kPaper, kAccuracy };
+enum class ExperimentName { kPaper, kAccuracy, kEffects };
 
 struct ExperimentArguments {
   ExperimentName name = ExperimentName::kPaper;
   std::filesystem::path output;  ///< folder
-  std::filesystem::path scenes;  ///< folder of scans; empty: none
+  std::filesystem::path scenes;  ///< folder of scans; empty: none; kEffects has none
   std::uint32_t threads = 0;     ///< 0: the host's
   std::uint32_t width = 1024, height = 1024;
   std::uint32_t largest_knot = 1'000'000;  ///< kPaper: triangles of the largest mesh of Table 1

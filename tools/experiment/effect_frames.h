@@ -1,0 +1,82 @@
+// Frames of the effects experiment: what was counted while they were rendered, and what effects cost that a frame does
+// not call for.
+// Memory: a frame owns its picture. Threads: any; render_effect_frame shares nothing. SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <gridiron/base/effect_records.h>
+#include <gridiron/base/stages.h>
+#include <gridiron/base/work_counters.h>
+#include <gridiron/sim/replay.h>
+#include <gridiron/sim/trace.h>
+
+#include <array>
+#include <cstddef>
+#include <cstdint>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "experiment/effect_scenes.h"
+#include "gridiron/configurations.h"
+#include "gridiron/image_files.h"
+
+namespace gridiron::experiment {
+
+inline constexpr tool::BufferDepths kSingleBuffers = {.output = 1, .macro = 1, .triangle = 1, .walks = 1};
+inline constexpr tool::BufferDepths kDoubleBuffers = {.output = 2, .macro = 2, .triangle = 2, .walks = 2};
+
+struct EffectFrameRequest {
+  std::uint32_t width = 96, height = 96;
+  float lambda = 4;  ///< grid cells per triangle
+  tool::BufferDepths depths = kDoubleBuffers;
+};
+
+/// What a frame did.
+struct EffectFrame {
+  std::uint32_t called_for = 0;   ///< EffectBits, as the scene image has them
+  std::uint32_t light_count = 0;  ///< point and area lights
+  bool has_shadows = true;
+  sim::WorkTotals work{};
+  std::array<sim::StageTiming, kStageCount> stages{};  ///< sums over the cores
+  double cycles = 0, seconds = 0;                      ///< of the whole frame
+  double core_cycles = 0;                              ///< frame's cycles times cores
+  tool::Picture<std::uint32_t> picture;                ///< 0xAABBGGRR
+
+  [[nodiscard]] std::uint64_t count(Work kind) const { return work[static_cast<std::size_t>(kind)]; }
+  [[nodiscard]] const sim::StageTiming& stage(Stage stage) const { return stages[static_cast<std::size_t>(stage)]; }
+  [[nodiscard]] std::uint64_t primary_rays() const;
+  [[nodiscard]] double wait_cycles() const;            ///< of all stages and cores
+  [[nodiscard]] double secondary_wait_cycles() const;  ///< of stages surface, shadow, occlusion, bounce, environment
+};
+
+/// Renders on the calling thread with configuration best on six cores of the home machine. Errors: tool::Failure.
+[[nodiscard]] EffectFrame render_effect_frame(const EffectScene& scene, const EffectFrameRequest& request);
+
+/// What a frame did for an effect that it does not call for.
+struct AbsentCost {
+  EffectBits effect{};
+  std::string_view what{};  ///< that was counted
+  std::uint64_t count = 0;
+  std::string_view stages{};  ///< in which `bytes` and `cycles` were counted; empty: the effect has none of its own
+  std::uint64_t bytes = 0;  ///< moved, in and out
+  double cycles = 0;        ///< of computation and waiting; of shadows of waiting alone, for light has their stage too
+
+  [[nodiscard]] bool is_nothing() const { return count == 0 && bytes == 0 && cycles == 0; }
+};
+
+/// @returns one for each effect that the frame does not call for, in the order of their bits.
+[[nodiscard]] std::vector<AbsentCost> absent_costs(const EffectFrame& frame);
+
+/// Errors: tool::Failure (kCheckFailed) where an effect that is not called for cost anything, or other effects are
+/// called for than `expected`. @param name  of the frame, for people.
+void check_absent_costs(const EffectFrame& frame, std::uint32_t expected, const std::string& name);
+
+inline constexpr double kLeastHiddenShare = 0.9;
+
+/// @returns the share of waits for secondary rays that buffering hides; 1 where there are none.
+[[nodiscard]] double hidden_share(const EffectFrame& single, const EffectFrame& buffered);
+
+/// Errors: tool::Failure (kCheckFailed) where less than kLeastHiddenShare is hidden.
+void check_hiding(const EffectFrame& single, const EffectFrame& buffered, const std::string& name);
+
+}  // namespace gridiron::experiment

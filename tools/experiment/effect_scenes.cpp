@@ -1,0 +1,187 @@
+// The scenes of the effects experiment. SPDX-License-Identifier: Apache-2.0
+#include "experiment/effect_scenes.h"
+
+#include <cstring>
+#include <glm/geometric.hpp>
+#include <utility>
+
+#include "scene_makers/procedural.h"
+#include "scene_text/scene_effects.h"
+#include "scene_text/scene_reader.h"
+
+namespace gridiron::experiment {
+namespace {
+
+constexpr std::uint32_t kSkyWidth = 32;
+
+// The program's own scenes/everything.nff without the files that it names: its teapot is a ball here.
+constexpr std::string_view kGallery = R"(v
+from 4 3.5 9
+at 0 1.1 0
+up 0 1 0
+angle 40
+hither 0
+resolution 96 96
+l -3 6 8  0.5 0.5 0.5
+la 2 6 2  1.5 0 0  0 0 1.5  0.5 0.5 0.45  4
+ao 4 1
+ms 4
+d 5
+f 0.8 0.75 0.65  1 0 0 0 0
+p 4
+  -4 0  4
+   4 0  4
+   4 0 -4
+  -4 0 -4
+f 0.9 0.85 0.7  0.3 0.6 60 0 0
+s -1.2 0.9 0.5 0.9
+f 1 1 1  0.05 0.1 100 0.9 1.5
+s 2 0.8 0.5 0.8
+f 0.35 0.55 0.8  0.9 0 0 0 0
+c 1.5 0 -1.8 0.6
+  1.5 1.2 -1.8 0.3
+pp 3
+  -3 0 -2    0 0.3 1
+  -1 0 -2    0.3 0.3 1
+  -2 2 -2.5  0 0.6 1
+p 7
+  -3.5 0 -3
+   3.5 0 -3
+   3.5 2 -3
+   0.6 2 -3
+   0 1 -3
+  -0.6 2 -3
+  -3.5 2 -3
+)";
+
+tool::SceneDescription read(std::string_view key, std::string_view text) {
+  // Coarser than the program's: as round as so small a picture shows.
+  const tool::SceneOptions options{.tolerance = std::nullopt, .relative_tolerance = 5e-4f};
+  return tool::read_scene_text(text, std::string(key), options);
+}
+
+// The faces of the sky, which come as the bytes of PFM files: little-endian floats, the lowest row first.
+tool::EnvironmentMap make_sky() {
+  tool::EnvironmentMap sky;
+  sky.width = kSkyWidth;
+  constexpr std::size_t kRowTexels = kSkyWidth, kTexels = kRowTexels * kRowTexels;
+  for (std::uint32_t face = 0; face < tool::kCubeFaceCount; ++face) {
+    const std::vector<char> bytes = scene_makers::make_sky_face(face, kSkyWidth);
+    const char* texels = bytes.data() + (bytes.size() - kTexels * sizeof(float[3]));
+    sky.texels[face].resize(kTexels);
+    for (std::size_t i = 0; i < kTexels; ++i) {
+      const std::size_t row = kRowTexels - 1 - i / kRowTexels, column = i % kRowTexels;
+      float color[3];
+      std::memcpy(color, texels + i * sizeof color, sizeof color);
+      sky.texels[face][row * kRowTexels + column] = Vec3(color[0], color[1], color[2]);
+    }
+  }
+  return sky;
+}
+
+// A light on the camera's left, as wide as a tenth of the way to what it looks at.
+tool::AreaLight light_beside(const tool::SceneView& view) {
+  const Vec3 forward = view.at - view.from;
+  const Vec3 right = glm::cross(forward, view.up), up = glm::cross(right, forward);
+  const float distance = glm::length(forward);
+  const Vec3 edge_u = right * (0.1f * distance / glm::length(right));
+  const Vec3 edge_v = up * (0.1f * distance / glm::length(up));
+  return {.corner = view.from - 5.0f * edge_u + 3.0f * edge_v,
+          .edge_u = edge_u,
+          .edge_v = edge_v,
+          .color = {0.6f, 0.6f, 0.55f},
+          .samples = 4};
+}
+
+// Occlusion as far as a twentieth of the way to what the camera looks at.
+tool::AmbientOcclusion occlusion_of(const tool::SceneView& view) {
+  return {.samples = 4, .radius = 0.05f * glm::length(view.at - view.from)};
+}
+
+}  // namespace
+
+EffectScene make_effect_scene(std::string_view key) {
+  EffectScene scene;
+  scene.key = key;
+  if (key == "balls") {
+    scene.description = read(key, scene_makers::make_balls(2));
+    scene.description.area_lights.push_back(light_beside(scene.description.view));
+    scene.words =
+        "the sphereflake of the Standard Procedural Databases, 91 mirroring balls on a floor, with an area light more";
+  } else if (key == "tetra") {
+    scene.description = read(key, scene_makers::make_tetra(5));
+    scene.description.ambient_occlusion = occlusion_of(scene.description.view);
+    scene.description.samples_per_pixel = 4;
+    scene.words =
+        "the tetrahedral pyramid of the Standard Procedural Databases, 1,024 matt triangles, with ambient occlusion "
+        "and four samples a pixel";
+  } else if (key == "mount") {
+    scene.description = read(key, scene_makers::make_mount(6));
+    scene.description.environment = make_sky();
+    scene.description.ambient_occlusion = occlusion_of(scene.description.view);
+    scene.words =
+        "the fractal mountain of the Standard Procedural Databases behind four balls of glass, under a sky, with "
+        "ambient occlusion";
+  } else if (key == "rings") {
+    scene.description = read(key, scene_makers::make_rings(2));
+    scene.description.area_lights.push_back(light_beside(scene.description.view));
+    scene.description.samples_per_pixel = 4;
+    scene.words =
+        "rings of the Standard Procedural Databases, 5 objects of 30 cylinders and 30 balls each, with an area light "
+        "and four samples a pixel";
+  } else {
+    scene.description = read(key, kGallery);
+    scene.description.environment = make_sky();
+    scene.words = "a scene of our own that calls for every effect: a mirror, a ball of glass, a matt cone and a patch";
+  }
+  return scene;
+}
+
+tool::SceneInput input_of(const EffectScene& scene) {
+  tool::SceneDescription description = scene.description;
+  tool::TextScene text{description.view, tool::take_scene_effects(description), {}, 0};
+  tool::Mesh mesh{std::move(description.geometry.vertices), std::move(description.geometry.triangles)};
+  return {.path = scene.key, .content = std::move(mesh), .load_seconds = 0, .text = std::move(text)};
+}
+
+std::uint32_t called_for(const EffectScene& scene) {
+  tool::SceneDescription description = scene.description;
+  return effects_called_for(tool::take_scene_effects(description).view());
+}
+
+EffectScene without_effect(EffectScene scene, EffectBits effect) {
+  tool::SceneDescription& description = scene.description;
+  switch (effect) {
+    case kPointShadows: description.shadows = false; break;
+    case kAreaLights:
+      for (const tool::AreaLight& light : description.area_lights) {
+        description.point_lights.push_back(
+            {.position = light.corner + 0.5f * (light.edge_u + light.edge_v), .color = light.color});
+      }
+      description.area_lights.clear();
+      break;
+    case kReflection: description.recursion_depth = 1; break;
+    case kRefraction:
+      for (tool::SceneMaterial& material : description.materials) material.transmittance = 0;
+      break;
+    case kAmbientOcclusion: description.ambient_occlusion.reset(); break;
+    case kEnvironment: description.environment.reset(); break;
+    case kSmoothNormals:
+      for (tool::SceneMaterial& material : description.materials) material.smooth_normals = false;
+      description.geometry.normals.clear();
+      description.geometry.triangle_normals.clear();
+      break;
+    case kHighlights:
+      for (tool::SceneMaterial& material : description.materials) material.shine = 0;
+      break;
+    case kMultisampling: description.samples_per_pixel = 1; break;
+    case kSceneShading: break;
+  }
+  return scene;
+}
+
+std::uint32_t left_without(std::uint32_t called, EffectBits effect) {
+  return called & ~static_cast<std::uint32_t>(effect) & ~(effect == kReflection ? kRefraction : 0u);
+}
+
+}  // namespace gridiron::experiment
