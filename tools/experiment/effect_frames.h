@@ -1,7 +1,6 @@
 // Frames of the effects experiment: what was counted while they were rendered, and what effects cost that a frame does
 // not call for.
-// Memory: a frame owns its picture. Threads: any; render_effect_frame shares nothing. SPDX-License-Identifier:
-// Apache-2.0
+// Memory: a frame owns its picture. Threads: any, no shared state. SPDX-License-Identifier: Apache-2.0
 #pragma once
 
 #include <gridiron/base/effect_records.h>

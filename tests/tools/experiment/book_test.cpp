@@ -39,7 +39,8 @@ TEST(Book, EveryFileIsNamedOnThePageAndTheOtherWayRound) {
   const std::vector<BookFile> files = small_book();
   std::vector<std::string> names, linked;
   for (const BookFile& file : files) names.push_back(file.name);
-  EXPECT_EQ(names, (std::vector<std::string>{"numbers.csv", "long.csv", "plot.svg", "left.png", "right.png", "index.html"}));
+  EXPECT_EQ(names, (std::vector<std::string>{"numbers.csv", "long.csv", "plot.svg", "left.png", "right.png",
+                                             "index.html"}));
   for (const MarkupElement& element : parse_markup(files.back().content)) {
     for (const char* key : {"href", "src"}) {
       const auto found = element.attributes.find(key);
