@@ -96,7 +96,8 @@ void Book::pictures(std::vector<BookPicture> row) {
   body_ += "<div class=\"strip\">\n";
   for (BookPicture& picture : row) {
     const std::string file = picture.name + ".png", words = escape_markup(picture.words);
-    body_ += "<figure><img src=\"" + file + "\" alt=\"" + words + "\"/><figcaption>" + words + "</figcaption></figure>\n";
+    body_ +=
+        "<figure><img src=\"" + file + "\" alt=\"" + words + "\"/><figcaption>" + words + "</figcaption></figure>\n";
     files_.push_back({file, std::move(picture.png)});
   }
   body_ += "</div>\n";

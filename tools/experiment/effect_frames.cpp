@@ -60,28 +60,33 @@ AbsentCost absent_cost(const EffectFrame& frame, EffectBits effect) {
   switch (effect) {
     case kPointShadows:
       // Area lights alone have shadows of their own.
-      if (frame.has_shadows && (frame.called_for & kAreaLights) != 0) return counted(effect, "shadow rays of points", 0);
+      if (frame.has_shadows && (frame.called_for & kAreaLights) != 0)
+        return counted(effect, "shadow rays of points", 0);
       return with_stage(counted(effect, "shadow rays", frame.count(Work::kShadowRay)), "shadow",
                         frame.stage(Stage::kShadow), false);
     case kAreaLights:
       return counted(effect, "shadow rays and lights beyond one a point and light",
                      excess(frame.count(Work::kShadowRay), lit) + excess(frame.count(Work::kLightSample), lit));
     case kReflection:
-      return with_stage(counted(effect, "reflected and queued rays",
-                                frame.count(Work::kMirrorRay) + frame.count(Work::kQueuedRay)),
-                        "bounce", frame.stage(Stage::kBounce));
-    case kRefraction: return counted(effect, "refracted rays", frame.count(Work::kRefractedRay));
+      return with_stage(
+          counted(effect, "reflected and queued rays", frame.count(Work::kMirrorRay) + frame.count(Work::kQueuedRay)),
+          "bounce", frame.stage(Stage::kBounce));
+    case kRefraction:
+      return counted(effect, "refracted rays", frame.count(Work::kRefractedRay));
     case kAmbientOcclusion:
       return with_stage(counted(effect, "occlusion rays", frame.count(Work::kOcclusionRay)), "occlusion",
                         frame.stage(Stage::kOcclusion));
     case kEnvironment:
       return with_stage(counted(effect, "environment lookups", frame.count(Work::kEnvironmentLookup)), "environment",
                         frame.stage(Stage::kEnvironment));
-    case kSmoothNormals: return counted(effect, "normals interpolated", frame.count(Work::kSmoothNormal));
-    case kHighlights: return counted(effect, "highlights", frame.count(Work::kHighlight));
+    case kSmoothNormals:
+      return counted(effect, "normals interpolated", frame.count(Work::kSmoothNormal));
+    case kHighlights:
+      return counted(effect, "highlights", frame.count(Work::kHighlight));
     case kMultisampling:
       return counted(effect, "eye rays beyond one a pixel", excess(frame.primary_rays(), frame.picture.pixels.size()));
-    case kSceneShading: break;
+    case kSceneShading:
+      break;
   }
   return counted(effect, "points shaded", frame.count(Work::kSurfacePoint));
 }
@@ -134,6 +139,7 @@ EffectFrame render_effect_frame(const EffectScene& scene, const EffectFrameReque
   frame.cycles = timing.frame_cycles;
   frame.seconds = timing.seconds;
   frame.core_cycles = timing.frame_cycles * static_cast<double>(timing.cores.size());
+  frame.scene_bytes = memory.image.header.image_bytes;
   frame.picture = tool::untile<std::uint32_t>(memory.record, memory.color.bytes, std::nullopt,
                                               [](std::uint32_t word) { return word; });
   return frame;
@@ -168,9 +174,8 @@ double hidden_share(const EffectFrame& single, const EffectFrame& buffered) {
 void check_hiding(const EffectFrame& single, const EffectFrame& buffered, const std::string& name) {
   const double share = hidden_share(single, buffered);
   if (share >= kLeastHiddenShare) return;
-  fail_check(name + ": " + fixed_text(100 * share, 1) +
-             " % of the waits for secondary rays are hidden, fewer than " + fixed_text(100 * kLeastHiddenShare, 0) +
-             " %");
+  fail_check(name + ": " + fixed_text(100 * share, 1) + " % of the waits for secondary rays are hidden, fewer than " +
+             fixed_text(100 * kLeastHiddenShare, 0) + " %");
 }
 
 }  // namespace gridiron::experiment

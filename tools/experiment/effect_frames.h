@@ -1,6 +1,6 @@
 // Frames of the effects experiment: what was counted while they were rendered, and what effects cost that a frame does
 // not call for.
-// Memory: a frame owns its picture. Threads: any; render_effect_frame shares nothing. SPDX-License-Identifier: Apache-2.0
+// Memory: a frame owns its picture. Threads: any, no shared state. SPDX-License-Identifier: Apache-2.0
 #pragma once
 
 #include <gridiron/base/effect_records.h>
@@ -40,6 +40,7 @@ struct EffectFrame {
   std::array<sim::StageTiming, kStageCount> stages{};  ///< sums over the cores
   double cycles = 0, seconds = 0;                      ///< of the whole frame
   double core_cycles = 0;                              ///< frame's cycles times cores
+  std::uint64_t scene_bytes = 0;                       ///< of the scene image
   tool::Picture<std::uint32_t> picture;                ///< 0xAABBGGRR
 
   [[nodiscard]] std::uint64_t count(Work kind) const { return work[static_cast<std::size_t>(kind)]; }
@@ -58,8 +59,8 @@ struct AbsentCost {
   std::string_view what{};  ///< that was counted
   std::uint64_t count = 0;
   std::string_view stages{};  ///< in which `bytes` and `cycles` were counted; empty: the effect has none of its own
-  std::uint64_t bytes = 0;  ///< moved, in and out
-  double cycles = 0;        ///< of computation and waiting; of shadows of waiting alone, for light has their stage too
+  std::uint64_t bytes = 0;    ///< moved, in and out
+  double cycles = 0;  ///< of computation and waiting; of shadows of waiting alone, for light has their stage too
 
   [[nodiscard]] bool is_nothing() const { return count == 0 && bytes == 0 && cycles == 0; }
 };

@@ -89,8 +89,14 @@ tool::AreaLight light_beside(const tool::SceneView& view) {
   return {.corner = view.from - 5.0f * edge_u + 3.0f * edge_v,
           .edge_u = edge_u,
           .edge_v = edge_v,
-          .color = {0.6f, 0.6f, 0.55f},
+          .color = {0.5f, 0.5f, 0.45f},
           .samples = 4};
+}
+
+// The lights that are there make room for it, so that pictures are not too bright.
+void add_area_light(tool::SceneDescription& scene) {
+  for (tool::PointLight& light : scene.point_lights) light.color *= 0.5f;
+  scene.area_lights.push_back(light_beside(scene.view));
 }
 
 // Occlusion as far as a twentieth of the way to what the camera looks at.
@@ -105,7 +111,7 @@ EffectScene make_effect_scene(std::string_view key) {
   scene.key = key;
   if (key == "balls") {
     scene.description = read(key, scene_makers::make_balls(2));
-    scene.description.area_lights.push_back(light_beside(scene.description.view));
+    add_area_light(scene.description);
     scene.words =
         "the sphereflake of the Standard Procedural Databases, 91 mirroring balls on a floor, with an area light more";
   } else if (key == "tetra") {
@@ -124,7 +130,7 @@ EffectScene make_effect_scene(std::string_view key) {
         "ambient occlusion";
   } else if (key == "rings") {
     scene.description = read(key, scene_makers::make_rings(2));
-    scene.description.area_lights.push_back(light_beside(scene.description.view));
+    add_area_light(scene.description);
     scene.description.samples_per_pixel = 4;
     scene.words =
         "rings of the Standard Procedural Databases, 5 objects of 30 cylinders and 30 balls each, with an area light "
@@ -152,7 +158,9 @@ std::uint32_t called_for(const EffectScene& scene) {
 EffectScene without_effect(EffectScene scene, EffectBits effect) {
   tool::SceneDescription& description = scene.description;
   switch (effect) {
-    case kPointShadows: description.shadows = false; break;
+    case kPointShadows:
+      description.shadows = false;
+      break;
     case kAreaLights:
       for (const tool::AreaLight& light : description.area_lights) {
         description.point_lights.push_back(
@@ -160,12 +168,18 @@ EffectScene without_effect(EffectScene scene, EffectBits effect) {
       }
       description.area_lights.clear();
       break;
-    case kReflection: description.recursion_depth = 1; break;
+    case kReflection:
+      description.recursion_depth = 1;
+      break;
     case kRefraction:
       for (tool::SceneMaterial& material : description.materials) material.transmittance = 0;
       break;
-    case kAmbientOcclusion: description.ambient_occlusion.reset(); break;
-    case kEnvironment: description.environment.reset(); break;
+    case kAmbientOcclusion:
+      description.ambient_occlusion.reset();
+      break;
+    case kEnvironment:
+      description.environment.reset();
+      break;
     case kSmoothNormals:
       for (tool::SceneMaterial& material : description.materials) material.smooth_normals = false;
       description.geometry.normals.clear();
@@ -174,8 +188,11 @@ EffectScene without_effect(EffectScene scene, EffectBits effect) {
     case kHighlights:
       for (tool::SceneMaterial& material : description.materials) material.shine = 0;
       break;
-    case kMultisampling: description.samples_per_pixel = 1; break;
-    case kSceneShading: break;
+    case kMultisampling:
+      description.samples_per_pixel = 1;
+      break;
+    case kSceneShading:
+      break;
   }
   return scene;
 }

@@ -22,20 +22,21 @@ namespace gridiron::experiment {
 namespace {
 
 constexpr float kLambda = 4;
-constexpr float kLambdas[] = {2, 4, 8};
+constexpr float kLambdas[] = {0.4f, 2, 4, 8, 16};
 
 // A scene with all of its effects, or without one.
 struct Variant {
   std::string key;    ///< "all", "without_reflection"
   std::string title;  ///< "all effects", "without reflection"
+  std::string label;  ///< what stands under a bar below "without"
   EffectScene scene;
-  std::uint32_t expected = 0;  ///< EffectBits that it has to call for
+  std::uint32_t expected = 0;   ///< EffectBits that it has to call for
   EffectFrame single, twofold;  ///< single and double buffering
 };
 
 struct SceneFrames {
-  std::vector<Variant> variants;    ///< all effects first
-  EffectFrame deep;                 ///< all effects, as many buffers as the configuration has
+  std::vector<Variant> variants;     ///< all effects first
+  EffectFrame deep;                  ///< all effects, as many buffers as the configuration has
   std::vector<EffectFrame> lambdas;  ///< all effects, double buffering, by kLambdas
 
   [[nodiscard]] const Variant& whole() const { return variants.front(); }
@@ -46,6 +47,33 @@ std::string spaced(std::string_view name) {
   std::string words(name);
   std::ranges::replace(words, '_', ' ');
   return words;
+}
+
+// As wide as a bar of ten.
+std::string_view label_of(EffectBits effect) {
+  switch (effect) {
+    case kPointShadows:
+      return "shadows";
+    case kAreaLights:
+      return "areas";
+    case kReflection:
+      return "mirrors";
+    case kRefraction:
+      return "glass";
+    case kAmbientOcclusion:
+      return "occlusion";
+    case kEnvironment:
+      return "sky";
+    case kSmoothNormals:
+      return "smooth";
+    case kHighlights:
+      return "shine";
+    case kMultisampling:
+      return "samples";
+    case kSceneShading:
+      break;
+  }
+  return "shading";
 }
 
 std::string key_without(std::string_view effect) {
@@ -60,11 +88,16 @@ SceneFrames list_frames(std::string_view key) {
   SceneFrames frames;
   EffectScene scene = make_effect_scene(key);
   const std::uint32_t called = called_for(scene);
-  frames.variants.push_back({"all", "all effects", scene, called, {}, {}});
+  frames.variants.push_back({"all", "all effects", "nothing", scene, called, {}, {}});
   for (const tool::EffectName& effect : tool::effects()) {
     if (effect.bit == kSceneShading || (called & effect.bit) == 0) continue;
-    frames.variants.push_back({key_without(effect.name), "without " + spaced(effect.name),
-                               without_effect(scene, effect.bit), left_without(called, effect.bit), {}, {}});
+    frames.variants.push_back({key_without(effect.name),
+                               "without " + spaced(effect.name),
+                               std::string(label_of(effect.bit)),
+                               without_effect(scene, effect.bit),
+                               left_without(called, effect.bit),
+                               {},
+                               {}});
   }
   frames.lambdas.resize(std::size(kLambdas));
   return frames;
@@ -114,7 +147,8 @@ const EffectFrame& frame_of(const SceneFrames& scene, std::size_t lambda) {
 void write_scenes(const std::vector<SceneFrames>& scenes, Book& book) {
   book.section("scenes", "The scenes");
   book.paragraph(
-      "Each scene is shown with all the effects that it calls for, and then without one of them at a time. An effect is "
+      "Each scene is shown with all the effects that it calls for, and then without one of them at a time. An effect "
+      "is "
       "switched off in the scene, not in the kernel: shadows are off for all lights, an area light becomes a point in "
       "its middle, reflection ends with a depth of recursion of 1 (and refraction with it, for glass reflects), glass "
       "lets nothing through, normals are the triangles' own, highlights have no exponent, the background is in place "
@@ -182,24 +216,25 @@ void write_stages(const std::vector<SceneFrames>& scenes, Book& book) {
               {}};
   book.section("stages", "Where the cycles go");
   book.paragraph(
-      "A core is in one stage at a time: primary is eye rays and the set-up of tiles, surface finds points, normals and "
+      "A core is in one stage at a time: primary is eye rays and the set-up of tiles, surface finds points, normals "
+      "and "
       "materials of what was hit, shadow lights them, occlusion sends rays about them, bounce traces what they reflect "
-      "and refract, environment looks up the sky, output makes pixels of sums. Plots show cycles of all cores together, "
+      "and refract, environment looks up the sky, output makes pixels of sums. Plots show cycles of all cores "
+      "together, "
       "waits included, with double buffering.");
   for (const SceneFrames& scene : scenes) {
-    BarChart chart{"Cycles by stage: " + scene.key(), "million cycles of all cores", {}, {"frame"}, {}, {}, false};
+    BarChart chart{"Cycles by stage: " + scene.key(), "million cycles of all cores", {}, {"without"}, {}, {}, false};
     for (std::size_t i = 0; i < kStageCount; ++i) {
       chart.parts.emplace_back(tool::stage_name(static_cast<Stage>(i)));
     }
     for (const Variant& variant : scene.variants) {
-      // Names that stand under bars have to be short.
-      chart.groups.push_back(variant.key == "all" ? "all" : "no " + variant.title.substr(sizeof "without"));
+      chart.groups.push_back(variant.label);
       for (std::size_t i = 0; i < kStageCount; ++i) {
         const sim::StageTiming& single = variant.single.stages[i];
         const sim::StageTiming& stage = variant.twofold.stages[i];
         chart.values.push_back((stage.compute_cycles + stage.wait_cycles) / 1e6);
-        table.add({scene.key(), variant.key, std::string(tool::stage_name(static_cast<Stage>(i))),
-                   stage.compute_cycles, single.wait_cycles, stage.wait_cycles, stage.bytes_in, stage.bytes_out});
+        table.add({scene.key(), variant.key, std::string(tool::stage_name(static_cast<Stage>(i))), stage.compute_cycles,
+                   single.wait_cycles, stage.wait_cycles, stage.bytes_in, stage.bytes_out});
       }
     }
     book.figure("stages_" + scene.key(), bar_chart_svg(chart),
@@ -220,8 +255,13 @@ void write_hiding(const std::vector<SceneFrames>& scenes, Book& book) {
                {"double_fps", "double"},
                {"best_fps", "the configuration's"}},
               {}};
-  BarChart chart{"Waits for secondary rays", "million cycles of all cores", {}, {"buffering"},
-                 {"waiting that is left", "waiting hidden by double buffering"}, {}, false};
+  BarChart chart{"Waits for secondary rays",
+                 "million cycles of all cores",
+                 {},
+                 {"buffering"},
+                 {"waiting that is left", "waiting hidden by double buffering"},
+                 {},
+                 false};
   double least = 1;
   for (const SceneFrames& scene : scenes) {
     const EffectFrame& single = scene.whole().single;
@@ -240,10 +280,11 @@ void write_hiding(const std::vector<SceneFrames>& scenes, Book& book) {
       "Secondary rays go where they like, and so do the cells, triangles, materials and texels that they ask for. With "
       "single buffering a core asks for what a walk of rays needs, waits, and uses it; with double buffering two walks "
       "are under way and one computes while the other's data come. Counted are the waits of all cores in the stages "
-      "surface, shadow, occlusion, bounce and environment, all effects on. The run ends with an error where less than " +
+      "surface, shadow, occlusion, bounce and environment, all effects on. The run ends with an error where less "
+      "than " +
       fixed_text(100 * kLeastHiddenShare, 0) + " % of them go; the least here is " + fixed_text(100 * least, 1) +
-      " %. The configuration itself has " +
-      std::to_string(tool::find_configuration("best")->depths.walks) + " walks under way.");
+      " %. The configuration itself has " + std::to_string(tool::find_configuration("best")->depths.walks) +
+      " walks under way.");
   book.figure("hiding", bar_chart_svg(chart), "A bar is all waiting for secondary rays with single buffering.");
   book.table(table, "Waiting in the stages of secondary rays, all effects on.");
 }
@@ -286,24 +327,35 @@ void write_off(const std::vector<SceneFrames>& scenes, Book& book) {
 
 void write_lambdas(const std::vector<SceneFrames>& scenes, Book& book) {
   Table table{"lambda",
-              {{"scene", "scene"}, {"lambda", "cells per triangle", 0}, {"cycles", "cycles", 0}, {"fps", "frames/s"}},
+              {{"scene", "scene"},
+               {"lambda", "cells per triangle", 1},
+               {"cycles", "cycles", 0},
+               {"fps", "frames/s"},
+               {"scene_bytes", "bytes of the scene in main memory"}},
               {}};
   BarChart chart{"Grids for secondary rays", "frames/s", {}, {}, {"frames/s"}, {}, true};
   for (const float lambda : kLambdas) chart.bars.push_back("lambda " + number_text(lambda));
+  std::string fastest;
   for (const SceneFrames& scene : scenes) {
     chart.groups.push_back(scene.key());
+    std::size_t best = 0;
     for (std::size_t i = 0; i < std::size(kLambdas); ++i) {
       const EffectFrame& frame = frame_of(scene, i);
-      table.add({scene.key(), static_cast<double>(kLambdas[i]), frame.cycles, 1 / frame.seconds});
+      if (frame.cycles < frame_of(scene, best).cycles) best = i;
+      table.add({scene.key(), std::stod(number_text(kLambdas[i])), frame.cycles, 1 / frame.seconds, frame.scene_bytes});
       chart.values.push_back(1 / frame.seconds);
     }
+    fastest += (fastest.empty() ? "" : ", ") + scene.key() + " with " + number_text(kLambdas[best]);
   }
   book.section("lambda", "How fine a grid");
   book.paragraph(
-      "Configuration best has a coarse grid, which suits packets of eye rays that share what they fetch. Walks of "
-      "secondary rays visit fewer triangles in a finer one, so all other frames of this page have " +
-      number_text(kLambda) + " cells per triangle. All effects are on, with double buffering.");
-  book.figure("lambda", bar_chart_svg(chart), "Frames a second with 2, 4 and 8 cells per triangle.");
+      "Configuration best has a coarse grid of " + number_text(tool::find_configuration("best")->lambda) +
+      " cells per triangle, which suits packets of eye rays that share what they fetch. Walks of secondary rays meet "
+      "fewer triangles in a finer one, but take more steps and fetch more cells, and the scene grows in main memory. "
+      "All other frames of this page have " +
+      number_text(kLambda) + " cells per triangle. Fastest of those tried is " + fastest +
+      ". All effects are on, with double buffering.");
+  book.figure("lambda", bar_chart_svg(chart), "Frames a second by cells per triangle.");
   book.table(table, "Frames by the grid's cells per triangle.");
 }
 
@@ -342,7 +394,8 @@ void write_method(const EffectsExperiment& experiment, Book& book) {
   book.paragraph(
       "All scenes are made in process, without files. Frames of " + std::to_string(experiment.width) + "x" +
       std::to_string(experiment.height) +
-      " pixels are rendered by the kernel's real code in checked mode with four lanes, accuracy standard, configuration "
+      " pixels are rendered by the kernel's real code in checked mode with four lanes, accuracy standard, "
+      "configuration "
       "best with " +
       number_text(kLambda) +
       " cells per triangle, and their traces get a time on six cores of cell-ps3. Single buffering is one buffer of "

@@ -31,6 +31,7 @@ std::vector<BookFile> small_book() {
   table.name = "";
   book.shown_table(table, "only shown");
   book.figure("plot", "<svg/>", "what it shows");
+  book.pictures({{"left", "png", "one & all"}, {"right", "png", "the other"}});
   return book.finish();
 }
 
@@ -38,14 +39,15 @@ TEST(Book, EveryFileIsNamedOnThePageAndTheOtherWayRound) {
   const std::vector<BookFile> files = small_book();
   std::vector<std::string> names, linked;
   for (const BookFile& file : files) names.push_back(file.name);
-  EXPECT_EQ(names, (std::vector<std::string>{"numbers.csv", "long.csv", "plot.svg", "index.html"}));
+  EXPECT_EQ(names, (std::vector<std::string>{"numbers.csv", "long.csv", "plot.svg", "left.png", "right.png",
+                                             "index.html"}));
   for (const MarkupElement& element : parse_markup(files.back().content)) {
     for (const char* key : {"href", "src"}) {
       const auto found = element.attributes.find(key);
       if (found != element.attributes.end() && found->second.front() != '#') linked.push_back(found->second);
     }
   }
-  EXPECT_EQ(linked, (std::vector<std::string>{"numbers.csv", "long.csv", "plot.svg"}));
+  EXPECT_EQ(linked, (std::vector<std::string>{"numbers.csv", "long.csv", "plot.svg", "left.png", "right.png"}));
 }
 
 TEST(Book, WordsStayWordsAndNumbersAreRounded) {
