@@ -35,7 +35,7 @@ TEST(Configurations, DeeperOnesWalkMoreSecondaryRays) {
 
 TEST(Configurations, EachFitsAStoreWithEffects) {
   for (const tool::Configuration& configuration : tool::configurations()) {
-    const tool::StoreFacts store = tool::effect_store_facts(configuration.packet_width);
+    const tool::StoreFacts store = tool::effect_store_facts(sim::StoreSize::k256KB, configuration.packet_width);
     EXPECT_EQ(store.packet_width, configuration.packet_width);
     EXPECT_LE(configuration.macro_width, store.max_macro_width) << configuration.name;
     EXPECT_LE(configuration.depths.macro, store.max_macro_depth) << configuration.name;
