@@ -1,22 +1,50 @@
-// Code and data of a core for sets of effects, as measured from cross-compiled firmware. Empty: not measured.
-// Memory: one table. Threads: any. SPDX-License-Identifier: Apache-2.0
+// Effect sizes: what a renderer built for a set of effects takes of a core, on riscv64.
+// tools/house/effect_sizes wrote it.
+// Memory: constants. Threads: any. SPDX-License-Identifier: Apache-2.0
 #pragma once
 
 #include <array>
 #include <cstdint>
 
-namespace gridiron::experiment {
+namespace gridiron::tool {
 
-/// What a core built for a set of effects takes of its local store, in bytes.
+/// Bytes of one build. `effects` are EffectBits; 0 is StoreLayout256K<32>, which has no counterpart of 64 KB here.
 struct EffectSize {
-  std::uint32_t effects;  ///< EffectBits
-  std::uint32_t code_bytes_256k;
+  std::uint32_t effects;
+  std::uint32_t code_bytes_256k;   ///< EffectLayout256K<effects, 32>, the kernel's library included
   std::uint32_t store_bytes_256k;
-  std::uint32_t code_bytes_64k;
+  std::uint32_t code_bytes_64k;    ///< EffectLayout64K<effects>
   std::uint32_t store_bytes_64k;
-  bool fits_64k;
+  bool fits_64k;                   ///< code, store and the deepest stack in 65,536 bytes
 };
 
-inline constexpr std::array<EffectSize, 0> kEffectSizes{};
+inline constexpr std::array kEffectSizes{
+    EffectSize{0x000, 54148, 163840, 0, 0, false},  // none
+    EffectSize{0x200, 61204, 126464, 25286, 14592, true},  // scene shading
+    EffectSize{0x201, 81418, 126464, 26166, 14592, true},  // + point shadows
+    EffectSize{0x202, 82068, 126464, 26814, 14592, true},  // + area lights
+    EffectSize{0x204, 83270, 144768, 26880, 16768, true},  // + reflection
+    EffectSize{0x208, 84284, 144768, 27894, 16768, true},  // + refraction
+    EffectSize{0x210, 82654, 126464, 27404, 14592, true},  // + ambient occlusion
+    EffectSize{0x220, 63188, 126464, 27274, 14592, true},  // + environment
+    EffectSize{0x240, 62566, 126464, 26642, 14592, true},  // + smooth normals
+    EffectSize{0x280, 61946, 126464, 26028, 14592, true},  // + highlights
+    EffectSize{0x300, 61568, 126464, 25598, 14592, true},  // + multisampling
+    EffectSize{0x3fe, 92788, 144768, 36724, 16768, true},  // all but point shadows
+    EffectSize{0x3fd, 91754, 144768, 35672, 16768, true},  // all but area lights
+    EffectSize{0x3fb, 92780, 144768, 36716, 16768, true},  // all but reflection
+    EffectSize{0x3f7, 91756, 144768, 35692, 16768, true},  // all but refraction
+    EffectSize{0x3ef, 90276, 144768, 34184, 16768, true},  // all but ambient occlusion
+    EffectSize{0x3df, 90810, 144768, 34742, 16768, true},  // all but environment
+    EffectSize{0x3bf, 91392, 144768, 35338, 16768, true},  // all but smooth normals
+    EffectSize{0x37f, 92038, 144768, 35974, 16768, true},  // all but highlights
+    EffectSize{0x2ff, 92414, 144768, 36400, 16768, true},  // all but multisampling
+    EffectSize{0x3ff, 92780, 144768, 36716, 16768, true},  // all
+};
 
+}  // namespace gridiron::tool
+
+namespace gridiron::experiment {
+using tool::EffectSize;
+using tool::kEffectSizes;
 }  // namespace gridiron::experiment
