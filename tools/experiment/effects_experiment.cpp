@@ -364,7 +364,8 @@ void write_sizes(Book& book) {
   book.paragraph(
       "The kernel of a set of effects is compiled without the code and the data of all others. The simulated chip has "
       "the one with all effects, whose code and stack have budgets:");
-  const tool::StoreFacts facts = tool::effect_store_facts(sim::StoreSize::k256KB, tool::find_configuration("best")->packet_width);
+  const tool::StoreFacts facts =
+      tool::effect_store_facts(sim::StoreSize::k256KB, tool::find_configuration("best")->packet_width);
   Table map{"", {{"region", "region"}, {"offset", "offset"}, {"bytes", "bytes"}}, {}};
   for (const tool::LocalStoreRegion& region : facts.regions) {
     map.add({std::string(region.name), std::uint64_t{region.offset_bytes}, std::uint64_t{region.bytes}});
