@@ -21,6 +21,7 @@ struct MainMemory {
   LineBytes bytes;
   std::uint32_t tile_count;
   std::size_t word_count;  ///< of picture and planes
+  SpillRegion spill;
 };
 constexpr std::uint64_t kPictureAddress = 512;
 
@@ -29,15 +30,22 @@ MainMemory make_memory(const CountedFrame& frame) {
   GridParameters grid;
   grid.format = format_of(frame.accuracy);
   GridNeed need;
-  require(count_scene_image(mesh, grid, need));
+  require(count_scene_image(mesh, grid, need, frame.effects));
   const std::uint32_t tiles = (frame.width + 31) / 32 * ((frame.width + 31) / 32);
   const std::size_t plane_bytes = std::size_t{tiles} * 32 * 32 * 4;
   const std::size_t output_bytes = plane_bytes * (frame.has_planes ? 3 : 1);
   const std::uint64_t image_address = kPictureAddress + output_bytes;
-  MainMemory memory{LineBytes(image_address + need.image_bytes), tiles, output_bytes / 4};
-  const std::span<std::byte> image = memory.bytes.bytes().subspan(image_address);
+  // Behind the image, what waits of secondary rays.
+  SpillRegion spill;
+  if (frame.effects != nullptr) {
+    spill.address.value = (image_address + need.image_bytes + kSpillAlignment - 1) / kSpillAlignment * kSpillAlignment;
+    spill.bytes = spill_bytes(frame.effects->recursion_depth);
+  }
+  const std::uint64_t end = spill.bytes != 0 ? spill.address.value + spill.bytes : image_address + need.image_bytes;
+  MainMemory memory{LineBytes(end), tiles, output_bytes / 4, spill};
+  const std::span<std::byte> image = memory.bytes.bytes().subspan(image_address, need.image_bytes);
   std::vector<std::byte> scratch(need.scratch_bytes);
-  require(build_scene_image(mesh, grid, need, image, scratch));
+  require(build_scene_image(mesh, grid, need, image, scratch, frame.effects));
   SceneImageView view;
   SceneImageError error;
   require(open_scene_image(image, view, error));
@@ -49,6 +57,7 @@ MainMemory make_memory(const CountedFrame& frame) {
   settings.accuracy = frame.accuracy;
   settings.shading = frame.shading;
   settings.techniques = frame.techniques;
+  if (frame.effects != nullptr) settings.walk_depth = 8;
   settings.color = MainAddress{kPictureAddress};
   if (frame.has_planes) {
     settings.depth = MainAddress{kPictureAddress + plane_bytes};
@@ -66,37 +75,38 @@ std::vector<std::uint32_t> pixels_of(const MainMemory& memory) {
 }
 
 // The counted kernel on a model of its own. noinline: what it puts on the stack is below `stack_base`.
-template <std::uint32_t PacketWidth>
+template <class Layout>
 __attribute__((noinline)) Totals run_counted(MainMemory& memory, PipeModel& model) {
   namespace twin = gridiron_counted;
-  using Store = twin::LocalStore<twin::StoreLayout256K<PacketWidth>>;
+  using Store = twin::LocalStore<Layout>;
   LineBytes bytes(sizeof(Store));
   Store& store = *::new (static_cast<void*>(bytes.bytes().data())) Store;
   model.set_store(&store, sizeof(store));
   CopyCore core(memory.bytes.bytes(), memory.tile_count);
-  require(twin::render_tiles<twin::Lanes<4>>(store, core, twin::MainAddress{0}));
+  require(twin::render_tiles<twin::Lanes<4>>(store, core, twin::MainAddress{0},
+                                             {twin::MainAddress{memory.spill.address.value}, memory.spill.bytes}));
   return model.finish();
 }
 
 // Twice: what the branches usually do, then what everything costs.
-template <std::uint32_t PacketWidth>
+template <class Layout>
 Totals run_twice(MainMemory& memory, std::uint32_t superblock_branches) {
   const int stack_base = 0;
   PipeModel first(nullptr);
   first.set_stack(&stack_base);
-  (void)run_counted<PacketWidth>(memory, first);
+  (void)run_counted<Layout>(memory, first);
   PipeModel second(&first.branches(), superblock_branches);
   second.set_stack(&stack_base);
-  return run_counted<PacketWidth>(memory, second);
+  return run_counted<Layout>(memory, second);
 }
 
-template <std::uint32_t PacketWidth>
+template <class Layout>
 Totals run_plain(MainMemory& memory) {
-  using Store = LocalStore<StoreLayout256K<PacketWidth>>;
+  using Store = LocalStore<Layout>;
   LineBytes bytes(sizeof(Store));
   Store& store = *::new (static_cast<void*>(bytes.bytes().data())) Store;
   CopyCore core(memory.bytes.bytes(), memory.tile_count);
-  require(render_tiles<Lanes<4>>(store, core, MainAddress{0}));
+  require(render_tiles<Lanes<4>>(store, core, MainAddress{0}, memory.spill));
   Totals totals{};
   for (std::size_t kind = 0; kind < kWorkKindCount; ++kind) totals[kind].units = store.work.counts[kind];
   return totals;
@@ -105,9 +115,16 @@ Totals run_plain(MainMemory& memory) {
 }  // namespace
 
 CountedPicture render_counted(const CountedFrame& frame, std::uint32_t superblock_branches) {
+  namespace twin = gridiron_counted;
   MainMemory memory = make_memory(frame);
-  Totals totals =
-      frame.packet_width == 32 ? run_twice<32>(memory, superblock_branches) : run_twice<8>(memory, superblock_branches);
+  Totals totals;
+  if (frame.effects != nullptr) {
+    totals = run_twice<twin::EffectLayout256K<kAllEffects, 32>>(memory, superblock_branches);
+  } else if (frame.packet_width == 32) {
+    totals = run_twice<twin::StoreLayout256K<32>>(memory, superblock_branches);
+  } else {
+    totals = run_twice<twin::StoreLayout256K<8>>(memory, superblock_branches);
+  }
   return {totals, pixels_of(memory)};
 }
 
@@ -119,7 +136,14 @@ std::vector<std::byte> main_memory_of(const CountedFrame& frame) {
 
 CountedPicture render_plain(const CountedFrame& frame) {
   MainMemory memory = make_memory(frame);
-  Totals totals = frame.packet_width == 32 ? run_plain<32>(memory) : run_plain<8>(memory);
+  Totals totals;
+  if (frame.effects != nullptr) {
+    totals = run_plain<EffectLayout256K<kAllEffects, 32>>(memory);
+  } else if (frame.packet_width == 32) {
+    totals = run_plain<StoreLayout256K<32>>(memory);
+  } else {
+    totals = run_plain<StoreLayout256K<8>>(memory);
+  }
   return {totals, pixels_of(memory)};
 }
 

@@ -4,6 +4,7 @@
 
 #include <gridiron/base/math.h>
 #include <gridiron/base/records.h>
+#include <gridiron/scene/effects.h>
 #include <pipe_model.h>
 
 #include <cstddef>
@@ -25,6 +26,7 @@ struct CountedFrame {
   Shading shading;
   std::uint32_t techniques;  ///< TechniqueBits
   bool has_planes;           ///< depth and ids too, for which distances are exact
+  const EffectsView* effects = nullptr;  ///< of Shading::kScene: of the mesh, in a store built for all effects
 };
 
 struct CountedPicture {
@@ -32,7 +34,7 @@ struct CountedPicture {
   std::vector<std::uint32_t> pixels;  ///< and planes, tile-major, as the kernel puts them
 };
 
-/// Renders on one core out of a 256 KB store, double-buffered, lambda 4, macrocells of width 6.
+/// Renders on one core out of a 256 KB store, double-buffered, with 8 walks of secondary rays, lambda 4, macrocells of width 6.
 /// Errors: std::runtime_error where the scene cannot be built or the kernel refuses the frame.
 [[nodiscard]] CountedPicture render_counted(const CountedFrame& frame,
                                             std::uint32_t superblock_branches = kSuperblockBranches);

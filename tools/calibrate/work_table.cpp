@@ -1,5 +1,6 @@
 // Frames, table and words: see the header. SPDX-License-Identifier: Apache-2.0
 #include <counted_frame.h>
+#include <gridiron/base/lanes.h>
 #include <gridiron/rival/rival_work.h>
 #include <gridiron_counted/base/exact_sum.h>
 #include <report/report.h>
@@ -40,6 +41,98 @@ Scene make_scene() {
 constexpr Vec3 kEye{2.0f, 3.0f, 8.0f};
 constexpr std::uint32_t kReference = kUseMailbox | kUseCornerCulling | kUseEmptySkip;
 constexpr std::uint32_t kBest = kUseMailbox | kUseEmptySkip | kUseSubpackets;
+
+/// The teapot on a floor, under a lamp, with every effect.
+struct EffectScene {
+  Scene mesh;
+  std::vector<Material> materials;
+  std::vector<std::uint16_t> triangle_materials;
+  std::vector<Vec3> normals;
+  std::vector<UVec3> triangle_normals;
+  std::vector<Light> lights;
+  std::vector<Vec3> environment;
+  EffectsView view;
+};
+
+constexpr std::uint32_t kEnvironmentWidth = 16;
+
+// Not moved once it is made: the view points into it.
+void make_effect_scene(const Scene& teapot, bool with_environment, EffectScene& scene) {
+  scene.mesh = teapot;
+  scene.materials = {
+      {.color = {0.8f, 0.7f, 0.5f}, .kd = 0.7f, .ks = 0.3f, .shine = 30.0f, .smooth_normals = true},
+      {.color = {0.9f, 0.9f, 1.0f}, .kd = 0.1f, .ks = 0.1f, .shine = 60.0f, .transmittance = 0.8f, .index = 1.5f},
+      {.color = {0.6f, 0.6f, 0.6f}, .kd = 0.8f, .ks = 0.2f},
+  };
+  // Corners' normals: of all triangles around a vertex.
+  scene.normals.assign(teapot.vertices.size(), Vec3(0.0f));
+  for (const UVec3& t : teapot.triangles) {
+    const Vec3 a = teapot.vertices[t.y] - teapot.vertices[t.x], b = teapot.vertices[t.z] - teapot.vertices[t.x];
+    const Vec3 normal{a.y * b.z - a.z * b.y, a.z * b.x - a.x * b.z, a.x * b.y - a.y * b.x};
+    for (int corner = 0; corner < 3; ++corner) scene.normals[t[corner]] += normal;
+  }
+  for (Vec3& normal : scene.normals) {
+    const float length = square_root(normal.x * normal.x + normal.y * normal.y + normal.z * normal.z);
+    normal = length > 0.0f ? normal / length : Vec3{0.0f, 1.0f, 0.0f};
+  }
+  // A third of the triangles is glass, by height: the lid.
+  for (const UVec3& t : teapot.triangles) {
+    const bool is_glass = teapot.vertices[t.x].y > 2.2f;
+    scene.triangle_materials.push_back(is_glass ? 1 : 0);
+    scene.triangle_normals.push_back(is_glass ? UVec3(kNoNormals) : t);
+  }
+  // The floor, 8 by 8 squares.
+  constexpr std::uint32_t kSquares = 8;
+  const auto base = static_cast<std::uint32_t>(scene.mesh.vertices.size());
+  for (std::uint32_t i = 0; i <= kSquares; ++i) {
+    for (std::uint32_t k = 0; k <= kSquares; ++k) {
+      scene.mesh.vertices.emplace_back(-6.0f + 1.5f * static_cast<float>(i), -0.02f,
+                                       -6.0f + 1.5f * static_cast<float>(k));
+    }
+  }
+  for (std::uint32_t i = 0; i < kSquares * kSquares; ++i) {
+    const std::uint32_t corner = base + i / kSquares * (kSquares + 1) + i % kSquares;
+    scene.mesh.triangles.emplace_back(corner, corner + 1, corner + kSquares + 1);
+    scene.mesh.triangles.emplace_back(corner + 1, corner + kSquares + 2, corner + kSquares + 1);
+    scene.triangle_materials.insert(scene.triangle_materials.end(), 2, std::uint16_t{2});
+    scene.triangle_normals.insert(scene.triangle_normals.end(), 2, UVec3(kNoNormals));
+  }
+  EffectsView& view = scene.view;
+  if (with_environment) {
+    scene.lights = {{.corner = {4.0f, 6.0f, 5.0f}, .color = {0.6f, 0.6f, 0.6f}},
+                    {.corner = {-3.0f, 7.0f, 2.0f},
+                     .edge_u = {2.0f, 0.0f, 0.0f},
+                     .edge_v = {0.0f, 0.5f, 2.0f},
+                     .color = {0.5f, 0.5f, 0.4f},
+                     .samples = 2}};
+    for (std::uint32_t i = 0; i < 6 * kEnvironmentWidth * kEnvironmentWidth; ++i) {
+      scene.environment.emplace_back(0.1f + 0.05f * static_cast<float>(i % 7), 0.3f, 0.7f);
+    }
+    view.environment_width = kEnvironmentWidth;
+    for (std::size_t face = 0; face < 6; ++face) {
+      constexpr std::size_t kTexels = kEnvironmentWidth * kEnvironmentWidth;
+      view.environment_faces[face] = std::span<const Vec3>(scene.environment).subspan(face * kTexels, kTexels);
+    }
+    view.occlusion_samples = 2;
+    view.occlusion_radius = 1.5f;
+    view.samples_per_pixel = 4;
+  } else {
+    scene.lights = {{.corner = {400.0f, 600.0f, 500.0f}, .color = {0.9f, 0.9f, 0.9f}},
+                    {.corner = {-300.0f, 700.0f, 200.0f}, .color = {0.4f, 0.4f, 0.4f}}};
+    view.background = {0.1f, 0.2f, 0.4f};
+  }
+  view.recursion_depth = 3;
+  view.materials = scene.materials;
+  view.triangle_materials = scene.triangle_materials;
+  view.normals = scene.normals;
+  view.triangle_normals = scene.triangle_normals;
+  view.lights = scene.lights;
+}
+
+// Work that only frames with effects have.
+bool is_of_effects(std::size_t kind) {
+  return kind >= static_cast<std::size_t>(Work::kWaveRay) && kind <= static_cast<std::size_t>(Work::kColorGroup);
+}
 
 // Work that only frames with exact distances have, or hardly any other.
 bool is_of_planes(std::size_t kind) {
@@ -129,16 +222,40 @@ double per_unit(const KindTotals& totals, std::uint64_t value) {
 struct NamedFrame {
   const char* name;
   CountedFrame frame;
-  /// Whether the frame stands for a kind of work: frames with planes, or on a lattice, for what only they do, the
-  /// others for the rest.
+  /// Whether the frame stands for a kind of work: frames with planes, on a lattice, or with effects, for what only they
+  /// do, the others for the rest.
   [[nodiscard]] bool operator()(std::size_t kind) const {
     const Work work = static_cast<Work>(kind);
     const bool is_of_lattice = work == Work::kLatticeTriangle || work == Work::kCellBoundStep;
+    if ((frame.effects != nullptr) != is_of_effects(kind)) return false;
+    if (frame.effects != nullptr) return true;
     return frame.has_planes == is_of_planes(kind) && (frame.accuracy == Accuracy::kCompact) == is_of_lattice;
   }
 };
 
-std::array<NamedFrame, 6> frames_of(const Scene& scene) {
+/// What the frames show.
+struct Scenes {
+  Scene teapot = make_scene();
+  EffectScene lamp, sun;
+  Scenes() {
+    make_effect_scene(teapot, true, lamp);
+    make_effect_scene(teapot, false, sun);
+  }
+};
+
+// Few pixels, but as dense as those of a larger picture.
+CountedFrame effect_frame(CountedFrame frame, const EffectScene& scene, std::uint32_t width) {
+  frame.tan_half_fov = 0.25f;
+  frame.vertices = scene.mesh.vertices;
+  frame.triangles = scene.mesh.triangles;
+  frame.effects = &scene.view;
+  frame.shading = Shading::kScene;
+  frame.width = width;
+  return frame;
+}
+
+std::array<NamedFrame, 8> frames_of(const Scenes& scenes) {
+  const Scene& scene = scenes.teapot;
   const CountedFrame reference{.vertices = scene.vertices,
                                .triangles = scene.triangles,
                                .eye = kEye,
@@ -168,7 +285,9 @@ std::array<NamedFrame, 6> frames_of(const Scene& scene) {
            {"near", near},
            {"paper", paper},
            {"planes", planes},
-           {"compact", compact}}};
+           {"compact", compact},
+           {"lamp", effect_frame(best, scenes.lamp, 12)},
+           {"sun", effect_frame(best, scenes.sun, 20)}}};
 }
 
 void require_same(const CountedPicture& counted, const CountedPicture& plain) {
@@ -216,6 +335,7 @@ constexpr std::string_view kRivalTableHead =
 // Memory: constants. Threads: any. SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <gridiron/base/lanes.h>
 #include <gridiron/rival/rival_work.h>
 #include <gridiron/sim/work_costs.h>
 
@@ -240,9 +360,9 @@ std::string table_row(const KindTotals& t, const std::string& name) {
 }  // namespace
 
 Totals count_frames(std::uint32_t superblock_branches) {
-  const Scene scene = make_scene();
-  Totals sum = count_exact(scene, superblock_branches);
-  for (const NamedFrame& named : frames_of(scene)) {
+  const Scenes scenes;
+  Totals sum = count_exact(scenes.teapot, superblock_branches);
+  for (const NamedFrame& named : frames_of(scenes)) {
     const CountedPicture counted = render_counted(named.frame, superblock_branches);
     require_same(counted, render_plain(named.frame));
     add(sum, counted.totals, named);
@@ -302,9 +422,10 @@ std::string rival_table_text(const Totals& totals) {
 }
 
 void write_memories(const std::string& folder) {
-  const Scene scene = make_scene();
+  const Scenes scenes;
   Totals totals{};
-  for (const NamedFrame& named : frames_of(scene)) {
+  for (const NamedFrame& named : frames_of(scenes)) {
+    if (named.frame.effects != nullptr) continue;  // of these there is no second opinion
     const std::vector<std::byte> memory = main_memory_of(named.frame);
     std::ofstream file(folder + "/" + named.name + ".memory", std::ios::binary);
     file.write(reinterpret_cast<const char*>(memory.data()), static_cast<std::streamsize>(memory.size()));
@@ -314,7 +435,7 @@ void write_memories(const std::string& folder) {
   std::ofstream file(folder + "/units");
   for (std::size_t kind = 0; kind < kWorkKindCount; ++kind) {
     const KindTotals& t = totals[kind];
-    if (!is_charged(kind)) continue;
+    if (!is_charged(kind) || is_of_effects(kind)) continue;
     file << kind << ' ' << tool::work_name(static_cast<Work>(kind)) << ' ' << t.units << ' '
          << per_unit(t, t.even() + t.odd()) << '\n';
   }

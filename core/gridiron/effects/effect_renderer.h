@@ -100,6 +100,7 @@ class EffectRenderer {
   void begin_tile(std::uint32_t left, std::uint32_t top) {
     left_ = left;
     top_ = top;
+    store_.work.charge_to(Work::kColorGroup);
     for (auto& sums : store_.effects.sums) fill_words(sums, std::uint32_t{0});
     if (has_all_materials_) return;
     for (std::uint32_t& index : store_.effects.material_of_slot) index = Effects::kNoMaterial;
@@ -112,13 +113,13 @@ class EffectRenderer {
     constexpr std::uint32_t kPixels = Store::kTilePixels;
     std::uint32_t place = 0;  // along a Z curve of squares, so that neighbours go together
     while (place < kPixels) {
+      store_.work.charge_to(Work::kWaveRay);
       std::uint32_t count = 0;
       for (; place < kPixels && count < Layout::kWaveRays; ++place) {
         const std::uint32_t square = place / kSubpacketRays, rest = place % kSubpacketRays;
         const std::uint32_t x = subpacket_column(square) * kSubpacketWidth + rest % kSubpacketWidth;
         const std::uint32_t y = subpacket_row(square) * kSubpacketWidth + rest / kSubpacketWidth;
         if (left_ + x >= frame.width || top_ + y >= frame.height) continue;
-        store_.work.charge_to(Work::kWaveRay);
         QueuedRay& ray = store_.wave.items[count].ray;
         const float column = static_cast<float>(static_cast<std::int32_t>(left_ + x)) + offset.dx;
         const float row = static_cast<float>(static_cast<std::int32_t>(top_ + y)) + offset.dy;
@@ -206,6 +207,7 @@ class EffectRenderer {
     if constexpr (has(kReflection | kRefraction)) {
       while (!queue_.empty()) {
         transfers_.note_stage(Stage::kBounce);
+        store_.work.charge_to(Work::kQueuedRay);
         std::uint32_t count = 0;
         GRIDIRON_TRY(queue_.pop_wave(count, [&](std::uint32_t i, const QueuedRay& ray) {
           store_.wave.items[i].ray = ray;
@@ -226,6 +228,7 @@ class EffectRenderer {
     transfers_.note_stage(Stage::kPrimary);
     BounceJobs<Store> jobs(store_, ray_count, store_.frame.t_far);
     GRIDIRON_TRY(walks().run(question(false), jobs));
+    store_.work.charge_to(Work::kWaveRay);
     for (std::uint32_t i = 0; i < ray_count && sample == 0; ++i) {
       store_.effects.hit_ids[store_.wave.items[i].ray.pixel & 0xFFFFu] = store_.wave.ids[i];
     }
@@ -253,6 +256,7 @@ class EffectRenderer {
   // Rays that leave the scene.
   [[nodiscard]] Status shade_misses(std::uint32_t ray_count, Context& context) {
     const auto add = [&](std::uint32_t i, Vector3 color) {
+      store_.work.charge_to(Work::kColorAdded);
       const QueuedRay& ray = store_.wave.items[i].ray;
       context.add_color(ray.pixel, vector_of(ray.weight) * color);
     };
@@ -267,7 +271,9 @@ class EffectRenderer {
         return gather_records(
             store_, transfers_, ray_count, sizeof(EnvironmentBlock),
             [&](std::uint32_t i) -> std::uint64_t {
+              store_.work.charge_to(Work::kWaveRay);
               if (store_.wave.ids[i] != kNoTriangle) return 0;
+              store_.work.charge_to(Work::kEnvironmentLookup);
               const std::uint32_t index = environment_block_index(place_of(i), blocks);
               return section(scene().environment_offset_bytes + std::uint64_t{index} * sizeof(EnvironmentBlock)).value;
             },
@@ -281,6 +287,7 @@ class EffectRenderer {
     }
     const Vector3 background = vector_of(scene().background);
     for (std::uint32_t i = 0; i < ray_count; ++i) {
+      store_.work.charge_to(Work::kWaveRay);
       if (store_.wave.ids[i] == kNoTriangle) add(i, background);
     }
     return Status::kOk;
@@ -293,8 +300,10 @@ class EffectRenderer {
     GRIDIRON_TRY(gather_records(
         store_, transfers_, ray_count, sizeof(SurfaceRecord),
         [&](std::uint32_t i) -> std::uint64_t {
+          store_.work.charge_to(Work::kWaveRay);
           const std::uint32_t id = store_.wave.ids[i];
           if (id == kNoTriangle) return 0;
+          store_.work.charge_to(Work::kSurfacePoint);
           return section(scene().surfaces_offset_bytes + std::uint64_t{id} * sizeof(SurfaceRecord)).value;
         },
         [&](std::uint32_t i, const std::byte* record) {
@@ -352,8 +361,10 @@ class EffectRenderer {
     return gather_records(
         store_, transfers_, context.point_count, sizeof(NormalRecord),
         [&](std::uint32_t i) -> std::uint64_t {
+          store_.work.charge_to(Work::kSurfacePoint);
           const WavePoint& point = context.point(i);
           if (point.is_pending == 0) return 0;
+          store_.work.charge_to(Work::kSmoothNormal);
           return section(scene().normals_offset_bytes + std::uint64_t{point.pending.normals} * sizeof(NormalRecord))
               .value;
         },
@@ -379,10 +390,12 @@ class EffectRenderer {
   // Knows a point's shading normal: makes the rays that leave it, and what light is worth there.
   [[nodiscard]] GRIDIRON_OUTLINE Status finish_point(WavePoint& point, Vector3 shading, Vector3 behind, Vector3 weight,
                                                      const MaterialRecord& material, bool enters) {
+    store_.work.charge_to(Work::kSurfacePoint);
     store(shading, point.shading);
     if constexpr (has(kReflection | kRefraction)) {
       if (calls_for(kReflection | kRefraction)) {
         GRIDIRON_TRY(cast_rays(point, shading, behind, weight, material, enters));
+        store_.work.charge_to(Work::kSurfacePoint);
       }
     }
     store(weight * vector_of(material.diffuse), point.lit.diffuse);

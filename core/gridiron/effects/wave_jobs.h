@@ -71,6 +71,7 @@ class LightJobs {
 
   /// The next rays of up to 16 neighbouring hits to one place. @returns how many, 0: no more.
   [[nodiscard]] GRIDIRON_OUTLINE std::uint32_t next(WalkRays& rays, std::uint32_t& purpose) {
+    context_.store.work.charge_to(Work::kShadowRay);
     while (light_ < light_count_) {
       const std::uint32_t index = light_;
       const LightRecord& light = context_.store.effects.lights[index];
@@ -83,7 +84,6 @@ class LightJobs {
       for (std::uint32_t i = first; i < end; ++i) {
         const WavePoint& point = context_.point(i);
         const Vector3 to_light = place_of(index, sample, point) - vector_of(point.point);
-        context_.store.work.charge_to(Work::kShadowRay);
         const bool is_lit =
             dot(to_light, vector_of(point.face)) > 0.0f && dot(to_light, vector_of(point.shading)) > 0.0f;
         if (!is_lit) continue;
@@ -105,6 +105,7 @@ class LightJobs {
     const LightRecord& light = context_.store.effects.lights[purpose];
     const bool from_light = light.samples == 0 && light.is_near != 0;
     for (std::uint32_t i = 0; i < count; ++i) {
+      context_.store.work.charge_to(Work::kShadowRay);
       if (rays.id[i] != kNoTriangle) continue;
       const Vector3 dir{rays.dir[0][i], rays.dir[1][i], rays.dir[2][i]};
       light_point(light, context_.point(rays.owner[i]), from_light ? -dir : dir);
@@ -121,6 +122,7 @@ class LightJobs {
       std::uint32_t end = first + kWalkRays;
       if (end > context_.point_count) end = context_.point_count;
       for (std::uint32_t i = first; i < end; ++i) {
+        context_.store.work.charge_to(Work::kLightSample);
         const WavePoint& point = context_.point(i);
         const Vector3 to_light = place_of(index, sample, point) - vector_of(point.point);
         if (dot(to_light, vector_of(point.face)) > 0.0f) light_point(light, point, to_light);
@@ -155,20 +157,20 @@ class LightJobs {
 
   // Adds what a light does to a hit that it reaches.
   GRIDIRON_OUTLINE void light_point(const LightRecord& light, const WavePoint& point, Vector3 to_light) {
+    WorkCounters& work = context_.store.work;
+    work.charge_to(Work::kLightSample);
     const Vector3 shading = vector_of(point.shading);
     const Vector3 along = normalized(to_light);
     const float cosine = dot(shading, along);
     if (!(cosine > 0.0f)) return;
-    WorkCounters& work = context_.store.work;
     work.add(Work::kLightSample);
-    work.charge_to(Work::kLightSample);
     Vector3 share = cosine * vector_of(point.lit.diffuse);
     if constexpr ((Built & kHighlights) != 0) {
       if (point.lit.shine > 0.0f) {
         work.add(Work::kHighlight);
-        work.charge_to(Work::kHighlight);
         const float towards = dot(shading, normalized(along + vector_of(point.view)));
         share = share + power(towards > 0.0f ? towards : 0.0f, point.lit.shine) * vector_of(point.lit.specular);
+        work.charge_to(Work::kLightSample);
       }
     }
     context_.add_color(point.pixel, vector_of(light.color) * share);
@@ -186,6 +188,7 @@ class OcclusionJobs {
   explicit OcclusionJobs(const WaveContext<Store>& context) : context_(context) {}
 
   [[nodiscard]] GRIDIRON_OUTLINE std::uint32_t next(WalkRays& rays, std::uint32_t& purpose) {
+    context_.store.work.charge_to(Work::kOcclusionRay);
     const EffectsRecord& scene = context_.store.effects.scene;
     purpose = 0;
     while (first_point_ < context_.point_count) {
@@ -199,7 +202,6 @@ class OcclusionJobs {
       if (end > context_.point_count) end = context_.point_count;
       for (std::uint32_t i = first; i < end; ++i) {
         const WavePoint& point = context_.point(i);
-        context_.store.work.charge_to(Work::kOcclusionRay);
         const Jitter jitter = context_.jitter(point, kOcclusionPurpose);
         const Vector3 dir = occlusion_direction(sample, scene.occlusion_samples, jitter, vector_of(point.shading));
         if (!(dot(dir, vector_of(point.face)) > 0.0f)) continue;
@@ -216,6 +218,7 @@ class OcclusionJobs {
     const auto samples = static_cast<std::int32_t>(context_.store.effects.scene.occlusion_samples);
     const float share = kAmbientLight / static_cast<float>(samples);
     for (std::uint32_t i = 0; i < count; ++i) {
+      context_.store.work.charge_to(Work::kOcclusionRay);
       if (rays.id[i] != kNoTriangle) continue;
       const WavePoint& point = context_.point(rays.owner[i]);
       context_.add_color(point.pixel, share * vector_of(point.lit.diffuse));
@@ -235,10 +238,10 @@ class BounceJobs {
       : store_(store), ray_count_(ray_count), t_far_(t_far) {}
 
   [[nodiscard]] GRIDIRON_OUTLINE std::uint32_t next(WalkRays& rays, std::uint32_t& purpose) {
+    store_.work.charge_to(Work::kWaveRay);
     purpose = 0;
     std::uint32_t count = ray_count_ - first_;
     if (count > kWalkRays) count = kWalkRays;
-    store_.work.charge_to(Work::kWaveRay);
     for (std::uint32_t i = 0; i < count; ++i) {
       const QueuedRay& ray = store_.wave.items[first_ + i].ray;
       set_walk_ray(rays, i, vector_of(ray.origin), vector_of(ray.dir), t_far_, first_ + i);
@@ -248,6 +251,7 @@ class BounceJobs {
   }
 
   void finish(const WalkRays& rays, std::uint32_t count, std::uint32_t) {
+    store_.work.charge_to(Work::kWaveRay);
     for (std::uint32_t i = 0; i < count; ++i) store_.wave.ids[rays.owner[i]] = rays.id[i];
   }
 

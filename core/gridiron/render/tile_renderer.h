@@ -106,6 +106,7 @@ class TileRenderer {
     effects_.begin_tile(left, top);
     const std::uint32_t sample_count = effects_.samples_per_pixel();
     for (std::uint32_t sample = 0; sample < sample_count; ++sample) {
+      store_.work.charge_to(Work::kColorGroup);
       if constexpr (kHasPackets<Layout>) {
         GRIDIRON_TRY(trace_tile(left, top, pixel_offset(sample_count, sample), [&](std::uint32_t x, std::uint32_t y) {
           if (sample == 0) shade_packet<L>(store_.frame, store_.packet, x, y, output, store_.work);

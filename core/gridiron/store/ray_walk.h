@@ -39,8 +39,8 @@ struct alignas(128) RayWalk {
   std::uint32_t active;   ///< rays of this pass without an answer
   std::uint32_t purpose;  ///< what the rays are for: nothing to the walk
   std::uint32_t touching;  ///< rays that may touch the cell
-  std::uint32_t mailbox[kMailboxSlots];  ///< triangles that this pass was held against, and
-  std::uint32_t tested[kMailboxSlots];   ///< the rays that were
+  alignas(16) std::uint32_t mailbox[kMailboxSlots];  ///< triangles that this pass was held against, and
+  std::uint32_t tested[kMailboxSlots];               ///< the rays that were
 };
 
 }  // namespace gridiron

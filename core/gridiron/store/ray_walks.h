@@ -44,6 +44,7 @@ class RayWalks {
     bool has_more = true;
     for (std::uint32_t i = 0; i < walk_count; ++i) walk_of(i).state = WalkState::kIdle;
     for (std::uint32_t i = 0;; i = i + 1 == walk_count ? 0 : i + 1) {
+      store_.work.charge_to(Work::kWalkPass);
       RayWalk& walk = walk_of(i);
       if (walk.state == WalkState::kIdle) {
         if (has_more) has_more = start(walk, jobs);
@@ -56,6 +57,7 @@ class RayWalks {
       GRIDIRON_TRY(go_on(i, question));
       if (walk.state != WalkState::kDone) continue;
       jobs.finish(walk.rays, walk.ray_count, walk.purpose);
+      store_.work.charge_to(Work::kWalkPass);
       --under_way;
       walk.state = WalkState::kIdle;
       // The next job begins at once, so that its first transfer travels while the others go on.
@@ -73,6 +75,7 @@ class RayWalks {
   template <class Jobs>
   [[nodiscard]] bool start(RayWalk& walk, Jobs& jobs) {
     walk.ray_count = jobs.next(walk.rays, walk.purpose);
+    store_.work.charge_to(Work::kWalkPass);
     if (walk.ray_count == 0) return false;
     walk.waiting = walk.ray_count >= 32 ? ~0u : (1u << walk.ray_count) - 1u;
     walk.state = WalkState::kNextPass;
@@ -93,7 +96,7 @@ class RayWalks {
             walk.state = WalkState::kDone;
             return Status::kOk;
           }
-          for (std::uint32_t& id : walk.mailbox) id = kNoTriangle;
+          fill_words(walk.mailbox, kNoTriangle);
           walk.reach = walk.shaft.reach<L>();
           walk.macro_walk.begin(store_.frame.grid, Bound{walk.shaft});
           walk.state = WalkState::kNextMacro;
@@ -239,6 +242,7 @@ class RayWalks {
         walk.shaft.shorten(ray, t);
         has_changed = true;
       }
+      store_.work.charge_to(Work::kRayGroupTest);
       for (std::uint32_t rest = settled; rest != 0; rest &= rest - 1) {
         const std::uint32_t ray = lowest_bit(rest);
         walk.rays.id[ray] = triangle.triangle_id;

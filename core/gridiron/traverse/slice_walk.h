@@ -102,6 +102,7 @@ class MacroWalk {
       }
       work.add(Work::kMacroSliceStep);
       const CellRect rect = frustum.rect_of(slab, work);
+      work.charge_to(Work::kMacroSliceStep);
       if (rect.empty()) continue;
       u_first_ = macro_of(rect.u_first);
       u_last_ = macro_of(rect.u_last);
@@ -193,6 +194,7 @@ class CellWalk {
       }
       work.add(Work::kSliceStep);
       const CellRect rect = frustum.rect_of(slab, work);
+      work.charge_to(Work::kSliceStep);
       u_first_ = rect.u_first > visit_.u_first ? rect.u_first : visit_.u_first;
       u_last_ = rect.u_last < visit_.u_last ? rect.u_last : visit_.u_last;
       v_ = rect.v_first > visit_.v_first ? rect.v_first : visit_.v_first;

@@ -225,7 +225,7 @@ struct Counted {
   requires(!std::is_same_v<U, bool>) constexpr Counted(U constant) : value(static_cast<T>(constant)) { make(0); }
   template <class U>
   requires std::is_enum_v<U>
-  explicit constexpr Counted(U constant) : Counted(static_cast<std::underlying_type_t<U>>(constant)) {}
+  explicit(!std::is_convertible_v<U, std::underlying_type_t<U>>) constexpr Counted(U constant) : Counted(static_cast<std::underlying_type_t<U>>(constant)) {}
   constexpr Counted(const Counted& other) : value(other.value) {
     if (!std::is_constant_evaluated()) set(node_of(other));
   }
@@ -272,6 +272,10 @@ struct Counted {
   template <class B>
   constexpr Counted& operator|=(const B& b) {
     return *this = Counted(*this | b);
+  }
+  template <class B>
+  constexpr Counted& operator^=(const B& b) {
+    return *this = Counted(*this ^ b);
   }
   template <class B>
   constexpr Counted& operator<<=(const B& b) {
@@ -416,12 +420,12 @@ constexpr auto operator~(const Counted<T>& a) {
 }
 
 /// Branches of the transcribed kernel: if, while and for say where they stand.
-inline bool branch_at(gridiron::calibrate::Site site, const CountedBool& condition) {
-  PipeModel::current().branch(site, condition.value, condition.node);
+constexpr bool branch_at(gridiron::calibrate::Site site, const CountedBool& condition) {
+  if (!std::is_constant_evaluated()) PipeModel::current().branch(site, condition.value, condition.node);
   return condition.value;
 }
-inline bool branch_at(gridiron::calibrate::Site site, bool condition) {
-  PipeModel::current().branch(site, condition, 0);
+constexpr bool branch_at(gridiron::calibrate::Site site, bool condition) {
+  if (!std::is_constant_evaluated()) PipeModel::current().branch(site, condition, 0);
   return condition;
 }
 constexpr bool loop_at(gridiron::calibrate::Site site, const CountedBool& condition) {
@@ -431,6 +435,35 @@ constexpr bool loop_at(gridiron::calibrate::Site site, const CountedBool& condit
 /// Loops of a constant count are unrolled.
 constexpr bool loop_at(gridiron::calibrate::Site, bool condition) {
   return condition;
+}
+
+/// One of an enumeration, in memory.
+template <class T>
+struct CountedEnum {
+  T value;
+
+  CountedEnum& operator=(T constant) {
+    value = constant;
+    PipeModel::current().set_scalar(&value, 0, static_cast<std::uint64_t>(constant));
+    return *this;
+  }
+  [[nodiscard]] Node node() const {
+    return PipeModel::current().scalar_at(&value, static_cast<std::uint64_t>(value));
+  }
+  friend CountedBool operator==(const CountedEnum& a, T b) {
+    return {a.value == b, emit(OpClass::kFixed, a.value == b, a.node())};
+  }
+  friend CountedBool operator!=(const CountedEnum& a, T b) { return !(a == b); }
+};
+
+/// A jump by a table: one of its places is expected, to the others it goes the rarer way.
+template <class T>
+T switch_at(gridiron::calibrate::Site site, const CountedEnum<T>& choice, T usual) {
+  const auto tie = static_cast<std::uint64_t>(choice.value);
+  const Node place = emit(OpClass::kShift, tie, choice.node());
+  const Node target = emit(OpClass::kShuffle, tie, emit(OpClass::kLoad, tie, place), place);  // a word of the table
+  PipeModel::current().branch(site, choice.value == usual, target);
+  return choice.value;
 }
 
 /// The value of type To with the same bits.
@@ -444,4 +477,5 @@ Counted<To> counted_bit_cast(const Counted<From>& value) {
 #define GRIDIRON_SITE (GRIDIRON_COUNTED_FILE * 65536u + __LINE__)
 #define GRIDIRON_COUNTED_IF(...) if (::gridiron_counted::branch_at(GRIDIRON_SITE, __VA_ARGS__))
 #define GRIDIRON_COUNTED_WHILE(...) while (::gridiron_counted::branch_at(GRIDIRON_SITE, __VA_ARGS__))
+#define GRIDIRON_COUNTED_SWITCH(...) switch (::gridiron_counted::switch_at(GRIDIRON_SITE, __VA_ARGS__))
 #define GRIDIRON_COUNTED_LOOP(...) ::gridiron_counted::loop_at(GRIDIRON_SITE, __VA_ARGS__)

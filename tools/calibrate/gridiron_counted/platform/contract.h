@@ -11,12 +11,15 @@ namespace gridiron_counted {
 
 using gridiron::kPortableBoundaryBytes;
 using gridiron::kPortableCongruenceBytes;
+using gridiron::kPortableGranuleBytes;
 using gridiron::Platform;
 using gridiron::Status;
 using gridiron::TileClaim;
 
 struct MainAddress {
   Counted<std::uint64_t> value;
+
+  [[nodiscard]] MainAddress offset_by(const Counted<std::uint64_t>& bytes) const { return {value + bytes}; }
 };
 
 }  // namespace gridiron_counted

@@ -4,6 +4,7 @@
 #pragma once
 
 #include <gridiron_counted/base/lanes.h>
+#include <gridiron_counted/base/stages.h>
 #include <gridiron_counted/base/work_counters.h>
 #include <gridiron_counted/platform/contract.h>
 #include <gridiron_counted/store/dma_tags.h>
@@ -34,6 +35,7 @@ class Transfers {
   [[nodiscard]] Status wait(const TagIndex&) {
     return Status::kOk;
   }
+  void note_stage(Stage) {}
   [[nodiscard]] TileClaim claim_tile() { return platform_.claim_tile(); }
 
  private:
