@@ -300,11 +300,11 @@ TYPED_TEST(WalkRaysTest, EveryRayIsInOnePass) {
         ASSERT_NE(along[0], 0.0);
         for (int i = 1; i < 3; ++i) {
           ASSERT_LE(std::fabs(along[i]), 2.000001 * std::fabs(along[0])) << "seed " << seed << " ray " << ray;
-          ASSERT_LE(std::fabs(along[i] / std::fabs(along[0]) - leads[i] / std::fabs(leads[0])), 0.25001)
+          ASSERT_LE(std::fabs(along[i] / std::fabs(along[0]) - leads[i] / std::fabs(leads[0])), kTogetherSlope + 1e-5)
               << "seed " << seed << " ray " << ray;
         }
         for (int i = 0; i < 3; ++i) {
-          ASSERT_LE(std::fabs(place[i] - leader_place[i]), 3.0 + 1e-6 * (std::fabs(place[i]) + 3.0))
+          ASSERT_LE(std::fabs(place[i] - leader_place[i]), kTogetherCells + 1e-6 * (std::fabs(place[i]) + 3.0))
               << "seed " << seed << " ray " << ray;
         }
         ASSERT_EQ(rays.dir_max[ray], largest) << "seed " << seed << " ray " << ray;
@@ -448,9 +448,9 @@ TYPED_TEST(WalkRaysTest, NeighboursThatRunAlikeGoTogether) {
   for (std::uint32_t ray = 0; ray < kWalkRays; ++ray) {
     set_ray(rays, ray, {30.0f + 0.1f * static_cast<float>(ray), 30, 30}, {1, 0.2f, 0.01f * static_cast<float>(ray)});
   }
-  rays.origin[1][3] = 33.25f;  // too far off
-  rays.dir[2][5] = 0.3f;       // turned too far
-  rays.dir[0][9] = -1.0f;      // the other way
+  rays.origin[1][3] = 30.25f + kTogetherCells;  // too far off
+  rays.dir[2][5] = 0.05f + kTogetherSlope;      // turned too far
+  rays.dir[0][9] = -1.0f;                       // the other way
   std::uint32_t waiting = kAll;
   Shaft shaft;
   WorkCounters work;

@@ -62,7 +62,7 @@ TEST(Configurations, UnknownNamesAreNone) {
 
 TEST(StoreFacts, RegionsFillTheStoreInOrderWithinTheArena) {
   const std::vector<sim::LayoutChoice> layouts = tool::built_layouts();
-  EXPECT_EQ(layouts.size(), 20u);
+  EXPECT_EQ(layouts.size(), 21u);
   for (const sim::LayoutChoice& layout : layouts) {
     const std::optional<tool::StoreFacts> store = tool::find_store_facts(layout);
     ASSERT_TRUE(store.has_value());

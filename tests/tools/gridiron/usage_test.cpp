@@ -45,7 +45,7 @@ TEST(Usage, MistakesExitWithTwoAndSayWhy) {
       {{"render", "a.nff", "--tolerance", "inf"}, "above 0"},
       {{"render", "a.nff", "--accuracy", "paper"}, "--accuracy paper: has no --shading scene"},
       {{"render", "a.nff", "--shading", "scene", "--packet", "16"}, "--shading scene"},
-      {{"render", "a.nff", "--store", "64"}, "--shading scene"},
+      {{"render", "a.nff", "--store", "128"}, "--shading scene"},
       {{"render", "a.nff", "--tile-width", "16"}, "--shading scene"},
       {{"render", "a.nff", "--macro-width", "7"}, "--shading scene"},
       {{"animate", "a.ply"}, "--output"},
