@@ -243,7 +243,7 @@ void add_algorithm_options(CLI::App& app, RawRender& raw) {
              "rays along a packet's edge (default: the configuration's)");
   add_choice(app, "--tile-width", render.asked.tile_width,
              Choices<std::uint32_t>{{"8", 8}, {"16", 16}, {"32", 32}, {"64", 64}},
-             "pixels along a tile's edge (default: 16 with --store 64, else 32)");
+             "pixels along a tile's edge (default: 16 with --store 64, 8 there with --shading scene, else 32)");
   Choices<Accuracy> choices;
   std::string help;
   for (const NamedAccuracy& named : accuracies()) {
@@ -385,7 +385,7 @@ void add_experiment_options(CLI::App& app, ExperimentArguments& experiment) {
                                      {"effects", ExperimentName::kEffects}},
              "paper: Tables 1-4, Figs. 5-7 and sweeps; some eight minutes of processor time with the scans. accuracy: "
              "what each accuracy profile costs and what is wrong with its answers; some two minutes. effects: what "
-             "each effect costs, and that one that is off costs nothing; some two minutes, no scans. All leave CSV, "
+             "each effect costs, and that one that is off costs nothing; some half a minute, no scans. All leave CSV, "
              "SVG and index.html; nothing is told before the end where standard error is no terminal")
       ->required();
   const auto folder = [](const std::string& text) {

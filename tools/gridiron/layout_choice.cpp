@@ -41,7 +41,8 @@ std::string words_of_layout(const sim::LayoutChoice& layout) {
   const std::string shading = layout.has_effects ? ", --shading scene" : "";
   if (sim::is_built(layout, sim::Mode::kChecked, 4)) {
     usage_error(store + shading + ": with " + words_of_layout(layout) +
-                " it is built for --mode checked and --lanes 4 only");
+                (layout.has_effects ? " --mode checked and instrumented are built for --lanes 4 only"
+                                    : " it is built for --mode checked and --lanes 4 only"));
   }
   std::string list;
   for (const sim::LayoutChoice& built : built_layouts()) {
@@ -50,7 +51,7 @@ std::string words_of_layout(const sim::LayoutChoice& layout) {
     }
   }
   if (list.empty())
-    usage_error(store + shading + ": effects need a local store of 256 KB; --shading simple does without them");
+    usage_error(store + shading + ": effects need a local store of 64 or 256 KB; --shading simple does without them");
   usage_error(store + shading + ": not built for " + words_of_layout(layout) + "; there are " + list);
 }
 

@@ -54,7 +54,7 @@ EffectFacts effects_of(const EffectsRecord& record, std::uint32_t triangle_count
     facts.sections.push_back({name_of(static_cast<SectionKind>(entry.kind)), entry.section_bytes});
   }
   facts.section_bytes = sections.end_bytes - sections.begin_bytes;
-  facts.spill_bytes_per_core = spill_bytes(record.recursion_depth);
+  facts.spill_bytes_per_core = spill_bytes_of_scene(record.called_for, record.recursion_depth);
   return facts;
 }
 

@@ -42,7 +42,7 @@ const char* words_of(Status status) {
     case Status::kUnsupportedImage:
       return "scene image that this local store or accuracy cannot use";
     case Status::kUnsupportedFrame:
-      return "frame that this build or this host cannot render (lanes, packet width, buffers or mode)";
+      return "frame that this build or this host cannot render (lanes, packet width, buffers, mode, or distances with effects out of 64 KB)";
     case Status::kAborted:
       return "stopped between two tiles";
     case Status::kDeadline:

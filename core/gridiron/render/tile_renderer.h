@@ -21,7 +21,7 @@ namespace gridiron {
 
 /// Renders tiles of one frame on one core.
 ///
-/// @tparam L       lane type, Lanes<4>, Lanes<8> or Lanes<16>; changes no pixel.
+/// @tparam L       lane type, Lanes<4>, Lanes<8> or Lanes<16>, without packets Lanes<1> too; changes no pixel.
 /// @tparam Layout  sizes of the local store.
 template <class L, class Layout, Platform P>
 class TileRenderer {
@@ -31,8 +31,8 @@ class TileRenderer {
 
   /// Renders every tile this core can claim of the frame whose FrameRecord lies at `frame`.
   ///
-  /// Errors: kBadFrame, kUnsupportedFrame, kUnsupportedImage before the first claim; kAborted, kDeadline between
-  /// tiles; whatever the platform's transfers report. All transfers have been waited for when kOk is returned.
+  /// Errors: kBadFrame, kUnsupportedFrame, kUnsupportedImage, kNeeds... (an effect), kSpillTooSmall before the first
+  /// claim; kAborted, kDeadline between tiles; whatever the platform's transfers report. All transfers have been waited for when kOk is returned.
   [[nodiscard]] Status run(MainAddress frame) {
     // 1. What every core needs: the frame, and the macrocell table where it fits.
     store_.work = WorkCounters{};

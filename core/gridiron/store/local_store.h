@@ -153,15 +153,12 @@ struct EffectLayout64K {
 template <class Layout>
 inline constexpr bool kHasPackets = Layout::kPacketWidth != 0;
 
-/// Parts of a local store that depend on what its layout is for.
-template <class Layout>
-struct StoreParts;
-
-/// Walks of secondary rays that a layout has buffers for.
+/// Walks of rays that a layout has buffers for.
 template <class Layout>
 inline constexpr std::uint32_t kWalkCount =
     Layout::kMaxMacroDepth < Layout::kMaxTriangleDepth ? Layout::kMaxMacroDepth : Layout::kMaxTriangleDepth;
 
+/// Parts of a local store that depend on what its layout is for.
 template <class Layout>
 struct StoreParts {
   template <bool kHas>
@@ -283,7 +280,7 @@ constexpr void for_each_region(Visit&& visit) {
   } else {
     constexpr bool kWaveIsLarger =
         !kHasPackets<Layout> || sizeof(typename Store::StoreWave) > sizeof(typename Store::StorePacket);
-    visit("packet_or_wave", offsetof(Store, packet),
+    visit(kHasPackets<Layout> ? "packet_or_wave" : "wave", offsetof(Store, packet),
           kWaveIsLarger ? sizeof(typename Store::StoreWave) : sizeof(typename Store::StorePacket));
   }
   if constexpr (kHasPackets<Layout>) visit("mailbox", offsetof(Store, mailbox), sizeof(Store::mailbox));
