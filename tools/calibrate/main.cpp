@@ -14,7 +14,7 @@ namespace {
 
 constexpr std::string_view kUsage =
     "usage: gridiron_calibrate [--rival] [FILE | --memories FOLDER]\n"
-    "Counts the operations of the kernel on six small frames and puts them through the pipeline model.\n"
+    "Counts the operations of the kernel on eight small frames and puts them through the pipeline model.\n"
     "  --rival        of the grid's rival instead, on four frames\n"
     "  FILE           write the table there: sim_platform/gridiron/sim/work_costs.h, of the rival\n"
     "                 sim_platform/gridiron/rival/rival_costs.h\n"

@@ -11,8 +11,8 @@
 namespace gridiron::calibrate {
 
 /// Counts the frames that the table is made from: the teapot, 1,640 triangles on 96 x 96 pixels, as `reference`, as
-/// `best`, from near, with the paper's test, with planes and on a lattice, and the exact decisions on 64 rays and
-/// triangles of it.
+/// `best`, from near, with the paper's test, with planes and on a lattice; the teapot on a floor with every effect, 12 x
+/// 12 and 20 x 20 pixels; and the exact decisions on 64 rays and triangles of it.
 ///
 /// @returns the sum over the frames. Errors: std::runtime_error where a counted picture differs from the kernel's.
 [[nodiscard]] Totals count_frames(std::uint32_t superblock_branches = kSuperblockBranches);
@@ -27,8 +27,8 @@ namespace gridiron::calibrate {
 /// @returns the generated source file, sim_platform/gridiron/rival/rival_costs.h.
 [[nodiscard]] std::string rival_table_text(const Totals& totals);
 
-/// Writes the frames' main memories, NAME.memory, and a file `units` (kind, name, units, counted operations per unit)
-/// into a folder, for second_opinion. Errors: std::runtime_error where a file cannot be written.
+/// Writes the main memories of the frames without effects, NAME.memory, and a file `units` (kind, name, units, counted
+/// operations per unit) into a folder, for second_opinion. Errors: std::runtime_error where a file cannot be written.
 void write_memories(const std::string& folder);
 
 /// @returns the same for people: every kind with its bounds and classes, and the rate of dual issue.

@@ -28,7 +28,7 @@ struct WorkCounters : PlainWorkCounters {
 #define GRIDIRON_MARKS(i) GRIDIRON_MARK(i) GRIDIRON_MARK(i + 1) GRIDIRON_MARK(i + 2) GRIDIRON_MARK(i + 3) \
   GRIDIRON_MARK(i + 4) GRIDIRON_MARK(i + 5) GRIDIRON_MARK(i + 6) GRIDIRON_MARK(i + 7)
         GRIDIRON_MARKS(0) GRIDIRON_MARKS(8) GRIDIRON_MARKS(16) GRIDIRON_MARKS(24) GRIDIRON_MARKS(32) \
-          GRIDIRON_MARKS(40)
+          GRIDIRON_MARKS(40) GRIDIRON_MARKS(48) GRIDIRON_MARK(56) GRIDIRON_MARK(57) GRIDIRON_MARK(58) GRIDIRON_MARK(59)
 #undef GRIDIRON_MARKS
 #undef GRIDIRON_MARK
         default: break;
@@ -36,6 +36,6 @@ struct WorkCounters : PlainWorkCounters {
     }
   }
 };
-static_assert(kWorkKindCount <= 48);
+static_assert(kWorkKindCount <= 60);
 
 }  // namespace gridiron
