@@ -34,7 +34,8 @@ struct CountedPicture {
   std::vector<std::uint32_t> pixels;  ///< and planes, tile-major, as the kernel puts them
 };
 
-/// Renders on one core out of a 256 KB store, double-buffered, with 8 walks of secondary rays, lambda 4, macrocells of width 6.
+/// Renders on one core out of a 256 KB store, double-buffered, with 8 walks of secondary rays, lambda 4, macrocells of
+/// width 6.
 /// Errors: std::runtime_error where the scene cannot be built or the kernel refuses the frame.
 [[nodiscard]] CountedPicture render_counted(const CountedFrame& frame,
                                             std::uint32_t superblock_branches = kSuperblockBranches);

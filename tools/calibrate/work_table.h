@@ -11,8 +11,8 @@
 namespace gridiron::calibrate {
 
 /// Counts the frames that the table is made from: the teapot, 1,640 triangles on 96 x 96 pixels, as `reference`, as
-/// `best`, from near, with the paper's test, with planes and on a lattice; the teapot on a floor with every effect, 12 x
-/// 12 and 20 x 20 pixels; and the exact decisions on 64 rays and triangles of it.
+/// `best`, from near, with the paper's test, with planes and on a lattice; the teapot on a floor with every effect,
+/// 12 x 12 and 20 x 20 pixels; and the exact decisions on 64 rays and triangles of it.
 ///
 /// @returns the sum over the frames. Errors: std::runtime_error where a counted picture differs from the kernel's.
 [[nodiscard]] Totals count_frames(std::uint32_t superblock_branches = kSuperblockBranches);

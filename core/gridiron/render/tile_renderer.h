@@ -32,7 +32,8 @@ class TileRenderer {
   /// Renders every tile this core can claim of the frame whose FrameRecord lies at `frame`.
   ///
   /// Errors: kBadFrame, kUnsupportedFrame, kUnsupportedImage, kNeeds... (an effect), kSpillTooSmall before the first
-  /// claim; kAborted, kDeadline between tiles; whatever the platform's transfers report. All transfers have been waited for when kOk is returned.
+  /// claim; kAborted, kDeadline between tiles; whatever the platform's transfers report. All transfers have been waited
+  /// for when kOk is returned.
   [[nodiscard]] Status run(MainAddress frame) {
     // 1. What every core needs: the frame, and the macrocell table where it fits.
     store_.work = WorkCounters{};

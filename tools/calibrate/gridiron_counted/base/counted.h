@@ -225,7 +225,8 @@ struct Counted {
   requires(!std::is_same_v<U, bool>) constexpr Counted(U constant) : value(static_cast<T>(constant)) { make(0); }
   template <class U>
   requires std::is_enum_v<U>
-  explicit(!std::is_convertible_v<U, std::underlying_type_t<U>>) constexpr Counted(U constant) : Counted(static_cast<std::underlying_type_t<U>>(constant)) {}
+  explicit(!std::is_convertible_v<U, std::underlying_type_t<U>>) constexpr Counted(U constant)
+      : Counted(static_cast<std::underlying_type_t<U>>(constant)) {}
   constexpr Counted(const Counted& other) : value(other.value) {
     if (!std::is_constant_evaluated()) set(node_of(other));
   }
