@@ -273,18 +273,6 @@ struct NamedFile {
   std::optional<std::filesystem::path> path;
 };
 
-// Whether two names, which need not exist, mean one file: links, `.` and `..` are followed. A device takes any number
-// of outputs.
-bool is_same_file(const std::filesystem::path& a, const std::filesystem::path& b) {
-  std::error_code error;
-  if (std::filesystem::is_character_file(a, error)) return false;
-  if (std::filesystem::equivalent(a, b, error)) return true;
-  const auto target = [&error](const std::filesystem::path& path) {
-    return std::filesystem::weakly_canonical(std::filesystem::absolute(resolve_target(path), error), error);
-  };
-  return !target(a).empty() && target(a) == target(b);
-}
-
 // An output in the place of an input would destroy it, and two outputs under one name would leave only the last one.
 void require_own_files(const std::vector<NamedFile>& inputs, const std::vector<NamedFile>& outputs) {
   std::vector<NamedFile> known = inputs;

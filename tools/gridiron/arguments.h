@@ -25,6 +25,7 @@ struct SceneArguments {
   const Configuration* configuration = nullptr;
   std::optional<float> lambda;
   std::optional<std::uint32_t> macro_width;
+  std::uint32_t most_macro_width = kMaxMacroWidth;  ///< that the store holds: a configuration's is cut to it
   std::optional<float> tolerance;  ///< of round shapes in a text scene, world units; nothing: the reader's own
 };
 

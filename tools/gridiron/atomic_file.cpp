@@ -68,6 +68,16 @@ fs::path resolve_target(const fs::path& path) {
   return target;
 }
 
+bool is_same_file(const fs::path& a, const fs::path& b) {
+  std::error_code error;
+  if (fs::is_character_file(a, error)) return false;
+  if (fs::equivalent(a, b, error)) return true;
+  const auto target = [&error](const fs::path& path) {
+    return fs::weakly_canonical(fs::absolute(resolve_target(path), error), error);
+  };
+  return !target(a).empty() && target(a) == target(b);
+}
+
 AtomicFile::AtomicFile(fs::path path) : path_(std::move(path)), target_(resolve_target(path_)) {
   check_can_write(path_);
   if (is_special_file(target_)) {

@@ -47,6 +47,10 @@ class AtomicFile {
 /// @returns where bytes written to `path` really go: through symbolic links, also one that points at nothing yet.
 [[nodiscard]] std::filesystem::path resolve_target(const std::filesystem::path& path);
 
+/// @returns whether two names, which need not exist, mean one file: links, `.` and `..` are followed. A device takes
+/// any number of outputs, and is never the same as another.
+[[nodiscard]] bool is_same_file(const std::filesystem::path& a, const std::filesystem::path& b);
+
 /// Throws Failure (kBadInput) where no file of that name could be made, before the work for it is done: the folder is
 /// missing or closed, or the name is a folder.
 void check_can_write(const std::filesystem::path& path);

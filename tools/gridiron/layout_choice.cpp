@@ -87,10 +87,9 @@ void choose_depths(RenderArguments& render) {
     render.depths.triangle = std::min(render.depths.triangle, facts.max_triangle_depth);
     if (render.shading == Shading::kScene) render.depths.walks = std::min(render.depths.walks, facts.max_walks);
   }
-  if (render.shading == Shading::kScene && !render.scene.macro_width) {
-    render.scene.macro_width = std::min(configuration.macro_width, facts.max_macro_width);
-  }
-  const std::uint32_t macro_width = render.scene.macro_width.value_or(configuration.macro_width);
+  if (render.shading == Shading::kScene) render.scene.most_macro_width = facts.max_macro_width;
+  const std::uint32_t macro_width =
+      render.scene.macro_width.value_or(std::min(configuration.macro_width, render.scene.most_macro_width));
   if (render.depths.output > facts.max_output_depth || render.depths.macro > facts.max_macro_depth ||
       render.depths.triangle > facts.max_triangle_depth || macro_width > facts.max_macro_width) {
     const auto blocks = [](std::uint32_t depth, std::uint32_t width, std::uint32_t buffers) {

@@ -14,6 +14,7 @@ namespace gridiron::tool {
 void run_command(const PackArguments& arguments) {
   check_can_write(arguments.output);
   const SceneInput input = read_scene_input(arguments.scene.input, arguments.scene.tolerance);
+  require_other_files(input, {arguments.output});
   const Mesh* mesh = std::get_if<Mesh>(&input.content);
   if (mesh == nullptr) {
     throw Failure(ExitCode::kBadInput,

@@ -32,11 +32,12 @@ namespace gridiron::tool {
 namespace {
 
 // Fails early: nobody should wait for a picture that cannot be written.
-void check_outputs(const RenderArguments& arguments) {
-  check_can_write(arguments.output);
+std::vector<std::filesystem::path> outputs_of(const RenderArguments& arguments) {
+  std::vector<std::filesystem::path> outputs = {arguments.output};
   for (const auto* path : {&arguments.depth, &arguments.ids, &arguments.report, &arguments.timeline}) {
-    if (*path) check_can_write(**path);
+    if (*path) outputs.push_back(**path);
   }
+  return outputs;
 }
 
 // A named configuration that the store has too few buffers for is used with those that there are.
@@ -141,9 +142,10 @@ void print_timing(const RenderArguments& arguments, const sim::FrameTiming& timi
 }  // namespace
 
 void run_command(const RenderArguments& asked) {
-  check_outputs(asked);
+  for (const std::filesystem::path& output : outputs_of(asked)) check_can_write(output);
   const ViewRequest camera = asked.camera ? read_camera_file(*asked.camera) : ViewRequest{};
   const SceneInput input = read_scene_input(asked.scene.input, asked.scene.tolerance);
+  require_other_files(input, outputs_of(asked));
   const RenderArguments arguments = complete_arguments(asked, input);
   const bool has_own_view = input.text && !arguments.camera;
   const ViewRequest view = join_view(arguments.view, has_own_view ? view_of(input.text->view) : camera);

@@ -54,7 +54,8 @@ EffectFacts effects_of(const EffectsRecord& record, std::uint32_t triangle_count
     facts.sections.push_back({name_of(static_cast<SectionKind>(entry.kind)), entry.section_bytes});
   }
   facts.section_bytes = sections.end_bytes - sections.begin_bytes;
-  facts.spill_bytes_per_core = spill_bytes_of_scene(record.called_for, record.recursion_depth);
+  const bool rays_wait = (record.called_for & (kReflection | kRefraction)) != 0;
+  facts.spill_bytes_per_core = rays_wait ? spill_bytes(record.recursion_depth) : 0;
   return facts;
 }
 
@@ -97,7 +98,11 @@ SceneFacts collect_scene_facts(const InfoArguments& arguments) {
     const Mesh& mesh = std::get<Mesh>(input.content);
     const EffectsView view = input.text ? input.text->effects.view() : EffectsView{};
     const EffectsView* effects = input.text ? &view : nullptr;
-    const GridChoice choice = choose_grid(input, mesh, arguments.scene, arguments.format, budget_bytes, effects);
+    SceneArguments scene = arguments.scene;
+    if (effects != nullptr && arguments.store == sim::StoreSize::k64KB) {
+      scene.most_macro_width = effect_store_facts(arguments.store, 0).max_macro_width;
+    }
+    const GridChoice choice = choose_grid(input, mesh, scene, arguments.format, budget_bytes, effects);
     facts.vertices = mesh.vertices.size();
     facts.triangles = mesh.triangles.size();
     facts.dropped_triangles = choice.need.dropped_triangle_count;

@@ -10,6 +10,7 @@
 #include <string>
 #include <utility>
 
+#include "atomic_file.h"
 #include "failure.h"
 #include "interrupt.h"
 #include "scene_text/scene_reader.h"
@@ -47,7 +48,8 @@ TextScene read_text_scene(const std::filesystem::path& path, std::optional<float
   SceneOptions options;
   options.tolerance = tolerance;
   SceneDescription scene = read_scene_text(path, options);
-  TextScene text{scene.view, take_scene_effects(scene), std::move(scene.notes), scene.note_count};
+  TextScene text{scene.view, take_scene_effects(scene), std::move(scene.notes), scene.note_count,
+                 std::move(scene.files)};
   mesh.vertices = std::move(scene.geometry.vertices);
   mesh.triangles = std::move(scene.geometry.triangles);
   return text;
@@ -149,6 +151,17 @@ std::uint64_t image_budget_bytes(const sim::MachineProfile& machine, std::uint32
   return memory - std::max(wanted, std::min(usual, memory / 2));
 }
 
+void require_other_files(const SceneInput& input, const std::vector<std::filesystem::path>& outputs) {
+  if (!input.text) return;
+  for (const std::filesystem::path& output : outputs) {
+    for (const std::filesystem::path& file : input.text->files) {
+      if (!is_same_file(file, output)) continue;
+      throw Failure(ExitCode::kUsage, output.string() + ": is a file of the scene " + input.path.string() +
+                                          "; writing there would destroy it");
+    }
+  }
+}
+
 GridChoice choose_grid(const SceneInput& input, const Mesh& mesh, const SceneArguments& arguments,
                        TriangleFormat format, std::uint64_t budget_bytes, const EffectsView* effects) {
   GridChoice choice;
@@ -157,7 +170,8 @@ GridChoice choose_grid(const SceneInput& input, const Mesh& mesh, const SceneArg
   const Configuration& configuration = *arguments.configuration;
   choice.wanted_lambda = arguments.lambda.value_or(casts_rays ? configuration.walk_lambda : configuration.lambda);
   choice.parameters.lambda = choice.wanted_lambda;
-  choice.parameters.macro_width = arguments.macro_width.value_or(arguments.configuration->macro_width);
+  choice.parameters.macro_width =
+      arguments.macro_width.value_or(std::min(configuration.macro_width, arguments.most_macro_width));
   choice.parameters.format = format;
   choice.budget_bytes = budget_bytes;
   float& lambda = choice.parameters.lambda;
@@ -212,6 +226,11 @@ void check_packed(const SceneInput& input, const PackedScene& packed, const Scen
   }
   if (arguments.lambda && *arguments.lambda != grid.lambda) {
     fail(input.path, "was packed with lambda " + text_of(grid.lambda) + "; --lambda cannot change it");
+  }
+  if (grid.macro_width > arguments.most_macro_width) {
+    fail(input.path, "was packed with macrocells of width " + std::to_string(grid.macro_width) +
+                         "; the local store holds cell blocks of width " +
+                         std::to_string(arguments.most_macro_width));
   }
   if (arguments.macro_width && *arguments.macro_width != grid.macro_width) {
     fail(input.path, "was packed with macrocells of width " + std::to_string(grid.macro_width) +

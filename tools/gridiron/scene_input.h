@@ -41,6 +41,7 @@ struct TextScene {
   SceneEffects effects;
   std::vector<SceneNote> notes;
   std::uint64_t note_count = 0;
+  std::vector<std::filesystem::path> files;  ///< that the text names
 };
 
 struct SceneInput {
@@ -89,6 +90,9 @@ struct GridChoice {
 [[nodiscard]] std::uint64_t image_budget_bytes(const sim::MachineProfile& machine, std::uint32_t width,
                                                std::uint32_t height, std::uint32_t planes,
                                                std::uint32_t tile_width = 32, std::uint64_t spill_bytes = 0);
+
+/// Throws Failure (kUsage) where an output would take the place of a file that the scene names.
+void require_other_files(const SceneInput& input, const std::vector<std::filesystem::path>& outputs);
 
 /// Chooses the grid of a mesh: the wanted lambda, halved until the image fits the budget unless the command line fixed
 /// it. Where nothing fits the choice says so and holds the least need found.

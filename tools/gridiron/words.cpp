@@ -42,8 +42,8 @@ const char* words_of(Status status) {
     case Status::kUnsupportedImage:
       return "scene image that this local store or accuracy cannot use";
     case Status::kUnsupportedFrame:
-      return "frame that this build or this host cannot render (lanes, packet width, buffers, mode; with effects out of "
-             "64 KB also distances)";
+      return "frame that this build or this host cannot render (lanes, packet width, buffers, mode; with "
+             "effects out of 64 KB also distances)";
     case Status::kAborted:
       return "stopped between two tiles";
     case Status::kDeadline:

@@ -124,7 +124,8 @@ struct SceneDescription {
 
   float tolerance = 0.0f;  ///< world units: no facet is farther than this from the sphere or cone that it stands for
   SceneCounts counts;
-  std::vector<SceneNote> notes;  ///< at most kMostSceneNotes
+  std::vector<std::filesystem::path> files;  ///< that the text names: meshes, faces
+  std::vector<SceneNote> notes;              ///< at most kMostSceneNotes
   std::uint64_t note_count = 0;
 };
 

@@ -196,6 +196,7 @@ class Parser {
       map.width = face.width;
       map.texels[i] = std::move(face.texels);
     }
+    result_.scene.files.insert(result_.scene.files.end(), map.paths.begin(), map.paths.end());
     result_.scene.environment = std::move(map);
   }
 
@@ -339,6 +340,7 @@ class Parser {
       if (!is_invertible(*matrix)) words_.fail(entity.keyword.line, "the matrix of 'm' flattens the mesh");
     }
     const std::filesystem::path path = folder_ / std::filesystem::path(name.text);
+    result_.scene.files.push_back(path);
     result_.meshes.push_back(with_line(name.line, [&] { return read_scene_mesh(path, matrix); }));
     mesh_vertices_ += result_.meshes.back().vertices.size();
     mesh_triangles_ += result_.meshes.back().triangles.size();

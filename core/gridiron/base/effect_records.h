@@ -142,10 +142,6 @@ inline constexpr std::uint32_t kMostEffectTilePixels = 1024;  ///< of a layout w
 [[nodiscard]] constexpr std::uint64_t spill_bytes(std::uint32_t recursion_depth) {
   return (std::uint64_t{most_waiting_rays(recursion_depth)} * sizeof(QueuedRay) + 4095) / 4096 * 4096;
 }
-/// The same of a scene. @param called_for  EffectBits: without reflection and refraction no ray ever waits.
-[[nodiscard]] constexpr std::uint64_t spill_bytes_of_scene(std::uint32_t called_for, std::uint32_t recursion_depth) {
-  return (called_for & (kReflection | kRefraction)) != 0 ? spill_bytes(recursion_depth) : 0;
-}
 inline constexpr std::uint32_t kSpillAlignment = 4096;
 
 }  // namespace gridiron
