@@ -6,7 +6,7 @@
 #include <array>
 #include <cstdint>
 
-namespace gridiron::tool {
+namespace gridiron::experiment {
 
 /// Bytes of one build. `effects` are EffectBits; 0 is StoreLayout256K<32>, which has no counterpart of 64 KB here.
 struct EffectSize {
@@ -42,9 +42,4 @@ inline constexpr std::array kEffectSizes{
     EffectSize{0x3ff, 92744, 144768, 36702, 16768, true},  // all
 };
 
-}  // namespace gridiron::tool
-
-namespace gridiron::experiment {
-using tool::EffectSize;
-using tool::kEffectSizes;
 }  // namespace gridiron::experiment
