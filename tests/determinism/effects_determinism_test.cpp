@@ -4,6 +4,7 @@
 #include <gridiron/grid/grid_builder.h>
 #include <gridiron/image/scene_image.h>
 #include <gridiron/sim/sim_chip.h>
+#include <gridiron/store/local_store.h>
 #include <gtest/gtest.h>
 
 #include <cstdint>
@@ -18,6 +19,9 @@
 namespace gridiron::test {
 namespace {
 
+using EffectsStore = LocalStore<EffectLayout256K<kAllEffects, 8>>::Effects;
+constexpr std::uint32_t kLightsAtHand = EffectsStore::kLightSlots;
+
 // A torus of glass and a ball of mirror, both smooth, above a matt floor.
 struct EffectsSubject {
   TestMesh mesh;
@@ -28,7 +32,7 @@ struct EffectsSubject {
   std::vector<Material> material_list;
   std::vector<Light> lights;
 
-  EffectsSubject() {
+  explicit EffectsSubject(bool many_lights = false) {
     append(make_torus(16, 8, 1.0f, 0.35f), 0);
     append(make_sphere(8, 12, 0.5f), 1);
     append(make_triangle({-4, -0.8f, -4}, {4, -0.8f, -4}, {0, -0.8f, 5}), 2);
@@ -39,6 +43,9 @@ struct EffectsSubject {
     lights = {{.corner = {2, 3, 2}, .color = {0.6f, 0.6f, 0.6f}},
               {.corner = {-2, 3, 1}, .edge_u = {1, 0, 0}, .edge_v = {0, 0, 1}, .color = {0.5f, 0.5f, 0.4f},
                .samples = 3}};
+    for (std::uint32_t i = 0; many_lights && i < kLightsAtHand; ++i) {
+      lights.insert(lights.begin(), {.corner = {static_cast<float>(i) - 8, 3, 2}, .color = {0.03f, 0.03f, 0.03f}});
+    }
     face.assign(4, Vec3{0.2f, 0.3f, 0.5f});
   }
 
@@ -80,8 +87,8 @@ struct EffectsFrame {
   std::vector<std::byte> color;
 };
 
-EffectsFrame render(const std::function<void(FrameSettings&, sim::ChipOptions&)>& apply) {
-  static const EffectsSubject subject;
+EffectsFrame render(const EffectsSubject& subject,
+                    const std::function<void(FrameSettings&, sim::ChipOptions&)>& apply) {
   const EffectsView effects = subject.view();
   FrameSettings settings;
   settings.camera = {{1.2f, 1.5f, 3.5f}, {0, 0, 0}, {0, 1, 0}, 0.5f};
@@ -126,6 +133,11 @@ EffectsFrame render(const std::function<void(FrameSettings&, sim::ChipOptions&)>
   return frame;
 }
 
+EffectsFrame render(const std::function<void(FrameSettings&, sim::ChipOptions&)>& apply) {
+  static const EffectsSubject subject;
+  return render(subject, apply);
+}
+
 const EffectsFrame& first_frame() {
   static const EffectsFrame frame = render([](FrameSettings&, sim::ChipOptions&) {});
   return frame;
@@ -159,6 +171,24 @@ TEST(EffectsDeterminism, ThreadsAndOrderOfTransfersChangeNothing) {
       chip.seed = seed;
       chip.threads = seed % 2 == 0 ? 2 : 1;
     });
+  }
+}
+
+// Lights are fetched in turns: what a tile fetches must not depend on the tile that its core had before.
+TEST(EffectsDeterminism, MoreLightsThanAtHandAreFetchedAlikeByAnyCore) {
+  const EffectsSubject subject(true);
+  ASSERT_GT(subject.lights.size(), kLightsAtHand);
+  const auto on_threads = [&](std::uint32_t threads) {
+    return render(subject, [threads](FrameSettings&, sim::ChipOptions& chip) { chip.threads = threads; });
+  };
+  const EffectsFrame first = on_threads(1);
+  ASSERT_EQ(first.result.status, Status::kOk);
+  for (const std::uint32_t threads : {2u, 3u, 6u}) {
+    const EffectsFrame frame = on_threads(threads);
+    ASSERT_EQ(frame.result.status, Status::kOk) << threads;
+    EXPECT_EQ(frame.color, first.color) << threads;
+    EXPECT_EQ(frame.result.work, first.result.work) << threads;
+    EXPECT_EQ(first_difference(frame.result.trace, first.result.trace), "") << threads;
   }
 }
 

@@ -20,26 +20,26 @@ struct EffectSize {
 
 inline constexpr std::array kEffectSizes{
     EffectSize{0x000, 54148, 163840, 0, 0, false},  // none
-    EffectSize{0x200, 61204, 126464, 25292, 14592, true},  // scene shading
-    EffectSize{0x201, 81412, 126464, 26170, 14592, true},  // + point shadows
-    EffectSize{0x202, 82056, 126464, 26812, 14592, true},  // + area lights
-    EffectSize{0x204, 83266, 144768, 26884, 16768, true},  // + reflection
-    EffectSize{0x208, 84280, 144768, 27898, 16768, true},  // + refraction
-    EffectSize{0x210, 82648, 126464, 27410, 14592, true},  // + ambient occlusion
-    EffectSize{0x220, 63188, 126464, 27280, 14592, true},  // + environment
-    EffectSize{0x240, 62566, 126464, 26648, 14592, true},  // + smooth normals
-    EffectSize{0x280, 61946, 126464, 26034, 14592, true},  // + highlights
-    EffectSize{0x300, 61566, 126464, 25604, 14592, true},  // + multisampling
-    EffectSize{0x3fe, 92752, 144768, 36710, 16768, true},  // all but point shadows
-    EffectSize{0x3fd, 91734, 144768, 35674, 16768, true},  // all but area lights
-    EffectSize{0x3fb, 92744, 144768, 36702, 16768, true},  // all but reflection
-    EffectSize{0x3f7, 91720, 144768, 35678, 16768, true},  // all but refraction
-    EffectSize{0x3ef, 90256, 144768, 34180, 16768, true},  // all but ambient occlusion
-    EffectSize{0x3df, 90774, 144768, 34728, 16768, true},  // all but environment
-    EffectSize{0x3bf, 91356, 144768, 35324, 16768, true},  // all but smooth normals
-    EffectSize{0x37f, 92002, 144768, 35960, 16768, true},  // all but highlights
-    EffectSize{0x2ff, 92382, 144768, 36386, 16768, true},  // all but multisampling
-    EffectSize{0x3ff, 92744, 144768, 36702, 16768, true},  // all
+    EffectSize{0x200, 61108, 126464, 25202, 14592, true},  // scene shading
+    EffectSize{0x201, 81316, 126464, 26080, 14592, true},  // + point shadows
+    EffectSize{0x202, 81960, 126464, 26722, 14592, true},  // + area lights
+    EffectSize{0x204, 83170, 144768, 26782, 16768, true},  // + reflection
+    EffectSize{0x208, 84184, 144768, 27796, 16768, true},  // + refraction
+    EffectSize{0x210, 82552, 126464, 27320, 14592, true},  // + ambient occlusion
+    EffectSize{0x220, 63092, 126464, 27190, 14592, true},  // + environment
+    EffectSize{0x240, 62470, 126464, 26558, 14592, true},  // + smooth normals
+    EffectSize{0x280, 61850, 126464, 25944, 14592, true},  // + highlights
+    EffectSize{0x300, 61470, 126464, 25508, 14592, true},  // + multisampling
+    EffectSize{0x3fe, 92656, 144768, 36616, 16768, true},  // all but point shadows
+    EffectSize{0x3fd, 91638, 144768, 35580, 16768, true},  // all but area lights
+    EffectSize{0x3fb, 92648, 144768, 36608, 16768, true},  // all but reflection
+    EffectSize{0x3f7, 91624, 144768, 35584, 16768, true},  // all but refraction
+    EffectSize{0x3ef, 90160, 144768, 34086, 16768, true},  // all but ambient occlusion
+    EffectSize{0x3df, 90678, 144768, 34634, 16768, true},  // all but environment
+    EffectSize{0x3bf, 91260, 144768, 35230, 16768, true},  // all but smooth normals
+    EffectSize{0x37f, 91906, 144768, 35866, 16768, true},  // all but highlights
+    EffectSize{0x2ff, 92286, 144768, 36284, 16768, true},  // all but multisampling
+    EffectSize{0x3ff, 92648, 144768, 36608, 16768, true},  // all
 };
 
 }  // namespace gridiron::experiment

@@ -127,6 +127,10 @@ SceneNumber SceneWords::take_number(SceneEntity& entity) {
   std::string_view text = next_.text;
   if (text.front() == '+' && text.size() > 1 && text[1] != '-') text.remove_prefix(1);  // from_chars knows no plus
   const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), number.value);
+  if (error == std::errc::result_out_of_range) {
+    fail(next_.line, in_quotes(next_.text) + " is too large or too small a number (" + which() + " of " +
+                         name_of(entity) + ")");
+  }
   if (error != std::errc{} || end != text.data() + text.size() || !std::isfinite(number.value)) {
     fail(next_.line, in_quotes(next_.text) + " is not a finite number (" + which() + " of " + name_of(entity) + ")");
   }

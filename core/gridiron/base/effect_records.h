@@ -125,7 +125,7 @@ struct QueuedRay {
 };
 static_assert(sizeof(QueuedRay) == 48);
 
-/// Secondary rays are traced in waves, the deepest first; a layout's are of at most this many.
+/// Rays are traced in waves, the deepest first; a layout's are of at most this many.
 inline constexpr std::uint32_t kMostWaveRays = 256;
 
 inline constexpr std::uint32_t kMostEffectTilePixels = 1024;  ///< of a layout with effects

@@ -218,7 +218,7 @@ struct FrameRecord {
   std::uint64_t image_address;         ///< what its offsets count from; else 0
   std::uint64_t reserved1[2];
   GridRecord grid;
-  std::uint32_t walk_depth;            ///< walks of secondary rays under way at once; of Shading::kScene, else 0
+  std::uint32_t walk_depth;            ///< walks of rays under way at once; of Shading::kScene, else 0
   std::uint32_t reserved2[15];
 };
 static_assert(sizeof(FrameRecord) == 384);

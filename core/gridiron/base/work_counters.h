@@ -51,10 +51,10 @@ enum class Work : std::uint8_t {
   // Effects.
   kWaveRay,            ///< rays of a wave taken from pixels or from the queue
   kQueuedRay,          ///< reflected and refracted rays made, and put into the queue
-  kWalkPass,           ///< walks of up to 16 secondary rays begun: axis, shaft
-  kShaftGroup,         ///< SIMD groups of secondary rays held against a slab of the grid
+  kWalkPass,           ///< walks of up to 16 rays begun: axis, shaft
+  kShaftGroup,         ///< SIMD groups of walked rays held against a slab of the grid
   kRayGroupTest,       ///< (group, triangle) tests of rays with origins of their own
-  kRayDistance,        ///< distances of single secondary rays, in double
+  kRayDistance,        ///< distances of single rays, in double
   kSurfacePoint,       ///< hits of which point, normal and material were found
   kSmoothNormal,       ///< hits of which the normal was interpolated
   kShadowRay,          ///< shadow rays made, of point and area lights

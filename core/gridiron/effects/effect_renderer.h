@@ -69,7 +69,6 @@ class EffectRenderer {
       return Status::kSpillTooSmall;
     }
     // Materials that fit stay; a longer list is looked up one by one, and forgotten at every tile.
-    store_.effects.first_light = 0;
     for (std::uint32_t& index : store_.effects.material_of_slot) index = Effects::kNoMaterial;
     has_all_materials_ = scene().material_count <= Effects::kMaterialSlots;
     if (has_all_materials_) {
@@ -89,7 +88,7 @@ class EffectRenderer {
         }
       }
     }
-    return scene().light_count > Effects::kLightSlots ? load_lights(0) : Status::kOk;
+    return Status::kOk;
   }
 
   [[nodiscard]] std::uint32_t samples_per_pixel() const {
@@ -102,6 +101,8 @@ class EffectRenderer {
     top_ = top;
     store_.work.charge_to(Work::kColorGroup);
     for (auto& sums : store_.effects.sums) fill_words(sums, std::uint32_t{0});
+    // So that a tile fetches the same whatever its core had before.
+    if (scene().light_count > Effects::kLightSlots) store_.effects.first_light = Effects::kNoLight;
     if (has_all_materials_) return;
     for (std::uint32_t& index : store_.effects.material_of_slot) index = Effects::kNoMaterial;
   }
@@ -212,7 +213,7 @@ class EffectRenderer {
         GRIDIRON_TRY(queue_.pop_wave(count, [&](std::uint32_t i, const QueuedRay& ray) {
           store_.wave.items[i].ray = ray;
         }));
-        BounceJobs<Store> jobs(store_, count, kFloatMax);
+        WaveRayJobs<Store> jobs(store_, count, kFloatMax);
         GRIDIRON_TRY(walks().run(question(false), jobs));
         GRIDIRON_TRY(finish_wave(count, sample));
       }
@@ -226,7 +227,7 @@ class EffectRenderer {
   // Where there are no packets, eye rays are walked like all others; of the first sample's hits the tile keeps ids.
   [[nodiscard]] Status trace_eye_rays(std::uint32_t ray_count, std::uint32_t sample) {
     transfers_.note_stage(Stage::kPrimary);
-    BounceJobs<Store> jobs(store_, ray_count, store_.frame.t_far);
+    WaveRayJobs<Store> jobs(store_, ray_count, store_.frame.t_far);
     GRIDIRON_TRY(walks().run(question(false), jobs));
     store_.work.charge_to(Work::kWaveRay);
     for (std::uint32_t i = 0; i < ray_count && sample == 0; ++i) {

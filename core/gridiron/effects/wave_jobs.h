@@ -232,9 +232,9 @@ class OcclusionJobs {
 
 /// The rays of a wave, neighbours together; their hits go to the wave's ids.
 template <class Store>
-class BounceJobs {
+class WaveRayJobs {
  public:
-  BounceJobs(Store& store, std::uint32_t ray_count, float t_far)
+  WaveRayJobs(Store& store, std::uint32_t ray_count, float t_far)
       : store_(store), ray_count_(ray_count), t_far_(t_far) {}
 
   [[nodiscard]] GRIDIRON_OUTLINE std::uint32_t next(WalkRays& rays, std::uint32_t& purpose) {

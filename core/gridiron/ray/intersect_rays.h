@@ -1,4 +1,4 @@
-// The `standard` test for rays with origins of their own: which of up to 16 secondary rays a triangle stops, or is the
+// The `standard` test for rays with origins of their own: which of up to 16 rays a triangle stops, or is the
 // nearest hit of. Floats with a bound of their error, doubles where these leave it open, then integers: every decision
 // equals the one exact arithmetic takes.
 // Source: own; bounds as derived at edges.h and distance.h. Memory: values. Threads: one core.

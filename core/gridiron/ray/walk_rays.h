@@ -1,4 +1,4 @@
-// Up to 16 secondary rays that go through the grid together: each has an origin of its own, all march along one axis.
+// Up to 16 rays that go through the grid together: each has an origin of its own, all march along one axis.
 // Memory: inside the local store. Threads: one core. SPDX-License-Identifier: Apache-2.0
 #pragma once
 

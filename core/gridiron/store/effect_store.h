@@ -68,12 +68,12 @@ struct alignas(128) EffectStore {
   static constexpr std::uint32_t kSpillBlockRays = kWaveRays / 2;  ///< moved to or from main memory at once
   static constexpr bool kHasQueue = (Layout::kEffects & (kReflection | kRefraction)) != 0;
   static constexpr std::uint32_t kQueueRays = kHasQueue ? 3 * kSpillBlockRays : 1;  ///< of a queue that is not used: 1
-  static constexpr std::uint32_t kNoMaterial = 0xFFFFFFFFu;
+  static constexpr std::uint32_t kNoMaterial = 0xFFFFFFFFu, kNoLight = 0xFFFFFFFFu;
   static_assert(kWaveRays <= kMostWaveRays && kWaveRays % (2 * kWalkRays) == 0 && kMaterialSlots % 2 == 0);
 
   alignas(128) EffectsRecord scene;
   alignas(128) MaterialRecord materials[kMaterialSlots];  ///< direct-mapped by index
-  alignas(128) LightRecord lights[kLightSlots];           ///< first_light and those that follow it
+  alignas(128) LightRecord lights[kLightSlots];           ///< first_light and those that follow it, or none
   alignas(128) QueuedRay queue[kQueueRays];
   alignas(128) std::uint32_t sums[3][kTilePixels];  ///< RGB, steps of 2^-20, what all samples of a pixel add up to
   std::uint32_t hit_ids[kTilePixels];               ///< of the eye rays of one sample

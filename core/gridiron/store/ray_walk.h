@@ -1,4 +1,4 @@
-// One ray walk: up to 16 secondary rays, how far they have come, what they wait for.
+// One ray walk: up to 16 rays, how far they have come, what they wait for.
 // Memory: inside the local store. Threads: one core. SPDX-License-Identifier: Apache-2.0
 #pragma once
 

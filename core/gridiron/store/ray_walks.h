@@ -1,5 +1,5 @@
-// Ray walks: secondary rays through the grid, several groups of up to 16 at once. Each walk asks for one transfer at a
-// time; while it travels, the others go on. So waits are hidden without looking ahead.
+// Ray walks: rays through the grid, several groups of up to 16 at once. Each walk asks for one transfer at a time;
+// while it travels, the others go on. So waits are hidden without looking ahead.
 // Memory: the local store. Threads: one core. SPDX-License-Identifier: Apache-2.0
 #pragma once
 
@@ -21,7 +21,7 @@
 
 namespace gridiron {
 
-/// Walks of secondary rays of one core.
+/// Walks of one core.
 ///
 /// @tparam Store  LocalStore: cell_blocks and triangles are the walks' buffers, one of each for a walk.
 template <class L, class Store, Platform P>
