@@ -1,0 +1,81 @@
+// A frame as a device is given it, and what the device gives back: plain records in main memory, the same bytes on the
+// host and on every board. `gridiron job` writes the first, a board's firmware the second.
+// Memory: main memory; all addresses are absolute there. Threads: none. SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <gridiron/platform/status.h>
+
+#include <cstddef>
+#include <cstdint>
+
+namespace gridiron::port {
+
+inline constexpr std::uint32_t kFrameJobMagic = 0x424F4A47;     // "GJOB"
+inline constexpr std::uint32_t kFrameResultMagic = 0x53455247;  // "GRES"
+inline constexpr std::uint32_t kFrameJobVersion = 1;
+
+/// Cores of a board that take part in a frame, at most.
+inline constexpr std::uint32_t kMostBoardCores = 16;
+/// Kinds of work that a result has room for; kWorkKindCount of core is held against it where both are known.
+inline constexpr std::uint32_t kMostWorkKinds = 96;
+
+/// The job stands at the start of its file, which is loaded at base_address. Frame record and scene image follow in the
+/// file; memory for the result and for rays that wait comes behind it.
+struct FrameJob {
+  std::uint32_t magic;
+  std::uint32_t version;
+  std::uint64_t base_address;    ///< of this record; a multiple of 4,096
+  std::uint64_t loaded_bytes;    ///< of the file, a multiple of 64
+  std::uint64_t memory_bytes;    ///< from base_address on: the file, the result, rays that wait
+  std::uint64_t frame_address;   ///< FrameRecord (core/gridiron/base/records.h), its addresses those of this job
+  std::uint64_t image_address;   ///< the scene image
+  std::uint64_t image_bytes;
+  std::uint64_t result_address;  ///< FrameResult, then tile_count TileResults, then the planes
+  std::uint64_t result_bytes;    ///< all three: what the device writes out when the frame is done
+  std::uint64_t color_address;   ///< planes, tile-major whole tiles; depth and ids 0 where not wanted
+  std::uint64_t depth_address;
+  std::uint64_t ids_address;
+  std::uint64_t plane_bytes;     ///< of each
+  std::uint64_t spill_address;   ///< memory for rays that wait, 0: none (FrameControl)
+  std::uint64_t spill_bytes;     ///< of each core, one after the other
+  std::uint32_t spill_cores;     ///< cores that there is such memory for
+  std::uint32_t tile_count;
+  std::uint32_t width, height;   ///< pixels
+  std::uint32_t tile_width;      ///< pixels: a firmware refuses a job whose tiles are not its layout's
+  std::uint32_t effects;         ///< EffectBits that the scene calls for, 0: no scene shading
+  std::uint32_t reserved[28];
+};
+static_assert(sizeof(FrameJob) == 256);
+
+/// What one core did.
+struct CoreResult {
+  std::uint32_t status;           ///< Status of render_tiles; kNotRun where the core never came back
+  std::uint32_t tiles;            ///< claimed
+  std::uint32_t stack_bytes;      ///< deepest stack by painting; 0: not measured
+  std::uint32_t transfers;        ///< gets and puts
+  std::uint64_t instructions;     ///< of the frame, where the board counts them, else 0
+  std::uint64_t transfer_bytes;
+  std::uint32_t work[kMostWorkKinds];  ///< WorkCounters after the frame
+};
+static_assert(sizeof(CoreResult) == 416);
+inline constexpr std::uint32_t kNotRun = 0xFFFFFFFFu;
+
+struct TileResult {
+  std::uint32_t core;
+  std::uint32_t transfers;
+  std::uint64_t instructions;  ///< between this claim and the next, where the board counts them, else 0
+};
+static_assert(sizeof(TileResult) == 16);
+
+struct FrameResult {
+  std::uint32_t magic;
+  std::uint32_t version;
+  std::uint32_t core_count;  ///< cores that took part
+  std::uint32_t status;      ///< of the frame: the first that is not kOk, cores in order
+  std::uint32_t work_kinds;  ///< kWorkKindCount of the firmware's core
+  std::uint32_t reserved[11];
+  CoreResult cores[kMostBoardCores];
+};
+static_assert(sizeof(FrameResult) == 64 + kMostBoardCores * sizeof(CoreResult));
+
+}  // namespace gridiron::port
