@@ -1,5 +1,6 @@
 // The built-in machine profiles and where their figures come from.
 // Memory: constants. Threads: any. SPDX-License-Identifier: Apache-2.0
+#include <gridiron/sim/instruction_costs.h>
 #include <gridiron/sim/machine_profile.h>
 #include <gridiron/sim/work_costs.h>
 
@@ -99,8 +100,41 @@ constexpr MachineProfile eight_cores_of_2006(MachineProfile machine) {
   return machine;
 }
 
-constexpr std::array<MachineProfile, 3> kProfiles = {kCellPs3, eight_cores_of_2006(kCellPs3),
-                                                     with_two_gigabytes(kCellPs3)};
+/// Instructions of a scalar core that takes 4 lanes one after the other: counted in an emulator, see
+/// instruction_costs.h. Kinds that its frames have none of: ESTIMATES, counted operations times what the others take.
+constexpr std::array<double, kWorkKindCount> scalar_instructions() {
+  constexpr double kInstructionsPerOperation = 4.0;
+  std::array<double, kWorkKindCount> instructions{};
+  for (std::size_t kind = 0; kind < kWorkKindCount; ++kind) {
+    instructions[kind] = kInstructionsPerOperation * (kWorkCosts[kind].even + kWorkCosts[kind].odd);
+  }
+  for (const InstructionCost& cost : kInstructionCosts) {
+    instructions[static_cast<std::size_t>(cost.kind)] = cost.instructions;
+  }
+  return instructions;
+}
+
+// Four scalar cores with scratchpad memory and a copy engine each, as platform/sifive_u drives them. Cycles of this
+// profile are INSTRUCTIONS: it predicts what an emulator counts, where a transfer has ended when its command has been
+// given; it does not predict seconds.
+constexpr MachineProfile counted_fu540(MachineProfile machine) {
+  machine.name = "fu540";
+  machine.description = "4 scalar cores, 256 KB local stores; counts instructions: transfers take none but their own";
+  machine.core_count = 4;
+  machine.clock_hz = 1e9;  // of the board's; no instruction takes exactly a cycle
+  machine.main_memory_bytes = 8192 * kMegabyte;
+  machine.issue_cycles = 150;
+  machine.wait_cycles = 30;
+  machine.latency_cycles = 1;
+  machine.channel_bytes_per_cycle = 1e6;
+  machine.core_line_interval_cycles = 0;
+  machine.claim_cycles = 30;
+  machine.work_cycles = scalar_instructions();
+  return machine;
+}
+
+constexpr std::array<MachineProfile, 4> kProfiles = {kCellPs3, eight_cores_of_2006(kCellPs3),
+                                                     with_two_gigabytes(kCellPs3), counted_fu540(kCellPs3)};
 
 }  // namespace
 

@@ -29,12 +29,25 @@ namespace {
 using namespace gridiron;
 using Store = LocalStore<StoreLayout256K<GRIDIRON_PACKET_WIDTH>>;
 
-// Hints 127 and 126 stand around what no core does: copies are a transfer engine's work.
+// Marks 127 and 126 stand around what no core does: copies are a transfer engine's work.
 inline void mark_copy() {
-  asm volatile("hint 127");
+  asm volatile(GRIDIRON_MARK_TEXT : : "n"(127));
 }
 inline void mark_copied() {
-  asm volatile("hint 126");
+  asm volatile(GRIDIRON_MARK_TEXT : : "n"(126));
+}
+
+[[noreturn]] void exit_with(long code) {
+#ifdef __riscv
+  register long value asm("a0") = code;
+  register long call asm("a7") = 93;  // exit
+  asm volatile("ecall" : : "r"(value), "r"(call));
+#else
+  register long value asm("x0") = code;
+  register long call asm("x8") = 93;  // exit
+  asm volatile("svc 0" : : "r"(value), "r"(call));
+#endif
+  __builtin_unreachable();
 }
 
 struct CopyCore {
@@ -71,8 +84,5 @@ extern "C" [[noreturn]] void _start() {
   CopyCore core{.tile_count = frame.tiles_x * frame.tiles_y};
   Store& store = *::new (static_cast<void*>(store_bytes)) Store;
   const Status status = render_tiles<Lanes<4>>(store, core, MainAddress{0});
-  register long code asm("x0") = status == Status::kOk ? 0 : 1;
-  register long call asm("x8") = 93;  // exit
-  asm volatile("svc 0" : : "r"(code), "r"(call));
-  __builtin_unreachable();
+  exit_with(status == Status::kOk ? 0 : 1);
 }

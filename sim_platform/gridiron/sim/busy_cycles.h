@@ -1,0 +1,24 @@
+// What keeps a core busy with a tile, without a clock: work, commands and waits at a machine's costs, no stall.
+// Memory: values. Threads: any. SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <gridiron/sim/machine_profile.h>
+#include <gridiron/sim/trace.h>
+
+namespace gridiron::sim {
+
+/// @returns the cycles of a tile, its claim included, on a core that never stands still; with a profile that counts
+/// instructions, the instructions.
+[[nodiscard]] inline double busy_cycles(const TileTrace& tile, const MachineProfile& machine) {
+  double cycles = machine.claim_cycles;
+  for (const WorkAmount& work : tile.work) {
+    cycles += machine.work_cycles[static_cast<std::size_t>(work.kind)] * work.amount;
+  }
+  for (const TraceEvent& event : tile.events) {
+    if (event.kind == EventKind::kGet || event.kind == EventKind::kPut) cycles += machine.issue_cycles;
+    if (event.kind == EventKind::kWait) cycles += machine.wait_cycles;
+  }
+  return cycles;
+}
+
+}  // namespace gridiron::sim
