@@ -47,7 +47,7 @@ template <MasterBoard B>
 class Master {
  public:
   /// A frame in which no tile is finished for this long has failed.
-  static constexpr std::uint64_t kQuietMilliseconds = 120'000;
+  static constexpr std::uint64_t kQuietMilliseconds = 600'000;
 
   /// @param tiles  results of tiles as the workers write them: the job's own (tile_results), or facts.most_tiles of
   ///               them elsewhere, from where they are copied into the job.

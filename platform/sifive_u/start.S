@@ -1,5 +1,5 @@
-// First instructions of every hart, and its traps. Hart 0 becomes the master. Harts 1 to 4 lock themselves in by PMP and
-// sleep until the master wakes them.
+// First instructions of every hart, and its traps. Hart 0 becomes the master. Harts 1 to 4 lock themselves in by PMP
+// and sleep until the master wakes them.
 // Memory: stack of the master behind its data, of a worker at the top of its arena.
 // SPDX-License-Identifier: Apache-2.0
 #include "memory_map.h"
