@@ -15,6 +15,21 @@
 
 namespace gridiron::port {
 
+#ifdef GRIDIRON_COUNTED
+/// Knows how many instructions the core has executed.
+class CountedPort : public TemplatePort<PdmaBoard> {
+ public:
+  using TemplatePort<PdmaBoard>::TemplatePort;
+
+  [[nodiscard]] std::uint64_t instructions() const {
+    std::uint64_t count = 0;
+    asm volatile("csrr %0, minstret" : "=r"(count));
+    return count;
+  }
+};
+static_assert(InstructionCounter<CountedPort>);
+#endif
+
 // For the linker script, which adds them up.
 alignas(128) [[gnu::section(".bss.arena_store"), gnu::used]] std::byte arena_store[sizeof(FirmwareStore)];
 [[gnu::section(".bss.arena_stack"), gnu::used]] std::byte arena_stack[FirmwareLayout::kStackBudgetBytes];
@@ -36,7 +51,11 @@ void gridiron_worker(std::uint64_t core, std::uintptr_t arena) {
   DeskPort port(shared.control, shared.desks[core_index], core_index, &store, sizeof store);
 #else
   PdmaBoard board(shared.control, core_index, &store, sizeof store);
+#ifdef GRIDIRON_COUNTED
+  CountedPort port(board);
+#else
   TemplatePort<PdmaBoard> port(board);
+#endif
 #endif
 #ifdef GRIDIRON_FORGETFUL
   ForgetfulPort wrong(port);
