@@ -405,7 +405,7 @@ JobArguments complete_job(JobArguments job, const RawRender& raw, const CLI::App
   return job;
 }
 
-void add_result_options(CLI::App& app, ResultArguments& result) {
+void add_result_options(CLI::App& app, ResultArguments& result, std::string& machine) {
   app.add_option("JOB", result.job, "what the device was given, made by job")->required()->type_name("");
   app.add_option("RESULT", result.result, "what it wrote: the bytes from result_address on")->required()->type_name("");
   const std::string name = "a file name";
@@ -418,11 +418,18 @@ void add_result_options(CLI::App& app, ResultArguments& result) {
   app.add_flag("--compare", result.compare,
                "render the job on the simulated chip and hold planes, work and transfers against it; exit code 3 where "
                "they differ");
+  app.add_option("--predict", machine, "with --compare: what each tile takes on this machine, held against the "
+                                       "instructions that the device counted")
+      ->type_name("MACHINE");
   add_threads(app, result.threads, "of --compare; no result depends on it");
   app.add_flag("--quiet", result.quiet, "print nothing but errors");
 }
 
-ResultArguments complete_result(const ResultArguments& result) {
+ResultArguments complete_result(ResultArguments result, const std::string& machine) {
+  if (!machine.empty()) {
+    if (!result.compare) usage_error("--predict needs --compare");
+    result.predict = find_machine(machine);
+  }
   require_own_files(
       {{"JOB", result.job}, {"RESULT", result.result}},
       {{"-o", result.output}, {"--depth", result.depth}, {"--ids", result.ids}, {"--report", result.report}});
@@ -521,7 +528,8 @@ Command parse_arguments(int count, const char* const* values) {
 
   ResultArguments result_arguments;
   CLI::App* result = app.add_subcommand("result", "reads what a device made of a job");
-  add_result_options(*result, result_arguments);
+  std::string result_machine;
+  add_result_options(*result, result_arguments, result_machine);
 
   MachinesArguments machines_arguments;
   std::string machine;
@@ -576,7 +584,7 @@ Command parse_arguments(int count, const char* const* values) {
     return pack_arguments;
   }
   if (*job) return complete_job(std::move(job_arguments), job_raw, *job);
-  if (*result) return complete_result(result_arguments);
+  if (*result) return complete_result(result_arguments, result_machine);
   if (*experiment) return complete_experiment(experiment_arguments, *experiment);
   if (machines->count("MACHINE") > 0) machines_arguments.machine = find_machine(machine);
   return machines_arguments;

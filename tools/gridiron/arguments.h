@@ -106,6 +106,7 @@ struct ResultArguments {
   std::filesystem::path job, result;
   std::optional<std::filesystem::path> output, depth, ids, report;
   bool compare = false;       ///< with the simulator's frame
+  Machine predict;            ///< what its tiles would take there; null: nobody asks
   std::uint32_t threads = 0;  ///< 0: the host's
   bool quiet = false;
 };

@@ -1,6 +1,7 @@
 // Job comparison. SPDX-License-Identifier: Apache-2.0
 #include "job_comparison.h"
 
+#include <gridiron/sim/busy_cycles.h>
 #include <gridiron/sim/sim_memory.h>
 #include <report/device_report.h>
 #include <report/report.h>
@@ -197,7 +198,8 @@ bool JobComparison::is_equal() const {
   return std::ranges::all_of(items, [](const ComparedItem& item) { return item.equal; });
 }
 
-JobComparison compare_with_simulator(const OpenJob& job, const OpenResult& result, std::uint32_t threads,
+JobComparison compare_with_simulator(const OpenJob& job, const OpenResult& result, const sim::MachineProfile* machine,
+                                     std::uint32_t threads,
                                      std::function<void(std::uint32_t done, std::uint32_t total)> progress) {
   MovedJob moved(job.job.memory_bytes + kMemoryAlignment);
   load_job(job, moved);
@@ -217,6 +219,11 @@ JobComparison compare_with_simulator(const OpenJob& job, const OpenResult& resul
   add_plane("ids", moved.record.id_address, result.ids);
   compare_work(simulated, result, lanes, comparison);
   compare_transfers(simulated, result, comparison);
+  if (machine != nullptr) {
+    for (const sim::TileTrace& tile : simulated.trace.tiles) {
+      comparison.predicted_tiles.push_back(sim::busy_cycles(tile, *machine));
+    }
+  }
   return comparison;
 }
 

@@ -3,6 +3,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <gridiron/sim/machine_profile.h>
 #include <gridiron/sim/trace.h>
 
 #include <cstdint>
@@ -24,7 +25,8 @@ struct ComparedItem {
 
 struct JobComparison {
   std::vector<ComparedItem> items;
-  sim::WorkTotals tile_work{};  ///< what the device counted, less what its cores did outside of tiles
+  std::vector<double> predicted_tiles;  ///< busy_cycles of each tile on the machine asked for; else empty
+  sim::WorkTotals tile_work{};          ///< what the device counted, less what its cores did outside of tiles
 
   [[nodiscard]] bool is_equal() const;
 };
@@ -33,10 +35,10 @@ struct JobComparison {
 /// pixel (of the picture: what edge tiles hold beside it is anything), work by kind, and transfers and bytes, of the
 /// frame and of each tile, where the device counted them.
 ///
-/// @param threads  host threads, above 0. @param progress  of tiles; may be empty.
+/// @param machine  for predicted_tiles; may be null. @param threads  host threads, above 0. @param progress  of tiles; may be empty.
 /// Errors: Failure where the simulator cannot render the job, kUsage where no kernel is built for its layout.
 [[nodiscard]] JobComparison compare_with_simulator(
-    const OpenJob& job, const OpenResult& result, std::uint32_t threads,
+    const OpenJob& job, const OpenResult& result, const sim::MachineProfile* machine, std::uint32_t threads,
     std::function<void(std::uint32_t done, std::uint32_t total)> progress);
 
 }  // namespace gridiron::tool

@@ -3,9 +3,12 @@
 #include <report/device_report.h>
 #include <report/report.h>
 
+#include <algorithm>
 #include <cstdio>
 #include <optional>
+#include <span>
 #include <string>
+#include <vector>
 
 #include "atomic_file.h"
 #include "chip_frame.h"
@@ -15,6 +18,7 @@
 #include "image_files.h"
 #include "job_comparison.h"
 #include "job_file.h"
+#include "prediction.h"
 #include "progress.h"
 #include "result_file.h"
 #include "words.h"
@@ -37,7 +41,7 @@ void require_planes(const ResultArguments& arguments, const OpenJob& job) {
 JobComparison compare(const ResultArguments& arguments, const OpenJob& job, const OpenResult& result) {
   Progress progress(!arguments.quiet);
   const std::uint32_t threads = arguments.threads != 0 ? arguments.threads : host_threads();
-  return compare_with_simulator(job, result, threads,
+  return compare_with_simulator(job, result, arguments.predict.get(), threads,
                                 [&progress](std::uint32_t done, std::uint32_t total) { progress.update(done, total); });
 }
 
@@ -58,6 +62,18 @@ void print_cores(const OpenResult& result) {
   }
 }
 
+void print_prediction(const ResultArguments& arguments, std::span<const double> predicted,
+                      std::span<const port::TileResult> tiles) {
+  std::vector<double> counted;
+  for (const port::TileResult& tile : tiles) counted.push_back(static_cast<double>(tile.instructions));
+  const PredictionQuality quality = quality_of(counted, predicted);
+  std::printf("%s: %s instructions counted, %s predicted: %+.1f %%\n", std::string(arguments.predict->name).c_str(),
+              words_of_count(static_cast<std::uint64_t>(quality.counted)).c_str(),
+              words_of_count(static_cast<std::uint64_t>(quality.predicted)).c_str(), 100 * quality.frame_error());
+  std::printf("tiles: rank correlation %.3f, a tile off by %.1f %% at most\n", quality.rank_correlation,
+              100 * quality.largest_tile_error);
+}
+
 }  // namespace
 
 void run_command(const ResultArguments& arguments) {
@@ -67,6 +83,10 @@ void run_command(const ResultArguments& arguments) {
   const OpenJob job = read_job_file(arguments.job);
   require_planes(arguments, job);
   const OpenResult result = read_result_file(arguments.result, job);
+  const auto is_counted = [](const port::TileResult& tile) { return tile.instructions != 0; };
+  if (arguments.predict && !std::ranges::all_of(result.tiles, is_counted)) {
+    throw Failure(ExitCode::kUsage, "--predict: " + arguments.result.string() + " has no counted instructions");
+  }
   std::optional<JobComparison> comparison;
   if (arguments.compare) comparison = compare(arguments, job, result);
 
@@ -77,6 +97,7 @@ void run_command(const ResultArguments& arguments) {
   report.cores = result.cores();
   report.tiles = result.tiles;
   if (comparison) report.tile_work = comparison->tile_work;
+  if (comparison) report.predicted_tiles = comparison->predicted_tiles;
   AtomicFiles files;
   const Picture<std::uint32_t> color = words_of_plane(job.record, result.color);
   report.image_hash = image_hash(color.pixels);
@@ -99,6 +120,7 @@ void run_command(const ResultArguments& arguments) {
                 hash_text(report.image_hash).c_str());
     print_cores(result);
     if (comparison) print_comparison(*comparison);
+    if (arguments.predict) print_prediction(arguments, comparison->predicted_tiles, result.tiles);
   }
   if (comparison && !comparison->is_equal()) {
     std::string message = arguments.result.string() + ": the device's frame differs from the simulator's:";

@@ -43,8 +43,10 @@ std::string device_report_json(const DeviceReportInput& input) {
                          {"work", work_json(core.work)}});
   }
   Json tiles = Json::array();
-  for (const port::TileResult& tile : input.tiles) {
+  for (std::size_t i = 0; i < input.tiles.size(); ++i) {
+    const port::TileResult& tile = input.tiles[i];
     tiles.push_back(Json{{"core", tile.core}, {"instructions", tile.instructions}, {"transfers", tile.transfers}});
+    if (!input.predicted_tiles.empty()) tiles.back()["predicted_instructions"] = input.predicted_tiles[i];
   }
   Json report;
   report["version"] = kReportVersion;

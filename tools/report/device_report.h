@@ -19,6 +19,7 @@ struct DeviceReportInput {
   std::span<const port::TileResult> tiles;              ///< index = tile id
   std::uint64_t image_hash = 0;                         ///< image_hash() of report.h
   std::optional<std::uint64_t> depth_hash, ids_hash;    ///< of planes that the frame has
+  std::span<const double> predicted_tiles;              ///< instructions a tile by a machine profile; or empty
   std::optional<sim::WorkTotals> tile_work;             ///< work less what no tile is charged with, where known
 };
 
