@@ -421,17 +421,36 @@ std::string rival_table_text(const Totals& totals) {
   return text + "}};\n\n}  // namespace gridiron::rival\n";
 }
 
+namespace {
+
+// Writes a frame's memory and units. @returns what was counted.
+Totals write_memory(const std::string& folder, const NamedFrame& named) {
+  const std::vector<std::byte> memory = main_memory_of(named.frame);
+  std::ofstream file(folder + "/" + named.name + ".memory", std::ios::binary);
+  file.write(reinterpret_cast<const char*>(memory.data()), static_cast<std::streamsize>(memory.size()));
+  const Totals counted = render_counted(named.frame).totals;
+  std::ofstream units(folder + "/" + named.name + ".units");
+  for (std::size_t kind = 0; kind < kWorkKindCount; ++kind) units << kind << ' ' << counted[kind].units << '\n';
+  if (!file.flush() || !units.flush()) throw std::runtime_error("calibration: cannot write into " + folder);
+  return counted;
+}
+
+}  // namespace
+
 void write_memories(const std::string& folder) {
   const Scenes scenes;
+  const auto frames = frames_of(scenes);
   Totals totals{};
-  for (const NamedFrame& named : frames_of(scenes)) {
+  for (const NamedFrame& named : frames) {
     if (named.frame.effects != nullptr) continue;  // of these there is no second opinion
-    const std::vector<std::byte> memory = main_memory_of(named.frame);
-    std::ofstream file(folder + "/" + named.name + ".memory", std::ios::binary);
-    file.write(reinterpret_cast<const char*>(memory.data()), static_cast<std::streamsize>(memory.size()));
-    if (!file.flush()) throw std::runtime_error("calibration: cannot write into " + folder);
-    add(totals, render_counted(named.frame).totals, named);
+    add(totals, write_memory(folder, named), named);
   }
+  constexpr std::uint32_t kFineSegments = 20;  // triangles as small as a scan's
+  const Scene fine = scene_of(scene_makers::make_teapot(kFineSegments));
+  NamedFrame dense{"dense", frames[0].frame};
+  dense.frame.vertices = fine.vertices;
+  dense.frame.triangles = fine.triangles;
+  (void)write_memory(folder, dense);
   std::ofstream file(folder + "/units");
   for (std::size_t kind = 0; kind < kWorkKindCount; ++kind) {
     const KindTotals& t = totals[kind];
