@@ -16,6 +16,9 @@ namespace gridiron::tool {
 void run_command(const JobArguments& asked) {
   const RequestedFrame request = read_requested_frame(asked.render, {asked.render.output});
   const RenderArguments& arguments = request.arguments;
+  if (arguments.has_depth() && arguments.layout().has_effects && arguments.packet_width == 0) {
+    throw Failure(ExitCode::kUsage, "--depth: scenes with effects have no distances out of a store of 64 KB");
+  }
   FrameMemory frame(frame_memory_bytes(request.input, arguments));
   prepare_frame(frame, request.input, arguments, request.view);
   const std::vector<std::byte> file = make_job_file(frame, arguments, asked.base_address);

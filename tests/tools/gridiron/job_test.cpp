@@ -71,9 +71,13 @@ void put_record(std::string& bytes, std::size_t place, const Record& record) {
 struct JobCase {
   Words options;
   std::string scene = "a.ply";
+  bool has_depth = true;  // effects out of 64 KB have none
+
+  [[nodiscard]] Words job_options() const {
+    return joined(options, has_depth ? Words{"--depth", "--ids"} : Words{"--ids"});
+  }
 };
 
-// Renders with the same picture; "job" takes --depth and --ids without a file.
 const std::vector<JobCase> kCases = {
     {{"--size", "96x64"}},
     {{"--size", "70x45", "--eye", "1,2,3", "--configuration", "best"}},
@@ -82,13 +86,13 @@ const std::vector<JobCase> kCases = {
     {{"--size", "64x64", "--accuracy", "paper", "--shading", "none"}},
     {{"--size", "64x64", "--accuracy", "compact", "--packet", "32"}},
     {{"--cores", "5"}, "a.nff"},
-    {{"--store", "64"}, "a.nff"},
+    {{"--store", "64"}, "a.nff", false},
 };
 
 TEST(Job, NamesWhatLiesInIt) {
   for (const JobCase& each : kCases) {
     const TemporaryFolder folder;
-    const std::string file = make_job(folder, joined(each.options, {"--depth", "--ids"}), each.scene);
+    const std::string file = make_job(folder, each.job_options(), each.scene);
     const auto job = record_at<FrameJob>(file, 0);
     ASSERT_EQ(job.magic, port::kFrameJobMagic);
     EXPECT_EQ(job.base_address, kBase);
@@ -110,12 +114,14 @@ TEST(Job, NamesWhatLiesInIt) {
     EXPECT_TRUE(lies_in(job.result_address, job.result_bytes, loaded_end, end));
     std::uint64_t free = job.result_address + head;
     for (const std::uint64_t plane : {record.color_address, record.depth_address, record.id_address}) {
+      if (plane == record.depth_address && !each.has_depth) continue;
       EXPECT_TRUE(lies_in(plane, job.plane_bytes, free, job.result_address + job.result_bytes));
       EXPECT_EQ(plane % kLineBytes, 0u);
       free = plane + job.plane_bytes;
     }
     EXPECT_EQ(job.color_address, record.color_address);
     EXPECT_EQ(job.depth_address, record.depth_address);
+    EXPECT_EQ(job.depth_address != 0, each.has_depth);
     EXPECT_EQ(job.ids_address, record.id_address);
     EXPECT_EQ(job.effects != 0, each.scene == "a.nff");
     EXPECT_EQ(job.spill_address != 0, each.scene == "a.nff");
@@ -158,6 +164,8 @@ TEST(Job, IsRefusedWhereItDoesNotFit) {
   expect_failure(folder, with({"--base", "0", "--cores", "17"}), 2, "--cores");
   expect_failure(folder, with({"--base", "0", "--memory", "many"}), 2, "--memory");
   expect_failure(folder, {"job", "a.ply", "-o", "a.ply", "--base", "0"}, 2, "name the same file");
+  expect_failure(folder, {"job", "a.nff", "-o", "a.job", "--base", "0", "--store", "64", "--depth"}, 2,
+                 "--depth: scenes with effects have no distances out of a store of 64 KB");
   expect_failure(folder, {"job", "b.ply", "-o", "a.job", "--base", "0"}, 1, "b.ply: No such file");
   run(folder, with({"--base", "0x80200000", "--memory", std::to_string(bytes)}));
 }
@@ -165,24 +173,34 @@ TEST(Job, IsRefusedWhereItDoesNotFit) {
 TEST(Result, OfADeviceIsTheSimulatorsFrame) {
   for (const JobCase& each : kCases) {
     const TemporaryFolder folder;
-    const std::string job = make_job(folder, joined(each.options, {"--depth", "--ids"}), each.scene);
+    const std::string job = make_job(folder, each.job_options(), each.scene);
     folder.write("a.res", render_on_host_device(job, 5));
-    const ProgramResult result = run(folder, {"result", "a.job", "a.res", "--compare", "-o", "d.png", "--depth",
-                                              "d.pfm", "--ids", "i.pfm", "--report", "d.json"});
-    for (const char* item : {"image", "depth", "ids", "work", "transfers", "tiles.transfers"}) {
-      const std::size_t line = result.out.find("\n" + std::string(item) + " ");
+    Words result_words = {"result", "a.job", "a.res", "--compare", "-o",
+                          "d.png",  "--ids", "d.ids", "--report",  "d.json"};
+    Words render_words =
+        joined({"render", each.scene, "-o", "r.png", "--ids", "r.ids", "--report", "r.json"}, each.options);
+    Words items = {"image", "ids", "work", "transfers", "tiles.transfers"};
+    Words files = {"png", "ids"}, keys = {"image_hash", "ids_hash", "work"};
+    if (each.has_depth) {
+      result_words = joined(result_words, {"--depth", "d.pfm"});
+      render_words = joined(render_words, {"--depth", "r.pfm"});
+      items.emplace_back("depth");
+      files.emplace_back("pfm");
+      keys.emplace_back("depth_hash");
+    }
+    const ProgramResult result = run(folder, result_words);
+    for (const std::string& item : items) {
+      const std::size_t line = result.out.find("\n" + item + " ");
       ASSERT_NE(line, std::string::npos) << item << result.out;
       EXPECT_EQ(result.out.substr(line + 26, 7), "equal: ") << result.out;
     }
-    const Words render_words = {"render", each.scene, "-o",    "r.png",    "--depth",
-                                "r.pfm",  "--ids",    "r.ids", "--report", "r.json"};
-    run(folder, joined(render_words, each.options));
-    EXPECT_EQ(read_file(folder.path("d.png")), read_file(folder.path("r.png")));
-    EXPECT_EQ(read_file(folder.path("d.pfm")), read_file(folder.path("r.pfm")));
-    EXPECT_EQ(read_file(folder.path("i.pfm")), read_file(folder.path("r.ids")));
+    run(folder, render_words);
+    for (const std::string& file : files) {
+      EXPECT_EQ(read_file(folder.path("d." + file)), read_file(folder.path("r." + file))) << file;
+    }
     const Json device = Json::parse(read_file(folder.path("d.json")));
     const Json render = Json::parse(read_file(folder.path("r.json")));
-    for (const char* key : {"image_hash", "depth_hash", "ids_hash", "work"}) EXPECT_EQ(device[key], render[key]) << key;
+    for (const std::string& key : keys) EXPECT_EQ(device[key], render[key]) << key;
     ASSERT_EQ(device["cores"].size(), 5u);
     EXPECT_EQ(device["cores"][4]["instructions"], 1004);
     EXPECT_EQ(device["tiles"][1]["instructions"], 2);
@@ -283,7 +301,7 @@ TEST(Job, DamageIsFoundWithItsPlace) {
   expect_wrong(offsetof(Job, reserved), [](Job& job, Record&) { job.reserved[23] = 1; });
   expect_wrong(offsetof(Job, frame_address), [](Job& job, Record&) { job.frame_address = job.base_address - 128; });
   expect_wrong(offsetof(Job, image_address), [](Job& job, Record&) { job.image_address += 128; });
-  expect_wrong(4096, [](Job& job, Record&) { job.image_bytes -= 128; });
+  expect_wrong(4096 + offsetof(ImageHeader, image_bytes), [](Job& job, Record&) { job.image_bytes -= 128; });
   expect_wrong(offsetof(Job, result_address), [](Job& job, Record&) { job.result_address = job.base_address; });
   expect_wrong(offsetof(Job, result_address), [](Job& job, Record&) { job.result_bytes = kFar; });
   expect_wrong(offsetof(Job, result_bytes), [](Job& job, Record&) { job.result_bytes = 64; });
