@@ -17,6 +17,6 @@ function(gridiron_freestanding target)
   # a fixed size, none as large as the stack of a 256 KB core.
   if(CMAKE_CROSSCOMPILING AND CMAKE_CXX_COMPILER_ID STREQUAL "GNU")
     target_compile_options(${target} PRIVATE
-      -fno-asynchronous-unwind-tables -Wvla -Walloca -Wstack-usage=8704)
+      -fno-asynchronous-unwind-tables -fno-unwind-tables -Wvla -Walloca -Wstack-usage=8704)
   endif()
 endfunction()
