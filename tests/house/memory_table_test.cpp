@@ -260,6 +260,20 @@ INSTANTIATE_TEST_SUITE_P(
               "malloc: a function of unknown depth"}),
     [](const testing::TestParamInfo<Break>& wrong) { return std::string(wrong.param.name); });
 
+// As a build that was interrupted leaves it.
+TEST(CoreBreak, ACallGraphThatEndsEarlyIsRefused) {
+  const std::string whole = "graph: { title: \"a.cpp\"\nnode: { title: \"_Z1fv\" label: \"f\\n16 bytes (static)\" }\n";
+  for (const std::string end : {"}\n", ""}) {
+    const ScratchDirectory scratch;
+    scratch.write("a.ci", whole + end);
+    const ScriptResult result =
+        run_script(source_path("tools/house/deepest_stack") + " " + quoted(scratch.path()) + "/a.ci");
+    EXPECT_EQ(result.exit_code, end.empty() ? 1 : 0) << result.output;
+    EXPECT_NE(result.output.find(end.empty() ? "a call graph that ends early" : "16"), std::string::npos)
+        << result.output;
+  }
+}
+
 TEST(CoreBreak, AFrameOverTheBudgetIsNamed) {
   if (!has_cross_compilers()) GTEST_SKIP() << "no cross compilers";
   const ScratchDirectory scratch;
