@@ -1,6 +1,6 @@
 // What runs on each core of the made-up chip: one call into the kernel, with the local store in the core's arena. The
 // build gives GRIDIRON_PACKET_WIDTH, the rays along a packet's edge, and may give GRIDIRON_EFFECTS, the set of effects
-// it is for; GRIDIRON_64K takes the layout of a 64 KB core, which knows no packets.
+// it is for; GRIDIRON_64K takes the layout of a 64 KB core, which knows no packets; GRIDIRON_LAYOUT names any other.
 // Memory: the arena that the loader gives. Threads: one core. SPDX-License-Identifier: Apache-2.0
 #include <gridiron/base/effect_records.h>
 #include <gridiron/base/lanes.h>
@@ -16,7 +16,9 @@
 
 namespace gridiron::port {
 
-#if GRIDIRON_EFFECTS == 0
+#if defined(GRIDIRON_LAYOUT)
+using FirmwareLayout = GRIDIRON_LAYOUT;
+#elif GRIDIRON_EFFECTS == 0
 using FirmwareLayout = StoreLayout256K<GRIDIRON_PACKET_WIDTH>;
 #elif defined(GRIDIRON_64K)
 using FirmwareLayout = EffectLayout64K<GRIDIRON_EFFECTS>;
@@ -30,6 +32,7 @@ using FirmwareLanes = Lanes<1>;
 using FirmwareLanes = Lanes<4>;
 #endif
 using FirmwareStore = LocalStore<FirmwareLayout>;
+static_assert(kFitsArena<FirmwareLayout>, "store, code and stack are more than the arena");
 
 /// Renders the core's share of a frame.
 ///

@@ -13,4 +13,10 @@ function(gridiron_freestanding target)
   target_compile_options(${target} PRIVATE
     -ffreestanding -fno-exceptions -fno-rtti -fno-threadsafe-statics -fno-math-errno -ffunction-sections
    )
+  # Cross builds are what tools/house/memory_table measures: no tables for unwinding, which nothing reads, and frames of
+  # a fixed size, none as large as the stack of a 256 KB core.
+  if(CMAKE_CROSSCOMPILING AND CMAKE_CXX_COMPILER_ID STREQUAL "GNU")
+    target_compile_options(${target} PRIVATE
+      -fno-asynchronous-unwind-tables -fno-unwind-tables -Wvla -Walloca -Wstack-usage=8704)
+  endif()
 endfunction()

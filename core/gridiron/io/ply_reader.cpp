@@ -267,6 +267,7 @@ bool PlyReader::list_count(std::int64_t count, std::uint64_t byte_offset) {
 
 bool PlyReader::coordinate(std::uint32_t float_bits, std::uint64_t byte_offset) {
   if (!is_finite(float_bits)) return fail_in_row(PlyError::kNotFinite, byte_offset);
+  // Only called for x, y, z. NOLINTNEXTLINE(clang-analyzer-alpha.security.ArrayBound)
   coordinate_bits_[static_cast<std::size_t>(current_property().role) - static_cast<std::size_t>(Role::kX)] = float_bits;
   end_property();
   return true;

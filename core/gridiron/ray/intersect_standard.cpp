@@ -59,7 +59,7 @@ DistanceInterval distance_interval(const float origin[3], float dir_max, const f
                                              double{dir[2]} * setup.normal[2]);
   const double relative = quotient * setup.relative_error_per_t + setup.relative_error;
   // False for NaN too: then it is anywhere.
-  if (!(quotient > 0.0 && relative < 0x1p-10)) return {0.0, double{kInfinity}};
+  if (!(quotient > 0.0 && relative < 0x1p-10)) return {0.0, static_cast<double>(kInfinity)};
   return {quotient - quotient * relative, quotient + quotient * relative};
 }
 

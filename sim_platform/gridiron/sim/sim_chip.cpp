@@ -20,6 +20,12 @@ namespace gridiron::sim {
 
 namespace {
 
+template <class... Layouts>
+consteval bool fit_arenas(LayoutList<Layouts...>) {
+  return (kFitsArena<Layouts> && ...);
+}
+static_assert(fit_arenas(CommonLayouts{}) && fit_arenas(SweepLayouts{}) && fit_arenas(EffectLayouts{}));
+
 template <class Core>
 using RenderEntry = Status (*)(LayoutChoice, std::byte*, Core&, MainAddress, SpillRegion);
 
