@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cstdlib>
 #include <functional>
+#include <gridiron/version.h>
 #include <string_view>
 #include <utility>
 #include <vector>
@@ -15,7 +16,6 @@
 #include "layout_choice.h"
 #include "scene_input.h"
 #include "store_facts.h"
-#include "version.h"
 
 namespace gridiron::tool {
 namespace {
