@@ -31,6 +31,7 @@ enum class BuildStep : std::uint8_t {
   kNodeMade,         ///< hierarchy: nodes of the binary tree, inner and leaf, without their sweeps
   kCount
 };
+/// Steps, of grid and hierarchy.
 inline constexpr std::size_t kBuildStepCount = static_cast<std::size_t>(BuildStep::kCount);
 
 /// The general core, which builds the scene image before the cores render it. One core of it works.
