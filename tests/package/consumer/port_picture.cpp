@@ -23,6 +23,7 @@ using namespace gridiron;
 
 namespace {
 
+// [port]
 // A main address is the host's.
 class CopyPort {
  public:
@@ -58,6 +59,7 @@ class CopyPort {
   std::uint32_t next_tile_ = 0;
 };
 static_assert(Platform<CopyPort>);
+// [port]
 
 // Main memory, handed out in lines.
 alignas(4096) std::byte main_memory[std::size_t{1} << 23];
@@ -95,8 +97,10 @@ int main() {
   FrameRecord& frame = *::new (record.data()) FrameRecord;
   if (make_frame_record(settings, view, address_of(image), frame) != Status::kOk) return 1;
 
+  // [render]
   CopyPort port(frame.tiles_x * frame.tiles_y);
   if (render_tiles<Lanes<4>>(store, port, address_of(record)) != Status::kOk) return 1;
+  // [render]
   print_hashes(settings, color, depth);
   return 0;
 }
