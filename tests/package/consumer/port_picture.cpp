@@ -71,7 +71,7 @@ std::span<std::byte> allocate(std::uint64_t bytes) {
 }
 MainAddress address_of(std::span<std::byte> bytes) { return {reinterpret_cast<std::uintptr_t>(bytes.data())}; }
 
-LocalStore<StoreLayout256K<8>> store;
+LocalStore<StoreLayout256K<8>> local_store;
 
 }  // namespace
 
@@ -99,7 +99,7 @@ int main() {
 
   // [render]
   CopyPort port(frame.tiles_x * frame.tiles_y);
-  if (render_tiles<Lanes<4>>(store, port, address_of(record)) != Status::kOk) return 1;
+  if (render_tiles<Lanes<4>>(local_store, port, address_of(record)) != Status::kOk) return 1;
   // [render]
   print_hashes(settings, color, depth);
   return 0;
