@@ -30,6 +30,7 @@ function(gridiron_install_component name)
 
   # From where the file lies to the prefix, so that a prefix can be moved.
   file(RELATIVE_PATH to_prefix ${CMAKE_INSTALL_PREFIX}/${GRIDIRON_PKGCONFIG_DIR} ${CMAKE_INSTALL_PREFIX})
+  string(REGEX REPLACE "/$" "" to_prefix "${to_prefix}")
   configure_file(${GRIDIRON_PACKAGE_FILES}/gridiron-${name}.pc.in ${PROJECT_BINARY_DIR}/gridiron-${name}.pc @ONLY)
   install(FILES ${PROJECT_BINARY_DIR}/gridiron-${name}.pc DESTINATION ${GRIDIRON_PKGCONFIG_DIR} COMPONENT ${name})
 endfunction()
