@@ -79,12 +79,12 @@ struct ChipOptions {
   std::uint32_t packet_width = 8;  ///< rays along a packet's edge; the frame brings its tile width
   Completion completion = Completion::kEarly;  ///< of transfers
   std::uint64_t seed = 0;           ///< of Completion::kRandom
-  PlatformLimits limits;            ///< of the simulated platform
-  SpillMemory spill;                ///< one slice a thread; looked at for frames with effects only
+  PlatformLimits limits{};          ///< of the simulated platform
+  SpillMemory spill{};              ///< one slice a thread; looked at for frames with effects only
   std::uint64_t fail_transfer = 0;  ///< n > 0: the n-th transfer started (over all threads) fails; checked modes only
-  std::optional<std::uint32_t> only_tile;                                 ///< render this tile alone
+  std::optional<std::uint32_t> only_tile{};                               ///< render this tile alone
   const std::atomic<bool>* abort = nullptr;                               ///< stop between tiles when it becomes true
-  std::function<void(std::uint32_t done, std::uint32_t total)> progress;  ///< called from any thread, serialised
+  std::function<void(std::uint32_t done, std::uint32_t total)> progress{};  ///< called from any thread, serialised
 };
 
 /// A broken rule, found by the checks.
