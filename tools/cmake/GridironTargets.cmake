@@ -1,11 +1,13 @@
 # Helpers that give every target of the project the same language level, warnings and floating-point rules.
 
-# All targets: C++20, warnings as errors, no contraction anywhere (it is part of correctness).
+# All targets: C++20, warnings as errors (not in somebody else's project, whose compiler may know more of them), no
+# contraction anywhere (it is part of correctness).
 function(gridiron_target_defaults target)
   target_compile_features(${target} PUBLIC cxx_std_20)
   set_target_properties(${target} PROPERTIES CXX_EXTENSIONS OFF)
   target_compile_options(${target} PRIVATE
-    -Wall -Wextra -Wpedantic -Wshadow -Wconversion -Wsign-conversion -Wno-psabi -Werror -ffp-contract=off)
+    -Wall -Wextra -Wpedantic -Wshadow -Wconversion -Wsign-conversion -Wno-psabi
+    $<$<BOOL:${PROJECT_IS_TOP_LEVEL}>:-Werror> -ffp-contract=off)
 endfunction()
 
 # Targets that must run without an operating system.

@@ -7,6 +7,7 @@
 #include <algorithm>
 #include <cstdlib>
 #include <functional>
+#include <gridiron/version.h>
 #include <string_view>
 #include <utility>
 #include <vector>
@@ -17,7 +18,6 @@
 #include "layout_choice.h"
 #include "scene_input.h"
 #include "store_facts.h"
-#include "version.h"
 
 namespace gridiron::tool {
 namespace {

@@ -14,13 +14,14 @@ namespace gridiron {
 /// first.
 class CheckValue {
  public:
-  static constexpr std::size_t kGroupBytes = 64;
+  static constexpr std::size_t kGroupBytes = 64;  ///< what add() takes multiples of
 
   CheckValue();
 
   /// Appends bytes. Precondition: their number is a multiple of kGroupBytes.
   void add(std::span<const std::byte> bytes);
 
+  /// @returns the check value of all bytes so far.
   [[nodiscard]] std::uint64_t value() const;
 
  private:

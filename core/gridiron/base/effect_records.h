@@ -20,23 +20,23 @@ enum EffectBits : std::uint32_t {
   kMultisampling = 1u << 8,
   kSceneShading = 1u << 9,       ///< light of point lights and the background; every scene with effects needs it
 };
-inline constexpr std::uint32_t kEffectCount = 10;
-inline constexpr std::uint32_t kAllEffects = (1u << kEffectCount) - 1u;
+inline constexpr std::uint32_t kEffectCount = 10;  ///< bits of EffectBits
+inline constexpr std::uint32_t kAllEffects = (1u << kEffectCount) - 1u;  ///< the set of all
 
-inline constexpr std::uint32_t kMaxMaterials = 65535;
+inline constexpr std::uint32_t kMaxMaterials = 65535;      ///< of a scene
 inline constexpr std::uint32_t kMaxLights = 256;           ///< point and area lights together
 inline constexpr std::uint32_t kMaxEffectSamples = 64;     ///< of an area light, of ambient occlusion
 inline constexpr std::uint32_t kMaxRecursionDepth = 8;     ///< the eye ray is of depth 1
-inline constexpr std::uint32_t kMaxEnvironmentWidth = 1024;
-inline constexpr float kAmbientLight = 0.5f;
-inline constexpr float kMaxLightColor = 1e6f;
+inline constexpr std::uint32_t kMaxEnvironmentWidth = 1024;  ///< texels of a face's edge
+inline constexpr float kAmbientLight = 0.5f;               ///< what ambient occlusion darkens; core/EFFECTS.md
+inline constexpr float kMaxLightColor = 1e6f;              ///< of each channel
 
 /// One for a scene with effects. 128 bytes.
 struct EffectsRecord {
   std::uint32_t called_for;          ///< EffectBits
   std::uint32_t material_count;      ///< 1..kMaxMaterials
   std::uint32_t light_count;         ///< 0..kMaxLights, point lights first
-  std::uint32_t point_light_count;
+  std::uint32_t point_light_count;   ///< of these
   std::uint32_t recursion_depth;     ///< 1..kMaxRecursionDepth
   std::uint32_t samples_per_pixel;   ///< 1, 4, 16
   std::uint32_t occlusion_samples;   ///< 0: no ambient occlusion; ..kMaxEffectSamples
@@ -70,13 +70,13 @@ static_assert(sizeof(MaterialRecord) == 48);
 
 /// A point light (samples = 0) or an area light, corner + a edge_u + b edge_v.
 struct LightRecord {
-  float corner[3];
+  float corner[3];          ///< where it is, or begins
   std::uint32_t samples;    ///< 0: a point; 1..kMaxEffectSamples
   float color[3];           ///< 0..kMaxLightColor; of an area light that of one sample
   std::uint32_t is_near;    ///< 0, 1; shadow rays run from the light: it is about as near to 0 as the scene is
-  float edge_u[3];
+  float edge_u[3];          ///< of an area light
   std::uint32_t reserved0;
-  float edge_v[3];
+  float edge_v[3];          ///< of an area light
   std::uint32_t reserved1;
 };
 static_assert(sizeof(LightRecord) == 64);
@@ -86,17 +86,17 @@ inline constexpr float kNearLightFactor = 4.0f;
 
 /// A triangle as shading needs it. Vertices as the grid's triangles have them: moved ones for lattice triangles.
 struct SurfaceRecord {
-  float v[3][3];
+  float v[3][3];               ///< corner, axis
   std::uint32_t material;      ///< index
   std::uint32_t normals;       ///< index in the kNormals section, kNoNormals where flat
   std::uint32_t reserved;
 };
 static_assert(sizeof(SurfaceRecord) == 48);
-inline constexpr std::uint32_t kNoNormals = 0xFFFFFFFFu;
+inline constexpr std::uint32_t kNoNormals = 0xFFFFFFFFu;  ///< of a flat triangle
 
 /// Normals at a triangle's corners, unit to rounding, outwards.
 struct NormalRecord {
-  float n[3][3];
+  float n[3][3];  ///< corner, axis
   std::uint32_t reserved[3];
 };
 static_assert(sizeof(NormalRecord) == 48);
@@ -107,7 +107,7 @@ struct EnvironmentBlock {
   float texels[8][8][3];  ///< row, column; finite, >= 0
 };
 static_assert(sizeof(EnvironmentBlock) == 768);
-inline constexpr std::uint32_t kEnvironmentPatches = 7;
+inline constexpr std::uint32_t kEnvironmentPatches = 7;  ///< along a block's edge
 
 /// Blocks along a face's edge: patches begin at texels 0..width - 2; a face of one texel has one block.
 [[nodiscard]] constexpr std::uint32_t environment_blocks(std::uint32_t width) {
@@ -116,8 +116,8 @@ inline constexpr std::uint32_t kEnvironmentPatches = 7;
 
 /// A ray that waits for its turn, in a queue of the local store or in main memory.
 struct QueuedRay {
-  float origin[3];
-  float dir[3];
+  float origin[3];         ///< world space
+  float dir[3];            ///< unit to rounding
   float weight[3];         ///< what it adds is worth
   std::uint32_t pixel;     ///< row-major index in its tile | depth << 16
   std::uint32_t path;      ///< core/EFFECTS.md
@@ -142,6 +142,6 @@ inline constexpr std::uint32_t kMostEffectTilePixels = 1024;  ///< of a layout w
 [[nodiscard]] constexpr std::uint64_t spill_bytes(std::uint32_t recursion_depth) {
   return (std::uint64_t{most_waiting_rays(recursion_depth)} * sizeof(QueuedRay) + 4095) / 4096 * 4096;
 }
-inline constexpr std::uint32_t kSpillAlignment = 4096;
+inline constexpr std::uint32_t kSpillAlignment = 4096;  ///< bytes
 
 }  // namespace gridiron

@@ -11,12 +11,12 @@
 namespace gridiron {
 
 using Vec3 = glm::vec3;  ///< 12 bytes, x y z
-using DVec3 = glm::dvec3;
-using UVec3 = glm::uvec3;
+using DVec3 = glm::dvec3;  ///< the same in doubles
+using UVec3 = glm::uvec3;  ///< three indices
 
 /// Largest finite float; used where "no limit" is meant, since a chip may have no infinity.
 inline constexpr float kFloatMax = 3.402823466e+38f;
-inline constexpr float kInfinity = __builtin_inff();
+inline constexpr float kInfinity = __builtin_inff();  ///< where a comparison is all that it is for
 
 /// Rounds `value` up to a multiple of `step` (a power of two).
 template <class Integer>

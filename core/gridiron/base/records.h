@@ -11,7 +11,7 @@ inline constexpr std::uint32_t kLineBytes = 128;  ///< alignment of every sectio
 // --- Scene image ------------------------------------------------------------------------------------------------
 
 inline constexpr std::uint32_t kImageMagic = 0x49524447;  ///< "GDRI" as bytes
-inline constexpr std::uint32_t kImageVersion = 1;
+inline constexpr std::uint32_t kImageVersion = 1;     ///< the only one that is read; core/README.md, "Versions"
 inline constexpr std::uint32_t kMaxSectionCount = 32;  ///< entries of a section table
 
 /// How a triangle is stored in the kTriangles section. Fixed at build time; a frame may ask only for what is stored.
@@ -21,6 +21,7 @@ enum class TriangleFormat : std::uint32_t {
   kLattice = 3,     ///< LatticeTriangle: `compact`
 };
 
+/// What a section of an image holds.
 enum class SectionKind : std::uint32_t {
   kGrid = 1,        ///< one GridRecord
   kMacroTable = 2,  ///< MacroTableEntry[ceil(macro_cell_count / 32)]
@@ -37,11 +38,11 @@ enum class SectionKind : std::uint32_t {
 
 /// First bytes of a scene image. 64 bytes, 128-byte aligned.
 struct ImageHeader {
-  std::uint32_t magic;
-  std::uint32_t version;
+  std::uint32_t magic;             ///< kImageMagic
+  std::uint32_t version;           ///< kImageVersion
   std::uint64_t image_bytes;       ///< whole image, a multiple of kLineBytes
   std::uint64_t check_value;       ///< of the whole image with this field taken as 0; see check_value.h
-  std::uint32_t section_count;
+  std::uint32_t section_count;     ///< 1..kMaxSectionCount
   std::uint32_t section_table_offset_bytes;  ///< SectionEntry[section_count]
   std::uint32_t triangle_count;    ///< input triangles after fanning, dropped ones included
   std::uint32_t vertex_count;      ///< input vertices
@@ -53,9 +54,9 @@ static_assert(sizeof(ImageHeader) == 64);
 /// One section: where it lies and what it holds. Unknown kinds are skipped by readers.
 struct SectionEntry {
   std::uint32_t kind;              ///< SectionKind
-  std::uint32_t element_bytes;
+  std::uint32_t element_bytes;     ///< of one element
   std::uint64_t offset_bytes;      ///< from the start of the image, a multiple of kLineBytes
-  std::uint64_t element_count;
+  std::uint64_t element_count;     ///< how many there are
   std::uint64_t section_bytes;     ///< element_bytes * element_count, or more where padded
 };
 static_assert(sizeof(SectionEntry) == 32);
@@ -71,10 +72,10 @@ inline constexpr double kCellDirectionLimit = 0x1p124;    ///< |direction|, in c
 /// Where stored vertices can lie: origin + step * k, k whole, 0..65535 on each axis. Every such value is a float: step
 /// is a power of two, origin a multiple of it, and no value beyond 2^24 steps.
 struct Lattice {
-  float origin[3];
+  float origin[3];                 ///< place 0 of each axis
   float step;                      ///< kLeastLatticeStep or more
 };
-inline constexpr float kLeastLatticeStep = 0x1p-126f;
+inline constexpr float kLeastLatticeStep = 0x1p-126f;     ///< the least normal float
 inline constexpr std::uint32_t kLatticePlaces = 65536;    ///< along each axis
 inline constexpr float kMostStepsFromZero = 0x1p24f - 0x1p17f;  ///< |vertex| / step; |origin| / step: one more
 
@@ -92,15 +93,15 @@ struct GridRecord {
   std::uint32_t triangle_bytes;    ///< record size, triangle_bytes_of(triangle_format)
   std::uint32_t reference_count;   ///< triangle records in the image
   float bounds_minimum[3];         ///< tight bounds of the kept triangles, world space
-  float bounds_maximum[3];
+  float bounds_maximum[3];         ///< the other corner
   float lambda;                    ///< Eq. (1) of the paper
   Lattice lattice;                 ///< of kLattice; all zero in other formats
   std::uint32_t reserved[3];
 };
 static_assert(sizeof(GridRecord) == 128);
 
-inline constexpr std::uint32_t kMaxCellsPerAxis = 2048;
-inline constexpr std::uint32_t kMaxMacroWidth = 8;
+inline constexpr std::uint32_t kMaxCellsPerAxis = 2048;  ///< of a grid
+inline constexpr std::uint32_t kMaxMacroWidth = 8;       ///< of a macrocell, in cells
 
 /// 32 macrocells, x fastest, then y, then z. Macrocell i is bit i % 32 of entry i / 32; a set bit means non-empty,
 /// and its cell block is first_block + (set bits below it).
@@ -114,7 +115,7 @@ static_assert(sizeof(MacroTableEntry) == 8);
 /// block but the empty one first_triangle runs on, also through empty cells: a block's triangles are contiguous.
 struct CellRecord {
   std::uint32_t first_triangle;    ///< index into kTriangles
-  std::uint32_t triangle_count;
+  std::uint32_t triangle_count;    ///< 0: an empty cell
 };
 static_assert(sizeof(CellRecord) == 8);
 
@@ -127,7 +128,7 @@ static_assert(sizeof(CellBound) == 4);
 
 /// A triangle by its input vertices (bit for bit).
 struct VertexTriangle {
-  float v[3][3];
+  float v[3][3];                   ///< corner, axis
   std::uint32_t reserved[2];
   std::uint32_t triangle_id;       ///< index in the input's order after fanning, dropped ones counted
 };
@@ -137,20 +138,20 @@ static_assert(sizeof(VertexTriangle) == 48);
 /// Plane: p_k = n_d - n_u p_u - n_v p_v; u = k+1, v = k+2 (mod 3).
 /// Barycentric: beta = b_u p_u + b_v p_v + b_d, gamma = c_u p_u + c_v p_v + c_d.
 struct ProjectionTriangle {
-  float n_u, n_v, n_d;
-  float b_u, b_v, b_d;
-  float c_u, c_v, c_d;
+  float n_u, n_v, n_d;             ///< of the plane
+  float b_u, b_v, b_d;             ///< of beta
+  float c_u, c_v, c_d;             ///< of gamma
   std::uint32_t axis_k;            ///< 0, 1, 2
   std::uint32_t reserved;
-  std::uint32_t triangle_id;
+  std::uint32_t triangle_id;       ///< as of VertexTriangle
 };
 static_assert(sizeof(ProjectionTriangle) == 48);
 
 /// A triangle by its vertices' places on the grid's lattice.
 struct LatticeTriangle {
-  std::uint16_t v[3][3];
+  std::uint16_t v[3][3];           ///< corner, axis
   std::uint16_t reserved;
-  std::uint32_t triangle_id;
+  std::uint32_t triangle_id;       ///< as of VertexTriangle
 };
 static_assert(sizeof(LatticeTriangle) == 24);
 
@@ -160,8 +161,9 @@ inline constexpr std::uint32_t kTriangleRecordBytes = 48;
 // --- Frame ------------------------------------------------------------------------------------------------------
 
 inline constexpr std::uint32_t kFrameMagic = 0x4d524647;  ///< "GFRM" as bytes
-inline constexpr std::uint32_t kFrameVersion = 1;
+inline constexpr std::uint32_t kFrameVersion = 1;         ///< of FrameRecord
 
+/// How exactly a frame is decided; core/README.md tells what each promises.
 enum class Accuracy : std::uint32_t {
   kStandard = 0,  ///< filtered edge signs with exact ones behind them, correctly rounded distance
   kPaper = 1,     ///< precomputed projection, reciprocals estimated, single precision; may leak
@@ -170,6 +172,7 @@ enum class Accuracy : std::uint32_t {
   kCompact = 4,   ///< as kStandard, of triangles on the scene's lattice
 };
 
+/// What a pixel shows.
 enum class Shading : std::uint32_t {
   kNone = 0,    ///< hit or background
   kSimple = 1,  ///< facing ratio with the geometric normal
@@ -186,8 +189,8 @@ enum TechniqueBits : std::uint32_t {
 
 /// Everything a core needs to know of a frame. Fetched by every core at its start. 128-byte aligned, 384 bytes.
 struct FrameRecord {
-  std::uint32_t magic;
-  std::uint32_t version;
+  std::uint32_t magic;                 ///< kFrameMagic
+  std::uint32_t version;               ///< kFrameVersion
   std::uint32_t width, height;         ///< pixels, 1..kMaxPictureWidth
   std::uint32_t tile_width;            ///< pixels, must equal the store layout's
   std::uint32_t tiles_x, tiles_y;      ///< ceil(width / tile_width), ceil(height / tile_width)
@@ -203,27 +206,27 @@ struct FrameRecord {
 
   // Pinhole camera: direction of the ray through the centre of pixel (x, y), y = 0 the top row, is
   // (corner + x * step_x) + y * step_y per component, each operation rounded to float.
-  float eye[3];
-  float corner[3];
-  float step_x[3];
-  float step_y[3];
+  float eye[3];                        ///< origin of all rays, world space
+  float corner[3];                     ///< direction through pixel (0, 0)
+  float step_x[3];                     ///< one pixel to the right
+  float step_y[3];                     ///< one pixel down
 
   std::uint64_t color_address;         ///< RGBA8, tile-major: tile i at i * tile_width^2 * 4, row-major inside
   std::uint64_t depth_address;         ///< float distance along the unit direction, kFloatMax where nothing; 0: off
   std::uint64_t id_address;            ///< triangle_id, kNoTriangle where nothing; 0: off
-  std::uint64_t macro_table_address;
-  std::uint64_t cell_blocks_address;
-  std::uint64_t triangles_address;
+  std::uint64_t macro_table_address;   ///< sections of the scene image: MacroTableEntry[]
+  std::uint64_t cell_blocks_address;   ///< blocks of cells
+  std::uint64_t triangles_address;     ///< triangle records
   std::uint64_t effects_address;       ///< EffectsRecord, of Shading::kScene; else 0
   std::uint64_t image_address;         ///< what its offsets count from; else 0
   std::uint64_t reserved1[2];
-  GridRecord grid;
+  GridRecord grid;                     ///< the scene image's
   std::uint32_t walk_depth;            ///< walks of rays under way at once; of Shading::kScene, else 0
   std::uint32_t reserved2[15];
 };
 static_assert(sizeof(FrameRecord) == 384);
 
-inline constexpr std::uint32_t kNoTriangle = 0xFFFFFFFFu;
-inline constexpr std::uint32_t kMaxPictureWidth = 16384;
+inline constexpr std::uint32_t kNoTriangle = 0xFFFFFFFFu;  ///< id where a ray hits nothing
+inline constexpr std::uint32_t kMaxPictureWidth = 16384;   ///< pixels, of width and height
 
 }  // namespace gridiron

@@ -6,6 +6,7 @@
 
 namespace gridiron {
 
+/// What a core is busy with.
 enum class Stage : std::uint8_t {
   kPrimary,      ///< eye rays, set-up of tiles and frames: all that there is without effects
   kSurface,      ///< points, normals, materials of hits
@@ -16,6 +17,7 @@ enum class Stage : std::uint8_t {
   kOutput,       ///< sums turned into pixels
   kCount
 };
+/// Stages, kPrimary among them.
 inline constexpr std::uint32_t kStageCount = static_cast<std::uint32_t>(Stage::kCount);
 
 }  // namespace gridiron

@@ -72,15 +72,18 @@ enum class Work : std::uint8_t {
   kCount
 };
 
+/// Kinds of work.
 inline constexpr std::uint32_t kWorkKindCount = static_cast<std::uint32_t>(Work::kCount);
 
 /// One counter per kind of work; wraps after 2^32 - 1.
 struct WorkCounters {
-  std::uint32_t counts[kWorkKindCount] = {};
+  std::uint32_t counts[kWorkKindCount] = {};  ///< by Work
 
+  /// Counts so many more of a kind.
   constexpr void add(Work kind, std::uint32_t amount = 1) { counts[static_cast<std::uint32_t>(kind)] += amount; }
   /// The operations that follow belong to `kind`. Nothing to a core: tools/calibrate listens to it, and to add().
   constexpr void charge_to(Work) const {}
+  /// @returns the count of a kind.
   [[nodiscard]] constexpr std::uint32_t operator[](Work kind) const { return counts[static_cast<std::uint32_t>(kind)]; }
 };
 

@@ -14,24 +14,25 @@ namespace gridiron {
 
 /// A pinhole camera in world space.
 struct Camera {
-  Vec3 eye{0, 0, 1};
-  Vec3 at{0, 0, 0};
-  Vec3 up{0, 1, 0};
+  Vec3 eye{0, 0, 1};                 ///< where it stands
+  Vec3 at{0, 0, 0};                  ///< what lies in the middle of the picture
+  Vec3 up{0, 1, 0};                  ///< of any length but 0, not along the view
   float tan_half_fov = 0.41421356f;  ///< tangent of half the angle between the top and the bottom edge; > 0
 };
 
 /// Everything of a frame that is not in the scene image.
 struct FrameSettings {
-  Camera camera;
-  std::uint32_t width = 1024, height = 1024;
+  Camera camera;                       ///< in world space
+  std::uint32_t width = 1024, height = 1024;  ///< pixels, 1..kMaxPictureWidth
   std::uint32_t tile_width = 32;       ///< must be the store layout's
-  Accuracy accuracy = Accuracy::kStandard;
-  Shading shading = Shading::kSimple;
+  Accuracy accuracy = Accuracy::kStandard;  ///< one that the image stores triangles for
+  Shading shading = Shading::kSimple;  ///< kScene: of images with effects
+  /// TechniqueBits; they change how much is done, not what is seen.
   std::uint32_t techniques = kUseMailbox | kUseCornerCulling | kUseEmptySkip;
-  std::uint32_t output_depth = 2, macro_depth = 2, triangle_depth = 2;
+  std::uint32_t output_depth = 2, macro_depth = 2, triangle_depth = 2;  ///< buffers in rotation, at most the layout's
   std::uint32_t walk_depth = 2;        ///< walks of secondary rays under way at once, 1 or more; of Shading::kScene
-  std::uint32_t background_rgba = 0xFF000000u;
-  float t_far = kFloatMax;
+  std::uint32_t background_rgba = 0xFF000000u;  ///< 0xAABBGGRR
+  float t_far = kFloatMax;             ///< hits farther away do not count; in units of the ray's direction
   MainAddress color{}, depth{}, ids{}; ///< depth, ids: value 0 = not wanted
 };
 

@@ -33,7 +33,7 @@ struct GridNeed {
   std::uint32_t dropped_triangle_count;  ///< zero-area triangles (decided exactly)
   std::uint64_t image_bytes;             ///< size of the image, a multiple of kLineBytes
   std::uint64_t scratch_bytes;           ///< working memory of build_scene_image, free again afterwards
-  GridSteps steps;
+  GridSteps steps;                       ///< for those who keep time
 };
 
 /// Counts what build_scene_image will need. Itself needs no memory beyond a fixed stack frame.

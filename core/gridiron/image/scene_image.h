@@ -15,19 +15,19 @@ namespace gridiron {
 /// A validated scene image: header, grid, effects and where each section lies. Offsets count from the
 /// image's first byte.
 struct SceneImageView {
-  ImageHeader header;
-  GridRecord grid;
-  std::uint64_t macro_table_offset_bytes;
-  std::uint64_t cell_blocks_offset_bytes;
-  std::uint64_t triangles_offset_bytes;
-  bool has_effects;
+  ImageHeader header;                      ///< as it stands in the image
+  GridRecord grid;                         ///< as it stands in the image
+  std::uint64_t macro_table_offset_bytes;  ///< MacroTableEntry[]
+  std::uint64_t cell_blocks_offset_bytes;  ///< blocks of cells
+  std::uint64_t triangles_offset_bytes;    ///< triangle records
+  bool has_effects;                        ///< the scene has lights and materials
   EffectsRecord effects;               ///< all zero where the image has none
   std::uint64_t effects_offset_bytes;  ///< of that record; 0 where the image has none
 };
 
 /// What was wrong with an image: for the words of tools.
 struct SceneImageError {
-  Status status = Status::kOk;
+  Status status = Status::kOk;    ///< what open_scene_image returned
   std::uint64_t byte_offset = 0;  ///< place of the offending field
   const char* field = "";         ///< its name in SPEC.md
 };

@@ -12,6 +12,7 @@
 
 namespace gridiron {
 
+/// Why a call of feed() or finish() came back.
 enum class PlyEvent : std::uint8_t {
   kNeedInput,  ///< every byte given was consumed: feed() more, or finish()
   kHeader,     ///< header() is valid; the place to give output memory
@@ -23,7 +24,7 @@ enum class PlyEvent : std::uint8_t {
 
 /// What one call of feed() or finish() did.
 struct PlyStep {
-  PlyEvent event = PlyEvent::kNeedInput;
+  PlyEvent event = PlyEvent::kNeedInput;  ///< why it came back
   std::size_t consumed_bytes = 0;  ///< of the bytes given; the next call continues behind them
   std::uint64_t first_item = 0;    ///< index of the batch's first vertex or triangle in the input
   std::size_t item_count = 0;      ///< size of the batch
@@ -31,8 +32,8 @@ struct PlyStep {
 
 /// Where batches go. An empty span: these items are checked and counted, and not kept.
 struct PlyOutput {
-  std::span<Vec3> vertices;
-  std::span<UVec3> triangles;
+  std::span<Vec3> vertices;    ///< x y z as the input has them
+  std::span<UVec3> triangles;  ///< indices of vertices
 };
 
 /// Reads one PLY input that arrives in pieces of any size.
@@ -56,6 +57,7 @@ struct PlyOutput {
 /// Cost: linear in the bytes; bounded work between events for bounded pieces.
 class PlyReader {
  public:
+  /// A reader of one input, before its first byte.
   explicit PlyReader(const PlyConfig& config = {});
 
   /// Sets where the next batches go, from the start of the spans. Allowed before the first feed() and after any event
@@ -68,9 +70,13 @@ class PlyReader {
   /// Tells the end of the input. Call until the event is kEnd or kError; consumed_bytes is 0.
   [[nodiscard]] PlyStep finish();
 
+  /// Valid from kHeader on.
   [[nodiscard]] const PlyHeader& header() const { return header_; }
+  /// What was read so far.
   [[nodiscard]] const PlyCounts& counts() const { return counts_; }
+  /// Valid from kError on.
   [[nodiscard]] PlyError error() const { return error_; }
+  /// Where the error is.
   [[nodiscard]] const PlyPosition& position() const { return position_; }
 
  private:
@@ -229,9 +235,9 @@ class PlyReader {
 
 /// Outcome of reading a whole input that lies in memory.
 struct PlyResult {
-  PlyError error = PlyError::kNone;
+  PlyError error = PlyError::kNone;  ///< kNone: the whole input was read
   PlyPosition position;  ///< where the error is
-  PlyHeader header;
+  PlyHeader header;      ///< what it announces
   PlyCounts counts;  ///< final where there is no error
 };
 

@@ -64,7 +64,7 @@ inline constexpr std::size_t kPlyNameBytes = 4096;        ///< names a reader ca
 inline constexpr std::size_t kPlyTextBytes = 256;         ///< one number, or the words of one header line
 inline constexpr std::size_t kPlyShownNameBytes = 32;     ///< element name in a position, cut to fit, with its NUL
 
-inline constexpr std::uint32_t kPlyNoElement = 0xFFFFFFFFu;
+inline constexpr std::uint32_t kPlyNoElement = 0xFFFFFFFFu;  ///< of an error that belongs to no element
 
 /// Limits of one reader. Comments, list lengths and rows of skipped elements need no limit: they cost no memory.
 struct PlyConfig {
@@ -83,12 +83,17 @@ struct PlyPosition {
   std::uint64_t row = 0;                        ///< from 0, in that element; 0 in the header
 };
 
-enum class PlyFormat : std::uint8_t { kAscii, kBinaryLittleEndian, kBinaryBigEndian };
+/// How the body is written.
+enum class PlyFormat : std::uint8_t {
+  kAscii,               ///< decimal numbers
+  kBinaryLittleEndian,  ///< least byte first
+  kBinaryBigEndian      ///< greatest byte first
+};
 
 /// What the header declares. Valid from PlyEvent::kHeader on.
 struct PlyHeader {
-  PlyFormat format = PlyFormat::kAscii;
-  std::uint64_t vertex_count = 0;
+  PlyFormat format = PlyFormat::kAscii;  ///< of the body
+  std::uint64_t vertex_count = 0;     ///< rows of "vertex"
   std::uint64_t face_count = 0;       ///< polygons of any size
   std::uint64_t strip_row_count = 0;  ///< rows of "tristrips"; each may hold many strips
   bool has_faces = false;             ///< an element "face" is declared, perhaps with 0 rows
@@ -97,9 +102,9 @@ struct PlyHeader {
 
 /// What was read so far; final at PlyEvent::kEnd.
 struct PlyCounts {
-  std::uint64_t vertices = 0;
-  std::uint64_t faces = 0;
-  std::uint64_t strip_rows = 0;
+  std::uint64_t vertices = 0;       ///< rows of "vertex"
+  std::uint64_t faces = 0;          ///< rows of "face"
+  std::uint64_t strip_rows = 0;     ///< rows of "tristrips"
   std::uint64_t triangles = 0;      ///< after fanning polygons and unrolling strips
   std::uint64_t surplus_bytes = 0;  ///< after the last row; blanks of an ASCII body are not counted
 };

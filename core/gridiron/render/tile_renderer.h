@@ -26,6 +26,7 @@ namespace gridiron {
 template <class L, class Layout, Platform P>
 class TileRenderer {
  public:
+  /// Borrows store and platform for as long as it lives.
   TileRenderer(LocalStore<Layout>& store, P& platform, SpillRegion spill)
       : store_(store), transfers_(platform, store.work), effects_(make_effects(spill)) {}
 

@@ -21,13 +21,14 @@ struct Material {
   float shine = 0.0f;          ///< exponent of the highlight, 0..1e5; 0: none
   float transmittance = 0.0f;  ///< share let through, 0..1
   float index = 1.0f;          ///< of refraction, 0.1..10 where transmittance is above 0
-  bool smooth_normals = false;
+  bool smooth_normals = false;  ///< its triangles have normals at their corners
 };
 
 /// A point light (samples = 0), or an area light corner + a edge_u + b edge_v, as bright in all as a point light.
 struct Light {
-  Vec3 corner{0, 0, 0};
-  Vec3 edge_u{0, 0, 0}, edge_v{0, 0, 0};
+  Vec3 corner{0, 0, 0};       ///< where it is, or begins
+  /// One edge of an area light.
+  Vec3 edge_u{0, 0, 0}, edge_v{0, 0, 0};  ///< its other edge
   Vec3 color{1, 1, 1};        ///< 0..kMaxLightColor
   std::uint32_t samples = 0;  ///< ..kMaxEffectSamples
 };
@@ -40,7 +41,7 @@ struct EffectsView {
   std::span<const UVec3> triangle_normals;              ///< empty, or one per triangle: into normals, or kNoNormals
   std::span<const Light> lights;                        ///< 0..kMaxLights, point lights first
   Vec3 background{0, 0, 0};                             ///< 0..1 each
-  bool has_shadows = true;
+  bool has_shadows = true;                              ///< of all lights
   std::uint32_t recursion_depth = 5;                    ///< 1..kMaxRecursionDepth
   std::uint32_t samples_per_pixel = 1;                  ///< 1, 4, 16
   std::uint32_t occlusion_samples = 0;                  ///< 0: no ambient occlusion

@@ -10,8 +10,8 @@ namespace gridiron {
 
 /// Indexed triangles. Triangle i is (vertices[t.x], vertices[t.y], vertices[t.z]) with t = triangles[i].
 struct MeshView {
-  std::span<const Vec3> vertices;
-  std::span<const UVec3> triangles;
+  std::span<const Vec3> vertices;    ///< finite, each coordinate within kCoordinateLimit
+  std::span<const UVec3> triangles;  ///< indices of vertices
 };
 
 }  // namespace gridiron

@@ -19,7 +19,7 @@
 namespace gridiron {
 
 // A layout is a set of sizes; none changes a pixel. The tile's width is a parameter of each: which widths a core has
-// room for, kFitsArena tells.
+// room for, kFitsArena tells. The reference shows the members of one of them, for the others have the same.
 
 /// Sizes of a 256 KB core (Cho, Kim, Han 2012, section 6).
 /// @tparam PacketWidthV  rays along a packet's edge: 4, 8, 16, 32, at most the tile's width.
@@ -27,26 +27,29 @@ namespace gridiron {
 template <std::uint32_t PacketWidthV = 8, std::uint32_t TileWidthV = 32>
 struct StoreLayout256K {
   static constexpr std::uint32_t kEffects = 0;  ///< EffectBits it is built for
-  static constexpr std::uint32_t kArenaBytes = 256 * 1024;
-  static constexpr std::uint32_t kCodeBudgetBytes = 53 * 1024;
-  static constexpr std::uint32_t kStackBudgetBytes = 8704;
-  static constexpr std::uint32_t kTileWidth = TileWidthV;
-  static constexpr std::uint32_t kPacketWidth = PacketWidthV;
+  static constexpr std::uint32_t kArenaBytes = 256 * 1024;         ///< local memory of a core
+  static constexpr std::uint32_t kCodeBudgetBytes = 53 * 1024;     ///< of it for code: check_budgets proves it
+  static constexpr std::uint32_t kStackBudgetBytes = 8704;         ///< of it for the stack
+  static constexpr std::uint32_t kTileWidth = TileWidthV;          ///< pixels along a tile's edge
+  static constexpr std::uint32_t kPacketWidth = PacketWidthV;      ///< rays along a packet's edge; 0: no packets
+  /// Triangles that a packet remembers to have met.
   static constexpr std::uint32_t kMailboxSlots = PacketWidthV < 16                        ? 64
                                                  : PacketWidthV == 32 && TileWidthV != 64 ? 1024
                                                                                           : 256;
+  /// Triangles that a packet keeps of those hit lately.
   static constexpr std::uint32_t kRecentTriangles = PacketWidthV == 32 && TileWidthV != 64 ? 256 : 32;
   static constexpr std::uint32_t kTableEntries = 4096;  ///< 131,072 macrocells resident
-  static constexpr std::uint32_t kMaxMacroWidth = 8;
-  static constexpr std::uint32_t kMaxMacroDepth = 4;
-  static constexpr std::uint32_t kTrianglesPerBuffer = 64;
+  static constexpr std::uint32_t kMaxMacroWidth = 8;   ///< cells along a macrocell's edge, at most
+  static constexpr std::uint32_t kMaxMacroDepth = 4;   ///< buffers of cell blocks
+  static constexpr std::uint32_t kTrianglesPerBuffer = 64;  ///< records
   static constexpr std::uint32_t kMaxTriangleDepth = TileWidthV == 64 ? 6 : 12;  ///< two tiles of 64 take 96 KB
-  static constexpr std::uint32_t kMaxOutputDepth = 2;
+  static constexpr std::uint32_t kMaxOutputDepth = 2;  ///< tiles that are made or on their way out
 };
 
 /// Sizes of a 64 KB core: smaller tiles and buffers.
 template <std::uint32_t PacketWidthV = 8, std::uint32_t TileWidthV = 16>
 struct StoreLayout64K {
+  /// @cond
   static constexpr std::uint32_t kEffects = 0;  ///< EffectBits it is built for
   static constexpr std::uint32_t kArenaBytes = 64 * 1024;
   static constexpr std::uint32_t kCodeBudgetBytes = 32 * 1024;
@@ -61,11 +64,13 @@ struct StoreLayout64K {
   static constexpr std::uint32_t kTrianglesPerBuffer = 16;
   static constexpr std::uint32_t kMaxTriangleDepth = 4;
   static constexpr std::uint32_t kMaxOutputDepth = 2;
+  /// @endcond
 };
 
 /// Sizes of a 128 KB core: tiles and packets of the 256 KB one, more but shorter buffers than that of 64 KB.
 template <std::uint32_t PacketWidthV = 8, std::uint32_t TileWidthV = 32>
 struct StoreLayout128K {
+  /// @cond
   static constexpr std::uint32_t kEffects = 0;  ///< EffectBits it is built for
   static constexpr std::uint32_t kArenaBytes = 128 * 1024;
   static constexpr std::uint32_t kCodeBudgetBytes = 53 * 1024;
@@ -80,11 +85,13 @@ struct StoreLayout128K {
   static constexpr std::uint32_t kTrianglesPerBuffer = 15;  ///< with room to start 16 bytes later, six lines
   static constexpr std::uint32_t kMaxTriangleDepth = 6;
   static constexpr std::uint32_t kMaxOutputDepth = 2;
+  /// @endcond
 };
 
 /// Sizes of a 512 KB core: a longer table, more and longer buffers, a larger mailbox.
 template <std::uint32_t PacketWidthV = 8, std::uint32_t TileWidthV = 32>
 struct StoreLayout512K {
+  /// @cond
   static constexpr std::uint32_t kEffects = 0;  ///< EffectBits it is built for
   static constexpr std::uint32_t kArenaBytes = 512 * 1024;
   static constexpr std::uint32_t kCodeBudgetBytes = 53 * 1024;
@@ -99,12 +106,14 @@ struct StoreLayout512K {
   static constexpr std::uint32_t kTrianglesPerBuffer = 128;
   static constexpr std::uint32_t kMaxTriangleDepth = 15;
   static constexpr std::uint32_t kMaxOutputDepth = 2;
+  /// @endcond
 };
 
 /// Sizes of a 256 KB core that renders effects.
 /// @tparam BuiltV  EffectBits: what it is built for, kSceneShading among them.
 template <std::uint32_t BuiltV, std::uint32_t PacketWidthV = 32>
 struct EffectLayout256K {
+  /// @cond
   static constexpr std::uint32_t kEffects = BuiltV;
   static constexpr std::uint32_t kArenaBytes = 256 * 1024;
   static constexpr std::uint32_t kCodeBudgetBytes = 92 * 1024;
@@ -119,9 +128,10 @@ struct EffectLayout256K {
   static constexpr std::uint32_t kTrianglesPerBuffer = 40;
   static constexpr std::uint32_t kMaxTriangleDepth = 8;
   static constexpr std::uint32_t kMaxOutputDepth = 2;
-  static constexpr std::uint32_t kWaveRays = 256;
-  static constexpr std::uint32_t kMaterialSlots = 64;
-  static constexpr std::uint32_t kLightSlots = 16;
+  /// @endcond
+  static constexpr std::uint32_t kWaveRays = 256;      ///< rays worked on together
+  static constexpr std::uint32_t kMaterialSlots = 64;  ///< materials at hand
+  static constexpr std::uint32_t kLightSlots = 16;     ///< lights at hand
   static_assert((BuiltV & kSceneShading) != 0);
 };
 
@@ -131,6 +141,7 @@ struct EffectLayout256K {
 /// @tparam WaveRaysV  rays of a wave: 32, 64; what a longer one takes must be spared in code.
 template <std::uint32_t BuiltV, std::uint32_t WaveRaysV = 32>
 struct EffectLayout64K {
+  /// @cond
   static constexpr std::uint32_t kEffects = BuiltV;
   static constexpr std::uint32_t kArenaBytes = 64 * 1024;
   static constexpr std::uint32_t kCodeBudgetBytes = 43 * 1024 + 512;
@@ -147,6 +158,7 @@ struct EffectLayout64K {
   static constexpr std::uint32_t kMaterialSlots = 8;
   static constexpr std::uint32_t kLightSlots = 4;
   static_assert((BuiltV & kSceneShading) != 0);
+  /// @endcond
 };
 
 /// A layout whose packets have no width traces all rays by walks.
@@ -158,6 +170,7 @@ template <class Layout>
 inline constexpr std::uint32_t kWalkCount =
     Layout::kMaxMacroDepth < Layout::kMaxTriangleDepth ? Layout::kMaxMacroDepth : Layout::kMaxTriangleDepth;
 
+/// @cond
 /// Parts of a local store that depend on what its layout is for.
 template <class Layout>
 struct StoreParts {
@@ -191,13 +204,15 @@ struct StoreParts {
   using StoreWave = std::remove_pointer_t<decltype(wave_of<(Layout::kEffects != 0)>())>;
   using Effects = std::conditional_t<Layout::kEffects != 0, EffectStore<Layout>, NoEffectStore>;
 };
+/// @endcond
 
 /// Memory of one core. Buffers for transfers are congruent with main memory modulo kPortableCongruenceBytes: cell
 /// blocks and tiles start on lines there and here; triangle runs start anywhere on 16 bytes, so their buffers have room
 /// to start 16 bytes later.
 template <class LayoutType>
 struct alignas(128) LocalStore {
-  using Layout = LayoutType;
+  using Layout = LayoutType;  ///< its sizes
+  /// @cond
   using StorePacket = typename StoreParts<Layout>::StorePacket;
   static constexpr std::uint32_t kTilePixels = Layout::kTileWidth * Layout::kTileWidth;
   static constexpr std::uint32_t kMacroCells = Layout::kMaxMacroWidth * Layout::kMaxMacroWidth * Layout::kMaxMacroWidth;
@@ -215,15 +230,17 @@ struct alignas(128) LocalStore {
   struct alignas(128) TriangleBuffer {
     std::byte bytes[kTriangleBufferBytes];
   };
+  /// @endcond
   /// One finished or growing tile, row-major.
   struct alignas(128) TileOutput {
-    std::uint32_t color[kTilePixels];
-    float depth[kTilePixels];
-    std::uint32_t id[kTilePixels];
+    std::uint32_t color[kTilePixels];  ///< RGBA8
+    float depth[kTilePixels];          ///< as FrameRecord's plane
+    std::uint32_t id[kTilePixels];     ///< triangle_id or kNoTriangle
   };
 
-  alignas(128) FrameRecord frame;
-  alignas(128) WorkCounters work;
+  alignas(128) FrameRecord frame;  ///< a copy of the frame's
+  alignas(128) WorkCounters work;  ///< what was done; of the last frame until the next one begins
+  /// @cond
   MacroTableWindow<Layout::kTableEntries> table;
   CellBlock cell_blocks[Layout::kMaxMacroDepth];
   TriangleBuffer triangles[Layout::kMaxTriangleDepth];
@@ -232,8 +249,11 @@ struct alignas(128) LocalStore {
     StoreWave wave;      ///< while what they hit is worked on
   };
   [[no_unique_address]] typename StoreParts<Layout>::StoreMailbox mailbox;
-  TileOutput output[Layout::kMaxOutputDepth];
+  /// @endcond
+  TileOutput output[Layout::kMaxOutputDepth];  ///< in rotation
+  /// @cond
   [[no_unique_address]] Effects effects;
+  /// @endcond
 
   static_assert(Layout::kMaxMacroDepth <= kMacroTagCount);
   static_assert(Layout::kMaxTriangleDepth <= kTriangleTagCount);

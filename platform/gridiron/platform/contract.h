@@ -13,22 +13,26 @@ namespace gridiron {
 
 /// A byte address in main memory. Opaque to core: it may be offset and its low bits compared, never dereferenced.
 struct MainAddress {
-  std::uint64_t value = 0;
+  std::uint64_t value = 0;  ///< bytes from address 0 on
 
+  /// Same address.
   friend constexpr bool operator==(MainAddress, MainAddress) = default;
+  /// @returns the address so many bytes on.
   [[nodiscard]] constexpr MainAddress offset_by(std::uint64_t bytes) const { return {value + bytes}; }
 };
 
 /// Names a group of transfers that are waited for together. 0 <= index < PlatformLimits::tag_count.
 struct Tag {
-  std::uint8_t index = 0;
+  std::uint8_t index = 0;  ///< bit of a TagMask
 };
 
 /// A set of tags: bit i stands for Tag{i}.
 struct TagMask {
-  std::uint32_t bits = 0;
+  std::uint32_t bits = 0;  ///< bit i: Tag{i}
 
+  /// @returns the set of one tag.
   [[nodiscard]] static constexpr TagMask of(Tag tag) { return {std::uint32_t{1} << tag.index}; }
+  /// The tags of either.
   friend constexpr TagMask operator|(TagMask a, TagMask b) { return {a.bits | b.bits}; }
 };
 
@@ -46,19 +50,20 @@ struct PlatformLimits {
 /// The transfers core issues, on every target alike, so that counters agree on every board: sizes 16n <= 8 KB, both
 /// ends congruent modulo 32, the main-memory side crossing no 4 KB boundary.
 inline constexpr std::uint32_t kPortableGranuleBytes = 16;
-inline constexpr std::uint32_t kPortableCongruenceBytes = 32;
-inline constexpr std::uint32_t kPortableMaxTransferBytes = 8192;
-inline constexpr std::uint32_t kPortableBoundaryBytes = 4096;
+inline constexpr std::uint32_t kPortableCongruenceBytes = 32;     ///< both ends are congruent modulo this
+inline constexpr std::uint32_t kPortableMaxTransferBytes = 8192;  ///< largest transfer
+inline constexpr std::uint32_t kPortableBoundaryBytes = 4096;     ///< no transfer crosses a multiple in main memory
 
 /// Answer of claim_tile().
 struct TileClaim {
+  /// What is to be done.
   enum class Kind : std::uint8_t {
     kTile,      ///< render tile `tile_id`
     kNone,      ///< no tile is left
     kAborted,   ///< the frame was asked to stop
     kDeadline,  ///< the frame's deadline has passed
   };
-  Kind kind = Kind::kNone;
+  Kind kind = Kind::kNone;    ///< a tile, or why there is none
   std::uint32_t tile_id = 0;  ///< row-major, 0 = top left; meaningful for kTile only
 };
 

@@ -10,35 +10,41 @@ namespace gridiron {
 
 /// What goes wrong, and when. The default is that nothing does.
 struct FaultPlan {
+  /// What goes wrong with a transfer.
   enum class Kind : std::uint8_t {
     kRefuse,  ///< get or put returns `status` and starts nothing
     kReport,  ///< no byte moves, the wait for its tag returns `status`
     kDelay,   ///< the transfer starts only when its tag is waited for; no error
   };
   std::uint64_t transfer = 0;  ///< gets and puts are counted together from 1; 0: none goes wrong
-  Kind kind = Kind::kReport;
-  Status status = Status::kTransferFailed;
+  Kind kind = Kind::kReport;   ///< how it goes wrong
+  Status status = Status::kTransferFailed;  ///< of kRefuse and kReport
 
   std::uint64_t claim = 0;  ///< claims are counted from 1; from this one on all are answered claim_answer; 0: never
-  TileClaim::Kind claim_answer = TileClaim::Kind::kAborted;
+  TileClaim::Kind claim_answer = TileClaim::Kind::kAborted;  ///< kAborted, kDeadline or kNone
 };
 
 /// Hands every call on to the platform it wraps, but for what the plan says.
 template <Platform P>
 class FaultInjection {
  public:
+  /// Borrows `inner` for as long as this lives.
   FaultInjection(P& inner, const FaultPlan& plan) : inner_(inner), plan_(plan) {}
 
+  /// Those of the platform it wraps.
   [[nodiscard]] PlatformLimits limits() const { return inner_.limits(); }
 
+  /// As of Platform; counted, and perhaps the transfer that goes wrong.
   Status get(void* local, MainAddress address, std::uint32_t bytes, Tag tag) {
     return transfer({local, nullptr, address, bytes, tag});
   }
 
+  /// As of Platform; counted, and perhaps the transfer that goes wrong.
   Status put(const void* source, MainAddress address, std::uint32_t bytes, Tag tag) {
     return transfer({nullptr, source, address, bytes, tag});
   }
 
+  /// As of Platform; reports, or starts late, the transfer that goes wrong.
   Status wait(TagMask tags) {
     const bool is_due = held_ && (tags.bits & TagMask::of(command_.tag).bits) != 0;
     if (is_due) held_ = false;
@@ -49,16 +55,19 @@ class FaultInjection {
     return is_due && plan_.kind == FaultPlan::Kind::kReport ? plan_.status : waited;
   }
 
+  /// As of Platform, until the plan answers.
   TileClaim claim_tile() {
     ++claims_;
     if (plan_.claim != 0 && claims_ >= plan_.claim) return {plan_.claim_answer, 0};
     return inner_.claim_tile();
   }
 
+  /// As of WorkObserver.
   void note_work(const std::uint32_t* counts, std::uint32_t count) requires WorkObserver<P> {
     inner_.note_work(counts, count);
   }
 
+  /// As of StageObserver.
   void note_stage(std::uint8_t stage) requires StageObserver<P> { inner_.note_stage(stage); }
 
   /// Gets and puts so far, refused ones included.

@@ -35,15 +35,15 @@ enum class [[nodiscard]] Status : std::uint8_t {
 
   // Effects (kernel): the frame's scene calls for one that this renderer was built without.
   kNeedsSceneShading,      ///< lights, materials and the background
-  kNeedsPointShadows,
-  kNeedsAreaLights,
-  kNeedsReflection,
-  kNeedsRefraction,
-  kNeedsAmbientOcclusion,
-  kNeedsEnvironment,
-  kNeedsSmoothNormals,
-  kNeedsHighlights,
-  kNeedsMultisampling,
+  kNeedsPointShadows,      ///< kPointShadows
+  kNeedsAreaLights,        ///< kAreaLights
+  kNeedsReflection,        ///< kReflection
+  kNeedsRefraction,        ///< kRefraction
+  kNeedsAmbientOcclusion,  ///< kAmbientOcclusion
+  kNeedsEnvironment,       ///< kEnvironment
+  kNeedsSmoothNormals,     ///< kSmoothNormals
+  kNeedsHighlights,        ///< kHighlights
+  kNeedsMultisampling,     ///< kMultisampling
   kSpillTooSmall,          ///< main memory given for rays that wait is less than the scene's depth asks for
 
   // Readers and builders (prepare).

@@ -13,9 +13,11 @@ namespace gridiron::sim {
 
 /// How often each step of a build was done. The same on every host.
 struct BuildWork {
-  std::array<std::uint64_t, kBuildStepCount> counts{};
+  std::array<std::uint64_t, kBuildStepCount> counts{};  ///< by BuildStep
 
+  /// Counts `amount` more of a step.
   constexpr void add(BuildStep step, std::uint64_t amount) { counts[static_cast<std::size_t>(step)] += amount; }
+  /// @returns how often a step was done.
   [[nodiscard]] constexpr std::uint64_t operator[](BuildStep step) const {
     return counts[static_cast<std::size_t>(step)];
   }

@@ -31,24 +31,26 @@ enum class BuildStep : std::uint8_t {
   kNodeMade,         ///< hierarchy: nodes of the binary tree, inner and leaf, without their sweeps
   kCount
 };
+/// Steps, of grid and hierarchy.
 inline constexpr std::size_t kBuildStepCount = static_cast<std::size_t>(BuildStep::kCount);
 
 /// The general core, which builds the scene image before the cores render it. One core of it works.
 struct MasterProfile {
-  double clock_hz;
+  double clock_hz;  ///< of the general core
   std::array<double, kBuildStepCount> step_cycles;  ///< cycles of its own clock per step, memory included
 
+  /// Equal in every figure.
   bool operator==(const MasterProfile&) const = default;
 };
 
 /// All times in cycles of the core clock, but those of `master`.
 struct MachineProfile {
-  std::string_view name;
-  std::string_view description;
-  std::uint32_t core_count;
-  double clock_hz;
-  std::uint64_t main_memory_bytes;
-  std::uint32_t local_store_bytes;
+  std::string_view name;                ///< what find_machine_profile knows it by
+  std::string_view description;         ///< one line for people
+  std::uint32_t core_count;             ///< accelerator cores
+  double clock_hz;                      ///< of the accelerator cores
+  std::uint64_t main_memory_bytes;      ///< shared by all cores
+  std::uint32_t local_store_bytes;      ///< of each core
   std::uint32_t line_bytes;             ///< a transfer costs whole lines of this size
   std::uint32_t queue_depth;            ///< commands pending per core; the kernel keeps to it, a replay of more stalls
   std::uint32_t lines_in_flight;        ///< per core
@@ -59,8 +61,9 @@ struct MachineProfile {
   double core_line_interval_cycles;     ///< least distance between two lines of one core
   double claim_cycles;                  ///< from asking for a tile to having it
   std::array<double, kWorkKindCount> work_cycles;  ///< cycles per unit of each kind of work, 4 lanes
-  MasterProfile master;
+  MasterProfile master;                 ///< builds scenes
 
+  /// Equal in every figure and name.
   bool operator==(const MachineProfile&) const = default;
 };
 

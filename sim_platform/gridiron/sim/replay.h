@@ -15,7 +15,14 @@
 namespace gridiron::sim {
 
 /// Levels at which a core waits for transfers (paper, Fig. 4), and the frame's own set-up.
-enum class WaitLevel : std::uint8_t { kTile, kMacroCell, kTriangle, kSetup, kCount };
+enum class WaitLevel : std::uint8_t {
+  kTile,       ///< output buffers
+  kMacroCell,  ///< cell blocks
+  kTriangle,   ///< triangle buffers
+  kSetup,      ///< frame record and macrocell table
+  kCount
+};
+/// Levels, kSetup among them.
 inline constexpr std::size_t kWaitLevelCount = static_cast<std::size_t>(WaitLevel::kCount);
 
 /// Levels by name of the tag waited for (core/gridiron/store/dma_tags.h): kTile = output buffers, kMacroCell = cell
@@ -32,7 +39,7 @@ inline constexpr std::size_t kWaitLevelCount = static_cast<std::size_t>(WaitLeve
 struct StageTiming {
   double compute_cycles = 0;  ///< initialisation included
   double wait_cycles = 0;     ///< of all levels
-  std::uint64_t gets = 0, puts = 0;
+  std::uint64_t gets = 0, puts = 0;           ///< commands
   std::uint64_t bytes_in = 0, bytes_out = 0;  ///< as requested
 };
 
@@ -42,12 +49,12 @@ struct StageTiming {
 /// no buffering can hide them. Time in which it stands still is a wait: at a wait, of the level of the transfer that
 /// ended last; at a full queue, of the level of the transfer that could not be issued.
 struct CoreTiming {
-  std::uint32_t tiles = 0;
-  double init_cycles = 0;
-  double compute_cycles = 0;
-  double dma_wait_cycles[kWaitLevelCount] = {};
+  std::uint32_t tiles = 0;                       ///< claimed
+  double init_cycles = 0;                        ///< work that is_initialisation
+  double compute_cycles = 0;                     ///< all other work, and issuing transfers
+  double dma_wait_cycles[kWaitLevelCount] = {};  ///< by WaitLevel
   double idle_cycles = 0;  ///< claim latency (of the refused claim too) and the time after the core's last step
-  std::uint64_t gets = 0, puts = 0;
+  std::uint64_t gets = 0, puts = 0;                     ///< commands
   std::uint64_t bytes_in = 0, bytes_out = 0;            ///< as requested
   std::uint64_t line_bytes_in = 0, line_bytes_out = 0;  ///< in whole lines
   /// By Stage: the sums over them are init + compute, all waits, bytes and commands of the core, without any rounding.
@@ -57,25 +64,33 @@ struct CoreTiming {
 /// One bar of the timeline. A kTile span encloses the spans of its tile; the others do not overlap on one core. What no
 /// span covers is idle.
 struct TimelineSpan {
-  enum class Kind : std::uint8_t { kInit, kCompute, kWait, kTile };
-  std::uint32_t core;
-  Kind kind;
-  WaitLevel level;  ///< kWait only
-  std::uint32_t tile_id;
-  double begin_cycles, end_cycles;
+  /// What a core does meanwhile.
+  enum class Kind : std::uint8_t {
+    kInit,     ///< work that is_initialisation
+    kCompute,  ///< other work
+    kWait,     ///< stands still
+    kTile,     ///< has this tile
+  };
+  std::uint32_t core;                ///< whose
+  Kind kind;                         ///< of span
+  WaitLevel level;                   ///< kWait only
+  std::uint32_t tile_id;             ///< kNoTile before the first and after the last
+  double begin_cycles, end_cycles;   ///< from the frame's begin
 };
 
+/// The time of a frame.
 struct FrameTiming {
   double frame_cycles = 0;  ///< until the last core has ended its epilogue
-  double seconds = 0;
+  double seconds = 0;       ///< the same, by the clock of the machine
   double channel_busy_cycles = 0;  ///< time in which the shared channel carried a line
-  std::vector<CoreTiming> cores;
+  std::vector<CoreTiming> cores;       ///< one a core
   std::vector<TimelineSpan> timeline;  ///< filled only when asked for; core by core, each in order of time
 };
 
+/// What is asked of a replay.
 struct ReplayOptions {
   std::uint32_t core_count = 0;  ///< 0: the profile's
-  bool timeline = false;
+  bool timeline = false;         ///< FrameTiming::timeline is wanted
   /// Core that renders trace.tiles[n], for programs whose tiles depend on what their core did before; empty: cores
   /// claim. A tile of a core that there is not is rendered by none.
   std::span<const std::uint32_t> core_of_tile = {};

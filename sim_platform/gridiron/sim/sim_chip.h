@@ -25,9 +25,16 @@ enum class Completion : std::uint8_t {
 };
 
 /// How large a local store the cores have.
-enum class StoreSize : std::uint8_t { k64KB, k128KB, k256KB, k512KB };
+enum class StoreSize : std::uint8_t {
+  k64KB,   ///< 65,536 bytes
+  k128KB,  ///< 131,072 bytes
+  k256KB,  ///< 262,144 bytes
+  k512KB,  ///< 524,288 bytes
+};
+/// All of them, the smallest first.
 inline constexpr StoreSize kStoreSizes[] = {StoreSize::k64KB, StoreSize::k128KB, StoreSize::k256KB, StoreSize::k512KB};
 
+/// @returns bytes of a local store.
 [[nodiscard]] constexpr std::uint32_t arena_bytes(StoreSize store) {
   return (64u << 10) << static_cast<std::uint32_t>(store);
 }
@@ -38,12 +45,13 @@ inline constexpr StoreSize kStoreSizes[] = {StoreSize::k64KB, StoreSize::k128KB,
 
 /// What one build of the kernel is made for.
 struct LayoutChoice {
-  StoreSize store = StoreSize::k256KB;
+  StoreSize store = StoreSize::k256KB;  ///< local memory
   std::uint32_t tile_width = 32;   ///< pixels along a tile's edge
   std::uint32_t packet_width = 8;  ///< rays along a packet's edge
   bool has_effects = false;        ///< renders Shading::kScene
 };
 
+/// What is checked and traced while a frame is rendered.
 enum class Mode : std::uint8_t {
   kChecked,       ///< every rule checked, destinations poisoned until the wait, work traced
   kPlain,         ///< plain copies: fast host rendering, no trace, no work totals
@@ -62,34 +70,36 @@ struct SpillMemory {
   }
 };
 
+/// How a frame is rendered. None of it changes a pixel.
 struct ChipOptions {
-  Mode mode = Mode::kChecked;
+  Mode mode = Mode::kChecked;  ///< what is checked
   std::uint32_t threads = 1;  ///< host threads, each one simulated core's worth of claims
   std::uint32_t lanes = 4;    ///< 4, 8, 16 (8 and 16 where the host has them, else kUnsupportedFrame)
-  StoreSize store = StoreSize::k256KB;
+  StoreSize store = StoreSize::k256KB;  ///< local memory of each core
   std::uint32_t packet_width = 8;  ///< rays along a packet's edge; the frame brings its tile width
-  Completion completion = Completion::kEarly;
+  Completion completion = Completion::kEarly;  ///< of transfers
   std::uint64_t seed = 0;           ///< of Completion::kRandom
-  PlatformLimits limits;            ///< of the simulated platform
-  SpillMemory spill;                ///< one slice a thread; looked at for frames with effects only
+  PlatformLimits limits{};          ///< of the simulated platform
+  SpillMemory spill{};              ///< one slice a thread; looked at for frames with effects only
   std::uint64_t fail_transfer = 0;  ///< n > 0: the n-th transfer started (over all threads) fails; checked modes only
-  std::optional<std::uint32_t> only_tile;                                 ///< render this tile alone
+  std::optional<std::uint32_t> only_tile{};                               ///< render this tile alone
   const std::atomic<bool>* abort = nullptr;                               ///< stop between tiles when it becomes true
-  std::function<void(std::uint32_t done, std::uint32_t total)> progress;  ///< called from any thread, serialised
+  std::function<void(std::uint32_t done, std::uint32_t total)> progress{};  ///< called from any thread, serialised
 };
 
 /// A broken rule, found by the checks.
 struct Violation {
-  Status rule;
-  std::uint32_t core;
+  Status rule;            ///< that names it
+  std::uint32_t core;     ///< that broke it
   std::uint32_t tile_id;  ///< kNoTile before the first and after the last tile of a core
   std::string detail;     ///< addresses and sizes, for people
 };
 
+/// What came of a frame.
 struct ChipResult {
-  Status status = Status::kOk;
+  Status status = Status::kOk;  ///< of the frame
   std::uint32_t failed_core = 0, failed_tile = 0;  ///< meaningful when status is not kOk; lowest tile that failed
-  std::vector<Violation> violations;
+  std::vector<Violation> violations;  ///< of the failed tile
   WorkTotals work{};            ///< over all tiles; the same for any number of threads
   FrameTrace trace;             ///< Mode::kChecked only
   std::uint64_t transfers = 0;  ///< gets + puts issued

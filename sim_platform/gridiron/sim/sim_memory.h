@@ -14,14 +14,14 @@ namespace gridiron::sim {
 
 /// A piece of main memory: its address for cores, its bytes for the host.
 struct MemoryRegion {
-  MainAddress address;
-  std::span<std::byte> bytes;
+  MainAddress address;         ///< of the first byte
+  std::span<std::byte> bytes;  ///< of the host
 };
 
 /// Main memory of `capacity_bytes`; address 0 is never handed out, so that it can mean "none".
 class SimMemory {
  public:
-  static constexpr std::uint64_t kFirstAddress = 4096;
+  static constexpr std::uint64_t kFirstAddress = 4096;  ///< the lowest that is handed out
 
   /// Errors: throws std::bad_alloc where the host has not that much memory.
   explicit SimMemory(std::uint64_t capacity_bytes);
@@ -36,7 +36,9 @@ class SimMemory {
   /// Gives back everything allocated after `mark` = used_bytes() of some earlier time.
   void release_to(std::uint64_t mark);
 
+  /// End of what was handed out, from address 0 on; what release_to takes.
   [[nodiscard]] std::uint64_t used_bytes() const { return used_bytes_; }
+  /// As the constructor was told.
   [[nodiscard]] std::uint64_t capacity_bytes() const { return capacity_bytes_; }
 
   /// Host bytes of [address, address + bytes). Empty where the range is not inside what was allocated.
