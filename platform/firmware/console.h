@@ -1,0 +1,28 @@
+// Text on a board's serial line: pieces of a line, numbers in decimal or hexadecimal, without a buffer.
+// Memory: none. Threads: one core at a time. SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <cstdint>
+
+namespace gridiron::port {
+
+/// Sends one character; the board defines it. May wait for the line, within a bound of its own.
+void put_character(char character);
+
+/// A number that is to be written in hexadecimal, with 0x.
+struct Hex {
+  std::uint64_t value;
+};
+
+void print_piece(const char* text);
+void print_piece(std::uint64_t number);
+void print_piece(std::uint32_t number);
+void print_piece(Hex number);
+
+/// Writes the pieces one after the other: texts, unsigned numbers, Hex.
+template <class... Pieces>
+void print(const Pieces&... pieces) {
+  (print_piece(pieces), ...);
+}
+
+}  // namespace gridiron::port

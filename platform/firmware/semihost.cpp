@@ -1,0 +1,92 @@
+// Semihosting on RISC-V and AArch64.
+// Memory: caller's, and a command line on the stack. Threads: one core at a time. SPDX-License-Identifier: Apache-2.0
+#include "semihost.h"
+
+namespace gridiron::port {
+
+namespace {
+
+enum Operation : std::uint64_t {
+  kOpen = 0x01,
+  kClose = 0x02,
+  kWrite = 0x05,
+  kCommandLine = 0x15,
+  kExit = 0x20,
+};
+
+// Operation and address of its arguments go in, the answer comes out in the first register.
+std::uint64_t call(Operation operation, const void* arguments) {
+#if defined(__riscv)
+  register std::uint64_t answer asm("a0") = operation;
+  register const void* block asm("a1") = arguments;
+  // These three instructions, none compressed, on one page, are the call.
+  asm volatile(
+      ".option push\n.option norvc\n.balign 16\n"
+      "slli zero, zero, 0x1f\nebreak\nsrai zero, zero, 7\n.option pop"
+      : "+r"(answer)
+      : "r"(block)
+      : "memory");
+#elif defined(__aarch64__)
+  register std::uint64_t answer asm("x0") = operation;
+  register const void* block asm("x1") = arguments;
+  asm volatile("hlt #0xf000" : "+r"(answer) : "r"(block) : "memory");
+#else
+#error "no semihosting is known for this target"
+#endif
+  return answer;
+}
+
+std::uint64_t address_of(const void* place) { return reinterpret_cast<std::uintptr_t>(place); }
+
+std::uint64_t length_of(const char* text) {
+  std::uint64_t length = 0;
+  while (text[length] != '\0') ++length;
+  return length;
+}
+
+// Whether text begins with start.
+bool begins_with(const char* text, const char* start) {
+  std::uint32_t i = 0;
+  while (start[i] != '\0' && text[i] == start[i]) ++i;
+  return start[i] == '\0';
+}
+
+}  // namespace
+
+void exit_run(std::uint32_t code) {
+  constexpr std::uint64_t kApplicationExit = 0x20026;
+  const std::uint64_t arguments[] = {kApplicationExit, code};
+  call(kExit, arguments);
+  // Nobody listens, so nothing is left to do.
+  for (;;) asm volatile("" ::: "memory");
+}
+
+bool write_host_file(const char* name, const void* bytes, std::uint64_t count) {
+  constexpr std::uint64_t kWriteBinary = 5, kFailed = ~std::uint64_t{0};
+  const std::uint64_t open[] = {address_of(name), kWriteBinary, length_of(name)};
+  const std::uint64_t file = call(kOpen, open);
+  if (file == kFailed) return false;
+  const std::uint64_t write[] = {file, address_of(bytes), count};
+  const std::uint64_t rest = call(kWrite, write);
+  const std::uint64_t close[] = {file};
+  return call(kClose, close) == 0 && rest == 0;
+}
+
+std::uint64_t number_option(const char* name, std::uint64_t otherwise) {
+  char line[201] = {};
+  const std::uint64_t arguments[] = {address_of(line), sizeof line - 1};
+  if (call(kCommandLine, arguments) != 0) return otherwise;
+  line[sizeof line - 1] = '\0';
+  for (const char* word = line; *word != '\0'; ++word) {
+    const bool is_start = word == line || word[-1] == ' ';
+    if (!is_start || !begins_with(word, name)) continue;
+    std::uint64_t number = 0;
+    for (const char* digit = word + length_of(name); *digit >= '0' && *digit <= '9'; ++digit) {
+      number = number * 10 + static_cast<std::uint64_t>(*digit - '0');
+    }
+    return number;
+  }
+  return otherwise;
+}
+
+}  // namespace gridiron::port
