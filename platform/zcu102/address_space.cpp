@@ -5,11 +5,13 @@
 
 #include <cstdint>
 
+#include "cache.h"
 #include "memory_map.h"
 
 extern "C" {
 // zcu102.ld
-extern const char code_begin[], code_end[], constants_end[], data_begin[], data_end[], master_begin[], master_end[];
+extern const char code_begin[], code_end[], constants_end[], data_begin[], data_end[], cleared_begin[], master_begin[],
+    master_end[];
 
 void build_spaces();
 std::uint64_t master_root();
@@ -45,8 +47,7 @@ bool map_common(AddressSpace& space) {
 // The master reads the job and writes its result; it starts the cores.
 bool map_master(AddressSpace& space) {
   return map_between(space, master_begin, master_end, Rights::kData) &&
-         space.map(kJobRoomAddress, kJobRoomEnd - kJobRoomAddress, Rights::kData) &&
-         space.map(kOnChipAddress, kArenaBytes, Rights::kData) &&
+         space.map(kJobAddress, kMainMemoryEnd - kJobAddress, Rights::kData) &&
          space.map(kResetAddress, kRegisterPageBytes, Rights::kRegisters) &&
          space.map(kApuAddress, kRegisterPageBytes, Rights::kRegisters);
 }
@@ -57,13 +58,9 @@ bool map_worker(AddressSpace& space, std::uint32_t core) {
          space.map(kGdmaAddress + core * kGdmaChannelBytes, kRegisterPageBytes, Rights::kRegisters);
 }
 
-// Lines of the tables that a cache may hold from before: the stores above went past it.
-void forget_tables() {
-  const std::uintptr_t begin = reinterpret_cast<std::uintptr_t>(spaces);
-  for (std::uintptr_t line = begin; line < begin + sizeof spaces; line += kCacheLineBytes) {
-    asm volatile("dc ivac, %0" : : "r"(line) : "memory");
-  }
-  asm volatile("dsb sy" : : : "memory");
+// What was cleared and built above went past the caches: lines that they hold from before are old.
+void forget_old_lines() {
+  invalidate(reinterpret_cast<std::uintptr_t>(cleared_begin), static_cast<std::uint64_t>(master_end - cleared_begin));
 }
 
 }  // namespace
@@ -107,7 +104,7 @@ void build_spaces() {
     is_mapped = is_mapped && map_common(spaces[1 + core]) && map_worker(spaces[1 + core], core);
   }
   if (!is_mapped) __builtin_trap();
-  forget_tables();
+  forget_old_lines();
 }
 
 std::uint64_t master_root() { return gridiron::port::spaces[0].root(); }

@@ -5,6 +5,7 @@
 
 #include <cstdint>
 
+#include "cache.h"
 #include "memory_map.h"
 
 extern "C" {
@@ -30,7 +31,7 @@ void release_from_reset(std::uint32_t core, std::uint64_t entry) {
   const std::uint64_t vector = kApuAddress + kResetVectorOffset + 8 * std::uint64_t{core};
   word_at(vector) = static_cast<std::uint32_t>(entry);
   word_at(vector + 4) = static_cast<std::uint32_t>(entry >> 32);
-  asm volatile("dsb sy" : : : "memory");
+  order_all();
   volatile std::uint32_t& reset = word_at(kResetAddress + kApuResetOffset);
   reset = reset & ~((kCoreReset | kCorePowerOnReset) << core);
 }
@@ -52,7 +53,7 @@ bool ask_firmware(std::uint32_t core, std::uint64_t entry) {
 bool start_core(std::uint32_t core) {
   const std::uint64_t entry = reinterpret_cast<std::uintptr_t>(&_start);
   // What the core reads before its cache is on has left this one.
-  asm volatile("dsb sy" : : : "memory");
+  order_all();
   if (entry_level != 3) return ask_firmware(core, entry);
   release_from_reset(core, entry);
   return true;

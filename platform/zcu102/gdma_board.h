@@ -1,13 +1,15 @@
 // One core's view of the chip, for TemplatePort: its GDMA channel, the cache in front of its arena, the tile counter.
 // Source: Zynq UltraScale+ register reference (UG1087), module ZDMA; UG1085, chapter 19.
-// Memory: registers and the shared FrameControl. Threads: one core. SPDX-License-Identifier: Apache-2.0
+// Memory: registers and the shared RunControl. Threads: one core. SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <cstddef>
 #include <cstdint>
 
-#include "../template/template_board.h"
-#include "../template/template_port.h"
+#include "cache.h"
 #include "memory_map.h"
+#include "run_control.h"
+#include "template_port.h"
 
 namespace gridiron::port {
 
@@ -39,7 +41,7 @@ static_assert(offsetof(GdmaRegisters, interrupt_status) == 0x100 && offsetof(Gdm
 
 /// Local memory is on-chip memory behind the core's data cache, and the DMA does not look into caches: the lines are
 /// written back and discarded by address. Buffers share no line with other data.
-class GdmaBoard {
+class GdmaBoard : public SharedTiles {
  public:
   static constexpr std::uint32_t kEnable = 1u << 0;        // control2
   static constexpr std::uint32_t kOverfetch = 1u << 7;     // control0: its value after reset; simple mode, copy
@@ -51,29 +53,29 @@ class GdmaBoard {
   static constexpr std::uint32_t kAllCauses = 0xFFF;
 
   /// @param local_base  address of the core's arena, `local_bytes` long.
-  GdmaBoard(volatile GdmaRegisters* engine, FrameControl* control, std::uint64_t local_base, std::uint64_t local_bytes)
-      : engine_(engine), control_(control), local_base_(local_base), local_bytes_(local_bytes) {}
+  GdmaBoard(volatile GdmaRegisters& engine, RunControl& control, std::uint64_t local_base, std::uint64_t local_bytes)
+      : SharedTiles(control), engine_(engine), local_base_(local_base), local_bytes_(local_bytes) {}
 
   void start(const EngineCommand& command) {
-    engine_->interrupt_status = kAllCauses;
-    engine_->control0 = kOverfetch;
-    engine_->source_low = static_cast<std::uint32_t>(command.source);
-    engine_->source_high = static_cast<std::uint32_t>(command.source >> 32);
-    engine_->source_bytes = command.bytes;
-    engine_->source_attributes = 0;
-    engine_->target_low = static_cast<std::uint32_t>(command.target);
-    engine_->target_high = static_cast<std::uint32_t>(command.target >> 32);
-    engine_->target_bytes = command.bytes;
-    engine_->target_attributes = 0;
+    engine_.interrupt_status = kAllCauses;
+    engine_.control0 = kOverfetch;
+    engine_.source_low = static_cast<std::uint32_t>(command.source);
+    engine_.source_high = static_cast<std::uint32_t>(command.source >> 32);
+    engine_.source_bytes = command.bytes;
+    engine_.source_attributes = 0;
+    engine_.target_low = static_cast<std::uint32_t>(command.target);
+    engine_.target_high = static_cast<std::uint32_t>(command.target >> 32);
+    engine_.target_bytes = command.bytes;
+    engine_.target_attributes = 0;
     // Stores to normal memory, and what write_back() cleaned, come before the store that starts the channel.
-    asm volatile("dsb sy" : : : "memory");
-    engine_->control2 = kEnable;
+    order_all();
+    engine_.control2 = kEnable;
   }
-  [[nodiscard]] bool is_busy() { return (engine_->interrupt_status & (kDone | kErrors)) == 0; }
+  [[nodiscard]] bool is_busy() { return (engine_.interrupt_status & (kDone | kErrors)) == 0; }
   [[nodiscard]] bool has_failed() {
-    const bool failed = (engine_->interrupt_status & kErrors) != 0;
+    const bool failed = (engine_.interrupt_status & kErrors) != 0;
     // Loads of what arrived come after the load that said so.
-    asm volatile("dsb sy" : : : "memory");
+    order_all();
     return failed;
   }
   [[nodiscard]] std::uint64_t bus_address(const void* local) const { return reinterpret_cast<std::uintptr_t>(local); }
@@ -82,34 +84,13 @@ class GdmaBoard {
     return offset <= local_bytes_ && bytes <= local_bytes_ - offset;
   }
 
-  // Clean and invalidate: of a put the lines' bytes go out, of a get no dirty line stays that could fall on new bytes.
-  void write_back(const void* local, std::uint32_t bytes) {
-    for_each_line(local, bytes, [](std::uintptr_t line) { asm volatile("dc civac, %0" : : "r"(line) : "memory"); });
-  }
-  // Invalidate: what was fetched ahead while the DMA wrote is old.
-  void discard(const void* local, std::uint32_t bytes) {
-    for_each_line(local, bytes, [](std::uintptr_t line) { asm volatile("dc ivac, %0" : : "r"(line) : "memory"); });
-    asm volatile("dsb sy" : : : "memory");
-  }
-
-  [[nodiscard]] std::uint32_t next_tile() {
-    return __atomic_fetch_add(&control_->next_tile, std::uint32_t{1}, __ATOMIC_RELAXED);
-  }
-  [[nodiscard]] bool must_stop() { return __atomic_load_n(&control_->stop, __ATOMIC_RELAXED) != 0; }
-  [[nodiscard]] std::uint32_t tile_count() const { return control_->tile_count; }
+  // Of a put the lines' bytes go out; of a get no dirty line stays that could fall on the new bytes.
+  void write_back(const void* local, std::uint32_t bytes) { clean_and_invalidate(bus_address(local), bytes); }
+  // What was fetched ahead while the DMA wrote is old.
+  void discard(const void* local, std::uint32_t bytes) { invalidate(bus_address(local), bytes); }
 
  private:
-  template <class Visit>
-  static void for_each_line(const void* local, std::uint32_t bytes, Visit&& visit) {
-    const std::uintptr_t begin = reinterpret_cast<std::uintptr_t>(local);
-    for (std::uintptr_t line = begin & ~std::uintptr_t{kCacheLineBytes - 1}; line < begin + bytes;
-         line += kCacheLineBytes) {
-      visit(line);
-    }
-  }
-
-  volatile GdmaRegisters* engine_;
-  FrameControl* control_;
+  volatile GdmaRegisters& engine_;
   std::uint64_t local_base_;
   std::uint64_t local_bytes_;
 };

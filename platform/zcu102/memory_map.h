@@ -19,8 +19,8 @@ inline constexpr std::uint32_t kArenaBytes = kOnChipBytes / kCoreCount;
 /// Main memory. Below the firmware nothing is mapped, so that null pointers fault; behind it lies the job.
 inline constexpr std::uint64_t kFirmwareAddress = 0x00200000;
 inline constexpr std::uint64_t kFirmwareBytes = 0x00200000;
-inline constexpr std::uint64_t kJobRoomAddress = kFirmwareAddress + kFirmwareBytes;
-inline constexpr std::uint64_t kJobRoomEnd = 0x40000000;
+inline constexpr std::uint64_t kJobAddress = kFirmwareAddress + kFirmwareBytes;
+inline constexpr std::uint64_t kMainMemoryEnd = 0x40000000;
 
 /// Registers. Channel i of the GDMA (DMA of the full-power domain) is core i's alone.
 inline constexpr std::uint64_t kResetAddress = 0xFD1A0000;  ///< CRF_APB
