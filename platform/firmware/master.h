@@ -49,8 +49,8 @@ class Master {
   /// A frame in which no tile is finished for this long has failed.
   static constexpr std::uint64_t kQuietMilliseconds = 120'000;
 
-  /// @param tiles  results of tiles as the workers write them: the job's own (tile_results), or facts.most_tiles of them
-  ///               elsewhere, from where they are copied into the job.
+  /// @param tiles  results of tiles as the workers write them: the job's own (tile_results), or facts.most_tiles of
+  ///               them elsewhere, from where they are copied into the job.
   Master(B& board, const FirmwareFacts& facts, const FrameJob& job, RunControl& control, TileResult* tiles)
       : board_(board), facts_(facts), job_(job), control_(control), tiles_(tiles) {}
 

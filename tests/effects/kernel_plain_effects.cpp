@@ -4,14 +4,6 @@
 namespace gridiron::test {
 namespace {
 
-template <std::uint32_t Effects>
-constexpr KernelVariant variant(std::string_view name) {
-  return {name, Effects, +[](KernelScene& scene, const Camera& camera, std::uint32_t width, std::uint32_t height,
-                             const KernelOptions& options) {
-            return render_kernel<EffectLayout256K<Effects>, Lanes<4>>(scene, camera, width, height, options);
-          }};
-}
-
 constexpr KernelVariant kVariants[] = {
     variant<kSceneShading | kPointShadows>("shadow"),
     variant<kSceneShading | kAreaLights>("area_light"),

@@ -20,6 +20,15 @@ struct KernelVariant {
   RenderKernel* render;   ///< packets of 32, four lanes
 };
 
+/// The kernel built with just these effects; whoever asks for it compiles it.
+template <std::uint32_t Effects>
+[[nodiscard]] constexpr KernelVariant variant(std::string_view name) {
+  return {name, Effects, +[](KernelScene& scene, const Camera& camera, std::uint32_t width, std::uint32_t height,
+                             const KernelOptions& options) {
+            return render_kernel<EffectLayout256K<Effects>, Lanes<4>>(scene, camera, width, height, options);
+          }};
+}
+
 /// Built with all effects; packets of 32, four lanes.
 [[nodiscard]] RenderKernel render_all_effects;
 /// The same with packets of 8 and of 16.

@@ -191,6 +191,10 @@ void print_text(const InfoArguments& arguments, const SceneFacts& facts, const S
   print_line("local store", words_of_bytes(store.arena_bytes) + ": " + words_of_bytes(store.code_bytes) + " code, " +
                                 words_of_bytes(store.stack_bytes) + " stack, " + words_of_bytes(store.data_bytes()) +
                                 " data");
+  const std::uint32_t called_for = facts.effects.record.called_for;
+  if (called_for != 0 && called_for != kAllEffects) {
+    print_line("", "of a renderer with all effects; one with those called for takes less");
+  }
   for (const LocalStoreRegion& region : store.regions) {
     std::printf("%14s %8s  %s\n", "", words_of_count(region.bytes).c_str(),
                 (region.name + " at " + words_of_count(region.offset_bytes)).c_str());

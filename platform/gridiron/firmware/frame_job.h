@@ -20,7 +20,7 @@ inline constexpr std::uint32_t kMostBoardCores = 16;
 inline constexpr std::uint32_t kMostWorkKinds = 96;
 
 /// The job stands at the start of its file, which is loaded at base_address. Frame record and scene image follow in the
-/// file; memory for the result and for rays that wait comes behind it.
+/// file; memory for the result and for rays that wait comes behind it. What is not loaded need not be zero.
 struct FrameJob {
   std::uint32_t magic;
   std::uint32_t version;
@@ -32,18 +32,22 @@ struct FrameJob {
   std::uint64_t image_bytes;
   std::uint64_t result_address;  ///< FrameResult, then tile_count TileResults, then the planes
   std::uint64_t result_bytes;    ///< all three: what the device writes out when the frame is done
-  std::uint64_t color_address;   ///< planes, tile-major whole tiles; depth and ids 0 where not wanted
+  std::uint64_t color_address;   ///< planes, tile-major whole tiles, on kLineBytes; depth and ids 0 where not wanted
   std::uint64_t depth_address;
   std::uint64_t ids_address;
   std::uint64_t plane_bytes;     ///< of each
-  std::uint64_t spill_address;   ///< memory for rays that wait, 0: none (FrameControl)
-  std::uint64_t spill_bytes;     ///< of each core, one after the other
+  std::uint64_t spill_address;   ///< memory for rays that wait, 0: none (FrameControl); a multiple of 4,096
+  std::uint64_t spill_bytes;     ///< of each core, one after the other; a multiple of 4,096
   std::uint32_t spill_cores;     ///< cores that there is such memory for
   std::uint32_t tile_count;
   std::uint32_t width, height;   ///< pixels
   std::uint32_t tile_width;      ///< pixels: a firmware refuses a job whose tiles are not its layout's
   std::uint32_t effects;         ///< EffectBits that the scene calls for, 0: no scene shading
-  std::uint32_t reserved[28];
+  std::uint32_t packet_width;    ///< rays along a packet's edge that the buffers were chosen for, 0: none; work depends
+                                 ///< on it, the picture does not
+  std::uint32_t store_bytes;     ///< the arena that they were chosen for: 64, 128, 256 or 512 KB
+  std::uint64_t check_value;     ///< of the loaded bytes with this field taken as 0 (core/gridiron/base/check_value.h)
+  std::uint32_t reserved[24];    ///< 0
 };
 static_assert(sizeof(FrameJob) == 256);
 
@@ -52,29 +56,33 @@ struct CoreResult {
   std::uint32_t status;           ///< Status of render_tiles; kNotRun where the core never came back
   std::uint32_t tiles;            ///< claimed
   std::uint32_t stack_bytes;      ///< deepest stack by painting; 0: not measured
-  std::uint32_t transfers;        ///< gets and puts
+  std::uint32_t transfers;        ///< gets and puts; 0: not counted
   std::uint64_t instructions;     ///< of the frame, where the board counts them, else 0
-  std::uint64_t transfer_bytes;
-  std::uint32_t work[kMostWorkKinds];  ///< WorkCounters after the frame
+  std::uint64_t transfer_bytes;   ///< 0: not counted
+  std::uint32_t work[kMostWorkKinds];  ///< WorkCounters after the frame; 0 where there are fewer kinds
 };
 static_assert(sizeof(CoreResult) == 416);
 inline constexpr std::uint32_t kNotRun = 0xFFFFFFFFu;
 
+/// What one tile took, in the order of tile ids.
 struct TileResult {
-  std::uint32_t core;
-  std::uint32_t transfers;
+  std::uint32_t core;          ///< that claimed it; kNotRun where none did
+  std::uint32_t transfers;     ///< between this claim and the next; 0: not counted
   std::uint64_t instructions;  ///< between this claim and the next, where the board counts them, else 0
 };
 static_assert(sizeof(TileResult) == 16);
 
+/// Written whole by the device before result_bytes from its address on are taken off the board.
 struct FrameResult {
   std::uint32_t magic;
   std::uint32_t version;
   std::uint32_t core_count;  ///< cores that took part
   std::uint32_t status;      ///< of the frame: the first that is not kOk, cores in order
   std::uint32_t work_kinds;  ///< kWorkKindCount of the firmware's core
-  std::uint32_t reserved[11];
-  CoreResult cores[kMostBoardCores];
+  std::uint32_t lane_count;  ///< rays of a group, as the firmware's Lanes have them; 0 stands for 4
+  std::uint32_t queue_depth; ///< of the port's limits; 0 stands for the default, 16
+  std::uint32_t reserved[9];
+  CoreResult cores[kMostBoardCores];  ///< all zero from core_count on
 };
 static_assert(sizeof(FrameResult) == 64 + kMostBoardCores * sizeof(CoreResult));
 

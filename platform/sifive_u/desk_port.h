@@ -1,0 +1,101 @@
+// A port whose transfers the master makes, some time later and in any order. The destination of a get holds poison until
+// then, so that a use before the wait, a buffer changed before it, or a reliance on order shows in the picture.
+// Memory: 150 bytes by value, and a desk in shared memory. Threads: one worker. SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <gridiron/platform/contract.h>
+#include <gridiron/platform/transfer_rules.h>
+
+#include <cstdint>
+
+#include "run_control.h"
+#include "transfer_desk.h"
+
+namespace gridiron::port {
+
+class DeskPort {
+ public:
+  /// How often a wait looks at a transfer before it gives up.
+  static constexpr std::uint32_t kPollBound = 1u << 30;
+
+  DeskPort(RunControl& control, TransferDesk& desk, const void* store, std::uint64_t store_bytes)
+      : tiles_(control),
+        desk_(desk),
+        local_base_(reinterpret_cast<std::uintptr_t>(store)),
+        local_bytes_(store_bytes) {}
+
+  [[nodiscard]] PlatformLimits limits() const {
+    PlatformLimits limits;
+    limits.queue_depth = kDeskSlots;
+    return limits;
+  }
+
+  Status get(void* local, MainAddress address, std::uint32_t bytes, Tag tag) {
+    std::uint32_t slot = 0;
+    GRIDIRON_TRY(find_slot(local, address, bytes, tag, slot));
+    constexpr std::uint64_t kPoison = 0xDEADBEEFDEADBEEF;
+    auto* words = static_cast<volatile std::uint64_t*>(local);
+    for (std::uint32_t i = 0; i < bytes / sizeof kPoison; ++i) words[i] = kPoison;
+    ask(slot, reinterpret_cast<std::uintptr_t>(local), address.value, bytes, tag);
+    return Status::kOk;
+  }
+
+  Status put(const void* local, MainAddress address, std::uint32_t bytes, Tag tag) {
+    std::uint32_t slot = 0;
+    GRIDIRON_TRY(find_slot(local, address, bytes, tag, slot));
+    ask(slot, address.value, reinterpret_cast<std::uintptr_t>(local), bytes, tag);
+    return Status::kOk;
+  }
+
+  Status wait(TagMask tags) {
+    Status status = Status::kOk;
+    for (std::uint32_t i = 0; i < kDeskSlots; ++i) {
+      if ((TagMask::of(tag_of_slot_[i]).bits & tags.bits) == 0) continue;
+      std::uint32_t polls = 0;
+      while (is_pending(i) && polls < kPollBound) ++polls;
+      if (polls == kPollBound) status = Status::kTransferTimedOut;
+    }
+    return status;
+  }
+
+  TileClaim claim_tile() {
+    if (tiles_.must_stop()) return {TileClaim::Kind::kAborted, 0};
+    const std::uint32_t tile = tiles_.next_tile();
+    return tile < tiles_.tile_count() ? TileClaim{TileClaim::Kind::kTile, tile} : TileClaim{TileClaim::Kind::kNone, 0};
+  }
+
+ private:
+  [[nodiscard]] bool is_pending(std::uint32_t slot) const {
+    return __atomic_load_n(&desk_.slots[slot].is_pending, __ATOMIC_ACQUIRE) != 0;
+  }
+
+  Status find_slot(const void* local, MainAddress address, std::uint32_t bytes, Tag tag, std::uint32_t& slot) const {
+    const std::uint64_t local_address = reinterpret_cast<std::uintptr_t>(local);
+    GRIDIRON_TRY(check_transfer(limits(), local_address, address, bytes, tag));
+    const std::uint64_t offset = local_address - local_base_;
+    if (offset > local_bytes_ || bytes > local_bytes_ - offset) return Status::kTransferLocalRange;
+    for (slot = 0; slot < kDeskSlots; ++slot) {
+      if (!is_pending(slot)) return Status::kOk;
+    }
+    return Status::kTransferQueueFull;
+  }
+
+  void ask(std::uint32_t slot, std::uint64_t target, std::uint64_t source, std::uint32_t bytes, Tag tag) {
+    tag_of_slot_[slot] = tag;
+    TransferSlot& request = desk_.slots[slot];
+    request.target = target;
+    request.source = source;
+    request.bytes = bytes;
+    __atomic_store_n(&request.is_pending, std::uint32_t{1}, __ATOMIC_RELEASE);
+  }
+
+  SharedTiles tiles_;
+  TransferDesk& desk_;
+  std::uint64_t local_base_;
+  std::uint64_t local_bytes_;
+  Tag tag_of_slot_[kDeskSlots] = {};
+};
+
+static_assert(Platform<DeskPort>);
+
+}  // namespace gridiron::port

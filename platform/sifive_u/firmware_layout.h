@@ -1,0 +1,22 @@
+// The layout and lanes of the image that is being built: GRIDIRON_EFFECTS and GRIDIRON_PACKET_WIDTH say which.
+// Memory: none. Threads: none. SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <gridiron/base/effect_records.h>
+#include <gridiron/base/lanes.h>
+#include <gridiron/store/local_store.h>
+
+#include "memory_map.h"
+
+namespace gridiron::port {
+
+#if GRIDIRON_EFFECTS == 0
+using FirmwareLayout = StoreLayout256K<GRIDIRON_PACKET_WIDTH>;
+#else
+using FirmwareLayout = EffectLayout256K<GRIDIRON_EFFECTS, GRIDIRON_PACKET_WIDTH>;
+#endif
+using FirmwareLanes = Lanes<4>;
+using FirmwareStore = LocalStore<FirmwareLayout>;
+static_assert(FirmwareLayout::kArenaBytes == GRIDIRON_ARENA_BYTES);
+
+}  // namespace gridiron::port

@@ -1,0 +1,103 @@
+// What hart 0, the monitor core, does: it is the master of the frame, and with GRIDIRON_ASYNC the workers' DMA engine too.
+// It has no floating point: the build looks at every instruction of this and of all it calls.
+// Memory: its own data, shared memory, the job. Threads: hart 0. SPDX-License-Identifier: Apache-2.0
+#include "master.h"
+
+#include <gridiron/base/work_counters.h>
+
+#include <cstdint>
+
+#include "desk_engine.h"
+#include "firmware_layout.h"
+#include "memory_map.h"
+#include "shared_memory.h"
+
+namespace gridiron::port {
+
+[[gnu::section(".bss.shared")]] SharedMemory shared_memory;
+
+namespace {
+
+constexpr std::uint64_t kUartTransmit = GRIDIRON_UART + 0x00;
+constexpr std::uint64_t kUartTransmitControl = GRIDIRON_UART + 0x08;
+
+enum InterruptBits : std::uint64_t { kSoftware = 1u << 3, kTimer = 1u << 7 };
+
+class Monitor {
+ public:
+  Monitor() : engine_(shared_memory.desks, number_option("seed=", 0)) {}
+
+  void start_core(std::uint32_t core_index) { wake_hart(core_index + 1); }
+  void take_part() {}
+  void pause() {
+#ifdef GRIDIRON_ASYNC
+    // The desks come first; the frame is looked at now and then.
+    for (std::uint32_t round = 0; round < 4096 && engine_.run_round(); ++round) {
+    }
+#else
+    // Sleeps for 20 ms, or until a worker calls.
+    wide_register_at(GRIDIRON_MTIMECMP0) = wide_register_at(GRIDIRON_MTIME) + 20'000;
+    asm volatile("csrw mie, %0\n wfi\n csrw mie, zero" ::"r"(kSoftware | kTimer) : "memory");
+    register_at(GRIDIRON_CLINT) = 0;
+#endif
+  }
+  [[nodiscard]] std::uint64_t milliseconds() { return wide_register_at(GRIDIRON_MTIME) / 1000; }
+  void take_results() {
+    asm volatile("fence" ::: "memory");
+#ifdef GRIDIRON_ASYNC
+    print("the master made ", engine_.done(), " transfers\n");
+#endif
+  }
+
+ private:
+  DeskEngine<GRIDIRON_WORKERS> engine_;
+};
+
+}  // namespace
+
+void put_character(char character) {
+  constexpr std::uint32_t kFull = 1u << 31, kPollBound = 1u << 20;
+  for (std::uint32_t i = 0; i < kPollBound && (register_at(kUartTransmit) & kFull) != 0; ++i) {
+  }
+  register_at(kUartTransmit) = static_cast<unsigned char>(character);
+}
+
+extern "C" {
+
+[[noreturn]] void gridiron_master();
+void gridiron_trap(std::uint64_t hart, std::uint64_t cause, std::uint64_t address, std::uint64_t pc);
+
+/// Hart 0, from start.S.
+void gridiron_master() {
+  register_at(kUartTransmitControl) = 1;
+  const FirmwareFacts facts = {
+      .name = "gridiron sifive_u " GRIDIRON_IMAGE,
+      .memory_end = GRIDIRON_MEMORY_END,
+      .core_count = GRIDIRON_WORKERS,
+      .tile_width = FirmwareLayout::kTileWidth,
+      .effects = FirmwareLayout::kEffects,
+      .work_kinds = kWorkKindCount,
+      .most_tiles = kMostTiles,
+  };
+  Monitor monitor;
+  shared_memory.trespass = number_option("trespass=", 0);
+  const auto& job = *reinterpret_cast<const FrameJob*>(GRIDIRON_JOB);
+  Master<Monitor> master(monitor, facts, job, shared_memory.control, shared_memory.tiles);
+  exit_run(static_cast<std::uint32_t>(master.run("result.bin")));
+}
+
+/// Any hart, from start.S. A worker cannot reach the serial line: it leaves word with the master.
+void gridiron_trap(std::uint64_t hart, std::uint64_t cause, std::uint64_t address, std::uint64_t pc) {
+  if (hart == 0) {
+    print("trap: master cause ", Hex{cause}, " address ", Hex{address}, " pc ", Hex{pc}, "\n");
+    exit_run(static_cast<std::uint32_t>(RunExit::kTrapped));
+  }
+  CoreSlot& slot = shared_memory.control.cores[hart - 1];
+  slot.trap = {cause, address, pc};
+  set_state(slot, CoreState::kTrapped);
+  wake_hart(0);
+}
+
+}  // extern "C"
+
+}  // namespace gridiron::port

@@ -1,0 +1,43 @@
+// What the master and the workers of this board share: one region, the only main memory that workers can touch.
+// Memory: GRIDIRON_SHARED. Threads: as run_control.h says. SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <gridiron/firmware/frame_job.h>
+
+#include <cstdint>
+
+#include "memory_map.h"
+#include "run_control.h"
+#include "transfer_desk.h"
+
+namespace gridiron::port {
+
+inline constexpr std::uint32_t kMostTiles = 7000;
+
+struct SharedMemory {
+  RunControl control;
+  TransferDesk desks[GRIDIRON_WORKERS];  ///< where the master moves the bytes
+  std::uint64_t trespass;                ///< of the image that shows what a worker must not do: which of them it does
+  TileResult tiles[kMostTiles];
+};
+static_assert(sizeof(SharedMemory) <= GRIDIRON_SHARED_BYTES);
+static_assert(GRIDIRON_WORKERS <= kMostBoardCores);
+
+extern SharedMemory shared_memory;
+
+/// A register of the chip.
+inline volatile std::uint32_t& register_at(std::uint64_t address) {
+  return *reinterpret_cast<volatile std::uint32_t*>(static_cast<std::uintptr_t>(address));
+}
+inline volatile std::uint64_t& wide_register_at(std::uint64_t address) {
+  return *reinterpret_cast<volatile std::uint64_t*>(static_cast<std::uintptr_t>(address));
+}
+
+/// Sends a software interrupt.
+inline void wake_hart(std::uint32_t hart) {
+  // What was stored before is seen by the one who wakes.
+  asm volatile("fence" ::: "memory");
+  register_at(GRIDIRON_CLINT + 4 * std::uint64_t{hart}) = 1;
+}
+
+}  // namespace gridiron::port

@@ -1,0 +1,51 @@
+// What harts 1 to 4 do: each renders its share of a frame, in its arena, through its channel.
+// Memory: the arena and shared memory; PMP keeps it to these. Threads: one hart each. SPDX-License-Identifier: Apache-2.0
+#include "worker.h"
+
+#include <cstddef>
+#include <cstdint>
+
+#include "desk_port.h"
+#include "firmware_layout.h"
+#include "memory_map.h"
+#include "pdma_board.h"
+#include "shared_memory.h"
+#include "wrong_ports.h"
+
+namespace gridiron::port {
+
+// For the linker script, which adds them up.
+alignas(128) [[gnu::section(".bss.arena_store"), gnu::used]] std::byte arena_store[sizeof(FirmwareStore)];
+[[gnu::section(".bss.arena_stack"), gnu::used]] std::byte arena_stack[FirmwareLayout::kStackBudgetBytes];
+
+extern "C" {
+
+void gridiron_worker(std::uint64_t core, std::uintptr_t arena);
+
+/// Harts 1 to 4, from start.S, when the master has woken them.
+void gridiron_worker(std::uint64_t core, std::uintptr_t arena) {
+  const auto core_index = static_cast<std::uint32_t>(core);
+  SharedMemory& shared = shared_memory;
+  auto& store = *reinterpret_cast<FirmwareStore*>(arena);
+  const StackArea stack{arena + sizeof store, arena + GRIDIRON_ARENA_BYTES};
+#ifdef GRIDIRON_TRESPASS
+  trespass(core_index, arena);
+#endif
+#ifdef GRIDIRON_ASYNC
+  DeskPort port(shared.control, shared.desks[core_index], &store, sizeof store);
+#else
+  PdmaBoard board(shared.control, core_index, &store, sizeof store);
+  TemplatePort<PdmaBoard> port(board);
+#endif
+#ifdef GRIDIRON_FORGETFUL
+  ForgetfulPort wrong(port);
+  run_worker<FirmwareLanes>(store, wrong, shared.control, shared.tiles, core_index, stack);
+#else
+  run_worker<FirmwareLanes>(store, port, shared.control, shared.tiles, core_index, stack);
+#endif
+  wake_hart(0);
+}
+
+}  // extern "C"
+
+}  // namespace gridiron::port
