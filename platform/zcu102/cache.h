@@ -25,7 +25,7 @@ inline void clean_and_invalidate(std::uint64_t address, std::uint64_t bytes) {
   for_each_line(address, bytes, [](std::uint64_t line) { asm volatile("dc civac, %0" : : "r"(line) : "memory"); });
 }
 
-/// Lines are forgotten, dirty or not; ordered before what follows. Lines at the ends belong to [address, + bytes) alone.
+/// Lines are forgotten, dirty or not, those at the ends wholly; ordered before what follows.
 inline void invalidate(std::uint64_t address, std::uint64_t bytes) {
   for_each_line(address, bytes, [](std::uint64_t line) { asm volatile("dc ivac, %0" : : "r"(line) : "memory"); });
   order_all();

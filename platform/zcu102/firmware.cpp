@@ -1,5 +1,6 @@
-// What the cores of the board do: core 0 is master and worker, cores 1 to 3 are workers. The build may give
-// GRIDIRON_EFFECTS, the set of effects of the image; without it frames are rendered by packets.
+// What the cores do: core 0 is master and worker, cores 1 to 3 are workers. The build gives GRIDIRON_EFFECTS, the set of
+// effects of the image, 0: frames are rendered by packets; GRIDIRON_FORGETFUL and GRIDIRON_TRESPASS make images that
+// are wrong on purpose.
 // Memory: arenas in on-chip memory, what is shared in main memory. Threads: four cores.
 // SPDX-License-Identifier: Apache-2.0
 #include <gridiron/base/effect_records.h>
@@ -23,8 +24,11 @@
 #include "uart.h"
 #include "worker.h"
 
-#ifndef GRIDIRON_EFFECTS
-#define GRIDIRON_EFFECTS 0
+#ifdef GRIDIRON_FORGETFUL
+#include "forgetful_port.h"
+#endif
+#ifdef GRIDIRON_TRESPASS
+#include "trespass.h"
 #endif
 
 extern "C" {
@@ -46,10 +50,8 @@ namespace {
 
 #if GRIDIRON_EFFECTS == 0
 using FirmwareLayout = StoreLayout64K<8>;
-constexpr const char* kName = "zcu102, packets of 8 x 8";
 #else
 using FirmwareLayout = EffectLayout64K<GRIDIRON_EFFECTS>;
-constexpr const char* kName = "zcu102, effects";
 #endif
 using FirmwareLanes = Lanes<4>;
 using FirmwareStore = LocalStore<FirmwareLayout>;
@@ -79,6 +81,9 @@ constexpr Arena* kArenas[kCoreCount] = {&arena0, &arena1, &arena2, &arena3};
 RunControl control;
 TileResult tiles[kMostTiles];
 std::uint32_t has_fault;
+#ifdef GRIDIRON_TRESPASS
+std::uint64_t wanted_trespass;
+#endif
 
 // Core 0 tells how far the frame is when it claims a tile; the master's own words come when it has none left.
 class TellingBoard : public GdmaBoard {
@@ -107,8 +112,16 @@ void work(std::uint64_t core) {
   const auto index = static_cast<std::uint32_t>(core);
   Arena& arena = *kArenas[index];
   TellingBoard board(index, arena);
+#ifdef GRIDIRON_TRESPASS
+  if (index == 1) trespass(wanted_trespass);
+#endif
   TemplatePort<TellingBoard> port(board);
+#ifdef GRIDIRON_FORGETFUL
+  ForgetfulPort wrong(port);
+  run_worker<FirmwareLanes>(arena.store, wrong, control, tiles, index, arena.stack_area());
+#else
   run_worker<FirmwareLanes>(arena.store, port, control, tiles, index, arena.stack_area());
+#endif
   asm volatile("sev");
 }
 
@@ -160,13 +173,22 @@ void master_entry() {
   using namespace gridiron::port;
   begin_uart();
   const auto& job = *reinterpret_cast<const FrameJob*>(static_cast<std::uintptr_t>(kJobAddress));
-  const FirmwareFacts facts = {kName,
-                               kMainMemoryEnd,
-                               kCoreCount,
-                               FirmwareLayout::kTileWidth,
-                               FirmwareLayout::kEffects,
-                               gridiron::kWorkKindCount,
-                               kMostTiles};
+  const FirmwareFacts facts = {
+      .name = "gridiron zcu102 " GRIDIRON_IMAGE,
+      .memory_end = kMainMemoryEnd,
+      .core_count = kCoreCount,
+      .tile_width = FirmwareLayout::kTileWidth,
+      .effects = FirmwareLayout::kEffects,
+      .packet_width = FirmwareLayout::kPacketWidth,
+      .store_bytes = FirmwareLayout::kArenaBytes,
+      .lane_count = std::uint32_t{FirmwareLanes::kCount},
+      .queue_depth = gridiron::PlatformLimits{}.queue_depth,
+      .work_kinds = gridiron::kWorkKindCount,
+      .most_tiles = kMostTiles,
+  };
+#ifdef GRIDIRON_TRESPASS
+  wanted_trespass = number_option("trespass=", 0);
+#endif
   ZynqMaster board(job);
   Master<ZynqMaster> master(board, facts, job, control, tiles);
   exit_run(static_cast<std::uint32_t>(master.run("result.bin")));
