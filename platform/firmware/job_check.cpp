@@ -2,8 +2,12 @@
 // Memory: reads the job. Threads: the master. SPDX-License-Identifier: Apache-2.0
 #include "job_check.h"
 
+#include <gridiron/base/check_value.h>
 #include <gridiron/base/effect_records.h>
 #include <gridiron/base/records.h>
+
+#include <cstddef>
+#include <cstdint>
 
 #include "console.h"
 
@@ -19,6 +23,16 @@ bool refuse(const Pieces&... reason) {
 
 bool is_equal(const char* what, std::uint64_t value, std::uint64_t wanted) {
   return value == wanted || refuse(what, " ", Hex{value}, ", this firmware wants ", Hex{wanted});
+}
+
+// As the job's maker computes it, with the field itself taken as 0.
+std::uint64_t check_value_of(const FrameJob& job) {
+  FrameJob head = job;
+  head.check_value = 0;
+  CheckValue check;
+  check.add({reinterpret_cast<const std::byte*>(&head), sizeof head});
+  check.add({reinterpret_cast<const std::byte*>(&job) + sizeof head, job.loaded_bytes - sizeof head});
+  return check.value();
 }
 
 // Whether [address, address + bytes) lies within the job's memory, behind the job itself.
@@ -50,10 +64,19 @@ bool check_job(const FrameJob& job, const FirmwareFacts& facts) {
   if (here >= facts.memory_end || job.memory_bytes > facts.memory_end - here) {
     return refuse(job.memory_bytes, " bytes from ", Hex{here}, " on, but main memory ends at ", Hex{facts.memory_end});
   }
-  if (job.loaded_bytes > job.memory_bytes) return refuse("more loaded bytes than memory");
+  if (job.loaded_bytes > job.memory_bytes || job.loaded_bytes < sizeof job || job.loaded_bytes % 64 != 0) {
+    return refuse(job.loaded_bytes, " loaded bytes of ", job.memory_bytes);
+  }
+  if (!is_equal("check value", check_value_of(job), job.check_value)) return false;
 
   // 2. What it is about.
   if (!is_equal("tile width", job.tile_width, facts.tile_width)) return false;
+  if (job.store_bytes > facts.store_bytes) {
+    return refuse("made for cores of ", job.store_bytes, " bytes, these have ", facts.store_bytes);
+  }
+  if (job.packet_width != facts.packet_width) {
+    print("job made for packets of ", job.packet_width, ", these are of ", facts.packet_width, "\n");
+  }
   const std::uint32_t missing = job.effects & ~facts.effects;
   if (missing != 0) return refuse("effects ", Hex{missing}, " are not built into this firmware");
   if (job.width == 0 || job.height == 0 || job.width > kMaxPictureWidth || job.height > kMaxPictureWidth) {

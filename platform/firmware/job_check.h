@@ -15,12 +15,18 @@ struct FirmwareFacts {
   std::uint32_t core_count;     ///< workers
   std::uint32_t tile_width;     ///< of the layout
   std::uint32_t effects;        ///< EffectBits built
+  std::uint32_t packet_width;   ///< of the layout, 0: no packets
+  std::uint32_t store_bytes;    ///< of a worker's arena
+  std::uint32_t lane_count;
+  std::uint32_t queue_depth;    ///< of the port's limits
   std::uint32_t work_kinds;     ///< kWorkKindCount
   std::uint32_t most_tiles;     ///< that the board has room for results of; never more than that in a frame
 };
 
-/// Holds a job against the firmware: magic, version, place, size, every range inside its memory, tiles, effects.
-/// @returns whether it may run; if not, a line on the console says why.
+/// Holds a job against the firmware: magic, version, place, size, check value, tiles, effects, arena, every range
+/// inside its memory.
+/// @returns whether it may run; if not, a line on the console says why. A job for packets of another width runs, and is
+/// remarked on: the work is not that of the job's own layout.
 [[nodiscard]] bool check_job(const FrameJob& job, const FirmwareFacts& facts);
 
 /// TileResults of a job, behind its FrameResult.

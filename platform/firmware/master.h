@@ -78,7 +78,7 @@ class Master {
  private:
   void prepare() {
     std::memset(&control_, 0, sizeof control_);
-    std::memset(tiles_, 0, job_.tile_count * sizeof(TileResult));
+    for (std::uint32_t tile = 0; tile < job_.tile_count; ++tile) tiles_[tile] = {kNotRun, 0, 0};
     control_.tile_count = job_.tile_count;
     control_.core_count = facts_.core_count;
     control_.frame_address = job_.frame_address;
@@ -129,6 +129,8 @@ class Master {
     result.version = kFrameJobVersion;
     result.core_count = facts_.core_count;
     result.work_kinds = facts_.work_kinds;
+    result.lane_count = facts_.lane_count;
+    result.queue_depth = facts_.queue_depth;
     for (std::uint32_t core = 0; core < facts_.core_count; ++core) {
       result.cores[core] = control_.cores[core].result;
       const CoreResult& done = result.cores[core];

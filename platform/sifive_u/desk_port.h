@@ -1,5 +1,5 @@
-// A port whose transfers the master makes, some time later and in any order. The destination of a get holds poison until
-// then, so that a use before the wait, a buffer changed before it, or a reliance on order shows in the picture.
+// A port whose transfers the master makes, some time later and in any order. The destination of a get holds poison
+// until then, so that a use before the wait, a buffer changed before it, or a reliance on order shows in the picture.
 // Memory: 150 bytes by value, and a desk in shared memory. Threads: one worker. SPDX-License-Identifier: Apache-2.0
 #pragma once
 

@@ -1,5 +1,5 @@
-// What hart 0, the monitor core, does: it is the master of the frame, and with GRIDIRON_ASYNC the workers' DMA engine too.
-// It has no floating point: the build looks at every instruction of this and of all it calls.
+// What hart 0, the monitor core, does: it is the frame's master, and with GRIDIRON_ASYNC the workers' DMA engine. It has
+// no floating point: the build looks at every instruction of this and of all it calls.
 // Memory: its own data, shared memory, the job. Threads: hart 0. SPDX-License-Identifier: Apache-2.0
 #include "master.h"
 
@@ -76,6 +76,10 @@ void gridiron_master() {
       .core_count = GRIDIRON_WORKERS,
       .tile_width = FirmwareLayout::kTileWidth,
       .effects = FirmwareLayout::kEffects,
+      .packet_width = FirmwareLayout::kPacketWidth,
+      .store_bytes = FirmwareLayout::kArenaBytes,
+      .lane_count = std::uint32_t{FirmwareLanes::kCount},
+      .queue_depth = PlatformLimits{}.queue_depth,
       .work_kinds = kWorkKindCount,
       .most_tiles = kMostTiles,
   };

@@ -1,5 +1,6 @@
 // What harts 1 to 4 do: each renders its share of a frame, in its arena, through its channel.
-// Memory: the arena and shared memory; PMP keeps it to these. Threads: one hart each. SPDX-License-Identifier: Apache-2.0
+// Memory: the arena and shared memory; PMP keeps it to these. Threads: one hart each.
+// SPDX-License-Identifier: Apache-2.0
 #include "worker.h"
 
 #include <cstddef>
