@@ -22,8 +22,10 @@ class DeskEngine {
   }
 
   /// Looks at every slot once: those that have waited long enough are done, the others wait on.
+  /// @param wake  told the desk of each transfer that is done.
   /// @returns whether there was something to do.
-  bool run_round() {
+  template <class Wake>
+  bool run_round(Wake&& wake) {
     bool is_active = false;
     for (std::uint32_t desk = 0; desk < kDesks; ++desk) {
       for (std::uint32_t i = 0; i < kDeskSlots; ++i) {
@@ -36,6 +38,7 @@ class DeskEngine {
         std::memcpy(reinterpret_cast<void*>(slot.target), reinterpret_cast<const void*>(slot.source), slot.bytes);
         __atomic_store_n(&slot.is_pending, std::uint32_t{0}, __ATOMIC_RELEASE);
         ++done_;
+        wake(desk);
       }
     }
     return is_active;

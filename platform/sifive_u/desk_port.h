@@ -9,18 +9,21 @@
 #include <cstdint>
 
 #include "run_control.h"
+#include "shared_memory.h"
 #include "transfer_desk.h"
 
 namespace gridiron::port {
 
 class DeskPort {
  public:
-  /// How often a wait looks at a transfer before it gives up.
-  static constexpr std::uint32_t kPollBound = 1u << 30;
+  /// How often a wait is woken for other transfers before it gives up.
+  static constexpr std::uint32_t kWakeBound = 1u << 20;
 
-  DeskPort(RunControl& control, TransferDesk& desk, const void* store, std::uint64_t store_bytes)
+  DeskPort(RunControl& control, TransferDesk& desk, std::uint32_t core_index, const void* store,
+           std::uint64_t store_bytes)
       : tiles_(control),
         desk_(desk),
+        hart_(core_index + 1),
         local_base_(reinterpret_cast<std::uintptr_t>(store)),
         local_bytes_(store_bytes) {}
 
@@ -47,13 +50,17 @@ class DeskPort {
     return Status::kOk;
   }
 
+  // Sleeps while a transfer is pending. The master wakes it, and watches over the sleep with its own bound.
   Status wait(TagMask tags) {
     Status status = Status::kOk;
     for (std::uint32_t i = 0; i < kDeskSlots; ++i) {
       if ((TagMask::of(tag_of_slot_[i]).bits & tags.bits) == 0) continue;
-      std::uint32_t polls = 0;
-      while (is_pending(i) && polls < kPollBound) ++polls;
-      if (polls == kPollBound) status = Status::kTransferTimedOut;
+      std::uint32_t wakes = 0;
+      for (; is_pending(i) && wakes < kWakeBound; ++wakes) {
+        sleep_hart(false);
+        hush_hart(hart_);
+      }
+      if (wakes == kWakeBound) status = Status::kTransferTimedOut;
     }
     return status;
   }
@@ -87,10 +94,12 @@ class DeskPort {
     request.source = source;
     request.bytes = bytes;
     __atomic_store_n(&request.is_pending, std::uint32_t{1}, __ATOMIC_RELEASE);
+    wake_hart(0);
   }
 
   SharedTiles tiles_;
   TransferDesk& desk_;
+  std::uint32_t hart_;
   std::uint64_t local_base_;
   std::uint64_t local_bytes_;
   Tag tag_of_slot_[kDeskSlots] = {};

@@ -1,5 +1,5 @@
-// What hart 0, the monitor core, does: it is the frame's master, and with GRIDIRON_ASYNC the workers' DMA engine. It has
-// no floating point: the build looks at every instruction of this and of all it calls.
+// What hart 0, the monitor core, does: it is the frame's master, and with GRIDIRON_ASYNC the workers' DMA engine too.
+// No floating point: the build looks at every instruction of this and of all it calls.
 // Memory: its own data, shared memory, the job. Threads: hart 0. SPDX-License-Identifier: Apache-2.0
 #include "master.h"
 
@@ -21,8 +21,6 @@ namespace {
 constexpr std::uint64_t kUartTransmit = GRIDIRON_UART + 0x00;
 constexpr std::uint64_t kUartTransmitControl = GRIDIRON_UART + 0x08;
 
-enum InterruptBits : std::uint64_t { kSoftware = 1u << 3, kTimer = 1u << 7 };
-
 class Monitor {
  public:
   Monitor() : engine_(shared_memory.desks, number_option("seed=", 0)) {}
@@ -32,14 +30,15 @@ class Monitor {
   void pause() {
 #ifdef GRIDIRON_ASYNC
     // The desks come first; the frame is looked at now and then.
-    for (std::uint32_t round = 0; round < 4096 && engine_.run_round(); ++round) {
+    for (std::uint32_t round = 0; round < 4096; ++round) {
+      if (!engine_.run_round([](std::uint32_t core_index) { wake_hart(core_index + 1); })) break;
+      if (round == 4095) return;
     }
-#else
-    // Sleeps for 20 ms, or until a worker calls.
-    wide_register_at(GRIDIRON_MTIMECMP0) = wide_register_at(GRIDIRON_MTIME) + 20'000;
-    asm volatile("csrw mie, %0\n wfi\n csrw mie, zero" ::"r"(kSoftware | kTimer) : "memory");
-    register_at(GRIDIRON_CLINT) = 0;
 #endif
+    // Sleeps for 20 ms, or until a worker calls; one that has called since the last sleep is heard at once.
+    wide_register_at(GRIDIRON_MTIMECMP0) = wide_register_at(GRIDIRON_MTIME) + 20'000;
+    sleep_hart(true);
+    hush_hart(0);
   }
   [[nodiscard]] std::uint64_t milliseconds() { return wide_register_at(GRIDIRON_MTIME) / 1000; }
   void take_results() {

@@ -33,7 +33,7 @@ void gridiron_worker(std::uint64_t core, std::uintptr_t arena) {
   trespass(core_index, arena);
 #endif
 #ifdef GRIDIRON_ASYNC
-  DeskPort port(shared.control, shared.desks[core_index], &store, sizeof store);
+  DeskPort port(shared.control, shared.desks[core_index], core_index, &store, sizeof store);
 #else
   PdmaBoard board(shared.control, core_index, &store, sizeof store);
   TemplatePort<PdmaBoard> port(board);
