@@ -6,6 +6,8 @@
 
 #include "memory_map.h"
 
+extern "C" const char master_begin[];  // zcu102.ld
+
 namespace gridiron::port {
 
 /// What core 1 must not do. @param kind  1 to 11; others: nothing.
@@ -22,7 +24,7 @@ inline void trespass(std::uint64_t kind) {
     case 2: store(kArena - 4); break;                           // what a stack that is too deep meets
     case 3: load(kArena + kArenaBytes); break;                  // the first word behind its own
     case 4: store(kFirmwareAddress + 64); break;                // code
-    case 5: load(kFirmwareAddress + kFirmwareBytes - 4); break; // the master's
+    case 5: load(reinterpret_cast<std::uintptr_t>(master_begin)); break;
     case 6: load(kJobAddress); break;
     case 7: load(kGdmaAddress); break;                          // a channel that is not its own
     case 8: load(kApuAddress); break;
