@@ -17,12 +17,12 @@
 #include "commands.h"
 #include "failure.h"
 #include "frame_memory.h"
+#include "frame_pictures.h"
 #include "image_files.h"
 #include "interrupt.h"
 #include "output_folder.h"
 #include "progress.h"
 #include "scene_input.h"
-#include "untile.h"
 #include "words.h"
 
 namespace gridiron::tool {
@@ -119,8 +119,7 @@ void render(AnimationFrame& frame, RenderArguments arguments, const ViewRequest&
   frame.render_cycles = timing.frame_cycles;
   frame.render_seconds = timing.seconds;
 
-  const auto color =
-      untile<std::uint32_t>(memory.record, memory.color.bytes, std::nullopt, [](std::uint32_t word) { return word; });
+  const auto color = words_of_plane(memory.record, memory.color.bytes);
   frame.hash = image_hash(color.pixels);
   AtomicFile file(folder / frame.picture);
   file.write(encode_png(color));

@@ -1,6 +1,8 @@
 // Arguments. SPDX-License-Identifier: Apache-2.0
 #include "arguments.h"
 
+#include <gridiron/firmware/frame_job.h>
+
 #include <CLI/CLI.hpp>
 #include <algorithm>
 #include <cstdlib>
@@ -86,6 +88,10 @@ std::optional<std::uint64_t> parse_seed(const std::string& text) {
   const bool digits = !text.empty() && text.find_first_not_of("0123456789") == std::string::npos;
   if (!digits || text.size() > 19) return std::nullopt;  // 19 digits always fit 64 bits
   return std::stoull(text);
+}
+
+std::optional<std::filesystem::path> parse_path(const std::string& text) {
+  return text.empty() ? std::nullopt : std::optional<std::filesystem::path>(text);
 }
 
 std::optional<CountPair> parse_picture_size(const std::string& text) {
@@ -181,17 +187,16 @@ void add_view_options(CLI::App& app, RenderArguments& render) {
 
 void add_output_options(CLI::App& app, RawRender& raw) {
   RenderArguments& render = raw.arguments;
-  const auto path = [](const std::string& text) {
-    return text.empty() ? std::nullopt : std::optional<std::filesystem::path>(text);
-  };
   const std::string name = "a file name";
   app.add_option("-o,--output", raw.output, "picture, PNG (default: INPUT's name with .png, in the current folder)")
       ->type_name("FILE");
-  add_parsed(app, "--depth", render.depth, path, name, "FILE",
+  add_parsed(app, "--depth", render.depth, parse_path, name, "FILE",
              "distance of every pixel, PFM, +inf where nothing is hit");
-  add_parsed(app, "--ids", render.ids, path, name, "FILE", "triangle of every pixel, PFM, -1 where nothing is hit");
-  add_parsed(app, "--report", render.report, path, name, "FILE", "where cycles and bytes went, JSON");
-  add_parsed(app, "--timeline", render.timeline, path, name, "FILE", "what each core did when, Chrome trace format");
+  add_parsed(app, "--ids", render.ids, parse_path, name, "FILE",
+             "triangle of every pixel, PFM, -1 where nothing is hit");
+  add_parsed(app, "--report", render.report, parse_path, name, "FILE", "where cycles and bytes went, JSON");
+  add_parsed(app, "--timeline", render.timeline, parse_path, name, "FILE",
+             "what each core did when, Chrome trace format");
   app.add_flag("--quiet", render.quiet, "print nothing but errors");
 }
 
@@ -342,10 +347,7 @@ void add_animate_options(CLI::App& app, AnimateArguments& animate, RawRender& ra
   app.add_option("FRAMES", animate.inputs, "meshes (.ply) in the order of their frames; of a folder all, by name")
       ->required()
       ->type_name("");
-  const auto folder = [](const std::string& text) {
-    return text.empty() ? std::nullopt : std::optional<std::filesystem::path>(text);
-  };
-  add_parsed(app, "-o,--output", animate.output, folder, "the name of a folder", "DIR",
+  add_parsed(app, "-o,--output", animate.output, parse_path, "the name of a folder", "DIR",
              "folder of the pictures and animation.csv, made where it is not there")
       ->required();
   add_grid_options(app, raw.arguments.scene, raw.machine_name);
@@ -366,6 +368,67 @@ AnimateArguments complete_animate(AnimateArguments animate, const RawRender& raw
   return animate;
 }
 
+void add_job_options(CLI::App& app, JobArguments& job, RawRender& raw) {
+  RenderArguments& render = raw.arguments;
+  add_input(app, render.scene);
+  app.add_option("-o,--output", raw.output, "the job")->required()->type_name("FILE");
+  const auto base = [](const std::string& text) {
+    const std::optional<std::uint64_t> address = parse_address(text);
+    return address && *address % 4096 == 0 ? address : std::nullopt;
+  };
+  add_parsed(app, "--base", job.base_address, base, "a multiple of 4096, decimal or after 0x", "ADDRESS",
+             "where the device loads the job")
+      ->required();
+  add_parsed(app, "--memory", job.memory_bytes, parse_address, "a whole number", "BYTES",
+             "memory of the device from there on: a job that needs more is refused");
+  add_grid_options(app, render.scene, raw.machine_name);
+  add_size(app, render.width, render.height, "picture in pixels (default: a text scene's own, else 1024x1024)");
+  add_view_options(app, render);
+  app.add_flag("--depth", render.depth_plane, "distances too");
+  app.add_flag("--ids", render.ids_plane, "triangle ids too");
+  add_parsed(app, "--cores", render.cores, count_between(1, port::kMostBoardCores), "a whole number from 1 to 16", "N",
+             "cores of the device that there is memory for rays that wait for (default: the profile's)");
+  add_choice(app, "--store", render.asked.store, kStores, kStoreHelp);
+  add_algorithm_options(app, raw);
+  app.add_flag("--quiet", render.quiet, "print nothing but errors");
+}
+
+JobArguments complete_job(JobArguments job, const RawRender& raw, const CLI::App& app) {
+  job.render = complete_render(raw, app);
+  RenderArguments& render = job.render;
+  if (render.cores == 0) render.cores = render.scene.machine->core_count;
+  if (render.cores > port::kMostBoardCores) {
+    usage_error("--cores: a job is for " + std::to_string(port::kMostBoardCores) + " cores at most; " +
+                std::string(render.scene.machine->name) + " has " + std::to_string(render.cores));
+  }
+  render.threads = render.cores;  // as many of the frame's slices of memory
+  return job;
+}
+
+void add_result_options(CLI::App& app, ResultArguments& result) {
+  app.add_option("JOB", result.job, "what the device was given, made by job")->required()->type_name("");
+  app.add_option("RESULT", result.result, "what it wrote: the bytes from result_address on")->required()->type_name("");
+  const std::string name = "a file name";
+  add_parsed(app, "-o,--output", result.output, parse_path, name, "FILE", "picture, PNG");
+  add_parsed(app, "--depth", result.depth, parse_path, name, "FILE",
+             "distance of every pixel, PFM, +inf where nothing is hit; of a job with distances");
+  add_parsed(app, "--ids", result.ids, parse_path, name, "FILE",
+             "triangle of every pixel, PFM, -1 where nothing is hit; of a job with ids");
+  add_parsed(app, "--report", result.report, parse_path, name, "FILE", "hashes, work and tiles of each core, JSON");
+  app.add_flag("--compare", result.compare,
+               "render the job on the simulated chip and hold planes, work and transfers against it; exit code 3 where "
+               "they differ");
+  add_threads(app, result.threads, "of --compare; no result depends on it");
+  app.add_flag("--quiet", result.quiet, "print nothing but errors");
+}
+
+ResultArguments complete_result(const ResultArguments& result) {
+  require_own_files(
+      {{"JOB", result.job}, {"RESULT", result.result}},
+      {{"-o", result.output}, {"--depth", result.depth}, {"--ids", result.ids}, {"--report", result.report}});
+  return result;
+}
+
 void add_experiment_options(CLI::App& app, ExperimentArguments& experiment) {
   add_choice(app, "NAME", experiment.name,
              Choices<ExperimentName>{{"paper", ExperimentName::kPaper},
@@ -376,10 +439,7 @@ void add_experiment_options(CLI::App& app, ExperimentArguments& experiment) {
              "each effect costs, and that one that is off costs nothing; some half a minute, no scans. All leave CSV, "
              "SVG and index.html; nothing is told before the end where standard error is no terminal")
       ->required();
-  const auto folder = [](const std::string& text) {
-    return text.empty() ? std::nullopt : std::optional<std::filesystem::path>(text);
-  };
-  add_parsed(app, "-o,--output", experiment.output, folder, "the name of a folder", "DIR",
+  add_parsed(app, "-o,--output", experiment.output, parse_path, "the name of a folder", "DIR",
              "folder, made where it is not there")
       ->required();
   app.add_option("--scenes", experiment.scenes,
@@ -454,6 +514,15 @@ Command parse_arguments(int count, const char* const* values) {
   pack->add_option("-o,--output", pack_arguments.output, "scene image")->required()->type_name("FILE");
   add_choice(*pack, "--format", pack_arguments.format, kFormats, format_help());
 
+  RawRender job_raw;
+  JobArguments job_arguments;
+  CLI::App* job = app.add_subcommand("job", "makes the file of a frame that a device is given");
+  add_job_options(*job, job_arguments, job_raw);
+
+  ResultArguments result_arguments;
+  CLI::App* result = app.add_subcommand("result", "reads what a device made of a job");
+  add_result_options(*result, result_arguments);
+
   MachinesArguments machines_arguments;
   std::string machine;
   CLI::App* machines =
@@ -473,7 +542,8 @@ Command parse_arguments(int count, const char* const* values) {
   const bool is_command =
       std::ranges::any_of(all, [&first](const CLI::App* each) { return each->get_name() == first; });
   if (!first.empty() && first.front() != '-' && !is_command) {
-    usage_error("'" + first + "' is not a command; expected render, animate, info, pack, machines or experiment");
+    usage_error("'" + first +
+                "' is not a command; expected render, animate, info, pack, job, result, machines or experiment");
   }
 
   try {
@@ -505,6 +575,8 @@ Command parse_arguments(int count, const char* const* values) {
                       {{"-o", pack_arguments.output}});
     return pack_arguments;
   }
+  if (*job) return complete_job(std::move(job_arguments), job_raw, *job);
+  if (*result) return complete_result(result_arguments);
   if (*experiment) return complete_experiment(experiment_arguments, *experiment);
   if (machines->count("MACHINE") > 0) machines_arguments.machine = find_machine(machine);
   return machines_arguments;

@@ -42,6 +42,7 @@ struct RenderArguments {
   bool has_size = false, has_shading = false;  ///< asked for; else they are the scene's
   std::filesystem::path output;                ///< never empty
   std::optional<std::filesystem::path> depth, ids, report, timeline;
+  bool depth_plane = false, ids_plane = false;  ///< wanted without a file of them
   std::optional<std::filesystem::path> camera;
   ViewRequest view;
   std::uint32_t width = 1024, height = 1024;
@@ -61,6 +62,9 @@ struct RenderArguments {
   sim::Completion completion = sim::Completion::kEarly;
   std::uint64_t seed = 0;
   bool quiet = false;
+
+  [[nodiscard]] bool has_depth() const { return depth || depth_plane; }
+  [[nodiscard]] bool has_ids() const { return ids || ids_plane; }
 
   /// What the kernel is made for, once nothing is 0.
   [[nodiscard]] sim::LayoutChoice layout() const {
@@ -90,6 +94,22 @@ struct PackArguments {
   std::filesystem::path output;
 };
 
+/// A frame as a file for a device.
+struct JobArguments {
+  RenderArguments render;                     ///< its output is the job
+  std::uint64_t base_address = 0;             ///< where the device loads it
+  std::optional<std::uint64_t> memory_bytes;  ///< that the device has from there on
+};
+
+/// What a device made of a job.
+struct ResultArguments {
+  std::filesystem::path job, result;
+  std::optional<std::filesystem::path> output, depth, ids, report;
+  bool compare = false;       ///< with the simulator's frame
+  std::uint32_t threads = 0;  ///< 0: the host's
+  bool quiet = false;
+};
+
 struct MachinesArguments {
   Machine machine;  ///< the one to print; null: all built-in ones are listed
   bool json = false;
@@ -112,8 +132,8 @@ struct TextRequest {
   std::string text;
 };
 
-using Command = std::variant<RenderArguments, AnimateArguments, InfoArguments, PackArguments, MachinesArguments,
-                             ExperimentArguments, TextRequest>;
+using Command = std::variant<RenderArguments, AnimateArguments, InfoArguments, PackArguments, JobArguments,
+                             ResultArguments, MachinesArguments, ExperimentArguments, TextRequest>;
 
 /// Reads a machine file that is named. Errors: Failure, kUsage with what is wrong, kBadInput of a machine file.
 [[nodiscard]] Command parse_arguments(int count, const char* const* values);

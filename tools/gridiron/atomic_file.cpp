@@ -132,6 +132,21 @@ void AtomicFile::fail(const char* action) {
   throw cannot_write(path_, std::string(action) + ": " + reason);
 }
 
+AtomicFile& AtomicFiles::open(const fs::path& path) {
+  stop_if_interrupted();
+  return files_.emplace_back(path);
+}
+
+void AtomicFiles::commit() {
+  stop_if_interrupted();
+  for (AtomicFile& file : files_) {
+    if (file.is_special()) file.commit();
+  }
+  for (AtomicFile& file : files_) {
+    if (!file.is_special()) file.commit();
+  }
+}
+
 void check_can_write(const fs::path& path) {
   if (!path.has_filename()) throw cannot_write(path, "not a file name");
   const fs::path target = resolve_target(path);

@@ -4,6 +4,7 @@
 
 #include <cstddef>
 #include <filesystem>
+#include <list>
 #include <span>
 #include <string>
 #include <string_view>
@@ -42,6 +43,24 @@ class AtomicFile {
   std::vector<std::byte> deferred_;  ///< bytes for a device or pipe
   bool is_special_ = false;
   int descriptor_ = -1;
+};
+
+/// Outputs of one command: every file is complete under its temporary name before the first one appears.
+class AtomicFiles {
+ public:
+  /// @param content  bytes or text. Errors: of AtomicFile, and stop_if_interrupted()'s.
+  template <class Content>
+  void add(const std::filesystem::path& path, const Content& content) {
+    open(path).write(content);
+  }
+
+  /// Makes all files appear, devices and pipes first: they may fail where a rename no longer does.
+  void commit();
+
+ private:
+  AtomicFile& open(const std::filesystem::path& path);
+
+  std::list<AtomicFile> files_;
 };
 
 /// @returns where bytes written to `path` really go: through symbolic links, also one that points at nothing yet.

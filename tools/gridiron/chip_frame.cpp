@@ -38,10 +38,14 @@ sim::ChipResult render_on_chip(FrameMemory& frame, const RenderArguments& argume
   options.limits.queue_depth = arguments.scene.machine->queue_depth;
   options.spill = {.address = frame.spill.address, .bytes_per_core = frame.spill_bytes_per_core};
   options.only_tile = chosen_tile(arguments, frame.record);
-  options.abort = &interrupt_flag();
   options.progress = std::move(progress);
+  return run_on_chip(frame.memory, frame.record_address, std::move(options));
+}
+
+sim::ChipResult run_on_chip(sim::SimMemory& memory, MainAddress frame, sim::ChipOptions options) {
+  options.abort = &interrupt_flag();
   stop_if_interrupted();
-  sim::ChipResult result = sim::render_frame(frame.memory, frame.record_address, options);
+  sim::ChipResult result = sim::render_frame(memory, frame, options);
   stop_if_interrupted();
   if (const std::optional<Failure> failure = frame_failure(result)) throw *failure;
   return result;

@@ -18,6 +18,10 @@ namespace gridiron::tool {
 [[nodiscard]] sim::ChipResult render_on_chip(FrameMemory& frame, const RenderArguments& arguments,
                                              std::function<void(std::uint32_t done, std::uint32_t total)> progress);
 
+/// Renders the frame whose FrameRecord lies at `frame`; signals end it between two tiles.
+/// Errors: Failure where the frame failed, of stop_if_interrupted().
+[[nodiscard]] sim::ChipResult run_on_chip(sim::SimMemory& memory, MainAddress frame, sim::ChipOptions options);
+
 /// @returns what the host has, at least 1.
 [[nodiscard]] std::uint32_t host_threads();
 

@@ -10,6 +10,8 @@ void run_command(const RenderArguments& arguments);
 void run_command(const AnimateArguments& arguments);
 void run_command(const InfoArguments& arguments);
 void run_command(const PackArguments& arguments);
+void run_command(const JobArguments& arguments);
+void run_command(const ResultArguments& arguments);
 void run_command(const MachinesArguments& arguments);
 void run_command(const ExperimentArguments& arguments);  ///< in tools/experiment
 void run_command(const TextRequest& request);

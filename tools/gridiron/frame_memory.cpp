@@ -6,6 +6,7 @@
 #include <string>
 
 #include "failure.h"
+#include "frame_pictures.h"
 #include "stopwatch.h"
 #include "words.h"
 
@@ -92,19 +93,14 @@ std::uint64_t frame_memory_bytes(const SceneInput& input, const RenderArguments&
 void prepare_frame(FrameMemory& frame, const SceneInput& input, const RenderArguments& arguments,
                    const ViewRequest& view) {
   const std::uint32_t depth = recursion_depth(input, arguments);
-  const std::uint32_t planes = 1u + (arguments.depth ? 1u : 0u) + (arguments.ids ? 1u : 0u);
+  const std::uint32_t planes = 1u + (arguments.has_depth() ? 1u : 0u) + (arguments.has_ids() ? 1u : 0u);
   const std::uint64_t budget_bytes =
       image_budget_bytes(*arguments.scene.machine, arguments.width, arguments.height, planes, arguments.tile_width,
                          spill_bytes_of(core_count(arguments), depth));
   frame.image_address = place_image(frame, input, arguments, budget_bytes);
 
   // Identifiers travel as floats in a PFM file.
-  constexpr std::uint32_t kMostExactIds = 1u << 24;
-  if (arguments.ids && frame.image.header.triangle_count > kMostExactIds) {
-    throw Failure(ExitCode::kBadInput, input.path.string() +
-                                           ": --ids: " + words_of_count(frame.image.header.triangle_count) +
-                                           " triangles; the floats of a PFM file tell at most 16,777,216 apart");
-  }
+  if (arguments.ids) require_exact_ids(input.path, frame.image.header.triangle_count);
 
   FrameSettings& settings = frame.settings;
   settings.camera = frame_view(view, frame.image.grid.bounds_minimum, frame.image.grid.bounds_maximum);
@@ -121,8 +117,8 @@ void prepare_frame(FrameMemory& frame, const SceneInput& input, const RenderArgu
 
   const std::uint64_t plane_bytes = output_plane_bytes(settings.width, settings.height, settings.tile_width);
   frame.color = allocate(frame.memory, plane_bytes);
-  if (arguments.depth) frame.depth = allocate(frame.memory, plane_bytes);
-  if (arguments.ids) frame.ids = allocate(frame.memory, plane_bytes);
+  if (arguments.has_depth()) frame.depth = allocate(frame.memory, plane_bytes);
+  if (arguments.has_ids()) frame.ids = allocate(frame.memory, plane_bytes);
   settings.color = frame.color.address;
   settings.depth = frame.depth.address;
   settings.ids = frame.ids.address;

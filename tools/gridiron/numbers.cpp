@@ -26,6 +26,14 @@ std::optional<std::uint32_t> parse_count(std::string_view text) {
   return parse_whole<std::uint32_t>(text);
 }
 
+std::optional<std::uint64_t> parse_address(std::string_view text) {
+  if (!text.starts_with("0x") && !text.starts_with("0X")) return parse_whole<std::uint64_t>(text);
+  std::uint64_t number = 0;
+  const auto [end, error] = std::from_chars(text.data() + 2, text.data() + text.size(), number, 16);
+  if (error != std::errc{} || end != text.data() + text.size()) return std::nullopt;
+  return number;
+}
+
 std::optional<Vec3> parse_vector(std::string_view text) {
   Vec3 vector{};
   for (int axis = 0; axis < 3; ++axis) {

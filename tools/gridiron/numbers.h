@@ -16,6 +16,9 @@ namespace gridiron::tool {
 /// @returns the whole number that is the whole of `text`.
 [[nodiscard]] std::optional<std::uint32_t> parse_count(std::string_view text);
 
+/// @returns the whole number, decimal or hexadecimal after 0x, that is the whole of `text`.
+[[nodiscard]] std::optional<std::uint64_t> parse_address(std::string_view text);
+
 /// @returns the vector of "x,y,z".
 [[nodiscard]] std::optional<Vec3> parse_vector(std::string_view text);
 

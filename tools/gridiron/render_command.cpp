@@ -4,10 +4,8 @@
 #include <report/report.h>
 #include <report/timeline.h>
 
-#include <bit>
 #include <cstdio>
-#include <limits>
-#include <list>
+#include <optional>
 #include <string>
 #include <string_view>
 
@@ -15,78 +13,25 @@
 #include "chip_frame.h"
 #include "commands.h"
 #include "effect_names.h"
-#include "failure.h"
 #include "frame_memory.h"
-#include "hither.h"
+#include "frame_pictures.h"
 #include "image_files.h"
-#include "interrupt.h"
-#include "layout_choice.h"
 #include "progress.h"
+#include "requested_frame.h"
 #include "scene_input.h"
 #include "stopwatch.h"
 #include "store_facts.h"
-#include "untile.h"
 #include "words.h"
 
 namespace gridiron::tool {
 namespace {
 
-// Fails early: nobody should wait for a picture that cannot be written.
 std::vector<std::filesystem::path> outputs_of(const RenderArguments& arguments) {
   std::vector<std::filesystem::path> outputs = {arguments.output};
   for (const auto* path : {&arguments.depth, &arguments.ids, &arguments.report, &arguments.timeline}) {
     if (*path) outputs.push_back(**path);
   }
   return outputs;
-}
-
-// A named configuration that the store has too few buffers for is used with those that there are.
-void tell_fewer_buffers(const RenderArguments& arguments) {
-  if (arguments.depths == arguments.wanted_depths) return;
-  const auto blocks = [](const BufferDepths& depths) {
-    return words_of_count(depths.macro, "cell block") + " and " + words_of_count(depths.triangle, "triangle buffer");
-  };
-  std::fprintf(stderr, "%s: configuration %s has %s; a local store of %u KB holds %s for it\n",
-               arguments.scene.input.c_str(), std::string(arguments.scene.configuration->name).c_str(),
-               blocks(arguments.wanted_depths).c_str(), sim::arena_bytes(arguments.store) >> 10,
-               blocks(arguments.depths).c_str());
-}
-
-ViewRequest view_of(const SceneView& view) {
-  return {.eye = view.from, .at = view.at, .up = view.up, .fov_degrees = view.angle_degrees};
-}
-
-// What the command line left to the scene and the host.
-RenderArguments complete_arguments(const RenderArguments& asked, const SceneInput& input) {
-  RenderArguments arguments = asked;
-  if (input.text && !arguments.has_size) {
-    arguments.width = input.text->view.width;
-    arguments.height = input.text->view.height;
-  }
-  if (arguments.threads == 0) arguments.threads = host_threads();
-  const PackedScene* packed = std::get_if<PackedScene>(&input.content);
-  if (!arguments.has_shading && packed != nullptr && packed->view.has_effects) {
-    arguments.shading = Shading::kScene;
-    settle_layout(arguments);
-  }
-  return arguments;
-}
-
-// Another place to look from has no use for the scene's near plane.
-void check_scene_view(const RenderArguments& arguments, const SceneInput& input, const ViewRequest& view) {
-  if (!input.text || arguments.camera || arguments.view.eye) return;
-  const float no_bounds[3] = {};  // nothing is left to be framed
-  check_hither(input, frame_view(view, no_bounds, no_bounds), arguments.width, arguments.height);
-}
-
-float depth_of_word(std::uint32_t word) {
-  // A chip may have no infinity, so its plane says "largest float" where nothing is hit.
-  const float depth = std::bit_cast<float>(word);
-  return depth >= kFloatMax ? std::numeric_limits<float>::infinity() : depth;
-}
-
-float id_of_word(std::uint32_t word) {
-  return word == kNoTriangle ? -1.0f : static_cast<float>(word);
 }
 
 // Whether the frame left a trace that a clock can be put to: costs are those of 4 lanes and of whole frames.
@@ -142,18 +87,11 @@ void print_timing(const RenderArguments& arguments, const sim::FrameTiming& timi
 }  // namespace
 
 void run_command(const RenderArguments& asked) {
-  for (const std::filesystem::path& output : outputs_of(asked)) check_can_write(output);
-  const ViewRequest camera = asked.camera ? read_camera_file(*asked.camera) : ViewRequest{};
-  const SceneInput input = read_scene_input(asked.scene.input, asked.scene.tolerance);
-  require_other_files(input, outputs_of(asked));
-  const RenderArguments arguments = complete_arguments(asked, input);
-  const bool has_own_view = input.text && !arguments.camera;
-  const ViewRequest view = join_view(arguments.view, has_own_view ? view_of(input.text->view) : camera);
-  check_scene_view(arguments, input, view);
-  if (!arguments.quiet) tell_notes(input);
-  tell_fewer_buffers(arguments);
+  const RequestedFrame request = read_requested_frame(asked, outputs_of(asked));
+  const SceneInput& input = request.input;
+  const RenderArguments& arguments = request.arguments;
   FrameMemory frame(frame_memory_bytes(input, arguments));
-  prepare_frame(frame, input, arguments, view);
+  prepare_frame(frame, input, arguments, request.view);
 
   const Stopwatch render_stopwatch;
   const sim::ChipResult result = [&frame, &arguments] {
@@ -163,8 +101,10 @@ void run_command(const RenderArguments& asked) {
   }();
   const double render_seconds = render_stopwatch.seconds();
 
-  const auto color =
-      untile<std::uint32_t>(frame.record, frame.color.bytes, arguments.tile, [](std::uint32_t word) { return word; });
+  const auto plane_words = [&frame, &arguments](const sim::MemoryRegion& plane) {
+    return words_of_plane(frame.record, plane.bytes, arguments.tile);
+  };
+  const Picture<std::uint32_t> color = plane_words(frame.color);
   const std::uint64_t hash = image_hash(color.pixels);
   sim::FrameTiming timing;
   if (has_time(arguments)) {
@@ -172,35 +112,29 @@ void run_command(const RenderArguments& asked) {
                          {.core_count = arguments.cores, .timeline = arguments.timeline.has_value()});
   }
 
-  // Every file is complete under its temporary name before the first one appears.
-  std::list<AtomicFile> files;
-  const auto add_file = [&files](const std::filesystem::path& path, const auto& content) {
-    stop_if_interrupted();
-    files.emplace_back(path).write(content);
-  };
-  add_file(arguments.output, encode_png(color));
+  AtomicFiles files;
+  files.add(arguments.output, encode_png(color));
+  std::optional<std::uint64_t> depth_hash, ids_hash;
   if (arguments.depth) {
-    add_file(*arguments.depth,
-             encode_pfm(untile<float>(frame.record, frame.depth.bytes, arguments.tile, depth_of_word)));
+    const Picture<std::uint32_t> words = plane_words(frame.depth);
+    depth_hash = image_hash(words.pixels);
+    files.add(*arguments.depth, encode_pfm(depth_picture(words)));
   }
   if (arguments.ids) {
-    add_file(*arguments.ids, encode_pfm(untile<float>(frame.record, frame.ids.bytes, arguments.tile, id_of_word)));
+    const Picture<std::uint32_t> words = plane_words(frame.ids);
+    ids_hash = image_hash(words.pixels);
+    files.add(*arguments.ids, encode_pfm(id_picture(words)));
   }
   if (arguments.report) {
     ReportInput report = collect_report(arguments, input, frame, result, timing);
     report.render_seconds = render_seconds;
     report.image_hash = hash;
-    add_file(*arguments.report, report_json(report));
+    report.depth_hash = depth_hash;
+    report.ids_hash = ids_hash;
+    files.add(*arguments.report, report_json(report));
   }
-  if (arguments.timeline) add_file(*arguments.timeline, timeline_json(timing, *arguments.scene.machine));
-  stop_if_interrupted();
-  // Devices and pipes first: they may fail where a rename no longer does.
-  for (AtomicFile& file : files) {
-    if (file.is_special()) file.commit();
-  }
-  for (AtomicFile& file : files) {
-    if (!file.is_special()) file.commit();
-  }
+  if (arguments.timeline) files.add(*arguments.timeline, timeline_json(timing, *arguments.scene.machine));
+  files.commit();
 
   if (arguments.quiet) return;
   print_picture(arguments, color, hash);

@@ -133,6 +133,8 @@ std::string report_json(const ReportInput& input) {
                     {"render_seconds", input.render_seconds},
                     {"threads", input.host_threads}};
   report["image_hash"] = hash_text(input.image_hash);
+  if (input.depth_hash) report["depth_hash"] = hash_text(*input.depth_hash);
+  if (input.ids_hash) report["ids_hash"] = hash_text(*input.ids_hash);
   return report.dump(2, ' ', false, Json::error_handler_t::replace) + "\n";
 }
 

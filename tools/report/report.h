@@ -10,6 +10,7 @@
 #include <gridiron/sim/trace.h>
 
 #include <cstdint>
+#include <optional>
 #include <span>
 #include <string>
 #include <string_view>
@@ -39,7 +40,7 @@ struct ReportInput {
   std::uint64_t vertex_count = 0;
   std::uint64_t dropped_triangle_count = 0;  ///< zero area
   GridRecord grid{};
-  float wanted_lambda = 0;           ///< more than the grid's where that was reduced to fit the main memory
+  float wanted_lambda = 0;       ///< more than the grid's where that was reduced to fit the main memory
   std::uint64_t grid_bytes = 0;  ///< the whole scene image
 
   sim::MachineProfile machine{};
@@ -58,6 +59,7 @@ struct ReportInput {
   std::uint32_t host_threads = 1;
 
   std::uint64_t image_hash = 0;
+  std::optional<std::uint64_t> depth_hash, ids_hash;  ///< of planes that the frame has
 };
 
 /// @returns the report as JSON text, two spaces of indentation, keys in the documented order, newline at the end.
@@ -75,9 +77,9 @@ struct ReportInput {
 /// @returns the stable name of a wait level: tile, macrocell, triangle, setup.
 [[nodiscard]] std::string_view wait_level_name(sim::WaitLevel level);
 
-/// FNV-1a, 64 bits, over the bytes R, G, B, A of each pixel.
+/// FNV-1a, 64 bits, over the bytes of each pixel's word, lowest first: R, G, B, A of a colour.
 ///
-/// @param pixels  0xAABBGGRR, row-major, top row first.
+/// @param pixels  0xAABBGGRR, bits of a distance, or triangle ids; row-major, top row first.
 [[nodiscard]] std::uint64_t image_hash(std::span<const std::uint32_t> pixels);
 
 /// @returns 16 lower-case hexadecimal digits.

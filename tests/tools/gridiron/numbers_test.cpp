@@ -22,6 +22,15 @@ TEST(Numbers, CountsAreDigits) {
   }
 }
 
+TEST(Numbers, AddressesAreDecimalOrHexadecimal) {
+  EXPECT_EQ(tool::parse_address("4096"), 4096u);
+  EXPECT_EQ(tool::parse_address("0x80200000"), 0x80200000u);
+  EXPECT_EQ(tool::parse_address("0XffffFFFFffffffff"), 0xFFFFFFFFFFFFFFFFu);
+  for (const char* text : {"", "0x", "x10", "80200000h", "-1", "0x-1", "0x10000000000000000", "1 ", "0x1 "}) {
+    EXPECT_FALSE(tool::parse_address(text)) << "'" << text << "'";
+  }
+}
+
 TEST(Numbers, VectorsHaveThreeParts) {
   EXPECT_EQ(tool::parse_vector("1,-2,3.5"), Vec3(1, -2, 3.5f));
   for (const char* text : {"", "1,2", "1,2,", ",1,2", "1,2,3,4", "1;2;3", "1, 2,3", "1,2,nan"}) {

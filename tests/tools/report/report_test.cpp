@@ -64,6 +64,8 @@ ReportInput sample() {
   input.render_seconds = 2;
   input.host_threads = 6;
   input.image_hash = 0x0123456789abcdef;
+  input.depth_hash = 0x1123456789abcdef;
+  input.ids_hash = 0x2123456789abcdef;
   return input;
 }
 
@@ -134,10 +136,11 @@ TEST(Report, HasExactlyTheDocumentedKeysInOrder) {
     expected.push_back(std::string("work.") + name);
   }
   // clang-format on
-  for (const char* path : {"effects.called_for[]", "effects.rays.primary", "local_store.arena_bytes",
-                           "local_store.regions[].name", "local_store.regions[].offset", "local_store.regions[].bytes",
-                           "local_store.code_bytes", "local_store.stack_bytes", "host.load_seconds",
-                           "host.build_seconds", "host.render_seconds", "host.threads", "image_hash"}) {
+  for (const char* path :
+       {"effects.called_for[]", "effects.rays.primary", "local_store.arena_bytes", "local_store.regions[].name",
+        "local_store.regions[].offset", "local_store.regions[].bytes", "local_store.code_bytes",
+        "local_store.stack_bytes", "host.load_seconds", "host.build_seconds", "host.render_seconds", "host.threads",
+        "image_hash", "depth_hash", "ids_hash"}) {
     expected.push_back(path);
   }
   std::vector<std::string> paths;
@@ -185,6 +188,8 @@ TEST(Report, ValuesAreTheOnesPutIn) {
   EXPECT_EQ(report["host"], Json::parse(R"({"load_seconds": 0.125, "build_seconds": 0.5, "render_seconds": 2.0,
                                             "threads": 6})"));
   EXPECT_EQ(report["image_hash"], "0123456789abcdef");
+  EXPECT_EQ(report["depth_hash"], "1123456789abcdef");
+  EXPECT_EQ(report["ids_hash"], "2123456789abcdef");
 }
 
 TEST(Report, CyclesOfACoreAddUpToTheFrame) {
@@ -256,6 +261,8 @@ TEST(Report, EmptyInputIsStillValid) {
   EXPECT_TRUE(report["effects"]["called_for"].is_array());
   EXPECT_TRUE(report["effects"]["rays"].is_object());
   EXPECT_TRUE(report["local_store"]["regions"].is_array());
+  EXPECT_FALSE(report.contains("depth_hash"));
+  EXPECT_FALSE(report.contains("ids_hash"));
 }
 
 TEST(Report, NamesOfWorkAreDistinctAndSnakeCase) {

@@ -1,0 +1,373 @@
+// job and result: files that hold what they say, a device played by the host, and damage that is found.
+// SPDX-License-Identifier: Apache-2.0
+#include <gridiron/base/work_counters.h>
+#include <gtest/gtest.h>
+#include <report/report.h>
+
+#include <cstring>
+#include <functional>
+#include <nlohmann/json.hpp>
+#include <string>
+#include <vector>
+
+#include "gridiron/job_file.h"
+#include "host_device.h"
+#include "run_program.h"
+#include "temporary_folder.h"
+
+namespace gridiron::test {
+namespace {
+
+using Json = nlohmann::json;
+using Words = std::vector<std::string>;
+using port::FrameJob;
+using port::FrameResult;
+
+constexpr std::uint64_t kBase = 0x2000000;
+
+constexpr const char* kMirrors =
+    "v from 1 2 6 at 0 0 0 up 0 1 0 angle 40 hither 0 resolution 72 40\n"
+    "b 0.1 0.2 0.4\nl 3 5 4\nf 0.9 0.5 0.3 0.5 0.5 40 0 0\ns -0.9 0 0 0.9\ns 0.9 0 0 0.9\n";
+
+Words joined(Words a, const Words& b) {
+  a.insert(a.end(), b.begin(), b.end());
+  return a;
+}
+
+ProgramResult run(const TemporaryFolder& folder, const Words& arguments) {
+  const ProgramResult result = run_program(folder.folder(), arguments);
+  EXPECT_EQ(result.exit_code, 0) << result.out << result.err;
+  return result;
+}
+
+void expect_failure(const TemporaryFolder& folder, const Words& arguments, int exit_code, const std::string& words) {
+  const Words before = folder.names();
+  const ProgramResult result = run_program(folder.folder(), arguments);
+  EXPECT_EQ(result.exit_code, exit_code) << result.err;
+  EXPECT_NE(result.err.find(words), std::string::npos) << result.err << "\nlacks: " << words;
+  EXPECT_EQ(folder.names(), before) << "a file was left behind or lost";
+}
+
+// Makes a.job of a torus, or of `scene`.
+std::string make_job(const TemporaryFolder& folder, const Words& options, const std::string& scene = "a.ply") {
+  folder.write_ply("a.ply", make_torus(40, 24, 1.0f, 0.4f));
+  folder.write("a.nff", kMirrors);
+  run(folder, joined({"job", scene, "-o", "a.job", "--base", "0x2000000"}, options));
+  return read_file(folder.path("a.job"));
+}
+
+template <class Record>
+Record record_at(const std::string& bytes, std::size_t place) {
+  Record record{};
+  std::memcpy(&record, bytes.data() + place, sizeof record);
+  return record;
+}
+
+template <class Record>
+void put_record(std::string& bytes, std::size_t place, const Record& record) {
+  std::memcpy(bytes.data() + place, &record, sizeof record);
+}
+
+struct JobCase {
+  Words options;
+  std::string scene = "a.ply";
+};
+
+// Renders with the same picture; "job" takes --depth and --ids without a file.
+const std::vector<JobCase> kCases = {
+    {{"--size", "96x64"}},
+    {{"--size", "70x45", "--eye", "1,2,3", "--configuration", "best"}},
+    {{"--size", "40x40", "--store", "64", "--buffering", "single"}},
+    {{"--size", "64x64", "--accuracy", "exact", "--lambda", "2"}},
+    {{"--size", "64x64", "--accuracy", "paper", "--shading", "none"}},
+    {{"--size", "64x64", "--accuracy", "compact", "--packet", "32"}},
+    {{"--cores", "5"}, "a.nff"},
+    {{"--store", "64"}, "a.nff"},
+};
+
+TEST(Job, NamesWhatLiesInIt) {
+  for (const JobCase& each : kCases) {
+    const TemporaryFolder folder;
+    const std::string file = make_job(folder, joined(each.options, {"--depth", "--ids"}), each.scene);
+    const auto job = record_at<FrameJob>(file, 0);
+    ASSERT_EQ(job.magic, port::kFrameJobMagic);
+    EXPECT_EQ(job.base_address, kBase);
+    EXPECT_EQ(job.loaded_bytes, file.size());
+    const auto lies_in = [](std::uint64_t begin, std::uint64_t bytes, std::uint64_t first, std::uint64_t end) {
+      return begin >= first && begin + bytes <= end;
+    };
+    const std::uint64_t loaded_end = kBase + job.loaded_bytes, end = kBase + job.memory_bytes;
+    ASSERT_TRUE(lies_in(job.frame_address, sizeof(FrameRecord), kBase + sizeof job, loaded_end));
+    ASSERT_TRUE(lies_in(job.image_address, job.image_bytes, job.frame_address + sizeof(FrameRecord), loaded_end));
+    const auto record = record_at<FrameRecord>(file, job.frame_address - kBase);
+    EXPECT_EQ(record.width, job.width);
+    EXPECT_EQ(record.tiles_x * record.tiles_y, job.tile_count);
+    for (const std::uint64_t part :
+         {record.macro_table_address, record.cell_blocks_address, record.triangles_address}) {
+      EXPECT_TRUE(lies_in(part, kLineBytes, job.image_address, job.image_address + job.image_bytes));
+    }
+    const std::uint64_t head = sizeof(FrameResult) + job.tile_count * sizeof(port::TileResult);
+    EXPECT_TRUE(lies_in(job.result_address, job.result_bytes, loaded_end, end));
+    std::uint64_t free = job.result_address + head;
+    for (const std::uint64_t plane : {record.color_address, record.depth_address, record.id_address}) {
+      EXPECT_TRUE(lies_in(plane, job.plane_bytes, free, job.result_address + job.result_bytes));
+      EXPECT_EQ(plane % kLineBytes, 0u);
+      free = plane + job.plane_bytes;
+    }
+    EXPECT_EQ(job.color_address, record.color_address);
+    EXPECT_EQ(job.depth_address, record.depth_address);
+    EXPECT_EQ(job.ids_address, record.id_address);
+    EXPECT_EQ(job.effects != 0, each.scene == "a.nff");
+    EXPECT_EQ(job.spill_address != 0, each.scene == "a.nff");
+    if (job.spill_address != 0) {
+      EXPECT_EQ(job.spill_address % kSpillAlignment, 0u);
+      EXPECT_TRUE(
+          lies_in(job.spill_address, job.spill_bytes * job.spill_cores, job.result_address + job.result_bytes, end));
+      EXPECT_EQ(job.spill_cores, each.options[0] == "--cores" ? 5u : 6u);
+    }
+
+    const tool::OpenJob open = tool::read_job_file(folder.path("a.job"));
+    EXPECT_EQ(std::memcmp(&open.job, &job, sizeof job), 0);
+    EXPECT_EQ(std::memcmp(&open.record, &record, sizeof record), 0);
+  }
+}
+
+TEST(Job, IsTheSameBytesEveryTimeAndOfAPackedScene) {
+  const TemporaryFolder folder;
+  const std::string job = make_job(folder, {"--size", "64x48"});
+  run(folder, {"pack", "a.ply", "-o", "a.gri"});
+  EXPECT_EQ(make_job(folder, {"--size", "64x48"}, "a.gri"), job);
+  const auto plain = record_at<FrameJob>(job, 0);
+  EXPECT_EQ(plain.depth_address, 0u);
+  EXPECT_EQ(plain.ids_address, 0u);
+}
+
+TEST(Job, IsRefusedWhereItDoesNotFit) {
+  const TemporaryFolder folder;
+  const std::string file = make_job(folder, {"--size", "64x48"});
+  std::filesystem::remove(folder.path("a.job"));
+  const auto bytes = record_at<FrameJob>(file, 0).memory_bytes;
+  const Words job = {"job", "a.ply", "-o", "a.job", "--size", "64x48"};
+  const auto with = [&job](const Words& options) { return joined(job, options); };
+  expect_failure(folder, with({"--base", "0", "--memory", std::to_string(bytes - 1)}), 1, "a.ply: the job needs ");
+  expect_failure(folder, with({"--base", "0xfffffffffffff000"}), 2, "--base: the job would end behind");
+  expect_failure(folder, with({}), 2, "--base is required");
+  for (const char* base : {"4095", "0x", "-4096", "0x80200800", "1e3", ""}) {
+    expect_failure(folder, with({"--base", base}), 2, "--base");
+  }
+  expect_failure(folder, with({"--base", "0", "--cores", "17"}), 2, "--cores");
+  expect_failure(folder, with({"--base", "0", "--memory", "many"}), 2, "--memory");
+  expect_failure(folder, {"job", "a.ply", "-o", "a.ply", "--base", "0"}, 2, "name the same file");
+  expect_failure(folder, {"job", "b.ply", "-o", "a.job", "--base", "0"}, 1, "b.ply: No such file");
+  run(folder, with({"--base", "0x80200000", "--memory", std::to_string(bytes)}));
+}
+
+TEST(Result, OfADeviceIsTheSimulatorsFrame) {
+  for (const JobCase& each : kCases) {
+    const TemporaryFolder folder;
+    const std::string job = make_job(folder, joined(each.options, {"--depth", "--ids"}), each.scene);
+    folder.write("a.res", render_on_host_device(job, 5));
+    const ProgramResult result = run(folder, {"result", "a.job", "a.res", "--compare", "-o", "d.png", "--depth",
+                                              "d.pfm", "--ids", "i.pfm", "--report", "d.json"});
+    for (const char* item : {"image", "depth", "ids", "work", "transfers", "tiles.transfers"}) {
+      const std::size_t line = result.out.find("\n" + std::string(item) + " ");
+      ASSERT_NE(line, std::string::npos) << item << result.out;
+      EXPECT_EQ(result.out.substr(line + 26, 7), "equal: ") << result.out;
+    }
+    const Words render_words = {"render", each.scene, "-o",    "r.png",    "--depth",
+                                "r.pfm",  "--ids",    "r.ids", "--report", "r.json"};
+    run(folder, joined(render_words, each.options));
+    EXPECT_EQ(read_file(folder.path("d.png")), read_file(folder.path("r.png")));
+    EXPECT_EQ(read_file(folder.path("d.pfm")), read_file(folder.path("r.pfm")));
+    EXPECT_EQ(read_file(folder.path("i.pfm")), read_file(folder.path("r.ids")));
+    const Json device = Json::parse(read_file(folder.path("d.json")));
+    const Json render = Json::parse(read_file(folder.path("r.json")));
+    for (const char* key : {"image_hash", "depth_hash", "ids_hash", "work"}) EXPECT_EQ(device[key], render[key]) << key;
+    ASSERT_EQ(device["cores"].size(), 5u);
+    EXPECT_EQ(device["cores"][4]["instructions"], 1004);
+    EXPECT_EQ(device["tiles"][1]["instructions"], 2);
+    EXPECT_EQ(device["tiles"].size(), record_at<FrameJob>(job, 0).tile_count);
+  }
+}
+
+TEST(Result, OneDifferenceIsEnough) {
+  const TemporaryFolder folder;
+  const std::string file = make_job(folder, {"--size", "50x40", "--depth", "--ids"});
+  const auto job = record_at<FrameJob>(file, 0);
+  const std::string whole = render_on_host_device(file, 3);
+  const auto flip = [&whole](std::uint64_t place) {
+    std::string damaged = whole;
+    damaged[place] = static_cast<char>(damaged[place] ^ 1);
+    return damaged;
+  };
+  const auto in_plane = [&job](std::uint64_t plane) { return plane - job.result_address + 33 * 4; };
+  const std::uint64_t core = offsetof(FrameResult, cores) + sizeof(port::CoreResult);
+  const struct {
+    std::uint64_t place;
+    const char* item;
+  } cases[] = {
+      {in_plane(job.color_address), "image"},
+      {in_plane(job.depth_address), "depth"},
+      {in_plane(job.ids_address), "ids"},
+      {core + offsetof(port::CoreResult, work), "work.tile_start"},
+      {core + offsetof(port::CoreResult, work) + 4 * static_cast<std::uint64_t>(Work::kWait), "work.wait"},
+      {core + offsetof(port::CoreResult, transfers), "transfers"},
+      {sizeof(FrameResult) + 16 + offsetof(port::TileResult, transfers), "tiles.transfers"},
+  };
+  for (const auto& each : cases) {
+    folder.write("a.res", flip(each.place));
+    const ProgramResult result = run_program(folder.folder(), {"result", "a.job", "a.res", "--compare"});
+    EXPECT_EQ(result.exit_code, 3) << each.item;
+    EXPECT_NE(result.out.find(std::string("\n") + each.item + " "), std::string::npos) << result.out;
+    EXPECT_NE(result.out.find("different: "), std::string::npos) << result.out;
+    EXPECT_NE(result.err.find(std::string("differs from the simulator's: ")), std::string::npos) << result.err;
+    EXPECT_NE(result.err.find(each.item), std::string::npos) << result.err;
+  }
+  // Beside the picture an edge tile holds anything: the last pixel of tile 1 is column 63 of 50.
+  folder.write("a.res", flip(job.color_address - job.result_address + 2 * 4096 - 1));
+  run(folder, {"result", "a.job", "a.res", "--compare"});
+}
+
+// Other words of the device for how it counted: other lanes are said, another queue makes a core wait earlier.
+TEST(Result, LanesAndQueueAreTheDevices) {
+  const TemporaryFolder folder;
+  const std::string file = make_job(folder, {"--size", "50x40", "--configuration", "best"});
+  std::string result = render_on_host_device(file, 2);
+  put_record(result, offsetof(FrameResult, lane_count), std::uint32_t{1});
+  folder.write("a.res", result);
+  expect_failure(folder, {"result", "a.job", "a.res", "--compare"}, 3, "simulator's: work");
+  put_record(result, offsetof(FrameResult, lane_count), std::uint32_t{4});
+  put_record(result, offsetof(FrameResult, queue_depth), std::uint32_t{1});
+  folder.write("a.res", result);
+  expect_failure(folder, {"result", "a.job", "a.res", "--compare"}, 3, "simulator's: work work.wait");
+}
+
+TEST(Job, DamageIsFoundWithItsPlace) {
+  const TemporaryFolder folder;
+  const std::string whole = make_job(folder, {"--size", "50x40", "--depth"});
+  const auto expect_refused = [&](const std::string& file, std::uint64_t place, const char* words) {
+    folder.write("b.job", file);
+    expect_failure(folder, {"result", "b.job", "a.res"}, 1, "b.job:byte " + std::to_string(place) + ": " + words);
+  };
+  expect_refused("", 0, "the file ends");
+  expect_refused(whole.substr(0, 255), 255, "the file ends");
+  expect_refused(whole.substr(0, whole.size() - 1), offsetof(FrameJob, loaded_bytes), "");
+  expect_refused(whole + "x", offsetof(FrameJob, loaded_bytes), "");
+  for (const std::size_t place : {std::size_t{200}, std::size_t{300}, std::size_t{1000}, whole.size() - 1}) {
+    std::string damaged = whole;
+    damaged[place] = static_cast<char>(damaged[place] ^ 16);
+    expect_refused(damaged, offsetof(FrameJob, check_value), "check_value differs");
+  }
+
+  // Wrong ones that were made so: the check value holds.
+  const auto expect_wrong = [&](std::uint64_t place, const std::function<void(FrameJob&, FrameRecord&)>& change) {
+    auto job = record_at<FrameJob>(whole, 0);
+    auto record = record_at<FrameRecord>(whole, 256);
+    change(job, record);
+    std::string file = whole;
+    put_record(file, 256, record);
+    put_record(file, 0, job);
+    job.check_value = tool::job_check_value(std::as_bytes(std::span(file)));
+    put_record(file, 0, job);
+    expect_refused(file, place, "");
+  };
+  constexpr std::uint64_t kFar = std::uint64_t{1} << 63;
+  using Job = FrameJob;
+  using Record = FrameRecord;
+  expect_wrong(offsetof(Job, magic), [](Job& job, Record&) { job.magic ^= 1; });
+  expect_wrong(offsetof(Job, version), [](Job& job, Record&) { ++job.version; });
+  expect_wrong(offsetof(Job, base_address), [](Job& job, Record&) { job.base_address += 64; });
+  expect_wrong(offsetof(Job, memory_bytes), [](Job& job, Record&) { job.memory_bytes = job.loaded_bytes - 64; });
+  expect_wrong(offsetof(Job, memory_bytes), [](Job& job, Record&) { job.memory_bytes = ~std::uint64_t{0}; });
+  expect_wrong(offsetof(Job, store_bytes), [](Job& job, Record&) { ++job.store_bytes; });
+  expect_wrong(offsetof(Job, reserved), [](Job& job, Record&) { job.reserved[23] = 1; });
+  expect_wrong(offsetof(Job, frame_address), [](Job& job, Record&) { job.frame_address = job.base_address - 128; });
+  expect_wrong(offsetof(Job, image_address), [](Job& job, Record&) { job.image_address += 128; });
+  expect_wrong(4096, [](Job& job, Record&) { job.image_bytes -= 128; });
+  expect_wrong(offsetof(Job, result_address), [](Job& job, Record&) { job.result_address = job.base_address; });
+  expect_wrong(offsetof(Job, result_address), [](Job& job, Record&) { job.result_bytes = kFar; });
+  expect_wrong(offsetof(Job, result_bytes), [](Job& job, Record&) { job.result_bytes = 64; });
+  expect_wrong(offsetof(Job, plane_bytes), [](Job& job, Record&) { job.plane_bytes += 128; });
+  expect_wrong(offsetof(Job, color_address), [](Job& job, Record&) { job.color_address += 128; });
+  expect_wrong(offsetof(Job, color_address),
+               [](Job& job, Record& record) { job.color_address = record.color_address = job.result_address; });
+  expect_wrong(offsetof(Job, depth_address),
+               [](Job& job, Record& record) { job.depth_address = record.depth_address = job.color_address; });
+  expect_wrong(offsetof(Job, ids_address),
+               [](Job& job, Record& record) { job.ids_address = record.id_address = kFar; });
+  expect_wrong(offsetof(Job, spill_bytes), [](Job& job, Record&) { job.spill_bytes = 4096; });
+  expect_wrong(offsetof(Job, spill_cores), [](Job& job, Record&) { job.spill_address = job.result_address; });
+  expect_wrong(offsetof(Job, spill_address), [](Job& job, Record&) {
+    job.spill_address = job.result_address;
+    job.spill_bytes = 4096;
+    job.spill_cores = 1;
+  });
+  expect_wrong(offsetof(Job, tile_count), [](Job& job, Record&) { ++job.tile_count; });
+  expect_wrong(offsetof(Job, effects), [](Job& job, Record&) { job.effects = 1; });
+  expect_wrong(256 + offsetof(Record, magic), [](Job&, Record& record) { record.magic ^= 1; });
+  expect_wrong(256 + offsetof(Record, width), [](Job&, Record& record) { record.tile_width = 0; });
+  expect_wrong(256 + offsetof(Record, tiles_x), [](Job&, Record& record) { ++record.tiles_x; });
+  expect_wrong(256 + offsetof(Record, macro_table_address), [](Job&, Record& record) { ++record.triangles_address; });
+  expect_wrong(256 + offsetof(Record, grid), [](Job&, Record& record) { ++record.grid.reference_count; });
+  expect_wrong(256 + offsetof(Record, effects_address), [](Job&, Record& record) { record.effects_address = kBase; });
+  expect_wrong(256 + offsetof(Record, shading), [](Job&, Record& record) { record.shading = 2; });
+}
+
+TEST(Result, DamageIsFoundWithItsPlace) {
+  const TemporaryFolder folder;
+  const std::string file = make_job(folder, {"--size", "50x40"});
+  const std::string whole = render_on_host_device(file, 2);
+  const auto expect_refused = [&](const std::string& result, int code, const std::string& words) {
+    folder.write("a.res", result);
+    expect_failure(folder, {"result", "a.job", "a.res", "-o", "a.png"}, code, words);
+  };
+  const auto expect_wrong = [&](std::uint64_t place, const std::function<void(FrameResult&)>& change) {
+    auto frame = record_at<FrameResult>(whole, 0);
+    change(frame);
+    std::string result = whole;
+    put_record(result, 0, frame);
+    expect_refused(result, 1, "a.res:byte " + std::to_string(place) + ": ");
+  };
+  expect_refused(whole.substr(0, whole.size() - 4), 1, "a.res:byte " + std::to_string(whole.size() - 4) + ": ");
+  expect_refused(whole + "1234", 1, "a.res:byte " + std::to_string(whole.size()) + ": ");
+  expect_refused("", 1, "a.res:byte 0: ");
+  const auto core = [](std::uint64_t i) { return offsetof(FrameResult, cores) + i * sizeof(port::CoreResult); };
+  expect_wrong(offsetof(FrameResult, magic), [](FrameResult& frame) { frame.magic = 0; });
+  expect_wrong(offsetof(FrameResult, version), [](FrameResult& frame) { frame.version = 2; });
+  expect_wrong(offsetof(FrameResult, core_count), [](FrameResult& frame) { frame.core_count = 17; });
+  expect_wrong(offsetof(FrameResult, core_count), [](FrameResult& frame) { frame.core_count = 0; });
+  expect_wrong(offsetof(FrameResult, work_kinds), [](FrameResult& frame) { --frame.work_kinds; });
+  expect_wrong(offsetof(FrameResult, reserved), [](FrameResult& frame) { frame.reserved[8] = 1; });
+  expect_wrong(offsetof(FrameResult, status), [](FrameResult& frame) { frame.status = 1; });
+  expect_wrong(core(1) + offsetof(port::CoreResult, tiles), [](FrameResult& frame) { ++frame.cores[1].tiles; });
+  expect_wrong(core(2), [](FrameResult& frame) { frame.cores[2].work[0] = 1; });
+  expect_wrong(core(0) + offsetof(port::CoreResult, work) + 4 * kWorkKindCount,
+               [](FrameResult& frame) { frame.cores[0].work[port::kMostWorkKinds - 1] = 1; });
+  expect_wrong(sizeof(FrameResult) + 2 * sizeof(port::TileResult), [](FrameResult& frame) {
+    frame.core_count = 1;
+    frame.cores[1] = {};
+  });
+  std::string unclaimed = whole;
+  put_record(unclaimed, sizeof(FrameResult), port::kNotRun);
+  expect_refused(unclaimed, 1, "no core claimed tile 0");
+
+  // A device that says so itself is believed.
+  auto failed = record_at<FrameResult>(whole, 0);
+  failed.status = failed.cores[1].status = static_cast<std::uint32_t>(Status::kTransferFailed);
+  std::string result = whole;
+  put_record(result, 0, failed);
+  expect_refused(result, 3, "a.res: core 1: ");
+  failed.status = failed.cores[1].status = port::kNotRun;
+  put_record(result, 0, failed);
+  expect_refused(result, 3, "a.res: core 1: it never came back");
+
+  folder.write("a.res", whole);
+  expect_failure(folder, {"result", "a.job", "a.res", "--depth", "d.pfm"}, 2, "a.job was made without --depth");
+  expect_failure(folder, {"result", "a.job", "a.res", "--ids", "d.pfm"}, 2, "a.job was made without --ids");
+  expect_failure(folder, {"result", "a.job", "a.res", "-o", "a.job"}, 2, "name the same file");
+  expect_failure(folder, {"result", "a.job", "b.res"}, 1, "b.res: No such file");
+  expect_failure(folder, {"result", "a.job"}, 2, "RESULT is required");
+}
+
+}  // namespace
+}  // namespace gridiron::test

@@ -1,0 +1,39 @@
+// job: a frame becomes the file that a device is given. SPDX-License-Identifier: Apache-2.0
+#include <cstdio>
+#include <cstring>
+#include <string>
+
+#include "atomic_file.h"
+#include "commands.h"
+#include "failure.h"
+#include "frame_memory.h"
+#include "job_file.h"
+#include "requested_frame.h"
+#include "words.h"
+
+namespace gridiron::tool {
+
+void run_command(const JobArguments& asked) {
+  const RequestedFrame request = read_requested_frame(asked.render, {asked.render.output});
+  const RenderArguments& arguments = request.arguments;
+  FrameMemory frame(frame_memory_bytes(request.input, arguments));
+  prepare_frame(frame, request.input, arguments, request.view);
+  const std::vector<std::byte> file = make_job_file(frame, arguments, asked.base_address);
+
+  port::FrameJob job{};
+  std::memcpy(&job, file.data(), sizeof job);
+  if (asked.memory_bytes && job.memory_bytes > *asked.memory_bytes) {
+    throw Failure(ExitCode::kBadInput, request.input.path.string() + ": the job needs " +
+                                           words_of_count(job.memory_bytes) + " bytes of memory, --memory gives " +
+                                           words_of_count(*asked.memory_bytes));
+  }
+  AtomicFiles files;
+  files.add(arguments.output, file);
+  files.commit();
+  if (arguments.quiet) return;
+  std::printf("%s: %ux%u in %s, %s to load at 0x%llx, %s of memory\n", arguments.output.c_str(), job.width, job.height,
+              words_of_count(job.tile_count, "tile").c_str(), words_of_bytes(job.loaded_bytes).c_str(),
+              static_cast<unsigned long long>(job.base_address), words_of_bytes(job.memory_bytes).c_str());
+}
+
+}  // namespace gridiron::tool

@@ -1,0 +1,74 @@
+// Requested frame. SPDX-License-Identifier: Apache-2.0
+#include "requested_frame.h"
+
+#include <cstdio>
+#include <string>
+
+#include "atomic_file.h"
+#include "chip_frame.h"
+#include "hither.h"
+#include "layout_choice.h"
+#include "words.h"
+
+namespace gridiron::tool {
+namespace {
+
+// A named configuration that the store has too few buffers for is used with those that there are.
+void tell_fewer_buffers(const RenderArguments& arguments) {
+  if (arguments.depths == arguments.wanted_depths) return;
+  const auto blocks = [](const BufferDepths& depths) {
+    return words_of_count(depths.macro, "cell block") + " and " + words_of_count(depths.triangle, "triangle buffer");
+  };
+  std::fprintf(stderr, "%s: configuration %s has %s; a local store of %u KB holds %s for it\n",
+               arguments.scene.input.c_str(), std::string(arguments.scene.configuration->name).c_str(),
+               blocks(arguments.wanted_depths).c_str(), sim::arena_bytes(arguments.store) >> 10,
+               blocks(arguments.depths).c_str());
+}
+
+ViewRequest view_of(const SceneView& view) {
+  return {.eye = view.from, .at = view.at, .up = view.up, .fov_degrees = view.angle_degrees};
+}
+
+// What the command line left to the scene and the host.
+RenderArguments complete_arguments(const RenderArguments& asked, const SceneInput& input) {
+  RenderArguments arguments = asked;
+  if (input.text && !arguments.has_size) {
+    arguments.width = input.text->view.width;
+    arguments.height = input.text->view.height;
+  }
+  if (arguments.threads == 0) arguments.threads = host_threads();
+  const PackedScene* packed = std::get_if<PackedScene>(&input.content);
+  if (!arguments.has_shading && packed != nullptr && packed->view.has_effects) {
+    arguments.shading = Shading::kScene;
+    settle_layout(arguments);
+  }
+  return arguments;
+}
+
+// Another place to look from has no use for the scene's near plane.
+void check_scene_view(const RenderArguments& arguments, const SceneInput& input, const ViewRequest& view) {
+  if (!input.text || arguments.camera || arguments.view.eye) return;
+  const float no_bounds[3] = {};  // nothing is left to be framed
+  check_hither(input, frame_view(view, no_bounds, no_bounds), arguments.width, arguments.height);
+}
+
+}  // namespace
+
+RequestedFrame read_requested_frame(const RenderArguments& asked, const std::vector<std::filesystem::path>& outputs) {
+  for (const std::filesystem::path& output : outputs) check_can_write(output);
+  const ViewRequest camera = asked.camera ? read_camera_file(*asked.camera) : ViewRequest{};
+  RequestedFrame request;
+  request.input = read_scene_input(asked.scene.input, asked.scene.tolerance);
+  const SceneInput& input = request.input;
+  require_other_files(input, outputs);
+  request.arguments = complete_arguments(asked, input);
+  const RenderArguments& arguments = request.arguments;
+  const bool has_own_view = input.text && !arguments.camera;
+  request.view = join_view(arguments.view, has_own_view ? view_of(input.text->view) : camera);
+  check_scene_view(arguments, input, request.view);
+  if (!arguments.quiet) tell_notes(input);
+  tell_fewer_buffers(arguments);
+  return request;
+}
+
+}  // namespace gridiron::tool

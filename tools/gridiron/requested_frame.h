@@ -1,0 +1,29 @@
+// Requested frame: what a command line, the scene it names and the host say of a frame together.
+// Memory: owns the scene. Threads: one. SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <filesystem>
+#include <vector>
+
+#include "arguments.h"
+#include "scene_input.h"
+#include "view.h"
+
+namespace gridiron::tool {
+
+/// All that prepare_frame() wants to know.
+struct RequestedFrame {
+  SceneInput input;
+  RenderArguments arguments;  ///< nothing is left to the scene or the host
+  ViewRequest view;
+};
+
+/// Reads scene and camera and completes the arguments by them. Says on standard error what is odd in the scene, unless
+/// quiet, and where the store has fewer buffers than the configuration.
+///
+/// @param outputs  of the command; that they can be written is checked first: nobody should wait for what cannot be.
+/// Errors: Failure.
+[[nodiscard]] RequestedFrame read_requested_frame(const RenderArguments& asked,
+                                                  const std::vector<std::filesystem::path>& outputs);
+
+}  // namespace gridiron::tool
