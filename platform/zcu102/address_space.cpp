@@ -99,7 +99,8 @@ bool AddressSpace::map(std::uint64_t address, std::uint64_t bytes, Rights rights
 
 void build_spaces() {
   using namespace gridiron::port;
-  bool is_mapped = map_common(spaces[0]) && map_master(spaces[0]);
+  // The master is core 0: what is that core's own is its too.
+  bool is_mapped = map_common(spaces[0]) && map_master(spaces[0]) && map_worker(spaces[0], 0);
   for (std::uint32_t core = 0; core < kCoreCount; ++core) {
     is_mapped = is_mapped && map_common(spaces[1 + core]) && map_worker(spaces[1 + core], core);
   }

@@ -41,8 +41,6 @@ void call_confined(void (*function)(std::uint64_t), std::uint64_t argument, std:
 // Called by start.S.
 void master_entry();
 void secondary_entry(std::uint32_t core);
-void report_fault(std::uint64_t vector, std::uint64_t core, std::uint64_t cause, std::uint64_t pc,
-                  std::uint64_t address);
 }
 
 namespace gridiron::port {
@@ -80,7 +78,6 @@ constexpr Arena* kArenas[kCoreCount] = {&arena0, &arena1, &arena2, &arena3};
 
 RunControl control;
 TileResult tiles[kMostTiles];
-std::uint32_t has_fault;
 #ifdef GRIDIRON_TRESPASS
 std::uint64_t wanted_trespass;
 #endif
@@ -195,12 +192,3 @@ void master_entry() {
 }
 
 void secondary_entry(std::uint32_t core) { gridiron::port::work(core); }
-
-// The first core that faults tells of it and ends the run.
-void report_fault(std::uint64_t vector, std::uint64_t core, std::uint64_t cause, std::uint64_t pc,
-                  std::uint64_t address) {
-  using namespace gridiron::port;
-  if (__atomic_exchange_n(&has_fault, std::uint32_t{1}, __ATOMIC_ACQ_REL) != 0) return;
-  print("\nfault: core ", core, " vector ", vector, " ESR ", Hex{cause}, " FAR ", Hex{address}, " pc ", Hex{pc}, "\n");
-  exit_run(static_cast<std::uint32_t>(RunExit::kTrapped));
-}
