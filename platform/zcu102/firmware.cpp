@@ -1,5 +1,5 @@
-// What the cores do: core 0 is master and worker, cores 1 to 3 are workers. The build gives GRIDIRON_EFFECTS, the set of
-// effects of the image, 0: frames are rendered by packets; GRIDIRON_FORGETFUL and GRIDIRON_TRESPASS make images that
+// What the cores do: core 0 is master and worker, cores 1 to 3 are workers. The build gives GRIDIRON_EFFECTS, the set
+// of effects of the image, 0: frames are rendered by packets; GRIDIRON_FORGETFUL and GRIDIRON_TRESPASS make images that
 // are wrong on purpose.
 // Memory: arenas in on-chip memory, what is shared in main memory. Threads: four cores.
 // SPDX-License-Identifier: Apache-2.0
