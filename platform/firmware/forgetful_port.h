@@ -9,7 +9,7 @@
 
 namespace gridiron::port {
 
-/// Leaves out every 64th wait for triangles.
+/// Leaves out every 16th wait for triangles.
 template <Platform P>
 class ForgetfulPort {
  public:
@@ -24,7 +24,7 @@ class ForgetfulPort {
   }
   Status wait(TagMask tags) {
     constexpr std::uint32_t kTriangleTags = ((1u << kTriangleTagCount) - 1u) << kFirstTriangleTag;
-    if ((tags.bits & kTriangleTags) != 0 && ++waits_ % 64 == 0) return Status::kOk;
+    if ((tags.bits & kTriangleTags) != 0 && ++waits_ % 16 == 0) return Status::kOk;
     return port_.wait(tags);
   }
   TileClaim claim_tile() { return port_.claim_tile(); }
