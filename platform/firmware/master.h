@@ -59,7 +59,13 @@ class Master {
   [[nodiscard]] RunExit run(const char* result_name) {
     print(facts_.name, ": ", facts_.core_count, " cores\n");
     if (!check_job(job_, facts_)) return RunExit::kJobRefused;
-    prepare();
+    return render(result_name, job_.frame_address);
+  }
+
+  /// Renders a frame of a job that has been checked.
+  /// @param frame_address  of its record, the job's own or another like it.
+  [[nodiscard]] RunExit render(const char* result_name, std::uint64_t frame_address) {
+    prepare(frame_address);
     for (std::uint32_t core = 0; core < facts_.core_count; ++core) board_.start_core(core);
     board_.take_part();
     const RunExit waited = wait_for_cores();
@@ -76,12 +82,12 @@ class Master {
   }
 
  private:
-  void prepare() {
+  void prepare(std::uint64_t frame_address) {
     std::memset(&control_, 0, sizeof control_);
     for (std::uint32_t tile = 0; tile < job_.tile_count; ++tile) tiles_[tile] = {kNotRun, 0, 0};
     control_.tile_count = job_.tile_count;
     control_.core_count = facts_.core_count;
-    control_.frame_address = job_.frame_address;
+    control_.frame_address = frame_address;
     control_.spill_address = job_.spill_address;
     control_.spill_bytes = job_.spill_bytes;
     for (std::uint32_t core = 0; core < facts_.core_count; ++core) control_.cores[core].result.status = kNotRun;

@@ -6,10 +6,12 @@
 #include <gridiron/base/work_counters.h>
 
 #include <cstdint>
+#include <cstring>
 
 #include "desk_engine.h"
 #include "firmware_layout.h"
 #include "memory_map.h"
+#include "scene_workshop.h"
 #include "shared_memory.h"
 
 namespace gridiron::port {
@@ -57,6 +59,42 @@ class Monitor {
   DeskEngine<GRIDIRON_WORKERS> engine_;
 };
 
+#ifdef GRIDIRON_DYNAMIC
+// Has worker 0 build the scene of an animated frame, and renders it with the job's camera.
+RunExit render_animated(Monitor& monitor, Master<Monitor>& master, const FirmwareFacts& facts, const FrameJob& job) {
+  print(facts.name, ": ", facts.core_count, " cores\n");
+  if (!check_job(job, facts)) return RunExit::kJobRefused;
+  if (job.effects != 0) {
+    print("job refused: effects are not animated\n");
+    return RunExit::kJobRefused;
+  }
+  std::memcpy(&scene_workshop().frame, reinterpret_cast<const void*>(job.frame_address), sizeof(FrameRecord));
+  std::memset(&shared_memory.control, 0, sizeof shared_memory.control);
+  shared_memory.must_build = 1;
+  shared_memory.animation_frame = static_cast<std::uint32_t>(number_option("frame=", 0));
+  shared_memory.build_status = kNotRun;
+  monitor.start_core(0);
+  const std::uint64_t begin = monitor.milliseconds();
+  std::uint32_t status = kNotRun;
+  while ((status = __atomic_load_n(&shared_memory.build_status, __ATOMIC_ACQUIRE)) == kNotRun) {
+    const CoreSlot& slot = shared_memory.control.cores[0];
+    if (state_of(slot) == CoreState::kTrapped) {
+      print("trap: core 0 cause ", Hex{slot.trap.cause}, " address ", Hex{slot.trap.address}, " pc ", Hex{slot.trap.pc},
+            "\n");
+      return RunExit::kTrapped;
+    }
+    if (monitor.milliseconds() - begin > Master<Monitor>::kQuietMilliseconds) return RunExit::kTimedOut;
+    monitor.pause();
+  }
+  shared_memory.must_build = 0;
+  print("scene of frame ", shared_memory.animation_frame, " built: status ", status, ", ",
+        scene_workshop().frame.grid.reference_count, " references, stack ",
+        shared_memory.control.cores[0].result.stack_bytes, "\n");
+  if (status != 0) return RunExit::kFrameFailed;
+  return master.render("result.bin", reinterpret_cast<std::uintptr_t>(&scene_workshop().frame));
+}
+#endif
+
 }  // namespace
 
 void put_character(char character) {
@@ -95,7 +133,11 @@ void gridiron_master() {
   shared_memory.trespass = number_option("trespass=", 0);
   const auto& job = *reinterpret_cast<const FrameJob*>(GRIDIRON_JOB);
   Master<Monitor> master(monitor, facts, job, shared_memory.control, shared_memory.tiles);
+#ifdef GRIDIRON_DYNAMIC
+  exit_run(static_cast<std::uint32_t>(render_animated(monitor, master, facts, job)));
+#else
   exit_run(static_cast<std::uint32_t>(master.run("result.bin")));
+#endif
 }
 
 /// Any hart, from start.S. A worker cannot reach the serial line: it leaves word with the master.

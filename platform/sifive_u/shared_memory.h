@@ -18,6 +18,9 @@ struct SharedMemory {
   RunControl control;
   TransferDesk desks[GRIDIRON_WORKERS];  ///< where the master moves the bytes
   std::uint64_t trespass;                ///< of the image that shows what a worker must not do: which of them it does
+  std::uint32_t must_build;              ///< of the dynamic image: 1 where worker 0 is woken to build a scene
+  std::uint32_t animation_frame;         ///< which
+  std::uint32_t build_status;            ///< Status of it, or kNotRun while it goes on
   TileResult tiles[kMostTiles];
 };
 static_assert(sizeof(SharedMemory) <= GRIDIRON_SHARED_BYTES);

@@ -72,20 +72,27 @@ worker:
         csrw    pmpaddr4, t0
         li      t0, -1                                  // everything else: nothing
         csrw    pmpaddr7, t0
-        li      t0, PMP_RW | PMP_RX << 8 | PMP_CHANNEL << 16 | PMP_RW << 24
         li      t1, PMP_RW | PMP_LOCKED << 8 | PMP_LOCKED << 16 | PMP_REGION << 24
+#ifdef GRIDIRON_DYNAMIC
+        li      t0, GRIDIRON_WORKSHOP / 4 + GRIDIRON_WORKSHOP_BYTES / 8 - 1
+        csrw    pmpaddr5, t0
+        bnez    s0, 2f
+        li      t1, PMP_RW | PMP_RW << 8 | PMP_LOCKED << 16 | PMP_REGION << 24
+2:
+#endif
+        li      t0, PMP_RW | PMP_RX << 8 | PMP_CHANNEL << 16 | PMP_RW << 24
         slli    t1, t1, 32
         or      t0, t0, t1
         csrw    pmpcfg0, t0
         sfence.vma
 
         // Sleep until woken by a software interrupt, which is seen but not taken.
-        li      t0, 1 << 3
+sleep:  li      t0, 1 << 3
         csrw    mie, t0
-2:      wfi
+3:      wfi
         csrr    t0, mip
         andi    t0, t0, 1 << 3
-        beqz    t0, 2b
+        beqz    t0, 3b
         li      t0, GRIDIRON_CLINT
         addi    t1, s0, 1
         slli    t1, t1, 2
@@ -95,6 +102,7 @@ worker:
         mv      a0, s0
         mv      a1, s1
         call    gridiron_worker
+        j       sleep
 
 park:   wfi
         j       park

@@ -12,6 +12,9 @@
 #include "pdma_board.h"
 #include "shared_memory.h"
 #include "wrong_ports.h"
+#ifdef GRIDIRON_DYNAMIC
+#include "build_scene.h"
+#endif
 
 namespace gridiron::port {
 
@@ -44,6 +47,16 @@ void gridiron_worker(std::uint64_t core, std::uintptr_t arena) {
   SharedMemory& shared = shared_memory;
   auto& store = *reinterpret_cast<FirmwareStore*>(arena);
   const StackArea stack{arena + sizeof store, arena + GRIDIRON_ARENA_BYTES};
+#ifdef GRIDIRON_DYNAMIC
+  if (shared.must_build != 0) {
+    paint_stack(stack);
+    const Status built = build_wave_scene(scene_workshop(), shared.animation_frame);
+    shared.control.cores[core_index].result.stack_bytes = used_stack_bytes(stack);
+    __atomic_store_n(&shared.build_status, static_cast<std::uint32_t>(built), __ATOMIC_RELEASE);
+    wake_hart(0);
+    return;
+  }
+#endif
 #ifdef GRIDIRON_TRESPASS
   trespass(core_index, arena);
 #endif

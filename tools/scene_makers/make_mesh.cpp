@@ -4,6 +4,7 @@
 #include <cstdio>
 #include <string>
 
+#include "firmware/wave_mesh.h"
 #include "scene_makers/mesh.h"
 #include "scene_makers/shapes.h"
 
@@ -20,19 +21,35 @@ std::uint32_t teapot_segments(std::uint32_t triangle_count) {
   return segments;
 }
 
+// The animated sheet that firmware makes on the device.
+Mesh make_wave(std::uint32_t frame) {
+  Mesh mesh;
+  for (std::uint32_t i = 0; i < gridiron::port::kWaveVertexCount; ++i) {
+    const gridiron::Vec3 vertex = gridiron::port::wave_vertex(i, frame);
+    mesh.add_vertex({vertex.x, vertex.y, vertex.z});
+  }
+  for (std::uint32_t i = 0; i < gridiron::port::kWaveTriangleCount; ++i) {
+    const gridiron::UVec3 corners = gridiron::port::wave_triangle(i);
+    mesh.triangles.push_back({corners.x, corners.y, corners.z});
+  }
+  return mesh;
+}
+
 }  // namespace
 
 int main(int argument_count, char** arguments) {
-  CLI::App app{"Makes a closed triangle mesh and writes it as binary PLY."};
+  CLI::App app{"Makes a triangle mesh, closed but for the wave, and writes it as binary PLY."};
   std::string shape = "knot";
   std::string output;
   std::uint32_t triangle_count = 100'000;
-  app.add_option("--shape", shape, "knot: exactly --triangles (even); teapot, needles: at most so many")
-      ->check(CLI::IsMember({"knot", "teapot", "needles"}))
+  std::uint32_t frame = 0;
+  app.add_option("--shape", shape, "knot: exactly --triangles (even); teapot, needles: at most so many; wave: 2048")
+      ->check(CLI::IsMember({"knot", "teapot", "needles", "wave"}))
       ->capture_default_str();
   app.add_option("--triangles", triangle_count, "number of triangles")
       ->check(CLI::Range(kMinKnotTriangles, kMaxTriangles))
       ->capture_default_str();
+  app.add_option("--frame", frame, "of the animated wave")->check(CLI::Range(0, 1 << 20))->capture_default_str();
   app.add_option("-o,--output", output, "PLY file to write")->required();
   try {
     app.parse(argument_count, arguments);
@@ -44,6 +61,7 @@ int main(int argument_count, char** arguments) {
   }
 
   const Mesh mesh = shape == "teapot"    ? make_teapot(teapot_segments(triangle_count))
+                    : shape == "wave"    ? make_wave(frame)
                     : shape == "needles" ? make_needles(triangle_count / 12 / 4 * 4)
                                          : make_torus_knot(triangle_count);
   const std::string reason = write_whole_file(output, ply_bytes(mesh, "made by make_mesh --shape " + shape));
