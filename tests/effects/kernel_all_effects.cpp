@@ -8,9 +8,4 @@ KernelPicture render_all_effects(KernelScene& scene, const Camera& camera, std::
   return render_kernel<EffectLayout256K<kAllEffects>, Lanes<4>>(scene, camera, width, height, options);
 }
 
-KernelPicture render_without_effects(KernelScene& scene, const Camera& camera, std::uint32_t width,
-                                     std::uint32_t height, const KernelOptions& options) {
-  return render_kernel<StoreLayout256K<8>, Lanes<4>>(scene, camera, width, height, options);
-}
-
 }  // namespace gridiron::test

@@ -1,4 +1,4 @@
-// Kernels built with the effects of single scenes: shadows. SPDX-License-Identifier: Apache-2.0
+// Kernels built with the effects of single scenes: shadows; and without effects. SPDX-License-Identifier: Apache-2.0
 #include "effects/kernel_variants.h"
 
 namespace gridiron::test {
@@ -13,5 +13,10 @@ constexpr KernelVariant kVariants[] = {
 }  // namespace
 
 std::span<const KernelVariant> plain_variants() { return kVariants; }
+
+KernelPicture render_without_effects(KernelScene& scene, const Camera& camera, std::uint32_t width,
+                                     std::uint32_t height, const KernelOptions& options) {
+  return render_kernel<StoreLayout256K<8>, Lanes<4>>(scene, camera, width, height, options);
+}
 
 }  // namespace gridiron::test

@@ -34,6 +34,7 @@ struct KernelOptions {
   bool moves_late = false;   ///< a get's bytes come at the wait, garbage before
   std::uint64_t spill_bytes = ~0ull;  ///< ~0: what the scene asks for
   std::uint64_t spill_shift = 0;      ///< of the region from a multiple of kSpillAlignment
+  bool claims_backwards = false;      ///< the last tile is handed out first
   bool wants_planes = false;          ///< depth and ids too
   Shading shading = Shading::kScene;
   void (*alter)(FrameRecord& record) = nullptr;  ///< breaks a frame that its set-up would not have made
@@ -117,7 +118,8 @@ class KernelBoard {
   TileClaim claim_tile() {
     if (next_tile_ == tile_count_) return {};
     tile_bytes.push_back(0);
-    return {TileClaim::Kind::kTile, next_tile_++};
+    const std::uint32_t tile = next_tile_++;
+    return {TileClaim::Kind::kTile, options_.claims_backwards ? tile_count_ - 1 - tile : tile};
   }
   void note_stage(std::uint8_t stage) { stage_ = stage; }
 

@@ -141,6 +141,20 @@ TEST(Refract, IsSnellsLawAndFresnelsShare) {
   EXPECT_GT(through, 200000);
 }
 
+// From air into water, 30 degrees become 22.02; from water into air, 41.81, and beyond 48.59 nothing gets out.
+TEST(Refract, KnowsInsideFromOutside) {
+  EXPECT_EQ(refraction_ratio(1.25f, true), 0.8f);
+  EXPECT_EQ(refraction_ratio(1.25f, false), 1.25f);
+  const Vector3 n{0, 0, 1}, d{0.5f, 0, -0.866025404f};
+  EXPECT_NEAR(refract(d, n, refraction_ratio(4.0f / 3.0f, true)).direction.x, 0.375f, 1e-6f);
+  const Refraction out = refract(d, n, refraction_ratio(4.0f / 3.0f, false));
+  EXPECT_FALSE(out.is_total);
+  EXPECT_NEAR(out.direction.x, 2.0f / 3.0f, 1e-6f);
+  const Vector3 steep{0.76f, 0, -0.64992307f};
+  EXPECT_TRUE(refract(steep, n, refraction_ratio(4.0f / 3.0f, false)).is_total);
+  EXPECT_FALSE(refract(steep, n, refraction_ratio(4.0f / 3.0f, true)).is_total);
+}
+
 TEST(Refract, HasKnownShares) {
   const Vector3 n{0, 0, 1};
   // Straight on: ((n - 1) / (n + 1))^2, the ray goes on.
