@@ -14,6 +14,7 @@
 #include <vector>
 
 #include "determinism/trace_difference.h"
+#include "support/instrumented.h"
 #include "support/test_mesh.h"
 
 namespace gridiron::test {
@@ -122,7 +123,7 @@ EffectsFrame render(const EffectsSubject& subject,
   frame.result.status = make_frame_record(settings, view, image.address, filled);
   if (frame.result.status != Status::kOk) return frame;
   std::memcpy(record.bytes.data(), &filled, sizeof filled);
-  frame.result = sim::render_frame(memory, record.address, chip);
+  frame.result = render_in_test(memory, record.address, chip);
   for (std::uint32_t y = 0; y < settings.height; ++y) {
     for (std::uint32_t x = 0; x < settings.width; ++x) {
       const auto* const pixel =

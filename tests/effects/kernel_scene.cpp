@@ -64,8 +64,7 @@ KernelFrame make_kernel_frame(KernelScene& scene, const Camera& camera, std::uin
   }
   frame.spill.address = MainAddress{place(frame.spill.bytes + options.spill_shift) + options.spill_shift};
   frame.memory.resize(end + 2 * 4096);
-  const auto start = reinterpret_cast<std::uintptr_t>(frame.memory.data());
-  std::byte* const base = frame.memory.data() + (4096 - start % 4096) % 4096;
+  std::byte* const base = const_cast<std::byte*>(kernel_memory(frame));
   std::memcpy(base + image, scene.image(), image_bytes);
   FrameSettings settings;
   settings.camera = camera;
@@ -88,6 +87,11 @@ KernelFrame make_kernel_frame(KernelScene& scene, const Camera& camera, std::uin
   std::memcpy(base + frame.frame_address, &record, sizeof(record));
   frame.tile_count = record.tiles_x * record.tiles_y;
   return frame;
+}
+
+const std::byte* kernel_memory(const KernelFrame& frame) {
+  const auto start = reinterpret_cast<std::uintptr_t>(frame.memory.data());
+  return frame.memory.data() + (4096 - start % 4096) % 4096;
 }
 
 void read_kernel_planes(const KernelFrame& frame, std::byte* base, std::uint32_t width, std::uint32_t height,

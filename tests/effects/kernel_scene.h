@@ -178,8 +178,21 @@ struct KernelFrame {
                                             std::uint32_t height, std::uint32_t tile_width,
                                             const KernelOptions& options);
 [[nodiscard]] Camera camera_of(const tool::SceneView& view);
+/// Byte 0 of its main memory, which is never touched.
+[[nodiscard]] const std::byte* kernel_memory(const KernelFrame& frame);
 void read_kernel_planes(const KernelFrame& frame, std::byte* base, std::uint32_t width, std::uint32_t height,
                         std::uint32_t tile_width, KernelPicture& picture);
+
+/// What of a layout tells its kernel from others.
+struct KernelLayout {
+  std::uint32_t arena_bytes, tile_width, packet_width;
+  bool has_effects;
+};
+/// Where is_instrumented() (support/instrumented.h): renders a frame that was rendered without a simulated chip once
+/// more, by the instrumented kernel. @returns what is wrong with it; empty where that is nothing, or where there is no
+/// instrumented kernel of this layout. Of a set of effects it is the one with all of them.
+[[nodiscard]] std::string instrumented_violation(const KernelFrame& frame, const KernelLayout& kernel,
+                                                 const KernelOptions& options);
 
 /// Renders a scene with a layout and lanes.
 template <class Layout, class L = Lanes<4>>
@@ -195,6 +208,12 @@ template <class Layout, class L = Lanes<4>>
   std::memset(static_cast<void*>(store.get()), 0xC3, sizeof(*store));
   picture.status = render_tiles<L>(*store, board, MainAddress{frame.frame_address}, frame.spill);
   picture.violation = board.violation;
+  if (picture.status == Status::kOk && picture.violation.empty()) {
+    constexpr KernelLayout kLayout{Layout::kArenaBytes, Layout::kTileWidth, Layout::kPacketWidth,
+                                   Layout::kEffects != 0};
+    picture.violation = instrumented_violation(frame, kLayout, options);
+    if (!picture.violation.empty()) picture.status = Status::kBadAccess;
+  }
   picture.work = store->work;
   picture.stage_bytes = board.stage_bytes;
   picture.stage_transfers = board.stage_transfers;

@@ -24,6 +24,7 @@
 
 #include "host_board.h"
 #include "sim_platform/program_bench.h"
+#include "support/instrumented.h"
 #include "support/test_mesh.h"
 #include "support/views.h"
 #include "template_port.h"
@@ -97,7 +98,7 @@ TEST(KernelFault, EveryTransferThatFailsInTheSimulatorComesBackAsAStatus) {
   SmallFrame frame;
   ChipOptions options;
   options.store = StoreSize::k64KB;
-  const std::uint64_t count = render_frame(frame.memory(), frame.record(), options).transfers;
+  const std::uint64_t count = test::render_in_test(frame.memory(), frame.record(), options).transfers;
   ASSERT_GT(count, 50u);
   for (const Completion completion : {Completion::kEarly, Completion::kRandom}) {
     options.completion = completion;
@@ -106,7 +107,7 @@ TEST(KernelFault, EveryTransferThatFailsInTheSimulatorComesBackAsAStatus) {
       options.threads = i % 2 == 0 ? 2 : 1;
       options.fail_transfer = i;
       options.seed = i;
-      const ChipResult result = render_frame(frame.memory(), frame.record(), options);
+      const ChipResult result = test::render_in_test(frame.memory(), frame.record(), options);
       ASSERT_EQ(result.status, Status::kTransferFailed) << "transfer " << i << ": " << words(result);
       ASSERT_TRUE(result.violations.empty()) << "transfer " << i << ": " << words(result);
       ASSERT_TRUE(frame.is_untouched()) << "transfer " << i;

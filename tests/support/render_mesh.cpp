@@ -10,6 +10,7 @@
 #include <span>
 #include <sstream>
 
+#include "support/instrumented.h"
 #include "support/views.h"
 
 namespace gridiron::test {
@@ -116,7 +117,7 @@ void PreparedFrame::set_record(const FrameRecord& record) {
 }
 
 sim::ChipResult PreparedFrame::render(const sim::ChipOptions& chip) {
-  return sim::render_frame(*memory_, record_address_, chip);
+  return render_in_test(*memory_, record_address_, chip);
 }
 
 Planes PreparedFrame::planes() const {

@@ -2,10 +2,13 @@
 #include <algorithm>
 #include <cstdio>
 #include <nlohmann/json.hpp>
+#include <report/report.h>
 #include <string>
 
+#include "accuracies.h"
 #include "commands.h"
 #include "effect_names.h"
+#include "loop_table.h"
 #include "scene_facts.h"
 #include "store_facts.h"
 #include "words.h"
@@ -45,6 +48,62 @@ Json json_of(const LoopBounds& bounds) {
           {"triangle_tests_per_pass", bounds.triangle_tests_per_pass}};
 }
 
+// A count of a bound; null where it is more than can be told.
+Json json_of_count(std::uint64_t count) {
+  return count == ~std::uint64_t{0} ? Json() : Json(count);
+}
+
+Json json_of(const WorstTile& worst) {
+  Json work = Json::object();
+  for (std::uint32_t kind = 0; kind < kWorkKindCount; ++kind) {
+    if (kind < static_cast<std::uint32_t>(Work::kGetIssue) && worst.bound.work[kind] != 0) {
+      work[std::string(work_name(static_cast<Work>(kind)))] = json_of_count(worst.bound.work[kind]);
+    }
+  }
+  const auto accuracy = std::ranges::find(accuracies(), worst.frame.accuracy, &NamedAccuracy::accuracy);
+  return {{"accuracy", std::string(accuracy->name)},
+          {"lanes", worst.layout.lanes},
+          {"tile_width", worst.layout.tile_width},
+          {"packet_width", worst.layout.packet_width},
+          {"occupied_macro_cells", worst.scene.occupied_macro_cells},
+          {"filled_cells", worst.scene.filled_cells},
+          {"triangle_runs", worst.scene.runs},
+          {"most_cell_triangles", worst.scene.most_cell_triangles},
+          {"most_macro_cell_triangles", worst.scene.most_macro_triangles},
+          {"work", work},
+          {"dma",
+           {{"gets", json_of_count(worst.bound[Work::kGetIssue])},
+            {"puts", json_of_count(worst.bound[Work::kPutIssue])},
+            {"waits", json_of_count(worst.bound[Work::kWait])},
+            {"get_bytes", json_of_count(worst.bound.get_bytes)},
+            {"put_bytes", json_of_count(worst.bound.put_bytes)}}},
+          {"cycles",
+           {{"work", worst.cycles.work},
+            {"commands", worst.cycles.commands},
+            {"transfers", worst.cycles.transfers},
+            {"total", worst.cycles.total()}}}};
+}
+
+std::uint64_t tiles_across(std::uint32_t pixels, std::uint32_t tile_width) {
+  return (std::uint64_t{pixels} + tile_width - 1) / tile_width;
+}
+
+// Every loop of what runs on a core, with its bound for this scene, store and picture.
+Json loops_json(const SceneFacts& facts, const StoreFacts& store) {
+  const std::uint64_t tiles =
+      tiles_across(facts.width, store.tile_width) * tiles_across(facts.height, store.tile_width);
+  Json rows = Json::array();
+  for (const LoopRow& row : loop_facts_of(*facts.worst, facts.grid.macro_width, store, tiles).rows()) {
+    rows.push_back({{"file", std::string(row.file)},
+                    {"function", std::string(row.function)},
+                    {"loop", std::string(row.loop)},
+                    {"kind", std::string(row.kind)},
+                    {"bound", std::string(row.bound)},
+                    {"most_turns", row.value}});
+  }
+  return rows;
+}
+
 // The local store and packets of the renderer that would do.
 std::string renderer_of(const InfoArguments& arguments, const SceneFacts& facts, const StoreFacts& store) {
   return renderer_type(facts.effects.record.called_for, sim::arena_bytes(arguments.store) >> 10, store.packet_width);
@@ -78,7 +137,7 @@ Json effects_json(const InfoArguments& arguments, const SceneFacts& facts, const
 
 void print_json(const InfoArguments& arguments, const SceneFacts& facts, const StoreFacts& store) {
   const GridRecord& grid = facts.grid;
-  const Json document = {
+  Json document = {
       {"version", 1},
       {"input", arguments.scene.input.string()},
       {"packed", facts.is_packed},
@@ -109,7 +168,15 @@ void print_json(const InfoArguments& arguments, const SceneFacts& facts, const S
       {"local_store", json_of(store)},
       {"effects", effects_json(arguments, facts, store)},
       {"loop_bounds", json_of(facts.bounds)}};
+  if (facts.worst) {
+    document["worst_tile"] = json_of(*facts.worst);
+    document["loops"] = loops_json(facts, store);
+  }
   std::printf("%s\n", document.dump(2).c_str());
+}
+
+std::string words_of_most(std::uint64_t count) {
+  return count == ~std::uint64_t{0} ? "more than 2^64" : words_of_count(count);
 }
 
 std::string joined(const std::uint32_t (&counts)[3]) {
@@ -206,18 +273,21 @@ void print_text(const InfoArguments& arguments, const SceneFacts& facts, const S
                                 words_of_count(facts.bounds.slices_per_pass) + " slices, " +
                                 words_of_count(facts.bounds.cells_per_pass) + " cells, " +
                                 words_of_count(facts.bounds.triangle_tests_per_pass) + " triangle tests");
+  if (facts.worst) {
+    const WorstTile& worst = *facts.worst;
+    std::snprintf(text, sizeof text, "for any camera at most %.3g cycles of work, %.3g with all waits; ",
+                  worst.cycles.work, worst.cycles.total());
+    print_line("worst tile", text + words_of_most(worst.bound[Work::kGetIssue]) + " gets of " +
+                                 words_of_most(worst.bound.get_bytes) + " bytes");
+  }
 }
 
 }  // namespace
 
 void run_command(const InfoArguments& arguments) {
   const SceneFacts facts = collect_scene_facts(arguments);
-  const std::uint32_t packet_width = arguments.scene.configuration->packet_width;
   const std::uint32_t called_for = facts.effects.record.called_for;
-  const sim::StoreSize effect_store =
-      has_effect_store(arguments) ? arguments.store : sim::StoreSize::k256KB;
-  const StoreFacts store = called_for != 0 ? effect_store_facts(effect_store, packet_width)
-                                           : usual_store_facts(arguments.store, packet_width);
+  const StoreFacts store = info_store_facts(arguments, called_for != 0);
   arguments.json ? print_json(arguments, facts, store) : print_text(arguments, facts, store);
 }
 

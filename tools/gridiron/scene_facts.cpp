@@ -5,6 +5,7 @@
 #include <gridiron/grid/effect_sections.h>
 
 #include <algorithm>
+#include <span>
 
 #include "store_facts.h"
 
@@ -93,6 +94,7 @@ SceneFacts collect_scene_facts(const InfoArguments& arguments) {
     facts.wanted_lambda = facts.grid.lambda;
     facts.image_bytes = header.image_bytes;
     facts.fits = header.image_bytes <= budget_bytes;
+    facts.worst = find_worst_tile(arguments, packed->file.bytes, packed->view);
     if (packed->view.has_effects) facts.effects = effects_of(packed->view.effects, header.triangle_count);
   } else {
     const Mesh& mesh = std::get<Mesh>(input.content);
@@ -111,6 +113,12 @@ SceneFacts collect_scene_facts(const InfoArguments& arguments) {
     facts.image_bytes = choice.need.image_bytes;
     facts.scratch_bytes = choice.need.scratch_bytes;
     facts.fits = choice.fits();
+    if (choice.fits()) {
+      const AlignedBytes storage = allocate_aligned(choice.need.image_bytes);
+      const std::span<std::byte> image(storage.get(), choice.need.image_bytes);
+      const SceneImageView built = build_image(input, mesh, choice, image, effects);
+      facts.worst = find_worst_tile(arguments, image, built);
+    }
     if (effects != nullptr) {
       facts.effects = effects_of(count_effects(view), static_cast<std::uint32_t>(mesh.triangles.size()));
     }

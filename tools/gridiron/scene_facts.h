@@ -6,11 +6,13 @@
 #include <gridiron/base/records.h>
 
 #include <cstdint>
+#include <optional>
 #include <string_view>
 #include <vector>
 
 #include "arguments.h"
 #include "scene_input.h"
+#include "worst_tile.h"
 
 namespace gridiron::tool {
 
@@ -52,10 +54,11 @@ struct SceneFacts {
   bool fits = false;                ///< in the machine's main memory
   LoopBounds bounds;
   EffectFacts effects;
+  std::optional<WorstTile> worst;  ///< where the image fits
   std::uint32_t width = 0, height = 0;  ///< of the picture
 };
 
-/// Reads the scene and counts; builds nothing. Errors: Failure.
+/// Reads the scene and counts; an image that fits is built, to be counted too. Errors: Failure.
 [[nodiscard]] SceneFacts collect_scene_facts(const InfoArguments& arguments);
 
 }  // namespace gridiron::tool

@@ -20,6 +20,8 @@
 #include <stdexcept>
 #include <thread>
 
+#include "support/instrumented.h"
+
 namespace gridiron::test {
 namespace {
 
@@ -178,7 +180,7 @@ class GridScene {
     // The chip's threads inherit the rules of floating point.
     const sim::ChipResult result = [&] {
       const RoundingGuard guard(machine);
-      return sim::render_frame(*memory_, record_.address, chip);
+      return test::render_in_test(*memory_, record_.address, chip);
     }();
     require(result.violations.empty(), "a frame breaks a rule of the platform");
     require(result.status == Status::kOk, "a frame cannot be rendered");

@@ -54,6 +54,44 @@ TEST(Info, TellsWhatTheBuilderCounts) {
   EXPECT_EQ(info["local_store"]["regions"][0]["name"], "frame");
 }
 
+// The bound of a tile, on the counts that it is made of, and each loop's.
+TEST(Info, TellsTheWorstTileAndEveryLoop) {
+  const TemporaryFolder folder;
+  folder.write_ply("a.ply", make_scene());
+  const Json info = info_json(folder, {"a.ply"});
+  const Json& worst = info["worst_tile"];
+  EXPECT_EQ(worst["accuracy"], "standard");
+  EXPECT_EQ(worst["tile_width"], 32);
+  EXPECT_EQ(worst["occupied_macro_cells"], info["grid"]["cell_blocks"].get<std::uint64_t>() - 1);
+  // 16 packets, six axes and signs, twice; and a ray without a direction, twice.
+  const std::uint64_t passes = 16 * 6 * 2 + 2;
+  EXPECT_EQ(worst["work"]["packet_start"], passes);
+  EXPECT_EQ(worst["work"]["triangle_setup"], passes * info["grid"]["references"].get<std::uint64_t>());
+  EXPECT_EQ(worst["work"]["tile_start"], 1);
+  EXPECT_EQ(worst["dma"]["put_bytes"], 32 * 32 * 4);
+  EXPECT_GT(worst["dma"]["get_bytes"], 0);
+  EXPECT_GT(worst["cycles"]["total"], worst["cycles"]["work"]);
+  EXPECT_FALSE(worst["work"].contains("wave_ray"));
+
+  const Json& loops = info["loops"];
+  EXPECT_GT(loops.size(), 200u);
+  std::uint64_t found = 0;
+  for (const Json& loop : loops) {
+    const std::string kind = loop["kind"];
+    EXPECT_TRUE(kind == "constant" || kind == "layout" || kind == "frame" || kind == "scene") << loop;
+    if (kind == "constant") EXPECT_GT(loop["most_turns"], 0) << loop;
+    if (loop["file"] == "store/packet_driver.h" && loop["function"] == "run" && kind == "scene") {
+      EXPECT_EQ(loop["most_turns"], worst["triangle_runs"].get<std::uint64_t>() + 1);
+      ++found;
+    }
+    if (loop["file"] == "render/tile_renderer.h" && loop["bound"] == "tiles") {
+      EXPECT_EQ(loop["most_turns"], 32 * 32);
+      ++found;
+    }
+  }
+  EXPECT_EQ(found, 2u);
+}
+
 TEST(Info, EachStoreHasItsMap) {
   const TemporaryFolder folder;
   folder.write_ply("a.ply", make_scene());

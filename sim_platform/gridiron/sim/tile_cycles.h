@@ -1,0 +1,46 @@
+// Tile cycles: what the worst tile of a scene can cost on a machine.
+// Memory: values. Threads: any. SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <gridiron/frame/tile_bound.h>
+#include <gridiron/sim/machine_profile.h>
+
+#include <algorithm>
+#include <cstdint>
+
+namespace gridiron::sim {
+
+/// Most cycles of a tile, from the grant of its claim to the next claim.
+struct TileCycles {
+  double work = 0;       ///< counts times their prices
+  double commands = 0;   ///< commands issued, waits asked for
+  double transfers = 0;  ///< all lines, as if none travelled beside another or beside work
+  [[nodiscard]] double total() const { return work + commands + transfers; }
+};
+
+/// Prices of `machine` for the counts of a bound, which are its own where lanes are 4 (MachineProfile::work_cycles).
+///
+/// A line waits for those that every core may have under way, and is there a latency later (replay.h). A tile also
+/// waits for tiles that left the core before: as many as output buffers, each of them the largest.
+[[nodiscard]] inline TileCycles worst_tile_cycles(const TileBound& bound, const MachineProfile& machine,
+                                                  std::uint32_t output_depth) {
+  const auto number = [](std::uint64_t count) { return static_cast<double>(count); };
+  TileCycles cycles;
+  for (std::uint32_t kind = 0; kind < kWorkKindCount; ++kind) {
+    cycles.work += number(bound.work[kind]) * machine.work_cycles[kind];
+  }
+  const double gets = number(bound[Work::kGetIssue]), puts = number(bound[Work::kPutIssue]);
+  cycles.commands = (gets + puts) * machine.issue_cycles + number(bound[Work::kWait]) * machine.wait_cycles;
+  // The first and the last line of a transfer may be partly its own.
+  const double line_bytes = machine.line_bytes;
+  const auto lines = [&](std::uint64_t bytes, double transfers) { return number(bytes) / line_bytes + 2 * transfers; };
+  const double all_lines = lines(bound.get_bytes, gets) + lines(bound.put_bytes, puts) * (1 + output_depth);
+  const double turn_cycles =
+      machine.channel_bytes_per_cycle > 0 ? line_bytes / machine.channel_bytes_per_cycle : 0.0;
+  const double in_flight = static_cast<double>(machine.core_count) * machine.lines_in_flight;
+  cycles.transfers =
+      all_lines * (machine.core_line_interval_cycles + machine.latency_cycles + in_flight * turn_cycles);
+  return cycles;
+}
+
+}  // namespace gridiron::sim
