@@ -27,10 +27,10 @@ namespace gridiron::calibrate {
 /// @returns the generated source file, sim_platform/gridiron/rival/rival_costs.h.
 [[nodiscard]] std::string rival_table_text(const Totals& totals);
 
-/// Writes the main memories of the frames without effects, NAME.memory, the units of each, NAME.units (kind, units), and
-/// a file `units` of all (kind, name, units, counted operations per unit) into a folder, for second_opinion; besides, the
-/// first two of `dense`, which is `reference` of a teapot of 16 times the triangles. Errors: std::runtime_error where a
-/// file cannot be written.
+/// Writes the main memories of the frames without effects, NAME.memory, the units of each, NAME.units (kind, units),
+/// and a file `units` of all (kind, name, units, counted operations per unit) into a folder, for second_opinion;
+/// besides, the first two of `dense`, which is `reference` of a teapot of 16 times the triangles.
+/// Errors: std::runtime_error where a file cannot be written.
 void write_memories(const std::string& folder);
 
 /// @returns the same for people: every kind with its bounds and classes, and the rate of dual issue.
