@@ -79,7 +79,9 @@ TEST(Info, TellsTheWorstTileAndEveryLoop) {
   for (const Json& loop : loops) {
     const std::string kind = loop["kind"];
     EXPECT_TRUE(kind == "constant" || kind == "layout" || kind == "frame" || kind == "scene") << loop;
-    if (kind == "constant") EXPECT_GT(loop["most_turns"], 0) << loop;
+    if (kind == "constant") {
+      EXPECT_GT(loop["most_turns"], 0) << loop;
+    }
     if (loop["file"] == "store/packet_driver.h" && loop["function"] == "run" && kind == "scene") {
       EXPECT_EQ(loop["most_turns"], worst["triangle_runs"].get<std::uint64_t>() + 1);
       ++found;
