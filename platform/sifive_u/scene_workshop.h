@@ -22,7 +22,7 @@ struct SceneWorkshop {
   alignas(4096) std::byte image[kImageRoomBytes];
   alignas(4096) std::byte scratch[kScratchRoomBytes];
 };
-static_assert(sizeof(SceneWorkshop) <= GRIDIRON_WORKSHOP_BYTES);
+static_assert(sizeof(SceneWorkshop) <= std::uint64_t{GRIDIRON_WORKSHOP_BYTES});  // NOLINT(bugprone-sizeof-expression)
 
 inline SceneWorkshop& scene_workshop() {
   return *reinterpret_cast<SceneWorkshop*>(std::uintptr_t{GRIDIRON_WORKSHOP});

@@ -213,7 +213,7 @@ TEST(MachineFile, NamesOfBuiltInMachinesComeFirst) {
   } catch (const tool::Failure& failure) {
     EXPECT_STREQ(failure.what(),
                  "abacus: no such file, and no built-in machine of that name; there are cell-ps3, cell-2006, "
-                 "cell-ps3-2gb");
+                 "cell-ps3-2gb, fu540");
   }
 }
 

@@ -206,7 +206,7 @@ TEST(Machines, HelpShowsTheFormat) {
   const TemporaryFolder folder;
   const std::string help = run(folder, {"machines", "--help"}).out;
   EXPECT_NE(help.find("based_on       cell-ps3"), std::string::npos) << help;
-  EXPECT_NE(run(folder, {"render", "--help"}).out.find("cell-ps3-2gb|FILE"), std::string::npos);
+  EXPECT_NE(run(folder, {"render", "--help"}).out.find("cell-ps3-2gb|fu540|FILE"), std::string::npos);
 }
 
 }  // namespace
