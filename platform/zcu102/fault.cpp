@@ -1,23 +1,20 @@
 // What a core does that did what it must not: tells, and ends the run.
-// Memory: a flag; a stack of start.S. Threads: any core. SPDX-License-Identifier: Apache-2.0
+// Memory: a stack of start.S. Threads: any core. SPDX-License-Identifier: Apache-2.0
 #include <cstdint>
 
 #include "console.h"
 #include "master.h"
 #include "semihost.h"
+#include "uart.h"
 
 extern "C" void report_fault(std::uint64_t vector, std::uint64_t core, std::uint64_t cause, std::uint64_t pc,
                              std::uint64_t address);
-
-namespace {
-std::uint32_t has_fault;
-}
 
 // Called by start.S. The first core tells; others that fault too keep still.
 void report_fault(std::uint64_t vector, std::uint64_t core, std::uint64_t cause, std::uint64_t pc,
                   std::uint64_t address) {
   using namespace gridiron::port;
-  if (__atomic_exchange_n(&has_fault, std::uint32_t{1}, __ATOMIC_ACQ_REL) != 0) return;
+  if (!take_uart()) return;
   print("\nfault: core ", core, " vector ", vector, " ESR ", Hex{cause}, " FAR ", Hex{address}, " pc ", Hex{pc}, "\n");
   exit_run(static_cast<std::uint32_t>(RunExit::kTrapped));
 }
