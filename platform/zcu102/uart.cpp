@@ -40,7 +40,7 @@ bool take_uart() {
     return false;
   }
   // Others may be between their look at the speaker and their character.
-  for (std::uint32_t i = 0; i < kPollBound / 16; ++i) (void)uart_word(kStatus);
+  for (std::uint32_t i = 0; i < kPollBound / 16; ++i) asm volatile("yield");
   return true;
 }
 
