@@ -498,7 +498,7 @@ inline render_tile() {
 #else
   // The tracing's transfers, as one that may fill what the output leaves of the queue.
   if
-  :: true -> get(SETUP_BUFFER, K_SETUP_TAG, 0, K_LEAST_INPUT_COMMANDS + 2); wait(K_SETUP_TAG)
+  :: true -> get(SETUP_BUFFER, K_SETUP_TAG, 0, K_LEAST_INPUT_COMMANDS + MOST_TILE_COMMANDS + 1); wait(K_SETUP_TAG)
   :: true
   fi;
 #endif
