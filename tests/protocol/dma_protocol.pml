@@ -16,10 +16,10 @@
 #define GATHER 7       // gather_records
 #define SPILL 8        // RayQueue
 
-// BREAK: nothing, or one thing done wrong. Each must be found; 13 and 14 are no wrong access but a standstill.
+// BREAK: nothing, or one thing done wrong. Each must be found; 13 is no wrong access but a standstill.
 #define NOTHING 0
 #define NO_WAIT 1           // the first wait of the level is left out
-#define WRONG_TAG 2         // ... or waits for the next buffer's tag
+#define WRONG_TAG 2         // ... or waits for the next buffer's tag; in OUTPUT for the first's
 #define FEWER_BUFFERS 3     // one buffer fewer than the ring thinks
 #define EARLY_GET 4         // a buffer is fetched anew while it is in use
 #define SOURCE_CHANGED 5    // a tile is drawn before the slot's last one has left
@@ -27,7 +27,7 @@
 #define NO_ROOM 7           // Transfers does not look whether the queue has room
 #define FORGETS 8           // Transfers does not wait for the oldest tag but takes it off its list
 #define NO_FINISH 9         // the last tiles are not waited for
-#define SMALL_SHARE 10      // the output's share of the queue is one command short
+#define SMALL_SHARE 10      // the output's share is one command less than may be leaving while a tile is traced
 #define STALE_RECORD 11     // a gather takes the slot it fetched last for the one it waited for
 #define SPILL_NO_WAIT 12    // a queue's place is used again before its block has left
 #define STANDSTILL 13       // the driver wants one more run than its ring holds
@@ -67,7 +67,11 @@
 #else
 #define TAG_OF(first, slot) ((first) + (slot))
 #endif
-#if BREAK == WRONG_TAG
+#if BREAK == WRONG_TAG && LEVEL == OUTPUT
+// The next slot's tag would do no harm: each tile would wait for one that began later than the slot's own, which the
+// tiles before it have waited for.
+#define WAITED_TAG(first, slot) (first)
+#elif BREAK == WRONG_TAG
 #define WAITED_TAG(first, slot) ((first) + ((slot) + 1) % DEPTH)
 #else
 #define WAITED_TAG(first, slot) TAG_OF(first, slot)
@@ -468,7 +472,7 @@ inline share_queue() {
     if
     :: waits_for_output
 #if BREAK == SMALL_SHARE
-    :: else -> output_share = tile_commands * DEPTH - 1
+    :: else -> output_share = tile_commands * (DEPTH - 1) - 1
 #else
     :: else -> output_share = tile_commands * DEPTH
 #endif
@@ -491,6 +495,12 @@ inline render_tile() {
   :: true -> DECIDED(packet); run_driver()
   :: true -> break
   od;
+#else
+  // The tracing's transfers, as one that may fill what the output leaves of the queue.
+  if
+  :: true -> get(SETUP_BUFFER, K_SETUP_TAG, 0, K_LEAST_INPUT_COMMANDS + MOST_TILE_COMMANDS + 1); wait(K_SETUP_TAG)
+  :: true
+  fi;
 #endif
   d_step {
     content[TILE_OF(PLACE(drawn))] = tile_serial;
