@@ -7,7 +7,7 @@ namespace gridiron::port {
 /// Switches the transmitter on; baud rate and pins are as the boot loader left them.
 void begin_uart();
 
-/// From now on this core alone is heard; words of others that come later are lost, so that theirs do not mix with its own.
+/// From now on this core alone is heard: words of others that come later are lost, lest they mix with its own.
 /// @returns whether it is: the first one to ask is.
 [[nodiscard]] bool take_uart();
 
