@@ -113,6 +113,26 @@ TEST(Rooms, ALineTooLongAFileTooLongAndAHeaderTooLongAreNoticed) {
   }
 }
 
+TEST(Rooms, WhatLiesOutsideTheRoomsOrIsAProgramIsNoticed) {
+  const ScratchDirectory tree;
+  tree.write("core/gridiron/ray/a.h", kLicence);
+  tree.write("README.md", "words\n");
+  tree.write(".clang-format", "words\n");
+  tree.write("build/host/program", std::string("\177ELF\0\1", 6));
+  tree.write("scenes/a.png", std::string("\211PNG\0", 5));
+  ScriptResult result = check_rooms(tree.path().string());
+  EXPECT_EQ(result.exit_code, 0) << result.output;
+  tree.write("it", "words\n");
+  tree.write("attic/a.h", kLicence);
+  tree.write("tools/program", std::string("\177ELF\0\1", 6));
+  result = check_rooms(tree.path().string());
+  EXPECT_EQ(result.exit_code, 1);
+  for (const char* line : {"it:1: not in a room", "attic/a.h:1: not in a room", "tools/program:1: neither text",
+                           "check_rooms: 3 breaches"}) {
+    EXPECT_NE(result.output.find(line), std::string::npos) << line << "\n" << result.output;
+  }
+}
+
 TEST(Rooms, AnEmptyTreeIsNotInOrder) {
   const ScratchDirectory tree;
   EXPECT_EQ(check_rooms(tree.path().string()).exit_code, 2);

@@ -46,22 +46,23 @@ struct StoreLayout256K {
   static constexpr std::uint32_t kMaxOutputDepth = 2;  ///< tiles that are made or on their way out
 };
 
-/// Sizes of a 64 KB core: smaller tiles and buffers.
+/// Sizes of a 64 KB core: smaller tiles and buffers. The code budget is that of a core with vectors; without them the
+/// code of packets is too long for 64 KB, and EffectLayout64K is what such a core takes.
 template <std::uint32_t PacketWidthV = 8, std::uint32_t TileWidthV = 16>
 struct StoreLayout64K {
   /// @cond
   static constexpr std::uint32_t kEffects = 0;  ///< EffectBits it is built for
   static constexpr std::uint32_t kArenaBytes = 64 * 1024;
-  static constexpr std::uint32_t kCodeBudgetBytes = 32 * 1024;
+  static constexpr std::uint32_t kCodeBudgetBytes = PacketWidthV >= 16 ? 35 * 1024 + 512 : 32 * 1024;
   static constexpr std::uint32_t kStackBudgetBytes = 6 * 1024;
   static constexpr std::uint32_t kTileWidth = TileWidthV;
   static constexpr std::uint32_t kPacketWidth = PacketWidthV;
   static constexpr std::uint32_t kMailboxSlots = PacketWidthV >= 16 ? 128 : 64;
   static constexpr std::uint32_t kRecentTriangles = PacketWidthV >= 16 ? 4 : 16;
-  static constexpr std::uint32_t kTableEntries = 512;  ///< 16,384 macrocells resident
+  static constexpr std::uint32_t kTableEntries = PacketWidthV >= 16 ? 256 : 512;  ///< 32 macrocells each
   static constexpr std::uint32_t kMaxMacroWidth = 6;
   static constexpr std::uint32_t kMaxMacroDepth = 2;
-  static constexpr std::uint32_t kTrianglesPerBuffer = 16;
+  static constexpr std::uint32_t kTrianglesPerBuffer = PacketWidthV >= 16 ? 8 : 16;
   static constexpr std::uint32_t kMaxTriangleDepth = 4;
   static constexpr std::uint32_t kMaxOutputDepth = 2;
   /// @endcond
@@ -95,7 +96,7 @@ struct StoreLayout512K {
   static constexpr std::uint32_t kEffects = 0;  ///< EffectBits it is built for
   static constexpr std::uint32_t kArenaBytes = 512 * 1024;
   static constexpr std::uint32_t kCodeBudgetBytes = 53 * 1024;
-  static constexpr std::uint32_t kStackBudgetBytes = 8704;
+  static constexpr std::uint32_t kStackBudgetBytes = 10 * 1024;
   static constexpr std::uint32_t kTileWidth = TileWidthV;
   static constexpr std::uint32_t kPacketWidth = PacketWidthV;
   static constexpr std::uint32_t kMailboxSlots = PacketWidthV >= 16 ? 1024 : 64;
