@@ -122,10 +122,12 @@ function print_commands(    i, f) {
 
 function print_header(    kind, per_unit, f, note) {
   f = "dense"
-  print "// What a unit of each kind of work takes in instructions of a " target " core, 4 lanes, and what commands, waits and"
-  print "// claims take on the port of platform/sifive_u. Written by tools/calibrate/second_opinion/run from the kernel in"
-  print "// an emulator; do not edit. tools/calibrate/README.md. Of the frame `dense`; kinds that it has none of, of the"
-  print "// others. Memory: constants. Threads: any. SPDX-License-Identifier: Apache-2.0"
+  print "// What a unit of each kind of work takes in instructions of a " target " core, 4 lanes, and what commands,"
+  print "// waits and claims take on the port of platform/sifive_u. Written by tools/calibrate/second_opinion/run from"
+  print "// the kernel in an emulator; do not edit: tools/calibrate/README.md. Of the frame `dense`; kinds that it has"
+  print "// none of, of the others. Kinds do not tell the steps through the grid that walks of secondary rays take from"
+  print "// those of packets: they have one cost, that of packets."
+  print "// Memory: constants. Threads: any. SPDX-License-Identifier: Apache-2.0"
   print "#pragma once\n\n#include <gridiron/base/work_counters.h>\n\n#include <array>\n\nnamespace gridiron::sim {\n"
   print "/// A kind of work."
   print "struct InstructionCost {\n  Work kind;\n  double instructions;\n};\n"
