@@ -13,20 +13,6 @@
 
 #include "program_core.h"
 
-extern "C" {
-
-void* memcpy(void* to, const void* from, std::size_t bytes) {
-  for (std::size_t i = 0; i < bytes; ++i) {
-    static_cast<volatile std::byte*>(to)[i] = static_cast<const std::byte*>(from)[i];
-  }
-  return to;
-}
-void* memset(void* to, int value, std::size_t bytes) {
-  for (std::size_t i = 0; i < bytes; ++i) static_cast<volatile std::byte*>(to)[i] = static_cast<std::byte>(value);
-  return to;
-}
-}
-
 asm(".data\n.balign 4096\n.global gridiron_memory\ngridiron_memory:\n.incbin \"" GRIDIRON_MEMORY "\"\n"
     ".global gridiron_memory_end\ngridiron_memory_end:\n.text\n");
 

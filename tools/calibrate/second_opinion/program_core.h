@@ -24,8 +24,13 @@ template <int kNumber>
 [[gnu::always_inline]] inline void put_mark() {
   asm volatile(GRIDIRON_MARK_TEXT : : "n"(kNumber));
 }
-[[gnu::always_inline]] inline void mark_copy() { put_mark<127>(); }
-[[gnu::always_inline]] inline void mark_copied() { put_mark<126>(); }
+// No access to memory may leave a copy or enter it.
+template <int kNumber>
+[[gnu::always_inline]] inline void put_fence_mark() {
+  asm volatile(GRIDIRON_MARK_TEXT : : "n"(kNumber) : "memory");
+}
+[[gnu::always_inline]] inline void mark_copy() { put_fence_mark<127>(); }
+[[gnu::always_inline]] inline void mark_copied() { put_fence_mark<126>(); }
 /// What follows is no kind of work.
 [[gnu::always_inline]] inline void mark_nothing() { put_mark<127>(); }
 
