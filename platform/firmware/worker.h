@@ -44,12 +44,13 @@ class CountingPort {
 
   TileClaim claim_tile() {
     finish_tile();
+    const std::uint64_t before = instructions();  // a tile's claim is its own
     const TileClaim claim = port_.claim_tile();
     if (claim.kind == TileClaim::Kind::kTile) {
       has_tile_ = true;
       tile_id_ = claim.tile_id;
       transfers_before_ = transfers_;
-      instructions_before_ = instructions();
+      instructions_before_ = before;
       ++claimed_;
     }
     return claim;

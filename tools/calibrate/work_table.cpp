@@ -11,6 +11,7 @@
 #include <array>
 #include <cstdio>
 #include <fstream>
+#include <span>
 #include <stdexcept>
 #include <string_view>
 #include <vector>
@@ -156,16 +157,21 @@ void add(Totals& sum, const Totals& more, const Takes& takes) {
 
 // Which rays need an exact decision depends on the scene, and hardly any does: rays through the vertices of triangles
 // all over the scene are decided here.
+constexpr std::uint32_t kDecisions = 64;
+
+const UVec3& decided_triangle(const Scene& scene, std::uint32_t i) {
+  return scene.triangles[i * scene.triangles.size() / kDecisions];
+}
+
 __attribute__((noinline)) void decide_exactly(const Scene& scene) {
   using gridiron_counted::Counted;
-  constexpr std::uint32_t kDecisions = 64;
   const auto counted = [](Counted<float>* to, const Vec3& from) {
     for (int i = 0; i < 3; ++i) {
       to[i] = Counted<float>::made(from[i], gridiron_counted::emit(OpClass::kLoad, gridiron_counted::bits_of(from[i])));
     }
   };
   for (std::uint32_t i = 0; i < kDecisions; ++i) {
-    const UVec3 triangle = scene.triangles[i * scene.triangles.size() / kDecisions];
+    const UVec3 triangle = decided_triangle(scene, i);
     Counted<float> eye[3], direction[3], a[3], b[3], c[3];
     PipeModel::current().charge_to(Work::kWait);  // reading the input is the caller's work
     counted(eye, kEye);
@@ -423,16 +429,35 @@ std::string rival_table_text(const Totals& totals) {
 
 namespace {
 
+void write_file(const std::string& path, std::span<const std::byte> bytes) {
+  std::ofstream file(path, std::ios::binary);
+  file.write(reinterpret_cast<const char*>(bytes.data()), static_cast<std::streamsize>(bytes.size()));
+  if (!file.flush()) throw std::runtime_error("calibration: cannot write " + path);
+}
+
+void write_units(const std::string& path, const Totals& counted) {
+  std::ofstream units(path);
+  for (std::size_t kind = 0; kind < kWorkKindCount; ++kind) units << kind << ' ' << counted[kind].units << '\n';
+  if (!units.flush()) throw std::runtime_error("calibration: cannot write " + path);
+}
+
 // Writes a frame's memory and units. @returns what was counted.
 Totals write_memory(const std::string& folder, const NamedFrame& named) {
-  const std::vector<std::byte> memory = main_memory_of(named.frame);
-  std::ofstream file(folder + "/" + named.name + ".memory", std::ios::binary);
-  file.write(reinterpret_cast<const char*>(memory.data()), static_cast<std::streamsize>(memory.size()));
+  write_file(folder + "/" + named.name + ".memory", main_memory_of(named.frame));
   const Totals counted = render_counted(named.frame).totals;
-  std::ofstream units(folder + "/" + named.name + ".units");
-  for (std::size_t kind = 0; kind < kWorkKindCount; ++kind) units << kind << ' ' << counted[kind].units << '\n';
-  if (!file.flush() || !units.flush()) throw std::runtime_error("calibration: cannot write into " + folder);
+  write_units(folder + "/" + named.name + ".units", counted);
   return counted;
+}
+
+// What decide_exactly decides: eye, direction and corners of each decision, 15 floats.
+void write_decisions(const std::string& path, const Scene& scene) {
+  std::vector<Vec3> words;
+  for (std::uint32_t i = 0; i < kDecisions; ++i) {
+    const UVec3& triangle = decided_triangle(scene, i);
+    const Vec3 a = scene.vertices[triangle.x];
+    words.insert(words.end(), {kEye, a - kEye, a, scene.vertices[triangle.y], scene.vertices[triangle.z]});
+  }
+  write_file(path, std::as_bytes(std::span(words)));
 }
 
 }  // namespace
@@ -440,11 +465,10 @@ Totals write_memory(const std::string& folder, const NamedFrame& named) {
 void write_memories(const std::string& folder) {
   const Scenes scenes;
   const auto frames = frames_of(scenes);
-  Totals totals{};
-  for (const NamedFrame& named : frames) {
-    if (named.frame.effects != nullptr) continue;  // of these there is no second opinion
-    add(totals, write_memory(folder, named), named);
-  }
+  Totals totals = count_exact(scenes.teapot, kSuperblockBranches);
+  write_decisions(folder + "/exact.memory", scenes.teapot);
+  write_units(folder + "/exact.units", totals);
+  for (const NamedFrame& named : frames) add(totals, write_memory(folder, named), named);
   constexpr std::uint32_t kFineSegments = 20;  // triangles as small as a scan's
   const Scene fine = scene_of(scene_makers::make_teapot(kFineSegments));
   NamedFrame dense{"dense", frames[0].frame};
@@ -454,9 +478,10 @@ void write_memories(const std::string& folder) {
   std::ofstream file(folder + "/units");
   for (std::size_t kind = 0; kind < kWorkKindCount; ++kind) {
     const KindTotals& t = totals[kind];
-    if (!is_charged(kind) || is_of_effects(kind)) continue;
+    if (!is_charged(kind)) continue;
+    const char* stands_for = is_of_effects(kind) ? "effects" : "packets";
     file << kind << ' ' << tool::work_name(static_cast<Work>(kind)) << ' ' << t.units << ' '
-         << per_unit(t, t.even() + t.odd()) << '\n';
+         << per_unit(t, t.even() + t.odd()) << ' ' << stands_for << '\n';
   }
   if (!file.flush()) throw std::runtime_error("calibration: cannot write into " + folder);
 }

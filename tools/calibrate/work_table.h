@@ -27,9 +27,10 @@ namespace gridiron::calibrate {
 /// @returns the generated source file, sim_platform/gridiron/rival/rival_costs.h.
 [[nodiscard]] std::string rival_table_text(const Totals& totals);
 
-/// Writes the main memories of the frames without effects, NAME.memory, the units of each, NAME.units (kind, units),
-/// and a file `units` of all (kind, name, units, counted operations per unit) into a folder, for second_opinion;
-/// besides, the first two of `dense`, which is `reference` of a teapot of 16 times the triangles.
+/// Writes into a folder, for second_opinion: of each frame and of `dense`, which is `reference` of a teapot of 16 times
+/// the triangles, the main memory, NAME.memory, and the units, NAME.units (kind, units); of the exact decisions their
+/// numbers, exact.memory, and units; and of all but `dense` together a file `units` (kind, name, units, counted
+/// operations per unit, `effects` where frames with effects stand for the kind, else `packets`).
 /// Errors: std::runtime_error where a file cannot be written.
 void write_memories(const std::string& folder);
 

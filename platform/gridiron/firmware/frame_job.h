@@ -68,7 +68,7 @@ inline constexpr std::uint32_t kNotRun = 0xFFFFFFFFu;
 struct TileResult {
   std::uint32_t core;          ///< that claimed it; kNotRun where none did
   std::uint32_t transfers;     ///< between this claim and the next; 0: not counted
-  std::uint64_t instructions;  ///< between this claim and the next, where the board counts them, else 0
+  std::uint64_t instructions;  ///< from this claim to the next, where the board counts them, else 0
 };
 static_assert(sizeof(TileResult) == 16);
 

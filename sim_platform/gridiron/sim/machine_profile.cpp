@@ -101,13 +101,10 @@ constexpr MachineProfile eight_cores_of_2006(MachineProfile machine) {
 }
 
 /// Instructions of a scalar core that takes 4 lanes one after the other: counted in an emulator, see
-/// instruction_costs.h. Kinds that its frames have none of: ESTIMATES, counted operations times what the others take.
+/// instruction_costs.h. Commands and waits are charged where they happen.
 constexpr std::array<double, kWorkKindCount> scalar_instructions() {
-  constexpr double kInstructionsPerOperation = 4.0;
+  static_assert(kInstructionCosts.size() == kWorkKindCount - 3);
   std::array<double, kWorkKindCount> instructions{};
-  for (std::size_t kind = 0; kind < kWorkKindCount; ++kind) {
-    instructions[kind] = kInstructionsPerOperation * (kWorkCosts[kind].even + kWorkCosts[kind].odd);
-  }
   for (const InstructionCost& cost : kInstructionCosts) {
     instructions[static_cast<std::size_t>(cost.kind)] = cost.instructions;
   }
@@ -123,12 +120,12 @@ constexpr MachineProfile counted_fu540(MachineProfile machine) {
   machine.core_count = 4;
   machine.clock_hz = 1e9;  // of the board's; no instruction takes exactly a cycle
   machine.main_memory_bytes = 8192 * kMegabyte;
-  machine.issue_cycles = 150;  // with its end in the wait; this, the wait and the claim are ESTIMATES: 1 % of a frame
-  machine.wait_cycles = 30;
+  machine.issue_cycles = kCommandInstructions;  // with its end in the wait
+  machine.wait_cycles = kWaitInstructions;
   machine.latency_cycles = 1;
   machine.channel_bytes_per_cycle = 65536;
   machine.core_line_interval_cycles = 0;
-  machine.claim_cycles = 30;
+  machine.claim_cycles = kClaimInstructions;
   machine.work_cycles = scalar_instructions();
   return machine;
 }

@@ -59,22 +59,14 @@ constexpr double kLastDigit = 0.0601;
 TEST(CalibrateReadme, SecondOpinionStandsBesideTheTableOfToday) {
   const std::string text = readme_text();
   const std::map<std::string, Opinion> rows = opinions(text);
-  // Kinds that a list says to have none, and only those of effects.
-  const std::set<std::string> without = quoted_words(between(text, "Without a second opinion:", "\n\n"));
-  std::set<std::string> of_effects;
   std::set<std::string> apart;
   for (std::size_t i = 0; i < kWorkKindCount; ++i) {
     const auto kind = static_cast<Work>(i);
     const sim::WorkCost& cost = sim::kWorkCosts[i];
-    const bool is_exact = kind == Work::kExactSign || kind == Work::kExactDistance || kind == Work::kExactOrder;
-    if (cost.cycles == 0 || is_exact) continue;  // commands and waits; what the six frames hardly do
+    if (cost.cycles == 0) continue;  // commands and waits
     const std::string name(tool::work_name(kind));
     SCOPED_TRACE(name + ": run tools/calibrate/second_opinion/run and write the README's table anew");
     const auto row = rows.find(name);
-    if (kind >= Work::kWaveRay && row == rows.end()) {
-      of_effects.insert(name);
-      continue;
-    }
     ASSERT_NE(row, rows.end());
     EXPECT_NEAR(row->second.cycles, cost.cycles, kLastDigit);
     EXPECT_NEAR(row->second.operations, cost.even + cost.odd, kLastDigit);
@@ -83,7 +75,6 @@ TEST(CalibrateReadme, SecondOpinionStandsBesideTheTableOfToday) {
                 0.006 + 0.06 * (1 + row->second.ratio) / row->second.operations);
     if (row->second.ratio > 1.5) apart.insert(name);
   }
-  EXPECT_EQ(without, of_effects);
   std::set<std::string> explained =
       quoted_words(between(text, "Where they are apart by more than 1.5", "These reasons are read from"));
   for (const char* word : {"issue_cycles"}) explained.erase(word);

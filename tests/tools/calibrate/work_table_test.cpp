@@ -2,9 +2,11 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <gridiron/rival/rival_costs.h>
 #include <gridiron/rival/rival_work.h>
+#include <gridiron/sim/instruction_costs.h>
 #include <gridiron/sim/machine_profile.h>
 #include <gridiron/sim/work_costs.h>
 #include <gtest/gtest.h>
+#include <report/report.h>
 #include <work_table.h>
 
 #include <array>
@@ -73,6 +75,30 @@ TEST(WorkTable, ProfileChargesTheTable) {
     EXPECT_EQ(machine.work_cycles[kind], sim::kWorkCosts[kind].cycles) << "kind " << kind;
     EXPECT_LE(sim::kWorkCosts[kind].cycles, sim::kWorkCosts[kind].most_cycles) << "kind " << kind;
   }
+}
+
+// What it counts comes from tools/calibrate/second_opinion/run; that needs a cross compiler. Here: no kind is left out,
+// none is there twice, and none was moved by a kind that was put before it.
+TEST(WorkTable, ProfileOfInstructionsChargesItsTable) {
+  const sim::MachineProfile& machine = *sim::find_machine_profile("fu540");
+  std::array<double, kWorkKindCount> expected{};
+  for (const sim::InstructionCost& cost : sim::kInstructionCosts) {
+    const auto kind = static_cast<std::size_t>(cost.kind);
+    SCOPED_TRACE(std::string(tool::work_name(cost.kind)) +
+                 ": write the table anew with\n  tools/calibrate/second_opinion/run build/host riscv64 --header > "
+                 "sim_platform/gridiron/sim/instruction_costs.h");
+    EXPECT_EQ(expected[kind], 0.0);
+    EXPECT_GT(cost.instructions, 0.0);
+    EXPECT_GT(sim::kWorkCosts[kind].cycles, 0.0);
+    expected[kind] = cost.instructions;
+  }
+  EXPECT_EQ(machine.work_cycles, expected);
+  for (std::size_t kind = 0; kind < kWorkKindCount; ++kind) {
+    EXPECT_EQ(expected[kind] > 0, sim::kWorkCosts[kind].cycles > 0) << "kind " << kind;
+  }
+  EXPECT_EQ(machine.issue_cycles, sim::kCommandInstructions);
+  EXPECT_EQ(machine.wait_cycles, sim::kWaitInstructions);
+  EXPECT_EQ(machine.claim_cycles, sim::kClaimInstructions);
 }
 
 }  // namespace
