@@ -5,8 +5,8 @@
 #include <cstdint>
 #include <cstring>
 
+#include "clint.h"
 #include "console.h"
-#include "hart.h"
 #include "master.h"
 #include "memory_map.h"
 #include "semihost.h"
@@ -25,6 +25,12 @@ std::uint64_t gridiron_serve(std::uint64_t target, std::uint64_t source, std::ui
 [[gnu::section(".arenas")]] Arena gridiron_arenas[kWorkerCount];
 
 namespace {
+
+[[nodiscard]] std::uint32_t this_hart() {
+  std::uint64_t hart = 0;
+  asm volatile("csrr %0, mhartid" : "=r"(hart));
+  return static_cast<std::uint32_t>(hart);
+}
 
 bool is_within(std::uint64_t address, std::uint64_t bytes, std::uint64_t begin, std::uint64_t length) {
   const std::uint64_t offset = address - begin;
@@ -67,13 +73,14 @@ void open_memory(std::uint32_t core) {
 void gridiron_boot_worker(std::uint64_t hart) {
   const auto core = static_cast<std::uint32_t>(hart - 1);
   open_memory(core);
-  sleep_until(~std::uint64_t{0});
+  while (!is_called()) sleep_hart(false);
+  hush_hart(static_cast<std::uint32_t>(hart));
   gridiron_enter_worker(core, stack_of(core).top);
 }
 
 std::uint64_t gridiron_serve(std::uint64_t target, std::uint64_t source, std::uint64_t bytes, Call call) {
   if (call == Call::kFinished) {
-    wake(0);
+    wake_hart(0);
     sleep_for_ever();
   }
   if (call != Call::kCopy) return 0;
@@ -94,7 +101,7 @@ void gridiron_trapped(std::uint64_t cause, std::uint64_t address, std::uint64_t 
   CoreSlot& slot = gridiron_shared.control.cores[hart - 1];
   slot.trap = {cause, address, pc};
   set_state(slot, CoreState::kTrapped);
-  wake(0);
+  wake_hart(0);
   sleep_for_ever();
 }
 

@@ -22,7 +22,6 @@ inline constexpr std::uint64_t kMemoryEnd = 0x8FE00000;
 
 inline constexpr std::uintptr_t kFinisher = 0x00100000;  ///< ends the emulator; this firmware does so by semihosting
 inline constexpr std::uintptr_t kUart = 0x10000000;
-inline constexpr std::uintptr_t kClint = 0x02000000;
 
 /// A worker's local memory: a power of two, and a multiple of it, for PMP.
 inline constexpr std::size_t kArenaBytes = 0x40000;

@@ -4,8 +4,11 @@
 
 #include <gridiron/platform/contract.h>
 
+#include <cstddef>
 #include <cstdint>
 
+#include "clint.h"
+#include "engine.h"
 #include "memory_map.h"
 
 namespace gridiron::port {
@@ -27,7 +30,7 @@ inline void trespass(std::uint64_t kind) {
     case 5: load(kCodeAddress + kCodeBytes); break;  // the master's data
     case 6: load(kJobAddress); break;
     case 7: store(kMemoryEnd - 4); break;
-    case 8: store(kClint); break;
+    case 8: store(kClint); break;                // another hart's software interrupt
     case 9: store(kUart); break;
     case 10: store(kFinisher); break;
     case 11: reinterpret_cast<void (*)()>(arena + kArenaBytes / 2)(); break;  // code in its own arena
@@ -36,8 +39,8 @@ inline void trespass(std::uint64_t kind) {
   }
 }
 
-/// Asks for one transfer with an end that is not the job's memory or the core's own: of kind 13 a get from the code, of
-/// 14 a put from the neighbour's arena. Others are handed on as they are.
+/// Asks for transfers with an end that is not the job's memory or the core's own: of kind 13 a get from the code, of 14
+/// puts from the neighbour's arena, of 15 the same without the port. Others are handed on as they are.
 template <Platform P>
 class TrespassingPort {
  public:
@@ -49,6 +52,10 @@ class TrespassingPort {
     return port_.get(local, address, bytes, tag);
   }
   Status put(const void* local, MainAddress address, std::uint32_t bytes, Tag tag) {
+    if (kind_ == 15) {
+      const std::uint64_t source = reinterpret_cast<std::uintptr_t>(local) - kArenaBytes;
+      return gridiron_call(address.value, source, bytes, Call::kCopy) == 0 ? Status::kTransferFailed : Status::kOk;
+    }
     if (kind_ == 14) local = static_cast<const std::byte*>(local) - kArenaBytes;
     return port_.put(local, address, bytes, tag);
   }

@@ -3,24 +3,14 @@
 // Memory: gridiron_arenas. Threads: each worker its own. SPDX-License-Identifier: Apache-2.0
 #pragma once
 
-#include <gridiron/base/effect_records.h>
-#include <gridiron/base/lanes.h>
-#include <gridiron/store/local_store.h>
-
 #include <cstddef>
 #include <cstdint>
-#include <type_traits>
 
+#include "layout_256k.h"
 #include "memory_map.h"
 #include "stack_paint.h"
 
 namespace gridiron::port {
-
-using FirmwareLanes = Lanes<4>;
-using FirmwareLayout =
-    std::conditional_t<GRIDIRON_EFFECTS == 0, StoreLayout256K<GRIDIRON_PACKET_WIDTH>,
-                       EffectLayout256K<GRIDIRON_EFFECTS, GRIDIRON_PACKET_WIDTH>>;
-using FirmwareStore = LocalStore<FirmwareLayout>;
 
 /// Main memory that a worker may also touch itself, from the job's address on, one after the other: of the contract
 /// checks, which look at what transfers did.
@@ -39,7 +29,6 @@ struct WorkerArena {
   FirmwareStore store;
 };
 static_assert(sizeof(WorkerArena) <= kArenaBytes);
-static_assert(kFitsArena<FirmwareLayout>, "store, code and stack are more than the arena");
 
 [[nodiscard]] inline WorkerArena& arena_of(std::uint32_t core) {
   return *reinterpret_cast<WorkerArena*>(&gridiron_arenas[core]);
