@@ -61,7 +61,7 @@ void open_memory(std::uint32_t core) {
   asm volatile("csrw pmpaddr1, %0" ::"r"(region(kCodeAddress, kCodeBytes)));
   asm volatile("csrw pmpaddr2, %0" ::"r"(region(reinterpret_cast<std::uintptr_t>(&gridiron_shared), kSharedBytes)));
   std::uint64_t entries = kData | kCode << 8 | kData << 16;
-  if constexpr (kWindowBytes != 0) {
+  if constexpr (kHasWindow) {
     asm volatile("csrw pmpaddr3, %0" ::"r"(region(kJobAddress + core * kWindowBytes, kWindowBytes)));
     entries |= kData << 24;
   }

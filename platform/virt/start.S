@@ -7,20 +7,20 @@
   .globl _start
 _start:
   csrr    s0, mhartid
-  la      sp, hart_stacks_begin
+  lla     sp, hart_stacks_begin
   addi    t0, s0, 1
   slli    t0, t0, kHartStackShift
   add     sp, sp, t0
   csrw    mscratch, sp
-  la      t0, trap_entry
+  lla     t0, trap_entry
   csrw    mtvec, t0
   csrw    mie, zero
   li      t0, 1 << 13           # mstatus.FS: floating point on
   csrs    mstatus, t0
   bnez    s0, 2f
 
-  la      t0, bss_begin
-  la      t1, bss_end
+  lla     t0, bss_begin
+  lla     t1, bss_end
 1:
   bgeu    t0, t1, 3f
   sd      zero, 0(t0)
@@ -39,7 +39,7 @@ _start:
   .text
   .globl gridiron_enter_worker
 gridiron_enter_worker:
-  la      t0, gridiron_worker
+  lla     t0, gridiron_worker
   csrw    mepc, t0
   li      t0, 3 << 11           # mstatus.MPP: to user mode
   csrc    mstatus, t0
@@ -75,7 +75,7 @@ trap_entry:
   csrr    t0, mhartid
   addi    t0, t0, 1
   slli    t0, t0, kHartStackShift
-  la      sp, hart_stacks_begin
+  lla     sp, hart_stacks_begin
   add     sp, sp, t0
   csrr    a0, mcause
   csrr    a1, mtval

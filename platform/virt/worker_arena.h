@@ -12,12 +12,13 @@
 
 namespace gridiron::port {
 
-/// Main memory that a worker may also touch itself, from the job's address on, one after the other: of the contract
-/// checks, which look at what transfers did.
-#if defined(GRIDIRON_CONTRACT)
+/// Main memory that a worker may touch itself too, from the job's address on, one after the other: in the image of the
+/// contract checks, which look at what transfers did.
 inline constexpr std::uint64_t kWindowBytes = 0x10000;
+#ifdef GRIDIRON_CONTRACT
+inline constexpr bool kHasWindow = true;
 #else
-inline constexpr std::uint64_t kWindowBytes = 0;
+inline constexpr bool kHasWindow = false;
 #endif
 
 /// What the layout allows, run_worker and the port included.
