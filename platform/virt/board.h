@@ -6,6 +6,7 @@
 #include <cstdint>
 
 #include "engine.h"
+#include "memory_map.h"
 #include "run_control.h"
 #include "template_port.h"
 
@@ -14,7 +15,7 @@ namespace gridiron::port {
 class VirtBoard : public SharedTiles {
  public:
   /// @param store_begin, store_bytes  the part of the arena that transfers may touch.
-  VirtBoard(RunControl& control, std::uintptr_t store_begin, std::uint64_t store_bytes)
+  VirtBoard(RunControl& control, std::uint64_t store_begin, std::uint64_t store_bytes)
       : SharedTiles(control), store_begin_(store_begin), store_bytes_(store_bytes) {}
 
   void start(const EngineCommand& command) {
@@ -30,7 +31,7 @@ class VirtBoard : public SharedTiles {
     return false;
   }
   [[nodiscard]] bool has_failed() const { return has_failed_; }
-  [[nodiscard]] std::uint64_t bus_address(const void* local) const { return reinterpret_cast<std::uintptr_t>(local); }
+  [[nodiscard]] std::uint64_t bus_address(const void* local) const { return address_of(local); }
   [[nodiscard]] bool holds(const void* local, std::uint32_t bytes) const {
     const std::uint64_t offset = bus_address(local) - store_begin_;
     return offset <= store_bytes_ && bytes <= store_bytes_ - offset;
@@ -40,7 +41,7 @@ class VirtBoard : public SharedTiles {
   void discard(const void*, std::uint32_t) {}
 
  private:
-  std::uintptr_t store_begin_;
+  std::uint64_t store_begin_;
   std::uint64_t store_bytes_;
   EngineCommand command_;
   bool is_started_ = false;

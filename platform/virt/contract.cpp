@@ -36,8 +36,8 @@ class BoardBench {
 
   explicit BoardBench(std::uint32_t core)
       : arena_(*reinterpret_cast<ContractArena*>(&gridiron_arenas[core])),
-        main_(kJobAddress + core * kWindowBytes),
-        board_(arena_.control, reinterpret_cast<std::uintptr_t>(arena_.local), sizeof arena_.local),
+        main_(address_of(job_begin) + core * kWindowBytes),
+        board_(arena_.control, address_of(arena_.local), sizeof arena_.local),
         port_(board_) {
     arena_.control.next_tile = 0;
     arena_.control.tile_count = contract::kTileCount;

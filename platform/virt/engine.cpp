@@ -38,11 +38,11 @@ bool is_within(std::uint64_t address, std::uint64_t bytes, std::uint64_t begin, 
 }
 
 bool is_in_main(std::uint64_t address, std::uint64_t bytes) {
-  return is_within(address, bytes, kJobAddress, kMemoryEnd - kJobAddress);
+  return is_within(address, bytes, address_of(job_begin), address_of(job_end) - address_of(job_begin));
 }
 
 bool is_in_arena(std::uint64_t address, std::uint64_t bytes) {
-  return is_within(address, bytes, reinterpret_cast<std::uintptr_t>(&gridiron_arenas[this_hart() - 1]), kArenaBytes);
+  return is_within(address, bytes, address_of(&gridiron_arenas[this_hart() - 1]), kArenaBytes);
 }
 
 [[noreturn]] void sleep_for_ever() {
@@ -56,13 +56,13 @@ constexpr std::uint64_t region(std::uint64_t address, std::uint64_t bytes) { ret
 void open_memory(std::uint32_t core) {
   constexpr std::uint64_t kRead = 1, kWrite = 2, kExecute = 4, kPowerOfTwo = 3 << 3;
   constexpr std::uint64_t kData = kRead | kWrite | kPowerOfTwo, kCode = kRead | kExecute | kPowerOfTwo;
-  asm volatile("csrw pmpaddr0, %0" ::"r"(
-      region(reinterpret_cast<std::uintptr_t>(&gridiron_arenas[core]), kArenaBytes)));
-  asm volatile("csrw pmpaddr1, %0" ::"r"(region(kCodeAddress, kCodeBytes)));
-  asm volatile("csrw pmpaddr2, %0" ::"r"(region(reinterpret_cast<std::uintptr_t>(&gridiron_shared), kSharedBytes)));
+  const std::uint64_t code_bytes = address_of(code_end) - address_of(code_begin);
+  asm volatile("csrw pmpaddr0, %0" ::"r"(region(address_of(&gridiron_arenas[core]), kArenaBytes)));
+  asm volatile("csrw pmpaddr1, %0" ::"r"(region(address_of(code_begin), code_bytes)));
+  asm volatile("csrw pmpaddr2, %0" ::"r"(region(address_of(&gridiron_shared), kSharedBytes)));
   std::uint64_t entries = kData | kCode << 8 | kData << 16;
   if constexpr (kHasWindow) {
-    asm volatile("csrw pmpaddr3, %0" ::"r"(region(kJobAddress + core * kWindowBytes, kWindowBytes)));
+    asm volatile("csrw pmpaddr3, %0" ::"r"(region(address_of(job_begin) + core * kWindowBytes, kWindowBytes)));
     entries |= kData << 24;
   }
   asm volatile("csrw pmpcfg0, %0\n sfence.vma" ::"r"(entries) : "memory");

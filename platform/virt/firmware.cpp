@@ -18,14 +18,14 @@
 namespace gridiron::port {
 
 void gridiron_master() {
-  constexpr FirmwareFacts kFacts = firmware_facts<FirmwareLayout, FirmwareLanes>(
-      "gridiron virt " GRIDIRON_IMAGE, kWorkerCount, kMemoryEnd, kMostTiles);
+  const FirmwareFacts facts = firmware_facts<FirmwareLayout, FirmwareLanes>(
+      "gridiron virt " GRIDIRON_IMAGE, kWorkerCount, address_of(job_end), kMostTiles);
 #ifdef GRIDIRON_TRESPASS
   gridiron_shared.trespass = number_option("trespass=", 0);
 #endif
-  const auto& job = *reinterpret_cast<const FrameJob*>(kJobAddress);
+  const auto& job = *reinterpret_cast<const FrameJob*>(job_begin);
   VirtMaster board;
-  Master<VirtMaster> master(board, kFacts, job, gridiron_shared.control, gridiron_shared.tiles);
+  Master<VirtMaster> master(board, facts, job, gridiron_shared.control, gridiron_shared.tiles);
   exit_run(static_cast<std::uint32_t>(master.run("result.bin")));
 }
 
@@ -33,7 +33,7 @@ void gridiron_worker(std::uint64_t core_index) {
   const auto core = static_cast<std::uint32_t>(core_index);
   SharedMemory& shared = gridiron_shared;
   FirmwareStore& store = arena_of(core).store;
-  VirtBoard board(shared.control, reinterpret_cast<std::uintptr_t>(&store), sizeof store);
+  VirtBoard board(shared.control, address_of(&store), sizeof store);
   TemplatePort<VirtBoard> port(board);
 #if defined(GRIDIRON_FORGETFUL)
   ForgetfulPort wrong(port);

@@ -14,12 +14,6 @@ namespace gridiron::port {
 /// Hart 0 is the master, hart 1 + i is worker i.
 inline constexpr std::uint32_t kWorkerCount = 6;
 
-inline constexpr std::uint64_t kCodeAddress = 0x80000000;
-inline constexpr std::uint64_t kCodeBytes = 0x40000;
-inline constexpr std::uint64_t kJobAddress = 0x81000000;
-/// Of 256 MB; the emulator puts its device tree behind.
-inline constexpr std::uint64_t kMemoryEnd = 0x8FE00000;
-
 inline constexpr std::uintptr_t kFinisher = 0x00100000;  ///< ends the emulator; this firmware does so by semihosting
 inline constexpr std::uintptr_t kUart = 0x10000000;
 
@@ -51,6 +45,11 @@ static_assert(sizeof(SharedMemory) == kSharedBytes);
 extern "C" {
 extern Arena gridiron_arenas[kWorkerCount];
 extern SharedMemory gridiron_shared;
+
+// What else virt.ld knows: where the code's region and the job's memory begin and end.
+extern const std::byte code_begin[], code_end[], job_begin[], job_end[];
 }
+
+[[nodiscard]] inline std::uint64_t address_of(const void* place) { return reinterpret_cast<std::uintptr_t>(place); }
 
 }  // namespace gridiron::port

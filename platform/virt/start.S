@@ -1,12 +1,15 @@
 # Start of every hart, entry to a worker, and the way into machine mode that a worker's calls and all traps take.
 # Memory: a stack of 4 KB for each hart's machine mode. Threads: all harts. SPDX-License-Identifier: Apache-2.0
 
+  .equ kHarts, 7
   .equ kHartStackShift, 12
 
   .section .text.start, "ax"
   .globl _start
 _start:
   csrr    s0, mhartid
+  li      t0, kHarts
+  bgeu    s0, t0, 4f
   lla     sp, hart_stacks_begin
   addi    t0, s0, 1
   slli    t0, t0, kHartStackShift
@@ -85,4 +88,4 @@ trap_entry:
 
   .section .hart_stacks, "aw", @nobits
 hart_stacks_begin:
-  .skip   7 << kHartStackShift
+  .skip   kHarts << kHartStackShift

@@ -21,15 +21,15 @@ inline void trespass(std::uint64_t kind) {
   const auto store = [](std::uint64_t address) {
     *reinterpret_cast<volatile std::uint32_t*>(static_cast<std::uintptr_t>(address)) = 0;
   };
-  const std::uint64_t arena = reinterpret_cast<std::uintptr_t>(&gridiron_arenas[1]);
+  const std::uint64_t arena = address_of(&gridiron_arenas[1]);
   switch (kind) {
     case 1: load(arena - kArenaBytes); break;   // a neighbour's first word
     case 2: store(arena - 4); break;            // what a stack that is too deep meets
     case 3: load(arena + kArenaBytes); break;   // the first word behind its own
-    case 4: store(kCodeAddress + 64); break;
-    case 5: load(kCodeAddress + kCodeBytes); break;  // the master's data
-    case 6: load(kJobAddress); break;
-    case 7: store(kMemoryEnd - 4); break;
+    case 4: store(address_of(code_begin) + 64); break;
+    case 5: load(address_of(code_end)); break;  // the master's data
+    case 6: load(address_of(job_begin)); break;
+    case 7: store(address_of(job_end) - 4); break;
     case 8: store(kClint); break;                // another hart's software interrupt
     case 9: store(kUart); break;
     case 10: store(kFinisher); break;
@@ -48,12 +48,12 @@ class TrespassingPort {
 
   [[nodiscard]] PlatformLimits limits() const { return port_.limits(); }
   Status get(void* local, MainAddress address, std::uint32_t bytes, Tag tag) {
-    if (kind_ == 13 && ++gets_ == 10) address.value = kCodeAddress + address.value % 4096;
+    if (kind_ == 13 && ++gets_ == 10) address.value = address_of(code_begin) + address.value % 4096;
     return port_.get(local, address, bytes, tag);
   }
   Status put(const void* local, MainAddress address, std::uint32_t bytes, Tag tag) {
     if (kind_ == 15) {
-      const std::uint64_t source = reinterpret_cast<std::uintptr_t>(local) - kArenaBytes;
+      const std::uint64_t source = address_of(local) - kArenaBytes;
       return gridiron_call(address.value, source, bytes, Call::kCopy) == 0 ? Status::kTransferFailed : Status::kOk;
     }
     if (kind_ == 14) local = static_cast<const std::byte*>(local) - kArenaBytes;
