@@ -3,13 +3,12 @@
 // Memory: its own data, shared memory, the job. Threads: hart 0. SPDX-License-Identifier: Apache-2.0
 #include "master.h"
 
-#include <gridiron/base/work_counters.h>
-
 #include <cstdint>
 #include <cstring>
 
 #include "desk_engine.h"
-#include "firmware_layout.h"
+#include "firmware_facts.h"
+#include "layout_256k.h"
 #include "memory_map.h"
 #include "scene_workshop.h"
 #include "shared_memory.h"
@@ -20,6 +19,7 @@ namespace gridiron::port {
 
 namespace {
 
+constexpr std::uint64_t kTicksPerMillisecond = 1000;
 constexpr std::uint64_t kUartTransmit = GRIDIRON_UART + 0x00;
 constexpr std::uint64_t kUartTransmitControl = GRIDIRON_UART + 0x08;
 
@@ -42,12 +42,12 @@ class Monitor {
     sleep_hart(false);
 #else
     // Sleeps for 20 ms, or until a worker calls; one that has called since the last sleep is heard at once.
-    wide_register_at(GRIDIRON_MTIMECMP0) = wide_register_at(GRIDIRON_MTIME) + 20'000;
+    set_alarm(0, clock_ticks() + 20 * kTicksPerMillisecond);
     sleep_hart(true);
 #endif
     hush_hart(0);
   }
-  [[nodiscard]] std::uint64_t milliseconds() { return wide_register_at(GRIDIRON_MTIME) / 1000; }
+  [[nodiscard]] std::uint64_t milliseconds() { return clock_ticks() / kTicksPerMillisecond; }
   void take_results() {
     asm volatile("fence" ::: "memory");
 #ifdef GRIDIRON_ASYNC
@@ -112,23 +112,13 @@ void gridiron_trap(std::uint64_t hart, std::uint64_t cause, std::uint64_t addres
 /// Hart 0, from start.S.
 void gridiron_master() {
   register_at(kUartTransmitControl) = 1;
-  const FirmwareFacts facts = {
-      .name = "gridiron sifive_u " GRIDIRON_IMAGE,
-      .memory_end = GRIDIRON_MEMORY_END,
 #ifdef GRIDIRON_COUNTED
-      .core_count = 1,  // the emulator's counter is one for all cores
+  constexpr std::uint32_t kCores = 1;  // the emulator's counter is one for all cores
 #else
-      .core_count = GRIDIRON_WORKERS,
+  constexpr std::uint32_t kCores = GRIDIRON_WORKERS;
 #endif
-      .tile_width = FirmwareLayout::kTileWidth,
-      .effects = FirmwareLayout::kEffects,
-      .packet_width = FirmwareLayout::kPacketWidth,
-      .store_bytes = FirmwareLayout::kArenaBytes,
-      .lane_count = std::uint32_t{FirmwareLanes::kCount},
-      .queue_depth = PlatformLimits{}.queue_depth,
-      .work_kinds = kWorkKindCount,
-      .most_tiles = kMostTiles,
-  };
+  const FirmwareFacts facts = firmware_facts<FirmwareLayout, FirmwareLanes>(
+      "gridiron sifive_u " GRIDIRON_IMAGE, kCores, GRIDIRON_MEMORY_END, kMostTiles);
   Monitor monitor;
   shared_memory.trespass = number_option("trespass=", 0);
   const auto& job = *reinterpret_cast<const FrameJob*>(GRIDIRON_JOB);

@@ -7,7 +7,6 @@
 // The chip.
 #define GRIDIRON_CLINT 0x02000000      /* software interrupt of hart n at 4 n */
 #define GRIDIRON_MTIMECMP0 0x02004000
-#define GRIDIRON_MTIME 0x0200BFF8      /* microseconds */
 #define GRIDIRON_PDMA 0x03000000       /* a channel every 4 KB */
 #define GRIDIRON_LIM 0x08000000        /* the part of the L2 cache that is memory */
 #define GRIDIRON_LIM_BYTES 0x1E0000    /* 15 ways of 128 KB: after reset one of 16 is cache, and stays so */

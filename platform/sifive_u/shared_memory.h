@@ -6,6 +6,7 @@
 
 #include <cstdint>
 
+#include "clint.h"
 #include "memory_map.h"
 #include "run_control.h"
 #include "transfer_desk.h"
@@ -25,6 +26,7 @@ struct SharedMemory {
 };
 static_assert(sizeof(SharedMemory) <= GRIDIRON_SHARED_BYTES);
 static_assert(GRIDIRON_WORKERS <= kMostBoardCores);
+static_assert(GRIDIRON_CLINT == kClint);
 
 extern SharedMemory shared_memory;
 
@@ -34,26 +36,6 @@ inline volatile std::uint32_t& register_at(std::uint64_t address) {
 }
 inline volatile std::uint64_t& wide_register_at(std::uint64_t address) {
   return *reinterpret_cast<volatile std::uint64_t*>(static_cast<std::uintptr_t>(address));
-}
-
-/// Sleeps until a software interrupt is pending, or the timer's where `with_timer` (hart 0's alone is ever set).
-/// Neither is taken.
-inline void sleep_hart(bool with_timer) {
-  const std::uint64_t wanted = 1u << 3 | (with_timer ? 1u << 7 : 0u);
-  asm volatile("csrw mie, %0\n wfi\n csrw mie, zero" ::"r"(wanted) : "memory");
-}
-
-/// Takes a hart's software interrupt back. What is looked at afterwards is as new as the interrupt or newer.
-inline void hush_hart(std::uint32_t hart) {
-  register_at(GRIDIRON_CLINT + 4 * std::uint64_t{hart}) = 0;
-  asm volatile("fence" ::: "memory");
-}
-
-/// Sends a software interrupt.
-inline void wake_hart(std::uint32_t hart) {
-  // What was stored before is seen by the one who wakes.
-  asm volatile("fence" ::: "memory");
-  register_at(GRIDIRON_CLINT + 4 * std::uint64_t{hart}) = 1;
 }
 
 }  // namespace gridiron::port

@@ -7,7 +7,7 @@
 #include <cstdint>
 
 #include "desk_port.h"
-#include "firmware_layout.h"
+#include "layout_256k.h"
 #include "memory_map.h"
 #include "pdma_board.h"
 #include "shared_memory.h"
@@ -32,6 +32,8 @@ class CountedPort : public TemplatePort<PdmaBoard> {
 };
 static_assert(InstructionCounter<CountedPort>);
 #endif
+
+static_assert(FirmwareLayout::kArenaBytes == GRIDIRON_ARENA_BYTES);
 
 // For the linker script, which adds them up.
 alignas(128) [[gnu::section(".bss.arena_store"), gnu::used]] std::byte arena_store[sizeof(FirmwareStore)];

@@ -21,7 +21,8 @@ struct EngineCommand {
 /// What a chip has to offer.
 ///
 /// start              writes the engine's registers; the engine is idle when it is called.
-/// is_busy, has_failed  read them. has_failed speaks of the last command and is asked once it is no longer busy.
+/// is_busy, has_failed  read them. has_failed speaks of the last command and is asked once it is no longer busy. Where
+///                      software stands in for the engine, is_busy may be where it copies.
 /// bus_address        of local memory, as the engine sees it.
 /// holds              whether bytes lie in this core's local memory.
 /// write_back         makes stored bytes visible to the engine (caches: clean), then orders them before start.

@@ -14,6 +14,7 @@
 #include "cache.h"
 #include "console.h"
 #include "core_start.h"
+#include "firmware_facts.h"
 #include "gdma_board.h"
 #include "job_check.h"
 #include "master.h"
@@ -170,19 +171,8 @@ void master_entry() {
   using namespace gridiron::port;
   begin_uart();
   const auto& job = *reinterpret_cast<const FrameJob*>(static_cast<std::uintptr_t>(kJobAddress));
-  const FirmwareFacts facts = {
-      .name = "gridiron zcu102 " GRIDIRON_IMAGE,
-      .memory_end = kMainMemoryEnd,
-      .core_count = kCoreCount,
-      .tile_width = FirmwareLayout::kTileWidth,
-      .effects = FirmwareLayout::kEffects,
-      .packet_width = FirmwareLayout::kPacketWidth,
-      .store_bytes = FirmwareLayout::kArenaBytes,
-      .lane_count = std::uint32_t{FirmwareLanes::kCount},
-      .queue_depth = gridiron::PlatformLimits{}.queue_depth,
-      .work_kinds = gridiron::kWorkKindCount,
-      .most_tiles = kMostTiles,
-  };
+  const FirmwareFacts facts = firmware_facts<FirmwareLayout, FirmwareLanes>(
+      "gridiron zcu102 " GRIDIRON_IMAGE, kCoreCount, kMainMemoryEnd, kMostTiles);
 #ifdef GRIDIRON_TRESPASS
   wanted_trespass = number_option("trespass=", 0);
 #endif

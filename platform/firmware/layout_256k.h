@@ -1,12 +1,10 @@
-// The layout and lanes of the image that is being built: GRIDIRON_EFFECTS and GRIDIRON_PACKET_WIDTH say which.
+// The layout and lanes of an image for cores of 256 KB: GRIDIRON_EFFECTS, 0: none, and GRIDIRON_PACKET_WIDTH say which.
 // Memory: none. Threads: none. SPDX-License-Identifier: Apache-2.0
 #pragma once
 
 #include <gridiron/base/effect_records.h>
 #include <gridiron/base/lanes.h>
 #include <gridiron/store/local_store.h>
-
-#include "memory_map.h"
 
 namespace gridiron::port {
 
@@ -17,6 +15,6 @@ using FirmwareLayout = EffectLayout256K<GRIDIRON_EFFECTS, GRIDIRON_PACKET_WIDTH>
 #endif
 using FirmwareLanes = Lanes<4>;
 using FirmwareStore = LocalStore<FirmwareLayout>;
-static_assert(FirmwareLayout::kArenaBytes == GRIDIRON_ARENA_BYTES);
+static_assert(kFitsArena<FirmwareLayout>, "store, code and stack are more than the arena");
 
 }  // namespace gridiron::port

@@ -1,0 +1,55 @@
+// Where things are on the board: main memory, the arenas that stand for local memory, what the cores share, registers.
+// Memory: virt.ld places the objects named here. Threads: none. SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <gridiron/firmware/frame_job.h>
+
+#include <cstddef>
+#include <cstdint>
+
+#include "run_control.h"
+
+namespace gridiron::port {
+
+/// Hart 0 is the master, hart 1 + i is worker i.
+inline constexpr std::uint32_t kWorkerCount = 6;
+
+inline constexpr std::uintptr_t kFinisher = 0x00100000;  ///< ends the emulator; this firmware does so by semihosting
+inline constexpr std::uintptr_t kUart = 0x10000000;
+
+/// A worker's local memory: a power of two, and a multiple of it, for PMP.
+inline constexpr std::size_t kArenaBytes = 0x40000;
+struct alignas(kArenaBytes) Arena {
+  std::byte bytes[kArenaBytes];
+};
+
+/// What the contract checks of a worker came to.
+struct ContractReport {
+  std::uint32_t checks;
+  std::uint32_t failures;
+  const char* name;     ///< of the first that failed
+  const char* failure;  ///< what did not hold there
+};
+
+/// What master and workers share: all that a worker may write beside its arena.
+inline constexpr std::size_t kSharedBytes = 0x20000;
+inline constexpr std::uint32_t kMostTiles = 7000;
+struct alignas(kSharedBytes) SharedMemory {
+  RunControl control;
+  std::uint64_t trespass;                ///< of the image that shows what a worker must not do: which of them it does
+  ContractReport reports[kWorkerCount];  ///< of the image of the contract checks
+  TileResult tiles[kMostTiles];
+};
+static_assert(sizeof(SharedMemory) == kSharedBytes);
+
+extern "C" {
+extern Arena gridiron_arenas[kWorkerCount];
+extern SharedMemory gridiron_shared;
+
+// What else virt.ld knows: where the code's region and the job's memory begin and end.
+extern const std::byte code_begin[], code_end[], job_begin[], job_end[];
+}
+
+[[nodiscard]] inline std::uint64_t address_of(const void* place) { return reinterpret_cast<std::uintptr_t>(place); }
+
+}  // namespace gridiron::port

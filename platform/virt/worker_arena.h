@@ -1,0 +1,43 @@
+// A worker's arena: its stack at the bottom, so that one that is too deep leaves the arena and traps, then its store.
+// The build gives GRIDIRON_PACKET_WIDTH and GRIDIRON_EFFECTS, and GRIDIRON_CONTRACT for that of the contract checks.
+// Memory: gridiron_arenas. Threads: each worker its own. SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+
+#include "layout_256k.h"
+#include "memory_map.h"
+#include "stack_paint.h"
+
+namespace gridiron::port {
+
+/// Main memory that a worker may touch itself too, from the job's address on, one after the other: in the image of the
+/// contract checks, which look at what transfers did.
+inline constexpr std::uint64_t kWindowBytes = 0x10000;
+#ifdef GRIDIRON_CONTRACT
+inline constexpr bool kHasWindow = true;
+#else
+inline constexpr bool kHasWindow = false;
+#endif
+
+/// What the layout allows, run_worker and the port included.
+inline constexpr std::size_t kWorkerStackBytes = FirmwareLayout::kStackBudgetBytes;
+static_assert(kWorkerStackBytes % 128 == 0, "the store begins on 128 bytes");
+
+struct WorkerArena {
+  std::byte stack[kWorkerStackBytes];
+  FirmwareStore store;
+};
+static_assert(sizeof(WorkerArena) <= kArenaBytes);
+
+[[nodiscard]] inline WorkerArena& arena_of(std::uint32_t core) {
+  return *reinterpret_cast<WorkerArena*>(&gridiron_arenas[core]);
+}
+
+[[nodiscard]] inline StackArea stack_of(std::uint32_t core) {
+  const auto low = reinterpret_cast<std::uintptr_t>(&gridiron_arenas[core]);
+  return {low, low + kWorkerStackBytes};
+}
+
+}  // namespace gridiron::port

@@ -1,0 +1,63 @@
+# What the run_ scripts of the boards have in common; they source it. They set `job` (file), `result` (where to), `image`
+# (may be empty), `build` (directory of the preset), `limit` (seconds) and `words` (arg=WORD,arg=... for the firmware).
+# SPDX-License-Identifier: Apache-2.0
+
+me=$(basename "$0")
+board=${me#run_}
+
+# The script's own opening comment.
+usage() {
+  sed -n 's/^#   //p' "$0" >&2
+  exit 125
+}
+fail() {
+  echo "$me: $*" >&2
+  exit 125
+}
+
+# check_request QEMU DEBIAN_PACKAGE: what was asked for is there.
+check_request() {
+  [ -n "$job" ] && [ -n "$result" ] || usage
+  [ -f "$job" ] || fail "$job: no such job"
+  command -v "$1" > /dev/null || fail "no $1 (Debian package $2)"
+}
+
+# plain, or effects where the job calls for them.
+image_for_job() {
+  local effects
+  effects=$(od -A n -t u4 -j 140 -N 4 "$job" | tr -d ' ')   # FrameJob::effects
+  if [ "${effects:-0}" = 0 ]; then echo plain; else echo effects; fi
+}
+
+# emulate ADDRESS HARMLESS QEMU ARGUMENTS...: runs the image with the job at ADDRESS, moves the result to its place and
+# exits with the device's code, 124 after the limit, 125 where the emulator's log (-d says of what) has anything but
+# HARMLESS lines, a regular expression.
+emulate() {
+  local address=$1 harmless=$2 elf=$build/bin/${board}_$image.elf status=0
+  shift 2
+  [ -f "$elf" ] || fail "$elf is not built: cmake --preset $board && cmake --build --preset $board"
+
+  # The device writes result.bin into the emulator's directory. Names of files are the host's own, without commas there.
+  work=$(mktemp -d)
+  trap 'rm -rf "$work"' EXIT
+  rm -f "$result"
+  ln -s "$(realpath "$job")" "$work/job.bin"
+  ln -s "$(realpath "$elf")" "$work/firmware.elf"
+  (
+    cd "$work"
+    exec timeout --kill-after=5 "$limit" "$@" -kernel firmware.elf \
+      -device "loader,file=job.bin,addr=$address,force-raw=on" -semihosting-config "enable=on,target=native,$words" \
+      -display none -serial stdio -monitor none -D emulator.log < /dev/null 2> words.log
+  ) || status=$?
+  grep -v 'audiodev default parameter is deprecated' "$work/words.log" >&2 || true
+
+  [ -f "$work/emulator.log" ] || fail 'the emulator has left no log'
+  if grep -v "$harmless" "$work/emulator.log" > "$work/errors"; then
+    echo "$me: the emulator saw what no device or memory answers:" >&2
+    head -n 5 "$work/errors" >&2
+    exit 125
+  fi
+  if [ -f "$work/result.bin" ]; then mv "$work/result.bin" "$result"; fi
+  [ $status -ne 124 ] || echo "$me: stopped after $limit s" >&2
+  exit $status
+}
