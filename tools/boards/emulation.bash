@@ -19,6 +19,9 @@ fail() {
 check_request() {
   [ -n "$job" ] && [ -n "$result" ] || usage
   [ -f "$job" ] || fail "$job: no such job"
+  [ "$(stat -c %s "$job")" -ge 256 ] || fail "$job: ends inside of its first record"
+  [ -d "$(dirname -- "$result")" ] && [ ! -d "$result" ] || fail "$result: no place for a file"
+  [ ! "$job" -ef "$result" ] || fail "$job: the result would take its place"
   command -v "$1" > /dev/null || fail "no $1 (Debian package $2)"
 }
 
@@ -39,8 +42,11 @@ emulate() {
 
   # The device writes result.bin into the emulator's directory. Names of files are the host's own, without commas there.
   work=$(mktemp -d)
-  trap 'rm -rf "$work"' EXIT
-  rm -f "$result"
+  emulator=
+  trap 'kill $emulator 2> /dev/null || true; rm -rf "$work"' EXIT
+  trap 'exit 130' INT
+  trap 'exit 143' TERM HUP
+  rm -f -- "$result"
   ln -s "$(realpath "$job")" "$work/job.bin"
   ln -s "$(realpath "$elf")" "$work/firmware.elf"
   (
@@ -48,7 +54,10 @@ emulate() {
     exec timeout --kill-after=5 "$limit" "$@" -kernel firmware.elf \
       -device "loader,file=job.bin,addr=$address,force-raw=on" -semihosting-config "enable=on,target=native,$words" \
       -display none -serial stdio -monitor none -D emulator.log < /dev/null 2> words.log
-  ) || status=$?
+  ) &
+  emulator=$!
+  wait $emulator || status=$?
+  emulator=
   grep -v 'audiodev default parameter is deprecated' "$work/words.log" >&2 || true
 
   [ -f "$work/emulator.log" ] || fail 'the emulator has left no log'
@@ -57,7 +66,7 @@ emulate() {
     head -n 5 "$work/errors" >&2
     exit 125
   fi
-  if [ -f "$work/result.bin" ]; then mv "$work/result.bin" "$result"; fi
+  if [ -f "$work/result.bin" ]; then mv -- "$work/result.bin" "$result"; fi
   [ $status -ne 124 ] || echo "$me: stopped after $limit s" >&2
   exit $status
 }
