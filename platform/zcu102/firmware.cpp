@@ -61,7 +61,11 @@ constexpr std::uint32_t kMostTiles = 16384;
 // A core's local memory. The stack is below the store and grows down: one that is too deep leaves the arena and faults.
 struct alignas(4096) Arena {
   alignas(16) std::byte stack[kStackBytes];
-  FirmwareStore store;
+  union {
+    FirmwareStore store;  // as the memory comes up: nobody would run its constructor, and run_worker does not rely on it
+  };
+
+  Arena() {}
 
   [[nodiscard]] StackArea stack_area() const {
     const std::uintptr_t low = reinterpret_cast<std::uintptr_t>(stack);
