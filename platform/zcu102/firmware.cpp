@@ -62,7 +62,7 @@ constexpr std::uint32_t kMostTiles = 16384;
 struct alignas(4096) Arena {
   alignas(16) std::byte stack[kStackBytes];
   union {
-    FirmwareStore store;  // as the memory comes up: nobody would run its constructor, and run_worker does not rely on it
+    FirmwareStore store;  // as the memory comes up: nobody would run a constructor, run_worker wants none
   };
 
   Arena() {}

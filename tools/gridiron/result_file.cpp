@@ -6,6 +6,7 @@
 
 #include <algorithm>
 #include <cstdint>
+#include <cstring>
 #include <string>
 
 #include "byte_reader.h"
@@ -18,6 +19,9 @@ namespace {
 using port::CoreResult;
 using port::FrameResult;
 using port::TileResult;
+
+// More than an engine has; the simulator looks through its queue with every transfer.
+constexpr std::uint32_t kMostQueueDepth = 1024;
 
 std::uint64_t place_of_core(std::uint32_t core) {
   return offsetof(FrameResult, cores) + std::uint64_t{core} * sizeof(CoreResult);
@@ -43,6 +47,8 @@ void check_head(const ByteReader& reader, const FrameResult& frame) {
   reader.require(frame.work_kinds == kWorkKindCount, offsetof(FrameResult, work_kinds),
                  "the firmware counts " + words_of_count(frame.work_kinds, "kind") + " of work, this program " +
                      std::to_string(kWorkKindCount) + ": they are of different versions");
+  reader.require(frame.queue_depth <= kMostQueueDepth, offsetof(FrameResult, queue_depth),
+                 "queue_depth is not 0 to " + std::to_string(kMostQueueDepth));
   reader.require(is_zero(frame.reserved), offsetof(FrameResult, reserved), "reserved is not 0");
 }
 
@@ -77,7 +83,8 @@ void check_cores(const ByteReader& reader, const OpenResult& result) {
   for (std::uint32_t i = 0; i < port::kMostBoardCores; ++i) {
     const CoreResult& core = frame.cores[i];
     if (i >= frame.core_count) {
-      reader.require(core.status == 0 && core.tiles == 0 && is_zero(core.work), place_of_core(i),
+      constexpr CoreResult kNothing{};
+      reader.require(std::memcmp(&core, &kNothing, sizeof core) == 0, place_of_core(i),
                      "core " + std::to_string(i) + " is told of, but there are " + std::to_string(frame.core_count));
       continue;
     }

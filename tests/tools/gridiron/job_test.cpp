@@ -355,10 +355,12 @@ TEST(Result, DamageIsFoundWithItsPlace) {
   expect_wrong(offsetof(FrameResult, core_count), [](FrameResult& frame) { frame.core_count = 17; });
   expect_wrong(offsetof(FrameResult, core_count), [](FrameResult& frame) { frame.core_count = 0; });
   expect_wrong(offsetof(FrameResult, work_kinds), [](FrameResult& frame) { --frame.work_kinds; });
+  expect_wrong(offsetof(FrameResult, queue_depth), [](FrameResult& frame) { frame.queue_depth = 1025; });
   expect_wrong(offsetof(FrameResult, reserved), [](FrameResult& frame) { frame.reserved[8] = 1; });
   expect_wrong(offsetof(FrameResult, status), [](FrameResult& frame) { frame.status = 1; });
   expect_wrong(core(1) + offsetof(port::CoreResult, tiles), [](FrameResult& frame) { ++frame.cores[1].tiles; });
   expect_wrong(core(2), [](FrameResult& frame) { frame.cores[2].work[0] = 1; });
+  expect_wrong(core(2), [](FrameResult& frame) { frame.cores[2].stack_bytes = 1; });
   expect_wrong(core(0) + offsetof(port::CoreResult, work) + 4 * kWorkKindCount,
                [](FrameResult& frame) { frame.cores[0].work[port::kMostWorkKinds - 1] = 1; });
   expect_wrong(sizeof(FrameResult) + 2 * sizeof(port::TileResult), [](FrameResult& frame) {
