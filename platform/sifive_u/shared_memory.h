@@ -4,6 +4,7 @@
 
 #include <gridiron/firmware/frame_job.h>
 
+#include <bit>
 #include <cstdint>
 
 #include "memory_map.h"
@@ -25,6 +26,14 @@ struct SharedMemory {
 };
 static_assert(sizeof(SharedMemory) <= GRIDIRON_SHARED_BYTES);
 static_assert(GRIDIRON_WORKERS <= kMostBoardCores);
+
+// What start.S opens by PMP; anything else would open more than was meant.
+constexpr bool is_pmp_region(std::uint64_t address, std::uint64_t bytes) {
+  return std::has_single_bit(bytes) && address % bytes == 0;
+}
+static_assert(is_pmp_region(GRIDIRON_LIM, GRIDIRON_ARENA_BYTES) && is_pmp_region(GRIDIRON_CODE, GRIDIRON_CODE_BYTES) &&
+              is_pmp_region(GRIDIRON_SHARED, GRIDIRON_SHARED_BYTES) &&
+              is_pmp_region(GRIDIRON_WORKSHOP, GRIDIRON_WORKSHOP_BYTES));
 
 extern SharedMemory shared_memory;
 

@@ -78,7 +78,8 @@ TEST(BoardRuns, TakeTheEmulatorWithThem) {
       const std::string under = "PIDS=\"$PWD\" timeout --preserve-status --signal=" + signal + " 1";
       EXPECT_GE(board.run("a.job -o a.res", under).exit_code, 128) << signal;
       const std::string pid = board.read("pid");
-      EXPECT_NE(run_script("for i in $(seq 50); do kill -0 " + pid + " || exit 1; sleep 0.1; done").exit_code, 0) << signal << ": the emulator runs on";
+      EXPECT_NE(run_script("for i in $(seq 50); do kill -0 " + pid + " || exit 1; sleep 0.1; done").exit_code, 0)
+          << signal << ": the emulator runs on";
       run_script("kill " + pid);
     }
   }
