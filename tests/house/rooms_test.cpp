@@ -65,6 +65,7 @@ INSTANTIATE_TEST_SUITE_P(
         Breach{"deleted", "core/gridiron/ray/a.h", "struct A { A(const A&) = delete; };", nullptr},
         Breach{"word_in_comment", "core/gridiron/ray/a.h", "int a;  // try malloc(1) and throw it away", nullptr},
         // Arrows that do not point down.
+        Breach{"build_name", "core/gridiron/ray/build_a.h", "#include <gridiron/store/local_store.h>", kMustNot},
         Breach{"ray_on_traverse", "core/gridiron/ray/a.h", "#include <gridiron/traverse/slice_walk.h>", kMustNot},
         Breach{"traverse_on_store", "core/gridiron/traverse/a.h", "#include <gridiron/store/local_store.h>", kMustNot},
         Breach{"store_on_render", "core/gridiron/store/a.h", "#include <gridiron/render/camera.h>", kMustNot},
