@@ -46,7 +46,8 @@ TEST(Loops, HeadersMayBeLongAndCommentsAreNoLoops) {
 
 TEST(Loops, ALoopWithoutARowIsNoticed) {
   for (const char* loop : {"  while (n > 3) --n;\n", "  for (;;) break;\n", "  do { --n; } while (n > 3);\n",
-                           "  __builtin_memcpy(&n, text, 4);\n", "  for (const char c : \"ab\") n += c;\n"}) {
+                           "  while\n    (n > 3) --n;\n", "  __builtin_memcpy(&n, text, 4);\n",
+                           "  for (const char c : \"ab\") n += c;\n"}) {
     std::string source = kSource;
     source.insert(source.find("  return"), loop);
     const ScriptResult result = check_tree(source, std::string(kHead) + kRow);

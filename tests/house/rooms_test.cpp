@@ -126,10 +126,13 @@ TEST(Rooms, WhatLiesOutsideTheRoomsOrIsAProgramIsNoticed) {
   tree.write("it", "words\n");
   tree.write("attic/a.h", kLicence);
   tree.write("tools/program", std::string("\177ELF\0\1", 6));
+  tree.write("core/gridiron/ray/a.inl", kLicence);
+  tree.write("tools/a.cc", kLicence);
   result = check_rooms(tree.path().string());
   EXPECT_EQ(result.exit_code, 1);
-  for (const char* line : {"it:1: not in a room", "attic/a.h:1: not in a room", "tools/program:1: neither text",
-                           "check_rooms: 3 breaches"}) {
+  for (const char* line :
+       {"it:1: not in a room", "attic/a.h:1: not in a room", "tools/program:1: neither text",
+        "core/gridiron/ray/a.inl:1: a kind of file", "tools/a.cc:1: a kind of file", "check_rooms: 5 breaches"}) {
     EXPECT_NE(result.output.find(line), std::string::npos) << line << "\n" << result.output;
   }
 }

@@ -4,6 +4,10 @@
 
 #include <cstdint>
 
+#ifndef __cpp_concepts
+#error "Gridiron is C++20: compile with -std=c++20"
+#endif
+
 namespace gridiron {
 
 /// Outcome of a call that can fail. Every value names one cause; kOk is zero.
