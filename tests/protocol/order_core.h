@@ -32,6 +32,8 @@ enum class Purpose : char {
 struct LoggedTransfer {
   Purpose purpose;
   std::uint8_t tag;
+  bool is_put;
+  Stage stage;
   std::uint32_t start_call;
   std::uint32_t wait_call;  ///< that ended it; kNoCall: none has
 };
@@ -41,6 +43,7 @@ inline constexpr std::uint32_t kNoCall = ~0u;
 struct LoggedWait {
   std::uint32_t call;
   std::uint32_t tags;  ///< bit i = tag i
+  Stage stage;
 };
 
 /// A transfer's bytes have moved: after a call, or in a wait.
@@ -80,7 +83,7 @@ class OrderCore {
   }
   Status wait(TagMask tags) {
     const auto call = static_cast<std::uint32_t>(calls.size());
-    waits.push_back({call, tags.bits});
+    waits.push_back({call, tags.bits, stage_});
     if (call != plan_.dropped_wait) {
       const Status status = core_.wait(tags);
       if (status != Status::kOk) return status;
@@ -141,7 +144,8 @@ class OrderCore {
   }
 
   Status started(const std::byte* local, MainAddress address, std::uint32_t bytes, Tag tag, bool is_get) {
-    transfers.push_back({purpose_of(address, tag), tag.index, static_cast<std::uint32_t>(calls.size()), kNoCall});
+    const auto call = static_cast<std::uint32_t>(calls.size());
+    transfers.push_back({purpose_of(address, tag), tag.index, !is_get, stage_, call, kNoCall});
     const auto number = static_cast<std::uint32_t>(transfers.size());
     const std::uint8_t under = number == plan_.swapped_transfer ? plan_.swapped_tag : tag.index;
     pending_.push_back({number, under, false, local, is_get ? bytes : 0});

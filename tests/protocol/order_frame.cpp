@@ -22,6 +22,12 @@ void require(Status status) {
 
 }  // namespace
 
+bool OrderOutcome::is_as(const OrderOutcome& other) const {
+  return status == other.status && violation.empty() && calls == other.calls && planes.size() == other.planes.size() &&
+         std::memcmp(planes.data(), other.planes.data(), planes.size()) == 0 && store.size() == other.store.size() &&
+         std::memcmp(store.data(), other.store.data(), store.size()) == 0;
+}
+
 OrderFrame::OrderFrame(const OrderScene& scene, const OrderSettings& settings) {
   // 1. The image.
   EffectsView effects;

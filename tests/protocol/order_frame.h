@@ -94,10 +94,7 @@ struct OrderOutcome {
   std::uint32_t most_pending = 0;
 
   /// Picture, work, calls and every byte left in the store.
-  [[nodiscard]] bool is_as(const OrderOutcome& other) const {
-    return status == other.status && violation.empty() && planes == other.planes && calls == other.calls &&
-           store == other.store;
-  }
+  [[nodiscard]] bool is_as(const OrderOutcome& other) const;
 };
 
 class OrderFrame {

@@ -1,6 +1,9 @@
 // Frames with five transfers pending: see the header. SPDX-License-Identifier: Apache-2.0
 #include "protocol/order_scenes.h"
 
+#include <stdexcept>
+#include <utility>
+
 namespace gridiron::test {
 namespace {
 
@@ -124,6 +127,13 @@ std::vector<OrderCase> order_cases() {
   cases.push_back({"spilling", glass(1), {.width = 8, .height = 4, .walk_depth = 5}, {"ggggs"}});
   cases.push_back({"spilled_back", glass(5), {.width = 40, .height = 4, .output_depth = 5}, {"stttt"}});
   return cases;
+}
+
+OrderCase order_case(std::string_view name) {
+  for (OrderCase& one : order_cases()) {
+    if (one.name == name) return std::move(one);
+  }
+  throw std::runtime_error("no case " + std::string(name));
 }
 
 }  // namespace gridiron::test

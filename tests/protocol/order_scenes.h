@@ -2,6 +2,8 @@
 // Memory: std::vector. Threads: any. SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <string>
+#include <string_view>
 #include <vector>
 
 #include "protocol/order_frame.h"
@@ -10,12 +12,15 @@ namespace gridiron::test {
 
 /// A frame and the mixes of five transfers that it must have pending at once.
 struct OrderCase {
-  const char* name;
+  std::string name;
   OrderScene scene;
   OrderSettings settings;
   std::vector<std::string> mixes;  ///< letters of Purpose, sorted
 };
 
 [[nodiscard]] std::vector<OrderCase> order_cases();
+
+/// One of them.
+[[nodiscard]] OrderCase order_case(std::string_view name);
 
 }  // namespace gridiron::test
