@@ -1,6 +1,7 @@
 // Whole tiles by the kernel on a simulated core, under every order in which up to five pending transfers can complete:
 // the same calls, the same picture and work; and a port that drops a wait is found, whichever it drops.
-// GRIDIRON_ALL_ORDERS=1: up to eight fives of every mix, where else it is the first of some. SPDX-License-Identifier: Apache-2.0
+// GRIDIRON_ALL_ORDERS=1: up to eight fives of every mix, where else it is the first of some.
+// SPDX-License-Identifier: Apache-2.0
 #include <gtest/gtest.h>
 #include <sys/wait.h>
 #include <unistd.h>
@@ -63,7 +64,8 @@ class CompletionOrders : public testing::TestWithParam<std::size_t> {
 };
 
 // Moves `first` after a call and `second` after the next one.
-Schedule two_steps(std::uint32_t at, const std::vector<std::uint32_t>& first, const std::vector<std::uint32_t>& second) {
+Schedule two_steps(std::uint32_t at, const std::vector<std::uint32_t>& first,
+                   const std::vector<std::uint32_t>& second) {
   return [at, &first, &second](std::uint32_t call, std::span<const std::uint32_t> open) {
     if (call != at && call != at + 1) return open.size();
     const auto& wanted = call == at ? first : second;
@@ -231,8 +233,8 @@ TEST(CompletionOrdersOfAFrame, AllGiveTheSame) {
   }
 }
 
-// What one level has pending at most: as many as it has buffers, so up to a depth of 4 five are a sum over levels. Set-up
-// and spilled rays are waited for at once.
+// What one level has pending at most: as many as it has buffers, so up to a depth of 4 five are a sum over levels.
+// Set-up and spilled rays are waited for at once.
 TEST(CompletionOrdersOfAFrame, ALevelHasItsDepthPending) {
   const auto most = [](const char* name, const OrderSettings& settings, Purpose purpose) {
     const OrderOutcome outcome = OrderFrame(order_case(name).scene, settings).run({});

@@ -1,5 +1,5 @@
-// A simulated core whose transfers move when a schedule says so: after any call between their own and their wait, in any
-// order. Until then a get's destination is poison and a put's source unread. Keeps a log of what the kernel asked for.
+// A simulated core whose transfers move when a schedule says so: after any call between their own and their wait, in
+// any order. Until then a get's destination is poison and a put's source unread. Logs what the kernel asks for.
 // Memory: std::vector; borrows the simulated core. Threads: one. SPDX-License-Identifier: Apache-2.0
 #pragma once
 

@@ -85,8 +85,8 @@ class SimCore {
   /// @param clean  false where the core gave up with an error, so that pending transfers are no second error.
   void finish(bool clean = true);
 
-  /// Moves the bytes of one pending transfer at once, before its wait: with Completion::kLate whoever calls this between
-  /// the core's calls chooses the order in which transfers complete. Rules are checked as when they move by themselves.
+  /// Moves the bytes of one pending transfer at once, before its wait: with Completion::kLate whoever calls this
+  /// between the core's calls chooses the order in which transfers complete. Rules are checked as at any other move.
   ///
   /// @param transfer  what transfers() was after its start.
   /// @returns false where it is not pending, has moved, or fails.
