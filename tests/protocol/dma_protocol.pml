@@ -1,7 +1,7 @@
 // The DMA protocol of core as a Promela model: one core, one DMA engine that ends pending transfers in any order.
 // Run by tools/house/check_protocol, which puts constants.h (tags, counts and pieces, taken from core's headers) beside
 // it. LEVEL: which buffers; DEPTH: how many of each; PIECES: most pieces of a transfer; BREAK: what is done wrong;
-// TRACE: only runs whose calls are those of trace.h, which the code itself made; CYCLES: for endless runs, see engine.
+// TRACE: only runs whose calls are those of trace.h, which the code itself made; CYCLES: for endless runs.
 // Source: the functions of core named at each part; README.md tells what is left out.
 // SPDX-License-Identifier: Apache-2.0
 #include "constants.h"
@@ -114,6 +114,7 @@ bool yields;
 #else
 #define YIELD yields = true; !yields
 #endif
+// CYCLES: a run that never ends must have the scene say something new again and again, which is progress.
 #ifdef CYCLES
 bool has_decided;
 #define NOTED(what) has_decided = true

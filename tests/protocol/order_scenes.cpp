@@ -115,7 +115,7 @@ std::vector<OrderCase> order_cases() {
   cases.push_back({"both_rings", soup(4, 0.2f, 12, 8.0f), {.macro_depth = 3, .triangle_depth = 3}, {"bbrrr"}});
   cases.push_back({"blocks", soup(4, 0.4f, 2, 8.0f), {.macro_depth = 4, .triangle_depth = 2}, {"bbbrr"}});
   cases.push_back({"blocks_at_5", soup(6, 0.4f, 2, 8.0f), {.macro_depth = 5, .triangle_depth = 1}, {"bbbbb", "bbbbr"}});
-  cases.push_back({"queue_of_5", soup(4, 0.4f, 2, 8.0f),
+  cases.push_back({"queue_of_5", soup(4, 0.8f, 11, 8.0f),
                    {.macro_depth = 4, .triangle_depth = 4, .queue_depth = 5}, {"bbbrr", "bbrrr", "brrrr"}});
   cases.push_back({"tiles", wide(soup(14, 0.6f, 7, 2.0f)),
                    {.width = 40, .output_depth = 4, .macro_depth = 2, .triangle_depth = 1}, {"bbttt", "brttt"}});
