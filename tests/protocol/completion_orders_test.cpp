@@ -90,7 +90,9 @@ TEST_P(CompletionOrders, FiveArePendingAndNeverMore) {
 // Five that are pending together: each order in which they complete, between all calls that start one or wait for one.
 TEST_P(CompletionOrders, EveryOrderOfFiveGivesTheSame) {
   const auto fives = find_fives(reference_);
-  for (const auto& [mix, windows] : fives) {
+  for (const auto& five : fives) {
+    const std::string& mix = five.first;
+    const std::vector<Window>& windows = five.second;
     const bool is_wanted = std::find(case_.mixes.begin(), case_.mixes.end(), mix) != case_.mixes.end();
     if (!runs_all() && !is_wanted) continue;
     std::uint64_t all_runs = 0;
