@@ -1,7 +1,7 @@
 // The DMA protocol of core as a Promela model: one core, one DMA engine that ends pending transfers in any order.
 // Run by tools/house/check_protocol, which puts constants.h (tags, counts and pieces, taken from core's headers) beside
 // it. LEVEL: which buffers; DEPTH: how many of each; PIECES: most pieces of a transfer; BREAK: what is done wrong;
-// TRACE: only runs whose calls are those of trace.h, which the code itself made.
+// TRACE: only runs whose calls are those of trace.h, which the code itself made; CYCLES: for endless runs.
 // Source: the functions of core named at each part; README.md tells what is left out.
 // SPDX-License-Identifier: Apache-2.0
 #include "constants.h"
@@ -109,7 +109,12 @@ bool is_over;
 // The core goes on alone between its calls, as nothing it does there meets the engine but what begin_use checks. At
 // each call, and where it learns what the scene holds, the engine may end any number of commands.
 bool yields;
+#ifdef TRACE
+#define YIELD skip
+#else
 #define YIELD yields = true; !yields
+#endif
+// CYCLES: a run that never ends must have the scene say something new again and again, which is progress.
 #ifdef CYCLES
 bool has_decided;
 #define NOTED(what) has_decided = true
@@ -137,8 +142,7 @@ byte called;
 #define CALLED(kind, tag) \
   called = (kind) * 32 + (tag); \
   c_expr { now.position < kTraceCount && kTrace[now.position] == now.called }; \
-  position++; \
-  assert(c_expr { now.position < kTraceCount })
+  position++
 #else
 #define CALLED(kind, tag) skip
 #endif
@@ -495,6 +499,7 @@ inline render_tile() {
   :: true -> DECIDED(packet); run_driver()
   :: true -> break
   od;
+  skip;
 #else
   // The tracing's transfers, as one that may fill what the output leaves of the queue.
   if
@@ -657,7 +662,9 @@ inline run_walks() {
 // --- gather_records: core/gridiron/store/record_gather.h ---------------------------------------------------------
 
 #if LEVEL == GATHER
+#ifndef ITEMS
 #define ITEMS (DEPTH + 3)
+#endif
 byte list[ITEMS];  // 0: wants no record; 1, 2: neighbours that want the same one, or another
 byte asked[DEPTH];  // wanted, by slot
 
@@ -811,7 +818,12 @@ active proctype core() {
 #if LEVEL == SPILL
   byte first, count, spilled, taken;
 #endif
+  // Nothing meets the core where calls are given; what is not atomic is a state, so that loops are seen to close.
+#ifdef TRACE
+  {
+#else
   atomic {
+#endif
 #ifdef TRACE
     queue_depth = TRACE_QUEUE;
 #else
@@ -845,6 +857,9 @@ active proctype core() {
     assert(pending_count == 0 && ranked == 0);
     is_over = true
   }
+#ifdef TRACE
+  assert(c_expr { now.position != kTraceCount })  // fails: all of trace.h was done
+#endif
   }
 }
 

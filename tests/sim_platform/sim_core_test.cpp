@@ -149,6 +149,34 @@ TEST(SimCoreTrace, WorkCountersMayWrap) {
   EXPECT_EQ(result.work[0], 0x20u);
 }
 
+TEST(SimCoreOrder, MovesWhatItIsToldTo) {
+  ProgramBench bench;
+  bench.shape.tile_count = 1;
+  bench.options.completion = Completion::kLate;
+  const ChipResult result = bench.run([&](SimCore& core, std::span<std::byte> data) {
+    while (core.claim_tile().kind == TileClaim::Kind::kTile) {
+    }
+    const std::byte* const input = bench.memory().bytes_at(bench.input(), 128).data();
+    EXPECT_FALSE(core.move_now(1));
+    GRIDIRON_TRY(core.get(data.data(), bench.input(), 64, kTag));
+    GRIDIRON_TRY(core.get(data.data() + 64, bench.input(64), 64, kTag));
+    // The second alone has come, once.
+    EXPECT_TRUE(core.move_now(2));
+    EXPECT_FALSE(core.move_now(2));
+    EXPECT_FALSE(std::equal(input, input + 64, data.data()));
+    EXPECT_TRUE(std::equal(input + 64, input + 128, data.data() + 64));
+    GRIDIRON_TRY(core.wait(TagMask::of(kTag)));
+    EXPECT_TRUE(std::equal(input, input + 128, data.data()));
+    EXPECT_FALSE(core.move_now(1));
+    // A destination that was written meanwhile is told at the next call.
+    GRIDIRON_TRY(core.get(data.data(), bench.input(), 64, kTag));
+    data[5] = std::byte{1};
+    EXPECT_TRUE(core.move_now(3));
+    return core.wait(TagMask::of(kTag));
+  });
+  EXPECT_EQ(result.status, Status::kTransferOverlap) << words(result);
+}
+
 TEST(SimCoreFailure, TheNthTransferFailsInItsWaitForEveryN) {
   for (const Completion completion : {Completion::kEarly, Completion::kLate, Completion::kRandom}) {
     for (std::uint64_t n = 1; n <= 8; ++n) {

@@ -236,6 +236,7 @@ Status SimCore::start(std::byte* local, MainAddress address, std::uint32_t bytes
   pending.tile_id = tile_id_;
   pending.local = local;
   pending.address = address.value;
+  pending.number = transfers_;
   trace_transfer(is_get ? EventKind::kGet : EventKind::kPut, tag, bytes, address.value);
   note_footprint(address.value, bytes, is_get);
   mark(pending, is_get ? kGetInFlight : kPutInFlight);
@@ -286,6 +287,16 @@ void SimCore::move_some() {
     if (!pending.in_use || pending.arrived || pending.fails || (next_random() & 1) != 0) continue;
     if (move_bytes(pending) != Status::kOk && sticky_error_ == Status::kOk) sticky_error_ = first_error_;
   }
+}
+
+bool SimCore::move_now(std::uint64_t transfer) {
+  for (Pending& pending : pending_) {
+    if (!pending.in_use || pending.number != transfer) continue;
+    if (pending.arrived || pending.fails) return false;
+    if (move_bytes(pending) != Status::kOk && sticky_error_ == Status::kOk) sticky_error_ = first_error_;
+    return true;
+  }
+  return false;
 }
 
 Status SimCore::check_untouched(const Pending& pending) {

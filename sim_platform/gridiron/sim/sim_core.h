@@ -85,6 +85,13 @@ class SimCore {
   /// @param clean  false where the core gave up with an error, so that pending transfers are no second error.
   void finish(bool clean = true);
 
+  /// Moves the bytes of one pending transfer at once, before its wait: with Completion::kLate whoever calls this
+  /// between the core's calls chooses the order in which transfers complete. Rules are checked as at any other move.
+  ///
+  /// @param transfer  what transfers() was after its start.
+  /// @returns false where it is not pending, has moved, or fails.
+  bool move_now(std::uint64_t transfer);
+
   /// First error this core met (rule or failed transfer), and the tile that the error belongs to.
   [[nodiscard]] Status first_error() const { return first_error_; }
   [[nodiscard]] std::uint32_t first_error_tile() const { return first_error_tile_; }
@@ -127,6 +134,7 @@ class SimCore {
     std::uint32_t tile_id = kNoTile;  ///< that started it
     std::byte* local = nullptr;
     std::uint64_t address = 0;
+    std::uint64_t number = 0;     ///< transfers_ after its start
     std::vector<std::byte> copy;  ///< puts: the source at the call; gets from writable memory: what arrived
   };
 
