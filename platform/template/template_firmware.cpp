@@ -18,6 +18,8 @@ namespace gridiron::port {
 
 #if defined(GRIDIRON_LAYOUT)
 using FirmwareLayout = GRIDIRON_LAYOUT;
+#elif defined(GRIDIRON_64K) && GRIDIRON_EFFECTS == 0
+#error "GRIDIRON_64K is for effects; packets in 64 KB: GRIDIRON_LAYOUT, StoreLayout64K<8>"
 #elif GRIDIRON_EFFECTS == 0
 using FirmwareLayout = StoreLayout256K<GRIDIRON_PACKET_WIDTH>;
 #elif defined(GRIDIRON_64K)

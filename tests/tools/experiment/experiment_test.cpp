@@ -210,7 +210,7 @@ void expect_words(const fs::path& folder, const std::string& page) {
   for (std::size_t row = 1; row < packets.size(); ++row) {
     EXPECT_GE(number_under(packets, row, "prefetch_fetched_mb"), number_under(packets, row, "double_fetched_mb"));
   }
-  // Words of a workplace.
+  // Words that a reader of the page does not know.
   for (const char* words : {"that we have", "master", "deep prefetch"}) EXPECT_EQ(page.find(words), std::string::npos);
 }
 
