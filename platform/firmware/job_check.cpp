@@ -97,8 +97,8 @@ bool is_spill_apart(const FrameJob& job, const FirmwareFacts& facts) {
   }
   const Part spill{job.spill_address, job.spill_bytes * job.spill_cores};
   if (!is_open(job, "memory for waiting rays", spill, kSpillAlignment)) return false;
-  const bool is_apart = spill.begin >= job.result_address + job.result_bytes ||
-                        spill.begin + spill.bytes <= job.result_address;
+  const bool is_apart =
+      spill.begin >= job.result_address + job.result_bytes || spill.begin + spill.bytes <= job.result_address;
   return is_apart || refuse("memory for waiting rays at ", Hex{spill.begin}, " is on the result");
 }
 

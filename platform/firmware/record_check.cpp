@@ -137,8 +137,7 @@ bool check_effects(const FrameJob& job, const FrameRecord& frame, const ImageHea
   }
   if (frame.shading != static_cast<std::uint32_t>(Shading::kScene)) {
     if (job.effects != 0) return refuse("frame record: shading ", frame.shading, " of a job with effects");
-    return is_of_job("effects address", frame.effects_address, 0) &&
-           is_of_job("image address", frame.image_address, 0);
+    return is_of_job("effects address", frame.effects_address, 0) && is_of_job("image address", frame.image_address, 0);
   }
   if (!image.has(SectionKind::kEffects, "effects", 1, sizeof(EffectsRecord)) ||
       !is_of_image("effects address", frame.effects_address, image.address_of(SectionKind::kEffects)) ||
@@ -161,8 +160,7 @@ bool check_effects(const FrameJob& job, const FrameRecord& frame, const ImageHea
                      sizeof(SurfaceRecord)) &&
          has_records(image, "normals", effects.normals_offset_bytes, effects.smooth_triangle_count,
                      sizeof(NormalRecord)) &&
-         has_records(image, "environment", effects.environment_offset_bytes, 6 * edge * edge,
-                     sizeof(EnvironmentBlock));
+         has_records(image, "environment", effects.environment_offset_bytes, 6 * edge * edge, sizeof(EnvironmentBlock));
 }
 
 }  // namespace

@@ -1,6 +1,5 @@
-// The firmware's check of a job, on jobs that the program makes: whole ones pass, and of those that were made wrong, with
-// a check value that holds, each is refused with the field's name.
-// SPDX-License-Identifier: Apache-2.0
+// The firmware's check of a job, on jobs that the program makes: whole ones pass, and of those that were made wrong,
+// with a check value that holds, each is refused with the field's name. SPDX-License-Identifier: Apache-2.0
 #include "job_check.h"
 
 #include <gridiron/base/effect_records.h>
@@ -27,7 +26,9 @@ namespace {
 std::string told;
 }
 
-void put_character(char character) { told.push_back(character); }
+void put_character(char character) {
+  told.push_back(character);
+}
 
 namespace {
 
@@ -38,7 +39,7 @@ constexpr std::size_t kRoom = std::size_t{1} << 26;
 class JobMemory {
  public:
   JobMemory(const std::string& scene, std::vector<const char*> options)
-      : bytes_(static_cast<std::byte*>(::operator new(kRoom, std::align_val_t{4096}))) {
+      : bytes_(static_cast<std::byte*>(::operator new (kRoom, std::align_val_t{4096}))) {
     const std::string input = std::string(GRIDIRON_SCENE_FILES) + "/" + scene;
     const std::string output = (std::filesystem::temp_directory_path() / "unwritten.job").string();
     options.insert(options.begin(), {"gridiron", "job", input.c_str(), "-o", output.c_str(), "--base", "0", "--quiet"});
@@ -50,7 +51,7 @@ class JobMemory {
     file_ = tool::make_job_file(frame, request.arguments, reinterpret_cast<std::uintptr_t>(bytes_));
     load();
   }
-  ~JobMemory() { ::operator delete(bytes_, std::align_val_t{4096}); }
+  ~JobMemory() { ::operator delete (bytes_, std::align_val_t{4096}); }
   JobMemory(const JobMemory&) = delete;
   JobMemory& operator=(const JobMemory&) = delete;
 
@@ -124,7 +125,8 @@ TEST(JobCheck, TakesWhatTheProgramMakes) {
   EXPECT_TRUE(JobMemory("teapot.ply", {"--size", "9x9", "--store", "64", "--cores", "4"}).check()) << told;
   for (const char* scene : {"everything.nff", "shadow.nff", "environment.nff", "smooth_normals.nff"}) {
     EXPECT_TRUE(JobMemory(scene, {"--size", "40x40", "--cores", "4"}).check()) << scene << ": " << told;
-    EXPECT_TRUE(JobMemory(scene, {"--size", "40x40", "--cores", "4", "--store", "64"}).check()) << scene << ": " << told;
+    EXPECT_TRUE(JobMemory(scene, {"--size", "40x40", "--cores", "4", "--store", "64"}).check())
+        << scene << ": " << told;
   }
 }
 
@@ -132,30 +134,29 @@ TEST(JobCheck, HoldsTheRecordAgainstTheJob) {
   JobMemory memory("teapot.ply", kPlain);
   using Memory = JobMemory;
   expect_refusals(
-      memory,
-      {{"frame record: magic", [](Memory& m) { m.record().magic ^= 1; }},
-       {"frame record: version", [](Memory& m) { ++m.record().version; }},
-       {"frame record: width", [](Memory& m) { m.record().width = 2048; }},
-       {"frame record: height", [](Memory& m) { m.record().height = 2048; }},
-       {"frame record: tile width", [](Memory& m) { m.record().tile_width *= 2; }},
-       {"frame record: tiles_x", [](Memory& m) { ++m.record().tiles_x; }},
-       {"frame record: tiles_y", [](Memory& m) { --m.record().tiles_y; }},
-       {"frame record: colour address", [](Memory& m) { m.record().color_address = 0x200000; }},
-       {"frame record: colour address", [](Memory& m) { m.record().color_address += 128; }},
-       {"frame record: depth address", [](Memory& m) { m.record().depth_address = 0; }},
-       {"frame record: ids address", [](Memory& m) { m.record().id_address = m.record().color_address; }},
-       {"frame record: macro table address", [](Memory& m) { m.record().macro_table_address = 0; }},
-       {"frame record: cell blocks address", [](Memory& m) { m.record().cell_blocks_address -= 4096; }},
-       {"frame record: triangles address", [](Memory& m) { ++m.record().triangles_address; }},
-       {"frame record: effects address", [](Memory& m) { m.record().effects_address = m.job().image_address; }},
-       {"frame record: image address", [](Memory& m) { m.record().image_address = m.job().image_address; }},
-       {"frame record: the grid", [](Memory& m) { ++m.record().grid.reference_count; }},
-       {"frame record: the grid", [](Memory& m) { m.record().grid.cells_per_unit[2] *= 2; }},
-       {"frame record: accuracy", [](Memory& m) { m.record().accuracy = 5; }},
-       {"frame record: accuracy", [](Memory& m) { m.record().accuracy = 1; }},
-       {"frame record: shading", [](Memory& m) { m.record().shading = 3; }},
-       {"frame record: shading", [](Memory& m) { m.job().effects = kPointShadows; }},
-       {"scene image: no effects", [](Memory& m) { m.record().shading = 2; }}});
+      memory, {{"frame record: magic", [](Memory& m) { m.record().magic ^= 1; }},
+               {"frame record: version", [](Memory& m) { ++m.record().version; }},
+               {"frame record: width", [](Memory& m) { m.record().width = 2048; }},
+               {"frame record: height", [](Memory& m) { m.record().height = 2048; }},
+               {"frame record: tile width", [](Memory& m) { m.record().tile_width *= 2; }},
+               {"frame record: tiles_x", [](Memory& m) { ++m.record().tiles_x; }},
+               {"frame record: tiles_y", [](Memory& m) { --m.record().tiles_y; }},
+               {"frame record: colour address", [](Memory& m) { m.record().color_address = 0x200000; }},
+               {"frame record: colour address", [](Memory& m) { m.record().color_address += 128; }},
+               {"frame record: depth address", [](Memory& m) { m.record().depth_address = 0; }},
+               {"frame record: ids address", [](Memory& m) { m.record().id_address = m.record().color_address; }},
+               {"frame record: macro table address", [](Memory& m) { m.record().macro_table_address = 0; }},
+               {"frame record: cell blocks address", [](Memory& m) { m.record().cell_blocks_address -= 4096; }},
+               {"frame record: triangles address", [](Memory& m) { ++m.record().triangles_address; }},
+               {"frame record: effects address", [](Memory& m) { m.record().effects_address = m.job().image_address; }},
+               {"frame record: image address", [](Memory& m) { m.record().image_address = m.job().image_address; }},
+               {"frame record: the grid", [](Memory& m) { ++m.record().grid.reference_count; }},
+               {"frame record: the grid", [](Memory& m) { m.record().grid.cells_per_unit[2] *= 2; }},
+               {"frame record: accuracy", [](Memory& m) { m.record().accuracy = 5; }},
+               {"frame record: accuracy", [](Memory& m) { m.record().accuracy = 1; }},
+               {"frame record: shading", [](Memory& m) { m.record().shading = 3; }},
+               {"frame record: shading", [](Memory& m) { m.job().effects = kPointShadows; }},
+               {"scene image: no effects", [](Memory& m) { m.record().shading = 2; }}});
 }
 
 TEST(JobCheck, HoldsTheImageAgainstTheJob) {
@@ -172,9 +173,11 @@ TEST(JobCheck, HoldsTheImageAgainstTheJob) {
        {"scene image: section 4", [](Memory& m) { m.section(SectionKind::kTriangles).offset_bytes = 0u - 128ull; }},
        {"scene image: section 3", [](Memory& m) { m.section(SectionKind::kCellBlocks).section_bytes = ~0ull; }},
        {"scene image: no grid", [](Memory& m) { m.section(SectionKind::kGrid).kind = 99; }},
-       {"scene image: macrocells", [](Memory& m) { m.record().grid.macro_cell_count[1] = m.grid().macro_cell_count[1] = ~0u; }},
+       {"scene image: macrocells",
+        [](Memory& m) { m.record().grid.macro_cell_count[1] = m.grid().macro_cell_count[1] = ~0u; }},
        {"scene image: macrocell table", [](Memory& m) { m.section(SectionKind::kMacroTable).section_bytes = 0; }},
-       {"scene image: cell blocks", [](Memory& m) { m.record().grid.cell_block_count = m.grid().cell_block_count = ~0u; }},
+       {"scene image: cell blocks",
+        [](Memory& m) { m.record().grid.cell_block_count = m.grid().cell_block_count = ~0u; }},
        {"scene image: triangles", [](Memory& m) { m.record().grid.triangle_bytes = m.grid().triangle_bytes = 0; }}});
 }
 
@@ -182,23 +185,22 @@ TEST(JobCheck, HoldsEffectsAgainstTheJob) {
   JobMemory memory("everything.nff", {"--size", "40x40", "--cores", "4"});
   using Memory = JobMemory;
   constexpr std::uint64_t kFar = 0u - 128ull;
-  expect_refusals(memory,
-                  {{"frame record: effects address", [](Memory& m) { m.record().effects_address += 128; }},
-                   {"frame record: image address", [](Memory& m) { m.record().image_address -= 4096; }},
-                   {"frame record: shading", [](Memory& m) { m.record().shading = 1; }},
-                   {"effects", [](Memory& m) { m.effects().called_for ^= kReflection; }},
-                   {"effects", [](Memory& m) { m.job().effects ^= kReflection; }},
-                   {"scene image: more materials", [](Memory& m) { m.effects().light_count = kMaxLights + 1; }},
-                   {"scene image: materials", [](Memory& m) { m.effects().materials_offset_bytes = kFar; }},
-                   {"scene image: lights", [](Memory& m) { m.effects().lights_offset_bytes += 16; }},
-                   {"scene image: surfaces", [](Memory& m) { m.header().triangle_count = ~0u; }},
-                   {"scene image: normals", [](Memory& m) { m.effects().smooth_triangle_count = ~0u; }},
-                   {"scene image: environment", [](Memory& m) { m.effects().environment_offset_bytes = kFar; }},
-                   {"no memory for rays that wait", [](Memory& m) { m.job().spill_address = 0; }},
-                   {"waiting rays of ", [](Memory& m) { m.job().spill_bytes -= 128; }},
-                   {"memory for waiting rays of 3 cores", [](Memory& m) { m.job().spill_cores = 3; }},
-                   {"memory for waiting rays", [](Memory& m) { m.job().spill_address = m.job().base_address; }},
-                   {"memory for waiting rays", [](Memory& m) { m.job().spill_address -= 4096; }}});
+  expect_refusals(memory, {{"frame record: effects address", [](Memory& m) { m.record().effects_address += 128; }},
+                           {"frame record: image address", [](Memory& m) { m.record().image_address -= 4096; }},
+                           {"frame record: shading", [](Memory& m) { m.record().shading = 1; }},
+                           {"effects", [](Memory& m) { m.effects().called_for ^= kReflection; }},
+                           {"effects", [](Memory& m) { m.job().effects ^= kReflection; }},
+                           {"scene image: more materials", [](Memory& m) { m.effects().light_count = kMaxLights + 1; }},
+                           {"scene image: materials", [](Memory& m) { m.effects().materials_offset_bytes = kFar; }},
+                           {"scene image: lights", [](Memory& m) { m.effects().lights_offset_bytes += 16; }},
+                           {"scene image: surfaces", [](Memory& m) { m.header().triangle_count = ~0u; }},
+                           {"scene image: normals", [](Memory& m) { m.effects().smooth_triangle_count = ~0u; }},
+                           {"scene image: environment", [](Memory& m) { m.effects().environment_offset_bytes = kFar; }},
+                           {"no memory for rays that wait", [](Memory& m) { m.job().spill_address = 0; }},
+                           {"waiting rays of ", [](Memory& m) { m.job().spill_bytes -= 128; }},
+                           {"memory for waiting rays of 3 cores", [](Memory& m) { m.job().spill_cores = 3; }},
+                           {"memory for waiting rays", [](Memory& m) { m.job().spill_address = m.job().base_address; }},
+                           {"memory for waiting rays", [](Memory& m) { m.job().spill_address -= 4096; }}});
 }
 
 // Planes that record and job agree on, but that are not in the result; a result or a record where transfers change it.
@@ -207,8 +209,7 @@ TEST(JobCheck, KeepsPartsApart) {
   using Memory = JobMemory;
   expect_refusals(
       memory,
-      {{"colour plane",
-        [](Memory& m) { m.job().color_address = m.record().color_address = m.job().result_address; }},
+      {{"colour plane", [](Memory& m) { m.job().color_address = m.record().color_address = m.job().result_address; }},
        {"depth plane", [](Memory& m) { m.job().depth_address = m.record().depth_address = m.job().color_address; }},
        {"plane of ids", [](Memory& m) { m.job().ids_address = m.record().id_address = 1ull << 63; }},
        {"colour plane", [](Memory& m) { m.job().color_address = m.record().color_address = 0; }},
