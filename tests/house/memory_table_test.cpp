@@ -275,7 +275,8 @@ TEST(CoreBreak, OfOtherPathsNothingIsAsked) {
                 "edge: { sourcename: \"master\" targetname: \"__indirect_call\" }\n"
                 "}\n");
   const auto deepest = [&scratch](const std::string& options) {
-    return run_script(source_path("tools/house/deepest_stack") + " " + options + " " + quoted(scratch.path()) + "/a.ci");
+    return run_script(source_path("tools/house/deepest_stack") + " " + options + " " + quoted(scratch.path()) +
+                      "/a.ci");
   };
   const ScriptResult worker = deepest("--from worker --leaf in_assembly");
   EXPECT_EQ(worker.exit_code, 0) << worker.output;

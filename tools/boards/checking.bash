@@ -1,12 +1,12 @@
 # What the check_ scripts of the boards have in common; they source it, and set `build` (directory of the preset) and
-# `board`. Each of them has a `fail WORDS...` or tells these functions of its own by their exit code.
+# `board`.
 # SPDX-License-Identifier: Apache-2.0
 
 house=$(cd "$(dirname "${BASH_SOURCE[0]}")/../house" && pwd)
 
-# hold_stack LOG IMAGE ENTRY [--leaf SYMBOL]...: of a run of IMAGE whose words are in LOG: the painted stack of each core
-# is within what the call graph of the image says from the workers' ENTRY on, and that within the board's budget.
-# --leaf: a function in assembly that needs next to none.
+# hold_stack LOG IMAGE ENTRY [--leaf SYMBOL]...: of a run of IMAGE whose words are in LOG, the painted stack of each
+# core is within what the call graph of the image says from the workers' ENTRY on, and that within the board's budget.
+# Else its words say so, and it ends with 1. --leaf: a function in assembly that needs next to none.
 hold_stack() {
   local log=$1 image=$2 entry=$3 painted budget bound graphs
   shift 3
@@ -15,8 +15,8 @@ hold_stack() {
       budget = $NF
     }
     END { print painted + 0, budget + 0 }' "$log")
-  mapfile -t graphs < <(find "$build" -name '*.ci' \( -path '*gridiron_kernel.dir*' -o -path '*gridiron_firmware*.dir*' \
-    -o -path "*/gridiron_${board}_$image.dir/*" \))
+  mapfile -t graphs < <(find "$build" -name '*.ci' \( -path '*gridiron_kernel.dir*' \
+    -o -path '*gridiron_firmware*.dir*' -o -path "*/gridiron_${board}_$image.dir/*" \))
   bound=$("$house/deepest_stack" --from "$entry" "$@" "${graphs[@]}") || bound=''
   if [ "$painted" -gt 0 ] && [ "$painted" -le "${bound:-0}" ] && [ "$bound" -le "$budget" ]; then
     echo "ok  stack, $image: $painted bytes painted, at most $bound by the call graph, $budget in the budget"
