@@ -97,7 +97,9 @@ bool check_picture(const FrameJob& job, const FrameRecord& frame) {
 bool check_grid(const FrameRecord& frame, const ImageHead& image) {
   if (!image.has(SectionKind::kGrid, "grid", 1, sizeof(GridRecord))) return false;
   const auto& grid = record_at<GridRecord>(image.address_of(SectionKind::kGrid));
-  if (std::memcmp(&frame.grid, &grid, sizeof grid) != 0) {
+  // Bit for bit: no floating point here.
+  if (std::memcmp(reinterpret_cast<const std::byte*>(&frame.grid), reinterpret_cast<const std::byte*>(&grid),
+                  sizeof grid) != 0) {
     return refuse("frame record: the grid is not the scene image's");
   }
   std::uint64_t macro_cells = 1;
