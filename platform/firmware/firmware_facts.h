@@ -17,10 +17,12 @@ namespace gridiron::port {
 /// @param core_count   workers.
 /// @param memory_end   first address behind the memory that a job may take.
 /// @param most_tiles   that the board has room for results of.
+/// @param board_stack_bytes  that a worker's stack has on top of the layout's budget, for the board's own functions.
 /// @param queue_depth  of the port's limits.
 template <class Layout, class L>
 [[nodiscard]] constexpr FirmwareFacts firmware_facts(const char* name, std::uint32_t core_count,
                                                      std::uint64_t memory_end, std::uint32_t most_tiles,
+                                                     std::uint32_t board_stack_bytes = 0,
                                                      std::uint32_t queue_depth = PlatformLimits{}.queue_depth) {
   return {.name = name,
           .memory_end = memory_end,
@@ -29,6 +31,7 @@ template <class Layout, class L>
           .effects = Layout::kEffects,
           .packet_width = Layout::kPacketWidth,
           .store_bytes = Layout::kArenaBytes,
+          .stack_bytes = Layout::kStackBudgetBytes + board_stack_bytes,
           .lane_count = std::uint32_t{L::kCount},
           .queue_depth = queue_depth,
           .work_kinds = kWorkKindCount,

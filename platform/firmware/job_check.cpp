@@ -9,17 +9,12 @@
 #include <cstddef>
 #include <cstdint>
 
-#include "console.h"
+#include "record_check.h"
+#include "refusal.h"
 
 namespace gridiron::port {
 
 namespace {
-
-template <class... Pieces>
-bool refuse(const Pieces&... reason) {
-  print("job refused: ", reason..., "\n");
-  return false;
-}
 
 bool is_equal(const char* what, std::uint64_t value, std::uint64_t wanted) {
   return value == wanted || refuse(what, " ", Hex{value}, ", this firmware wants ", Hex{wanted});
@@ -35,21 +30,76 @@ std::uint64_t check_value_of(const FrameJob& job) {
   return check.value();
 }
 
-// Whether [address, address + bytes) lies within the job's memory, behind the job itself.
-bool is_inside(const FrameJob& job, const char* what, std::uint64_t address, std::uint64_t bytes,
-               std::uint64_t alignment) {
-  const std::uint64_t offset = address - job.base_address;
-  const bool fits = offset >= sizeof(FrameJob) && offset <= job.memory_bytes && bytes <= job.memory_bytes - offset;
-  if (!fits) return refuse(what, " at ", Hex{address}, " of ", bytes, " bytes is outside the job's memory");
-  return address % alignment == 0 || refuse(what, " at ", Hex{address}, " is not a multiple of ", alignment);
+struct Part {
+  std::uint64_t begin, bytes;
+
+  [[nodiscard]] bool holds(const Part& other) const {
+    const std::uint64_t offset = other.begin - begin;
+    return offset <= bytes && other.bytes <= bytes - offset;
+  }
+};
+
+// The file behind the job itself: what its check value speaks of and no transfer changes.
+Part loaded_part(const FrameJob& job) {
+  return {job.base_address + sizeof(FrameJob), job.loaded_bytes - sizeof(FrameJob)};
 }
 
-bool is_plane_inside(const FrameJob& job, const char* what, std::uint64_t address) {
-  if (!is_inside(job, what, address, job.plane_bytes, kLineBytes)) return false;
-  const std::uint64_t header = sizeof(FrameResult) + std::uint64_t{job.tile_count} * sizeof(TileResult);
-  const std::uint64_t offset = address - job.result_address;
-  return (offset >= header && offset <= job.result_bytes && job.plane_bytes <= job.result_bytes - offset) ||
-         refuse(what, " at ", Hex{address}, " is outside the result");
+// Memory behind the file: what transfers may change.
+Part open_part(const FrameJob& job) {
+  return {job.base_address + job.loaded_bytes, job.memory_bytes - job.loaded_bytes};
+}
+
+bool lies_in(const Part& whole, const char* whole_name, const char* what, const Part& part, std::uint64_t alignment) {
+  if (!whole.holds(part)) return refuse(what, " at ", Hex{part.begin}, " of ", part.bytes, " bytes is ", whole_name);
+  return part.begin % alignment == 0 || refuse(what, " at ", Hex{part.begin}, " is not a multiple of ", alignment);
+}
+
+bool is_loaded(const FrameJob& job, const char* what, std::uint64_t address, std::uint64_t bytes) {
+  return lies_in(loaded_part(job), "outside the job's file", what, {address, bytes}, kLineBytes);
+}
+
+bool is_open(const FrameJob& job, const char* what, const Part& part, std::uint64_t alignment) {
+  return lies_in(open_part(job), "outside the job's memory behind its file", what, part, alignment);
+}
+
+// Planes lie in the result, behind what is there already.
+bool are_planes_in_result(const FrameJob& job) {
+  const struct {
+    const char* name;
+    std::uint64_t address;
+  } planes[] = {
+      {"colour plane", job.color_address}, {"depth plane", job.depth_address}, {"plane of ids", job.ids_address}};
+  const std::uint64_t head = sizeof(FrameResult) + std::uint64_t{job.tile_count} * sizeof(TileResult);
+  if (job.result_bytes < head) return refuse("result of ", job.result_bytes, " bytes, without room for its head");
+  Part free{job.result_address + head, job.result_bytes - head};
+  for (const auto& plane : planes) {
+    if (plane.address == 0 && &plane != planes) continue;
+    if (!lies_in(free, "outside the result, or on what is there", plane.name, {plane.address, job.plane_bytes},
+                 kLineBytes)) {
+      return false;
+    }
+    const std::uint64_t end = plane.address + job.plane_bytes;
+    free = {end, free.begin + free.bytes - end};
+  }
+  return true;
+}
+
+bool is_spill_apart(const FrameJob& job, const FirmwareFacts& facts) {
+  if (job.spill_address == 0) {
+    const std::uint32_t waiting = job.effects & (kReflection | kRefraction);
+    return waiting == 0 || refuse("no memory for rays that wait");
+  }
+  if (job.spill_cores < facts.core_count) {
+    return refuse("memory for waiting rays of ", job.spill_cores, " cores, this board has ", facts.core_count);
+  }
+  if (job.spill_bytes > job.memory_bytes || job.spill_bytes % kSpillAlignment != 0) {
+    return refuse("waiting rays of ", job.spill_bytes, " bytes a core");
+  }
+  const Part spill{job.spill_address, job.spill_bytes * job.spill_cores};
+  if (!is_open(job, "memory for waiting rays", spill, kSpillAlignment)) return false;
+  const bool is_apart =
+      spill.begin >= job.result_address + job.result_bytes || spill.begin + spill.bytes <= job.result_address;
+  return is_apart || refuse("memory for waiting rays at ", Hex{spill.begin}, " is on the result");
 }
 
 }  // namespace
@@ -92,24 +142,15 @@ bool check_job(const FrameJob& job, const FirmwareFacts& facts) {
   // 3. Where its parts are.
   const std::uint64_t plane_bytes = std::uint64_t{job.tile_count} * job.tile_width * job.tile_width * 4;
   if (!is_equal("plane bytes", job.plane_bytes, plane_bytes)) return false;
-  if (!is_inside(job, "frame record", job.frame_address, sizeof(FrameRecord), kLineBytes) ||
-      !is_inside(job, "scene image", job.image_address, job.image_bytes, kLineBytes) ||
-      !is_inside(job, "result", job.result_address, job.result_bytes, 64) ||
-      !is_plane_inside(job, "colour plane", job.color_address) ||
-      (job.depth_address != 0 && !is_plane_inside(job, "depth plane", job.depth_address)) ||
-      (job.ids_address != 0 && !is_plane_inside(job, "plane of ids", job.ids_address))) {
+  const Part result{job.result_address, job.result_bytes};
+  if (!is_loaded(job, "frame record", job.frame_address, sizeof(FrameRecord)) ||
+      !is_loaded(job, "scene image", job.image_address, job.image_bytes) ||
+      !is_open(job, "result", result, kLineBytes) || !are_planes_in_result(job) || !is_spill_apart(job, facts)) {
     return false;
   }
-  if (job.spill_address == 0) {
-    const std::uint32_t waiting = job.effects & (kReflection | kRefraction);
-    return waiting == 0 || refuse("no memory for rays that wait");
-  }
-  if (job.spill_cores < facts.core_count) {
-    return refuse("memory for waiting rays of ", job.spill_cores, " cores, this board has ", facts.core_count);
-  }
-  if (job.spill_bytes > job.memory_bytes) return refuse("waiting rays of ", job.spill_bytes, " bytes a core");
-  return is_inside(job, "memory for waiting rays", job.spill_address, job.spill_bytes * job.spill_cores,
-                   kSpillAlignment);
+
+  // 4. What the workers go by.
+  return check_record(job);
 }
 
 }  // namespace gridiron::port

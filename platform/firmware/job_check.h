@@ -17,6 +17,7 @@ struct FirmwareFacts {
   std::uint32_t effects;        ///< EffectBits built
   std::uint32_t packet_width;   ///< of the layout, 0: no packets
   std::uint32_t store_bytes;    ///< of a worker's arena
+  std::uint32_t stack_bytes;    ///< that a worker's stack may take
   std::uint32_t lane_count;
   std::uint32_t queue_depth;    ///< of the port's limits
   std::uint32_t work_kinds;     ///< kWorkKindCount

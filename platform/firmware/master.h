@@ -141,7 +141,7 @@ class Master {
       result.cores[core] = control_.cores[core].result;
       const CoreResult& done = result.cores[core];
       print("core ", core, ": status ", done.status, ", ", done.tiles, " tiles, ", done.transfers, " transfers, ",
-            done.transfer_bytes, " bytes, stack ", done.stack_bytes, "\n");
+            done.transfer_bytes, " bytes, stack ", done.stack_bytes, " of ", facts_.stack_bytes, "\n");
       if (result.status == 0) result.status = done.status;
     }
     TileResult* wanted = tile_results(job_);

@@ -44,6 +44,13 @@ concept Board = requires(B& board, const B& constant, const EngineCommand& comma
   { constant.tile_count() } -> std::same_as<std::uint32_t>;
 };
 
+/// A Board that knows which main memory its core may transfer: what reaches() refuses is never started. One without it
+/// has an engine, or a guard before it, that fails such a transfer.
+template <class B>
+concept BoundedBoard = Board<B> && requires(const B& constant, MainAddress address, std::uint32_t bytes) {
+  { constant.reaches(address, bytes) } -> std::same_as<bool>;
+};
+
 /// The contract over a Board.
 ///
 /// @tparam kQueueDepth   commands that may be pending; the engine works on one, the others lie here in order.
@@ -115,6 +122,9 @@ class TemplatePort {
     GRIDIRON_TRY(check_transfer(limits(), command.engine.bytes == 0 ? 0 : board_.bus_address(command.local),
                                 command.address, command.engine.bytes, command.tag));
     if (!board_.holds(command.local, command.engine.bytes)) return Status::kTransferLocalRange;
+    if constexpr (BoundedBoard<B>) {
+      if (!board_.reaches(command.address, command.engine.bytes)) return Status::kTransferMainRange;
+    }
     if (count_ == kQueueDepth) return Status::kTransferQueueFull;
     if (is_stuck_) return Status::kTransferTimedOut;
 

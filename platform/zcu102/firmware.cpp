@@ -56,7 +56,8 @@ using FirmwareLanes = Lanes<4>;
 using FirmwareStore = LocalStore<FirmwareLayout>;
 
 // What the kernel may need, and what the board's own functions around it do.
-constexpr std::uint32_t kStackBytes = FirmwareLayout::kStackBudgetBytes + 2048;
+constexpr std::uint32_t kBoardStackBytes = 2048;
+constexpr std::uint32_t kStackBytes = FirmwareLayout::kStackBudgetBytes + kBoardStackBytes;
 constexpr std::uint32_t kMostTiles = 16384;
 
 // A core's local memory. The stack is below the store and grows down: one that is too deep leaves the arena and faults.
@@ -115,11 +116,15 @@ void work(std::uint64_t core) {
   Arena& arena = *kArenas[index];
   TellingBoard board(index, arena);
 #ifdef GRIDIRON_TRESPASS
-  if (index == 1) trespass(wanted_trespass);
+  const std::uint64_t kind = index == 1 ? wanted_trespass : 0;
+  trespass(kind);
 #endif
   TemplatePort<TellingBoard> port(board);
-#ifdef GRIDIRON_FORGETFUL
+#if defined(GRIDIRON_FORGETFUL)
   ForgetfulPort wrong(port);
+  run_worker<FirmwareLanes>(arena.store, wrong, control, tiles, index, arena.stack_area());
+#elif defined(GRIDIRON_TRESPASS)
+  TrespassingPort wrong(port, kind);
   run_worker<FirmwareLanes>(arena.store, wrong, control, tiles, index, arena.stack_area());
 #else
   run_worker<FirmwareLanes>(arena.store, port, control, tiles, index, arena.stack_area());
@@ -176,7 +181,7 @@ void master_entry() {
   begin_uart();
   const auto& job = *reinterpret_cast<const FrameJob*>(static_cast<std::uintptr_t>(kJobAddress));
   const FirmwareFacts facts = firmware_facts<FirmwareLayout, FirmwareLanes>(
-      "gridiron zcu102 " GRIDIRON_IMAGE, kCoreCount, kMainMemoryEnd, kMostTiles);
+      "gridiron zcu102 " GRIDIRON_IMAGE, kCoreCount, kMainMemoryEnd, kMostTiles, kBoardStackBytes);
 #ifdef GRIDIRON_TRESPASS
   wanted_trespass = number_option("trespass=", 0);
 #endif

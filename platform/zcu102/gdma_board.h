@@ -83,6 +83,12 @@ class GdmaBoard : public SharedTiles {
     const std::uint64_t offset = bus_address(local) - local_base_;
     return offset <= local_bytes_ && bytes <= local_bytes_ - offset;
   }
+  // The DMA is behind no MMU: what a core must not touch it must not have copied either.
+  [[nodiscard]] bool reaches(MainAddress address, std::uint32_t bytes) const {
+    constexpr std::uint64_t kJobBytes = kMainMemoryEnd - kJobAddress;
+    const std::uint64_t offset = address.value - kJobAddress;
+    return offset <= kJobBytes && bytes <= kJobBytes - offset;
+  }
 
   // Of a put the lines' bytes go out; of a get no dirty line stays that could fall on the new bytes.
   void write_back(const void* local, std::uint32_t bytes) { clean_and_invalidate(bus_address(local), bytes); }
@@ -95,7 +101,7 @@ class GdmaBoard : public SharedTiles {
   std::uint64_t local_bytes_;
 };
 
-static_assert(Board<GdmaBoard>);
+static_assert(BoundedBoard<GdmaBoard>);
 static_assert(Platform<TemplatePort<GdmaBoard>>);
 
 }  // namespace gridiron::port

@@ -2,6 +2,9 @@
 // Memory: none. Threads: core 1. SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <gridiron/platform/contract.h>
+
+#include <cstddef>
 #include <cstdint>
 
 #include "memory_map.h"
@@ -34,5 +37,34 @@ inline void trespass(std::uint64_t kind) {
     default: break;
   }
 }
+
+/// Asks for transfers with an end that is not the job's memory or the core's own: of kind 12 puts to the firmware, of
+/// 13 a get from it, of 14 a get from behind main memory, of 15 puts from a neighbour's arena. Others are handed on as
+/// they are.
+template <Platform P>
+class TrespassingPort {
+ public:
+  TrespassingPort(P& port, std::uint64_t kind) : port_(port), kind_(kind) {}
+
+  [[nodiscard]] PlatformLimits limits() const { return port_.limits(); }
+  Status get(void* local, MainAddress address, std::uint32_t bytes, Tag tag) {
+    const bool is_tenth = ++gets_ == 10;
+    if (kind_ == 13 && is_tenth) address.value = kFirmwareAddress + address.value % 4096;
+    if (kind_ == 14 && is_tenth) address.value = kMainMemoryEnd + address.value % 4096;
+    return port_.get(local, address, bytes, tag);
+  }
+  Status put(const void* local, MainAddress address, std::uint32_t bytes, Tag tag) {
+    if (kind_ == 12) address.value = kFirmwareAddress + address.value % 4096;
+    if (kind_ == 15) local = static_cast<const std::byte*>(local) - kArenaBytes;
+    return port_.put(local, address, bytes, tag);
+  }
+  Status wait(TagMask tags) { return port_.wait(tags); }
+  TileClaim claim_tile() { return port_.claim_tile(); }
+
+ private:
+  P& port_;
+  std::uint64_t kind_;
+  std::uint32_t gets_ = 0;
+};
 
 }  // namespace gridiron::port

@@ -150,5 +150,41 @@ TYPED_TEST(Contract, Holds) {
   EXPECT_GE(run_count, 11u);
 }
 
+/// Lets its core transfer the second half of main memory alone.
+class BoundedHostBoard : public HostBoard {
+ public:
+  BoundedHostBoard(sim::SimMemory& memory, std::span<std::byte> arena, std::uint64_t first, std::uint64_t byte_count)
+      : HostBoard(memory, arena, kTileCount), first_(first), byte_count_(byte_count) {}
+
+  [[nodiscard]] bool reaches(MainAddress address, std::uint32_t bytes) const {
+    const std::uint64_t offset = address.value - first_;
+    return offset <= byte_count_ && bytes <= byte_count_ - offset;
+  }
+
+ private:
+  std::uint64_t first_, byte_count_;
+};
+static_assert(port::BoundedBoard<BoundedHostBoard> && !port::BoundedBoard<HostBoard>);
+
+TEST(TemplatePort, StartsNothingThatABoundedBoardDoesNotReach) {
+  sim::SimMemory memory(std::uint64_t{1} << 16);
+  const auto region = memory.allocate(8192, 4096);
+  ASSERT_TRUE(region);
+  alignas(128) std::byte arena[1024];
+  const std::uint64_t first = region->address.value + 4096;
+  BoundedHostBoard board(memory, arena, first, 4096);
+  port::TemplatePort<BoundedHostBoard> port(board);
+  for (const std::uint64_t place : {first - 64, first + 4096, std::uint64_t{0}, ~std::uint64_t{0} - 127}) {
+    EXPECT_EQ(port.get(arena, MainAddress{place}, 64, Tag{0}), Status::kTransferMainRange) << place;
+    EXPECT_EQ(port.put(arena, MainAddress{place}, 64, Tag{0}), Status::kTransferMainRange) << place;
+  }
+  EXPECT_EQ(board.starts, 0u);
+  for (const std::uint64_t place : {first, first + 4096 - 64}) {
+    EXPECT_EQ(port.put(arena, MainAddress{place}, 64, Tag{0}), Status::kOk) << place;
+  }
+  EXPECT_EQ(port.wait(TagMask::of(Tag{0})), Status::kOk);
+  EXPECT_EQ(board.starts, 2u);
+}
+
 }  // namespace
 }  // namespace gridiron::contract

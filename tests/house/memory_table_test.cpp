@@ -260,6 +260,42 @@ INSTANTIATE_TEST_SUITE_P(
               "malloc: a function of unknown depth"}),
     [](const testing::TestParamInfo<Break>& wrong) { return std::string(wrong.param.name); });
 
+// From one function: what it does not reach may be anything, what it reaches must be known or be said to be a leaf.
+TEST(CoreBreak, OfOtherPathsNothingIsAsked) {
+  const ScratchDirectory scratch;
+  scratch.write("a.ci",
+                "graph: { title: \"a.cpp\"\n"
+                "node: { title: \"worker\" label: \"worker\\n100 bytes (static)\" }\n"
+                "node: { title: \"b.cpp:step\" label: \"step\\n20 bytes (static)\" }\n"
+                "node: { title: \"in_assembly\" label: \"in_assembly\" shape : ellipse }\n"
+                "node: { title: \"master\" label: \"master\\n4000 bytes (dynamic)\" }\n"
+                "edge: { sourcename: \"worker\" targetname: \"b.cpp:step\" }\n"
+                "edge: { sourcename: \"b.cpp:step\" targetname: \"in_assembly\" }\n"
+                "edge: { sourcename: \"master\" targetname: \"master\" }\n"
+                "edge: { sourcename: \"master\" targetname: \"__indirect_call\" }\n"
+                "}\n");
+  const auto deepest = [&scratch](const std::string& options) {
+    return run_script(source_path("tools/house/deepest_stack") + " " + options + " " + quoted(scratch.path()) +
+                      "/a.ci");
+  };
+  const ScriptResult worker = deepest("--from worker --leaf in_assembly");
+  EXPECT_EQ(worker.exit_code, 0) << worker.output;
+  EXPECT_EQ(worker.output, "184\n");
+  const struct {
+    const char* options;
+    const char* expected;
+  } wrongs[] = {{"--from worker", "in_assembly: a function of unknown depth"},
+                {"--from master", "master: recursion"},
+                {"--from master", "master: a frame of no fixed size"},
+                {"--from master", "master: a call through a pointer"},
+                {"--from step_2 --leaf in_assembly", "step_2: no such function"}};
+  for (const auto& wrong : wrongs) {
+    const ScriptResult result = deepest(wrong.options);
+    EXPECT_EQ(result.exit_code, 1) << wrong.options;
+    EXPECT_NE(result.output.find(wrong.expected), std::string::npos) << wrong.options << ": " << result.output;
+  }
+}
+
 // As a build that was interrupted leaves it.
 TEST(CoreBreak, ACallGraphThatEndsEarlyIsRefused) {
   const std::string whole = "graph: { title: \"a.cpp\"\nnode: { title: \"_Z1fv\" label: \"f\\n16 bytes (static)\" }\n";

@@ -66,6 +66,26 @@ INSTANTIATE_TEST_SUITE_P(
              "write (operating system)"}),
     [](const testing::TestParamInfo<Need>& need) { return std::string(need.param.name); });
 
+TEST(Symbols, WhatALinkerScriptPlacesIsDefined) {
+  const ScratchDirectory scratch;
+  scratch.write("a.cpp", "extern const char code_end[], code_begin[]; long f() { return code_end - code_begin; }\n");
+  const std::string directory = scratch.path().string();
+  const ScriptResult built =
+      run_script("cd '" + directory + "' && " GRIDIRON_CXX_COMPILER " -std=c++20 -O1 -c a.cpp -o a.o");
+  ASSERT_EQ(built.exit_code, 0) << built.output;
+  const auto check = [&](const std::string& script) {
+    scratch.write("a.ld", script);
+    return run_script("cd '" + directory + "' && " + source_path("tools/house/check_symbols") +
+                      " " GRIDIRON_NM " a.o a.ld");
+  };
+  const ScriptResult whole = check("code_begin = ORIGIN(code);\nSECTIONS {\n  .text : {\n    code_end = . ;\n  }\n}\n");
+  EXPECT_EQ(whole.exit_code, 0) << whole.output;
+  const ScriptResult half = check("SECTIONS {\n  .text : {\n    code_end = . ;\n    . = ALIGN(16);\n  }\n}\n");
+  EXPECT_EQ(half.exit_code, 1);
+  EXPECT_NE(half.output.find("needs code_begin"), std::string::npos) << half.output;
+  EXPECT_EQ(half.output.find("needs code_end"), std::string::npos) << half.output;
+}
+
 TEST(Symbols, AMissingArchiveIsAnError) {
   const ScriptResult result = run_script(source_path("tools/house/check_symbols") + " " GRIDIRON_NM " /nowhere/a.a");
   EXPECT_EQ(result.exit_code, 1);
