@@ -50,7 +50,7 @@ struct SceneFacts {
   bool is_packed = false;
   std::uint64_t image_bytes = 0;
   std::uint64_t scratch_bytes = 0;  ///< of the builder, free again afterwards; 0 for a packed scene
-  std::uint64_t picture_bytes = 0;  ///< colour plane and frame record
+  std::uint64_t picture_bytes = 0;  ///< planes that are wanted, and frame record
   bool fits = false;                ///< in the machine's main memory
   LoopBounds bounds;
   EffectFacts effects;
