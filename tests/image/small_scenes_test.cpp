@@ -395,7 +395,8 @@ TEST(SmallScenes, ExactTellsSheetsApartThatRoundAlike) {
 }
 
 // Directions of all pixels of a frame.
-std::vector<Vec3> directions_of(const FrameSettings& settings) {
+std::vector<Vec3> directions_of(FrameSettings settings) {
+  settings.color = MainAddress{kLineBytes};
   SceneImageView any_image{};
   any_image.grid.triangle_format = static_cast<std::uint32_t>(TriangleFormat::kVertices);
   FrameRecord frame{};

@@ -18,6 +18,7 @@
 #include "layout_choice.h"
 #include "scene_input.h"
 #include "store_facts.h"
+#include "words.h"
 
 namespace gridiron::tool {
 namespace {
@@ -238,26 +239,34 @@ void add_machine_options(CLI::App& app, RawRender& raw) {
              "render this tile alone; the picture is the tile");
 }
 
+void add_packet(CLI::App& app, std::uint32_t& packet_width) {
+  add_choice(app, "--packet", packet_width, Choices<std::uint32_t>{{"4", 4}, {"8", 8}, {"16", 16}, {"32", 32}},
+             "rays along a packet's edge (default: the configuration's)");
+}
+
+template <class Target>
+void add_accuracy(CLI::App& app, Target& target) {
+  Choices<Accuracy> choices;
+  std::string help;
+  for (const NamedAccuracy& named : accuracies()) {
+    const bool is_default = named.accuracy == Accuracy::kStandard;
+    help += (help.empty() ? "" : "; ") + std::string(named.name) + (is_default ? " (default): " : ": ") +
+            std::string(named.description);
+    choices.emplace_back(named.name, named.accuracy);
+  }
+  add_choice(app, "--accuracy", target, choices, help);
+}
+
 void add_algorithm_options(CLI::App& app, RawRender& raw) {
   RenderArguments& render = raw.arguments;
   add_choice(app, "--buffering", render.asked.depths,
              Choices<BufferDepths>{{"single", kSingleBuffering}, {"double", kDoubleBuffering}},
              "buffers of all three levels (default: the configuration's)");
-  add_choice(app, "--packet", render.asked.packet_width,
-             Choices<std::uint32_t>{{"4", 4}, {"8", 8}, {"16", 16}, {"32", 32}},
-             "rays along a packet's edge (default: the configuration's)");
+  add_packet(app, render.asked.packet_width);
   add_choice(app, "--tile-width", render.asked.tile_width,
              Choices<std::uint32_t>{{"8", 8}, {"16", 16}, {"32", 32}, {"64", 64}},
              "pixels along a tile's edge (default: 16 with --store 64, 8 there with --shading scene, else 32)");
-  Choices<Accuracy> choices;
-  std::string help;
-  for (const NamedAccuracy& named : accuracies()) {
-    const bool is_default = named.accuracy == render.accuracy;
-    help += (help.empty() ? "" : "; ") + std::string(named.name) + (is_default ? " (default): " : ": ") +
-            std::string(named.description);
-    choices.emplace_back(named.name, named.accuracy);
-  }
-  add_choice(app, "--accuracy", render.accuracy, choices, help);
+  add_accuracy(app, render.accuracy);
   add_choice(app, "--shading", render.shading,
              Choices<Shading>{{"none", Shading::kNone}, {"simple", Shading::kSimple}, {"scene", Shading::kScene}},
              "none: hit or background; simple: facing ratio (default of meshes); scene: lights, materials and effects "
@@ -341,6 +350,21 @@ RenderArguments complete_render(const RawRender& raw, const CLI::App& app) {
                      {"--report", render.report},
                      {"--timeline", render.timeline}});
   return render;
+}
+
+InfoArguments complete_info(InfoArguments info, std::optional<StoreSize> store, const CLI::App& app) {
+  info.has_size = app.count("--size") > 0;
+  require_tolerance(info.scene);
+  if (info.accuracy) {
+    const TriangleFormat format = format_of(*info.accuracy);
+    if (app.count("--format") > 0 && info.format != format) {
+      const auto named = std::ranges::find(accuracies(), *info.accuracy, &NamedAccuracy::accuracy);
+      usage_error("--accuracy " + std::string(named->name) + ": reads --format " + word_of(format));
+    }
+    info.format = format;
+  }
+  settle_layout(info, store);
+  return info;
 }
 
 void add_animate_options(CLI::App& app, AnimateArguments& animate, RawRender& raw) {
@@ -511,6 +535,9 @@ Command parse_arguments(int count, const char* const* values) {
            "picture whose memory is told (default: a text scene's own, else 1024x1024)");
   std::optional<StoreSize> info_store;
   add_choice(*info, "--store", info_store, kStores, kStoreHelp);
+  add_packet(*info, info_arguments.packet_width);
+  add_accuracy(*info, info_arguments.accuracy);
+  info->add_flag("--depth", info_arguments.has_depth, "distances too");
   info->add_flag("--json", info_arguments.json, "as JSON");
 
   PackArguments pack_arguments;
@@ -570,11 +597,7 @@ Command parse_arguments(int count, const char* const* values) {
   if (*animate) return complete_animate(std::move(animate_arguments), animate_raw, *animate);
   if (*info) {
     info_arguments.scene.machine = find_machine(info_machine);
-    info_arguments.has_size = info->count("--size") > 0;
-    require_tolerance(info_arguments.scene);
-    require_room(*info_arguments.scene.machine, info_store);
-    info_arguments.store = info_store.value_or(largest_store(*info_arguments.scene.machine));
-    return info_arguments;
+    return complete_info(std::move(info_arguments), info_store, *info);
   }
   if (*pack) {
     pack_arguments.scene.machine = find_machine(pack_machine);

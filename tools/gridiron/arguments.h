@@ -82,7 +82,10 @@ struct AnimateArguments {
 struct InfoArguments {
   SceneArguments scene;
   sim::StoreSize store = sim::StoreSize::k256KB;  ///< whose map is told
-  TriangleFormat format = TriangleFormat::kVertices;
+  TriangleFormat format = TriangleFormat::kVertices;  ///< of a mesh or a text scene
+  std::optional<Accuracy> accuracy;  ///< whose bounds are told; nothing: the one that the image's format is for
+  std::uint32_t packet_width = 0;    ///< 0: the configuration's
+  bool has_depth = false;            ///< distances are wanted too
   std::uint32_t width = 1024, height = 1024;
   bool has_size = false;  ///< asked for; else it is a text scene's own
   bool json = false;

@@ -53,6 +53,15 @@ Json json_of_count(std::uint64_t count) {
   return count == ~std::uint64_t{0} ? Json() : Json(count);
 }
 
+// What a bound's cycles are.
+const char* unit_of(const WorstTile& worst) {
+  return worst.are_instructions ? "instructions" : "cycles";
+}
+
+std::string name_of(Accuracy accuracy) {
+  return std::string(std::ranges::find(accuracies(), accuracy, &NamedAccuracy::accuracy)->name);
+}
+
 Json json_of(const WorstTile& worst) {
   Json work = Json::object();
   for (std::uint32_t kind = 0; kind < kWorkKindCount; ++kind) {
@@ -60,8 +69,8 @@ Json json_of(const WorstTile& worst) {
       work[std::string(work_name(static_cast<Work>(kind)))] = json_of_count(worst.bound.work[kind]);
     }
   }
-  const auto accuracy = std::ranges::find(accuracies(), worst.frame.accuracy, &NamedAccuracy::accuracy);
-  return {{"accuracy", std::string(accuracy->name)},
+  return {{"accuracy", name_of(worst.frame.accuracy)},
+          {"depth", worst.frame.has_depth},
           {"lanes", worst.layout.lanes},
           {"tile_width", worst.layout.tile_width},
           {"packet_width", worst.layout.packet_width},
@@ -77,6 +86,7 @@ Json json_of(const WorstTile& worst) {
             {"waits", json_of_count(worst.bound[Work::kWait])},
             {"get_bytes", json_of_count(worst.bound.get_bytes)},
             {"put_bytes", json_of_count(worst.bound.put_bytes)}}},
+          {"cycles_are", unit_of(worst)},
           {"cycles",
            {{"work", worst.cycles.work},
             {"commands", worst.cycles.commands},
@@ -168,10 +178,8 @@ void print_json(const InfoArguments& arguments, const SceneFacts& facts, const S
       {"local_store", json_of(store)},
       {"effects", effects_json(arguments, facts, store)},
       {"loop_bounds", json_of(facts.bounds)}};
-  if (facts.worst) {
-    document["worst_tile"] = json_of(*facts.worst);
-    document["loops"] = loops_json(facts, store);
-  }
+  document["worst_tile"] = facts.worst ? json_of(*facts.worst) : Json();
+  document["loops"] = facts.worst ? loops_json(facts, store) : Json();
   std::printf("%s\n", document.dump(2).c_str());
 }
 
@@ -251,7 +259,8 @@ void print_text(const InfoArguments& arguments, const SceneFacts& facts, const S
                                words_of_count(grid.cell_block_count - 1) + " of them hold triangles");
   print_line("main memory", words_of_bytes(facts.image_bytes) + " scene image, " + words_of_bytes(facts.scratch_bytes) +
                                 " while it is built, " + words_of_bytes(facts.picture_bytes) + " picture of " +
-                                std::to_string(facts.width) + "x" + std::to_string(facts.height));
+                                std::to_string(facts.width) + "x" + std::to_string(facts.height) +
+                                (arguments.has_depth ? " with distances" : ""));
   print_line("", std::string(facts.fits ? "fits" : "does NOT fit") + " the " +
                      words_of_bytes(arguments.scene.machine->main_memory_bytes) + " of " +
                      std::string(arguments.scene.machine->name));
@@ -267,7 +276,8 @@ void print_text(const InfoArguments& arguments, const SceneFacts& facts, const S
                 (region.name + " at " + words_of_count(region.offset_bytes)).c_str());
   }
   print_effects(arguments, facts, store);
-  print_line("loop bounds", "per packet " + std::to_string(facts.bounds.passes_per_packet) + " passes; per pass " +
+  print_line("loop bounds", "per packet " + std::to_string(facts.bounds.passes_per_packet) +
+                                " passes, twice where hits are left open, with exact also one for each ray; per pass " +
                                 words_of_count(facts.bounds.macro_slices_per_pass) + " macro slices, " +
                                 words_of_count(facts.bounds.macro_cells_per_pass) + " macrocells, " +
                                 words_of_count(facts.bounds.slices_per_pass) + " slices, " +
@@ -275,10 +285,11 @@ void print_text(const InfoArguments& arguments, const SceneFacts& facts, const S
                                 words_of_count(facts.bounds.triangle_tests_per_pass) + " triangle tests");
   if (facts.worst) {
     const WorstTile& worst = *facts.worst;
-    std::snprintf(text, sizeof text, "for any camera at most %.3g cycles of work, %.3g with all waits; ",
-                  worst.cycles.work, worst.cycles.total());
-    print_line("worst tile", text + words_of_most(worst.bound[Work::kGetIssue]) + " gets of " +
-                                 words_of_most(worst.bound.get_bytes) + " bytes");
+    std::snprintf(text, sizeof text, " at most %.3g %s of work, %.3g with all waits; ", worst.cycles.work,
+                  unit_of(worst), worst.cycles.total());
+    const std::string asked = arguments.accuracy ? ", accuracy " + name_of(*arguments.accuracy) + "," : "";
+    const std::string gets = words_of_most(worst.bound[Work::kGetIssue]) + " gets of ";
+    print_line("worst tile", "for any camera" + asked + text + gets + words_of_most(worst.bound.get_bytes) + " bytes");
   }
 }
 

@@ -8,6 +8,7 @@
 #include "failure.h"
 #include "frame_memory.h"
 #include "job_file.h"
+#include "layout_choice.h"
 #include "requested_frame.h"
 #include "words.h"
 
@@ -16,9 +17,7 @@ namespace gridiron::tool {
 void run_command(const JobArguments& asked) {
   const RequestedFrame request = read_requested_frame(asked.render, {asked.render.output});
   const RenderArguments& arguments = request.arguments;
-  if (arguments.has_depth() && arguments.layout().has_effects && arguments.packet_width == 0) {
-    throw Failure(ExitCode::kUsage, "--depth: scenes with effects have no distances out of a store of 64 KB");
-  }
+  require_distances(arguments.layout(), arguments.has_depth());
   FrameMemory frame(frame_memory_bytes(request.input, arguments));
   prepare_frame(frame, request.input, arguments, request.view);
   const std::vector<std::byte> file = make_job_file(frame, arguments, asked.base_address);

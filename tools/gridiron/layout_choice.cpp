@@ -5,6 +5,7 @@
 #include <string>
 
 #include "failure.h"
+#include "scene_input.h"
 #include "store_facts.h"
 
 namespace gridiron::tool {
@@ -55,6 +56,11 @@ std::string words_of_layout(const sim::LayoutChoice& layout) {
   usage_error(store + shading + ": not built for " + words_of_layout(layout) + "; there are " + list);
 }
 
+void require_packet_in_tile(const sim::LayoutChoice& layout) {
+  if (layout.packet_width <= layout.tile_width) return;
+  usage_error("--packet: tiles are " + std::to_string(layout.tile_width) + " pixels wide");
+}
+
 void choose_store(RenderArguments& render) {
   require_room(*render.scene.machine, render.asked.store);
   const std::uint32_t room_bytes = render.scene.machine->local_store_bytes;
@@ -68,9 +74,7 @@ void choose_store(RenderArguments& render) {
       if (sim::arena_bytes(store) <= room_bytes && is_built(smaller)) layout = smaller;
     }
   }
-  if (layout.packet_width > layout.tile_width) {
-    usage_error("--packet: tiles are " + std::to_string(layout.tile_width) + " pixels wide");
-  }
+  require_packet_in_tile(layout);
   if (!is_built(layout)) refuse_layout(layout);
   render.store = layout.store;
   render.tile_width = layout.tile_width;
@@ -103,7 +107,50 @@ void choose_depths(RenderArguments& render) {
   }
 }
 
+void require_effects_of(std::optional<Accuracy> accuracy) {
+  if (accuracy != Accuracy::kPaper) return;
+  usage_error("--accuracy paper: has no --shading scene; shadows and reflections need distances that hold");
+}
+
+// The layout that info tells of, built or not.
+sim::LayoutChoice layout_with(const InfoArguments& info, StoreSize store, bool has_effects) {
+  const std::uint32_t usual = info.scene.configuration->packet_width;
+  if (has_effects && store == StoreSize::k64KB) return {store, 8, info.packet_width, true};
+  if (has_effects) return {StoreSize::k256KB, 32, info.packet_width != 0 ? info.packet_width : usual, true};
+  const std::uint32_t tile_width = sim::usual_tile_width(store);
+  return {store, tile_width, info.packet_width != 0 ? info.packet_width : std::min(usual, tile_width)};
+}
+
 }  // namespace
+
+void settle_layout(InfoArguments& info, std::optional<StoreSize> asked) {
+  const bool has_effects = is_text_scene(info.scene.input);
+  if (has_effects) require_effects_of(info.accuracy);
+  require_room(*info.scene.machine, asked);
+  info.store = asked.value_or(largest_store(*info.scene.machine));
+  const auto is_built = [&info, has_effects](StoreSize store) {
+    return find_store_facts(layout_with(info, store, has_effects)).has_value();
+  };
+  if (!asked && !is_built(info.store)) {
+    for (const StoreSize store : sim::kStoreSizes) {
+      if (sim::arena_bytes(store) <= info.scene.machine->local_store_bytes && is_built(store)) info.store = store;
+    }
+  }
+  (void)info_layout(info, has_effects);
+}
+
+sim::LayoutChoice info_layout(const InfoArguments& info, bool has_effects) {
+  const sim::LayoutChoice layout = layout_with(info, info.store, has_effects);
+  require_packet_in_tile(layout);
+  if (!find_store_facts(layout)) refuse_layout(layout);
+  require_distances(layout, info.has_depth);
+  return layout;
+}
+
+void require_distances(const sim::LayoutChoice& layout, bool has_depth) {
+  if (!has_depth || !layout.has_effects || layout.packet_width != 0) return;
+  usage_error("--depth: scenes with effects have no distances out of a store of 64 KB");
+}
 
 void require_room(const sim::MachineProfile& machine, std::optional<StoreSize> asked) {
   if (asked && sim::arena_bytes(*asked) > machine.local_store_bytes) {
@@ -113,9 +160,7 @@ void require_room(const sim::MachineProfile& machine, std::optional<StoreSize> a
 }
 
 void settle_layout(RenderArguments& render) {
-  if (render.shading == Shading::kScene && render.accuracy == Accuracy::kPaper) {
-    usage_error("--accuracy paper: has no --shading scene; shadows and reflections need distances that hold");
-  }
+  if (render.shading == Shading::kScene) require_effects_of(render.accuracy);
   choose_store(render);
   choose_depths(render);
 }

@@ -16,6 +16,18 @@ namespace gridiron::tool {
 /// Errors: Failure (kUsage) where no kernel is built for it, or its buffers do not hold what was asked for.
 void settle_layout(RenderArguments& render);
 
+/// Settles the store that `info` tells of: the one asked for, or the largest one of the machine that is built for the
+/// packets asked for. Errors: Failure (kUsage) as of a render, as far as the name of the scene tells.
+void settle_layout(InfoArguments& info, std::optional<sim::StoreSize> asked);
+
+/// @returns the layout that `info` tells of: the store's usual tiles, packets as asked for or the configuration's. With
+/// effects, where the store has none for these, that of 256 KB.
+/// Errors: Failure (kUsage) where no kernel is built for it, or it has no distances and these are wanted.
+[[nodiscard]] sim::LayoutChoice info_layout(const InfoArguments& info, bool has_effects);
+
+/// Errors: Failure (kUsage) where distances are wanted of a layout that has none.
+void require_distances(const sim::LayoutChoice& layout, bool has_depth);
+
 /// Errors: Failure (kUsage) where the machine has no room for the store that was asked for.
 void require_room(const sim::MachineProfile& machine, std::optional<sim::StoreSize> asked);
 

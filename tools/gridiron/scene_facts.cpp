@@ -82,10 +82,12 @@ SceneFacts collect_scene_facts(const InfoArguments& arguments) {
   facts.height = has_own_size ? input.text->view.height : arguments.height;
   const sim::MachineProfile& machine = *arguments.scene.machine;
   const std::uint32_t tile_width = sim::usual_tile_width(sim::StoreSize::k256KB);
-  const std::uint64_t budget_bytes = image_budget_bytes(machine, facts.width, facts.height, 1, tile_width,
+  const std::uint32_t planes = arguments.has_depth ? 2 : 1;
+  const std::uint64_t budget_bytes = image_budget_bytes(machine, facts.width, facts.height, planes, tile_width,
                                                         spill_bytes_of(machine.core_count, recursion_depth(input)));
   if (const PackedScene* packed = std::get_if<PackedScene>(&input.content)) {
     const ImageHeader& header = packed->view.header;
+    if (arguments.accuracy) require_format(input, *packed, format_of(*arguments.accuracy));
     facts.is_packed = true;
     facts.vertices = header.vertex_count;
     facts.triangles = header.triangle_count;
@@ -123,7 +125,7 @@ SceneFacts collect_scene_facts(const InfoArguments& arguments) {
       facts.effects = effects_of(count_effects(view), static_cast<std::uint32_t>(mesh.triangles.size()));
     }
   }
-  facts.picture_bytes = output_plane_bytes(facts.width, facts.height, tile_width) + sizeof(FrameRecord);
+  facts.picture_bytes = planes * output_plane_bytes(facts.width, facts.height, tile_width) + sizeof(FrameRecord);
   facts.bounds = bounds_of(facts.grid);
   return facts;
 }

@@ -18,7 +18,7 @@ namespace gridiron::tool {
 
 /// The most that the kernel's loops can turn for this scene: what a worst-case analysis multiplies.
 struct LoopBounds {
-  std::uint32_t passes_per_packet = 0;      ///< three axes, two directions
+  std::uint32_t passes_per_packet = 0;      ///< three axes, two directions: of one round
   std::uint32_t macro_slices_per_pass = 0;  ///< macrocells along the longest axis
   std::uint64_t macro_cells_per_pass = 0;
   std::uint32_t slices_per_pass = 0;  ///< cells along the longest axis
@@ -50,7 +50,7 @@ struct SceneFacts {
   bool is_packed = false;
   std::uint64_t image_bytes = 0;
   std::uint64_t scratch_bytes = 0;  ///< of the builder, free again afterwards; 0 for a packed scene
-  std::uint64_t picture_bytes = 0;  ///< colour plane and frame record
+  std::uint64_t picture_bytes = 0;  ///< planes that are wanted, and frame record
   bool fits = false;                ///< in the machine's main memory
   LoopBounds bounds;
   EffectFacts effects;

@@ -217,13 +217,17 @@ SceneImageView build_image(const SceneInput& input, const Mesh& mesh, const Grid
   return view;
 }
 
+void require_format(const SceneInput& input, const PackedScene& packed, TriangleFormat format) {
+  const std::uint32_t stored = packed.view.grid.triangle_format;
+  if (stored == static_cast<std::uint32_t>(format)) return;
+  fail(input.path, "was packed with --format " + word_of(static_cast<TriangleFormat>(stored)) +
+                       "; this needs --format " + word_of(format));
+}
+
 void check_packed(const SceneInput& input, const PackedScene& packed, const SceneArguments& arguments,
                   TriangleFormat format, std::uint64_t budget_bytes) {
   const GridRecord& grid = packed.view.grid;
-  if (grid.triangle_format != static_cast<std::uint32_t>(format)) {
-    fail(input.path, "was packed with --format " + word_of(static_cast<TriangleFormat>(grid.triangle_format)) +
-                         "; this needs --format " + word_of(format));
-  }
+  require_format(input, packed, format);
   if (arguments.lambda && *arguments.lambda != grid.lambda) {
     fail(input.path, "was packed with lambda " + text_of(grid.lambda) + "; --lambda cannot change it");
   }

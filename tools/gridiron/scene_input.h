@@ -91,6 +91,9 @@ struct GridChoice {
                                                std::uint32_t height, std::uint32_t planes,
                                                std::uint32_t tile_width = 32, std::uint64_t spill_bytes = 0);
 
+/// Errors: Failure (kBadInput) where a packed scene stores its triangles in another format.
+void require_format(const SceneInput& input, const PackedScene& packed, TriangleFormat format);
+
 /// Throws Failure (kUsage) where an output would take the place of a file that the scene names.
 void require_other_files(const SceneInput& input, const std::vector<std::filesystem::path>& outputs);
 

@@ -16,17 +16,18 @@ namespace gridiron::tool {
 struct WorstTile {
   TileLayout layout{};  ///< 4 lanes
   TileScene scene{};
-  TileFrame frame{};  ///< of the configuration, without planes of depth and ids
+  TileFrame frame{};  ///< of the configuration, without a plane of ids
   TileBound bound{};
-  sim::TileCycles cycles;  ///< on the machine
+  sim::TileCycles cycles;          ///< on the machine
+  bool are_instructions = false;   ///< what the machine's profile calls cycles: its prices are those of `fu540`
 };
 
 /// The bound of a scene's frames as the configuration, the store and the machine asked for would render them, by the
-/// accuracy that the image's format is for (`standard` of vertices).
+/// accuracy asked for, or the one that the image's format is for (`standard` of vertices).
 [[nodiscard]] WorstTile find_worst_tile(const InfoArguments& arguments, std::span<const std::byte> image,
                                         const SceneImageView& view);
 
-/// The local store that `info` tells of: the one asked for; with effects, where it has none for these, that of 256 KB.
+/// The local store that `info` tells of, info_layout(). Errors: its.
 [[nodiscard]] StoreFacts info_store_facts(const InfoArguments& arguments, bool has_effects);
 
 }  // namespace gridiron::tool

@@ -21,6 +21,16 @@ void store(float out[3], const DVec3& v) {
   out[2] = static_cast<float>(v.z);
 }
 
+bool is_multiple(MainAddress address, std::uint32_t step) { return address.value % step == 0; }
+
+// A store's tiles lie at multiples of it: so both ends of their transfers are aligned, and congruent.
+static_assert(kPlaneAlignment % kPortableGranuleBytes == 0 && kPlaneAlignment % kPortableCongruenceBytes == 0);
+
+bool are_planes_aligned(const FrameSettings& settings) {
+  return is_multiple(settings.color, kPlaneAlignment) && is_multiple(settings.depth, kPlaneAlignment) &&
+         is_multiple(settings.ids, kPlaneAlignment);
+}
+
 }  // namespace
 
 std::uint64_t output_plane_bytes(std::uint32_t width, std::uint32_t height, std::uint32_t tile_width) {
@@ -43,13 +53,15 @@ Status make_frame_record(const FrameSettings& settings, const SceneImageView& im
       !is_finite(double{settings.camera.tan_half_fov})) {
     return Status::kBadFrame;
   }
+  if (settings.color.value == 0) return Status::kBadFrame;
+  if (!are_planes_aligned(settings) || !is_multiple(image_address, kLineBytes)) return Status::kTransferAlignment;
   if (image.grid.triangle_format != static_cast<std::uint32_t>(format_of(settings.accuracy))) {
     return Status::kUnsupportedImage;
   }
   const bool scene_shading = settings.shading == Shading::kScene;
   if (scene_shading) {
     if (!image.has_effects || settings.accuracy == Accuracy::kPaper) return Status::kUnsupportedImage;
-    if (settings.walk_depth < 1) return Status::kBadFrame;
+    if (settings.walk_depth < 1 || image_address.value == 0) return Status::kBadFrame;
   }
 
   // Orthonormal frame of the camera; double keeps the steps exact to a float ulp whatever the distance.

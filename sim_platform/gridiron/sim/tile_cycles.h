@@ -10,11 +10,13 @@
 
 namespace gridiron::sim {
 
-/// Most cycles of a tile, from the grant of its claim to the next claim.
+/// Most cycles of a tile, from the grant of its claim to the next claim: of the core's clock; instructions where the
+/// machine's profile counts these (`fu540`).
 struct TileCycles {
   double work = 0;       ///< counts times their prices
   double commands = 0;   ///< commands issued, waits asked for
   double transfers = 0;  ///< all lines, as if none travelled beside another or beside work
+  /// All of it: none of the three is taken to hide another.
   [[nodiscard]] double total() const { return work + commands + transfers; }
 };
 
@@ -22,6 +24,11 @@ struct TileCycles {
 ///
 /// A line waits for those that every core may have under way, and is there a latency later (replay.h). A tile also
 /// waits for tiles that left the core before: as many as output buffers, each of them the largest.
+///
+/// @param bound         of worst_tile(), for TileLayout::lanes of 4.
+/// @param machine       whose prices, lines and channel are taken.
+/// @param output_depth  TileFrame::output_depth of the same frame.
+/// Errors: none; a count of 2^64 - 1 is priced as that many.
 [[nodiscard]] inline TileCycles worst_tile_cycles(const TileBound& bound, const MachineProfile& machine,
                                                   std::uint32_t output_depth) {
   const auto number = [](std::uint64_t count) { return static_cast<double>(count); };

@@ -1,4 +1,5 @@
-// Frame set-up: frames with the effects of a scene, and those without. SPDX-License-Identifier: Apache-2.0
+// Frame set-up: where planes and image may lie; frames with the effects of a scene, and those without.
+// SPDX-License-Identifier: Apache-2.0
 #include <gridiron/frame/frame_setup.h>
 #include <gtest/gtest.h>
 
@@ -10,9 +11,18 @@ namespace {
 
 constexpr MainAddress kImageAddress{0x12340000};
 
-FrameSettings scene_settings_of(Accuracy accuracy = Accuracy::kStandard) {
+constexpr MainAddress kColorAddress{0x56780000};
+static_assert(kPlaneAlignment == 32);
+
+FrameSettings plain_settings() {
   FrameSettings settings;
   settings.camera.eye = {0, 0, 5};
+  settings.color = kColorAddress;
+  return settings;
+}
+
+FrameSettings scene_settings_of(Accuracy accuracy = Accuracy::kStandard) {
+  FrameSettings settings = plain_settings();
   settings.shading = Shading::kScene;
   settings.accuracy = accuracy;
   settings.background_rgba = 0xFF112233u;
@@ -23,6 +33,73 @@ BuiltImage image_with_effects(TriangleFormat format = TriangleFormat::kVertices)
   const TestEffects scene = all_effects();
   const EffectsView view = scene.view();
   return build_image(scene.mesh(), {4.0f, 2, format}, std::byte{0xCD}, &view);
+}
+
+// @returns what becomes of the settings, and checks that a refusal leaves the record alone.
+Status status_of(const FrameSettings& settings, const BuiltImage& built, MainAddress image = kImageAddress) {
+  FrameRecord frame{};
+  frame.magic = 1;
+  const Status status = make_frame_record(settings, built.view, image, frame);
+  EXPECT_EQ(frame.magic, status == Status::kOk ? kFrameMagic : 1u);
+  return status;
+}
+
+TEST(Planes, AreWhatTheSettingsSay) {
+  const BuiltImage built = image_with_effects();
+  FrameSettings settings = plain_settings();
+  FrameRecord frame{};
+  ASSERT_EQ(make_frame_record(settings, built.view, kImageAddress, frame), Status::kOk);
+  EXPECT_EQ(frame.color_address, kColorAddress.value);
+  EXPECT_EQ(frame.depth_address, 0u) << "not wanted";
+  EXPECT_EQ(frame.id_address, 0u) << "not wanted";
+  settings.depth = kColorAddress.offset_by(0x1000000);
+  settings.ids = kColorAddress.offset_by(0x2000000);
+  ASSERT_EQ(make_frame_record(settings, built.view, kImageAddress, frame), Status::kOk);
+  EXPECT_EQ(frame.depth_address, settings.depth.value);
+  EXPECT_EQ(frame.id_address, settings.ids.value);
+}
+
+TEST(Planes, OfColorAreRequired) {
+  const BuiltImage built = image_with_effects();
+  FrameSettings settings = plain_settings();
+  settings.depth = settings.ids = kColorAddress;
+  settings.color = MainAddress{};
+  EXPECT_EQ(status_of(settings, built), Status::kBadFrame);
+  settings.shading = Shading::kScene;
+  EXPECT_EQ(status_of(settings, built), Status::kBadFrame);
+}
+
+// What a platform's transfers would refuse in the middle of a frame.
+TEST(Planes, LieWhereTransfersReachThem) {
+  const BuiltImage built = image_with_effects();
+  for (MainAddress FrameSettings::*const plane : {&FrameSettings::color, &FrameSettings::depth, &FrameSettings::ids}) {
+    for (std::uint64_t shift = 0; shift <= 4 * kPlaneAlignment; ++shift) {
+      FrameSettings settings = plain_settings();
+      settings.*plane = kColorAddress.offset_by(shift);
+      EXPECT_EQ(status_of(settings, built), shift % kPlaneAlignment == 0 ? Status::kOk : Status::kTransferAlignment)
+          << shift;
+    }
+  }
+}
+
+TEST(Images, LieWhereTheirPartsAreAligned) {
+  const BuiltImage built = image_with_effects();
+  for (const Shading shading : {Shading::kSimple, Shading::kScene}) {
+    FrameSettings settings = plain_settings();
+    settings.shading = shading;
+    for (std::uint64_t shift = 0; shift <= 2 * kLineBytes; ++shift) {
+      EXPECT_EQ(status_of(settings, built, kImageAddress.offset_by(shift)),
+                shift % kLineBytes == 0 ? Status::kOk : Status::kTransferAlignment)
+          << shift;
+    }
+  }
+}
+
+// The kernel takes 0 for a frame without effects.
+TEST(Images, WithEffectsLieNotAtZero) {
+  const BuiltImage built = image_with_effects();
+  EXPECT_EQ(status_of(plain_settings(), built, MainAddress{}), Status::kOk);
+  EXPECT_EQ(status_of(scene_settings_of(), built, MainAddress{}), Status::kBadFrame);
 }
 
 TEST(FramesWithEffects, SayWhereTheEffectsLie) {

@@ -54,11 +54,11 @@ inline constexpr std::uint64_t kPlanesAddress = 8192;
 /// One frame: made, put into memory, rendered, and what it wrote outside of its planes.
 class TestFrame {
  public:
-  /// @param settings  output addresses are set here. Planes start 128 bytes into a 4 KB page.
+  /// @param settings  output addresses are set here. Planes start 128 bytes and `plane_shift` into a 4 KB page.
   TestFrame(const BuiltScene& scene, FrameSettings settings, std::uint32_t queue_depth = 16,
-            Moves moves = Moves::kAtTheWait) {
+            Moves moves = Moves::kAtTheWait, std::uint64_t plane_shift = 0) {
     plane_bytes_ = output_plane_bytes(settings.width, settings.height, settings.tile_width);
-    settings.color = {kPlanesAddress + kLineBytes};
+    settings.color = {kPlanesAddress + kLineBytes + plane_shift};
     settings.depth = {settings.color.value + plane_bytes_ + kLineBytes};
     settings.ids = {settings.depth.value + plane_bytes_ + kLineBytes};
     const std::uint64_t image_address = round_up(settings.ids.value + plane_bytes_ + kLineBytes, std::uint64_t{4096});
@@ -94,7 +94,7 @@ class TestFrame {
 
   /// @returns true where the lines between the planes are as they were.
   [[nodiscard]] bool gaps_are_untouched() const {
-    for (std::uint64_t gap = kPlanesAddress; gap <= record.id_address + plane_bytes_;
+    for (std::uint64_t gap = record.color_address - kLineBytes; gap <= record.id_address + plane_bytes_;
          gap += plane_bytes_ + kLineBytes) {
       for (std::uint64_t i = 0; i < kLineBytes; ++i) {
         if (*platform->at(gap + i) != std::byte{0xA5}) return false;

@@ -138,6 +138,17 @@ TEST_F(TileRendererTest, StreamedTableAndLongRunsChangeNothing) {
   expect_clean(frame);
 }
 
+// Every place that make_frame_record takes does for every transfer.
+TEST_F(TileRendererTest, PlanesMayLieAtEveryMultipleOfTheirAlignment) {
+  for (std::uint64_t shift = kPlaneAlignment; shift < kLineBytes; shift += kPlaneAlignment) {
+    TestFrame frame(fine_scene(), settings_of(64, 48, Normal::kTileWidth), 16, Moves::kAtTheWait, shift);
+    const KernelFrame rendered = frame.render<Lanes<4>, Normal>();
+    ASSERT_EQ(rendered.status, Status::kOk);
+    EXPECT_EQ(difference(rendered, reference()), "") << shift;
+    expect_clean(frame);
+  }
+}
+
 TEST_F(TileRendererTest, CellsOfManyRunsAreTestedWhole) {
   // A grid of a few cells with dozens of triangles each.
   const BuiltScene coarse(mesh().view(), {0.05f, 3, TriangleFormat::kVertices});

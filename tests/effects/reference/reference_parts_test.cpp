@@ -34,6 +34,7 @@ TEST(ReferenceCamera, IsTheFramesBitForBit) {
                        static_cast<float>(std::tan(0.5 * double{angle} * 3.14159265358979323846 / 180.0))};
     settings.width = width;
     settings.height = height;
+    settings.color = MainAddress{kLineBytes};
     SceneImageView image{};
     image.grid.triangle_format = static_cast<std::uint32_t>(TriangleFormat::kVertices);
     FrameRecord frame{};

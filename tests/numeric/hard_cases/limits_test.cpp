@@ -230,8 +230,10 @@ void refuse_absurd_frames(const TestMesh& mesh) {
     EXPECT_TRUE(absurd == 0 || frame.render({}).status != Status::kOk) << absurd;
   }
   frame.set_record(good);
-  settings.width = 0xFFFFFFFFu;
+  settings.color = MainAddress{kLineBytes};
   FrameRecord refused;
+  EXPECT_EQ(make_frame_record(settings, scene.image(), MainAddress{}, refused), Status::kOk);
+  settings.width = 0xFFFFFFFFu;
   EXPECT_EQ(make_frame_record(settings, scene.image(), MainAddress{}, refused), Status::kBadFrame);
   EXPECT_EQ(output_plane_bytes(0xFFFFFFFFu, 1, 32), (std::uint64_t{1} << 32) * 32 * 4);
 }

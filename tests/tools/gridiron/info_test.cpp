@@ -94,6 +94,127 @@ TEST(Info, TellsTheWorstTileAndEveryLoop) {
   EXPECT_EQ(found, 2u);
 }
 
+// Another accuracy is another bound, of its own format; and the default is that of the format.
+TEST(Info, TheWorstTileIsOfTheAccuracyAskedFor) {
+  const TemporaryFolder folder;
+  folder.write_ply("a.ply", make_scene());
+  const Json usual = info_json(folder, {"a.ply"});
+  const Json standard = info_json(folder, {"a.ply", "--accuracy", "standard"});
+  EXPECT_EQ(usual, standard);
+  const Json exact = info_json(folder, {"a.ply", "--accuracy", "exact"});
+  EXPECT_EQ(exact["grid"], usual["grid"]);
+  EXPECT_EQ(exact["local_store"], usual["local_store"]);
+  EXPECT_EQ(exact["worst_tile"]["accuracy"], "exact");
+  // Once more for each ray alone: a tile of 32x32.
+  EXPECT_EQ(exact["worst_tile"]["work"]["packet_start"],
+            usual["worst_tile"]["work"]["packet_start"].get<std::uint64_t>() + 32 * 32);
+  EXPECT_TRUE(exact["worst_tile"]["work"].contains("exact_order"));
+  EXPECT_FALSE(usual["worst_tile"]["work"].contains("exact_order"));
+  for (const auto& [accuracy, format] :
+       {std::pair{"paper", "projection"}, {"fast", "vertices"}, {"compact", "lattice"}}) {
+    const Json info = info_json(folder, {"a.ply", "--accuracy", accuracy});
+    EXPECT_EQ(info["worst_tile"]["accuracy"], accuracy);
+    EXPECT_EQ(info["grid"]["triangle_format"], format);
+    if (info["grid"]["triangle_format"] == "vertices") continue;
+    EXPECT_EQ(info, info_json(folder, {"a.ply", "--format", format})) << "each is the only one of its format";
+  }
+}
+
+TEST(Info, AnAccuracyThatAPackedSceneDoesNotServeIsRefused) {
+  const TemporaryFolder folder;
+  folder.write_ply("a.ply", make_scene());
+  ASSERT_EQ(run_program(folder.folder(), {"pack", "a.ply", "-o", "a.gri"}).exit_code, 0);
+  EXPECT_EQ(info_json(folder, {"a.gri", "--accuracy", "exact"})["worst_tile"],
+            info_json(folder, {"a.ply", "--accuracy", "exact"})["worst_tile"]);
+  const ProgramResult result = run_program(folder.folder(), {"info", "a.gri", "--accuracy", "paper"});
+  EXPECT_EQ(result.exit_code, 1);
+  EXPECT_NE(result.err.find("was packed with --format vertices; this needs --format projection"), std::string::npos)
+      << result.err;
+}
+
+// The map, the bound and the loops are of the same layout.
+TEST(Info, TheLayoutFollowsThePackets) {
+  const TemporaryFolder folder;
+  folder.write_ply("a.ply", make_scene());
+  const auto packet_bytes = [](const Json& info) {
+    for (const Json& region : info["local_store"]["regions"]) {
+      if (region["name"] == "packet") return region["bytes"].get<int>();
+    }
+    return 0;
+  };
+  int last_bytes = 0;
+  for (const int width : {4, 8, 16, 32}) {
+    const Json info = info_json(folder, {"a.ply", "--packet", std::to_string(width)});
+    EXPECT_EQ(info["worst_tile"]["packet_width"], width);
+    const int across = 32 / width;
+    EXPECT_EQ(info["worst_tile"]["work"]["packet_start"], across * across * 6 * 2 + 2);
+    EXPECT_EQ(info["effects"]["renderer"], "StoreLayout256K<" + std::to_string(width) + ">");
+    EXPECT_GT(packet_bytes(info), last_bytes);
+    last_bytes = packet_bytes(info);
+    bool found = false;
+    for (const Json& loop : info["loops"]) {
+      if (loop["bound"] != "packets_across") continue;
+      EXPECT_EQ(loop["most_turns"], across);
+      found = true;
+    }
+    EXPECT_TRUE(found);
+  }
+  EXPECT_EQ(info_json(folder, {"a.ply", "--packet", "8"}), info_json(folder, {"a.ply"}));
+  // A store that was not asked for is one with a kernel for the packets, as it is for render.
+  folder.write("big.machine", "based_on cell-ps3\nlocal_store_bytes 524288\n");
+  const Json smaller = info_json(folder, {"a.ply", "--packet", "4", "--machine", "big.machine"});
+  EXPECT_EQ(smaller["local_store"]["arena_bytes"], 262144);
+}
+
+TEST(Info, APlaneOfDistancesCountsItsBytesAndItsWork) {
+  const TemporaryFolder folder;
+  folder.write_ply("a.ply", make_scene());
+  const Json without = info_json(folder, {"a.ply"});
+  const Json with = info_json(folder, {"a.ply", "--depth"});
+  EXPECT_EQ(with["local_store"], without["local_store"]);
+  EXPECT_EQ(without["worst_tile"]["depth"], false);
+  EXPECT_EQ(with["worst_tile"]["depth"], true);
+  EXPECT_EQ(with["worst_tile"]["dma"]["put_bytes"], 2 * 32 * 32 * 4);
+  EXPECT_EQ(with["worst_tile"]["work"]["depth_group"], 32 * 32 / 4);
+  EXPECT_EQ(with["main_memory"]["picture_bytes"],
+            without["main_memory"]["picture_bytes"].get<std::uint64_t>() + 1024 * 1024 * 4);
+  EXPECT_FALSE(without["worst_tile"]["work"].contains("depth_group"));
+}
+
+// What there is no image to count of is null, not missing.
+TEST(Info, WithoutAnImageThatFitsThereIsNoWorstTile) {
+  const TemporaryFolder folder;
+  folder.write_ply("a.ply", make_torus(100, 100, 1.0f, 0.4f));
+  folder.write("small.machine", "based_on cell-ps3\nmain_memory_bytes 1048576\n");
+  const Json info = info_json(folder, {"a.ply", "--machine", "small.machine", "--lambda", "8", "--size", "64x64"});
+  EXPECT_EQ(info["main_memory"]["fits"], false);
+  ASSERT_TRUE(info.contains("worst_tile") && info.contains("loops"));
+  EXPECT_TRUE(info["worst_tile"].is_null());
+  EXPECT_TRUE(info["loops"].is_null());
+  EXPECT_GT(info["loop_bounds"]["cells_per_pass"], 0);
+}
+
+// A machine whose prices are instructions says so, and one that is based on it.
+TEST(Info, WhatIsCountedInInstructionsIsCalledSo) {
+  const TemporaryFolder folder;
+  folder.write_ply("a.ply", make_scene());
+  folder.write("board.machine", "based_on fu540\ncore_count 2\n");
+  const auto worst_line = [&folder](const std::string& machine) {
+    const ProgramResult result = run_program(folder.folder(), {"info", "a.ply", "--machine", machine});
+    EXPECT_EQ(result.exit_code, 0) << result.err;
+    const std::size_t begin = result.out.find("\nworst tile");
+    EXPECT_NE(begin, std::string::npos) << result.out;
+    return begin == std::string::npos ? "" : result.out.substr(begin);
+  };
+  for (const auto& [machine, unit, other] :
+       {std::tuple{"cell-ps3", "cycles", "instructions"}, {"fu540", "instructions", "cycles"},
+        {"board.machine", "instructions", "cycles"}}) {
+    EXPECT_NE(worst_line(machine).find(std::string(unit) + " of work"), std::string::npos) << machine;
+    EXPECT_EQ(worst_line(machine).find(other), std::string::npos) << machine;
+    EXPECT_EQ(info_json(folder, {"a.ply", "--machine", machine})["worst_tile"]["cycles_are"], unit);
+  }
+}
+
 TEST(Info, EachStoreHasItsMap) {
   const TemporaryFolder folder;
   folder.write_ply("a.ply", make_scene());
