@@ -277,12 +277,12 @@ void print_text(const InfoArguments& arguments, const SceneFacts& facts, const S
   }
   print_effects(arguments, facts, store);
   print_line("loop bounds", "per packet " + std::to_string(facts.bounds.passes_per_packet) +
-                                " passes, twice where hits are left open, with exact also one for each ray; per pass " +
-                                words_of_count(facts.bounds.macro_slices_per_pass) + " macro slices, " +
-                                words_of_count(facts.bounds.macro_cells_per_pass) + " macrocells, " +
-                                words_of_count(facts.bounds.slices_per_pass) + " slices, " +
-                                words_of_count(facts.bounds.cells_per_pass) + " cells, " +
-                                words_of_count(facts.bounds.triangle_tests_per_pass) + " triangle tests");
+                                " passes, twice where hits are left open, with exact also one for each ray");
+  print_line("", "per pass " + words_of_count(facts.bounds.macro_slices_per_pass) + " macro slices, " +
+                     words_of_count(facts.bounds.macro_cells_per_pass) + " macrocells, " +
+                     words_of_count(facts.bounds.slices_per_pass) + " slices, " +
+                     words_of_count(facts.bounds.cells_per_pass) + " cells, " +
+                     words_of_count(facts.bounds.triangle_tests_per_pass) + " triangle tests");
   if (facts.worst) {
     const WorstTile& worst = *facts.worst;
     std::snprintf(text, sizeof text, " at most %.3g %s of work, %.3g with all waits; ", worst.cycles.work,
