@@ -26,10 +26,12 @@ Vec3 to_vec3(double x, double y, double z) {
 
 }  // namespace
 
+// A mesh may be appended to itself: what it has is counted first.
 void TestMesh::append(const TestMesh& other) {
   const auto base = static_cast<std::uint32_t>(vertices.size());
-  vertices.insert(vertices.end(), other.vertices.begin(), other.vertices.end());
-  for (const UVec3& t : other.triangles) triangles.push_back({t.x + base, t.y + base, t.z + base});
+  const std::size_t vertex_count = other.vertices.size(), triangle_count = other.triangles.size();
+  for (std::size_t i = 0; i < vertex_count; ++i) vertices.push_back(Vec3(other.vertices[i]));
+  for (std::size_t i = 0; i < triangle_count; ++i) triangles.push_back(other.triangles[i] + UVec3(base));
 }
 
 void TestMesh::snap() {
