@@ -66,6 +66,13 @@ class ImageHead {
            refuse("scene image: ", name, " of ", entry->section_bytes, " bytes for ", count);
   }
 
+  // A section of one record; null where the image has none, which has been told then.
+  template <class Record>
+  [[nodiscard]] const Record* find(SectionKind kind, const char* name) const {
+    if (!has(kind, name, 1, sizeof(Record))) return nullptr;
+    return reinterpret_cast<const Record*>(static_cast<std::uintptr_t>(address_of(kind)));
+  }
+
   // 0 where it has none.
   [[nodiscard]] std::uint64_t address_of(SectionKind kind) const {
     const SectionEntry* entry = sections_[static_cast<std::uint32_t>(kind)];
@@ -95,21 +102,21 @@ bool check_picture(const FrameJob& job, const FrameRecord& frame) {
 }
 
 bool check_grid(const FrameRecord& frame, const ImageHead& image) {
-  if (!image.has(SectionKind::kGrid, "grid", 1, sizeof(GridRecord))) return false;
-  const auto& grid = record_at<GridRecord>(image.address_of(SectionKind::kGrid));
+  const GridRecord* const grid = image.find<GridRecord>(SectionKind::kGrid, "grid");
+  if (grid == nullptr) return false;
   // Bit for bit: no floating point here.
-  if (std::memcmp(reinterpret_cast<const std::byte*>(&frame.grid), reinterpret_cast<const std::byte*>(&grid),
-                  sizeof grid) != 0) {
+  if (std::memcmp(reinterpret_cast<const std::byte*>(&frame.grid), reinterpret_cast<const std::byte*>(grid),
+                  sizeof *grid) != 0) {
     return refuse("frame record: the grid is not the scene image's");
   }
   std::uint64_t macro_cells = 1;
-  for (const std::uint32_t count : grid.macro_cell_count) {
+  for (const std::uint32_t count : grid->macro_cell_count) {
     if (count > kMaxCellsPerAxis) return refuse("scene image: macrocells along an axis: ", count);
     macro_cells *= count;
   }
   return image.has(SectionKind::kMacroTable, "macrocell table", (macro_cells + 31) / 32, sizeof(MacroTableEntry)) &&
-         image.has(SectionKind::kCellBlocks, "cell blocks", grid.cell_block_count, grid.cell_block_bytes) &&
-         image.has(SectionKind::kTriangles, "triangles", grid.reference_count, grid.triangle_bytes) &&
+         image.has(SectionKind::kCellBlocks, "cell blocks", grid->cell_block_count, grid->cell_block_bytes) &&
+         image.has(SectionKind::kTriangles, "triangles", grid->reference_count, grid->triangle_bytes) &&
          is_of_image("macro table address", frame.macro_table_address, image.address_of(SectionKind::kMacroTable)) &&
          is_of_image("cell blocks address", frame.cell_blocks_address, image.address_of(SectionKind::kCellBlocks)) &&
          is_of_image("triangles address", frame.triangles_address, image.address_of(SectionKind::kTriangles));
@@ -141,28 +148,29 @@ bool check_effects(const FrameJob& job, const FrameRecord& frame, const ImageHea
     if (job.effects != 0) return refuse("frame record: shading ", frame.shading, " of a job with effects");
     return is_of_job("effects address", frame.effects_address, 0) && is_of_job("image address", frame.image_address, 0);
   }
-  if (!image.has(SectionKind::kEffects, "effects", 1, sizeof(EffectsRecord)) ||
+  const EffectsRecord* const effects = image.find<EffectsRecord>(SectionKind::kEffects, "effects");
+  if (effects == nullptr ||
       !is_of_image("effects address", frame.effects_address, image.address_of(SectionKind::kEffects)) ||
       !is_of_job("image address", frame.image_address, job.image_address)) {
     return false;
   }
-  const auto& effects = record_at<EffectsRecord>(frame.effects_address);
-  if (effects.called_for != job.effects) {
-    return refuse("effects ", Hex{job.effects}, ", the scene image calls for ", Hex{effects.called_for});
+  if (effects->called_for != job.effects) {
+    return refuse("effects ", Hex{job.effects}, ", the scene image calls for ", Hex{effects->called_for});
   }
-  if (effects.material_count > kMaxMaterials || effects.light_count > kMaxLights ||
-      effects.environment_width > kMaxEnvironmentWidth) {
+  if (effects->material_count > kMaxMaterials || effects->light_count > kMaxLights ||
+      effects->environment_width > kMaxEnvironmentWidth) {
     return refuse("scene image: more materials, lights or environment than a scene has");
   }
-  const std::uint64_t edge = effects.environment_width == 0 ? 0 : environment_blocks(effects.environment_width);
-  return has_records(image, "materials", effects.materials_offset_bytes, effects.material_count,
+  const std::uint64_t edge = effects->environment_width == 0 ? 0 : environment_blocks(effects->environment_width);
+  return has_records(image, "materials", effects->materials_offset_bytes, effects->material_count,
                      sizeof(MaterialRecord)) &&
-         has_records(image, "lights", effects.lights_offset_bytes, effects.light_count, sizeof(LightRecord)) &&
-         has_records(image, "surfaces", effects.surfaces_offset_bytes, image.header().triangle_count,
+         has_records(image, "lights", effects->lights_offset_bytes, effects->light_count, sizeof(LightRecord)) &&
+         has_records(image, "surfaces", effects->surfaces_offset_bytes, image.header().triangle_count,
                      sizeof(SurfaceRecord)) &&
-         has_records(image, "normals", effects.normals_offset_bytes, effects.smooth_triangle_count,
+         has_records(image, "normals", effects->normals_offset_bytes, effects->smooth_triangle_count,
                      sizeof(NormalRecord)) &&
-         has_records(image, "environment", effects.environment_offset_bytes, 6 * edge * edge, sizeof(EnvironmentBlock));
+         has_records(image, "environment", effects->environment_offset_bytes, 6 * edge * edge,
+                     sizeof(EnvironmentBlock));
 }
 
 }  // namespace

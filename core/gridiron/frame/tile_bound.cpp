@@ -351,7 +351,7 @@ TileScene count_tile_scene(std::span<const std::byte> image, const SceneImageVie
   std::uint64_t occupied_slices[3] = {};
   for (int axis = 0; axis < 3; ++axis) {
     scene.macro_slices = macro[axis] > scene.macro_slices ? macro[axis] : scene.macro_slices;
-    const std::uint64_t slices = scene.macro_cells / macro[axis] * grid.cell_count[axis];
+    const std::uint64_t slices = std::uint64_t{macro[(axis + 1) % 3]} * macro[(axis + 2) % 3] * grid.cell_count[axis];
     scene.slices = slices > scene.slices ? slices : scene.slices;
   }
   const auto* const table = reinterpret_cast<const MacroTableEntry*>(image.data() + view.macro_table_offset_bytes);

@@ -73,7 +73,7 @@ class TileRenderer {
 
     // The output buffer's last tile must have left.
     const std::uint32_t slot = output_slot_;
-    const std::uint8_t tag = static_cast<std::uint8_t>(kFirstOutputTag + slot);
+    const std::uint8_t tag = output_tag(slot);
     output_slot_ = output_slot_ + 1 == frame.output_depth ? 0 : output_slot_ + 1;
     GRIDIRON_TRY(transfers_.wait(tag));
 
@@ -250,7 +250,7 @@ class TileRenderer {
   // Waits for the tiles still on their way, the oldest first: the order does not tell how many tiles this core had.
   [[nodiscard]] Status finish(Status outcome) {
     for (std::uint32_t i = 0; i < store_.frame.output_depth; ++i) {
-      GRIDIRON_TRY(transfers_.wait(static_cast<std::uint8_t>(kFirstOutputTag + output_slot_)));
+      GRIDIRON_TRY(transfers_.wait(output_tag(output_slot_)));
       output_slot_ = output_slot_ + 1 == store_.frame.output_depth ? 0 : output_slot_ + 1;
     }
     return outcome;

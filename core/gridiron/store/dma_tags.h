@@ -18,4 +18,9 @@ static_assert(kFirstMacroTag + kMacroTagCount == kFirstTriangleTag);
 static_assert(kFirstTriangleTag + kTriangleTagCount == kFirstOutputTag);
 static_assert(kFirstOutputTag + kOutputTagCount == 32);
 
+/// Tag of an output buffer; a tag of output whatever the number.
+constexpr std::uint8_t output_tag(std::uint32_t slot) {
+  return static_cast<std::uint8_t>(kFirstOutputTag + slot % kOutputTagCount);
+}
+
 }  // namespace gridiron
