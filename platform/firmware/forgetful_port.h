@@ -7,31 +7,27 @@
 
 #include <cstdint>
 
+#include "passing_port.h"
+
 namespace gridiron::port {
 
 /// Leaves out every 16th wait for triangles.
 template <Platform P>
-class ForgetfulPort {
+class ForgetfulPort : public PassingPort<P> {
  public:
-  explicit ForgetfulPort(P& port) : port_(port) {}
+  using PassingPort<P>::PassingPort;
 
-  [[nodiscard]] PlatformLimits limits() const { return port_.limits(); }
-  Status get(void* local, MainAddress address, std::uint32_t bytes, Tag tag) {
-    return port_.get(local, address, bytes, tag);
-  }
-  Status put(const void* local, MainAddress address, std::uint32_t bytes, Tag tag) {
-    return port_.put(local, address, bytes, tag);
-  }
   Status wait(TagMask tags) {
     constexpr std::uint32_t kTriangleTags = ((1u << kTriangleTagCount) - 1u) << kFirstTriangleTag;
     if ((tags.bits & kTriangleTags) != 0 && ++waits_ % 16 == 0) return Status::kOk;
-    return port_.wait(tags);
+    return PassingPort<P>::wait(tags);
   }
-  TileClaim claim_tile() { return port_.claim_tile(); }
 
  private:
-  P& port_;
   std::uint32_t waits_ = 0;
 };
+
+template <Platform P>
+ForgetfulPort(P&) -> ForgetfulPort<P>;
 
 }  // namespace gridiron::port

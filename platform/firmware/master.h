@@ -17,14 +17,14 @@
 
 namespace gridiron::port {
 
-/// Exit codes of a run.
+/// Exit codes of a run. None is 1, with which an emulator ends that did not start.
 enum class RunExit : std::uint32_t {
   kDone = 0,        ///< every core ended with kOk, the result is written
-  kFrameFailed = 1, ///< a core ended with another status; the result is written
   kJobRefused = 2,
   kTimedOut = 3,    ///< no core finished a tile for kQuietMilliseconds
   kTrapped = 4,     ///< a core did what it must not
   kNotWritten = 5,  ///< the host did not take the result file
+  kFrameFailed = 6, ///< a core ended with another status; the result is written
 };
 
 /// What the master needs of its board.

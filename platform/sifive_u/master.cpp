@@ -12,6 +12,7 @@
 #include "memory_map.h"
 #include "scene_workshop.h"
 #include "shared_memory.h"
+#include "wrong_ports.h"
 
 namespace gridiron::port {
 
@@ -120,7 +121,9 @@ void gridiron_master() {
   const FirmwareFacts facts = firmware_facts<FirmwareLayout, FirmwareLanes>(
       "gridiron sifive_u " GRIDIRON_IMAGE, kCores, GRIDIRON_MEMORY_END, kMostTiles);
   Monitor monitor;
-  shared_memory.trespass = number_option("trespass=", 0);
+#ifdef GRIDIRON_TRESPASS
+  shared_memory.trespass = wanted_trespass(kTrespassCount);
+#endif
   const auto& job = *reinterpret_cast<const FrameJob*>(GRIDIRON_JOB);
   Master<Monitor> master(monitor, facts, job, shared_memory.control, shared_memory.tiles);
 #ifdef GRIDIRON_DYNAMIC

@@ -21,7 +21,7 @@ void gridiron_master() {
   const FirmwareFacts facts = firmware_facts<FirmwareLayout, FirmwareLanes>(
       "gridiron virt " GRIDIRON_IMAGE, kWorkerCount, address_of(job_end), kMostTiles);
 #ifdef GRIDIRON_TRESPASS
-  gridiron_shared.trespass = number_option("trespass=", 0);
+  gridiron_shared.trespass = wanted_trespass(kTrespassCount);
 #endif
   const auto& job = *reinterpret_cast<const FrameJob*>(job_begin);
   VirtMaster board;

@@ -10,30 +10,28 @@
 #include "clint.h"
 #include "engine.h"
 #include "memory_map.h"
+#include "passing_port.h"
+#include "trespassing.h"
 
 namespace gridiron::port {
 
+inline constexpr std::uint64_t kTrespassCount = 15;
+
 /// What worker 1 must not do itself. @param kind  1 to 12; others: nothing.
 inline void trespass(std::uint64_t kind) {
-  const auto load = [](std::uint64_t address) {
-    (void)*reinterpret_cast<const volatile std::uint32_t*>(static_cast<std::uintptr_t>(address));
-  };
-  const auto store = [](std::uint64_t address) {
-    *reinterpret_cast<volatile std::uint32_t*>(static_cast<std::uintptr_t>(address)) = 0;
-  };
   const std::uint64_t arena = address_of(&gridiron_arenas[1]);
   switch (kind) {
-    case 1: load(arena - kArenaBytes); break;   // a neighbour's first word
-    case 2: store(arena - 4); break;            // what a stack that is too deep meets
-    case 3: load(arena + kArenaBytes); break;   // the first word behind its own
-    case 4: store(address_of(code_begin) + 64); break;
-    case 5: load(address_of(code_end)); break;  // the master's data
-    case 6: load(address_of(job_begin)); break;
-    case 7: store(address_of(job_end) - 4); break;
-    case 8: store(kClint); break;                // another hart's software interrupt
-    case 9: store(kUart); break;
-    case 10: store(kFinisher); break;
-    case 11: reinterpret_cast<void (*)()>(arena + kArenaBytes / 2)(); break;  // code in its own arena
+    case 1: load_from(arena - kArenaBytes); break;     // a neighbour's first word
+    case 2: store_to(arena - 4); break;                // what a stack that is too deep meets
+    case 3: load_from(arena + kArenaBytes); break;     // the first word behind its own
+    case 4: store_to(address_of(code_begin) + 64); break;
+    case 5: load_from(address_of(code_end)); break;    // the master's data
+    case 6: load_from(address_of(job_begin)); break;
+    case 7: store_to(address_of(job_end) - 4); break;
+    case 8: store_to(kClint); break;                   // another hart's software interrupt
+    case 9: store_to(kUart); break;
+    case 10: store_to(kFinisher); break;
+    case 11: execute(arena + kArenaBytes / 2); break;  // code in its own arena
     case 12: asm volatile("csrw pmpcfg0, zero"); break;
     default: break;
   }
@@ -42,14 +40,13 @@ inline void trespass(std::uint64_t kind) {
 /// Asks for transfers with an end that is not the job's memory or the core's own: of kind 13 a get from the code, of 14
 /// puts from the neighbour's arena, of 15 the same without the port. Others are handed on as they are.
 template <Platform P>
-class TrespassingPort {
+class TrespassingPort : public PassingPort<P> {
  public:
-  TrespassingPort(P& port, std::uint64_t kind) : port_(port), kind_(kind) {}
+  TrespassingPort(P& port, std::uint64_t kind) : PassingPort<P>(port), kind_(kind) {}
 
-  [[nodiscard]] PlatformLimits limits() const { return port_.limits(); }
   Status get(void* local, MainAddress address, std::uint32_t bytes, Tag tag) {
     if (kind_ == 13 && ++gets_ == 10) address.value = address_of(code_begin) + address.value % 4096;
-    return port_.get(local, address, bytes, tag);
+    return PassingPort<P>::get(local, address, bytes, tag);
   }
   Status put(const void* local, MainAddress address, std::uint32_t bytes, Tag tag) {
     if (kind_ == 15) {
@@ -57,13 +54,10 @@ class TrespassingPort {
       return gridiron_call(address.value, source, bytes, Call::kCopy) == 0 ? Status::kTransferFailed : Status::kOk;
     }
     if (kind_ == 14) local = static_cast<const std::byte*>(local) - kArenaBytes;
-    return port_.put(local, address, bytes, tag);
+    return PassingPort<P>::put(local, address, bytes, tag);
   }
-  Status wait(TagMask tags) { return port_.wait(tags); }
-  TileClaim claim_tile() { return port_.claim_tile(); }
 
  private:
-  P& port_;
   std::uint64_t kind_;
   std::uint32_t gets_ = 0;
 };

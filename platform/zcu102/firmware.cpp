@@ -85,7 +85,7 @@ constexpr Arena* kArenas[kCoreCount] = {&arena0, &arena1, &arena2, &arena3};
 RunControl control;
 TileResult tiles[kMostTiles];
 #ifdef GRIDIRON_TRESPASS
-std::uint64_t wanted_trespass;
+std::uint64_t trespass_kind;
 #endif
 
 // Core 0 tells how far the frame is when it claims a tile; the master's own words come when it has none left.
@@ -116,7 +116,7 @@ void work(std::uint64_t core) {
   Arena& arena = *kArenas[index];
   TellingBoard board(index, arena);
 #ifdef GRIDIRON_TRESPASS
-  const std::uint64_t kind = index == 1 ? wanted_trespass : 0;
+  const std::uint64_t kind = index == 1 ? trespass_kind : 0;
   trespass(kind);
 #endif
   TemplatePort<TellingBoard> port(board);
@@ -183,7 +183,7 @@ void master_entry() {
   const FirmwareFacts facts = firmware_facts<FirmwareLayout, FirmwareLanes>(
       "gridiron zcu102 " GRIDIRON_IMAGE, kCoreCount, kMainMemoryEnd, kMostTiles, kBoardStackBytes);
 #ifdef GRIDIRON_TRESPASS
-  wanted_trespass = number_option("trespass=", 0);
+  trespass_kind = wanted_trespass(kTrespassCount);
 #endif
   ZynqMaster board(job);
   Master<ZynqMaster> master(board, facts, job, control, tiles);

@@ -60,6 +60,7 @@ emulate() {
   emulator=
   grep -v 'audiodev default parameter is deprecated' "$work/words.log" >&2 || true
 
+  [ $status -ne 1 ] || fail 'the emulator did not run'
   [ -f "$work/emulator.log" ] || fail 'the emulator has left no log'
   if grep -v "$harmless" "$work/emulator.log" > "$work/errors"; then
     echo "$me: the emulator saw what no device or memory answers:" >&2

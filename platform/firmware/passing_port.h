@@ -1,0 +1,30 @@
+// A port that hands every call on to another: what is wrong on purpose replaces the call it is wrong in.
+// Memory: none. Threads: one worker. SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <gridiron/platform/contract.h>
+
+#include <cstdint>
+
+namespace gridiron::port {
+
+template <Platform P>
+class PassingPort {
+ public:
+  explicit PassingPort(P& port) : port_(port) {}
+
+  [[nodiscard]] PlatformLimits limits() const { return port_.limits(); }
+  Status get(void* local, MainAddress address, std::uint32_t bytes, Tag tag) {
+    return port_.get(local, address, bytes, tag);
+  }
+  Status put(const void* local, MainAddress address, std::uint32_t bytes, Tag tag) {
+    return port_.put(local, address, bytes, tag);
+  }
+  Status wait(TagMask tags) { return port_.wait(tags); }
+  TileClaim claim_tile() { return port_.claim_tile(); }
+
+ private:
+  P& port_;
+};
+
+}  // namespace gridiron::port
