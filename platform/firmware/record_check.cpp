@@ -4,6 +4,7 @@
 
 #include <gridiron/base/effect_records.h>
 #include <gridiron/base/records.h>
+#include <gridiron/base/triangle_formats.h>
 
 #include <cstddef>
 #include <cstdint>
@@ -28,6 +29,10 @@ bool is_of_job(const char* field, std::uint64_t value, std::uint64_t wanted) {
 
 bool is_of_image(const char* field, std::uint64_t value, std::uint64_t wanted) {
   return value == wanted || refuse("frame record: ", field, " ", Hex{value}, ", the scene image's is ", Hex{wanted});
+}
+
+bool is_of_format(const char* field, std::uint64_t value, std::uint64_t wanted) {
+  return value == wanted || refuse("scene image: ", field, ": ", value, ", its triangles' format has ", wanted);
 }
 
 // Where the sections of an image lie.
@@ -109,12 +114,24 @@ bool check_grid(const FrameRecord& frame, const ImageHead& image) {
                   sizeof *grid) != 0) {
     return refuse("frame record: the grid is not the scene image's");
   }
+  // What sizes and steps of the walk follow from; the same rules as open_scene_image's.
+  if (grid->macro_width < 1 || grid->macro_width > kMaxMacroWidth) {
+    return refuse("scene image: macrocells of ", grid->macro_width, " cells");
+  }
   std::uint64_t macro_cells = 1;
-  for (const std::uint32_t count : grid->macro_cell_count) {
-    if (count > kMaxCellsPerAxis) return refuse("scene image: macrocells along an axis: ", count);
+  for (int axis = 0; axis < 3; ++axis) {
+    const std::uint32_t cells = grid->cell_count[axis], count = grid->macro_cell_count[axis];
+    if (cells < 1 || cells > kMaxCellsPerAxis) return refuse("scene image: cells along an axis: ", cells);
+    if (count != (cells + grid->macro_width - 1) / grid->macro_width) {
+      return refuse("scene image: macrocells along an axis: ", count, " for ", cells, " cells");
+    }
     macro_cells *= count;
   }
-  return image.has(SectionKind::kMacroTable, "macrocell table", (macro_cells + 31) / 32, sizeof(MacroTableEntry)) &&
+  const auto format = static_cast<TriangleFormat>(grid->triangle_format);
+  const std::uint32_t block_bytes = cell_block_bytes_of(format, grid->macro_width);
+  return is_of_format("bytes of a triangle", grid->triangle_bytes, triangle_bytes_of(format)) &&
+         is_of_format("bytes of a cell block", grid->cell_block_bytes, block_bytes) &&
+         image.has(SectionKind::kMacroTable, "macrocell table", (macro_cells + 31) / 32, sizeof(MacroTableEntry)) &&
          image.has(SectionKind::kCellBlocks, "cell blocks", grid->cell_block_count, grid->cell_block_bytes) &&
          image.has(SectionKind::kTriangles, "triangles", grid->reference_count, grid->triangle_bytes) &&
          is_of_image("macro table address", frame.macro_table_address, image.address_of(SectionKind::kMacroTable)) &&
@@ -126,9 +143,7 @@ bool check_accuracy(const FrameRecord& frame) {
   if (frame.accuracy > static_cast<std::uint32_t>(Accuracy::kCompact)) {
     return refuse("frame record: accuracy ", frame.accuracy);
   }
-  TriangleFormat format = TriangleFormat::kVertices;
-  if (frame.accuracy == static_cast<std::uint32_t>(Accuracy::kPaper)) format = TriangleFormat::kProjection;
-  if (frame.accuracy == static_cast<std::uint32_t>(Accuracy::kCompact)) format = TriangleFormat::kLattice;
+  const TriangleFormat format = format_of(static_cast<Accuracy>(frame.accuracy));
   return frame.grid.triangle_format == static_cast<std::uint32_t>(format) ||
          refuse("frame record: accuracy ", frame.accuracy, " of triangles of format ", frame.grid.triangle_format);
 }
@@ -157,9 +172,28 @@ bool check_effects(const FrameJob& job, const FrameRecord& frame, const ImageHea
   if (effects->called_for != job.effects) {
     return refuse("effects ", Hex{job.effects}, ", the scene image calls for ", Hex{effects->called_for});
   }
+  const auto calls_for = [effects](std::uint32_t bits) { return (effects->called_for & bits) != 0; };
   if (effects->material_count > kMaxMaterials || effects->light_count > kMaxLights ||
       effects->environment_width > kMaxEnvironmentWidth) {
     return refuse("scene image: more materials, lights or environment than a scene has");
+  }
+  // What loops, queues and addresses follow from. Of single lights and materials the firmware reads none.
+  if (effects->recursion_depth < 1 || effects->recursion_depth > kMaxRecursionDepth) {
+    return refuse("scene image: recursion depth ", effects->recursion_depth);
+  }
+  const std::uint32_t samples = effects->samples_per_pixel;
+  if ((samples != 1 && samples != 4 && samples != 16) || calls_for(kMultisampling) != (samples > 1)) {
+    return refuse("scene image: ", samples, " samples of a pixel");
+  }
+  if (effects->occlusion_samples > kMaxEffectSamples ||
+      calls_for(kAmbientOcclusion) != (effects->occlusion_samples != 0)) {
+    return refuse("scene image: ", effects->occlusion_samples, " samples of occlusion");
+  }
+  if (effects->point_light_count > effects->light_count) {
+    return refuse("scene image: ", effects->point_light_count, " point lights of ", effects->light_count);
+  }
+  if (calls_for(kEnvironment) != (effects->environment_width != 0)) {
+    return refuse("scene image: an environment of ", effects->environment_width, " texels");
   }
   const std::uint64_t edge = effects->environment_width == 0 ? 0 : environment_blocks(effects->environment_width);
   return has_records(image, "materials", effects->materials_offset_bytes, effects->material_count,

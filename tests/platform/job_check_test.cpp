@@ -178,7 +178,27 @@ TEST(JobCheck, HoldsTheImageAgainstTheJob) {
        {"scene image: macrocell table", [](Memory& m) { m.section(SectionKind::kMacroTable).section_bytes = 0; }},
        {"scene image: cell blocks",
         [](Memory& m) { m.record().grid.cell_block_count = m.grid().cell_block_count = ~0u; }},
-       {"scene image: triangles", [](Memory& m) { m.record().grid.triangle_bytes = m.grid().triangle_bytes = 0; }}});
+       {"scene image: triangles",
+        [](Memory& m) { m.record().grid.reference_count = m.grid().reference_count = ~0u; }},
+       {"scene image: bytes of a triangle: 0",
+        [](Memory& m) { m.record().grid.triangle_bytes = m.grid().triangle_bytes = 0; }},
+       {"scene image: bytes of a triangle: 1",
+        [](Memory& m) { m.record().grid.triangle_bytes = m.grid().triangle_bytes = 1; }},
+       {"scene image: bytes of a cell block",
+        [](Memory& m) { m.record().grid.cell_block_bytes = m.grid().cell_block_bytes = 32; }},
+       {"scene image: macrocells of 9 cells",
+        [](Memory& m) { m.record().grid.macro_width = m.grid().macro_width = 9; }},
+       {"scene image: macrocells of 0 cells",
+        [](Memory& m) { m.record().grid.macro_width = m.grid().macro_width = 0; }},
+       {"scene image: cells along an axis: 0",
+        [](Memory& m) { m.record().grid.cell_count[2] = m.grid().cell_count[2] = 0; }},
+       {"scene image: cells along an axis: 2049",
+        [](Memory& m) { m.record().grid.cell_count[0] = m.grid().cell_count[0] = 2049; }},
+       {"scene image: macrocells along an axis: 1 for 2048",
+        [](Memory& m) {
+          m.record().grid.cell_count[1] = m.grid().cell_count[1] = 2048;
+          m.record().grid.macro_cell_count[1] = m.grid().macro_cell_count[1] = 1;
+        }}});
 }
 
 TEST(JobCheck, HoldsEffectsAgainstTheJob) {
@@ -196,6 +216,16 @@ TEST(JobCheck, HoldsEffectsAgainstTheJob) {
                            {"scene image: surfaces", [](Memory& m) { m.header().triangle_count = ~0u; }},
                            {"scene image: normals", [](Memory& m) { m.effects().smooth_triangle_count = ~0u; }},
                            {"scene image: environment", [](Memory& m) { m.effects().environment_offset_bytes = kFar; }},
+                           {"scene image: recursion depth 0", [](Memory& m) { m.effects().recursion_depth = 0; }},
+                           {"scene image: recursion depth 9", [](Memory& m) { m.effects().recursion_depth = 9; }},
+                           // Of which the bytes of waiting rays are none, modulo 2^32.
+                           {"scene image: recursion depth", [](Memory& m) { m.effects().recursion_depth = 8388606; }},
+                           {"scene image: 1 samples", [](Memory& m) { m.effects().samples_per_pixel = 1; }},
+                           {"scene image: 2 samples", [](Memory& m) { m.effects().samples_per_pixel = 2; }},
+                           {"scene image: 0 samples of occ", [](Memory& m) { m.effects().occlusion_samples = 0; }},
+                           {"scene image: 65 samples of occ", [](Memory& m) { m.effects().occlusion_samples = 65; }},
+                           {"scene image: 65 point lights", [](Memory& m) { m.effects().point_light_count = 65; }},
+                           {"scene image: an environment", [](Memory& m) { m.effects().environment_width = 0; }},
                            {"no memory for rays that wait", [](Memory& m) { m.job().spill_address = 0; }},
                            {"waiting rays of ", [](Memory& m) { m.job().spill_bytes -= 128; }},
                            {"memory for waiting rays of 3 cores", [](Memory& m) { m.job().spill_cores = 3; }},

@@ -1,4 +1,5 @@
 // Prints core's constants as the model's constants.h. SPDX-License-Identifier: Apache-2.0
+#include <gridiron/base/records.h>
 #include <gridiron/store/dma_tags.h>
 #include <gridiron/store/local_store.h>
 
@@ -16,6 +17,7 @@ int main() {
   define("TRIANGLE_TAG_COUNT", kTriangleTagCount);
   define("FIRST_OUTPUT_TAG", kFirstOutputTag);
   define("OUTPUT_TAG_COUNT", kOutputTagCount);
+  define("LEAST_INPUT_COMMANDS", kLeastInputCommands);
   define("QUEUE_BLOCKS", Effects::kQueueRays / Effects::kSpillBlockRays);
   define("WAVE_BLOCKS", Effects::kWaveRays / Effects::kSpillBlockRays);
 }

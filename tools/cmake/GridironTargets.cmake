@@ -1,20 +1,19 @@
 # Helpers that give every target of the project the same language level, warnings and floating-point rules.
 
 # All targets: C++20, warnings as errors (not in somebody else's project, whose compiler may know more of them), no
-# contraction anywhere (it is part of correctness).
+# contraction anywhere (it is part of correctness), square roots that are an instruction.
 function(gridiron_target_defaults target)
   target_compile_features(${target} PUBLIC cxx_std_20)
   set_target_properties(${target} PROPERTIES CXX_EXTENSIONS OFF)
   target_compile_options(${target} PRIVATE
     -Wall -Wextra -Wpedantic -Wshadow -Wconversion -Wsign-conversion -Wno-psabi
-    $<$<BOOL:${PROJECT_IS_TOP_LEVEL}>:-Werror> -ffp-contract=off)
+    $<$<BOOL:${PROJECT_IS_TOP_LEVEL}>:-Werror> -ffp-contract=off -fno-math-errno)
 endfunction()
 
 # Targets that must run without an operating system.
 function(gridiron_freestanding target)
   target_compile_options(${target} PRIVATE
-    -ffreestanding -fno-exceptions -fno-rtti -fno-threadsafe-statics -fno-math-errno -ffunction-sections
-   )
+    -ffreestanding -fno-exceptions -fno-rtti -fno-threadsafe-statics -ffunction-sections)
   # Cross builds are what tools/house/memory_table measures: no tables for unwinding, which nothing reads, and frames of
   # a fixed size, none as large as the stack of a 256 KB core.
   if(CMAKE_CROSSCOMPILING AND CMAKE_CXX_COMPILER_ID STREQUAL "GNU")

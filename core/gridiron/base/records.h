@@ -187,6 +187,9 @@ enum TechniqueBits : std::uint32_t {
   kUseSubpackets = 1u << 3,     ///< cull by subpackets: those a triangle cannot touch, those that hit nearer already
 };
 
+/// Commands of a queue that stay for a tile's own gets while finished tiles leave under the rest.
+inline constexpr std::uint32_t kLeastInputCommands = 4;
+
 /// Everything a core needs to know of a frame. Fetched by every core at its start. 128-byte aligned, 384 bytes.
 struct FrameRecord {
   std::uint32_t magic;                 ///< kFrameMagic

@@ -304,7 +304,6 @@ class Sum {
 
   // Whether gets can find the queue full: what may be pending at once against what tiles that leave give free.
   [[nodiscard]] bool needs_room() const {
-    constexpr std::uint64_t kLeastInputCommands = 4;  // as tile_renderer.h shares the queue
     const std::uint64_t block = pieces_of(scene_.cell_block_bytes, kLineBytes);
     const std::uint64_t run =
         pieces_of(std::uint64_t{layout_.triangles_per_buffer} * kTriangleRecordBytes, kPortableGranuleBytes);
@@ -318,7 +317,7 @@ class Sum {
     if (frame_.output_depth != 1) {
       const std::uint64_t leaving = frame_.output_depth * output_commands();
       const std::uint64_t rest = leaving < room ? room - leaving : 0;
-      room = smaller(room, larger(rest, kLeastInputCommands)).value;
+      room = smaller(room, larger(rest, std::uint64_t{kLeastInputCommands})).value;
     }
     return pending > room;
   }

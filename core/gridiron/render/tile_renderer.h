@@ -127,7 +127,6 @@ class TileRenderer {
   // What is waited for during a tile must not depend on the tiles before it: either those have places of their own in
   // the queue, or, where it is too short for that, a tile has left before the next one begins.
   void share_queue() {
-    constexpr std::uint32_t kLeastInputCommands = 4;
     const FrameRecord& frame = store_.frame;
     std::uint32_t commands = 0;
     for (const std::uint64_t plane : {frame.color_address, frame.depth_address, frame.id_address}) {

@@ -369,7 +369,6 @@ class BvhCore {
   // As the grid's tile renderer does: tiles on their way have places of their own in the queue, or have left before the
   // next one begins.
   void reserve_output() {
-    constexpr std::uint32_t kLeastInputCommands = 4;
     std::uint32_t commands = 0;
     for (const std::uint64_t plane : {frame().color_address, frame().depth_address, frame().id_address}) {
       constexpr std::uint32_t kPieces = (kPlaneBytes + kPortableBoundaryBytes - 1) / kPortableBoundaryBytes;
