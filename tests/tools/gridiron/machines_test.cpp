@@ -53,7 +53,7 @@ TEST(Machines, AProfileComesThroughAPipe) {
   ASSERT_EQ(::mkfifo(pipe.c_str(), 0600), 0);
   std::thread writer([&] { std::ofstream(pipe) << text; });
   RunningProgram program(folder.folder(), {"machines", "pipe"});
-  const ProgramResult result = program.wait(std::chrono::seconds(10));
+  const ProgramResult result = program.wait(std::chrono::seconds(60));
   EXPECT_EQ(result.exit_code, 0) << result.err;
   EXPECT_EQ(result.out, text);
   const int reader = ::open(pipe.c_str(), O_RDONLY | O_NONBLOCK | O_CLOEXEC);  // lets the writer end in any case

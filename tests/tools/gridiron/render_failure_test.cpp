@@ -128,6 +128,7 @@ void expect_interrupt(int signal, std::chrono::milliseconds delay) {
   RunningProgram program(
       folder.folder(), {"render", "a.ply", "-o", "a.png", "--report", "r.json", "--size", "7000x7000", "--threads", "1",
                         "--completion", "random", "--packet", "4", "--no-culling", "--no-mailbox"});
+  program.wait_until_caught(signal);
   std::this_thread::sleep_for(delay);
   const auto start = std::chrono::steady_clock::now();
   program.send(signal);
@@ -177,9 +178,11 @@ TEST(RenderFailure, AnInterruptEndsTheWaitForAPipe) {
       folder.write_ply("a.ply", make_sphere(8, 12, 1.0f));
       const Pipe pipe(folder.path("pipe.ply"), is_open);
       RunningProgram program(folder.folder(), arguments);
-      std::this_thread::sleep_for(std::chrono::milliseconds(300));
-      program.send(is_open ? SIGTERM : SIGINT);
-      const ProgramResult result = program.wait(std::chrono::seconds(5));
+      const int signal = is_open ? SIGTERM : SIGINT;
+      program.wait_until_caught(signal);
+      std::this_thread::sleep_for(std::chrono::milliseconds(200));  // long enough to be at the pipe, most times
+      program.send(signal);
+      const ProgramResult result = program.wait(std::chrono::seconds(60));
       EXPECT_EQ(result.exit_code, is_open ? 143 : 130) << result.err;
       EXPECT_EQ(result.err, "interrupted; no file was written\n");
       EXPECT_EQ(folder.names(), (Words{"a.ply", "pipe.ply"}));

@@ -8,6 +8,8 @@
 #include <sys/wait.h>
 #include <unistd.h>
 
+#include <fstream>
+#include <string>
 #include <thread>
 
 namespace gridiron::test {
@@ -57,6 +59,19 @@ RunningProgram::~RunningProgram() {
 
 void RunningProgram::send(int signal) const {
   ::kill(process_, signal);
+}
+
+void RunningProgram::wait_until_caught(int signal) const {
+  const std::string status = "/proc/" + std::to_string(process_) + "/status";
+  const std::string key = "SigCgt:";  // 64 bits in hexadecimal, the lowest is signal 1
+  for (int i = 0; i < 12000; ++i) {
+    std::ifstream file(status);
+    for (std::string line; std::getline(file, line);) {
+      if (line.starts_with(key) && (std::stoull(line.substr(key.size()), nullptr, 16) >> (signal - 1) & 1u) != 0) return;
+    }
+    std::this_thread::sleep_for(std::chrono::milliseconds(5));
+  }
+  ADD_FAILURE() << "signal " << signal << " is not caught";
 }
 
 ProgramResult RunningProgram::wait() {

@@ -25,6 +25,8 @@ class RunningProgram {
   RunningProgram& operator=(const RunningProgram&) = delete;
 
   void send(int signal) const;
+  /// Until the program catches a signal, a minute at most: before that the signal would end it.
+  void wait_until_caught(int signal) const;
   [[nodiscard]] ProgramResult wait();
   /// Waits so long at most, then kills it: exit_code is -SIGKILL.
   [[nodiscard]] ProgramResult wait(std::chrono::milliseconds most);
