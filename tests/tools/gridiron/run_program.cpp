@@ -67,7 +67,9 @@ void RunningProgram::wait_until_caught(int signal) const {
   for (int i = 0; i < 12000; ++i) {
     std::ifstream file(status);
     for (std::string line; std::getline(file, line);) {
-      if (line.starts_with(key) && (std::stoull(line.substr(key.size()), nullptr, 16) >> (signal - 1) & 1u) != 0) return;
+      if (!line.starts_with(key)) continue;
+      const unsigned long long caught = std::stoull(line.substr(key.size()), nullptr, 16);
+      if ((caught >> (signal - 1) & 1u) != 0) return;
     }
     std::this_thread::sleep_for(std::chrono::milliseconds(5));
   }
