@@ -182,8 +182,7 @@ TEST_P(CompletionOrders, EveryForgottenWaitIsFound) {
       ++found;
       continue;
     }
-    const auto tags = std::find_if(reference_.waits.begin(), reference_.waits.end(),
-                                   [&](const LoggedWait& logged) { return logged.call == wait; });
+    const auto tags = std::ranges::find(reference_.waits, wait, &LoggedWait::call);
     ASSERT_NE(tags, reference_.waits.end());
     EXPECT_TRUE(std::any_of(tags + 1, reference_.waits.end(),
                             [&](const LoggedWait& later) { return (later.tags & tags->tags) == tags->tags; }))
