@@ -1,5 +1,5 @@
-# What the check_ scripts of the boards have in common; they source it, and set `build` (directory of the preset) and
-# `board`.
+# What the check_ scripts of the boards have in common; they source it, and set `build` (directory of the preset),
+# `board` and `gridiron` (the program).
 # SPDX-License-Identifier: Apache-2.0
 
 house=$(cd "$(dirname "${BASH_SOURCE[0]}")/../house" && pwd)
@@ -24,6 +24,27 @@ hold_stack() {
     echo "stack, $image: $painted bytes painted, at most ${bound:-unknown} by the call graph, $budget in the budget" >&2
     return 1
   fi
+}
+
+# compare_result JOB RESULT LOG EXIT_CODE: of `gridiron`, which with 0 finds planes, work and transfers equal to the
+# simulated chip's, with 3 not. Transfers count in no comparison where the firmware has counted none: that is refused.
+# Words in LOG; ends with 1 where it is otherwise.
+compare_result() {
+  local job=$1 result=$2 log=$3 wanted=$4 status=0
+  "$gridiron" result "$job" "$result" --compare > "$log" 2>&1 || status=$?
+  if [ $status -ne "$wanted" ]; then
+    echo "the comparison ends with $status, not $wanted" >> "$log"
+    return 1
+  fi
+  if [ $status -eq 0 ] && ! grep -q '^tiles.transfers *equal' "$log"; then
+    echo 'transfers were not counted' >> "$log"
+    return 1
+  fi
+}
+
+# wait_for_core: until fewer jobs of this shell run than the host has cores.
+wait_for_core() {
+  while [ "$(jobs -rp | wc -l)" -ge "$(nproc)" ]; do wait -n || true; done
 }
 
 # bytes_of WORD COUNT: a number as little-endian bytes, for printf.
