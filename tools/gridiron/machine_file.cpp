@@ -25,6 +25,7 @@ using sim::MachineProfile;
 constexpr std::size_t kMaxFileBytes = 1 << 20;
 constexpr std::size_t kMaxLineBytes = 1000;
 constexpr std::size_t kMaxNameBytes = 64;
+constexpr std::string_view kEditedSuffix = "-edited";
 constexpr double kMaxCycles = 1 << 20;  // of one step; more is nothing that the replay tells apart
 
 // A profile and the text it points to.
@@ -216,7 +217,6 @@ class Reader {
       if (!target.empty()) fail("second " + quoted);
       if (value.empty()) fail(quoted + " has no value");
       if (key == "name" && !is_name(value)) fail("'name' takes one word of at most 64 printable characters");
-      if (key == "name") name_line_ = line_number_;
       if (const char* defect = text_defect(value)) fail(quoted + " " + defect);
       target = value;
       return;
@@ -272,7 +272,7 @@ class Reader {
           fail("the file ends without '" + fields_[i].key + "', and has no 'based_on' to take it from");
       }
     }
-    // A base lends its figures, not its name; and no built-in machine lends its name to other figures.
+    // A base lends its figures, not its name; and a report must not show other figures under a built-in machine's name.
     const auto is_taken = [this](std::string_view name) {
       const MachineProfile* built_in = sim::find_machine_profile(name);
       return built_in != nullptr && !has_same_values(machine_->profile, *built_in);
@@ -281,8 +281,7 @@ class Reader {
       const std::string stem = path_.stem().string();
       machine_->name = is_name(stem) && !is_taken(stem) ? stem : "unnamed";
     } else if (is_taken(machine_->name)) {
-      line_number_ = name_line_;
-      fail(in_quotes(machine_->name) + " is a built-in machine with other values; give this one a name of its own");
+      machine_->name += kEditedSuffix;
     }
     if (machine_->description.empty()) {
       machine_->description = has_base_ ? "based on " : "from a machine file";
@@ -296,7 +295,7 @@ class Reader {
   std::shared_ptr<OwnedMachine> machine_;
   std::vector<Field> fields_;
   std::vector<bool> is_given_;
-  std::size_t line_number_ = 0, name_line_ = 0;
+  std::size_t line_number_ = 0;
   bool is_first_key_ = true;
   bool has_base_ = false;
 };

@@ -72,6 +72,17 @@ TEST(Machines, EditedFiguresCount) {
   EXPECT_EQ(slow["image_hash"], usual["image_hash"]) << "a machine changes figures and no pixel";
 }
 
+TEST(Machines, AnEditedCopyRendersAtFirstTryUnderANameOfItsOwn) {
+  const TemporaryFolder folder;
+  std::string text = run(folder, {"machines", "fu540"}).out;
+  const std::size_t line = text.find("latency_cycles");
+  text.replace(line, text.find('\n', line) - line, "latency_cycles 5000");
+  folder.write("my.machine", text);
+  const Json edited = report_on(folder, "my.machine");
+  EXPECT_EQ(edited["machine"]["name"], "fu540-edited");
+  EXPECT_GT(edited["frame"]["cycles"], report_on(folder, "fu540")["frame"]["cycles"]);
+}
+
 TEST(Machines, InfoAndPackFitTheMachineOfAFile) {
   const TemporaryFolder folder;
   folder.write_ply("a.ply", make_torus(240, 120, 1.0f, 0.4f));
