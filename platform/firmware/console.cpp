@@ -2,6 +2,8 @@
 // Memory: 20 bytes of stack. Threads: one core at a time. SPDX-License-Identifier: Apache-2.0
 #include "console.h"
 
+#include <gridiron/platform/status_name.h>
+
 namespace gridiron::port {
 
 namespace {
@@ -30,6 +32,12 @@ void print_piece(std::uint32_t number) { print_number(number, 10); }
 void print_piece(Hex number) {
   print_piece("0x");
   print_number(number.value, 16);
+}
+
+void print_piece(StatusNumber number) {
+  print_piece(number.value);
+  const char* name = status_name(number.value);
+  if (name != nullptr) print(" (", name, ")");
 }
 
 }  // namespace gridiron::port

@@ -14,12 +14,18 @@ struct Hex {
   std::uint64_t value;
 };
 
+/// A Status as a number, such as one that another core stored.
+struct StatusNumber {
+  std::uint32_t value;
+};
+
 void print_piece(const char* text);
 void print_piece(std::uint64_t number);
 void print_piece(std::uint32_t number);
 void print_piece(Hex number);
+void print_piece(StatusNumber number);  ///< "14 (kBadImage)"
 
-/// Writes the pieces one after the other: texts, unsigned numbers, Hex.
+/// Writes the pieces one after the other: texts, unsigned numbers, Hex, StatusNumber.
 template <class... Pieces>
 void print(const Pieces&... pieces) {
   (print_piece(pieces), ...);

@@ -140,8 +140,8 @@ class Master {
     for (std::uint32_t core = 0; core < facts_.core_count; ++core) {
       result.cores[core] = control_.cores[core].result;
       const CoreResult& done = result.cores[core];
-      print("core ", core, ": status ", done.status, ", ", done.tiles, " tiles, ", done.transfers, " transfers, ",
-            done.transfer_bytes, " bytes, stack ", done.stack_bytes, " of ", facts_.stack_bytes, "\n");
+      print("core ", core, ": status ", StatusNumber{done.status}, ", ", done.tiles, " tiles, ", done.transfers,
+            " transfers, ", done.transfer_bytes, " bytes, stack ", done.stack_bytes, " of ", facts_.stack_bytes, "\n");
       if (result.status == 0) result.status = done.status;
     }
     TileResult* wanted = tile_results(job_);

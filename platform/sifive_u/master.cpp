@@ -88,7 +88,7 @@ RunExit render_animated(Monitor& monitor, Master<Monitor>& master, const Firmwar
     monitor.pause();
   }
   shared_memory.must_build = 0;
-  print("scene of frame ", shared_memory.animation_frame, " built: status ", status, ", ",
+  print("scene of frame ", shared_memory.animation_frame, " built: status ", StatusNumber{status}, ", ",
         scene_workshop().frame.grid.reference_count, " references, stack ",
         shared_memory.control.cores[0].result.stack_bytes, "\n");
   if (status != 0) return RunExit::kFrameFailed;

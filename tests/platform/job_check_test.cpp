@@ -252,5 +252,11 @@ TEST(JobCheck, KeepsPartsApart) {
        {"check value", [](Memory& m) { m.job().loaded_bytes -= 64; }}});
 }
 
+TEST(Console, NamesAStatus) {
+  told.clear();
+  print("status ", StatusNumber{static_cast<std::uint32_t>(Status::kBadImage)}, ", ", StatusNumber{kNotRun});
+  EXPECT_EQ(told, "status 14 (kBadImage), 4294967295");
+}
+
 }  // namespace
 }  // namespace gridiron::port

@@ -3,6 +3,7 @@
 
 #include <gridiron/base/work_counters.h>
 #include <gridiron/platform/status.h>
+#include <gridiron/platform/status_name.h>
 
 #include <algorithm>
 #include <cstdint>
@@ -33,8 +34,9 @@ bool is_zero(std::span<const std::uint32_t> words) {
 
 std::string words_of_status(std::uint32_t status) {
   if (status == port::kNotRun) return "it never came back";
-  constexpr auto kLast = static_cast<std::uint32_t>(Status::kBadEffects);
-  return status <= kLast ? words_of(static_cast<Status>(status)) : "status " + std::to_string(status);
+  const char* name = status_name(status);
+  if (name == nullptr) return "status " + std::to_string(status);
+  return std::string(words_of(static_cast<Status>(status))) + " (" + name + ")";
 }
 
 void check_head(const ByteReader& reader, const FrameResult& frame) {

@@ -376,7 +376,7 @@ TEST(Result, DamageIsFoundWithItsPlace) {
   failed.status = failed.cores[1].status = static_cast<std::uint32_t>(Status::kTransferFailed);
   std::string result = whole;
   put_record(result, 0, failed);
-  expect_refused(result, 3, "a.res: core 1: ");
+  expect_refused(result, 3, "a.res: core 1: transfer that failed (kTransferFailed)");
   failed.status = failed.cores[1].status = port::kNotRun;
   put_record(result, 0, failed);
   expect_refused(result, 3, "a.res: core 1: it never came back");
