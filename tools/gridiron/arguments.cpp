@@ -2,22 +2,25 @@
 #include "arguments.h"
 
 #include <gridiron/firmware/frame_job.h>
+#include <gridiron/version.h>
 
 #include <CLI/CLI.hpp>
 #include <algorithm>
 #include <cstdlib>
 #include <functional>
-#include <gridiron/version.h>
+#include <span>
 #include <string_view>
 #include <utility>
 #include <vector>
 
 #include "accuracies.h"
 #include "atomic_file.h"
+#include "command_words.h"
 #include "failure.h"
 #include "layout_choice.h"
 #include "scene_input.h"
 #include "store_facts.h"
+#include "suggestion.h"
 #include "words.h"
 
 namespace gridiron::tool {
@@ -49,13 +52,15 @@ Units are in the keys: _hz, _bytes, _cycles (of the core clock; under master. of
 
 Ranges and meanings: tools/README.md, "Machines".)";
 
-// Adds an option whose text one of our own parsers turns into a value; `expected` completes the error message.
+// Adds an option whose text one of our own parsers turns into a value; `expected` completes the error message, which
+// names those of `words` that the text may have been meant for.
 template <class Target, class Parser>
 CLI::Option* add_parsed(CLI::App& app, const std::string& name, Target& target, Parser parser,
-                        const std::string& expected, const std::string& type, const std::string& help) {
-  const auto set = [&target, parser, name, expected](const std::string& text) {
+                        const std::string& expected, const std::string& type, const std::string& help,
+                        const std::vector<std::string>& words = {}) {
+  const auto set = [&target, parser, name, expected, words](const std::string& text) {
     auto value = parser(text);
-    if (!value) throw CLI::ValidationError(name, "'" + text + "' is not " + expected);
+    if (!value) throw CLI::ValidationError(name, "'" + text + "' is not " + expected + did_you_mean(text, words));
     target = *value;
   };
   return app.add_option_function<std::string>(name, set, help)->type_name(type)->expected(1);
@@ -70,12 +75,21 @@ template <class Target, class Value>
 CLI::Option* add_choice(CLI::App& app, const std::string& name, Target& target, const Choices<Value>& choices,
                         const std::string& help) {
   std::string list;
-  for (const auto& [word, value] : choices) list += (list.empty() ? "" : "|") + word;
+  std::vector<std::string> words;
+  for (const auto& [word, value] : choices) {
+    list += (list.empty() ? "" : "|") + word;
+    words.push_back(word);
+  }
   const auto find = [choices](const std::string& text) -> std::optional<Value> {
     const auto found = std::ranges::find(choices, text, &Choices<Value>::value_type::first);
     return found == choices.end() ? std::nullopt : std::optional<Value>(found->second);
   };
-  return add_parsed(app, name, target, find, "one of " + list, list, help);
+  return add_parsed(app, name, target, find, "one of " + list, list, help, words);
+}
+
+// Every command has it: what runs them need not know which of them has more to say than its result.
+void add_quiet(CLI::App& app, bool& quiet) {
+  app.add_flag("--quiet", quiet, "print nothing but the result and errors: no notes, figures or bars");
 }
 
 std::function<std::optional<std::uint32_t>(const std::string&)> count_between(std::uint32_t least, std::uint32_t most) {
@@ -198,7 +212,7 @@ void add_output_options(CLI::App& app, RawRender& raw) {
   add_parsed(app, "--report", render.report, parse_path, name, "FILE", "where cycles and bytes went, JSON");
   add_parsed(app, "--timeline", render.timeline, parse_path, name, "FILE",
              "what each core did when, Chrome trace format");
-  app.add_flag("--quiet", render.quiet, "print nothing but errors");
+  add_quiet(app, render.quiet);
 }
 
 void add_threads(CLI::App& app, std::uint32_t& threads, const std::string& effect) {
@@ -277,10 +291,6 @@ void add_algorithm_options(CLI::App& app, RawRender& raw) {
   app.add_flag("--no-empty-skip", raw.no_empty_skip, "fetch the cell blocks of empty macrocells too");
 }
 
-[[noreturn]] void usage_error(const std::string& message) {
-  throw Failure(ExitCode::kUsage, message);
-}
-
 // A file of the command line and the option that names it.
 struct NamedFile {
   const char* option;
@@ -311,6 +321,7 @@ RenderArguments complete_render(const RawRender& raw, const CLI::App& app) {
     return app.get_option_no_throw(name) != nullptr && app.count(name) > 0;
   };
   RenderArguments render = raw.arguments;
+  render.scene.quiet = render.quiet;
   render.has_size = is_given("--size");
   render.has_shading = is_given("--shading");
   if (!render.has_shading && is_text_scene(render.scene.input)) render.shading = Shading::kScene;
@@ -381,7 +392,7 @@ void add_animate_options(CLI::App& app, AnimateArguments& animate, RawRender& ra
   add_threads(app, raw.arguments.threads, "no result depends on it");
   add_choice(app, "--store", raw.arguments.asked.store, kStores, kStoreHelp);
   add_algorithm_options(app, raw);
-  app.add_flag("--quiet", raw.arguments.quiet, "print nothing but errors");
+  add_quiet(app, raw.arguments.quiet);
 }
 
 AnimateArguments complete_animate(AnimateArguments animate, const RawRender& raw, const CLI::App& app) {
@@ -414,7 +425,7 @@ void add_job_options(CLI::App& app, JobArguments& job, RawRender& raw) {
              "cores of the device that there is memory for rays that wait for (default: the profile's)");
   add_choice(app, "--store", render.asked.store, kStores, kStoreHelp);
   add_algorithm_options(app, raw);
-  app.add_flag("--quiet", render.quiet, "print nothing but errors");
+  add_quiet(app, render.quiet);
 }
 
 JobArguments complete_job(JobArguments job, const RawRender& raw, const CLI::App& app) {
@@ -442,11 +453,12 @@ void add_result_options(CLI::App& app, ResultArguments& result, std::string& mac
   app.add_flag("--compare", result.compare,
                "render the job on the simulated chip and hold planes, work and transfers against it; exit code 3 where "
                "they differ");
-  app.add_option("--predict", machine, "with --compare: what each tile takes on this machine, held against the "
-                                       "instructions that the device counted")
+  app.add_option("--predict", machine,
+                 "with --compare: what each tile takes on this machine, held against the "
+                 "instructions that the device counted")
       ->type_name("MACHINE");
   add_threads(app, result.threads, "of --compare; no result depends on it");
-  app.add_flag("--quiet", result.quiet, "print nothing but errors");
+  add_quiet(app, result.quiet);
 }
 
 ResultArguments complete_result(ResultArguments result, const std::string& machine) {
@@ -482,7 +494,7 @@ void add_experiment_options(CLI::App& app, ExperimentArguments& experiment) {
   add_parsed(app, "--largest", experiment.largest_knot, count_between(6'000, 10'000'000),
              "a whole number from 6000 to 10000000", "N",
              "paper: triangles of the largest mesh of Table 1 (default 1000000)");
-  app.add_flag("--quiet", experiment.quiet, "print nothing but errors");
+  add_quiet(app, experiment.quiet);
 }
 
 ExperimentArguments complete_experiment(ExperimentArguments experiment, const CLI::App& app) {
@@ -504,7 +516,7 @@ ExperimentArguments complete_experiment(ExperimentArguments experiment, const CL
 }  // namespace
 
 Command parse_arguments(int count, const char* const* values) {
-  CLI::App app("Ray traces on a simulated chip whose cores have a small local store and move data by DMA.", "gridiron");
+  CLI::App app("ray traces on a simulated chip whose cores have a small local store and move data by DMA.", "gridiron");
   app.set_version_flag("--version", std::string("gridiron ") + kVersion);
   app.require_subcommand(1);
 
@@ -539,6 +551,7 @@ Command parse_arguments(int count, const char* const* values) {
   add_accuracy(*info, info_arguments.accuracy);
   info->add_flag("--depth", info_arguments.has_depth, "distances too");
   info->add_flag("--json", info_arguments.json, "as JSON");
+  add_quiet(*info, info_arguments.scene.quiet);
 
   PackArguments pack_arguments;
   std::string pack_machine;
@@ -547,6 +560,7 @@ Command parse_arguments(int count, const char* const* values) {
   add_grid_options(*pack, pack_arguments.scene, pack_machine);
   pack->add_option("-o,--output", pack_arguments.output, "scene image")->required()->type_name("FILE");
   add_choice(*pack, "--format", pack_arguments.format, kFormats, format_help());
+  add_quiet(*pack, pack_arguments.scene.quiet);
 
   RawRender job_raw;
   JobArguments job_arguments;
@@ -566,33 +580,30 @@ Command parse_arguments(int count, const char* const* values) {
       ->type_name("");
   machines->footer(kMachineFormat);
   machines->add_flag("--json", machines_arguments.json, "as JSON");
+  add_quiet(*machines, machines_arguments.quiet);
 
   ExperimentArguments experiment_arguments;
   CLI::App* experiment = app.add_subcommand("experiment", "runs an experiment: tables, plots and a page in a folder");
   add_experiment_options(*experiment, experiment_arguments);
 
-  // CLI11 would only say that a subcommand is required.
-  const std::string first = count > 1 ? values[1] : "";
-  const auto all = app.get_subcommands([](const CLI::App*) { return true; });
-  const bool is_command =
-      std::ranges::any_of(all, [&first](const CLI::App* each) { return each->get_name() == first; });
-  if (!first.empty() && first.front() != '-' && !is_command) {
-    usage_error("'" + first +
-                "' is not a command; expected render, animate, info, pack, job, result, machines or experiment");
-  }
+  std::string topic;
+  CLI::App* help = app.add_subcommand("help", "explains a command");
+  help->add_option("COMMAND", topic, "the command (default: what commands there are)")->type_name("");
 
+  app.footer("gridiron help COMMAND explains every option of a command.");  // not theirs
+  if (count <= 1) return TextRequest{overview(app)};
+  require_command(app, values[1]);
   try {
     app.parse(count, values);
   } catch (const CLI::CallForHelp&) {
     const auto chosen = app.get_subcommands();
-    return TextRequest{(chosen.empty() ? &app : chosen.front())->help()};
+    return TextRequest{help_of(app, chosen.empty() ? app : *chosen.front())};
   } catch (const CLI::CallForVersion& version) {
     return TextRequest{std::string(version.what()) + "\n"};
   } catch (const CLI::ParseError& error) {
-    const auto chosen = app.get_subcommands();
-    const std::string command = chosen.empty() ? "" : " " + chosen.front()->get_name();
-    usage_error(std::string(error.what()) + "\nrun 'gridiron" + command + " --help' for the options");
+    explain_mistake(app, std::span(values, static_cast<std::size_t>(count)).subspan(1), error.what());
   }
+  if (*help) return TextRequest{help_of(app, topic.empty() ? app : command_of(app, topic))};
   if (*render) return complete_render(raw, *render);
   if (*animate) return complete_animate(std::move(animate_arguments), animate_raw, *animate);
   if (*info) {

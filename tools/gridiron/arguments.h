@@ -27,6 +27,7 @@ struct SceneArguments {
   std::optional<std::uint32_t> macro_width;
   std::uint32_t most_macro_width = kMaxMacroWidth;  ///< that the store holds: a configuration's is cut to it
   std::optional<float> tolerance;  ///< of round shapes in a text scene, world units; nothing: the reader's own
+  bool quiet = false;              ///< notes are not told
 };
 
 /// What the command line fixes of the kernel and its buffers; the rest is the scene's, machine's and configuration's.
@@ -81,7 +82,7 @@ struct AnimateArguments {
 
 struct InfoArguments {
   SceneArguments scene;
-  sim::StoreSize store = sim::StoreSize::k256KB;  ///< whose map is told
+  sim::StoreSize store = sim::StoreSize::k256KB;      ///< whose map is told
   TriangleFormat format = TriangleFormat::kVertices;  ///< of a mesh or a text scene
   std::optional<Accuracy> accuracy;  ///< whose bounds are told; nothing: the one that the image's format is for
   std::uint32_t packet_width = 0;    ///< 0: the configuration's
@@ -117,6 +118,7 @@ struct ResultArguments {
 struct MachinesArguments {
   Machine machine;  ///< the one to print; null: all built-in ones are listed
   bool json = false;
+  bool quiet = false;  ///< accepted as everywhere: a list has nothing beside its result
 };
 
 enum class ExperimentName { kPaper, kAccuracy, kEffects };

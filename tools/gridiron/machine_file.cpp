@@ -14,6 +14,7 @@
 
 #include "failure.h"
 #include "input_file.h"
+#include "suggestion.h"
 #include "words.h"
 
 namespace gridiron::tool {
@@ -109,12 +110,15 @@ std::string text_of(const Number& number) {
   return text_of(*number.real);
 }
 
-std::string list_of_built_in_machines() {
+// What there is instead of a machine that is not built in: the nearest name and all names.
+std::string words_of_built_in_machines(std::string_view name) {
   std::string list;
+  std::vector<std::string> names;
   for (const MachineProfile& machine : sim::machine_profiles()) {
-    list += (list.empty() ? "" : ", ") + std::string(machine.name);
+    names.emplace_back(machine.name);
+    list += (list.empty() ? "; there are " : ", ") + names.back();
   }
-  return list;
+  return did_you_mean(name, names) + list;
 }
 
 constexpr std::string_view kBlanks = " \t";
@@ -222,7 +226,11 @@ class Reader {
       return;
     }
     const auto field = std::ranges::find(fields_, key, &Field::key);
-    if (field == fields_.end()) fail("unknown key " + quoted + "; 'gridiron machines cell-ps3' shows all of them");
+    if (field == fields_.end()) {
+      std::vector<std::string> keys = {"based_on", "name", "description"};
+      for (const Field& known : fields_) keys.push_back(known.key);
+      fail("unknown key " + quoted + did_you_mean(key, keys) + "; 'gridiron machines cell-ps3' shows all of them");
+    }
     const auto index = static_cast<std::size_t>(field - fields_.begin());
     if (is_given_[index]) fail("second " + quoted);
     if (value.empty()) fail(quoted + " has no value");
@@ -236,7 +244,7 @@ class Reader {
     if (!is_first_key_) fail("'based_on' must be the first key");
     const MachineProfile* base = sim::find_machine_profile(value);
     if (base == nullptr) {
-      fail(in_quotes(value) + " is no built-in machine; there are " + list_of_built_in_machines());
+      fail(in_quotes(value) + " is no built-in machine" + words_of_built_in_machines(value));
     }
     machine_->profile = *base;
     has_base_ = true;
@@ -313,9 +321,8 @@ Machine find_machine(const std::string& name_or_file) {
   }
   std::error_code error;
   if (!std::filesystem::exists(name_or_file, error)) {
-    throw Failure(ExitCode::kBadInput, name_or_file +
-                                           ": no such file, and no built-in machine of that name; there are " +
-                                           list_of_built_in_machines());
+    throw Failure(ExitCode::kBadInput, name_or_file + ": no such file, and no built-in machine of that name" +
+                                           words_of_built_in_machines(name_or_file));
   }
   return read_machine_file(name_or_file);
 }

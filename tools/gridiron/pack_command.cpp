@@ -21,7 +21,7 @@ void run_command(const PackArguments& arguments) {
                   input.path.string() + ": is a scene image already; pack takes a mesh (.ply) or a text scene (.nff)");
   }
 
-  tell_notes(input);
+  if (!arguments.scene.quiet) tell_notes(input);
 
   // The budget of an ordinary picture, so that render would choose the same grid.
   const sim::MachineProfile& machine = *arguments.scene.machine;
@@ -42,6 +42,7 @@ void run_command(const PackArguments& arguments) {
   file.write(image);
   stop_if_interrupted();
   file.commit();
+  if (arguments.scene.quiet) return;
   std::string triangles = words_of_count(mesh->triangles.size()) + " triangles";
   if (choice.need.dropped_triangle_count != 0) {
     triangles += " (" + words_of_count(choice.need.dropped_triangle_count) + " of zero area dropped)";

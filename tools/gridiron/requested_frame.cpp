@@ -66,8 +66,10 @@ RequestedFrame read_requested_frame(const RenderArguments& asked, const std::vec
   const bool has_own_view = input.text && !arguments.camera;
   request.view = join_view(arguments.view, has_own_view ? view_of(input.text->view) : camera);
   check_scene_view(arguments, input, request.view);
-  if (!arguments.quiet) tell_notes(input);
-  tell_fewer_buffers(arguments);
+  if (!arguments.quiet) {
+    tell_notes(input);
+    tell_fewer_buffers(arguments);
+  }
   return request;
 }
 

@@ -18,8 +18,8 @@ struct RequestedFrame {
   ViewRequest view;
 };
 
-/// Reads scene and camera and completes the arguments by them. Says on standard error what is odd in the scene, unless
-/// quiet, and where the store has fewer buffers than the configuration.
+/// Reads scene and camera and completes the arguments by them. Unless quiet it says on standard error what is odd in
+/// the scene, and where the store has fewer buffers than the configuration.
 ///
 /// @param outputs  of the command; that they can be written is checked first: nobody should wait for what cannot be.
 /// Errors: Failure.

@@ -75,7 +75,7 @@ std::uint64_t EffectFacts::bytes_of(std::string_view section) const {
 
 SceneFacts collect_scene_facts(const InfoArguments& arguments) {
   const SceneInput input = read_scene_input(arguments.scene.input, arguments.scene.tolerance);
-  tell_notes(input);
+  if (!arguments.scene.quiet) tell_notes(input);
   SceneFacts facts;
   const bool has_own_size = input.text && !arguments.has_size;
   facts.width = has_own_size ? input.text->view.width : arguments.width;

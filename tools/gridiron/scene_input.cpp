@@ -195,7 +195,7 @@ void require_fit(const GridChoice& choice, const SceneArguments& arguments) {
                               text_of(choice.parameters.lambda) + "; " +
                               words_of_budget(*arguments.machine, choice.budget_bytes));
   }
-  if (!choice.is_reduced()) return;
+  if (!choice.is_reduced() || arguments.quiet) return;
   std::fprintf(stderr, "%s: lambda reduced from %g to %g so that the scene fits the main memory of %s\n",
                arguments.input.c_str(), static_cast<double>(choice.wanted_lambda),
                static_cast<double>(choice.parameters.lambda), std::string(arguments.machine->name).c_str());
@@ -233,8 +233,7 @@ void check_packed(const SceneInput& input, const PackedScene& packed, const Scen
   }
   if (grid.macro_width > arguments.most_macro_width) {
     fail(input.path, "was packed with macrocells of width " + std::to_string(grid.macro_width) +
-                         "; the local store holds cell blocks of width " +
-                         std::to_string(arguments.most_macro_width));
+                         "; the local store holds cell blocks of width " + std::to_string(arguments.most_macro_width));
   }
   if (arguments.macro_width && *arguments.macro_width != grid.macro_width) {
     fail(input.path, "was packed with macrocells of width " + std::to_string(grid.macro_width) +

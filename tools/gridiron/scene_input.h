@@ -105,7 +105,7 @@ void require_other_files(const SceneInput& input, const std::vector<std::filesys
                                      TriangleFormat format, std::uint64_t budget_bytes,
                                      const EffectsView* effects = nullptr);
 
-/// Says in one line of standard error that the grid was reduced; nothing where it was not.
+/// Says in one line of standard error that the grid was reduced; nothing where it was not, or is not to be told.
 /// Errors: Failure (kBadInput) where the choice does not fit.
 void require_fit(const GridChoice& choice, const SceneArguments& arguments);
 

@@ -133,16 +133,21 @@ TEST(Machines, TheSmallestMachineRenders) {
   for (const auto& each : cases) {
     const ProgramResult result =
         run(folder, {"render", "a.ply", "-o", "a.png", "--size", "128x128", "--machine", "least.machine",
-                     "--configuration", each.configuration, "--report", "r.json", "--quiet"});
+                     "--configuration", each.configuration, "--report", "r.json"});
     EXPECT_EQ(result.err, each.words);
     const Json report = Json::parse(read_file(folder.path("r.json")));
     EXPECT_EQ(report["scene"]["grid"]["lambda"], report["scene"]["grid"]["wanted_lambda"]);
     hashes.insert(report["image_hash"].get<std::string>());
   }
   EXPECT_EQ(hashes.size(), 1u);
+  // A note is no error.
+  EXPECT_EQ(run(folder, {"render", "a.ply", "-o", "a.png", "--size", "128x128", "--machine", "least.machine",
+                         "--configuration", "deep", "--quiet"})
+                .err,
+            "");
   // Whoever asks for buffers by name of their number gets them.
   EXPECT_EQ(run(folder, {"render", "a.ply", "-o", "a.png", "--size", "128x128", "--machine", "least.machine",
-                         "--configuration", "best", "--buffering", "double", "--quiet"})
+                         "--configuration", "best", "--buffering", "double"})
                 .err,
             "");
 }

@@ -1,8 +1,13 @@
 // The command line: what is refused, with which exit code and words. SPDX-License-Identifier: Apache-2.0
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cstdlib>
+#include <fstream>
+#include <iterator>
 #include <nlohmann/json.hpp>
+#include <regex>
+#include <set>
 
 #include "run_program.h"
 #include "temporary_folder.h"
@@ -18,12 +23,29 @@ TEST(Usage, MistakesExitWithTwoAndSayWhy) {
     const char* words;
   };
   const Case cases[] = {
-      {{}, "subcommand"},
-      {{"paint"}, "paint"},
+      {{"paint"}, "'paint' is not a command\nexpected render, animate, info, "},
+      {{"rendr", "a.ply"}, "'rendr' is not a command; did you mean render?"},
+      {{"help", "machine"}, "'machine' is not a command; did you mean machines?"},
+      {{"help", "render", "info"}, "'info' is an argument too many; help takes COMMAND"},
+      {{"--verson"}, "--verson is not an option of gridiron; did you mean --version?"},
+      {{"--fov", "30", "render", "a.ply"}, "it stands behind the command: render, animate or job can have it"},
+      {{"--quiet"}, "--quiet is not an option of gridiron; it stands behind the command"},
       {{"experiment", "paper"}, "--output"},
       {{"render"}, "INPUT"},
-      {{"render", "a.ply", "b.ply"}, "b.ply"},
-      {{"render", "a.ply", "--colour"}, "--colour"},
+      {{"render", "a.ply", "b.ply"}, "'b.ply' is an argument too many; render takes INPUT"},
+      {{"render", "a.ply", "--colour"}, "--colour is not an option of render\nrun 'gridiron help render'"},
+      {{"render", "a.ply", "--szie", "100x100"}, "--szie is not an option of render; did you mean --size?"},
+      {{"render", "--szie", "100x100", "a.ply"}, "--szie is not an option of render; did you mean --size?"},
+      {{"render", "--szie=100x100"}, "--szie is not an option of render; did you mean --size?"},
+      {{"render", "a.ply", "-size", "100x100"}, "-size is not an option of render; did you mean --size?"},
+      {{"render", "a.ply", "--eye", "-1,-2,-3", "--upp", "0,0,1"},
+       "--upp is not an option of render; did you mean --up?"},
+      {{"render", "a.ply", "--width", "100"}, "did you mean --macro-width or --tile-width?"},
+      {{"info", "a.ply", "--fov", "30"}, "--fov is not an option of info; render, animate and job have it"},
+      {{"render", "a.ply", "--configuration", "bets"}, "'bets' is not one of reference|deep|best; did you mean best?"},
+      {{"render", "a.ply", "--accuracy", "extract"}, "did you mean exact?"},
+      {{"render", "a.ply", "--shading", "Scene"}, "did you mean scene?"},
+      {{"experiment", "acuracy", "-o", "x"}, "did you mean accuracy?"},
       {{"render", "a.ply", "--size", "640"}, "WxH"},
       {{"render", "a.ply", "--size", "0x10"}, "WxH"},
       {{"render", "a.ply", "--size", "16385x10"}, "16384"},
@@ -101,6 +123,80 @@ TEST(Usage, MistakesExitWithTwoAndSayWhy) {
     EXPECT_EQ(result.out, "") << line;
   }
   EXPECT_EQ(folder.names(), Words{});
+}
+
+TEST(Usage, MachinesThatAreNotThereHaveNearOnes) {
+  const TemporaryFolder folder;
+  folder.write("a.machine", "based_on cell-ps\n");
+  folder.write("b.machine", "based_on cell-ps3\ncorecount 3\n");
+  const auto expect = [&folder](const std::string& machine, const std::string& words) {
+    const ProgramResult result = run_program(folder.folder(), {"render", "a.ply", "--machine", machine});
+    EXPECT_EQ(result.exit_code, 1) << machine;
+    EXPECT_NE(result.err.find(words), std::string::npos) << machine << "\n" << result.err;
+  };
+  expect("cell-2007", "; did you mean cell-2006?; there are cell-ps3, ");
+  expect("fu541", "; did you mean fu540?; there are cell-ps3, ");
+  expect("abacus", "no built-in machine of that name; there are cell-ps3, ");
+  expect("a.machine", "a.machine:1: 'cell-ps' is no built-in machine; did you mean cell-ps3?");
+  expect("b.machine", "b.machine:2: unknown key 'corecount'; did you mean core_count?");
+}
+
+TEST(Usage, AFileInPlaceOfACommandIsToldHowToBeRendered) {
+  const TemporaryFolder folder;
+  folder.write("a.ply", "ply\n");
+  const ProgramResult result = run_program(folder.folder(), {"a.ply"});
+  EXPECT_EQ(result.exit_code, 2);
+  EXPECT_NE(result.err.find("gridiron render a.ply"), std::string::npos) << result.err;
+}
+
+TEST(Usage, NothingAskedForIsAnsweredByAnOverview) {
+  const TemporaryFolder folder;
+  const ProgramResult result = run_program(folder.folder(), {});
+  EXPECT_EQ(result.exit_code, 0);
+  EXPECT_EQ(result.err, "");
+  for (const char* word : {"gridiron render ", "gridiron info ", "gridiron help COMMAND", "animate", "experiment"}) {
+    EXPECT_NE(result.out.find(word), std::string::npos) << word << "\n" << result.out;
+  }
+  EXPECT_LE(std::ranges::count(result.out, '\n'), 15) << "short enough to be read\n" << result.out;
+}
+
+const Words kCommands = {"render", "animate", "info", "pack", "job", "result", "machines", "experiment", "help"};
+
+TEST(Usage, HelpOfACommandIsThatOfItsOption) {
+  const TemporaryFolder folder;
+  EXPECT_EQ(run_program(folder.folder(), {"help"}).out, run_program(folder.folder(), {"--help"}).out);
+  for (const std::string& command : kCommands) {
+    const ProgramResult help = run_program(folder.folder(), {"help", command});
+    EXPECT_EQ(help.exit_code, 0) << command;
+    EXPECT_EQ(help.out, run_program(folder.folder(), {command, "--help"}).out);
+    EXPECT_NE(run_program(folder.folder(), {}).out.find(command), std::string::npos) << command;
+  }
+}
+
+// All long options that a text names, with their dashes.
+std::set<std::string> options_in(const std::string& text) {
+  std::set<std::string> options;
+  const std::regex option("--[a-z][a-z-]*");
+  for (std::sregex_iterator found(text.begin(), text.end(), option), end; found != end; ++found) {
+    options.insert(found->str());
+  }
+  return options;
+}
+
+TEST(Usage, EveryOptionHasItsPlaceInTheReadme) {
+  const TemporaryFolder folder;
+  std::ifstream file(std::filesystem::path(GRIDIRON_SCENE_FILES).parent_path() / "tools" / "README.md");
+  const std::string readme(std::istreambuf_iterator<char>(file), {});
+  const std::set<std::string> told = options_in(readme);
+  for (const std::string& command : kCommands) {
+    const std::set<std::string> options = options_in(run_program(folder.folder(), {"help", command}).out);
+    EXPECT_TRUE(options.contains("--help"));
+    for (const std::string& option : options) {
+      EXPECT_TRUE(told.contains(option)) << command << " " << option << ": tools/README.md does not name it";
+    }
+    EXPECT_NE(readme.find("\ngridiron " + command), std::string::npos) << command;
+    EXPECT_EQ(options.contains("--quiet"), command != "help") << command;
+  }
 }
 
 TEST(Usage, NamesOfOneFileAreSeenThroughLinks) {
