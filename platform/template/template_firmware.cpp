@@ -1,49 +1,11 @@
-// What runs on each core of the made-up chip: one call into the kernel, with the local store in the core's arena. The
-// build gives GRIDIRON_PACKET_WIDTH, the rays along a packet's edge, and may give GRIDIRON_EFFECTS, the set of effects
-// it is for; GRIDIRON_64K takes the layout of a 64 KB core, which knows no packets; GRIDIRON_LAYOUT names any other.
+// What runs on each core of the made-up chip: one call into the kernel, with the local store in the core's arena.
+// template_firmware.h says for which layout.
 // Memory: the arena that the loader gives. Threads: one core. SPDX-License-Identifier: Apache-2.0
-#include <gridiron/base/effect_records.h>
-#include <gridiron/base/lanes.h>
-#include <gridiron/base/one_lane.h>
+#include "template_firmware.h"
+
 #include <gridiron/render/tile_renderer.h>
-#include <gridiron/store/local_store.h>
-
-#include "template_board.h"
-
-#ifndef GRIDIRON_EFFECTS
-#define GRIDIRON_EFFECTS 0
-#endif
 
 namespace gridiron::port {
-
-#if defined(GRIDIRON_LAYOUT)
-using FirmwareLayout = GRIDIRON_LAYOUT;
-#elif defined(GRIDIRON_64K) && GRIDIRON_EFFECTS == 0
-#error "GRIDIRON_64K is for effects; packets in 64 KB: GRIDIRON_LAYOUT, StoreLayout64K<8>"
-#elif GRIDIRON_EFFECTS == 0
-using FirmwareLayout = StoreLayout256K<GRIDIRON_PACKET_WIDTH>;
-#elif defined(GRIDIRON_64K)
-using FirmwareLayout = EffectLayout64K<GRIDIRON_EFFECTS>;
-#else
-using FirmwareLayout = EffectLayout256K<GRIDIRON_EFFECTS, GRIDIRON_PACKET_WIDTH>;
-#endif
-// Lanes of a core without vectors only make its code longer; packets are not for such a core.
-#if defined(GRIDIRON_64K) && !defined(__ARM_NEON) && !defined(__SSE2__)
-using FirmwareLanes = Lanes<1>;
-#else
-using FirmwareLanes = Lanes<4>;
-#endif
-using FirmwareStore = LocalStore<FirmwareLayout>;
-static_assert(kFitsArena<FirmwareLayout>, "store, code and stack are more than the arena");
-
-/// Renders the core's share of a frame.
-///
-/// @param store       start of the core's arena, kLineBytes-aligned, sizeof(FirmwareStore) bytes.
-/// @param core_index  which part of the waiting rays' memory is this core's.
-/// @param frame       the FrameRecord in main memory.
-/// Errors: those of render_tiles; the caller stores the status where the host looks for it.
-Status render_on_template_board(FirmwareStore& store, volatile EngineRegisters* engine, FrameControl* control,
-                                std::uint32_t core_index, MainAddress frame);
 
 Status render_on_template_board(FirmwareStore& store, volatile EngineRegisters* engine, FrameControl* control,
                                 std::uint32_t core_index, MainAddress frame) {

@@ -117,7 +117,8 @@ TEST(Rooms, ALineTooLongAFileTooLongAndAHeaderTooLongAreNoticed) {
 TEST(Rooms, WhatLiesOutsideTheRoomsOrIsAProgramIsNoticed) {
   const ScratchDirectory tree;
   tree.write("core/gridiron/ray/a.h", kLicence);
-  tree.write("README.md", "words\n");
+  for (const char* page : {"README.md", "CHANGELOG.md", "CONTRIBUTING.md"}) tree.write(page, "words\n");
+  tree.write("tools/CMakeLists.txt", "# Words.\n# SPDX-License-Identifier: Apache-2.0\n");
   tree.write(".clang-format", "words\n");
   tree.write("build/host/program", std::string("\177ELF\0\1", 6));
   tree.write("scenes/a.png", std::string("\211PNG\0", 5));
@@ -128,11 +129,13 @@ TEST(Rooms, WhatLiesOutsideTheRoomsOrIsAProgramIsNoticed) {
   tree.write("tools/program", std::string("\177ELF\0\1", 6));
   tree.write("core/gridiron/ray/a.inl", kLicence);
   tree.write("tools/a.cc", kLicence);
+  tree.write("core/CMakeLists.txt", "# Words.\n");
   result = check_rooms(tree.path().string());
   EXPECT_EQ(result.exit_code, 1);
   for (const char* line :
        {"it:1: not in a room", "attic/a.h:1: not in a room", "tools/program:1: neither text",
-        "core/gridiron/ray/a.inl:1: a kind of file", "tools/a.cc:1: a kind of file", "check_rooms: 5 breaches"}) {
+        "core/gridiron/ray/a.inl:1: a kind of file", "tools/a.cc:1: a kind of file",
+        "core/CMakeLists.txt:1: no SPDX", "check_rooms: 6 breaches"}) {
     EXPECT_NE(result.output.find(line), std::string::npos) << line << "\n" << result.output;
   }
 }

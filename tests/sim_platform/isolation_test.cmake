@@ -1,5 +1,6 @@
 # Checks an isolated object: it shows its entry point, no other global or weak symbol, and whatever else is said.
 # Arguments: NM, OBJECT, ENTRY; HOOKS = ON where the object must call the access hooks.
+# SPDX-License-Identifier: Apache-2.0
 execute_process(COMMAND ${NM} --defined-only --extern-only ${OBJECT} OUTPUT_VARIABLE defined RESULT_VARIABLE failed)
 if(failed)
   message(FATAL_ERROR "nm cannot read ${OBJECT}")

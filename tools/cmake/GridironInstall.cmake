@@ -1,5 +1,6 @@
 # What `cmake --install` puts where, and what find_package and pkg-config find there. A component is a library that one
-# asks for by name: platform, core, sim_platform; each is an install component too.
+# asks for by name: platform, core, sim_platform; each is an install component too. The libraries are static.
+# SPDX-License-Identifier: Apache-2.0
 include(GNUInstallDirs)
 include(CMakePackageConfigHelpers)
 
@@ -7,14 +8,14 @@ set(GRIDIRON_CMAKE_DIR ${CMAKE_INSTALL_LIBDIR}/cmake/gridiron)
 set(GRIDIRON_PKGCONFIG_DIR ${CMAKE_INSTALL_LIBDIR}/pkgconfig)
 set(GRIDIRON_PACKAGE_FILES ${CMAKE_CURRENT_LIST_DIR}/package)
 
-# gridiron_install_component(NAME TARGETS targets... HEADERS directories... [FILES headers...]): targets lose their
-# prefix gridiron_ and are gridiron::... for users; HEADERS are folders with all their .h, as install(DIRECTORY) takes
-# them, FILES single headers; both go to include/gridiron.
+# gridiron_install_component(NAME TARGETS targets... HEADERS directories...): targets lose their prefix gridiron_ and are
+# gridiron::... for users; HEADERS are folders with all their .h, as install(DIRECTORY) takes them; they go to
+# include/gridiron.
 function(gridiron_install_component name)
   if(NOT GRIDIRON_INSTALL)
     return()
   endif()
-  cmake_parse_arguments(arg "" "" "TARGETS;HEADERS;FILES" ${ARGN})
+  cmake_parse_arguments(arg "" "" "TARGETS;HEADERS" ${ARGN})
   foreach(target ${arg_TARGETS})
     string(REGEX REPLACE "^gridiron_" "" export_name ${target})
     set_target_properties(${target} PROPERTIES EXPORT_NAME ${export_name})
@@ -24,7 +25,6 @@ function(gridiron_install_component name)
     INCLUDES DESTINATION ${CMAKE_INSTALL_INCLUDEDIR})
   install(DIRECTORY ${arg_HEADERS} DESTINATION ${CMAKE_INSTALL_INCLUDEDIR}/gridiron COMPONENT ${name}
     FILES_MATCHING PATTERN "*.h")
-  install(FILES ${arg_FILES} DESTINATION ${CMAKE_INSTALL_INCLUDEDIR}/gridiron COMPONENT ${name})
   install(EXPORT gridiron_${name} NAMESPACE gridiron:: FILE gridiron-${name}.cmake
     DESTINATION ${GRIDIRON_CMAKE_DIR} COMPONENT ${name})
 
@@ -47,5 +47,19 @@ function(gridiron_install_package)
   write_basic_package_version_file(${PROJECT_BINARY_DIR}/gridiron-config-version.cmake COMPATIBILITY SameMinorVersion)
   install(FILES ${PROJECT_BINARY_DIR}/gridiron-config.cmake ${PROJECT_BINARY_DIR}/gridiron-config-version.cmake
     DESTINATION ${GRIDIRON_CMAKE_DIR} COMPONENT platform)
+  # The porting kit: a project to copy, with what it takes from other folders beside it.
+  set(port_dir ${CMAKE_INSTALL_DATADIR}/gridiron/port)
+  install(DIRECTORY ${PROJECT_SOURCE_DIR}/platform/template/ DESTINATION ${port_dir} COMPONENT platform)
+  set(consumer ${PROJECT_SOURCE_DIR}/tests/package/consumer)
+  install(FILES ${PROJECT_SOURCE_DIR}/tests/contract/contract_checks.h ${PROJECT_SOURCE_DIR}/platform/firmware/memory.cpp
+    ${consumer}/copy_port.h ${consumer}/port_picture.cpp ${consumer}/port_contract.cpp ${consumer}/hills.h
+    ${consumer}/picture.h
+    DESTINATION ${port_dir} COMPONENT platform)
+  install(PROGRAMS ${PROJECT_SOURCE_DIR}/tools/house/deepest_stack ${PROJECT_SOURCE_DIR}/tools/house/compiler_helpers
+    DESTINATION ${port_dir} COMPONENT platform)
+  set(toolchains ${PROJECT_SOURCE_DIR}/tools/cmake/toolchains)
+  install(FILES ${toolchains}/cortex_m7.cmake DESTINATION ${port_dir}/toolchains COMPONENT platform)
+  install(DIRECTORY ${toolchains}/glm DESTINATION ${port_dir}/toolchains COMPONENT platform)
+  install(FILES ${PROJECT_SOURCE_DIR}/platform/README.md DESTINATION ${port_dir} RENAME PORTING.md COMPONENT platform)
   install(FILES ${PROJECT_SOURCE_DIR}/LICENSE DESTINATION ${CMAKE_INSTALL_DOCDIR} COMPONENT platform)
 endfunction()

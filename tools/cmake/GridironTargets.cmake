@@ -1,22 +1,23 @@
 # Helpers that give every target of the project the same language level, warnings and floating-point rules.
+# SPDX-License-Identifier: Apache-2.0
 
-# All targets: C++20, warnings as errors (not in somebody else's project, whose compiler may know more of them), no
-# contraction anywhere (it is part of correctness), square roots that are an instruction.
+# All targets: C++20, warnings (errors with GRIDIRON_WERROR), no contraction anywhere (it is part of correctness), square
+# roots that are an instruction.
 function(gridiron_target_defaults target)
   target_compile_features(${target} PUBLIC cxx_std_20)
   set_target_properties(${target} PROPERTIES CXX_EXTENSIONS OFF)
   target_compile_options(${target} PRIVATE
     -Wall -Wextra -Wpedantic -Wshadow -Wconversion -Wsign-conversion -Wno-psabi
-    $<$<BOOL:${PROJECT_IS_TOP_LEVEL}>:-Werror> -ffp-contract=off -fno-math-errno)
+    $<$<BOOL:${GRIDIRON_WERROR}>:-Werror> -ffp-contract=off -fno-math-errno)
 endfunction()
 
 # Targets that must run without an operating system.
 function(gridiron_freestanding target)
   target_compile_options(${target} PRIVATE
     -ffreestanding -fno-exceptions -fno-rtti -fno-threadsafe-statics -ffunction-sections)
-  # Cross builds are what tools/house/memory_table measures: no tables for unwinding, which nothing reads, and frames of
-  # a fixed size, none as large as the stack of a 256 KB core.
-  if(CMAKE_CROSSCOMPILING AND CMAKE_CXX_COMPILER_ID STREQUAL "GNU")
+  # Builds without an operating system are what tools/house/memory_table measures: no tables for unwinding, which nothing
+  # reads, and frames of a fixed size, none as large as the stack of a 256 KB core.
+  if(NOT GRIDIRON_IS_HOSTED AND CMAKE_CXX_COMPILER_ID STREQUAL "GNU")
     target_compile_options(${target} PRIVATE
       -fno-asynchronous-unwind-tables -fno-unwind-tables -Wvla -Walloca -Wstack-usage=8704)
   endif()

@@ -1,4 +1,5 @@
 # Prints the main figures of a render report in six lines: cmake -D REPORT=file.json -P summarize_report.cmake
+# SPDX-License-Identifier: Apache-2.0
 file(READ "${REPORT}" report)
 
 # integer(OUT keys...): the value at `keys`, its fraction cut off (cycles, of which there are millions).

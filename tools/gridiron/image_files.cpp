@@ -1,32 +1,13 @@
 // Picture files. SPDX-License-Identifier: Apache-2.0
 #include "image_files.h"
 
-#include <png.h>
-
 #include <bit>
 #include <cstring>
 #include <string>
 
-#include "failure.h"
-
 namespace gridiron::tool {
 
 static_assert(std::endian::native == std::endian::little, "pixels and floats are written as they lie in memory");
-
-std::vector<std::byte> encode_png(const Picture<std::uint32_t>& picture) {
-  png_image image{};
-  image.version = PNG_IMAGE_VERSION;
-  image.width = picture.width;
-  image.height = picture.height;
-  image.format = PNG_FORMAT_RGBA;
-  std::vector<std::byte> file(PNG_IMAGE_PNG_SIZE_MAX(image));
-  png_alloc_size_t file_bytes = file.size();
-  if (png_image_write_to_memory(&image, file.data(), &file_bytes, 0, picture.pixels.data(), 0, nullptr) == 0) {
-    throw Failure(ExitCode::kBadInput, std::string("cannot encode the picture: ") + image.message);
-  }
-  file.resize(file_bytes);
-  return file;
-}
 
 std::vector<std::byte> encode_pfm(const Picture<float>& picture) {
   // A negative scale is the format's way to say little-endian.

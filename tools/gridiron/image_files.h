@@ -17,7 +17,8 @@ struct Picture {
 };
 
 /// @param picture  RGBA8, 0xAABBGGRR in each word: bytes R, G, B, A.
-/// @returns the bytes of a PNG file, 8-bit RGBA. Errors: Failure (kBadInput) with libpng's reason.
+/// @returns the bytes of a PNG file, 8-bit RGBA. It is compressed where
+///          the build has libpng (GRIDIRON_WITH_PNG). Errors: Failure (kBadInput) with libpng's reason.
 [[nodiscard]] std::vector<std::byte> encode_png(const Picture<std::uint32_t>& picture);
 
 /// @returns the bytes of a PFM file: "Pf", little-endian floats, last row first as the format says.

@@ -1,5 +1,7 @@
 // Faces of environment cubes. SPDX-License-Identifier: Apache-2.0
+#ifdef GRIDIRON_HAS_PNG
 #include <png.h>
+#endif
 
 #include <bit>
 #include <charconv>
@@ -32,6 +34,7 @@ void require_size(const std::filesystem::path& path, std::uint32_t width, std::u
   }
 }
 
+#ifdef GRIDIRON_HAS_PNG
 // Frees what libpng keeps between the two calls, also where the second is never made.
 struct PngImage : png_image {
   PngImage() : png_image{} { version = PNG_IMAGE_VERSION; }
@@ -60,6 +63,11 @@ EnvironmentFace read_png(const std::filesystem::path& path, std::span<const std:
   }
   return face;
 }
+#else
+[[noreturn]] EnvironmentFace read_png(const std::filesystem::path& path, std::span<const std::byte>) {
+  fail(path, "is a PNG file, which this build of gridiron cannot read (GRIDIRON_WITH_PNG=OFF); a PFM file it can");
+}
+#endif
 
 // Takes the next word of a PFM header and the one white byte behind it. @returns an empty word where there is none.
 std::string_view take_word(std::string_view& text) {

@@ -1,65 +1,25 @@
-// The kernel compiled for a chip of one's own, here one that has no engine: get and put copy at once, main memory is
-// the program's. Shows what mesh_picture shows.
+// The kernel compiled for a chip of one's own, here one that has no engine (copy_port.h): a whole program, from a mesh
+// to a picture. Shows what mesh_picture shows.
 // Memory: static, for no chip has a heap. Threads: one core. SPDX-License-Identifier: Apache-2.0
 #include <gridiron/base/lanes.h>
 #include <gridiron/frame/frame_setup.h>
 #include <gridiron/grid/grid_builder.h>
 #include <gridiron/image/scene_image.h>
-#include <gridiron/platform/contract.h>
-#include <gridiron/platform/transfer_rules.h>
 #include <gridiron/render/tile_renderer.h>
 #include <gridiron/store/local_store.h>
 
 #include <cstddef>
 #include <cstdint>
-#include <cstring>
 #include <new>
 #include <span>
 
+#include "copy_port.h"
 #include "hills.h"
 #include "picture.h"
 
 using namespace gridiron;
 
 namespace {
-
-// [port]
-// A main address is the host's.
-class CopyPort {
- public:
-  explicit CopyPort(std::uint32_t tile_count) : tile_count_(tile_count) {}
-
-  [[nodiscard]] PlatformLimits limits() const { return {}; }
-
-  Status get(void* local, MainAddress address, std::uint32_t bytes, Tag tag) {
-    GRIDIRON_TRY(check(local, address, bytes, tag));
-    std::memcpy(local, reinterpret_cast<const void*>(address.value), bytes);
-    return Status::kOk;
-  }
-
-  Status put(const void* source, MainAddress address, std::uint32_t bytes, Tag tag) {
-    GRIDIRON_TRY(check(source, address, bytes, tag));
-    std::memcpy(reinterpret_cast<void*>(address.value), source, bytes);
-    return Status::kOk;
-  }
-
-  Status wait(TagMask) { return Status::kOk; }
-
-  TileClaim claim_tile() {
-    if (next_tile_ == tile_count_) return {TileClaim::Kind::kNone, 0};
-    return {TileClaim::Kind::kTile, next_tile_++};
-  }
-
- private:
-  [[nodiscard]] Status check(const void* local, MainAddress address, std::uint32_t bytes, Tag tag) const {
-    return check_transfer(limits(), reinterpret_cast<std::uintptr_t>(local), address, bytes, tag);
-  }
-
-  std::uint32_t tile_count_;
-  std::uint32_t next_tile_ = 0;
-};
-static_assert(Platform<CopyPort>);
-// [port]
 
 // Main memory, handed out in lines.
 alignas(4096) std::byte main_memory[std::size_t{1} << 23];
@@ -98,7 +58,7 @@ int main() {
   if (make_frame_record(settings, view, address_of(image), frame) != Status::kOk) return 1;
 
   // [render]
-  CopyPort port(frame.tiles_x * frame.tiles_y);
+  example::CopyPort port(frame.tiles_x * frame.tiles_y);
   if (render_tiles<Lanes<4>>(local_store, port, address_of(record)) != Status::kOk) return 1;
   // [render]
   print_hashes(settings, color, depth);

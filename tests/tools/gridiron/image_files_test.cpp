@@ -7,6 +7,7 @@
 #include <limits>
 #include <string>
 
+#include "gridiron/png_file.h"
 #include "support/picture.h"
 #include "support/test_mesh.h"
 #include "temporary_folder.h"
@@ -19,9 +20,13 @@ std::filesystem::path write_bytes(const TemporaryFolder& folder, const std::stri
   return folder.write(name, std::string(reinterpret_cast<const char*>(bytes.data()), bytes.size()));
 }
 
-constexpr struct Size { std::uint32_t width, height; } kSizes[] = {{1, 1}, {33, 17}, {1, 300}, {300, 1}, {64, 64}};
+constexpr struct Size {
+  std::uint32_t width, height;
+} kSizes[] = {{1, 1}, {33, 17}, {1, 300}, {300, 1}, {64, 64}, {16385, 3}};
 
-TEST(ImageFiles, PngHoldsEveryPixel) {
+using EncodePng = std::vector<std::byte> (*)(const tool::Picture<std::uint32_t>&);
+
+void expect_every_pixel(EncodePng encode_png) {
   const TemporaryFolder folder;
   for (const Size size : kSizes) {
     tool::Picture<std::uint32_t> picture{size.width, size.height, {}};
@@ -29,7 +34,7 @@ TEST(ImageFiles, PngHoldsEveryPixel) {
     for (std::uint32_t i = 0; i < size.width * size.height; ++i) {
       picture.pixels.push_back(static_cast<std::uint32_t>(random.next()) | 0xFF000000u);
     }
-    const auto read = load_picture(write_bytes(folder, "a.png", tool::encode_png(picture)));
+    const auto read = load_picture(write_bytes(folder, "a.png", encode_png(picture)));
     ASSERT_TRUE(read) << size.width << "x" << size.height;
     ASSERT_EQ(read->width, size.width);
     ASSERT_EQ(read->height, size.height);
@@ -41,6 +46,14 @@ TEST(ImageFiles, PngHoldsEveryPixel) {
       }
     }
   }
+}
+
+TEST(ImageFiles, PngHoldsEveryPixel) {
+  expect_every_pixel(tool::encode_png);
+}
+
+TEST(ImageFiles, PngWithoutLibpngHoldsEveryPixel) {
+  expect_every_pixel(tool::encode_stored_png);
 }
 
 TEST(ImageFiles, PfmHoldsEveryFloatWithTheFirstRowOnTop) {

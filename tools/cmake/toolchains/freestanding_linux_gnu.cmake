@@ -1,4 +1,5 @@
 # Cross-compiles core with a Debian cross compiler, freestanding. The including file sets GRIDIRON_TARGET.
+# SPDX-License-Identifier: Apache-2.0
 set(CMAKE_SYSTEM_NAME Generic)
 set(CMAKE_SYSTEM_PROCESSOR ${GRIDIRON_TARGET})
 set(CMAKE_C_COMPILER ${GRIDIRON_TARGET}-linux-gnu-gcc)

@@ -1,4 +1,5 @@
 # GLM for cross builds: a directory that holds a link to the host's GLM headers and nothing else.
+# SPDX-License-Identifier: Apache-2.0
 find_path(GRIDIRON_GLM_PARENT glm/glm.hpp PATHS /usr/include /usr/local/include NO_DEFAULT_PATH NO_CMAKE_FIND_ROOT_PATH)
 if(NOT GRIDIRON_GLM_PARENT)
   set(glm_FOUND FALSE)

@@ -1,0 +1,64 @@
+# What a build is made of: the build type, packages that it can do without, one test where the tests are not built.
+# SPDX-License-Identifier: Apache-2.0
+
+# gridiron_default_build_type(TYPE): for whoever gives none; not in somebody else's project.
+macro(gridiron_default_build_type type)
+  if(PROJECT_IS_TOP_LEVEL AND NOT CMAKE_BUILD_TYPE AND NOT CMAKE_CONFIGURATION_TYPES)
+    set(CMAKE_BUILD_TYPE ${type} CACHE STRING "Debug, Release, RelWithDebInfo, MinSizeRel or None" FORCE)
+  endif()
+endmacro()
+
+# gridiron_with(NAME PURPOSE PACKAGE [VERSION]): the option GRIDIRON_WITH_<NAME>. AUTO uses the package where it is
+# installed, ON stops where it is not, OFF does not look for it. Sets GRIDIRON_HAS_<NAME>. A macro, so that what the
+# package defines can be seen in all directories.
+macro(gridiron_with name purpose package)
+  set(GRIDIRON_WITH_${name} AUTO CACHE STRING "AUTO, ON or OFF: ${purpose}")
+  set_property(CACHE GRIDIRON_WITH_${name} PROPERTY STRINGS AUTO ON OFF)
+  set(GRIDIRON_HAS_${name} OFF)
+  if(GRIDIRON_WITH_${name} STREQUAL "AUTO")
+    find_package(${package} ${ARGN} QUIET)
+  elseif(GRIDIRON_WITH_${name})
+    find_package(${package} ${ARGN} REQUIRED)
+  endif()
+  if((GRIDIRON_WITH_${name} STREQUAL "AUTO" OR GRIDIRON_WITH_${name}) AND ${package}_FOUND)
+    set(GRIDIRON_HAS_${name} ON)
+    list(APPEND gridiron_packages
+      "${package} ${${package}_VERSION}${${package}_VERSION_STRING}, since GRIDIRON_WITH_${name}=${GRIDIRON_WITH_${name}}")
+  else()
+    list(APPEND gridiron_packages "no ${package}, since GRIDIRON_WITH_${name}=${GRIDIRON_WITH_${name}}")
+  endif()
+endmacro()
+
+# gridiron_use_png(TARGET): its sources know by GRIDIRON_HAS_PNG whether there is libpng.
+function(gridiron_use_png target)
+  if(GRIDIRON_HAS_PNG)
+    target_compile_definitions(${target} PRIVATE GRIDIRON_HAS_PNG)
+    target_link_libraries(${target} PRIVATE PNG::PNG)
+  endif()
+endfunction()
+
+# Builds of one commit differ by these lines and by nothing else that was found on the machine.
+function(gridiron_print_options)
+  if(NOT PROJECT_IS_TOP_LEVEL)
+    return()
+  endif()
+  set(has_tests OFF)
+  if(GRIDIRON_BUILD_TESTS AND NOT CMAKE_CROSSCOMPILING)
+    set(has_tests ON)
+  endif()
+  message(STATUS "Gridiron ${PROJECT_VERSION}: build type ${CMAKE_BUILD_TYPE}, program ${GRIDIRON_BUILD_TOOLS}, "
+    "tests ${has_tests}, benchmarks ${GRIDIRON_BUILD_BENCHMARKS}, wide lanes ${GRIDIRON_WIDE_LANES}, "
+    "warnings are errors ${GRIDIRON_WERROR}")
+  foreach(line IN LISTS gridiron_packages)
+    message(STATUS "Gridiron ${PROJECT_VERSION}: ${line}")
+  endforeach()
+endfunction()
+
+# Where the tests are not built, `ctest` renders one picture with the program and compares its hash.
+function(gridiron_add_smoke_test)
+  add_test(NAME program_renders_the_teapot.GRIDIRON_BUILD_TESTS_is_OFF
+    COMMAND gridiron render ${PROJECT_SOURCE_DIR}/scenes/teapot.ply --size 64x48 --eye 3.5,6,10 --at 0.25,1.45,0
+      --fov 23 -o ${PROJECT_BINARY_DIR}/smoke_test.png)
+  set_tests_properties(program_renders_the_teapot.GRIDIRON_BUILD_TESTS_is_OFF PROPERTIES
+    PASS_REGULAR_EXPRESSION "hash 6193136662a02492")
+endfunction()
