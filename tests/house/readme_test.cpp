@@ -31,10 +31,11 @@ TEST(Readme, TheExampleHasAtMostFifteenLinesOfCode) {
 }
 
 TEST(Readme, LinksAndPicturesExist) {
-  for (const char* readme : {"README.md", "core/README.md", "scenes/README.md", "tests/README.md"}) {
+  for (const char* readme : {"README.md", "CHANGELOG.md", "CONTRIBUTING.md", "core/README.md", "platform/README.md",
+                             "scenes/README.md", "tests/README.md", "tools/README.md"}) {
     const std::string text = text_of(source_path(readme));
     ASSERT_FALSE(text.empty()) << readme;
-    const std::regex link(R"(\]\(([^)#]+)\))");
+    const std::regex link(R"(\]\(([^)# ]+)(#[^)]*)?\))");
     for (std::sregex_iterator match(text.begin(), text.end(), link), end; match != end; ++match) {
       const std::string target = (*match)[1];
       if (target.rfind("http", 0) == 0) continue;
