@@ -1,6 +1,7 @@
 // The real kernel when a transfer goes wrong: every transfer of a small frame in turn, refused, failed, timed out.
 // Each time the error comes back as a Status, nothing hangs, and no byte outside the local store or the picture
-// changes. SPDX-License-Identifier: Apache-2.0
+// changes. The same for every allocation of host memory that fails while a frame is rendered.
+// SPDX-License-Identifier: Apache-2.0
 #include <gridiron/base/lanes.h>
 #include <gridiron/frame/frame_setup.h>
 #include <gridiron/grid/grid_builder.h>
@@ -22,6 +23,7 @@
 #include <string>
 #include <vector>
 
+#include "failing_new.h"
 #include "host_board.h"
 #include "sim_platform/program_bench.h"
 #include "support/instrumented.h"
@@ -116,6 +118,40 @@ TEST(KernelFault, EveryTransferThatFailsInTheSimulatorComesBackAsAStatus) {
   options.fail_transfer = count + 100;
   options.threads = 1;
   EXPECT_EQ(render_frame(frame.memory(), frame.record(), options).status, Status::kOk);
+}
+
+TEST(KernelFault, EveryAllocationThatFailsComesBackAsAStatus) {
+  SmallFrame frame;
+  std::vector<Mode> modes = {Mode::kChecked, Mode::kPlain};
+  if (has_instrumented_mode()) modes.push_back(Mode::kInstrumented);
+  for (const Mode mode : modes) {
+    for (const std::uint32_t threads : {1u, 3u}) {
+      ChipOptions options;
+      options.store = StoreSize::k64KB;
+      options.mode = mode;
+      options.threads = threads;
+      ASSERT_EQ(render_frame(frame.memory(), frame.record(), options).status, Status::kOk);
+      const std::vector<std::byte> picture = frame.picture();
+      std::uint64_t ended = 0;
+      bool is_last = false;
+      for (std::uint64_t i = 1; !is_last; i = i + 1 + i / 8) {
+        test::fail_allocation(i);
+        const ChipResult result = render_frame(frame.memory(), frame.record(), options);
+        is_last = test::end_of_failing() < i;
+        if (result.status == Status::kOk) {
+          // The allocation was there for a thread that could be done without, or the frame had fewer.
+          ASSERT_TRUE(frame.picture() == picture) << "allocation " << i;
+          ASSERT_EQ(result.host_shortage, HostShortage::kNone);
+          continue;
+        }
+        ++ended;
+        ASSERT_EQ(result.status, Status::kAborted) << "allocation " << i << ": " << words(result);
+        ASSERT_EQ(result.host_shortage, HostShortage::kMemory) << "allocation " << i;
+        ASSERT_TRUE(frame.is_untouched()) << "allocation " << i;
+      }
+      EXPECT_GT(ended, 3u);
+    }
+  }
 }
 
 /// The kernel over the decorator over a checked core.

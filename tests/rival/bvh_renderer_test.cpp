@@ -11,6 +11,7 @@
 #include <string>
 #include <vector>
 
+#include "support/no_threads.h"
 #include "support/render_mesh.h"
 #include "support/test_mesh.h"
 #include "support/views.h"
@@ -356,6 +357,23 @@ TEST(BvhRenderer, StoreMapCoversTheStore) {
   });
   EXPECT_EQ(regions, 7u);
   EXPECT_EQ(end, sizeof(RivalStore));
+}
+
+TEST(BvhRenderer, CoresThatWaitForOneAnotherNeedAThreadEach) {
+  Scene scene{make_mixed_mesh(), settings_of(kMixedCamera, 64, 64)};
+  scene.prepare();
+  BvhFrame frame;
+  {
+    const test::NoThreads no_threads;
+    frame = render_bvh_frame(scene.bvh, scene.settings, ps3(), {});
+    EXPECT_EQ(frame.status, Status::kAborted);
+    EXPECT_EQ(frame.host_shortage, sim::HostShortage::kThreads);
+    // One core is the caller's thread.
+    EXPECT_EQ(render_bvh_frame(scene.bvh, scene.settings, ps3(), {.core_count = 1}).status, Status::kOk);
+  }
+  frame = render_bvh_frame(scene.bvh, scene.settings, ps3(), {});
+  EXPECT_EQ(frame.status, Status::kOk);
+  EXPECT_EQ(frame.host_shortage, sim::HostShortage::kNone);
 }
 
 }  // namespace

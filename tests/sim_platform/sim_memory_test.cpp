@@ -2,10 +2,15 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <gridiron/sim/sim_memory.h>
 #include <gtest/gtest.h>
+#include <sys/resource.h>
+#include <unistd.h>
 
 #include <algorithm>
 #include <cstdint>
+#include <fstream>
 #include <limits>
+#include <new>
+#include <string>
 
 namespace gridiron::sim {
 namespace {
@@ -83,6 +88,72 @@ TEST(SimMemory, RangeQueriesStopAtWhatWasAllocated) {
   EXPECT_TRUE(memory.bytes_at(region->address, std::numeric_limits<std::uint64_t>::max()).empty());
   EXPECT_TRUE(memory.bytes_at(MainAddress{std::numeric_limits<std::uint64_t>::max()}, 2).empty());
 }
+
+// Kilobytes of memory that this process has of the host.
+std::uint64_t resident_kilobytes() {
+  std::ifstream status("/proc/self/status");
+  for (std::string word; status >> word;) {
+    std::uint64_t kilobytes = 0;
+    if (word == "VmRSS:" && status >> kilobytes) return kilobytes;
+  }
+  return 0;
+}
+
+TEST(SimMemory, TakesOfTheHostWhatIsHandedOut) {
+  constexpr std::uint64_t kCapacity = std::uint64_t{1} << 39;  // more than hosts of these tests have
+  const std::uint64_t before = resident_kilobytes();
+  SimMemory memory(kCapacity);
+  ASSERT_TRUE(memory.allocate(1000));
+  const auto region = memory.allocate(1'000'000, 1 << 20);
+  ASSERT_TRUE(region);
+  EXPECT_TRUE(all_zero(region->bytes));
+  std::fill(region->bytes.begin(), region->bytes.end(), std::byte{0xEE});
+  EXPECT_LT(resident_kilobytes(), before + 64 * 1024);
+
+  // The capacity is what counts for those who ask.
+  EXPECT_EQ(memory.capacity_bytes(), kCapacity);
+  EXPECT_FALSE(memory.allocate(kCapacity));
+  EXPECT_TRUE(memory.bytes_at(region->address, 1'000'001).empty());
+  EXPECT_TRUE(memory.bytes_at(MainAddress{kCapacity}, 1).empty());
+}
+
+TEST(SimMemory, WhatTheHostCannotGiveIsThrownAndChangesNothing) {
+  constexpr std::uint64_t kMuch = std::uint64_t{1} << 60;
+  SimMemory memory(kMuch);
+  const auto region = memory.allocate(4096);
+  ASSERT_TRUE(region);
+  EXPECT_THROW(static_cast<void>(memory.allocate(kMuch - (1 << 20))), std::bad_alloc);
+  EXPECT_EQ(memory.used_bytes(), 4096u);
+  EXPECT_EQ(memory.bytes_at(region->address, 4096).size(), 4096u);
+  EXPECT_TRUE(memory.allocate(4096));
+}
+
+#if !defined(__SANITIZE_ADDRESS__) && !defined(__SANITIZE_THREAD__)  // these take terabytes of addresses themselves
+// Ends with 0 where a memory of 256 MB serves what is small, although the host has fewer addresses left.
+[[noreturn]] void use_memory_of_limited_addresses() {
+  constexpr std::uint64_t kMegabyte = 1 << 20;
+  std::uint64_t pages = 0;
+  std::ifstream("/proc/self/statm") >> pages;
+  rlimit limit{};
+  limit.rlim_cur = limit.rlim_max =
+      static_cast<rlim_t>(pages * static_cast<std::uint64_t>(::sysconf(_SC_PAGESIZE)) + 200 * kMegabyte);
+  if (::setrlimit(RLIMIT_AS, &limit) != 0) ::_exit(1);
+  SimMemory memory(256 * kMegabyte);
+  const auto region = memory.allocate(50 * kMegabyte);
+  if (!region) ::_exit(2);
+  std::fill(region->bytes.begin(), region->bytes.end(), std::byte{1});
+  try {
+    if (memory.allocate(150 * kMegabyte)) ::_exit(3);
+  } catch (const std::bad_alloc&) {
+    ::_exit(0);
+  }
+  ::_exit(4);
+}
+
+TEST(SimMemory, FewerAddressesThanTheCapacityServeWhatIsSmall) {
+  EXPECT_EXIT(use_memory_of_limited_addresses(), testing::ExitedWithCode(0), "");
+}
+#endif
 
 }  // namespace
 }  // namespace gridiron::sim

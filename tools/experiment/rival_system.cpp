@@ -28,6 +28,7 @@ rival::BvhFrame render(const rival::Bvh& bvh, const FrameSettings& settings, riv
   }
   sim::ChipResult outcome;
   outcome.status = frame.status;
+  outcome.host_shortage = frame.host_shortage;
   outcome.violations = std::move(frame.violations);
   if (const std::optional<tool::Failure> failure = tool::frame_failure(outcome)) throw *failure;
   return frame;

@@ -1,9 +1,11 @@
 // Workers. SPDX-License-Identifier: Apache-2.0
 #include "experiment/workers.h"
 
+#include <gridiron/sim/host_workers.h>
+
+#include <algorithm>
 #include <atomic>
 #include <exception>
-#include <thread>
 #include <vector>
 
 namespace gridiron::experiment {
@@ -12,7 +14,7 @@ void share_work(std::uint32_t threads, std::size_t count, const std::function<vo
   std::atomic<std::size_t> next{0};
   std::atomic<bool> stop{false};
   std::vector<std::exception_ptr> errors(count);
-  const auto run = [&] {
+  const auto run = [&](std::uint32_t) {
     while (!stop) {
       // What is claimed is done, whoever fails meanwhile: of pieces that fail the lowest is always among them.
       const std::size_t i = next++;
@@ -25,10 +27,8 @@ void share_work(std::uint32_t threads, std::size_t count, const std::function<vo
       }
     }
   };
-  std::vector<std::thread> workers;
-  for (std::uint32_t i = 1; i < threads; ++i) workers.emplace_back(run);
-  run();
-  for (std::thread& worker : workers) worker.join();
+  const sim::WorkersEnd end = sim::run_workers(std::max(threads, 1u), 1, run, [&stop] { stop = true; });
+  if (end.error != nullptr) std::rethrow_exception(end.error);
   for (const std::exception_ptr& error : errors) {
     if (error != nullptr) std::rethrow_exception(error);
   }

@@ -20,6 +20,12 @@ std::string words_of_place(std::uint32_t core, std::uint32_t tile_id) {
 
 std::optional<Failure> frame_failure(const sim::ChipResult& result) {
   if (result.status == Status::kOk && result.violations.empty()) return std::nullopt;
+  if (result.host_shortage == sim::HostShortage::kMemory) {
+    return Failure(ExitCode::kBadInput, "this host has not enough memory to render the frame");
+  }
+  if (result.host_shortage == sim::HostShortage::kThreads) {
+    return Failure(ExitCode::kBadInput, "this host cannot start a thread for each core of the machine");
+  }
   if (result.status == Status::kUnsupportedFrame) return Failure(ExitCode::kUsage, words_of(result.status));
   if (result.status == Status::kUnsupportedImage) return Failure(ExitCode::kBadInput, words_of(result.status));
 

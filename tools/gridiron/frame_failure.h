@@ -12,7 +12,7 @@ namespace gridiron::tool {
 
 /// @returns nothing for a frame that went well; else how the command ends: every violation on a line of its own (at
 /// most 20) and what the renderer said. kCheckFailed, or kUsage where the build cannot render what the options ask for,
-/// or kBadInput where it cannot use the scene image.
+/// or kBadInput where it cannot use the scene image or the host has not enough memory or threads.
 [[nodiscard]] std::optional<Failure> frame_failure(const sim::ChipResult& result);
 
 }  // namespace gridiron::tool

@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <cstring>
+#include <new>
 #include <string>
 
 #include "failure.h"
@@ -14,11 +15,14 @@ namespace gridiron::tool {
 namespace {
 
 sim::MemoryRegion allocate(sim::SimMemory& memory, std::uint64_t bytes, std::uint64_t alignment = kLineBytes) {
-  const std::optional<sim::MemoryRegion> region = memory.allocate(bytes, alignment);
-  if (!region) {
-    throw Failure(ExitCode::kBadInput, "the main memory of " + words_of_bytes(memory.capacity_bytes()) + " is full");
+  try {
+    const std::optional<sim::MemoryRegion> region = memory.allocate(bytes, alignment);
+    if (region) return *region;
+  } catch (const std::bad_alloc&) {
+    throw Failure(ExitCode::kBadInput, "this host has not enough memory: it cannot give the machine's main memory " +
+                                           words_of_count(bytes) + " bytes more");
   }
-  return *region;
+  throw Failure(ExitCode::kBadInput, "the main memory of " + words_of_bytes(memory.capacity_bytes()) + " is full");
 }
 
 std::uint32_t core_count(const RenderArguments& arguments) {

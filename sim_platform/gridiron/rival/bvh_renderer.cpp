@@ -85,6 +85,13 @@ template <class Element>
   return ring_ok && are_caches_valid(core_settings(bvh.parameters, options)) && !bvh.nodes.empty();
 }
 
+/// Also where the core cannot even be made.
+struct LeaveAtEnd {
+  ClaimOrder& order;
+  std::uint32_t core;
+  ~LeaveAtEnd() { order.leave(core); }
+};
+
 // What a core does. @returns its status, and adds its caches' counts.
 template <std::uint32_t Width>
 [[nodiscard]] Status run_core(std::span<std::byte> data, OrderedCore& platform, MainAddress record, std::mutex& mutex,
@@ -151,6 +158,7 @@ BvhFrame render_bvh_frame(const Bvh& bvh, const FrameSettings& settings, const s
   chip.abort = options.abort;
   sim::FrameShape shape;
   shape.tile_count = parts.frame.tiles_x * parts.frame.tiles_y;
+  shape.cores_meet = true;
   shape.output_depth = kOutputDepth;
   shape.arena_bytes = kArenaBytes;
   shape.data_bytes = options.packet_width == 16 ? sizeof(PacketStore<16>) : sizeof(PacketStore<8>);
@@ -169,11 +177,14 @@ BvhFrame render_bvh_frame(const Bvh& bvh, const FrameSettings& settings, const s
       const std::scoped_lock lock(mutex);
       index = cores_begun++;
     }
+    // Whatever ends this core, the others must not wait for its turn.
+    const LeaveAtEnd leave{order, index};
     OrderedCore platform(core, index, order, priced, kOutputDepth, result.core_of_tile);
     return options.packet_width == 16 ? run_core<16>(data, platform, parts.record.address, mutex, result)
                                       : run_core<8>(data, platform, parts.record.address, mutex, result);
   });
   result.status = run.status;
+  result.host_shortage = run.host_shortage;
   result.violations = std::move(run.violations);
   if (result.status != Status::kOk) return result;
 

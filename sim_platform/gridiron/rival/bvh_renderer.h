@@ -52,6 +52,7 @@ struct BvhPicture {
 /// What a frame gave and what it cost.
 struct BvhFrame {
   Status status = Status::kOk;
+  sim::HostShortage host_shortage = sim::HostShortage::kNone;  ///< where it is any, status is kAborted
   std::vector<sim::Violation> violations;
   BvhPicture picture;       ///< depth and ids only where asked for
   sim::FrameTiming timing;  ///< with contention; waits for node lines under kMacroCell, triangles kTriangle
@@ -75,7 +76,8 @@ struct BvhFrame {
 /// @param settings  camera, size, shading, t_far, background; accuracy kStandard. What a grid needs is not looked at;
 /// tile width, output depth and addresses are set here.
 /// Errors: kUnsupportedFrame (accuracy; a machine with less than 256 KB of local store), kBadParameter (options),
-/// kMemoryTooSmall (main memory of the machine), kBadFrame (settings), kAborted, and what a broken rule reports.
+/// kMemoryTooSmall (main memory of the machine), kBadFrame (settings), kAborted (asked for, or a shortage of the host:
+/// each core needs a thread), and what a broken rule reports.
 [[nodiscard]] BvhFrame render_bvh_frame(const Bvh& bvh, const FrameSettings& settings,
                                         const sim::MachineProfile& machine, const RenderOptions& options);
 

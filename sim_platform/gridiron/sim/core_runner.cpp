@@ -2,14 +2,15 @@
 // Memory: owns local stores for the time of the frame. Threads: starts its own. SPDX-License-Identifier: Apache-2.0
 #include <gridiron/base/records.h>
 #include <gridiron/sim/core_runner.h>
+#include <gridiron/sim/host_workers.h>
 
 #include <algorithm>
 #include <bit>
 #include <cstring>
+#include <exception>
 #include <iterator>
 #include <memory>
 #include <new>
-#include <thread>
 #include <utility>
 
 namespace gridiron::sim {
@@ -135,8 +136,11 @@ bool is_spill_valid(SimMemory& memory, const SpillMemory& spill, std::uint32_t c
                       [&](const MainRange& range) { return range.begin < end && begin < range.end; });
 }
 
-ChipResult run_cores(SimMemory& memory, const FrameShape& shape, const ChipOptions& options,
-                     const CoreProgram& program) {
+namespace {
+
+/// As run_cores. Errors: throws what the host has not, and what the program throws.
+[[nodiscard]] ChipResult run_on_host(SimMemory& memory, const FrameShape& shape, const ChipOptions& options,
+                                     const CoreProgram& program) {
   ChipResult result;
   const bool one_tile = options.only_tile.has_value();
   if (!are_limits_valid(options.limits) || options.threads == 0 || shape.output_depth == 0 || shape.data_bytes == 0 ||
@@ -168,12 +172,11 @@ ChipResult run_cores(SimMemory& memory, const FrameShape& shape, const ChipOptio
     arenas.push_back(std::make_unique<GuardedArena>(shape.arena_bytes, shape.data_bytes));
     runs[i].core = std::make_unique<SimCore>(frame, i, arenas[i]->data());
   }
-  std::vector<std::thread> threads;
-  for (std::uint32_t i = 1; i < options.threads; ++i) {
-    threads.emplace_back([&, i] { run_core(runs[i], *arenas[i], program, tiles); });
-  }
-  run_core(runs[0], *arenas[0], program, tiles);
-  for (std::thread& thread : threads) thread.join();
+  const WorkersEnd end = run_workers(
+      options.threads, shape.cores_meet ? options.threads : 1,
+      [&](std::uint32_t i) { run_core(runs[i], *arenas[i], program, tiles); }, [&] { tiles.stop(); });
+  if (end.error != nullptr) std::rethrow_exception(end.error);
+  if (end.started == 0) return ended_by(HostShortage::kThreads);
 
   // Status: that of the lowest failing tile, with its violations.
   const auto worst = std::min_element(runs.begin(), runs.end(), outranks);
@@ -227,6 +230,17 @@ ChipResult run_cores(SimMemory& memory, const FrameShape& shape, const ChipOptio
   result.trace.prologue = std::move(runs[0].core->prologue);
   result.trace.epilogue = std::move(runs[0].core->epilogue);
   return result;
+}
+
+}  // namespace
+
+ChipResult run_cores(SimMemory& memory, const FrameShape& shape, const ChipOptions& options,
+                     const CoreProgram& program) {
+  try {
+    return run_on_host(memory, shape, options, program);
+  } catch (const std::bad_alloc&) {
+    return ended_by(HostShortage::kMemory);
+  }
 }
 
 }  // namespace gridiron::sim

@@ -21,6 +21,7 @@ struct FrameShape {
   std::uint32_t data_bytes = 256 * 1024;   ///< its first bytes, where data lies; the rest is code and stack
   std::vector<MainRange> writable;         ///< where puts may go; sorted, disjoint
   bool is_picture = false;                 ///< writable holds equal parts of every tile; each must be claimed and put
+  bool cores_meet = false;                 ///< cores wait for one another, so that each needs a host thread of its own
 };
 
 /// What a core runs: from its first claim to its last wait. `data` is zeroed and kLineBytes-aligned.
@@ -29,7 +30,9 @@ using CoreProgram = std::function<Status(SimCore& core, std::span<std::byte> dat
 /// Runs `program` on options.threads cores (options.mode, lanes, store and packet_width are not looked at). The bytes
 /// around a core's data carry a pattern that is checked at the end.
 ///
-/// Errors: kBadParameter as of render_frame; the program's, and those of the rules that it broke.
+/// Errors: kBadParameter and kAborted as of render_frame; the program's, and those of the rules that it broke. A
+/// program that throws std::bad_alloc ends the frame with HostShortage::kMemory; what else it throws is thrown on by
+/// this call once all threads have ended.
 ///
 /// What a core puts before its first tile or after its last belongs to no tile: two cores that do so and overlap are
 /// told, but whether there are two of them is the caller's choice.

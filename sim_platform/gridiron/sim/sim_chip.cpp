@@ -4,6 +4,7 @@
 #include <gridiron/base/records.h>
 #include <gridiron/sim/compiled_layouts.h>
 #include <gridiron/sim/core_runner.h>
+#include <gridiron/sim/host_workers.h>
 #include <gridiron/sim/plain_core.h>
 #include <gridiron/sim/render_entry.h>
 #include <gridiron/sim/sim_chip.h>
@@ -12,9 +13,9 @@
 
 #include <algorithm>
 #include <cstring>
+#include <exception>
 #include <memory>
 #include <new>
-#include <thread>
 
 namespace gridiron::sim {
 
@@ -199,10 +200,8 @@ enum class LayoutGroup : std::uint8_t { kCommon, kSweep, kEffects, kNone };
     run.status = entry(layout, run.arena.get(), *run.core, frame, spill);
     if (run.status != Status::kOk) tiles.stop();
   };
-  std::vector<std::thread> threads;
-  for (std::uint32_t i = 1; i < options.threads; ++i) threads.emplace_back([&, i] { render(i); });
-  render(0);
-  for (std::thread& thread : threads) thread.join();
+  const WorkersEnd end = run_workers(options.threads, 1, render, [&] { tiles.stop(); });
+  if (end.error != nullptr) std::rethrow_exception(end.error);
 
   for (std::uint32_t i = 0; i < options.threads; ++i) {
     const Run& run = runs[i];
@@ -220,9 +219,8 @@ enum class LayoutGroup : std::uint8_t { kCommon, kSweep, kEffects, kNone };
   return result;
 }
 
-}  // namespace
-
-ChipResult render_frame(SimMemory& memory, MainAddress frame, const ChipOptions& asked) {
+/// As render_frame. Errors: throws what the host has not, and what options.progress throws.
+[[nodiscard]] ChipResult render_on_host(SimMemory& memory, MainAddress frame, const ChipOptions& asked) {
   ChipResult result;
   const auto refuse = [&](Status status) {
     result.status = status;
@@ -264,6 +262,23 @@ ChipResult render_frame(SimMemory& memory, MainAddress frame, const ChipOptions&
     }
     return entry(layout, data.data(), core, frame, spill);
   });
+}
+
+}  // namespace
+
+ChipResult ended_by(HostShortage shortage) {
+  ChipResult result;
+  result.status = Status::kAborted;
+  result.host_shortage = shortage;
+  return result;
+}
+
+ChipResult render_frame(SimMemory& memory, MainAddress frame, const ChipOptions& options) {
+  try {
+    return render_on_host(memory, frame, options);
+  } catch (const std::bad_alloc&) {
+    return ended_by(HostShortage::kMemory);
+  }
 }
 
 bool is_built(const LayoutChoice& layout, Mode mode, std::uint32_t lanes) {

@@ -73,7 +73,7 @@ struct SpillMemory {
 /// How a frame is rendered. None of it changes a pixel.
 struct ChipOptions {
   Mode mode = Mode::kChecked;  ///< what is checked
-  std::uint32_t threads = 1;  ///< host threads, each one simulated core's worth of claims
+  std::uint32_t threads = 1;  ///< host threads, each one simulated core's worth of claims; fewer if the host has fewer
   std::uint32_t lanes = 4;    ///< 4, 8, 16 (8 and 16 where the host has them, else kUnsupportedFrame)
   StoreSize store = StoreSize::k256KB;  ///< local memory of each core
   std::uint32_t packet_width = 8;  ///< rays along a packet's edge; the frame brings its tile width
@@ -95,9 +95,17 @@ struct Violation {
   std::string detail;     ///< addresses and sizes, for people
 };
 
+/// What the host ran out of, so that it could not end a frame. The machine has no part in it.
+enum class HostShortage : std::uint8_t {
+  kNone,
+  kMemory,   ///< book-keeping of the checks, the trace or a local store found no room
+  kThreads,  ///< a thread could not be started, and the cores wait for one another
+};
+
 /// What came of a frame.
 struct ChipResult {
   Status status = Status::kOk;  ///< of the frame
+  HostShortage host_shortage = HostShortage::kNone;  ///< where it is any, status is kAborted and nothing else is told
   std::uint32_t failed_core = 0, failed_tile = 0;  ///< meaningful when status is not kOk; lowest tile that failed
   std::vector<Violation> violations;  ///< of the failed tile
   WorkTotals work{};            ///< over all tiles; the same for any number of threads
@@ -110,9 +118,13 @@ struct ChipResult {
 /// Errors: kBadFrame (the record, or a part of memory that it names, is not there), kUnsupportedFrame (is_built says no
 /// of store, tile width, packet width, shading, mode and lanes, or this host cannot run it), kBadParameter (limits that
 /// are not a platform's, a tile that is not in the frame, no threads, spill memory that is misaligned, not allocated or
-/// part of the picture), kAborted, and whatever the kernel or a broken rule reports. When several tiles fail, the
-/// lowest one is told, with its violations, for any number of threads.
+/// part of the picture), kAborted (asked for by the options, or by a shortage of the host, which the result names), and
+/// whatever the kernel or a broken rule reports. When several tiles fail, the lowest one is told, with its violations,
+/// for any number of threads. What options.progress throws is thrown on by this call once all threads have ended.
 [[nodiscard]] ChipResult render_frame(SimMemory& memory, MainAddress frame, const ChipOptions& options);
+
+/// @returns how a frame ends that the host cannot go on with.
+[[nodiscard]] ChipResult ended_by(HostShortage shortage);
 
 /// @returns whether the kernel was built for a layout in a mode and for a lane count, whatever this host can run.
 /// Stores of 64 KB with tiles of 16 and of 256 KB with tiles of 32 pixels are built in every mode, the others in

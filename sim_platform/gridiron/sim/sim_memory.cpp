@@ -1,5 +1,7 @@
-// Simulated main memory: one zeroed host block whose byte i stands for main address i.
+// Simulated main memory: one zeroed range of host addresses whose byte i stands for main address i. The range is
+// reserved whole; memory of the host is taken for what is handed out.
 // Memory: owns. Threads: allocate before the frame; bytes are shared during it. SPDX-License-Identifier: Apache-2.0
+#include <gridiron/base/math.h>
 #include <gridiron/sim/sim_memory.h>
 
 #include <cstdlib>
@@ -7,19 +9,59 @@
 #include <limits>
 #include <new>
 
+#if __has_include(<sys/mman.h>)
+#include <sys/mman.h>
+#include <unistd.h>
+#define GRIDIRON_SIM_RESERVES_ADDRESSES
+#endif
+
 namespace gridiron::sim {
 
-namespace {
-
-// Host alignment of main address 0: as strict as any boundary a transfer rule knows.
-constexpr std::uint64_t kHostAlignmentBytes = 4096;
-
-}  // namespace
+#if defined(GRIDIRON_SIM_RESERVES_ADDRESSES)
 
 SimMemory::SimMemory(std::uint64_t capacity_bytes) : capacity_bytes_(capacity_bytes) {
+  if (capacity_bytes > std::numeric_limits<std::uint64_t>::max() / 2) throw std::bad_alloc();
+  page_bytes_ = static_cast<std::uint64_t>(::sysconf(_SC_PAGESIZE));
+  // The range begins on a page, which is as strict as any boundary a transfer rule knows. Where the host's addresses
+  // are limited (ulimit -v), half as many, or a quarter, still serve what is small beside the capacity.
+  constexpr std::uint64_t kMostBytes = std::numeric_limits<std::size_t>::max() / 2;
+  std::uint64_t bytes = capacity_bytes;
+  while (true) {
+    storage_bytes_ = round_up(bytes + kFirstAddress, page_bytes_);
+    void* const range = bytes > kMostBytes ? MAP_FAILED
+                                           : ::mmap(nullptr, static_cast<std::size_t>(storage_bytes_), PROT_NONE,
+                                                    MAP_PRIVATE | MAP_ANONYMOUS, -1, 0);
+    if (range != MAP_FAILED) {
+      base_ = storage_ = static_cast<std::byte*>(range);
+      return;
+    }
+    if (bytes <= page_bytes_) throw std::bad_alloc();
+    bytes /= 2;
+  }
+}
+
+SimMemory::~SimMemory() {
+  ::munmap(storage_, static_cast<std::size_t>(storage_bytes_));
+}
+
+void SimMemory::commit(std::uint64_t end_address) {
+  const std::uint64_t end = round_up(end_address, page_bytes_);
+  if (end <= committed_end_) return;
+  if (end > storage_bytes_) throw std::bad_alloc();
+  const std::uint64_t begin = committed_end_ != 0 ? committed_end_ : kFirstAddress / page_bytes_ * page_bytes_;
+  if (::mprotect(base_ + begin, static_cast<std::size_t>(end - begin), PROT_READ | PROT_WRITE) != 0) {
+    throw std::bad_alloc();
+  }
+  committed_end_ = end;
+}
+
+#else
+
+SimMemory::SimMemory(std::uint64_t capacity_bytes) : capacity_bytes_(capacity_bytes) {
+  // Host alignment of main address 0: as strict as any boundary a transfer rule knows.
+  constexpr std::uint64_t kHostAlignmentBytes = 4096;
   constexpr std::uint64_t kOverhead = kFirstAddress + kHostAlignmentBytes;
   if (capacity_bytes > std::numeric_limits<std::size_t>::max() - kOverhead) throw std::bad_alloc();
-  // calloc leaves untouched pages unmapped, so that a large capacity costs what is used of it.
   storage_ = static_cast<std::byte*>(std::calloc(1, static_cast<std::size_t>(capacity_bytes + kOverhead)));
   if (storage_ == nullptr) throw std::bad_alloc();
   const std::uintptr_t misaligned = reinterpret_cast<std::uintptr_t>(storage_) % kHostAlignmentBytes;
@@ -30,6 +72,10 @@ SimMemory::~SimMemory() {
   std::free(storage_);
 }
 
+void SimMemory::commit(std::uint64_t) {}
+
+#endif
+
 std::optional<MemoryRegion> SimMemory::allocate(std::uint64_t bytes, std::uint64_t alignment_bytes) {
   if (alignment_bytes == 0 || (alignment_bytes & (alignment_bytes - 1)) != 0) return std::nullopt;
   const std::uint64_t first_free = kFirstAddress + used_bytes_;
@@ -38,6 +84,7 @@ std::optional<MemoryRegion> SimMemory::allocate(std::uint64_t bytes, std::uint64
   if (padding > free_bytes || bytes > free_bytes - padding) return std::nullopt;
 
   const std::uint64_t address = first_free + padding;
+  commit(address + bytes);
   used_bytes_ += padding + bytes;
   // Only bytes that were handed out before can be non-zero.
   const std::uint64_t dirty_end = kFirstAddress + dirty_bytes_;

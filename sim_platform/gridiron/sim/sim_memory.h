@@ -1,4 +1,4 @@
-// Simulated main memory: one block of host memory with addresses of its own.
+// Simulated main memory: one range of host memory with addresses of its own.
 // Memory: owns. Threads: allocate before the frame; bytes are shared during it. SPDX-License-Identifier: Apache-2.0
 #pragma once
 
@@ -18,19 +18,20 @@ struct MemoryRegion {
   std::span<std::byte> bytes;  ///< of the host
 };
 
-/// Main memory of `capacity_bytes`; address 0 is never handed out, so that it can mean "none".
+/// Main memory of `capacity_bytes`; address 0 is never handed out, so that it can mean "none". The host needs memory
+/// for what is handed out, not for the capacity, which may be more than it has.
 class SimMemory {
  public:
   static constexpr std::uint64_t kFirstAddress = 4096;  ///< the lowest that is handed out
 
-  /// Errors: throws std::bad_alloc where the host has not that much memory.
+  /// Errors: throws std::bad_alloc where the host has no addresses left.
   explicit SimMemory(std::uint64_t capacity_bytes);
   ~SimMemory();
   SimMemory(const SimMemory&) = delete;
   SimMemory& operator=(const SimMemory&) = delete;
 
   /// Next free bytes, zeroed, aligned (power of two). @returns nothing where the capacity is used up or the alignment
-  /// is no power of two.
+  /// is no power of two. Errors: throws std::bad_alloc where the host cannot give as much; nothing is changed then.
   [[nodiscard]] std::optional<MemoryRegion> allocate(std::uint64_t bytes, std::uint64_t alignment_bytes = 128);
 
   /// Gives back everything allocated after `mark` = used_bytes() of some earlier time.
@@ -44,12 +45,19 @@ class SimMemory {
   /// Host bytes of [address, address + bytes). Empty where the range is not inside what was allocated.
   [[nodiscard]] std::span<std::byte> bytes_at(MainAddress address, std::uint64_t bytes);
 
-  /// Host pointer of address 0 (for the plain mode: base() + address.value).
+  /// Host pointer of address 0 (for the plain mode: base() + address.value). What was not handed out may be closed to
+  /// reads and writes.
   [[nodiscard]] std::byte* base() const { return base_; }
 
  private:
-  std::byte* base_ = nullptr;   ///< virtual: host address that stands for main address 0
+  /// Takes memory of the host for all addresses below `end_address`. Errors: throws std::bad_alloc.
+  void commit(std::uint64_t end_address);
+
+  std::byte* base_ = nullptr;  ///< virtual: host address that stands for main address 0
   std::byte* storage_ = nullptr;
+  std::uint64_t storage_bytes_ = 0;  ///< reserved from storage_ on
+  std::uint64_t page_bytes_ = 0;     ///< of the host
+  std::uint64_t committed_end_ = 0;  ///< addresses below it are open to reads and writes, but for the first page
   std::uint64_t capacity_bytes_ = 0;
   std::uint64_t used_bytes_ = 0;   ///< end of what was handed out, from kFirstAddress on
   std::uint64_t dirty_bytes_ = 0;  ///< largest used_bytes_ ever: what lies behind it is still zero

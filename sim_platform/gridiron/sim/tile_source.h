@@ -41,13 +41,8 @@ class TileSource {
     return {TileClaim::Kind::kTile, static_cast<std::uint32_t>(tile)};
   }
 
-  /// Tells that a claimed tile is finished.
-  void tile_done() {
-    if (!progress_) return;
-    const std::scoped_lock lock(progress_mutex_);
-    ++done_;
-    progress_(done_, total_);
-  }
+  /// Tells that a claimed tile is finished. Errors: what the progress call throws.
+  void tile_done();
 
   /// From now on every claim is answered kAborted.
   void stop() { stopped_.store(true, std::memory_order_relaxed); }

@@ -51,6 +51,15 @@ TEST(FrameFailure, ManyViolationsAreCutShort) {
   EXPECT_NE(words.find("... and 1,005 more"), std::string::npos) << words;
 }
 
+TEST(FrameFailure, WhatTheHostHasNotIsNoFailedCheck) {
+  sim::ChipResult result = sim::ended_by(sim::HostShortage::kMemory);
+  EXPECT_EQ(tool::frame_failure(result)->code(), ExitCode::kBadInput);
+  EXPECT_STREQ(tool::frame_failure(result)->what(), "this host has not enough memory to render the frame");
+  result = sim::ended_by(sim::HostShortage::kThreads);
+  EXPECT_EQ(tool::frame_failure(result)->code(), ExitCode::kBadInput);
+  EXPECT_STREQ(tool::frame_failure(result)->what(), "this host cannot start a thread for each core of the machine");
+}
+
 TEST(FrameFailure, WhatTheBuildCannotDoIsUsage) {
   sim::ChipResult result;
   result.status = Status::kUnsupportedFrame;

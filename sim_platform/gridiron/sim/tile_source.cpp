@@ -1,0 +1,14 @@
+// Tile source: what may throw, in code that is built with exceptions, which the kernel's builds are not.
+// SPDX-License-Identifier: Apache-2.0
+#include <gridiron/sim/tile_source.h>
+
+namespace gridiron::sim {
+
+void TileSource::tile_done() {
+  if (!progress_) return;
+  const std::scoped_lock lock(progress_mutex_);
+  ++done_;
+  progress_(done_, total_);
+}
+
+}  // namespace gridiron::sim
