@@ -46,7 +46,11 @@ function(gridiron_print_options)
   if(GRIDIRON_BUILD_TESTS AND NOT CMAKE_CROSSCOMPILING)
     set(has_tests ON)
   endif()
-  message(STATUS "Gridiron ${PROJECT_VERSION}: build type ${CMAKE_BUILD_TYPE}, program ${GRIDIRON_BUILD_TOOLS}, "
+  set(build_type ${CMAKE_BUILD_TYPE})
+  if(CMAKE_CONFIGURATION_TYPES)
+    set(build_type "chosen when it is built")
+  endif()
+  message(STATUS "Gridiron ${PROJECT_VERSION}: build type ${build_type}, program ${GRIDIRON_BUILD_TOOLS}, "
     "tests ${has_tests}, benchmarks ${GRIDIRON_BUILD_BENCHMARKS}, wide lanes ${GRIDIRON_WIDE_LANES}, "
     "warnings are errors ${GRIDIRON_WERROR}")
   foreach(line IN LISTS gridiron_packages)
