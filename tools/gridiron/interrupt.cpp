@@ -10,11 +10,13 @@ namespace {
 
 std::atomic<bool> interrupted{false};
 std::atomic<bool> terminated{false};
+StopFlag stop;
 static_assert(std::atomic<bool>::is_always_lock_free, "a signal handler may only touch lock-free atomics");
 
 extern "C" void note_interrupt(int signal) {
   if (signal == SIGTERM) terminated.store(true);
   interrupted.store(true);
+  stop.raise();
 }
 
 }  // namespace
@@ -31,6 +33,10 @@ void watch_for_interrupt() {
 
 const std::atomic<bool>& interrupt_flag() {
   return interrupted;
+}
+
+const StopFlag& stop_flag() {
+  return stop;
 }
 
 void stop_if_interrupted(const char* words) {

@@ -2,6 +2,8 @@
 // Memory: flags in static storage. Threads: the flag may be read by any. SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <gridiron/grid/stop_flag.h>
+
 #include <atomic>
 
 namespace gridiron::tool {
@@ -12,6 +14,9 @@ void watch_for_interrupt();
 
 /// @returns the flag: true once a signal has come.
 [[nodiscard]] const std::atomic<bool>& interrupt_flag();
+
+/// @returns the same for calls of core.
+[[nodiscard]] const StopFlag& stop_flag();
 
 /// Throws Failure (kInterrupted, kTerminated) once a signal has come.
 void stop_if_interrupted(const char* words = "interrupted; no file was written");

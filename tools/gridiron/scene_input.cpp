@@ -2,6 +2,7 @@
 #include "scene_input.h"
 
 #include <gridiron/frame/frame_setup.h>
+#include <gridiron/grid/grid_resolution.h>
 #include <gridiron/sim/sim_memory.h>
 
 #include <algorithm>
@@ -19,8 +20,6 @@
 
 namespace gridiron::tool {
 namespace {
-
-constexpr float kLeastLambda = 1e-6f;  // the least that --lambda takes
 
 [[noreturn]] void fail(const std::filesystem::path& path, const std::string& reason) {
   throw Failure(ExitCode::kBadInput, path.string() + ": " + reason);
@@ -53,26 +52,6 @@ TextScene read_text_scene(const std::filesystem::path& path, std::optional<float
   mesh.vertices = std::move(scene.geometry.vertices);
   mesh.triangles = std::move(scene.geometry.triangles);
   return text;
-}
-
-// @returns false where the grid's references outgrow their 32 bits; `need` is zero then.
-bool count_need(const SceneInput& input, const Mesh& mesh, const GridParameters& parameters, const EffectsView* effects,
-                GridNeed& need) {
-  stop_if_interrupted();
-  need = {};
-  const Status status = count_scene_image(mesh.view(), parameters, need, effects);
-  if (status == Status::kTooManyTriangles) return false;
-  if (status == Status::kNoTriangles) {
-    fail(input.path, mesh.triangles.empty()
-                         ? "no triangles: a point cloud of " + words_of_count(mesh.vertices.size()) + " vertices"
-                         : "no triangle to trace: all " + words_of_count(mesh.triangles.size()) + " have zero area");
-  }
-  if (status != Status::kOk) fail(input.path, std::string("cannot build the grid: ") + words_of(status));
-  return true;
-}
-
-bool has_one_cell(const GridRecord& grid) {
-  return grid.cell_count[0] == 1 && grid.cell_count[1] == 1 && grid.cell_count[2] == 1;
 }
 
 std::string text_of(float number) {
@@ -174,18 +153,23 @@ GridChoice choose_grid(const SceneInput& input, const Mesh& mesh, const SceneArg
       arguments.macro_width.value_or(std::min(configuration.macro_width, arguments.most_macro_width));
   choice.parameters.format = format;
   choice.budget_bytes = budget_bytes;
-  float& lambda = choice.parameters.lambda;
-  bool is_counted = count_need(input, mesh, choice.parameters, effects, choice.need);
-  // Fewer cells, fewer references: down to one cell, where one record per triangle is left.
-  while ((!is_counted || !choice.fits()) && !arguments.lambda && lambda > kLeastLambda &&
-         !has_one_cell(choice.need.grid)) {
-    lambda = std::max(lambda * 0.5f, kLeastLambda);
-    is_counted = count_need(input, mesh, choice.parameters, effects, choice.need);
-  }
-  if (!is_counted) {
-    fail(input.path, std::string(words_of(Status::kTooManyTriangles)) + " at lambda " + text_of(lambda) +
+  const Status status =
+      arguments.lambda
+          ? count_scene_image(mesh.view(), choice.parameters, choice.need, effects, &stop_flag())
+          : fit_scene_image(mesh.view(), choice.parameters, budget_bytes, choice.need, effects, &stop_flag());
+  if (status == Status::kAborted) stop_if_interrupted();
+  if (status == Status::kTooManyTriangles) {
+    const float lambda = arguments.lambda ? choice.wanted_lambda : kLeastLambda;
+    fail(input.path, std::string(words_of(status)) + " at lambda " + text_of(lambda) +
                          (arguments.lambda ? "; a smaller --lambda needs fewer" : ""));
   }
+  if (status == Status::kNoTriangles) {
+    fail(input.path, mesh.triangles.empty()
+                         ? "no triangles: a point cloud of " + words_of_count(mesh.vertices.size()) + " vertices"
+                         : "no triangle to trace: all " + words_of_count(mesh.triangles.size()) + " have zero area");
+  }
+  if (status != Status::kOk) fail(input.path, std::string("cannot build the grid: ") + words_of(status));
+  choice.parameters.lambda = choice.need.grid.lambda;
   return choice;
 }
 
@@ -206,7 +190,8 @@ SceneImageView build_image(const SceneInput& input, const Mesh& mesh, const Grid
   stop_if_interrupted();
   std::vector<std::uint64_t> scratch((choice.need.scratch_bytes + 7) / 8);
   const Status status = build_scene_image(mesh.view(), choice.parameters, choice.need, image,
-                                          std::as_writable_bytes(std::span(scratch)), effects);
+                                          std::as_writable_bytes(std::span(scratch)), effects, &stop_flag());
+  if (status == Status::kAborted) stop_if_interrupted();
   if (status != Status::kOk) fail(input.path, std::string("cannot build the grid: ") + words_of(status));
   SceneImageView view{};
   SceneImageError error;

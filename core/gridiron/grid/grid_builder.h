@@ -3,6 +3,7 @@
 #pragma once
 
 #include <gridiron/base/records.h>
+#include <gridiron/grid/stop_flag.h>
 #include <gridiron/platform/status.h>
 #include <gridiron/scene/effects.h>
 #include <gridiron/scene/mesh.h>
@@ -39,20 +40,33 @@ struct GridNeed {
 /// Counts what build_scene_image will need. Itself needs no memory beyond a fixed stack frame.
 ///
 /// @param effects  of the scene; null: the image holds geometry alone.
+/// @param stop     ends the count early; null: nothing does.
 /// Errors: kBadEffects (check_effects; a light farther from the grid than an eye may be), kBadVertex, kBadIndex,
-/// kBadParameter (also effects beside TriangleFormat::kProjection), kNoTriangles, kTooManyTriangles. Cost: linear in
-/// triangles + references.
+/// kBadParameter (also effects beside TriangleFormat::kProjection), kNoTriangles, kTooManyTriangles, kAborted (stop).
+/// Cost: linear in triangles + references.
 [[nodiscard]] Status count_scene_image(const MeshView& mesh, const GridParameters& parameters, GridNeed& need,
-                                       const EffectsView* effects = nullptr);
+                                       const EffectsView* effects = nullptr, const StopFlag* stop = nullptr);
+
+/// Counts as count_scene_image does, with the greatest lambda of parameters.lambda, its half, its quarter and so on
+/// whose image fits. need.grid.lambda says which. Where none fits, `need` is that of the last one, of 1e-6 or of a grid
+/// that is one cell; need.image_bytes is more than most_image_bytes then.
+///
+/// Errors: as count_scene_image; kTooManyTriangles only where the last one has too many references.
+/// Cost: linear in triangles + references that fit, for each lambda that a bound of its references does not rule out.
+[[nodiscard]] Status fit_scene_image(const MeshView& mesh, const GridParameters& parameters,
+                                     std::uint64_t most_image_bytes, GridNeed& need,
+                                     const EffectsView* effects = nullptr, const StopFlag* stop = nullptr);
 
 /// Writes the scene image. Same bytes for the same input on every host.
 ///
-/// @param need     from count_scene_image with the same mesh, parameters and effects.
+/// @param need     from count_scene_image with the same mesh, parameters and effects, or from fit_scene_image; then
+///                 parameters.lambda is need.grid.lambda.
 /// @param image    kLineBytes-aligned, at least need.image_bytes; only the first image_bytes are written.
 /// @param scratch  8-byte aligned, at least need.scratch_bytes.
-/// Errors: kMemoryTooSmall (nothing is touched), kBadParameter. Cost: linear.
+/// @param stop     ends the build early; null: nothing does.
+/// Errors: kMemoryTooSmall (nothing is touched), kBadParameter, kAborted (stop). Cost: linear.
 [[nodiscard]] Status build_scene_image(const MeshView& mesh, const GridParameters& parameters, const GridNeed& need,
                                        std::span<std::byte> image, std::span<std::byte> scratch,
-                                       const EffectsView* effects = nullptr);
+                                       const EffectsView* effects = nullptr, const StopFlag* stop = nullptr);
 
 }  // namespace gridiron

@@ -419,6 +419,98 @@ TEST(Errors, MoreReferencesThanThirtyTwoBits) {
   EXPECT_GT(need.image_bytes, std::uint64_t{1} << 37);
 }
 
+// --- The greatest lambda that fits --------------------------------------------------------------------------------
+
+// Halves lambda and counts everything each time: what fit_scene_image has to find.
+GridNeed halved_need(const MeshView& mesh, GridParameters parameters, std::uint64_t most_bytes) {
+  GridNeed need{};
+  for (;;) {
+    const Status status = count_scene_image(mesh, parameters, need);
+    EXPECT_TRUE(status == Status::kOk || status == Status::kTooManyTriangles);
+    const bool has_one_cell =
+        need.grid.cell_count[0] == 1 && need.grid.cell_count[1] == 1 && need.grid.cell_count[2] == 1;
+    if ((status == Status::kOk && need.image_bytes <= most_bytes) || has_one_cell) return need;
+    if (parameters.lambda <= 1e-6f) return need;
+    parameters.lambda = std::max(parameters.lambda * 0.5f, 1e-6f);
+  }
+}
+
+TestMesh random_triangles(std::uint32_t count, Vec3 spread, float size) {
+  TestRandom random(7);
+  TestMesh mesh;
+  for (std::uint32_t i = 0; i < count; ++i) {
+    const Vec3 place(random.unit() * spread.x, random.unit() * spread.y, random.unit() * spread.z);
+    Vec3 corners[3];
+    for (Vec3& corner : corners) {
+      for (int axis = 0; axis < 3; ++axis) corner[axis] = place[axis] + size * random.unit();
+    }
+    mesh.append(make_triangle(corners[0], corners[1], corners[2]));
+  }
+  return mesh;
+}
+
+TEST(Fit, FindsWhatHalvingFinds) {
+  TestMesh same;
+  for (int i = 0; i < 100; ++i) same.append(make_triangle({0, 0, 0}, {1, 0.25f, 0.5f}, {0.25f, 1, 0.75f}));
+  TestMesh stadium = random_triangles(100, {0.01f, 0.01f, 0.01f}, 0.001f);
+  stadium.append(random_triangles(3, {0, 0, 0}, 100.0f));
+  TestMesh extreme = random_triangles(100, {1, 1, 1}, 1.0f);
+  extreme.transform(0x1p118f, {0, 0, 0});
+  const TestMesh meshes[] = {random_triangles(100, {1, 1, 1}, 0.02f),
+                             random_triangles(100, {0, 0, 0}, 1.0f),
+                             random_triangles(100, {1, 1, 0}, 0.1f),
+                             make_sliver_fan(100, 1e-3f),
+                             make_height_field(12, 0.2f, 1),
+                             same,
+                             stadium,
+                             extreme};
+  for (const TestMesh& mesh : meshes) {
+    for (const TriangleFormat format :
+         {TriangleFormat::kVertices, TriangleFormat::kProjection, TriangleFormat::kLattice}) {
+      const GridParameters wanted{20.0f, 2, format};
+      GridNeed need{};
+      ASSERT_EQ(count_scene_image(mesh.view(), wanted, need), Status::kOk);
+      std::set<std::uint64_t> budgets = {0, 1000, need.image_bytes, need.image_bytes - 1, ~std::uint64_t{0}};
+      for (std::uint64_t bytes = need.image_bytes; bytes > 4096; bytes = bytes / 4 * 3) budgets.insert(bytes);
+      for (const std::uint64_t budget : budgets) {
+        const GridNeed expected = halved_need(mesh.view(), wanted, budget);
+        GridNeed found{};
+        ASSERT_EQ(fit_scene_image(mesh.view(), wanted, budget, found), Status::kOk);
+        EXPECT_EQ(std::memcmp(&found.grid, &expected.grid, sizeof(GridRecord)), 0) << "budget " << budget;
+        EXPECT_EQ(found.image_bytes, expected.image_bytes);
+        EXPECT_EQ(found.dropped_triangle_count, expected.dropped_triangle_count);
+        EXPECT_EQ(std::memcmp(&found.steps, &expected.steps, sizeof(GridSteps)), 0);
+      }
+    }
+  }
+}
+
+// 30 halvings, most of them of grids with more references than 32 bits hold.
+TEST(Fit, DoesNotCountWhatCannotFit) {
+  TestMesh mesh = make_triangle({0, 0, 0}, {1, 0.25f, 0.5f}, {0.25f, 1, 0.75f});
+  mesh.triangles.resize(100000, mesh.triangles[0]);
+  GridNeed need{};
+  ASSERT_EQ(fit_scene_image(mesh.view(), {1e6f, 6, TriangleFormat::kVertices}, 64u << 20, need), Status::kOk);
+  EXPECT_LE(need.image_bytes, 64u << 20);
+  EXPECT_GT(need.image_bytes, 16u << 20);
+}
+
+TEST(Fit, ARaisedFlagEndsCountsAndBuilds) {
+  const TestMesh mesh = make_height_field(200, 0.2f, 1);  // more triangles than are taken between two looks
+  GridNeed need{};
+  ASSERT_EQ(count_scene_image(mesh.view(), {}, need), Status::kOk);
+  LineBuffer image(static_cast<std::size_t>(need.image_bytes));
+  StopFlag stop;
+  EXPECT_EQ(count_scene_image(mesh.view(), {}, need, nullptr, &stop), Status::kOk);
+  EXPECT_EQ(build_scene_image(mesh.view(), {}, need, image.bytes(), {}, nullptr, &stop), Status::kOk);
+  stop.raise();
+  GridNeed unchanged{};
+  EXPECT_EQ(count_scene_image(mesh.view(), {}, unchanged, nullptr, &stop), Status::kAborted);
+  EXPECT_EQ(fit_scene_image(mesh.view(), {}, 1u << 20, unchanged, nullptr, &stop), Status::kAborted);
+  EXPECT_EQ(unchanged.image_bytes, 0u);
+  EXPECT_EQ(build_scene_image(mesh.view(), {}, need, image.bytes(), {}, nullptr, &stop), Status::kAborted);
+}
+
 // --- Shapes of scenes ---------------------------------------------------------------------------------------------
 
 TEST(Scenes, IdenticalTrianglesStandInOrder) {
