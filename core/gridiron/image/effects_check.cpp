@@ -1,6 +1,8 @@
 // Checks of the sections of effects: see image_checker.h. SPDX-License-Identifier: Apache-2.0
 #include <gridiron/base/lanes.h>
 #include <gridiron/base/math.h>
+#include <gridiron/grid/lattice.h>
+#include <gridiron/grid/triangle_records.h>
 #include <gridiron/image/image_checker.h>
 #include <gridiron/scene/effect_rules.h>
 
@@ -81,8 +83,9 @@ bool check_materials(ImageChecker& checker, const EffectsRecord& effects) {
     GRIDIRON_REQUIRE(all_within(material.diffuse, 3, 0.0f, kMaxShareSum - other_shares), base, MaterialRecord, diffuse,
                      "material.diffuse");
     GRIDIRON_REQUIRE(within(material.shine, 0.0f, kMaxShine), base, MaterialRecord, shine, "material.shine");
-    GRIDIRON_REQUIRE(within(material.index, kLeastIndex, kGreatestIndex), base, MaterialRecord, index,
-                     "material.index");
+    const bool index_ok =
+        material.transmittance > 0.0f ? within(material.index, kLeastIndex, kGreatestIndex) : material.index == 1.0f;
+    GRIDIRON_REQUIRE(index_ok, base, MaterialRecord, index, "material.index");
     GRIDIRON_REQUIRE(material.is_smooth <= 1, base, MaterialRecord, is_smooth, "material.is_smooth");
     GRIDIRON_REQUIRE(material.reserved == 0, base, MaterialRecord, reserved, "material.reserved");
   }
@@ -118,15 +121,33 @@ bool check_lights(ImageChecker& checker, const SceneImageView& view, EffectsCall
 
 // --- Surfaces and normals -------------------------------------------------------------------------------------------
 
+// Whether corners lie where the image's format can store them.
+bool is_storable(const SurfaceRecord& surface, const GridRecord& grid) {
+  for (const auto& corner : surface.v) {
+    const Vec3 point(corner[0], corner[1], corner[2]);
+    for (const float at : corner) {
+      if (!(magnitude(at) <= kCoordinateLimit)) return false;
+    }
+    if (grid.triangle_format != static_cast<std::uint32_t>(TriangleFormat::kLattice)) continue;
+    const Vec3 moved = snap(grid.lattice, point);
+    const float places[3] = {moved.x, moved.y, moved.z};
+    if (!same_bits(places, corner, 3)) return false;
+  }
+  return true;
+}
+
 bool check_surfaces(ImageChecker& checker, const SceneImageView& view, EffectsCall& call) {
   const EffectsRecord& effects = view.effects;
+  std::uint32_t dropped = 0;
   std::uint32_t normals = 0;
   std::uint32_t last_material = kNoTriangle;
   MaterialRecord material{};
   for (std::uint64_t i = 0; i < view.header.triangle_count; ++i) {
     const std::uint64_t base = effects.surfaces_offset_bytes + i * sizeof(SurfaceRecord);
     const auto surface = checker.read<SurfaceRecord>(base);
-    GRIDIRON_REQUIRE(finite_fields(&surface.v[0][0], 9), base, SurfaceRecord, v, "surface.v");
+    GRIDIRON_REQUIRE(is_storable(surface, view.grid), base, SurfaceRecord, v, "surface.v");
+    const auto corner = [&](int k) { return Vec3(surface.v[k][0], surface.v[k][1], surface.v[k][2]); };
+    if (has_zero_area(corner(0), corner(1), corner(2))) ++dropped;
     GRIDIRON_REQUIRE(surface.material < effects.material_count, base, SurfaceRecord, material, "surface.material");
     if (surface.material != last_material) {
       last_material = surface.material;
@@ -140,6 +161,8 @@ bool check_surfaces(ImageChecker& checker, const SceneImageView& view, EffectsCa
     normals += is_smooth ? 1u : 0u;
     GRIDIRON_REQUIRE(surface.reserved == 0, base, SurfaceRecord, reserved, "surface.reserved");
   }
+  GRIDIRON_REQUIRE(dropped == view.header.dropped_triangle_count, 0, ImageHeader, dropped_triangle_count,
+                   "header.dropped_triangle_count");
   GRIDIRON_REQUIRE(normals == effects.smooth_triangle_count, view.effects_offset_bytes, EffectsRecord,
                    smooth_triangle_count, "effects.smooth_triangle_count");
   return true;

@@ -81,6 +81,23 @@ struct Sections {
   return true;
 }
 
+/// Bytes [begin, end) of the image, multiples of 4, are padding: all of them zero.
+[[nodiscard]] inline bool check_padding(ImageChecker& checker, std::uint64_t begin, std::uint64_t end) {
+  for (std::uint64_t at = begin; at < end; at += sizeof(std::uint32_t)) {
+    const auto word = checker.read<std::uint32_t>(at);
+    if (word == 0) continue;
+    std::uint64_t zeros = 0;
+    while ((word >> 8 * zeros & 0xFFu) == 0) ++zeros;
+    return checker.require(false, at + zeros, "padding");
+  }
+  return true;
+}
+
+/// The triangles against the cells: every triangle stands in the cells that the builder puts it into and in no other,
+/// with the same bytes, and the grid's bounds are theirs. Of projections only that the records of a triangle are equal.
+/// Precondition: grid, macro table and cell blocks are right, and ids ascend within each cell. Cost: linear.
+[[nodiscard]] bool check_geometry(ImageChecker& checker, const Sections& sections, const SceneImageView& view);
+
 /// The sections of effects, all or none, against header, grid and triangles. Fills the view's effects.
 /// Precondition: all else in the image is right. Cost: linear.
 [[nodiscard]] bool check_effect_sections(ImageChecker& checker, const Sections& sections, SceneImageView& view);

@@ -3,6 +3,7 @@
 #include <gridiron/base/lanes.h>
 #include <gridiron/base/math.h>
 #include <gridiron/base/triangle_formats.h>
+#include <gridiron/grid/grid_resolution.h>
 #include <gridiron/image/image_checker.h>
 #include <gridiron/image/scene_image.h>
 
@@ -33,6 +34,7 @@ bool check_header(ImageChecker& checker, ImageHeader& header) {
                        header.section_table_offset_bytes % 8 == 0 && table_end <= header.image_bytes,
                    0, ImageHeader, section_table_offset_bytes, "header.section_table_offset_bytes");
   GRIDIRON_REQUIRE(header.triangle_count >= 1, 0, ImageHeader, triangle_count, "header.triangle_count");
+  GRIDIRON_REQUIRE(header.vertex_count >= 3, 0, ImageHeader, vertex_count, "header.vertex_count");
   GRIDIRON_REQUIRE(header.dropped_triangle_count < header.triangle_count, 0, ImageHeader, dropped_triangle_count,
                    "header.dropped_triangle_count");
   GRIDIRON_REQUIRE(all_zero(header.reserved, 5), 0, ImageHeader, reserved, "header.reserved");
@@ -86,13 +88,22 @@ bool is_power_of_two(float value) {
   return value > 0.0f && (std::bit_cast<std::uint32_t>(value) & 0x007FFFFFu) == 0;
 }
 
+bool same_float(float a, float b) {
+  return std::bit_cast<std::uint32_t>(a) == std::bit_cast<std::uint32_t>(b);
+}
+
+bool is_negative_zero(float value) {
+  return same_float(value, -0.0f);
+}
+
 // A lattice whose every value is a float within the limits of coordinates, or none.
 bool check_lattice(ImageChecker& checker, std::uint64_t base, const GridRecord& grid) {
   const Lattice& lattice = grid.lattice;
   if (grid.triangle_format != static_cast<std::uint32_t>(TriangleFormat::kLattice)) {
-    const bool none =
-        lattice.step == 0.0f && lattice.origin[0] == 0.0f && lattice.origin[1] == 0.0f && lattice.origin[2] == 0.0f;
-    GRIDIRON_REQUIRE(none, base, GridRecord, lattice, "grid.lattice");
+    const std::uint32_t words[4] = {
+        std::bit_cast<std::uint32_t>(lattice.origin[0]), std::bit_cast<std::uint32_t>(lattice.origin[1]),
+        std::bit_cast<std::uint32_t>(lattice.origin[2]), std::bit_cast<std::uint32_t>(lattice.step)};
+    GRIDIRON_REQUIRE(all_zero(words, 4), base, GridRecord, lattice, "grid.lattice");
     return true;
   }
   GRIDIRON_REQUIRE(
@@ -101,7 +112,8 @@ bool check_lattice(ImageChecker& checker, std::uint64_t base, const GridRecord& 
   for (const float origin : lattice.origin) {
     const double steps = double{origin} / double{lattice.step};
     const double last = double{origin} + double{lattice.step} * (kLatticePlaces - 1);
-    const bool in_range = magnitude(origin) <= kCoordinateLimit && last <= 8.0 * double{kCoordinateLimit} &&
+    const bool in_range = !is_negative_zero(origin) && magnitude(origin) <= kCoordinateLimit &&
+                          last <= 8.0 * double{kCoordinateLimit} &&
                           magnitude(steps) <= double{kMostStepsFromZero} + 1.0;
     GRIDIRON_REQUIRE(in_range && steps == static_cast<double>(static_cast<std::int32_t>(steps)), base, GridRecord,
                      lattice.origin, "grid.lattice.origin");
@@ -109,7 +121,55 @@ bool check_lattice(ImageChecker& checker, std::uint64_t base, const GridRecord& 
   return true;
 }
 
-bool check_grid(ImageChecker& checker, const Sections& sections, GridRecord& grid) {
+bool same_cells(const GridRecord& a, const GridRecord& b) {
+  bool same = true;
+  for (int axis = 0; axis < 3; ++axis) {
+    same = same && a.cell_count[axis] == b.cell_count[axis];
+    same = same && same_float(a.cells_per_unit[axis], b.cells_per_unit[axis]);
+  }
+  return same;
+}
+
+// The grid that Eq. (1) gives over the bounds. With a lattice n is that of the mesh as it was, which the image does not
+// say: any number of triangles will do. More triangles never make fewer cells, so the least number that makes as many
+// is looked for.
+GridRecord resolved_grid(const ImageHeader& header, const GridRecord& grid) {
+  GridRecord expected = grid;
+  const std::uint64_t kept = header.triangle_count - header.dropped_triangle_count;
+  resolve_grid(kept, expected);
+  if (grid.triangle_format != static_cast<std::uint32_t>(TriangleFormat::kLattice) || same_cells(expected, grid)) {
+    return expected;
+  }
+  std::uint64_t low = 0, high = header.triangle_count;
+  while (low < high) {
+    const std::uint64_t middle = low + (high - low) / 2;
+    resolve_grid(middle, expected);
+    bool is_coarser = false;
+    for (int axis = 0; axis < 3; ++axis) is_coarser = is_coarser || expected.cell_count[axis] < grid.cell_count[axis];
+    if (is_coarser) {
+      low = middle + 1;
+    } else {
+      high = middle;
+    }
+  }
+  resolve_grid(low, expected);
+  return expected;
+}
+
+// What follows from bounds, lambda and the number of triangles is what the builder would have stored.
+bool check_resolution(ImageChecker& checker, std::uint64_t base, const ImageHeader& header, const GridRecord& grid) {
+  const GridRecord expected = resolved_grid(header, grid);
+  for (int axis = 0; axis < 3; ++axis) {
+    GRIDIRON_REQUIRE(same_float(grid.minimum[axis], expected.minimum[axis]), base, GridRecord, minimum, "grid.minimum");
+    GRIDIRON_REQUIRE(grid.cell_count[axis] == expected.cell_count[axis], base, GridRecord, cell_count,
+                     "grid.cell_count");
+    GRIDIRON_REQUIRE(same_float(grid.cells_per_unit[axis], expected.cells_per_unit[axis]), base, GridRecord,
+                     cells_per_unit, "grid.cells_per_unit");
+  }
+  return true;
+}
+
+bool check_grid(ImageChecker& checker, const Sections& sections, const ImageHeader& header, GridRecord& grid) {
   if (!check_elements(checker, sections, SectionKind::kGrid, sizeof(GridRecord), 1)) return false;
   const std::uint64_t base = sections.entry(SectionKind::kGrid).offset_bytes;
   grid = checker.read<GridRecord>(base);
@@ -127,11 +187,12 @@ bool check_grid(ImageChecker& checker, const Sections& sections, GridRecord& gri
     GRIDIRON_REQUIRE(cells >= 1 && cells <= kMaxCellsPerAxis, base, GridRecord, cell_count, "grid.cell_count");
     GRIDIRON_REQUIRE(grid.macro_cell_count[axis] == (cells + grid.macro_width - 1) / grid.macro_width, base, GridRecord,
                      macro_cell_count, "grid.macro_cell_count");
-    GRIDIRON_REQUIRE(is_finite(low) && low >= minimum, base, GridRecord, bounds_minimum, "grid.bounds_minimum");
+    GRIDIRON_REQUIRE(magnitude(low) <= kCoordinateLimit && low >= minimum && !is_negative_zero(low), base, GridRecord,
+                     bounds_minimum, "grid.bounds_minimum");
     const double extent = double{high} - double{minimum};
     const bool fits = extent * double{scale} <= static_cast<double>(cells);
-    GRIDIRON_REQUIRE(high <= kCoordinateLimit && high >= low && fits, base, GridRecord, bounds_maximum,
-                     "grid.bounds_maximum");
+    GRIDIRON_REQUIRE(high <= kCoordinateLimit && high >= low && fits && !is_negative_zero(high), base, GridRecord,
+                     bounds_maximum, "grid.bounds_maximum");
   }
   GRIDIRON_REQUIRE(grid.cell_block_count >= 1, base, GridRecord, cell_block_count, "grid.cell_block_count");
   GRIDIRON_REQUIRE(grid.triangle_format == static_cast<std::uint32_t>(TriangleFormat::kVertices) ||
@@ -144,8 +205,10 @@ bool check_grid(ImageChecker& checker, const Sections& sections, GridRecord& gri
       grid.cell_block_bytes == cell_block_bytes_of(static_cast<TriangleFormat>(grid.triangle_format), grid.macro_width),
       base, GridRecord, cell_block_bytes, "grid.cell_block_bytes");
   if (!check_lattice(checker, base, grid)) return false;
-  GRIDIRON_REQUIRE(is_finite(grid.lambda) && grid.lambda > 0.0f, base, GridRecord, lambda, "grid.lambda");
+  GRIDIRON_REQUIRE(grid.lambda >= kLeastLambda && grid.lambda <= kGreatestLambda, base, GridRecord, lambda,
+                   "grid.lambda");
   GRIDIRON_REQUIRE(all_zero(grid.reserved, 3), base, GridRecord, reserved, "grid.reserved");
+  if (!check_resolution(checker, base, header, grid)) return false;
 
   // What the other sections must hold, in numbers that cannot overflow: at most 2^33 macrocells.
   const std::uint64_t macro_cells =
@@ -171,6 +234,8 @@ bool check_triangles(ImageChecker& checker, const SceneImageView& view, std::uin
       const float values[9] = {triangle.n_u, triangle.n_v, triangle.n_d, triangle.b_u, triangle.b_v,
                                triangle.b_d, triangle.c_u, triangle.c_v, triangle.c_d};
       GRIDIRON_REQUIRE(finite_fields(values, 9), base, ProjectionTriangle, n_u, "triangle.n_u");
+      GRIDIRON_REQUIRE(magnitude(triangle.n_u) <= 1.0f && magnitude(triangle.n_v) <= 1.0f, base, ProjectionTriangle,
+                       n_u, "triangle.n_u");
       GRIDIRON_REQUIRE(triangle.axis_k < 3, base, ProjectionTriangle, axis_k, "triangle.axis_k");
       GRIDIRON_REQUIRE(triangle.reserved == 0, base, ProjectionTriangle, reserved, "triangle.reserved");
       id = triangle.triangle_id;
@@ -229,7 +294,9 @@ bool check_block(ImageChecker& checker, const SceneImageView& view, std::uint64_
     }
   }
   const std::uint64_t block_base = view.cell_blocks_offset_bytes + block * grid.cell_block_bytes;
-  return checker.require(running > begin, block_base, "cell.triangle_count");
+  if (!checker.require(running > begin, block_base, "cell.triangle_count")) return false;
+  // Behind the last cell; behind the bound where it ends.
+  return check_padding(checker, base + (is_bound ? sizeof(CellBound) : 0), block_base + grid.cell_block_bytes);
 }
 
 // The macro table against the blocks, the blocks against the triangles.
@@ -270,6 +337,36 @@ bool check_cells(ImageChecker& checker, const Sections& sections, const SceneIma
   return true;
 }
 
+// --- Padding ------------------------------------------------------------------------------------------------------
+
+// What is in no section, and behind the elements of those that are known.
+bool check_gaps(ImageChecker& checker, const ImageHeader& header, const Sections& sections) {
+  const std::uint64_t table_begin = header.section_table_offset_bytes;
+  const std::uint64_t table_end = table_begin + std::uint64_t{header.section_count} * sizeof(SectionEntry);
+  for (std::uint64_t at = sizeof(ImageHeader); at < header.image_bytes;) {
+    std::uint64_t begin = header.image_bytes, end = header.image_bytes;  // of what lies next
+    const auto take = [&](std::uint64_t other_begin, std::uint64_t other_end) {
+      if (other_begin < at || other_begin >= begin || other_begin == other_end) return;
+      begin = other_begin;
+      end = other_end;
+    };
+    take(table_begin, table_end);
+    for (std::uint32_t i = 0; i < header.section_count; ++i) {
+      const auto entry = checker.read<SectionEntry>(table_begin + i * sizeof(SectionEntry));
+      take(entry.offset_bytes, entry.offset_bytes + entry.section_bytes);
+    }
+    if (!check_padding(checker, at, begin)) return false;
+    at = end;
+  }
+  for (std::uint32_t i = 0; i < Sections::kKnownCount; ++i) {
+    if (!sections.found[i]) continue;
+    const SectionEntry& entry = sections.entries[i];
+    const std::uint64_t end = entry.offset_bytes + entry.section_bytes;
+    if (!check_padding(checker, entry.offset_bytes + entry.element_bytes * entry.element_count, end)) return false;
+  }
+  return true;
+}
+
 }  // namespace
 
 Status open_scene_image(std::span<const std::byte> image, SceneImageView& view, SceneImageError& error) {
@@ -278,13 +375,14 @@ Status open_scene_image(std::span<const std::byte> image, SceneImageView& view, 
   SceneImageView opened{};
   Sections sections;
   if (!check_header(checker, opened.header) || !check_sections(checker, opened.header, sections) ||
-      !check_grid(checker, sections, opened.grid)) {
+      !check_grid(checker, sections, opened.header, opened.grid)) {
     return Status::kBadImage;
   }
   opened.macro_table_offset_bytes = sections.entry(SectionKind::kMacroTable).offset_bytes;
   opened.cell_blocks_offset_bytes = sections.entry(SectionKind::kCellBlocks).offset_bytes;
   opened.triangles_offset_bytes = sections.entry(SectionKind::kTriangles).offset_bytes;
-  if (!check_cells(checker, sections, opened) || !check_effect_sections(checker, sections, opened)) {
+  if (!check_cells(checker, sections, opened) || !check_geometry(checker, sections, opened) ||
+      !check_effect_sections(checker, sections, opened) || !check_gaps(checker, opened.header, sections)) {
     return Status::kBadImage;
   }
   view = opened;

@@ -130,7 +130,7 @@ MaterialRecord scaled_material(const Material& material) {
     record.transmitted[channel] = record.transmittance * material.color[channel];
   }
   record.shine = material.shine;
-  record.index = material.transmittance > 0.0f ? material.index : 1.0f;
+  record.index = record.transmittance > 0.0f ? material.index : 1.0f;
   record.is_smooth = material.smooth_normals ? 1 : 0;
   return record;
 }

@@ -355,6 +355,7 @@ LineBuffer with_unknown_section(const BuiltImage& built, std::uint64_t unknown_o
   LineBuffer image(size + 3 * kLineBytes);
   std::memcpy(image.bytes().data(), built.image.bytes().data(), size);
   std::memcpy(image.bytes().data() + size, built.image.bytes().data() + kTableOffset, 4 * sizeof(SectionEntry));
+  std::memset(image.bytes().data() + kTableOffset, 0, 4 * sizeof(SectionEntry));  // a gap now
   const SectionEntry unknown{1000, 1, size + 3 * kLineBytes - unknown_offset_from_end, kLineBytes, kLineBytes};
   write_record(image, size + 4 * sizeof(SectionEntry), unknown);
   edit<ImageHeader>(image, 0, [&](ImageHeader& header) {

@@ -1,0 +1,308 @@
+// Checks of triangles against the cells that hold them: see image_checker.h. SPDX-License-Identifier: Apache-2.0
+#include <gridiron/base/math.h>
+#include <gridiron/grid/cell_rows.h>
+#include <gridiron/grid/image_layout.h>
+#include <gridiron/grid/triangle_records.h>
+#include <gridiron/image/image_checker.h>
+
+namespace gridiron {
+namespace {
+
+constexpr std::uint64_t kNowhere = ~std::uint64_t{0};
+
+// Finds and compares the records of an image whose macro table, blocks and ids are right.
+class Records {
+ public:
+  Records(const ImageChecker& checker, const SceneImageView& view)
+      : checker_(checker),
+        view_(view),
+        macros_(view.grid),
+        is_lattice_(view.grid.triangle_format == static_cast<std::uint32_t>(TriangleFormat::kLattice)) {}
+
+  [[nodiscard]] std::uint64_t place_of(std::uint64_t reference) const {
+    return view_.triangles_offset_bytes + reference * view_.grid.triangle_bytes;
+  }
+  [[nodiscard]] std::uint32_t id_of(std::uint64_t reference) const {
+    return checker_.read<std::uint32_t>(place_of(reference + 1) - sizeof(std::uint32_t));
+  }
+  [[nodiscard]] bool are_equal(std::uint64_t a, std::uint64_t b) const {
+    std::uint32_t differ = 0;
+    for (std::uint64_t offset = 0; offset < view_.grid.triangle_bytes; offset += sizeof(std::uint32_t)) {
+      differ |= checker_.read<std::uint32_t>(place_of(a) + offset) ^ checker_.read<std::uint32_t>(place_of(b) + offset);
+    }
+    return differ == 0;
+  }
+
+  // The corner of a record that stores corners.
+  [[nodiscard]] Vec3 corner(std::uint64_t reference, int number) const {
+    const std::uint64_t place = place_of(reference);
+    if (!is_lattice_) {
+      const auto v = checker_.read<Corner>(place + static_cast<std::uint64_t>(number) * sizeof(Corner));
+      return {v.at[0], v.at[1], v.at[2]};
+    }
+    const auto v = checker_.read<Places>(place + static_cast<std::uint64_t>(number) * sizeof(Places));
+    const Lattice& lattice = view_.grid.lattice;
+    Vec3 point;
+    for (int axis = 0; axis < 3; ++axis) {
+      point[axis] = static_cast<float>(v.at[axis]) * lattice.step + lattice.origin[axis];
+    }
+    return point;
+  }
+
+  // References of a cell; first = end where there are none.
+  struct Range {
+    std::uint64_t first, end;
+  };
+  // @param block  of an occupied macrocell, from the image's first byte. @param number  of the cell in it.
+  [[nodiscard]] Range cell_of_block(std::uint64_t block, std::uint64_t number) const {
+    if (is_lattice_) {
+      const std::uint64_t place = block + number * sizeof(CellBound);
+      return {checker_.read<CellBound>(place).first_triangle,
+              checker_.read<CellBound>(place + sizeof(CellBound)).first_triangle};
+    }
+    const auto record = checker_.read<CellRecord>(block + number * sizeof(CellRecord));
+    return {record.first_triangle, std::uint64_t{record.first_triangle} + record.triangle_count};
+  }
+  [[nodiscard]] Range cell(std::int32_t x, std::int32_t y, std::int32_t z) {
+    const std::uint64_t macro_cell = macros_.row_index(y, z) + macros_.macro_of(x);
+    if (macro_cell != last_macro_cell_) {  // neighbours mostly ask for neighbours
+      last_macro_cell_ = macro_cell;
+      last_block_ = block_of(macro_cell);
+    }
+    if (last_block_ == kNowhere) return {0, 0};
+    const auto local = [&](std::int32_t at) {
+      return static_cast<std::uint32_t>(at) - macros_.macro_of(at) * macros_.width;
+    };
+    const std::uint32_t number = (local(z) * macros_.width + local(y)) * macros_.width + local(x);
+    return cell_of_block(last_block_, number);
+  }
+
+  // The triangle's record in [range.first, range.end), or kNowhere. Ids ascend; range.first becomes the first record of
+  // an id that is not less. Steps from the front double, so that what lies near is found in few.
+  [[nodiscard]] std::uint64_t find(Range& range, std::uint32_t id) const {
+    std::uint64_t end = range.end;
+    for (std::uint64_t step = 1; range.first < end; step *= 2) {
+      const std::uint64_t probe = range.first + step - 1 < end ? range.first + step - 1 : end - 1;
+      if (id_of(probe) < id) {
+        range.first = probe + 1;
+      } else {
+        end = probe;
+        break;
+      }
+    }
+    while (range.first < end) {
+      const std::uint64_t middle = range.first + (end - range.first) / 2;
+      if (id_of(middle) < id) {
+        range.first = middle + 1;
+      } else {
+        end = middle;
+      }
+    }
+    return range.first < range.end && id_of(range.first) == id ? range.first : kNowhere;
+  }
+
+ private:
+  // The macrocell's block, from the image's first byte, or kNowhere.
+  [[nodiscard]] std::uint64_t block_of(std::uint64_t macro_cell) const {
+    const auto entry =
+        checker_.read<MacroTableEntry>(view_.macro_table_offset_bytes + macro_cell / 32 * sizeof(MacroTableEntry));
+    const std::uint32_t bit = 1u << (macro_cell % 32);
+    if ((entry.occupied & bit) == 0) return kNowhere;
+    const std::uint64_t block = std::uint64_t{entry.first_block} + bit_count(entry.occupied & (bit - 1));
+    return view_.cell_blocks_offset_bytes + block * view_.grid.cell_block_bytes;
+  }
+
+  struct Corner {
+    float at[3];
+  };
+  struct Places {
+    std::uint16_t at[3];
+  };
+  const ImageChecker& checker_;
+  const SceneImageView& view_;
+  MacroMap macros_;
+  bool is_lattice_;
+  std::uint64_t last_macro_cell_ = kNowhere;
+  std::uint64_t last_block_ = kNowhere;
+};
+
+// Looks up the triangles of one cell in the others, by ascending ids. In the cells around it every search begins where
+// the last one ended.
+class Search {
+ public:
+  explicit Search(Records& records) : records_(records) {}
+
+  void move_to(const std::int32_t cell[3]) {
+    if (cell[0] == cell_[0] && cell[1] == cell_[1] && cell[2] == cell_[2]) return;
+    for (int axis = 0; axis < 3; ++axis) cell_[axis] = cell[axis];
+    for (bool& is_known : is_known_) is_known = false;
+  }
+
+  // The triangle's record in a cell inside the grid, or kNowhere.
+  [[nodiscard]] std::uint64_t find(std::int32_t x, std::int32_t y, std::int32_t z, std::uint32_t id) {
+    const auto dx = static_cast<std::uint32_t>(x - cell_[0] + 1);
+    const auto dy = static_cast<std::uint32_t>(y - cell_[1] + 1);
+    const auto dz = static_cast<std::uint32_t>(z - cell_[2] + 1);
+    if (dx > 2 || dy > 2 || dz > 2) {
+      Records::Range range = records_.cell(x, y, z);
+      return records_.find(range, id);
+    }
+    const std::uint32_t place = (dz * 3 + dy) * 3 + dx;
+    if (!is_known_[place]) {
+      is_known_[place] = true;
+      ranges_[place] = records_.cell(x, y, z);
+    }
+    return records_.find(ranges_[place], id);
+  }
+
+ private:
+  Records& records_;
+  std::int32_t cell_[3] = {-1, -1, -1};
+  bool is_known_[27] = {};
+  Records::Range ranges_[27] = {};
+};
+
+// What the records of all triangles add up to; each triangle is counted once, in the cell of its first corner.
+struct Totals {
+  std::uint64_t triangle_count = 0;
+  std::uint64_t reference_count = 0;
+  std::uint64_t id_sum = 0;
+  Vec3 minimum{kFloatMax, kFloatMax, kFloatMax};
+  Vec3 maximum{-kFloatMax, -kFloatMax, -kFloatMax};
+};
+
+bool lies_inside(const GridRecord& grid, const Vec3& corner) {
+  bool inside = true;
+  for (int axis = 0; axis < 3; ++axis) {
+    inside = inside && corner[axis] >= grid.bounds_minimum[axis] && corner[axis] <= grid.bounds_maximum[axis];
+  }
+  return inside;
+}
+
+// One reference in its cell. Where the cell is that of the triangle's first corner, the triangle's other records are
+// looked up, in every cell that the builder would put them into: each has to be there, with the same bytes. Records
+// that no triangle has looked up are one too many, which the sum of them tells.
+bool check_reference(ImageChecker& checker, const Records& records, Search& search, const SceneImageView& view,
+                     const CellSpace& space, const std::int32_t cell[3], std::uint64_t reference, Totals& totals) {
+  const std::uint64_t place = records.place_of(reference);
+  const Vec3 a = records.corner(reference, 0);
+  GRIDIRON_REQUIRE(lies_inside(view.grid, a), place, VertexTriangle, v, "triangle.v");
+  for (int axis = 0; axis < 3; ++axis) {
+    const auto at = static_cast<std::int32_t>((double{a[axis]} - space.minimum[axis]) * space.cells_per_unit[axis]);
+    if ((at < space.last_cell[axis] ? at : space.last_cell[axis]) != cell[axis]) return true;
+  }
+  const Vec3 b = records.corner(reference, 1);
+  const Vec3 c = records.corner(reference, 2);
+  GRIDIRON_REQUIRE(lies_inside(view.grid, b) && lies_inside(view.grid, c) && !has_zero_area(a, b, c), place,
+                   VertexTriangle, v, "triangle.v");
+  for (int axis = 0; axis < 3; ++axis) {
+    for (const float at : {a[axis], b[axis], c[axis]}) {
+      totals.minimum[axis] = at < totals.minimum[axis] ? at : totals.minimum[axis];
+      totals.maximum[axis] = at > totals.maximum[axis] ? at : totals.maximum[axis];
+    }
+  }
+  const std::uint32_t id = records.id_of(reference);
+  ++totals.triangle_count;
+  totals.id_sum += id;
+  search.move_to(cell);
+  std::uint64_t wrong = kNowhere;  // the record to blame
+  bool good = true;
+  for_each_cell_row(CellBox::of(space, a, b, c), [&](std::int32_t x0, std::int32_t x1, std::int32_t y, std::int32_t z) {
+    for (std::int32_t x = x0; good && x <= x1; ++x) {
+      ++totals.reference_count;
+      if (x == cell[0] && y == cell[1] && z == cell[2]) continue;
+      const std::uint64_t copy = search.find(x, y, z, id);
+      good = copy != kNowhere && records.are_equal(copy, reference);
+      if (!good) wrong = copy != kNowhere ? copy : reference;
+    }
+  });
+  return checker.require(good, good ? 0 : records.place_of(wrong), "triangle.v");
+}
+
+// A projection does not say where its triangle ends. Where a neighbour of its cell holds the triangle too, its record
+// has the same bytes; a triangle's cells hang together by their faces, so all of its records are compared.
+bool check_projection(ImageChecker& checker, const Records& records, Search& search, const std::int32_t cell[3],
+                      std::uint64_t reference) {
+  search.move_to(cell);
+  for (int axis = 0; axis < 3; ++axis) {
+    if (cell[axis] == 0) continue;
+    const auto before = [&](int other) { return cell[other] - (other == axis ? 1 : 0); };
+    const std::uint64_t copy = search.find(before(0), before(1), before(2), records.id_of(reference));
+    const bool good = copy == kNowhere || records.are_equal(copy, reference);
+    if (!checker.require(good, records.place_of(reference), "triangle.n_u")) return false;
+  }
+  return true;
+}
+
+// Calls body(cell, reference) for every reference, until it returns false.
+template <class Body>
+bool for_each_reference(const ImageChecker& checker, const SceneImageView& view, const Records& records, Body&& body) {
+  const GridRecord& grid = view.grid;
+  const std::uint64_t macro_cells = macro_cell_total(grid);
+  const auto width = static_cast<std::int32_t>(grid.macro_width);
+  std::uint64_t block = view.cell_blocks_offset_bytes;
+  MacroTableEntry entry{};
+  for (std::uint64_t index = 0; index < macro_cells; ++index) {
+    if (index % 32 == 0) {
+      entry = checker.read<MacroTableEntry>(view.macro_table_offset_bytes + index / 32 * sizeof(MacroTableEntry));
+    }
+    if ((entry.occupied >> (index % 32) & 1u) == 0) continue;
+    block += grid.cell_block_bytes;
+    const std::uint64_t row = index / grid.macro_cell_count[0];
+    const std::int32_t first[3] = {static_cast<std::int32_t>(index % grid.macro_cell_count[0]) * width,
+                                   static_cast<std::int32_t>(row % grid.macro_cell_count[1]) * width,
+                                   static_cast<std::int32_t>(row / grid.macro_cell_count[1]) * width};
+    std::uint64_t number = 0;
+    std::int32_t cell[3];
+    for (cell[2] = first[2]; cell[2] < first[2] + width; ++cell[2]) {
+      for (cell[1] = first[1]; cell[1] < first[1] + width; ++cell[1]) {
+        for (cell[0] = first[0]; cell[0] < first[0] + width; ++cell[0]) {
+          const Records::Range range = records.cell_of_block(block, number++);  // empty beyond the grid's edge
+          for (std::uint64_t reference = range.first; reference < range.end; ++reference) {
+            if (!body(cell, reference)) return false;
+          }
+        }
+      }
+    }
+  }
+  return true;
+}
+
+}  // namespace
+
+bool check_geometry(ImageChecker& checker, const Sections& sections, const SceneImageView& view) {
+  const GridRecord& grid = view.grid;
+  Records records(checker, view);
+  Search search(records);
+  if (grid.triangle_format == static_cast<std::uint32_t>(TriangleFormat::kProjection)) {
+    return for_each_reference(checker, view, records, [&](const std::int32_t cell[3], std::uint64_t reference) {
+      return check_projection(checker, records, search, cell, reference);
+    });
+  }
+  const CellSpace space = CellSpace::of(grid);
+  Totals totals;
+  const bool all_good =
+      for_each_reference(checker, view, records, [&](const std::int32_t cell[3], std::uint64_t reference) {
+        return check_reference(checker, records, search, view, space, cell, reference, totals);
+      });
+  if (!all_good) return false;
+
+  const std::uint64_t base = sections.entry(SectionKind::kGrid).offset_bytes;
+  GRIDIRON_REQUIRE(totals.reference_count == grid.reference_count, base, GridRecord, reference_count,
+                   "grid.reference_count");
+  for (int axis = 0; axis < 3; ++axis) {
+    GRIDIRON_REQUIRE(totals.minimum[axis] == grid.bounds_minimum[axis], base, GridRecord, bounds_minimum,
+                     "grid.bounds_minimum");
+    GRIDIRON_REQUIRE(totals.maximum[axis] == grid.bounds_maximum[axis], base, GridRecord, bounds_maximum,
+                     "grid.bounds_maximum");
+  }
+  const std::uint64_t count = view.header.triangle_count;
+  const std::uint64_t dropped = view.header.dropped_triangle_count;
+  GRIDIRON_REQUIRE(totals.triangle_count == count - dropped, 0, ImageHeader, dropped_triangle_count,
+                   "header.dropped_triangle_count");
+  // Every id once: where none was dropped, their sum has to be that of all.
+  return checker.require(dropped != 0 || totals.id_sum == count * (count - 1) / 2, view.triangles_offset_bytes,
+                         "triangle.triangle_id");
+}
+
+}  // namespace gridiron
