@@ -64,10 +64,12 @@ TEST(HostLimits, WhateverMemoryThereIsAFrameEndsWellOrSaysWhatIsShort) {
   const TemporaryFolder folder;
   folder.write_ply("a.ply", make_sphere(8, 12, 1.0f));
   bool has_failed = false, has_ended_well = false;
-  for (rlim_t megabytes = 512; megabytes >= 24; megabytes = megabytes * 7 / 8) {
+  for (rlim_t megabytes = 320; megabytes >= 24; megabytes = megabytes * 4 / 5) {
     const LowerLimit limit(RLIMIT_AS, megabytes << 20);
     const ProgramResult result = run_program(
         folder.folder(), {"render", "a.ply", "--size", "1024x1024", "-o", "a.png", "--threads", "3", "--quiet"});
+    constexpr int kNotLoaded = 127;
+    if (result.exit_code == kNotLoaded) break;  // the program itself finds no room
     SCOPED_TRACE(std::to_string(megabytes) + " MB: exit code " + std::to_string(result.exit_code) + ", " + result.err);
     if (result.exit_code == 0) {
       has_ended_well = true;
