@@ -92,9 +92,7 @@ std::vector<std::string> accuracy_file_names() {
 
 ExperimentResult run_accuracy_experiment(const AccuracyExperiment& experiment, const ProgressCall& progress) {
   FoundViews found = find_views(experiment.scenes);
-  std::vector<View> views;
-  for (View& view : found.views) views.push_back(with_fixed_camera(std::move(view)));
-  PriceList list(std::move(views), experiment.width, experiment.height);
+  PriceList list(std::move(found.views), experiment.width, experiment.height);
   const auto total = static_cast<std::uint32_t>(list.step_count());
   std::uint32_t done = 0;
   list.collect(experiment.threads, [&] { progress(++done, total); });

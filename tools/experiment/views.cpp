@@ -3,6 +3,7 @@
 
 #include <scene_makers/shapes.h>
 
+#include <glm/geometric.hpp>
 #include <map>
 #include <system_error>
 #include <utility>
@@ -79,35 +80,44 @@ FoundViews find_views(const std::filesystem::path& folder) {
     }
     auto& scene = scenes[known.file];
     if (scene == nullptr) scene = std::make_shared<const tool::SceneInput>(tool::read_scene_input(path));
-    found.views.push_back({known.key, known.title, scene, known.camera});
+    found.views.push_back(with_published_camera({known.key, known.title, scene, known.camera}));
   }
   if (!found.views.empty()) return found;
 
   constexpr std::uint32_t kTeapotSegments = 15;  // scenes/teapot.ply
   found.generated = true;
-  found.views.push_back({kTeapotKey, "Teapot", scene_of(scene_makers::make_teapot(kTeapotSegments), "teapot"), {}});
+  found.views.push_back(with_published_camera(
+      {kTeapotKey, "Teapot", scene_of(scene_makers::make_teapot(kTeapotSegments), "teapot"), {}}));
   found.views.push_back(make_knot_view(kKnotTriangles));
   return found;
 }
 
 View make_knot_view(std::uint32_t triangle_count) {
   const std::string key = knot_key(triangle_count);
-  return {key,
-          "Torus knot of " + tool::words_of_count(triangle_count),
-          scene_of(scene_makers::make_torus_knot(triangle_count), key),
-          {}};
+  return with_published_camera({key,
+                                "Torus knot of " + tool::words_of_count(triangle_count),
+                                scene_of(scene_makers::make_torus_knot(triangle_count), key),
+                                {}});
 }
 
-View with_fixed_camera(View view) {
+View with_published_camera(View view) {
+  if (view.camera.eye && view.camera.at) return view;
   // One cell: the bounds of what can be hit are the same in every grid.
   GridNeed need;
   const Status status = count_scene_image(view.mesh().view(), {.lambda = 1e-6f}, need);
   if (status != Status::kOk) {
     throw tool::Failure(tool::ExitCode::kBadInput, view.scene->path.string() + ": " + tool::words_of(status));
   }
-  const Camera camera = tool::frame_view(view.camera, need.grid.bounds_minimum, need.grid.bounds_maximum);
-  view.camera.eye = camera.eye;
-  view.camera.at = camera.at;
+  // Double, so that bounds near the largest float neither overflow nor lose the centre.
+  const float* const low = need.grid.bounds_minimum;
+  const float* const high = need.grid.bounds_maximum;
+  const DVec3 minimum(low[0], low[1], low[2]), maximum(high[0], high[1], high[2]);
+  const DVec3 at = view.camera.at ? DVec3(*view.camera.at) : 0.5 * (minimum + maximum);
+  if (!view.camera.eye) {
+    view.camera.eye =
+        Vec3(at + 1.05 * glm::length(maximum - minimum) * glm::normalize(DVec3(0.35, 0.25, 1.0)));
+  }
+  view.camera.at = Vec3(at);
   return view;
 }
 

@@ -18,7 +18,7 @@ struct View {
   std::string key;                                ///< snake_case, unique
   std::string title;                              ///< for people
   std::shared_ptr<const tool::SceneInput> scene;  ///< a mesh
-  tool::ViewRequest camera;                       ///< what is not set is framed
+  tool::ViewRequest camera;                       ///< eye and at are set
 
   [[nodiscard]] const tool::Mesh& mesh() const { return std::get<tool::Mesh>(scene->content); }
 };
@@ -37,12 +37,13 @@ struct FoundViews {
 /// error, one that is not there a sentence. Errors: Failure.
 [[nodiscard]] FoundViews find_views(const std::filesystem::path& folder);
 
-/// @returns a torus knot of `triangle_count` (even) triangles, framed; key "knot_COUNT".
+/// @returns a torus knot of `triangle_count` (even) triangles, with a published camera; key "knot_COUNT".
 [[nodiscard]] View make_knot_view(std::uint32_t triangle_count);
 
-/// @returns the view with a camera that does not depend on how a system stores the mesh: where it is framed, the frame
-/// of the mesh as it was read. Errors: Failure (kBadInput) where there is nothing to see.
-[[nodiscard]] View with_fixed_camera(View view);
+/// Completes the camera of a view as it was published: at = centre c of the bounds of the triangles that have an area,
+/// eye = c + 1.05 diagonals (0.35, 0.25, 1) / |...|. It is not the one that the program frames a mesh by, which puts
+/// all of it into the picture. What is set stays. Errors: Failure (kBadInput) where there is nothing to see.
+[[nodiscard]] View with_published_camera(View view);
 
 /// Triangle counts of Table 1: largest times 1/100, 1/50, 1/20, 1/10, 1/5, 1/2 and 1, even, those below the smallest
 /// knot left out.

@@ -4,10 +4,8 @@
 #include <report/report.h>
 
 #include <algorithm>
-#include <array>
 #include <charconv>
 #include <cstdio>
-#include <limits>
 #include <set>
 #include <string>
 #include <vector>
@@ -23,6 +21,8 @@
 #include "output_folder.h"
 #include "progress.h"
 #include "scene_input.h"
+#include "scene_points.h"
+#include "unseen_scene.h"
 #include "words.h"
 
 namespace gridiron::tool {
@@ -75,28 +75,25 @@ std::vector<AnimationFrame> collect_frames(const AnimateArguments& arguments) {
   return frames;
 }
 
-// One camera for all frames: that of the box around all of them, where it was not asked for.
+// One camera for all frames: what is not asked for is framed for all of them together.
 ViewRequest common_view(const std::vector<AnimationFrame>& frames, const RenderArguments& arguments) {
   ViewRequest view = join_view(arguments.view, arguments.camera ? read_camera_file(*arguments.camera) : ViewRequest{});
   if (view.eye && view.at) return view;
-  constexpr float kMost = std::numeric_limits<float>::max();
-  std::array<float, 3> minimum = {kMost, kMost, kMost}, maximum = {-kMost, -kMost, -kMost};
-  GridParameters coarse;  // of which the bounds alone are wanted
-  coarse.lambda = 1e-6f;
-  for (const AnimationFrame& frame : frames) {
-    stop_if_interrupted();
-    const SceneInput input = read_scene_input(frame.input);
-    GridNeed need{};
-    const Status status = count_scene_image(std::get<Mesh>(input.content).view(), coarse, need);
-    if (status != Status::kOk) throw Failure(ExitCode::kBadInput, frame.input.string() + ": " + words_of(status));
-    for (std::size_t axis = 0; axis < 3; ++axis) {
-      minimum[axis] = std::min(minimum[axis], need.grid.bounds_minimum[axis]);
-      maximum[axis] = std::max(maximum[axis], need.grid.bounds_maximum[axis]);
+  const PointSource points = [&frames](const PointVisitor& visitor) {
+    for (const AnimationFrame& frame : frames) {
+      stop_if_interrupted();
+      const SceneInput input = read_scene_input(frame.input);
+      const MeshView mesh = std::get<Mesh>(input.content).view();
+      GridNeed need{};
+      const Status status = count_scene_image(mesh, {.lambda = 1e-6f}, need);  // refuses what cannot be rendered
+      if (status != Status::kOk) throw Failure(ExitCode::kBadInput, frame.input.string() + ": " + words_of(status));
+      visit_points(mesh, visitor);
     }
-  }
-  const Camera camera = frame_view(view, minimum.data(), maximum.data());
+  };
+  const Camera camera = complete_view(view, static_cast<double>(arguments.width) / arguments.height, points);
   view.eye = camera.eye;
   view.at = camera.at;
+  view.up = camera.up;
   return view;
 }
 
@@ -124,6 +121,7 @@ void render(AnimationFrame& frame, RenderArguments arguments, const ViewRequest&
   AtomicFile file(folder / frame.picture);
   file.write(encode_png(color));
   file.commit();
+  if (!arguments.quiet) tell_note(frame.input, unseen_note(memory, result, arguments.mode));
 }
 
 // The shortest decimals that read back as the same number.

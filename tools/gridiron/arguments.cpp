@@ -188,10 +188,16 @@ void add_view_options(CLI::App& app, RenderArguments& render) {
       [](const std::string& text) { return std::optional<std::filesystem::path>(text); }, "a file name", "FILE",
       "view from a file of its own; --eye, --at, --up and --fov replace parts of it");
   add_parsed(app, "--eye", render.view.eye, parse_vector, vector, "x,y,z",
-             "position of the camera (default: a text scene's own, else framed)");
+             "position of the camera (default: a text scene's own, else the scene is framed)");
   add_parsed(app, "--at", render.view.at, parse_vector, vector, "x,y,z",
-             "point looked at (default: a text scene's own, else framed)");
-  add_parsed(app, "--up", render.view.up, parse_vector, vector, "x,y,z", "direction that is up (default 0,1,0)");
+             "point in the middle of the picture (default: a text scene's own, else that of the framed scene)");
+  add_parsed(app, "--up", render.view.up, parse_up, "x, y, z, -x, -y, -z or " + vector, "AXIS|x,y,z",
+             "direction that is up (default y, or a text scene's own)");
+  add_parsed(app, "--from", render.view.from, parse_view_angles,
+             "front, back, left, right, top, bottom, iso or AZIMUTH,ELEVATION in degrees, elevation from -90 to 90",
+             "SIDE|AZIMUTH,ELEVATION",
+             "side from which the scene is framed: front|back|left|right|top|bottom|iso, or degrees from the front to "
+             "the right and upwards (default 30,20); replaces eye and at of --camera or of a text scene");
   const auto fov = [](const std::string& text) {
     const std::optional<float> value = parse_float(text);
     return value && fov_is_possible(*value) ? value : std::nullopt;
@@ -323,6 +329,7 @@ RenderArguments complete_render(const RawRender& raw, const CLI::App& app) {
   RenderArguments render = raw.arguments;
   render.scene.quiet = render.quiet;
   render.has_size = is_given("--size");
+  if (is_given("--from") && is_given("--eye")) usage_error("--from and --eye: both say where the eye is");
   render.has_shading = is_given("--shading");
   if (!render.has_shading && is_text_scene(render.scene.input)) render.shading = Shading::kScene;
   require_tolerance(render.scene);

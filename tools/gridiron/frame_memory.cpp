@@ -8,6 +8,7 @@
 
 #include "failure.h"
 #include "frame_pictures.h"
+#include "scene_points.h"
 #include "stopwatch.h"
 #include "words.h"
 
@@ -88,6 +89,12 @@ void store_record(FrameMemory& frame) {
 
 }  // namespace
 
+PointSource points_of(FrameMemory& frame) {
+  return [&frame](const PointVisitor& visitor) {
+    visit_points(frame.image, frame.memory.bytes_at(frame.image_address, frame.image.header.image_bytes), visitor);
+  };
+}
+
 std::uint64_t frame_memory_bytes(const SceneInput& input, const RenderArguments& arguments) {
   const std::uint32_t cores = core_count(arguments);
   const std::uint32_t more = arguments.threads > cores ? arguments.threads - cores : 0;
@@ -107,7 +114,7 @@ void prepare_frame(FrameMemory& frame, const SceneInput& input, const RenderArgu
   if (arguments.ids) require_exact_ids(input.path, frame.image.header.triangle_count);
 
   FrameSettings& settings = frame.settings;
-  settings.camera = frame_view(view, frame.image.grid.bounds_minimum, frame.image.grid.bounds_maximum);
+  settings.camera = complete_view(view, static_cast<double>(arguments.width) / arguments.height, points_of(frame));
   settings.width = arguments.width;
   settings.height = arguments.height;
   settings.tile_width = arguments.tile_width;

@@ -37,6 +37,9 @@ struct FrameMemory {
 /// no cores for.
 [[nodiscard]] std::uint64_t frame_memory_bytes(const SceneInput& input, const RenderArguments& arguments);
 
+/// @returns the points of a frame's scene image. They are there once prepare_frame() has placed it.
+[[nodiscard]] PointSource points_of(FrameMemory& frame);
+
 /// Fills `frame` for a render; with Shading::kScene room for waiting rays of arguments.threads cores.
 /// @param view  parts of the view that were asked for.
 /// Errors: Failure.

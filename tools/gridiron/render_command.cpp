@@ -21,6 +21,7 @@
 #include "scene_input.h"
 #include "stopwatch.h"
 #include "store_facts.h"
+#include "unseen_scene.h"
 #include "words.h"
 
 namespace gridiron::tool {
@@ -137,6 +138,7 @@ void run_command(const RenderArguments& asked) {
   files.commit();
 
   if (arguments.quiet) return;
+  if (!arguments.tile) tell_note(input.path, unseen_note(frame, result, arguments.mode));
   print_picture(arguments, color, hash);
   if (has_time(arguments)) print_timing(arguments, timing);
   std::printf("host: %.3f s to load, %.3f s to build, %.3f s to render on %s\n", input.load_seconds,

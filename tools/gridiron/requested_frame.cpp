@@ -32,7 +32,7 @@ ViewRequest view_of(const SceneView& view) {
 // What the command line left to the scene and the host.
 RenderArguments complete_arguments(const RenderArguments& asked, const SceneInput& input) {
   RenderArguments arguments = asked;
-  if (input.text && !arguments.has_size) {
+  if (input.text && input.text->view.is_given() && !arguments.has_size) {
     arguments.width = input.text->view.width;
     arguments.height = input.text->view.height;
   }
@@ -47,9 +47,10 @@ RenderArguments complete_arguments(const RenderArguments& asked, const SceneInpu
 
 // Another place to look from has no use for the scene's near plane.
 void check_scene_view(const RenderArguments& arguments, const SceneInput& input, const ViewRequest& view) {
-  if (!input.text || arguments.camera || arguments.view.eye) return;
-  const float no_bounds[3] = {};  // nothing is left to be framed
-  check_hither(input, frame_view(view, no_bounds, no_bounds), arguments.width, arguments.height);
+  if (!input.text || !input.text->view.is_given() || arguments.camera || arguments.view.eye || view.from) return;
+  const PointSource no_points = [](const PointVisitor&) {};  // nothing is left to be framed
+  const double aspect = static_cast<double>(arguments.width) / arguments.height;
+  check_hither(input, complete_view(view, aspect, no_points), arguments.width, arguments.height);
 }
 
 }  // namespace
@@ -63,7 +64,7 @@ RequestedFrame read_requested_frame(const RenderArguments& asked, const std::vec
   require_other_files(input, outputs);
   request.arguments = complete_arguments(asked, input);
   const RenderArguments& arguments = request.arguments;
-  const bool has_own_view = input.text && !arguments.camera;
+  const bool has_own_view = input.text && input.text->view.is_given() && !arguments.camera;
   request.view = join_view(arguments.view, has_own_view ? view_of(input.text->view) : camera);
   check_scene_view(arguments, input, request.view);
   if (!arguments.quiet) {

@@ -21,6 +21,8 @@
 #include "prediction.h"
 #include "progress.h"
 #include "result_file.h"
+#include "scene_points.h"
+#include "unseen_scene.h"
 #include "words.h"
 
 namespace gridiron::tool {
@@ -74,6 +76,15 @@ void print_prediction(const ResultArguments& arguments, std::span<const double> 
               100 * quality.largest_tile_error);
 }
 
+void tell_unseen(const ResultArguments& arguments, const OpenJob& job, const OpenResult& result) {
+  SeenPlanes planes{result.color, result.depth, result.ids};
+  planes.has_environment = job.image.effects.environment_width != 0;
+  const auto image = std::span(job.file.bytes).subspan(job.job.image_address - job.job.base_address, job.job.image_bytes);
+  tell_note(arguments.result, unseen_note(job.record, planes, [&job, image](const PointVisitor& visitor) {
+              visit_points(job.image, image, visitor);
+            }));
+}
+
 }  // namespace
 
 void run_command(const ResultArguments& arguments) {
@@ -116,6 +127,7 @@ void run_command(const ResultArguments& arguments) {
   files.commit();
 
   if (!arguments.quiet) {
+    tell_unseen(arguments, job, result);
     std::printf("%s: %ux%u, hash %s\n", arguments.result.c_str(), color.width, color.height,
                 hash_text(report.image_hash).c_str());
     print_cores(result);

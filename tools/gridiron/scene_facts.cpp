@@ -77,7 +77,7 @@ SceneFacts collect_scene_facts(const InfoArguments& arguments) {
   const SceneInput input = read_scene_input(arguments.scene.input, arguments.scene.tolerance);
   if (!arguments.scene.quiet) tell_notes(input);
   SceneFacts facts;
-  const bool has_own_size = input.text && !arguments.has_size;
+  const bool has_own_size = input.text && input.text->view.is_given() && !arguments.has_size;
   facts.width = has_own_size ? input.text->view.width : arguments.width;
   facts.height = has_own_size ? input.text->view.height : arguments.height;
   const sim::MachineProfile& machine = *arguments.scene.machine;

@@ -4,8 +4,10 @@
 #include <cmath>
 #include <glm/geometric.hpp>
 #include <numbers>
+#include <utility>
 
 #include "failure.h"
+#include "numbers.h"
 
 namespace gridiron::tool {
 
@@ -21,7 +23,39 @@ const char* view_defect(const Vec3& eye, const Vec3& at, const Vec3& up) {
   return nullptr;
 }
 
+std::optional<Vec3> parse_up(std::string_view text) {
+  const bool is_negative = text.starts_with('-');
+  const std::string_view axis = text.substr(is_negative ? 1 : 0);
+  const std::size_t index = std::string_view("xyz").find(axis);
+  if (axis.size() != 1 || index == std::string_view::npos) return parse_vector(text);
+  Vec3 up(0.0f);
+  up[static_cast<int>(index)] = is_negative ? -1.0f : 1.0f;
+  return up;
+}
+
+std::optional<ViewAngles> parse_view_angles(std::string_view text) {
+  constexpr double kIsometric = 35.264389682754654;  // atan(1 / sqrt(2)): three axes are equally long
+  constexpr std::pair<std::string_view, ViewAngles> kNamed[] = {
+      {"front", {0, 0}}, {"right", {90, 0}},   {"back", {180, 0}},        {"left", {270, 0}},
+      {"top", {0, 90}},  {"bottom", {0, -90}}, {"iso", {45, kIsometric}},
+  };
+  for (const auto& [name, angles] : kNamed) {
+    if (text == name) return angles;
+  }
+  const std::size_t comma = text.find(',');
+  if (comma == std::string_view::npos) return std::nullopt;
+  const std::optional<float> azimuth = parse_float(text.substr(0, comma));
+  const std::optional<float> elevation = parse_float(text.substr(comma + 1));
+  if (!azimuth || !elevation || std::abs(*elevation) > 90.0f) return std::nullopt;
+  return ViewAngles{std::fmod(double{*azimuth}, 360.0), double{*elevation}};
+}
+
 ViewRequest join_view(const ViewRequest& parts, ViewRequest base) {
+  if (parts.from) {
+    base.eye.reset();
+    base.at.reset();
+    base.from = parts.from;
+  }
   if (parts.eye) base.eye = parts.eye;
   if (parts.at) base.at = parts.at;
   if (parts.up) base.up = parts.up;
@@ -29,23 +63,28 @@ ViewRequest join_view(const ViewRequest& parts, ViewRequest base) {
   return base;
 }
 
-Camera frame_view(const ViewRequest& request, const float bounds_minimum[3], const float bounds_maximum[3]) {
-  // Double, so that bounds near the largest float neither overflow nor lose the centre.
-  const DVec3 minimum(bounds_minimum[0], bounds_minimum[1], bounds_minimum[2]);
-  const DVec3 maximum(bounds_maximum[0], bounds_maximum[1], bounds_maximum[2]);
-  const double diagonal = glm::length(maximum - minimum);
-  const DVec3 at = request.at ? DVec3(*request.at) : 0.5 * (minimum + maximum);
-  const DVec3 eye = request.eye ? DVec3(*request.eye) : at + 1.05 * diagonal * glm::normalize(DVec3(0.35, 0.25, 1.0));
-
-  Camera camera;
-  camera.eye = Vec3(eye);
-  camera.at = Vec3(at);
-  camera.up = request.up.value_or(Vec3(0, 1, 0));
+Camera complete_view(const ViewRequest& request, double aspect, const PointSource& points) {
+  FramingRequest framing;
+  framing.up = request.up.value_or(framing.up);
   const double fov = request.fov_degrees.value_or(kDefaultFovDegrees);
-  camera.tan_half_fov = static_cast<float>(std::tan(0.5 * fov * std::numbers::pi / 180.0));
-  if (const char* defect = view_defect(camera.eye, camera.at, camera.up)) {
-    throw Failure(ExitCode::kUsage, std::string("view: ") + defect);
+  framing.tan_half_fov = std::tan(0.5 * fov * std::numbers::pi / 180.0);
+  framing.aspect = aspect;
+  framing.from = request.from.value_or(framing.from);
+  framing.at = request.at;
+
+  const auto require = [](const char* defect) {
+    if (defect != nullptr) throw Failure(ExitCode::kUsage, std::string("view: ") + defect);
+  };
+  if (!request.eye) {
+    require(framing.up == Vec3(0.0f) ? "up has length 0" : nullptr);
+    return frame_points(framing, points);
   }
+  Camera camera;
+  camera.eye = *request.eye;
+  camera.at = request.at ? *request.at : Vec3(middle_of(points));
+  camera.up = framing.up;
+  camera.tan_half_fov = static_cast<float>(framing.tan_half_fov);
+  require(view_defect(camera.eye, camera.at, camera.up));
   return camera;
 }
 

@@ -7,6 +7,9 @@
 
 #include <filesystem>
 #include <optional>
+#include <string_view>
+
+#include "framing.h"
 
 namespace gridiron::tool {
 
@@ -14,6 +17,7 @@ namespace gridiron::tool {
 struct ViewRequest {
   std::optional<Vec3> eye, at, up;
   std::optional<float> fov_degrees;
+  std::optional<ViewAngles> from{};  ///< side to frame the scene from; eye and at of others do not count then
 };
 
 inline constexpr float kDefaultFovDegrees = 45.0f;
@@ -24,16 +28,23 @@ inline constexpr float kDefaultFovDegrees = 45.0f;
 /// @returns why no camera can look like that, nullptr where it can: eye on at, up of length 0 or along the view.
 [[nodiscard]] const char* view_defect(const Vec3& eye, const Vec3& at, const Vec3& up);
 
-/// @returns `base` with the parts that `parts` has.
+/// @returns the direction of "x,y,z", or of an axis alone: "z", "-x".
+[[nodiscard]] std::optional<Vec3> parse_up(std::string_view text);
+
+/// @returns the angles of "front", "back", "left", "right", "top", "bottom", "iso" or "AZIMUTH,ELEVATION" in degrees,
+/// with an elevation from -90 to 90.
+[[nodiscard]] std::optional<ViewAngles> parse_view_angles(std::string_view text);
+
+/// @returns `base` with the parts that `parts` has. Where `parts` says from which side, eye and at of `base` are gone.
 [[nodiscard]] ViewRequest join_view(const ViewRequest& parts, ViewRequest base);
 
-/// Completes a view: at = centre of the bounds, eye = at + 1.05 diagonal (0.35, 0.25, 1) / |...|, up = y, fov = 45.
+/// Completes a view: up = y, fov = 45; without an eye the points are framed (framing.h), with `at` in the middle of the
+/// picture if it was asked for; an eye alone looks at the middle of the points' bounds.
 ///
-/// @param bounds_minimum, bounds_maximum  of the triangles that can be hit: zero-area ones do not move the camera, so
-///        that a mesh and the image packed from it are framed alike.
+/// @param aspect  width over height of the picture.
+/// @param points  asked only where eye or at is missing.
 /// Errors: Failure (kUsage) where the request has a defect.
-[[nodiscard]] Camera frame_view(const ViewRequest& request, const float bounds_minimum[3],
-                                const float bounds_maximum[3]);
+[[nodiscard]] Camera complete_view(const ViewRequest& request, double aspect, const PointSource& points);
 
 /// Reads a camera file: lines `eye x y z`, `at x y z`, `up x y z`, `fov degrees`, each at most once, eye and at
 /// required; # opens a comment. Errors: Failure (kBadInput), `file:line: reason`.

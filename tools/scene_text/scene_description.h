@@ -28,13 +28,15 @@ inline constexpr float kLeastRefraction = 0.1f, kMostRefraction = 10.0f;
 inline constexpr float kMostShine = 1e5f;
 inline constexpr float kMostLightColor = 1e6f;
 
-/// A pinhole view. World space; not normalised; from != at, up neither 0 nor along at - from.
+/// A pinhole view. World space; not normalised; from != at, up neither 0 nor along at - from. A text need not have one.
 struct SceneView {
   Vec3 from{0, 0, 1}, at{0, 0, 0}, up{0, 1, 0};
   float angle_degrees = 45.0f;          ///< between the top and the bottom edge of the picture, in (0, 180)
   float hither = 0.0f;                  ///< >= 0: what lies nearer along at - from is not seen
-  std::uint32_t width = 0, height = 0;  ///< pixels, 1..kMaxPictureWidth
-  std::uint64_t line = 0;               ///< of the text
+  std::uint32_t width = 0, height = 0;  ///< pixels, 1..kMaxPictureWidth; 0 without a view
+  std::uint64_t line = 0;               ///< of the text; 0: it has no view
+
+  [[nodiscard]] bool is_given() const { return line != 0; }
 };
 
 /// Light from a point. It does not fall off with distance.

@@ -365,7 +365,6 @@ class Parser {
 
   void finish() {
     const std::uint64_t last_line = words_.next().line;
-    if (first_line_[0] == 0) words_.fail(last_line, "the scene has no view: no line 'v'");
     if (result_.shapes.empty()) words_.fail(last_line, "the scene has no object: no p, pp, c, s or m");
     // What the Standard Procedural Databases advise, without their half: there is no ambient light here.
     const std::size_t lights = result_.scene.point_lights.size() + result_.scene.area_lights.size();

@@ -55,7 +55,7 @@ TEST(PriceWords, TargetsAreMetInEveryViewOrNot) {
 
 std::vector<View> small_views() {
   std::vector<View> views;
-  for (const std::uint32_t count : {600u, 1000u}) views.push_back(with_fixed_camera(make_knot_view(count)));
+  for (const std::uint32_t count : {600u, 1000u}) views.push_back(make_knot_view(count));
   return views;
 }
 
@@ -189,7 +189,7 @@ TEST_F(SmallPriceList, CompactIsHeldAgainstStandard) {
 
 // A look's rays pass the point within a few roundings: what they hit lies there or, at an outline, behind it.
 TEST(CloseLook, LooksAtItsPoint) {
-  const View view = with_fixed_camera(make_knot_view(600));
+  const View view = make_knot_view(600);
   GridVariant variant = grid_variant("best");
   variant.accuracy = Accuracy::kExact;
   const Answers picture = render_answers(variant, view, {.width = 64, .height = 64, .shading = Shading::kNone});

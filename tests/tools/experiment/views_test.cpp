@@ -3,6 +3,7 @@
 
 #include <gtest/gtest.h>
 
+#include <cmath>
 #include <cstring>
 #include <filesystem>
 #include <string>
@@ -67,9 +68,11 @@ TEST(Views, CamerasAreThoseOfTheCameraFiles) {
   }
 }
 
-// The camera of a framed mesh, whoever asks: what it was, with a triangle of no area that no frame may see.
-TEST(Views, AFixedCameraIsTheFramesOwn) {
+// The published rule, which triangles without an area do not move.
+TEST(Views, ThePublishedCameraStandsOffByTheDiagonal) {
   View view = make_knot_view(600);
+  const tool::ViewRequest published = view.camera;
+  view.camera = {};
   tool::Mesh mesh = view.mesh();
   const auto first = static_cast<std::uint32_t>(mesh.vertices.size());
   mesh.vertices.insert(mesh.vertices.end(), {Vec3(0, 0, 0), Vec3(50, 0, 0), Vec3(100, 0, 0)});
@@ -77,16 +80,26 @@ TEST(Views, AFixedCameraIsTheFramesOwn) {
   view.scene = std::make_shared<const tool::SceneInput>(tool::SceneInput{"knot", std::move(mesh), 0});
   GridNeed need;
   ASSERT_EQ(count_scene_image(view.mesh().view(), {}, need), Status::kOk);
-  const Camera framed = tool::frame_view(view.camera, need.grid.bounds_minimum, need.grid.bounds_maximum);
-  const View fixed = with_fixed_camera(view);
-  EXPECT_EQ(fixed.camera.eye, framed.eye);
-  EXPECT_EQ(fixed.camera.at, framed.at);
+  const View fixed = with_published_camera(view);
+  EXPECT_EQ(fixed.camera.eye, published.eye);
+  EXPECT_EQ(fixed.camera.at, published.at);
+  double squares = 0;
+  for (int axis = 0; axis < 3; ++axis) {
+    const double low = need.grid.bounds_minimum[axis], high = need.grid.bounds_maximum[axis];
+    EXPECT_EQ((*fixed.camera.at)[axis], static_cast<float>(0.5 * (low + high)));
+    squares += (high - low) * (high - low);
+  }
+  const double distance = 1.05 * std::sqrt(squares / 1.185);  // (0.35, 0.25, 1) has length sqrt(1.185)
+  for (int axis = 0; axis < 3; ++axis) {
+    const double step = axis == 0 ? 0.35 : axis == 1 ? 0.25 : 1.0;
+    EXPECT_NEAR((*fixed.camera.eye)[axis], (*fixed.camera.at)[axis] + step * distance, 1e-5);
+  }
   EXPECT_EQ(fixed.scene, view.scene);
 
   view.camera.eye = Vec3(1, 2, 30);
-  EXPECT_EQ(with_fixed_camera(view).camera.eye, Vec3(1, 2, 30)) << "what was asked for stays";
+  EXPECT_EQ(with_published_camera(view).camera.eye, Vec3(1, 2, 30)) << "what was asked for stays";
   view.scene = std::make_shared<const tool::SceneInput>(tool::SceneInput{"nothing", tool::Mesh{}, 0});
-  EXPECT_THROW((void)with_fixed_camera(view), tool::Failure);
+  EXPECT_THROW((void)with_published_camera(view), tool::Failure);
 }
 
 TEST(Views, GrowthCountsAreEvenAndRise) {

@@ -11,6 +11,7 @@
 #include <string>
 #include <vector>
 
+#include "gridiron/scene_points.h"
 #include "gridiron/view.h"
 #include "run_program.h"
 #include "temporary_folder.h"
@@ -101,10 +102,9 @@ TEST(Animate, FramesAreThoseOfRender) {
   ASSERT_EQ(rows.size(), 2u);
 
   // The view that frames both at once, as the report of a frame of both tells it: by its picture of one of them.
+  const Camera camera = tool::complete_view(
+      {}, 1.5, [&both](const tool::PointVisitor& visitor) { tool::visit_points(both.view(), visitor); });
   GridNeed need{};
-  ASSERT_EQ(count_scene_image(both.view(), {}, need), Status::kOk);
-  const GridRecord& grid = need.grid;
-  const Camera camera = tool::frame_view({}, grid.bounds_minimum, grid.bounds_maximum);
   const auto text_of = [](const Vec3& v) {
     char text[96];
     std::snprintf(text, sizeof text, "%.9g,%.9g,%.9g", double(v.x), double(v.y), double(v.z));

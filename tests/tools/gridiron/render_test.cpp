@@ -5,6 +5,7 @@
 #include <cmath>
 #include <nlohmann/json.hpp>
 
+#include "gridiron/scene_points.h"
 #include "gridiron/view.h"
 #include "run_program.h"
 #include "support/picture.h"
@@ -38,7 +39,9 @@ Json render_report(const TemporaryFolder& folder, const Words& arguments) {
 RenderedFrame expected_frame(const TestMesh& mesh, std::uint32_t width, std::uint32_t height) {
   SceneInMemory scene(mesh.view(), {});
   FrameSettings settings;
-  settings.camera = tool::frame_view({}, scene.image().grid.bounds_minimum, scene.image().grid.bounds_maximum);
+  settings.camera =
+      tool::complete_view({}, static_cast<double>(width) / height,
+                          [&mesh](const tool::PointVisitor& visitor) { tool::visit_points(mesh.view(), visitor); });
   settings.width = width;
   settings.height = height;
   return scene.render(settings, {});

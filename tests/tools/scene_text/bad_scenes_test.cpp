@@ -95,8 +95,7 @@ TEST(BadScenes, Views) {
           {"resolution -8 6", "3: the resolution's width of 'v' must be"},
       },
       view_with(""));
-  EXPECT_EQ(complaint("f 1 1 1 1 0 0 0 0\ns 0 0 0 1\n"), "test.nff:2: the scene has no view: no line 'v'");
-  EXPECT_EQ(complaint(""), "test.nff:1: the scene has no view: no line 'v'");
+  EXPECT_EQ(complaint(""), "test.nff:1: the scene has no object: no p, pp, c, s or m");
 }
 
 TEST(BadScenes, SettingsAndLights) {

@@ -1,0 +1,302 @@
+// Framing: see the header.
+//
+// Take a direction of view, and let a point have the place u across it and the depth z along it. An eye at (e, d) sees
+// it at the slope (u - e) / (z - d), and slopes up to s are in the picture: u - s z <= e - s d and -u - s z <= -e - s
+// d. So all points are in the picture if A = max(u - s z) and B = max(-u - s z) do not exceed these, of which the sum
+// gives the nearest eye: d = -(A + B) / (2 s), e = (A - B) / 2. Width and height each have such a d; the lesser one
+// holds for both. Where it leaves more room than needed, the s at which d = -(A(s) + B(s)) / (2 s) centres the points.
+// Only corners of the convex hull of all (u, z) decide A and B. Source: own. SPDX-License-Identifier: Apache-2.0
+#include "framing.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <glm/geometric.hpp>
+#include <glm/vec2.hpp>
+#include <limits>
+#include <numbers>
+#include <vector>
+
+namespace gridiron::tool {
+namespace {
+
+using DVec2 = glm::dvec2;
+
+// Greater than 0 where c lies to the left of the line from a to b.
+double turn(const DVec2& a, const DVec2& b, const DVec2& c) {
+  return (b.x - a.x) * (c.y - a.y) - (b.y - a.y) * (c.x - a.x);
+}
+
+// Points of a plane, of which those that are no corner of their convex hull are dropped from time to time.
+class Hull {
+ public:
+  void add(const DVec2& point) {
+    if (is_surely_inside(point)) return;
+    points_.push_back(point);
+    if (points_.size() >= most_points_) reduce();
+  }
+
+  // The corners, counterclockwise. Precondition: a point was added.
+  [[nodiscard]] const std::vector<DVec2>& corners() {
+    reduce();
+    return points_;
+  }
+
+ private:
+  static constexpr std::size_t kRingCorners = 8;
+
+  // Whether a point lies within the ring of the corners that are extreme in eight directions.
+  [[nodiscard]] bool is_surely_inside(const DVec2& point) const {
+    if (ring_count_ < 3) return false;
+    for (std::size_t i = 0; i < ring_count_; ++i) {
+      if (!(turn(ring_[i], ring_[i + 1 < ring_count_ ? i + 1 : 0], point) > 0)) return false;
+    }
+    return true;
+  }
+
+  // Andrew's monotone chain, 1979: the lower side from left to right, then the upper side back.
+  void reduce() {
+    const auto precedes = [](const DVec2& a, const DVec2& b) { return a.x < b.x || (a.x == b.x && a.y < b.y); };
+    std::ranges::sort(points_, precedes);
+    points_.erase(std::unique(points_.begin(), points_.end()), points_.end());
+    if (points_.size() > 2) {
+      std::vector<DVec2> hull;
+      const auto append = [&hull](const DVec2& point, std::size_t first) {
+        while (hull.size() >= first + 2 && turn(hull[hull.size() - 2], hull.back(), point) <= 0) hull.pop_back();
+        hull.push_back(point);
+      };
+      for (const DVec2& point : points_) append(point, 0);
+      const std::size_t upper = hull.size() - 1;
+      for (std::size_t i = points_.size() - 1; i-- > 0;) append(points_[i], upper);
+      hull.pop_back();  // the first corner again
+      points_ = std::move(hull);
+    }
+    most_points_ = 2 * points_.size() + 4096;
+    make_ring();
+  }
+
+  void make_ring() {
+    constexpr std::array<DVec2, kRingCorners> kDirections = {
+        {{0, -1}, {1, -1}, {1, 0}, {1, 1}, {0, 1}, {-1, 1}, {-1, 0}, {-1, -1}}};
+    ring_count_ = 0;
+    for (const DVec2& direction : kDirections) {
+      const auto is_less = [&direction](const DVec2& a, const DVec2& b) {
+        return glm::dot(direction, a) < glm::dot(direction, b);
+      };
+      const DVec2& corner = *std::ranges::max_element(points_, is_less);
+      if (ring_count_ == 0 || (corner != ring_[ring_count_ - 1] && corner != ring_[0])) ring_[ring_count_++] = corner;
+    }
+  }
+
+  std::vector<DVec2> points_;
+  std::size_t most_points_ = 4096;
+  std::array<DVec2, kRingCorners> ring_{};
+  std::size_t ring_count_ = 0;
+};
+
+// The corners that see a picture's opposite edges: A and B of the comment above, and the depths of these corners.
+struct Support {
+  double positive = 0, negative = 0;
+  double positive_depth = 0, negative_depth = 0;
+};
+
+Support support_of(const std::vector<DVec2>& corners, double slope) {
+  constexpr double kLeast = -std::numeric_limits<double>::infinity();
+  Support support{kLeast, kLeast};
+  for (const DVec2& corner : corners) {
+    const double positive = corner.x - slope * corner.y, negative = -corner.x - slope * corner.y;
+    if (positive > support.positive) support.positive = positive, support.positive_depth = corner.y;
+    if (negative > support.negative) support.negative = negative, support.negative_depth = corner.y;
+  }
+  return support;
+}
+
+// The greatest depth of an eye that has all corners within the slope, wherever it stands or at a given place.
+double depth_of_eye(const std::vector<DVec2>& corners, double slope, const std::optional<double>& place) {
+  const Support support = support_of(corners, slope);
+  if (!place) return -(support.positive + support.negative) / (2 * slope);
+  return std::min(*place - support.positive, -*place - support.negative) / slope;
+}
+
+// The place of an eye at a depth that sees the corners at opposite slopes: Newton's iteration for the slope at which
+// A + B + 2 s d = 0, which is convex, falls, and consists of straight parts, so that few steps reach its root.
+double centre_of(const std::vector<DVec2>& corners, double slope, double depth) {
+  constexpr int kMostSteps = 32;
+  Support support = support_of(corners, slope);
+  for (int i = 0; i < kMostSteps; ++i) {
+    const double value = support.positive + support.negative + 2 * slope * depth;
+    const double rise = 2 * depth - support.positive_depth - support.negative_depth;
+    const double next = slope - value / rise;
+    if (!(rise < 0) || next == slope) break;
+    slope = next;
+    support = support_of(corners, slope);
+  }
+  return 0.5 * (support.positive - support.negative);
+}
+
+// Orthonormal; `back` points from the scene to the eye.
+struct Axes {
+  DVec3 right, up, back;
+};
+
+Axes axes_of(const ViewAngles& from, const DVec3& up) {
+  // The least rotation that takes y to up; where up is -y, half a turn about x.
+  const DVec3 to = glm::normalize(up);
+  DVec3 x(1, 0, 0), y(0, -1, 0), z(0, 0, -1);
+  if (to.y > -1 + 1e-9) {
+    const double share = 1 / (1 + to.y);
+    x = {1 - to.x * to.x * share, -to.x, -to.x * to.z * share};
+    y = to;
+    z = {-to.x * to.z * share, -to.z, 1 - to.z * to.z * share};
+  }
+  const double azimuth = from.azimuth * std::numbers::pi / 180, elevation = from.elevation * std::numbers::pi / 180;
+  const DVec3 level = std::sin(azimuth) * x + std::cos(azimuth) * z;
+  const DVec3 right = std::cos(azimuth) * x - std::sin(azimuth) * z;
+  const DVec3 back = glm::normalize(std::cos(elevation) * level + std::sin(elevation) * y);
+  return {right, glm::cross(back, right), back};
+}
+
+double largest_of(const DVec3& v) {
+  return std::max({std::abs(v.x), std::abs(v.y), std::abs(v.z)});
+}
+
+// What a camera holds of a place. GCC 12's vectorizer drops conversions of neighbours to float and back; volatile does
+// not let it.
+DVec3 rounded(const DVec3& place) {
+  DVec3 result;
+  for (int axis = 0; axis < 3; ++axis) {
+    const volatile float held = static_cast<float>(place[axis]);
+    result[axis] = held;
+  }
+  return result;
+}
+
+// The slopes at which a camera sees the points; nothing where one of them lies beside or behind the eye.
+struct Outline {
+  DVec2 least{std::numeric_limits<double>::infinity()}, most{-std::numeric_limits<double>::infinity()};
+};
+
+std::optional<Outline> outline_of(const PointSource& points, const DVec3& eye, const Axes& axes) {
+  Outline outline;
+  bool is_in_front = true;
+  points([&](std::span<const Vec3> some) {
+    for (const Vec3& point : some) {
+      const DVec3 offset = DVec3(point) - eye;
+      const double depth = -glm::dot(axes.back, offset);
+      is_in_front = is_in_front && depth > 0;
+      const DVec2 slope(glm::dot(axes.right, offset) / depth, glm::dot(axes.up, offset) / depth);
+      outline.least = {std::min(outline.least.x, slope.x), std::min(outline.least.y, slope.y)};
+      outline.most = {std::max(outline.most.x, slope.x), std::max(outline.most.y, slope.y)};
+    }
+  });
+  return is_in_front ? std::optional(outline) : std::nullopt;
+}
+
+double middle_slope(double least, double most) {
+  return std::tan(0.5 * (std::atan(least) + std::atan(most)));
+}
+
+Axes turned(const Axes& axes, const DVec2& slope, const DVec3& up) {
+  const DVec3 back = glm::normalize(axes.back - slope.x * axes.right - slope.y * axes.up);
+  const DVec3 right = glm::normalize(glm::cross(up, back));
+  return {right, glm::cross(back, right), back};
+}
+
+// Moves an eye to a place that floats can hold, from which the scene is whole, and turns the axes to its middle there.
+// `up` is the camera's.
+DVec3 settle(const PointSource& points, const DVec2& slopes, double depth, DVec3 eye, const DVec3& up, Axes& axes) {
+  constexpr int kMostPlaces = 10, kMostTurns = 4;
+  const Axes wanted = axes;
+  for (int place = 0;; ++place) {
+    const DVec3 held = rounded(eye);
+    axes = wanted;
+    std::optional<Outline> outline = outline_of(points, held, axes);
+    for (int i = 1; i < kMostTurns && outline; ++i) {
+      const DVec2 middle(middle_slope(outline->least.x, outline->most.x),
+                         middle_slope(outline->least.y, outline->most.y));
+      axes = turned(axes, middle, up);
+      outline = outline_of(points, held, axes);
+    }
+    // Half of the margin may be lost.
+    const bool is_whole = outline && std::max(outline->most.x, -outline->least.x) <= 0.95 * slopes.x &&
+                          std::max(outline->most.y, -outline->least.y) <= 0.95 * slopes.y;
+    if (is_whole || place == kMostPlaces) return held;
+    eye += wanted.back * (0.05 * depth * (1 << place));
+  }
+}
+
+}  // namespace
+
+Camera frame_points(const FramingRequest& request, const PointSource& points) {
+  Axes axes = axes_of(request.from, DVec3(request.up));
+
+  // Places and depths count from one of the points, so that they are exact far from the origin too.
+  std::optional<DVec3> origin;
+  Hull across, along;
+  points([&](std::span<const Vec3> some) {
+    for (const Vec3& point : some) {
+      if (!origin) origin = DVec3(point);
+      const DVec3 offset = DVec3(point) - *origin;
+      const double depth = -glm::dot(axes.back, offset);
+      across.add({glm::dot(axes.right, offset), depth});
+      along.add({glm::dot(axes.up, offset), depth});
+    }
+  });
+  const std::vector<DVec2>& columns = across.corners();
+  const std::vector<DVec2>& rows = along.corners();
+  const auto [left, right] = std::ranges::minmax(columns, {}, [](const DVec2& corner) { return corner.x; });
+  const auto [low, high] = std::ranges::minmax(rows, {}, [](const DVec2& corner) { return corner.x; });
+  const auto [nearest, farthest] = std::ranges::minmax(columns, {}, [](const DVec2& corner) { return corner.y; });
+  double extent = std::max({right.x - left.x, high.x - low.x, farthest.y - nearest.y});
+  if (!(extent > 0)) extent = std::max(largest_of(*origin), 1.0);
+
+  const DVec2 slopes(request.tan_half_fov * request.aspect, request.tan_half_fov);
+  const DVec2 inner = (1 - 2 * kFramingMargin) * slopes;
+  std::optional<double> column, row;
+  // The nearest point stays a little away from the eye, even where it alone is seen of the scene.
+  double depth = nearest.y - 1e-3 * extent;
+  double middle_depth = 0.5 * (nearest.y + farthest.y);
+  if (request.at) {
+    const DVec3 offset = DVec3(*request.at) - *origin;
+    column = glm::dot(axes.right, offset);
+    row = glm::dot(axes.up, offset);
+    middle_depth = -glm::dot(axes.back, offset);
+    depth = std::min(depth, middle_depth - 1e-3 * extent);
+  }
+  depth = std::min({depth, depth_of_eye(columns, inner.x, column), depth_of_eye(rows, inner.y, row)});
+  if (!column) column = centre_of(columns, inner.x, depth);
+  if (!row) row = centre_of(rows, inner.y, depth);
+
+  Camera camera;
+  const bool is_along_up = glm::length(glm::cross(axes.back, glm::normalize(DVec3(request.up)))) < 1e-3;
+  camera.up = is_along_up ? Vec3(axes.up) : request.up;
+  camera.tan_half_fov = static_cast<float>(request.tan_half_fov);
+  DVec3 eye = *origin + *column * axes.right + *row * axes.up - depth * axes.back;
+  const double least_slope = std::min(slopes.x, slopes.y);
+  constexpr double kMostTurn = 1e-4;  // of half the picture, by rounding
+  const double rounding = glm::length(rounded(eye) - eye);
+  if (!request.at && !(rounding <= kMostTurn * least_slope * (nearest.y - depth))) {
+    eye = settle(points, slopes, middle_depth - depth, eye, DVec3(camera.up), axes);
+  }
+  // Far from the origin `at` lies farther away, so that its own rounding does not turn the camera.
+  const double least_reach = largest_of(eye) * 0x1p-23 / (kMostTurn * least_slope);
+  const double reach = std::max(middle_depth - depth, least_reach);
+  camera.eye = Vec3(eye);
+  camera.at = request.at ? *request.at : Vec3(eye - reach * axes.back);
+  return camera;
+}
+
+DVec3 middle_of(const PointSource& points) {
+  DVec3 least(std::numeric_limits<double>::infinity()), most(-std::numeric_limits<double>::infinity());
+  points([&least, &most](std::span<const Vec3> some) {
+    for (const Vec3& point : some) {
+      for (int axis = 0; axis < 3; ++axis) {
+        least[axis] = std::min(least[axis], double{point[axis]});
+        most[axis] = std::max(most[axis], double{point[axis]});
+      }
+    }
+  });
+  return 0.5 * (least + most);
+}
+
+}  // namespace gridiron::tool

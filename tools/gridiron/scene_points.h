@@ -1,0 +1,24 @@
+// Scene points: the corners of all triangles that a frame can show, from a mesh or from a scene image.
+// Memory: a bit for each vertex or triangle. Threads: any. SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <gridiron/image/scene_image.h>
+#include <gridiron/scene/mesh.h>
+
+#include <cstddef>
+#include <span>
+
+#include "framing.h"
+
+namespace gridiron::tool {
+
+/// Visits the corners of all triangles that have an area. Precondition: indices below the number of vertices.
+void visit_points(const MeshView& mesh, const PointVisitor& visitor);
+
+/// Visits the corners of all triangles of an image as it stores them: vertices as they were read, or their places on
+/// the lattice. A stored projection gives its corners up to the rounding of its numbers, within the scene's bounds.
+///
+/// @param image  the bytes of which `view` was opened.
+void visit_points(const SceneImageView& view, std::span<const std::byte> image, const PointVisitor& visitor);
+
+}  // namespace gridiron::tool
