@@ -85,7 +85,8 @@ std::unique_ptr<Recording> RivalSystem::record(const View& view, const FrameRequ
     throw tool::Failure(tool::ExitCode::kBadInput, view.scene->path.string() + ": " + tool::words_of(status));
   }
   FrameSettings settings;
-  settings.camera = tool::complete_view(view.camera, static_cast<double>(request.width) / request.height, [](const auto&) {});
+  settings.camera =
+      tool::complete_view(view.camera, static_cast<double>(request.width) / request.height, [](const auto&) {});
   settings.width = request.width;
   settings.height = request.height;
   settings.shading = request.shading;

@@ -114,8 +114,7 @@ View with_published_camera(View view) {
   const DVec3 minimum(low[0], low[1], low[2]), maximum(high[0], high[1], high[2]);
   const DVec3 at = view.camera.at ? DVec3(*view.camera.at) : 0.5 * (minimum + maximum);
   if (!view.camera.eye) {
-    view.camera.eye =
-        Vec3(at + 1.05 * glm::length(maximum - minimum) * glm::normalize(DVec3(0.35, 0.25, 1.0)));
+    view.camera.eye = Vec3(at + 1.05 * glm::length(maximum - minimum) * glm::normalize(DVec3(0.35, 0.25, 1.0)));
   }
   view.camera.at = Vec3(at);
   return view;

@@ -197,7 +197,7 @@ void add_view_options(CLI::App& app, RenderArguments& render) {
              "front, back, left, right, top, bottom, iso or AZIMUTH,ELEVATION in degrees, elevation from -90 to 90",
              "SIDE|AZIMUTH,ELEVATION",
              "side from which the scene is framed: front|back|left|right|top|bottom|iso, or degrees from the front to "
-             "the right and upwards (default 30,20); replaces eye and at of --camera or of a text scene");
+             "the right and upwards (default 20,20); replaces eye and at of --camera or of a text scene");
   const auto fov = [](const std::string& text) {
     const std::optional<float> value = parse_float(text);
     return value && fov_is_possible(*value) ? value : std::nullopt;

@@ -1,11 +1,4 @@
-// Framing: see the header.
-//
-// Take a direction of view, and let a point have the place u across it and the depth z along it. An eye at (e, d) sees
-// it at the slope (u - e) / (z - d), and slopes up to s are in the picture: u - s z <= e - s d and -u - s z <= -e - s
-// d. So all points are in the picture if A = max(u - s z) and B = max(-u - s z) do not exceed these, of which the sum
-// gives the nearest eye: d = -(A + B) / (2 s), e = (A - B) / 2. Width and height each have such a d; the lesser one
-// holds for both. Where it leaves more room than needed, the s at which d = -(A(s) + B(s)) / (2 s) centres the points.
-// Only corners of the convex hull of all (u, z) decide A and B. Source: own. SPDX-License-Identifier: Apache-2.0
+// Framing: see the header. SPDX-License-Identifier: Apache-2.0
 #include "framing.h"
 
 #include <algorithm>
@@ -20,6 +13,13 @@
 namespace gridiron::tool {
 namespace {
 
+// Take a direction of view, and let a point have the place u across it and the depth z along it. An eye at (e, d) sees
+// it at the slope (u - e) / (z - d). Slopes up to s are in the picture: u - s z <= e - s d and -u - s z <= -e - s d. So
+// all points are in the picture if A = max(u - s z) and B = max(-u - s z) do not exceed these. The sum gives the
+// nearest eye: d = -(A + B) / (2 s), e = (A - B) / 2. Width and height each have such a d; the lesser one holds for
+// both. Where it leaves more room than needed, the slope s at which d = -(A(s) + B(s)) / (2 s) centres the points. Only
+// corners of the convex hull of all (u, z) decide A and B. Source: own.
+
 using DVec2 = glm::dvec2;
 
 // Greater than 0 where c lies to the left of the line from a to b.
@@ -32,6 +32,12 @@ class Hull {
  public:
   void add(const DVec2& point) {
     if (is_surely_inside(point)) return;
+    for (std::size_t i = 0; i < kRingCorners; ++i) {
+      const double reach = glm::dot(kDirections[i], point);
+      if (!(reach > reaches_[i])) continue;
+      reaches_[i] = reach;
+      ring_[i] = point;
+    }
     points_.push_back(point);
     if (points_.size() >= most_points_) reduce();
   }
@@ -44,14 +50,21 @@ class Hull {
 
  private:
   static constexpr std::size_t kRingCorners = 8;
+  static constexpr double kNone = -std::numeric_limits<double>::infinity();
+  static constexpr std::array<DVec2, kRingCorners> kDirections = {
+      {{0, -1}, {1, -1}, {1, 0}, {1, 1}, {0, 1}, {-1, 1}, {-1, 0}, {-1, -1}}};
 
-  // Whether a point lies within the ring of the corners that are extreme in eight directions.
+  // Whether a point lies within the ring of the points that are extreme in eight directions, counterclockwise.
   [[nodiscard]] bool is_surely_inside(const DVec2& point) const {
-    if (ring_count_ < 3) return false;
-    for (std::size_t i = 0; i < ring_count_; ++i) {
-      if (!(turn(ring_[i], ring_[i + 1 < ring_count_ ? i + 1 : 0], point) > 0)) return false;
+    std::size_t sides = 0;
+    for (std::size_t i = 0; i < kRingCorners; ++i) {
+      const DVec2& from = ring_[i];
+      const DVec2& to = ring_[(i + 1) % kRingCorners];
+      if (from == to) continue;
+      if (!(turn(from, to, point) > 0)) return false;
+      ++sides;
     }
-    return true;
+    return sides >= 3;
   }
 
   // Andrew's monotone chain, 1979: the lower side from left to right, then the upper side back.
@@ -72,29 +85,15 @@ class Hull {
       points_ = std::move(hull);
     }
     most_points_ = 2 * points_.size() + 4096;
-    make_ring();
-  }
-
-  void make_ring() {
-    constexpr std::array<DVec2, kRingCorners> kDirections = {
-        {{0, -1}, {1, -1}, {1, 0}, {1, 1}, {0, 1}, {-1, 1}, {-1, 0}, {-1, -1}}};
-    ring_count_ = 0;
-    for (const DVec2& direction : kDirections) {
-      const auto is_less = [&direction](const DVec2& a, const DVec2& b) {
-        return glm::dot(direction, a) < glm::dot(direction, b);
-      };
-      const DVec2& corner = *std::ranges::max_element(points_, is_less);
-      if (ring_count_ == 0 || (corner != ring_[ring_count_ - 1] && corner != ring_[0])) ring_[ring_count_++] = corner;
-    }
   }
 
   std::vector<DVec2> points_;
   std::size_t most_points_ = 4096;
   std::array<DVec2, kRingCorners> ring_{};
-  std::size_t ring_count_ = 0;
+  std::array<double, kRingCorners> reaches_{kNone, kNone, kNone, kNone, kNone, kNone, kNone, kNone};
 };
 
-// The corners that see a picture's opposite edges: A and B of the comment above, and the depths of these corners.
+// The corners that see a picture's opposite edges: A and B of the comment at the top, and the depths of these corners.
 struct Support {
   double positive = 0, negative = 0;
   double positive_depth = 0, negative_depth = 0;

@@ -79,7 +79,8 @@ void print_prediction(const ResultArguments& arguments, std::span<const double> 
 void tell_unseen(const ResultArguments& arguments, const OpenJob& job, const OpenResult& result) {
   SeenPlanes planes{result.color, result.depth, result.ids};
   planes.has_environment = job.image.effects.environment_width != 0;
-  const auto image = std::span(job.file.bytes).subspan(job.job.image_address - job.job.base_address, job.job.image_bytes);
+  const auto image =
+      std::span(job.file.bytes).subspan(job.job.image_address - job.job.base_address, job.job.image_bytes);
   tell_note(arguments.result, unseen_note(job.record, planes, [&job, image](const PointVisitor& visitor) {
               visit_points(job.image, image, visitor);
             }));

@@ -104,11 +104,11 @@ void visit_points(const SceneImageView& view, std::span<const std::byte> image, 
   std::vector<bool> is_known(
       std::min(std::uint64_t{view.header.triangle_count}, std::uint64_t{8} * grid.reference_count));
   Groups groups(visitor);
-  for (std::uint32_t i = 0; i < grid.reference_count; ++i) {
-    const std::uint64_t offset = view.triangles_offset_bytes + std::uint64_t{i} * grid.triangle_bytes;
+  const auto visit = [&](std::uint64_t record) {
+    const std::uint64_t offset = view.triangles_offset_bytes + record * grid.triangle_bytes;
     const auto id = read_record<std::uint32_t>(image, offset + grid.triangle_bytes - sizeof(std::uint32_t));
     if (id < is_known.size()) {
-      if (is_known[id]) continue;
+      if (is_known[id]) return;
       is_known[id] = true;
     }
     Corners corners;
@@ -124,6 +124,14 @@ void visit_points(const SceneImageView& view, std::span<const std::byte> image, 
         break;
     }
     for (const Vec3& corner : corners) groups.add(corner);
+  };
+  // Records stand cell by cell. First some of everywhere: then most of the others lie between those that are known.
+  constexpr std::uint64_t kRun = 32, kRuns = 64;
+  for (std::uint64_t first = 0; first < kRuns; ++first) {
+    for (std::uint64_t run = first * kRun; run < grid.reference_count; run += kRun * kRuns) {
+      const std::uint64_t end = std::min(run + kRun, std::uint64_t{grid.reference_count});
+      for (std::uint64_t record = run; record < end; ++record) visit(record);
+    }
   }
   groups.hand_on();
 }

@@ -126,6 +126,18 @@ TEST(Animate, FramesAreThoseOfRender) {
   }
 }
 
+TEST(Animate, SaysWhichFrameShowsNothing) {
+  const TemporaryFolder folder;
+  folder.write_ply("a.ply", make_sphere(10, 14, 1.0f));
+  folder.write_ply("b.ply", moved(make_sphere(10, 14, 1.0f), Vec3(0, 0, 40)));
+  const Words common = {"animate", "a.ply", "b.ply", "-o", "out", "--size", "48x32"};
+  Words behind = common;
+  behind.insert(behind.end(), {"--eye", "0,0,9", "--at", "0,0,0"});
+  EXPECT_EQ(run_program(folder.folder(), behind).err,
+            "b.ply: note: no pixel shows the scene: it lies behind the camera\n");
+  EXPECT_EQ(run_program(folder.folder(), common).err, "") << "both frames are in the common view";
+}
+
 TEST(Animate, OptionsChangeCostOrPicture) {
   const TemporaryFolder folder;
   folder.write_ply("a.ply", make_sphere(20, 30, 1.0f));

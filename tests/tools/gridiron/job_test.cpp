@@ -208,6 +208,21 @@ TEST(Result, OfADeviceIsTheSimulatorsFrame) {
   }
 }
 
+TEST(Result, SaysThatNoPixelShowsTheSceneAndWhy) {
+  const TemporaryFolder folder;
+  const std::string note = "a.res: note: no pixel shows the scene: it lies behind the camera\n";
+  for (const bool has_planes : {false, true}) {
+    for (const bool is_seen : {false, true}) {
+      std::vector<std::string> options = {"--size", "50x40", "--eye", "0,0,9", "--at", is_seen ? "0,0,0" : "0,0,20"};
+      if (has_planes) options.insert(options.end(), {"--depth", "--ids"});
+      const std::string job = make_job(folder, options);
+      folder.write("a.res", render_on_host_device(job, 3));
+      EXPECT_EQ(run(folder, {"result", "a.job", "a.res"}).err, is_seen ? "" : note);
+      EXPECT_EQ(run(folder, {"result", "a.job", "a.res", "--quiet"}).err, "");
+    }
+  }
+}
+
 TEST(Result, OneDifferenceIsEnough) {
   const TemporaryFolder folder;
   const std::string file = make_job(folder, {"--size", "50x40", "--depth", "--ids"});

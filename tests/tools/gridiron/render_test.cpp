@@ -2,8 +2,11 @@
 #include <gtest/gtest.h>
 #include <report/report.h>
 
+#include <algorithm>
 #include <cmath>
+#include <filesystem>
 #include <nlohmann/json.hpp>
+#include <set>
 
 #include "gridiron/scene_points.h"
 #include "gridiron/view.h"
@@ -17,6 +20,8 @@ namespace {
 
 using Json = nlohmann::json;
 using Words = std::vector<std::string>;
+
+const std::filesystem::path kScenes = GRIDIRON_SCENE_FILES;
 
 Words operator+(Words a, const Words& b) {
   a.insert(a.end(), b.begin(), b.end());
@@ -94,6 +99,92 @@ TEST(Render, QuietPrintsNothing) {
   const ProgramResult loud = render(folder, {"a.ply", "--size", "8x8"});
   EXPECT_NE(loud.out.find("hash "), std::string::npos) << loud.out;
   EXPECT_EQ(loud.err, "") << "no progress bar where standard error is no terminal";
+}
+
+TEST(Render, SaysThatNoPixelShowsTheSceneAndWhy) {
+  const TemporaryFolder folder;
+  folder.write_ply("a.ply", make_torus(40, 24, 1.0f, 0.2f));
+  folder.write("a.nff", "b 0 0 0\nf 0 0 0 0 0 0 0 0\ns 0 0 0 1\n");  // black in front of black
+  folder.write("sky.nff",
+               "v from 0 0 9 at 0 0 0 up 0 1 0 angle 40 hither 0 resolution 8 8\n"
+               "e " +
+                   (kScenes / "sky_px.pfm").string() + " " + (kScenes / "sky_nx.pfm").string() + " " +
+                   (kScenes / "sky_py.pfm").string() + " " + (kScenes / "sky_ny.pfm").string() + " " +
+                   (kScenes / "sky_pz.pfm").string() + " " + (kScenes / "sky_nz.pfm").string() +
+                   "\nf 1 1 1 1 0 0 0 0\ns 0 0 0 1\n");
+  const struct {
+    Words view;
+    std::string reason;
+  } cases[] = {
+      {{"a.ply", "--eye", "0,0,9", "--at", "0,0,20"}, "it lies behind the camera"},
+      {{"a.ply", "--eye", "0,0,9", "--at", "-30,0,0"}, "it lies to the right of the picture"},
+      {{"a.ply", "--eye", "0,0,9", "--at", "30,0,0"}, "it lies to the left of the picture"},
+      {{"a.ply", "--eye", "0,0,9", "--at", "0,30,0"}, "it lies below the picture"},
+      {{"a.ply", "--eye", "0,0,9", "--at", "0,-30,0", "--depth", "d.pfm"}, "it lies above the picture"},
+      {{"a.ply", "--eye", "0,0,90000", "--at", "0,0,0"}, "it is smaller than a pixel"},
+      {{"a.ply", "--eye", "0,9,0", "--at", "0,0,0", "--up", "z", "--fov", "1", "--ids", "i.pfm"},
+       "all rays pass beside its triangles"},
+      {{"a.ply", "--eye", "0,0,9", "--at", "0,0,20", "--mode", "plain"}, "it lies behind the camera"},
+      {{"sky.nff", "--at", "0,0,20"}, "it lies behind the camera"},
+      {{"sky.nff", "--at", "0,0,20", "--mode", "plain"}, "it lies behind the camera"},
+      {{"sky.nff", "--eye", "30,0,0", "--at", "30,0,-9"}, "it lies to the left of the picture"},
+      {{"a.nff", "--eye", "0,0,9", "--at", "0,0,20"}, "it lies behind the camera"},
+      {{"a.ply"}, ""},
+      {{"a.ply", "--tile", "0,0", "--size", "512x512"}, ""},
+      {{"a.nff"}, ""},
+      {{"a.nff", "--mode", "plain"}, ""},
+      {{"sky.nff"}, ""},
+  };
+  for (const auto& tested : cases) {
+    Words arguments = tested.view + Words{"-o", "a.png"};
+    if (std::ranges::find(arguments, "--size") == arguments.end()) arguments = arguments + Words{"--size", "8x8"};
+    const std::string expected =
+        tested.reason.empty() ? "" : tested.view[0] + ": note: no pixel shows the scene: " + tested.reason + "\n";
+    EXPECT_EQ(render(folder, arguments).err, expected) << &tested - cases;
+    EXPECT_EQ(render(folder, arguments + Words{"--quiet"}).err, "") << &tested - cases;
+  }
+}
+
+TEST(Render, AnySideAndUpShowTheWholeScene) {
+  const TemporaryFolder folder;
+  folder.write_ply("a.ply", make_random_soup(400, 0.15f, 11));
+  std::set<std::string> pictures;
+  for (const char* from : {"front", "back", "left", "right", "top", "bottom", "iso", "-20,75.5"}) {
+    for (const char* up : {"y", "-z", "0.5,1,0"}) {
+      (void)render(folder, {"a.ply", "-o", "a.png", "--ids", "i.pfm", "--size", "60x40", "--from", from, "--up", up});
+      const auto ids = load_picture(folder.path("i.pfm"));
+      ASSERT_TRUE(ids);
+      std::uint32_t least = 40, most = 0;
+      for (std::uint32_t i = 0; i < ids->values.size(); ++i) {
+        const std::uint32_t x = i % 60, y = i / 60;
+        if (ids->values[i] < 0) continue;
+        EXPECT_TRUE(x >= 2 && x < 58 && y >= 1 && y < 39) << from << ", up " << up << ", pixel " << x << "," << y;
+        least = std::min(least, y);
+        most = std::max(most, y);
+      }
+      EXPECT_GE(most + 1 - least, 33u) << from << ", up " << up;
+      pictures.insert(read_file(folder.path("a.png")));
+    }
+  }
+  EXPECT_EQ(pictures.size(), 24u);
+}
+
+// All formats: the packed scene is framed as the mesh is that a frame stores so.
+TEST(Render, APackedSceneIsSeenAsItsMesh) {
+  const TemporaryFolder folder;
+  folder.write_ply("a.ply", make_random_soup(400, 0.15f, 11));
+  const struct {
+    const char *accuracy, *format;
+  } cases[] = {{"standard", "vertices"}, {"paper", "projection"}, {"compact", "lattice"}};
+  for (const auto& tested : cases) {
+    const Words frame = {"--accuracy", tested.accuracy, "--configuration", "reference", "--size", "60x40", "--up", "z"};
+    (void)render(folder, Words{"a.ply", "-o", "a.png"} + frame);
+    const ProgramResult packed = run_program(
+        folder.folder(), {"pack", "a.ply", "-o", "a.gri", "--format", tested.format, "--configuration", "reference"});
+    ASSERT_EQ(packed.exit_code, 0) << packed.err;
+    (void)render(folder, Words{"a.gri", "-o", "b.png"} + frame);
+    EXPECT_EQ(read_file(folder.path("a.png")), read_file(folder.path("b.png"))) << tested.format;
+  }
 }
 
 TEST(Render, TheReportHoldsWhatWasRendered) {

@@ -88,6 +88,28 @@ TEST(TextScene, BringsViewAndSize) {
             picture_of(run(folder, {"render", "ball.ply", "--size", "40x24", "--camera", "c.camera"})));
 }
 
+// Without a view a text scene is framed as a mesh is; a side asked for takes the place of its view's eye and at.
+TEST(TextScene, IsFramedWhereItBringsNoView) {
+  const TemporaryFolder folder;
+  folder.write_ply("ball.ply", make_sphere(12, 16, 1.0f));
+  folder.write("a.nff", "f 1 1 1 1 0 0 0 0 m ball.ply\n");
+  folder.write("v.nff",
+               "v from 1 2 6 at 9 0 0 up 0 0 1 angle 30 hither 8 resolution 40 24\n"
+               "f 1 1 1 1 0 0 0 0 m ball.ply\n");
+  const std::string mesh = picture_of(run(folder, {"render", "ball.ply", "--size", "40x24"}));
+  EXPECT_EQ(picture_of(run(folder, {"render", "a.nff", "--size", "40x24", "--shading", "simple"})), mesh);
+  EXPECT_EQ(picture_of(run(folder, {"render", "a.nff", "--shading", "simple"})),
+            picture_of(run(folder, {"render", "ball.ply"})))
+      << "1024x1024";
+  EXPECT_EQ(info_json(folder, {"a.nff"})["main_memory"]["picture_bytes"],
+            info_json(folder, {"ball.ply"})["main_memory"]["picture_bytes"]);
+  EXPECT_EQ(picture_of(run(folder, {"render", "v.nff", "--shading", "simple", "--from", "20,20"})),
+            picture_of(run(folder, {"render", "ball.ply", "--size", "40x24", "--up", "z", "--fov", "30"})));
+  folder.write("c.camera", "eye 0 4 4\nat 0 0 0\nfov 60\n");
+  EXPECT_EQ(picture_of(run(folder, {"render", "ball.ply", "--from", "top", "--camera", "c.camera", "--size", "40x24"})),
+            picture_of(run(folder, {"render", "ball.ply", "--from", "0,90", "--fov", "60", "--size", "40x24"})));
+}
+
 TEST(TextScene, ToleranceMakesFinerBalls) {
   const TemporaryFolder folder;
   folder.write("a.nff", kBall);
