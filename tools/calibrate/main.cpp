@@ -9,6 +9,7 @@
 
 #include "gridiron/atomic_file.h"
 #include "gridiron/failure.h"
+#include "gridiron/output_target.h"
 
 namespace {
 
@@ -47,7 +48,7 @@ int run(int argument_count, char** arguments) {
     return 0;
   }
   // Nobody should wait for a count that cannot be written.
-  gridiron::tool::check_can_write(arguments[1]);
+  (void)gridiron::tool::resolve_output(arguments[1]);
   const std::string text = of_rival ? calibrate::rival_table_text(calibrate::count_rival_frames())
                                     : calibrate::table_text(calibrate::count_frames());
   gridiron::tool::AtomicFile file(arguments[1]);

@@ -2,9 +2,7 @@
 #include "experiment/book.h"
 
 #include <gridiron/atomic_file.h>
-#include <gridiron/interrupt.h>
 
-#include <list>
 #include <utility>
 
 #include "experiment/svg_plot.h"
@@ -120,13 +118,9 @@ std::vector<BookFile> Book::finish() {
 }
 
 void write_files(const std::filesystem::path& folder, const std::vector<BookFile>& files) {
-  std::list<tool::AtomicFile> open;
-  for (const BookFile& file : files) {
-    tool::stop_if_interrupted();
-    open.emplace_back(folder / file.name).write(file.content);
-  }
-  tool::stop_if_interrupted();
-  for (tool::AtomicFile& file : open) file.commit();
+  tool::AtomicFiles open;
+  for (const BookFile& file : files) open.add(folder / file.name, file.content);
+  open.commit();
 }
 
 }  // namespace gridiron::experiment

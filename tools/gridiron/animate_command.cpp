@@ -12,6 +12,7 @@
 
 #include "atomic_file.h"
 #include "chip_frame.h"
+#include "command_files.h"
 #include "commands.h"
 #include "failure.h"
 #include "frame_memory.h"
@@ -118,8 +119,8 @@ void render(AnimationFrame& frame, RenderArguments arguments, const ViewRequest&
 
   const auto color = words_of_plane(memory.record, memory.color.bytes);
   frame.hash = image_hash(color.pixels);
-  AtomicFile file(folder / frame.picture);
-  file.write(encode_png(color));
+  AtomicFiles file;
+  file.add(folder / frame.picture, encode_png(color));
   file.commit();
   if (!arguments.quiet) tell_note(frame.input, unseen_note(memory, result, arguments.mode));
 }
@@ -183,6 +184,8 @@ void run_command(const AnimateArguments& arguments) {
   std::vector<std::string> names = {kTableName};
   for (const AnimationFrame& frame : frames) names.push_back(frame.picture);
   OutputFolder folder(arguments.output, names);
+  // All of them now: a mesh must not be lost to the picture of another one before its turn comes.
+  for (const AnimationFrame& frame : frames) note_input(frame.input);
   const ViewRequest view = common_view(frames, each);
   {
     Progress progress(!each.quiet, "frame");
@@ -192,9 +195,8 @@ void run_command(const AnimateArguments& arguments) {
       render(frames[i], each, view, arguments.output);
     }
   }
-  AtomicFile table(arguments.output / kTableName);
-  table.write(table_of(frames, *each.scene.machine));
-  stop_if_interrupted();
+  AtomicFiles table;
+  table.add(arguments.output / kTableName, table_of(frames, *each.scene.machine));
   table.commit();
   folder.keep();
   if (!each.quiet) print_frames(frames, each);

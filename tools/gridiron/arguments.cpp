@@ -14,7 +14,6 @@
 #include <vector>
 
 #include "accuracies.h"
-#include "atomic_file.h"
 #include "command_words.h"
 #include "failure.h"
 #include "layout_choice.h"
@@ -33,7 +32,7 @@ using sim::StoreSize;
 // Options as they stand on the command line, before those that depend on one another are joined.
 struct RawRender {
   RenderArguments arguments;
-  std::string output;
+  std::optional<std::filesystem::path> output;
   std::string machine_name;
   bool no_mailbox = false, no_culling = false, no_subpackets = false, no_empty_skip = false;
 };
@@ -209,12 +208,13 @@ void add_view_options(CLI::App& app, RenderArguments& render) {
 void add_output_options(CLI::App& app, RawRender& raw) {
   RenderArguments& render = raw.arguments;
   const std::string name = "a file name";
-  app.add_option("-o,--output", raw.output, "picture, PNG (default: INPUT's name with .png, in the current folder)")
-      ->type_name("FILE");
+  add_parsed(app, "-o,--output", raw.output, parse_path, name, "FILE",
+             "picture, .png or .pfm (default: INPUT's name with .png, in the current folder); - is standard output, "
+             "here and for every output");
   add_parsed(app, "--depth", render.depth, parse_path, name, "FILE",
-             "distance of every pixel, PFM, +inf where nothing is hit");
+             "distance of every pixel, .pfm, +inf where nothing is hit");
   add_parsed(app, "--ids", render.ids, parse_path, name, "FILE",
-             "triangle of every pixel, PFM, -1 where nothing is hit");
+             "triangle of every pixel, .pfm, -1 where nothing is hit");
   add_parsed(app, "--report", render.report, parse_path, name, "FILE", "where cycles and bytes went, JSON");
   add_parsed(app, "--timeline", render.timeline, parse_path, name, "FILE",
              "what each core did when, Chrome trace format");
@@ -297,26 +297,6 @@ void add_algorithm_options(CLI::App& app, RawRender& raw) {
   app.add_flag("--no-empty-skip", raw.no_empty_skip, "fetch the cell blocks of empty macrocells too");
 }
 
-// A file of the command line and the option that names it.
-struct NamedFile {
-  const char* option;
-  std::optional<std::filesystem::path> path;
-};
-
-// An output in the place of an input would destroy it, and two outputs under one name would leave only the last one.
-void require_own_files(const std::vector<NamedFile>& inputs, const std::vector<NamedFile>& outputs) {
-  std::vector<NamedFile> known = inputs;
-  for (const NamedFile& output : outputs) {
-    if (!output.path) continue;
-    for (const NamedFile& other : known) {
-      if (!other.path || !is_same_file(*other.path, *output.path)) continue;
-      usage_error(std::string(other.option) + " and " + output.option +
-                  " name the same file: " + output.path->string());
-    }
-    known.push_back(output);
-  }
-}
-
 void require_tolerance(const SceneArguments& scene) {
   if (scene.tolerance && !is_text_scene(scene.input)) usage_error("--tolerance: is of text scenes (.nff) alone");
 }
@@ -338,7 +318,7 @@ RenderArguments complete_render(const RawRender& raw, const CLI::App& app) {
   }
   const Configuration& configuration = *render.scene.configuration;
   render.scene.machine = find_machine(raw.machine_name);
-  render.output = raw.output.empty() ? render.scene.input.stem().concat(".png") : std::filesystem::path(raw.output);
+  render.output = raw.output.value_or(render.scene.input.stem().concat(".png"));
   render.techniques = configuration.techniques;
   if (raw.no_mailbox) render.techniques &= ~std::uint32_t{kUseMailbox};
   if (raw.no_culling) render.techniques &= ~std::uint32_t{kUseCornerCulling};
@@ -361,12 +341,6 @@ RenderArguments complete_render(const RawRender& raw, const CLI::App& app) {
   if (is_given("--seed") && render.completion != Completion::kRandom) usage_error("--seed: needs --completion random");
 
   settle_layout(render);
-  require_own_files({{"INPUT", render.scene.input}, {"--camera", render.camera}, {"--machine", raw.machine_name}},
-                    {{"-o", render.output},
-                     {"--depth", render.depth},
-                     {"--ids", render.ids},
-                     {"--report", render.report},
-                     {"--timeline", render.timeline}});
   return render;
 }
 
@@ -413,7 +387,8 @@ AnimateArguments complete_animate(AnimateArguments animate, const RawRender& raw
 void add_job_options(CLI::App& app, JobArguments& job, RawRender& raw) {
   RenderArguments& render = raw.arguments;
   add_input(app, render.scene);
-  app.add_option("-o,--output", raw.output, "the job")->required()->type_name("FILE");
+  add_parsed(app, "-o,--output", raw.output, parse_path, "a file name", "FILE", "the job; - is standard output")
+      ->required();
   const auto base = [](const std::string& text) {
     const std::optional<std::uint64_t> address = parse_address(text);
     return address && *address % 4096 == 0 ? address : std::nullopt;
@@ -451,15 +426,16 @@ void add_result_options(CLI::App& app, ResultArguments& result, std::string& mac
   app.add_option("JOB", result.job, "what the device was given, made by job")->required()->type_name("");
   app.add_option("RESULT", result.result, "what it wrote: the bytes from result_address on")->required()->type_name("");
   const std::string name = "a file name";
-  add_parsed(app, "-o,--output", result.output, parse_path, name, "FILE", "picture, PNG");
+  add_parsed(app, "-o,--output", result.output, parse_path, name, "FILE",
+             "picture, .png or .pfm; - is standard output, here and for every output");
   add_parsed(app, "--depth", result.depth, parse_path, name, "FILE",
-             "distance of every pixel, PFM, +inf where nothing is hit; of a job with distances");
+             "distance of every pixel, .pfm, +inf where nothing is hit; of a job with distances");
   add_parsed(app, "--ids", result.ids, parse_path, name, "FILE",
-             "triangle of every pixel, PFM, -1 where nothing is hit; of a job with ids");
+             "triangle of every pixel, .pfm, -1 where nothing is hit; of a job with ids");
   add_parsed(app, "--report", result.report, parse_path, name, "FILE", "hashes, work and tiles of each core, JSON");
   app.add_flag("--compare", result.compare,
                "render the job on the simulated chip and hold planes, work and transfers against it; exit code 3 where "
-               "they differ");
+               "they differ, the device's picture, planes and report being written all the same");
   app.add_option("--predict", machine,
                  "with --compare: what each tile takes on this machine, held against the "
                  "instructions that the device counted")
@@ -473,9 +449,6 @@ ResultArguments complete_result(ResultArguments result, const std::string& machi
     if (!result.compare) usage_error("--predict needs --compare");
     result.predict = find_machine(machine);
   }
-  require_own_files(
-      {{"JOB", result.job}, {"RESULT", result.result}},
-      {{"-o", result.output}, {"--depth", result.depth}, {"--ids", result.ids}, {"--report", result.report}});
   return result;
 }
 
@@ -565,7 +538,9 @@ Command parse_arguments(int count, const char* const* values) {
   CLI::App* pack = app.add_subcommand("pack", "makes a scene image (.gri) that render and firmware read as it is");
   add_input(*pack, pack_arguments.scene);
   add_grid_options(*pack, pack_arguments.scene, pack_machine);
-  pack->add_option("-o,--output", pack_arguments.output, "scene image")->required()->type_name("FILE");
+  add_parsed(*pack, "-o,--output", pack_arguments.output, parse_path, "a file name", "FILE",
+             "scene image; - is standard output")
+      ->required();
   add_choice(*pack, "--format", pack_arguments.format, kFormats, format_help());
   add_quiet(*pack, pack_arguments.scene.quiet);
 
@@ -620,8 +595,6 @@ Command parse_arguments(int count, const char* const* values) {
   if (*pack) {
     pack_arguments.scene.machine = find_machine(pack_machine);
     require_tolerance(pack_arguments.scene);
-    require_own_files({{"INPUT", pack_arguments.scene.input}, {"--machine", pack_machine}},
-                      {{"-o", pack_arguments.output}});
     return pack_arguments;
   }
   if (*job) return complete_job(std::move(job_arguments), job_raw, *job);

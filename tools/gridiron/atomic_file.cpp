@@ -2,15 +2,17 @@
 #include "atomic_file.h"
 
 #include <fcntl.h>
+#include <poll.h>
 #include <sys/stat.h>
 #include <unistd.h>
 
+#include <algorithm>
 #include <cerrno>
 #include <cstdlib>
 #include <cstring>
-#include <system_error>
 #include <utility>
 
+#include "command_files.h"
 #include "failure.h"
 #include "interrupt.h"
 
@@ -19,35 +21,33 @@ namespace {
 
 namespace fs = std::filesystem;
 
-Failure cannot_write(const fs::path& path, const std::string& reason) {
-  return {ExitCode::kBadInput, path.string() + ": cannot write: " + reason};
-}
-
-fs::path folder_of(const fs::path& path) {
-  return path.has_parent_path() ? path.parent_path() : fs::path(".");
-}
-
-bool is_special_file(const fs::path& target) {
-  std::error_code error;
-  const fs::file_status status = fs::status(target, error);
-  return fs::exists(status) && !fs::is_regular_file(status) && !fs::is_directory(status);
-}
+// A signal may come between a look at the flag and a call that blocks: no call may block for longer than this.
+constexpr int kPatienceMilliseconds = 100;
 
 // Waits where the target is a pipe that nobody reads from yet.
-int open_for_writing(const fs::path& target) {
+int open_special(const fs::path& file) {
+  struct stat status {};
+  const bool is_pipe = ::stat(file.c_str(), &status) == 0 && S_ISFIFO(status.st_mode);
   while (true) {
     stop_if_interrupted();
-    const int descriptor = ::open(target.c_str(), O_WRONLY | O_CLOEXEC);
-    if (descriptor >= 0 || errno != EINTR) return descriptor;
+    const int descriptor = ::open(file.c_str(), O_WRONLY | O_CLOEXEC | O_NOCTTY | (is_pipe ? O_NONBLOCK : 0));
+    if (descriptor >= 0 || (errno != EINTR && !(is_pipe && errno == ENXIO))) return descriptor;
+    (void)::poll(nullptr, 0, kPatienceMilliseconds / 10);
   }
 }
 
 // Writes all bytes or returns false with errno set. Errors: Failure where a signal ends the wait for a pipe's reader.
-bool write_all(int descriptor, std::span<const std::byte> bytes) {
+bool write_all(int descriptor, std::span<const std::byte> bytes, bool can_block) {
+  constexpr std::size_t kUnblockedBytes = 4096;  // a pipe that is ready takes as many at once
   while (!bytes.empty()) {
     stop_if_interrupted();  // a signal also ends a write of which a part is done
-    const ssize_t written = ::write(descriptor, bytes.data(), bytes.size());
-    if (written < 0 && errno == EINTR) continue;
+    if (can_block) {
+      pollfd ready{descriptor, POLLOUT, 0};
+      if (::poll(&ready, 1, kPatienceMilliseconds) == 0) continue;
+    }
+    const std::size_t most = can_block ? std::min(bytes.size(), kUnblockedBytes) : bytes.size();
+    const ssize_t written = ::write(descriptor, bytes.data(), most);
+    if (written < 0 && (errno == EINTR || errno == EAGAIN)) continue;
     if (written <= 0) return false;
     bytes = bytes.subspan(static_cast<std::size_t>(written));
   }
@@ -56,45 +56,8 @@ bool write_all(int descriptor, std::span<const std::byte> bytes) {
 
 }  // namespace
 
-fs::path resolve_target(const fs::path& path) {
-  constexpr int kMostLinks = 40;
-  fs::path target = path;
-  std::error_code error;
-  for (int link = 0; link < kMostLinks && fs::is_symlink(target, error); ++link) {
-    const fs::path next = fs::read_symlink(target, error);
-    if (error) break;
-    target = next.is_absolute() ? next : folder_of(target) / next;
-  }
-  return target;
-}
-
-bool is_same_file(const fs::path& a, const fs::path& b) {
-  std::error_code error;
-  if (fs::is_character_file(a, error)) return false;
-  if (fs::equivalent(a, b, error)) return true;
-  const auto target = [&error](const fs::path& path) {
-    return fs::weakly_canonical(fs::absolute(resolve_target(path), error), error);
-  };
-  return !target(a).empty() && target(a) == target(b);
-}
-
-AtomicFile::AtomicFile(fs::path path) : path_(std::move(path)), target_(resolve_target(path_)) {
-  check_can_write(path_);
-  if (is_special_file(target_)) {
-    is_special_ = true;
-    return;
-  }
-  std::string hidden_name(1, '.');
-  hidden_name.append(target_.filename().string()).append(".XXXXXX");
-  std::string name = (folder_of(target_) / hidden_name).string();
-  descriptor_ = ::mkostemp(name.data(), O_CLOEXEC);
-  if (descriptor_ < 0) fail("create a temporary file beside it");
-  temporary_ = name;
-
-  // mkostemp makes the file private; give it the rights any new file would have.
-  const mode_t mask = ::umask(0);
-  ::umask(mask);
-  if (::fchmod(descriptor_, 0666 & ~mask) != 0) fail("set its rights");
+AtomicFile::AtomicFile(const fs::path& path) : target_(target_of(path)) {
+  if (!target_.is_special) open_temporary();
 }
 
 AtomicFile::~AtomicFile() {
@@ -102,10 +65,26 @@ AtomicFile::~AtomicFile() {
   if (!temporary_.empty()) ::unlink(temporary_.c_str());
 }
 
+void AtomicFile::open_temporary() {
+  // A name of its own, not one made of the target's: that may be as long as names can be.
+  std::string name = target_.file.parent_path() / ".gridiron.XXXXXX";
+  descriptor_ = ::mkostemp(name.data(), O_CLOEXEC);
+  if (descriptor_ < 0) fail("create a temporary file beside it");
+  temporary_ = name;
+
+  // mkostemp makes the file private; give it the rights of the file it replaces, or of any new file.
+  struct stat replaced {};
+  const bool replaces = ::stat(target_.file.c_str(), &replaced) == 0 && S_ISREG(replaced.st_mode);
+  const mode_t mask = ::umask(0);
+  ::umask(mask);
+  const mode_t rights = replaces ? replaced.st_mode & 0777u : 0666u & ~mask;
+  if (::fchmod(descriptor_, rights) != 0) fail("set its rights");
+}
+
 void AtomicFile::write(std::span<const std::byte> bytes) {
-  if (is_special_) {
+  if (target_.is_special) {
     deferred_.insert(deferred_.end(), bytes.begin(), bytes.end());
-  } else if (!write_all(descriptor_, bytes)) {
+  } else if (!write_all(descriptor_, bytes, /*can_block=*/false)) {
     fail("write");
   }
 }
@@ -114,22 +93,34 @@ void AtomicFile::write(std::string_view text) {
   write(std::as_bytes(std::span(text.data(), text.size())));
 }
 
-void AtomicFile::commit() {
-  if (is_special_) {
-    descriptor_ = open_for_writing(target_);
-    if (descriptor_ < 0 || !write_all(descriptor_, deferred_)) fail("write");
-  }
+void AtomicFile::finish() {
+  if (descriptor_ < 0) return;
   // Some file systems report a full disk only here. After a signal the descriptor is closed all the same.
   const int closed = ::close(std::exchange(descriptor_, -1));
   if (closed != 0 && errno != EINTR) fail("close");
-  if (is_special_) return;
-  if (::rename(temporary_.c_str(), target_.c_str()) != 0) fail("rename into place");
+}
+
+void AtomicFile::write_through() {
+  const bool is_own = target_.descriptor < 0;
+  const int descriptor = is_own ? descriptor_ = open_special(target_.file) : target_.descriptor;
+  if (descriptor < 0 || !write_all(descriptor, deferred_, /*can_block=*/true)) fail("write");
+  finish();
+}
+
+void AtomicFile::commit() {
+  if (target_.is_special) {
+    write_through();
+    return;
+  }
+  finish();
+  if (::rename(temporary_.c_str(), target_.file.c_str()) != 0) fail("rename into place");
   temporary_.clear();
+  count_written_file();
 }
 
 void AtomicFile::fail(const char* action) {
   const std::string reason = std::strerror(errno);
-  throw cannot_write(path_, std::string(action) + ": " + reason);
+  throw Failure(ExitCode::kBadInput, target_.name.string() + ": cannot write: " + action + ": " + reason);
 }
 
 AtomicFile& AtomicFiles::open(const fs::path& path) {
@@ -139,26 +130,13 @@ AtomicFile& AtomicFiles::open(const fs::path& path) {
 
 void AtomicFiles::commit() {
   stop_if_interrupted();
+  for (const AtomicFile& file : files_) check_again(file.target());
   for (AtomicFile& file : files_) {
-    if (file.is_special()) file.commit();
+    if (file.target().is_special) file.commit();
   }
+  stop_if_interrupted();
   for (AtomicFile& file : files_) {
-    if (!file.is_special()) file.commit();
-  }
-}
-
-void check_can_write(const fs::path& path) {
-  if (!path.has_filename()) throw cannot_write(path, "not a file name");
-  const fs::path target = resolve_target(path);
-  std::error_code error;
-  if (fs::is_directory(target, error)) throw cannot_write(path, "it is a folder");
-  const fs::path folder = folder_of(target);
-  if (!fs::exists(folder, error)) throw cannot_write(path, "folder " + folder.string() + " does not exist");
-  if (!fs::is_directory(folder, error)) throw cannot_write(path, folder.string() + " is not a folder");
-  if (is_special_file(target)) return;
-  if (::access(folder.c_str(), W_OK | X_OK) != 0) {
-    const std::string reason = std::strerror(errno);
-    throw cannot_write(path, "folder " + folder.string() + ": " + reason);
+    if (!file.target().is_special) file.commit();
   }
 }
 

@@ -10,17 +10,19 @@
 #include <string_view>
 #include <vector>
 
+#include "output_target.h"
+
 namespace gridiron::tool {
 
 /// Bytes on their way to `path`: written under another name in the same folder, renamed by commit().
 ///
-/// A path that is a device or a pipe is written through at commit, since renaming over it would replace it. A symbolic
-/// link is followed. Errors: Failure (kBadInput) with path and reason, or stop_if_interrupted()'s where a signal ends
-/// the wait for a pipe's reader; nothing is left behind then.
+/// A target that is a device, a pipe or a descriptor is written through at commit, since renaming over it would replace
+/// it. A file that is replaced keeps its rights. Errors: Failure (kBadInput) with path and reason, or
+/// stop_if_interrupted()'s where a signal ends the wait for a pipe's reader; nothing is left behind then.
 class AtomicFile {
  public:
-  /// Opens the temporary file.
-  explicit AtomicFile(std::filesystem::path path);
+  /// Opens the temporary file. The path leads where target_of() says.
+  explicit AtomicFile(const std::filesystem::path& path);
   ~AtomicFile();
   AtomicFile(const AtomicFile&) = delete;
   AtomicFile& operator=(const AtomicFile&) = delete;
@@ -28,20 +30,22 @@ class AtomicFile {
   void write(std::span<const std::byte> bytes);
   void write(std::string_view text);
 
-  /// Closes and makes the file appear under its name.
+  /// Closes the temporary file: all of its bytes are there. Nothing is written after that.
+  void finish();
+
+  /// Finishes and makes the file appear under its name.
   void commit();
 
-  /// @returns whether the path is a device or a pipe, whose bytes can fail to arrive as late as at commit.
-  [[nodiscard]] bool is_special() const { return is_special_; }
+  [[nodiscard]] const OutputTarget& target() const { return target_; }
 
  private:
+  void open_temporary();
+  void write_through();
   [[noreturn]] void fail(const char* action);
 
-  std::filesystem::path path_;       ///< as asked for: the one people are told
-  std::filesystem::path target_;     ///< links followed
+  OutputTarget target_;
   std::string temporary_;            ///< empty: nothing to remove
   std::vector<std::byte> deferred_;  ///< bytes for a device or pipe
-  bool is_special_ = false;
   int descriptor_ = -1;
 };
 
@@ -51,10 +55,13 @@ class AtomicFiles {
   /// @param content  bytes or text. Errors: of AtomicFile, and stop_if_interrupted()'s.
   template <class Content>
   void add(const std::filesystem::path& path, const Content& content) {
-    open(path).write(content);
+    AtomicFile& file = open(path);
+    file.write(content);
+    file.finish();
   }
 
-  /// Makes all files appear, devices and pipes first: they may fail where a rename no longer does.
+  /// Makes all files appear, devices and pipes first: they may fail where a rename no longer does. No file appears
+  /// where one of the targets cannot be replaced any more. Errors: of check_again() too.
   void commit();
 
  private:
@@ -62,16 +69,5 @@ class AtomicFiles {
 
   std::list<AtomicFile> files_;
 };
-
-/// @returns where bytes written to `path` really go: through symbolic links, also one that points at nothing yet.
-[[nodiscard]] std::filesystem::path resolve_target(const std::filesystem::path& path);
-
-/// @returns whether two names, which need not exist, mean one file: links, `.` and `..` are followed. A device takes
-/// any number of outputs, and is never the same as another.
-[[nodiscard]] bool is_same_file(const std::filesystem::path& a, const std::filesystem::path& b);
-
-/// Throws Failure (kBadInput) where no file of that name could be made, before the work for it is done: the folder is
-/// missing or closed, or the name is a folder.
-void check_can_write(const std::filesystem::path& path);
 
 }  // namespace gridiron::tool

@@ -13,6 +13,7 @@ enum class ExitCode : int {
   kBadInput = 1,       ///< a file is missing, wrong, too large for the machine, or cannot be written
   kUsage = 2,          ///< the command line
   kCheckFailed = 3,    ///< a check of the simulator or a memory budget failed
+  kHungUp = 129,       ///< SIGHUP
   kInterrupted = 130,  ///< SIGINT
   kTerminated = 143,   ///< SIGTERM
 };
@@ -23,6 +24,7 @@ class Failure : public std::runtime_error {
   Failure(ExitCode code, const std::string& message) : std::runtime_error(message), code_(code) {}
 
   [[nodiscard]] ExitCode code() const { return code_; }
+  [[nodiscard]] bool is_interrupt() const { return code_ >= ExitCode::kHungUp; }
 
  private:
   ExitCode code_;

@@ -1,25 +1,56 @@
 // Picture files. SPDX-License-Identifier: Apache-2.0
 #include "image_files.h"
 
+#include <algorithm>
 #include <bit>
 #include <cstring>
 #include <string>
 
+#include "output_target.h"
+
 namespace gridiron::tool {
+namespace {
 
-static_assert(std::endian::native == std::endian::little, "pixels and floats are written as they lie in memory");
+static_assert(std::endian::native == std::endian::little, "floats are written as they lie in memory");
 
-std::vector<std::byte> encode_pfm(const Picture<float>& picture) {
+// @param write_row  called with a row and the floats that it becomes, `channels` a pixel.
+template <class WriteRow>
+std::vector<std::byte> encode_floats(std::uint32_t width, std::uint32_t height, std::uint32_t channels,
+                                     WriteRow write_row) {
   // A negative scale is the format's way to say little-endian.
-  const std::string header = "Pf\n" + std::to_string(picture.width) + " " + std::to_string(picture.height) + "\n-1.0\n";
-  const std::size_t row_bytes = std::size_t{picture.width} * sizeof(float);
-  std::vector<std::byte> file(header.size() + row_bytes * picture.height);
+  const std::string header = std::string(channels == 3 ? "PF" : "Pf") + "\n" + std::to_string(width) + " " +
+                             std::to_string(height) + "\n-1.0\n";
+  std::vector<float> floats(std::size_t{width} * channels);
+  const std::size_t row_bytes = floats.size() * sizeof(float);
+  std::vector<std::byte> file(header.size() + row_bytes * height);
   std::memcpy(file.data(), header.data(), header.size());
   std::byte* out = file.data() + header.size();
-  for (std::uint32_t row = picture.height; row-- > 0; out += row_bytes) {
-    std::memcpy(out, picture.pixels.data() + std::size_t{row} * picture.width, row_bytes);
+  for (std::uint32_t row = height; row-- > 0; out += row_bytes) {
+    write_row(row, floats.data());
+    std::memcpy(out, floats.data(), row_bytes);
   }
   return file;
+}
+
+}  // namespace
+
+std::vector<std::byte> encode_pfm(const Picture<float>& picture) {
+  return encode_floats(picture.width, picture.height, 1, [&picture](std::uint32_t row, float* out) {
+    std::ranges::copy_n(picture.pixels.begin() + std::ptrdiff_t{row} * picture.width, picture.width, out);
+  });
+}
+
+std::vector<std::byte> encode_color_pfm(const Picture<std::uint32_t>& picture) {
+  return encode_floats(picture.width, picture.height, 3, [&picture](std::uint32_t row, float* out) {
+    for (std::uint32_t column = 0; column < picture.width; ++column) {
+      const std::uint32_t pixel = picture.pixels[std::size_t{row} * picture.width + column];
+      for (std::uint32_t shift = 0; shift < 24; shift += 8) *out++ = static_cast<float>(pixel >> shift & 0xFFu) / 255;
+    }
+  });
+}
+
+std::vector<std::byte> encode_picture(const Picture<std::uint32_t>& picture, const std::filesystem::path& path) {
+  return has_ending(path, ".pfm") ? encode_color_pfm(picture) : encode_png(picture);
 }
 
 }  // namespace gridiron::tool

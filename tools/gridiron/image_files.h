@@ -4,6 +4,7 @@
 
 #include <cstddef>
 #include <cstdint>
+#include <filesystem>
 #include <span>
 #include <vector>
 
@@ -23,5 +24,12 @@ struct Picture {
 
 /// @returns the bytes of a PFM file: "Pf", little-endian floats, last row first as the format says.
 [[nodiscard]] std::vector<std::byte> encode_pfm(const Picture<float>& picture);
+
+/// @returns the bytes of a PFM file, "PF": red, green and blue of a picture as encode_png() takes it, from 0 to 1.
+[[nodiscard]] std::vector<std::byte> encode_color_pfm(const Picture<std::uint32_t>& picture);
+
+/// @returns the bytes of a picture in the format that the path's ending names: PFM for .pfm, PNG for all else.
+[[nodiscard]] std::vector<std::byte> encode_picture(const Picture<std::uint32_t>& picture,
+                                                    const std::filesystem::path& path);
 
 }  // namespace gridiron::tool

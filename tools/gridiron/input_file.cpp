@@ -13,6 +13,7 @@
 #include <string_view>
 #include <utility>
 
+#include "command_files.h"
 #include "failure.h"
 #include "interrupt.h"
 
@@ -62,6 +63,7 @@ int open_for_reading(const std::filesystem::path& path) {
 }  // namespace
 
 InputFile read_input_file(const std::filesystem::path& path, std::size_t most_bytes) {
+  note_input(path);
   const Descriptor file(open_for_reading(path));
   struct stat status {};
   if (file.value() < 0 || ::fstat(file.value(), &status) != 0) fail(path, errno);

@@ -31,7 +31,7 @@ struct InputFile {
 
 /// Reads a whole file. Errors: Failure (kBadInput) that names the file and the reason, also where it is larger than
 /// `most_bytes`; where a scan that tools/fetch_scenes gets is missing, the message says so. A pipe is read to its end;
-/// a signal ends the wait for it as stop_if_interrupted() does.
+/// a signal ends the wait for it as stop_if_interrupted() does. Errors of note_input() too.
 [[nodiscard]] InputFile read_input_file(const std::filesystem::path& path,
                                         std::size_t most_bytes = std::numeric_limits<std::size_t>::max());
 

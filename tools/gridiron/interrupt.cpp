@@ -9,12 +9,13 @@ namespace gridiron::tool {
 namespace {
 
 std::atomic<bool> interrupted{false};
-std::atomic<bool> terminated{false};
 StopFlag stop;
-static_assert(std::atomic<bool>::is_always_lock_free, "a signal handler may only touch lock-free atomics");
+std::atomic<int> last_signal{SIGINT};
+static_assert(std::atomic<bool>::is_always_lock_free && std::atomic<int>::is_always_lock_free,
+              "a signal handler may only touch lock-free atomics");
 
 extern "C" void note_interrupt(int signal) {
-  if (signal == SIGTERM) terminated.store(true);
+  last_signal.store(signal);
   interrupted.store(true);
   stop.raise();
 }
@@ -28,7 +29,11 @@ void watch_for_interrupt() {
   action.sa_flags = 0;  // no SA_RESTART: a call that blocks, on a pipe say, ends with EINTR
   sigaction(SIGINT, &action, nullptr);
   sigaction(SIGTERM, &action, nullptr);
+  struct sigaction inherited {};
+  sigaction(SIGHUP, nullptr, &inherited);
+  if (inherited.sa_handler != SIG_IGN) sigaction(SIGHUP, &action, nullptr);  // nohup ignores it
   std::signal(SIGPIPE, SIG_IGN);
+  std::signal(SIGXFSZ, SIG_IGN);
 }
 
 const std::atomic<bool>& interrupt_flag() {
@@ -39,9 +44,13 @@ const StopFlag& stop_flag() {
   return stop;
 }
 
-void stop_if_interrupted(const char* words) {
+void stop_if_interrupted() {
   if (!interrupted.load()) return;
-  throw Failure(terminated.load() ? ExitCode::kTerminated : ExitCode::kInterrupted, words);
+  const int signal = last_signal.load();
+  throw Failure(signal == SIGTERM  ? ExitCode::kTerminated
+                : signal == SIGHUP ? ExitCode::kHungUp
+                                   : ExitCode::kInterrupted,
+                "interrupted");
 }
 
 }  // namespace gridiron::tool

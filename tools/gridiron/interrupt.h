@@ -8,8 +8,9 @@
 
 namespace gridiron::tool {
 
-/// Lets SIGINT and SIGTERM set the flag from now on, and SIGPIPE be an error of the write instead of the end. Calls
-/// that block end with EINTR when a signal comes; whoever repeats one calls stop_if_interrupted() first.
+/// Lets SIGINT and SIGTERM set the flag from now on, SIGHUP too where nobody had it ignored, and lets a closed pipe
+/// (SIGPIPE) and a file that outgrows its limit (SIGXFSZ) be errors of the write instead of the end. Calls that block
+/// end with EINTR when a signal comes; whoever repeats one calls stop_if_interrupted() first.
 void watch_for_interrupt();
 
 /// @returns the flag: true once a signal has come.
@@ -18,7 +19,7 @@ void watch_for_interrupt();
 /// @returns the same for calls of core.
 [[nodiscard]] const StopFlag& stop_flag();
 
-/// Throws Failure (kInterrupted, kTerminated) once a signal has come.
-void stop_if_interrupted(const char* words = "interrupted; no file was written");
+/// Throws Failure (kInterrupted, kTerminated, kHungUp) once a signal has come. main adds what became of the files.
+void stop_if_interrupted();
 
 }  // namespace gridiron::tool

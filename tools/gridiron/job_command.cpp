@@ -15,7 +15,7 @@
 namespace gridiron::tool {
 
 void run_command(const JobArguments& asked) {
-  const RequestedFrame request = read_requested_frame(asked.render, {asked.render.output});
+  const RequestedFrame request = read_requested_frame(asked.render, {{"-o", asked.render.output, OutputKind::kBinary}});
   const RenderArguments& arguments = request.arguments;
   require_distances(arguments.layout(), arguments.has_depth());
   FrameMemory frame(frame_memory_bytes(request.input, arguments));

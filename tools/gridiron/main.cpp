@@ -1,34 +1,65 @@
 // The gridiron program: parses, runs one command, turns failures into messages and exit codes.
 // SPDX-License-Identifier: Apache-2.0
+#include <fcntl.h>
+#include <unistd.h>
+
+#include <cerrno>
 #include <cstdio>
+#include <cstring>
 #include <exception>
 #include <new>
 #include <string>
 #include <variant>
 
 #include "arguments.h"
+#include "command_files.h"
 #include "commands.h"
 #include "failure.h"
 #include "interrupt.h"
+#include "words.h"
 
 namespace {
 
 using gridiron::tool::ExitCode;
+using gridiron::tool::Failure;
+
+// Runs before main and all other initialisers of the program: a signal that comes while these run is caught too. Where
+// standard input, output or error is closed, something unusable takes its place: else the next file that is opened
+// would take it, and get the words that are meant for people.
+[[gnu::constructor(101)]] void begin() {
+  gridiron::tool::watch_for_interrupt();
+  for (const int standard : {STDIN_FILENO, STDOUT_FILENO, STDERR_FILENO}) {
+    if (::fcntl(standard, F_GETFD) >= 0) continue;
+    (void)::open("/dev/null", standard == STDIN_FILENO ? O_WRONLY : O_RDONLY);  // takes the lowest that is closed
+  }
+}
+
+// Text for a full disk or a closed pipe is lost only here.
+void flush_text() {
+  errno = 0;
+  if (std::fflush(stdout) == 0 && std::ferror(stdout) == 0) return;
+  const std::string reason = errno != 0 ? std::string(": ") + std::strerror(errno) : "";
+  gridiron::tool::stop_if_interrupted();
+  throw Failure(ExitCode::kBadInput, "standard output: cannot write" + reason);
+}
+
+// What became of the files of a command that failed: all, some or none of them have got their names.
+std::string words_of_files(const Failure& failure) {
+  const std::size_t count = gridiron::tool::written_file_count();
+  if (count == 0) return failure.is_interrupt() ? "; no file was written" : "";
+  return std::string(failure.is_interrupt() ? "; " : "\n") + gridiron::tool::words_of_count(count, "file") +
+         (count == 1 ? " was" : " were") + " written before that and " + (count == 1 ? "is" : "are") + " kept";
+}
 
 ExitCode run(int count, const char* const* values) {
   try {
     const gridiron::tool::Command command = gridiron::tool::parse_arguments(count, values);
     std::visit([](const auto& arguments) { gridiron::tool::run_command(arguments); }, command);
-    // Text for a full disk or a closed pipe is lost only here.
-    if (std::fflush(stdout) != 0 || std::ferror(stdout) != 0) {
-      gridiron::tool::stop_if_interrupted("interrupted while writing to standard output");
-      std::fputs("gridiron: cannot write to standard output\n", stderr);
-      return ExitCode::kBadInput;
-    }
+    flush_text();
     return ExitCode::kDone;
   } catch (const gridiron::tool::Failure& failure) {
     const char* prefix = failure.code() == ExitCode::kUsage ? "gridiron: " : "";
-    std::fprintf(stderr, "%s%s\n", prefix, failure.what());
+    std::fprintf(stderr, "%s%s%s\n", prefix, failure.what(), words_of_files(failure).c_str());
     return failure.code();
   } catch (const std::bad_alloc&) {
     std::fputs("gridiron: this host has not enough memory\n", stderr);
@@ -42,6 +73,6 @@ ExitCode run(int count, const char* const* values) {
 }  // namespace
 
 int main(int count, char** values) {
-  gridiron::tool::watch_for_interrupt();
+  const gridiron::tool::CommandFiles files;
   return static_cast<int>(run(count, values));
 }

@@ -4,12 +4,13 @@
 #include <system_error>
 #include <utility>
 
-#include "atomic_file.h"
+#include "command_files.h"
 #include "failure.h"
 
 namespace gridiron::tool {
 
 OutputFolder::OutputFolder(std::filesystem::path path, const std::vector<std::string>& names) : path_(std::move(path)) {
+  if (path_ == "-") throw Failure(ExitCode::kUsage, "-o -: a folder cannot be standard output");
   std::error_code error;
   made_ = std::filesystem::create_directory(path_, error);
   if (error) {
@@ -19,7 +20,9 @@ OutputFolder::OutputFolder(std::filesystem::path path, const std::vector<std::st
     throw Failure(ExitCode::kBadInput, path_.string() + ": is no folder");
   }
   try {
-    for (const std::string& name : names) check_can_write(path_ / name);
+    std::vector<Output> outputs;
+    for (const std::string& name : names) outputs.push_back({"", path_ / name, OutputKind::kText});
+    declare_outputs(outputs);
   } catch (...) {
     remove_if_made();
     throw;

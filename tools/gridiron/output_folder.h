@@ -10,8 +10,8 @@ namespace gridiron::tool {
 
 class OutputFolder {
  public:
-  /// @param names  of the files that may be written into it: nobody should wait for what cannot be written.
-  /// Errors: Failure (kBadInput).
+  /// @param names  of the files that may be written into it: all are declared as outputs of the command.
+  /// Errors: Failure (kBadInput), and those of declare_outputs().
   OutputFolder(std::filesystem::path path, const std::vector<std::string>& names);
   ~OutputFolder() { remove_if_made(); }
   OutputFolder(const OutputFolder&) = delete;

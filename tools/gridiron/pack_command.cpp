@@ -3,18 +3,17 @@
 #include <new>
 
 #include "atomic_file.h"
+#include "command_files.h"
 #include "commands.h"
 #include "failure.h"
-#include "interrupt.h"
 #include "scene_input.h"
 #include "words.h"
 
 namespace gridiron::tool {
 
 void run_command(const PackArguments& arguments) {
-  check_can_write(arguments.output);
+  declare_outputs({{"-o", arguments.output, OutputKind::kBinary}});
   const SceneInput input = read_scene_input(arguments.scene.input, arguments.scene.tolerance);
-  require_other_files(input, {arguments.output});
   const Mesh* mesh = std::get_if<Mesh>(&input.content);
   if (mesh == nullptr) {
     throw Failure(ExitCode::kBadInput,
@@ -38,10 +37,9 @@ void run_command(const PackArguments& arguments) {
   const std::span<std::byte> image(storage.get(), choice.need.image_bytes);
   (void)build_image(input, *mesh, choice, image, effects);
 
-  AtomicFile file(arguments.output);
-  file.write(image);
-  stop_if_interrupted();
-  file.commit();
+  AtomicFiles files;
+  files.add(arguments.output, image);
+  files.commit();
   if (arguments.scene.quiet) return;
   std::string triangles = words_of_count(mesh->triangles.size()) + " triangles";
   if (choice.need.dropped_triangle_count != 0) {

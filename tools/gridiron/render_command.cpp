@@ -11,6 +11,7 @@
 
 #include "atomic_file.h"
 #include "chip_frame.h"
+#include "command_files.h"
 #include "commands.h"
 #include "effect_names.h"
 #include "frame_memory.h"
@@ -27,11 +28,12 @@
 namespace gridiron::tool {
 namespace {
 
-std::vector<std::filesystem::path> outputs_of(const RenderArguments& arguments) {
-  std::vector<std::filesystem::path> outputs = {arguments.output};
-  for (const auto* path : {&arguments.depth, &arguments.ids, &arguments.report, &arguments.timeline}) {
-    if (*path) outputs.push_back(**path);
-  }
+std::vector<Output> outputs_of(const RenderArguments& arguments) {
+  std::vector<Output> outputs = {{"-o", arguments.output, OutputKind::kPicture}};
+  if (arguments.depth) outputs.push_back({"--depth", *arguments.depth, OutputKind::kFloats});
+  if (arguments.ids) outputs.push_back({"--ids", *arguments.ids, OutputKind::kFloats});
+  if (arguments.report) outputs.push_back({"--report", *arguments.report, OutputKind::kText});
+  if (arguments.timeline) outputs.push_back({"--timeline", *arguments.timeline, OutputKind::kText});
   return outputs;
 }
 
@@ -114,7 +116,7 @@ void run_command(const RenderArguments& asked) {
   }
 
   AtomicFiles files;
-  files.add(arguments.output, encode_png(color));
+  files.add(arguments.output, encode_picture(color, arguments.output));
   std::optional<std::uint64_t> depth_hash, ids_hash;
   if (arguments.depth) {
     const Picture<std::uint32_t> words = plane_words(frame.depth);

@@ -4,7 +4,6 @@
 #include <cstdio>
 #include <string>
 
-#include "atomic_file.h"
 #include "chip_frame.h"
 #include "hither.h"
 #include "layout_choice.h"
@@ -55,13 +54,12 @@ void check_scene_view(const RenderArguments& arguments, const SceneInput& input,
 
 }  // namespace
 
-RequestedFrame read_requested_frame(const RenderArguments& asked, const std::vector<std::filesystem::path>& outputs) {
-  for (const std::filesystem::path& output : outputs) check_can_write(output);
+RequestedFrame read_requested_frame(const RenderArguments& asked, const std::vector<Output>& outputs) {
+  declare_outputs(outputs);
   const ViewRequest camera = asked.camera ? read_camera_file(*asked.camera) : ViewRequest{};
   RequestedFrame request;
   request.input = read_scene_input(asked.scene.input, asked.scene.tolerance);
   const SceneInput& input = request.input;
-  require_other_files(input, outputs);
   request.arguments = complete_arguments(asked, input);
   const RenderArguments& arguments = request.arguments;
   const bool has_own_view = input.text && input.text->view.is_given() && !arguments.camera;

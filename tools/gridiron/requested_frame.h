@@ -2,10 +2,10 @@
 // Memory: owns the scene. Threads: one. SPDX-License-Identifier: Apache-2.0
 #pragma once
 
-#include <filesystem>
 #include <vector>
 
 #include "arguments.h"
+#include "command_files.h"
 #include "scene_input.h"
 #include "view.h"
 
@@ -21,9 +21,8 @@ struct RequestedFrame {
 /// Reads scene and camera and completes the arguments by them. Unless quiet it says on standard error what is odd in
 /// the scene, and where the store has fewer buffers than the configuration.
 ///
-/// @param outputs  of the command; that they can be written is checked first: nobody should wait for what cannot be.
+/// @param outputs  of the command; they are declared first: nobody should wait for what cannot be written.
 /// Errors: Failure.
-[[nodiscard]] RequestedFrame read_requested_frame(const RenderArguments& asked,
-                                                  const std::vector<std::filesystem::path>& outputs);
+[[nodiscard]] RequestedFrame read_requested_frame(const RenderArguments& asked, const std::vector<Output>& outputs);
 
 }  // namespace gridiron::tool

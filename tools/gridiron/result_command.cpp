@@ -12,6 +12,7 @@
 
 #include "atomic_file.h"
 #include "chip_frame.h"
+#include "command_files.h"
 #include "commands.h"
 #include "failure.h"
 #include "frame_pictures.h"
@@ -27,6 +28,15 @@
 
 namespace gridiron::tool {
 namespace {
+
+std::vector<Output> outputs_of(const ResultArguments& arguments) {
+  std::vector<Output> outputs;
+  if (arguments.output) outputs.push_back({"-o", *arguments.output, OutputKind::kPicture});
+  if (arguments.depth) outputs.push_back({"--depth", *arguments.depth, OutputKind::kFloats});
+  if (arguments.ids) outputs.push_back({"--ids", *arguments.ids, OutputKind::kFloats});
+  if (arguments.report) outputs.push_back({"--report", *arguments.report, OutputKind::kText});
+  return outputs;
+}
 
 void require_planes(const ResultArguments& arguments, const OpenJob& job) {
   const auto require = [&arguments](const char* option, bool wanted, std::uint64_t address) {
@@ -89,9 +99,7 @@ void tell_unseen(const ResultArguments& arguments, const OpenJob& job, const Ope
 }  // namespace
 
 void run_command(const ResultArguments& arguments) {
-  for (const auto* path : {&arguments.output, &arguments.depth, &arguments.ids, &arguments.report}) {
-    if (*path) check_can_write(**path);
-  }
+  declare_outputs(outputs_of(arguments));
   const OpenJob job = read_job_file(arguments.job);
   require_planes(arguments, job);
   const OpenResult result = read_result_file(arguments.result, job);
@@ -113,7 +121,7 @@ void run_command(const ResultArguments& arguments) {
   AtomicFiles files;
   const Picture<std::uint32_t> color = words_of_plane(job.record, result.color);
   report.image_hash = image_hash(color.pixels);
-  if (arguments.output) files.add(*arguments.output, encode_png(color));
+  if (arguments.output) files.add(*arguments.output, encode_picture(color, *arguments.output));
   if (!result.depth.empty()) {
     const Picture<std::uint32_t> words = words_of_plane(job.record, result.depth);
     report.depth_hash = image_hash(words.pixels);

@@ -11,7 +11,6 @@
 #include <string>
 #include <utility>
 
-#include "atomic_file.h"
 #include "failure.h"
 #include "interrupt.h"
 #include "scene_text/scene_reader.h"
@@ -128,17 +127,6 @@ std::uint64_t image_budget_bytes(const sim::MachineProfile& machine, std::uint32
                                            words_of_bytes(machine.main_memory_bytes));
   }
   return memory - std::max(wanted, std::min(usual, memory / 2));
-}
-
-void require_other_files(const SceneInput& input, const std::vector<std::filesystem::path>& outputs) {
-  if (!input.text) return;
-  for (const std::filesystem::path& output : outputs) {
-    for (const std::filesystem::path& file : input.text->files) {
-      if (!is_same_file(file, output)) continue;
-      throw Failure(ExitCode::kUsage, output.string() + ": is a file of the scene " + input.path.string() +
-                                          "; writing there would destroy it");
-    }
-  }
 }
 
 GridChoice choose_grid(const SceneInput& input, const Mesh& mesh, const SceneArguments& arguments,

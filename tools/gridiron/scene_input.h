@@ -94,9 +94,6 @@ struct GridChoice {
 /// Errors: Failure (kBadInput) where a packed scene stores its triangles in another format.
 void require_format(const SceneInput& input, const PackedScene& packed, TriangleFormat format);
 
-/// Throws Failure (kUsage) where an output would take the place of a file that the scene names.
-void require_other_files(const SceneInput& input, const std::vector<std::filesystem::path>& outputs);
-
 /// Chooses the grid of a mesh: the wanted lambda, halved until the image fits the budget unless the command line fixed
 /// it. Where nothing fits the choice says so and holds the least need found.
 /// @param effects  that the image will hold; null: none.

@@ -73,6 +73,22 @@ TEST(ImageFiles, PfmHoldsEveryFloatWithTheFirstRowOnTop) {
   }
 }
 
+TEST(ImageFiles, APictureIsTheSameInBothFormats) {
+  const TemporaryFolder folder;
+  tool::Picture<std::uint32_t> picture{5, 3, {}};
+  for (std::uint32_t i = 0; i < 15; ++i) picture.pixels.push_back(0xFF000000u | i * 0x0A1107u);
+  const auto png = load_picture(write_bytes(folder, "a.png", tool::encode_picture(picture, "a.PNG")));
+  const auto pfm = load_picture(write_bytes(folder, "a.pfm", tool::encode_picture(picture, "a.PFM")));
+  ASSERT_TRUE(png && pfm);
+  ASSERT_EQ(pfm->channels, 3u);
+  for (std::size_t pixel = 0; pixel < 15; ++pixel) {
+    for (std::size_t channel = 0; channel < 3; ++channel) {
+      EXPECT_EQ(pfm->values[3 * pixel + channel], png->values[4 * pixel + channel] / 255) << pixel;
+    }
+  }
+  EXPECT_EQ(tool::encode_picture(picture, "-"), tool::encode_png(picture)) << "a device has no ending";
+}
+
 TEST(ImageFiles, PfmIsLittleEndianAndBottomUp) {
   const std::vector<std::byte> file = tool::encode_pfm({1, 2, {1.0f, -2.0f}});
   const std::string text(reinterpret_cast<const char*>(file.data()), file.size());

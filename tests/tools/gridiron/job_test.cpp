@@ -163,7 +163,7 @@ TEST(Job, IsRefusedWhereItDoesNotFit) {
   }
   expect_failure(folder, with({"--base", "0", "--cores", "17"}), 2, "--cores");
   expect_failure(folder, with({"--base", "0", "--memory", "many"}), 2, "--memory");
-  expect_failure(folder, {"job", "a.ply", "-o", "a.ply", "--base", "0"}, 2, "name the same file");
+  expect_failure(folder, {"job", "a.ply", "-o", "a.ply", "--base", "0"}, 2, "is the input 'a.ply'");
   expect_failure(folder, {"job", "a.nff", "-o", "a.job", "--base", "0", "--store", "64", "--depth"}, 2,
                  "--depth: scenes with effects have no distances out of a store of 64 KB");
   expect_failure(folder, {"job", "b.ply", "-o", "a.job", "--base", "0"}, 1, "b.ply: No such file");
@@ -175,17 +175,17 @@ TEST(Result, OfADeviceIsTheSimulatorsFrame) {
     const TemporaryFolder folder;
     const std::string job = make_job(folder, each.job_options(), each.scene);
     folder.write("a.res", render_on_host_device(job, 5));
-    Words result_words = {"result", "a.job", "a.res", "--compare", "-o",
-                          "d.png",  "--ids", "d.ids", "--report",  "d.json"};
+    Words result_words = {"result", "a.job", "a.res",     "--compare", "-o",
+                          "d.png",  "--ids", "d-ids.pfm", "--report",  "d.json"};
     Words render_words =
-        joined({"render", each.scene, "-o", "r.png", "--ids", "r.ids", "--report", "r.json"}, each.options);
+        joined({"render", each.scene, "-o", "r.png", "--ids", "r-ids.pfm", "--report", "r.json"}, each.options);
     Words items = {"image", "ids", "work", "transfers", "tiles.transfers"};
-    Words files = {"png", "ids"}, keys = {"image_hash", "ids_hash", "work"};
+    Words files = {".png", "-ids.pfm"}, keys = {"image_hash", "ids_hash", "work"};
     if (each.has_depth) {
       result_words = joined(result_words, {"--depth", "d.pfm"});
       render_words = joined(render_words, {"--depth", "r.pfm"});
       items.emplace_back("depth");
-      files.emplace_back("pfm");
+      files.emplace_back(".pfm");
       keys.emplace_back("depth_hash");
     }
     const ProgramResult result = run(folder, result_words);
@@ -196,7 +196,7 @@ TEST(Result, OfADeviceIsTheSimulatorsFrame) {
     }
     run(folder, render_words);
     for (const std::string& file : files) {
-      EXPECT_EQ(read_file(folder.path("d." + file)), read_file(folder.path("r." + file))) << file;
+      EXPECT_EQ(read_file(folder.path("d" + file)), read_file(folder.path("r" + file))) << file;
     }
     const Json device = Json::parse(read_file(folder.path("d.json")));
     const Json render = Json::parse(read_file(folder.path("r.json")));
@@ -249,8 +249,10 @@ TEST(Result, OneDifferenceIsEnough) {
   };
   for (const auto& each : cases) {
     folder.write("a.res", flip(each.place));
-    const ProgramResult result = run_program(folder.folder(), {"result", "a.job", "a.res", "--compare"});
+    const ProgramResult result = run_program(folder.folder(), {"result", "a.job", "a.res", "--compare", "-o", "d.png"});
     EXPECT_EQ(result.exit_code, 3) << each.item;
+    EXPECT_NE(result.err.find("\n1 file was written before that and is kept\n"), std::string::npos) << result.err;
+    EXPECT_TRUE(std::filesystem::remove(folder.path("d.png"))) << "the picture that differs is there to be looked at";
     EXPECT_NE(result.out.find(std::string("\n") + each.item + " "), std::string::npos) << result.out;
     EXPECT_NE(result.out.find("different: "), std::string::npos) << result.out;
     EXPECT_NE(result.err.find(std::string("differs from the simulator's: ")), std::string::npos) << result.err;
@@ -399,7 +401,8 @@ TEST(Result, DamageIsFoundWithItsPlace) {
   folder.write("a.res", whole);
   expect_failure(folder, {"result", "a.job", "a.res", "--depth", "d.pfm"}, 2, "a.job was made without --depth");
   expect_failure(folder, {"result", "a.job", "a.res", "--ids", "d.pfm"}, 2, "a.job was made without --ids");
-  expect_failure(folder, {"result", "a.job", "a.res", "-o", "a.job"}, 2, "name the same file");
+  expect_failure(folder, {"result", "a.job", "a.res", "--report", "a.job"}, 2, "is the input 'a.job'");
+  expect_failure(folder, {"result", "a.job", "a.res", "-o", "a.job"}, 2, "must end in .png or .pfm");
   expect_failure(folder, {"result", "a.job", "b.res"}, 1, "b.res: No such file");
   expect_failure(folder, {"result", "a.job"}, 2, "RESULT is required");
 }

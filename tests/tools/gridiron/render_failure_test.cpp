@@ -76,7 +76,7 @@ TEST(RenderFailure, OutputsThatCannotBeWritten) {
   std::filesystem::create_directory(folder.path("folder"));
   const Words scene = {"render", "a.ply", "--size", "8x8"};
   for (const char* option : {"-o", "--depth", "--ids", "--report", "--timeline"}) {
-    for (const char* path : {"missing/x", "a.ply/x", "folder", "/proc/gridiron_test"}) {
+    for (const char* path : {"missing/x", "a.ply/x", "folder", "/proc/gridiron_test.pfm"}) {
       Words arguments = scene;
       if (std::string(option) != "-o") arguments.insert(arguments.end(), {"-o", "good.png"});
       arguments.insert(arguments.end(), {option, path});

@@ -252,11 +252,12 @@ TEST(TextScene, NoOutputTakesThePlaceOfItsFiles) {
   folder.write("a.nff",
                "v from 0 0 5 at 0 0 0 up 0 1 0 angle 40 hither 0 resolution 8 8\nf 1 1 1 1 0 0 0 0\nm ball.ply\n");
   const auto bytes = std::filesystem::file_size(folder.path("ball.ply"));
-  for (const Words& words : {Words{"render", "a.nff", "-o", "ball.ply"}, Words{"pack", "a.nff", "-o", "./ball.ply"},
-                             Words{"render", "a.nff", "-o", "b.png", "--report", "ball.ply"}}) {
+  for (const Words& words :
+       {Words{"render", "a.nff", "-o", "b.png", "--timeline", "ball.ply"}, Words{"pack", "a.nff", "-o", "./ball.ply"},
+        Words{"render", "a.nff", "-o", "b.png", "--report", "ball.ply"}}) {
     const ProgramResult result = run_program(folder.folder(), words);
     EXPECT_EQ(result.exit_code, 2) << result.out;
-    EXPECT_NE(result.err.find("is a file of the scene"), std::string::npos) << result.err;
+    EXPECT_NE(result.err.find("is the input 'ball.ply' of this command"), std::string::npos) << result.err;
     EXPECT_EQ(std::filesystem::file_size(folder.path("ball.ply")), bytes);
   }
 }

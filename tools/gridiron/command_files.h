@@ -1,0 +1,60 @@
+// Command files: the one place that keeps the outputs of a command from its inputs and from one another.
+// Memory: names. Threads: note_input() is called by any. SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <cstddef>
+#include <filesystem>
+#include <string>
+#include <vector>
+
+#include "output_target.h"
+
+namespace gridiron::tool {
+
+/// What an output holds: this decides how its name may end, and whether a terminal may show it.
+enum class OutputKind {
+  kPicture,  ///< .png or .pfm
+  kFloats,   ///< .pfm
+  kBinary,
+  kText,
+};
+
+struct Output {
+  std::string option;  ///< that names it; empty: a file of an output folder
+  std::filesystem::path path;
+  OutputKind kind = OutputKind::kText;
+};
+
+/// The files of the command that runs while this object lives. What is noted and declared without one is not compared.
+class CommandFiles {
+ public:
+  CommandFiles();
+  /// Gives standard output back where an output took it.
+  ~CommandFiles();
+  CommandFiles(const CommandFiles&) = delete;
+  CommandFiles& operator=(const CommandFiles&) = delete;
+};
+
+/// Notes a file that the command reads, before it is opened. `-` is standard input.
+/// Errors: Failure (kUsage) where it is a declared output, links followed.
+void note_input(const std::filesystem::path& path);
+
+/// Declares files that the command will write, before it works for them. Where one is standard output, what is printed
+/// from then on goes to standard error.
+///
+/// Errors: Failure, those of resolve_output(); kUsage where one is an input noted so far or another output, where its
+/// name has another ending than its kind, or where bytes would go to a terminal.
+void declare_outputs(const std::vector<Output>& outputs);
+
+/// @returns where a declared output goes: where its links led when it was declared. Others are resolved now.
+/// Errors: of resolve_output().
+[[nodiscard]] OutputTarget target_of(const std::filesystem::path& path);
+
+/// Throws Failure (kBadInput) where a target has become a folder or an input since it was declared.
+void check_again(const OutputTarget& target);
+
+/// Counts files that have got their names: a failure after that tells how many.
+void count_written_file();
+[[nodiscard]] std::size_t written_file_count();
+
+}  // namespace gridiron::tool
