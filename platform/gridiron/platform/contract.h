@@ -47,11 +47,11 @@ struct PlatformLimits {
   std::uint32_t queue_depth = 16;          ///< commands that may be pending at once; 1 is legal
 };
 
-/// The transfers core issues, on every target alike, so that counters agree on every board: sizes 16n <= 8 KB, both
-/// ends congruent modulo 32, the main-memory side crossing no 4 KB boundary.
+/// The transfers core issues, on every target alike, so that counters agree on every board: at most 4,096 bytes and
+/// a multiple of 16, both ends congruent modulo 32, the main-memory side crossing no multiple of 4,096.
 inline constexpr std::uint32_t kPortableGranuleBytes = 16;
 inline constexpr std::uint32_t kPortableCongruenceBytes = 32;     ///< both ends are congruent modulo this
-inline constexpr std::uint32_t kPortableMaxTransferBytes = 8192;  ///< largest transfer
+inline constexpr std::uint32_t kPortableMaxTransferBytes = 4096;  ///< largest transfer
 inline constexpr std::uint32_t kPortableBoundaryBytes = 4096;     ///< no transfer crosses a multiple in main memory
 
 /// Answer of claim_tile().

@@ -98,7 +98,7 @@ class TestPlatform {
     commands_.push_back(command);
     const auto place = reinterpret_cast<std::uintptr_t>(local);
     if (bytes == 0 || bytes % kPortableGranuleBytes != 0) violate("size");
-    if (bytes > kPortableMaxTransferBytes) violate("more than 8 KB");
+    if (bytes > kPortableMaxTransferBytes) violate("more than 4,096 bytes");
     if (place % kPortableGranuleBytes != 0 || address.value % kPortableGranuleBytes != 0) violate("alignment");
     if ((place - address.value) % kPortableCongruenceBytes != 0) violate("ends not congruent");
     if (address.value / kPortableBoundaryBytes != (address.value + bytes - 1) / kPortableBoundaryBytes) {
