@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <gridiron/sim/machine_profile.h>
 #include <gridiron/sim/replay.h>
+#include <gridiron/sim/trace_packing.h>
 
 #include <cstdio>
 #include <string>
@@ -21,7 +22,9 @@ constexpr double kLimitSeconds = 1.0;
 // Events of a frame, and its lines of 128 bytes as one core moves them.
 std::pair<std::size_t, std::uint64_t> extent_of(const sim::FrameTrace& trace) {
   std::size_t events = 0;
-  for (const sim::TileTrace& tile : trace.tiles) events += tile.events.size();
+  for (const sim::TileTrace& tile : trace.tiles) {
+    sim::for_each_event(tile, [&events](const sim::TraceEvent&) { ++events; });
+  }
   std::uint64_t line_bytes = 0;
   const sim::FrameTiming timing = sim::replay(trace, sim::machine_profiles().front(), {.core_count = 1});
   for (const sim::CoreTiming& core : timing.cores) line_bytes += core.line_bytes_in + core.line_bytes_out;

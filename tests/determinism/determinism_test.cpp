@@ -228,9 +228,9 @@ void expect_same_frame(Accuracy accuracy, const std::string& name) {
   EXPECT_EQ(test::first_difference(subject.first(), rendered), "");
   if (variation.keeps == Keeps::kEverything) {
     EXPECT_EQ(subject.first().result.work, rendered.result.work);
-    const auto& once = subject.first().result.trace.prologue.events;
-    const auto gets = static_cast<std::uint64_t>(
-        std::count_if(once.begin(), once.end(), [](const auto& e) { return e.kind == sim::EventKind::kGet; }));
+    const test::UnpackedTrace once(subject.first().result.trace.prologue);
+    const auto gets = static_cast<std::uint64_t>(std::count_if(
+        once.events.begin(), once.events.end(), [](const auto& e) { return e.kind == sim::EventKind::kGet; }));
     EXPECT_EQ(subject.first().result.transfers + (chip.threads - 1) * gets, rendered.result.transfers);
     EXPECT_EQ(first_difference(subject.first().result.trace, rendered.result.trace), "");
   }
@@ -274,12 +274,13 @@ TEST(ReplayOfAFrame, SumsToTheSameWorkForAnyNumberOfCores) {
 
   // What every core does once, whatever its tiles.
   const auto count = [](const sim::TileTrace& part, sim::EventKind kind) {
-    return static_cast<std::uint64_t>(
-        std::count_if(part.events.begin(), part.events.end(), [kind](const auto& e) { return e.kind == kind; }));
+    std::uint64_t sum = 0;
+    sim::for_each_event(part, [&](const sim::TraceEvent& e) { sum += e.kind == kind ? 1 : 0; });
+    return sum;
   };
   const auto bytes = [](const sim::TileTrace& part, sim::EventKind kind) {
     std::uint64_t sum = 0;
-    for (const sim::TraceEvent& e : part.events) sum += e.kind == kind ? e.bytes : 0;
+    sim::for_each_event(part, [&](const sim::TraceEvent& e) { sum += e.kind == kind ? e.bytes : 0; });
     return sum;
   };
   std::uint64_t tile_gets = 0, tile_puts = 0, tile_bytes_in = 0, tile_bytes_out = 0;

@@ -153,6 +153,19 @@ TEST(EffectsDeterminism, TheSceneHasRaysOfEveryKind) {
   }
 }
 
+// Steps of a frame with effects are many; they are packed as they come, and this is the memory that they take. The
+// count is the same on every host, so that growth of any size is seen here.
+TEST(EffectsDeterminism, TracesTakeFewBytes) {
+  const sim::FrameTrace& trace = first_frame().result.trace;
+  std::uint64_t steps = 0;
+  for (const sim::TileTrace& tile : trace.tiles) sim::for_each_event(tile, [&](const sim::TraceEvent&) { ++steps; });
+  const std::uint64_t bytes = trace.packed_bytes();
+  RecordProperty("steps", std::to_string(steps));
+  RecordProperty("bytes", std::to_string(bytes));
+  EXPECT_GT(steps, 400000u) << "of 1,800 pixels";
+  EXPECT_LT(bytes, 290000u);
+}
+
 TEST(EffectsDeterminism, ThreadsAndOrderOfTransfersChangeNothing) {
   const auto expect_same = [](const std::string& name, const std::function<void(sim::ChipOptions&)>& apply) {
     const EffectsFrame frame = render([&](FrameSettings&, sim::ChipOptions& chip) { apply(chip); });

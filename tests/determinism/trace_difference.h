@@ -4,9 +4,10 @@
 
 #include <gridiron/sim/trace.h>
 
-#include <algorithm>
 #include <cstddef>
 #include <string>
+
+#include "support/trace_steps.h"
 
 namespace gridiron::test {
 
@@ -17,30 +18,16 @@ inline std::string words_of(const sim::TraceEvent& e) {
 
 // First difference of two tile traces in words, empty where there is none. Addresses count relative to the planes and
 // the image, which lie at the same place in every frame here.
-inline std::string first_difference(const sim::TileTrace& a, const sim::TileTrace& b) {
-  if (a.tile_id != b.tile_id) return "tile ids";
+inline std::string first_difference(const sim::TileTrace& packed_a, const sim::TileTrace& packed_b) {
+  if (packed_a.tile_id != packed_b.tile_id) return "tile ids";
+  const UnpackedTrace a(packed_a), b(packed_b);
   if (a.events.size() != b.events.size()) return "event counts";
   for (std::size_t i = 0; i < a.events.size(); ++i) {
     const sim::TraceEvent& x = a.events[i];
     const sim::TraceEvent& y = b.events[i];
-    const bool transfer = x.kind == sim::EventKind::kGet || x.kind == sim::EventKind::kPut;
-    bool same = x.kind == y.kind;
-    if (transfer) {
-      same = same && x.tag == y.tag && x.rotating == y.rotating && x.bytes == y.bytes && x.address == y.address;
-    } else if (x.kind == sim::EventKind::kWait) {
-      same = same && x.tags == y.tags && x.rotating_tags == y.rotating_tags;
-    } else if (x.kind == sim::EventKind::kStage) {
-      same = same && x.stage == y.stage;
-    } else {
-      same = same && x.first_work == y.first_work && x.work_count == y.work_count;
-    }
-    if (!same) return "event " + std::to_string(i) + ": " + words_of(x) + " or " + words_of(y);
+    if (!is_same_step(x, y)) return "event " + std::to_string(i) + ": " + words_of(x) + " or " + words_of(y);
   }
-  const auto same_amount = [](const sim::WorkAmount& x, const sim::WorkAmount& y) {
-    return x.kind == y.kind && x.amount == y.amount;
-  };
-  const bool same_work = std::equal(a.work.begin(), a.work.end(), b.work.begin(), b.work.end(), same_amount);
-  return same_work ? "" : "work";
+  return packed_a.packed == packed_b.packed ? "" : "packed bytes";
 }
 
 inline std::string first_difference(const sim::FrameTrace& a, const sim::FrameTrace& b) {

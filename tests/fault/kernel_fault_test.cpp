@@ -206,7 +206,7 @@ TEST(KernelFault, AnEndOfClaimsEndsTheFrameBetweenTiles) {
           render_faulty(frame, {.claim = claim, .claim_answer = kind}, Completion::kLate, nullptr);
       EXPECT_EQ(result.status, kind == TileClaim::Kind::kAborted ? Status::kAborted : Status::kDeadline);
       EXPECT_TRUE(result.violations.empty()) << "claim " << claim << ": " << words(result);
-      EXPECT_EQ(result.trace.tiles[claim - 1 < 4 ? claim - 1 : 3].events.empty(), claim != 5) << "claim " << claim;
+      EXPECT_EQ(result.trace.tiles[claim - 1 < 4 ? claim - 1 : 3].packed.empty(), claim != 5) << "claim " << claim;
     }
   }
 }

@@ -4,28 +4,29 @@
 #include <gridiron/store/dma_tags.h>
 #include <gtest/gtest.h>
 
+#include <array>
 #include <mutex>
 #include <thread>
 #include <vector>
 
 #include "support/test_mesh.h"
+#include "support/trace_steps.h"
 
 namespace gridiron::rival {
 namespace {
 
 sim::TileTrace random_tile(std::uint32_t tile_id, test::TestRandom& random) {
-  sim::TileTrace tile;
-  tile.tile_id = tile_id;
+  sim::TraceWriter writer;
   std::uint32_t pending = 0;
   for (std::uint32_t step = 0; step < 60; ++step) {
     sim::TraceEvent event{};
+    sim::WorkAmount work[2];
     switch (random.below(4)) {
       case 0:
         event.kind = sim::EventKind::kWork;
-        event.first_work = static_cast<std::uint32_t>(tile.work.size());
-        event.work_count = 2;
-        tile.work.push_back({Work::kCellStep, random.below(40)});
-        tile.work.push_back({Work::kRayGenerated, random.below(20)});
+        work[0] = {Work::kCellStep, random.below(40)};
+        work[1] = {Work::kRayGenerated, random.below(20)};
+        event.work = work;
         break;
       case 1:
       case 2: {
@@ -42,20 +43,19 @@ sim::TileTrace random_tile(std::uint32_t tile_id, test::TestRandom& random) {
         event.tags = pending & static_cast<std::uint32_t>(random.next());
         break;
     }
-    tile.events.push_back(event);
+    writer.add(event);
   }
   sim::TraceEvent put{};
   put.kind = sim::EventKind::kPut;
   put.rotating = true;
   put.bytes = 4096;
   put.address = 65536;
-  tile.events.push_back(put);
+  writer.add(put);
   sim::TraceEvent wait{};
   wait.kind = sim::EventKind::kWait;
-  wait.rotating = true;
   wait.rotating_tags = 2;  // the tile before this one
-  tile.events.push_back(wait);
-  return tile;
+  writer.add(wait);
+  return writer.finish(tile_id);
 }
 
 TEST(CoreClock, IsTheReplayOfOneCore) {
@@ -71,7 +71,7 @@ TEST(CoreClock, IsTheReplayOfOneCore) {
       CoreClock clock(machine, 2);
       clock.take_claim();
       for (std::uint32_t tile = 0; tile < 12; ++tile) {
-        clock.take(trace.tiles[tile], 0, tile);
+        clock.take(trace.tiles[tile], tile);
         clock.take_claim();
       }
       const double cycles = static_cast<double>(clock.now()) / CoreClock::kTicksPerCycle;
@@ -91,8 +91,6 @@ TEST(CoreClock, WindowOfLinesAndRotatingTagsHoldTheCore) {
     CoreClock clock(machine, 2);
     clock.take_claim();
     for (std::uint32_t tile = 0; tile < 6; ++tile) {
-      sim::TileTrace steps;
-      steps.tile_id = tile;
       sim::TraceEvent put{};
       put.kind = sim::EventKind::kPut;
       put.rotating = true;
@@ -101,9 +99,9 @@ TEST(CoreClock, WindowOfLinesAndRotatingTagsHoldTheCore) {
       sim::TraceEvent wait{};
       wait.kind = sim::EventKind::kWait;
       wait.rotating_tags = 2;
-      steps.events = {put, wait};
+      const sim::TileTrace steps = test::packed_trace(tile, std::array{put, wait});
       trace.tiles.push_back(steps);
-      clock.take(steps, 0, tile);
+      clock.take(steps, tile);
       clock.take_claim();
     }
     const double cycles = static_cast<double>(clock.now()) / CoreClock::kTicksPerCycle;

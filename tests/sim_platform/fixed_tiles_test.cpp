@@ -4,6 +4,8 @@
 
 #include <vector>
 
+#include "support/trace_steps.h"
+
 namespace gridiron::sim {
 namespace {
 
@@ -22,13 +24,9 @@ MachineProfile claim_machine() {
 FrameTrace frame_of(const std::vector<std::uint32_t>& tile_cycles) {
   FrameTrace trace;
   for (const std::uint32_t cycles : tile_cycles) {
-    TileTrace& tile = trace.tiles.emplace_back();
-    tile.tile_id = static_cast<std::uint32_t>(trace.tiles.size()) - 1;
-    tile.work.push_back({Work::kCellStep, cycles});
-    TraceEvent event{};
-    event.kind = EventKind::kWork;
-    event.work_count = 1;
-    tile.events.push_back(event);
+    const WorkAmount work = {Work::kCellStep, cycles};
+    const TraceEvent event = {.kind = EventKind::kWork, .work = {&work, 1}};
+    trace.tiles.push_back(test::packed_trace(static_cast<std::uint32_t>(trace.tiles.size()), {&event, 1}));
   }
   return trace;
 }

@@ -4,6 +4,7 @@
 
 #include <gridiron/sim/machine_profile.h>
 #include <gridiron/sim/replay.h>
+#include <gridiron/sim/trace_packing.h>
 #include <gridiron/store/dma_tags.h>
 
 #include <cstddef>
@@ -46,60 +47,46 @@ inline MachineProfile blocking_machine(double latency_cycles) {
 /// Writes a TileTrace step by step.
 class Steps {
  public:
-  explicit Steps(std::uint32_t tile_id = 0) { tile_.tile_id = tile_id; }
+  explicit Steps(std::uint32_t tile_id = 0) : tile_id_(tile_id) {}
 
   Steps& work(std::uint32_t amount, Work kind = Work::kCellStep) {
-    TraceEvent event = blank(EventKind::kWork);
-    event.first_work = static_cast<std::uint32_t>(tile_.work.size());
-    event.work_count = 1;
-    tile_.work.push_back({kind, amount});
-    tile_.events.push_back(event);
-    return *this;
+    return add({.kind = EventKind::kWork}, {kind, amount});
   }
   Steps& get(std::uint32_t bytes, std::uint8_t tag, std::uint64_t address = 4096) {
     return transfer(EventKind::kGet, bytes, tag, false, address);
   }
-  Steps& put(std::uint32_t bytes, std::uint8_t tag, bool rotating = false) {
-    return transfer(EventKind::kPut, bytes, tag, rotating, 8192);
+  Steps& put(std::uint32_t bytes, std::uint8_t tag, bool rotating = false, std::uint64_t address = 8192) {
+    return transfer(EventKind::kPut, bytes, tag, rotating, address);
   }
   Steps& wait(std::uint32_t tags, std::uint32_t rotating_tags = 0) {
-    TraceEvent event = blank(EventKind::kWait);
-    event.tags = tags;
-    event.rotating_tags = rotating_tags;
-    event.rotating = rotating_tags != 0;
-    tile_.events.push_back(event);
-    return *this;
+    return add({.kind = EventKind::kWait, .tags = tags, .rotating_tags = rotating_tags});
   }
-  Steps& stage(Stage stage) {
-    TraceEvent event = blank(EventKind::kStage);
-    event.stage = stage;
-    tile_.events.push_back(event);
-    return *this;
+  Steps& stage(Stage stage) { return add({.kind = EventKind::kStage, .stage = stage}); }
+  operator TileTrace() const {
+    TraceWriter writer;
+    for (const Step& step : steps_) {
+      TraceEvent event = step.event;
+      if (event.kind == EventKind::kWork) event.work = {&step.work, 1};
+      writer.add(event);
+    }
+    return writer.finish(tile_id_);
   }
-  operator TileTrace() const { return tile_; }
 
  private:
-  static TraceEvent blank(EventKind kind) {
-    return {.kind = kind,
-            .tag = 0,
-            .rotating = false,
-            .bytes = 0,
-            .address = 0,
-            .tags = 0,
-            .rotating_tags = 0,
-            .first_work = 0,
-            .work_count = 0};
-  }
-  Steps& transfer(EventKind kind, std::uint32_t bytes, std::uint8_t tag, bool rotating, std::uint64_t address) {
-    TraceEvent event = blank(kind);
-    event.bytes = bytes;
-    event.tag = tag;
-    event.rotating = rotating;
-    event.address = address;
-    tile_.events.push_back(event);
+  struct Step {
+    TraceEvent event;
+    WorkAmount work;  ///< of kWork
+  };
+  Steps& add(const TraceEvent& event, WorkAmount work = {}) {
+    steps_.push_back({event, work});
     return *this;
   }
-  TileTrace tile_;
+  Steps& transfer(EventKind kind, std::uint32_t bytes, std::uint8_t tag, bool rotating, std::uint64_t address) {
+    return add({.kind = kind, .tag = tag, .rotating = rotating, .bytes = bytes, .address = address});
+  }
+
+  std::uint32_t tile_id_;
+  std::vector<Step> steps_;
 };
 
 inline std::uint32_t bit(std::uint32_t tag) {

@@ -96,9 +96,7 @@ TEST(ReplayModel, OneCoreWithoutContentionIsTheSumByHand) {
                              .work(50)
                              .put(4096, 0, true);
   trace.tiles = {tile};
-  trace.epilogue = Steps().wait(0, 1);
-  trace.epilogue.events[0].tags = bit(kFirstOutputTag);
-  trace.epilogue.events[0].rotating_tags = 0;
+  trace.epilogue = Steps().wait(bit(kFirstOutputTag));
 
   const FrameTiming frame = replay_on(trace, machine);
   const CoreTiming& core = frame.cores[0];

@@ -112,8 +112,7 @@ TEST(Replay, ClaimComesBeforeALineOfTheSameTime) {
 }
 
 TEST(Replay, PutsCountAsBytesOut) {
-  TileTrace tile = Steps().put(64, 0, true).wait(0, 1);
-  tile.events[0].address = 8192 + 96;
+  const TileTrace tile = Steps().put(64, 0, true, 8192 + 96).wait(0, 1);
   const FrameTiming frame = replay_on(frame_of({tile}), blocking_machine(500));
   EXPECT_EQ(frame.cores[0].puts, 1u);
   EXPECT_EQ(frame.cores[0].gets, 0u);
@@ -308,10 +307,7 @@ TEST(Replay, TwiceIsEqualToTheLastDigit) {
   EXPECT_EQ(fingerprint(replay(trace, machine, {.core_count = 6, .timeline = true})), first);
 
   // The same frame in other memory, with other capacities.
-  for (TileTrace& tile : trace.tiles) {
-    tile.events.reserve(tile.events.size() * 3);
-    tile.work.reserve(tile.work.size() * 2 + 7);
-  }
+  for (TileTrace& tile : trace.tiles) tile.packed.reserve(tile.packed.size() * 3);
   trace.tiles.reserve(1000);
   const FrameTrace copy = trace;
   EXPECT_EQ(fingerprint(replay(trace, machine, {.core_count = 6, .timeline = true})), first);

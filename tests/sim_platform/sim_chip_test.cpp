@@ -10,31 +10,24 @@
 #include <cstring>
 #include <ostream>
 #include <string>
-#include <tuple>
 #include <vector>
 
 #include "sim_platform/program_bench.h"
 #include "support/render_mesh.h"
 #include "support/test_mesh.h"
+#include "support/trace_steps.h"
 #include "support/views.h"
 
 namespace gridiron::sim {
 
-// Traces are compared field by field.
-[[nodiscard]] static auto fields(const TraceEvent& e) {
-  return std::tuple(e.kind, e.tag, e.rotating, e.stage, e.bytes, e.address, e.tags, e.rotating_tags, e.first_work,
-                    e.work_count);
-}
-[[nodiscard]] static std::string difference(const TileTrace& a, const TileTrace& b) {
-  if (a.tile_id != b.tile_id) return "tile_id";
+[[nodiscard]] static std::string difference(const TileTrace& packed_a, const TileTrace& packed_b) {
+  if (packed_a.tile_id != packed_b.tile_id) return "tile_id";
+  const test::UnpackedTrace a(packed_a), b(packed_b);
   for (std::size_t i = 0; i < a.events.size() && i < b.events.size(); ++i) {
-    if (fields(a.events[i]) != fields(b.events[i])) return "event " + std::to_string(i);
+    if (!test::is_same_step(a.events[i], b.events[i])) return "event " + std::to_string(i);
   }
   if (a.events.size() != b.events.size()) return "number of events";
-  for (std::size_t i = 0; i < a.work.size() && i < b.work.size(); ++i) {
-    if (a.work[i].kind != b.work[i].kind || a.work[i].amount != b.work[i].amount) return "work " + std::to_string(i);
-  }
-  return a.work.size() == b.work.size() ? "" : "number of work amounts";
+  return packed_a.packed == packed_b.packed ? "" : "packed bytes";
 }
 [[nodiscard]] static std::string difference(const FrameTrace& a, const FrameTrace& b) {
   if (const std::string d = difference(a.prologue, b.prologue); !d.empty()) return "prologue: " + d;

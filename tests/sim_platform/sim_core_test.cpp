@@ -12,6 +12,7 @@
 #include <vector>
 
 #include "program_bench.h"
+#include "support/trace_steps.h"
 
 namespace gridiron::sim {
 namespace {
@@ -58,7 +59,7 @@ TEST(SimCoreTrace, ATileListsItsStepsInOrderWithTheWorkBetweenThem) {
   ASSERT_EQ(result.status, Status::kOk) << words(result);
   ASSERT_EQ(result.trace.tiles.size(), 6u);
   for (std::uint32_t id = 0; id < 6; ++id) {
-    const TileTrace& tile = result.trace.tiles[id];
+    const test::UnpackedTrace tile(result.trace.tiles[id]);
     EXPECT_EQ(tile.tile_id, id);
     ASSERT_EQ(tile.events.size(), 4u);
     EXPECT_EQ(tile.events[0].kind, EventKind::kWork);
@@ -66,7 +67,6 @@ TEST(SimCoreTrace, ATileListsItsStepsInOrderWithTheWorkBetweenThem) {
     EXPECT_EQ(tile.events[2].kind, EventKind::kWork);
     EXPECT_EQ(tile.events[3].kind, EventKind::kPut);
     // Output slots count from the tile's own, whatever tiles the core had before.
-    EXPECT_TRUE(tile.events[1].rotating);
     EXPECT_EQ(tile.events[1].tags, 0u);
     EXPECT_EQ(tile.events[1].rotating_tags, 1u);
     EXPECT_TRUE(tile.events[3].rotating);
@@ -74,18 +74,19 @@ TEST(SimCoreTrace, ATileListsItsStepsInOrderWithTheWorkBetweenThem) {
     EXPECT_EQ(tile.events[3].bytes, 64u);
     EXPECT_EQ(tile.events[3].address, bench.output(id * 64).value);
     const TraceEvent& work = tile.events[2];
-    ASSERT_EQ(work.work_count, id == 0 ? 1u : 2u);
-    EXPECT_EQ(tile.work[work.first_work].kind, Work::kSliceStep);
-    EXPECT_EQ(tile.work[work.first_work].amount, id * 10 + 1);
+    ASSERT_EQ(work.work.size(), id == 0 ? 1u : 2u);
+    EXPECT_EQ(work.work[0].kind, Work::kSliceStep);
+    EXPECT_EQ(work.work[0].amount, id * 10 + 1);
   }
   // Prologue: work, get, wait. Epilogue: the wait for both slots.
-  ASSERT_EQ(result.trace.prologue.events.size(), 3u);
-  EXPECT_EQ(result.trace.prologue.events[1].kind, EventKind::kGet);
-  EXPECT_FALSE(result.trace.prologue.events[1].rotating);
-  EXPECT_EQ(result.trace.prologue.events[1].tag, 1u);
-  EXPECT_EQ(result.trace.prologue.events[2].tags, 2u);
-  ASSERT_EQ(result.trace.epilogue.events.size(), 1u);
-  EXPECT_EQ(result.trace.epilogue.events[0].rotating_tags, 3u);
+  const test::UnpackedTrace prologue(result.trace.prologue), epilogue(result.trace.epilogue);
+  ASSERT_EQ(prologue.events.size(), 3u);
+  EXPECT_EQ(prologue.events[1].kind, EventKind::kGet);
+  EXPECT_FALSE(prologue.events[1].rotating);
+  EXPECT_EQ(prologue.events[1].tag, 1u);
+  EXPECT_EQ(prologue.events[2].tags, 2u);
+  ASSERT_EQ(epilogue.events.size(), 1u);
+  EXPECT_EQ(epilogue.events[0].rotating_tags, 3u);
   // Totals are those of the tiles: the prologue is done once per core.
   EXPECT_EQ(result.work[static_cast<std::size_t>(Work::kGetIssue)], 0u);
   EXPECT_EQ(result.work[static_cast<std::size_t>(Work::kSliceStep)], 6u + 10 * 15);
@@ -107,7 +108,8 @@ TEST(SimCoreTrace, OtherSlotsAreToldByTheirDistanceFromTheTiles) {
     return Status::kOk;
   });
   ASSERT_EQ(result.status, Status::kOk);
-  for (const TileTrace& tile : result.trace.tiles) {
+  for (const TileTrace& packed : result.trace.tiles) {
+    const test::UnpackedTrace tile(packed);
     ASSERT_EQ(tile.events.size(), 3u);
     for (std::uint32_t ahead = 0; ahead < 3; ++ahead) EXPECT_EQ(tile.events[ahead].rotating_tags, 1u << ahead);
   }
@@ -125,7 +127,7 @@ TEST(SimCoreTrace, DoesNotDependOnWhichCoreRenderedATile) {
     ASSERT_EQ(result.status, Status::kOk) << words(result);
     EXPECT_EQ(result.work, reference.work);
     for (std::uint32_t id = 0; id < 40; ++id) {
-      const TileTrace &a = result.trace.tiles[id], &b = reference.trace.tiles[id];
+      const test::UnpackedTrace a(result.trace.tiles[id]), b(reference.trace.tiles[id]);
       ASSERT_EQ(a.events.size(), b.events.size());
       for (std::size_t i = 0; i < a.events.size(); ++i) {
         EXPECT_EQ(a.events[i].tag, b.events[i].tag) << "threads " << threads << " tile " << id;

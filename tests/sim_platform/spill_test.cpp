@@ -13,6 +13,7 @@
 #include <vector>
 
 #include "program_bench.h"
+#include "support/trace_steps.h"
 
 namespace gridiron::sim {
 namespace {
@@ -90,7 +91,8 @@ TEST(Spill, TracesAreTheSameWhicheverCoreRendersATile) {
         return put_and_get(core, data, tile, 4096 + tile * 64);
       });
       ASSERT_EQ(result.status, Status::kOk) << words(result);
-      for (const TileTrace& tile : result.trace.tiles) {
+      for (const TileTrace& packed : result.trace.tiles) {
+        const test::UnpackedTrace tile(packed);
         ASSERT_EQ(tile.events.size(), 5u);
         for (const std::size_t transfer : {0u, 2u}) {
           EXPECT_EQ(tile.events[transfer].address, bench.spill_address().value + 4096 + tile.tile_id * 64);

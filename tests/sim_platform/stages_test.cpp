@@ -17,6 +17,7 @@
 
 #include "program_bench.h"
 #include "replay_cases.h"
+#include "support/trace_steps.h"
 
 namespace gridiron::sim {
 namespace {
@@ -81,10 +82,10 @@ TEST(Stages, StandInTheTraceWhereTheyChange) {
       for (const TileTrace& tile : result.trace.tiles) {
         std::vector<EventKind> kinds;
         std::vector<Stage> stages;
-        for (const TraceEvent& event : tile.events) {
+        for_each_event(tile, [&](const TraceEvent& event) {
           kinds.push_back(event.kind);
           if (event.kind == EventKind::kStage) stages.push_back(event.stage);
-        }
+        });
         EXPECT_EQ(kinds, expected) << tile.tile_id;
         EXPECT_EQ(stages[0], Stage::kShadow);
         EXPECT_EQ(stages[1], Stage::kOutput);
@@ -103,7 +104,8 @@ TEST(Stages, GoThroughTheDecoratorThatInjectsFaults) {
     return render_in_stages(bench, faulty, data.data(), false);
   });
   ASSERT_EQ(result.trace.tiles.size(), expected.trace.tiles.size());
-  EXPECT_EQ(result.trace.tiles[3].events.size(), expected.trace.tiles[3].events.size());
+  EXPECT_EQ(test::UnpackedTrace(result.trace.tiles[3]).events.size(),
+            test::UnpackedTrace(expected.trace.tiles[3]).events.size());
 }
 
 TEST(Stages, ThatThereAreNotAreToldWithTheTile) {

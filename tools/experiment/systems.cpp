@@ -1,6 +1,7 @@
 // Systems. SPDX-License-Identifier: Apache-2.0
 #include "experiment/systems.h"
 
+#include <gridiron/sim/trace_packing.h>
 #include <report/report.h>
 
 #include <algorithm>
@@ -78,11 +79,13 @@ std::uint64_t sum_of(const sim::WorkTotals& work, std::initializer_list<Work> ki
 // Bytes that gets of triangle records ask for. The prologue of a core has none.
 std::uint64_t fetched_triangle_bytes(const sim::FrameTrace& trace) {
   std::uint64_t bytes = 0;
+  sim::TraceReader steps;
   for (const sim::TileTrace& tile : trace.tiles) {
-    for (const sim::TraceEvent& event : tile.events) {
-      const bool is_triangles = event.kind == sim::EventKind::kGet && !event.rotating &&
-                                sim::wait_level_of_tag(event.tag) == sim::WaitLevel::kTriangle;
-      if (is_triangles) bytes += event.bytes;
+    steps.open(tile);
+    while (const sim::TraceEvent* const event = steps.next()) {
+      const bool is_triangles = event->kind == sim::EventKind::kGet && !event->rotating &&
+                                sim::wait_level_of_tag(event->tag) == sim::WaitLevel::kTriangle;
+      if (is_triangles) bytes += event->bytes;
     }
   }
   return bytes;

@@ -3,6 +3,7 @@
 
 #include <gridiron/sim/busy_cycles.h>
 #include <gridiron/sim/sim_memory.h>
+#include <gridiron/sim/trace_packing.h>
 #include <report/device_report.h>
 #include <report/report.h>
 
@@ -110,7 +111,9 @@ std::string of_both(std::uint64_t device, std::uint64_t simulated) {
 
 sim::WorkTotals work_of(const sim::TileTrace& trace) {
   sim::WorkTotals work{};
-  for (const sim::WorkAmount& amount : trace.work) work[static_cast<std::size_t>(amount.kind)] += amount.amount;
+  sim::for_each_event(trace, [&work](const sim::TraceEvent& event) {
+    for (const sim::WorkAmount& amount : event.work) work[static_cast<std::size_t>(amount.kind)] += amount.amount;
+  });
   return work;
 }
 
@@ -120,11 +123,11 @@ struct Transfers {
 
 Transfers transfers_of(const sim::TileTrace& trace) {
   Transfers sum;
-  for (const sim::TraceEvent& event : trace.events) {
-    if (event.kind != sim::EventKind::kGet && event.kind != sim::EventKind::kPut) continue;
+  sim::for_each_event(trace, [&sum](const sim::TraceEvent& event) {
+    if (event.kind != sim::EventKind::kGet && event.kind != sim::EventKind::kPut) return;
     ++sum.count;
     sum.bytes += event.bytes;
-  }
+  });
   return sum;
 }
 

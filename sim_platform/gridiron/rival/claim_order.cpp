@@ -47,16 +47,17 @@ void CoreClock::issue(std::uint64_t address, std::uint32_t bytes, std::uint32_t 
   done_of_tag_[tag] = arrival;
 }
 
-void CoreClock::take(const sim::TileTrace& trace, std::size_t first, std::uint32_t ordinal) {
+void CoreClock::take(const sim::TileTrace& trace, std::uint32_t ordinal) {
   const auto rotated = [&](std::uint32_t relative) {
     return kFirstOutputTag + (relative + ordinal) % output_depth_;
   };
-  for (std::size_t i = first; i < trace.events.size(); ++i) {
-    const sim::TraceEvent& event = trace.events[i];
+  steps_.open(trace);
+  while (const sim::TraceEvent* const step = steps_.next()) {
+    const sim::TraceEvent& event = *step;
     switch (event.kind) {
       case sim::EventKind::kWork:
-        for (std::uint32_t k = event.first_work; k < event.first_work + event.work_count; ++k) {
-          now_ += work_[static_cast<std::size_t>(trace.work[k].kind)] * trace.work[k].amount;
+        for (const sim::WorkAmount& work : event.work) {
+          now_ += work_[static_cast<std::size_t>(work.kind)] * work.amount;
         }
         break;
       case sim::EventKind::kGet:
@@ -102,11 +103,8 @@ void ClaimOrder::leave(std::uint32_t core) {
 
 TileClaim OrderedCore::claim_tile() {
   // Everything the core did since its last claim.
-  if (in_tile_) {
-    clock_.take(inner_.traces.back(), 0, tiles_++);
-  } else {
-    clock_.take(inner_.prologue, 0, 0);
-  }
+  const sim::TileTrace& trace = inner_.end_trace();
+  clock_.take(trace, in_tile_ ? tiles_++ : 0);
   order_.wait_for_turn(index_, clock_.now());
   const TileClaim claim = inner_.claim_tile();
   clock_.take_claim();

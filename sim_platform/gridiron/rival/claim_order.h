@@ -5,7 +5,7 @@
 
 #include <gridiron/sim/machine_profile.h>
 #include <gridiron/sim/sim_core.h>
-#include <gridiron/sim/trace.h>
+#include <gridiron/sim/trace_packing.h>
 
 #include <array>
 #include <condition_variable>
@@ -24,8 +24,8 @@ class CoreClock {
 
   CoreClock(const sim::MachineProfile& machine, std::uint32_t output_depth);
 
-  /// Takes the steps of `trace` from event `first` on. @param ordinal  tiles this core had before this one.
-  void take(const sim::TileTrace& trace, std::size_t first, std::uint32_t ordinal);
+  /// Takes the steps of `trace`. @param ordinal  tiles this core had before this one.
+  void take(const sim::TileTrace& trace, std::uint32_t ordinal);
   /// Takes the time of a claim, granted or refused.
   void take_claim() { now_ += claim_; }
 
@@ -48,6 +48,7 @@ class CoreClock {
   std::uint64_t command_count_ = 0;
   std::uint64_t line_count_ = 0;
   std::array<Ticks, 32> done_of_tag_{};
+  sim::TraceReader steps_;
 };
 
 /// Lets one core run at a time, always the one whose clock is least, ties by number.

@@ -3,7 +3,7 @@
 #pragma once
 
 #include <gridiron/sim/machine_profile.h>
-#include <gridiron/sim/trace.h>
+#include <gridiron/sim/trace_packing.h>
 
 namespace gridiron::sim {
 
@@ -11,13 +11,15 @@ namespace gridiron::sim {
 /// instructions, the instructions.
 [[nodiscard]] inline double busy_cycles(const TileTrace& tile, const MachineProfile& machine) {
   double cycles = machine.claim_cycles;
-  for (const WorkAmount& work : tile.work) {
-    cycles += machine.work_cycles[static_cast<std::size_t>(work.kind)] * work.amount;
-  }
-  for (const TraceEvent& event : tile.events) {
+  for_each_event(tile, [&](const TraceEvent& event) {
+    for (const WorkAmount& work : event.work) {
+      cycles += machine.work_cycles[static_cast<std::size_t>(work.kind)] * work.amount;
+    }
+  });
+  for_each_event(tile, [&](const TraceEvent& event) {
     if (event.kind == EventKind::kGet || event.kind == EventKind::kPut) cycles += machine.issue_cycles;
     if (event.kind == EventKind::kWait) cycles += machine.wait_cycles;
-  }
+  });
   return cycles;
 }
 

@@ -222,8 +222,8 @@ namespace {
   for (std::uint32_t i = 0; i < result.trace.tiles.size(); ++i) result.trace.tiles[i].tile_id = first_tile + i;
   for (CoreRun& run : runs) {
     result.transfers += run.core->transfers();
+    for (std::uint32_t kind = 0; kind < kWorkKindCount; ++kind) result.work[kind] += run.core->tile_work[kind];
     for (TileTrace& trace : run.core->traces) {
-      for (const WorkAmount& work : trace.work) result.work[static_cast<std::size_t>(work.kind)] += work.amount;
       result.trace.tiles[trace.tile_id - first_tile] = std::move(trace);
     }
   }

@@ -1,6 +1,7 @@
 // Replay: a discrete-event simulation of one frame's traces. See replay.h for the model.
 // Memory: std::vector. Threads: any, no shared state. SPDX-License-Identifier: Apache-2.0
 #include <gridiron/sim/replay.h>
+#include <gridiron/sim/trace_packing.h>
 #include <gridiron/store/dma_tags.h>
 
 #include <algorithm>
@@ -68,8 +69,8 @@ enum class Phase : std::uint8_t { kPrologue, kTile, kEpilogue, kEnded };
 struct Core {
   // Program.
   Phase phase = Phase::kPrologue;
-  const TileTrace* steps = nullptr;
-  std::size_t next_step = 0;
+  TraceReader steps;
+  const TraceEvent* step = nullptr;  ///< that is taken next; null after the last one
   std::uint32_t tile_id = kNoTile;
   std::uint32_t ordinal = 0;  ///< of the tile: how many this core has had before it
   std::size_t next_own_tile = 0;  ///< where tiles are assigned: the first of the trace that may be its next
@@ -115,7 +116,7 @@ class Replay {
 
   FrameTiming run() {
     for (Core& core : cores_) {
-      core.steps = &trace_.prologue;
+      begin_steps(core, trace_.prologue);
       advance(core);
     }
     // Nothing that an event causes lies before it, so the earliest one is always safe to take.
@@ -156,12 +157,11 @@ class Replay {
     core.now += constants_.claim;
     core.idle += constants_.claim;
     core.ordinal = core.timing.tiles;
-    core.next_step = 0;
     core.stage = Stage::kPrimary;
     if (const TileTrace* const tile = next_tile_of(core); tile != nullptr) {
       core.phase = Phase::kTile;
-      core.steps = tile;
-      core.tile_id = core.steps->tile_id;
+      begin_steps(core, *tile);
+      core.tile_id = tile->tile_id;
       ++core.timing.tiles;
       if (with_timeline_) {
         core.tile_span = core.timeline.size();
@@ -169,7 +169,7 @@ class Replay {
       }
     } else {
       core.phase = Phase::kEpilogue;
-      core.steps = &trace_.epilogue;
+      begin_steps(core, trace_.epilogue);
       core.tile_id = kNoTile;
     }
     advance(core);
@@ -219,15 +219,20 @@ class Replay {
     core.next_request = time;
   }
 
+  static void begin_steps(Core& core, const TileTrace& trace) {
+    core.steps.open(trace);
+    core.step = core.steps.next();
+  }
+
   /// Runs a core's program until it needs to know something that other cores may still change, or ends.
   void advance(Core& core) {
     core.blocked_until = 0;
-    while (core.next_step < core.steps->events.size()) {
-      if (!take_step(core, core.steps->events[core.next_step])) {
+    while (core.step != nullptr) {
+      if (!take_step(core, *core.step)) {
         schedule_request(core);
         return;
       }
-      ++core.next_step;
+      core.step = core.steps.next();
     }
     if (core.phase == Phase::kEpilogue) {
       core.phase = Phase::kEnded;
@@ -244,7 +249,7 @@ class Replay {
   bool take_step(Core& core, const TraceEvent& event) {
     switch (event.kind) {
       case EventKind::kWork:
-        take_work(core, std::span(core.steps->work).subspan(event.first_work, event.work_count));
+        take_work(core, event.work);
         return true;
       case EventKind::kGet:
       case EventKind::kPut:
@@ -410,13 +415,6 @@ class Replay {
 };
 
 }  // namespace
-
-WaitLevel wait_level_of_tag(std::uint32_t tag) {
-  if (tag < kFirstMacroTag) return WaitLevel::kSetup;
-  if (tag < kFirstTriangleTag) return WaitLevel::kMacroCell;
-  if (tag < kFirstOutputTag) return WaitLevel::kTriangle;
-  return WaitLevel::kTile;
-}
 
 FrameTiming replay(const FrameTrace& trace, const MachineProfile& machine, const ReplayOptions& options) {
   return Replay(trace, machine, options).run();

@@ -5,6 +5,7 @@
 #include <gridiron/base/stages.h>
 #include <gridiron/sim/machine_profile.h>
 #include <gridiron/sim/trace.h>
+#include <gridiron/sim/wait_levels.h>
 
 #include <array>
 #include <cstddef>
@@ -13,21 +14,6 @@
 #include <vector>
 
 namespace gridiron::sim {
-
-/// Levels at which a core waits for transfers (paper, Fig. 4), and the frame's own set-up.
-enum class WaitLevel : std::uint8_t {
-  kTile,       ///< output buffers
-  kMacroCell,  ///< cell blocks
-  kTriangle,   ///< triangle buffers
-  kSetup,      ///< frame record and macrocell table
-  kCount
-};
-/// Levels, kSetup among them.
-inline constexpr std::size_t kWaitLevelCount = static_cast<std::size_t>(WaitLevel::kCount);
-
-/// Levels by name of the tag waited for (core/gridiron/store/dma_tags.h): kTile = output buffers, kMacroCell = cell
-/// blocks, kTriangle = triangle buffers, kSetup = frame record and macrocell table.
-[[nodiscard]] WaitLevel wait_level_of_tag(std::uint32_t tag);
 
 /// @returns true for the kinds of work that count as initialisation; all others are computation.
 [[nodiscard]] constexpr bool is_initialisation(Work kind) {
@@ -113,8 +99,8 @@ struct ReplayOptions {
 /// nothing else. Values of the profile that mean nothing are taken as the nearest that does: cycles below 0 as 0 and
 /// above 2^20 as 2^20, counts of 0 as 1, queue_depth and lines_in_flight above 65,536 as that;
 /// channel_bytes_per_cycle <= 0 is a channel that costs no time. Preconditions: a frame shorter than 2^43 cycles; tags
-/// below 32; stages below kCount; ranges of work inside TileTrace::work. Cost: linear in events and lines, times
-/// core_count.
+/// below 32; stages below kCount; packed steps as TraceWriter wrote them, which are read as cores come to them. Cost:
+/// linear in events and lines, times core_count; memory: about 300 KB a core.
 [[nodiscard]] FrameTiming replay(const FrameTrace& trace, const MachineProfile& machine, const ReplayOptions& options);
 
 }  // namespace gridiron::sim

@@ -2,6 +2,7 @@
 // Memory: borrows arena and main memory; own book-keeping in std::vector. Threads: one per object.
 // SPDX-License-Identifier: Apache-2.0
 #include <gridiron/sim/sim_core.h>
+#include <gridiron/sim/trace_packing.h>
 #include <gridiron/store/dma_tags.h>
 #include <link.h>
 #include <pthread.h>
@@ -59,6 +60,7 @@ SimCore::SimCore(SimFrame& frame, std::uint32_t core, std::span<std::byte> arena
     : frame_(&frame), core_(core), arena_(arena), pending_(std::max(frame.limits.queue_depth, 1u)) {
   prologue.tile_id = kNoTile;
   epilogue.tile_id = kNoTile;
+  writer_ = std::make_unique<TraceWriter>();
   random_state_ = frame.seed ^ 0x9E3779B97F4A7C15u;
   spill_puts_.assign(frame.spill.slice_bytes() / kGranuleBytes, 0);
 }
@@ -342,8 +344,7 @@ Status SimCore::wait(TagMask tags) {
   }
 
   // Trace: output tags relative to the tile, all others as they are.
-  TraceEvent event{};
-  event.kind = EventKind::kWait;
+  TraceEvent event{.kind = EventKind::kWait};
   for (std::uint32_t tag = 0; tag < 32; ++tag) {
     if ((tags.bits >> tag & 1) == 0) continue;
     const std::uint32_t depth = frame_->output_depth;
@@ -354,8 +355,7 @@ Status SimCore::wait(TagMask tags) {
       event.tags |= 1u << tag;
     }
   }
-  event.rotating = event.rotating_tags != 0;
-  trace().events.push_back(event);
+  writer_->add(event);
 
   Status status = sticky_error_;
   const std::size_t slots = pending_.size();
@@ -401,6 +401,10 @@ void SimCore::leave_tile() {
 }
 
 TileClaim SimCore::claim_tile() {
+  if (!after_last_tile_) {
+    static_cast<void>(end_trace());
+    is_trace_ended_ = false;
+  }
   leave_tile();
   ++claims_;
   TileClaim claim = sticky_error_ == Status::kOk ? frame_->tiles->claim() : TileClaim{TileClaim::Kind::kAborted, 0};
@@ -408,7 +412,6 @@ TileClaim SimCore::claim_tile() {
     in_tile_ = true;
     tile_id_ = claim.tile_id;
     stage_ = 0;
-    traces.emplace_back().tile_id = claim.tile_id;
     random_state_ = frame_->seed ^ (0xD1B54A32D192ED03u * (std::uint64_t{claim.tile_id} + 1));
   } else {
     tile_id_ = kNoTile;
@@ -418,28 +421,35 @@ TileClaim SimCore::claim_tile() {
   return claim;
 }
 
-TileTrace& SimCore::trace() {
-  if (after_last_tile_) return epilogue;
+const TileTrace& SimCore::end_trace() {
+  if (after_last_tile_) {
+    if (!is_trace_ended_) epilogue = writer_->finish(kNoTile);
+    is_trace_ended_ = true;
+    return epilogue;
+  }
+  if (!is_trace_ended_) {
+    if (in_tile_) {
+      traces.push_back(writer_->finish(tile_id_));
+    } else {
+      prologue = writer_->finish(kNoTile);
+    }
+  }
+  is_trace_ended_ = true;
   return in_tile_ ? traces.back() : prologue;
 }
 
 void SimCore::note_work(const std::uint32_t* counts, std::uint32_t count) {
-  TileTrace& target = trace();
-  const auto first = static_cast<std::uint32_t>(target.work.size());
+  std::array<WorkAmount, kWorkKindCount> work;
+  std::uint32_t done = 0;
   const std::uint32_t known = std::min(count, kWorkKindCount);
   for (std::uint32_t kind = 0; kind < known; ++kind) {
     const std::uint32_t amount = counts[kind] - last_counts_[kind];
     if (amount == 0) continue;
-    target.work.push_back({static_cast<Work>(kind), amount});
+    work[done++] = {static_cast<Work>(kind), amount};
     last_counts_[kind] = counts[kind];
+    if (in_tile_) tile_work[kind] += amount;
   }
-  const auto end = static_cast<std::uint32_t>(target.work.size());
-  if (end == first) return;
-  TraceEvent event{};
-  event.kind = EventKind::kWork;
-  event.first_work = first;
-  event.work_count = end - first;
-  target.events.push_back(event);
+  writer_->add({.kind = EventKind::kWork, .work = std::span(work).first(done)});
 }
 
 void SimCore::note_stage(std::uint8_t stage) {
@@ -450,15 +460,11 @@ void SimCore::note_stage(std::uint8_t stage) {
     return;
   }
   stage_ = stage;
-  TraceEvent event{};
-  event.kind = EventKind::kStage;
-  event.stage = static_cast<Stage>(stage);
-  trace().events.push_back(event);
+  writer_->add({.kind = EventKind::kStage, .stage = static_cast<Stage>(stage)});
 }
 
 void SimCore::trace_transfer(EventKind kind, Tag tag, std::uint32_t bytes, std::uint64_t address) {
-  TraceEvent event{};
-  event.kind = kind;
+  TraceEvent event{.kind = kind};
   event.tag = tag.index;
   event.bytes = bytes;
   event.address = is_own_spill(address, bytes) ? address - core_ * frame_->spill.slice_bytes() : address;
@@ -468,10 +474,11 @@ void SimCore::trace_transfer(EventKind kind, Tag tag, std::uint32_t bytes, std::
     event.tag = static_cast<std::uint8_t>((slot + depth - tile_ordinal_ % depth) % depth);
     event.rotating = true;
   }
-  trace().events.push_back(event);
+  writer_->add(event);
 }
 
 void SimCore::finish(bool clean) {
+  static_cast<void>(end_trace());
   for (Pending& pending : pending_) {
     if (!pending.in_use) continue;
     if (clean) {

@@ -14,6 +14,7 @@
 #include <atomic>
 #include <cstddef>
 #include <cstdint>
+#include <memory>
 #include <mutex>
 #include <span>
 #include <string>
@@ -28,6 +29,8 @@ struct MainRange {
 
   friend constexpr bool operator==(const MainRange&, const MainRange&) = default;
 };
+
+class TraceWriter;
 
 /// What the cores of one frame share. Constant while cores run, but for the counter and the lock.
 struct SimFrame {
@@ -85,6 +88,11 @@ class SimCore {
   /// @param clean  false where the core gave up with an error, so that pending transfers are no second error.
   void finish(bool clean = true);
 
+  /// Ends the trace of the tile, or of the prologue, as far as it is not ended: the next claim does so too. Between the
+  /// two calls the core does nothing.
+  /// @returns the trace, good until the next claim.
+  const TileTrace& end_trace();
+
   /// Moves the bytes of one pending transfer at once, before its wait: with Completion::kLate whoever calls this
   /// between the core's calls chooses the order in which transfers complete. Rules are checked as at any other move.
   ///
@@ -104,6 +112,7 @@ class SimCore {
   std::vector<TileTrace> traces;          ///< in the order of claims
   TileTrace prologue;                     ///< before the first claim
   TileTrace epilogue;                     ///< after the last tile
+  WorkTotals tile_work{};                 ///< in all tiles together
   std::vector<TileFootprint> footprints;  ///< one per tile with puts, or gets from writable memory
 
   /// Checks every access that instrumented code of this thread makes from now on, until the end of the scope. Legal
@@ -161,7 +170,6 @@ class SimCore {
   [[nodiscard]] bool is_own_spill(std::uint64_t address, std::uint32_t bytes) const;
   void leave_tile();
   std::uint64_t next_random();
-  TileTrace& trace();
   void trace_transfer(EventKind kind, Tag tag, std::uint32_t bytes, std::uint64_t address);
   void bad_access(std::uintptr_t address, std::uintptr_t bytes, bool is_store, std::uintptr_t code, const char* what);
 
@@ -180,6 +188,8 @@ class SimCore {
   std::uint64_t transfers_ = 0;
   std::uint64_t random_state_ = 0;
   std::array<std::uint32_t, kWorkKindCount> last_counts_{};
+  std::unique_ptr<TraceWriter> writer_;  ///< of the tile at hand, prologue or epilogue
+  bool is_trace_ended_ = false;
   Status first_error_ = Status::kOk;
   std::uint32_t first_error_tile_ = kNoTile;
   Status sticky_error_ = Status::kOk;  ///< found where no status could be returned; every later call returns it

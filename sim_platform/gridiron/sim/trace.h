@@ -6,7 +6,9 @@
 #include <gridiron/base/work_counters.h>
 
 #include <array>
+#include <cstddef>
 #include <cstdint>
+#include <span>
 #include <vector>
 
 namespace gridiron::sim {
@@ -27,33 +29,34 @@ enum class EventKind : std::uint8_t {
   kStage,  ///< the core turned to another stage
 };
 
+/// Work of one kind done between two transfers.
+struct WorkAmount {
+  Work kind;             ///< of work
+  std::uint32_t amount;  ///< how much of it, above 0
+
+  friend constexpr bool operator==(const WorkAmount&, const WorkAmount&) = default;
+};
+
 /// One step of a core. Tags of output buffers are stored relative to the core's tile ordinal (rotated), so that a
 /// trace does not depend on which core rendered the tile; all others are stored as they are. Addresses of spill memory
 /// are stored as if core 0 had rendered the tile. Every tile, prologue and epilogue starts in stage kPrimary.
 struct TraceEvent {
-  EventKind kind;              ///< says which of the others mean something
-  std::uint8_t tag;            ///< kGet, kPut: tag index
-  bool rotating;               ///< kGet, kPut: tag is relative to the tile ordinal; kWait: see rotating_tags
-  Stage stage = {};            ///< kStage: what the core is busy with from here on
-  std::uint32_t bytes;         ///< kGet, kPut
-  std::uint64_t address;       ///< kGet, kPut: main memory
-  std::uint32_t tags;          ///< kWait: mask of plain tags
-  std::uint32_t rotating_tags; ///< kWait: mask of tags relative to the tile ordinal
-  std::uint32_t first_work;    ///< kWork: range in TileTrace::work
-  std::uint32_t work_count;    ///< kWork: length of the range
+  EventKind kind = {};              ///< says which of the others mean something; those that do not are zero
+  std::uint8_t tag = 0;             ///< kGet, kPut: tag index
+  bool rotating = false;            ///< kGet, kPut: tag is relative to the tile ordinal
+  Stage stage = {};                 ///< kStage: what the core is busy with from here on
+  std::uint32_t bytes = 0;          ///< kGet, kPut
+  std::uint64_t address = 0;        ///< kGet, kPut: main memory
+  std::uint32_t tags = 0;           ///< kWait: mask of plain tags
+  std::uint32_t rotating_tags = 0;  ///< kWait: mask of tags relative to the tile ordinal
+  std::span<const WorkAmount> work{};  ///< kWork: by rising kind, at least one
 };
 
-/// Work of one kind done between two transfers.
-struct WorkAmount {
-  Work kind;             ///< of work
-  std::uint32_t amount;  ///< how much of it
-};
-
-/// The steps of one tile.
+/// The steps of one tile as TraceWriter packs them and TraceReader (trace_packing.h) reads them. The bytes depend on
+/// nothing else and hold no pointers: they may be moved, stored and read anywhere by a program of the same version.
 struct TileTrace {
-  std::uint32_t tile_id = 0;       ///< row-major; kNoTile of prologue and epilogue
-  std::vector<TraceEvent> events;  ///< in order
-  std::vector<WorkAmount> work;    ///< that kWork events name
+  std::uint32_t tile_id = 0;      ///< row-major; kNoTile of prologue and epilogue
+  std::vector<std::byte> packed;  ///< no bytes: no steps
 };
 
 /// Work of a frame, by kind.
@@ -66,6 +69,13 @@ struct FrameTrace {
   TileTrace epilogue;             ///< after the last tile
   std::vector<TileTrace> tiles;  ///< index = tile_id; one entry where a tile was rendered alone
   std::uint32_t output_depth = 1; ///< rotation of the relative tags
+
+  /// @returns bytes of all packed steps.
+  [[nodiscard]] std::uint64_t packed_bytes() const {
+    std::uint64_t bytes = prologue.packed.size() + epilogue.packed.size();
+    for (const TileTrace& tile : tiles) bytes += tile.packed.size();
+    return bytes;
+  }
 };
 
 }  // namespace gridiron::sim

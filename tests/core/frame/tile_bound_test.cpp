@@ -8,6 +8,7 @@
 #include <gridiron/sim/replay.h>
 #include <gridiron/sim/sim_chip.h>
 #include <gridiron/sim/tile_cycles.h>
+#include <gridiron/sim/trace_packing.h>
 #include <gtest/gtest.h>
 
 #include <array>
@@ -36,7 +37,7 @@ struct TileCounts {
 TileCounts counts_of(const sim::TileTrace& tile) {
   TileCounts counts;
   const auto of = [&](Work kind) -> std::uint64_t& { return counts.work[static_cast<std::size_t>(kind)]; };
-  for (const sim::TraceEvent& event : tile.events) {
+  sim::for_each_event(tile, [&](const sim::TraceEvent& event) {
     if (event.kind == sim::EventKind::kGet) {
       ++of(Work::kGetIssue);
       counts.get_bytes += event.bytes;
@@ -46,12 +47,11 @@ TileCounts counts_of(const sim::TileTrace& tile) {
     } else if (event.kind == sim::EventKind::kWait) {
       ++of(Work::kWait);
     } else if (event.kind == sim::EventKind::kWork) {
-      for (std::uint32_t i = 0; i < event.work_count; ++i) {
-        const sim::WorkAmount& amount = tile.work[event.first_work + i];
+      for (const sim::WorkAmount& amount : event.work) {
         if (amount.kind < Work::kGetIssue) of(amount.kind) += amount.amount;
       }
     }
-  }
+  });
   return counts;
 }
 

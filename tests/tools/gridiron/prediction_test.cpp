@@ -3,6 +3,7 @@
 #include "gridiron/prediction.h"
 
 #include <gridiron/sim/busy_cycles.h>
+#include <gridiron/sim/trace_packing.h>
 #include <gtest/gtest.h>
 
 #include <array>
@@ -46,15 +47,13 @@ TEST(Prediction, BusyCyclesAreClaimWorkCommandsAndWaits) {
   machine.issue_cycles = 10;
   machine.wait_cycles = 100;
   machine.work_cycles[static_cast<std::size_t>(Work::kCellStep)] = 1000;
-  sim::TileTrace tile;
-  tile.work = {{Work::kCellStep, 2}, {Work::kCellStep, 3}};
+  const sim::WorkAmount work[] = {{Work::kCellStep, 2}, {Work::kCellStep, 3}};
+  sim::TraceWriter writer;
   for (const sim::EventKind kind : {sim::EventKind::kGet, sim::EventKind::kPut, sim::EventKind::kGet,
                                     sim::EventKind::kWait, sim::EventKind::kStage, sim::EventKind::kWork}) {
-    sim::TraceEvent event{};
-    event.kind = kind;
-    tile.events.push_back(event);
+    writer.add({.kind = kind, .work = work});
   }
-  EXPECT_DOUBLE_EQ(sim::busy_cycles(tile, machine), 1 + 30 + 100 + 5000);
+  EXPECT_DOUBLE_EQ(sim::busy_cycles(writer.finish(0), machine), 1 + 30 + 100 + 5000);
 }
 
 }  // namespace

@@ -1,0 +1,32 @@
+// Levels at which a core waits for transfers, by the tags that it waits for.
+// Memory: none. Threads: any. SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <gridiron/store/dma_tags.h>
+
+#include <cstddef>
+#include <cstdint>
+
+namespace gridiron::sim {
+
+/// Levels at which a core waits for transfers (paper, Fig. 4), and the frame's own set-up.
+enum class WaitLevel : std::uint8_t {
+  kTile,       ///< output buffers
+  kMacroCell,  ///< cell blocks
+  kTriangle,   ///< triangle buffers
+  kSetup,      ///< frame record and macrocell table
+  kCount
+};
+/// Levels, kSetup among them.
+inline constexpr std::size_t kWaitLevelCount = static_cast<std::size_t>(WaitLevel::kCount);
+
+/// Levels by name of the tag waited for (core/gridiron/store/dma_tags.h): kTile = output buffers, kMacroCell = cell
+/// blocks, kTriangle = triangle buffers, kSetup = frame record and macrocell table.
+[[nodiscard]] constexpr WaitLevel wait_level_of_tag(std::uint32_t tag) {
+  if (tag < kFirstMacroTag) return WaitLevel::kSetup;
+  if (tag < kFirstTriangleTag) return WaitLevel::kMacroCell;
+  if (tag < kFirstOutputTag) return WaitLevel::kTriangle;
+  return WaitLevel::kTile;
+}
+
+}  // namespace gridiron::sim
