@@ -56,7 +56,8 @@ p 7
 
 tool::SceneDescription read(std::string_view key, std::string_view text) {
   // Coarser than the program's: as round as so small a picture shows.
-  const tool::SceneOptions options{.tolerance = std::nullopt, .relative_tolerance = 5e-4f};
+  tool::SceneOptions options;
+  options.relative_tolerance = 5e-4f;
   return tool::read_scene_text(text, std::string(key), options);
 }
 
@@ -145,9 +146,9 @@ EffectScene make_effect_scene(std::string_view key) {
 
 tool::SceneInput input_of(const EffectScene& scene) {
   tool::SceneDescription description = scene.description;
-  tool::TextScene text{description.view, tool::take_scene_effects(description), {}, 0, {}};
+  tool::TextScene text{description.view, tool::take_scene_effects(description), {}, 0, {}, {}};
   tool::Mesh mesh{std::move(description.geometry.vertices), std::move(description.geometry.triangles)};
-  return {.path = scene.key, .content = std::move(mesh), .load_seconds = 0, .text = std::move(text)};
+  return {.path = scene.key, .content = std::move(mesh), .load_seconds = {}, .text = std::move(text)};
 }
 
 std::uint32_t called_for(const EffectScene& scene) {

@@ -80,7 +80,7 @@ void run_command(const ExperimentArguments& arguments) {
   const Stopwatch stopwatch;
   experiment::ExperimentResult result;
   {
-    Progress progress(!arguments.quiet, "run");
+    Progress progress(!arguments.quiet, "runs");
     result = run(arguments, [&progress](std::uint32_t done, std::uint32_t total) { progress.update(done, total); });
   }
   experiment::write_files(arguments.output, result.files);

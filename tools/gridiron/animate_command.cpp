@@ -188,7 +188,7 @@ void run_command(const AnimateArguments& arguments) {
   for (const AnimationFrame& frame : frames) note_input(frame.input);
   const ViewRequest view = common_view(frames, each);
   {
-    Progress progress(!each.quiet, "frame");
+    Progress progress(!each.quiet, "frames");
     const auto total = static_cast<std::uint32_t>(frames.size());
     for (std::uint32_t i = 0; i < total; ++i) {
       progress.update(i, total);

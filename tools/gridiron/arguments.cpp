@@ -137,7 +137,7 @@ void add_input(CLI::App& app, SceneArguments& scene) {
   };
   add_parsed(app, "--tolerance", scene.tolerance, tolerance, "a number above 0", "NUMBER",
              "text scenes: largest distance of a facet from its sphere or cone, world units (default: 1e-4 of the "
-             "scene's diagonal)");
+             "scene's diagonal; where that makes more than 262144 triangles, more of what is far from the eye)");
 }
 
 void add_grid_options(CLI::App& app, SceneArguments& scene, std::string& machine_name) {
@@ -215,9 +215,12 @@ void add_output_options(CLI::App& app, RawRender& raw) {
              "distance of every pixel, .pfm, +inf where nothing is hit");
   add_parsed(app, "--ids", render.ids, parse_path, name, "FILE",
              "triangle of every pixel, .pfm, -1 where nothing is hit");
-  add_parsed(app, "--report", render.report, parse_path, name, "FILE", "where cycles and bytes went, JSON");
+  add_parsed(app, "--report", render.report, parse_path, name, "FILE",
+             "where cycles and bytes went, JSON; where no time is told what the host took alone");
   add_parsed(app, "--timeline", render.timeline, parse_path, name, "FILE",
-             "what each core did when, Chrome trace format");
+             "what each core did when, Chrome trace format; not with --mode plain");
+  add_parsed(app, "--repeat", render.repeats, count_between(1, 1000), "a whole number from 1 to 1000", "N",
+             "build and render so often, and tell the least of the host's times (default 1)");
   add_quiet(app, render.quiet);
 }
 
@@ -244,7 +247,7 @@ void add_machine_options(CLI::App& app, RawRender& raw) {
   add_choice(app, "--store", render.asked.store, kStores, kStoreHelp);
   add_choice(app, "--mode", render.mode,
              Choices<Mode>{{"checked", Mode::kChecked}, {"plain", Mode::kPlain}, {"instrumented", Mode::kInstrumented}},
-             "checked (default): every rule checked, work traced; plain: fast, no report; "
+             "checked (default): every rule checked, work traced; plain: fast, nothing but the picture; "
              "instrumented: checked, and every load and store of the kernel too");
   add_choice(
       app, "--completion", render.completion,
@@ -331,13 +334,14 @@ RenderArguments complete_render(const RawRender& raw, const CLI::App& app) {
     usage_error("--lanes: this host has at most " + std::to_string(sim::widest_lanes()) + " lanes");
   }
   if (render.mode == Mode::kInstrumented && render.lanes != 4) usage_error("--mode instrumented: has 4 lanes only");
-  const bool wants_time = render.report || render.timeline;
   if (render.mode == Mode::kInstrumented && !sim::has_instrumented_mode()) {
     usage_error("--mode instrumented: this build has no instrumented kernel");
   }
-  if (wants_time && plain) usage_error("--report, --timeline: --mode plain records nothing to report");
-  if (wants_time && render.lanes != 4) usage_error("--report, --timeline: time is told for --lanes 4 only");
-  if (wants_time && render.tile) usage_error("--report, --timeline: not of one tile alone (--tile)");
+  if (render.timeline && plain) {
+    usage_error("--timeline: --mode plain does not record what cores do when; --mode checked does");
+  }
+  if (render.timeline && render.lanes != 4) usage_error("--timeline: time is told for --lanes 4 only");
+  if (render.timeline && render.tile) usage_error("--timeline: time is not told of one tile alone (--tile)");
   if (is_given("--seed") && render.completion != Completion::kRandom) usage_error("--seed: needs --completion random");
 
   settle_layout(render);

@@ -62,6 +62,7 @@ struct RenderArguments {
   sim::Mode mode = sim::Mode::kChecked;
   sim::Completion completion = sim::Completion::kEarly;
   std::uint64_t seed = 0;
+  std::uint32_t repeats = 1;  ///< the frame is built and rendered so often
   bool quiet = false;
 
   [[nodiscard]] bool has_depth() const { return depth || depth_plane; }

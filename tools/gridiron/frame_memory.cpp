@@ -64,12 +64,12 @@ MainAddress place_image(FrameMemory& frame, const SceneInput& input, const Rende
     effects = &view;
   }
   const GridChoice choice = choose_grid(input, mesh, arguments.scene, format, budget_bytes, effects);
-  require_fit(choice, arguments.scene);
+  require_fit(choice, arguments.scene, input);
   const sim::MemoryRegion region = allocate(frame.memory, choice.need.image_bytes);
   frame.image = build_image(input, mesh, choice, region.bytes, effects);
   frame.need = choice.need;
   frame.wanted_lambda = choice.wanted_lambda;
-  frame.build_seconds = stopwatch.seconds();
+  frame.build_seconds = stopwatch.both();
   return region.address;
 }
 

@@ -13,6 +13,7 @@
 
 #include "arguments.h"
 #include "scene_input.h"
+#include "stopwatch.h"
 
 namespace gridiron::tool {
 
@@ -29,8 +30,8 @@ struct FrameMemory {
   sim::MemoryRegion color, depth, ids;  ///< depth, ids: no bytes where not asked for
   sim::MemoryRegion spill;              ///< for waiting rays of each host thread; no bytes without them
   std::uint64_t spill_bytes_per_core = 0;
-  float wanted_lambda = 0;   ///< the image's own is image.grid.lambda
-  double build_seconds = 0;  ///< host time of building the image, 0 for a packed scene
+  float wanted_lambda = 0;      ///< the image's own is image.grid.lambda
+  HostSeconds build_seconds{};  ///< of building the image, 0 for a packed scene
 };
 
 /// @returns bytes to make a frame's memory of: the machine's, and room for waiting rays of the host threads that it has

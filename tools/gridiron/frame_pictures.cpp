@@ -2,10 +2,12 @@
 #include "frame_pictures.h"
 
 #include <gridiron/base/math.h>
+#include <report/report.h>
 
 #include <bit>
 #include <limits>
 #include <string>
+#include <tuple>
 
 #include "failure.h"
 #include "untile.h"
@@ -47,6 +49,16 @@ void require_exact_ids(const std::filesystem::path& input, std::uint64_t triangl
   if (triangle_count <= kMostExactIds) return;
   throw Failure(ExitCode::kBadInput, input.string() + ": --ids: " + words_of_count(triangle_count) +
                                          " triangles; the floats of a PFM file tell at most 16,777,216 apart");
+}
+
+void require_same_planes(const PlaneHashes& first, const PlaneHashes& again, std::uint32_t repeat) {
+  if (again == first) return;
+  const auto& [plane, before, now] = again.color != first.color ? std::tuple("picture", first.color, again.color)
+                                     : again.depth != first.depth
+                                         ? std::tuple("plane of distances", first.depth, again.depth)
+                                         : std::tuple("plane of triangle ids", first.ids, again.ids);
+  throw Failure(ExitCode::kCheckFailed, "--repeat: render " + std::to_string(repeat) + " made another " + plane +
+                                            " than the first: hash " + hash_text(now) + ", not " + hash_text(before));
 }
 
 }  // namespace gridiron::tool

@@ -26,6 +26,17 @@ namespace gridiron::tool {
 /// @param words  of a plane of triangle ids. @returns them as floats, -1 where nothing is hit.
 [[nodiscard]] Picture<float> id_picture(const Picture<std::uint32_t>& words);
 
+/// Of the planes of a frame; 0 of one that it does not have.
+struct PlaneHashes {
+  std::uint64_t color = 0, depth = 0, ids = 0;
+
+  friend bool operator==(const PlaneHashes&, const PlaneHashes&) = default;
+};
+
+/// Errors: Failure (kCheckFailed) where a frame that was rendered again has other planes than the first time.
+/// @param repeat  which time, from 1.
+void require_same_planes(const PlaneHashes& first, const PlaneHashes& again, std::uint32_t repeat);
+
 /// Errors: Failure (kBadInput) where a scene has more triangles than floats of a PFM file tell apart.
 void require_exact_ids(const std::filesystem::path& input, std::uint64_t triangle_count);
 

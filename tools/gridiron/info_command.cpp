@@ -1,8 +1,9 @@
 // info: what a scene holds and what it needs, for people or as JSON. SPDX-License-Identifier: Apache-2.0
+#include <report/report.h>
+
 #include <algorithm>
 #include <cstdio>
 #include <nlohmann/json.hpp>
-#include <report/report.h>
 #include <string>
 
 #include "accuracies.h"
@@ -178,6 +179,12 @@ void print_json(const InfoArguments& arguments, const SceneFacts& facts, const S
       {"local_store", json_of(store)},
       {"effects", effects_json(arguments, facts, store)},
       {"loop_bounds", json_of(facts.bounds)}};
+  if (!facts.roundness.groups.empty()) {
+    const char* rules[] = {"asked", "diagonal", "picture"};
+    document["scene"]["tolerance"] = {{"rule", rules[static_cast<std::size_t>(facts.roundness.rule)]},
+                                      {"least", facts.roundness.least_tolerance},
+                                      {"most", facts.roundness.most_tolerance}};
+  }
   document["worst_tile"] = facts.worst ? json_of(*facts.worst) : Json();
   document["loops"] = facts.worst ? loops_json(facts, store) : Json();
   std::printf("%s\n", document.dump(2).c_str());
@@ -240,6 +247,12 @@ void print_text(const InfoArguments& arguments, const SceneFacts& facts, const S
   std::snprintf(text, sizeof text, ", lambda %g", static_cast<double>(grid.lambda));
   print_line("grid", joined(grid.cell_count) + " cells" + text + ", " + words_of_count(grid.reference_count) +
                          " references stored as " + word_of(static_cast<TriangleFormat>(grid.triangle_format)));
+  if (!facts.roundness.groups.empty()) {
+    const char* rules[] = {"as asked for", "1e-4 of the scene's diagonal", "chosen by the picture"};
+    print_line("tolerance", words_of_tolerance(facts.roundness) + ", " +
+                                rules[static_cast<std::size_t>(facts.roundness.rule)] +
+                                ": facets are no farther from their spheres and cones");
+  }
   if (grid.lattice.step > 0.0f) {
     float longest = 0.0f;
     for (int axis = 0; axis < 3; ++axis) {

@@ -13,7 +13,7 @@ namespace gridiron::tool {
 
 void run_command(const PackArguments& arguments) {
   declare_outputs({{"-o", arguments.output, OutputKind::kBinary}});
-  const SceneInput input = read_scene_input(arguments.scene.input, arguments.scene.tolerance);
+  const SceneInput input = read_scene_input(arguments.scene.input, arguments.scene.tolerance, ScenePicture{});
   const Mesh* mesh = std::get_if<Mesh>(&input.content);
   if (mesh == nullptr) {
     throw Failure(ExitCode::kBadInput,
@@ -31,7 +31,7 @@ void run_command(const PackArguments& arguments) {
   const EffectsView view = input.text ? input.text->effects.view() : EffectsView{};
   const EffectsView* effects = input.text ? &view : nullptr;
   const GridChoice choice = choose_grid(input, *mesh, arguments.scene, arguments.format, budget_bytes, effects);
-  require_fit(choice, arguments.scene);
+  require_fit(choice, arguments.scene, input);
 
   const AlignedBytes storage = allocate_aligned(choice.need.image_bytes);
   const std::span<std::byte> image(storage.get(), choice.need.image_bytes);

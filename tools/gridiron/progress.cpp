@@ -3,27 +3,67 @@
 
 #include <unistd.h>
 
+#include <algorithm>
+#include <cmath>
 #include <cstdio>
-#include <string>
+
+#include "words.h"
 
 namespace gridiron::tool {
 
-Progress::Progress(bool wanted, const char* noun)
-    : drawing_(wanted && ::isatty(STDERR_FILENO) == 1), noun_(noun) {}
-
-Progress::~Progress() {
-  if (drawing_ && drawn_percent_ != ~0u) std::fputs("\r\033[K", stderr);
+void TimeLeft::update(double seconds, double share) {
+  constexpr double kMemory = 5;    // seconds that the rate remembers
+  constexpr double kPatience = 3;  // seconds in which what is told follows an estimate
+  constexpr double kLeastStep = 0.05;
+  constexpr double kLeastSeconds = 1, kLeastShare = 0.01;
+  const double step = seconds - last_seconds_;
+  if (step < kLeastStep || share <= last_share_) return;
+  const double now = (share - last_share_) / step;
+  const double mean = share / seconds;
+  // At first the mean of all is the better guess: nothing is known of the last seconds yet.
+  const double weight = 1 - std::exp(-step / kMemory);
+  rate_ = rate_ == 0 ? mean : rate_ + weight * (now - rate_);
+  last_seconds_ = seconds;
+  last_share_ = share;
+  if (seconds < kLeastSeconds || share < kLeastShare) return;
+  const double estimate = (1 - share) / (0.5 * (rate_ + mean));
+  if (!told_) {
+    told_ = estimate;
+    return;
+  }
+  const double counted_down = std::max(0.0, *told_ - step);
+  told_ = counted_down + (1 - std::exp(-step / kPatience)) * (estimate - counted_down);
 }
 
-void Progress::update(std::uint32_t done, std::uint32_t total) {
+std::string words_of_seconds(double seconds) {
+  const auto whole = static_cast<std::uint64_t>(std::ceil(std::clamp(seconds, 0.0, 1e9)));
+  if (whole < 60) return std::to_string(whole) + " s";
+  if (whole < 3600) return std::to_string(whole / 60) + " min " + std::to_string(whole % 60) + " s";
+  return std::to_string(whole / 3600) + " h " + std::to_string(whole % 3600 / 60) + " min";
+}
+
+Progress::Progress(bool wanted, const char* noun) : drawing_(wanted && ::isatty(STDERR_FILENO) == 1), noun_(noun) {}
+
+Progress::~Progress() {
+  if (drawing_ && drawn_percent_ != ~0ull) std::fputs("\r\033[K", stderr);
+}
+
+void Progress::update(std::uint64_t done, std::uint64_t total) {
   if (!drawing_ || total == 0) return;
-  const auto percent = static_cast<std::uint32_t>(std::uint64_t{done} * 100 / total);
-  if (percent == drawn_percent_) return;
+  const double share = static_cast<double>(done) / static_cast<double>(total);
+  const double seconds = stopwatch_.seconds();
+  left_.update(seconds, share);
+  const auto percent = static_cast<std::uint64_t>(100 * share);
+  constexpr double kRedraw = 0.25;  // seconds
+  if (percent == drawn_percent_ && seconds - drawn_seconds_ < kRedraw) return;
   drawn_percent_ = percent;
-  constexpr std::uint32_t kBarWidth = 40;
-  const std::uint32_t filled = percent * kBarWidth / 100;
+  drawn_seconds_ = seconds;
+  constexpr std::uint64_t kBarWidth = 30;
+  const std::uint64_t filled = std::min(percent, std::uint64_t{100}) * kBarWidth / 100;
   const std::string bar = std::string(filled, '#') + std::string(kBarWidth - filled, '.');
-  std::fprintf(stderr, "\r[%s] %3u %%  %s %u of %u", bar.c_str(), percent, noun_, done, total);
+  const std::string left = left_.seconds() ? ", " + words_of_seconds(*left_.seconds()) + " left" : "";
+  std::fprintf(stderr, "\r[%s] %3u %%  %s of %s %s%s\033[K", bar.c_str(), static_cast<unsigned>(percent),
+               words_of_count(done).c_str(), words_of_count(total).c_str(), noun_, left.c_str());
   std::fflush(stderr);
 }
 

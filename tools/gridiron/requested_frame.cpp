@@ -44,6 +44,15 @@ RenderArguments complete_arguments(const RenderArguments& asked, const SceneInpu
   return arguments;
 }
 
+// What the command line says of the picture that a text scene is read for: the rest is the scene's own.
+ScenePicture picture_of(const RenderArguments& asked, const ViewRequest& camera) {
+  const ViewRequest view = join_view(asked.view, camera);
+  ScenePicture picture{.eye = view.eye, .angle_degrees = view.fov_degrees, .height = std::nullopt};
+  if (asked.camera && !picture.angle_degrees) picture.angle_degrees = kDefaultFovDegrees;
+  if (asked.has_size) picture.height = asked.height;
+  return picture;
+}
+
 // Another place to look from has no use for the scene's near plane.
 void check_scene_view(const RenderArguments& arguments, const SceneInput& input, const ViewRequest& view) {
   if (!input.text || !input.text->view.is_given() || arguments.camera || arguments.view.eye || view.from) return;
@@ -58,7 +67,7 @@ RequestedFrame read_requested_frame(const RenderArguments& asked, const std::vec
   declare_outputs(outputs);
   const ViewRequest camera = asked.camera ? read_camera_file(*asked.camera) : ViewRequest{};
   RequestedFrame request;
-  request.input = read_scene_input(asked.scene.input, asked.scene.tolerance);
+  request.input = read_scene_input(asked.scene.input, asked.scene.tolerance, picture_of(asked, camera));
   const SceneInput& input = request.input;
   request.arguments = complete_arguments(asked, input);
   const RenderArguments& arguments = request.arguments;

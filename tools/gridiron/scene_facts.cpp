@@ -74,7 +74,9 @@ std::uint64_t EffectFacts::bytes_of(std::string_view section) const {
 }
 
 SceneFacts collect_scene_facts(const InfoArguments& arguments) {
-  const SceneInput input = read_scene_input(arguments.scene.input, arguments.scene.tolerance);
+  ScenePicture picture;
+  if (arguments.has_size) picture.height = arguments.height;
+  const SceneInput input = read_scene_input(arguments.scene.input, arguments.scene.tolerance, picture);
   if (!arguments.scene.quiet) tell_notes(input);
   SceneFacts facts;
   const bool has_own_size = input.text && input.text->view.is_given() && !arguments.has_size;
@@ -121,6 +123,7 @@ SceneFacts collect_scene_facts(const InfoArguments& arguments) {
       const SceneImageView built = build_image(input, mesh, choice, image, effects);
       facts.worst = find_worst_tile(arguments, image, built);
     }
+    if (input.text) facts.roundness = input.text->roundness;
     if (effects != nullptr) {
       facts.effects = effects_of(count_effects(view), static_cast<std::uint32_t>(mesh.triangles.size()));
     }

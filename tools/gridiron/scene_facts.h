@@ -12,6 +12,7 @@
 
 #include "arguments.h"
 #include "scene_input.h"
+#include "scene_text/scene_description.h"
 #include "worst_tile.h"
 
 namespace gridiron::tool {
@@ -47,6 +48,7 @@ struct SceneFacts {
   std::uint64_t vertices = 0, triangles = 0, dropped_triangles = 0;
   GridRecord grid{};
   float wanted_lambda = 0;
+  SceneRoundness roundness;  ///< of a text scene
   bool is_packed = false;
   std::uint64_t image_bytes = 0;
   std::uint64_t scratch_bytes = 0;  ///< of the builder, free again afterwards; 0 for a packed scene
@@ -54,7 +56,7 @@ struct SceneFacts {
   bool fits = false;                ///< in the machine's main memory
   LoopBounds bounds;
   EffectFacts effects;
-  std::optional<WorstTile> worst;  ///< where the image fits
+  std::optional<WorstTile> worst;       ///< where the image fits
   std::uint32_t width = 0, height = 0;  ///< of the picture
 };
 

@@ -42,12 +42,14 @@ PackedScene read_packed_scene(const std::filesystem::path& path) {
 }
 
 // The triangles go to `mesh`, the rest to @returns.
-TextScene read_text_scene(const std::filesystem::path& path, std::optional<float> tolerance, Mesh& mesh) {
+TextScene read_text_scene(const std::filesystem::path& path, std::optional<float> tolerance,
+                          const std::optional<ScenePicture>& picture, Mesh& mesh) {
   SceneOptions options;
   options.tolerance = tolerance;
+  options.picture = picture;
   SceneDescription scene = read_scene_text(path, options);
-  TextScene text{scene.view, take_scene_effects(scene), std::move(scene.notes), scene.note_count,
-                 std::move(scene.files)};
+  TextScene text{scene.view,       take_scene_effects(scene), std::move(scene.notes),
+                 scene.note_count, std::move(scene.files),    std::move(scene.roundness)};
   mesh.vertices = std::move(scene.geometry.vertices);
   mesh.triangles = std::move(scene.geometry.triangles);
   return text;
@@ -57,6 +59,20 @@ std::string text_of(float number) {
   char text[32];
   std::snprintf(text, sizeof text, "%g", static_cast<double>(number));
   return text;
+}
+
+// Which tolerance would make a scene small enough: "; --tolerance 0.003 would fit", or nothing.
+std::string words_of_fitting_tolerance(const GridChoice& choice, const SceneInput& input) {
+  if (!input.text || choice.need.image_bytes == 0) return "";
+  // Larger triangles lie in more cells each, so that an image shrinks by less than its triangles.
+  constexpr double kMargin = 0.8;
+  const auto triangles = static_cast<double>(std::get<Mesh>(input.content).triangles.size());
+  const double share = static_cast<double>(choice.budget_bytes) / static_cast<double>(choice.need.image_bytes);
+  const auto most = static_cast<std::uint64_t>(kMargin * share * triangles);
+  const std::optional<float> tolerance = tolerance_for(input.text->roundness, most);
+  if (!tolerance) return "";
+  return "; coarser round shapes would fit: --tolerance " + text_of(*tolerance) + " (it is " +
+         words_of_tolerance(input.text->roundness) + ")";
 }
 
 std::string words_of_budget(const sim::MachineProfile& machine, std::uint64_t budget_bytes) {
@@ -76,20 +92,21 @@ bool is_mesh_file(const std::filesystem::path& path) {
   return lower_extension(path) == ".ply";
 }
 
-SceneInput read_scene_input(const std::filesystem::path& path, std::optional<float> tolerance) {
+SceneInput read_scene_input(const std::filesystem::path& path, std::optional<float> tolerance,
+                            const std::optional<ScenePicture>& picture) {
   const Stopwatch stopwatch;
-  SceneInput input{path, Mesh{}, 0, std::nullopt};
+  SceneInput input{path, Mesh{}, {}, std::nullopt};
   const std::string extension = lower_extension(path);
   if (extension == ".ply") {
     input.content = read_ply_mesh(path);
   } else if (extension == ".gri") {
     input.content = read_packed_scene(path);
   } else if (extension == ".nff") {
-    input.text = read_text_scene(path, tolerance, std::get<Mesh>(input.content));
+    input.text = read_text_scene(path, tolerance, picture, std::get<Mesh>(input.content));
   } else {
     fail(path, "unknown kind of scene; expected .ply, .nff or .gri");
   }
-  input.load_seconds = stopwatch.seconds();
+  input.load_seconds = stopwatch.both();
   return input;
 }
 
@@ -101,6 +118,19 @@ void tell_notes(const SceneInput& input) {
   }
   const std::uint64_t more = input.text->note_count - input.text->notes.size();
   if (more != 0) std::fprintf(stderr, "%s: %s\n", input.path.c_str(), words_of_count(more, "more note").c_str());
+  if (input.text->roundness.rule != ToleranceRule::kPicture) return;
+  const SceneRoundness& roundness = input.text->roundness;
+  std::fprintf(stderr,
+               "%s: tolerance of round shapes chosen by the picture: %s, %s triangles; %s alone would make %s; "
+               "--tolerance sets another\n",
+               input.path.c_str(), words_of_tolerance(roundness).c_str(),
+               words_of_count(std::get<Mesh>(input.content).triangles.size()).c_str(),
+               text_of(roundness.least_tolerance).c_str(), words_of_count(roundness.diagonal_triangles).c_str());
+}
+
+std::string words_of_tolerance(const SceneRoundness& roundness) {
+  const std::string least = text_of(roundness.least_tolerance), most = text_of(roundness.most_tolerance);
+  return least == most ? least : least + " to " + most;
 }
 
 std::uint64_t spill_bytes_of(std::uint32_t core_count, std::uint32_t recursion_depth) {
@@ -149,7 +179,8 @@ GridChoice choose_grid(const SceneInput& input, const Mesh& mesh, const SceneArg
   if (status == Status::kTooManyTriangles) {
     const float lambda = arguments.lambda ? choice.wanted_lambda : kLeastLambda;
     fail(input.path, std::string(words_of(status)) + " at lambda " + text_of(lambda) +
-                         (arguments.lambda ? "; a smaller --lambda needs fewer" : ""));
+                         (arguments.lambda ? "; a smaller --lambda needs fewer" : "") +
+                         (input.text ? "; a greater --tolerance makes fewer triangles" : ""));
   }
   if (status == Status::kNoTriangles) {
     fail(input.path, mesh.triangles.empty()
@@ -161,11 +192,12 @@ GridChoice choose_grid(const SceneInput& input, const Mesh& mesh, const SceneArg
   return choice;
 }
 
-void require_fit(const GridChoice& choice, const SceneArguments& arguments) {
+void require_fit(const GridChoice& choice, const SceneArguments& arguments, const SceneInput& input) {
   if (!choice.fits()) {
     fail(arguments.input, "the scene needs " + words_of_bytes(choice.need.image_bytes) + " at lambda " +
                               text_of(choice.parameters.lambda) + "; " +
-                              words_of_budget(*arguments.machine, choice.budget_bytes));
+                              words_of_budget(*arguments.machine, choice.budget_bytes) +
+                              words_of_fitting_tolerance(choice, input));
   }
   if (!choice.is_reduced() || arguments.quiet) return;
   std::fprintf(stderr, "%s: lambda reduced from %g to %g so that the scene fits the main memory of %s\n",

@@ -11,6 +11,7 @@
 #include <filesystem>
 #include <optional>
 #include <span>
+#include <string>
 #include <variant>
 #include <vector>
 
@@ -18,6 +19,8 @@
 #include "input_file.h"
 #include "scene_text/scene_description.h"
 #include "scene_text/scene_effects.h"
+#include "scene_text/scene_reader.h"
+#include "stopwatch.h"
 
 namespace gridiron::tool {
 
@@ -42,12 +45,13 @@ struct TextScene {
   std::vector<SceneNote> notes;
   std::uint64_t note_count = 0;
   std::vector<std::filesystem::path> files;  ///< that the text names
+  SceneRoundness roundness;
 };
 
 struct SceneInput {
   std::filesystem::path path;
   std::variant<Mesh, PackedScene> content;
-  double load_seconds = 0;          ///< host time of reading and checking
+  HostSeconds load_seconds{};       ///< of reading and checking
   std::optional<TextScene> text{};  ///< beside a Mesh
 };
 
@@ -55,12 +59,14 @@ struct SceneInput {
 [[nodiscard]] bool is_text_scene(const std::filesystem::path& path);
 [[nodiscard]] bool is_mesh_file(const std::filesystem::path& path);
 
-/// Reads the scene. @param tolerance  of round shapes in a text scene; nothing: the reader's own.
-/// Errors: Failure (kBadInput), `file:line: reason` or `file:byte N: reason`.
+/// Reads the scene. @param tolerance  of round shapes in a text scene; nothing: the reader's own, which goes by
+/// `picture` where that is given. Errors: Failure (kBadInput), `file:line: reason` or `file:byte N: reason`.
 [[nodiscard]] SceneInput read_scene_input(const std::filesystem::path& path,
-                                          std::optional<float> tolerance = std::nullopt);
+                                          std::optional<float> tolerance = std::nullopt,
+                                          const std::optional<ScenePicture>& picture = std::nullopt);
 
-/// Says on standard error what is odd in a text scene: `file:line: note: text`, one line each.
+/// Says on standard error what is odd in a text scene: `file:line: note: text`, one line each; and which tolerance was
+/// chosen by the picture.
 void tell_notes(const SceneInput& input);
 
 /// @returns the mesh of a PLY file. Errors as read_scene_input.
@@ -102,9 +108,12 @@ void require_format(const SceneInput& input, const PackedScene& packed, Triangle
                                      TriangleFormat format, std::uint64_t budget_bytes,
                                      const EffectsView* effects = nullptr);
 
+/// @returns "0.00018", or "0.00018 to 0.0021" where objects have tolerances of their own.
+[[nodiscard]] std::string words_of_tolerance(const SceneRoundness& roundness);
+
 /// Says in one line of standard error that the grid was reduced; nothing where it was not, or is not to be told.
-/// Errors: Failure (kBadInput) where the choice does not fit.
-void require_fit(const GridChoice& choice, const SceneArguments& arguments);
+/// Errors: Failure (kBadInput) where the choice does not fit; of a text scene with a tolerance that would.
+void require_fit(const GridChoice& choice, const SceneArguments& arguments, const SceneInput& input);
 
 /// Builds the image of a mesh. @param image  kLineBytes-aligned, choice.need.image_bytes. @param effects  the choice's.
 /// @returns its validated view. Errors: Failure.

@@ -20,16 +20,31 @@ using Json = nlohmann::ordered_json;
 Json scene_json(const ReportInput& input) {
   const GridRecord& grid = input.grid;
   const auto product = [](const std::uint32_t counts[3]) { return std::uint64_t{counts[0]} * counts[1] * counts[2]; };
-  return {{"triangles", input.triangle_count},
-          {"vertices", input.vertex_count},
-          {"dropped_triangles", input.dropped_triangle_count},
-          {"grid",
-           {{"cells", product(grid.cell_count)},
-            {"macrocells", product(grid.macro_cell_count)},
-            {"references", grid.reference_count},
-            {"bytes", input.grid_bytes},
-            {"lambda", grid.lambda},
-            {"wanted_lambda", input.wanted_lambda}}}};
+  Json json = {{"triangles", input.triangle_count},
+               {"vertices", input.vertex_count},
+               {"dropped_triangles", input.dropped_triangle_count},
+               {"grid",
+                {{"cells", product(grid.cell_count)},
+                 {"macrocells", product(grid.macro_cell_count)},
+                 {"references", grid.reference_count},
+                 {"bytes", input.grid_bytes},
+                 {"lambda", grid.lambda},
+                 {"wanted_lambda", input.wanted_lambda}}}};
+  if (input.least_tolerance) json["least_tolerance"] = *input.least_tolerance;
+  if (input.most_tolerance) json["most_tolerance"] = *input.most_tolerance;
+  return json;
+}
+
+Json host_json(const ReportInput& input) {
+  return {{"load_seconds", input.load.seconds},
+          {"build_seconds", input.build.seconds},
+          {"render_seconds", input.render.seconds},
+          {"load_processor_seconds", input.load.processor_seconds},
+          {"build_processor_seconds", input.build.processor_seconds},
+          {"render_processor_seconds", input.render.processor_seconds},
+          {"threads", input.host_threads},
+          {"lanes", input.lanes},
+          {"repeats", input.repeats}};
 }
 
 Json core_json(const sim::CoreTiming& core) {
@@ -83,6 +98,7 @@ Json effects_json(const ReportInput& input) {
   Json rays = Json::object();
   for (const RayCount& ray : input.rays) rays[ray.kind] = ray.count;
   Json effects = {{"called_for", input.effects_called_for}};
+  if (!input.is_timed) return effects;
   if (!input.is_scene_shaded) {
     effects["rays"] = std::move(rays);
     return effects;
@@ -118,20 +134,20 @@ std::string report_json(const ReportInput& input) {
   const double seconds = input.timing.seconds;
   Json report;
   report["version"] = kReportVersion;
+  report["mode"] = input.mode;
   report["scene"] = scene_json(input);
-  report["machine"] = {{"name", std::string(input.machine.name)},
-                       {"cores", input.timing.cores.size()},
-                       {"clock_hz", input.machine.clock_hz}};
-  report["frame"] = {
-      {"cycles", input.timing.frame_cycles}, {"seconds", seconds}, {"fps", seconds > 0 ? 1 / seconds : 0.0}};
-  report["cores"] = std::move(cores);
-  report["work"] = work_json(input.work);
+  if (input.is_timed) {
+    report["machine"] = {{"name", std::string(input.machine.name)},
+                         {"cores", input.timing.cores.size()},
+                         {"clock_hz", input.machine.clock_hz}};
+    report["frame"] = {
+        {"cycles", input.timing.frame_cycles}, {"seconds", seconds}, {"fps", seconds > 0 ? 1 / seconds : 0.0}};
+    report["cores"] = std::move(cores);
+    report["work"] = work_json(input.work);
+  }
   report["effects"] = effects_json(input);
   report["local_store"] = local_store_json(input);
-  report["host"] = {{"load_seconds", input.load_seconds},
-                    {"build_seconds", input.build_seconds},
-                    {"render_seconds", input.render_seconds},
-                    {"threads", input.host_threads}};
+  report["host"] = host_json(input);
   report["image_hash"] = hash_text(input.image_hash);
   if (input.depth_hash) report["depth_hash"] = hash_text(*input.depth_hash);
   if (input.ids_hash) report["ids_hash"] = hash_text(*input.ids_hash);

@@ -34,8 +34,18 @@ struct RayCount {
   std::uint64_t count = 0;
 };
 
+/// What a part of the work took on this host.
+struct HostTime {
+  double seconds = 0, processor_seconds = 0;  ///< processor: of all threads
+};
+
 /// Everything a report tells, filled by the program.
 struct ReportInput {
+  std::string mode = "checked";  ///< of the simulator
+  bool is_timed = true;          ///< false: machine, frame, cores, work and rays are left out
+
+  std::optional<float> least_tolerance, most_tolerance;  ///< of a text scene with round shapes
+
   std::uint64_t triangle_count = 0;  ///< of the input, dropped ones included
   std::uint64_t vertex_count = 0;
   std::uint64_t dropped_triangle_count = 0;  ///< zero area
@@ -55,8 +65,8 @@ struct ReportInput {
   std::vector<LocalStoreRegion> regions;
   std::uint64_t code_bytes = 0, stack_bytes = 0;  ///< committed budgets
 
-  double load_seconds = 0, build_seconds = 0, render_seconds = 0;  ///< on this host
-  std::uint32_t host_threads = 1;
+  HostTime load, build, render;
+  std::uint32_t host_threads = 1, lanes = 4, repeats = 1;
 
   std::uint64_t image_hash = 0;
   std::optional<std::uint64_t> depth_hash, ids_hash;  ///< of planes that the frame has

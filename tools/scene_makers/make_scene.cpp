@@ -19,10 +19,10 @@ struct Database {
   std::uint32_t least_size, most_size, usual_size;
   std::string (*make)(std::uint32_t);
 };
-constexpr Database kDatabases[] = {{"balls", 0, kMostBallsSize, 4, make_balls},
-                                   {"tetra", 1, kMostTetraSize, 6, make_tetra},
-                                   {"mount", 1, kMostMountSize, 6, make_mount},
-                                   {"rings", 1, kMostRingsSize, 7, make_rings}};
+constexpr Database kDatabases[] = {
+    {"balls", 0, kMostBallsSize, 4, make_balls},       {"tetra", 1, kMostTetraSize, 6, make_tetra},
+    {"mount", 1, kMostMountSize, 6, make_mount},       {"rings", 1, kMostRingsSize, 7, make_rings},
+    {"lattice", 1, kMostLatticeSize, 8, make_lattice}, {"shells", 1, kMostShellsSize, 6, make_shells}};
 
 bool write_or_tell(const std::string& path, const std::vector<char>& bytes) {
   const std::string reason = write_whole_file(path, bytes);
@@ -33,16 +33,17 @@ bool write_or_tell(const std::string& path, const std::vector<char>& bytes) {
 }  // namespace
 
 int main(int argument_count, char** arguments) {
-  CLI::App app{"Writes balls, tetra, mount or rings of the Standard Procedural Databases as NFF, or a sky."};
+  CLI::App app{"Writes a scene in the manner of the Standard Procedural Databases as NFF, or a sky."};
   std::string scene, output;
   std::uint32_t size = 0;
   app.add_option("--scene", scene, "sky: six PFM faces, OUTPUT_px.pfm, _nx, _py, _ny, _pz, _nz")
-      ->check(CLI::IsMember({"balls", "tetra", "mount", "rings", "sky"}))
+      ->check(CLI::IsMember({"balls", "tetra", "mount", "rings", "lattice", "shells", "sky"}))
       ->required();
-  const CLI::Option* size_option =
-      app.add_option("--size", size,
-                     "size factor: balls 0 to 7, default 4; tetra, mount 1 to 11, 6; rings 1 to 90, 7; "
-                     "sky: texels of a face's side, 1 to 1024, 16");
+  const CLI::Option* size_option = app.add_option(
+      "--size", size,
+      "size factor: balls 0 to 7, default 4; tetra, mount 1 to 11, 6; rings 1 to 90, 7; lattice 1 to 100, 8; "
+      "shells 1 to 100, 6; "
+      "sky: texels of a face's side, 1 to 1024, 16");
   app.add_option("-o,--output", output, "file to write; sky: what the six names begin with")->required();
   const Database* database = nullptr;
   try {

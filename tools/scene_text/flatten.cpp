@@ -5,6 +5,7 @@
 #include <glm/common.hpp>
 #include <glm/geometric.hpp>
 #include <map>
+#include <optional>
 #include <span>
 #include <string>
 #include <tuple>
@@ -54,6 +55,25 @@ double rounding_of(double reach) {
   return std::sqrt(3.0) * (reach * kHalfUnit + static_cast<double>(FLT_TRUE_MIN));
 }
 
+// @returns how many triangles a scene has at a tolerance; for what a sphere or cone cannot become more than any may.
+std::uint64_t triangles_of(RoundShapes& shapes, const SceneRoundness& roundness, double tolerance) {
+  std::uint64_t triangles = roundness.flat_triangles;
+  for (const RoundShapeGroup& group : roundness.groups) {
+    const double deviation = tolerance / group.radius;
+    const std::uint64_t parts =
+        group.is_sphere ? shapes.sphere_frequency(deviation) : RoundShapes::circle_segments(deviation);
+    const std::uint64_t each = group.is_sphere ? 20 * parts * parts : 2 * parts;
+    triangles += group.count * (parts == 0 ? kMostSceneTriangles + 1ull : each);
+  }
+  return triangles;
+}
+
+// Rounds up to two digits.
+double two_digits(double number) {
+  const double unit = std::pow(10.0, std::floor(std::log10(number)) - 1);
+  return std::ceil(number / unit - 1e-9) * unit;
+}
+
 class Flattener {
  public:
   Flattener(SceneEntities entities, const std::filesystem::path& path, const SceneOptions& options)
@@ -62,6 +82,8 @@ class Flattener {
         most_triangles_(std::min(options.most_triangles, kMostSceneTriangles)),
         scene_(std::move(entities_.scene)) {
     choose_tolerance(options);
+    group_shapes();
+    choose_picture(options);
   }
 
   SceneDescription flatten() {
@@ -104,6 +126,80 @@ class Flattener {
       fail(1, "the tolerance of round shapes must be a number greater than 0, not " +
                   text_of_number(static_cast<double>(scene_.tolerance)));
     }
+  }
+
+  // Groups radii by eighths of an octave, rounded up.
+  void group_shapes() {
+    constexpr double kSteps = 8;
+    SceneRoundness& roundness = scene_.roundness;
+    std::map<std::pair<bool, int>, std::uint64_t> groups;
+    for (const SceneShape& shape : entities_.shapes) {
+      if (is_round(shape)) {
+        const double size = std::ceil(kSteps * std::log2(radius_of(shape)));
+        ++groups[{shape.kind == ShapeKind::kSphere, static_cast<int>(size)}];
+      } else if (shape.kind == ShapeKind::kMesh) {
+        roundness.flat_triangles += entities_.meshes[shape.first].triangles.size();
+      } else {
+        roundness.flat_triangles += shape.count - 2;
+      }
+    }
+    for (const auto& [key, count] : groups) {
+      roundness.groups.push_back({key.first, std::exp2(key.second / kSteps), count});
+    }
+  }
+
+  // Takes the picture's tolerances where the diagonal's make many triangles.
+  void choose_picture(const SceneOptions& options) {
+    SceneRoundness& roundness = scene_.roundness;
+    roundness.least_tolerance = roundness.most_tolerance = scene_.tolerance;
+    roundness.rule = options.tolerance ? ToleranceRule::kAsked : ToleranceRule::kDiagonal;
+    if (options.tolerance || !options.picture) return;
+    const std::uint64_t triangles = triangles_of(shapes_, roundness, static_cast<double>(scene_.tolerance));
+    if (triangles <= options.many_triangles) return;
+    const ScenePicture& picture = *options.picture;
+    const bool has_view = scene_.view.line != 0;
+    if (!has_view && !(picture.eye && picture.angle_degrees && picture.height)) return;  // nothing to go by
+    const double degrees = static_cast<double>(picture.angle_degrees.value_or(scene_.view.angle_degrees));
+    const double pixels = picture.height.value_or(scene_.view.height);
+    eye_ = DVec3(picture.eye.value_or(scene_.view.from));
+    // To three digits: the last bits of a tangent are not the same on every host.
+    constexpr double kDigits = 1000, kRadians = 3.14159265358979323846 / 180;
+    int exponent = 0;
+    const double fraction = std::frexp(2 * std::tan(0.5 * kRadians * degrees) / pixels, &exponent);
+    pixel_ = std::ldexp(std::round(fraction * kDigits) / kDigits, exponent);
+    roundness.rule = ToleranceRule::kPicture;
+    roundness.diagonal_triangles = triangles;
+  }
+
+  // A share of a pixel at the object's nearest point; see tools/scene_text/README.md for the limits.
+  [[nodiscard]] double tolerance_of(const SceneShape& shape) {
+    const double least = static_cast<double>(scene_.tolerance);
+    if (scene_.roundness.rule != ToleranceRule::kPicture) return least;
+    constexpr double kPixelShare = 0.25, kMostCoarser = 16, kMostRadiusShare = 1.0 / 32;
+    const double hidden = std::min(kPixelShare * pixel_ * distance_to(shape), kMostRadiusShare * radius_of(shape));
+    const double tolerance = std::clamp(hidden, least, kMostCoarser * least);
+    float& most = scene_.roundness.most_tolerance;
+    most = std::max(most, static_cast<float>(tolerance));
+    return tolerance;
+  }
+
+  // From the eye to a ball around the axis of the shape, which contains it.
+  [[nodiscard]] double distance_to(const SceneShape& shape) const {
+    const double* n = entities_.numbers.data() + shape.first;
+    const DVec3 base(n[0], n[1], n[2]);
+    if (shape.kind == ShapeKind::kSphere) return std::fabs(glm::length(base - eye_) - n[3]);
+    const DVec3 axis = DVec3(n[4], n[5], n[6]) - base;
+    const double along = std::clamp(glm::dot(eye_ - base, axis) / glm::dot(axis, axis), 0.0, 1.0);
+    return std::max(0.0, glm::length(base + along * axis - eye_) - radius_of(shape));
+  }
+
+  static bool is_round(const SceneShape& shape) {
+    return shape.kind == ShapeKind::kSphere || shape.kind == ShapeKind::kCone;
+  }
+
+  [[nodiscard]] double radius_of(const SceneShape& shape) const {
+    const double* n = entities_.numbers.data() + shape.first;
+    return shape.kind == ShapeKind::kSphere ? n[3] : std::max(n[3], n[7]);
   }
 
   [[nodiscard]] Bounds bounds_of_shapes() const {
@@ -166,9 +262,12 @@ class Flattener {
   void require_room(const SceneShape& shape, std::uint64_t triangles, std::uint64_t vertices, std::uint64_t normals) {
     const SceneGeometry& geometry = scene_.geometry;
     if (geometry.triangles.size() + triangles > most_triangles_) {
-      fail(shape.line, "with this object the scene has " + words_of_count(geometry.triangles.size() + triangles) +
-                           " triangles at a tolerance of " + text_of_number(static_cast<double>(scene_.tolerance)) +
-                           "; at most " + words_of_count(most_triangles_) + " are allowed");
+      const std::optional<float> coarser = tolerance_for(scene_.roundness, most_triangles_);
+      fail(shape.line,
+           "with this object the scene has " + words_of_count(geometry.triangles.size() + triangles) +
+               " triangles at a tolerance of " + text_of_number(static_cast<double>(scene_.tolerance)) + "; at most " +
+               words_of_count(most_triangles_) + " are allowed" +
+               (coarser ? "; --tolerance " + text_of_number(static_cast<double>(*coarser)) + " makes fewer" : ""));
     }
     if (geometry.vertices.size() + vertices > kMostSceneVertices ||
         geometry.normals.size() + normals > kMostSceneVertices) {
@@ -191,9 +290,9 @@ class Flattener {
   // Round shapes -------------------------------------------------------------------------------------------------
 
   // How far facets may be from a shape of a radius once their corners' rounding has taken its part, as a share of it.
-  [[nodiscard]] double allowed_deviation(const SceneShape& shape, double reach, double radius) const {
+  [[nodiscard]] double allowed_deviation(const SceneShape& shape, double reach, double radius) {
     const double rounding = rounding_of(reach);
-    const double tolerance = static_cast<double>(scene_.tolerance);
+    const double tolerance = tolerance_of(shape);
     if (!(tolerance > 2 * rounding)) {
       fail(shape.line, "a tolerance of " + text_of_number(tolerance) +
                            " is finer than floats are there; they allow at least " + text_of_number(2.01 * rounding));
@@ -374,6 +473,8 @@ class Flattener {
   std::uint32_t most_triangles_;
   SceneDescription scene_;
   RoundShapes shapes_;
+  DVec3 eye_{0};                                           // of the picture
+  double pixel_ = 0;                                       // of the picture, at distance 1
   std::map<std::uint32_t, std::uint32_t> sphere_normals_;  // first normal of each frequency
   std::map<SceneMaterial, std::uint32_t, MaterialOrder> material_index_;
   std::vector<std::uint32_t> material_of_fill_;  // two of each fill: flat, smooth
@@ -382,6 +483,18 @@ class Flattener {
 };
 
 }  // namespace
+
+std::optional<float> tolerance_for(const SceneRoundness& roundness, std::uint64_t most_triangles) {
+  constexpr double kStep = 1.19;   // a quarter of an octave
+  constexpr int kMostSteps = 160;  // 10^12
+  RoundShapes shapes;
+  double tolerance = static_cast<double>(roundness.least_tolerance);
+  for (int step = 0; step < kMostSteps && !roundness.groups.empty(); ++step, tolerance *= kStep) {
+    const double rounded = two_digits(tolerance);
+    if (triangles_of(shapes, roundness, rounded) <= most_triangles) return static_cast<float>(rounded);
+  }
+  return std::nullopt;
+}
 
 SceneDescription flatten_scene(SceneEntities entities, const std::filesystem::path& path, const SceneOptions& options) {
   return Flattener(std::move(entities), path, options).flatten();

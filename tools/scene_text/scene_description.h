@@ -97,6 +97,29 @@ struct SceneGeometry {
                                         ///< normals, or kNoNormal three times
 };
 
+/// Where the tolerance of round shapes comes from.
+enum class ToleranceRule : std::uint8_t {
+  kAsked,     ///< SceneOptions::tolerance
+  kDiagonal,  ///< a share of the diagonal of the box around all objects
+  kPicture,   ///< coarser than that where the picture does not show it: a share of a pixel, an object at a time
+};
+
+/// Round shapes of nearly one radius: how many triangles a tolerance makes of them can be told without making them.
+struct RoundShapeGroup {
+  bool is_sphere = true;
+  double radius = 0;  ///< that of none is greater
+  std::uint64_t count = 0;
+};
+
+/// How round shapes became triangles, and what other tolerances would make of them.
+struct SceneRoundness {
+  float least_tolerance = 0.0f, most_tolerance = 0.0f;  ///< of all objects, world units; equal but for kPicture
+  ToleranceRule rule = ToleranceRule::kDiagonal;
+  std::uint64_t diagonal_triangles = 0;  ///< kPicture: that kDiagonal would have made, a tenth more at most
+  std::vector<RoundShapeGroup> groups;   ///< spheres and cones by their size
+  std::uint64_t flat_triangles = 0;      ///< of all other objects, those without area included
+};
+
 /// What the text held, before tessellation.
 struct SceneCounts {
   std::uint64_t spheres = 0, cones = 0, polygons = 0, patches = 0, meshes = 0;
@@ -124,7 +147,9 @@ struct SceneDescription {
   bool shadows = true;
   SceneGeometry geometry;  ///< at least one triangle
 
-  float tolerance = 0.0f;  ///< world units: no facet is farther than this from the sphere or cone that it stands for
+  float tolerance = 0.0f;  ///< world units: no facet is farther than this, or than its object's in roundness, from the
+                           ///< sphere or cone that it stands for
+  SceneRoundness roundness;
   SceneCounts counts;
   std::vector<std::filesystem::path> files;  ///< that the text names: meshes, faces
   std::vector<SceneNote> notes;              ///< at most kMostSceneNotes

@@ -16,12 +16,26 @@ namespace gridiron::tool {
 inline constexpr std::size_t kMostSceneBytes = std::size_t{1} << 30;
 inline constexpr std::uint32_t kMostSceneShapes = 1u << 24;
 
+/// The picture that a scene is read for: parts of its view that are not the scene's own.
+struct ScenePicture {
+  std::optional<Vec3> eye;
+  std::optional<float> angle_degrees;  ///< between top and bottom edge
+  std::optional<std::uint32_t> height;
+};
+
+/// A scene of more triangles than this, at the tolerance that its diagonal gives, gets that of its picture.
+inline constexpr std::uint64_t kManyRoundTriangles = 1u << 18;
+
 /// How round shapes become triangles.
 struct SceneOptions {
   /// Largest distance of a facet from the sphere or cone that it stands for, world units, > 0. Where it is not given:
   /// relative_tolerance times the diagonal of the bounding box of all objects.
   std::optional<float> tolerance;
   float relative_tolerance = 1e-4f;
+  /// Nothing: the scene is read for no picture. Else, where tolerance is not given and that of the diagonal makes more
+  /// than many_triangles, each object gets the greatest tolerance that its distance from the eye hides.
+  std::optional<ScenePicture> picture;
+  std::uint64_t many_triangles = kManyRoundTriangles;
   std::uint32_t most_triangles = kMostSceneTriangles;  ///< at most kMostSceneTriangles
 };
 
@@ -37,6 +51,10 @@ struct SceneOptions {
 
 /// The first half: parses and checks each entity, reads meshes and environment.
 [[nodiscard]] SceneEntities parse_scene_text(std::string_view text, const std::filesystem::path& path);
+
+/// @returns a tolerance of two digits, no less than the scene's least, with which it has at most so many triangles;
+///          nothing where none makes so few.
+[[nodiscard]] std::optional<float> tolerance_for(const SceneRoundness& roundness, std::uint64_t most_triangles);
 
 /// The second half: makes the triangles. @param path  what messages call the text.
 [[nodiscard]] SceneDescription flatten_scene(SceneEntities entities, const std::filesystem::path& path,

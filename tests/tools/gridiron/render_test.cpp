@@ -187,6 +187,48 @@ TEST(Render, APackedSceneIsSeenAsItsMesh) {
   }
 }
 
+TEST(Render, PlainModeReportsItsHost) {
+  const TemporaryFolder folder;
+  folder.write_ply("a.ply", make_torus(40, 24, 1.0f, 0.4f));
+  const Json checked = render_report(folder, {"a.ply", "--size", "96x64"});
+  EXPECT_EQ(checked["mode"], "checked");
+  EXPECT_EQ(checked["host"]["lanes"], 4);
+  EXPECT_EQ(checked["host"]["repeats"], 1);
+  const Words plain[] = {{"--mode", "plain", "--lanes", "8"}, {"--mode", "plain", "--repeat", "3"}};
+  for (const Words& options : plain) {
+    const Json report = render_report(folder, Words{"a.ply", "--size", "96x64", "--threads", "2"} + options);
+    EXPECT_EQ(report["mode"], "plain");
+    EXPECT_EQ(report["image_hash"], checked["image_hash"]);
+    EXPECT_EQ(report["scene"], checked["scene"]);
+    EXPECT_EQ(report["host"]["threads"], 2);
+    EXPECT_GE(report["host"]["lanes"], 4);
+    EXPECT_EQ(report["host"]["repeats"], options.back() == "3" ? 3 : 1);
+    for (const char* part : {"load", "build", "render"}) {
+      EXPECT_GT(report["host"][std::string(part) + "_seconds"], 0) << part;
+      EXPECT_GE(report["host"][std::string(part) + "_processor_seconds"], 0) << part;
+    }
+    for (const char* key : {"machine", "frame", "cores", "work"}) EXPECT_FALSE(report.contains(key)) << key;
+  }
+  const Json tile = render_report(folder, {"a.ply", "--size", "96x64", "--tile", "1,1"});
+  EXPECT_FALSE(tile.contains("frame")) << "time is not told of one tile";
+}
+
+TEST(Render, RepeatedFramesAreTheSame) {
+  const TemporaryFolder folder;
+  folder.write_ply("a.ply", make_torus(40, 24, 1.0f, 0.4f));
+  ASSERT_EQ(run_program(folder.folder(), {"pack", "a.ply", "-o", "a.gri", "--quiet"}).out, "");
+  Json once = render_report(folder, {"a.ply", "--size", "96x64"});
+  once.erase("host");
+  for (const char* input : {"a.ply", "a.gri"}) {
+    Json report = render_report(folder, {input, "--size", "96x64", "--repeat", "3"});
+    EXPECT_EQ(report["host"]["repeats"], 3);
+    report.erase("host");
+    EXPECT_EQ(report, once) << input;
+  }
+  const ProgramResult loud = render(folder, {"a.ply", "--size", "96x64", "--repeat", "3"});
+  EXPECT_NE(loud.out.find(", the least of 3\n"), std::string::npos) << loud.out;
+}
+
 TEST(Render, TheReportHoldsWhatWasRendered) {
   const TemporaryFolder folder;
   const TestMesh mesh = make_torus(40, 24, 1.0f, 0.4f);

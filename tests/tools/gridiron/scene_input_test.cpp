@@ -56,7 +56,7 @@ TEST_F(SceneInputTest, HalvesLambdaUntilItFits) {
 TEST_F(SceneInputTest, SaysSoWhereNothingFits) {
   const tool::GridChoice choice = choose(10'000);
   EXPECT_FALSE(choice.fits());
-  EXPECT_THROW(tool::require_fit(choice, arguments_), tool::Failure);
+  EXPECT_THROW(tool::require_fit(choice, arguments_, input_), tool::Failure);
 }
 
 TEST_F(SceneInputTest, GoesDownToOneCell) {
@@ -126,7 +126,7 @@ TEST_F(SceneInputTest, ASmallMemoryKeepsHalfOfItselfForThePicture) {
   arguments_.machine = std::make_shared<sim::MachineProfile>(small);
   arguments_.lambda = 64.0f;
   try {
-    tool::require_fit(choose(budget_bytes), arguments_);
+    tool::require_fit(choose(budget_bytes), arguments_, input_);
     ADD_FAILURE();
   } catch (const tool::Failure& failure) {
     const std::string words = failure.what();

@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "run_program.h"
+#include "scene_makers/procedural.h"
 #include "temporary_folder.h"
 
 namespace gridiron::test {
@@ -21,6 +22,11 @@ constexpr const char* kBall =
     "l 3 5 4\nf 0.9 0.5 0.3 0.7 0.3 40 0 0\ns 0 0 0 1\n";
 
 const std::filesystem::path kScenes = GRIDIRON_SCENE_FILES;
+
+Words joined(Words words, const Words& more) {
+  words.insert(words.end(), more.begin(), more.end());
+  return words;
+}
 
 ProgramResult run(const TemporaryFolder& folder, const Words& arguments) {
   const ProgramResult result = run_program(folder.folder(), arguments);
@@ -217,6 +223,43 @@ TEST(TextScene, OddOnesAreRenderedWithANote) {
   const ProgramResult result = run(folder, {"render", "a.nff", "--shading", "simple"});
   EXPECT_EQ(result.err.find("a.nff:5: note: "), 0u) << result.err;
   EXPECT_EQ(run(folder, {"render", "a.nff", "--shading", "simple", "--quiet"}).err, "");
+}
+
+TEST(TextScene, ManyTrianglesGetTheToleranceOfThePicture) {
+  const TemporaryFolder folder;
+  folder.write("a.nff", scene_makers::make_lattice(8));
+  const auto json = [&folder](const Words& options) {
+    return info_json(folder, joined({"a.nff", "--lambda", "0.1"}, options));
+  };
+  const Json chosen = json({}), asked = json({"--tolerance", "0.00018"}), large = json({"--size", "4096x4096"});
+  EXPECT_EQ(chosen["scene"]["tolerance"]["rule"], "picture");
+  EXPECT_EQ(asked["scene"]["tolerance"]["rule"], "asked");
+  EXPECT_EQ(asked["scene"]["tolerance"]["least"], asked["scene"]["tolerance"]["most"]);
+  EXPECT_LT(2 * chosen["scene"]["triangles"].get<int>(), asked["scene"]["triangles"].get<int>());
+  EXPECT_GT(large["scene"]["triangles"], chosen["scene"]["triangles"]);
+  const Words render = {"render", "a.nff", "--size", "8x8", "--mode", "plain", "--shading", "simple"};
+  const ProgramResult result = run(folder, render);
+  EXPECT_EQ(result.err.find("a.nff: tolerance of round shapes chosen by the picture: 0.000"), 0u) << result.err;
+  EXPECT_NE(result.err.find("--tolerance sets another"), std::string::npos) << result.err;
+  EXPECT_EQ(run(folder, joined(render, {"--quiet"})).err, "");
+  // Another place to look from is another picture.
+  const ProgramResult within = run(folder, joined(render, {"--eye", "0.55,0.45,0.5"}));
+  EXPECT_NE(within.err, result.err);
+}
+
+TEST(TextScene, WhatDoesNotFitNamesATolerance) {
+  const TemporaryFolder folder;
+  folder.write("a.nff", scene_makers::make_lattice(3));
+  folder.write("small.machine", "based_on cell-ps3\nname small\nmain_memory_bytes 6291456\n");
+  const Words render = {"render", "a.nff", "--machine", "small.machine", "--size", "8x8", "--quiet", "--mode", "plain"};
+  const ProgramResult refused = run_program(folder.folder(), render);
+  EXPECT_EQ(refused.exit_code, 1);
+  const std::string words = "would fit: --tolerance ";
+  const std::size_t place = refused.err.find(words);
+  ASSERT_NE(place, std::string::npos) << refused.err;
+  const std::string rest = refused.err.substr(place + words.size());
+  const ProgramResult fits = run(folder, joined(render, {"--tolerance", rest.substr(0, rest.find(' '))}));
+  EXPECT_EQ(fits.exit_code, 0) << refused.err << fits.err;
 }
 
 TEST(TextScene, MeshImagesHaveNoSceneShading) {

@@ -59,10 +59,11 @@ ReportInput sample() {
   input.regions = {{"frame", 0, 384}, {"cell_blocks", 384, 3584}};
   input.code_bytes = 40000;
   input.stack_bytes = 4096;
-  input.load_seconds = 0.125;
-  input.build_seconds = 0.5;
-  input.render_seconds = 2;
+  input.load = {0.125, 0.25};
+  input.build = {0.5, 0.75};
+  input.render = {2, 4};
   input.host_threads = 6;
+  input.repeats = 3;
   input.image_hash = 0x0123456789abcdef;
   input.depth_hash = 0x1123456789abcdef;
   input.ids_hash = 0x2123456789abcdef;
@@ -89,6 +90,7 @@ void collect_paths(const Json& json, const std::string& prefix, std::vector<std:
 
 TEST(Report, HasExactlyTheDocumentedKeysInOrder) {
   std::vector<std::string> expected = {"version",
+                                       "mode",
                                        "scene.triangles",
                                        "scene.vertices",
                                        "scene.dropped_triangles",
@@ -136,11 +138,26 @@ TEST(Report, HasExactlyTheDocumentedKeysInOrder) {
     expected.push_back(std::string("work.") + name);
   }
   // clang-format on
-  for (const char* path :
-       {"effects.called_for[]", "effects.rays.primary", "local_store.arena_bytes", "local_store.regions[].name",
-        "local_store.regions[].offset", "local_store.regions[].bytes", "local_store.code_bytes",
-        "local_store.stack_bytes", "host.load_seconds", "host.build_seconds", "host.render_seconds", "host.threads",
-        "image_hash", "depth_hash", "ids_hash"}) {
+  for (const char* path : {"effects.called_for[]",
+                           "effects.rays.primary",
+                           "local_store.arena_bytes",
+                           "local_store.regions[].name",
+                           "local_store.regions[].offset",
+                           "local_store.regions[].bytes",
+                           "local_store.code_bytes",
+                           "local_store.stack_bytes",
+                           "host.load_seconds",
+                           "host.build_seconds",
+                           "host.render_seconds",
+                           "host.load_processor_seconds",
+                           "host.build_processor_seconds",
+                           "host.render_processor_seconds",
+                           "host.threads",
+                           "host.lanes",
+                           "host.repeats",
+                           "image_hash",
+                           "depth_hash",
+                           "ids_hash"}) {
     expected.push_back(path);
   }
   std::vector<std::string> paths;
@@ -186,7 +203,9 @@ TEST(Report, ValuesAreTheOnesPutIn) {
   EXPECT_EQ(report["local_store"]["code_bytes"], 40000);
   EXPECT_EQ(report["local_store"]["stack_bytes"], 4096);
   EXPECT_EQ(report["host"], Json::parse(R"({"load_seconds": 0.125, "build_seconds": 0.5, "render_seconds": 2.0,
-                                            "threads": 6})"));
+                                            "load_processor_seconds": 0.25, "build_processor_seconds": 0.75,
+                                            "render_processor_seconds": 4.0, "threads": 6, "lanes": 4,
+                                            "repeats": 3})"));
   EXPECT_EQ(report["image_hash"], "0123456789abcdef");
   EXPECT_EQ(report["depth_hash"], "1123456789abcdef");
   EXPECT_EQ(report["ids_hash"], "2123456789abcdef");
@@ -200,6 +219,26 @@ TEST(Report, CyclesOfACoreAddUpToTheFrame) {
     for (const auto& [level, cycles] : core["dma_wait_cycles"].items()) sum += cycles.get<double>();
     EXPECT_EQ(sum, report["frame"]["cycles"].get<double>());
   }
+}
+
+TEST(Report, WithoutTimeTheHostIsTold) {
+  ReportInput input = sample();
+  input.is_timed = false;
+  input.mode = "plain";
+  Json timed = Json::parse(report_json(sample()));
+  for (const char* key : {"machine", "frame", "cores", "work"}) timed.erase(key);
+  timed["effects"].erase("rays");
+  timed["mode"] = "plain";
+  EXPECT_EQ(Json::parse(report_json(input)), timed);
+}
+
+TEST(Report, TolerancesAreThoseOfSceneWithRoundShapes) {
+  ReportInput input = sample();
+  input.least_tolerance = 0.25f;
+  input.most_tolerance = 0.5f;
+  const Json scene = Json::parse(report_json(input))["scene"];
+  EXPECT_EQ(scene["least_tolerance"], 0.25);
+  EXPECT_EQ(scene["most_tolerance"], 0.5);
 }
 
 /// A frame with effects: what the other keys tell stays as it is.

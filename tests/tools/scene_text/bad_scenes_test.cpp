@@ -204,7 +204,7 @@ TEST(BadScenes, ShapesThatDoNotFit) {
   EXPECT_EQ(
       complaint(std::string(kViewAndFill) + "\ns 0 0 0 1", few),
       "test.nff:2: with this object the scene has 18,000 triangles at a tolerance of 0.00034641015; at most 100 are "
-      "allowed");
+      "allowed; --tolerance 0.077 makes fewer");
   tool::SceneOptions fine;
   fine.tolerance = 1e-6f;
   EXPECT_EQ(complaint(std::string(kViewAndFill) + "s 0 0 0 1 \n c 0 0 0 9000 0 0 1 1", fine).substr(0, 42),

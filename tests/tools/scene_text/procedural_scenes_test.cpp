@@ -115,6 +115,17 @@ TEST(ProceduralScenes, MountOfALargerSizeIsTheSameMountain) {
   for (const auto& [place, height] : heights(3)) EXPECT_EQ(fine.at(place), height);
 }
 
+TEST(ProceduralScenes, LatticeAndShellsHaveAsManyObjectsAsSaid) {
+  for (std::uint32_t size = 1; size <= 4; ++size) {
+    const SceneEntities lattice = tool::parse_scene_text(make_lattice(size), "lattice.nff");
+    EXPECT_EQ(lattice.scene.counts.spheres, (size + 1) * (size + 1) * (size + 1));
+    EXPECT_EQ(lattice.scene.counts.cones, 3 * size * (size + 1) * (size + 1));
+    const SceneEntities shells = tool::parse_scene_text(make_shells(size), "shells.nff");
+    EXPECT_EQ(shells.scene.counts.spheres, 288 * size * size);
+    EXPECT_EQ(shells.scene.counts.polygons, 1u);
+  }
+}
+
 TEST(ProceduralScenes, RingsAreLinkedPentagonsInAPyramid) {
   for (std::uint32_t size = 1; size <= 7; ++size) {
     const SceneEntities read = tool::parse_scene_text(make_rings(size), "rings.nff");

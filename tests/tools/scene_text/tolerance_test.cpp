@@ -1,0 +1,108 @@
+// The tolerance of round shapes that a picture allows. SPDX-License-Identifier: Apache-2.0
+#include <gtest/gtest.h>
+
+#include <string>
+
+#include "check_scene.h"
+#include "gridiron/failure.h"
+#include "scene_makers/procedural.h"
+
+namespace gridiron::test {
+namespace {
+
+using tool::SceneDescription;
+using tool::SceneOptions;
+using tool::SceneRoundness;
+using tool::ToleranceRule;
+
+SceneDescription read(const std::string& text, const SceneOptions& options) {
+  return tool::read_scene_text(text, "made.nff", options);
+}
+
+SceneOptions for_its_picture(std::uint64_t many = 1000) {
+  SceneOptions options;
+  options.picture.emplace();
+  options.many_triangles = many;
+  return options;
+}
+
+TEST(Tolerance, FewTrianglesStayAsTheyAre) {
+  const std::string text = scene_makers::make_lattice(1);
+  const SceneDescription plain = read(text, {});
+  const SceneDescription scene = read(text, for_its_picture(tool::kManyRoundTriangles));
+  EXPECT_EQ(scene.roundness.rule, ToleranceRule::kDiagonal);
+  EXPECT_EQ(scene.roundness.least_tolerance, plain.tolerance);
+  EXPECT_EQ(scene.roundness.most_tolerance, plain.tolerance);
+  EXPECT_EQ(scene.geometry.vertices, plain.geometry.vertices);
+}
+
+TEST(Tolerance, ManyBecomeFewerWhereThePictureHidesIt) {
+  for (const std::string& text : {scene_makers::make_lattice(3), scene_makers::make_shells(1)}) {
+    const SceneDescription plain = read(text, {}), scene = read(text, for_its_picture());
+    const SceneRoundness& roundness = scene.roundness;
+    EXPECT_EQ(roundness.rule, ToleranceRule::kPicture);
+    EXPECT_EQ(roundness.least_tolerance, plain.tolerance);
+    EXPECT_GT(roundness.most_tolerance, plain.tolerance);
+    EXPECT_LE(roundness.most_tolerance, 16.001f * plain.tolerance);
+    EXPECT_LT(4 * scene.geometry.triangles.size(), 3 * plain.geometry.triangles.size());
+    EXPECT_GE(roundness.diagonal_triangles, plain.geometry.triangles.size());
+    EXPECT_LE(roundness.diagonal_triangles, plain.geometry.triangles.size() * 5 / 4);
+    // A finer picture needs more, and one that is seen from within as many as the diagonal gives where the eye is.
+    SceneOptions finer = for_its_picture();
+    finer.picture->height = 4 * scene.view.height;
+    EXPECT_GT(read(text, finer).geometry.triangles.size(), scene.geometry.triangles.size());
+    SceneOptions narrow = for_its_picture();
+    narrow.picture->angle_degrees = scene.view.angle_degrees / 8;
+    EXPECT_GT(read(text, narrow).geometry.triangles.size(), scene.geometry.triangles.size());
+    SceneOptions far = for_its_picture();
+    far.picture->eye = 100.0f * scene.view.from;
+    EXPECT_LT(read(text, far).geometry.triangles.size(), scene.geometry.triangles.size());
+  }
+}
+
+TEST(Tolerance, NearObjectsAreFinerThanFarOnes) {
+  const std::string view = "v\nfrom 0 0 0\nat 0 0 -1\nup 0 1 0\nangle 45\nhither 0\nresolution 64 64\n";
+  const std::string text = view + "f 1 1 1 1 0 0 0 1\ns 0 0 -2 1\ns 0 0 -200 1\n";
+  const SceneDescription scene = read(text, for_its_picture(1));
+  std::size_t near = 0, far = 0;
+  for (const auto& triangle : scene.geometry.triangles) {
+    (scene.geometry.vertices[triangle.x].z > -100 ? near : far) += 1;
+  }
+  EXPECT_GT(near, far);
+  EXPECT_GE(far, 20u * 9) << "a thirty-second of the radius at most";
+}
+
+TEST(Tolerance, WhatIsAskedForIsKept) {
+  SceneOptions options = for_its_picture(1);
+  options.tolerance = 0.001f;
+  const SceneDescription scene = read(scene_makers::make_lattice(2), options);
+  EXPECT_EQ(scene.roundness.rule, ToleranceRule::kAsked);
+  EXPECT_EQ(scene.roundness.most_tolerance, 0.001f);
+}
+
+TEST(Tolerance, OneThatMakesFewEnoughIsKnown) {
+  const std::string text = scene_makers::make_lattice(3);
+  const SceneDescription scene = read(text, {});
+  const std::uint64_t most = scene.geometry.triangles.size() / 4;
+  const std::optional<float> tolerance = tool::tolerance_for(scene.roundness, most);
+  ASSERT_TRUE(tolerance);
+  SceneOptions options;
+  options.tolerance = tolerance;
+  const std::size_t triangles = read(text, options).geometry.triangles.size();
+  EXPECT_LE(triangles, most);
+  EXPECT_GE(triangles, most / 3) << "not coarser than it must be";
+  EXPECT_FALSE(tool::tolerance_for(scene.roundness, 10)) << "no ball has so few";
+
+  // A scene of too many triangles says so.
+  SceneOptions few;
+  few.most_triangles = static_cast<std::uint32_t>(most);
+  try {
+    (void)read(text, few);
+    ADD_FAILURE() << "too many triangles";
+  } catch (const tool::Failure& failure) {
+    EXPECT_NE(std::string(failure.what()).find("--tolerance 0.00"), std::string::npos) << failure.what();
+  }
+}
+
+}  // namespace
+}  // namespace gridiron::test
