@@ -197,7 +197,7 @@ void run_command(const AnimateArguments& arguments) {
   }
   AtomicFiles table;
   table.add(arguments.output / kTableName, table_of(frames, *each.scene.machine));
-  table.commit();
+  table.commit_at_end();
   folder.keep();
   if (!each.quiet) print_frames(frames, each);
 }

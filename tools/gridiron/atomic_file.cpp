@@ -15,6 +15,7 @@
 #include "command_files.h"
 #include "failure.h"
 #include "interrupt.h"
+#include "overdue_exit.h"
 
 namespace gridiron::tool {
 namespace {
@@ -62,15 +63,22 @@ AtomicFile::AtomicFile(const fs::path& path) : target_(target_of(path)) {
 
 AtomicFile::~AtomicFile() {
   if (descriptor_ >= 0) ::close(descriptor_);
-  if (!temporary_.empty()) ::unlink(temporary_.c_str());
+  if (temporary_.empty()) return;
+  const Undivided step;
+  ::unlink(temporary_.c_str());
+  leftover_.forget();
 }
 
 void AtomicFile::open_temporary() {
   // A name of its own, not one made of the target's: that may be as long as names can be.
   std::string name = target_.file.parent_path() / ".gridiron.XXXXXX";
-  descriptor_ = ::mkostemp(name.data(), O_CLOEXEC);
-  if (descriptor_ < 0) fail("create a temporary file beside it");
-  temporary_ = name;
+  {
+    const Undivided step;
+    descriptor_ = ::mkostemp(name.data(), O_CLOEXEC);
+    if (descriptor_ < 0) fail("create a temporary file beside it");
+    temporary_ = name;
+    leftover_.remember(name);
+  }
 
   // mkostemp makes the file private; give it the rights of the file it replaces, or of any new file.
   struct stat replaced {};
@@ -113,8 +121,10 @@ void AtomicFile::commit() {
     return;
   }
   finish();
+  const Undivided step;
   if (::rename(temporary_.c_str(), target_.file.c_str()) != 0) fail("rename into place");
   temporary_.clear();
+  leftover_.forget();
   count_written_file();
 }
 
@@ -135,9 +145,16 @@ void AtomicFiles::commit() {
     if (file.target().is_special) file.commit();
   }
   stop_if_interrupted();
+  const Undivided all;
   for (AtomicFile& file : files_) {
     if (!file.target().is_special) file.commit();
   }
+}
+
+void AtomicFiles::commit_at_end() {
+  const Undivided all;
+  commit();
+  outputs_are_complete();
 }
 
 }  // namespace gridiron::tool

@@ -11,6 +11,7 @@
 #include <vector>
 
 #include "output_target.h"
+#include "overdue_exit.h"
 
 namespace gridiron::tool {
 
@@ -45,6 +46,7 @@ class AtomicFile {
 
   OutputTarget target_;
   std::string temporary_;            ///< empty: nothing to remove
+  Leftover leftover_;                ///< the same, for an overdue exit
   std::vector<std::byte> deferred_;  ///< bytes for a device or pipe
   int descriptor_ = -1;
 };
@@ -63,6 +65,8 @@ class AtomicFiles {
   /// Makes all files appear, devices and pipes first: they may fail where a rename no longer does. No file appears
   /// where one of the targets cannot be replaced any more. Errors: of check_again() too.
   void commit();
+  /// Does so as the last thing of the command: an interrupt that comes after it comes too late.
+  void commit_at_end();
 
  private:
   AtomicFile& open(const std::filesystem::path& path);

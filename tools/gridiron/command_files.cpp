@@ -11,6 +11,7 @@
 #include <utility>
 
 #include "failure.h"
+#include "overdue_exit.h"
 
 namespace gridiron::tool {
 namespace {
@@ -140,7 +141,7 @@ void check_again(const OutputTarget& target) {
 }
 
 void count_written_file() {
-  if (ledger != nullptr) ++ledger->written_count;
+  if (ledger != nullptr) note_written_files(++ledger->written_count);
 }
 
 std::size_t written_file_count() {

@@ -4,6 +4,7 @@
 #include <csignal>
 
 #include "failure.h"
+#include "overdue_exit.h"
 
 namespace gridiron::tool {
 namespace {
@@ -14,15 +15,22 @@ std::atomic<int> last_signal{SIGINT};
 static_assert(std::atomic<bool>::is_always_lock_free && std::atomic<int>::is_always_lock_free,
               "a signal handler may only touch lock-free atomics");
 
+ExitCode exit_code_of(int signal) {
+  if (signal == SIGTERM) return ExitCode::kTerminated;
+  return signal == SIGHUP ? ExitCode::kHungUp : ExitCode::kInterrupted;
+}
+
 extern "C" void note_interrupt(int signal) {
   last_signal.store(signal);
   interrupted.store(true);
   stop.raise();
+  expect_exit(static_cast<int>(exit_code_of(signal)));
 }
 
 }  // namespace
 
 void watch_for_interrupt() {
+  begin_overdue_exit();
   struct sigaction action {};
   action.sa_handler = note_interrupt;
   sigemptyset(&action.sa_mask);
@@ -46,11 +54,7 @@ const StopFlag& stop_flag() {
 
 void stop_if_interrupted() {
   if (!interrupted.load()) return;
-  const int signal = last_signal.load();
-  throw Failure(signal == SIGTERM  ? ExitCode::kTerminated
-                : signal == SIGHUP ? ExitCode::kHungUp
-                                   : ExitCode::kInterrupted,
-                "interrupted");
+  throw Failure(exit_code_of(last_signal.load()), "interrupted");
 }
 
 }  // namespace gridiron::tool

@@ -31,7 +31,7 @@ void run_command(const JobArguments& asked) {
   }
   AtomicFiles files;
   files.add(arguments.output, file);
-  files.commit();
+  files.commit_at_end();
   if (arguments.quiet) return;
   std::printf("%s: %ux%u in %s, %s to load at 0x%llx, %s of memory\n", arguments.output.c_str(), job.width, job.height,
               words_of_count(job.tile_count, "tile").c_str(), words_of_bytes(job.loaded_bytes).c_str(),

@@ -16,6 +16,7 @@
 #include "commands.h"
 #include "failure.h"
 #include "interrupt.h"
+#include "overdue_exit.h"
 #include "words.h"
 
 namespace {
@@ -59,13 +60,13 @@ ExitCode run(int count, const char* const* values) {
     return ExitCode::kDone;
   } catch (const gridiron::tool::Failure& failure) {
     const char* prefix = failure.code() == ExitCode::kUsage ? "gridiron: " : "";
-    std::fprintf(stderr, "%s%s%s\n", prefix, failure.what(), words_of_files(failure).c_str());
+    gridiron::tool::say_last_words((std::string(prefix) + failure.what() + words_of_files(failure) + "\n").c_str());
     return failure.code();
   } catch (const std::bad_alloc&) {
-    std::fputs("gridiron: this host has not enough memory\n", stderr);
+    gridiron::tool::say_last_words("gridiron: this host has not enough memory\n");
     return ExitCode::kBadInput;
   } catch (const std::exception& error) {
-    std::fprintf(stderr, "gridiron: %s\n", error.what());
+    gridiron::tool::say_last_words((std::string("gridiron: ") + error.what() + "\n").c_str());
     return ExitCode::kBadInput;
   }
 }

@@ -12,7 +12,11 @@ namespace gridiron::tool {
 OutputFolder::OutputFolder(std::filesystem::path path, const std::vector<std::string>& names) : path_(std::move(path)) {
   if (path_ == "-") throw Failure(ExitCode::kUsage, "-o -: a folder cannot be standard output");
   std::error_code error;
-  made_ = std::filesystem::create_directory(path_, error);
+  {
+    const Undivided step;
+    made_ = std::filesystem::create_directory(path_, error);
+    if (made_) leftover_.remember(path_);
+  }
   if (error) {
     throw Failure(ExitCode::kBadInput, path_.string() + ": cannot make the folder: " + error.message());
   }
@@ -27,6 +31,12 @@ OutputFolder::OutputFolder(std::filesystem::path path, const std::vector<std::st
     remove_if_made();
     throw;
   }
+}
+
+void OutputFolder::keep() {
+  const Undivided step;
+  kept_ = true;
+  leftover_.forget();
 }
 
 void OutputFolder::remove_if_made() {

@@ -6,6 +6,8 @@
 #include <string>
 #include <vector>
 
+#include "overdue_exit.h"
+
 namespace gridiron::tool {
 
 class OutputFolder {
@@ -17,13 +19,14 @@ class OutputFolder {
   OutputFolder(const OutputFolder&) = delete;
   OutputFolder& operator=(const OutputFolder&) = delete;
 
-  void keep() { kept_ = true; }
+  void keep();
 
  private:
   void remove_if_made();
 
   std::filesystem::path path_;
   bool made_ = false, kept_ = false;
+  Leftover leftover_;
 };
 
 }  // namespace gridiron::tool

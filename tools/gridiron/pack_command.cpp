@@ -39,7 +39,7 @@ void run_command(const PackArguments& arguments) {
 
   AtomicFiles files;
   files.add(arguments.output, image);
-  files.commit();
+  files.commit_at_end();
   if (arguments.scene.quiet) return;
   std::string triangles = words_of_count(mesh->triangles.size()) + " triangles";
   if (choice.need.dropped_triangle_count != 0) {

@@ -188,7 +188,7 @@ void run_command(const RenderArguments& asked) {
     files.add(*arguments.report, report_json(collect_report(arguments, input, frame, repeated, timing)));
   }
   if (arguments.timeline) files.add(*arguments.timeline, timeline_json(timing, *arguments.scene.machine));
-  files.commit();
+  files.commit_at_end();
 
   if (arguments.quiet) return;
   if (!arguments.tile) tell_note(input.path, unseen_note(*memory, repeated.result, arguments.mode));

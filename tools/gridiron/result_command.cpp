@@ -133,7 +133,7 @@ void run_command(const ResultArguments& arguments) {
     if (arguments.ids) files.add(*arguments.ids, encode_pfm(id_picture(words)));
   }
   if (arguments.report) files.add(*arguments.report, device_report_json(report));
-  files.commit();
+  files.commit_at_end();
 
   if (!arguments.quiet) {
     tell_unseen(arguments, job, result);
