@@ -6,8 +6,10 @@
 #include <algorithm>
 #include <charconv>
 #include <cstdio>
+#include <optional>
 #include <set>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "atomic_file.h"
@@ -33,7 +35,8 @@ constexpr const char* kTableName = "animation.csv";
 
 struct AnimationFrame {
   std::filesystem::path input;
-  std::string picture{};  ///< file name
+  std::string picture{};             ///< file name
+  std::optional<SceneInput> mesh{};  ///< of a stream, which is read once
   std::uint64_t triangles = 0;
   float lambda = 0;
   double build_cycles = 0, build_seconds = 0;    ///< of the machine's general core
@@ -44,31 +47,45 @@ struct AnimationFrame {
   [[nodiscard]] double fps() const { return seconds() > 0 ? 1 / seconds() : 0; }
 };
 
-// Folders give their meshes by name. Pictures are called after the meshes.
+constexpr const char* kExpected = "animate takes PLY meshes and folders of .ply files";
+
+void require_mesh(const std::filesystem::path& path, SceneKind kind) {
+  if (kind != SceneKind::kText && kind != SceneKind::kPacked) return;
+  throw Failure(ExitCode::kBadInput,
+                path.string() + ": is a " + (kind == SceneKind::kText ? "text" : "packed") + " scene; " + kExpected);
+}
+
+SceneInput read_mesh(const std::filesystem::path& path) {
+  SceneInput input = read_scene_input(path);
+  const bool is_packed = std::holds_alternative<PackedScene>(input.content);
+  require_mesh(path, input.text ? SceneKind::kText : is_packed ? SceneKind::kPacked : SceneKind::kMesh);
+  return input;
+}
+
+// Folders give their .ply files by name. Pictures are called after the meshes, those of streams after their places.
 std::vector<AnimationFrame> collect_frames(const AnimateArguments& arguments) {
   std::vector<AnimationFrame> frames;
   for (const std::filesystem::path& input : arguments.inputs) {
     std::error_code error;
     if (!std::filesystem::is_directory(input, error)) {
-      if (!is_mesh_file(input)) {
-        throw Failure(ExitCode::kBadInput,
-                      input.string() + ": is no mesh; animate takes .ply files and folders of them");
-      }
+      require_mesh(input, foreseen_kind(input));
       frames.push_back({.input = input});
       continue;
     }
     std::vector<std::filesystem::path> files;
     for (std::filesystem::directory_iterator entry(input, error), end; !error && entry != end; entry.increment(error)) {
-      if (is_mesh_file(entry->path())) files.push_back(entry->path());
+      if (scene_kind_by_ending(entry->path()) == SceneKind::kMesh) files.push_back(entry->path());
     }
     if (error) throw Failure(ExitCode::kBadInput, input.string() + ": cannot be read: " + error.message());
-    if (files.empty()) throw Failure(ExitCode::kBadInput, input.string() + ": holds no mesh (.ply)");
+    if (files.empty())
+      throw Failure(ExitCode::kBadInput, input.string() + ": holds no file that ends with .ply; " + kExpected);
     std::ranges::sort(files);
     for (const std::filesystem::path& file : files) frames.push_back({.input = file});
   }
   std::set<std::string> pictures;
-  for (AnimationFrame& frame : frames) {
-    frame.picture = frame.input.stem().string() + ".png";
+  for (std::size_t i = 0; i < frames.size(); ++i) {
+    AnimationFrame& frame = frames[i];
+    frame.picture = (is_descriptor(frame.input) ? "frame" + std::to_string(i) : frame.input.stem().string()) + ".png";
     if (!pictures.insert(frame.picture).second) {
       throw Failure(ExitCode::kUsage, "two frames would be called " + frame.picture);
     }
@@ -77,18 +94,19 @@ std::vector<AnimationFrame> collect_frames(const AnimateArguments& arguments) {
 }
 
 // One camera for all frames: what is not asked for is framed for all of them together.
-ViewRequest common_view(const std::vector<AnimationFrame>& frames, const RenderArguments& arguments) {
+ViewRequest common_view(std::vector<AnimationFrame>& frames, const RenderArguments& arguments) {
   ViewRequest view = join_view(arguments.view, arguments.camera ? read_camera_file(*arguments.camera) : ViewRequest{});
   if (view.eye && view.at) return view;
   const PointSource points = [&frames](const PointVisitor& visitor) {
-    for (const AnimationFrame& frame : frames) {
+    for (AnimationFrame& frame : frames) {
       stop_if_interrupted();
-      const SceneInput input = read_scene_input(frame.input);
+      SceneInput input = frame.mesh ? *std::exchange(frame.mesh, std::nullopt) : read_mesh(frame.input);
       const MeshView mesh = std::get<Mesh>(input.content).view();
       GridNeed need{};
       const Status status = count_scene_image(mesh, {.lambda = 1e-6f}, need);  // refuses what cannot be rendered
       if (status != Status::kOk) throw Failure(ExitCode::kBadInput, frame.input.string() + ": " + words_of(status));
       visit_points(mesh, visitor);
+      if (is_stream(frame.input)) frame.mesh = std::move(input);
     }
   };
   const Camera camera = complete_view(view, static_cast<double>(arguments.width) / arguments.height, points);
@@ -101,7 +119,7 @@ ViewRequest common_view(const std::vector<AnimationFrame>& frames, const RenderA
 void render(AnimationFrame& frame, RenderArguments arguments, const ViewRequest& view,
             const std::filesystem::path& folder) {
   arguments.scene.input = frame.input;
-  const SceneInput input = read_scene_input(frame.input);
+  const SceneInput input = frame.mesh ? *std::exchange(frame.mesh, std::nullopt) : read_mesh(frame.input);
   const Mesh& mesh = std::get<Mesh>(input.content);
   FrameMemory memory(frame_memory_bytes(input, arguments));
   prepare_frame(memory, input, arguments, view);

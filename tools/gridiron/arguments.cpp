@@ -128,7 +128,8 @@ void add_size(CLI::App& app, std::uint32_t& width, std::uint32_t& height, const 
 }
 
 void add_input(CLI::App& app, SceneArguments& scene) {
-  app.add_option("INPUT", scene.input, "scene: .ply (mesh), .nff (text scene) or .gri (made by pack)")
+  app.add_option("INPUT", scene.input,
+                 "scene: a PLY mesh, a text scene (NFF) or what pack made, whatever its name; - is standard input")
       ->required()
       ->type_name("");
   const auto tolerance = [](const std::string& text) {
@@ -150,7 +151,8 @@ void add_grid_options(CLI::App& app, SceneArguments& scene, std::string& machine
   const auto any_name = [](const std::string& text) { return text.empty() ? std::nullopt : std::optional(text); };
   add_parsed(
       app, "--machine", machine_name, any_name, "a machine's name or file", built_in + "FILE",
-      "machine profile, built in or a text file as 'gridiron machines NAME' prints (default " + machine_name + ")");
+      "machine profile, built in or a text file as 'gridiron machines NAME' prints, - for standard input (default " +
+          machine_name + ")");
   add_choice(app, "--configuration", scene.configuration, sets,
              "named set of parameters (default " + std::string(scene.configuration->name) + ")");
   const auto lambda = [](const std::string& text) {
@@ -183,9 +185,9 @@ std::string format_help() {
 void add_view_options(CLI::App& app, RenderArguments& render) {
   const std::string vector = "x,y,z with three finite numbers";
   add_parsed(
-      app, "--camera", render.camera,
-      [](const std::string& text) { return std::optional<std::filesystem::path>(text); }, "a file name", "FILE",
-      "view from a file of its own; --eye, --at, --up and --fov replace parts of it");
+      app, "--camera", render.camera, [](const std::string& text) { return std::optional(input_path(text)); },
+      "a file name", "FILE",
+      "view from a file of its own; --eye, --at, --up and --fov replace parts of it; - is standard input");
   add_parsed(app, "--eye", render.view.eye, parse_vector, vector, "x,y,z",
              "position of the camera (default: a text scene's own, else the scene is framed)");
   add_parsed(app, "--at", render.view.at, parse_vector, vector, "x,y,z",
@@ -300,8 +302,32 @@ void add_algorithm_options(CLI::App& app, RawRender& raw) {
   app.add_flag("--no-empty-skip", raw.no_empty_skip, "fetch the cell blocks of empty macrocells too");
 }
 
-void require_tolerance(const SceneArguments& scene) {
-  if (scene.tolerance && !is_text_scene(scene.input)) usage_error("--tolerance: is of text scenes (.nff) alone");
+// A file of the command line and the option that names it.
+struct NamedFile {
+  const char* option;
+  std::optional<std::filesystem::path> path;
+};
+
+// The file of --machine, nothing where a built-in machine is named.
+NamedFile machine_file(const std::string& name) {
+  if (name.empty() || sim::find_machine_profile(name) != nullptr) return {"--machine", std::nullopt};
+  return {"--machine", input_path(name)};
+}
+
+// What one input takes out of a pipe the other one would miss.
+void require_own_streams(const std::vector<NamedFile>& inputs) {
+  for (auto one = inputs.begin(); one != inputs.end(); ++one) {
+    for (auto other = one + 1; other != inputs.end(); ++other) {
+      if (!one->path || !other->path || !share_a_stream(*one->path, *other->path)) continue;
+      usage_error(std::string(one->option) + " and " + other->option + " both read " + one->path->string() +
+                  ", which can be read only once");
+    }
+  }
+}
+
+// The name of a picture that was not asked for.
+std::filesystem::path picture_of(const std::filesystem::path& input) {
+  return is_descriptor(input) ? "picture.png" : input.stem().concat(".png");
 }
 
 // Defaults that depend on other options, and combinations that make no sense.
@@ -314,14 +340,17 @@ RenderArguments complete_render(const RawRender& raw, const CLI::App& app) {
   render.has_size = is_given("--size");
   if (is_given("--from") && is_given("--eye")) usage_error("--from and --eye: both say where the eye is");
   render.has_shading = is_given("--shading");
-  if (!render.has_shading && is_text_scene(render.scene.input)) render.shading = Shading::kScene;
-  require_tolerance(render.scene);
-  if (render.shading == Shading::kScene && is_mesh_file(render.scene.input)) {
-    usage_error("--shading scene: a mesh has no lights and materials; text scenes (.nff) have");
+  render.scene.input = input_path(render.scene.input);
+  require_own_streams({{"INPUT", render.scene.input}, {"--camera", render.camera}, machine_file(raw.machine_name)});
+  const SceneKind kind = foreseen_kind(render.scene.input);
+  if (!render.has_shading && kind == SceneKind::kText) render.shading = Shading::kScene;
+  if (kind != SceneKind::kUnknown) require_tolerance(render.scene.tolerance, kind);
+  if (render.shading == Shading::kScene && kind == SceneKind::kMesh) {
+    usage_error("--shading scene: a mesh has no lights and materials; text scenes (NFF) have");
   }
   const Configuration& configuration = *render.scene.configuration;
   render.scene.machine = find_machine(raw.machine_name);
-  render.output = raw.output.value_or(render.scene.input.stem().concat(".png"));
+  render.output = raw.output.value_or(picture_of(render.scene.input));
   render.techniques = configuration.techniques;
   if (raw.no_mailbox) render.techniques &= ~std::uint32_t{kUseMailbox};
   if (raw.no_culling) render.techniques &= ~std::uint32_t{kUseCornerCulling};
@@ -344,13 +373,17 @@ RenderArguments complete_render(const RawRender& raw, const CLI::App& app) {
   if (render.timeline && render.tile) usage_error("--timeline: time is not told of one tile alone (--tile)");
   if (is_given("--seed") && render.completion != Completion::kRandom) usage_error("--seed: needs --completion random");
 
-  settle_layout(render);
+  if (kind != SceneKind::kUnknown || render.scene.input.empty()) settle_layout(render);
   return render;
 }
 
-InfoArguments complete_info(InfoArguments info, std::optional<StoreSize> store, const CLI::App& app) {
+InfoArguments complete_info(InfoArguments info, const std::string& machine, const CLI::App& app) {
   info.has_size = app.count("--size") > 0;
-  require_tolerance(info.scene);
+  info.scene.input = input_path(info.scene.input);
+  require_own_streams({{"INPUT", info.scene.input}, machine_file(machine)});
+  info.scene.machine = find_machine(machine);
+  const SceneKind kind = foreseen_kind(info.scene.input);
+  if (kind != SceneKind::kUnknown) require_tolerance(info.scene.tolerance, kind);
   if (info.accuracy) {
     const TriangleFormat format = format_of(*info.accuracy);
     if (app.count("--format") > 0 && info.format != format) {
@@ -359,12 +392,13 @@ InfoArguments complete_info(InfoArguments info, std::optional<StoreSize> store, 
     }
     info.format = format;
   }
-  settle_layout(info, store);
+  if (kind != SceneKind::kUnknown) settle_layout(info, kind == SceneKind::kText);
   return info;
 }
 
 void add_animate_options(CLI::App& app, AnimateArguments& animate, RawRender& raw) {
-  app.add_option("FRAMES", animate.inputs, "meshes (.ply) in the order of their frames; of a folder all, by name")
+  app.add_option("FRAMES", animate.inputs,
+                 "PLY meshes in the order of their frames; of a folder all .ply files, by name; - is standard input")
       ->required()
       ->type_name("");
   add_parsed(app, "-o,--output", animate.output, parse_path, "the name of a folder", "DIR",
@@ -382,8 +416,14 @@ void add_animate_options(CLI::App& app, AnimateArguments& animate, RawRender& ra
 
 AnimateArguments complete_animate(AnimateArguments animate, const RawRender& raw, const CLI::App& app) {
   if (raw.arguments.shading == Shading::kScene) {
-    usage_error("--shading scene: a mesh has no lights and materials; text scenes (.nff) have");
+    usage_error("--shading scene: a mesh has no lights and materials; text scenes (NFF) have");
   }
+  std::vector<NamedFile> inputs = {{"--camera", raw.arguments.camera}, machine_file(raw.machine_name)};
+  for (std::filesystem::path& input : animate.inputs) {
+    input = input_path(input);
+    inputs.push_back({"FRAMES", input});
+  }
+  require_own_streams(inputs);
   animate.render = complete_render(raw, app);
   return animate;
 }
@@ -427,8 +467,12 @@ JobArguments complete_job(JobArguments job, const RawRender& raw, const CLI::App
 }
 
 void add_result_options(CLI::App& app, ResultArguments& result, std::string& machine) {
-  app.add_option("JOB", result.job, "what the device was given, made by job")->required()->type_name("");
-  app.add_option("RESULT", result.result, "what it wrote: the bytes from result_address on")->required()->type_name("");
+  app.add_option("JOB", result.job, "what the device was given, made by job; - is standard input")
+      ->required()
+      ->type_name("");
+  app.add_option("RESULT", result.result, "what it wrote: the bytes from result_address on; - is standard input")
+      ->required()
+      ->type_name("");
   const std::string name = "a file name";
   add_parsed(app, "-o,--output", result.output, parse_path, name, "FILE",
              "picture, .png or .pfm; - is standard output, here and for every output");
@@ -449,6 +493,9 @@ void add_result_options(CLI::App& app, ResultArguments& result, std::string& mac
 }
 
 ResultArguments complete_result(ResultArguments result, const std::string& machine) {
+  result.job = input_path(result.job);
+  result.result = input_path(result.result);
+  require_own_streams({{"JOB", result.job}, {"RESULT", result.result}, {"--predict", machine_file(machine).path}});
   if (!machine.empty()) {
     if (!result.compare) usage_error("--predict needs --compare");
     result.predict = find_machine(machine);
@@ -529,8 +576,7 @@ Command parse_arguments(int count, const char* const* values) {
   add_choice(*info, "--format", info_arguments.format, kFormats, "how triangles are stored; " + format_help());
   add_size(*info, info_arguments.width, info_arguments.height,
            "picture whose memory is told (default: a text scene's own, else 1024x1024)");
-  std::optional<StoreSize> info_store;
-  add_choice(*info, "--store", info_store, kStores, kStoreHelp);
+  add_choice(*info, "--store", info_arguments.asked_store, kStores, kStoreHelp);
   add_packet(*info, info_arguments.packet_width);
   add_accuracy(*info, info_arguments.accuracy);
   info->add_flag("--depth", info_arguments.has_depth, "distances too");
@@ -593,12 +639,15 @@ Command parse_arguments(int count, const char* const* values) {
   if (*render) return complete_render(raw, *render);
   if (*animate) return complete_animate(std::move(animate_arguments), animate_raw, *animate);
   if (*info) {
-    info_arguments.scene.machine = find_machine(info_machine);
-    return complete_info(std::move(info_arguments), info_store, *info);
+    return complete_info(std::move(info_arguments), info_machine, *info);
   }
   if (*pack) {
+    std::filesystem::path& input = pack_arguments.scene.input;
+    input = input_path(input);
+    require_own_streams({{"INPUT", input}, machine_file(pack_machine)});
     pack_arguments.scene.machine = find_machine(pack_machine);
-    require_tolerance(pack_arguments.scene);
+    const SceneKind kind = foreseen_kind(input);
+    if (kind != SceneKind::kUnknown) require_tolerance(pack_arguments.scene.tolerance, kind);
     return pack_arguments;
   }
   if (*job) return complete_job(std::move(job_arguments), job_raw, *job);

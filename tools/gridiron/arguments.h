@@ -51,7 +51,7 @@ struct RenderArguments {
   std::uint32_t cores = 0;        ///< 0: the machine's
   std::uint32_t threads = 0;      ///< 0: the host's
   std::uint32_t lanes = 0;        ///< 0: 4 where time is told, else the widest of the host
-  std::uint32_t tile_width = 0;   ///< as all that follows: settled by settle_layout()
+  std::uint32_t tile_width = 0;   ///< as all that follows: settled by settle_layout(), for a stream once it is read
   std::uint32_t packet_width = 0;
   BufferDepths depths;
   BufferDepths wanted_depths;  ///< the configuration's or the command line's; `depths` where the store holds fewer
@@ -83,6 +83,7 @@ struct AnimateArguments {
 
 struct InfoArguments {
   SceneArguments scene;
+  std::optional<sim::StoreSize> asked_store;          ///< nothing: the largest that fits
   sim::StoreSize store = sim::StoreSize::k256KB;      ///< whose map is told
   TriangleFormat format = TriangleFormat::kVertices;  ///< of a mesh or a text scene
   std::optional<Accuracy> accuracy;  ///< whose bounds are told; nothing: the one that the image's format is for
@@ -142,7 +143,8 @@ struct TextRequest {
 using Command = std::variant<RenderArguments, AnimateArguments, InfoArguments, PackArguments, JobArguments,
                              ResultArguments, MachinesArguments, ExperimentArguments, TextRequest>;
 
-/// Reads a machine file that is named. Errors: Failure, kUsage with what is wrong, kBadInput of a machine file.
+/// Reads a machine file that is named, and the first bytes of a scene that is no stream. Errors: Failure, kUsage with
+/// what is wrong, kBadInput of a machine file.
 [[nodiscard]] Command parse_arguments(int count, const char* const* values);
 
 }  // namespace gridiron::tool

@@ -42,15 +42,21 @@ std::uint32_t recursion_depth(const SceneInput& input, const RenderArguments& ar
   return packed->view.effects.recursion_depth;
 }
 
-// Puts the scene image into main memory. @returns where it lies.
+// Puts the scene image into main memory. @param movable  the packed scene's bytes where they may move; else null.
+// @returns where it lies.
 MainAddress place_image(FrameMemory& frame, const SceneInput& input, const RenderArguments& arguments,
-                        std::uint64_t budget_bytes) {
+                        std::uint64_t budget_bytes, InputFile* movable) {
   const TriangleFormat format = format_of(arguments.accuracy);
   if (const PackedScene* packed = std::get_if<PackedScene>(&input.content)) {
     check_packed(input, *packed, arguments.scene, format, budget_bytes);
     const std::uint64_t image_bytes = packed->view.header.image_bytes;
     const sim::MemoryRegion region = allocate(frame.memory, image_bytes);
-    std::memcpy(region.bytes.data(), packed->file.bytes.data(), image_bytes);
+    if (movable != nullptr) {
+      move_bytes(movable->bytes.first(image_bytes), region.bytes.data());
+      *movable = {};
+    } else {
+      std::memcpy(region.bytes.data(), packed->file.bytes.data(), image_bytes);
+    }
     frame.image = packed->view;
     frame.wanted_lambda = packed->view.grid.lambda;
     return region.address;
@@ -95,20 +101,16 @@ PointSource points_of(FrameMemory& frame) {
   };
 }
 
-std::uint64_t frame_memory_bytes(const SceneInput& input, const RenderArguments& arguments) {
-  const std::uint32_t cores = core_count(arguments);
-  const std::uint32_t more = arguments.threads > cores ? arguments.threads - cores : 0;
-  return arguments.scene.machine->main_memory_bytes + more * spill_bytes(recursion_depth(input, arguments));
-}
+namespace {
 
-void prepare_frame(FrameMemory& frame, const SceneInput& input, const RenderArguments& arguments,
-                   const ViewRequest& view) {
+void prepare(FrameMemory& frame, const SceneInput& input, const RenderArguments& arguments, const ViewRequest& view,
+             InputFile* movable) {
   const std::uint32_t depth = recursion_depth(input, arguments);
   const std::uint32_t planes = 1u + (arguments.has_depth() ? 1u : 0u) + (arguments.has_ids() ? 1u : 0u);
   const std::uint64_t budget_bytes =
       image_budget_bytes(*arguments.scene.machine, arguments.width, arguments.height, planes, arguments.tile_width,
                          spill_bytes_of(core_count(arguments), depth));
-  frame.image_address = place_image(frame, input, arguments, budget_bytes);
+  frame.image_address = place_image(frame, input, arguments, budget_bytes, movable);
 
   // Identifiers travel as floats in a PFM file.
   if (arguments.ids) require_exact_ids(input.path, frame.image.header.triangle_count);
@@ -143,6 +145,24 @@ void prepare_frame(FrameMemory& frame, const SceneInput& input, const RenderArgu
   make_record(frame, input.path);
   frame.record_address = allocate(frame.memory, sizeof(FrameRecord)).address;
   store_record(frame);
+}
+
+}  // namespace
+
+std::uint64_t frame_memory_bytes(const SceneInput& input, const RenderArguments& arguments) {
+  const std::uint32_t cores = core_count(arguments);
+  const std::uint32_t more = arguments.threads > cores ? arguments.threads - cores : 0;
+  return arguments.scene.machine->main_memory_bytes + more * spill_bytes(recursion_depth(input, arguments));
+}
+
+void prepare_frame(FrameMemory& frame, const SceneInput& input, const RenderArguments& arguments,
+                   const ViewRequest& view) {
+  prepare(frame, input, arguments, view, nullptr);
+}
+
+void prepare_frame(FrameMemory& frame, SceneInput&& input, const RenderArguments& arguments, const ViewRequest& view) {
+  PackedScene* packed = std::get_if<PackedScene>(&input.content);
+  prepare(frame, input, arguments, view, packed != nullptr ? &packed->file : nullptr);
 }
 
 void aim_camera(FrameMemory& frame, const Camera& camera) {

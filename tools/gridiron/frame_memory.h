@@ -47,6 +47,9 @@ struct FrameMemory {
 void prepare_frame(FrameMemory& frame, const SceneInput& input, const RenderArguments& arguments,
                    const ViewRequest& view);
 
+/// The same. The bytes of a packed scene move into main memory, so that they are held once; the rest of `input` stays.
+void prepare_frame(FrameMemory& frame, SceneInput&& input, const RenderArguments& arguments, const ViewRequest& view);
+
 /// Gives a prepared frame another camera. Errors: Failure (kUsage) where the frame can have none such.
 void aim_camera(FrameMemory& frame, const Camera& camera);
 

@@ -308,7 +308,8 @@ void print_text(const InfoArguments& arguments, const SceneFacts& facts, const S
 
 }  // namespace
 
-void run_command(const InfoArguments& arguments) {
+void run_command(const InfoArguments& asked) {
+  InfoArguments arguments = asked;
   const SceneFacts facts = collect_scene_facts(arguments);
   const std::uint32_t called_for = facts.effects.record.called_for;
   const StoreFacts store = info_store_facts(arguments, called_for != 0);

@@ -2,6 +2,7 @@
 #include <cstdio>
 #include <cstring>
 #include <string>
+#include <utility>
 
 #include "atomic_file.h"
 #include "commands.h"
@@ -15,11 +16,11 @@
 namespace gridiron::tool {
 
 void run_command(const JobArguments& asked) {
-  const RequestedFrame request = read_requested_frame(asked.render, {{"-o", asked.render.output, OutputKind::kBinary}});
+  RequestedFrame request = read_requested_frame(asked.render, {{"-o", asked.render.output, OutputKind::kBinary}});
   const RenderArguments& arguments = request.arguments;
   require_distances(arguments.layout(), arguments.has_depth());
   FrameMemory frame(frame_memory_bytes(request.input, arguments));
-  prepare_frame(frame, request.input, arguments, request.view);
+  prepare_frame(frame, std::move(request.input), arguments, request.view);
   const std::vector<std::byte> file = make_job_file(frame, arguments, asked.base_address);
 
   port::FrameJob job{};

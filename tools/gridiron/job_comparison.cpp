@@ -36,10 +36,11 @@ struct MovedJob {
 // A multiple of 4,096 further on, so that transfers are cut as the device's are.
 constexpr std::uint64_t kMemoryAlignment = 4096;
 
-void load_job(const OpenJob& open, MovedJob& moved) {
+void load_job(OpenJob& open, MovedJob& moved) {
   const std::optional<sim::MemoryRegion> region = moved.memory.allocate(open.job.memory_bytes, kMemoryAlignment);
   if (!region) throw Failure(ExitCode::kBadInput, "the simulated memory is too small for the job");
-  std::memcpy(region->bytes.data(), open.file.bytes.data(), open.file.bytes.size());
+  move_bytes(open.file.bytes, region->bytes.data());
+  open.file = {};
   const auto move = [&](std::uint64_t address) {
     return address == 0 ? 0 : address - open.job.base_address + region->address.value;
   };
@@ -201,7 +202,7 @@ bool JobComparison::is_equal() const {
   return std::ranges::all_of(items, [](const ComparedItem& item) { return item.equal; });
 }
 
-JobComparison compare_with_simulator(const OpenJob& job, const OpenResult& result, const sim::MachineProfile* machine,
+JobComparison compare_with_simulator(OpenJob& job, const OpenResult& result, const sim::MachineProfile* machine,
                                      std::uint32_t threads,
                                      std::function<void(std::uint32_t done, std::uint32_t total)> progress) {
   MovedJob moved(job.job.memory_bytes + kMemoryAlignment);

@@ -11,6 +11,7 @@
 
 #include "byte_reader.h"
 #include "failure.h"
+#include "image_damage.h"
 #include "words.h"
 
 namespace gridiron::tool {
@@ -100,8 +101,7 @@ bool lies_in(const Part& part, const Part& whole) {
   return part.begin >= whole.begin && part.bytes <= whole.bytes && part.begin - whole.begin <= whole.bytes - part.bytes;
 }
 
-void check_head(const ByteReader& reader, const FrameJob& job, std::span<const std::byte> file) {
-  reader.require(job.magic == port::kFrameJobMagic, offsetof(FrameJob, magic), "no frame job");
+void check_size(const ByteReader& reader, const FrameJob& job, std::span<const std::byte> file) {
   reader.require(job.version == port::kFrameJobVersion, offsetof(FrameJob, version),
                  "version " + std::to_string(job.version) + " of frame jobs; this program knows version " +
                      std::to_string(port::kFrameJobVersion));
@@ -109,8 +109,9 @@ void check_head(const ByteReader& reader, const FrameJob& job, std::span<const s
       job.loaded_bytes == file.size() && job.loaded_bytes % CheckValue::kGroupBytes == 0,
       offsetof(FrameJob, loaded_bytes),
       "loaded_bytes is " + words_of_count(job.loaded_bytes) + ", the file's size " + words_of_count(file.size()));
-  reader.require(job.check_value == job_check_value(file), offsetof(FrameJob, check_value),
-                 "check_value differs from that of the file's bytes: it was damaged");
+}
+
+void check_head(const ByteReader& reader, const FrameJob& job) {
   reader.require(job.base_address % kPageBytes == 0, offsetof(FrameJob, base_address),
                  "base_address is no multiple of 4096");
   reader.require(job.memory_bytes >= job.loaded_bytes &&
@@ -204,6 +205,37 @@ void check_record(const ByteReader& reader, const FrameJob& job, const FrameReco
                  "effects are not those that the scene calls for");
 }
 
+// Everything but the check value.
+void check_parts(const ByteReader& reader, OpenJob& open) {
+  const FrameJob& job = open.job;
+  const std::span<std::byte> file = open.file.bytes;
+  check_head(reader, job);
+  const Part loaded{job.base_address, job.loaded_bytes};
+  const Part frame{job.frame_address, sizeof(FrameRecord)};
+  const Part image{job.image_address, job.image_bytes};
+  reader.require(frame.begin % kLineBytes == 0 && lies_in(frame, loaded), offsetof(FrameJob, frame_address),
+                 "the frame record does not lie in the file");
+  reader.require(image.begin % kLineBytes == 0 && lies_in(image, loaded), offsetof(FrameJob, image_address),
+                 "the scene image does not lie in the file");
+  const std::uint64_t image_place = image.begin - job.base_address;
+  const std::span<std::byte> image_bytes = file.subspan(image_place, image.bytes);
+  SceneImageError error;
+  if (open_scene_image(image_bytes, open.image, error) != Status::kOk) {
+    const ImageDamage damage = find_image_damage(image_bytes, error);
+    reader.require(false, image_place + damage.byte_offset,
+                   damage.reason + ", in the scene image that begins at byte " + std::to_string(image_place));
+  }
+  reader.require(open.image.header.image_bytes == job.image_bytes, offsetof(FrameJob, image_bytes),
+                 "image_bytes is not that of the scene image");
+  open.record = reader.read<FrameRecord>(frame.begin - job.base_address);
+  check_record(reader, job, open.record, open.image);
+  check_places(reader, job, open.record);
+}
+
+bool starts_with(std::span<const std::byte> bytes, std::uint32_t magic) {
+  return bytes.size() >= sizeof(FrameJob::magic) && std::memcmp(bytes.data(), &magic, sizeof(FrameJob::magic)) == 0;
+}
+
 }  // namespace
 
 std::vector<std::byte> make_job_file(FrameMemory& frame, const RenderArguments& arguments, std::uint64_t base_address) {
@@ -214,13 +246,15 @@ std::vector<std::byte> make_job_file(FrameMemory& frame, const RenderArguments& 
   move_job(job, base_address);
   const FrameRecord record = make_record(frame, job);
 
-  std::vector<std::byte> file(job.loaded_bytes);
+  std::vector<std::byte> file;
+  file.reserve(job.loaded_bytes);
+  file.resize(kPageBytes);
+  append_moved(file, frame.memory.bytes_at(frame.image_address, job.image_bytes));
   const auto put = [&file](std::uint64_t place, const void* bytes, std::size_t count) {
     std::memcpy(file.data() + place, bytes, count);
   };
   put(0, &job, sizeof job);
   put(kRecordOffset, &record, sizeof record);
-  put(kPageBytes, frame.memory.bytes_at(frame.image_address, job.image_bytes).data(), job.image_bytes);
   job.check_value = job_check_value(file);
   put(0, &job, sizeof job);
   return file;
@@ -233,31 +267,28 @@ sim::LayoutChoice OpenJob::layout() const {
 
 OpenJob read_job_file(const std::filesystem::path& path) {
   OpenJob open;
-  open.file = read_input_file(path);
-  const std::span<const std::byte> file = open.file.bytes;
-  const ByteReader reader(path, file);
-  reader.require(file.size() >= sizeof(FrameJob), file.size(), "the file ends inside of its first record");
+  InputReader input(path, "expected a job, as 'gridiron job' makes it");
+  if (!starts_with(input.head(), port::kFrameJobMagic)) input.refuse_content();
+  open.file = input.read_all();
+  const ByteReader reader(path, open.file.bytes);
+  reader.require(open.file.bytes.size() >= sizeof(FrameJob), open.file.bytes.size(),
+                 "the file ends inside of its first record");
   open.job = reader.read<FrameJob>(0);
-  const FrameJob& job = open.job;
-  check_head(reader, job, file);
-
-  const Part loaded{job.base_address, job.loaded_bytes};
-  const Part frame{job.frame_address, sizeof(FrameRecord)};
-  const Part image{job.image_address, job.image_bytes};
-  reader.require(frame.begin % kLineBytes == 0 && lies_in(frame, loaded), offsetof(FrameJob, frame_address),
-                 "the frame record does not lie in the file");
-  reader.require(image.begin % kLineBytes == 0 && lies_in(image, loaded), offsetof(FrameJob, image_address),
-                 "the scene image does not lie in the file");
-  const std::uint64_t image_place = image.begin - job.base_address;
-  SceneImageError error;
-  const Status status = open_scene_image(file.subspan(image_place, image.bytes), open.image, error);
-  reader.require(status == Status::kOk, image_place + error.byte_offset,
-                 std::string(words_of(status)) + " (field " + error.field + ")");
-  reader.require(open.image.header.image_bytes == job.image_bytes, offsetof(FrameJob, image_bytes),
-                 "image_bytes is not that of the scene image");
-  open.record = reader.read<FrameRecord>(frame.begin - job.base_address);
-  check_record(reader, job, open.record, open.image);
-  check_places(reader, job, open.record);
+  check_size(reader, open.job, open.file.bytes);
+  // A check value tells that something is wrong; the other checks may find where.
+  const bool is_damaged = open.job.check_value != job_check_value(open.file.bytes);
+  try {
+    check_parts(reader, open);
+  } catch (const Failure& failure) {
+    if (!is_damaged) throw;
+    throw Failure(failure.code(), std::string(failure.what()) + "; the job's check_value differs too: it was damaged");
+  }
+  const std::uint64_t image_place = open.job.image_address - open.job.base_address;
+  const std::uint64_t image_end = image_place + open.job.image_bytes;
+  reader.require(!is_damaged, offsetof(FrameJob, check_value),
+                 "check_value differs from that of the file's bytes: some number in front of byte " +
+                     std::to_string(image_place) + ", in the job's head or the frame record, or behind byte " +
+                     std::to_string(image_end) + " has changed, and no other check finds which");
   return open;
 }
 

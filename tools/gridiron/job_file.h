@@ -20,8 +20,9 @@
 
 namespace gridiron::tool {
 
-/// Makes the job of a prepared frame. Image and planes lie as they do in the frame's own memory, modulo 4,096 bytes, so
-/// that transfers are cut alike and all counters are those of `gridiron render`.
+/// Makes the job of a prepared frame, whose image moves into the file: the frame has none afterwards. Image and planes
+/// lie as they do in the frame's own memory, modulo 4,096 bytes, so that transfers are cut alike and all counters are
+/// those of `gridiron render`.
 ///
 /// @param arguments  those that the frame was prepared with, depth_plane and ids_plane for planes without a file;
 ///        threads is the number of cores that get memory for rays that wait.

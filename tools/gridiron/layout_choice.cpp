@@ -123,8 +123,8 @@ sim::LayoutChoice layout_with(const InfoArguments& info, StoreSize store, bool h
 
 }  // namespace
 
-void settle_layout(InfoArguments& info, std::optional<StoreSize> asked) {
-  const bool has_effects = is_text_scene(info.scene.input);
+void settle_layout(InfoArguments& info, bool has_effects) {
+  const std::optional<StoreSize> asked = info.asked_store;
   if (has_effects) require_effects_of(info.accuracy);
   require_room(*info.scene.machine, asked);
   info.store = asked.value_or(largest_store(*info.scene.machine));

@@ -17,8 +17,9 @@ namespace gridiron::tool {
 void settle_layout(RenderArguments& render);
 
 /// Settles the store that `info` tells of: the one asked for, or the largest one of the machine that is built for the
-/// packets asked for. Errors: Failure (kUsage) as of a render, as far as the name of the scene tells.
-void settle_layout(InfoArguments& info, std::optional<sim::StoreSize> asked);
+/// packets asked for. Errors: Failure (kUsage) as of a render.
+/// @param has_effects  whether the scene is known to be a text scene.
+void settle_layout(InfoArguments& info, bool has_effects);
 
 /// @returns the layout that `info` tells of: the store's usual tiles, packets as asked for or the configuration's. With
 /// effects, where the store has none for these, that of 256 KB.

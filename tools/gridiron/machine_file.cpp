@@ -26,6 +26,7 @@ using sim::MachineProfile;
 constexpr std::size_t kMaxFileBytes = 1 << 20;
 constexpr std::size_t kMaxLineBytes = 1000;
 constexpr std::size_t kMaxNameBytes = 64;
+constexpr const char* kExpected = "expected a machine file: text as 'gridiron machines cell-ps3' prints it";
 constexpr std::string_view kEditedSuffix = "-edited";
 constexpr double kMaxCycles = 1 << 20;  // of one step; more is nothing that the replay tells apart
 
@@ -287,7 +288,7 @@ class Reader {
     };
     if (machine_->name.empty()) {
       const std::string stem = path_.stem().string();
-      machine_->name = is_name(stem) && !is_taken(stem) ? stem : "unnamed";
+      machine_->name = is_name(stem) && !is_taken(stem) && !is_descriptor(path_) ? stem : "unnamed";
     } else if (is_taken(machine_->name)) {
       machine_->name += kEditedSuffix;
     }
@@ -311,7 +312,7 @@ class Reader {
 }  // namespace
 
 Machine read_machine_file(const std::filesystem::path& path) {
-  const InputFile file = read_input_file(path, kMaxFileBytes);
+  const InputFile file = read_text_file(path, kExpected, kMaxFileBytes);
   return Reader(path).read({reinterpret_cast<const char*>(file.bytes.data()), file.bytes.size()});
 }
 
@@ -319,12 +320,13 @@ Machine find_machine(const std::string& name_or_file) {
   if (const MachineProfile* built_in = sim::find_machine_profile(name_or_file)) {
     return Machine(Machine{}, built_in);  // constants: nothing to own
   }
+  const std::filesystem::path path = input_path(name_or_file);
   std::error_code error;
-  if (!std::filesystem::exists(name_or_file, error)) {
+  if (!std::filesystem::exists(path, error)) {
     throw Failure(ExitCode::kBadInput, name_or_file + ": no such file, and no built-in machine of that name" +
                                            words_of_built_in_machines(name_or_file));
   }
-  return read_machine_file(name_or_file);
+  return read_machine_file(path);
 }
 
 sim::StoreSize largest_store(const MachineProfile& machine) {

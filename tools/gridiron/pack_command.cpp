@@ -33,7 +33,8 @@ void run_command(const PackArguments& arguments) {
   const GridChoice choice = choose_grid(input, *mesh, arguments.scene, arguments.format, budget_bytes, effects);
   require_fit(choice, arguments.scene, input);
 
-  const AlignedBytes storage = allocate_aligned(choice.need.image_bytes);
+  const AlignedBytes storage =
+      name_in_shortage(input.path, "build its scene image", [&] { return allocate_aligned(choice.need.image_bytes); });
   const std::span<std::byte> image(storage.get(), choice.need.image_bytes);
   (void)build_image(input, *mesh, choice, image, effects);
 

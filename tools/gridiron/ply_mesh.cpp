@@ -24,18 +24,22 @@ namespace {
 
 }  // namespace
 
-Mesh read_ply_mesh(const std::filesystem::path& path) {
-  const InputFile file = read_input_file(path);
+Mesh read_ply_mesh(std::span<const std::byte> bytes, const std::filesystem::path& path) {
   // Counting first: a header may promise more than the file holds, and memory is asked for by what it holds.
-  const PlyResult counted = count_ply(file.bytes);
+  const PlyResult counted = count_ply(bytes);
   if (counted.error != PlyError::kNone) fail(path, counted);
   stop_if_interrupted();
   Mesh mesh;
   mesh.vertices.resize(counted.counts.vertices);
   mesh.triangles.resize(counted.counts.triangles);
-  const PlyResult result = read_ply(file.bytes, mesh.vertices, mesh.triangles);
+  const PlyResult result = read_ply(bytes, mesh.vertices, mesh.triangles);
   if (result.error != PlyError::kNone) fail(path, result);
   return mesh;
+}
+
+Mesh read_ply_mesh(const std::filesystem::path& path) {
+  const InputFile file = read_input_file(path, kMeshExpected);
+  return name_in_shortage(path, "read it", [&] { return read_ply_mesh(file.bytes, path); });
 }
 
 }  // namespace gridiron::tool

@@ -8,6 +8,7 @@
 #include <optional>
 #include <string>
 #include <string_view>
+#include <utility>
 
 #include "atomic_file.h"
 #include "chip_frame.h"
@@ -135,8 +136,8 @@ PlaneHashes hashes_of(const FrameMemory& frame, const RenderArguments& arguments
   return {hash(frame.color), hash(frame.depth), hash(frame.ids)};
 }
 
-// Builds and renders as often as asked for. What was packed is not built, and stays where it is.
-Repeated render_repeatedly(std::optional<FrameMemory>& frame, const RequestedFrame& request) {
+// Builds and renders as often as asked for. What was packed is not built: it moves into main memory and stays there.
+Repeated render_repeatedly(std::optional<FrameMemory>& frame, RequestedFrame& request) {
   const RenderArguments& arguments = request.arguments;
   const bool is_packed = std::holds_alternative<PackedScene>(request.input.content);
   Progress progress(!arguments.quiet, "tiles");
@@ -145,7 +146,11 @@ Repeated render_repeatedly(std::optional<FrameMemory>& frame, const RequestedFra
     if (repeat == 0 || !is_packed) {
       frame.reset();  // before there is another one
       frame.emplace(frame_memory_bytes(request.input, arguments));
-      prepare_frame(*frame, request.input, arguments, request.view);
+      if (is_packed) {
+        prepare_frame(*frame, std::move(request.input), arguments, request.view);
+      } else {
+        prepare_frame(*frame, request.input, arguments, request.view);
+      }
     }
     const Stopwatch stopwatch;
     const auto report = [&](std::uint32_t done, std::uint32_t total) {
@@ -165,7 +170,7 @@ Repeated render_repeatedly(std::optional<FrameMemory>& frame, const RequestedFra
 }  // namespace
 
 void run_command(const RenderArguments& asked) {
-  const RequestedFrame request = read_requested_frame(asked, outputs_of(asked));
+  RequestedFrame request = read_requested_frame(asked, outputs_of(asked));
   const SceneInput& input = request.input;
   const RenderArguments& arguments = request.arguments;
   std::optional<FrameMemory> memory;

@@ -37,10 +37,9 @@ RenderArguments complete_arguments(const RenderArguments& asked, const SceneInpu
   }
   if (arguments.threads == 0) arguments.threads = host_threads();
   const PackedScene* packed = std::get_if<PackedScene>(&input.content);
-  if (!arguments.has_shading && packed != nullptr && packed->view.has_effects) {
-    arguments.shading = Shading::kScene;
-    settle_layout(arguments);
-  }
+  const bool has_effects = input.text || (packed != nullptr && packed->view.has_effects);
+  if (!arguments.has_shading && has_effects) arguments.shading = Shading::kScene;
+  settle_layout(arguments);
   return arguments;
 }
 

@@ -50,7 +50,7 @@ void require_planes(const ResultArguments& arguments, const OpenJob& job) {
   if (arguments.ids) require_exact_ids(arguments.job, job.image.header.triangle_count);
 }
 
-JobComparison compare(const ResultArguments& arguments, const OpenJob& job, const OpenResult& result) {
+JobComparison compare(const ResultArguments& arguments, OpenJob& job, const OpenResult& result) {
   Progress progress(!arguments.quiet);
   const std::uint32_t threads = arguments.threads != 0 ? arguments.threads : host_threads();
   return compare_with_simulator(job, result, arguments.predict.get(), threads,
@@ -100,7 +100,7 @@ void tell_unseen(const ResultArguments& arguments, const OpenJob& job, const Ope
 
 void run_command(const ResultArguments& arguments) {
   declare_outputs(outputs_of(arguments));
-  const OpenJob job = read_job_file(arguments.job);
+  OpenJob job = read_job_file(arguments.job);
   require_planes(arguments, job);
   const OpenResult result = read_result_file(arguments.result, job);
   const auto is_counted = [](const port::TileResult& tile) { return tile.instructions != 0; };

@@ -40,7 +40,6 @@ std::string words_of_status(std::uint32_t status) {
 }
 
 void check_head(const ByteReader& reader, const FrameResult& frame) {
-  reader.require(frame.magic == port::kFrameResultMagic, offsetof(FrameResult, magic), "no frame result");
   reader.require(frame.version == port::kFrameJobVersion, offsetof(FrameResult, version),
                  "version " + std::to_string(frame.version) + " of frame results; this program knows version " +
                      std::to_string(port::kFrameJobVersion));
@@ -104,7 +103,12 @@ void check_cores(const ByteReader& reader, const OpenResult& result) {
 OpenResult read_result_file(const std::filesystem::path& path, const OpenJob& open) {
   const port::FrameJob& job = open.job;
   OpenResult result;
-  result.file = read_input_file(path);
+  InputReader input(path, "expected the result of a job: the bytes that a device wrote");
+  const std::uint32_t magic = port::kFrameResultMagic;
+  if (input.head().size() < sizeof magic || std::memcmp(input.head().data(), &magic, sizeof magic) != 0) {
+    input.refuse_content();
+  }
+  result.file = input.read_all();
   const std::span<const std::byte> file = result.file.bytes;
   const ByteReader reader(path, file);
   reader.require(file.size() == job.result_bytes, std::min<std::uint64_t>(file.size(), job.result_bytes),

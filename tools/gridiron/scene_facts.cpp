@@ -7,6 +7,7 @@
 #include <algorithm>
 #include <span>
 
+#include "layout_choice.h"
 #include "store_facts.h"
 
 namespace gridiron::tool {
@@ -73,10 +74,11 @@ std::uint64_t EffectFacts::bytes_of(std::string_view section) const {
   return found == sections.end() ? 0 : found->bytes;
 }
 
-SceneFacts collect_scene_facts(const InfoArguments& arguments) {
+SceneFacts collect_scene_facts(InfoArguments& arguments) {
   ScenePicture picture;
   if (arguments.has_size) picture.height = arguments.height;
   const SceneInput input = read_scene_input(arguments.scene.input, arguments.scene.tolerance, picture);
+  settle_layout(arguments, input.text.has_value());
   if (!arguments.scene.quiet) tell_notes(input);
   SceneFacts facts;
   const bool has_own_size = input.text && input.text->view.is_given() && !arguments.has_size;
@@ -118,7 +120,8 @@ SceneFacts collect_scene_facts(const InfoArguments& arguments) {
     facts.scratch_bytes = choice.need.scratch_bytes;
     facts.fits = choice.fits();
     if (choice.fits()) {
-      const AlignedBytes storage = allocate_aligned(choice.need.image_bytes);
+      const AlignedBytes storage = name_in_shortage(input.path, "build its scene image",
+                                                    [&] { return allocate_aligned(choice.need.image_bytes); });
       const std::span<std::byte> image(storage.get(), choice.need.image_bytes);
       const SceneImageView built = build_image(input, mesh, choice, image, effects);
       facts.worst = find_worst_tile(arguments, image, built);

@@ -61,6 +61,7 @@ struct SceneFacts {
 };
 
 /// Reads the scene and counts; an image that fits is built, to be counted too. Errors: Failure.
-[[nodiscard]] SceneFacts collect_scene_facts(const InfoArguments& arguments);
+/// @param arguments  the layout is settled as the scene that was read needs it.
+[[nodiscard]] SceneFacts collect_scene_facts(InfoArguments& arguments);
 
 }  // namespace gridiron::tool

@@ -6,12 +6,13 @@
 #include <gridiron/sim/sim_memory.h>
 
 #include <algorithm>
-#include <cctype>
 #include <cstdio>
 #include <string>
+#include <string_view>
 #include <utility>
 
 #include "failure.h"
+#include "image_damage.h"
 #include "interrupt.h"
 #include "scene_text/scene_reader.h"
 #include "stopwatch.h"
@@ -24,30 +25,25 @@ namespace {
   throw Failure(ExitCode::kBadInput, path.string() + ": " + reason);
 }
 
-std::string lower_extension(const std::filesystem::path& path) {
-  std::string extension = path.extension().string();
-  std::ranges::transform(extension, extension.begin(),
-                         [](unsigned char letter) { return static_cast<char>(std::tolower(letter)); });
-  return extension;
-}
-
-PackedScene read_packed_scene(const std::filesystem::path& path) {
-  PackedScene packed{read_input_file(path), {}};
+PackedScene open_packed_scene(InputFile file, const std::filesystem::path& path) {
+  PackedScene packed{std::move(file), {}};
   SceneImageError error;
   if (open_scene_image(packed.file.bytes, packed.view, error) != Status::kOk) {
-    throw Failure(ExitCode::kBadInput, path.string() + ":byte " + std::to_string(error.byte_offset) + ": " +
-                                           words_of(error.status) + " (field " + error.field + ")");
+    const ImageDamage damage = find_image_damage(packed.file.bytes, error);
+    throw Failure(ExitCode::kBadInput,
+                  path.string() + ":byte " + std::to_string(damage.byte_offset) + ": " + damage.reason);
   }
   return packed;
 }
 
 // The triangles go to `mesh`, the rest to @returns.
-TextScene read_text_scene(const std::filesystem::path& path, std::optional<float> tolerance,
+TextScene read_text_scene(const InputFile& file, const std::filesystem::path& path, std::optional<float> tolerance,
                           const std::optional<ScenePicture>& picture, Mesh& mesh) {
   SceneOptions options;
   options.tolerance = tolerance;
   options.picture = picture;
-  SceneDescription scene = read_scene_text(path, options);
+  const std::string_view words(reinterpret_cast<const char*>(file.bytes.data()), file.bytes.size());
+  SceneDescription scene = read_scene_text(words, path, options);
   TextScene text{scene.view,       take_scene_effects(scene), std::move(scene.notes),
                  scene.note_count, std::move(scene.files),    std::move(scene.roundness)};
   mesh.vertices = std::move(scene.geometry.vertices);
@@ -84,30 +80,48 @@ std::string words_of_budget(const sim::MachineProfile& machine, std::uint64_t bu
 
 }  // namespace
 
-bool is_text_scene(const std::filesystem::path& path) {
-  return lower_extension(path) == ".nff";
+SceneKind foreseen_kind(const std::filesystem::path& path) {
+  if (is_stream(path)) return SceneKind::kUnknown;
+  try {
+    return scene_kind_of(InputReader(path, kSceneExpected).head(), path);
+  } catch (const Failure& failure) {
+    if (failure.code() != ExitCode::kBadInput) throw;
+    return scene_kind_by_ending(path);
+  }
 }
 
-bool is_mesh_file(const std::filesystem::path& path) {
-  return lower_extension(path) == ".ply";
+void require_tolerance(std::optional<float> tolerance, SceneKind kind) {
+  if (tolerance && kind != SceneKind::kText) {
+    throw Failure(ExitCode::kUsage, "--tolerance: is of text scenes (NFF) alone");
+  }
 }
 
 SceneInput read_scene_input(const std::filesystem::path& path, std::optional<float> tolerance,
                             const std::optional<ScenePicture>& picture) {
   const Stopwatch stopwatch;
   SceneInput input{path, Mesh{}, {}, std::nullopt};
-  const std::string extension = lower_extension(path);
-  if (extension == ".ply") {
-    input.content = read_ply_mesh(path);
-  } else if (extension == ".gri") {
-    input.content = read_packed_scene(path);
-  } else if (extension == ".nff") {
-    input.text = read_text_scene(path, tolerance, picture, std::get<Mesh>(input.content));
-  } else {
-    fail(path, "unknown kind of scene; expected .ply, .nff or .gri");
-  }
+  InputReader reader(path, kSceneExpected);
+  const SceneKind kind = scene_kind_of(reader.head(), path);
+  if (kind == SceneKind::kUnknown) reader.refuse_content();
+  require_tolerance(tolerance, kind);
+  InputFile file = reader.read_all(kind == SceneKind::kText ? kMostSceneBytes : kAnySize);
+  name_in_shortage(path, "read it", [&] {
+    if (kind == SceneKind::kMesh) {
+      input.content = read_ply_mesh(file.bytes, path);
+    } else if (kind == SceneKind::kPacked) {
+      input.content = open_packed_scene(std::move(file), path);
+    } else {
+      input.text = read_text_scene(file, path, tolerance, picture, std::get<Mesh>(input.content));
+    }
+  });
   input.load_seconds = stopwatch.both();
   return input;
+}
+
+std::vector<std::filesystem::path> files_of(const SceneInput& input) {
+  std::vector<std::filesystem::path> files = {input.path};
+  if (input.text) files.insert(files.end(), input.text->files.begin(), input.text->files.end());
+  return files;
 }
 
 void tell_notes(const SceneInput& input) {
@@ -208,7 +222,9 @@ void require_fit(const GridChoice& choice, const SceneArguments& arguments, cons
 SceneImageView build_image(const SceneInput& input, const Mesh& mesh, const GridChoice& choice,
                            std::span<std::byte> image, const EffectsView* effects) {
   stop_if_interrupted();
-  std::vector<std::uint64_t> scratch((choice.need.scratch_bytes + 7) / 8);
+  std::vector<std::uint64_t> scratch = name_in_shortage(input.path, "build its scene image", [&] {
+    return std::vector<std::uint64_t>((choice.need.scratch_bytes + 7) / 8);
+  });
   const Status status = build_scene_image(mesh.view(), choice.parameters, choice.need, image,
                                           std::as_writable_bytes(std::span(scratch)), effects, &stop_flag());
   if (status == Status::kAborted) stop_if_interrupted();

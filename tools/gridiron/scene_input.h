@@ -1,5 +1,5 @@
-// Scene input: a mesh (.ply), a text scene (.nff) or a packed scene (.gri), read and checked, and the grid that fits a
-// machine.
+// Scene input: a PLY mesh, a text scene or a packed scene, told apart by what the file holds, read and checked, and the
+// grid that fits a machine.
 // Memory: owns mesh or file. Threads: one. SPDX-License-Identifier: Apache-2.0
 #pragma once
 
@@ -16,6 +16,7 @@
 #include <vector>
 
 #include "arguments.h"
+#include "file_kind.h"
 #include "input_file.h"
 #include "scene_text/scene_description.h"
 #include "scene_text/scene_effects.h"
@@ -55,12 +56,17 @@ struct SceneInput {
   std::optional<TextScene> text{};  ///< beside a Mesh
 };
 
-/// @returns whether a file is a text scene, or a mesh, by its name.
-[[nodiscard]] bool is_text_scene(const std::filesystem::path& path);
-[[nodiscard]] bool is_mesh_file(const std::filesystem::path& path);
+inline constexpr const char* kSceneExpected =
+    "expected a scene: a PLY mesh, a text scene (NFF) or a packed scene (made by 'gridiron pack')";
+inline constexpr const char* kMeshExpected = "expected a PLY mesh";
+
+/// @returns the kind of a scene before it is read: that of the file's first bytes; of one that cannot be opened what
+/// its ending promises, so that the command line is checked all the same; kUnknown of a stream, which is read once.
+[[nodiscard]] SceneKind foreseen_kind(const std::filesystem::path& path);
 
 /// Reads the scene. @param tolerance  of round shapes in a text scene; nothing: the reader's own, which goes by
-/// `picture` where that is given. Errors: Failure (kBadInput), `file:line: reason` or `file:byte N: reason`.
+/// `picture` where that is given. Errors: Failure (kBadInput), `file:line: reason`, `file:byte N: reason`, or `file: `
+/// what it is and what is expected; kUsage where a tolerance is given of another kind of scene.
 [[nodiscard]] SceneInput read_scene_input(const std::filesystem::path& path,
                                           std::optional<float> tolerance = std::nullopt,
                                           const std::optional<ScenePicture>& picture = std::nullopt);
@@ -69,8 +75,15 @@ struct SceneInput {
 /// chosen by the picture.
 void tell_notes(const SceneInput& input);
 
-/// @returns the mesh of a PLY file. Errors as read_scene_input.
+/// @returns the mesh of a PLY file. Errors as read_scene_input. @param path  what messages call the bytes.
 [[nodiscard]] Mesh read_ply_mesh(const std::filesystem::path& path);
+[[nodiscard]] Mesh read_ply_mesh(std::span<const std::byte> bytes, const std::filesystem::path& path);
+
+/// @returns every file that the scene was read from: itself, and those that a text names.
+[[nodiscard]] std::vector<std::filesystem::path> files_of(const SceneInput& input);
+
+/// Throws Failure (kUsage) where a tolerance is given of a scene that is no text scene.
+void require_tolerance(std::optional<float> tolerance, SceneKind kind);
 
 /// The grid that a mesh will get, or that a packed scene has.
 struct GridChoice {

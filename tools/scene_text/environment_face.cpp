@@ -127,7 +127,7 @@ EnvironmentFace read_pfm(const std::filesystem::path& path, std::span<const std:
 
 EnvironmentFace read_environment_face(const std::filesystem::path& path) {
   require_regular_file(path);
-  const InputFile file = read_input_file(path, kMostFaceBytes);
+  const InputFile file = read_input_file(path, "expected a PNG or PFM picture", kMostFaceBytes);
   const std::string_view text(reinterpret_cast<const char*>(file.bytes.data()), file.bytes.size());
   if (text.starts_with("\x89PNG")) return read_png(path, file.bytes);
   const auto is_pfm = [&text](std::string_view magic) {

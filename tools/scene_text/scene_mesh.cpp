@@ -46,7 +46,7 @@ bool is_invertible(const SceneMatrix& matrix) {
 
 SceneMesh read_scene_mesh(const std::filesystem::path& path, const std::optional<SceneMatrix>& matrix) {
   require_regular_file(path);
-  const InputFile file = read_input_file(path, kMostMeshBytes);
+  const InputFile file = read_input_file(path, "expected a PLY mesh", kMostMeshBytes);
   PlyConfig config;
   config.max_vertices = kMostSceneVertices;
   config.max_triangles = kMostSceneTriangles;

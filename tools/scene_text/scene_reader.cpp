@@ -29,7 +29,7 @@ bool are_parallel(const DVec3& a, const DVec3& b) {
 
 class Parser {
  public:
-  Parser(std::string_view text, const std::filesystem::path& path) : words_(text, path), folder_(path.parent_path()) {}
+  Parser(std::string_view text, const std::filesystem::path& path) : words_(text, path), folder_(folder_of_input(path)) {}
 
   SceneEntities parse() {
     while (!words_.next().is_end()) {
@@ -395,7 +395,7 @@ SceneDescription read_scene_text(std::string_view text, const std::filesystem::p
 }
 
 SceneDescription read_scene_text(const std::filesystem::path& path, const SceneOptions& options) {
-  const InputFile file = read_input_file(path, kMostSceneBytes);
+  const InputFile file = read_input_file(path, "expected a text scene", kMostSceneBytes);
   return read_scene_text({reinterpret_cast<const char*>(file.bytes.data()), file.bytes.size()}, path, options);
 }
 

@@ -45,7 +45,8 @@ struct SceneOptions {
 /// be read, is empty or larger than kMostSceneBytes. Interrupts as stop_if_interrupted().
 [[nodiscard]] SceneDescription read_scene_text(const std::filesystem::path& path, const SceneOptions& options = {});
 
-/// The same for a text in memory. @param path  what messages call it; its folder is where files are looked for.
+/// The same for a text in memory. @param path  what messages call it; files are looked for in its
+/// folder, in the current one where it is standard input or a pipe.
 [[nodiscard]] SceneDescription read_scene_text(std::string_view text, const std::filesystem::path& path,
                                                const SceneOptions& options);
 

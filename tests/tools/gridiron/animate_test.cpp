@@ -174,8 +174,8 @@ TEST(Animate, WhatCannotBeDoneIsTold) {
     const char* words;
   } cases[] = {
       {{"nowhere.ply", "-o", "out"}, 1, "nowhere.ply: No such file"},
-      {{"empty", "-o", "out"}, 1, "empty: holds no mesh"},
-      {{"a.nff", "-o", "out"}, 1, "a.nff: is no mesh"},
+      {{"empty", "-o", "out"}, 1, "empty: holds no file that ends with .ply"},
+      {{"a.nff", "-o", "out"}, 1, "a.nff: is a text scene; animate takes PLY meshes"},
       {{"a.ply", "twin", "-o", "out"}, 2, "two frames would be called a.png"},
       {{"a.ply", "bad.ply", "-o", "out"}, 1, "bad.ply:3: "},
       {{"a.ply", "-o", "no/where"}, 1, "no/where: cannot make the folder"},

@@ -284,14 +284,33 @@ TEST(Job, DamageIsFoundWithItsPlace) {
     folder.write("b.job", file);
     expect_failure(folder, {"result", "b.job", "a.res"}, 1, "b.job:byte " + std::to_string(place) + ": " + words);
   };
-  expect_refused("", 0, "the file ends");
   expect_refused(whole.substr(0, 255), 255, "the file ends");
   expect_refused(whole.substr(0, whole.size() - 1), offsetof(FrameJob, loaded_bytes), "");
   expect_refused(whole + "x", offsetof(FrameJob, loaded_bytes), "");
-  for (const std::size_t place : {std::size_t{200}, std::size_t{300}, std::size_t{1000}, whole.size() - 1}) {
+  // A bit that flipped: the place where the file stops making sense, or between which bytes it lies.
+  const auto flipped = [&whole](std::size_t place) {
     std::string damaged = whole;
     damaged[place] = static_cast<char>(damaged[place] ^ 16);
-    expect_refused(damaged, offsetof(FrameJob, check_value), "check_value differs");
+    return damaged;
+  };
+  const std::size_t section = 4096 + record_at<ImageHeader>(whole, 4096).section_table_offset_bytes;
+  const std::size_t grid = 256 + offsetof(FrameRecord, grid), bytes = offsetof(SectionEntry, section_bytes);
+  expect_refused(flipped(grid + 3), grid, "the grid is not that of the scene image; the job's check_value differs too");
+  expect_refused(flipped(section + bytes), section + bytes, "damaged scene image (field section.section_bytes)");
+  expect_refused(flipped(4096 + 1), 4096, "damaged scene image (field header.magic)");
+  expect_refused(flipped(1000), offsetof(FrameJob, check_value),
+                 "check_value differs from that of the file's bytes: some number in front of byte 4096");
+  const std::uint64_t triangles = [&] {
+    for (std::size_t i = 0;; ++i) {
+      const auto entry = record_at<SectionEntry>(whole, section + i * sizeof(SectionEntry));
+      if (entry.kind == static_cast<std::uint32_t>(SectionKind::kTriangles)) return 4096 + entry.offset_bytes;
+    }
+  }();
+  expect_refused(flipped(triangles), 4096 + offsetof(ImageHeader, check_value),
+                 "damaged scene image (field header.check_value): some number in bytes 64 to ");
+  for (const std::string& other : {std::string(), std::string("GJOX") + whole.substr(4), read_file(folder.path("a.ply"))}) {
+    folder.write("b.job", other);
+    expect_failure(folder, {"result", "b.job", "a.res"}, 1, "; expected a job, as 'gridiron job' makes it");
   }
 
   // Wrong ones that were made so: the check value holds.
@@ -309,7 +328,6 @@ TEST(Job, DamageIsFoundWithItsPlace) {
   constexpr std::uint64_t kFar = std::uint64_t{1} << 63;
   using Job = FrameJob;
   using Record = FrameRecord;
-  expect_wrong(offsetof(Job, magic), [](Job& job, Record&) { job.magic ^= 1; });
   expect_wrong(offsetof(Job, version), [](Job& job, Record&) { ++job.version; });
   expect_wrong(offsetof(Job, base_address), [](Job& job, Record&) { job.base_address += 64; });
   expect_wrong(offsetof(Job, memory_bytes), [](Job& job, Record&) { job.memory_bytes = job.loaded_bytes - 64; });
@@ -365,9 +383,9 @@ TEST(Result, DamageIsFoundWithItsPlace) {
   };
   expect_refused(whole.substr(0, whole.size() - 4), 1, "a.res:byte " + std::to_string(whole.size() - 4) + ": ");
   expect_refused(whole + "1234", 1, "a.res:byte " + std::to_string(whole.size()) + ": ");
-  expect_refused("", 1, "a.res:byte 0: ");
+  expect_refused("", 1, "a.res: is empty; expected the result of a job");
+  expect_refused(file, 1, "a.res: is a job; expected the result of a job");
   const auto core = [](std::uint64_t i) { return offsetof(FrameResult, cores) + i * sizeof(port::CoreResult); };
-  expect_wrong(offsetof(FrameResult, magic), [](FrameResult& frame) { frame.magic = 0; });
   expect_wrong(offsetof(FrameResult, version), [](FrameResult& frame) { frame.version = 2; });
   expect_wrong(offsetof(FrameResult, core_count), [](FrameResult& frame) { frame.core_count = 17; });
   expect_wrong(offsetof(FrameResult, core_count), [](FrameResult& frame) { frame.core_count = 0; });

@@ -198,7 +198,7 @@ TEST(MachineFile, NamesTheLineOfEveryDefect) {
        "ELF\x02\x01\x01",
        ":1: not a text file"},
       {"ply\nformat ascii 1.0\n", ":1: unknown key 'ply'"},
-      {"", ":1: the file ends without 'core_count'"},
+      {"\n", ":1: the file ends without 'core_count'"},
       {"# nothing\n\n", ":2: the file ends without 'core_count'"},
   };
   const TemporaryFolder folder;
@@ -213,7 +213,7 @@ TEST(MachineFile, NamesTheLineOfEveryDefect) {
 
 TEST(MachineFile, FilesThatCannotBeRead) {
   const TemporaryFolder folder;
-  EXPECT_EQ(failure_of(folder.folder()), folder.folder().string() + ": Is a directory");
+  EXPECT_EQ(failure_of(folder.folder()), folder.folder().string() + ": is a folder; expected a machine file: text as 'gridiron machines cell-ps3' prints it");
   EXPECT_EQ(failure_of(folder.path("none")), folder.path("none").string() + ": No such file or directory");
   EXPECT_EQ(failure_of("/dev/zero"), "/dev/zero: File too large");
 }

@@ -162,8 +162,8 @@ TEST(Machines, BadFilesEndWithOneAndRenderNothing) {
     const char* words;
   } cases[] = {{"bad.machine", "bad.machine:2: 'core_count' must be from 1 to 1024, not '0'"},
                {"abacus", "abacus: no such file, and no built-in machine of that name; there are cell-ps3,"},
-               {"a.ply", "a.ply:1: unknown key 'ply'"},
-               {".", ".: Is a directory"}};
+               {"a.ply", "a.ply: is a PLY mesh; expected a machine file"},
+               {".", ".: is a folder; expected a machine file"}};
   for (const auto& each : cases) {
     for (const Words& command : {Words{"render", "a.ply", "--machine"},
                                  {"info", "a.ply", "--machine"},

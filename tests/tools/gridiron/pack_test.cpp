@@ -82,7 +82,7 @@ TEST(Pack, DamagedImagesAreNamedWithTheirByte) {
   std::string flipped = image;
   flipped[flipped.size() / 2] = static_cast<char>(flipped[flipped.size() / 2] ^ 1);
   for (const std::string& damaged :
-       {std::string(), image.substr(0, 40), image.substr(0, image.size() - 128), flipped, "GDRX" + image.substr(4)}) {
+       {image.substr(0, 40), image.substr(0, image.size() - 128), flipped}) {
     folder.write("b.gri", damaged);
     for (const Words& command : {Words{"render", "b.gri"}, {"info", "b.gri"}}) {
       const ProgramResult result = run_program(folder.folder(), command);
@@ -91,6 +91,9 @@ TEST(Pack, DamagedImagesAreNamedWithTheirByte) {
     }
   }
   EXPECT_EQ(folder.names(), (Words{"a.gri", "a.ply", "b.gri"}));
+  folder.write("b.gri", "GDRX" + image.substr(4));
+  EXPECT_EQ(run_program(folder.folder(), {"render", "b.gri"}).err.find("b.gri: is of no known kind: it begins with 'GDRX"),
+            0u);
 }
 
 }  // namespace

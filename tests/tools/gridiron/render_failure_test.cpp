@@ -48,10 +48,10 @@ TEST(RenderFailure, BadInputNamesFileAndLineOrByte) {
       {"text.ply", "text.ply:3: "},
       {"index.ply", "index.ply:13: "},
       {"short.ply", "short.ply:byte " + std::to_string(whole.size() - 1) + ": "},
-      {"empty.ply", "empty.ply:1: "},
-      {"folder.ply", "folder.ply: Is a directory"},
+      {"empty.ply", "empty.ply: is empty; expected a scene"},
+      {"folder.ply", "folder.ply: is a folder; expected a scene: a PLY mesh, a text scene (NFF) or a packed scene"},
       {"a.nff", "a.nff:1: the file ends inside 'v'"},
-      {"a.txt", "a.txt: unknown kind of scene"},
+      {"a.txt", "a.txt:2: "},
   };
   for (const auto& input : cases) {
     expect_failure(folder, {"render", input.input, "-o", "out.png", "--depth", "d.pfm"}, 1, input.words);

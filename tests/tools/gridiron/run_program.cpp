@@ -8,9 +8,12 @@
 #include <sys/wait.h>
 #include <unistd.h>
 
+#include <cstdlib>
 #include <fstream>
 #include <string>
 #include <thread>
+
+#include "temporary_folder.h"
 
 namespace gridiron::test {
 namespace {
@@ -98,6 +101,15 @@ ProgramResult RunningProgram::wait(std::chrono::milliseconds most) {
   }
   if (!has_ended()) send(SIGKILL);
   return wait();
+}
+
+ProgramResult run_shell(const std::filesystem::path& folder, const std::string& line) {
+  const TemporaryFolder outside;
+  const std::string out = outside.path("out").string(), err = outside.path("err").string();
+  const std::string script = outside.write("line", "GRIDIRON='" GRIDIRON_PROGRAM "'\n" + line + "\n").string();
+  const std::string command = "cd '" + folder.string() + "' && bash '" + script + "' > '" + out + "' 2> '" + err + "'";
+  const int status = std::system(command.c_str());
+  return {WIFEXITED(status) ? WEXITSTATUS(status) : -WTERMSIG(status), read_file(out), read_file(err)};
 }
 
 ProgramResult run_program(const std::filesystem::path& folder, const std::vector<std::string>& arguments) {

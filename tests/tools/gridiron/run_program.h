@@ -36,6 +36,9 @@ class RunningProgram {
   int out_ = -1, err_ = -1;
 };
 
+/// Runs a line of bash in `folder`; $GRIDIRON is the program. The exit code is the line's.
+ProgramResult run_shell(const std::filesystem::path& folder, const std::string& line);
+
 /// Runs to the end.
 ProgramResult run_program(const std::filesystem::path& folder, const std::vector<std::string>& arguments);
 

@@ -1,0 +1,31 @@
+// Image damage. SPDX-License-Identifier: Apache-2.0
+#include "image_damage.h"
+
+#include <cstring>
+#include <string_view>
+
+#include "words.h"
+
+namespace gridiron::tool {
+
+ImageDamage find_image_damage(std::span<std::byte> image, const SceneImageError& error) {
+  const auto reason_of = [](const SceneImageError& each) {
+    return std::string(words_of(each.status)) + " (field " + each.field + ")";
+  };
+  if (std::string_view(error.field) != "header.check_value") return {error.byte_offset, reason_of(error)};
+
+  ImageHeader header{};
+  std::memcpy(&header, image.data(), sizeof header);
+  header.check_value = scene_image_check_value(image.first(header.image_bytes));
+  std::memcpy(image.data(), &header, sizeof header);
+  SceneImageView view{};
+  SceneImageError place;
+  if (open_scene_image(image, view, place) != Status::kOk) {
+    return {place.byte_offset, reason_of(place) + "; check_value differs too: the image was damaged"};
+  }
+  return {error.byte_offset, reason_of(error) + ": some number in bytes " + std::to_string(sizeof header) + " to " +
+                                 std::to_string(header.image_bytes - 1) +
+                                 " has changed, and no other check finds which"};
+}
+
+}  // namespace gridiron::tool
