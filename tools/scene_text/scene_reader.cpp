@@ -29,7 +29,8 @@ bool are_parallel(const DVec3& a, const DVec3& b) {
 
 class Parser {
  public:
-  Parser(std::string_view text, const std::filesystem::path& path) : words_(text, path), folder_(folder_of_input(path)) {}
+  Parser(std::string_view text, const std::filesystem::path& path)
+      : words_(text, path), folder_(folder_of_input(path)) {}
 
   SceneEntities parse() {
     while (!words_.next().is_end()) {

@@ -308,7 +308,8 @@ TEST(Job, DamageIsFoundWithItsPlace) {
   }();
   expect_refused(flipped(triangles), 4096 + offsetof(ImageHeader, check_value),
                  "damaged scene image (field header.check_value): some number in bytes 64 to ");
-  for (const std::string& other : {std::string(), std::string("GJOX") + whole.substr(4), read_file(folder.path("a.ply"))}) {
+  const std::string others[] = {std::string(), "GJOX" + whole.substr(4), read_file(folder.path("a.ply"))};
+  for (const std::string& other : others) {
     folder.write("b.job", other);
     expect_failure(folder, {"result", "b.job", "a.res"}, 1, "; expected a job, as 'gridiron job' makes it");
   }

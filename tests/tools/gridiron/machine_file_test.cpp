@@ -213,7 +213,9 @@ TEST(MachineFile, NamesTheLineOfEveryDefect) {
 
 TEST(MachineFile, FilesThatCannotBeRead) {
   const TemporaryFolder folder;
-  EXPECT_EQ(failure_of(folder.folder()), folder.folder().string() + ": is a folder; expected a machine file: text as 'gridiron machines cell-ps3' prints it");
+  EXPECT_EQ(failure_of(folder.folder()),
+            folder.folder().string() +
+                ": is a folder; expected a machine file: text as 'gridiron machines cell-ps3' prints it");
   EXPECT_EQ(failure_of(folder.path("none")), folder.path("none").string() + ": No such file or directory");
   EXPECT_EQ(failure_of("/dev/zero"), "/dev/zero: File too large");
 }

@@ -92,8 +92,8 @@ TEST(Pack, DamagedImagesAreNamedWithTheirByte) {
   }
   EXPECT_EQ(folder.names(), (Words{"a.gri", "a.ply", "b.gri"}));
   folder.write("b.gri", "GDRX" + image.substr(4));
-  EXPECT_EQ(run_program(folder.folder(), {"render", "b.gri"}).err.find("b.gri: is of no known kind: it begins with 'GDRX"),
-            0u);
+  const std::string words = run_program(folder.folder(), {"render", "b.gri"}).err;
+  EXPECT_EQ(words.find("b.gri: is of no known kind: it begins with 'GDRX"), 0u) << words;
 }
 
 }  // namespace
