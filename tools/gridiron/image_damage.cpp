@@ -23,9 +23,8 @@ ImageDamage find_image_damage(std::span<std::byte> image, const SceneImageError&
   if (open_scene_image(image, view, place) != Status::kOk) {
     return {place.byte_offset, reason_of(place) + "; check_value differs too: the image was damaged"};
   }
-  return {error.byte_offset, reason_of(error) + ": some number in bytes " + std::to_string(sizeof header) + " to " +
-                                 std::to_string(header.image_bytes - 1) +
-                                 " has changed, and no other check finds which"};
+  return {error.byte_offset,
+          reason_of(error) + ": some number of the image has changed, and no other check finds which"};
 }
 
 }  // namespace gridiron::tool

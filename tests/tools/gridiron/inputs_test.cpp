@@ -89,7 +89,7 @@ TEST_F(Inputs, CamerasMachinesJobsAndResultsComeThroughPipes) {
   EXPECT_NE(bytes_of("pipe.json").find("\"name\": \"mine\""), std::string::npos);
   EXPECT_EQ(expect_done("machines - < machine"), expect_done("machines machine"));
 
-  expect_done("job mesh -o a.job --base 0x200000000000 --cores 2" + options);
+  expect_done("job mesh -o a.job --base 0x2000000 --cores 2" + options);
   folder_.write("a.res", render_on_host_device(bytes_of("a.job"), 2));
   expect_done("result a.job a.res -o file.png");
   expect_done("result - <(cat a.res) --compare -o pipe.png < <(cat a.job)");

@@ -306,8 +306,9 @@ TEST(Job, DamageIsFoundWithItsPlace) {
       if (entry.kind == static_cast<std::uint32_t>(SectionKind::kTriangles)) return 4096 + entry.offset_bytes;
     }
   }();
-  expect_refused(flipped(triangles), 4096 + offsetof(ImageHeader, check_value),
-                 "damaged scene image (field header.check_value): some number in bytes 64 to ");
+  expect_refused(flipped(triangles), triangles, "damaged scene image (field triangle.v)");
+  expect_refused(flipped(4096 + offsetof(ImageHeader, vertex_count)), 4096 + offsetof(ImageHeader, check_value),
+                 "damaged scene image (field header.check_value): some number of the image has changed");
   const std::string others[] = {std::string(), "GJOX" + whole.substr(4), read_file(folder.path("a.ply"))};
   for (const std::string& other : others) {
     folder.write("b.job", other);

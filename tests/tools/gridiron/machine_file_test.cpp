@@ -196,8 +196,8 @@ TEST(MachineFile, NamesTheLineOfEveryDefect) {
       {base + std::string("core_count\0 4\n", 14), ":2: not a text file"},
       {"\x7F"
        "ELF\x02\x01\x01",
-       ":1: not a text file"},
-      {"ply\nformat ascii 1.0\n", ":1: unknown key 'ply'"},
+       ": is a program; expected a machine file"},
+      {"ply\nformat ascii 1.0\n", ": is a PLY mesh; expected a machine file"},
       {"\n", ":1: the file ends without 'core_count'"},
       {"# nothing\n\n", ":2: the file ends without 'core_count'"},
   };

@@ -237,14 +237,15 @@ TEST(TextScene, ManyTrianglesGetTheToleranceOfThePicture) {
   EXPECT_EQ(asked["scene"]["tolerance"]["least"], asked["scene"]["tolerance"]["most"]);
   EXPECT_LT(2 * chosen["scene"]["triangles"].get<int>(), asked["scene"]["triangles"].get<int>());
   EXPECT_GT(large["scene"]["triangles"], chosen["scene"]["triangles"]);
-  const Words render = {"render", "a.nff", "--size", "8x8", "--mode", "plain", "--shading", "simple"};
-  const ProgramResult result = run(folder, render);
+  const Words render = {"render", "a.nff", "--mode", "plain", "--shading", "simple"};
+  const Words small = joined(render, {"--size", "8x8"});
+  const ProgramResult result = run(folder, small);
   EXPECT_EQ(result.err.find("a.nff: tolerance of round shapes chosen by the picture: 0.000"), 0u) << result.err;
   EXPECT_NE(result.err.find("--tolerance sets another"), std::string::npos) << result.err;
-  EXPECT_EQ(run(folder, joined(render, {"--quiet"})).err, "");
-  // Another place to look from is another picture.
-  const ProgramResult within = run(folder, joined(render, {"--eye", "0.55,0.45,0.5"}));
-  EXPECT_NE(within.err, result.err);
+  EXPECT_EQ(run(folder, joined(small, {"--quiet"})).err, "");
+  // Another place to look from is another picture; of a large one, so that no shape is at its coarsest.
+  const Words tile = joined(render, {"--size", "4096x4096", "--tile", "0,0"});
+  EXPECT_NE(run(folder, joined(tile, {"--eye", "0.55,0.45,0.5"})).err, run(folder, tile).err);
 }
 
 TEST(TextScene, WhatDoesNotFitNamesATolerance) {
