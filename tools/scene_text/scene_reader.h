@@ -34,7 +34,7 @@ struct SceneOptions {
   float relative_tolerance = 1e-4f;
   /// Nothing: the scene is read for no picture. Else, where tolerance is not given and that of the diagonal makes more
   /// than many_triangles, each object gets the greatest tolerance that its distance from the eye hides.
-  std::optional<ScenePicture> picture;
+  std::optional<ScenePicture> picture = std::nullopt;
   std::uint64_t many_triangles = kManyRoundTriangles;
   std::uint32_t most_triangles = kMostSceneTriangles;  ///< at most kMostSceneTriangles
 };
