@@ -153,7 +153,7 @@ TEST(EffectsDeterminism, TheSceneHasRaysOfEveryKind) {
   }
 }
 
-// Steps of a frame with effects are many; they are packed as they come, and this is the memory that they take. The
+// Steps of a frame with effects are many; they are packed tile by tile, and this is the memory that they take. The
 // count is the same on every host, so that growth of any size is seen here.
 TEST(EffectsDeterminism, TracesTakeFewBytes) {
   const sim::FrameTrace& trace = first_frame().result.trace;
@@ -163,7 +163,7 @@ TEST(EffectsDeterminism, TracesTakeFewBytes) {
   RecordProperty("steps", std::to_string(steps));
   RecordProperty("bytes", std::to_string(bytes));
   EXPECT_GT(steps, 400000u) << "of 1,800 pixels";
-  EXPECT_LT(bytes, 290000u);
+  EXPECT_LT(bytes, 520000u);
 }
 
 TEST(EffectsDeterminism, ThreadsAndOrderOfTransfersChangeNothing) {

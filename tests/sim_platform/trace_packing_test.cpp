@@ -156,6 +156,24 @@ TEST(TracePacking, WorkOfNothingIsNoStep) {
   EXPECT_EQ(unpacked.events[0].work[1], (WorkAmount{Work::kSliceStep, 5}));
 }
 
+TEST(TracePacking, RepetitionsComeOutFromNearAndFar) {
+  Extremes draw(3);
+  const StepList different = random_steps(draw, 2500, 6, 12);
+  const WorkAmount work[] = {{Work::kCellStep, 3}};
+  std::vector<TraceEvent> events;
+  // The same again a whole list later, and one step so often that its count has several bytes.
+  for (std::uint32_t round = 0; round < 3; ++round) {
+    events.insert(events.end(), different.events.begin(), different.events.end());
+    events.insert(events.end(), 40000 * round, {.kind = EventKind::kWork, .work = work});
+  }
+  const TileTrace once = test::packed_trace(0, different.events), trace = test::packed_trace(0, events);
+  EXPECT_GT(once.packed.size(), 17000u) << "so that the list is far away";
+  EXPECT_LT(trace.packed.size(), once.packed.size() * 2);
+  const test::UnpackedTrace unpacked(trace);
+  ASSERT_EQ(unpacked.events.size(), events.size());
+  for (std::size_t i = 0; i < events.size(); ++i) ASSERT_TRUE(test::is_same_step(unpacked.events[i], events[i])) << i;
+}
+
 // What repeats costs little: a loop of gets and waits, of which a step took 48 bytes as a struct.
 TEST(TracePacking, RepeatedStepsTakeBits) {
   Steps steps;

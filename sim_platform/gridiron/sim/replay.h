@@ -100,7 +100,7 @@ struct ReplayOptions {
 /// above 2^20 as 2^20, counts of 0 as 1, queue_depth and lines_in_flight above 65,536 as that;
 /// channel_bytes_per_cycle <= 0 is a channel that costs no time. Preconditions: a frame shorter than 2^43 cycles; tags
 /// below 32; stages below kCount; packed steps as TraceWriter wrote them, which are read as cores come to them. Cost:
-/// linear in events and lines, times core_count; memory: about 300 KB a core.
+/// linear in events and lines, times core_count; memory: the steps of one tile a core, unpacked, about 2 bytes a step.
 [[nodiscard]] FrameTiming replay(const FrameTrace& trace, const MachineProfile& machine, const ReplayOptions& options);
 
 }  // namespace gridiron::sim

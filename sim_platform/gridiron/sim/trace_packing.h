@@ -1,5 +1,5 @@
-// Packing of traces: a frame with effects takes hundreds of steps a pixel, and they are kept in about a byte each.
-// Memory: the model of a stream, about 300 KB, on the heap. Threads: one per object.
+// Packing of traces: a frame with effects takes hundreds of steps a pixel, kept in little more than a byte each.
+// Memory: the steps of one tile and about 100 KB, on the heap. Threads: one per object.
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
@@ -13,9 +13,8 @@
 namespace gridiron::sim {
 
 /// Packs the steps of one tile after another. Every tile is packed by itself: its bytes say the same whatever was
-/// packed before. Steps are predicted from those before them in the tile, and an arithmetic coder spends few bits on
-/// what was predicted (binary models as in LZMA and CABAC). Any value of any member comes out as it went in.
-/// Cost: about 100 ns a step of kWork, much less for others.
+/// packed before. A step is written as the few bytes in which it differs from what was expected, and once the tile has
+/// ended, bytes that repeat earlier ones become references to them. Any value of any member comes out as it went in.
 class TraceWriter {
  public:
   TraceWriter();
