@@ -234,8 +234,9 @@ bool check_triangles(ImageChecker& checker, const SceneImageView& view, std::uin
       const float values[9] = {triangle.n_u, triangle.n_v, triangle.n_d, triangle.b_u, triangle.b_v,
                                triangle.b_d, triangle.c_u, triangle.c_v, triangle.c_d};
       GRIDIRON_REQUIRE(finite_fields(values, 9), base, ProjectionTriangle, n_u, "triangle.n_u");
-      GRIDIRON_REQUIRE(magnitude(triangle.n_u) <= 1.0f && magnitude(triangle.n_v) <= 1.0f, base, ProjectionTriangle,
-                       n_u, "triangle.n_u");
+      constexpr float kGreatestSlope = 0x1.000002p0f;  // 1, or the next float where a builder rounds upwards
+      GRIDIRON_REQUIRE(magnitude(triangle.n_u) <= kGreatestSlope && magnitude(triangle.n_v) <= kGreatestSlope, base,
+                       ProjectionTriangle, n_u, "triangle.n_u");
       GRIDIRON_REQUIRE(triangle.axis_k < 3, base, ProjectionTriangle, axis_k, "triangle.axis_k");
       GRIDIRON_REQUIRE(triangle.reserved == 0, base, ProjectionTriangle, reserved, "triangle.reserved");
       id = triangle.triangle_id;

@@ -128,7 +128,7 @@ TEST(Output, StandardOutputThatCannotTakeItIsTold) {
       {"{ sleep 0.2; " + render + "-o -; echo $? >&2; } | true", 0, "Broken pipe\n1\n"},
       {render + "-o /dev/fd/9", 1, "/dev/fd/9: cannot write: Bad file descriptor"},
       {render + "-o /dev/fd/0", 1, "/dev/fd/0: cannot write: it is not open for writing"},
-      {render + "-o - --depth /dev/fd/3", 1, "/dev/fd/3: cannot write: Bad file descriptor"},
+      {render + "-o - --depth /dev/fd/3 3>&-", 1, "/dev/fd/3: cannot write: Bad file descriptor"},
       {"\"$G\" machines > /dev/full", 1, "standard output: cannot write: No space left on device"},
   };
   for (const auto& each : cases) {
