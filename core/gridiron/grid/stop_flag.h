@@ -9,8 +9,8 @@ namespace gridiron {
 /// Raised once, never lowered. A call that is given one returns Status::kAborted soon after it is raised.
 class StopFlag {
  public:
-  void raise() { __atomic_store_n(&raised_, std::uint8_t{1}, __ATOMIC_RELAXED); }
-  [[nodiscard]] bool is_raised() const { return __atomic_load_n(&raised_, __ATOMIC_RELAXED) != 0; }
+  void raise() { __atomic_store_n(&raised_, std::uint8_t{1}, __ATOMIC_RELAXED); }  ///< by anybody, at any time
+  [[nodiscard]] bool is_raised() const { return __atomic_load_n(&raised_, __ATOMIC_RELAXED) != 0; }  ///< by now
 
  private:
   std::uint8_t raised_ = 0;

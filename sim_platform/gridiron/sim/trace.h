@@ -34,7 +34,7 @@ struct WorkAmount {
   Work kind;             ///< of work
   std::uint32_t amount;  ///< how much of it, above 0
 
-  friend constexpr bool operator==(const WorkAmount&, const WorkAmount&) = default;
+  friend constexpr bool operator==(const WorkAmount&, const WorkAmount&) = default;  ///< of all members
 };
 
 /// One step of a core. Tags of output buffers are stored relative to the core's tile ordinal (rotated), so that a
