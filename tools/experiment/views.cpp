@@ -56,7 +56,7 @@ std::shared_ptr<const tool::SceneInput> scene_of(const scene_makers::Mesh& made,
   for (const scene_makers::Triangle& triangle : made.triangles) {
     mesh.triangles.emplace_back(triangle[0], triangle[1], triangle[2]);
   }
-  return std::make_shared<const tool::SceneInput>(tool::SceneInput{name, std::move(mesh), 0});
+  return std::make_shared<const tool::SceneInput>(tool::SceneInput{name, std::move(mesh), {}});
 }
 
 }  // namespace
