@@ -77,7 +77,7 @@ TEST(Views, ThePublishedCameraStandsOffByTheDiagonal) {
   const auto first = static_cast<std::uint32_t>(mesh.vertices.size());
   mesh.vertices.insert(mesh.vertices.end(), {Vec3(0, 0, 0), Vec3(50, 0, 0), Vec3(100, 0, 0)});
   mesh.triangles.emplace_back(first, first + 1, first + 2);
-  view.scene = std::make_shared<const tool::SceneInput>(tool::SceneInput{"knot", std::move(mesh), 0});
+  view.scene = std::make_shared<const tool::SceneInput>(tool::SceneInput{"knot", std::move(mesh), {}});
   GridNeed need;
   ASSERT_EQ(count_scene_image(view.mesh().view(), {}, need), Status::kOk);
   const View fixed = with_published_camera(view);
@@ -98,7 +98,7 @@ TEST(Views, ThePublishedCameraStandsOffByTheDiagonal) {
 
   view.camera.eye = Vec3(1, 2, 30);
   EXPECT_EQ(with_published_camera(view).camera.eye, Vec3(1, 2, 30)) << "what was asked for stays";
-  view.scene = std::make_shared<const tool::SceneInput>(tool::SceneInput{"nothing", tool::Mesh{}, 0});
+  view.scene = std::make_shared<const tool::SceneInput>(tool::SceneInput{"nothing", tool::Mesh{}, {}});
   EXPECT_THROW((void)with_published_camera(view), tool::Failure);
 }
 
