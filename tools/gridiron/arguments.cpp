@@ -359,9 +359,6 @@ RenderArguments complete_render(const RawRender& raw, const CLI::App& app) {
 
   const bool plain = render.mode == Mode::kPlain;
   if (render.lanes == 0) render.lanes = plain ? sim::widest_lanes() : 4;
-  if (render.lanes > sim::widest_lanes()) {
-    usage_error("--lanes: this host has at most " + std::to_string(sim::widest_lanes()) + " lanes");
-  }
   if (render.mode == Mode::kInstrumented && render.lanes != 4) usage_error("--mode instrumented: has 4 lanes only");
   if (render.mode == Mode::kInstrumented && !sim::has_instrumented_mode()) {
     usage_error("--mode instrumented: this build has no instrumented kernel");
@@ -371,6 +368,9 @@ RenderArguments complete_render(const RawRender& raw, const CLI::App& app) {
   }
   if (render.timeline && render.lanes != 4) usage_error("--timeline: time is told for --lanes 4 only");
   if (render.timeline && render.tile) usage_error("--timeline: time is not told of one tile alone (--tile)");
+  if (render.lanes > sim::widest_lanes()) {
+    usage_error("--lanes: this host has at most " + std::to_string(sim::widest_lanes()) + " lanes");
+  }
   if (is_given("--seed") && render.completion != Completion::kRandom) usage_error("--seed: needs --completion random");
 
   if (kind != SceneKind::kUnknown || render.scene.input.empty()) settle_layout(render);

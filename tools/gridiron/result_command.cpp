@@ -86,14 +86,13 @@ void print_prediction(const ResultArguments& arguments, std::span<const double> 
               100 * quality.largest_tile_error);
 }
 
-void tell_unseen(const ResultArguments& arguments, const OpenJob& job, const OpenResult& result) {
+auto find_unseen(const OpenJob& job, const OpenResult& result) {
   SeenPlanes planes{result.color, result.depth, result.ids};
   planes.has_environment = job.image.effects.environment_width != 0;
   const auto image =
       std::span(job.file.bytes).subspan(job.job.image_address - job.job.base_address, job.job.image_bytes);
-  tell_note(arguments.result, unseen_note(job.record, planes, [&job, image](const PointVisitor& visitor) {
-              visit_points(job.image, image, visitor);
-            }));
+  return unseen_note(job.record, planes,
+                     [&job, image](const PointVisitor& visitor) { visit_points(job.image, image, visitor); });
 }
 
 }  // namespace
@@ -107,6 +106,7 @@ void run_command(const ResultArguments& arguments) {
   if (arguments.predict && !std::ranges::all_of(result.tiles, is_counted)) {
     throw Failure(ExitCode::kUsage, "--predict: " + arguments.result.string() + " has no counted instructions");
   }
+  const auto unseen = find_unseen(job, result);  // the comparison takes the job's bytes
   std::optional<JobComparison> comparison;
   if (arguments.compare) comparison = compare(arguments, job, result);
 
@@ -136,7 +136,7 @@ void run_command(const ResultArguments& arguments) {
   files.commit_at_end();
 
   if (!arguments.quiet) {
-    tell_unseen(arguments, job, result);
+    tell_note(arguments.result, unseen);
     std::printf("%s: %ux%u, hash %s\n", arguments.result.c_str(), color.width, color.height,
                 hash_text(report.image_hash).c_str());
     print_cores(result);

@@ -7,6 +7,7 @@
 
 #include "host_device.h"
 #include "run_program.h"
+#include "support/sanitizers.h"
 #include "temporary_folder.h"
 
 namespace gridiron::test {
@@ -153,7 +154,7 @@ TEST_F(Inputs, OtherFilesAreNamedWithWhatIsReadInstead) {
 
 // The sanitizers' own memory does not fit the limit.
 TEST_F(Inputs, ShortageOfMemoryNamesTheFile) {
-#if defined(__SANITIZE_ADDRESS__) || defined(__SANITIZE_THREAD__)
+#if defined(GRIDIRON_TEST_SANITIZED)
   GTEST_SKIP() << "not under sanitizers";
 #endif
   std::filesystem::resize_file(folder_.path("packed"), std::uintmax_t{1} << 30);

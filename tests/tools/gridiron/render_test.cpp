@@ -194,7 +194,7 @@ TEST(Render, PlainModeReportsItsHost) {
   EXPECT_EQ(checked["mode"], "checked");
   EXPECT_EQ(checked["host"]["lanes"], 4);
   EXPECT_EQ(checked["host"]["repeats"], 1);
-  const Words plain[] = {{"--mode", "plain", "--lanes", "8"}, {"--mode", "plain", "--repeat", "3"}};
+  const Words plain[] = {{"--mode", "plain", "--lanes", "4"}, {"--mode", "plain", "--repeat", "3"}};
   for (const Words& options : plain) {
     const Json report = render_report(folder, Words{"a.ply", "--size", "96x64", "--threads", "2"} + options);
     EXPECT_EQ(report["mode"], "plain");
