@@ -22,13 +22,15 @@ using namespace gridiron;
 
 namespace {
 
-// Before the middle of what there is to see, as the gridiron program looks at a scene that has no view.
+// Before the middle of what there is to see. Told on standard error as options of the gridiron program.
 Camera camera_before(const GridRecord& grid) {
   const DVec3 low(grid.bounds_minimum[0], grid.bounds_minimum[1], grid.bounds_minimum[2]);
   const DVec3 high(grid.bounds_maximum[0], grid.bounds_maximum[1], grid.bounds_maximum[2]);
   const DVec3 middle = 0.5 * (low + high);
   const DVec3 eye = middle + 1.05 * glm::length(high - low) * glm::normalize(DVec3(0.35, 0.25, 1.0));
-  return {.eye = Vec3(eye), .at = Vec3(middle)};
+  const Vec3 from(eye), at(middle);
+  std::fprintf(stderr, "--eye=%.9g,%.9g,%.9g --at=%.9g,%.9g,%.9g\n", from.x, from.y, from.z, at.x, at.y, at.z);
+  return {.eye = from, .at = at};
 }
 
 }  // namespace
