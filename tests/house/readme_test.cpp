@@ -30,6 +30,11 @@ TEST(Readme, TheExampleHasAtMostFifteenLinesOfCode) {
   EXPECT_LE(lines - 2, 15) << "lines between the braces of main";
 }
 
+TEST(Readme, IsShort) {
+  const std::string text = text_of(source_path("README.md"));
+  EXPECT_LE(std::count(text.begin(), text.end(), '\n'), 150) << "lines";
+}
+
 TEST(Readme, LinksAndPicturesExist) {
   for (const char* readme : {"README.md", "CHANGELOG.md", "CONTRIBUTING.md", "core/README.md", "platform/README.md",
                              "scenes/README.md", "tests/README.md", "tools/README.md"}) {
