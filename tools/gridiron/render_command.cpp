@@ -109,7 +109,8 @@ ReportInput collect_report(const RenderArguments& arguments, const SceneInput& i
 }
 
 void print_picture(const RenderArguments& arguments, const Picture<std::uint32_t>& color, std::uint64_t hash) {
-  std::printf("%s: %ux%u, hash %s\n", arguments.output.c_str(), color.width, color.height, hash_text(hash).c_str());
+  std::printf("%s: %ux%u, hash %s\n", target_of(arguments.output).name.c_str(), color.width, color.height,
+              hash_text(hash).c_str());
 }
 
 void print_timing(const RenderArguments& arguments, const sim::FrameTiming& timing) {
@@ -170,7 +171,9 @@ Repeated render_repeatedly(std::optional<FrameMemory>& frame, RequestedFrame& re
 }  // namespace
 
 void run_command(const RenderArguments& asked) {
+  const StageLines stages(!asked.quiet);
   RequestedFrame request = read_requested_frame(asked, outputs_of(asked));
+  limit_threads(request.arguments);
   const SceneInput& input = request.input;
   const RenderArguments& arguments = request.arguments;
   std::optional<FrameMemory> memory;

@@ -14,6 +14,7 @@
 #include "failure.h"
 #include "image_damage.h"
 #include "interrupt.h"
+#include "progress.h"
 #include "scene_text/scene_reader.h"
 #include "stopwatch.h"
 #include "words.h"
@@ -92,15 +93,16 @@ SceneKind foreseen_kind(const std::filesystem::path& path) {
 
 void require_tolerance(std::optional<float> tolerance, SceneKind kind) {
   if (tolerance && kind != SceneKind::kText) {
-    throw Failure(ExitCode::kUsage, "--tolerance: is of text scenes (NFF) alone");
+    throw Failure(ExitCode::kUsage, "--tolerance: applies to text scenes (NFF) only");
   }
 }
 
 SceneInput read_scene_input(const std::filesystem::path& path, std::optional<float> tolerance,
-                            const std::optional<ScenePicture>& picture) {
+                            const std::optional<ScenePicture>& picture, const char* expected) {
   const Stopwatch stopwatch;
+  const Stage stage(path, "reading");
   SceneInput input{path, Mesh{}, {}, std::nullopt};
-  InputReader reader(path, kSceneExpected);
+  InputReader reader(path, expected);
   const SceneKind kind = scene_kind_of(reader.head(), path);
   if (kind == SceneKind::kUnknown) reader.refuse_content();
   require_tolerance(tolerance, kind);
@@ -135,8 +137,8 @@ void tell_notes(const SceneInput& input) {
   if (input.text->roundness.rule != ToleranceRule::kPicture) return;
   const SceneRoundness& roundness = input.text->roundness;
   std::fprintf(stderr,
-               "%s: tolerance of round shapes chosen by the picture: %s, %s triangles; %s alone would make %s; "
-               "--tolerance sets another\n",
+               "%s: tolerance of round shapes chosen by the picture: %s, %s triangles; %s for all objects would make "
+               "about %s; --tolerance sets another\n",
                input.path.c_str(), words_of_tolerance(roundness).c_str(),
                words_of_count(std::get<Mesh>(input.content).triangles.size()).c_str(),
                text_of(roundness.least_tolerance).c_str(), words_of_count(roundness.diagonal_triangles).c_str());
@@ -165,10 +167,10 @@ std::uint64_t image_budget_bytes(const sim::MachineProfile& machine, std::uint32
   }
   const std::uint64_t memory = machine.main_memory_bytes - sim::SimMemory::kFirstAddress - spill_bytes;
   if (wanted > memory) {
-    throw Failure(ExitCode::kBadInput, "a picture of " + std::to_string(width) + "x" + std::to_string(height) +
-                                           " needs " + words_of_bytes(wanted) + " of main memory; " +
-                                           std::string(machine.name) + " has " +
-                                           words_of_bytes(machine.main_memory_bytes));
+    // In single bytes: of a memory that the picture would fill the simulator keeps the first few.
+    throw Failure(ExitCode::kBadInput, "a whole frame of " + std::to_string(width) + "x" + std::to_string(height) +
+                                           " needs " + words_of_count(wanted) + " bytes of main memory; " +
+                                           std::string(machine.name) + " has " + words_of_count(memory) + " for it");
   }
   return memory - std::max(wanted, std::min(usual, memory / 2));
 }
@@ -185,10 +187,12 @@ GridChoice choose_grid(const SceneInput& input, const Mesh& mesh, const SceneArg
       arguments.macro_width.value_or(std::min(configuration.macro_width, arguments.most_macro_width));
   choice.parameters.format = format;
   choice.budget_bytes = budget_bytes;
-  const Status status =
-      arguments.lambda
-          ? count_scene_image(mesh.view(), choice.parameters, choice.need, effects, &stop_flag())
-          : fit_scene_image(mesh.view(), choice.parameters, budget_bytes, choice.need, effects, &stop_flag());
+  const Status status = [&] {
+    const Stage stage(input.path, "choosing its grid");
+    return arguments.lambda
+               ? count_scene_image(mesh.view(), choice.parameters, choice.need, effects, &stop_flag())
+               : fit_scene_image(mesh.view(), choice.parameters, budget_bytes, choice.need, effects, &stop_flag());
+  }();
   if (status == Status::kAborted) stop_if_interrupted();
   if (status == Status::kTooManyTriangles) {
     const float lambda = arguments.lambda ? choice.wanted_lambda : kLeastLambda;
@@ -222,6 +226,7 @@ void require_fit(const GridChoice& choice, const SceneArguments& arguments, cons
 SceneImageView build_image(const SceneInput& input, const Mesh& mesh, const GridChoice& choice,
                            std::span<std::byte> image, const EffectsView* effects) {
   stop_if_interrupted();
+  const Stage stage(input.path, "building its scene image");
   std::vector<std::uint64_t> scratch = name_in_shortage(input.path, "build its scene image", [&] {
     return std::vector<std::uint64_t>((choice.need.scratch_bytes + 7) / 8);
   });

@@ -65,11 +65,13 @@ inline constexpr const char* kMeshExpected = "expected a PLY mesh";
 [[nodiscard]] SceneKind foreseen_kind(const std::filesystem::path& path);
 
 /// Reads the scene. @param tolerance  of round shapes in a text scene; nothing: the reader's own, which goes by
-/// `picture` where that is given. Errors: Failure (kBadInput), `file:line: reason`, `file:byte N: reason`, or `file: `
-/// what it is and what is expected; kUsage where a tolerance is given of another kind of scene.
+/// `picture` where that is given. @param expected  of the file, for messages.
+/// Errors: Failure (kBadInput), `file:line: reason`, `file:byte N: reason`, or `file: ` what it is and what is
+/// expected; kUsage where a tolerance is given of another kind of scene.
 [[nodiscard]] SceneInput read_scene_input(const std::filesystem::path& path,
                                           std::optional<float> tolerance = std::nullopt,
-                                          const std::optional<ScenePicture>& picture = std::nullopt);
+                                          const std::optional<ScenePicture>& picture = std::nullopt,
+                                          const char* expected = kSceneExpected);
 
 /// Says on standard error what is odd in a text scene: `file:line: note: text`, one line each; and which tolerance was
 /// chosen by the picture.
