@@ -141,7 +141,7 @@ PlaneHashes hashes_of(const FrameMemory& frame, const RenderArguments& arguments
 Repeated render_repeatedly(std::optional<FrameMemory>& frame, RequestedFrame& request) {
   const RenderArguments& arguments = request.arguments;
   const bool is_packed = std::holds_alternative<PackedScene>(request.input.content);
-  Progress progress(!arguments.quiet, "tiles");
+  std::optional<Progress> progress;  // begins once the first image is built: the time left is that of tiles
   Repeated repeated;
   for (std::uint32_t repeat = 0; repeat < arguments.repeats; ++repeat) {
     if (repeat == 0 || !is_packed) {
@@ -153,9 +153,10 @@ Repeated render_repeatedly(std::optional<FrameMemory>& frame, RequestedFrame& re
         prepare_frame(*frame, request.input, arguments, request.view);
       }
     }
+    if (!progress) progress.emplace(!arguments.quiet, "tiles");
     const Stopwatch stopwatch;
     const auto report = [&](std::uint32_t done, std::uint32_t total) {
-      progress.update(std::uint64_t{repeat} * total + done, std::uint64_t{arguments.repeats} * total);
+      progress->update(std::uint64_t{repeat} * total + done, std::uint64_t{arguments.repeats} * total);
     };
     repeated.result = render_on_chip(*frame, arguments, report);
     const HostSeconds render = stopwatch.both();

@@ -91,6 +91,8 @@ TEST(Output, IsStandardOutputAsBytesOfTheFile) {
       EXPECT_EQ(read_file(folder.path("out")), png) << way << end;
       const std::string words = read_file(folder.path("err"));
       EXPECT_NE(words.find("cell-ps3, 6 cores: "), std::string::npos) << words;
+      const std::string name = std::string(way) == "-o -" ? "standard output" : std::string(way).substr(3);
+      EXPECT_EQ(words.find(name + ": 40x24, hash "), 0u) << words;
     }
   }
   EXPECT_EQ(run_line(folder, render + "-o b.png --depth - --quiet"), 0);
