@@ -119,7 +119,13 @@ void prepare(FrameMemory& frame, const SceneInput& input, const RenderArguments&
   if (arguments.ids) require_exact_ids(input.path, frame.image.header.triangle_count);
 
   FrameSettings& settings = frame.settings;
-  settings.camera = complete_view(view, static_cast<double>(arguments.width) / arguments.height, points_of(frame));
+  // An image of vertices as they were read has the points of its mesh, which has each of them once.
+  const Mesh* mesh = std::get_if<Mesh>(&input.content);
+  const bool is_exact = format_of(arguments.accuracy) == TriangleFormat::kVertices;
+  const PointSource points = mesh != nullptr && is_exact
+                                 ? [mesh](const PointVisitor& visitor) { visit_points(mesh->view(), visitor); }
+                                 : points_of(frame);
+  settings.camera = complete_view(view, static_cast<double>(arguments.width) / arguments.height, points);
   settings.width = arguments.width;
   settings.height = arguments.height;
   settings.tile_width = arguments.tile_width;

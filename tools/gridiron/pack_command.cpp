@@ -21,7 +21,7 @@ void run_command(const PackArguments& arguments) {
   declare_outputs({{"-o", arguments.output, OutputKind::kBinary}});
   const StageLines stages(!arguments.scene.quiet);
   const SceneInput input =
-      read_scene_input(arguments.scene.input, arguments.scene.tolerance, ScenePicture{}, kExpected);
+      read_scene_input(arguments.scene.input, arguments.scene.tolerance, PictureRequest{}, kExpected);
   const Mesh* mesh = std::get_if<Mesh>(&input.content);
   if (mesh == nullptr) {
     throw Failure(ExitCode::kBadInput, input.path.string() + ": is a scene image already; " + kExpected);

@@ -37,12 +37,28 @@ PackedScene open_packed_scene(InputFile file, const std::filesystem::path& path)
   return packed;
 }
 
+ViewRequest view_of(const SceneView& view) {
+  if (!view.is_given()) return {};
+  return {.eye = view.from, .at = view.at, .up = view.up, .fov_degrees = view.angle_degrees};
+}
+
+ScenePicture picture_of(const PictureRequest& asked, const SceneView& own, const PointSource& points) {
+  const PictureRequest request = complete_request(asked, own);
+  const double aspect = static_cast<double>(request.width) / request.height;
+  const Camera camera = complete_view(join_view(request.view, *request.camera), aspect, points);
+  return {camera.eye, camera.tan_half_fov, request.height};
+}
+
 // The triangles go to `mesh`, the rest to @returns.
 TextScene read_text_scene(const InputFile& file, const std::filesystem::path& path, std::optional<float> tolerance,
-                          const std::optional<ScenePicture>& picture, Mesh& mesh) {
+                          const std::optional<PictureRequest>& picture, Mesh& mesh) {
   SceneOptions options;
   options.tolerance = tolerance;
-  options.picture = picture;
+  if (picture) {
+    options.picture = [&picture](const SceneView& own, const PointSource& points) {
+      return picture_of(*picture, own, points);
+    };
+  }
   const std::string_view words(reinterpret_cast<const char*>(file.bytes.data()), file.bytes.size());
   SceneDescription scene = read_scene_text(words, path, options);
   TextScene text{scene.view,       take_scene_effects(scene), std::move(scene.notes),
@@ -56,6 +72,12 @@ std::string text_of(float number) {
   char text[32];
   std::snprintf(text, sizeof text, "%g", static_cast<double>(number));
   return text;
+}
+
+std::uint64_t two_digits(std::uint64_t count) {
+  std::uint64_t unit = 1;
+  while (count / unit >= 100) unit *= 10;
+  return (count + unit / 2) / unit * unit;
 }
 
 // Which tolerance would make a scene small enough: "; --tolerance 0.003 would fit", or nothing.
@@ -97,8 +119,17 @@ void require_tolerance(std::optional<float> tolerance, SceneKind kind) {
   }
 }
 
+PictureRequest complete_request(PictureRequest request, const SceneView& own) {
+  if (!request.camera) request.camera = view_of(own);
+  if (!request.has_size && own.is_given()) {
+    request.width = own.width;
+    request.height = own.height;
+  }
+  return request;
+}
+
 SceneInput read_scene_input(const std::filesystem::path& path, std::optional<float> tolerance,
-                            const std::optional<ScenePicture>& picture, const char* expected) {
+                            const std::optional<PictureRequest>& picture, const char* expected) {
   const Stopwatch stopwatch;
   const Stage stage(path, "reading");
   SceneInput input{path, Mesh{}, {}, std::nullopt};
@@ -137,11 +168,12 @@ void tell_notes(const SceneInput& input) {
   if (input.text->roundness.rule != ToleranceRule::kPicture) return;
   const SceneRoundness& roundness = input.text->roundness;
   std::fprintf(stderr,
-               "%s: tolerance of round shapes chosen by the picture: %s, %s triangles; %s for all objects would make "
-               "about %s; --tolerance sets another\n",
+               "%s: tolerance of round shapes chosen by the picture: %s, %s; %s for all objects would make about %s; "
+               "--tolerance sets another\n",
                input.path.c_str(), words_of_tolerance(roundness).c_str(),
-               words_of_count(std::get<Mesh>(input.content).triangles.size()).c_str(),
-               text_of(roundness.least_tolerance).c_str(), words_of_count(roundness.diagonal_triangles).c_str());
+               words_of_count(std::get<Mesh>(input.content).triangles.size(), "triangle").c_str(),
+               text_of(roundness.diagonal_tolerance).c_str(),
+               words_of_count(two_digits(roundness.diagonal_triangles)).c_str());
 }
 
 std::string words_of_tolerance(const SceneRoundness& roundness) {
