@@ -10,7 +10,6 @@ namespace gridiron::tool {
 namespace {
 
 std::atomic<bool> interrupted{false};
-StopFlag stop;
 std::atomic<int> last_signal{SIGINT};
 static_assert(std::atomic<bool>::is_always_lock_free && std::atomic<int>::is_always_lock_free,
               "a signal handler may only touch lock-free atomics");
@@ -23,7 +22,6 @@ ExitCode exit_code_of(int signal) {
 extern "C" void note_interrupt(int signal) {
   last_signal.store(signal);
   interrupted.store(true);
-  stop.raise();
   expect_exit(static_cast<int>(exit_code_of(signal)));
 }
 
@@ -47,10 +45,6 @@ void watch_for_interrupt() {
 
 const std::atomic<bool>& interrupt_flag() {
   return interrupted;
-}
-
-const StopFlag& stop_flag() {
-  return stop;
 }
 
 void stop_if_interrupted() {

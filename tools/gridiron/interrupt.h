@@ -2,8 +2,6 @@
 // Memory: flags in static storage. Threads: the flag may be read by any. SPDX-License-Identifier: Apache-2.0
 #pragma once
 
-#include <gridiron/grid/stop_flag.h>
-
 #include <atomic>
 
 namespace gridiron::tool {
@@ -15,9 +13,6 @@ void watch_for_interrupt();
 
 /// @returns the flag: true once a signal has come.
 [[nodiscard]] const std::atomic<bool>& interrupt_flag();
-
-/// @returns the same for calls of core.
-[[nodiscard]] const StopFlag& stop_flag();
 
 /// Throws Failure (kInterrupted, kTerminated, kHungUp) once a signal has come. main adds what became of the files.
 void stop_if_interrupted();

@@ -7,6 +7,8 @@
 
 #include <algorithm>
 #include <cstdio>
+#include <memory>
+#include <new>
 #include <string>
 #include <string_view>
 #include <utility>
@@ -219,13 +221,24 @@ GridChoice choose_grid(const SceneInput& input, const Mesh& mesh, const SceneArg
       arguments.macro_width.value_or(std::min(configuration.macro_width, arguments.most_macro_width));
   choice.parameters.format = format;
   choice.budget_bytes = budget_bytes;
+  constexpr std::size_t kMarks = std::size_t{1} << 21;  // words: one sweep over the triangles for most scenes
+  const std::unique_ptr<std::uint64_t[]> storage(new (std::nothrow) std::uint64_t[kMarks]);
+  const std::span<std::uint64_t> marks(storage.get(), storage != nullptr ? kMarks : 0);
+  // The size of an image that does not fit is counted too, but not for minutes.
+  constexpr std::uint64_t kCountedBytes = std::uint64_t{8} << 30;
+  const std::uint64_t most_bytes = std::max(budget_bytes, kCountedBytes);
   const Status status = [&] {
     const Stage stage(input.path, "choosing its grid");
     return arguments.lambda
-               ? count_scene_image(mesh.view(), choice.parameters, choice.need, effects, &stop_flag())
-               : fit_scene_image(mesh.view(), choice.parameters, budget_bytes, choice.need, effects, &stop_flag());
+               ? count_scene_image(mesh.view(), choice.parameters, choice.need, effects, most_bytes, marks)
+               : fit_scene_image(mesh.view(), choice.parameters, budget_bytes, choice.need, effects, marks);
   }();
-  if (status == Status::kAborted) stop_if_interrupted();
+  if (status == Status::kMemoryTooSmall) {
+    fail(input.path, "the scene needs more than " + words_of_bytes(choice.need.image_bytes) + " at lambda " +
+                         text_of(choice.wanted_lambda) + "; " + words_of_budget(*arguments.machine, budget_bytes) +
+                         "; a smaller --lambda needs less" +
+                         (input.text ? ", and so does a greater --tolerance" : ""));
+  }
   if (status == Status::kTooManyTriangles) {
     const float lambda = arguments.lambda ? choice.wanted_lambda : kLeastLambda;
     fail(input.path, std::string(words_of(status)) + " at lambda " + text_of(lambda) +
@@ -263,8 +276,7 @@ SceneImageView build_image(const SceneInput& input, const Mesh& mesh, const Grid
     return std::vector<std::uint64_t>((choice.need.scratch_bytes + 7) / 8);
   });
   const Status status = build_scene_image(mesh.view(), choice.parameters, choice.need, image,
-                                          std::as_writable_bytes(std::span(scratch)), effects, &stop_flag());
-  if (status == Status::kAborted) stop_if_interrupted();
+                                          std::as_writable_bytes(std::span(scratch)), effects);
   if (status != Status::kOk) fail(input.path, std::string("cannot build the grid: ") + words_of(status));
   SceneImageView view{};
   SceneImageError error;
