@@ -102,6 +102,7 @@ ReportInput collect_report(const RenderArguments& arguments, const SceneInput& i
   report.host_threads = arguments.threads;
   report.lanes = arguments.lanes;
   report.repeats = arguments.repeats;
+  report.trace_bytes = result.trace.packed_bytes();
   report.image_hash = repeated.hashes.color;
   if (arguments.depth) report.depth_hash = repeated.hashes.depth;
   if (arguments.ids) report.ids_hash = repeated.hashes.ids;
