@@ -146,6 +146,8 @@ TEST(SceneMakers, AFileThatCannotBeWrittenLeavesNothing) {
   EXPECT_NE(write_whole_file(taken.string(), {'x'}), "");
   EXPECT_FALSE(std::filesystem::exists(taken.string() + ".partial"));
   std::filesystem::remove_all(taken);
+  EXPECT_EQ(write_whole_file("/dev/null", {'x'}), "");
+  EXPECT_TRUE(std::filesystem::is_character_file("/dev/null")) << "a device is not replaced";
 }
 
 }  // namespace

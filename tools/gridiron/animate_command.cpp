@@ -56,7 +56,7 @@ void require_mesh(const std::filesystem::path& path, SceneKind kind) {
 }
 
 SceneInput read_mesh(const std::filesystem::path& path) {
-  SceneInput input = read_scene_input(path);
+  SceneInput input = read_scene_input(path, std::nullopt, std::nullopt, kExpected);
   const bool is_packed = std::holds_alternative<PackedScene>(input.content);
   require_mesh(path, input.text ? SceneKind::kText : is_packed ? SceneKind::kPacked : SceneKind::kMesh);
   return input;
@@ -198,13 +198,17 @@ void print_frames(const std::vector<AnimationFrame>& frames, const RenderArgumen
 void run_command(const AnimateArguments& arguments) {
   RenderArguments each = arguments.render;
   if (each.threads == 0) each.threads = host_threads();
+  limit_threads(each);
   std::vector<AnimationFrame> frames = collect_frames(arguments);
   std::vector<std::string> names = {kTableName};
   for (const AnimationFrame& frame : frames) names.push_back(frame.picture);
   OutputFolder folder(arguments.output, names);
   // All of them now: a mesh must not be lost to the picture of another one before its turn comes.
   for (const AnimationFrame& frame : frames) note_input(frame.input);
-  const ViewRequest view = common_view(frames, each);
+  const ViewRequest view = [&] {
+    const StageLines stages(!each.quiet);
+    return common_view(frames, each);
+  }();
   {
     Progress progress(!each.quiet, "frames");
     const auto total = static_cast<std::uint32_t>(frames.size());

@@ -128,17 +128,17 @@ void add_size(CLI::App& app, std::uint32_t& width, std::uint32_t& height, const 
 }
 
 void add_input(CLI::App& app, SceneArguments& scene) {
-  app.add_option("INPUT", scene.input,
-                 "scene: a PLY mesh, a text scene (NFF) or what pack made, whatever its name; - is standard input")
-      ->required()
-      ->type_name("");
+  add_parsed(app, "INPUT", scene.input, parse_path, "a file name", "",
+             "scene: a PLY mesh, a text scene (NFF) or what pack made, whatever its name; - is standard input")
+      ->required();
   const auto tolerance = [](const std::string& text) {
     const std::optional<float> value = parse_float(text);
     return value && *value > 0 ? value : std::nullopt;
   };
   add_parsed(app, "--tolerance", scene.tolerance, tolerance, "a number above 0", "NUMBER",
              "text scenes: largest distance of a facet from its sphere or cone, world units (default: 1e-4 of the "
-             "scene's diagonal; where that makes more than 262144 triangles, more of what is far from the eye)");
+             "scene's diagonal; where that makes more than 262144 triangles, a larger one for objects far from the "
+             "eye)");
 }
 
 void add_grid_options(CLI::App& app, SceneArguments& scene, std::string& machine_name) {
@@ -193,12 +193,13 @@ void add_view_options(CLI::App& app, RenderArguments& render) {
   add_parsed(app, "--at", render.view.at, parse_vector, vector, "x,y,z",
              "point in the middle of the picture (default: a text scene's own, else that of the framed scene)");
   add_parsed(app, "--up", render.view.up, parse_up, "x, y, z, -x, -y, -z or " + vector, "AXIS|x,y,z",
-             "direction that is up (default y, or a text scene's own)");
+             "direction that is up (default y, or a text scene's own)", {"x", "y", "z", "-x", "-y", "-z"});
   add_parsed(app, "--from", render.view.from, parse_view_angles,
              "front, back, left, right, top, bottom, iso or AZIMUTH,ELEVATION in degrees, elevation from -90 to 90",
              "SIDE|AZIMUTH,ELEVATION",
              "side from which the scene is framed: front|back|left|right|top|bottom|iso, or degrees from the front to "
-             "the right and upwards (default 20,20); replaces eye and at of --camera or of a text scene");
+             "the right and upwards (default 20,20); replaces eye and at of --camera or of a text scene",
+             {"front", "back", "left", "right", "top", "bottom", "iso"});
   const auto fov = [](const std::string& text) {
     const std::optional<float> value = parse_float(text);
     return value && fov_is_possible(*value) ? value : std::nullopt;
@@ -218,11 +219,12 @@ void add_output_options(CLI::App& app, RawRender& raw) {
   add_parsed(app, "--ids", render.ids, parse_path, name, "FILE",
              "triangle of every pixel, .pfm, -1 where nothing is hit");
   add_parsed(app, "--report", render.report, parse_path, name, "FILE",
-             "where cycles and bytes went, JSON; where no time is told what the host took alone");
+             "where cycles and bytes went, JSON; without cycles where none are counted (--mode plain, --lanes other "
+             "than 4, --tile)");
   add_parsed(app, "--timeline", render.timeline, parse_path, name, "FILE",
              "what each core did when, Chrome trace format; not with --mode plain");
   add_parsed(app, "--repeat", render.repeats, count_between(1, 1000), "a whole number from 1 to 1000", "N",
-             "build and render so often, and tell the least of the host's times (default 1)");
+             "build and render N times and print the least of the host's times (default 1)");
   add_quiet(app, render.quiet);
 }
 
@@ -258,10 +260,10 @@ void add_machine_options(CLI::App& app, RawRender& raw) {
   add_parsed(app, "--seed", render.seed, parse_seed, "a whole number of at most 19 digits", "N",
              "seed of --completion random (default 0)");
   add_choice(app, "--lanes", render.lanes, Choices<std::uint32_t>{{"4", 4}, {"8", 8}, {"16", 16}, {"32", 32}},
-             "rays per SIMD group (default 4; plain: the host's widest); time is told for 4 only");
+             "rays per SIMD group (default 4; plain: the host's widest); cycles are counted for 4 only");
   const auto tile = [](const std::string& text) { return parse_count_pair(text, ','); };
   add_parsed(app, "--tile", render.tile, tile, "X,Y with a column and a row", "X,Y",
-             "render this tile alone; the picture is the tile");
+             "render this tile alone; the picture is the tile, the frame in main memory is whole");
 }
 
 void add_packet(CLI::App& app, std::uint32_t& packet_width) {
@@ -366,8 +368,8 @@ RenderArguments complete_render(const RawRender& raw, const CLI::App& app) {
   if (render.timeline && plain) {
     usage_error("--timeline: --mode plain does not record what cores do when; --mode checked does");
   }
-  if (render.timeline && render.lanes != 4) usage_error("--timeline: time is told for --lanes 4 only");
-  if (render.timeline && render.tile) usage_error("--timeline: time is not told of one tile alone (--tile)");
+  if (render.timeline && render.lanes != 4) usage_error("--timeline: cycles are counted for --lanes 4 only");
+  if (render.timeline && render.tile) usage_error("--timeline: cycles are not counted for one tile alone (--tile)");
   if (render.lanes > sim::widest_lanes()) {
     usage_error("--lanes: this host has at most " + std::to_string(sim::widest_lanes()) + " lanes");
   }
@@ -420,6 +422,7 @@ AnimateArguments complete_animate(AnimateArguments animate, const RawRender& raw
   }
   std::vector<NamedFile> inputs = {{"--camera", raw.arguments.camera}, machine_file(raw.machine_name)};
   for (std::filesystem::path& input : animate.inputs) {
+    if (input.empty()) usage_error("FRAMES: '' is not a file name");
     input = input_path(input);
     inputs.push_back({"FRAMES", input});
   }
@@ -467,13 +470,13 @@ JobArguments complete_job(JobArguments job, const RawRender& raw, const CLI::App
 }
 
 void add_result_options(CLI::App& app, ResultArguments& result, std::string& machine) {
-  app.add_option("JOB", result.job, "what the device was given, made by job; - is standard input")
-      ->required()
-      ->type_name("");
-  app.add_option("RESULT", result.result, "what it wrote: the bytes from result_address on; - is standard input")
-      ->required()
-      ->type_name("");
   const std::string name = "a file name";
+  add_parsed(app, "JOB", result.job, parse_path, name, "",
+             "what the device was given, made by job; - is standard input")
+      ->required();
+  add_parsed(app, "RESULT", result.result, parse_path, name, "",
+             "what it wrote: the bytes from result_address on; - is standard input")
+      ->required();
   add_parsed(app, "-o,--output", result.output, parse_path, name, "FILE",
              "picture, .png or .pfm; - is standard output, here and for every output");
   add_parsed(app, "--depth", result.depth, parse_path, name, "FILE",
@@ -482,11 +485,11 @@ void add_result_options(CLI::App& app, ResultArguments& result, std::string& mac
              "triangle of every pixel, .pfm, -1 where nothing is hit; of a job with ids");
   add_parsed(app, "--report", result.report, parse_path, name, "FILE", "hashes, work and tiles of each core, JSON");
   app.add_flag("--compare", result.compare,
-               "render the job on the simulated chip and hold planes, work and transfers against it; exit code 3 where "
-               "they differ, the device's picture, planes and report being written all the same");
+               "render the job on the simulated chip and compare planes, work and transfers; exit code 3 where they "
+               "differ; all outputs are written even then");
   app.add_option("--predict", machine,
-                 "with --compare: what each tile takes on this machine, held against the "
-                 "instructions that the device counted")
+                 "with --compare: compare what each tile takes on this machine with the instructions that the device "
+                 "counted")
       ->type_name("MACHINE");
   add_threads(app, result.threads, "of --compare; no result depends on it");
   add_quiet(app, result.quiet);
@@ -511,7 +514,7 @@ void add_experiment_options(CLI::App& app, ExperimentArguments& experiment) {
              "paper: Tables 1-4, Figs. 5-7 and sweeps; some eight minutes of processor time with the scans. accuracy: "
              "what each accuracy profile costs and what is wrong with its answers; some two minutes. effects: what "
              "each effect costs, and that one that is off costs nothing; some half a minute, no scans. All leave CSV, "
-             "SVG and index.html; nothing is told before the end where standard error is no terminal")
+             "SVG and index.html; without a terminal nothing is printed before the end")
       ->required();
   add_parsed(app, "-o,--output", experiment.output, parse_path, "the name of a folder", "DIR",
              "folder, made where it is not there")
@@ -521,7 +524,8 @@ void add_experiment_options(CLI::App& app, ExperimentArguments& experiment) {
                  "out, and without any a teapot and a torus knot are made; effects makes its own scenes")
       ->type_name("DIR");
   add_threads(app, experiment.threads, "no file but host_*.csv, which measures this host, depends on it");
-  add_size(app, experiment.width, experiment.height, "pictures in pixels (default 1024x1024; effects: 96x96)");
+  add_size(app, experiment.width, experiment.height,
+           "pictures in pixels (default 1024x1024; effects: 96x96, at least 16x16)");
   add_parsed(app, "--largest", experiment.largest_knot, count_between(6'000, 10'000'000),
              "a whole number from 6000 to 10000000", "N",
              "paper: triangles of the largest mesh of Table 1 (default 1000000)");
@@ -535,6 +539,10 @@ ExperimentArguments complete_experiment(ExperimentArguments experiment, const CL
   if (experiment.name == ExperimentName::kEffects) {
     if (app.count("--scenes") > 0) usage_error("--scenes: experiment effects makes its own");
     if (app.count("--size") == 0) experiment.width = experiment.height = 96;
+    constexpr std::uint32_t kLeastSize = 16;  // smaller ones have too few waits for the experiment's own checks
+    if (std::min(experiment.width, experiment.height) < kLeastSize) {
+      usage_error("--size: experiment effects needs pictures of at least 16x16 pixels");
+    }
     return experiment;
   }
   if (experiment.scenes.empty()) {
@@ -575,7 +583,7 @@ Command parse_arguments(int count, const char* const* values) {
   add_grid_options(*info, info_arguments.scene, info_machine);
   add_choice(*info, "--format", info_arguments.format, kFormats, "how triangles are stored; " + format_help());
   add_size(*info, info_arguments.width, info_arguments.height,
-           "picture whose memory is told (default: a text scene's own, else 1024x1024)");
+           "picture whose memory is counted (default: a text scene's own, else 1024x1024)");
   add_choice(*info, "--store", info_arguments.asked_store, kStores, kStoreHelp);
   add_packet(*info, info_arguments.packet_width);
   add_accuracy(*info, info_arguments.accuracy);

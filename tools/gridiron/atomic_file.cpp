@@ -75,7 +75,7 @@ void AtomicFile::open_temporary() {
   {
     const Undivided step;
     descriptor_ = ::mkostemp(name.data(), O_CLOEXEC);
-    if (descriptor_ < 0) fail("create a temporary file beside it");
+    if (descriptor_ < 0) fail("create a temporary file beside it: ");
     temporary_ = name;
     leftover_.remember(name);
   }
@@ -86,14 +86,14 @@ void AtomicFile::open_temporary() {
   const mode_t mask = ::umask(0);
   ::umask(mask);
   const mode_t rights = replaces ? replaced.st_mode & 0777u : 0666u & ~mask;
-  if (::fchmod(descriptor_, rights) != 0) fail("set its rights");
+  if (::fchmod(descriptor_, rights) != 0) fail("set its rights: ");
 }
 
 void AtomicFile::write(std::span<const std::byte> bytes) {
   if (target_.is_special) {
     deferred_.insert(deferred_.end(), bytes.begin(), bytes.end());
   } else if (!write_all(descriptor_, bytes, /*can_block=*/false)) {
-    fail("write");
+    fail("");
   }
 }
 
@@ -105,13 +105,13 @@ void AtomicFile::finish() {
   if (descriptor_ < 0) return;
   // Some file systems report a full disk only here. After a signal the descriptor is closed all the same.
   const int closed = ::close(std::exchange(descriptor_, -1));
-  if (closed != 0 && errno != EINTR) fail("close");
+  if (closed != 0 && errno != EINTR) fail("close: ");
 }
 
 void AtomicFile::write_through() {
   const bool is_own = target_.descriptor < 0;
   const int descriptor = is_own ? descriptor_ = open_special(target_.file) : target_.descriptor;
-  if (descriptor < 0 || !write_all(descriptor, deferred_, /*can_block=*/true)) fail("write");
+  if (descriptor < 0 || !write_all(descriptor, deferred_, /*can_block=*/true)) fail("");
   finish();
 }
 
@@ -122,7 +122,7 @@ void AtomicFile::commit() {
   }
   finish();
   const Undivided step;
-  if (::rename(temporary_.c_str(), target_.file.c_str()) != 0) fail("rename into place");
+  if (::rename(temporary_.c_str(), target_.file.c_str()) != 0) fail("rename into place: ");
   temporary_.clear();
   leftover_.forget();
   count_written_file();
@@ -130,7 +130,7 @@ void AtomicFile::commit() {
 
 void AtomicFile::fail(const char* action) {
   const std::string reason = std::strerror(errno);
-  throw Failure(ExitCode::kBadInput, target_.name.string() + ": cannot write: " + action + ": " + reason);
+  throw Failure(ExitCode::kBadInput, target_.name.string() + ": cannot write: " + action + reason);
 }
 
 AtomicFile& AtomicFiles::open(const fs::path& path) {

@@ -42,6 +42,7 @@ class AtomicFile {
  private:
   void open_temporary();
   void write_through();
+  /// @param action  of which writing consists, with ": " at its end; empty: writing itself.
   [[noreturn]] void fail(const char* action);
 
   OutputTarget target_;

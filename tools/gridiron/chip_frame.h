@@ -5,6 +5,7 @@
 #include <gridiron/sim/sim_chip.h>
 
 #include <cstdint>
+#include <filesystem>
 #include <functional>
 
 #include "arguments.h"
@@ -19,10 +20,15 @@ namespace gridiron::tool {
                                              std::function<void(std::uint32_t done, std::uint32_t total)> progress);
 
 /// Renders the frame whose FrameRecord lies at `frame`; signals end it between two tiles.
+/// @param input  where the frame comes from, for messages.
 /// Errors: Failure where the frame failed, of stop_if_interrupted().
-[[nodiscard]] sim::ChipResult run_on_chip(sim::SimMemory& memory, MainAddress frame, sim::ChipOptions options);
+[[nodiscard]] sim::ChipResult run_on_chip(sim::SimMemory& memory, MainAddress frame, sim::ChipOptions options,
+                                          const std::filesystem::path& input);
 
 /// @returns what the host has, at least 1.
 [[nodiscard]] std::uint32_t host_threads();
+
+/// Takes away threads that would find no tile. Precondition: the layout is settled.
+void limit_threads(RenderArguments& arguments);
 
 }  // namespace gridiron::tool

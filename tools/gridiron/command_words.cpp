@@ -6,6 +6,7 @@
 #include <CLI/CLI.hpp>
 #include <filesystem>
 #include <optional>
+#include <set>
 #include <string_view>
 #include <vector>
 
@@ -60,9 +61,19 @@ std::string names_of_positionals(const CLI::App& app) {
   return names.empty() ? "no arguments" : names;
 }
 
-// Words of a command as they stand: the first option that it does not have, and what is no option or value of one.
+// "-o (--output)", "--size", "INPUT"
+std::string name_of(const CLI::Option& option) {
+  if (option.get_positional()) return option.get_name(true);
+  if (option.get_lnames().empty()) return "-" + option.get_snames().front();
+  const std::string name = "--" + option.get_lnames().front();
+  return option.get_snames().empty() ? name : "-" + option.get_snames().front() + " (" + name + ")";
+}
+
+// Words of a command as they stand: the first option that it does not have, the first with a value that comes twice,
+// and what is no option or value of one.
 struct CommandWords {
   std::optional<std::string> unknown;
+  const CLI::Option* repeated = nullptr;
   std::vector<std::string> positionals;
 };
 
@@ -73,6 +84,7 @@ bool is_option(std::string_view word) {
 
 CommandWords sort_words(const CLI::App& command, std::span<const char* const> words) {
   CommandWords sorted;
+  std::set<const CLI::Option*> given;
   for (std::size_t i = 0; i < words.size(); ++i) {
     const std::string word = words[i];
     if (word == "--") {
@@ -91,8 +103,9 @@ CommandWords sort_words(const CLI::App& command, std::span<const char* const> wo
       if (!sorted.unknown) sorted.unknown = is_long ? name : word;
       continue;
     }
-    const bool has_value_behind = option->get_items_expected_max() > 0 && name == word;
-    if (has_value_behind) ++i;
+    const bool has_value = option->get_items_expected_max() > 0;
+    if (has_value && !given.insert(option).second && sorted.repeated == nullptr) sorted.repeated = option;
+    if (has_value && name == word) ++i;
   }
   return sorted;
 }
@@ -107,7 +120,7 @@ CommandWords sort_words(const CLI::App& command, std::span<const char* const> wo
   if (owners.empty()) {
     message += did_you_mean(name, options_of(command));
   } else if (is_program) {
-    message += "; it stands behind the command: " + listed(owners, "or") + " can have it";
+    message += "; put it after a command: " + listed(owners, "or") + (owners.size() == 1 ? " has it" : " have it");
   } else {
     message += "; " + listed(owners, "and") + (owners.size() == 1 ? " has it" : " have it");
   }
@@ -165,6 +178,8 @@ void explain_mistake(const CLI::App& app, std::span<const char* const> words, co
   const CLI::App& command = is_program ? app : command_of(app, words.front());
   const CommandWords sorted = sort_words(command, is_program ? words : words.subspan(1));
   if (sorted.unknown) unknown_option(app, command, *sorted.unknown);
+  const std::string more = "\nrun 'gridiron help" + (is_program ? "" : " " + command.get_name()) + "' for the options";
+  if (sorted.repeated != nullptr) usage_error(name_of(*sorted.repeated) + " is given twice" + more);
   std::size_t most = 0;
   for (const CLI::Option* option : command.get_options()) {
     if (option->get_positional()) most += static_cast<std::size_t>(option->get_items_expected_max());
@@ -173,7 +188,10 @@ void explain_mistake(const CLI::App& app, std::span<const char* const> words, co
     usage_error("'" + sorted.positionals[most] + "' is an argument too many; " + command.get_name() + " takes " +
                 names_of_positionals(command));
   }
-  usage_error(reason + "\nrun 'gridiron help" + (is_program ? "" : " " + command.get_name()) + "' for the options");
+  for (const CLI::Option* option : command.get_options()) {
+    if (reason == option->get_name() + " is required") usage_error(name_of(*option) + " is required" + more);
+  }
+  usage_error(reason + more);
 }
 
 }  // namespace gridiron::tool

@@ -18,16 +18,18 @@ std::string words_of_place(std::uint32_t core, std::uint32_t tile_id) {
 
 }  // namespace
 
-std::optional<Failure> frame_failure(const sim::ChipResult& result) {
+std::optional<Failure> frame_failure(const sim::ChipResult& result, const std::filesystem::path& input) {
   if (result.status == Status::kOk && result.violations.empty()) return std::nullopt;
+  const std::string name = input.empty() ? "" : input.string() + ": ";
   if (result.host_shortage == sim::HostShortage::kMemory) {
-    return Failure(ExitCode::kBadInput, "this host has not enough memory to render the frame");
+    return Failure(ExitCode::kBadInput,
+                   name + "this host has not enough memory to render the frame; fewer --threads need less");
   }
   if (result.host_shortage == sim::HostShortage::kThreads) {
-    return Failure(ExitCode::kBadInput, "this host cannot start a thread for each core of the machine");
+    return Failure(ExitCode::kBadInput, name + "this host cannot start a thread for each core of the machine");
   }
   if (result.status == Status::kUnsupportedFrame) return Failure(ExitCode::kUsage, words_of(result.status));
-  if (result.status == Status::kUnsupportedImage) return Failure(ExitCode::kBadInput, words_of(result.status));
+  if (result.status == Status::kUnsupportedImage) return Failure(ExitCode::kBadInput, name + words_of(result.status));
 
   constexpr std::size_t kMostLines = 20;
   const std::size_t lines = std::min(result.violations.size(), kMostLines);

@@ -15,15 +15,18 @@
 namespace gridiron::tool {
 namespace {
 
-sim::MemoryRegion allocate(sim::SimMemory& memory, std::uint64_t bytes, std::uint64_t alignment = kLineBytes) {
+// Of the machine's main memory. @param input  the scene, for people.
+sim::MemoryRegion allocate(sim::SimMemory& memory, const std::filesystem::path& input, std::uint64_t bytes,
+                           std::uint64_t alignment = kLineBytes) {
   try {
     const std::optional<sim::MemoryRegion> region = memory.allocate(bytes, alignment);
     if (region) return *region;
   } catch (const std::bad_alloc&) {
-    throw Failure(ExitCode::kBadInput, "this host has not enough memory: it cannot give the machine's main memory " +
-                                           words_of_count(bytes) + " bytes more");
+    throw Failure(ExitCode::kBadInput, input.string() + ": this host has not enough memory: the machine's main " +
+                                           "memory needs " + words_of_bytes(bytes) + " more for the frame");
   }
-  throw Failure(ExitCode::kBadInput, "the main memory of " + words_of_bytes(memory.capacity_bytes()) + " is full");
+  throw Failure(ExitCode::kBadInput,
+                input.string() + ": the main memory of " + words_of_bytes(memory.capacity_bytes()) + " is full");
 }
 
 std::uint32_t core_count(const RenderArguments& arguments) {
@@ -50,7 +53,7 @@ MainAddress place_image(FrameMemory& frame, const SceneInput& input, const Rende
   if (const PackedScene* packed = std::get_if<PackedScene>(&input.content)) {
     check_packed(input, *packed, arguments.scene, format, budget_bytes);
     const std::uint64_t image_bytes = packed->view.header.image_bytes;
-    const sim::MemoryRegion region = allocate(frame.memory, image_bytes);
+    const sim::MemoryRegion region = allocate(frame.memory, input.path, image_bytes);
     if (movable != nullptr) {
       move_bytes(movable->bytes.first(image_bytes), region.bytes.data());
       *movable = {};
@@ -71,7 +74,7 @@ MainAddress place_image(FrameMemory& frame, const SceneInput& input, const Rende
   }
   const GridChoice choice = choose_grid(input, mesh, arguments.scene, format, budget_bytes, effects);
   require_fit(choice, arguments.scene, input);
-  const sim::MemoryRegion region = allocate(frame.memory, choice.need.image_bytes);
+  const sim::MemoryRegion region = allocate(frame.memory, input.path, choice.need.image_bytes);
   frame.image = build_image(input, mesh, choice, region.bytes, effects);
   frame.need = choice.need;
   frame.wanted_lambda = choice.wanted_lambda;
@@ -116,7 +119,13 @@ void prepare(FrameMemory& frame, const SceneInput& input, const RenderArguments&
   if (arguments.ids) require_exact_ids(input.path, frame.image.header.triangle_count);
 
   FrameSettings& settings = frame.settings;
-  settings.camera = complete_view(view, static_cast<double>(arguments.width) / arguments.height, points_of(frame));
+  // An image of vertices as they were read has the points of its mesh, which has each of them once.
+  const Mesh* mesh = std::get_if<Mesh>(&input.content);
+  const bool is_exact = format_of(arguments.accuracy) == TriangleFormat::kVertices;
+  const PointSource points = mesh != nullptr && is_exact
+                                 ? [mesh](const PointVisitor& visitor) { visit_points(mesh->view(), visitor); }
+                                 : points_of(frame);
+  settings.camera = complete_view(view, static_cast<double>(arguments.width) / arguments.height, points);
   settings.width = arguments.width;
   settings.height = arguments.height;
   settings.tile_width = arguments.tile_width;
@@ -129,9 +138,9 @@ void prepare(FrameMemory& frame, const SceneInput& input, const RenderArguments&
   settings.walk_depth = arguments.depths.walks;
 
   const std::uint64_t plane_bytes = output_plane_bytes(settings.width, settings.height, settings.tile_width);
-  frame.color = allocate(frame.memory, plane_bytes);
-  if (arguments.has_depth()) frame.depth = allocate(frame.memory, plane_bytes);
-  if (arguments.has_ids()) frame.ids = allocate(frame.memory, plane_bytes);
+  frame.color = allocate(frame.memory, input.path, plane_bytes);
+  if (arguments.has_depth()) frame.depth = allocate(frame.memory, input.path, plane_bytes);
+  if (arguments.has_ids()) frame.ids = allocate(frame.memory, input.path, plane_bytes);
   settings.color = frame.color.address;
   settings.depth = frame.depth.address;
   settings.ids = frame.ids.address;
@@ -139,11 +148,11 @@ void prepare(FrameMemory& frame, const SceneInput& input, const RenderArguments&
   frame.spill_bytes_per_core = spill_bytes(depth);
   if (frame.spill_bytes_per_core != 0) {
     const std::uint32_t threads = std::max(arguments.threads, 1u);
-    frame.spill = allocate(frame.memory, threads * frame.spill_bytes_per_core, kSpillAlignment);
+    frame.spill = allocate(frame.memory, input.path, threads * frame.spill_bytes_per_core, kSpillAlignment);
   }
 
   make_record(frame, input.path);
-  frame.record_address = allocate(frame.memory, sizeof(FrameRecord)).address;
+  frame.record_address = allocate(frame.memory, input.path, sizeof(FrameRecord)).address;
   store_record(frame);
 }
 

@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <glm/common.hpp>
 #include <glm/geometric.hpp>
 #include <glm/vec2.hpp>
 #include <limits>
@@ -32,12 +33,15 @@ class Hull {
  public:
   void add(const DVec2& point) {
     if (is_surely_inside(point)) return;
+    bool has_grown = false;
     for (std::size_t i = 0; i < kRingCorners; ++i) {
       const double reach = glm::dot(kDirections[i], point);
       if (!(reach > reaches_[i])) continue;
       reaches_[i] = reach;
       ring_[i] = point;
+      has_grown = true;
     }
+    if (has_grown) place_sides();
     points_.push_back(point);
     if (points_.size() >= most_points_) reduce();
   }
@@ -56,15 +60,28 @@ class Hull {
 
   // Whether a point lies within the ring of the points that are extreme in eight directions, counterclockwise.
   [[nodiscard]] bool is_surely_inside(const DVec2& point) const {
+    bool is_inside = true;
+    for (std::size_t i = 0; i < kRingCorners; ++i) {
+      is_inside &= side_x_[i] * point.x + side_y_[i] * point.y > side_reaches_[i];
+    }
+    return is_inside;
+  }
+
+  // The sides of the ring, a little further in, so that rounding takes no corner of the hull for an inner point.
+  void place_sides() {
+    constexpr double kSlack = 1e-12;
     std::size_t sides = 0;
     for (std::size_t i = 0; i < kRingCorners; ++i) {
       const DVec2& from = ring_[i];
       const DVec2& to = ring_[(i + 1) % kRingCorners];
-      if (from == to) continue;
-      if (!(turn(from, to, point) > 0)) return false;
-      ++sides;
+      const DVec2 inwards(from.y - to.y, to.x - from.x);
+      const DVec2 largest = glm::max(glm::abs(from), glm::abs(to));
+      side_x_[i] = inwards.x;
+      side_y_[i] = inwards.y;
+      side_reaches_[i] = from == to ? kNone : glm::dot(inwards, from) + kSlack * glm::dot(glm::abs(inwards), largest);
+      if (from != to) ++sides;
     }
-    return sides >= 3;
+    if (sides < 3) side_reaches_.fill(-kNone);
   }
 
   // Andrew's monotone chain, 1979: the lower side from left to right, then the upper side back.
@@ -91,6 +108,7 @@ class Hull {
   std::size_t most_points_ = 4096;
   std::array<DVec2, kRingCorners> ring_{};
   std::array<double, kRingCorners> reaches_{kNone, kNone, kNone, kNone, kNone, kNone, kNone, kNone};
+  std::array<double, kRingCorners> side_x_{}, side_y_{}, side_reaches_{};  // inside: x X + y Y > reach
 };
 
 // The corners that see a picture's opposite edges: A and B of the comment at the top, and the depths of these corners.
@@ -195,31 +213,40 @@ double middle_slope(double least, double most) {
   return std::tan(0.5 * (std::atan(least) + std::atan(most)));
 }
 
-Axes turned(const Axes& axes, const DVec2& slope, const DVec3& up) {
-  const DVec3 back = glm::normalize(axes.back - slope.x * axes.right - slope.y * axes.up);
+Axes looking_along(const DVec3& back, const DVec3& up) {
   const DVec3 right = glm::normalize(glm::cross(up, back));
   return {right, glm::cross(back, right), back};
 }
 
-// Moves an eye to a place that floats can hold, from which the scene is whole, and turns the axes to its middle there.
-// `up` is the camera's.
-DVec3 settle(const PointSource& points, const DVec2& slopes, double depth, DVec3 eye, const DVec3& up, Axes& axes) {
-  constexpr int kMostPlaces = 10, kMostTurns = 4;
+Axes turned(const Axes& axes, const DVec2& slope, const DVec3& up) {
+  return looking_along(glm::normalize(axes.back - slope.x * axes.right - slope.y * axes.up), up);
+}
+
+// Moves an eye to a place that floats can hold, from which the scene is whole. Turns the axes to `at`, or to the
+// scene's middle as seen from there. The first step back is a twentieth of `depth`. `up` is the camera's.
+DVec3 settle(const PointSource& points, const std::optional<Vec3>& at, const DVec2& slopes, double depth, DVec3 eye,
+             const DVec3& up, Axes& axes) {
+  constexpr int kMostTurns = 4;
+  const int most_places = at ? 16 : 10;
   const Axes wanted = axes;
   for (int place = 0;; ++place) {
     const DVec3 held = rounded(eye);
-    axes = wanted;
+    const bool is_apart = !at || held != DVec3(*at);
+    axes = at && is_apart ? looking_along(glm::normalize(held - DVec3(*at)), up) : wanted;
     std::optional<Outline> outline = outline_of(points, held, axes);
-    for (int i = 1; i < kMostTurns && outline; ++i) {
+    for (int i = 1; i < kMostTurns && outline && !at; ++i) {
       const DVec2 middle(middle_slope(outline->least.x, outline->most.x),
                          middle_slope(outline->least.y, outline->most.y));
       axes = turned(axes, middle, up);
       outline = outline_of(points, held, axes);
     }
-    // Half of the margin may be lost.
+    // Half of the margin may be lost. A point to look at may be seen from another side by less than four degrees, and
+    // the picture be turned as little.
     const bool is_whole = outline && std::max(outline->most.x, -outline->least.x) <= 0.95 * slopes.x &&
                           std::max(outline->most.y, -outline->least.y) <= 0.95 * slopes.y;
-    if (is_whole || place == kMostPlaces) return held;
+    const bool is_straight =
+        !at || (is_apart && glm::dot(axes.back, wanted.back) > 0.998 && glm::dot(axes.right, wanted.right) > 0.998);
+    if ((is_whole && is_straight) || place == most_places) return held;
     eye += wanted.back * (0.05 * depth * (1 << place));
   }
 }
@@ -274,8 +301,10 @@ Camera frame_points(const FramingRequest& request, const PointSource& points) {
   const double least_slope = std::min(slopes.x, slopes.y);
   constexpr double kMostTurn = 1e-4;  // of half the picture, by rounding
   const double rounding = glm::length(rounded(eye) - eye);
-  if (!request.at && !(rounding <= kMostTurn * least_slope * (nearest.y - depth))) {
-    eye = settle(points, slopes, middle_depth - depth, eye, DVec3(camera.up), axes);
+  const double least_depth = std::min(nearest.y, request.at ? middle_depth : nearest.y) - depth;
+  if (!(rounding < kMostTurn * least_slope * least_depth)) {
+    const double reach = std::max(middle_depth - depth, request.at ? largest_of(eye) * 0x1p-24 / least_slope : 0.0);
+    eye = settle(points, request.at, slopes, reach, eye, DVec3(camera.up), axes);
   }
   // Far from the origin `at` lies farther away, so that its own rounding does not turn the camera.
   const double least_reach = largest_of(eye) * 0x1p-23 / (kMostTurn * least_slope);

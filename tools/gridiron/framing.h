@@ -39,8 +39,8 @@ struct FramingRequest {
 
 /// @returns the camera nearest to the scene that looks from the side asked for and leaves a margin of kFramingMargin.
 /// Its `at` lies in front of the eye, at the depth of the middle of the scene. Where the floats of a camera are too
-/// coarse for that (a small scene far from the origin), it turns a little, and stands farther away, until the scene is
-/// whole and centred again. Precondition: finite points.
+/// coarse for that (a small scene or `at` far from the origin), it turns a little, and stands farther away, until the
+/// scene is whole and centred again. Precondition: finite points.
 /// Cost: one pass over the points; up to 40 where the floats are too coarse.
 [[nodiscard]] Camera frame_points(const FramingRequest& request, const PointSource& points);
 

@@ -10,7 +10,6 @@ namespace gridiron::tool {
 namespace {
 
 std::atomic<bool> interrupted{false};
-StopFlag stop;
 std::atomic<int> last_signal{SIGINT};
 static_assert(std::atomic<bool>::is_always_lock_free && std::atomic<int>::is_always_lock_free,
               "a signal handler may only touch lock-free atomics");
@@ -23,7 +22,6 @@ ExitCode exit_code_of(int signal) {
 extern "C" void note_interrupt(int signal) {
   last_signal.store(signal);
   interrupted.store(true);
-  stop.raise();
   expect_exit(static_cast<int>(exit_code_of(signal)));
 }
 
@@ -35,21 +33,18 @@ void watch_for_interrupt() {
   action.sa_handler = note_interrupt;
   sigemptyset(&action.sa_mask);
   action.sa_flags = 0;  // no SA_RESTART: a call that blocks, on a pipe say, ends with EINTR
-  sigaction(SIGINT, &action, nullptr);
-  sigaction(SIGTERM, &action, nullptr);
-  struct sigaction inherited {};
-  sigaction(SIGHUP, nullptr, &inherited);
-  if (inherited.sa_handler != SIG_IGN) sigaction(SIGHUP, &action, nullptr);  // nohup ignores it
+  for (const int signal : {SIGINT, SIGTERM, SIGHUP}) {
+    struct sigaction inherited {};
+    sigaction(signal, nullptr, &inherited);
+    // What the parent ignores stays ignored: nohup does so with SIGHUP, shells with SIGINT of background jobs.
+    if (inherited.sa_handler != SIG_IGN) sigaction(signal, &action, nullptr);
+  }
   std::signal(SIGPIPE, SIG_IGN);
   std::signal(SIGXFSZ, SIG_IGN);
 }
 
 const std::atomic<bool>& interrupt_flag() {
   return interrupted;
-}
-
-const StopFlag& stop_flag() {
-  return stop;
 }
 
 void stop_if_interrupted() {

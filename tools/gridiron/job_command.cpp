@@ -5,20 +5,21 @@
 #include <utility>
 
 #include "atomic_file.h"
+#include "command_files.h"
 #include "commands.h"
 #include "failure.h"
 #include "frame_memory.h"
 #include "job_file.h"
-#include "layout_choice.h"
+#include "progress.h"
 #include "requested_frame.h"
 #include "words.h"
 
 namespace gridiron::tool {
 
 void run_command(const JobArguments& asked) {
+  const StageLines stages(!asked.render.quiet);
   RequestedFrame request = read_requested_frame(asked.render, {{"-o", asked.render.output, OutputKind::kBinary}});
   const RenderArguments& arguments = request.arguments;
-  require_distances(arguments.layout(), arguments.has_depth());
   FrameMemory frame(frame_memory_bytes(request.input, arguments));
   prepare_frame(frame, std::move(request.input), arguments, request.view);
   const std::vector<std::byte> file = make_job_file(frame, arguments, asked.base_address);
@@ -34,9 +35,10 @@ void run_command(const JobArguments& asked) {
   files.add(arguments.output, file);
   files.commit_at_end();
   if (arguments.quiet) return;
-  std::printf("%s: %ux%u in %s, %s to load at 0x%llx, %s of memory\n", arguments.output.c_str(), job.width, job.height,
-              words_of_count(job.tile_count, "tile").c_str(), words_of_bytes(job.loaded_bytes).c_str(),
-              static_cast<unsigned long long>(job.base_address), words_of_bytes(job.memory_bytes).c_str());
+  std::printf("%s: %ux%u in %s, %s to load at 0x%llx, %s of memory\n", target_of(arguments.output).name.c_str(),
+              job.width, job.height, words_of_count(job.tile_count, "tile").c_str(),
+              words_of_bytes(job.loaded_bytes).c_str(), static_cast<unsigned long long>(job.base_address),
+              words_of_bytes(job.memory_bytes).c_str());
 }
 
 }  // namespace gridiron::tool

@@ -202,15 +202,15 @@ bool JobComparison::is_equal() const {
   return std::ranges::all_of(items, [](const ComparedItem& item) { return item.equal; });
 }
 
-JobComparison compare_with_simulator(OpenJob& job, const OpenResult& result, const sim::MachineProfile* machine,
-                                     std::uint32_t threads,
+JobComparison compare_with_simulator(OpenJob& job, const std::filesystem::path& path, const OpenResult& result,
+                                     const sim::MachineProfile* machine, std::uint32_t threads,
                                      std::function<void(std::uint32_t done, std::uint32_t total)> progress) {
   MovedJob moved(job.job.memory_bytes + kMemoryAlignment);
-  load_job(job, moved);
+  name_in_shortage(path, "load it into the simulated memory", [&] { load_job(job, moved); });
   sim::ChipOptions options = options_of(job, result, moved, threads);
   options.progress = std::move(progress);
   const std::uint32_t lanes = options.lanes;
-  const sim::ChipResult simulated = run_on_chip(moved.memory, moved.frame, std::move(options));
+  const sim::ChipResult simulated = run_on_chip(moved.memory, moved.frame, std::move(options), path);
 
   JobComparison comparison;
   const auto add_plane = [&](const char* name, std::uint64_t address, std::span<const std::byte> device) {

@@ -36,11 +36,12 @@ struct JobComparison {
 /// frame and of each tile, where the device counted them.
 ///
 /// @param job  its bytes move into simulated memory, so that they are held once: it has no file afterwards.
+/// @param path  of the job, for messages.
 /// @param machine  for predicted_tiles; may be null. @param threads  host threads, above 0.
 /// @param progress  of tiles; may be empty.
 /// Errors: Failure where the simulator cannot render the job, kUsage where no kernel is built for its layout.
 [[nodiscard]] JobComparison compare_with_simulator(
-    OpenJob& job, const OpenResult& result, const sim::MachineProfile* machine, std::uint32_t threads,
-    std::function<void(std::uint32_t done, std::uint32_t total)> progress);
+    OpenJob& job, const std::filesystem::path& path, const OpenResult& result, const sim::MachineProfile* machine,
+    std::uint32_t threads, std::function<void(std::uint32_t done, std::uint32_t total)> progress);
 
 }  // namespace gridiron::tool

@@ -272,7 +272,7 @@ OpenJob read_job_file(const std::filesystem::path& path) {
   open.file = input.read_all();
   const ByteReader reader(path, open.file.bytes);
   reader.require(open.file.bytes.size() >= sizeof(FrameJob), open.file.bytes.size(),
-                 "the file ends inside of its first record");
+                 "the file ends inside its first record, which has " + words_of_count(sizeof(FrameJob), "byte"));
   open.job = reader.read<FrameJob>(0);
   check_size(reader, open.job, open.file.bytes);
   // A check value tells that something is wrong; the other checks may find where.
@@ -281,14 +281,15 @@ OpenJob read_job_file(const std::filesystem::path& path) {
     check_parts(reader, open);
   } catch (const Failure& failure) {
     if (!is_damaged) throw;
-    throw Failure(failure.code(), std::string(failure.what()) + "; the job's check_value differs too: it was damaged");
+    throw Failure(failure.code(), std::string(failure.what()) + "; the job's check_value differs too");
   }
   const std::uint64_t image_place = open.job.image_address - open.job.base_address;
   const std::uint64_t image_end = image_place + open.job.image_bytes;
+  std::string places = "in front of byte " + std::to_string(image_place) + ", in the job's head or the frame record,";
+  if (image_end < open.file.bytes.size()) places += " or from byte " + std::to_string(image_end) + " on";
   reader.require(!is_damaged, offsetof(FrameJob, check_value),
-                 "check_value differs from that of the file's bytes: some number in front of byte " +
-                     std::to_string(image_place) + ", in the job's head or the frame record, or behind byte " +
-                     std::to_string(image_end) + " has changed, and no other check finds which");
+                 "check_value differs from that of the file's bytes: some number " + places +
+                     " has changed, and no other check finds which");
   return open;
 }
 

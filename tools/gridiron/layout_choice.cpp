@@ -149,7 +149,7 @@ sim::LayoutChoice info_layout(const InfoArguments& info, bool has_effects) {
 
 void require_distances(const sim::LayoutChoice& layout, bool has_depth) {
   if (!has_depth || !layout.has_effects || layout.packet_width != 0) return;
-  usage_error("--depth: scenes with effects have no distances out of a store of 64 KB");
+  usage_error("--depth: a local store of 64 KB (--store 64) has no distances with --shading scene; 256 KB have them");
 }
 
 void require_room(const sim::MachineProfile& machine, std::optional<StoreSize> asked) {
@@ -162,6 +162,7 @@ void require_room(const sim::MachineProfile& machine, std::optional<StoreSize> a
 void settle_layout(RenderArguments& render) {
   if (render.shading == Shading::kScene) require_effects_of(render.accuracy);
   choose_store(render);
+  require_distances(render.layout(), render.has_depth());
   choose_depths(render);
 }
 

@@ -63,7 +63,10 @@ ExitCode run(int count, const char* const* values) {
     gridiron::tool::say_last_words((std::string(prefix) + failure.what() + words_of_files(failure) + "\n").c_str());
     return failure.code();
   } catch (const std::bad_alloc&) {
-    gridiron::tool::say_last_words("gridiron: this host has not enough memory\n");
+    std::string line;
+    for (int i = 1; i < count; ++i) line += std::string(i == 1 ? "" : " ") + values[i];
+    const std::string words = "gridiron: this host has not enough memory for this command: " + line + "\n";
+    gridiron::tool::say_last_words(words.c_str());
     return ExitCode::kBadInput;
   } catch (const std::exception& error) {
     gridiron::tool::say_last_words((std::string("gridiron: ") + error.what() + "\n").c_str());

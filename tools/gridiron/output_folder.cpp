@@ -8,6 +8,19 @@
 #include "failure.h"
 
 namespace gridiron::tool {
+namespace {
+
+namespace fs = std::filesystem;
+
+// Why a folder could not be made: what is there in its place, or the error.
+std::string words_of(const std::error_code& error, const fs::path& path) {
+  std::error_code ignored;
+  if (fs::exists(path, ignored)) return "a file of that name is there";
+  if (!fs::is_symlink(path, ignored)) return error.message();
+  return "it is a link to '" + fs::read_symlink(path, ignored).string() + "', which is not there";
+}
+
+}  // namespace
 
 OutputFolder::OutputFolder(std::filesystem::path path, const std::vector<std::string>& names) : path_(std::move(path)) {
   if (path_ == "-") throw Failure(ExitCode::kUsage, "-o -: a folder cannot be standard output");
@@ -18,10 +31,7 @@ OutputFolder::OutputFolder(std::filesystem::path path, const std::vector<std::st
     if (made_) leftover_.remember(path_);
   }
   if (error) {
-    throw Failure(ExitCode::kBadInput, path_.string() + ": cannot make the folder: " + error.message());
-  }
-  if (!std::filesystem::is_directory(path_, error)) {
-    throw Failure(ExitCode::kBadInput, path_.string() + ": is no folder");
+    throw Failure(ExitCode::kBadInput, path_.string() + ": cannot make the folder: " + words_of(error, path_));
   }
   try {
     std::vector<Output> outputs;

@@ -6,18 +6,25 @@
 #include "command_files.h"
 #include "commands.h"
 #include "failure.h"
+#include "progress.h"
 #include "scene_input.h"
 #include "words.h"
 
 namespace gridiron::tool {
+namespace {
+
+constexpr const char* kExpected = "pack takes a PLY mesh or a text scene (NFF)";
+
+}  // namespace
 
 void run_command(const PackArguments& arguments) {
   declare_outputs({{"-o", arguments.output, OutputKind::kBinary}});
-  const SceneInput input = read_scene_input(arguments.scene.input, arguments.scene.tolerance, ScenePicture{});
+  const StageLines stages(!arguments.scene.quiet);
+  const SceneInput input =
+      read_scene_input(arguments.scene.input, arguments.scene.tolerance, PictureRequest{}, kExpected);
   const Mesh* mesh = std::get_if<Mesh>(&input.content);
   if (mesh == nullptr) {
-    throw Failure(ExitCode::kBadInput,
-                  input.path.string() + ": is a scene image already; pack takes a mesh (.ply) or a text scene (.nff)");
+    throw Failure(ExitCode::kBadInput, input.path.string() + ": is a scene image already; " + kExpected);
   }
 
   if (!arguments.scene.quiet) tell_notes(input);
@@ -46,9 +53,9 @@ void run_command(const PackArguments& arguments) {
   if (choice.need.dropped_triangle_count != 0) {
     triangles += " (" + words_of_count(choice.need.dropped_triangle_count) + " of zero area dropped)";
   }
-  std::printf("%s: %s, %s, %s references, lambda %g\n", arguments.output.c_str(), words_of_bytes(image.size()).c_str(),
-              triangles.c_str(), words_of_count(choice.need.grid.reference_count).c_str(),
-              static_cast<double>(choice.parameters.lambda));
+  std::printf("%s: %s, %s, %s references, lambda %g\n", target_of(arguments.output).name.c_str(),
+              words_of_bytes(image.size()).c_str(), triangles.c_str(),
+              words_of_count(choice.need.grid.reference_count).c_str(), static_cast<double>(choice.parameters.lambda));
 }
 
 }  // namespace gridiron::tool

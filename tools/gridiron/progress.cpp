@@ -4,12 +4,40 @@
 #include <unistd.h>
 
 #include <algorithm>
+#include <atomic>
+#include <chrono>
 #include <cmath>
+#include <condition_variable>
+#include <csignal>
 #include <cstdio>
+#include <mutex>
+#include <system_error>
 
 #include "words.h"
 
 namespace gridiron::tool {
+namespace {
+
+std::atomic<bool> stages_are_drawn{false};
+
+void draw_stage(const std::stop_token& stop, const std::string& words) {
+  // Signals are for the thread that may have to end a call.
+  sigset_t all;
+  sigfillset(&all);
+  (void)::pthread_sigmask(SIG_BLOCK, &all, nullptr);
+  const Stopwatch stopwatch;
+  std::mutex mutex;
+  std::condition_variable_any ended;
+  std::unique_lock lock(mutex);
+  std::chrono::milliseconds patience{1000};
+  while (!ended.wait_for(lock, stop, patience, [&stop] { return stop.stop_requested(); })) {
+    std::fprintf(stderr, "\r%s, %s\033[K", words.c_str(), words_of_seconds(std::floor(stopwatch.seconds())).c_str());
+    patience = std::chrono::milliseconds{250};
+  }
+  if (patience.count() < 1000) std::fputs("\r\033[K", stderr);
+}
+
+}  // namespace
 
 void TimeLeft::update(double seconds, double share) {
   constexpr double kMemory = 5;    // seconds that the rate remembers
@@ -66,5 +94,23 @@ void Progress::update(std::uint64_t done, std::uint64_t total) {
                words_of_count(done).c_str(), words_of_count(total).c_str(), noun_, left.c_str());
   std::fflush(stderr);
 }
+
+StageLines::StageLines(bool wanted) {
+  stages_are_drawn = wanted && ::isatty(STDERR_FILENO) == 1;
+}
+
+StageLines::~StageLines() {
+  stages_are_drawn = false;
+}
+
+Stage::Stage(const std::filesystem::path& input, const char* doing) {
+  if (!stages_are_drawn) return;
+  try {
+    thread_ = std::jthread(draw_stage, input.string() + ": " + doing);
+  } catch (const std::system_error&) {  // a host without threads: nothing is drawn
+  }
+}
+
+Stage::~Stage() = default;  // the thread is asked to end, and waited for
 
 }  // namespace gridiron::tool

@@ -3,8 +3,10 @@
 #pragma once
 
 #include <cstdint>
+#include <filesystem>
 #include <optional>
 #include <string>
+#include <thread>
 
 #include "stopwatch.h"
 
@@ -48,6 +50,28 @@ class Progress {
   TimeLeft left_;
   double drawn_seconds_ = -1;
   std::uint64_t drawn_percent_ = ~0ull;
+};
+
+/// While one lives, stages are drawn, where they are `wanted` and standard error is a terminal.
+class StageLines {
+ public:
+  explicit StageLines(bool wanted);
+  ~StageLines();
+  StageLines(const StageLines&) = delete;
+  StageLines& operator=(const StageLines&) = delete;
+};
+
+/// What the command is busy with while it lives, where nobody can say how much of it is done: "a.ply: reading, 3 s". It
+/// is drawn by a thread of its own once it takes longer than a second, and wiped at the end.
+class Stage {
+ public:
+  Stage(const std::filesystem::path& input, const char* doing);
+  ~Stage();
+  Stage(const Stage&) = delete;
+  Stage& operator=(const Stage&) = delete;
+
+ private:
+  std::jthread thread_;
 };
 
 }  // namespace gridiron::tool

@@ -102,6 +102,7 @@ ReportInput collect_report(const RenderArguments& arguments, const SceneInput& i
   report.host_threads = arguments.threads;
   report.lanes = arguments.lanes;
   report.repeats = arguments.repeats;
+  report.trace_bytes = result.trace.packed_bytes();
   report.image_hash = repeated.hashes.color;
   if (arguments.depth) report.depth_hash = repeated.hashes.depth;
   if (arguments.ids) report.ids_hash = repeated.hashes.ids;
@@ -109,7 +110,8 @@ ReportInput collect_report(const RenderArguments& arguments, const SceneInput& i
 }
 
 void print_picture(const RenderArguments& arguments, const Picture<std::uint32_t>& color, std::uint64_t hash) {
-  std::printf("%s: %ux%u, hash %s\n", arguments.output.c_str(), color.width, color.height, hash_text(hash).c_str());
+  std::printf("%s: %ux%u, hash %s\n", target_of(arguments.output).name.c_str(), color.width, color.height,
+              hash_text(hash).c_str());
 }
 
 void print_timing(const RenderArguments& arguments, const sim::FrameTiming& timing) {
@@ -140,7 +142,7 @@ PlaneHashes hashes_of(const FrameMemory& frame, const RenderArguments& arguments
 Repeated render_repeatedly(std::optional<FrameMemory>& frame, RequestedFrame& request) {
   const RenderArguments& arguments = request.arguments;
   const bool is_packed = std::holds_alternative<PackedScene>(request.input.content);
-  Progress progress(!arguments.quiet, "tiles");
+  std::optional<Progress> progress;  // begins once the first image is built: the time left is that of tiles
   Repeated repeated;
   for (std::uint32_t repeat = 0; repeat < arguments.repeats; ++repeat) {
     if (repeat == 0 || !is_packed) {
@@ -152,9 +154,10 @@ Repeated render_repeatedly(std::optional<FrameMemory>& frame, RequestedFrame& re
         prepare_frame(*frame, request.input, arguments, request.view);
       }
     }
+    if (!progress) progress.emplace(!arguments.quiet, "tiles");
     const Stopwatch stopwatch;
     const auto report = [&](std::uint32_t done, std::uint32_t total) {
-      progress.update(std::uint64_t{repeat} * total + done, std::uint64_t{arguments.repeats} * total);
+      progress->update(std::uint64_t{repeat} * total + done, std::uint64_t{arguments.repeats} * total);
     };
     repeated.result = render_on_chip(*frame, arguments, report);
     const HostSeconds render = stopwatch.both();
@@ -170,7 +173,9 @@ Repeated render_repeatedly(std::optional<FrameMemory>& frame, RequestedFrame& re
 }  // namespace
 
 void run_command(const RenderArguments& asked) {
+  const StageLines stages(!asked.quiet);
   RequestedFrame request = read_requested_frame(asked, outputs_of(asked));
+  limit_threads(request.arguments);
   const SceneInput& input = request.input;
   const RenderArguments& arguments = request.arguments;
   std::optional<FrameMemory> memory;

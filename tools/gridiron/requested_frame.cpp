@@ -24,32 +24,18 @@ void tell_fewer_buffers(const RenderArguments& arguments) {
                blocks(arguments.depths).c_str());
 }
 
-ViewRequest view_of(const SceneView& view) {
-  return {.eye = view.from, .at = view.at, .up = view.up, .fov_degrees = view.angle_degrees};
-}
-
 // What the command line left to the scene and the host.
-RenderArguments complete_arguments(const RenderArguments& asked, const SceneInput& input) {
+RenderArguments complete_arguments(const RenderArguments& asked, const PictureRequest& picture,
+                                   const SceneInput& input) {
   RenderArguments arguments = asked;
-  if (input.text && input.text->view.is_given() && !arguments.has_size) {
-    arguments.width = input.text->view.width;
-    arguments.height = input.text->view.height;
-  }
+  arguments.width = picture.width;
+  arguments.height = picture.height;
   if (arguments.threads == 0) arguments.threads = host_threads();
   const PackedScene* packed = std::get_if<PackedScene>(&input.content);
   const bool has_effects = input.text || (packed != nullptr && packed->view.has_effects);
   if (!arguments.has_shading && has_effects) arguments.shading = Shading::kScene;
   settle_layout(arguments);
   return arguments;
-}
-
-// What the command line says of the picture that a text scene is read for: the rest is the scene's own.
-ScenePicture picture_of(const RenderArguments& asked, const ViewRequest& camera) {
-  const ViewRequest view = join_view(asked.view, camera);
-  ScenePicture picture{.eye = view.eye, .angle_degrees = view.fov_degrees, .height = std::nullopt};
-  if (asked.camera && !picture.angle_degrees) picture.angle_degrees = kDefaultFovDegrees;
-  if (asked.has_size) picture.height = asked.height;
-  return picture;
 }
 
 // Another place to look from has no use for the scene's near plane.
@@ -64,14 +50,15 @@ void check_scene_view(const RenderArguments& arguments, const SceneInput& input,
 
 RequestedFrame read_requested_frame(const RenderArguments& asked, const std::vector<Output>& outputs) {
   declare_outputs(outputs);
-  const ViewRequest camera = asked.camera ? read_camera_file(*asked.camera) : ViewRequest{};
+  PictureRequest picture{asked.view, std::nullopt, asked.has_size, asked.width, asked.height};
+  if (asked.camera) picture.camera = read_camera_file(*asked.camera);
   RequestedFrame request;
-  request.input = read_scene_input(asked.scene.input, asked.scene.tolerance, picture_of(asked, camera));
+  request.input = read_scene_input(asked.scene.input, asked.scene.tolerance, picture);
   const SceneInput& input = request.input;
-  request.arguments = complete_arguments(asked, input);
+  picture = complete_request(picture, input.text ? input.text->view : SceneView{});
+  request.arguments = complete_arguments(asked, picture, input);
   const RenderArguments& arguments = request.arguments;
-  const bool has_own_view = input.text && input.text->view.is_given() && !arguments.camera;
-  request.view = join_view(arguments.view, has_own_view ? view_of(input.text->view) : camera);
+  request.view = join_view(picture.view, *picture.camera);
   check_scene_view(arguments, input, request.view);
   if (!arguments.quiet) {
     tell_notes(input);

@@ -53,7 +53,7 @@ void require_planes(const ResultArguments& arguments, const OpenJob& job) {
 JobComparison compare(const ResultArguments& arguments, OpenJob& job, const OpenResult& result) {
   Progress progress(!arguments.quiet);
   const std::uint32_t threads = arguments.threads != 0 ? arguments.threads : host_threads();
-  return compare_with_simulator(job, result, arguments.predict.get(), threads,
+  return compare_with_simulator(job, arguments.job, result, arguments.predict.get(), threads,
                                 [&progress](std::uint32_t done, std::uint32_t total) { progress.update(done, total); });
 }
 

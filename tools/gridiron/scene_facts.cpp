@@ -75,15 +75,14 @@ std::uint64_t EffectFacts::bytes_of(std::string_view section) const {
 }
 
 SceneFacts collect_scene_facts(InfoArguments& arguments) {
-  ScenePicture picture;
-  if (arguments.has_size) picture.height = arguments.height;
+  PictureRequest picture{{}, std::nullopt, arguments.has_size, arguments.width, arguments.height};
   const SceneInput input = read_scene_input(arguments.scene.input, arguments.scene.tolerance, picture);
   settle_layout(arguments, input.text.has_value());
   if (!arguments.scene.quiet) tell_notes(input);
   SceneFacts facts;
-  const bool has_own_size = input.text && input.text->view.is_given() && !arguments.has_size;
-  facts.width = has_own_size ? input.text->view.width : arguments.width;
-  facts.height = has_own_size ? input.text->view.height : arguments.height;
+  picture = complete_request(picture, input.text ? input.text->view : SceneView{});
+  facts.width = picture.width;
+  facts.height = picture.height;
   const sim::MachineProfile& machine = *arguments.scene.machine;
   const std::uint32_t tile_width = sim::usual_tile_width(sim::StoreSize::k256KB);
   const std::uint32_t planes = arguments.has_depth ? 2 : 1;

@@ -7,6 +7,8 @@
 
 #include <algorithm>
 #include <cstdio>
+#include <memory>
+#include <new>
 #include <string>
 #include <string_view>
 #include <utility>
@@ -14,6 +16,7 @@
 #include "failure.h"
 #include "image_damage.h"
 #include "interrupt.h"
+#include "progress.h"
 #include "scene_text/scene_reader.h"
 #include "stopwatch.h"
 #include "words.h"
@@ -36,12 +39,28 @@ PackedScene open_packed_scene(InputFile file, const std::filesystem::path& path)
   return packed;
 }
 
+ViewRequest view_of(const SceneView& view) {
+  if (!view.is_given()) return {};
+  return {.eye = view.from, .at = view.at, .up = view.up, .fov_degrees = view.angle_degrees};
+}
+
+ScenePicture picture_of(const PictureRequest& asked, const SceneView& own, const PointSource& points) {
+  const PictureRequest request = complete_request(asked, own);
+  const double aspect = static_cast<double>(request.width) / request.height;
+  const Camera camera = complete_view(join_view(request.view, *request.camera), aspect, points);
+  return {camera.eye, camera.tan_half_fov, request.height};
+}
+
 // The triangles go to `mesh`, the rest to @returns.
 TextScene read_text_scene(const InputFile& file, const std::filesystem::path& path, std::optional<float> tolerance,
-                          const std::optional<ScenePicture>& picture, Mesh& mesh) {
+                          const std::optional<PictureRequest>& picture, Mesh& mesh) {
   SceneOptions options;
   options.tolerance = tolerance;
-  options.picture = picture;
+  if (picture) {
+    options.picture = [&picture](const SceneView& own, const PointSource& points) {
+      return picture_of(*picture, own, points);
+    };
+  }
   const std::string_view words(reinterpret_cast<const char*>(file.bytes.data()), file.bytes.size());
   SceneDescription scene = read_scene_text(words, path, options);
   TextScene text{scene.view,       take_scene_effects(scene), std::move(scene.notes),
@@ -55,6 +74,12 @@ std::string text_of(float number) {
   char text[32];
   std::snprintf(text, sizeof text, "%g", static_cast<double>(number));
   return text;
+}
+
+std::uint64_t two_digits(std::uint64_t count) {
+  std::uint64_t unit = 1;
+  while (count / unit >= 100) unit *= 10;
+  return (count + unit / 2) / unit * unit;
 }
 
 // Which tolerance would make a scene small enough: "; --tolerance 0.003 would fit", or nothing.
@@ -92,15 +117,25 @@ SceneKind foreseen_kind(const std::filesystem::path& path) {
 
 void require_tolerance(std::optional<float> tolerance, SceneKind kind) {
   if (tolerance && kind != SceneKind::kText) {
-    throw Failure(ExitCode::kUsage, "--tolerance: is of text scenes (NFF) alone");
+    throw Failure(ExitCode::kUsage, "--tolerance: applies to text scenes (NFF) only");
   }
 }
 
+PictureRequest complete_request(PictureRequest request, const SceneView& own) {
+  if (!request.camera) request.camera = view_of(own);
+  if (!request.has_size && own.is_given()) {
+    request.width = own.width;
+    request.height = own.height;
+  }
+  return request;
+}
+
 SceneInput read_scene_input(const std::filesystem::path& path, std::optional<float> tolerance,
-                            const std::optional<ScenePicture>& picture) {
+                            const std::optional<PictureRequest>& picture, const char* expected) {
   const Stopwatch stopwatch;
+  const Stage stage(path, "reading");
   SceneInput input{path, Mesh{}, {}, std::nullopt};
-  InputReader reader(path, kSceneExpected);
+  InputReader reader(path, expected);
   const SceneKind kind = scene_kind_of(reader.head(), path);
   if (kind == SceneKind::kUnknown) reader.refuse_content();
   require_tolerance(tolerance, kind);
@@ -135,11 +170,12 @@ void tell_notes(const SceneInput& input) {
   if (input.text->roundness.rule != ToleranceRule::kPicture) return;
   const SceneRoundness& roundness = input.text->roundness;
   std::fprintf(stderr,
-               "%s: tolerance of round shapes chosen by the picture: %s, %s triangles; %s alone would make %s; "
+               "%s: tolerance of round shapes chosen by the picture: %s, %s; %s for all objects would make about %s; "
                "--tolerance sets another\n",
                input.path.c_str(), words_of_tolerance(roundness).c_str(),
-               words_of_count(std::get<Mesh>(input.content).triangles.size()).c_str(),
-               text_of(roundness.least_tolerance).c_str(), words_of_count(roundness.diagonal_triangles).c_str());
+               words_of_count(std::get<Mesh>(input.content).triangles.size(), "triangle").c_str(),
+               text_of(roundness.diagonal_tolerance).c_str(),
+               words_of_count(two_digits(roundness.diagonal_triangles)).c_str());
 }
 
 std::string words_of_tolerance(const SceneRoundness& roundness) {
@@ -165,10 +201,10 @@ std::uint64_t image_budget_bytes(const sim::MachineProfile& machine, std::uint32
   }
   const std::uint64_t memory = machine.main_memory_bytes - sim::SimMemory::kFirstAddress - spill_bytes;
   if (wanted > memory) {
-    throw Failure(ExitCode::kBadInput, "a picture of " + std::to_string(width) + "x" + std::to_string(height) +
-                                           " needs " + words_of_bytes(wanted) + " of main memory; " +
-                                           std::string(machine.name) + " has " +
-                                           words_of_bytes(machine.main_memory_bytes));
+    // In single bytes: of a memory that the picture would fill the simulator keeps the first few.
+    throw Failure(ExitCode::kBadInput, "a whole frame of " + std::to_string(width) + "x" + std::to_string(height) +
+                                           " needs " + words_of_count(wanted) + " bytes of main memory; " +
+                                           std::string(machine.name) + " has " + words_of_count(memory) + " for it");
   }
   return memory - std::max(wanted, std::min(usual, memory / 2));
 }
@@ -185,11 +221,24 @@ GridChoice choose_grid(const SceneInput& input, const Mesh& mesh, const SceneArg
       arguments.macro_width.value_or(std::min(configuration.macro_width, arguments.most_macro_width));
   choice.parameters.format = format;
   choice.budget_bytes = budget_bytes;
-  const Status status =
-      arguments.lambda
-          ? count_scene_image(mesh.view(), choice.parameters, choice.need, effects, &stop_flag())
-          : fit_scene_image(mesh.view(), choice.parameters, budget_bytes, choice.need, effects, &stop_flag());
-  if (status == Status::kAborted) stop_if_interrupted();
+  constexpr std::size_t kMarks = std::size_t{1} << 21;  // words: one sweep over the triangles for most scenes
+  const std::unique_ptr<std::uint64_t[]> storage(new (std::nothrow) std::uint64_t[kMarks]);
+  const std::span<std::uint64_t> marks(storage.get(), storage != nullptr ? kMarks : 0);
+  // The size of an image that does not fit is counted too, but not for minutes.
+  constexpr std::uint64_t kCountedBytes = std::uint64_t{8} << 30;
+  const std::uint64_t most_bytes = std::max(budget_bytes, kCountedBytes);
+  const Status status = [&] {
+    const Stage stage(input.path, "choosing its grid");
+    return arguments.lambda
+               ? count_scene_image(mesh.view(), choice.parameters, choice.need, effects, most_bytes, marks)
+               : fit_scene_image(mesh.view(), choice.parameters, budget_bytes, choice.need, effects, marks);
+  }();
+  if (status == Status::kMemoryTooSmall) {
+    fail(input.path, "the scene needs more than " + words_of_bytes(choice.need.image_bytes) + " at lambda " +
+                         text_of(choice.wanted_lambda) + "; " + words_of_budget(*arguments.machine, budget_bytes) +
+                         "; a smaller --lambda needs less" +
+                         (input.text ? ", and so does a greater --tolerance" : ""));
+  }
   if (status == Status::kTooManyTriangles) {
     const float lambda = arguments.lambda ? choice.wanted_lambda : kLeastLambda;
     fail(input.path, std::string(words_of(status)) + " at lambda " + text_of(lambda) +
@@ -222,12 +271,12 @@ void require_fit(const GridChoice& choice, const SceneArguments& arguments, cons
 SceneImageView build_image(const SceneInput& input, const Mesh& mesh, const GridChoice& choice,
                            std::span<std::byte> image, const EffectsView* effects) {
   stop_if_interrupted();
+  const Stage stage(input.path, "building its scene image");
   std::vector<std::uint64_t> scratch = name_in_shortage(input.path, "build its scene image", [&] {
     return std::vector<std::uint64_t>((choice.need.scratch_bytes + 7) / 8);
   });
   const Status status = build_scene_image(mesh.view(), choice.parameters, choice.need, image,
-                                          std::as_writable_bytes(std::span(scratch)), effects, &stop_flag());
-  if (status == Status::kAborted) stop_if_interrupted();
+                                          std::as_writable_bytes(std::span(scratch)), effects);
   if (status != Status::kOk) fail(input.path, std::string("cannot build the grid: ") + words_of(status));
   SceneImageView view{};
   SceneImageError error;

@@ -22,6 +22,7 @@
 #include "scene_text/scene_effects.h"
 #include "scene_text/scene_reader.h"
 #include "stopwatch.h"
+#include "view.h"
 
 namespace gridiron::tool {
 
@@ -60,16 +61,29 @@ inline constexpr const char* kSceneExpected =
     "expected a scene: a PLY mesh, a text scene (NFF) or a packed scene (made by 'gridiron pack')";
 inline constexpr const char* kMeshExpected = "expected a PLY mesh";
 
+/// What a command asks of a picture. The rest is a text scene's own, where that brings a view.
+struct PictureRequest {
+  ViewRequest view{};                   ///< parts that replace those of any other view
+  std::optional<ViewRequest> camera{};  ///< in place of the scene's own view
+  bool has_size = false;                ///< width and height are asked for
+  std::uint32_t width = 1024, height = 1024;
+};
+
+/// @returns the picture of a scene that brings the view `own`, or none: `camera` is given, `width` and `height` hold.
+[[nodiscard]] PictureRequest complete_request(PictureRequest request, const SceneView& own);
+
 /// @returns the kind of a scene before it is read: that of the file's first bytes; of one that cannot be opened what
 /// its ending promises, so that the command line is checked all the same; kUnknown of a stream, which is read once.
 [[nodiscard]] SceneKind foreseen_kind(const std::filesystem::path& path);
 
 /// Reads the scene. @param tolerance  of round shapes in a text scene; nothing: the reader's own, which goes by
-/// `picture` where that is given. Errors: Failure (kBadInput), `file:line: reason`, `file:byte N: reason`, or `file: `
-/// what it is and what is expected; kUsage where a tolerance is given of another kind of scene.
+/// `picture`, completed by complete_request(), where that is given. @param expected  of the file, for messages.
+/// Errors: Failure (kBadInput), `file:line: reason`, `file:byte N: reason`, or `file: ` what it is and what is
+/// expected; kUsage where a tolerance is given of another kind of scene, or `picture` has no camera.
 [[nodiscard]] SceneInput read_scene_input(const std::filesystem::path& path,
                                           std::optional<float> tolerance = std::nullopt,
-                                          const std::optional<ScenePicture>& picture = std::nullopt);
+                                          const std::optional<PictureRequest>& picture = std::nullopt,
+                                          const char* expected = kSceneExpected);
 
 /// Says on standard error what is odd in a text scene: `file:line: note: text`, one line each; and which tolerance was
 /// chosen by the picture.

@@ -87,6 +87,7 @@ void visit_points(const MeshView& mesh, const PointVisitor& visitor) {
   std::vector<bool> is_known(mesh.vertices.size());
   Groups groups(visitor);
   for (const UVec3& triangle : mesh.triangles) {
+    if (is_known[triangle.x] && is_known[triangle.y] && is_known[triangle.z]) continue;
     if (has_zero_area(mesh.vertices[triangle.x], mesh.vertices[triangle.y], mesh.vertices[triangle.z])) continue;
     for (int corner = 0; corner < 3; ++corner) {
       if (is_known[triangle[corner]]) continue;

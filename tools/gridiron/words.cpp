@@ -45,7 +45,7 @@ const char* words_of(Status status) {
       return "frame that this build or this host cannot render (lanes, packet width, buffers, mode; with "
              "effects out of 64 KB also distances)";
     case Status::kAborted:
-      return "stopped between two tiles";
+      return "stopped before the end";
     case Status::kDeadline:
       return "deadline passed between two tiles";
     case Status::kIncompleteFrame:

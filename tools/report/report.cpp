@@ -44,7 +44,8 @@ Json host_json(const ReportInput& input) {
           {"render_processor_seconds", input.render.processor_seconds},
           {"threads", input.host_threads},
           {"lanes", input.lanes},
-          {"repeats", input.repeats}};
+          {"repeats", input.repeats},
+          {"trace_bytes", input.trace_bytes}};
 }
 
 Json core_json(const sim::CoreTiming& core) {

@@ -67,6 +67,7 @@ struct ReportInput {
 
   HostTime load, build, render;
   std::uint32_t host_threads = 1, lanes = 4, repeats = 1;
+  std::uint64_t trace_bytes = 0;  ///< what the replay reads, as it is held; 0 in plain mode
 
   std::uint64_t image_hash = 0;
   std::optional<std::uint64_t> depth_hash, ids_hash;  ///< of planes that the frame has

@@ -5,6 +5,7 @@
 #include <string>
 
 #include "firmware/wave_mesh.h"
+#include "gridiron/interrupt.h"
 #include "scene_makers/mesh.h"
 #include "scene_makers/shapes.h"
 
@@ -38,6 +39,7 @@ Mesh make_wave(std::uint32_t frame) {
 }  // namespace
 
 int main(int argument_count, char** arguments) {
+  gridiron::tool::watch_for_interrupt();
   CLI::App app{"Makes a triangle mesh, closed but for the wave, and writes it as binary PLY."};
   std::string shape = "knot";
   std::string output;

@@ -5,6 +5,7 @@
 #include <string>
 #include <vector>
 
+#include "gridiron/interrupt.h"
 #include "scene_makers/mesh.h"
 #include "scene_makers/procedural.h"
 
@@ -33,6 +34,7 @@ bool write_or_tell(const std::string& path, const std::vector<char>& bytes) {
 }  // namespace
 
 int main(int argument_count, char** arguments) {
+  gridiron::tool::watch_for_interrupt();
   CLI::App app{"Writes a scene in the manner of the Standard Procedural Databases as NFF, or a sky."};
   std::string scene, output;
   std::uint32_t size = 0;

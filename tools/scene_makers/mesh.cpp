@@ -3,9 +3,10 @@
 #include "scene_makers/mesh.h"
 
 #include <bit>
-#include <cerrno>
-#include <cstdio>
-#include <cstring>
+#include <string_view>
+
+#include "gridiron/atomic_file.h"
+#include "gridiron/failure.h"
 
 namespace gridiron::scene_makers {
 namespace {
@@ -36,15 +37,14 @@ std::vector<char> ply_bytes(const Mesh& mesh, const std::string& comment) {
 }
 
 std::string write_whole_file(const std::string& path, const std::vector<char>& bytes) {
-  const std::string partial = path + ".partial";
-  std::FILE* file = std::fopen(partial.c_str(), "wb");
-  if (file == nullptr) return path + ": " + std::strerror(errno);
-  const bool written = std::fwrite(bytes.data(), 1, bytes.size(), file) == bytes.size();
-  const bool closed = std::fclose(file) == 0;
-  if (written && closed && std::rename(partial.c_str(), path.c_str()) == 0) return {};
-  const std::string reason = path + ": " + std::strerror(errno);
-  std::remove(partial.c_str());
-  return reason;
+  try {
+    tool::AtomicFile file(path);
+    file.write(std::string_view(bytes.data(), bytes.size()));
+    file.commit();
+    return {};
+  } catch (const tool::Failure& failure) {
+    return failure.what();
+  }
 }
 
 }  // namespace gridiron::scene_makers

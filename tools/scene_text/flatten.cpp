@@ -98,6 +98,11 @@ class Flattener {
       fail(entities_.shapes.back().line, "the scene has no triangle: none of its polygons has an area");
     }
     if (geometry.normals.empty()) geometry.triangle_normals.clear();
+    SceneRoundness& roundness = scene_.roundness;
+    if (roundness.rule == ToleranceRule::kPicture && !has_coarser_) {
+      roundness.rule = ToleranceRule::kDiagonal;  // the picture shows every object as fine as that
+      roundness.least_tolerance = roundness.most_tolerance = scene_.tolerance;
+    }
     return std::move(scene_);
   }
 
@@ -156,19 +161,52 @@ class Flattener {
     if (options.tolerance || !options.picture) return;
     const std::uint64_t triangles = triangles_of(shapes_, roundness, static_cast<double>(scene_.tolerance));
     if (triangles <= options.many_triangles) return;
-    const ScenePicture& picture = *options.picture;
-    const bool has_view = scene_.view.line != 0;
-    if (!has_view && !(picture.eye && picture.angle_degrees && picture.height)) return;  // nothing to go by
-    const double degrees = static_cast<double>(picture.angle_degrees.value_or(scene_.view.angle_degrees));
-    const double pixels = picture.height.value_or(scene_.view.height);
-    eye_ = DVec3(picture.eye.value_or(scene_.view.from));
+    const ScenePicture picture =
+        options.picture(scene_.view, [this](const PointVisitor& visitor) { visit_shapes(visitor); });
+    eye_ = DVec3(picture.eye);
     // To three digits: the last bits of a tangent are not the same on every host.
-    constexpr double kDigits = 1000, kRadians = 3.14159265358979323846 / 180;
+    constexpr double kDigits = 1000;
     int exponent = 0;
-    const double fraction = std::frexp(2 * std::tan(0.5 * kRadians * degrees) / pixels, &exponent);
+    const double fraction = std::frexp(2 * static_cast<double>(picture.tan_half_fov) / picture.height, &exponent);
     pixel_ = std::ldexp(std::round(fraction * kDigits) / kDigits, exponent);
     roundness.rule = ToleranceRule::kPicture;
+    roundness.diagonal_tolerance = scene_.tolerance;
     roundness.diagonal_triangles = triangles;
+    roundness.least_tolerance = FLT_MAX;
+  }
+
+  // Points around all shapes, before they are triangles.
+  void visit_shapes(const PointVisitor& visitor) {
+    constexpr std::uint32_t kFrequency = 2, kSegments = 12;
+    std::vector<Vec3> points;
+    std::uint64_t shape_count = 0;
+    for (const SceneShape& shape : entities_.shapes) {
+      if (++shape_count % 4096 == 0) stop_if_interrupted();
+      points.clear();
+      if (shape.kind == ShapeKind::kMesh) {
+        visitor(entities_.meshes[shape.first].vertices);
+        continue;
+      }
+      if (!is_round(shape)) {
+        const std::size_t step = shape.kind == ShapeKind::kPatch ? 2 : 1;
+        for (std::size_t i = 0; i < shape.count; ++i) points.push_back(entities_.points[shape.first + i * step]);
+        visitor(points);
+        continue;
+      }
+      const double* n = entities_.numbers.data() + shape.first;
+      const DVec3 base(n[0], n[1], n[2]);
+      if (shape.kind == ShapeKind::kSphere) {
+        for (const DVec3& place : shapes_.sphere(kFrequency).vertices) points.emplace_back(base + n[3] * place);
+      } else {
+        const DVec3 apex(n[4], n[5], n[6]);
+        const Frame frame = frame_of(glm::normalize(apex - base));
+        for (const DVec3& place : shapes_.circle(kSegments)) {
+          points.emplace_back(base + n[3] * frame.across(place));
+          points.emplace_back(apex + n[7] * frame.across(place));
+        }
+      }
+      visitor(points);
+    }
   }
 
   // A share of a pixel at the object's nearest point; see tools/scene_text/README.md for the limits.
@@ -178,8 +216,9 @@ class Flattener {
     constexpr double kPixelShare = 0.25, kMostCoarser = 16, kMostRadiusShare = 1.0 / 32;
     const double hidden = std::min(kPixelShare * pixel_ * distance_to(shape), kMostRadiusShare * radius_of(shape));
     const double tolerance = std::clamp(hidden, least, kMostCoarser * least);
-    float& most = scene_.roundness.most_tolerance;
-    most = std::max(most, static_cast<float>(tolerance));
+    SceneRoundness& roundness = scene_.roundness;
+    roundness.least_tolerance = std::min(roundness.least_tolerance, static_cast<float>(tolerance));
+    roundness.most_tolerance = std::max(roundness.most_tolerance, static_cast<float>(tolerance));
     return tolerance;
   }
 
@@ -304,6 +343,15 @@ class Flattener {
     return (tolerance - rounding) / radius;
   }
 
+  // Notices a shape of fewer parts than the diagonal's tolerance would make of it. @param deviation  that is allowed.
+  template <class PartsOf>
+  void compare_with_diagonal(const SceneShape& shape, std::uint32_t parts, double radius, double deviation,
+                             const PartsOf& parts_of) {
+    if (has_coarser_ || scene_.roundness.rule != ToleranceRule::kPicture) return;
+    const double more = (tolerance_of(shape) - static_cast<double>(scene_.tolerance)) / radius;
+    has_coarser_ = parts_of(std::max(deviation - more, DBL_MIN)) != parts;
+  }
+
   void add_sphere(const SceneShape& shape) {
     const double* n = entities_.numbers.data() + shape.first;
     const DVec3 center(n[0], n[1], n[2]);
@@ -313,10 +361,11 @@ class Flattener {
     const std::uint32_t frequency = shapes_.sphere_frequency(deviation);
     if (frequency == 0) {
       fail(shape.line, "a sphere of radius " + text_of_number(radius) +
-                           " needs too many triangles for a tolerance of " +
-                           text_of_number(static_cast<double>(scene_.tolerance)));
+                           " needs too many triangles for a tolerance of " + text_of_number(tolerance_of(shape)));
     }
     const std::uint64_t square = std::uint64_t{frequency} * frequency;
+    compare_with_diagonal(shape, frequency, radius, deviation,
+                          [this](double allowed) { return shapes_.sphere_frequency(allowed); });
     require_room(shape, 20 * square, 10 * square + 2, 10 * square + 2);
     const UnitSphere& unit = shapes_.sphere(frequency);
     const std::uint32_t first = next_vertex();
@@ -348,8 +397,9 @@ class Flattener {
     const std::uint32_t segments = RoundShapes::circle_segments(deviation);
     if (segments == 0) {
       fail(shape.line, "a cone of radius " + text_of_number(largest) + " needs too many triangles for a tolerance of " +
-                           text_of_number(static_cast<double>(scene_.tolerance)));
+                           text_of_number(tolerance_of(shape)));
     }
+    compare_with_diagonal(shape, segments, largest, deviation, RoundShapes::circle_segments);
     require_room(shape, 2 * std::uint64_t{segments}, 2 * std::uint64_t{segments}, 2 * std::uint64_t{segments});
     const double length = glm::length(apex - base);
     const Frame frame = frame_of((apex - base) / length);
@@ -475,6 +525,7 @@ class Flattener {
   RoundShapes shapes_;
   DVec3 eye_{0};                                           // of the picture
   double pixel_ = 0;                                       // of the picture, at distance 1
+  bool has_coarser_ = false;                               // shapes than by the tolerance of the diagonal
   std::map<std::uint32_t, std::uint32_t> sphere_normals_;  // first normal of each frequency
   std::map<SceneMaterial, std::uint32_t, MaterialOrder> material_index_;
   std::vector<std::uint32_t> material_of_fill_;  // two of each fill: flat, smooth

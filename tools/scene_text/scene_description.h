@@ -115,7 +115,8 @@ struct RoundShapeGroup {
 struct SceneRoundness {
   float least_tolerance = 0.0f, most_tolerance = 0.0f;  ///< of all objects, world units; equal but for kPicture
   ToleranceRule rule = ToleranceRule::kDiagonal;
-  std::uint64_t diagonal_triangles = 0;  ///< kPicture: that kDiagonal would have made, a tenth more at most
+  float diagonal_tolerance = 0.0f;       ///< kPicture: that of kDiagonal
+  std::uint64_t diagonal_triangles = 0;  ///< kPicture: that kDiagonal would have made, an estimate
   std::vector<RoundShapeGroup> groups;   ///< spheres and cones by their size
   std::uint64_t flat_triangles = 0;      ///< of all other objects, those without area included
 };

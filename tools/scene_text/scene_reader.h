@@ -5,9 +5,11 @@
 
 #include <cstdint>
 #include <filesystem>
+#include <functional>
 #include <optional>
 #include <string_view>
 
+#include "gridiron/framing.h"
 #include "scene_text/scene_description.h"
 #include "scene_text/scene_entities.h"
 
@@ -16,12 +18,16 @@ namespace gridiron::tool {
 inline constexpr std::size_t kMostSceneBytes = std::size_t{1} << 30;
 inline constexpr std::uint32_t kMostSceneShapes = 1u << 24;
 
-/// The picture that a scene is read for: parts of its view that are not the scene's own.
+/// What the tolerance of round shapes goes by.
 struct ScenePicture {
-  std::optional<Vec3> eye;
-  std::optional<float> angle_degrees;  ///< between top and bottom edge
-  std::optional<std::uint32_t> height;
+  Vec3 eye{0};
+  float tan_half_fov = 0.0f;  ///< between top and bottom edge
+  std::uint32_t height = 0;   ///< pixels
 };
+
+/// @returns the picture that a scene is read for. @param own  its view, if it brings one. @param points  around its
+/// shapes, a twentieth of a radius inside of round ones at most.
+using PictureOfScene = std::function<ScenePicture(const SceneView& own, const PointSource& points)>;
 
 /// A scene of more triangles than this, at the tolerance that its diagonal gives, gets that of its picture.
 inline constexpr std::uint64_t kManyRoundTriangles = 1u << 18;
@@ -34,7 +40,7 @@ struct SceneOptions {
   float relative_tolerance = 1e-4f;
   /// Nothing: the scene is read for no picture. Else, where tolerance is not given and that of the diagonal makes more
   /// than many_triangles, each object gets the greatest tolerance that its distance from the eye hides.
-  std::optional<ScenePicture> picture = std::nullopt;
+  PictureOfScene picture{};
   std::uint64_t many_triangles = kManyRoundTriangles;
   std::uint32_t most_triangles = kMostSceneTriangles;  ///< at most kMostSceneTriangles
 };

@@ -196,6 +196,10 @@ struct CellBox {
     }
     return box;
   }
+
+  [[nodiscard]] bool has_one_cell() const {
+    return first[0] == last[0] && first[1] == last[1] && first[2] == last[2];
+  }
 };
 
 /// Calls row(first_x, last_x, y, z), bounds included, for every row of cells the triangle touches; each cell once.

@@ -71,20 +71,16 @@ struct ReferenceLists {
 };
 
 // Lists (cell, triangle) for every reference, by ascending triangle, and marks the macrocells.
-// Errors: kBadParameter where there are more or fewer than counted; kAborted.
+// Errors: kBadParameter where there are more or fewer than counted.
 template <class Mesh>
 Status list_references(const Mesh& mesh, const GridRecord& grid, const ReferenceLists& lists,
-                       MacroTableEntry* macro_table, const StopFlag* stop) {
+                       MacroTableEntry* macro_table) {
   const CellSpace space = CellSpace::of(grid);
   const MacroMap macros(grid);
   const std::uint64_t limit = grid.reference_count;
   std::uint64_t count = 0;
-  std::uint64_t looked_at_count = 0;
   std::uint32_t triangle_id = 0;
-  StopPoll poll(stop);
   for (const UVec3& t : mesh.triangles) {
-    if (poll.stops_after(1 + count - looked_at_count)) return Status::kAborted;
-    looked_at_count = count;
     const Vec3& a = mesh.vertices[t.x];
     const Vec3& b = mesh.vertices[t.y];
     const Vec3& c = mesh.vertices[t.z];
@@ -132,13 +128,12 @@ std::uint64_t number_blocks(MacroTableEntry* macro_table, std::uint64_t entry_co
 }
 
 // Turns the keys into indices of cells: that many, of cell_bytes each, from the start of block 0.
-// @returns whether all of them were turned before the flag was raised.
-bool find_cells(const GridRecord& grid, const ReferenceLists& lists, const MacroTableEntry* macro_table,
-                std::uint64_t cell_bytes, const StopFlag* stop) {
+void find_cells(const GridRecord& grid, const ReferenceLists& lists, const MacroTableEntry* macro_table,
+                std::uint64_t cell_bytes) {
   const std::uint64_t cells_per_block = grid.cell_block_bytes / cell_bytes;  // with those that fill it up
   std::uint64_t last_macro_cell = ~std::uint64_t{0};
   std::uint64_t first_cell = 0;
-  return for_each_until(stop, grid.reference_count, [&](std::uint64_t i) {
+  for (std::uint64_t i = 0; i < grid.reference_count; ++i) {
     const std::uint64_t macro_cell = lists.keys[i] >> kCellBits;
     if (macro_cell != last_macro_cell) {
       const MacroTableEntry& entry = macro_table[macro_cell / 32];
@@ -147,18 +142,17 @@ bool find_cells(const GridRecord& grid, const ReferenceLists& lists, const Macro
       last_macro_cell = macro_cell;
     }
     lists.keys[i] = first_cell + (lists.keys[i] & ((1u << kCellBits) - 1));
-  });
+  }
 }
 
 // Counting sort of the references by the order of cells in the blocks; stable, so ids ascend within a cell.
-// @returns whether they were sorted before the flag was raised.
-bool sort_references(const GridRecord& grid, const ReferenceLists& lists, const MacroTableEntry* macro_table,
-                     const StopFlag* stop, CellRecord* cells) {
+void sort_references(const GridRecord& grid, const ReferenceLists& lists, const MacroTableEntry* macro_table,
+                     CellRecord* cells) {
   const std::uint64_t count = grid.reference_count;
   const std::uint64_t records_per_block = grid.cell_block_bytes / sizeof(CellRecord);
   const std::uint64_t cells_per_block = std::uint64_t{grid.macro_width} * grid.macro_width * grid.macro_width;
-  if (!find_cells(grid, lists, macro_table, sizeof(CellRecord), stop)) return false;
-  if (!for_each_until(stop, count, [&](std::uint64_t i) { ++cells[lists.keys[i]].triangle_count; })) return false;
+  find_cells(grid, lists, macro_table, sizeof(CellRecord));
+  for (std::uint64_t i = 0; i < count; ++i) ++cells[lists.keys[i]].triangle_count;
 
   // Counts become first triangles.
   std::uint32_t running = 0;
@@ -172,22 +166,22 @@ bool sort_references(const GridRecord& grid, const ReferenceLists& lists, const 
   }
 
   // Each reference goes to the next free place of its cell, whose count grows back.
-  return for_each_until(stop, count, [&](std::uint64_t i) {
+  for (std::uint64_t i = 0; i < count; ++i) {
     CellRecord& record = cells[lists.keys[i]];
     lists.ids_by_cell[record.first_triangle + record.triangle_count++] = lists.ids[i];
-  });
+  }
 }
 
 // The same where cells are known by their bounds. A cell's references are counted in the bound behind it, which then
 // says where the cell's next reference goes, and in the end where the cell ends.
-bool sort_references(const GridRecord& grid, const ReferenceLists& lists, const MacroTableEntry* macro_table,
-                     const StopFlag* stop, CellBound* bounds) {
+void sort_references(const GridRecord& grid, const ReferenceLists& lists, const MacroTableEntry* macro_table,
+                     CellBound* bounds) {
   const std::uint64_t count = grid.reference_count;
   const std::uint64_t bounds_per_block = grid.cell_block_bytes / sizeof(CellBound);
   const std::uint64_t cells_per_block = std::uint64_t{grid.macro_width} * grid.macro_width * grid.macro_width;
-  if (!find_cells(grid, lists, macro_table, sizeof(CellBound), stop)) return false;
+  find_cells(grid, lists, macro_table, sizeof(CellBound));
   CellBound* const ends = bounds + 1;
-  if (!for_each_until(stop, count, [&](std::uint64_t i) { ++ends[lists.keys[i]].first_triangle; })) return false;
+  for (std::uint64_t i = 0; i < count; ++i) ++ends[lists.keys[i]].first_triangle;
   std::uint32_t running = 0;
   for (std::uint64_t block = 1; block < grid.cell_block_count; ++block) {
     bounds[block * bounds_per_block].first_triangle = running;
@@ -198,8 +192,9 @@ bool sort_references(const GridRecord& grid, const ReferenceLists& lists, const 
       end.first_triangle = begin;
     }
   }
-  return for_each_until(
-      stop, count, [&](std::uint64_t i) { lists.ids_by_cell[ends[lists.keys[i]].first_triangle++] = lists.ids[i]; });
+  for (std::uint64_t i = 0; i < count; ++i) {
+    lists.ids_by_cell[ends[lists.keys[i]].first_triangle++] = lists.ids[i];
+  }
 }
 
 LatticeTriangle lattice_triangle(const Lattice& lattice, const Vec3& a, const Vec3& b, const Vec3& c,
@@ -214,17 +209,16 @@ LatticeTriangle lattice_triangle(const Lattice& lattice, const Vec3& a, const Ve
 }
 
 // Writes the triangle records front to back and adds them to the check value while they are near.
-// @returns whether all of them were written before the flag was raised.
 template <class Mesh>
-bool write_triangles(const Mesh& mesh, const GridRecord& grid, const std::uint32_t* ids_by_cell, const StopFlag* stop,
-                     std::byte* triangles, CheckValue& check) {
+void write_triangles(const Mesh& mesh, const GridRecord& grid, const std::uint32_t* ids_by_cell, std::byte* triangles,
+                     CheckValue& check) {
   constexpr std::uint64_t kPieceRecords = 256;  // a multiple of kGroupBytes in bytes
   static_assert(kPieceRecords * sizeof(LatticeTriangle) % CheckValue::kGroupBytes == 0);
   const bool projection = grid.triangle_format == static_cast<std::uint32_t>(TriangleFormat::kProjection);
   const bool lattice = grid.triangle_format == static_cast<std::uint32_t>(TriangleFormat::kLattice);
   const std::uint64_t triangle_bytes = grid.triangle_bytes;
   std::uint64_t checked_bytes = 0;
-  const bool is_complete = for_each_until(stop, grid.reference_count, [&](std::uint64_t i) {
+  for (std::uint64_t i = 0; i < grid.reference_count; ++i) {
     const std::uint32_t id = ids_by_cell[i];
     const UVec3& t = mesh.triangles[id];
     const Vec3& a = mesh.vertices[t.x];
@@ -245,20 +239,18 @@ bool write_triangles(const Mesh& mesh, const GridRecord& grid, const std::uint32
       check.add({triangles + checked_bytes, static_cast<std::size_t>(end - checked_bytes)});
       checked_bytes = end;
     }
-  });
-  if (!is_complete) return false;
+  }
   const std::uint64_t end = grid.reference_count * triangle_bytes;
   const std::uint64_t padded_end = round_up<std::uint64_t>(end, kLineBytes);
   clear(triangles, end, padded_end);
   check.add({triangles + checked_bytes, static_cast<std::size_t>(padded_end - checked_bytes)});
-  return true;
 }
 
 // Writes all of the image but the sections of effects, and adds it to the check value.
-// Errors: kBadParameter where the mesh is not the one that was counted; kAborted.
+// Errors: kBadParameter where the mesh is not the one that was counted.
 template <class Mesh>
-Status write_image(const Mesh& mesh, const GridNeed& need, const ImageLayout& layout, const StopFlag* stop,
-                   std::byte* bytes, CheckValue& check) {
+Status write_image(const Mesh& mesh, const GridNeed& need, const ImageLayout& layout, std::byte* bytes,
+                   CheckValue& check) {
   const GridRecord& grid = need.grid;
   std::byte* const triangles = bytes + layout.triangles_offset;
   write_directory(mesh, need, layout, bytes);
@@ -267,22 +259,23 @@ Status write_image(const Mesh& mesh, const GridNeed& need, const ImageLayout& la
   std::byte* const cells = bytes + layout.cell_blocks_offset;
 
   const ReferenceLists lists(triangles, grid.reference_count, grid.triangle_bytes);
-  GRIDIRON_TRY(list_references(mesh, grid, lists, macro_table, stop));
+  GRIDIRON_TRY(list_references(mesh, grid, lists, macro_table));
   if (number_blocks(macro_table, layout.macro_table_entries) != grid.cell_block_count) return Status::kBadParameter;
-  const bool is_sorted = grid.triangle_format == static_cast<std::uint32_t>(TriangleFormat::kLattice)
-                             ? sort_references(grid, lists, macro_table, stop, reinterpret_cast<CellBound*>(cells))
-                             : sort_references(grid, lists, macro_table, stop, reinterpret_cast<CellRecord*>(cells));
-  if (!is_sorted) return Status::kAborted;
+  if (grid.triangle_format == static_cast<std::uint32_t>(TriangleFormat::kLattice)) {
+    sort_references(grid, lists, macro_table, reinterpret_cast<CellBound*>(cells));
+  } else {
+    sort_references(grid, lists, macro_table, reinterpret_cast<CellRecord*>(cells));
+  }
 
   check.add({bytes, static_cast<std::size_t>(layout.triangles_offset)});
-  return write_triangles(mesh, grid, lists.ids_by_cell, stop, triangles, check) ? Status::kOk : Status::kAborted;
+  write_triangles(mesh, grid, lists.ids_by_cell, triangles, check);
+  return Status::kOk;
 }
 
 }  // namespace
 
 Status build_scene_image(const MeshView& mesh, const GridParameters& parameters, const GridNeed& need,
-                         std::span<std::byte> image, std::span<std::byte> scratch, const EffectsView* effects,
-                         const StopFlag* stop) {
+                         std::span<std::byte> image, std::span<std::byte> scratch, const EffectsView* effects) {
   GRIDIRON_TRY(check_parameters(parameters));
   const GridRecord& grid = need.grid;
   EffectsRecord record{};
@@ -301,11 +294,11 @@ Status build_scene_image(const MeshView& mesh, const GridParameters& parameters,
 
   CheckValue check;
   if (parameters.format != TriangleFormat::kLattice) {
-    GRIDIRON_TRY(write_image(mesh, need, layout, stop, image.data(), check));
+    GRIDIRON_TRY(write_image(mesh, need, layout, image.data(), check));
   } else {
     if (!(grid.lattice.step >= kLeastLatticeStep)) return Status::kBadParameter;
     const LatticeMesh moved{{mesh.vertices, grid.lattice}, mesh.triangles};
-    GRIDIRON_TRY(write_image(moved, need, layout, stop, image.data(), check));
+    GRIDIRON_TRY(write_image(moved, need, layout, image.data(), check));
   }
   if (effects != nullptr) {
     write_effect_sections(mesh, *effects, grid, layout.effects, image.data());

@@ -3,7 +3,6 @@
 #pragma once
 
 #include <gridiron/base/records.h>
-#include <gridiron/grid/stop_flag.h>
 #include <gridiron/platform/status.h>
 #include <gridiron/scene/effects.h>
 #include <gridiron/scene/mesh.h>
@@ -37,25 +36,31 @@ struct GridNeed {
   GridSteps steps;                       ///< for those who keep time
 };
 
+inline constexpr std::uint64_t kAnyImageBytes = ~std::uint64_t{0};
+
 /// Counts what build_scene_image will need. Itself needs no memory beyond a fixed stack frame.
 ///
-/// @param effects  of the scene; null: the image holds geometry alone.
-/// @param stop     ends the count early; null: nothing does.
+/// @param effects           of the scene; null: the image holds geometry alone.
+/// @param most_image_bytes  ends the count of an image that needs more.
+/// @param marks             working memory, a bit for each macrocell; empty: 16,384 of them on the stack.
 /// Errors: kBadEffects (check_effects; a light farther from the grid than an eye may be), kBadVertex, kBadIndex,
-/// kBadParameter (also effects beside TriangleFormat::kProjection), kNoTriangles, kTooManyTriangles, kAborted (stop).
-/// Cost: linear in triangles + references.
+/// kBadParameter (also effects beside TriangleFormat::kProjection), kNoTriangles, kTooManyTriangles; kMemoryTooSmall,
+/// where need.image_bytes is less than the image would take, but more than most_image_bytes.
+/// Cost: linear in triangles + references that fit, for each part of the macrocells that has its marks at a time.
 [[nodiscard]] Status count_scene_image(const MeshView& mesh, const GridParameters& parameters, GridNeed& need,
-                                       const EffectsView* effects = nullptr, const StopFlag* stop = nullptr);
+                                       const EffectsView* effects = nullptr,
+                                       std::uint64_t most_image_bytes = kAnyImageBytes,
+                                       std::span<std::uint64_t> marks = {});
 
 /// Counts as count_scene_image does, with the greatest lambda of parameters.lambda, its half, its quarter and so on
 /// whose image fits. need.grid.lambda says which. Where none fits, `need` is that of the last one, of 1e-6 or of a grid
 /// that is one cell; need.image_bytes is more than most_image_bytes then.
 ///
 /// Errors: as count_scene_image; kTooManyTriangles only where the last one has too many references.
-/// Cost: linear in triangles + references that fit, for each lambda that a bound of its references does not rule out.
+/// Cost: that of a count for each lambda that a bound of its references does not rule out.
 [[nodiscard]] Status fit_scene_image(const MeshView& mesh, const GridParameters& parameters,
                                      std::uint64_t most_image_bytes, GridNeed& need,
-                                     const EffectsView* effects = nullptr, const StopFlag* stop = nullptr);
+                                     const EffectsView* effects = nullptr, std::span<std::uint64_t> marks = {});
 
 /// Writes the scene image. Same bytes for the same input on every host.
 ///
@@ -63,10 +68,9 @@ struct GridNeed {
 ///                 parameters.lambda is need.grid.lambda.
 /// @param image    kLineBytes-aligned, at least need.image_bytes; only the first image_bytes are written.
 /// @param scratch  8-byte aligned, at least need.scratch_bytes.
-/// @param stop     ends the build early; null: nothing does.
-/// Errors: kMemoryTooSmall (nothing is touched), kBadParameter, kAborted (stop). Cost: linear.
+/// Errors: kMemoryTooSmall (nothing is touched), kBadParameter. Cost: linear.
 [[nodiscard]] Status build_scene_image(const MeshView& mesh, const GridParameters& parameters, const GridNeed& need,
                                        std::span<std::byte> image, std::span<std::byte> scratch,
-                                       const EffectsView* effects = nullptr, const StopFlag* stop = nullptr);
+                                       const EffectsView* effects = nullptr);
 
 }  // namespace gridiron

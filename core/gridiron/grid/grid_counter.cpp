@@ -12,8 +12,6 @@
 namespace gridiron {
 namespace {
 
-constexpr std::uint64_t kNoLimit = ~std::uint64_t{0};
-
 // --- The mesh, whatever the grid ----------------------------------------------------------------------------------
 
 bool all_in_range(std::span<const Vec3> vertices) {
@@ -39,11 +37,9 @@ struct KeptTriangles {
 };
 
 template <class Mesh>
-Status survey(const Mesh& mesh, const StopFlag* stop, KeptTriangles& kept) {
-  StopPoll poll(stop);
+Status survey(const Mesh& mesh, KeptTriangles& kept) {
   const std::uint64_t vertex_count = mesh.vertices.size();
   for (const UVec3& t : mesh.triangles) {
-    if (poll.stops_after(1)) return Status::kAborted;
     if (t.x >= vertex_count || t.y >= vertex_count || t.z >= vertex_count) return Status::kBadIndex;
     const Vec3& a = mesh.vertices[t.x];
     const Vec3& b = mesh.vertices[t.y];
@@ -93,25 +89,27 @@ std::uint64_t least_references(const KeptTriangles& kept, const GridRecord& grid
   const auto count = static_cast<double>(kept.count);
   most = extents - 2.0 * count > most ? extents - 2.0 * count : most;
   const double least = most * (1.0 - 0x1p-18) - count * 0x1p-18;
-  if (least >= 0x1p62) return std::uint64_t{1} << 62;
+  if (least >= 0x1p56) return std::uint64_t{1} << 56;  // so that their bytes are a number
   return least > count ? static_cast<std::uint64_t>(least) : kept.count;
 }
 
-// A set of macrocells within a window of their linear order that fits the stack.
+constexpr std::uint64_t kStackMarks = 256;  // words
+
+// A set of macrocells within a window of their linear order, a bit for each.
 class MacroWindow {
  public:
-  static constexpr std::uint64_t kMacroCells = 16384;
+  explicit MacroWindow(std::span<std::uint64_t> words) : words_(words) {}
 
   void move_to(std::uint64_t begin) {
     begin_ = begin;
     for (std::uint64_t& word : words_) word = 0;
   }
   [[nodiscard]] std::uint64_t begin() const { return begin_; }
-  [[nodiscard]] std::uint64_t end() const { return begin_ + kMacroCells; }
+  [[nodiscard]] std::uint64_t end() const { return begin_ + 64 * words_.size(); }
 
   void insert(std::uint64_t macro_cell) {
     const std::uint64_t place = macro_cell - begin_;  // wraps below the window
-    if (place < kMacroCells) words_[place / 64] |= std::uint64_t{1} << (place % 64);
+    if (place / 64 < words_.size()) words_[place / 64] |= std::uint64_t{1} << (place % 64);
   }
   [[nodiscard]] std::uint64_t size() const {
     std::uint64_t total = 0;
@@ -122,8 +120,8 @@ class MacroWindow {
   }
 
  private:
+  std::span<std::uint64_t> words_;
   std::uint64_t begin_ = 0;
-  std::uint64_t words_[kMacroCells / 64] = {};
 };
 
 // --- One grid -----------------------------------------------------------------------------------------------------
@@ -135,21 +133,17 @@ struct Sweep {
   std::uint64_t next_begin = ~std::uint64_t{0};  // no macrocell between the window's end and this one is touched
 };
 
-// Errors: kMemoryTooSmall where there are more than most_references; kAborted.
+// @returns whether there are at most most_references.
 template <class Mesh>
-Status sweep_window(const Mesh& mesh, const GridRecord& grid, std::uint64_t most_references, const StopFlag* stop,
-                    MacroWindow& window, Sweep& sweep) {
+bool sweep_window(const Mesh& mesh, const GridRecord& grid, std::uint64_t most_references, MacroWindow& window,
+                    Sweep& sweep) {
   const CellSpace space = CellSpace::of(grid);
   const MacroMap macros(grid);
   const bool first_sweep = window.begin() == 0;
-  StopPoll poll(stop);
-  std::uint64_t looked_at_rows = 0;
   for (const UVec3& t : mesh.triangles) {
     const Vec3& a = mesh.vertices[t.x];
     const Vec3& b = mesh.vertices[t.y];
     const Vec3& c = mesh.vertices[t.z];
-    if (poll.stops_after(1 + sweep.row_count - looked_at_rows)) return Status::kAborted;
-    looked_at_rows = sweep.row_count;
     if (has_zero_area(a, b, c)) continue;
     const CellBox box = CellBox::of(space, a, b, c);
     if (!first_sweep) {
@@ -171,18 +165,20 @@ Status sweep_window(const Mesh& mesh, const GridRecord& grid, std::uint64_t most
         if (macro_cell >= window.end() && macro_cell < sweep.next_begin) sweep.next_begin = macro_cell;
       }
     });
-    if (sweep.reference_count > most_references) return Status::kMemoryTooSmall;
+    if (sweep.reference_count > most_references) return false;
   }
-  return Status::kOk;
+  return true;
 }
 
 // What the count of one mesh takes beside the grid, and how far it goes.
 struct Request {
   const GridParameters& parameters;
   const EffectsRecord* effects;  // as counted; null: none
-  const StopFlag* stop;
   std::uint64_t triangle_count;  // of the input
   std::uint64_t resolved_count;  // n of Eq. (1)
+  std::uint64_t most_bytes;
+  bool may_reduce;  // halves lambda until the image fits
+  std::span<std::uint64_t> marks;
 };
 
 // Bytes of an image with that many references and blocks in the grid.
@@ -208,30 +204,34 @@ void make_grid(const Request& request, const KeptTriangles& kept, float lambda, 
 }
 
 // Counts references and macrocells that are not empty. The first sweep meets every triangle, the others those beyond
-// its window. @param most_bytes  kNoLimit: of any image.
-// Errors: kMemoryTooSmall as soon as the image is seen to need more; kTooManyTriangles, kAborted.
+// its window. A bound of the references says first whether they can fit at all.
+// Errors: kMemoryTooSmall as soon as the image is seen to need more, need.image_bytes say; kTooManyTriangles.
 template <class Mesh>
 Status count_grid(const Mesh& mesh, const Request& request, const KeptTriangles& kept, std::uint64_t most_bytes,
                   GridRecord grid, GridNeed& need) {
   const std::uint64_t empty_bytes = image_bytes_of(request, grid, 0, 1);
-  const bool is_limited = most_bytes != kNoLimit;
-  std::uint64_t most_references = kMaxCount;
-  if (is_limited) {
-    const std::uint64_t left_bytes = most_bytes > empty_bytes ? most_bytes - empty_bytes : 0;
-    const std::uint64_t fitting = left_bytes / grid.triangle_bytes + kLineBytes;  // a line more: what padding may hide
-    most_references = fitting < kMaxCount ? fitting : kMaxCount;
-    if (least_references(kept, grid) > most_references) return Status::kMemoryTooSmall;
-  }
-  MacroWindow window;
+  const std::uint64_t left_bytes = most_bytes > empty_bytes ? most_bytes - empty_bytes : 0;
+  const std::uint64_t fitting = left_bytes / grid.triangle_bytes + kLineBytes;  // a line more: what padding may hide
+  const std::uint64_t most_references = fitting < kMaxCount ? fitting : kMaxCount;
+  const auto refuse = [&](std::uint64_t references) {
+    need.image_bytes = empty_bytes + references * grid.triangle_bytes;
+    return most_references < kMaxCount ? Status::kMemoryTooSmall : Status::kTooManyTriangles;
+  };
+  const std::uint64_t least = least_references(kept, grid);
+  if (least > most_references) return refuse(least);
+  std::uint64_t stack_marks[kStackMarks];
+  const std::span<std::uint64_t> marks = request.marks.empty() ? stack_marks : request.marks;
+  const std::uint64_t all_marks = (macro_cell_total(grid) + 63) / 64;
+  MacroWindow window(marks.first(static_cast<std::size_t>(all_marks < marks.size() ? all_marks : marks.size())));
   std::uint64_t reference_count = 0;
   std::uint64_t block_count = 1;
   GridSteps steps{};
   for (std::uint64_t begin = 0; begin != ~std::uint64_t{0};) {
     Sweep sweep;
     window.move_to(begin);
-    const Status status = sweep_window(mesh, grid, most_references, request.stop, window, sweep);
-    if (status == Status::kMemoryTooSmall && most_references == kMaxCount) return Status::kTooManyTriangles;
-    GRIDIRON_TRY(status);
+    if (!sweep_window(mesh, grid, most_references, window, sweep)) {
+      return refuse(least > sweep.reference_count ? least : sweep.reference_count);
+    }
     if (begin == 0) {
       reference_count = sweep.reference_count;
       steps.row_count = sweep.row_count;
@@ -241,67 +241,64 @@ Status count_grid(const Mesh& mesh, const Request& request, const KeptTriangles&
     block_count += window.size();
     begin = sweep.next_begin;
     if (block_count > kMaxCount) return Status::kTooManyTriangles;
-    if (is_limited && image_bytes_of(request, grid, reference_count, block_count) > most_bytes) {
-      return Status::kMemoryTooSmall;
-    }
+    need.image_bytes = image_bytes_of(request, grid, reference_count, block_count);
+    if (need.image_bytes > most_bytes) return Status::kMemoryTooSmall;
   }
   grid.reference_count = static_cast<std::uint32_t>(reference_count);
   grid.cell_block_count = static_cast<std::uint32_t>(block_count);
 
   need.grid = grid;
   need.dropped_triangle_count = static_cast<std::uint32_t>(mesh.triangles.size() - kept.count);
-  need.image_bytes = image_bytes_of(request, grid, reference_count, block_count);
   need.scratch_bytes = 0;
   need.steps = steps;
   return Status::kOk;
 }
 
-// Counts with the wanted lambda, or halves it until the image fits. Before each count a bound of the references says
-// whether it can fit at all, and a count ends with the reference that is too many.
+// Counts with the wanted lambda, or halves it until the image fits.
 template <class Mesh>
-Status count_mesh(const Mesh& mesh, const Request& request, const KeptTriangles& kept, std::uint64_t most_bytes,
-                  GridRecord grid, GridNeed& need) {
+Status count_mesh(const Mesh& mesh, const Request& request, const KeptTriangles& kept, GridRecord grid,
+                  GridNeed& need) {
   if (kept.count == 0) return Status::kNoTriangles;
   float lambda = request.parameters.lambda;
   for (;;) {
     make_grid(request, kept, lambda, grid);
-    const bool is_last = most_bytes == kNoLimit || lambda <= kLeastLambda || has_one_cell(grid);
-    const Status status = count_grid(mesh, request, kept, is_last ? kNoLimit : most_bytes, grid, need);
+    if (!request.may_reduce) return count_grid(mesh, request, kept, request.most_bytes, grid, need);
+    const bool is_last = lambda <= kLeastLambda || has_one_cell(grid);
+    const Status status = count_grid(mesh, request, kept, is_last ? kAnyImageBytes : request.most_bytes, grid, need);
     if (is_last || (status != Status::kMemoryTooSmall && status != Status::kTooManyTriangles)) return status;
     lambda = lambda * 0.5f > kLeastLambda ? lambda * 0.5f : kLeastLambda;
   }
 }
 
-Status count_geometry(const MeshView& mesh, Request request, std::uint64_t most_bytes, GridNeed& need) {
+Status count_geometry(const MeshView& mesh, Request request, GridNeed& need) {
   GridRecord grid{};
   KeptTriangles kept;
-  GRIDIRON_TRY(survey(mesh, request.stop, kept));
+  GRIDIRON_TRY(survey(mesh, kept));
   request.resolved_count = kept.count;
-  if (request.parameters.format != TriangleFormat::kLattice) {
-    return count_mesh(mesh, request, kept, most_bytes, grid, need);
-  }
+  if (request.parameters.format != TriangleFormat::kLattice) return count_mesh(mesh, request, kept, grid, need);
   // As many cells as without a lattice: fewer triangles are left on it, not larger ones.
   GRIDIRON_TRY(find_lattice(mesh, grid.lattice));
   const LatticeMesh moved{{mesh.vertices, grid.lattice}, mesh.triangles};
   KeptTriangles moved_kept;
-  GRIDIRON_TRY(survey(moved, request.stop, moved_kept));
-  return count_mesh(moved, request, moved_kept, most_bytes, grid, need);
+  GRIDIRON_TRY(survey(moved, moved_kept));
+  return count_mesh(moved, request, moved_kept, grid, need);
 }
 
-Status count_within(const MeshView& mesh, const GridParameters& parameters, std::uint64_t most_bytes, GridNeed& need,
-                    const EffectsView* effects, const StopFlag* stop) {
-  GRIDIRON_TRY(check_parameters(parameters));
-  if (effects != nullptr && !may_have_effects(parameters)) return Status::kBadParameter;
+Status count_within(const MeshView& mesh, Request request, const EffectsView* effects, GridNeed& need) {
+  GRIDIRON_TRY(check_parameters(request.parameters));
+  if (effects != nullptr && !may_have_effects(request.parameters)) return Status::kBadParameter;
   if (mesh.triangles.size() > kMaxCount || mesh.vertices.size() > kMaxCount) return Status::kTooManyTriangles;
   if (!all_in_range(mesh.vertices)) return Status::kBadVertex;
   EffectsRecord record{};
   if (effects != nullptr) {
     GRIDIRON_TRY(check_effects(mesh, *effects));
     record = count_effects(*effects);
+    request.effects = &record;
   }
-  const Request request{parameters, effects != nullptr ? &record : nullptr, stop, mesh.triangles.size(), 0};
   GridNeed counted{};
-  GRIDIRON_TRY(count_geometry(mesh, request, most_bytes, counted));
+  const Status status = count_geometry(mesh, request, counted);
+  if (status == Status::kMemoryTooSmall) need.image_bytes = counted.image_bytes;
+  GRIDIRON_TRY(status);
   if (effects != nullptr) GRIDIRON_TRY(check_reach(*effects, counted.grid));
   need = counted;
   return Status::kOk;
@@ -310,14 +307,15 @@ Status count_within(const MeshView& mesh, const GridParameters& parameters, std:
 }  // namespace
 
 Status count_scene_image(const MeshView& mesh, const GridParameters& parameters, GridNeed& need,
-                         const EffectsView* effects, const StopFlag* stop) {
-  return count_within(mesh, parameters, kNoLimit, need, effects, stop);
+                         const EffectsView* effects, std::uint64_t most_image_bytes, std::span<std::uint64_t> marks) {
+  const Request request{parameters, nullptr, mesh.triangles.size(), 0, most_image_bytes, false, marks};
+  return count_within(mesh, request, effects, need);
 }
 
 Status fit_scene_image(const MeshView& mesh, const GridParameters& parameters, std::uint64_t most_image_bytes,
-                       GridNeed& need, const EffectsView* effects, const StopFlag* stop) {
-  return count_within(mesh, parameters, most_image_bytes != kNoLimit ? most_image_bytes : kNoLimit - 1, need, effects,
-                      stop);
+                       GridNeed& need, const EffectsView* effects, std::span<std::uint64_t> marks) {
+  const Request request{parameters, nullptr, mesh.triangles.size(), 0, most_image_bytes, true, marks};
+  return count_within(mesh, request, effects, need);
 }
 
 }  // namespace gridiron

@@ -16,31 +16,37 @@ class Records {
   Records(const ImageChecker& checker, const SceneImageView& view)
       : checker_(checker),
         view_(view),
+        triangles_(checker.image().data() + view.triangles_offset_bytes),
+        triangle_bytes_(view.grid.triangle_bytes),
         macros_(view.grid),
         is_lattice_(view.grid.triangle_format == static_cast<std::uint32_t>(TriangleFormat::kLattice)) {}
 
   [[nodiscard]] std::uint64_t place_of(std::uint64_t reference) const {
-    return view_.triangles_offset_bytes + reference * view_.grid.triangle_bytes;
+    return view_.triangles_offset_bytes + reference * triangle_bytes_;
   }
   [[nodiscard]] std::uint32_t id_of(std::uint64_t reference) const {
-    return checker_.read<std::uint32_t>(place_of(reference + 1) - sizeof(std::uint32_t));
+    return read<std::uint32_t>(record_of(reference + 1) - sizeof(std::uint32_t));
   }
   [[nodiscard]] bool are_equal(std::uint64_t a, std::uint64_t b) const {
-    std::uint32_t differ = 0;
-    for (std::uint64_t offset = 0; offset < view_.grid.triangle_bytes; offset += sizeof(std::uint32_t)) {
-      differ |= checker_.read<std::uint32_t>(place_of(a) + offset) ^ checker_.read<std::uint32_t>(place_of(b) + offset);
+    static_assert(sizeof(LatticeTriangle) == sizeof(Piece) && sizeof(VertexTriangle) == 2 * sizeof(Piece));
+    const std::byte* const record = record_of(a);
+    const std::byte* const other = record_of(b);
+    std::uint64_t differ = 0;
+    for (std::size_t begin = 0; begin < triangle_bytes_; begin += sizeof(Piece)) {
+      const auto piece = read<Piece>(record + begin), other_piece = read<Piece>(other + begin);
+      for (int i = 0; i < 3; ++i) differ |= piece.at[i] ^ other_piece.at[i];
     }
     return differ == 0;
   }
 
   // The corner of a record that stores corners.
   [[nodiscard]] Vec3 corner(std::uint64_t reference, int number) const {
-    const std::uint64_t place = place_of(reference);
+    const std::byte* const record = record_of(reference);
     if (!is_lattice_) {
-      const auto v = checker_.read<Corner>(place + static_cast<std::uint64_t>(number) * sizeof(Corner));
+      const auto v = read<Corner>(record + static_cast<std::size_t>(number) * sizeof(Corner));
       return {v.at[0], v.at[1], v.at[2]};
     }
-    const auto v = checker_.read<Places>(place + static_cast<std::uint64_t>(number) * sizeof(Places));
+    const auto v = read<Places>(record + static_cast<std::size_t>(number) * sizeof(Places));
     const Lattice& lattice = view_.grid.lattice;
     Vec3 point;
     for (int axis = 0; axis < 3; ++axis) {
@@ -80,6 +86,11 @@ class Records {
   // The triangle's record in [range.first, range.end), or kNowhere. Ids ascend; range.first becomes the first record of
   // an id that is not less. Steps from the front double, so that what lies near is found in few.
   [[nodiscard]] std::uint64_t find(Range& range, std::uint32_t id) const {
+    for (int i = 0; i < 8 && range.first < range.end; ++i) {
+      const std::uint32_t at = id_of(range.first);
+      if (at >= id) return at == id ? range.first : kNowhere;
+      ++range.first;
+    }
     std::uint64_t end = range.end;
     for (std::uint64_t step = 1; range.first < end; step *= 2) {
       const std::uint64_t probe = range.first + step - 1 < end ? range.first + step - 1 : end - 1;
@@ -112,6 +123,19 @@ class Records {
     return view_.cell_blocks_offset_bytes + block * view_.grid.cell_block_bytes;
   }
 
+  [[nodiscard]] const std::byte* record_of(std::uint64_t reference) const {
+    return triangles_ + reference * triangle_bytes_;
+  }
+  template <class Value>
+  [[nodiscard]] static Value read(const std::byte* place) {
+    Value value;
+    __builtin_memcpy(&value, place, sizeof(Value));
+    return value;
+  }
+
+  struct Piece {  // of a record, which has one of them or two
+    std::uint64_t at[3];
+  };
   struct Corner {
     float at[3];
   };
@@ -120,6 +144,8 @@ class Records {
   };
   const ImageChecker& checker_;
   const SceneImageView& view_;
+  const std::byte* triangles_;
+  std::uint64_t triangle_bytes_;
   MacroMap macros_;
   bool is_lattice_;
   std::uint64_t last_macro_cell_ = kNowhere;
@@ -174,7 +200,7 @@ struct Totals {
 bool lies_inside(const GridRecord& grid, const Vec3& corner) {
   bool inside = true;
   for (int axis = 0; axis < 3; ++axis) {
-    inside = inside && corner[axis] >= grid.bounds_minimum[axis] && corner[axis] <= grid.bounds_maximum[axis];
+    inside &= corner[axis] >= grid.bounds_minimum[axis] && corner[axis] <= grid.bounds_maximum[axis];
   }
   return inside;
 }
@@ -187,10 +213,12 @@ bool check_reference(ImageChecker& checker, const Records& records, Search& sear
   const std::uint64_t place = records.place_of(reference);
   const Vec3 a = records.corner(reference, 0);
   GRIDIRON_REQUIRE(lies_inside(view.grid, a), place, VertexTriangle, v, "triangle.v");
+  std::int32_t elsewhere = 0;  // one branch, hard to predict, not three
   for (int axis = 0; axis < 3; ++axis) {
     const auto at = static_cast<std::int32_t>((double{a[axis]} - space.minimum[axis]) * space.cells_per_unit[axis]);
-    if ((at < space.last_cell[axis] ? at : space.last_cell[axis]) != cell[axis]) return true;
+    elsewhere |= (at < space.last_cell[axis] ? at : space.last_cell[axis]) ^ cell[axis];
   }
+  if (elsewhere != 0) return true;
   const Vec3 b = records.corner(reference, 1);
   const Vec3 c = records.corner(reference, 2);
   GRIDIRON_REQUIRE(lies_inside(view.grid, b) && lies_inside(view.grid, c) && !has_zero_area(a, b, c), place,
@@ -204,10 +232,15 @@ bool check_reference(ImageChecker& checker, const Records& records, Search& sear
   const std::uint32_t id = records.id_of(reference);
   ++totals.triangle_count;
   totals.id_sum += id;
+  const CellBox box = CellBox::of(space, a, b, c);
+  if (box.has_one_cell()) {
+    ++totals.reference_count;
+    return true;
+  }
   search.move_to(cell);
   std::uint64_t wrong = kNowhere;  // the record to blame
   bool good = true;
-  for_each_cell_row(CellBox::of(space, a, b, c), [&](std::int32_t x0, std::int32_t x1, std::int32_t y, std::int32_t z) {
+  for_each_cell_row(box, [&](std::int32_t x0, std::int32_t x1, std::int32_t y, std::int32_t z) {
     for (std::int32_t x = x0; good && x <= x1; ++x) {
       ++totals.reference_count;
       if (x == cell[0] && y == cell[1] && z == cell[2]) continue;
@@ -234,9 +267,50 @@ bool check_projection(ImageChecker& checker, const Records& records, Search& sea
   return true;
 }
 
-// Calls body(cell, reference) for every reference, until it returns false.
+// Triangle records [first, end) of one cell: finite, known ids, ascending.
+bool check_triangles(ImageChecker& checker, const SceneImageView& view, std::uint64_t first, std::uint64_t end) {
+  const bool projection = view.grid.triangle_format == static_cast<std::uint32_t>(TriangleFormat::kProjection);
+  const bool lattice = view.grid.triangle_format == static_cast<std::uint32_t>(TriangleFormat::kLattice);
+  std::uint64_t least_id = 0;
+  for (std::uint64_t i = first; i < end; ++i) {
+    const std::uint64_t base = view.triangles_offset_bytes + i * view.grid.triangle_bytes;
+    std::uint32_t id = 0;
+    if (projection) {
+      const auto triangle = checker.read<ProjectionTriangle>(base);
+      const float values[9] = {triangle.n_u, triangle.n_v, triangle.n_d, triangle.b_u, triangle.b_v,
+                               triangle.b_d, triangle.c_u, triangle.c_v, triangle.c_d};
+      GRIDIRON_REQUIRE(finite_fields(values, 9), base, ProjectionTriangle, n_u, "triangle.n_u");
+      constexpr float kGreatestSlope = 0x1.000002p0f;  // 1, or the next float where a builder rounds upwards
+      const bool are_slopes =
+          __builtin_fabsf(triangle.n_u) <= kGreatestSlope && __builtin_fabsf(triangle.n_v) <= kGreatestSlope;
+      GRIDIRON_REQUIRE(are_slopes, base, ProjectionTriangle, n_u, "triangle.n_u");
+      GRIDIRON_REQUIRE(triangle.axis_k < 3, base, ProjectionTriangle, axis_k, "triangle.axis_k");
+      GRIDIRON_REQUIRE(triangle.reserved == 0, base, ProjectionTriangle, reserved, "triangle.reserved");
+      id = triangle.triangle_id;
+    } else if (lattice) {
+      const auto triangle = checker.read<LatticeTriangle>(base);
+      GRIDIRON_REQUIRE(triangle.reserved == 0, base, LatticeTriangle, reserved, "triangle.reserved");
+      id = triangle.triangle_id;
+    } else {
+      const auto triangle = checker.read<VertexTriangle>(base);
+      bool finite = true;
+      for (const auto& corner : triangle.v) finite = finite && finite_fields(corner, 3);
+      GRIDIRON_REQUIRE(finite, base, VertexTriangle, v, "triangle.v");
+      GRIDIRON_REQUIRE(all_zero(triangle.reserved, 2), base, VertexTriangle, reserved, "triangle.reserved");
+      id = triangle.triangle_id;
+    }
+    const std::uint64_t id_place = base + view.grid.triangle_bytes - sizeof(id);
+    if (!checker.require(id >= least_id && id < view.header.triangle_count, id_place, "triangle.triangle_id")) {
+      return false;
+    }
+    least_id = std::uint64_t{id} + 1;
+  }
+  return true;
+}
+
+// Checks the records of each cell, then calls body(cell, reference) for every reference, until it returns false.
 template <class Body>
-bool for_each_reference(const ImageChecker& checker, const SceneImageView& view, const Records& records, Body&& body) {
+bool for_each_reference(ImageChecker& checker, const SceneImageView& view, const Records& records, Body&& body) {
   const GridRecord& grid = view.grid;
   const std::uint64_t macro_cells = macro_cell_total(grid);
   const auto width = static_cast<std::int32_t>(grid.macro_width);
@@ -258,6 +332,7 @@ bool for_each_reference(const ImageChecker& checker, const SceneImageView& view,
       for (cell[1] = first[1]; cell[1] < first[1] + width; ++cell[1]) {
         for (cell[0] = first[0]; cell[0] < first[0] + width; ++cell[0]) {
           const Records::Range range = records.cell_of_block(block, number++);  // empty beyond the grid's edge
+          if (!check_triangles(checker, view, range.first, range.end)) return false;
           for (std::uint64_t reference = range.first; reference < range.end; ++reference) {
             if (!body(cell, reference)) return false;
           }

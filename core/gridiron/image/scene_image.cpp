@@ -221,46 +221,6 @@ bool check_grid(ImageChecker& checker, const Sections& sections, const ImageHead
 
 // --- Cells and triangles ------------------------------------------------------------------------------------------
 
-// Triangle records [first, first + count) of one cell: finite, known ids, ascending.
-bool check_triangles(ImageChecker& checker, const SceneImageView& view, std::uint64_t first, std::uint64_t count) {
-  const bool projection = view.grid.triangle_format == static_cast<std::uint32_t>(TriangleFormat::kProjection);
-  const bool lattice = view.grid.triangle_format == static_cast<std::uint32_t>(TriangleFormat::kLattice);
-  std::uint64_t least_id = 0;
-  for (std::uint64_t i = first; i < first + count; ++i) {
-    const std::uint64_t base = view.triangles_offset_bytes + i * view.grid.triangle_bytes;
-    std::uint32_t id = 0;
-    if (projection) {
-      const auto triangle = checker.read<ProjectionTriangle>(base);
-      const float values[9] = {triangle.n_u, triangle.n_v, triangle.n_d, triangle.b_u, triangle.b_v,
-                               triangle.b_d, triangle.c_u, triangle.c_v, triangle.c_d};
-      GRIDIRON_REQUIRE(finite_fields(values, 9), base, ProjectionTriangle, n_u, "triangle.n_u");
-      constexpr float kGreatestSlope = 0x1.000002p0f;  // 1, or the next float where a builder rounds upwards
-      GRIDIRON_REQUIRE(magnitude(triangle.n_u) <= kGreatestSlope && magnitude(triangle.n_v) <= kGreatestSlope, base,
-                       ProjectionTriangle, n_u, "triangle.n_u");
-      GRIDIRON_REQUIRE(triangle.axis_k < 3, base, ProjectionTriangle, axis_k, "triangle.axis_k");
-      GRIDIRON_REQUIRE(triangle.reserved == 0, base, ProjectionTriangle, reserved, "triangle.reserved");
-      id = triangle.triangle_id;
-    } else if (lattice) {
-      const auto triangle = checker.read<LatticeTriangle>(base);
-      GRIDIRON_REQUIRE(triangle.reserved == 0, base, LatticeTriangle, reserved, "triangle.reserved");
-      id = triangle.triangle_id;
-    } else {
-      const auto triangle = checker.read<VertexTriangle>(base);
-      bool finite = true;
-      for (const auto& corner : triangle.v) finite = finite && finite_fields(corner, 3);
-      GRIDIRON_REQUIRE(finite, base, VertexTriangle, v, "triangle.v");
-      GRIDIRON_REQUIRE(all_zero(triangle.reserved, 2), base, VertexTriangle, reserved, "triangle.reserved");
-      id = triangle.triangle_id;
-    }
-    const std::uint64_t id_place = base + view.grid.triangle_bytes - sizeof(id);
-    if (!checker.require(id >= least_id && id < view.header.triangle_count, id_place, "triangle.triangle_id")) {
-      return false;
-    }
-    least_id = std::uint64_t{id} + 1;
-  }
-  return true;
-}
-
 // The cell whose record, or bound and the next one, lies at `place`. Bounds that go down: more triangles than any image
 // has.
 CellRecord read_cell(ImageChecker& checker, bool is_bound, std::uint64_t place) {
@@ -288,7 +248,6 @@ bool check_block(ImageChecker& checker, const SceneImageView& view, std::uint64_
         GRIDIRON_REQUIRE(cell.first_triangle == running, base, CellRecord, first_triangle, "cell.first_triangle");
         GRIDIRON_REQUIRE(cell.triangle_count <= grid.reference_count - running && (inside || cell.triangle_count == 0),
                          base, CellRecord, triangle_count, "cell.triangle_count");
-        if (!check_triangles(checker, view, running, cell.triangle_count)) return false;
         running += cell.triangle_count;
         base += is_bound ? sizeof(CellBound) : sizeof(CellRecord);
       }

@@ -246,6 +246,7 @@ enum class LayoutGroup : std::uint8_t { kCommon, kSweep, kEffects, kNone };
       (options.only_tile && *options.only_tile >= shape.tile_count)) {
     return refuse(Status::kBadParameter);
   }
+  options.threads = std::min(options.threads, options.only_tile ? 1 : shape.tile_count);  // the others would find none
 
   if (options.mode == Mode::kPlain) {
     const RenderEntry<PlainCore> entry = plain_entry(options, group);

@@ -73,7 +73,8 @@ struct SpillMemory {
 /// How a frame is rendered. None of it changes a pixel.
 struct ChipOptions {
   Mode mode = Mode::kChecked;  ///< what is checked
-  std::uint32_t threads = 1;  ///< host threads, each one simulated core's worth of claims; fewer if the host has fewer
+  std::uint32_t threads = 1;  ///< host threads, each one simulated core's worth of claims; fewer if the host has
+                              ///< fewer, or the frame fewer tiles
   std::uint32_t lanes = 4;    ///< 4, 8, 16 (8 and 16 where the host has them, else kUnsupportedFrame)
   StoreSize store = StoreSize::k256KB;  ///< local memory of each core
   std::uint32_t packet_width = 8;  ///< rays along a packet's edge; the frame brings its tile width

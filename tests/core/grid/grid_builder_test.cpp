@@ -495,20 +495,51 @@ TEST(Fit, DoesNotCountWhatCannotFit) {
   EXPECT_GT(need.image_bytes, 16u << 20);
 }
 
-TEST(Fit, ARaisedFlagEndsCountsAndBuilds) {
-  const TestMesh mesh = make_height_field(200, 0.2f, 1);  // more triangles than are taken between two looks
+// --- Counts with a limit, and with memory of their own ------------------------------------------------------------
+
+TEST(Count, EndsWhereTheImageCannotFit) {
+  const TestMesh few[] = {random_triangles(100, {1, 1, 1}, 0.02f), random_triangles(100, {0, 0, 0}, 1.0f),
+                          make_sliver_fan(100, 1e-3f)};
+  for (const TestMesh& mesh : few) {
+    for (const TriangleFormat format : {TriangleFormat::kVertices, TriangleFormat::kLattice}) {
+      const GridParameters parameters{20.0f, 2, format};
+      GridNeed exact{}, need{};
+      ASSERT_EQ(count_scene_image(mesh.view(), parameters, exact), Status::kOk);
+      ASSERT_EQ(count_scene_image(mesh.view(), parameters, need, nullptr, exact.image_bytes), Status::kOk);
+      EXPECT_EQ(need.image_bytes, exact.image_bytes);
+      for (const std::uint64_t most : {exact.image_bytes - 1, exact.image_bytes / 2, std::uint64_t{0}}) {
+        ASSERT_EQ(count_scene_image(mesh.view(), parameters, need, nullptr, most), Status::kMemoryTooSmall);
+        EXPECT_GT(need.image_bytes, most);
+        EXPECT_LE(need.image_bytes, exact.image_bytes);
+      }
+    }
+  }
+  // Counted to the end, each of them takes minutes.
+  TestMesh mesh = make_triangle({0, 0, 0}, {1, 0.25f, 0.5f}, {0.25f, 1, 0.75f});
+  mesh.triangles.resize(100000, mesh.triangles[0]);
   GridNeed need{};
-  ASSERT_EQ(count_scene_image(mesh.view(), {}, need), Status::kOk);
-  LineBuffer image(static_cast<std::size_t>(need.image_bytes));
-  StopFlag stop;
-  EXPECT_EQ(count_scene_image(mesh.view(), {}, need, nullptr, &stop), Status::kOk);
-  EXPECT_EQ(build_scene_image(mesh.view(), {}, need, image.bytes(), {}, nullptr, &stop), Status::kOk);
-  stop.raise();
-  GridNeed unchanged{};
-  EXPECT_EQ(count_scene_image(mesh.view(), {}, unchanged, nullptr, &stop), Status::kAborted);
-  EXPECT_EQ(fit_scene_image(mesh.view(), {}, 1u << 20, unchanged, nullptr, &stop), Status::kAborted);
-  EXPECT_EQ(unchanged.image_bytes, 0u);
-  EXPECT_EQ(build_scene_image(mesh.view(), {}, need, image.bytes(), {}, nullptr, &stop), Status::kAborted);
+  const GridParameters hopeless{1e6f, 6, TriangleFormat::kVertices};
+  EXPECT_EQ(count_scene_image(mesh.view(), hopeless, need, nullptr, 64u << 20), Status::kMemoryTooSmall);
+  EXPECT_GT(need.image_bytes, std::uint64_t{1} << 40);
+  EXPECT_EQ(count_scene_image(mesh.view(), hopeless, need), Status::kTooManyTriangles);
+}
+
+TEST(Count, MarksSaveSweepsAndChangeNothingElse) {
+  const TestMesh mesh = make_sliver_fan(100, 1e-3f);
+  const GridParameters parameters{3000.0f, 1, TriangleFormat::kVertices};
+  GridNeed expected{};
+  ASSERT_EQ(count_scene_image(mesh.view(), parameters, expected), Status::kOk);
+  EXPECT_GT(expected.steps.sweep_count, 1u);
+  for (const std::size_t words : {32u, 256u, 1u << 16}) {
+    std::vector<std::uint64_t> marks(words, ~std::uint64_t{0});
+    GridNeed need{};
+    ASSERT_EQ(count_scene_image(mesh.view(), parameters, need, nullptr, kAnyImageBytes, marks), Status::kOk);
+    EXPECT_EQ(std::memcmp(&need.grid, &expected.grid, sizeof(GridRecord)), 0);
+    EXPECT_EQ(need.image_bytes, expected.image_bytes);
+    EXPECT_EQ(need.steps.sweep_count > expected.steps.sweep_count, words < 256);
+    EXPECT_EQ(need.steps.sweep_count == 1, words > 256);
+    EXPECT_EQ(need.steps.row_count, expected.steps.row_count);
+  }
 }
 
 // --- Shapes of scenes ---------------------------------------------------------------------------------------------

@@ -168,6 +168,9 @@ TEST(Animate, WhatCannotBeDoneIsTold) {
   folder.write_ply("twin/a.ply", make_sphere(8, 12, 1.0f));
   folder.write("bad.ply", "ply\nformat ascii 1.0\nelement vertex many\n");
   folder.write("a.nff", "b 0 0 0\n");
+  folder.write("a.png", "\x89PNG\r\n\x1a\n");
+  std::filesystem::create_directories(folder.path("nested/b.ply"));
+  std::filesystem::create_symlink("nowhere", folder.folder() / "link");
   const struct {
     Words arguments;
     int exit_code;
@@ -178,8 +181,11 @@ TEST(Animate, WhatCannotBeDoneIsTold) {
       {{"a.nff", "-o", "out"}, 1, "a.nff: is a text scene; animate takes PLY meshes"},
       {{"a.ply", "twin", "-o", "out"}, 2, "two frames would be called a.png"},
       {{"a.ply", "bad.ply", "-o", "out"}, 1, "bad.ply:3: "},
-      {{"a.ply", "-o", "no/where"}, 1, "no/where: cannot make the folder"},
-      {{"a.ply", "-o", "a.nff"}, 1, "a.nff"},
+      {{"a.ply", "-o", "no/where"}, 1, "no/where: cannot make the folder: No such file"},
+      {{"a.ply", "-o", "a.nff"}, 1, "a.nff: cannot make the folder: a file of that name is there\n"},
+      {{"a.ply", "-o", "link"}, 1, "link: cannot make the folder: it is a link to 'nowhere', which is not there\n"},
+      {{"a.png", "-o", "out"}, 1, "a.png: is a PNG picture; animate takes PLY meshes and folders of .ply files\n"},
+      {{"nested", "-o", "out"}, 1, "nested/b.ply: is a folder; animate takes PLY meshes and folders of .ply files\n"},
   };
   const Words before = folder.names();
   for (const auto& bad : cases) {

@@ -54,7 +54,8 @@ TEST(FrameFailure, ManyViolationsAreCutShort) {
 TEST(FrameFailure, WhatTheHostHasNotIsNoFailedCheck) {
   sim::ChipResult result = sim::ended_by(sim::HostShortage::kMemory);
   EXPECT_EQ(tool::frame_failure(result)->code(), ExitCode::kBadInput);
-  EXPECT_STREQ(tool::frame_failure(result)->what(), "this host has not enough memory to render the frame");
+  EXPECT_STREQ(tool::frame_failure(result, "a.ply")->what(),
+               "a.ply: this host has not enough memory to render the frame; fewer --threads need less");
   result = sim::ended_by(sim::HostShortage::kThreads);
   EXPECT_EQ(tool::frame_failure(result)->code(), ExitCode::kBadInput);
   EXPECT_STREQ(tool::frame_failure(result)->what(), "this host cannot start a thread for each core of the machine");

@@ -13,6 +13,7 @@
 #include <limits>
 #include <numbers>
 #include <optional>
+#include <random>
 #include <string>
 #include <vector>
 
@@ -408,6 +409,35 @@ TEST(Framing, APointToLookAtStaysInTheMiddle) {
     EXPECT_LE(outline.farthest(), 0.901);
     if (at.z < 40) {
       EXPECT_GE(outline.farthest(), 0.899);
+    }
+  }
+}
+
+// Wherever the point lies, in front of the model, behind it or beside it, near or so far that floats are coarse there.
+TEST(Framing, APointAnywhereIsInTheMiddleOfAPictureOfAll) {
+  const TestMesh torus = make_torus(24, 12, 1.0f, 0.3f);
+  for (const TestMesh& mesh : {torus, moved(torus, 10.0f, {1e6f, 2e6f, -1e6f})}) {
+    for (std::uint32_t seed = 0; seed < 2000; ++seed) {
+      SCOPED_TRACE(seed);
+      std::mt19937 random(seed);
+      const auto uniform = [&random] { return static_cast<float>(random() % 20001) / 10000 - 1; };
+      const Vec3 direction(uniform(), uniform(), uniform());
+      tool::ViewRequest request = request_of(kFovs[seed % 3], kUps[seed % 2]);
+      request.at = mesh.vertices[0] + direction * std::pow(10.0f, 6 * uniform() + 5);
+      request.from = tool::ViewAngles{180.0 * uniform(), seed % 7 == 0 ? 90.0 : 90.0 * uniform()};
+      const double aspect = kShapes[seed % 5 % 3].aspect();
+      const Camera camera = tool::complete_view(request, aspect, points_of(mesh));
+      ASSERT_EQ(tool::view_defect(camera.eye, camera.at, camera.up), nullptr);
+      EXPECT_EQ(camera.at, *request.at);
+      const Outline outline = outline_of(camera, aspect, points_of(mesh));
+      EXPECT_TRUE(outline.is_in_front);
+      EXPECT_LE(outline.farthest(), 0.96);
+      // The view is from the side that was asked for.
+      request.at.reset();
+      const Camera centred = tool::complete_view(request, aspect, points_of(mesh));
+      const DVec3 back = glm::normalize(DVec3(camera.eye) - DVec3(camera.at));
+      EXPECT_GT(glm::dot(back, glm::normalize(DVec3(centred.eye) - DVec3(centred.at))), 0.99);
+      if (HasFailure()) return;
     }
   }
 }

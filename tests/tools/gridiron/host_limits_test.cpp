@@ -79,11 +79,25 @@ TEST(HostLimits, WhateverMemoryThereIsAFrameEndsWellOrSaysWhatIsShort) {
       has_failed = true;
       EXPECT_EQ(result.exit_code, 1);
       EXPECT_NE(result.err.find("not enough memory"), std::string::npos);
+      EXPECT_NE(result.err.find("a.ply"), std::string::npos) << "which file, is said";
     }
     EXPECT_EQ(folder.names(), Words{"a.ply"});
   }
   EXPECT_TRUE(has_failed);
   EXPECT_TRUE(has_ended_well);
+}
+
+TEST(HostLimits, NoMoreThreadsThanTilesAreStarted) {
+  const TemporaryFolder folder;
+  folder.write_ply("a.ply", make_sphere(8, 12, 1.0f));
+  for (const char* mode : {"checked", "plain"}) {
+    // Addresses for some threads' stacks, not for all of those asked for.
+    const LowerLimit limit(RLIMIT_AS, rlim_t{700} << 20);
+    const ProgramResult result = run_program(
+        folder.folder(), {"render", "a.ply", "--size", "64x64", "--mode", mode, "-o", "a.png", "--threads", "256"});
+    EXPECT_EQ(result.exit_code, 0) << result.err;
+    EXPECT_NE(result.out.find(" on 4 threads"), std::string::npos) << result.out;
+  }
 }
 #endif
 

@@ -76,7 +76,7 @@ TEST_F(Inputs, ATextSceneOfAPipeIsShadedAsAFileIs) {
   expect_done("render - --store 64 --tile-width 8 -o pipe.png --quiet < <(cat text)");
   EXPECT_EQ(bytes_of("pipe.png"), bytes_of("file.png"));
   expect_done("render - --tolerance 0.5 -o pipe.png --quiet < <(cat text)");
-  expect_failure("render - --tolerance 0.5 < <(cat mesh)", 2, "--tolerance: is of text scenes (NFF) alone");
+  expect_failure("render - --tolerance 0.5 < <(cat mesh)", 2, "--tolerance: applies to text scenes (NFF) only");
   expect_failure("render - --shading scene < <(cat mesh)", 2, "--shading scene: /dev/stdin has no lights");
   expect_failure("render - --store 128 < <(cat text)", 2, "--shading scene");
 }

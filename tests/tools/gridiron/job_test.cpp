@@ -165,7 +165,7 @@ TEST(Job, IsRefusedWhereItDoesNotFit) {
   expect_failure(folder, with({"--base", "0", "--memory", "many"}), 2, "--memory");
   expect_failure(folder, {"job", "a.ply", "-o", "a.ply", "--base", "0"}, 2, "is the input 'a.ply'");
   expect_failure(folder, {"job", "a.nff", "-o", "a.job", "--base", "0", "--store", "64", "--depth"}, 2,
-                 "--depth: scenes with effects have no distances out of a store of 64 KB");
+                 "--depth: a local store of 64 KB (--store 64) has no distances with --shading scene");
   expect_failure(folder, {"job", "b.ply", "-o", "a.job", "--base", "0"}, 1, "b.ply: No such file");
   run(folder, with({"--base", "0x80200000", "--memory", std::to_string(bytes)}));
 }
@@ -284,7 +284,7 @@ TEST(Job, DamageIsFoundWithItsPlace) {
     folder.write("b.job", file);
     expect_failure(folder, {"result", "b.job", "a.res"}, 1, "b.job:byte " + std::to_string(place) + ": " + words);
   };
-  expect_refused(whole.substr(0, 255), 255, "the file ends");
+  expect_refused(whole.substr(0, 255), 255, "the file ends inside its first record, which has 256 bytes");
   expect_refused(whole.substr(0, whole.size() - 1), offsetof(FrameJob, loaded_bytes), "");
   expect_refused(whole + "x", offsetof(FrameJob, loaded_bytes), "");
   // A bit that flipped: the place where the file stops making sense, or between which bytes it lies.
@@ -295,11 +295,17 @@ TEST(Job, DamageIsFoundWithItsPlace) {
   };
   const std::size_t section = 4096 + record_at<ImageHeader>(whole, 4096).section_table_offset_bytes;
   const std::size_t grid = 256 + offsetof(FrameRecord, grid), bytes = offsetof(SectionEntry, section_bytes);
-  expect_refused(flipped(grid + 3), grid, "the grid is not that of the scene image; the job's check_value differs too");
-  expect_refused(flipped(section + bytes), section + bytes, "damaged scene image (field section.section_bytes)");
+  expect_refused(flipped(grid + 3), grid,
+                 "the grid is not that of the scene image; the job's check_value differs too\n");
+  expect_refused(
+      flipped(section + bytes), section + bytes,
+      "damaged scene image (field section.section_bytes); its check_value differs too, in the scene image that "
+      "begins at byte 4096; the job's check_value differs too\n");
   expect_refused(flipped(4096 + 1), 4096, "damaged scene image (field header.magic)");
-  expect_refused(flipped(1000), offsetof(FrameJob, check_value),
-                 "check_value differs from that of the file's bytes: some number in front of byte 4096");
+  expect_refused(
+      flipped(1000), offsetof(FrameJob, check_value),
+      "check_value differs from that of the file's bytes: some number in front of byte 4096, in the job's head or "
+      "the frame record, has changed, and no other check finds which\n");
   const std::uint64_t triangles = [&] {
     for (std::size_t i = 0;; ++i) {
       const auto entry = record_at<SectionEntry>(whole, section + i * sizeof(SectionEntry));

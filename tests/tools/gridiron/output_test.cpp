@@ -91,6 +91,8 @@ TEST(Output, IsStandardOutputAsBytesOfTheFile) {
       EXPECT_EQ(read_file(folder.path("out")), png) << way << end;
       const std::string words = read_file(folder.path("err"));
       EXPECT_NE(words.find("cell-ps3, 6 cores: "), std::string::npos) << words;
+      const std::string name = std::string(way) == "-o -" ? "standard output" : std::string(way).substr(3);
+      EXPECT_EQ(words.find(name + ": 40x24, hash "), 0u) << words;
     }
   }
   EXPECT_EQ(run_line(folder, render + "-o b.png --depth - --quiet"), 0);
@@ -121,7 +123,7 @@ TEST(Output, StandardOutputThatCannotTakeItIsTold) {
     const char* words;
   } cases[] = {
       {render + "-o - >&-", 1, "standard output: cannot write: it is not open for writing"},
-      {render + "-o - > /dev/full", 1, "standard output: cannot write: write: No space left on device"},
+      {render + "-o - > /dev/full", 1, "standard output: cannot write: No space left on device"},
       {render + "-o a.png > /dev/full", 1,
        "standard output: cannot write: No space left on device\n1 file was written"},
       {render + "-o a.png >&-", 1, "standard output: cannot write"},
@@ -166,7 +168,7 @@ TEST(Output, AFileThatOutgrowsItsLimitIsLeftOut) {
   folder.write_ply("a.ply", make_sphere(8, 12, 1.0f));
   folder.write("a.png", "earlier");
   EXPECT_EQ(run_line(folder, "ulimit -f 4; \"$G\" render a.ply --size 64x64 -o a.png --depth d.pfm"), 1);
-  EXPECT_EQ(read_file(folder.path("err")), "d.pfm: cannot write: write: File too large\n");
+  EXPECT_EQ(read_file(folder.path("err")), "d.pfm: cannot write: File too large\n");
   EXPECT_EQ(folder.names(), (Words{"a.ply", "a.png", "err", "out"}));
   EXPECT_EQ(read_file(folder.path("a.png")), "earlier");
 }

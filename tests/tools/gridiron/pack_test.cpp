@@ -1,6 +1,7 @@
 // pack: scene images. SPDX-License-Identifier: Apache-2.0
 #include <gtest/gtest.h>
 
+#include "gridiron/words.h"
 #include "run_program.h"
 #include "temporary_folder.h"
 
@@ -81,8 +82,7 @@ TEST(Pack, DamagedImagesAreNamedWithTheirByte) {
   const std::string image = read_file(folder.path("a.gri"));
   std::string flipped = image;
   flipped[flipped.size() / 2] = static_cast<char>(flipped[flipped.size() / 2] ^ 1);
-  for (const std::string& damaged :
-       {image.substr(0, 40), image.substr(0, image.size() - 128), flipped}) {
+  for (const std::string& damaged : {image.substr(0, 40), image.substr(0, image.size() - 128), flipped}) {
     folder.write("b.gri", damaged);
     for (const Words& command : {Words{"render", "b.gri"}, {"info", "b.gri"}}) {
       const ProgramResult result = run_program(folder.folder(), command);
@@ -91,6 +91,13 @@ TEST(Pack, DamagedImagesAreNamedWithTheirByte) {
     }
   }
   EXPECT_EQ(folder.names(), (Words{"a.gri", "a.ply", "b.gri"}));
+  for (const auto& [bytes, wanted] : {std::pair(std::size_t{40}, std::string("header has 64")),
+                                      {std::size_t{128}, "image has " + tool::words_of_count(image.size())}}) {
+    folder.write("b.gri", image.substr(0, bytes));
+    const std::string words = run_program(folder.folder(), {"render", "b.gri"}).err;
+    EXPECT_NE(words.find(": there are " + std::to_string(bytes) + " bytes, the " + wanted + "\n"), std::string::npos)
+        << words;
+  }
   folder.write("b.gri", "GDRX" + image.substr(4));
   const std::string words = run_program(folder.folder(), {"render", "b.gri"}).err;
   EXPECT_EQ(words.find("b.gri: is of no known kind: it begins with 'GDRX"), 0u) << words;

@@ -1,10 +1,16 @@
-// Time left: near the truth, and without jumps. SPDX-License-Identifier: Apache-2.0
+// Time left: near the truth, and without jumps; stages: seen on a terminal only. SPDX-License-Identifier: Apache-2.0
 #include "gridiron/progress.h"
 
+#include <fcntl.h>
 #include <gtest/gtest.h>
+#include <poll.h>
+#include <stdlib.h>
+#include <unistd.h>
 
 #include <algorithm>
+#include <chrono>
 #include <cmath>
+#include <thread>
 
 namespace gridiron::tool {
 namespace {
@@ -49,7 +55,7 @@ TEST(TimeLeft, ASlowerHalfIsNoticed) {
   const double told = *left.seconds();
   EXPECT_NEAR(told, 10, 1);
   for (int part = 51; part <= 80; ++part) left.update(10 + 2.0 * (part - 50), part / 100.0);
-  EXPECT_GT(*left.seconds(), 15) << "40 seconds are left";
+  EXPECT_GT(*left.seconds(), 20) << "40 seconds are left; 17 by the mean of all";
 }
 
 TEST(TimeLeft, WordsAreOfUnits) {
@@ -59,6 +65,39 @@ TEST(TimeLeft, WordsAreOfUnits) {
   EXPECT_EQ(words_of_seconds(80), "1 min 20 s");
   EXPECT_EQ(words_of_seconds(7500), "2 h 5 min");
   EXPECT_EQ(words_of_seconds(-3), "0 s");
+}
+
+// What a terminal is sent while a stage of more than a second lives.
+std::string words_of_stage(bool wanted) {
+  const int screen = ::posix_openpt(O_RDWR | O_NOCTTY);
+  EXPECT_EQ(::grantpt(screen) + ::unlockpt(screen), 0);
+  const int terminal = ::open(::ptsname(screen), O_RDWR | O_NOCTTY), usual = ::dup(STDERR_FILENO);
+  ::dup2(terminal, STDERR_FILENO);
+  {
+    const StageLines lines(wanted);
+    {
+      const Stage stage("a.ply", "reading");
+      std::this_thread::sleep_for(std::chrono::milliseconds(1600));
+    }
+    const Stage brief("b.ply", "reading");
+  }
+  ::dup2(usual, STDERR_FILENO);
+  // What was written arrives piece by piece, some time later.
+  std::string words;
+  for (pollfd ready{screen, POLLIN, 0}; ::poll(&ready, 1, 500) > 0;) {
+    char text[1024];
+    words.append(text, static_cast<std::size_t>(std::max<ssize_t>(::read(screen, text, sizeof text), 0)));
+  }
+  for (const int each : {screen, terminal, usual}) ::close(each);
+  return words;
+}
+
+TEST(Stage, IsDrawnOnceItTakesASecondAndWipedAtItsEnd) {
+  EXPECT_EQ(words_of_stage(false), "");
+  const std::string words = words_of_stage(true);
+  EXPECT_EQ(words.find("\ra.ply: reading, "), 0u) << words;
+  EXPECT_TRUE(words.ends_with("\033[K\r\033[K")) << words;
+  EXPECT_EQ(words.find("b.ply"), std::string::npos) << words;
 }
 
 }  // namespace

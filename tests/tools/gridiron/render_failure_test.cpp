@@ -48,8 +48,8 @@ TEST(RenderFailure, BadInputNamesFileAndLineOrByte) {
       {"text.ply", "text.ply:3: "},
       {"index.ply", "index.ply:13: "},
       {"short.ply", "short.ply:byte " + std::to_string(whole.size() - 1) + ": "},
-      {"empty.ply", "empty.ply: is empty; expected a scene"},
-      {"folder.ply", "folder.ply: is a folder; expected a scene: a PLY mesh, a text scene (NFF) or a packed scene"},
+      {"empty.ply", "empty.ply: is empty; "},
+      {"folder.ply", "folder.ply: is a folder; "},
       {"a.nff", "a.nff:1: the file ends inside 'v'"},
       {"a.txt", "a.txt:2: "},
   };
@@ -58,6 +58,9 @@ TEST(RenderFailure, BadInputNamesFileAndLineOrByte) {
     expect_failure(folder, {"info", input.input}, 1, input.words);
     expect_failure(folder, {"pack", input.input, "-o", "out.gri"}, 1, input.words);
   }
+  expect_failure(folder, {"render", "empty.ply"}, 1,
+                 "; expected a scene: a PLY mesh, a text scene (NFF) or a packed scene (made by 'gridiron pack')\n");
+  expect_failure(folder, {"pack", "empty.ply", "-o", "out.gri"}, 1, "; pack takes a PLY mesh or a text scene (NFF)\n");
 }
 
 TEST(RenderFailure, ScenesWithoutATriangleToTrace) {
@@ -84,7 +87,7 @@ TEST(RenderFailure, OutputsThatCannotBeWritten) {
     }
   }
   expect_failure(folder, {"render", "a.ply", "--size", "8x8", "-o", "good.png", "--report", "/dev/full"}, 1,
-                 "/dev/full: cannot write: write: No space left on device");
+                 "/dev/full: cannot write: No space left on device");
   expect_failure(folder, {"pack", "a.ply", "-o", "missing/x.gri"}, 1, "missing/x.gri: cannot write");
 }
 
@@ -99,7 +102,12 @@ TEST(RenderFailure, AFailureKeepsTheFilesOfAnEarlierRun) {
 TEST(RenderFailure, PicturesLargerThanTheMachine) {
   const TemporaryFolder folder;
   folder.write_ply("a.ply", make_box(Vec3(0), Vec3(1)));
-  expect_failure(folder, {"render", "a.ply", "--size", "16384x16384"}, 1, "a picture of 16384x16384 needs 1.0 GB");
+  expect_failure(folder, {"render", "a.ply", "--size", "16384x16384"}, 1, "a whole frame of 16384x16384 needs 1,073,7");
+  // As much as there is but for what the simulator keeps; one tile is a part of the whole frame.
+  const std::string words =
+      "a whole frame of 8192x8192 needs 268,435,840 bytes of main memory; cell-ps3 has 268,431,360 for it";
+  expect_failure(folder, {"render", "a.ply", "--size", "8192x8192"}, 1, words);
+  expect_failure(folder, {"render", "a.ply", "--size", "8192x8192", "--tile", "0,0"}, 1, words);
 }
 
 TEST(RenderFailure, ViewsThatNoCameraHas) {
@@ -108,7 +116,8 @@ TEST(RenderFailure, ViewsThatNoCameraHas) {
   folder.write("bad.camera", "eye 1 2 3\nat 0 0\n");
   expect_failure(folder, {"render", "a.ply", "--eye", "1,2,3", "--at", "1,2,3"}, 2, "eye and at are the same point");
   expect_failure(folder, {"render", "a.ply", "--eye", "0,5,0", "--at", "0,0,0"}, 2, "up points along the view");
-  expect_failure(folder, {"render", "a.ply", "--tile", "32,0"}, 2, "32 columns");
+  expect_failure(folder, {"render", "a.ply", "--tile", "32,0"}, 2, "32 columns and 32 rows of tiles");
+  expect_failure(folder, {"render", "a.ply", "--tile", "1,0", "--size", "9x9"}, 2, "has 1 column and 1 row of tiles");
   expect_failure(folder, {"render", "a.ply", "--camera", "bad.camera"}, 1, "bad.camera:2: ");
   expect_failure(folder, {"render", "a.ply", "--camera", "none.camera"}, 1, "none.camera: No such file");
 }
@@ -117,7 +126,25 @@ TEST(RenderFailure, TheStoreMustHoldThePackedMacrocells) {
   const TemporaryFolder folder;
   folder.write_ply("a.ply", make_box(Vec3(0), Vec3(1)));
   ASSERT_EQ(run_program(folder.folder(), {"pack", "a.ply", "-o", "a.gri", "--macro-width", "8"}).exit_code, 0);
-  expect_failure(folder, {"render", "a.gri", "--store", "64"}, 1, "scene image that this local store");
+  expect_failure(folder, {"render", "a.gri", "--store", "64"}, 1, "a.gri: scene image that this local store");
+}
+
+TEST(RenderFailure, SignalsThatTheParentIgnoresStayIgnored) {
+  const TemporaryFolder folder;
+  folder.write_ply("a.ply", make_box(Vec3(0), Vec3(1)));
+  const ProgramResult result = run_shell(folder.folder(), R"sh(
+mkfifo pipe
+trap '' INT TERM HUP
+"$GRIDIRON" render - --size 8x8 -o a.png --quiet < pipe &
+exec 3> pipe
+until [ -z "$(readlink /proc/$!/exe | grep bash)" ]; do sleep 0.01; done
+sleep 0.3
+kill -INT $!; kill -TERM $!; kill -HUP $!
+cat a.ply >&3
+exec 3>&-
+wait $!)sh");
+  EXPECT_EQ(result.exit_code, 0) << result.err;
+  EXPECT_TRUE(std::filesystem::exists(folder.path("a.png")));
 }
 
 // Sends `signal` some time into a render that would last for most of a minute.

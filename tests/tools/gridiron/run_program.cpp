@@ -49,6 +49,7 @@ RunningProgram::RunningProgram(const std::filesystem::path& folder, const std::v
   values.push_back(nullptr);
   process_ = ::fork();
   if (process_ == 0) {
+    ::signal(SIGINT, SIG_DFL);  // tests may run in the background, where shells ignore it
     ::dup2(out_, STDOUT_FILENO);
     ::dup2(err_, STDERR_FILENO);
     if (::chdir(folder.c_str()) == 0) ::execv(values[0], values.data());

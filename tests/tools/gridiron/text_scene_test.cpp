@@ -237,15 +237,34 @@ TEST(TextScene, ManyTrianglesGetTheToleranceOfThePicture) {
   EXPECT_EQ(asked["scene"]["tolerance"]["least"], asked["scene"]["tolerance"]["most"]);
   EXPECT_LT(2 * chosen["scene"]["triangles"].get<int>(), asked["scene"]["triangles"].get<int>());
   EXPECT_GT(large["scene"]["triangles"], chosen["scene"]["triangles"]);
-  const Words render = {"render", "a.nff", "--mode", "plain", "--shading", "simple"};
+  const Words render = {"render", "a.nff", "--mode", "plain", "--shading", "none", "--lambda", "0.1"};
   const Words small = joined(render, {"--size", "8x8"});
   const ProgramResult result = run(folder, small);
   EXPECT_EQ(result.err.find("a.nff: tolerance of round shapes chosen by the picture: 0.000"), 0u) << result.err;
   EXPECT_NE(result.err.find("--tolerance sets another"), std::string::npos) << result.err;
   EXPECT_EQ(run(folder, joined(small, {"--quiet"})).err, "");
+  EXPECT_NE(result.err.find(" would make about 780,000; --tolerance sets another"), std::string::npos) << result.err;
+
   // Another place to look from is another picture; of a large one, so that no shape is at its coarsest.
-  const Words tile = joined(render, {"--size", "4096x4096", "--tile", "0,0"});
-  EXPECT_NE(run(folder, joined(tile, {"--eye", "0.55,0.45,0.5"})).err, run(folder, tile).err);
+  const Words tile = joined(render, {"--size", "2048x2048", "--tile", "0,0"});
+  const std::string own = run(folder, tile).err;
+  for (const Words& view : {Words{"--eye", "0.55,0.45,0.5"}, Words{"--from", "top"}, Words{"--fov", "20"}}) {
+    EXPECT_NE(run(folder, joined(tile, view)).err, own) << view[0];
+  }
+
+  // The same scene without a view has the same picture from the same place, and one that frames it.
+  std::string text = scene_makers::make_lattice(8);
+  const std::size_t view = text.find("v\n");
+  text.erase(view, text.find("resolution 512 512") + 18 - view);
+  folder.write("b.nff", text);
+  const auto triangles_of = [](const std::string& err) { return err.substr(err.find("picture: ")); };
+  const Words bare = {"render", "b.nff", "--mode", "plain", "--shading", "none", "--lambda", "0.1", "--tile", "0,0"};
+  const Words eye = {"--size", "2048x2048", "--eye", "1.75,1.55,3", "--at", "0.5,0.5,0.5"};
+  EXPECT_EQ(triangles_of(run(folder, joined(bare, eye)).err), triangles_of(own));
+  EXPECT_EQ(run(folder, bare).err.find("b.nff: tolerance of round shapes chosen by the picture: "), 0u);
+  EXPECT_EQ(info_json(folder, {"b.nff", "--lambda", "0.1"})["scene"]["tolerance"]["rule"], "picture");
+  const Words within = {"--size", "4096x4096", "--eye", "0.55,0.45,0.5"};
+  EXPECT_EQ(run(folder, joined(bare, within)).err, "") << "no shape is coarser";
 }
 
 TEST(TextScene, WhatDoesNotFitNamesATolerance) {

@@ -64,6 +64,7 @@ ReportInput sample() {
   input.render = {2, 4};
   input.host_threads = 6;
   input.repeats = 3;
+  input.trace_bytes = 5000;
   input.image_hash = 0x0123456789abcdef;
   input.depth_hash = 0x1123456789abcdef;
   input.ids_hash = 0x2123456789abcdef;
@@ -155,6 +156,7 @@ TEST(Report, HasExactlyTheDocumentedKeysInOrder) {
                            "host.threads",
                            "host.lanes",
                            "host.repeats",
+                           "host.trace_bytes",
                            "image_hash",
                            "depth_hash",
                            "ids_hash"}) {
@@ -205,7 +207,7 @@ TEST(Report, ValuesAreTheOnesPutIn) {
   EXPECT_EQ(report["host"], Json::parse(R"({"load_seconds": 0.125, "build_seconds": 0.5, "render_seconds": 2.0,
                                             "load_processor_seconds": 0.25, "build_processor_seconds": 0.75,
                                             "render_processor_seconds": 4.0, "threads": 6, "lanes": 4,
-                                            "repeats": 3})"));
+                                            "repeats": 3, "trace_bytes": 5000})"));
   EXPECT_EQ(report["image_hash"], "0123456789abcdef");
   EXPECT_EQ(report["depth_hash"], "1123456789abcdef");
   EXPECT_EQ(report["ids_hash"], "2123456789abcdef");
