@@ -198,13 +198,13 @@ void add_view_options(CLI::App& app, RenderArguments& render) {
              "front, back, left, right, top, bottom, iso or AZIMUTH,ELEVATION in degrees, elevation from -90 to 90",
              "SIDE|AZIMUTH,ELEVATION",
              "side from which the scene is framed: front|back|left|right|top|bottom|iso, or degrees from the front to "
-             "the right and upwards (default 20,20); replaces eye and at of --camera or of a text scene",
+             "the right and upwards (default 30,25); replaces eye and at of --camera or of a text scene",
              {"front", "back", "left", "right", "top", "bottom", "iso"});
   const auto fov = [](const std::string& text) {
     const std::optional<float> value = parse_float(text);
     return value && fov_is_possible(*value) ? value : std::nullopt;
   };
-  add_parsed(app, "--fov", render.view.fov_degrees, fov, "an angle between 0 and 180 degrees", "DEG",
+  add_parsed(app, "--fov", render.view.fov_degrees, fov, "an angle from 0.001 to below 180 degrees", "DEG",
              "angle between the top and the bottom edge (default 45)");
 }
 

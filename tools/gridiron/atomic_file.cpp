@@ -40,13 +40,15 @@ int open_special(const fs::path& file) {
 // Writes all bytes or returns false with errno set. Errors: Failure where a signal ends the wait for a pipe's reader.
 bool write_all(int descriptor, std::span<const std::byte> bytes, bool can_block) {
   constexpr std::size_t kUnblockedBytes = 4096;  // a pipe that is ready takes as many at once
+  // No signal ends a write to a file, which may wait for the disk: a gigabyte takes seconds.
+  constexpr std::size_t kMostFileBytes = std::size_t{8} << 20;
   while (!bytes.empty()) {
     stop_if_interrupted();  // a signal also ends a write of which a part is done
     if (can_block) {
       pollfd ready{descriptor, POLLOUT, 0};
       if (::poll(&ready, 1, kPatienceMilliseconds) == 0) continue;
     }
-    const std::size_t most = can_block ? std::min(bytes.size(), kUnblockedBytes) : bytes.size();
+    const std::size_t most = std::min(bytes.size(), can_block ? kUnblockedBytes : kMostFileBytes);
     const ssize_t written = ::write(descriptor, bytes.data(), most);
     if (written < 0 && (errno == EINTR || errno == EAGAIN)) continue;
     if (written <= 0) return false;

@@ -61,7 +61,7 @@ ViewRequest read_camera_file(const std::filesystem::path& path) {
     if (key == "fov") {
       if (view.fov_degrees) line.fail("second 'fov'");
       view.fov_degrees = parse_values(words, 1, line)[0];
-      if (!fov_is_possible(*view.fov_degrees)) line.fail("fov must lie between 0 and 180 degrees");
+      if (!fov_is_possible(*view.fov_degrees)) line.fail("fov must be from 0.001 to below 180 degrees");
       continue;
     }
     std::optional<Vec3>* target = key == "eye" ? &view.eye : key == "at" ? &view.at : key == "up" ? &view.up : nullptr;

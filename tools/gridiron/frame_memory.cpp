@@ -86,7 +86,8 @@ MainAddress place_image(FrameMemory& frame, const SceneInput& input, const Rende
 void make_record(FrameMemory& frame, const std::filesystem::path& source) {
   const Status status = make_frame_record(frame.settings, frame.image, frame.image_address, frame.record);
   if (status == Status::kBadFrame) {
-    throw Failure(ExitCode::kUsage, "view: no camera can be made of it; eye, at, up or the scene's bounds are extreme");
+    throw Failure(ExitCode::kUsage, "view: no camera can be made of it for " + source.string() +
+                                        "; eye, at, up, fov or the scene's bounds are extreme");
   }
   if (status != Status::kOk) throw Failure(ExitCode::kBadInput, source.string() + ": " + words_of(status));
 }

@@ -24,7 +24,7 @@ struct ViewAngles {
 
   friend bool operator==(const ViewAngles&, const ViewAngles&) = default;
 };
-inline constexpr ViewAngles kDefaultViewAngles = {.azimuth = 20, .elevation = 20};
+inline constexpr ViewAngles kDefaultViewAngles = {.azimuth = 30, .elevation = 25};
 
 /// The share of the picture's width and height that stays free on each side of a framed scene.
 inline constexpr double kFramingMargin = 0.05;

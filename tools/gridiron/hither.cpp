@@ -46,22 +46,24 @@ std::optional<HitherCut> find_hither_cut(const Camera& camera, double aspect, do
   const double slope_x = slope_y * aspect;
   const DVec3 sides[] = {{1, 0, slope_x}, {-1, 0, slope_x}, {0, 1, slope_y}, {0, -1, slope_y}};
 
+  std::optional<HitherCut> cut;
   for (std::size_t i = 0; i < mesh.triangles.size(); ++i) {
     Polygon polygon;
     for (int corner = 0; corner < 3; ++corner) {
       const DVec3 offset = DVec3(mesh.vertices[mesh.triangles[i][corner]]) - eye;
       polygon.add({glm::dot(right, offset), glm::dot(up, offset), glm::dot(forward, offset)});
     }
-    const auto is_deeper = [](const DVec3& a, const DVec3& b) { return a.z < b.z; };
+    const auto is_nearer = [](const DVec3& a, const DVec3& b) { return a.z < b.z; };
     const auto* const first = polygon.corners.data();
-    if (std::min_element(first, first + 3, is_deeper)->z >= hither) continue;
+    const double limit = cut ? cut->depth : hither;
+    if (std::min_element(first, first + 3, is_nearer)->z >= limit) continue;
     for (const DVec3& side : sides) polygon = clip(polygon, side);
     if (polygon.count == 0) continue;
-    const auto [nearest, farthest] = std::minmax_element(first, first + polygon.count, is_deeper);
+    const auto [nearest, farthest] = std::minmax_element(first, first + polygon.count, is_nearer);
     // Convex: where its depths span some of (0, hither), it has points there.
-    if (nearest->z < hither && farthest->z > 0) return HitherCut{i, std::max(nearest->z, 0.0)};
+    if (nearest->z < limit && farthest->z > 0) cut = HitherCut{i, std::max(nearest->z, 0.0)};
   }
-  return std::nullopt;
+  return cut;
 }
 
 void check_hither(const SceneInput& input, const Camera& camera, std::uint32_t width, std::uint32_t height) {
@@ -71,7 +73,7 @@ void check_hither(const SceneInput& input, const Camera& camera, std::uint32_t w
       find_hither_cut(camera, static_cast<double>(width) / height, view.hither, std::get<Mesh>(input.content).view());
   if (!cut) return;
   char text[160];
-  std::snprintf(text, sizeof text, "hither %g would cut what is seen from %g on; this renderer has no near plane",
+  std::snprintf(text, sizeof text, "hither %g would cut what is seen from %.8g on; this renderer has no near plane",
                 static_cast<double>(view.hither), cut->depth);
   throw Failure(ExitCode::kBadInput, input.path.string() + ":" + std::to_string(view.line) + ": " + text);
 }

@@ -13,7 +13,7 @@
 
 namespace gridiron::tool {
 
-/// A triangle that the hither plane would cut or hide, and how near it comes.
+/// Of the triangles that the hither plane would cut or hide the nearest, and how near it comes.
 struct HitherCut {
   std::size_t triangle = 0;
   double depth = 0;  ///< least, along the view, of what the picture shows of it
@@ -21,7 +21,8 @@ struct HitherCut {
 
 /// @param aspect  width over height of the picture.
 /// @param hither  distance along at - eye before which nothing would be seen.
-/// @returns the first triangle with a part inside the view pyramid, edges included, at a depth in (0, hither).
+/// @returns the triangle that comes nearest of those with a part inside the view pyramid, edges included, at a depth in
+///          (0, hither); of equally near ones the first.
 [[nodiscard]] std::optional<HitherCut> find_hither_cut(const Camera& camera, double aspect, double hither,
                                                        const MeshView& mesh);
 

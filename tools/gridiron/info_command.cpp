@@ -187,7 +187,7 @@ void print_json(const InfoArguments& arguments, const SceneFacts& facts, const S
   }
   document["worst_tile"] = facts.worst ? json_of(*facts.worst) : Json();
   document["loops"] = facts.worst ? loops_json(facts, store) : Json();
-  std::printf("%s\n", document.dump(2).c_str());
+  std::printf("%s\n", document.dump(2, ' ', false, Json::error_handler_t::replace).c_str());
 }
 
 std::string words_of_most(std::uint64_t count) {

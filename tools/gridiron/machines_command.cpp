@@ -49,7 +49,7 @@ void run_command(const MachinesArguments& arguments) {
       for (const sim::MachineProfile& machine : sim::machine_profiles()) list.push_back(json_of(machine));
     }
     const nlohmann::ordered_json document = {{"version", 2}, {"machines", list}};
-    std::printf("%s\n", document.dump(2).c_str());
+    std::printf("%s\n", document.dump(2, ' ', false, nlohmann::ordered_json::error_handler_t::replace).c_str());
     return;
   }
   if (arguments.machine) {

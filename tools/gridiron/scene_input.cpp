@@ -247,7 +247,8 @@ GridChoice choose_grid(const SceneInput& input, const Mesh& mesh, const SceneArg
   }
   if (status == Status::kNoTriangles) {
     fail(input.path, mesh.triangles.empty()
-                         ? "no triangles: a point cloud of " + words_of_count(mesh.vertices.size()) + " vertices"
+                         ? "no triangles: a point cloud of " + words_of_count(mesh.vertices.size()) +
+                               (mesh.vertices.size() == 1 ? " vertex" : " vertices")
                          : "no triangle to trace: all " + words_of_count(mesh.triangles.size()) + " have zero area");
   }
   if (status != Status::kOk) fail(input.path, std::string("cannot build the grid: ") + words_of(status));

@@ -12,7 +12,7 @@
 namespace gridiron::tool {
 
 bool fov_is_possible(float fov_degrees) {
-  return fov_degrees > 0.0f && fov_degrees < 180.0f;
+  return fov_degrees >= kLeastFovDegrees && fov_degrees < 180.0f;
 }
 
 const char* view_defect(const Vec3& eye, const Vec3& at, const Vec3& up) {

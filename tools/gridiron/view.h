@@ -22,7 +22,10 @@ struct ViewRequest {
 
 inline constexpr float kDefaultFovDegrees = 45.0f;
 
-/// @returns true for a field of view that a pinhole camera can have: 0 < fov < 180.
+/// Neighbouring rays of narrower views round to the same floats.
+inline constexpr float kLeastFovDegrees = 0.001f;
+
+/// @returns true for a field of view that a camera can have: kLeastFovDegrees <= fov < 180.
 [[nodiscard]] bool fov_is_possible(float fov_degrees);
 
 /// @returns why no camera can look like that, nullptr where it can: eye on at, up of length 0 or along the view.

@@ -136,9 +136,9 @@ class Parser {
     } else if (part.text == "angle") {
       const SceneNumber number = words_.take_number(entity);
       view.angle_degrees = static_cast<float>(number.value);
-      if (!(view.angle_degrees > 0 && view.angle_degrees < 180)) {
+      if (!(view.angle_degrees >= 0.001f && view.angle_degrees < 180)) {
         words_.fail(number.word.line,
-                    "angle must lie between 0 and 180 degrees, not be " + in_quotes(number.word.text));
+                    "angle must be from 0.001 to below 180 degrees, not " + in_quotes(number.word.text));
       }
     } else if (part.text == "hither") {
       view.hither = static_cast<float>(words_.take_in_range(entity, "hither", 0, kMostSceneCoordinate));

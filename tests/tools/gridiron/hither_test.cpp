@@ -31,6 +31,16 @@ TEST(Hither, DepthDecides) {
   EXPECT_NEAR(cut->depth, 5.0, 1e-12);
 }
 
+TEST(Hither, TheNearestOfAllIsTold) {
+  TestMesh mesh = triangle({-1, 0, -5}, {1, 0, -5}, {0, 1, -5});
+  mesh.append(triangle({-1, 0, -4}, {1, 0, -4}, {0, 1, -4}));
+  mesh.append(triangle({-1, 0, -4.5f}, {1, 0, -4.5f}, {0, 1, -4.5f}));
+  const auto cut = cut_of(mesh, 6.0);
+  ASSERT_TRUE(cut);
+  EXPECT_EQ(cut->triangle, 1u);
+  EXPECT_NEAR(cut->depth, 4.0, 1e-12);
+}
+
 TEST(Hither, DepthIsAlongTheView) {
   // Seen from (3, 0, 0) towards -x, it is 2 away at its nearest corner.
   const TestMesh mesh = triangle({1, 0, 0}, {-4, 1, 0}, {-4, 0, 1});
@@ -56,15 +66,6 @@ TEST(Hither, TrianglesWhoseCornersAreAllOutside) {
   EXPECT_FALSE(cut_of(triangle({-9, -1, 9}, {9, -1, 9}, {0, -1, -90}), 0.9)) << "seen from depth 1 on";
   // In front of the hither plane only where the picture does not reach.
   EXPECT_FALSE(cut_of(triangle({8, 0, -1}, {0, 0, -9}, {8, 0, -9}), 1.5));
-}
-
-TEST(Hither, TheFirstOfManyIsTold) {
-  TestMesh mesh = triangle({-1, 0, -5}, {1, 0, -5}, {0, 1, -5});
-  mesh.append(triangle({-1, 0, -3}, {1, 0, -3}, {0, 1, -3}));
-  mesh.append(triangle({-1, 0, -2}, {1, 0, -2}, {0, 1, -2}));
-  const auto cut = cut_of(mesh, 4.0);
-  ASSERT_TRUE(cut);
-  EXPECT_EQ(cut->triangle, 1u);
 }
 
 // Points of a triangle, close together, told one by one.

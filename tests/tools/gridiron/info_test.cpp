@@ -28,6 +28,12 @@ Json info_json(const TemporaryFolder& folder, std::vector<std::string> arguments
   return Json::parse(result.out, nullptr, false);
 }
 
+TEST(Info, ANameThatIsNoUtf8IsWrittenWithReplacements) {
+  const TemporaryFolder folder;
+  folder.write_ply("bad\xff.ply", make_scene());
+  EXPECT_EQ(info_json(folder, {"bad\xff.ply"})["input"], "bad\xEF\xBF\xBD.ply");
+}
+
 TEST(Info, TellsWhatTheBuilderCounts) {
   const TemporaryFolder folder;
   const TestMesh mesh = make_scene();

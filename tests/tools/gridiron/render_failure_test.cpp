@@ -73,6 +73,13 @@ TEST(RenderFailure, ScenesWithoutATriangleToTrace) {
   expect_failure(folder, {"render", "line.ply"}, 1, "line.ply: no triangle to trace: all 1 have zero area");
 }
 
+TEST(RenderFailure, ViewsBeyondFloatsNameTheScene) {
+  const TemporaryFolder folder;
+  folder.write_ply("a.ply", make_box(Vec3(0), Vec3(1)));
+  expect_failure(folder, {"render", "a.ply", "--size", "8x8", "--eye", "0,0,1e37", "--at", "0,0,0"}, 2,
+                 "no camera can be made of it for a.ply; ");
+}
+
 TEST(RenderFailure, OutputsThatCannotBeWritten) {
   const TemporaryFolder folder;
   folder.write_ply("a.ply", make_box(Vec3(0), Vec3(1)));

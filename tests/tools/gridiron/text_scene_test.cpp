@@ -109,7 +109,7 @@ TEST(TextScene, IsFramedWhereItBringsNoView) {
       << "1024x1024";
   EXPECT_EQ(info_json(folder, {"a.nff"})["main_memory"]["picture_bytes"],
             info_json(folder, {"ball.ply"})["main_memory"]["picture_bytes"]);
-  EXPECT_EQ(picture_of(run(folder, {"render", "v.nff", "--shading", "simple", "--from", "20,20"})),
+  EXPECT_EQ(picture_of(run(folder, {"render", "v.nff", "--shading", "simple", "--from", "30,25"})),
             picture_of(run(folder, {"render", "ball.ply", "--size", "40x24", "--up", "z", "--fov", "30"})));
   folder.write("c.camera", "eye 0 4 4\nat 0 0 0\nfov 60\n");
   EXPECT_EQ(picture_of(run(folder, {"render", "ball.ply", "--from", "top", "--camera", "c.camera", "--size", "40x24"})),
