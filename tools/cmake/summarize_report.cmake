@@ -74,7 +74,7 @@ set(lines
   "frame       ${frame_cycles} cycles, ${fps} frames a second"
   "cycles      ${compute_percent} % computing, ${init_percent} % starting, ${wait_percent} % waiting for DMA, ${idle_percent} % idle"
   "DMA         ${megabytes} MB moved"
-  "local store ${data_bytes} bytes of data + ${stack_bytes} for the stack + ${code_bytes} for code, of ${arena_bytes}")
+  "local store ${data_bytes} bytes of data, ${stack_bytes} reserved for the stack, ${code_bytes} for code, of ${arena_bytes}")
 foreach(line IN LISTS lines)
   execute_process(COMMAND ${CMAKE_COMMAND} -E echo "${line}")
 endforeach()

@@ -292,6 +292,14 @@ class Reader {
     } else if (is_taken(machine_->name)) {
       machine_->name += kEditedSuffix;
     }
+    // Nor does an edited copy keep words about figures that it has changed.
+    const auto is_of_original = [this](const MachineProfile& built_in) {
+      return built_in.description == machine_->description && !has_same_values(machine_->profile, built_in);
+    };
+    const auto original = std::ranges::find_if(sim::machine_profiles(), is_of_original);
+    if (original != sim::machine_profiles().end()) {
+      machine_->description = "edited copy of " + std::string(original->name);
+    }
     if (machine_->description.empty()) {
       machine_->description = has_base_ ? "based on " : "from a machine file";
       if (has_base_) machine_->description += machine_->profile.name;

@@ -59,7 +59,7 @@ constexpr MasterProfile in_order_master() {
 // Six cores of a games console: 3.2 GHz, 256 KB local stores, 256 MB of main memory at 25.6 GB/s.
 constexpr MachineProfile kCellPs3 = {
     .name = "cell-ps3",
-    .description = "6 cores at 3.2 GHz, 256 KB local stores, 256 MB main memory at 25.6 GB/s",
+    .description = "6 cores at 3.2 GHz, 256 KB local stores, 256 MB main memory at 25.6 GB/s, 90 % of it usable",
     .core_count = 6,
     .clock_hz = 3.2e9,
     .main_memory_bytes = 256 * kMegabyte,
@@ -89,7 +89,7 @@ constexpr MachineProfile with_two_gigabytes(MachineProfile machine) {
 // is the same at 2.4 GHz; the share of its steps that is memory is not taken apart.
 constexpr MachineProfile eight_cores_of_2006(MachineProfile machine) {
   machine.name = "cell-2006";
-  machine.description = "8 cores at 2.4 GHz, 256 KB local stores, 512 MB main memory at 25.6 GB/s";
+  machine.description = "8 cores at 2.4 GHz, 256 KB local stores, 512 MB main memory at 25.6 GB/s, 90 % of it usable";
   machine.core_count = 8;
   machine.clock_hz = 2.4e9;
   machine.main_memory_bytes = 512 * kMegabyte;
