@@ -290,7 +290,8 @@ void print_text(const InfoArguments& arguments, const SceneFacts& facts, const S
   }
   print_effects(arguments, facts, store);
   print_line("loop bounds", "per packet " + std::to_string(facts.bounds.passes_per_packet) +
-                                " passes; twice as many where estimates leave hits open; with exact one more for each ray");
+                                " passes; twice as many where estimates leave hits open;"
+                                " with exact one more for each ray");
   print_line("", "per pass " + words_of_count(facts.bounds.macro_slices_per_pass) + " macro slices, " +
                      words_of_count(facts.bounds.macro_cells_per_pass) + " macrocells, " +
                      words_of_count(facts.bounds.slices_per_pass) + " slices, " +
