@@ -189,7 +189,10 @@ void explain_mistake(const CLI::App& app, std::span<const char* const> words, co
                 names_of_positionals(command));
   }
   for (const CLI::Option* option : command.get_options()) {
-    if (reason == option->get_name() + " is required") usage_error(name_of(*option) + " is required" + more);
+    if (reason != option->get_name() + " is required") continue;
+    const std::string name = name_of(*option);
+    const std::string value = option->get_positional() ? "" : " " + option->get_type_name();
+    usage_error(name.substr(0, name.find(' ')) + value + " is required" + more);  // -o FILE, --base ADDRESS, RESULT
   }
   usage_error(reason + more);
 }

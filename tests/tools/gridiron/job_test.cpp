@@ -157,7 +157,7 @@ TEST(Job, IsRefusedWhereItDoesNotFit) {
   const auto with = [&job](const Words& options) { return joined(job, options); };
   expect_failure(folder, with({"--base", "0", "--memory", std::to_string(bytes - 1)}), 1, "a.ply: the job needs ");
   expect_failure(folder, with({"--base", "0xfffffffffffff000"}), 2, "--base: the job would end behind");
-  expect_failure(folder, with({}), 2, "--base is required");
+  expect_failure(folder, with({}), 2, "--base ADDRESS is required");
   for (const char* base : {"4095", "0x", "-4096", "0x80200800", "1e3", ""}) {
     expect_failure(folder, with({"--base", base}), 2, "--base");
   }
