@@ -187,7 +187,7 @@ TEST(AccuracyExperiment, MistakesAreTold) {
     const char* words;
   };
   const Case cases[] = {
-      {{"experiment", "accuracy"}, 2, "--output"},
+      {{"experiment", "accuracy"}, 2, "-o DIR is required"},
       {{"experiment", "accuracy", "-o", "out", "--largest", "6000"}, 2, "--largest: is of experiment paper alone"},
       {{"experiment", "accuracy", "-o", "out", "--size", "0x9"}, 2, "WxH"},
       {{"experiment", "accuracy", "-o", "out", "--scenes", "nowhere"}, 1, "nowhere: no such folder"},

@@ -284,7 +284,7 @@ TEST(Experiment, MistakesAreTold) {
   };
   const Case cases[] = {
       {{"experiment"}, 2, "NAME"},
-      {{"experiment", "paper"}, 2, "--output"},
+      {{"experiment", "paper"}, 2, "-o DIR is required"},
       {{"experiment", "speed", "-o", "out"}, 2, "'speed' is not one of paper|accuracy"},
       {{"experiment", "paper", "-o", "out", "--threads", "0"}, 2, "1 to 256"},
       {{"experiment", "paper", "-o", "out", "--largest", "10"}, 2, "6000"},
