@@ -36,9 +36,9 @@ struct GridNeed {
   GridSteps steps;                       ///< for those who keep time
 };
 
-inline constexpr std::uint64_t kAnyImageBytes = ~std::uint64_t{0};
+inline constexpr std::uint64_t kAnyImageBytes = ~std::uint64_t{0};  ///< of an image whose size has no limit
 
-/// Counts what build_scene_image will need. Itself needs no memory beyond a fixed stack frame.
+/// Counts what build_scene_image will need. Itself needs a fixed stack frame, and `marks` if they are given.
 ///
 /// @param effects           of the scene; null: the image holds geometry alone.
 /// @param most_image_bytes  ends the count of an image that needs more.

@@ -105,11 +105,11 @@ class MacroWindow {
     for (std::uint64_t& word : words_) word = 0;
   }
   [[nodiscard]] std::uint64_t begin() const { return begin_; }
-  [[nodiscard]] std::uint64_t end() const { return begin_ + 64 * words_.size(); }
+  [[nodiscard]] std::uint64_t end() const { return begin_ + std::uint64_t{64} * words_.size(); }
 
   void insert(std::uint64_t macro_cell) {
     const std::uint64_t place = macro_cell - begin_;  // wraps below the window
-    if (place / 64 < words_.size()) words_[place / 64] |= std::uint64_t{1} << (place % 64);
+    if (place / 64 < words_.size()) words_[static_cast<std::size_t>(place / 64)] |= std::uint64_t{1} << (place % 64);
   }
   [[nodiscard]] std::uint64_t size() const {
     std::uint64_t total = 0;
