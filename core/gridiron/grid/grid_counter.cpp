@@ -136,7 +136,7 @@ struct Sweep {
 // @returns whether there are at most most_references.
 template <class Mesh>
 bool sweep_window(const Mesh& mesh, const GridRecord& grid, std::uint64_t most_references, MacroWindow& window,
-                    Sweep& sweep) {
+                  Sweep& sweep) {
   const CellSpace space = CellSpace::of(grid);
   const MacroMap macros(grid);
   const bool first_sweep = window.begin() == 0;

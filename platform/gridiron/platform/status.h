@@ -33,7 +33,7 @@ enum class [[nodiscard]] Status : std::uint8_t {
   kBadImage,            ///< scene image: wrong magic, version, check value, offset or count
   kUnsupportedImage,    ///< scene image is valid but this store layout or profile cannot use it
   kUnsupportedFrame,    ///< frame asks for something this renderer was not built for
-  kAborted,             ///< a frame was asked to stop between two tiles, or a build on its way
+  kAborted,             ///< the frame was asked to stop between two tiles
   kDeadline,            ///< the frame's deadline passed between two tiles
   kIncompleteFrame,     ///< the cores ended well, but part of the picture was not written (platforms that check)
 
