@@ -11,7 +11,7 @@
 namespace gridiron::experiment {
 namespace {
 
-std::string quoted(std::string_view field) {
+std::string csv_quoted(std::string_view field) {
   if (field.find_first_of(",\"\r\n") == std::string_view::npos) return std::string(field);
   std::string text = "\"";
   for (const char letter : field) {
@@ -22,7 +22,7 @@ std::string quoted(std::string_view field) {
 }
 
 std::string field_of(const Cell& cell) {
-  if (const auto* words = std::get_if<std::string>(&cell)) return quoted(*words);
+  if (const auto* words = std::get_if<std::string>(&cell)) return csv_quoted(*words);
   if (const auto* count = std::get_if<std::uint64_t>(&cell)) return std::to_string(*count);
   if (const auto* measure = std::get_if<double>(&cell)) return number_text(*measure);
   return "";
@@ -69,7 +69,7 @@ std::string csv_text(const Table& table) {
   std::string text;
   for (std::size_t i = 0; i < table.columns.size(); ++i) {
     if (i > 0) text += ',';
-    text += quoted(table.columns[i].key);
+    text += csv_quoted(table.columns[i].key);
   }
   text += '\n';
   for (const std::vector<Cell>& row : table.rows) {
