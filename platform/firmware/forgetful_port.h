@@ -2,8 +2,8 @@
 // Memory: none. Threads: one worker. SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <gridiron/dma/tags.h>
 #include <gridiron/platform/contract.h>
-#include <gridiron/store/dma_tags.h>
 
 #include <cstdint>
 

@@ -2,7 +2,7 @@
 // Memory: the workshop. Threads: worker 0. SPDX-License-Identifier: Apache-2.0
 #pragma once
 
-#include <gridiron/grid/grid_builder.h>
+#include <gridiron/build/grid/grid_builder.h>
 #include <gridiron/image/scene_image.h>
 #include <gridiron/platform/status.h>
 

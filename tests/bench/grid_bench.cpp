@@ -1,6 +1,6 @@
 // Building the scene image (count and build) against Embree's low-quality build, one thread.
 // SPDX-License-Identifier: Apache-2.0
-#include <gridiron/grid/grid_builder.h>
+#include <gridiron/build/grid/grid_builder.h>
 #include <gridiron/image/scene_image.h>
 
 #include <cstdio>
@@ -8,7 +8,7 @@
 #include <string>
 
 #include "bench/bench.h"
-#include "core/grid/line_buffer.h"
+#include "core/build/grid/line_buffer.h"
 #include "embree_peer/embree_peer.h"
 #include "support/ply_load.h"
 

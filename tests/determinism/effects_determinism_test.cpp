@@ -1,7 +1,7 @@
 // A frame with every effect, however it is made: the same picture, the same work, the same trace.
 // SPDX-License-Identifier: Apache-2.0
+#include <gridiron/build/grid/grid_builder.h>
 #include <gridiron/frame/frame_setup.h>
-#include <gridiron/grid/grid_builder.h>
 #include <gridiron/image/scene_image.h>
 #include <gridiron/sim/sim_chip.h>
 #include <gridiron/store/local_store.h>

@@ -6,8 +6,8 @@
 #include <gridiron/base/lanes.h>
 #include <gridiron/base/stages.h>
 #include <gridiron/base/work_counters.h>
+#include <gridiron/build/grid/grid_builder.h>
 #include <gridiron/frame/frame_setup.h>
-#include <gridiron/grid/grid_builder.h>
 #include <gridiron/image/scene_image.h>
 #include <gridiron/render/tile_renderer.h>
 #include <gridiron/store/local_store.h>

@@ -3,8 +3,8 @@
 // changes. The same for every allocation of host memory that fails while a frame is rendered.
 // SPDX-License-Identifier: Apache-2.0
 #include <gridiron/base/lanes.h>
+#include <gridiron/build/grid/grid_builder.h>
 #include <gridiron/frame/frame_setup.h>
-#include <gridiron/grid/grid_builder.h>
 #include <gridiron/image/scene_image.h>
 #include <gridiron/platform/fault_injection.h>
 #include <gridiron/render/tile_renderer.h>

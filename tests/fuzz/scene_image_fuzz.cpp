@@ -1,6 +1,6 @@
 // Fuzzes the scene image loader: any bytes, as they are and with the check value made right. What the loader accepts is
 // read the way the kernel reads it, under the sanitizers. SPDX-License-Identifier: Apache-2.0
-#include <gridiron/grid/grid_builder.h>
+#include <gridiron/build/grid/grid_builder.h>
 #include <gridiron/image/scene_image.h>
 
 #include <bit>
@@ -11,7 +11,7 @@
 #include <cstring>
 #include <span>
 
-#include "core/grid/line_buffer.h"
+#include "core/build/grid/line_buffer.h"
 #include "core/image/effects_oracle.h"
 #include "core/scene/test_effects.h"
 

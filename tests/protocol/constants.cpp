@@ -1,6 +1,6 @@
 // Prints core's constants as the model's constants.h. SPDX-License-Identifier: Apache-2.0
 #include <gridiron/base/records.h>
-#include <gridiron/store/dma_tags.h>
+#include <gridiron/dma/tags.h>
 #include <gridiron/store/local_store.h>
 
 #include <cstdio>

@@ -12,7 +12,7 @@
 #define OUTPUT 3       // TileRenderer's output slots, the tracing left out
 #define DRIVER 4       // PacketDriver: both rings
 #define TILE 5         // TileRenderer with PacketDriver: all three
-#define WALKS 6        // RayWalks
+#define WALKS 6        // WalkDriver
 #define GATHER 7       // gather_records
 #define SPILL 8        // RayQueue
 
@@ -86,7 +86,7 @@
 #define SERIALS DEPTH
 #define GARBAGE 255
 
-// --- Transfers: core/gridiron/store/transfers.h ------------------------------------------------------------------
+// --- Transfers: core/gridiron/dma/transfers.h ------------------------------------------------------------------
 
 byte queue_depth, output_share;
 byte pending[32];    // pending_
@@ -314,7 +314,7 @@ inline end_use(buffer) {
   d_step { in_use[buffer] = false; content[buffer] = GARBAGE }
 }
 
-// --- PacketDriver: core/gridiron/store/packet_driver.h -----------------------------------------------------------
+// --- PacketDriver: core/gridiron/engine/grid/packet_driver.h -----------------------------------------------------------
 
 #if HAS_DRIVER
 // BufferRing: front_ and used_ of either ring, and the serials that tell what it handed out.
@@ -548,7 +548,7 @@ inline run_tiles() {
 }
 #endif
 
-// --- RayWalks: core/gridiron/store/ray_walks.h -------------------------------------------------------------------
+// --- WalkDriver: core/gridiron/engine/grid/walk_driver.h -------------------------------------------------------------------
 
 #if LEVEL == WALKS
 mtype { kIdle, kNextPass, kNextMacro, kHasBlock, kNextCell, kHasRun, kDone };
@@ -659,7 +659,7 @@ inline run_walks() {
 }
 #endif
 
-// --- gather_records: core/gridiron/store/record_gather.h ---------------------------------------------------------
+// --- gather_records: core/gridiron/dma/record_gather.h ---------------------------------------------------------
 
 #if LEVEL == GATHER
 #ifndef ITEMS
@@ -720,7 +720,7 @@ inline gather() {
 }
 #endif
 
-// --- RayQueue: core/gridiron/store/ray_queue.h -------------------------------------------------------------------
+// --- RayQueue: core/gridiron/shade/ray_queue.h -------------------------------------------------------------------
 
 #if LEVEL == SPILL
 // A block of rays is K_BLOCK_RAYS = 2 here, wave and ring as many blocks as in core. A ray is its place in the stack.

@@ -5,8 +5,8 @@
 
 #include <gridiron/base/stages.h>
 #include <gridiron/base/work_counters.h>
+#include <gridiron/dma/tags.h>
 #include <gridiron/sim/sim_core.h>
-#include <gridiron/store/dma_tags.h>
 
 #include <algorithm>
 #include <cstddef>

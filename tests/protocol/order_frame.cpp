@@ -1,8 +1,8 @@
 // Frames for every order: see the header. SPDX-License-Identifier: Apache-2.0
 #include "protocol/order_frame.h"
 
+#include <gridiron/build/grid/grid_builder.h>
 #include <gridiron/frame/frame_setup.h>
-#include <gridiron/grid/grid_builder.h>
 #include <gridiron/image/scene_image.h>
 #include <gridiron/render/tile_renderer.h>
 #include <gridiron/sim/tile_source.h>

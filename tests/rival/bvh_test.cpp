@@ -1,5 +1,5 @@
 // Invariants of the hierarchy. SPDX-License-Identifier: Apache-2.0
-#include <gridiron/grid/triangle_records.h>
+#include <gridiron/build/grid/triangle_records.h>
 #include <gridiron/rival/bvh.h>
 #include <gtest/gtest.h>
 

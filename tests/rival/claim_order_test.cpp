@@ -1,7 +1,7 @@
 // Clocks without contention against the replay, and the turns they decide. SPDX-License-Identifier: Apache-2.0
+#include <gridiron/dma/tags.h>
 #include <gridiron/rival/claim_order.h>
 #include <gridiron/sim/replay.h>
-#include <gridiron/store/dma_tags.h>
 #include <gtest/gtest.h>
 
 #include <array>

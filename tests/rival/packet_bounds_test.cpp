@@ -1,5 +1,5 @@
 // A packet's bounds leave out no box that one of its rays meets. SPDX-License-Identifier: Apache-2.0
-#include <gridiron/render/camera.h>
+#include <gridiron/ray/camera.h>
 #include <gridiron/rival/packet_bounds.h>
 #include <gtest/gtest.h>
 

@@ -2,10 +2,10 @@
 // Memory: std::vector. Threads: one. SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <gridiron/dma/tags.h>
 #include <gridiron/sim/machine_profile.h>
 #include <gridiron/sim/replay.h>
 #include <gridiron/sim/trace_packing.h>
-#include <gridiron/store/dma_tags.h>
 
 #include <cstddef>
 #include <cstdint>

@@ -1,8 +1,8 @@
 // Replay: its invariants and its determinism; closed forms are in replay_model_test.cpp.
 // Memory: std::vector. Threads: one. SPDX-License-Identifier: Apache-2.0
+#include <gridiron/dma/tags.h>
 #include <gridiron/sim/machine_profile.h>
 #include <gridiron/sim/replay.h>
-#include <gridiron/store/dma_tags.h>
 #include <gtest/gtest.h>
 
 #include <algorithm>

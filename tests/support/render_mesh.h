@@ -2,8 +2,8 @@
 // Memory: owns the simulated main memory. Threads: one caller. SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <gridiron/build/grid/grid_builder.h>
 #include <gridiron/frame/frame_setup.h>
-#include <gridiron/grid/grid_builder.h>
 #include <gridiron/image/scene_image.h>
 #include <gridiron/scene/mesh.h>
 #include <gridiron/sim/sim_chip.h>

@@ -1,7 +1,7 @@
 // Generated meshes: see the header. SPDX-License-Identifier: Apache-2.0
 #include "support/test_mesh.h"
 
-#include <gridiron/grid/lattice.h>
+#include <gridiron/build/lattice.h>
 
 #include <cmath>
 #include <numbers>

@@ -1,8 +1,8 @@
 // Runs the counted kernel and the kernel: see the header. SPDX-License-Identifier: Apache-2.0
 #include <copy_core.h>
 #include <counted_frame.h>
+#include <gridiron/build/grid/grid_builder.h>
 #include <gridiron/frame/frame_setup.h>
-#include <gridiron/grid/grid_builder.h>
 #include <gridiron/image/scene_image.h>
 #include <gridiron/platform/contract.h>
 #include <gridiron/render/tile_renderer.h>

@@ -3,8 +3,8 @@
 #pragma once
 
 #include <gridiron/base/records.h>
+#include <gridiron/build/grid/grid_builder.h>
 #include <gridiron/frame/frame_setup.h>
-#include <gridiron/grid/grid_builder.h>
 #include <gridiron/image/scene_image.h>
 #include <gridiron/sim/sim_memory.h>
 

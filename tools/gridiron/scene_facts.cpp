@@ -1,8 +1,8 @@
 // Scene facts. SPDX-License-Identifier: Apache-2.0
 #include "scene_facts.h"
 
+#include <gridiron/build/effects/effect_sections.h>
 #include <gridiron/frame/frame_setup.h>
-#include <gridiron/grid/effect_sections.h>
 
 #include <algorithm>
 #include <span>

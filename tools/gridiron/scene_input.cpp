@@ -1,8 +1,8 @@
 // Scene input. SPDX-License-Identifier: Apache-2.0
 #include "scene_input.h"
 
+#include <gridiron/build/grid/grid_resolution.h>
 #include <gridiron/frame/frame_setup.h>
-#include <gridiron/grid/grid_resolution.h>
 #include <gridiron/sim/sim_memory.h>
 
 #include <algorithm>

@@ -3,7 +3,7 @@
 // Memory: owns mesh or file. Threads: one. SPDX-License-Identifier: Apache-2.0
 #pragma once
 
-#include <gridiron/grid/grid_builder.h>
+#include <gridiron/build/grid/grid_builder.h>
 #include <gridiron/image/scene_image.h>
 #include <gridiron/scene/mesh.h>
 

@@ -1,8 +1,8 @@
 // Checks of the sections of effects: see image_checker.h. SPDX-License-Identifier: Apache-2.0
 #include <gridiron/base/lanes.h>
 #include <gridiron/base/math.h>
-#include <gridiron/grid/lattice.h>
-#include <gridiron/grid/triangle_records.h>
+#include <gridiron/build/grid/triangle_records.h>
+#include <gridiron/build/lattice.h>
 #include <gridiron/image/image_checker.h>
 #include <gridiron/scene/effect_rules.h>
 

@@ -1,8 +1,8 @@
 // Checks of triangles against the cells that hold them: see image_checker.h. SPDX-License-Identifier: Apache-2.0
 #include <gridiron/base/math.h>
-#include <gridiron/grid/cell_rows.h>
-#include <gridiron/grid/image_layout.h>
-#include <gridiron/grid/triangle_records.h>
+#include <gridiron/build/grid/cell_rows.h>
+#include <gridiron/build/grid/image_layout.h>
+#include <gridiron/build/grid/triangle_records.h>
 #include <gridiron/image/image_checker.h>
 
 namespace gridiron {

@@ -3,7 +3,7 @@
 #include <gridiron/base/lanes.h>
 #include <gridiron/base/math.h>
 #include <gridiron/base/triangle_formats.h>
-#include <gridiron/grid/grid_resolution.h>
+#include <gridiron/build/grid/grid_resolution.h>
 #include <gridiron/image/image_checker.h>
 #include <gridiron/image/scene_image.h>
 

@@ -4,14 +4,14 @@
 #pragma once
 
 #include <gridiron/base/records.h>
-#include <gridiron/effects/effect_renderer.h>
+#include <gridiron/dma/transfers.h>
+#include <gridiron/engine/grid/frustum.h>
+#include <gridiron/engine/grid/packet_driver.h>
 #include <gridiron/platform/contract.h>
-#include <gridiron/ray/frustum.h>
-#include <gridiron/render/camera.h>
-#include <gridiron/render/shading.h>
+#include <gridiron/ray/camera.h>
+#include <gridiron/shade/effect_renderer.h>
+#include <gridiron/shade/shading.h>
 #include <gridiron/store/local_store.h>
-#include <gridiron/store/packet_driver.h>
-#include <gridiron/store/transfers.h>
 
 #include <cstdint>
 #include <initializer_list>
@@ -166,7 +166,7 @@ class TileRenderer {
     store_.mailbox.clear();
     Frustum frustum;
     while (take_pass<L>(store_.frame.grid, waiting, store_.packet, frustum, store_.work)) {
-      PacketDriver<L, Layout, P> driver(store_, transfers_, frustum);
+      PacketDriver<L, LocalStore<Layout>, P> driver(store_, transfers_, frustum);
       GRIDIRON_TRY(driver.run());
       store_.work.charge_to(Work::kPacketStart);
       // The next pass has other rays: what this one has seen says nothing about them.
@@ -257,7 +257,7 @@ class TileRenderer {
 
   static constexpr bool kHasEffects = Layout::kEffects != 0;
   struct NoEffects {};
-  using Effects = std::conditional_t<kHasEffects, EffectRenderer<L, Layout, P>, NoEffects>;
+  using Effects = std::conditional_t<kHasEffects, EffectRenderer<L, LocalStore<Layout>, P>, NoEffects>;
 
   [[nodiscard]] Effects make_effects([[maybe_unused]] SpillRegion spill) {
     if constexpr (kHasEffects) {

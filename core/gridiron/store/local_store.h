@@ -5,12 +5,12 @@
 #include <gridiron/base/effect_records.h>
 #include <gridiron/base/records.h>
 #include <gridiron/base/work_counters.h>
+#include <gridiron/dma/tags.h>
+#include <gridiron/engine/grid/macro_table.h>
+#include <gridiron/engine/grid/mailbox.h>
 #include <gridiron/platform/contract.h>
 #include <gridiron/ray/packet.h>
-#include <gridiron/store/dma_tags.h>
-#include <gridiron/store/effect_store.h>
-#include <gridiron/traverse/macro_table.h>
-#include <gridiron/traverse/mailbox.h>
+#include <gridiron/shade/effect_store.h>
 
 #include <cstddef>
 #include <cstdint>
@@ -162,15 +162,6 @@ struct EffectLayout64K {
   /// @endcond
 };
 
-/// A layout whose packets have no width traces all rays by walks.
-template <class Layout>
-inline constexpr bool kHasPackets = Layout::kPacketWidth != 0;
-
-/// Walks of rays that a layout has buffers for.
-template <class Layout>
-inline constexpr std::uint32_t kWalkCount =
-    Layout::kMaxMacroDepth < Layout::kMaxTriangleDepth ? Layout::kMaxMacroDepth : Layout::kMaxTriangleDepth;
-
 /// @cond
 /// Parts of a local store that depend on what its layout is for.
 template <class Layout>
@@ -259,12 +250,6 @@ struct alignas(128) LocalStore {
   static_assert(Layout::kMaxMacroDepth <= kMacroTagCount);
   static_assert(Layout::kMaxTriangleDepth <= kTriangleTagCount);
   static_assert(Layout::kMaxOutputDepth <= kOutputTagCount);
-};
-
-/// Main memory of one core for secondary rays that wait; of frames without effects, none.
-struct SpillRegion {
-  MainAddress address{};    ///< a multiple of kSpillAlignment
-  std::uint64_t bytes = 0;  ///< at least spill_bytes(recursion_depth) of the frame's scene
 };
 
 /// Bytes that a layout leaves for data.

@@ -4,15 +4,15 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <gridiron/dma/transfers.h>
 #include <gridiron/platform/contract.h>
+#include <gridiron/ray/camera.h>
 #include <gridiron/ray/intersect_standard.h>
-#include <gridiron/render/camera.h>
-#include <gridiron/render/shading.h>
 #include <gridiron/rival/child_order.h>
 #include <gridiron/rival/four_words.h>
 #include <gridiron/rival/rival_store.h>
 #include <gridiron/rival/rival_work.h>
-#include <gridiron/store/transfers.h>
+#include <gridiron/shade/shading.h>
 
 #include <cstdint>
 

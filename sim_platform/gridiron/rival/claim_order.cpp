@@ -1,6 +1,6 @@
 // Clocks without contention and the turns they decide. SPDX-License-Identifier: Apache-2.0
+#include <gridiron/dma/tags.h>
 #include <gridiron/rival/claim_order.h>
-#include <gridiron/store/dma_tags.h>
 
 #include <algorithm>
 

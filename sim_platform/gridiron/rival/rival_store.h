@@ -4,11 +4,11 @@
 
 #include <gridiron/base/records.h>
 #include <gridiron/base/work_counters.h>
+#include <gridiron/dma/tags.h>
 #include <gridiron/ray/packet.h>
 #include <gridiron/rival/bvh_node.h>
 #include <gridiron/rival/packet_bounds.h>
 #include <gridiron/rival/soft_cache.h>
-#include <gridiron/store/dma_tags.h>
 
 #include <cstddef>
 #include <cstdint>

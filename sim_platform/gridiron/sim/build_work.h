@@ -2,7 +2,7 @@
 // Memory: plain values. Threads: any. SPDX-License-Identifier: Apache-2.0
 #pragma once
 
-#include <gridiron/grid/grid_builder.h>
+#include <gridiron/build/grid/grid_builder.h>
 #include <gridiron/sim/machine_profile.h>
 
 #include <array>

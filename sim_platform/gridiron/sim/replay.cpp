@@ -1,8 +1,8 @@
 // Replay: a discrete-event simulation of one frame's traces. See replay.h for the model.
 // Memory: std::vector. Threads: any, no shared state. SPDX-License-Identifier: Apache-2.0
+#include <gridiron/dma/tags.h>
 #include <gridiron/sim/replay.h>
 #include <gridiron/sim/trace_packing.h>
-#include <gridiron/store/dma_tags.h>
 
 #include <algorithm>
 #include <array>

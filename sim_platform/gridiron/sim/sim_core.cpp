@@ -1,9 +1,9 @@
 // One simulated core in checked mode; see the header. Sections: rules, bytes, claims and trace, instrumentation.
 // Memory: borrows arena and main memory; own book-keeping in std::vector. Threads: one per object.
 // SPDX-License-Identifier: Apache-2.0
+#include <gridiron/dma/tags.h>
 #include <gridiron/sim/sim_core.h>
 #include <gridiron/sim/trace_packing.h>
-#include <gridiron/store/dma_tags.h>
 #include <link.h>
 #include <pthread.h>
 

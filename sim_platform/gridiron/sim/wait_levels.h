@@ -2,7 +2,7 @@
 // Memory: none. Threads: any. SPDX-License-Identifier: Apache-2.0
 #pragma once
 
-#include <gridiron/store/dma_tags.h>
+#include <gridiron/dma/tags.h>
 
 #include <cstddef>
 #include <cstdint>
@@ -20,7 +20,7 @@ enum class WaitLevel : std::uint8_t {
 /// Levels, kSetup among them.
 inline constexpr std::size_t kWaitLevelCount = static_cast<std::size_t>(WaitLevel::kCount);
 
-/// Levels by name of the tag waited for (core/gridiron/store/dma_tags.h): kTile = output buffers, kMacroCell = cell
+/// Levels by name of the tag waited for (core/gridiron/dma/tags.h): kTile = output buffers, kMacroCell = cell
 /// blocks, kTriangle = triangle buffers, kSetup = frame record and macrocell table.
 [[nodiscard]] constexpr WaitLevel wait_level_of_tag(std::uint32_t tag) {
   if (tag < kFirstMacroTag) return WaitLevel::kSetup;

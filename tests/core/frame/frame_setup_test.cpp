@@ -3,7 +3,7 @@
 #include <gridiron/frame/frame_setup.h>
 #include <gtest/gtest.h>
 
-#include "core/grid/built_image.h"
+#include "core/build/grid/built_image.h"
 #include "core/scene/test_effects.h"
 
 namespace gridiron::test {

@@ -1,8 +1,8 @@
 // The worst tile: no tile of any frame exceeds it in any count; some counts are reached.
 // SPDX-License-Identifier: Apache-2.0
+#include <gridiron/build/grid/grid_builder.h>
 #include <gridiron/frame/frame_setup.h>
 #include <gridiron/frame/tile_bound.h>
-#include <gridiron/grid/grid_builder.h>
 #include <gridiron/scene/effects.h>
 #include <gridiron/sim/compiled_layouts.h>
 #include <gridiron/sim/replay.h>

@@ -9,7 +9,7 @@
 #include <string>
 #include <vector>
 
-#include "core/grid/built_image.h"
+#include "core/build/grid/built_image.h"
 #include "core/image/effects_oracle.h"
 #include "core/scene/test_effects.h"
 

@@ -9,7 +9,7 @@
 #include <string>
 #include <vector>
 
-#include "core/grid/built_image.h"
+#include "core/build/grid/built_image.h"
 #include "support/test_mesh.h"
 
 namespace gridiron::test {

@@ -11,7 +11,7 @@
 #include <string>
 #include <vector>
 
-#include "core/grid/built_image.h"
+#include "core/build/grid/built_image.h"
 #include "core/scene/test_effects.h"
 #include "support/test_mesh.h"
 

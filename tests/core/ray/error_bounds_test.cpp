@@ -4,13 +4,13 @@
 // Found by hill climbing over the bits of the inputs, from thousands of starts at numbers just above powers of two,
 // for the largest error as a share of its bound or, with the bound lowered as far as a case says, for a wrong decision.
 // SPDX-License-Identifier: Apache-2.0
+#include <gridiron/engine/grid/frustum.h>
+#include <gridiron/ray/camera.h>
 #include <gridiron/ray/distance.h>
 #include <gridiron/ray/edges.h>
-#include <gridiron/ray/frustum.h>
 #include <gridiron/ray/intersect_standard.h>
 #include <gridiron/ray/pixel_box.h>
 #include <gridiron/ray/subpackets.h>
-#include <gridiron/render/camera.h>
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -19,8 +19,8 @@
 #include <cstdint>
 #include <memory>
 
+#include "core/engine/grid/bound_cases.h"
 #include "core/lane_types.h"
-#include "core/ray/bound_cases.h"
 #include "core/ray/exact_ray.h"
 #include "core/ray/packet_cases.h"
 

@@ -1,6 +1,6 @@
 // The `paper` test against the same geometry in double, where single precision is good enough to tell.
 // SPDX-License-Identifier: Apache-2.0
-#include <gridiron/grid/triangle_records.h>
+#include <gridiron/build/grid/triangle_records.h>
 #include <gridiron/ray/intersect_projection.h>
 #include <gtest/gtest.h>
 

@@ -1,7 +1,7 @@
 // The `standard` test against exact arithmetic: which rays hit, at which float, whose triangle it is.
 // SPDX-License-Identifier: Apache-2.0
+#include <gridiron/ray/camera.h>
 #include <gridiron/ray/intersect_standard.h>
-#include <gridiron/render/camera.h>
 #include <gtest/gtest.h>
 
 #include <algorithm>

@@ -1,8 +1,8 @@
 // Pixel boxes: no ray beside a triangle's box hits it, boxes are hardly larger than what the triangle covers, and what
 // they say in subpackets and rows is what their pixels say.
 // SPDX-License-Identifier: Apache-2.0
+#include <gridiron/ray/camera.h>
 #include <gridiron/ray/pixel_box.h>
-#include <gridiron/render/camera.h>
 #include <gtest/gtest.h>
 
 #include <algorithm>

@@ -2,8 +2,8 @@
 // Memory: std::vector. Threads: one. SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <gridiron/build/grid/grid_builder.h>
 #include <gridiron/frame/frame_setup.h>
-#include <gridiron/grid/grid_builder.h>
 #include <gridiron/image/scene_image.h>
 #include <gridiron/render/tile_renderer.h>
 #include <gtest/gtest.h>
@@ -13,7 +13,7 @@
 #include <memory>
 #include <vector>
 
-#include "core/store/test_platform.h"
+#include "core/dma/test_platform.h"
 #include "support/test_mesh.h"
 
 namespace gridiron::test {

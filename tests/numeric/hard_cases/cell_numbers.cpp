@@ -1,8 +1,8 @@
 // Compiled with -Dgridiron=gridiron_cell, beside the transcribed sources. SPDX-License-Identifier: Apache-2.0
 #include "numeric/hard_cases/cell_numbers.h"
 
-#include <gridiron/ray/frustum.h>
-#include <gridiron/traverse/slice_walk.h>
+#include <gridiron/engine/grid/frustum.h>
+#include <gridiron/engine/grid/slice_walk.h>
 
 #include <cstring>
 

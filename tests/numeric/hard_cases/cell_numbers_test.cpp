@@ -2,8 +2,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "numeric/hard_cases/cell_numbers.h"
 
-#include <gridiron/grid/lattice.h>
-#include <gridiron/grid/triangle_records.h>
+#include <gridiron/build/grid/triangle_records.h>
+#include <gridiron/build/lattice.h>
 #include <gtest/gtest.h>
 
 #include <algorithm>

@@ -1,8 +1,8 @@
 // Cell walks: see the header. SPDX-License-Identifier: Apache-2.0
 #include "numeric/hard_cases/cell_walk.h"
 
-#include <gridiron/ray/frustum.h>
-#include <gridiron/traverse/slice_walk.h>
+#include <gridiron/engine/grid/frustum.h>
+#include <gridiron/engine/grid/slice_walk.h>
 #include <gtest/gtest.h>
 
 #include <algorithm>

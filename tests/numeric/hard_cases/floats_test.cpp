@@ -1,7 +1,7 @@
 // Floats as chips have them: rounding modes, flushed denormals, estimated reciprocals, vertices of few bits.
 // SPDX-License-Identifier: Apache-2.0
 #include <gridiron/base/lanes.h>
-#include <gridiron/grid/lattice.h>
+#include <gridiron/build/lattice.h>
 #include <gridiron/ray/lattice_run.h>
 #include <gtest/gtest.h>
 
@@ -11,7 +11,7 @@
 #include <map>
 #include <tuple>
 
-#include "core/grid/built_image.h"
+#include "core/build/grid/built_image.h"
 #include "numeric/hard_cases/shapes.h"
 #include "numeric/hard_cases/trial.h"
 #include "numeric/rounding_scope.h"

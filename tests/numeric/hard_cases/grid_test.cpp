@@ -1,13 +1,13 @@
 // Grids: faces, edges and corners of cells, ties between them, flat and crowded ones, of every resolution.
 // SPDX-License-Identifier: Apache-2.0
-#include <gridiron/grid/triangle_records.h>
-#include <gridiron/ray/frustum.h>
+#include <gridiron/build/grid/triangle_records.h>
+#include <gridiron/engine/grid/frustum.h>
 #include <gtest/gtest.h>
 
 #include <algorithm>
 #include <cmath>
 
-#include "core/grid/built_image.h"
+#include "core/build/grid/built_image.h"
 #include "core/ray/packet_cases.h"
 #include "numeric/hard_cases/cell_walk.h"
 #include "numeric/hard_cases/shapes.h"

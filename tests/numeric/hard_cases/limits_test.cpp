@@ -1,7 +1,7 @@
 // Limits: nothing to see, vertices that are no numbers, counts that no integer holds.
 // SPDX-License-Identifier: Apache-2.0
+#include <gridiron/build/grid/grid_builder.h>
 #include <gridiron/frame/frame_setup.h>
-#include <gridiron/grid/grid_builder.h>
 #include <gridiron/image/scene_image.h>
 #include <gridiron/io/ply_reader.h>
 #include <gridiron/ray/intersect_standard.h>
@@ -12,7 +12,7 @@
 #include <limits>
 #include <string>
 
-#include "core/grid/built_image.h"
+#include "core/build/grid/built_image.h"
 #include "core/ray/packet_cases.h"
 #include "numeric/hard_cases/shapes.h"
 #include "numeric/hard_cases/trial.h"

@@ -1,10 +1,10 @@
 // Target: a mesh in all the forms that rays can be shot at. SPDX-License-Identifier: Apache-2.0
 #include <gridiron/base/triangle_formats.h>
-#include <gridiron/grid/lattice.h>
-#include <gridiron/grid/triangle_records.h>
+#include <gridiron/build/grid/triangle_records.h>
+#include <gridiron/build/lattice.h>
+#include <gridiron/ray/camera.h>
 #include <gridiron/ray/intersect_projection.h>
 #include <gridiron/ray/intersect_standard.h>
-#include <gridiron/render/camera.h>
 #include <gtest/gtest.h>
 
 #include <algorithm>

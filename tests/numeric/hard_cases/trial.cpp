@@ -1,7 +1,7 @@
 // Trials: see the header. SPDX-License-Identifier: Apache-2.0
 #include "numeric/hard_cases/trial.h"
 
-#include <gridiron/grid/triangle_records.h>
+#include <gridiron/build/grid/triangle_records.h>
 #include <gtest/gtest.h>
 
 #include <algorithm>

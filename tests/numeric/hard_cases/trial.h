@@ -4,7 +4,7 @@
 #pragma once
 
 #include <gridiron/base/records.h>
-#include <gridiron/grid/grid_builder.h>
+#include <gridiron/build/grid/grid_builder.h>
 
 #include <cfenv>
 #include <cstdint>

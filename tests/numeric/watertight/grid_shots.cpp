@@ -2,8 +2,8 @@
 #include "numeric/watertight/grid_shots.h"
 
 #include <gridiron/base/triangle_formats.h>
+#include <gridiron/build/grid/grid_builder.h>
 #include <gridiron/frame/frame_setup.h>
-#include <gridiron/grid/grid_builder.h>
 #include <gridiron/image/scene_image.h>
 #include <gridiron/sim/sim_memory.h>
 

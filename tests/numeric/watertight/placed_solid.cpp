@@ -2,8 +2,8 @@
 #include "numeric/watertight/placed_solid.h"
 
 #include <gridiron/base/records.h>
-#include <gridiron/grid/lattice.h>
-#include <gridiron/grid/triangle_records.h>
+#include <gridiron/build/grid/triangle_records.h>
+#include <gridiron/build/lattice.h>
 
 #include <algorithm>
 #include <cmath>

@@ -2,8 +2,8 @@
 //   mesh_picture [PICTURE.ppm]
 // Memory: SimMemory stands for the chip's main memory. Threads: one per simulated core.
 // SPDX-License-Identifier: Apache-2.0
+#include <gridiron/build/grid/grid_builder.h>
 #include <gridiron/frame/frame_setup.h>
-#include <gridiron/grid/grid_builder.h>
 #include <gridiron/image/scene_image.h>
 #include <gridiron/sim/sim_chip.h>
 #include <gridiron/version.h>

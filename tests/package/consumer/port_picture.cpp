@@ -2,8 +2,8 @@
 // to a picture. Shows what mesh_picture shows.
 // Memory: static, for no chip has a heap. Threads: one core. SPDX-License-Identifier: Apache-2.0
 #include <gridiron/base/lanes.h>
+#include <gridiron/build/grid/grid_builder.h>
 #include <gridiron/frame/frame_setup.h>
-#include <gridiron/grid/grid_builder.h>
 #include <gridiron/image/scene_image.h>
 #include <gridiron/render/tile_renderer.h>
 #include <gridiron/store/local_store.h>

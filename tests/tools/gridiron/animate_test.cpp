@@ -1,5 +1,5 @@
 // animate: a picture and a row for each mesh, builds included. SPDX-License-Identifier: Apache-2.0
-#include <gridiron/grid/grid_builder.h>
+#include <gridiron/build/grid/grid_builder.h>
 #include <gridiron/sim/build_work.h>
 #include <gtest/gtest.h>
 

@@ -1,5 +1,5 @@
 // info: counts, memory, store map. SPDX-License-Identifier: Apache-2.0
-#include <gridiron/grid/grid_builder.h>
+#include <gridiron/build/grid/grid_builder.h>
 #include <gtest/gtest.h>
 
 #include <nlohmann/json.hpp>
@@ -88,7 +88,7 @@ TEST(Info, TellsTheWorstTileAndEveryLoop) {
     if (kind == "constant") {
       EXPECT_GT(loop["most_turns"], 0) << loop;
     }
-    if (loop["file"] == "store/packet_driver.h" && loop["function"] == "run" && kind == "scene") {
+    if (loop["file"] == "engine/grid/packet_driver.h" && loop["function"] == "run" && kind == "scene") {
       EXPECT_EQ(loop["most_turns"], worst["triangle_runs"].get<std::uint64_t>() + 1);
       ++found;
     }

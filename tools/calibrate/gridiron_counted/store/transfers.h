@@ -6,8 +6,8 @@
 #include <gridiron_counted/base/lanes.h>
 #include <gridiron_counted/base/stages.h>
 #include <gridiron_counted/base/work_counters.h>
+#include <gridiron_counted/dma/tags.h>
 #include <gridiron_counted/platform/contract.h>
-#include <gridiron_counted/store/dma_tags.h>
 
 #include <cstdint>
 

@@ -1,0 +1,56 @@
+// One ray walk: up to 16 rays, how far they have come, what they wait for.
+// Memory: inside the local store. Threads: one core. SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <gridiron/engine/grid/shaft.h>
+#include <gridiron/engine/grid/slice_walk.h>
+#include <gridiron/ray/walk_rays.h>
+
+#include <cstdint>
+
+namespace gridiron {
+
+/// A layout whose packets have no width traces all rays by walks.
+template <class Layout>
+inline constexpr bool kHasPackets = Layout::kPacketWidth != 0;
+
+/// Walks of rays that a layout has buffers for.
+template <class Layout>
+inline constexpr std::uint32_t kWalkCount =
+    Layout::kMaxMacroDepth < Layout::kMaxTriangleDepth ? Layout::kMaxMacroDepth : Layout::kMaxTriangleDepth;
+
+/// Where a walk stands: what it does when its turn comes.
+enum class WalkState : std::uint32_t {
+  kIdle,       ///< has no rays
+  kNextPass,   ///< takes the next of its rays that run alike
+  kNextMacro,  ///< looks for its next macrocell
+  kHasBlock,   ///< waits for a cell block
+  kNextCell,   ///< looks for the next cell of it
+  kHasRun,     ///< waits for triangles
+  kDone,       ///< every ray has its answer
+};
+
+/// One walk: rays, where they are, what they wait for.
+struct alignas(128) Walk {
+  static constexpr std::uint32_t kMailboxSlots = 32;
+
+  WalkRays rays;
+  Shaft shaft;
+  MacroWalk macro_walk;
+  CellWalk cell_walk;
+  MacroVisit visit;
+  CellVisit cell;  ///< what is left of the cell whose triangles are being fetched
+  std::uint32_t run_count;
+  std::uint32_t run_first_byte;
+  float reach;
+  WalkState state;
+  std::uint32_t ray_count;
+  std::uint32_t waiting;                             ///< rays not taken into a pass yet, bit i = ray i
+  std::uint32_t active;                              ///< rays of this pass without an answer
+  std::uint32_t purpose;                             ///< what the rays are for: nothing to the walk
+  std::uint32_t touching;                            ///< rays that may touch the cell
+  alignas(16) std::uint32_t mailbox[kMailboxSlots];  ///< triangles that this pass was held against, and
+  std::uint32_t tested[kMailboxSlots];               ///< the rays that were
+};
+
+}  // namespace gridiron

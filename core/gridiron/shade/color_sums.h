@@ -1,0 +1,35 @@
+// Sums of a tile's pixels: integers, so that the order in which colours are added changes nothing.
+// Source: core/EFFECTS.md, "Pixel". Memory: EffectStore. Threads: one core. SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <gridiron/base/lanes.h>
+#include <gridiron/shade/vectors.h>
+
+#include <cstdint>
+
+namespace gridiron {
+
+inline constexpr float kSumSteps = 0x1p20f;   ///< to a brightness of 1
+inline constexpr float kMostAdded = 4095.0f;  ///< what is brighter counts as this
+
+/// @returns the steps that one component adds; what is not above 0, NaN too, adds none.
+[[nodiscard]] GRIDIRON_INLINE std::uint32_t sum_steps(float value) {
+  const float positive = value > 0.0f ? value : 0.0f;
+  const float within = positive < kMostAdded ? positive : kMostAdded;
+  return static_cast<std::uint32_t>(static_cast<std::int64_t>(within * kSumSteps + 0.5f));
+}
+
+/// Adds without wrapping: of numbers that are not negative the order does not matter.
+GRIDIRON_INLINE void add_steps(std::uint32_t& sum, std::uint32_t steps) {
+  const std::uint32_t total = sum + steps;
+  sum = total < sum ? 0xFFFFFFFFu : total;
+}
+
+/// @returns 0..255. @param per_step  1 / (kSumSteps * samples of a pixel).
+[[nodiscard]] GRIDIRON_INLINE std::uint32_t level_of(std::uint32_t sum, float per_step) {
+  const float value = static_cast<float>(static_cast<std::int64_t>(sum)) * per_step;
+  const float within = value < 1.0f ? value : 1.0f;
+  return static_cast<std::uint32_t>(static_cast<std::int32_t>(within * 255.0f + 0.5f));
+}
+
+}  // namespace gridiron

@@ -1,0 +1,99 @@
+// What effects keep in the local store: the scene's record, materials and lights at hand, sums of pixels, a queue of
+// rays; and the wave, the rays and hits being worked on, which lies where the packet does while eye rays are traced.
+// Memory: is the memory. Threads: one core. SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <gridiron/base/effect_records.h>
+#include <gridiron/base/lanes.h>
+#include <gridiron/base/records.h>
+#include <gridiron/dma/tags.h>
+#include <gridiron/engine/grid/walk.h>
+#include <gridiron/platform/contract.h>
+
+#include <cstddef>
+#include <cstdint>
+
+namespace gridiron {
+
+/// What a hit does with light: shares of what the ray is worth.
+struct LitHit {
+  float diffuse[3];
+  float specular[3];
+  float shine;
+};
+
+/// A hit whose shading normal is still to be made of its triangle's.
+struct PendingHit {
+  float behind[3];         ///< origin of refracted rays
+  float weight[3];         ///< of the ray
+  std::uint32_t normals;   ///< record of the triangle's normals
+  std::uint32_t material;  ///< index | enters << 31: the ray ran against the winding's normal
+};
+
+/// A hit, as light and secondary rays need it. Directions are unit to rounding.
+struct WavePoint {
+  float point[3];       ///< on the side that the ray came from, lifted
+  float face[3];        ///< the triangle's normal on the ray's side
+  float shading[3];     ///< the normal of light; while the hit is pending the corners' weights
+  float view[3];        ///< against the ray
+  std::uint32_t pixel;  ///< as in QueuedRay
+  std::uint32_t path;
+  union {
+    PendingHit pending;
+    LitHit lit;
+  };
+  std::uint32_t is_pending;  ///< 0, 1
+};
+
+/// A ray of a wave becomes its hit, where there is one.
+union WaveItem {
+  QueuedRay ray;
+  WavePoint point;
+};
+
+template <std::uint32_t WalkCount, std::uint32_t WaveRayCount>
+struct alignas(128) Wave {
+  Walk walks[WalkCount];
+  std::uint32_t ids[WaveRayCount];  ///< triangles hit, kNoTriangle where none
+  WaveItem items[WaveRayCount];
+};
+
+/// What a layout with effects keeps besides.
+template <class Layout>
+struct alignas(128) EffectStore {
+  static constexpr std::uint32_t kTilePixels = Layout::kTileWidth * Layout::kTileWidth;
+  static constexpr std::uint32_t kWaveRays = Layout::kWaveRays;
+  static constexpr std::uint32_t kMaterialSlots = Layout::kMaterialSlots;
+  static constexpr std::uint32_t kLightSlots = Layout::kLightSlots;
+  static constexpr std::uint32_t kSpillBlockRays = kWaveRays / 2;  ///< moved to or from main memory at once
+  static constexpr bool kHasQueue = (Layout::kEffects & (kReflection | kRefraction)) != 0;
+  static constexpr std::uint32_t kQueueRays = kHasQueue ? 3 * kSpillBlockRays : 1;  ///< of a queue that is not used: 1
+  static constexpr std::uint32_t kNoMaterial = 0xFFFFFFFFu, kNoLight = 0xFFFFFFFFu;
+  static_assert(kWaveRays <= kMostWaveRays && kWaveRays % (2 * kWalkRays) == 0 && kMaterialSlots % 2 == 0);
+
+  alignas(128) EffectsRecord scene;
+  alignas(128) MaterialRecord materials[kMaterialSlots];  ///< direct-mapped by index
+  alignas(128) LightRecord lights[kLightSlots];           ///< first_light and those that follow it, or none
+  alignas(128) QueuedRay queue[kQueueRays];
+  alignas(128) std::uint32_t sums[3][kTilePixels];  ///< RGB, steps of 2^-20, what all samples of a pixel add up to
+  std::uint32_t hit_ids[kTilePixels];               ///< of the eye rays of one sample
+  std::uint32_t material_of_slot[kMaterialSlots];
+  std::uint32_t first_light;
+  alignas(32) std::byte surface_bytes[sizeof(SurfaceRecord) + 16];  ///< a surface that a tie is settled with
+};
+
+/// Main memory of one core for secondary rays that wait; of frames without effects, none.
+struct SpillRegion {
+  MainAddress address{};    ///< a multiple of kSpillAlignment
+  std::uint64_t bytes = 0;  ///< at least spill_bytes(recursion_depth) of the frame's scene
+};
+
+/// Stand where a layout has no effects, or no packets.
+struct NoEffectStore {};
+struct NoWave {};
+struct NoPacket {
+  static constexpr std::uint32_t kRayCount = 32;
+};
+struct NoMailbox {};
+
+}  // namespace gridiron

@@ -1,0 +1,265 @@
+// Jobs of a wave: which rays its hits send to lights and into the open, and what their answers are worth.
+// Source: core/EFFECTS.md. Memory: the local store. Threads: one core. SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <gridiron/base/effect_records.h>
+#include <gridiron/base/lanes.h>
+#include <gridiron/base/math.h>
+#include <gridiron/base/work_counters.h>
+#include <gridiron/ray/walk_rays.h>
+#include <gridiron/shade/color_sums.h>
+#include <gridiron/shade/effect_store.h>
+#include <gridiron/shade/elementary.h>
+#include <gridiron/shade/sample_points.h>
+#include <gridiron/shade/vectors.h>
+
+#include <cstdint>
+
+namespace gridiron {
+
+/// Writes ray `i` of a job.
+GRIDIRON_INLINE void set_walk_ray(WalkRays& rays, std::uint32_t i, Vector3 origin, Vector3 dir, float t,
+                                  std::uint32_t owner) {
+  rays.origin[0][i] = origin.x;
+  rays.origin[1][i] = origin.y;
+  rays.origin[2][i] = origin.z;
+  rays.dir[0][i] = dir.x;
+  rays.dir[1][i] = dir.y;
+  rays.dir[2][i] = dir.z;
+  rays.t[i] = t;
+  rays.id[i] = kNoTriangle;
+  rays.owner[i] = owner;
+}
+
+/// What jobs share: the hits of the wave, the pixels' sums.
+///
+/// @tparam Store  LocalStore of a layout with effects.
+template <class Store>
+struct WaveContext {
+  Store& store;
+  std::uint32_t point_count;  ///< hits, the first items of the wave
+  std::uint32_t sample;       ///< of the pixels
+  std::uint32_t left, top;    ///< of the tile, in pixels
+
+  [[nodiscard]] const WavePoint& point(std::uint32_t i) const { return store.wave.items[i].point; }
+
+  /// Adds a colour to the sum of a pixel, given as in QueuedRay.
+  void add_color(std::uint32_t pixel, Vector3 color) const {
+    store.work.add(Work::kColorAdded);
+    store.work.charge_to(Work::kColorAdded);
+    const std::uint32_t index = pixel & 0xFFFFu;
+    add_steps(store.effects.sums[0][index], sum_steps(color.x));
+    add_steps(store.effects.sums[1][index], sum_steps(color.y));
+    add_steps(store.effects.sums[2][index], sum_steps(color.z));
+  }
+
+  [[nodiscard]] Jitter jitter(const WavePoint& point, std::uint32_t purpose) const {
+    constexpr std::uint32_t kWidth = Store::Layout::kTileWidth;
+    const std::uint32_t index = point.pixel & 0xFFFFu;
+    const std::uint32_t pixel = (top + index / kWidth) * store.frame.width + left + index % kWidth;
+    return jitter_of(sample_seed(point.path, sample, pixel), purpose);
+  }
+};
+
+/// Rays to the lights at hand. @tparam Built  EffectBits that there is code for.
+template <class Store, std::uint32_t Built>
+class LightJobs {
+ public:
+  /// @param light_count  of store.effects.lights. @param first_light  the scene's index of the first of them.
+  LightJobs(const WaveContext<Store>& context, std::uint32_t first_light, std::uint32_t light_count)
+      : context_(context), first_light_(first_light), light_count_(light_count) {}
+
+  /// The next rays of up to 16 neighbouring hits to one place. @returns how many, 0: no more.
+  [[nodiscard]] GRIDIRON_OUTLINE std::uint32_t next(WalkRays& rays, std::uint32_t& purpose) {
+    context_.store.work.charge_to(Work::kShadowRay);
+    while (light_ < light_count_) {
+      const std::uint32_t index = light_;
+      const LightRecord& light = context_.store.effects.lights[index];
+      purpose = index;
+      const std::uint32_t first = first_point_, sample = sample_;
+      step(light);
+      std::uint32_t count = 0;
+      std::uint32_t end = first + kWalkRays;
+      if (end > context_.point_count) end = context_.point_count;
+      for (std::uint32_t i = first; i < end; ++i) {
+        const WavePoint& point = context_.point(i);
+        const Vector3 to_light = place_of(index, sample, point) - vector_of(point.point);
+        const bool is_lit =
+            dot(to_light, vector_of(point.face)) > 0.0f && dot(to_light, vector_of(point.shading)) > 0.0f;
+        if (!is_lit) continue;
+        context_.store.work.add(Work::kShadowRay);
+        const bool from_light = light.samples == 0 && light.is_near != 0;
+        if (from_light) {
+          set_walk_ray(rays, count, vector_of(light.corner), -to_light, 1.0f, i);
+        } else {
+          set_walk_ray(rays, count, vector_of(point.point), to_light, 1.0f, i);
+        }
+        ++count;
+      }
+      if (count != 0) return count;
+    }
+    return 0;
+  }
+
+  void finish(const WalkRays& rays, std::uint32_t count, std::uint32_t purpose) {
+    const LightRecord& light = context_.store.effects.lights[purpose];
+    const bool from_light = light.samples == 0 && light.is_near != 0;
+    for (std::uint32_t i = 0; i < count; ++i) {
+      context_.store.work.charge_to(Work::kShadowRay);
+      if (rays.id[i] != kNoTriangle) continue;
+      const Vector3 dir{rays.dir[0][i], rays.dir[1][i], rays.dir[2][i]};
+      light_point(light, context_.point(rays.owner[i]), from_light ? -dir : dir);
+    }
+  }
+
+  /// The same without shadows.
+  void light_all() {
+    while (light_ < light_count_) {
+      const std::uint32_t index = light_;
+      const LightRecord& light = context_.store.effects.lights[index];
+      const std::uint32_t first = first_point_, sample = sample_;
+      step(light);
+      std::uint32_t end = first + kWalkRays;
+      if (end > context_.point_count) end = context_.point_count;
+      for (std::uint32_t i = first; i < end; ++i) {
+        context_.store.work.charge_to(Work::kLightSample);
+        const WavePoint& point = context_.point(i);
+        const Vector3 to_light = place_of(index, sample, point) - vector_of(point.point);
+        if (dot(to_light, vector_of(point.face)) > 0.0f) light_point(light, point, to_light);
+      }
+    }
+  }
+
+ private:
+  // Hits first, then samples, then lights.
+  void step(const LightRecord& light) {
+    first_point_ += kWalkRays;
+    if (first_point_ < context_.point_count) return;
+    first_point_ = 0;
+    ++sample_;
+    if (sample_ < light.samples) return;
+    sample_ = 0;
+    ++light_;
+  }
+
+  [[nodiscard]] Vector3 place_of(std::uint32_t index, std::uint32_t sample, const WavePoint& point) const {
+    const LightRecord& light = context_.store.effects.lights[index];
+    const Vector3 corner = vector_of(light.corner);
+    if constexpr ((Built & kAreaLights) != 0) {
+      if (light.samples != 0) {
+        const Jitter jitter = context_.jitter(point, area_light_purpose(first_light_ + index));
+        const SquarePlace place = area_light_place(sample, light.samples, jitter);
+        return corner + (place.a * vector_of(light.edge_u) + place.b * vector_of(light.edge_v));
+      }
+    }
+    return corner;
+  }
+
+  // Adds what a light does to a hit that it reaches.
+  GRIDIRON_OUTLINE void light_point(const LightRecord& light, const WavePoint& point, Vector3 to_light) {
+    WorkCounters& work = context_.store.work;
+    work.charge_to(Work::kLightSample);
+    const Vector3 shading = vector_of(point.shading);
+    const Vector3 along = normalized(to_light);
+    const float cosine = dot(shading, along);
+    if (!(cosine > 0.0f)) return;
+    work.add(Work::kLightSample);
+    Vector3 share = cosine * vector_of(point.lit.diffuse);
+    if constexpr ((Built & kHighlights) != 0) {
+      if (point.lit.shine > 0.0f) {
+        work.add(Work::kHighlight);
+        const float towards = dot(shading, normalized(along + vector_of(point.view)));
+        share = share + power(towards > 0.0f ? towards : 0.0f, point.lit.shine) * vector_of(point.lit.specular);
+        work.charge_to(Work::kLightSample);
+      }
+    }
+    context_.add_color(point.pixel, vector_of(light.color) * share);
+  }
+
+  const WaveContext<Store>& context_;
+  std::uint32_t first_light_, light_count_;
+  std::uint32_t light_ = 0, sample_ = 0, first_point_ = 0;
+};
+
+/// Rays into the open, which ambient light comes from.
+template <class Store>
+class OcclusionJobs {
+ public:
+  explicit OcclusionJobs(const WaveContext<Store>& context) : context_(context) {}
+
+  [[nodiscard]] GRIDIRON_OUTLINE std::uint32_t next(WalkRays& rays, std::uint32_t& purpose) {
+    context_.store.work.charge_to(Work::kOcclusionRay);
+    const EffectsRecord& scene = context_.store.effects.scene;
+    purpose = 0;
+    while (first_point_ < context_.point_count) {
+      const std::uint32_t first = first_point_, sample = sample_;
+      if (++sample_ == scene.occlusion_samples) {
+        sample_ = 0;
+        first_point_ += kWalkRays;
+      }
+      std::uint32_t count = 0;
+      std::uint32_t end = first + kWalkRays;
+      if (end > context_.point_count) end = context_.point_count;
+      for (std::uint32_t i = first; i < end; ++i) {
+        const WavePoint& point = context_.point(i);
+        const Jitter jitter = context_.jitter(point, kOcclusionPurpose);
+        const Vector3 dir = occlusion_direction(sample, scene.occlusion_samples, jitter, vector_of(point.shading));
+        if (!(dot(dir, vector_of(point.face)) > 0.0f)) continue;
+        context_.store.work.add(Work::kOcclusionRay);
+        set_walk_ray(rays, count, vector_of(point.point), scene.occlusion_radius * dir, 1.0f, i);
+        ++count;
+      }
+      if (count != 0) return count;
+    }
+    return 0;
+  }
+
+  void finish(const WalkRays& rays, std::uint32_t count, std::uint32_t) {
+    const auto samples = static_cast<std::int32_t>(context_.store.effects.scene.occlusion_samples);
+    const float share = kAmbientLight / static_cast<float>(samples);
+    for (std::uint32_t i = 0; i < count; ++i) {
+      context_.store.work.charge_to(Work::kOcclusionRay);
+      if (rays.id[i] != kNoTriangle) continue;
+      const WavePoint& point = context_.point(rays.owner[i]);
+      context_.add_color(point.pixel, share * vector_of(point.lit.diffuse));
+    }
+  }
+
+ private:
+  const WaveContext<Store>& context_;
+  std::uint32_t sample_ = 0, first_point_ = 0;
+};
+
+/// The rays of a wave, neighbours together; their hits go to the wave's ids.
+template <class Store>
+class WaveRayJobs {
+ public:
+  WaveRayJobs(Store& store, std::uint32_t ray_count, float t_far)
+      : store_(store), ray_count_(ray_count), t_far_(t_far) {}
+
+  [[nodiscard]] GRIDIRON_OUTLINE std::uint32_t next(WalkRays& rays, std::uint32_t& purpose) {
+    store_.work.charge_to(Work::kWaveRay);
+    purpose = 0;
+    std::uint32_t count = ray_count_ - first_;
+    if (count > kWalkRays) count = kWalkRays;
+    for (std::uint32_t i = 0; i < count; ++i) {
+      const QueuedRay& ray = store_.wave.items[first_ + i].ray;
+      set_walk_ray(rays, i, vector_of(ray.origin), vector_of(ray.dir), t_far_, first_ + i);
+    }
+    first_ += count;
+    return count;
+  }
+
+  void finish(const WalkRays& rays, std::uint32_t count, std::uint32_t) {
+    store_.work.charge_to(Work::kWaveRay);
+    for (std::uint32_t i = 0; i < count; ++i) store_.wave.ids[rays.owner[i]] = rays.id[i];
+  }
+
+ private:
+  Store& store_;
+  std::uint32_t ray_count_;
+  float t_far_;
+  std::uint32_t first_ = 0;
+};
+
+}  // namespace gridiron

@@ -1,0 +1,207 @@
+// Jobs of a wave without a kernel around them: which rays they make, and what answers are worth.
+// SPDX-License-Identifier: Apache-2.0
+#include <gridiron/shade/wave_jobs.h>
+#include <gridiron/store/local_store.h>
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <cstdint>
+#include <cstring>
+#include <memory>
+#include <set>
+#include <tuple>
+#include <vector>
+
+namespace gridiron {
+namespace {
+
+using Store = LocalStore<EffectLayout64K<kAllEffects>>;
+using Context = WaveContext<Store>;
+constexpr std::uint32_t kPoints = 20;  // a job of 16 and one of 4
+constexpr std::uint32_t kWidth = 40, kLeft = 16, kTop = 8, kSample = 2;
+
+LightRecord point_light(Vector3 place, bool is_near, float color = 1.0f) {
+  return {{place.x, place.y, place.z}, 0, {color, color, color}, is_near ? 1u : 0u, {}, 0, {}, 0};
+}
+LightRecord area_light(Vector3 corner, std::uint32_t samples) {
+  return {{corner.x, corner.y, corner.z}, samples, {1, 1, 1}, 1, {2, 0, 0}, 0, {0, 0, 3}, 0};
+}
+
+// Points of a floor, y = 0, seen from above.
+class WaveJobs : public testing::Test {
+ protected:
+  void SetUp() override {
+    std::memset(static_cast<void*>(store.get()), 0, sizeof(Store));
+    store->frame.width = kWidth;
+    store->effects.scene.occlusion_samples = 5;
+    store->effects.scene.occlusion_radius = 0.5f;
+    for (std::uint32_t i = 0; i < kPoints; ++i) {
+      WavePoint& point = store->wave.items[i].point;
+      point = {};
+      gridiron::store({static_cast<float>(i) * 0.25f, 0, 0}, point.point);
+      gridiron::store({0, 1, 0}, point.face);
+      gridiron::store({0, 1, 0}, point.shading);
+      gridiron::store({0, 1, 0}, point.view);
+      point.pixel = i | 1u << 16;
+      point.path = 1;
+      point.lit = {{1, 1, 1}, {0, 0, 0}, 0};
+    }
+  }
+
+  struct Ray {
+    Vector3 origin, dir;
+    float t;
+    std::uint32_t owner;
+  };
+  // All rays of a kind; every second one is answered by a hit.
+  template <class Jobs>
+  std::vector<Ray> run(Jobs& jobs) {
+    std::vector<Ray> found;
+    WalkRays rays{};
+    std::uint32_t purpose = 0;
+    for (std::uint32_t job = 0; job < 1000; ++job) {
+      const std::uint32_t count = jobs.next(rays, purpose);
+      if (count == 0) return found;
+      for (std::uint32_t i = 0; i < count; ++i) {
+        found.push_back({{rays.origin[0][i], rays.origin[1][i], rays.origin[2][i]},
+                         {rays.dir[0][i], rays.dir[1][i], rays.dir[2][i]},
+                         rays.t[i],
+                         rays.owner[i]});
+        if (found.size() % 2 == 0) rays.id[i] = 7;
+      }
+      jobs.finish(rays, count, purpose);
+    }
+    ADD_FAILURE() << "no end";
+    return found;
+  }
+  std::vector<Ray> light_rays(const std::vector<LightRecord>& lights, std::uint32_t first = 0) {
+    for (std::size_t i = 0; i < lights.size(); ++i) store->effects.lights[i] = lights[i];
+    LightJobs<Store, kAllEffects> jobs(context, first, static_cast<std::uint32_t>(lights.size()));
+    return run(jobs);
+  }
+  [[nodiscard]] float sum(std::uint32_t pixel) const {
+    return static_cast<float>(store->effects.sums[0][pixel]) / kSumSteps;
+  }
+
+  std::unique_ptr<Store> store = std::make_unique<Store>();
+  Context context{*store, kPoints, kSample, kLeft, kTop};
+};
+
+float length(Vector3 v) {
+  return std::sqrt(dot(v, v));
+}
+
+TEST_F(WaveJobs, EveryPointAsksEveryLightOnceAlongTheSegmentBetween) {
+  const Vector3 near{1, 2, 0.5f}, far{3, 4, -1};
+  const std::vector<Ray> rays = light_rays({point_light(near, true), point_light(far, false)});
+  ASSERT_EQ(rays.size(), 2 * kPoints);
+  for (std::uint32_t i = 0; i < 2 * kPoints; ++i) {
+    const Ray& ray = rays[i];
+    const bool from_light = i < kPoints;
+    const Vector3 point = vector_of(context.point(i % kPoints).point), light = from_light ? near : far;
+    EXPECT_EQ(ray.owner, i % kPoints);
+    EXPECT_EQ(ray.t, 1.0f);
+    EXPECT_EQ(length(ray.origin - (from_light ? light : point)), 0.0f) << i;
+    EXPECT_LE(length(ray.origin + ray.dir - (from_light ? point : light)), 1e-6f) << i;
+  }
+}
+
+TEST_F(WaveJobs, LightComesWhereNothingIsHitAndEitherNormalFacesIt) {
+  const Vector3 place{0, 2, 0};
+  // Points 1 and 2 are turned away: one by its face, one by its shading normal.
+  gridiron::store({0, -1, 0}, store->wave.items[1].point.face);
+  gridiron::store({0, -1, 0}, store->wave.items[2].point.shading);
+  const std::vector<Ray> rays = light_rays({point_light(place, true)});
+  ASSERT_EQ(rays.size(), kPoints - 2);
+  for (std::size_t i = 0; i < rays.size(); ++i) {
+    const Vector3 point = vector_of(context.point(rays[i].owner).point);
+    const bool is_lit = i % 2 == 0;
+    EXPECT_NEAR(sum(rays[i].owner), is_lit ? 2 / length(place - point) : 0.0f, 1e-5f) << rays[i].owner;
+  }
+  EXPECT_EQ(sum(1), 0.0f);
+  EXPECT_EQ(sum(2), 0.0f);
+}
+
+TEST_F(WaveJobs, WithoutShadowsEveryPointIsLitThatFacesTheLight) {
+  gridiron::store({0, -1, 0}, store->wave.items[1].point.face);
+  store->effects.lights[0] = point_light({0, 2, 0}, true);
+  store->effects.lights[1] = point_light({0, -2, 0}, true);
+  LightJobs<Store, kAllEffects> jobs(context, 0, 2);
+  jobs.light_all();
+  for (std::uint32_t i = 0; i < kPoints; ++i) {
+    const Vector3 point = vector_of(context.point(i).point);
+    EXPECT_NEAR(sum(i), i == 1 ? 0.0f : 2 / length(Vector3{0, 2, 0} - point), 1e-5f) << i;
+  }
+}
+
+TEST_F(WaveJobs, AnAreaLightIsAskedAtThePlacesOfTheFormula) {
+  const Vector3 corner{-1, 2, -1};
+  constexpr std::uint32_t kSamples = 4, kFirst = 16;
+  const std::vector<Ray> rays = light_rays({area_light(corner, kSamples)}, kFirst);
+  ASSERT_EQ(rays.size(), kSamples * kPoints);
+  std::vector<std::uint32_t> asked(kPoints);
+  for (const Ray& ray : rays) {
+    // Pixel of the picture: tiles of this layout are 8 wide.
+    const std::uint32_t pixel = (kTop + ray.owner / 8) * kWidth + kLeft + ray.owner % 8;
+    const Jitter jitter = jitter_of(sample_seed(1, kSample, pixel), area_light_purpose(kFirst));
+    const SquarePlace place = area_light_place(asked[ray.owner]++, kSamples, jitter);
+    const Vector3 wanted = corner + Vector3{2 * place.a, 0, 3 * place.b};
+    EXPECT_EQ(ray.t, 1.0f);
+    EXPECT_LE(length(ray.origin + ray.dir - wanted), 1e-5f) << ray.owner;
+  }
+}
+
+TEST_F(WaveJobs, AmbientLightIsAskedForOnceASampleWithinTheRadius) {
+  OcclusionJobs<Store> jobs(context);
+  const std::vector<Ray> rays = run(jobs);
+  ASSERT_EQ(rays.size(), 5 * kPoints);
+  std::set<std::tuple<std::uint32_t, float, float>> directions;
+  std::vector<float> open(kPoints);
+  for (std::size_t i = 0; i < rays.size(); ++i) {
+    const Ray& ray = rays[i];
+    EXPECT_EQ(ray.t, 1.0f);
+    EXPECT_NEAR(length(ray.dir), 0.5f, 1e-5f);
+    EXPECT_GT(ray.dir.y, 0.0f);
+    EXPECT_EQ(length(ray.origin - vector_of(context.point(ray.owner).point)), 0.0f);
+    directions.insert({ray.owner, ray.dir.x, ray.dir.z});
+    if (i % 2 == 0) open[ray.owner] += kAmbientLight / 5;
+  }
+  EXPECT_EQ(directions.size(), rays.size());
+  for (std::uint32_t i = 0; i < kPoints; ++i) EXPECT_NEAR(sum(i), open[i], 1e-5f) << i;
+}
+
+TEST_F(WaveJobs, AHighlightIsThePowerOfTheCosineHalfWay) {
+  const Vector3 place{3, 2, 0};
+  for (std::uint32_t i = 0; i < kPoints; ++i) store->wave.items[i].point.lit = {{0, 0, 0}, {0.5f, 0.5f, 0.5f}, 3.0f};
+  store->effects.lights[0] = point_light(place, true);
+  LightJobs<Store, kAllEffects> jobs(context, 0, 1);
+  jobs.light_all();
+  for (std::uint32_t i = 0; i < kPoints; ++i) {
+    const Vector3 to_light = place - vector_of(context.point(i).point);
+    const Vector3 half = (1 / length(to_light)) * to_light + Vector3{0, 1, 0};
+    EXPECT_NEAR(sum(i), 0.5f * std::pow(half.y / length(half), 3.0f), 1e-5f) << i;
+  }
+}
+
+TEST_F(WaveJobs, RaysOfAWaveGetTheirOwnHits) {
+  for (std::uint32_t i = 0; i < kPoints; ++i) {
+    store->wave.items[i].ray = {{static_cast<float>(i), 0, 0}, {0, 0, 1}, {1, 1, 1}, i, 1, 0};
+  }
+  WaveRayJobs<Store> jobs(*store, kPoints, 9.0f);
+  WalkRays rays{};
+  std::uint32_t purpose = 0;
+  for (const std::uint32_t expected : {16u, 4u}) {
+    const std::uint32_t count = jobs.next(rays, purpose);
+    ASSERT_EQ(count, expected);
+    for (std::uint32_t i = 0; i < count; ++i) {
+      EXPECT_EQ(rays.t[i], 9.0f);
+      rays.id[i] = 100 + static_cast<std::uint32_t>(rays.origin[0][i]);
+    }
+    jobs.finish(rays, count, purpose);
+  }
+  EXPECT_EQ(jobs.next(rays, purpose), 0u);
+  for (std::uint32_t i = 0; i < kPoints; ++i) EXPECT_EQ(store->wave.ids[i], 100 + i);
+}
+
+}  // namespace
+}  // namespace gridiron
