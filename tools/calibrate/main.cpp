@@ -14,11 +14,11 @@
 namespace {
 
 constexpr std::string_view kUsage =
-    "usage: gridiron_calibrate [--rival] [FILE | --memories FOLDER]\n"
+    "usage: gridiron_calibrate [--bvh] [FILE | --memories FOLDER]\n"
     "Counts the operations of the kernel on eight small frames and puts them through the pipeline model.\n"
-    "  --rival        of the grid's rival instead, on four frames\n"
-    "  FILE           write the table there: sim_platform/gridiron/sim/work_costs.h, of the rival\n"
-    "                 sim_platform/gridiron/rival/rival_costs.h\n"
+    "  --bvh          of the cached BVH instead, on four frames\n"
+    "  FILE           write the table there: sim_platform/gridiron/sim/work_costs.h, of the cached BVH\n"
+    "                 sim_platform/gridiron/bvh/bvh_costs.h\n"
     "  --memories     write the frames' memories there, for second_opinion/run\n"
     "Without FILE: every kind of work with its operations by class, for superblocks of 1, 2, 4 and 8 basic blocks.\n";
 
@@ -28,8 +28,8 @@ int run(int argument_count, char** arguments) {
     calibrate::write_memories(arguments[2]);
     return 0;
   }
-  const bool of_rival = argument_count > 1 && std::string_view(arguments[1]) == "--rival";
-  if (of_rival) {
+  const bool of_bvh = argument_count > 1 && std::string_view(arguments[1]) == "--bvh";
+  if (of_bvh) {
     --argument_count;
     ++arguments;
   }
@@ -41,16 +41,16 @@ int run(int argument_count, char** arguments) {
     for (const std::uint32_t branches : {1u, 2u, 4u, 8u}) {
       std::printf("superblocks of at most %u basic blocks%s\n%s\n", branches,
                   branches == calibrate::kSuperblockBranches ? " (charged)" : "",
-                  (of_rival ? calibrate::rival_report_text(calibrate::count_rival_frames(branches))
-                            : calibrate::report_text(calibrate::count_frames(branches)))
+                  (of_bvh ? calibrate::bvh_report_text(calibrate::count_bvh_frames(branches))
+                          : calibrate::report_text(calibrate::count_frames(branches)))
                       .c_str());
     }
     return 0;
   }
   // Nobody should wait for a count that cannot be written.
   (void)gridiron::tool::resolve_output(arguments[1]);
-  const std::string text = of_rival ? calibrate::rival_table_text(calibrate::count_rival_frames())
-                                    : calibrate::table_text(calibrate::count_frames());
+  const std::string text = of_bvh ? calibrate::bvh_table_text(calibrate::count_bvh_frames())
+                                  : calibrate::table_text(calibrate::count_frames());
   gridiron::tool::AtomicFile file(arguments[1]);
   file.write(text);
   file.commit();

@@ -1,10 +1,10 @@
 // Frames, table and words: see the header. SPDX-License-Identifier: Apache-2.0
+#include <bvh_frame.h>
 #include <counted_frame.h>
 #include <gridiron/base/lanes.h>
-#include <gridiron/rival/rival_work.h>
+#include <gridiron/bvh/bvh_work.h>
 #include <gridiron_counted/base/exact_sum.h>
 #include <report/report.h>
-#include <rival_frame.h>
 #include <scene_makers/shapes.h>
 #include <work_table.h>
 
@@ -335,22 +335,22 @@ inline constexpr std::array<WorkCost, kWorkKindCount> kWorkCosts = {{
     //  cycles    least     most     even  doubles      odd branches   misses
 )";
 
-constexpr std::string_view kRivalTableHead =
-    R"(// What a unit of each of the rival's kinds of work costs on a core of two in-order pipes. Written by
-// gridiron_calibrate from counted operations of the rival itself; do not edit. tools/calibrate/README.md says how.
+constexpr std::string_view kBvhTableHead =
+    R"(// What a unit of each of the cached BVH's kinds of work costs on a core of two in-order pipes. Written by
+// gridiron_calibrate from counted operations of the cached BVH itself; do not edit. tools/calibrate/README.md says how.
 // Memory: constants. Threads: any. SPDX-License-Identifier: Apache-2.0
 #pragma once
 
 #include <gridiron/base/lanes.h>
-#include <gridiron/rival/rival_work.h>
+#include <gridiron/bvh/bvh_work.h>
 #include <gridiron/sim/work_costs.h>
 
 #include <array>
 
-namespace gridiron::rival {
+namespace gridiron::bvh {
 
-/// By kind of work of the rival.
-inline constexpr std::array<sim::WorkCost, kRivalWorkCount> kRivalCosts = {{
+/// By kind of work of the cached BVH.
+inline constexpr std::array<sim::WorkCost, kBvhWorkCount> kBvhCosts = {{
     //  cycles    least     most     even  doubles      odd branches   misses
 )";
 
@@ -376,20 +376,20 @@ Totals count_frames(std::uint32_t superblock_branches) {
   return sum;
 }
 
-Totals count_rival_frames(std::uint32_t superblock_branches) {
+Totals count_bvh_frames(std::uint32_t superblock_branches) {
   constexpr std::uint32_t kKnotTriangles = 12'000;
   constexpr std::uint32_t kRing = 3;
   const Scene teapot = make_scene();
   const Scene knot = scene_of(scene_makers::make_torus_knot(kKnotTriangles));
   Totals sum{};
   for (const std::uint32_t ring_size : {1u, kRing}) {
-    RivalCountedFrame frame{.vertices = teapot.vertices,
-                            .triangles = teapot.triangles,
-                            .eye = kEye,
-                            .at = {0.25f, 1.5f, 0.0f},
-                            .tan_half_fov = 0.41421356f,
-                            .width = 96,
-                            .ring_size = ring_size};
+    BvhCountedFrame frame{.vertices = teapot.vertices,
+                          .triangles = teapot.triangles,
+                          .eye = kEye,
+                          .at = {0.25f, 1.5f, 0.0f},
+                          .tan_half_fov = 0.41421356f,
+                          .width = 96,
+                          .ring_size = ring_size};
     for (const Scene* scene : {&teapot, &knot}) {
       if (scene == &knot) {
         frame.eye = {3.0f, 2.0f, 8.0f};
@@ -397,8 +397,8 @@ Totals count_rival_frames(std::uint32_t superblock_branches) {
       }
       frame.vertices = scene->vertices;
       frame.triangles = scene->triangles;
-      const CountedPicture counted = render_rival_counted(frame, superblock_branches);
-      require_same(counted, render_rival_plain(frame));
+      const CountedPicture counted = render_bvh_counted(frame, superblock_branches);
+      require_same(counted, render_bvh_plain(frame));
       add(sum, counted.totals, [](std::size_t) { return true; });
     }
   }
@@ -418,13 +418,13 @@ std::string table_text(const Totals& totals) {
   return text + "}};\n\n}  // namespace gridiron::sim\n";
 }
 
-std::string rival_table_text(const Totals& totals) {
-  std::string text(kRivalTableHead);
-  for (std::uint32_t kind = 0; kind < rival::kRivalWorkCount; ++kind) {
-    const auto work = static_cast<rival::RivalWork>(kind);
-    text += table_row(totals[static_cast<std::size_t>(rival::carrier_of(work))], std::string(rival::name_of(work)));
+std::string bvh_table_text(const Totals& totals) {
+  std::string text(kBvhTableHead);
+  for (std::uint32_t kind = 0; kind < bvh::kBvhWorkCount; ++kind) {
+    const auto work = static_cast<bvh::BvhWork>(kind);
+    text += table_row(totals[static_cast<std::size_t>(bvh::carrier_of(work))], std::string(bvh::name_of(work)));
   }
-  return text + "}};\n\n}  // namespace gridiron::rival\n";
+  return text + "}};\n\n}  // namespace gridiron::bvh\n";
 }
 
 namespace {
@@ -515,11 +515,11 @@ std::string report_text(const Totals& totals) {
   return report_of(totals, [](Work kind) { return std::string(tool::work_name(kind)); });
 }
 
-std::string rival_report_text(const Totals& totals) {
+std::string bvh_report_text(const Totals& totals) {
   return report_of(totals, [](Work kind) {
-    for (std::uint32_t i = 0; i < rival::kRivalWorkCount; ++i) {
-      const auto work = static_cast<rival::RivalWork>(i);
-      if (rival::carrier_of(work) == kind) return "rival:" + std::string(rival::name_of(work));
+    for (std::uint32_t i = 0; i < bvh::kBvhWorkCount; ++i) {
+      const auto work = static_cast<bvh::BvhWork>(i);
+      if (bvh::carrier_of(work) == kind) return "bvh:" + std::string(bvh::name_of(work));
     }
     return std::string(tool::work_name(kind));
   });

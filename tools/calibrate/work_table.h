@@ -20,12 +20,12 @@ namespace gridiron::calibrate {
 /// @returns the generated source file, sim_platform/gridiron/sim/work_costs.h.
 [[nodiscard]] std::string table_text(const Totals& totals);
 
-/// The same for the rival: the teapot and a torus knot of 12,000 triangles, whose lines do not all fit the caches, each
-/// with packets one after another and in a ring. Carriers hold the rival's kinds (rival::carrier_of).
-[[nodiscard]] Totals count_rival_frames(std::uint32_t superblock_branches = kSuperblockBranches);
+/// The same for the cached BVH: the teapot and a torus knot of 12,000 triangles, whose lines exceed the caches, each
+/// with packets one after another and in a ring. Carriers hold the cached BVH's kinds (bvh::carrier_of).
+[[nodiscard]] Totals count_bvh_frames(std::uint32_t superblock_branches = kSuperblockBranches);
 
-/// @returns the generated source file, sim_platform/gridiron/rival/rival_costs.h.
-[[nodiscard]] std::string rival_table_text(const Totals& totals);
+/// @returns the generated source file, sim_platform/gridiron/bvh/bvh_costs.h.
+[[nodiscard]] std::string bvh_table_text(const Totals& totals);
 
 /// Writes into a folder, for second_opinion: of each frame and of `dense`, which is `reference` of a teapot of 16 times
 /// the triangles, the main memory, NAME.memory, and the units, NAME.units (kind, units); of the exact decisions their
@@ -36,6 +36,6 @@ void write_memories(const std::string& folder);
 
 /// @returns the same for people: every kind with its bounds and classes, and the rate of dual issue.
 [[nodiscard]] std::string report_text(const Totals& totals);
-[[nodiscard]] std::string rival_report_text(const Totals& totals);
+[[nodiscard]] std::string bvh_report_text(const Totals& totals);
 
 }  // namespace gridiron::calibrate

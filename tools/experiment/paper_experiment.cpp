@@ -82,7 +82,7 @@ std::vector<std::string> paper_file_names() {
       "sweep_lambda.csv", "sweep_lambda.svg", "sweep_latency.csv", "sweep_local_store.csv",
       "sweep_local_store_best.svg", "sweep_local_store_reference.svg", "sweep_macro_depth.csv",
       "sweep_macro_depth.svg", "sweep_macro_width.csv", "sweep_macro_width.svg", "sweep_packet.csv",
-      "sweep_rival.csv",
+      "sweep_bvh.csv",
       "sweep_tile_width.csv", "sweep_tile_width_best.svg", "sweep_tile_width_reference.svg",
       "sweep_triangle_depth.csv", "sweep_triangle_depth.svg", "table1_build.svg", "table1_exponents.csv",
       "table1_growth.csv", "table1_traversal.svg", "table2_scenes.csv", "table3_fps.csv", "table3_shading_cost.csv",
@@ -110,7 +110,7 @@ ExperimentResult run_paper_experiment(const PaperExperiment& experiment, const P
     before_host.push_back(section(plan, stage));
   }
   for (const auto section : {plan_grid_sweeps, plan_packet_sweep, plan_tile_sweep, plan_prefetch_sweeps,
-                             plan_machine_sweeps, plan_store_sweep, plan_rival_sweep}) {
+                             plan_machine_sweeps, plan_store_sweep, plan_bvh_sweep}) {
     after_host.push_back(section(plan, stage));
   }
 

@@ -38,8 +38,8 @@ inline constexpr const char* kCostTableWords =
     "The cycles per unit of work are counted on the kernel's own code and scheduled by published pipeline rules "
     "(tools/calibrate/README.md).";
 
-/// The same of the rival (sim_platform/gridiron/rival/rival_costs.h).
-inline constexpr const char* kRivalCostWords =
+/// The same of the cached BVH (sim_platform/gridiron/bvh/bvh_costs.h).
+inline constexpr const char* kBvhCostWords =
     "What only the hierarchy does (caches, boxes, stack, ring) is counted on its own code by the same tool; rays, "
     "triangle tests, hits and shading are the grid's code at the grid's prices, which are means over the grid's "
     "frames. "
@@ -64,7 +64,7 @@ void write_host_figures(const Stage& stage, std::uint32_t threads, Book& book);
 [[nodiscard]] Writer plan_machine_sweeps(Plan& plan, const Stage& stage);   ///< latency, bandwidth
 [[nodiscard]] Writer plan_tile_sweep(Plan& plan, const Stage& stage);       ///< tiles of 8 to 64 pixels
 [[nodiscard]] Writer plan_store_sweep(Plan& plan, const Stage& stage);      ///< 64 to 512 KB, the maps
-[[nodiscard]] Writer plan_rival_sweep(Plan& plan, const Stage& stage);      ///< settings of the hierarchy
+[[nodiscard]] Writer plan_bvh_sweep(Plan& plan, const Stage& stage);        ///< settings of the hierarchy
 
 /// Words about the parameters that configuration best was given: what they cost and bring against the others of their
 /// sweeps.

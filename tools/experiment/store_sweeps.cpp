@@ -1,6 +1,6 @@
 // Sweeps of the local store: its size, the tiles in it, what has room in it, and the maps.
 // SPDX-License-Identifier: Apache-2.0
-#include <gridiron/rival/rival_store.h>
+#include <gridiron/bvh/bvh_store.h>
 
 #include <algorithm>
 #include <cmath>
@@ -335,16 +335,16 @@ Writer plan_tile_sweep(Plan& plan, const Stage& stage) {
 
 namespace {
 
-Table rival_map() {
+Table bvh_map() {
   Table map{"local_store_map_bvh", {{"region", "region"}, {"offset", "offset"}, {"bytes", "bytes"}}, {}};
-  rival::for_each_region([&map](const char* name, std::size_t offset_bytes, std::size_t bytes) {
+  bvh::for_each_region([&map](const char* name, std::size_t offset_bytes, std::size_t bytes) {
     map.add({name, std::uint64_t{offset_bytes}, std::uint64_t{bytes}});
   });
   const auto add_row = [&map](const char* name, std::uint64_t bytes) { map.add({name, Cell{}, bytes}); };
-  add_row("code (budget)", rival::kCodeBudgetBytes);
-  add_row("stack (budget)", rival::kStackBudgetBytes);
-  add_row("free", rival::kArenaBytes - rival::kCodeBudgetBytes - rival::kStackBudgetBytes - sizeof(rival::RivalStore));
-  add_row("local store", rival::kArenaBytes);
+  add_row("code (budget)", bvh::kCodeBudgetBytes);
+  add_row("stack (budget)", bvh::kStackBudgetBytes);
+  add_row("free", bvh::kArenaBytes - bvh::kCodeBudgetBytes - bvh::kStackBudgetBytes - sizeof(bvh::BvhStore));
+  add_row("local store", bvh::kArenaBytes);
   return map;
 }
 
@@ -507,7 +507,7 @@ void write_maps(Book& book) {
   book.paragraph(
       "The hierarchy has a map of its own. The regions are as large as the largest ring and caches that it can be "
       "asked for; its budgets for code and stack are the grid's, taken over and not proved by a cross build.");
-  book.table(rival_map(), "A core's local store under the hierarchy.");
+  book.table(bvh_map(), "A core's local store under the hierarchy.");
 }
 
 }  // namespace

@@ -11,7 +11,7 @@
 #include <numeric>
 #include <utility>
 
-#include "experiment/rival_system.h"
+#include "experiment/bvh_system.h"
 #include "gridiron/arguments.h"
 #include "gridiron/failure.h"
 #include "gridiron/frame_failure.h"
@@ -119,13 +119,9 @@ Contender grid_contender(std::string key, std::string title, std::string hiding,
 }
 
 Contender bvh_contender() {
-  return {"bvh",
-          "BVH",
-          std::make_shared<RivalSystem>(true),
-          std::make_shared<RivalSystem>(false),
-          "a ring of packets",
-          false,
-          kPaperBvhGrowth};
+  return {
+      "bvh", "BVH",          std::make_shared<BvhSystem>(true), std::make_shared<BvhSystem>(false), "a ring of packets",
+      false, kPaperBvhGrowth};
 }
 
 }  // namespace

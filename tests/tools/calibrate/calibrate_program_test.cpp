@@ -26,9 +26,9 @@ TEST(CalibrateProgram, ATableThatCannotBeWrittenIsToldFirst) {
       {"folder", "folder: cannot write: it is a folder\n"},
   };
   for (const auto& mistake : cases) {
-    for (const bool of_rival : {false, true}) {
+    for (const bool of_bvh : {false, true}) {
       std::vector<std::string> arguments = {mistake.target};
-      if (of_rival) arguments.insert(arguments.begin(), "--rival");
+      if (of_bvh) arguments.insert(arguments.begin(), "--bvh");
       RunningProgram program(folder.folder(), arguments);
       const ProgramResult result = program.wait(kBeforeItCounts);
       EXPECT_EQ(result.exit_code, 1) << mistake.target;

@@ -1,6 +1,6 @@
 // What tools/calibrate/README.md repeats of the tables is what stands in them. SPDX-License-Identifier: Apache-2.0
-#include <gridiron/rival/rival_costs.h>
-#include <gridiron/rival/rival_work.h>
+#include <gridiron/bvh/bvh_costs.h>
+#include <gridiron/bvh/bvh_work.h>
 #include <gridiron/sim/work_costs.h>
 #include <gtest/gtest.h>
 #include <report/report.h>
@@ -90,8 +90,8 @@ TEST(CalibrateReadme, KindsBelowTheirLeastAreNamed) {
     if (cost.cycles > 0 && cost.cycles < 0.98 * cost.least_cycles) below.insert(std::string(name));
   };
   for (std::size_t i = 0; i < kWorkKindCount; ++i) add(sim::kWorkCosts[i], tool::work_name(static_cast<Work>(i)));
-  for (std::uint32_t i = 0; i < rival::kRivalWorkCount; ++i) {
-    add(rival::kRivalCosts[i], rival::name_of(static_cast<rival::RivalWork>(i)));
+  for (std::uint32_t i = 0; i < bvh::kBvhWorkCount; ++i) {
+    add(bvh::kBvhCosts[i], bvh::name_of(static_cast<bvh::BvhWork>(i)));
   }
   EXPECT_EQ(quoted_words(between(readme_text(), "More than 2 % less:", "\n\n")), below);
 }

@@ -1,7 +1,7 @@
 // The committed table of work costs is the one that the kernel's operations come to today.
 // SPDX-License-Identifier: Apache-2.0
-#include <gridiron/rival/rival_costs.h>
-#include <gridiron/rival/rival_work.h>
+#include <gridiron/bvh/bvh_costs.h>
+#include <gridiron/bvh/bvh_work.h>
 #include <gridiron/sim/instruction_costs.h>
 #include <gridiron/sim/machine_profile.h>
 #include <gridiron/sim/work_costs.h>
@@ -33,7 +33,7 @@ void expect_same(const sim::WorkCost& cost, const KindTotals& counted) {
   EXPECT_NEAR(per_unit(counted.resource_cycles()), cost.least_cycles, 0.0501);
 }
 
-// count_frames() and count_rival_frames() throw where the counted twin renders another picture or does other work.
+// count_frames() and count_bvh_frames() throw where the counted twin renders another picture or does other work.
 TEST(WorkTable, CommittedTableIsThatOfTodaysKernel) {
   const Totals totals = count_frames();
   for (std::size_t kind = 0; kind < kWorkKindCount; ++kind) {
@@ -45,26 +45,26 @@ TEST(WorkTable, CommittedTableIsThatOfTodaysKernel) {
   }
 }
 
-TEST(WorkTable, CommittedTableOfTheRivalIsThatOfToday) {
-  const Totals totals = count_rival_frames();
-  for (std::uint32_t i = 0; i < rival::kRivalWorkCount; ++i) {
-    const auto kind = static_cast<rival::RivalWork>(i);
-    SCOPED_TRACE(std::string(rival::name_of(kind)) +
-                 ": if the rival's operations changed, or the kernel's that it calls, write the table anew with\n"
-                 "  build/host/bin/gridiron_calibrate --rival sim_platform/gridiron/rival/rival_costs.h");
-    expect_same(rival::kRivalCosts[i], totals[static_cast<std::size_t>(rival::carrier_of(kind))]);
+TEST(WorkTable, CommittedTableOfTheBvhIsThatOfToday) {
+  const Totals totals = count_bvh_frames();
+  for (std::uint32_t i = 0; i < bvh::kBvhWorkCount; ++i) {
+    const auto kind = static_cast<bvh::BvhWork>(i);
+    SCOPED_TRACE(std::string(bvh::name_of(kind)) +
+                 ": if the cached BVH's operations changed, or the kernel's that it calls, write the table anew with\n"
+                 "  build/host/bin/gridiron_calibrate --bvh sim_platform/gridiron/bvh/bvh_costs.h");
+    expect_same(bvh::kBvhCosts[i], totals[static_cast<std::size_t>(bvh::carrier_of(kind))]);
   }
 }
 
-TEST(WorkTable, RivalChargesItsTableAndTheKernelsForAllElse) {
+TEST(WorkTable, BvhChargesItsTableAndTheKernelsForAllElse) {
   const sim::MachineProfile& machine = *sim::find_machine_profile("cell-ps3");
-  const sim::MachineProfile priced = rival::with_rival_costs(machine);
+  const sim::MachineProfile priced = bvh::with_bvh_costs(machine);
   std::array<double, kWorkKindCount> expected = machine.work_cycles;
-  for (std::uint32_t i = 0; i < rival::kRivalWorkCount; ++i) {
-    const auto kind = static_cast<rival::RivalWork>(i);
-    expected[static_cast<std::size_t>(rival::carrier_of(kind))] = rival::kRivalCosts[i].cycles;
-    EXPECT_EQ(rival::cycles_of(kind), rival::kRivalCosts[i].cycles);
-    EXPECT_LE(rival::kRivalCosts[i].cycles, rival::kRivalCosts[i].most_cycles) << rival::name_of(kind);
+  for (std::uint32_t i = 0; i < bvh::kBvhWorkCount; ++i) {
+    const auto kind = static_cast<bvh::BvhWork>(i);
+    expected[static_cast<std::size_t>(bvh::carrier_of(kind))] = bvh::kBvhCosts[i].cycles;
+    EXPECT_EQ(bvh::cycles_of(kind), bvh::kBvhCosts[i].cycles);
+    EXPECT_LE(bvh::kBvhCosts[i].cycles, bvh::kBvhCosts[i].most_cycles) << bvh::name_of(kind);
   }
   EXPECT_EQ(priced.work_cycles, expected);
 }

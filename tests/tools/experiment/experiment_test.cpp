@@ -34,8 +34,8 @@ std::set<std::string> names_in(const fs::path& folder) {
   return names;
 }
 
-// What stands about the rival: every table has it, and what follows from two columns does follow.
-void expect_rival(const fs::path& folder) {
+// What stands about the cached BVH: every table has it, and what follows from two columns does follow.
+void expect_bvh(const fs::path& folder) {
   const auto frames = csv_rows(folder / "fig7_frames.csv"), built = csv_rows(folder / "fig7_with_build.csv");
   const auto cycles = csv_rows(folder / "fig7_cycles.csv");
   ASSERT_EQ(frames.size(), 5u) << "two views on two machines";
@@ -189,7 +189,7 @@ void expect_words(const fs::path& folder, const std::string& page) {
   const auto frames = rows_of(csv_rows(folder / "fig7_frames.csv"), 0, "cell-2006");
   const experiment::Range cases = range_under(frames, "paper_case_ratio");
   expect("gives " + cases.text(2) + " of its frames");
-  EXPECT_EQ(page.find("The difference is the rival's") != std::string::npos, cases.greatest() < 0.4);
+  EXPECT_EQ(page.find("The difference is the cached BVH's") != std::string::npos, cases.greatest() < 0.4);
 
   // Latency: the hierarchy without and with its ring.
   const auto caches = rows_of(csv_rows(folder / "fig7_caches.csv"), 0, "cell-ps3");
@@ -240,7 +240,7 @@ TEST(Experiment, FilesDoNotDependOnThreads) {
   }
   EXPECT_GE(compared, 35);
   EXPECT_EQ(names.count("host_fig7.csv"), 1u);
-  expect_rival(folder.path("out1"));
+  expect_bvh(folder.path("out1"));
 
   // Every name was known before the work began.
   const std::vector<std::string> known = experiment::paper_file_names();

@@ -1,0 +1,378 @@
+// Binned build by surface area, merging of pairs to four children, layout in cache lines.
+// Memory: std::vector. Threads: any. SPDX-License-Identifier: Apache-2.0
+#include <gridiron/base/math.h>
+#include <gridiron/build/grid/triangle_records.h>
+#include <gridiron/bvh/bvh.h>
+
+#include <algorithm>
+#include <array>
+#include <bit>
+#include <cmath>
+#include <cstring>
+
+namespace gridiron::bvh {
+
+namespace {
+
+constexpr std::uint32_t kMaxBins = 64;
+constexpr std::uint32_t kMaxRecords = 1u << BvhChild::kFirstBits;
+
+struct Box {
+  float low[3] = {kFloatMax, kFloatMax, kFloatMax};
+  float high[3] = {-kFloatMax, -kFloatMax, -kFloatMax};
+
+  void grow(const Vec3& p) {
+    for (int axis = 0; axis < 3; ++axis) {
+      low[axis] = std::min(low[axis], p[axis]);
+      high[axis] = std::max(high[axis], p[axis]);
+    }
+  }
+  void grow(const Box& box) {
+    for (int axis = 0; axis < 3; ++axis) {
+      low[axis] = std::min(low[axis], box.low[axis]);
+      high[axis] = std::max(high[axis], box.high[axis]);
+    }
+  }
+  /// Half the surface.
+  [[nodiscard]] double area() const {
+    double size[3];
+    for (int axis = 0; axis < 3; ++axis) size[axis] = double{high[axis]} - double{low[axis]};
+    return size[0] * size[1] + size[1] * size[2] + size[2] * size[0];
+  }
+};
+
+/// A node of the tree of pairs. first_child 0: a leaf with the triangles [first, first + count) of the order.
+struct PairNode {
+  Box box;
+  std::uint32_t first_child = 0;  ///< the second one follows it
+  std::uint32_t first = 0, count = 0;
+};
+
+struct Split {
+  bool found = false;
+  int axis = 0;
+  std::uint32_t bin = 0;  ///< the first bin of the right side
+  double cost = 0;        ///< in tests of a box, times half surfaces
+};
+
+class Builder {
+ public:
+  Builder(const MeshView& mesh, const BvhParameters& parameters, Bvh& bvh, const std::atomic<bool>* abort)
+      : mesh_(mesh), parameters_(parameters), bvh_(bvh), abort_(abort) {}
+
+  [[nodiscard]] Status build() {
+    GRIDIRON_TRY(take_triangles());
+    GRIDIRON_TRY(build_pairs());
+    merge_to_four();
+    if (is_aborted()) return Status::kAborted;
+    return lay_out();
+  }
+
+ private:
+  [[nodiscard]] bool is_aborted() const { return abort_ != nullptr && abort_->load(std::memory_order_relaxed); }
+
+  [[nodiscard]] Status take_triangles() {
+    for (const Vec3& vertex : mesh_.vertices) {
+      for (int axis = 0; axis < 3; ++axis) {
+        if (!std::isfinite(vertex[axis])) return Status::kBadVertex;
+      }
+    }
+    if (mesh_.triangles.size() >= kMaxRecords) return Status::kTooManyTriangles;
+    for (std::uint32_t i = 0; i < mesh_.triangles.size(); ++i) {
+      const UVec3& corners = mesh_.triangles[i];
+      Box box;
+      for (int corner = 0; corner < 3; ++corner) {
+        if (corners[corner] >= mesh_.vertices.size()) return Status::kBadIndex;
+        box.grow(mesh_.vertices[corners[corner]]);
+      }
+      if (has_zero_area(mesh_.vertices[corners.x], mesh_.vertices[corners.y], mesh_.vertices[corners.z])) continue;
+      boxes_.push_back(box);
+      ids_.push_back(i);
+    }
+    if (boxes_.empty()) return Status::kNoTriangles;
+    bvh_.triangle_count = static_cast<std::uint32_t>(mesh_.triangles.size());
+    return Status::kOk;
+  }
+
+  [[nodiscard]] static double center(const Box& box, int axis) {
+    return 0.5 * (double{box.low[axis]} + double{box.high[axis]});
+  }
+
+  // Top down, a list of open nodes in place of recursion.
+  [[nodiscard]] Status build_pairs() {
+    struct Open {
+      std::uint32_t node, depth;
+    };
+    const auto count = static_cast<std::uint32_t>(boxes_.size());
+    order_.resize(count);
+    for (std::uint32_t i = 0; i < count; ++i) order_[i] = i;
+    pairs_.push_back({bounds_of(0, count), 0, 0, count});
+    std::vector<Open> open = {{0, 1}};
+    while (!open.empty()) {
+      if (is_aborted()) return Status::kAborted;
+      const auto [index, depth] = open.back();
+      open.pop_back();
+      const PairNode node = pairs_[index];
+      const std::uint32_t left_count = partition(node, depth);
+      if (left_count == 0) continue;
+      const auto first_child = static_cast<std::uint32_t>(pairs_.size());
+      const std::uint32_t middle = node.first + left_count;
+      pairs_[index].first_child = first_child;
+      pairs_.push_back({bounds_of(node.first, left_count), 0, node.first, left_count});
+      pairs_.push_back({bounds_of(middle, node.count - left_count), 0, middle, node.count - left_count});
+      open.push_back({first_child + 1, depth + 1});
+      open.push_back({first_child, depth + 1});
+    }
+    bvh_.counts.binary_nodes = pairs_.size();
+    return Status::kOk;
+  }
+
+  [[nodiscard]] Box bounds_of(std::uint32_t first, std::uint32_t count) const {
+    Box box;
+    for (std::uint32_t i = first; i < first + count; ++i) box.grow(boxes_[order_[i]]);
+    return box;
+  }
+
+  // Orders the node's triangles left, right. @returns how many are on the left, 0: it becomes a leaf.
+  [[nodiscard]] std::uint32_t partition(const PairNode& node, std::uint32_t depth) {
+    if (node.count == 1) return 0;
+    Box centers;
+    for (std::uint32_t i = node.first; i < node.first + node.count; ++i) {
+      const Box& box = boxes_[order_[i]];
+      centers.grow(Vec3(static_cast<float>(center(box, 0)), static_cast<float>(center(box, 1)),
+                        static_cast<float>(center(box, 2))));
+    }
+    // The depth that is left must do for halving.
+    const bool must_halve = depth + std::bit_width(node.count - 1) >= kMaxBvhDepth;
+    const Split split = must_halve ? Split{} : best_split(node, centers);
+    if (node.count <= parameters_.leaf_triangles) {
+      const double leaf_cost = double{parameters_.triangle_cost} * node.count * node.box.area();
+      if (!split.found || split.cost >= leaf_cost) return 0;
+    }
+    bvh_.counts.triangles_moved += node.count;
+    const auto begin = order_.begin() + node.first;
+    const auto end = begin + node.count;
+    if (split.found) {
+      const auto middle = std::stable_partition(begin, end, [&](std::uint32_t triangle) {
+        return bin_of(boxes_[triangle], centers, split.axis) < split.bin;
+      });
+      return static_cast<std::uint32_t>(middle - begin);
+    }
+    // Nothing tells them apart, or the tree would get too deep: halves along the widest axis.
+    int axis = 0;
+    for (int other = 1; other < 3; ++other) {
+      if (centers.high[other] - centers.low[other] > centers.high[axis] - centers.low[axis]) axis = other;
+    }
+    const std::uint32_t half = node.count / 2;
+    std::nth_element(begin, begin + half, end, [&](std::uint32_t a, std::uint32_t b) {
+      const double center_a = center(boxes_[a], axis), center_b = center(boxes_[b], axis);
+      return center_a != center_b ? center_a < center_b : a < b;
+    });
+    // nth_element leaves an order that depends on the library; a sorted one does not.
+    std::sort(begin, begin + half);
+    std::sort(begin + half, end);
+    return half;
+  }
+
+  [[nodiscard]] std::uint32_t bin_of(const Box& box, const Box& centers, int axis) const {
+    const double low = centers.low[axis], size = double{centers.high[axis]} - low;
+    const double place = (center(box, axis) - low) / size * parameters_.bin_count;
+    const double last = parameters_.bin_count - 1;
+    return static_cast<std::uint32_t>(std::clamp(place, 0.0, last));
+  }
+
+  [[nodiscard]] Split best_split(const PairNode& node, const Box& centers) {
+    struct Bin {
+      Box box;
+      std::uint32_t count = 0;
+    };
+    const std::uint32_t bin_count = parameters_.bin_count;
+    Split best;
+    for (int axis = 0; axis < 3; ++axis) {
+      if (!(centers.high[axis] > centers.low[axis])) continue;
+      std::array<Bin, kMaxBins> bins{};
+      for (std::uint32_t i = node.first; i < node.first + node.count; ++i) {
+        const Box& box = boxes_[order_[i]];
+        Bin& bin = bins[bin_of(box, centers, axis)];
+        bin.box.grow(box);
+        ++bin.count;
+      }
+      bvh_.counts.bin_updates += node.count;
+      bvh_.counts.bins_swept += 2 * bin_count;
+      std::array<double, kMaxBins> right_cost{};
+      Box right;
+      std::uint32_t right_count = 0;
+      for (std::uint32_t i = bin_count - 1; i > 0; --i) {
+        right.grow(bins[i].box);
+        right_count += bins[i].count;
+        right_cost[i] = right_count == 0 ? 0.0 : right.area() * right_count;
+      }
+      Box left;
+      std::uint32_t left_count = 0;
+      for (std::uint32_t i = 1; i < bin_count; ++i) {
+        left.grow(bins[i - 1].box);
+        left_count += bins[i - 1].count;
+        if (left_count == 0 || left_count == node.count) continue;
+        // Two more boxes to test wherever the node is met.
+        const double cost =
+            2.0 * node.box.area() + double{parameters_.triangle_cost} * (left.area() * left_count + right_cost[i]);
+        if (!best.found || cost < best.cost) best = {true, axis, i, cost};
+      }
+    }
+    return best;
+  }
+
+  // Opens the child with the largest surface until there are four.
+  void merge_to_four() {
+    struct Open {
+      std::uint32_t node, depth;
+    };
+    wide_.push_back({{0}, 1});
+    std::vector<Open> open = {{0, 1}};
+    wide_of_pair_.assign(pairs_.size(), 0);
+    while (!open.empty()) {
+      const Open current = open.back();
+      open.pop_back();
+      bvh_.depth = std::max(bvh_.depth, current.depth);
+      std::array<std::uint32_t, kNodeWidth> children{};
+      std::uint32_t count = 1;
+      children[0] = wide_[current.node].children[0];  // the pair node that it stands for
+      while (count < kNodeWidth) {
+        std::uint32_t widest = kNodeWidth;
+        for (std::uint32_t i = 0; i < count; ++i) {
+          if (pairs_[children[i]].first_child == 0) continue;
+          if (widest == kNodeWidth || pairs_[children[i]].box.area() > pairs_[children[widest]].box.area()) widest = i;
+        }
+        if (widest == kNodeWidth) break;
+        const std::uint32_t opened = pairs_[children[widest]].first_child;
+        children[widest] = opened;
+        children[count++] = opened + 1;
+      }
+      wide_[current.node] = {children, count};
+      for (std::uint32_t i = 0; i < count; ++i) {
+        if (pairs_[children[i]].first_child == 0) continue;
+        wide_of_pair_[children[i]] = static_cast<std::uint32_t>(wide_.size());
+        open.push_back({static_cast<std::uint32_t>(wide_.size()), current.depth + 1});
+        wide_.push_back({{children[i]}, 1});
+      }
+    }
+    bvh_.counts.wide_nodes = wide_.size();
+  }
+
+  // Fills cache lines with pieces of the tree: a node, then again and again the child with the largest surface of those
+  // already in the line; what does not fit begins lines of its own. Triangles follow in the order of the nodes.
+  [[nodiscard]] Status lay_out() {
+    std::vector<std::uint32_t> place(wide_.size());
+    std::vector<std::uint32_t> sequence;
+    std::vector<std::uint32_t> roots = {0};
+    const std::uint32_t line_nodes = parameters_.line_nodes;
+    std::vector<std::uint32_t> frontier;
+    while (!roots.empty()) {
+      frontier.assign(1, roots.back());
+      roots.pop_back();
+      // A line that is not full takes the next piece where it has room for its root.
+      std::uint32_t room = line_nodes - static_cast<std::uint32_t>(sequence.size()) % line_nodes;
+      for (; room != 0 && !frontier.empty(); --room) {
+        const auto larger = [&](std::uint32_t a, std::uint32_t b) { return box_of(a).area() < box_of(b).area(); };
+        const auto next = std::max_element(frontier.begin(), frontier.end(), larger);
+        const std::uint32_t node = *next;
+        frontier.erase(next);
+        place[node] = static_cast<std::uint32_t>(sequence.size());
+        sequence.push_back(node);
+        for (std::uint32_t i = 0; i < wide_[node].count; ++i) {
+          const std::uint32_t child = wide_[node].children[i];
+          if (pairs_[child].first_child != 0) frontier.push_back(wide_of_pair_[child]);
+        }
+      }
+      roots.insert(roots.end(), frontier.rbegin(), frontier.rend());
+    }
+    const std::size_t padded = (sequence.size() + line_nodes - 1) / line_nodes * line_nodes;
+    bvh_.nodes.assign(padded, BvhNode{});
+    for (std::uint32_t i = 0; i < sequence.size(); ++i) GRIDIRON_TRY(write_node(wide_[sequence[i]], place, i));
+    while (bvh_.triangles.size() % parameters_.line_triangles != 0) bvh_.triangles.push_back(VertexTriangle{});
+    std::copy_n(pairs_[0].box.low, 3, bvh_.low);
+    std::copy_n(pairs_[0].box.high, 3, bvh_.high);
+    return Status::kOk;
+  }
+
+  [[nodiscard]] Status write_node(const auto& wide, const std::vector<std::uint32_t>& place, std::uint32_t index) {
+    BvhNode& node = bvh_.nodes[index];
+    node.child_count = wide.count;
+    for (std::uint32_t i = 0; i < kNodeWidth; ++i) {
+      const Box box = i < wide.count ? pairs_[wide.children[i]].box : Box{};
+      for (int axis = 0; axis < 3; ++axis) {
+        node.bounds[0][axis][i] = box.low[axis];
+        node.bounds[1][axis][i] = box.high[axis];
+      }
+      node.children[i].bits = BvhChild::kNone;
+      if (i >= wide.count) continue;
+      const PairNode& child = pairs_[wide.children[i]];
+      if (child.first_child != 0) {
+        node.children[i] = BvhChild::node(place[wide_of_pair_[wide.children[i]]]);
+        continue;
+      }
+      const std::uint32_t line = parameters_.line_triangles;
+      if (bvh_.triangles.size() % line + child.count > line) {
+        while (bvh_.triangles.size() % line != 0) bvh_.triangles.push_back(VertexTriangle{});
+      }
+      if (bvh_.triangles.size() + child.count > kMaxRecords) return Status::kTooManyTriangles;
+      node.children[i] = BvhChild::leaf(static_cast<std::uint32_t>(bvh_.triangles.size()), child.count);
+      ++bvh_.counts.leaves;
+      for (std::uint32_t k = child.first; k < child.first + child.count; ++k) append_record(ids_[order_[k]]);
+    }
+    return Status::kOk;
+  }
+
+  void append_record(std::uint32_t id) {
+    VertexTriangle record{};
+    const UVec3& corners = mesh_.triangles[id];
+    for (int corner = 0; corner < 3; ++corner) {
+      for (int axis = 0; axis < 3; ++axis) record.v[corner][axis] = mesh_.vertices[corners[corner]][axis];
+    }
+    record.triangle_id = id;
+    bvh_.triangles.push_back(record);
+    ++bvh_.counts.records_written;
+  }
+
+  /// Children are pair nodes; before a node is opened, the first one is the pair node it stands for.
+  struct WideNode {
+    std::array<std::uint32_t, kNodeWidth> children{};
+    std::uint32_t count = 0;
+  };
+
+  [[nodiscard]] Box box_of(std::uint32_t wide) const {
+    Box box;
+    for (std::uint32_t i = 0; i < wide_[wide].count; ++i) box.grow(pairs_[wide_[wide].children[i]].box);
+    return box;
+  }
+
+  const MeshView& mesh_;
+  const BvhParameters& parameters_;
+  Bvh& bvh_;
+  const std::atomic<bool>* abort_;
+  std::vector<Box> boxes_;            ///< of the triangles that are kept
+  std::vector<std::uint32_t> ids_;    ///< their places in the mesh
+  std::vector<std::uint32_t> order_;  ///< of the kept triangles
+  std::vector<PairNode> pairs_;
+  std::vector<WideNode> wide_;
+  std::vector<std::uint32_t> wide_of_pair_;
+};
+
+}  // namespace
+
+Status build_bvh(const MeshView& mesh, const BvhParameters& parameters, Bvh& bvh, const std::atomic<bool>* abort) {
+  const auto in_range = [](std::uint32_t value, std::uint32_t least, std::uint32_t most) {
+    return value >= least && value <= most;
+  };
+  if (!in_range(parameters.bin_count, 2, kMaxBins) || !in_range(parameters.leaf_triangles, 1, kMaxLeafTriangles) ||
+      !in_range(parameters.line_triangles, 2, 64) || parameters.line_triangles % 2 != 0 ||
+      parameters.line_triangles < parameters.leaf_triangles || !in_range(parameters.line_nodes, 1, 32) ||
+      !(parameters.triangle_cost > 0.0f) || !std::isfinite(parameters.triangle_cost)) {
+    return Status::kBadParameter;
+  }
+  bvh = Bvh{};
+  bvh.parameters = parameters;
+  return Builder(mesh, bvh.parameters, bvh, abort).build();
+}
+
+}  // namespace gridiron::bvh

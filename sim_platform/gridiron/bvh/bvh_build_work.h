@@ -1,0 +1,19 @@
+// Build work of the cached BVH: the steps of building a hierarchy, to be priced by the same table as the grid's.
+// Memory: plain values. Threads: any. SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <gridiron/bvh/bvh.h>
+#include <gridiron/sim/build_work.h>
+
+#include <cstdint>
+
+namespace gridiron::bvh {
+
+/// Steps of build_bvh. What has no step of its own is left out, in its favour: bounds of centres, merging to
+/// four children and writing these nodes.
+///
+/// @param vertex_count, triangle_count  of the mesh, dropped triangles included.
+[[nodiscard]] sim::BuildWork bvh_build_work(std::uint64_t vertex_count, std::uint64_t triangle_count,
+                                            const BuildCounts& counts);
+
+}  // namespace gridiron::bvh

@@ -1,0 +1,133 @@
+// The cached BVH's local store: every byte a core works in, one struct, in address order.
+// Memory: is the memory. Threads: one core. SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <gridiron/base/records.h>
+#include <gridiron/base/work_counters.h>
+#include <gridiron/bvh/bvh_node.h>
+#include <gridiron/bvh/packet_bounds.h>
+#include <gridiron/bvh/soft_cache.h>
+#include <gridiron/dma/tags.h>
+#include <gridiron/ray/packet.h>
+
+#include <cstddef>
+#include <cstdint>
+
+namespace gridiron::bvh {
+
+inline constexpr std::uint32_t kArenaBytes = 256 * 1024;
+inline constexpr std::uint32_t kCodeBudgetBytes = 48 * 1024;
+inline constexpr std::uint32_t kStackBudgetBytes = 8 * 1024;
+inline constexpr std::uint32_t kTileWidth = 32;
+inline constexpr std::uint32_t kTilePixels = kTileWidth * kTileWidth;
+inline constexpr std::uint32_t kMaxRing = 4;      ///< packets of the ring
+inline constexpr std::uint32_t kOutputDepth = 2;  ///< tiles in rotation
+inline constexpr std::uint32_t kMaxNodeLines = 256;
+inline constexpr std::uint32_t kMaxTriangleLines = 256;
+inline constexpr std::uint32_t kMaxLogLineNodes = 5;      ///< 32 nodes, 4 KB
+inline constexpr std::uint32_t kMaxLogLineTriangles = 6;  ///< 64 records, 3 KB
+
+/// Packets of 16x16 rays leave less to the caches and the ring than those of 8x8.
+template <std::uint32_t Width>
+inline constexpr std::uint32_t kCacheBytes = (Width == 16 ? 128 : 144) * 1024;
+template <std::uint32_t Width>
+inline constexpr std::uint32_t kRingOf = Width == 16 ? 3 : kMaxRing;
+
+// The tags that the replay tells apart: node lines as cell blocks, triangle lines as triangle buffers.
+static_assert(kMaxRing <= kMacroTagCount && kMaxRing <= kTriangleTagCount && kOutputDepth <= kOutputTagCount);
+static_assert(kMaxRing <= kCacheWays);
+
+/// How a core runs; part of the frame's record. Sizes are powers of two.
+struct CoreSettings {
+  std::uint32_t packet_width;        ///< 8 or 16
+  std::uint32_t ring_size;           ///< packets that take turns, 1..kRingOf<packet_width>; 1: none
+  std::uint32_t node_lines;          ///< lines of the node cache, at least kCacheWays
+  std::uint32_t triangle_lines;      ///< of the triangle cache
+  std::uint32_t log_line_nodes;      ///< nodes of a line
+  std::uint32_t log_line_triangles;  ///< records of a line
+  std::uint32_t use_subpackets;      ///< cull triangles by subpackets too, as kUseSubpackets does for the grid
+  std::uint32_t reserved;
+};
+
+/// @returns whether both caches have a number of lines that they can have, and fit.
+[[nodiscard]] inline bool are_caches_valid(const CoreSettings& core) {
+  if (core.log_line_nodes > kMaxLogLineNodes || core.log_line_triangles > kMaxLogLineTriangles) return false;
+  const auto lines_ok = [](std::uint32_t lines, std::uint32_t most) {
+    return lines >= kCacheWays && lines <= most && (lines & (lines - 1u)) == 0;
+  };
+  if (!lines_ok(core.node_lines, kMaxNodeLines) || !lines_ok(core.triangle_lines, kMaxTriangleLines)) return false;
+  const std::uint32_t node_bytes = core.node_lines * kNodeBytes << core.log_line_nodes;
+  const std::uint32_t triangle_bytes = core.triangle_lines * kTriangleRecordBytes << core.log_line_triangles;
+  return node_bytes + triangle_bytes <= (core.packet_width == 16 ? kCacheBytes<16> : kCacheBytes<8>);
+}
+
+/// Everything a core needs to know. 128-byte aligned.
+struct alignas(128) BvhFrameRecord {
+  FrameRecord frame;
+  std::uint64_t nodes_address;      ///< BvhNode[], node 0 is the root
+  std::uint64_t triangles_address;  ///< VertexTriangle[]
+  CoreSettings settings;
+};
+static_assert(sizeof(BvhFrameRecord) == 512);
+
+/// A quad of the stack: what is to be visited, and what has been found out about it.
+struct alignas(16) StackEntry {
+  float entry;  ///< no ray meets it before this t
+  BvhChild child;
+  std::uint32_t missed;  ///< quarters of the packet that do not meet it, a bit each
+  std::uint32_t reserved;
+};
+
+/// One packet of the ring. Its stack never overflows: kStackEntries is the bound of the deepest tree.
+template <std::uint32_t Width>
+struct alignas(128) PacketContext {
+  using StorePacket = Packet<Width, Width == 16 ? 64 : 4>;
+  StorePacket packet;
+  PacketBounds<Width> bounds;
+  alignas(16) float reach[kQuarterCount];  ///< per quarter, the farthest of its rays' nearest hits
+  std::uint32_t x, y;                      ///< its first pixel in the tile
+  BvhChild child;                          ///< what it is about to visit
+  std::uint32_t missed;                    ///< quarters that do not
+  std::uint32_t slot;                      ///< where the line it waits for will be
+  std::uint32_t stack_count;
+  std::uint32_t state;  ///< kIdle, kRunning or kWaiting
+  StackEntry stack[kStackEntries];
+  static constexpr std::uint32_t kIdle = 0, kRunning = 1, kWaiting = 2;
+};
+
+/// Memory of one core.
+template <std::uint32_t Width>
+struct alignas(128) PacketStore {
+  struct alignas(128) TileOutput {
+    std::uint32_t color[kTilePixels];
+    float depth[kTilePixels];
+    std::uint32_t id[kTilePixels];
+  };
+  BvhFrameRecord record;
+  alignas(128) WorkCounters work;
+  SoftCache<kMaxNodeLines> node_cache;
+  SoftCache<kMaxTriangleLines> triangle_cache;
+  alignas(128) std::byte lines[kCacheBytes<Width>];  ///< node lines, then triangle lines
+  PacketContext<Width> contexts[kRingOf<Width>];
+  TileOutput output[kOutputDepth];
+};
+static_assert(sizeof(PacketStore<8>) + kCodeBudgetBytes + kStackBudgetBytes <= kArenaBytes);
+static_assert(sizeof(PacketStore<16>) + kCodeBudgetBytes + kStackBudgetBytes <= kArenaBytes);
+
+/// That of the settings which win.
+inline constexpr std::uint32_t kPacketWidth = 16;
+using BvhStore = PacketStore<kPacketWidth>;
+
+/// Calls visit(name, offset_bytes, bytes) for every region of the store, in address order.
+template <class Visit>
+constexpr void for_each_region(Visit&& visit) {
+  visit("frame", offsetof(BvhStore, record), sizeof(BvhStore::record));
+  visit("work", offsetof(BvhStore, work), sizeof(BvhStore::work));
+  visit("node_directory", offsetof(BvhStore, node_cache), sizeof(BvhStore::node_cache));
+  visit("triangle_directory", offsetof(BvhStore, triangle_cache), sizeof(BvhStore::triangle_cache));
+  visit("cache_lines", offsetof(BvhStore, lines), sizeof(BvhStore::lines));
+  visit("packets", offsetof(BvhStore, contexts), sizeof(BvhStore::contexts));
+  visit("output", offsetof(BvhStore, output), sizeof(BvhStore::output));
+}
+
+}  // namespace gridiron::bvh

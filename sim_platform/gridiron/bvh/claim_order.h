@@ -1,0 +1,112 @@
+// Who claims next: cores take turns by their own clocks, each as if it were alone with its memory. So which core gets
+// which tile depends on the machine's profile alone, not on host threads, and not on what it will decide.
+// Memory: std::vector. Threads: one per core; all calls may come at once. SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <gridiron/sim/machine_profile.h>
+#include <gridiron/sim/sim_core.h>
+#include <gridiron/sim/trace_packing.h>
+
+#include <array>
+#include <condition_variable>
+#include <cstddef>
+#include <cstdint>
+#include <mutex>
+#include <vector>
+
+namespace gridiron::bvh {
+
+/// Simulated time of one core that shares its channel with nobody: what sim::replay gives on one core, step by step.
+class CoreClock {
+ public:
+  using Ticks = std::uint64_t;  ///< 1/1024 cycle
+  static constexpr double kTicksPerCycle = 1024;
+
+  CoreClock(const sim::MachineProfile& machine, std::uint32_t output_depth);
+
+  /// Takes the steps of `trace`. @param ordinal  tiles this core had before this one.
+  void take(const sim::TileTrace& trace, std::uint32_t ordinal);
+  /// Takes the time of a claim, granted or refused.
+  void take_claim() { now_ += claim_; }
+
+  [[nodiscard]] Ticks now() const { return now_; }
+
+ private:
+  [[nodiscard]] static Ticks ticks_of(double cycles);
+  void issue(std::uint64_t address, std::uint32_t bytes, std::uint32_t tag);
+  void wait_until(Ticks time) { now_ = time > now_ ? time : now_; }
+
+  std::array<Ticks, kWorkKindCount> work_{};
+  Ticks issue_, wait_, latency_, slot_, interval_, claim_;
+  std::uint32_t line_bytes_;
+  std::uint32_t output_depth_;
+  Ticks now_ = 0;
+  Ticks last_request_ = 0;
+  Ticks channel_free_ = 0;
+  std::vector<Ticks> done_;      ///< of command n, at n % queue depth
+  std::vector<Ticks> arrivals_;  ///< of line n, at n % lines in flight
+  std::uint64_t command_count_ = 0;
+  std::uint64_t line_count_ = 0;
+  std::array<Ticks, 32> done_of_tag_{};
+  sim::TraceReader steps_;
+};
+
+/// Lets one core run at a time, always the one whose clock is least, ties by number.
+class ClaimOrder {
+ public:
+  explicit ClaimOrder(std::uint32_t cores) : turns_(cores) {}
+
+  /// Blocks until every other core waits too or has left, and none is behind `now`.
+  void wait_for_turn(std::uint32_t core, CoreClock::Ticks now);
+  /// The core claims no more.
+  void leave(std::uint32_t core);
+
+ private:
+  enum class State : std::uint8_t { kRunning, kWaiting, kLeft };
+  struct Turn {
+    State state = State::kRunning;
+    CoreClock::Ticks now = 0;
+  };
+  [[nodiscard]] bool is_next(std::uint32_t core) const;
+
+  std::mutex mutex_;
+  std::condition_variable changed_;
+  std::vector<Turn> turns_;
+};
+
+/// A simulated core that claims in order. Everything else goes straight to it.
+class OrderedCore {
+ public:
+  /// @param core_of_tile  out: written at [tile] when one is claimed.
+  OrderedCore(sim::SimCore& inner, std::uint32_t index, ClaimOrder& order, const sim::MachineProfile& machine,
+              std::uint32_t output_depth, std::vector<std::uint32_t>& core_of_tile)
+      : inner_(inner), index_(index), order_(order), clock_(machine, output_depth), core_of_tile_(core_of_tile) {}
+  ~OrderedCore() { order_.leave(index_); }
+  OrderedCore(const OrderedCore&) = delete;
+  OrderedCore& operator=(const OrderedCore&) = delete;
+
+  [[nodiscard]] PlatformLimits limits() const { return inner_.limits(); }
+  Status get(void* local, MainAddress address, std::uint32_t bytes, Tag tag) {
+    return inner_.get(local, address, bytes, tag);
+  }
+  Status put(const void* local, MainAddress address, std::uint32_t bytes, Tag tag) {
+    return inner_.put(local, address, bytes, tag);
+  }
+  Status wait(TagMask tags) { return inner_.wait(tags); }
+  void note_work(const std::uint32_t* counts, std::uint32_t count) { inner_.note_work(counts, count); }
+  TileClaim claim_tile();
+
+ private:
+  sim::SimCore& inner_;
+  std::uint32_t index_;
+  ClaimOrder& order_;
+  CoreClock clock_;
+  std::vector<std::uint32_t>& core_of_tile_;
+  bool in_tile_ = false;
+  std::uint32_t tiles_ = 0;
+};
+
+static_assert(Platform<OrderedCore>);
+static_assert(WorkObserver<OrderedCore>);
+
+}  // namespace gridiron::bvh
