@@ -22,6 +22,7 @@ using Normal = StoreLayout256K<8>;
 // As little of everything as a layout can have: the macrocell table is streamed through one line, runs of triangles
 // through buffers of three.
 struct TinyLayout {
+  using Engine = GridEngine;
   static constexpr std::uint32_t kEffects = 0;
   static constexpr std::uint32_t kArenaBytes = 64 * 1024;
   static constexpr std::uint32_t kCodeBudgetBytes = 32 * 1024;
