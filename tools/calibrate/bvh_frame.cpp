@@ -4,7 +4,9 @@
 #include <gridiron/bvh/bvh_core.h>
 #include <gridiron/bvh/bvh_renderer.h>
 #include <gridiron/frame/frame_setup.h>
+#include <gridiron/render/tile_renderer.h>
 #include <gridiron_counted/bvh/bvh_core.h>
+#include <gridiron_counted/render/tile_renderer.h>
 
 #include <cstddef>
 #include <cstring>
@@ -21,7 +23,7 @@ struct BvhMemory {
   std::uint32_t tile_count;
   std::size_t pixel_count;
 };
-constexpr std::uint64_t kPictureAddress = sizeof(bvh::BvhFrameRecord);
+constexpr std::uint64_t kPictureAddress = (sizeof(bvh::BvhFrameRecord) + kLineBytes - 1) / kLineBytes * kLineBytes;
 
 BvhMemory make_memory(const BvhCountedFrame& frame) {
   bvh::Bvh bvh;

@@ -139,11 +139,11 @@ class TileRenderer {
   [[nodiscard]] bool is_at_edge(std::uint32_t left, std::uint32_t top) const {
     return left + Layout::kTileWidth > store_.frame.width || top + Layout::kTileWidth > store_.frame.height;
   }
-  template <class Word>
-  void clear_plane(Word (&plane)[Store::kTilePixels], Word value) {
+  template <class Word, class Value>
+  void clear_plane(Word (&plane)[Store::kTilePixels], Value value) {
     store_.work.add(Work::kIdGroup, Store::kTilePixels / 4);
     store_.work.charge_to(Work::kIdGroup);
-    fill_words(plane, value);
+    fill_words(plane, Word{value});
   }
 
   // What is waited for during a tile must not depend on the tiles before it: either those have places of their own in
