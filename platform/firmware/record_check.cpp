@@ -135,8 +135,10 @@ bool check_grid(const FrameRecord& frame, const ImageHead& image) {
          image.has(SectionKind::kMacroTable, "macrocell table", (macro_cells + 31) / 32, sizeof(MacroTableEntry)) &&
          image.has(SectionKind::kCellBlocks, "cell blocks", grid->cell_block_count, grid->cell_block_bytes) &&
          image.has(SectionKind::kTriangles, "triangles", grid->reference_count, grid->triangle_bytes) &&
-         is_of_image("macro table address", frame.engine.macro_table_address, image.address_of(SectionKind::kMacroTable)) &&
-         is_of_image("cell blocks address", frame.engine.cell_blocks_address, image.address_of(SectionKind::kCellBlocks)) &&
+         is_of_image("macro table address", frame.engine.macro_table_address,
+                     image.address_of(SectionKind::kMacroTable)) &&
+         is_of_image("cell blocks address", frame.engine.cell_blocks_address,
+                     image.address_of(SectionKind::kCellBlocks)) &&
          is_of_image("triangles address", frame.engine.triangles_address, image.address_of(SectionKind::kTriangles));
 }
 
@@ -146,7 +148,8 @@ bool check_accuracy(const FrameRecord& frame) {
   }
   const TriangleFormat format = format_of(static_cast<Accuracy>(frame.accuracy));
   return frame.engine.grid.triangle_format == static_cast<std::uint32_t>(format) ||
-         refuse("frame record: accuracy ", frame.accuracy, " of triangles of format ", frame.engine.grid.triangle_format);
+         refuse("frame record: accuracy ", frame.accuracy, " of triangles of format ",
+                frame.engine.grid.triangle_format);
 }
 
 // A section that an effects record speaks of lies in the image; of no records it need not.

@@ -28,6 +28,7 @@ struct BruteForceRecord {
 struct alignas(128) BruteForceStore {
   static constexpr std::uint32_t kBufferTriangles = 64;
   std::byte triangles[kBufferTriangles * kTriangleRecordBytes + 32];
+  static_assert(sizeof(triangles) >= kIdleBufferBytes);
 
   [[nodiscard]] std::byte* idle_buffer(std::uint32_t) { return triangles; }
   template <class Visit>
@@ -44,7 +45,9 @@ class BruteForceCore {
   BruteForceCore(Store& store, Transfers<P>& transfers) : store_(store), transfers_(transfers) {}
 
   [[nodiscard]] Status begin() {
-    return store_.frame.engine.triangles_address != 0 ? Status::kOk : Status::kUnsupportedFrame;
+    // Of equal distances `exact` wants the nearer in truth, which needs both triangles at hand.
+    if (store_.frame.accuracy != static_cast<std::uint32_t>(Accuracy::kStandard)) return Status::kUnsupportedFrame;
+    return store_.frame.engine.triangles_address != 0 ? Status::kOk : Status::kBadFrame;
   }
 
   void begin_tile() {}

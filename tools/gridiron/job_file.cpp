@@ -185,17 +185,18 @@ void check_record(const ByteReader& reader, const FrameJob& job, const FrameReco
   require(in_picture(record.width) && in_picture(record.height) && in_picture(record.tile_width),
           offsetof(FrameHead, width), "the picture's or the tiles' size is out of range");
   const auto tiles = [&record](std::uint32_t pixels) { return (pixels + record.tile_width - 1) / record.tile_width; };
-  require(record.tiles_x == tiles(record.width) && record.tiles_y == tiles(record.height),
-          offsetof(FrameHead, tiles_x), "the counts of tiles are not those of the picture");
+  require(record.tiles_x == tiles(record.width) && record.tiles_y == tiles(record.height), offsetof(FrameHead, tiles_x),
+          "the counts of tiles are not those of the picture");
   reader.require(job.width == record.width && job.height == record.height && job.tile_width == record.tile_width &&
                      job.tile_count == record.tiles_x * record.tiles_y,
                  offsetof(FrameJob, tile_count), "size or tiles are not those of the frame record");
   require(record.engine.macro_table_address == job.image_address + image.macro_table_offset_bytes &&
               record.engine.cell_blocks_address == job.image_address + image.cell_blocks_offset_bytes &&
               record.engine.triangles_address == job.image_address + image.triangles_offset_bytes,
-          (sizeof(FrameHead) + offsetof(GridFrame, macro_table_address)), "the addresses are not those of the scene image's parts");
-  require(std::memcmp(&record.engine.grid, &image.grid, sizeof record.engine.grid) == 0, (sizeof(FrameHead) + offsetof(GridFrame, grid)),
-          "the grid is not that of the scene image");
+          (sizeof(FrameHead) + offsetof(GridFrame, macro_table_address)),
+          "the addresses are not those of the scene image's parts");
+  require(std::memcmp(&record.engine.grid, &image.grid, sizeof record.engine.grid) == 0,
+          (sizeof(FrameHead) + offsetof(GridFrame, grid)), "the grid is not that of the scene image");
   const bool is_scene = record.shading == static_cast<std::uint32_t>(Shading::kScene);
   require(!is_scene || image.has_effects, offsetof(FrameHead, shading), "the scene image has no effects");
   require(record.effects_address == (is_scene ? job.image_address + image.effects_offset_bytes : 0) &&

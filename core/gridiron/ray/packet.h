@@ -51,7 +51,6 @@ inline constexpr std::uint32_t kAllSubpacketRays = (1u << kSubpacketRays) - 1u;
 /// Subpackets of a packet, bit i = subpacket i.
 using SubpacketSet = std::uint64_t;
 
-
 /// @returns the four subpackets of each square: bit i becomes bits 4 i to 4 i + 3. @param squares  16 bits.
 [[nodiscard]] GRIDIRON_INLINE constexpr SubpacketSet subpackets_of_squares(std::uint64_t squares) {
   squares = (squares | squares << 24) & 0x000000FF000000FFu;

@@ -22,9 +22,9 @@ struct WalkRays {
 
 /// What rays ask of their hits.
 struct RayQuestion {
-  bool any_hit;           ///< whether there is one, or which is the nearest
-  bool trusts_floats;     ///< Accuracy::kFast
-  MainAddress surfaces;   ///< the scene's SurfaceRecord[], by triangle_id: Accuracy::kExact settles ties with them
+  bool any_hit;          ///< whether there is one, or which is the nearest
+  bool trusts_floats;    ///< Accuracy::kFast
+  MainAddress surfaces;  ///< the scene's SurfaceRecord[], by triangle_id: Accuracy::kExact settles ties with them
 };
 
 }  // namespace gridiron

@@ -11,6 +11,8 @@ namespace gridiron {
 [[nodiscard]] GRIDIRON_INLINE constexpr std::uint32_t z_curve_column(std::uint32_t i) {
   return (i & 1u) | ((i >> 1) & 2u) | ((i >> 2) & 4u);
 }
-[[nodiscard]] GRIDIRON_INLINE constexpr std::uint32_t z_curve_row(std::uint32_t i) { return z_curve_column(i >> 1); }
+[[nodiscard]] GRIDIRON_INLINE constexpr std::uint32_t z_curve_row(std::uint32_t i) {
+  return z_curve_column(i >> 1);
+}
 
 }  // namespace gridiron

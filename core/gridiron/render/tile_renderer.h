@@ -181,7 +181,8 @@ class TileRenderer {
     if (frame.width == 0 || frame.height == 0 || frame.width > kMaxPictureWidth || frame.height > kMaxPictureWidth) {
       return Status::kBadFrame;
     }
-    if (frame.tile_width != Layout::kTileWidth || frame.engine_id != Layout::Engine::kId) return Status::kUnsupportedFrame;
+    if (frame.tile_width != Layout::kTileWidth || frame.engine_id != Layout::Engine::kId)
+      return Status::kUnsupportedFrame;
     if (frame.tiles_x != (frame.width + Layout::kTileWidth - 1) / Layout::kTileWidth ||
         frame.tiles_y != (frame.height + Layout::kTileWidth - 1) / Layout::kTileWidth) {
       return Status::kBadFrame;

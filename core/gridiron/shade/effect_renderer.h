@@ -52,7 +52,11 @@ class EffectRenderer {
   using EngineCore = typename Layout::Engine::template Core<L, Store, P>;
 
   EffectRenderer(Store& store, Transfers<P>& transfers, EngineCore& engine, SpillRegion spill)
-      : store_(store), transfers_(transfers), engine_(engine), spill_(spill), queue_(store.effects, transfers, spill.address) {}
+      : store_(store),
+        transfers_(transfers),
+        engine_(engine),
+        spill_(spill),
+        queue_(store.effects, transfers, spill.address) {}
 
   /// Fetches what all tiles need. Errors: the missing effect by name, kSpillTooSmall, kUnsupportedFrame.
   [[nodiscard]] Status begin_frame() {

@@ -7,8 +7,8 @@
 #include <gridiron/base/lanes.h>
 #include <gridiron/base/records.h>
 #include <gridiron/dma/tags.h>
-#include <gridiron/ray/walk_rays.h>
 #include <gridiron/platform/contract.h>
+#include <gridiron/ray/walk_rays.h>
 
 #include <cstddef>
 #include <cstdint>

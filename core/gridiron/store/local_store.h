@@ -25,7 +25,7 @@ namespace gridiron {
 /// @tparam TileWidthV    pixels along a tile's edge: 8, 16, 32, 64.
 template <std::uint32_t PacketWidthV = 8, std::uint32_t TileWidthV = 32>
 struct StoreLayout256K {
-  using Engine = GridEngine;                  ///< what traces its rays
+  using Engine = GridEngine;                    ///< what traces its rays
   static constexpr std::uint32_t kEffects = 0;  ///< EffectBits it is built for
   static constexpr std::uint32_t kArenaBytes = 256 * 1024;         ///< local memory of a core
   static constexpr std::uint32_t kCodeBudgetBytes = 53 * 1024;     ///< of it for code: check_budgets proves it

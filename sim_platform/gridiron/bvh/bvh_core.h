@@ -373,8 +373,8 @@ class BvhCore {
   Transfers<P>& transfers_;
   std::byte* triangle_lines_ = nullptr;
   std::uint32_t log_line_nodes_ = 0, log_line_triangles_ = 0, node_mask_ = 0, triangle_mask_ = 0;
-  float least_direction_ = 0.0f;  ///< directions below this are taken for none
-  std::uint32_t now_ = 0;         ///< look-ups
+  float least_direction_ = 0.0f;           ///< directions below this are taken for none
+  std::uint32_t now_ = 0;                  ///< look-ups
   std::uint32_t left_ = 0, top_ = 0;       ///< of the tile, in pixels
   std::uint32_t next_x_ = 0, next_y_ = 0;  ///< of its next packet
   Hits hits_{};

@@ -17,8 +17,8 @@ namespace gridiron::bvh {
 inline constexpr std::uint32_t kTileWidth = 32;
 inline constexpr std::uint32_t kTilePixels = kTileWidth * kTileWidth;
 inline constexpr std::uint32_t kPacketWidth = 16;  ///< of the settings that render fastest
-inline constexpr std::uint32_t kMaxRing = 4;      ///< packets of the ring
-inline constexpr std::uint32_t kOutputDepth = 2;  ///< tiles in rotation
+inline constexpr std::uint32_t kMaxRing = 4;       ///< packets of the ring
+inline constexpr std::uint32_t kOutputDepth = 2;   ///< tiles in rotation
 inline constexpr std::uint32_t kMaxNodeLines = 256;
 inline constexpr std::uint32_t kMaxTriangleLines = 256;
 inline constexpr std::uint32_t kMaxLogLineNodes = 5;      ///< 32 nodes, 4 KB

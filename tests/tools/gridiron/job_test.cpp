@@ -294,7 +294,8 @@ TEST(Job, DamageIsFoundWithItsPlace) {
     return damaged;
   };
   const std::size_t section = 4096 + record_at<ImageHeader>(whole, 4096).section_table_offset_bytes;
-  const std::size_t grid = 256 + (sizeof(FrameHead) + offsetof(GridFrame, grid)), bytes = offsetof(SectionEntry, section_bytes);
+  const std::size_t grid = 256 + (sizeof(FrameHead) + offsetof(GridFrame, grid)),
+                    bytes = offsetof(SectionEntry, section_bytes);
   expect_refused(flipped(grid + 3), grid,
                  "the grid is not that of the scene image; the job's check_value differs too\n");
   expect_refused(
@@ -368,9 +369,12 @@ TEST(Job, DamageIsFoundWithItsPlace) {
   expect_wrong(256 + offsetof(FrameHead, magic), [](Job&, Record& record) { record.magic ^= 1; });
   expect_wrong(256 + offsetof(FrameHead, width), [](Job&, Record& record) { record.tile_width = 0; });
   expect_wrong(256 + offsetof(FrameHead, tiles_x), [](Job&, Record& record) { ++record.tiles_x; });
-  expect_wrong(256 + (sizeof(FrameHead) + offsetof(GridFrame, macro_table_address)), [](Job&, Record& record) { ++record.engine.triangles_address; });
-  expect_wrong(256 + (sizeof(FrameHead) + offsetof(GridFrame, grid)), [](Job&, Record& record) { ++record.engine.grid.reference_count; });
-  expect_wrong(256 + offsetof(FrameHead, effects_address), [](Job&, Record& record) { record.effects_address = kBase; });
+  expect_wrong(256 + (sizeof(FrameHead) + offsetof(GridFrame, macro_table_address)),
+               [](Job&, Record& record) { ++record.engine.triangles_address; });
+  expect_wrong(256 + (sizeof(FrameHead) + offsetof(GridFrame, grid)),
+               [](Job&, Record& record) { ++record.engine.grid.reference_count; });
+  expect_wrong(256 + offsetof(FrameHead, effects_address),
+               [](Job&, Record& record) { record.effects_address = kBase; });
   expect_wrong(256 + offsetof(FrameHead, shading), [](Job&, Record& record) { record.shading = 2; });
 }
 

@@ -85,8 +85,8 @@ class PacketDriver {
     runs_[slot] = {count, place.first_byte, cell_.entry, touching_};
     cell_.first_triangle += count;
     cell_.triangle_count -= count;
-    return transfers_.get(store_.engine.triangles[slot].bytes + (place.first_byte - place.slack), place.begin, place.bytes,
-                          static_cast<std::uint8_t>(kFirstTriangleTag + slot));
+    return transfers_.get(store_.engine.triangles[slot].bytes + (place.first_byte - place.slack), place.begin,
+                          place.bytes, static_cast<std::uint8_t>(kFirstTriangleTag + slot));
   }
 
   [[nodiscard]] bool find_next_cell() {

@@ -173,12 +173,12 @@ void set_up(const WalkScene& scene, std::uint32_t walks, Store& store) {
   for (std::uint32_t chunk = 0; chunk < chunks; ++chunk) store.engine.table.chunk_of_slot[chunk] = chunk;
 }
 
-Run finish_run(Store& store, TestPlatform& platform, const std::vector<OracleRay>& rays, bool any_hit,
+Run finish_run(Store& store, TestPlatform& platform, const std::vector<OracleRay>& rays, const RayQuestion& question,
                auto walk_rays_through) {
   Run run;
   Transfers<TestPlatform> transfers(platform, store.work);
   RayJobs jobs(rays);
-  run.status = walk_rays_through(transfers, RayQuestion{any_hit, false}, jobs);
+  run.status = walk_rays_through(transfers, question, jobs);
   run.answers = jobs.answers;
   run.work = store.work;
   run.violation = platform.violation();
@@ -195,17 +195,18 @@ Run trace(const WalkScene& scene, const std::vector<OracleRay>& rays, const RunO
   platform.failing_command = options.failing_command;
   const auto store = std::make_unique<Store>();
   set_up(scene, options.walks, *store);
-  const auto walk = [&](Transfers<TestPlatform>& transfers, RayQuestion question, RayJobs& jobs) {
-    return WalkDriver<L, Store, TestPlatform>(*store, transfers).run(question, jobs);
+  const RayQuestion question{options.any_hit, false, MainAddress{kImage + scene.view.effects.surfaces_offset_bytes}};
+  const auto walk = [&](Transfers<TestPlatform>& transfers, const RayQuestion& asked, RayJobs& jobs) {
+    return WalkDriver<L, Store, TestPlatform>(*store, transfers).run(asked, jobs);
   };
-  Run run = finish_run(*store, platform, rays, options.any_hit, walk);
+  Run run = finish_run(*store, platform, rays, question, walk);
   if (options.failing_command) {
     // What is still on its way can be waited for, and the same store then serves another run.
     EXPECT_EQ(platform.wait(TagMask{~0u}), Status::kOk);
     EXPECT_EQ(platform.pending(), 0u);
     platform.failing_command.reset();
     if (!scene.table_fits()) store->engine.table.forget();  // as every tile does
-    const Run again = finish_run(*store, platform, rays, options.any_hit, walk);
+    const Run again = finish_run(*store, platform, rays, question, walk);
     EXPECT_EQ(again.status, Status::kOk);
     EXPECT_EQ(again.violation, "");
     run.answers = again.answers;
