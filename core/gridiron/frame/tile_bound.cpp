@@ -176,7 +176,7 @@ class Sum {
     add(Work::kIdGroup, packet_groups);
     if (frame_.has_depth) add(Work::kDepthGroup, packet_groups / samples);
     // At the picture's edge the planes are cleared.
-    const std::uint64_t planes = 1 + (frame_.has_depth ? 1 : 0) + (frame_.shading == Shading::kSimple ? 1 : 0);
+    const std::uint64_t planes = 1u + (frame_.has_depth ? 1u : 0u) + (frame_.shading == Shading::kSimple ? 1u : 0u);
     add(Work::kIdGroup, planes * (tile_pixels() / 4));
   }
 
