@@ -246,6 +246,8 @@ std::string_view work_name(Work kind) {
       return "walk_pass";
     case Work::kShaftGroup:
       return "shaft_group";
+    case Work::kRayTriangleSetup:
+      return "ray_triangle_setup";
     case Work::kRayGroupTest:
       return "ray_group_test";
     case Work::kRayDistance:

@@ -441,12 +441,6 @@ GRIDIRON_INLINE void fill_words(Word (&target)[Count], Word value) {
   for (Word& word : target) word = value;
 }
 
-/// Copies all of `source`.
-template <class Word, std::uint32_t Count>
-GRIDIRON_INLINE void copy_words(const Word (&source)[Count], Word (&target)[Count]) {
-  for (std::uint32_t i = 0; i < Count; ++i) target[i] = source[i];
-}
-
 /// Number of set bits.
 [[nodiscard]] GRIDIRON_INLINE std::uint32_t count_bits(std::uint32_t bits) {
   bits -= (bits >> 1) & 0x55555555u;

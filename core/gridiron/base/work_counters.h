@@ -39,7 +39,7 @@ enum class Work : std::uint8_t {
   kShadedGroup,        ///< ray groups turned into pixels without shading
   kShadedSimpleGroup,  ///< ray groups shaded by facing ratio
   kDepthGroup,         ///< ray groups written to the depth plane
-  kIdGroup,            ///< groups of triangle ids written to a plane, or copied, or of words cleared
+  kIdGroup,            ///< groups of triangle ids written to a plane, or of words cleared
   kFootprintGroup,     ///< SIMD groups of squares of subpackets held against a cell
   kRowGroup,           ///< subpackets whose rows were held against a triangle's edges
   kEstimateSetup,      ///< triangles for which estimates of distances were set up
@@ -53,6 +53,7 @@ enum class Work : std::uint8_t {
   kQueuedRay,          ///< reflected and refracted rays made, and put into the queue
   kWalkPass,           ///< walks of up to 16 rays begun: axis, shaft
   kShaftGroup,         ///< SIMD groups of walked rays held against a slab of the grid
+  kRayTriangleSetup,   ///< triangles set up to be tested by rays with origins of their own
   kRayGroupTest,       ///< (group, triangle) tests of rays with origins of their own
   kRayDistance,        ///< distances of single rays, in double
   kSurfacePoint,       ///< hits of which point, normal and material were found

@@ -210,7 +210,6 @@ class Sum {
     const EffectsRecord& effects = scene_.effects;
     const auto calls_for = [&](std::uint32_t bits) { return (effects.called_for & bits) != 0; };
     const std::uint64_t pixels = tile_pixels();
-    if (frame_.has_ids) add(Work::kIdGroup, pixels / 4);
     const Count eye_rays = Count{pixels} * samples;
     // A hit casts a reflected ray and, of glass, a refracted one.
     const std::uint64_t branches = calls_for(kRefraction) ? 2 : calls_for(kReflection) ? 1 : 0;
@@ -256,6 +255,7 @@ class Sum {
     const Count pairs = rays * scene_.references;
     const Count ties = is_exact() ? pairs : Count{};
     add(Work::kMailboxProbe, pairs);
+    add(Work::kRayTriangleSetup, pairs);
     add(Work::kRayGroupTest, pairs);
     add(Work::kRayDistance, pairs);
     add(Work::kDoubleSign, pairs * 3 + ties * 3);

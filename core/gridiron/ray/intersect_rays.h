@@ -95,9 +95,11 @@ template <class L>
                                                        const VertexTriangle& triangle, bool trusts_floats,
                                                        std::uint32_t& settled, WorkCounters& work) {
   using Float = typename L::Float;
-  work.charge_to(Work::kRayGroupTest);
+  work.add(Work::kRayTriangleSetup);
+  work.charge_to(Work::kRayTriangleSetup);
   RayTriangle set;
   set_up_ray_triangle(triangle, set);
+  work.charge_to(Work::kRayGroupTest);
   std::uint32_t open = 0;
   settled = 0;
   for (std::uint32_t base = 0; base < kWalkRays; base += L::kCount) {

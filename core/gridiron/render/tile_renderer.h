@@ -109,27 +109,21 @@ class TileRenderer {
   [[nodiscard]] Status render_effects(std::uint32_t left, std::uint32_t top, TileOutput& output) {
     const FrameHead& frame = store_.frame;
     effects_.begin_tile(left, top);
-    if constexpr (kTracesEyes<Layout>) {
-      if (is_at_edge(left, top)) {
-        clear_plane(store_.effects.hit_ids, kNoTriangle);
-        if (frame.depth_address != 0) clear_plane(output.depth, kFloatMax);
-      }
+    if (kTracesEyes<Layout> && is_at_edge(left, top)) {
+      clear_plane(output.id, kNoTriangle);
+      if (frame.depth_address != 0) clear_plane(output.depth, kFloatMax);
     }
     const std::uint32_t sample_count = effects_.samples_per_pixel();
     for (std::uint32_t sample = 0; sample < sample_count; ++sample) {
       store_.work.charge_to(Work::kColorGroup);
+      std::uint32_t* const ids = sample == 0 ? output.id : store_.effects.hit_ids;
       if constexpr (kTracesEyes<Layout>) {
         const PixelOffset offset = pixel_offset(sample_count, sample);
         const bool has_depth = sample == 0 && frame.depth_address != 0;
-        GRIDIRON_TRY(engine_.trace_eyes({left, top, offset.dx, offset.dy},
-                                        {store_.effects.hit_ids, has_depth ? output.depth : nullptr, nullptr}));
+        GRIDIRON_TRY(
+            engine_.trace_eyes({left, top, offset.dx, offset.dy}, {ids, has_depth ? output.depth : nullptr, nullptr}));
       }
-      GRIDIRON_TRY(effects_.shade_sample(sample));
-      if (sample == 0 && frame.id_address != 0) {
-        store_.work.add(Work::kIdGroup, Store::kTilePixels / 4);
-        store_.work.charge_to(Work::kIdGroup);
-        copy_words(store_.effects.hit_ids, output.id);
-      }
+      GRIDIRON_TRY(effects_.shade_sample(sample, ids));
     }
     effects_.finish_tile(output.color);
     return Status::kOk;

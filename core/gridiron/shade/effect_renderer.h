@@ -111,8 +111,9 @@ class EffectRenderer {
     for (std::uint32_t& index : store_.effects.material_of_slot) index = Effects::kNoMaterial;
   }
 
-  /// Works on what the eye rays of one sample of the tile have hit, store.effects.hit_ids.
-  [[nodiscard]] Status shade_sample(std::uint32_t sample) {
+  /// Works on what the eye rays of one sample of the tile have hit.
+  /// @param ids  a plane of the tile; written here where the engine has no code for eye rays.
+  [[nodiscard]] Status shade_sample(std::uint32_t sample, std::uint32_t* ids) {
     const FrameHead& frame = store_.frame;
     const PixelOffset offset = pixel_offset(samples_per_pixel(), sample);
     constexpr std::uint32_t kPixels = Store::kTilePixels, kSquareWidth = 4, kSquarePixels = kSquareWidth * kSquareWidth;
@@ -136,11 +137,11 @@ class EffectRenderer {
         ray.pixel = (y * Layout::kTileWidth + x) | 1u << 16;
         ray.path = 1;
         if constexpr (kTracesEyes<Layout>) {
-          store_.wave.ids[count] = store_.effects.hit_ids[y * Layout::kTileWidth + x];
+          store_.wave.ids[count] = ids[y * Layout::kTileWidth + x];
         }
         ++count;
       }
-      if constexpr (!kTracesEyes<Layout>) GRIDIRON_TRY(trace_eye_rays(count, sample));
+      if constexpr (!kTracesEyes<Layout>) GRIDIRON_TRY(trace_eye_rays(count, ids));
       GRIDIRON_TRY(finish_wave(count, sample));
     }
     // Not before: so that waves are full.
@@ -227,15 +228,13 @@ class EffectRenderer {
     return Status::kOk;
   }
 
-  // Where the engine has no code for eye rays, they are traced like all others; of the first sample the tile keeps ids.
-  [[nodiscard]] Status trace_eye_rays(std::uint32_t ray_count, std::uint32_t sample) {
+  // Where the engine has no code for eye rays, they are traced like all others.
+  [[nodiscard]] Status trace_eye_rays(std::uint32_t ray_count, std::uint32_t* ids) {
     transfers_.note_stage(Stage::kPrimary);
     WaveRayJobs<Store> jobs(store_, ray_count, store_.frame.t_far);
     GRIDIRON_TRY(engine_.trace(question(false), jobs));
     store_.work.charge_to(Work::kWaveRay);
-    for (std::uint32_t i = 0; i < ray_count && sample == 0; ++i) {
-      store_.effects.hit_ids[store_.wave.items[i].ray.pixel & 0xFFFFu] = store_.wave.ids[i];
-    }
+    for (std::uint32_t i = 0; i < ray_count; ++i) ids[store_.wave.items[i].ray.pixel & 0xFFFFu] = store_.wave.ids[i];
     return Status::kOk;
   }
 

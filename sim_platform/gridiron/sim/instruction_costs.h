@@ -60,23 +60,24 @@ inline constexpr auto kInstructionCosts = std::to_array<InstructionCost>({
     {Work{37}, 27547.3},  // exact_order, of 64 decisions
     {Work{38},   123.1},  // lattice_triangle, not in `dense`
     {Work{39},    15.0},  // cell_bound_step, not in `dense`
-    {Work{40},   147.5},  // wave_ray, of effects
+    {Work{40},   147.1},  // wave_ray, of effects
     {Work{41},   105.0},  // queued_ray, of effects
     {Work{42},  5267.3},  // walk_pass, of effects
     {Work{43},   314.1},  // shaft_group, of effects
-    {Work{44},  1964.6},  // ray_group_test, of effects
-    {Work{45},   350.0},  // ray_distance, of effects
-    {Work{46},  1489.7},  // surface_point, of effects
-    {Work{47},   268.8},  // smooth_normal, of effects
-    {Work{48},   148.4},  // shadow_ray, of effects
-    {Work{49},    67.0},  // light_sample, of effects
-    {Work{50},   153.2},  // highlight, of effects
-    {Work{51},   188.6},  // occlusion_ray, of effects
-    {Work{52},    57.1},  // mirror_ray, of effects
-    {Work{53},   131.8},  // refracted_ray, of effects
-    {Work{54},   380.3},  // environment_lookup, of effects
-    {Work{55},    84.2},  // color_added, of effects
-    {Work{56},   193.0},  // color_group, of effects
+    {Work{44},   274.6},  // ray_triangle_setup, of effects
+    {Work{45},  1722.3},  // ray_group_test, of effects
+    {Work{46},   350.0},  // ray_distance, of effects
+    {Work{47},  1489.7},  // surface_point, of effects
+    {Work{48},   268.8},  // smooth_normal, of effects
+    {Work{49},   148.4},  // shadow_ray, of effects
+    {Work{50},    67.0},  // light_sample, of effects
+    {Work{51},   153.2},  // highlight, of effects
+    {Work{52},   188.6},  // occlusion_ray, of effects
+    {Work{53},    57.1},  // mirror_ray, of effects
+    {Work{54},   131.8},  // refracted_ray, of effects
+    {Work{55},   380.3},  // environment_lookup, of effects
+    {Work{56},    84.2},  // color_added, of effects
+    {Work{57},   193.1},  // color_group, of effects
 });
 
 /// A command: from where core counts it to the next kind of work, and its end in a wait.

@@ -131,7 +131,7 @@ TEST(Report, HasExactlyTheDocumentedKeysInOrder) {
         "exact_sign",       "exact_distance",  "reach_group",      "shaded_group",        "shaded_simple_group",
         "depth_group",      "id_group",        "footprint_group",  "row_group",           "estimate_setup",
         "normal_setup",     "hit_half",        "exact_order",      "lattice_triangle",    "cell_bound_step",
-        "wave_ray", "queued_ray", "walk_pass", "shaft_group", "ray_group_test",
+        "wave_ray", "queued_ray", "walk_pass", "shaft_group", "ray_triangle_setup", "ray_group_test",
         "ray_distance", "surface_point", "smooth_normal", "shadow_ray", "light_sample",
         "highlight", "occlusion_ray", "mirror_ray", "refracted_ray", "environment_lookup",
         "color_added", "color_group",

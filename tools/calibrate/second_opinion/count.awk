@@ -2,12 +2,12 @@
 # second_opinion/run promises. Variables: work (folder with units and NAME.units), target, as_header (not empty: yes).
 # SPDX-License-Identifier: Apache-2.0
 BEGIN {
-  # n = 64 + kind, and the marks of program_core.h: hint #n is d503201f + 32 n, slti zero, zero, n 00002013 + n * 2^20.
-  for (kind = 0; kind < 64; ++kind) {
-    code = target == "riscv64" ? sprintf("%03x02013", 64 + kind) : sprintf("d5032%03x", 2079 + 32 * kind)
+  # n = 63 + kind, and the marks of program_core.h: hint #n is d503201f + 32 n, slti zero, zero, n 00002013 + n * 2^20.
+  for (kind = 0; kind < 65; ++kind) {
+    code = target == "riscv64" ? sprintf("%03x02013", 63 + kind) : sprintf("d5032%03x", 2047 + 32 * kind)
     kind_of[code] = kind
   }
-  kGet = 57; kPut = 58; kWait = 59; kClaim = 60; kCommandEnd = 61; kCopied = 62; kNothing = 63
+  kGet = 58; kPut = 59; kWait = 60; kClaim = 61; kCommandEnd = 62; kCopied = 63; kNothing = 64
   while ((getline line < (work "/units")) > 0) {
     split(line, part, " ")
     name[part[1]] = part[2]
