@@ -97,6 +97,7 @@ class ImageHead {
 
 bool check_picture(const FrameJob& job, const FrameRecord& frame) {
   return is_of_job("magic", frame.magic, kFrameMagic) && is_of_job("version", frame.version, kFrameVersion) &&
+         is_of_job("engine", frame.engine_id, static_cast<std::uint32_t>(EngineId::kGrid)) &&
          is_of_job("width", frame.width, job.width) && is_of_job("height", frame.height, job.height) &&
          is_of_job("tile width", frame.tile_width, job.tile_width) &&
          is_of_job("tiles_x", frame.tiles_x, (job.width + job.tile_width - 1) / job.tile_width) &&
@@ -110,7 +111,7 @@ bool check_grid(const FrameRecord& frame, const ImageHead& image) {
   const GridRecord* const grid = image.find<GridRecord>(SectionKind::kGrid, "grid");
   if (grid == nullptr) return false;
   // Bit for bit: no floating point here.
-  if (std::memcmp(reinterpret_cast<const std::byte*>(&frame.grid), reinterpret_cast<const std::byte*>(grid),
+  if (std::memcmp(reinterpret_cast<const std::byte*>(&frame.engine.grid), reinterpret_cast<const std::byte*>(grid),
                   sizeof *grid) != 0) {
     return refuse("frame record: the grid is not the scene image's");
   }
@@ -134,9 +135,11 @@ bool check_grid(const FrameRecord& frame, const ImageHead& image) {
          image.has(SectionKind::kMacroTable, "macrocell table", (macro_cells + 31) / 32, sizeof(MacroTableEntry)) &&
          image.has(SectionKind::kCellBlocks, "cell blocks", grid->cell_block_count, grid->cell_block_bytes) &&
          image.has(SectionKind::kTriangles, "triangles", grid->reference_count, grid->triangle_bytes) &&
-         is_of_image("macro table address", frame.macro_table_address, image.address_of(SectionKind::kMacroTable)) &&
-         is_of_image("cell blocks address", frame.cell_blocks_address, image.address_of(SectionKind::kCellBlocks)) &&
-         is_of_image("triangles address", frame.triangles_address, image.address_of(SectionKind::kTriangles));
+         is_of_image("macro table address", frame.engine.macro_table_address,
+                     image.address_of(SectionKind::kMacroTable)) &&
+         is_of_image("cell blocks address", frame.engine.cell_blocks_address,
+                     image.address_of(SectionKind::kCellBlocks)) &&
+         is_of_image("triangles address", frame.engine.triangles_address, image.address_of(SectionKind::kTriangles));
 }
 
 bool check_accuracy(const FrameRecord& frame) {
@@ -144,8 +147,9 @@ bool check_accuracy(const FrameRecord& frame) {
     return refuse("frame record: accuracy ", frame.accuracy);
   }
   const TriangleFormat format = format_of(static_cast<Accuracy>(frame.accuracy));
-  return frame.grid.triangle_format == static_cast<std::uint32_t>(format) ||
-         refuse("frame record: accuracy ", frame.accuracy, " of triangles of format ", frame.grid.triangle_format);
+  return frame.engine.grid.triangle_format == static_cast<std::uint32_t>(format) ||
+         refuse("frame record: accuracy ", frame.accuracy, " of triangles of format ",
+                frame.engine.grid.triangle_format);
 }
 
 // A section that an effects record speaks of lies in the image; of no records it need not.

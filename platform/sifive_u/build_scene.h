@@ -23,9 +23,9 @@ namespace gridiron::port {
   const MeshView mesh{workshop.vertices, workshop.triangles};
   FrameRecord& frame = workshop.frame;
   GridParameters parameters;
-  parameters.lambda = frame.grid.lambda;
-  parameters.macro_width = frame.grid.macro_width;
-  parameters.format = static_cast<TriangleFormat>(frame.grid.triangle_format);
+  parameters.lambda = frame.engine.grid.lambda;
+  parameters.macro_width = frame.engine.grid.macro_width;
+  parameters.format = static_cast<TriangleFormat>(frame.engine.grid.triangle_format);
   GridNeed need;
   GRIDIRON_TRY(count_scene_image(mesh, parameters, need));
   if (need.image_bytes > sizeof workshop.image || need.scratch_bytes > sizeof workshop.scratch) {
@@ -36,10 +36,10 @@ namespace gridiron::port {
   SceneImageError error;
   GRIDIRON_TRY(open_scene_image({workshop.image, static_cast<std::size_t>(need.image_bytes)}, view, error));
   const std::uint64_t image = reinterpret_cast<std::uintptr_t>(workshop.image);
-  frame.macro_table_address = image + view.macro_table_offset_bytes;
-  frame.cell_blocks_address = image + view.cell_blocks_offset_bytes;
-  frame.triangles_address = image + view.triangles_offset_bytes;
-  frame.grid = view.grid;
+  frame.engine.macro_table_address = image + view.macro_table_offset_bytes;
+  frame.engine.cell_blocks_address = image + view.cell_blocks_offset_bytes;
+  frame.engine.triangles_address = image + view.triangles_offset_bytes;
+  frame.engine.grid = view.grid;
   return Status::kOk;
 }
 

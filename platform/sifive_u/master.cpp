@@ -89,7 +89,7 @@ RunExit render_animated(Monitor& monitor, Master<Monitor>& master, const Firmwar
   }
   shared_memory.must_build = 0;
   print("scene of frame ", shared_memory.animation_frame, " built: status ", StatusNumber{status}, ", ",
-        scene_workshop().frame.grid.reference_count, " references, stack ",
+        scene_workshop().frame.engine.grid.reference_count, " references, stack ",
         shared_memory.control.cores[0].result.stack_bytes, "\n");
   if (status != 0) return RunExit::kFrameFailed;
   return master.render("result.bin", reinterpret_cast<std::uintptr_t>(&scene_workshop().frame));

@@ -1,5 +1,6 @@
 // The cached BVH's frames: the grid's pixels, no broken rule, the same figures every time.
 // SPDX-License-Identifier: Apache-2.0
+#include <gridiron/bvh/bvh_core.h>
 #include <gridiron/bvh/bvh_renderer.h>
 #include <gtest/gtest.h>
 
@@ -349,7 +350,7 @@ TEST(BvhRenderer, RefusesWhatItCannotRender) {
 TEST(BvhRenderer, StoreMapCoversTheStore) {
   std::size_t end = 0;
   std::size_t regions = 0;
-  for_each_region([&](std::string_view, std::size_t offset, std::size_t bytes) {
+  for_each_region<BvhStore::Layout>([&](std::string_view, std::size_t offset, std::size_t bytes) {
     EXPECT_GE(offset, end);
     EXPECT_LT(offset - end, 128u);
     end = offset + bytes;

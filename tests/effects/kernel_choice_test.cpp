@@ -196,7 +196,7 @@ TEST(KernelChoice, FramesThatEffectsCannotBeRenderedForAreRefused) {
   EXPECT_EQ(status_of(+[](FrameRecord& frame) { frame.image_address = 0; }), Status::kBadFrame);
   EXPECT_EQ(status_of(+[](FrameRecord& frame) {
               frame.accuracy = static_cast<std::uint32_t>(Accuracy::kPaper);
-              frame.grid.triangle_format = static_cast<std::uint32_t>(TriangleFormat::kProjection);
+              frame.engine.grid.triangle_format = static_cast<std::uint32_t>(TriangleFormat::kProjection);
             }),
             Status::kUnsupportedFrame);
   options.alter = nullptr;

@@ -20,6 +20,7 @@ namespace gridiron::test {
 
 /// Sizes of a store with packets of eight by eight and short buffers, so that small scenes need many.
 struct PacketOrderLayout {
+  using Engine = GridEngine;
   static constexpr std::uint32_t kEffects = 0;
   static constexpr std::uint32_t kArenaBytes = 64 * 1024;
   static constexpr std::uint32_t kCodeBudgetBytes = 32 * 1024;
@@ -38,6 +39,7 @@ struct PacketOrderLayout {
 
 /// The same for all effects: no packets, five walks, room for two materials.
 struct EffectOrderLayout {
+  using Engine = GridEngine;
   static constexpr std::uint32_t kEffects = kAllEffects;
   static constexpr std::uint32_t kArenaBytes = 96 * 1024;
   static constexpr std::uint32_t kCodeBudgetBytes = 44 * 1024;

@@ -307,6 +307,7 @@ class EffectsFrame {
     frame.version = kFrameVersion;
     frame.width = frame.height = frame.tile_width = 32;
     frame.tiles_x = frame.tiles_y = frame.output_depth = 1;
+    frame.engine_id = static_cast<std::uint32_t>(EngineId::kGrid);
     frame.shading = static_cast<std::uint32_t>(Shading::kScene);
     frame.color_address = color_.address.value;
     frame.effects_address = image_.address.value + 512;

@@ -98,10 +98,7 @@ PreparedFrame::PreparedFrame(sim::SimMemory* memory, const SceneImageView& image
     ids_ = ids->bytes;
     settings.ids = ids->address;
   }
-  // What a tile fails to write must not look like a pixel.
-  for (const std::span<std::byte> plane : {color_, depth_, ids_}) {
-    if (!plane.empty()) std::memset(plane.data(), 0xA5, plane.size());
-  }
+  clear_planes();
   status_ = make_frame_record(settings, image, image_address, record_);
   record_address_ = record->address;
   std::memcpy(record->bytes.data(), &record_, sizeof(FrameRecord));
@@ -118,6 +115,27 @@ void PreparedFrame::set_record(const FrameRecord& record) {
 
 sim::ChipResult PreparedFrame::render(const sim::ChipOptions& chip) {
   return render_in_test(*memory_, record_address_, chip);
+}
+
+void PreparedFrame::clear_planes() {
+  for (const std::span<std::byte> plane : {color_, depth_, ids_}) {
+    if (!plane.empty()) std::memset(plane.data(), 0xA5, plane.size());
+  }
+}
+
+sim::ChipResult PreparedFrame::run_cores(const sim::ChipOptions& chip, std::uint32_t data_bytes,
+                                         const sim::CoreProgram& program) {
+  clear_planes();
+  sim::FrameShape shape;
+  shape.tile_count = record_.tiles_x * record_.tiles_y;
+  shape.output_depth = record_.output_depth;
+  shape.data_bytes = data_bytes;
+  shape.is_picture = true;
+  const std::uint64_t bytes = color_.size();
+  for (const std::uint64_t plane : {record_.color_address, record_.depth_address, record_.id_address}) {
+    if (plane != 0) shape.writable.push_back({plane, plane + bytes});
+  }
+  return sim::run_cores(*memory_, shape, chip, program);
 }
 
 Planes PreparedFrame::planes() const {

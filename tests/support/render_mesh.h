@@ -6,6 +6,7 @@
 #include <gridiron/frame/frame_setup.h>
 #include <gridiron/image/scene_image.h>
 #include <gridiron/scene/mesh.h>
+#include <gridiron/sim/core_runner.h>
 #include <gridiron/sim/sim_chip.h>
 #include <gridiron/sim/sim_memory.h>
 
@@ -63,10 +64,24 @@ class PreparedFrame {
   /// Renders into the planes. Precondition: status() is kOk; `chip` has the store it was prepared for.
   [[nodiscard]] sim::ChipResult render(const sim::ChipOptions& chip);
 
+  /// Runs another program of a core on as many cores as `chip` has, every rule checked. The planes are cleared before.
+  /// @param data_bytes  of a core's store. @param program  (core, data, address of the record) -> Status.
+  template <class Program>
+  [[nodiscard]] sim::ChipResult run(const sim::ChipOptions& chip, std::uint32_t data_bytes, Program&& program) {
+    return run_cores(chip, data_bytes, [&](sim::SimCore& core, std::span<std::byte> data) {
+      return program(core, data, record_address_);
+    });
+  }
+
   /// @returns what the last render left; planes that were not asked for are empty.
   [[nodiscard]] Planes planes() const;
 
  private:
+  [[nodiscard]] sim::ChipResult run_cores(const sim::ChipOptions& chip, std::uint32_t data_bytes,
+                                          const sim::CoreProgram& program);
+  // What a tile fails to write must not look like a pixel.
+  void clear_planes();
+
   sim::SimMemory* memory_;
   std::uint64_t mark_;
   Status status_ = Status::kOk;

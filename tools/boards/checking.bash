@@ -86,7 +86,7 @@ break_record() {
   case "$2" in
     colour) change "$1" $((frame + 112)) 8 $((0x200000)); echo 'frame record: colour address' ;;
     width) change "$1" $((frame + 8)) 4 2048; echo 'frame record: width' ;;
-    triangles) change "$1" $((frame + 152)) 8 0; echo 'frame record: triangles address' ;;
+    triangles) change "$1" $((frame + 336)) 8 0; echo 'frame record: triangles address' ;;
   esac
   seal "$1"
 }

@@ -4,7 +4,9 @@
 #include <gridiron/bvh/bvh_core.h>
 #include <gridiron/bvh/bvh_renderer.h>
 #include <gridiron/frame/frame_setup.h>
+#include <gridiron/render/tile_renderer.h>
 #include <gridiron_counted/bvh/bvh_core.h>
+#include <gridiron_counted/render/tile_renderer.h>
 
 #include <cstddef>
 #include <cstring>
@@ -21,7 +23,7 @@ struct BvhMemory {
   std::uint32_t tile_count;
   std::size_t pixel_count;
 };
-constexpr std::uint64_t kPictureAddress = sizeof(bvh::BvhFrameRecord);
+constexpr std::uint64_t kPictureAddress = (sizeof(bvh::BvhFrameRecord) + kLineBytes - 1) / kLineBytes * kLineBytes;
 
 BvhMemory make_memory(const BvhCountedFrame& frame) {
   bvh::Bvh bvh;
@@ -59,8 +61,7 @@ __attribute__((noinline)) Totals run_counted(BvhMemory& memory, PipeModel& model
   auto& store = *::new (static_cast<void*>(bytes.bytes().data())) twin::bvh::BvhStore;
   model.set_store(&store, sizeof(store));
   CopyCore core(memory.bytes.bytes(), memory.tile_count);
-  twin::bvh::BvhCore<twin::Lanes<4>, bvh::kPacketWidth, CopyCore> program(store, core);
-  require(program.run(twin::MainAddress{0}));
+  require(twin::render_tiles<twin::Lanes<4>>(store, core, twin::MainAddress{0}));
   return model.finish();
 }
 
@@ -89,8 +90,7 @@ CountedPicture render_bvh_plain(const BvhCountedFrame& frame) {
   LineBytes bytes(sizeof(bvh::BvhStore));
   auto& store = *::new (static_cast<void*>(bytes.bytes().data())) bvh::BvhStore;
   CopyCore core(memory.bytes.bytes(), memory.tile_count);
-  bvh::BvhCore<Lanes<4>, bvh::kPacketWidth, CopyCore> program(store, core);
-  require(program.run(MainAddress{0}));
+  require(render_tiles<Lanes<4>>(store, core, MainAddress{0}));
   Totals totals{};
   for (std::size_t kind = 0; kind < kWorkKindCount; ++kind) totals[kind].units = store.work.counts[kind];
   return picture_of(memory, totals);

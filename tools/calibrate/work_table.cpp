@@ -138,7 +138,7 @@ bool is_of_effects(std::size_t kind) {
 // Work that only frames with exact distances have, or hardly any other.
 bool is_of_planes(std::size_t kind) {
   const Work work = static_cast<Work>(kind);
-  return work == Work::kHitSetup || work == Work::kHitHalf || work == Work::kDepthGroup || work == Work::kIdGroup;
+  return work == Work::kHitSetup || work == Work::kHitHalf || work == Work::kDepthGroup;
 }
 
 template <class Takes>

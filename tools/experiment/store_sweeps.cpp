@@ -1,6 +1,6 @@
 // Sweeps of the local store: its size, the tiles in it, what has room in it, and the maps.
 // SPDX-License-Identifier: Apache-2.0
-#include <gridiron/bvh/bvh_store.h>
+#include <gridiron/bvh/bvh_core.h>
 
 #include <algorithm>
 #include <cmath>
@@ -337,14 +337,15 @@ namespace {
 
 Table bvh_map() {
   Table map{"local_store_map_bvh", {{"region", "region"}, {"offset", "offset"}, {"bytes", "bytes"}}, {}};
-  bvh::for_each_region([&map](const char* name, std::size_t offset_bytes, std::size_t bytes) {
+  for_each_region<bvh::BvhStore::Layout>([&map](const char* name, std::size_t offset_bytes, std::size_t bytes) {
     map.add({name, std::uint64_t{offset_bytes}, std::uint64_t{bytes}});
   });
   const auto add_row = [&map](const char* name, std::uint64_t bytes) { map.add({name, Cell{}, bytes}); };
-  add_row("code (budget)", bvh::kCodeBudgetBytes);
-  add_row("stack (budget)", bvh::kStackBudgetBytes);
-  add_row("free", bvh::kArenaBytes - bvh::kCodeBudgetBytes - bvh::kStackBudgetBytes - sizeof(bvh::BvhStore));
-  add_row("local store", bvh::kArenaBytes);
+  using Layout = bvh::BvhStore::Layout;
+  add_row("code (budget)", Layout::kCodeBudgetBytes);
+  add_row("stack (budget)", Layout::kStackBudgetBytes);
+  add_row("free", kDataRoomBytes<Layout> - sizeof(bvh::BvhStore));
+  add_row("local store", Layout::kArenaBytes);
   return map;
 }
 

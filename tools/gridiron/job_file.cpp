@@ -179,28 +179,29 @@ void check_record(const ByteReader& reader, const FrameJob& job, const FrameReco
   const auto require = [&](bool holds, std::size_t field, const char* reason) {
     reader.require(holds, place + field, reason);
   };
-  require(record.magic == kFrameMagic && record.version == kFrameVersion, offsetof(FrameRecord, magic),
+  require(record.magic == kFrameMagic && record.version == kFrameVersion, offsetof(FrameHead, magic),
           "no frame record of this version");
   const auto in_picture = [](std::uint32_t pixels) { return pixels >= 1 && pixels <= kMaxPictureWidth; };
   require(in_picture(record.width) && in_picture(record.height) && in_picture(record.tile_width),
-          offsetof(FrameRecord, width), "the picture's or the tiles' size is out of range");
+          offsetof(FrameHead, width), "the picture's or the tiles' size is out of range");
   const auto tiles = [&record](std::uint32_t pixels) { return (pixels + record.tile_width - 1) / record.tile_width; };
-  require(record.tiles_x == tiles(record.width) && record.tiles_y == tiles(record.height),
-          offsetof(FrameRecord, tiles_x), "the counts of tiles are not those of the picture");
+  require(record.tiles_x == tiles(record.width) && record.tiles_y == tiles(record.height), offsetof(FrameHead, tiles_x),
+          "the counts of tiles are not those of the picture");
   reader.require(job.width == record.width && job.height == record.height && job.tile_width == record.tile_width &&
                      job.tile_count == record.tiles_x * record.tiles_y,
                  offsetof(FrameJob, tile_count), "size or tiles are not those of the frame record");
-  require(record.macro_table_address == job.image_address + image.macro_table_offset_bytes &&
-              record.cell_blocks_address == job.image_address + image.cell_blocks_offset_bytes &&
-              record.triangles_address == job.image_address + image.triangles_offset_bytes,
-          offsetof(FrameRecord, macro_table_address), "the addresses are not those of the scene image's parts");
-  require(std::memcmp(&record.grid, &image.grid, sizeof record.grid) == 0, offsetof(FrameRecord, grid),
-          "the grid is not that of the scene image");
+  require(record.engine.macro_table_address == job.image_address + image.macro_table_offset_bytes &&
+              record.engine.cell_blocks_address == job.image_address + image.cell_blocks_offset_bytes &&
+              record.engine.triangles_address == job.image_address + image.triangles_offset_bytes,
+          (sizeof(FrameHead) + offsetof(GridFrame, macro_table_address)),
+          "the addresses are not those of the scene image's parts");
+  require(std::memcmp(&record.engine.grid, &image.grid, sizeof record.engine.grid) == 0,
+          (sizeof(FrameHead) + offsetof(GridFrame, grid)), "the grid is not that of the scene image");
   const bool is_scene = record.shading == static_cast<std::uint32_t>(Shading::kScene);
-  require(!is_scene || image.has_effects, offsetof(FrameRecord, shading), "the scene image has no effects");
+  require(!is_scene || image.has_effects, offsetof(FrameHead, shading), "the scene image has no effects");
   require(record.effects_address == (is_scene ? job.image_address + image.effects_offset_bytes : 0) &&
               record.image_address == (is_scene ? job.image_address : 0),
-          offsetof(FrameRecord, effects_address), "the addresses are not those of the scene image's effects");
+          offsetof(FrameHead, effects_address), "the addresses are not those of the scene image's effects");
   reader.require(job.effects == (is_scene ? image.effects.called_for : 0), offsetof(FrameJob, effects),
                  "effects are not those that the scene calls for");
 }

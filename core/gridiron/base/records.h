@@ -161,7 +161,7 @@ inline constexpr std::uint32_t kTriangleRecordBytes = 48;
 // --- Frame ------------------------------------------------------------------------------------------------------
 
 inline constexpr std::uint32_t kFrameMagic = 0x4d524647;  ///< "GFRM" as bytes
-inline constexpr std::uint32_t kFrameVersion = 1;         ///< of FrameRecord
+inline constexpr std::uint32_t kFrameVersion = 2;         ///< of FrameHead and of what follows it
 
 /// How exactly a frame is decided; core/README.md tells what each promises.
 enum class Accuracy : std::uint32_t {
@@ -190,8 +190,14 @@ enum TechniqueBits : std::uint32_t {
 /// Commands of a queue that stay for a tile's own gets while finished tiles leave under the rest.
 inline constexpr std::uint32_t kLeastInputCommands = 4;
 
-/// Everything a core needs to know of a frame. Fetched by every core at its start. 128-byte aligned, 384 bytes.
-struct FrameRecord {
+/// Which engine traces the rays of a frame.
+enum class EngineId : std::uint32_t {
+  kGrid = 1,  ///< GridEngine
+};
+inline constexpr std::uint32_t kFirstOtherEngine = 1000;  ///< from here on, engines outside core
+
+/// What a core needs to know of a frame, whatever engine traces its rays.
+struct FrameHead {
   std::uint32_t magic;                 ///< kFrameMagic
   std::uint32_t version;               ///< kFrameVersion
   std::uint32_t width, height;         ///< pixels, 1..kMaxPictureWidth
@@ -199,13 +205,12 @@ struct FrameRecord {
   std::uint32_t tiles_x, tiles_y;      ///< ceil(width / tile_width), ceil(height / tile_width)
   std::uint32_t accuracy;              ///< Accuracy
   std::uint32_t shading;               ///< Shading
-  std::uint32_t techniques;            ///< TechniqueBits
+  std::uint32_t engine_id;             ///< EngineId: whose record follows
   std::uint32_t output_depth;          ///< tile buffers in rotation: 1 single, 2 double
-  std::uint32_t macro_depth;           ///< cell blocks in flight or in use
-  std::uint32_t triangle_depth;        ///< triangle buffers in flight or in use
+  std::uint32_t walk_depth;            ///< walks of rays under way at once; of Shading::kScene, else 0
   std::uint32_t background_rgba;       ///< 0xAABBGGRR
   float t_far;                         ///< a hit has 0 < t <= t_far; in units of the ray's direction
-  std::uint32_t reserved0;
+  std::uint32_t reserved0[2];
 
   // Pinhole camera: direction of the ray through the centre of pixel (x, y), y = 0 the top row, is
   // (corner + x * step_x) + y * step_y per component, each operation rounded to float.
@@ -217,16 +222,34 @@ struct FrameRecord {
   std::uint64_t color_address;         ///< RGBA8, tile-major: tile i at i * tile_width^2 * 4, row-major inside
   std::uint64_t depth_address;         ///< float distance along the unit direction, kFloatMax where nothing; 0: off
   std::uint64_t id_address;            ///< triangle_id, kNoTriangle where nothing; 0: off
+  std::uint64_t effects_address;       ///< EffectsRecord, of Shading::kScene; else 0
+  std::uint64_t image_address;         ///< what its offsets count from; else 0
+  std::uint32_t reserved1[10];
+};
+static_assert(sizeof(FrameHead) == 192);
+
+/// Everything a core needs to know of a frame. Fetched by every core at its start. 128-byte aligned, three lines of 128
+/// bytes at most. @tparam EngineRecord  the engine's part, a multiple of 16 bytes.
+template <class EngineRecord>
+struct Frame : FrameHead {
+  EngineRecord engine;  ///< what the engine alone reads
+  static_assert(sizeof(FrameHead) + sizeof(EngineRecord) <= 3 * kLineBytes && sizeof(EngineRecord) % 16 == 0);
+};
+
+/// The grid's part of a frame.
+struct GridFrame {
+  GridRecord grid;                     ///< the scene image's
   std::uint64_t macro_table_address;   ///< sections of the scene image: MacroTableEntry[]
   std::uint64_t cell_blocks_address;   ///< blocks of cells
   std::uint64_t triangles_address;     ///< triangle records
-  std::uint64_t effects_address;       ///< EffectsRecord, of Shading::kScene; else 0
-  std::uint64_t image_address;         ///< what its offsets count from; else 0
-  std::uint64_t reserved1[2];
-  GridRecord grid;                     ///< the scene image's
-  std::uint32_t walk_depth;            ///< walks of rays under way at once; of Shading::kScene, else 0
-  std::uint32_t reserved2[15];
+  std::uint32_t macro_depth;           ///< cell blocks in flight or in use
+  std::uint32_t triangle_depth;        ///< triangle buffers in flight or in use
+  std::uint32_t techniques;            ///< TechniqueBits
+  std::uint32_t reserved[7];
 };
+static_assert(sizeof(GridFrame) == 192);
+
+using FrameRecord = Frame<GridFrame>;  ///< of the grid
 static_assert(sizeof(FrameRecord) == 384);
 
 inline constexpr std::uint32_t kNoTriangle = 0xFFFFFFFFu;  ///< id where a ray hits nothing

@@ -39,7 +39,7 @@ enum class Work : std::uint8_t {
   kShadedGroup,        ///< ray groups turned into pixels without shading
   kShadedSimpleGroup,  ///< ray groups shaded by facing ratio
   kDepthGroup,         ///< ray groups written to the depth plane
-  kIdGroup,            ///< ray groups written to the plane of triangle ids
+  kIdGroup,            ///< groups of triangle ids written to a plane, or copied, or of words cleared
   kFootprintGroup,     ///< SIMD groups of squares of subpackets held against a cell
   kRowGroup,           ///< subpackets whose rows were held against a triangle's edges
   kEstimateSetup,      ///< triangles for which estimates of distances were set up

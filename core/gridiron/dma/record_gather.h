@@ -1,5 +1,5 @@
 // Record gather: fetches records that lie anywhere in main memory, one for each item of a list, ahead of their use.
-// Memory: the triangle buffers of the local store, which no walk uses meanwhile. Threads: one core.
+// Memory: buffers that the engine lends while it traces no ray. Threads: one core.
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
@@ -17,9 +17,9 @@ namespace gridiron {
 /// Hands items their records in order. Neighbours in the list that want the same record share its transfer.
 ///
 /// @param address_of  address_of(i), called twice for an item; 0: it wants none and is passed over.
-/// @param bytes       of a record, a multiple of 16, at most a triangle buffer less 16.
+/// @param bytes       of a record, a multiple of 16, at most kIdleBufferBytes less 16.
 /// @param use         use(i, const std::byte* record) -> Status.
-/// frame.walk_depth records are under way at once.
+/// frame.walk_depth records are under way at once, at most kTriangleTagCount.
 template <class Store, Platform P, class AddressOf, class Use>
 [[nodiscard]] Status gather_records(Store& store, Transfers<P>& transfers, std::uint32_t count, std::uint32_t bytes,
                                     AddressOf&& address_of, Use&& use) {
@@ -29,7 +29,7 @@ template <class Store, Platform P, class AddressOf, class Use>
   std::uint64_t at_hand = 0;  // in the front slot, waited for
   std::uint32_t ahead = 0;
   const auto place_of = [&](std::uint32_t slot, std::uint64_t address) {
-    return store.triangles[slot].bytes + address % kPortableCongruenceBytes;
+    return store.engine.idle_buffer(slot) + address % kPortableCongruenceBytes;
   };
   for (std::uint32_t i = 0; i < count; ++i) {
     const std::uint64_t address = address_of(i);

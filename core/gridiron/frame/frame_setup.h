@@ -44,7 +44,8 @@ struct FrameSettings {
   std::uint32_t output_depth = 2;    ///< tile buffers in rotation, 1 to the layout's kMaxOutputDepth
   std::uint32_t macro_depth = 2;     ///< cell blocks in rotation, 1 to the layout's kMaxMacroDepth
   std::uint32_t triangle_depth = 2;  ///< triangle buffers in rotation, 1 to the layout's kMaxTriangleDepth
-  /// Walks of secondary rays under way at once, 1 or more [kBadFrame] to the layout's kWalkCount; of Shading::kScene.
+  /// Walks of secondary rays under way at once, 1 or more [kBadFrame] to what the layout's engine has room for; of
+  /// Shading::kScene.
   std::uint32_t walk_depth = 2;
   std::uint32_t background_rgba = 0xFF000000u;  ///< 0xAABBGGRR, where nothing is hit
   /// Hits farther away do not count; above 0 [kBadFrame], in units of the ray's direction, which has length 1 in the
@@ -65,7 +66,12 @@ struct FrameSettings {
 [[nodiscard]] std::uint64_t output_plane_index(std::uint32_t width, std::uint32_t tile_width, std::uint32_t x,
                                                std::uint32_t y);
 
-/// Fills `frame`. The directions it describes have length between 1 and a few units, whatever the scale of the camera.
+/// Fills what every engine reads of a frame, but for engine_id and for what frames of Shading::kScene have besides.
+/// Errors: kBadFrame, kTransferAlignment, as below. `frame` is left alone then.
+[[nodiscard]] Status make_frame_head(const FrameSettings& settings, FrameHead& frame);
+
+/// Fills `frame` for the grid. The directions it describes have length between 1 and a few units, whatever the scale of
+/// the camera.
 ///
 /// @param image          as open_scene_image() opened it.
 /// @param image_address  where `image` lies in main memory: a multiple of kLineBytes, of Shading::kScene not 0.

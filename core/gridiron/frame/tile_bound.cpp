@@ -170,12 +170,14 @@ class Sum {
       }
     }
 
-    const std::uint64_t packets_of_sample = packets / samples;
-    if (frame_.shading == Shading::kSimple) add(Work::kShadedSimpleGroup, packets_of_sample * groups(rays));
-    if (frame_.shading == Shading::kNone) add(Work::kShadedGroup, packets_of_sample * groups(rays));
-    if (frame_.has_depth) add(Work::kDepthGroup, packets_of_sample * groups(rays));
-    if (frame_.has_ids) add(Work::kIdGroup, packets_of_sample * groups(rays));
-    if (frame_.shading == Shading::kScene) add(Work::kIdGroup, packets * (rays / 4));  // kept for the waves
+    const std::uint64_t packet_groups = packets * groups(rays);
+    if (frame_.shading == Shading::kSimple) add(Work::kShadedSimpleGroup, packet_groups);
+    if (frame_.shading == Shading::kNone) add(Work::kShadedGroup, packet_groups);
+    add(Work::kIdGroup, packet_groups);
+    if (frame_.has_depth) add(Work::kDepthGroup, packet_groups / samples);
+    // At the picture's edge the planes are cleared.
+    const std::uint64_t planes = 1u + (frame_.has_depth ? 1u : 0u) + (frame_.shading == Shading::kSimple ? 1u : 0u);
+    add(Work::kIdGroup, planes * (tile_pixels() / 4));
   }
 
   // Squares and subpackets held against cells and triangles; how far each looks.
@@ -207,7 +209,8 @@ class Sum {
   void add_effects(std::uint64_t samples) {
     const EffectsRecord& effects = scene_.effects;
     const auto calls_for = [&](std::uint32_t bits) { return (effects.called_for & bits) != 0; };
-    const std::uint64_t pixels = std::uint64_t{layout_.tile_width} * layout_.tile_width;
+    const std::uint64_t pixels = tile_pixels();
+    if (frame_.has_ids) add(Work::kIdGroup, pixels / 4);
     const Count eye_rays = Count{pixels} * samples;
     // A hit casts a reflected ray and, of glass, a refracted one.
     const std::uint64_t branches = calls_for(kRefraction) ? 2 : calls_for(kReflection) ? 1 : 0;
@@ -297,7 +300,8 @@ class Sum {
     if (output_commands() > frame_.queue_depth) waits_ = waits_ + output_commands();
   }
   [[nodiscard]] std::uint64_t planes() const { return 1u + (frame_.has_depth ? 1u : 0u) + (frame_.has_ids ? 1u : 0u); }
-  [[nodiscard]] std::uint64_t plane_bytes() const { return std::uint64_t{layout_.tile_width} * layout_.tile_width * 4; }
+  [[nodiscard]] std::uint64_t tile_pixels() const { return std::uint64_t{layout_.tile_width} * layout_.tile_width; }
+  [[nodiscard]] std::uint64_t plane_bytes() const { return tile_pixels() * 4; }
   [[nodiscard]] std::uint64_t output_commands() const {
     return planes() * (parts(plane_bytes(), kPortableBoundaryBytes) + 1);
   }

@@ -14,7 +14,7 @@
 namespace gridiron {
 
 /// Direction of the ray through the centre of pixel (x, y): every operation rounded to float, in this order.
-[[nodiscard]] GRIDIRON_INLINE float pixel_direction(const FrameRecord& frame, int axis, float x, float y) {
+[[nodiscard]] GRIDIRON_INLINE float pixel_direction(const FrameHead& frame, int axis, float x, float y) {
   return (frame.corner[axis] + x * frame.step_x[axis]) + y * frame.step_y[axis];
 }
 
@@ -39,7 +39,7 @@ inline constexpr SubpacketPixels kSubpacketPixels = [] {
 /// The corner rays bound all others: each operation above is monotone in x and y, rounding included, so every
 /// component lies between the corners'; corner_widening covers what rounding moves a ray out of their hull.
 template <class L, class PacketType>
-void generate_packet(const FrameRecord& frame, std::uint32_t left, std::uint32_t top, PacketType& packet,
+void generate_packet(const FrameHead& frame, std::uint32_t left, std::uint32_t top, PacketType& packet,
                      RaySet<PacketType::kRayCount>& present, WorkCounters& work, float dx = 0.0f, float dy = 0.0f) {
   using Float = typename L::Float;
   constexpr std::uint32_t kWidth = PacketType::kWidth;

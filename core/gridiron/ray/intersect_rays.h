@@ -19,12 +19,6 @@
 
 namespace gridiron {
 
-/// What rays ask of their hits.
-struct RayQuestion {
-  bool any_hit;        ///< whether there is one, or which is the nearest
-  bool trusts_floats;  ///< Accuracy::kFast
-};
-
 /// A triangle as the lanes take it.
 struct RayTriangle {
   float edge[3][3];      ///< from vertex i to vertex i + 1

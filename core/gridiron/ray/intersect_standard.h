@@ -33,7 +33,7 @@ template <class L, bool kWantFacing, class PacketType>
     const bool is_covered = (near.covered >> subpacket & 1u) != 0;
     std::uint32_t rows = ~0u;
     if constexpr (kGroupsAreRows) {
-      rows = near.rows >> (kSubpacketWidth * subpacket_row(subpacket));
+      rows = near.rows >> (kSubpacketWidth * z_curve_row(subpacket));
       if (near.is_linear && !is_covered) rows &= rows_near(batch, index, subpacket, work);
     }
     if (is_covered && packet.active.subpacket(subpacket) == kAllSubpacketRays &&

@@ -5,6 +5,7 @@
 #include <gridiron/base/lanes.h>
 #include <gridiron/base/math.h>
 #include <gridiron/base/records.h>
+#include <gridiron/ray/z_curve.h>
 
 #include <cstdint>
 
@@ -49,14 +50,6 @@ inline constexpr std::uint32_t kAllSubpacketRays = (1u << kSubpacketRays) - 1u;
 
 /// Subpackets of a packet, bit i = subpacket i.
 using SubpacketSet = std::uint64_t;
-
-/// Column of subpacket i in its packet, in subpackets: the even bits of i. subpacket_row: the odd ones.
-[[nodiscard]] GRIDIRON_INLINE constexpr std::uint32_t subpacket_column(std::uint32_t i) {
-  return (i & 1u) | ((i >> 1) & 2u) | ((i >> 2) & 4u);
-}
-[[nodiscard]] GRIDIRON_INLINE constexpr std::uint32_t subpacket_row(std::uint32_t i) {
-  return subpacket_column(i >> 1);
-}
 
 /// @returns the four subpackets of each square: bit i becomes bits 4 i to 4 i + 3. @param squares  16 bits.
 [[nodiscard]] GRIDIRON_INLINE constexpr SubpacketSet subpackets_of_squares(std::uint64_t squares) {
@@ -108,10 +101,10 @@ struct alignas(128) Packet {
 
   /// Column and row of a ray's pixel in the packet.
   [[nodiscard]] static GRIDIRON_INLINE constexpr std::uint32_t column_of(std::uint32_t ray) {
-    return subpacket_column(ray / kSubpacketRays) * kSubpacketWidth + ray % kSubpacketWidth;
+    return z_curve_column(ray / kSubpacketRays) * kSubpacketWidth + ray % kSubpacketWidth;
   }
   [[nodiscard]] static GRIDIRON_INLINE constexpr std::uint32_t row_of(std::uint32_t ray) {
-    return subpacket_row(ray / kSubpacketRays) * kSubpacketWidth + ray % kSubpacketRays / kSubpacketWidth;
+    return z_curve_row(ray / kSubpacketRays) * kSubpacketWidth + ray % kSubpacketRays / kSubpacketWidth;
   }
 
   /// Asks for distances as floats nearest to the exact ones, or for estimates of them. Before any ray is traced.

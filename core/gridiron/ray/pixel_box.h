@@ -170,8 +170,8 @@ inline constexpr SubpacketsBefore kSubpacketsBefore = [] {
   for (std::uint32_t edge = 0; edge < 9; ++edge) {
     for (std::uint32_t i = 0; i < 64; ++i) {
       // The difference wraps, its highest bit is set, where it is before the edge.
-      before.column[edge] |= SubpacketSet{(subpacket_column(i) - edge) >> 31} << i;
-      before.row[edge] |= SubpacketSet{(subpacket_row(i) - edge) >> 31} << i;
+      before.column[edge] |= SubpacketSet{(z_curve_column(i) - edge) >> 31} << i;
+      before.row[edge] |= SubpacketSet{(z_curve_row(i) - edge) >> 31} << i;
     }
   }
   return before;

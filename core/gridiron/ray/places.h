@@ -16,8 +16,8 @@ struct SquareOrigins {
 inline constexpr SquareOrigins kSquareOrigins = [] {
   SquareOrigins origins{};
   for (std::uint32_t i = 0; i < 16; ++i) {
-    origins.column[i] = static_cast<float>(2 * kSubpacketWidth * subpacket_column(i));
-    origins.row[i] = static_cast<float>(2 * kSubpacketWidth * subpacket_row(i));
+    origins.column[i] = static_cast<float>(2 * kSubpacketWidth * z_curve_column(i));
+    origins.row[i] = static_cast<float>(2 * kSubpacketWidth * z_curve_row(i));
   }
   return origins;
 }();
@@ -44,8 +44,8 @@ struct SubpacketOrigins {
 inline constexpr SubpacketOrigins kSubpacketOrigins = [] {
   SubpacketOrigins origins{};
   for (std::uint32_t i = 0; i < 64; ++i) {
-    origins.column[i] = static_cast<float>(kSubpacketWidth * subpacket_column(i));
-    origins.row[i] = static_cast<float>(kSubpacketWidth * subpacket_row(i));
+    origins.column[i] = static_cast<float>(kSubpacketWidth * z_curve_column(i));
+    origins.row[i] = static_cast<float>(kSubpacketWidth * z_curve_row(i));
   }
   return origins;
 }();

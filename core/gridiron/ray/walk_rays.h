@@ -2,6 +2,8 @@
 // Memory: inside the local store. Threads: one core. SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <gridiron/platform/contract.h>
+
 #include <cstdint>
 
 namespace gridiron {
@@ -16,6 +18,13 @@ struct WalkRays {
   alignas(64) float dir_max[kWalkRays];     ///< largest |component|; set when a ray is taken into a pass
   alignas(64) std::uint32_t id[kWalkRays];  ///< triangle of the nearest hit so far, kNoTriangle before
   std::uint32_t owner[kWalkRays];           ///< whose ray it is: nothing to the walk
+};
+
+/// What rays ask of their hits.
+struct RayQuestion {
+  bool any_hit;          ///< whether there is one, or which is the nearest
+  bool trusts_floats;    ///< Accuracy::kFast
+  MainAddress surfaces;  ///< the scene's SurfaceRecord[], by triangle_id: Accuracy::kExact settles ties with them
 };
 
 }  // namespace gridiron

@@ -11,10 +11,10 @@
 #include <gridiron/base/stages.h>
 #include <gridiron/dma/record_gather.h>
 #include <gridiron/dma/transfers.h>
-#include <gridiron/engine/grid/walk_driver.h>
+#include <gridiron/engine/engine.h>
 #include <gridiron/platform/contract.h>
-#include <gridiron/ray/packet.h>
 #include <gridiron/ray/secondary_origin.h>
+#include <gridiron/ray/z_curve.h>
 #include <gridiron/shade/color_sums.h>
 #include <gridiron/shade/environment.h>
 #include <gridiron/shade/optics.h>
@@ -49,15 +49,21 @@ class EffectRenderer {
  public:
   using Layout = typename Store::Layout;
 
-  EffectRenderer(Store& store, Transfers<P>& transfers, SpillRegion spill)
-      : store_(store), transfers_(transfers), spill_(spill), queue_(store.effects, transfers, spill.address) {}
+  using EngineCore = typename Layout::Engine::template Core<L, Store, P>;
+
+  EffectRenderer(Store& store, Transfers<P>& transfers, EngineCore& engine, SpillRegion spill)
+      : store_(store),
+        transfers_(transfers),
+        engine_(engine),
+        spill_(spill),
+        queue_(store.effects, transfers, spill.address) {}
 
   /// Fetches what all tiles need. Errors: the missing effect by name, kSpillTooSmall, kUnsupportedFrame.
   [[nodiscard]] Status begin_frame() {
-    const FrameRecord& frame = store_.frame;
+    const FrameHead& frame = store_.frame;
     if (frame.effects_address == 0 || frame.image_address == 0) return Status::kBadFrame;
     if (frame.accuracy == static_cast<std::uint32_t>(Accuracy::kPaper) || frame.walk_depth == 0 ||
-        frame.walk_depth > kWalkCount<Layout>) {
+        frame.walk_depth > Layout::Engine::template kMaxRayDepth<Layout>) {
       return Status::kUnsupportedFrame;
     }
     GRIDIRON_TRY(get_now(&scene(), MainAddress{frame.effects_address}, sizeof(EffectsRecord)));
@@ -107,17 +113,17 @@ class EffectRenderer {
 
   /// Works on what the eye rays of one sample of the tile have hit, store.effects.hit_ids.
   [[nodiscard]] Status shade_sample(std::uint32_t sample) {
-    const FrameRecord& frame = store_.frame;
+    const FrameHead& frame = store_.frame;
     const PixelOffset offset = pixel_offset(samples_per_pixel(), sample);
-    constexpr std::uint32_t kPixels = Store::kTilePixels;
+    constexpr std::uint32_t kPixels = Store::kTilePixels, kSquareWidth = 4, kSquarePixels = kSquareWidth * kSquareWidth;
     std::uint32_t place = 0;  // along a Z curve of squares, so that neighbours go together
     while (place < kPixels) {
       store_.work.charge_to(Work::kWaveRay);
       std::uint32_t count = 0;
       for (; place < kPixels && count < Layout::kWaveRays; ++place) {
-        const std::uint32_t square = place / kSubpacketRays, rest = place % kSubpacketRays;
-        const std::uint32_t x = subpacket_column(square) * kSubpacketWidth + rest % kSubpacketWidth;
-        const std::uint32_t y = subpacket_row(square) * kSubpacketWidth + rest / kSubpacketWidth;
+        const std::uint32_t square = place / kSquarePixels, rest = place % kSquarePixels;
+        const std::uint32_t x = z_curve_column(square) * kSquareWidth + rest % kSquareWidth;
+        const std::uint32_t y = z_curve_row(square) * kSquareWidth + rest / kSquareWidth;
         if (left_ + x >= frame.width || top_ + y >= frame.height) continue;
         QueuedRay& ray = store_.wave.items[count].ray;
         const float column = static_cast<float>(static_cast<std::int32_t>(left_ + x)) + offset.dx;
@@ -129,12 +135,12 @@ class EffectRenderer {
         }
         ray.pixel = (y * Layout::kTileWidth + x) | 1u << 16;
         ray.path = 1;
-        if constexpr (kHasPackets<Layout>) {
+        if constexpr (kTracesEyes<Layout>) {
           store_.wave.ids[count] = store_.effects.hit_ids[y * Layout::kTileWidth + x];
         }
         ++count;
       }
-      if constexpr (!kHasPackets<Layout>) GRIDIRON_TRY(trace_eye_rays(count, sample));
+      if constexpr (!kTracesEyes<Layout>) GRIDIRON_TRY(trace_eye_rays(count, sample));
       GRIDIRON_TRY(finish_wave(count, sample));
     }
     // Not before: so that waves are full.
@@ -158,6 +164,7 @@ class EffectRenderer {
   }
 
  private:
+  static_assert(Layout::Engine::template kMaxRayDepth<Layout> <= kTriangleTagCount, "each record gathered has a tag");
   using Effects = typename Store::Effects;
   using Context = WaveContext<Store>;
   static constexpr std::uint32_t kBuilt = Layout::kEffects;
@@ -171,7 +178,8 @@ class EffectRenderer {
     return MainAddress{store_.frame.image_address + offset};
   }
   [[nodiscard]] RayQuestion question(bool any_hit) const {
-    return {any_hit, store_.frame.accuracy == static_cast<std::uint32_t>(Accuracy::kFast)};
+    return {any_hit, store_.frame.accuracy == static_cast<std::uint32_t>(Accuracy::kFast),
+            section(scene().surfaces_offset_bytes)};
   }
 
   [[nodiscard]] Status get_now(void* local, MainAddress address, std::uint32_t bytes) {
@@ -211,7 +219,7 @@ class EffectRenderer {
         GRIDIRON_TRY(
             queue_.pop_wave(count, [&](std::uint32_t i, const QueuedRay& ray) { store_.wave.items[i].ray = ray; }));
         WaveRayJobs<Store> jobs(store_, count, kFloatMax);
-        GRIDIRON_TRY(walks().run(question(false), jobs));
+        GRIDIRON_TRY(engine_.trace(question(false), jobs));
         GRIDIRON_TRY(finish_wave(count, sample));
       }
     }
@@ -219,13 +227,11 @@ class EffectRenderer {
     return Status::kOk;
   }
 
-  [[nodiscard]] WalkDriver<L, Store, P> walks() { return WalkDriver<L, Store, P>(store_, transfers_); }
-
-  // Where there are no packets, eye rays are walked like all others; of the first sample's hits the tile keeps ids.
+  // Where the engine has no code for eye rays, they are traced like all others; of the first sample the tile keeps ids.
   [[nodiscard]] Status trace_eye_rays(std::uint32_t ray_count, std::uint32_t sample) {
     transfers_.note_stage(Stage::kPrimary);
     WaveRayJobs<Store> jobs(store_, ray_count, store_.frame.t_far);
-    GRIDIRON_TRY(walks().run(question(false), jobs));
+    GRIDIRON_TRY(engine_.trace(question(false), jobs));
     store_.work.charge_to(Work::kWaveRay);
     for (std::uint32_t i = 0; i < ray_count && sample == 0; ++i) {
       store_.effects.hit_ids[store_.wave.items[i].ray.pixel & 0xFFFFu] = store_.wave.ids[i];
@@ -245,7 +251,7 @@ class EffectRenderer {
       if (calls_for(kAmbientOcclusion)) {
         transfers_.note_stage(Stage::kOcclusion);
         OcclusionJobs<Store> jobs(context);
-        GRIDIRON_TRY(walks().run(question(true), jobs));
+        GRIDIRON_TRY(engine_.trace(question(true), jobs));
       }
     }
     return Status::kOk;
@@ -453,7 +459,7 @@ class EffectRenderer {
       LightJobs<Store, kBuilt> jobs(context, first, lights_at_hand(first));
       if constexpr (has(kPointShadows | kAreaLights)) {
         if (has_shadows()) {
-          GRIDIRON_TRY(walks().run(question(true), jobs));
+          GRIDIRON_TRY(engine_.trace(question(true), jobs));
           continue;
         }
       }
@@ -464,6 +470,7 @@ class EffectRenderer {
 
   Store& store_;
   Transfers<P>& transfers_;
+  EngineCore& engine_;
   SpillRegion spill_;
   RayQueue<Effects, P> queue_;
   std::uint32_t left_ = 0, top_ = 0;  ///< of the tile, in pixels

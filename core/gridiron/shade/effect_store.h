@@ -7,8 +7,8 @@
 #include <gridiron/base/lanes.h>
 #include <gridiron/base/records.h>
 #include <gridiron/dma/tags.h>
-#include <gridiron/engine/grid/walk.h>
 #include <gridiron/platform/contract.h>
+#include <gridiron/ray/walk_rays.h>
 
 #include <cstddef>
 #include <cstdint>
@@ -51,9 +51,10 @@ union WaveItem {
   WavePoint point;
 };
 
-template <std::uint32_t WalkCount, std::uint32_t WaveRayCount>
+/// @tparam RayStore  the engine's, while it traces other rays than eye rays.
+template <class RayStore, std::uint32_t WaveRayCount>
 struct alignas(128) Wave {
-  Walk walks[WalkCount];
+  RayStore engine;
   std::uint32_t ids[WaveRayCount];  ///< triangles hit, kNoTriangle where none
   WaveItem items[WaveRayCount];
 };
@@ -76,10 +77,9 @@ struct alignas(128) EffectStore {
   alignas(128) LightRecord lights[kLightSlots];           ///< first_light and those that follow it, or none
   alignas(128) QueuedRay queue[kQueueRays];
   alignas(128) std::uint32_t sums[3][kTilePixels];  ///< RGB, steps of 2^-20, what all samples of a pixel add up to
-  std::uint32_t hit_ids[kTilePixels];               ///< of the eye rays of one sample
+  alignas(128) std::uint32_t hit_ids[kTilePixels];  ///< of the eye rays of one sample
   std::uint32_t material_of_slot[kMaterialSlots];
   std::uint32_t first_light;
-  alignas(32) std::byte surface_bytes[sizeof(SurfaceRecord) + 16];  ///< a surface that a tie is settled with
 };
 
 /// Main memory of one core for secondary rays that wait; of frames without effects, none.
@@ -88,12 +88,8 @@ struct SpillRegion {
   std::uint64_t bytes = 0;  ///< at least spill_bytes(recursion_depth) of the frame's scene
 };
 
-/// Stand where a layout has no effects, or no packets.
+/// Stand where a layout has no effects.
 struct NoEffectStore {};
 struct NoWave {};
-struct NoPacket {
-  static constexpr std::uint32_t kRayCount = 32;
-};
-struct NoMailbox {};
 
 }  // namespace gridiron

@@ -6,10 +6,9 @@
 #include <gridiron/base/records.h>
 #include <gridiron/base/work_counters.h>
 #include <gridiron/dma/tags.h>
-#include <gridiron/engine/grid/macro_table.h>
-#include <gridiron/engine/grid/mailbox.h>
+#include <gridiron/engine/engine.h>
+#include <gridiron/engine/grid/grid_engine.h>
 #include <gridiron/platform/contract.h>
-#include <gridiron/ray/packet.h>
 #include <gridiron/shade/effect_store.h>
 
 #include <cstddef>
@@ -26,6 +25,7 @@ namespace gridiron {
 /// @tparam TileWidthV    pixels along a tile's edge: 8, 16, 32, 64.
 template <std::uint32_t PacketWidthV = 8, std::uint32_t TileWidthV = 32>
 struct StoreLayout256K {
+  using Engine = GridEngine;                    ///< what traces its rays
   static constexpr std::uint32_t kEffects = 0;  ///< EffectBits it is built for
   static constexpr std::uint32_t kArenaBytes = 256 * 1024;         ///< local memory of a core
   static constexpr std::uint32_t kCodeBudgetBytes = 53 * 1024;     ///< of it for code: check_budgets proves it
@@ -51,6 +51,7 @@ struct StoreLayout256K {
 template <std::uint32_t PacketWidthV = 8, std::uint32_t TileWidthV = 16>
 struct StoreLayout64K {
   /// @cond
+  using Engine = GridEngine;
   static constexpr std::uint32_t kEffects = 0;  ///< EffectBits it is built for
   static constexpr std::uint32_t kArenaBytes = 64 * 1024;
   static constexpr std::uint32_t kCodeBudgetBytes = PacketWidthV >= 16 ? 35 * 1024 + 512 : 32 * 1024;
@@ -72,6 +73,7 @@ struct StoreLayout64K {
 template <std::uint32_t PacketWidthV = 8, std::uint32_t TileWidthV = 32>
 struct StoreLayout128K {
   /// @cond
+  using Engine = GridEngine;
   static constexpr std::uint32_t kEffects = 0;  ///< EffectBits it is built for
   static constexpr std::uint32_t kArenaBytes = 128 * 1024;
   static constexpr std::uint32_t kCodeBudgetBytes = 53 * 1024;
@@ -93,6 +95,7 @@ struct StoreLayout128K {
 template <std::uint32_t PacketWidthV = 8, std::uint32_t TileWidthV = 32>
 struct StoreLayout512K {
   /// @cond
+  using Engine = GridEngine;
   static constexpr std::uint32_t kEffects = 0;  ///< EffectBits it is built for
   static constexpr std::uint32_t kArenaBytes = 512 * 1024;
   static constexpr std::uint32_t kCodeBudgetBytes = 53 * 1024;
@@ -115,6 +118,7 @@ struct StoreLayout512K {
 template <std::uint32_t BuiltV, std::uint32_t PacketWidthV = 32>
 struct EffectLayout256K {
   /// @cond
+  using Engine = GridEngine;
   static constexpr std::uint32_t kEffects = BuiltV;
   static constexpr std::uint32_t kArenaBytes = 256 * 1024;
   static constexpr std::uint32_t kCodeBudgetBytes = 92 * 1024;
@@ -143,6 +147,7 @@ struct EffectLayout256K {
 template <std::uint32_t BuiltV, std::uint32_t WaveRaysV = 32>
 struct EffectLayout64K {
   /// @cond
+  using Engine = GridEngine;
   static constexpr std::uint32_t kEffects = BuiltV;
   static constexpr std::uint32_t kArenaBytes = 64 * 1024;
   static constexpr std::uint32_t kCodeBudgetBytes = 43 * 1024 + 512;
@@ -164,64 +169,29 @@ struct EffectLayout64K {
 
 /// @cond
 /// Parts of a local store that depend on what its layout is for.
+template <class Layout, bool kHas = Layout::kEffects != 0>
+struct EffectParts {
+  using StoreWave = NoWave;
+  using Effects = NoEffectStore;
+};
 template <class Layout>
-struct StoreParts {
-  template <bool kHas>
-  static auto* packet_of() {
-    if constexpr (kHas) {
-      static_assert(Layout::kTileWidth % Layout::kPacketWidth == 0);
-      return static_cast<Packet<Layout::kPacketWidth, Layout::kRecentTriangles>*>(nullptr);
-    } else {
-      return static_cast<NoPacket*>(nullptr);
-    }
-  }
-  template <bool kHas>
-  static auto* mailbox_of() {
-    if constexpr (kHas) {
-      return static_cast<Mailbox<Layout::kMailboxSlots>*>(nullptr);
-    } else {
-      return static_cast<NoMailbox*>(nullptr);
-    }
-  }
-  template <bool kHas>
-  static auto* wave_of() {
-    if constexpr (kHas) {
-      return static_cast<Wave<kWalkCount<Layout>, Layout::kWaveRays>*>(nullptr);
-    } else {
-      return static_cast<NoWave*>(nullptr);
-    }
-  }
-  using StorePacket = std::remove_pointer_t<decltype(packet_of<kHasPackets<Layout>>())>;
-  using StoreMailbox = std::remove_pointer_t<decltype(mailbox_of<kHasPackets<Layout>>())>;
-  using StoreWave = std::remove_pointer_t<decltype(wave_of<(Layout::kEffects != 0)>())>;
-  using Effects = std::conditional_t<Layout::kEffects != 0, EffectStore<Layout>, NoEffectStore>;
+struct EffectParts<Layout, true> {
+  using StoreWave = Wave<typename Layout::Engine::template RayStore<Layout>, Layout::kWaveRays>;
+  using Effects = EffectStore<Layout>;
 };
 /// @endcond
 
-/// Memory of one core. Buffers for transfers are congruent with main memory modulo kPortableCongruenceBytes: cell
-/// blocks and tiles start on lines there and here; triangle runs start anywhere on 16 bytes, so their buffers have room
-/// to start 16 bytes later.
+/// Memory of one core. Buffers for transfers are congruent with main memory modulo kPortableCongruenceBytes.
 template <class LayoutType>
 struct alignas(128) LocalStore {
   using Layout = LayoutType;  ///< its sizes
   /// @cond
-  using StorePacket = typename StoreParts<Layout>::StorePacket;
+  using Engine = typename Layout::Engine;
+  using EngineStore = typename Engine::template Store<Layout>;
+  using EyeStore = typename Engine::template EyeStore<Layout>;
+  using StoreWave = typename EffectParts<Layout>::StoreWave;
+  using Effects = typename EffectParts<Layout>::Effects;
   static constexpr std::uint32_t kTilePixels = Layout::kTileWidth * Layout::kTileWidth;
-  static constexpr std::uint32_t kMacroCells = Layout::kMaxMacroWidth * Layout::kMaxMacroWidth * Layout::kMaxMacroWidth;
-  static constexpr std::uint32_t kCellBlockBytes =
-      (kMacroCells * static_cast<std::uint32_t>(sizeof(CellRecord)) + kLineBytes - 1) / kLineBytes * kLineBytes;
-  static constexpr std::uint32_t kTriangleBufferBytes =
-      (Layout::kTrianglesPerBuffer * kTriangleRecordBytes + 32 + kLineBytes - 1) / kLineBytes * kLineBytes;
-
-  using Effects = typename StoreParts<Layout>::Effects;
-  using StoreWave = typename StoreParts<Layout>::StoreWave;
-
-  struct alignas(128) CellBlock {
-    std::byte bytes[kCellBlockBytes];
-  };
-  struct alignas(128) TriangleBuffer {
-    std::byte bytes[kTriangleBufferBytes];
-  };
   /// @endcond
   /// One finished or growing tile, row-major.
   struct alignas(128) TileOutput {
@@ -230,25 +200,21 @@ struct alignas(128) LocalStore {
     std::uint32_t id[kTilePixels];     ///< triangle_id or kNoTriangle
   };
 
-  alignas(128) FrameRecord frame;  ///< a copy of the frame's
+  alignas(128) Frame<typename Engine::Record> frame;  ///< a copy of the frame's
   alignas(128) WorkCounters work;  ///< what was done; of the last frame until the next one begins
+  EngineStore engine;              ///< the engine's, for the whole frame
   /// @cond
-  MacroTableWindow<Layout::kTableEntries> table;
-  CellBlock cell_blocks[Layout::kMaxMacroDepth];
-  TriangleBuffer triangles[Layout::kMaxTriangleDepth];
   union {
-    StorePacket packet;  ///< while eye rays are traced
-    StoreWave wave;      ///< while what they hit is worked on
+    EyeStore packet;  ///< the engine's, while eye rays are traced
+    StoreWave wave;   ///< while what they hit is worked on
   };
-  [[no_unique_address]] typename StoreParts<Layout>::StoreMailbox mailbox;
   /// @endcond
   TileOutput output[Layout::kMaxOutputDepth];  ///< in rotation
   /// @cond
   [[no_unique_address]] Effects effects;
   /// @endcond
 
-  static_assert(Layout::kMaxMacroDepth <= kMacroTagCount);
-  static_assert(Layout::kMaxTriangleDepth <= kTriangleTagCount);
+  static_assert(gridiron::Engine<Engine, Layout>);
   static_assert(Layout::kMaxOutputDepth <= kOutputTagCount);
 };
 
@@ -272,26 +238,29 @@ static_assert(kFitsArena<EffectLayout256K<kAllEffects, 8>> && kFitsArena<EffectL
 static_assert(kFitsArena<StoreLayout512K<8>> && kFitsArena<StoreLayout512K<32>> && kFitsArena<StoreLayout512K<8, 64>> &&
               kFitsArena<StoreLayout512K<32, 64>>);
 
+// A frame's record has two parts, one of them a base: for which compilers warn of offsetof, and have it all the same.
+#pragma GCC diagnostic push
+#pragma GCC diagnostic ignored "-Winvalid-offsetof"
 /// Calls visit(name, offset_bytes, bytes) for every region of the store, in address order.
 template <class Layout, class Visit>
 constexpr void for_each_region(Visit&& visit) {
   using Store = LocalStore<Layout>;
   visit("frame", offsetof(Store, frame), sizeof(Store::frame));
   visit("work", offsetof(Store, work), sizeof(Store::work));
-  visit("macro_table", offsetof(Store, table), sizeof(Store::table));
-  visit("cell_blocks", offsetof(Store, cell_blocks), sizeof(Store::cell_blocks));
-  visit("triangles", offsetof(Store, triangles), sizeof(Store::triangles));
+  Store::EngineStore::for_each_region([&](const char* name, std::size_t offset, std::size_t bytes) {
+    visit(name, offsetof(Store, engine) + offset, bytes);
+  });
   if constexpr (Layout::kEffects == 0) {
     visit("packet", offsetof(Store, packet), sizeof(Store::packet));
   } else {
     constexpr bool kWaveIsLarger =
-        !kHasPackets<Layout> || sizeof(typename Store::StoreWave) > sizeof(typename Store::StorePacket);
-    visit(kHasPackets<Layout> ? "packet_or_wave" : "wave", offsetof(Store, packet),
-          kWaveIsLarger ? sizeof(typename Store::StoreWave) : sizeof(typename Store::StorePacket));
+        !kTracesEyes<Layout> || sizeof(typename Store::StoreWave) > sizeof(typename Store::EyeStore);
+    visit(kTracesEyes<Layout> ? "packet_or_wave" : "wave", offsetof(Store, packet),
+          kWaveIsLarger ? sizeof(typename Store::StoreWave) : sizeof(typename Store::EyeStore));
   }
-  if constexpr (kHasPackets<Layout>) visit("mailbox", offsetof(Store, mailbox), sizeof(Store::mailbox));
   visit("output", offsetof(Store, output), sizeof(Store::output));
   if constexpr (Layout::kEffects != 0) visit("effects", offsetof(Store, effects), sizeof(Store::effects));
 }
+#pragma GCC diagnostic pop
 
 }  // namespace gridiron

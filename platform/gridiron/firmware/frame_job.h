@@ -12,7 +12,7 @@ namespace gridiron::port {
 
 inline constexpr std::uint32_t kFrameJobMagic = 0x424F4A47;     // "GJOB"
 inline constexpr std::uint32_t kFrameResultMagic = 0x53455247;  // "GRES"
-inline constexpr std::uint32_t kFrameJobVersion = 1;
+inline constexpr std::uint32_t kFrameJobVersion = 2;
 
 /// Cores of a board that take part in a frame, at most.
 inline constexpr std::uint32_t kMostBoardCores = 16;

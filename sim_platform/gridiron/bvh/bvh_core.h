@@ -1,4 +1,4 @@
-// What runs on a core of the cached BVH: claims tiles, takes their packets through the hierarchy, puts the pixels.
+// The cached BVH as an engine: takes the packets of a tile through the hierarchy.
 // Source: Benthin, Wald, Scherbaum, Friedrich 2006 (software caches, a ring of packets that hide each other's misses);
 // Wald, Boulos, Shirley 2007 (packets). Memory: the local store. Threads: one core.
 // SPDX-License-Identifier: Apache-2.0
@@ -9,89 +9,70 @@
 #include <gridiron/bvh/child_order.h>
 #include <gridiron/bvh/four_words.h>
 #include <gridiron/dma/transfers.h>
+#include <gridiron/engine/engine.h>
 #include <gridiron/platform/contract.h>
 #include <gridiron/ray/camera.h>
+#include <gridiron/ray/hits.h>
 #include <gridiron/ray/intersect_standard.h>
-#include <gridiron/shade/shading.h>
+#include <gridiron/ray/packet_hits.h>
+#include <gridiron/store/local_store.h>
 
 #include <cstdint>
 
 namespace gridiron::bvh {
 
-/// Renders tiles of one frame on one core. The caches outlive a tile.
+/// The cached BVH on one core; see core/gridiron/engine/engine.h. It traces eye rays only. The caches outlive a tile.
 ///
 /// A packet runs until a line that it needs is not there; it starts the get and the next packet of the ring runs. A
 /// packet alone waits at once.
-/// @tparam L  Lanes<4>, as on the chip. @tparam Width  of a packet, 8 or 16.
-template <class L, std::uint32_t Width, Platform P>
+/// @tparam L  Lanes<4>, as on the chip. @tparam Store  LocalStore of a BvhLayout.
+template <class L, class Store, Platform P>
 class BvhCore {
-  static_assert(EdgeBatch<L>::kTriangles == 1 && (Width == 8 || Width == 16));
+  static constexpr std::uint32_t kWidth = Store::Layout::kPacketWidth;
+  static_assert(EdgeBatch<L>::kTriangles == 1 && (kWidth == 8 || kWidth == 16));
 
  public:
-  BvhCore(PacketStore<Width>& store, P& platform) : store_(store), transfers_(platform, store.work) {}
+  BvhCore(Store& store, Transfers<P>& transfers) : store_(store), transfers_(transfers) {}
 
-  /// Renders every tile this core can claim of the frame whose BvhFrameRecord lies at `record`.
-  ///
-  /// Errors: kBadFrame for a record that this store cannot serve; kAborted, kDeadline between tiles; whatever the
-  /// platform's transfers report. All transfers have been waited for when kOk is returned.
-  [[nodiscard]] Status run(MainAddress record) {
-    store_.work = WorkCounters{};
-    GRIDIRON_TRY(transfers_.get(&store_.record, record, sizeof(BvhFrameRecord), kSetupTag));
-    GRIDIRON_TRY(transfers_.wait(kSetupTag));
+  /// Errors: kBadFrame for a record that this store cannot serve.
+  [[nodiscard]] Status begin() {
     GRIDIRON_TRY(check_record());
-    store_.node_cache.reset(settings().node_lines);
-    store_.triangle_cache.reset(settings().triangle_lines);
+    caches().node_cache.reset(settings().node_lines);
+    caches().triangle_cache.reset(settings().triangle_lines);
     log_line_nodes_ = settings().log_line_nodes;
     log_line_triangles_ = settings().log_line_triangles;
     node_mask_ = (1u << log_line_nodes_) - 1u;
     triangle_mask_ = (1u << log_line_triangles_) - 1u;
-    triangle_lines_ = store_.lines + (settings().node_lines << (log_line_nodes_ + kLogNodeBytes));
+    triangle_lines_ = caches().lines + (settings().node_lines << (log_line_nodes_ + kLogNodeBytes));
     least_direction_ = kLeastDirection * direction_bound(frame());
-    reserve_output();
-    for (TileClaim claim = transfers_.claim_tile();; claim = transfers_.claim_tile()) {
-      if (claim.kind == TileClaim::Kind::kAborted) return finish(Status::kAborted);
-      if (claim.kind == TileClaim::Kind::kDeadline) return finish(Status::kDeadline);
-      if (claim.kind == TileClaim::Kind::kNone) return finish(Status::kOk);
-      GRIDIRON_TRY(render_tile(claim.tile_id));
-    }
+    return Status::kOk;
+  }
+
+  void begin_tile() {}
+
+  [[nodiscard]] Status trace_eyes(const TileView& view, const Hits& hits) {
+    left_ = view.left;
+    top_ = view.top;
+    next_x_ = next_y_ = 0;
+    hits_ = hits;
+    return hits.facing != nullptr ? trace_tile<true>() : trace_tile<false>();
   }
 
  private:
   using Four = Lanes<4>;
-  using StorePacket = Packet<Width>;
-  using Context = PacketContext<Width>;
-  static constexpr std::uint32_t kPlaneBytes = kTilePixels * sizeof(std::uint32_t);
+  using StorePacket = Packet<kWidth>;
+  using Context = PacketContext<kWidth>;
   static constexpr std::uint32_t kLogNodeBytes = 7;
   static_assert(sizeof(BvhNode) == 1u << kLogNodeBytes && kTriangleRecordBytes == 48);
   static constexpr float kLeastDirection = 0x1p-30f;
 
-  [[nodiscard]] const FrameRecord& frame() const { return store_.record.frame; }
-  [[nodiscard]] const CoreSettings& settings() const { return store_.record.settings; }
+  [[nodiscard]] const FrameHead& frame() const { return store_.frame; }
+  [[nodiscard]] const CoreSettings& settings() const { return store_.frame.engine.settings; }
+  [[nodiscard]] typename Store::EngineStore& caches() { return store_.engine; }
   void charge_to(BvhWork kind) { store_.work.charge_to(carrier_of(kind)); }
   void count(BvhWork kind, std::uint32_t amount = 1) { store_.work.add(carrier_of(kind), amount); }
 
   // --- Tiles ------------------------------------------------------------------------------------------------------
-
-  [[nodiscard]] Status render_tile(std::uint32_t tile_id) {
-    if (tile_id >= frame().tiles_x * frame().tiles_y) return Status::kBadFrame;
-    count(BvhWork::kTileStart);
-    left_ = tile_id % frame().tiles_x * kTileWidth;
-    top_ = tile_id / frame().tiles_x * kTileWidth;
-    next_x_ = next_y_ = 0;
-
-    // The output buffer's last tile must have left.
-    output_slot_ = (output_slot_ + 1) % kOutputDepth;
-    const auto tag = static_cast<std::uint8_t>(kFirstOutputTag + output_slot_);
-    GRIDIRON_TRY(transfers_.wait(tag));
-    if (frame().shading == static_cast<std::uint32_t>(Shading::kSimple)) {
-      GRIDIRON_TRY(trace_tile<true>());
-    } else {
-      GRIDIRON_TRY(trace_tile<false>());
-    }
-    charge_to(BvhWork::kTileStart);
-    GRIDIRON_TRY(put_tile(tile_id, tag));
-    return waits_for_output_ ? transfers_.wait(tag) : Status::kOk;
-  }
 
   // Lets the packets of the ring take turns until the tile has none left.
   template <bool kWantFacing>
@@ -99,10 +80,10 @@ class BvhCore {
     const std::uint32_t ring_size = settings().ring_size;
     std::uint32_t live = 0;
     for (std::uint32_t i = 0; i < ring_size; ++i) {
-      if (start_packet(store_.contexts[i])) ++live;
+      if (start_packet(store_.packet.contexts[i])) ++live;
     }
     for (std::uint32_t i = 0; live != 0; i = i + 1 == ring_size ? 0 : i + 1) {
-      Context& context = store_.contexts[i];
+      Context& context = store_.packet.contexts[i];
       if (context.state == Context::kIdle) continue;
       GRIDIRON_TRY(run_packet<kWantFacing>(context, i));
       if (context.state == Context::kIdle) --live;
@@ -120,10 +101,10 @@ class BvhCore {
     const std::uint32_t top = top_ + next_y_;
     context.x = next_x_;
     context.y = next_y_;
-    next_x_ += Width;
+    next_x_ += kWidth;
     if (next_x_ >= kTileWidth || left_ + next_x_ >= frame().width) {
       next_x_ = 0;
-      next_y_ += Width;
+      next_y_ += kWidth;
     }
     context.child = BvhChild::node(0);
     context.missed = 0;
@@ -159,7 +140,7 @@ class BvhCore {
         if (slot == kNoSlot) {
           count(BvhWork::kCacheLookup);
           const std::uint32_t line = triangle_line(cursor.child);
-          slot = store_.triangle_cache.find(line, ++now_);
+          slot = caches().triangle_cache.find(line, ++now_);
           if (slot == kNoSlot) [[unlikely]] {
             GRIDIRON_TRY(fetch_triangles(line, ring_index, slot));
             if (settings().ring_size > 1) return suspend(context, cursor, slot);
@@ -171,7 +152,7 @@ class BvhCore {
         if (slot == kNoSlot) {
           count(BvhWork::kCacheLookup);
           const std::uint32_t line = node_line(cursor.child);
-          slot = store_.node_cache.find(line, ++now_);
+          slot = caches().node_cache.find(line, ++now_);
           if (slot == kNoSlot) [[unlikely]] {
             GRIDIRON_TRY(fetch_nodes(line, ring_index, slot));
             if (settings().ring_size > 1) return suspend(context, cursor, slot);
@@ -188,7 +169,7 @@ class BvhCore {
         Four::Float(frame().t_far).store(context.reach);
         continue;
       }
-      shade_packet<L>(frame(), context.packet, context.x, context.y, store_.output[output_slot_], store_.work);
+      store_hits<L>(context.packet, context.x, context.y, kTileWidth, hits_, store_.work);
       if (!start_packet(context)) return Status::kOk;
       cursor = {BvhChild::node(0), 0, 0};
     }
@@ -204,22 +185,22 @@ class BvhCore {
   // Starts the get of a line that is not there, or finds it on its way. A packet alone waits for it.
   [[nodiscard]] Status fetch_nodes(std::uint32_t line, std::uint32_t ring_index, std::uint32_t& slot) {
     count(BvhWork::kMiss);
-    const auto claim = store_.node_cache.claim(line, now_, ring_index);
+    const auto claim = caches().node_cache.claim(line, now_, ring_index);
     slot = claim.slot;
     if (claim.is_on_its_way) return Status::kOk;
     const std::uint32_t log_bytes = log_line_nodes_ + kLogNodeBytes;
-    const MainAddress address{store_.record.nodes_address + (std::uint64_t{line} << log_bytes)};
-    return fetch(store_.node_cache, store_.lines + (slot << log_bytes), address, 1u << log_bytes,
+    const MainAddress address{store_.frame.engine.nodes_address + (std::uint64_t{line} << log_bytes)};
+    return fetch(caches().node_cache, caches().lines + (slot << log_bytes), address, 1u << log_bytes,
                  kFirstMacroTag + ring_index, slot);
   }
   [[nodiscard]] Status fetch_triangles(std::uint32_t line, std::uint32_t ring_index, std::uint32_t& slot) {
     count(BvhWork::kMiss);
-    const auto claim = store_.triangle_cache.claim(line, now_, ring_index);
+    const auto claim = caches().triangle_cache.claim(line, now_, ring_index);
     slot = claim.slot;
     if (claim.is_on_its_way) return Status::kOk;
     const std::uint64_t first = std::uint64_t{line} << log_line_triangles_;
-    const MainAddress address{store_.record.triangles_address + ((first << 4) + (first << 5))};
-    return fetch(store_.triangle_cache, triangle_lines_ + record_bytes(slot << log_line_triangles_), address,
+    const MainAddress address{store_.frame.engine.triangles_address + ((first << 4) + (first << 5))};
+    return fetch(caches().triangle_cache, triangle_lines_ + record_bytes(slot << log_line_triangles_), address,
                  record_bytes(1u << log_line_triangles_), kFirstTriangleTag + ring_index, slot);
   }
   template <class Cache>
@@ -248,9 +229,9 @@ class BvhCore {
   // has come and gone again.
   [[nodiscard]] Status resume(const Context& context, BvhChild child, std::uint32_t& slot) {
     if (child.is_leaf()) {
-      return resume(store_.triangle_cache, triangle_line(child), kFirstTriangleTag, context.slot, slot);
+      return resume(caches().triangle_cache, triangle_line(child), kFirstTriangleTag, context.slot, slot);
     }
-    return resume(store_.node_cache, node_line(child), kFirstMacroTag, context.slot, slot);
+    return resume(caches().node_cache, node_line(child), kFirstMacroTag, context.slot, slot);
   }
   template <class Cache>
   [[nodiscard]] Status resume(Cache& cache, std::uint32_t line, std::uint8_t first_tag, std::uint32_t waited_for,
@@ -272,12 +253,12 @@ class BvhCore {
     const std::uint32_t place = (slot << log_line_nodes_) + (cursor.child.node_index() & node_mask_);
     if (context.bounds.is_mixed == 0) [[likely]] {
       count(BvhWork::kNodeStep);
-      const BvhNode& node = *reinterpret_cast<const BvhNode*>(store_.lines + (place << kLogNodeBytes));
+      const BvhNode& node = *reinterpret_cast<const BvhNode*>(caches().lines + (place << kLogNodeBytes));
       return take_nearest(context, cursor, node,
                           context.bounds.template children_met<false>(node, context.packet.origin, context.reach));
     }
     count(BvhWork::kMixedNodeStep);
-    const BvhNode& node = *reinterpret_cast<const BvhNode*>(store_.lines + (place << kLogNodeBytes));
+    const BvhNode& node = *reinterpret_cast<const BvhNode*>(caches().lines + (place << kLogNodeBytes));
     return take_nearest(context, cursor, node,
                         context.bounds.template children_met<true>(node, context.packet.origin, context.reach));
   }
@@ -341,7 +322,7 @@ class BvhCore {
 
   // The subpackets of some quarters.
   [[nodiscard]] static SubpacketSet subpackets_of(std::uint32_t quarters) {
-    if constexpr (Width == 8) return quarters;
+    if constexpr (kWidth == 8) return quarters;
     // A bit becomes four.
     const std::uint32_t pairs = (quarters | quarters << 6) & 0x0303u;
     const std::uint32_t apart = (pairs | pairs << 3) & 0x1111u;
@@ -364,53 +345,18 @@ class BvhCore {
     }
   }
 
-  // --- Output -----------------------------------------------------------------------------------------------------
-
-  // As the grid's tile renderer does: tiles on their way have places of their own in the queue, or have left before the
-  // next one begins.
-  void reserve_output() {
-    std::uint32_t commands = 0;
-    for (const std::uint64_t plane : {frame().color_address, frame().depth_address, frame().id_address}) {
-      constexpr std::uint32_t kPieces = (kPlaneBytes + kPortableBoundaryBytes - 1) / kPortableBoundaryBytes;
-      if (plane != 0) commands += kPieces + (plane % kPortableBoundaryBytes != 0 ? 1 : 0);
-    }
-    commands *= kOutputDepth;
-    waits_for_output_ = commands + kLeastInputCommands > transfers_.queue_depth();
-    if (!waits_for_output_) transfers_.reserve_for_output(commands);
-  }
-
-  [[nodiscard]] Status put_tile(std::uint32_t tile_id, std::uint8_t tag) {
-    const auto& output = store_.output[output_slot_];
-    const std::uint64_t offset = std::uint64_t{tile_id} * kPlaneBytes;
-    GRIDIRON_TRY(transfers_.put(output.color, MainAddress{frame().color_address + offset}, kPlaneBytes, tag));
-    if (frame().depth_address != 0) {
-      GRIDIRON_TRY(transfers_.put(output.depth, MainAddress{frame().depth_address + offset}, kPlaneBytes, tag));
-    }
-    if (frame().id_address != 0) {
-      GRIDIRON_TRY(transfers_.put(output.id, MainAddress{frame().id_address + offset}, kPlaneBytes, tag));
-    }
-    return Status::kOk;
-  }
-
-  // Waits for the tiles still on their way, the oldest first.
-  [[nodiscard]] Status finish(Status outcome) {
-    for (std::uint32_t i = 0; i < kOutputDepth; ++i) {
-      output_slot_ = (output_slot_ + 1) % kOutputDepth;
-      GRIDIRON_TRY(transfers_.wait(static_cast<std::uint8_t>(kFirstOutputTag + output_slot_)));
-    }
-    return outcome;
-  }
+  // --- The frame ---------------------------------------------------------------------------------------------------
 
   [[nodiscard]] Status check_record() const {
     const CoreSettings& core = settings();
-    if (frame().magic != kFrameMagic || frame().version != kFrameVersion) return Status::kBadFrame;
-    if (frame().tile_width != kTileWidth || frame().output_depth != kOutputDepth) return Status::kBadFrame;
-    if (core.packet_width != Width || core.ring_size < 1 || core.ring_size > kRingOf<Width>) return Status::kBadFrame;
+    // Of equal distances another accuracy may want the nearer in truth, which two rays could ask for without end.
+    if (frame().accuracy != static_cast<std::uint32_t>(Accuracy::kStandard)) return Status::kUnsupportedFrame;
+    if (core.packet_width != kWidth || core.ring_size < 1 || core.ring_size > kRingOf<kWidth>) return Status::kBadFrame;
     return are_caches_valid(core) ? Status::kOk : Status::kBadFrame;
   }
 
   // The largest sum of magnitudes that goes into a component of a direction, over the whole picture.
-  [[nodiscard]] static float direction_bound(const FrameRecord& frame) {
+  [[nodiscard]] static float direction_bound(const FrameHead& frame) {
     float bound = 0.0f;
     for (int axis = 0; axis < 3; ++axis) {
       const float width = static_cast<float>(frame.width + kTileWidth);
@@ -423,16 +369,49 @@ class BvhCore {
   }
 
   static constexpr std::uint32_t kAllChildren = (1u << kNodeWidth) - 1u;
-  PacketStore<Width>& store_;
-  Transfers<P> transfers_;
+  Store& store_;
+  Transfers<P>& transfers_;
   std::byte* triangle_lines_ = nullptr;
   std::uint32_t log_line_nodes_ = 0, log_line_triangles_ = 0, node_mask_ = 0, triangle_mask_ = 0;
-  float least_direction_ = 0.0f;  ///< directions below this are taken for none
-  std::uint32_t now_ = 0;         ///< look-ups
-  std::uint32_t output_slot_ = kOutputDepth - 1;
-  bool waits_for_output_ = true;
+  float least_direction_ = 0.0f;           ///< directions below this are taken for none
+  std::uint32_t now_ = 0;                  ///< look-ups
   std::uint32_t left_ = 0, top_ = 0;       ///< of the tile, in pixels
   std::uint32_t next_x_ = 0, next_y_ = 0;  ///< of its next packet
+  Hits hits_{};
 };
+
+/// The cached BVH as a layout names it.
+struct BvhEngine {
+  static constexpr std::uint32_t kId = kFirstOtherEngine;
+  using Record = BvhRecord;
+  template <class Layout>
+  using Store = CacheStore<Layout>;
+  template <class Layout>
+  using EyeStore = RingStore<Layout>;
+  template <class Layout>
+  using RayStore = void;
+  template <class Layout>
+  static constexpr bool kTracesEyes = true;
+  template <class Layout>
+  static constexpr std::uint32_t kMaxRayDepth = 0;
+  template <class L, class Store, Platform P>
+  using Core = BvhCore<L, Store, P>;
+};
+
+/// Sizes of a 256 KB core with the cached BVH. @tparam Width  of a packet, 8 or 16.
+template <std::uint32_t Width>
+struct BvhLayout {
+  using Engine = BvhEngine;
+  static constexpr std::uint32_t kEffects = 0;
+  static constexpr std::uint32_t kArenaBytes = 256 * 1024;
+  static constexpr std::uint32_t kCodeBudgetBytes = 48 * 1024;
+  static constexpr std::uint32_t kStackBudgetBytes = 8 * 1024;
+  static constexpr std::uint32_t kTileWidth = bvh::kTileWidth;
+  static constexpr std::uint32_t kPacketWidth = Width;
+  static constexpr std::uint32_t kMaxOutputDepth = kOutputDepth;
+};
+static_assert(kFitsArena<BvhLayout<8>> && kFitsArena<BvhLayout<16>>);
+
+using BvhStore = LocalStore<BvhLayout<kPacketWidth>>;
 
 }  // namespace gridiron::bvh

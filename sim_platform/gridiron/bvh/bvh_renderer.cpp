@@ -4,6 +4,7 @@
 #include <gridiron/bvh/bvh_core.h>
 #include <gridiron/bvh/bvh_renderer.h>
 #include <gridiron/bvh/claim_order.h>
+#include <gridiron/render/tile_renderer.h>
 #include <gridiron/sim/core_runner.h>
 
 #include <bit>
@@ -19,7 +20,7 @@ namespace {
 /// Where the parts of a frame lie.
 struct FrameInMemory {
   sim::MemoryRegion record, color, depth, ids;
-  FrameRecord frame{};
+  FrameHead frame{};
 };
 
 template <class Element>
@@ -28,7 +29,7 @@ template <class Element>
 }
 
 template <class Element>
-[[nodiscard]] std::vector<Element> untile(const FrameRecord& frame, std::span<const std::byte> plane) {
+[[nodiscard]] std::vector<Element> untile(const FrameHead& frame, std::span<const std::byte> plane) {
   std::vector<Element> rows(std::size_t{frame.width} * frame.height);
   for (std::uint32_t y = 0; y < frame.height; ++y) {
     for (std::uint32_t x = 0; x < frame.width; ++x) {
@@ -58,7 +59,7 @@ template <class Element>
   BvhFrameRecord frame{};
   GRIDIRON_TRY(make_bvh_record(bvh, settings, options, nodes->address, triangles->address, frame));
   std::memcpy(record->bytes.data(), &frame, sizeof frame);
-  parts = {*record, *color, *depth, *ids, frame.frame};
+  parts = {*record, *color, *depth, *ids, frame};
   return Status::kOk;
 }
 
@@ -96,28 +97,23 @@ struct LeaveAtEnd {
 template <std::uint32_t Width>
 [[nodiscard]] Status run_core(std::span<std::byte> data, OrderedCore& platform, MainAddress record, std::mutex& mutex,
                               BvhFrame& result) {
-  auto& store = *::new (static_cast<void*>(data.data())) PacketStore<Width>;
-  BvhCore<Lanes<4>, Width, OrderedCore> program(store, platform);
-  const Status status = program.run(record);
+  auto& store = *::new (static_cast<void*>(data.data())) LocalStore<BvhLayout<Width>>;
+  const Status status = render_tiles<Lanes<4>>(store, platform, record);
   const std::scoped_lock lock(mutex);
-  result.node_cache += store.node_cache.counts();
-  result.triangle_cache += store.triangle_cache.counts();
+  result.node_cache += store.engine.node_cache.counts();
+  result.triangle_cache += store.engine.triangle_cache.counts();
   return status;
 }
 
 }  // namespace
 
 Status make_bvh_record(const Bvh& bvh, FrameSettings settings, const RenderOptions& options, MainAddress nodes,
-                       MainAddress triangles, BvhFrameRecord& record) {
+                       MainAddress triangles, BvhFrameRecord& frame) {
   settings.tile_width = kTileWidth;
   settings.output_depth = kOutputDepth;
-  // Core's own frame, of an image that is never opened: only camera, size and outputs are looked at.
-  SceneImageView no_image{};
-  no_image.grid.triangle_format = static_cast<std::uint32_t>(TriangleFormat::kVertices);
-  GRIDIRON_TRY(make_frame_record(settings, no_image, MainAddress{}, record.frame));
-  record.nodes_address = nodes.value;
-  record.triangles_address = triangles.value;
-  record.settings = core_settings(bvh.parameters, options);
+  GRIDIRON_TRY(make_frame_head(settings, frame));
+  frame.engine_id = BvhEngine::kId;
+  frame.engine = {nodes.value, triangles.value, core_settings(bvh.parameters, options)};
   return Status::kOk;
 }
 
@@ -128,7 +124,7 @@ BvhFrame render_bvh_frame(const Bvh& bvh, const FrameSettings& settings, const s
     result.status = status;
     return result;
   };
-  if (settings.accuracy != Accuracy::kStandard || machine.local_store_bytes < kArenaBytes) {
+  if (settings.accuracy != Accuracy::kStandard || machine.local_store_bytes < BvhStore::Layout::kArenaBytes) {
     return refuse(Status::kUnsupportedFrame);
   }
   if (!are_options_valid(bvh, options)) return refuse(Status::kBadParameter);
@@ -160,8 +156,8 @@ BvhFrame render_bvh_frame(const Bvh& bvh, const FrameSettings& settings, const s
   shape.tile_count = parts.frame.tiles_x * parts.frame.tiles_y;
   shape.cores_meet = true;
   shape.output_depth = kOutputDepth;
-  shape.arena_bytes = kArenaBytes;
-  shape.data_bytes = options.packet_width == 16 ? sizeof(PacketStore<16>) : sizeof(PacketStore<8>);
+  shape.arena_bytes = BvhStore::Layout::kArenaBytes;
+  shape.data_bytes = options.packet_width == 16 ? sizeof(LocalStore<BvhLayout<16>>) : sizeof(LocalStore<BvhLayout<8>>);
   for (const sim::MemoryRegion* plane : {&parts.color, &parts.depth, &parts.ids}) {
     if (plane != &parts.color && !options.all_planes) continue;
     shape.writable.push_back({plane->address.value, plane->address.value + plane->bytes.size()});

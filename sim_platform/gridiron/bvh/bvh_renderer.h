@@ -21,8 +21,7 @@
 namespace gridiron::bvh {
 
 /// Sizes of both caches. Lines: a power of two, kCacheWays..kMaxNodeLines, kMaxTriangleLines; together at most
-/// kCacheBytes. What a line holds is decided
-/// when the hierarchy is built (BvhParameters::line_nodes, line_triangles).
+/// kCacheBytes. What a line holds is decided when the hierarchy is built (BvhParameters::line_nodes, line_triangles).
 struct CacheGeometry {
   std::uint32_t node_lines = 32;
   std::uint32_t triangle_lines = 16;
@@ -67,7 +66,7 @@ struct BvhFrame {
 /// @param settings  with the addresses of the planes; tile width and output depth are set here.
 /// @param nodes, triangles  where bvh.nodes and bvh.triangles lie in main memory. Errors: kBadFrame (settings).
 [[nodiscard]] Status make_bvh_record(const Bvh& bvh, FrameSettings settings, const RenderOptions& options,
-                                     MainAddress nodes, MainAddress triangles, BvhFrameRecord& record);
+                                     MainAddress nodes, MainAddress triangles, BvhFrameRecord& frame);
 
 /// Renders a frame on the simulated chip, every rule of the contract checked.
 ///

@@ -1,9 +1,8 @@
-// The cached BVH's local store: every byte a core works in, one struct, in address order.
+// The cached BVH's parts of a local store and of a frame's record.
 // Memory: is the memory. Threads: one core. SPDX-License-Identifier: Apache-2.0
 #pragma once
 
 #include <gridiron/base/records.h>
-#include <gridiron/base/work_counters.h>
 #include <gridiron/bvh/bvh_node.h>
 #include <gridiron/bvh/packet_bounds.h>
 #include <gridiron/bvh/soft_cache.h>
@@ -15,13 +14,11 @@
 
 namespace gridiron::bvh {
 
-inline constexpr std::uint32_t kArenaBytes = 256 * 1024;
-inline constexpr std::uint32_t kCodeBudgetBytes = 48 * 1024;
-inline constexpr std::uint32_t kStackBudgetBytes = 8 * 1024;
 inline constexpr std::uint32_t kTileWidth = 32;
 inline constexpr std::uint32_t kTilePixels = kTileWidth * kTileWidth;
-inline constexpr std::uint32_t kMaxRing = 4;      ///< packets of the ring
-inline constexpr std::uint32_t kOutputDepth = 2;  ///< tiles in rotation
+inline constexpr std::uint32_t kPacketWidth = 16;  ///< of the settings that render fastest
+inline constexpr std::uint32_t kMaxRing = 4;       ///< packets of the ring
+inline constexpr std::uint32_t kOutputDepth = 2;   ///< tiles in rotation
 inline constexpr std::uint32_t kMaxNodeLines = 256;
 inline constexpr std::uint32_t kMaxTriangleLines = 256;
 inline constexpr std::uint32_t kMaxLogLineNodes = 5;      ///< 32 nodes, 4 KB
@@ -61,14 +58,13 @@ struct CoreSettings {
   return node_bytes + triangle_bytes <= (core.packet_width == 16 ? kCacheBytes<16> : kCacheBytes<8>);
 }
 
-/// Everything a core needs to know. 128-byte aligned.
-struct alignas(128) BvhFrameRecord {
-  FrameRecord frame;
+/// Its part of a frame.
+struct BvhRecord {
   std::uint64_t nodes_address;      ///< BvhNode[], node 0 is the root
   std::uint64_t triangles_address;  ///< VertexTriangle[]
   CoreSettings settings;
 };
-static_assert(sizeof(BvhFrameRecord) == 512);
+using BvhFrameRecord = Frame<BvhRecord>;
 
 /// A quad of the stack: what is to be visited, and what has been found out about it.
 struct alignas(16) StackEntry {
@@ -95,39 +91,26 @@ struct alignas(128) PacketContext {
   static constexpr std::uint32_t kIdle = 0, kRunning = 1, kWaiting = 2;
 };
 
-/// Memory of one core.
-template <std::uint32_t Width>
-struct alignas(128) PacketStore {
-  struct alignas(128) TileOutput {
-    std::uint32_t color[kTilePixels];
-    float depth[kTilePixels];
-    std::uint32_t id[kTilePixels];
-  };
-  BvhFrameRecord record;
-  alignas(128) WorkCounters work;
+/// What stays for the frame.
+template <class Layout>
+struct alignas(128) CacheStore {
   SoftCache<kMaxNodeLines> node_cache;
   SoftCache<kMaxTriangleLines> triangle_cache;
-  alignas(128) std::byte lines[kCacheBytes<Width>];  ///< node lines, then triangle lines
-  PacketContext<Width> contexts[kRingOf<Width>];
-  TileOutput output[kOutputDepth];
+  alignas(128) std::byte lines[kCacheBytes<Layout::kPacketWidth>];  ///< node lines, then triangle lines
+
+  /// Calls visit(name, offset_bytes, bytes) for every region, in address order.
+  template <class Visit>
+  static constexpr void for_each_region(Visit&& visit) {
+    visit("node_directory", offsetof(CacheStore, node_cache), sizeof(CacheStore::node_cache));
+    visit("triangle_directory", offsetof(CacheStore, triangle_cache), sizeof(CacheStore::triangle_cache));
+    visit("cache_lines", offsetof(CacheStore, lines), sizeof(CacheStore::lines));
+  }
 };
-static_assert(sizeof(PacketStore<8>) + kCodeBudgetBytes + kStackBudgetBytes <= kArenaBytes);
-static_assert(sizeof(PacketStore<16>) + kCodeBudgetBytes + kStackBudgetBytes <= kArenaBytes);
 
-/// That of the settings which win.
-inline constexpr std::uint32_t kPacketWidth = 16;
-using BvhStore = PacketStore<kPacketWidth>;
-
-/// Calls visit(name, offset_bytes, bytes) for every region of the store, in address order.
-template <class Visit>
-constexpr void for_each_region(Visit&& visit) {
-  visit("frame", offsetof(BvhStore, record), sizeof(BvhStore::record));
-  visit("work", offsetof(BvhStore, work), sizeof(BvhStore::work));
-  visit("node_directory", offsetof(BvhStore, node_cache), sizeof(BvhStore::node_cache));
-  visit("triangle_directory", offsetof(BvhStore, triangle_cache), sizeof(BvhStore::triangle_cache));
-  visit("cache_lines", offsetof(BvhStore, lines), sizeof(BvhStore::lines));
-  visit("packets", offsetof(BvhStore, contexts), sizeof(BvhStore::contexts));
-  visit("output", offsetof(BvhStore, output), sizeof(BvhStore::output));
-}
+/// While the eye rays of a tile are traced.
+template <class Layout>
+struct RingStore {
+  PacketContext<Layout::kPacketWidth> contexts[kRingOf<Layout::kPacketWidth>];
+};
 
 }  // namespace gridiron::bvh

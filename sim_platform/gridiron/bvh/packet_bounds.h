@@ -59,7 +59,7 @@ struct alignas(128) PacketBounds {
 
   /// @param left, top  the packet's first pixel. @param least  > 0; rays run along an axis whose direction is above it:
   /// 2^-30 times the largest.
-  void set(const FrameRecord& frame, std::uint32_t left, std::uint32_t top, float least, WorkCounters& work) {
+  void set(const FrameHead& frame, std::uint32_t left, std::uint32_t top, float least, WorkCounters& work) {
     using Four = Lanes<4>;
     using Float = Four::Float;
     constexpr float kNarrow = 1.0f - 0x1p-20f;

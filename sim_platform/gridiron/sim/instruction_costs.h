@@ -20,18 +20,18 @@ struct InstructionCost {
 
 /// All kinds but commands and waits.
 inline constexpr auto kInstructionCosts = std::to_array<InstructionCost>({
-    {Work{ 0},    91.4},  // tile_start
+    {Work{ 0},    89.4},  // tile_start
     {Work{ 1},   264.0},  // ray_generated
-    {Work{ 2},  1074.6},  // packet_start
+    {Work{ 2},  1059.6},  // packet_start
     {Work{ 3},   412.4},  // pass_group, not in `dense`
     {Work{ 4},   408.9},  // pass_square
     {Work{ 5},   242.5},  // macro_slice_step
     {Work{ 6},    68.2},  // macro_cell_step
-    {Work{ 7},   275.3},  // macro_cell_visit
+    {Work{ 7},   277.4},  // macro_cell_visit
     {Work{ 8},   260.7},  // slice_step
     {Work{ 9},    12.5},  // cell_step
     {Work{10},   153.3},  // cell_visit
-    {Work{11},   386.1},  // triangle_batch
+    {Work{11},   387.1},  // triangle_batch
     {Work{12},    38.8},  // mailbox_probe
     {Work{13},   354.0},  // cull_test
     {Work{14},  1562.4},  // pixel_box_group, not in `dense`
@@ -42,16 +42,16 @@ inline constexpr auto kInstructionCosts = std::to_array<InstructionCost>({
     {Work{19},   406.2},  // group_test_paper, not in `dense`
     {Work{20},   365.6},  // hit_group
     {Work{21},  1111.0},  // hit_subpacket, not in `dense`
-    {Work{22},   182.7},  // hit_group_paper, not in `dense`
+    {Work{22},   182.8},  // hit_group_paper, not in `dense`
     {Work{23},   255.6},  // hit_setup
     {Work{24},   178.3},  // double_sign
     {Work{25},  2430.8},  // exact_sign, of 64 decisions
     {Work{26}, 66091.2},  // exact_distance, of 64 decisions
     {Work{27},    25.6},  // reach_group
-    {Work{28},    38.7},  // shaded_group, not in `dense`
-    {Work{29},   163.5},  // shaded_simple_group
-    {Work{30},   107.1},  // depth_group, not in `dense`
-    {Work{31},    18.9},  // id_group, not in `dense`
+    {Work{28},    26.2},  // shaded_group, not in `dense`
+    {Work{29},   178.2},  // shaded_simple_group
+    {Work{30},   107.3},  // depth_group, not in `dense`
+    {Work{31},    18.0},  // id_group
     {Work{32},   359.8},  // footprint_group, not in `dense`
     {Work{33},   297.0},  // row_group, not in `dense`
     {Work{34},   356.1},  // estimate_setup
@@ -60,30 +60,30 @@ inline constexpr auto kInstructionCosts = std::to_array<InstructionCost>({
     {Work{37}, 27547.3},  // exact_order, of 64 decisions
     {Work{38},   123.1},  // lattice_triangle, not in `dense`
     {Work{39},    15.0},  // cell_bound_step, not in `dense`
-    {Work{40},   148.0},  // wave_ray, of effects
-    {Work{41},   104.1},  // queued_ray, of effects
-    {Work{42},  5279.0},  // walk_pass, of effects
+    {Work{40},   147.5},  // wave_ray, of effects
+    {Work{41},   105.0},  // queued_ray, of effects
+    {Work{42},  5267.3},  // walk_pass, of effects
     {Work{43},   314.1},  // shaft_group, of effects
     {Work{44},  1964.6},  // ray_group_test, of effects
     {Work{45},   350.0},  // ray_distance, of effects
-    {Work{46},  1491.0},  // surface_point, of effects
-    {Work{47},   269.8},  // smooth_normal, of effects
-    {Work{48},   148.8},  // shadow_ray, of effects
+    {Work{46},  1489.7},  // surface_point, of effects
+    {Work{47},   268.8},  // smooth_normal, of effects
+    {Work{48},   148.4},  // shadow_ray, of effects
     {Work{49},    67.0},  // light_sample, of effects
     {Work{50},   153.2},  // highlight, of effects
-    {Work{51},   189.7},  // occlusion_ray, of effects
+    {Work{51},   188.6},  // occlusion_ray, of effects
     {Work{52},    57.1},  // mirror_ray, of effects
     {Work{53},   131.8},  // refracted_ray, of effects
     {Work{54},   380.3},  // environment_lookup, of effects
-    {Work{55},    84.1},  // color_added, of effects
-    {Work{56},   192.8},  // color_group, of effects
+    {Work{55},    84.2},  // color_added, of effects
+    {Work{56},   193.0},  // color_group, of effects
 });
 
 /// A command: from where core counts it to the next kind of work, and its end in a wait.
-inline constexpr double kCommandInstructions = 255.5;
+inline constexpr double kCommandInstructions = 254.6;
 /// A wait: from where core counts it to the next kind of work, without the ends of commands.
-inline constexpr double kWaitInstructions = 90.1;
+inline constexpr double kWaitInstructions = 91.2;
 /// A claim: from asking for a tile to the tile's first work.
-inline constexpr double kClaimInstructions = 64.5;
+inline constexpr double kClaimInstructions = 61.8;
 
 }  // namespace gridiron::sim

@@ -130,7 +130,8 @@ enum class LayoutGroup : std::uint8_t { kCommon, kSweep, kEffects, kNone };
 
   const auto whole_tiles = [&](std::uint32_t pixels) { return (pixels + frame.tile_width - 1) / frame.tile_width; };
   const auto in_picture = [](std::uint32_t count) { return count >= 1 && count <= kMaxPictureWidth; };
-  if (frame.magic != kFrameMagic || frame.version != kFrameVersion || !in_picture(frame.width) ||
+  if (frame.magic != kFrameMagic || frame.version != kFrameVersion ||
+      frame.engine_id != static_cast<std::uint32_t>(EngineId::kGrid) || !in_picture(frame.width) ||
       !in_picture(frame.height) || !in_picture(frame.tile_width) || frame.tiles_x != whole_tiles(frame.width) ||
       frame.tiles_y != whole_tiles(frame.height) || frame.output_depth == 0) {
     return Status::kBadFrame;
@@ -152,7 +153,7 @@ enum class LayoutGroup : std::uint8_t { kCommon, kSweep, kEffects, kNone };
   const auto lies_in_memory = [&](std::uint64_t begin, std::uint64_t byte_count) {
     return byte_count == 0 || !memory.bytes_at(MainAddress{begin}, byte_count).empty();
   };
-  const GridRecord& grid = frame.grid;
+  const GridRecord& grid = frame.engine.grid;
   std::uint64_t macro_cells = 1;
   for (const std::uint32_t count : grid.macro_cell_count) {
     if (count > kMaxCellsPerAxis) return Status::kBadFrame;
@@ -161,9 +162,9 @@ enum class LayoutGroup : std::uint8_t { kCommon, kSweep, kEffects, kNone };
   // The table is read in whole lines.
   const std::uint64_t table_bytes =
       round_up<std::uint64_t>((macro_cells + 31) / 32 * sizeof(MacroTableEntry), kLineBytes);
-  if (!lies_in_memory(frame.macro_table_address, table_bytes) ||
-      !lies_in_memory(frame.cell_blocks_address, std::uint64_t{grid.cell_block_count} * grid.cell_block_bytes) ||
-      !lies_in_memory(frame.triangles_address, std::uint64_t{grid.reference_count} * grid.triangle_bytes)) {
+  if (!lies_in_memory(frame.engine.macro_table_address, table_bytes) ||
+      !lies_in_memory(frame.engine.cell_blocks_address, std::uint64_t{grid.cell_block_count} * grid.cell_block_bytes) ||
+      !lies_in_memory(frame.engine.triangles_address, std::uint64_t{grid.reference_count} * grid.triangle_bytes)) {
     return Status::kBadFrame;
   }
   if (is_scene_shaded(frame) && !are_effects_in_memory(memory, frame)) return Status::kBadFrame;

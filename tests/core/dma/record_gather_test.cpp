@@ -29,7 +29,10 @@ struct GatherStore {
   struct alignas(128) Buffer {
     std::byte bytes[kBufferBytes];
   };
-  Buffer triangles[kDepths + 1];  // the last is nobody's
+  struct {
+    Buffer buffers[kDepths + 1];  // the last is nobody's
+    [[nodiscard]] std::byte* idle_buffer(std::uint32_t slot) { return buffers[slot].bytes; }
+  } engine;
 };
 
 struct Rig {
@@ -67,7 +70,7 @@ struct Rig {
   }
   [[nodiscard]] bool others_are_untouched() const {
     for (std::uint32_t slot = store->frame.walk_depth; slot <= kDepths; ++slot) {
-      for (const std::byte value : store->triangles[slot].bytes) {
+      for (const std::byte value : store->engine.buffers[slot].bytes) {
         if (value != std::byte{0x3C}) return false;
       }
     }

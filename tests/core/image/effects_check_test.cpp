@@ -339,9 +339,9 @@ TEST(EffectsLayout, FieldsStandWhereTheSpecificationSays) {
   EXPECT_EQ(offsetof(SurfaceRecord, material), 36u);
   EXPECT_EQ(offsetof(SurfaceRecord, normals), 40u);
   EXPECT_EQ(offsetof(NormalRecord, reserved), 36u);
-  EXPECT_EQ(offsetof(FrameRecord, effects_address), 160u);
-  EXPECT_EQ(offsetof(FrameRecord, image_address), 168u);
-  EXPECT_EQ(offsetof(FrameRecord, walk_depth), 320u);
+  EXPECT_EQ(offsetof(FrameHead, effects_address), 136u);
+  EXPECT_EQ(offsetof(FrameHead, image_address), 144u);
+  EXPECT_EQ(offsetof(FrameHead, walk_depth), 44u);
 }
 
 }  // namespace

@@ -407,16 +407,17 @@ TEST(Layout, FieldsStandWhereTheSpecificationSays) {
   EXPECT_EQ(offsetof(ProjectionTriangle, c_u), 24u);
   EXPECT_EQ(offsetof(ProjectionTriangle, axis_k), 36u);
   EXPECT_EQ(offsetof(ProjectionTriangle, triangle_id), 44u);
-  EXPECT_EQ(offsetof(FrameRecord, tile_width), 16u);
-  EXPECT_EQ(offsetof(FrameRecord, accuracy), 28u);
-  EXPECT_EQ(offsetof(FrameRecord, techniques), 36u);
-  EXPECT_EQ(offsetof(FrameRecord, triangle_depth), 48u);
-  EXPECT_EQ(offsetof(FrameRecord, t_far), 56u);
-  EXPECT_EQ(offsetof(FrameRecord, eye), 64u);
-  EXPECT_EQ(offsetof(FrameRecord, step_y), 100u);
-  EXPECT_EQ(offsetof(FrameRecord, color_address), 112u);
-  EXPECT_EQ(offsetof(FrameRecord, triangles_address), 152u);
-  EXPECT_EQ(offsetof(FrameRecord, grid), 192u);
+  EXPECT_EQ(offsetof(FrameHead, tile_width), 16u);
+  EXPECT_EQ(offsetof(FrameHead, accuracy), 28u);
+  EXPECT_EQ(offsetof(FrameHead, engine_id), 36u);
+  EXPECT_EQ(offsetof(FrameHead, t_far), 52u);
+  EXPECT_EQ(offsetof(FrameHead, eye), 64u);
+  EXPECT_EQ(offsetof(FrameHead, step_y), 100u);
+  EXPECT_EQ(offsetof(FrameHead, color_address), 112u);
+  EXPECT_EQ(offsetof(GridFrame, grid), 0u);
+  EXPECT_EQ(offsetof(GridFrame, triangles_address), 144u);
+  EXPECT_EQ(offsetof(GridFrame, triangle_depth), 156u);
+  EXPECT_EQ(offsetof(GridFrame, techniques), 160u);
 }
 
 // --- Check value --------------------------------------------------------------------------------------------------

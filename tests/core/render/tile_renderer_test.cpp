@@ -22,6 +22,7 @@ using Normal = StoreLayout256K<8>;
 // As little of everything as a layout can have: the macrocell table is streamed through one line, runs of triangles
 // through buffers of three.
 struct TinyLayout {
+  using Engine = GridEngine;
   static constexpr std::uint32_t kEffects = 0;
   static constexpr std::uint32_t kArenaBytes = 64 * 1024;
   static constexpr std::uint32_t kCodeBudgetBytes = 32 * 1024;
@@ -324,14 +325,16 @@ std::vector<Refusal> refusals() {
          f.tiles_x = (f.width + 15) / 16;
          f.tiles_y = (f.height + 15) / 16;
        }},
+      {"OtherEngine", unsupported, [](FrameRecord& f) { ++f.engine_id; }},
       {"TilesAcross", bad, [](FrameRecord& f) { ++f.tiles_x; }},
       {"TilesDown", bad, [](FrameRecord& f) { --f.tiles_y; }},
       {"OutputDepthZero", unsupported, [](FrameRecord& f) { f.output_depth = 0; }},
       {"OutputDepthTooLarge", unsupported, [](FrameRecord& f) { f.output_depth = Normal::kMaxOutputDepth + 1; }},
-      {"MacroDepthZero", unsupported, [](FrameRecord& f) { f.macro_depth = 0; }},
-      {"MacroDepthTooLarge", unsupported, [](FrameRecord& f) { f.macro_depth = Normal::kMaxMacroDepth + 1; }},
-      {"TriangleDepthZero", unsupported, [](FrameRecord& f) { f.triangle_depth = 0; }},
-      {"TriangleDepthTooLarge", unsupported, [](FrameRecord& f) { f.triangle_depth = Normal::kMaxTriangleDepth + 1; }},
+      {"MacroDepthZero", unsupported, [](FrameRecord& f) { f.engine.macro_depth = 0; }},
+      {"MacroDepthTooLarge", unsupported, [](FrameRecord& f) { f.engine.macro_depth = Normal::kMaxMacroDepth + 1; }},
+      {"TriangleDepthZero", unsupported, [](FrameRecord& f) { f.engine.triangle_depth = 0; }},
+      {"TriangleDepthTooLarge", unsupported,
+       [](FrameRecord& f) { f.engine.triangle_depth = Normal::kMaxTriangleDepth + 1; }},
       {"LimitZero", bad, [](FrameRecord& f) { f.t_far = 0.0f; }},
       {"LimitNegative", bad, [](FrameRecord& f) { f.t_far = -1.0f; }},
       {"LimitNaN", bad, [](FrameRecord& f) { f.t_far = std::numeric_limits<float>::quiet_NaN(); }},
@@ -344,12 +347,14 @@ std::vector<Refusal> refusals() {
       {"LatticeOfOtherTriangles", image,
        [](FrameRecord& f) { f.accuracy = static_cast<std::uint32_t>(Accuracy::kCompact); }},
       {"VerticesOfALattice", image,
-       [](FrameRecord& f) { f.grid.triangle_format = static_cast<std::uint32_t>(TriangleFormat::kLattice); }},
-      {"TriangleFormat", image, [](FrameRecord& f) { f.grid.triangle_format = 7; }},
-      {"MacroWidthZero", image, [](FrameRecord& f) { f.grid.macro_width = 0; }},
-      {"MacroWidthTooLarge", image, [](FrameRecord& f) { f.grid.macro_width = Normal::kMaxMacroWidth + 1; }},
+       [](FrameRecord& f) { f.engine.grid.triangle_format = static_cast<std::uint32_t>(TriangleFormat::kLattice); }},
+      {"TriangleFormat", image, [](FrameRecord& f) { f.engine.grid.triangle_format = 7; }},
+      {"MacroWidthZero", image, [](FrameRecord& f) { f.engine.grid.macro_width = 0; }},
+      {"MacroWidthTooLarge", image, [](FrameRecord& f) { f.engine.grid.macro_width = Normal::kMaxMacroWidth + 1; }},
       {"CellBlockTooLarge", image,
-       [](FrameRecord& f) { f.grid.cell_block_bytes = LocalStore<Normal>::kCellBlockBytes + kLineBytes; }},
+       [](FrameRecord& f) {
+         f.engine.grid.cell_block_bytes = LocalStore<Normal>::EngineStore::kCellBlockBytes + kLineBytes;
+       }},
   };
 }
 

@@ -1,4 +1,5 @@
-// Shading: grey levels, and which pixels a packet writes. SPDX-License-Identifier: Apache-2.0
+// Shading: grey levels, which pixels a packet writes, and their colours. SPDX-License-Identifier: Apache-2.0
+#include <gridiron/ray/packet_hits.h>
 #include <gridiron/shade/shading.h>
 #include <gridiron/store/local_store.h>
 #include <gtest/gtest.h>
@@ -25,16 +26,14 @@ TEST(Grey, IsTheNearestOf256Levels) {
   }
 }
 
-class ShadePacket : public testing::TestWithParam<Shading> {
+class ShadeHits : public testing::TestWithParam<Shading> {
  protected:
   using Layout = StoreLayout64K<8>;
   using Output = LocalStore<Layout>::TileOutput;
 
-  ShadePacket() : output_(std::make_unique<Output>()) {
-    frame_.tile_width = Layout::kTileWidth;
+  ShadeHits() : output_(std::make_unique<Output>()) {
     frame_.shading = static_cast<std::uint32_t>(GetParam());
     frame_.background_rgba = 0x12345678u;
-    frame_.depth_address = frame_.id_address = 128;
     for (std::uint32_t ray = 0; ray < 64; ++ray) {
       ray_at_[Packet<8>::row_of(ray)][Packet<8>::column_of(ray)] = ray;
       packet_.dir[0][ray] = 0.25f * static_cast<float>(ray % 8);
@@ -46,25 +45,26 @@ class ShadePacket : public testing::TestWithParam<Shading> {
     std::memset(static_cast<void*>(output_.get()), 0x77, sizeof(Output));
   }
 
-  FrameRecord frame_{};
+  FrameHead frame_{};
   Packet<8> packet_{};
   std::uint32_t ray_at_[8][8] = {};
   std::unique_ptr<Output> output_;
 };
 
-TEST_P(ShadePacket, WritesItsPixelsAndNoOther) {
+TEST_P(ShadeHits, PacketWritesItsPixelsAndNoOther) {
   WorkCounters work;
-  shade_packet<Lanes<4>>(frame_, packet_, 8, 4, *output_, work);
   const bool simple = GetParam() == Shading::kSimple;
-  EXPECT_EQ(work[Work::kShadedSimpleGroup], simple ? 16u : 0u);
-  EXPECT_EQ(work[Work::kShadedGroup], simple ? 0u : 16u);
+  Hits hits{output_->id, output_->depth, simple ? reinterpret_cast<float*>(output_->color) : nullptr};
+  store_hits<Lanes<4>>(packet_, 8, 4, Layout::kTileWidth, hits, work);
   EXPECT_EQ(work[Work::kDepthGroup], 16u);
   EXPECT_EQ(work[Work::kIdGroup], 16u);
+  shade_hits<Lanes<4>>(frame_, hits, Layout::kTileWidth * Layout::kTileWidth, output_->color, work);
+  EXPECT_EQ(work[Work::kShadedSimpleGroup], simple ? 64u : 0u);
+  EXPECT_EQ(work[Work::kShadedGroup], simple ? 0u : 64u);
   for (std::uint32_t y = 0; y < Layout::kTileWidth; ++y) {
     for (std::uint32_t x = 0; x < Layout::kTileWidth; ++x) {
       const std::uint32_t pixel = y * Layout::kTileWidth + x;
       if (x < 8 || y < 4 || y >= 12) {
-        ASSERT_EQ(output_->color[pixel], 0x77777777u) << x << ", " << y;
         ASSERT_EQ(output_->id[pixel], 0x77777777u) << x << ", " << y;
         continue;
       }
@@ -82,19 +82,18 @@ TEST_P(ShadePacket, WritesItsPixelsAndNoOther) {
   }
 }
 
-TEST_P(ShadePacket, PlanesThatAreOffStayAsTheyAre) {
-  frame_.depth_address = frame_.id_address = 0;
+TEST_P(ShadeHits, PlanesThatAreOffStayAsTheyAre) {
   WorkCounters work;
-  shade_packet<Lanes<4>>(frame_, packet_, 0, 0, *output_, work);
-  EXPECT_EQ(output_->id[0], 0x77777777u);
+  const Hits hits{output_->id, nullptr, nullptr};
+  store_hits<Lanes<4>>(packet_, 0, 0, Layout::kTileWidth, hits, work);
   std::uint32_t depth_bits = 0;
   std::memcpy(&depth_bits, &output_->depth[0], sizeof(depth_bits));
   EXPECT_EQ(depth_bits, 0x77777777u);
-  EXPECT_EQ(output_->color[0], 0x12345678u);
-  EXPECT_EQ(work[Work::kDepthGroup] + work[Work::kIdGroup], 0u);
+  EXPECT_EQ(output_->color[0], 0x77777777u);
+  EXPECT_EQ(work[Work::kDepthGroup], 0u);
 }
 
-INSTANTIATE_TEST_SUITE_P(Both, ShadePacket, testing::Values(Shading::kNone, Shading::kSimple),
+INSTANTIATE_TEST_SUITE_P(Both, ShadeHits, testing::Values(Shading::kNone, Shading::kSimple),
                          [](const testing::TestParamInfo<Shading>& tested) {
                            return tested.param == Shading::kNone ? std::string("None") : std::string("Simple");
                          });

@@ -6,6 +6,7 @@
 #include <cstddef>
 #include <cstdint>
 #include <string>
+#include <string_view>
 #include <vector>
 
 namespace gridiron::test {
@@ -53,9 +54,9 @@ TYPED_TEST(LayoutTest, BuffersHoldWhatTheirNamesSay) {
   EXPECT_EQ(TypeParam::kTileWidth % TypeParam::kPacketWidth, 0u);
   // A run of triangles starts anywhere on 16 bytes of a congruence of 32.
   constexpr std::size_t kRunBytes = TypeParam::kTrianglesPerBuffer * kTriangleRecordBytes + 16;
-  EXPECT_GE(sizeof(typename Store::TriangleBuffer), kRunBytes);
+  EXPECT_GE(sizeof(typename Store::EngineStore::TriangleBuffer), kRunBytes);
   constexpr std::size_t kCells = TypeParam::kMaxMacroWidth * TypeParam::kMaxMacroWidth * TypeParam::kMaxMacroWidth;
-  EXPECT_GE(sizeof(typename Store::CellBlock), kCells * sizeof(CellRecord));
+  EXPECT_GE(sizeof(typename Store::EngineStore::CellBlock), kCells * sizeof(CellRecord));
   EXPECT_EQ(TypeParam::kMailboxSlots & (TypeParam::kMailboxSlots - 1), 0u) << "a power of two";
 }
 
@@ -84,11 +85,17 @@ TEST(Layouts, AreAsLargeAsTheirNames) {
 
 // The README and users of the 256 KB layout count on these places.
 TEST(Layouts, TheUsualMapStays) {
-  using Store = LocalStore<StoreLayout256K<8>>;
-  EXPECT_EQ(offsetof(Store, table), 640u);
-  EXPECT_EQ(offsetof(Store, triangles), 50'816u);
-  EXPECT_EQ(offsetof(Store, output), 93'440u);
-  EXPECT_EQ(sizeof(Store), 118'016u);
+  const auto offset_of = [](std::string_view wanted) {
+    std::size_t found = ~std::size_t{0};
+    for_each_region<StoreLayout256K<8>>([&](std::string_view name, std::size_t offset, std::size_t) {
+      if (name == wanted) found = offset;
+    });
+    return found;
+  };
+  EXPECT_EQ(offset_of("macro_table"), 640u);
+  EXPECT_EQ(offset_of("triangles"), 50'816u);
+  EXPECT_EQ(offset_of("output"), 93'440u);
+  EXPECT_EQ(sizeof(LocalStore<StoreLayout256K<8>>), 118'016u);
 }
 
 }  // namespace

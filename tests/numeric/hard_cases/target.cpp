@@ -271,7 +271,7 @@ void check_steps(const FrameRecord& frame, const PipelineWay& way, const sim::Wo
   const bool is_exact = frame.accuracy == static_cast<std::uint32_t>(Accuracy::kExact);
   const std::uint64_t passes_each = (only_rays ? std::min<std::uint64_t>(6, rays) : rays) * 2 + (is_exact ? rays : 0);
   const std::uint64_t passes = count(Work::kPacketStart);
-  const GridRecord& grid = frame.grid;
+  const GridRecord& grid = frame.engine.grid;
   const std::uint32_t* const macro = grid.macro_cell_count;
   const std::uint64_t macro_cells = std::uint64_t{macro[0]} * macro[1] * macro[2];
   const std::uint64_t m = grid.macro_width;

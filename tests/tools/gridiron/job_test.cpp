@@ -107,7 +107,7 @@ TEST(Job, NamesWhatLiesInIt) {
     EXPECT_EQ(record.width, job.width);
     EXPECT_EQ(record.tiles_x * record.tiles_y, job.tile_count);
     for (const std::uint64_t part :
-         {record.macro_table_address, record.cell_blocks_address, record.triangles_address}) {
+         {record.engine.macro_table_address, record.engine.cell_blocks_address, record.engine.triangles_address}) {
       EXPECT_TRUE(lies_in(part, kLineBytes, job.image_address, job.image_address + job.image_bytes));
     }
     const std::uint64_t head = sizeof(FrameResult) + job.tile_count * sizeof(port::TileResult);
@@ -294,7 +294,8 @@ TEST(Job, DamageIsFoundWithItsPlace) {
     return damaged;
   };
   const std::size_t section = 4096 + record_at<ImageHeader>(whole, 4096).section_table_offset_bytes;
-  const std::size_t grid = 256 + offsetof(FrameRecord, grid), bytes = offsetof(SectionEntry, section_bytes);
+  const std::size_t grid = 256 + (sizeof(FrameHead) + offsetof(GridFrame, grid)),
+                    bytes = offsetof(SectionEntry, section_bytes);
   expect_refused(flipped(grid + 3), grid,
                  "the grid is not that of the scene image; the job's check_value differs too\n");
   expect_refused(
@@ -365,13 +366,16 @@ TEST(Job, DamageIsFoundWithItsPlace) {
   });
   expect_wrong(offsetof(Job, tile_count), [](Job& job, Record&) { ++job.tile_count; });
   expect_wrong(offsetof(Job, effects), [](Job& job, Record&) { job.effects = 1; });
-  expect_wrong(256 + offsetof(Record, magic), [](Job&, Record& record) { record.magic ^= 1; });
-  expect_wrong(256 + offsetof(Record, width), [](Job&, Record& record) { record.tile_width = 0; });
-  expect_wrong(256 + offsetof(Record, tiles_x), [](Job&, Record& record) { ++record.tiles_x; });
-  expect_wrong(256 + offsetof(Record, macro_table_address), [](Job&, Record& record) { ++record.triangles_address; });
-  expect_wrong(256 + offsetof(Record, grid), [](Job&, Record& record) { ++record.grid.reference_count; });
-  expect_wrong(256 + offsetof(Record, effects_address), [](Job&, Record& record) { record.effects_address = kBase; });
-  expect_wrong(256 + offsetof(Record, shading), [](Job&, Record& record) { record.shading = 2; });
+  expect_wrong(256 + offsetof(FrameHead, magic), [](Job&, Record& record) { record.magic ^= 1; });
+  expect_wrong(256 + offsetof(FrameHead, width), [](Job&, Record& record) { record.tile_width = 0; });
+  expect_wrong(256 + offsetof(FrameHead, tiles_x), [](Job&, Record& record) { ++record.tiles_x; });
+  expect_wrong(256 + (sizeof(FrameHead) + offsetof(GridFrame, macro_table_address)),
+               [](Job&, Record& record) { ++record.engine.triangles_address; });
+  expect_wrong(256 + (sizeof(FrameHead) + offsetof(GridFrame, grid)),
+               [](Job&, Record& record) { ++record.engine.grid.reference_count; });
+  expect_wrong(256 + offsetof(FrameHead, effects_address),
+               [](Job&, Record& record) { record.effects_address = kBase; });
+  expect_wrong(256 + offsetof(FrameHead, shading), [](Job&, Record& record) { record.shading = 2; });
 }
 
 TEST(Result, DamageIsFoundWithItsPlace) {

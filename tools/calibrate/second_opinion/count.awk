@@ -20,7 +20,7 @@ BEGIN {
     dense_units[part[1]] = part[2]
   }
   # What the frame with planes stands for, and no other; what the compact one is for; the exact decisions.
-  of_planes["hit_setup"] = of_planes["hit_half"] = of_planes["depth_group"] = of_planes["id_group"] = 1
+  of_planes["hit_setup"] = of_planes["hit_half"] = of_planes["depth_group"] = 1
   of_lattice["lattice_triangle"] = of_lattice["cell_bound_step"] = 1
   of_decisions["exact_sign"] = of_decisions["exact_distance"] = of_decisions["exact_order"] = 1
 }

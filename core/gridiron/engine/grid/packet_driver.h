@@ -10,6 +10,7 @@
 #include <gridiron/dma/transfers.h>
 #include <gridiron/engine/grid/footprint.h>
 #include <gridiron/engine/grid/frustum.h>
+#include <gridiron/engine/grid/grid_store.h>
 #include <gridiron/engine/grid/reach.h>
 #include <gridiron/engine/grid/slice_walk.h>
 #include <gridiron/engine/grid/triangle_run.h>
@@ -37,12 +38,12 @@ class PacketDriver {
       : store_(store),
         transfers_(transfers),
         frustum_(frustum),
-        macro_ring_(store.frame.macro_depth),
-        triangle_ring_(store.frame.triangle_depth) {}
+        macro_ring_(store.frame.engine.macro_depth),
+        triangle_ring_(store.frame.engine.triangle_depth) {}
 
   [[nodiscard]] Status run() {
     store_.work.charge_to(Work::kPacketStart);
-    macro_walk_.begin(store_.frame.grid, frustum_);
+    macro_walk_.begin(store_.frame.engine.grid, frustum_);
     reach_ = reaches_.template update<L>(store_.packet, StorePacket::kAllSubpackets, store_.work);
     for (;;) {
       while (!triangle_ring_.full() && !cells_done_) GRIDIRON_TRY(fetch_next_run());
@@ -53,7 +54,7 @@ class PacketDriver {
   }
 
  private:
-  using StorePacket = typename Store::StorePacket;
+  using StorePacket = typename Store::EyeStore;
   static constexpr std::uint32_t kRunTriangles = Layout::kTrianglesPerBuffer;
 
   struct TriangleRun {
@@ -84,12 +85,12 @@ class PacketDriver {
     runs_[slot] = {count, place.first_byte, cell_.entry, touching_};
     cell_.first_triangle += count;
     cell_.triangle_count -= count;
-    return transfers_.get(store_.triangles[slot].bytes + (place.first_byte - place.slack), place.begin, place.bytes,
-                          static_cast<std::uint8_t>(kFirstTriangleTag + slot));
+    return transfers_.get(store_.engine.triangles[slot].bytes + (place.first_byte - place.slack), place.begin,
+                          place.bytes, static_cast<std::uint8_t>(kFirstTriangleTag + slot));
   }
 
   [[nodiscard]] bool find_next_cell() {
-    const std::byte* const block = store_.cell_blocks[macro_ring_.front()].bytes;
+    const std::byte* const block = store_.engine.cell_blocks[macro_ring_.front()].bytes;
     if (is_on_lattice(store_.frame)) {
       return cell_walk_.next(frustum_, reinterpret_cast<const CellBound*>(block), reach_, cell_, store_.work);
     }
@@ -109,7 +110,7 @@ class PacketDriver {
     const std::uint32_t slot = macro_ring_.front();
     GRIDIRON_TRY(transfers_.wait(static_cast<std::uint8_t>(kFirstMacroTag + slot)));
     store_.work.add(Work::kMacroCellVisit);
-    cell_walk_.begin(store_.frame.grid, frustum_, visits_[slot]);
+    cell_walk_.begin(store_.frame.engine.grid, frustum_, visits_[slot]);
     entered_ = true;
     walking_ = true;
     return Status::kOk;
@@ -117,12 +118,12 @@ class PacketDriver {
 
   // Starts the get of the next macrocell's block, or sets macro_cells_done_.
   [[nodiscard]] Status fetch_next_macro_cell() {
-    const bool skip_empty = (store_.frame.techniques & kUseEmptySkip) != 0;
+    const bool skip_empty = (store_.frame.engine.techniques & kUseEmptySkip) != 0;
     MacroVisit visit;
-    WalkStep step = macro_walk_.next(frustum_, store_.table, reach_, skip_empty, visit, store_.work);
+    WalkStep step = macro_walk_.next(frustum_, store_.engine.table, reach_, skip_empty, visit, store_.work);
     while (step == WalkStep::kNeedsChunk) {
-      GRIDIRON_TRY(fetch_chunk(macro_walk_.needed_chunk()));
-      step = macro_walk_.next(frustum_, store_.table, reach_, skip_empty, visit, store_.work);
+      GRIDIRON_TRY(fetch_chunk(store_, transfers_, macro_walk_.needed_chunk()));
+      step = macro_walk_.next(frustum_, store_.engine.table, reach_, skip_empty, visit, store_.work);
     }
     if (step == WalkStep::kDone) {
       macro_cells_done_ = true;
@@ -131,25 +132,15 @@ class PacketDriver {
     store_.work.charge_to(Work::kMacroCellVisit);
     const std::uint32_t slot = macro_ring_.push();
     visits_[slot] = visit;
-    const std::uint32_t block_bytes = store_.frame.grid.cell_block_bytes;
-    const MainAddress address{store_.frame.cell_blocks_address + std::uint64_t{visit.block} * block_bytes};
-    return transfers_.get(store_.cell_blocks[slot].bytes, address, block_bytes,
+    const std::uint32_t block_bytes = store_.frame.engine.grid.cell_block_bytes;
+    const MainAddress address{store_.frame.engine.cell_blocks_address + std::uint64_t{visit.block} * block_bytes};
+    return transfers_.get(store_.engine.cell_blocks[slot].bytes, address, block_bytes,
                           static_cast<std::uint8_t>(kFirstMacroTag + slot));
-  }
-
-  [[nodiscard]] Status fetch_chunk(std::uint32_t chunk) {
-    using Table = MacroTableWindow<Layout::kTableEntries>;
-    const std::uint32_t slot = Table::slot_of(chunk);
-    const MainAddress address{store_.frame.macro_table_address + std::uint64_t{chunk} * kLineBytes};
-    GRIDIRON_TRY(transfers_.get(store_.table.entries + slot * Table::kChunkEntries, address, kLineBytes, kSetupTag));
-    GRIDIRON_TRY(transfers_.wait(kSetupTag));
-    store_.table.chunk_of_slot[slot] = chunk;
-    return Status::kOk;
   }
 
   // Subpackets with a ray that has hit nothing in front of a run's cell yet; where the cell is not, squares of them.
   [[nodiscard]] SubpacketSet open_subpackets(const TriangleRun& run) {
-    if ((store_.frame.techniques & kUseSubpackets) == 0) return StorePacket::kAllSubpackets;
+    if ((store_.frame.engine.techniques & kUseSubpackets) == 0) return StorePacket::kAllSubpackets;
     if constexpr (StorePacket::kSquareCount >= 4) {
       return reaches_.open(frustum_, run.entry, run.touching, store_.work);
     } else {
@@ -160,7 +151,7 @@ class PacketDriver {
   // Squares of subpackets that may touch a cell and have a ray that has hit nothing in front of it yet.
   [[nodiscard]] std::uint32_t squares_that_see(const CellVisit& cell) {
     constexpr std::uint32_t kAllSquares = (1u << StorePacket::kSquareCount) - 1u;
-    if ((store_.frame.techniques & kUseSubpackets) == 0) return kAllSquares;
+    if ((store_.frame.engine.techniques & kUseSubpackets) == 0) return kAllSquares;
     const std::uint32_t open = reaches_.open_squares(frustum_, cell.entry, store_.work);
     if (open == 0) return 0;
     return squares_touching<L>(store_.packet, frustum_, Slab{cell.entry, cell.exit}, cell.u, cell.v, open, store_.work);
@@ -178,7 +169,7 @@ class PacketDriver {
       SubpacketSet changed = 0;
       // The other open subpackets are tested too, so that no triangle comes again for them from a later cell.
       if ((open & subpackets_of_squares(run.touching)) != 0) {
-        changed = test_run(store_.triangles[slot].bytes, run.first_byte, run.count, open);
+        changed = test_run(store_.engine.triangles[slot].bytes, run.first_byte, run.count, open);
       }
       if (changed != 0) reach_ = reaches_.template update<L>(store_.packet, changed, store_.work);
     }
@@ -199,15 +190,15 @@ class PacketDriver {
     const auto* triangles = reinterpret_cast<const VertexTriangle*>(records);
     if (is_on_lattice(store_.frame)) {
       store_.work.add(Work::kLatticeTriangle, count);
-      triangles = spread_lattice_run(store_.frame.grid.lattice, buffer, first_byte, count);
+      triangles = spread_lattice_run(store_.frame.engine.grid.lattice, buffer, first_byte, count);
     }
     return facing ? test_each<true>(triangles, count, open) : test_each<false>(triangles, count, open);
   }
 
   template <bool kWantFacing>
   [[nodiscard]] SubpacketSet test_each(const VertexTriangle* triangles, std::uint32_t count, SubpacketSet wanted) {
-    const Culling culling{.corner_rays = (store_.frame.techniques & kUseCornerCulling) != 0,
-                          .subpackets = (store_.frame.techniques & kUseSubpackets) != 0};
+    const Culling culling{.corner_rays = (store_.frame.engine.techniques & kUseCornerCulling) != 0,
+                          .subpackets = (store_.frame.engine.techniques & kUseSubpackets) != 0};
     OpenTriangle open[kRunTriangles];
     const std::uint32_t open_count = keep_untested(triangles, count, wanted, culling, open);
     return intersect_standard_batch<L, kWantFacing>(store_.packet, open, open_count, culling, store_.work);
@@ -224,12 +215,12 @@ class PacketDriver {
       open_count += open_triangles<L>(store_.packet, triangles + first, in_batch, wanted, culling, open + open_count,
                                       store_.work);
     }
-    if ((store_.frame.techniques & kUseMailbox) == 0) return open_count;
+    if ((store_.frame.engine.techniques & kUseMailbox) == 0) return open_count;
     store_.work.add(Work::kMailboxProbe, open_count);
     std::uint32_t untested_count = 0;
     for (std::uint32_t i = 0; i < open_count; ++i) {
       open[untested_count] = open[i];
-      const SubpacketSet untested = store_.mailbox.untested(open[i].triangle->triangle_id, open[i].subpackets);
+      const SubpacketSet untested = store_.engine.mailbox.untested(open[i].triangle->triangle_id, open[i].subpackets);
       open[untested_count].subpackets = untested;
       untested_count += untested != 0 ? 1u : 0u;
     }
@@ -238,14 +229,14 @@ class PacketDriver {
 
   [[nodiscard]] SubpacketSet test_each_projection(const ProjectionTriangle* triangles, std::uint32_t count,
                                                   SubpacketSet wanted, bool want_facing) {
-    const bool use_mailbox = (store_.frame.techniques & kUseMailbox) != 0;
-    const bool use_corner_rays = (store_.frame.techniques & kUseCornerCulling) != 0;
+    const bool use_mailbox = (store_.frame.engine.techniques & kUseMailbox) != 0;
+    const bool use_corner_rays = (store_.frame.engine.techniques & kUseCornerCulling) != 0;
     SubpacketSet changed = 0;
     for (std::uint32_t i = 0; i < count; ++i) {
       SubpacketSet untested = wanted;
       if (use_mailbox) {
         store_.work.add(Work::kMailboxProbe);
-        untested = store_.mailbox.untested(triangles[i].triangle_id, wanted);
+        untested = store_.engine.mailbox.untested(triangles[i].triangle_id, wanted);
       }
       store_.work.charge_to(Work::kTriangleBatch);
       if (untested == 0) continue;

@@ -18,7 +18,7 @@ struct RunPlace {
   std::uint32_t slack;       ///< bytes of the transfer before it
 };
 
-[[nodiscard]] GRIDIRON_INLINE bool is_on_lattice(const FrameRecord& frame) {
+[[nodiscard]] GRIDIRON_INLINE bool is_on_lattice(const FrameHead& frame) {
   return frame.accuracy == static_cast<std::uint32_t>(Accuracy::kCompact);
 }
 
@@ -35,7 +35,7 @@ struct RunPlace {
     slack = static_cast<std::uint32_t>(offset % kTransferStep);
     bytes = (slack + bytes / 2 + (kTransferStep - 1)) & ~(kTransferStep - 1);
   }
-  const std::uint64_t begin = frame.triangles_address + offset;
+  const std::uint64_t begin = frame.engine.triangles_address + offset;
   const std::uint32_t first_byte = static_cast<std::uint32_t>(begin % kPortableCongruenceBytes);
   return {MainAddress{begin - slack}, bytes, first_byte, slack};
 }

@@ -8,6 +8,7 @@
 #include <gridiron/base/records.h>
 #include <gridiron/dma/tags.h>
 #include <gridiron/dma/transfers.h>
+#include <gridiron/engine/grid/grid_store.h>
 #include <gridiron/engine/grid/slice_walk.h>
 #include <gridiron/engine/grid/triangle_run.h>
 #include <gridiron/engine/grid/walk.h>
@@ -15,7 +16,6 @@
 #include <gridiron/ray/intersect_rays.h>
 #include <gridiron/ray/lattice_run.h>
 #include <gridiron/ray/walk_rays.h>
-#include <gridiron/shade/effect_store.h>
 
 #include <cstdint>
 
@@ -38,7 +38,9 @@ class WalkDriver {
   ///              finish(rays, count, purpose) is given their answers: id is kNoTriangle where nothing is hit. Which
   ///              jobs finish first depends on the number of walks; what they answer does not.
   template <class Jobs>
-  [[nodiscard]] Status run(RayQuestion question, Jobs& jobs) {
+  [[nodiscard]] Status run(const RayQuestion& asked, Jobs& jobs) {
+    surfaces_ = asked.surfaces;
+    const Question question{asked.any_hit, asked.trusts_floats};
     const std::uint32_t walk_count = store_.frame.walk_depth;
     std::uint32_t under_way = 0;
     bool has_more = true;
@@ -70,7 +72,13 @@ class WalkDriver {
   }
 
  private:
-  [[nodiscard]] Walk& walk_of(std::uint32_t i) { return store_.wave.walks[i]; }
+  // What stays in registers of a RayQuestion.
+  struct Question {
+    bool any_hit;
+    bool trusts_floats;
+  };
+
+  [[nodiscard]] Walk& walk_of(std::uint32_t i) { return store_.wave.engine.walks[i]; }
 
   template <class Jobs>
   [[nodiscard]] bool start(Walk& walk, Jobs& jobs) {
@@ -83,7 +91,7 @@ class WalkDriver {
   }
 
   // Lets a walk go on until it waits for a transfer, or is done.
-  [[nodiscard]] GRIDIRON_OUTLINE Status go_on(std::uint32_t i, RayQuestion question) {
+  [[nodiscard]] GRIDIRON_OUTLINE Status go_on(std::uint32_t i, Question question) {
     Walk& walk = walk_of(i);
     for (;;) {
       switch (walk.state) {
@@ -92,14 +100,14 @@ class WalkDriver {
           return Status::kOk;
         case WalkState::kNextPass:
           store_.work.charge_to(Work::kWalkPass);
-          walk.active = take_walk_pass<L>(store_.frame.grid, walk.rays, walk.waiting, walk.shaft, store_.work);
+          walk.active = take_walk_pass<L>(store_.frame.engine.grid, walk.rays, walk.waiting, walk.shaft, store_.work);
           if (walk.active == 0) {
             walk.state = WalkState::kDone;
             return Status::kOk;
           }
           fill_words(walk.mailbox, kNoTriangle);
           walk.reach = walk.shaft.reach<L>();
-          walk.macro_walk.begin(store_.frame.grid, Bound{walk.shaft});
+          walk.macro_walk.begin(store_.frame.engine.grid, Bound{walk.shaft});
           walk.state = WalkState::kNextMacro;
           break;
         case WalkState::kNextMacro:
@@ -110,7 +118,7 @@ class WalkDriver {
           store_.work.charge_to(Work::kMacroCellVisit);
           GRIDIRON_TRY(transfers_.wait(static_cast<std::uint8_t>(kFirstMacroTag + i)));
           store_.work.add(Work::kMacroCellVisit);
-          walk.cell_walk.begin(store_.frame.grid, Bound{walk.shaft}, walk.visit);
+          walk.cell_walk.begin(store_.frame.engine.grid, Bound{walk.shaft}, walk.visit);
           walk.cell.triangle_count = 0;
           walk.state = WalkState::kNextCell;
           break;
@@ -131,7 +139,7 @@ class WalkDriver {
     Walk& walk = walk_of(i);
     WalkStep step = next_macro_cell(walk);
     while (step == WalkStep::kNeedsChunk) {
-      GRIDIRON_TRY(fetch_chunk(walk.macro_walk.needed_chunk()));
+      GRIDIRON_TRY(fetch_chunk(store_, transfers_, walk.macro_walk.needed_chunk()));
       step = next_macro_cell(walk);
     }
     if (step == WalkStep::kDone) {
@@ -139,25 +147,15 @@ class WalkDriver {
       return Status::kOk;
     }
     store_.work.charge_to(Work::kMacroCellVisit);
-    const std::uint32_t block_bytes = store_.frame.grid.cell_block_bytes;
-    const MainAddress address{store_.frame.cell_blocks_address + std::uint64_t{walk.visit.block} * block_bytes};
+    const std::uint32_t block_bytes = store_.frame.engine.grid.cell_block_bytes;
+    const MainAddress address{store_.frame.engine.cell_blocks_address + std::uint64_t{walk.visit.block} * block_bytes};
     walk.state = WalkState::kHasBlock;
-    return transfers_.get(store_.cell_blocks[i].bytes, address, block_bytes,
+    return transfers_.get(store_.engine.cell_blocks[i].bytes, address, block_bytes,
                           static_cast<std::uint8_t>(kFirstMacroTag + i));
   }
 
   [[nodiscard]] WalkStep next_macro_cell(Walk& walk) {
-    return walk.macro_walk.next(Bound{walk.shaft}, store_.table, walk.reach, true, walk.visit, store_.work);
-  }
-
-  [[nodiscard]] Status fetch_chunk(std::uint32_t chunk) {
-    using Table = decltype(store_.table);
-    const std::uint32_t slot = Table::slot_of(chunk);
-    const MainAddress address{store_.frame.macro_table_address + std::uint64_t{chunk} * kLineBytes};
-    GRIDIRON_TRY(transfers_.get(store_.table.entries + slot * Table::kChunkEntries, address, kLineBytes, kSetupTag));
-    GRIDIRON_TRY(transfers_.wait(kSetupTag));
-    store_.table.chunk_of_slot[slot] = chunk;
-    return Status::kOk;
+    return walk.macro_walk.next(Bound{walk.shaft}, store_.engine.table, walk.reach, true, walk.visit, store_.work);
   }
 
   // Starts the get of the next triangles, or leaves the macrocell.
@@ -166,7 +164,7 @@ class WalkDriver {
     const Slab entry{walk.cell.entry, walk.cell.entry};
     if (walk.cell.triangle_count != 0 && walk.shaft.beyond(entry, walk.reach)) walk.cell.triangle_count = 0;
     if (walk.cell.triangle_count == 0) {
-      const std::byte* const block = store_.cell_blocks[i].bytes;
+      const std::byte* const block = store_.engine.cell_blocks[i].bytes;
       const auto next_cell = [&](const auto* cells) {
         return walk.cell_walk.next(Bound{walk.shaft}, cells, walk.reach, walk.cell, store_.work);
       };
@@ -192,20 +190,20 @@ class WalkDriver {
     walk.cell.first_triangle += count;
     walk.cell.triangle_count -= count;
     walk.state = WalkState::kHasRun;
-    return transfers_.get(store_.triangles[i].bytes + (place.first_byte - place.slack), place.begin, place.bytes,
+    return transfers_.get(store_.engine.triangles[i].bytes + (place.first_byte - place.slack), place.begin, place.bytes,
                           static_cast<std::uint8_t>(kFirstTriangleTag + i));
   }
 
   // Holds the run that has arrived against the rays that still look.
-  [[nodiscard]] Status test_run(std::uint32_t i, RayQuestion question) {
+  [[nodiscard]] Status test_run(std::uint32_t i, Question question) {
     Walk& walk = walk_of(i);
     store_.work.add(Work::kTriangleBatch);
     store_.work.charge_to(Work::kTriangleBatch);
-    std::byte* const buffer = store_.triangles[i].bytes;
+    std::byte* const buffer = store_.engine.triangles[i].bytes;
     const auto* triangles = reinterpret_cast<const VertexTriangle*>(buffer + walk.run_first_byte);
     if (is_on_lattice(store_.frame)) {
       store_.work.add(Work::kLatticeTriangle, walk.run_count);
-      triangles = spread_lattice_run(store_.frame.grid.lattice, buffer, walk.run_first_byte, walk.run_count);
+      triangles = spread_lattice_run(store_.frame.engine.grid.lattice, buffer, walk.run_first_byte, walk.run_count);
     }
     bool has_changed = false;
     for (std::uint32_t index = 0; index < walk.run_count && walk.active != 0; ++index) {
@@ -263,9 +261,8 @@ class WalkDriver {
                                                   const VertexTriangle& triangle, bool& is_first) {
     is_first = triangle.triangle_id < rays.id[ray];
     if (store_.frame.accuracy != static_cast<std::uint32_t>(Accuracy::kExact)) return Status::kOk;
-    const MainAddress address{store_.frame.image_address + store_.effects.scene.surfaces_offset_bytes +
-                              std::uint64_t{rays.id[ray]} * sizeof(SurfaceRecord)};
-    std::byte* const place = store_.effects.surface_bytes + address.value % kPortableCongruenceBytes;
+    const MainAddress address{surfaces_.value + std::uint64_t{rays.id[ray]} * sizeof(SurfaceRecord)};
+    std::byte* const place = store_.wave.engine.surface_bytes + address.value % kPortableCongruenceBytes;
     GRIDIRON_TRY(transfers_.get(place, address, sizeof(SurfaceRecord), kSetupTag));
     GRIDIRON_TRY(transfers_.wait(kSetupTag));
     const auto& surface = *reinterpret_cast<const SurfaceRecord*>(place);
@@ -285,6 +282,7 @@ class WalkDriver {
 
   Store& store_;
   Transfers<P>& transfers_;
+  MainAddress surfaces_{};
 };
 
 }  // namespace gridiron

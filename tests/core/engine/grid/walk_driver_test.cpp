@@ -28,7 +28,7 @@ namespace {
 
 using Layout = EffectLayout256K<kAllEffects, 8>;
 using Store = LocalStore<Layout>;
-using Table = decltype(Store::table);
+using Table = decltype(Store::EngineStore::table);
 
 constexpr std::uint64_t kImage = 4096;
 constexpr std::uint32_t kTraced = 0xFFFFFFFEu;  // an id that no walk gives
@@ -159,28 +159,26 @@ void set_up(const WalkScene& scene, std::uint32_t walks, Store& store) {
   std::memset(static_cast<void*>(&store), 0xC3, sizeof(store));
   store.frame = {};
   store.work = {};
-  store.frame.grid = scene.view.grid;
+  store.frame.engine.grid = scene.view.grid;
   store.frame.accuracy = static_cast<std::uint32_t>(scene.accuracy);
   store.frame.walk_depth = walks;
-  store.frame.image_address = kImage;
-  store.frame.macro_table_address = kImage + scene.view.macro_table_offset_bytes;
-  store.frame.cell_blocks_address = kImage + scene.view.cell_blocks_offset_bytes;
-  store.frame.triangles_address = kImage + scene.view.triangles_offset_bytes;
-  store.effects.scene = scene.view.effects;
-  store.table.forget();
+  store.frame.engine.macro_table_address = kImage + scene.view.macro_table_offset_bytes;
+  store.frame.engine.cell_blocks_address = kImage + scene.view.cell_blocks_offset_bytes;
+  store.frame.engine.triangles_address = kImage + scene.view.triangles_offset_bytes;
+  store.engine.table.forget();
   if (!scene.table_fits()) return;
   const std::uint32_t chunks = (scene.macro_cells() + 32 * Table::kChunkEntries - 1) / (32 * Table::kChunkEntries);
-  std::memcpy(store.table.entries, scene.image.bytes().data() + scene.view.macro_table_offset_bytes,
+  std::memcpy(store.engine.table.entries, scene.image.bytes().data() + scene.view.macro_table_offset_bytes,
               std::size_t{chunks} * kLineBytes);
-  for (std::uint32_t chunk = 0; chunk < chunks; ++chunk) store.table.chunk_of_slot[chunk] = chunk;
+  for (std::uint32_t chunk = 0; chunk < chunks; ++chunk) store.engine.table.chunk_of_slot[chunk] = chunk;
 }
 
-Run finish_run(Store& store, TestPlatform& platform, const std::vector<OracleRay>& rays, bool any_hit,
+Run finish_run(Store& store, TestPlatform& platform, const std::vector<OracleRay>& rays, const RayQuestion& question,
                auto walk_rays_through) {
   Run run;
   Transfers<TestPlatform> transfers(platform, store.work);
   RayJobs jobs(rays);
-  run.status = walk_rays_through(transfers, RayQuestion{any_hit, false}, jobs);
+  run.status = walk_rays_through(transfers, question, jobs);
   run.answers = jobs.answers;
   run.work = store.work;
   run.violation = platform.violation();
@@ -197,17 +195,18 @@ Run trace(const WalkScene& scene, const std::vector<OracleRay>& rays, const RunO
   platform.failing_command = options.failing_command;
   const auto store = std::make_unique<Store>();
   set_up(scene, options.walks, *store);
-  const auto walk = [&](Transfers<TestPlatform>& transfers, RayQuestion question, RayJobs& jobs) {
-    return WalkDriver<L, Store, TestPlatform>(*store, transfers).run(question, jobs);
+  const RayQuestion question{options.any_hit, false, MainAddress{kImage + scene.view.effects.surfaces_offset_bytes}};
+  const auto walk = [&](Transfers<TestPlatform>& transfers, const RayQuestion& asked, RayJobs& jobs) {
+    return WalkDriver<L, Store, TestPlatform>(*store, transfers).run(asked, jobs);
   };
-  Run run = finish_run(*store, platform, rays, options.any_hit, walk);
+  Run run = finish_run(*store, platform, rays, question, walk);
   if (options.failing_command) {
     // What is still on its way can be waited for, and the same store then serves another run.
     EXPECT_EQ(platform.wait(TagMask{~0u}), Status::kOk);
     EXPECT_EQ(platform.pending(), 0u);
     platform.failing_command.reset();
-    if (!scene.table_fits()) store->table.forget();  // as every tile does
-    const Run again = finish_run(*store, platform, rays, options.any_hit, walk);
+    if (!scene.table_fits()) store->engine.table.forget();  // as every tile does
+    const Run again = finish_run(*store, platform, rays, question, walk);
     EXPECT_EQ(again.status, Status::kOk);
     EXPECT_EQ(again.violation, "");
     run.answers = again.answers;

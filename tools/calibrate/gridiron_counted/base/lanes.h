@@ -314,4 +314,11 @@ void fill_words(Counted<T> (&target)[Count], const Value& value) {
   for (std::size_t i = 0; i < Count; i += 4) PipeModel::current().store_quad(target + i, node, i);
 }
 
+/// Four words a load and a store.
+template <std::size_t Count>
+void copy_words(const Counted<std::uint32_t> (&source)[Count], Counted<std::uint32_t> (&target)[Count]) {
+  static_assert(Count % 4 == 0);
+  for (std::size_t i = 0; i < Count; i += 4) Lanes<4>::Int::load(source + i).store(target + i);
+}
+
 }  // namespace gridiron_counted

@@ -1,0 +1,161 @@
+// The grid as an engine: packets of eye rays through slices of macrocells, walks of all other rays.
+// Source: Cho, Kim, Han 2012, sections 4 and 5. Memory: its parts of the local store. Threads: one core.
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <gridiron/base/records.h>
+#include <gridiron/base/work_counters.h>
+#include <gridiron/dma/transfers.h>
+#include <gridiron/engine/grid/frustum.h>
+#include <gridiron/engine/grid/grid_store.h>
+#include <gridiron/engine/grid/packet_driver.h>
+#include <gridiron/engine/grid/walk_driver.h>
+#include <gridiron/platform/contract.h>
+#include <gridiron/ray/camera.h>
+#include <gridiron/ray/hits.h>
+#include <gridiron/ray/packet_hits.h>
+
+#include <cstdint>
+
+namespace gridiron {
+
+/// The grid on one core; see engine/engine.h for what each function promises.
+template <class L, class Store, Platform P>
+class GridCore {
+ public:
+  using Layout = typename Store::Layout;
+
+  GridCore(Store& store, Transfers<P>& transfers) : store_(store), transfers_(transfers) {}
+
+  /// Checks the frame's grid against this store, and fetches the macrocell table where it fits.
+  [[nodiscard]] Status begin() {
+    GRIDIRON_TRY(check_frame());
+    return load_table();
+  }
+
+  void begin_tile() {
+    if (!table_resident_) store_.engine.table.forget();
+  }
+
+  [[nodiscard]] Status trace_eyes(const TileView& view, const Hits& hits) {
+    const FrameHead& frame = store_.frame;
+    for (std::uint32_t y = 0; y < Layout::kTileWidth && view.top + y < frame.height; y += Layout::kPacketWidth) {
+      for (std::uint32_t x = 0; x < Layout::kTileWidth && view.left + x < frame.width; x += Layout::kPacketWidth) {
+        GRIDIRON_TRY(trace_packet(view, x, y));
+        store_hits<L>(store_.packet, x, y, Layout::kTileWidth, hits, store_.work);
+      }
+    }
+    return Status::kOk;
+  }
+
+  template <class Jobs>
+  [[nodiscard]] Status trace(const RayQuestion& question, Jobs& jobs) {
+    return WalkDriver<L, Store, P>(store_, transfers_).run(question, jobs);
+  }
+
+ private:
+  using StorePacket = typename Store::EyeStore;
+  using Table = MacroTableWindow<Layout::kTableEntries>;
+
+  // Generates a packet and traces it. Distances that nobody asks for are estimated; rays for which that leaves open
+  // what they hit are traced again, with exact ones. Where ties are to be broken, a ray of which one still is open goes
+  // alone: then its nearest triangle stays at hand.
+  [[nodiscard]] Status trace_packet(const TileView& view, std::uint32_t x, std::uint32_t y) {
+    RaySet<StorePacket::kRayCount> waiting;
+    generate_packet<L>(store_.frame, view.left + x, view.top + y, store_.packet, waiting, store_.work, view.dx,
+                       view.dy);
+    store_.work.charge_to(Work::kPacketStart);
+    GRIDIRON_TRY(trace_rays(waiting));
+    if (!take_unsure_rays(store_.packet, store_.frame.t_far, waiting)) [[likely]]
+      return Status::kOk;
+    GRIDIRON_TRY(trace_rays(waiting));
+    if (!store_.packet.breaks_ties) return Status::kOk;
+    RaySet<StorePacket::kRayCount> open;
+    if (!take_unsure_rays(store_.packet, store_.frame.t_far, open)) return Status::kOk;
+    for (std::uint32_t ray = 0; ray < StorePacket::kRayCount; ++ray) {
+      if (!open.contains(ray)) continue;
+      waiting.clear();
+      waiting.insert(ray);
+      GRIDIRON_TRY(trace_rays(waiting));
+    }
+    return Status::kOk;
+  }
+
+  // Takes rays through the grid, once per march axis and sign that they have.
+  [[nodiscard]] GRIDIRON_OUTLINE Status trace_rays(RaySet<StorePacket::kRayCount>& waiting) {
+    store_.engine.mailbox.clear();
+    Frustum frustum;
+    while (take_pass<L>(store_.frame.engine.grid, waiting, store_.packet, frustum, store_.work)) {
+      PacketDriver<L, Store, P> driver(store_, transfers_, frustum);
+      GRIDIRON_TRY(driver.run());
+      store_.work.charge_to(Work::kPacketStart);
+      // The next pass has other rays: what this one has seen says nothing about them.
+      store_.engine.mailbox.clear();
+    }
+    return Status::kOk;
+  }
+
+  // The scene image was validated when it was loaded; here the frame is held against what this store can do.
+  [[nodiscard]] Status check_frame() const {
+    const FrameRecord& frame = store_.frame;
+    const auto in_range = [](std::uint32_t depth, std::uint32_t most) { return depth >= 1 && depth <= most; };
+    if (!in_range(frame.engine.macro_depth, Layout::kMaxMacroDepth) ||
+        !in_range(frame.engine.triangle_depth, Layout::kMaxTriangleDepth)) {
+      return Status::kUnsupportedFrame;
+    }
+    const GridRecord& grid = frame.engine.grid;
+    std::uint32_t format = static_cast<std::uint32_t>(TriangleFormat::kVertices);
+    if (frame.accuracy == static_cast<std::uint32_t>(Accuracy::kPaper)) {
+      format = static_cast<std::uint32_t>(TriangleFormat::kProjection);
+    }
+    if (frame.accuracy == static_cast<std::uint32_t>(Accuracy::kCompact)) {
+      format = static_cast<std::uint32_t>(TriangleFormat::kLattice);
+    }
+    if (grid.triangle_format != format) return Status::kUnsupportedImage;
+    if (grid.macro_width == 0 || grid.macro_width > Layout::kMaxMacroWidth ||
+        grid.cell_block_bytes > Store::EngineStore::kCellBlockBytes) {
+      return Status::kUnsupportedImage;
+    }
+    return Status::kOk;
+  }
+
+  [[nodiscard]] Status load_table() {
+    const GridRecord& grid = store_.frame.engine.grid;
+    const std::uint64_t macro_cells =
+        std::uint64_t{grid.macro_cell_count[0]} * grid.macro_cell_count[1] * grid.macro_cell_count[2];
+    const std::uint64_t chunks = (macro_cells + 32 * Table::kChunkEntries - 1) / (32 * Table::kChunkEntries);
+    Table& table = store_.engine.table;
+    table.forget();
+    table_resident_ = chunks <= Table::kChunkCount;
+    if (!table_resident_) return Status::kOk;
+    const std::uint32_t count = static_cast<std::uint32_t>(chunks);
+    GRIDIRON_TRY(transfers_.get(table.entries, MainAddress{store_.frame.engine.macro_table_address}, count * kLineBytes,
+                                kSetupTag));
+    for (std::uint32_t chunk = 0; chunk < count; ++chunk) table.chunk_of_slot[chunk] = chunk;
+    return transfers_.wait(kSetupTag);
+  }
+
+  Store& store_;
+  Transfers<P>& transfers_;
+  bool table_resident_ = false;
+};
+
+/// The grid as a layout names it.
+struct GridEngine {
+  static constexpr std::uint32_t kId = static_cast<std::uint32_t>(EngineId::kGrid);
+  using Record = GridFrame;
+  template <class Layout>
+  using Store = GridStore<Layout>;
+  template <class Layout>
+  using EyeStore = typename GridPacketParts<Layout>::StorePacket;
+  template <class Layout>
+  using RayStore = GridRayStore<Layout>;
+  template <class Layout>
+  static constexpr bool kTracesEyes = kHasPackets<Layout>;
+  template <class Layout>
+  static constexpr std::uint32_t kMaxRayDepth = kWalkCount<Layout>;
+  template <class L, class Store, Platform P>
+  using Core = GridCore<L, Store, P>;
+};
+
+}  // namespace gridiron

@@ -1,0 +1,155 @@
+// The seam between engines: an engine that core does not know renders the grid's frames, effects and all, and the
+// simulated chip runs, counts and replays it. SPDX-License-Identifier: Apache-2.0
+#include <gridiron/render/tile_renderer.h>
+#include <gridiron/sim/core_runner.h>
+#include <gridiron/sim/machine_profile.h>
+#include <gridiron/sim/replay.h>
+#include <gtest/gtest.h>
+
+#include <cstring>
+#include <string>
+#include <utility>
+
+#include "effects/kernel_scene.h"
+#include "engine/brute_force_engine.h"
+#include "scene_text/scene_reader.h"
+#include "support/render_mesh.h"
+#include "support/test_mesh.h"
+
+namespace gridiron::test {
+namespace {
+
+using BruteForceFrame = Frame<BruteForceRecord>;
+
+template <std::uint32_t Effects, std::uint32_t TileWidth>
+struct BruteForceLayout {
+  using Engine = BruteForceEngine;
+  static constexpr std::uint32_t kEffects = Effects;
+  static constexpr std::uint32_t kArenaBytes = 256 * 1024;
+  static constexpr std::uint32_t kCodeBudgetBytes = 92 * 1024;
+  static constexpr std::uint32_t kStackBudgetBytes = 9 * 1024;
+  static constexpr std::uint32_t kTileWidth = TileWidth;
+  static constexpr std::uint32_t kPacketWidth = 8;
+  static constexpr std::uint32_t kMaxOutputDepth = 2;
+  static constexpr std::uint32_t kWaveRays = 64;
+  static constexpr std::uint32_t kMaterialSlots = 8;
+  static constexpr std::uint32_t kLightSlots = 4;
+};
+using GridLayout = EffectLayout256K<kAllEffects, 8>;
+static_assert(kFitsArena<BruteForceLayout<0, 32>> && kFitsArena<BruteForceLayout<kAllEffects, 16>>);
+
+// The grid's frame as this engine's: the same head, and all triangle records of the image.
+BruteForceFrame brute_force_frame(const FrameRecord& grid) {
+  BruteForceFrame frame{};
+  static_cast<FrameHead&>(frame) = grid;
+  frame.engine_id = BruteForceEngine::kId;
+  frame.engine = {grid.engine.triangles_address, grid.engine.grid.reference_count, 0};
+  return frame;
+}
+
+void make_brute_force(FrameRecord& record) {
+  const BruteForceFrame frame = brute_force_frame(record);
+  static_assert(sizeof frame <= sizeof record);
+  std::memcpy(static_cast<void*>(&record), &frame, sizeof frame);
+}
+
+KernelScene everything(tool::SceneDescription& scene, const KernelOptions& options) {
+  scene = tool::read_scene_text(GRIDIRON_SOURCE_DIR "/scenes/everything.nff");
+  return build_kernel_scene(scene, options);
+}
+
+// Edges of tiles lie across both edges of the picture.
+constexpr std::uint32_t kWidth = 37, kHeight = 27;
+
+TEST(BruteForceEngine, RendersEffectsAsTheGridDoes) {
+  tool::SceneDescription scene;
+  KernelOptions options;
+  options.wants_planes = true;
+  KernelScene built = everything(scene, options);
+  ASSERT_EQ(built.status, Status::kOk);
+  const Camera camera = camera_of(scene.view);
+  const KernelPicture grid = render_kernel<GridLayout>(built, camera, kWidth, kHeight, options);
+  ASSERT_EQ(grid.status, Status::kOk) << grid.violation;
+  options.alter = make_brute_force;
+  options.walk_depth = 1;
+  const KernelPicture brute_force =
+      render_kernel<BruteForceLayout<kAllEffects, 16>>(built, camera, kWidth, kHeight, options);
+  ASSERT_EQ(brute_force.status, Status::kOk) << brute_force.violation;
+  EXPECT_EQ(brute_force.color, grid.color);
+  EXPECT_EQ(brute_force.depth, grid.depth);
+  EXPECT_EQ(brute_force.ids, grid.ids);
+  // Shading does the same whoever traces; only the order of some of it is the engine's.
+  for (const Work kind : {Work::kWaveRay, Work::kShadowRay, Work::kSurfacePoint, Work::kQueuedRay, Work::kColorAdded}) {
+    EXPECT_EQ(brute_force.work[kind], grid.work[kind]) << static_cast<int>(kind);
+  }
+}
+
+TEST(BruteForceEngine, FramesOfOtherEnginesAreRefused) {
+  tool::SceneDescription scene;
+  KernelOptions options;
+  KernelScene built = everything(scene, options);
+  const Camera camera = camera_of(scene.view);
+  const auto status_of = [&](auto layout, void (*alter)(FrameRecord&), std::uint32_t walk_depth) {
+    options.alter = alter;
+    options.walk_depth = walk_depth;
+    return render_kernel<decltype(layout)>(built, camera, kWidth, kHeight, options).status;
+  };
+  using BruteForce = BruteForceLayout<kAllEffects, 16>;
+  EXPECT_EQ(status_of(BruteForce{}, nullptr, 1), Status::kUnsupportedFrame);
+  EXPECT_EQ(status_of(GridLayout{}, make_brute_force, 1), Status::kUnsupportedFrame);
+  EXPECT_EQ(status_of(BruteForce{}, make_brute_force, 2), Status::kUnsupportedFrame)
+      << "more groups than it has room for";
+  const auto make_exact = [](FrameRecord& record) {
+    make_brute_force(record);
+    record.accuracy = static_cast<std::uint32_t>(Accuracy::kExact);
+  };
+  EXPECT_EQ(status_of(BruteForce{}, make_exact, 1), Status::kUnsupportedFrame);
+}
+
+// On the simulated chip, every rule checked; counted and replayed like any other program of a core.
+TEST(BruteForceEngine, RunsOnTheSimulatedChip) {
+  using Layout = BruteForceLayout<0, 32>;
+  TestMesh mesh = make_sphere(9, 14, 0.8f);
+  mesh.append(make_random_soup(60, 0.3f, 5));
+  SceneInMemory scene(mesh.view(), {});
+  ASSERT_EQ(scene.status(), Status::kOk);
+  FrameSettings settings;
+  settings.camera.eye = {0.7f, 0.5f, 2.9f};
+  settings.width = 90;
+  settings.height = 70;
+  settings.tile_width = Layout::kTileWidth;
+  for (const Shading shading : {Shading::kSimple, Shading::kNone}) {
+    settings.shading = shading;
+    sim::ChipOptions chip;
+    chip.threads = 3;
+    PreparedFrame frame = scene.prepare(settings, chip);
+    ASSERT_EQ(frame.status(), Status::kOk);
+    ASSERT_EQ(frame.render(chip).status, Status::kOk);
+    const Planes expected = frame.planes();
+    const FrameRecord grid = frame.record();
+    FrameRecord record = grid;
+    make_brute_force(record);
+    frame.set_record(record);
+    const sim::ChipResult result = frame.run(
+        chip, sizeof(LocalStore<Layout>), [](sim::SimCore& core, std::span<std::byte> data, MainAddress address) {
+          auto& store = *::new (static_cast<void*>(data.data())) LocalStore<Layout>;
+          return render_tiles<Lanes<4>>(store, core, address);
+        });
+    ASSERT_EQ(result.status, Status::kOk);
+    EXPECT_TRUE(result.violations.empty());
+    EXPECT_EQ(frame.planes(), expected);
+    const auto count_of = [&](Work kind) { return result.work[static_cast<std::size_t>(kind)]; };
+    EXPECT_EQ(count_of(Work::kTileStart), 9u);
+    EXPECT_GT(count_of(Work::kTriangleSetup), 0u);
+    // One core needs longer than three, and no core waits for cell blocks.
+    const sim::MachineProfile machine = *sim::find_machine_profile("cell-ps3");
+    const sim::FrameTiming one = sim::replay(result.trace, machine, {.core_count = 1});
+    const sim::FrameTiming three = sim::replay(result.trace, machine, {.core_count = 3});
+    EXPECT_GT(one.frame_cycles, 2 * three.frame_cycles);
+    EXPECT_EQ(one.cores[0].dma_wait_cycles[static_cast<std::size_t>(sim::WaitLevel::kMacroCell)], 0.0);
+    EXPECT_GT(one.cores[0].dma_wait_cycles[static_cast<std::size_t>(sim::WaitLevel::kTriangle)], 0.0);
+  }
+}
+
+}  // namespace
+}  // namespace gridiron::test
