@@ -99,12 +99,12 @@ std::uint64_t tiles_across(std::uint32_t pixels, std::uint32_t tile_width) {
   return (std::uint64_t{pixels} + tile_width - 1) / tile_width;
 }
 
-// Every loop of what runs on a core, with its bound for this scene, store and picture.
+// Every loop that no constant bounds of what runs on a core, with its bound for this scene, store and picture.
 Json loops_json(const SceneFacts& facts, const StoreFacts& store) {
   const std::uint64_t tiles =
       tiles_across(facts.width, store.tile_width) * tiles_across(facts.height, store.tile_width);
   Json rows = Json::array();
-  for (const LoopRow& row : loop_facts_of(*facts.worst, facts.grid.macro_width, store, tiles).rows()) {
+  for (const LoopRow& row : loop_facts_of(*facts.worst, facts.grid.macro_width, tiles).rows()) {
     rows.push_back({{"file", std::string(row.file)},
                     {"function", std::string(row.function)},
                     {"loop", std::string(row.loop)},

@@ -15,9 +15,6 @@ namespace {
 std::uint64_t smaller(std::uint64_t a, std::uint64_t b) {
   return std::min(a, b);
 }
-std::uint64_t larger(std::uint64_t a, std::uint64_t b) {
-  return std::max(a, b);
-}
 std::uint64_t parts(std::uint64_t count, std::uint64_t each) {
   return each == 0 ? 0 : (count + each - 1) / each;
 }
@@ -30,26 +27,19 @@ std::vector<LoopRow> LoopFacts::rows() const {
   };
 }
 
-LoopFacts loop_facts_of(const WorstTile& worst, std::uint32_t macro_width, const StoreFacts& store,
-                        std::uint64_t tiles) {
+LoopFacts loop_facts_of(const WorstTile& worst, std::uint32_t macro_width, std::uint64_t tiles) {
   const TileLayout& layout = worst.layout;
   const EffectsRecord& effects = worst.scene.effects;
   LoopFacts facts;
   facts.lanes = layout.lanes;
-  facts.tile_width = layout.tile_width;
-  facts.tile_pixels = facts.tile_width * layout.tile_width;
-  facts.packets_across = parts(layout.tile_width, layout.packet_width);
+  facts.tile_pixels = std::uint64_t{layout.tile_width} * layout.tile_width;
   facts.packet_rays = std::uint64_t{layout.packet_width} * layout.packet_width;
-  facts.subpackets = facts.packet_rays / kSubpacketRays;
-  facts.squares = layout.packet_width == 0 ? 0 : larger(facts.subpackets / 4, 1);
+  facts.squares = layout.packet_width == 0 ? 0 : std::max(facts.packet_rays / kSubpacketRays / 4, std::uint64_t{1});
   facts.triangles_per_buffer = layout.triangles_per_buffer;
-  facts.recent_triangles = store.recent_triangles;
-  facts.mailbox_slots = store.mailbox_slots;
   facts.table_lines = layout.resident_macro_cells / 32 * sizeof(MacroTableEntry) / kLineBytes;
   facts.wave_rays = layout.wave_rays;
   facts.material_slots = layout.material_slots;
   facts.light_slots = layout.light_slots;
-  facts.most_filled_words = std::max({facts.packet_rays, facts.mailbox_slots, facts.tile_pixels});
   // The table, a plane of a tile, a cell block, triangles, rays that wait, lights, materials; one more for where it
   // begins.
   const std::uint64_t longest =

@@ -6,12 +6,11 @@
 #include <string_view>
 #include <vector>
 
-#include "store_facts.h"
 #include "worst_tile.h"
 
 namespace gridiron::tool {
 
-/// A loop of what runs on a core, or a call that fills or copies.
+/// A loop of what runs on a core that no constant bounds.
 struct LoopRow {
   std::string_view file;      ///< below core/gridiron/
   std::string_view function;
@@ -24,13 +23,12 @@ struct LoopRow {
 /// What bounds are expressions of, by the names that they use.
 struct LoopFacts {
   // Of the layout; 0 where it has no such thing.
-  std::uint64_t lanes = 0, tile_width = 0, tile_pixels = 0, packets_across = 0, packet_rays = 0;
-  std::uint64_t subpackets = 0, squares = 0;  ///< of a packet
-  std::uint64_t triangles_per_buffer = 0, recent_triangles = 0, mailbox_slots = 0;
-  std::uint64_t table_lines = 0;              ///< of 128 bytes
+  std::uint64_t lanes = 0, tile_pixels = 0, packet_rays = 0;
+  std::uint64_t squares = 0;  ///< of a packet
+  std::uint64_t triangles_per_buffer = 0;
+  std::uint64_t table_lines = 0;  ///< of 128 bytes
   std::uint64_t wave_rays = 0, material_slots = 0, light_slots = 0;
-  std::uint64_t most_filled_words = 0;        ///< in one call
-  std::uint64_t most_pieces = 0;              ///< commands of the longest transfer
+  std::uint64_t most_pieces = 0;  ///< commands of the longest transfer
   // Of the frame.
   std::uint64_t tiles = 0, output_depth = 0, macro_depth = 0, triangle_depth = 0, walk_depth = 0;
   // Of the scene.
@@ -45,7 +43,6 @@ struct LoopFacts {
 };
 
 /// @param tiles  of the picture.
-[[nodiscard]] LoopFacts loop_facts_of(const WorstTile& worst, std::uint32_t macro_width, const StoreFacts& store,
-                                      std::uint64_t tiles);
+[[nodiscard]] LoopFacts loop_facts_of(const WorstTile& worst, std::uint32_t macro_width, std::uint64_t tiles);
 
 }  // namespace gridiron::tool

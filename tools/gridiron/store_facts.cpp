@@ -23,10 +23,7 @@ StoreFacts facts_of() {
   facts.max_triangle_depth = Layout::kMaxTriangleDepth;
   facts.triangles_per_buffer = Layout::kTrianglesPerBuffer;
   if constexpr (Layout::kEffects != 0) facts.max_walks = kWalkCount<Layout>;
-  if constexpr (kHasPackets<Layout>) {
-    facts.mailbox_slots = Layout::kMailboxSlots;
-    facts.recent_triangles = Layout::kRecentTriangles;
-  }
+  if constexpr (kHasPackets<Layout>) facts.mailbox_slots = Layout::kMailboxSlots;
   facts.resident_macro_cells = 32 * Layout::kTableEntries;
   for_each_region<Layout>([&facts](const char* name, std::size_t offset_bytes, std::size_t bytes) {
     facts.regions.push_back({name, offset_bytes, bytes});

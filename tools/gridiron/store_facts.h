@@ -20,7 +20,7 @@ struct StoreFacts {
   std::uint32_t max_output_depth = 0, max_macro_depth = 0, max_triangle_depth = 0;
   std::uint32_t max_walks = 0;  ///< of secondary rays under way at once; 0: renders no effects
   std::uint32_t triangles_per_buffer = 0;
-  std::uint32_t mailbox_slots = 0, recent_triangles = 0;  ///< 0: no packets
+  std::uint32_t mailbox_slots = 0;         ///< 0: no packets
   std::uint32_t resident_macro_cells = 0;  ///< as many as the table tells of without being fetched again
   std::vector<LocalStoreRegion> regions;   ///< in address order
 

@@ -1,4 +1,4 @@
-// Compiled with -Dgridiron=gridiron_cell, beside the transcribed sources. SPDX-License-Identifier: Apache-2.0
+// Compiled with -Dgridiron=gridiron_cell, its header before the Cell's numbers. SPDX-License-Identifier: Apache-2.0
 #include "numeric/hard_cases/cell_numbers.h"
 
 #include <gridiron/engine/grid/frustum.h>
@@ -21,8 +21,8 @@ struct FullTable {
 
 namespace hard_cell {
 
-std::vector<std::uint64_t> visited_cells(const unsigned char* grid_bytes, const float origin[3], const float dir[3],
-                                         std::uint64_t& steps) {
+std::vector<std::uint64_t> visited_cells(const unsigned char* grid_bytes, const HostVector& origin,
+                                         const HostVector& dir, std::uint64_t& steps) {
   using namespace gridiron;
   GridRecord grid;
   std::memcpy(static_cast<void*>(&grid), grid_bytes, sizeof grid);
