@@ -15,10 +15,10 @@
 #include <vector>
 
 #include "console.h"
-#include "gridiron/arguments.h"
-#include "gridiron/frame_memory.h"
-#include "gridiron/job_file.h"
-#include "gridiron/requested_frame.h"
+#include "gridiron/command_line/arguments.h"
+#include "gridiron/frame/frame_memory.h"
+#include "gridiron/frame/requested_frame.h"
+#include "gridiron/job/job_file.h"
 
 namespace gridiron::port {
 

@@ -3,10 +3,10 @@
 
 #include <utility>
 
+#include "base/words.h"
 #include "experiment/price_book.h"
 #include "experiment/price_list.h"
 #include "experiment/sections.h"
-#include "gridiron/words.h"
 
 namespace gridiron::experiment {
 namespace {

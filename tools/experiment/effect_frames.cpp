@@ -3,15 +3,15 @@
 
 #include <algorithm>
 
+#include "base/failure.h"
 #include "experiment/systems.h"
 #include "experiment/table.h"
-#include "gridiron/arguments.h"
-#include "gridiron/chip_frame.h"
-#include "gridiron/effect_names.h"
-#include "gridiron/failure.h"
-#include "gridiron/frame_memory.h"
-#include "gridiron/layout_choice.h"
-#include "gridiron/untile.h"
+#include "gridiron/command_line/arguments.h"
+#include "gridiron/device/layout_choice.h"
+#include "gridiron/frame/chip_frame.h"
+#include "gridiron/frame/frame_memory.h"
+#include "gridiron/frame/untile.h"
+#include "gridiron/scene/effect_names.h"
 
 namespace gridiron::experiment {
 namespace {

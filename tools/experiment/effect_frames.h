@@ -17,8 +17,8 @@
 #include <vector>
 
 #include "experiment/effect_scenes.h"
-#include "gridiron/configurations.h"
-#include "gridiron/image_files.h"
+#include "files/image_files.h"
+#include "gridiron/device/configurations.h"
 
 namespace gridiron::experiment {
 

@@ -7,16 +7,16 @@
 #include <mutex>
 #include <utility>
 
+#include "base/words.h"
 #include "experiment/book.h"
 #include "experiment/effect_frames.h"
 #include "experiment/effect_sizes.h"
 #include "experiment/svg_plot.h"
 #include "experiment/table.h"
 #include "experiment/workers.h"
-#include "gridiron/effect_names.h"
-#include "gridiron/image_files.h"
-#include "gridiron/store_facts.h"
-#include "gridiron/words.h"
+#include "files/image_files.h"
+#include "gridiron/device/store_facts.h"
+#include "gridiron/scene/effect_names.h"
 
 namespace gridiron::experiment {
 namespace {

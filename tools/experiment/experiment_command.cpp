@@ -8,17 +8,17 @@
 #include <utility>
 #include <vector>
 
+#include "base/failure.h"
+#include "base/progress.h"
+#include "base/stopwatch.h"
+#include "base/words.h"
 #include "experiment/accuracy_experiment.h"
 #include "experiment/effects_experiment.h"
 #include "experiment/paper_experiment.h"
-#include "gridiron/atomic_file.h"
+#include "files/atomic_file.h"
+#include "files/interrupt.h"
+#include "files/output_folder.h"
 #include "gridiron/commands.h"
-#include "gridiron/failure.h"
-#include "gridiron/interrupt.h"
-#include "gridiron/output_folder.h"
-#include "gridiron/progress.h"
-#include "gridiron/stopwatch.h"
-#include "gridiron/words.h"
 
 namespace gridiron::tool {
 namespace {

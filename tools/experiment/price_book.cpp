@@ -8,7 +8,7 @@
 
 #include "experiment/price_words.h"
 #include "experiment/svg_plot.h"
-#include "gridiron/interrupt.h"
+#include "files/interrupt.h"
 
 namespace gridiron::experiment {
 namespace {

@@ -7,12 +7,12 @@
 #include <mutex>
 #include <utility>
 
+#include "base/failure.h"
 #include "experiment/edge_points.h"
 #include "experiment/sections.h"
 #include "experiment/workers.h"
-#include "gridiron/accuracies.h"
-#include "gridiron/failure.h"
-#include "gridiron/interrupt.h"
+#include "files/interrupt.h"
+#include "gridiron/device/accuracies.h"
 
 namespace gridiron::experiment {
 namespace {

@@ -8,7 +8,7 @@
 
 #include "experiment/sections.h"
 #include "experiment/svg_plot.h"
-#include "gridiron/store_facts.h"
+#include "gridiron/device/store_facts.h"
 
 namespace gridiron::experiment {
 namespace {

@@ -11,16 +11,16 @@
 #include <numeric>
 #include <utility>
 
+#include "base/failure.h"
+#include "base/stopwatch.h"
+#include "base/words.h"
 #include "experiment/bvh_system.h"
-#include "gridiron/arguments.h"
-#include "gridiron/failure.h"
-#include "gridiron/frame_failure.h"
-#include "gridiron/frame_memory.h"
-#include "gridiron/interrupt.h"
-#include "gridiron/stopwatch.h"
-#include "gridiron/store_facts.h"
-#include "gridiron/untile.h"
-#include "gridiron/words.h"
+#include "files/interrupt.h"
+#include "gridiron/command_line/arguments.h"
+#include "gridiron/device/store_facts.h"
+#include "gridiron/frame/frame_failure.h"
+#include "gridiron/frame/frame_memory.h"
+#include "gridiron/frame/untile.h"
 
 namespace gridiron::experiment {
 namespace {

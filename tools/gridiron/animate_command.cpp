@@ -12,21 +12,21 @@
 #include <utility>
 #include <vector>
 
-#include "atomic_file.h"
-#include "chip_frame.h"
-#include "command_files.h"
+#include "base/failure.h"
+#include "base/progress.h"
+#include "base/words.h"
 #include "commands.h"
-#include "failure.h"
-#include "frame_memory.h"
-#include "frame_pictures.h"
-#include "image_files.h"
-#include "interrupt.h"
-#include "output_folder.h"
-#include "progress.h"
-#include "scene_input.h"
-#include "scene_points.h"
-#include "unseen_scene.h"
-#include "words.h"
+#include "files/atomic_file.h"
+#include "files/command_files.h"
+#include "files/image_files.h"
+#include "files/interrupt.h"
+#include "files/output_folder.h"
+#include "gridiron/frame/chip_frame.h"
+#include "gridiron/frame/frame_memory.h"
+#include "gridiron/frame/frame_pictures.h"
+#include "gridiron/frame/unseen_scene.h"
+#include "gridiron/scene/scene_input.h"
+#include "gridiron/scene/scene_points.h"
 
 namespace gridiron::tool {
 namespace {

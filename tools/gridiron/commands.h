@@ -2,7 +2,7 @@
 // Memory: their own. Threads: one; render and experiment start more. SPDX-License-Identifier: Apache-2.0
 #pragma once
 
-#include "arguments.h"
+#include "gridiron/command_line/arguments.h"
 
 namespace gridiron::tool {
 

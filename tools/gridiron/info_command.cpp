@@ -6,13 +6,13 @@
 #include <nlohmann/json.hpp>
 #include <string>
 
-#include "accuracies.h"
+#include "base/words.h"
 #include "commands.h"
-#include "effect_names.h"
-#include "loop_table.h"
-#include "scene_facts.h"
-#include "store_facts.h"
-#include "words.h"
+#include "gridiron/device/accuracies.h"
+#include "gridiron/device/store_facts.h"
+#include "gridiron/info/loop_table.h"
+#include "gridiron/info/scene_facts.h"
+#include "gridiron/scene/effect_names.h"
 
 namespace gridiron::tool {
 namespace {

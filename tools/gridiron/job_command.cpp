@@ -4,15 +4,15 @@
 #include <string>
 #include <utility>
 
-#include "atomic_file.h"
-#include "command_files.h"
+#include "base/failure.h"
+#include "base/progress.h"
+#include "base/words.h"
 #include "commands.h"
-#include "failure.h"
-#include "frame_memory.h"
-#include "job_file.h"
-#include "progress.h"
-#include "requested_frame.h"
-#include "words.h"
+#include "files/atomic_file.h"
+#include "files/command_files.h"
+#include "gridiron/frame/frame_memory.h"
+#include "gridiron/frame/requested_frame.h"
+#include "gridiron/job/job_file.h"
 
 namespace gridiron::tool {
 

@@ -2,13 +2,13 @@
 #include <cstdio>
 #include <new>
 
-#include "atomic_file.h"
-#include "command_files.h"
+#include "base/failure.h"
+#include "base/progress.h"
+#include "base/words.h"
 #include "commands.h"
-#include "failure.h"
-#include "progress.h"
-#include "scene_input.h"
-#include "words.h"
+#include "files/atomic_file.h"
+#include "files/command_files.h"
+#include "gridiron/scene/scene_input.h"
 
 namespace gridiron::tool {
 namespace {

@@ -10,21 +10,21 @@
 #include <string_view>
 #include <utility>
 
-#include "atomic_file.h"
-#include "chip_frame.h"
-#include "command_files.h"
+#include "base/progress.h"
+#include "base/stopwatch.h"
+#include "base/words.h"
 #include "commands.h"
-#include "effect_names.h"
-#include "frame_memory.h"
-#include "frame_pictures.h"
-#include "image_files.h"
-#include "progress.h"
-#include "requested_frame.h"
-#include "scene_input.h"
-#include "stopwatch.h"
-#include "store_facts.h"
-#include "unseen_scene.h"
-#include "words.h"
+#include "files/atomic_file.h"
+#include "files/command_files.h"
+#include "files/image_files.h"
+#include "gridiron/device/store_facts.h"
+#include "gridiron/frame/chip_frame.h"
+#include "gridiron/frame/frame_memory.h"
+#include "gridiron/frame/frame_pictures.h"
+#include "gridiron/frame/requested_frame.h"
+#include "gridiron/frame/unseen_scene.h"
+#include "gridiron/scene/effect_names.h"
+#include "gridiron/scene/scene_input.h"
 
 namespace gridiron::tool {
 namespace {

@@ -10,21 +10,21 @@
 #include <string>
 #include <vector>
 
-#include "atomic_file.h"
-#include "chip_frame.h"
-#include "command_files.h"
+#include "base/failure.h"
+#include "base/progress.h"
+#include "base/words.h"
 #include "commands.h"
-#include "failure.h"
-#include "frame_pictures.h"
-#include "image_files.h"
-#include "job_comparison.h"
-#include "job_file.h"
-#include "prediction.h"
-#include "progress.h"
-#include "result_file.h"
-#include "scene_points.h"
-#include "unseen_scene.h"
-#include "words.h"
+#include "files/atomic_file.h"
+#include "files/command_files.h"
+#include "files/image_files.h"
+#include "gridiron/frame/chip_frame.h"
+#include "gridiron/frame/frame_pictures.h"
+#include "gridiron/frame/unseen_scene.h"
+#include "gridiron/job/job_comparison.h"
+#include "gridiron/job/job_file.h"
+#include "gridiron/job/prediction.h"
+#include "gridiron/job/result_file.h"
+#include "gridiron/scene/scene_points.h"
 
 namespace gridiron::tool {
 namespace {

@@ -5,7 +5,7 @@
 #include <string>
 #include <vector>
 
-#include "gridiron/interrupt.h"
+#include "files/interrupt.h"
 #include "scene_makers/mesh.h"
 #include "scene_makers/procedural.h"
 

@@ -12,7 +12,7 @@
 #include "csv_rows.h"
 #include "experiment/accuracy_experiment.h"
 #include "experiment/table.h"
-#include "gridiron/accuracies.h"
+#include "gridiron/device/accuracies.h"
 #include "markup.h"
 
 namespace gridiron::test {

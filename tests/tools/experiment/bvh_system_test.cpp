@@ -11,8 +11,8 @@
 #include <memory>
 #include <thread>
 
-#include "gridiron/failure.h"
-#include "gridiron/interrupt.h"
+#include "base/failure.h"
+#include "files/interrupt.h"
 
 namespace gridiron::test {
 namespace {

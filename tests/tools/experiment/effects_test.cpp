@@ -9,11 +9,11 @@
 
 #include "../gridiron/run_program.h"
 #include "../gridiron/temporary_folder.h"
+#include "base/failure.h"
 #include "csv_rows.h"
 #include "experiment/effect_frames.h"
 #include "experiment/effect_scenes.h"
 #include "experiment/effects_experiment.h"
-#include "gridiron/failure.h"
 #include "markup.h"
 
 namespace gridiron::test {

@@ -1,12 +1,12 @@
 // Accuracies: every profile of core has one name. SPDX-License-Identifier: Apache-2.0
-#include "gridiron/accuracies.h"
+#include "gridiron/device/accuracies.h"
 
 #include <gtest/gtest.h>
 
 #include <set>
 #include <string_view>
 
-#include "gridiron/arguments.h"
+#include "gridiron/command_line/arguments.h"
 
 namespace gridiron::test {
 namespace {

@@ -11,8 +11,8 @@
 #include <string>
 #include <vector>
 
-#include "gridiron/scene_points.h"
-#include "gridiron/view.h"
+#include "gridiron/scene/scene_points.h"
+#include "gridiron/scene/view.h"
 #include "run_program.h"
 #include "temporary_folder.h"
 

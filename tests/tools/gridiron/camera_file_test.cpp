@@ -1,8 +1,8 @@
 // Camera files: strict, every complaint with its line. SPDX-License-Identifier: Apache-2.0
 #include <gtest/gtest.h>
 
-#include "gridiron/failure.h"
-#include "gridiron/view.h"
+#include "base/failure.h"
+#include "gridiron/scene/view.h"
 #include "temporary_folder.h"
 
 namespace gridiron::test {

@@ -1,5 +1,5 @@
 // Configurations: what the names promise. SPDX-License-Identifier: Apache-2.0
-#include "gridiron/configurations.h"
+#include "gridiron/device/configurations.h"
 
 #include <gridiron/base/records.h>
 #include <gtest/gtest.h>
@@ -8,7 +8,7 @@
 #include <optional>
 #include <vector>
 
-#include "gridiron/store_facts.h"
+#include "gridiron/device/store_facts.h"
 
 namespace gridiron::test {
 namespace {

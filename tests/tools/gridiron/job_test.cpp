@@ -10,7 +10,7 @@
 #include <string>
 #include <vector>
 
-#include "gridiron/job_file.h"
+#include "gridiron/job/job_file.h"
 #include "host_device.h"
 #include "run_program.h"
 #include "temporary_folder.h"

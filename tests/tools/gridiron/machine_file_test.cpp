@@ -1,10 +1,10 @@
 // Machine files: what is printed reads back identical, and every complaint has its line.
 // SPDX-License-Identifier: Apache-2.0
-#include "gridiron/machine_file.h"
+#include "gridiron/device/machine_file.h"
 
 #include <gtest/gtest.h>
 
-#include "gridiron/failure.h"
+#include "base/failure.h"
 #include "temporary_folder.h"
 
 namespace gridiron::test {

@@ -8,8 +8,8 @@
 #include <nlohmann/json.hpp>
 #include <set>
 
-#include "gridiron/scene_points.h"
-#include "gridiron/view.h"
+#include "gridiron/scene/scene_points.h"
+#include "gridiron/scene/view.h"
 #include "run_program.h"
 #include "support/picture.h"
 #include "support/render_mesh.h"

@@ -1,9 +1,9 @@
 // Scene input: which grid a mesh gets in a given main memory. SPDX-License-Identifier: Apache-2.0
-#include "gridiron/scene_input.h"
+#include "gridiron/scene/scene_input.h"
 
 #include <gtest/gtest.h>
 
-#include "gridiron/failure.h"
+#include "base/failure.h"
 #include "temporary_folder.h"
 
 namespace gridiron::test {

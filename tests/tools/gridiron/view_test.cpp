@@ -1,9 +1,9 @@
 // View: what is asked for, and what is not. SPDX-License-Identifier: Apache-2.0
-#include "gridiron/view.h"
+#include "gridiron/scene/view.h"
 
 #include <gtest/gtest.h>
 
-#include "gridiron/failure.h"
+#include "base/failure.h"
 
 namespace gridiron::test {
 namespace {

@@ -8,7 +8,7 @@
 #include <map>
 #include <utility>
 
-#include "gridiron/failure.h"
+#include "base/failure.h"
 
 namespace gridiron::test {
 

@@ -6,8 +6,8 @@
 #include <fstream>
 #include <string>
 
+#include "base/failure.h"
 #include "check_scene.h"
-#include "gridiron/failure.h"
 #include "temporary_folder.h"
 
 namespace gridiron::test {

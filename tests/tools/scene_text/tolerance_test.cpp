@@ -7,8 +7,8 @@
 #include <span>
 #include <string>
 
+#include "base/failure.h"
 #include "check_scene.h"
-#include "gridiron/failure.h"
 #include "scene_makers/procedural.h"
 
 namespace gridiron::test {
