@@ -30,4 +30,9 @@ class Failure : public std::runtime_error {
   ExitCode code_;
 };
 
+/// Throws Failure (kUsage).
+[[noreturn]] inline void usage_error(const std::string& message) {
+  throw Failure(ExitCode::kUsage, message);
+}
+
 }  // namespace gridiron::tool

@@ -22,13 +22,10 @@
 
 namespace gridiron::experiment {
 
-inline constexpr tool::BufferDepths kSingleBuffers = {.output = 1, .macro = 1, .triangle = 1, .walks = 1};
-inline constexpr tool::BufferDepths kDoubleBuffers = {.output = 2, .macro = 2, .triangle = 2, .walks = 2};
-
 struct EffectFrameRequest {
   std::uint32_t width = 96, height = 96;
   float lambda = 4;  ///< grid cells per triangle
-  tool::BufferDepths depths = kDoubleBuffers;
+  tool::BufferDepths depths = tool::kDoubleBuffering;
 };
 
 /// What a frame did.

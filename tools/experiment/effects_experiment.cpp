@@ -119,9 +119,9 @@ std::vector<Step> list_steps(std::vector<SceneFrames>& scenes, const EffectsExpe
       steps.push_back({&variant.scene, request, &frame, variant.scene.key + ", " + variant.title, variant.expected});
     };
     for (Variant& variant : frames.variants) {
-      request.depths = kSingleBuffers;
+      request.depths = tool::kSingleBuffering;
       add(variant, variant.single);
-      request.depths = kDoubleBuffers;
+      request.depths = tool::kDoubleBuffering;
       add(variant, variant.twofold);
     }
     for (std::size_t i = 0; i < std::size(kLambdas); ++i) {

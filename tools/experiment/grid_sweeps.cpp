@@ -186,11 +186,11 @@ std::vector<double> depths_up_to(std::uint32_t most) {
 }
 
 std::vector<double> macro_depth_values() {
-  return depths_up_to(tool::usual_store_facts(sim::StoreSize::k256KB, 32).max_macro_depth);
+  return depths_up_to(tool::usual_store_facts(sim::StoreSize::k256KB, 32).most_depths.macro);
 }
 
 std::vector<double> triangle_depth_values() {
-  return depths_up_to(tool::usual_store_facts(sim::StoreSize::k256KB, 32).max_triangle_depth);
+  return depths_up_to(tool::usual_store_facts(sim::StoreSize::k256KB, 32).most_depths.triangle);
 }
 
 std::vector<Step> plan_macro_depths(Plan& plan, const Stage& stage) {

@@ -86,8 +86,8 @@ Point make_point(Plan& plan, const Stage& stage, const View& view, const char* c
     point.note = missing_words(layout);
     return point;
   }
-  fitted.depths.macro = std::min(fitted.depths.macro, point.layout->max_macro_depth);
-  fitted.depths.triangle = std::min(fitted.depths.triangle, point.layout->max_triangle_depth);
+  fitted.depths.macro = std::min(fitted.depths.macro, point.layout->most_depths.macro);
+  fitted.depths.triangle = std::min(fitted.depths.triangle, point.layout->most_depths.triangle);
   if (fitted.depths.macro != usual.depths.macro || fitted.depths.triangle != usual.depths.triangle) {
     point.note = "no room for " + std::to_string(usual.depths.macro) + " cell blocks and " +
                  std::to_string(usual.depths.triangle) + " triangle buffers";
@@ -420,7 +420,7 @@ Table contents_table() {
       table.add({configuration, std::uint64_t{facts.arena_bytes >> 10}, std::uint64_t{facts.tile_width},
                  std::uint64_t{facts.packet_width}, std::uint64_t{facts.mailbox_slots},
                  std::uint64_t{facts.resident_macro_cells}, std::uint64_t{facts.max_macro_width},
-                 std::uint64_t{facts.max_macro_depth}, std::uint64_t{facts.max_triangle_depth},
+                 std::uint64_t{facts.most_depths.macro}, std::uint64_t{facts.most_depths.triangle},
                  std::uint64_t{facts.triangles_per_buffer}, facts.data_bytes(), free_bytes(facts)});
     }
   }
@@ -466,8 +466,8 @@ std::string short_store_words() {
   std::string stores;
   const tool::BufferDepths wanted = grid_variant("best").configuration.depths;
   for (const NamedLayout& layout : layouts_of("best")) {
-    const bool is_short =
-        layout.facts.max_macro_depth < wanted.macro || layout.facts.max_triangle_depth < wanted.triangle;
+    const tool::BufferDepths& most = layout.facts.most_depths;
+    const bool is_short = most.macro < wanted.macro || most.triangle < wanted.triangle;
     if (is_short) stores += (stores.empty() ? "" : ", ") + layout.title;
   }
   return stores.empty() ? "" : "; " + stores + " have fewer than the " + buffer_words("best") + " of best";

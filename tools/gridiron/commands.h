@@ -6,14 +6,14 @@
 
 namespace gridiron::tool {
 
-void run_command(const RenderArguments& arguments);
-void run_command(const AnimateArguments& arguments);
-void run_command(const InfoArguments& arguments);
-void run_command(const PackArguments& arguments);
-void run_command(const JobArguments& arguments);
-void run_command(const ResultArguments& arguments);
-void run_command(const MachinesArguments& arguments);
-void run_command(const ExperimentArguments& arguments);  ///< in tools/experiment
+void run_command(const RenderRequest& request);
+void run_command(const AnimateRequest& request);
+void run_command(const InfoRequest& request);
+void run_command(const PackRequest& request);
+void run_command(const JobRequest& request);
+void run_command(const ResultRequest& request);
+void run_command(const MachinesRequest& request);
+void run_command(const ExperimentRequest& request);  ///< in tools/experiment
 void run_command(const TextRequest& request);
 
 }  // namespace gridiron::tool

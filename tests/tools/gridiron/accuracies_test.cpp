@@ -6,7 +6,7 @@
 #include <set>
 #include <string_view>
 
-#include "gridiron/command_line/arguments.h"
+#include "gridiron/frame/render_plan.h"
 
 namespace gridiron::test {
 namespace {
@@ -21,7 +21,7 @@ TEST(Accuracies, EachHasOneName) {
   }
   EXPECT_EQ(values, (std::set<Accuracy>{Accuracy::kStandard, Accuracy::kPaper, Accuracy::kExact, Accuracy::kFast,
                                         Accuracy::kCompact}));
-  EXPECT_EQ(values.count(tool::RenderArguments{}.accuracy), 1u);
+  EXPECT_EQ(values.count(tool::RenderRequest{}.accuracy), 1u);
 }
 
 }  // namespace

@@ -130,10 +130,6 @@ CommandWords sort_words(const CLI::App& command, std::span<const char* const> wo
 
 }  // namespace
 
-void usage_error(const std::string& message) {
-  throw Failure(ExitCode::kUsage, message);
-}
-
 std::string overview(const CLI::App& app) {
   std::vector<std::string> others;
   for (const std::string& name : names_of(commands_of(app))) {

@@ -11,9 +11,6 @@ class App;
 
 namespace gridiron::tool {
 
-/// Throws Failure (kUsage).
-[[noreturn]] void usage_error(const std::string& message);
-
 /// @returns the program in a few lines: what most people want of it, the other commands, where to read on.
 [[nodiscard]] std::string overview(const CLI::App& app);
 

@@ -1,6 +1,8 @@
 // Accuracies. SPDX-License-Identifier: Apache-2.0
 #include "accuracies.h"
 
+#include <algorithm>
+
 namespace gridiron::tool {
 namespace {
 
@@ -23,6 +25,10 @@ constexpr NamedAccuracy kAccuracies[] = {
 
 std::span<const NamedAccuracy> accuracies() {
   return kAccuracies;
+}
+
+std::string name_of(Accuracy accuracy) {
+  return std::string(std::ranges::find(kAccuracies, accuracy, &NamedAccuracy::accuracy)->name);
 }
 
 }  // namespace gridiron::tool

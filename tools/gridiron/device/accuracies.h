@@ -5,6 +5,7 @@
 #include <gridiron/base/records.h>
 
 #include <span>
+#include <string>
 #include <string_view>
 
 namespace gridiron::tool {
@@ -17,5 +18,8 @@ struct NamedAccuracy {
 
 /// All accuracy profiles, from the paper's to the exact one, then those that change the geometry.
 [[nodiscard]] std::span<const NamedAccuracy> accuracies();
+
+/// @returns what --accuracy calls it.
+[[nodiscard]] std::string name_of(Accuracy accuracy);
 
 }  // namespace gridiron::tool

@@ -2,6 +2,7 @@
 // Memory: one table. Threads: any. SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <algorithm>
 #include <cstdint>
 #include <span>
 #include <string_view>
@@ -16,7 +17,15 @@ struct BufferDepths {
   std::uint32_t walks = 2;     ///< walks of secondary rays under way at once
 
   bool operator==(const BufferDepths&) const = default;
+
+  /// @returns the same, none deeper than in `most`.
+  [[nodiscard]] BufferDepths within(const BufferDepths& most) const {
+    return {std::min(output, most.output), std::min(macro, most.macro), std::min(triangle, most.triangle),
+            std::min(walks, most.walks)};
+  }
 };
+inline constexpr BufferDepths kSingleBuffering = {.output = 1, .macro = 1, .triangle = 1, .walks = 1};
+inline constexpr BufferDepths kDoubleBuffering = {.output = 2, .macro = 2, .triangle = 2, .walks = 2};
 
 /// What a frame is rendered with unless an option of the command line says otherwise.
 struct Configuration {

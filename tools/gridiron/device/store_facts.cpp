@@ -18,11 +18,9 @@ StoreFacts facts_of() {
   facts.tile_width = Layout::kTileWidth;
   facts.packet_width = Layout::kPacketWidth;
   facts.max_macro_width = Layout::kMaxMacroWidth;
-  facts.max_output_depth = Layout::kMaxOutputDepth;
-  facts.max_macro_depth = Layout::kMaxMacroDepth;
-  facts.max_triangle_depth = Layout::kMaxTriangleDepth;
+  facts.most_depths = {Layout::kMaxOutputDepth, Layout::kMaxMacroDepth, Layout::kMaxTriangleDepth, 0};
   facts.triangles_per_buffer = Layout::kTrianglesPerBuffer;
-  if constexpr (Layout::kEffects != 0) facts.max_walks = kWalkCount<Layout>;
+  if constexpr (Layout::kEffects != 0) facts.most_depths.walks = kWalkCount<Layout>;
   if constexpr (kHasPackets<Layout>) {
     facts.mailbox_slots = Layout::kMailboxSlots;
     facts.recent_triangles = Layout::kRecentTriangles;

@@ -9,6 +9,8 @@
 #include <optional>
 #include <vector>
 
+#include "configurations.h"
+
 namespace gridiron::tool {
 
 /// One layout of the local store.
@@ -17,8 +19,7 @@ struct StoreFacts {
   std::uint32_t code_bytes = 0, stack_bytes = 0;  ///< committed budgets
   std::uint32_t tile_width = 0, packet_width = 0;
   std::uint32_t max_macro_width = 0;
-  std::uint32_t max_output_depth = 0, max_macro_depth = 0, max_triangle_depth = 0;
-  std::uint32_t max_walks = 0;  ///< of secondary rays under way at once; 0: renders no effects
+  BufferDepths most_depths{};  ///< no walks: renders no effects
   std::uint32_t triangles_per_buffer = 0;
   std::uint32_t mailbox_slots = 0, recent_triangles = 0;  ///< 0: no packets
   std::uint32_t resident_macro_cells = 0;  ///< as many as the table tells of without being fetched again

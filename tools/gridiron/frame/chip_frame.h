@@ -9,14 +9,13 @@
 #include <functional>
 
 #include "frame_memory.h"
-#include "gridiron/command_line/arguments.h"
 
 namespace gridiron::tool {
 
-/// Renders. @param arguments  those that the frame was prepared with, threads above 0.
+/// Renders. @param plan  the one that the frame was prepared with.
 /// @param progress  of tiles; may be empty.
 /// Errors: Failure where the frame failed, of stop_if_interrupted(), kUsage for a tile that is not there.
-[[nodiscard]] sim::ChipResult render_on_chip(FrameMemory& frame, const RenderArguments& arguments,
+[[nodiscard]] sim::ChipResult render_on_chip(FrameMemory& frame, const RenderPlan& plan,
                                              std::function<void(std::uint32_t done, std::uint32_t total)> progress);
 
 /// Renders the frame whose FrameRecord lies at `frame`; signals end it between two tiles.
@@ -24,11 +23,5 @@ namespace gridiron::tool {
 /// Errors: Failure where the frame failed, of stop_if_interrupted().
 [[nodiscard]] sim::ChipResult run_on_chip(sim::SimMemory& memory, MainAddress frame, sim::ChipOptions options,
                                           const std::filesystem::path& input);
-
-/// @returns what the host has, at least 1.
-[[nodiscard]] std::uint32_t host_threads();
-
-/// Takes away threads that would find no tile. Precondition: the layout is settled.
-void limit_threads(RenderArguments& arguments);
 
 }  // namespace gridiron::tool

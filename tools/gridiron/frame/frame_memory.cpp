@@ -29,29 +29,18 @@ sim::MemoryRegion allocate(sim::SimMemory& memory, const std::filesystem::path& 
                 input.string() + ": the main memory of " + words_of_bytes(memory.capacity_bytes()) + " is full");
 }
 
-std::uint32_t core_count(const RenderArguments& arguments) {
-  return arguments.cores != 0 ? arguments.cores : arguments.scene.machine->core_count;
-}
-
 // Of rays that wait, 1 where none do.
-std::uint32_t recursion_depth(const SceneInput& input, const RenderArguments& arguments) {
-  if (arguments.shading != Shading::kScene) return 1;
-  if (input.text) return input.text->effects.recursion_depth;
-  const PackedScene* packed = std::get_if<PackedScene>(&input.content);
-  if (packed == nullptr || !packed->view.has_effects) {
-    throw Failure(ExitCode::kUsage,
-                  "--shading scene: " + input.path.string() + " has no lights and materials; text scenes (.nff) have");
-  }
-  return packed->view.effects.recursion_depth;
+std::uint32_t waiting_depth(const SceneInput& input, const RenderPlan& plan) {
+  return plan.shading == Shading::kScene ? recursion_depth(input) : 1;
 }
 
 // Puts the scene image into main memory. @param movable  the packed scene's bytes where they may move; else null.
 // @returns where it lies.
-MainAddress place_image(FrameMemory& frame, const SceneInput& input, const RenderArguments& arguments,
-                        std::uint64_t budget_bytes, InputFile* movable) {
-  const TriangleFormat format = format_of(arguments.accuracy);
+MainAddress place_image(FrameMemory& frame, const SceneInput& input, const RenderPlan& plan, std::uint64_t budget_bytes,
+                        InputFile* movable) {
+  const ImageLimits limits = {format_of(plan.accuracy), budget_bytes, plan.most_macro_width};
   if (const PackedScene* packed = std::get_if<PackedScene>(&input.content)) {
-    check_packed(input, *packed, arguments.scene, format, budget_bytes);
+    check_packed(input, *packed, plan.scene, limits);
     const std::uint64_t image_bytes = packed->view.header.image_bytes;
     const sim::MemoryRegion region = allocate(frame.memory, input.path, image_bytes);
     if (movable != nullptr) {
@@ -68,12 +57,12 @@ MainAddress place_image(FrameMemory& frame, const SceneInput& input, const Rende
   const Mesh& mesh = std::get<Mesh>(input.content);
   EffectsView view;
   const EffectsView* effects = nullptr;
-  if (arguments.shading == Shading::kScene) {
+  if (plan.shading == Shading::kScene) {
     view = input.text->effects.view();
     effects = &view;
   }
-  const GridChoice choice = choose_grid(input, mesh, arguments.scene, format, budget_bytes, effects);
-  require_fit(choice, arguments.scene, input);
+  const GridChoice choice = choose_grid(input, mesh, plan.scene, limits, effects);
+  require_fit(choice, plan.scene, input);
   const sim::MemoryRegion region = allocate(frame.memory, input.path, choice.need.image_bytes);
   frame.image = build_image(input, mesh, choice, region.bytes, effects);
   frame.need = choice.need;
@@ -107,48 +96,47 @@ PointSource points_of(FrameMemory& frame) {
 
 namespace {
 
-void prepare(FrameMemory& frame, const SceneInput& input, const RenderArguments& arguments, const ViewRequest& view,
+void prepare(FrameMemory& frame, const SceneInput& input, const RenderPlan& plan, const ViewRequest& view,
              InputFile* movable) {
-  const std::uint32_t depth = recursion_depth(input, arguments);
-  const std::uint32_t planes = 1u + (arguments.has_depth() ? 1u : 0u) + (arguments.has_ids() ? 1u : 0u);
-  const std::uint64_t budget_bytes =
-      image_budget_bytes(*arguments.scene.machine, arguments.width, arguments.height, planes, arguments.tile_width,
-                         spill_bytes_of(core_count(arguments), depth));
-  frame.image_address = place_image(frame, input, arguments, budget_bytes, movable);
+  const std::uint32_t depth = waiting_depth(input, plan);
+  const std::uint32_t planes = 1u + (plan.has_depth ? 1u : 0u) + (plan.has_ids ? 1u : 0u);
+  const std::uint64_t budget_bytes = image_budget_bytes(*plan.scene.machine, plan.width, plan.height, planes,
+                                                        plan.layout.tile_width, spill_bytes_of(plan.cores, depth));
+  frame.image_address = place_image(frame, input, plan, budget_bytes, movable);
 
   // Identifiers travel as floats in a PFM file.
-  if (arguments.ids) require_exact_ids(input.path, frame.image.header.triangle_count);
+  if (plan.outputs.ids) require_exact_ids(input.path, frame.image.header.triangle_count);
 
   FrameSettings& settings = frame.settings;
   // An image of vertices as they were read has the points of its mesh, which has each of them once.
   const Mesh* mesh = std::get_if<Mesh>(&input.content);
-  const bool is_exact = format_of(arguments.accuracy) == TriangleFormat::kVertices;
+  const bool is_exact = format_of(plan.accuracy) == TriangleFormat::kVertices;
   const PointSource points = mesh != nullptr && is_exact
                                  ? [mesh](const PointVisitor& visitor) { visit_points(mesh->view(), visitor); }
                                  : points_of(frame);
-  settings.camera = complete_view(view, static_cast<double>(arguments.width) / arguments.height, points);
-  settings.width = arguments.width;
-  settings.height = arguments.height;
-  settings.tile_width = arguments.tile_width;
-  settings.accuracy = arguments.accuracy;
-  settings.shading = arguments.shading;
-  settings.techniques = arguments.techniques;
-  settings.output_depth = arguments.depths.output;
-  settings.macro_depth = arguments.depths.macro;
-  settings.triangle_depth = arguments.depths.triangle;
-  settings.walk_depth = arguments.depths.walks;
+  settings.camera = complete_view(view, static_cast<double>(plan.width) / plan.height, points);
+  settings.width = plan.width;
+  settings.height = plan.height;
+  settings.tile_width = plan.layout.tile_width;
+  settings.accuracy = plan.accuracy;
+  settings.shading = plan.shading;
+  settings.techniques = plan.techniques;
+  settings.output_depth = plan.depths.output;
+  settings.macro_depth = plan.depths.macro;
+  settings.triangle_depth = plan.depths.triangle;
+  settings.walk_depth = plan.depths.walks;
 
   const std::uint64_t plane_bytes = output_plane_bytes(settings.width, settings.height, settings.tile_width);
   frame.color = allocate(frame.memory, input.path, plane_bytes);
-  if (arguments.has_depth()) frame.depth = allocate(frame.memory, input.path, plane_bytes);
-  if (arguments.has_ids()) frame.ids = allocate(frame.memory, input.path, plane_bytes);
+  if (plan.has_depth) frame.depth = allocate(frame.memory, input.path, plane_bytes);
+  if (plan.has_ids) frame.ids = allocate(frame.memory, input.path, plane_bytes);
   settings.color = frame.color.address;
   settings.depth = frame.depth.address;
   settings.ids = frame.ids.address;
 
   frame.spill_bytes_per_core = spill_bytes(depth);
   if (frame.spill_bytes_per_core != 0) {
-    const std::uint32_t threads = std::max(arguments.threads, 1u);
+    const std::uint32_t threads = std::max(plan.threads, 1u);
     frame.spill = allocate(frame.memory, input.path, threads * frame.spill_bytes_per_core, kSpillAlignment);
   }
 
@@ -159,20 +147,18 @@ void prepare(FrameMemory& frame, const SceneInput& input, const RenderArguments&
 
 }  // namespace
 
-std::uint64_t frame_memory_bytes(const SceneInput& input, const RenderArguments& arguments) {
-  const std::uint32_t cores = core_count(arguments);
-  const std::uint32_t more = arguments.threads > cores ? arguments.threads - cores : 0;
-  return arguments.scene.machine->main_memory_bytes + more * spill_bytes(recursion_depth(input, arguments));
+std::uint64_t frame_memory_bytes(const SceneInput& input, const RenderPlan& plan) {
+  const std::uint32_t more = plan.threads > plan.cores ? plan.threads - plan.cores : 0;
+  return plan.scene.machine->main_memory_bytes + more * spill_bytes(waiting_depth(input, plan));
 }
 
-void prepare_frame(FrameMemory& frame, const SceneInput& input, const RenderArguments& arguments,
-                   const ViewRequest& view) {
-  prepare(frame, input, arguments, view, nullptr);
+void prepare_frame(FrameMemory& frame, const SceneInput& input, const RenderPlan& plan, const ViewRequest& view) {
+  prepare(frame, input, plan, view, nullptr);
 }
 
-void prepare_frame(FrameMemory& frame, SceneInput&& input, const RenderArguments& arguments, const ViewRequest& view) {
+void prepare_frame(FrameMemory& frame, SceneInput&& input, const RenderPlan& plan, const ViewRequest& view) {
   PackedScene* packed = std::get_if<PackedScene>(&input.content);
-  prepare(frame, input, arguments, view, packed != nullptr ? &packed->file : nullptr);
+  prepare(frame, input, plan, view, packed != nullptr ? &packed->file : nullptr);
 }
 
 void aim_camera(FrameMemory& frame, const Camera& camera) {

@@ -12,8 +12,8 @@
 #include <span>
 
 #include "base/stopwatch.h"
-#include "gridiron/command_line/arguments.h"
 #include "gridiron/scene/scene_input.h"
+#include "render_plan.h"
 
 namespace gridiron::tool {
 
@@ -36,19 +36,18 @@ struct FrameMemory {
 
 /// @returns bytes to make a frame's memory of: the machine's, and room for waiting rays of the host threads that it has
 /// no cores for.
-[[nodiscard]] std::uint64_t frame_memory_bytes(const SceneInput& input, const RenderArguments& arguments);
+[[nodiscard]] std::uint64_t frame_memory_bytes(const SceneInput& input, const RenderPlan& plan);
 
 /// @returns the points of a frame's scene image. They are there once prepare_frame() has placed it.
 [[nodiscard]] PointSource points_of(FrameMemory& frame);
 
-/// Fills `frame` for a render; with Shading::kScene room for waiting rays of arguments.threads cores.
+/// Fills `frame` for a render; with Shading::kScene room for waiting rays of plan.threads cores.
 /// @param view  parts of the view that were asked for.
 /// Errors: Failure.
-void prepare_frame(FrameMemory& frame, const SceneInput& input, const RenderArguments& arguments,
-                   const ViewRequest& view);
+void prepare_frame(FrameMemory& frame, const SceneInput& input, const RenderPlan& plan, const ViewRequest& view);
 
 /// The same. The bytes of a packed scene move into main memory, so that they are held once; the rest of `input` stays.
-void prepare_frame(FrameMemory& frame, SceneInput&& input, const RenderArguments& arguments, const ViewRequest& view);
+void prepare_frame(FrameMemory& frame, SceneInput&& input, const RenderPlan& plan, const ViewRequest& view);
 
 /// Gives a prepared frame another camera. Errors: Failure (kUsage) where the frame can have none such.
 void aim_camera(FrameMemory& frame, const Camera& camera);

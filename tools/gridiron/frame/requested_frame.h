@@ -5,24 +5,24 @@
 #include <vector>
 
 #include "files/command_files.h"
-#include "gridiron/command_line/arguments.h"
 #include "gridiron/scene/scene_input.h"
-#include "gridiron/scene/view.h"
+#include "render_plan.h"
 
 namespace gridiron::tool {
 
 /// All that prepare_frame() wants to know.
 struct RequestedFrame {
   SceneInput input;
-  RenderArguments arguments;  ///< nothing is left to the scene or the host
+  RenderPlan plan;
   ViewRequest view;
 };
 
-/// Reads scene and camera and completes the arguments by them. Unless quiet it says on standard error what is odd in
-/// the scene, and where the store has fewer buffers than the configuration.
+/// Reads scene and camera and settles the frame. A scene whose kind can be foreseen has it settled before it is read
+/// too: nobody should wait for what is refused then. Unless quiet it says on standard error what is odd in the scene,
+/// and where the store has fewer buffers than the configuration.
 ///
 /// @param outputs  of the command; they are declared first: nobody should wait for what cannot be written.
 /// Errors: Failure.
-[[nodiscard]] RequestedFrame read_requested_frame(const RenderArguments& asked, const std::vector<Output>& outputs);
+[[nodiscard]] RequestedFrame read_requested_frame(const RenderRequest& request, const std::vector<Output>& outputs);
 
 }  // namespace gridiron::tool

@@ -7,9 +7,6 @@
 #include <algorithm>
 #include <span>
 
-#include "gridiron/device/layout_choice.h"
-#include "gridiron/device/store_facts.h"
-
 namespace gridiron::tool {
 namespace {
 
@@ -61,12 +58,6 @@ EffectFacts effects_of(const EffectsRecord& record, std::uint32_t triangle_count
   return facts;
 }
 
-std::uint32_t recursion_depth(const SceneInput& input) {
-  if (input.text) return input.text->effects.recursion_depth;
-  const PackedScene* packed = std::get_if<PackedScene>(&input.content);
-  return packed != nullptr && packed->view.has_effects ? packed->view.effects.recursion_depth : 1;
-}
-
 }  // namespace
 
 std::uint64_t EffectFacts::bytes_of(std::string_view section) const {
@@ -74,23 +65,16 @@ std::uint64_t EffectFacts::bytes_of(std::string_view section) const {
   return found == sections.end() ? 0 : found->bytes;
 }
 
-SceneFacts collect_scene_facts(InfoArguments& arguments) {
-  PictureRequest picture{{}, std::nullopt, arguments.has_size, arguments.width, arguments.height};
-  const SceneInput input = read_scene_input(arguments.scene.input, arguments.scene.tolerance, picture);
-  settle_layout(arguments, input.text.has_value());
-  if (!arguments.scene.quiet) tell_notes(input);
+SceneFacts collect_scene_facts(const InfoPlan& plan, const SceneInput& input) {
   SceneFacts facts;
-  picture = complete_request(picture, input.text ? input.text->view : SceneView{});
-  facts.width = picture.width;
-  facts.height = picture.height;
-  const sim::MachineProfile& machine = *arguments.scene.machine;
+  const sim::MachineProfile& machine = *plan.scene.machine;
   const std::uint32_t tile_width = sim::usual_tile_width(sim::StoreSize::k256KB);
-  const std::uint32_t planes = arguments.has_depth ? 2 : 1;
-  const std::uint64_t budget_bytes = image_budget_bytes(machine, facts.width, facts.height, planes, tile_width,
+  const std::uint32_t planes = plan.has_depth ? 2 : 1;
+  const std::uint64_t budget_bytes = image_budget_bytes(machine, plan.size.x, plan.size.y, planes, tile_width,
                                                         spill_bytes_of(machine.core_count, recursion_depth(input)));
   if (const PackedScene* packed = std::get_if<PackedScene>(&input.content)) {
     const ImageHeader& header = packed->view.header;
-    if (arguments.accuracy) require_format(input, *packed, format_of(*arguments.accuracy));
+    if (plan.accuracy) require_format(input, *packed, format_of(*plan.accuracy));
     facts.is_packed = true;
     facts.vertices = header.vertex_count;
     facts.triangles = header.triangle_count;
@@ -99,17 +83,14 @@ SceneFacts collect_scene_facts(InfoArguments& arguments) {
     facts.wanted_lambda = facts.grid.lambda;
     facts.image_bytes = header.image_bytes;
     facts.fits = header.image_bytes <= budget_bytes;
-    facts.worst = find_worst_tile(arguments, packed->file.bytes, packed->view);
+    facts.worst = find_worst_tile(plan, packed->file.bytes, packed->view);
     if (packed->view.has_effects) facts.effects = effects_of(packed->view.effects, header.triangle_count);
   } else {
     const Mesh& mesh = std::get<Mesh>(input.content);
     const EffectsView view = input.text ? input.text->effects.view() : EffectsView{};
     const EffectsView* effects = input.text ? &view : nullptr;
-    SceneArguments scene = arguments.scene;
-    if (effects != nullptr && arguments.store == sim::StoreSize::k64KB) {
-      scene.most_macro_width = effect_store_facts(arguments.store, 0).max_macro_width;
-    }
-    const GridChoice choice = choose_grid(input, mesh, scene, arguments.format, budget_bytes, effects);
+    const GridChoice choice =
+        choose_grid(input, mesh, plan.scene, {plan.format, budget_bytes, plan.most_macro_width}, effects);
     facts.vertices = mesh.vertices.size();
     facts.triangles = mesh.triangles.size();
     facts.dropped_triangles = choice.need.dropped_triangle_count;
@@ -123,14 +104,14 @@ SceneFacts collect_scene_facts(InfoArguments& arguments) {
                                                     [&] { return allocate_aligned(choice.need.image_bytes); });
       const std::span<std::byte> image(storage.get(), choice.need.image_bytes);
       const SceneImageView built = build_image(input, mesh, choice, image, effects);
-      facts.worst = find_worst_tile(arguments, image, built);
+      facts.worst = find_worst_tile(plan, image, built);
     }
     if (input.text) facts.roundness = input.text->roundness;
     if (effects != nullptr) {
       facts.effects = effects_of(count_effects(view), static_cast<std::uint32_t>(mesh.triangles.size()));
     }
   }
-  facts.picture_bytes = planes * output_plane_bytes(facts.width, facts.height, tile_width) + sizeof(FrameRecord);
+  facts.picture_bytes = planes * output_plane_bytes(plan.size.x, plan.size.y, tile_width) + sizeof(FrameRecord);
   facts.bounds = bounds_of(facts.grid);
   return facts;
 }

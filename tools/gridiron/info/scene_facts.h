@@ -10,8 +10,8 @@
 #include <string_view>
 #include <vector>
 
-#include "gridiron/command_line/arguments.h"
 #include "gridiron/scene/scene_input.h"
+#include "info_plan.h"
 #include "scene_text/scene_description.h"
 #include "worst_tile.h"
 
@@ -56,12 +56,10 @@ struct SceneFacts {
   bool fits = false;                ///< in the machine's main memory
   LoopBounds bounds;
   EffectFacts effects;
-  std::optional<WorstTile> worst;       ///< where the image fits
-  std::uint32_t width = 0, height = 0;  ///< of the picture
+  std::optional<WorstTile> worst;  ///< where the image fits
 };
 
-/// Reads the scene and counts; an image that fits is built, to be counted too. Errors: Failure.
-/// @param arguments  the layout is settled as the scene that was read needs it.
-[[nodiscard]] SceneFacts collect_scene_facts(InfoArguments& arguments);
+/// Counts; an image that fits is built, to be counted too. Errors: Failure.
+[[nodiscard]] SceneFacts collect_scene_facts(const InfoPlan& plan, const SceneInput& input);
 
 }  // namespace gridiron::tool

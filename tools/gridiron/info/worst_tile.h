@@ -8,8 +8,7 @@
 #include <cstddef>
 #include <span>
 
-#include "gridiron/command_line/arguments.h"
-#include "gridiron/device/store_facts.h"
+#include "info_plan.h"
 
 namespace gridiron::tool {
 
@@ -24,10 +23,7 @@ struct WorstTile {
 
 /// The bound of a scene's frames as the configuration, the store and the machine asked for would render them, by the
 /// accuracy asked for, or the one that the image's format is for (`standard` of vertices).
-[[nodiscard]] WorstTile find_worst_tile(const InfoArguments& arguments, std::span<const std::byte> image,
+[[nodiscard]] WorstTile find_worst_tile(const InfoPlan& plan, std::span<const std::byte> image,
                                         const SceneImageView& view);
-
-/// The local store that `info` tells of, info_layout(). Errors: its.
-[[nodiscard]] StoreFacts info_store_facts(const InfoArguments& arguments, bool has_effects);
 
 }  // namespace gridiron::tool

@@ -35,7 +35,7 @@ std::uint64_t result_head_bytes(std::uint32_t tile_count) {
 }
 
 // The places of a job's parts, counted from its base.
-FrameJob plan_job(const FrameMemory& frame, const RenderArguments& arguments) {
+FrameJob plan_job(const FrameMemory& frame, const RenderPlan& plan) {
   FrameJob job{};
   job.magic = port::kFrameJobMagic;
   job.version = port::kFrameJobVersion;
@@ -48,8 +48,8 @@ FrameJob plan_job(const FrameMemory& frame, const RenderArguments& arguments) {
   job.tile_width = frame.record.tile_width;
   job.tile_count = frame.record.tiles_x * frame.record.tiles_y;
   job.effects = frame.settings.shading == Shading::kScene ? frame.image.effects.called_for : 0;
-  job.packet_width = arguments.packet_width;
-  job.store_bytes = sim::arena_bytes(arguments.store);
+  job.packet_width = plan.layout.packet_width;
+  job.store_bytes = sim::arena_bytes(plan.layout.store);
 
   // The device's own stores and the planes share no page, lest a cache's line be of both.
   job.result_address = round_up(job.loaded_bytes, kPageBytes);
@@ -68,7 +68,7 @@ FrameJob plan_job(const FrameMemory& frame, const RenderArguments& arguments) {
   if (frame.spill_bytes_per_core != 0) {
     job.spill_address = job.memory_bytes;
     job.spill_bytes = frame.spill_bytes_per_core;
-    job.spill_cores = arguments.threads;
+    job.spill_cores = plan.threads;
     job.memory_bytes += job.spill_bytes * job.spill_cores;
   }
   return job;
@@ -238,8 +238,8 @@ bool starts_with(std::span<const std::byte> bytes, std::uint32_t magic) {
 
 }  // namespace
 
-std::vector<std::byte> make_job_file(FrameMemory& frame, const RenderArguments& arguments, std::uint64_t base_address) {
-  FrameJob job = plan_job(frame, arguments);
+std::vector<std::byte> make_job_file(FrameMemory& frame, const RenderPlan& plan, std::uint64_t base_address) {
+  FrameJob job = plan_job(frame, plan);
   if (job.memory_bytes > std::numeric_limits<std::uint64_t>::max() - base_address) {
     throw Failure(ExitCode::kUsage, "--base: the job would end behind the last address");
   }

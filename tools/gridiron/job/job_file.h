@@ -15,7 +15,6 @@
 #include <vector>
 
 #include "files/input_file.h"
-#include "gridiron/command_line/arguments.h"
 #include "gridiron/frame/frame_memory.h"
 
 namespace gridiron::tool {
@@ -24,11 +23,11 @@ namespace gridiron::tool {
 /// lie as they do in the frame's own memory, modulo 4,096 bytes, so that transfers are cut alike and all counters are
 /// those of `gridiron render`.
 ///
-/// @param arguments  those that the frame was prepared with, depth_plane and ids_plane for planes without a file;
-///        threads is the number of cores that get memory for rays that wait.
+/// @param plan  the one that the frame was prepared with; threads is the number of cores that get memory for rays that
+///        wait.
 /// @param base_address  of the job on the device, a multiple of 4,096.
 /// Errors: Failure (kUsage) where the addresses end before the job does.
-[[nodiscard]] std::vector<std::byte> make_job_file(FrameMemory& frame, const RenderArguments& arguments,
+[[nodiscard]] std::vector<std::byte> make_job_file(FrameMemory& frame, const RenderPlan& plan,
                                                    std::uint64_t base_address);
 
 /// A job as read; everything that it names lies in it, in front of memory_bytes.

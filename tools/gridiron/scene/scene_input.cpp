@@ -19,7 +19,6 @@
 #include "base/words.h"
 #include "files/interrupt.h"
 #include "image_damage.h"
-#include "scene_text/scene_reader.h"
 
 namespace gridiron::tool {
 namespace {
@@ -46,9 +45,9 @@ ViewRequest view_of(const SceneView& view) {
 
 ScenePicture picture_of(const PictureRequest& asked, const SceneView& own, const PointSource& points) {
   const PictureRequest request = complete_request(asked, own);
-  const double aspect = static_cast<double>(request.width) / request.height;
+  const double aspect = static_cast<double>(request.size->x) / request.size->y;
   const Camera camera = complete_view(join_view(request.view, *request.camera), aspect, points);
-  return {camera.eye, camera.tan_half_fov, request.height};
+  return {camera.eye, camera.tan_half_fov, request.size->y};
 }
 
 // The triangles go to `mesh`, the rest to @returns.
@@ -103,6 +102,10 @@ std::string words_of_budget(const sim::MachineProfile& machine, std::uint64_t bu
          " are kept for pictures, the frame record and rays that wait (see 'gridiron machines')";
 }
 
+void require_tolerance(std::optional<float> tolerance, SceneKind kind) {
+  if (tolerance && kind != SceneKind::kText) usage_error("--tolerance: applies to text scenes (NFF) only");
+}
+
 }  // namespace
 
 SceneKind foreseen_kind(const std::filesystem::path& path) {
@@ -115,18 +118,31 @@ SceneKind foreseen_kind(const std::filesystem::path& path) {
   }
 }
 
-void require_tolerance(std::optional<float> tolerance, SceneKind kind) {
-  if (tolerance && kind != SceneKind::kText) {
-    throw Failure(ExitCode::kUsage, "--tolerance: applies to text scenes (NFF) only");
+KnownScene foreseen_scene(const SceneRequest& request) {
+  const SceneKind kind = foreseen_kind(request.input);
+  if (kind != SceneKind::kUnknown) require_tolerance(request.tolerance, kind);
+  return {kind, kind == SceneKind::kText};
+}
+
+KnownScene known_scene(const SceneInput& input) {
+  if (const PackedScene* packed = std::get_if<PackedScene>(&input.content)) {
+    return {SceneKind::kPacked, packed->view.has_effects, true};
   }
+  if (!input.text) return {SceneKind::kMesh, false, true};
+  const SceneView& view = input.text->view;
+  return {SceneKind::kText, true, true,
+          view.is_given() ? std::optional(CountPair{view.width, view.height}) : std::nullopt};
+}
+
+std::uint32_t recursion_depth(const SceneInput& input) {
+  if (input.text) return input.text->effects.recursion_depth;
+  const PackedScene* packed = std::get_if<PackedScene>(&input.content);
+  return packed != nullptr && packed->view.has_effects ? packed->view.effects.recursion_depth : 1;
 }
 
 PictureRequest complete_request(PictureRequest request, const SceneView& own) {
   if (!request.camera) request.camera = view_of(own);
-  if (!request.has_size && own.is_given()) {
-    request.width = own.width;
-    request.height = own.height;
-  }
+  if (!request.size) request.size = own.is_given() ? CountPair{own.width, own.height} : kUsualPictureSize;
   return request;
 }
 
@@ -209,40 +225,39 @@ std::uint64_t image_budget_bytes(const sim::MachineProfile& machine, std::uint32
   return memory - std::max(wanted, std::min(usual, memory / 2));
 }
 
-GridChoice choose_grid(const SceneInput& input, const Mesh& mesh, const SceneArguments& arguments,
-                       TriangleFormat format, std::uint64_t budget_bytes, const EffectsView* effects) {
+GridChoice choose_grid(const SceneInput& input, const Mesh& mesh, const SceneRequest& request,
+                       const ImageLimits& limits, const EffectsView* effects) {
   GridChoice choice;
   constexpr std::uint32_t kWalked = kPointShadows | kAreaLights | kReflection | kRefraction | kAmbientOcclusion;
   const bool casts_rays = effects != nullptr && (effects_called_for(*effects) & kWalked) != 0;
-  const Configuration& configuration = *arguments.configuration;
-  choice.wanted_lambda = arguments.lambda.value_or(casts_rays ? configuration.walk_lambda : configuration.lambda);
+  const Configuration& configuration = *request.configuration;
+  choice.wanted_lambda = request.lambda.value_or(casts_rays ? configuration.walk_lambda : configuration.lambda);
   choice.parameters.lambda = choice.wanted_lambda;
   choice.parameters.macro_width =
-      arguments.macro_width.value_or(std::min(configuration.macro_width, arguments.most_macro_width));
-  choice.parameters.format = format;
-  choice.budget_bytes = budget_bytes;
+      request.macro_width.value_or(std::min(configuration.macro_width, limits.most_macro_width));
+  choice.parameters.format = limits.format;
+  choice.budget_bytes = limits.budget_bytes;
   constexpr std::size_t kMarks = std::size_t{1} << 21;  // words: one sweep over the triangles for most scenes
   const std::unique_ptr<std::uint64_t[]> storage(new (std::nothrow) std::uint64_t[kMarks]);
   const std::span<std::uint64_t> marks(storage.get(), storage != nullptr ? kMarks : 0);
   // The size of an image that does not fit is counted too, but not for minutes.
   constexpr std::uint64_t kCountedBytes = std::uint64_t{8} << 30;
-  const std::uint64_t most_bytes = std::max(budget_bytes, kCountedBytes);
+  const std::uint64_t most_bytes = std::max(limits.budget_bytes, kCountedBytes);
   const Status status = [&] {
     const Stage stage(input.path, "choosing its grid");
-    return arguments.lambda
+    return request.lambda
                ? count_scene_image(mesh.view(), choice.parameters, choice.need, effects, most_bytes, marks)
-               : fit_scene_image(mesh.view(), choice.parameters, budget_bytes, choice.need, effects, marks);
+               : fit_scene_image(mesh.view(), choice.parameters, limits.budget_bytes, choice.need, effects, marks);
   }();
   if (status == Status::kMemoryTooSmall) {
     fail(input.path, "the scene needs more than " + words_of_bytes(choice.need.image_bytes) + " at lambda " +
-                         text_of(choice.wanted_lambda) + "; " + words_of_budget(*arguments.machine, budget_bytes) +
-                         "; a smaller --lambda needs less" +
-                         (input.text ? ", and so does a greater --tolerance" : ""));
+                         text_of(choice.wanted_lambda) + "; " + words_of_budget(*request.machine, limits.budget_bytes) +
+                         "; a smaller --lambda needs less" + (input.text ? ", and so does a greater --tolerance" : ""));
   }
   if (status == Status::kTooManyTriangles) {
-    const float lambda = arguments.lambda ? choice.wanted_lambda : kLeastLambda;
+    const float lambda = request.lambda ? choice.wanted_lambda : kLeastLambda;
     fail(input.path, std::string(words_of(status)) + " at lambda " + text_of(lambda) +
-                         (arguments.lambda ? "; a smaller --lambda needs fewer" : "") +
+                         (request.lambda ? "; a smaller --lambda needs fewer" : "") +
                          (input.text ? "; a greater --tolerance makes fewer triangles" : ""));
   }
   if (status == Status::kNoTriangles) {
@@ -256,17 +271,17 @@ GridChoice choose_grid(const SceneInput& input, const Mesh& mesh, const SceneArg
   return choice;
 }
 
-void require_fit(const GridChoice& choice, const SceneArguments& arguments, const SceneInput& input) {
+void require_fit(const GridChoice& choice, const SceneRequest& request, const SceneInput& input) {
   if (!choice.fits()) {
-    fail(arguments.input, "the scene needs " + words_of_bytes(choice.need.image_bytes) + " at lambda " +
-                              text_of(choice.parameters.lambda) + "; " +
-                              words_of_budget(*arguments.machine, choice.budget_bytes) +
-                              words_of_fitting_tolerance(choice, input));
+    fail(request.input, "the scene needs " + words_of_bytes(choice.need.image_bytes) + " at lambda " +
+                            text_of(choice.parameters.lambda) + "; " +
+                            words_of_budget(*request.machine, choice.budget_bytes) +
+                            words_of_fitting_tolerance(choice, input));
   }
-  if (!choice.is_reduced() || arguments.quiet) return;
+  if (!choice.is_reduced() || request.quiet) return;
   std::fprintf(stderr, "%s: lambda reduced from %g to %g so that the scene fits the main memory of %s\n",
-               arguments.input.c_str(), static_cast<double>(choice.wanted_lambda),
-               static_cast<double>(choice.parameters.lambda), std::string(arguments.machine->name).c_str());
+               request.input.c_str(), static_cast<double>(choice.wanted_lambda),
+               static_cast<double>(choice.parameters.lambda), std::string(request.machine->name).c_str());
 }
 
 SceneImageView build_image(const SceneInput& input, const Mesh& mesh, const GridChoice& choice,
@@ -295,24 +310,24 @@ void require_format(const SceneInput& input, const PackedScene& packed, Triangle
                        "; this needs --format " + word_of(format));
 }
 
-void check_packed(const SceneInput& input, const PackedScene& packed, const SceneArguments& arguments,
-                  TriangleFormat format, std::uint64_t budget_bytes) {
+void check_packed(const SceneInput& input, const PackedScene& packed, const SceneRequest& request,
+                  const ImageLimits& limits) {
   const GridRecord& grid = packed.view.grid;
-  require_format(input, packed, format);
-  if (arguments.lambda && *arguments.lambda != grid.lambda) {
+  require_format(input, packed, limits.format);
+  if (request.lambda && *request.lambda != grid.lambda) {
     fail(input.path, "was packed with lambda " + text_of(grid.lambda) + "; --lambda cannot change it");
   }
-  if (grid.macro_width > arguments.most_macro_width) {
+  if (grid.macro_width > limits.most_macro_width) {
     fail(input.path, "was packed with macrocells of width " + std::to_string(grid.macro_width) +
-                         "; the local store holds cell blocks of width " + std::to_string(arguments.most_macro_width));
+                         "; the local store holds cell blocks of width " + std::to_string(limits.most_macro_width));
   }
-  if (arguments.macro_width && *arguments.macro_width != grid.macro_width) {
+  if (request.macro_width && *request.macro_width != grid.macro_width) {
     fail(input.path, "was packed with macrocells of width " + std::to_string(grid.macro_width) +
                          "; --macro-width cannot change it");
   }
-  if (packed.view.header.image_bytes > budget_bytes) {
+  if (packed.view.header.image_bytes > limits.budget_bytes) {
     fail(input.path, "the scene needs " + words_of_bytes(packed.view.header.image_bytes) + "; " +
-                         words_of_budget(*arguments.machine, budget_bytes));
+                         words_of_budget(*request.machine, limits.budget_bytes));
   }
 }
 

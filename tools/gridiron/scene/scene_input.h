@@ -18,7 +18,7 @@
 #include "base/stopwatch.h"
 #include "files/file_kind.h"
 #include "files/input_file.h"
-#include "gridiron/command_line/arguments.h"
+#include "scene_request.h"
 #include "scene_text/scene_description.h"
 #include "scene_text/scene_effects.h"
 #include "scene_text/scene_reader.h"
@@ -65,16 +65,24 @@ inline constexpr const char* kMeshExpected = "expected a PLY mesh";
 struct PictureRequest {
   ViewRequest view{};                   ///< parts that replace those of any other view
   std::optional<ViewRequest> camera{};  ///< in place of the scene's own view
-  bool has_size = false;                ///< width and height are asked for
-  std::uint32_t width = 1024, height = 1024;
+  std::optional<CountPair> size{};      ///< in place of the scene's own
 };
 
-/// @returns the picture of a scene that brings the view `own`, or none: `camera` is given, `width` and `height` hold.
+/// @returns the picture of a scene that brings the view `own`, or none: `camera` and `size` are given.
 [[nodiscard]] PictureRequest complete_request(PictureRequest request, const SceneView& own);
 
 /// @returns the kind of a scene before it is read: that of the file's first bytes; of one that cannot be opened what
 /// its ending promises, so that the command line is checked all the same; kUnknown of a stream, which is read once.
 [[nodiscard]] SceneKind foreseen_kind(const std::filesystem::path& path);
+
+/// @returns what that says of the scene of a command. Errors: Failure (kUsage) where it has no use for the tolerance.
+[[nodiscard]] KnownScene foreseen_scene(const SceneRequest& request);
+
+/// @returns what a scene is known to be once it is read.
+[[nodiscard]] KnownScene known_scene(const SceneInput& input);
+
+/// @returns the depth of recursion of a scene's rays, 1 where it has no effects.
+[[nodiscard]] std::uint32_t recursion_depth(const SceneInput& input);
 
 /// Reads the scene. @param tolerance  of round shapes in a text scene; nothing: the reader's own, which goes by
 /// `picture`, completed by complete_request(), where that is given. @param expected  of the file, for messages.
@@ -96,8 +104,12 @@ void tell_notes(const SceneInput& input);
 /// @returns every file that the scene was read from: itself, and those that a text names.
 [[nodiscard]] std::vector<std::filesystem::path> files_of(const SceneInput& input);
 
-/// Throws Failure (kUsage) where a tolerance is given of a scene that is no text scene.
-void require_tolerance(std::optional<float> tolerance, SceneKind kind);
+/// What a scene image has to keep to.
+struct ImageLimits {
+  TriangleFormat format = TriangleFormat::kVertices;
+  std::uint64_t budget_bytes = 0;                   ///< of main memory
+  std::uint32_t most_macro_width = kMaxMacroWidth;  ///< that the local store holds: a configuration's is cut to it
+};
 
 /// The grid that a mesh will get, or that a packed scene has.
 struct GridChoice {
@@ -131,16 +143,15 @@ void require_format(const SceneInput& input, const PackedScene& packed, Triangle
 /// it. Where nothing fits the choice says so and holds the least need found.
 /// @param effects  that the image will hold; null: none.
 /// Errors: Failure (kBadInput) where there is nothing to trace.
-[[nodiscard]] GridChoice choose_grid(const SceneInput& input, const Mesh& mesh, const SceneArguments& arguments,
-                                     TriangleFormat format, std::uint64_t budget_bytes,
-                                     const EffectsView* effects = nullptr);
+[[nodiscard]] GridChoice choose_grid(const SceneInput& input, const Mesh& mesh, const SceneRequest& request,
+                                     const ImageLimits& limits, const EffectsView* effects = nullptr);
 
 /// @returns "0.00018", or "0.00018 to 0.0021" where objects have tolerances of their own.
 [[nodiscard]] std::string words_of_tolerance(const SceneRoundness& roundness);
 
 /// Says in one line of standard error that the grid was reduced; nothing where it was not, or is not to be told.
 /// Errors: Failure (kBadInput) where the choice does not fit; of a text scene with a tolerance that would.
-void require_fit(const GridChoice& choice, const SceneArguments& arguments, const SceneInput& input);
+void require_fit(const GridChoice& choice, const SceneRequest& request, const SceneInput& input);
 
 /// Builds the image of a mesh. @param image  kLineBytes-aligned, choice.need.image_bytes. @param effects  the choice's.
 /// @returns its validated view. Errors: Failure.
@@ -149,7 +160,7 @@ void require_fit(const GridChoice& choice, const SceneArguments& arguments, cons
 
 /// Throws Failure (kBadInput) where a packed scene cannot be used as asked: stored in another format, made with other
 /// grid parameters than the command line fixes, or larger than the budget.
-void check_packed(const SceneInput& input, const PackedScene& packed, const SceneArguments& arguments,
-                  TriangleFormat format, std::uint64_t budget_bytes);
+void check_packed(const SceneInput& input, const PackedScene& packed, const SceneRequest& request,
+                  const ImageLimits& limits);
 
 }  // namespace gridiron::tool
