@@ -64,9 +64,7 @@ PriceList::PriceList(std::vector<View> views, std::uint32_t width, std::uint32_t
                            .variant = std::move(variant),
                            .frame = add(system, machine_),
                            .with_distances = add(deep_system, machine_),
-                           .starved = add(system, starved_),
-                           .errors = std::nullopt,
-                           .at_edges = {}});
+                           .starved = add(system, starved_)});
       }
     }
   }

@@ -211,13 +211,7 @@ Table short_table(const Sweep& sweep, const Plan& done) {
 // A bar for each place, a group for each view.
 std::string bar_chart(const Sweep& sweep, const Plan& done, const std::string& configuration,
                       const std::string& title) {
-  BarChart chart{.title = title + ", " + configuration,
-                 .y_title = "frames a second",
-                 .groups = {},
-                 .bars = {},
-                 .parts = {""},
-                 .values = {},
-                 .labels = true};
+  BarChart chart{.title = title + ", " + configuration, .y_title = "frames a second", .parts = {""}, .labels = true};
   for (const Place& place : sweep.places) chart.bars.push_back(place.title);
   for (const Point& point : sweep.points) {
     if (point.configuration != configuration) continue;

@@ -2,6 +2,8 @@
 // Memory: their own. Threads: one; render and experiment start more. SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <cstdio>
+
 #include "gridiron/command_line/arguments.h"
 
 namespace gridiron::tool {
@@ -14,6 +16,8 @@ void run_command(const JobRequest& request);
 void run_command(const ResultRequest& request);
 void run_command(const MachinesRequest& request);
 void run_command(const ExperimentRequest& request);  ///< in tools/experiment
-void run_command(const TextRequest& request);
+inline void run_command(const TextRequest& request) {
+  std::fputs(request.text.c_str(), stdout);
+}
 
 }  // namespace gridiron::tool

@@ -3,7 +3,7 @@
 
 #include <gtest/gtest.h>
 
-#include "base/failure.h"
+#include "failure_of.h"
 #include "temporary_folder.h"
 
 namespace gridiron::test {
@@ -77,15 +77,10 @@ TEST_F(SceneInputTest, HalvesLambdaWhereReferencesOutgrowTheirCounts) {
   request_.input = folder_.write_ply("sheet.ply", mesh);
   input_ = tool::read_scene_input(request_.input);
   request_.lambda = 3000.0f;
-  try {
-    (void)choose(std::uint64_t{1} << 30);
-    ADD_FAILURE();
-  } catch (const tool::Failure& failure) {
-    const std::string words = failure.what();
-    EXPECT_NE(words.find("sheet.ply: the scene needs more than 1"), std::string::npos) << words;
-    EXPECT_NE(words.find(" GB at lambda 3000; cell-ps3 has 1.0 GB for it"), std::string::npos) << words;
-    EXPECT_NE(words.find("; a smaller --lambda needs less"), std::string::npos) << words;
-  }
+  const std::string words = failure_of([&] { return choose(std::uint64_t{1} << 30); });
+  EXPECT_NE(words.find("sheet.ply: the scene needs more than 1"), std::string::npos) << words;
+  EXPECT_NE(words.find(" GB at lambda 3000; cell-ps3 has 1.0 GB for it"), std::string::npos) << words;
+  EXPECT_NE(words.find("; a smaller --lambda needs less"), std::string::npos) << words;
   request_.lambda.reset();
   tool::Configuration fine = *request_.configuration;
   fine.lambda = 3000.0f;
@@ -126,14 +121,9 @@ TEST_F(SceneInputTest, ASmallMemoryKeepsHalfOfItselfForThePicture) {
   // What is missing is told with what is kept.
   request_.machine = std::make_shared<sim::MachineProfile>(small);
   request_.lambda = 64.0f;
-  try {
-    tool::require_fit(choose(budget_bytes), request_, input_);
-    ADD_FAILURE();
-  } catch (const tool::Failure& failure) {
-    const std::string words = failure.what();
-    EXPECT_NE(words.find("of its 1.0 MB of main memory 51"), std::string::npos) << words;
-    EXPECT_NE(words.find("KB are kept for pictures"), std::string::npos) << words;
-  }
+  const std::string words = failure_of([&] { tool::require_fit(choose(budget_bytes), request_, input_); });
+  EXPECT_NE(words.find("of its 1.0 MB of main memory 51"), std::string::npos) << words;
+  EXPECT_NE(words.find("KB are kept for pictures"), std::string::npos) << words;
 }
 
 }  // namespace

@@ -3,7 +3,7 @@
 
 #include <gtest/gtest.h>
 
-#include "base/failure.h"
+#include "failure_of.h"
 
 namespace gridiron::test {
 namespace {
@@ -39,12 +39,8 @@ TEST(View, DefectsAreUsageErrors) {
       {.eye = {}, .at = {}, .up = Vec3(0), .fov_degrees = {}},
   };
   for (const tool::ViewRequest& defect : defects) {
-    try {
-      (void)tool::complete_view(defect, 1.0, box);
-      ADD_FAILURE() << "accepted case " << &defect - defects;
-    } catch (const tool::Failure& failure) {
-      EXPECT_EQ(failure.code(), tool::ExitCode::kUsage);
-    }
+    SCOPED_TRACE(&defect - defects);
+    (void)failure_of([&] { return tool::complete_view(defect, 1.0, box); }, tool::ExitCode::kUsage);
   }
 }
 

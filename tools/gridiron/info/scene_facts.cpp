@@ -6,6 +6,7 @@
 
 #include <algorithm>
 #include <span>
+#include <utility>
 
 namespace gridiron::tool {
 namespace {
@@ -25,22 +26,14 @@ LoopBounds bounds_of(const GridRecord& grid) {
 }
 
 std::string_view name_of(SectionKind kind) {
-  switch (kind) {
-    case SectionKind::kEffects:
-      return "effects";
-    case SectionKind::kMaterials:
-      return "materials";
-    case SectionKind::kLights:
-      return "lights";
-    case SectionKind::kSurfaces:
-      return "surfaces";
-    case SectionKind::kNormals:
-      return "normals";
-    case SectionKind::kEnvironmentMap:
-      return "environment";
-    default:
-      return "other";
+  static constexpr std::pair<SectionKind, std::string_view> kNames[] = {
+      {SectionKind::kEffects, "effects"}, {SectionKind::kMaterials, "materials"},
+      {SectionKind::kLights, "lights"},   {SectionKind::kSurfaces, "surfaces"},
+      {SectionKind::kNormals, "normals"}, {SectionKind::kEnvironmentMap, "environment"}};
+  for (const auto& [named, name] : kNames) {
+    if (named == kind) return name;
   }
+  return "other";
 }
 
 EffectFacts effects_of(const EffectsRecord& record, std::uint32_t triangle_count) {
