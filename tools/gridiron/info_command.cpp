@@ -66,7 +66,7 @@ Json json_of(const WorstTile& worst) {
       work[std::string(work_name(static_cast<Work>(kind)))] = json_of_count(worst.bound.work[kind]);
     }
   }
-  return {{"accuracy", name_of(worst.frame.accuracy)},
+  return {{"accuracy", accuracy_name(worst.frame.accuracy)},
           {"depth", worst.frame.has_depth},
           {"lanes", worst.layout.lanes},
           {"tile_width", worst.layout.tile_width},
@@ -297,7 +297,7 @@ void print_text(const InfoPlan& plan, const SceneFacts& facts) {
     const WorstTile& worst = *facts.worst;
     std::snprintf(text, sizeof text, " at most %.3g %s of work, %.3g with all waits; ", worst.cycles.work,
                   unit_of(worst), worst.cycles.total());
-    const std::string asked = plan.accuracy ? ", accuracy " + name_of(*plan.accuracy) + "," : "";
+    const std::string asked = plan.accuracy ? ", accuracy " + std::string(accuracy_name(*plan.accuracy)) + "," : "";
     const std::string gets = words_of_most(worst.bound[Work::kGetIssue]) + " gets of ";
     print_line("worst tile", "for any camera" + asked + text + gets + words_of_most(worst.bound.get_bytes) + " bytes");
   }

@@ -20,8 +20,7 @@ void run_command(const JobRequest& request) {
   const bool quiet = request.render.scene.quiet;
   const StageLines stages(!quiet);
   RequestedFrame requested = read_requested_frame(request.render, {{"-o", request.output, OutputKind::kBinary}});
-  RenderPlan& plan = requested.plan;
-  plan.threads = plan.cores;  // as many of the frame's slices of memory
+  const RenderPlan& plan = requested.plan;
   FrameMemory frame(frame_memory_bytes(requested.input, plan));
   prepare_frame(frame, std::move(requested.input), plan, requested.view);
   const std::vector<std::byte> file = make_job_file(frame, plan, request.base_address);

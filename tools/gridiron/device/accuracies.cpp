@@ -27,8 +27,8 @@ std::span<const NamedAccuracy> accuracies() {
   return kAccuracies;
 }
 
-std::string name_of(Accuracy accuracy) {
-  return std::string(std::ranges::find(kAccuracies, accuracy, &NamedAccuracy::accuracy)->name);
+std::string_view accuracy_name(Accuracy accuracy) {
+  return std::ranges::find(kAccuracies, accuracy, &NamedAccuracy::accuracy)->name;
 }
 
 }  // namespace gridiron::tool

@@ -5,7 +5,6 @@
 #include <gridiron/base/records.h>
 
 #include <span>
-#include <string>
 #include <string_view>
 
 namespace gridiron::tool {
@@ -20,6 +19,6 @@ struct NamedAccuracy {
 [[nodiscard]] std::span<const NamedAccuracy> accuracies();
 
 /// @returns what --accuracy calls it.
-[[nodiscard]] std::string name_of(Accuracy accuracy);
+[[nodiscard]] std::string_view accuracy_name(Accuracy accuracy);
 
 }  // namespace gridiron::tool

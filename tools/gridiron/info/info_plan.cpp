@@ -18,7 +18,7 @@ TriangleFormat triangle_format_of(const InfoRequest& request) {
   if (!request.accuracy) return request.format.value_or(TriangleFormat::kVertices);
   const TriangleFormat format = format_of(*request.accuracy);
   if (request.format.value_or(format) != format) {
-    usage_error("--accuracy " + name_of(*request.accuracy) + ": reads --format " + word_of(format));
+    usage_error("--accuracy " + std::string(accuracy_name(*request.accuracy)) + ": reads --format " + word_of(format));
   }
   return format;
 }

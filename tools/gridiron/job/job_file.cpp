@@ -68,7 +68,7 @@ FrameJob plan_job(const FrameMemory& frame, const RenderPlan& plan) {
   if (frame.spill_bytes_per_core != 0) {
     job.spill_address = job.memory_bytes;
     job.spill_bytes = frame.spill_bytes_per_core;
-    job.spill_cores = plan.threads;
+    job.spill_cores = plan.cores;
     job.memory_bytes += job.spill_bytes * job.spill_cores;
   }
   return job;

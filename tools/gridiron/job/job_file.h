@@ -23,8 +23,7 @@ namespace gridiron::tool {
 /// lie as they do in the frame's own memory, modulo 4,096 bytes, so that transfers are cut alike and all counters are
 /// those of `gridiron render`.
 ///
-/// @param plan  the one that the frame was prepared with; threads is the number of cores that get memory for rays that
-///        wait.
+/// @param plan  the one that the frame was prepared with; each of its cores gets memory for rays that wait.
 /// @param base_address  of the job on the device, a multiple of 4,096.
 /// Errors: Failure (kUsage) where the addresses end before the job does.
 [[nodiscard]] std::vector<std::byte> make_job_file(FrameMemory& frame, const RenderPlan& plan,
