@@ -6,7 +6,7 @@
 #include <cstdlib>
 #include <string_view>
 
-#include "gridiron/failure.h"
+#include "base/failure.h"
 #include "scene_text/scene_reader.h"
 
 namespace {

@@ -47,7 +47,7 @@ TEST_P(RoomsBreach, IsNoticed) {
 }
 
 constexpr const char* kNotFreestanding = "is not a freestanding header";
-constexpr const char* kMustNot = "must not include room";
+constexpr const char* kMustNot = "must not include folder";
 constexpr const char* kHosted = "a hosted type";
 
 INSTANTIATE_TEST_SUITE_P(
@@ -61,6 +61,8 @@ INSTANTIATE_TEST_SUITE_P(
         Breach{"core_on_glm", "core/gridiron/ray/a.h", "#include <glm/vec3.hpp>", nullptr},
         Breach{"port_on_core", "platform/board/a.h", "#include <gridiron/render/tile_renderer.h>", nullptr},
         Breach{"tools_on_anything", "tools/a.cpp", "#include <vector>", nullptr},
+        Breach{"frame_on_scene", "tools/gridiron/frame/a.h", "#include \"gridiron/scene/view.h\"", nullptr},
+        Breach{"command_on_job", "tools/gridiron/a.cpp", "#include \"gridiron/job/job_file.h\"", nullptr},
         Breach{"placement_new", "core/gridiron/ray/a.h", "void* f(void* p) { return new (p) int; }", nullptr},
         Breach{"deleted", "core/gridiron/ray/a.h", "struct A { A(const A&) = delete; };", nullptr},
         Breach{"word_in_comment", "core/gridiron/ray/a.h", "int a;  // try malloc(1) and throw it away", nullptr},
@@ -81,7 +83,11 @@ INSTANTIATE_TEST_SUITE_P(
                "platform knows nothing of base"},
         Breach{"platform_on_glm", "platform/gridiron/platform/a.h", "#include <glm/vec3.hpp>", "does not use GLM"},
         Breach{"port_on_sim", "platform/board/a.h", "#include <gridiron/sim/trace.h>", "nothing of the simulator"},
-        Breach{"new_room", "core/gridiron/attic/a.h", "int a;", "not in a room of core"},
+        Breach{"new_room", "core/gridiron/attic/a.h", "int a;", "not in a folder of core"},
+        Breach{"files_on_program", "tools/files/a.h", "#include \"gridiron/scene/view.h\"", kMustNot},
+        Breach{"scene_text_on_program", "tools/scene_text/a.h", "#include \"gridiron/scene/view.h\"", kMustNot},
+        Breach{"scene_on_frame", "tools/gridiron/scene/a.cpp", "#include \"gridiron/frame/untile.h\"", kMustNot},
+        Breach{"frame_on_command", "tools/gridiron/frame/a.h", "#include \"gridiron/commands.h\"", kMustNot},
         // What core does not use.
         Breach{"vector_header", "core/gridiron/build/grid/a.h", "#include <vector>", kNotFreestanding},
         Breach{"cmath_header", "core/gridiron/build/grid/a.cpp", "#include <cmath>", kNotFreestanding},

@@ -15,10 +15,10 @@
 #include <vector>
 
 #include "console.h"
-#include "gridiron/arguments.h"
-#include "gridiron/frame_memory.h"
-#include "gridiron/job_file.h"
-#include "gridiron/requested_frame.h"
+#include "gridiron/command_line/arguments.h"
+#include "gridiron/frame/frame_memory.h"
+#include "gridiron/frame/requested_frame.h"
+#include "gridiron/job/job_file.h"
 
 namespace gridiron::port {
 
@@ -45,10 +45,10 @@ class JobMemory {
     options.insert(options.begin(), {"gridiron", "job", input.c_str(), "-o", output.c_str(), "--base", "0", "--quiet"});
     const tool::Command command = tool::parse_arguments(static_cast<int>(options.size()), options.data());
     const tool::RequestedFrame request =
-        tool::read_requested_frame(std::get<tool::JobArguments>(command).render, {{"-o", output}});
-    tool::FrameMemory frame(tool::frame_memory_bytes(request.input, request.arguments));
-    tool::prepare_frame(frame, request.input, request.arguments, request.view);
-    file_ = tool::make_job_file(frame, request.arguments, reinterpret_cast<std::uintptr_t>(bytes_));
+        tool::read_requested_frame(std::get<tool::JobRequest>(command).render, {{"-o", output}});
+    tool::FrameMemory frame(tool::frame_memory_bytes(request.input, request.plan));
+    tool::prepare_frame(frame, request.input, request.plan, request.view);
+    file_ = tool::make_job_file(frame, request.plan, reinterpret_cast<std::uintptr_t>(bytes_));
     load();
   }
   ~JobMemory() { ::operator delete (bytes_, std::align_val_t{4096}); }

@@ -7,9 +7,9 @@
 #include <string>
 #include <string_view>
 
-#include "gridiron/atomic_file.h"
-#include "gridiron/failure.h"
-#include "gridiron/output_target.h"
+#include "base/failure.h"
+#include "files/atomic_file.h"
+#include "files/output_target.h"
 
 namespace {
 

@@ -3,10 +3,10 @@
 
 #include <utility>
 
+#include "base/words.h"
 #include "experiment/price_book.h"
 #include "experiment/price_list.h"
 #include "experiment/sections.h"
-#include "gridiron/words.h"
 
 namespace gridiron::experiment {
 namespace {
@@ -21,23 +21,21 @@ void write_method(const PriceList& list, Book& book) {
   book.section("method", "How it is measured");
   book.paragraph(
       "Truth is exact arithmetic on the mesh as it was read. Profile exact gives it: tests/numeric and tests/image "
-      "hold "
-      "its triangles and distances against integers and rational numbers. So its frame, with distances, in "
+      "hold its triangles and distances against integers and rational numbers. So its frame, with distances, in "
       "configuration best is what all others are held against; whatever a profile does to the mesh is an error of the "
       "profile. All profiles of a view see it through the same camera, so a pixel is the same ray for all.");
   book.paragraph(
       "A ray that hits something in truth and nothing here is a hole, one that hits nothing in truth and something "
-      "here "
-      "a false hit; one that hits another triangle than in truth has a wrong triangle, even where the distance is the "
-      "same float, and sees through what it should hit where that triangle is farther away by more than a thousandth: "
-      "in a solid a leak shows the far side, not a hole. A picture's rays hardly ever meet an edge, so as many rays "
-      "again are aimed at edges and, a quarter of them, at vertices of triangles that the picture shows: pictures of " +
+      "here a false hit; one that hits another triangle than in truth has a wrong triangle, even where the distance is "
+      "the same float, and sees through what it should hit where that triangle is farther away by more than a "
+      "thousandth: in a solid a leak shows the far side, not a hole. A picture's rays hardly ever meet an edge, so as "
+      "many rays again are aimed at edges and, a quarter of them, at vertices of triangles that the picture shows: "
+      "pictures of " +
       std::to_string(CloseLook::kWidth) + "x" + std::to_string(CloseLook::kWidth) +
       " pixels from the same eye, with distances, so small that all of their rays pass the point within a few "
       "roundings, "
       "through the same grid and the same code. A profile that moves vertices moves outlines and edges with them: what "
-      "it "
-      "misses there is its geometry's error, not a crack in it. The least share that can be told is one ray of a "
+      "it misses there is its geometry's error, not a crack in it. The least share that can be told is one ray of a "
       "picture.");
   book.paragraph(
       "The plane of distances holds t times the length of the ray's direction, each rounded to a float; the length is "

@@ -1,11 +1,10 @@
 // Book. SPDX-License-Identifier: Apache-2.0
 #include "experiment/book.h"
 
-#include <gridiron/atomic_file.h>
-
 #include <utility>
 
 #include "experiment/svg_plot.h"
+#include "files/atomic_file.h"
 
 namespace gridiron::experiment {
 namespace {

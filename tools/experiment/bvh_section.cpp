@@ -239,10 +239,9 @@ Writer plan_figure7(Plan& plan, const Stage& stage) {
         (paper_cases.greatest() < 0.4
              ? "The difference is the cached BVH's: the reference keeps the paper's packets of 8x8 rays and its "
                "techniques, while the hierarchy is built with what is known since. Its packets are four times as "
-               "large, their "
-               "quarters are held against four boxes at once, and their triangles are culled by subpackets and their "
-               "distances estimated first, by the code that it shares with best. What that is worth shows on the "
-               "grid's own side: best, which has the like, renders " +
+               "large, their quarters are held against four boxes at once, and their triangles are culled by "
+               "subpackets and their distances estimated first, by the code that it shares with best. What that is "
+               "worth shows on the grid's own side: best, which has the like, renders " +
                    best_ratios.text(2) + " times the frames of the reference, and in the reference's place it has " +
                    paper_cases_best.text(2) +
                    " of the cached BVH's frames. It is not the hiding of latency: against the hierarchy without its "

@@ -8,10 +8,10 @@
 #include <optional>
 #include <utility>
 
-#include "gridiron/failure.h"
-#include "gridiron/frame_failure.h"
-#include "gridiron/interrupt.h"
-#include "gridiron/words.h"
+#include "base/failure.h"
+#include "base/words.h"
+#include "files/interrupt.h"
+#include "gridiron/frame/frame_failure.h"
 
 namespace gridiron::experiment {
 namespace {

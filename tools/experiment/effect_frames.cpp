@@ -3,15 +3,14 @@
 
 #include <algorithm>
 
+#include "base/failure.h"
 #include "experiment/systems.h"
 #include "experiment/table.h"
-#include "gridiron/arguments.h"
-#include "gridiron/chip_frame.h"
-#include "gridiron/effect_names.h"
-#include "gridiron/failure.h"
-#include "gridiron/frame_memory.h"
-#include "gridiron/layout_choice.h"
-#include "gridiron/untile.h"
+#include "gridiron/frame/chip_frame.h"
+#include "gridiron/frame/frame_memory.h"
+#include "gridiron/frame/render_plan.h"
+#include "gridiron/frame/untile.h"
+#include "gridiron/scene/effect_names.h"
 
 namespace gridiron::experiment {
 namespace {
@@ -19,21 +18,16 @@ namespace {
 constexpr Stage kSecondaryStages[] = {Stage::kSurface, Stage::kShadow, Stage::kOcclusion, Stage::kBounce,
                                       Stage::kEnvironment};
 
-tool::RenderArguments arguments_of(const EffectScene& scene, const EffectFrameRequest& request) {
-  tool::RenderArguments arguments;
-  arguments.scene.input = scene.key;
-  arguments.scene.machine = home_machine();
-  arguments.scene.configuration = tool::find_configuration("best");
-  arguments.scene.lambda = request.lambda;
-  arguments.asked.depths = request.depths;
-  arguments.width = request.width;
-  arguments.height = request.height;
-  arguments.threads = 1;
-  arguments.lanes = 4;
-  arguments.techniques = arguments.scene.configuration->techniques;
-  arguments.shading = Shading::kScene;
-  tool::settle_layout(arguments);
-  return arguments;
+tool::RenderPlan plan_of(const EffectScene& scene, const EffectFrameRequest& request) {
+  tool::RenderRequest asked;
+  asked.scene.input = scene.key;
+  asked.scene.machine = home_machine();
+  asked.scene.configuration = tool::find_configuration("best");
+  asked.scene.lambda = request.lambda;
+  asked.layout.depths = request.depths;
+  asked.size = {request.width, request.height};
+  asked.threads = 1;
+  return tool::resolve(asked, {.kind = tool::SceneKind::kText, .has_effects = true, .is_read = true}, {});
 }
 
 [[noreturn]] void fail_check(const std::string& message) {
@@ -110,14 +104,14 @@ double EffectFrame::secondary_wait_cycles() const {
 }
 
 EffectFrame render_effect_frame(const EffectScene& scene, const EffectFrameRequest& request) {
-  const tool::RenderArguments arguments = arguments_of(scene, request);
+  const tool::RenderPlan plan = plan_of(scene, request);
   const tool::SceneInput input = input_of(scene);
   const tool::SceneView& view = input.text->view;
-  tool::FrameMemory memory(tool::frame_memory_bytes(input, arguments));
-  tool::prepare_frame(memory, input, arguments,
+  tool::FrameMemory memory(tool::frame_memory_bytes(input, plan));
+  tool::prepare_frame(memory, input, plan,
                       {.eye = view.from, .at = view.at, .up = view.up, .fov_degrees = view.angle_degrees});
-  const sim::ChipResult result = tool::render_on_chip(memory, arguments, {});
-  const sim::FrameTiming timing = sim::replay(result.trace, *arguments.scene.machine, {.core_count = 6});
+  const sim::ChipResult result = tool::render_on_chip(memory, plan, {});
+  const sim::FrameTiming timing = sim::replay(result.trace, *plan.scene.machine, {.core_count = 6});
 
   EffectFrame frame;
   frame.called_for = memory.image.effects.called_for;

@@ -17,18 +17,15 @@
 #include <vector>
 
 #include "experiment/effect_scenes.h"
-#include "gridiron/configurations.h"
-#include "gridiron/image_files.h"
+#include "files/image_files.h"
+#include "gridiron/device/configurations.h"
 
 namespace gridiron::experiment {
-
-inline constexpr tool::BufferDepths kSingleBuffers = {.output = 1, .macro = 1, .triangle = 1, .walks = 1};
-inline constexpr tool::BufferDepths kDoubleBuffers = {.output = 2, .macro = 2, .triangle = 2, .walks = 2};
 
 struct EffectFrameRequest {
   std::uint32_t width = 96, height = 96;
   float lambda = 4;  ///< grid cells per triangle
-  tool::BufferDepths depths = kDoubleBuffers;
+  tool::BufferDepths depths = tool::kDoubleBuffering;
 };
 
 /// What a frame did.

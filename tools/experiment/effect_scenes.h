@@ -10,7 +10,7 @@
 #include <string_view>
 #include <vector>
 
-#include "gridiron/scene_input.h"
+#include "gridiron/scene/scene_input.h"
 #include "scene_text/scene_description.h"
 
 namespace gridiron::experiment {

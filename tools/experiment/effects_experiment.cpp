@@ -7,16 +7,16 @@
 #include <mutex>
 #include <utility>
 
+#include "base/words.h"
 #include "experiment/book.h"
 #include "experiment/effect_frames.h"
 #include "experiment/effect_sizes.h"
 #include "experiment/svg_plot.h"
 #include "experiment/table.h"
 #include "experiment/workers.h"
-#include "gridiron/effect_names.h"
-#include "gridiron/image_files.h"
-#include "gridiron/store_facts.h"
-#include "gridiron/words.h"
+#include "files/image_files.h"
+#include "gridiron/device/store_facts.h"
+#include "gridiron/scene/effect_names.h"
 
 namespace gridiron::experiment {
 namespace {
@@ -119,9 +119,9 @@ std::vector<Step> list_steps(std::vector<SceneFrames>& scenes, const EffectsExpe
       steps.push_back({&variant.scene, request, &frame, variant.scene.key + ", " + variant.title, variant.expected});
     };
     for (Variant& variant : frames.variants) {
-      request.depths = kSingleBuffers;
+      request.depths = tool::kSingleBuffering;
       add(variant, variant.single);
-      request.depths = kDoubleBuffers;
+      request.depths = tool::kDoubleBuffering;
       add(variant, variant.twofold);
     }
     for (std::size_t i = 0; i < std::size(kLambdas); ++i) {
@@ -148,11 +148,10 @@ void write_scenes(const std::vector<SceneFrames>& scenes, Book& book) {
   book.section("scenes", "The scenes");
   book.paragraph(
       "Each scene is shown with all the effects that it calls for, and then without one of them at a time. An effect "
-      "is "
-      "switched off in the scene, not in the kernel: shadows are off for all lights, an area light becomes a point in "
-      "its middle, reflection ends with a depth of recursion of 1 (and refraction with it, for glass reflects), glass "
-      "lets nothing through, normals are the triangles' own, highlights have no exponent, the background is in place "
-      "of the sky, a pixel has one sample. What a row of pictures does not show, the scene does not call for.");
+      "is switched off in the scene, not in the kernel: shadows are off for all lights, an area light becomes a point "
+      "in its middle, reflection ends with a depth of recursion of 1 (and refraction with it, for glass reflects), "
+      "glass lets nothing through, normals are the triangles' own, highlights have no exponent, the background is in "
+      "place of the sky, a pixel has one sample. What a row of pictures does not show, the scene does not call for.");
   for (const SceneFrames& scene : scenes) {
     const EffectScene& whole = scene.whole().scene;
     book.paragraph(scene.key() + ": " + whole.words + "; " +
@@ -217,11 +216,9 @@ void write_stages(const std::vector<SceneFrames>& scenes, Book& book) {
   book.section("stages", "Where the cycles go");
   book.paragraph(
       "A core is in one stage at a time: primary is eye rays and the set-up of tiles, surface finds points, normals "
-      "and "
-      "materials of what was hit, shadow lights them, occlusion sends rays about them, bounce traces what they reflect "
-      "and refract, environment looks up the sky, output makes pixels of sums. Plots show cycles of all cores "
-      "together, "
-      "waits included, with double buffering.");
+      "and materials of what was hit, shadow lights them, occlusion sends rays about them, bounce traces what they "
+      "reflect and refract, environment looks up the sky, output makes pixels of sums. Plots show cycles of all cores "
+      "together, waits included, with double buffering.");
   for (const SceneFrames& scene : scenes) {
     BarChart chart{"Cycles by stage: " + scene.key(), "million cycles of all cores", {}, {"without"}, {}, {}, false};
     for (std::size_t i = 0; i < kStageCount; ++i) {
@@ -396,8 +393,7 @@ void write_method(const EffectsExperiment& experiment, Book& book) {
       "All scenes are made in process, without files. Frames of " + std::to_string(experiment.width) + "x" +
       std::to_string(experiment.height) +
       " pixels are rendered by the kernel's real code in checked mode with four lanes, accuracy standard, "
-      "configuration "
-      "best with " +
+      "configuration best with " +
       number_text(kLambda) +
       " cells per triangle, and their traces get a time on six cores of cell-ps3. Single buffering is one buffer of "
       "each kind and one walk of secondary rays at a time, double buffering two of each. Rays are counted where they "

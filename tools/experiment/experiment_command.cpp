@@ -4,21 +4,20 @@
 #include <filesystem>
 #include <string>
 #include <system_error>
-#include <thread>
 #include <utility>
 #include <vector>
 
+#include "base/failure.h"
+#include "base/progress.h"
+#include "base/stopwatch.h"
+#include "base/words.h"
 #include "experiment/accuracy_experiment.h"
 #include "experiment/effects_experiment.h"
 #include "experiment/paper_experiment.h"
-#include "gridiron/atomic_file.h"
+#include "files/atomic_file.h"
+#include "files/interrupt.h"
+#include "files/output_folder.h"
 #include "gridiron/commands.h"
-#include "gridiron/failure.h"
-#include "gridiron/interrupt.h"
-#include "gridiron/output_folder.h"
-#include "gridiron/progress.h"
-#include "gridiron/stopwatch.h"
-#include "gridiron/words.h"
 
 namespace gridiron::tool {
 namespace {
@@ -51,44 +50,44 @@ std::vector<std::string> file_names_of(ExperimentName name) {
   return name == ExperimentName::kPaper ? experiment::paper_file_names() : experiment::accuracy_file_names();
 }
 
-experiment::ExperimentResult run(const ExperimentArguments& arguments, const experiment::ProgressCall& progress) {
-  const std::uint32_t threads =
-      arguments.threads != 0 ? arguments.threads : std::max(1u, std::thread::hardware_concurrency());
-  if (arguments.name == ExperimentName::kAccuracy) {
-    return experiment::run_accuracy_experiment(
-        {.scenes = arguments.scenes, .threads = threads, .width = arguments.width, .height = arguments.height},
-        progress);
+experiment::ExperimentResult run(const ExperimentRequest& request, const experiment::ProgressCall& progress) {
+  const std::uint32_t threads = request.threads.value_or(this_host().threads);
+  const std::filesystem::path scenes = request.scenes.value_or("");
+  const CountPair usual = request.name == ExperimentName::kEffects ? CountPair{96, 96} : kUsualPictureSize;
+  const auto [width, height] = request.size.value_or(usual);
+  if (request.name == ExperimentName::kAccuracy) {
+    return experiment::run_accuracy_experiment({.scenes = scenes, .threads = threads, .width = width, .height = height},
+                                               progress);
   }
-  if (arguments.name == ExperimentName::kEffects) {
-    return experiment::run_effects_experiment(
-        {.threads = threads, .width = arguments.width, .height = arguments.height}, progress);
+  if (request.name == ExperimentName::kEffects) {
+    return experiment::run_effects_experiment({.threads = threads, .width = width, .height = height}, progress);
   }
-  return experiment::run_paper_experiment({.scenes = arguments.scenes,
+  return experiment::run_paper_experiment({.scenes = scenes,
                                            .threads = threads,
-                                           .width = arguments.width,
-                                           .height = arguments.height,
-                                           .largest_knot = arguments.largest_knot},
+                                           .width = width,
+                                           .height = height,
+                                           .largest_knot = request.largest_knot.value_or(1'000'000)},
                                           progress);
 }
 
 }  // namespace
 
-void run_command(const ExperimentArguments& arguments) {
-  check_scenes(arguments.scenes);
-  const std::vector<std::string> names = file_names_of(arguments.name);
-  OutputFolder folder(arguments.output, names);
+void run_command(const ExperimentRequest& request) {
+  check_scenes(request.scenes.value_or(""));
+  const std::vector<std::string> names = file_names_of(request.name);
+  OutputFolder folder(request.output, names);
   const Stopwatch stopwatch;
   experiment::ExperimentResult result;
   {
-    Progress progress(!arguments.quiet, "runs");
-    result = run(arguments, [&progress](std::uint32_t done, std::uint32_t total) { progress.update(done, total); });
+    Progress progress(!request.quiet, "runs");
+    result = run(request, [&progress](std::uint32_t done, std::uint32_t total) { progress.update(done, total); });
   }
-  experiment::write_files(arguments.output, result.files);
+  experiment::write_files(request.output, result.files);
   folder.keep();
-  remove_stale_files(arguments.output, names, result.files);
-  if (arguments.quiet) return;
+  remove_stale_files(request.output, names, result.files);
+  if (request.quiet) return;
   for (const std::string& sentence : result.missing) std::printf("%s\n", sentence.c_str());
-  std::printf("%s: %s, %s rendered, %s of the machine, %.1f s\n", (arguments.output / "index.html").c_str(),
+  std::printf("%s: %s, %s rendered, %s of the machine, %.1f s\n", (request.output / "index.html").c_str(),
               words_of_count(result.files.size(), "file").c_str(), words_of_count(result.frame_count, "frame").c_str(),
               words_of_count(result.run_count, "run").c_str(), stopwatch.seconds());
 }

@@ -5,7 +5,7 @@
 
 #include "experiment/sections.h"
 #include "experiment/svg_plot.h"
-#include "gridiron/store_facts.h"
+#include "gridiron/device/store_facts.h"
 
 namespace gridiron::experiment {
 namespace {
@@ -185,24 +185,21 @@ std::vector<double> depths_up_to(std::uint32_t most) {
   return depths;
 }
 
-std::vector<double> macro_depth_values() {
-  return depths_up_to(tool::usual_store_facts(sim::StoreSize::k256KB, 32).max_macro_depth);
-}
+/// A ring of buffers whose depth is swept.
+struct Ring {
+  std::uint32_t tool::BufferDepths::*depth;
+  const char *key, *noun;  ///< "macro_depth", "cell blocks"
 
-std::vector<double> triangle_depth_values() {
-  return depths_up_to(tool::usual_store_facts(sim::StoreSize::k256KB, 32).max_triangle_depth);
-}
+  [[nodiscard]] std::vector<double> values() const {
+    return depths_up_to(tool::usual_store_facts(sim::StoreSize::k256KB, 32).most_depths.*depth);
+  }
+};
+constexpr Ring kMacroRing = {&tool::BufferDepths::macro, "macro_depth", "cell blocks"};
+constexpr Ring kTriangleRing = {&tool::BufferDepths::triangle, "triangle_depth", "triangle buffers"};
 
-std::vector<Step> plan_macro_depths(Plan& plan, const Stage& stage) {
-  return plan_steps(plan, stage, macro_depth_values(), "macro_depth", [](GridVariant& variant, double value) {
-    variant.configuration.depths.macro = static_cast<std::uint32_t>(value);
-    return true;
-  });
-}
-
-std::vector<Step> plan_triangle_depths(Plan& plan, const Stage& stage) {
-  return plan_steps(plan, stage, triangle_depth_values(), "triangle_depth", [](GridVariant& variant, double value) {
-    variant.configuration.depths.triangle = static_cast<std::uint32_t>(value);
+std::vector<Step> plan_depths(Plan& plan, const Stage& stage, const Ring& ring) {
+  return plan_steps(plan, stage, ring.values(), ring.key, [&ring](GridVariant& variant, double value) {
+    variant.configuration.depths.*ring.depth = static_cast<std::uint32_t>(value);
     return true;
   });
 }
@@ -217,7 +214,7 @@ std::string swept_value_words(double value, std::span<const double> values) {
 
 ChoiceWords plan_choice_words(Plan& plan, const Stage& stage) {
   const auto lambdas = plan_lambdas(plan, stage), widths = plan_widths(plan, stage);
-  const auto macros = plan_macro_depths(plan, stage), triangles = plan_triangle_depths(plan, stage);
+  const auto macros = plan_depths(plan, stage, kMacroRing), triangles = plan_depths(plan, stage, kTriangleRing);
   return [lambdas, widths, macros, triangles](const Plan& done) {
     const tool::Configuration best = grid_variant("best").configuration;
     const auto depth_words = [&done](const std::vector<Step>& steps, std::uint32_t own, const std::string& noun) {
@@ -250,9 +247,7 @@ Writer plan_grid_sweeps(Plan& plan, const Stage& stage) {
                            {.title = "Cells per triangle",
                             .x_title = "lambda",
                             .y_title = "frames a second",
-                            .series = {},
                             .log_x = true,
-                            .log_y = false,
                             .x_ticks = {0.125, 0.25, 0.5, 1, 2, 4, 8, 16}},
                            fps_of),
                 "Frames a second against lambda, 6 cores, no shading.");
@@ -272,9 +267,6 @@ Writer plan_grid_sweeps(Plan& plan, const Stage& stage) {
                            {.title = "Macrocell size",
                             .x_title = "cells along an edge",
                             .y_title = "frames a second",
-                            .series = {},
-                            .log_x = false,
-                            .log_y = false,
                             .x_ticks = {2, 3, 4, 5, 6, 7, 8}},
                            fps_of),
                 "Frames a second against the width of macrocells, 6 cores, no shading.");
@@ -340,7 +332,7 @@ Writer plan_packet_sweep(Plan& plan, const Stage& stage) {
 }
 
 Writer plan_prefetch_sweeps(Plan& plan, const Stage& stage) {
-  const auto macros = plan_macro_depths(plan, stage), triangles = plan_triangle_depths(plan, stage);
+  const auto macros = plan_depths(plan, stage, kMacroRing), triangles = plan_depths(plan, stage, kTriangleRing);
   return [macros, triangles](const Plan& done, Book& book) {
     book.section("prefetch", "Sweep: prefetch depth");
     book.paragraph(
@@ -351,31 +343,22 @@ Writer plan_prefetch_sweeps(Plan& plan, const Stage& stage) {
         "; from the least to the most triangle buffers by: " + fetched_more(done, triangles) +
         ". Most frames a second with this many cell blocks: " + best_values(done, macros) +
         "; with this many triangle buffers: " + best_values(done, triangles) + ".");
-    book.figure("sweep_macro_depth",
-                step_chart(done, macros,
-                           {.title = "Prefetch of cell blocks",
-                            .x_title = "cell blocks in rotation",
-                            .y_title = "waiting, % of core cycles",
-                            .series = {},
-                            .log_x = false,
-                            .log_y = false,
-                            .x_ticks = macro_depth_values()},
-                           wait_of),
-                "Share of waiting against the number of cell-block buffers, 6 cores, no shading.");
-    book.figure("sweep_triangle_depth",
-                step_chart(done, triangles,
-                           {.title = "Prefetch of triangles",
-                            .x_title = "triangle buffers in rotation",
-                            .y_title = "waiting, % of core cycles",
-                            .series = {},
-                            .log_x = false,
-                            .log_y = false,
-                            .x_ticks = triangle_depth_values()},
-                           wait_of),
-                "Share of waiting against the number of triangle buffers, 6 cores, no shading.");
-    book.linked_table(step_table(done, macros, "sweep_macro_depth", {"macro_depth", "cell blocks", 0}), "cell blocks.");
-    book.linked_table(step_table(done, triangles, "sweep_triangle_depth", {"triangle_depth", "triangle buffers", 0}),
-                      "triangle buffers.");
+    const auto write = [&](const Ring& ring, const std::vector<Step>& steps, const std::string& title,
+                           const std::string& buffers) {
+      const std::string name = std::string("sweep_") + ring.key, nouns = ring.noun;
+      book.figure(name,
+                  step_chart(done, steps,
+                             {.title = "Prefetch of " + title,
+                              .x_title = nouns + " in rotation",
+                              .y_title = "waiting, % of core cycles",
+                              .x_ticks = ring.values()},
+                             wait_of),
+                  "Share of waiting against the number of " + buffers + ", 6 cores, no shading.");
+      return std::pair(step_table(done, steps, name, {ring.key, nouns, 0}), nouns + ".");
+    };
+    const auto macro = write(kMacroRing, macros, "cell blocks", "cell-block buffers");
+    const auto triangle = write(kTriangleRing, triangles, "triangles", "triangle buffers");
+    for (const auto& [table, words] : {macro, triangle}) book.linked_table(table, words);
   };
 }
 

@@ -107,17 +107,13 @@ Writer plan_table1(Plan& plan, const Stage& stage) {
     LineChart build{.title = "Build: cycles of the general core",
                     .x_title = "triangles",
                     .y_title = "cycles",
-                    .series = {},
                     .log_x = true,
-                    .log_y = true,
-                    .x_ticks = {}};
+                    .log_y = true};
     LineChart walk{.title = "Traversal: steps of a frame",
                    .x_title = "triangles",
                    .y_title = "steps",
-                   .series = {},
                    .log_x = true,
-                   .log_y = true,
-                   .x_ticks = {}};
+                   .log_y = true};
     Range grid_build, grid_walk, bvh_build, bvh_walk;
     for (std::size_t c = 0; c < stage.contenders.size(); ++c) {
       const Contender& contender = stage.contenders[c];
@@ -165,10 +161,9 @@ Writer plan_table1(Plan& plan, const Stage& stage) {
         "and O(log n) for a hierarchy [P]. Here all four are counted on one torus knot, made at several sizes and seen "
         "by the same camera. Build steps are the counted steps that the machine's general core is priced by (a vertex "
         "checked, a row of cells met, a reference sorted, a triangle entered into a bin, ...); their cycles weigh "
-        "them. "
-        "A traversal step of the grid is one macro slice, macrocell, slice or cell, one of the hierarchy a node or a "
-        "leaf; both are summed over all packets of a frame. Where the paper names a function, the last column is the "
-        "exponent that a fit of that function over the same triangle counts gives [D].");
+        "them. A traversal step of the grid is one macro slice, macrocell, slice or cell, one of the hierarchy a node "
+        "or a leaf; both are summed over all packets of a frame. Where the paper names a function, the last column is "
+        "the exponent that a fit of that function over the same triangle counts gives [D].");
     book.paragraph("Building the grid grows with exponent " + grid_build.text(2) + ", building the hierarchy with " +
                    bvh_build.text(2) + "; traversing the grid with " + grid_walk.text(2) +
                    ", traversing the hierarchy with " + bvh_walk.text(2) +

@@ -272,8 +272,7 @@ Writer plan_table4(Plan& plan, const Stage& stage) {
         ". The latency, an assumption of 500 cycles: single-buffered on six cores, the reference waits " +
         latency_words(done, latencies) +
         ". The view: how far the shares are apart within a column shows what it can do, and the paper does not tell "
-        "its "
-        "views. " +
+        "its views. " +
         kCostTableWords);
     book.table(wait, "Share of core cycles spent waiting for DMA.");
   };

@@ -3,7 +3,7 @@
 #include <vector>
 
 #include "experiment/sections.h"
-#include "gridiron/interrupt.h"
+#include "files/interrupt.h"
 
 #ifdef GRIDIRON_HAS_EMBREE
 #include "embree_peer/embree_peer.h"

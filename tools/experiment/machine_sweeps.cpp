@@ -153,29 +153,28 @@ Writer plan_machine_sweeps(Plan& plan, const Stage& stage) {
                        plan.add(view, bvh.system, Shading::kNone, stage.machine, kPaperCores));
   }
   return [&stage, curves, latencies, bandwidths, turns](const Plan& done, Book& book) {
+    const auto draw = [&](const std::string& name, const std::vector<Point>& points, std::uint32_t cores,
+                          const LineChart& chart, auto value, const std::string& words) {
+      for (const View* view : stage.sweep_views) {
+        LineChart titled = chart;
+        titled.title += ", " + view->title;
+        book.figure(name + "_" + view->key, point_chart(done, curves, points, *view, cores, titled, value),
+                    view->title + ": " + words);
+      }
+    };
     book.section("latency", "Sweep: memory latency");
     book.paragraph(
         "Cycles from the end of a line's turn on the memory channel to its arrival. The profile assumes 500; what is "
         "published is \"several hundred\", and the paper's machine may well have had more or less. The grid's recorded "
-        "frame is the "
-        "same at every point, only the replay changes; the hierarchy is rendered anew. Without hiding every cycle of "
-        "latency is waited for; double buffering "
-        "hides a transfer only as long as the work beside it lasts, and more buffers, as best has them, move that "
-        "limit out. " +
+        "frame is the same at every point, only the replay changes; the hierarchy is rendered anew. Without hiding "
+        "every cycle of latency is waited for; double buffering hides a transfer only as long as the work beside it "
+        "lasts, and more buffers, as best has them, move that limit out. " +
         ring_words(done, turns));
-    for (const View* view : stage.sweep_views) {
-      book.figure("sweep_latency_" + view->key,
-                  point_chart(done, curves, latencies, *view, kPaperCores,
-                              {.title = "Latency, " + view->title,
-                               .x_title = "latency, cycles",
-                               .y_title = "waiting, % of core cycles",
-                               .series = {},
-                               .log_x = false,
-                               .log_y = false,
-                               .x_ticks = {}},
-                              [](const RunResult& run) { return run.wait_percent(); }),
-                  view->title + ": share of waiting against latency, 6 cores, no shading.");
-    }
+    draw(
+        "sweep_latency", latencies, kPaperCores,
+        {.title = "Latency", .x_title = "latency, cycles", .y_title = "waiting, % of core cycles"},
+        [](const RunResult& run) { return run.wait_percent(); },
+        "share of waiting against latency, 6 cores, no shading.");
     book.table(point_table(done, curves, latencies, "sweep_latency", {"latency_cycles", "latency, cycles", 0}),
                "Latency of main memory.");
 
@@ -185,19 +184,10 @@ Writer plan_machine_sweeps(Plan& plan, const Stage& stage) {
         "on sixteen cores. Where halving it changes nothing the frame is bound by work or latency; where fps halves "
         "with it the channel is full, and only fetching fewer bytes helps. " +
         scarce_words(done, stage, bandwidths));
-    for (const View* view : stage.sweep_views) {
-      book.figure("sweep_bandwidth_" + view->key,
-                  point_chart(done, curves, bandwidths, *view, kManyCores,
-                              {.title = "Bandwidth, " + view->title,
-                               .x_title = "GB/s, shared",
-                               .y_title = "frames a second",
-                               .series = {},
-                               .log_x = true,
-                               .log_y = false,
-                               .x_ticks = {}},
-                              [](const RunResult& run) { return run.fps(); }),
-                  view->title + ": frames a second against bandwidth, 16 cores, no shading.");
-    }
+    draw(
+        "sweep_bandwidth", bandwidths, kManyCores,
+        {.title = "Bandwidth", .x_title = "GB/s, shared", .y_title = "frames a second", .log_x = true},
+        [](const RunResult& run) { return run.fps(); }, "frames a second against bandwidth, 16 cores, no shading.");
     book.table(point_table(done, curves, bandwidths, "sweep_bandwidth", {"gigabytes_per_second", "GB/s", 2}),
                "Bandwidth of main memory.");
   };

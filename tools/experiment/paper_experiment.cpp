@@ -7,7 +7,7 @@
 #include "experiment/plan.h"
 #include "experiment/sections.h"
 #include "experiment/svg_plot.h"
-#include "gridiron/interrupt.h"
+#include "files/interrupt.h"
 
 namespace gridiron::experiment {
 namespace {

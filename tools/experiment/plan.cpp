@@ -6,9 +6,9 @@
 #include <mutex>
 #include <utility>
 
+#include "base/failure.h"
 #include "experiment/workers.h"
-#include "gridiron/failure.h"
-#include "gridiron/interrupt.h"
+#include "files/interrupt.h"
 
 namespace gridiron::experiment {
 

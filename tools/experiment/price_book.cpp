@@ -8,7 +8,7 @@
 
 #include "experiment/price_words.h"
 #include "experiment/svg_plot.h"
-#include "gridiron/interrupt.h"
+#include "files/interrupt.h"
 
 namespace gridiron::experiment {
 namespace {
@@ -478,8 +478,7 @@ void write_fronts(const PriceList& list, Book& book) {
       "and better in one of them. Three errors are told: wrong pixels (a hole, a false hit or another triangle) and "
       "leaks of rays aimed at edges (a hole, or something farther away seen through it), both against the time of a "
       "frame that gives a picture alone, and the error of t against that of a frame that gives distances too. Times "
-      "are "
-      "geometric means over the views, errors those of the worst view.");
+      "are geometric means over the views, errors those of the worst view.");
   for (const Front& front : make_fronts()) {
     const std::vector<FrontPoint> over_all = front_points(list, front, std::nullopt);
     book.figure("pareto_" + front.key, front_svg(list, front, "all views", over_all),
@@ -536,9 +535,8 @@ void write_views(const PriceList& list, Book& book) {
         errors,
         "Holes, rays that see through, false hits and wrong triangles of a million rays aimed at edges; the same of a "
         "million pixels; error of t where the true triangle is shown: median, 99th percentile and greatest in ulp, "
-        "99th "
-        "percentile as a share; PSNR in dB (empty where no pixel differs) and the greatest difference of a channel, of "
-        "255.");
+        "99th percentile as a share; PSNR in dB (empty where no pixel differs) and the greatest difference of a "
+        "channel, of 255.");
     book.text(price_text_name(shown.key), aligned_text(costs) + "\n" + aligned_text(view_errors(list, view, false)),
               "both tables as plain text, leaks being holes and what is seen through.");
     for (std::size_t configuration = 0; configuration < std::size(kPricedConfigurations); ++configuration) {
@@ -583,9 +581,8 @@ void write_host_prices(const PriceList& list, Book& book) {
   book.section("host", "This host");
   book.paragraph(
       "The same kernel directly on this host, without checks or a simulated clock, on one thread and in the widest "
-      "SIMD "
-      "groups that the host has. Those are times of one machine, whatever else it was doing: they are kept in a file "
-      "whose name begins with host_, which alone differs from run to run, and are not repeated on this page.");
+      "SIMD groups that the host has. Those are times of one machine, whatever else it was doing: they are kept in a "
+      "file whose name begins with host_, which alone differs from run to run, and are not repeated on this page.");
   book.linked_table(table, "milliseconds of a frame, the least of three, by the wall clock and of its processor.");
 }
 

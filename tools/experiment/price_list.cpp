@@ -7,12 +7,12 @@
 #include <mutex>
 #include <utility>
 
+#include "base/failure.h"
 #include "experiment/edge_points.h"
 #include "experiment/sections.h"
 #include "experiment/workers.h"
-#include "gridiron/accuracies.h"
-#include "gridiron/failure.h"
-#include "gridiron/interrupt.h"
+#include "files/interrupt.h"
+#include "gridiron/device/accuracies.h"
 
 namespace gridiron::experiment {
 namespace {
@@ -64,9 +64,7 @@ PriceList::PriceList(std::vector<View> views, std::uint32_t width, std::uint32_t
                            .variant = std::move(variant),
                            .frame = add(system, machine_),
                            .with_distances = add(deep_system, machine_),
-                           .starved = add(system, starved_),
-                           .errors = std::nullopt,
-                           .at_edges = {}});
+                           .starved = add(system, starved_)});
       }
     }
   }

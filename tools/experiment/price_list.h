@@ -37,8 +37,8 @@ struct Price {
   std::size_t view, configuration, profile;  ///< indices
   GridVariant variant;
   Plan::RunId frame, with_distances, starved;  ///< the last: `frame` on the starved machine
-  std::optional<Comparison> errors;            ///< nothing where the frame or its truth cannot be rendered
-  HitCounts at_edges;                          ///< of rays aimed at edges and vertices, about as many as pixels
+  std::optional<Comparison> errors{};          ///< nothing where the frame or its truth cannot be rendered
+  HitCounts at_edges{};                        ///< of rays aimed at edges and vertices, about as many as pixels
   bool same_picture = false;                   ///< with distances and without
 };
 

@@ -5,8 +5,8 @@
 #include <cmath>
 #include <utility>
 
+#include "base/words.h"
 #include "experiment/table.h"
-#include "gridiron/words.h"
 
 namespace gridiron::experiment {
 namespace {

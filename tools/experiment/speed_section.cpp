@@ -77,8 +77,7 @@ Writer plan_table3(Plan& plan, const Stage& stage) {
     book.paragraph(
         "Frames a second on " + std::string(stage.machine.profile.name) +
         ", one core and six. There is no column of the paper's fps, for the copy of its text lacks the figures of "
-        "Table "
-        "3; it says that simple shading costs 10-20 % [P]. \"Projection test\" is the "
+        "Table 3; it says that simple shading costs 10-20 % [P]. \"Projection test\" is the "
         "reference configuration with the paper's own intersection test (precomputed projection, single precision, may "
         "leak); the others use the exact default.");
     book.table(fps, "Frames a second.");

@@ -8,7 +8,7 @@
 
 #include "experiment/sections.h"
 #include "experiment/svg_plot.h"
-#include "gridiron/store_facts.h"
+#include "gridiron/device/store_facts.h"
 
 namespace gridiron::experiment {
 namespace {
@@ -86,8 +86,8 @@ Point make_point(Plan& plan, const Stage& stage, const View& view, const char* c
     point.note = missing_words(layout);
     return point;
   }
-  fitted.depths.macro = std::min(fitted.depths.macro, point.layout->max_macro_depth);
-  fitted.depths.triangle = std::min(fitted.depths.triangle, point.layout->max_triangle_depth);
+  fitted.depths.macro = std::min(fitted.depths.macro, point.layout->most_depths.macro);
+  fitted.depths.triangle = std::min(fitted.depths.triangle, point.layout->most_depths.triangle);
   if (fitted.depths.macro != usual.depths.macro || fitted.depths.triangle != usual.depths.triangle) {
     point.note = "no room for " + std::to_string(usual.depths.macro) + " cell blocks and " +
                  std::to_string(usual.depths.triangle) + " triangle buffers";
@@ -211,13 +211,7 @@ Table short_table(const Sweep& sweep, const Plan& done) {
 // A bar for each place, a group for each view.
 std::string bar_chart(const Sweep& sweep, const Plan& done, const std::string& configuration,
                       const std::string& title) {
-  BarChart chart{.title = title + ", " + configuration,
-                 .y_title = "frames a second",
-                 .groups = {},
-                 .bars = {},
-                 .parts = {""},
-                 .values = {},
-                 .labels = true};
+  BarChart chart{.title = title + ", " + configuration, .y_title = "frames a second", .parts = {""}, .labels = true};
   for (const Place& place : sweep.places) chart.bars.push_back(place.title);
   for (const Point& point : sweep.points) {
     if (point.configuration != configuration) continue;
@@ -421,7 +415,7 @@ Table contents_table() {
       table.add({configuration, std::uint64_t{facts.arena_bytes >> 10}, std::uint64_t{facts.tile_width},
                  std::uint64_t{facts.packet_width}, std::uint64_t{facts.mailbox_slots},
                  std::uint64_t{facts.resident_macro_cells}, std::uint64_t{facts.max_macro_width},
-                 std::uint64_t{facts.max_macro_depth}, std::uint64_t{facts.max_triangle_depth},
+                 std::uint64_t{facts.most_depths.macro}, std::uint64_t{facts.most_depths.triangle},
                  std::uint64_t{facts.triangles_per_buffer}, facts.data_bytes(), free_bytes(facts)});
     }
   }
@@ -467,8 +461,8 @@ std::string short_store_words() {
   std::string stores;
   const tool::BufferDepths wanted = grid_variant("best").configuration.depths;
   for (const NamedLayout& layout : layouts_of("best")) {
-    const bool is_short =
-        layout.facts.max_macro_depth < wanted.macro || layout.facts.max_triangle_depth < wanted.triangle;
+    const tool::BufferDepths& most = layout.facts.most_depths;
+    const bool is_short = most.macro < wanted.macro || most.triangle < wanted.triangle;
     if (is_short) stores += (stores.empty() ? "" : ", ") + layout.title;
   }
   return stores.empty() ? "" : "; " + stores + " have fewer than the " + buffer_words("best") + " of best";

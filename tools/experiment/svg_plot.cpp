@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <utility>
 
 #include "experiment/table.h"
 
@@ -232,24 +233,12 @@ std::string tick_text(double value) {
 }
 
 std::string escape_markup(std::string_view text) {
+  static constexpr std::pair<char, std::string_view> kEscapes[] = {
+      {'&', "&amp;"}, {'<', "&lt;"}, {'>', "&gt;"}, {'"', "&quot;"}};
   std::string escaped;
   for (const char letter : text) {
-    switch (letter) {
-      case '&':
-        escaped += "&amp;";
-        break;
-      case '<':
-        escaped += "&lt;";
-        break;
-      case '>':
-        escaped += "&gt;";
-        break;
-      case '"':
-        escaped += "&quot;";
-        break;
-      default:
-        escaped += letter;
-    }
+    const auto* const found = std::ranges::find(kEscapes, letter, &std::pair<char, std::string_view>::first);
+    escaped += found != std::end(kEscapes) ? found->second : std::string_view(&letter, 1);
   }
   return escaped;
 }

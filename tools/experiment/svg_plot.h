@@ -42,19 +42,19 @@ struct Series {
 
 struct LineChart {
   std::string title, x_title, y_title;
-  std::vector<Series> series;
+  std::vector<Series> series{};
   bool log_x = false, log_y = false;  ///< linear axes start at 0
   bool zoom_y = false;                ///< the linear y axis spans its values instead
-  std::vector<double> x_ticks;        ///< empty: chosen
+  std::vector<double> x_ticks{};      ///< empty: chosen
 };
 
 /// Bars in groups; a bar is a stack of parts.
 struct BarChart {
   std::string title, y_title;
-  std::vector<std::string> groups;  ///< along the axis
-  std::vector<std::string> bars;    ///< of each group, side by side; named under them where there is more than one part
+  std::vector<std::string> groups{};  ///< along the axis
+  std::vector<std::string> bars{};  ///< of each group, side by side; named under them where there is more than one part
   std::vector<std::string> parts;   ///< of each bar, from the axis upwards; one part: bars have the colours
-  std::vector<double> values;       ///< [group][bar][part], not negative; NaN: no bar
+  std::vector<double> values{};     ///< [group][bar][part], not negative; NaN: no bar
   bool labels = false;              ///< the bar's height in figures above it, where bars are wide enough
 };
 

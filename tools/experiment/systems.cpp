@@ -11,48 +11,47 @@
 #include <numeric>
 #include <utility>
 
+#include "base/failure.h"
+#include "base/stopwatch.h"
+#include "base/words.h"
 #include "experiment/bvh_system.h"
-#include "gridiron/arguments.h"
-#include "gridiron/failure.h"
-#include "gridiron/frame_failure.h"
-#include "gridiron/frame_memory.h"
-#include "gridiron/interrupt.h"
-#include "gridiron/stopwatch.h"
-#include "gridiron/store_facts.h"
-#include "gridiron/untile.h"
-#include "gridiron/words.h"
+#include "files/interrupt.h"
+#include "gridiron/device/store_facts.h"
+#include "gridiron/frame/frame_failure.h"
+#include "gridiron/frame/frame_memory.h"
+#include "gridiron/frame/render_plan.h"
+#include "gridiron/frame/untile.h"
 
 namespace gridiron::experiment {
 namespace {
 
-tool::RenderArguments arguments_of(const GridVariant& variant, const View& view, const FrameRequest& request) {
-  tool::RenderArguments arguments;
-  arguments.scene.input = view.scene->path;
-  arguments.scene.machine = home_machine();
-  arguments.scene.configuration = &variant.configuration;
-  arguments.scene.lambda = variant.configuration.lambda;  // kept or refused: a reduced grid would be another system
-  arguments.width = request.width;
-  arguments.height = request.height;
-  arguments.packet_width = variant.configuration.packet_width;
-  arguments.depths = variant.configuration.depths;
-  arguments.techniques = variant.configuration.techniques;
-  arguments.accuracy = variant.accuracy;
-  arguments.shading = request.shading;
-  arguments.store = variant.store;
-  arguments.tile_width = variant.tile_width;
-  if (variant.depth) arguments.depth.emplace();
-  return arguments;
+tool::RenderPlan plan_of(const GridVariant& variant, const View& view, const FrameRequest& request) {
+  tool::RenderPlan plan;
+  plan.scene.input = view.scene->path;
+  plan.scene.machine = home_machine();
+  plan.cores = home_machine()->core_count;
+  plan.scene.configuration = &variant.configuration;
+  plan.scene.lambda = variant.configuration.lambda;  // kept or refused: a reduced grid would be another system
+  plan.width = request.width;
+  plan.height = request.height;
+  plan.layout = {variant.store, variant.tile_width, variant.configuration.packet_width};
+  plan.depths = variant.configuration.depths;
+  plan.techniques = variant.configuration.techniques;
+  plan.accuracy = variant.accuracy;
+  plan.shading = request.shading;
+  plan.has_depth = variant.depth;
+  return plan;
 }
 
-sim::ChipResult run_chip(tool::FrameMemory& frame, const tool::RenderArguments& arguments, sim::Mode mode,
-                         std::uint32_t lanes, std::uint32_t threads) {
+sim::ChipResult run_chip(tool::FrameMemory& frame, const tool::RenderPlan& plan, sim::Mode mode, std::uint32_t lanes,
+                         std::uint32_t threads) {
   sim::ChipOptions options;
   options.mode = mode;
   options.threads = threads;
   options.lanes = lanes;
-  options.store = arguments.store;
-  options.packet_width = arguments.packet_width;
-  options.limits.queue_depth = arguments.scene.machine->queue_depth;
+  options.store = plan.layout.store;
+  options.packet_width = plan.layout.packet_width;
+  options.limits.queue_depth = plan.scene.machine->queue_depth;
   options.abort = &tool::interrupt_flag();
   sim::ChipResult result = sim::render_frame(frame.memory, frame.record_address, options);
   tool::stop_if_interrupted();
@@ -154,10 +153,10 @@ std::vector<Contender> make_contenders() {
 }
 
 std::unique_ptr<Recording> GridSystem::record(const View& view, const FrameRequest& request) const {
-  const tool::RenderArguments arguments = arguments_of(variant_, view, request);
+  const tool::RenderPlan plan = plan_of(variant_, view, request);
   tool::FrameMemory frame(home_machine()->main_memory_bytes);
-  tool::prepare_frame(frame, *view.scene, arguments, view.camera);
-  sim::ChipResult result = run_chip(frame, arguments, sim::Mode::kChecked, 4, 1);
+  tool::prepare_frame(frame, *view.scene, plan, view.camera);
+  sim::ChipResult result = run_chip(frame, plan, sim::Mode::kChecked, 4, 1);
 
   FrameFacts facts;
   facts.build = sim::grid_build_work(view.mesh().vertices.size(), view.mesh().triangles.size(), frame.need);
@@ -171,31 +170,29 @@ std::unique_ptr<Recording> GridSystem::record(const View& view, const FrameReque
   facts.triangle_bytes = std::uint64_t{frame.image.grid.triangle_bytes} * frame.image.grid.reference_count;
   facts.fetched_triangle_bytes = fetched_triangle_bytes(result.trace);
   facts.main_memory_bytes = frame.memory.used_bytes();
-  const tool::StoreFacts store = *tool::find_store_facts(arguments.layout());  // it has rendered
+  const tool::StoreFacts store = *tool::find_store_facts(plan.layout);  // it has rendered
   facts.local_store_bytes = store.data_bytes() + store.code_bytes + store.stack_bytes;
   facts.picture_hash = tool::image_hash(words_of(frame, frame.color));
   return std::make_unique<GridRecording>(std::move(facts), std::move(result.trace));
 }
 
 Answers render_answers(const GridVariant& variant, const View& view, const FrameRequest& request) {
-  tool::RenderArguments arguments = arguments_of(variant, view, request);
-  arguments.depth.emplace();
-  arguments.ids.emplace();
+  tool::RenderPlan plan = plan_of(variant, view, request);
+  plan.has_depth = plan.has_ids = true;
   tool::FrameMemory frame(home_machine()->main_memory_bytes);
-  tool::prepare_frame(frame, *view.scene, arguments, view.camera);
-  (void)run_chip(frame, arguments, sim::Mode::kPlain, 4, 1);
+  tool::prepare_frame(frame, *view.scene, plan, view.camera);
+  (void)run_chip(frame, plan, sim::Mode::kPlain, 4, 1);
   return {words_of(frame, frame.color), words_of(frame, frame.ids), depth_of(frame)};
 }
 
 struct CloseLook::Parts {
   Parts(const GridVariant& variant, const View& view)
-      : arguments(arguments_of(variant, view, {.width = kWidth, .height = kWidth, .shading = Shading::kNone})),
+      : plan(plan_of(variant, view, {.width = kWidth, .height = kWidth, .shading = Shading::kNone})),
         frame(home_machine()->main_memory_bytes) {
-    arguments.depth.emplace();
-    arguments.ids.emplace();
-    tool::prepare_frame(frame, *view.scene, arguments, view.camera);
+    plan.has_depth = plan.has_ids = true;
+    tool::prepare_frame(frame, *view.scene, plan, view.camera);
   }
-  tool::RenderArguments arguments;
+  tool::RenderPlan plan;
   tool::FrameMemory frame;
 };
 
@@ -215,7 +212,7 @@ void CloseLook::look_at(const Vec3& point, Answers& answers) {
   constexpr float kPixel = 0x1p-25f;
   camera.tan_half_fov = kPixel * kWidth / 2;
   tool::aim_camera(frame, camera);
-  (void)run_chip(frame, parts_->arguments, sim::Mode::kPlain, 4, 1);
+  (void)run_chip(frame, parts_->plan, sim::Mode::kPlain, 4, 1);
   const std::vector<std::uint32_t> ids = words_of(frame, frame.ids);
   const std::vector<float> depth = depth_of(frame);
   answers.ids.insert(answers.ids.end(), ids.begin(), ids.end());
@@ -239,11 +236,11 @@ HostSeconds least_host_seconds(std::uint32_t repeats, const std::function<void()
 
 HostFrame render_on_host(const GridVariant& variant, const View& view, const FrameRequest& request,
                          std::uint32_t threads, std::uint32_t repeats) {
-  const tool::RenderArguments arguments = arguments_of(variant, view, request);
+  const tool::RenderPlan plan = plan_of(variant, view, request);
   tool::FrameMemory frame(home_machine()->main_memory_bytes);
-  tool::prepare_frame(frame, *view.scene, arguments, view.camera);
+  tool::prepare_frame(frame, *view.scene, plan, view.camera);
   const HostSeconds seconds =
-      least_host_seconds(repeats, [&] { run_chip(frame, arguments, sim::Mode::kPlain, sim::widest_lanes(), threads); });
+      least_host_seconds(repeats, [&] { run_chip(frame, plan, sim::Mode::kPlain, sim::widest_lanes(), threads); });
   return {seconds, frame.record};
 }
 

@@ -19,8 +19,8 @@
 #include "experiment/answers.h"
 #include "experiment/paper_values.h"
 #include "experiment/views.h"
-#include "gridiron/configurations.h"
-#include "gridiron/machine_file.h"
+#include "gridiron/device/configurations.h"
+#include "gridiron/device/machine_file.h"
 
 namespace gridiron::experiment {
 

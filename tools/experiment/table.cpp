@@ -6,7 +6,7 @@
 #include <charconv>
 #include <cmath>
 
-#include "gridiron/words.h"
+#include "base/words.h"
 
 namespace gridiron::experiment {
 namespace {

@@ -8,8 +8,8 @@
 #include <system_error>
 #include <utility>
 
-#include "gridiron/failure.h"
-#include "gridiron/words.h"
+#include "base/failure.h"
+#include "base/words.h"
 
 namespace gridiron::experiment {
 namespace {

@@ -9,8 +9,8 @@
 #include <string_view>
 #include <vector>
 
-#include "gridiron/scene_input.h"
-#include "gridiron/view.h"
+#include "gridiron/scene/scene_input.h"
+#include "gridiron/scene/view.h"
 
 namespace gridiron::experiment {
 

@@ -12,21 +12,21 @@
 #include <utility>
 #include <vector>
 
-#include "atomic_file.h"
-#include "chip_frame.h"
-#include "command_files.h"
+#include "base/failure.h"
+#include "base/progress.h"
+#include "base/words.h"
 #include "commands.h"
-#include "failure.h"
-#include "frame_memory.h"
-#include "frame_pictures.h"
-#include "image_files.h"
-#include "interrupt.h"
-#include "output_folder.h"
-#include "progress.h"
-#include "scene_input.h"
-#include "scene_points.h"
-#include "unseen_scene.h"
-#include "words.h"
+#include "files/atomic_file.h"
+#include "files/command_files.h"
+#include "files/image_files.h"
+#include "files/interrupt.h"
+#include "files/output_folder.h"
+#include "gridiron/frame/chip_frame.h"
+#include "gridiron/frame/frame_memory.h"
+#include "gridiron/frame/frame_pictures.h"
+#include "gridiron/frame/unseen_scene.h"
+#include "gridiron/scene/scene_input.h"
+#include "gridiron/scene/scene_points.h"
 
 namespace gridiron::tool {
 namespace {
@@ -63,9 +63,9 @@ SceneInput read_mesh(const std::filesystem::path& path) {
 }
 
 // Folders give their .ply files by name. Pictures are called after the meshes, those of streams after their places.
-std::vector<AnimationFrame> collect_frames(const AnimateArguments& arguments) {
+std::vector<AnimationFrame> collect_frames(const AnimateRequest& request) {
   std::vector<AnimationFrame> frames;
-  for (const std::filesystem::path& input : arguments.inputs) {
+  for (const std::filesystem::path& input : request.inputs) {
     std::error_code error;
     if (!std::filesystem::is_directory(input, error)) {
       require_mesh(input, foreseen_kind(input));
@@ -94,8 +94,8 @@ std::vector<AnimationFrame> collect_frames(const AnimateArguments& arguments) {
 }
 
 // One camera for all frames: what is not asked for is framed for all of them together.
-ViewRequest common_view(std::vector<AnimationFrame>& frames, const RenderArguments& arguments) {
-  ViewRequest view = join_view(arguments.view, arguments.camera ? read_camera_file(*arguments.camera) : ViewRequest{});
+ViewRequest common_view(std::vector<AnimationFrame>& frames, const RenderRequest& request, const RenderPlan& plan) {
+  ViewRequest view = join_view(request.view, request.camera ? read_camera_file(*request.camera) : ViewRequest{});
   if (view.eye && view.at) return view;
   const PointSource points = [&frames](const PointVisitor& visitor) {
     for (AnimationFrame& frame : frames) {
@@ -109,25 +109,24 @@ ViewRequest common_view(std::vector<AnimationFrame>& frames, const RenderArgumen
       if (is_stream(frame.input)) frame.mesh = std::move(input);
     }
   };
-  const Camera camera = complete_view(view, static_cast<double>(arguments.width) / arguments.height, points);
+  const Camera camera = complete_view(view, static_cast<double>(plan.width) / plan.height, points);
   view.eye = camera.eye;
   view.at = camera.at;
   view.up = camera.up;
   return view;
 }
 
-void render(AnimationFrame& frame, RenderArguments arguments, const ViewRequest& view,
-            const std::filesystem::path& folder) {
-  arguments.scene.input = frame.input;
+void render(AnimationFrame& frame, RenderPlan plan, const ViewRequest& view, const std::filesystem::path& folder) {
+  plan.scene.input = frame.input;
   const SceneInput input = frame.mesh ? *std::exchange(frame.mesh, std::nullopt) : read_mesh(frame.input);
   const Mesh& mesh = std::get<Mesh>(input.content);
-  FrameMemory memory(frame_memory_bytes(input, arguments));
-  prepare_frame(memory, input, arguments, view);
-  const sim::ChipResult result = render_on_chip(memory, arguments, {});
+  FrameMemory memory(frame_memory_bytes(input, plan));
+  prepare_frame(memory, input, plan, view);
+  const sim::ChipResult result = render_on_chip(memory, plan, {});
 
-  const sim::MachineProfile& machine = *arguments.scene.machine;
+  const sim::MachineProfile& machine = *plan.scene.machine;
   const sim::BuildWork build = sim::grid_build_work(mesh.vertices.size(), mesh.triangles.size(), memory.need);
-  const sim::FrameTiming timing = sim::replay(result.trace, machine, {.core_count = arguments.cores});
+  const sim::FrameTiming timing = sim::replay(result.trace, machine, {.core_count = plan.cores});
   frame.triangles = mesh.triangles.size();
   frame.lambda = memory.image.grid.lambda;
   frame.build_cycles = sim::build_cycles(machine.master, build);
@@ -140,7 +139,7 @@ void render(AnimationFrame& frame, RenderArguments arguments, const ViewRequest&
   AtomicFiles file;
   file.add(folder / frame.picture, encode_png(color));
   file.commit();
-  if (!arguments.quiet) tell_note(frame.input, unseen_note(memory, result, arguments.mode));
+  if (!plan.scene.quiet) tell_note(frame.input, unseen_note(memory, result, plan.mode));
 }
 
 // The shortest decimals that read back as the same number.
@@ -177,7 +176,7 @@ std::string table_of(const std::vector<AnimationFrame>& frames, const sim::Machi
   return table;
 }
 
-void print_frames(const std::vector<AnimationFrame>& frames, const RenderArguments& arguments) {
+void print_frames(const std::vector<AnimationFrame>& frames, const RenderPlan& plan) {
   const auto cycles = [](double count) { return words_of_count(static_cast<std::uint64_t>(count)); };
   std::printf("%-24s %14s %14s %9s\n", "frame", "build cycles", "render cycles", "frames/s");
   double seconds = 0;
@@ -186,42 +185,39 @@ void print_frames(const std::vector<AnimationFrame>& frames, const RenderArgumen
                 cycles(frame.render_cycles).c_str(), frame.fps());
     seconds += frame.seconds();
   }
-  const std::uint32_t cores = arguments.cores != 0 ? arguments.cores : arguments.scene.machine->core_count;
-  std::printf("%s, %s: %s in %.2f ms, %.2f frames/s with their builds\n",
-              std::string(arguments.scene.machine->name).c_str(), words_of_count(cores, "core").c_str(),
-              words_of_count(frames.size(), "frame").c_str(), seconds * 1e3,
+  std::printf("%s, %s: %s in %.2f ms, %.2f frames/s with their builds\n", std::string(plan.scene.machine->name).c_str(),
+              words_of_count(plan.cores, "core").c_str(), words_of_count(frames.size(), "frame").c_str(), seconds * 1e3,
               seconds > 0 ? static_cast<double>(frames.size()) / seconds : 0.0);
 }
 
 }  // namespace
 
-void run_command(const AnimateArguments& arguments) {
-  RenderArguments each = arguments.render;
-  if (each.threads == 0) each.threads = host_threads();
-  limit_threads(each);
-  std::vector<AnimationFrame> frames = collect_frames(arguments);
+void run_command(const AnimateRequest& request) {
+  const RenderPlan plan = resolve(request.render, {.kind = SceneKind::kMesh}, this_host());
+  const bool quiet = plan.scene.quiet;
+  std::vector<AnimationFrame> frames = collect_frames(request);
   std::vector<std::string> names = {kTableName};
   for (const AnimationFrame& frame : frames) names.push_back(frame.picture);
-  OutputFolder folder(arguments.output, names);
+  OutputFolder folder(request.output, names);
   // All of them now: a mesh must not be lost to the picture of another one before its turn comes.
   for (const AnimationFrame& frame : frames) note_input(frame.input);
   const ViewRequest view = [&] {
-    const StageLines stages(!each.quiet);
-    return common_view(frames, each);
+    const StageLines stages(!quiet);
+    return common_view(frames, request.render, plan);
   }();
   {
-    Progress progress(!each.quiet, "frames");
+    Progress progress(!quiet, "frames");
     const auto total = static_cast<std::uint32_t>(frames.size());
     for (std::uint32_t i = 0; i < total; ++i) {
       progress.update(i, total);
-      render(frames[i], each, view, arguments.output);
+      render(frames[i], plan, view, request.output);
     }
   }
   AtomicFiles table;
-  table.add(arguments.output / kTableName, table_of(frames, *each.scene.machine));
+  table.add(request.output / kTableName, table_of(frames, *plan.scene.machine));
   table.commit_at_end();
   folder.keep();
-  if (!each.quiet) print_frames(frames, each);
+  if (!quiet) print_frames(frames, plan);
 }
 
 }  // namespace gridiron::tool

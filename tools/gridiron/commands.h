@@ -2,18 +2,22 @@
 // Memory: their own. Threads: one; render and experiment start more. SPDX-License-Identifier: Apache-2.0
 #pragma once
 
-#include "arguments.h"
+#include <cstdio>
+
+#include "gridiron/command_line/arguments.h"
 
 namespace gridiron::tool {
 
-void run_command(const RenderArguments& arguments);
-void run_command(const AnimateArguments& arguments);
-void run_command(const InfoArguments& arguments);
-void run_command(const PackArguments& arguments);
-void run_command(const JobArguments& arguments);
-void run_command(const ResultArguments& arguments);
-void run_command(const MachinesArguments& arguments);
-void run_command(const ExperimentArguments& arguments);  ///< in tools/experiment
-void run_command(const TextRequest& request);
+void run_command(const RenderRequest& request);
+void run_command(const AnimateRequest& request);
+void run_command(const InfoRequest& request);
+void run_command(const PackRequest& request);
+void run_command(const JobRequest& request);
+void run_command(const ResultRequest& request);
+void run_command(const MachinesRequest& request);
+void run_command(const ExperimentRequest& request);  ///< in tools/experiment
+inline void run_command(const TextRequest& request) {
+  std::fputs(request.text.c_str(), stdout);
+}
 
 }  // namespace gridiron::tool

@@ -6,13 +6,13 @@
 #include <nlohmann/json.hpp>
 #include <string>
 
-#include "accuracies.h"
+#include "base/words.h"
 #include "commands.h"
-#include "effect_names.h"
-#include "loop_table.h"
-#include "scene_facts.h"
-#include "store_facts.h"
-#include "words.h"
+#include "gridiron/device/accuracies.h"
+#include "gridiron/device/store_facts.h"
+#include "gridiron/info/loop_table.h"
+#include "gridiron/info/scene_facts.h"
+#include "gridiron/scene/effect_names.h"
 
 namespace gridiron::tool {
 namespace {
@@ -36,8 +36,8 @@ Json json_of(const StoreFacts& store) {
 }
 
 // Whether there is a renderer of effects for the store asked for.
-bool has_effect_store(const InfoArguments& arguments) {
-  return arguments.store != sim::StoreSize::k128KB;
+bool has_effect_store(const InfoPlan& plan) {
+  return plan.store != sim::StoreSize::k128KB;
 }
 
 Json json_of(const LoopBounds& bounds) {
@@ -59,10 +59,6 @@ const char* unit_of(const WorstTile& worst) {
   return worst.are_instructions ? "instructions" : "cycles";
 }
 
-std::string name_of(Accuracy accuracy) {
-  return std::string(std::ranges::find(accuracies(), accuracy, &NamedAccuracy::accuracy)->name);
-}
-
 Json json_of(const WorstTile& worst) {
   Json work = Json::object();
   for (std::uint32_t kind = 0; kind < kWorkKindCount; ++kind) {
@@ -70,7 +66,7 @@ Json json_of(const WorstTile& worst) {
       work[std::string(work_name(static_cast<Work>(kind)))] = json_of_count(worst.bound.work[kind]);
     }
   }
-  return {{"accuracy", name_of(worst.frame.accuracy)},
+  return {{"accuracy", accuracy_name(worst.frame.accuracy)},
           {"depth", worst.frame.has_depth},
           {"lanes", worst.layout.lanes},
           {"tile_width", worst.layout.tile_width},
@@ -100,9 +96,9 @@ std::uint64_t tiles_across(std::uint32_t pixels, std::uint32_t tile_width) {
 }
 
 // Every loop that no constant bounds of what runs on a core, with its bound for this scene, store and picture.
-Json loops_json(const SceneFacts& facts, const StoreFacts& store) {
+Json loops_json(const InfoPlan& plan, const SceneFacts& facts) {
   const std::uint64_t tiles =
-      tiles_across(facts.width, store.tile_width) * tiles_across(facts.height, store.tile_width);
+      tiles_across(plan.size.x, plan.layout.tile_width) * tiles_across(plan.size.y, plan.layout.tile_width);
   Json rows = Json::array();
   for (const LoopRow& row : loop_facts_of(*facts.worst, facts.grid.macro_width, tiles).rows()) {
     rows.push_back({{"file", std::string(row.file)},
@@ -116,14 +112,13 @@ Json loops_json(const SceneFacts& facts, const StoreFacts& store) {
 }
 
 // The local store and packets of the renderer that would do.
-std::string renderer_of(const InfoArguments& arguments, const SceneFacts& facts, const StoreFacts& store) {
-  return renderer_type(facts.effects.record.called_for, sim::arena_bytes(arguments.store) >> 10, store.packet_width);
+std::string renderer_of(const InfoPlan& plan, const SceneFacts& facts) {
+  return renderer_type(facts.effects.record.called_for, sim::arena_bytes(plan.store) >> 10, plan.layout.packet_width);
 }
 
-Json effects_json(const InfoArguments& arguments, const SceneFacts& facts, const StoreFacts& store) {
+Json effects_json(const InfoPlan& plan, const SceneFacts& facts) {
   const EffectFacts& effects = facts.effects;
-  Json json = {{"called_for", Json(effect_names(effects.record.called_for))},
-               {"renderer", renderer_of(arguments, facts, store)}};
+  Json json = {{"called_for", Json(effect_names(effects.record.called_for))}, {"renderer", renderer_of(plan, facts)}};
   if (!effects.has_effects) return json;
   const EffectsRecord& record = effects.record;
   json["materials"] = record.material_count;
@@ -142,15 +137,15 @@ Json effects_json(const InfoArguments& arguments, const SceneFacts& facts, const
   }
   json["sections"] = sections;
   json["spill_bytes_per_core"] = effects.spill_bytes_per_core;
-  json["has_room"] = has_effect_store(arguments);
+  json["has_room"] = has_effect_store(plan);
   return json;
 }
 
-void print_json(const InfoArguments& arguments, const SceneFacts& facts, const StoreFacts& store) {
+void print_json(const InfoPlan& plan, const SceneFacts& facts) {
   const GridRecord& grid = facts.grid;
   Json document = {
       {"version", 1},
-      {"input", arguments.scene.input.string()},
+      {"input", plan.scene.input.string()},
       {"packed", facts.is_packed},
       {"scene",
        {{"vertices", facts.vertices},
@@ -170,14 +165,14 @@ void print_json(const InfoArguments& arguments, const SceneFacts& facts, const S
         {"triangle_format", word_of(static_cast<TriangleFormat>(grid.triangle_format))},
         {"lattice_step", grid.lattice.step}}},
       {"main_memory",
-       {{"machine", arguments.scene.machine->name},
-        {"capacity_bytes", arguments.scene.machine->main_memory_bytes},
+       {{"machine", plan.scene.machine->name},
+        {"capacity_bytes", plan.scene.machine->main_memory_bytes},
         {"image_bytes", facts.image_bytes},
         {"scratch_bytes", facts.scratch_bytes},
         {"picture_bytes", facts.picture_bytes},
         {"fits", facts.fits}}},
-      {"local_store", json_of(store)},
-      {"effects", effects_json(arguments, facts, store)},
+      {"local_store", json_of(plan.local_store)},
+      {"effects", effects_json(plan, facts)},
       {"loop_bounds", json_of(facts.bounds)}};
   if (!facts.roundness.groups.empty()) {
     const char* rules[] = {"asked", "diagonal", "picture"};
@@ -186,7 +181,7 @@ void print_json(const InfoArguments& arguments, const SceneFacts& facts, const S
                                       {"most", facts.roundness.most_tolerance}};
   }
   document["worst_tile"] = facts.worst ? json_of(*facts.worst) : Json();
-  document["loops"] = facts.worst ? loops_json(facts, store) : Json();
+  document["loops"] = facts.worst ? loops_json(plan, facts) : Json();
   std::printf("%s\n", document.dump(2, ' ', false, Json::error_handler_t::replace).c_str());
 }
 
@@ -202,14 +197,14 @@ void print_line(const char* name, const std::string& text) {
   std::printf("%-14s %s\n", name, text.c_str());
 }
 
-void print_effects(const InfoArguments& arguments, const SceneFacts& facts, const StoreFacts& store) {
+void print_effects(const InfoPlan& plan, const SceneFacts& facts) {
   const EffectFacts& effects = facts.effects;
   const EffectsRecord& record = effects.record;
   print_line("effects", effects.has_effects ? words_of_effects(record.called_for) : "none called for");
-  print_line("renderer", renderer_of(arguments, facts, store));
+  print_line("renderer", renderer_of(plan, facts));
   if (!effects.has_effects) return;
-  if (!has_effect_store(arguments)) {
-    print_line("", "does NOT fit the local store of " + std::string(arguments.scene.machine->name) +
+  if (!has_effect_store(plan)) {
+    print_line("", "does NOT fit the local store of " + std::string(plan.scene.machine->name) +
                        ": effects need one of 64 or of 256 KB");
   }
   const std::uint32_t area_lights = record.light_count - record.point_light_count;
@@ -234,8 +229,9 @@ void print_effects(const InfoArguments& arguments, const SceneFacts& facts, cons
   print_line("", words_of_bytes(effects.spill_bytes_per_core) + " a core for rays that wait");
 }
 
-void print_text(const InfoArguments& arguments, const SceneFacts& facts, const StoreFacts& store) {
+void print_text(const InfoPlan& plan, const SceneFacts& facts) {
   const GridRecord& grid = facts.grid;
+  const StoreFacts& store = plan.local_store;
   print_line("scene", words_of_count(facts.triangles) + " triangles (" + words_of_count(facts.dropped_triangles) +
                           " of zero area dropped), " + words_of_count(facts.vertices) + " vertices");
   char text[160];
@@ -272,11 +268,11 @@ void print_text(const InfoArguments& arguments, const SceneFacts& facts, const S
                                words_of_count(grid.cell_block_count - 1) + " of them hold triangles");
   print_line("main memory", words_of_bytes(facts.image_bytes) + " scene image, " + words_of_bytes(facts.scratch_bytes) +
                                 " while it is built, " + words_of_bytes(facts.picture_bytes) + " picture of " +
-                                std::to_string(facts.width) + "x" + std::to_string(facts.height) +
-                                (arguments.has_depth ? " with distances" : ""));
+                                std::to_string(plan.size.x) + "x" + std::to_string(plan.size.y) +
+                                (plan.has_depth ? " with distances" : ""));
   print_line("", std::string(facts.fits ? "fits" : "does NOT fit") + " the " +
-                     words_of_bytes(arguments.scene.machine->main_memory_bytes) + " of " +
-                     std::string(arguments.scene.machine->name));
+                     words_of_bytes(plan.scene.machine->main_memory_bytes) + " of " +
+                     std::string(plan.scene.machine->name));
   print_line("local store", words_of_bytes(store.arena_bytes) + ": " + words_of_bytes(store.code_bytes) + " code, " +
                                 words_of_bytes(store.stack_bytes) + " stack, " + words_of_bytes(store.data_bytes()) +
                                 " data");
@@ -288,7 +284,7 @@ void print_text(const InfoArguments& arguments, const SceneFacts& facts, const S
     std::printf("%14s %8s  %s\n", "", words_of_count(region.bytes).c_str(),
                 (region.name + " at " + words_of_count(region.offset_bytes)).c_str());
   }
-  print_effects(arguments, facts, store);
+  print_effects(plan, facts);
   print_line("loop bounds", "per packet " + std::to_string(facts.bounds.passes_per_packet) +
                                 " passes; twice as many where estimates leave hits open;"
                                 " with exact one more for each ray");
@@ -301,7 +297,7 @@ void print_text(const InfoArguments& arguments, const SceneFacts& facts, const S
     const WorstTile& worst = *facts.worst;
     std::snprintf(text, sizeof text, " at most %.3g %s of work, %.3g with all waits; ", worst.cycles.work,
                   unit_of(worst), worst.cycles.total());
-    const std::string asked = arguments.accuracy ? ", accuracy " + name_of(*arguments.accuracy) + "," : "";
+    const std::string asked = plan.accuracy ? ", accuracy " + std::string(accuracy_name(*plan.accuracy)) + "," : "";
     const std::string gets = words_of_most(worst.bound[Work::kGetIssue]) + " gets of ";
     print_line("worst tile", "for any camera" + asked + text + gets + words_of_most(worst.bound.get_bytes) + " bytes");
   }
@@ -309,12 +305,15 @@ void print_text(const InfoArguments& arguments, const SceneFacts& facts, const S
 
 }  // namespace
 
-void run_command(const InfoArguments& asked) {
-  InfoArguments arguments = asked;
-  const SceneFacts facts = collect_scene_facts(arguments);
-  const std::uint32_t called_for = facts.effects.record.called_for;
-  const StoreFacts store = info_store_facts(arguments, called_for != 0);
-  arguments.json ? print_json(arguments, facts, store) : print_text(arguments, facts, store);
+void run_command(const InfoRequest& request) {
+  const KnownScene foreseen = foreseen_scene(request.scene);
+  if (foreseen.kind != SceneKind::kUnknown) (void)resolve(request, foreseen);
+  const SceneInput input =
+      read_scene_input(request.scene.input, request.scene.tolerance, PictureRequest{.size = request.size});
+  const InfoPlan plan = resolve(request, known_scene(input));
+  if (!request.scene.quiet) tell_notes(input);
+  const SceneFacts facts = collect_scene_facts(plan, input);
+  plan.json ? print_json(plan, facts) : print_text(plan, facts);
 }
 
 }  // namespace gridiron::tool

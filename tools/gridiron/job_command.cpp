@@ -4,38 +4,39 @@
 #include <string>
 #include <utility>
 
-#include "atomic_file.h"
-#include "command_files.h"
+#include "base/failure.h"
+#include "base/progress.h"
+#include "base/words.h"
 #include "commands.h"
-#include "failure.h"
-#include "frame_memory.h"
-#include "job_file.h"
-#include "progress.h"
-#include "requested_frame.h"
-#include "words.h"
+#include "files/atomic_file.h"
+#include "files/command_files.h"
+#include "gridiron/frame/frame_memory.h"
+#include "gridiron/frame/requested_frame.h"
+#include "gridiron/job/job_file.h"
 
 namespace gridiron::tool {
 
-void run_command(const JobArguments& asked) {
-  const StageLines stages(!asked.render.quiet);
-  RequestedFrame request = read_requested_frame(asked.render, {{"-o", asked.render.output, OutputKind::kBinary}});
-  const RenderArguments& arguments = request.arguments;
-  FrameMemory frame(frame_memory_bytes(request.input, arguments));
-  prepare_frame(frame, std::move(request.input), arguments, request.view);
-  const std::vector<std::byte> file = make_job_file(frame, arguments, asked.base_address);
+void run_command(const JobRequest& request) {
+  const bool quiet = request.render.scene.quiet;
+  const StageLines stages(!quiet);
+  RequestedFrame requested = read_requested_frame(request.render, {{"-o", request.output, OutputKind::kBinary}});
+  const RenderPlan& plan = requested.plan;
+  FrameMemory frame(frame_memory_bytes(requested.input, plan));
+  prepare_frame(frame, std::move(requested.input), plan, requested.view);
+  const std::vector<std::byte> file = make_job_file(frame, plan, request.base_address);
 
   port::FrameJob job{};
   std::memcpy(&job, file.data(), sizeof job);
-  if (asked.memory_bytes && job.memory_bytes > *asked.memory_bytes) {
-    throw Failure(ExitCode::kBadInput, request.input.path.string() + ": the job needs " +
+  if (request.memory_bytes && job.memory_bytes > *request.memory_bytes) {
+    throw Failure(ExitCode::kBadInput, requested.input.path.string() + ": the job needs " +
                                            words_of_count(job.memory_bytes) + " bytes of memory, --memory gives " +
-                                           words_of_count(*asked.memory_bytes));
+                                           words_of_count(*request.memory_bytes));
   }
   AtomicFiles files;
-  files.add(arguments.output, file);
+  files.add(request.output, file);
   files.commit_at_end();
-  if (arguments.quiet) return;
-  std::printf("%s: %ux%u in %s, %s to load at 0x%llx, %s of memory\n", target_of(arguments.output).name.c_str(),
+  if (quiet) return;
+  std::printf("%s: %ux%u in %s, %s to load at 0x%llx, %s of memory\n", target_of(request.output).name.c_str(),
               job.width, job.height, words_of_count(job.tile_count, "tile").c_str(),
               words_of_bytes(job.loaded_bytes).c_str(), static_cast<unsigned long long>(job.base_address),
               words_of_bytes(job.memory_bytes).c_str());

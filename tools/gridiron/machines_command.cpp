@@ -40,11 +40,11 @@ nlohmann::ordered_json json_of(const sim::MachineProfile& machine) {
 
 }  // namespace
 
-void run_command(const MachinesArguments& arguments) {
-  if (arguments.json) {
+void run_command(const MachinesRequest& request) {
+  if (request.json) {
     nlohmann::ordered_json list = nlohmann::ordered_json::array();
-    if (arguments.machine) {
-      list.push_back(json_of(*arguments.machine));
+    if (request.machine) {
+      list.push_back(json_of(*request.machine));
     } else {
       for (const sim::MachineProfile& machine : sim::machine_profiles()) list.push_back(json_of(machine));
     }
@@ -52,8 +52,8 @@ void run_command(const MachinesArguments& arguments) {
     std::printf("%s\n", document.dump(2, ' ', false, nlohmann::ordered_json::error_handler_t::replace).c_str());
     return;
   }
-  if (arguments.machine) {
-    std::printf("%s", machine_text(*arguments.machine).c_str());
+  if (request.machine) {
+    std::printf("%s", machine_text(*request.machine).c_str());
     return;
   }
   for (const sim::MachineProfile& machine : sim::machine_profiles()) {

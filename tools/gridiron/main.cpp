@@ -11,13 +11,13 @@
 #include <string>
 #include <variant>
 
-#include "arguments.h"
-#include "command_files.h"
+#include "base/failure.h"
+#include "base/words.h"
 #include "commands.h"
-#include "failure.h"
-#include "interrupt.h"
-#include "overdue_exit.h"
-#include "words.h"
+#include "files/command_files.h"
+#include "files/interrupt.h"
+#include "files/overdue_exit.h"
+#include "gridiron/command_line/arguments.h"
 
 namespace {
 

@@ -10,50 +10,41 @@
 #include <string>
 #include <vector>
 
-#include "atomic_file.h"
-#include "chip_frame.h"
-#include "command_files.h"
+#include "base/failure.h"
+#include "base/progress.h"
+#include "base/words.h"
 #include "commands.h"
-#include "failure.h"
-#include "frame_pictures.h"
-#include "image_files.h"
-#include "job_comparison.h"
-#include "job_file.h"
-#include "prediction.h"
-#include "progress.h"
-#include "result_file.h"
-#include "scene_points.h"
-#include "unseen_scene.h"
-#include "words.h"
+#include "files/atomic_file.h"
+#include "files/command_files.h"
+#include "files/image_files.h"
+#include "gridiron/frame/chip_frame.h"
+#include "gridiron/frame/frame_pictures.h"
+#include "gridiron/frame/unseen_scene.h"
+#include "gridiron/job/job_comparison.h"
+#include "gridiron/job/job_file.h"
+#include "gridiron/job/prediction.h"
+#include "gridiron/job/result_file.h"
+#include "gridiron/scene/scene_points.h"
 
 namespace gridiron::tool {
 namespace {
 
-std::vector<Output> outputs_of(const ResultArguments& arguments) {
-  std::vector<Output> outputs;
-  if (arguments.output) outputs.push_back({"-o", *arguments.output, OutputKind::kPicture});
-  if (arguments.depth) outputs.push_back({"--depth", *arguments.depth, OutputKind::kFloats});
-  if (arguments.ids) outputs.push_back({"--ids", *arguments.ids, OutputKind::kFloats});
-  if (arguments.report) outputs.push_back({"--report", *arguments.report, OutputKind::kText});
-  return outputs;
-}
-
-void require_planes(const ResultArguments& arguments, const OpenJob& job) {
-  const auto require = [&arguments](const char* option, bool wanted, std::uint64_t address) {
+void require_planes(const ResultRequest& request, const OpenJob& job) {
+  const auto require = [&request](const char* option, bool wanted, std::uint64_t address) {
     if (wanted && address == 0) {
       throw Failure(ExitCode::kUsage,
-                    std::string(option) + ": " + arguments.job.string() + " was made without " + option);
+                    std::string(option) + ": " + request.job.string() + " was made without " + option);
     }
   };
-  require("--depth", arguments.depth.has_value(), job.job.depth_address);
-  require("--ids", arguments.ids.has_value(), job.job.ids_address);
-  if (arguments.ids) require_exact_ids(arguments.job, job.image.header.triangle_count);
+  require("--depth", request.outputs.depth.has_value(), job.job.depth_address);
+  require("--ids", request.outputs.ids.has_value(), job.job.ids_address);
+  if (request.outputs.ids) require_exact_ids(request.job, job.image.header.triangle_count);
 }
 
-JobComparison compare(const ResultArguments& arguments, OpenJob& job, const OpenResult& result) {
-  Progress progress(!arguments.quiet);
-  const std::uint32_t threads = arguments.threads != 0 ? arguments.threads : host_threads();
-  return compare_with_simulator(job, arguments.job, result, arguments.predict.get(), threads,
+JobComparison compare(const ResultRequest& request, OpenJob& job, const OpenResult& result) {
+  Progress progress(!request.quiet);
+  const std::uint32_t threads = request.threads.value_or(this_host().threads);
+  return compare_with_simulator(job, request.job, result, request.predict.get(), threads,
                                 [&progress](std::uint32_t done, std::uint32_t total) { progress.update(done, total); });
 }
 
@@ -74,12 +65,12 @@ void print_cores(const OpenResult& result) {
   }
 }
 
-void print_prediction(const ResultArguments& arguments, std::span<const double> predicted,
+void print_prediction(const ResultRequest& request, std::span<const double> predicted,
                       std::span<const port::TileResult> tiles) {
   std::vector<double> counted;
   for (const port::TileResult& tile : tiles) counted.push_back(static_cast<double>(tile.instructions));
   const PredictionQuality quality = quality_of(counted, predicted);
-  std::printf("%s: %s instructions counted, %s predicted: %+.1f %%\n", std::string(arguments.predict->name).c_str(),
+  std::printf("%s: %s instructions counted, %s predicted: %+.1f %%\n", std::string(request.predict->name).c_str(),
               words_of_count(static_cast<std::uint64_t>(quality.counted)).c_str(),
               words_of_count(static_cast<std::uint64_t>(quality.predicted)).c_str(), 100 * quality.frame_error());
   std::printf("tiles: rank correlation %.3f, a tile off by %.1f %% at most\n", quality.rank_correlation,
@@ -97,18 +88,19 @@ auto find_unseen(const OpenJob& job, const OpenResult& result) {
 
 }  // namespace
 
-void run_command(const ResultArguments& arguments) {
-  declare_outputs(outputs_of(arguments));
-  OpenJob job = read_job_file(arguments.job);
-  require_planes(arguments, job);
-  const OpenResult result = read_result_file(arguments.result, job);
+void run_command(const ResultRequest& request) {
+  const FrameOutputs& outputs = request.outputs;
+  declare_outputs(outputs.declared());
+  OpenJob job = read_job_file(request.job);
+  require_planes(request, job);
+  const OpenResult result = read_result_file(request.result, job);
   const auto is_counted = [](const port::TileResult& tile) { return tile.instructions != 0; };
-  if (arguments.predict && !std::ranges::all_of(result.tiles, is_counted)) {
-    throw Failure(ExitCode::kUsage, "--predict: " + arguments.result.string() + " has no counted instructions");
+  if (request.predict && !std::ranges::all_of(result.tiles, is_counted)) {
+    throw Failure(ExitCode::kUsage, "--predict: " + request.result.string() + " has no counted instructions");
   }
   const auto unseen = find_unseen(job, result);  // the comparison takes the job's bytes
   std::optional<JobComparison> comparison;
-  if (arguments.compare) comparison = compare(arguments, job, result);
+  if (request.compare) comparison = compare(request, job, result);
 
   DeviceReportInput report;
   report.width = job.job.width;
@@ -121,30 +113,30 @@ void run_command(const ResultArguments& arguments) {
   AtomicFiles files;
   const Picture<std::uint32_t> color = words_of_plane(job.record, result.color);
   report.image_hash = image_hash(color.pixels);
-  if (arguments.output) files.add(*arguments.output, encode_picture(color, *arguments.output));
+  if (outputs.picture) files.add(*outputs.picture, encode_picture(color, *outputs.picture));
   if (!result.depth.empty()) {
     const Picture<std::uint32_t> words = words_of_plane(job.record, result.depth);
     report.depth_hash = image_hash(words.pixels);
-    if (arguments.depth) files.add(*arguments.depth, encode_pfm(depth_picture(words)));
+    if (outputs.depth) files.add(*outputs.depth, encode_pfm(depth_picture(words)));
   }
   if (!result.ids.empty()) {
     const Picture<std::uint32_t> words = words_of_plane(job.record, result.ids);
     report.ids_hash = image_hash(words.pixels);
-    if (arguments.ids) files.add(*arguments.ids, encode_pfm(id_picture(words)));
+    if (outputs.ids) files.add(*outputs.ids, encode_pfm(id_picture(words)));
   }
-  if (arguments.report) files.add(*arguments.report, device_report_json(report));
+  if (outputs.report) files.add(*outputs.report, device_report_json(report));
   files.commit_at_end();
 
-  if (!arguments.quiet) {
-    tell_note(arguments.result, unseen);
-    std::printf("%s: %ux%u, hash %s\n", arguments.result.c_str(), color.width, color.height,
+  if (!request.quiet) {
+    tell_note(request.result, unseen);
+    std::printf("%s: %ux%u, hash %s\n", request.result.c_str(), color.width, color.height,
                 hash_text(report.image_hash).c_str());
     print_cores(result);
     if (comparison) print_comparison(*comparison);
-    if (arguments.predict) print_prediction(arguments, comparison->predicted_tiles, result.tiles);
+    if (request.predict) print_prediction(request, comparison->predicted_tiles, result.tiles);
   }
   if (comparison && !comparison->is_equal()) {
-    std::string message = arguments.result.string() + ": the device's frame differs from the simulator's:";
+    std::string message = request.result.string() + ": the device's frame differs from the simulator's:";
     for (const ComparedItem& item : comparison->items) {
       if (!item.equal) message += " " + item.name;
     }

@@ -17,6 +17,30 @@ namespace {
 
 using Json = nlohmann::ordered_json;
 
+// A value of an enumeration that ends in kCount, and what it is called.
+template <class Value>
+struct Name {
+  Value value;
+  std::string_view name;
+};
+
+template <class Value, std::size_t kCount>
+constexpr std::string_view name_in(const Name<Value> (&names)[kCount], Value value) {
+  for (const Name<Value>& each : names) {
+    if (each.value == value) return each.name;
+  }
+  return "";
+}
+
+// Whether a table names each value, so that the compiler misses a name when one is added.
+template <class Value, std::size_t kCount>
+constexpr bool names_all(const Name<Value> (&names)[kCount]) {
+  for (std::size_t i = 0; i < static_cast<std::size_t>(Value::kCount); ++i) {
+    if (name_in(names, static_cast<Value>(i)).empty()) return false;
+  }
+  return kCount == static_cast<std::size_t>(Value::kCount);
+}
+
 Json scene_json(const ReportInput& input) {
   const GridRecord& grid = input.grid;
   const auto product = [](const std::uint32_t counts[3]) { return std::uint64_t{counts[0]} * counts[1] * counts[2]; };
@@ -155,212 +179,63 @@ std::string report_json(const ReportInput& input) {
   return report.dump(2, ' ', false, Json::error_handler_t::replace) + "\n";
 }
 
-// A switch, so that the compiler misses a name when a kind of work is added.
+// clang-format off
 std::string_view work_name(Work kind) {
-  switch (kind) {
-    case Work::kTileStart:
-      return "tile_start";
-    case Work::kRayGenerated:
-      return "ray_generated";
-    case Work::kPacketStart:
-      return "packet_start";
-    case Work::kPassGroup:
-      return "pass_group";
-    case Work::kPassSquare:
-      return "pass_square";
-    case Work::kMacroSliceStep:
-      return "macro_slice_step";
-    case Work::kMacroCellStep:
-      return "macro_cell_step";
-    case Work::kMacroCellVisit:
-      return "macro_cell_visit";
-    case Work::kSliceStep:
-      return "slice_step";
-    case Work::kCellStep:
-      return "cell_step";
-    case Work::kCellVisit:
-      return "cell_visit";
-    case Work::kTriangleBatch:
-      return "triangle_batch";
-    case Work::kMailboxProbe:
-      return "mailbox_probe";
-    case Work::kCullTest:
-      return "cull_test";
-    case Work::kPixelBoxGroup:
-      return "pixel_box_group";
-    case Work::kTriangleSetup:
-      return "triangle_setup";
-    case Work::kGroupTestStandard:
-      return "group_test_standard";
-    case Work::kSubpacketSetup:
-      return "subpacket_setup";
-    case Work::kSubpacketGroup:
-      return "subpacket_group";
-    case Work::kReachGroup:
-      return "reach_group";
-    case Work::kGroupTestPaper:
-      return "group_test_paper";
-    case Work::kHitGroup:
-      return "hit_group";
-    case Work::kHitSubpacket:
-      return "hit_subpacket";
-    case Work::kHitGroupPaper:
-      return "hit_group_paper";
-    case Work::kHitSetup:
-      return "hit_setup";
-    case Work::kDoubleSign:
-      return "double_sign";
-    case Work::kExactSign:
-      return "exact_sign";
-    case Work::kExactDistance:
-      return "exact_distance";
-    case Work::kShadedGroup:
-      return "shaded_group";
-    case Work::kShadedSimpleGroup:
-      return "shaded_simple_group";
-    case Work::kDepthGroup:
-      return "depth_group";
-    case Work::kIdGroup:
-      return "id_group";
-    case Work::kFootprintGroup:
-      return "footprint_group";
-    case Work::kRowGroup:
-      return "row_group";
-    case Work::kEstimateSetup:
-      return "estimate_setup";
-    case Work::kNormalSetup:
-      return "normal_setup";
-    case Work::kHitHalf:
-      return "hit_half";
-    case Work::kExactOrder:
-      return "exact_order";
-    case Work::kLatticeTriangle:
-      return "lattice_triangle";
-    case Work::kCellBoundStep:
-      return "cell_bound_step";
-    case Work::kWaveRay:
-      return "wave_ray";
-    case Work::kQueuedRay:
-      return "queued_ray";
-    case Work::kWalkPass:
-      return "walk_pass";
-    case Work::kShaftGroup:
-      return "shaft_group";
-    case Work::kRayTriangleSetup:
-      return "ray_triangle_setup";
-    case Work::kRayGroupTest:
-      return "ray_group_test";
-    case Work::kRayDistance:
-      return "ray_distance";
-    case Work::kSurfacePoint:
-      return "surface_point";
-    case Work::kSmoothNormal:
-      return "smooth_normal";
-    case Work::kShadowRay:
-      return "shadow_ray";
-    case Work::kLightSample:
-      return "light_sample";
-    case Work::kHighlight:
-      return "highlight";
-    case Work::kOcclusionRay:
-      return "occlusion_ray";
-    case Work::kMirrorRay:
-      return "mirror_ray";
-    case Work::kRefractedRay:
-      return "refracted_ray";
-    case Work::kEnvironmentLookup:
-      return "environment_lookup";
-    case Work::kColorAdded:
-      return "color_added";
-    case Work::kColorGroup:
-      return "color_group";
-    case Work::kGetIssue:
-      return "get_issue";
-    case Work::kPutIssue:
-      return "put_issue";
-    case Work::kWait:
-      return "wait";
-    case Work::kCount:
-      break;
-  }
-  return "";
+  using enum Work;
+  static constexpr Name<Work> kNames[] = {
+      {kTileStart, "tile_start"}, {kRayGenerated, "ray_generated"}, {kPacketStart, "packet_start"},
+      {kPassGroup, "pass_group"}, {kPassSquare, "pass_square"}, {kMacroSliceStep, "macro_slice_step"},
+      {kMacroCellStep, "macro_cell_step"}, {kMacroCellVisit, "macro_cell_visit"}, {kSliceStep, "slice_step"},
+      {kCellStep, "cell_step"}, {kCellVisit, "cell_visit"}, {kTriangleBatch, "triangle_batch"},
+      {kMailboxProbe, "mailbox_probe"}, {kCullTest, "cull_test"}, {kPixelBoxGroup, "pixel_box_group"},
+      {kTriangleSetup, "triangle_setup"}, {kGroupTestStandard, "group_test_standard"},
+      {kSubpacketSetup, "subpacket_setup"}, {kSubpacketGroup, "subpacket_group"}, {kReachGroup, "reach_group"},
+      {kGroupTestPaper, "group_test_paper"}, {kHitGroup, "hit_group"}, {kHitSubpacket, "hit_subpacket"},
+      {kHitGroupPaper, "hit_group_paper"}, {kHitSetup, "hit_setup"}, {kDoubleSign, "double_sign"},
+      {kExactSign, "exact_sign"}, {kExactDistance, "exact_distance"}, {kShadedGroup, "shaded_group"},
+      {kShadedSimpleGroup, "shaded_simple_group"}, {kDepthGroup, "depth_group"}, {kIdGroup, "id_group"},
+      {kFootprintGroup, "footprint_group"}, {kRowGroup, "row_group"}, {kEstimateSetup, "estimate_setup"},
+      {kNormalSetup, "normal_setup"}, {kHitHalf, "hit_half"}, {kExactOrder, "exact_order"},
+      {kLatticeTriangle, "lattice_triangle"}, {kCellBoundStep, "cell_bound_step"}, {kWaveRay, "wave_ray"},
+      {kQueuedRay, "queued_ray"}, {kWalkPass, "walk_pass"}, {kShaftGroup, "shaft_group"},
+      {kRayTriangleSetup, "ray_triangle_setup"}, {kRayGroupTest, "ray_group_test"}, {kRayDistance, "ray_distance"}, {kSurfacePoint, "surface_point"},
+      {kSmoothNormal, "smooth_normal"}, {kShadowRay, "shadow_ray"}, {kLightSample, "light_sample"},
+      {kHighlight, "highlight"}, {kOcclusionRay, "occlusion_ray"}, {kMirrorRay, "mirror_ray"},
+      {kRefractedRay, "refracted_ray"}, {kEnvironmentLookup, "environment_lookup"}, {kColorAdded, "color_added"},
+      {kColorGroup, "color_group"}, {kGetIssue, "get_issue"}, {kPutIssue, "put_issue"}, {kWait, "wait"}};
+  static_assert(names_all(kNames));
+  return name_in(kNames, kind);
 }
 
 std::string_view stage_name(Stage stage) {
-  switch (stage) {
-    case Stage::kPrimary:
-      return "primary";
-    case Stage::kSurface:
-      return "surface";
-    case Stage::kShadow:
-      return "shadow";
-    case Stage::kOcclusion:
-      return "occlusion";
-    case Stage::kBounce:
-      return "bounce";
-    case Stage::kEnvironment:
-      return "environment";
-    case Stage::kOutput:
-      return "output";
-    case Stage::kCount:
-      break;
-  }
-  return "";
+  using enum Stage;
+  static constexpr Name<Stage> kNames[] = {
+      {kPrimary, "primary"}, {kSurface, "surface"}, {kShadow, "shadow"}, {kOcclusion, "occlusion"},
+      {kBounce, "bounce"}, {kEnvironment, "environment"}, {kOutput, "output"}};
+  static_assert(names_all(kNames));
+  return name_in(kNames, stage);
 }
 
 std::string_view build_step_name(sim::BuildStep step) {
-  switch (step) {
-    case sim::BuildStep::kVertexCheck:
-      return "vertex_check";
-    case sim::BuildStep::kTriangleSurvey:
-      return "triangle_survey";
-    case sim::BuildStep::kCellBox:
-      return "cell_box";
-    case sim::BuildStep::kCellRow:
-      return "cell_row";
-    case sim::BuildStep::kReferenceInsert:
-      return "reference_insert";
-    case sim::BuildStep::kReferenceSort:
-      return "reference_sort";
-    case sim::BuildStep::kTriangleWrite:
-      return "triangle_write";
-    case sim::BuildStep::kProjectionSetup:
-      return "projection_setup";
-    case sim::BuildStep::kCellSum:
-      return "cell_sum";
-    case sim::BuildStep::kMacroWord:
-      return "macro_word";
-    case sim::BuildStep::kCheckedLine:
-      return "checked_line";
-    case sim::BuildStep::kBinUpdate:
-      return "bin_update";
-    case sim::BuildStep::kTriangleMoved:
-      return "triangle_moved";
-    case sim::BuildStep::kBinSwept:
-      return "bin_swept";
-    case sim::BuildStep::kNodeMade:
-      return "node_made";
-    case sim::BuildStep::kCount:
-      break;
-  }
-  return "";
+  using enum sim::BuildStep;
+  static constexpr Name<sim::BuildStep> kNames[] = {
+      {kVertexCheck, "vertex_check"}, {kTriangleSurvey, "triangle_survey"}, {kCellBox, "cell_box"},
+      {kCellRow, "cell_row"}, {kReferenceInsert, "reference_insert"}, {kReferenceSort, "reference_sort"},
+      {kTriangleWrite, "triangle_write"}, {kProjectionSetup, "projection_setup"}, {kCellSum, "cell_sum"},
+      {kMacroWord, "macro_word"}, {kCheckedLine, "checked_line"}, {kBinUpdate, "bin_update"},
+      {kTriangleMoved, "triangle_moved"}, {kBinSwept, "bin_swept"}, {kNodeMade, "node_made"}};
+  static_assert(names_all(kNames));
+  return name_in(kNames, step);
 }
 
 std::string_view wait_level_name(sim::WaitLevel level) {
-  switch (level) {
-    case sim::WaitLevel::kTile:
-      return "tile";
-    case sim::WaitLevel::kMacroCell:
-      return "macrocell";
-    case sim::WaitLevel::kTriangle:
-      return "triangle";
-    case sim::WaitLevel::kSetup:
-      return "setup";
-    case sim::WaitLevel::kCount:
-      break;
-  }
-  return "";
+  using enum sim::WaitLevel;
+  static constexpr Name<sim::WaitLevel> kNames[] = {
+      {kTile, "tile"}, {kMacroCell, "macrocell"}, {kTriangle, "triangle"}, {kSetup, "setup"}};
+  static_assert(names_all(kNames));
+  return name_in(kNames, level);
 }
+// clang-format on
 
 std::uint64_t image_hash(std::span<const std::uint32_t> pixels) {
   std::uint64_t hash = 0xcbf29ce484222325u;

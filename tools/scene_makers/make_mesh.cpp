@@ -4,8 +4,8 @@
 #include <cstdio>
 #include <string>
 
+#include "files/interrupt.h"
 #include "firmware/wave_mesh.h"
-#include "gridiron/interrupt.h"
 #include "scene_makers/mesh.h"
 #include "scene_makers/shapes.h"
 

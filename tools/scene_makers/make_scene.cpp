@@ -5,7 +5,7 @@
 #include <string>
 #include <vector>
 
-#include "gridiron/interrupt.h"
+#include "files/interrupt.h"
 #include "scene_makers/mesh.h"
 #include "scene_makers/procedural.h"
 
@@ -44,8 +44,7 @@ int main(int argument_count, char** arguments) {
   const CLI::Option* size_option = app.add_option(
       "--size", size,
       "size factor: balls 0 to 7, default 4; tetra, mount 1 to 11, 6; rings 1 to 90, 7; lattice 1 to 100, 8; "
-      "shells 1 to 100, 6; "
-      "sky: texels of a face's side, 1 to 1024, 16");
+      "shells 1 to 100, 6; sky: texels of a face's side, 1 to 1024, 16");
   app.add_option("-o,--output", output, "file to write; sky: what the six names begin with")->required();
   const Database* database = nullptr;
   try {

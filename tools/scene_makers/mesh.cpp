@@ -5,8 +5,8 @@
 #include <bit>
 #include <string_view>
 
-#include "gridiron/atomic_file.h"
-#include "gridiron/failure.h"
+#include "base/failure.h"
+#include "files/atomic_file.h"
 
 namespace gridiron::scene_makers {
 namespace {

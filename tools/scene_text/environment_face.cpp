@@ -11,8 +11,8 @@
 #include <string>
 #include <string_view>
 
-#include "gridiron/failure.h"
-#include "gridiron/input_file.h"
+#include "base/failure.h"
+#include "files/input_file.h"
 #include "scene_text/scene_files.h"
 
 namespace gridiron::tool {

@@ -11,9 +11,9 @@
 #include <tuple>
 #include <utility>
 
-#include "gridiron/failure.h"
-#include "gridiron/interrupt.h"
-#include "gridiron/words.h"
+#include "base/failure.h"
+#include "base/words.h"
+#include "files/interrupt.h"
 #include "scene_text/mesh_normals.h"
 #include "scene_text/polygon.h"
 #include "scene_text/round_shapes.h"

@@ -9,10 +9,10 @@
 #include <string>
 #include <utility>
 
-#include "gridiron/failure.h"
-#include "gridiron/input_file.h"
-#include "gridiron/interrupt.h"
-#include "gridiron/words.h"
+#include "base/failure.h"
+#include "base/words.h"
+#include "files/input_file.h"
+#include "files/interrupt.h"
 #include "scene_text/polygon.h"
 #include "scene_text/scene_files.h"
 #include "scene_text/scene_words.h"

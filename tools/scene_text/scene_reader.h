@@ -9,7 +9,7 @@
 #include <optional>
 #include <string_view>
 
-#include "gridiron/framing.h"
+#include "base/points.h"
 #include "scene_text/scene_description.h"
 #include "scene_text/scene_entities.h"
 

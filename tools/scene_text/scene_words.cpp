@@ -6,8 +6,8 @@
 #include <cmath>
 #include <system_error>
 
-#include "gridiron/failure.h"
-#include "gridiron/words.h"
+#include "base/failure.h"
+#include "base/words.h"
 #include "scene_text/scene_description.h"
 
 namespace gridiron::tool {

@@ -7,13 +7,12 @@
 #include <string>
 #include <vector>
 
-#include "../gridiron/run_program.h"
-#include "../gridiron/temporary_folder.h"
 #include "csv_rows.h"
 #include "experiment/accuracy_experiment.h"
 #include "experiment/table.h"
-#include "gridiron/accuracies.h"
+#include "gridiron/device/accuracies.h"
 #include "markup.h"
+#include "two_runs.h"
 
 namespace gridiron::test {
 namespace {
@@ -24,12 +23,6 @@ using Rows = std::vector<std::vector<std::string>>;
 std::vector<std::string> tiny(const std::string& output, const std::string& threads) {
   // The folder itself holds no scans, so that GRIDIRON_SCENES does not matter.
   return {"experiment", "accuracy", "-o", output, "--scenes", ".", "--size", "64x48", "--threads", threads, "--quiet"};
-}
-
-std::set<std::string> names_in(const fs::path& folder) {
-  std::set<std::string> names;
-  for (const auto& entry : fs::directory_iterator(folder)) names.insert(entry.path().filename().string());
-  return names;
 }
 
 // Every view has every profile in both configurations, and figures follow from each other.
@@ -109,37 +102,14 @@ TEST(AccuracyExperiment, FilesDoNotDependOnThreads) {
   fs::create_directory(folder.path("out3"));
   folder.write("out3/pareto_t_bunny.svg", "earlier");
   folder.write("out3/table3_fps.csv", "of another experiment");
-  for (const char* threads : {"1", "3"}) {
-    const ProgramResult result = run_program(folder.folder(), tiny(std::string("out") + threads, threads));
-    ASSERT_EQ(result.exit_code, 0) << result.err;
-    EXPECT_EQ(result.out, "");
-  }
+  run_twice(folder, tiny);
   EXPECT_TRUE(fs::remove(folder.path("out3") / "table3_fps.csv"));
-  const std::set<std::string> names = names_in(folder.path("out1"));
-  EXPECT_EQ(names, names_in(folder.path("out3")));
   const std::vector<std::string> known = experiment::accuracy_file_names();
-  EXPECT_EQ(std::set<std::string>(known.begin(), known.end()).size(), known.size()) << "each once";
-  for (const std::string& name : names) {
-    EXPECT_NE(std::ranges::find(known, name), known.end()) << name;
-    const std::string content = read_file(folder.path("out1") / name);
-    const bool is_same = content == read_file(folder.path("out3") / name);
-    EXPECT_TRUE(is_same || name.starts_with("host_")) << name;
-    EXPECT_TRUE(!name.ends_with(".csv") || std::ranges::count(content, '\n') >= 2) << name << " has no rows";
-    EXPECT_TRUE(!name.ends_with(".svg") || !parse_markup(content).empty()) << name;
-  }
+  const std::set<std::string> names = expect_same_files(folder, known);
   EXPECT_EQ(names.count("host_prices.csv"), 1u);
   EXPECT_EQ(known.size() - names.size(), 5u * 6u) << "what is missing is of the five views that are not there";
 
-  // The page names every file and nothing else.
   const std::string page = read_file(folder.path("out1") / "index.html");
-  std::set<std::string> linked = {"index.html"};
-  for (const MarkupElement& element : parse_markup(page)) {
-    for (const char* key : {"href", "src"}) {
-      const auto found = element.attributes.find(key);
-      if (found != element.attributes.end() && found->second.front() != '#') linked.insert(found->second);
-    }
-  }
-  EXPECT_EQ(linked, names);
   EXPECT_NE(page.find("bunny.ply was not found"), std::string::npos);
   EXPECT_EQ(page.find("nan"), std::string::npos);
   EXPECT_EQ(page.find("none %"), std::string::npos);
@@ -207,10 +177,7 @@ TEST(AccuracyExperiment, AnOutputThatCannotBeIsToldFirst) {
   folder.write("bunny.ply", "nonsense");
   for (const char* name : {"index.html", "host_prices.csv", "errors_best_bunny.svg", "prices_conference_2.txt"}) {
     fs::create_directories(folder.path("out") / name);
-    const ProgramResult result = run_program(folder.folder(), tiny("out", "1"));
-    EXPECT_EQ(result.exit_code, 1) << name;
-    EXPECT_NE(result.err.find(std::string("out/") + name + ": cannot write: it is a folder"), std::string::npos)
-        << result.err;
+    expect_failure(folder, tiny("out", "1"), 1, std::string("out/") + name + ": cannot write: it is a folder");
     fs::remove_all(folder.path("out"));
   }
 }

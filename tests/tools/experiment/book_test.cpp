@@ -8,7 +8,7 @@
 #include <vector>
 
 #include "../gridiron/temporary_folder.h"
-#include "gridiron/failure.h"
+#include "base/failure.h"
 #include "markup.h"
 
 namespace gridiron::test {

@@ -7,14 +7,13 @@
 #include <string>
 #include <vector>
 
-#include "../gridiron/run_program.h"
-#include "../gridiron/temporary_folder.h"
+#include "../gridiron/failure_of.h"
 #include "csv_rows.h"
 #include "experiment/effect_frames.h"
 #include "experiment/effect_scenes.h"
 #include "experiment/effects_experiment.h"
-#include "gridiron/failure.h"
 #include "markup.h"
+#include "two_runs.h"
 
 namespace gridiron::test {
 namespace {
@@ -23,12 +22,6 @@ namespace fs = std::filesystem;
 using experiment::EffectFrame;
 using experiment::EffectScene;
 using Rows = std::vector<std::vector<std::string>>;
-
-std::set<std::string> names_in(const fs::path& folder) {
-  std::set<std::string> names;
-  for (const auto& entry : fs::directory_iterator(folder)) names.insert(entry.path().filename().string());
-  return names;
-}
 
 // Every effect is on somewhere and off somewhere; what is counted of one that is off is nothing, of one that is on not.
 void expect_frames(const fs::path& folder) {
@@ -62,36 +55,11 @@ void expect_frames(const fs::path& folder) {
 
 TEST(EffectsExperiment, FilesDoNotDependOnThreads) {
   const TemporaryFolder folder;
-  for (const char* threads : {"1", "3"}) {
-    const ProgramResult result =
-        run_program(folder.folder(), {"experiment", "effects", "-o", std::string("out") + threads, "--size", "16x16",
-                                      "--threads", threads, "--quiet"});
-    ASSERT_EQ(result.exit_code, 0) << result.err;
-    EXPECT_EQ(result.out, "");
-  }
-  const std::set<std::string> names = names_in(folder.path("out1"));
-  EXPECT_EQ(names, names_in(folder.path("out3")));
-  const std::vector<std::string> known = experiment::effects_file_names();
-  EXPECT_EQ(std::set<std::string>(known.begin(), known.end()).size(), known.size()) << "each once";
-  for (const std::string& name : names) {
-    EXPECT_NE(std::ranges::find(known, name), known.end()) << name;
-    const std::string content = read_file(folder.path("out1") / name);
-    EXPECT_TRUE(content == read_file(folder.path("out3") / name)) << name;
-    EXPECT_TRUE(!name.ends_with(".csv") || std::ranges::count(content, '\n') >= 2) << name << " has no rows";
-    EXPECT_TRUE(!name.ends_with(".svg") || !parse_markup(content).empty()) << name;
-    EXPECT_TRUE(!name.ends_with(".png") || content.starts_with("\x89PNG")) << name;
-  }
-
-  // The page names every file and nothing else.
+  run_twice(folder, [](const std::string& output, const std::string& threads) {
+    return Words{"experiment", "effects", "-o", output, "--size", "16x16", "--threads", threads, "--quiet"};
+  });
+  (void)expect_same_files(folder, experiment::effects_file_names());
   const std::string page = read_file(folder.path("out1") / "index.html");
-  std::set<std::string> linked = {"index.html"};
-  for (const MarkupElement& element : parse_markup(page)) {
-    for (const char* key : {"href", "src"}) {
-      const auto found = element.attributes.find(key);
-      if (found != element.attributes.end() && found->second.front() != '#') linked.insert(found->second);
-    }
-  }
-  EXPECT_EQ(linked, names);
   EXPECT_EQ(page.find("nan"), std::string::npos);
 
   expect_frames(folder.path("out1"));
@@ -203,13 +171,9 @@ TEST(EffectsExperiment, TooLittleHidingFailsTheRun) {
   EXPECT_DOUBLE_EQ(experiment::hidden_share(single, twofold), 0.91);
   EXPECT_NO_THROW(experiment::check_hiding(single, twofold, "frame"));
   twofold.stages[static_cast<std::size_t>(Stage::kBounce)].wait_cycles = 20;
-  try {
-    experiment::check_hiding(single, twofold, "frame");
-    FAIL() << "89 % are not enough";
-  } catch (const tool::Failure& failure) {
-    EXPECT_EQ(failure.code(), tool::ExitCode::kCheckFailed);
-    EXPECT_NE(std::string(failure.what()).find("88.8"), std::string::npos) << failure.what();
-  }
+  const auto check = [&] { experiment::check_hiding(single, twofold, "frame"); };  // 89 % are not enough
+  const std::string words = failure_of(check, tool::ExitCode::kCheckFailed);
+  EXPECT_NE(words.find("88.8"), std::string::npos) << words;
 }
 
 // The library renders one scene as the program does; without an effect the kernel has nothing of it.

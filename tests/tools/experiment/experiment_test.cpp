@@ -10,12 +10,11 @@
 #include <thread>
 #include <vector>
 
-#include "../gridiron/run_program.h"
-#include "../gridiron/temporary_folder.h"
 #include "csv_rows.h"
 #include "experiment/paper_experiment.h"
 #include "experiment/sections.h"
 #include "markup.h"
+#include "two_runs.h"
 
 namespace gridiron::test {
 namespace {
@@ -26,12 +25,6 @@ std::vector<std::string> tiny(const std::string& output, const std::string& thre
   // The folder itself holds no scans, so that GRIDIRON_SCENES does not matter.
   return {"experiment", "paper",     "-o",   output,      "--scenes", ".",      "--size",
           "64x48",      "--largest", "6000", "--threads", threads,    "--quiet"};
-}
-
-std::set<std::string> names_in(const fs::path& folder) {
-  std::set<std::string> names;
-  for (const auto& entry : fs::directory_iterator(folder)) names.insert(entry.path().filename().string());
-  return names;
 }
 
 // What stands about the cached BVH: every table has it, and what follows from two columns does follow.
@@ -223,50 +216,19 @@ TEST(Experiment, FilesDoNotDependOnThreads) {
   fs::create_symlink("../kept.svg", folder.path("out3") / "sweep_latency_horse.svg");
   folder.write("kept.svg", "not of the folder");
   folder.write("out3/sweep_latency_mine.svg", "somebody's");
-  for (const char* threads : {"1", "3"}) {
-    const ProgramResult result = run_program(folder.folder(), tiny(std::string("out") + threads, threads));
-    ASSERT_EQ(result.exit_code, 0) << result.err;
-    EXPECT_EQ(result.out, "");
-  }
+  run_twice(folder, tiny);
   EXPECT_EQ(read_file(folder.path("kept.svg")), "not of the folder");
   EXPECT_TRUE(fs::remove(folder.path("out3") / "sweep_latency_mine.svg"));
-  const std::set<std::string> names = names_in(folder.path("out1"));
-  EXPECT_EQ(names, names_in(folder.path("out3")));
-  int compared = 0;
-  for (const std::string& name : names) {
-    if (name.starts_with("host_")) continue;
-    EXPECT_TRUE(read_file(folder.path("out1") / name) == read_file(folder.path("out3") / name)) << name;
-    ++compared;
-  }
-  EXPECT_GE(compared, 35);
+  const std::vector<std::string> known = experiment::paper_file_names();
+  const std::set<std::string> names = expect_same_files(folder, known);
+  const auto is_compared = [](const std::string& name) { return !name.starts_with("host_"); };
+  EXPECT_GE(std::ranges::count_if(names, is_compared), 35);
   EXPECT_EQ(names.count("host_fig7.csv"), 1u);
   expect_bvh(folder.path("out1"));
 
-  // Every name was known before the work began.
-  const std::vector<std::string> known = experiment::paper_file_names();
-  EXPECT_EQ(std::set<std::string>(known.begin(), known.end()).size(), known.size()) << "each once";
-  for (const std::string& name : names) EXPECT_NE(std::ranges::find(known, name), known.end()) << name;
   EXPECT_EQ(known.size() - names.size(), 2u * 5u) << "what is missing is of the five views that are not there";
   expect_sweeps(folder.path("out1"));
 
-  // The page names every file and nothing else; every plot is well formed, every table has rows of one length.
-  std::set<std::string> linked = {"index.html"};
-  for (const MarkupElement& element : parse_markup(read_file(folder.path("out1") / "index.html"))) {
-    for (const char* key : {"href", "src"}) {
-      const auto found = element.attributes.find(key);
-      if (found != element.attributes.end() && found->second.front() != '#') linked.insert(found->second);
-    }
-  }
-  EXPECT_EQ(linked, names);
-  for (const std::string& name : names) {
-    const std::string content = read_file(folder.path("out1") / name);
-    if (name.ends_with(".svg")) {
-      SCOPED_TRACE(name);
-      EXPECT_FALSE(parse_markup(content).empty());
-    } else if (name.ends_with(".csv")) {
-      EXPECT_GE(std::ranges::count(content, '\n'), 2) << name << " has no rows";
-    }
-  }
   const std::string page = read_file(folder.path("out1") / "index.html");
   EXPECT_NE(page.find("bunny.ply was not found"), std::string::npos);
   EXPECT_EQ(page.find("none %"), std::string::npos);
@@ -310,10 +272,7 @@ TEST(Experiment, AnOutputThatCannotBeIsToldFirst) {
   for (const char* name : {"index.html", "sweep_local_store.csv", "fig6_best_6_cores.svg", "sweep_latency_bunny.svg"}) {
     const fs::path obstacle = folder.path("out") / name;
     fs::create_directories(obstacle);
-    const ProgramResult result = run_program(folder.folder(), tiny("out", "1"));
-    EXPECT_EQ(result.exit_code, 1) << name;
-    EXPECT_NE(result.err.find(std::string("out/") + name + ": cannot write: it is a folder"), std::string::npos)
-        << result.err;
+    expect_failure(folder, tiny("out", "1"), 1, std::string("out/") + name + ": cannot write: it is a folder");
     fs::remove_all(folder.path("out"));
   }
   // A folder that was there stays, with what lies in it.
@@ -325,9 +284,7 @@ TEST(Experiment, AnOutputThatCannotBeIsToldFirst) {
 TEST(Experiment, AWrongScanLeavesNothing) {
   const TemporaryFolder folder;
   folder.write("bunny.ply", "ply\nformat ascii 1.0\nnonsense\n");
-  const ProgramResult result = run_program(folder.folder(), tiny("out", "1"));
-  EXPECT_EQ(result.exit_code, 1);
-  EXPECT_NE(result.err.find("bunny.ply:3"), std::string::npos) << result.err;
+  expect_failure(folder, tiny("out", "1"), 1, "bunny.ply:3");
   EXPECT_EQ(folder.names(), std::vector<std::string>{"bunny.ply"});
 }
 

@@ -9,7 +9,7 @@
 #include <string>
 #include <vector>
 
-#include "gridiron/failure.h"
+#include "base/failure.h"
 
 namespace gridiron::test {
 namespace {

@@ -14,7 +14,7 @@
 #include "experiment/edge_points.h"
 #include "experiment/price_book.h"
 #include "experiment/price_list.h"
-#include "gridiron/accuracies.h"
+#include "gridiron/device/accuracies.h"
 
 namespace gridiron::test {
 namespace {

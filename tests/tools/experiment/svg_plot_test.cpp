@@ -62,9 +62,6 @@ TEST(SvgPlot, LinesGoThroughTheirPoints) {
                            .x_title = "x",
                            .y_title = "y",
                            .series = {{"one", {{0, 0}, {5, 5}, {10, 10}}, false}, {"two", {{0, 10}, {10, 0}}, true}},
-                           .log_x = false,
-                           .log_y = false,
-                           .zoom_y = false,
                            .x_ticks = {0, 5, 10}};
   const auto elements = parse_markup(line_chart_svg(chart));
   text_element(elements, "A < B & \"C\"");
@@ -97,10 +94,7 @@ TEST(SvgPlot, AZoomedAxisSpansItsValues) {
                      .x_title = "x",
                      .y_title = "y",
                      .series = {{"s", {{1, 100}, {2, 99.5}, {3, 97.2}}, false}},
-                     .log_x = false,
-                     .log_y = false,
-                     .zoom_y = true,
-                     .x_ticks = {}};
+                     .zoom_y = true};
   const auto elements = parse_markup(line_chart_svg(chart));
   const auto points = points_of(elements_named(elements, "polyline").at(0));
   EXPECT_NEAR(points[0].y, area.top, 0.01);
@@ -116,9 +110,7 @@ TEST(SvgPlot, LogarithmicAxesSpaceFactorsEvenly) {
                            .y_title = "y",
                            .series = {{"s", {{1, 10}, {10, 100}, {100, 1000}, {-1, 5}, {5, 0}}, false}},
                            .log_x = true,
-                           .log_y = true,
-                           .zoom_y = false,
-                           .x_ticks = {}};
+                           .log_y = true};
   const auto elements = parse_markup(line_chart_svg(chart));
   const auto points = points_of(elements_named(elements, "polyline").at(0));
   ASSERT_EQ(points.size(), 3u) << "what has no logarithm is left out";
@@ -134,8 +126,7 @@ TEST(SvgPlot, BarsStandOnTheAxisAndStack) {
                           .groups = {"g", "h"},
                           .bars = {"a", "b"},
                           .parts = {"p", "q"},
-                          .values = {1, 2, 4, 0, std::nan(""), 1, 10, 0},
-                          .labels = false};
+                          .values = {1, 2, 4, 0, std::nan(""), 1, 10, 0}};
   const auto elements = parse_markup(bar_chart_svg(chart));
   std::vector<MarkupElement> bars;
   for (const MarkupElement& rect : elements_named(elements, "rect")) {
@@ -237,15 +228,8 @@ TEST(SvgPlot, HistogramsStandBesideCosts) {
 }
 
 TEST(SvgPlot, ChartsOfNothingAreStillDocuments) {
-  EXPECT_FALSE(parse_markup(line_chart_svg({.title = "t",
-                                            .x_title = "",
-                                            .y_title = "",
-                                            .series = {},
-                                            .log_x = true,
-                                            .log_y = true,
-                                            .zoom_y = false,
-                                            .x_ticks = {}}))
-                   .empty());
+  EXPECT_FALSE(
+      parse_markup(line_chart_svg({.title = "t", .x_title = "", .y_title = "", .log_x = true, .log_y = true})).empty());
   EXPECT_FALSE(parse_markup(bar_chart_svg({})).empty());
 }
 

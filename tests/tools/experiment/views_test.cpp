@@ -10,7 +10,7 @@
 #include <vector>
 
 #include "../gridiron/temporary_folder.h"
-#include "gridiron/failure.h"
+#include "base/failure.h"
 #include "support/test_mesh.h"
 
 namespace gridiron::test {

@@ -1,12 +1,12 @@
 // Accuracies: every profile of core has one name. SPDX-License-Identifier: Apache-2.0
-#include "gridiron/accuracies.h"
+#include "gridiron/device/accuracies.h"
 
 #include <gtest/gtest.h>
 
 #include <set>
 #include <string_view>
 
-#include "gridiron/arguments.h"
+#include "gridiron/frame/render_plan.h"
 
 namespace gridiron::test {
 namespace {
@@ -21,7 +21,7 @@ TEST(Accuracies, EachHasOneName) {
   }
   EXPECT_EQ(values, (std::set<Accuracy>{Accuracy::kStandard, Accuracy::kPaper, Accuracy::kExact, Accuracy::kFast,
                                         Accuracy::kCompact}));
-  EXPECT_EQ(values.count(tool::RenderArguments{}.accuracy), 1u);
+  EXPECT_EQ(values.count(tool::RenderRequest{}.accuracy), 1u);
 }
 
 }  // namespace

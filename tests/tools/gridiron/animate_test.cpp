@@ -11,8 +11,8 @@
 #include <string>
 #include <vector>
 
-#include "gridiron/scene_points.h"
-#include "gridiron/view.h"
+#include "gridiron/scene/scene_points.h"
+#include "gridiron/scene/view.h"
 #include "run_program.h"
 #include "temporary_folder.h"
 
@@ -20,7 +20,6 @@ namespace gridiron::test {
 namespace {
 
 using Json = nlohmann::json;
-using Words = std::vector<std::string>;
 using Row = std::map<std::string, std::string>;
 
 TestMesh moved(TestMesh mesh, Vec3 by) {
@@ -50,11 +49,8 @@ std::vector<Row> read_table(const std::filesystem::path& path) {
   return rows;
 }
 
-ProgramResult animate(const TemporaryFolder& folder, Words arguments) {
-  arguments.insert(arguments.begin(), "animate");
-  const ProgramResult result = run_program(folder.folder(), arguments);
-  EXPECT_EQ(result.exit_code, 0) << result.err;
-  return result;
+ProgramResult animate(const TemporaryFolder& folder, const Words& arguments) {
+  return run(folder, Words{"animate"} + arguments);
 }
 
 TEST(Animate, APictureAndARowForEachMesh) {

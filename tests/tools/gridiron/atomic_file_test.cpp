@@ -1,12 +1,12 @@
 // AtomicFile: whole or not at all. SPDX-License-Identifier: Apache-2.0
-#include "gridiron/atomic_file.h"
+#include "files/atomic_file.h"
 
 #include <gtest/gtest.h>
 
 #include <functional>
 
-#include "gridiron/command_files.h"
-#include "gridiron/failure.h"
+#include "base/failure.h"
+#include "files/command_files.h"
 #include "temporary_folder.h"
 
 namespace gridiron::test {

@@ -1,8 +1,8 @@
 // Camera files: strict, every complaint with its line. SPDX-License-Identifier: Apache-2.0
 #include <gtest/gtest.h>
 
-#include "gridiron/failure.h"
-#include "gridiron/view.h"
+#include "failure_of.h"
+#include "gridiron/scene/view.h"
 #include "temporary_folder.h"
 
 namespace gridiron::test {
@@ -61,24 +61,14 @@ TEST(CameraFile, NamesTheLineOfEveryDefect) {
   const TemporaryFolder folder;
   for (const Case& defect : cases) {
     const auto path = folder.write("a.camera", defect.content);
-    try {
-      (void)tool::read_camera_file(path);
-      ADD_FAILURE() << "accepted: " << defect.content;
-    } catch (const tool::Failure& failure) {
-      EXPECT_EQ(failure.code(), tool::ExitCode::kBadInput);
-      EXPECT_EQ(std::string(failure.what()).find(path.string() + defect.line_and_reason), 0u)
-          << failure.what() << "\nfor: " << defect.content;
-    }
+    const std::string words = failure_of([&] { return tool::read_camera_file(path); });
+    EXPECT_EQ(words.find(path.string() + defect.line_and_reason), 0u) << words << "\nfor: " << defect.content;
   }
 }
 
 TEST(CameraFile, EndsReadingWhatHasNoEnd) {
-  try {
-    (void)tool::read_camera_file("/dev/zero");
-    ADD_FAILURE();
-  } catch (const tool::Failure& failure) {
-    EXPECT_NE(std::string(failure.what()).find("/dev/zero: File too large"), std::string::npos) << failure.what();
-  }
+  const std::string words = failure_of([] { return tool::read_camera_file("/dev/zero"); });
+  EXPECT_NE(words.find("/dev/zero: File too large"), std::string::npos) << words;
 }
 
 }  // namespace

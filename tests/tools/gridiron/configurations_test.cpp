@@ -1,5 +1,5 @@
 // Configurations: what the names promise. SPDX-License-Identifier: Apache-2.0
-#include "gridiron/configurations.h"
+#include "gridiron/device/configurations.h"
 
 #include <gridiron/base/records.h>
 #include <gtest/gtest.h>
@@ -8,7 +8,7 @@
 #include <optional>
 #include <vector>
 
-#include "gridiron/store_facts.h"
+#include "gridiron/device/store_facts.h"
 
 namespace gridiron::test {
 namespace {
@@ -38,8 +38,8 @@ TEST(Configurations, EachFitsAStoreWithEffects) {
     const tool::StoreFacts store = tool::effect_store_facts(sim::StoreSize::k256KB, configuration.packet_width);
     EXPECT_EQ(store.packet_width, configuration.packet_width);
     EXPECT_LE(configuration.macro_width, store.max_macro_width) << configuration.name;
-    EXPECT_LE(configuration.depths.macro, store.max_macro_depth) << configuration.name;
-    EXPECT_LE(configuration.depths.triangle, store.max_triangle_depth) << configuration.name;
+    EXPECT_LE(configuration.depths.macro, store.most_depths.macro) << configuration.name;
+    EXPECT_LE(configuration.depths.triangle, store.most_depths.triangle) << configuration.name;
     EXPECT_LE(store.data_bytes() + store.code_bytes + store.stack_bytes, store.arena_bytes);
   }
 }
@@ -48,9 +48,9 @@ TEST(Configurations, EachFitsTheDefaultStore) {
   for (const tool::Configuration& configuration : tool::configurations()) {
     const tool::StoreFacts store = tool::usual_store_facts(sim::StoreSize::k256KB, configuration.packet_width);
     EXPECT_LE(configuration.macro_width, store.max_macro_width) << configuration.name;
-    EXPECT_LE(configuration.depths.output, store.max_output_depth) << configuration.name;
-    EXPECT_LE(configuration.depths.macro, store.max_macro_depth) << configuration.name;
-    EXPECT_LE(configuration.depths.triangle, store.max_triangle_depth) << configuration.name;
+    EXPECT_LE(configuration.depths.output, store.most_depths.output) << configuration.name;
+    EXPECT_LE(configuration.depths.macro, store.most_depths.macro) << configuration.name;
+    EXPECT_LE(configuration.depths.triangle, store.most_depths.triangle) << configuration.name;
     EXPECT_EQ(tool::find_configuration(configuration.name), &configuration);
   }
 }

@@ -1,5 +1,5 @@
 // Effect names: each effect has its own, and renderers are told as C++ has them. SPDX-License-Identifier: Apache-2.0
-#include "gridiron/effect_names.h"
+#include "gridiron/scene/effect_names.h"
 
 #include <gtest/gtest.h>
 

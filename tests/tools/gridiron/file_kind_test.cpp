@@ -1,5 +1,5 @@
 // File kinds: by content, whatever the name. SPDX-License-Identifier: Apache-2.0
-#include "gridiron/file_kind.h"
+#include "files/file_kind.h"
 
 #include <gtest/gtest.h>
 

@@ -1,5 +1,5 @@
 // Frame failures: exit codes and words. SPDX-License-Identifier: Apache-2.0
-#include "gridiron/frame_failure.h"
+#include "gridiron/frame/frame_failure.h"
 
 #include <gridiron/sim/sim_core.h>
 #include <gtest/gtest.h>

@@ -1,6 +1,6 @@
 // Framing: every model whole, centred and large, measured on its vertices and on small pictures.
 // SPDX-License-Identifier: Apache-2.0
-#include "gridiron/framing.h"
+#include "gridiron/scene/framing.h"
 
 #include <gtest/gtest.h>
 #include <scene_makers/shapes.h>
@@ -17,9 +17,9 @@
 #include <string>
 #include <vector>
 
-#include "gridiron/scene_input.h"
-#include "gridiron/scene_points.h"
-#include "gridiron/view.h"
+#include "gridiron/scene/scene_input.h"
+#include "gridiron/scene/scene_points.h"
+#include "gridiron/scene/view.h"
 #include "support/render_mesh.h"
 #include "support/scenes.h"
 #include "support/test_mesh.h"

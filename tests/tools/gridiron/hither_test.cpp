@@ -1,5 +1,5 @@
 // Hither plane: what is in front of it and seen. SPDX-License-Identifier: Apache-2.0
-#include "gridiron/hither.h"
+#include "gridiron/scene/hither.h"
 
 #include <gtest/gtest.h>
 

@@ -9,13 +9,6 @@
 namespace gridiron::test {
 namespace {
 
-using Words = std::vector<std::string>;
-
-Words operator+(Words a, const Words& b) {
-  a.insert(a.end(), b.begin(), b.end());
-  return a;
-}
-
 /// While one lives, programs that are started get a lower limit.
 class LowerLimit {
  public:
@@ -43,8 +36,7 @@ TEST(HostLimits, AHostWithoutThreadsRendersTheSamePicture) {
     const Words render = {"render", "a.ply", "--size", "64x64", "--mode", mode, "--threads"};
     ASSERT_EQ(run_program(folder.folder(), render + Words{"1", "-o", "one.png"}).exit_code, 0);
     const LowerLimit limit(RLIMIT_STACK, kHugeStackBytes);
-    const ProgramResult result = run_program(folder.folder(), render + Words{"3", "-o", "three.png"});
-    EXPECT_EQ(result.exit_code, 0) << result.err;
+    const ProgramResult result = run(folder, render + Words{"3", "-o", "three.png"});
     EXPECT_EQ(read_file(folder.path("one.png")), read_file(folder.path("three.png")));
   }
 }
@@ -55,8 +47,7 @@ TEST(HostLimits, AMachineMayHaveMoreMemoryThanTheHost) {
   folder.write("large.machine", "based_on cell-ps3\nmain_memory_bytes 1099511627776\n");
   const Words scene = {"render", "a.ply", "--size", "64x64", "-o"};
   ASSERT_EQ(run_program(folder.folder(), scene + Words{"a.png"}).exit_code, 0);
-  const ProgramResult result = run_program(folder.folder(), scene + Words{"b.png", "--machine", "large.machine"});
-  EXPECT_EQ(result.exit_code, 0) << result.err;
+  const ProgramResult result = run(folder, scene + Words{"b.png", "--machine", "large.machine"});
   EXPECT_EQ(read_file(folder.path("a.png")), read_file(folder.path("b.png")));
 }
 

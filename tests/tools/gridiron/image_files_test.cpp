@@ -1,5 +1,5 @@
 // Picture files, read back by OpenImageIO. SPDX-License-Identifier: Apache-2.0
-#include "gridiron/image_files.h"
+#include "files/image_files.h"
 
 #include <gtest/gtest.h>
 
@@ -7,7 +7,7 @@
 #include <limits>
 #include <string>
 
-#include "gridiron/png_file.h"
+#include "files/png_file.h"
 #include "support/picture.h"
 #include "support/test_mesh.h"
 #include "temporary_folder.h"

@@ -20,12 +20,8 @@ TestMesh make_scene() {
   return mesh;
 }
 
-Json info_json(const TemporaryFolder& folder, std::vector<std::string> arguments) {
-  arguments.insert(arguments.begin(), "info");
-  arguments.emplace_back("--json");
-  const ProgramResult result = run_program(folder.folder(), arguments);
-  EXPECT_EQ(result.exit_code, 0) << result.err;
-  return Json::parse(result.out, nullptr, false);
+Json info_json(const TemporaryFolder& folder, const Words& arguments) {
+  return Json::parse(run(folder, Words{"info"} + arguments + Words{"--json"}).out, nullptr, false);
 }
 
 TEST(Info, ANameThatIsNoUtf8IsWrittenWithReplacements) {
@@ -206,8 +202,7 @@ TEST(Info, WhatIsCountedInInstructionsIsCalledSo) {
   folder.write_ply("a.ply", make_scene());
   folder.write("board.machine", "based_on fu540\ncore_count 2\n");
   const auto worst_line = [&folder](const std::string& machine) {
-    const ProgramResult result = run_program(folder.folder(), {"info", "a.ply", "--machine", machine});
-    EXPECT_EQ(result.exit_code, 0) << result.err;
+    const ProgramResult result = run(folder, {"info", "a.ply", "--machine", machine});
     const std::size_t begin = result.out.find("\nworst tile");
     EXPECT_NE(begin, std::string::npos) << result.out;
     return begin == std::string::npos ? "" : result.out.substr(begin);
@@ -264,8 +259,7 @@ TEST(Info, ParametersReachTheGrid) {
 TEST(Info, PeopleReadTheSameNumbers) {
   const TemporaryFolder folder;
   folder.write_ply("a.ply", make_scene());
-  const ProgramResult result = run_program(folder.folder(), {"info", "a.ply"});
-  EXPECT_EQ(result.exit_code, 0);
+  const ProgramResult result = run(folder, {"info", "a.ply"});
   EXPECT_NE(result.out.find("770 triangles (2 of zero area dropped)"), std::string::npos) << result.out;
   EXPECT_NE(result.out.find("256.0 KB"), std::string::npos) << result.out;
 }

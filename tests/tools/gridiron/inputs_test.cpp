@@ -13,8 +13,6 @@
 namespace gridiron::test {
 namespace {
 
-using Words = std::vector<std::string>;
-
 constexpr const char* kTextScene =
     "v from 0 0 5 at 0 0 0 up 0 1 0 angle 40 hither 0.01 resolution 24 16\nl 1 2 3\nf 1 0 0 1 0 0 0 0\ns 0 0 0 1\n";
 

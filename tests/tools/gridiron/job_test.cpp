@@ -10,7 +10,7 @@
 #include <string>
 #include <vector>
 
-#include "gridiron/job_file.h"
+#include "gridiron/job/job_file.h"
 #include "host_device.h"
 #include "run_program.h"
 #include "temporary_folder.h"
@@ -19,7 +19,6 @@ namespace gridiron::test {
 namespace {
 
 using Json = nlohmann::json;
-using Words = std::vector<std::string>;
 using port::FrameJob;
 using port::FrameResult;
 
@@ -29,30 +28,11 @@ constexpr const char* kMirrors =
     "v from 1 2 6 at 0 0 0 up 0 1 0 angle 40 hither 0 resolution 72 40\n"
     "b 0.1 0.2 0.4\nl 3 5 4\nf 0.9 0.5 0.3 0.5 0.5 40 0 0\ns -0.9 0 0 0.9\ns 0.9 0 0 0.9\n";
 
-Words joined(Words a, const Words& b) {
-  a.insert(a.end(), b.begin(), b.end());
-  return a;
-}
-
-ProgramResult run(const TemporaryFolder& folder, const Words& arguments) {
-  const ProgramResult result = run_program(folder.folder(), arguments);
-  EXPECT_EQ(result.exit_code, 0) << result.out << result.err;
-  return result;
-}
-
-void expect_failure(const TemporaryFolder& folder, const Words& arguments, int exit_code, const std::string& words) {
-  const Words before = folder.names();
-  const ProgramResult result = run_program(folder.folder(), arguments);
-  EXPECT_EQ(result.exit_code, exit_code) << result.err;
-  EXPECT_NE(result.err.find(words), std::string::npos) << result.err << "\nlacks: " << words;
-  EXPECT_EQ(folder.names(), before) << "a file was left behind or lost";
-}
-
 // Makes a.job of a torus, or of `scene`.
 std::string make_job(const TemporaryFolder& folder, const Words& options, const std::string& scene = "a.ply") {
   folder.write_ply("a.ply", make_torus(40, 24, 1.0f, 0.4f));
   folder.write("a.nff", kMirrors);
-  run(folder, joined({"job", scene, "-o", "a.job", "--base", "0x2000000"}, options));
+  run(folder, Words{"job", scene, "-o", "a.job", "--base", "0x2000000"} + options);
   return read_file(folder.path("a.job"));
 }
 
@@ -73,9 +53,7 @@ struct JobCase {
   std::string scene = "a.ply";
   bool has_depth = true;  // effects out of 64 KB have none
 
-  [[nodiscard]] Words job_options() const {
-    return joined(options, has_depth ? Words{"--depth", "--ids"} : Words{"--ids"});
-  }
+  [[nodiscard]] Words job_options() const { return options + (has_depth ? Words{"--depth", "--ids"} : Words{"--ids"}); }
 };
 
 const std::vector<JobCase> kCases = {
@@ -154,7 +132,7 @@ TEST(Job, IsRefusedWhereItDoesNotFit) {
   std::filesystem::remove(folder.path("a.job"));
   const auto bytes = record_at<FrameJob>(file, 0).memory_bytes;
   const Words job = {"job", "a.ply", "-o", "a.job", "--size", "64x48"};
-  const auto with = [&job](const Words& options) { return joined(job, options); };
+  const auto with = [&job](const Words& options) { return job + options; };
   expect_failure(folder, with({"--base", "0", "--memory", std::to_string(bytes - 1)}), 1, "a.ply: the job needs ");
   expect_failure(folder, with({"--base", "0xfffffffffffff000"}), 2, "--base: the job would end behind");
   expect_failure(folder, with({}), 2, "--base ADDRESS is required");
@@ -178,12 +156,12 @@ TEST(Result, OfADeviceIsTheSimulatorsFrame) {
     Words result_words = {"result", "a.job", "a.res",     "--compare", "-o",
                           "d.png",  "--ids", "d-ids.pfm", "--report",  "d.json"};
     Words render_words =
-        joined({"render", each.scene, "-o", "r.png", "--ids", "r-ids.pfm", "--report", "r.json"}, each.options);
+        Words{"render", each.scene, "-o", "r.png", "--ids", "r-ids.pfm", "--report", "r.json"} + each.options;
     Words items = {"image", "ids", "work", "transfers", "tiles.transfers"};
     Words files = {".png", "-ids.pfm"}, keys = {"image_hash", "ids_hash", "work"};
     if (each.has_depth) {
-      result_words = joined(result_words, {"--depth", "d.pfm"});
-      render_words = joined(render_words, {"--depth", "r.pfm"});
+      result_words = result_words + Words{"--depth", "d.pfm"};
+      render_words = render_words + Words{"--depth", "r.pfm"};
       items.emplace_back("depth");
       files.emplace_back(".pfm");
       keys.emplace_back("depth_hash");

@@ -19,13 +19,6 @@ namespace gridiron::test {
 namespace {
 
 using Json = nlohmann::json;
-using Words = std::vector<std::string>;
-
-ProgramResult run(const TemporaryFolder& folder, const Words& arguments) {
-  const ProgramResult result = run_program(folder.folder(), arguments);
-  EXPECT_EQ(result.exit_code, 0) << result.err;
-  return result;
-}
 
 /// Renders a small torus. @returns the report without the host's seconds.
 Json report_on(const TemporaryFolder& folder, const std::string& machine) {

@@ -1,5 +1,5 @@
 // Numbers in text: strict. SPDX-License-Identifier: Apache-2.0
-#include "gridiron/numbers.h"
+#include "base/numbers.h"
 
 #include <gtest/gtest.h>
 

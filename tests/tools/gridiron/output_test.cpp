@@ -16,7 +16,6 @@ namespace gridiron::test {
 namespace {
 
 namespace fs = std::filesystem;
-using Words = std::vector<std::string>;
 
 // Runs a line of the shell in the folder, $G being the program. Standard output and error are the files out and err.
 int run_line(const TemporaryFolder& folder, const std::string& line) {
@@ -66,9 +65,7 @@ TEST(Output, NeverTakesThePlaceOfAnInput) {
     } else {
       fs::create_symlink(each.target, link);
     }
-    const ProgramResult result = run_program(folder.folder(), arguments);
-    EXPECT_EQ(result.exit_code, 2) << result.err << result.out << each.link;
-    EXPECT_NE(result.err.find(each.words), std::string::npos) << result.err << "\nlacks: " << each.words;
+    expect_failure(folder, arguments, 2, each.words);
     EXPECT_EQ(read_file(first), whole);
     EXPECT_EQ(read_file(folder.path("bunny.ply")), whole);
     EXPECT_EQ(read_file(folder.path("v.camera")), "eye 0 0 5\nat 0 0 0\n");

@@ -1,6 +1,6 @@
 // Overdue exit: a program that never looks at the flag ends all the same, and leaves nothing half done.
 // SPDX-License-Identifier: Apache-2.0
-#include "gridiron/overdue_exit.h"
+#include "files/overdue_exit.h"
 
 #include <gtest/gtest.h>
 #include <unistd.h>

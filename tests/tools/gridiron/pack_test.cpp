@@ -1,14 +1,12 @@
 // pack: scene images. SPDX-License-Identifier: Apache-2.0
 #include <gtest/gtest.h>
 
-#include "gridiron/words.h"
+#include "base/words.h"
 #include "run_program.h"
 #include "temporary_folder.h"
 
 namespace gridiron::test {
 namespace {
-
-using Words = std::vector<std::string>;
 
 // "hash 0123456789abcdef" of the program's first line.
 std::string hash_of(const ProgramResult& result) {
@@ -68,9 +66,7 @@ TEST(Pack, ImagesAreUsedAsTheyWerePacked) {
       {{"pack", "a.gri", "-o", "b.gri"}, "already"},
   };
   for (const auto& mistake : cases) {
-    const ProgramResult result = run_program(folder.folder(), mistake.arguments);
-    EXPECT_EQ(result.exit_code, 1) << result.out;
-    EXPECT_NE(result.err.find(mistake.words), std::string::npos) << result.err;
+    expect_failure(folder, mistake.arguments, 1, mistake.words);
   }
   EXPECT_EQ(folder.names(), (Words{"a.gri", "a.ply"}));
 }

@@ -1,6 +1,6 @@
 // Predictions: sums, ranks, and what a profile that is off by a factor looks like.
 // SPDX-License-Identifier: Apache-2.0
-#include "gridiron/prediction.h"
+#include "gridiron/job/prediction.h"
 
 #include <gridiron/sim/busy_cycles.h>
 #include <gridiron/sim/trace_packing.h>

@@ -1,5 +1,5 @@
 // Time left: near the truth, and without jumps; stages: seen on a terminal only. SPDX-License-Identifier: Apache-2.0
-#include "gridiron/progress.h"
+#include "base/progress.h"
 
 #include <fcntl.h>
 #include <gtest/gtest.h>

@@ -14,17 +14,6 @@
 namespace gridiron::test {
 namespace {
 
-using Words = std::vector<std::string>;
-
-void expect_failure(const TemporaryFolder& folder, const Words& arguments, int exit_code, const std::string& words) {
-  const Words before = folder.names();
-  const ProgramResult result = run_program(folder.folder(), arguments);
-  EXPECT_EQ(result.exit_code, exit_code) << result.err;
-  EXPECT_NE(result.err.find(words), std::string::npos) << result.err << "\nlacks: " << words;
-  EXPECT_EQ(result.out, "");
-  EXPECT_EQ(folder.names(), before) << "a file was left behind or lost";
-}
-
 TEST(RenderFailure, BadInputNamesFileAndLineOrByte) {
   const TemporaryFolder folder;
   folder.write("text.ply", "ply\nformat ascii 1.0\nelement vertex many\n");

@@ -8,8 +8,8 @@
 #include <nlohmann/json.hpp>
 #include <set>
 
-#include "gridiron/scene_points.h"
-#include "gridiron/view.h"
+#include "gridiron/scene/scene_points.h"
+#include "gridiron/scene/view.h"
 #include "run_program.h"
 #include "support/picture.h"
 #include "support/render_mesh.h"
@@ -19,20 +19,12 @@ namespace gridiron::test {
 namespace {
 
 using Json = nlohmann::json;
-using Words = std::vector<std::string>;
 
 const std::filesystem::path kScenes = GRIDIRON_SCENE_FILES;
 
-Words operator+(Words a, const Words& b) {
-  a.insert(a.end(), b.begin(), b.end());
-  return a;
-}
-
 // Runs a render that must succeed.
 ProgramResult render(const TemporaryFolder& folder, const Words& arguments) {
-  const ProgramResult result = run_program(folder.folder(), Words{"render"} + arguments);
-  EXPECT_EQ(result.exit_code, 0) << result.err;
-  return result;
+  return run(folder, Words{"render"} + arguments);
 }
 
 Json render_report(const TemporaryFolder& folder, const Words& arguments) {
@@ -398,9 +390,7 @@ TEST(Render, ReducesLambdaToFitTheMachineAndSaysSo) {
   EXPECT_LT(grid["lambda"], 4.0);
   EXPECT_LT(grid["bytes"], std::uint64_t{256} << 20);
 
-  const ProgramResult fixed = run_program(folder.folder(), Words{"render"} + scene + Words{"--lambda", "4"});
-  EXPECT_EQ(fixed.exit_code, 1);
-  EXPECT_NE(fixed.err.find("cell-ps3 has"), std::string::npos) << fixed.err;
+  expect_failure(folder, Words{"render"} + scene + Words{"--lambda", "4"}, 1, "cell-ps3 has");
 }
 
 }  // namespace

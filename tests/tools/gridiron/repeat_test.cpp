@@ -3,9 +3,9 @@
 
 #include <string>
 
-#include "gridiron/failure.h"
-#include "gridiron/frame_pictures.h"
-#include "gridiron/stopwatch.h"
+#include "base/failure.h"
+#include "base/stopwatch.h"
+#include "gridiron/frame/frame_pictures.h"
 
 namespace gridiron::tool {
 namespace {

@@ -40,7 +40,7 @@ std::string take_text(int descriptor) {
 
 }  // namespace
 
-RunningProgram::RunningProgram(const std::filesystem::path& folder, const std::vector<std::string>& arguments)
+RunningProgram::RunningProgram(const std::filesystem::path& folder, const Words& arguments)
     : out_(open_nameless()), err_(open_nameless()) {
   std::vector<std::string> words = {GRIDIRON_PROGRAM};
   words.insert(words.end(), arguments.begin(), arguments.end());
@@ -113,9 +113,32 @@ ProgramResult run_shell(const std::filesystem::path& folder, const std::string& 
   return {WIFEXITED(status) ? WEXITSTATUS(status) : -WTERMSIG(status), read_file(out), read_file(err)};
 }
 
-ProgramResult run_program(const std::filesystem::path& folder, const std::vector<std::string>& arguments) {
+ProgramResult run_program(const std::filesystem::path& folder, const Words& arguments) {
   RunningProgram program(folder, arguments);
   return program.wait();
+}
+
+Words operator+(Words words, const Words& more) {
+  words.insert(words.end(), more.begin(), more.end());
+  return words;
+}
+
+ProgramResult run(const TemporaryFolder& folder, const Words& arguments) {
+  const ProgramResult result = run_program(folder.folder(), arguments);
+  EXPECT_EQ(result.exit_code, 0) << result.out << result.err;
+  return result;
+}
+
+void expect_failure(const TemporaryFolder& folder, const Words& arguments, int exit_code, const std::string& words) {
+  constexpr int kCheckFailed = 3;  // what differs is told as a result
+  const Words before = folder.names();
+  const ProgramResult result = run_program(folder.folder(), arguments);
+  EXPECT_EQ(result.exit_code, exit_code) << result.err;
+  EXPECT_NE(result.err.find(words), std::string::npos) << result.err << "\nlacks: " << words;
+  if (exit_code != kCheckFailed) {
+    EXPECT_EQ(result.out, "");
+  }
+  EXPECT_EQ(folder.names(), before) << "a file was left behind or lost";
 }
 
 }  // namespace gridiron::test

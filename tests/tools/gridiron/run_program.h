@@ -9,7 +9,13 @@
 #include <string>
 #include <vector>
 
+#include "temporary_folder.h"
+
 namespace gridiron::test {
+
+using Words = std::vector<std::string>;
+
+[[nodiscard]] Words operator+(Words words, const Words& more);
 
 struct ProgramResult {
   int exit_code = -1;  ///< -signal where a signal ended it
@@ -19,7 +25,7 @@ struct ProgramResult {
 /// A running program, in `folder`, its output in files beside the folder.
 class RunningProgram {
  public:
-  RunningProgram(const std::filesystem::path& folder, const std::vector<std::string>& arguments);
+  RunningProgram(const std::filesystem::path& folder, const Words& arguments);
   ~RunningProgram();
   RunningProgram(const RunningProgram&) = delete;
   RunningProgram& operator=(const RunningProgram&) = delete;
@@ -40,6 +46,12 @@ class RunningProgram {
 ProgramResult run_shell(const std::filesystem::path& folder, const std::string& line);
 
 /// Runs to the end.
-ProgramResult run_program(const std::filesystem::path& folder, const std::vector<std::string>& arguments);
+ProgramResult run_program(const std::filesystem::path& folder, const Words& arguments);
+
+/// The same of a command that must succeed.
+ProgramResult run(const TemporaryFolder& folder, const Words& arguments);
+
+/// Runs a command that must end so, with these words on standard error, and leave the folder as it was.
+void expect_failure(const TemporaryFolder& folder, const Words& arguments, int exit_code, const std::string& words);
 
 }  // namespace gridiron::test

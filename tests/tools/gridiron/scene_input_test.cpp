@@ -1,9 +1,9 @@
 // Scene input: which grid a mesh gets in a given main memory. SPDX-License-Identifier: Apache-2.0
-#include "gridiron/scene_input.h"
+#include "gridiron/scene/scene_input.h"
 
 #include <gtest/gtest.h>
 
-#include "gridiron/failure.h"
+#include "failure_of.h"
 #include "temporary_folder.h"
 
 namespace gridiron::test {
@@ -13,19 +13,18 @@ class SceneInputTest : public ::testing::Test {
  protected:
   SceneInputTest() {
     const TestMesh mesh = make_sphere(40, 60, 1.0f);
-    arguments_.input = folder_.write_ply("sphere.ply", mesh);
-    arguments_.machine = tool::find_machine("cell-ps3");
-    arguments_.configuration = tool::find_configuration("reference");
-    input_ = tool::read_scene_input(arguments_.input);
+    request_.input = folder_.write_ply("sphere.ply", mesh);
+    request_.machine = tool::find_machine("cell-ps3");
+    request_.configuration = tool::find_configuration("reference");
+    input_ = tool::read_scene_input(request_.input);
   }
 
   [[nodiscard]] tool::GridChoice choose(std::uint64_t budget_bytes) const {
-    return tool::choose_grid(input_, std::get<tool::Mesh>(input_.content), arguments_, TriangleFormat::kVertices,
-                             budget_bytes);
+    return tool::choose_grid(input_, std::get<tool::Mesh>(input_.content), request_, {.budget_bytes = budget_bytes});
   }
 
   const TemporaryFolder folder_;
-  tool::SceneArguments arguments_;
+  tool::SceneRequest request_;
   tool::SceneInput input_;
 };
 
@@ -46,17 +45,17 @@ TEST_F(SceneInputTest, HalvesLambdaUntilItFits) {
   EXPECT_EQ(choice.wanted_lambda, 4.0f);
   EXPECT_LE(choice.need.image_bytes, budget_bytes);
   // The first halving that fits, not a later one.
-  tool::SceneArguments twice = arguments_;
+  tool::SceneRequest twice = request_;
   twice.lambda = choice.parameters.lambda * 2;
   const tool::GridChoice before =
-      tool::choose_grid(input_, std::get<tool::Mesh>(input_.content), twice, TriangleFormat::kVertices, budget_bytes);
+      tool::choose_grid(input_, std::get<tool::Mesh>(input_.content), twice, {.budget_bytes = budget_bytes});
   EXPECT_FALSE(before.fits());
 }
 
 TEST_F(SceneInputTest, SaysSoWhereNothingFits) {
   const tool::GridChoice choice = choose(10'000);
   EXPECT_FALSE(choice.fits());
-  EXPECT_THROW(tool::require_fit(choice, arguments_, input_), tool::Failure);
+  EXPECT_THROW(tool::require_fit(choice, request_, input_), tool::Failure);
 }
 
 TEST_F(SceneInputTest, GoesDownToOneCell) {
@@ -64,8 +63,8 @@ TEST_F(SceneInputTest, GoesDownToOneCell) {
   TestMesh mesh;
   mesh.vertices = {{0, 0, 0}, {1, 0, 0}, {0, 1, 1}, {1, 1, 1}};
   for (int i = 0; i < 20000; ++i) mesh.triangles.emplace_back(i % 2, 1 + i % 2, 2 + i % 2);
-  arguments_.input = folder_.write_ply("pile.ply", mesh);
-  input_ = tool::read_scene_input(arguments_.input);
+  request_.input = folder_.write_ply("pile.ply", mesh);
+  input_ = tool::read_scene_input(request_.input);
   const tool::GridChoice choice = choose(std::uint64_t{1} << 20);
   EXPECT_TRUE(choice.fits());
   EXPECT_LT(choice.parameters.lambda, 1.0f / 64.0f);
@@ -75,29 +74,24 @@ TEST_F(SceneInputTest, HalvesLambdaWhereReferencesOutgrowTheirCounts) {
   TestMesh mesh;
   mesh.vertices = {{0, 0, 0}, {1, 0, 0}, {0, 1, 0}, {1, 1, 0}};
   for (int i = 0; i < 2100; ++i) mesh.triangles.emplace_back(i % 2, 1 + i % 2, 2 + i % 2);
-  arguments_.input = folder_.write_ply("sheet.ply", mesh);
-  input_ = tool::read_scene_input(arguments_.input);
-  arguments_.lambda = 3000.0f;
-  try {
-    (void)choose(std::uint64_t{1} << 30);
-    ADD_FAILURE();
-  } catch (const tool::Failure& failure) {
-    const std::string words = failure.what();
-    EXPECT_NE(words.find("sheet.ply: the scene needs more than 1"), std::string::npos) << words;
-    EXPECT_NE(words.find(" GB at lambda 3000; cell-ps3 has 1.0 GB for it"), std::string::npos) << words;
-    EXPECT_NE(words.find("; a smaller --lambda needs less"), std::string::npos) << words;
-  }
-  arguments_.lambda.reset();
-  tool::Configuration fine = *arguments_.configuration;
+  request_.input = folder_.write_ply("sheet.ply", mesh);
+  input_ = tool::read_scene_input(request_.input);
+  request_.lambda = 3000.0f;
+  const std::string words = failure_of([&] { return choose(std::uint64_t{1} << 30); });
+  EXPECT_NE(words.find("sheet.ply: the scene needs more than 1"), std::string::npos) << words;
+  EXPECT_NE(words.find(" GB at lambda 3000; cell-ps3 has 1.0 GB for it"), std::string::npos) << words;
+  EXPECT_NE(words.find("; a smaller --lambda needs less"), std::string::npos) << words;
+  request_.lambda.reset();
+  tool::Configuration fine = *request_.configuration;
   fine.lambda = 3000.0f;
-  arguments_.configuration = &fine;
+  request_.configuration = &fine;
   const tool::GridChoice choice = choose(std::uint64_t{1} << 30);
   EXPECT_TRUE(choice.fits());
   EXPECT_TRUE(choice.is_reduced());
 }
 
 TEST_F(SceneInputTest, NeverChangesALambdaOfTheCommandLine) {
-  arguments_.lambda = 4.0f;
+  request_.lambda = 4.0f;
   const std::uint64_t need_bytes = choose(std::uint64_t{1} << 30).need.image_bytes;
   const tool::GridChoice choice = choose(need_bytes - 1);
   EXPECT_FALSE(choice.fits());
@@ -105,7 +99,7 @@ TEST_F(SceneInputTest, NeverChangesALambdaOfTheCommandLine) {
 }
 
 TEST_F(SceneInputTest, BudgetLeavesRoomForThePicture) {
-  const sim::MachineProfile& machine = *arguments_.machine;
+  const sim::MachineProfile& machine = *request_.machine;
   const std::uint64_t small = tool::image_budget_bytes(machine, 1, 1, 1);
   EXPECT_EQ(small, tool::image_budget_bytes(machine, 1024, 1024, 3)) << "pack and render agree";
   EXPECT_EQ(small - tool::image_budget_bytes(machine, 2048, 1024, 3), std::uint64_t{3} * 4 * 1024 * 1024);
@@ -117,7 +111,7 @@ TEST_F(SceneInputTest, BudgetLeavesRoomForThePicture) {
 }
 
 TEST_F(SceneInputTest, ASmallMemoryKeepsHalfOfItselfForThePicture) {
-  sim::MachineProfile small = *arguments_.machine;
+  sim::MachineProfile small = *request_.machine;
   small.main_memory_bytes = 1 << 20;
   const std::uint64_t budget_bytes = tool::image_budget_bytes(small, 128, 128, 1);
   EXPECT_NEAR(static_cast<double>(budget_bytes), 0.5 * (1 << 20), 4096);
@@ -125,16 +119,11 @@ TEST_F(SceneInputTest, ASmallMemoryKeepsHalfOfItselfForThePicture) {
   EXPECT_LT(tool::image_budget_bytes(small, 448, 448, 1), budget_bytes) << "a picture of more than half";
   EXPECT_THROW((void)tool::image_budget_bytes(small, 512, 512, 1), tool::Failure);
   // What is missing is told with what is kept.
-  arguments_.machine = std::make_shared<sim::MachineProfile>(small);
-  arguments_.lambda = 64.0f;
-  try {
-    tool::require_fit(choose(budget_bytes), arguments_, input_);
-    ADD_FAILURE();
-  } catch (const tool::Failure& failure) {
-    const std::string words = failure.what();
-    EXPECT_NE(words.find("of its 1.0 MB of main memory 51"), std::string::npos) << words;
-    EXPECT_NE(words.find("KB are kept for pictures"), std::string::npos) << words;
-  }
+  request_.machine = std::make_shared<sim::MachineProfile>(small);
+  request_.lambda = 64.0f;
+  const std::string words = failure_of([&] { tool::require_fit(choose(budget_bytes), request_, input_); });
+  EXPECT_NE(words.find("of its 1.0 MB of main memory 51"), std::string::npos) << words;
+  EXPECT_NE(words.find("KB are kept for pictures"), std::string::npos) << words;
 }
 
 }  // namespace

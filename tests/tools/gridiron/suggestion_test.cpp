@@ -1,5 +1,5 @@
 // Suggestions: what is near to a mistyped word. SPDX-License-Identifier: Apache-2.0
-#include "gridiron/suggestion.h"
+#include "base/suggestion.h"
 
 #include <gtest/gtest.h>
 

@@ -15,7 +15,6 @@ namespace gridiron::test {
 namespace {
 
 using Json = nlohmann::json;
-using Words = std::vector<std::string>;
 
 constexpr const char* kBall =
     "v from 1 2 6 at 0.1 0 0 up 0 1 0.1 angle 30 hither 0 resolution 40 24\n"
@@ -23,36 +22,14 @@ constexpr const char* kBall =
 
 const std::filesystem::path kScenes = GRIDIRON_SCENE_FILES;
 
-Words joined(Words words, const Words& more) {
-  words.insert(words.end(), more.begin(), more.end());
-  return words;
-}
-
-ProgramResult run(const TemporaryFolder& folder, const Words& arguments) {
-  const ProgramResult result = run_program(folder.folder(), arguments);
-  EXPECT_EQ(result.exit_code, 0) << result.err;
-  return result;
-}
-
 // "40x24, hash 0123456789abcdef": size and pixels of the picture.
 std::string picture_of(const ProgramResult& result) {
   const std::size_t place = result.out.find(": ");
   return result.out.substr(place + 2, result.out.find('\n') - place - 2);
 }
 
-Json info_json(const TemporaryFolder& folder, Words arguments) {
-  arguments.insert(arguments.begin(), "info");
-  arguments.emplace_back("--json");
-  return Json::parse(run(folder, arguments).out, nullptr, false);
-}
-
-void expect_failure(const TemporaryFolder& folder, const Words& arguments, int exit_code, const std::string& words) {
-  const Words before = folder.names();
-  const ProgramResult result = run_program(folder.folder(), arguments);
-  EXPECT_EQ(result.exit_code, exit_code) << result.err;
-  EXPECT_NE(result.err.find(words), std::string::npos) << result.err << "\nlacks: " << words;
-  EXPECT_EQ(result.out, "");
-  EXPECT_EQ(folder.names(), before) << "a file was left behind or lost";
+Json info_json(const TemporaryFolder& folder, const Words& arguments) {
+  return Json::parse(run(folder, Words{"info"} + arguments + Words{"--json"}).out, nullptr, false);
 }
 
 TEST(TextScene, BringsViewAndSize) {
@@ -62,11 +39,7 @@ TEST(TextScene, BringsViewAndSize) {
                "v from 1 2 6 at 0.1 0 0 up 0 1 0.1 angle 30 hither 0 resolution 40 24\n"
                "f 1 1 1 1 0 0 0 0 m ball.ply\n");
   const Words view = {"--eye", "1,2,6", "--at", "0.1,0,0", "--up", "0,1,0.1", "--fov", "30", "--size", "40x24"};
-  const auto with = [](Words a, const Words& b) {
-    a.insert(a.end(), b.begin(), b.end());
-    return a;
-  };
-  const std::string mesh = picture_of(run(folder, with({"render", "ball.ply"}, view)));
+  const std::string mesh = picture_of(run(folder, Words{"render", "ball.ply"} + view));
   EXPECT_EQ(mesh.substr(0, 7), "40x24, ");
   EXPECT_EQ(picture_of(run(folder, {"render", "a.nff", "--shading", "simple"})), mesh);
   EXPECT_NE(picture_of(run(folder, {"render", "a.nff", "--shading", "none"})), mesh);
@@ -84,8 +57,8 @@ TEST(TextScene, BringsViewAndSize) {
     for (std::size_t i = 0; i < changed.size(); i += 2) {
       if (changed[i] == part.ply[0]) changed[i + 1] = part.ply[1];
     }
-    const std::string expected = picture_of(run(folder, with({"render", "ball.ply"}, changed)));
-    EXPECT_EQ(picture_of(run(folder, with({"render", "a.nff", "--shading", "simple"}, part.nff))), expected)
+    const std::string expected = picture_of(run(folder, Words{"render", "ball.ply"} + changed));
+    EXPECT_EQ(picture_of(run(folder, Words{"render", "a.nff", "--shading", "simple"} + part.nff)), expected)
         << part.nff[0];
     EXPECT_NE(expected, mesh) << part.nff[0];
   }
@@ -229,7 +202,7 @@ TEST(TextScene, ManyTrianglesGetTheToleranceOfThePicture) {
   const TemporaryFolder folder;
   folder.write("a.nff", scene_makers::make_lattice(8));
   const auto json = [&folder](const Words& options) {
-    return info_json(folder, joined({"a.nff", "--lambda", "0.1"}, options));
+    return info_json(folder, Words{"a.nff", "--lambda", "0.1"} + options);
   };
   const Json chosen = json({}), asked = json({"--tolerance", "0.00018"}), large = json({"--size", "4096x4096"});
   EXPECT_EQ(chosen["scene"]["tolerance"]["rule"], "picture");
@@ -238,18 +211,18 @@ TEST(TextScene, ManyTrianglesGetTheToleranceOfThePicture) {
   EXPECT_LT(2 * chosen["scene"]["triangles"].get<int>(), asked["scene"]["triangles"].get<int>());
   EXPECT_GT(large["scene"]["triangles"], chosen["scene"]["triangles"]);
   const Words render = {"render", "a.nff", "--mode", "plain", "--shading", "none", "--lambda", "0.1"};
-  const Words small = joined(render, {"--size", "8x8"});
+  const Words small = render + Words{"--size", "8x8"};
   const ProgramResult result = run(folder, small);
   EXPECT_EQ(result.err.find("a.nff: tolerance of round shapes chosen by the picture: 0.000"), 0u) << result.err;
   EXPECT_NE(result.err.find("--tolerance sets another"), std::string::npos) << result.err;
-  EXPECT_EQ(run(folder, joined(small, {"--quiet"})).err, "");
+  EXPECT_EQ(run(folder, small + Words{"--quiet"}).err, "");
   EXPECT_NE(result.err.find(" would make about 780,000; --tolerance sets another"), std::string::npos) << result.err;
 
   // Another place to look from is another picture; of a large one, so that no shape is at its coarsest.
-  const Words tile = joined(render, {"--size", "2048x2048", "--tile", "0,0"});
+  const Words tile = render + Words{"--size", "2048x2048", "--tile", "0,0"};
   const std::string own = run(folder, tile).err;
   for (const Words& view : {Words{"--eye", "0.55,0.45,0.5"}, Words{"--from", "top"}, Words{"--fov", "20"}}) {
-    EXPECT_NE(run(folder, joined(tile, view)).err, own) << view[0];
+    EXPECT_NE(run(folder, tile + view).err, own) << view[0];
   }
 
   // The same scene without a view has the same picture from the same place, and one that frames it.
@@ -260,11 +233,11 @@ TEST(TextScene, ManyTrianglesGetTheToleranceOfThePicture) {
   const auto triangles_of = [](const std::string& err) { return err.substr(err.find("picture: ")); };
   const Words bare = {"render", "b.nff", "--mode", "plain", "--shading", "none", "--lambda", "0.1", "--tile", "0,0"};
   const Words eye = {"--size", "2048x2048", "--eye", "1.75,1.55,3", "--at", "0.5,0.5,0.5"};
-  EXPECT_EQ(triangles_of(run(folder, joined(bare, eye)).err), triangles_of(own));
+  EXPECT_EQ(triangles_of(run(folder, bare + eye).err), triangles_of(own));
   EXPECT_EQ(run(folder, bare).err.find("b.nff: tolerance of round shapes chosen by the picture: "), 0u);
   EXPECT_EQ(info_json(folder, {"b.nff", "--lambda", "0.1"})["scene"]["tolerance"]["rule"], "picture");
   const Words within = {"--size", "4096x4096", "--eye", "0.55,0.45,0.5"};
-  EXPECT_EQ(run(folder, joined(bare, within)).err, "") << "no shape is coarser";
+  EXPECT_EQ(run(folder, bare + within).err, "") << "no shape is coarser";
 }
 
 TEST(TextScene, WhatDoesNotFitNamesATolerance) {
@@ -278,7 +251,7 @@ TEST(TextScene, WhatDoesNotFitNamesATolerance) {
   const std::size_t place = refused.err.find(words);
   ASSERT_NE(place, std::string::npos) << refused.err;
   const std::string rest = refused.err.substr(place + words.size());
-  const ProgramResult fits = run(folder, joined(render, {"--tolerance", rest.substr(0, rest.find(' '))}));
+  const ProgramResult fits = run(folder, render + Words{"--tolerance", rest.substr(0, rest.find(' '))});
   EXPECT_EQ(fits.exit_code, 0) << refused.err << fits.err;
 }
 
@@ -318,9 +291,7 @@ TEST(TextScene, NoOutputTakesThePlaceOfItsFiles) {
   for (const Words& words :
        {Words{"render", "a.nff", "-o", "b.png", "--timeline", "ball.ply"}, Words{"pack", "a.nff", "-o", "./ball.ply"},
         Words{"render", "a.nff", "-o", "b.png", "--report", "ball.ply"}}) {
-    const ProgramResult result = run_program(folder.folder(), words);
-    EXPECT_EQ(result.exit_code, 2) << result.out;
-    EXPECT_NE(result.err.find("is the input 'ball.ply' of this command"), std::string::npos) << result.err;
+    expect_failure(folder, words, 2, "is the input 'ball.ply' of this command");
     EXPECT_EQ(std::filesystem::file_size(folder.path("ball.ply")), bytes);
   }
 }

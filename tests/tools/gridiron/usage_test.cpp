@@ -15,8 +15,6 @@
 namespace gridiron::test {
 namespace {
 
-using Words = std::vector<std::string>;
-
 TEST(Usage, MistakesExitWithTwoAndSayWhy) {
   struct Case {
     Words arguments;
@@ -156,9 +154,7 @@ TEST(Usage, MachinesThatAreNotThereHaveNearOnes) {
   folder.write("a.machine", "based_on cell-ps\n");
   folder.write("b.machine", "based_on cell-ps3\ncorecount 3\n");
   const auto expect = [&folder](const std::string& machine, const std::string& words) {
-    const ProgramResult result = run_program(folder.folder(), {"render", "a.ply", "--machine", machine});
-    EXPECT_EQ(result.exit_code, 1) << machine;
-    EXPECT_NE(result.err.find(words), std::string::npos) << machine << "\n" << result.err;
+    expect_failure(folder, {"render", "a.ply", "--machine", machine}, 1, words);
   };
   expect("cell-2007", "; did you mean cell-2006?; there are cell-ps3, ");
   expect("fu541", "; did you mean fu540?; there are cell-ps3, ");
@@ -170,15 +166,12 @@ TEST(Usage, MachinesThatAreNotThereHaveNearOnes) {
 TEST(Usage, AFileInPlaceOfACommandIsToldHowToBeRendered) {
   const TemporaryFolder folder;
   folder.write("a.ply", "ply\n");
-  const ProgramResult result = run_program(folder.folder(), {"a.ply"});
-  EXPECT_EQ(result.exit_code, 2);
-  EXPECT_NE(result.err.find("gridiron render a.ply"), std::string::npos) << result.err;
+  expect_failure(folder, {"a.ply"}, 2, "gridiron render a.ply");
 }
 
 TEST(Usage, NothingAskedForIsAnsweredByAnOverview) {
   const TemporaryFolder folder;
-  const ProgramResult result = run_program(folder.folder(), {});
-  EXPECT_EQ(result.exit_code, 0);
+  const ProgramResult result = run(folder, {});
   EXPECT_EQ(result.err, "");
   for (const char* word : {"gridiron render ", "gridiron info ", "gridiron help COMMAND", "animate", "experiment"}) {
     EXPECT_NE(result.out.find(word), std::string::npos) << word << "\n" << result.out;
@@ -259,8 +252,7 @@ TEST(Usage, HelpAndVersionAreAnswers) {
     EXPECT_EQ(result.exit_code, 0) << arguments.front();
     EXPECT_NE(result.out.find("--help"), std::string::npos) << arguments.front();
   }
-  const ProgramResult version = run_program(folder.folder(), {"--version"});
-  EXPECT_EQ(version.exit_code, 0);
+  const ProgramResult version = run(folder, {"--version"});
   EXPECT_EQ(version.out.find("gridiron "), 0u);
 }
 

@@ -1,9 +1,9 @@
 // View: what is asked for, and what is not. SPDX-License-Identifier: Apache-2.0
-#include "gridiron/view.h"
+#include "gridiron/scene/view.h"
 
 #include <gtest/gtest.h>
 
-#include "gridiron/failure.h"
+#include "failure_of.h"
 
 namespace gridiron::test {
 namespace {
@@ -39,12 +39,8 @@ TEST(View, DefectsAreUsageErrors) {
       {.eye = {}, .at = {}, .up = Vec3(0), .fov_degrees = {}},
   };
   for (const tool::ViewRequest& defect : defects) {
-    try {
-      (void)tool::complete_view(defect, 1.0, box);
-      ADD_FAILURE() << "accepted case " << &defect - defects;
-    } catch (const tool::Failure& failure) {
-      EXPECT_EQ(failure.code(), tool::ExitCode::kUsage);
-    }
+    SCOPED_TRACE(&defect - defects);
+    (void)failure_of([&] { return tool::complete_view(defect, 1.0, box); }, tool::ExitCode::kUsage);
   }
 }
 

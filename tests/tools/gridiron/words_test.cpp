@@ -1,5 +1,5 @@
 // Words: one phrase for every value. SPDX-License-Identifier: Apache-2.0
-#include "gridiron/words.h"
+#include "base/words.h"
 
 #include <gtest/gtest.h>
 

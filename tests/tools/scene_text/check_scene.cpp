@@ -8,7 +8,7 @@
 #include <map>
 #include <utility>
 
-#include "gridiron/failure.h"
+#include "failure_of.h"
 
 namespace gridiron::test {
 
@@ -25,14 +25,8 @@ SceneDescription read_good(std::string_view text, const tool::SceneOptions& opti
 }
 
 std::string complaint(std::string_view text, const tool::SceneOptions& options, const std::string& path) {
-  try {
-    static_cast<void>(tool::read_scene_text(text, path, options));
-  } catch (const tool::Failure& failure) {
-    EXPECT_EQ(failure.code(), tool::ExitCode::kBadInput);
-    return failure.what();
-  }
-  ADD_FAILURE() << "accepted: " << text;
-  return {};
+  SCOPED_TRACE(text);
+  return failure_of([&] { return tool::read_scene_text(text, path, options); });
 }
 
 void expect_sound(const SceneDescription& scene) {

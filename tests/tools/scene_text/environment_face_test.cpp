@@ -8,8 +8,8 @@
 #include <string>
 #include <vector>
 
+#include "base/failure.h"
 #include "check_scene.h"
-#include "gridiron/failure.h"
 #include "scene_makers/procedural.h"
 #include "scene_text/scene_files.h"
 #include "temporary_folder.h"

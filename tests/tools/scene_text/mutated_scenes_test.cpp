@@ -7,8 +7,8 @@
 #include <string>
 #include <vector>
 
+#include "base/failure.h"
 #include "check_scene.h"
-#include "gridiron/failure.h"
 #include "scene_makers/procedural.h"
 #include "temporary_folder.h"
 

@@ -7,7 +7,7 @@
 #include <string>
 
 #include "check_scene.h"
-#include "gridiron/failure.h"
+#include "failure_of.h"
 #include "temporary_folder.h"
 
 namespace gridiron::test {
@@ -238,12 +238,8 @@ TEST(SceneReader, ReadsAFile) {
   const TemporaryFolder folder;
   const auto path = folder.write("a.nff", scene("s 0 0 0 1"));
   expect_sound(tool::read_scene_text(path));
-  try {
-    static_cast<void>(tool::read_scene_text(folder.path("none.nff")));
-    FAIL() << "there is no such file";
-  } catch (const tool::Failure& failure) {
-    EXPECT_EQ(std::string(failure.what()), folder.path("none.nff").string() + ": No such file or directory");
-  }
+  EXPECT_EQ(failure_of([&] { return tool::read_scene_text(folder.path("none.nff")); }),
+            folder.path("none.nff").string() + ": No such file or directory");
 }
 
 }  // namespace

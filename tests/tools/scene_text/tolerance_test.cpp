@@ -8,7 +8,7 @@
 #include <string>
 
 #include "check_scene.h"
-#include "gridiron/failure.h"
+#include "failure_of.h"
 #include "scene_makers/procedural.h"
 
 namespace gridiron::test {
@@ -146,12 +146,8 @@ TEST(Tolerance, OneThatMakesFewEnoughIsKnown) {
   // A scene of too many triangles says so.
   SceneOptions few;
   few.most_triangles = static_cast<std::uint32_t>(most);
-  try {
-    (void)read(text, few);
-    ADD_FAILURE() << "too many triangles";
-  } catch (const tool::Failure& failure) {
-    EXPECT_NE(std::string(failure.what()).find("--tolerance 0.00"), std::string::npos) << failure.what();
-  }
+  const std::string words = failure_of([&] { return read(text, few); });
+  EXPECT_NE(words.find("--tolerance 0.00"), std::string::npos) << words;
 }
 
 }  // namespace

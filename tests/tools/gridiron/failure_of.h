@@ -1,0 +1,25 @@
+// What a call complains of. Memory: a string. Threads: any. SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <gtest/gtest.h>
+
+#include <string>
+
+#include "base/failure.h"
+
+namespace gridiron::test {
+
+/// @returns what a call that must fail says; a test failure where it does not, or ends with another exit code.
+template <class Action>
+std::string failure_of(Action action, tool::ExitCode code = tool::ExitCode::kBadInput) {
+  try {
+    static_cast<void>(action());
+  } catch (const tool::Failure& failure) {
+    EXPECT_EQ(failure.code(), code);
+    return failure.what();
+  }
+  ADD_FAILURE() << "accepted";
+  return "";
+}
+
+}  // namespace gridiron::test

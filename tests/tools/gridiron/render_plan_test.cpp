@@ -1,0 +1,137 @@
+// Plans: what resolve() settles of a frame and of what info tells, and what it refuses; no file is there to be opened.
+// SPDX-License-Identifier: Apache-2.0
+#include "gridiron/frame/render_plan.h"
+
+#include <gtest/gtest.h>
+
+#include <string>
+
+#include "failure_of.h"
+#include "gridiron/info/info_plan.h"
+
+namespace gridiron::test {
+namespace {
+
+using sim::StoreSize;
+using tool::SceneKind;
+
+constexpr tool::Host kHost = {.threads = 6, .lanes = 8, .has_instrumented_mode = false};
+constexpr tool::KnownScene kMesh = {.kind = SceneKind::kMesh};
+constexpr tool::KnownScene kText = {.kind = SceneKind::kText, .has_effects = true};
+constexpr tool::KnownScene kPacked = {.kind = SceneKind::kPacked};
+
+tool::SceneRequest scene_request(const char* configuration) {
+  tool::SceneRequest scene;
+  scene.input = "folder/scene";
+  scene.machine = tool::find_machine("cell-ps3");
+  scene.configuration = tool::find_configuration(configuration);
+  return scene;
+}
+
+tool::RenderRequest render_request(const char* configuration) {
+  tool::RenderRequest request;
+  request.scene = scene_request(configuration);
+  return request;
+}
+
+tool::RenderPlan plan_of(const tool::RenderRequest& request, const tool::KnownScene& scene = kMesh) {
+  return tool::resolve(request, scene, kHost);
+}
+
+std::string refusal(const tool::RenderRequest& request, const tool::KnownScene& scene = kMesh) {
+  return failure_of([&] { return plan_of(request, scene); }, tool::ExitCode::kUsage);
+}
+
+TEST(RenderPlan, WhatIsNotAskedForIsTheScenesTheMachinesTheHostsAndTheConfigurations) {
+  const tool::RenderRequest request = render_request("best");
+  const tool::RenderPlan mesh = plan_of(request);
+  EXPECT_EQ(mesh.outputs.picture, "scene.png");
+  EXPECT_EQ(mesh.width, 1024u);
+  EXPECT_EQ(mesh.cores, request.scene.machine->core_count);
+  EXPECT_EQ(mesh.threads, kHost.threads);
+  EXPECT_EQ(mesh.lanes, 4u);
+  EXPECT_EQ(mesh.shading, Shading::kSimple);
+  EXPECT_EQ(mesh.layout.store, StoreSize::k256KB);
+  EXPECT_EQ(mesh.layout.packet_width, 32u);
+  EXPECT_EQ(mesh.depths, request.scene.configuration->depths);
+  EXPECT_EQ(mesh.techniques, request.scene.configuration->techniques);
+  tool::KnownScene sized = kText;
+  sized.size = {40, 30};
+  const tool::RenderPlan text = plan_of(request, sized);
+  EXPECT_EQ(text.width, 40u);
+  EXPECT_EQ(text.height, 30u);
+  EXPECT_EQ(text.threads, 2u) << "one for each tile";
+  EXPECT_EQ(text.shading, Shading::kScene);
+  EXPECT_TRUE(text.layout.has_effects);
+}
+
+TEST(RenderPlan, WhatIsAskedForIsKept) {
+  tool::RenderRequest request = render_request("best");
+  request.ids_plane = true;
+  request.outputs.depth = "depth.pfm";
+  request.size = {64, 64};
+  request.cores = 2;
+  request.mode = sim::Mode::kPlain;
+  request.lanes = 4;
+  request.layout = {StoreSize::k64KB, std::nullopt, 8, tool::kSingleBuffering};
+  request.shading = Shading::kNone;
+  request.no_mailbox = true;
+  const tool::RenderPlan plan = plan_of(request, kPacked);
+  EXPECT_TRUE(plan.has_depth && plan.has_ids);
+  EXPECT_EQ(plan.cores, 2u);
+  EXPECT_EQ(plan.lanes, 4u) << "not the widest of the host";
+  EXPECT_EQ(plan.layout.store, StoreSize::k64KB);
+  EXPECT_EQ(plan.layout.packet_width, 8u);
+  EXPECT_EQ(plan.depths, tool::kSingleBuffering);
+  EXPECT_EQ(plan.shading, Shading::kNone);
+  EXPECT_EQ(plan.techniques, std::uint32_t{kUseEmptySkip | kUseSubpackets});
+}
+
+TEST(RenderPlan, AConfigurationGetsTheBuffersThatTheStoreHas) {
+  tool::RenderRequest request = render_request("deep");
+  request.layout.store = StoreSize::k64KB;
+  const tool::RenderPlan plan = plan_of(request);
+  const tool::BufferDepths most = tool::find_store_facts(plan.layout)->most_depths;
+  EXPECT_LT(most.triangle, request.scene.configuration->depths.triangle);
+  EXPECT_EQ(plan.depths.triangle, most.triangle);
+  request.layout.depths = request.scene.configuration->depths;
+  EXPECT_NE(refusal(request).find("--store 64: holds at most"), std::string::npos) << "asked for: kept or refused";
+}
+
+TEST(RenderPlan, RefusesByWhatIsKnownOfTheScene) {
+  tool::RenderRequest request = render_request("best");
+  request.shading = Shading::kScene;
+  EXPECT_EQ(refusal(request), "--shading scene: a mesh has no lights and materials; text scenes (NFF) have");
+  EXPECT_NO_THROW((void)plan_of(request, kPacked)) << "nobody knows before it is read";
+  EXPECT_NE(refusal(request, {.kind = SceneKind::kPacked, .is_read = true}).find("scene has no lights"),
+            std::string::npos);
+  request.accuracy = Accuracy::kPaper;
+  EXPECT_NE(refusal(request, kText).find("--accuracy paper: has no --shading scene"), std::string::npos);
+}
+
+TEST(RenderPlan, RefusesWhatTheHostCannotRun) {
+  tool::RenderRequest request = render_request("best");
+  request.lanes = 16;
+  EXPECT_EQ(refusal(request), "--lanes: this host has at most 8 lanes");
+  request.lanes.reset();
+  request.mode = sim::Mode::kInstrumented;
+  EXPECT_EQ(refusal(request), "--mode instrumented: this build has no instrumented kernel");
+}
+
+TEST(InfoPlan, SettlesTheLocalStoreThatIsToldOf) {
+  tool::InfoRequest request;
+  request.scene = scene_request("best");
+  request.layout.store = StoreSize::k128KB;
+  EXPECT_EQ(tool::resolve(request, kMesh).layout.store, StoreSize::k128KB);
+  const tool::InfoPlan text = tool::resolve(request, kText);
+  EXPECT_EQ(text.store, StoreSize::k128KB);
+  EXPECT_EQ(text.layout.store, StoreSize::k256KB) << "effects have no map in 128 KB";
+  EXPECT_EQ(text.local_store.packet_width, 32u);
+  request.accuracy = Accuracy::kCompact;
+  EXPECT_EQ(tool::resolve(request, kMesh).format, TriangleFormat::kLattice);
+  request.format = TriangleFormat::kVertices;
+  EXPECT_THROW((void)tool::resolve(request, kMesh), tool::Failure);
+}
+
+}  // namespace
+}  // namespace gridiron::test

@@ -1,0 +1,162 @@
+// AtomicFile. SPDX-License-Identifier: Apache-2.0
+#include "atomic_file.h"
+
+#include <fcntl.h>
+#include <poll.h>
+#include <sys/stat.h>
+#include <unistd.h>
+
+#include <algorithm>
+#include <cerrno>
+#include <cstdlib>
+#include <cstring>
+#include <utility>
+
+#include "base/failure.h"
+#include "command_files.h"
+#include "interrupt.h"
+#include "overdue_exit.h"
+
+namespace gridiron::tool {
+namespace {
+
+namespace fs = std::filesystem;
+
+// A signal may come between a look at the flag and a call that blocks: no call may block for longer than this.
+constexpr int kPatienceMilliseconds = 100;
+
+// Waits where the target is a pipe that nobody reads from yet.
+int open_special(const fs::path& file) {
+  struct stat status {};
+  const bool is_pipe = ::stat(file.c_str(), &status) == 0 && S_ISFIFO(status.st_mode);
+  while (true) {
+    stop_if_interrupted();
+    const int descriptor = ::open(file.c_str(), O_WRONLY | O_CLOEXEC | O_NOCTTY | (is_pipe ? O_NONBLOCK : 0));
+    if (descriptor >= 0 || (errno != EINTR && !(is_pipe && errno == ENXIO))) return descriptor;
+    (void)::poll(nullptr, 0, kPatienceMilliseconds / 10);
+  }
+}
+
+// Writes all bytes or returns false with errno set. Errors: Failure where a signal ends the wait for a pipe's reader.
+bool write_all(int descriptor, std::span<const std::byte> bytes, bool can_block) {
+  constexpr std::size_t kUnblockedBytes = 4096;  // a pipe that is ready takes as many at once
+  // No signal ends a write to a file, which may wait for the disk: a gigabyte takes seconds.
+  constexpr std::size_t kMostFileBytes = std::size_t{8} << 20;
+  while (!bytes.empty()) {
+    stop_if_interrupted();  // a signal also ends a write of which a part is done
+    if (can_block) {
+      pollfd ready{descriptor, POLLOUT, 0};
+      if (::poll(&ready, 1, kPatienceMilliseconds) == 0) continue;
+    }
+    const std::size_t most = std::min(bytes.size(), can_block ? kUnblockedBytes : kMostFileBytes);
+    const ssize_t written = ::write(descriptor, bytes.data(), most);
+    if (written < 0 && (errno == EINTR || errno == EAGAIN)) continue;
+    if (written <= 0) return false;
+    bytes = bytes.subspan(static_cast<std::size_t>(written));
+  }
+  return true;
+}
+
+}  // namespace
+
+AtomicFile::AtomicFile(const fs::path& path) : target_(target_of(path)) {
+  if (!target_.is_special) open_temporary();
+}
+
+AtomicFile::~AtomicFile() {
+  if (descriptor_ >= 0) ::close(descriptor_);
+  if (temporary_.empty()) return;
+  const Undivided step;
+  ::unlink(temporary_.c_str());
+  leftover_.forget();
+}
+
+void AtomicFile::open_temporary() {
+  // A name of its own, not one made of the target's: that may be as long as names can be.
+  std::string name = target_.file.parent_path() / ".gridiron.XXXXXX";
+  {
+    const Undivided step;
+    descriptor_ = ::mkostemp(name.data(), O_CLOEXEC);
+    if (descriptor_ < 0) fail("create a temporary file beside it: ");
+    temporary_ = name;
+    leftover_.remember(name);
+  }
+
+  // mkostemp makes the file private; give it the rights of the file it replaces, or of any new file.
+  struct stat replaced {};
+  const bool replaces = ::stat(target_.file.c_str(), &replaced) == 0 && S_ISREG(replaced.st_mode);
+  const mode_t mask = ::umask(0);
+  ::umask(mask);
+  const mode_t rights = replaces ? replaced.st_mode & 0777u : 0666u & ~mask;
+  if (::fchmod(descriptor_, rights) != 0) fail("set its rights: ");
+}
+
+void AtomicFile::write(std::span<const std::byte> bytes) {
+  if (target_.is_special) {
+    deferred_.insert(deferred_.end(), bytes.begin(), bytes.end());
+  } else if (!write_all(descriptor_, bytes, /*can_block=*/false)) {
+    fail("");
+  }
+}
+
+void AtomicFile::write(std::string_view text) {
+  write(std::as_bytes(std::span(text.data(), text.size())));
+}
+
+void AtomicFile::finish() {
+  if (descriptor_ < 0) return;
+  // Some file systems report a full disk only here. After a signal the descriptor is closed all the same.
+  const int closed = ::close(std::exchange(descriptor_, -1));
+  if (closed != 0 && errno != EINTR) fail("close: ");
+}
+
+void AtomicFile::write_through() {
+  const bool is_own = target_.descriptor < 0;
+  const int descriptor = is_own ? descriptor_ = open_special(target_.file) : target_.descriptor;
+  if (descriptor < 0 || !write_all(descriptor, deferred_, /*can_block=*/true)) fail("");
+  finish();
+}
+
+void AtomicFile::commit() {
+  if (target_.is_special) {
+    write_through();
+    return;
+  }
+  finish();
+  const Undivided step;
+  if (::rename(temporary_.c_str(), target_.file.c_str()) != 0) fail("rename into place: ");
+  temporary_.clear();
+  leftover_.forget();
+  count_written_file();
+}
+
+void AtomicFile::fail(const char* action) {
+  const std::string reason = std::strerror(errno);
+  throw Failure(ExitCode::kBadInput, target_.name.string() + ": cannot write: " + action + reason);
+}
+
+AtomicFile& AtomicFiles::open(const fs::path& path) {
+  stop_if_interrupted();
+  return files_.emplace_back(path);
+}
+
+void AtomicFiles::commit() {
+  stop_if_interrupted();
+  for (const AtomicFile& file : files_) check_again(file.target());
+  for (AtomicFile& file : files_) {
+    if (file.target().is_special) file.commit();
+  }
+  stop_if_interrupted();
+  const Undivided all;
+  for (AtomicFile& file : files_) {
+    if (!file.target().is_special) file.commit();
+  }
+}
+
+void AtomicFiles::commit_at_end() {
+  const Undivided all;
+  commit();
+  outputs_are_complete();
+}
+
+}  // namespace gridiron::tool

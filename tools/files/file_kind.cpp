@@ -1,0 +1,187 @@
+// File kind. SPDX-License-Identifier: Apache-2.0
+#include "file_kind.h"
+
+#include <gridiron/base/records.h>
+#include <gridiron/firmware/frame_job.h>
+
+#include <algorithm>
+#include <array>
+#include <bit>
+#include <cctype>
+#include <cstring>
+#include <string_view>
+
+#include "base/words.h"
+
+namespace gridiron::tool {
+namespace {
+
+using std::string_view_literals::operator""sv;
+
+static_assert(std::endian::native == std::endian::little, "magic words are compared as they lie in the file");
+
+// Bytes at the start of a file, and what such a file is.
+struct Magic {
+  std::string_view bytes;
+  const char* words;
+};
+
+constexpr auto kMagics = std::to_array<Magic>({
+    {"\x89PNG", "is a PNG picture"},
+    {"\xFF\xD8\xFF", "is a JPEG picture"},
+    {"GIF8", "is a GIF picture"},
+    {"II*\0"sv, "is a TIFF picture"},
+    {"MM\0*"sv, "is a TIFF picture"},
+    {"\x76\x2F\x31\x01", "is an OpenEXR picture"},
+    {"#?RADIANCE", "is a Radiance picture"},
+    {"PF\n", "is a PFM picture"},
+    {"Pf\n", "is a PFM picture"},
+    {"P3\n", "is a PPM picture"},
+    {"P6\n", "is a PPM picture"},
+    {"%PDF", "is a PDF document"},
+    {"\x1F\x8B", "is compressed with gzip; unpack it first"},
+    {"BZh", "is compressed with bzip2; unpack it first"},
+    {"\xFD"
+     "7zXZ",
+     "is compressed with xz; unpack it first"},
+    {"\x28\xB5\x2F\xFD", "is compressed with zstd; unpack it first"},
+    {"PK\x03\x04", "is a zip archive; unpack it first"},
+    {"glTF", "is a glTF scene"},
+    {"Kaydara FBX", "is an FBX scene"},
+    {"BLENDER", "is a Blender scene"},
+    {"#VRML", "is a VRML scene"},
+    {"<?xml", "is XML text"},
+    {"<!DOCTYPE html", "is a web page"},
+    {"<!doctype html", "is a web page"},
+    {"<html", "is a web page"},
+    {"version https://git-lfs", "is a pointer of Git LFS, without the file itself"},
+    {"\x7F"
+     "ELF",
+     "is a program"},
+});
+
+std::string_view text_of(std::span<const std::byte> head) {
+  return {reinterpret_cast<const char*>(head.data()), head.size()};
+}
+
+bool starts_with_word(std::span<const std::byte> head, std::uint32_t magic) {
+  return head.size() >= sizeof magic && std::memcmp(head.data(), &magic, sizeof magic) == 0;
+}
+
+bool is_blank(char c) {
+  return c == ' ' || (c >= '\t' && c <= '\r');
+}
+
+// Takes the next word from the front of a text, blanks and comments left out; empty at the end.
+std::string_view take_word(std::string_view& text) {
+  while (!text.empty() && (is_blank(text.front()) || text.front() == '#')) {
+    text.remove_prefix(text.front() == '#' ? std::min(text.find_first_of("\r\n"), text.size()) : 1);
+  }
+  const auto end = std::ranges::find_if(text, [](char c) { return is_blank(c) || c == '#'; });
+  const std::string_view word = text.substr(0, static_cast<std::size_t>(end - text.begin()));
+  text.remove_prefix(word.size());
+  return word;
+}
+
+bool is_one_of(std::string_view word, std::initializer_list<std::string_view> words) {
+  return std::ranges::find(words, word) != words.end();
+}
+
+bool is_binary(std::span<const std::byte> head) {
+  return std::ranges::find(head, std::byte{0}) != head.end();  // which text never has
+}
+
+bool may_be_number(std::string_view word) {
+  if (!word.empty() && (word.front() == '+' || word.front() == '-')) word.remove_prefix(1);
+  if (!word.empty() && word.front() == '.') word.remove_prefix(1);
+  return !word.empty() && word.front() >= '0' && word.front() <= '9';
+}
+
+bool is_mesh(std::span<const std::byte> head) {
+  const std::string_view text = text_of(head);
+  return text.starts_with("ply") && (text.size() == 3 || is_blank(text[3]));
+}
+
+// The first entity of a text scene, as far as it tells it from other formats whose lines begin with a letter.
+bool is_text_scene(std::span<const std::byte> head) {
+  if (is_binary(head)) return false;
+  std::string_view text = text_of(head);
+  const std::string_view first = take_word(text), second = take_word(text);
+  if (first == "v") {
+    return second.empty() || is_one_of(second, {"from", "at", "up", "angle", "hither", "resolution"});
+  }
+  if (is_one_of(first, {"sn", "sh"})) return is_one_of(second, {"on", "off", ""});
+  if (is_one_of(first, {"m", "e"})) return true;
+  if (!is_one_of(first, {"b", "l", "f", "p", "pp", "c", "s", "la", "ao", "ms", "d"})) return false;
+  return second.empty() || (may_be_number(second) && second.find('/') == std::string_view::npos);
+}
+
+// @returns what text of a known format is; null where it is of none.
+const char* words_of_text(std::string_view text) {
+  if (text.find_first_not_of(" \t\r\n") != std::string_view::npos && text[text.find_first_not_of(" \t\r\n")] == '{') {
+    return text.find("\"asset\"") != std::string_view::npos ? "is a glTF scene" : "is JSON text";
+  }
+  const std::string_view first = take_word(text), second = take_word(text);
+  if (first.empty()) return "holds nothing but blanks and comments";
+  if (first == "solid") return "is an STL mesh";
+  if (is_one_of(first, {"OFF", "COFF", "NOFF"})) return "is an OFF mesh";
+  if (is_one_of(first, {"mtllib", "usemtl", "o", "g", "vn", "vt"})) return "is an OBJ mesh";
+  if (is_one_of(first, {"v", "s"}) && (may_be_number(second) || second == "off")) return "is an OBJ mesh";
+  if (is_one_of(first, {"eye", "at", "up", "fov"})) return "is a camera file";
+  if (is_one_of(first, {"based_on", "name", "description", "core_count"})) return "is a machine file";
+  return nullptr;
+}
+
+// Binary STL has no magic: 80 bytes of anything, the count of triangles, 50 bytes for each.
+bool is_binary_stl(std::span<const std::byte> head, std::optional<std::uint64_t> file_bytes) {
+  constexpr std::size_t kHeaderBytes = 84, kCountPlace = 80, kTriangleBytes = 50;
+  if (!file_bytes || head.size() < kHeaderBytes) return false;
+  std::uint32_t count = 0;
+  std::memcpy(&count, head.data() + kCountPlace, sizeof count);
+  return *file_bytes == kHeaderBytes + std::uint64_t{count} * kTriangleBytes;
+}
+
+}  // namespace
+
+SceneKind scene_kind_by_ending(const std::filesystem::path& path) {
+  std::string ending = path.extension().string();
+  std::ranges::transform(ending, ending.begin(),
+                         [](unsigned char letter) { return static_cast<char>(std::tolower(letter)); });
+  if (ending == ".ply") return SceneKind::kMesh;
+  if (ending == ".nff") return SceneKind::kText;
+  if (ending == ".gri") return SceneKind::kPacked;
+  return SceneKind::kUnknown;
+}
+
+SceneKind scene_kind_of(std::span<const std::byte> head, const std::filesystem::path& path) {
+  if (is_mesh(head)) return SceneKind::kMesh;
+  if (starts_with_word(head, kImageMagic)) return SceneKind::kPacked;
+  if (is_text_scene(head)) return SceneKind::kText;
+  const bool is_named_text = scene_kind_by_ending(path) == SceneKind::kText && !head.empty() && !is_binary(head);
+  return is_named_text && words_of_text(text_of(head)) == nullptr ? SceneKind::kText : SceneKind::kUnknown;
+}
+
+const char* words_of_marked_content(std::span<const std::byte> head) {
+  if (is_mesh(head)) return "is a PLY mesh";
+  if (starts_with_word(head, kImageMagic)) return "is a packed scene";
+  if (starts_with_word(head, port::kFrameJobMagic)) return "is a job";
+  if (starts_with_word(head, port::kFrameResultMagic)) return "is the result of a job";
+  const auto magic =
+      std::ranges::find_if(kMagics, [&](const Magic& each) { return text_of(head).starts_with(each.bytes); });
+  return magic != kMagics.end() ? magic->words : nullptr;
+}
+
+std::string words_of_content(std::span<const std::byte> head, std::optional<std::uint64_t> file_bytes) {
+  if (head.empty()) return "is empty";
+  if (const char* words = words_of_marked_content(head)) return words;
+  const std::string_view text = text_of(head);
+  if (is_binary_stl(head, file_bytes)) return "is an STL mesh";
+  if (is_text_scene(head)) return "is a text scene";
+  if (!is_binary(head)) {
+    if (const char* words = words_of_text(text)) return words;
+  }
+  constexpr std::size_t kShownBytes = 8;
+  return "is of no known kind: it begins with " + in_quotes(text.substr(0, std::min(text.find('\n'), kShownBytes)));
+}
+
+}  // namespace gridiron::tool

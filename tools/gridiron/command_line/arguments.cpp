@@ -1,0 +1,229 @@
+// Arguments. SPDX-License-Identifier: Apache-2.0
+#include "arguments.h"
+
+#include <gridiron/version.h>
+
+#include <cstdlib>
+#include <map>
+#include <memory>
+#include <span>
+
+#include "base/failure.h"
+#include "base/words.h"
+#include "command_words.h"
+#include "files/input_file.h"
+#include "gridiron/device/accuracies.h"
+#include "options.h"
+
+namespace gridiron::tool {
+namespace {
+
+constexpr const char* kMachineFormat = R"(A machine file holds one 'key value' per line; # opens a comment.
+Units are in the keys: _hz, _bytes, _cycles (of the core clock; under master. of the general core's own).
+'based_on NAME' as the first key takes what the file leaves out from a built-in machine:
+
+  based_on       cell-ps3
+  name           my-chip
+  core_count     4
+  latency_cycles 250
+
+Ranges and meanings: tools/README.md, "Machines".)";
+
+const Choices<TriangleFormat> kFormats = {{"vertices", TriangleFormat::kVertices},
+                                          {"projection", TriangleFormat::kProjection},
+                                          {"lattice", TriangleFormat::kLattice}};
+
+// "vertices (default): for --accuracy standard, exact; projection: ..."
+std::string format_help() {
+  std::string help;
+  for (const auto& [name, format] : kFormats) {
+    std::string readers;
+    for (const NamedAccuracy& named : accuracies()) {
+      if (format_of(named.accuracy) == format) readers += (readers.empty() ? " " : ", ") + std::string(named.name);
+    }
+    help += (help.empty() ? "" : "; ") + name + (help.empty() ? " (default)" : "") + ": for --accuracy" + readers;
+  }
+  return help;
+}
+
+Finish add_info(CLI::App& app) {
+  const auto asked = std::make_shared<Asked<InfoRequest>>();
+  InfoRequest& info = asked->request;
+  add_input(app, info.scene);
+  add_grid_options(app, info.scene, asked->machine);
+  add_choice(app, "--format", info.format, kFormats, "how triangles are stored; " + format_help());
+  add_size(app, info.size, "picture whose memory is counted (default: a text scene's own, else 1024x1024)");
+  add_store(app, info.layout.store);
+  add_packet(app, info.layout.packet_width);
+  add_accuracy(app, info.accuracy);
+  app.add_flag("--depth", info.has_depth, "distances too");
+  app.add_flag("--json", info.json, "as JSON");
+  add_quiet(app, info.scene.quiet);
+  return [asked] {
+    complete_scene(asked->request.scene, asked->machine);
+    return asked->request;
+  };
+}
+
+Finish add_pack(CLI::App& app) {
+  const auto asked = std::make_shared<Asked<PackRequest>>();
+  PackRequest& pack = asked->request;
+  add_input(app, pack.scene);
+  add_grid_options(app, pack.scene, asked->machine);
+  add_parsed(app, "-o,--output", pack.output, parse_path, "a file name", "FILE", "scene image; - is standard output")
+      ->required();
+  add_choice(app, "--format", pack.format, kFormats, format_help());
+  add_quiet(app, pack.scene.quiet);
+  return [asked] {
+    complete_scene(asked->request.scene, asked->machine);
+    return asked->request;
+  };
+}
+
+Finish add_result(CLI::App& app) {
+  const auto asked = std::make_shared<Asked<ResultRequest>>();
+  ResultRequest& result = asked->request;
+  const std::string name = "a file name";
+  add_parsed(app, "JOB", result.job, parse_input, name, "",
+             "what the device was given, made by job; - is standard input")
+      ->required();
+  add_parsed(app, "RESULT", result.result, parse_input, name, "",
+             "what it wrote: the bytes from result_address on; - is standard input")
+      ->required();
+  add_parsed(app, "-o,--output", result.outputs.picture, parse_path, name, "FILE",
+             "picture, .png or .pfm; - is standard output, here and for every output");
+  add_parsed(app, "--depth", result.outputs.depth, parse_path, name, "FILE",
+             "distance of every pixel, .pfm, +inf where nothing is hit; of a job with distances");
+  add_parsed(app, "--ids", result.outputs.ids, parse_path, name, "FILE",
+             "triangle of every pixel, .pfm, -1 where nothing is hit; of a job with ids");
+  add_parsed(app, "--report", result.outputs.report, parse_path, name, "FILE",
+             "hashes, work and tiles of each core, JSON");
+  app.add_flag("--compare", result.compare,
+               "render the job on the simulated chip and compare planes, work and transfers; exit code 3 where they "
+               "differ; all outputs are written even then");
+  app.add_option("--predict", asked->machine,
+                 "with --compare: compare what each tile takes on this machine with the instructions that the device "
+                 "counted")
+      ->type_name("MACHINE");
+  add_threads(app, result.threads, "of --compare; no result depends on it");
+  add_quiet(app, result.quiet);
+  return [asked] {
+    ResultRequest& request = asked->request;
+    const NamedFile predict = machine_file(asked->machine, "--predict");
+    require_own_streams({{"JOB", request.job}, {"RESULT", request.result}, predict});
+    if (asked->machine.empty()) return request;
+    if (!request.compare) usage_error("--predict needs --compare");
+    request.predict = find_machine(asked->machine);
+    return request;
+  };
+}
+
+Finish add_machines(CLI::App& app) {
+  const auto asked = std::make_shared<Asked<MachinesRequest>>();
+  app.add_option("MACHINE", asked->machine, "built-in name or machine file: printed in full, to be copied and edited")
+      ->type_name("");
+  app.footer(kMachineFormat);
+  app.add_flag("--json", asked->request.json, "as JSON");
+  add_quiet(app, asked->request.quiet);
+  return [asked, &app] {
+    if (app.count("MACHINE") > 0) asked->request.machine = find_machine(asked->machine);
+    return asked->request;
+  };
+}
+
+Finish add_experiment(CLI::App& app) {
+  const auto asked = std::make_shared<ExperimentRequest>();
+  ExperimentRequest& experiment = *asked;
+  add_choice(app, "NAME", experiment.name,
+             Choices<ExperimentName>{{"paper", ExperimentName::kPaper},
+                                     {"accuracy", ExperimentName::kAccuracy},
+                                     {"effects", ExperimentName::kEffects}},
+             "paper: Tables 1-4, Figs. 5-7 and sweeps; some eight minutes of processor time with the scans. accuracy: "
+             "what each accuracy profile costs and what is wrong with its answers; some two minutes. effects: what "
+             "each effect costs, and that one that is off costs nothing; some half a minute, no scans. All leave CSV, "
+             "SVG and index.html; without a terminal nothing is printed before the end")
+      ->required();
+  add_parsed(app, "-o,--output", experiment.output, parse_path, "the name of a folder", "DIR",
+             "folder, made where it is not there")
+      ->required();
+  add_parsed(
+      app, "--scenes", experiment.scenes, [](const std::string& text) { return std::optional(text); }, "a folder",
+      "DIR",
+      "folder of the scans (default: the environment's GRIDIRON_SCENES); scans that are not there are left "
+      "out, and without any a teapot and a torus knot are made; effects makes its own scenes");
+  add_threads(app, experiment.threads, "no file but host_*.csv, which measures this host, depends on it");
+  add_size(app, experiment.size, "pictures in pixels (default 1024x1024; effects: 96x96, at least 16x16)");
+  add_parsed(app, "--largest", experiment.largest_knot, count_between(6'000, 10'000'000),
+             "a whole number from 6000 to 10000000", "N",
+             "paper: triangles of the largest mesh of Table 1 (default 1000000)");
+  add_quiet(app, experiment.quiet);
+  return [asked] {
+    ExperimentRequest& request = *asked;
+    if (request.largest_knot && request.name != ExperimentName::kPaper) {
+      usage_error("--largest: is of experiment paper alone");
+    }
+    if (request.name == ExperimentName::kEffects) {
+      if (request.scenes) usage_error("--scenes: experiment effects makes its own");
+      constexpr std::uint32_t kLeastSize = 16;  // smaller ones have too few waits for the experiment's own checks
+      if (request.size && std::min(request.size->x, request.size->y) < kLeastSize) {
+        usage_error("--size: experiment effects needs pictures of at least 16x16 pixels");
+      }
+    } else if (const char* scenes = std::getenv("GRIDIRON_SCENES");
+               scenes != nullptr && request.scenes.value_or("").empty()) {
+      request.scenes = scenes;
+    }
+    return request;
+  };
+}
+
+// A command, and what adds its options.
+struct NamedCommand {
+  const char* name;
+  const char* help;
+  Finish (*add)(CLI::App& app);
+};
+
+constexpr NamedCommand kCommands[] = {
+    {"render", "renders a scene and tells what the frame costs on the chip", add_render},
+    {"animate", "renders a mesh a frame, its grid built anew, and tells what the frames cost", add_animate},
+    {"info", "tells what a scene holds and what it needs", add_info},
+    {"pack", "makes a scene image (.gri) that render and firmware read as it is", add_pack},
+    {"job", "makes the file of a frame that a device is given", add_job},
+    {"result", "reads what a device made of a job", add_result},
+    {"machines", "lists the machine profiles, or prints one as --machine reads it", add_machines},
+    {"experiment", "runs an experiment: tables, plots and a page in a folder", add_experiment},
+};
+
+}  // namespace
+
+Command parse_arguments(int count, const char* const* values) {
+  CLI::App app("ray traces on a simulated chip whose cores have a small local store and move data by DMA.", "gridiron");
+  app.set_version_flag("--version", std::string("gridiron ") + kVersion);
+  app.require_subcommand(1);
+  std::map<const CLI::App*, Finish> finishes;
+  for (const NamedCommand& command : kCommands) {
+    CLI::App& options = *app.add_subcommand(command.name, command.help);
+    finishes[&options] = command.add(options);
+  }
+  std::string topic;
+  CLI::App* help = app.add_subcommand("help", "explains a command");
+  help->add_option("COMMAND", topic, "the command (default: what commands there are)")->type_name("");
+  app.footer("gridiron help COMMAND explains every option of a command.");  // not theirs
+
+  if (count <= 1) return TextRequest{overview(app)};
+  require_command(app, values[1]);
+  try {
+    app.parse(count, values);
+  } catch (const CLI::CallForHelp&) {
+    const auto chosen = app.get_subcommands();
+    return TextRequest{help_of(app, chosen.empty() ? app : *chosen.front())};
+  } catch (const CLI::CallForVersion& version) {
+    return TextRequest{std::string(version.what()) + "\n"};
+  } catch (const CLI::ParseError& error) {
+    explain_mistake(app, std::span(values, static_cast<std::size_t>(count)).subspan(1), error.what());
+  }
+  if (*help) return TextRequest{help_of(app, topic.empty() ? app : command_of(app, topic))};
+  return finishes.at(app.get_subcommands().front())();
+}
+
+}  // namespace gridiron::tool

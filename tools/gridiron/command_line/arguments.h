@@ -1,0 +1,78 @@
+// Arguments: the command line as values, one request a command.
+// Memory: owns strings. Threads: one. SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <cstdint>
+#include <filesystem>
+#include <optional>
+#include <string>
+#include <variant>
+#include <vector>
+
+#include "gridiron/frame/render_plan.h"
+#include "gridiron/info/info_plan.h"
+
+namespace gridiron::tool {
+
+/// A frame for each mesh, with the grid of each built for it.
+struct AnimateRequest {
+  RenderRequest render;                       ///< of every frame; its input is the frame's
+  std::vector<std::filesystem::path> inputs;  ///< meshes, and folders of them
+  std::filesystem::path output;               ///< folder, never empty
+};
+
+struct PackRequest {
+  SceneRequest scene;
+  TriangleFormat format = TriangleFormat::kVertices;
+  std::filesystem::path output;
+};
+
+/// A frame as a file for a device.
+struct JobRequest {
+  RenderRequest render;  ///< with at most port::kMostBoardCores cores
+  std::filesystem::path output;
+  std::uint64_t base_address = 0;             ///< where the device loads it
+  std::optional<std::uint64_t> memory_bytes;  ///< that the device has from there on
+};
+
+/// What a device made of a job.
+struct ResultRequest {
+  std::filesystem::path job, result;
+  FrameOutputs outputs;
+  bool compare = false;                  ///< with the simulator's frame
+  Machine predict;                       ///< what its tiles would take there; null: nobody asks
+  std::optional<std::uint32_t> threads;  ///< nothing: the host's
+  bool quiet = false;
+};
+
+struct MachinesRequest {
+  Machine machine;  ///< the one to print; null: all built-in ones are listed
+  bool json = false;
+  bool quiet = false;  ///< accepted as everywhere: a list has nothing beside its result
+};
+
+enum class ExperimentName { kPaper, kAccuracy, kEffects };
+
+struct ExperimentRequest {
+  ExperimentName name = ExperimentName::kPaper;
+  std::filesystem::path output;                 ///< folder
+  std::optional<std::filesystem::path> scenes;  ///< folder of scans; kEffects has none
+  std::optional<std::uint32_t> threads;         ///< nothing: the host's
+  std::optional<CountPair> size;
+  std::optional<std::uint32_t> largest_knot;  ///< kPaper: triangles of the largest mesh of Table 1
+  bool quiet = false;
+};
+
+/// Help or the version was asked for: text for standard output.
+struct TextRequest {
+  std::string text;
+};
+
+using Command = std::variant<RenderRequest, AnimateRequest, InfoRequest, PackRequest, JobRequest, ResultRequest,
+                             MachinesRequest, ExperimentRequest, TextRequest>;
+
+/// Reads a machine file that is named, and nothing else. Errors: Failure, kUsage with what is wrong whatever the scene
+/// is, kBadInput of a machine file.
+[[nodiscard]] Command parse_arguments(int count, const char* const* values);
+
+}  // namespace gridiron::tool

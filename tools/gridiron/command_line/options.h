@@ -1,0 +1,115 @@
+// Options: how words of the command line become values, and the options that several commands share.
+// Memory: what they are added to outlives the parser. Threads: one. SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <CLI/CLI.hpp>
+#include <algorithm>
+#include <cstdint>
+#include <filesystem>
+#include <functional>
+#include <optional>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "arguments.h"
+#include "base/suggestion.h"
+
+namespace gridiron::tool {
+
+/// A command once its words are parsed: the request, checked. Errors: Failure.
+using Finish = std::function<Command()>;
+
+/// A request while its words are parsed.
+template <class Request>
+struct Asked {
+  Request request;
+  std::string machine;  ///< name or file; empty: none
+};
+
+/// Adds an option whose text one of our own parsers turns into a value; `expected` completes the error message, which
+/// names those of `words` that the text may have been meant for.
+template <class Target, class Parser>
+CLI::Option* add_parsed(CLI::App& app, const std::string& name, Target& target, Parser parser,
+                        const std::string& expected, const std::string& type, const std::string& help,
+                        const std::vector<std::string>& words = {}) {
+  const auto set = [&target, parser, name, expected, words](const std::string& text) {
+    auto value = parser(text);
+    if (!value) throw CLI::ValidationError(name, "'" + text + "' is not " + expected + did_you_mean(text, words));
+    target = *value;
+  };
+  return app.add_option_function<std::string>(name, set, help)->type_name(type)->expected(1);
+}
+
+/// Words and what they stand for, in the order in which people are told them.
+template <class Value>
+using Choices = std::vector<std::pair<std::string, Value>>;
+
+/// Adds an option that takes one word of a list.
+template <class Target, class Value>
+CLI::Option* add_choice(CLI::App& app, const std::string& name, Target& target, const Choices<Value>& choices,
+                        const std::string& help) {
+  std::string list;
+  std::vector<std::string> words;
+  for (const auto& [word, value] : choices) {
+    list += (list.empty() ? "" : "|") + word;
+    words.push_back(word);
+  }
+  const auto find = [choices](const std::string& text) -> std::optional<Value> {
+    const auto found = std::ranges::find(choices, text, &Choices<Value>::value_type::first);
+    return found == choices.end() ? std::nullopt : std::optional<Value>(found->second);
+  };
+  return add_parsed(app, name, target, find, "one of " + list, list, help, words);
+}
+
+/// @returns the count that the whole of a text is, if it is one of these.
+[[nodiscard]] std::function<std::optional<std::uint32_t>(const std::string&)> count_between(std::uint32_t least,
+                                                                                            std::uint32_t most);
+
+[[nodiscard]] std::optional<std::filesystem::path> parse_path(const std::string& text);
+
+/// The same of an input: `-` is standard input.
+[[nodiscard]] std::optional<std::filesystem::path> parse_input(const std::string& text);
+
+/// Every command has it: what runs them need not know which of them has more to say than its result.
+void add_quiet(CLI::App& app, bool& quiet);
+void add_size(CLI::App& app, std::optional<CountPair>& size, const std::string& help);
+void add_input(CLI::App& app, SceneRequest& scene);
+void add_grid_options(CLI::App& app, SceneRequest& scene, std::string& machine);
+void add_threads(CLI::App& app, std::optional<std::uint32_t>& threads, const std::string& effect);
+void add_store(CLI::App& app, std::optional<sim::StoreSize>& store);
+void add_packet(CLI::App& app, std::optional<std::uint32_t>& packet_width);
+
+/// @returns the accuracies as words, and in `help` what each is.
+[[nodiscard]] Choices<Accuracy> accuracy_choices(std::string& help);
+
+template <class Target>
+void add_accuracy(CLI::App& app, Target& target) {
+  std::string help;
+  const Choices<Accuracy> choices = accuracy_choices(help);
+  add_choice(app, "--accuracy", target, choices, help);
+}
+
+/// A file of the command line and the option that names it.
+struct NamedFile {
+  const char* option;
+  std::optional<std::filesystem::path> path;
+};
+
+/// The file of a machine, nothing where a built-in one is named.
+[[nodiscard]] NamedFile machine_file(const std::string& name, const char* option = "--machine");
+
+/// What one input takes out of a pipe the other one would miss. Errors: Failure (kUsage) where two are one stream.
+void require_own_streams(const std::vector<NamedFile>& inputs);
+
+/// Finds the machine of a scene that is read with nothing but a camera beside it. Errors: those of
+/// require_own_streams() and find_machine().
+void complete_scene(SceneRequest& scene, const std::string& machine,
+                    const std::optional<std::filesystem::path>& camera = std::nullopt);
+
+// The commands that render: their options are added, what is asked is handed out by the result.
+[[nodiscard]] Finish add_render(CLI::App& app);
+[[nodiscard]] Finish add_animate(CLI::App& app);
+[[nodiscard]] Finish add_job(CLI::App& app);
+
+}  // namespace gridiron::tool

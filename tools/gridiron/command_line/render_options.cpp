@@ -1,0 +1,208 @@
+// Options of the commands that render: render, animate, job. SPDX-License-Identifier: Apache-2.0
+#include <gridiron/firmware/frame_job.h>
+
+#include <memory>
+
+#include "base/failure.h"
+#include "files/input_file.h"
+#include "options.h"
+
+namespace gridiron::tool {
+namespace {
+
+using sim::Completion;
+using sim::Mode;
+
+std::optional<std::uint64_t> parse_seed(const std::string& text) {
+  const bool digits = !text.empty() && text.find_first_not_of("0123456789") == std::string::npos;
+  if (!digits || text.size() > 19) return std::nullopt;  // 19 digits always fit 64 bits
+  return std::stoull(text);
+}
+
+void add_view_options(CLI::App& app, RenderRequest& render) {
+  const std::string vector = "x,y,z with three finite numbers";
+  add_parsed(
+      app, "--camera", render.camera, [](const std::string& text) { return std::optional(input_path(text)); },
+      "a file name", "FILE",
+      "view from a file of its own; --eye, --at, --up and --fov replace parts of it; - is standard input");
+  add_parsed(app, "--eye", render.view.eye, parse_vector, vector, "x,y,z",
+             "position of the camera (default: a text scene's own, else the scene is framed)");
+  add_parsed(app, "--at", render.view.at, parse_vector, vector, "x,y,z",
+             "point in the middle of the picture (default: a text scene's own, else that of the framed scene)");
+  add_parsed(app, "--up", render.view.up, parse_up, "x, y, z, -x, -y, -z or " + vector, "AXIS|x,y,z",
+             "direction that is up (default y, or a text scene's own)", {"x", "y", "z", "-x", "-y", "-z"});
+  add_parsed(app, "--from", render.view.from, parse_view_angles,
+             "front, back, left, right, top, bottom, iso or AZIMUTH,ELEVATION in degrees, elevation from -90 to 90",
+             "SIDE|AZIMUTH,ELEVATION",
+             "side from which the scene is framed: front|back|left|right|top|bottom|iso, or degrees from the front to "
+             "the right and upwards (default 30,25); replaces eye and at of --camera or of a text scene",
+             {"front", "back", "left", "right", "top", "bottom", "iso"});
+  const auto fov = [](const std::string& text) {
+    const std::optional<float> value = parse_float(text);
+    return value && fov_is_possible(*value) ? value : std::nullopt;
+  };
+  add_parsed(app, "--fov", render.view.fov_degrees, fov, "an angle from 0.001 to below 180 degrees", "DEG",
+             "angle between the top and the bottom edge (default 45)");
+}
+
+void add_output_options(CLI::App& app, RenderRequest& render) {
+  FrameOutputs& outputs = render.outputs;
+  const std::string name = "a file name";
+  add_parsed(app, "-o,--output", outputs.picture, parse_path, name, "FILE",
+             "picture, .png or .pfm (default: INPUT's name with .png, in the current folder); - is standard output, "
+             "here and for every output");
+  add_parsed(app, "--depth", outputs.depth, parse_path, name, "FILE",
+             "distance of every pixel, .pfm, +inf where nothing is hit");
+  add_parsed(app, "--ids", outputs.ids, parse_path, name, "FILE",
+             "triangle of every pixel, .pfm, -1 where nothing is hit");
+  add_parsed(app, "--report", outputs.report, parse_path, name, "FILE",
+             "where cycles and bytes went, JSON; without cycles where none are counted (--mode plain, --lanes other "
+             "than 4, --tile)");
+  add_parsed(app, "--timeline", outputs.timeline, parse_path, name, "FILE",
+             "what each core did when, Chrome trace format; not with --mode plain");
+  add_parsed(app, "--repeat", render.repeats, count_between(1, 1000), "a whole number from 1 to 1000", "N",
+             "build and render N times and print the least of the host's times (default 1)");
+  add_quiet(app, render.scene.quiet);
+}
+
+void add_cores(CLI::App& app, std::optional<std::uint32_t>& cores) {
+  constexpr std::uint32_t kMostCores = 1024;
+  add_parsed(app, "--cores", cores, count_between(1, kMostCores), "a whole number from 1 to 1024", "N",
+             "cores of the machine (default: the profile's)");
+}
+
+void add_machine_options(CLI::App& app, RenderRequest& render) {
+  add_cores(app, render.cores);
+  add_threads(app, render.threads, "no result depends on it");
+  add_store(app, render.layout.store);
+  add_choice(app, "--mode", render.mode,
+             Choices<Mode>{{"checked", Mode::kChecked}, {"plain", Mode::kPlain}, {"instrumented", Mode::kInstrumented}},
+             "checked (default): every rule checked, work traced; plain: fast, nothing but the picture; "
+             "instrumented: checked, and every load and store of the kernel too");
+  add_choice(
+      app, "--completion", render.completion,
+      Choices<Completion>{{"early", Completion::kEarly}, {"late", Completion::kLate}, {"random", Completion::kRandom}},
+      "when the bytes of a transfer move (default early)");
+  add_parsed(app, "--seed", render.seed, parse_seed, "a whole number of at most 19 digits", "N",
+             "seed of --completion random (default 0)");
+  add_choice(app, "--lanes", render.lanes, Choices<std::uint32_t>{{"4", 4}, {"8", 8}, {"16", 16}, {"32", 32}},
+             "rays per SIMD group (default 4; plain: the host's widest); cycles are counted for 4 only");
+  const auto tile = [](const std::string& text) { return parse_count_pair(text, ','); };
+  add_parsed(app, "--tile", render.tile, tile, "X,Y with a column and a row", "X,Y",
+             "render this tile alone; the picture is the tile, the frame in main memory is whole");
+}
+
+void add_algorithm_options(CLI::App& app, RenderRequest& render) {
+  add_choice(app, "--buffering", render.layout.depths,
+             Choices<BufferDepths>{{"single", kSingleBuffering}, {"double", kDoubleBuffering}},
+             "buffers of all three levels (default: the configuration's)");
+  add_packet(app, render.layout.packet_width);
+  add_choice(app, "--tile-width", render.layout.tile_width,
+             Choices<std::uint32_t>{{"8", 8}, {"16", 16}, {"32", 32}, {"64", 64}},
+             "pixels along a tile's edge (default: 16 with --store 64, 8 there with --shading scene, else 32)");
+  add_accuracy(app, render.accuracy);
+  add_choice(app, "--shading", render.shading,
+             Choices<Shading>{{"none", Shading::kNone}, {"simple", Shading::kSimple}, {"scene", Shading::kScene}},
+             "none: hit or background; simple: facing ratio (default of meshes); scene: lights, materials and effects "
+             "of the scene (default where it has any)");
+  app.add_flag("--no-mailbox", render.no_mailbox, "test a triangle again in every cell that holds it");
+  app.add_flag("--no-culling", render.no_culling, "do not cull triangles by the corner rays");
+  app.add_flag("--no-subpackets", render.no_subpackets, "do not cull subpackets of a packet");
+  app.add_flag("--no-empty-skip", render.no_empty_skip, "fetch the cell blocks of empty macrocells too");
+}
+
+// What makes no sense is refused before a file is opened.
+void complete_render(RenderRequest& render, const std::string& machine) {
+  check_request(render, this_host());
+  complete_scene(render.scene, machine, render.camera);
+}
+
+}  // namespace
+
+Finish add_render(CLI::App& app) {
+  const auto asked = std::make_shared<Asked<RenderRequest>>();
+  RenderRequest& render = asked->request;
+  add_input(app, render.scene);
+  add_grid_options(app, render.scene, asked->machine);
+  add_output_options(app, render);
+  add_size(app, render.size, "picture in pixels (default: a text scene's own, else 1024x1024)");
+  add_view_options(app, render);
+  add_machine_options(app, render);
+  add_algorithm_options(app, render);
+  return [asked] {
+    complete_render(asked->request, asked->machine);
+    return asked->request;
+  };
+}
+
+Finish add_animate(CLI::App& app) {
+  const auto asked = std::make_shared<Asked<AnimateRequest>>();
+  AnimateRequest& animate = asked->request;
+  RenderRequest& render = animate.render;
+  app.add_option("FRAMES", animate.inputs,
+                 "PLY meshes in the order of their frames; of a folder all .ply files, by name; - is standard input")
+      ->required()
+      ->type_name("");
+  add_parsed(app, "-o,--output", animate.output, parse_path, "the name of a folder", "DIR",
+             "folder of the pictures and animation.csv, made where it is not there")
+      ->required();
+  add_grid_options(app, render.scene, asked->machine);
+  add_size(app, render.size, "pictures in pixels (default 1024x1024)");
+  add_view_options(app, render);
+  add_cores(app, render.cores);
+  add_threads(app, render.threads, "no result depends on it");
+  add_store(app, render.layout.store);
+  add_algorithm_options(app, render);
+  add_quiet(app, render.scene.quiet);
+  return [asked] {
+    std::vector<NamedFile> inputs = {{"--camera", asked->request.render.camera}, machine_file(asked->machine)};
+    for (std::filesystem::path& input : asked->request.inputs) {
+      if (input.empty()) usage_error("FRAMES: '' is not a file name");
+      input = input_path(input);
+      inputs.push_back({"FRAMES", input});
+    }
+    require_own_streams(inputs);
+    complete_render(asked->request.render, asked->machine);
+    return asked->request;
+  };
+}
+
+Finish add_job(CLI::App& app) {
+  const auto asked = std::make_shared<Asked<JobRequest>>();
+  JobRequest& job = asked->request;
+  RenderRequest& render = job.render;
+  add_input(app, render.scene);
+  add_parsed(app, "-o,--output", job.output, parse_path, "a file name", "FILE", "the job; - is standard output")
+      ->required();
+  const auto base = [](const std::string& text) {
+    const std::optional<std::uint64_t> address = parse_address(text);
+    return address && *address % 4096 == 0 ? address : std::nullopt;
+  };
+  add_parsed(app, "--base", job.base_address, base, "a multiple of 4096, decimal or after 0x", "ADDRESS",
+             "where the device loads the job")
+      ->required();
+  add_parsed(app, "--memory", job.memory_bytes, parse_address, "a whole number", "BYTES",
+             "memory of the device from there on: a job that needs more is refused");
+  add_grid_options(app, render.scene, asked->machine);
+  add_size(app, render.size, "picture in pixels (default: a text scene's own, else 1024x1024)");
+  add_view_options(app, render);
+  app.add_flag("--depth", render.depth_plane, "distances too");
+  app.add_flag("--ids", render.ids_plane, "triangle ids too");
+  add_parsed(app, "--cores", render.cores, count_between(1, port::kMostBoardCores), "a whole number from 1 to 16", "N",
+             "cores of the device that there is memory for rays that wait for (default: the profile's)");
+  add_store(app, render.layout.store);
+  add_algorithm_options(app, render);
+  add_quiet(app, render.scene.quiet);
+  return [asked] {
+    RenderRequest& request = asked->request.render;
+    complete_render(request, asked->machine);
+    const sim::MachineProfile& machine = *request.scene.machine;
+    if (!request.cores && machine.core_count > port::kMostBoardCores) {
+      usage_error("--cores: a job is for " + std::to_string(port::kMostBoardCores) + " cores at most; " +
+                  std::string(machine.name) + " has " + std::to_string(machine.core_count));
+    }
+    return asked->request;
+  };
+}
+
+}  // namespace gridiron::tool

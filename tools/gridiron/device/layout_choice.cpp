@@ -1,0 +1,88 @@
+// Layout choice. SPDX-License-Identifier: Apache-2.0
+#include "layout_choice.h"
+
+#include <algorithm>
+#include <string>
+
+#include "base/failure.h"
+#include "machine_file.h"
+#include "store_facts.h"
+
+namespace gridiron::tool {
+namespace {
+
+using sim::StoreSize;
+
+std::string words_of_layout(const sim::LayoutChoice& layout) {
+  if (layout.packet_width == 0) return "tiles " + std::to_string(layout.tile_width) + " pixels wide and no packets";
+  return "tiles " + std::to_string(layout.tile_width) + " pixels wide and packets of " +
+         std::to_string(layout.packet_width) + "x" + std::to_string(layout.packet_width);
+}
+
+// Why a layout has no kernel, and which ones of its store have.
+[[noreturn]] void refuse_layout(const sim::LayoutChoice& layout) {
+  const std::string store = "--store " + std::to_string(sim::arena_bytes(layout.store) >> 10);
+  const std::string shading = layout.has_effects ? ", --shading scene" : "";
+  if (sim::is_built(layout, sim::Mode::kChecked, 4)) {
+    usage_error(store + shading + ": with " + words_of_layout(layout) +
+                (layout.has_effects ? " --mode checked and instrumented are built for --lanes 4 only"
+                                    : " it is built for --mode checked and --lanes 4 only"));
+  }
+  std::string list;
+  for (const sim::LayoutChoice& built : built_layouts()) {
+    if (built.store == layout.store && built.has_effects == layout.has_effects) {
+      list += (list.empty() ? "" : "; ") + words_of_layout(built);
+    }
+  }
+  if (list.empty())
+    usage_error(store + shading + ": effects need a local store of 64 or 256 KB; --shading simple does without them");
+  usage_error(store + shading + ": not built for " + words_of_layout(layout) + "; there are " + list);
+}
+
+}  // namespace
+
+sim::LayoutChoice layout_with(const LayoutRequest& asked, const Configuration& configuration, StoreSize store,
+                              bool has_effects) {
+  // Effects out of 64 KB: all rays by walks, without packets.
+  if (has_effects && store == StoreSize::k64KB) {
+    return {store, asked.tile_width.value_or(8), asked.packet_width.value_or(0), true};
+  }
+  const std::uint32_t tile_width = asked.tile_width.value_or(sim::usual_tile_width(store));
+  // A packet is no wider than a tile.
+  const std::uint32_t fitting = std::min(configuration.packet_width, tile_width);
+  return {store, tile_width, asked.packet_width.value_or(fitting), has_effects};
+}
+
+StoreSize choose_store(const sim::MachineProfile& machine, std::optional<StoreSize> asked,
+                       const std::function<bool(StoreSize)>& is_built) {
+  const auto has_room = [&machine](StoreSize store) { return sim::arena_bytes(store) <= machine.local_store_bytes; };
+  if (asked && !has_room(*asked)) {
+    usage_error("--store: " + std::string(machine.name) + " has a local store of " +
+                std::to_string(machine.local_store_bytes >> 10) + " KB");
+  }
+  StoreSize chosen = asked.value_or(largest_store(machine));
+  if (asked || is_built(chosen)) return chosen;
+  for (const StoreSize store : sim::kStoreSizes) {
+    if (has_room(store) && is_built(store)) chosen = store;
+  }
+  return chosen;
+}
+
+void require_built(const sim::LayoutChoice& layout, bool is_built) {
+  if (layout.packet_width > layout.tile_width) {
+    usage_error("--packet: tiles are " + std::to_string(layout.tile_width) + " pixels wide");
+  }
+  if (!is_built) refuse_layout(layout);
+}
+
+void require_distances(const sim::LayoutChoice& layout, bool has_depth) {
+  if (!has_depth || !layout.has_effects || layout.packet_width != 0) return;
+  usage_error("--depth: a local store of 64 KB (--store 64) has no distances with --shading scene; 256 KB have them");
+}
+
+void require_effects_of(std::optional<Accuracy> accuracy) {
+  if (accuracy != Accuracy::kPaper) return;
+  usage_error("--accuracy paper: has no --shading scene; shadows and reflections need distances that hold");
+}
+
+}  // namespace gridiron::tool

@@ -1,0 +1,363 @@
+// Machine files: the text form of a machine profile. SPDX-License-Identifier: Apache-2.0
+#include "machine_file.h"
+
+#include <report/report.h>
+
+#include <algorithm>
+#include <charconv>
+#include <cmath>
+#include <optional>
+#include <string_view>
+#include <system_error>
+#include <type_traits>
+#include <vector>
+
+#include "base/failure.h"
+#include "base/suggestion.h"
+#include "base/words.h"
+#include "files/input_file.h"
+
+namespace gridiron::tool {
+namespace {
+
+using sim::BuildStep;
+using sim::MachineProfile;
+
+constexpr std::size_t kMaxFileBytes = 1 << 20;
+constexpr std::size_t kMaxLineBytes = 1000;
+constexpr std::size_t kMaxNameBytes = 64;
+constexpr const char* kExpected = "expected a machine file: text as 'gridiron machines cell-ps3' prints it";
+constexpr std::string_view kEditedSuffix = "-edited";
+constexpr double kMaxCycles = 1 << 20;  // of one step; more is nothing that the replay tells apart
+
+// A profile and the text it points to.
+struct OwnedMachine {
+  std::string name, description;
+  MachineProfile profile{};
+};
+
+// What stands behind a number's key. Exactly one of the pointers is set.
+struct Number {
+  std::uint32_t* count = nullptr;
+  std::uint64_t* bytes = nullptr;
+  double* real = nullptr;
+};
+
+struct Field {
+  std::string key;
+  Number number;
+  double least, most;
+};
+
+// Work that the replay charges as an event, by issue_cycles and wait_cycles; always 0 in a profile.
+bool is_charged_as_event(Work kind) {
+  return kind == Work::kGetIssue || kind == Work::kPutIssue || kind == Work::kWait;
+}
+
+// Every number of a profile, in the order in which it is printed.
+std::vector<Field> fields_of(MachineProfile& machine) {
+  // Names every member: a new one does not compile until it has its field.
+  auto& [name, description, core_count, clock_hz, main_memory_bytes, local_store_bytes, line_bytes, queue_depth,
+         lines_in_flight, issue_cycles, wait_cycles, latency_cycles, channel_bytes_per_cycle, core_line_interval_cycles,
+         claim_cycles, work_cycles, master] = machine;
+  auto& [master_clock_hz, step_cycles] = master;
+  (void)name, (void)description;
+  constexpr double kMostBytes = 0x1p40, kLeastMemory = 0x1p20, kLeastStore = 0x1p16, kMostStore = 0x1p30;
+  std::vector<Field> fields = {
+      {"core_count", {.count = &core_count}, 1, 1024},
+      {"clock_hz", {.real = &clock_hz}, 1, 1e12},
+      {"main_memory_bytes", {.bytes = &main_memory_bytes}, kLeastMemory, kMostBytes},
+      {"local_store_bytes", {.count = &local_store_bytes}, kLeastStore, kMostStore},
+      {"line_bytes", {.count = &line_bytes}, 1, 16384},
+      {"queue_depth", {.count = &queue_depth}, 1, 4096},
+      {"lines_in_flight", {.count = &lines_in_flight}, 1, 4096},
+      {"issue_cycles", {.real = &issue_cycles}, 0, kMaxCycles},
+      {"wait_cycles", {.real = &wait_cycles}, 0, kMaxCycles},
+      {"latency_cycles", {.real = &latency_cycles}, 0, kMaxCycles},
+      {"channel_bytes_per_cycle", {.real = &channel_bytes_per_cycle}, 0.0625, 65536},
+      {"core_line_interval_cycles", {.real = &core_line_interval_cycles}, 0, kMaxCycles},
+      {"claim_cycles", {.real = &claim_cycles}, 0, kMaxCycles},
+  };
+  for (std::uint32_t i = 0; i < kWorkKindCount; ++i) {
+    const auto kind = static_cast<Work>(i);
+    if (is_charged_as_event(kind)) continue;
+    fields.push_back({"work_cycles." + std::string(work_name(kind)), {.real = &work_cycles[i]}, 0, kMaxCycles});
+  }
+  fields.push_back({"master.clock_hz", {.real = &master_clock_hz}, 1, 1e12});
+  for (std::size_t i = 0; i < sim::kBuildStepCount; ++i) {
+    const std::string step(build_step_name(static_cast<BuildStep>(i)));
+    fields.push_back({"master.step_cycles." + step, {.real = &step_cycles[i]}, 0, kMaxCycles});
+  }
+  return fields;
+}
+
+// The shortest text that reads back as the same double.
+std::string text_of(double value) {
+  char text[64];
+  const auto [end, error] = std::to_chars(text, text + sizeof text, value);
+  std::string result(text, error == std::errc{} ? end : text);
+  // 3.2e+09 is 3.2e9 to people.
+  const std::size_t exponent = result.find("e+");
+  if (exponent != std::string::npos) {
+    const std::size_t digit = result.find_first_not_of('0', exponent + 2);
+    result.erase(exponent + 1, digit - exponent - 1);
+  }
+  return result;
+}
+
+std::string text_of(const Number& number) {
+  if (number.count != nullptr) return std::to_string(*number.count);
+  if (number.bytes != nullptr) return std::to_string(*number.bytes);
+  return text_of(*number.real);
+}
+
+// What there is instead of a machine that is not built in: the nearest name and all names.
+std::string words_of_built_in_machines(std::string_view name) {
+  std::string list;
+  std::vector<std::string> names;
+  for (const MachineProfile& machine : sim::machine_profiles()) {
+    names.emplace_back(machine.name);
+    list += (list.empty() ? "; there are " : ", ") + names.back();
+  }
+  return did_you_mean(name, names) + list;
+}
+
+constexpr std::string_view kBlanks = " \t";
+
+// @returns text without blanks at both ends.
+std::string_view trimmed(std::string_view text) {
+  const std::size_t first = text.find_first_not_of(kBlanks);
+  if (first == std::string_view::npos) return {};
+  return text.substr(first, text.find_last_not_of(kBlanks) - first + 1);
+}
+
+bool is_key(std::string_view word) {
+  const auto fits = [](char c) { return (c >= 'a' && c <= 'z') || (c >= '0' && c <= '9') || c == '_' || c == '.'; };
+  return word.size() <= kMaxNameBytes && std::ranges::all_of(word, fits);
+}
+
+bool is_name(std::string_view word) {
+  const auto fits = [](char c) { return c > ' ' && c < 0x7F && c != '#'; };
+  return !word.empty() && word.size() <= kMaxNameBytes && std::ranges::all_of(word, fits);
+}
+
+// @returns why text cannot be shown on a terminal and in JSON as it stands, null where it can.
+const char* text_defect(std::string_view text) {
+  std::size_t at = 0;
+  while (at < text.size()) {
+    const auto byte = [&text](std::size_t i) { return static_cast<unsigned char>(text[i]); };
+    const unsigned first = byte(at++);
+    if (first < 0x80) {
+      if (first == 0x7F) return "has a control character";
+      continue;
+    }
+    // Unicode, table 3-7: bytes that follow, and the range of the first of these.
+    const std::size_t followers = first < 0xE0 ? 1 : first < 0xF0 ? 2 : 3;
+    if (first < 0xC2 || first > 0xF4 || text.size() - at < followers) return "is not UTF-8";
+    const unsigned second = byte(at);
+    const unsigned least = first == 0xE0 ? 0xA0 : first == 0xF0 ? 0x90 : 0x80;
+    const unsigned most = first == 0xED ? 0x9F : first == 0xF4 ? 0x8F : 0xBF;
+    if (second < least || second > most) return "is not UTF-8";
+    if (first == 0xC2 && second < 0xA0) return "has a control character";  // C1: U+0080 to U+009F
+    for (std::size_t i = 1; i < followers; ++i) {
+      if (byte(at + i) < 0x80 || byte(at + i) > 0xBF) return "is not UTF-8";
+    }
+    at += followers;
+  }
+  return nullptr;
+}
+
+// @returns whether both are the same machine, whatever it is called.
+bool has_same_values(MachineProfile a, const MachineProfile& b) {
+  a.name = b.name;
+  a.description = b.description;
+  return a == b;
+}
+
+// Reads one file, line by line.
+class Reader {
+ public:
+  explicit Reader(const std::filesystem::path& path)
+      : path_(path), machine_(std::make_shared<OwnedMachine>()), fields_(fields_of(machine_->profile)) {
+    is_given_.resize(fields_.size());
+  }
+
+  Machine read(std::string_view text) {
+    constexpr std::string_view kByteOrderMark = "\xEF\xBB\xBF";
+    if (text.starts_with(kByteOrderMark)) text.remove_prefix(kByteOrderMark.size());
+    while (!text.empty()) {
+      ++line_number_;
+      const std::size_t end = std::min(text.find('\n'), text.size());
+      read_line(text.substr(0, end));
+      text.remove_prefix(std::min(end + 1, text.size()));
+    }
+    finish();
+    return Machine(machine_, &machine_->profile);
+  }
+
+ private:
+  [[noreturn]] void fail(const std::string& reason) const {
+    const std::size_t number = std::max<std::size_t>(line_number_, 1);
+    throw Failure(ExitCode::kBadInput, path_.string() + ":" + std::to_string(number) + ": " + reason);
+  }
+
+  void read_line(std::string_view line) {
+    if (line.size() > kMaxLineBytes) fail("line of more than " + std::to_string(kMaxLineBytes) + " bytes");
+    if (line.ends_with('\r')) line.remove_suffix(1);
+    const auto is_control = [](char c) { return static_cast<unsigned char>(c) < ' ' && c != '\t'; };
+    if (std::ranges::any_of(line, is_control)) fail("not a text file");
+    line = trimmed(line.substr(0, line.find('#')));
+    if (line.empty()) return;
+    const std::string_view key = line.substr(0, std::min(line.find_first_of(kBlanks), line.size()));
+    read_value(key, trimmed(line.substr(key.size())));
+    is_first_key_ = false;
+  }
+
+  void read_value(std::string_view key, std::string_view value) {
+    if (!is_key(key)) fail("unknown key; keys are words of a to z, 0 to 9, _ and .");
+    const std::string quoted = in_quotes(key);
+    if (key == "based_on") return read_base(value);
+    if (key == "name" || key == "description") {
+      std::string& target = key == "name" ? machine_->name : machine_->description;
+      if (!target.empty()) fail("second " + quoted);
+      if (value.empty()) fail(quoted + " has no value");
+      if (key == "name" && !is_name(value)) fail("'name' takes one word of at most 64 printable characters");
+      if (const char* defect = text_defect(value)) fail(quoted + " " + defect);
+      target = value;
+      return;
+    }
+    const auto field = std::ranges::find(fields_, key, &Field::key);
+    if (field == fields_.end()) {
+      std::vector<std::string> keys = {"based_on", "name", "description"};
+      for (const Field& known : fields_) keys.push_back(known.key);
+      fail("unknown key " + quoted + did_you_mean(key, keys) + "; 'gridiron machines cell-ps3' shows all of them");
+    }
+    const auto index = static_cast<std::size_t>(field - fields_.begin());
+    if (is_given_[index]) fail("second " + quoted);
+    if (value.empty()) fail(quoted + " has no value");
+    if (value.find_first_of(kBlanks) != std::string_view::npos) fail(quoted + " takes one number");
+    read_number(*field, quoted, value);
+    is_given_[index] = true;
+  }
+
+  void read_base(std::string_view value) {
+    if (has_base_) fail("second 'based_on'");
+    if (!is_first_key_) fail("'based_on' must be the first key");
+    const MachineProfile* base = sim::find_machine_profile(value);
+    if (base == nullptr) {
+      fail(in_quotes(value) + " is no built-in machine" + words_of_built_in_machines(value));
+    }
+    machine_->profile = *base;
+    has_base_ = true;
+  }
+
+  void read_number(const Field& field, const std::string& quoted_key, std::string_view text) const {
+    const bool is_whole = field.number.real == nullptr;
+    double value = 0;
+    std::uint64_t count = 0;
+    const char* const end = text.data() + text.size();
+    const auto parsed = is_whole ? std::from_chars(text.data(), end, count) : std::from_chars(text.data(), end, value);
+    const bool too_large = parsed.ec == std::errc::result_out_of_range && parsed.ptr == end;
+    if (!too_large && (parsed.ec != std::errc{} || parsed.ptr != end || !std::isfinite(value))) {
+      fail(in_quotes(text) + " is not a " + (is_whole ? "whole number" : "number"));
+    }
+    if (is_whole) value = static_cast<double>(count);
+    if (too_large || value < field.least || value > field.most) {
+      const auto limit_text = [is_whole](double limit) {
+        return is_whole ? std::to_string(static_cast<std::uint64_t>(limit)) : text_of(limit);
+      };
+      fail(quoted_key + " must be from " + limit_text(field.least) + " to " + limit_text(field.most) + ", not " +
+           in_quotes(text));
+    }
+    if (field.number.count != nullptr) *field.number.count = static_cast<std::uint32_t>(count);
+    if (field.number.bytes != nullptr) *field.number.bytes = count;
+    if (field.number.real != nullptr) *field.number.real = value;
+  }
+
+  void finish() {
+    if (!has_base_) {
+      for (std::size_t i = 0; i < fields_.size(); ++i) {
+        if (!is_given_[i])
+          fail("the file ends without '" + fields_[i].key + "', and has no 'based_on' to take it from");
+      }
+    }
+    // A base lends its figures, not its name; and a report must not show other figures under a built-in machine's name.
+    const auto is_taken = [this](std::string_view name) {
+      const MachineProfile* built_in = sim::find_machine_profile(name);
+      return built_in != nullptr && !has_same_values(machine_->profile, *built_in);
+    };
+    if (machine_->name.empty()) {
+      const std::string stem = path_.stem().string();
+      machine_->name = is_name(stem) && !is_taken(stem) && !is_descriptor(path_) ? stem : "unnamed";
+    } else if (is_taken(machine_->name)) {
+      machine_->name += kEditedSuffix;
+    }
+    // Nor does an edited copy keep words about figures that it has changed.
+    const auto is_of_original = [this](const MachineProfile& built_in) {
+      return built_in.description == machine_->description && !has_same_values(machine_->profile, built_in);
+    };
+    const auto original = std::ranges::find_if(sim::machine_profiles(), is_of_original);
+    if (original != sim::machine_profiles().end()) {
+      machine_->description = "edited copy of " + std::string(original->name);
+    }
+    if (machine_->description.empty()) {
+      machine_->description = has_base_ ? "based on " : "from a machine file";
+      if (has_base_) machine_->description += machine_->profile.name;
+    }
+    machine_->profile.name = machine_->name;
+    machine_->profile.description = machine_->description;
+  }
+
+  const std::filesystem::path& path_;
+  std::shared_ptr<OwnedMachine> machine_;
+  std::vector<Field> fields_;
+  std::vector<bool> is_given_;
+  std::size_t line_number_ = 0;
+  bool is_first_key_ = true;
+  bool has_base_ = false;
+};
+
+}  // namespace
+
+Machine read_machine_file(const std::filesystem::path& path) {
+  const InputFile file = read_text_file(path, kExpected, kMaxFileBytes);
+  return Reader(path).read({reinterpret_cast<const char*>(file.bytes.data()), file.bytes.size()});
+}
+
+Machine find_machine(const std::string& name_or_file) {
+  if (const MachineProfile* built_in = sim::find_machine_profile(name_or_file)) {
+    return Machine(Machine{}, built_in);  // constants: nothing to own
+  }
+  const std::filesystem::path path = input_path(name_or_file);
+  std::error_code error;
+  if (!std::filesystem::exists(path, error)) {
+    throw Failure(ExitCode::kBadInput, name_or_file + ": no such file, and no built-in machine of that name" +
+                                           words_of_built_in_machines(name_or_file));
+  }
+  return read_machine_file(path);
+}
+
+sim::StoreSize largest_store(const MachineProfile& machine) {
+  sim::StoreSize largest = sim::StoreSize::k64KB;  // what a machine has at least
+  for (const sim::StoreSize store : sim::kStoreSizes) {
+    if (sim::arena_bytes(store) <= machine.local_store_bytes) largest = store;
+  }
+  return largest;
+}
+
+std::string machine_text(const MachineProfile& machine) {
+  MachineProfile copy = machine;
+  const std::vector<Field> fields = fields_of(copy);
+  std::size_t width = std::string_view("description").size();
+  for (const Field& field : fields) width = std::max(width, field.key.size());
+  std::string text;
+  const auto add = [&text, width](const std::string& key, const std::string& value) {
+    text += key + std::string(width + 1 - key.size(), ' ') + value + "\n";
+  };
+  add("name", std::string(machine.name));
+  add("description", std::string(machine.description));
+  for (const Field& field : fields) add(field.key, text_of(field.number));
+  return text;
+}
+
+}  // namespace gridiron::tool

@@ -1,0 +1,155 @@
+// Render plan. SPDX-License-Identifier: Apache-2.0
+#include "render_plan.h"
+
+#include <algorithm>
+#include <string>
+#include <thread>
+
+#include "base/failure.h"
+#include "files/input_file.h"
+#include "gridiron/device/store_facts.h"
+
+namespace gridiron::tool {
+namespace {
+
+using sim::Mode;
+using sim::StoreSize;
+
+Shading shading_of(const RenderRequest& request, const KnownScene& scene) {
+  const Shading shading = request.shading.value_or(scene.has_effects ? Shading::kScene : Shading::kSimple);
+  if (shading != Shading::kScene) return shading;
+  if (!scene.is_read && scene.kind == SceneKind::kMesh) {
+    usage_error("--shading scene: a mesh has no lights and materials; text scenes (NFF) have");
+  }
+  if (scene.is_read && !scene.has_effects) {
+    usage_error("--shading scene: " + request.scene.input.string() +
+                " has no lights and materials; text scenes (.nff) have");
+  }
+  require_effects_of(request.accuracy);
+  return shading;
+}
+
+sim::LayoutChoice layout_of(const RenderRequest& request, const RenderPlan& plan) {
+  const auto with = [&](StoreSize store) {
+    return layout_with(request.layout, *request.scene.configuration, store, plan.shading == Shading::kScene);
+  };
+  const auto is_built = [&](StoreSize store) { return sim::is_built(with(store), plan.mode, plan.lanes); };
+  const StoreSize store = choose_store(*request.scene.machine, request.layout.store, is_built);
+  require_built(with(store), is_built(store));
+  require_distances(with(store), plan.has_depth);
+  return with(store);
+}
+
+// The buffers of the three levels and the width of macrocells, which the store has to hold.
+void settle_depths(const RenderRequest& request, RenderPlan& plan) {
+  const Configuration& configuration = *request.scene.configuration;
+  const StoreFacts facts = *find_store_facts(plan.layout);
+  const BufferDepths& most = facts.most_depths;
+  const bool has_effects = plan.layout.has_effects;
+  plan.depths = request.layout.depths.value_or(configuration.depths);
+  if (!request.layout.depths) {  // a name promises a way of rendering; how deep it goes is the store's to say
+    const std::uint32_t walks = plan.depths.walks;
+    plan.depths = plan.depths.within(most);
+    if (!has_effects) plan.depths.walks = walks;
+  }
+  if (has_effects) plan.most_macro_width = facts.max_macro_width;
+  const std::uint32_t macro_width =
+      request.scene.macro_width.value_or(std::min(configuration.macro_width, plan.most_macro_width));
+  if (plan.depths.output > most.output || plan.depths.macro > most.macro || plan.depths.triangle > most.triangle ||
+      macro_width > facts.max_macro_width) {
+    const auto blocks = [](const BufferDepths& depths, std::uint32_t width) {
+      return std::to_string(depths.macro) + " cell blocks of macrocells of width " + std::to_string(width) + " and " +
+             std::to_string(depths.triangle) + " triangle buffers";
+    };
+    usage_error("--store " + std::to_string(facts.arena_bytes >> 10) + (has_effects ? ", --shading scene" : "") +
+                ": holds at most " + blocks(most, facts.max_macro_width) + "; " + blocks(plan.depths, macro_width) +
+                " are asked for");
+  }
+}
+
+// Those of the configuration, without those that are not wanted.
+std::uint32_t techniques_of(const RenderRequest& request) {
+  const auto bit = [](bool is_off, std::uint32_t technique) { return is_off ? technique : 0u; };
+  const std::uint32_t off = bit(request.no_mailbox, kUseMailbox) | bit(request.no_culling, kUseCornerCulling) |
+                            bit(request.no_subpackets, kUseSubpackets) | bit(request.no_empty_skip, kUseEmptySkip);
+  return request.scene.configuration->techniques & ~off;
+}
+
+std::uint32_t lanes_of(const RenderRequest& request, const Host& host) {
+  return request.lanes.value_or(request.mode == Mode::kPlain ? host.lanes : 4);
+}
+
+// Threads that would find no tile are not started.
+std::uint32_t threads_of(const RenderRequest& request, const RenderPlan& plan, const Host& host) {
+  const auto tiles = [&plan](std::uint64_t pixels) {
+    return (pixels + plan.layout.tile_width - 1) / plan.layout.tile_width;
+  };
+  const std::uint64_t tile_count = plan.tile ? 1 : tiles(plan.width) * tiles(plan.height);
+  return static_cast<std::uint32_t>(std::min<std::uint64_t>(request.threads.value_or(host.threads), tile_count));
+}
+
+}  // namespace
+
+std::vector<Output> FrameOutputs::declared() const {
+  std::vector<Output> outputs;
+  if (picture) outputs.push_back({"-o", *picture, OutputKind::kPicture});
+  if (depth) outputs.push_back({"--depth", *depth, OutputKind::kFloats});
+  if (ids) outputs.push_back({"--ids", *ids, OutputKind::kFloats});
+  if (report) outputs.push_back({"--report", *report, OutputKind::kText});
+  if (timeline) outputs.push_back({"--timeline", *timeline, OutputKind::kText});
+  return outputs;
+}
+
+FrameOutputs RenderRequest::named_outputs() const {
+  FrameOutputs named = outputs;
+  if (!named.picture) named.picture = is_descriptor(scene.input) ? "picture.png" : scene.input.stem().concat(".png");
+  return named;
+}
+
+Host this_host() {
+  return {std::max(1u, std::thread::hardware_concurrency()), sim::widest_lanes(), sim::has_instrumented_mode()};
+}
+
+void check_request(const RenderRequest& request, const Host& host) {
+  const std::uint32_t lanes = lanes_of(request, host);
+  const bool has_timeline = request.outputs.timeline.has_value();
+  if (request.view.from && request.view.eye) usage_error("--from and --eye: both say where the eye is");
+  if (request.mode == Mode::kInstrumented && lanes != 4) usage_error("--mode instrumented: has 4 lanes only");
+  if (request.mode == Mode::kInstrumented && !host.has_instrumented_mode) {
+    usage_error("--mode instrumented: this build has no instrumented kernel");
+  }
+  if (has_timeline && request.mode == Mode::kPlain) {
+    usage_error("--timeline: --mode plain does not record what cores do when; --mode checked does");
+  }
+  if (has_timeline && lanes != 4) usage_error("--timeline: cycles are counted for --lanes 4 only");
+  if (has_timeline && request.tile) usage_error("--timeline: cycles are not counted for one tile alone (--tile)");
+  if (lanes > host.lanes) usage_error("--lanes: this host has at most " + std::to_string(host.lanes) + " lanes");
+  if (request.seed && request.completion != sim::Completion::kRandom) usage_error("--seed: needs --completion random");
+}
+
+RenderPlan resolve(const RenderRequest& request, const KnownScene& scene, const Host& host) {
+  check_request(request, host);
+  RenderPlan plan{.scene = request.scene,
+                  .outputs = request.named_outputs(),
+                  .has_depth = request.outputs.depth || request.depth_plane,
+                  .has_ids = request.outputs.ids || request.ids_plane,
+                  .tile = request.tile,
+                  .cores = request.cores.value_or(request.scene.machine->core_count),
+                  .lanes = lanes_of(request, host),
+                  .techniques = techniques_of(request),
+                  .accuracy = request.accuracy,
+                  .mode = request.mode,
+                  .completion = request.completion,
+                  .seed = request.seed.value_or(0),
+                  .repeats = request.repeats};
+  const CountPair size = request.size.value_or(scene.size.value_or(kUsualPictureSize));
+  plan.width = size.x;
+  plan.height = size.y;
+  plan.shading = shading_of(request, scene);
+  plan.layout = layout_of(request, plan);
+  settle_depths(request, plan);
+  plan.threads = threads_of(request, plan, host);
+  return plan;
+}
+
+}  // namespace gridiron::tool

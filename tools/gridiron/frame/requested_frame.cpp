@@ -1,0 +1,56 @@
+// Requested frame. SPDX-License-Identifier: Apache-2.0
+#include "requested_frame.h"
+
+#include <cstdio>
+#include <string>
+
+#include "base/words.h"
+#include "gridiron/scene/hither.h"
+
+namespace gridiron::tool {
+namespace {
+
+// A named configuration that the store has too few buffers for is used with those that there are.
+void tell_fewer_buffers(const RenderRequest& request, const RenderPlan& plan) {
+  const BufferDepths wanted = request.layout.depths.value_or(request.scene.configuration->depths);
+  if (plan.depths == wanted) return;
+  const auto blocks = [](const BufferDepths& depths) {
+    return words_of_count(depths.macro, "cell block") + " and " + words_of_count(depths.triangle, "triangle buffer");
+  };
+  std::fprintf(stderr, "%s: configuration %s has %s; a local store of %u KB holds %s for it\n",
+               request.scene.input.c_str(), std::string(request.scene.configuration->name).c_str(),
+               blocks(wanted).c_str(), sim::arena_bytes(plan.layout.store) >> 10, blocks(plan.depths).c_str());
+}
+
+// Another place to look from has no use for the scene's near plane.
+void check_scene_view(const RenderRequest& request, const RequestedFrame& frame) {
+  const SceneInput& input = frame.input;
+  const RenderPlan& plan = frame.plan;
+  if (!input.text || !input.text->view.is_given() || request.camera || request.view.eye || frame.view.from) return;
+  const PointSource no_points = [](const PointVisitor&) {};  // nothing is left to be framed
+  const double aspect = static_cast<double>(plan.width) / plan.height;
+  check_hither(input, complete_view(frame.view, aspect, no_points), plan.width, plan.height);
+}
+
+}  // namespace
+
+RequestedFrame read_requested_frame(const RenderRequest& request, const std::vector<Output>& outputs) {
+  const KnownScene foreseen = foreseen_scene(request.scene);
+  if (foreseen.kind != SceneKind::kUnknown) (void)resolve(request, foreseen, this_host());
+  declare_outputs(outputs);
+  PictureRequest picture{request.view, std::nullopt, request.size};
+  if (request.camera) picture.camera = read_camera_file(*request.camera);
+  RequestedFrame frame;
+  frame.input = read_scene_input(request.scene.input, request.scene.tolerance, picture);
+  frame.plan = resolve(request, known_scene(frame.input), this_host());
+  picture = complete_request(picture, frame.input.text ? frame.input.text->view : SceneView{});
+  frame.view = join_view(picture.view, *picture.camera);
+  check_scene_view(request, frame);
+  if (!request.scene.quiet) {
+    tell_notes(frame.input);
+    tell_fewer_buffers(request, frame.plan);
+  }
+  return frame;
+}
+
+}  // namespace gridiron::tool

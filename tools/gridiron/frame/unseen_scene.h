@@ -1,0 +1,38 @@
+// Unseen scene: whether a frame shows nothing of its scene, and why.
+// Memory: none. Threads: any. SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <gridiron/base/records.h>
+#include <gridiron/sim/sim_chip.h>
+
+#include <cstddef>
+#include <filesystem>
+#include <optional>
+#include <span>
+#include <string>
+
+#include "frame_memory.h"
+#include "gridiron/scene/framing.h"
+
+namespace gridiron::tool {
+
+/// What is known of a frame's pixels.
+struct SeenPlanes {
+  std::span<const std::byte> color, depth, ids;  ///< output planes; depth, ids: empty where there are none
+  bool has_environment = false;                  ///< pixels that hit nothing differ from one another
+  std::optional<bool> has_hits{};                ///< where the work of the frame was counted
+};
+
+/// @returns the note that no pixel of a frame shows the scene, with the reason where there is one for all of its
+/// points; nothing where a pixel shows it, or may.
+/// @param points  of the scene; asked only where no pixel seems to show it.
+[[nodiscard]] std::optional<std::string> unseen_note(const FrameRecord& frame, const SeenPlanes& planes,
+                                                     const PointSource& points);
+
+/// The same of a whole frame that the simulated chip has rendered.
+[[nodiscard]] std::optional<std::string> unseen_note(FrameMemory& frame, const sim::ChipResult& result, sim::Mode mode);
+
+/// Prints a note, if there is one, on standard error: `FILE: note: text`.
+void tell_note(const std::filesystem::path& file, const std::optional<std::string>& note);
+
+}  // namespace gridiron::tool

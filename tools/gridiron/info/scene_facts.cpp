@@ -1,0 +1,112 @@
+// Scene facts. SPDX-License-Identifier: Apache-2.0
+#include "scene_facts.h"
+
+#include <gridiron/build/effects/effect_sections.h>
+#include <gridiron/frame/frame_setup.h>
+
+#include <algorithm>
+#include <span>
+#include <utility>
+
+namespace gridiron::tool {
+namespace {
+
+LoopBounds bounds_of(const GridRecord& grid) {
+  constexpr std::uint32_t kPassesPerPacket = 6;
+  const auto longest = [](const std::uint32_t counts[3]) { return std::max({counts[0], counts[1], counts[2]}); };
+  const auto product = [](const std::uint32_t counts[3]) { return std::uint64_t{counts[0]} * counts[1] * counts[2]; };
+  LoopBounds bounds;
+  bounds.passes_per_packet = kPassesPerPacket;
+  bounds.macro_slices_per_pass = longest(grid.macro_cell_count);
+  bounds.macro_cells_per_pass = product(grid.macro_cell_count);
+  bounds.slices_per_pass = longest(grid.cell_count);
+  bounds.cells_per_pass = product(grid.cell_count);
+  bounds.triangle_tests_per_pass = grid.reference_count;
+  return bounds;
+}
+
+std::string_view name_of(SectionKind kind) {
+  static constexpr std::pair<SectionKind, std::string_view> kNames[] = {
+      {SectionKind::kEffects, "effects"}, {SectionKind::kMaterials, "materials"},
+      {SectionKind::kLights, "lights"},   {SectionKind::kSurfaces, "surfaces"},
+      {SectionKind::kNormals, "normals"}, {SectionKind::kEnvironmentMap, "environment"}};
+  for (const auto& [named, name] : kNames) {
+    if (named == kind) return name;
+  }
+  return "other";
+}
+
+EffectFacts effects_of(const EffectsRecord& record, std::uint32_t triangle_count) {
+  EffectFacts facts;
+  facts.has_effects = true;
+  facts.record = record;
+  const EffectSections sections = place_effect_sections(record, triangle_count, 0);
+  for (std::uint32_t i = 0; i < sections.section_count; ++i) {
+    const SectionEntry& entry = sections.entries[i];
+    facts.sections.push_back({name_of(static_cast<SectionKind>(entry.kind)), entry.section_bytes});
+  }
+  facts.section_bytes = sections.end_bytes - sections.begin_bytes;
+  const bool rays_wait = (record.called_for & (kReflection | kRefraction)) != 0;
+  facts.spill_bytes_per_core = rays_wait ? spill_bytes(record.recursion_depth) : 0;
+  return facts;
+}
+
+}  // namespace
+
+std::uint64_t EffectFacts::bytes_of(std::string_view section) const {
+  const auto found = std::ranges::find(sections, section, &EffectSectionFact::name);
+  return found == sections.end() ? 0 : found->bytes;
+}
+
+SceneFacts collect_scene_facts(const InfoPlan& plan, const SceneInput& input) {
+  SceneFacts facts;
+  const sim::MachineProfile& machine = *plan.scene.machine;
+  const std::uint32_t tile_width = sim::usual_tile_width(sim::StoreSize::k256KB);
+  const std::uint32_t planes = plan.has_depth ? 2 : 1;
+  const std::uint64_t budget_bytes = image_budget_bytes(machine, plan.size.x, plan.size.y, planes, tile_width,
+                                                        spill_bytes_of(machine.core_count, recursion_depth(input)));
+  if (const PackedScene* packed = std::get_if<PackedScene>(&input.content)) {
+    const ImageHeader& header = packed->view.header;
+    if (plan.accuracy) require_format(input, *packed, format_of(*plan.accuracy));
+    facts.is_packed = true;
+    facts.vertices = header.vertex_count;
+    facts.triangles = header.triangle_count;
+    facts.dropped_triangles = header.dropped_triangle_count;
+    facts.grid = packed->view.grid;
+    facts.wanted_lambda = facts.grid.lambda;
+    facts.image_bytes = header.image_bytes;
+    facts.fits = header.image_bytes <= budget_bytes;
+    facts.worst = find_worst_tile(plan, packed->file.bytes, packed->view);
+    if (packed->view.has_effects) facts.effects = effects_of(packed->view.effects, header.triangle_count);
+  } else {
+    const Mesh& mesh = std::get<Mesh>(input.content);
+    const EffectsView view = input.text ? input.text->effects.view() : EffectsView{};
+    const EffectsView* effects = input.text ? &view : nullptr;
+    const GridChoice choice =
+        choose_grid(input, mesh, plan.scene, {plan.format, budget_bytes, plan.most_macro_width}, effects);
+    facts.vertices = mesh.vertices.size();
+    facts.triangles = mesh.triangles.size();
+    facts.dropped_triangles = choice.need.dropped_triangle_count;
+    facts.grid = choice.need.grid;
+    facts.wanted_lambda = choice.wanted_lambda;
+    facts.image_bytes = choice.need.image_bytes;
+    facts.scratch_bytes = choice.need.scratch_bytes;
+    facts.fits = choice.fits();
+    if (choice.fits()) {
+      const AlignedBytes storage = name_in_shortage(input.path, "build its scene image",
+                                                    [&] { return allocate_aligned(choice.need.image_bytes); });
+      const std::span<std::byte> image(storage.get(), choice.need.image_bytes);
+      const SceneImageView built = build_image(input, mesh, choice, image, effects);
+      facts.worst = find_worst_tile(plan, image, built);
+    }
+    if (input.text) facts.roundness = input.text->roundness;
+    if (effects != nullptr) {
+      facts.effects = effects_of(count_effects(view), static_cast<std::uint32_t>(mesh.triangles.size()));
+    }
+  }
+  facts.picture_bytes = planes * output_plane_bytes(plan.size.x, plan.size.y, tile_width) + sizeof(FrameRecord);
+  facts.bounds = bounds_of(facts.grid);
+  return facts;
+}
+
+}  // namespace gridiron::tool

@@ -1,0 +1,65 @@
+// Scene facts: what `info` tells about a scene, as values.
+// Memory: plain values. Threads: any. SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <gridiron/base/effect_records.h>
+#include <gridiron/base/records.h>
+
+#include <cstdint>
+#include <optional>
+#include <string_view>
+#include <vector>
+
+#include "gridiron/scene/scene_input.h"
+#include "info_plan.h"
+#include "scene_text/scene_description.h"
+#include "worst_tile.h"
+
+namespace gridiron::tool {
+
+/// The most that the kernel's loops can turn for this scene: what a worst-case analysis multiplies.
+struct LoopBounds {
+  std::uint32_t passes_per_packet = 0;      ///< three axes, two directions: of one round
+  std::uint32_t macro_slices_per_pass = 0;  ///< macrocells along the longest axis
+  std::uint64_t macro_cells_per_pass = 0;
+  std::uint32_t slices_per_pass = 0;  ///< cells along the longest axis
+  std::uint64_t cells_per_pass = 0;
+  std::uint64_t triangle_tests_per_pass = 0;  ///< references
+};
+
+/// A section of a scene image that is of its effects.
+struct EffectSectionFact {
+  std::string_view name;    ///< "materials"
+  std::uint64_t bytes = 0;  ///< in main memory
+};
+
+/// What a scene with effects asks for; all empty where it has none.
+struct EffectFacts {
+  bool has_effects = false;
+  EffectsRecord record{};  ///< without its offsets
+  std::vector<EffectSectionFact> sections;
+  std::uint64_t section_bytes = 0;         ///< of all of them
+  std::uint64_t spill_bytes_per_core = 0;  ///< for rays that wait
+
+  [[nodiscard]] std::uint64_t bytes_of(std::string_view section) const;
+};
+
+struct SceneFacts {
+  std::uint64_t vertices = 0, triangles = 0, dropped_triangles = 0;
+  GridRecord grid{};
+  float wanted_lambda = 0;
+  SceneRoundness roundness;  ///< of a text scene
+  bool is_packed = false;
+  std::uint64_t image_bytes = 0;
+  std::uint64_t scratch_bytes = 0;  ///< of the builder, free again afterwards; 0 for a packed scene
+  std::uint64_t picture_bytes = 0;  ///< planes that are wanted, and frame record
+  bool fits = false;                ///< in the machine's main memory
+  LoopBounds bounds;
+  EffectFacts effects;
+  std::optional<WorstTile> worst;  ///< where the image fits
+};
+
+/// Counts; an image that fits is built, to be counted too. Errors: Failure.
+[[nodiscard]] SceneFacts collect_scene_facts(const InfoPlan& plan, const SceneInput& input);
+
+}  // namespace gridiron::tool

@@ -1,0 +1,44 @@
+// Framing: the camera from which every point of a scene lies in the picture, with an equal margin on opposite sides.
+// Memory: std::vector, a few thousand points. Threads: any. SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <gridiron/base/math.h>
+#include <gridiron/frame/frame_setup.h>
+
+#include <optional>
+
+#include "base/points.h"
+
+namespace gridiron::tool {
+
+/// Where the eye stands around a scene, in degrees. Azimuth 0 is the front and grows to the right; elevation -90..90
+/// grows upwards. With up y the front is +z and the right is +x; with up z the front is -y.
+struct ViewAngles {
+  double azimuth = 0, elevation = 0;
+
+  friend bool operator==(const ViewAngles&, const ViewAngles&) = default;
+};
+inline constexpr ViewAngles kDefaultViewAngles = {.azimuth = 30, .elevation = 25};
+
+/// The share of the picture's width and height that stays free on each side of a framed scene.
+inline constexpr double kFramingMargin = 0.05;
+
+struct FramingRequest {
+  ViewAngles from = kDefaultViewAngles;
+  Vec3 up{0, 1, 0};         ///< of any length but 0
+  double tan_half_fov = 0;  ///< between top and bottom edge
+  double aspect = 1;        ///< width over height of the picture
+  std::optional<Vec3> at;   ///< point that the middle of the picture shows; nothing: the scene is centred
+};
+
+/// @returns the camera nearest to the scene that looks from the side asked for and leaves a margin of kFramingMargin.
+/// Its `at` lies in front of the eye, at the depth of the middle of the scene. Where the floats of a camera are too
+/// coarse for that (a small scene or `at` far from the origin), it turns a little, and stands farther away, until the
+/// scene is whole and centred again. Precondition: finite points.
+/// Cost: one pass over the points; up to 40 where the floats are too coarse.
+[[nodiscard]] Camera frame_points(const FramingRequest& request, const PointSource& points);
+
+/// @returns the middle of the points' bounds.
+[[nodiscard]] DVec3 middle_of(const PointSource& points);
+
+}  // namespace gridiron::tool
