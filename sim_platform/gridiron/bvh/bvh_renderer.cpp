@@ -55,10 +55,10 @@ template <class Element>
   settings.color = color->address;
   settings.depth = options.all_planes ? depth->address : MainAddress{};
   settings.ids = options.all_planes ? ids->address : MainAddress{};
-  BvhFrameRecord bvh{};
-  GRIDIRON_TRY(make_bvh_record(bvh, settings, options, nodes->address, triangles->address, bvh));
-  std::memcpy(record->bytes.data(), &bvh, sizeof bvh);
-  parts = {*record, *color, *depth, *ids, bvh.frame};
+  BvhFrameRecord frame{};
+  GRIDIRON_TRY(make_bvh_record(bvh, settings, options, nodes->address, triangles->address, frame));
+  std::memcpy(record->bytes.data(), &frame, sizeof frame);
+  parts = {*record, *color, *depth, *ids, frame.frame};
   return Status::kOk;
 }
 
@@ -108,16 +108,16 @@ template <std::uint32_t Width>
 }  // namespace
 
 Status make_bvh_record(const Bvh& bvh, FrameSettings settings, const RenderOptions& options, MainAddress nodes,
-                       MainAddress triangles, BvhFrameRecord& bvh) {
+                       MainAddress triangles, BvhFrameRecord& record) {
   settings.tile_width = kTileWidth;
   settings.output_depth = kOutputDepth;
   // Core's own frame, of an image that is never opened: only camera, size and outputs are looked at.
   SceneImageView no_image{};
   no_image.grid.triangle_format = static_cast<std::uint32_t>(TriangleFormat::kVertices);
-  GRIDIRON_TRY(make_frame_record(settings, no_image, MainAddress{}, bvh.frame));
-  bvh.nodes_address = nodes.value;
-  bvh.triangles_address = triangles.value;
-  bvh.settings = core_settings(bvh.parameters, options);
+  GRIDIRON_TRY(make_frame_record(settings, no_image, MainAddress{}, record.frame));
+  record.nodes_address = nodes.value;
+  record.triangles_address = triangles.value;
+  record.settings = core_settings(bvh.parameters, options);
   return Status::kOk;
 }
 

@@ -67,7 +67,7 @@ struct BvhFrame {
 /// @param settings  with the addresses of the planes; tile width and output depth are set here.
 /// @param nodes, triangles  where bvh.nodes and bvh.triangles lie in main memory. Errors: kBadFrame (settings).
 [[nodiscard]] Status make_bvh_record(const Bvh& bvh, FrameSettings settings, const RenderOptions& options,
-                                     MainAddress nodes, MainAddress triangles, BvhFrameRecord& bvh);
+                                     MainAddress nodes, MainAddress triangles, BvhFrameRecord& record);
 
 /// Renders a frame on the simulated chip, every rule of the contract checked.
 ///
