@@ -17,6 +17,7 @@
 #include "command_words.h"
 #include "failure.h"
 #include "layout_choice.h"
+#include "machine_keys.h"
 #include "scene_input.h"
 #include "store_facts.h"
 #include "suggestion.h"
@@ -40,7 +41,7 @@ struct RawRender {
 constexpr BufferDepths kSingleBuffering = {.output = 1, .macro = 1, .triangle = 1, .walks = 1};
 constexpr BufferDepths kDoubleBuffering = {.output = 2, .macro = 2, .triangle = 2, .walks = 2};
 
-constexpr const char* kMachineFormat = R"(A machine file holds one 'key value' per line; # opens a comment.
+constexpr std::string_view kMachineFormat = R"(A machine file holds one 'key value' per line; # opens a comment.
 Units are in the keys: _hz, _bytes, _cycles (of the core clock; under master. of the general core's own).
 'based_on NAME' as the first key takes what the file leaves out from a built-in machine:
 
@@ -49,7 +50,16 @@ Units are in the keys: _hz, _bytes, _cycles (of the core clock; under master. of
   core_count     4
   latency_cycles 250
 
-Ranges and meanings: tools/README.md, "Machines".)";
+)";
+
+// The format of machine files, and a line for each key.
+std::string machine_format_help() {
+  std::string help(kMachineFormat);
+  for (const MachineKeyHelp& row : machine_key_help()) {
+    help.append(row.key).append(": ").append(row.range).append("; ").append(row.meaning).append("\n");
+  }
+  return help + "The kinds and steps, and more of each key: tools/README.md, \"Machines\".";
+}
 
 // Adds an option whose text one of our own parsers turns into a value; `expected` completes the error message, which
 // names those of `words` that the text may have been meant for.
@@ -618,7 +628,7 @@ Command parse_arguments(int count, const char* const* values) {
       app.add_subcommand("machines", "lists the machine profiles, or prints one as --machine reads it");
   machines->add_option("MACHINE", machine, "built-in name or machine file: printed in full, to be copied and edited")
       ->type_name("");
-  machines->footer(kMachineFormat);
+  machines->footer(machine_format_help());
   machines->add_flag("--json", machines_arguments.json, "as JSON");
   add_quiet(*machines, machines_arguments.quiet);
 
