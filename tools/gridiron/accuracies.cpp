@@ -1,6 +1,9 @@
 // Accuracies. SPDX-License-Identifier: Apache-2.0
 #include "accuracies.h"
 
+#include <algorithm>
+#include <iterator>
+
 namespace gridiron::tool {
 namespace {
 
@@ -19,10 +22,22 @@ constexpr NamedAccuracy kAccuracies[] = {
 };
 // clang-format on
 
+consteval bool have_each_one_name() {
+  for (std::uint32_t number = 0; number < kAccuracyCount; ++number) {
+    if (std::ranges::count(kAccuracies, Accuracy{number}, &NamedAccuracy::accuracy) != 1) return false;
+  }
+  return std::size(kAccuracies) == kAccuracyCount;
+}
+static_assert(have_each_one_name());
+
 }  // namespace
 
 std::span<const NamedAccuracy> accuracies() {
   return kAccuracies;
+}
+
+std::string_view accuracy_name(Accuracy accuracy) {
+  return std::ranges::find(kAccuracies, accuracy, &NamedAccuracy::accuracy)->name;
 }
 
 }  // namespace gridiron::tool

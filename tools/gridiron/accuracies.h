@@ -2,7 +2,7 @@
 // Memory: one table. Threads: any. SPDX-License-Identifier: Apache-2.0
 #pragma once
 
-#include <gridiron/base/records.h>
+#include <gridiron/base/accuracies.h>
 
 #include <span>
 #include <string_view>
@@ -17,5 +17,8 @@ struct NamedAccuracy {
 
 /// All accuracy profiles, from the paper's to the exact one, then those that change the geometry.
 [[nodiscard]] std::span<const NamedAccuracy> accuracies();
+
+/// @returns what --accuracy calls it.
+[[nodiscard]] std::string_view accuracy_name(Accuracy accuracy);
 
 }  // namespace gridiron::tool

@@ -399,8 +399,7 @@ InfoArguments complete_info(InfoArguments info, const std::string& machine, cons
   if (info.accuracy) {
     const TriangleFormat format = format_of(*info.accuracy);
     if (app.count("--format") > 0 && info.format != format) {
-      const auto named = std::ranges::find(accuracies(), *info.accuracy, &NamedAccuracy::accuracy);
-      usage_error("--accuracy " + std::string(named->name) + ": reads --format " + word_of(format));
+      usage_error("--accuracy " + std::string(accuracy_name(*info.accuracy)) + ": reads --format " + word_of(format));
     }
     info.format = format;
   }

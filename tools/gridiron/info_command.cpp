@@ -59,10 +59,6 @@ const char* unit_of(const WorstTile& worst) {
   return worst.are_instructions ? "instructions" : "cycles";
 }
 
-std::string name_of(Accuracy accuracy) {
-  return std::string(std::ranges::find(accuracies(), accuracy, &NamedAccuracy::accuracy)->name);
-}
-
 Json json_of(const WorstTile& worst) {
   Json work = Json::object();
   for (std::uint32_t kind = 0; kind < kWorkKindCount; ++kind) {
@@ -70,7 +66,7 @@ Json json_of(const WorstTile& worst) {
       work[std::string(work_name(static_cast<Work>(kind)))] = json_of_count(worst.bound.work[kind]);
     }
   }
-  return {{"accuracy", name_of(worst.frame.accuracy)},
+  return {{"accuracy", accuracy_name(worst.frame.accuracy)},
           {"depth", worst.frame.has_depth},
           {"lanes", worst.layout.lanes},
           {"tile_width", worst.layout.tile_width},
@@ -301,7 +297,8 @@ void print_text(const InfoArguments& arguments, const SceneFacts& facts, const S
     const WorstTile& worst = *facts.worst;
     std::snprintf(text, sizeof text, " at most %.3g %s of work, %.3g with all waits; ", worst.cycles.work,
                   unit_of(worst), worst.cycles.total());
-    const std::string asked = arguments.accuracy ? ", accuracy " + name_of(*arguments.accuracy) + "," : "";
+    const std::string asked =
+        arguments.accuracy ? ", accuracy " + std::string(accuracy_name(*arguments.accuracy)) + "," : "";
     const std::string gets = words_of_most(worst.bound[Work::kGetIssue]) + " gets of ";
     print_line("worst tile", "for any camera" + asked + text + gets + words_of_most(worst.bound.get_bytes) + " bytes");
   }

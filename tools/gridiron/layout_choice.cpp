@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <string>
 
+#include "accuracies.h"
 #include "failure.h"
 #include "scene_input.h"
 #include "store_facts.h"
@@ -108,8 +109,9 @@ void choose_depths(RenderArguments& render) {
 }
 
 void require_effects_of(std::optional<Accuracy> accuracy) {
-  if (accuracy != Accuracy::kPaper) return;
-  usage_error("--accuracy paper: has no --shading scene; shadows and reflections need distances that hold");
+  if (!accuracy || accuracy_traits(*accuracy).has_scene_shading) return;
+  usage_error("--accuracy " + std::string(accuracy_name(*accuracy)) +
+              ": has no --shading scene; shadows and reflections need distances that hold");
 }
 
 // The layout that info tells of, built or not.

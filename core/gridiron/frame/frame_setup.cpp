@@ -60,7 +60,7 @@ Status make_frame_record(const FrameSettings& settings, const SceneImageView& im
   }
   const bool scene_shading = settings.shading == Shading::kScene;
   if (scene_shading) {
-    if (!image.has_effects || settings.accuracy == Accuracy::kPaper) return Status::kUnsupportedImage;
+    if (!image.has_effects || !accuracy_traits(settings.accuracy).has_scene_shading) return Status::kUnsupportedImage;
     if (settings.walk_depth < 1 || image_address.value == 0) return Status::kBadFrame;
   }
 

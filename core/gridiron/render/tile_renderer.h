@@ -3,6 +3,7 @@
 // Threads: one core; cores share nothing but the frame in main memory. SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <gridiron/base/accuracies.h>
 #include <gridiron/base/records.h>
 #include <gridiron/dma/transfers.h>
 #include <gridiron/engine/grid/frustum.h>
@@ -208,22 +209,16 @@ class TileRenderer {
       return Status::kUnsupportedFrame;
     }
     if (!(frame.t_far > 0.0f) || frame.color_address == 0) return Status::kBadFrame;
-    if (frame.accuracy > static_cast<std::uint32_t>(Accuracy::kCompact) ||
-        frame.shading > static_cast<std::uint32_t>(Shading::kScene)) {
+    if (frame.accuracy >= kAccuracyCount || frame.shading > static_cast<std::uint32_t>(Shading::kScene)) {
       return Status::kUnsupportedFrame;
     }
     if (is_scene_shaded() && !kHasEffects) return Status::kNeedsSceneShading;
     // Without packets there is no other shading, and no exact distance of eye rays.
     if (!kHasPackets<Layout> && (!is_scene_shaded() || frame.depth_address != 0)) return Status::kUnsupportedFrame;
     const GridRecord& grid = frame.grid;
-    std::uint32_t format = static_cast<std::uint32_t>(TriangleFormat::kVertices);
-    if (frame.accuracy == static_cast<std::uint32_t>(Accuracy::kPaper)) {
-      format = static_cast<std::uint32_t>(TriangleFormat::kProjection);
+    if (grid.triangle_format != static_cast<std::uint32_t>(accuracy_traits(frame.accuracy).format)) {
+      return Status::kUnsupportedImage;
     }
-    if (frame.accuracy == static_cast<std::uint32_t>(Accuracy::kCompact)) {
-      format = static_cast<std::uint32_t>(TriangleFormat::kLattice);
-    }
-    if (grid.triangle_format != format) return Status::kUnsupportedImage;
     if (grid.macro_width == 0 || grid.macro_width > Layout::kMaxMacroWidth ||
         grid.cell_block_bytes > Store::kCellBlockBytes) {
       return Status::kUnsupportedImage;

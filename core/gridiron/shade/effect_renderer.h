@@ -4,6 +4,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <gridiron/base/accuracies.h>
 #include <gridiron/base/effect_records.h>
 #include <gridiron/base/lanes.h>
 #include <gridiron/base/math.h>
@@ -56,7 +57,7 @@ class EffectRenderer {
   [[nodiscard]] Status begin_frame() {
     const FrameRecord& frame = store_.frame;
     if (frame.effects_address == 0 || frame.image_address == 0) return Status::kBadFrame;
-    if (frame.accuracy == static_cast<std::uint32_t>(Accuracy::kPaper) || frame.walk_depth == 0 ||
+    if (!accuracy_traits(frame.accuracy).has_scene_shading || frame.walk_depth == 0 ||
         frame.walk_depth > kWalkCount<Layout>) {
       return Status::kUnsupportedFrame;
     }
