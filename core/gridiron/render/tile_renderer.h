@@ -33,7 +33,7 @@ class TileRenderer {
 
   /// Renders every tile this core can claim of the frame whose FrameRecord lies at `frame`.
   ///
-  /// Errors: kBadFrame, kUnsupportedFrame, kUnsupportedImage, kNeeds... (an effect), kSpillTooSmall before the first
+  /// Errors: kBadFrame, kUnsupportedFrame, kUnsupportedImage, kMissingEffect, kSpillTooSmall before the first
   /// claim; kAborted, kDeadline between tiles; whatever the platform's transfers report. All transfers have been waited
   /// for when kOk is returned.
   [[nodiscard]] Status run(MainAddress frame) {
@@ -212,7 +212,7 @@ class TileRenderer {
     if (frame.accuracy >= kAccuracyCount || frame.shading > static_cast<std::uint32_t>(Shading::kScene)) {
       return Status::kUnsupportedFrame;
     }
-    if (is_scene_shaded() && !kHasEffects) return Status::kNeedsSceneShading;
+    if (is_scene_shaded() && !kHasEffects) return Status::kMissingEffect;
     // Without packets there is no other shading, and no exact distance of eye rays.
     if (!kHasPackets<Layout> && (!is_scene_shaded() || frame.depth_address != 0)) return Status::kUnsupportedFrame;
     const GridRecord& grid = frame.grid;
@@ -281,6 +281,17 @@ template <class L, class Layout, Platform P>
                                   SpillRegion spill = {}) {
   TileRenderer<L, Layout, P> renderer(store, platform, spill);
   return renderer.run(frame);
+}
+
+/// @returns the EffectBits that a renderer lacks. Precondition: render_tiles has returned kMissingEffect for `store`.
+/// Built for no effect at all, it has not read the scene's and knows of kSceneShading alone.
+template <class Layout>
+[[nodiscard]] std::uint32_t missing_effects(const LocalStore<Layout>& store) {
+  if constexpr (Layout::kEffects != 0) {
+    return store.effects.scene.called_for & ~Layout::kEffects;
+  } else {
+    return kSceneShading;
+  }
 }
 
 }  // namespace gridiron

@@ -28,19 +28,11 @@
 
 namespace gridiron {
 
-/// @returns kOk, or what of the effects called for is not among those built.
-[[nodiscard]] constexpr Status missing_effect(std::uint32_t called_for, std::uint32_t built) {
+/// @returns kOk, or kMissingEffect where not all effects called for are built; kBadFrame: there are no such effects.
+[[nodiscard]] constexpr Status check_effects_built(std::uint32_t called_for, std::uint32_t built) {
   const std::uint32_t missing = called_for & ~built;
   if (missing == 0) return Status::kOk;
-  constexpr Status kNames[kEffectCount] = {
-      Status::kNeedsPointShadows,     Status::kNeedsAreaLights,   Status::kNeedsReflection,    Status::kNeedsRefraction,
-      Status::kNeedsAmbientOcclusion, Status::kNeedsEnvironment,  Status::kNeedsSmoothNormals, Status::kNeedsHighlights,
-      Status::kNeedsMultisampling,    Status::kNeedsSceneShading,
-  };
-  for (std::uint32_t i = 0; i < kEffectCount; ++i) {
-    if ((missing >> i & 1u) != 0) return kNames[i];
-  }
-  return Status::kBadFrame;
+  return (missing & kAllEffects) != 0 ? Status::kMissingEffect : Status::kBadFrame;
 }
 
 /// Effects of one frame on one core. Layout::kEffects are those that there is code for; of these a scene gets what it
@@ -53,7 +45,7 @@ class EffectRenderer {
   EffectRenderer(Store& store, Transfers<P>& transfers, SpillRegion spill)
       : store_(store), transfers_(transfers), spill_(spill), queue_(store.effects, transfers, spill.address) {}
 
-  /// Fetches what all tiles need. Errors: the missing effect by name, kSpillTooSmall, kUnsupportedFrame.
+  /// Fetches what all tiles need. Errors: kMissingEffect, kSpillTooSmall, kUnsupportedFrame.
   [[nodiscard]] Status begin_frame() {
     const FrameRecord& frame = store_.frame;
     if (frame.effects_address == 0 || frame.image_address == 0) return Status::kBadFrame;
@@ -62,7 +54,7 @@ class EffectRenderer {
       return Status::kUnsupportedFrame;
     }
     GRIDIRON_TRY(get_now(&scene(), MainAddress{frame.effects_address}, sizeof(EffectsRecord)));
-    GRIDIRON_TRY(missing_effect(scene().called_for, kBuilt));
+    GRIDIRON_TRY(check_effects_built(scene().called_for, kBuilt));
     if (scene().recursion_depth > 1 && calls_for(kReflection | kRefraction) &&
         (spill_.bytes < spill_bytes(scene().recursion_depth) || spill_.address.value % kSpillAlignment != 0)) {
       return Status::kSpillTooSmall;
