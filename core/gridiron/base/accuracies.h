@@ -4,8 +4,10 @@
 
 #include <gridiron/base/records.h>
 
+#include <cstddef>
 #include <cstdint>
 #include <type_traits>
+#include <utility>
 
 namespace gridiron {
 
@@ -52,5 +54,18 @@ inline constexpr std::uint32_t kAccuracyCount = 5;  ///< their numbers are 0..kA
 static_assert(accuracy_traits(Accuracy{kAccuracyCount - 1}).format != TriangleFormat{} &&
                   accuracy_traits(Accuracy{kAccuracyCount}).format == TriangleFormat{},
               "kAccuracyCount is not the number of accuracies");
+
+/// The formats of all accuracies, four bits each: a core looks them up in a word, not in a table in its memory.
+template <std::size_t... Numbers>
+[[nodiscard]] consteval auto pack_formats(std::index_sequence<Numbers...>) {
+  return ((static_cast<std::underlying_type_t<TriangleFormat>>(format_of(Accuracy{Numbers})) << 4 * Numbers) | ...);
+}
+
+/// @returns whether a frame of this accuracy renders triangles of this format, by the numbers of the frame record.
+/// Precondition: accuracy < kAccuracyCount.
+[[nodiscard]] constexpr bool reads_format(std::underlying_type_t<Accuracy> accuracy,
+                                          std::underlying_type_t<TriangleFormat> format) {
+  return (pack_formats(std::make_index_sequence<kAccuracyCount>()) >> 4 * accuracy & 15u) == format;
+}
 
 }  // namespace gridiron

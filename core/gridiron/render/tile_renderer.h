@@ -216,9 +216,7 @@ class TileRenderer {
     // Without packets there is no other shading, and no exact distance of eye rays.
     if (!kHasPackets<Layout> && (!is_scene_shaded() || frame.depth_address != 0)) return Status::kUnsupportedFrame;
     const GridRecord& grid = frame.grid;
-    if (grid.triangle_format != static_cast<std::uint32_t>(accuracy_traits(frame.accuracy).format)) {
-      return Status::kUnsupportedImage;
-    }
+    if (!reads_format(frame.accuracy, grid.triangle_format)) return Status::kUnsupportedImage;
     if (grid.macro_width == 0 || grid.macro_width > Layout::kMaxMacroWidth ||
         grid.cell_block_bytes > Store::kCellBlockBytes) {
       return Status::kUnsupportedImage;
