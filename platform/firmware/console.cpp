@@ -2,6 +2,7 @@
 // Memory: 20 bytes of stack. Threads: one core at a time. SPDX-License-Identifier: Apache-2.0
 #include "console.h"
 
+#include <gridiron/base/effect_names.h>
 #include <gridiron/platform/status_name.h>
 
 namespace gridiron::port {
@@ -38,6 +39,15 @@ void print_piece(StatusNumber number) {
   print_piece(number.value);
   const char* name = status_name(number.value);
   if (name != nullptr) print(" (", name, ")");
+}
+
+void print_piece(EffectSet set) {
+  for (std::uint32_t rest = set.bits; rest != 0; rest &= rest - 1) {
+    const std::uint32_t bit = rest & ~(rest - 1);
+    const char* name = effect_name(static_cast<EffectBits>(bit)).name;
+    name != nullptr ? print(name) : print(Hex{bit});
+    if (bit != rest) print(", ");
+  }
 }
 
 }  // namespace gridiron::port

@@ -19,13 +19,19 @@ struct StatusNumber {
   std::uint32_t value;
 };
 
+/// Effects by name.
+struct EffectSet {
+  std::uint32_t bits;
+};
+
 void print_piece(const char* text);
 void print_piece(std::uint64_t number);
 void print_piece(std::uint32_t number);
 void print_piece(Hex number);
 void print_piece(StatusNumber number);  ///< "14 (kBadImage)"
+void print_piece(EffectSet set);        ///< "reflection, refraction"
 
-/// Writes the pieces one after the other: texts, unsigned numbers, Hex, StatusNumber.
+/// Writes the pieces one after the other: texts, unsigned numbers, Hex, StatusNumber, EffectSet.
 template <class... Pieces>
 void print(const Pieces&... pieces) {
   (print_piece(pieces), ...);

@@ -128,7 +128,7 @@ bool check_job(const FrameJob& job, const FirmwareFacts& facts) {
     print("job made for packets of ", job.packet_width, ", these are of ", facts.packet_width, "\n");
   }
   const std::uint32_t missing = job.effects & ~facts.effects;
-  if (missing != 0) return refuse("effects ", Hex{missing}, " are not built into this firmware");
+  if (missing != 0) return refuse("effects ", EffectSet{missing}, " are not built into this firmware");
   if (job.width == 0 || job.height == 0 || job.width > kMaxPictureWidth || job.height > kMaxPictureWidth) {
     return refuse("picture of ", job.width, " x ", job.height);
   }

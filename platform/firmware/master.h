@@ -142,6 +142,7 @@ class Master {
       const CoreResult& done = result.cores[core];
       print("core ", core, ": status ", StatusNumber{done.status}, ", ", done.tiles, " tiles, ", done.transfers,
             " transfers, ", done.transfer_bytes, " bytes, stack ", done.stack_bytes, " of ", facts_.stack_bytes, "\n");
+      if (done.missing_effects != 0) print("core ", core, ": built without ", EffectSet{done.missing_effects}, "\n");
       if (result.status == 0) result.status = done.status;
     }
     TileResult* wanted = tile_results(job_);

@@ -2,6 +2,7 @@
 // Memory: reads the job. Threads: the master, integers only. SPDX-License-Identifier: Apache-2.0
 #include "record_check.h"
 
+#include <gridiron/base/accuracies.h>
 #include <gridiron/base/effect_records.h>
 #include <gridiron/base/records.h>
 #include <gridiron/base/triangle_formats.h>
@@ -143,10 +144,10 @@ bool check_grid(const FrameRecord& frame, const ImageHead& image) {
 }
 
 bool check_accuracy(const FrameRecord& frame) {
-  if (frame.accuracy > static_cast<std::uint32_t>(Accuracy::kCompact)) {
+  if (frame.accuracy >= kAccuracyCount) {
     return refuse("frame record: accuracy ", frame.accuracy);
   }
-  const TriangleFormat format = format_of(static_cast<Accuracy>(frame.accuracy));
+  const TriangleFormat format = accuracy_traits(frame.accuracy).format;
   return frame.engine.grid.triangle_format == static_cast<std::uint32_t>(format) ||
          refuse("frame record: accuracy ", frame.accuracy, " of triangles of format ",
                 frame.engine.grid.triangle_format);

@@ -125,6 +125,7 @@ void run_worker(LocalStore<Layout>& store, P& port, RunControl& control, TileRes
 
   CoreResult& result = slot.result;
   result.status = static_cast<std::uint32_t>(status);
+  if (status == Status::kMissingEffect) result.missing_effects = missing_effects(store);
   result.tiles = counting.claimed();
   result.transfers = counting.transfers();
   result.transfer_bytes = counting.transfer_bytes();

@@ -106,11 +106,18 @@ class NoPlatform {
 };
 
 TEST(Builds, WhatWasLeftOutIsNamed) {
-  EXPECT_EQ(picture_of<EffectLayout256K<kSceneShading | kPointShadows>>(glass_ball_scene(false)).status,
-            Status::kNeedsReflection);
-  EXPECT_EQ(picture_of<EffectLayout64K<kSceneShading | kReflection | kRefraction>>(glass_ball_scene(false)).status,
-            Status::kNeedsPointShadows);
-  EXPECT_EQ(picture_of<StoreLayout256K<8>>(glass_ball_scene(false)).status, Status::kNeedsSceneShading);
+  const auto missing = []<class Layout>() {
+    const KernelPicture picture = picture_of<Layout>(glass_ball_scene(false));
+    EXPECT_EQ(picture.status, Status::kMissingEffect);
+    return picture.missing_effects;
+  };
+  const std::uint32_t called_for = build_kernel_scene(glass_ball_scene(false), walk_options()).called_for;
+  constexpr std::uint32_t kShadows = kSceneShading | kPointShadows;
+  constexpr std::uint32_t kMirrors = kSceneShading | kReflection | kRefraction;
+  EXPECT_EQ(missing.operator()<EffectLayout256K<kShadows>>(), called_for & ~kShadows);
+  EXPECT_NE(called_for & ~kShadows, 0u);
+  EXPECT_EQ(missing.operator()<EffectLayout64K<kMirrors>>(), called_for & ~kMirrors);
+  EXPECT_EQ(missing.operator()<StoreLayout256K<8>>(), kSceneShading) << "it has not read which others there are";
   KernelOptions planes = walk_options();
   planes.wants_planes = true;
   EXPECT_EQ(picture_of<EffectLayout64K<kAllEffects>>(glass_ball_scene(false), planes).status,

@@ -58,6 +58,7 @@ struct KernelScene {
 /// What a frame came to.
 struct KernelPicture {
   Status status = Status::kOk;
+  std::uint32_t missing_effects = 0;  ///< where the status is kMissingEffect
   std::string violation;             ///< the first broken rule of transfers
   std::vector<std::uint32_t> color;  ///< row-major, 0xAABBGGRR
   std::vector<float> depth;          ///< where wanted
@@ -207,6 +208,7 @@ template <class Layout, class L = Lanes<4>>
   const auto store = std::make_unique<LocalStore<Layout>>();
   std::memset(static_cast<void*>(store.get()), 0xC3, sizeof(*store));
   picture.status = render_tiles<L>(*store, board, MainAddress{frame.frame_address}, frame.spill);
+  if (picture.status == Status::kMissingEffect) picture.missing_effects = missing_effects(*store);
   picture.violation = board.violation;
   if (picture.status == Status::kOk && picture.violation.empty()) {
     constexpr KernelLayout kLayout{Layout::kArenaBytes, Layout::kTileWidth, Layout::kPacketWidth,

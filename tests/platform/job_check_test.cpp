@@ -56,7 +56,10 @@ class JobMemory {
   JobMemory& operator=(const JobMemory&) = delete;
 
   // As the program made it.
-  void load() { std::memcpy(bytes_, file_.data(), file_.size()); }
+  void load() {
+    std::memcpy(bytes_, file_.data(), file_.size());
+    built = kAllEffects;
+  }
 
   FrameJob& job() { return *reinterpret_cast<FrameJob*>(bytes_); }
   FrameRecord& record() { return *reinterpret_cast<FrameRecord*>(bytes_ + kRecordPlace); }
@@ -82,13 +85,15 @@ class JobMemory {
     facts.memory_end = reinterpret_cast<std::uintptr_t>(bytes_) + kRoom;
     facts.core_count = 4;
     facts.tile_width = whole().tile_width;
-    facts.effects = kAllEffects;
+    facts.effects = built;
     facts.packet_width = whole().packet_width;
     facts.store_bytes = whole().store_bytes;
     facts.most_tiles = 1024;
     told.clear();
     return check_job(job(), facts);
   }
+
+  std::uint32_t built = kAllEffects;  ///< into the firmware
 
  private:
   [[nodiscard]] const FrameJob& whole() const { return *reinterpret_cast<const FrameJob*>(file_.data()); }
@@ -210,6 +215,9 @@ TEST(JobCheck, HoldsEffectsAgainstTheJob) {
                            {"frame record: shading", [](Memory& m) { m.record().shading = 1; }},
                            {"effects", [](Memory& m) { m.effects().called_for ^= kReflection; }},
                            {"effects", [](Memory& m) { m.job().effects ^= kReflection; }},
+                           {"effects reflection, smooth_normals are not built into this firmware",
+                            [](Memory& m) { m.built &= ~(kReflection | kSmoothNormals); }},
+                           {"effects 0x400 are not built", [](Memory& m) { m.job().effects |= 1u << kEffectCount; }},
                            {"scene image: more materials", [](Memory& m) { m.effects().light_count = kMaxLights + 1; }},
                            {"scene image: materials", [](Memory& m) { m.effects().materials_offset_bytes = kFar; }},
                            {"scene image: lights", [](Memory& m) { m.effects().lights_offset_bytes += 16; }},

@@ -50,26 +50,8 @@ const char* words_of(Status status) {
       return "deadline passed between two tiles";
     case Status::kIncompleteFrame:
       return "picture of which no core wrote a part";
-    case Status::kNeedsSceneShading:
-      return "the scene calls for scene shading, which this renderer was built without";
-    case Status::kNeedsPointShadows:
-      return "the scene calls for shadows of point lights, which this renderer was built without";
-    case Status::kNeedsAreaLights:
-      return "the scene calls for area lights, which this renderer was built without";
-    case Status::kNeedsReflection:
-      return "the scene calls for reflection, which this renderer was built without";
-    case Status::kNeedsRefraction:
-      return "the scene calls for refraction, which this renderer was built without";
-    case Status::kNeedsAmbientOcclusion:
-      return "the scene calls for ambient occlusion, which this renderer was built without";
-    case Status::kNeedsEnvironment:
-      return "the scene calls for an environment, which this renderer was built without";
-    case Status::kNeedsSmoothNormals:
-      return "the scene calls for smooth normals, which this renderer was built without";
-    case Status::kNeedsHighlights:
-      return "the scene calls for highlights, which this renderer was built without";
-    case Status::kNeedsMultisampling:
-      return "the scene calls for several samples a pixel, which this renderer was built without";
+    case Status::kMissingEffect:
+      return "the scene calls for an effect that this renderer was built without";
     case Status::kSpillTooSmall:
       return "less main memory for rays that wait than the scene's depth of recursion asks for";
     case Status::kMemoryTooSmall:

@@ -49,33 +49,6 @@ std::string spaced(std::string_view name) {
   return words;
 }
 
-// As wide as a bar of ten.
-std::string_view label_of(EffectBits effect) {
-  switch (effect) {
-    case kPointShadows:
-      return "shadows";
-    case kAreaLights:
-      return "areas";
-    case kReflection:
-      return "mirrors";
-    case kRefraction:
-      return "glass";
-    case kAmbientOcclusion:
-      return "occlusion";
-    case kEnvironment:
-      return "sky";
-    case kSmoothNormals:
-      return "smooth";
-    case kHighlights:
-      return "shine";
-    case kMultisampling:
-      return "samples";
-    case kSceneShading:
-      break;
-  }
-  return "shading";
-}
-
 std::string key_without(std::string_view effect) {
   return "without_" + std::string(effect);
 }
@@ -89,11 +62,11 @@ SceneFrames list_frames(std::string_view key) {
   EffectScene scene = make_effect_scene(key);
   const std::uint32_t called = called_for(scene);
   frames.variants.push_back({"all", "all effects", "nothing", scene, called, {}, {}});
-  for (const tool::EffectName& effect : tool::effects()) {
+  for (const EffectName& effect : tool::effects()) {
     if (effect.bit == kSceneShading || (called & effect.bit) == 0) continue;
     frames.variants.push_back({key_without(effect.name),
                                "without " + spaced(effect.name),
-                               std::string(label_of(effect.bit)),
+                               effect.label,
                                without_effect(scene, effect.bit),
                                left_without(called, effect.bit),
                                {},
@@ -409,7 +382,7 @@ std::vector<std::string> effects_file_names() {
     const std::string scene(key);
     names.push_back("stages_" + scene + ".svg");
     names.push_back(picture_name(scene, "all") + ".png");
-    for (const tool::EffectName& effect : tool::effects()) {
+    for (const EffectName& effect : tool::effects()) {
       if (effect.bit != kSceneShading) names.push_back(picture_name(scene, key_without(effect.name)) + ".png");
     }
   }

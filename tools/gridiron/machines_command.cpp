@@ -1,41 +1,23 @@
 // machines: the machine profiles, as a list, as a machine file, or as JSON. SPDX-License-Identifier: Apache-2.0
-#include <report/report.h>
-
+#include <algorithm>
 #include <cstdio>
 #include <nlohmann/json.hpp>
 #include <string>
 
 #include "commands.h"
+#include "device/machine_keys.h"
 
 namespace gridiron::tool {
 namespace {
 
-nlohmann::ordered_json json_of(const sim::MachineProfile& machine) {
-  nlohmann::ordered_json work = nlohmann::ordered_json::object();
-  for (std::uint32_t kind = 0; kind < kWorkKindCount; ++kind) {
-    work[std::string(work_name(static_cast<Work>(kind)))] = machine.work_cycles[kind];
+nlohmann::ordered_json json_of(sim::MachineProfile machine) {
+  nlohmann::ordered_json json = {{"name", machine.name}, {"description", machine.description}};
+  for (const MachineKey& key : machine_keys(machine)) {
+    std::string path = "/" + key.name;
+    std::ranges::replace(path, '.', '/');
+    std::visit([&](const auto* number) { json[nlohmann::ordered_json::json_pointer(path)] = *number; }, key.number);
   }
-  nlohmann::ordered_json steps = nlohmann::ordered_json::object();
-  for (std::size_t step = 0; step < sim::kBuildStepCount; ++step) {
-    steps[std::string(build_step_name(static_cast<sim::BuildStep>(step)))] = machine.master.step_cycles[step];
-  }
-  return {{"name", machine.name},
-          {"description", machine.description},
-          {"core_count", machine.core_count},
-          {"clock_hz", machine.clock_hz},
-          {"main_memory_bytes", machine.main_memory_bytes},
-          {"local_store_bytes", machine.local_store_bytes},
-          {"line_bytes", machine.line_bytes},
-          {"queue_depth", machine.queue_depth},
-          {"lines_in_flight", machine.lines_in_flight},
-          {"issue_cycles", machine.issue_cycles},
-          {"wait_cycles", machine.wait_cycles},
-          {"latency_cycles", machine.latency_cycles},
-          {"channel_bytes_per_cycle", machine.channel_bytes_per_cycle},
-          {"core_line_interval_cycles", machine.core_line_interval_cycles},
-          {"claim_cycles", machine.claim_cycles},
-          {"work_cycles", work},
-          {"master", {{"clock_hz", machine.master.clock_hz}, {"step_cycles", steps}}}};
+  return json;
 }
 
 }  // namespace

@@ -1,4 +1,4 @@
-// What the stored forms of triangles and of the cells beside them take, and which an accuracy works on.
+// What the stored forms of triangles and of the cells beside them take.
 // Memory: none. Threads: any. SPDX-License-Identifier: Apache-2.0
 #pragma once
 
@@ -11,13 +11,6 @@ namespace gridiron {
 /// @returns bytes of a triangle record.
 [[nodiscard]] constexpr std::uint32_t triangle_bytes_of(TriangleFormat format) {
   return format == TriangleFormat::kLattice ? std::uint32_t{sizeof(LatticeTriangle)} : kTriangleRecordBytes;
-}
-
-/// @returns the stored form that an accuracy works on.
-[[nodiscard]] constexpr TriangleFormat format_of(Accuracy accuracy) {
-  if (accuracy == Accuracy::kPaper) return TriangleFormat::kProjection;
-  if (accuracy == Accuracy::kCompact) return TriangleFormat::kLattice;
-  return TriangleFormat::kVertices;
 }
 
 /// @returns bytes of a block of macro_width^3 cells: CellRecords up to a line's end, or beside lattice triangles

@@ -1,6 +1,6 @@
 // Engine: an acceleration structure with its traversals, as render/ and shade/ see it. A layout of the local store
-// names its engine as Layout::Engine; nothing else of core names one. Memory: its parts of the local store. Threads:
-// one core. SPDX-License-Identifier: Apache-2.0
+// names its engine as Layout::Engine; no other code of the kernel names one. Memory: its parts of the local store.
+// Threads: one core. SPDX-License-Identifier: Apache-2.0
 #pragma once
 
 #include <gridiron/base/records.h>
@@ -19,15 +19,18 @@ inline constexpr std::uint32_t kIdleBufferBytes = 784;
 /// What an engine brings. `store` is the LocalStore of a layout.
 ///
 /// E::kId               EngineId of its frames.
-/// E::Record            its part of a frame's record, behind the FrameHead; a core finds it as store.frame.engine.
-/// E::Store<Layout>     its part of the local store for the whole frame: buffers, tables; store.engine.
-///                      idle_buffer(slot) lends 32-byte aligned kIdleBufferBytes to whoever gathers records while no
-///                      ray is traced, for slots below frame.walk_depth; for_each_region(visit) names its members.
-/// E::EyeStore<Layout>  its part while eye rays are traced; store.packet. Shading overwrites it.
-/// E::RayStore<Layout>  its part while other rays are traced, in the same place; store.wave.engine.
+/// E::Record            its part of a frame's record, behind the FrameHead: a multiple of 16 bytes, at most 192. A core
+///                      finds it as store.frame.engine.
+/// E::Store<Layout>     its memory for the whole frame, store.engine; begin() initialises it. for_each_region(visit)
+///                      names its members. With effects it has idle_buffer(slot), for slots below frame.walk_depth:
+///                      separate 32-byte aligned buffers of kIdleBufferBytes, lent while no ray is traced. What was in
+///                      them is lost.
+/// E::EyeStore<Layout>  its memory while eye rays are traced, store.packet. With effects, shading overwrites it.
+/// E::RayStore<Layout>  its memory while other rays are traced, in the same place, store.wave.engine; may be void
+///                      where kMaxRayDepth is 0.
 /// E::kTracesEyes<Layout>  whether there is code for eye rays; if not, they are traced like all other rays.
-/// E::kMaxRayDepth<Layout> the most groups of other rays under way at once: frame.walk_depth is at most that; 0: it
-///                         traces eye rays alone.
+/// E::kMaxRayDepth<Layout> the greatest frame.walk_depth: groups of other rays under way at once, at most
+///                         kTriangleTagCount. 0: it traces eye rays alone, and has no Shading::kScene.
 /// E::Core<L, Store, P>    the engine on one core: see EngineCore.
 template <class E, class Layout>
 concept Engine = requires {
@@ -40,20 +43,28 @@ concept Engine = requires {
   { E::template kMaxRayDepth<Layout> } -> std::convertible_to<std::uint32_t>;
 };
 
-/// An engine on one core, made of its LocalStore and Transfers. It transfers under the tags from kFirstMacroTag up to
-/// but not kFirstOutputTag, and kSetupTag; when it returns kOk none of them is pending. All errors end the frame.
+/// An engine on one core, made of its LocalStore and Transfers before the frame's record arrives. It transfers under
+/// kSetupTag and the tags from kFirstMacroTag up to but not kFirstOutputTag. When it returns kOk none of its transfers
+/// is pending; an error ends the frame, and transfers may be pending then.
 ///
-/// begin()             once a frame, when the frame's record is there and its head is checked: checks the engine's part
-///                     and fetches what outlives tiles. It refuses each accuracy and shading that it does not decide as
-///                     Accuracy defines it. Errors: kBadFrame, kUnsupportedFrame, kUnsupportedImage, of transfers.
+/// begin()             once a frame, when the frame's head has been checked: checks the engine's part, initialises its
+///                     memory and fetches what outlives tiles. It refuses accuracies and shadings that it does not
+///                     support. Errors: kBadFrame, kUnsupportedFrame, kUnsupportedImage, of transfers.
 /// begin_tile()        before a tile: forgets whatever would make the tile depend on those before it. An engine whose
-///                     caches outlive tiles needs a fixed assignment of tiles to cores to render a frame twice alike.
-/// trace_eyes(view, hits)  traces the eye rays of a tile. Writes every pixel of the tile that lies in the picture, and
-///                     may write others. The planes are 128-byte aligned.
-/// trace(question, jobs)   answers other rays: jobs.next(rays, purpose) makes up to kWalkRays of them and returns how
-///                     many, 0: no more; the engine sets dir_max, and leaves origin, dir and owner as they are.
-///                     jobs.finish(rays, count, purpose) is given the answers: of these only id is read, kNoTriangle
-///                     where nothing is hit. Which come first is the engine's choice; what they are is not.
+///                     caches outlive tiles repeats its cycles only if tiles are assigned to cores in advance.
+/// trace_eyes(view, hits)  traces the eye rays of a tile: from frame.eye, in the direction of pixel (x + dx, y + dy) as
+///                     FrameHead defines it, with every operation rounded as written there (ray/camera.h has it). A hit
+///                     has 0 < t <= t_far. The nearest wins; of equal rounded distances the lowest id, or with kExact
+///                     the nearer in truth. Every pixel of the tile that lies in the picture is written; others may be.
+///                     Whether distances and facing are wanted follows from the frame: the planes agree with it, but
+///                     for samples after the first, which have no distances.
+/// trace(question, jobs)   answers other rays: jobs.next(rays, purpose) fills origin, dir, t, id (kNoTriangle) and
+///                     owner of the first n lanes and returns n, at most kWalkRays; 0: no more. The other lanes are
+///                     undefined, directions have any length, and a component may be 0. A hit has 0 < t <= rays.t. Each
+///                     group is given to jobs.finish(rays, n, purpose) once, in any order, with owner as it was and id
+///                     answered. Of question.any_hit any hit will do; else what is hit does not depend on the engine,
+///                     but with kFast, where single precision decides. next and finish count work of their own:
+///                     charge_to() comes after them. The engine sets dir_max, which ray/intersect_rays.h reads.
 template <class C>
 concept EngineCore = requires(C core, const TileView& view, const Hits& hits) {
   { core.begin() } -> std::same_as<Status>;

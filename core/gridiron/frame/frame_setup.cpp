@@ -122,7 +122,7 @@ Status make_frame_record(const FrameSettings& settings, const SceneImageView& im
   }
   if (!stays_in_range(settings, image.grid)) return Status::kBadFrame;
   if (settings.shading == Shading::kScene) {
-    if (!image.has_effects || settings.accuracy == Accuracy::kPaper) return Status::kUnsupportedImage;
+    if (!image.has_effects || !accuracy_traits(settings.accuracy).has_scene_shading) return Status::kUnsupportedImage;
     if (settings.walk_depth < 1 || image_address.value == 0) return Status::kBadFrame;
     made.effects_address = image_address.value + image.effects_offset_bytes;
     made.image_address = image_address.value;

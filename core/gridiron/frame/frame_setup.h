@@ -2,9 +2,9 @@
 // Memory: caller's. Threads: any. SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <gridiron/base/accuracies.h>
 #include <gridiron/base/math.h>
 #include <gridiron/base/records.h>
-#include <gridiron/base/triangle_formats.h>
 #include <gridiron/image/scene_image.h>
 #include <gridiron/platform/contract.h>
 

@@ -13,6 +13,7 @@ struct TileView {
 };
 
 /// Planes of a tile, row-major, tile_width pixels a row, 128-byte aligned. A plane that is null is not wanted.
+/// facing may share its memory with the plane of colours.
 struct Hits {
   std::uint32_t* id;  ///< triangle_id, kNoTriangle where nothing is hit; always wanted
   float* distance;    ///< along the direction taken with length 1, kFloatMax where nothing is hit

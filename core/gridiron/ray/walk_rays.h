@@ -15,7 +15,7 @@ struct WalkRays {
   alignas(64) float origin[3][kWalkRays];
   alignas(64) float dir[3][kWalkRays];
   alignas(64) float t[kWalkRays];           ///< how far to look; of closest hits: the nearest so far
-  alignas(64) float dir_max[kWalkRays];     ///< largest |component|; set when a ray is taken into a pass
+  alignas(64) float dir_max[kWalkRays];     ///< largest |component|; set by the engine
   alignas(64) std::uint32_t id[kWalkRays];  ///< triangle of the nearest hit so far, kNoTriangle before
   std::uint32_t owner[kWalkRays];           ///< whose ray it is: nothing to the walk
 };

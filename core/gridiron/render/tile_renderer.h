@@ -3,6 +3,7 @@
 // Threads: one core; cores share nothing but the frame in main memory. SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <gridiron/base/accuracies.h>
 #include <gridiron/base/records.h>
 #include <gridiron/dma/transfers.h>
 #include <gridiron/engine/engine.h>
@@ -31,7 +32,7 @@ class TileRenderer {
 
   /// Renders every tile this core can claim of the frame whose record lies at `frame`.
   ///
-  /// Errors: kBadFrame, kUnsupportedFrame, kUnsupportedImage, kNeeds... (an effect), kSpillTooSmall before the first
+  /// Errors: kBadFrame, kUnsupportedFrame, kUnsupportedImage, kMissingEffect, kSpillTooSmall before the first
   /// claim; kAborted, kDeadline between tiles; whatever the platform's transfers report. All transfers have been waited
   /// for when kOk is returned.
   [[nodiscard]] Status run(MainAddress frame) {
@@ -56,8 +57,8 @@ class TileRenderer {
 
  private:
   using Store = LocalStore<Layout>;
-  using Engine = typename Layout::Engine::template Core<L, Store, P>;
-  static_assert(EngineCore<Engine>);
+  using Core = typename Layout::Engine::template Core<L, Store, P>;
+  static_assert(EngineCore<Core>);
   using TileOutput = typename Store::TileOutput;
   static constexpr std::uint32_t kPlaneBytes = Store::kTilePixels * sizeof(std::uint32_t);
 
@@ -109,7 +110,7 @@ class TileRenderer {
   [[nodiscard]] Status render_effects(std::uint32_t left, std::uint32_t top, TileOutput& output) {
     const FrameHead& frame = store_.frame;
     effects_.begin_tile(left, top);
-    if (kTracesEyes<Layout> && is_at_edge(left, top)) {
+    if (is_at_edge(left, top)) {
       clear_plane(output.id, kNoTriangle);
       if (frame.depth_address != 0) clear_plane(output.depth, kFloatMax);
     }
@@ -175,22 +176,24 @@ class TileRenderer {
     if (frame.width == 0 || frame.height == 0 || frame.width > kMaxPictureWidth || frame.height > kMaxPictureWidth) {
       return Status::kBadFrame;
     }
-    if (frame.tile_width != Layout::kTileWidth || frame.engine_id != Layout::Engine::kId)
-      return Status::kUnsupportedFrame;
+    if (frame.tile_width != Layout::kTileWidth) return Status::kUnsupportedFrame;
+    if (frame.engine_id != Layout::Engine::kId) return Status::kUnsupportedFrame;
     if (frame.tiles_x != (frame.width + Layout::kTileWidth - 1) / Layout::kTileWidth ||
         frame.tiles_y != (frame.height + Layout::kTileWidth - 1) / Layout::kTileWidth) {
       return Status::kBadFrame;
     }
     if (frame.output_depth == 0 || frame.output_depth > Layout::kMaxOutputDepth) return Status::kUnsupportedFrame;
     if (!(frame.t_far > 0.0f) || frame.color_address == 0) return Status::kBadFrame;
-    if (frame.accuracy > static_cast<std::uint32_t>(Accuracy::kCompact) ||
-        frame.shading > static_cast<std::uint32_t>(Shading::kScene)) {
+    if (frame.accuracy >= kAccuracyCount || frame.shading > static_cast<std::uint32_t>(Shading::kScene)) {
       return Status::kUnsupportedFrame;
     }
-    if (is_scene_shaded() && !kHasEffects) return Status::kNeedsSceneShading;
+    if (is_scene_shaded() && !kHasEffects) return Status::kMissingEffect;
     // An engine without code for eye rays has no other shading, and no exact distance of them.
     if (!kTracesEyes<Layout> && (!is_scene_shaded() || frame.depth_address != 0)) return Status::kUnsupportedFrame;
-    return Status::kOk;
+    if (!is_scene_shaded()) return Status::kOk;
+    if (frame.effects_address == 0 || frame.image_address == 0) return Status::kBadFrame;
+    const bool depth_ok = frame.walk_depth >= 1 && frame.walk_depth <= Layout::Engine::template kMaxRayDepth<Layout>;
+    return depth_ok && accuracy_traits(frame.accuracy).has_scene_shading ? Status::kOk : Status::kUnsupportedFrame;
   }
 
   // Waits for the tiles still on their way, the oldest first: the order does not tell how many tiles this core had.
@@ -219,7 +222,7 @@ class TileRenderer {
 
   Store& store_;
   Transfers<P> transfers_;
-  Engine engine_;
+  Core engine_;
   [[no_unique_address]] Effects effects_;
   std::uint32_t output_slot_ = 0;
   bool waits_for_output_ = true;
@@ -233,6 +236,17 @@ template <class L, class Layout, Platform P>
                                   SpillRegion spill = {}) {
   TileRenderer<L, Layout, P> renderer(store, platform, spill);
   return renderer.run(frame);
+}
+
+/// @returns the EffectBits that a renderer lacks. Precondition: render_tiles has returned kMissingEffect for `store`.
+/// Built for no effect at all, it has not read the scene's and knows of kSceneShading alone.
+template <class Layout>
+[[nodiscard]] std::uint32_t missing_effects(const LocalStore<Layout>& store) {
+  if constexpr (Layout::kEffects != 0) {
+    return store.effects.scene.called_for & ~Layout::kEffects;
+  } else {
+    return kSceneShading;
+  }
 }
 
 }  // namespace gridiron

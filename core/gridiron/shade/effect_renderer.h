@@ -4,6 +4,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <gridiron/base/accuracies.h>
 #include <gridiron/base/effect_records.h>
 #include <gridiron/base/lanes.h>
 #include <gridiron/base/math.h>
@@ -27,19 +28,11 @@
 
 namespace gridiron {
 
-/// @returns kOk, or what of the effects called for is not among those built.
-[[nodiscard]] constexpr Status missing_effect(std::uint32_t called_for, std::uint32_t built) {
+/// @returns kOk, or kMissingEffect where not all effects called for are built; kBadFrame: there are no such effects.
+[[nodiscard]] constexpr Status check_effects_built(std::uint32_t called_for, std::uint32_t built) {
   const std::uint32_t missing = called_for & ~built;
   if (missing == 0) return Status::kOk;
-  constexpr Status kNames[kEffectCount] = {
-      Status::kNeedsPointShadows,     Status::kNeedsAreaLights,   Status::kNeedsReflection,    Status::kNeedsRefraction,
-      Status::kNeedsAmbientOcclusion, Status::kNeedsEnvironment,  Status::kNeedsSmoothNormals, Status::kNeedsHighlights,
-      Status::kNeedsMultisampling,    Status::kNeedsSceneShading,
-  };
-  for (std::uint32_t i = 0; i < kEffectCount; ++i) {
-    if ((missing >> i & 1u) != 0) return kNames[i];
-  }
-  return Status::kBadFrame;
+  return (missing & kAllEffects) != 0 ? Status::kMissingEffect : Status::kBadFrame;
 }
 
 /// Effects of one frame on one core. Layout::kEffects are those that there is code for; of these a scene gets what it
@@ -49,25 +42,19 @@ class EffectRenderer {
  public:
   using Layout = typename Store::Layout;
 
-  using EngineCore = typename Layout::Engine::template Core<L, Store, P>;
+  using Core = typename Layout::Engine::template Core<L, Store, P>;
 
-  EffectRenderer(Store& store, Transfers<P>& transfers, EngineCore& engine, SpillRegion spill)
+  EffectRenderer(Store& store, Transfers<P>& transfers, Core& engine, SpillRegion spill)
       : store_(store),
         transfers_(transfers),
         engine_(engine),
         spill_(spill),
         queue_(store.effects, transfers, spill.address) {}
 
-  /// Fetches what all tiles need. Errors: the missing effect by name, kSpillTooSmall, kUnsupportedFrame.
+  /// Fetches what all tiles need. Errors: kMissingEffect, kSpillTooSmall, of transfers.
   [[nodiscard]] Status begin_frame() {
-    const FrameHead& frame = store_.frame;
-    if (frame.effects_address == 0 || frame.image_address == 0) return Status::kBadFrame;
-    if (frame.accuracy == static_cast<std::uint32_t>(Accuracy::kPaper) || frame.walk_depth == 0 ||
-        frame.walk_depth > Layout::Engine::template kMaxRayDepth<Layout>) {
-      return Status::kUnsupportedFrame;
-    }
-    GRIDIRON_TRY(get_now(&scene(), MainAddress{frame.effects_address}, sizeof(EffectsRecord)));
-    GRIDIRON_TRY(missing_effect(scene().called_for, kBuilt));
+    GRIDIRON_TRY(get_now(&scene(), MainAddress{store_.frame.effects_address}, sizeof(EffectsRecord)));
+    GRIDIRON_TRY(check_effects_built(scene().called_for, kBuilt));
     if (scene().recursion_depth > 1 && calls_for(kReflection | kRefraction) &&
         (spill_.bytes < spill_bytes(scene().recursion_depth) || spill_.address.value % kSpillAlignment != 0)) {
       return Status::kSpillTooSmall;
@@ -166,6 +153,7 @@ class EffectRenderer {
 
  private:
   static_assert(Layout::Engine::template kMaxRayDepth<Layout> <= kTriangleTagCount, "each record gathered has a tag");
+  static_assert(kIdleBufferBytes >= sizeof(EnvironmentBlock) + kPortableGranuleBytes, "the longest record gathered");
   using Effects = typename Store::Effects;
   using Context = WaveContext<Store>;
   static constexpr std::uint32_t kBuilt = Layout::kEffects;
@@ -469,7 +457,7 @@ class EffectRenderer {
 
   Store& store_;
   Transfers<P>& transfers_;
-  EngineCore& engine_;
+  Core& engine_;
   SpillRegion spill_;
   RayQueue<Effects, P> queue_;
   std::uint32_t left_ = 0, top_ = 0;  ///< of the tile, in pixels

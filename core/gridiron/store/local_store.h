@@ -196,7 +196,7 @@ struct alignas(128) LocalStore {
   /// One finished or growing tile, row-major.
   struct alignas(128) TileOutput {
     std::uint32_t color[kTilePixels];  ///< RGBA8
-    float depth[kTilePixels];          ///< as FrameRecord's plane
+    float depth[kTilePixels];          ///< as FrameHead's plane
     std::uint32_t id[kTilePixels];     ///< triangle_id or kNoTriangle
   };
 

@@ -17,7 +17,7 @@ inline constexpr std::uint32_t kFrameJobVersion = 2;
 /// Cores of a board that take part in a frame, at most.
 inline constexpr std::uint32_t kMostBoardCores = 16;
 /// Kinds of work that a result has room for; kWorkKindCount of core is held against it where both are known.
-inline constexpr std::uint32_t kMostWorkKinds = 96;
+inline constexpr std::uint32_t kMostWorkKinds = 95;
 
 /// The job stands at the start of its file, which is loaded at base_address. Frame record and scene image follow in the
 /// file; memory for the result and for rays that wait comes behind it. What is not loaded need not be zero.
@@ -60,6 +60,7 @@ struct CoreResult {
   std::uint64_t instructions;     ///< of the frame, where the board counts them, else 0
   std::uint64_t transfer_bytes;   ///< 0: not counted
   std::uint32_t work[kMostWorkKinds];  ///< WorkCounters after the frame; 0 where there are fewer kinds
+  std::uint32_t missing_effects;       ///< EffectBits, where the status is kMissingEffect; else 0
 };
 static_assert(sizeof(CoreResult) == 416);
 inline constexpr std::uint32_t kNotRun = 0xFFFFFFFFu;

@@ -37,18 +37,9 @@ enum class [[nodiscard]] Status : std::uint8_t {
   kDeadline,            ///< the frame's deadline passed between two tiles
   kIncompleteFrame,     ///< the cores ended well, but part of the picture was not written (platforms that check)
 
-  // Effects (kernel): the frame's scene calls for one that this renderer was built without.
-  kNeedsSceneShading,      ///< lights, materials and the background
-  kNeedsPointShadows,      ///< kPointShadows
-  kNeedsAreaLights,        ///< kAreaLights
-  kNeedsReflection,        ///< kReflection
-  kNeedsRefraction,        ///< kRefraction
-  kNeedsAmbientOcclusion,  ///< kAmbientOcclusion
-  kNeedsEnvironment,       ///< kEnvironment
-  kNeedsSmoothNormals,     ///< kSmoothNormals
-  kNeedsHighlights,        ///< kHighlights
-  kNeedsMultisampling,     ///< kMultisampling
-  kSpillTooSmall,          ///< main memory given for rays that wait is less than the scene's depth asks for
+  // Effects (kernel).
+  kMissingEffect,       ///< the frame's scene calls for effects that this renderer was built without
+  kSpillTooSmall,       ///< main memory given for rays that wait is less than the scene's depth asks for
 
   // Readers and builders (prepare).
   kMemoryTooSmall,      ///< the caller's span is smaller than the counted need; nothing was written

@@ -30,11 +30,12 @@ template <class L, class Store, Platform P>
 class BvhCore {
   static constexpr std::uint32_t kWidth = Store::Layout::kPacketWidth;
   static_assert(EdgeBatch<L>::kTriangles == 1 && (kWidth == 8 || kWidth == 16));
+  static_assert(Store::Layout::kEffects == 0, "all its eye rays go through the centres of pixels");
 
  public:
   BvhCore(Store& store, Transfers<P>& transfers) : store_(store), transfers_(transfers) {}
 
-  /// Errors: kBadFrame for a record that this store cannot serve.
+  /// Errors: kBadFrame for a record that this store cannot serve, kUnsupportedFrame.
   [[nodiscard]] Status begin() {
     GRIDIRON_TRY(check_record());
     caches().node_cache.reset(settings().node_lines);

@@ -25,6 +25,12 @@ template <class... Layouts>
 consteval bool fit_arenas(LayoutList<Layouts...>) {
   return (kFitsArena<Layouts> && ...);
 }
+template <class... Layouts>
+consteval bool have_all_effects(LayoutList<Layouts...>) {
+  return ((Layouts::kEffects == kAllEffects) && ...);
+}
+static_assert(have_all_effects(EffectLayouts{}),
+              "no frame ends with kMissingEffect, so that a result need not tell which");
 static_assert(fit_arenas(CommonLayouts{}) && fit_arenas(SweepLayouts{}) && fit_arenas(EffectLayouts{}));
 
 template <class Core>

@@ -341,7 +341,7 @@ std::vector<Refusal> refusals() {
       {"NoColor", bad, [](FrameRecord& f) { f.color_address = 0; }},
       {"Accuracy", unsupported, [](FrameRecord& f) { f.accuracy = 5; }},
       {"Shading", unsupported, [](FrameRecord& f) { f.shading = 3; }},
-      {"SceneShading", Status::kNeedsSceneShading, [](FrameRecord& f) { f.shading = 2; }},
+      {"SceneShading", Status::kMissingEffect, [](FrameRecord& f) { f.shading = 2; }},
       {"AccuracyOfOtherTriangles", image,
        [](FrameRecord& f) { f.accuracy = static_cast<std::uint32_t>(Accuracy::kPaper); }},
       {"LatticeOfOtherTriangles", image,

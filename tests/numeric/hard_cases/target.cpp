@@ -1,5 +1,5 @@
 // Target: a mesh in all the forms that rays can be shot at. SPDX-License-Identifier: Apache-2.0
-#include <gridiron/base/triangle_formats.h>
+#include <gridiron/base/accuracies.h>
 #include <gridiron/build/grid/triangle_records.h>
 #include <gridiron/build/lattice.h>
 #include <gridiron/ray/camera.h>

@@ -3,12 +3,14 @@
 // Memory: std::vector. Threads: one caller. SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <gridiron/base/accuracies.h>
 #include <gridiron/base/records.h>
 #include <gridiron/build/grid/grid_builder.h>
 
 #include <cfenv>
 #include <cstdint>
 #include <functional>
+#include <iterator>
 #include <memory>
 #include <span>
 #include <vector>
@@ -33,10 +35,15 @@ struct Profile {
   Accuracy accuracy;
   bool is_exact;
 };
+consteval Profile profile_of(const char* name, Accuracy accuracy) {
+  return {name, accuracy, !accuracy_traits(accuracy).may_leak};
+}
 inline constexpr Profile kProfiles[] = {
-    {"standard", Accuracy::kStandard, true}, {"exact", Accuracy::kExact, true},  {"compact", Accuracy::kCompact, true},
-    {"fast", Accuracy::kFast, false},        {"paper", Accuracy::kPaper, false},
+    profile_of("standard", Accuracy::kStandard), profile_of("exact", Accuracy::kExact),
+    profile_of("compact", Accuracy::kCompact),   profile_of("fast", Accuracy::kFast),
+    profile_of("paper", Accuracy::kPaper),
 };
+static_assert(std::size(kProfiles) == kAccuracyCount);
 
 /// Rays from one point: any directions, or the pixels of a picture.
 struct Rays {

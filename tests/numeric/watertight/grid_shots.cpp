@@ -1,7 +1,7 @@
 // Shots through the grid: see the header. SPDX-License-Identifier: Apache-2.0
 #include "numeric/watertight/grid_shots.h"
 
-#include <gridiron/base/triangle_formats.h>
+#include <gridiron/base/accuracies.h>
 #include <gridiron/build/grid/grid_builder.h>
 #include <gridiron/frame/frame_setup.h>
 #include <gridiron/image/scene_image.h>

@@ -2,8 +2,10 @@
 // Memory: constants. Threads: any; a RoundingGuard is the calling thread's. SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <gridiron/base/accuracies.h>
 #include <gridiron/base/records.h>
 
+#include <iterator>
 #include <span>
 
 #include "numeric/watertight/shot.h"
@@ -17,11 +19,16 @@ struct Profile {
   bool is_watertight;  ///< else what it misses is only counted
   bool is_on_lattice;  ///< of meshes whose vertices have been moved to their lattice
 };
-inline constexpr Profile kProfiles[] = {{"standard", Accuracy::kStandard, true, false},
-                                        {"exact", Accuracy::kExact, true, false},
-                                        {"compact", Accuracy::kCompact, true, true},
-                                        {"fast", Accuracy::kFast, false, false},
-                                        {"paper", Accuracy::kPaper, false, false}};
+consteval Profile profile_of(const char* name, Accuracy accuracy) {
+  const AccuracyTraits traits = accuracy_traits(accuracy);
+  return {name, accuracy, !traits.may_leak, traits.format == TriangleFormat::kLattice};
+}
+inline constexpr Profile kProfiles[] = {
+    profile_of("standard", Accuracy::kStandard), profile_of("exact", Accuracy::kExact),
+    profile_of("compact", Accuracy::kCompact),   profile_of("fast", Accuracy::kFast),
+    profile_of("paper", Accuracy::kPaper),
+};
+static_assert(std::size(kProfiles) == kAccuracyCount);
 
 /// A build of the intersectors, and the rules of floating point that hold while it runs.
 struct Machine {

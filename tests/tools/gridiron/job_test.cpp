@@ -376,7 +376,7 @@ TEST(Result, DamageIsFoundWithItsPlace) {
   expect_refused("", 1, "a.res: is empty; expected the result of a job");
   expect_refused(file, 1, "a.res: is a job; expected the result of a job");
   const auto core = [](std::uint64_t i) { return offsetof(FrameResult, cores) + i * sizeof(port::CoreResult); };
-  expect_wrong(offsetof(FrameResult, version), [](FrameResult& frame) { frame.version = 2; });
+  expect_wrong(offsetof(FrameResult, version), [](FrameResult& frame) { ++frame.version; });
   expect_wrong(offsetof(FrameResult, core_count), [](FrameResult& frame) { frame.core_count = 17; });
   expect_wrong(offsetof(FrameResult, core_count), [](FrameResult& frame) { frame.core_count = 0; });
   expect_wrong(offsetof(FrameResult, work_kinds), [](FrameResult& frame) { --frame.work_kinds; });
@@ -388,6 +388,8 @@ TEST(Result, DamageIsFoundWithItsPlace) {
   expect_wrong(core(2), [](FrameResult& frame) { frame.cores[2].stack_bytes = 1; });
   expect_wrong(core(0) + offsetof(port::CoreResult, work) + 4 * kWorkKindCount,
                [](FrameResult& frame) { frame.cores[0].work[port::kMostWorkKinds - 1] = 1; });
+  expect_wrong(core(0) + offsetof(port::CoreResult, missing_effects),
+               [](FrameResult& frame) { frame.cores[0].missing_effects = kReflection; });
   expect_wrong(sizeof(FrameResult) + 2 * sizeof(port::TileResult), [](FrameResult& frame) {
     frame.core_count = 1;
     frame.cores[1] = {};
@@ -402,6 +404,13 @@ TEST(Result, DamageIsFoundWithItsPlace) {
   std::string result = whole;
   put_record(result, 0, failed);
   expect_refused(result, 3, "a.res: core 1: transfer that failed (kTransferFailed)");
+  failed.status = failed.cores[1].status = static_cast<std::uint32_t>(Status::kMissingEffect);
+  failed.cores[1].missing_effects = kReflection;
+  put_record(result, 0, failed);
+  expect_refused(result, 3,
+                 "a.res: core 1: the scene calls for reflection, which this renderer was built without "
+                 "(kMissingEffect)");
+  failed.cores[1].missing_effects = 0;
   failed.status = failed.cores[1].status = port::kNotRun;
   put_record(result, 0, failed);
   expect_refused(result, 3, "a.res: core 1: it never came back");

@@ -12,6 +12,7 @@
 #include <string>
 #include <thread>
 
+#include "gridiron/machine_keys.h"
 #include "run_program.h"
 #include "temporary_folder.h"
 
@@ -209,12 +210,17 @@ TEST(Machines, TheReadmeNamesEveryKey) {
     const std::string word = is_listed ? key.substr(dot + 1) : key;
     EXPECT_NE(readme.find("`" + word + "`"), std::string::npos) << key;
   }
+  for (const tool::MachineKeyHelp& row : tool::machine_key_help()) {
+    EXPECT_NE(readme.find("\n| `" + row.key + "` | " + row.range + " | "), std::string::npos) << row.key;
+  }
 }
 
 TEST(Machines, HelpShowsTheFormat) {
   const TemporaryFolder folder;
   const std::string help = run(folder, {"machines", "--help"}).out;
   EXPECT_NE(help.find("based_on       cell-ps3"), std::string::npos) << help;
+  EXPECT_NE(help.find("line_bytes: 1 to 16384; a transfer costs whole lines of this size\n"), std::string::npos)
+      << help;
   EXPECT_NE(run(folder, {"render", "--help"}).out.find("cell-ps3-2gb|fu540|FILE"), std::string::npos);
 }
 

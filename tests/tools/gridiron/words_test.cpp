@@ -18,16 +18,6 @@ TEST(Words, EveryStatusHasItsOwn) {
   }
 }
 
-TEST(Words, AMissingEffectIsNamed) {
-  EXPECT_STREQ(tool::words_of(Status::kNeedsReflection),
-               "the scene calls for reflection, which this renderer was built without");
-  for (int value = static_cast<int>(Status::kNeedsSceneShading); value <= static_cast<int>(Status::kNeedsMultisampling);
-       ++value) {
-    const std::string phrase = tool::words_of(static_cast<Status>(value));
-    EXPECT_EQ(phrase.find("the scene calls for "), 0u) << phrase;
-  }
-}
-
 TEST(Words, EveryPlyErrorHasItsOwn) {
   std::set<std::string> phrases;
   for (int value = 1; value <= static_cast<int>(PlyError::kTriangleSpanTooSmall); ++value) {

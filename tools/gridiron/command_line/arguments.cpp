@@ -7,18 +7,21 @@
 #include <map>
 #include <memory>
 #include <span>
+#include <string>
+#include <string_view>
 
 #include "base/failure.h"
 #include "base/words.h"
 #include "command_words.h"
 #include "files/input_file.h"
 #include "gridiron/device/accuracies.h"
+#include "gridiron/device/machine_keys.h"
 #include "options.h"
 
 namespace gridiron::tool {
 namespace {
 
-constexpr const char* kMachineFormat = R"(A machine file holds one 'key value' per line; # opens a comment.
+constexpr std::string_view kMachineFormat = R"(A machine file holds one 'key value' per line; # opens a comment.
 Units are in the keys: _hz, _bytes, _cycles (of the core clock; under master. of the general core's own).
 'based_on NAME' as the first key takes what the file leaves out from a built-in machine:
 
@@ -27,7 +30,16 @@ Units are in the keys: _hz, _bytes, _cycles (of the core clock; under master. of
   core_count     4
   latency_cycles 250
 
-Ranges and meanings: tools/README.md, "Machines".)";
+)";
+
+// The format of machine files, and a line for each key.
+std::string machine_format_help() {
+  std::string help(kMachineFormat);
+  for (const MachineKeyHelp& row : machine_key_help()) {
+    help.append(row.key).append(": ").append(row.range).append("; ").append(row.meaning).append("\n");
+  }
+  return help + "The kinds and steps, and more of each key: tools/README.md, \"Machines\".";
+}
 
 const Choices<TriangleFormat> kFormats = {{"vertices", TriangleFormat::kVertices},
                                           {"projection", TriangleFormat::kProjection},
@@ -122,7 +134,7 @@ Finish add_machines(CLI::App& app) {
   const auto asked = std::make_shared<Asked<MachinesRequest>>();
   app.add_option("MACHINE", asked->machine, "built-in name or machine file: printed in full, to be copied and edited")
       ->type_name("");
-  app.footer(kMachineFormat);
+  app.footer(machine_format_help());
   app.add_flag("--json", asked->request.json, "as JSON");
   add_quiet(app, asked->request.quiet);
   return [asked, &app] {

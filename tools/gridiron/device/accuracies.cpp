@@ -2,6 +2,7 @@
 #include "accuracies.h"
 
 #include <algorithm>
+#include <iterator>
 
 namespace gridiron::tool {
 namespace {
@@ -20,6 +21,14 @@ constexpr NamedAccuracy kAccuracies[] = {
      "as standard, of triangles whose vertices are moved to a 16-bit lattice"},
 };
 // clang-format on
+
+consteval bool have_each_one_name() {
+  for (std::uint32_t number = 0; number < kAccuracyCount; ++number) {
+    if (std::ranges::count(kAccuracies, Accuracy{number}, &NamedAccuracy::accuracy) != 1) return false;
+  }
+  return std::size(kAccuracies) == kAccuracyCount;
+}
+static_assert(have_each_one_name());
 
 }  // namespace
 

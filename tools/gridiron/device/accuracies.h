@@ -2,7 +2,7 @@
 // Memory: one table. Threads: any. SPDX-License-Identifier: Apache-2.0
 #pragma once
 
-#include <gridiron/base/records.h>
+#include <gridiron/base/accuracies.h>
 
 #include <span>
 #include <string_view>

@@ -5,6 +5,7 @@
 #include <string>
 
 #include "base/failure.h"
+#include "accuracies.h"
 #include "machine_file.h"
 #include "store_facts.h"
 
@@ -81,8 +82,9 @@ void require_distances(const sim::LayoutChoice& layout, bool has_depth) {
 }
 
 void require_effects_of(std::optional<Accuracy> accuracy) {
-  if (accuracy != Accuracy::kPaper) return;
-  usage_error("--accuracy paper: has no --shading scene; shadows and reflections need distances that hold");
+  if (!accuracy || accuracy_traits(*accuracy).has_scene_shading) return;
+  usage_error("--accuracy " + std::string(accuracy_name(*accuracy)) +
+              ": has no --shading scene; shadows and reflections need distances that hold");
 }
 
 }  // namespace gridiron::tool

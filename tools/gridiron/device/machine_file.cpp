@@ -1,8 +1,6 @@
 // Machine files: the text form of a machine profile. SPDX-License-Identifier: Apache-2.0
 #include "machine_file.h"
 
-#include <report/report.h>
-
 #include <algorithm>
 #include <charconv>
 #include <cmath>
@@ -16,11 +14,11 @@
 #include "base/suggestion.h"
 #include "base/words.h"
 #include "files/input_file.h"
+#include "gridiron/device/machine_keys.h"
 
 namespace gridiron::tool {
 namespace {
 
-using sim::BuildStep;
 using sim::MachineProfile;
 
 constexpr std::size_t kMaxFileBytes = 1 << 20;
@@ -28,7 +26,6 @@ constexpr std::size_t kMaxLineBytes = 1000;
 constexpr std::size_t kMaxNameBytes = 64;
 constexpr const char* kExpected = "expected a machine file: text as 'gridiron machines cell-ps3' prints it";
 constexpr std::string_view kEditedSuffix = "-edited";
-constexpr double kMaxCycles = 1 << 20;  // of one step; more is nothing that the replay tells apart
 
 // A profile and the text it points to.
 struct OwnedMachine {
@@ -36,79 +33,11 @@ struct OwnedMachine {
   MachineProfile profile{};
 };
 
-// What stands behind a number's key. Exactly one of the pointers is set.
-struct Number {
-  std::uint32_t* count = nullptr;
-  std::uint64_t* bytes = nullptr;
-  double* real = nullptr;
-};
-
-struct Field {
-  std::string key;
-  Number number;
-  double least, most;
-};
-
-// Work that the replay charges as an event, by issue_cycles and wait_cycles; always 0 in a profile.
-bool is_charged_as_event(Work kind) {
-  return kind == Work::kGetIssue || kind == Work::kPutIssue || kind == Work::kWait;
-}
-
-// Every number of a profile, in the order in which it is printed.
-std::vector<Field> fields_of(MachineProfile& machine) {
-  // Names every member: a new one does not compile until it has its field.
-  auto& [name, description, core_count, clock_hz, main_memory_bytes, local_store_bytes, line_bytes, queue_depth,
-         lines_in_flight, issue_cycles, wait_cycles, latency_cycles, channel_bytes_per_cycle, core_line_interval_cycles,
-         claim_cycles, work_cycles, master] = machine;
-  auto& [master_clock_hz, step_cycles] = master;
-  (void)name, (void)description;
-  constexpr double kMostBytes = 0x1p40, kLeastMemory = 0x1p20, kLeastStore = 0x1p16, kMostStore = 0x1p30;
-  std::vector<Field> fields = {
-      {"core_count", {.count = &core_count}, 1, 1024},
-      {"clock_hz", {.real = &clock_hz}, 1, 1e12},
-      {"main_memory_bytes", {.bytes = &main_memory_bytes}, kLeastMemory, kMostBytes},
-      {"local_store_bytes", {.count = &local_store_bytes}, kLeastStore, kMostStore},
-      {"line_bytes", {.count = &line_bytes}, 1, 16384},
-      {"queue_depth", {.count = &queue_depth}, 1, 4096},
-      {"lines_in_flight", {.count = &lines_in_flight}, 1, 4096},
-      {"issue_cycles", {.real = &issue_cycles}, 0, kMaxCycles},
-      {"wait_cycles", {.real = &wait_cycles}, 0, kMaxCycles},
-      {"latency_cycles", {.real = &latency_cycles}, 0, kMaxCycles},
-      {"channel_bytes_per_cycle", {.real = &channel_bytes_per_cycle}, 0.0625, 65536},
-      {"core_line_interval_cycles", {.real = &core_line_interval_cycles}, 0, kMaxCycles},
-      {"claim_cycles", {.real = &claim_cycles}, 0, kMaxCycles},
-  };
-  for (std::uint32_t i = 0; i < kWorkKindCount; ++i) {
-    const auto kind = static_cast<Work>(i);
-    if (is_charged_as_event(kind)) continue;
-    fields.push_back({"work_cycles." + std::string(work_name(kind)), {.real = &work_cycles[i]}, 0, kMaxCycles});
-  }
-  fields.push_back({"master.clock_hz", {.real = &master_clock_hz}, 1, 1e12});
-  for (std::size_t i = 0; i < sim::kBuildStepCount; ++i) {
-    const std::string step(build_step_name(static_cast<BuildStep>(i)));
-    fields.push_back({"master.step_cycles." + step, {.real = &step_cycles[i]}, 0, kMaxCycles});
-  }
-  return fields;
-}
-
-// The shortest text that reads back as the same double.
-std::string text_of(double value) {
-  char text[64];
-  const auto [end, error] = std::to_chars(text, text + sizeof text, value);
-  std::string result(text, error == std::errc{} ? end : text);
-  // 3.2e+09 is 3.2e9 to people.
-  const std::size_t exponent = result.find("e+");
-  if (exponent != std::string::npos) {
-    const std::size_t digit = result.find_first_not_of('0', exponent + 2);
-    result.erase(exponent + 1, digit - exponent - 1);
-  }
-  return result;
-}
-
-std::string text_of(const Number& number) {
-  if (number.count != nullptr) return std::to_string(*number.count);
-  if (number.bytes != nullptr) return std::to_string(*number.bytes);
-  return text_of(*number.real);
+// The keys of a profile that a machine file has.
+std::vector<MachineKey> file_keys(MachineProfile& machine) {
+  std::vector<MachineKey> keys = machine_keys(machine);
+  std::erase_if(keys, [](const MachineKey& key) { return !key.is_in_files; });
+  return keys;
 }
 
 // What there is instead of a machine that is not built in: the nearest name and all names.
@@ -178,8 +107,8 @@ bool has_same_values(MachineProfile a, const MachineProfile& b) {
 class Reader {
  public:
   explicit Reader(const std::filesystem::path& path)
-      : path_(path), machine_(std::make_shared<OwnedMachine>()), fields_(fields_of(machine_->profile)) {
-    is_given_.resize(fields_.size());
+      : path_(path), machine_(std::make_shared<OwnedMachine>()), keys_(file_keys(machine_->profile)) {
+    is_given_.resize(keys_.size());
   }
 
   Machine read(std::string_view text) {
@@ -226,17 +155,17 @@ class Reader {
       target = value;
       return;
     }
-    const auto field = std::ranges::find(fields_, key, &Field::key);
-    if (field == fields_.end()) {
+    const auto known = std::ranges::find(keys_, key, &MachineKey::name);
+    if (known == keys_.end()) {
       std::vector<std::string> keys = {"based_on", "name", "description"};
-      for (const Field& known : fields_) keys.push_back(known.key);
+      for (const MachineKey& each : keys_) keys.push_back(each.name);
       fail("unknown key " + quoted + did_you_mean(key, keys) + "; 'gridiron machines cell-ps3' shows all of them");
     }
-    const auto index = static_cast<std::size_t>(field - fields_.begin());
+    const auto index = static_cast<std::size_t>(known - keys_.begin());
     if (is_given_[index]) fail("second " + quoted);
     if (value.empty()) fail(quoted + " has no value");
     if (value.find_first_of(kBlanks) != std::string_view::npos) fail(quoted + " takes one number");
-    read_number(*field, quoted, value);
+    read_number(*known, quoted, value);
     is_given_[index] = true;
   }
 
@@ -251,8 +180,8 @@ class Reader {
     has_base_ = true;
   }
 
-  void read_number(const Field& field, const std::string& quoted_key, std::string_view text) const {
-    const bool is_whole = field.number.real == nullptr;
+  void read_number(const MachineKey& key, const std::string& quoted_key, std::string_view text) const {
+    const bool is_whole = !std::holds_alternative<double*>(key.number);
     double value = 0;
     std::uint64_t count = 0;
     const char* const end = text.data() + text.size();
@@ -262,23 +191,23 @@ class Reader {
       fail(in_quotes(text) + " is not a " + (is_whole ? "whole number" : "number"));
     }
     if (is_whole) value = static_cast<double>(count);
-    if (too_large || value < field.least || value > field.most) {
+    if (too_large || value < key.least || value > key.most) {
       const auto limit_text = [is_whole](double limit) {
         return is_whole ? std::to_string(static_cast<std::uint64_t>(limit)) : text_of(limit);
       };
-      fail(quoted_key + " must be from " + limit_text(field.least) + " to " + limit_text(field.most) + ", not " +
+      fail(quoted_key + " must be from " + limit_text(key.least) + " to " + limit_text(key.most) + ", not " +
            in_quotes(text));
     }
-    if (field.number.count != nullptr) *field.number.count = static_cast<std::uint32_t>(count);
-    if (field.number.bytes != nullptr) *field.number.bytes = count;
-    if (field.number.real != nullptr) *field.number.real = value;
+    const auto store = [&]<class Number>(Number* number) {
+      *number = is_whole ? static_cast<Number>(count) : static_cast<Number>(value);
+    };
+    std::visit(store, key.number);
   }
 
   void finish() {
     if (!has_base_) {
-      for (std::size_t i = 0; i < fields_.size(); ++i) {
-        if (!is_given_[i])
-          fail("the file ends without '" + fields_[i].key + "', and has no 'based_on' to take it from");
+      for (std::size_t i = 0; i < keys_.size(); ++i) {
+        if (!is_given_[i]) fail("the file ends without '" + keys_[i].name + "', and has no 'based_on' to take it from");
       }
     }
     // A base lends its figures, not its name; and a report must not show other figures under a built-in machine's name.
@@ -310,7 +239,7 @@ class Reader {
 
   const std::filesystem::path& path_;
   std::shared_ptr<OwnedMachine> machine_;
-  std::vector<Field> fields_;
+  std::vector<MachineKey> keys_;
   std::vector<bool> is_given_;
   std::size_t line_number_ = 0;
   bool is_first_key_ = true;
@@ -347,16 +276,20 @@ sim::StoreSize largest_store(const MachineProfile& machine) {
 
 std::string machine_text(const MachineProfile& machine) {
   MachineProfile copy = machine;
-  const std::vector<Field> fields = fields_of(copy);
+  const std::vector<MachineKey> keys = file_keys(copy);
   std::size_t width = std::string_view("description").size();
-  for (const Field& field : fields) width = std::max(width, field.key.size());
+  for (const MachineKey& key : keys) width = std::max(width, key.name.size());
   std::string text;
   const auto add = [&text, width](const std::string& key, const std::string& value) {
     text += key + std::string(width + 1 - key.size(), ' ') + value + "\n";
   };
   add("name", std::string(machine.name));
   add("description", std::string(machine.description));
-  for (const Field& field : fields) add(field.key, text_of(field.number));
+  for (const MachineKey& key : keys) {
+    double* const* const real = std::get_if<double*>(&key.number);
+    add(key.name,
+        real != nullptr ? text_of(**real) : std::visit([](const auto* n) { return std::to_string(*n); }, key.number));
+  }
   return text;
 }
 

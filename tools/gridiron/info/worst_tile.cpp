@@ -1,20 +1,18 @@
 // Worst tile. SPDX-License-Identifier: Apache-2.0
 #include "worst_tile.h"
 
+#include <gridiron/base/accuracies.h>
 #include <gridiron/sim/compiled_layouts.h>
 
 namespace gridiron::tool {
 namespace {
 
+// The first that an image is for: `standard` where there are several.
 Accuracy accuracy_of(const GridRecord& grid) {
-  switch (static_cast<TriangleFormat>(grid.triangle_format)) {
-    case TriangleFormat::kProjection:
-      return Accuracy::kPaper;
-    case TriangleFormat::kLattice:
-      return Accuracy::kCompact;
-    default:
-      return Accuracy::kStandard;
+  for (std::uint32_t number = 0; number < kAccuracyCount; ++number) {
+    if (grid.triangle_format == static_cast<std::uint32_t>(accuracy_traits(number).format)) return Accuracy{number};
   }
+  return Accuracy::kStandard;
 }
 
 }  // namespace

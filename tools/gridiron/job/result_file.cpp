@@ -13,6 +13,7 @@
 #include "base/failure.h"
 #include "base/words.h"
 #include "files/byte_reader.h"
+#include "gridiron/scene/effect_names.h"
 
 namespace gridiron::tool {
 namespace {
@@ -32,11 +33,14 @@ bool is_zero(std::span<const std::uint32_t> words) {
   return std::ranges::all_of(words, [](std::uint32_t word) { return word == 0; });
 }
 
-std::string words_of_status(std::uint32_t status) {
+std::string words_of_status(const CoreResult& core) {
+  const std::uint32_t status = core.status;
   if (status == port::kNotRun) return "it never came back";
   const char* name = status_name(status);
   if (name == nullptr) return "status " + std::to_string(status);
-  return std::string(words_of(static_cast<Status>(status))) + " (" + name + ")";
+  const std::string words = core.missing_effects != 0 ? words_of_missing_effects(core.missing_effects)
+                                                      : words_of(static_cast<Status>(status));
+  return words + " (" + name + ")";
 }
 
 void check_head(const ByteReader& reader, const FrameResult& frame) {
@@ -61,7 +65,7 @@ void check_statuses(const std::filesystem::path& path, const ByteReader& reader,
     const std::uint32_t status = frame.cores[core].status;
     if (status == 0) continue;
     if (first == 0) first = status;
-    message += path.string() + ": core " + std::to_string(core) + ": " + words_of_status(status) + "\n";
+    message += path.string() + ": core " + std::to_string(core) + ": " + words_of_status(frame.cores[core]) + "\n";
   }
   reader.require(frame.status == first, offsetof(FrameResult, status),
                  "the frame's status is " + std::to_string(frame.status) + ", the first of its cores that failed " +
@@ -92,6 +96,8 @@ void check_cores(const ByteReader& reader, const OpenResult& result) {
     reader.require(core.tiles == tiles[i], place_of_core(i) + offsetof(CoreResult, tiles),
                    "core " + std::to_string(i) + " claimed " + words_of_count(core.tiles, "tile") +
                        ", by the tiles' own words " + std::to_string(tiles[i]));
+    reader.require(core.missing_effects == 0, place_of_core(i) + offsetof(CoreResult, missing_effects),
+                   "core " + std::to_string(i) + " was built without effects of the scene, and rendered it");
     reader.require(is_zero(std::span(core.work).subspan(kWorkKindCount)),
                    place_of_core(i) + offsetof(CoreResult, work) + kWorkKindCount * sizeof(std::uint32_t),
                    "core " + std::to_string(i) + " counts kinds of work that there are not");

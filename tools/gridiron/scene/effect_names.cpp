@@ -1,19 +1,21 @@
 // Effect names. SPDX-License-Identifier: Apache-2.0
 #include "effect_names.h"
 
-#include <iterator>
+#include <array>
+#include <cstddef>
 
 namespace gridiron::tool {
 namespace {
 
-constexpr EffectName kEffects[] = {
-    {kSceneShading, "scene_shading", "kSceneShading"}, {kPointShadows, "point_shadows", "kPointShadows"},
-    {kAreaLights, "area_lights", "kAreaLights"},       {kReflection, "reflection", "kReflection"},
-    {kRefraction, "refraction", "kRefraction"},        {kAmbientOcclusion, "ambient_occlusion", "kAmbientOcclusion"},
-    {kEnvironment, "environment", "kEnvironment"},     {kSmoothNormals, "smooth_normals", "kSmoothNormals"},
-    {kHighlights, "highlights", "kHighlights"},        {kMultisampling, "multisampling", "kMultisampling"},
-};
-static_assert(std::size(kEffects) == kEffectCount);
+// No effect goes without scene shading, which stands first therefore.
+constexpr auto kEffects = [] {
+  std::array<EffectName, kEffectCount> effects{effect_name(kSceneShading)};
+  std::size_t count = 1;
+  for (std::uint32_t bit = 1; bit < kAllEffects; bit <<= 1) {
+    if (bit != kSceneShading) effects[count++] = effect_name(static_cast<EffectBits>(bit));
+  }
+  return effects;
+}();
 
 }  // namespace
 
@@ -38,11 +40,19 @@ std::string words_of_effects(std::uint32_t bits) {
   return words.empty() ? "none" : words;
 }
 
+std::string words_of_missing_effects(std::uint32_t bits) {
+  std::string words;
+  for (const EffectName& effect : kEffects) {
+    if ((bits & effect.bit) != 0) words.append(words.empty() ? "" : ", ").append(effect.words);
+  }
+  return "the scene calls for " + words + ", which this renderer was built without";
+}
+
 std::string renderer_type(std::uint32_t called_for, std::uint32_t store_kilobytes, std::uint32_t packet_width) {
   if ((called_for & kAllEffects) == 0) {
     return "StoreLayout" + std::to_string(store_kilobytes) + "K<" + std::to_string(packet_width) + ">";
   }
-  std::string constants(kEffects[0].constant);  // no effect goes without it
+  std::string constants(kEffects[0].constant);
   for (const EffectName& effect : kEffects) {
     if (effect.bit != kSceneShading && (called_for & effect.bit) != 0) constants.append(" | ").append(effect.constant);
   }

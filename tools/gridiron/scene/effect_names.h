@@ -1,8 +1,8 @@
-// Effect names: what EffectBits are to people, in JSON and in C++.
+// Effect names: sets of EffectBits in words. The names themselves: gridiron/base/effect_names.h.
 // Memory: static text. Threads: any. SPDX-License-Identifier: Apache-2.0
 #pragma once
 
-#include <gridiron/base/effect_records.h>
+#include <gridiron/base/effect_names.h>
 
 #include <cstdint>
 #include <span>
@@ -12,12 +12,6 @@
 
 namespace gridiron::tool {
 
-struct EffectName {
-  EffectBits bit;
-  std::string_view name;      ///< one word: "point_shadows"
-  std::string_view constant;  ///< as C++ has it: "kPointShadows"
-};
-
 /// All effects, scene shading first, then in the order of their bits.
 [[nodiscard]] std::span<const EffectName> effects();
 
@@ -26,6 +20,9 @@ struct EffectName {
 
 /// @returns "scene_shading, reflection", "none" for no effect.
 [[nodiscard]] std::string words_of_effects(std::uint32_t bits);
+
+/// @returns what Status::kMissingEffect is to people where it is known which: a phrase as words_of(Status) has.
+[[nodiscard]] std::string words_of_missing_effects(std::uint32_t bits);
 
 /// @returns the layout of a local store that renders a scene, as firmware writes it:
 /// `EffectLayout256K<kSceneShading | kReflection, 8>`, or `StoreLayout128K<8>` where no effect is called for.

@@ -3,6 +3,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <gridiron/base/accuracies.h>
 #include <gridiron/base/records.h>
 #include <gridiron/base/work_counters.h>
 #include <gridiron/dma/transfers.h>
@@ -104,14 +105,7 @@ class GridCore {
       return Status::kUnsupportedFrame;
     }
     const GridRecord& grid = frame.engine.grid;
-    std::uint32_t format = static_cast<std::uint32_t>(TriangleFormat::kVertices);
-    if (frame.accuracy == static_cast<std::uint32_t>(Accuracy::kPaper)) {
-      format = static_cast<std::uint32_t>(TriangleFormat::kProjection);
-    }
-    if (frame.accuracy == static_cast<std::uint32_t>(Accuracy::kCompact)) {
-      format = static_cast<std::uint32_t>(TriangleFormat::kLattice);
-    }
-    if (grid.triangle_format != format) return Status::kUnsupportedImage;
+    if (!reads_format(frame.accuracy, grid.triangle_format)) return Status::kUnsupportedImage;
     if (grid.macro_width == 0 || grid.macro_width > Layout::kMaxMacroWidth ||
         grid.cell_block_bytes > Store::EngineStore::kCellBlockBytes) {
       return Status::kUnsupportedImage;

@@ -7,6 +7,7 @@
 #include <gridiron/base/records.h>
 #include <gridiron/dma/tags.h>
 #include <gridiron/dma/transfers.h>
+#include <gridiron/engine/engine.h>
 #include <gridiron/engine/grid/macro_table.h>
 #include <gridiron/engine/grid/mailbox.h>
 #include <gridiron/engine/grid/walk.h>
@@ -49,6 +50,7 @@ struct alignas(128) GridStore {
       (kMacroCells * static_cast<std::uint32_t>(sizeof(CellRecord)) + kLineBytes - 1) / kLineBytes * kLineBytes;
   static constexpr std::uint32_t kTriangleBufferBytes =
       (Layout::kTrianglesPerBuffer * kTriangleRecordBytes + 32 + kLineBytes - 1) / kLineBytes * kLineBytes;
+  static_assert(Layout::kEffects == 0 || kTriangleBufferBytes >= kIdleBufferBytes);
   static_assert(Layout::kMaxMacroDepth <= kMacroTagCount);
   static_assert(Layout::kMaxTriangleDepth <= kTriangleTagCount);
 

@@ -1,0 +1,139 @@
+// Machine keys: see the header. SPDX-License-Identifier: Apache-2.0
+#include "machine_keys.h"
+
+#include <report/report.h>
+
+#include <charconv>
+#include <cmath>
+#include <cstddef>
+#include <cstdint>
+#include <iterator>
+#include <system_error>
+
+namespace gridiron::tool {
+namespace {
+
+using sim::BuildStep;
+using sim::MachineProfile;
+using sim::MasterProfile;
+
+struct Limits {
+  double least, most;
+};
+constexpr Limits kCycles = {0, 1 << 20};  // of one step; more is nothing that the replay tells apart
+constexpr Limits kHertz = {1, 1e12};
+
+using Member = std::variant<std::uint32_t MachineProfile::*, std::uint64_t MachineProfile::*, double MachineProfile::*>;
+
+struct Row {
+  std::string_view key;
+  Member member;
+  Limits limits;
+  std::string_view meaning;
+};
+constexpr Row kRows[] = {
+    {"core_count", &MachineProfile::core_count, {1, 1024}, "cores that render; --cores replaces it"},
+    {"clock_hz", &MachineProfile::clock_hz, kHertz, "their clock"},
+    {"main_memory_bytes", &MachineProfile::main_memory_bytes, {0x1p20, 0x1p40}, "shared by all cores"},
+    {"local_store_bytes", &MachineProfile::local_store_bytes, {0x1p16, 0x1p30}, "of each core"},
+    {"line_bytes", &MachineProfile::line_bytes, {1, 16384}, "a transfer costs whole lines of this size"},
+    {"queue_depth", &MachineProfile::queue_depth, {1, 4096}, "commands a core may have pending"},
+    {"lines_in_flight", &MachineProfile::lines_in_flight, {1, 4096}, "lines a core may have under way"},
+    {"issue_cycles", &MachineProfile::issue_cycles, kCycles, "of the core, per command"},
+    {"wait_cycles", &MachineProfile::wait_cycles, kCycles, "of the core, per wait, even when nothing is pending"},
+    {"latency_cycles", &MachineProfile::latency_cycles, kCycles, "from a line's turn on the channel to its arrival"},
+    {"channel_bytes_per_cycle", &MachineProfile::channel_bytes_per_cycle, {0.0625, 65536}, "shared by all cores"},
+    {"core_line_interval_cycles", &MachineProfile::core_line_interval_cycles, kCycles,
+     "least distance between two lines of one core"},
+    {"claim_cycles", &MachineProfile::claim_cycles, kCycles, "from asking for a tile to having it"},
+};
+constexpr const char* kWorkKey = "work_cycles.";
+constexpr const char* kMasterClockKey = "master.clock_hz";
+constexpr const char* kStepKey = "master.step_cycles.";
+
+// Members of an aggregate: with how many values it can be initialised.
+struct AnyValue {
+  template <class T>
+  operator T() const;
+};
+template <class T, class... Values>
+consteval std::size_t member_count() {
+  if constexpr (requires { T{Values{}..., AnyValue{}}; }) {
+    return member_count<T, Values..., AnyValue>();
+  } else {
+    return sizeof...(Values);
+  }
+}
+consteval bool have_members_of_their_own() {
+  for (const Row& row : kRows) {
+    int count = 0;
+    for (const Row& other : kRows) count += other.member == row.member ? 1 : 0;
+    if (count != 1) return false;
+  }
+  return true;
+}
+static_assert(have_members_of_their_own() && member_count<MachineProfile>() == std::size(kRows) + 4,
+              "each member but name, description, work_cycles and master has a row");
+static_assert(member_count<MasterProfile>() == 2, "clock_hz and step_cycles have keys");
+
+// Work that the replay charges as an event, by issue_cycles and wait_cycles; always 0 in a profile.
+bool is_charged_as_event(Work kind) {
+  return kind == Work::kGetIssue || kind == Work::kPutIssue || kind == Work::kWait;
+}
+
+// "2^40" where digits would have to be counted.
+std::string limit_text(double limit) {
+  const int exponent = std::ilogb(limit);
+  return exponent >= 30 && std::exp2(exponent) == limit ? "2^" + std::to_string(exponent) : text_of(limit);
+}
+
+MachineKeyHelp help_of(std::string key, const Limits& limits, std::string_view meaning) {
+  return {std::move(key), limit_text(limits.least) + " to " + limit_text(limits.most), meaning};
+}
+
+}  // namespace
+
+std::vector<MachineKey> machine_keys(MachineProfile& machine) {
+  std::vector<MachineKey> keys;
+  for (const Row& row : kRows) {
+    const auto add = [&](auto member) {
+      keys.push_back({std::string(row.key), &(machine.*member), row.limits.least, row.limits.most});
+    };
+    std::visit(add, row.member);
+  }
+  for (std::uint32_t i = 0; i < kWorkKindCount; ++i) {
+    const auto kind = static_cast<Work>(i);
+    keys.push_back({kWorkKey + std::string(work_name(kind)), &machine.work_cycles[i], kCycles.least, kCycles.most,
+                    !is_charged_as_event(kind)});
+  }
+  keys.push_back({kMasterClockKey, &machine.master.clock_hz, kHertz.least, kHertz.most});
+  for (std::size_t i = 0; i < sim::kBuildStepCount; ++i) {
+    keys.push_back({kStepKey + std::string(build_step_name(static_cast<BuildStep>(i))), &machine.master.step_cycles[i],
+                    kCycles.least, kCycles.most});
+  }
+  return keys;
+}
+
+std::string text_of(double value) {
+  char text[64];
+  const auto [end, error] = std::to_chars(text, text + sizeof text, value);
+  std::string result(text, error == std::errc{} ? end : text);
+  // 3.2e+09 is 3.2e9 to people.
+  const std::size_t exponent = result.find("e+");
+  if (exponent != std::string::npos) {
+    const std::size_t digit = result.find_first_not_of('0', exponent + 2);
+    result.erase(exponent + 1, digit - exponent - 1);
+  }
+  return result;
+}
+
+std::vector<MachineKeyHelp> machine_key_help() {
+  std::vector<MachineKeyHelp> help;
+  for (const Row& row : kRows) help.push_back(help_of(std::string(row.key), row.limits, row.meaning));
+  help.push_back(help_of(std::string(kWorkKey) + "KIND", kCycles, "per unit of work; a group of 4 rays is one unit"));
+  help.push_back(help_of(kMasterClockKey, kHertz, "clock of the general core, which builds the grid"));
+  help.push_back(help_of(std::string(kStepKey) + "STEP", kCycles, "of its clock, per step of a build"));
+  return help;
+}
+
+}  // namespace gridiron::tool

@@ -1,0 +1,36 @@
+// Machine keys: the one table of a machine profile's numbers, by the names that machine files and JSON have for them.
+// Memory: constants; borrows a profile where it says so. Threads: any. SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <gridiron/sim/machine_profile.h>
+
+#include <string>
+#include <string_view>
+#include <variant>
+#include <vector>
+
+namespace gridiron::tool {
+
+/// One number of a profile.
+struct MachineKey {
+  std::string name;  ///< "core_count", "work_cycles.cell_step"; its last word but numbers of things is its unit
+  std::variant<std::uint32_t*, std::uint64_t*, double*> number;  ///< whole ones, or a real one; in the profile
+  double least, most;                                            ///< what a machine file may say
+  bool is_in_files = true;                                       ///< false: always 0, and only shown in JSON
+};
+
+/// @returns every number of `machine`, in the order in which machine files and JSON show them.
+[[nodiscard]] std::vector<MachineKey> machine_keys(sim::MachineProfile& machine);
+
+/// @returns the shortest text that reads back as the same double.
+[[nodiscard]] std::string text_of(double value);
+
+/// A row of the help and of the table in tools/README.md.
+struct MachineKeyHelp {
+  std::string key;    ///< as in MachineKey, or "work_cycles.KIND"
+  std::string range;  ///< "1 to 1024"
+  std::string_view meaning;
+};
+[[nodiscard]] std::vector<MachineKeyHelp> machine_key_help();
+
+}  // namespace gridiron::tool
