@@ -439,7 +439,7 @@ class EffectRenderer {
   }
 
   // Light of all lights, as many at a time as are at hand.
-  [[nodiscard]] Status light_points(Context& context) {
+  [[nodiscard]] GRIDIRON_INLINE Status light_points(Context& context) {
     transfers_.note_stage(Stage::kShadow);
     for (std::uint32_t first = 0; first < scene().light_count; first += Effects::kLightSlots) {
       if (store_.effects.first_light != first) GRIDIRON_TRY(load_lights(first));

@@ -99,7 +99,7 @@ struct StoreLayout512K {
   static constexpr std::uint32_t kEffects = 0;  ///< EffectBits it is built for
   static constexpr std::uint32_t kArenaBytes = 512 * 1024;
   static constexpr std::uint32_t kCodeBudgetBytes = 53 * 1024;
-  static constexpr std::uint32_t kStackBudgetBytes = 10 * 1024;
+  static constexpr std::uint32_t kStackBudgetBytes = 10 * 1024 + 512;
   static constexpr std::uint32_t kTileWidth = TileWidthV;
   static constexpr std::uint32_t kPacketWidth = PacketWidthV;
   static constexpr std::uint32_t kMailboxSlots = PacketWidthV >= 16 ? 1024 : 64;

@@ -117,7 +117,7 @@ class PacketDriver {
   }
 
   // Starts the get of the next macrocell's block, or sets macro_cells_done_.
-  [[nodiscard]] Status fetch_next_macro_cell() {
+  [[nodiscard]] GRIDIRON_OUTLINE Status fetch_next_macro_cell() {
     const bool skip_empty = (store_.frame.engine.techniques & kUseEmptySkip) != 0;
     MacroVisit visit;
     WalkStep step = macro_walk_.next(frustum_, store_.engine.table, reach_, skip_empty, visit, store_.work);
