@@ -19,27 +19,27 @@ struct EffectSize {
 };
 
 inline constexpr std::array kEffectSizes{
-    EffectSize{0x000, 54110, 163840, 0, 0, false},  // none
-    EffectSize{0x200, 61068, 126464, 25154, 14592, true},  // scene shading
-    EffectSize{0x201, 80876, 126464, 26032, 14592, true},  // + point shadows
-    EffectSize{0x202, 81520, 126464, 26674, 14592, true},  // + area lights
-    EffectSize{0x204, 83130, 144768, 26734, 16768, true},  // + reflection
-    EffectSize{0x208, 84144, 144768, 27748, 16768, true},  // + refraction
-    EffectSize{0x210, 82112, 126464, 27272, 14592, true},  // + ambient occlusion
-    EffectSize{0x220, 63052, 126464, 27142, 14592, true},  // + environment
-    EffectSize{0x240, 62430, 126464, 26510, 14592, true},  // + smooth normals
-    EffectSize{0x280, 61810, 126464, 25896, 14592, true},  // + highlights
-    EffectSize{0x300, 61430, 126464, 25458, 14592, true},  // + multisampling
-    EffectSize{0x3fe, 92616, 144768, 36214, 16768, true},  // all but point shadows
-    EffectSize{0x3fd, 91598, 144768, 35178, 16768, true},  // all but area lights
-    EffectSize{0x3fb, 92608, 144768, 36206, 16768, true},  // all but reflection
-    EffectSize{0x3f7, 91584, 144768, 35182, 16768, true},  // all but refraction
-    EffectSize{0x3ef, 90120, 144768, 33684, 16768, true},  // all but ambient occlusion
-    EffectSize{0x3df, 90638, 144768, 34232, 16768, true},  // all but environment
-    EffectSize{0x3bf, 91220, 144768, 34828, 16768, true},  // all but smooth normals
-    EffectSize{0x37f, 91866, 144768, 35464, 16768, true},  // all but highlights
-    EffectSize{0x2ff, 92246, 144768, 35884, 16768, true},  // all but multisampling
-    EffectSize{0x3ff, 92608, 144768, 36206, 16768, true},  // all
+    EffectSize{0x000, 54190, 163840, 0, 0, false},  // none
+    EffectSize{0x200, 60446, 126592, 25114, 14720, true},  // scene shading
+    EffectSize{0x201, 80064, 126592, 26224, 14720, true},  // + point shadows
+    EffectSize{0x202, 80726, 126592, 26890, 14720, true},  // + area lights
+    EffectSize{0x204, 81190, 144896, 26636, 16896, true},  // + reflection
+    EffectSize{0x208, 82204, 144896, 27650, 16896, true},  // + refraction
+    EffectSize{0x210, 80940, 126592, 27080, 14720, true},  // + ambient occlusion
+    EffectSize{0x220, 62406, 126592, 27074, 14720, true},  // + environment
+    EffectSize{0x240, 61776, 126592, 26436, 14720, true},  // + smooth normals
+    EffectSize{0x280, 61188, 126592, 25856, 14720, true},  // + highlights
+    EffectSize{0x300, 60968, 126592, 25272, 14720, true},  // + multisampling
+    EffectSize{0x3fe, 91320, 144896, 36204, 16896, true},  // all but point shadows
+    EffectSize{0x3fd, 90234, 144896, 35152, 16896, true},  // all but area lights
+    EffectSize{0x3fb, 91320, 144896, 36204, 16896, true},  // all but reflection
+    EffectSize{0x3f7, 90296, 144896, 35180, 16896, true},  // all but refraction
+    EffectSize{0x3ef, 88946, 144896, 33842, 16896, true},  // all but ambient occlusion
+    EffectSize{0x3df, 89350, 144896, 34258, 16896, true},  // all but environment
+    EffectSize{0x3bf, 89940, 144896, 34842, 16896, true},  // all but smooth normals
+    EffectSize{0x37f, 90580, 144896, 35464, 16896, true},  // all but highlights
+    EffectSize{0x2ff, 90780, 144896, 35860, 16896, true},  // all but multisampling
+    EffectSize{0x3ff, 91314, 144896, 36198, 16896, true},  // all
 };
 
 }  // namespace gridiron::experiment

@@ -210,6 +210,7 @@ class Sum {
     const EffectsRecord& effects = scene_.effects;
     const auto calls_for = [&](std::uint32_t bits) { return (effects.called_for & bits) != 0; };
     const std::uint64_t pixels = tile_pixels();
+    if (layout_.packet_width == 0) add(Work::kIdGroup, pixels / 4);  // ids cleared at the picture's edge
     const Count eye_rays = Count{pixels} * samples;
     // A hit casts a reflected ray and, of glass, a refracted one.
     const std::uint64_t branches = calls_for(kRefraction) ? 2 : calls_for(kReflection) ? 1 : 0;

@@ -62,12 +62,12 @@ inline constexpr auto kInstructionCosts = std::to_array<InstructionCost>({
     {Work{39},    15.0},  // cell_bound_step, not in `dense`
     {Work{40},   147.1},  // wave_ray, of effects
     {Work{41},   105.0},  // queued_ray, of effects
-    {Work{42},  5267.3},  // walk_pass, of effects
+    {Work{42},  5255.5},  // walk_pass, of effects
     {Work{43},   314.1},  // shaft_group, of effects
     {Work{44},   274.6},  // ray_triangle_setup, of effects
     {Work{45},  1722.3},  // ray_group_test, of effects
     {Work{46},   350.0},  // ray_distance, of effects
-    {Work{47},  1489.7},  // surface_point, of effects
+    {Work{47},  1489.4},  // surface_point, of effects
     {Work{48},   268.8},  // smooth_normal, of effects
     {Work{49},   148.4},  // shadow_ray, of effects
     {Work{50},    67.0},  // light_sample, of effects

@@ -225,7 +225,7 @@ void refuse_absurd_frames(const TestMesh& mesh) {
       EXPECT_NE(frame.render({}).status, Status::kOk) << absurd;
     }
     FrameRecord bad = good;
-    for (std::uint32_t& cells : bad.grid.macro_cell_count) cells = absurd;
+    for (std::uint32_t& cells : bad.engine.grid.macro_cell_count) cells = absurd;
     frame.set_record(bad);
     EXPECT_TRUE(absurd == 0 || frame.render({}).status != Status::kOk) << absurd;
   }

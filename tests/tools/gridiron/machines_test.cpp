@@ -12,7 +12,7 @@
 #include <string>
 #include <thread>
 
-#include "gridiron/machine_keys.h"
+#include "gridiron/device/machine_keys.h"
 #include "run_program.h"
 #include "temporary_folder.h"
 
