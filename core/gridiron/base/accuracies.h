@@ -1,4 +1,4 @@
-// What each accuracy needs and promises: the one table of them. Their names are tools/gridiron/accuracies.cpp's.
+// What each accuracy needs and promises: the one table of them. Their names are in tools/gridiron/device/accuracies.cpp.
 // Memory: none. Threads: any. SPDX-License-Identifier: Apache-2.0
 #pragma once
 
