@@ -217,7 +217,7 @@ class EffectRenderer {
   }
 
   // Where the engine has no code for eye rays, they are traced like all others.
-  [[nodiscard]] Status trace_eye_rays(std::uint32_t ray_count, std::uint32_t* ids) {
+  [[nodiscard]] Status trace_eye_rays(std::uint32_t ray_count, std::uint32_t* ids) {  // NOLINT: it is written to
     transfers_.note_stage(Stage::kPrimary);
     WaveRayJobs<Store> jobs(store_, ray_count, store_.frame.t_far);
     GRIDIRON_TRY(engine_.trace(question(false), jobs));
