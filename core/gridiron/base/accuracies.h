@@ -1,4 +1,4 @@
-// What each accuracy needs and promises: the one table of them. Their names are in tools/gridiron/device/accuracies.cpp.
+// What each accuracy needs and promises: the one table of them. tools/gridiron/device/accuracies.cpp has their names.
 // Memory: none. Threads: any. SPDX-License-Identifier: Apache-2.0
 #pragma once
 
