@@ -78,7 +78,7 @@ struct alignas(128) EffectStore {
   alignas(128) LightRecord lights[kLightSlots];           ///< first_light and those that follow it, or none
   alignas(128) QueuedRay queue[kQueueRays];
   alignas(128) std::uint32_t sums[3][kTilePixels];  ///< RGB, steps of 2^-20, what all samples of a pixel add up to
-  alignas(128) std::uint32_t hit_ids[kTilePixels];  ///< of the eye rays of one sample
+  alignas(128) std::uint32_t hit_ids[kTilePixels];  ///< of the eye rays of samples after the first
   std::uint32_t material_of_slot[kMaterialSlots];
   std::uint32_t first_light;
 };
