@@ -1,5 +1,5 @@
 // The DMA protocol of core as a Promela model: one core, one DMA engine that ends pending transfers in any order.
-// Run by tools/house/check_protocol, which puts constants.h (tags, counts and pieces, taken from core's headers) beside
+// Run by tools/checks/check_protocol, which puts constants.h (tags, counts and pieces, taken from core's headers) beside
 // it. LEVEL: which buffers; DEPTH: how many of each; PIECES: most pieces of a transfer; BREAK: what is done wrong;
 // TRACE: only runs whose calls are those of trace.h, which the code itself made; CYCLES: for endless runs.
 // Source: the functions of core named at each part; README.md tells what is left out.

@@ -2,7 +2,7 @@
 # `board` and `gridiron` (the program).
 # SPDX-License-Identifier: Apache-2.0
 
-house=$(cd "$(dirname "${BASH_SOURCE[0]}")/../house" && pwd)
+checks=$(cd "$(dirname "${BASH_SOURCE[0]}")/../checks" && pwd)
 
 # hold_stack LOG IMAGE ENTRY [--leaf SYMBOL]...: of a run of IMAGE whose words are in LOG, the painted stack of each
 # core is within what the call graph of the image says from the workers' ENTRY on, and that within the board's budget.
@@ -17,7 +17,7 @@ hold_stack() {
     END { print painted + 0, budget + 0 }' "$log")
   mapfile -t graphs < <(find "$build" -name '*.ci' \( -path '*gridiron_kernel.dir*' \
     -o -path '*gridiron_firmware*.dir*' -o -path "*/gridiron_${board}_$image.dir/*" \))
-  bound=$("$house/deepest_stack" --from "$entry" "$@" "${graphs[@]}") || bound=''
+  bound=$("$checks/deepest_stack" --from "$entry" "$@" "${graphs[@]}") || bound=''
   if [ "$painted" -gt 0 ] && [ "$painted" -le "${bound:-0}" ] && [ "$bound" -le "$budget" ]; then
     echo "ok  stack, $image: $painted bytes painted, at most $bound by the call graph, $budget in the budget"
   else

@@ -15,7 +15,7 @@ endfunction()
 function(gridiron_freestanding target)
   target_compile_options(${target} PRIVATE
     -ffreestanding -fno-exceptions -fno-rtti -fno-threadsafe-statics -ffunction-sections)
-  # Builds without an operating system are what tools/house/memory_table measures: no tables for unwinding, which nothing
+  # Builds without an operating system are what tools/checks/memory_table measures: no tables for unwinding, which nothing
   # reads, and frames of a fixed size, none as large as the stack of a 256 KB core.
   if(NOT GRIDIRON_IS_HOSTED AND CMAKE_CXX_COMPILER_ID STREQUAL "GNU")
     target_compile_options(${target} PRIVATE

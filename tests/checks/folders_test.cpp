@@ -1,4 +1,4 @@
-// The rules of the rooms: the sources keep them, and a breach of each is noticed. SPDX-License-Identifier: Apache-2.0
+// The rules of the folders: the sources keep them, and a breach of each is noticed. SPDX-License-Identifier: Apache-2.0
 #include <gtest/gtest.h>
 
 #include <string>
@@ -8,12 +8,12 @@
 namespace gridiron::test {
 namespace {
 
-ScriptResult check_rooms(const std::string& root) {
-  return run_script(source_path("tools/house/check_rooms") + " '" + root + "'");
+ScriptResult check_folders(const std::string& root) {
+  return run_script(source_path("tools/checks/check_folders") + " '" + root + "'");
 }
 
-TEST(Rooms, TheSourcesKeepTheRules) {
-  const ScriptResult result = check_rooms(source_path(""));
+TEST(Folders, TheSourcesKeepTheRules) {
+  const ScriptResult result = check_folders(source_path(""));
   EXPECT_EQ(result.exit_code, 0) << result.output;
 }
 
@@ -30,13 +30,13 @@ void PrintTo(const Breach& breach, std::ostream* stream) {
 
 constexpr const char* kLicence = "// A file. SPDX-License-Identifier: Apache-2.0\n";
 
-class RoomsBreach : public testing::TestWithParam<Breach> {};
+class FolderBreach : public testing::TestWithParam<Breach> {};
 
-TEST_P(RoomsBreach, IsNoticed) {
+TEST_P(FolderBreach, IsNoticed) {
   const Breach& breach = GetParam();
   const ScratchDirectory tree;
   tree.write(breach.file, std::string(kLicence) + "\n" + breach.line + "\n");
-  const ScriptResult result = check_rooms(tree.path().string());
+  const ScriptResult result = check_folders(tree.path().string());
   if (breach.reason == nullptr) {
     EXPECT_EQ(result.exit_code, 0) << result.output;
     return;
@@ -51,7 +51,7 @@ constexpr const char* kMustNot = "must not include folder";
 constexpr const char* kHosted = "a hosted type";
 
 INSTANTIATE_TEST_SUITE_P(
-    Each, RoomsBreach,
+    Each, FolderBreach,
     testing::Values(
         // What is right stays quiet.
         Breach{"ray_on_base", "core/gridiron/ray/a.h", "#include <gridiron/base/math.h>", nullptr},
@@ -83,7 +83,7 @@ INSTANTIATE_TEST_SUITE_P(
                "platform knows nothing of base"},
         Breach{"platform_on_glm", "platform/gridiron/platform/a.h", "#include <glm/vec3.hpp>", "does not use GLM"},
         Breach{"port_on_sim", "platform/board/a.h", "#include <gridiron/sim/trace.h>", "nothing of the simulator"},
-        Breach{"new_room", "core/gridiron/attic/a.h", "int a;", "not in a folder of core"},
+        Breach{"new_folder", "core/gridiron/attic/a.h", "int a;", "not in a folder of core"},
         Breach{"files_on_program", "tools/files/a.h", "#include \"gridiron/scene/view.h\"", kMustNot},
         Breach{"scene_text_on_program", "tools/scene_text/a.h", "#include \"gridiron/scene/view.h\"", kMustNot},
         Breach{"scene_on_frame", "tools/gridiron/scene/a.cpp", "#include \"gridiron/frame/untile.h\"", kMustNot},
@@ -104,7 +104,7 @@ INSTANTIATE_TEST_SUITE_P(
         Breach{"libm_call", "core/gridiron/ray/a.cpp", "float f(float x) { return std::sin(x); }", "libm"}),
     [](const testing::TestParamInfo<Breach>& breach) { return std::string(breach.param.name); });
 
-TEST(Rooms, ALineTooLongAFileTooLongAndAHeaderTooLongAreNoticed) {
+TEST(Folders, ALineTooLongAFileTooLongAndAHeaderTooLongAreNoticed) {
   const ScratchDirectory tree;
   tree.write("tools/wide.cpp", std::string(kLicence) + "// " + std::string(118, 'x') + "\n");
   std::string text = kLicence;
@@ -112,16 +112,16 @@ TEST(Rooms, ALineTooLongAFileTooLongAndAHeaderTooLongAreNoticed) {
   tree.write("tools/tall.cpp", text);
   tree.write("tools/wordy.cpp", "// 1\n// 2\n// 3\n// 4\n// 5\n// 6\n" + std::string(kLicence) + "int a;\n");
   tree.write("tools/unlicensed.cpp", "int a;\n" + std::string(kLicence));
-  const ScriptResult result = check_rooms(tree.path().string());
+  const ScriptResult result = check_folders(tree.path().string());
   EXPECT_EQ(result.exit_code, 1);
   for (const char* line : {"tools/wide.cpp:2: longer than 120 columns", "tools/tall.cpp:701: longer than 700 lines",
                            "tools/wordy.cpp:1: opening comment of 7 lines", "tools/unlicensed.cpp:1: no SPDX",
-                           "check_rooms: 4 breaches"}) {
+                           "check_folders: 4 breaches"}) {
     EXPECT_NE(result.output.find(line), std::string::npos) << line << "\n" << result.output;
   }
 }
 
-TEST(Rooms, WhatLiesOutsideTheRoomsOrIsAProgramIsNoticed) {
+TEST(Folders, WhatLiesOutsideTheFoldersOrIsAProgramIsNoticed) {
   const ScratchDirectory tree;
   tree.write("core/gridiron/ray/a.h", kLicence);
   for (const char* page : {"README.md", "CHANGELOG.md", "CONTRIBUTING.md"}) tree.write(page, "words\n");
@@ -129,7 +129,7 @@ TEST(Rooms, WhatLiesOutsideTheRoomsOrIsAProgramIsNoticed) {
   tree.write(".clang-format", "words\n");
   tree.write("build/host/program", std::string("\177ELF\0\1", 6));
   tree.write("scenes/a.png", std::string("\211PNG\0", 5));
-  ScriptResult result = check_rooms(tree.path().string());
+  ScriptResult result = check_folders(tree.path().string());
   EXPECT_EQ(result.exit_code, 0) << result.output;
   tree.write("it", "words\n");
   tree.write("attic/a.h", kLicence);
@@ -137,19 +137,19 @@ TEST(Rooms, WhatLiesOutsideTheRoomsOrIsAProgramIsNoticed) {
   tree.write("core/gridiron/ray/a.inl", kLicence);
   tree.write("tools/a.cc", kLicence);
   tree.write("core/CMakeLists.txt", "# Words.\n");
-  result = check_rooms(tree.path().string());
+  result = check_folders(tree.path().string());
   EXPECT_EQ(result.exit_code, 1);
   for (const char* line :
-       {"it:1: not in a room", "attic/a.h:1: not in a room", "tools/program:1: neither text",
+       {"it:1: not in a folder", "attic/a.h:1: not in a folder", "tools/program:1: neither text",
         "core/gridiron/ray/a.inl:1: a kind of file", "tools/a.cc:1: a kind of file",
-        "core/CMakeLists.txt:1: no SPDX", "check_rooms: 6 breaches"}) {
+        "core/CMakeLists.txt:1: no SPDX", "check_folders: 6 breaches"}) {
     EXPECT_NE(result.output.find(line), std::string::npos) << line << "\n" << result.output;
   }
 }
 
-TEST(Rooms, AnEmptyTreeIsNotInOrder) {
+TEST(Folders, AnEmptyTreeIsNotInOrder) {
   const ScratchDirectory tree;
-  EXPECT_EQ(check_rooms(tree.path().string()).exit_code, 2);
+  EXPECT_EQ(check_folders(tree.path().string()).exit_code, 2);
 }
 
 }  // namespace

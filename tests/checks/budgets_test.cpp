@@ -23,7 +23,7 @@ ScriptResult check_budgets_of(const std::string& text, const std::string& port =
   compile_as(scratch, "gridiron_kernel", text);
   if (!port.empty()) compile_as(scratch, "gridiron_template_port_" + port, port_text);
   const std::string directory = scratch.path().string();
-  return run_script(source_path("tools/house/check_budgets") + " size '" + directory + "'");
+  return run_script(source_path("tools/checks/check_budgets") + " size '" + directory + "'");
 }
 
 class Budgets : public testing::Test {

@@ -29,7 +29,7 @@ std::string quoted(const std::filesystem::path& path) {
 }
 
 std::string memory_table() {
-  return source_path("tools/house/memory_table");
+  return source_path("tools/checks/memory_table");
 }
 
 // --- What was committed against what was measured.
@@ -96,7 +96,7 @@ TEST(MemoryTable, TheReadmeShowsWhatIsCommitted) {
   std::ifstream file(source_path("core/README.md"));
   const std::string readme{std::istreambuf_iterator<char>(file), {}};
   EXPECT_NE(readme.find("<!-- memory_table -->\n" + table.output + "<!-- end of memory_table -->\n"), std::string::npos)
-      << "tools/house/memory_table build/riscv64 build/aarch64 --update";
+      << "tools/checks/memory_table build/riscv64 build/aarch64 --update";
 }
 
 // --- Small builds, measured.
@@ -237,7 +237,7 @@ TEST_P(CoreBreak, IsNamed) {
                                           kFlags + " -c a.cpp -o a.obj");
     ASSERT_EQ(built.exit_code, 0) << built.output;
     const ScriptResult stack =
-        run_script(source_path("tools/house/deepest_stack") + " " + quoted(scratch.path()) + "/*.ci");
+        run_script(source_path("tools/checks/deepest_stack") + " " + quoted(scratch.path()) + "/*.ci");
     EXPECT_EQ(stack.exit_code, 1) << stack.output;
     EXPECT_NE(stack.output.find(GetParam().expected), std::string::npos) << stack.output;
   }
@@ -275,7 +275,7 @@ TEST(CoreBreak, OfOtherPathsNothingIsAsked) {
                 "edge: { sourcename: \"master\" targetname: \"__indirect_call\" }\n"
                 "}\n");
   const auto deepest = [&scratch](const std::string& options) {
-    return run_script(source_path("tools/house/deepest_stack") + " " + options + " " + quoted(scratch.path()) +
+    return run_script(source_path("tools/checks/deepest_stack") + " " + options + " " + quoted(scratch.path()) +
                       "/a.ci");
   };
   const ScriptResult worker = deepest("--from worker --leaf in_assembly");
@@ -303,7 +303,7 @@ TEST(CoreBreak, ACallGraphThatEndsEarlyIsRefused) {
     const ScratchDirectory scratch;
     scratch.write("a.ci", whole + end);
     const ScriptResult result =
-        run_script(source_path("tools/house/deepest_stack") + " " + quoted(scratch.path()) + "/a.ci");
+        run_script(source_path("tools/checks/deepest_stack") + " " + quoted(scratch.path()) + "/a.ci");
     EXPECT_EQ(result.exit_code, end.empty() ? 1 : 0) << result.output;
     EXPECT_NE(result.output.find(end.empty() ? "a call graph that ends early" : "16"), std::string::npos)
         << result.output;
@@ -323,7 +323,7 @@ TEST(CoreBreak, AFrameOverTheBudgetIsNamed) {
                  " -c a.cpp -o a.obj) || exit 1; done");
   ASSERT_EQ(built.exit_code, 0) << built.output;
   const ScriptResult result =
-      run_script(source_path("tools/house/check_budgets") + " riscv64-linux-gnu-size " + quoted(scratch.path()));
+      run_script(source_path("tools/checks/check_budgets") + " riscv64-linux-gnu-size " + quoted(scratch.path()));
   EXPECT_EQ(result.exit_code, 1);
   EXPECT_NE(result.output.find("of 44544 bytes, stack 4"), std::string::npos) << result.output;
   EXPECT_NE(result.output.find(" of 4096 bytes"), std::string::npos) << result.output;

@@ -22,7 +22,7 @@ std::string text_of(const fs::path& path) {
 
 TEST(Readme, TheExampleHasAtMostFifteenLinesOfCode) {
   const ScriptResult example =
-      run_script(source_path("tools/house/readme_blocks") + " cpp " + source_path("README.md"));
+      run_script(source_path("tools/checks/readme_blocks") + " cpp " + source_path("README.md"));
   ASSERT_EQ(example.exit_code, 0) << example.output;
   const std::size_t body = example.output.find("int main");
   ASSERT_NE(body, std::string::npos);

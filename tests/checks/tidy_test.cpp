@@ -20,7 +20,7 @@ void PrintTo(const Untidy& untidy, std::ostream* stream) {
 
 class Tidy : public testing::TestWithParam<Untidy> {};
 
-// As tools/house/tidy --full reads a source: once by the rules, once along paths.
+// As tools/checks/tidy --full reads a source: once by the rules, once along paths.
 TEST_P(Tidy, IsNamed) {
   if (run_script("command -v clang-tidy-14").exit_code != 0) GTEST_SKIP() << "no clang-tidy-14";
   const ScratchDirectory scratch;
@@ -29,7 +29,7 @@ TEST_P(Tidy, IsNamed) {
   const ScriptResult rules = run_script("clang-tidy-14 --quiet --warnings-as-errors='*' --config-file='" +
                                         source_path(".clang-tidy") + "'" + file);
   const ScriptResult paths =
-      run_script("eval \"$(grep '^paths=' " + source_path("tools/house/tidy") +
+      run_script("eval \"$(grep '^paths=' " + source_path("tools/checks/tidy") +
                  ")\"; clang-tidy-14 --quiet --warnings-as-errors='*' --allow-enabling-analyzer-alpha-checkers "
                  "--checks=\"$paths\"" +
                  file);

@@ -17,7 +17,7 @@ ScriptResult check_symbols_of(const std::string& text) {
       run_script("cd '" + directory +
                  "' && " GRIDIRON_CXX_COMPILER " -std=c++20 -O1 -c a.cpp -o a.o && " GRIDIRON_AR " rc a.a a.o");
   EXPECT_EQ(built.exit_code, 0) << built.output;
-  return run_script(source_path("tools/house/check_symbols") + " " GRIDIRON_NM " '" + directory + "/a.a'");
+  return run_script(source_path("tools/checks/check_symbols") + " " GRIDIRON_NM " '" + directory + "/a.a'");
 }
 
 TEST(Symbols, MemoryFunctionsAndOwnSymbolsAreAllowed) {
@@ -75,7 +75,7 @@ TEST(Symbols, WhatALinkerScriptPlacesIsDefined) {
   ASSERT_EQ(built.exit_code, 0) << built.output;
   const auto check = [&](const std::string& script) {
     scratch.write("a.ld", script);
-    return run_script("cd '" + directory + "' && " + source_path("tools/house/check_symbols") +
+    return run_script("cd '" + directory + "' && " + source_path("tools/checks/check_symbols") +
                       " " GRIDIRON_NM " a.o a.ld");
   };
   const ScriptResult whole = check("code_begin = ORIGIN(code);\nSECTIONS {\n  .text : {\n    code_end = . ;\n  }\n}\n");
@@ -87,7 +87,7 @@ TEST(Symbols, WhatALinkerScriptPlacesIsDefined) {
 }
 
 TEST(Symbols, AMissingArchiveIsAnError) {
-  const ScriptResult result = run_script(source_path("tools/house/check_symbols") + " " GRIDIRON_NM " /nowhere/a.a");
+  const ScriptResult result = run_script(source_path("tools/checks/check_symbols") + " " GRIDIRON_NM " /nowhere/a.a");
   EXPECT_EQ(result.exit_code, 1);
   EXPECT_NE(result.output.find("no such archive"), std::string::npos) << result.output;
 }

@@ -11,7 +11,7 @@ namespace gridiron::test {
 namespace {
 
 ScriptResult check_loops(const std::string& root) {
-  return run_script(source_path("tools/house/check_loops") + " '" + root + "'");
+  return run_script(source_path("tools/checks/check_loops") + " '" + root + "'");
 }
 
 constexpr const char* kHead = "\"file\",\"function\",\"loop\",\"kind\",\"bound\"\n";
