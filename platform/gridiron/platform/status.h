@@ -1,4 +1,4 @@
-// Status: the one error type of Gridiron. Words for people live in tools/.
+// Status: the one error type of Gridiron. Messages are written in tools/.
 // Memory: none. Threads: any. SPDX-License-Identifier: Apache-2.0
 #pragma once
 
@@ -32,14 +32,14 @@ enum class [[nodiscard]] Status : std::uint8_t {
   kBadFrame,            ///< frame record: wrong magic, version, size or range; camera too far for its grid
   kBadImage,            ///< scene image: wrong magic, version, check value, offset or count
   kUnsupportedImage,    ///< scene image is valid but this store layout or profile cannot use it
-  kUnsupportedFrame,    ///< frame asks for something this renderer was not built for
-  kAborted,             ///< the frame was asked to stop between two tiles
+  kUnsupportedFrame,    ///< this renderer was not built for such a frame
+  kAborted,             ///< the frame was stopped between two tiles
   kDeadline,            ///< the frame's deadline passed between two tiles
   kIncompleteFrame,     ///< the cores ended well, but part of the picture was not written (platforms that check)
 
   // Effects (kernel).
-  kMissingEffect,       ///< the frame's scene calls for effects that this renderer was built without
-  kSpillTooSmall,       ///< main memory given for rays that wait is less than the scene's depth asks for
+  kMissingEffect,       ///< the scene requires effects that this renderer was built without
+  kSpillTooSmall,       ///< main memory for rays that wait is smaller than the scene's depth requires
 
   // Readers and builders (prepare).
   kMemoryTooSmall,      ///< the caller's span is smaller than the counted need; nothing was written

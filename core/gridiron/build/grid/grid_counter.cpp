@@ -206,7 +206,7 @@ void make_grid(const Request& request, const KeptTriangles& kept, float lambda, 
 
 // Counts references and non-empty macrocells. The first sweep covers every triangle, the others those beyond its
 // window. A bound of the references decides first whether they can fit at all.
-// Errors: kMemoryTooSmall as soon as the image needs more than need.image_bytes, which is then that need;
+// Errors: kMemoryTooSmall as soon as need.image_bytes is known to exceed the limit;
 // kTooManyTriangles.
 template <class Mesh>
 Status count_grid(const Mesh& mesh, const Request& request, const KeptTriangles& kept, std::uint64_t most_bytes,
