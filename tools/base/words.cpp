@@ -6,7 +6,7 @@
 
 namespace gridiron::tool {
 
-// No default: the compiler names a value that was forgotten.
+// Without a default the compiler names a missing value.
 const char* words_of(Status status) {
   switch (status) {
     case Status::kOk:
@@ -72,7 +72,7 @@ const char* words_of(Status status) {
   return "unknown status";
 }
 
-// The reader's own table is the one table of these words.
+// The reader's own table is the only one of these words.
 const char* words_of(PlyError error) {
   return ply_error_reason(error);
 }

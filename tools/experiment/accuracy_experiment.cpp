@@ -11,7 +11,7 @@
 namespace gridiron::experiment {
 namespace {
 
-// What the reader has to know to trust the figures, and what they do not say.
+// What a reader must know to trust the figures, and their limits.
 void write_method(const PriceList& list, Book& book) {
   std::size_t compared = 0, alike = 0;
   for (const Price& price : list.prices()) {

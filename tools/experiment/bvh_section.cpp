@@ -41,7 +41,7 @@ std::vector<Row> plan_rows(Plan& plan, const Stage& stage) {
   return rows;
 }
 
-/// Which of the two is ahead, view by view, on one machine.
+/// Which of the two is faster, view by view, on one machine.
 struct Score {
   std::string best_views, bvh_views, level_views;
   Range ratios;
@@ -104,8 +104,8 @@ void write_caches(const Plan& done, const std::vector<Row>& rows, Book& book) {
              "its line has come.");
 }
 
-// How often each step of both builds is done, and its price. @returns BVH build over grid build, the sweeps over bins
-// being free.
+// The counts of each step of both builds, and their price. @returns BVH build over grid build, if the sweeps over bins
+// were free.
 Range write_build_steps(const Plan& done, const std::vector<Row>& rows, const Machine& machine, Book& book) {
   Table steps{"fig7_build_steps",
               {{"view", "view"},

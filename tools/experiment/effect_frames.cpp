@@ -53,7 +53,7 @@ AbsentCost absent_cost(const EffectFrame& frame, EffectBits effect) {
   const std::uint64_t lit = frame.count(Work::kSurfacePoint) * frame.light_count;
   switch (effect) {
     case kPointShadows:
-      // Area lights alone have shadows of their own.
+      // Only area lights cast shadows of their own.
       if (frame.has_shadows && (frame.called_for & kAreaLights) != 0)
         return counted(effect, "shadow rays of points", 0);
       return with_stage(counted(effect, "shadow rays", frame.count(Work::kShadowRay)), "shadow",

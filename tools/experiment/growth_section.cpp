@@ -9,7 +9,7 @@
 namespace gridiron::experiment {
 namespace {
 
-// One quantity of Table 1: how it is called, what the paper says of it.
+// One quantity of Table 1: its name, and the paper's statement.
 struct Quantity {
   const char* title;
   std::string_view (*paper)(const Contender&);
@@ -36,8 +36,8 @@ const Quantity kQuantities[] = {
 };
 constexpr std::size_t kBuildSteps = 0, kTraversalSteps = 2;
 
-// The exponent that a function of the paper's notation shows when it is fitted over the same triangle counts; not a
-// number for what is none of Table 1's.
+// The exponent that a fit over the same triangle counts gives for a function in the paper's notation; NaN for functions
+// outside of Table 1.
 double exponent_of(std::string_view growth, const std::vector<Point2>& points) {
   if (growth.empty()) return std::nan("");
   std::vector<Point2> values;
@@ -59,7 +59,7 @@ std::string packet_words(std::string_view configuration) {
   return width + "x" + width + " rays";
 }
 
-// Systems whose counts are the same share a curve.
+// Systems with the same counts share a curve.
 void add_curve(LineChart& chart, const std::string& title, const std::vector<Point2>& points) {
   for (Series& series : chart.series) {
     if (!std::ranges::equal(series.points, points, [](Point2 a, Point2 b) { return a.x == b.x && a.y == b.y; }))
