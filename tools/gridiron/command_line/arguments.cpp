@@ -188,7 +188,7 @@ Finish add_experiment(CLI::App& app) {
   };
 }
 
-// A command, and what adds its options.
+// A command, and the function that adds its options.
 struct NamedCommand {
   const char* name;
   const char* help;

@@ -33,7 +33,7 @@ Picture<std::uint32_t> words_of_plane(const FrameRecord& frame, std::span<const 
 
 Picture<float> depth_picture(const Picture<std::uint32_t>& words) {
   return convert_words(words, [](std::uint32_t word) {
-    // A chip may have no infinity, so its plane says "largest float" where nothing is hit.
+    // A chip may have no infinity, so its plane has the largest float without a hit.
     const float depth = std::bit_cast<float>(word);
     return depth >= kFloatMax ? std::numeric_limits<float>::infinity() : depth;
   });
