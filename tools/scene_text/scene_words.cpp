@@ -75,7 +75,7 @@ void SceneWords::advance() {
   for (; at < rest_.size(); ++at) {
     const char c = rest_[at];
     if (is_line_end(c)) {
-      // The last line is that of the last character: a line end at the very end opens no new one.
+      // The last line is that of the last character: a final line end does not start a new one.
       const bool is_pair = c == '\r' && at + 1 < rest_.size() && rest_[at + 1] == '\n';
       if (is_pair) ++at;
       if (at + 1 < rest_.size()) ++line_;
