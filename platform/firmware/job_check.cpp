@@ -17,7 +17,7 @@ namespace gridiron::port {
 namespace {
 
 bool is_equal(const char* what, std::uint64_t value, std::uint64_t wanted) {
-  return value == wanted || refuse(what, " ", Hex{value}, ", this firmware wants ", Hex{wanted});
+  return value == wanted || refuse(what, " ", Hex{value}, ", this firmware requires ", Hex{wanted});
 }
 
 // Computed as by the job's maker, with the field itself taken as 0.
@@ -70,7 +70,7 @@ bool are_planes_in_result(const FrameJob& job) {
   } planes[] = {
       {"colour plane", job.color_address}, {"depth plane", job.depth_address}, {"plane of ids", job.ids_address}};
   const std::uint64_t head = sizeof(FrameResult) + std::uint64_t{job.tile_count} * sizeof(TileResult);
-  if (job.result_bytes < head) return refuse("result of ", job.result_bytes, " bytes, without room for its head");
+  if (job.result_bytes < head) return refuse("result of ", job.result_bytes, " bytes, too small for its head");
   Part free{job.result_address + head, job.result_bytes - head};
   for (const auto& plane : planes) {
     if (plane.address == 0 && &plane != planes) continue;
@@ -136,7 +136,7 @@ bool check_job(const FrameJob& job, const FirmwareFacts& facts) {
   const std::uint32_t tiles_y = (job.height + job.tile_width - 1) / job.tile_width;
   if (job.tile_count != tiles_x * tiles_y) return refuse(job.tile_count, " tiles, of ", tiles_x, " x ", tiles_y);
   if (job.tile_count > facts.most_tiles) {
-    return refuse(job.tile_count, " tiles, this board has room for the results of ", facts.most_tiles);
+    return refuse(job.tile_count, " tiles, this board can store the results of ", facts.most_tiles);
   }
 
   // 3. The places of its parts.

@@ -49,11 +49,11 @@ const char* words_of(Status status) {
     case Status::kDeadline:
       return "deadline passed between two tiles";
     case Status::kIncompleteFrame:
-      return "picture of which no core wrote a part";
+      return "picture with a part that no core wrote";
     case Status::kMissingEffect:
       return "the scene calls for an effect that this renderer was built without";
     case Status::kSpillTooSmall:
-      return "less main memory for rays that wait than the scene's depth of recursion asks for";
+      return "less main memory for rays that wait than the scene's depth of recursion requires";
     case Status::kMemoryTooSmall:
       return "memory smaller than the counted need";
     case Status::kTooManyTriangles:

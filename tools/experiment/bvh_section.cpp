@@ -239,7 +239,7 @@ Writer plan_figure7(Plan& plan, const Stage& stage) {
         (paper_cases.greatest() < 0.4
              ? "The difference is the cached BVH's: the reference keeps the paper's packets of 8x8 rays and its "
                "techniques, while the hierarchy is built with what is known since. Its packets are four times as "
-               "large, their quarters are held against four boxes at once, and their triangles are culled by "
+               "large, their quarters are tested against four boxes at once, and their triangles are culled by "
                "subpackets and their distances estimated first, by the code that it shares with best. What that is "
                "worth shows on the grid's own side: best, which has the like, renders " +
                    best_ratios.text(2) + " times the frames of the reference, and in the reference's place it has " +
@@ -249,7 +249,7 @@ Writer plan_figure7(Plan& plan, const Stage& stage) {
                    paper_cases_single.text(2) + ". "
              : std::string()) +
         "With both on cell-2006, frame alone, " + score.text() + ". Hyper-threading gains the hierarchy " +
-        gains.text(1) + " % fps on both machines; how often its caches hit is told below.");
+        gains.text(1) + " % fps on both machines; the hit rates of its caches are listed below.");
     book.table(frames, "Frames a second without shading.");
     book.figure("fig7_cell_2006", bar_chart_svg(bare),
                 "Frames a second on the chip that the paper compares itself with, no shading, the structure being "

@@ -257,7 +257,7 @@ Writer plan_grid_sweeps(Plan& plan, const Stage& stage) {
     book.section("macro-width", "Sweep: macrocell size");
     book.paragraph(
         "Cells along the edge of a macrocell, which one DMA command brings: a line of 128 bytes at width 2, 1,792 at "
-        "6, 4,096 at 8. Wide macrocells need fewer commands and carry more cells that nobody asks for. Most frames a "
+        "6, 4,096 at 8. Wide macrocells need fewer commands and carry more cells that are not needed. Most frames a "
         "second at " +
         best_values(done, widths) +
         "; the reference uses 6, best 4. A view whose waiting jumps at width 2 has more macrocells than the local "

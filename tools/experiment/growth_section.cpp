@@ -172,7 +172,7 @@ Writer plan_table1(Plan& plan, const Stage& stage) {
                    "reference with packets of " +
                    packet_words("reference") + " and best with " + packet_words("best") +
                    ". Skipping what is empty and stopping behind the last hit take steps away. The fits are "
-                   "least squares of the logarithms; they hold for this mesh and this range only, and r squared tells "
+                   "least squares of the logarithms; they hold for this mesh and this range only, and r squared says "
                    "how far from a power law the counts are.");
     book.table(exponents, "Fitted exponents: quantity ~ n^exponent.");
     book.figure("table1_build", line_chart_svg(build),
@@ -232,7 +232,7 @@ Writer plan_table2(Plan& plan, const Stage& stage) {
     if (stage.found.generated) {
       book.paragraph(
           "No scan was found, so every table below is about a generated teapot and torus knot, and no figure of the "
-          "paper stands beside ours. tools/fetch_scenes gets the scans.");
+          "paper is next to ours. tools/fetch_scenes gets the scans.");
     }
     book.paragraph(
         "Bunny and Horse are the models that the paper names. The armadillo is a stand-in wherever it appears: a scan "

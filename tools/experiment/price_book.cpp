@@ -475,7 +475,7 @@ void write_fronts(const PriceList& list, Book& book) {
   book.section("fronts", "Error against time");
   book.paragraph(
       "Who is on a Pareto front is not beaten: no other profile, in either configuration, is as fast and as accurate "
-      "and better in one of them. Three errors are told: wrong pixels (a hole, a false hit or another triangle) and "
+      "and better in one of them. Three errors are shown: wrong pixels (a hole, a false hit or another triangle) and "
       "leaks of rays aimed at edges (a hole, or something farther away seen through it), both against the time of a "
       "frame that gives a picture alone, and the error of t against that of a frame that gives distances too. Times "
       "are geometric means over the views, errors those of the worst view.");
@@ -542,7 +542,7 @@ void write_views(const PriceList& list, Book& book) {
     for (std::size_t configuration = 0; configuration < std::size(kPricedConfigurations); ++configuration) {
       const std::string name = kPricedConfigurations[configuration];
       book.figure("errors_" + name + "_" + shown.key, histogram_svg(list, view, configuration),
-                  shown.title + ", configuration " + name + ": pixels by the error of their t, beside what they cost.");
+                  shown.title + ", configuration " + name + ": pixels by the error of their t, next to their costs.");
     }
     for (const Front& front : make_fronts()) {
       const std::vector<FrontPoint> points = front_points(list, front, view);

@@ -487,7 +487,7 @@ void write_maps(Book& book) {
   book.section("map", "The local store, byte by byte");
   book.paragraph(
       "Everything a core works in, in address order. The sizes are those of the compiled layouts, whose buffers are as "
-      "many as the first table tells, however many of them a configuration uses" +
+      "many as in the first table, however many of them a configuration uses" +
       short_store_words() + ". The layouts of reference and best differ in these regions: " + differing_regions() +
       ". Code and stack are committed budgets; the cross builds prove those of the layouts of 256 KB "
       "with packets of 8x8 and 32x32, and of no others.");
@@ -518,7 +518,7 @@ Writer plan_store_sweep(Plan& plan, const Stage& stage) {
     book.section("store", "Sweep: local store");
     book.paragraph(
         "A layout for each size: tiles of 16 pixels in 64 KB and of 32 in the others, and with the size the table of "
-        "macrocells, the buffers and the mailbox of wide packets; what each holds is told below. Where a layout has "
+        "macrocells, the buffers and the mailbox of wide packets; the contents of each are below. Where a layout has "
         "fewer buffers than a configuration asks for, it is cut down to them; in 64 KB best traverses once per 16x16 "
         "tile.");
     const auto wait_of = [](const RunResult& run) { return run.wait_percent(); };

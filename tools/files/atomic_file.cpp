@@ -77,7 +77,7 @@ void AtomicFile::open_temporary() {
   {
     const Undivided step;
     descriptor_ = ::mkostemp(name.data(), O_CLOEXEC);
-    if (descriptor_ < 0) fail("create a temporary file beside it: ");
+    if (descriptor_ < 0) fail("create a temporary file in its folder: ");
     temporary_ = name;
     leftover_.remember(name);
   }

@@ -50,7 +50,7 @@ int open_for_reading(const std::filesystem::path& path) {
   if (error == ENOENT && is_one_of(kFetchedScans)) {
     message += "; " + name + " is a public scan that this repository does not carry: tools/fetch_scenes gets it";
   } else if (error == ENOENT && is_one_of(kOtherScans)) {
-    message += "; this repository does not carry it: 'tools/fetch_scenes --help' says where it comes from";
+    message += "; it is not in the repository: 'tools/fetch_scenes --help' names its source";
   }
   throw Failure(ExitCode::kBadInput, message);
 }

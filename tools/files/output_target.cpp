@@ -120,7 +120,7 @@ OutputTarget resolve_output(const fs::path& name) {
     throw cannot_write(name, errno == EACCES ? "the file is write-protected" : std::strerror(errno));
   }
   if (exists && is_protected_by_folder(folder, status)) {
-    throw cannot_write(name, "the file is another user's, and its folder lets nobody else replace it");
+    throw cannot_write(name, "the file is another user's, and only its owner may replace it in this folder");
   }
   return target;
 }

@@ -244,7 +244,7 @@ void print_text(const InfoPlan& plan, const SceneFacts& facts) {
   print_line("grid", joined(grid.cell_count) + " cells" + text + ", " + words_of_count(grid.reference_count) +
                          " references stored as " + word_of(static_cast<TriangleFormat>(grid.triangle_format)));
   if (!facts.roundness.groups.empty()) {
-    const char* rules[] = {"as asked for", "1e-4 of the scene's diagonal", "chosen by the picture"};
+    const char* rules[] = {"as requested", "1e-4 of the scene's diagonal", "chosen by the picture"};
     print_line("tolerance", words_of_tolerance(facts.roundness) + ", " +
                                 rules[static_cast<std::size_t>(facts.roundness.rule)] +
                                 ": facets are no farther from their spheres and cones");
@@ -257,7 +257,7 @@ void print_text(const InfoPlan& plan, const SceneFacts& facts) {
     const double places = static_cast<double>(longest) / static_cast<double>(grid.lattice.step);
     std::snprintf(text, sizeof text, "step %g, ", static_cast<double>(grid.lattice.step));
     print_line("lattice", text + words_of_count(static_cast<std::uint64_t>(places)) +
-                              " of them along the longest side; what has no area there is dropped");
+                              " of them along the longest side; triangles without area there are dropped");
   }
   if (grid.lambda != facts.wanted_lambda) {
     std::snprintf(text, sizeof text, "reduced from lambda %g to fit the main memory",
@@ -278,7 +278,7 @@ void print_text(const InfoPlan& plan, const SceneFacts& facts) {
                                 " data");
   const std::uint32_t called_for = facts.effects.record.called_for;
   if (called_for != 0 && called_for != kAllEffects) {
-    print_line("", "of a renderer with all effects; one with those called for takes less");
+    print_line("", "of a renderer with all effects; one with the required effects takes less");
   }
   for (const LocalStoreRegion& region : store.regions) {
     std::printf("%14s %8s  %s\n", "", words_of_count(region.bytes).c_str(),

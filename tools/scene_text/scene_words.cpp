@@ -121,7 +121,7 @@ SceneNumber SceneWords::take_number(SceneEntity& entity) {
   }
   SceneNumber number{0, next_};
   if (!looks_like_number(next_.text)) {
-    fail(next_.line, in_quotes(next_.text) + " stands where " + which() + " of " + name_of(entity) +
+    fail(next_.line, in_quotes(next_.text) + " found where " + which() + " of " + name_of(entity) +
                          line_words(entity) + " is expected");
   }
   std::string_view text = next_.text;

@@ -64,6 +64,6 @@ class PlainCore {
 };
 
 static_assert(Platform<PlainCore>);
-static_assert(!WorkObserver<PlainCore> && !StageObserver<PlainCore>, "no time is kept, so nobody listens");
+static_assert(!WorkObserver<PlainCore> && !StageObserver<PlainCore>, "no time is kept, so no observer is needed");
 
 }  // namespace gridiron::sim

@@ -30,7 +30,7 @@ consteval bool have_all_effects(LayoutList<Layouts...>) {
   return ((Layouts::kEffects == kAllEffects) && ...);
 }
 static_assert(have_all_effects(EffectLayouts{}),
-              "no frame ends with kMissingEffect, so that a result need not tell which");
+              "no frame ends with kMissingEffect, so results need not name effects");
 static_assert(fit_arenas(CommonLayouts{}) && fit_arenas(SweepLayouts{}) && fit_arenas(EffectLayouts{}));
 
 template <class Core>

@@ -48,7 +48,7 @@ void require_exact_ids(const std::filesystem::path& input, std::uint64_t triangl
   constexpr std::uint64_t kMostExactIds = 1u << 24;
   if (triangle_count <= kMostExactIds) return;
   throw Failure(ExitCode::kBadInput, input.string() + ": --ids: " + words_of_count(triangle_count) +
-                                         " triangles; the floats of a PFM file tell at most 16,777,216 apart");
+                                         " triangles; the floats of a PFM file distinguish at most 16,777,216");
 }
 
 void require_same_planes(const PlaneHashes& first, const PlaneHashes& again, std::uint32_t repeat) {

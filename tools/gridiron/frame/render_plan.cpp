@@ -63,7 +63,7 @@ void settle_depths(const RenderRequest& request, RenderPlan& plan) {
     };
     usage_error("--store " + std::to_string(facts.arena_bytes >> 10) + (has_effects ? ", --shading scene" : "") +
                 ": holds at most " + blocks(most, facts.max_macro_width) + "; " + blocks(plan.depths, macro_width) +
-                " are asked for");
+                " are requested");
   }
 }
 

@@ -93,7 +93,7 @@ std::optional<std::string> unseen_note(const FrameRecord& frame, const SeenPlane
   const char* reason = reason_of(extremes_of(frame, points));
   const std::string note = "no pixel shows the scene";
   if (reason != nullptr) return note + ": " + reason;
-  return is_missed ? std::optional(note + ": all rays pass beside its triangles") : std::nullopt;
+  return is_missed ? std::optional(note + ": all rays miss its triangles") : std::nullopt;
 }
 
 std::optional<std::string> unseen_note(FrameMemory& frame, const sim::ChipResult& result, sim::Mode mode) {

@@ -90,7 +90,7 @@ void check_cores(const ByteReader& reader, const OpenResult& result) {
     if (i >= frame.core_count) {
       constexpr CoreResult kNothing{};
       reader.require(std::memcmp(&core, &kNothing, sizeof core) == 0, place_of_core(i),
-                     "core " + std::to_string(i) + " is told of, but there are " + std::to_string(frame.core_count));
+                     "core " + std::to_string(i) + " has a record, but there are " + std::to_string(frame.core_count));
       continue;
     }
     reader.require(core.tiles == tiles[i], place_of_core(i) + offsetof(CoreResult, tiles),
