@@ -19,12 +19,12 @@ namespace gridiron::port {
 
 /// Exit codes of a run. None is 1, which an emulator returns if it did not start.
 enum class RunExit : std::uint32_t {
-  kDone = 0,        ///< every core ended with kOk, the result is written
+  kDone = 0,  ///< every core ended with kOk, the result is written
   kJobRefused = 2,
-  kTimedOut = 3,    ///< no core finished a tile for kQuietMilliseconds
-  kTrapped = 4,     ///< a core did what it must not
-  kNotWritten = 5,  ///< the host did not write the result file
-  kFrameFailed = 6, ///< a core ended with another status; the result is written
+  kTimedOut = 3,     ///< no core finished a tile for kQuietMilliseconds
+  kTrapped = 4,      ///< a core did what it must not
+  kNotWritten = 5,   ///< the host did not write the result file
+  kFrameFailed = 6,  ///< a core ended with another status; the result is written
 };
 
 /// What the master needs of its board.

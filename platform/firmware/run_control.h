@@ -10,7 +10,7 @@
 namespace gridiron::port {
 
 enum class CoreState : std::uint32_t {
-  kAsleep = 0,   ///< has not begun the frame
+  kAsleep = 0,  ///< has not begun the frame
   kWorking = 1,
   kFinished = 2,  ///< its result is complete
   kTrapped = 3,   ///< its trap is complete; it does not return

@@ -49,7 +49,7 @@ inline constexpr double kBehind = 1e-3;
 /// The errors in the answers of a frame. A pixel is a ray.
 struct Comparison {
   HitCounts hits;
-  std::uint64_t wrong_at_true_depth = 0;  ///< of the wrong triangles, those at the true distance
+  std::uint64_t wrong_at_true_depth = 0;                    ///< of the wrong triangles, those at the true distance
   std::array<std::uint64_t, kUlpBinCount> ulp_histogram{};  ///< of the rays that hit the true triangle
   Spread ulps, relative;                                    ///< error of t of the rays that hit the true triangle
   Spread all_ulps, all_relative;                            ///< and of all that hit something and should

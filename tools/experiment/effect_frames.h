@@ -56,7 +56,7 @@ struct AbsentCost {
   std::uint64_t count = 0;
   std::string_view stages{};  ///< with `bytes` and `cycles`; empty: the effect has none of its own
   std::uint64_t bytes = 0;    ///< moved, in and out
-  double cycles = 0;  ///< computing and waiting; for shadows waiting alone, as light has the same stage
+  double cycles = 0;          ///< computing and waiting; for shadows waiting alone, as light has the same stage
 
   [[nodiscard]] bool is_nothing() const { return count == 0 && bytes == 0 && cycles == 0; }
 };

@@ -10,15 +10,15 @@ namespace gridiron {
 /// Effects, as bits of a set. Plain light of point lights, without shadows, is no effect.
 enum EffectBits : std::uint32_t {
   kPointShadows = 1u << 0,
-  kAreaLights = 1u << 1,         ///< sampled, with shadows or without
+  kAreaLights = 1u << 1,  ///< sampled, with shadows or without
   kReflection = 1u << 2,
   kRefraction = 1u << 3,
   kAmbientOcclusion = 1u << 4,
   kEnvironment = 1u << 5,
   kSmoothNormals = 1u << 6,
-  kHighlights = 1u << 7,         ///< Blinn-Phong
+  kHighlights = 1u << 7,  ///< Blinn-Phong
   kMultisampling = 1u << 8,
-  kSceneShading = 1u << 9,       ///< light of point lights and the background; every scene with effects has it
+  kSceneShading = 1u << 9,  ///< light of point lights and the background; every scene with effects has it
 };
 inline constexpr std::uint32_t kEffectCount = 10;  ///< bits of EffectBits
 inline constexpr std::uint32_t kAllEffects = (1u << kEffectCount) - 1u;  ///< the set of all effects

@@ -28,11 +28,11 @@ enum class SectionKind : std::uint32_t {
   kCellBlocks = 3,  ///< cell blocks of cell_block_bytes each; block 0 is the empty one (all zero)
   kTriangles = 4,   ///< triangle records, grouped by cell, in the order of the cells in the blocks
   // Effects (base/effect_records.h): every section that the EffectsRecord counts, or none at all.
-  kEffects = 5,      ///< one EffectsRecord
-  kMaterials = 6,    ///< MaterialRecord[]
-  kLights = 7,       ///< LightRecord[]
-  kSurfaces = 8,     ///< SurfaceRecord[triangle_count]
-  kNormals = 9,      ///< NormalRecord[]
+  kEffects = 5,          ///< one EffectsRecord
+  kMaterials = 6,        ///< MaterialRecord[]
+  kLights = 7,           ///< LightRecord[]
+  kSurfaces = 8,         ///< SurfaceRecord[triangle_count]
+  kNormals = 9,          ///< NormalRecord[]
   kEnvironmentMap = 10,  ///< EnvironmentBlock[]
 };
 
@@ -183,8 +183,8 @@ enum class Shading : std::uint32_t {
 enum TechniqueBits : std::uint32_t {
   kUseMailbox = 1u << 0,
   kUseCornerCulling = 1u << 1,
-  kUseEmptySkip = 1u << 2,      ///< skip empty macrocells without a transfer
-  kUseSubpackets = 1u << 3,     ///< cull by subpackets: those that a triangle cannot touch, those with nearer hits
+  kUseEmptySkip = 1u << 2,   ///< skip empty macrocells without a transfer
+  kUseSubpackets = 1u << 3,  ///< cull by subpackets: those that a triangle cannot touch, those with nearer hits
 };
 
 /// Queue commands that stay free for a tile's own gets while finished tiles are written with the rest.

@@ -165,8 +165,7 @@ struct alignas(128) Packet {
   static constexpr std::uint32_t kSquareCount = kSubpacketCount < 4 ? 1 : kSubpacketCount / 4;
   alignas(64) float slope_low[2][kSquareCount];
   alignas(64) float slope_high[2][kSquareCount];
-  alignas(
-      16) float march_high[kSquareCount];  ///< the most cells along the march per unit of t; 0 without active rays
+  alignas(16) float march_high[kSquareCount];  ///< the most cells along the march per unit of t; 0 without active rays
 };
 
 /// Prepares the rays that estimates left unsure for another pass with exact distances. Their hits are discarded, except

@@ -67,7 +67,7 @@ using WorkTotals = std::array<std::uint64_t, kWorkKindCount>;
 struct FrameTrace {
   TileTrace prologue;             ///< before the first claim
   TileTrace epilogue;             ///< after the last tile
-  std::vector<TileTrace> tiles;  ///< index = tile_id; one entry if a single tile was rendered
+  std::vector<TileTrace> tiles;   ///< index = tile_id; one entry if a single tile was rendered
   std::uint32_t output_depth = 1; ///< rotation of the relative tags
 
   /// @returns bytes of all packed steps.
