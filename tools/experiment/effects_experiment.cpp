@@ -30,7 +30,7 @@ struct Variant {
   std::string title;  ///< "all effects", "without reflection"
   std::string label;  ///< shown under a bar, below "without"
   EffectScene scene;
-  std::uint32_t expected = 0;   ///< EffectBits that it must require
+  std::uint32_t expected = 0;   ///< EffectBits that it must call for
   EffectFrame single, twofold;  ///< single and double buffering
 };
 

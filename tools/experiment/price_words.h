@@ -24,10 +24,8 @@ struct Metric {
 /// @returns the figures that sentences about a step mention.
 [[nodiscard]] std::vector<Metric> price_metrics();
 
-/// @returns "3.1 to 4.0 % more", "from 1.2 % fewer to 2.0 % more"; "none" for an empty range. @param percents  changes,
-///                                                                                                             a
-///                                                                                                             decrease
-///                                                                                                             below 0.
+/// @returns "3.1 to 4.0 % more", "from 1.2 % fewer to 2.0 % more"; "none" for an empty range.
+/// @param percents  changes, a decrease below 0.
 [[nodiscard]] std::string change_words(const Range& percents, int decimals);
 
 /// @returns the gains, costs and unchanged figures of choosing `to` instead of `from`, over all views.

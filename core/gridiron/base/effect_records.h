@@ -1,5 +1,5 @@
-// Effects in main memory: what a scene requires, its lights, materials, surfaces, normals and environment. core/SPEC.md
-// has the layout, core/EFFECTS.md the meaning.
+// Effects in main memory: what a scene calls for, its lights, materials, surfaces, normals and environment.
+// core/SPEC.md has the layout, core/EFFECTS.md the meaning.
 // Memory: described, not owned. Threads: read-only during a frame. SPDX-License-Identifier: Apache-2.0
 #pragma once
 

@@ -11,11 +11,11 @@ namespace gridiron {
 inline constexpr std::size_t kMaxDecimalBytes = 256;
 
 /// Outcome of reading a piece of text.
-enum class [[nodiscard]] DecimalStatus : std::uint8_t{
-    kOk = 0,
-    kSyntax,     ///< not a number of the grammar below
-    kNotFinite,  ///< a spelling of NaN or infinity, or a number that rounds to an infinite float
-    kRange,      ///< an integer that does not fit 64 bits (parse_integer only)
+enum class [[nodiscard]] DecimalStatus : std::uint8_t {
+  kOk = 0,
+  kSyntax,     ///< not a number of the grammar below
+  kNotFinite,  ///< a spelling of NaN or infinity, or a number that rounds to an infinite float
+  kRange,      ///< an integer that does not fit 64 bits (parse_integer only)
 };
 
 /// Reads [+-] digits [. digits] [e [+-] digits]; digits may be missing on one side of the point. No blanks around it.

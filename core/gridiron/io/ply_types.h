@@ -8,51 +8,51 @@
 namespace gridiron {
 
 /// Why a PLY input was rejected. kNone is zero. ply_error_reason() describes each in a few words.
-enum class [[nodiscard]] PlyError : std::uint8_t{
-    kNone = 0,
+enum class [[nodiscard]] PlyError : std::uint8_t {
+  kNone = 0,
 
-    // Header.
-    kNotPly,                  ///< the first line is not "ply"
-    kTruncatedHeader,         ///< the input ends before end_header
-    kUnknownKeyword,          ///< a header line starts with no known word
-    kMissingWord,             ///< a header line has too few words
-    kExtraWord,               ///< a header line has too many words
-    kBadCharacter,            ///< a control character in a header line other than a comment
-    kLineTooLong,             ///< the words of a header line exceed kPlyTextBytes
-    kMissingFormat,           ///< no format line
-    kDuplicateFormat,         ///< two format lines
-    kUnknownFormat,           ///< neither ascii, binary_little_endian nor binary_big_endian
-    kUnknownVersion,          ///< a version other than 1.0
-    kBadElementCount,         ///< not a plain decimal number below 2^63
-    kDuplicateElement,        ///< two elements of one name
-    kDuplicateProperty,       ///< two properties of one name in an element, or both vertex_index and vertex_indices
-    kPropertyWithoutElement,  ///< a property line before the first element line
-    kUnknownType,             ///< a property type that the format does not know
-    kBadListCountType,        ///< a list whose count is of a floating-point type
-    kBadIndexType,            ///< vertex indices that are no list, or a list of a floating-point type
-    kBadCoordinateType,       ///< x, y or z is a list
-    kNoVertexElement,         ///< no element "vertex"
-    kMissingCoordinate,       ///< the vertices lack x, y or z
-    kMissingIndices,          ///< faces or strips, but no vertex_indices
-    kTooManyElements,         ///< above PlyConfig::max_elements
-    kTooManyProperties,       ///< above PlyConfig::max_properties, all elements together
-    kNamesTooLong,            ///< names of elements and properties exceed kPlyNameBytes together
-    kTooManyVertices,         ///< above PlyConfig::max_vertices
+  // Header.
+  kNotPly,                  ///< the first line is not "ply"
+  kTruncatedHeader,         ///< the input ends before end_header
+  kUnknownKeyword,          ///< a header line starts with no known word
+  kMissingWord,             ///< a header line has too few words
+  kExtraWord,               ///< a header line has too many words
+  kBadCharacter,            ///< a control character in a header line other than a comment
+  kLineTooLong,             ///< the words of a header line exceed kPlyTextBytes
+  kMissingFormat,           ///< no format line
+  kDuplicateFormat,         ///< two format lines
+  kUnknownFormat,           ///< neither ascii, binary_little_endian nor binary_big_endian
+  kUnknownVersion,          ///< a version other than 1.0
+  kBadElementCount,         ///< not a plain decimal number below 2^63
+  kDuplicateElement,        ///< two elements of one name
+  kDuplicateProperty,       ///< two properties of one name in an element, or both vertex_index and vertex_indices
+  kPropertyWithoutElement,  ///< a property line before the first element line
+  kUnknownType,             ///< a property type that the format does not know
+  kBadListCountType,        ///< a list whose count is of a floating-point type
+  kBadIndexType,            ///< vertex indices that are no list, or a list of a floating-point type
+  kBadCoordinateType,       ///< x, y or z is a list
+  kNoVertexElement,         ///< no element "vertex"
+  kMissingCoordinate,       ///< the vertices lack x, y or z
+  kMissingIndices,          ///< faces or strips, but no vertex_indices
+  kTooManyElements,         ///< above PlyConfig::max_elements
+  kTooManyProperties,       ///< above PlyConfig::max_properties, all elements together
+  kNamesTooLong,            ///< names of elements and properties exceed kPlyNameBytes together
+  kTooManyVertices,         ///< above PlyConfig::max_vertices
 
-    // Body.
-    kTruncatedBody,         ///< the input ends before the last declared row does
-    kBadNumber,             ///< ASCII: a token that is not a number, or no integer where one is declared
-    kTokenTooLong,          ///< ASCII: a token longer than kPlyTextBytes
-    kValueRange,            ///< ASCII: an integer outside the range of its declared type
-    kNotFinite,             ///< a coordinate that is NaN, infinite, or not finite as a float
-    kNegativeListCount,     ///< a list with fewer than no entries
-    kIndexRange,            ///< an index that is no vertex of the header's count
-    kRowsAndLinesDisagree,  ///< ASCII: a row starts inside a line, though the body has several lines
-    kTooManyTriangles,      ///< above PlyConfig::max_triangles
+  // Body.
+  kTruncatedBody,         ///< the input ends before the last declared row does
+  kBadNumber,             ///< ASCII: a token that is not a number, or no integer where one is declared
+  kTokenTooLong,          ///< ASCII: a token longer than kPlyTextBytes
+  kValueRange,            ///< ASCII: an integer outside the range of its declared type
+  kNotFinite,             ///< a coordinate that is NaN, infinite, or not finite as a float
+  kNegativeListCount,     ///< a list with fewer than no entries
+  kIndexRange,            ///< an index that is no vertex of the header's count
+  kRowsAndLinesDisagree,  ///< ASCII: a row starts inside a line, though the body has several lines
+  kTooManyTriangles,      ///< above PlyConfig::max_triangles
 
-    // Memory given to read_ply.
-    kVertexSpanTooSmall,    ///< fewer places than the header's vertices; nothing was written
-    kTriangleSpanTooSmall,  ///< fewer places than triangles; those that fit were written
+  // Memory given to read_ply.
+  kVertexSpanTooSmall,    ///< fewer places than the header's vertices; nothing was written
+  kTriangleSpanTooSmall,  ///< fewer places than triangles; those that fit were written
 };
 
 /// A short description of an error, for messages of tools. Never null; "" for kNone.

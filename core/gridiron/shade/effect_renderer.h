@@ -29,7 +29,7 @@
 
 namespace gridiron {
 
-/// @returns kOk; kMissingEffect if a required effect is not built; kBadFrame if there is no such effect.
+/// @returns kOk; kMissingEffect if an effect called for is not built; kBadFrame if there is no such effect.
 [[nodiscard]] constexpr Status check_effects_built(std::uint32_t called_for, std::uint32_t built) {
   const std::uint32_t missing = called_for & ~built;
   if (missing == 0) return Status::kOk;

@@ -42,7 +42,7 @@ struct FrameJob {
   std::uint32_t tile_count;
   std::uint32_t width, height;   ///< pixels
   std::uint32_t tile_width;      ///< pixels: a firmware with another tile width refuses the job
-  std::uint32_t effects;         ///< EffectBits that the scene requires, 0: no scene shading
+  std::uint32_t effects;         ///< EffectBits that the scene calls for, 0: no scene shading
   std::uint32_t packet_width;    ///< rays along a packet's edge that the buffers were chosen for, 0: none; work depends
                                  ///< on it, the picture does not
   std::uint32_t store_bytes;     ///< the arena that they were chosen for: 64, 128, 256 or 512 KB
