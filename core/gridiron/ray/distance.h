@@ -141,8 +141,11 @@ struct DistanceInterval {
 /// @returns whether it shows at once that two triangles lie in one plane: across an axis, or by equal vertices.
 [[nodiscard]] bool in_one_plane(const VertexTriangle& first, const VertexTriangle& second);
 
-/// @returns whether they do, decided exactly: planes that meet in all corners of the second.
-[[nodiscard]] bool surely_in_one_plane(const VertexTriangle& first, const VertexTriangle& second, WorkCounters& work);
+/// @returns whether of two triangles that a ray meets at the same rounded distance the first one is its hit, decided
+/// exactly: the nearer one, or the one with the lower id where they lie in one plane or the ray meets both in one
+/// place.
+[[nodiscard]] bool comes_first_exactly(const float origin[3], const float dir[3], const VertexTriangle& first,
+                                       const VertexTriangle& second, bool has_lower_id, WorkCounters& work);
 
 /// @returns whether of two triangles that a ray meets at the same rounded distance the first one is its hit.
 template <class PacketType>
@@ -157,10 +160,7 @@ template <class PacketType>
   const DistanceInterval other = distance_interval(packet.origin, packet.dir_max, dir, second);
   if (one.high < other.low) return true;
   if (other.high < one.low) return false;
-  if (surely_in_one_plane(first, second, work)) return has_lower_id;
-  work.add(Work::kExactOrder);
-  const int order = exact_distance_order(packet.origin, dir, first.v, second.v);
-  return order < 0 || (order == 0 && has_lower_id);
+  return comes_first_exactly(packet.origin, dir, first, second, has_lower_id, work);
 }
 
 /// Decides hits that lie too close to those that the rays had: both distances exact, then the least (t, id).

@@ -140,7 +140,7 @@ namespace secondary_origin_detail {
   // The normal is off by 2^-14 at most, so is the sum of three such products below 2 by 2^-11; grazing rays ask for
   // more.
   bool leads_along = facing > 0.0f;
-  if (magnitude(facing) < 0x1p-10f) leads_along = volume_sign_in_double(origin, triangle, work) > 0;
+  if (magnitude(facing) < 0x1p-10f) leads_along = volume_sign(origin, triangle, work) > 0;
   result.enters = !leads_along;
   result.weights[0] = weight1;
   result.weights[1] = weight2;

@@ -1,6 +1,7 @@
-// The parts of the `standard` test that run once per triangle. SPDX-License-Identifier: Apache-2.0
+// What edges.h and distance.h compute once per triangle, and their exact decisions. SPDX-License-Identifier: Apache-2.0
 #include <gridiron/base/exact_sum.h>
-#include <gridiron/ray/intersect_standard.h>
+#include <gridiron/ray/distance.h>
+#include <gridiron/ray/edges.h>
 
 #include <bit>
 
@@ -30,6 +31,19 @@ bool is_same(float a, float b) {
   const std::uint32_t bits_a = std::bit_cast<std::uint32_t>(a);
   const std::uint32_t bits_b = std::bit_cast<std::uint32_t>(b);
   return bits_a == bits_b;
+}
+
+// Whether two triangles lie in one plane: planes that meet in all corners of the second.
+bool surely_in_one_plane(const VertexTriangle& first, const VertexTriangle& second, WorkCounters& work) {
+  for (const float(&corner)[3] : second.v) {
+    bool is_shared = false;
+    for (const float(&other)[3] : first.v) {
+      is_shared =
+          is_shared || (is_same(corner[0], other[0]) && is_same(corner[1], other[1]) && is_same(corner[2], other[2]));
+    }
+    if (!is_shared && volume_sign(corner, first, work) != 0) return false;
+  }
+  return true;
 }
 
 }  // namespace
@@ -106,16 +120,12 @@ bool in_one_plane(const VertexTriangle& first, const VertexTriangle& second) {
   return equal_count == 3;
 }
 
-bool surely_in_one_plane(const VertexTriangle& first, const VertexTriangle& second, WorkCounters& work) {
-  for (const float(&corner)[3] : second.v) {
-    bool is_shared = false;
-    for (const float(&other)[3] : first.v) {
-      is_shared =
-          is_shared || (is_same(corner[0], other[0]) && is_same(corner[1], other[1]) && is_same(corner[2], other[2]));
-    }
-    if (!is_shared && volume_sign_in_double(corner, first, work) != 0) return false;
-  }
-  return true;
+bool comes_first_exactly(const float origin[3], const float dir[3], const VertexTriangle& first,
+                         const VertexTriangle& second, bool has_lower_id, WorkCounters& work) {
+  if (surely_in_one_plane(first, second, work)) return has_lower_id;
+  work.add(Work::kExactOrder);
+  const int order = exact_distance_order(origin, dir, first.v, second.v);
+  return order < 0 || (order == 0 && has_lower_id);
 }
 
 void set_up_normal(const VertexTriangle& triangle, float normal[3]) {
@@ -143,8 +153,7 @@ void set_up_normal(const VertexTriangle& triangle, float normal[3]) {
 }
 
 // The float test's form and bound with u = 2^-52 in the place of 2^-23; nothing here can leave the range of a double.
-int edge_sign_in_double(const float origin[3], const float dir[3], const float a[3], const float b[3],
-                        WorkCounters& work) {
+int edge_sign(const float origin[3], const float dir[3], const float a[3], const float b[3], WorkCounters& work) {
   work.add(Work::kDoubleSign);
   double sum[3], edge[3];
   double size_sum = 0.0, size_edge = 0.0, size_dir = 0.0;
@@ -166,7 +175,7 @@ int edge_sign_in_double(const float origin[3], const float dir[3], const float a
   return exact_edge_sign(origin, dir, a, b);
 }
 
-int volume_sign_in_double(const float origin[3], const VertexTriangle& triangle, WorkCounters& work) {
+int volume_sign(const float origin[3], const VertexTriangle& triangle, WorkCounters& work) {
   double normal[3], products[3];
   normal_of(triangle, normal, products);
   double volume = 0.0;
