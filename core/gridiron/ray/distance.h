@@ -141,11 +141,18 @@ struct DistanceInterval {
 /// @returns whether it shows at once that two triangles lie in one plane: across an axis, or by equal vertices.
 [[nodiscard]] bool in_one_plane(const VertexTriangle& first, const VertexTriangle& second);
 
-/// @returns whether of two triangles that a ray meets at the same rounded distance the first one is its hit, decided
-/// exactly: the nearer one, or the one with the lower id where they lie in one plane or the ray meets both in one
-/// place.
-[[nodiscard]] bool comes_first_exactly(const float origin[3], const float dir[3], const VertexTriangle& first,
-                                       const VertexTriangle& second, bool has_lower_id, WorkCounters& work);
+/// @returns whether they do, decided exactly: planes that meet in all corners of the second.
+[[nodiscard]] bool surely_in_one_plane(const VertexTriangle& first, const VertexTriangle& second, WorkCounters& work);
+
+/// @returns comes_first() by exact arithmetic: the nearer triangle, or the lower id in one plane or at one place.
+[[nodiscard]] GRIDIRON_INLINE bool comes_first_exactly(const float origin[3], const float dir[3],
+                                                       const VertexTriangle& first, const VertexTriangle& second,
+                                                       bool has_lower_id, WorkCounters& work) {
+  if (surely_in_one_plane(first, second, work)) return has_lower_id;
+  work.add(Work::kExactOrder);
+  const int order = exact_distance_order(origin, dir, first.v, second.v);
+  return order < 0 || (order == 0 && has_lower_id);
+}
 
 /// @returns whether of two triangles that a ray meets at the same rounded distance the first one is its hit.
 template <class PacketType>

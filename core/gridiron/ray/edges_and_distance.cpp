@@ -33,19 +33,6 @@ bool is_same(float a, float b) {
   return bits_a == bits_b;
 }
 
-// Whether two triangles lie in one plane: planes that meet in all corners of the second.
-bool surely_in_one_plane(const VertexTriangle& first, const VertexTriangle& second, WorkCounters& work) {
-  for (const float(&corner)[3] : second.v) {
-    bool is_shared = false;
-    for (const float(&other)[3] : first.v) {
-      is_shared =
-          is_shared || (is_same(corner[0], other[0]) && is_same(corner[1], other[1]) && is_same(corner[2], other[2]));
-    }
-    if (!is_shared && volume_sign(corner, first, work) != 0) return false;
-  }
-  return true;
-}
-
 }  // namespace
 
 void set_up_distance(const float origin[3], float dir_max, const VertexTriangle& triangle, DistanceSetup& setup) {
@@ -120,12 +107,16 @@ bool in_one_plane(const VertexTriangle& first, const VertexTriangle& second) {
   return equal_count == 3;
 }
 
-bool comes_first_exactly(const float origin[3], const float dir[3], const VertexTriangle& first,
-                         const VertexTriangle& second, bool has_lower_id, WorkCounters& work) {
-  if (surely_in_one_plane(first, second, work)) return has_lower_id;
-  work.add(Work::kExactOrder);
-  const int order = exact_distance_order(origin, dir, first.v, second.v);
-  return order < 0 || (order == 0 && has_lower_id);
+bool surely_in_one_plane(const VertexTriangle& first, const VertexTriangle& second, WorkCounters& work) {
+  for (const float(&corner)[3] : second.v) {
+    bool is_shared = false;
+    for (const float(&other)[3] : first.v) {
+      is_shared =
+          is_shared || (is_same(corner[0], other[0]) && is_same(corner[1], other[1]) && is_same(corner[2], other[2]));
+    }
+    if (!is_shared && volume_sign(corner, first, work) != 0) return false;
+  }
+  return true;
 }
 
 void set_up_normal(const VertexTriangle& triangle, float normal[3]) {
