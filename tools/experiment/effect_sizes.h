@@ -1,5 +1,5 @@
 // Effect sizes: what a renderer built for a set of effects takes of a core, on riscv64.
-// tools/checks/effect_sizes wrote it.
+// tools/checks/memory_table --effects wrote the rows.
 // Memory: constants. Threads: any. SPDX-License-Identifier: Apache-2.0
 #pragma once
 

@@ -141,7 +141,7 @@ struct EffectLayout256K {
 };
 
 /// Sizes of a 64 KB core that renders effects: no packets, all rays by walks, whose code is shorter. All effects fit,
-/// as tools/checks/effect_sizes measures; on a core without vectors only with Lanes<1> (base/one_lane.h).
+/// as tools/checks/memory_table --effects measures; on a core without vectors only with Lanes<1> (base/one_lane.h).
 /// @tparam BuiltV     as above.
 /// @tparam WaveRaysV  rays of a wave: 32, 64; a longer one takes memory that a smaller set of effects leaves free.
 template <std::uint32_t BuiltV, std::uint32_t WaveRaysV = 32>
