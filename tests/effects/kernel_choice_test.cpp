@@ -1,4 +1,4 @@
-// Choice of effects: one that a scene does not require costs nothing; one that a kernel lacks is reported by name.
+// Choice of effects: one that a scene does not call for costs nothing; one that a kernel lacks is reported by name.
 // SPDX-License-Identifier: Apache-2.0
 #include <gtest/gtest.h>
 

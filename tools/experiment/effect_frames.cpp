@@ -154,7 +154,7 @@ void check_absent_costs(const EffectFrame& frame, std::uint32_t expected, const 
   }
   for (const AbsentCost& cost : absent_costs(frame)) {
     if (cost.is_nothing()) continue;
-    fail_check(name + ": " + tool::words_of_effects(cost.effect) + " is not required and cost " +
+    fail_check(name + ": " + tool::words_of_effects(cost.effect) + " is not called for and cost " +
                std::to_string(cost.count) + " " + std::string(cost.what) + ", " + std::to_string(cost.bytes) +
                " bytes and " + number_text(cost.cycles) + " cycles");
   }

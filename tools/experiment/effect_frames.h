@@ -1,4 +1,4 @@
-// Frames of the effects experiment: their counts, and the cost of the effects that a frame does not require.
+// Frames of the effects experiment: their counts, and the cost of the effects that its scene does not call for.
 // Memory: a frame owns its picture. Threads: any, no shared state. SPDX-License-Identifier: Apache-2.0
 #pragma once
 
@@ -49,7 +49,7 @@ struct EffectFrame {
 /// Renders on the calling thread with configuration best on six cores of the home machine. Errors: tool::Failure.
 [[nodiscard]] EffectFrame render_effect_frame(const EffectScene& scene, const EffectFrameRequest& request);
 
-/// The counts of a frame for an effect that it does not require.
+/// The counts of a frame for an effect that its scene does not call for.
 struct AbsentCost {
   EffectBits effect{};
   std::string_view what{};  ///< that was counted
@@ -61,11 +61,11 @@ struct AbsentCost {
   [[nodiscard]] bool is_nothing() const { return count == 0 && bytes == 0 && cycles == 0; }
 };
 
-/// @returns one for each effect that the frame does not require, in the order of their bits.
+/// @returns one for each effect that the scene does not call for, in the order of their bits.
 [[nodiscard]] std::vector<AbsentCost> absent_costs(const EffectFrame& frame);
 
-/// Errors: tool::Failure (kCheckFailed) if an effect that is not required cost anything, or the required effects are
-/// not `expected`. @param name  of the frame, for messages.
+/// Errors: tool::Failure (kCheckFailed) if an effect that the scene does not call for cost anything, or if those that
+/// it calls for are not `expected`. @param name  of the frame, for messages.
 void check_absent_costs(const EffectFrame& frame, std::uint32_t expected, const std::string& name);
 
 inline constexpr double kLeastHiddenShare = 0.9;

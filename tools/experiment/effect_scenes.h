@@ -1,5 +1,5 @@
 // The scenes of the effects experiment, made in process: four of the Standard Procedural Databases with some effects
-// added, and a gallery that requires all.
+// added, and a gallery that calls for all.
 // Memory: owns the scenes. Threads: any, no shared state. SPDX-License-Identifier: Apache-2.0
 #pragma once
 
@@ -30,10 +30,10 @@ inline constexpr std::string_view kEffectSceneKeys[] = {"balls", "tetra", "mount
 /// @returns the scene in the form that prepare_frame takes.
 [[nodiscard]] tool::SceneInput input_of(const EffectScene& scene);
 
-/// @returns the EffectBits that a scene requires.
+/// @returns the EffectBits that a scene calls for.
 [[nodiscard]] std::uint32_t called_for(const EffectScene& scene);
 
-/// @returns the scene changed so that it does not require `effect`: area lights become points of the same colour in
+/// @returns the scene changed so that it does not call for `effect`: area lights become points of the same colour in
 /// their middle; shadows of all lights are switched off; for reflection the depth of recursion becomes 1; for others a
 /// share, an exponent or a count becomes 0 or 1. Precondition: not kSceneShading.
 [[nodiscard]] EffectScene without_effect(EffectScene scene, EffectBits effect);

@@ -114,7 +114,7 @@ tool::ExitCode code_of(const EffectFrame& frame, std::uint32_t expected) {
   return tool::ExitCode::kDone;
 }
 
-// A frame that does more than required fails, for every effect.
+// A frame that does more than its scene calls for fails, for every effect.
 TEST(EffectsExperiment, WorkOfAnEffectThatIsOffFailsTheRun) {
   EffectFrame plain;
   plain.called_for = kSceneShading;

@@ -33,7 +33,7 @@ struct EffectSectionFact {
   std::uint64_t bytes = 0;  ///< in main memory
 };
 
-/// The effects that a scene requires; all empty without any.
+/// The effects that a scene calls for; all empty without any.
 struct EffectFacts {
   bool has_effects = false;
   EffectsRecord record{};  ///< without its offsets
