@@ -238,7 +238,7 @@ static_assert(kFitsArena<EffectLayout256K<kAllEffects, 8>> && kFitsArena<EffectL
 static_assert(kFitsArena<StoreLayout512K<8>> && kFitsArena<StoreLayout512K<32>> && kFitsArena<StoreLayout512K<8, 64>> &&
               kFitsArena<StoreLayout512K<32, 64>>);
 
-// A frame's record has two parts, one of them a base. Compilers warn of offsetof on such a type, but support it.
+// A frame's record and a packet have bases. Compilers warn of offsetof on such a type, but support it.
 #pragma GCC diagnostic push
 #pragma GCC diagnostic ignored "-Winvalid-offsetof"
 /// Calls visit(name, offset_bytes, bytes) for every region of the store, in address order.
