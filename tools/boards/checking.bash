@@ -1,7 +1,10 @@
-# What the check_ scripts of the boards have in common; they source it, and set `build` (directory of the preset),
-# `board` and `gridiron` (the program).
+# What the check_ scripts of the boards have in common; they source it, and set `board`, and before other functions than
+# begin_check `build` (directory of the preset) and `gridiron` (the program).
 # SPDX-License-Identifier: Apache-2.0
 
+root=$(cd "$(dirname "${BASH_SOURCE[0]}")/../.." && pwd)
+work=$(mktemp -d)
+trap 'rm -rf "$work"' EXIT
 checks=$(cd "$(dirname "${BASH_SOURCE[0]}")/../checks" && pwd)
 
 # hold_stack LOG IMAGE ENTRY [--leaf SYMBOL]...: of a run of IMAGE whose words are in LOG, the painted stack of each
@@ -89,4 +92,85 @@ break_record() {
     triangles) change "$1" $((frame + 336)) 8 0; echo 'frame record: triangles address' ;;
   esac
   seal "$1"
+}
+
+# A check of one frame after the other, of check_virt and check_zcu102. They set `base`, `memory` and `cores` of the jobs.
+# The words of each run are in NAME.log.
+
+# begin_check [GRIDIRON] [BUILD]: with GRIDIRON_SCENES the scene is the bunny there, else the teapot.
+begin_check() {
+  if [[ ${1:-} == -* ]]; then
+    sed -n 's/^#   //p' "$0" >&2
+    exit 2
+  fi
+  gridiron=${1:-$root/build/host/bin/gridiron} build=${2:-$root/build/$board}
+  scene=$root/scenes/teapot.ply view=()
+  if [ -f "${GRIDIRON_SCENES:-}/bunny.ply" ]; then
+    scene=$GRIDIRON_SCENES/bunny.ply view=(--camera "$root/scenes/bunny.camera")
+  fi
+}
+
+# fail NAME WORDS...
+fail() {
+  cat "$work/$1.log" >&2
+  shift
+  echo "check_$board: $*" >&2
+  exit 1
+}
+
+# job NAME INPUT OPTIONS...
+job() {
+  local name=$1 input=$2
+  shift 2
+  "$gridiron" job "$input" --base "$base" --memory "$memory" --cores "$cores" --quiet -o "$work/$name.job" "$@" \
+    > "$work/$name.log" 2>&1 || fail "$name" "no job $name"
+}
+
+# run NAME EXIT_CODES OPTIONS...: its result in NAME.result, its exit code in `status`; EXIT_CODES as 0|6.
+run() {
+  local name=$1 wanted=$2
+  status=0
+  shift 2
+  "$root/tools/boards/run_$board" "$work/$name.job" -o "$work/$name.result" --build "$build" "$@" \
+    > "$work/$name.log" 2>&1 || status=$?
+  [[ $status =~ ^($wanted)$ ]] || fail "$name" "$name $*: exit code $status, not $wanted"
+}
+
+# compare NAME EXIT_CODE
+compare() {
+  compare_result "$work/$1.job" "$work/$1.result" "$work/$1.log" "$2" || fail "$1" "$1: not as the simulated chip's"
+}
+
+# said NAME WORDS WHAT: a line of the log begins with WORDS, a regular expression; else WHAT is wrong.
+said() { grep -q "^$2" "$work/$1.log" || fail "$1" "$3"; }
+
+# trespass NUMBER EXIT_CODE WORDS: the firmware does what a core must not do, and says WORDS.
+trespass() {
+  run standard "$2" --image trespass --option "trespass=$1"
+  said standard "$3" "trespass $1: another report"
+}
+
+# refuse_job NAME WORDS: broken.job is refused, for a reason that begins with WORDS.
+refuse_job() {
+  run broken 2
+  said broken "job refused: $2" "$1: another reason"
+}
+
+# refuse_broken_jobs WIDTH: jobs with one byte changed, one for tiles of another width, and `small` with wrong records.
+refuse_broken_jobs() {
+  local change offset word field
+  for change in '0 magic' '11 base address' "$(($(stat -c %s "$work/standard.job") - 1)) check value"; do
+    read -r offset word <<< "$change"
+    cp "$work/standard.job" "$work/broken.job"
+    change "$work/broken.job" "$offset" 1 0xa5
+    refuse_job "job with byte $offset changed" "$word"
+  done
+  job broken "$scene" --store "$1" --size 64x64
+  refuse_job 'a job of other tiles' 'tile width'
+  for field in colour width triangles; do
+    cp "$work/small.job" "$work/broken.job"
+    word=$(break_record "$work/broken.job" $field)
+    refuse_job "job whose record has another $field" "$word"
+  done
+  echo 'ok  seven wrong jobs are refused'
 }

@@ -1,9 +1,11 @@
-# What the run_ scripts of the boards have in common; they source it. They set `job` (file), `result` (where to), `image`
-# (may be empty), `build` (directory of the preset), `limit` (seconds) and `words` (arg=WORD,arg=... for the firmware).
+# What the run_ scripts of the boards have in common; they source it. They set `limit` (seconds), and in `given` a default
+# for each option of their own; read_request fills in the rest.
 # SPDX-License-Identifier: Apache-2.0
 
 me=$(basename "$0")
 board=${me#run_}
+job='' words=arg=gridiron  # words: for the firmware
+declare -A given=([-o]='' [--image]='' [--build]=$root/build/$board [--limit]='')
 
 # The script's own opening comment.
 usage() {
@@ -15,14 +17,24 @@ fail() {
   exit 125
 }
 
-# check_request QEMU DEBIAN_PACKAGE: what was asked for is there.
-check_request() {
+# read_request QEMU DEBIAN_PACKAGE ARGUMENTS...: reads the command line and checks that what it names is there.
+read_request() {
+  local qemu=$1 package=$2
+  shift 2
+  while [ $# -gt 0 ]; do
+    case "$1" in
+      --option) [ $# -ge 2 ] || usage; words+=",arg=$2"; shift 2 ;;
+      -*) [ $# -ge 2 ] && [ -v "given[$1]" ] || usage; given[$1]=$2; shift 2 ;;
+      *) [ -z "$job" ] || usage; job=$1; shift ;;
+    esac
+  done
+  result=${given[-o]} image=${given[--image]} build=${given[--build]} limit=${given[--limit]:-$limit}
   [ -n "$job" ] && [ -n "$result" ] || usage
   [ -f "$job" ] || fail "$job: no such job"
   [ "$(stat -c %s "$job")" -ge 256 ] || fail "$job: ends inside of its first record"
   [ -d "$(dirname -- "$result")" ] && [ ! -d "$result" ] || fail "$result: no place for a file"
   [ ! "$job" -ef "$result" ] || fail "$job: the result would take its place"
-  command -v "$1" > /dev/null || fail "no $1 (Debian package $2)"
+  command -v "$qemu" > /dev/null || fail "no $qemu (Debian package $package)"
 }
 
 # plain, or effects where the job calls for them.

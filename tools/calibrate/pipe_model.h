@@ -55,7 +55,7 @@ inline constexpr std::uint32_t kBranchMissCycles = 18;
 inline constexpr std::uint32_t kRegisterBlocks = 8;
 
 /// Basic blocks that a compiler schedules as one where the branches between them go their usual way: what unrolling a
-/// loop four times and moving operations above branches gives. An assumption, held against the published rate of dual
+/// loop four times and moving operations above branches gives. An assumption, compared with the published rate of dual
 /// issue, see documentation/calibration.md.
 inline constexpr std::uint32_t kSuperblockBranches = 4;
 

@@ -200,7 +200,7 @@ void print_line(const char* name, const std::string& text) {
 void print_effects(const InfoPlan& plan, const SceneFacts& facts) {
   const EffectFacts& effects = facts.effects;
   const EffectsRecord& record = effects.record;
-  print_line("effects", effects.has_effects ? words_of_effects(record.called_for) : "none called for");
+  print_line("effects", effects.has_effects ? words_of_effects(record.called_for) : "the scene calls for none");
   print_line("renderer", renderer_of(plan, facts));
   if (!effects.has_effects) return;
   if (!has_effect_store(plan)) {
@@ -278,7 +278,7 @@ void print_text(const InfoPlan& plan, const SceneFacts& facts) {
                                 " data");
   const std::uint32_t called_for = facts.effects.record.called_for;
   if (called_for != 0 && called_for != kAllEffects) {
-    print_line("", "of a renderer with all effects; one with the required effects takes less");
+    print_line("", "of a renderer with all effects; one with the effects called for takes less");
   }
   for (const LocalStoreRegion& region : store.regions) {
     std::printf("%14s %8s  %s\n", "", words_of_count(region.bytes).c_str(),

@@ -33,7 +33,7 @@ std::uint64_t pieces_of(std::uint64_t bytes, std::uint64_t step) {
   return bytes <= step ? 1 : 1 + parts(bytes - step, kPortableBoundaryBytes);
 }
 
-constexpr std::uint64_t kSubpacketPixels = 16;
+constexpr std::uint64_t kSubpacketRays = 16;
 constexpr std::uint64_t kRaysOfWalk = 16;
 // Every ray joins a pass of its own steepest axis and sign. One whose direction rounding has made zero goes alone; a
 // camera has at most one, as directions are further apart than their roundings.
@@ -125,7 +125,7 @@ class Sum {
     const std::uint64_t packets_across = layout_.tile_width / layout_.packet_width;
     const std::uint64_t packets = packets_across * packets_across * samples;
     const std::uint64_t rays = std::uint64_t{layout_.packet_width} * layout_.packet_width;
-    const std::uint64_t subpackets = rays / kSubpacketPixels;
+    const std::uint64_t subpackets = rays / kSubpacketRays;
     const std::uint64_t squares = subpackets < 4 ? 1 : subpackets / 4;
     const std::uint64_t rounds = is_paper() || is_fast() ? 1 : 2;
     const Count passes = Count{packets} * (kAxesAndSigns * rounds + (is_exact() ? rays : 0)) + samples * rounds;
@@ -181,8 +181,8 @@ class Sum {
 
   // Squares and subpackets tested against cells and triangles, and how far each still looks.
   void add_packet_culling(Count passes, std::uint64_t subpackets, std::uint64_t squares) {
-    const std::uint64_t measured = subpackets < 4 ? groups(kSubpacketPixels)
-                                                  : squares * groups(4 * kSubpacketPixels) + (squares > 1 ? 1 : 0);
+    const std::uint64_t measured =
+        subpackets < 4 ? groups(kSubpacketRays) : squares * groups(4 * kSubpacketRays) + (squares > 1 ? 1 : 0);
     Count reach = Count{measured} * (Count{1} + scene_.runs);
     if (uses(kUseSubpackets)) {
       if (squares >= 4) {

@@ -119,7 +119,7 @@ class Records {
         checker_.read<MacroTableEntry>(view_.macro_table_offset_bytes + macro_cell / 32 * sizeof(MacroTableEntry));
     const std::uint32_t bit = 1u << (macro_cell % 32);
     if ((entry.occupied & bit) == 0) return kNowhere;
-    const std::uint64_t block = std::uint64_t{entry.first_block} + bit_count(entry.occupied & (bit - 1));
+    const std::uint64_t block = std::uint64_t{entry.first_block} + count_bits(entry.occupied & (bit - 1));
     return view_.cell_blocks_offset_bytes + block * view_.grid.cell_block_bytes;
   }
 

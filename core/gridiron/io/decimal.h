@@ -37,4 +37,9 @@ DecimalStatus parse_integer(const char* text, std::size_t text_bytes, std::int64
 /// NaN.
 [[nodiscard]] std::uint32_t float_bits_from_double_bits(std::uint64_t double_bits);
 
+/// @returns whether these bits of a single are neither infinity nor NaN.
+[[nodiscard]] constexpr bool are_finite_bits(std::uint32_t float_bits) {
+  return (float_bits & 0x7F800000u) != 0x7F800000u;
+}
+
 }  // namespace gridiron

@@ -1,4 +1,5 @@
-// PLY reader, second half: rows, polygons and strips. The header is in ply_header.cpp.
+// PLY reader: its steps, rows, polygons and strips. The header is in ply_header.cpp, the two forms of a body in
+// ply_ascii.cpp and ply_binary.cpp.
 // Memory: the reader's and the caller's spans. Threads: one per reader. SPDX-License-Identifier: Apache-2.0
 #include <gridiron/io/decimal.h>
 #include <gridiron/io/ply_reader.h>
@@ -7,33 +8,6 @@
 
 namespace gridiron {
 namespace {
-
-constexpr std::uint32_t kExponentBits = 0x7F800000u;
-
-bool is_blank(char c) {
-  return c == ' ' || c == '\n' || c == '\t' || c == '\r';
-}
-
-bool is_finite(std::uint32_t float_bits) {
-  return (float_bits & kExponentBits) != kExponentBits;
-}
-
-template <class Unsigned>
-Unsigned load(const std::byte* bytes) {
-  Unsigned value;
-  __builtin_memcpy(&value, bytes, sizeof(value));
-  return value;
-}
-
-std::uint32_t swapped(std::uint32_t value) {
-  return __builtin_bswap32(value);
-}
-
-template <bool kSwap>
-std::uint32_t load_word(const std::byte* bytes) {
-  const std::uint32_t value = load<std::uint32_t>(bytes);
-  return kSwap ? swapped(value) : value;
-}
 
 template <class Integer>
 Integer smaller(Integer a, Integer b) {
@@ -50,23 +24,9 @@ PlyReader::PlyReader(const PlyConfig& config) : config_(config) {
 }
 
 std::uint32_t PlyReader::type_bytes(Type type) {
-  switch (type) {
-    case Type::kInt8:
-    case Type::kUint8:
-      return 1;
-    case Type::kInt16:
-    case Type::kUint16:
-      return 2;
-    case Type::kInt32:
-    case Type::kUint32:
-    case Type::kFloat32:
-      return 4;
-    case Type::kFloat64:
-      return 8;
-    case Type::kNone:
-      break;
-  }
-  return 0;
+  constexpr std::uint8_t kBytes[] = {1, 1, 2, 2, 4, 4, 4, 8, 0};  // in the order of Type
+  static_assert(sizeof(kBytes) == static_cast<std::size_t>(Type::kNone) + 1);
+  return kBytes[static_cast<std::size_t>(type)];
 }
 
 bool PlyReader::in_range(Type type, std::int64_t value) {
@@ -266,7 +226,7 @@ bool PlyReader::list_count(std::int64_t count, std::uint64_t byte_offset) {
 }
 
 bool PlyReader::coordinate(std::uint32_t float_bits, std::uint64_t byte_offset) {
-  if (!is_finite(float_bits)) return fail_in_row(PlyError::kNotFinite, byte_offset);
+  if (!are_finite_bits(float_bits)) return fail_in_row(PlyError::kNotFinite, byte_offset);
   // Only called for x, y, z. NOLINTNEXTLINE(clang-analyzer-alpha.security.ArrayBound)
   coordinate_bits_[static_cast<std::size_t>(current_property().role) - static_cast<std::size_t>(Role::kX)] = float_bits;
   end_property();
@@ -303,283 +263,6 @@ bool PlyReader::index(std::int64_t value, std::uint64_t byte_offset) {
   }
   if (--list_left_ == 0) end_property();
   return true;
-}
-
-// --- ASCII ----------------------------------------------------------------------------------------------------------
-
-bool PlyReader::ascii_body(const char* text, std::size_t count, std::size_t& used, bool at_end) {
-  while (stage_ == Stage::kBody && pending_ == PlyEvent::kNeedInput) {
-    if (text_bytes_ == 0) {
-      if (!skip_blanks(text, count, used)) return true;
-      if (!token_begins(offset_ + used, property_ == 0 && !in_list_)) return false;
-    }
-    std::size_t end = used;
-    while (end < count && !is_blank(text[end])) ++end;
-    if (text_bytes_ == 0 && end < count) {
-      if (end - used > kPlyTextBytes) return fail_in_row(PlyError::kTokenTooLong, offset_ + used);
-      if (!token(text + used, end - used, offset_ + used)) return false;
-      used = end;
-      continue;
-    }
-    // The piece ends inside the token, or began inside it: gather it.
-    if (text_bytes_ == 0) token_offset_ = offset_ + used;
-    if (end - used > kPlyTextBytes - text_bytes_) return fail_in_row(PlyError::kTokenTooLong, token_offset_);
-    for (; used < end; ++used) text_[text_bytes_++] = text[used];
-    if (end == count && !at_end) return true;
-    const std::size_t bytes = text_bytes_;
-    text_bytes_ = 0;
-    if (!token(text_, bytes, token_offset_)) return false;
-  }
-  return true;
-}
-
-// Steps over blanks and counts lines. Returns false at the end of the piece.
-bool PlyReader::skip_blanks(const char* text, std::size_t count, std::size_t& used) {
-  for (; used < count && is_blank(text[used]); ++used) {
-    const char c = text[used];
-    if (c == '\r' || (c == '\n' && !after_return_)) {
-      ++line_;
-      line_has_token_ = false;
-    }
-    after_return_ = c == '\r';
-  }
-  if (used == count) return false;
-  after_return_ = false;
-  return true;
-}
-
-// Rows are lines, or the whole body is one line. Anything between the two is what a header that declares fewer values
-// than the lines hold looks like; read as a stream it would give a wrong mesh without an error.
-bool PlyReader::token_begins(std::uint64_t byte_offset, bool row_start) {
-  if (line_has_token_) {
-    row_inside_line_ = row_inside_line_ || row_start;
-  } else {
-    body_spans_lines_ = body_has_token_;
-  }
-  line_has_token_ = true;
-  body_has_token_ = true;
-  if (!row_inside_line_ || !body_spans_lines_) return true;
-  if (stage_ == Stage::kBody) return fail_in_row(PlyError::kRowsAndLinesDisagree, byte_offset);
-  return fail(PlyError::kRowsAndLinesDisagree, byte_offset, line_, kPlyNoElement);
-}
-
-// Counts what follows the last row.
-bool PlyReader::ascii_trailer(const char* text, std::size_t count, std::size_t& used) {
-  while (skip_blanks(text, count, used)) {
-    if (!token_begins(offset_ + used, false)) return false;
-    for (; used < count && !is_blank(text[used]); ++used) ++counts_.surplus_bytes;
-  }
-  return true;
-}
-
-bool PlyReader::token(const char* text, std::size_t bytes, std::uint64_t byte_offset) {
-  const Property& property = current_property();
-  const bool is_count = property.count_type != Type::kNone && !in_list_;
-  if (property.role == Role::kSkip && !is_count) {
-    if (!is_number(text, bytes)) return fail_in_row(PlyError::kBadNumber, byte_offset);
-    if (!in_list_ || --list_left_ == 0) end_property();
-    return true;
-  }
-
-  const Type type = is_count ? property.count_type : property.type;
-  if (is_floating(type)) {
-    std::uint32_t float_bits = 0;
-    const DecimalStatus status = parse_float(text, bytes, float_bits);
-    if (status == DecimalStatus::kNotFinite) return fail_in_row(PlyError::kNotFinite, byte_offset);
-    if (status != DecimalStatus::kOk) return fail_in_row(PlyError::kBadNumber, byte_offset);
-    return coordinate(float_bits, byte_offset);
-  }
-  std::int64_t value = 0;
-  const DecimalStatus status = parse_integer(text, bytes, value);
-  if (status == DecimalStatus::kSyntax) return fail_in_row(PlyError::kBadNumber, byte_offset);
-  if (is_count && status == DecimalStatus::kOk && value < 0) return list_count(value, byte_offset);
-  if (status == DecimalStatus::kRange || !in_range(type, value)) {
-    return fail_in_row(in_list_ ? PlyError::kIndexRange : PlyError::kValueRange, byte_offset);
-  }
-  if (is_count) return list_count(value, byte_offset);
-  if (in_list_) return index(value, byte_offset);
-  return coordinate(std::bit_cast<std::uint32_t>(static_cast<float>(value)), byte_offset);
-}
-
-// --- Binary ---------------------------------------------------------------------------------------------------------
-
-std::uint64_t PlyReader::load_bits(const std::byte* bytes, Type type) const {
-  switch (type_bytes(type)) {
-    case 1:
-      return load<std::uint8_t>(bytes);
-    case 2: {
-      const std::uint16_t value = load<std::uint16_t>(bytes);
-      return swap_bytes_ ? __builtin_bswap16(value) : value;
-    }
-    case 4: {
-      const std::uint32_t value = load<std::uint32_t>(bytes);
-      return swap_bytes_ ? __builtin_bswap32(value) : value;
-    }
-    default: {
-      const std::uint64_t value = load<std::uint64_t>(bytes);
-      return swap_bytes_ ? __builtin_bswap64(value) : value;
-    }
-  }
-}
-
-namespace {
-
-template <class Signed>
-std::int64_t sign_extended(std::uint64_t bits) {
-  return static_cast<Signed>(bits);
-}
-
-}  // namespace
-
-bool PlyReader::binary_value(std::uint64_t bits, Type type, std::uint64_t byte_offset) {
-  if (type == Type::kFloat32) return coordinate(static_cast<std::uint32_t>(bits), byte_offset);
-  if (type == Type::kFloat64) return coordinate(float_bits_from_double_bits(bits), byte_offset);
-  std::int64_t value = static_cast<std::int64_t>(bits);
-  if (type == Type::kInt8) value = sign_extended<std::int8_t>(bits);
-  if (type == Type::kInt16) value = sign_extended<std::int16_t>(bits);
-  if (type == Type::kInt32) value = sign_extended<std::int32_t>(bits);
-  if (in_list_) return index(value, byte_offset);
-  if (current_property().count_type != Type::kNone) return list_count(value, byte_offset);
-  return coordinate(std::bit_cast<std::uint32_t>(static_cast<float>(value)), byte_offset);
-}
-
-bool PlyReader::binary_body(const std::byte* bytes, std::size_t count, std::size_t& used) {
-  while (stage_ == Stage::kBody && pending_ == PlyEvent::kNeedInput) {
-    // Whole rows at once, as long as they hold nothing unusual.
-    const bool row_start = property_ == 0 && !in_list_ && carry_bytes_ == 0 && skip_bytes_ == 0;
-    if (row_start && layout_.stride_bytes != 0 && count - used >= layout_.stride_bytes) {
-      const std::uint64_t rows_left = elements_[element_].row_count - row_;
-      const std::size_t rows_here = (count - used) / layout_.stride_bytes;
-      const std::size_t stride_bytes = layout_.stride_bytes;
-      const std::size_t done =
-          quick_rows(bytes + used, rows_left < rows_here ? static_cast<std::size_t>(rows_left) : rows_here);
-      used += done * stride_bytes;
-      if (done > 0) end_rows(done);
-      if (stage_ != Stage::kBody || pending_ != PlyEvent::kNeedInput) break;
-      if (done > 0 && row_ == 0) continue;  // a new element
-    }
-    if (used == count) break;
-
-    if (skip_bytes_ > 0) {
-      const std::size_t left = count - used;
-      const std::size_t skipped = skip_bytes_ < left ? static_cast<std::size_t>(skip_bytes_) : left;
-      used += skipped;
-      skip_bytes_ -= skipped;
-      if (skip_bytes_ == 0) end_property();
-      continue;
-    }
-    const Property& property = current_property();
-    const bool is_count = property.count_type != Type::kNone && !in_list_;
-    if (property.role == Role::kSkip && !is_count) {
-      skip_bytes_ = type_bytes(property.type);
-      continue;
-    }
-
-    // One value, which may come in pieces.
-    const Type type = is_count ? property.count_type : property.type;
-    const std::size_t wanted = type_bytes(type);
-    const std::byte* value = bytes + used;
-    if (carry_bytes_ > 0 || count - used < wanted) {
-      while (carry_bytes_ < wanted && used < count) carry_[carry_bytes_++] = bytes[used++];
-      if (carry_bytes_ < wanted) break;
-      value = carry_;
-      carry_bytes_ = 0;
-    } else {
-      used += wanted;
-    }
-    if (!binary_value(load_bits(value, type), type, offset_ + used - wanted)) return false;
-  }
-  return true;
-}
-
-// Items of `wanted` that fit the rest of a span; all of them where items are only counted.
-std::size_t PlyReader::room(std::size_t span_items, std::size_t wanted) const {
-  return span_items == 0 ? wanted : smaller(wanted, span_items - batch_);
-}
-
-std::size_t PlyReader::quick_rows(const std::byte* bytes, std::size_t row_count) {
-  switch (elements_[element_].kind) {
-    case Kind::kOther:
-      return row_count;
-    case Kind::kStrip:
-      return 0;
-    case Kind::kVertex: {
-      const std::size_t rows = room(output_.vertices.size(), row_count);
-      if (!layout_.all_float) return quick_vertices(bytes, rows);
-      return swap_bytes_ ? quick_float_vertices<true>(bytes, rows) : quick_float_vertices<false>(bytes, rows);
-    }
-    case Kind::kFace:
-      break;
-  }
-  const std::uint64_t allowed = config_.max_triangles - counts_.triangles;
-  std::size_t rows = room(output_.triangles.size(), row_count);
-  if (allowed < rows) rows = static_cast<std::size_t>(allowed);
-  if (layout_.types[0] == Type::kUint8) {
-    return swap_bytes_ ? quick_faces<true, std::uint8_t>(bytes, rows) : quick_faces<false, std::uint8_t>(bytes, rows);
-  }
-  return swap_bytes_ ? quick_faces<true, std::uint32_t>(bytes, rows) : quick_faces<false, std::uint32_t>(bytes, rows);
-}
-
-// The quick loops stop before the first row that is not plain; the general route then finds what is wrong with it.
-
-template <bool kSwap>
-std::size_t PlyReader::quick_float_vertices(const std::byte* bytes, std::size_t row_count) {
-  const std::size_t stride_bytes = layout_.stride_bytes;
-  const std::byte* x = bytes + layout_.offset_bytes[0];
-  const std::byte* y = bytes + layout_.offset_bytes[1];
-  const std::byte* z = bytes + layout_.offset_bytes[2];
-  Vec3* output = output_.vertices.empty() ? nullptr : output_.vertices.data() + batch_;
-  std::size_t row = 0;
-  for (std::size_t place = 0; row < row_count; ++row, place += stride_bytes) {
-    const std::uint32_t bits[3] = {load_word<kSwap>(x + place), load_word<kSwap>(y + place),
-                                   load_word<kSwap>(z + place)};
-    if (!(is_finite(bits[0]) && is_finite(bits[1]) && is_finite(bits[2]))) break;
-    if (output != nullptr) {
-      output[row] = Vec3(std::bit_cast<float>(bits[0]), std::bit_cast<float>(bits[1]), std::bit_cast<float>(bits[2]));
-    }
-  }
-  if (output != nullptr) batch_ += row;
-  return row;
-}
-
-std::size_t PlyReader::quick_vertices(const std::byte* bytes, std::size_t row_count) {
-  std::size_t row = 0;
-  for (; row < row_count; ++row, bytes += layout_.stride_bytes) {
-    float values[3] = {};
-    bool finite = true;
-    for (std::size_t axis = 0; axis < 3; ++axis) {
-      const Type type = layout_.types[axis];
-      if (!is_floating(type)) return row;  // integers are rare: the general route is fine
-      const std::uint64_t bits = load_bits(bytes + layout_.offset_bytes[axis], type);
-      const std::uint32_t float_bits =
-          type == Type::kFloat64 ? float_bits_from_double_bits(bits) : static_cast<std::uint32_t>(bits);
-      finite = finite && is_finite(float_bits);
-      values[axis] = std::bit_cast<float>(float_bits);
-    }
-    if (!finite) return row;
-    if (!output_.vertices.empty()) output_.vertices[batch_++] = Vec3(values[0], values[1], values[2]);
-  }
-  return row;
-}
-
-template <bool kSwap, class Count>
-std::size_t PlyReader::quick_faces(const std::byte* bytes, std::size_t row_count) {
-  const std::size_t stride_bytes = layout_.stride_bytes;
-  const std::uint64_t vertex_count = header_.vertex_count;
-  const Count three = kSwap && sizeof(Count) == 4 ? static_cast<Count>(swapped(3)) : static_cast<Count>(3);
-  UVec3* output = output_.triangles.empty() ? nullptr : output_.triangles.data() + batch_;
-  const std::byte* list = bytes + layout_.offset_bytes[0];
-  std::size_t row = 0;
-  for (; row < row_count; ++row, list += stride_bytes) {
-    const std::uint32_t a = load_word<kSwap>(list + sizeof(Count));
-    const std::uint32_t b = load_word<kSwap>(list + sizeof(Count) + 4);
-    const std::uint32_t c = load_word<kSwap>(list + sizeof(Count) + 8);
-    if (!(load<Count>(list) == three && a < vertex_count && b < vertex_count && c < vertex_count)) break;
-    if (output != nullptr) output[row] = UVec3(a, b, c);
-  }
-  if (output != nullptr) batch_ += row;
-  counts_.triangles += row;
-  return row;
 }
 
 // --- Whole inputs ---------------------------------------------------------------------------------------------------

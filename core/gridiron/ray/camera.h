@@ -5,18 +5,14 @@
 #include <gridiron/base/lanes.h>
 #include <gridiron/base/records.h>
 #include <gridiron/base/work_counters.h>
-#include <gridiron/ray/intersect_standard.h>
+#include <gridiron/ray/edges.h>
+#include <gridiron/ray/hits.h>
 #include <gridiron/ray/packet.h>
 #include <gridiron/ray/pixel_box.h>
 
 #include <cstdint>
 
 namespace gridiron {
-
-/// Direction of the ray through the centre of pixel (x, y): every operation rounded to float, in this order.
-[[nodiscard]] GRIDIRON_INLINE float pixel_direction(const FrameHead& frame, int axis, float x, float y) {
-  return (frame.corner[axis] + x * frame.step_x[axis]) + y * frame.step_y[axis];
-}
 
 /// Column and row of a subpacket's rays in it, in pixels.
 struct SubpacketPixels {
@@ -55,9 +51,7 @@ void generate_packet(const FrameHead& frame, std::uint32_t left, std::uint32_t t
       for (std::uint32_t i = 0; i < kSubpacketRays; i += L::kCount) {
         const Float x = Float(column) + Float::load(kSubpacketPixels.column + i);
         const Float y = Float(row) + Float::load(kSubpacketPixels.row + i);
-        const Float direction =
-            (Float(frame.corner[axis]) + x * Float(frame.step_x[axis])) + y * Float(frame.step_y[axis]);
-        direction.store(packet.dir[axis] + first + i);
+        pixel_direction(frame, axis, x, y).store(packet.dir[axis] + first + i);
       }
     }
   }

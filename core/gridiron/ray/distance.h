@@ -145,6 +145,16 @@ struct DistanceInterval {
 /// second.
 [[nodiscard]] bool surely_in_one_plane(const VertexTriangle& first, const VertexTriangle& second, WorkCounters& work);
 
+/// @returns comes_first() by exact arithmetic: the nearer triangle, or the lower id in one plane or at one place.
+[[nodiscard]] GRIDIRON_INLINE bool comes_first_exactly(const float origin[3], const float dir[3],
+                                                       const VertexTriangle& first, const VertexTriangle& second,
+                                                       bool has_lower_id, WorkCounters& work) {
+  if (surely_in_one_plane(first, second, work)) return has_lower_id;
+  work.add(Work::kExactOrder);
+  const int order = exact_distance_order(origin, dir, first.v, second.v);
+  return order < 0 || (order == 0 && has_lower_id);
+}
+
 /// @returns whether the first of two triangles at the same rounded distance is the ray's hit.
 template <class PacketType>
 [[nodiscard]] GRIDIRON_RARE bool comes_first(const PacketType& packet, std::uint32_t ray, const VertexTriangle& first,
@@ -158,10 +168,7 @@ template <class PacketType>
   const DistanceInterval other = distance_interval(packet.origin, packet.dir_max, dir, second);
   if (one.high < other.low) return true;
   if (other.high < one.low) return false;
-  if (surely_in_one_plane(first, second, work)) return has_lower_id;
-  work.add(Work::kExactOrder);
-  const int order = exact_distance_order(packet.origin, dir, first.v, second.v);
-  return order < 0 || (order == 0 && has_lower_id);
+  return comes_first_exactly(packet.origin, dir, first, second, has_lower_id, work);
 }
 
 /// Decides hits that are too close to the rays' earlier ones: both distances exact, then the least (t, id).

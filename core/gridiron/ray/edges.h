@@ -79,11 +79,11 @@ inline constexpr float kCornerErrorFactor = 5.0f * 0x1p-23f;
 inline constexpr float kSubpacketErrorFactor = 68.0f * 0x1p-23f;
 
 /// @returns sign of det[a - o, b - o, c - o]: the caller has tried floats; here doubles, then integers.
-[[nodiscard]] int volume_sign_in_double(const float origin[3], const VertexTriangle& triangle, WorkCounters& work);
+[[nodiscard]] int volume_sign(const float origin[3], const VertexTriangle& triangle, WorkCounters& work);
 
 /// @returns sign of det[dir, a - o, b - o]: doubles if they are sure, else integers.
-[[nodiscard]] int edge_sign_in_double(const float origin[3], const float dir[3], const float a[3], const float b[3],
-                                      WorkCounters& work);
+[[nodiscard]] int edge_sign(const float origin[3], const float dir[3], const float a[3], const float b[3],
+                            WorkCounters& work);
 
 /// Prepares the edge functions of a batch of triangles for a packet, and tests its corner rays: if all four pass on the
 /// outside of the same edge, so does every ray between them (Dmitriev, Havran, Seidel 2004).
@@ -135,7 +135,7 @@ GRIDIRON_OUTLINE void set_up_edges(const PacketType& packet, const VertexTriangl
     batch.orientation[i] = ((negative >> first_lane) & 1u) != 0 ? -1 : 1;
     if (((sure >> first_lane) & 1u) != 0 || packet.trusts_floats) [[likely]]
       continue;
-    batch.orientation[i] = volume_sign_in_double(packet.origin, *triangles[i], work);
+    batch.orientation[i] = volume_sign(packet.origin, *triangles[i], work);
     flipped &= ~(0xFu << first_lane);
     if (batch.orientation[i] < 0) flipped |= 0xFu << first_lane;
   }
@@ -200,8 +200,7 @@ template <class L, class PacketType>
     for (int edge = 0; edge < 3 && hit; ++edge) {
       int sign = 1;
       if (((sure_inside[edge] >> lane) & 1u) == 0) {
-        sign =
-            orientation * edge_sign_in_double(packet.origin, dir, triangle.v[edge], triangle.v[(edge + 1) % 3], work);
+        sign = orientation * edge_sign(packet.origin, dir, triangle.v[edge], triangle.v[(edge + 1) % 3], work);
       }
       hit = sign >= 0;
       any = any || sign > 0;

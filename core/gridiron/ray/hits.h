@@ -2,9 +2,18 @@
 // Memory: borrowed, inside the local store. Threads: one core. SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <gridiron/base/lanes.h>
+#include <gridiron/base/records.h>
+
 #include <cstdint>
 
 namespace gridiron {
+
+/// Component of the direction through the centre of pixel (x, y): every operation rounded to float, in this order.
+template <class Real>
+[[nodiscard]] GRIDIRON_INLINE Real pixel_direction(const FrameHead& frame, int axis, Real x, Real y) {
+  return (Real(frame.corner[axis]) + x * Real(frame.step_x[axis])) + y * Real(frame.step_y[axis]);
+}
 
 /// A tile of the picture, and the point of its pixels that rays go through.
 struct TileView {

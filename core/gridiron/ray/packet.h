@@ -89,14 +89,108 @@ struct PixelProjection {
   float most_per_depth;  ///< the margin holds up to this ratio of a point's largest component to its depth
 };
 
-/// Width x Width rays, SoA. World space, directions not normalised.
-/// @tparam RecentCountV  number of recently hit triangles that are kept, a power of two.
-template <std::uint32_t Width, std::uint32_t RecentCountV = 16>
-struct alignas(128) Packet {
+// The parts of a packet, in the order in which they lie in memory. SoA: ray i is element i of each array.
+
+/// Directions in world space, not normalised.
+template <std::uint32_t RayCount>
+struct PacketDirections {
+  alignas(64) float dir[3][RayCount];
+};
+
+template <std::uint32_t RayCount>
+struct PacketHits {
+  alignas(64) float t[RayCount];           ///< nearest hit so far, see `estimates`; t_far before the first
+  alignas(64) std::uint32_t id[RayCount];  ///< its triangle, kNoTriangle before the first
+  alignas(64) float facing[RayCount];      ///< |normal . dir| of the nearest hit, normal of length 1
+};
+
+template <std::uint32_t RayCount>
+struct alignas(16) PacketSets {
+  RaySet<RayCount> active;  ///< the rays of this pass
+  RaySet<RayCount> unsure;  ///< rays whose nearest hit the estimates left open
+};
+
+/// Where the rays start, and what bounds their directions.
+struct PacketBounds {
+  float corner_dir[3][4];  ///< the four corner rays, for culling
+  float origin[3];
+  float dir_max;          ///< largest |component| of all active directions
+  float range_factor;     ///< the larger of dir_max and 1
+  float corner_widening;  ///< factor on edge errors with which the corner rays bound all others
+};
+
+/// Whether t is an estimate within kEstimateError, or the distance rounded to the nearest float.
+struct DistancePolicy {
+  std::uint32_t estimates;  ///< all bits, or none
+  float surely_nearer;      ///< times t: a distance below is nearer, whatever the error of t
+  float surely_behind;      ///< times t: a distance above is behind
+  bool trusts_floats;       ///< nothing is settled beyond single precision
+  bool breaks_ties;         ///< of equal rounded distances the exact ones decide, not the triangles' ids
+
+  GRIDIRON_INLINE void choose(bool exact) {
+    estimates = exact ? 0u : ~0u;
+    surely_nearer = exact ? 1.0f : kSurelyNearer;
+    surely_behind = exact ? 1.0f : kSurelyBehind;
+  }
+};
+
+/// Recently hit triangles, each in the slot that its id gives. If two estimates are too close to decide, the earlier
+/// triangle can be measured again.
+template <std::uint32_t RecentCountV>
+struct RecentTriangles {
+  static constexpr std::uint32_t kRecentCount = RecentCountV;
+  alignas(16) VertexTriangle recent[kRecentCount];
+  VertexTriangle taken;  ///< the nearer one of the last exact comparison: with one active ray, its nearest hit
+
+  GRIDIRON_INLINE void forget() {
+    for (VertexTriangle& triangle : recent) triangle.triangle_id = kNoTriangle;
+    taken.triangle_id = kNoTriangle;
+  }
+  GRIDIRON_INLINE void keep(const VertexTriangle& triangle) { recent[triangle.triangle_id % kRecentCount] = triangle; }
+  /// @returns the triangle if it is among the recent ones, else null.
+  [[nodiscard]] GRIDIRON_INLINE const VertexTriangle* find(std::uint32_t triangle_id) const {
+    const VertexTriangle& triangle = taken.triangle_id == triangle_id ? taken : recent[triangle_id % kRecentCount];
+    return triangle.triangle_id == triangle_id && triangle_id != kNoTriangle ? &triangle : nullptr;
+  }
+};
+
+/// The rays as a linear function of column and row, where is_linear: first_dir + column * step_x + row * step_y.
+struct LinearRays {
+  float first_dir[3];
+  float step_x[3];
+  float step_y[3];
+  bool is_linear;
+  float linear_error;          ///< by how much a component of a direction may differ from it, as evaluated in floats
+  float subpacket_widening;    ///< factor on edge errors that covers this form and its evaluation
+  PixelProjection projection;  ///< where triangles appear, for packets that are large compared with them
+};
+
+/// Slopes of a grid's pass, in cells along u and v per cell along the march: least and greatest of the active rays of
+/// each square of 2x2 subpackets. Without active rays the least is above the greatest.
+template <std::uint32_t SquareCount>
+struct PassSlopes {
+  alignas(64) float slope_low[2][SquareCount];
+  alignas(64) float slope_high[2][SquareCount];
+  alignas(16) float march_high[SquareCount];  ///< the most cells along the march per unit of t; 0 without active rays
+};
+
+/// Width x Width rays. Functions that need one part of them take that part.
+/// @tparam RecentCount  number of recently hit triangles that are kept, a power of two.
+template <std::uint32_t Width, std::uint32_t RecentCount = 16>
+struct alignas(128) Packet : PacketDirections<Width * Width>,
+                             PacketHits<Width * Width>,
+                             PacketSets<Width * Width>,
+                             PacketBounds,
+                             DistancePolicy,
+                             RecentTriangles<RecentCount>,
+                             LinearRays,
+                             PassSlopes<(Width < 8 ? 1 : Width * Width / (4 * kSubpacketRays))> {
   static constexpr std::uint32_t kWidth = Width;
   static constexpr std::uint32_t kRayCount = Width * Width;
   static constexpr std::uint32_t kSubpacketCount = kRayCount / kSubpacketRays;
+  static constexpr std::uint32_t kSquareCount = kSubpacketCount < 4 ? 1 : kSubpacketCount / 4;
   static constexpr SubpacketSet kAllSubpackets = ~SubpacketSet{0} >> (64 - kSubpacketCount);
+  static constexpr bool kHasBoxes = kSubpacketCount >= 16;  ///< `projection` is in use
   static_assert(Width == 4 || Width == 8 || Width == 16 || Width == 32);
 
   /// Column and row of a ray's pixel in the packet.
@@ -109,63 +203,9 @@ struct alignas(128) Packet {
 
   /// Chooses between correctly rounded distances and estimates. Called before any ray is traced.
   GRIDIRON_INLINE void ask_for_distances(bool exact) {
-    estimates = exact ? 0u : ~0u;
-    surely_nearer = exact ? 1.0f : kSurelyNearer;
-    surely_behind = exact ? 1.0f : kSurelyBehind;
-    for (VertexTriangle& triangle : recent) triangle.triangle_id = kNoTriangle;
-    taken.triangle_id = kNoTriangle;
+    this->choose(exact);
+    this->forget();
   }
-
-  alignas(64) float dir[3][kRayCount];      ///< direction
-  alignas(64) float t[kRayCount];           ///< nearest hit so far, see `estimates`; t_far before the first
-  alignas(64) std::uint32_t id[kRayCount];  ///< its triangle, kNoTriangle before the first
-  alignas(64) float facing[kRayCount];      ///< |normal . dir| of the nearest hit, normal of length 1
-  RaySet<kRayCount> active;                 ///< the rays of this pass
-  RaySet<kRayCount> unsure;                 ///< rays whose nearest hit the estimates left open
-  alignas(16) float corner_dir[3][4];       ///< the four corner rays, for culling
-  float origin[3];
-  float dir_max;          ///< largest |component| of all active directions
-  float range_factor;     ///< the larger of dir_max and 1
-  float corner_widening;  ///< factor on edge errors with which the corner rays bound all others
-
-  // Whether t is an estimate within kEstimateError, or the distance rounded to the nearest float.
-  std::uint32_t estimates;  ///< all bits, or none
-  float surely_nearer;      ///< times t: a distance below is nearer, whatever the error of t
-  float surely_behind;      ///< times t: a distance above is behind
-  bool trusts_floats;       ///< nothing is settled beyond single precision
-  bool breaks_ties;         ///< of equal rounded distances the exact ones decide, not the triangles' ids
-
-  // Recently hit triangles, each in the slot that its id gives. If two estimates are too close to decide, the earlier
-  // triangle can be measured again.
-  static constexpr std::uint32_t kRecentCount = RecentCountV;
-  alignas(16) VertexTriangle recent[kRecentCount];
-  VertexTriangle taken;  ///< the nearer one of the last exact comparison: with one active ray, its nearest hit
-
-  GRIDIRON_INLINE void keep(const VertexTriangle& triangle) { recent[triangle.triangle_id % kRecentCount] = triangle; }
-  /// @returns the triangle if it is among the recent ones, else null.
-  [[nodiscard]] GRIDIRON_INLINE const VertexTriangle* find(std::uint32_t triangle_id) const {
-    const VertexTriangle& triangle = taken.triangle_id == triangle_id ? taken : recent[triangle_id % kRecentCount];
-    return triangle.triangle_id == triangle_id && triangle_id != kNoTriangle ? &triangle : nullptr;
-  }
-
-  // The rays as a linear function of column and row, where is_linear: first_dir + column * step_x + row * step_y.
-  float first_dir[3];
-  float step_x[3];
-  float step_y[3];
-  bool is_linear;
-  float linear_error;        ///< by how much a component of a direction may differ from it, as evaluated in floats
-  float subpacket_widening;  ///< factor on edge errors that covers this form and its evaluation
-
-  // For packets that are large compared with the triangles: where these appear.
-  static constexpr bool kHasBoxes = kSubpacketCount >= 16;
-  PixelProjection projection;
-
-  // Slopes of this pass, in cells along u and v per cell along the march: least and greatest of the active rays of each
-  // square of 2x2 subpackets. Without active rays the least is above the greatest.
-  static constexpr std::uint32_t kSquareCount = kSubpacketCount < 4 ? 1 : kSubpacketCount / 4;
-  alignas(64) float slope_low[2][kSquareCount];
-  alignas(64) float slope_high[2][kSquareCount];
-  alignas(16) float march_high[kSquareCount];  ///< the most cells along the march per unit of t; 0 without active rays
 };
 
 /// Prepares the rays that estimates left unsure for another pass with exact distances. Their hits are discarded, except

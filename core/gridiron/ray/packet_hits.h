@@ -13,12 +13,13 @@
 namespace gridiron {
 
 /// @returns the lengths of the directions of the group of rays that begins at `base`.
-template <class L, class PacketType>
-[[nodiscard]] GRIDIRON_INLINE typename L::Float direction_lengths(const PacketType& packet, std::uint32_t base) {
+template <class L, std::uint32_t RayCount>
+[[nodiscard]] GRIDIRON_INLINE typename L::Float direction_lengths(const PacketDirections<RayCount>& rays,
+                                                                  std::uint32_t base) {
   using Float = typename L::Float;
-  const Float x = Float::load(packet.dir[0] + base);
-  const Float y = Float::load(packet.dir[1] + base);
-  const Float z = Float::load(packet.dir[2] + base);
+  const Float x = Float::load(rays.dir[0] + base);
+  const Float y = Float::load(rays.dir[1] + base);
+  const Float z = Float::load(rays.dir[2] + base);
   return L::square_root((x * x + y * y) + z * z);
 }
 

@@ -12,7 +12,7 @@
 
 namespace gridiron {
 
-/// Prepares packet.projection from first_dir, step_x and step_y.
+/// Prepares the projection from first_dir, step_x and step_y.
 ///
 /// With F, X, Y these three and det = F . (X x Y), the rows are W = (X x Y) / det, P = (Y x F) / det and
 /// Q = (F x X) / det: the direction F + c X + r Y has W . d = 1, P . d = c, Q . d = r, so that a point a in front of
@@ -29,13 +29,12 @@ namespace gridiron {
 ///
 /// A common factor on all rows does not change quotients. It makes the largest sum of magnitudes in a row 1, so that no
 /// coordinate up to 2^121 can overflow. If the margin would be a pixel or more, no box is trusted.
-template <class PacketType>
-void set_up_projection(PacketType& packet, float dir_bound) {
+inline void set_up_projection(LinearRays& rays, float dir_bound) {
   double first[3], step_x[3], step_y[3];
   for (int axis = 0; axis < 3; ++axis) {
-    first[axis] = double{packet.first_dir[axis]};
-    step_x[axis] = double{packet.step_x[axis]};
-    step_y[axis] = double{packet.step_y[axis]};
+    first[axis] = double{rays.first_dir[axis]};
+    step_x[axis] = double{rays.step_x[axis]};
+    step_y[axis] = double{rays.step_y[axis]};
   }
   double rows[3][3];  // of the inverse, times det
   for (int i = 0; i < 3; ++i) {
@@ -60,7 +59,7 @@ void set_up_projection(PacketType& packet, float dir_bound) {
   for (const double* const vector : {first, step_x, step_y}) {
     scale *= magnitude(vector[0]) + magnitude(vector[1]) + magnitude(vector[2]);
   }
-  PixelProjection& projection = packet.projection;
+  PixelProjection& projection = rays.projection;
   projection = PixelProjection{};
   if (!(margin < 1.0 && magnitude(det) > 0x1p-24 * scale)) return;
   const double scaled = (det < 0.0 ? -1.0 : 1.0) / largest;

@@ -143,7 +143,7 @@ namespace secondary_origin_detail {
   // The normal has an error of at most 2^-14, so the sum of three such products below 2 has one of at most 2^-11.
   // Grazing rays need a better decision.
   bool leads_along = facing > 0.0f;
-  if (magnitude(facing) < 0x1p-10f) leads_along = volume_sign_in_double(origin, triangle, work) > 0;
+  if (magnitude(facing) < 0x1p-10f) leads_along = volume_sign(origin, triangle, work) > 0;
   result.enters = !leads_along;
   result.weights[0] = weight1;
   result.weights[1] = weight2;

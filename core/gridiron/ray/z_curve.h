@@ -1,7 +1,7 @@
 // Places along a Z curve. Memory: values. Threads: any. SPDX-License-Identifier: Apache-2.0
 #pragma once
 
-#include <gridiron/base/math.h>
+#include <gridiron/base/lanes.h>
 
 #include <cstdint>
 

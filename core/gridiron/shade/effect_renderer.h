@@ -15,6 +15,7 @@
 #include <gridiron/dma/transfers.h>
 #include <gridiron/engine/engine.h>
 #include <gridiron/platform/contract.h>
+#include <gridiron/ray/hits.h>
 #include <gridiron/ray/secondary_origin.h>
 #include <gridiron/ray/z_curve.h>
 #include <gridiron/shade/color_sums.h>
@@ -118,7 +119,7 @@ class EffectRenderer {
         const float row = static_cast<float>(static_cast<std::int32_t>(top_ + y)) + offset.dy;
         for (int axis = 0; axis < 3; ++axis) {
           ray.origin[axis] = frame.eye[axis];
-          ray.dir[axis] = (frame.corner[axis] + column * frame.step_x[axis]) + row * frame.step_y[axis];
+          ray.dir[axis] = pixel_direction(frame, axis, column, row);
           ray.weight[axis] = 1.0f;
         }
         ray.pixel = (y * Layout::kTileWidth + x) | 1u << 16;

@@ -141,7 +141,7 @@ struct EffectLayout256K {
 };
 
 /// Sizes of a 64 KB core that renders effects: no packets, all rays by walks, whose code is shorter. All effects fit,
-/// as tools/checks/effect_sizes measures; on a core without vectors only with Lanes<1> (base/one_lane.h).
+/// as tools/checks/memory_table --effects measures; on a core without vectors only with Lanes<1> (base/one_lane.h).
 /// @tparam BuiltV     as above.
 /// @tparam WaveRaysV  rays of a wave: 32, 64; a longer one takes memory that a smaller set of effects leaves free.
 template <std::uint32_t BuiltV, std::uint32_t WaveRaysV = 32>
@@ -238,7 +238,7 @@ static_assert(kFitsArena<EffectLayout256K<kAllEffects, 8>> && kFitsArena<EffectL
 static_assert(kFitsArena<StoreLayout512K<8>> && kFitsArena<StoreLayout512K<32>> && kFitsArena<StoreLayout512K<8, 64>> &&
               kFitsArena<StoreLayout512K<32, 64>>);
 
-// A frame's record has two parts, one of them a base. Compilers warn of offsetof on such a type, but support it.
+// A frame's record and a packet have bases. Compilers warn of offsetof on such a type, but support it.
 #pragma GCC diagnostic push
 #pragma GCC diagnostic ignored "-Winvalid-offsetof"
 /// Calls visit(name, offset_bytes, bytes) for every region of the store, in address order.

@@ -1,15 +1,12 @@
-// One simulated core in checked mode; see the header. Sections: rules, bytes, claims and trace, instrumentation.
+// One simulated core in checked mode; see the header. Here: the bytes of transfers, claims and the trace.
 // Memory: borrows arena and main memory; own book-keeping in std::vector. Threads: one per object.
 // SPDX-License-Identifier: Apache-2.0
 #include <gridiron/dma/tags.h>
+#include <gridiron/sim/byte_ranges.h>
 #include <gridiron/sim/sim_core.h>
 #include <gridiron/sim/trace_packing.h>
-#include <link.h>
-#include <pthread.h>
 
 #include <algorithm>
-#include <cinttypes>
-#include <cstdio>
 #include <cstring>
 #include <iterator>
 #include <tuple>
@@ -23,36 +20,6 @@ namespace {
 
 // A poisoned float is a NaN and a poisoned index is far out of any range.
 constexpr std::byte kPoison[2] = {std::byte{0xA5}, std::byte{0xFF}};
-
-constexpr std::uint32_t kGranuleBytes = 16;
-constexpr std::uint8_t kFree = 0, kGetInFlight = 1, kPutInFlight = 2;
-
-// A stray loop makes millions of bad accesses; the first few say it all.
-constexpr std::size_t kMaxViolations = 16;
-
-[[nodiscard]] bool overlap(std::uint64_t a, std::uint64_t a_bytes, std::uint64_t b, std::uint64_t b_bytes) {
-  return a < b + b_bytes && b < a + a_bytes;
-}
-
-[[nodiscard]] std::uint64_t address_of(const std::byte* local) {
-  return reinterpret_cast<std::uintptr_t>(local);
-}
-
-[[nodiscard]] std::string hex(std::uint64_t value) {
-  char text[24];
-  std::snprintf(text, sizeof text, "0x%" PRIx64, value);
-  return text;
-}
-
-void add_range(std::vector<MainRange>& ranges, std::uint64_t begin, std::uint64_t end) {
-  if (!ranges.empty() && ranges.back().end == begin) {
-    ranges.back().end = end;
-  } else {
-    ranges.push_back({begin, end});
-  }
-}
-
-thread_local SimCore* current_core = nullptr;
 
 }  // namespace
 
@@ -76,7 +43,7 @@ SpillRegion SimCore::spill() const {
   return bytes == 0 ? SpillRegion{} : SpillRegion{frame_->spill.address.offset_by(core_ * bytes), bytes};
 }
 
-// --- Rules ------------------------------------------------------------------------------------------------------
+// --- Bytes ------------------------------------------------------------------------------------------------------
 
 Status SimCore::get(void* local, MainAddress address, std::uint32_t bytes, Tag tag) {
   return start(static_cast<std::byte*>(local), address, bytes, tag, true);
@@ -86,140 +53,6 @@ Status SimCore::put(const void* local, MainAddress address, std::uint32_t bytes,
   // The source is only ever read; one member serves both directions.
   return start(const_cast<std::byte*>(static_cast<const std::byte*>(local)), address, bytes, tag, false);
 }
-
-Status SimCore::check_rules(const std::byte* local, std::uint64_t address, std::uint32_t bytes, Tag tag, bool is_get) {
-  const PlatformLimits& limits = frame_->limits;
-  const auto broken = [&](Status rule, const std::string& why) {
-    return violate(rule, tile_id_, describe(is_get, local, address, bytes, tag.index) + ": " + why);
-  };
-  if (bytes == 0) return broken(Status::kTransferSize, "the size is 0");
-  if (bytes > limits.max_transfer_bytes) {
-    return broken(Status::kTransferSize, "the size is above " + std::to_string(limits.max_transfer_bytes));
-  }
-  if (limits.alignment_bytes > 1 && bytes % limits.alignment_bytes != 0) {
-    return broken(Status::kTransferSize, "the size is not a multiple of " + std::to_string(limits.alignment_bytes));
-  }
-  if (tag.index >= limits.tag_count) {
-    return broken(Status::kTransferTag, "there are " + std::to_string(limits.tag_count) + " tags");
-  }
-  const std::uint64_t local_address = address_of(local);
-  if (limits.alignment_bytes > 1) {
-    const std::string multiple = " is not a multiple of " + std::to_string(limits.alignment_bytes);
-    if (local_address % limits.alignment_bytes != 0) {
-      return broken(Status::kTransferAlignment, "the local address" + multiple);
-    }
-    if (address % limits.alignment_bytes != 0) return broken(Status::kTransferAlignment, "the main address" + multiple);
-  }
-  if (limits.congruence_bytes > 1 && local_address % limits.congruence_bytes != address % limits.congruence_bytes) {
-    return broken(Status::kTransferAlignment,
-                  "the ends are not congruent modulo " + std::to_string(limits.congruence_bytes));
-  }
-  if (limits.boundary_bytes != 0 && address % limits.boundary_bytes + bytes > limits.boundary_bytes) {
-    return broken(Status::kTransferBoundary,
-                  "the main side crosses a multiple of " + std::to_string(limits.boundary_bytes));
-  }
-  const std::uint64_t arena_begin = address_of(arena_.data());
-  if (local_address < arena_begin || local_address - arena_begin > arena_.size() ||
-      bytes > arena_.size() - (local_address - arena_begin)) {
-    return broken(Status::kTransferLocalRange,
-                  "the local side is not inside the arena of " + std::to_string(arena_.size()) + " bytes");
-  }
-  if (frame_->memory->bytes_at(MainAddress{address}, bytes).empty()) {
-    return broken(Status::kTransferMainRange, "the main side is not inside allocated memory");
-  }
-  if (meets_spill(address, bytes)) {
-    if (!is_own_spill(address, bytes)) {
-      return broken(Status::kTransferMainRange, "the main side is not inside the core's own slice of spill memory");
-    }
-  } else if (!is_get) {
-    const auto& writable = frame_->writable;
-    const auto inside = [&](const MainRange& range) { return range.begin <= address && address + bytes <= range.end; };
-    if (std::none_of(writable.begin(), writable.end(), inside)) {
-      return broken(Status::kTransferMainRange, "the main side is not inside memory that the frame may write");
-    }
-  }
-  if (pending_count_ == pending_.size()) {
-    return broken(Status::kTransferQueueFull, std::to_string(pending_count_) + " commands are pending already");
-  }
-  GRIDIRON_TRY(check_overlap(local, address, bytes, tag, is_get));
-  return is_own_spill(address, bytes) ? use_spill(local, address, bytes, tag, is_get) : Status::kOk;
-}
-
-bool SimCore::meets_spill(std::uint64_t address, std::uint32_t bytes) const {
-  const std::uint64_t all_bytes = frame_->spill.slice_bytes() * frame_->core_count;
-  return all_bytes != 0 && overlap(frame_->spill.address.value, all_bytes, address, bytes);
-}
-
-bool SimCore::is_own_spill(std::uint64_t address, std::uint32_t bytes) const {
-  const SpillRegion own = spill();
-  return own.bytes != 0 && own.address.value <= address && address + bytes <= own.address.value + own.bytes;
-}
-
-/// An earlier tile's bytes depend on the host's timing, so no tile may read them.
-Status SimCore::use_spill(const std::byte* local, std::uint64_t address, std::uint32_t bytes, Tag tag, bool is_get) {
-  const std::uint64_t offset = address - spill().address.value;
-  const std::uint64_t end = (offset + bytes + kGranuleBytes - 1) / kGranuleBytes;
-  for (std::uint64_t granule = offset / kGranuleBytes; granule < end; ++granule) {
-    if (!is_get) {
-      spill_puts_[granule] = claims_;
-    } else if (spill_puts_[granule] != claims_) {
-      return violate(Status::kTransferMainRange, tile_id_,
-                     describe(is_get, local, address, bytes, tag.index) + ": the tile has not put byte " +
-                         std::to_string(std::max(offset, granule * kGranuleBytes) - offset) + " of it to spill memory");
-    }
-  }
-  return Status::kOk;
-}
-
-Status SimCore::check_overlap(const std::byte* local, std::uint64_t address, std::uint32_t bytes, Tag tag,
-                              bool is_get) {
-  for (const Pending& other : pending_) {
-    if (!other.in_use) continue;
-    // A get writes the local side and reads the main side, a put the other way round.
-    const bool local_conflict =
-        (is_get || other.is_get) && overlap(address_of(local), bytes, address_of(other.local), other.bytes);
-    const bool main_conflict = (!is_get || !other.is_get) && overlap(address, bytes, other.address, other.bytes);
-    if (!local_conflict && !main_conflict) continue;
-    return violate(Status::kTransferOverlap, tile_id_,
-                   describe(is_get, local, address, bytes, tag.index) + ": overlaps, on the " +
-                       (local_conflict ? "local" : "main") + " side, the pending " + describe(other));
-  }
-  return Status::kOk;
-}
-
-Status SimCore::violate(Status rule, std::uint32_t tile, std::string detail) {
-  if (violations_.size() < kMaxViolations) violations_.push_back({rule, core_, tile, std::move(detail)});
-  record_error(rule, tile);
-  return rule;
-}
-
-void SimCore::record_error(Status status, std::uint32_t tile) {
-  if (first_error_ != Status::kOk) return;
-  first_error_ = status;
-  first_error_tile_ = tile;
-}
-
-std::string SimCore::describe_local(std::uintptr_t local) const {
-  const std::uintptr_t begin = reinterpret_cast<std::uintptr_t>(arena_.data());
-  // Host addresses differ from run to run, distances from the arena do not.
-  constexpr std::uintptr_t kNear = std::uintptr_t{1} << 20;
-  if (local >= begin && local - begin <= arena_.size() + kNear) return "arena+" + hex(local - begin);
-  if (local < begin && begin - local <= kNear) return "arena-" + hex(begin - local);
-  return "an address far from the arena";
-}
-
-std::string SimCore::describe(bool is_get, const std::byte* local, std::uint64_t address, std::uint32_t bytes,
-                              std::uint32_t tag) const {
-  return std::string(is_get ? "get" : "put") + " of " + std::to_string(bytes) + " bytes, local " +
-         describe_local(reinterpret_cast<std::uintptr_t>(local)) + ", main " + hex(address) + ", tag " +
-         std::to_string(tag);
-}
-
-std::string SimCore::describe(const Pending& pending) const {
-  return describe(pending.is_get, pending.local, pending.address, pending.bytes, pending.tag);
-}
-
-// --- Bytes ------------------------------------------------------------------------------------------------------
 
 Status SimCore::start(std::byte* local, MainAddress address, std::uint32_t bytes, Tag tag, bool is_get) {
   if (sticky_error_ != Status::kOk) return sticky_error_;
@@ -241,7 +74,7 @@ Status SimCore::start(std::byte* local, MainAddress address, std::uint32_t bytes
   pending.number = transfers_;
   trace_transfer(is_get ? EventKind::kGet : EventKind::kPut, tag, bytes, address.value);
   note_footprint(address.value, bytes, is_get);
-  mark(pending, is_get ? kGetInFlight : kPutInFlight);
+  mark(pending);
 
   if (!is_get) pending.copy.assign(local, local + bytes);
   if (is_get && (frame_->completion != Completion::kEarly || pending.fails)) {
@@ -329,7 +162,6 @@ Status SimCore::complete(Pending& pending) {
     }
   }
   unmark(pending);
-  pending.in_use = false;
   --pending_count_;
   return status;
 }
@@ -343,17 +175,11 @@ Status SimCore::wait(TagMask tags) {
                    "wait for tags " + hex(tags.bits) + ": there are " + std::to_string(tag_count) + " tags");
   }
 
-  // Trace: output tags relative to the tile, all others as they are.
   TraceEvent event{.kind = EventKind::kWait};
   for (std::uint32_t tag = 0; tag < 32; ++tag) {
     if ((tags.bits >> tag & 1) == 0) continue;
-    const std::uint32_t depth = frame_->output_depth;
-    if (tag >= kFirstRotatingTag && tag - kFirstRotatingTag < depth) {
-      const std::uint32_t slot = tag - kFirstRotatingTag;
-      event.rotating_tags |= 1u << ((slot + depth - tile_ordinal_ % depth) % depth);
-    } else {
-      event.tags |= 1u << tag;
-    }
+    const auto [traced, rotating] = traced_tag(tag);
+    (rotating ? event.rotating_tags : event.tags) |= 1u << traced;
   }
   writer_->add(event);
 
@@ -367,19 +193,6 @@ Status SimCore::wait(TagMask tags) {
     if (status == Status::kOk) status = ended;
   }
   return status;
-}
-
-bool SimCore::meets_writable(std::uint64_t address, std::uint32_t bytes) const {
-  return std::any_of(frame_->writable.begin(), frame_->writable.end(), [&](const MainRange& range) {
-    return overlap(range.begin, range.end - range.begin, address, bytes);
-  });
-}
-
-void SimCore::note_footprint(std::uint64_t address, std::uint32_t bytes, bool is_get) {
-  if (!meets_writable(address, bytes)) return;
-  if (footprints.empty() || footprints.back().tile_id != tile_id_) footprints.push_back({tile_id_, core_, {}, {}});
-  TileFootprint& footprint = footprints.back();
-  add_range(is_get ? footprint.gets : footprint.puts, address, address + bytes);
 }
 
 std::uint64_t SimCore::next_random() {
@@ -463,17 +276,18 @@ void SimCore::note_stage(std::uint8_t stage) {
   writer_->add({.kind = EventKind::kStage, .stage = static_cast<Stage>(stage)});
 }
 
+/// In the trace, output tags are relative to the tile, all others as they are. @returns the tag, and whether it is one.
+std::pair<std::uint8_t, bool> SimCore::traced_tag(std::uint32_t tag) const {
+  const std::uint32_t depth = frame_->output_depth;
+  if (tag < kFirstRotatingTag || tag - kFirstRotatingTag >= depth) return {static_cast<std::uint8_t>(tag), false};
+  return {static_cast<std::uint8_t>((tag - kFirstRotatingTag + depth - tile_ordinal_ % depth) % depth), true};
+}
+
 void SimCore::trace_transfer(EventKind kind, Tag tag, std::uint32_t bytes, std::uint64_t address) {
   TraceEvent event{.kind = kind};
-  event.tag = tag.index;
   event.bytes = bytes;
   event.address = is_own_spill(address, bytes) ? address - core_ * frame_->spill.slice_bytes() : address;
-  const std::uint32_t depth = frame_->output_depth;
-  if (tag.index >= kFirstRotatingTag && tag.index - kFirstRotatingTag < depth) {
-    const std::uint32_t slot = tag.index - kFirstRotatingTag;
-    event.tag = static_cast<std::uint8_t>((slot + depth - tile_ordinal_ % depth) % depth);
-    event.rotating = true;
-  }
+  std::tie(event.tag, event.rotating) = traced_tag(tag.index);
   writer_->add(event);
 }
 
@@ -487,183 +301,6 @@ void SimCore::finish(bool clean) {
     }
     static_cast<void>(complete(pending));
   }
-}
-
-std::vector<Violation> check_across_tiles(std::span<const TileFootprint> footprints) {
-  struct Interval {
-    std::uint64_t begin, end;
-    std::uint64_t owner;  // tile, or the core for what lies outside any tile
-    bool is_put;
-    const TileFootprint* footprint;
-  };
-  std::vector<Interval> intervals;
-  for (const TileFootprint& footprint : footprints) {
-    const std::uint64_t owner =
-        footprint.tile_id == kNoTile ? (std::uint64_t{1} << 32) + footprint.core : footprint.tile_id;
-    for (const MainRange& range : footprint.gets)
-      intervals.push_back({range.begin, range.end, owner, false, &footprint});
-    for (const MainRange& range : footprint.puts)
-      intervals.push_back({range.begin, range.end, owner, true, &footprint});
-  }
-  const auto key = [](const Interval& i) { return std::tuple(i.begin, i.end, i.owner, i.is_put); };
-  std::sort(intervals.begin(), intervals.end(), [&](const Interval& a, const Interval& b) { return key(a) < key(b); });
-
-  // Sweep over rising begins. Of the intervals seen, only the one that reaches furthest can matter, and, where that
-  // belongs to the same owner, the one that reaches furthest among all other owners.
-  struct Reach {
-    const Interval* first = nullptr;
-    const Interval* other = nullptr;
-
-    void add(const Interval& interval) {
-      if (first == nullptr || interval.owner == first->owner) {
-        if (first == nullptr || interval.end > first->end) first = &interval;
-      } else if (interval.end > first->end) {
-        other = std::exchange(first, &interval);
-      } else if (other == nullptr || interval.end > other->end) {
-        other = &interval;
-      }
-    }
-    [[nodiscard]] const Interval* hit(const Interval& interval) const {
-      const Interval* candidate = first != nullptr && first->owner == interval.owner ? other : first;
-      return candidate != nullptr && candidate->end > interval.begin ? candidate : nullptr;
-    }
-  };
-  std::vector<Violation> violations;
-  Reach puts, gets;
-  for (const Interval& interval : intervals) {
-    const Interval* clash = puts.hit(interval);
-    if (clash == nullptr && interval.is_put) clash = gets.hit(interval);
-    if (clash != nullptr && violations.size() < kMaxViolations) {
-      const auto name = [](const Interval& i) {
-        const std::string who = i.footprint->tile_id == kNoTile ? "core " + std::to_string(i.footprint->core)
-                                                                : "tile " + std::to_string(i.footprint->tile_id);
-        return who + (i.is_put ? " puts" : " gets") + " main " + hex(i.begin) + ".." + hex(i.end);
-      };
-      // The core that rendered a tile depends on the host, so it is not reported.
-      const bool in_tile = interval.footprint->tile_id != kNoTile;
-      violations.push_back({Status::kTransferOverlap, in_tile ? 0 : interval.footprint->core,
-                            interval.footprint->tile_id, name(interval) + ", " + name(*clash)});
-    }
-    (interval.is_put ? puts : gets).add(interval);
-  }
-  return violations;
-}
-
-// --- Instrumentation --------------------------------------------------------------------------------------------
-
-namespace {
-
-// Read-only data of the program and its libraries, and where the program itself was loaded.
-struct ReadOnlyData {
-  std::vector<std::pair<std::uintptr_t, std::uintptr_t>> ranges;
-  std::uintptr_t load_address = 0;
-
-  ReadOnlyData() {
-    dl_iterate_phdr(
-        [](dl_phdr_info* info, std::size_t, void* self) {
-          auto& data = *static_cast<ReadOnlyData*>(self);
-          if (data.ranges.empty()) data.load_address = info->dlpi_addr;
-          for (int i = 0; i < info->dlpi_phnum; ++i) {
-            const auto& header = info->dlpi_phdr[i];
-            const bool constant = header.p_type == PT_LOAD && (header.p_flags & PF_W) == 0;
-            if (!constant && header.p_type != PT_GNU_RELRO) continue;
-            const std::uintptr_t begin = info->dlpi_addr + header.p_vaddr;
-            data.ranges.emplace_back(begin, begin + header.p_memsz);
-          }
-          return 0;
-        },
-        this);
-  }
-};
-
-const ReadOnlyData& read_only_data() {
-  static const ReadOnlyData data;
-  return data;
-}
-
-std::uintptr_t stack_bottom() {
-  pthread_attr_t attributes;
-  void* address = nullptr;
-  std::size_t bytes = 0;
-  if (pthread_getattr_np(pthread_self(), &attributes) != 0) return 0;
-  pthread_attr_getstack(&attributes, &address, &bytes);
-  pthread_attr_destroy(&attributes);
-  return reinterpret_cast<std::uintptr_t>(address);
-}
-
-}  // namespace
-
-SimCore::AccessScope::AccessScope(SimCore& core, const void* stack_top) : outer_(current_core) {
-  static_cast<void>(read_only_data());
-  core.granule_state_.assign(core.arena_.size() / kGranuleBytes + 1, kFree);
-  core.stack_bottom_ = stack_bottom();
-  core.stack_top_ = reinterpret_cast<std::uintptr_t>(stack_top);
-  current_core = &core;
-}
-
-SimCore::AccessScope::~AccessScope() {
-  current_core = outer_;
-}
-
-void SimCore::mark(const Pending& pending, std::uint8_t state) {
-  if (granule_state_.empty()) return;
-  const auto offset = static_cast<std::size_t>(pending.local - arena_.data());
-  const std::size_t first = offset / kGranuleBytes;
-  const std::size_t end = (offset + pending.bytes + kGranuleBytes - 1) / kGranuleBytes;
-  for (std::size_t i = first; i < end; ++i) granule_state_[i] = state;
-}
-
-void SimCore::unmark(const Pending& pending) {
-  if (granule_state_.empty()) return;
-  mark(pending, kFree);
-  // Sources of two puts may share granules, and small transfers too.
-  for (const Pending& other : pending_) {
-    if (other.in_use && &other != &pending) mark(other, other.is_get ? kGetInFlight : kPutInFlight);
-  }
-}
-
-void SimCore::bad_access(std::uintptr_t address, std::uintptr_t bytes, bool is_store, std::uintptr_t code,
-                         const char* what) {
-  // A loop repeats itself; each instruction is reported once.
-  if (std::find(bad_code_.begin(), bad_code_.end(), code) != bad_code_.end()) return;
-  if (bad_code_.size() == kMaxViolations / 2) return;
-  bad_code_.push_back(code);
-  sticky_error_ = violate(Status::kBadAccess, tile_id_,
-                          std::string(is_store ? "store" : "load") + " of " + std::to_string(bytes) + " bytes at " +
-                              describe_local(address) + ": " + what + " (instruction " +
-                              hex(code - read_only_data().load_address) + ")");
-}
-
-void SimCore::check_access(std::uintptr_t address, std::uintptr_t bytes, bool is_store, std::uintptr_t code) {
-  SimCore* const core = current_core;
-  if (core == nullptr || bytes == 0) return;
-  const std::uintptr_t arena = reinterpret_cast<std::uintptr_t>(core->arena_.data());
-  const std::size_t arena_bytes = core->arena_.size();
-  const std::uintptr_t offset = address - arena;
-  if (offset < arena_bytes && bytes <= arena_bytes - offset) {
-    const std::size_t first = offset / kGranuleBytes;
-    const std::size_t last = (offset + bytes - 1) / kGranuleBytes;
-    for (std::size_t i = first; i <= last; ++i) {
-      if (core->granule_state_[i] == kFree) continue;
-      // A granule can be larger than a transfer: ask the transfers themselves.
-      for (const Pending& pending : core->pending_) {
-        if (!pending.in_use || !(pending.is_get || is_store)) continue;
-        if (!overlap(address, bytes, address_of(pending.local), pending.bytes)) continue;
-        core->bad_access(address, bytes, is_store, code,
-                         pending.is_get ? "destination of a get that was not waited for"
-                                        : "source of a put that was not waited for");
-        return;
-      }
-    }
-    return;
-  }
-  if (address >= core->stack_bottom_ && address < core->stack_top_ && bytes <= core->stack_top_ - address) return;
-  if (!is_store) {
-    for (const auto& [begin, end] : read_only_data().ranges) {
-      if (address >= begin && address < end && bytes <= end - address) return;
-    }
-  }
-  core->bad_access(address, bytes, is_store, code, "outside the arena, the stack and constant data");
 }
 
 }  // namespace gridiron::sim

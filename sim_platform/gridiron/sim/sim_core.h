@@ -18,6 +18,7 @@
 #include <mutex>
 #include <span>
 #include <string>
+#include <utility>
 #include <vector>
 
 namespace gridiron::sim {
@@ -165,12 +166,13 @@ class SimCore {
   Status check_untouched(const Pending& pending);
   bool meets_writable(std::uint64_t address, std::uint32_t bytes) const;
   void note_footprint(std::uint64_t address, std::uint32_t bytes, bool is_get);
-  void mark(const Pending& pending, std::uint8_t state);
-  void unmark(const Pending& pending);
+  void mark(const Pending& pending);
+  void unmark(Pending& pending);
   [[nodiscard]] bool meets_spill(std::uint64_t address, std::uint32_t bytes) const;
   [[nodiscard]] bool is_own_spill(std::uint64_t address, std::uint32_t bytes) const;
   void leave_tile();
   std::uint64_t next_random();
+  [[nodiscard]] std::pair<std::uint8_t, bool> traced_tag(std::uint32_t tag) const;
   void trace_transfer(EventKind kind, Tag tag, std::uint32_t bytes, std::uint64_t address);
   void bad_access(std::uintptr_t address, std::uintptr_t bytes, bool is_store, std::uintptr_t code, const char* what);
 

@@ -1,4 +1,4 @@
-// The traversal by itself: macrocell walk and cell walk over a grid whose every cell holds something, held against the
+// The traversal by itself: macrocell walk and cell walk over a grid whose every cell holds something, compared with the
 // cells that the oracle says the rays touch.
 // Memory: std::vector. Threads: any. SPDX-License-Identifier: Apache-2.0
 #pragma once

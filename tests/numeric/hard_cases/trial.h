@@ -1,4 +1,4 @@
-// A trial: one mesh, rays at it, and what every accuracy promises of them, held against the oracle on two ways: the
+// A trial: one mesh, rays at it, and what every accuracy promises of them, compared with the oracle in two ways: the
 // intersector alone, and all of the pipeline from the builder to the pixels.
 // Memory: std::vector. Threads: one caller. SPDX-License-Identifier: Apache-2.0
 #pragma once

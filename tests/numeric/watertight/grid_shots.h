@@ -23,7 +23,7 @@ inline constexpr const char* kGridKind = "grid";
 /// A frame's rays go: across one triangle, so that pixels lie on its corners, its edges and on 1/32 of the way between;
 /// or to a vertex or a point of an edge and to the floats around that direction, column by column and row by row; or
 /// over a wide field. By turns frames have packets of 8 with corner culling or of 32 with subpackets, a depth plane or
-/// none, 4, 8 or 16 lanes; some are rendered by all these turns, and held against each other.
+/// none, 4, 8 or 16 lanes; some are rendered by all these turns, and compared with each other.
 ///
 /// @param machines  of grid_machines(). @param mode  checked or plain.
 /// Errors: std::runtime_error where a frame cannot be rendered or breaks a rule of the platform.

@@ -122,7 +122,7 @@ std::uint64_t number_blocks(MacroTableEntry* macro_table, std::uint64_t entry_co
   std::uint64_t block = 1;
   for (std::uint64_t i = 0; i < entry_count; ++i) {
     macro_table[i].first_block = static_cast<std::uint32_t>(block);
-    block += bit_count(macro_table[i].occupied);
+    block += count_bits(macro_table[i].occupied);
   }
   return block;
 }
@@ -138,7 +138,7 @@ void find_cells(const GridRecord& grid, const ReferenceLists& lists, const Macro
     if (macro_cell != last_macro_cell) {
       const MacroTableEntry& entry = macro_table[macro_cell / 32];
       const std::uint32_t below = entry.occupied & ((1u << (macro_cell % 32)) - 1);
-      first_cell = (std::uint64_t{entry.first_block} + bit_count(below)) * cells_per_block;
+      first_cell = (std::uint64_t{entry.first_block} + count_bits(below)) * cells_per_block;
       last_macro_cell = macro_cell;
     }
     lists.keys[i] = first_cell + (lists.keys[i] & ((1u << kCellBits) - 1));

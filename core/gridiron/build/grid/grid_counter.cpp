@@ -115,7 +115,7 @@ class MacroWindow {
   [[nodiscard]] std::uint64_t size() const {
     std::uint64_t total = 0;
     for (const std::uint64_t word : words_) {
-      total += bit_count(static_cast<std::uint32_t>(word)) + bit_count(static_cast<std::uint32_t>(word >> 32));
+      total += count_bits(static_cast<std::uint32_t>(word)) + count_bits(static_cast<std::uint32_t>(word >> 32));
     }
     return total;
   }

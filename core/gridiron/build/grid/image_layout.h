@@ -2,6 +2,7 @@
 // Inside of this room. Memory: values. Threads: any. SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <gridiron/base/lanes.h>
 #include <gridiron/base/math.h>
 #include <gridiron/base/records.h>
 #include <gridiron/build/effects/effect_sections.h>
@@ -95,12 +96,5 @@ struct MacroMap {
 // Linear macrocell index in the high bits, cell within the macrocell (less than 8^3) in the low nine.
 inline constexpr std::uint32_t kCellBits = 9;
 static_assert(kMaxMacroWidth * kMaxMacroWidth * kMaxMacroWidth <= (1u << kCellBits));
-
-inline std::uint32_t bit_count(std::uint32_t bits) {
-  bits -= (bits >> 1) & 0x55555555u;
-  bits = (bits & 0x33333333u) + ((bits >> 2) & 0x33333333u);
-  bits = (bits + (bits >> 4)) & 0x0F0F0F0Fu;
-  return (bits * 0x01010101u) >> 24;
-}
 
 }  // namespace gridiron

@@ -17,11 +17,10 @@ namespace gridiron {
 /// each.
 ///
 /// The frustum's pads cover each square: its rays are among those that the pads were made for.
-template <class L, class PacketType>
-[[nodiscard]] GRIDIRON_INLINE std::uint32_t squares_touching(const PacketType& packet, const Frustum& frustum,
+template <class L, std::uint32_t kSquares>
+[[nodiscard]] GRIDIRON_INLINE std::uint32_t squares_touching(const PassSlopes<kSquares>& pass, const Frustum& frustum,
                                                              const Slab& slab, std::int32_t u, std::int32_t v,
                                                              std::uint32_t wanted, WorkCounters& work) {
-  constexpr std::uint32_t kSquares = PacketType::kSquareCount;
   if constexpr (kSquares < 4) return wanted;
   using S = std::conditional_t<(kSquares >= L::kCount), L, Lanes<4>>;
   using Float = typename S::Float;
@@ -35,8 +34,8 @@ template <class L, class PacketType>
     work.add(Work::kFootprintGroup);
     std::uint32_t outside = 0;
     for (std::uint32_t axis = 0; axis < 2; ++axis) {
-      const Float slope_low = Float::load(packet.slope_low[axis] + base);
-      const Float slope_high = Float::load(packet.slope_high[axis] + base);
+      const Float slope_low = Float::load(pass.slope_low[axis] + base);
+      const Float slope_high = Float::load(pass.slope_high[axis] + base);
       const Float low = Float(frustum.start[2 * axis]) + S::min(slope_low * near, slope_low * far);
       const Float high = Float(frustum.start[2 * axis + 1]) + S::max(slope_high * near, slope_high * far);
       outside |= ((last[axis] < low) | (high < first[axis])).bits();

@@ -271,12 +271,9 @@ class WalkDriver {
       for (int axis = 0; axis < 3; ++axis) other.v[corner][axis] = surface.v[corner][axis];
     }
     if (in_one_plane(triangle, other)) return Status::kOk;
-    if (surely_in_one_plane(triangle, other, store_.work)) return Status::kOk;
-    store_.work.add(Work::kExactOrder);
     const float origin[3] = {rays.origin[0][ray], rays.origin[1][ray], rays.origin[2][ray]};
     const float dir[3] = {rays.dir[0][ray], rays.dir[1][ray], rays.dir[2][ray]};
-    const int order = exact_distance_order(origin, dir, triangle.v, other.v);
-    is_first = order < 0 || (order == 0 && is_first);
+    is_first = comes_first_exactly(origin, dir, triangle, other, is_first, store_.work);
     return Status::kOk;
   }
 

@@ -1,4 +1,4 @@
-// Ray walks: secondary rays through a grid hit what every ray held against every triangle says, however many walks are
+// Ray walks: secondary rays through a grid hit what testing every triangle finds, however many walks are
 // under way, whenever transfers arrive; transfers that fail are reported.
 // SPDX-License-Identifier: Apache-2.0
 #include <gridiron/build/grid/grid_builder.h>

@@ -1,6 +1,7 @@
-// The parts of the `standard` test that run once per triangle. SPDX-License-Identifier: Apache-2.0
+// What edges.h and distance.h compute once per triangle, and their exact decisions. SPDX-License-Identifier: Apache-2.0
 #include <gridiron/base/exact_sum.h>
-#include <gridiron/ray/intersect_standard.h>
+#include <gridiron/ray/distance.h>
+#include <gridiron/ray/edges.h>
 
 #include <bit>
 
@@ -113,7 +114,7 @@ bool surely_in_one_plane(const VertexTriangle& first, const VertexTriangle& seco
       is_shared =
           is_shared || (is_same(corner[0], other[0]) && is_same(corner[1], other[1]) && is_same(corner[2], other[2]));
     }
-    if (!is_shared && volume_sign_in_double(corner, first, work) != 0) return false;
+    if (!is_shared && volume_sign(corner, first, work) != 0) return false;
   }
   return true;
 }
@@ -143,8 +144,7 @@ void set_up_normal(const VertexTriangle& triangle, float normal[3]) {
 }
 
 // The float test's form and bound with u = 2^-52 in the place of 2^-23; nothing here can leave the range of a double.
-int edge_sign_in_double(const float origin[3], const float dir[3], const float a[3], const float b[3],
-                        WorkCounters& work) {
+int edge_sign(const float origin[3], const float dir[3], const float a[3], const float b[3], WorkCounters& work) {
   work.add(Work::kDoubleSign);
   double sum[3], edge[3];
   double size_sum = 0.0, size_edge = 0.0, size_dir = 0.0;
@@ -166,7 +166,7 @@ int edge_sign_in_double(const float origin[3], const float dir[3], const float a
   return exact_edge_sign(origin, dir, a, b);
 }
 
-int volume_sign_in_double(const float origin[3], const VertexTriangle& triangle, WorkCounters& work) {
+int volume_sign(const float origin[3], const VertexTriangle& triangle, WorkCounters& work) {
   double normal[3], products[3];
   normal_of(triangle, normal, products);
   double volume = 0.0;
