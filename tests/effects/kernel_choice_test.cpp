@@ -57,7 +57,7 @@ TEST(KernelChoice, WhatASceneDoesNotCallForHappensNever) {
     const WorkCounters& work = scene.picture.work;
     called |= effects;
     left_aside |= ~effects & kAllEffects;
-    const auto expect_work = [&](std::uint32_t wanted_by, Work kind) {
+    const auto expect_work = [&](std::uint32_t wanted_by, WorkId kind) {
       if ((effects & wanted_by) != 0) {
         EXPECT_GT(work[kind], 0u) << "kind " << static_cast<int>(kind);
       } else {
@@ -90,7 +90,7 @@ TEST(KernelChoice, WhatASceneDoesNotCallForHappensNever) {
     EXPECT_EQ(work[Work::kWaveRay] - work[Work::kQueuedRay], samples * kSize * kSize);
     // Without any ray beyond the eye's no walk begins.
     if (!has_shadows && (effects & (kAmbientOcclusion | kReflection | kRefraction)) == 0) {
-      EXPECT_EQ(work[Work::kWalkPass], 0u);
+      EXPECT_EQ(work[GridWork::kWalkPass], 0u);
       EXPECT_EQ(work[Work::kRayGroupTest], 0u);
     }
   }

@@ -139,7 +139,7 @@ TEST_P(KernelDeterminism, PacketsAndLanesChangeNoPixelAndNoRay) {
     EXPECT_EQ(rays_of(picture), rays_of(scene.picture)) << words_of(rays_of(picture));
     EXPECT_EQ(picture.work[Work::kLightSample], scene.picture.work[Work::kLightSample]);
     EXPECT_EQ(picture.work[Work::kColorAdded], scene.picture.work[Work::kColorAdded]);
-    EXPECT_EQ(picture.work[Work::kWalkPass], scene.picture.work[Work::kWalkPass]);
+    EXPECT_EQ(picture.work[GridWork::kWalkPass], scene.picture.work[GridWork::kWalkPass]);
   }
 }
 

@@ -93,7 +93,7 @@ struct TileBound {
   std::uint64_t put_bytes = 0;              ///< requested by puts
 
   /// The most of one kind of work.
-  [[nodiscard]] constexpr std::uint64_t operator[](Work kind) const { return work[static_cast<std::uint32_t>(kind)]; }
+  [[nodiscard]] constexpr std::uint64_t operator[](WorkId kind) const { return work[kind.number()]; }
 };
 
 /// The most that one tile can take of each kind of work and of transfers, for every camera that make_frame_record takes
