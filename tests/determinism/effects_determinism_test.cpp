@@ -147,9 +147,9 @@ const EffectsFrame& first_frame() {
 TEST(EffectsDeterminism, TheSceneHasRaysOfEveryKind) {
   const EffectsFrame& frame = first_frame();
   ASSERT_EQ(frame.result.status, Status::kOk);
-  for (const WorkId kind : {Work::kShadowRay, Work::kOcclusionRay, Work::kMirrorRay, Work::kRefractedRay,
+  for (const Work kind : {Work::kShadowRay, Work::kOcclusionRay, Work::kMirrorRay, Work::kRefractedRay,
                           Work::kEnvironmentLookup, Work::kSmoothNormal, Work::kHighlight}) {
-    EXPECT_GT(frame.result.work[kind.number()], 0u) << kind.number();
+    EXPECT_GT(frame.result.work[static_cast<std::size_t>(kind)], 0u) << static_cast<int>(kind);
   }
 }
 

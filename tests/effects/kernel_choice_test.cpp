@@ -57,7 +57,7 @@ TEST(KernelChoice, WhatASceneDoesNotCallForHappensNever) {
     const WorkCounters& work = scene.picture.work;
     called |= effects;
     left_aside |= ~effects & kAllEffects;
-    const auto expect_work = [&](std::uint32_t wanted_by, WorkId kind) {
+    const auto expect_work = [&](std::uint32_t wanted_by, Work kind) {
       if ((effects & wanted_by) != 0) {
         EXPECT_GT(work[kind], 0u) << "kind " << static_cast<int>(kind);
       } else {

@@ -73,7 +73,7 @@ class KernelDeterminism : public testing::TestWithParam<Accuracy> {
     ASSERT_EQ(picture.status, Status::kOk) << picture.violation;
     EXPECT_EQ(picture.violation, "");
     EXPECT_EQ(picture.color, scene.picture.color);
-    EXPECT_EQ(different_work(picture.work, scene.picture.work, waits_alike ? Work::kCount : Work::kWait), "");
+    EXPECT_EQ(different_work(picture.work, scene.picture.work, waits_alike ? WorkId(kWorkKindCount) : Work::kWait), "");
     EXPECT_EQ(picture.stage_bytes, scene.picture.stage_bytes);
     EXPECT_EQ(picture.stage_transfers, scene.picture.stage_transfers);
   }

@@ -18,7 +18,7 @@
 namespace gridiron::test {
 
 /// Kinds of work of its own.
-enum class BruteForceWork : std::uint8_t { kBuffer = kSharedWorkCount, kTriangle, kEnd, kFirst = kBuffer };
+enum class BruteForceWork : std::uint8_t { kFirst = kSharedWorkCount, kBuffer = kFirst, kTriangle, kEnd };
 
 /// Its part of a frame: vertex triangles of an image, a triangle any number of times.
 struct BruteForceRecord {

@@ -1,5 +1,7 @@
 // The seam between engines: an engine that core does not know renders the grid's frames, effects and all, and the
 // simulated chip runs, counts and replays it. SPDX-License-Identifier: Apache-2.0
+#include "engine/brute_force_engine.h"
+
 #include <gridiron/render/tile_renderer.h>
 #include <gridiron/sim/core_runner.h>
 #include <gridiron/sim/machine_profile.h>
@@ -12,7 +14,6 @@
 #include <utility>
 
 #include "effects/kernel_scene.h"
-#include "engine/brute_force_engine.h"
 #include "report/report.h"
 #include "report/timeline.h"
 #include "scene_text/scene_reader.h"
@@ -176,10 +177,12 @@ TEST(BruteForceEngine, RunsOnTheSimulatedChip) {
     make_brute_force(record);
     frame.set_record(record);
     const sim::ChipResult result = frame.run(
-        chip, sizeof(LocalStore<Layout>), [](sim::SimCore& core, std::span<std::byte> data, MainAddress address) {
+        chip, sizeof(LocalStore<Layout>),
+        [](sim::SimCore& core, std::span<std::byte> data, MainAddress address) {
           auto& store = *::new (static_cast<void*>(data.data())) LocalStore<Layout>;
           return render_tiles<Lanes<4>>(store, core, address);
-        }, kBruteForce);
+        },
+        kBruteForce);
     ASSERT_EQ(result.status, Status::kOk);
     EXPECT_TRUE(result.violations.empty());
     EXPECT_EQ(frame.planes(), expected);

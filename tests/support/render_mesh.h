@@ -69,7 +69,7 @@ class PreparedFrame {
   /// @param engine      whose kinds of work it has.
   template <class Program>
   [[nodiscard]] sim::ChipResult run(const sim::ChipOptions& chip, std::uint32_t data_bytes, Program&& program,
-                                    const sim::EngineWork& engine = sim::kGridEngine) {
+                                    const sim::EngineWork& engine) {
     return run_cores(chip, data_bytes, engine, [&](sim::SimCore& core, std::span<std::byte> data) {
       return program(core, data, record_address_);
     });

@@ -279,9 +279,7 @@ void PipeModel::schedule() {
     if (op.op == OpClass::kBranch) return op.segment == open_segment && left_in_segment_[open_segment] == 0;
     return op.op != OpClass::kStore || op.segment == open_segment;
   };
-  const auto totals_of = [&](std::uint32_t i) -> KindTotals& {
-    return totals_[block_[i].kind.number()];
-  };
+  const auto totals_of = [&](std::uint32_t i) -> KindTotals& { return totals_[block_[i].kind.number()]; };
   while (!candidates_.empty()) {
     std::uint64_t cycle = ~std::uint64_t{0};
     for (const std::uint32_t i : candidates_) {

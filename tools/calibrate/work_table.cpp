@@ -439,7 +439,8 @@ void write_file(const std::string& path, std::span<const std::byte> bytes) {
 
 void write_units(const std::string& path, const Totals& counted) {
   std::ofstream units(path);
-  for (std::size_t kind = 0; kind < sim::kGridEngine.kind_count(); ++kind) units << kind << ' ' << counted[kind].units << '\n';
+  for (std::size_t kind = 0; kind < sim::kGridEngine.kind_count(); ++kind)
+    units << kind << ' ' << counted[kind].units << '\n';
   if (!units.flush()) throw std::runtime_error("calibration: cannot write " + path);
 }
 
@@ -482,8 +483,8 @@ void write_memories(const std::string& folder) {
     const KindTotals& t = totals[kind];
     if (!is_charged(kind)) continue;
     const char* stands_for = is_of_effects(kind) ? "effects" : "packets";
-    file << kind << ' ' << name_of(kind, sim::kGridEngine) << ' ' << t.units << ' '
-         << per_unit(t, t.even() + t.odd()) << ' ' << stands_for << '\n';
+    file << kind << ' ' << name_of(kind, sim::kGridEngine) << ' ' << t.units << ' ' << per_unit(t, t.even() + t.odd())
+         << ' ' << stands_for << '\n';
   }
   if (!file.flush()) throw std::runtime_error("calibration: cannot write into " + folder);
 }

@@ -160,8 +160,8 @@ std::unique_ptr<Recording> GridSystem::record(const View& view, const FrameReque
 
   FrameFacts facts;
   facts.build = sim::grid_build_work(view.mesh().vertices.size(), view.mesh().triangles.size(), frame.need);
-  facts.traversal_steps = sum_of(result.work, {GridWork::kMacroSliceStep, GridWork::kMacroCellStep, GridWork::kSliceStep,
-                                               GridWork::kCellStep, GridWork::kCellBoundStep});
+  facts.traversal_steps = sum_of(result.work, {GridWork::kMacroSliceStep, GridWork::kMacroCellStep,
+                                               GridWork::kSliceStep, GridWork::kCellStep, GridWork::kCellBoundStep});
   facts.intersection_tests =
       sum_of(result.work, {Work::kGroupTestStandard, Work::kGroupTestPaper, Work::kRayGroupTest});
   facts.scene_bytes = frame.image.header.image_bytes;

@@ -71,7 +71,7 @@ class WorkId {
   constexpr WorkId(Work kind) : number_(static_cast<std::uint32_t>(kind)) {}  // NOLINT: kinds are passed as they are
   /// @tparam Kind  an engine's kinds: kFirst to kEnd - 1.
   template <class Kind>
-    requires requires { Kind::kFirst != Kind::kEnd; }
+  requires requires { Kind::kFirst != Kind::kEnd; }
   constexpr WorkId(Kind kind) : number_(static_cast<std::uint32_t>(kind)) {  // NOLINT: the same
     static_assert(static_cast<std::uint32_t>(Kind::kFirst) == kSharedWorkCount);
     static_assert(static_cast<std::uint32_t>(Kind::kEnd) <= kWorkKindCount);

@@ -32,10 +32,10 @@ inline constexpr auto kBvhPrices = [] {
 }();
 
 /// The cached BVH. Its prices are those of a core of two pipes whatever the machine.
-inline constexpr sim::EngineWork kBvhEngine = sim::EngineWork::make(
-    BvhWork::kEnd, {.name = "bvh",
-                    .kinds = kBvhWorkKinds,
-                    .prices = kBvhPrices,
-                    .wait_levels = {"tile", "macrocell", "triangle", "setup"}});
+inline constexpr sim::EngineWork kBvhEngine =
+    sim::EngineWork::make(BvhWork::kEnd, {.name = "bvh",
+                                          .kinds = kBvhWorkKinds,
+                                          .prices = kBvhPrices,
+                                          .wait_levels = {"tile", "macrocell", "triangle", "setup"}});
 
 }  // namespace gridiron::bvh

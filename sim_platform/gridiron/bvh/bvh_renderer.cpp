@@ -152,10 +152,9 @@ BvhFrame render_bvh_frame(const Bvh& bvh, const FrameSettings& settings, const s
   chip.completion = options.completion;
   chip.seed = options.seed;
   chip.abort = options.abort;
-  sim::FrameShape shape;
+  sim::FrameShape shape(kBvhEngine);
   shape.tile_count = parts.frame.tiles_x * parts.frame.tiles_y;
   shape.cores_meet = true;
-  shape.engine = &kBvhEngine;
   shape.output_depth = kOutputDepth;
   shape.arena_bytes = BvhStore::Layout::kArenaBytes;
   shape.data_bytes = options.packet_width == 16 ? sizeof(LocalStore<BvhLayout<16>>) : sizeof(LocalStore<BvhLayout<8>>);

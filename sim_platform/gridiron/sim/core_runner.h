@@ -15,12 +15,15 @@ namespace gridiron::sim {
 
 /// The parts of a frame that do not depend on what the cores run.
 struct FrameShape {
+  /// @param of  the engine whose code the program is; it outlives what run_cores() returns.
+  explicit FrameShape(const EngineWork& of) : engine(&of) {}
+
+  const EngineWork* engine;
   std::uint32_t tile_count = 0;
   std::uint32_t output_depth = 1;
   std::uint32_t arena_bytes = 256 * 1024;  ///< local memory of a core
   std::uint32_t data_bytes = 256 * 1024;   ///< its first bytes, where data lies; the rest is code and stack
   std::vector<MainRange> writable;         ///< where puts may go; sorted, disjoint
-  const EngineWork* engine = &kGridEngine;  ///< whose code the program is
   bool is_picture = false;                 ///< writable holds equal parts of every tile; each must be claimed and put
   bool cores_meet = false;                 ///< cores wait for one another, so that each needs a host thread of its own
 };

@@ -109,8 +109,8 @@ inline constexpr EngineWork kGridEngine = EngineWork::make(
 }
 
 /// @returns what units of an engine's kinds cost. @param profile  MachineProfile::work_cycles.
-[[nodiscard]] constexpr std::array<double, kWorkKindCount> work_prices(
-    std::array<double, kWorkKindCount> profile, const EngineWork& engine) {
+[[nodiscard]] constexpr std::array<double, kWorkKindCount> work_prices(std::array<double, kWorkKindCount> profile,
+                                                                       const EngineWork& engine) {
   for (const WorkPrice& price : engine.prices) profile[price.id.number()] = price.cycles;
   return profile;
 }

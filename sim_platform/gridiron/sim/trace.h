@@ -32,7 +32,7 @@ enum class EventKind : std::uint8_t {
 
 /// Work of one kind done between two transfers.
 struct WorkAmount {
-  WorkId kind;             ///< of work
+  WorkId kind;           ///< of work
   std::uint32_t amount;  ///< how much of it, above 0
 
   friend constexpr bool operator==(const WorkAmount&, const WorkAmount&) = default;  ///< of all members

@@ -213,7 +213,8 @@ class Expectations {
 
   /// One of most kinds. A mailbox is asked for every triangle that arrived, a shaft is held against each slab.
   [[nodiscard]] std::uint32_t& amount(std::uint32_t kind, const Step& step) {
-    if (kind == static_cast<std::uint32_t>(GridWork::kMailboxProbe)) return probes_[arrived_bytes_ / 16 % probes_.size()];
+    if (kind == static_cast<std::uint32_t>(GridWork::kMailboxProbe))
+      return probes_[arrived_bytes_ / 16 % probes_.size()];
     if (kind == static_cast<std::uint32_t>(GridWork::kShaftGroup)) {
       const auto amount_of = [&](WorkId work) { return step.amounts[work.number()]; };
       const std::uint32_t slabs =

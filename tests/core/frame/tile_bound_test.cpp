@@ -14,6 +14,7 @@
 #include <array>
 #include <cmath>
 #include <cstring>
+#include <initializer_list>
 #include <memory>
 #include <optional>
 #include <string>
@@ -279,12 +280,13 @@ TEST(TileBound, IsReachedPerPassByAPacketThatSeesAll) {
     const std::uint64_t passes = bound[GridWork::kPacketStart];
     ASSERT_EQ(tile[GridWork::kPacketStart], 1u);
     EXPECT_EQ(passes, 7u) << "six, and one for a ray without a direction";
-    for (const WorkId kind : {GridWork::kMacroCellStep, GridWork::kMacroCellVisit, GridWork::kCellStep, GridWork::kCellVisit,
-                            GridWork::kTriangleBatch, Work::kTriangleSetup}) {
-      EXPECT_EQ(passes * tile[kind], bound[kind]) << "kind " << static_cast<int>(kind);
+    for (const WorkId kind :
+         std::initializer_list<WorkId>{GridWork::kMacroCellStep, GridWork::kMacroCellVisit, GridWork::kCellStep,
+                                       GridWork::kCellVisit, GridWork::kTriangleBatch, Work::kTriangleSetup}) {
+      EXPECT_EQ(passes * tile[kind], bound[kind]) << "kind " << kind.number();
     }
     most_slices = std::max(most_slices, tile[GridWork::kSliceStep]);
-    for (const WorkId kind : {Work::kTileStart, Work::kRayGenerated, Work::kShadedGroup}) {
+    for (const Work kind : {Work::kTileStart, Work::kRayGenerated, Work::kShadedGroup}) {
       EXPECT_EQ(tile[kind], bound[kind]) << "kind " << static_cast<int>(kind);
     }
     EXPECT_EQ(tile.put_bytes, bound.put_bytes);
@@ -310,9 +312,10 @@ TEST(TileBound, IsWithinAFactorOfTwelveOfAPacketInTheMiddleOfAll) {
   ASSERT_TRUE(trace.has_value());
   const TileCounts tile = counts_of(trace->tiles[0]);
   EXPECT_GE(tile[GridWork::kPacketStart], 5u);
-  for (const WorkId kind : {GridWork::kMacroCellStep, GridWork::kMacroCellVisit, GridWork::kCellStep, GridWork::kCellVisit,
-                          GridWork::kTriangleBatch, Work::kTriangleSetup, Work::kGetIssue, Work::kWait}) {
-    EXPECT_LE(bound[kind], 12 * tile[kind]) << "kind " << static_cast<int>(kind);
+  for (const WorkId kind : std::initializer_list<WorkId>{
+           GridWork::kMacroCellStep, GridWork::kMacroCellVisit, GridWork::kCellStep, GridWork::kCellVisit,
+           GridWork::kTriangleBatch, Work::kTriangleSetup, Work::kGetIssue, Work::kWait}) {
+    EXPECT_LE(bound[kind], 12 * tile[kind]) << "kind " << kind.number();
   }
   EXPECT_LE(bound.get_bytes, 12 * tile.get_bytes);
 }
@@ -340,7 +343,7 @@ TEST(TileBound, RaysByKindAreReachedOnALitFloor) {
   const auto trace = scene.render(way, camera, 32, 32);
   ASSERT_TRUE(trace.has_value());
   const TileCounts tile = counts_of(trace->tiles[0]);
-  for (const WorkId kind : {Work::kWaveRay, Work::kQueuedRay, Work::kSurfacePoint, Work::kShadowRay, Work::kLightSample,
+  for (const Work kind : {Work::kWaveRay, Work::kQueuedRay, Work::kSurfacePoint, Work::kShadowRay, Work::kLightSample,
                           Work::kOcclusionRay, Work::kColorAdded, Work::kColorGroup}) {
     EXPECT_EQ(tile[kind], bound[kind]) << "kind " << static_cast<int>(kind);
   }

@@ -145,7 +145,7 @@ TYPED_TEST(StandardTest, ABatchIsItsTrianglesOneByOne) {
       ASSERT_EQ(batched.id[ray], single.id[ray]) << "seed " << seed << ", ray " << ray;
       ASSERT_TRUE(same_bits(batched.facing[ray], single.facing[ray])) << "seed " << seed << ", ray " << ray;
     }
-    for (const WorkId kind : {Work::kTriangleSetup, Work::kCullTest, Work::kGroupTestStandard, Work::kHitSetup}) {
+    for (const Work kind : {Work::kTriangleSetup, Work::kCullTest, Work::kGroupTestStandard, Work::kHitSetup}) {
       ASSERT_EQ(batch_work[kind], single_work[kind]) << "seed " << seed << ", kind " << static_cast<int>(kind);
     }
   });

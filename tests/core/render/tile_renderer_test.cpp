@@ -198,7 +198,7 @@ TEST_F(TileRendererTest, TechniquesChangeNoPixelButTheWork) {
   const KernelFrame with_all = all_on.render<Lanes<4>, Normal>();
   struct Case {
     std::uint32_t bit;
-    Work counter;
+    WorkId counter;
   };
   for (const Case& tested : {Case{kUseMailbox, Work::kTriangleSetup}, Case{kUseCornerCulling, Work::kGroupTestStandard},
                              Case{kUseEmptySkip, GridWork::kMacroCellVisit}}) {

@@ -60,8 +60,7 @@ TEST(WorkTable, BvhChargesItsTableAndTheKernelsForAllElse) {
   for (std::uint32_t i = 0; i < bvh::kBvhCosts.size(); ++i) {
     const WorkId kind = bvh::kind_of_cost(i);
     expected[kind.number()] = bvh::kBvhCosts[i].cycles;
-    EXPECT_LE(bvh::kBvhCosts[i].cycles, bvh::kBvhCosts[i].most_cycles)
-        << sim::work_kind(kind, bvh::kBvhEngine).name;
+    EXPECT_LE(bvh::kBvhCosts[i].cycles, bvh::kBvhCosts[i].most_cycles) << sim::work_kind(kind, bvh::kBvhEngine).name;
   }
   EXPECT_EQ(sim::work_prices(machine.work_cycles, bvh::kBvhEngine), expected);
   EXPECT_EQ(expected[static_cast<std::size_t>(Work::kTileStart)], bvh::kBvhCosts[0].cycles);

@@ -121,8 +121,8 @@ TEST(EffectsExperiment, WorkOfAnEffectThatIsOffFailsTheRun) {
   plain.has_shadows = false;
   plain.light_count = 2;
   plain.picture = {2, 2, {0, 0, 0, 0}};
-  const auto count_of = [](EffectFrame& frame, WorkId kind) -> std::uint64_t& {
-    return frame.work[kind.number()];
+  const auto count_of = [](EffectFrame& frame, Work kind) -> std::uint64_t& {
+    return frame.work[static_cast<std::size_t>(kind)];
   };
   count_of(plain, Work::kWaveRay) = 4;
   count_of(plain, Work::kSurfacePoint) = 3;
@@ -132,7 +132,7 @@ TEST(EffectsExperiment, WorkOfAnEffectThatIsOffFailsTheRun) {
   EXPECT_EQ(experiment::absent_costs(plain).size(), kEffectCount - 1);
   EXPECT_EQ(code_of(plain, kSceneShading | kReflection), tool::ExitCode::kCheckFailed) << "not what the scene should";
 
-  for (const WorkId kind :
+  for (const Work kind :
        {Work::kShadowRay, Work::kLightSample, Work::kMirrorRay, Work::kQueuedRay, Work::kRefractedRay,
         Work::kOcclusionRay, Work::kEnvironmentLookup, Work::kSmoothNormal, Work::kHighlight, Work::kWaveRay}) {
     EffectFrame frame = plain;

@@ -157,8 +157,8 @@ void compare_work(const sim::ChipResult& simulated, const OpenResult& result, st
                               "the device counts groups of " + words_of_count(device_lanes, "ray") +
                                   ", the simulator groups of " + std::to_string(lanes)};
   } else if (!comparison.items[item].equal) {
-    comparison.items[item].detail =
-        words_of_count(comparison.items.size() - item - 1) + " of " + words_of_count(sim::kGridEngine.kind_count(), "kind");
+    comparison.items[item].detail = words_of_count(comparison.items.size() - item - 1) + " of " +
+                                    words_of_count(sim::kGridEngine.kind_count(), "kind");
   }
 }
 

@@ -344,7 +344,8 @@ void expect_slopes_of_squares(FrameKind kind) {
     EXPECT_GT(taken_count, kSeeds * PacketType::kRayCount / 2) << "kind " << static_cast<int>(kind);
     // Nearly every square is taken as a whole.
     EXPECT_GT(work[GridWork::kPassSquare], kSeeds * PacketType::kSquareCount / 2) << "kind " << static_cast<int>(kind);
-    EXPECT_LT(work[GridWork::kPassGroup], one_by_one_work[GridWork::kPassGroup] / 4) << "kind " << static_cast<int>(kind);
+    EXPECT_LT(work[GridWork::kPassGroup], one_by_one_work[GridWork::kPassGroup] / 4)
+        << "kind " << static_cast<int>(kind);
   }
 }
 

@@ -259,7 +259,8 @@ TYPED_TEST(RayWalksTest, AnswerAsTheOracleDoes) {
       EXPECT_GT(hits, 500u);
       EXPECT_LT(hits, 1190u);
       if (has_long_runs) {
-        EXPECT_GT(run.work[GridWork::kTriangleBatch], run.work[GridWork::kCellVisit] + 100u) << "no cell takes two buffers";
+        EXPECT_GT(run.work[GridWork::kTriangleBatch], run.work[GridWork::kCellVisit] + 100u)
+            << "no cell takes two buffers";
       }
     }
   }
