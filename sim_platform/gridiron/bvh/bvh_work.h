@@ -19,7 +19,7 @@ enum class BvhWork : std::uint8_t {
   kChildren,              ///< nodes of which a child was met: the nearest was taken, the others put on the stack
   kStackPop,              ///< entries taken from the stack
   kCacheLookup,           ///< look-ups in either cache
-  kMiss,                  ///< those that did not hit: the line to be replaced, address and get, or the line is on its way
+  kMiss,                  ///< those without a hit: the line to be replaced, address and get, or the line is on its way
   kSwitch,                ///< packets suspended and taken up again
   kLeafVisit,             ///< leaves whose triangles were tested
   kLeafTriangle,          ///< triangles of leaves
