@@ -341,7 +341,7 @@ constexpr std::string_view kBvhTableHead =
 #pragma once
 
 #include <gridiron/base/lanes.h>
-#include <gridiron/bvh/bvh_engine_work.h>
+#include <gridiron/bvh/bvh_work.h>
 #include <gridiron/sim/work_costs.h>
 
 #include <array>

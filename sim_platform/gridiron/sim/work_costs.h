@@ -26,7 +26,7 @@ struct WorkCost {
 inline constexpr std::array<WorkCost, kGridEngine.kind_count()> kWorkCosts = {{
     //  cycles    least     most     even  doubles      odd branches   misses
     {  124.2,    67.8,   142.6,   63.81,    0.00,   25.69,    9.89,    0.22},  // tile_start
-    {   34.8,    33.3,    63.5,   30.26,    0.20,   32.00,    0.04,    0.00},  // ray_generated
+    {   36.6,    34.4,    65.7,   31.36,    0.20,   32.40,    0.19,    0.04},  // ray_generated
     {   89.0,    44.2,    99.1,   37.84,    0.00,   19.23,    1.66,    0.35},  // cull_test
     {  202.9,   200.1,   279.9,  200.06,    0.00,   79.81,    0.00,    0.00},  // pixel_box_group
     {  164.9,   138.4,   209.3,  135.90,    0.00,   60.03,    7.22,    0.14},  // triangle_setup
@@ -70,7 +70,7 @@ inline constexpr std::array<WorkCost, kGridEngine.kind_count()> kWorkCosts = {{
     {      0,       0,       0,       0,       0,       0,       0,       0},  // get_issue
     {      0,       0,       0,       0,       0,       0,       0,       0},  // put_issue
     {      0,       0,       0,       0,       0,       0,       0,       0},  // wait
-    {  355.2,   290.2,   423.7,  186.61,    0.00,  120.89,   19.65,    5.75},  // packet_start
+    {  301.4,   236.3,   357.3,  153.65,    0.00,  108.71,   14.84,    4.59},  // packet_start
     {   58.9,    58.8,    73.9,   58.75,    0.00,   15.12,    0.00,    0.00},  // pass_group
     {  115.8,    90.5,   160.6,   90.49,    0.00,   57.37,    2.49,    0.00},  // pass_square
     {  159.4,    99.2,   167.2,   54.92,    0.00,   27.51,    9.86,    2.46},  // macro_slice_step
@@ -84,7 +84,7 @@ inline constexpr std::array<WorkCost, kGridEngine.kind_count()> kWorkCosts = {{
     {   10.7,     8.5,    14.4,    7.96,    0.00,    4.54,    0.25,    0.03},  // reach_group
     {   47.8,    43.4,    58.7,   38.71,    0.00,   11.66,    1.51,    0.26},  // footprint_group
     {   34.3,    26.5,    36.4,   17.93,    0.00,    3.62,    2.02,    0.48},  // cell_bound_step
-    {  924.9,   707.1,  1184.0,  582.56,    0.00,  362.35,   43.21,    6.92},  // walk_pass
+    {  924.9,   707.1,  1183.9,  582.56,    0.00,  362.35,   43.21,    6.92},  // walk_pass
     {   56.4,    54.3,    68.1,   51.91,    0.00,   12.50,    0.49,    0.13},  // shaft_group
 }};
 
