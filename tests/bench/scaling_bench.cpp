@@ -90,9 +90,7 @@ bool measure(std::uint32_t cells, const sim::MachineProfile& machine, Point& poi
   }
   const sim::FrameTiming timing = sim::replay(rendered.result.trace, machine, {});
   const double rays = static_cast<double>(width) * width;
-  const auto per_ray = [&](Work kind) {
-    return static_cast<double>(rendered.result.work[static_cast<std::size_t>(kind)]) / rays;
-  };
+  const auto per_ray = [&](WorkId kind) { return static_cast<double>(rendered.result.work[kind.number()]) / rays; };
   const GridNeed& need = scene.need();
   point = {static_cast<double>(mesh.triangles.size()), build_seconds,
            static_cast<double>(need.image_bytes + need.scratch_bytes), need.grid.reference_count * 1.0,
@@ -104,9 +102,9 @@ bool measure(std::uint32_t cells, const sim::MachineProfile& machine, Point& poi
       "%.0f core cycles on %s\n",
       mesh.triangles.size(), width, width, 1e3 * build_seconds, 0x1p-20 * static_cast<double>(need.image_bytes),
       0x1p-20 * static_cast<double>(need.scratch_bytes), point.references / point.triangles, need.grid.cell_count[0],
-      need.grid.cell_count[1], need.grid.cell_count[2], per_ray(Work::kMacroCellStep), per_ray(Work::kCellStep),
-      per_ray(Work::kCellVisit), per_ray(Work::kTriangleSetup), per_ray(Work::kGroupTestStandard), point.cycles_per_ray,
-      machine.name.data());
+      need.grid.cell_count[1], need.grid.cell_count[2], per_ray(GridWork::kMacroCellStep), per_ray(GridWork::kCellStep),
+      per_ray(GridWork::kCellVisit), per_ray(Work::kTriangleSetup), per_ray(Work::kGroupTestStandard),
+      point.cycles_per_ray, machine.name.data());
   if (const sim::MachineProfile* small = sim::find_machine_profile("cell-ps3"); small != nullptr) {
     print_fit(mesh.view(), 3 * output_plane_bytes(width, width, rendered.frame.tile_width), *small);
   }

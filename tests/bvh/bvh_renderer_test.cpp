@@ -1,6 +1,7 @@
 // The cached BVH's frames: the grid's pixels, no broken rule, the same figures every time.
 // SPDX-License-Identifier: Apache-2.0
 #include <gridiron/bvh/bvh_core.h>
+#include <gridiron/bvh/bvh_engine_work.h>
 #include <gridiron/bvh/bvh_renderer.h>
 #include <gtest/gtest.h>
 
@@ -182,7 +183,6 @@ TEST(BvhRenderer, FiguresAreTheSameInEveryRun) {
       EXPECT_EQ(again.timing.frame_cycles, first.timing.frame_cycles) << machine.name;
       EXPECT_EQ(again.core_of_tile, first.core_of_tile) << machine.name;
       EXPECT_EQ(again.work, first.work) << machine.name;
-      EXPECT_EQ(again.bvh_work, first.bvh_work) << machine.name;
       EXPECT_EQ(again.node_cache.misses, first.node_cache.misses) << machine.name;
       EXPECT_EQ(again.triangle_cache.misses, first.triangle_cache.misses) << machine.name;
       for (std::size_t core = 0; core < first.timing.cores.size(); ++core) {
@@ -224,8 +224,8 @@ TEST(BvhRenderer, HyperThreadingWaitsLess) {
   EXPECT_LT(wait_cycles(with.timing), 0.5 * wait_cycles(without.timing));
   EXPECT_LT(with.timing.frame_cycles, without.timing.frame_cycles);
   const auto switches = static_cast<std::size_t>(BvhWork::kSwitch);
-  EXPECT_GT(with.bvh_work[switches], 0u);
-  EXPECT_EQ(without.bvh_work[switches], 0u);
+  EXPECT_GT(with.work[switches], 0u);
+  EXPECT_EQ(without.work[switches], 0u);
   EXPECT_EQ(without.node_cache.pending_hits, 0u);
 }
 
@@ -252,21 +252,18 @@ TEST(BvhRenderer, FiguresAddUp) {
   }
   // Cycles are work times its price in 1/1024, core's by the profile and the BVH's by its own table, and commands and
   // waits.
+  const auto prices = sim::work_prices(ps3().work_cycles, kBvhEngine);
   for (std::size_t kind = 0; kind < kWorkKindCount; ++kind) {
-    charged += static_cast<double>(frame.work[kind]) * std::round(ps3().work_cycles[kind] * 1024) / 1024;
+    charged += static_cast<double>(frame.work[kind]) * std::round(prices[kind] * 1024) / 1024;
   }
-  for (std::uint32_t kind = 0; kind < kBvhWorkCount; ++kind) {
-    charged +=
-        static_cast<double>(frame.bvh_work[kind]) * std::round(cycles_of(static_cast<BvhWork>(kind)) * 1024) / 1024;
-  }
-  const auto work = [&](Work kind) { return static_cast<double>(frame.work[static_cast<std::size_t>(kind)]); };
+  const auto work = [&](WorkId kind) { return static_cast<double>(frame.work[kind.number()]); };
   charged += ps3().issue_cycles * (work(Work::kGetIssue) + work(Work::kPutIssue));
   charged += ps3().wait_cycles * work(Work::kWait);
   // Outside of tiles a core gets its frame record, waits for it, and at the end for both output buffers.
   EXPECT_EQ(compute + init, charged + 6 * (ps3().issue_cycles + 3 * ps3().wait_cycles));
   EXPECT_EQ(gets, frame.work[static_cast<std::size_t>(Work::kGetIssue)] + 6);
   // Work of the caches.
-  const auto bvh_work = [&](BvhWork kind) { return frame.bvh_work[static_cast<std::size_t>(kind)]; };
+  const auto bvh_work = [&](BvhWork kind) { return frame.work[static_cast<std::size_t>(kind)]; };
   EXPECT_EQ(bvh_work(BvhWork::kCacheLookup), frame.node_cache.lookups + frame.triangle_cache.lookups);
   EXPECT_EQ(bvh_work(BvhWork::kMiss), frame.node_cache.misses + frame.node_cache.pending_hits +
                                           frame.triangle_cache.misses + frame.triangle_cache.pending_hits);

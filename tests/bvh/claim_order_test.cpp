@@ -24,7 +24,7 @@ sim::TileTrace random_tile(std::uint32_t tile_id, test::TestRandom& random) {
     switch (random.below(4)) {
       case 0:
         event.kind = sim::EventKind::kWork;
-        work[0] = {Work::kCellStep, random.below(40)};
+        work[0] = {GridWork::kCellStep, random.below(40)};
         work[1] = {Work::kRayGenerated, random.below(20)};
         event.work = work;
         break;
@@ -68,7 +68,7 @@ TEST(CoreClock, IsTheReplayOfOneCore) {
       sim::FrameTrace trace;
       trace.output_depth = 2;
       for (std::uint32_t tile = 0; tile < 12; ++tile) trace.tiles.push_back(random_tile(tile, random));
-      CoreClock clock(machine, 2);
+      CoreClock clock(machine, sim::kGridEngine, 2);
       clock.take_claim();
       for (std::uint32_t tile = 0; tile < 12; ++tile) {
         clock.take(trace.tiles[tile], tile);
@@ -88,7 +88,7 @@ TEST(CoreClock, WindowOfLinesAndRotatingTagsHoldTheCore) {
     machine.latency_cycles = 20000;
     sim::FrameTrace trace;
     trace.output_depth = 2;
-    CoreClock clock(machine, 2);
+    CoreClock clock(machine, sim::kGridEngine, 2);
     clock.take_claim();
     for (std::uint32_t tile = 0; tile < 6; ++tile) {
       sim::TraceEvent put{};

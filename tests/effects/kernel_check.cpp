@@ -57,10 +57,10 @@ double largest_share(const ReferenceCounts& a, const ReferenceCounts& b) {
                    share(a.environment, b.environment)});
 }
 
-std::string different_work(const WorkCounters& a, const WorkCounters& b, Work except) {
+std::string different_work(const WorkCounters& a, const WorkCounters& b, WorkId except) {
   std::string words;
   for (std::uint32_t kind = 0; kind < kWorkKindCount; ++kind) {
-    if (a.counts[kind] == b.counts[kind] || kind == static_cast<std::uint32_t>(except)) continue;
+    if (a.counts[kind] == b.counts[kind] || kind == except.number()) continue;
     words += "kind " + std::to_string(kind) + ": " + std::to_string(a.counts[kind]) + " and " +
              std::to_string(b.counts[kind]) + "; ";
   }

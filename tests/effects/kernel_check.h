@@ -30,7 +30,8 @@ inline constexpr std::string_view kShippedScenes[] = {
 [[nodiscard]] double largest_share(const ReferenceCounts& a, const ReferenceCounts& b);
 
 /// @returns the kinds of work in which two frames differ, "" where in none. @param except  a kind left aside.
-[[nodiscard]] std::string different_work(const WorkCounters& a, const WorkCounters& b, Work except = Work::kCount);
+[[nodiscard]] std::string different_work(const WorkCounters& a, const WorkCounters& b,
+                                         WorkId except = WorkId(kWorkKindCount));
 
 /// @returns the brightest channel of a pixel. @param color  0xAABBGGRR.
 [[nodiscard]] constexpr std::uint32_t brightest(std::uint32_t color) {

@@ -90,7 +90,7 @@ TEST(KernelChoice, WhatASceneDoesNotCallForHappensNever) {
     EXPECT_EQ(work[Work::kWaveRay] - work[Work::kQueuedRay], samples * kSize * kSize);
     // Without any ray beyond the eye's no walk begins.
     if (!has_shadows && (effects & (kAmbientOcclusion | kReflection | kRefraction)) == 0) {
-      EXPECT_EQ(work[Work::kWalkPass], 0u);
+      EXPECT_EQ(work[GridWork::kWalkPass], 0u);
       EXPECT_EQ(work[Work::kRayGroupTest], 0u);
     }
   }

@@ -73,7 +73,7 @@ class KernelDeterminism : public testing::TestWithParam<Accuracy> {
     ASSERT_EQ(picture.status, Status::kOk) << picture.violation;
     EXPECT_EQ(picture.violation, "");
     EXPECT_EQ(picture.color, scene.picture.color);
-    EXPECT_EQ(different_work(picture.work, scene.picture.work, waits_alike ? Work::kCount : Work::kWait), "");
+    EXPECT_EQ(different_work(picture.work, scene.picture.work, waits_alike ? WorkId(kWorkKindCount) : Work::kWait), "");
     EXPECT_EQ(picture.stage_bytes, scene.picture.stage_bytes);
     EXPECT_EQ(picture.stage_transfers, scene.picture.stage_transfers);
   }
@@ -139,7 +139,7 @@ TEST_P(KernelDeterminism, PacketsAndLanesChangeNoPixelAndNoRay) {
     EXPECT_EQ(rays_of(picture), rays_of(scene.picture)) << words_of(rays_of(picture));
     EXPECT_EQ(picture.work[Work::kLightSample], scene.picture.work[Work::kLightSample]);
     EXPECT_EQ(picture.work[Work::kColorAdded], scene.picture.work[Work::kColorAdded]);
-    EXPECT_EQ(picture.work[Work::kWalkPass], scene.picture.work[Work::kWalkPass]);
+    EXPECT_EQ(picture.work[GridWork::kWalkPass], scene.picture.work[GridWork::kWalkPass]);
   }
 }
 

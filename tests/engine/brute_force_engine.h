@@ -17,6 +17,9 @@
 
 namespace gridiron::test {
 
+/// Kinds of work of its own.
+enum class BruteForceWork : std::uint8_t { kFirst = kSharedWorkCount, kBuffer = kFirst, kTriangle, kEnd };
+
 /// Its part of a frame: vertex triangles of an image, a triangle any number of times.
 struct BruteForceRecord {
   std::uint64_t triangles_address;
@@ -93,11 +96,8 @@ class BruteForceCore {
           const bool is_first = t < rays.t[ray] || (t == rays.t[ray] && triangle.triangle_id < rays.id[ray]);
           if (!(t > 0.0f) || !is_first) continue;
           rays.id[ray] = triangle.triangle_id;
-          if (question.any_hit) {
-            open &= ~(1u << ray);
-          } else {
-            rays.t[ray] = t;
-          }
+          if (question.any_hit) open &= ~(1u << ray);
+          if (!question.any_hit) rays.t[ray] = t;
         }
         return Status::kOk;
       }));
@@ -117,6 +117,8 @@ class BruteForceCore {
       std::byte* const place = store_.engine.triangles + address.value % kPortableCongruenceBytes;
       GRIDIRON_TRY(transfers_.get(place, address, count * kTriangleRecordBytes, kFirstTriangleTag));
       GRIDIRON_TRY(transfers_.wait(kFirstTriangleTag));
+      store_.work.add(BruteForceWork::kBuffer);
+      store_.work.add(BruteForceWork::kTriangle, count);
       const auto* const triangles = reinterpret_cast<const VertexTriangle*>(place);
       for (std::uint32_t i = 0; i < count; ++i) GRIDIRON_TRY(use(triangles[i]));
     }

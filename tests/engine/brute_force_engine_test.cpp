@@ -1,5 +1,7 @@
 // The seam between engines: an engine that core does not know renders the grid's frames, effects and all, and the
 // simulated chip runs, counts and replays it. SPDX-License-Identifier: Apache-2.0
+#include "engine/brute_force_engine.h"
+
 #include <gridiron/render/tile_renderer.h>
 #include <gridiron/sim/core_runner.h>
 #include <gridiron/sim/machine_profile.h>
@@ -7,11 +9,13 @@
 #include <gtest/gtest.h>
 
 #include <cstring>
+#include <nlohmann/json.hpp>
 #include <string>
 #include <utility>
 
 #include "effects/kernel_scene.h"
-#include "engine/brute_force_engine.h"
+#include "report/report.h"
+#include "report/timeline.h"
 #include "scene_text/scene_reader.h"
 #include "support/render_mesh.h"
 #include "support/test_mesh.h"
@@ -35,6 +39,18 @@ struct BruteForceLayout {
   static constexpr std::uint32_t kMaterialSlots = 8;
   static constexpr std::uint32_t kLightSlots = 4;
 };
+// What the host knows of it.
+constexpr sim::WorkKind kBruteForceKinds[] = {{BruteForceWork::kBuffer, "buffer_read", true},
+                                              {BruteForceWork::kTriangle, "triangle_tried"}};
+constexpr double kBufferCycles = 64, kTriangleCycles = 3;
+constexpr sim::WorkPrice kBruteForcePrices[] = {{BruteForceWork::kBuffer, kBufferCycles},
+                                                {BruteForceWork::kTriangle, kTriangleCycles}};
+constexpr sim::EngineWork kBruteForce =
+    sim::EngineWork::make(BruteForceWork::kEnd, {.name = "brute_force",
+                                                 .kinds = kBruteForceKinds,
+                                                 .prices = kBruteForcePrices,
+                                                 .wait_levels = {"planes", "nothing", "all_triangles", "record"}});
+
 using GridLayout = EffectLayout256K<kAllEffects, 8>;
 static_assert(kFitsArena<BruteForceLayout<0, 32>> && kFitsArena<BruteForceLayout<kAllEffects, 16>>);
 
@@ -106,7 +122,37 @@ TEST(BruteForceEngine, FramesOfOtherEnginesAreRefused) {
   EXPECT_EQ(status_of(BruteForce{}, make_exact, 1), Status::kUnsupportedFrame);
 }
 
-// On the simulated chip, every rule checked; counted and replayed like any other program of a core.
+// Its kinds of work and its waits stand in the report by the names that it brings.
+void expect_reported(const sim::ChipResult& result, const sim::MachineProfile& machine, std::uint32_t triangle_count) {
+  tool::ReportInput input;
+  input.machine = machine;
+  input.work = result.work;
+  input.timing = sim::replay(result.trace, machine, {.core_count = 1, .timeline = true});
+  const auto report = nlohmann::json::parse(tool::report_json(input));
+  const auto& work = report["work"];
+  EXPECT_EQ(work.size(), kSharedWorkCount + 2);
+  EXPECT_EQ(work["tile_start"], 9);
+  EXPECT_FALSE(work.contains("packet_start")) << "of the grid";
+  const std::uint64_t buffers = work["buffer_read"];
+  EXPECT_GT(buffers, 0u);
+  EXPECT_EQ(work["triangle_tried"], buffers / ((triangle_count + 63) / 64) * triangle_count);
+  const auto& waits = report["cores"][0]["dma_wait_cycles"];
+  EXPECT_EQ(waits["nothing"], 0.0);
+  EXPECT_GT(waits["all_triangles"], 0.0);
+  EXPECT_NE(tool::timeline_json(input.timing, machine).find("wait all_triangles"), std::string::npos);
+  // What its kinds cost, against the same frame with kinds that cost nothing: buffers count as initialisation.
+  sim::EngineWork free_of_charge = kBruteForce;
+  constexpr sim::WorkPrice kNothing[] = {{BruteForceWork::kBuffer, 0}, {BruteForceWork::kTriangle, 0}};
+  free_of_charge.prices = kNothing;
+  sim::FrameTrace trace = result.trace;
+  trace.engine = &free_of_charge;
+  const sim::CoreTiming free = sim::replay(trace, machine, {.core_count = 1}).cores[0];
+  const sim::CoreTiming& core = input.timing.cores[0];
+  EXPECT_EQ(core.init_cycles - free.init_cycles, kBufferCycles * static_cast<double>(buffers));
+  EXPECT_EQ(core.compute_cycles - free.compute_cycles, kTriangleCycles * work["triangle_tried"].get<double>());
+}
+
+// On the simulated chip, every rule checked; counted, replayed and reported like any other program of a core.
 TEST(BruteForceEngine, RunsOnTheSimulatedChip) {
   using Layout = BruteForceLayout<0, 32>;
   TestMesh mesh = make_sphere(9, 14, 0.8f);
@@ -131,14 +177,16 @@ TEST(BruteForceEngine, RunsOnTheSimulatedChip) {
     make_brute_force(record);
     frame.set_record(record);
     const sim::ChipResult result = frame.run(
-        chip, sizeof(LocalStore<Layout>), [](sim::SimCore& core, std::span<std::byte> data, MainAddress address) {
+        chip, sizeof(LocalStore<Layout>),
+        [](sim::SimCore& core, std::span<std::byte> data, MainAddress address) {
           auto& store = *::new (static_cast<void*>(data.data())) LocalStore<Layout>;
           return render_tiles<Lanes<4>>(store, core, address);
-        });
+        },
+        kBruteForce);
     ASSERT_EQ(result.status, Status::kOk);
     EXPECT_TRUE(result.violations.empty());
     EXPECT_EQ(frame.planes(), expected);
-    const auto count_of = [&](Work kind) { return result.work[static_cast<std::size_t>(kind)]; };
+    const auto count_of = [&](WorkId kind) { return result.work[kind.number()]; };
     EXPECT_EQ(count_of(Work::kTileStart), 9u);
     EXPECT_GT(count_of(Work::kTriangleSetup), 0u);
     // One core needs longer than three, and no core waits for cell blocks.
@@ -148,6 +196,7 @@ TEST(BruteForceEngine, RunsOnTheSimulatedChip) {
     EXPECT_GT(one.frame_cycles, 2 * three.frame_cycles);
     EXPECT_EQ(one.cores[0].dma_wait_cycles[static_cast<std::size_t>(sim::WaitLevel::kMacroCell)], 0.0);
     EXPECT_GT(one.cores[0].dma_wait_cycles[static_cast<std::size_t>(sim::WaitLevel::kTriangle)], 0.0);
+    expect_reported(result, machine, grid.engine.grid.reference_count);
   }
 }
 

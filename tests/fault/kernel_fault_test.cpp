@@ -87,7 +87,7 @@ class SmallFrame {
   [[nodiscard]] MainAddress record() const { return record_.address; }
   [[nodiscard]] std::vector<std::byte> picture() const { return {picture_.bytes.begin(), picture_.bytes.end()}; }
 
-  FrameShape shape;
+  FrameShape shape{kGridEngine};
 
  private:
   SimMemory memory_;

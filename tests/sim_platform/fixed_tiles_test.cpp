@@ -24,7 +24,7 @@ MachineProfile claim_machine() {
 FrameTrace frame_of(const std::vector<std::uint32_t>& tile_cycles) {
   FrameTrace trace;
   for (const std::uint32_t cycles : tile_cycles) {
-    const WorkAmount work = {Work::kCellStep, cycles};
+    const WorkAmount work = {GridWork::kCellStep, cycles};
     const TraceEvent event = {.kind = EventKind::kWork, .work = {&work, 1}};
     trace.tiles.push_back(test::packed_trace(static_cast<std::uint32_t>(trace.tiles.size()), {&event, 1}));
   }

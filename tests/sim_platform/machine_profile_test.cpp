@@ -1,5 +1,6 @@
 // Machine profiles: complete, found by name, with the published figures.
 // Memory: std::set. Threads: one. SPDX-License-Identifier: Apache-2.0
+#include <gridiron/sim/engine_work.h>
 #include <gridiron/sim/machine_profile.h>
 #include <gtest/gtest.h>
 
@@ -21,10 +22,8 @@ TEST(MachineProfile, BuiltInProfilesAreComplete) {
     EXPECT_GT(machine.latency_cycles, 0);
     EXPECT_GT(machine.channel_bytes_per_cycle, 0);
     for (std::uint32_t kind = 0; kind < kWorkKindCount; ++kind) {
-      const bool charged_as_event = kind == static_cast<std::uint32_t>(Work::kGetIssue) ||
-                                    kind == static_cast<std::uint32_t>(Work::kPutIssue) ||
-                                    kind == static_cast<std::uint32_t>(Work::kWait);
-      EXPECT_EQ(machine.work_cycles[kind] == 0, charged_as_event) << machine.name << ", kind " << kind;
+      const bool has_none = is_charged_as_event(WorkId(kind)) || kind >= kGridEngine.kind_count();
+      EXPECT_EQ(machine.work_cycles[kind] == 0, has_none) << machine.name << ", kind " << kind;
     }
   }
   EXPECT_EQ(find_machine_profile("cell"), nullptr);

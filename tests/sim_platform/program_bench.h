@@ -40,7 +40,7 @@ class ProgramBench {
 
   [[nodiscard]] ChipResult run(const CoreProgram& program) { return run_cores(memory_, shape, options, program); }
 
-  FrameShape shape;
+  FrameShape shape{kGridEngine};
   ChipOptions options;
 
  private:

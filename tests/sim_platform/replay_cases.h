@@ -49,7 +49,7 @@ class Steps {
  public:
   explicit Steps(std::uint32_t tile_id = 0) : tile_id_(tile_id) {}
 
-  Steps& work(std::uint32_t amount, Work kind = Work::kCellStep) {
+  Steps& work(std::uint32_t amount, WorkId kind = GridWork::kCellStep) {
     return add({.kind = EventKind::kWork}, {kind, amount});
   }
   Steps& get(std::uint32_t bytes, std::uint8_t tag, std::uint64_t address = 4096) {

@@ -82,12 +82,12 @@ TEST(ReplayModel, OneCoreWithoutContentionIsTheSumByHand) {
   machine.latency_cycles = 500;
   machine.channel_bytes_per_cycle = 8;  // 16 cycles a line
   machine.claim_cycles = 300;
-  machine.work_cycles[static_cast<std::size_t>(Work::kPacketStart)] = 500;
+  machine.work_cycles[static_cast<std::size_t>(GridWork::kPacketStart)] = 500;
 
   FrameTrace trace;
   trace.prologue = Steps().get(384, kSetupTag, 0).wait(bit(kSetupTag));
   const TileTrace tile = Steps()
-                             .work(2, Work::kPacketStart)
+                             .work(2, GridWork::kPacketStart)
                              .get(1792, kMacroTag, 0)
                              .wait(bit(kMacroTag))
                              .get(256, kTriangleTag, 0)

@@ -35,7 +35,7 @@ FrameTrace synthetic_frame(std::uint32_t seed, std::uint32_t tile_count, std::ui
     Steps tile(i);
     tile.work(1, Work::kTileStart).wait(0, 1);
     for (std::uint32_t packet = 0; packet < packets_per_tile; ++packet) {
-      tile.work(1, Work::kPacketStart).work(16, Work::kRayGenerated);
+      tile.work(1, GridWork::kPacketStart).work(16, Work::kRayGenerated);
       tile.get(1792, kMacroTag, draw(0, 100000) * 128).wait(bit(kMacroTag));
       std::uint8_t slot = 0;
       for (std::uint32_t batch = draw(1, 6); batch > 0; --batch) {

@@ -37,8 +37,8 @@ Status render_like(const ProgramBench& bench, SimCore& core, std::byte* data, st
     work.add(Work::kTileStart);
     note();
     GRIDIRON_TRY(core.wait(TagMask::of(out)));
-    work.add(Work::kSliceStep, claim.tile_id * 10 + 1);
-    work.add(Work::kCellStep, claim.tile_id);
+    work.add(GridWork::kSliceStep, claim.tile_id * 10 + 1);
+    work.add(GridWork::kCellStep, claim.tile_id);
     note();
     GRIDIRON_TRY(core.put(data + 256 + slot * 64, bench.output(claim.tile_id * 64), 64, out));
   }
@@ -75,7 +75,7 @@ TEST(SimCoreTrace, ATileListsItsStepsInOrderWithTheWorkBetweenThem) {
     EXPECT_EQ(tile.events[3].address, bench.output(id * 64).value);
     const TraceEvent& work = tile.events[2];
     ASSERT_EQ(work.work.size(), id == 0 ? 1u : 2u);
-    EXPECT_EQ(work.work[0].kind, Work::kSliceStep);
+    EXPECT_EQ(work.work[0].kind, GridWork::kSliceStep);
     EXPECT_EQ(work.work[0].amount, id * 10 + 1);
   }
   // Prologue: work, get, wait. Epilogue: the wait for both slots.
@@ -89,7 +89,7 @@ TEST(SimCoreTrace, ATileListsItsStepsInOrderWithTheWorkBetweenThem) {
   EXPECT_EQ(epilogue.events[0].rotating_tags, 3u);
   // Totals are those of the tiles: the prologue is done once per core.
   EXPECT_EQ(result.work[static_cast<std::size_t>(Work::kGetIssue)], 0u);
-  EXPECT_EQ(result.work[static_cast<std::size_t>(Work::kSliceStep)], 6u + 10 * 15);
+  EXPECT_EQ(result.work[static_cast<std::size_t>(GridWork::kSliceStep)], 6u + 10 * 15);
   EXPECT_EQ(result.transfers, 7u);
 }
 

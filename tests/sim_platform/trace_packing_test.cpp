@@ -58,9 +58,9 @@ StepList random_steps(Extremes& draw, std::uint32_t count, std::uint32_t kinds, 
       case EventKind::kWork:
         for (std::uint32_t kind = 0; kind < kWorkKindCount; ++kind) {
           const std::uint32_t amount = draw.below(8) == 0 ? draw.any32() : draw.below(40);
-          if (draw.below(kWorkKindCount) < kinds && amount != 0) work.push_back({static_cast<Work>(kind), amount});
+          if (draw.below(kWorkKindCount) < kinds && amount != 0) work.push_back({WorkId(kind), amount});
         }
-        if (work.empty()) work.push_back({static_cast<Work>(draw.below(kWorkKindCount)), ~0u});
+        if (work.empty()) work.push_back({WorkId(draw.below(kWorkKindCount)), ~0u});
         break;
       case EventKind::kGet:
       case EventKind::kPut:
@@ -142,24 +142,24 @@ TEST(TracePacking, AReaderGoesToAnotherTileAtAnyStep) {
 TEST(TracePacking, WorkOfNothingIsNoStep) {
   TraceWriter writer;
   EXPECT_TRUE(writer.finish(0).packed.empty());
-  const WorkAmount nothing[] = {{Work::kCellStep, 0}};
+  const WorkAmount nothing[] = {{GridWork::kCellStep, 0}};
   writer.add({.kind = EventKind::kWork, .work = nothing});
   writer.add({.kind = EventKind::kWork});
   EXPECT_TRUE(writer.finish(0).packed.empty());
   // One kind twice is one amount; kinds come out in order.
-  const WorkAmount mixed[] = {{Work::kSliceStep, 2}, {Work::kTileStart, 1}, {Work::kSliceStep, 3}};
+  const WorkAmount mixed[] = {{GridWork::kSliceStep, 2}, {Work::kTileStart, 1}, {GridWork::kSliceStep, 3}};
   writer.add({.kind = EventKind::kWork, .work = mixed});
   const test::UnpackedTrace unpacked(writer.finish(0));
   ASSERT_EQ(unpacked.events.size(), 1u);
   ASSERT_EQ(unpacked.events[0].work.size(), 2u);
   EXPECT_EQ(unpacked.events[0].work[0], (WorkAmount{Work::kTileStart, 1}));
-  EXPECT_EQ(unpacked.events[0].work[1], (WorkAmount{Work::kSliceStep, 5}));
+  EXPECT_EQ(unpacked.events[0].work[1], (WorkAmount{GridWork::kSliceStep, 5}));
 }
 
 TEST(TracePacking, RepetitionsComeOutFromNearAndFar) {
   Extremes draw(3);
   const StepList different = random_steps(draw, 2500, 6, 12);
-  const WorkAmount work[] = {{Work::kCellStep, 3}};
+  const WorkAmount work[] = {{GridWork::kCellStep, 3}};
   std::vector<TraceEvent> events;
   // The same again a whole list later, and one step so often that its count has several bytes.
   for (std::uint32_t round = 0; round < 3; ++round) {

@@ -124,9 +124,9 @@ void PreparedFrame::clear_planes() {
 }
 
 sim::ChipResult PreparedFrame::run_cores(const sim::ChipOptions& chip, std::uint32_t data_bytes,
-                                         const sim::CoreProgram& program) {
+                                         const sim::EngineWork& engine, const sim::CoreProgram& program) {
   clear_planes();
-  sim::FrameShape shape;
+  sim::FrameShape shape(engine);
   shape.tile_count = record_.tiles_x * record_.tiles_y;
   shape.output_depth = record_.output_depth;
   shape.data_bytes = data_bytes;

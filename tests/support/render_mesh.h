@@ -66,9 +66,11 @@ class PreparedFrame {
 
   /// Runs another program of a core on as many cores as `chip` has, every rule checked. The planes are cleared before.
   /// @param data_bytes  of a core's store. @param program  (core, data, address of the record) -> Status.
+  /// @param engine      whose kinds of work it has.
   template <class Program>
-  [[nodiscard]] sim::ChipResult run(const sim::ChipOptions& chip, std::uint32_t data_bytes, Program&& program) {
-    return run_cores(chip, data_bytes, [&](sim::SimCore& core, std::span<std::byte> data) {
+  [[nodiscard]] sim::ChipResult run(const sim::ChipOptions& chip, std::uint32_t data_bytes, Program&& program,
+                                    const sim::EngineWork& engine) {
+    return run_cores(chip, data_bytes, engine, [&](sim::SimCore& core, std::span<std::byte> data) {
       return program(core, data, record_address_);
     });
   }
@@ -78,7 +80,7 @@ class PreparedFrame {
 
  private:
   [[nodiscard]] sim::ChipResult run_cores(const sim::ChipOptions& chip, std::uint32_t data_bytes,
-                                          const sim::CoreProgram& program);
+                                          const sim::EngineWork& engine, const sim::CoreProgram& program);
   // What a tile fails to write must not look like a pixel.
   void clear_planes();
 

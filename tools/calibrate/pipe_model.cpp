@@ -73,8 +73,8 @@ PipeModel& PipeModel::current() {
   return *current_model;
 }
 
-void PipeModel::add_units(Work kind, std::uint32_t amount) {
-  totals_[static_cast<std::size_t>(kind)].units += amount;
+void PipeModel::add_units(WorkId kind, std::uint32_t amount) {
+  totals_[kind.number()].units += amount;
   kind_ = kind;
 }
 
@@ -107,7 +107,7 @@ void PipeModel::branch(Site site, bool taken, Node condition) {
   }
   conditions_.clear();
   emit(OpClass::kBranch, site, condition, last);
-  ++branches_[site].by_kind[static_cast<std::size_t>(kind_)][taken ? 1 : 0];
+  ++branches_[site].by_kind[kind_.number()][taken ? 1 : 0];
   ++block_number_;
   ++segment_;
   if (!schedules_ || segment_ >= superblock_branches_ || taken != usual_.at(site)) schedule();
@@ -279,9 +279,7 @@ void PipeModel::schedule() {
     if (op.op == OpClass::kBranch) return op.segment == open_segment && left_in_segment_[open_segment] == 0;
     return op.op != OpClass::kStore || op.segment == open_segment;
   };
-  const auto totals_of = [&](std::uint32_t i) -> KindTotals& {
-    return totals_[static_cast<std::size_t>(block_[i].kind)];
-  };
+  const auto totals_of = [&](std::uint32_t i) -> KindTotals& { return totals_[block_[i].kind.number()]; };
   while (!candidates_.empty()) {
     std::uint64_t cycle = ~std::uint64_t{0};
     for (const std::uint32_t i : candidates_) {

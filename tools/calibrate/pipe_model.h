@@ -106,8 +106,8 @@ class PipeModel {
   [[nodiscard]] static PipeModel& current();
 
   /// What follows belongs to `kind`.
-  void charge_to(Work kind) { kind_ = kind; }
-  void add_units(Work kind, std::uint32_t amount);
+  void charge_to(WorkId kind) { kind_ = kind; }
+  void add_units(WorkId kind, std::uint32_t amount);
 
   /// One operation. @param tie  bits of the result.
   Node emit(OpClass op, std::uint64_t tie, Node a = 0, Node b = 0, Node c = 0);
@@ -141,7 +141,7 @@ class PipeModel {
  private:
   struct Op {
     OpClass op;
-    Work kind;
+    WorkId kind;
     std::uint32_t segment;  // branches before it in the block
     Node deps[3];
     std::uint64_t tie;
@@ -169,7 +169,7 @@ class PipeModel {
   static constexpr std::size_t kRememberedNodes = std::size_t{1} << 20;
 
   Totals totals_{};
-  Work kind_ = Work::kWait;  // what is done before the first tile is not charged by the tile
+  WorkId kind_ = Work::kWait;  // what is done before the first tile is not charged by the tile
   bool schedules_;
   std::unordered_map<Site, bool> usual_;
   std::uint32_t superblock_branches_;

@@ -2,9 +2,8 @@
 #include <bvh_frame.h>
 #include <counted_frame.h>
 #include <gridiron/base/lanes.h>
-#include <gridiron/bvh/bvh_work.h>
+#include <gridiron/bvh/bvh_engine_work.h>
 #include <gridiron_counted/base/exact_sum.h>
-#include <report/report.h>
 #include <scene_makers/shapes.h>
 #include <work_table.h>
 
@@ -132,12 +131,13 @@ void make_effect_scene(const Scene& teapot, bool with_environment, EffectScene& 
 
 // Work that only frames with effects have.
 bool is_of_effects(std::size_t kind) {
-  return kind >= static_cast<std::size_t>(Work::kWaveRay) && kind <= static_cast<std::size_t>(Work::kColorGroup);
+  const bool is_shared = kind >= WorkId(Work::kWaveRay).number() && kind <= WorkId(Work::kColorGroup).number();
+  return is_shared || kind == WorkId(GridWork::kWalkPass).number() || kind == WorkId(GridWork::kShaftGroup).number();
 }
 
 // Work that only frames with exact distances have, or hardly any other.
 bool is_of_planes(std::size_t kind) {
-  const Work work = static_cast<Work>(kind);
+  const WorkId work(static_cast<std::uint32_t>(kind));
   return work == Work::kHitSetup || work == Work::kHitHalf || work == Work::kDepthGroup;
 }
 
@@ -207,8 +207,7 @@ Totals count_exact(const Scene& scene, std::uint32_t superblock_branches) {
 }
 
 bool is_charged(std::size_t kind) {
-  const Work work = static_cast<Work>(kind);
-  return work != Work::kGetIssue && work != Work::kPutIssue && work != Work::kWait;
+  return !sim::is_charged_as_event(WorkId(static_cast<std::uint32_t>(kind)));
 }
 
 template <class... Values>
@@ -231,8 +230,8 @@ struct NamedFrame {
   /// Whether the frame stands for a kind of work: frames with planes, on a lattice, or with effects, for what only they
   /// do, the others for the rest.
   [[nodiscard]] bool operator()(std::size_t kind) const {
-    const Work work = static_cast<Work>(kind);
-    const bool is_of_lattice = work == Work::kLatticeTriangle || work == Work::kCellBoundStep;
+    const WorkId work(static_cast<std::uint32_t>(kind));
+    const bool is_of_lattice = work == Work::kLatticeTriangle || work == GridWork::kCellBoundStep;
     if ((frame.effects != nullptr) != is_of_effects(kind)) return false;
     if (frame.effects != nullptr) return true;
     return frame.has_planes == is_of_planes(kind) && (frame.accuracy == Accuracy::kCompact) == is_of_lattice;
@@ -312,7 +311,7 @@ constexpr std::string_view kTableHead =
 // Memory: constants. Threads: any. SPDX-License-Identifier: Apache-2.0
 #pragma once
 
-#include <gridiron/base/work_counters.h>
+#include <gridiron/sim/engine_work.h>
 
 #include <array>
 
@@ -330,8 +329,8 @@ struct WorkCost {
   double misses;        ///< branches that go the rarer way
 };
 
-/// By kind of work. Commands and waits are charged where they happen, see MachineProfile.
-inline constexpr std::array<WorkCost, kWorkKindCount> kWorkCosts = {{
+/// By kind of work of core and of the grid. Commands and waits are charged where they happen, see MachineProfile.
+inline constexpr std::array<WorkCost, kGridEngine.kind_count()> kWorkCosts = {{
     //  cycles    least     most     even  doubles      odd branches   misses
 )";
 
@@ -349,10 +348,14 @@ constexpr std::string_view kBvhTableHead =
 
 namespace gridiron::bvh {
 
-/// By kind of work of the cached BVH.
-inline constexpr std::array<sim::WorkCost, kBvhWorkCount> kBvhCosts = {{
+/// Of core's tile_start, as the cached BVH does it, and of each of its own kinds of work.
+inline constexpr std::array<sim::WorkCost, kBvhWorkCount + 1> kBvhCosts = {{
     //  cycles    least     most     even  doubles      odd branches   misses
 )";
+
+std::string name_of(std::uint32_t kind, const sim::EngineWork& engine) {
+  return std::string(sim::work_kind(WorkId(kind), engine).name);
+}
 
 std::string table_row(const KindTotals& t, const std::string& name) {
   if (t.units == 0) throw std::runtime_error("calibration: no unit of " + name + " in the frames");
@@ -407,8 +410,8 @@ Totals count_bvh_frames(std::uint32_t superblock_branches) {
 
 std::string table_text(const Totals& totals) {
   std::string text(kTableHead);
-  for (std::size_t kind = 0; kind < kWorkKindCount; ++kind) {
-    const std::string name(tool::work_name(static_cast<Work>(kind)));
+  for (std::uint32_t kind = 0; kind < sim::kGridEngine.kind_count(); ++kind) {
+    const std::string name = name_of(kind, sim::kGridEngine);
     if (!is_charged(kind)) {
       text += format("    {%7d, %7d, %7d, %7d, %7d, %7d, %7d, %7d},  // %s\n", 0, 0, 0, 0, 0, 0, 0, 0, name.c_str());
     } else {
@@ -420,9 +423,8 @@ std::string table_text(const Totals& totals) {
 
 std::string bvh_table_text(const Totals& totals) {
   std::string text(kBvhTableHead);
-  for (std::uint32_t kind = 0; kind < bvh::kBvhWorkCount; ++kind) {
-    const auto work = static_cast<bvh::BvhWork>(kind);
-    text += table_row(totals[static_cast<std::size_t>(bvh::carrier_of(work))], std::string(bvh::name_of(work)));
+  for (const sim::WorkPrice& price : bvh::kBvhPrices) {
+    text += table_row(totals[price.id.number()], name_of(price.id.number(), bvh::kBvhEngine));
   }
   return text + "}};\n\n}  // namespace gridiron::bvh\n";
 }
@@ -437,7 +439,8 @@ void write_file(const std::string& path, std::span<const std::byte> bytes) {
 
 void write_units(const std::string& path, const Totals& counted) {
   std::ofstream units(path);
-  for (std::size_t kind = 0; kind < kWorkKindCount; ++kind) units << kind << ' ' << counted[kind].units << '\n';
+  for (std::size_t kind = 0; kind < sim::kGridEngine.kind_count(); ++kind)
+    units << kind << ' ' << counted[kind].units << '\n';
   if (!units.flush()) throw std::runtime_error("calibration: cannot write " + path);
 }
 
@@ -476,29 +479,32 @@ void write_memories(const std::string& folder) {
   dense.frame.triangles = fine.triangles;
   (void)write_memory(folder, dense);
   std::ofstream file(folder + "/units");
-  for (std::size_t kind = 0; kind < kWorkKindCount; ++kind) {
+  for (std::uint32_t kind = 0; kind < sim::kGridEngine.kind_count(); ++kind) {
     const KindTotals& t = totals[kind];
     if (!is_charged(kind)) continue;
     const char* stands_for = is_of_effects(kind) ? "effects" : "packets";
-    file << kind << ' ' << tool::work_name(static_cast<Work>(kind)) << ' ' << t.units << ' '
-         << per_unit(t, t.even() + t.odd()) << ' ' << stands_for << '\n';
+    file << kind << ' ' << name_of(kind, sim::kGridEngine) << ' ' << t.units << ' ' << per_unit(t, t.even() + t.odd())
+         << ' ' << stands_for << '\n';
   }
   if (!file.flush()) throw std::runtime_error("calibration: cannot write into " + folder);
 }
 
 namespace {
 
-template <class NameOf>
-std::string report_of(const Totals& totals, NameOf&& name_of) {
+// Kinds of which the engine has a price of its own are marked as its own.
+std::string report_of(const Totals& totals, const sim::EngineWork& engine) {
   std::string text = format("%-20s %8s %8s", "kind", "units", "cycles");
   for (const ClassFacts& facts : kClassFacts) text += format(" %8s", facts.name);
   text += format(" %8s\n", "misses");
   double cycles = 0;
   double pairs = 0;
-  for (std::size_t kind = 0; kind < kWorkKindCount; ++kind) {
+  for (std::uint32_t kind = 0; kind < engine.kind_count(); ++kind) {
     const KindTotals& t = totals[kind];
     if (t.units == 0 || !is_charged(kind)) continue;
-    const std::string name = name_of(static_cast<Work>(kind));
+    std::string name = name_of(kind, engine);
+    for (const sim::WorkPrice& price : engine.prices) {
+      if (price.id == WorkId(kind)) name = std::string(engine.name) + ":" + name;
+    }
     text +=
         format("%-20s %8llu %8.1f", name.c_str(), static_cast<unsigned long long>(t.units), per_unit(t, t.cycles()));
     for (const std::uint64_t count : t.operations) text += format(" %8.2f", per_unit(t, count));
@@ -512,17 +518,11 @@ std::string report_of(const Totals& totals, NameOf&& name_of) {
 }  // namespace
 
 std::string report_text(const Totals& totals) {
-  return report_of(totals, [](Work kind) { return std::string(tool::work_name(kind)); });
+  return report_of(totals, sim::kGridEngine);
 }
 
 std::string bvh_report_text(const Totals& totals) {
-  return report_of(totals, [](Work kind) {
-    for (std::uint32_t i = 0; i < bvh::kBvhWorkCount; ++i) {
-      const auto work = static_cast<bvh::BvhWork>(i);
-      if (bvh::carrier_of(work) == kind) return "bvh:" + std::string(bvh::name_of(work));
-    }
-    return std::string(tool::work_name(kind));
-  });
+  return report_of(totals, bvh::kBvhEngine);
 }
 
 }  // namespace gridiron::calibrate

@@ -21,7 +21,7 @@ namespace gridiron::calibrate {
 [[nodiscard]] std::string table_text(const Totals& totals);
 
 /// The same for the cached BVH: the teapot and a torus knot of 12,000 triangles, whose lines exceed the caches, each
-/// with packets one after another and in a ring. Carriers hold the cached BVH's kinds (bvh::carrier_of).
+/// with packets one after another and in a ring. By Work and bvh::BvhWork.
 [[nodiscard]] Totals count_bvh_frames(std::uint32_t superblock_branches = kSuperblockBranches);
 
 /// @returns the generated source file, sim_platform/gridiron/bvh/bvh_costs.h.

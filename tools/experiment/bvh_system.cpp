@@ -38,7 +38,7 @@ TimedFrame timed(bvh::BvhFrame frame) {
   const auto switches = static_cast<std::size_t>(bvh::BvhWork::kSwitch);
   return {std::move(frame.timing), CacheFacts{.node_hit_percent = 100 * frame.node_cache.hit_rate(),
                                               .triangle_hit_percent = 100 * frame.triangle_cache.hit_rate(),
-                                              .suspended_packets = frame.bvh_work[switches]}};
+                                              .suspended_packets = frame.work[switches]}};
 }
 
 class BvhRecording : public Recording {
@@ -49,7 +49,7 @@ class BvhRecording : public Recording {
     facts_.build = build;
     // Facts without a clock come from a frame on the home machine; its time is kept for later calls.
     bvh::BvhFrame frame = render(bvh_, settings_, options_, *home_machine(), 0);
-    const auto count_of = [&frame](bvh::BvhWork kind) { return frame.bvh_work[static_cast<std::size_t>(kind)]; };
+    const auto count_of = [&frame](bvh::BvhWork kind) { return frame.work[static_cast<std::size_t>(kind)]; };
     facts_.traversal_steps =
         count_of(bvh::BvhWork::kNodeStep) + count_of(bvh::BvhWork::kMixedNodeStep) + count_of(bvh::BvhWork::kLeafVisit);
     facts_.intersection_tests = frame.work[static_cast<std::size_t>(Work::kGroupTestStandard)];

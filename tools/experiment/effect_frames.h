@@ -39,7 +39,7 @@ struct EffectFrame {
   std::uint64_t scene_bytes = 0;                       ///< of the scene image
   tool::Picture<std::uint32_t> picture;                ///< 0xAABBGGRR
 
-  [[nodiscard]] std::uint64_t count(Work kind) const { return work[static_cast<std::size_t>(kind)]; }
+  [[nodiscard]] std::uint64_t count(WorkId kind) const { return work[kind.number()]; }
   [[nodiscard]] const sim::StageTiming& stage(Stage stage) const { return stages[static_cast<std::size_t>(stage)]; }
   [[nodiscard]] std::uint64_t primary_rays() const;
   [[nodiscard]] double wait_cycles() const;            ///< of all stages and cores

@@ -69,9 +69,9 @@ std::vector<float> depth_of(const tool::FrameMemory& frame) {
   return tool::untile<float>(frame.record, frame.depth.bytes, std::nullopt, to_float).pixels;
 }
 
-std::uint64_t sum_of(const sim::WorkTotals& work, std::initializer_list<Work> kinds) {
+std::uint64_t sum_of(const sim::WorkTotals& work, std::initializer_list<WorkId> kinds) {
   std::uint64_t sum = 0;
-  for (const Work kind : kinds) sum += work[static_cast<std::size_t>(kind)];
+  for (const WorkId kind : kinds) sum += work[kind.number()];
   return sum;
 }
 
@@ -160,8 +160,8 @@ std::unique_ptr<Recording> GridSystem::record(const View& view, const FrameReque
 
   FrameFacts facts;
   facts.build = sim::grid_build_work(view.mesh().vertices.size(), view.mesh().triangles.size(), frame.need);
-  facts.traversal_steps = sum_of(result.work, {Work::kMacroSliceStep, Work::kMacroCellStep, Work::kSliceStep,
-                                               Work::kCellStep, Work::kCellBoundStep});
+  facts.traversal_steps = sum_of(result.work, {GridWork::kMacroSliceStep, GridWork::kMacroCellStep,
+                                               GridWork::kSliceStep, GridWork::kCellStep, GridWork::kCellBoundStep});
   facts.intersection_tests =
       sum_of(result.work, {Work::kGroupTestStandard, Work::kGroupTestPaper, Work::kRayGroupTest});
   facts.scene_bytes = frame.image.header.image_bytes;

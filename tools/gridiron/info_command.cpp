@@ -62,8 +62,8 @@ const char* unit_of(const WorstTile& worst) {
 Json json_of(const WorstTile& worst) {
   Json work = Json::object();
   for (std::uint32_t kind = 0; kind < kWorkKindCount; ++kind) {
-    if (kind < static_cast<std::uint32_t>(Work::kGetIssue) && worst.bound.work[kind] != 0) {
-      work[std::string(work_name(static_cast<Work>(kind)))] = json_of_count(worst.bound.work[kind]);
+    if (!sim::is_charged_as_event(WorkId(kind)) && worst.bound.work[kind] != 0) {
+      work[std::string(sim::work_kind(WorkId(kind)).name)] = json_of_count(worst.bound.work[kind]);
     }
   }
   return {{"accuracy", accuracy_name(worst.frame.accuracy)},

@@ -15,8 +15,8 @@ using Json = nlohmann::ordered_json;
 template <class Counts>
 Json work_json(const Counts& counts) {
   Json json = Json::object();
-  for (std::uint32_t kind = 0; kind < kWorkKindCount; ++kind) {
-    json[std::string(work_name(static_cast<Work>(kind)))] = counts[kind];
+  for (std::uint32_t kind = 0; kind < sim::kGridEngine.kind_count(); ++kind) {
+    json[std::string(sim::work_kind(WorkId(kind)).name)] = counts[kind];
   }
   return json;
 }

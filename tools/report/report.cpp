@@ -72,10 +72,10 @@ Json host_json(const ReportInput& input) {
           {"trace_bytes", input.trace_bytes}};
 }
 
-Json core_json(const sim::CoreTiming& core) {
+Json core_json(const sim::CoreTiming& core, const sim::EngineWork& engine) {
   Json waits = Json::object();
   for (std::size_t level = 0; level < sim::kWaitLevelCount; ++level) {
-    waits[std::string(wait_level_name(static_cast<sim::WaitLevel>(level)))] = core.dma_wait_cycles[level];
+    waits[std::string(engine.wait_levels[level])] = core.dma_wait_cycles[level];
   }
   return {{"tiles", core.tiles},
           {"init_cycles", core.init_cycles},
@@ -91,10 +91,10 @@ Json core_json(const sim::CoreTiming& core) {
             {"line_bytes_out", core.line_bytes_out}}}};
 }
 
-Json work_json(const sim::WorkTotals& work) {
+Json work_json(const sim::WorkTotals& work, const sim::EngineWork& engine) {
   Json json = Json::object();
-  for (std::uint32_t kind = 0; kind < kWorkKindCount; ++kind) {
-    json[std::string(work_name(static_cast<Work>(kind)))] = work[kind];
+  for (std::uint32_t kind = 0; kind < engine.kind_count(); ++kind) {
+    json[std::string(sim::work_kind(WorkId(kind), engine).name)] = work[kind];
   }
   return json;
 }
@@ -128,7 +128,7 @@ Json effects_json(const ReportInput& input) {
     effects["rays"] = std::move(rays);
     return effects;
   }
-  const auto count = [&input](Work kind) { return input.work[static_cast<std::size_t>(kind)]; };
+  const auto count = [&input](WorkId kind) { return input.work[kind.number()]; };
   rays["shadow"] = count(Work::kShadowRay);
   rays["occlusion"] = count(Work::kOcclusionRay);
   rays["reflected"] = count(Work::kMirrorRay);
@@ -154,7 +154,7 @@ Json local_store_json(const ReportInput& input) {
 
 std::string report_json(const ReportInput& input) {
   Json cores = Json::array();
-  for (const sim::CoreTiming& core : input.timing.cores) cores.push_back(core_json(core));
+  for (const sim::CoreTiming& core : input.timing.cores) cores.push_back(core_json(core, *input.timing.engine));
 
   const double seconds = input.timing.seconds;
   Json report;
@@ -168,7 +168,7 @@ std::string report_json(const ReportInput& input) {
     report["frame"] = {
         {"cycles", input.timing.frame_cycles}, {"seconds", seconds}, {"fps", seconds > 0 ? 1 / seconds : 0.0}};
     report["cores"] = std::move(cores);
-    report["work"] = work_json(input.work);
+    report["work"] = work_json(input.work, *input.timing.engine);
   }
   report["effects"] = effects_json(input);
   report["local_store"] = local_store_json(input);
@@ -180,34 +180,6 @@ std::string report_json(const ReportInput& input) {
 }
 
 // clang-format off
-std::string_view work_name(Work kind) {
-  using enum Work;
-  static constexpr Name<Work> kNames[] = {
-      {kTileStart, "tile_start"}, {kRayGenerated, "ray_generated"}, {kPacketStart, "packet_start"},
-      {kPassGroup, "pass_group"}, {kPassSquare, "pass_square"}, {kMacroSliceStep, "macro_slice_step"},
-      {kMacroCellStep, "macro_cell_step"}, {kMacroCellVisit, "macro_cell_visit"}, {kSliceStep, "slice_step"},
-      {kCellStep, "cell_step"}, {kCellVisit, "cell_visit"}, {kTriangleBatch, "triangle_batch"},
-      {kMailboxProbe, "mailbox_probe"}, {kCullTest, "cull_test"}, {kPixelBoxGroup, "pixel_box_group"},
-      {kTriangleSetup, "triangle_setup"}, {kGroupTestStandard, "group_test_standard"},
-      {kSubpacketSetup, "subpacket_setup"}, {kSubpacketGroup, "subpacket_group"}, {kReachGroup, "reach_group"},
-      {kGroupTestPaper, "group_test_paper"}, {kHitGroup, "hit_group"}, {kHitSubpacket, "hit_subpacket"},
-      {kHitGroupPaper, "hit_group_paper"}, {kHitSetup, "hit_setup"}, {kDoubleSign, "double_sign"},
-      {kExactSign, "exact_sign"}, {kExactDistance, "exact_distance"}, {kShadedGroup, "shaded_group"},
-      {kShadedSimpleGroup, "shaded_simple_group"}, {kDepthGroup, "depth_group"}, {kIdGroup, "id_group"},
-      {kFootprintGroup, "footprint_group"}, {kRowGroup, "row_group"}, {kEstimateSetup, "estimate_setup"},
-      {kNormalSetup, "normal_setup"}, {kHitHalf, "hit_half"}, {kExactOrder, "exact_order"},
-      {kLatticeTriangle, "lattice_triangle"}, {kCellBoundStep, "cell_bound_step"}, {kWaveRay, "wave_ray"},
-      {kQueuedRay, "queued_ray"}, {kWalkPass, "walk_pass"}, {kShaftGroup, "shaft_group"},
-      {kRayTriangleSetup, "ray_triangle_setup"}, {kRayGroupTest, "ray_group_test"},
-      {kRayDistance, "ray_distance"}, {kSurfacePoint, "surface_point"},
-      {kSmoothNormal, "smooth_normal"}, {kShadowRay, "shadow_ray"}, {kLightSample, "light_sample"},
-      {kHighlight, "highlight"}, {kOcclusionRay, "occlusion_ray"}, {kMirrorRay, "mirror_ray"},
-      {kRefractedRay, "refracted_ray"}, {kEnvironmentLookup, "environment_lookup"}, {kColorAdded, "color_added"},
-      {kColorGroup, "color_group"}, {kGetIssue, "get_issue"}, {kPutIssue, "put_issue"}, {kWait, "wait"}};
-  static_assert(names_all(kNames));
-  return name_in(kNames, kind);
-}
-
 std::string_view stage_name(Stage stage) {
   using enum Stage;
   static constexpr Name<Stage> kNames[] = {
@@ -227,14 +199,6 @@ std::string_view build_step_name(sim::BuildStep step) {
       {kTriangleMoved, "triangle_moved"}, {kBinSwept, "bin_swept"}, {kNodeMade, "node_made"}};
   static_assert(names_all(kNames));
   return name_in(kNames, step);
-}
-
-std::string_view wait_level_name(sim::WaitLevel level) {
-  using enum sim::WaitLevel;
-  static constexpr Name<sim::WaitLevel> kNames[] = {
-      {kTile, "tile"}, {kMacroCell, "macrocell"}, {kTriangle, "triangle"}, {kSetup, "setup"}};
-  static_assert(names_all(kNames));
-  return name_in(kNames, level);
 }
 // clang-format on
 

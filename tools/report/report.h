@@ -76,17 +76,11 @@ struct ReportInput {
 /// @returns the report as JSON text, two spaces of indentation, keys in the documented order, newline at the end.
 [[nodiscard]] std::string report_json(const ReportInput& input);
 
-/// @returns the stable snake_case name of a kind of work.
-[[nodiscard]] std::string_view work_name(Work kind);
-
 /// @returns the stable snake_case name of a stage of a frame with effects.
 [[nodiscard]] std::string_view stage_name(Stage stage);
 
 /// @returns the stable snake_case name of a step of a build.
 [[nodiscard]] std::string_view build_step_name(sim::BuildStep step);
-
-/// @returns the stable name of a wait level: tile, macrocell, triangle, setup.
-[[nodiscard]] std::string_view wait_level_name(sim::WaitLevel level);
 
 /// FNV-1a, 64 bits, over the bytes of each pixel's word, lowest first: R, G, B, A of a colour.
 ///

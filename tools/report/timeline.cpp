@@ -38,6 +38,7 @@ class Writer {
   /// @returns false, with the text incomplete, if it exceeds max_bytes.
   bool write(const sim::FrameTiming& timing, const sim::MachineProfile& machine, std::size_t max_bytes) {
     text_ = "{\"traceEvents\":[\n";
+    engine_ = timing.engine;
     write_names(timing, machine);
     for (const TimelineSpan& span : timing.timeline) {
       if (span.kind != TimelineSpan::Kind::kTile && belongs_to_run(span)) {
@@ -119,7 +120,7 @@ class Writer {
     } else if (span.kind == TimelineSpan::Kind::kCompute) {
       name = "compute";
     } else if (span.kind == TimelineSpan::Kind::kWait) {
-      wait_name.append("wait ").append(wait_level_name(span.level));
+      wait_name.append("wait ").append(engine_->wait_levels[static_cast<std::size_t>(span.level)]);
       name = wait_name;
     }
     begin_event(name, span.core, span.begin_cycles, span.end_cycles);
@@ -170,6 +171,7 @@ class Writer {
 
   double units_per_cycle_;
   double threshold_cycles_;
+  const sim::EngineWork* engine_ = nullptr;
   std::string text_;
   Run run_;
 };

@@ -6,21 +6,12 @@
 
 namespace gridiron {
 
-/// Kinds of work that cost time on a chip. "Group" is one SIMD group of kLaneCount rays.
+/// Kinds of work that cost time on a chip, whatever engine traces the rays: of rays, tests, shading and output. An
+/// engine's own kinds are an enumeration of its own, which goes on from kSharedWorkCount. "Group" is one SIMD group of
+/// kLaneCount rays.
 enum class Work : std::uint8_t {
   kTileStart,          ///< tiles begun: parameter reset, output buffer turned over         (initialisation)
   kRayGenerated,       ///< primary ray groups generated                                     (initialisation)
-  kPacketStart,        ///< packet passes begun: frustum, mailbox reset                      (initialisation)
-  kPassGroup,          ///< ray groups held against a pass's march axis, and their slopes        (initialisation)
-  kPassSquare,         ///< squares of ray groups held against it by their corners              (initialisation)
-  kMacroSliceStep,     ///< macro slices entered
-  kMacroCellStep,      ///< macrocells looked up in the macrocell table
-  kMacroCellVisit,     ///< non-empty macrocells whose cell block was walked
-  kSliceStep,          ///< slices entered inside a visited macrocell
-  kCellStep,           ///< cells looked up inside a visited macrocell
-  kCellVisit,          ///< non-empty cells visited
-  kTriangleBatch,      ///< triangle buffers consumed
-  kMailboxProbe,       ///< mailbox look-ups
   kCullTest,           ///< corner-ray culling tests, one per triangle
   kPixelBoxGroup,      ///< SIMD groups of triangles of which the pixels that they can cover were computed
   kTriangleSetup,      ///< per (packet, triangle) set-ups of the `standard` test
@@ -35,24 +26,19 @@ enum class Work : std::uint8_t {
   kDoubleSign,         ///< edge signs the float filter left open, tried in double
   kExactSign,          ///< signs decided in integers
   kExactDistance,      ///< distances rounded in integers
-  kReachGroup,         ///< SIMD groups of which the farthest hit was sought, or held against a cell's entry
   kShadedGroup,        ///< ray groups turned into pixels without shading
   kShadedSimpleGroup,  ///< ray groups shaded by facing ratio
   kDepthGroup,         ///< ray groups written to the depth plane
   kIdGroup,            ///< groups of triangle ids written to a plane, or of words cleared
-  kFootprintGroup,     ///< SIMD groups of squares of subpackets held against a cell
   kRowGroup,           ///< subpackets whose rows were held against a triangle's edges
   kEstimateSetup,      ///< triangles for which estimates of distances were set up
   kNormalSetup,        ///< triangles whose unit normal was computed for shading
   kHitHalf,            ///< halves of groups of which distances were computed in double
   kExactOrder,         ///< pairs of distances, equal once rounded, of which integers told the nearer
   kLatticeTriangle,    ///< triangles made of their vertices' places on a lattice
-  kCellBoundStep,      ///< cells looked up inside a visited macrocell by their bounds, beside lattice triangles
   // Effects.
   kWaveRay,            ///< rays of a wave taken from pixels or from the queue
   kQueuedRay,          ///< reflected and refracted rays made, and put into the queue
-  kWalkPass,           ///< walks of up to 16 rays begun: axis, shaft
-  kShaftGroup,         ///< SIMD groups of walked rays held against a slab of the grid
   kRayTriangleSetup,   ///< triangles set up to be tested by rays with origins of their own
   kRayGroupTest,       ///< (group, triangle) tests of rays with origins of their own
   kRayDistance,        ///< distances of single rays, in double
@@ -73,19 +59,42 @@ enum class Work : std::uint8_t {
   kCount
 };
 
-/// Kinds of work.
-inline constexpr std::uint32_t kWorkKindCount = static_cast<std::uint32_t>(Work::kCount);
+/// The number of the first kind of an engine.
+inline constexpr std::uint32_t kSharedWorkCount = static_cast<std::uint32_t>(Work::kCount);
+/// Kinds that there are counters for. No frame has two engines, so all engines use the same ones.
+inline constexpr std::uint32_t kWorkKindCount = 64;
+
+/// A kind of Work or of an engine: the number of its counter.
+class WorkId {
+ public:
+  constexpr WorkId() = default;
+  constexpr WorkId(Work kind) : number_(static_cast<std::uint32_t>(kind)) {}  // NOLINT: kinds are passed as they are
+  /// @tparam Kind  an engine's kinds: kFirst to kEnd - 1.
+  template <class Kind>
+  requires requires { Kind::kFirst != Kind::kEnd; }
+  constexpr WorkId(Kind kind) : number_(static_cast<std::uint32_t>(kind)) {  // NOLINT: the same
+    static_assert(static_cast<std::uint32_t>(Kind::kFirst) == kSharedWorkCount);
+    static_assert(static_cast<std::uint32_t>(Kind::kEnd) <= kWorkKindCount);
+  }
+  explicit constexpr WorkId(std::uint32_t number) : number_(number) {}
+
+  [[nodiscard]] constexpr std::uint32_t number() const { return number_; }
+  friend constexpr bool operator==(WorkId, WorkId) = default;  ///< the same kind of the same engine
+
+ private:
+  std::uint32_t number_ = 0;
+};
 
 /// One counter per kind of work; wraps after 2^32 - 1.
 struct WorkCounters {
-  std::uint32_t counts[kWorkKindCount] = {};  ///< by Work
+  std::uint32_t counts[kWorkKindCount] = {};  ///< by WorkId
 
   /// Counts so many more of a kind.
-  constexpr void add(Work kind, std::uint32_t amount = 1) { counts[static_cast<std::uint32_t>(kind)] += amount; }
+  constexpr void add(WorkId kind, std::uint32_t amount = 1) { counts[kind.number()] += amount; }
   /// The operations that follow belong to `kind`. Nothing to a core: tools/calibrate listens to it, and to add().
-  constexpr void charge_to(Work) const {}
+  constexpr void charge_to(WorkId) const {}
   /// @returns the count of a kind.
-  [[nodiscard]] constexpr std::uint32_t operator[](Work kind) const { return counts[static_cast<std::uint32_t>(kind)]; }
+  [[nodiscard]] constexpr std::uint32_t operator[](WorkId kind) const { return counts[kind.number()]; }
 };
 
 }  // namespace gridiron

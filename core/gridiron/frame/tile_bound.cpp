@@ -3,6 +3,7 @@
 #include <gridiron/frame/tile_bound.h>
 
 #include <gridiron/base/lanes.h>
+#include <gridiron/engine/grid/grid_work.h>
 
 namespace gridiron {
 namespace {
@@ -72,8 +73,8 @@ class Sum {
   [[nodiscard]] bool is_compact() const { return frame_.accuracy == Accuracy::kCompact; }
   [[nodiscard]] std::uint64_t groups(std::uint64_t count) const { return parts(count, layout_.lanes); }
 
-  void add(Work kind, Count amount) {
-    Count& sum = work_[static_cast<std::uint32_t>(kind)];
+  void add(WorkId kind, Count amount) {
+    Count& sum = work_[kind.number()];
     sum = sum + amount;
   }
   // Transfers that are waited for one by one.
@@ -89,14 +90,14 @@ class Sum {
   void add_traversal(Count passes, bool skips_empty) {
     const std::uint64_t visits = skips_empty ? scene_.occupied_macro_cells : scene_.macro_cells;
     const std::uint64_t empty_visits = visits - scene_.occupied_macro_cells;
-    add(Work::kMacroSliceStep, passes * scene_.macro_slices);
-    add(Work::kMacroCellStep, passes * scene_.macro_cells);
-    add(Work::kMacroCellVisit, passes * visits);
-    add(Work::kSliceStep, passes * (skips_empty ? scene_.occupied_slices : scene_.slices));
-    add(is_compact() ? Work::kCellBoundStep : Work::kCellStep,
+    add(GridWork::kMacroSliceStep, passes * scene_.macro_slices);
+    add(GridWork::kMacroCellStep, passes * scene_.macro_cells);
+    add(GridWork::kMacroCellVisit, passes * visits);
+    add(GridWork::kSliceStep, passes * (skips_empty ? scene_.occupied_slices : scene_.slices));
+    add(is_compact() ? GridWork::kCellBoundStep : GridWork::kCellStep,
         passes * (skips_empty ? scene_.occupied_cells : scene_.cells));
-    add(Work::kCellVisit, passes * scene_.filled_cells);
-    add(Work::kTriangleBatch, passes * scene_.runs);
+    add(GridWork::kCellVisit, passes * scene_.filled_cells);
+    add(GridWork::kTriangleBatch, passes * scene_.runs);
     if (is_compact()) add(Work::kLatticeTriangle, passes * scene_.references);
 
     const std::uint64_t block_bytes = scene_.cell_block_bytes;
@@ -130,9 +131,9 @@ class Sum {
     const std::uint64_t rounds = is_paper() || is_fast() ? 1 : 2;
     const Count passes = Count{packets} * (kAxesAndSigns * rounds + (is_exact() ? rays : 0)) + samples * rounds;
     add(Work::kRayGenerated, Count{packets} * groups(rays));
-    add(Work::kPacketStart, passes);
-    if (rays >= 64) add(Work::kPassSquare, passes * squares);
-    add(Work::kPassGroup, passes * groups(rays));
+    add(GridWork::kPacketStart, passes);
+    if (rays >= 64) add(GridWork::kPassSquare, passes * squares);
+    add(GridWork::kPassGroup, passes * groups(rays));
     add_traversal(passes, uses(kUseEmptySkip));
     add_packet_culling(passes, subpackets, squares);
 
@@ -143,7 +144,7 @@ class Sum {
     const Count pairs = ray_rounds * scene_.references;
     const Count group_pairs = group_rounds * scene_.references;
     const Count tests = passes * scene_.references;
-    if (uses(kUseMailbox)) add(Work::kMailboxProbe, tests);
+    if (uses(kUseMailbox)) add(GridWork::kMailboxProbe, tests);
     if (uses(kUseCornerCulling)) add(Work::kCullTest, tests);
     if (is_paper()) {
       add(Work::kGroupTestPaper, group_pairs);
@@ -187,7 +188,7 @@ class Sum {
     if (uses(kUseSubpackets)) {
       if (squares >= 4) {
         reach = reach + Count{squares / 4} * scene_.filled_cells + Count{squares / 4 + squares} * scene_.runs;
-        add(Work::kFootprintGroup, passes * (Count{groups(squares)} * scene_.filled_cells));
+        add(GridWork::kFootprintGroup, passes * (Count{groups(squares)} * scene_.filled_cells));
       } else {
         reach = reach + Count{groups(subpackets)} * scene_.runs;
       }
@@ -201,7 +202,7 @@ class Sum {
         if (layout_.lanes == 4) add(Work::kRowGroup, tests * subpackets);
       }
     }
-    add(Work::kReachGroup, passes * reach);
+    add(GridWork::kReachGroup, passes * reach);
   }
 
   // The secondary rays of the eye rays of every sample.
@@ -248,13 +249,13 @@ class Sum {
   // Walks: each pass takes at least its leader, so there are at most as many passes as rays.
   void add_walks(Count rays) {
     const std::uint64_t shaft = groups(kRaysOfWalk);
-    add(Work::kWalkPass, rays);
-    add(Work::kShaftGroup,
+    add(GridWork::kWalkPass, rays);
+    add(GridWork::kShaftGroup,
         rays * (Count{shaft} * (Count{scene_.macro_slices} + scene_.occupied_slices + scene_.filled_cells)));
     add_traversal(rays, true);
     const Count pairs = rays * scene_.references;
     const Count ties = is_exact() ? pairs : Count{};
-    add(Work::kMailboxProbe, pairs);
+    add(GridWork::kMailboxProbe, pairs);
     add(Work::kRayTriangleSetup, pairs);
     add(Work::kRayGroupTest, pairs);
     add(Work::kRayDistance, pairs);

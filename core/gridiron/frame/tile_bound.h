@@ -92,7 +92,7 @@ struct TileBound {
   std::uint64_t put_bytes = 0;              ///< requested by puts
 
   /// The most of one kind of work.
-  [[nodiscard]] constexpr std::uint64_t operator[](Work kind) const { return work[static_cast<std::uint32_t>(kind)]; }
+  [[nodiscard]] constexpr std::uint64_t operator[](WorkId kind) const { return work[kind.number()]; }
 };
 
 /// The most work of each kind and the most transfers of one tile, for every camera that make_frame_record accepts and

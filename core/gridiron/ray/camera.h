@@ -67,7 +67,7 @@ void generate_packet(const FrameHead& frame, std::uint32_t left, std::uint32_t t
   if (columns >= kWidth && rows >= kWidth) [[likely]] {
     present.fill();
   } else {
-    work.charge_to(Work::kPacketStart);
+    work.charge_to(Work::kRayGenerated);
     present.clear();
     for (std::uint32_t ray = 0; ray < PacketType::kRayCount; ++ray) {
       if (PacketType::column_of(ray) < columns && PacketType::row_of(ray) < rows) present.insert(ray);

@@ -70,8 +70,8 @@ class BvhCore {
   [[nodiscard]] const FrameHead& frame() const { return store_.frame; }
   [[nodiscard]] const CoreSettings& settings() const { return store_.frame.engine.settings; }
   [[nodiscard]] typename Store::EngineStore& caches() { return store_.engine; }
-  void charge_to(BvhWork kind) { store_.work.charge_to(carrier_of(kind)); }
-  void count(BvhWork kind, std::uint32_t amount = 1) { store_.work.add(carrier_of(kind), amount); }
+  void charge_to(BvhWork kind) { store_.work.charge_to(kind); }
+  void count(BvhWork kind, std::uint32_t amount = 1) { store_.work.add(kind, amount); }
 
   // --- Tiles ------------------------------------------------------------------------------------------------------
 
@@ -94,7 +94,7 @@ class BvhCore {
 
   // Starts the context's next packet of the tile. @returns false if there is none.
   [[nodiscard]] bool start_packet(Context& context) {
-    charge_to(BvhWork::kTileStart);
+    store_.work.charge_to(Work::kTileStart);
     context.state = Context::kIdle;
     if (next_y_ >= kTileWidth || top_ + next_y_ >= frame().height) return false;
     count(BvhWork::kPacketStart);

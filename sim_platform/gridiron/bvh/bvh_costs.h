@@ -11,8 +11,8 @@
 
 namespace gridiron::bvh {
 
-/// By kind of work of the cached BVH.
-inline constexpr std::array<sim::WorkCost, kBvhWorkCount> kBvhCosts = {{
+/// Of core's tile_start, as the cached BVH does it, and of each of its own kinds of work.
+inline constexpr std::array<sim::WorkCost, kBvhWorkCount + 1> kBvhCosts = {{
     //  cycles    least     most     even  doubles      odd branches   misses
     {  314.5,   212.3,   370.2,  100.81,    0.00,   90.64,   27.72,    6.19},  // tile_start
     {  172.8,   154.0,   288.2,  139.50,    0.00,  133.54,    2.00,    0.81},  // packet_start

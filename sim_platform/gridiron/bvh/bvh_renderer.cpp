@@ -2,6 +2,7 @@
 // Memory: owns main memory and traces for the time of a frame. Threads: see the header.
 // SPDX-License-Identifier: Apache-2.0
 #include <gridiron/bvh/bvh_core.h>
+#include <gridiron/bvh/bvh_engine_work.h>
 #include <gridiron/bvh/bvh_renderer.h>
 #include <gridiron/bvh/claim_order.h>
 #include <gridiron/render/tile_renderer.h>
@@ -146,13 +147,12 @@ BvhFrame render_bvh_frame(const Bvh& bvh, const FrameSettings& settings, const s
   if (made != Status::kOk) return refuse(made);
 
   // 2. The cores, in turn.
-  const sim::MachineProfile priced = with_bvh_costs(machine);
   sim::ChipOptions chip;
   chip.threads = options.core_count != 0 ? options.core_count : machine.core_count;
   chip.completion = options.completion;
   chip.seed = options.seed;
   chip.abort = options.abort;
-  sim::FrameShape shape;
+  sim::FrameShape shape(kBvhEngine);
   shape.tile_count = parts.frame.tiles_x * parts.frame.tiles_y;
   shape.cores_meet = true;
   shape.output_depth = kOutputDepth;
@@ -175,7 +175,7 @@ BvhFrame render_bvh_frame(const Bvh& bvh, const FrameSettings& settings, const s
     }
     // However this core ends, the others must not wait for its turn.
     const LeaveAtEnd leave{order, index};
-    OrderedCore platform(core, index, order, priced, kOutputDepth, result.core_of_tile);
+    OrderedCore platform(core, index, order, CoreClock(machine, kBvhEngine, kOutputDepth), result.core_of_tile);
     return options.packet_width == 16 ? run_core<16>(data, platform, parts.record.address, mutex, result)
                                       : run_core<8>(data, platform, parts.record.address, mutex, result);
   });
@@ -186,14 +186,9 @@ BvhFrame render_bvh_frame(const Bvh& bvh, const FrameSettings& settings, const s
 
   // 3. Time with contention, work by kind, the picture.
   result.timing =
-      sim::replay(run.trace, priced,
+      sim::replay(run.trace, machine,
                   {.core_count = chip.threads, .timeline = options.timeline, .core_of_tile = result.core_of_tile});
   result.work = run.work;
-  for (std::uint32_t i = 0; i < kBvhWorkCount; ++i) {
-    std::uint64_t& carried = result.work[static_cast<std::size_t>(carrier_of(static_cast<BvhWork>(i)))];
-    result.bvh_work[i] = carried;
-    carried = 0;
-  }
   result.picture.color = untile<std::uint32_t>(parts.frame, parts.color.bytes);
   if (options.all_planes) {
     result.picture.depth = untile<float>(parts.frame, parts.depth.bytes);

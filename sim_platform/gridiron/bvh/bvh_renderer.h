@@ -13,7 +13,6 @@
 #include <gridiron/sim/replay.h>
 #include <gridiron/sim/sim_chip.h>
 
-#include <array>
 #include <atomic>
 #include <cstdint>
 #include <vector>
@@ -56,8 +55,7 @@ struct BvhFrame {
   std::vector<sim::Violation> violations;
   BvhPicture picture;       ///< depth and ids only if requested
   sim::FrameTiming timing;  ///< with contention; waits for node lines under kMacroCell, triangles kTriangle
-  sim::WorkTotals work{};   ///< core's kinds; those that carry the cached BVH's are 0
-  std::array<std::uint64_t, kBvhWorkCount> bvh_work{};
+  sim::WorkTotals work{};   ///< by Work and BvhWork
   CacheCounts node_cache, triangle_cache;   ///< over all cores
   std::vector<std::uint32_t> core_of_tile;  ///< which core rendered tile i
   std::uint64_t main_memory_bytes = 0;      ///< nodes, triangles, planes

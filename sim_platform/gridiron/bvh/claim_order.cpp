@@ -6,7 +6,7 @@
 
 namespace gridiron::bvh {
 
-CoreClock::CoreClock(const sim::MachineProfile& machine, std::uint32_t output_depth)
+CoreClock::CoreClock(const sim::MachineProfile& machine, const sim::EngineWork& engine, std::uint32_t output_depth)
     : issue_(ticks_of(machine.issue_cycles)),
       wait_(ticks_of(machine.wait_cycles)),
       latency_(ticks_of(machine.latency_cycles)),
@@ -19,7 +19,8 @@ CoreClock::CoreClock(const sim::MachineProfile& machine, std::uint32_t output_de
       output_depth_(std::max(1u, output_depth)),
       done_(std::clamp(machine.queue_depth, 1u, 65536u)),
       arrivals_(std::clamp(machine.lines_in_flight, 1u, 65536u)) {
-  for (std::uint32_t kind = 0; kind < kWorkKindCount; ++kind) work_[kind] = ticks_of(machine.work_cycles[kind]);
+  const auto prices = sim::work_prices(machine.work_cycles, engine);
+  for (std::uint32_t kind = 0; kind < kWorkKindCount; ++kind) work_[kind] = ticks_of(prices[kind]);
 }
 
 CoreClock::Ticks CoreClock::ticks_of(double cycles) {
@@ -55,7 +56,7 @@ void CoreClock::take(const sim::TileTrace& trace, std::uint32_t ordinal) {
     switch (event.kind) {
       case sim::EventKind::kWork:
         for (const sim::WorkAmount& work : event.work) {
-          now_ += work_[static_cast<std::size_t>(work.kind)] * work.amount;
+          now_ += work_[work.kind.number()] * work.amount;
         }
         break;
       case sim::EventKind::kGet:

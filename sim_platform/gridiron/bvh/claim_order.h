@@ -12,6 +12,7 @@
 #include <cstddef>
 #include <cstdint>
 #include <mutex>
+#include <utility>
 #include <vector>
 
 namespace gridiron::bvh {
@@ -22,7 +23,7 @@ class CoreClock {
   using Ticks = std::uint64_t;  ///< 1/1024 cycle
   static constexpr double kTicksPerCycle = 1024;
 
-  CoreClock(const sim::MachineProfile& machine, std::uint32_t output_depth);
+  CoreClock(const sim::MachineProfile& machine, const sim::EngineWork& engine, std::uint32_t output_depth);
 
   /// Adds the steps of `trace`. @param ordinal  tiles this core had before this one.
   void take(const sim::TileTrace& trace, std::uint32_t ordinal);
@@ -78,9 +79,9 @@ class ClaimOrder {
 class OrderedCore {
  public:
   /// @param core_of_tile  out: element [tile] is written when the tile is claimed.
-  OrderedCore(sim::SimCore& inner, std::uint32_t index, ClaimOrder& order, const sim::MachineProfile& machine,
-              std::uint32_t output_depth, std::vector<std::uint32_t>& core_of_tile)
-      : inner_(inner), index_(index), order_(order), clock_(machine, output_depth), core_of_tile_(core_of_tile) {}
+  OrderedCore(sim::SimCore& inner, std::uint32_t index, ClaimOrder& order, CoreClock clock,
+              std::vector<std::uint32_t>& core_of_tile)
+      : inner_(inner), index_(index), order_(order), clock_(std::move(clock)), core_of_tile_(core_of_tile) {}
   ~OrderedCore() { order_.leave(index_); }
   OrderedCore(const OrderedCore&) = delete;
   OrderedCore& operator=(const OrderedCore&) = delete;

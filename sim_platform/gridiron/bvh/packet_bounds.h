@@ -93,7 +93,7 @@ struct alignas(128) PacketBounds {
     if (all_one_way == kAllQuarters) [[likely]]
       return;
     is_mixed = 1;
-    work.add(carrier_of(BvhWork::kMixedStart));
+    work.add(BvhWork::kMixedStart);
     for (int axis = 0; axis < 3; ++axis) {
       const Float back = one / Four::min(low[axis], Float(-least)) * Float(kNarrow);
       store(Four::select(one_way[axis], zero, back), enter_back, axis);

@@ -13,7 +13,7 @@ namespace gridiron::sim {
   double cycles = machine.claim_cycles;
   for_each_event(tile, [&](const TraceEvent& event) {
     for (const WorkAmount& work : event.work) {
-      cycles += machine.work_cycles[static_cast<std::size_t>(work.kind)] * work.amount;
+      cycles += machine.work_cycles[work.kind.number()] * work.amount;
     }
   });
   for_each_event(tile, [&](const TraceEvent& event) {

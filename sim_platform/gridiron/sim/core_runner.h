@@ -15,6 +15,10 @@ namespace gridiron::sim {
 
 /// The parts of a frame that do not depend on what the cores run.
 struct FrameShape {
+  /// @param of  the engine whose code the program is; it outlives what run_cores() returns.
+  explicit FrameShape(const EngineWork& of) : engine(&of) {}
+
+  const EngineWork* engine;
   std::uint32_t tile_count = 0;
   std::uint32_t output_depth = 1;
   std::uint32_t arena_bytes = 256 * 1024;  ///< local memory of a core

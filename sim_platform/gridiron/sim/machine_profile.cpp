@@ -21,7 +21,7 @@ constexpr std::uint64_t kMegabyte = std::uint64_t{1} << 20;
 /// MachineProfile::issue_cycles and wait_cycles.
 constexpr std::array<double, kWorkKindCount> two_pipe_work_cycles() {
   std::array<double, kWorkKindCount> cycles{};
-  for (std::size_t kind = 0; kind < kWorkKindCount; ++kind) cycles[kind] = kWorkCosts[kind].cycles;
+  for (std::size_t kind = 0; kind < kWorkCosts.size(); ++kind) cycles[kind] = kWorkCosts[kind].cycles;
   return cycles;
 }
 
@@ -103,10 +103,10 @@ constexpr MachineProfile eight_cores_of_2006(MachineProfile machine) {
 /// Instructions of a scalar core that executes 4 lanes one after the other: counted in an emulator, see
 /// instruction_costs.h. Commands and waits are charged where they happen.
 constexpr std::array<double, kWorkKindCount> scalar_instructions() {
-  static_assert(kInstructionCosts.size() == kWorkKindCount - 3);
+  static_assert(kInstructionCosts.size() == kWorkCosts.size() - 3);
   std::array<double, kWorkKindCount> instructions{};
   for (const InstructionCost& cost : kInstructionCosts) {
-    instructions[static_cast<std::size_t>(cost.kind)] = cost.instructions;
+    instructions[cost.kind.number()] = cost.instructions;
   }
   return instructions;
 }

@@ -60,7 +60,7 @@ struct MachineProfile {
   double channel_bytes_per_cycle;       ///< shared by all cores
   double core_line_interval_cycles;     ///< least distance between two lines of one core
   double claim_cycles;                  ///< from asking for a tile to having it
-  std::array<double, kWorkKindCount> work_cycles;  ///< cycles per unit of each kind of work, 4 lanes
+  std::array<double, kWorkKindCount> work_cycles;  ///< per unit of each kind of work of core and the grid, 4 lanes
   MasterProfile master;                 ///< builds scenes
 
   /// Equal in every figure and name.

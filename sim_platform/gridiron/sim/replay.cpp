@@ -36,7 +36,7 @@ double cycles_from_ticks(Ticks ticks) {
 
 /// A machine profile in ticks, with counts that are safe as indices.
 struct Constants {
-  explicit Constants(const MachineProfile& machine)
+  Constants(const MachineProfile& machine, const EngineWork& engine)
       : line_bytes(std::max(1u, machine.line_bytes)),
         queue_depth(std::clamp(machine.queue_depth, 1u, kMaxWindow)),
         lines_in_flight(std::clamp(machine.lines_in_flight, 1u, kMaxWindow)),
@@ -46,8 +46,11 @@ struct Constants {
         slot(machine.channel_bytes_per_cycle > 0 ? ticks_from_cycles(line_bytes / machine.channel_bytes_per_cycle) : 0),
         line_interval(ticks_from_cycles(machine.core_line_interval_cycles)),
         claim(ticks_from_cycles(machine.claim_cycles)) {
-    for (std::uint32_t kind = 0; kind < kWorkKindCount; ++kind)
-      work[kind] = ticks_from_cycles(machine.work_cycles[kind]);
+    const auto prices = work_prices(machine.work_cycles, engine);
+    for (std::uint32_t kind = 0; kind < kWorkKindCount; ++kind) work[kind] = ticks_from_cycles(prices[kind]);
+    for (std::uint32_t kind = 0; kind < engine.kind_count(); ++kind) {
+      is_initialisation[kind] = work_kind(WorkId(kind), engine).is_initialisation;
+    }
   }
 
   std::uint32_t line_bytes;
@@ -55,6 +58,7 @@ struct Constants {
   std::uint32_t lines_in_flight;
   Ticks issue, wait, latency, slot, line_interval, claim;
   std::array<Ticks, kWorkKindCount> work{};
+  std::array<bool, kWorkKindCount> is_initialisation{};
 };
 
 struct Command {
@@ -103,7 +107,7 @@ class Replay {
   Replay(const FrameTrace& trace, const MachineProfile& machine, const ReplayOptions& options)
       : trace_(trace),
         machine_(machine),
-        constants_(machine),
+        constants_(machine, *trace.engine),
         output_depth_(std::clamp(trace.output_depth, 1u, std::uint32_t{kOutputTagCount})),
         with_timeline_(options.timeline),
         core_of_tile_(options.core_of_tile),
@@ -267,8 +271,8 @@ class Replay {
     Ticks init = 0;
     Ticks compute = 0;
     for (const WorkAmount& work : amounts) {
-      const Ticks ticks = constants_.work[static_cast<std::size_t>(work.kind)] * work.amount;
-      (is_initialisation(work.kind) ? init : compute) += ticks;
+      const Ticks ticks = constants_.work[work.kind.number()] * work.amount;
+      (constants_.is_initialisation[work.kind.number()] ? init : compute) += ticks;
     }
     spend(core, TimelineSpan::Kind::kInit, WaitLevel::kTile, init);
     spend(core, TimelineSpan::Kind::kCompute, WaitLevel::kTile, compute);
@@ -381,6 +385,7 @@ class Replay {
     for (const Core& core : cores_) end = std::max(end, core.now);
 
     FrameTiming frame;
+    frame.engine = trace_.engine;
     frame.frame_cycles = cycles_from_ticks(end);
     frame.seconds = machine_.clock_hz > 0 ? frame.frame_cycles / machine_.clock_hz : 0;
     frame.channel_busy_cycles = cycles_from_ticks(channel_busy_);

@@ -15,12 +15,6 @@
 
 namespace gridiron::sim {
 
-/// @returns true for the kinds of work that count as initialisation; all others are computation.
-[[nodiscard]] constexpr bool is_initialisation(Work kind) {
-  return kind == Work::kTileStart || kind == Work::kRayGenerated || kind == Work::kPacketStart ||
-         kind == Work::kPassGroup || kind == Work::kPassSquare;
-}
-
 /// One core's time in one stage: cycles and commands belong to the stage in which the core was.
 struct StageTiming {
   double compute_cycles = 0;  ///< initialisation included
@@ -36,7 +30,7 @@ struct StageTiming {
 /// last; at a full queue, of the level of the transfer that could not be issued.
 struct CoreTiming {
   std::uint32_t tiles = 0;                       ///< claimed
-  double init_cycles = 0;                        ///< work that is_initialisation
+  double init_cycles = 0;                        ///< work that is initialisation
   double compute_cycles = 0;                     ///< all other work, and issuing transfers
   double dma_wait_cycles[kWaitLevelCount] = {};  ///< by WaitLevel
   double idle_cycles = 0;  ///< claim latency (of the refused claim too) and the time after the core's last step
@@ -52,7 +46,7 @@ struct CoreTiming {
 struct TimelineSpan {
   /// What the core does meanwhile.
   enum class Kind : std::uint8_t {
-    kInit,     ///< work that is_initialisation
+    kInit,     ///< work that is initialisation
     kCompute,  ///< other work
     kWait,     ///< stands still
     kTile,     ///< has this tile
@@ -66,6 +60,7 @@ struct TimelineSpan {
 
 /// The time of a frame.
 struct FrameTiming {
+  const EngineWork* engine = &kGridEngine;  ///< of the trace: names its wait levels and kinds of work
   double frame_cycles = 0;  ///< until the last core has ended its epilogue
   double seconds = 0;       ///< the same, by the clock of the machine
   double channel_busy_cycles = 0;  ///< time in which the shared channel carried a line

@@ -234,7 +234,7 @@ enum class LayoutGroup : std::uint8_t { kCommon, kSweep, kEffects, kNone };
     return result;
   };
   FrameRecord record;
-  FrameShape shape;
+  FrameShape shape(kGridEngine);
   const Status described = describe_frame(memory, frame, record, shape);
   if (described != Status::kOk) return refuse(described);
   const bool has_effects = is_scene_shaded(record);

@@ -258,7 +258,7 @@ void SimCore::note_work(const std::uint32_t* counts, std::uint32_t count) {
   for (std::uint32_t kind = 0; kind < known; ++kind) {
     const std::uint32_t amount = counts[kind] - last_counts_[kind];
     if (amount == 0) continue;
-    work[done++] = {static_cast<Work>(kind), amount};
+    work[done++] = {WorkId(kind), amount};
     last_counts_[kind] = counts[kind];
     if (in_tile_) tile_work[kind] += amount;
   }

@@ -4,6 +4,7 @@
 
 #include <gridiron/base/stages.h>
 #include <gridiron/base/work_counters.h>
+#include <gridiron/sim/engine_work.h>
 
 #include <array>
 #include <cstddef>
@@ -31,7 +32,7 @@ enum class EventKind : std::uint8_t {
 
 /// Work of one kind done between two transfers.
 struct WorkAmount {
-  Work kind;             ///< of work
+  WorkId kind;           ///< of work
   std::uint32_t amount;  ///< how much of it, above 0
 
   friend constexpr bool operator==(const WorkAmount&, const WorkAmount&) = default;  ///< of all members
@@ -69,6 +70,7 @@ struct FrameTrace {
   TileTrace epilogue;             ///< after the last tile
   std::vector<TileTrace> tiles;   ///< index = tile_id; one entry if a single tile was rendered
   std::uint32_t output_depth = 1; ///< rotation of the relative tags
+  const EngineWork* engine = &kGridEngine;  ///< whose kinds of work these are; outlives the trace
 
   /// @returns bytes of all packed steps.
   [[nodiscard]] std::uint64_t packed_bytes() const {

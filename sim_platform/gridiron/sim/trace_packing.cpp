@@ -139,6 +139,8 @@ static_assert(kWorkKindCount <= 64, "a set of kinds of work is one word");
 
 /// The kinds of work in a step are bits of a word.
 using Kinds = std::uint64_t;
+/// They are written with an engine's own kinds in front: most steps have no others, and small numbers are short.
+constexpr int kRotation = kSharedWorkCount;
 
 template <class Visit>
 void for_each_kind(Kinds kinds, Visit&& visit) {
@@ -155,8 +157,8 @@ struct Step {
   TraceEvent event;  ///< the event after it; only its own members are set
 
   void add(const WorkAmount& work) {
-    amounts[static_cast<std::size_t>(work.kind)] += work.amount;
-    if (work.amount != 0) kinds |= Kinds{1} << static_cast<std::uint32_t>(work.kind);
+    amounts[work.kind.number()] += work.amount;
+    if (work.amount != 0) kinds |= Kinds{1} << work.kind.number();
   }
   void clear() {
     for_each_kind(kinds, [&](std::uint32_t kind) { amounts[kind] = 0; });
@@ -188,8 +190,9 @@ struct Shape {
          (shape.end & Shape::kMasks) != 0;
 }
 
-static_assert(Work::kShaftGroup > Work::kMacroSliceStep && Work::kShaftGroup > Work::kSliceStep &&
-                  Work::kShaftGroup > Work::kCellVisit,
+// Made for the grid; of another engine some amounts are expected worse, no more.
+static_assert(GridWork::kShaftGroup > GridWork::kMacroSliceStep && GridWork::kShaftGroup > GridWork::kSliceStep &&
+                  GridWork::kShaftGroup > GridWork::kCellVisit,
               "a reader knows the amounts by which another is expected");
 
 /// The predictions for a step from those before it, the same for the writer and the reader.
@@ -211,11 +214,12 @@ class Expectations {
 
   /// Most kinds occur once. A mailbox is probed for every triangle that arrived, a shaft is tested against each slab.
   [[nodiscard]] std::uint32_t& amount(std::uint32_t kind, const Step& step) {
-    if (kind == static_cast<std::uint32_t>(Work::kMailboxProbe)) return probes_[arrived_bytes_ / 16 % probes_.size()];
-    if (kind == static_cast<std::uint32_t>(Work::kShaftGroup)) {
-      const auto amount_of = [&](Work work) { return step.amounts[static_cast<std::size_t>(work)]; };
+    if (kind == static_cast<std::uint32_t>(GridWork::kMailboxProbe))
+      return probes_[arrived_bytes_ / 16 % probes_.size()];
+    if (kind == static_cast<std::uint32_t>(GridWork::kShaftGroup)) {
+      const auto amount_of = [&](WorkId work) { return step.amounts[work.number()]; };
       const std::uint32_t slabs =
-          amount_of(Work::kMacroSliceStep) + amount_of(Work::kSliceStep) + amount_of(Work::kCellVisit);
+          amount_of(GridWork::kMacroSliceStep) + amount_of(GridWork::kSliceStep) + amount_of(GridWork::kCellVisit);
       return shafts_[slabs % shafts_.size()];
     }
     one_ = 1;
@@ -315,8 +319,7 @@ struct TraceWriter::State {
       to = put_number(to, place);
     } else {
       *to++ = std::byte{0};
-      to = put_number(to, shape.kinds);
-      to = put_number(to, shape.unexpected);
+      for (const Kinds kinds : {shape.kinds, shape.unexpected}) to = put_number(to, std::rotr(kinds, kRotation));
       to = put_number(to, shape.end);
       if (has_masks(shape)) to = put_number(to, shape.masks);
       shapes.push_back(shape);
@@ -388,8 +391,7 @@ struct TraceReader::State {
     const std::uint64_t number = take_number(next);
     if (number == 0) {
       Shape& shape = shapes.emplace_back();
-      shape.kinds = take_number(next);
-      shape.unexpected = take_number(next);
+      for (Kinds* const kinds : {&shape.kinds, &shape.unexpected}) *kinds = std::rotl(take_number(next), kRotation);
       shape.end = static_cast<std::uint32_t>(take_number(next));
       if (has_masks(shape)) shape.masks = take_number(next);
     }
@@ -408,7 +410,7 @@ struct TraceReader::State {
       std::uint32_t& expected = expectations.amount(kind, step);
       if ((shape.unexpected >> kind & 1) != 0) expected = static_cast<std::uint32_t>(take_number(next));
       step.amounts[kind] = expected;
-      *amount++ = {static_cast<Work>(kind), expected};
+      *amount++ = {WorkId(kind), expected};
     });
     work_event.work = {work.data(), amount};
   }

@@ -14,6 +14,7 @@
 #include <array>
 #include <cmath>
 #include <cstring>
+#include <initializer_list>
 #include <memory>
 #include <optional>
 #include <string>
@@ -31,12 +32,12 @@ struct TileCounts {
   std::array<std::uint64_t, kWorkKindCount> work{};
   std::uint64_t get_bytes = 0, put_bytes = 0;
 
-  [[nodiscard]] std::uint64_t operator[](Work kind) const { return work[static_cast<std::size_t>(kind)]; }
+  [[nodiscard]] std::uint64_t operator[](WorkId kind) const { return work[kind.number()]; }
 };
 
 TileCounts counts_of(const sim::TileTrace& tile) {
   TileCounts counts;
-  const auto of = [&](Work kind) -> std::uint64_t& { return counts.work[static_cast<std::size_t>(kind)]; };
+  const auto of = [&](WorkId kind) -> std::uint64_t& { return counts.work[kind.number()]; };
   sim::for_each_event(tile, [&](const sim::TraceEvent& event) {
     if (event.kind == sim::EventKind::kGet) {
       ++of(Work::kGetIssue);
@@ -276,14 +277,15 @@ TEST(TileBound, IsReachedPerPassByAPacketThatSeesAll) {
     ASSERT_TRUE(trace.has_value());
     ASSERT_EQ(trace->tiles.size(), 1u);
     const TileCounts tile = counts_of(trace->tiles[0]);
-    const std::uint64_t passes = bound[Work::kPacketStart];
-    ASSERT_EQ(tile[Work::kPacketStart], 1u);
+    const std::uint64_t passes = bound[GridWork::kPacketStart];
+    ASSERT_EQ(tile[GridWork::kPacketStart], 1u);
     EXPECT_EQ(passes, 7u) << "six, and one for a ray without a direction";
-    for (const Work kind : {Work::kMacroCellStep, Work::kMacroCellVisit, Work::kCellStep, Work::kCellVisit,
-                            Work::kTriangleBatch, Work::kTriangleSetup}) {
-      EXPECT_EQ(passes * tile[kind], bound[kind]) << "kind " << static_cast<int>(kind);
+    for (const WorkId kind :
+         std::initializer_list<WorkId>{GridWork::kMacroCellStep, GridWork::kMacroCellVisit, GridWork::kCellStep,
+                                       GridWork::kCellVisit, GridWork::kTriangleBatch, Work::kTriangleSetup}) {
+      EXPECT_EQ(passes * tile[kind], bound[kind]) << "kind " << kind.number();
     }
-    most_slices = std::max(most_slices, tile[Work::kSliceStep]);
+    most_slices = std::max(most_slices, tile[GridWork::kSliceStep]);
     for (const Work kind : {Work::kTileStart, Work::kRayGenerated, Work::kShadedGroup}) {
       EXPECT_EQ(tile[kind], bound[kind]) << "kind " << static_cast<int>(kind);
     }
@@ -291,7 +293,7 @@ TEST(TileBound, IsReachedPerPassByAPacketThatSeesAll) {
     // Boundaries that lie between two transfers are charged to one of them.
     EXPECT_LE(10 * bound[Work::kGetIssue], 11 * passes * tile[Work::kGetIssue]);
   }
-  EXPECT_EQ(bound[Work::kSliceStep], bound[Work::kPacketStart] * most_slices);
+  EXPECT_EQ(bound[GridWork::kSliceStep], bound[GridWork::kPacketStart] * most_slices);
 }
 
 // From the middle of the grid rays march along nearly all axes both ways, each through a half of it.
@@ -309,10 +311,11 @@ TEST(TileBound, IsWithinAFactorOfTwelveOfAPacketInTheMiddleOfAll) {
   const auto trace = scene.render(way, camera, 16, 16);
   ASSERT_TRUE(trace.has_value());
   const TileCounts tile = counts_of(trace->tiles[0]);
-  EXPECT_GE(tile[Work::kPacketStart], 5u);
-  for (const Work kind : {Work::kMacroCellStep, Work::kMacroCellVisit, Work::kCellStep, Work::kCellVisit,
-                          Work::kTriangleBatch, Work::kTriangleSetup, Work::kGetIssue, Work::kWait}) {
-    EXPECT_LE(bound[kind], 12 * tile[kind]) << "kind " << static_cast<int>(kind);
+  EXPECT_GE(tile[GridWork::kPacketStart], 5u);
+  for (const WorkId kind : std::initializer_list<WorkId>{
+           GridWork::kMacroCellStep, GridWork::kMacroCellVisit, GridWork::kCellStep, GridWork::kCellVisit,
+           GridWork::kTriangleBatch, Work::kTriangleSetup, Work::kGetIssue, Work::kWait}) {
+    EXPECT_LE(bound[kind], 12 * tile[kind]) << "kind " << kind.number();
   }
   EXPECT_LE(bound.get_bytes, 12 * tile.get_bytes);
 }
@@ -350,7 +353,7 @@ TEST(TileBound, CountsThatDoNotFitStayAtTheTop) {
   TileScene scene{};
   scene.macro_cells = scene.cells = scene.references = scene.runs = std::uint64_t{1} << 60;
   const TileBound bound = worst_tile(scene, tile_layout_of<StoreLayout256K<8>>(4), {});
-  EXPECT_EQ(bound[Work::kMacroCellStep], ~std::uint64_t{0});
+  EXPECT_EQ(bound[GridWork::kMacroCellStep], ~std::uint64_t{0});
   EXPECT_EQ(bound.get_bytes, ~std::uint64_t{0});
   EXPECT_EQ(bound[Work::kTileStart], 1u);
 }

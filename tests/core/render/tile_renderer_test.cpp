@@ -156,7 +156,7 @@ TEST_F(TileRendererTest, CellsOfManyRunsAreTestedWhole) {
   TestFrame frame(coarse, settings_of(64, 48, TinyLayout::kTileWidth));
   const KernelFrame rendered = frame.render<Lanes<4>, TinyLayout>();
   ASSERT_EQ(rendered.status, Status::kOk);
-  EXPECT_GT(rendered.work[Work::kTriangleBatch], 5 * rendered.work[Work::kCellVisit]);
+  EXPECT_GT(rendered.work[GridWork::kTriangleBatch], 5 * rendered.work[GridWork::kCellVisit]);
   EXPECT_EQ(difference(rendered, reference()), "");
   expect_clean(frame);
 }
@@ -198,10 +198,10 @@ TEST_F(TileRendererTest, TechniquesChangeNoPixelButTheWork) {
   const KernelFrame with_all = all_on.render<Lanes<4>, Normal>();
   struct Case {
     std::uint32_t bit;
-    Work counter;
+    WorkId counter;
   };
   for (const Case& tested : {Case{kUseMailbox, Work::kTriangleSetup}, Case{kUseCornerCulling, Work::kGroupTestStandard},
-                             Case{kUseEmptySkip, Work::kMacroCellVisit}}) {
+                             Case{kUseEmptySkip, GridWork::kMacroCellVisit}}) {
     FrameSettings settings = settings_of(64, 48, Normal::kTileWidth);
     settings.techniques &= ~tested.bit;
     TestFrame frame(fine_scene(), settings);
@@ -263,7 +263,7 @@ TEST_F(TileRendererTest, EyeInsideTheSceneSeesAllAround) {
   TestFrame frame(fine_scene(), settings);
   const KernelFrame rendered = frame.render<Lanes<4>, Normal>();
   ASSERT_EQ(rendered.status, Status::kOk);
-  EXPECT_GT(rendered.work[Work::kPacketStart], 48u) << "no packet needs a second pass";
+  EXPECT_GT(rendered.work[GridWork::kPacketStart], 48u) << "no packet needs a second pass";
   expect_truth(frame, rendered);
 }
 

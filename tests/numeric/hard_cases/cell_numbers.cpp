@@ -61,7 +61,7 @@ std::vector<std::uint64_t> visited_cells(const unsigned char* grid_bytes, const 
       }
     }
   }
-  steps = work[Work::kMacroCellStep] + work[Work::kCellStep];
+  steps = work[GridWork::kMacroCellStep] + work[GridWork::kCellStep];
   return cells;
 }
 

@@ -368,11 +368,11 @@ TEST(HardCase28, GiantTriangle) {
     (void)target.by_pipeline(view, way, {}, &work);
     return work;
   };
-  const auto of = [](const sim::WorkTotals& work, Work kind) { return work[static_cast<std::size_t>(kind)]; };
+  const auto of = [](const sim::WorkTotals& work, WorkId kind) { return work[kind.number()]; };
   const sim::WorkTotals with = work_of(kUseMailbox | kUseEmptySkip), without = work_of(kUseEmptySkip);
-  EXPECT_LE(of(with, Work::kTriangleSetup), of(with, Work::kPacketStart));
+  EXPECT_LE(of(with, Work::kTriangleSetup), of(with, GridWork::kPacketStart));
   EXPECT_GT(of(without, Work::kTriangleSetup), 4 * of(with, Work::kTriangleSetup));
-  EXPECT_EQ(of(with, Work::kTriangleBatch), of(without, Work::kTriangleBatch));
+  EXPECT_EQ(of(with, GridWork::kTriangleBatch), of(without, GridWork::kTriangleBatch));
 }
 
 // Cells that hold a triangle, by the image that was built.

@@ -264,26 +264,26 @@ sim::ChipOptions chip_of(const PipelineWay& way) {
 
 // C: as many steps as the counts of the grid allow.
 void check_steps(const FrameRecord& frame, const PipelineWay& way, const sim::WorkTotals& work, bool only_rays) {
-  const auto count = [&](Work kind) { return work[static_cast<std::size_t>(kind)]; };
+  const auto count = [&](WorkId kind) { return work[kind.number()]; };
   const std::uint64_t packets_across = (frame.tile_width + way.packet_width - 1) / way.packet_width;
   const std::uint64_t packets = packets_across * packets_across * frame.tiles_x * frame.tiles_y;
   const std::uint64_t rays = std::uint64_t{way.packet_width} * way.packet_width;
   const bool is_exact = frame.accuracy == static_cast<std::uint32_t>(Accuracy::kExact);
   const std::uint64_t passes_each = (only_rays ? std::min<std::uint64_t>(6, rays) : rays) * 2 + (is_exact ? rays : 0);
-  const std::uint64_t passes = count(Work::kPacketStart);
+  const std::uint64_t passes = count(GridWork::kPacketStart);
   const GridRecord& grid = frame.engine.grid;
   const std::uint32_t* const macro = grid.macro_cell_count;
   const std::uint64_t macro_cells = std::uint64_t{macro[0]} * macro[1] * macro[2];
   const std::uint64_t m = grid.macro_width;
   EXPECT_LE(passes, packets * passes_each);
-  EXPECT_LE(count(Work::kMacroSliceStep), passes * std::max({macro[0], macro[1], macro[2]}));
-  EXPECT_LE(count(Work::kMacroCellStep), passes * macro_cells);
-  EXPECT_LE(count(Work::kMacroCellVisit), count(Work::kMacroCellStep));
-  EXPECT_LE(count(Work::kSliceStep), count(Work::kMacroCellVisit) * m);
-  const std::uint64_t cell_steps = count(Work::kCellStep) + count(Work::kCellBoundStep);
-  EXPECT_LE(cell_steps, count(Work::kMacroCellVisit) * m * m * m);
-  EXPECT_LE(count(Work::kCellVisit), cell_steps);
-  EXPECT_LE(count(Work::kTriangleBatch), passes * grid.reference_count);
+  EXPECT_LE(count(GridWork::kMacroSliceStep), passes * std::max({macro[0], macro[1], macro[2]}));
+  EXPECT_LE(count(GridWork::kMacroCellStep), passes * macro_cells);
+  EXPECT_LE(count(GridWork::kMacroCellVisit), count(GridWork::kMacroCellStep));
+  EXPECT_LE(count(GridWork::kSliceStep), count(GridWork::kMacroCellVisit) * m);
+  const std::uint64_t cell_steps = count(GridWork::kCellStep) + count(GridWork::kCellBoundStep);
+  EXPECT_LE(cell_steps, count(GridWork::kMacroCellVisit) * m * m * m);
+  EXPECT_LE(count(GridWork::kCellVisit), cell_steps);
+  EXPECT_LE(count(GridWork::kTriangleBatch), passes * grid.reference_count);
   EXPECT_LE(count(Work::kTriangleSetup), passes * grid.reference_count);
 }
 

@@ -19,8 +19,8 @@ class PipeModelTest : public testing::Test {
   Branches branches_ = taken_branch();
   PipeModel model_{&branches_, 1};
 
-  void SetUp() override { model_.add_units(Work::kCellStep, 1); }
-  KindTotals finish() { return model_.finish()[static_cast<std::size_t>(Work::kCellStep)]; }
+  void SetUp() override { model_.add_units(GridWork::kCellStep, 1); }
+  KindTotals finish() { return model_.finish()[static_cast<std::size_t>(GridWork::kCellStep)]; }
 };
 
 TEST_F(PipeModelTest, ChainWaitsForEachResult) {
@@ -80,12 +80,12 @@ TEST(PipeModel, SuperblockMovesWorkAboveUsualBranchesButNoStores) {
   for (const bool stores : {false, true}) {
     Branches branches = taken_branch();
     PipeModel model(&branches, 4);
-    model.add_units(Work::kCellStep, 1);
+    model.add_units(GridWork::kCellStep, 1);
     const Node condition = model.emit(OpClass::kFloat, 1);
     model.branch(kSite, true, condition);
     for (std::uint64_t i = 0; i < 5; ++i) (void)model.emit(stores ? OpClass::kStore : OpClass::kFixed, i);
     const Totals totals = model.finish();
-    EXPECT_EQ(totals[static_cast<std::size_t>(Work::kCellStep)].cycles(), stores ? 7 + 5 : 7);
+    EXPECT_EQ(totals[static_cast<std::size_t>(GridWork::kCellStep)].cycles(), stores ? 7 + 5 : 7);
   }
 }
 

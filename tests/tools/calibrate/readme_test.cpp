@@ -1,6 +1,6 @@
 // The figures in tools/calibrate/README.md equal those of the tables. SPDX-License-Identifier: Apache-2.0
 #include <gridiron/bvh/bvh_costs.h>
-#include <gridiron/bvh/bvh_work.h>
+#include <gridiron/bvh/bvh_engine_work.h>
 #include <gridiron/sim/work_costs.h>
 #include <gtest/gtest.h>
 #include <report/report.h>
@@ -60,11 +60,10 @@ TEST(CalibrateReadme, SecondOpinionStandsBesideTheTableOfToday) {
   const std::string text = readme_text();
   const std::map<std::string, Opinion> rows = opinions(text);
   std::set<std::string> apart, below;
-  for (std::size_t i = 0; i < kWorkKindCount; ++i) {
-    const auto kind = static_cast<Work>(i);
+  for (std::uint32_t i = 0; i < sim::kGridEngine.kind_count(); ++i) {
     const sim::WorkCost& cost = sim::kWorkCosts[i];
     if (cost.cycles == 0) continue;  // commands and waits
-    const std::string name(tool::work_name(kind));
+    const std::string name(sim::work_kind(WorkId(i)).name);
     SCOPED_TRACE(name + ": run tools/calibrate/second_opinion/run and write the README's table anew");
     const auto row = rows.find(name);
     ASSERT_NE(row, rows.end());
@@ -89,9 +88,11 @@ TEST(CalibrateReadme, KindsBelowTheirLeastAreNamed) {
   const auto add = [&below](const sim::WorkCost& cost, std::string_view name) {
     if (cost.cycles > 0 && cost.cycles < 0.98 * cost.least_cycles) below.insert(std::string(name));
   };
-  for (std::size_t i = 0; i < kWorkKindCount; ++i) add(sim::kWorkCosts[i], tool::work_name(static_cast<Work>(i)));
-  for (std::uint32_t i = 0; i < bvh::kBvhWorkCount; ++i) {
-    add(bvh::kBvhCosts[i], bvh::name_of(static_cast<bvh::BvhWork>(i)));
+  for (std::uint32_t i = 0; i < sim::kWorkCosts.size(); ++i) {
+    add(sim::kWorkCosts[i], sim::work_kind(WorkId(i)).name);
+  }
+  for (std::uint32_t i = 0; i < bvh::kBvhCosts.size(); ++i) {
+    add(bvh::kBvhCosts[i], sim::work_kind(bvh::kind_of_cost(i), bvh::kBvhEngine).name);
   }
   EXPECT_EQ(quoted_words(between(readme_text(), "More than 2 % less:", "\n\n")), below);
 }

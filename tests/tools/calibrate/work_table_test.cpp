@@ -1,12 +1,10 @@
 // The committed table of work costs is the one that the kernel's operations come to today.
 // SPDX-License-Identifier: Apache-2.0
-#include <gridiron/bvh/bvh_costs.h>
-#include <gridiron/bvh/bvh_work.h>
+#include <gridiron/bvh/bvh_engine_work.h>
 #include <gridiron/sim/instruction_costs.h>
 #include <gridiron/sim/machine_profile.h>
 #include <gridiron/sim/work_costs.h>
 #include <gtest/gtest.h>
-#include <report/report.h>
 #include <work_table.h>
 
 #include <array>
@@ -36,7 +34,7 @@ void expect_same(const sim::WorkCost& cost, const KindTotals& counted) {
 // count_frames() and count_bvh_frames() throw where the counted twin renders another picture or does other work.
 TEST(WorkTable, CommittedTableIsThatOfTodaysKernel) {
   const Totals totals = count_frames();
-  for (std::size_t kind = 0; kind < kWorkKindCount; ++kind) {
+  for (std::size_t kind = 0; kind < sim::kWorkCosts.size(); ++kind) {
     if (sim::kWorkCosts[kind].cycles == 0) continue;  // commands and waits
     SCOPED_TRACE("kind " + std::to_string(kind) +
                  ": if the kernel's operations changed, write the table anew with\n  build/host/bin/gridiron_calibrate "
@@ -47,31 +45,31 @@ TEST(WorkTable, CommittedTableIsThatOfTodaysKernel) {
 
 TEST(WorkTable, CommittedTableOfTheBvhIsThatOfToday) {
   const Totals totals = count_bvh_frames();
-  for (std::uint32_t i = 0; i < bvh::kBvhWorkCount; ++i) {
-    const auto kind = static_cast<bvh::BvhWork>(i);
-    SCOPED_TRACE(std::string(bvh::name_of(kind)) +
+  for (std::uint32_t i = 0; i < bvh::kBvhCosts.size(); ++i) {
+    const WorkId kind = bvh::kind_of_cost(i);
+    SCOPED_TRACE(std::string(sim::work_kind(kind, bvh::kBvhEngine).name) +
                  ": if the cached BVH's operations changed, or the kernel's that it calls, write the table anew with\n"
                  "  build/host/bin/gridiron_calibrate --bvh sim_platform/gridiron/bvh/bvh_costs.h");
-    expect_same(bvh::kBvhCosts[i], totals[static_cast<std::size_t>(bvh::carrier_of(kind))]);
+    expect_same(bvh::kBvhCosts[i], totals[kind.number()]);
   }
 }
 
 TEST(WorkTable, BvhChargesItsTableAndTheKernelsForAllElse) {
   const sim::MachineProfile& machine = *sim::find_machine_profile("cell-ps3");
-  const sim::MachineProfile priced = bvh::with_bvh_costs(machine);
   std::array<double, kWorkKindCount> expected = machine.work_cycles;
-  for (std::uint32_t i = 0; i < bvh::kBvhWorkCount; ++i) {
-    const auto kind = static_cast<bvh::BvhWork>(i);
-    expected[static_cast<std::size_t>(bvh::carrier_of(kind))] = bvh::kBvhCosts[i].cycles;
-    EXPECT_EQ(bvh::cycles_of(kind), bvh::kBvhCosts[i].cycles);
-    EXPECT_LE(bvh::kBvhCosts[i].cycles, bvh::kBvhCosts[i].most_cycles) << bvh::name_of(kind);
+  for (std::uint32_t i = 0; i < bvh::kBvhCosts.size(); ++i) {
+    const WorkId kind = bvh::kind_of_cost(i);
+    expected[kind.number()] = bvh::kBvhCosts[i].cycles;
+    EXPECT_LE(bvh::kBvhCosts[i].cycles, bvh::kBvhCosts[i].most_cycles) << sim::work_kind(kind, bvh::kBvhEngine).name;
   }
-  EXPECT_EQ(priced.work_cycles, expected);
+  EXPECT_EQ(sim::work_prices(machine.work_cycles, bvh::kBvhEngine), expected);
+  EXPECT_EQ(expected[static_cast<std::size_t>(Work::kTileStart)], bvh::kBvhCosts[0].cycles);
+  EXPECT_EQ(expected[static_cast<std::size_t>(bvh::BvhWork::kReach)], bvh::kBvhCosts.back().cycles);
 }
 
 TEST(WorkTable, ProfileChargesTheTable) {
   const sim::MachineProfile& machine = *sim::find_machine_profile("cell-ps3");
-  for (std::size_t kind = 0; kind < kWorkKindCount; ++kind) {
+  for (std::size_t kind = 0; kind < sim::kWorkCosts.size(); ++kind) {
     EXPECT_EQ(machine.work_cycles[kind], sim::kWorkCosts[kind].cycles) << "kind " << kind;
     EXPECT_LE(sim::kWorkCosts[kind].cycles, sim::kWorkCosts[kind].most_cycles) << "kind " << kind;
   }
@@ -83,8 +81,8 @@ TEST(WorkTable, ProfileOfInstructionsChargesItsTable) {
   const sim::MachineProfile& machine = *sim::find_machine_profile("fu540");
   std::array<double, kWorkKindCount> expected{};
   for (const sim::InstructionCost& cost : sim::kInstructionCosts) {
-    const auto kind = static_cast<std::size_t>(cost.kind);
-    SCOPED_TRACE(std::string(tool::work_name(cost.kind)) +
+    const std::size_t kind = cost.kind.number();
+    SCOPED_TRACE(std::string(sim::work_kind(cost.kind).name) +
                  ": write the table anew with\n  tools/calibrate/second_opinion/run build/host riscv64 --header > "
                  "sim_platform/gridiron/sim/instruction_costs.h");
     EXPECT_EQ(expected[kind], 0.0);
@@ -93,7 +91,7 @@ TEST(WorkTable, ProfileOfInstructionsChargesItsTable) {
     expected[kind] = cost.instructions;
   }
   EXPECT_EQ(machine.work_cycles, expected);
-  for (std::size_t kind = 0; kind < kWorkKindCount; ++kind) {
+  for (std::size_t kind = 0; kind < sim::kWorkCosts.size(); ++kind) {
     EXPECT_EQ(expected[kind] > 0, sim::kWorkCosts[kind].cycles > 0) << "kind " << kind;
   }
   EXPECT_EQ(machine.issue_cycles, sim::kCommandInstructions);

@@ -58,7 +58,7 @@ TEST(MachineFile, ABaseGivesWhatIsNotSaid) {
   expected.core_count = 4;
   expected.clock_hz = 1.5e9;
   expected.queue_depth = 1;
-  expected.work_cycles[static_cast<std::size_t>(Work::kCellStep)] = 12.5;
+  expected.work_cycles[static_cast<std::size_t>(GridWork::kCellStep)] = 12.5;
   expected.master.step_cycles[static_cast<std::size_t>(sim::BuildStep::kNodeMade)] = 7;
   expected.master.clock_hz = 2e9;
   EXPECT_EQ(*machine, expected);
@@ -124,7 +124,7 @@ TEST(MachineFile, WithoutABaseEveryKeyIsAsked) {
                                       "', and has no 'based_on' to take it from");
   }
   // 13 numbers and the master's clock; three kinds of work are charged as events and have no key.
-  EXPECT_EQ(keys, static_cast<int>(14 + kWorkKindCount - 3 + sim::kBuildStepCount));
+  EXPECT_EQ(keys, static_cast<int>(14 + sim::kGridEngine.kind_count() - 3 + sim::kBuildStepCount));
   EXPECT_NE(tool::read_machine_file(folder.write("b.machine", without_line(text, "description")))->description, "");
 }
 

@@ -184,7 +184,7 @@ TEST(Machines, OneMachineAsJson) {
   EXPECT_EQ(document["machines"][0]["name"], "mine");
   EXPECT_EQ(document["machines"][0]["master"]["step_cycles"]["cell_row"], 99.5);
   EXPECT_EQ(document["machines"][0]["work_cycles"]["cell_step"],
-            sim::kWorkCosts[static_cast<std::size_t>(Work::kCellStep)].cycles);
+            sim::kWorkCosts[static_cast<std::size_t>(GridWork::kCellStep)].cycles);
 }
 
 TEST(Machines, TheExampleFileRenders) {

@@ -46,8 +46,8 @@ TEST(Prediction, BusyCyclesAreClaimWorkCommandsAndWaits) {
   machine.claim_cycles = 1;
   machine.issue_cycles = 10;
   machine.wait_cycles = 100;
-  machine.work_cycles[static_cast<std::size_t>(Work::kCellStep)] = 1000;
-  const sim::WorkAmount work[] = {{Work::kCellStep, 2}, {Work::kCellStep, 3}};
+  machine.work_cycles[static_cast<std::size_t>(GridWork::kCellStep)] = 1000;
+  const sim::WorkAmount work[] = {{GridWork::kCellStep, 2}, {GridWork::kCellStep, 3}};
   sim::TraceWriter writer;
   for (const sim::EventKind kind : {sim::EventKind::kGet, sim::EventKind::kPut, sim::EventKind::kGet,
                                     sim::EventKind::kWait, sim::EventKind::kStage, sim::EventKind::kWork}) {

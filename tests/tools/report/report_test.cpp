@@ -195,8 +195,9 @@ TEST(Report, ValuesAreTheOnesPutIn) {
   EXPECT_EQ(core["idle_cycles"], 75.25);
   EXPECT_EQ(core["dma"], Json::parse(R"({"gets": 7, "puts": 8, "bytes_in": 9, "bytes_out": 10,
                                          "line_bytes_in": 11, "line_bytes_out": 12})"));
-  for (std::uint32_t kind = 0; kind < kWorkKindCount; ++kind) {
-    EXPECT_EQ(report["work"][std::string(work_name(static_cast<Work>(kind)))], 1000 + kind) << kind;
+  EXPECT_EQ(report["work"].size(), sim::kGridEngine.kind_count());
+  for (std::uint32_t kind = 0; kind < sim::kGridEngine.kind_count(); ++kind) {
+    EXPECT_EQ(report["work"][std::string(sim::work_kind(WorkId(kind)).name)], 1000 + kind) << kind;
   }
   EXPECT_EQ(report["effects"], Json::parse(R"({"called_for": ["hard_shadows"], "rays": {"primary": 1048576}})"));
   EXPECT_EQ(report["local_store"]["arena_bytes"], 262144);
@@ -260,7 +261,7 @@ TEST(Report, EffectsTellRaysAndStagesOverAllCores) {
   const ReportInput input = effects_sample();
   const Json report = Json::parse(report_json(input));
   Json effects = report["effects"];
-  const auto work = [&input](Work kind) { return input.work[static_cast<std::size_t>(kind)]; };
+  const auto work = [&input](WorkId kind) { return input.work[kind.number()]; };
   EXPECT_EQ(effects["rays"]["primary"], 1048576);
   EXPECT_EQ(effects["rays"]["shadow"], work(Work::kShadowRay));
   EXPECT_EQ(effects["rays"]["occlusion"], work(Work::kOcclusionRay));
@@ -308,8 +309,8 @@ TEST(Report, EmptyInputIsStillValid) {
 
 TEST(Report, NamesOfWorkAreDistinctAndSnakeCase) {
   std::set<std::string> names;
-  for (std::uint32_t kind = 0; kind < kWorkKindCount; ++kind) {
-    const std::string name(work_name(static_cast<Work>(kind)));
+  for (std::uint32_t kind = 0; kind < sim::kGridEngine.kind_count(); ++kind) {
+    const std::string name(sim::work_kind(WorkId(kind)).name);
     EXPECT_FALSE(name.empty()) << kind;
     EXPECT_EQ(name.find_first_not_of("abcdefghijklmnopqrstuvwxyz_"), std::string::npos) << name;
     EXPECT_TRUE(names.insert(name).second) << name;

@@ -7,7 +7,7 @@ BEGIN {
     code = target == "riscv64" ? sprintf("%03x02013", 63 + kind) : sprintf("d5032%03x", 2047 + 32 * kind)
     kind_of[code] = kind
   }
-  kGet = 58; kPut = 59; kWait = 60; kClaim = 61; kCommandEnd = 62; kCopied = 63; kNothing = 64
+  kGet = 42; kPut = 43; kWait = 44; kKinds = kClaim = 61; kCommandEnd = 62; kCopied = 63; kNothing = 64
   while ((getline line < (work "/units")) > 0) {
     split(line, part, " ")
     name[part[1]] = part[2]
@@ -95,14 +95,14 @@ END {
     print "second_opinion: not rendered:" failed > "/dev/stderr"
     exit 1
   }
-  for (kind = 0; kind < kGet; ++kind) {
+  for (kind = 0; kind < kKinds; ++kind) {
     for (i = 1; i <= frame_count; ++i) {
       if (stands_for(frames[i], kind)) count[kind] += counted[frames[i], kind]
     }
   }
   if (as_header != "") { print_header(); exit }
   printf "%-20s %12s %12s %8s\n", "kind", "instructions", "operations", "ratio"
-  for (kind = 0; kind < kGet; ++kind) {
+  for (kind = 0; kind < kKinds; ++kind) {
     if (units[kind] == 0) continue
     per_unit = count[kind] / units[kind]
     printf "%-20s %12.1f %12.1f %8.2f\n", name[kind], per_unit, operations[kind], per_unit / operations[kind]
@@ -130,10 +130,10 @@ function print_header(    kind, per_unit, f, note) {
   print "// Memory: constants. Threads: any. SPDX-License-Identifier: Apache-2.0"
   print "#pragma once\n\n#include <gridiron/base/work_counters.h>\n\n#include <array>\n\nnamespace gridiron::sim {\n"
   print "/// A kind of work."
-  print "struct InstructionCost {\n  Work kind;\n  double instructions;\n};\n"
+  print "struct InstructionCost {\n  WorkId kind;\n  double instructions;\n};\n"
   print "/// All kinds but commands and waits."
   print "inline constexpr auto kInstructionCosts = std::to_array<InstructionCost>({"
-  for (kind = 0; kind < kGet; ++kind) {
+  for (kind = 0; kind < kKinds; ++kind) {
     if (units[kind] == 0 || count[kind] == 0) continue
     # Where triangles are large, or subpackets culled, other groups are tested: more are hit.
     per_unit = count[kind] / units[kind]
@@ -141,7 +141,7 @@ function print_header(    kind, per_unit, f, note) {
     if (is_of_effects[kind]) note = ", of effects"
     if (name[kind] in of_decisions) note = ", of 64 decisions"
     if (dense_units[kind] > 0) { per_unit = counted[f, kind] / dense_units[kind]; note = "" }
-    printf "    {Work{%2d}, %7.1f},  // %s%s\n", kind, per_unit, name[kind], note
+    printf "    {WorkId(%2d), %7.1f},  // %s%s\n", kind, per_unit, name[kind], note
   }
   print "});\n"
   print "/// A command: from where core counts it to the next kind of work, and its end in a wait."

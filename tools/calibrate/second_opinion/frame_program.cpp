@@ -5,6 +5,7 @@
 #include <gridiron/base/effect_records.h>
 #include <gridiron/base/exact_sum.h>
 #include <gridiron/base/lanes.h>
+#include <gridiron/engine/grid/grid_work.h>
 #include <gridiron/render/tile_renderer.h>
 #include <gridiron/store/local_store.h>
 
@@ -19,6 +20,7 @@ asm(".data\n.balign 4096\n.global gridiron_memory\ngridiron_memory:\n.incbin \""
 namespace {
 
 using namespace gridiron;
+static_assert(WorkId(GridWork::kEnd).number() <= 61, "each kind has a mark");
 
 [[noreturn]] void exit_with(long code) {
 #ifdef __riscv

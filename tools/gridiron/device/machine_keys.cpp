@@ -76,11 +76,6 @@ static_assert(have_members_of_their_own() && member_count<MachineProfile>() == s
               "each member but name, description, work_cycles and master has a row");
 static_assert(member_count<MasterProfile>() == 2, "clock_hz and step_cycles have keys");
 
-// Work that the replay charges by issue_cycles and wait_cycles; always 0 in a profile.
-bool is_charged_as_event(Work kind) {
-  return kind == Work::kGetIssue || kind == Work::kPutIssue || kind == Work::kWait;
-}
-
 // "2^40" instead of many digits.
 std::string limit_text(double limit) {
   const int exponent = std::ilogb(limit);
@@ -101,10 +96,9 @@ std::vector<MachineKey> machine_keys(MachineProfile& machine) {
     };
     std::visit(add, row.member);
   }
-  for (std::uint32_t i = 0; i < kWorkKindCount; ++i) {
-    const auto kind = static_cast<Work>(i);
-    keys.push_back({kWorkKey + std::string(work_name(kind)), &machine.work_cycles[i], kCycles.least, kCycles.most,
-                    !is_charged_as_event(kind)});
+  for (std::uint32_t i = 0; i < sim::kGridEngine.kind_count(); ++i) {
+    keys.push_back({kWorkKey + std::string(sim::work_kind(WorkId(i)).name), &machine.work_cycles[i], kCycles.least,
+                    kCycles.most, !sim::is_charged_as_event(WorkId(i))});
   }
   keys.push_back({kMasterClockKey, &machine.master.clock_hz, kHertz.least, kHertz.most});
   for (std::size_t i = 0; i < sim::kBuildStepCount; ++i) {

@@ -6,6 +6,7 @@
 #include <gridiron/base/lanes.h>
 #include <gridiron/base/work_counters.h>
 #include <gridiron/engine/grid/frustum.h>
+#include <gridiron/engine/grid/grid_work.h>
 #include <gridiron/ray/packet.h>
 
 #include <cstdint>
@@ -31,7 +32,7 @@ template <class L, std::uint32_t kSquares>
   std::uint32_t squares = 0;
   for (std::uint32_t base = 0; base < kSquares; base += S::kCount) {
     if ((wanted >> base & S::kAllBits) == 0) continue;
-    work.add(Work::kFootprintGroup);
+    work.add(GridWork::kFootprintGroup);
     std::uint32_t outside = 0;
     for (std::uint32_t axis = 0; axis < 2; ++axis) {
       const Float slope_low = Float::load(pass.slope_low[axis] + base);

@@ -6,6 +6,7 @@
 #include <gridiron/base/lanes.h>
 #include <gridiron/base/records.h>
 #include <gridiron/base/work_counters.h>
+#include <gridiron/engine/grid/grid_work.h>
 #include <gridiron/ray/packet.h>
 #include <gridiron/ray/places.h>
 
@@ -98,7 +99,7 @@ GRIDIRON_INLINE void take_square(const PassAxes& axes, std::uint32_t square, Ray
   using Float = typename L::Float;
   constexpr std::uint32_t kSquareRays = PacketType::kRayCount / PacketType::kSquareCount;
   Float low_u(kFloatMax), high_u(-kFloatMax), low_v(kFloatMax), high_v(-kFloatMax), high_march(0.0f);
-  work.add(Work::kPassGroup, kSquareRays / L::kCount);
+  work.add(GridWork::kPassGroup, kSquareRays / L::kCount);
   for (std::uint32_t base = square * kSquareRays; base < (square + 1) * kSquareRays; base += L::kCount) {
     const Float march = Float::load(packet.dir[axes.k] + base) * Float(axes.march_scale);
     const Float along_u = Float::load(packet.dir[axes.u] + base) * Float(axes.u_scale);
@@ -140,7 +141,7 @@ template <class PacketType>
   if constexpr (kSquareRays != 64) return false;
   std::uint32_t* const waiting_words = waiting.words + 2 * square;
   if (!packet.is_linear || (waiting_words[0] & waiting_words[1]) != ~0u) return false;
-  work.add(Work::kPassSquare);
+  work.add(GridWork::kPassSquare);
   const Float column = Float(kSquareOrigins.column[square]) + Float::load(kLanePlaces.corner_column);
   const Float row = Float(kSquareOrigins.row[square]) + Float::load(kLanePlaces.corner_row);
   const auto cells_along = [&](std::uint32_t axis, float scale) GRIDIRON_INLINE_LAMBDA {
@@ -185,12 +186,12 @@ template <class PacketType>
 template <class L, class PacketType>
 [[nodiscard]] bool take_pass(const GridRecord& grid, RaySet<PacketType::kRayCount>& waiting, PacketType& packet,
                              Frustum& frustum, WorkCounters& work) {
-  work.charge_to(Work::kPacketStart);
+  work.charge_to(GridWork::kPacketStart);
   std::uint32_t word = 0;
   while (word < waiting.kWordCount && waiting.words[word] == 0) ++word;
   if (word == waiting.kWordCount) return false;
   const std::uint32_t leader = 32 * word + lowest_bit(waiting.words[word]);
-  work.add(Work::kPacketStart);
+  work.add(GridWork::kPacketStart);
 
   const auto size_of = [&](std::uint32_t axis, std::uint32_t ray) {
     return magnitude(packet.dir[axis][ray] * grid.cells_per_unit[axis]);
@@ -211,7 +212,7 @@ template <class L, class PacketType>
   for (std::uint32_t square = 0; square < PacketType::kSquareCount; ++square) {
     if (!take_whole_square(axes, square, waiting, packet, work)) take_square<L>(axes, square, waiting, packet, work);
   }
-  work.charge_to(Work::kPacketStart);
+  work.charge_to(GridWork::kPacketStart);
   waiting.erase(leader);  // a direction that vanishes or overflows in cell space, or is not finite, is a miss
   const auto larger = [](float a, float b) { return a > b ? a : b; };
   const auto in_cells = [&](std::uint32_t axis) {

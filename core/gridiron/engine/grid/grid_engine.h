@@ -5,10 +5,10 @@
 
 #include <gridiron/base/accuracies.h>
 #include <gridiron/base/records.h>
-#include <gridiron/base/work_counters.h>
 #include <gridiron/dma/transfers.h>
 #include <gridiron/engine/grid/frustum.h>
 #include <gridiron/engine/grid/grid_store.h>
+#include <gridiron/engine/grid/grid_work.h>
 #include <gridiron/engine/grid/packet_driver.h>
 #include <gridiron/engine/grid/walk_driver.h>
 #include <gridiron/platform/contract.h>
@@ -65,7 +65,7 @@ class GridCore {
     RaySet<StorePacket::kRayCount> waiting;
     generate_packet<L>(store_.frame, view.left + x, view.top + y, store_.packet, waiting, store_.work, view.dx,
                        view.dy);
-    store_.work.charge_to(Work::kPacketStart);
+    store_.work.charge_to(GridWork::kPacketStart);
     GRIDIRON_TRY(trace_rays(waiting));
     if (!take_unsure_rays(store_.packet, store_.frame.t_far, waiting)) [[likely]]
       return Status::kOk;
@@ -89,7 +89,7 @@ class GridCore {
     while (take_pass<L>(store_.frame.engine.grid, waiting, store_.packet, frustum, store_.work)) {
       PacketDriver<L, Store, P> driver(store_, transfers_, frustum);
       GRIDIRON_TRY(driver.run());
-      store_.work.charge_to(Work::kPacketStart);
+      store_.work.charge_to(GridWork::kPacketStart);
       // The next pass has other rays: what this one tested does not count for them.
       store_.engine.mailbox.clear();
     }

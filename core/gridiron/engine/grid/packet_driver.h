@@ -11,6 +11,7 @@
 #include <gridiron/engine/grid/footprint.h>
 #include <gridiron/engine/grid/frustum.h>
 #include <gridiron/engine/grid/grid_store.h>
+#include <gridiron/engine/grid/grid_work.h>
 #include <gridiron/engine/grid/reach.h>
 #include <gridiron/engine/grid/slice_walk.h>
 #include <gridiron/engine/grid/triangle_run.h>
@@ -42,7 +43,7 @@ class PacketDriver {
         triangle_ring_(store.frame.engine.triangle_depth) {}
 
   [[nodiscard]] Status run() {
-    store_.work.charge_to(Work::kPacketStart);
+    store_.work.charge_to(GridWork::kPacketStart);
     macro_walk_.begin(store_.frame.engine.grid, frustum_);
     reach_ = reaches_.template update<L>(store_.packet, StorePacket::kAllSubpackets, store_.work);
     for (;;) {
@@ -78,7 +79,7 @@ class PacketDriver {
       GRIDIRON_TRY(enter_next_macro_cell());
       if (cells_done_) return Status::kOk;
     }
-    store_.work.charge_to(Work::kCellVisit);
+    store_.work.charge_to(GridWork::kCellVisit);
     const std::uint32_t count = cell_.triangle_count < kRunTriangles ? cell_.triangle_count : kRunTriangles;
     const RunPlace place = run_place(store_.frame, cell_.first_triangle, count);
     const std::uint32_t slot = triangle_ring_.push();
@@ -99,7 +100,7 @@ class PacketDriver {
 
   // Leaves the macrocell that was walked, keeps the ring filled, and waits for the next block; or sets cells_done_.
   [[nodiscard]] Status enter_next_macro_cell() {
-    store_.work.charge_to(Work::kMacroCellVisit);
+    store_.work.charge_to(GridWork::kMacroCellVisit);
     if (entered_) macro_ring_.pop();
     entered_ = false;
     while (!macro_ring_.full() && !macro_cells_done_) GRIDIRON_TRY(fetch_next_macro_cell());
@@ -109,7 +110,7 @@ class PacketDriver {
     }
     const std::uint32_t slot = macro_ring_.front();
     GRIDIRON_TRY(transfers_.wait(static_cast<std::uint8_t>(kFirstMacroTag + slot)));
-    store_.work.add(Work::kMacroCellVisit);
+    store_.work.add(GridWork::kMacroCellVisit);
     cell_walk_.begin(store_.frame.engine.grid, frustum_, visits_[slot]);
     entered_ = true;
     walking_ = true;
@@ -129,7 +130,7 @@ class PacketDriver {
       macro_cells_done_ = true;
       return Status::kOk;
     }
-    store_.work.charge_to(Work::kMacroCellVisit);
+    store_.work.charge_to(GridWork::kMacroCellVisit);
     const std::uint32_t slot = macro_ring_.push();
     visits_[slot] = visit;
     const std::uint32_t block_bytes = store_.frame.engine.grid.cell_block_bytes;
@@ -160,12 +161,12 @@ class PacketDriver {
 
   // Waits for the oldest run and tests it, unless every ray has meanwhile hit something in front of it.
   [[nodiscard]] Status test_front_run() {
-    store_.work.charge_to(Work::kTriangleBatch);
+    store_.work.charge_to(GridWork::kTriangleBatch);
     const std::uint32_t slot = triangle_ring_.front();
     GRIDIRON_TRY(transfers_.wait(static_cast<std::uint8_t>(kFirstTriangleTag + slot)));
     const TriangleRun& run = runs_[slot];
     if (!frustum_.beyond(Slab{run.entry, run.entry}, reach_)) {
-      store_.work.add(Work::kTriangleBatch);
+      store_.work.add(GridWork::kTriangleBatch);
       const SubpacketSet open = open_subpackets(run);
       SubpacketSet changed = 0;
       // The other open subpackets are tested too, so that no triangle has to be fetched again for them by a later cell.
@@ -174,7 +175,7 @@ class PacketDriver {
       }
       if (changed != 0) reach_ = reaches_.template update<L>(store_.packet, changed, store_.work);
     }
-    store_.work.charge_to(Work::kTriangleBatch);
+    store_.work.charge_to(GridWork::kTriangleBatch);
     triangle_ring_.pop();
     return Status::kOk;
   }
@@ -217,7 +218,7 @@ class PacketDriver {
                                       store_.work);
     }
     if ((store_.frame.engine.techniques & kUseMailbox) == 0) return open_count;
-    store_.work.add(Work::kMailboxProbe, open_count);
+    store_.work.add(GridWork::kMailboxProbe, open_count);
     std::uint32_t untested_count = 0;
     for (std::uint32_t i = 0; i < open_count; ++i) {
       open[untested_count] = open[i];
@@ -236,10 +237,10 @@ class PacketDriver {
     for (std::uint32_t i = 0; i < count; ++i) {
       SubpacketSet untested = wanted;
       if (use_mailbox) {
-        store_.work.add(Work::kMailboxProbe);
+        store_.work.add(GridWork::kMailboxProbe);
         untested = store_.engine.mailbox.untested(triangles[i].triangle_id, wanted);
       }
-      store_.work.charge_to(Work::kTriangleBatch);
+      store_.work.charge_to(GridWork::kTriangleBatch);
       if (untested == 0) continue;
       changed |=
           intersect_projection<L>(store_.packet, triangles[i], untested, use_corner_rays, want_facing, store_.work);

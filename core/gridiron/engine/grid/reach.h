@@ -5,6 +5,7 @@
 #include <gridiron/base/lanes.h>
 #include <gridiron/base/work_counters.h>
 #include <gridiron/engine/grid/frustum.h>
+#include <gridiron/engine/grid/grid_work.h>
 #include <gridiron/ray/packet.h>
 
 #include <cstdint>
@@ -26,12 +27,12 @@ struct SubpacketReach {
   GRIDIRON_OUTLINE float update(const PacketType& packet, SubpacketSet changed, WorkCounters& work) {
     using Four = Lanes<4>;
     if constexpr (kCount < 4) {
-      work.add(Work::kReachGroup, kSubpacketRays / L::kCount);
+      work.add(GridWork::kReachGroup, kSubpacketRays / L::kCount);
       reach[0] = L::horizontal_max(farthest_active<L>(packet, 0)) * scale_of(packet, 0);
       return reach[0];
     } else {
       for_each_square(changed, [&](std::uint32_t square) GRIDIRON_INLINE_LAMBDA {
-        work.add(Work::kReachGroup, 4 * kSubpacketRays / L::kCount);
+        work.add(GridWork::kReachGroup, 4 * kSubpacketRays / L::kCount);
         const std::uint32_t first = 4 * square;
         const bool is_whole = (packet.active.words[2 * square] & packet.active.words[2 * square + 1]) == ~0u;
         typename L::Float farthest[4];
@@ -44,7 +45,7 @@ struct SubpacketReach {
         square_reach[square] = Four::horizontal_max(scaled);
       });
       if constexpr (kSquareCount == 1) return square_reach[0];
-      work.add(Work::kReachGroup);
+      work.add(GridWork::kReachGroup);
       Four::Float farthest = Four::Float::load(square_reach);
       for (std::uint32_t base = 4; base < kSquareCount; base += 4) {
         farthest = Four::max(farthest, Four::Float::load(square_reach + base));
@@ -61,7 +62,7 @@ struct SubpacketReach {
     if constexpr (kSquareCount < 4) return (1u << kSquareCount) - 1u;
     std::uint32_t result = 0;
     for (std::uint32_t base = 0; base < kSquareCount; base += 4) {
-      work.add(Work::kReachGroup);
+      work.add(GridWork::kReachGroup);
       const Float limit = Float::load(square_reach + base) * Float(Frustum::kReachFactor) + Float(frustum.pad_k);
       result |= (Float(entry) <= limit).bits() << base;
     }
@@ -78,7 +79,7 @@ struct SubpacketReach {
     SubpacketSet result = subpackets_of_squares(squares);
     for (std::uint32_t rest = squares & exactly; rest != 0; rest &= rest - 1) {
       const std::uint32_t square = lowest_bit(rest);
-      work.add(Work::kReachGroup);
+      work.add(GridWork::kReachGroup);
       const Float limit = Float::load(reach + 4 * square) * Float(Frustum::kReachFactor) + Float(frustum.pad_k);
       const std::uint32_t behind = ~(Float(entry) <= limit).bits() & 0xFu;
       result &= ~(SubpacketSet{behind} << (4 * square));
@@ -95,7 +96,7 @@ struct SubpacketReach {
       using Float = typename L::Float;
       SubpacketSet result = 0;
       for (std::uint32_t base = 0; base < kCount; base += L::kCount) {
-        work.add(Work::kReachGroup);
+        work.add(GridWork::kReachGroup);
         const Float limit = Float::load(reach + base) * Float(Frustum::kReachFactor) + Float(frustum.pad_k);
         result |= SubpacketSet{(Float(entry) <= limit).bits()} << base;
       }

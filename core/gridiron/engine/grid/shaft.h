@@ -7,6 +7,7 @@
 #include <gridiron/base/records.h>
 #include <gridiron/base/work_counters.h>
 #include <gridiron/engine/grid/frustum.h>
+#include <gridiron/engine/grid/grid_work.h>
 #include <gridiron/ray/walk_rays.h>
 
 #include <cstdint>
@@ -45,7 +46,7 @@ struct Shaft {
   template <class L>
   [[nodiscard]] GRIDIRON_OUTLINE CellRect rect_of(const Slab& slab, WorkCounters& work) const {
     using Float = typename L::Float;
-    work.add(Work::kShaftGroup, kWalkRays / L::kCount);
+    work.add(GridWork::kShaftGroup, kWalkRays / L::kCount);
     Float low_u(kFloatMax), high_u(-kFloatMax), low_v(kFloatMax), high_v(-kFloatMax);
     for (std::uint32_t base = 0; base < kWalkRays; base += L::kCount) {
       const Float from = Float::load(start + base);
@@ -77,7 +78,7 @@ struct Shaft {
   [[nodiscard]] GRIDIRON_OUTLINE std::uint32_t rays_touching(const Slab& slab, std::int32_t u, std::int32_t v,
                                                              WorkCounters& work) const {
     using Float = typename L::Float;
-    work.add(Work::kShaftGroup, kWalkRays / L::kCount);
+    work.add(GridWork::kShaftGroup, kWalkRays / L::kCount);
     const Float first_u(static_cast<float>(u) - pad_u), last_u(static_cast<float>(u + 1) + pad_u);
     const Float first_v(static_cast<float>(v) - pad_v), last_v(static_cast<float>(v + 1) + pad_v);
     std::uint32_t touching = 0;
@@ -144,7 +145,7 @@ template <class L>
                                                             std::uint32_t& waiting, Shaft& shaft, WorkCounters& work) {
   using Float = typename L::Float;
   while (waiting != 0) {
-    work.add(Work::kWalkPass);
+    work.add(GridWork::kWalkPass);
     const std::uint32_t leader = lowest_bit(waiting);
     waiting &= waiting - 1;
     const auto size_of = [&](std::uint32_t axis) {

@@ -8,6 +8,7 @@
 #include <gridiron/base/records.h>
 #include <gridiron/base/work_counters.h>
 #include <gridiron/engine/grid/frustum.h>
+#include <gridiron/engine/grid/grid_work.h>
 #include <gridiron/engine/grid/macro_table.h>
 
 #include <cstdint>
@@ -65,7 +66,7 @@ class MacroWalk {
       // 1. The rest of the current macro slice.
       for (; v_ <= v_last_; ++v_, u_ = u_first_) {
         for (; u_ <= u_last_; ++u_) {
-          work.charge_to(Work::kMacroCellStep);
+          work.charge_to(GridWork::kMacroCellStep);
           const std::uint32_t cell = static_cast<std::uint32_t>(k_) * stride_k_ +
                                      static_cast<std::uint32_t>(u_) * stride_u_ +
                                      static_cast<std::uint32_t>(v_) * stride_v_;
@@ -73,7 +74,7 @@ class MacroWalk {
             needed_chunk_ = Table::chunk_of(cell);
             return WalkStep::kNeedsChunk;
           }
-          work.add(Work::kMacroCellStep);
+          work.add(GridWork::kMacroCellStep);
           const std::uint32_t block = table.block_of(cell);
           if (block == 0 && skip_empty) continue;
           visit.block = block;
@@ -88,7 +89,7 @@ class MacroWalk {
         }
       }
       // 2. The next macro slice.
-      work.charge_to(Work::kMacroSliceStep);
+      work.charge_to(GridWork::kMacroSliceStep);
       if (step_ == macro_count_k_) return WalkStep::kDone;
       k_ = frustum.reverse ? macro_count_k_ - 1 - step_ : step_;
       ++step_;
@@ -100,9 +101,9 @@ class MacroWalk {
         step_ = macro_count_k_;
         return WalkStep::kDone;
       }
-      work.add(Work::kMacroSliceStep);
+      work.add(GridWork::kMacroSliceStep);
       const CellRect rect = frustum.rect_of(slab, work);
-      work.charge_to(Work::kMacroSliceStep);
+      work.charge_to(GridWork::kMacroSliceStep);
       if (rect.empty()) continue;
       u_first_ = macro_of(rect.u_first);
       u_last_ = macro_of(rect.u_last);
@@ -136,11 +137,11 @@ class MacroWalk {
 [[nodiscard]] GRIDIRON_INLINE std::uint32_t triangle_count_of(const CellBound* cell) {
   return cell[1].first_triangle - cell[0].first_triangle;
 }
-[[nodiscard]] GRIDIRON_INLINE constexpr Work step_kind_of(const CellRecord*) {
-  return Work::kCellStep;
+[[nodiscard]] GRIDIRON_INLINE constexpr GridWork step_kind_of(const CellRecord*) {
+  return GridWork::kCellStep;
 }
-[[nodiscard]] GRIDIRON_INLINE constexpr Work step_kind_of(const CellBound*) {
-  return Work::kCellBoundStep;
+[[nodiscard]] GRIDIRON_INLINE constexpr GridWork step_kind_of(const CellBound*) {
+  return GridWork::kCellBoundStep;
 }
 
 /// Walks the slices of one macrocell front to back and the non-empty cells of the frustum's rectangle in each.
@@ -175,13 +176,13 @@ class CellWalk {
               cells + (row_ + (u_ - visit_.u_first) * stride_u_ + (v_ - visit_.v_first) * stride_v_);
           const std::uint32_t triangle_count = triangle_count_of(cell);
           if (triangle_count == 0) continue;
-          work.add(Work::kCellVisit);
+          work.add(GridWork::kCellVisit);
           found = {cell->first_triangle, triangle_count, slab_.entry, slab_.exit, u_, v_};
           ++u_;
           return true;
         }
       }
-      work.charge_to(Work::kSliceStep);
+      work.charge_to(GridWork::kSliceStep);
       if (step_ == slice_count) return false;
       const std::int32_t k = frustum.reverse ? visit_.k_last - step_ : visit_.k_first + step_;
       ++step_;
@@ -191,9 +192,9 @@ class CellWalk {
         step_ = slice_count;
         return false;
       }
-      work.add(Work::kSliceStep);
+      work.add(GridWork::kSliceStep);
       const CellRect rect = frustum.rect_of(slab, work);
-      work.charge_to(Work::kSliceStep);
+      work.charge_to(GridWork::kSliceStep);
       u_first_ = rect.u_first > visit_.u_first ? rect.u_first : visit_.u_first;
       u_last_ = rect.u_last < visit_.u_last ? rect.u_last : visit_.u_last;
       v_ = rect.v_first > visit_.v_first ? rect.v_first : visit_.v_first;

@@ -9,6 +9,7 @@
 #include <gridiron/dma/tags.h>
 #include <gridiron/dma/transfers.h>
 #include <gridiron/engine/grid/grid_store.h>
+#include <gridiron/engine/grid/grid_work.h>
 #include <gridiron/engine/grid/slice_walk.h>
 #include <gridiron/engine/grid/triangle_run.h>
 #include <gridiron/engine/grid/walk.h>
@@ -46,7 +47,7 @@ class WalkDriver {
     bool has_more = true;
     for (std::uint32_t i = 0; i < walk_count; ++i) walk_of(i).state = WalkState::kIdle;
     for (std::uint32_t i = 0;; i = i + 1 == walk_count ? 0 : i + 1) {
-      store_.work.charge_to(Work::kWalkPass);
+      store_.work.charge_to(GridWork::kWalkPass);
       Walk& walk = walk_of(i);
       if (walk.state == WalkState::kIdle) {
         if (has_more) has_more = start(walk, jobs);
@@ -59,7 +60,7 @@ class WalkDriver {
       GRIDIRON_TRY(go_on(i, question));
       if (walk.state != WalkState::kDone) continue;
       jobs.finish(walk.rays, walk.ray_count, walk.purpose);
-      store_.work.charge_to(Work::kWalkPass);
+      store_.work.charge_to(GridWork::kWalkPass);
       --under_way;
       walk.state = WalkState::kIdle;
       // The next job begins at once, so that its first transfer travels while the others continue.
@@ -83,7 +84,7 @@ class WalkDriver {
   template <class Jobs>
   [[nodiscard]] bool start(Walk& walk, Jobs& jobs) {
     walk.ray_count = jobs.next(walk.rays, walk.purpose);
-    store_.work.charge_to(Work::kWalkPass);
+    store_.work.charge_to(GridWork::kWalkPass);
     if (walk.ray_count == 0) return false;
     walk.waiting = walk.ray_count >= 32 ? ~0u : (1u << walk.ray_count) - 1u;
     walk.state = WalkState::kNextPass;
@@ -99,7 +100,7 @@ class WalkDriver {
         case WalkState::kDone:
           return Status::kOk;
         case WalkState::kNextPass:
-          store_.work.charge_to(Work::kWalkPass);
+          store_.work.charge_to(GridWork::kWalkPass);
           walk.active = take_walk_pass<L>(store_.frame.engine.grid, walk.rays, walk.waiting, walk.shaft, store_.work);
           if (walk.active == 0) {
             walk.state = WalkState::kDone;
@@ -115,9 +116,9 @@ class WalkDriver {
           if (walk.state == WalkState::kHasBlock) return Status::kOk;
           break;
         case WalkState::kHasBlock:
-          store_.work.charge_to(Work::kMacroCellVisit);
+          store_.work.charge_to(GridWork::kMacroCellVisit);
           GRIDIRON_TRY(transfers_.wait(static_cast<std::uint8_t>(kFirstMacroTag + i)));
-          store_.work.add(Work::kMacroCellVisit);
+          store_.work.add(GridWork::kMacroCellVisit);
           walk.cell_walk.begin(store_.frame.engine.grid, Bound{walk.shaft}, walk.visit);
           walk.cell.triangle_count = 0;
           walk.state = WalkState::kNextCell;
@@ -146,7 +147,7 @@ class WalkDriver {
       walk.state = WalkState::kNextPass;
       return Status::kOk;
     }
-    store_.work.charge_to(Work::kMacroCellVisit);
+    store_.work.charge_to(GridWork::kMacroCellVisit);
     const std::uint32_t block_bytes = store_.frame.engine.grid.cell_block_bytes;
     const MainAddress address{store_.frame.engine.cell_blocks_address + std::uint64_t{walk.visit.block} * block_bytes};
     walk.state = WalkState::kHasBlock;
@@ -181,7 +182,7 @@ class WalkDriver {
         return Status::kOk;
       }
     }
-    store_.work.charge_to(Work::kCellVisit);
+    store_.work.charge_to(GridWork::kCellVisit);
     constexpr std::uint32_t kRunTriangles = Layout::kTrianglesPerBuffer;
     const std::uint32_t count = walk.cell.triangle_count < kRunTriangles ? walk.cell.triangle_count : kRunTriangles;
     const RunPlace place = run_place(store_.frame, walk.cell.first_triangle, count);
@@ -197,8 +198,8 @@ class WalkDriver {
   // Tests the run that has arrived against the rays that still look.
   [[nodiscard]] Status test_run(std::uint32_t i, Question question) {
     Walk& walk = walk_of(i);
-    store_.work.add(Work::kTriangleBatch);
-    store_.work.charge_to(Work::kTriangleBatch);
+    store_.work.add(GridWork::kTriangleBatch);
+    store_.work.charge_to(GridWork::kTriangleBatch);
     std::byte* const buffer = store_.engine.triangles[i].bytes;
     const auto* triangles = reinterpret_cast<const VertexTriangle*>(buffer + walk.run_first_byte);
     if (is_on_lattice(store_.frame)) {
@@ -209,7 +210,7 @@ class WalkDriver {
     for (std::uint32_t index = 0; index < walk.run_count && walk.active != 0; ++index) {
       const VertexTriangle& triangle = triangles[index];
       const std::uint32_t slot = triangle.triangle_id % Walk::kMailboxSlots;
-      store_.work.add(Work::kMailboxProbe);
+      store_.work.add(GridWork::kMailboxProbe);
       std::uint32_t wanted = walk.active & walk.touching;
       const std::uint32_t tested = walk.mailbox[slot] == triangle.triangle_id ? walk.tested[slot] : 0;
       walk.mailbox[slot] = triangle.triangle_id;
@@ -249,7 +250,7 @@ class WalkDriver {
         has_changed = true;
       }
       walk.active &= ~settled;
-      store_.work.charge_to(Work::kTriangleBatch);
+      store_.work.charge_to(GridWork::kTriangleBatch);
     }
     if (has_changed) walk.reach = walk.shaft.reach<L>();
     return Status::kOk;

@@ -339,12 +339,13 @@ void expect_slopes_of_squares(FrameKind kind) {
     waiting = present;
     while (take_pass<L>(grid, waiting, *packet, frustum, one_by_one_work)) continue;
   });
-  ASSERT_EQ(one_by_one_work[Work::kPassSquare], 0u);
+  ASSERT_EQ(one_by_one_work[GridWork::kPassSquare], 0u);
   if (std::getenv("GRIDIRON_TEST_SEED") == nullptr && !testing::Test::HasFailure()) {
     EXPECT_GT(taken_count, kSeeds * PacketType::kRayCount / 2) << "kind " << static_cast<int>(kind);
     // Nearly every square is taken as a whole.
-    EXPECT_GT(work[Work::kPassSquare], kSeeds * PacketType::kSquareCount / 2) << "kind " << static_cast<int>(kind);
-    EXPECT_LT(work[Work::kPassGroup], one_by_one_work[Work::kPassGroup] / 4) << "kind " << static_cast<int>(kind);
+    EXPECT_GT(work[GridWork::kPassSquare], kSeeds * PacketType::kSquareCount / 2) << "kind " << static_cast<int>(kind);
+    EXPECT_LT(work[GridWork::kPassGroup], one_by_one_work[GridWork::kPassGroup] / 4)
+        << "kind " << static_cast<int>(kind);
   }
 }
 

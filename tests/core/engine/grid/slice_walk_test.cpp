@@ -107,7 +107,7 @@ void walk(const WalkScene& scene, const Frustum& frustum, float reach, bool skip
       visited.entries.push_back(found.entry);
     }
   }
-  ASSERT_EQ(work[Work::kCellVisit], visited.cells.size());
+  ASSERT_EQ(work[GridWork::kCellVisit], visited.cells.size());
 }
 
 std::uint32_t axis_of_cell(const GridRecord& grid, std::uint32_t cell, std::uint32_t axis) {

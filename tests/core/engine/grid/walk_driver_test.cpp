@@ -259,7 +259,8 @@ TYPED_TEST(RayWalksTest, AnswerAsTheOracleDoes) {
       EXPECT_GT(hits, 500u);
       EXPECT_LT(hits, 1190u);
       if (has_long_runs) {
-        EXPECT_GT(run.work[Work::kTriangleBatch], run.work[Work::kCellVisit] + 100u) << "no cell takes two buffers";
+        EXPECT_GT(run.work[GridWork::kTriangleBatch], run.work[GridWork::kCellVisit] + 100u)
+            << "no cell takes two buffers";
       }
     }
   }
@@ -281,10 +282,10 @@ TYPED_TEST(RayWalksTest, WalksAndTransfersChangeNothing) {
         EXPECT_EQ(run.most_under_way, walks);
         EXPECT_TRUE(run.answers == first.answers) << walks << " walks, queue of " << queue_depth;
         for (std::uint32_t kind = 0; kind < kWorkKindCount; ++kind) {
-          const auto work = static_cast<Work>(kind);
+          const WorkId work(kind);
           // A full queue is waited for, and a transfer may take two commands; groups are as wide as the lanes.
           if (work == Work::kWait && queue_depth < 2 * walks) continue;
-          if ((work == Work::kShaftGroup || work == Work::kRayGroupTest) && TypeParam::kCount != 4) continue;
+          if ((work == GridWork::kShaftGroup || work == Work::kRayGroupTest) && TypeParam::kCount != 4) continue;
           EXPECT_EQ(run.work.counts[kind], first.work.counts[kind]) << "kind " << kind << ", " << walks << " walks";
         }
       }

@@ -11,13 +11,14 @@ namespace gridiron_counted {
 
 using gridiron::kWorkKindCount;
 using gridiron::Work;
+using gridiron::WorkId;
 
 /// Keeps nothing itself; as large as core's, so that the local store has the same map.
 struct WorkCounters {
   std::uint32_t counts[kWorkKindCount];
-  void add(Work kind, std::uint32_t amount = 1) { PipeModel::current().add_units(kind, amount); }
-  void add(Work kind, const Counted<std::uint32_t>& amount) { add(kind, amount.value); }
-  void charge_to(Work kind) const { PipeModel::current().charge_to(kind); }
+  void add(WorkId kind, std::uint32_t amount = 1) { PipeModel::current().add_units(kind, amount); }
+  void add(WorkId kind, const Counted<std::uint32_t>& amount) { add(kind, amount.value); }
+  void charge_to(WorkId kind) const { PipeModel::current().charge_to(kind); }
 };
 
 }  // namespace gridiron_counted

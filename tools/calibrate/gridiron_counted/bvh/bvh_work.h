@@ -1,5 +1,4 @@
-// The cached BVH's kinds of work, told to the pipe model by the counters that carry them.
-// Memory: none. Threads: any. SPDX-License-Identifier: Apache-2.0
+// The cached BVH's kinds of work. Memory: none. Threads: any. SPDX-License-Identifier: Apache-2.0
 #pragma once
 
 #include <gridiron/bvh/bvh_work.h>
@@ -8,6 +7,5 @@
 namespace gridiron_counted::bvh {
 
 using gridiron::bvh::BvhWork;
-using gridiron::bvh::carrier_of;
 
 }  // namespace gridiron_counted::bvh

@@ -19,18 +19,18 @@
 namespace gridiron {
 
 struct WorkCounters : PlainWorkCounters {
-  [[gnu::always_inline]] constexpr void add(Work kind, std::uint32_t amount = 1) {
+  [[gnu::always_inline]] constexpr void add(WorkId kind, std::uint32_t amount = 1) {
     mark(kind);
     PlainWorkCounters::add(kind, amount);
   }
-  [[gnu::always_inline]] constexpr void charge_to(Work kind) const { mark(kind); }
+  [[gnu::always_inline]] constexpr void charge_to(WorkId kind) const { mark(kind); }
 
  private:
   // A switch, as the number is part of the instruction; where the kind is known, and it nearly always is, one case is
   // left of it.
-  [[gnu::always_inline]] static constexpr void mark(Work kind) {
+  [[gnu::always_inline]] static constexpr void mark(WorkId kind) {
     if (!__builtin_is_constant_evaluated()) {
-      switch (static_cast<std::uint32_t>(kind)) {
+      switch (kind.number()) {
 #define GRIDIRON_MARK(i) case i: asm volatile(GRIDIRON_MARK_TEXT : : "n"(63 + i)); break;
 #define GRIDIRON_MARKS(i) GRIDIRON_MARK(i) GRIDIRON_MARK(i + 1) GRIDIRON_MARK(i + 2) GRIDIRON_MARK(i + 3) \
   GRIDIRON_MARK(i + 4) GRIDIRON_MARK(i + 5) GRIDIRON_MARK(i + 6) GRIDIRON_MARK(i + 7)
@@ -44,6 +44,5 @@ struct WorkCounters : PlainWorkCounters {
     }
   }
 };
-static_assert(kWorkKindCount <= 61);
 
 }  // namespace gridiron

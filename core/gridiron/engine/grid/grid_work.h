@@ -1,0 +1,32 @@
+// Kinds of work that only the grid has. Memory: none. Threads: any. SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <gridiron/base/work_counters.h>
+
+#include <cstdint>
+
+namespace gridiron {
+
+/// Counted like Work, and numbered behind it.
+enum class GridWork : std::uint8_t {
+  kFirst = kSharedWorkCount,
+  kPacketStart = kFirst,  ///< packet passes begun: frustum, mailbox reset (initialisation)
+  kPassGroup,             ///< ray groups held against a pass's march axis, and their slopes (initialisation)
+  kPassSquare,            ///< squares of ray groups held against it by their corners (initialisation)
+  kMacroSliceStep,        ///< macro slices entered
+  kMacroCellStep,         ///< macrocells looked up in the macrocell table
+  kMacroCellVisit,        ///< non-empty macrocells whose cell block was walked
+  kSliceStep,             ///< slices entered inside a visited macrocell
+  kCellStep,              ///< cells looked up inside a visited macrocell
+  kCellVisit,             ///< non-empty cells visited
+  kTriangleBatch,         ///< triangle buffers consumed
+  kMailboxProbe,          ///< mailbox look-ups
+  kReachGroup,            ///< SIMD groups of which the farthest hit was sought, or held against a cell's entry
+  kFootprintGroup,        ///< SIMD groups of squares of subpackets held against a cell
+  kCellBoundStep,         ///< cells looked up inside a visited macrocell by their bounds, beside lattice triangles
+  kWalkPass,              ///< walks of up to 16 rays begun: axis, shaft
+  kShaftGroup,            ///< SIMD groups of walked rays held against a slab of the grid
+  kEnd
+};
+
+}  // namespace gridiron
