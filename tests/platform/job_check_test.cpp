@@ -140,43 +140,48 @@ TEST(JobCheck, TakesWhatTheProgramMakes) {
   }
 }
 
-#define WRONG(words, ...) {words, [](JobMemory& m) { __VA_ARGS__; }}
-#define WRONG_GRID(words, ...) {words, [](JobMemory& m) { m.change_grid([](GridRecord& g) { __VA_ARGS__; }); }}
+#define WRONG(words, ...)                    \
+  {                                          \
+    words, [](JobMemory& m) { __VA_ARGS__; } \
+  }
+#define WRONG_GRID(words, ...)                                                     \
+  {                                                                                \
+    words, [](JobMemory& m) { m.change_grid([](GridRecord& g) { __VA_ARGS__; }); } \
+  }
 
 TEST(JobCheck, HoldsTheRecordAgainstTheJob) {
   JobMemory memory("teapot.ply", kPlain);
-  expect_refusals(memory,
-                  {WRONG("frame record: magic", m.record().magic ^= 1),
-                   WRONG("frame record: version", ++m.record().version),
-                   WRONG("frame record: width", m.record().width = 2048),
-                   WRONG("frame record: height", m.record().height = 2048),
-                   WRONG("frame record: height 0x0 at byte 12: ", m.record().height = m.job().height = 0),
-                   WRONG("frame record: width 0x4001", m.record().width = m.job().width = kMaxPictureWidth + 1),
-                   WRONG("frame record: engine", ++m.record().engine_id),
-                   WRONG("frame record: tile width", m.record().tile_width *= 2),
-                   WRONG("frame record: tiles_x", ++m.record().tiles_x),
-                   WRONG("frame record: tiles_y", --m.record().tiles_y),
-                   WRONG("frame record: output depth 0x0", m.record().output_depth = 0),
-                   WRONG("frame record: t_far", m.record().t_far = 0.0f),
-                   WRONG("frame record: macro depth 0x0", m.record().engine.macro_depth = 0),
-                   WRONG("frame record: triangle depth 0x0", m.record().engine.triangle_depth = 0),
-                   WRONG("frame record: colour address", m.record().color_address = 0x200000),
-                   WRONG("frame record: colour address", m.record().color_address += 128),
-                   WRONG("frame record: depth address", m.record().depth_address = 0),
-                   WRONG("frame record: ids address", m.record().id_address = m.record().color_address),
-                   WRONG("frame record: macro table address", m.record().engine.macro_table_address = 0),
-                   WRONG("frame record: cell blocks address", m.record().engine.cell_blocks_address -= 4096),
-                   WRONG("frame record: triangles address", ++m.record().engine.triangles_address),
-                   WRONG("frame record: effects address", m.record().effects_address = m.job().image_address),
-                   WRONG("frame record: image address", m.record().image_address = m.job().image_address),
-                   WRONG("frame record: the grid", ++m.record().engine.grid.reference_count),
-                   WRONG("frame record: the grid", m.record().engine.grid.cells_per_unit[2] *= 2),
-                   WRONG("frame record: accuracy 0x5", m.record().accuracy = 5),
-                   WRONG("frame record: accuracy 0x1", m.record().accuracy = 1),
-                   WRONG("frame record: shading 0x3", m.record().shading = 3),
-                   WRONG("effects 0x1, frame record and", m.job().effects = kPointShadows),
-                   WRONG("frame record: effects address 0x0", m.record().shading = 2),
-                   WRONG("47 tiles, of ", m.job().tile_count = 47)});
+  expect_refusals(memory, {WRONG("frame record: magic", m.record().magic ^= 1),
+                           WRONG("frame record: version", ++m.record().version),
+                           WRONG("frame record: width", m.record().width = 2048),
+                           WRONG("frame record: height", m.record().height = 2048),
+                           WRONG("frame record: height 0x0 at byte 12: ", m.record().height = m.job().height = 0),
+                           WRONG("frame record: width 0x4001", m.record().width = m.job().width = kMaxPictureWidth + 1),
+                           WRONG("frame record: engine", ++m.record().engine_id),
+                           WRONG("frame record: tile width", m.record().tile_width *= 2),
+                           WRONG("frame record: tiles_x", ++m.record().tiles_x),
+                           WRONG("frame record: tiles_y", --m.record().tiles_y),
+                           WRONG("frame record: output depth 0x0", m.record().output_depth = 0),
+                           WRONG("frame record: t_far", m.record().t_far = 0.0f),
+                           WRONG("frame record: macro depth 0x0", m.record().engine.macro_depth = 0),
+                           WRONG("frame record: triangle depth 0x0", m.record().engine.triangle_depth = 0),
+                           WRONG("frame record: colour address", m.record().color_address = 0x200000),
+                           WRONG("frame record: colour address", m.record().color_address += 128),
+                           WRONG("frame record: depth address", m.record().depth_address = 0),
+                           WRONG("frame record: ids address", m.record().id_address = m.record().color_address),
+                           WRONG("frame record: macro table address", m.record().engine.macro_table_address = 0),
+                           WRONG("frame record: cell blocks address", m.record().engine.cell_blocks_address -= 4096),
+                           WRONG("frame record: triangles address", ++m.record().engine.triangles_address),
+                           WRONG("frame record: effects address", m.record().effects_address = m.job().image_address),
+                           WRONG("frame record: image address", m.record().image_address = m.job().image_address),
+                           WRONG("frame record: the grid", ++m.record().engine.grid.reference_count),
+                           WRONG("frame record: the grid", m.record().engine.grid.cells_per_unit[2] *= 2),
+                           WRONG("frame record: accuracy 0x5", m.record().accuracy = 5),
+                           WRONG("frame record: accuracy 0x1", m.record().accuracy = 1),
+                           WRONG("frame record: shading 0x3", m.record().shading = 3),
+                           WRONG("effects 0x1, frame record and", m.job().effects = kPointShadows),
+                           WRONG("frame record: effects address 0x0", m.record().shading = 2),
+                           WRONG("47 tiles, of ", m.job().tile_count = 47)});
 }
 
 TEST(JobCheck, HoldsTheImageAgainstTheJob) {
@@ -211,11 +216,9 @@ TEST(JobCheck, HoldsEffectsAgainstTheJob) {
   expect_refusals(
       memory,
       {WRONG("frame record: effects address", m.record().effects_address += 128),
-       WRONG("frame record: image address", m.record().image_address -= 4096),
-       WRONG("effects", m.record().shading = 1),
+       WRONG("frame record: image address", m.record().image_address -= 4096), WRONG("effects", m.record().shading = 1),
        WRONG("frame record: walk depth", m.record().walk_depth = 0),
-       WRONG("effects", m.effects().called_for ^= kReflection),
-       WRONG("effects", m.job().effects ^= kReflection),
+       WRONG("effects", m.effects().called_for ^= kReflection), WRONG("effects", m.job().effects ^= kReflection),
        WRONG("effects reflection, smooth_normals are not built into this firmware", m.built &= ~kMirrors),
        WRONG("effects 0x400 are not built", m.job().effects |= 1u << kEffectCount),
        WRONG("scene image: effects.light_count 257 ", m.effects().light_count = kMaxLights + 1),
@@ -249,16 +252,14 @@ TEST(JobCheck, KeepsPartsApart) {
                WRONG("depth plane", m.job().depth_address = m.record().depth_address = m.job().color_address),
                WRONG("plane of ids", m.job().ids_address = m.record().id_address = 1ull << 63),
                WRONG("frame record: colour address", m.job().color_address = m.record().color_address = 0),
-               WRONG("plane bytes", m.job().plane_bytes += 128),
-               WRONG("result of 64 bytes", m.job().result_bytes = 64),
+               WRONG("plane bytes", m.job().plane_bytes += 128), WRONG("result of 64 bytes", m.job().result_bytes = 64),
                WRONG("result at ", m.job().result_address = m.job().image_address),
                WRONG("result at ", m.job().result_bytes = ~0ull),
                WRONG("frame record at ", m.job().frame_address = m.job().color_address),
                WRONG("frame record at ", m.job().frame_address = m.job().base_address - 384),
                WRONG("scene image at ", m.job().image_address = m.job().color_address),
                WRONG("scene image at ", m.job().image_address += 64, m.job().image_bytes -= 128),
-               WRONG("scene image at ", m.job().loaded_bytes -= 64),
-               WRONG("reserved", m.job().reserved[23] = 1)});
+               WRONG("scene image at ", m.job().loaded_bytes -= 64), WRONG("reserved", m.job().reserved[23] = 1)});
 }
 
 TEST(Console, NamesAStatus) {
