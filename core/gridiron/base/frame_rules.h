@@ -4,7 +4,7 @@
 
 #include <gridiron/base/accuracies.h>
 #include <gridiron/base/records.h>
-#include <gridiron/platform/status.h>
+#include <gridiron/platform/contract.h>
 
 #include <bit>
 #include <cstddef>
