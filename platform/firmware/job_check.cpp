@@ -1,4 +1,4 @@
-// Whether a firmware can do a job that it was given.
+// Checks whether a firmware can run a job.
 // Memory: reads the job. Threads: the master. SPDX-License-Identifier: Apache-2.0
 #include "job_check.h"
 
@@ -16,10 +16,10 @@ namespace gridiron::port {
 namespace {
 
 bool is_equal(const char* what, std::uint64_t value, std::uint64_t wanted) {
-  return value == wanted || refuse(what, " ", Hex{value}, ", this firmware wants ", Hex{wanted});
+  return value == wanted || refuse(what, " ", Hex{value}, ", this firmware requires ", Hex{wanted});
 }
 
-// As the job's maker computes it, with the field itself taken as 0.
+// Computed as by the job's maker, with the field itself taken as 0.
 std::uint64_t check_value_of(const FrameJob& job) {
   FrameJob head = job;
   head.check_value = 0;
@@ -56,8 +56,8 @@ struct ImageReader {
   [[nodiscard]] static bool is_intact(const ImageHeader&) { return true; }
 };
 
-// What workers read and transfers go by. What the sections of the image hold is not looked at: a board bounds what
-// follows from it.
+// Checks the fields that workers and transfers rely on. The contents of the image's sections are not checked: the board
+// limits what they can cause.
 bool check_record(const FrameJob& job) {
   constexpr RefuseUnless kRequire;
   const auto& frame = record_at<FrameRecord>(job.frame_address);
@@ -88,7 +88,7 @@ bool check_job(const FrameJob& job, const FirmwareFacts& facts) {
   if (!check_loaded_parts(job, RefuseUnless{})) return false;
   if (!is_equal("check value", check_value_of(job), job.check_value)) return false;
 
-  // 2. What it is about.
+  // 2. Its settings.
   if (!is_equal("tile width", job.tile_width, facts.tile_width)) return false;
   if (job.store_bytes > facts.store_bytes) {
     return refuse("made for cores of ", job.store_bytes, " bytes, these have ", facts.store_bytes);
@@ -99,14 +99,14 @@ bool check_job(const FrameJob& job, const FirmwareFacts& facts) {
   const std::uint32_t missing = job.effects & ~facts.effects;
   if (missing != 0) return refuse("effects ", EffectSet{missing}, " are not built into this firmware");
   if (job.tile_count > facts.most_tiles) {
-    return refuse(job.tile_count, " tiles, this board has room for the results of ", facts.most_tiles);
+    return refuse(job.tile_count, " tiles, this board can store the results of ", facts.most_tiles);
   }
 
   if (job.spill_address != 0 && job.spill_cores < facts.core_count) {
     return refuse("memory for waiting rays of ", job.spill_cores, " cores, this board has ", facts.core_count);
   }
 
-  // 3. What the workers go by.
+  // 3. The frame record and the head of the scene image, which the workers use.
   return check_record(job);
 }
 

@@ -1,5 +1,5 @@
-// The rules of a job that need no board: its parts and their places, its frame record against the job and the scene
-// image. The firmware checks them, and so does the program that reads a job back. Memory: borrowed. Threads: any;
+// The rules of a job that need no board: the places of its parts, and its frame record against the job and the scene
+// image. Used by the firmware and by the program that reads a job back. Memory: borrowed. Threads: any;
 // integers only. SPDX-License-Identifier: Apache-2.0
 #pragma once
 
@@ -17,9 +17,8 @@
 
 namespace gridiron::port {
 
-// Each function calls require(holds, place, pieces...) for one rule after the other: `place` is that of the field in
-// the job, in bytes, and `pieces` are what print() takes. require returns `holds`, or does not return where it is
-// false.
+// Each function calls require(holds, place, pieces...) for every rule: `place` is the field's offset in the job, in
+// bytes; print() takes the `pieces`. require returns `holds`, or throws if it is false.
 
 /// A range of main memory.
 struct Part {
@@ -40,8 +39,7 @@ template <class Require>
                  alignment);
 }
 
-/// The parts that the job's file holds behind the job itself: its check value is about them, and no transfer changes
-/// them.
+/// Checks the parts of the file after the job itself: covered by its check value, and changed by no transfer.
 template <class Require>
 [[nodiscard]] bool check_loaded_parts(const FrameJob& job, const Require& require) {
   const bool is_size_ok =
@@ -60,7 +58,7 @@ template <class Require>
                  offsetof(FrameJob, image_address), require);
 }
 
-/// Fields of the frame record that a rule is about.
+/// Names of the frame record's fields in messages.
 inline constexpr struct {
   std::uint32_t place;
   const char* name;
@@ -107,7 +105,7 @@ template <class Require>
                  StatusNumber{static_cast<std::uint32_t>(fault.status)});
 }
 
-/// The frame record's head by itself, and against what the job says of the picture.
+/// Checks the frame record's head, and its picture against the job's.
 template <class Require>
 [[nodiscard]] bool check_picture(const FrameJob& job, const FrameRecord& frame, const Require& require) {
   const std::uint64_t place = job.frame_address - job.base_address;
@@ -128,8 +126,8 @@ template <class Require>
                  " tiles, of ", frame.tiles_x, " x ", frame.tiles_y);
 }
 
-/// Memory behind the file, which transfers change: the result with the planes in it, and apart from it the memory for
-/// rays that wait. Precondition: check_picture.
+/// Checks the memory after the file, which transfers may change: the result with the planes in it, and apart from it
+/// the memory for waiting rays. Precondition: check_picture.
 template <class Require>
 [[nodiscard]] bool check_open_parts(const FrameJob& job, const Require& require) {
   const Part open{job.base_address + job.loaded_bytes, job.memory_bytes - job.loaded_bytes};
@@ -141,7 +139,7 @@ template <class Require>
                ", the picture's are ", Hex{plane_bytes}) ||
       !lies_in(open, kOutside, "result", result, kLineBytes, offsetof(FrameJob, result_address), require) ||
       !require(result.bytes >= head, offsetof(FrameJob, result_bytes), "result of ", result.bytes,
-               " bytes, without room for its head")) {
+               " bytes, too small for its head")) {
     return false;
   }
   const struct {
@@ -153,7 +151,7 @@ template <class Require>
                 {"plane of ids", job.ids_address, offsetof(FrameJob, ids_address)}};
   Part free{result.begin + head, result.bytes - head};
   for (const auto& plane : planes) {
-    if (plane.address == 0) continue;  // the colours' is not, which is a rule of the frame
+    if (plane.address == 0) continue;  // never the colours', by the frame's rules
     if (!lies_in(free, "outside the result, or on what is there", plane.name, {plane.address, plane_bytes}, kLineBytes,
                  plane.place, require)) {
       return false;
@@ -178,7 +176,7 @@ template <class Require>
                  "memory for waiting rays at ", Hex{spill.begin}, " is on the result");
 }
 
-/// The frame record against the scene image, of which the head is right, and the effects of both against the job's.
+/// Checks the frame record against the scene image's head, which is right, and the job's effects against both.
 template <class Require>
 [[nodiscard]] bool check_scene(const FrameJob& job, const FrameRecord& frame, const SceneImageView& image,
                                const Require& require) {

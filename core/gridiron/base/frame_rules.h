@@ -1,4 +1,4 @@
-// The rules of a frame, each of them once: set-up, simulator, firmware and kernel look for faults here.
+// The rules of a frame. Set-up, simulator, firmware and kernel find faults with these functions alone.
 // Memory: none. Threads: any; integers only. SPDX-License-Identifier: Apache-2.0
 #pragma once
 
@@ -14,18 +14,18 @@ namespace gridiron {
 
 /// The first rule that a frame breaks.
 struct FrameFault {
-  Status status = Status::kOk;  ///< what the frame is refused with
+  Status status = Status::kOk;  ///< why the frame is rejected
   std::uint16_t place = 0;      ///< of the field, in bytes of the frame record
 };
 
-/// The limits of a checker that renders nothing itself. A renderer has those of its layout, by the same names.
+/// The limits of a checker that does not render. A renderer takes those of its layout, which have the same names.
 struct AnyLayout {
   static constexpr std::uint32_t kLeastTileWidth = 1;
   static constexpr std::uint32_t kMostTileWidth = kMaxPictureWidth;
   static constexpr std::uint32_t kMaxOutputDepth = 0xFFFFFFFFu;
   static constexpr std::uint32_t kMaxWalkDepth = 0xFFFFFFFFu;
-  static constexpr Status kBeyond = Status::kBadFrame;  ///< what a frame beyond these four is refused with
-  // Of the grid, whose sizes the rules of the image bound.
+  static constexpr Status kBeyond = Status::kBadFrame;  ///< why a frame beyond these four is rejected
+  // Of the grid. The rules of the image limit its sizes.
   static constexpr std::uint32_t kMaxMacroDepth = 0xFFFFFFFFu;
   static constexpr std::uint32_t kMaxTriangleDepth = 0xFFFFFFFFu;
   static constexpr std::uint32_t kMaxMacroWidth = 0xFFFFFFFFu;
@@ -41,7 +41,7 @@ struct AnyLayout {
   return (pixels + tile_width - 1) / tile_width;
 }
 
-/// @returns the first fault of what every engine reads, whatever the shading.
+/// @returns the first fault in the fields that every frame uses.
 template <class Limits>
 [[nodiscard]] constexpr FrameFault find_picture_fault(const FrameHead& frame) {
   constexpr Status kBad = Status::kBadFrame;
@@ -57,7 +57,7 @@ template <class Limits>
   if (!is_in_range(frame.output_depth, 1, Limits::kMaxOutputDepth)) {
     return {Limits::kBeyond, offsetof(FrameHead, output_depth)};
   }
-  // Above 0 and no NaN, by its bits.
+  // As bits: above 0, infinity at most, no NaN.
   if (!is_in_range(std::bit_cast<std::uint32_t>(frame.t_far), 1, 0x7F800000u))
     return {kBad, offsetof(FrameHead, t_far)};
   if (frame.color_address == 0) return {kBad, offsetof(FrameHead, color_address)};
@@ -68,7 +68,7 @@ template <class Limits>
   return {};
 }
 
-/// @returns the first fault of what a frame of Shading::kScene has besides. Precondition: no other fault in its head.
+/// @returns the first fault in the fields of Shading::kScene. Precondition: find_picture_fault finds none.
 template <class Limits>
 [[nodiscard]] constexpr FrameFault find_scene_fault(const FrameHead& frame) {
   if (frame.shading != static_cast<std::uint32_t>(Shading::kScene)) return {};

@@ -1,5 +1,5 @@
-// The rules of a scene image that integers decide, each of them once: header, sections, sizes of the grid, counts of
-// the effects. open_scene_image, firmware and simulator check them here. core/SPEC.md is the text form. Memory:
+// The rules of a scene image that need integers only: header, sections, sizes of the grid, counts of the effects.
+// open_scene_image, firmware and simulator use them from here. core/SPEC.md is the text form. Memory:
 // borrowed. Threads: any; integers only. SPDX-License-Identifier: Apache-2.0
 #pragma once
 
@@ -13,21 +13,21 @@
 
 namespace gridiron {
 
-// A checker reads the image and hears of every rule. It has
+// A checker reads the image and is called for every rule. It has
 //   read<Record>(offset)                   the record at an offset of the image
-//   require(holds, offset, field, value)   whether the rule holds, the place of the field that it is about, the field's
-//                                          name in SPEC.md and what stands there; @returns holds
-//   is_intact(header)                      whether the check value is that of the image, where this is to be checked
+//   require(holds, offset, field, value)   whether the rule holds, its field's offset, name in SPEC.md and value;
+//                                          @returns holds
+//   is_intact(header)                      whether the check value is that of the image, if it is to be checked
 
-/// Of a checker that wants to know no more than whether the rules hold.
+/// For callers that need only whether all rules hold.
 struct AnyFault {
   [[nodiscard]] static constexpr bool require(bool holds, std::uint64_t, const char*, std::uint64_t = 0) {
     return holds;
   }
 };
 
-/// Leaves a function that returns bool and has a `checker`, where a field of a record at `base` is wrong. The variable
-/// is called what SPEC.md calls the record. GRIDIRON_RULE_OF: what stands there is `value`.
+/// Returns false from a function that has a `checker` if a field of a record at `base` is wrong. The variable `record`
+/// has the record's name in SPEC.md. GRIDIRON_RULE_OF names the value that is reported.
 #define GRIDIRON_RULE_OF(value, holds, base, record, member)                                                           \
   if (!checker.require((holds), (base) + offsetof(std::remove_cvref_t<decltype(record)>, member), #record "." #member, \
                        (value)))                                                                                       \
@@ -56,12 +56,12 @@ struct Sections {
   [[nodiscard]] bool has(SectionKind kind) const { return found[index_of(kind)]; }
 };
 
-/// The parts of an image that say how large all others are.
+/// The parts of an image that determine the sizes of all others.
 struct ImageHead {
   ImageHeader header{};
   Sections sections;
   GridRecord grid{};
-  EffectsRecord effects{};  ///< all zero where the image has none
+  EffectsRecord effects{};  ///< all zero if the image has none
 };
 
 /// @param available  bytes of memory from the image's first on.
@@ -115,7 +115,7 @@ template <class Checker>
       GRIDIRON_RULE(apart, place, section, offset_bytes);
     }
 
-    // Known kinds stand once; others are none of our business.
+    // Each known kind occurs once; others are skipped.
     const std::uint32_t index = section.kind - 1;
     if (index >= Sections::kKnownCount) continue;
     GRIDIRON_RULE(!sections.found[index], place, section, kind);
@@ -129,7 +129,7 @@ template <class Checker>
   return true;
 }
 
-/// A section that was found holds that many elements of that size; so all of them lie inside the image.
+/// Checks that a section was found and holds that many elements of that size, so that all of them lie inside the image.
 template <class Checker>
 [[nodiscard]] bool check_elements(Checker& checker, const Sections& sections, SectionKind kind,
                                   std::uint64_t element_bytes, std::uint64_t element_count) {
@@ -146,7 +146,7 @@ template <class Checker>
   return std::uint64_t{grid.macro_cell_count[0]} * grid.macro_cell_count[1] * grid.macro_cell_count[2];
 }
 
-/// What sizes and steps of the walk follow from, and the sections that they give the sizes of.
+/// Checks the grid's integers, and the sections whose sizes follow from them.
 template <class Checker>
 [[nodiscard]] bool check_grid_sizes(Checker& checker, const Sections& sections, GridRecord& grid) {
   if (!check_elements(checker, sections, SectionKind::kGrid, sizeof(GridRecord), 1)) return false;
@@ -167,7 +167,7 @@ template <class Checker>
   GRIDIRON_RULE(grid.triangle_bytes == triangle_bytes_of(format), base, grid, triangle_bytes);
   GRIDIRON_RULE(grid.cell_block_bytes == cell_block_bytes_of(format, grid.macro_width), base, grid, cell_block_bytes);
   GRIDIRON_RULE_OF(grid.reserved[0], all_zero(grid.reserved, 3), base, grid, reserved);
-  // Numbers that cannot overflow: at most 2^33 macrocells.
+  // The sizes that the other sections must have, in numbers that cannot overflow: at most 2^33 macrocells.
   return check_elements(checker, sections, SectionKind::kMacroTable, sizeof(MacroTableEntry),
                         (macro_cell_total(grid) + 31) / 32) &&
          check_elements(checker, sections, SectionKind::kCellBlocks, grid.cell_block_bytes, grid.cell_block_count) &&
@@ -176,7 +176,7 @@ template <class Checker>
 
 // --- Effects ------------------------------------------------------------------------------------------------------
 
-/// What loops, queues and addresses follow from. @param base  where the record lies in the image.
+/// Checks the counts that bound loops, queues and addresses. @param base  the record's place in the image.
 template <class Checker>
 [[nodiscard]] constexpr bool check_effect_counts(Checker&& checker, std::uint64_t base, const EffectsRecord& effects) {
   const std::uint32_t samples = effects.samples_per_pixel;
@@ -192,19 +192,19 @@ template <class Checker>
   return true;
 }
 
-/// @returns the EffectBits that counts of the record decide, all of kCountedEffects.
+/// @returns the EffectBits that follow from counts of the record, a subset of kCountedEffects.
 [[nodiscard]] constexpr std::uint32_t counted_effects(const EffectsRecord& effects) {
   return (effects.occlusion_samples != 0 ? kAmbientOcclusion : 0u) |
          (effects.environment_width != 0 ? kEnvironment : 0u) | (effects.samples_per_pixel > 1 ? kMultisampling : 0u);
 }
 inline constexpr std::uint32_t kCountedEffects = kAmbientOcclusion | kEnvironment | kMultisampling;
 
-/// A section that an EffectsRecord counts the elements of and says the place of; place 0 where it has none.
+/// A section whose elements an EffectsRecord counts and whose offset it holds: 0 if it has no elements.
 struct EffectPart {
   SectionKind kind;
   std::uint64_t element_bytes, element_count, offset_bytes;
-  std::uint32_t place;  ///< of the offset in the record
-  const char* field;    ///< and its name
+  std::uint32_t place;  ///< of offset_bytes in the record
+  const char* field;    ///< its name
 };
 
 /// Calls body(EffectPart) for each of the five, empty ones too, in the order of the image, until it returns false.
@@ -222,7 +222,7 @@ constexpr bool for_each_effect_part(const EffectsRecord& effects, std::uint64_t 
 #undef GRIDIRON_PART
 }
 
-/// The record of effects, and each of the sections that it counts, no other, where it says.
+/// Reads the record of effects, and requires exactly the sections that it counts, at the places that it names.
 template <class Checker>
 [[nodiscard]] bool check_effect_sizes(Checker& checker, ImageHead& head) {
   const Sections& sections = head.sections;
@@ -234,7 +234,7 @@ template <class Checker>
     });
   }
   const SectionEntry& section = sections.entry(SectionKind::kEffects);
-  // Surfaces are told by their vertices, which a projection has not.
+  // Surfaces store vertices, which a projection does not have.
   GRIDIRON_RULE(head.grid.triangle_format != static_cast<std::uint32_t>(TriangleFormat::kProjection),
                 sections.entry_offset(SectionKind::kEffects), section, kind);
   if (!check_elements(checker, sections, SectionKind::kEffects, sizeof(EffectsRecord), 1)) return false;

@@ -72,7 +72,7 @@ bool check_lights(ImageChecker& checker, const SceneImageView& view, EffectsCall
 
 // --- Surfaces and normals -------------------------------------------------------------------------------------------
 
-// Whether corners lie where the image's format can store them.
+// Whether the image's format can store the corners.
 bool is_storable(const SurfaceRecord& surface, const GridRecord& grid) {
   for (const auto& corner : surface.v) {
     const Vec3 point(corner[0], corner[1], corner[2]);
@@ -117,7 +117,7 @@ bool check_surfaces(ImageChecker& checker, const SceneImageView& view, EffectsCa
   return true;
 }
 
-// What is shaded is what is hit: the surface of every triangle in a cell has that triangle's corners.
+// The surface of every triangle in a cell must have that triangle's corners, so that shading sees what was hit.
 bool check_corners(ImageChecker& checker, const SceneImageView& view) {
   const GridRecord& grid = view.grid;
   const bool lattice = grid.triangle_format == static_cast<std::uint32_t>(TriangleFormat::kLattice);
@@ -156,7 +156,8 @@ bool check_normals(ImageChecker& checker, const EffectsRecord& effects) {
 
 // --- Environment ----------------------------------------------------------------------------------------------------
 
-// Texels in their range, and those that a block shares with its neighbours, or repeats, the same in all of them.
+// Texels must be in their range, and those that a block shares with its neighbours, or repeats, must be the same
+// everywhere.
 bool check_environment(ImageChecker& checker, const EffectsRecord& effects) {
   if (effects.environment_width == 0) return true;
   const std::uint32_t last = effects.environment_width - 1;
@@ -165,7 +166,7 @@ bool check_environment(ImageChecker& checker, const EffectsRecord& effects) {
     return effects.environment_offset_bytes + block * sizeof(EnvironmentBlock) +
            (std::uint64_t{row} * 8 + column) * sizeof(EnvironmentBlock::texels[0][0]);
   };
-  // Where a row or column of a face begins a patch, or is the face's last: block, and place in it.
+  // Where a row or column of a face begins a patch, or is the face's last: block, and index in it.
   struct Home {
     std::uint32_t block, place;
   };

@@ -1,4 +1,4 @@
-// What the checks of an image share: reading records, naming what is wrong, the sections that were found.
+// Shared by the checks of an image: reading records, naming the wrong field, the sections that were found.
 // Inside of this room. Memory: borrowed. Threads: one. SPDX-License-Identifier: Apache-2.0
 #pragma once
 
@@ -13,7 +13,7 @@
 
 namespace gridiron {
 
-/// Reads records out of the image and remembers what was wrong, and where.
+/// Reads records from the image and remembers the first error and its place.
 class ImageChecker {
  public:
   ImageChecker(std::span<const std::byte> image, SceneImageError& error) : image_(image), error_(error) {}
@@ -42,7 +42,7 @@ class ImageChecker {
   SceneImageError& error_;
 };
 
-/// As GRIDIRON_RULE, of fields that are not all integers.
+/// As GRIDIRON_RULE, for fields that are not all integers.
 #define GRIDIRON_REQUIRE(holds, base, record, member) GRIDIRON_RULE_OF(0, holds, base, record, member)
 
 [[nodiscard]] inline bool is_finite(float value) {
@@ -55,7 +55,7 @@ class ImageChecker {
   return finite;
 }
 
-/// Bytes [begin, end) of the image, multiples of 4, are padding: all of them zero.
+/// Checks that bytes [begin, end) of the image, multiples of 4, are padding: all zero.
 [[nodiscard]] inline bool check_padding(ImageChecker& checker, std::uint64_t begin, std::uint64_t end) {
   for (std::uint64_t at = begin; at < end; at += sizeof(std::uint32_t)) {
     const auto word = checker.read<std::uint32_t>(at);
@@ -67,13 +67,14 @@ class ImageChecker {
   return true;
 }
 
-/// The triangles against the cells: every triangle stands in the cells that the builder puts it into and in no other,
-/// with the same bytes, and the grid's bounds are theirs. Of projections only that the records of a triangle are equal.
-/// Precondition: grid, macro table and cell blocks are right, and ids ascend within each cell. Cost: linear.
+/// Checks the triangles against the cells: every triangle is in the cells that the builder puts it into and in no
+/// other, with the same bytes, and the grid's bounds are theirs. For projections it checks only that the records of a
+/// triangle are equal. Precondition: grid, macro table and cell blocks are right, and ids ascend within each cell.
+/// Cost: linear.
 [[nodiscard]] bool check_geometry(ImageChecker& checker, const Sections& sections, const SceneImageView& view);
 
-/// What the sections of effects hold, against header, grid and triangles.
-/// Precondition: all else in the image is right. Cost: linear.
+/// Checks the contents of the sections of effects against header, grid and triangles.
+/// Precondition: everything else in the image is right. Cost: linear.
 [[nodiscard]] bool check_effect_sections(ImageChecker& checker, const SceneImageView& view);
 
 }  // namespace gridiron

@@ -12,7 +12,7 @@ void store(std::byte* image, std::uint64_t offset, const Record& record) {
   __builtin_memcpy(image + offset, &record, sizeof(Record));
 }
 
-// Appends a section, where it is not empty. @returns its offset, or 0.
+// Appends a section unless it is empty. @returns its offset, or 0.
 std::uint64_t append(EffectSections& sections, SectionKind kind, std::uint64_t element_bytes,
                      std::uint64_t element_count) {
   if (element_count == 0) return 0;
