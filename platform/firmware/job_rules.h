@@ -58,68 +58,34 @@ template <class Require>
                  offsetof(FrameJob, image_address), require);
 }
 
-/// Names of the frame record's fields in messages.
-inline constexpr struct {
-  std::uint32_t place;
-  const char* name;
-} kFrameFields[] = {
-    {offsetof(FrameHead, magic), "magic"},
-    {offsetof(FrameHead, version), "version"},
-    {offsetof(FrameHead, width), "width"},
-    {offsetof(FrameHead, height), "height"},
-    {offsetof(FrameHead, tile_width), "tile width"},
-    {offsetof(FrameHead, tiles_x), "tiles_x"},
-    {offsetof(FrameHead, tiles_y), "tiles_y"},
-    {offsetof(FrameHead, accuracy), "accuracy"},
-    {offsetof(FrameHead, shading), "shading"},
-    {offsetof(FrameHead, engine_id), "engine"},
-    {offsetof(FrameHead, output_depth), "output depth"},
-    {offsetof(FrameHead, walk_depth), "walk depth"},
-    {offsetof(FrameHead, t_far), "t_far"},
-    {offsetof(FrameHead, color_address), "colour address"},
-    {offsetof(FrameHead, depth_address), "depth address"},
-    {offsetof(FrameHead, id_address), "ids address"},
-    {offsetof(FrameHead, effects_address), "effects address"},
-    {offsetof(FrameHead, image_address), "image address"},
-    {sizeof(FrameHead) + offsetof(GridFrame, macro_depth), "macro depth"},
-    {sizeof(FrameHead) + offsetof(GridFrame, triangle_depth), "triangle depth"},
-    {sizeof(FrameHead) + offsetof(GridFrame, macro_table_address), "macro table address"},
-    {sizeof(FrameHead) + offsetof(GridFrame, cell_blocks_address), "cell blocks address"},
-    {sizeof(FrameHead) + offsetof(GridFrame, triangles_address), "triangles address"},
-};
-
-[[nodiscard]] constexpr const char* frame_field(std::size_t place) {
-  for (const auto& field : kFrameFields) {
-    if (field.place == place) return field.name;
-  }
-  return "field";
-}
-
 /// @param place  of the frame record in the job.
 template <class Require>
 [[nodiscard]] bool has_no(FrameFault fault, const FrameRecord& frame, std::uint64_t place, const Require& require) {
   std::uint32_t value = 0;
   std::memcpy(&value, reinterpret_cast<const std::byte*>(&frame) + fault.place, sizeof value);
-  return require(fault.status == Status::kOk, place + fault.place, "frame record: ", frame_field(fault.place), " ",
-                 Hex{value}, " at byte ", std::uint32_t{fault.place}, ": ",
+  return require(fault.status == Status::kOk, place + fault.place, "frame record: ", fault.field, " ", Hex{value}, " at byte ", fault.place, ": ",
                  StatusNumber{static_cast<std::uint32_t>(fault.status)});
 }
+
+/// Requires a field of the frame record at `place` to have the value that job or scene image have for it.
+#define GRIDIRON_FIELD_IS(value, wanted, record_place, name, whose)                                     \
+  require((value) == (wanted), place + (record_place), "frame record: " name " ", Hex{value}, ", the " whose "'s is ", \
+          Hex{wanted})
+#define GRIDIRON_HEAD_IS(member, wanted, whose) \
+  GRIDIRON_FIELD_IS(frame.member, wanted, offsetof(FrameHead, member), #member, whose)
+#define GRIDIRON_ENGINE_IS(member, wanted, whose) \
+  GRIDIRON_FIELD_IS(frame.engine.member, wanted, sizeof(FrameHead) + offsetof(GridFrame, member), #member, whose)
 
 /// Checks the frame record's head, and its picture against the job's.
 template <class Require>
 [[nodiscard]] bool check_picture(const FrameJob& job, const FrameRecord& frame, const Require& require) {
   const std::uint64_t place = job.frame_address - job.base_address;
-  const auto is_of_job = [&](std::size_t field, std::uint64_t value, std::uint64_t wanted) {
-    return require(value == wanted, place + field, "frame record: ", frame_field(field), " ", Hex{value},
-                   ", the job's is ", Hex{wanted});
-  };
-  return is_of_job(offsetof(FrameHead, width), frame.width, job.width) &&
-         is_of_job(offsetof(FrameHead, height), frame.height, job.height) &&
-         is_of_job(offsetof(FrameHead, tile_width), frame.tile_width, job.tile_width) &&
-         is_of_job(offsetof(FrameHead, color_address), frame.color_address, job.color_address) &&
-         is_of_job(offsetof(FrameHead, depth_address), frame.depth_address, job.depth_address) &&
-         is_of_job(offsetof(FrameHead, id_address), frame.id_address, job.ids_address) &&
-         is_of_job(offsetof(FrameHead, engine_id), frame.engine_id, static_cast<std::uint32_t>(EngineId::kGrid)) &&
+  return GRIDIRON_HEAD_IS(width, job.width, "job") && GRIDIRON_HEAD_IS(height, job.height, "job") &&
+         GRIDIRON_HEAD_IS(tile_width, job.tile_width, "job") &&
+         GRIDIRON_HEAD_IS(color_address, job.color_address, "job") &&
+         GRIDIRON_HEAD_IS(depth_address, job.depth_address, "job") &&
+         GRIDIRON_HEAD_IS(id_address, job.ids_address, "job") &&
+         GRIDIRON_HEAD_IS(engine_id, static_cast<std::uint32_t>(EngineId::kGrid), "job") &&
          has_no(find_picture_fault<AnyLayout>(frame), frame, place, require) &&
          has_no(find_scene_fault<AnyLayout>(frame), frame, place, require) &&
          require(job.tile_count == frame.tiles_x * frame.tiles_y, offsetof(FrameJob, tile_count), job.tile_count,
@@ -181,11 +147,6 @@ template <class Require>
 [[nodiscard]] bool check_scene(const FrameJob& job, const FrameRecord& frame, const SceneImageView& image,
                                const Require& require) {
   const std::uint64_t place = job.frame_address - job.base_address;
-  constexpr std::size_t kEngine = sizeof(FrameHead);
-  const auto is_of_image = [&](std::size_t field, std::uint64_t value, std::uint64_t wanted) {
-    return require(value == wanted, place + field, "frame record: ", frame_field(field), " ", Hex{value},
-                   ", the scene image's is ", Hex{wanted});
-  };
   const bool is_scene = frame.shading == static_cast<std::uint32_t>(Shading::kScene);
   const std::uint32_t called_for = is_scene ? image.effects.called_for : 0;
   const std::uint64_t base = job.image_address;
@@ -194,21 +155,21 @@ template <class Require>
                  "scene image: ", job.image_bytes, " bytes in the job, its header has ", image.header.image_bytes) &&
          // Bit for bit: no floating point here.
          require(std::memcmp(grid, reinterpret_cast<const std::byte*>(&image.grid), sizeof(GridRecord)) == 0,
-                 place + kEngine + offsetof(GridFrame, grid), "frame record: the grid is not the scene image's") &&
+                 place + sizeof(FrameHead) + offsetof(GridFrame, grid), "frame record: the grid is not the scene image's") &&
          has_no(find_grid_fault<AnyLayout>(frame), frame, place, require) &&
-         is_of_image(kEngine + offsetof(GridFrame, macro_table_address), frame.engine.macro_table_address,
-                     base + image.macro_table_offset_bytes) &&
-         is_of_image(kEngine + offsetof(GridFrame, cell_blocks_address), frame.engine.cell_blocks_address,
-                     base + image.cell_blocks_offset_bytes) &&
-         is_of_image(kEngine + offsetof(GridFrame, triangles_address), frame.engine.triangles_address,
-                     base + image.triangles_offset_bytes) &&
+         GRIDIRON_ENGINE_IS(macro_table_address, base + image.macro_table_offset_bytes, "scene image") &&
+         GRIDIRON_ENGINE_IS(cell_blocks_address, base + image.cell_blocks_offset_bytes, "scene image") &&
+         GRIDIRON_ENGINE_IS(triangles_address, base + image.triangles_offset_bytes, "scene image") &&
          require(!is_scene || image.has_effects, place + offsetof(FrameHead, shading), "frame record: shading ",
                  frame.shading, ", the scene image has no effects") &&
          require(job.effects == called_for, offsetof(FrameJob, effects), "effects ", Hex{job.effects},
                  ", frame record and scene image call for ", Hex{called_for}) &&
-         is_of_image(offsetof(FrameHead, effects_address), frame.effects_address,
-                     is_scene ? base + image.effects_offset_bytes : 0) &&
-         is_of_image(offsetof(FrameHead, image_address), frame.image_address, is_scene ? base : 0);
+         GRIDIRON_HEAD_IS(effects_address, (is_scene ? base + image.effects_offset_bytes : 0), "scene image") &&
+         GRIDIRON_HEAD_IS(image_address, (is_scene ? base : 0), "scene image");
 }
+
+#undef GRIDIRON_ENGINE_IS
+#undef GRIDIRON_HEAD_IS
+#undef GRIDIRON_FIELD_IS
 
 }  // namespace gridiron::port

@@ -169,7 +169,7 @@ class TileRenderer {
     return Status::kOk;
   }
 
-  // What this store can do.
+  // Limits of this store.
   struct Limits : Layout {
     static constexpr std::uint32_t kLeastTileWidth = Layout::kTileWidth;
     static constexpr std::uint32_t kMostTileWidth = Layout::kTileWidth;

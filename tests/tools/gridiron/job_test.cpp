@@ -326,10 +326,15 @@ TEST(Job, DamageIsFoundWithItsPlace) {
   expect_wrong(4096 + offsetof(ImageHeader, image_bytes), [](Job& job, Record&) { job.image_bytes -= 128; });
   expect_wrong(offsetof(Job, result_address), [](Job& job, Record&) { job.result_address = job.base_address; });
   expect_wrong(offsetof(Job, result_address), [](Job& job, Record&) { job.result_bytes = kFar; });
-  // Of the rules that the firmware checks too (job_check_test), one for each part.
+  expect_wrong(offsetof(Job, result_bytes), [](Job& job, Record&) { job.result_bytes = 64; });
+  expect_wrong(offsetof(Job, plane_bytes), [](Job& job, Record&) { job.plane_bytes += 128; });
   expect_wrong(256 + offsetof(FrameHead, color_address), [](Job& job, Record&) { job.color_address += 128; });
   expect_wrong(offsetof(Job, color_address),
                [](Job& job, Record& record) { job.color_address = record.color_address = job.result_address; });
+  expect_wrong(offsetof(Job, depth_address),
+               [](Job& job, Record& record) { job.depth_address = record.depth_address = job.color_address; });
+  expect_wrong(offsetof(Job, ids_address),
+               [](Job& job, Record& record) { job.ids_address = record.id_address = kFar; });
   expect_wrong(offsetof(Job, spill_bytes), [](Job& job, Record&) { job.spill_bytes = 4096; });
   expect_wrong(offsetof(Job, spill_cores), [](Job& job, Record&) { job.spill_address = job.result_address; });
   expect_wrong(offsetof(Job, spill_address), [](Job& job, Record&) {
@@ -339,10 +344,22 @@ TEST(Job, DamageIsFoundWithItsPlace) {
   });
   expect_wrong(offsetof(Job, tile_count), [](Job& job, Record&) { ++job.tile_count; });
   expect_wrong(offsetof(Job, effects), [](Job& job, Record&) { job.effects = 1; });
+  expect_wrong(256 + offsetof(FrameHead, magic), [](Job&, Record& record) { record.magic ^= 1; });
+  expect_wrong(256 + offsetof(FrameHead, tile_width), [](Job&, Record& record) { record.tile_width = 0; });
   expect_wrong(256 + offsetof(FrameHead, tile_width),
                [](Job& job, Record& record) { job.tile_width = record.tile_width = 0; });
+  expect_wrong(256 + offsetof(FrameHead, tiles_x), [](Job&, Record& record) { ++record.tiles_x; });
   expect_wrong(256 + (sizeof(FrameHead) + offsetof(GridFrame, triangles_address)),
                [](Job&, Record& record) { ++record.engine.triangles_address; });
+  expect_wrong(256 + (sizeof(FrameHead) + offsetof(GridFrame, grid)),
+               [](Job&, Record& record) { ++record.engine.grid.reference_count; });
+  expect_wrong(256 + offsetof(FrameHead, effects_address),
+               [](Job&, Record& record) { record.effects_address = kBase; });
+  expect_wrong(256 + offsetof(FrameHead, effects_address), [](Job&, Record& record) { record.shading = 2; });
+  expect_wrong(256 + offsetof(FrameHead, shading), [](Job&, Record& record) {
+    record.shading = record.walk_depth = 2;
+    record.effects_address = record.image_address = kBase;
+  });
 }
 
 TEST(Result, DamageIsFoundWithItsPlace) {

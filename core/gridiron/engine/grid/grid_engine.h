@@ -96,9 +96,10 @@ class GridCore {
     return Status::kOk;
   }
 
-  // What this store can do.
+  // Limits of this store.
   struct Limits : Layout {
     static constexpr std::uint32_t kMaxCellBlockBytes = Store::EngineStore::kCellBlockBytes;
+    static constexpr Status kBeyond = Status::kUnsupportedFrame;
   };
 
   [[nodiscard]] Status load_table() {
