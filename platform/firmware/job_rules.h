@@ -63,12 +63,12 @@ template <class Require>
 [[nodiscard]] bool has_no(FrameFault fault, const FrameRecord& frame, std::uint64_t place, const Require& require) {
   std::uint32_t value = 0;
   std::memcpy(&value, reinterpret_cast<const std::byte*>(&frame) + fault.place, sizeof value);
-  return require(fault.status == Status::kOk, place + fault.place, "frame record: ", fault.field, " ", Hex{value}, " at byte ", fault.place, ": ",
-                 StatusNumber{static_cast<std::uint32_t>(fault.status)});
+  return require(fault.status == Status::kOk, place + fault.place, "frame record: ", fault.field, " ", Hex{value},
+                 " at byte ", fault.place, ": ", StatusNumber{static_cast<std::uint32_t>(fault.status)});
 }
 
 /// Requires a field of the frame record at `place` to have the value that job or scene image have for it.
-#define GRIDIRON_FIELD_IS(value, wanted, record_place, name, whose)                                     \
+#define GRIDIRON_FIELD_IS(value, wanted, record_place, name, whose)                                                    \
   require((value) == (wanted), place + (record_place), "frame record: " name " ", Hex{value}, ", the " whose "'s is ", \
           Hex{wanted})
 #define GRIDIRON_HEAD_IS(member, wanted, whose) \
@@ -155,7 +155,8 @@ template <class Require>
                  "scene image: ", job.image_bytes, " bytes in the job, its header has ", image.header.image_bytes) &&
          // Bit for bit: no floating point here.
          require(std::memcmp(grid, reinterpret_cast<const std::byte*>(&image.grid), sizeof(GridRecord)) == 0,
-                 place + sizeof(FrameHead) + offsetof(GridFrame, grid), "frame record: the grid is not the scene image's") &&
+                 place + sizeof(FrameHead) + offsetof(GridFrame, grid),
+                 "frame record: the grid is not the scene image's") &&
          has_no(find_grid_fault<AnyLayout>(frame), frame, place, require) &&
          GRIDIRON_ENGINE_IS(macro_table_address, base + image.macro_table_offset_bytes, "scene image") &&
          GRIDIRON_ENGINE_IS(cell_blocks_address, base + image.cell_blocks_offset_bytes, "scene image") &&

@@ -262,8 +262,8 @@ TEST(JobCheck, KeepsPartsApart) {
                WRONG("frame record at ", m.job().frame_address = m.job().base_address - 384),
                WRONG("scene image at ", m.job().image_address = m.job().color_address),
                WRONG("scene image at ", m.job().image_address += 64, m.job().image_bytes -= 128),
-               WRONG("scene image at ", m.job().loaded_bytes -= 64),
-               WRONG("check value", m.job().loaded_bytes += 64), WRONG("reserved", m.job().reserved[23] = 1)});
+               WRONG("scene image at ", m.job().loaded_bytes -= 64), WRONG("check value", m.job().loaded_bytes += 64),
+               WRONG("reserved", m.job().reserved[23] = 1)});
 }
 
 TEST(Console, NamesAStatus) {

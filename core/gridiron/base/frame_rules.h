@@ -19,6 +19,10 @@ struct FrameFault {
   const char* field = "";       ///< its name in that record
 };
 
+[[nodiscard]] constexpr FrameFault make_fault(Status status, std::size_t place, const char* field) {
+  return {status, static_cast<std::uint32_t>(place), field};
+}
+
 /// The limits of a checker that does not render. A renderer takes those of its layout, which have the same names.
 struct AnyLayout {
   static constexpr std::uint32_t kLeastTileWidth = 1;
@@ -43,7 +47,7 @@ struct AnyLayout {
 }
 
 #define GRIDIRON_FRAME_RULE(holds, status, base, record, member) \
-  if (!(holds)) return { (status), (base) + offsetof(record, member), #member }
+  if (!(holds)) return make_fault(status, (base) + offsetof(record, member), #member)
 #define GRIDIRON_HEAD_RULE(holds, status, member) GRIDIRON_FRAME_RULE(holds, status, 0, FrameHead, member)
 #define GRIDIRON_ENGINE_RULE(holds, status, member) \
   GRIDIRON_FRAME_RULE(holds, status, sizeof(FrameHead), GridFrame, member)

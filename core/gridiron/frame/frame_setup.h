@@ -35,7 +35,7 @@ struct FrameSettings {
   Camera camera;                 ///< in world space
   std::uint32_t width = 1024;    ///< pixels, 1..kMaxPictureWidth [kBadFrame]
   std::uint32_t height = 1024;   ///< likewise
-  std::uint32_t tile_width = 32; ///< pixels along a tile's edge, 1..kMaxPictureWidth [kBadFrame]; must be the layout's
+  std::uint32_t tile_width = 32;  ///< pixels along a tile's edge, 1..kMaxPictureWidth [kBadFrame]; must be the layout's
   /// An enumerator [kUnsupportedFrame] that the image stores triangles for [kUnsupportedImage].
   Accuracy accuracy = Accuracy::kStandard;
   /// An enumerator [kUnsupportedFrame]; kScene: of images with effects, and not with Accuracy::kPaper
