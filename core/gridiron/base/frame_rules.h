@@ -46,6 +46,7 @@ struct AnyLayout {
   return (pixels + tile_width - 1) / tile_width;
 }
 
+// The functions below are inlined always, so that a kernel, which needs the status alone, holds no places and names.
 #define GRIDIRON_FRAME_RULE(holds, status, base, record, member) \
   if (!(holds)) return make_fault(status, (base) + offsetof(record, member), #member)
 #define GRIDIRON_HEAD_RULE(holds, status, member) GRIDIRON_FRAME_RULE(holds, status, 0, FrameHead, member)
@@ -54,7 +55,7 @@ struct AnyLayout {
 
 /// @returns the first fault in the fields that every frame uses.
 template <class Limits>
-[[nodiscard]] constexpr FrameFault find_picture_fault(const FrameHead& frame) {
+[[nodiscard, gnu::always_inline]] constexpr FrameFault find_picture_fault(const FrameHead& frame) {
   constexpr Status kBad = Status::kBadFrame, kBeyond = Limits::kBeyond;
   GRIDIRON_HEAD_RULE(frame.magic == kFrameMagic, kBad, magic);
   GRIDIRON_HEAD_RULE(frame.version == kFrameVersion, kBad, version);
@@ -75,7 +76,7 @@ template <class Limits>
 
 /// @returns the first fault in the fields of Shading::kScene. Precondition: find_picture_fault finds none.
 template <class Limits>
-[[nodiscard]] constexpr FrameFault find_scene_fault(const FrameHead& frame) {
+[[nodiscard, gnu::always_inline]] constexpr FrameFault find_scene_fault(const FrameHead& frame) {
   if (frame.shading != static_cast<std::uint32_t>(Shading::kScene)) return {};
   GRIDIRON_HEAD_RULE(frame.effects_address != 0, Status::kBadFrame, effects_address);
   GRIDIRON_HEAD_RULE(frame.image_address != 0, Status::kBadFrame, image_address);
@@ -86,7 +87,7 @@ template <class Limits>
 
 /// @returns the first fault in the grid's part of a frame. Precondition: find_picture_fault finds none.
 template <class Limits>
-[[nodiscard]] constexpr FrameFault find_grid_fault(const FrameRecord& frame) {
+[[nodiscard, gnu::always_inline]] constexpr FrameFault find_grid_fault(const FrameRecord& frame) {
   constexpr Status kImage = Status::kUnsupportedImage;
   const GridFrame& engine = frame.engine;
   GRIDIRON_ENGINE_RULE(is_in_range(engine.macro_depth, 1, Limits::kMaxMacroDepth), Limits::kBeyond, macro_depth);
