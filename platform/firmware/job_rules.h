@@ -64,7 +64,7 @@ template <class Require>
   std::uint32_t value = 0;
   std::memcpy(&value, reinterpret_cast<const std::byte*>(&frame) + fault.place, sizeof value);
   return require(fault.status == Status::kOk, place + fault.place, "frame record: ", fault.field, " ", Hex{value},
-                 " at byte ", fault.place, ": ", StatusNumber{static_cast<std::uint32_t>(fault.status)});
+                 " at byte ", std::uint32_t{fault.place}, ": ", StatusNumber{static_cast<std::uint32_t>(fault.status)});
 }
 
 /// Requires a field of the frame record at `place` to have the value that job or scene image have for it.

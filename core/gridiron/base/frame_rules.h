@@ -15,13 +15,9 @@ namespace gridiron {
 /// The first rule that a frame breaks.
 struct FrameFault {
   Status status = Status::kOk;  ///< why the frame is rejected
-  std::uint32_t place = 0;      ///< of the field, in bytes of the frame record
+  std::uint16_t place = 0;      ///< of the field, in bytes of the frame record
   const char* field = "";       ///< its name in that record
 };
-
-[[nodiscard]] constexpr FrameFault make_fault(Status status, std::size_t place, const char* field) {
-  return {status, static_cast<std::uint32_t>(place), field};
-}
 
 /// The limits of a checker that does not render. A renderer takes those of its layout, which have the same names.
 struct AnyLayout {
@@ -48,7 +44,7 @@ struct AnyLayout {
 
 // The functions below are inlined always, so that a kernel, which needs the status alone, holds no places and names.
 #define GRIDIRON_FRAME_RULE(holds, status, base, record, member) \
-  if (!(holds)) return make_fault(status, (base) + offsetof(record, member), #member)
+  if (!(holds)) return FrameFault{status, (base) + offsetof(record, member), #member}
 #define GRIDIRON_HEAD_RULE(holds, status, member) GRIDIRON_FRAME_RULE(holds, status, 0, FrameHead, member)
 #define GRIDIRON_ENGINE_RULE(holds, status, member) \
   GRIDIRON_FRAME_RULE(holds, status, sizeof(FrameHead), GridFrame, member)
