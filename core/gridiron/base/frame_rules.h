@@ -44,7 +44,9 @@ struct AnyLayout {
 
 // The functions below are inlined always, so that a kernel, which needs the status alone, holds no places and names.
 #define GRIDIRON_FRAME_RULE(holds, status, base, record, member) \
-  if (!(holds)) return FrameFault{status, (base) + offsetof(record, member), #member}
+  if (!(holds)) return FrameFault {                              \
+      status, (base) + offsetof(record, member), #member         \
+    }
 #define GRIDIRON_HEAD_RULE(holds, status, member) GRIDIRON_FRAME_RULE(holds, status, 0, FrameHead, member)
 #define GRIDIRON_ENGINE_RULE(holds, status, member) \
   GRIDIRON_FRAME_RULE(holds, status, sizeof(FrameHead), GridFrame, member)
