@@ -73,6 +73,11 @@ class JobMemory {
     ADD_FAILURE() << "no section " << static_cast<std::uint32_t>(kind);
     return entries[0];
   }
+  // The grid of the image, and the frame record's copy.
+  void change_grid(void (*change)(GridRecord&)) {
+    change(grid());
+    change(record().engine.grid);
+  }
   GridRecord& grid() { return *reinterpret_cast<GridRecord*>(image() + section(SectionKind::kGrid).offset_bytes); }
   EffectsRecord& effects() {
     return *reinterpret_cast<EffectsRecord*>(image() + section(SectionKind::kEffects).offset_bytes);
@@ -135,129 +140,130 @@ TEST(JobCheck, TakesWhatTheProgramMakes) {
   }
 }
 
+#define WRONG(words, ...)                    \
+  {                                          \
+    words, [](JobMemory& m) { __VA_ARGS__; } \
+  }
+#define WRONG_GRID(words, ...)                                                     \
+  {                                                                                \
+    words, [](JobMemory& m) { m.change_grid([](GridRecord& g) { __VA_ARGS__; }); } \
+  }
+
 TEST(JobCheck, HoldsTheRecordAgainstTheJob) {
   JobMemory memory("teapot.ply", kPlain);
-  using Memory = JobMemory;
-  expect_refusals(
-      memory, {{"frame record: magic", [](Memory& m) { m.record().magic ^= 1; }},
-               {"frame record: version", [](Memory& m) { ++m.record().version; }},
-               {"frame record: width", [](Memory& m) { m.record().width = 2048; }},
-               {"frame record: height", [](Memory& m) { m.record().height = 2048; }},
-               {"frame record: engine", [](Memory& m) { ++m.record().engine_id; }},
-               {"frame record: tile width", [](Memory& m) { m.record().tile_width *= 2; }},
-               {"frame record: tiles_x", [](Memory& m) { ++m.record().tiles_x; }},
-               {"frame record: tiles_y", [](Memory& m) { --m.record().tiles_y; }},
-               {"frame record: colour address", [](Memory& m) { m.record().color_address = 0x200000; }},
-               {"frame record: colour address", [](Memory& m) { m.record().color_address += 128; }},
-               {"frame record: depth address", [](Memory& m) { m.record().depth_address = 0; }},
-               {"frame record: ids address", [](Memory& m) { m.record().id_address = m.record().color_address; }},
-               {"frame record: macro table address", [](Memory& m) { m.record().engine.macro_table_address = 0; }},
-               {"frame record: cell blocks address", [](Memory& m) { m.record().engine.cell_blocks_address -= 4096; }},
-               {"frame record: triangles address", [](Memory& m) { ++m.record().engine.triangles_address; }},
-               {"frame record: effects address", [](Memory& m) { m.record().effects_address = m.job().image_address; }},
-               {"frame record: image address", [](Memory& m) { m.record().image_address = m.job().image_address; }},
-               {"frame record: the grid", [](Memory& m) { ++m.record().engine.grid.reference_count; }},
-               {"frame record: the grid", [](Memory& m) { m.record().engine.grid.cells_per_unit[2] *= 2; }},
-               {"frame record: accuracy", [](Memory& m) { m.record().accuracy = 5; }},
-               {"frame record: accuracy", [](Memory& m) { m.record().accuracy = 1; }},
-               {"frame record: shading", [](Memory& m) { m.record().shading = 3; }},
-               {"frame record: shading", [](Memory& m) { m.job().effects = kPointShadows; }},
-               {"scene image: no effects", [](Memory& m) { m.record().shading = 2; }}});
+  expect_refusals(memory, {WRONG("frame record: magic", m.record().magic ^= 1),
+                           WRONG("frame record: version", ++m.record().version),
+                           WRONG("frame record: width", m.record().width = 2048),
+                           WRONG("frame record: height", m.record().height = 2048),
+                           WRONG("frame record: height 0x0 at byte 12: ", m.record().height = m.job().height = 0),
+                           WRONG("frame record: width 0x4001", m.record().width = m.job().width = kMaxPictureWidth + 1),
+                           WRONG("frame record: engine_id", ++m.record().engine_id),
+                           WRONG("frame record: tile_width", m.record().tile_width *= 2),
+                           WRONG("frame record: tiles_x", ++m.record().tiles_x),
+                           WRONG("frame record: tiles_y", --m.record().tiles_y),
+                           WRONG("frame record: output_depth 0x0", m.record().output_depth = 0),
+                           WRONG("frame record: t_far", m.record().t_far = 0.0f),
+                           WRONG("frame record: macro_depth 0x0", m.record().engine.macro_depth = 0),
+                           WRONG("frame record: triangle_depth 0x0", m.record().engine.triangle_depth = 0),
+                           WRONG("frame record: color_address", m.record().color_address = 0x200000),
+                           WRONG("frame record: color_address", m.record().color_address += 128),
+                           WRONG("frame record: depth_address", m.record().depth_address = 0),
+                           WRONG("frame record: id_address", m.record().id_address = m.record().color_address),
+                           WRONG("frame record: macro_table_address", m.record().engine.macro_table_address = 0),
+                           WRONG("frame record: cell_blocks_address", m.record().engine.cell_blocks_address -= 4096),
+                           WRONG("frame record: triangles_address", ++m.record().engine.triangles_address),
+                           WRONG("frame record: effects_address", m.record().effects_address = m.job().image_address),
+                           WRONG("frame record: image_address", m.record().image_address = m.job().image_address),
+                           WRONG("frame record: the grid", ++m.record().engine.grid.reference_count),
+                           WRONG("frame record: the grid", m.record().engine.grid.cells_per_unit[2] *= 2),
+                           WRONG("frame record: accuracy 0x5", m.record().accuracy = 5),
+                           WRONG("frame record: accuracy 0x1", m.record().accuracy = 1),
+                           WRONG("frame record: shading 0x3", m.record().shading = 3),
+                           WRONG("effects 0x1, frame record and", m.job().effects = kPointShadows),
+                           WRONG("frame record: effects_address 0x0", m.record().shading = 2),
+                           WRONG("frame record: shading 2, the scene image has no effects",
+                                 m.record().shading = m.record().walk_depth = 2,
+                                 m.record().effects_address = m.record().image_address = 4096),
+                           WRONG("47 tiles, of ", m.job().tile_count = 47)});
 }
 
 TEST(JobCheck, HoldsTheImageAgainstTheJob) {
   JobMemory memory("teapot.ply", kPlain);
-  using Memory = JobMemory;
   expect_refusals(
-      memory,
-      {{"scene image of another version", [](Memory& m) { m.header().magic ^= 1; }},
-       {"scene image: image_bytes", [](Memory& m) { m.header().image_bytes += 128; }},
-       {"scene image: image_bytes", [](Memory& m) { m.job().image_bytes -= 128; }},
-       {"scene image of 0 bytes", [](Memory& m) { m.job().image_bytes = 0; }},
-       {"scene image: section table", [](Memory& m) { m.header().section_count = 33; }},
-       {"scene image: section table", [](Memory& m) { m.header().section_table_offset_bytes = 0xFFFFFFF8; }},
-       {"scene image: section 4", [](Memory& m) { m.section(SectionKind::kTriangles).offset_bytes = 0u - 128ull; }},
-       {"scene image: section 3", [](Memory& m) { m.section(SectionKind::kCellBlocks).section_bytes = ~0ull; }},
-       {"scene image: no grid", [](Memory& m) { m.section(SectionKind::kGrid).kind = 99; }},
-       {"scene image: macrocells",
-        [](Memory& m) { m.record().engine.grid.macro_cell_count[1] = m.grid().macro_cell_count[1] = ~0u; }},
-       {"scene image: macrocell table", [](Memory& m) { m.section(SectionKind::kMacroTable).section_bytes = 0; }},
-       {"scene image: cell blocks",
-        [](Memory& m) { m.record().engine.grid.cell_block_count = m.grid().cell_block_count = ~0u; }},
-       {"scene image: triangles",
-        [](Memory& m) { m.record().engine.grid.reference_count = m.grid().reference_count = ~0u; }},
-       {"scene image: bytes of a triangle: 0",
-        [](Memory& m) { m.record().engine.grid.triangle_bytes = m.grid().triangle_bytes = 0; }},
-       {"scene image: bytes of a triangle: 1",
-        [](Memory& m) { m.record().engine.grid.triangle_bytes = m.grid().triangle_bytes = 1; }},
-       {"scene image: bytes of a cell block",
-        [](Memory& m) { m.record().engine.grid.cell_block_bytes = m.grid().cell_block_bytes = 32; }},
-       {"scene image: macrocells of 9 cells",
-        [](Memory& m) { m.record().engine.grid.macro_width = m.grid().macro_width = 9; }},
-       {"scene image: macrocells of 0 cells",
-        [](Memory& m) { m.record().engine.grid.macro_width = m.grid().macro_width = 0; }},
-       {"scene image: cells along an axis: 0",
-        [](Memory& m) { m.record().engine.grid.cell_count[2] = m.grid().cell_count[2] = 0; }},
-       {"scene image: cells along an axis: 2049",
-        [](Memory& m) { m.record().engine.grid.cell_count[0] = m.grid().cell_count[0] = 2049; }},
-       {"scene image: macrocells along an axis: 1 for 2048", [](Memory& m) {
-          m.record().engine.grid.cell_count[1] = m.grid().cell_count[1] = 2048;
-          m.record().engine.grid.macro_cell_count[1] = m.grid().macro_cell_count[1] = 1;
-        }}});
+      memory, {WRONG("scene image: header.magic", m.header().magic ^= 1),
+               WRONG("scene image: header.image_bytes", m.header().image_bytes += 128),
+               WRONG("scene image: header.image_bytes", m.job().image_bytes -= 128),
+               WRONG("scene image: image 0 ", m.job().image_bytes = 0),
+               WRONG("scene image: header.section_count 33 at byte 0x18", m.header().section_count = 33),
+               WRONG("scene image: header.section_table_offset_bytes", m.header().section_table_offset_bytes = ~7u),
+               WRONG("scene image: section.offset_bytes", m.section(SectionKind::kTriangles).offset_bytes = ~127ull),
+               WRONG("scene image: section.section_bytes", m.section(SectionKind::kCellBlocks).section_bytes = ~127ull),
+               WRONG("scene image: header.section_count", m.section(SectionKind::kGrid).kind = 99),
+               WRONG("scene image: section.element_count", m.section(SectionKind::kMacroTable).section_bytes = 0),
+               WRONG_GRID("scene image: section.element_count", g.cell_block_count = ~0u),
+               WRONG_GRID("scene image: section.element_count", g.reference_count = ~0u),
+               WRONG_GRID("scene image: grid.triangle_bytes 0 ", g.triangle_bytes = 0),
+               WRONG_GRID("scene image: grid.triangle_bytes 1 ", g.triangle_bytes = 1),
+               WRONG_GRID("scene image: grid.cell_block_bytes 32 ", g.cell_block_bytes = 32),
+               WRONG_GRID("scene image: grid.macro_width 9 ", g.macro_width = 9),
+               WRONG_GRID("scene image: grid.macro_width 0 ", g.macro_width = 0),
+               WRONG_GRID("scene image: grid.cell_count 0 ", g.cell_count[2] = 0),
+               WRONG_GRID("scene image: grid.cell_count 2049 ", g.cell_count[0] = 2049),
+               WRONG_GRID("scene image: grid.macro_cell_count 4294967295 ", g.macro_cell_count[1] = ~0u),
+               WRONG_GRID("scene image: grid.macro_cell_count 1 ", g.cell_count[1] = 2048, g.macro_cell_count[1] = 1)});
 }
 
 TEST(JobCheck, HoldsEffectsAgainstTheJob) {
   JobMemory memory("everything.nff", {"--size", "40x40", "--cores", "4"});
-  using Memory = JobMemory;
-  constexpr std::uint64_t kFar = 0u - 128ull;
-  expect_refusals(memory, {{"frame record: effects address", [](Memory& m) { m.record().effects_address += 128; }},
-                           {"frame record: image address", [](Memory& m) { m.record().image_address -= 4096; }},
-                           {"frame record: shading", [](Memory& m) { m.record().shading = 1; }},
-                           {"effects", [](Memory& m) { m.effects().called_for ^= kReflection; }},
-                           {"effects", [](Memory& m) { m.job().effects ^= kReflection; }},
-                           {"effects reflection, smooth_normals are not built into this firmware",
-                            [](Memory& m) { m.built &= ~(kReflection | kSmoothNormals); }},
-                           {"effects 0x400 are not built", [](Memory& m) { m.job().effects |= 1u << kEffectCount; }},
-                           {"scene image: more materials", [](Memory& m) { m.effects().light_count = kMaxLights + 1; }},
-                           {"scene image: materials", [](Memory& m) { m.effects().materials_offset_bytes = kFar; }},
-                           {"scene image: lights", [](Memory& m) { m.effects().lights_offset_bytes += 16; }},
-                           {"scene image: surfaces", [](Memory& m) { m.header().triangle_count = ~0u; }},
-                           {"scene image: normals", [](Memory& m) { m.effects().smooth_triangle_count = ~0u; }},
-                           {"scene image: environment", [](Memory& m) { m.effects().environment_offset_bytes = kFar; }},
-                           {"scene image: recursion depth 0", [](Memory& m) { m.effects().recursion_depth = 0; }},
-                           {"scene image: recursion depth 9", [](Memory& m) { m.effects().recursion_depth = 9; }},
-                           // Of which the bytes of waiting rays are none, modulo 2^32.
-                           {"scene image: recursion depth", [](Memory& m) { m.effects().recursion_depth = 8388606; }},
-                           {"scene image: 1 samples", [](Memory& m) { m.effects().samples_per_pixel = 1; }},
-                           {"scene image: 2 samples", [](Memory& m) { m.effects().samples_per_pixel = 2; }},
-                           {"scene image: 0 samples of occ", [](Memory& m) { m.effects().occlusion_samples = 0; }},
-                           {"scene image: 65 samples of occ", [](Memory& m) { m.effects().occlusion_samples = 65; }},
-                           {"scene image: 65 point lights", [](Memory& m) { m.effects().point_light_count = 65; }},
-                           {"scene image: an environment", [](Memory& m) { m.effects().environment_width = 0; }},
-                           {"no memory for rays that wait", [](Memory& m) { m.job().spill_address = 0; }},
-                           {"waiting rays of ", [](Memory& m) { m.job().spill_bytes -= 128; }},
-                           {"memory for waiting rays of 3 cores", [](Memory& m) { m.job().spill_cores = 3; }},
-                           {"memory for waiting rays", [](Memory& m) { m.job().spill_address = m.job().base_address; }},
-                           {"memory for waiting rays", [](Memory& m) { m.job().spill_address -= 4096; }}});
+  constexpr std::uint32_t kMirrors = kReflection | kSmoothNormals;
+  expect_refusals(
+      memory,
+      {WRONG("frame record: effects_address", m.record().effects_address += 128),
+       WRONG("frame record: image_address", m.record().image_address -= 4096), WRONG("effects", m.record().shading = 1),
+       WRONG("frame record: walk_depth", m.record().walk_depth = 0),
+       WRONG("effects", m.effects().called_for ^= kReflection), WRONG("effects", m.job().effects ^= kReflection),
+       WRONG("effects reflection, smooth_normals are not built into this firmware", m.built &= ~kMirrors),
+       WRONG("effects 0x400 are not built", m.job().effects |= 1u << kEffectCount),
+       WRONG("scene image: effects.light_count 257 ", m.effects().light_count = kMaxLights + 1),
+       WRONG("scene image: effects.materials_offset_bytes", m.effects().materials_offset_bytes = ~127ull),
+       WRONG("scene image: effects.lights_offset_bytes", m.effects().lights_offset_bytes += 16),
+       WRONG("scene image: section.element_count", m.header().triangle_count = ~0u),
+       WRONG("scene image: section.element_count", m.effects().smooth_triangle_count = ~0u),
+       WRONG("scene image: effects.environment_offset_bytes", m.effects().environment_offset_bytes = ~127ull),
+       WRONG("scene image: effects.environment_offset_bytes", m.effects().environment_width = 0),
+       WRONG("scene image: effects.recursion_depth 0 ", m.effects().recursion_depth = 0),
+       WRONG("scene image: effects.recursion_depth 9 ", m.effects().recursion_depth = 9),
+       // Of which the bytes of waiting rays are none, modulo 2^32.
+       WRONG("scene image: effects.recursion_depth", m.effects().recursion_depth = 8388606),
+       WRONG("scene image: effects.called_for", m.effects().samples_per_pixel = 1),
+       WRONG("scene image: effects.samples_per_pixel 2 ", m.effects().samples_per_pixel = 2),
+       WRONG("scene image: effects.called_for", m.effects().occlusion_samples = 0),
+       WRONG("scene image: effects.occlusion_samples 65 ", m.effects().occlusion_samples = 65),
+       WRONG("scene image: effects.point_light_count 65 ", m.effects().point_light_count = 65),
+       WRONG("no memory for rays that wait", m.job().spill_address = 0),
+       WRONG("waiting rays of ", m.job().spill_bytes -= 128),
+       WRONG("memory for waiting rays of 3 cores", m.job().spill_cores = 3),
+       WRONG("memory for waiting rays", m.job().spill_address = m.job().base_address),
+       WRONG("memory for waiting rays", m.job().spill_address -= 4096)});
 }
 
 // Planes that record and job agree on, but that are not in the result; a result or a record where transfers change it.
 TEST(JobCheck, KeepsPartsApart) {
   JobMemory memory("teapot.ply", kPlain);
-  using Memory = JobMemory;
   expect_refusals(
-      memory,
-      {{"colour plane", [](Memory& m) { m.job().color_address = m.record().color_address = m.job().result_address; }},
-       {"depth plane", [](Memory& m) { m.job().depth_address = m.record().depth_address = m.job().color_address; }},
-       {"plane of ids", [](Memory& m) { m.job().ids_address = m.record().id_address = 1ull << 63; }},
-       {"colour plane", [](Memory& m) { m.job().color_address = m.record().color_address = 0; }},
-       {"result of 64 bytes", [](Memory& m) { m.job().result_bytes = 64; }},
-       {"result at ", [](Memory& m) { m.job().result_address = m.job().image_address; }},
-       {"result at ", [](Memory& m) { m.job().result_bytes = ~0ull; }},
-       {"frame record at ", [](Memory& m) { m.job().frame_address = m.job().color_address; }},
-       {"frame record at ", [](Memory& m) { m.job().frame_address = m.job().base_address - 384; }},
-       {"scene image at ", [](Memory& m) { m.job().image_address = m.job().color_address; }},
-       {"check value", [](Memory& m) { m.job().loaded_bytes -= 64; }}});
+      memory, {WRONG("colour plane", m.job().color_address = m.record().color_address = m.job().result_address),
+               WRONG("depth plane", m.job().depth_address = m.record().depth_address = m.job().color_address),
+               WRONG("plane of ids", m.job().ids_address = m.record().id_address = 1ull << 63),
+               WRONG("frame record: color_address", m.job().color_address = m.record().color_address = 0),
+               WRONG("plane bytes", m.job().plane_bytes += 128), WRONG("result of 64 bytes", m.job().result_bytes = 64),
+               WRONG("result at ", m.job().result_address = m.job().image_address),
+               WRONG("result at ", m.job().result_bytes = ~0ull),
+               WRONG("frame record at ", m.job().frame_address = m.job().color_address),
+               WRONG("frame record at ", m.job().frame_address = m.job().base_address - 384),
+               WRONG("scene image at ", m.job().image_address = m.job().color_address),
+               WRONG("scene image at ", m.job().image_address += 64, m.job().image_bytes -= 128),
+               WRONG("scene image at ", m.job().loaded_bytes -= 64), WRONG("check value", m.job().loaded_bytes += 64),
+               WRONG("reserved", m.job().reserved[23] = 1)});
 }
 
 TEST(Console, NamesAStatus) {

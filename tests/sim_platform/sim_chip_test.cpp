@@ -296,6 +296,7 @@ class EffectsFrame {
     image.triangle_count = kTriangles;
     effects.material_count = 3;
     effects.light_count = 2;
+    effects.recursion_depth = effects.samples_per_pixel = 1;
     effects.smooth_triangle_count = 5;
     effects.environment_width = 16;  // 6 faces of 3x3 blocks of 768 bytes
     effects.materials_offset_bytes = 1024;
@@ -309,6 +310,7 @@ class EffectsFrame {
     frame.tiles_x = frame.tiles_y = frame.output_depth = 1;
     frame.engine_id = static_cast<std::uint32_t>(EngineId::kGrid);
     frame.shading = static_cast<std::uint32_t>(Shading::kScene);
+    frame.t_far = kFloatMax;
     frame.color_address = color_.address.value;
     frame.effects_address = image_.address.value + 512;
     frame.image_address = image_.address.value;
@@ -357,6 +359,9 @@ TEST(SimChipEffects, WhatAFrameNamesMustLieInMemory) {
     EXPECT_EQ(status_of([](F& f) { f.effects.material_count = kMaxMaterials; }), Status::kBadFrame);
     EXPECT_EQ(status_of([](F& f) { f.effects.material_count = ~0u; }), Status::kBadFrame);
     EXPECT_EQ(status_of([](F& f) { f.effects.light_count = kMaxLights + 1; }), Status::kBadFrame);
+    EXPECT_EQ(status_of([](F& f) { f.effects.recursion_depth = kMaxRecursionDepth + 1; }), Status::kBadFrame);
+    EXPECT_EQ(status_of([](F& f) { f.frame.output_depth = 0; }), Status::kBadFrame);
+    EXPECT_EQ(status_of([](F& f) { f.frame.accuracy = kAccuracyCount; }), Status::kUnsupportedFrame);
     EXPECT_EQ(status_of([](F& f) { f.effects.smooth_triangle_count = 1 << 20; }), Status::kBadFrame);
     EXPECT_EQ(status_of([](F& f) { f.effects.environment_width = kMaxEnvironmentWidth; }), Status::kBadFrame);
     EXPECT_EQ(status_of([](F& f) { f.effects.environment_width = ~0u; }), Status::kBadFrame);

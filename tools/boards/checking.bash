@@ -87,9 +87,9 @@ break_record() {
   local frame
   frame=$(($(read_word "$1" 32) - $(read_word "$1" 8)))   # FrameJob::frame_address, base_address
   case "$2" in
-    colour) change "$1" $((frame + 112)) 8 $((0x200000)); echo 'frame record: colour address' ;;
+    colour) change "$1" $((frame + 112)) 8 $((0x200000)); echo 'frame record: color_address' ;;
     width) change "$1" $((frame + 8)) 4 2048; echo 'frame record: width' ;;
-    triangles) change "$1" $((frame + 336)) 8 0; echo 'frame record: triangles address' ;;
+    triangles) change "$1" $((frame + 336)) 8 0; echo 'frame record: triangles_address' ;;
   esac
   seal "$1"
 }

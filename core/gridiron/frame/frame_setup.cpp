@@ -1,7 +1,7 @@
 // Frame set-up. SPDX-License-Identifier: Apache-2.0
-#include <gridiron/frame/frame_setup.h>
-
+#include <gridiron/base/frame_rules.h>
 #include <gridiron/base/lanes.h>
+#include <gridiron/frame/frame_setup.h>
 
 #include <glm/geometric.hpp>
 
@@ -66,13 +66,27 @@ std::uint64_t output_plane_index(std::uint32_t width, std::uint32_t tile_width, 
 }
 
 Status make_frame_head(const FrameSettings& settings, FrameHead& frame) {
-  const bool size_ok = settings.width >= 1 && settings.height >= 1 && settings.width <= kMaxPictureWidth &&
-                       settings.height <= kMaxPictureWidth && settings.tile_width >= 1;
-  if (!size_ok || !(settings.t_far > 0.0f) || !(settings.camera.tan_half_fov > 0.0f) ||
-      !is_finite(double{settings.camera.tan_half_fov})) {
+  if (settings.tile_width == 0) return Status::kBadFrame;
+  FrameHead made{};
+  made.magic = kFrameMagic;
+  made.version = kFrameVersion;
+  made.width = settings.width;
+  made.height = settings.height;
+  made.tile_width = settings.tile_width;
+  made.tiles_x = tiles_across(settings.width, settings.tile_width);
+  made.tiles_y = tiles_across(settings.height, settings.tile_width);
+  made.accuracy = static_cast<std::uint32_t>(settings.accuracy);
+  made.shading = static_cast<std::uint32_t>(settings.shading);
+  made.output_depth = settings.output_depth;
+  made.background_rgba = settings.background_rgba;
+  made.t_far = settings.t_far;
+  made.color_address = settings.color.value;
+  made.depth_address = settings.depth.value;
+  made.id_address = settings.ids.value;
+  GRIDIRON_TRY(find_picture_fault<AnyLayout>(made).status);
+  if (!(settings.camera.tan_half_fov > 0.0f) || !is_finite(double{settings.camera.tan_half_fov})) {
     return Status::kBadFrame;
   }
-  if (settings.color.value == 0) return Status::kBadFrame;
   if (!are_planes_aligned(settings)) return Status::kTransferAlignment;
 
   // Orthonormal frame of the camera; double keeps the steps exact to a float ulp whatever the distance.
@@ -89,26 +103,11 @@ Status make_frame_head(const FrameSettings& settings, FrameHead& frame) {
   const double left = -0.5 * pixel * settings.width + 0.5 * pixel;
   const double top = half_height - 0.5 * pixel;
 
-  frame = FrameHead{};
-  frame.magic = kFrameMagic;
-  frame.version = kFrameVersion;
-  frame.width = settings.width;
-  frame.height = settings.height;
-  frame.tile_width = settings.tile_width;
-  frame.tiles_x = (settings.width + settings.tile_width - 1) / settings.tile_width;
-  frame.tiles_y = (settings.height + settings.tile_width - 1) / settings.tile_width;
-  frame.accuracy = static_cast<std::uint32_t>(settings.accuracy);
-  frame.shading = static_cast<std::uint32_t>(settings.shading);
-  frame.output_depth = settings.output_depth;
-  frame.background_rgba = settings.background_rgba;
-  frame.t_far = settings.t_far;
-  store(frame.eye, DVec3(settings.camera.eye));
-  store(frame.corner, forward + left * right + top * up);
-  store(frame.step_x, pixel * right);
-  store(frame.step_y, -pixel * up);
-  frame.color_address = settings.color.value;
-  frame.depth_address = settings.depth.value;
-  frame.id_address = settings.ids.value;
+  store(made.eye, DVec3(settings.camera.eye));
+  store(made.corner, forward + left * right + top * up);
+  store(made.step_x, pixel * right);
+  store(made.step_y, -pixel * up);
+  frame = made;
   return Status::kOk;
 }
 
@@ -117,17 +116,6 @@ Status make_frame_record(const FrameSettings& settings, const SceneImageView& im
   FrameRecord made{};
   GRIDIRON_TRY(make_frame_head(settings, made));
   if (!is_multiple(image_address, kLineBytes)) return Status::kTransferAlignment;
-  if (image.grid.triangle_format != static_cast<std::uint32_t>(format_of(settings.accuracy))) {
-    return Status::kUnsupportedImage;
-  }
-  if (!stays_in_range(settings, image.grid)) return Status::kBadFrame;
-  if (settings.shading == Shading::kScene) {
-    if (!image.has_effects || !accuracy_traits(settings.accuracy).has_scene_shading) return Status::kUnsupportedImage;
-    if (settings.walk_depth < 1 || image_address.value == 0) return Status::kBadFrame;
-    made.effects_address = image_address.value + image.effects_offset_bytes;
-    made.image_address = image_address.value;
-    made.walk_depth = settings.walk_depth;
-  }
   made.engine_id = static_cast<std::uint32_t>(EngineId::kGrid);
   made.engine.grid = image.grid;
   made.engine.macro_table_address = image_address.value + image.macro_table_offset_bytes;
@@ -136,6 +124,15 @@ Status make_frame_record(const FrameSettings& settings, const SceneImageView& im
   made.engine.macro_depth = settings.macro_depth;
   made.engine.triangle_depth = settings.triangle_depth;
   made.engine.techniques = settings.techniques;
+  GRIDIRON_TRY(find_grid_fault<AnyLayout>(made).status);
+  if (!stays_in_range(settings, image.grid)) return Status::kBadFrame;
+  if (settings.shading == Shading::kScene) {
+    if (!image.has_effects || !accuracy_traits(settings.accuracy).has_scene_shading) return Status::kUnsupportedImage;
+    made.effects_address = image_address.value + image.effects_offset_bytes;
+    made.image_address = image_address.value;
+    made.walk_depth = settings.walk_depth;
+    GRIDIRON_TRY(find_scene_fault<AnyLayout>(made).status);
+  }
   frame = made;
   return Status::kOk;
 }

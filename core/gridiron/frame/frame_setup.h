@@ -35,17 +35,19 @@ struct FrameSettings {
   Camera camera;                 ///< in world space
   std::uint32_t width = 1024;    ///< pixels, 1..kMaxPictureWidth [kBadFrame]
   std::uint32_t height = 1024;   ///< likewise
-  std::uint32_t tile_width = 32; ///< pixels along a tile's edge, above 0 [kBadFrame]; must be the store layout's
-  Accuracy accuracy = Accuracy::kStandard;  ///< one that the image stores triangles for [kUnsupportedImage]
-  /// kScene: of images with effects, and not with Accuracy::kPaper [kUnsupportedImage].
+  std::uint32_t tile_width = 32;  ///< pixels along a tile's edge, 1..kMaxPictureWidth [kBadFrame]; must be the layout's
+  /// An enumerator [kUnsupportedFrame] that the image stores triangles for [kUnsupportedImage].
+  Accuracy accuracy = Accuracy::kStandard;
+  /// An enumerator [kUnsupportedFrame]; kScene: of images with effects, and not with Accuracy::kPaper
+  /// [kUnsupportedImage].
   Shading shading = Shading::kSimple;
   /// TechniqueBits; they change the amount of work, not the picture.
   std::uint32_t techniques = kUseMailbox | kUseCornerCulling | kUseEmptySkip;
-  std::uint32_t output_depth = 2;    ///< tile buffers in rotation, 1 to the layout's kMaxOutputDepth
-  std::uint32_t macro_depth = 2;     ///< cell blocks in rotation, 1 to the layout's kMaxMacroDepth
-  std::uint32_t triangle_depth = 2;  ///< triangle buffers in rotation, 1 to the layout's kMaxTriangleDepth
-  /// Walks of secondary rays under way at once, from 1 [kBadFrame] to the limit of the layout's engine; only for
-  /// Shading::kScene.
+  // Depths: from 1 [kBadFrame] to the layout's limit.
+  std::uint32_t output_depth = 2;    ///< tile buffers in rotation, at most kMaxOutputDepth
+  std::uint32_t macro_depth = 2;     ///< cell blocks in rotation, at most kMaxMacroDepth
+  std::uint32_t triangle_depth = 2;  ///< triangle buffers in rotation, at most kMaxTriangleDepth
+  /// Walks of secondary rays under way at once, at most the engine's kMaxRayDepth; only for Shading::kScene.
   std::uint32_t walk_depth = 2;
   std::uint32_t background_rgba = 0xFF000000u;  ///< 0xAABBGGRR, where nothing is hit
   /// Hits farther away do not count. Above 0 [kBadFrame], in units of the ray's direction, which has length 1 in the
@@ -67,7 +69,7 @@ struct FrameSettings {
                                                std::uint32_t y);
 
 /// Fills the head of a frame, but for engine_id and the fields that only Shading::kScene has.
-/// Errors: kBadFrame, kTransferAlignment, as below; `frame` is unchanged then.
+/// Errors: kBadFrame, kUnsupportedFrame, kTransferAlignment, as below; `frame` is unchanged then.
 [[nodiscard]] Status make_frame_head(const FrameSettings& settings, FrameHead& frame);
 
 /// Fills `frame` for the grid. Its directions have length between 1 and a few units, whatever the scale of the camera.
@@ -75,10 +77,11 @@ struct FrameSettings {
 /// @param image          as open_scene_image() opened it.
 /// @param image_address  where `image` lies in main memory: a multiple of kLineBytes, of Shading::kScene not 0.
 /// @param frame          to be copied to a multiple of kLineBytes in main memory; unchanged on an error.
-/// Errors: kBadFrame (size, t_far, walk_depth; no plane of colours; image at 0 with Shading::kScene; camera degenerate,
+/// Errors: kBadFrame (sizes, t_far, depths; no plane of colours; image at 0 with Shading::kScene; camera degenerate,
 /// not finite or so far away that its place in cells exceeds kCellSpaceLimit), kTransferAlignment (a plane or the image
-/// is misaligned), kUnsupportedImage (the accuracy requires another triangle format; Shading::kScene requires an image
-/// with effects, and an accuracy other than kPaper). The size of the memory for planes is not checked here.
+/// is misaligned), kUnsupportedFrame (unknown accuracy or shading), kUnsupportedImage (the accuracy requires another
+/// triangle format; Shading::kScene requires an image with effects, and an accuracy other than kPaper). The size of the
+/// memory for planes is not checked here.
 [[nodiscard]] Status make_frame_record(const FrameSettings& settings, const SceneImageView& image,
                                        MainAddress image_address, FrameRecord& frame);
 

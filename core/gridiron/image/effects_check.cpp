@@ -9,9 +9,6 @@
 namespace gridiron {
 namespace {
 
-constexpr SectionKind kPartKinds[] = {SectionKind::kMaterials, SectionKind::kLights, SectionKind::kSurfaces,
-                                      SectionKind::kNormals, SectionKind::kEnvironmentMap};
-
 bool all_within(const float* values, int count, float low, float high) {
   bool good = true;
   for (int i = 0; i < count; ++i) good = good && within(values[i], low, high);
@@ -24,50 +21,6 @@ bool same_bits(const float* a, const float* b, int count) {
   return differ == 0;
 }
 
-// --- The record -----------------------------------------------------------------------------------------------------
-
-// Reads the record, and requires exactly the sections that it counts, at the places that it names.
-bool check_record(ImageChecker& checker, const Sections& sections, SceneImageView& view) {
-  if (!check_elements(checker, sections, SectionKind::kEffects, sizeof(EffectsRecord), 1)) return false;
-  const std::uint64_t base = sections.entry(SectionKind::kEffects).offset_bytes;
-  const auto effects = checker.read<EffectsRecord>(base);
-  SettingsError error;
-  if (!settings_are_in_range(effects, error)) return checker.require(false, base + error.offset, error.field);
-  GRIDIRON_REQUIRE(effects.occlusion_samples == 0 || radius_is_in_reach(effects.occlusion_radius, view.grid), base,
-                   EffectsRecord, occlusion_radius, "effects.occlusion_radius");
-  GRIDIRON_REQUIRE(all_zero(effects.reserved, 8), base, EffectsRecord, reserved, "effects.reserved");
-
-  const std::uint64_t blocks = environment_blocks(effects.environment_width);
-  struct Part {
-    std::uint64_t element_bytes, element_count, offset_bytes;
-    std::size_t field_offset;
-    const char* field;
-  };
-#define GRIDIRON_PART(record, count, member) \
-  { sizeof(record), (count), effects.member, offsetof(EffectsRecord, member), "effects." #member }
-  const Part parts[] = {GRIDIRON_PART(MaterialRecord, effects.material_count, materials_offset_bytes),
-                        GRIDIRON_PART(LightRecord, effects.light_count, lights_offset_bytes),
-                        GRIDIRON_PART(SurfaceRecord, view.header.triangle_count, surfaces_offset_bytes),
-                        GRIDIRON_PART(NormalRecord, effects.smooth_triangle_count, normals_offset_bytes),
-                        GRIDIRON_PART(EnvironmentBlock, effects.environment_width == 0 ? 0 : 6 * blocks * blocks,
-                                      environment_offset_bytes)};
-#undef GRIDIRON_PART
-  for (int i = 0; i < 5; ++i) {
-    const Part& part = parts[i];
-    const bool wanted = part.element_count != 0;
-    const std::uint64_t expected = wanted ? sections.entry(kPartKinds[i]).offset_bytes : 0;
-    const bool found = sections.has(kPartKinds[i]) == wanted;
-    if (!checker.require(found && part.offset_bytes == expected, base + part.field_offset, part.field)) return false;
-    if (wanted && !check_elements(checker, sections, kPartKinds[i], part.element_bytes, part.element_count)) {
-      return false;
-    }
-  }
-  view.effects = effects;
-  view.effects_offset_bytes = base;
-  view.has_effects = true;
-  return true;
-}
-
 // --- Materials and lights -------------------------------------------------------------------------------------------
 
 bool check_materials(ImageChecker& checker, const EffectsRecord& effects) {
@@ -75,34 +28,32 @@ bool check_materials(ImageChecker& checker, const EffectsRecord& effects) {
     const std::uint64_t base = effects.materials_offset_bytes + i * sizeof(MaterialRecord);
     const auto material = checker.read<MaterialRecord>(base);
     const float other_shares = material.specular + material.transmittance;
-    GRIDIRON_REQUIRE(within(material.specular, 0.0f, 1.0f), base, MaterialRecord, specular, "material.specular");
-    GRIDIRON_REQUIRE(within(material.transmittance, 0.0f, 1.0f) && other_shares <= kMaxShareSum, base, MaterialRecord,
-                     transmittance, "material.transmittance");
-    GRIDIRON_REQUIRE(all_within(material.transmitted, 3, 0.0f, material.transmittance), base, MaterialRecord,
-                     transmitted, "material.transmitted");
-    GRIDIRON_REQUIRE(all_within(material.diffuse, 3, 0.0f, kMaxShareSum - other_shares), base, MaterialRecord, diffuse,
-                     "material.diffuse");
-    GRIDIRON_REQUIRE(within(material.shine, 0.0f, kMaxShine), base, MaterialRecord, shine, "material.shine");
+    GRIDIRON_REQUIRE(within(material.specular, 0.0f, 1.0f), base, material, specular);
+    GRIDIRON_REQUIRE(within(material.transmittance, 0.0f, 1.0f) && other_shares <= kMaxShareSum, base, material,
+                     transmittance);
+    GRIDIRON_REQUIRE(all_within(material.transmitted, 3, 0.0f, material.transmittance), base, material, transmitted);
+    GRIDIRON_REQUIRE(all_within(material.diffuse, 3, 0.0f, kMaxShareSum - other_shares), base, material, diffuse);
+    GRIDIRON_REQUIRE(within(material.shine, 0.0f, kMaxShine), base, material, shine);
     const bool index_ok =
         material.transmittance > 0.0f ? within(material.index, kLeastIndex, kGreatestIndex) : material.index == 1.0f;
-    GRIDIRON_REQUIRE(index_ok, base, MaterialRecord, index, "material.index");
-    GRIDIRON_REQUIRE(material.is_smooth <= 1, base, MaterialRecord, is_smooth, "material.is_smooth");
-    GRIDIRON_REQUIRE(material.reserved == 0, base, MaterialRecord, reserved, "material.reserved");
+    GRIDIRON_REQUIRE(index_ok, base, material, index);
+    GRIDIRON_REQUIRE(material.is_smooth <= 1, base, material, is_smooth);
+    GRIDIRON_REQUIRE(material.reserved == 0, base, material, reserved);
   }
   return true;
 }
 
 bool check_light(ImageChecker& checker, const LightRecord& light, std::uint64_t base, const GridRecord& grid) {
-  GRIDIRON_REQUIRE(finite_fields(light.corner, 3), base, LightRecord, corner, "light.corner");
+  GRIDIRON_REQUIRE(finite_fields(light.corner, 3), base, light, corner);
   const float none[3] = {0.0f, 0.0f, 0.0f};
   const bool edges_ok = light.samples == 0 ? same_bits(light.edge_u, none, 3) && same_bits(light.edge_v, none, 3)
                                            : finite_fields(light.edge_u, 3) && finite_fields(light.edge_v, 3);
-  GRIDIRON_REQUIRE(edges_ok, base, LightRecord, edge_u, "light.edge_u");
-  GRIDIRON_REQUIRE(light_has_place(light) && light_is_in_reach(light, grid), base, LightRecord, corner, "light.corner");
-  GRIDIRON_REQUIRE(all_within(light.color, 3, 0.0f, kMaxLightColor), base, LightRecord, color, "light.color");
-  GRIDIRON_REQUIRE(light.is_near == light_is_near(light, grid), base, LightRecord, is_near, "light.is_near");
-  GRIDIRON_REQUIRE(light.reserved0 == 0, base, LightRecord, reserved0, "light.reserved0");
-  GRIDIRON_REQUIRE(light.reserved1 == 0, base, LightRecord, reserved1, "light.reserved1");
+  GRIDIRON_REQUIRE(edges_ok, base, light, edge_u);
+  GRIDIRON_REQUIRE(light_has_place(light) && light_is_in_reach(light, grid), base, light, corner);
+  GRIDIRON_REQUIRE(all_within(light.color, 3, 0.0f, kMaxLightColor), base, light, color);
+  GRIDIRON_REQUIRE(light.is_near == light_is_near(light, grid), base, light, is_near);
+  GRIDIRON_REQUIRE(light.reserved0 == 0, base, light, reserved0);
+  GRIDIRON_REQUIRE(light.reserved1 == 0, base, light, reserved1);
   return true;
 }
 
@@ -112,7 +63,7 @@ bool check_lights(ImageChecker& checker, const SceneImageView& view, EffectsCall
     const std::uint64_t base = effects.lights_offset_bytes + i * sizeof(LightRecord);
     const auto light = checker.read<LightRecord>(base);
     GRIDIRON_REQUIRE(light.samples <= kMaxEffectSamples && (light.samples == 0) == (i < effects.point_light_count),
-                     base, LightRecord, samples, "light.samples");
+                     base, light, samples);
     if (!check_light(checker, light, base, view.grid)) return false;
     call.add_light(light);
   }
@@ -138,17 +89,18 @@ bool is_storable(const SurfaceRecord& surface, const GridRecord& grid) {
 
 bool check_surfaces(ImageChecker& checker, const SceneImageView& view, EffectsCall& call) {
   const EffectsRecord& effects = view.effects;
+  const ImageHeader& header = view.header;
   std::uint32_t dropped = 0;
   std::uint32_t normals = 0;
   std::uint32_t last_material = kNoTriangle;
   MaterialRecord material{};
-  for (std::uint64_t i = 0; i < view.header.triangle_count; ++i) {
+  for (std::uint64_t i = 0; i < header.triangle_count; ++i) {
     const std::uint64_t base = effects.surfaces_offset_bytes + i * sizeof(SurfaceRecord);
     const auto surface = checker.read<SurfaceRecord>(base);
-    GRIDIRON_REQUIRE(is_storable(surface, view.grid), base, SurfaceRecord, v, "surface.v");
+    GRIDIRON_REQUIRE(is_storable(surface, view.grid), base, surface, v);
     const auto corner = [&](int k) { return Vec3(surface.v[k][0], surface.v[k][1], surface.v[k][2]); };
     if (has_zero_area(corner(0), corner(1), corner(2))) ++dropped;
-    GRIDIRON_REQUIRE(surface.material < effects.material_count, base, SurfaceRecord, material, "surface.material");
+    GRIDIRON_REQUIRE(surface.material < effects.material_count, base, surface, material);
     if (surface.material != last_material) {
       last_material = surface.material;
       material = checker.read<MaterialRecord>(effects.materials_offset_bytes +
@@ -156,15 +108,12 @@ bool check_surfaces(ImageChecker& checker, const SceneImageView& view, EffectsCa
       call.add_material(material);
     }
     const bool is_smooth = material.is_smooth != 0;
-    GRIDIRON_REQUIRE(surface.normals == (is_smooth ? normals : kNoNormals), base, SurfaceRecord, normals,
-                     "surface.normals");
+    GRIDIRON_REQUIRE(surface.normals == (is_smooth ? normals : kNoNormals), base, surface, normals);
     normals += is_smooth ? 1u : 0u;
-    GRIDIRON_REQUIRE(surface.reserved == 0, base, SurfaceRecord, reserved, "surface.reserved");
+    GRIDIRON_REQUIRE(surface.reserved == 0, base, surface, reserved);
   }
-  GRIDIRON_REQUIRE(dropped == view.header.dropped_triangle_count, 0, ImageHeader, dropped_triangle_count,
-                   "header.dropped_triangle_count");
-  GRIDIRON_REQUIRE(normals == effects.smooth_triangle_count, view.effects_offset_bytes, EffectsRecord,
-                   smooth_triangle_count, "effects.smooth_triangle_count");
+  GRIDIRON_REQUIRE(dropped == header.dropped_triangle_count, 0, header, dropped_triangle_count);
+  GRIDIRON_REQUIRE(normals == effects.smooth_triangle_count, view.effects_offset_bytes, effects, smooth_triangle_count);
   return true;
 }
 
@@ -190,7 +139,7 @@ bool check_corners(ImageChecker& checker, const SceneImageView& view) {
     const std::uint64_t base =
         view.effects.surfaces_offset_bytes + std::uint64_t{triangle.triangle_id} * sizeof(SurfaceRecord);
     const auto surface = checker.read<SurfaceRecord>(base);
-    GRIDIRON_REQUIRE(same_bits(&surface.v[0][0], &triangle.v[0][0], 9), base, SurfaceRecord, v, "surface.v");
+    GRIDIRON_REQUIRE(same_bits(&surface.v[0][0], &triangle.v[0][0], 9), base, surface, v);
   }
   return true;
 }
@@ -199,9 +148,8 @@ bool check_normals(ImageChecker& checker, const EffectsRecord& effects) {
   for (std::uint64_t i = 0; i < effects.smooth_triangle_count; ++i) {
     const std::uint64_t base = effects.normals_offset_bytes + i * sizeof(NormalRecord);
     const auto normal = checker.read<NormalRecord>(base);
-    GRIDIRON_REQUIRE(is_unit(normal.n[0]) && is_unit(normal.n[1]) && is_unit(normal.n[2]), base, NormalRecord, n,
-                     "normal.n");
-    GRIDIRON_REQUIRE(all_zero(normal.reserved, 3), base, NormalRecord, reserved, "normal.reserved");
+    GRIDIRON_REQUIRE(is_unit(normal.n[0]) && is_unit(normal.n[1]) && is_unit(normal.n[2]), base, normal, n);
+    GRIDIRON_REQUIRE(all_zero(normal.reserved, 3), base, normal, reserved);
   }
   return true;
 }
@@ -252,24 +200,20 @@ bool check_environment(ImageChecker& checker, const EffectsRecord& effects) {
 
 }  // namespace
 
-bool check_effect_sections(ImageChecker& checker, const Sections& sections, SceneImageView& view) {
-  if (!sections.has(SectionKind::kEffects)) {
-    for (const SectionKind kind : kPartKinds) {
-      GRIDIRON_REQUIRE(!sections.has(kind), sections.entry_offset(kind), SectionEntry, kind, "section.kind");
-    }
-    return true;
-  }
-  // Surfaces store vertices, which a projection does not have.
-  GRIDIRON_REQUIRE(view.grid.triangle_format != static_cast<std::uint32_t>(TriangleFormat::kProjection),
-                   sections.entry_offset(SectionKind::kEffects), SectionEntry, kind, "section.kind");
+bool check_effect_sections(ImageChecker& checker, const SceneImageView& view) {
+  if (!view.has_effects) return true;
+  const EffectsRecord& effects = view.effects;
+  const std::uint64_t base = view.effects_offset_bytes;
+  if (!check_effect_measures(checker, base, effects)) return false;
+  GRIDIRON_REQUIRE(effects.occlusion_samples == 0 || radius_is_in_reach(effects.occlusion_radius, view.grid), base,
+                   effects, occlusion_radius);
   EffectsCall call;
-  if (!check_record(checker, sections, view) || !check_materials(checker, view.effects) ||
-      !check_lights(checker, view, call) || !check_surfaces(checker, view, call) || !check_corners(checker, view) ||
-      !check_normals(checker, view.effects) || !check_environment(checker, view.effects)) {
+  if (!check_materials(checker, effects) || !check_lights(checker, view, call) ||
+      !check_surfaces(checker, view, call) || !check_corners(checker, view) || !check_normals(checker, effects) ||
+      !check_environment(checker, effects)) {
     return false;
   }
-  GRIDIRON_REQUIRE(view.effects.called_for == call.called_for(view.effects), view.effects_offset_bytes, EffectsRecord,
-                   called_for, "effects.called_for");
+  GRIDIRON_REQUIRE(effects.called_for == call.called_for(effects), base, effects, called_for);
   return true;
 }
 

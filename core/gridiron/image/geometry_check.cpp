@@ -212,7 +212,7 @@ bool check_reference(ImageChecker& checker, const Records& records, Search& sear
                      const CellSpace& space, const std::int32_t cell[3], std::uint64_t reference, Totals& totals) {
   const std::uint64_t place = records.place_of(reference);
   const Vec3 a = records.corner(reference, 0);
-  GRIDIRON_REQUIRE(lies_inside(view.grid, a), place, VertexTriangle, v, "triangle.v");
+  if (!checker.require(lies_inside(view.grid, a), place, "triangle.v")) return false;
   std::int32_t elsewhere = 0;  // one branch, hard to predict, not three
   for (int axis = 0; axis < 3; ++axis) {
     const auto at = static_cast<std::int32_t>((double{a[axis]} - space.minimum[axis]) * space.cells_per_unit[axis]);
@@ -221,8 +221,8 @@ bool check_reference(ImageChecker& checker, const Records& records, Search& sear
   if (elsewhere != 0) return true;
   const Vec3 b = records.corner(reference, 1);
   const Vec3 c = records.corner(reference, 2);
-  GRIDIRON_REQUIRE(lies_inside(view.grid, b) && lies_inside(view.grid, c) && !has_zero_area(a, b, c), place,
-                   VertexTriangle, v, "triangle.v");
+  const bool is_kept = lies_inside(view.grid, b) && lies_inside(view.grid, c) && !has_zero_area(a, b, c);
+  if (!checker.require(is_kept, place, "triangle.v")) return false;
   for (int axis = 0; axis < 3; ++axis) {
     for (const float at : {a[axis], b[axis], c[axis]}) {
       totals.minimum[axis] = at < totals.minimum[axis] ? at : totals.minimum[axis];
@@ -279,24 +279,24 @@ bool check_triangles(ImageChecker& checker, const SceneImageView& view, std::uin
       const auto triangle = checker.read<ProjectionTriangle>(base);
       const float values[9] = {triangle.n_u, triangle.n_v, triangle.n_d, triangle.b_u, triangle.b_v,
                                triangle.b_d, triangle.c_u, triangle.c_v, triangle.c_d};
-      GRIDIRON_REQUIRE(finite_fields(values, 9), base, ProjectionTriangle, n_u, "triangle.n_u");
+      GRIDIRON_REQUIRE(finite_fields(values, 9), base, triangle, n_u);
       constexpr float kGreatestSlope = 0x1.000002p0f;  // 1, or the next float where a builder rounds upwards
       const bool are_slopes =
           __builtin_fabsf(triangle.n_u) <= kGreatestSlope && __builtin_fabsf(triangle.n_v) <= kGreatestSlope;
-      GRIDIRON_REQUIRE(are_slopes, base, ProjectionTriangle, n_u, "triangle.n_u");
-      GRIDIRON_REQUIRE(triangle.axis_k < 3, base, ProjectionTriangle, axis_k, "triangle.axis_k");
-      GRIDIRON_REQUIRE(triangle.reserved == 0, base, ProjectionTriangle, reserved, "triangle.reserved");
+      GRIDIRON_REQUIRE(are_slopes, base, triangle, n_u);
+      GRIDIRON_REQUIRE(triangle.axis_k < 3, base, triangle, axis_k);
+      GRIDIRON_REQUIRE(triangle.reserved == 0, base, triangle, reserved);
       id = triangle.triangle_id;
     } else if (lattice) {
       const auto triangle = checker.read<LatticeTriangle>(base);
-      GRIDIRON_REQUIRE(triangle.reserved == 0, base, LatticeTriangle, reserved, "triangle.reserved");
+      GRIDIRON_REQUIRE(triangle.reserved == 0, base, triangle, reserved);
       id = triangle.triangle_id;
     } else {
       const auto triangle = checker.read<VertexTriangle>(base);
       bool finite = true;
       for (const auto& corner : triangle.v) finite = finite && finite_fields(corner, 3);
-      GRIDIRON_REQUIRE(finite, base, VertexTriangle, v, "triangle.v");
-      GRIDIRON_REQUIRE(all_zero(triangle.reserved, 2), base, VertexTriangle, reserved, "triangle.reserved");
+      GRIDIRON_REQUIRE(finite, base, triangle, v);
+      GRIDIRON_REQUIRE(all_zero(triangle.reserved, 2), base, triangle, reserved);
       id = triangle.triangle_id;
     }
     const std::uint64_t id_place = base + view.grid.triangle_bytes - sizeof(id);
@@ -363,18 +363,15 @@ bool check_geometry(ImageChecker& checker, const Sections& sections, const Scene
   if (!all_good) return false;
 
   const std::uint64_t base = sections.entry(SectionKind::kGrid).offset_bytes;
-  GRIDIRON_REQUIRE(totals.reference_count == grid.reference_count, base, GridRecord, reference_count,
-                   "grid.reference_count");
+  GRIDIRON_REQUIRE(totals.reference_count == grid.reference_count, base, grid, reference_count);
   for (int axis = 0; axis < 3; ++axis) {
-    GRIDIRON_REQUIRE(totals.minimum[axis] == grid.bounds_minimum[axis], base, GridRecord, bounds_minimum,
-                     "grid.bounds_minimum");
-    GRIDIRON_REQUIRE(totals.maximum[axis] == grid.bounds_maximum[axis], base, GridRecord, bounds_maximum,
-                     "grid.bounds_maximum");
+    GRIDIRON_REQUIRE(totals.minimum[axis] == grid.bounds_minimum[axis], base, grid, bounds_minimum);
+    GRIDIRON_REQUIRE(totals.maximum[axis] == grid.bounds_maximum[axis], base, grid, bounds_maximum);
   }
-  const std::uint64_t count = view.header.triangle_count;
-  const std::uint64_t dropped = view.header.dropped_triangle_count;
-  GRIDIRON_REQUIRE(totals.triangle_count == count - dropped, 0, ImageHeader, dropped_triangle_count,
-                   "header.dropped_triangle_count");
+  const ImageHeader& header = view.header;
+  const std::uint64_t count = header.triangle_count;
+  const std::uint64_t dropped = header.dropped_triangle_count;
+  GRIDIRON_REQUIRE(totals.triangle_count == count - dropped, 0, header, dropped_triangle_count);
   // Every id occurs once: if no triangle was dropped, their sum must be that of all ids.
   return checker.require(dropped != 0 || totals.id_sum == count * (count - 1) / 2, view.triangles_offset_bytes,
                          "triangle.triangle_id");

@@ -2,6 +2,7 @@
 // Inside of this room. Memory: borrowed. Threads: one. SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <gridiron/base/image_rules.h>
 #include <gridiron/base/records.h>
 #include <gridiron/image/scene_image.h>
 
@@ -25,9 +26,13 @@ class ImageChecker {
     return record;
   }
 
-  [[nodiscard]] bool require(bool holds, std::uint64_t byte_offset, const char* field) {
+  [[nodiscard]] bool require(bool holds, std::uint64_t byte_offset, const char* field, std::uint64_t = 0) {
     if (!holds) error_ = {Status::kBadImage, byte_offset, field};
     return holds;
+  }
+
+  [[nodiscard]] bool is_intact(const ImageHeader& header) const {
+    return header.check_value == scene_image_check_value(image_.first(static_cast<std::size_t>(header.image_bytes)));
   }
 
   [[nodiscard]] std::span<const std::byte> image() const { return image_; }
@@ -37,9 +42,8 @@ class ImageChecker {
   SceneImageError& error_;
 };
 
-/// Returns false from a check that has an ImageChecker `checker` if a field of a record at `base` is wrong.
-#define GRIDIRON_REQUIRE(holds, base, record_type, member, name) \
-  if (!checker.require((holds), (base) + offsetof(record_type, member), (name))) return false
+/// As GRIDIRON_RULE, for fields that are not all integers.
+#define GRIDIRON_REQUIRE(holds, base, record, member) GRIDIRON_RULE_OF(0, holds, base, record, member)
 
 [[nodiscard]] inline bool is_finite(float value) {
   return (std::bit_cast<std::uint32_t>(value) & 0x7F800000u) != 0x7F800000u;
@@ -49,36 +53,6 @@ class ImageChecker {
   bool finite = true;
   for (int i = 0; i < count; ++i) finite = finite && is_finite(values[i]);
   return finite;
-}
-
-[[nodiscard]] inline bool all_zero(const std::uint32_t* words, int count) {
-  std::uint32_t any = 0;
-  for (int i = 0; i < count; ++i) any |= words[i];
-  return any == 0;
-}
-
-/// The known sections by kind, and where their entries stand.
-struct Sections {
-  static constexpr std::uint32_t kGeometryCount = 4;  ///< in every image
-  static constexpr std::uint32_t kKnownCount = 10;
-  SectionEntry entries[kKnownCount] = {};
-  std::uint64_t entry_offsets[kKnownCount] = {};
-  bool found[kKnownCount] = {};
-
-  [[nodiscard]] static std::uint32_t index_of(SectionKind kind) { return static_cast<std::uint32_t>(kind) - 1; }
-  [[nodiscard]] const SectionEntry& entry(SectionKind kind) const { return entries[index_of(kind)]; }
-  [[nodiscard]] std::uint64_t entry_offset(SectionKind kind) const { return entry_offsets[index_of(kind)]; }
-  [[nodiscard]] bool has(SectionKind kind) const { return found[index_of(kind)]; }
-};
-
-/// Checks that a section was found and holds that many elements of that size, so that all of them lie inside the image.
-[[nodiscard]] inline bool check_elements(ImageChecker& checker, const Sections& sections, SectionKind kind,
-                                         std::uint64_t element_bytes, std::uint64_t element_count) {
-  const SectionEntry& entry = sections.entry(kind);
-  const std::uint64_t place = sections.entry_offset(kind);
-  GRIDIRON_REQUIRE(entry.element_bytes == element_bytes, place, SectionEntry, element_bytes, "section.element_bytes");
-  GRIDIRON_REQUIRE(entry.element_count == element_count, place, SectionEntry, element_count, "section.element_count");
-  return true;
 }
 
 /// Checks that bytes [begin, end) of the image, multiples of 4, are padding: all zero.
@@ -99,8 +73,8 @@ struct Sections {
 /// Cost: linear.
 [[nodiscard]] bool check_geometry(ImageChecker& checker, const Sections& sections, const SceneImageView& view);
 
-/// Checks the sections of effects, all or none, against header, grid and triangles. Fills the view's effects.
+/// Checks the contents of the sections of effects against header, grid and triangles.
 /// Precondition: everything else in the image is right. Cost: linear.
-[[nodiscard]] bool check_effect_sections(ImageChecker& checker, const Sections& sections, SceneImageView& view);
+[[nodiscard]] bool check_effect_sections(ImageChecker& checker, const SceneImageView& view);
 
 }  // namespace gridiron

@@ -2,7 +2,6 @@
 #include <gridiron/base/check_value.h>
 #include <gridiron/base/lanes.h>
 #include <gridiron/base/math.h>
-#include <gridiron/base/triangle_formats.h>
 #include <gridiron/build/grid/grid_resolution.h>
 #include <gridiron/image/image_checker.h>
 #include <gridiron/image/scene_image.h>
@@ -11,76 +10,6 @@
 
 namespace gridiron {
 namespace {
-
-// --- Header and sections ------------------------------------------------------------------------------------------
-
-bool check_header(ImageChecker& checker, ImageHeader& header) {
-  const std::uint64_t available = checker.image().size();
-  const bool aligned = reinterpret_cast<std::uintptr_t>(checker.image().data()) % kLineBytes == 0;
-  if (!checker.require(aligned && available >= sizeof(ImageHeader), 0, "image")) return false;
-  header = checker.read<ImageHeader>(0);
-  GRIDIRON_REQUIRE(header.magic == kImageMagic, 0, ImageHeader, magic, "header.magic");
-  GRIDIRON_REQUIRE(header.version == kImageVersion, 0, ImageHeader, version, "header.version");
-  GRIDIRON_REQUIRE(
-      header.image_bytes >= kLineBytes && header.image_bytes % kLineBytes == 0 && header.image_bytes <= available, 0,
-      ImageHeader, image_bytes, "header.image_bytes");
-  const auto image = checker.image().first(static_cast<std::size_t>(header.image_bytes));
-  GRIDIRON_REQUIRE(header.check_value == scene_image_check_value(image), 0, ImageHeader, check_value,
-                   "header.check_value");
-  GRIDIRON_REQUIRE(header.section_count <= kMaxSectionCount, 0, ImageHeader, section_count, "header.section_count");
-  const std::uint64_t table_end =
-      std::uint64_t{header.section_table_offset_bytes} + std::uint64_t{header.section_count} * sizeof(SectionEntry);
-  GRIDIRON_REQUIRE(header.section_table_offset_bytes >= sizeof(ImageHeader) &&
-                       header.section_table_offset_bytes % 8 == 0 && table_end <= header.image_bytes,
-                   0, ImageHeader, section_table_offset_bytes, "header.section_table_offset_bytes");
-  GRIDIRON_REQUIRE(header.triangle_count >= 1, 0, ImageHeader, triangle_count, "header.triangle_count");
-  GRIDIRON_REQUIRE(header.vertex_count >= 3, 0, ImageHeader, vertex_count, "header.vertex_count");
-  GRIDIRON_REQUIRE(header.dropped_triangle_count < header.triangle_count, 0, ImageHeader, dropped_triangle_count,
-                   "header.dropped_triangle_count");
-  GRIDIRON_REQUIRE(all_zero(header.reserved, 5), 0, ImageHeader, reserved, "header.reserved");
-  return true;
-}
-
-bool check_sections(ImageChecker& checker, const ImageHeader& header, Sections& sections) {
-  const std::uint64_t table_begin = header.section_table_offset_bytes;
-  const std::uint64_t table_end = table_begin + std::uint64_t{header.section_count} * sizeof(SectionEntry);
-  for (std::uint32_t i = 0; i < header.section_count; ++i) {
-    const std::uint64_t place = table_begin + i * sizeof(SectionEntry);
-    const auto entry = checker.read<SectionEntry>(place);
-
-    // Inside the image, behind the header, apart from the table and from every earlier section.
-    GRIDIRON_REQUIRE(entry.offset_bytes >= sizeof(ImageHeader) && entry.offset_bytes % kLineBytes == 0 &&
-                         entry.offset_bytes <= header.image_bytes,
-                     place, SectionEntry, offset_bytes, "section.offset_bytes");
-    GRIDIRON_REQUIRE(
-        entry.section_bytes % kLineBytes == 0 && entry.section_bytes <= header.image_bytes - entry.offset_bytes, place,
-        SectionEntry, section_bytes, "section.section_bytes");
-    GRIDIRON_REQUIRE(entry.element_bytes == 0 || entry.element_count <= entry.section_bytes / entry.element_bytes,
-                     place, SectionEntry, element_count, "section.element_count");
-    const std::uint64_t begin = entry.offset_bytes;
-    const std::uint64_t end = begin + entry.section_bytes;
-    GRIDIRON_REQUIRE(begin == end || end <= table_begin || begin >= table_end, place, SectionEntry, offset_bytes,
-                     "section.offset_bytes");
-    for (std::uint32_t j = 0; j < i; ++j) {
-      const auto other = checker.read<SectionEntry>(table_begin + j * sizeof(SectionEntry));
-      const bool apart = begin == end || other.section_bytes == 0 || end <= other.offset_bytes ||
-                         begin >= other.offset_bytes + other.section_bytes;
-      GRIDIRON_REQUIRE(apart, place, SectionEntry, offset_bytes, "section.offset_bytes");
-    }
-
-    // Each known kind occurs once; others are skipped.
-    const std::uint32_t index = entry.kind - 1;
-    if (index >= Sections::kKnownCount) continue;
-    GRIDIRON_REQUIRE(!sections.found[index], place, SectionEntry, kind, "section.kind");
-    sections.found[index] = true;
-    sections.entries[index] = entry;
-    sections.entry_offsets[index] = place;
-  }
-  for (std::uint32_t i = 0; i < Sections::kGeometryCount; ++i) {
-    GRIDIRON_REQUIRE(sections.found[i], 0, ImageHeader, section_count, "header.section_count");
-  }
-  return true;
-}
 
 // --- Grid ---------------------------------------------------------------------------------------------------------
 
@@ -103,20 +32,20 @@ bool check_lattice(ImageChecker& checker, std::uint64_t base, const GridRecord& 
     const std::uint32_t words[4] = {
         std::bit_cast<std::uint32_t>(lattice.origin[0]), std::bit_cast<std::uint32_t>(lattice.origin[1]),
         std::bit_cast<std::uint32_t>(lattice.origin[2]), std::bit_cast<std::uint32_t>(lattice.step)};
-    GRIDIRON_REQUIRE(all_zero(words, 4), base, GridRecord, lattice, "grid.lattice");
+    GRIDIRON_REQUIRE(all_zero(words, 4), base, grid, lattice);
     return true;
   }
   GRIDIRON_REQUIRE(
       lattice.step >= kLeastLatticeStep && lattice.step <= kCoordinateLimit && is_power_of_two(lattice.step), base,
-      GridRecord, lattice.step, "grid.lattice.step");
+      grid, lattice.step);
   for (const float origin : lattice.origin) {
     const double steps = double{origin} / double{lattice.step};
     const double last = double{origin} + double{lattice.step} * (kLatticePlaces - 1);
     const bool in_range = !is_negative_zero(origin) && magnitude(origin) <= kCoordinateLimit &&
                           last <= 8.0 * double{kCoordinateLimit} &&
                           magnitude(steps) <= double{kMostStepsFromZero} + 1.0;
-    GRIDIRON_REQUIRE(in_range && steps == static_cast<double>(static_cast<std::int32_t>(steps)), base, GridRecord,
-                     lattice.origin, "grid.lattice.origin");
+    GRIDIRON_REQUIRE(in_range && steps == static_cast<double>(static_cast<std::int32_t>(steps)), base, grid,
+                     lattice.origin);
   }
   return true;
 }
@@ -160,63 +89,32 @@ GridRecord resolved_grid(const ImageHeader& header, const GridRecord& grid) {
 bool check_resolution(ImageChecker& checker, std::uint64_t base, const ImageHeader& header, const GridRecord& grid) {
   const GridRecord expected = resolved_grid(header, grid);
   for (int axis = 0; axis < 3; ++axis) {
-    GRIDIRON_REQUIRE(same_float(grid.minimum[axis], expected.minimum[axis]), base, GridRecord, minimum, "grid.minimum");
-    GRIDIRON_REQUIRE(grid.cell_count[axis] == expected.cell_count[axis], base, GridRecord, cell_count,
-                     "grid.cell_count");
-    GRIDIRON_REQUIRE(same_float(grid.cells_per_unit[axis], expected.cells_per_unit[axis]), base, GridRecord,
-                     cells_per_unit, "grid.cells_per_unit");
+    GRIDIRON_REQUIRE(same_float(grid.minimum[axis], expected.minimum[axis]), base, grid, minimum);
+    GRIDIRON_REQUIRE(grid.cell_count[axis] == expected.cell_count[axis], base, grid, cell_count);
+    GRIDIRON_REQUIRE(same_float(grid.cells_per_unit[axis], expected.cells_per_unit[axis]), base, grid, cells_per_unit);
   }
   return true;
 }
 
-bool check_grid(ImageChecker& checker, const Sections& sections, const ImageHeader& header, GridRecord& grid) {
-  if (!check_elements(checker, sections, SectionKind::kGrid, sizeof(GridRecord), 1)) return false;
-  const std::uint64_t base = sections.entry(SectionKind::kGrid).offset_bytes;
-  grid = checker.read<GridRecord>(base);
-  GRIDIRON_REQUIRE(grid.macro_width >= 1 && grid.macro_width <= kMaxMacroWidth, base, GridRecord, macro_width,
-                   "grid.macro_width");
+// The grid's rules that need more than integers.
+bool check_grid(ImageChecker& checker, std::uint64_t base, const ImageHeader& header, const GridRecord& grid) {
   for (int axis = 0; axis < 3; ++axis) {
     const float minimum = grid.minimum[axis];
     const float scale = grid.cells_per_unit[axis];
     const float low = grid.bounds_minimum[axis];
     const float high = grid.bounds_maximum[axis];
-    const std::uint32_t cells = grid.cell_count[axis];
-    GRIDIRON_REQUIRE(magnitude(minimum) <= kCoordinateLimit, base, GridRecord, minimum, "grid.minimum");
-    GRIDIRON_REQUIRE(scale >= kLeastCellsPerUnit && scale <= kGreatestCellsPerUnit, base, GridRecord, cells_per_unit,
-                     "grid.cells_per_unit");
-    GRIDIRON_REQUIRE(cells >= 1 && cells <= kMaxCellsPerAxis, base, GridRecord, cell_count, "grid.cell_count");
-    GRIDIRON_REQUIRE(grid.macro_cell_count[axis] == (cells + grid.macro_width - 1) / grid.macro_width, base, GridRecord,
-                     macro_cell_count, "grid.macro_cell_count");
-    GRIDIRON_REQUIRE(magnitude(low) <= kCoordinateLimit && low >= minimum && !is_negative_zero(low), base, GridRecord,
-                     bounds_minimum, "grid.bounds_minimum");
+    GRIDIRON_REQUIRE(magnitude(minimum) <= kCoordinateLimit, base, grid, minimum);
+    GRIDIRON_REQUIRE(scale >= kLeastCellsPerUnit && scale <= kGreatestCellsPerUnit, base, grid, cells_per_unit);
+    GRIDIRON_REQUIRE(magnitude(low) <= kCoordinateLimit && low >= minimum && !is_negative_zero(low), base, grid,
+                     bounds_minimum);
     const double extent = double{high} - double{minimum};
-    const bool fits = extent * double{scale} <= static_cast<double>(cells);
-    GRIDIRON_REQUIRE(high <= kCoordinateLimit && high >= low && fits && !is_negative_zero(high), base, GridRecord,
-                     bounds_maximum, "grid.bounds_maximum");
+    const bool fits = extent * double{scale} <= static_cast<double>(grid.cell_count[axis]);
+    GRIDIRON_REQUIRE(high <= kCoordinateLimit && high >= low && fits && !is_negative_zero(high), base, grid,
+                     bounds_maximum);
   }
-  GRIDIRON_REQUIRE(grid.cell_block_count >= 1, base, GridRecord, cell_block_count, "grid.cell_block_count");
-  GRIDIRON_REQUIRE(grid.triangle_format == static_cast<std::uint32_t>(TriangleFormat::kVertices) ||
-                       grid.triangle_format == static_cast<std::uint32_t>(TriangleFormat::kProjection) ||
-                       grid.triangle_format == static_cast<std::uint32_t>(TriangleFormat::kLattice),
-                   base, GridRecord, triangle_format, "grid.triangle_format");
-  GRIDIRON_REQUIRE(grid.triangle_bytes == triangle_bytes_of(static_cast<TriangleFormat>(grid.triangle_format)), base,
-                   GridRecord, triangle_bytes, "grid.triangle_bytes");
-  GRIDIRON_REQUIRE(
-      grid.cell_block_bytes == cell_block_bytes_of(static_cast<TriangleFormat>(grid.triangle_format), grid.macro_width),
-      base, GridRecord, cell_block_bytes, "grid.cell_block_bytes");
   if (!check_lattice(checker, base, grid)) return false;
-  GRIDIRON_REQUIRE(grid.lambda >= kLeastLambda && grid.lambda <= kGreatestLambda, base, GridRecord, lambda,
-                   "grid.lambda");
-  GRIDIRON_REQUIRE(all_zero(grid.reserved, 3), base, GridRecord, reserved, "grid.reserved");
-  if (!check_resolution(checker, base, header, grid)) return false;
-
-  // The sizes that the other sections must have, in numbers that cannot overflow: at most 2^33 macrocells.
-  const std::uint64_t macro_cells =
-      std::uint64_t{grid.macro_cell_count[0]} * grid.macro_cell_count[1] * grid.macro_cell_count[2];
-  return check_elements(checker, sections, SectionKind::kMacroTable, sizeof(MacroTableEntry),
-                        (macro_cells + 31) / 32) &&
-         check_elements(checker, sections, SectionKind::kCellBlocks, grid.cell_block_bytes, grid.cell_block_count) &&
-         check_elements(checker, sections, SectionKind::kTriangles, grid.triangle_bytes, grid.reference_count);
+  GRIDIRON_REQUIRE(grid.lambda >= kLeastLambda && grid.lambda <= kGreatestLambda, base, grid, lambda);
+  return check_resolution(checker, base, header, grid);
 }
 
 // --- Cells and triangles ------------------------------------------------------------------------------------------
@@ -245,9 +143,9 @@ bool check_block(ImageChecker& checker, const SceneImageView& view, std::uint64_
         const bool inside = macro_cell[0] * width + x < grid.cell_count[0] &&
                             macro_cell[1] * width + y < grid.cell_count[1] &&
                             macro_cell[2] * width + z < grid.cell_count[2];
-        GRIDIRON_REQUIRE(cell.first_triangle == running, base, CellRecord, first_triangle, "cell.first_triangle");
+        GRIDIRON_REQUIRE(cell.first_triangle == running, base, cell, first_triangle);
         GRIDIRON_REQUIRE(cell.triangle_count <= grid.reference_count - running && (inside || cell.triangle_count == 0),
-                         base, CellRecord, triangle_count, "cell.triangle_count");
+                         base, cell, triangle_count);
         running += cell.triangle_count;
         base += is_bound ? sizeof(CellBound) : sizeof(CellRecord);
       }
@@ -265,23 +163,21 @@ bool check_cells(ImageChecker& checker, const Sections& sections, const SceneIma
   for (std::uint64_t offset = 0; offset < grid.cell_block_bytes; offset += sizeof(CellRecord)) {
     const std::uint64_t base = view.cell_blocks_offset_bytes + offset;
     const auto cell = checker.read<CellRecord>(base);
-    GRIDIRON_REQUIRE(cell.first_triangle == 0, base, CellRecord, first_triangle, "cell.first_triangle");
-    GRIDIRON_REQUIRE(cell.triangle_count == 0, base, CellRecord, triangle_count, "cell.triangle_count");
+    GRIDIRON_REQUIRE(cell.first_triangle == 0, base, cell, first_triangle);
+    GRIDIRON_REQUIRE(cell.triangle_count == 0, base, cell, triangle_count);
   }
-  const std::uint64_t macro_cells =
-      std::uint64_t{grid.macro_cell_count[0]} * grid.macro_cell_count[1] * grid.macro_cell_count[2];
+  const std::uint64_t macro_cells = macro_cell_total(grid);
   const std::uint64_t entry_count = sections.entry(SectionKind::kMacroTable).element_count;
   std::uint64_t block = 1;
   std::uint64_t running = 0;
   for (std::uint64_t i = 0; i < entry_count; ++i) {
     const std::uint64_t base = view.macro_table_offset_bytes + i * sizeof(MacroTableEntry);
-    const auto entry = checker.read<MacroTableEntry>(base);
-    GRIDIRON_REQUIRE(entry.first_block == block, base, MacroTableEntry, first_block, "macro_table.first_block");
-    for (std::uint32_t bit = 0; bit < 32 && entry.occupied >> bit != 0; ++bit) {
-      if ((entry.occupied >> bit & 1u) == 0) continue;
+    const auto macro_table = checker.read<MacroTableEntry>(base);
+    GRIDIRON_REQUIRE(macro_table.first_block == block, base, macro_table, first_block);
+    for (std::uint32_t bit = 0; bit < 32 && macro_table.occupied >> bit != 0; ++bit) {
+      if ((macro_table.occupied >> bit & 1u) == 0) continue;
       const std::uint64_t index = i * 32 + bit;
-      GRIDIRON_REQUIRE(index < macro_cells && block < grid.cell_block_count, base, MacroTableEntry, occupied,
-                       "macro_table.occupied");
+      GRIDIRON_REQUIRE(index < macro_cells && block < grid.cell_block_count, base, macro_table, occupied);
       const std::uint64_t row = index / grid.macro_cell_count[0];
       const std::uint32_t macro_cell[3] = {static_cast<std::uint32_t>(index % grid.macro_cell_count[0]),
                                            static_cast<std::uint32_t>(row % grid.macro_cell_count[1]),
@@ -291,9 +187,8 @@ bool check_cells(ImageChecker& checker, const Sections& sections, const SceneIma
     }
   }
   const std::uint64_t grid_base = sections.entry(SectionKind::kGrid).offset_bytes;
-  GRIDIRON_REQUIRE(block == grid.cell_block_count, grid_base, GridRecord, cell_block_count, "grid.cell_block_count");
-  GRIDIRON_REQUIRE(running == grid.reference_count && running >= 1, grid_base, GridRecord, reference_count,
-                   "grid.reference_count");
+  GRIDIRON_REQUIRE(block == grid.cell_block_count, grid_base, grid, cell_block_count);
+  GRIDIRON_REQUIRE(running == grid.reference_count && running >= 1, grid_base, grid, reference_count);
   return true;
 }
 
@@ -332,17 +227,16 @@ bool check_gaps(ImageChecker& checker, const ImageHeader& header, const Sections
 Status open_scene_image(std::span<const std::byte> image, SceneImageView& view, SceneImageError& error) {
   error = SceneImageError{};
   ImageChecker checker(image, error);
-  SceneImageView opened{};
-  Sections sections;
-  if (!check_header(checker, opened.header) || !check_sections(checker, opened.header, sections) ||
-      !check_grid(checker, sections, opened.header, opened.grid)) {
+  ImageHead head;
+  const bool is_aligned = reinterpret_cast<std::uintptr_t>(image.data()) % kLineBytes == 0;
+  if (!checker.require(is_aligned, 0, "image") || !check_image_head(checker, image.size(), head)) {
     return Status::kBadImage;
   }
-  opened.macro_table_offset_bytes = sections.entry(SectionKind::kMacroTable).offset_bytes;
-  opened.cell_blocks_offset_bytes = sections.entry(SectionKind::kCellBlocks).offset_bytes;
-  opened.triangles_offset_bytes = sections.entry(SectionKind::kTriangles).offset_bytes;
-  if (!check_cells(checker, sections, opened) || !check_geometry(checker, sections, opened) ||
-      !check_effect_sections(checker, sections, opened) || !check_gaps(checker, opened.header, sections)) {
+  const SceneImageView opened = view_of(head);
+  const std::uint64_t grid_place = head.sections.entry(SectionKind::kGrid).offset_bytes;
+  if (!check_grid(checker, grid_place, opened.header, opened.grid) || !check_cells(checker, head.sections, opened) ||
+      !check_geometry(checker, head.sections, opened) || !check_effect_sections(checker, opened) ||
+      !check_gaps(checker, opened.header, head.sections)) {
     return Status::kBadImage;
   }
   view = opened;

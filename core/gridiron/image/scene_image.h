@@ -2,8 +2,7 @@
 // Memory: borrowed. Threads: read-only. SPDX-License-Identifier: Apache-2.0
 #pragma once
 
-#include <gridiron/base/effect_records.h>
-#include <gridiron/base/records.h>
+#include <gridiron/base/image_rules.h>
 #include <gridiron/platform/status.h>
 
 #include <cstddef>
@@ -24,6 +23,19 @@ struct SceneImageView {
   EffectsRecord effects;               ///< all zero where the image has none
   std::uint64_t effects_offset_bytes;  ///< of that record; 0 where the image has none
 };
+
+/// The view of an image whose head is right.
+[[nodiscard]] inline SceneImageView view_of(const ImageHead& head) {
+  const auto offset_of = [&head](SectionKind kind) { return head.sections.entry(kind).offset_bytes; };
+  return {head.header,
+          head.grid,
+          offset_of(SectionKind::kMacroTable),
+          offset_of(SectionKind::kCellBlocks),
+          offset_of(SectionKind::kTriangles),
+          head.sections.has(SectionKind::kEffects),
+          head.effects,
+          offset_of(SectionKind::kEffects)};
+}
 
 /// What was wrong with an image: for the words of tools.
 struct SceneImageError {

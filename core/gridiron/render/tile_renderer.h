@@ -3,7 +3,7 @@
 // Threads: one core; cores share nothing but the frame in main memory. SPDX-License-Identifier: Apache-2.0
 #pragma once
 
-#include <gridiron/base/accuracies.h>
+#include <gridiron/base/frame_rules.h>
 #include <gridiron/base/records.h>
 #include <gridiron/dma/transfers.h>
 #include <gridiron/engine/engine.h>
@@ -169,31 +169,24 @@ class TileRenderer {
     return Status::kOk;
   }
 
-  // The scene image was validated when it was loaded; here the frame is held against what this store can do.
+  // Limits of this store.
+  struct Limits : Layout {
+    static constexpr std::uint32_t kLeastTileWidth = Layout::kTileWidth;
+    static constexpr std::uint32_t kMostTileWidth = Layout::kTileWidth;
+    static constexpr std::uint32_t kMaxWalkDepth = Layout::Engine::template kMaxRayDepth<Layout>;
+    static constexpr Status kBeyond = Status::kUnsupportedFrame;
+  };
+
+  // The scene image was validated when it was loaded; here the frame is checked against the store's limits.
   [[nodiscard]] Status check_frame() const {
     const FrameHead& frame = store_.frame;
-    if (frame.magic != kFrameMagic || frame.version != kFrameVersion) return Status::kBadFrame;
-    if (frame.width == 0 || frame.height == 0 || frame.width > kMaxPictureWidth || frame.height > kMaxPictureWidth) {
-      return Status::kBadFrame;
-    }
-    if (frame.tile_width != Layout::kTileWidth) return Status::kUnsupportedFrame;
+    GRIDIRON_TRY(find_picture_fault<Limits>(frame).status);
     if (frame.engine_id != Layout::Engine::kId) return Status::kUnsupportedFrame;
-    if (frame.tiles_x != (frame.width + Layout::kTileWidth - 1) / Layout::kTileWidth ||
-        frame.tiles_y != (frame.height + Layout::kTileWidth - 1) / Layout::kTileWidth) {
-      return Status::kBadFrame;
-    }
-    if (frame.output_depth == 0 || frame.output_depth > Layout::kMaxOutputDepth) return Status::kUnsupportedFrame;
-    if (!(frame.t_far > 0.0f) || frame.color_address == 0) return Status::kBadFrame;
-    if (frame.accuracy >= kAccuracyCount || frame.shading > static_cast<std::uint32_t>(Shading::kScene)) {
-      return Status::kUnsupportedFrame;
-    }
     if (is_scene_shaded() && !kHasEffects) return Status::kMissingEffect;
     // An engine without code for eye rays supports no other shading, and no exact distances of eye rays.
     if (!kTracesEyes<Layout> && (!is_scene_shaded() || frame.depth_address != 0)) return Status::kUnsupportedFrame;
-    if (!is_scene_shaded()) return Status::kOk;
-    if (frame.effects_address == 0 || frame.image_address == 0) return Status::kBadFrame;
-    const bool depth_ok = frame.walk_depth >= 1 && frame.walk_depth <= Layout::Engine::template kMaxRayDepth<Layout>;
-    return depth_ok && accuracy_traits(frame.accuracy).has_scene_shading ? Status::kOk : Status::kUnsupportedFrame;
+    if (!kHasEffects) return Status::kOk;
+    return find_scene_fault<Limits>(frame).status;
   }
 
   // Waits for all output slots, the oldest first; that order does not depend on the number of tiles this core had.

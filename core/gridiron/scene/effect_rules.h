@@ -2,8 +2,7 @@
 // Source: core/EFFECTS.md. Memory: values. Threads: any. SPDX-License-Identifier: Apache-2.0
 #pragma once
 
-#include <gridiron/base/effect_records.h>
-#include <gridiron/base/records.h>
+#include <gridiron/base/image_rules.h>
 #include <gridiron/scene/effects.h>
 
 #include <cstdint>
@@ -62,12 +61,17 @@ struct EffectsCall {
 /// 0.
 [[nodiscard]] EffectsRecord scene_settings(const EffectsView& effects);
 
-/// Checks that the record's settings are within their ranges; else names the first field that is not, with its place in
-/// the record.
-struct SettingsError {
-  const char* field = "";
-  std::uint32_t offset = 0;
-};
-[[nodiscard]] bool settings_are_in_range(const EffectsRecord& scene, SettingsError& error);
+/// Checks the record's settings that are no counts; check_effect_counts (base/image_rules.h) checks those.
+/// @param base  the record's place in the image.
+template <class Checker>
+[[nodiscard]] bool check_effect_measures(Checker&& checker, std::uint64_t base, const EffectsRecord& effects) {
+  const float radius = effects.occlusion_radius;
+  GRIDIRON_RULE_OF(0, effects.occlusion_samples == 0 ? radius == 0.0f : radius > 0.0f && radius <= kCoordinateLimit,
+                   base, effects, occlusion_radius);
+  for (const float color : effects.background) {
+    GRIDIRON_RULE_OF(0, within(color, 0.0f, 1.0f), base, effects, background);
+  }
+  return true;
+}
 
 }  // namespace gridiron

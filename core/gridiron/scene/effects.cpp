@@ -195,11 +195,9 @@ void EffectsCall::add_material(const MaterialRecord& material) {
 std::uint32_t EffectsCall::called_for(const EffectsRecord& scene) const {
   const auto bit = [](bool holds, std::uint32_t effect) { return holds ? effect : 0u; };
   const bool bounces = scene.recursion_depth > 1;
-  return kSceneShading | bit(scene.has_shadows != 0 && point_light, kPointShadows) | bit(area_light, kAreaLights) |
-         bit(bounces && reflects, kReflection) | bit(bounces && refracts, kRefraction) |
-         bit(scene.occlusion_samples != 0, kAmbientOcclusion) | bit(scene.environment_width != 0, kEnvironment) |
-         bit(smooth, kSmoothNormals) | bit((point_light || area_light) && shines, kHighlights) |
-         bit(scene.samples_per_pixel > 1, kMultisampling);
+  return kSceneShading | counted_effects(scene) | bit(scene.has_shadows != 0 && point_light, kPointShadows) |
+         bit(area_light, kAreaLights) | bit(bounces && reflects, kReflection) | bit(bounces && refracts, kRefraction) |
+         bit(smooth, kSmoothNormals) | bit((point_light || area_light) && shines, kHighlights);
 }
 
 EffectsRecord scene_settings(const EffectsView& effects) {
@@ -222,29 +220,6 @@ EffectsRecord scene_settings(const EffectsView& effects) {
   return record;
 }
 
-bool settings_are_in_range(const EffectsRecord& scene, SettingsError& error) {
-  const auto require = [&error](bool holds, const char* field, std::size_t offset) {
-    if (!holds && error.field[0] == '\0') error = {field, static_cast<std::uint32_t>(offset)};
-  };
-#define GRIDIRON_SETTING(member, holds) require((holds), "effects." #member, offsetof(EffectsRecord, member))
-  error = SettingsError{};
-  GRIDIRON_SETTING(material_count, scene.material_count >= 1 && scene.material_count <= kMaxMaterials);
-  GRIDIRON_SETTING(light_count, scene.light_count <= kMaxLights);
-  GRIDIRON_SETTING(point_light_count, scene.point_light_count <= scene.light_count);
-  GRIDIRON_SETTING(recursion_depth, scene.recursion_depth >= 1 && scene.recursion_depth <= kMaxRecursionDepth);
-  GRIDIRON_SETTING(samples_per_pixel,
-                   scene.samples_per_pixel == 1 || scene.samples_per_pixel == 4 || scene.samples_per_pixel == 16);
-  GRIDIRON_SETTING(occlusion_samples, scene.occlusion_samples <= kMaxEffectSamples);
-  GRIDIRON_SETTING(occlusion_radius, scene.occlusion_samples == 0
-                                         ? scene.occlusion_radius == 0.0f
-                                         : scene.occlusion_radius > 0.0f && scene.occlusion_radius <= kCoordinateLimit);
-  for (const float color : scene.background) GRIDIRON_SETTING(background, within(color, 0.0f, 1.0f));
-  GRIDIRON_SETTING(has_shadows, scene.has_shadows <= 1);
-  GRIDIRON_SETTING(environment_width, scene.environment_width <= kMaxEnvironmentWidth);
-#undef GRIDIRON_SETTING
-  return error.field[0] == '\0';
-}
-
 std::uint32_t effects_called_for(const EffectsView& effects) {
   EffectsCall call;
   for (const Light& light : effects.lights) call.add_light(placed_light(light));
@@ -258,8 +233,9 @@ std::uint32_t effects_called_for(const EffectsView& effects) {
 }
 
 Status check_effects(const MeshView& mesh, const EffectsView& effects) {
-  SettingsError error;
-  if (!settings_are_in_range(scene_settings(effects), error) || !is_finite(effects.occlusion_radius)) {
+  const EffectsRecord settings = scene_settings(effects);
+  if (!check_effect_counts(AnyFault{}, 0, settings) || !check_effect_measures(AnyFault{}, 0, settings) ||
+      !is_finite(effects.occlusion_radius)) {
     return Status::kBadEffects;
   }
   const std::size_t triangle_count = mesh.triangles.size();

@@ -1,5 +1,7 @@
 // The simulated chip: checks the frame's ranges, picks the kernel that was compiled for the options, and runs it.
 // Memory: owns local stores for the time of the frame. Threads: starts its own. SPDX-License-Identifier: Apache-2.0
+#include <gridiron/base/frame_rules.h>
+#include <gridiron/base/image_rules.h>
 #include <gridiron/base/math.h>
 #include <gridiron/base/records.h>
 #include <gridiron/sim/compiled_layouts.h>
@@ -107,21 +109,12 @@ enum class LayoutGroup : std::uint8_t { kCommon, kSweep, kEffects, kNone };
       image.magic != kImageMagic || memory.bytes_at(MainAddress{frame.image_address}, image.image_bytes).empty()) {
     return false;
   }
-  if (effects.material_count > kMaxMaterials || effects.light_count > kMaxLights ||
-      effects.environment_width > kMaxEnvironmentWidth) {
-    return false;
-  }
-  const std::uint64_t blocks = effects.environment_width == 0 ? 0 : environment_blocks(effects.environment_width);
   // Images and their sections consist of whole lines, so cores may read whole lines.
-  const auto lies_in_image = [&](std::uint64_t offset, std::uint64_t count, std::uint64_t record_bytes) {
-    const std::uint64_t bytes = round_up<std::uint64_t>(count * record_bytes, kLineBytes);
-    return offset <= image.image_bytes && bytes <= image.image_bytes - offset;
-  };
-  return lies_in_image(effects.materials_offset_bytes, effects.material_count, sizeof(MaterialRecord)) &&
-         lies_in_image(effects.lights_offset_bytes, effects.light_count, sizeof(LightRecord)) &&
-         lies_in_image(effects.surfaces_offset_bytes, image.triangle_count, sizeof(SurfaceRecord)) &&
-         lies_in_image(effects.normals_offset_bytes, effects.smooth_triangle_count, sizeof(NormalRecord)) &&
-         lies_in_image(effects.environment_offset_bytes, 6 * blocks * blocks, sizeof(EnvironmentBlock));
+  return check_effect_counts(AnyFault{}, 0, effects) &&
+         for_each_effect_part(effects, image.triangle_count, [&](const EffectPart& part) {
+           const std::uint64_t bytes = round_up<std::uint64_t>(part.element_count * part.element_bytes, kLineBytes);
+           return part.offset_bytes <= image.image_bytes && bytes <= image.image_bytes - part.offset_bytes;
+         });
 }
 
 [[nodiscard]] bool is_scene_shaded(const FrameRecord& frame) {
@@ -134,20 +127,13 @@ enum class LayoutGroup : std::uint8_t { kCommon, kSweep, kEffects, kNone };
   if (bytes.empty() || address.value % kLineBytes != 0) return Status::kBadFrame;
   std::memcpy(&frame, bytes.data(), sizeof frame);
 
-  const auto whole_tiles = [&](std::uint32_t pixels) { return (pixels + frame.tile_width - 1) / frame.tile_width; };
-  const auto in_picture = [](std::uint32_t count) { return count >= 1 && count <= kMaxPictureWidth; };
-  if (frame.magic != kFrameMagic || frame.version != kFrameVersion ||
-      frame.engine_id != static_cast<std::uint32_t>(EngineId::kGrid) || !in_picture(frame.width) ||
-      !in_picture(frame.height) || !in_picture(frame.tile_width) || frame.tiles_x != whole_tiles(frame.width) ||
-      frame.tiles_y != whole_tiles(frame.height) || frame.output_depth == 0) {
-    return Status::kBadFrame;
-  }
+  GRIDIRON_TRY(find_picture_fault<AnyLayout>(frame).status);
+  if (frame.engine_id != static_cast<std::uint32_t>(EngineId::kGrid)) return Status::kBadFrame;
   shape.tile_count = frame.tiles_x * frame.tiles_y;
   shape.output_depth = frame.output_depth;
   shape.is_picture = true;
 
   const std::uint64_t plane_bytes = std::uint64_t{shape.tile_count} * frame.tile_width * frame.tile_width * 4;
-  if (frame.color_address == 0) return Status::kBadFrame;
   for (const std::uint64_t plane : {frame.color_address, frame.depth_address, frame.id_address}) {
     if (plane == 0) continue;
     if (memory.bytes_at(MainAddress{plane}, plane_bytes).empty()) return Status::kBadFrame;

@@ -69,6 +69,25 @@ TEST(Planes, OfColorAreRequired) {
   EXPECT_EQ(status_of(settings, built), Status::kBadFrame);
 }
 
+TEST(Settings, AreInRange) {
+  const BuiltImage built = image_with_effects();
+  const auto status_with = [&built](void (*change)(FrameSettings&)) {
+    FrameSettings settings = scene_settings_of();
+    change(settings);
+    return status_of(settings, built);
+  };
+  const Status bad = Status::kBadFrame, unsupported = Status::kUnsupportedFrame;
+  EXPECT_EQ(status_with([](FrameSettings&) {}), Status::kOk);
+  EXPECT_EQ(status_with([](FrameSettings& s) { s.tile_width = 0; }), bad);
+  EXPECT_EQ(status_with([](FrameSettings& s) { s.tile_width = kMaxPictureWidth + 1; }), bad);
+  EXPECT_EQ(status_with([](FrameSettings& s) { s.output_depth = 0; }), bad);
+  EXPECT_EQ(status_with([](FrameSettings& s) { s.macro_depth = 0; }), bad);
+  EXPECT_EQ(status_with([](FrameSettings& s) { s.triangle_depth = 0; }), bad);
+  EXPECT_EQ(status_with([](FrameSettings& s) { s.walk_depth = 0; }), bad);
+  EXPECT_EQ(status_with([](FrameSettings& s) { s.accuracy = static_cast<Accuracy>(kAccuracyCount); }), unsupported);
+  EXPECT_EQ(status_with([](FrameSettings& s) { s.shading = static_cast<Shading>(3); }), unsupported);
+}
+
 // What a platform's transfers would refuse in the middle of a frame.
 TEST(Planes, LieWhereTransfersReachThem) {
   const BuiltImage built = image_with_effects();

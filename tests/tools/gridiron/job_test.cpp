@@ -275,7 +275,7 @@ TEST(Job, DamageIsFoundWithItsPlace) {
   const std::size_t grid = 256 + (sizeof(FrameHead) + offsetof(GridFrame, grid)),
                     bytes = offsetof(SectionEntry, section_bytes);
   expect_refused(flipped(grid + 3), grid,
-                 "the grid is not that of the scene image; the job's check_value differs too\n");
+                 "frame record: the grid is not the scene image's; the job's check_value differs too\n");
   expect_refused(
       flipped(section + bytes), section + bytes,
       "damaged scene image (field section.section_bytes); its check_value differs too, in the scene image that "
@@ -328,7 +328,7 @@ TEST(Job, DamageIsFoundWithItsPlace) {
   expect_wrong(offsetof(Job, result_address), [](Job& job, Record&) { job.result_bytes = kFar; });
   expect_wrong(offsetof(Job, result_bytes), [](Job& job, Record&) { job.result_bytes = 64; });
   expect_wrong(offsetof(Job, plane_bytes), [](Job& job, Record&) { job.plane_bytes += 128; });
-  expect_wrong(offsetof(Job, color_address), [](Job& job, Record&) { job.color_address += 128; });
+  expect_wrong(256 + offsetof(FrameHead, color_address), [](Job& job, Record&) { job.color_address += 128; });
   expect_wrong(offsetof(Job, color_address),
                [](Job& job, Record& record) { job.color_address = record.color_address = job.result_address; });
   expect_wrong(offsetof(Job, depth_address),
@@ -345,15 +345,21 @@ TEST(Job, DamageIsFoundWithItsPlace) {
   expect_wrong(offsetof(Job, tile_count), [](Job& job, Record&) { ++job.tile_count; });
   expect_wrong(offsetof(Job, effects), [](Job& job, Record&) { job.effects = 1; });
   expect_wrong(256 + offsetof(FrameHead, magic), [](Job&, Record& record) { record.magic ^= 1; });
-  expect_wrong(256 + offsetof(FrameHead, width), [](Job&, Record& record) { record.tile_width = 0; });
+  expect_wrong(256 + offsetof(FrameHead, tile_width), [](Job&, Record& record) { record.tile_width = 0; });
+  expect_wrong(256 + offsetof(FrameHead, tile_width),
+               [](Job& job, Record& record) { job.tile_width = record.tile_width = 0; });
   expect_wrong(256 + offsetof(FrameHead, tiles_x), [](Job&, Record& record) { ++record.tiles_x; });
-  expect_wrong(256 + (sizeof(FrameHead) + offsetof(GridFrame, macro_table_address)),
+  expect_wrong(256 + (sizeof(FrameHead) + offsetof(GridFrame, triangles_address)),
                [](Job&, Record& record) { ++record.engine.triangles_address; });
   expect_wrong(256 + (sizeof(FrameHead) + offsetof(GridFrame, grid)),
                [](Job&, Record& record) { ++record.engine.grid.reference_count; });
   expect_wrong(256 + offsetof(FrameHead, effects_address),
                [](Job&, Record& record) { record.effects_address = kBase; });
-  expect_wrong(256 + offsetof(FrameHead, shading), [](Job&, Record& record) { record.shading = 2; });
+  expect_wrong(256 + offsetof(FrameHead, effects_address), [](Job&, Record& record) { record.shading = 2; });
+  expect_wrong(256 + offsetof(FrameHead, shading), [](Job&, Record& record) {
+    record.shading = record.walk_depth = 2;
+    record.effects_address = record.image_address = kBase;
+  });
 }
 
 TEST(Result, DamageIsFoundWithItsPlace) {

@@ -7,12 +7,14 @@
 #include <algorithm>
 #include <cstring>
 #include <limits>
+#include <sstream>
 #include <string>
 
 #include "base/failure.h"
 #include "base/words.h"
 #include "files/byte_reader.h"
 #include "gridiron/scene/image_damage.h"
+#include "job_rules.h"
 
 namespace gridiron::tool {
 namespace {
@@ -93,12 +95,20 @@ FrameRecord make_record(const FrameMemory& frame, const FrameJob& job) {
   return record;
 }
 
-struct Part {
-  std::uint64_t begin = 0, bytes = 0;
-};
-
-bool lies_in(const Part& part, const Part& whole) {
-  return part.begin >= whole.begin && part.bytes <= whole.bytes && part.begin - whole.begin <= whole.bytes - part.bytes;
+// The pieces that the rules of a job have as their reason.
+std::string words_of_piece(const char* piece) {
+  return piece;
+}
+std::string words_of_piece(std::uint64_t number) {
+  return std::to_string(number);
+}
+std::string words_of_piece(port::Hex number) {
+  std::ostringstream words;
+  words << "0x" << std::hex << number.value;
+  return words.str();
+}
+std::string words_of_piece(port::StatusNumber number) {
+  return words_of(static_cast<Status>(number.value));
 }
 
 void check_size(const ByteReader& reader, const FrameJob& job, std::span<const std::byte> file) {
@@ -114,96 +124,10 @@ void check_size(const ByteReader& reader, const FrameJob& job, std::span<const s
 void check_head(const ByteReader& reader, const FrameJob& job) {
   reader.require(job.base_address % kPageBytes == 0, offsetof(FrameJob, base_address),
                  "base_address is no multiple of 4096");
-  reader.require(job.memory_bytes >= job.loaded_bytes &&
-                     job.memory_bytes <= std::numeric_limits<std::uint64_t>::max() - job.base_address,
+  reader.require(job.memory_bytes <= std::numeric_limits<std::uint64_t>::max() - job.base_address,
                  offsetof(FrameJob, memory_bytes), "memory_bytes is out of range");
-  const auto is_whole = [&job] {
-    for (const std::uint32_t word : job.reserved) {
-      if (word != 0) return false;
-    }
-    return true;
-  };
-  reader.require(is_whole(), offsetof(FrameJob, reserved), "reserved is not 0");
   reader.require(find_store(job.store_bytes).has_value(), offsetof(FrameJob, store_bytes),
                  "store_bytes is not 64, 128, 256 or 512 KB");
-}
-
-// Results and spill memory lie after the loaded bytes, apart from one another.
-void check_places(const ByteReader& reader, const FrameJob& job, const FrameRecord& record) {
-  const Part behind{job.base_address + job.loaded_bytes, job.memory_bytes - job.loaded_bytes};
-  const Part result{job.result_address, job.result_bytes};
-  reader.require(result.begin % kLineBytes == 0 && lies_in(result, behind), offsetof(FrameJob, result_address),
-                 "the result does not lie behind what is loaded, in front of memory_bytes");
-  const std::uint64_t head_bytes = result_head_bytes(job.tile_count);
-  reader.require(head_bytes <= result.bytes, offsetof(FrameJob, result_bytes),
-                 "result_bytes does not hold the results of all tiles");
-  const Part planes{result.begin + head_bytes, result.bytes - head_bytes};
-  reader.require(job.plane_bytes == output_plane_bytes(job.width, job.height, job.tile_width),
-                 offsetof(FrameJob, plane_bytes), "plane_bytes is not that of the picture");
-  const struct {
-    std::uint64_t address, in_record;
-    std::size_t place;
-    const char* name;
-  } wanted[] = {{job.color_address, record.color_address, offsetof(FrameJob, color_address), "color_address"},
-                {job.depth_address, record.depth_address, offsetof(FrameJob, depth_address), "depth_address"},
-                {job.ids_address, record.id_address, offsetof(FrameJob, ids_address), "ids_address"}};
-  std::uint64_t previous_end = 0;
-  for (const auto& plane : wanted) {
-    reader.require(plane.address == plane.in_record, plane.place,
-                   std::string(plane.name) + " is not that of the frame record");
-    if (plane.address == 0 && plane.place != offsetof(FrameJob, color_address)) continue;
-    reader.require(plane.address % kLineBytes == 0 && lies_in({plane.address, job.plane_bytes}, planes) &&
-                       plane.address >= previous_end,
-                   plane.place, std::string(plane.name) + " does not lie in the result, behind what is there already");
-    previous_end = plane.address + job.plane_bytes;
-  }
-  if (job.spill_address == 0) {
-    reader.require(job.spill_bytes == 0 && job.spill_cores == 0, offsetof(FrameJob, spill_bytes),
-                   "spill memory without an address");
-    return;
-  }
-  reader.require(job.spill_cores >= 1 && job.spill_cores <= port::kMostBoardCores, offsetof(FrameJob, spill_cores),
-                 "spill_cores is not 1 to 16");
-  reader.require(job.spill_bytes % kSpillAlignment == 0 && job.spill_bytes <= behind.bytes / job.spill_cores,
-                 offsetof(FrameJob, spill_bytes), "spill_bytes is out of range");
-  const Part spill{job.spill_address, job.spill_bytes * job.spill_cores};
-  const bool is_apart = spill.begin >= result.begin + result.bytes || spill.begin + spill.bytes <= result.begin;
-  reader.require(spill.begin % kSpillAlignment == 0 && lies_in(spill, behind) && is_apart,
-                 offsetof(FrameJob, spill_address),
-                 "spill memory does not lie behind what is loaded, apart from the result");
-}
-
-void check_record(const ByteReader& reader, const FrameJob& job, const FrameRecord& record,
-                  const SceneImageView& image) {
-  const std::uint64_t place = job.frame_address - job.base_address;
-  const auto require = [&](bool holds, std::size_t field, const char* reason) {
-    reader.require(holds, place + field, reason);
-  };
-  require(record.magic == kFrameMagic && record.version == kFrameVersion, offsetof(FrameHead, magic),
-          "no frame record of this version");
-  const auto in_picture = [](std::uint32_t pixels) { return pixels >= 1 && pixels <= kMaxPictureWidth; };
-  require(in_picture(record.width) && in_picture(record.height) && in_picture(record.tile_width),
-          offsetof(FrameHead, width), "the picture's or the tiles' size is out of range");
-  const auto tiles = [&record](std::uint32_t pixels) { return (pixels + record.tile_width - 1) / record.tile_width; };
-  require(record.tiles_x == tiles(record.width) && record.tiles_y == tiles(record.height), offsetof(FrameHead, tiles_x),
-          "the counts of tiles are not those of the picture");
-  reader.require(job.width == record.width && job.height == record.height && job.tile_width == record.tile_width &&
-                     job.tile_count == record.tiles_x * record.tiles_y,
-                 offsetof(FrameJob, tile_count), "size or tiles are not those of the frame record");
-  require(record.engine.macro_table_address == job.image_address + image.macro_table_offset_bytes &&
-              record.engine.cell_blocks_address == job.image_address + image.cell_blocks_offset_bytes &&
-              record.engine.triangles_address == job.image_address + image.triangles_offset_bytes,
-          (sizeof(FrameHead) + offsetof(GridFrame, macro_table_address)),
-          "the addresses are not those of the scene image's parts");
-  require(std::memcmp(&record.engine.grid, &image.grid, sizeof record.engine.grid) == 0,
-          (sizeof(FrameHead) + offsetof(GridFrame, grid)), "the grid is not that of the scene image");
-  const bool is_scene = record.shading == static_cast<std::uint32_t>(Shading::kScene);
-  require(!is_scene || image.has_effects, offsetof(FrameHead, shading), "the scene image has no effects");
-  require(record.effects_address == (is_scene ? job.image_address + image.effects_offset_bytes : 0) &&
-              record.image_address == (is_scene ? job.image_address : 0),
-          offsetof(FrameHead, effects_address), "the addresses are not those of the scene image's effects");
-  reader.require(job.effects == (is_scene ? image.effects.called_for : 0), offsetof(FrameJob, effects),
-                 "effects are not those that the scene calls for");
 }
 
 // Everything but the check value.
@@ -211,26 +135,22 @@ void check_parts(const ByteReader& reader, OpenJob& open) {
   const FrameJob& job = open.job;
   const std::span<std::byte> file = open.file.bytes;
   check_head(reader, job);
-  const Part loaded{job.base_address, job.loaded_bytes};
-  const Part frame{job.frame_address, sizeof(FrameRecord)};
-  const Part image{job.image_address, job.image_bytes};
-  reader.require(frame.begin % kLineBytes == 0 && lies_in(frame, loaded), offsetof(FrameJob, frame_address),
-                 "the frame record does not lie in the file");
-  reader.require(image.begin % kLineBytes == 0 && lies_in(image, loaded), offsetof(FrameJob, image_address),
-                 "the scene image does not lie in the file");
-  const std::uint64_t image_place = image.begin - job.base_address;
-  const std::span<std::byte> image_bytes = file.subspan(image_place, image.bytes);
+  const auto require = [&reader](bool holds, std::uint64_t place, const auto&... pieces) {
+    if (!holds) reader.require(false, place, (words_of_piece(pieces) + ...));
+    return true;
+  };
+  static_cast<void>(check_loaded_parts(job, require));
+  open.record = reader.read<FrameRecord>(job.frame_address - job.base_address);
+  static_cast<void>(check_picture(job, open.record, require) && check_open_parts(job, require));
+  const std::uint64_t image_place = job.image_address - job.base_address;
+  const std::span<std::byte> image_bytes = file.subspan(image_place, job.image_bytes);
   SceneImageError error;
   if (open_scene_image(image_bytes, open.image, error) != Status::kOk) {
     const ImageDamage damage = find_image_damage(image_bytes, error);
     reader.require(false, image_place + damage.byte_offset,
                    damage.reason + ", in the scene image that begins at byte " + std::to_string(image_place));
   }
-  reader.require(open.image.header.image_bytes == job.image_bytes, offsetof(FrameJob, image_bytes),
-                 "image_bytes is not that of the scene image");
-  open.record = reader.read<FrameRecord>(frame.begin - job.base_address);
-  check_record(reader, job, open.record, open.image);
-  check_places(reader, job, open.record);
+  static_cast<void>(check_scene(job, open.record, open.image, require));
 }
 
 bool starts_with(std::span<const std::byte> bytes, std::uint32_t magic) {

@@ -1,4 +1,5 @@
 // Sections of effects: see the header. SPDX-License-Identifier: Apache-2.0
+#include <gridiron/base/image_rules.h>
 #include <gridiron/build/effects/effect_sections.h>
 #include <gridiron/build/lattice.h>
 #include <gridiron/scene/effect_rules.h>
@@ -9,11 +10,6 @@ namespace {
 template <class Record>
 void store(std::byte* image, std::uint64_t offset, const Record& record) {
   __builtin_memcpy(image + offset, &record, sizeof(Record));
-}
-
-std::uint64_t block_count(const EffectsRecord& record) {
-  const std::uint64_t blocks = environment_blocks(record.environment_width);
-  return record.environment_width == 0 ? 0 : 6 * blocks * blocks;
 }
 
 // Appends a section unless it is empty. @returns its offset, or 0.
@@ -92,8 +88,9 @@ EffectsRecord count_effects(const EffectsView& effects) {
 }
 
 std::uint32_t effect_section_count(const EffectsRecord& counted) {
-  return 3u + (counted.light_count != 0 ? 1u : 0u) + (counted.smooth_triangle_count != 0 ? 1u : 0u) +
-         (counted.environment_width != 0 ? 1u : 0u);
+  std::uint32_t count = 1;
+  for_each_effect_part(counted, 1, [&count](const EffectPart& part) { return count += part.element_count != 0, true; });
+  return count;
 }
 
 EffectSections place_effect_sections(const EffectsRecord& counted, std::uint32_t triangle_count,
@@ -104,14 +101,11 @@ EffectSections place_effect_sections(const EffectsRecord& counted, std::uint32_t
   sections.begin_bytes = begin_bytes;
   sections.end_bytes = begin_bytes;
   static_cast<void>(append(sections, SectionKind::kEffects, sizeof(EffectsRecord), 1));
-  record.materials_offset_bytes =
-      append(sections, SectionKind::kMaterials, sizeof(MaterialRecord), record.material_count);
-  record.lights_offset_bytes = append(sections, SectionKind::kLights, sizeof(LightRecord), record.light_count);
-  record.surfaces_offset_bytes = append(sections, SectionKind::kSurfaces, sizeof(SurfaceRecord), triangle_count);
-  record.normals_offset_bytes =
-      append(sections, SectionKind::kNormals, sizeof(NormalRecord), record.smooth_triangle_count);
-  record.environment_offset_bytes =
-      append(sections, SectionKind::kEnvironmentMap, sizeof(EnvironmentBlock), block_count(record));
+  for_each_effect_part(counted, triangle_count, [&](const EffectPart& part) {
+    const std::uint64_t offset = append(sections, part.kind, part.element_bytes, part.element_count);
+    store(reinterpret_cast<std::byte*>(&record), part.place, offset);
+    return true;
+  });
   return sections;
 }
 

@@ -3,6 +3,7 @@
 #pragma once
 
 #include <gridiron/base/lanes.h>
+#include <gridiron/base/image_rules.h>
 #include <gridiron/base/math.h>
 #include <gridiron/base/records.h>
 #include <gridiron/build/effects/effect_sections.h>
@@ -40,10 +41,6 @@ struct ImageLayout {
   EffectSections effects;  // from the end of the triangles to the end of the image
   std::uint64_t image_bytes;
 };
-
-inline std::uint64_t macro_cell_total(const GridRecord& grid) {
-  return std::uint64_t{grid.macro_cell_count[0]} * grid.macro_cell_count[1] * grid.macro_cell_count[2];
-}
 
 // @param effects  as counted; null: none.
 inline ImageLayout layout_of(const GridRecord& grid, const EffectsRecord* effects, std::uint64_t triangle_count) {

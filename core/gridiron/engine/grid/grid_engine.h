@@ -3,7 +3,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
-#include <gridiron/base/accuracies.h>
+#include <gridiron/base/frame_rules.h>
 #include <gridiron/base/records.h>
 #include <gridiron/dma/transfers.h>
 #include <gridiron/engine/grid/frustum.h>
@@ -30,7 +30,7 @@ class GridCore {
 
   /// Checks the frame's grid against this store, and fetches the macrocell table where it fits.
   [[nodiscard]] Status begin() {
-    GRIDIRON_TRY(check_frame());
+    GRIDIRON_TRY(find_grid_fault<Limits>(store_.frame).status);
     return load_table();
   }
 
@@ -96,22 +96,11 @@ class GridCore {
     return Status::kOk;
   }
 
-  // The scene image was validated when it was loaded; here the frame is held against what this store can do.
-  [[nodiscard]] Status check_frame() const {
-    const FrameRecord& frame = store_.frame;
-    const auto in_range = [](std::uint32_t depth, std::uint32_t most) { return depth >= 1 && depth <= most; };
-    if (!in_range(frame.engine.macro_depth, Layout::kMaxMacroDepth) ||
-        !in_range(frame.engine.triangle_depth, Layout::kMaxTriangleDepth)) {
-      return Status::kUnsupportedFrame;
-    }
-    const GridRecord& grid = frame.engine.grid;
-    if (!reads_format(frame.accuracy, grid.triangle_format)) return Status::kUnsupportedImage;
-    if (grid.macro_width == 0 || grid.macro_width > Layout::kMaxMacroWidth ||
-        grid.cell_block_bytes > Store::EngineStore::kCellBlockBytes) {
-      return Status::kUnsupportedImage;
-    }
-    return Status::kOk;
-  }
+  // Limits of this store.
+  struct Limits : Layout {
+    static constexpr std::uint32_t kMaxCellBlockBytes = Store::EngineStore::kCellBlockBytes;
+    static constexpr Status kBeyond = Status::kUnsupportedFrame;
+  };
 
   [[nodiscard]] Status load_table() {
     const GridRecord& grid = store_.frame.engine.grid;
