@@ -8,7 +8,7 @@
 namespace gridiron {
 
 /// Effects, as bits of a set. Plain light of point lights, without shadows, is no effect.
-enum EffectBits : std::uint32_t {
+enum EffectBits : unsigned {
   kPointShadows = 1u << 0,
   kAreaLights = 1u << 1,         ///< sampled, with shadows or without
   kReflection = 1u << 2,
@@ -111,7 +111,7 @@ inline constexpr std::uint32_t kEnvironmentPatches = 7;  ///< along a block's ed
 
 /// Blocks along a face's edge: patches begin at texels 0..width - 2; a face of one texel has one block.
 [[nodiscard]] constexpr std::uint32_t environment_blocks(std::uint32_t width) {
-  return width <= 2 ? 1 : (width - 2) / kEnvironmentPatches + 1;
+  return width <= 2 ? std::uint32_t{1} : (width - 2) / kEnvironmentPatches + 1;
 }
 
 /// A ray that waits for its turn, in a queue of the local store or in main memory.
@@ -134,7 +134,7 @@ inline constexpr std::uint32_t kMostEffectTilePixels = 1024;  ///< of a layout w
 /// depth more. For the queue is a stack: a wave of which pushed rays are left below was followed by one made of those
 /// alone, all of them deeper than its least deep; so at most one wave for each depth has some left.
 [[nodiscard]] constexpr std::uint32_t most_waiting_rays(std::uint32_t recursion_depth) {
-  return recursion_depth <= 1 ? 0 : 2 * kMostEffectTilePixels + 2 * kMostWaveRays * (recursion_depth - 2);
+  return recursion_depth <= 1 ? std::uint32_t{0} : 2 * kMostEffectTilePixels + 2 * kMostWaveRays * (recursion_depth - 2);
 }
 
 /// Bytes of main memory that each core needs for waiting rays that its local store has no room for. The region begins

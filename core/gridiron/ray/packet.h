@@ -22,7 +22,7 @@ struct RaySet {
   }
   GRIDIRON_INLINE void fill() {
     static_assert(RayCount % 32 == 0 || RayCount < 32);
-    for (std::uint32_t i = 0; i < kWordCount; ++i) words[i] = RayCount < 32 ? (1u << (RayCount % 32)) - 1u : ~0u;
+    for (std::uint32_t i = 0; i < kWordCount; ++i) words[i] = ~0u >> ((32 - RayCount % 32) % 32);
   }
   GRIDIRON_INLINE void insert(std::uint32_t ray) { words[ray / 32] |= 1u << (ray % 32); }
   GRIDIRON_INLINE void erase(std::uint32_t ray) { words[ray / 32] &= ~(1u << (ray % 32)); }
@@ -162,7 +162,7 @@ struct alignas(128) Packet {
 
   // Slopes of this pass, in cells along u and v per cell along the march: least and greatest of the active rays of each
   // square of 2x2 subpackets. Where none is active the least is above the greatest.
-  static constexpr std::uint32_t kSquareCount = kSubpacketCount < 4 ? 1 : kSubpacketCount / 4;
+  static constexpr std::uint32_t kSquareCount = (kSubpacketCount + 3) / 4;
   alignas(64) float slope_low[2][kSquareCount];
   alignas(64) float slope_high[2][kSquareCount];
   alignas(

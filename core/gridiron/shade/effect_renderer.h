@@ -103,7 +103,7 @@ class EffectRenderer {
   [[nodiscard]] Status shade_sample(std::uint32_t sample, std::uint32_t* ids) {
     const FrameHead& frame = store_.frame;
     const PixelOffset offset = pixel_offset(samples_per_pixel(), sample);
-    constexpr std::uint32_t kPixels = Store::kTilePixels, kSquareWidth = 4, kSquarePixels = kSquareWidth * kSquareWidth;
+    static constexpr std::uint32_t kPixels = Store::kTilePixels, kSquareWidth = 4, kSquarePixels = kSquareWidth * kSquareWidth;
     std::uint32_t place = 0;  // along a Z curve of squares, so that neighbours go together
     while (place < kPixels) {
       store_.work.charge_to(Work::kWaveRay);
@@ -138,7 +138,7 @@ class EffectRenderer {
   /// Makes pixels of the sums.
   void finish_tile(std::uint32_t* color) {
     transfers_.note_stage(Stage::kOutput);
-    constexpr std::uint32_t kPixels = Store::kTilePixels;
+    static constexpr std::uint32_t kPixels = Store::kTilePixels;
     store_.work.add(Work::kColorGroup, kPixels / 4);
     store_.work.charge_to(Work::kColorGroup);
     const float per_step = 1.0f / (kSumSteps * static_cast<float>(static_cast<std::int32_t>(samples_per_pixel())));

@@ -21,7 +21,7 @@ template <class L, class PacketType>
 [[nodiscard]] GRIDIRON_INLINE std::uint32_t squares_touching(const PacketType& packet, const Frustum& frustum,
                                                              const Slab& slab, std::int32_t u, std::int32_t v,
                                                              std::uint32_t wanted, WorkCounters& work) {
-  constexpr std::uint32_t kSquares = PacketType::kSquareCount;
+  static constexpr std::uint32_t kSquares = PacketType::kSquareCount;
   if constexpr (kSquares < 4) return wanted;
   using S = std::conditional_t<(kSquares >= L::kCount), L, Lanes<4>>;
   using Float = typename S::Float;
