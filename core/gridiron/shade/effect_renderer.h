@@ -157,7 +157,7 @@ class EffectRenderer {
   using Effects = typename Store::Effects;
   using Context = WaveContext<Store>;
   static constexpr std::uint32_t kBuilt = Layout::kEffects;
-  [[nodiscard]] static constexpr bool has(std::uint32_t effects) { return (kBuilt & effects) != 0; }
+  [[nodiscard]] static consteval bool has(std::uint32_t effects) { return (kBuilt & effects) != 0; }
   [[nodiscard]] bool calls_for(std::uint32_t effects) const { return (scene().called_for & effects) != 0; }
   [[nodiscard]] bool has_shadows() const { return scene().has_shadows != 0; }
 
