@@ -1,9 +1,8 @@
 // Runs the counted kernel: see the header. SPDX-License-Identifier: Apache-2.0
+#include <counted/host_numbers.h>
 #include <gridiron/base/exact_sum.h>
 #include <gridiron/bvh/bvh_core.h>
 #include <gridiron/render/tile_renderer.h>
-
-#include <counted/host_numbers.h>
 
 namespace gridiron::calibrate {
 namespace {

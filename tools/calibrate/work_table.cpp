@@ -161,7 +161,7 @@ constexpr std::size_t kDecisions = 64;
 
 std::vector<ExactDecision> decisions_of(const Scene& scene) {
   std::vector<ExactDecision> decisions(kDecisions);
-  const auto set = [](float (&to)[3], const Vec3& from) { std::copy_n(&from[0], 3, to); };
+  const auto set = [](float(&to)[3], const Vec3& from) { std::copy_n(&from[0], 3, to); };
   for (std::size_t i = 0; i < kDecisions; ++i) {
     const UVec3& triangle = scene.triangles[i * scene.triangles.size() / kDecisions];
     const Vec3& a = scene.vertices[triangle.x];

@@ -134,7 +134,8 @@ inline constexpr std::uint32_t kMostEffectTilePixels = 1024;  ///< of a layout w
 /// depth more. For the queue is a stack: a wave of which pushed rays are left below was followed by one made of those
 /// alone, all of them deeper than its least deep; so at most one wave for each depth has some left.
 [[nodiscard]] constexpr std::uint32_t most_waiting_rays(std::uint32_t recursion_depth) {
-  return recursion_depth <= 1 ? std::uint32_t{0} : 2 * kMostEffectTilePixels + 2 * kMostWaveRays * (recursion_depth - 2);
+  return recursion_depth <= 1 ? std::uint32_t{0}
+                              : 2 * kMostEffectTilePixels + 2 * kMostWaveRays * (recursion_depth - 2);
 }
 
 /// Bytes of main memory that each core needs for waiting rays that its local store has no room for. The region begins

@@ -33,7 +33,7 @@ void shift_in(std::uint32_t* out, std::int32_t shift, std::int32_t index, std::u
 // Compares numerator with denominator * mantissa * 2^exponent, all non-negative, -160 <= exponent <= 128.
 // The window is wide enough for a shift of one operand by any float exponent.
 std::int32_t compare_with_multiple(const ExactSum& numerator, const ExactSum& denominator, std::uint32_t mantissa,
-                          std::int32_t exponent) {
+                                   std::int32_t exponent) {
   constexpr int kWideLimbs = ExactSum::kLimbCount + 7;
   std::uint32_t left[kWideLimbs] = {};
   std::uint32_t right[kWideLimbs] = {};
@@ -120,7 +120,8 @@ void ExactSum::add_determinant(std::int32_t sign, const float a[3], const float 
   add_product(-sign, a[0], b[2], c[1]);
 }
 
-void ExactSum::add_normal_component(const float a[3], const float b[3], const float c[3], std::int32_t v, std::int32_t w) {
+void ExactSum::add_normal_component(const float a[3], const float b[3], const float c[3], std::int32_t v,
+                                    std::int32_t w) {
   // a_v * a_w cancels.
   add_product(1, b[v], c[w], 1.0f);
   add_product(-1, b[v], a[w], 1.0f);
@@ -218,7 +219,8 @@ float exact_distance(const float org[3], const float dir[3], const float a[3], c
     const std::uint32_t mantissa = (middle & 0x7FFFFFu) | 0x800000u;
     const std::int32_t exponent = static_cast<std::int32_t>(middle >> 23) - 150;
     const bool power_of_two = mantissa == 0x800000u;
-    const std::int32_t order = power_of_two ? compare_with_multiple(numerator, denominator, 4 * mantissa - 1, exponent - 2)
+    const std::int32_t order = power_of_two
+                                   ? compare_with_multiple(numerator, denominator, 4 * mantissa - 1, exponent - 2)
                                    : compare_with_multiple(numerator, denominator, 2 * mantissa - 1, exponent - 1);
     if (order >= 0) {
       low = middle;
@@ -230,7 +232,7 @@ float exact_distance(const float org[3], const float dir[3], const float a[3], c
 }
 
 std::int32_t exact_distance_order(const float org[3], const float dir[3], const float (&first)[3][3],
-                         const float (&second)[3][3]) {
+                                  const float (&second)[3][3]) {
   Digits numerators[2], denominators[2];
   store_quotient(org, dir, first, numerators[0], denominators[0]);
   store_quotient(org, dir, second, numerators[1], denominators[1]);

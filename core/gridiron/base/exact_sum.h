@@ -43,11 +43,11 @@ class ExactSum {
 
 /// @returns sign of det[dir, a - org, b - org], exactly: the side of edge (a, b) on which the ray passes.
 [[nodiscard, gnu::cold]] std::int32_t exact_edge_sign(const float org[3], const float dir[3], const float a[3],
-                                             const float b[3]);
+                                                      const float b[3]);
 
 /// @returns sign of det[a - org, b - org, c - org], exactly: the side of the triangle's plane on which org lies.
 [[nodiscard, gnu::cold]] std::int32_t exact_volume_sign(const float org[3], const float a[3], const float b[3],
-                                               const float c[3]);
+                                                        const float c[3]);
 
 /// @returns true where (b - a) x (c - a) is exactly zero: the triangle has no area.
 [[nodiscard]] bool exact_zero_area(const float a[3], const float b[3], const float c[3]);
@@ -68,7 +68,7 @@ class ExactSum {
 ///
 /// @param first, second  vertices. Precondition: N and D of each have the same sign, not 0.
 /// @returns -1 where the first is nearer, 0 where they are equal, +1. Cost: two products of big integers.
-[[nodiscard, gnu::cold]] std::int32_t exact_distance_order(const float org[3], const float dir[3], const float (&first)[3][3],
-                                                  const float (&second)[3][3]);
+[[nodiscard, gnu::cold]] std::int32_t exact_distance_order(const float org[3], const float dir[3],
+                                                           const float (&first)[3][3], const float (&second)[3][3]);
 
 }  // namespace gridiron

@@ -79,11 +79,12 @@ inline constexpr float kCornerErrorFactor = 5.0f * 0x1p-23f;
 inline constexpr float kSubpacketErrorFactor = 68.0f * 0x1p-23f;
 
 /// @returns sign of det[a - o, b - o, c - o]: float filter by the caller, then double, then integers.
-[[nodiscard]] std::int32_t volume_sign_in_double(const float origin[3], const VertexTriangle& triangle, WorkCounters& work);
+[[nodiscard]] std::int32_t volume_sign_in_double(const float origin[3], const VertexTriangle& triangle,
+                                                 WorkCounters& work);
 
 /// @returns sign of det[dir, a - o, b - o]: in double where that is sure, else in integers.
-[[nodiscard]] std::int32_t edge_sign_in_double(const float origin[3], const float dir[3], const float a[3], const float b[3],
-                                      WorkCounters& work);
+[[nodiscard]] std::int32_t edge_sign_in_double(const float origin[3], const float dir[3], const float a[3],
+                                               const float b[3], WorkCounters& work);
 
 /// Prepares the edge functions of a batch of triangles for a packet, and holds them against its corner rays: where all
 /// four pass on the outside of one and the same edge, so does every ray between them (Dmitriev, Havran, Seidel 2004).

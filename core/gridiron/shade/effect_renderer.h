@@ -103,7 +103,8 @@ class EffectRenderer {
   [[nodiscard]] Status shade_sample(std::uint32_t sample, std::uint32_t* ids) {
     const FrameHead& frame = store_.frame;
     const PixelOffset offset = pixel_offset(samples_per_pixel(), sample);
-    static constexpr std::uint32_t kPixels = Store::kTilePixels, kSquareWidth = 4, kSquarePixels = kSquareWidth * kSquareWidth;
+    static constexpr std::uint32_t kPixels = Store::kTilePixels, kSquareWidth = 4,
+                                   kSquarePixels = kSquareWidth * kSquareWidth;
     std::uint32_t place = 0;  // along a Z curve of squares, so that neighbours go together
     while (place < kPixels) {
       store_.work.charge_to(Work::kWaveRay);

@@ -79,7 +79,8 @@ struct alignas(128) PacketBounds {
       const Float top_part = y_low * step_y, bottom_part = y_high * step_y;
       low[axis] = Four::min(left_part, right_part) + Four::min(top_part, bottom_part);
       high[axis] = Four::max(left_part, right_part) + Four::max(top_part, bottom_part);
-      const std::uint32_t backward = (high[axis] < Float(-least)).bits() == kAllQuarters ? kAllQuarters : std::uint32_t{0};
+      const std::uint32_t backward =
+          (high[axis] < Float(-least)).bits() == kAllQuarters ? kAllQuarters : std::uint32_t{0};
       const auto is_backward = Four::mask_from_bits(backward);
       near_side[axis] = backward & 1u;
       far_side[axis] = (backward & 1u) ^ 1u;

@@ -433,7 +433,9 @@ constexpr bool branch_at(Site site, const CountedBool& condition) {
   if (!std::is_constant_evaluated()) PipeModel::current().branch(site, condition.value, condition.node);
   return condition.value;
 }
-constexpr bool branch_at(Site site, bool condition) { return branch_at(site, CountedBool{condition, 0}); }
+constexpr bool branch_at(Site site, bool condition) {
+  return branch_at(site, CountedBool{condition, 0});
+}
 
 /// A number for a file, by its name.
 consteval Site file_number(const char* name) {
@@ -475,9 +477,7 @@ struct CountedEnum {
     PipeModel::current().set_scalar(&value, 0, static_cast<std::uint64_t>(constant));
     return *this;
   }
-  [[nodiscard]] Node node() const {
-    return PipeModel::current().scalar_at(&value, static_cast<std::uint64_t>(value));
-  }
+  [[nodiscard]] Node node() const { return PipeModel::current().scalar_at(&value, static_cast<std::uint64_t>(value)); }
   friend CountedBool operator==(const CountedEnum& a, T b) {
     return {a.value == b, emit(OpClass::kFixed, a.value == b, a.node())};
   }

@@ -1,4 +1,4 @@
-// Compiled before core's own sources, so that they become the counted kernel: other numbers, lanes and counters, another
+// Compiled before core's own sources, which so become the counted kernel: other numbers, lanes and counters, another
 // namespace, and branches that record where they are. The language reserves its keywords, but compilers let a macro
 // replace them. Headers that stay as they are for the host are included first.
 // Memory: none. Threads: any. SPDX-License-Identifier: Apache-2.0
