@@ -1,8 +1,10 @@
 // Runs the counted kernel: see the header. SPDX-License-Identifier: Apache-2.0
-#include <counted/host_numbers.h>
 #include <gridiron/base/exact_sum.h>
 #include <gridiron/bvh/bvh_core.h>
 #include <gridiron/render/tile_renderer.h>
+// clang-format off
+#include <counted/host_numbers.h>  // behind them
+// clang-format on
 
 namespace gridiron::calibrate {
 namespace {

@@ -182,7 +182,7 @@ class PipeModel {
   std::vector<Op> block_;
   Node first_node_ = 1;  // of the block
   std::uint32_t block_number_ = 1;
-  std::uint64_t clock_ = 0;                     // of the last issue
+  std::uint64_t clock_ = 0;                             // of the last issue
   std::vector<std::uint64_t> ready_, history_, depth_;  // by node, of the last kRememberedNodes
   std::vector<Node> conditions_;
   Site loop_ = 0;  // whose condition is used next

@@ -158,7 +158,7 @@ class EffectRenderer {
   using Effects = typename Store::Effects;
   using Context = WaveContext<Store>;
   static constexpr std::uint32_t kBuilt = Layout::kEffects;
-  [[nodiscard]] static consteval bool has(std::uint32_t effects) { return (kBuilt & effects) != 0; }
+  [[nodiscard]] static constexpr bool has(std::uint32_t effects) { return (kBuilt & effects) != 0; }
   [[nodiscard]] bool calls_for(std::uint32_t effects) const { return (scene().called_for & effects) != 0; }
   [[nodiscard]] bool has_shadows() const { return scene().has_shadows != 0; }
 
@@ -399,14 +399,15 @@ class EffectRenderer {
   // Reflected and refracted rays of a point.
   [[nodiscard]] Status cast_rays(const WavePoint& point, Vector3 shading, Vector3 behind, Vector3 weight,
                                  const MaterialRecord& material, bool enters) {
-    const bool is_glass = has(kRefraction) && material.transmittance > 0.0f;
+    constexpr bool kRefracts = has(kRefraction);
+    const bool is_glass = kRefracts && material.transmittance > 0.0f;
     if (point.pixel >> 16 >= scene().recursion_depth || !(material.specular > 0.0f || is_glass)) return Status::kOk;
     const Vector3 direction = -vector_of(point.view);
     const Vector3 face = vector_of(point.face);
     float share = material.specular;
     QueuedRay next{};
     next.pixel = point.pixel + (1u << 16);
-    if constexpr (has(kRefraction)) {
+    if constexpr (kRefracts) {
       if (is_glass) {
         store_.work.charge_to(Work::kRefractedRay);
         const Refraction through = refract_through(direction, shading, face, refraction_ratio(material.index, enters));

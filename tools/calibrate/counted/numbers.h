@@ -4,6 +4,11 @@
 // Memory: none. Threads: any. SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <copy_core.h>
+#include <counted/counted.h>
+#include <counted/four_words.h>
+#include <counted/lanes.h>
+#include <counted_kernel.h>
 #include <gridiron/base/math.h>
 #include <gridiron/base/stages.h>
 #include <gridiron/base/work_counters.h>
@@ -22,12 +27,6 @@
 #include <string_view>
 #include <type_traits>
 #include <utility>
-
-#include <copy_core.h>
-#include <counted/counted.h>
-#include <counted/four_words.h>
-#include <counted/lanes.h>
-#include <counted_kernel.h>
 
 namespace gridiron_counted {
 
@@ -84,23 +83,28 @@ using gridiron_counted::counted_bit_cast;
 #define uint64_t counted_uint64
 #define bit_cast counted_bit_cast
 
+// clang-format would part the keywords from their brackets.
+// clang-format off
 #define GRIDIRON_SITE (::gridiron_counted::file_number(__FILE__) * 65536u + __LINE__)
 #define if(...) if (::gridiron_counted::branch_at(GRIDIRON_SITE, __VA_ARGS__))
 #define while(...) while (::gridiron_counted::branch_at(GRIDIRON_SITE, __VA_ARGS__))
 #define switch(...) switch (::gridiron_counted::switch_at(GRIDIRON_SITE, __VA_ARGS__))
-#define for(...)                                                                                             \
-  if constexpr (::gridiron_counted::CountedLoop counted_loop(GRIDIRON_SITE, #__VA_ARGS__); false) {          \
-  } else                                                                                                     \
-    for (__VA_ARGS__)                                                                                        \
-      if constexpr (const ::gridiron_counted::CountedTurn counted_turn(counted_loop); false) {               \
+#define for(...)                                                                                    \
+  if constexpr (::gridiron_counted::CountedLoop counted_loop(GRIDIRON_SITE, #__VA_ARGS__); false) { \
+  } else                                                                                            \
+    for (__VA_ARGS__)                                                                               \
+      if constexpr (const ::gridiron_counted::CountedTurn counted_turn(counted_loop); false) {      \
       } else
+// clang-format on
 // That a transfer fails is no branch of the kernel.
 #undef GRIDIRON_TRY
-#define GRIDIRON_TRY(expression)                                                                \
-  {                                                                                             \
-    const ::gridiron_counted::Status counted_status = (expression);                             \
-    switch (counted_status) {                                                                   \
-      case ::gridiron_counted::Status::kOk: break;                                              \
-      default: return counted_status;                                                           \
-    }                                                                                           \
+#define GRIDIRON_TRY(expression)                                    \
+  {                                                                 \
+    const ::gridiron_counted::Status counted_status = (expression); \
+    switch (counted_status) {                                       \
+      case ::gridiron_counted::Status::kOk:                         \
+        break;                                                      \
+      default:                                                      \
+        return counted_status;                                      \
+    }                                                               \
   }
