@@ -20,13 +20,16 @@ struct CountedFrame {
   std::span<const UVec3> triangles;
   Vec3 eye, at;
   float tan_half_fov;
-  std::uint32_t width;         ///< and height, pixels
-  std::uint32_t packet_width;  ///< 8 or 32
-  Accuracy accuracy;
-  Shading shading;
-  std::uint32_t techniques;  ///< TechniqueBits
-  bool has_planes;           ///< depth and ids too, for which distances are exact
+  std::uint32_t width;             ///< and height, pixels
+  std::uint32_t packet_width = 8;  ///< or 32
+  Accuracy accuracy = Accuracy::kStandard;
+  Shading shading = Shading::kSimple;
+  std::uint32_t techniques = 0;          ///< TechniqueBits
+  bool has_planes = false;               ///< depth and ids too, for which distances are exact
   const EffectsView* effects = nullptr;  ///< of Shading::kScene: of the mesh, in a store built for all effects
+  /// Not 0: the cached BVH renders, with so many packets in its ring and otherwise as it is tuned. It has no choice of
+  /// what begins with packet_width, but for the shading.
+  std::uint32_t ring_size = 0;
 };
 
 struct CountedPicture {
@@ -34,8 +37,8 @@ struct CountedPicture {
   std::vector<std::uint32_t> pixels;  ///< and planes, tile-major, as the kernel puts them
 };
 
-/// Renders on one core out of a 256 KB store, double-buffered, with 8 walks of secondary rays, lambda 4, macrocells of
-/// width 6.
+/// Renders on one core. The grid: out of a 256 KB store, double-buffered, with 8 walks of secondary rays, lambda 4,
+/// macrocells of width 6.
 /// Errors: std::runtime_error where the scene cannot be built or the kernel refuses the frame.
 [[nodiscard]] CountedPicture render_counted(const CountedFrame& frame,
                                             std::uint32_t superblock_branches = kSuperblockBranches);

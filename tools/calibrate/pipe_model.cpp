@@ -113,6 +113,15 @@ void PipeModel::branch(Site site, bool taken, Node condition) {
   if (!schedules_ || segment_ >= superblock_branches_ || taken != usual_.at(site)) schedule();
 }
 
+void PipeModel::use_condition(bool value, Node node) {
+  if (loop_ == 0) {
+    conditions_.push_back(emit(OpClass::kFixed, value, node));
+  } else {
+    branch(loop_, value, node);
+  }
+  loop_ = 0;
+}
+
 void PipeModel::note_address(Node node) {
   if (addresses_used_) addresses_.clear();
   addresses_used_ = false;
@@ -148,7 +157,7 @@ PipeModel::Quad& PipeModel::quad_at(std::uintptr_t address) {
 Node PipeModel::scalar_at(const void* pointer, std::uint64_t tie) {
   addresses_used_ = true;
   const auto address = reinterpret_cast<std::uintptr_t>(pointer);
-  if (is_constant(address)) return 0;
+  if (is_constant(pointer)) return 0;
   if (on_stack(address) && !slot_of(address).in_memory) return slot_of(address).node;
   Quad& quad = quad_at(address);
   const std::size_t lane = address / 4 % 4;
@@ -179,7 +188,7 @@ void PipeModel::set_scalar(const void* pointer, Node node, std::uint64_t tie) {
 Node PipeModel::splat_of(const void* pointer, std::uint64_t tie) {
   addresses_used_ = true;
   const auto address = reinterpret_cast<std::uintptr_t>(pointer);
-  if (is_constant(address)) return 0;
+  if (is_constant(pointer)) return 0;
   if (on_stack(address) && !slot_of(address).in_memory) {
     const Node node = slot_of(address).node;
     return node == 0 ? 0 : emit(OpClass::kShuffle, tie, node);

@@ -56,7 +56,7 @@ inline constexpr std::uint32_t kRegisterBlocks = 8;
 
 /// Basic blocks that a compiler schedules as one where the branches between them go their usual way: what unrolling a
 /// loop four times and moving operations above branches gives. An assumption, compared with the published rate of dual
-/// issue, see documentation/calibration.md.
+/// issue, see README.md.
 inline constexpr std::uint32_t kSuperblockBranches = 4;
 
 /// What all units of one kind of work came to.
@@ -111,9 +111,13 @@ class PipeModel {
 
   /// One operation. @param tie  bits of the result.
   Node emit(OpClass op, std::uint64_t tie, Node a = 0, Node b = 0, Node c = 0);
-  /// A branch that ends the block, on `condition` and on whatever pending_condition() was told of.
+  /// A branch that ends the block, on `condition` and on what use_condition() joined.
   void branch(Site site, bool taken, Node condition);
-  void note_condition(Node node) { conditions_.push_back(node); }
+  /// The next condition that is used as a bool is that of the loop at `site`; 0: of none.
+  void expect_loop(Site site) { loop_ = site; }
+  /// A condition is used as a bool: that of a loop is a branch; else it is joined to others, or selects, which is one
+  /// operation.
+  void use_condition(bool value, Node node);
   /// `node` is part of the address of the loads that follow.
   void note_address(Node node);
 
@@ -123,6 +127,10 @@ class PipeModel {
   void set_store(const void* store, std::size_t bytes) {
     store_base_ = reinterpret_cast<std::uintptr_t>(store);
     store_bytes_ = bytes;
+  }
+  [[nodiscard]] bool is_constant(const void* pointer) const {
+    const auto address = reinterpret_cast<std::uintptr_t>(pointer);
+    return !on_stack(address) && address - store_base_ >= store_bytes_;
   }
   [[nodiscard]] Node scalar_at(const void* address, std::uint64_t tie);
   void set_scalar(const void* address, Node node, std::uint64_t tie);
@@ -156,9 +164,6 @@ class PipeModel {
     bool in_memory;
   };
   [[nodiscard]] bool on_stack(std::uintptr_t address) const { return stack_base_ - address < kStackBytes; }
-  [[nodiscard]] bool is_constant(std::uintptr_t address) const {
-    return !on_stack(address) && address - store_base_ >= store_bytes_;
-  }
   [[nodiscard]] Slot& slot_of(std::uintptr_t address) { return slots_[(address >> 2) % slots_.size()]; }
   [[nodiscard]] Quad& quad_at(std::uintptr_t address);
   [[nodiscard]] std::uint64_t ready_of(Node node) const;
@@ -177,9 +182,10 @@ class PipeModel {
   std::vector<Op> block_;
   Node first_node_ = 1;  // of the block
   std::uint32_t block_number_ = 1;
-  std::uint64_t clock_ = 0;                     // of the last issue
+  std::uint64_t clock_ = 0;                             // of the last issue
   std::vector<std::uint64_t> ready_, history_, depth_;  // by node, of the last kRememberedNodes
   std::vector<Node> conditions_;
+  Site loop_ = 0;  // whose condition is used next
   std::vector<Node> addresses_;
   bool addresses_used_ = false;
   std::uintptr_t stack_base_ = 0, store_base_ = 0;

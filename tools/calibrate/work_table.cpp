@@ -1,12 +1,12 @@
 // Frames, table and words: see the header. SPDX-License-Identifier: Apache-2.0
-#include <bvh_frame.h>
 #include <counted_frame.h>
+#include <counted_kernel.h>
 #include <gridiron/base/lanes.h>
 #include <gridiron/bvh/bvh_engine_work.h>
-#include <gridiron_counted/base/exact_sum.h>
 #include <scene_makers/shapes.h>
 #include <work_table.h>
 
+#include <algorithm>
 #include <array>
 #include <cstdio>
 #include <fstream>
@@ -157,53 +157,21 @@ void add(Totals& sum, const Totals& more, const Takes& takes) {
 
 // Which rays need an exact decision depends on the scene, and hardly any does: rays through the vertices of triangles
 // all over the scene are decided here.
-constexpr std::uint32_t kDecisions = 64;
+constexpr std::size_t kDecisions = 64;
 
-const UVec3& decided_triangle(const Scene& scene, std::uint32_t i) {
-  return scene.triangles[i * scene.triangles.size() / kDecisions];
-}
-
-__attribute__((noinline)) void decide_exactly(const Scene& scene) {
-  using gridiron_counted::Counted;
-  const auto counted = [](Counted<float>* to, const Vec3& from) {
-    for (int i = 0; i < 3; ++i) {
-      to[i] = Counted<float>::made(from[i], gridiron_counted::emit(OpClass::kLoad, gridiron_counted::bits_of(from[i])));
-    }
-  };
-  for (std::uint32_t i = 0; i < kDecisions; ++i) {
-    const UVec3 triangle = decided_triangle(scene, i);
-    Counted<float> eye[3], direction[3], a[3], b[3], c[3];
-    PipeModel::current().charge_to(Work::kWait);  // reading the input is the caller's work
-    counted(eye, kEye);
-    counted(a, scene.vertices[triangle.x]);
-    counted(b, scene.vertices[triangle.y]);
-    counted(c, scene.vertices[triangle.z]);
-    counted(direction, scene.vertices[triangle.x] - kEye);
-    PipeModel::current().add_units(Work::kExactSign, 1);
-    (void)gridiron_counted::exact_edge_sign(eye, direction, a, b);
-    PipeModel::current().add_units(Work::kExactDistance, 1);
-    (void)gridiron_counted::exact_distance(eye, direction, a, b, c);
-    // The other triangle is the same one from another corner: its distance is equal, and told by other numbers.
-    Counted<float> first[3][3], second[3][3];
-    for (int axis = 0; axis < 3; ++axis) {
-      first[0][axis] = a[axis], first[1][axis] = b[axis], first[2][axis] = c[axis];
-      second[0][axis] = b[axis], second[1][axis] = c[axis], second[2][axis] = a[axis];
-    }
-    PipeModel::current().add_units(Work::kExactOrder, 1);
-    (void)gridiron_counted::exact_distance_order(eye, direction, first, second);
+std::vector<ExactDecision> decisions_of(const Scene& scene) {
+  std::vector<ExactDecision> decisions(kDecisions);
+  const auto set = [](float(&to)[3], const Vec3& from) { std::copy_n(&from[0], 3, to); };
+  for (std::size_t i = 0; i < kDecisions; ++i) {
+    const UVec3& triangle = scene.triangles[i * scene.triangles.size() / kDecisions];
+    const Vec3& a = scene.vertices[triangle.x];
+    set(decisions[i].eye, kEye);
+    set(decisions[i].direction, a - kEye);
+    set(decisions[i].a, a);
+    set(decisions[i].b, scene.vertices[triangle.y]);
+    set(decisions[i].c, scene.vertices[triangle.z]);
   }
-}
-
-Totals count_exact(const Scene& scene, std::uint32_t superblock_branches) {
-  const int stack_base = 0;
-  PipeModel first(nullptr);
-  first.set_stack(&stack_base);
-  decide_exactly(scene);
-  (void)first.finish();
-  PipeModel second(&first.branches(), superblock_branches);
-  second.set_stack(&stack_base);
-  decide_exactly(scene);
-  return second.finish();
+  return decisions;
 }
 
 bool is_charged(std::size_t kind) {
@@ -248,6 +216,15 @@ struct Scenes {
   }
 };
 
+CountedFrame teapot_frame(const Scene& scene) {
+  return {.vertices = scene.vertices,
+          .triangles = scene.triangles,
+          .eye = kEye,
+          .at = {0.25f, 1.5f, 0.0f},
+          .tan_half_fov = 0.41421356f,
+          .width = 96};
+}
+
 // Few pixels, but as dense as those of a larger picture.
 CountedFrame effect_frame(CountedFrame frame, const EffectScene& scene, std::uint32_t width) {
   frame.tan_half_fov = 0.25f;
@@ -260,18 +237,8 @@ CountedFrame effect_frame(CountedFrame frame, const EffectScene& scene, std::uin
 }
 
 std::array<NamedFrame, 8> frames_of(const Scenes& scenes) {
-  const Scene& scene = scenes.teapot;
-  const CountedFrame reference{.vertices = scene.vertices,
-                               .triangles = scene.triangles,
-                               .eye = kEye,
-                               .at = {0.25f, 1.5f, 0.0f},
-                               .tan_half_fov = 0.41421356f,
-                               .width = 96,
-                               .packet_width = 8,
-                               .accuracy = Accuracy::kStandard,
-                               .shading = Shading::kSimple,
-                               .techniques = kReference,
-                               .has_planes = false};
+  CountedFrame reference = teapot_frame(scenes.teapot);
+  reference.techniques = kReference;
   CountedFrame best = reference;
   best.packet_width = 32;
   best.techniques = kBest;
@@ -370,7 +337,7 @@ std::string table_row(const KindTotals& t, const std::string& name) {
 
 Totals count_frames(std::uint32_t superblock_branches) {
   const Scenes scenes;
-  Totals sum = count_exact(scenes.teapot, superblock_branches);
+  Totals sum = count_decisions(decisions_of(scenes.teapot), superblock_branches);
   for (const NamedFrame& named : frames_of(scenes)) {
     const CountedPicture counted = render_counted(named.frame, superblock_branches);
     require_same(counted, render_plain(named.frame));
@@ -386,13 +353,8 @@ Totals count_bvh_frames(std::uint32_t superblock_branches) {
   const Scene knot = scene_of(scene_makers::make_torus_knot(kKnotTriangles));
   Totals sum{};
   for (const std::uint32_t ring_size : {1u, kRing}) {
-    BvhCountedFrame frame{.vertices = teapot.vertices,
-                          .triangles = teapot.triangles,
-                          .eye = kEye,
-                          .at = {0.25f, 1.5f, 0.0f},
-                          .tan_half_fov = 0.41421356f,
-                          .width = 96,
-                          .ring_size = ring_size};
+    CountedFrame frame = teapot_frame(teapot);
+    frame.ring_size = ring_size;
     for (const Scene* scene : {&teapot, &knot}) {
       if (scene == &knot) {
         frame.eye = {3.0f, 2.0f, 8.0f};
@@ -400,8 +362,8 @@ Totals count_bvh_frames(std::uint32_t superblock_branches) {
       }
       frame.vertices = scene->vertices;
       frame.triangles = scene->triangles;
-      const CountedPicture counted = render_bvh_counted(frame, superblock_branches);
-      require_same(counted, render_bvh_plain(frame));
+      const CountedPicture counted = render_counted(frame, superblock_branches);
+      require_same(counted, render_plain(frame));
       add(sum, counted.totals, [](std::size_t) { return true; });
     }
   }
@@ -452,24 +414,14 @@ Totals write_memory(const std::string& folder, const NamedFrame& named) {
   return counted;
 }
 
-// What decide_exactly decides: eye, direction and corners of each decision, 15 floats.
-void write_decisions(const std::string& path, const Scene& scene) {
-  std::vector<Vec3> words;
-  for (std::uint32_t i = 0; i < kDecisions; ++i) {
-    const UVec3& triangle = decided_triangle(scene, i);
-    const Vec3 a = scene.vertices[triangle.x];
-    words.insert(words.end(), {kEye, a - kEye, a, scene.vertices[triangle.y], scene.vertices[triangle.z]});
-  }
-  write_file(path, std::as_bytes(std::span(words)));
-}
-
 }  // namespace
 
 void write_memories(const std::string& folder) {
   const Scenes scenes;
   const auto frames = frames_of(scenes);
-  Totals totals = count_exact(scenes.teapot, kSuperblockBranches);
-  write_decisions(folder + "/exact.memory", scenes.teapot);
+  const std::vector<ExactDecision> decisions = decisions_of(scenes.teapot);
+  Totals totals = count_decisions(decisions, kSuperblockBranches);
+  write_file(folder + "/exact.memory", std::as_bytes(std::span(decisions)));
   write_units(folder + "/exact.units", totals);
   for (const NamedFrame& named : frames) add(totals, write_memory(folder, named), named);
   constexpr std::uint32_t kFineSegments = 20;  // triangles as small as a scan's

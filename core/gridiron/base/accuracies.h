@@ -50,7 +50,7 @@ struct AccuracyTraits {
   return accuracy_traits(accuracy).format;
 }
 
-inline constexpr std::uint32_t kAccuracyCount = 5;  ///< their numbers are 0..kAccuracyCount - 1
+inline constexpr unsigned kAccuracyCount = 5;  ///< their numbers are 0..kAccuracyCount - 1
 static_assert(accuracy_traits(Accuracy{kAccuracyCount - 1}).format != TriangleFormat{} &&
                   accuracy_traits(Accuracy{kAccuracyCount}).format == TriangleFormat{},
               "kAccuracyCount is not the number of accuracies");

@@ -8,7 +8,7 @@
 namespace gridiron {
 
 /// Effects, as bits of a set. Plain light of point lights, without shadows, is no effect.
-enum EffectBits : std::uint32_t {
+enum EffectBits : unsigned {
   kPointShadows = 1u << 0,
   kAreaLights = 1u << 1,  ///< sampled, with shadows or without
   kReflection = 1u << 2,
@@ -111,7 +111,7 @@ inline constexpr std::uint32_t kEnvironmentPatches = 7;  ///< along a block's ed
 
 /// Blocks along a face's edge: patches begin at texels 0..width - 2; a face of one texel has one block.
 [[nodiscard]] constexpr std::uint32_t environment_blocks(std::uint32_t width) {
-  return width <= 2 ? 1 : (width - 2) / kEnvironmentPatches + 1;
+  return width <= 2 ? std::uint32_t{1} : (width - 2) / kEnvironmentPatches + 1;
 }
 
 /// A ray that waits in a queue of the local store or in main memory.
@@ -134,7 +134,8 @@ inline constexpr std::uint32_t kMostEffectTilePixels = 1024;  ///< of a layout w
 /// each ray of a wave. The queue is a stack: if a wave leaves pushed rays below, the next wave consists only of rays
 /// that it pushed itself, all of them deeper than its least deep one. So at most one wave of each depth has rays left.
 [[nodiscard]] constexpr std::uint32_t most_waiting_rays(std::uint32_t recursion_depth) {
-  return recursion_depth <= 1 ? 0 : 2 * kMostEffectTilePixels + 2 * kMostWaveRays * (recursion_depth - 2);
+  return recursion_depth <= 1 ? std::uint32_t{0}
+                              : 2 * kMostEffectTilePixels + 2 * kMostWaveRays * (recursion_depth - 2);
 }
 
 /// Bytes of main memory that each core needs for the rays that do not fit its local store. The region begins at a

@@ -20,34 +20,34 @@ class ExactSum {
   static constexpr int kLowestExponent = -447;  ///< weight of bit 0 is 2^-447
 
   /// Adds sign * a * b * c; sign is +1 or -1. Preconditions: a, b, c finite.
-  void add_product(int sign, float a, float b, float c);
+  void add_product(std::int32_t sign, float a, float b, float c);
 
   /// Adds sign * det[a, b, c], six products.
-  void add_determinant(int sign, const float a[3], const float b[3], const float c[3]);
+  void add_determinant(std::int32_t sign, const float a[3], const float b[3], const float c[3]);
 
   /// Adds the component of (b - a) x (c - a) along the axis before v and w, six products.
-  void add_normal_component(const float a[3], const float b[3], const float c[3], int v, int w);
+  void add_normal_component(const float a[3], const float b[3], const float c[3], std::int32_t v, std::int32_t w);
 
   /// @returns -1, 0 or +1: the sign of the exact sum. Carries are settled as a side effect.
-  [[nodiscard]] int sign();
+  [[nodiscard]] std::int32_t sign();
 
   /// Settles carries and makes the sum non-negative; afterwards every limb is in [0, 2^32).
   /// @returns the sign the sum had.
-  int take_magnitude();
+  std::int32_t take_magnitude();
 
-  [[nodiscard]] std::uint32_t limb(int index) const { return static_cast<std::uint32_t>(limbs_[index]); }
+  [[nodiscard]] std::uint32_t limb(std::int32_t index) const { return static_cast<std::uint32_t>(limbs_[index]); }
 
  private:
   std::int64_t limbs_[kLimbCount] = {};
 };
 
 /// @returns sign of det[dir, a - org, b - org], exactly: the side of edge (a, b) on which the ray passes.
-[[nodiscard, gnu::cold]] int exact_edge_sign(const float org[3], const float dir[3], const float a[3],
-                                             const float b[3]);
+[[nodiscard, gnu::cold]] std::int32_t exact_edge_sign(const float org[3], const float dir[3], const float a[3],
+                                                      const float b[3]);
 
 /// @returns sign of det[a - org, b - org, c - org], exactly: the side of the triangle's plane on which org lies.
-[[nodiscard, gnu::cold]] int exact_volume_sign(const float org[3], const float a[3], const float b[3],
-                                               const float c[3]);
+[[nodiscard, gnu::cold]] std::int32_t exact_volume_sign(const float org[3], const float a[3], const float b[3],
+                                                        const float c[3]);
 
 /// @returns true where (b - a) x (c - a) is exactly zero: the triangle has no area.
 [[nodiscard]] bool exact_zero_area(const float a[3], const float b[3], const float c[3]);
@@ -68,7 +68,7 @@ class ExactSum {
 ///
 /// @param first, second  vertices. Precondition: N and D of each have the same sign, not 0.
 /// @returns -1 where the first is nearer, 0 where they are equal, +1. Cost: two products of big integers.
-[[nodiscard, gnu::cold]] int exact_distance_order(const float org[3], const float dir[3], const float (&first)[3][3],
-                                                  const float (&second)[3][3]);
+[[nodiscard, gnu::cold]] std::int32_t exact_distance_order(const float org[3], const float dir[3],
+                                                           const float (&first)[3][3], const float (&second)[3][3]);
 
 }  // namespace gridiron

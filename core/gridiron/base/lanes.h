@@ -19,6 +19,10 @@
 
 namespace gridiron {
 
+/// An enumeration that lies in the local store.
+template <class Enumeration>
+using Stored = Enumeration;
+
 /// The compiler's vector types: W floats or ints, W / 2 doubles, longs or half vectors; ...Memory may alias plain
 /// arrays.
 template <int W>

@@ -15,14 +15,14 @@ inline constexpr std::uint32_t kImageVersion = 1;     ///< the only one that is 
 inline constexpr std::uint32_t kMaxSectionCount = 32;  ///< entries of a section table
 
 /// How a triangle is stored in the kTriangles section. Fixed at build time; a frame must match what is stored.
-enum class TriangleFormat : std::uint32_t {
+enum class TriangleFormat : unsigned {
   kVertices = 1,    ///< VertexTriangle: `standard`, `exact`, `fast`
   kProjection = 2,  ///< ProjectionTriangle: `paper`
   kLattice = 3,     ///< LatticeTriangle: `compact`
 };
 
 /// What a section of an image holds.
-enum class SectionKind : std::uint32_t {
+enum class SectionKind : unsigned {
   kGrid = 1,        ///< one GridRecord
   kMacroTable = 2,  ///< MacroTableEntry[ceil(macro_cell_count / 32)]
   kCellBlocks = 3,  ///< cell blocks of cell_block_bytes each; block 0 is the empty one (all zero)
@@ -164,7 +164,7 @@ inline constexpr std::uint32_t kFrameMagic = 0x4d524647;  ///< "GFRM" as bytes
 inline constexpr std::uint32_t kFrameVersion = 2;         ///< of FrameHead and of what follows it
 
 /// How exactly hits are decided; core/README.md lists what each accuracy promises.
-enum class Accuracy : std::uint32_t {
+enum class Accuracy : unsigned {
   kStandard = 0,  ///< filtered edge signs with exact ones behind them, correctly rounded distance
   kPaper = 1,     ///< precomputed projection, reciprocals estimated, single precision; may leak
   kExact = 2,     ///< as kStandard, and of equal rounded distances the exact ones decide
@@ -173,14 +173,14 @@ enum class Accuracy : std::uint32_t {
 };
 
 /// What a pixel shows.
-enum class Shading : std::uint32_t {
+enum class Shading : unsigned {
   kNone = 0,    ///< hit or background
   kSimple = 1,  ///< facing ratio with the geometric normal
   kScene = 2,   ///< the effects of the scene, core/EFFECTS.md
 };
 
 /// Techniques of the traversal that a frame can switch off to measure their gain.
-enum TechniqueBits : std::uint32_t {
+enum TechniqueBits : unsigned {
   kUseMailbox = 1u << 0,
   kUseCornerCulling = 1u << 1,
   kUseEmptySkip = 1u << 2,   ///< skip empty macrocells without a transfer
@@ -191,7 +191,7 @@ enum TechniqueBits : std::uint32_t {
 inline constexpr std::uint32_t kLeastInputCommands = 4;
 
 /// Which engine traces the rays of a frame.
-enum class EngineId : std::uint32_t {
+enum class EngineId : unsigned {
   kGrid = 1,  ///< GridEngine
 };
 inline constexpr std::uint32_t kFirstOtherEngine = 1000;  ///< from here on, engines outside core

@@ -1,5 +1,5 @@
 // Shared by the checks of an image: reading records, naming the wrong field, the sections that were found.
-// Inside of this room. Memory: borrowed. Threads: one. SPDX-License-Identifier: Apache-2.0
+// Internal header. Memory: borrowed. Threads: one. SPDX-License-Identifier: Apache-2.0
 #pragma once
 
 #include <gridiron/base/image_rules.h>

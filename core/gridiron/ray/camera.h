@@ -39,7 +39,7 @@ template <class L, class PacketType>
 void generate_packet(const FrameHead& frame, std::uint32_t left, std::uint32_t top, PacketType& packet,
                      RaySet<PacketType::kRayCount>& present, WorkCounters& work, float dx = 0.0f, float dy = 0.0f) {
   using Float = typename L::Float;
-  constexpr std::uint32_t kWidth = PacketType::kWidth;
+  static constexpr std::uint32_t kWidth = PacketType::kWidth;
   work.add(Work::kRayGenerated, PacketType::kRayCount / L::kCount);
   const float x0 = static_cast<float>(left) + dx;
   const float y0 = static_cast<float>(top) + dy;
@@ -74,7 +74,7 @@ void generate_packet(const FrameHead& frame, std::uint32_t left, std::uint32_t t
     }
   }
 
-  constexpr float kLast = static_cast<float>(kWidth - 1);
+  static constexpr float kLast = static_cast<float>(kWidth - 1);
   float dir_max = 0.0f;
   float dir_bound = 0.0f;
   for (int axis = 0; axis < 3; ++axis) {

@@ -65,7 +65,7 @@ GRIDIRON_INLINE void distances_of(const PacketType& packet, std::uint32_t base, 
                                   WorkCounters& work) {
   using Double = typename L::Double;
   using Long = typename L::Long;
-  constexpr std::uint32_t kHalf = L::kCount / 2;
+  static constexpr std::uint32_t kHalf = L::kCount / 2;
   std::uint32_t unsure = 0;
   for (std::uint32_t half = 0; half < 2; ++half) {
     if ((bits >> (half * kHalf) & ((1u << kHalf) - 1u)) == 0) continue;
@@ -79,10 +79,10 @@ GRIDIRON_INLINE void distances_of(const PacketType& packet, std::uint32_t base, 
     const Double quotient = Double(setup.numerator) / denominator;
     // error(D) / |D| = error(D) |t| / |N|
     const Double relative = quotient * Double(setup.relative_error_per_t) + Double(setup.relative_error);
-    constexpr std::int64_t kHalfStep = std::int64_t{1} << 28;
+    static constexpr std::int64_t kHalfStep = std::int64_t{1} << 28;
     const Long low = ((quotient - quotient * relative).pattern() + kHalfStep) >> 29;
     const Long high = ((quotient + quotient * relative).pattern() + kHalfStep) >> 29;
-    constexpr std::int64_t kRebias = std::int64_t{1023 - 127} << 23;
+    static constexpr std::int64_t kRebias = std::int64_t{1023 - 127} << 23;
     const Long pattern = low - kRebias;
     const Long sure = (low == high) & (pattern >= 0x00800000) & (pattern <= 0x7F7FFFFF) & (relative < 0x1p-10);
     L::store_patterns(pattern, distance + half * kHalf);
@@ -337,7 +337,7 @@ template <class L, class PacketType>
                                                    const VertexTriangle& triangle, HitSetups<L>& setups,
                                                    WorkCounters& work) {
   using Float = typename L::Float;
-  constexpr std::uint32_t kGroups = kSubpacketRays / L::kCount;
+  static constexpr std::uint32_t kGroups = kSubpacketRays / L::kCount;
   setups.estimate(packet, triangle, work);
   work.add(Work::kHitSubpacket);
   Float denominator[kGroups];

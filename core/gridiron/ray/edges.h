@@ -79,10 +79,10 @@ inline constexpr float kCornerErrorFactor = 5.0f * 0x1p-23f;
 inline constexpr float kSubpacketErrorFactor = 68.0f * 0x1p-23f;
 
 /// @returns sign of det[a - o, b - o, c - o]: the caller has tried floats; here doubles, then integers.
-[[nodiscard]] int volume_sign(const float origin[3], const VertexTriangle& triangle, WorkCounters& work);
+[[nodiscard]] std::int32_t volume_sign(const float origin[3], const VertexTriangle& triangle, WorkCounters& work);
 
 /// @returns sign of det[dir, a - o, b - o]: doubles if they are sure, else integers.
-[[nodiscard]] int edge_sign(const float origin[3], const float dir[3], const float a[3], const float b[3],
+[[nodiscard]] std::int32_t edge_sign(const float origin[3], const float dir[3], const float a[3], const float b[3],
                             WorkCounters& work);
 
 /// Prepares the edge functions of a batch of triangles for a packet, and tests its corner rays: if all four pass on the
@@ -93,7 +93,7 @@ template <class L, class PacketType>
 GRIDIRON_OUTLINE void set_up_edges(const PacketType& packet, const VertexTriangle* const* triangles, Culling culling,
                                    EdgeBatch<L>& batch, WorkCounters& work) {
   using Float = typename L::Float;
-  constexpr std::uint32_t kTriangles = EdgeBatch<L>::kTriangles;
+  static constexpr std::uint32_t kTriangles = EdgeBatch<L>::kTriangles;
   // A record's first 36 bytes are x0 y0 z0 x1 | y1 z1 x2 y2 | z2; this makes one vector per axis of them.
   const float* rows[3][kTriangles];
   for (std::uint32_t i = 0; i < kTriangles; ++i) {
@@ -152,9 +152,9 @@ GRIDIRON_OUTLINE void set_up_edges(const PacketType& packet, const VertexTriangl
     const auto along = [&](const float* direction) {
       return inward_x * Float(direction[0]) + inward_y * Float(direction[1]) + inward_z * Float(direction[2]);
     };
-    constexpr float kSubpacketSpan = kSubpacketWidth - 1.0f;
-    constexpr float kSquareSpan = 2.0f * kSubpacketWidth - 1.0f;
-    constexpr float kQuarterSpan = 4.0f * kSubpacketWidth - 1.0f;
+    static constexpr float kSubpacketSpan = kSubpacketWidth - 1.0f;
+    static constexpr float kSquareSpan = 2.0f * kSubpacketWidth - 1.0f;
+    static constexpr float kQuarterSpan = 4.0f * kSubpacketWidth - 1.0f;
     const Float first = along(packet.first_dir);
     const Float per_column = along(packet.step_x);
     const Float per_row = along(packet.step_y);
@@ -189,7 +189,7 @@ template <class L, class PacketType>
 [[nodiscard]] GRIDIRON_OUTLINE std::uint32_t settle_open_lanes(const PacketType& packet, std::uint32_t base,
                                                                std::uint32_t open_bits,
                                                                const std::uint32_t sure_inside[3],
-                                                               const VertexTriangle& triangle, int orientation,
+                                                               const VertexTriangle& triangle, std::int32_t orientation,
                                                                WorkCounters& work) {
   std::uint32_t inside = 0;
   for (std::uint32_t rest = open_bits; rest != 0; rest &= rest - 1) {
@@ -198,7 +198,7 @@ template <class L, class PacketType>
     bool hit = true;
     bool any = false;
     for (int edge = 0; edge < 3 && hit; ++edge) {
-      int sign = 1;
+      std::int32_t sign = 1;
       if (((sure_inside[edge] >> lane) & 1u) == 0) {
         sign = orientation * edge_sign(packet.origin, dir, triangle.v[edge], triangle.v[(edge + 1) % 3], work);
       }
@@ -232,7 +232,7 @@ struct SplatEdges {
 template <class L, class PacketType>
 [[nodiscard]] GRIDIRON_INLINE std::uint32_t lanes_inside(const PacketType& packet, std::uint32_t base,
                                                          std::uint32_t active, const SplatEdges<L>& edges,
-                                                         const VertexTriangle& triangle, int orientation,
+                                                         const VertexTriangle& triangle, std::int32_t orientation,
                                                          WorkCounters& work) {
   using Float = typename L::Float;
   work.add(Work::kGroupTestStandard);

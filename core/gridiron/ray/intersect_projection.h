@@ -46,8 +46,8 @@ template <class L, class PacketType>
                                                                  bool want_facing, WorkCounters& work) {
   using Float = typename L::Float;
   const std::uint32_t k = triangle.axis_k;
-  const std::uint32_t u = k == 2 ? 0 : k + 1;
-  const std::uint32_t v = u == 2 ? 0 : u + 1;
+  const std::uint32_t u = k == 2 ? std::uint32_t{0} : k + 1;
+  const std::uint32_t v = u == 2 ? std::uint32_t{0} : u + 1;
   const float o_u = packet.origin[u];
   const float o_v = packet.origin[v];
   const float numerator = triangle.n_d - packet.origin[k] - triangle.n_u * o_u - triangle.n_v * o_v;

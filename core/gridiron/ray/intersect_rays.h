@@ -58,7 +58,7 @@ GRIDIRON_INLINE void set_up_ray_triangle(const VertexTriangle& triangle, RayTria
   std::uint32_t known = above | below;
   for (int k = 0; k < 3; ++k) {
     if ((known >> k & 1u) != 0) continue;
-    const int sign = edge_sign(origin, dir, triangle.v[k], triangle.v[k == 2 ? 0 : k + 1], work);
+    const std::int32_t sign = edge_sign(origin, dir, triangle.v[k], triangle.v[k == 2 ? 0 : k + 1], work);
     if (sign > 0) above |= 1u << k;
     if (sign < 0) below |= 1u << k;
   }

@@ -107,7 +107,7 @@ template <class L, bool kWantFacing, class PacketType>
 [[nodiscard]] GRIDIRON_INLINE SubpacketSet intersect_standard_batch(PacketType& packet, const OpenTriangle* open,
                                                                     std::uint32_t open_count, Culling culling,
                                                                     WorkCounters& work) {
-  constexpr std::uint32_t kTriangles = EdgeBatch<L>::kTriangles;
+  static constexpr std::uint32_t kTriangles = EdgeBatch<L>::kTriangles;
   SubpacketSet changed = 0;
   for (std::uint32_t first = 0; first < open_count; first += kTriangles) {
     std::uint32_t in_batch = open_count - first;

@@ -22,7 +22,7 @@ struct RaySet {
   }
   GRIDIRON_INLINE void fill() {
     static_assert(RayCount % 32 == 0 || RayCount < 32);
-    for (std::uint32_t i = 0; i < kWordCount; ++i) words[i] = RayCount < 32 ? (1u << (RayCount % 32)) - 1u : ~0u;
+    for (std::uint32_t i = 0; i < kWordCount; ++i) words[i] = ~0u >> ((32 - RayCount % 32) % 32);
   }
   GRIDIRON_INLINE void insert(std::uint32_t ray) { words[ray / 32] |= 1u << (ray % 32); }
   GRIDIRON_INLINE void erase(std::uint32_t ray) { words[ray / 32] &= ~(1u << (ray % 32)); }
@@ -188,7 +188,7 @@ struct alignas(128) Packet : PacketDirections<Width * Width>,
   static constexpr std::uint32_t kWidth = Width;
   static constexpr std::uint32_t kRayCount = Width * Width;
   static constexpr std::uint32_t kSubpacketCount = kRayCount / kSubpacketRays;
-  static constexpr std::uint32_t kSquareCount = kSubpacketCount < 4 ? 1 : kSubpacketCount / 4;
+  static constexpr std::uint32_t kSquareCount = (kSubpacketCount + 3) / 4;
   static constexpr SubpacketSet kAllSubpackets = ~SubpacketSet{0} >> (64 - kSubpacketCount);
   static constexpr bool kHasBoxes = kSubpacketCount >= 16;  ///< `projection` is in use
   static_assert(Width == 4 || Width == 8 || Width == 16 || Width == 32);

@@ -30,7 +30,7 @@ void store_hits(const PacketType& packet, std::uint32_t x, std::uint32_t y, std:
                 WorkCounters& work) {
   using Float = typename L::Float;
   using Int = typename L::Int;
-  constexpr std::uint32_t kGroups = PacketType::kRayCount / L::kCount;
+  static constexpr std::uint32_t kGroups = PacketType::kRayCount / L::kCount;
   // A group of lanes is one or several rows of a subpacket: quads of pixels, one below the other.
   const auto for_each_group = [&](auto&& write) GRIDIRON_INLINE_LAMBDA {
     for (std::uint32_t first = 0; first < PacketType::kRayCount; first += kSubpacketRays) {

@@ -52,7 +52,7 @@ inline void set_up_projection(LinearRays& rays, float dir_bound) {
   const double along = size[1] > size[2] ? size[1] : size[2];
   const double largest = size[0] > along ? size[0] : along;
   const double bound_per_det = double{dir_bound} / magnitude(det);
-  constexpr double kUnit = 0x1p-23;
+  static constexpr double kUnit = 0x1p-23;
   const double margin = kUnit * (bound_per_det * (32.0 * along + 1536.0 * size[0]) + 400.0);
   // What doubles lose in a nearly singular matrix must not count.
   double scale = 1.0;
@@ -142,7 +142,7 @@ GRIDIRON_INLINE void find_pixel_boxes(const PacketType& packet, const VertexTria
     const Float margin(projection.margin);
     const Float low = L::min(L::min(place[0], place[1]), place[2]) - margin;
     const Float high = L::max(L::max(place[0], place[1]), place[2]) + margin;
-    constexpr float kWidth = static_cast<float>(PacketType::kWidth);
+    static constexpr float kWidth = static_cast<float>(PacketType::kWidth);
     const auto pixel = [](Float value)
                            GRIDIRON_INLINE_LAMBDA { return L::min(L::max(value, Float(0.0f)), Float(kWidth)); };
     // The first pixel not before `low` is the whole part of low + 1, one less where low is whole itself; 1 - 2^-18 ends
@@ -182,7 +182,7 @@ struct PixelBox {
 
   /// @returns the subpackets that it touches.
   [[nodiscard]] GRIDIRON_INLINE SubpacketSet subpackets() const {
-    constexpr std::uint32_t kLast = kSubpacketWidth - 1;
+    static constexpr std::uint32_t kLast = kSubpacketWidth - 1;
     const SubpacketSet before_end = kSubpacketsBefore.column[(end_column + kLast) / kSubpacketWidth] &
                                     kSubpacketsBefore.row[(end_row + kLast) / kSubpacketWidth];
     const SubpacketSet before_first =

@@ -37,7 +37,7 @@ template <class L, class PacketType>
                                                          WorkCounters& work) {
   using Float = typename L::Float;
   using Four = Lanes<4>;
-  constexpr std::uint32_t kSquares = PacketType::kSquareCount;
+  static constexpr std::uint32_t kSquares = PacketType::kSquareCount;
   // A group of four lanes is a quarter of the packet.
   constexpr bool kByQuarters = kSquares == 16 && L::kCount == 4;
   std::uint32_t far_quarters = 0;

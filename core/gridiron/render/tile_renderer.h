@@ -74,7 +74,7 @@ class TileRenderer {
     // The output buffer's last tile must have left.
     const std::uint32_t slot = output_slot_;
     const std::uint8_t tag = output_tag(slot);
-    output_slot_ = output_slot_ + 1 == frame.output_depth ? 0 : output_slot_ + 1;
+    output_slot_ = output_slot_ + 1 == frame.output_depth ? std::uint32_t{0} : output_slot_ + 1;
     GRIDIRON_TRY(transfers_.wait(tag));
 
     TileOutput& output = store_.output[slot];
@@ -147,7 +147,7 @@ class TileRenderer {
     const FrameHead& frame = store_.frame;
     std::uint32_t commands = 0;
     for (const std::uint64_t plane : {frame.color_address, frame.depth_address, frame.id_address}) {
-      constexpr std::uint32_t kPieces = (kPlaneBytes + kPortableBoundaryBytes - 1) / kPortableBoundaryBytes;
+      static constexpr std::uint32_t kPieces = (kPlaneBytes + kPortableBoundaryBytes - 1) / kPortableBoundaryBytes;
       if (plane != 0) commands += kPieces + (plane % kPortableBoundaryBytes != 0 ? 1 : 0);
     }
     commands *= frame.output_depth;
@@ -193,7 +193,7 @@ class TileRenderer {
   [[nodiscard]] Status finish(Status outcome) {
     for (std::uint32_t i = 0; i < store_.frame.output_depth; ++i) {
       GRIDIRON_TRY(transfers_.wait(output_tag(output_slot_)));
-      output_slot_ = output_slot_ + 1 == store_.frame.output_depth ? 0 : output_slot_ + 1;
+      output_slot_ = output_slot_ + 1 == store_.frame.output_depth ? std::uint32_t{0} : output_slot_ + 1;
     }
     return outcome;
   }

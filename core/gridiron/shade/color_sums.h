@@ -22,7 +22,7 @@ inline constexpr float kMostAdded = 4095.0f;  ///< brighter values count as this
 /// Adds with saturation; for numbers that are not negative the order does not matter.
 GRIDIRON_INLINE void add_steps(std::uint32_t& sum, std::uint32_t steps) {
   const std::uint32_t total = sum + steps;
-  sum = total < sum ? 0xFFFFFFFFu : total;
+  sum = total < sum ? ~std::uint32_t{0} : total;
 }
 
 /// @returns 0..255. @param per_step  1 / (kSumSteps * samples of a pixel).

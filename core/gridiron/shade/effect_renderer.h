@@ -104,7 +104,8 @@ class EffectRenderer {
   [[nodiscard]] Status shade_sample(std::uint32_t sample, std::uint32_t* ids) {
     const FrameHead& frame = store_.frame;
     const PixelOffset offset = pixel_offset(samples_per_pixel(), sample);
-    constexpr std::uint32_t kPixels = Store::kTilePixels, kSquareWidth = 4, kSquarePixels = kSquareWidth * kSquareWidth;
+    static constexpr std::uint32_t kPixels = Store::kTilePixels, kSquareWidth = 4,
+                                   kSquarePixels = kSquareWidth * kSquareWidth;
     std::uint32_t place = 0;  // along a Z curve of squares, so that neighbours go together
     while (place < kPixels) {
       store_.work.charge_to(Work::kWaveRay);
@@ -139,7 +140,7 @@ class EffectRenderer {
   /// Turns the sums into pixels.
   void finish_tile(std::uint32_t* color) {
     transfers_.note_stage(Stage::kOutput);
-    constexpr std::uint32_t kPixels = Store::kTilePixels;
+    static constexpr std::uint32_t kPixels = Store::kTilePixels;
     store_.work.add(Work::kColorGroup, kPixels / 4);
     store_.work.charge_to(Work::kColorGroup);
     const float per_step = 1.0f / (kSumSteps * static_cast<float>(static_cast<std::int32_t>(samples_per_pixel())));
@@ -400,14 +401,15 @@ class EffectRenderer {
   // Casts reflected and refracted rays of a point.
   [[nodiscard]] Status cast_rays(const WavePoint& point, Vector3 shading, Vector3 behind, Vector3 weight,
                                  const MaterialRecord& material, bool enters) {
-    const bool is_glass = has(kRefraction) && material.transmittance > 0.0f;
+    constexpr bool kRefracts = has(kRefraction);
+    const bool is_glass = kRefracts && material.transmittance > 0.0f;
     if (point.pixel >> 16 >= scene().recursion_depth || !(material.specular > 0.0f || is_glass)) return Status::kOk;
     const Vector3 direction = -vector_of(point.view);
     const Vector3 face = vector_of(point.face);
     float share = material.specular;
     QueuedRay next{};
     next.pixel = point.pixel + (1u << 16);
-    if constexpr (has(kRefraction)) {
+    if constexpr (kRefracts) {
       if (is_glass) {
         store_.work.charge_to(Work::kRefractedRay);
         const Refraction through = refract_through(direction, shading, face, refraction_ratio(material.index, enters));

@@ -68,7 +68,8 @@ struct alignas(128) EffectStore {
   static constexpr std::uint32_t kLightSlots = Layout::kLightSlots;
   static constexpr std::uint32_t kSpillBlockRays = kWaveRays / 2;  ///< moved to or from main memory at once
   static constexpr bool kHasQueue = (Layout::kEffects & (kReflection | kRefraction)) != 0;
-  static constexpr std::uint32_t kQueueRays = kHasQueue ? 3 * kSpillBlockRays : 1;  ///< of a queue that is not used: 1
+  static constexpr std::uint32_t kQueueRays =
+      kHasQueue ? 3 * kSpillBlockRays : std::uint32_t{1};  ///< of a queue that is not used: 1
   static constexpr std::uint32_t kNoMaterial = 0xFFFFFFFFu, kNoLight = 0xFFFFFFFFu;
   static_assert(kTilePixels <= kMostEffectTilePixels, "spill_bytes() counts on it");
   static_assert(kWaveRays <= kMostWaveRays && kWaveRays % (2 * kWalkRays) == 0 && kMaterialSlots % 2 == 0);

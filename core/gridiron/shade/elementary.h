@@ -35,8 +35,8 @@ inline void sine_cosine_of_turn(float turn, float& sine, float& cosine) {
 /// within 2^-30.4 of itself. 2^z = 2^n 2^r, |r| <= 1/2, the latter within 2^-28.5 of itself.
 /// Source: core/EFFECTS.md, "Lights".
 [[nodiscard]] inline float power(float base, float exponent) {
-  constexpr std::uint32_t kOne = 0x3F800000u, kRootOfHalf = 0x3F3504F3u;  // 1, sqrt(1/2), as patterns
-  constexpr float kLeast = 0x1p-126f;
+  static constexpr std::uint32_t kOne = 0x3F800000u, kRootOfHalf = 0x3F3504F3u;  // 1, sqrt(1/2), as patterns
+  static constexpr float kLeast = 0x1p-126f;
   const float from = base < 1.0f ? (base >= kLeast ? base : kLeast) : 1.0f;
   const std::uint32_t pattern = std::bit_cast<std::uint32_t>(from) + (kOne - kRootOfHalf);
   const float k = static_cast<float>(static_cast<std::int32_t>(pattern >> 23) - 127);

@@ -49,7 +49,7 @@ struct EnvironmentPlace {
   const float column = face_texel(right / to_face, width);
   const float row = face_texel(-(up / to_face), width);
   // The last texel is the end of the patch before it.
-  const std::int32_t last_patch = width >= 2 ? static_cast<std::int32_t>(width) - 2 : 0;
+  const std::int32_t last_patch = width >= 2 ? static_cast<std::int32_t>(width) - 2 : std::int32_t{0};
   const auto truncated_column = static_cast<std::int32_t>(column), truncated_row = static_cast<std::int32_t>(row);
   const std::int32_t patch_column = truncated_column < last_patch ? truncated_column : last_patch;
   const std::int32_t patch_row = truncated_row < last_patch ? truncated_row : last_patch;

@@ -52,7 +52,7 @@ constexpr GRIDIRON_INLINE void store(Vector3 a, float* target) {
   // A power of two that brings the size near 1, so that squares neither overflow nor vanish; 2^-127 is not a normal
   // float.
   std::uint32_t exponent = std::bit_cast<std::uint32_t>(size) >> 23;
-  exponent = exponent < 1 ? 1 : exponent > 253 ? 253 : exponent;
+  exponent = exponent < 1 ? std::uint32_t{1} : exponent > 253 ? std::uint32_t{253} : exponent;
   const Vector3 near_one = std::bit_cast<float>((254 - exponent) << 23) * a;
   const float squared = dot(near_one, near_one);
   return (squared > 0.0f ? 1.0f / square_root(squared) : 0.0f) * near_one;

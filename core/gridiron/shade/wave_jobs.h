@@ -54,7 +54,7 @@ struct WaveContext {
   }
 
   [[nodiscard]] Jitter jitter(const WavePoint& point, std::uint32_t purpose) const {
-    constexpr std::uint32_t kWidth = Store::Layout::kTileWidth;
+    static constexpr std::uint32_t kWidth = Store::Layout::kTileWidth;
     const std::uint32_t index = point.pixel & 0xFFFFu;
     const std::uint32_t pixel = (top + index / kWidth) * store.frame.width + left + index % kWidth;
     return jitter_of(sample_seed(point.path, sample, pixel), purpose);

@@ -83,7 +83,7 @@ class BvhCore {
     for (std::uint32_t i = 0; i < ring_size; ++i) {
       if (start_packet(store_.packet.contexts[i])) ++live;
     }
-    for (std::uint32_t i = 0; live != 0; i = i + 1 == ring_size ? 0 : i + 1) {
+    for (std::uint32_t i = 0; live != 0; i = i + 1 == ring_size ? std::uint32_t{0} : i + 1) {
       Context& context = store_.packet.contexts[i];
       if (context.state == Context::kIdle) continue;
       GRIDIRON_TRY(run_packet<kWantFacing>(context, i));
@@ -304,7 +304,7 @@ class BvhCore {
     const Culling culling{.corner_rays = !by_subpackets, .subpackets = by_subpackets};
     const SubpacketSet open = subpackets_of(cursor.missed ^ kAllQuarters);
     SubpacketSet changed = 0;
-    constexpr std::uint32_t kBatch = L::kCount;
+    static constexpr std::uint32_t kBatch = L::kCount;
     for (std::uint32_t left = cursor.child.triangle_count(); left != 0;) {
       std::uint32_t in_batch = left;
       if (in_batch > kBatch) in_batch = kBatch;
@@ -333,9 +333,9 @@ class BvhCore {
   // The farthest of the rays' nearest hits, of all quarters. Rays beyond the picture's edge stay at t_far.
   void update_reach(Context& context, std::uint32_t changed) {
     using Float = Four::Float;
-    constexpr std::uint32_t kQuarterRays = StorePacket::kRayCount / kQuarterCount;
-    constexpr std::uint32_t kQuarterSubpackets = StorePacket::kSubpacketCount / kQuarterCount;
-    constexpr std::uint32_t kSubpacketsOfQuarter = (1u << kQuarterSubpackets) - 1u;
+    static constexpr std::uint32_t kQuarterRays = StorePacket::kRayCount / kQuarterCount;
+    static constexpr std::uint32_t kQuarterSubpackets = StorePacket::kSubpacketCount / kQuarterCount;
+    static constexpr std::uint32_t kSubpacketsOfQuarter = (1u << kQuarterSubpackets) - 1u;
     for (std::uint32_t quarter = 0; quarter < kQuarterCount; ++quarter) {
       if ((changed >> (quarter * kQuarterSubpackets) & kSubpacketsOfQuarter) == 0) continue;
       count(BvhWork::kReach);

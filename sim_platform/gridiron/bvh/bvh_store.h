@@ -28,7 +28,7 @@ inline constexpr std::uint32_t kMaxLogLineTriangles = 6;  ///< 64 records, 3 KB
 template <std::uint32_t Width>
 inline constexpr std::uint32_t kCacheBytes = (Width == 16 ? 128 : 144) * 1024;
 template <std::uint32_t Width>
-inline constexpr std::uint32_t kRingOf = Width == 16 ? 3 : kMaxRing;
+inline constexpr std::uint32_t kRingOf = Width == 16 ? std::uint32_t{3} : kMaxRing;
 
 // Tags by which the replay classifies waits: node lines count as cell blocks, triangle lines as triangle buffers.
 static_assert(kMaxRing <= kMacroTagCount && kMaxRing <= kTriangleTagCount && kOutputDepth <= kOutputTagCount);

@@ -61,9 +61,9 @@ struct alignas(128) PacketBounds {
   void set(const FrameHead& frame, std::uint32_t left, std::uint32_t top, float least, WorkCounters& work) {
     using Four = Lanes<4>;
     using Float = Four::Float;
-    constexpr float kNarrow = 1.0f - 0x1p-20f;
-    constexpr float kWiden = 1.0f + 0x1p-20f;
-    constexpr float kQuarterWidth = Width / 2;
+    static constexpr float kNarrow = 1.0f - 0x1p-20f;
+    static constexpr float kWiden = 1.0f + 0x1p-20f;
+    static constexpr float kQuarterWidth = Width / 2;
     const Float x_low = Float(static_cast<float>(left)) + Float::load(kQuarterPlaces.column) * Float(kQuarterWidth);
     const Float y_low = Float(static_cast<float>(top)) + Float::load(kQuarterPlaces.row) * Float(kQuarterWidth);
     const Float x_high = x_low + Float(kQuarterWidth - 1.0f);
@@ -78,7 +78,8 @@ struct alignas(128) PacketBounds {
       const Float top_part = y_low * step_y, bottom_part = y_high * step_y;
       low[axis] = Four::min(left_part, right_part) + Four::min(top_part, bottom_part);
       high[axis] = Four::max(left_part, right_part) + Four::max(top_part, bottom_part);
-      const std::uint32_t backward = (high[axis] < Float(-least)).bits() == kAllQuarters ? kAllQuarters : 0u;
+      const std::uint32_t backward =
+          (high[axis] < Float(-least)).bits() == kAllQuarters ? kAllQuarters : std::uint32_t{0};
       const auto is_backward = Four::mask_from_bits(backward);
       near_side[axis] = backward & 1u;
       far_side[axis] = (backward & 1u) ^ 1u;

@@ -1,5 +1,5 @@
 // Where the parts of a scene image lie, and which macrocell a cell belongs to. Shared by counting and building.
-// Inside of this room. Memory: values. Threads: any. SPDX-License-Identifier: Apache-2.0
+// Internal header. Memory: values. Threads: any. SPDX-License-Identifier: Apache-2.0
 #pragma once
 
 #include <gridiron/base/lanes.h>

@@ -73,7 +73,7 @@ struct Frustum {
     const Float bound =
         Float::load(start) + (Float::load(slope_near) * Float(slab.entry) + Float::load(slope_far) * Float(far));
     const Float cells = Float::load(limit);
-    constexpr std::uint32_t kLowBounds = 0b0101, kHighBounds = 0b1010;
+    static constexpr std::uint32_t kLowBounds = 0b0101, kHighBounds = 0b1010;
     const std::uint32_t below = (bound < Float(0.0f)).bits() & kHighBounds;
     const std::uint32_t above = (cells < bound).bits() & kLowBounds;
     if ((below | above) != 0) return {1, 0, 1, 0};
@@ -97,7 +97,7 @@ template <class L, class PacketType>
 GRIDIRON_INLINE void take_square(const PassAxes& axes, std::uint32_t square, RaySet<PacketType::kRayCount>& waiting,
                                  PacketType& packet, WorkCounters& work) {
   using Float = typename L::Float;
-  constexpr std::uint32_t kSquareRays = PacketType::kRayCount / PacketType::kSquareCount;
+  static constexpr std::uint32_t kSquareRays = PacketType::kRayCount / PacketType::kSquareCount;
   Float low_u(kFloatMax), high_u(-kFloatMax), low_v(kFloatMax), high_v(-kFloatMax), high_march(0.0f);
   work.add(GridWork::kPassGroup, kSquareRays / L::kCount);
   for (std::uint32_t base = square * kSquareRays; base < (square + 1) * kSquareRays; base += L::kCount) {
@@ -137,7 +137,7 @@ template <class PacketType>
                                                      WorkCounters& work) {
   using Four = Lanes<4>;
   using Float = Four::Float;
-  constexpr std::uint32_t kSquareRays = PacketType::kRayCount / PacketType::kSquareCount;
+  static constexpr std::uint32_t kSquareRays = PacketType::kRayCount / PacketType::kSquareCount;
   if constexpr (kSquareRays != 64) return false;
   std::uint32_t* const waiting_words = waiting.words + 2 * square;
   if (!packet.is_linear || (waiting_words[0] & waiting_words[1]) != ~0u) return false;
@@ -199,8 +199,8 @@ template <class L, class PacketType>
   std::uint32_t k = 0;
   if (size_of(1, leader) > size_of(k, leader)) k = 1;
   if (size_of(2, leader) > size_of(k, leader)) k = 2;
-  const std::uint32_t u = k == 2 ? 0 : k + 1;
-  const std::uint32_t v = u == 2 ? 0 : u + 1;
+  const std::uint32_t u = k == 2 ? std::uint32_t{0} : k + 1;
+  const std::uint32_t v = u == 2 ? std::uint32_t{0} : u + 1;
   const bool reverse = packet.dir[k][leader] < 0.0f;
 
   const PassAxes axes{k,
@@ -226,8 +226,8 @@ template <class L, class PacketType>
   frustum.cells_v = static_cast<std::int32_t>(grid.cell_count[v]);
   frustum.reverse = reverse;
   frustum.origin_k = in_cells(k);
-  constexpr float kUnit = 0x1p-23f;
-  constexpr float kSlopeLoss = 0x1p-25f / (9.0f * kUnit);  // in units of march_bound * kUnit
+  static constexpr float kUnit = 0x1p-23f;
+  static constexpr float kSlopeLoss = 0x1p-25f / (9.0f * kUnit);  // in units of march_bound * kUnit
   const float march_bound = 9.0f * (magnitude(frustum.origin_k) + static_cast<float>(frustum.cells_k));
   frustum.pad_k = kUnit * march_bound;
   const auto set_bounds = [&](std::uint32_t axis, std::uint32_t lane, float slope_min, float slope_max) {

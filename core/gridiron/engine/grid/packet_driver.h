@@ -152,7 +152,7 @@ class PacketDriver {
 
   // Squares of subpackets that may touch a cell and have a ray with no hit in front of it yet.
   [[nodiscard]] std::uint32_t squares_that_see(const CellVisit& cell) {
-    constexpr std::uint32_t kAllSquares = (1u << StorePacket::kSquareCount) - 1u;
+    static constexpr std::uint32_t kAllSquares = (1u << StorePacket::kSquareCount) - 1u;
     if ((store_.frame.engine.techniques & kUseSubpackets) == 0) return kAllSquares;
     const std::uint32_t open = reaches_.open_squares(frustum_, cell.entry, store_.work);
     if (open == 0) return 0;

@@ -18,8 +18,9 @@ template <class PacketType>
 struct SubpacketReach {
   static constexpr std::uint32_t kCount = PacketType::kSubpacketCount;
   static constexpr std::uint32_t kSquareCount = PacketType::kSquareCount;
+  static constexpr std::uint32_t kWholeQuads = (kSquareCount + 3) / 4 * 4;
   alignas(64) float reach[kCount];
-  alignas(16) float square_reach[kSquareCount < 4 ? 4 : kSquareCount];  ///< the largest of each square's subpackets
+  alignas(16) float square_reach[kWholeQuads];  ///< the largest of each square's subpackets
 
   /// Updates the subpackets whose hits changed, and their neighbours in a square.
   /// @returns the largest reach of the packet.

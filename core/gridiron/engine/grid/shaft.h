@@ -154,8 +154,8 @@ template <class L>
     std::uint32_t k = 0;
     if (size_of(1) > size_of(k)) k = 1;
     if (size_of(2) > size_of(k)) k = 2;
-    const std::uint32_t u = k == 2 ? 0 : k + 1;
-    const std::uint32_t v = u == 2 ? 0 : u + 1;
+    const std::uint32_t u = k == 2 ? std::uint32_t{0} : k + 1;
+    const std::uint32_t v = u == 2 ? std::uint32_t{0} : u + 1;
     const bool reverse = rays.dir[k][leader] < 0.0f;
     // A direction that vanishes or overflows in cell space, or is not finite, is a miss.
     if (!(size_of(k) > 0.0f && size_of(k) <= 0.5f * kFloatMax)) continue;
@@ -217,8 +217,8 @@ template <class L>
     waiting &= ~active;
     if (active == 0) continue;  // the values of the leader are not used then
     shaft.least_start = L::horizontal_min(least_start);
-    constexpr float kUnit = 0x1p-23f;
-    constexpr float kSlopeLoss = 0x1p-25f / (9.0f * kUnit);
+    static constexpr float kUnit = 0x1p-23f;
+    static constexpr float kSlopeLoss = 0x1p-25f / (9.0f * kUnit);
     const float march_bound = 9.0f * (L::horizontal_max(most_k) + static_cast<float>(shaft.cells_k));
     shaft.pad_k = kUnit * march_bound;
     const auto pad = [&](Float place, Float slope) {

@@ -25,7 +25,7 @@ struct RunPlace {
 /// @param first, count  triangles, count > 0.
 [[nodiscard]] GRIDIRON_INLINE RunPlace run_place(const FrameRecord& frame, std::uint32_t first, std::uint32_t count) {
   static_assert(2 * sizeof(LatticeTriangle) == kTriangleRecordBytes);
-  constexpr std::uint32_t kTransferStep = kPortableGranuleBytes;
+  static constexpr std::uint32_t kTransferStep = kPortableGranuleBytes;
   std::uint64_t offset = std::uint64_t{first} * kTriangleRecordBytes;
   std::uint32_t bytes = count * kTriangleRecordBytes;
   std::uint32_t slack = 0;

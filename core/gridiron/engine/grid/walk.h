@@ -20,7 +20,7 @@ inline constexpr std::uint32_t kWalkCount =
     Layout::kMaxMacroDepth < Layout::kMaxTriangleDepth ? Layout::kMaxMacroDepth : Layout::kMaxTriangleDepth;
 
 /// State of a walk: what it does when its turn comes.
-enum class WalkState : std::uint32_t {
+enum class WalkState : unsigned {
   kIdle,       ///< has no rays
   kNextPass,   ///< takes the next of its rays that run the same way
   kNextMacro,  ///< looks for its next macrocell
@@ -43,7 +43,7 @@ struct alignas(128) Walk {
   std::uint32_t run_count;
   std::uint32_t run_first_byte;
   float reach;
-  WalkState state;
+  Stored<WalkState> state;
   std::uint32_t ray_count;
   std::uint32_t waiting;                             ///< rays not taken into a pass yet, bit i = ray i
   std::uint32_t active;                              ///< rays of this pass without an answer

@@ -46,7 +46,7 @@ class WalkDriver {
     std::uint32_t under_way = 0;
     bool has_more = true;
     for (std::uint32_t i = 0; i < walk_count; ++i) walk_of(i).state = WalkState::kIdle;
-    for (std::uint32_t i = 0;; i = i + 1 == walk_count ? 0 : i + 1) {
+    for (std::uint32_t i = 0;; i = i + 1 == walk_count ? std::uint32_t{0} : i + 1) {
       store_.work.charge_to(GridWork::kWalkPass);
       Walk& walk = walk_of(i);
       if (walk.state == WalkState::kIdle) {
@@ -86,7 +86,7 @@ class WalkDriver {
     walk.ray_count = jobs.next(walk.rays, walk.purpose);
     store_.work.charge_to(GridWork::kWalkPass);
     if (walk.ray_count == 0) return false;
-    walk.waiting = walk.ray_count >= 32 ? ~0u : (1u << walk.ray_count) - 1u;
+    walk.waiting = walk.ray_count >= 32 ? std::uint32_t{~0u} : (1u << walk.ray_count) - 1u;
     walk.state = WalkState::kNextPass;
     return true;
   }
@@ -183,7 +183,7 @@ class WalkDriver {
       }
     }
     store_.work.charge_to(GridWork::kCellVisit);
-    constexpr std::uint32_t kRunTriangles = Layout::kTrianglesPerBuffer;
+    static constexpr std::uint32_t kRunTriangles = Layout::kTrianglesPerBuffer;
     const std::uint32_t count = walk.cell.triangle_count < kRunTriangles ? walk.cell.triangle_count : kRunTriangles;
     const RunPlace place = run_place(store_.frame, walk.cell.first_triangle, count);
     walk.run_count = count;
@@ -212,7 +212,7 @@ class WalkDriver {
       const std::uint32_t slot = triangle.triangle_id % Walk::kMailboxSlots;
       store_.work.add(GridWork::kMailboxProbe);
       std::uint32_t wanted = walk.active & walk.touching;
-      const std::uint32_t tested = walk.mailbox[slot] == triangle.triangle_id ? walk.tested[slot] : 0;
+      const std::uint32_t tested = walk.mailbox[slot] == triangle.triangle_id ? walk.tested[slot] : std::uint32_t{0};
       walk.mailbox[slot] = triangle.triangle_id;
       walk.tested[slot] = tested | wanted;
       wanted &= ~tested;

@@ -2,8 +2,8 @@
 // Memory: values. Threads: the model's. SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <counted/counted.h>
 #include <gridiron/base/lanes.h>
-#include <gridiron_counted/base/counted.h>
 
 #include <cstddef>
 #include <cstdint>

@@ -2,8 +2,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <counted/lanes.h>
 #include <gridiron/bvh/four_words.h>
-#include <gridiron_counted/base/lanes.h>
 
 #include <cstdint>
 

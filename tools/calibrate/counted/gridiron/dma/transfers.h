@@ -1,24 +1,18 @@
-// Transfers of the counted kernel: bytes arrive at once. What issuing and waiting cost is MachineProfile::issue_cycles
-// and wait_cycles, so nothing is counted in here.
+// Transfers of the counted kernel, found before core's: bytes arrive at once. What commands and waits cost is
+// MachineProfile::issue_cycles and wait_cycles, so nothing is counted in here.
 // Memory: borrowed. Threads: the model's. SPDX-License-Identifier: Apache-2.0
 #pragma once
 
-#include <gridiron_counted/base/lanes.h>
-#include <gridiron_counted/base/stages.h>
-#include <gridiron_counted/base/work_counters.h>
-#include <gridiron_counted/dma/tags.h>
-#include <gridiron_counted/platform/contract.h>
+#include <gridiron/dma/tags.h>
 
-#include <cstdint>
-
-namespace gridiron_counted {
+namespace gridiron {
 
 template <class P>
 class Transfers {
  public:
   Transfers(P& platform, WorkCounters&) : platform_(platform) {}
 
-  [[nodiscard]] std::uint32_t queue_depth() const { return platform_.limits().queue_depth; }
+  [[nodiscard]] auto queue_depth() const { return platform_.limits().queue_depth; }
   template <class Count>
   void reserve_for_output(const Count&) {}
 
@@ -42,4 +36,4 @@ class Transfers {
   P& platform_;
 };
 
-}  // namespace gridiron_counted
+}  // namespace gridiron

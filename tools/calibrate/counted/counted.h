@@ -10,6 +10,7 @@
 #include <concepts>
 #include <cstddef>
 #include <cstdint>
+#include <string_view>
 #include <type_traits>
 
 namespace gridiron_counted {
@@ -17,6 +18,7 @@ namespace gridiron_counted {
 using gridiron::calibrate::Node;
 using gridiron::calibrate::OpClass;
 using gridiron::calibrate::PipeModel;
+using gridiron::calibrate::Site;
 
 template <class T>
 concept Arithmetic = std::is_arithmetic_v<T>;
@@ -40,10 +42,7 @@ struct CountedBool {
   bool value;
   Node node;
   constexpr operator bool() const {
-    if (!std::is_constant_evaluated()) {
-      // A condition joined to others, or one that selects: one logical operation or select.
-      PipeModel::current().note_condition(emit(OpClass::kFixed, value, node));
-    }
+    if (!std::is_constant_evaluated()) PipeModel::current().use_condition(value, node);
     return value;
   }
   constexpr CountedBool operator!() const { return {!value, node}; }
@@ -297,12 +296,21 @@ struct Counted {
 };
 static_assert(sizeof(Counted<float>) == 4 && sizeof(Counted<std::uint64_t>) == 8);
 
+/// A literal, or a constant of the kernel.
 template <class T>
-constexpr bool is_power_of_two(const T& value) {
-  if constexpr (IsCounted<T> || !std::is_integral_v<T>)
+bool is_constant(const T& value) {
+  if constexpr (IsCounted<T>)
+    return PipeModel::current().is_constant(&value.value);
+  else
+    return true;
+}
+
+template <class T>
+bool is_power_of_two(const T& value) {
+  if constexpr (!std::is_integral_v<Plain<T>>)
     return false;
   else
-    return value > 0 && (value & (value - 1)) == 0;
+    return is_constant(value) && std::has_single_bit(static_cast<std::make_unsigned_t<Plain<T>>>(plain(value)));
 }
 
 // An operand as the operation takes it: in floating point, if the other one is. Integers stay as they are.
@@ -382,8 +390,8 @@ CountedBool counted_truth(const A& a, const B& b, bool value, bool equality) {
     return {value, compare_doubles(x, y, value)};
   } else {
     // A branch on zero needs no compare.
-    if constexpr (std::is_integral_v<Common> && !(IsCounted<A> && IsCounted<B>)) {
-      if (equality && plain(b) == 0 && !IsCounted<B> && sizeof(Common) == 4) return {value, x};
+    if constexpr (std::is_integral_v<Common> && sizeof(Common) == 4) {
+      if (equality && plain(b) == 0 && is_constant(b)) return {value, x};
     }
     if (sizeof(Common) == 8) return {value, compare_longs(x, y, value, equality)};
     return {value, emit(OpClass::kFixed, value, x, y)};  // the reverse question is the branch's other way
@@ -420,23 +428,44 @@ constexpr auto operator~(const Counted<T>& a) {
   return Counted<R>::made(static_cast<R>(~a.value), node == 0 ? 0 : emit(OpClass::kFixed, bits_of(a.value), node));
 }
 
-/// Branches of the transcribed kernel: if, while and for say where they stand.
-constexpr bool branch_at(gridiron::calibrate::Site site, const CountedBool& condition) {
+/// Branches of the kernel: if and while record where they are, and so do most loops.
+constexpr bool branch_at(Site site, const CountedBool& condition) {
   if (!std::is_constant_evaluated()) PipeModel::current().branch(site, condition.value, condition.node);
   return condition.value;
 }
-constexpr bool branch_at(gridiron::calibrate::Site site, bool condition) {
-  if (!std::is_constant_evaluated()) PipeModel::current().branch(site, condition, 0);
-  return condition;
+constexpr bool branch_at(Site site, bool condition) {
+  return branch_at(site, CountedBool{condition, 0});
 }
-constexpr bool loop_at(gridiron::calibrate::Site site, const CountedBool& condition) {
-  if (std::is_constant_evaluated()) return condition.value;
-  return branch_at(site, condition);
+
+/// A number for a file, by its name.
+consteval Site file_number(const char* name) {
+  Site hash = 0;
+  for (; *name != 0; ++name) hash = hash * 31 + static_cast<unsigned char>(*name);
+  return hash % 65536;
 }
-/// Loops of a constant count are unrolled.
-constexpr bool loop_at(gridiron::calibrate::Site, bool condition) {
-  return condition;
-}
+
+/// A loop whose one condition is a branch. Those whose index is an unsigned number of the kernel, and those of several
+/// conditions, have operations in its place: so the tables were counted.
+struct CountedLoop {
+  Site site;
+
+  constexpr CountedLoop(Site place, std::string_view head)
+      : site(head.starts_with("std::uint") || head.find("&&") != head.npos ? 0 : place) {
+    expect_condition(site);
+  }
+  constexpr ~CountedLoop() { expect_condition(0); }
+  static constexpr void expect_condition(Site site) {
+    if (!std::is_constant_evaluated()) PipeModel::current().expect_loop(site);
+  }
+};
+
+/// A turn of it: behind it the step and the condition follow.
+struct CountedTurn {
+  const CountedLoop& loop;
+
+  explicit constexpr CountedTurn(const CountedLoop& of) : loop(of) { CountedLoop::expect_condition(0); }
+  constexpr ~CountedTurn() { CountedLoop::expect_condition(loop.site); }
+};
 
 /// One of an enumeration, in memory.
 template <class T>
@@ -448,35 +477,37 @@ struct CountedEnum {
     PipeModel::current().set_scalar(&value, 0, static_cast<std::uint64_t>(constant));
     return *this;
   }
-  [[nodiscard]] Node node() const {
-    return PipeModel::current().scalar_at(&value, static_cast<std::uint64_t>(value));
-  }
+  [[nodiscard]] Node node() const { return PipeModel::current().scalar_at(&value, static_cast<std::uint64_t>(value)); }
   friend CountedBool operator==(const CountedEnum& a, T b) {
     return {a.value == b, emit(OpClass::kFixed, a.value == b, a.node())};
   }
   friend CountedBool operator!=(const CountedEnum& a, T b) { return !(a == b); }
 };
 
+/// An enumeration that lies in the local store.
+template <class Enumeration>
+using Stored = CountedEnum<Enumeration>;
+
 /// A jump by a table: one of its places is expected, to the others it goes the rarer way.
 template <class T>
-T switch_at(gridiron::calibrate::Site site, const CountedEnum<T>& choice, T usual) {
+T switch_at(Site site, const CountedEnum<T>& choice) {
   const auto tie = static_cast<std::uint64_t>(choice.value);
   const Node place = emit(OpClass::kShift, tie, choice.node());
   const Node target = emit(OpClass::kShuffle, tie, emit(OpClass::kLoad, tie, place), place);  // a word of the table
-  PipeModel::current().branch(site, choice.value == usual, target);
+  PipeModel::current().branch(site, choice.value == T::kNextCell, target);
   return choice.value;
+}
+/// What is no number of the kernel is not counted.
+template <class T>
+constexpr T switch_at(Site, T choice) {
+  return choice;
 }
 
 /// The value of type To with the same bits.
 template <class To, Arithmetic From>
-Counted<To> counted_bit_cast(const Counted<From>& value) {
-  return Counted<To>::made(std::bit_cast<To>(value.value), node_of(value));
+constexpr To counted_bit_cast(const Counted<From>& value) {
+  const Plain<To> bits = std::bit_cast<Plain<To>>(value.value);
+  return std::is_constant_evaluated() ? To(bits) : To::made(bits, node_of(value));
 }
 
 }  // namespace gridiron_counted
-
-#define GRIDIRON_SITE (GRIDIRON_COUNTED_FILE * 65536u + __LINE__)
-#define GRIDIRON_COUNTED_IF(...) if (::gridiron_counted::branch_at(GRIDIRON_SITE, __VA_ARGS__))
-#define GRIDIRON_COUNTED_WHILE(...) while (::gridiron_counted::branch_at(GRIDIRON_SITE, __VA_ARGS__))
-#define GRIDIRON_COUNTED_SWITCH(...) switch (::gridiron_counted::switch_at(GRIDIRON_SITE, __VA_ARGS__))
-#define GRIDIRON_COUNTED_LOOP(...) ::gridiron_counted::loop_at(GRIDIRON_SITE, __VA_ARGS__)

@@ -1,0 +1,36 @@
+// The counted kernel: core's own sources, compiled with counted numbers, branches and lanes (counted/numbers.h).
+// Plain types alone, since a source that includes the counted kernel cannot include core's own.
+// Memory: borrowed. Threads: the model's. SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <pipe_model.h>
+
+#include <cstddef>
+#include <cstdint>
+#include <span>
+
+namespace gridiron::calibrate {
+
+/// Which program runs, in which layout of the local store.
+enum class CountedProgram { kPackets8, kPackets32, kEffects, kBvh };
+
+/// What a counted core renders: memory that begins with the frame's record.
+struct CountedRun {
+  std::span<std::byte> memory;
+  std::uint32_t tile_count = 0;
+  std::uint64_t spill_address = 0, spill_bytes = 0;
+  CountedProgram program = CountedProgram::kPackets8;
+};
+
+/// Counts twice: what the branches usually do, then what everything costs.
+/// Errors: std::runtime_error where the kernel refuses the frame.
+[[nodiscard]] Totals run_counted(const CountedRun& run, std::uint32_t superblock_branches);
+
+/// A ray and a triangle that are decided in integers: sign, distance, and its order with the distance of the same
+/// triangle from another corner.
+struct ExactDecision {
+  float eye[3], direction[3], a[3], b[3], c[3];
+};
+[[nodiscard]] Totals count_decisions(std::span<const ExactDecision> decisions, std::uint32_t superblock_branches);
+
+}  // namespace gridiron::calibrate
