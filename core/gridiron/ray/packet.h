@@ -184,7 +184,7 @@ struct alignas(128) Packet : PacketDirections<Width * Width>,
                              DistancePolicy,
                              RecentTriangles<RecentCount>,
                              LinearRays,
-                             PassSlopes<(Width < 8 ? 1 : Width * Width / (4 * kSubpacketRays))> {
+                             PassSlopes<(Width * Width + 4 * kSubpacketRays - 1) / (4 * kSubpacketRays)> {
   static constexpr std::uint32_t kWidth = Width;
   static constexpr std::uint32_t kRayCount = Width * Width;
   static constexpr std::uint32_t kSubpacketCount = kRayCount / kSubpacketRays;

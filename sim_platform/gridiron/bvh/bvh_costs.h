@@ -14,9 +14,9 @@ namespace gridiron::bvh {
 /// Of core's tile_start, as the cached BVH does it, and of each of its own kinds of work.
 inline constexpr std::array<sim::WorkCost, kBvhWorkCount + 1> kBvhCosts = {{
     //  cycles    least     most     even  doubles      odd branches   misses
-    {  314.5,   212.3,   370.2,  100.81,    0.00,   90.64,   27.72,    6.19},  // tile_start
+    {  314.4,   212.3,   370.2,  100.81,    0.00,   90.64,   27.72,    6.19},  // tile_start
     {  172.8,   154.0,   288.2,  139.50,    0.00,  133.54,    2.00,    0.81},  // packet_start
-    {   46.2,    54.0,    90.0,   36.00,    0.00,   54.00,    0.00,    0.00},  // mixed_start
+    {   46.4,    54.0,    90.0,   36.00,    0.00,   54.00,    0.00,    0.00},  // mixed_start
     {  121.1,   111.8,   148.4,  110.00,    0.00,   35.80,    1.05,    0.10},  // node_step
     {  169.2,   159.9,   210.9,  158.00,    0.00,   50.29,    1.05,    0.11},  // mixed_node_step
     {   60.6,    34.9,    70.1,   25.99,    0.00,   27.61,    4.00,    0.41},  // children
