@@ -45,19 +45,10 @@ std::vector<Step> plan_steps(Plan& plan, const Stage& stage, const std::vector<d
 }
 
 Table step_table(const Plan& done, const std::vector<Step>& steps, const std::string& name, Column parameter) {
-  Table table{name,
-              {{"view", "view"},
-               {"configuration", "configuration"},
-               std::move(parameter),
-               {"fps", "fps"},
-               {"wait_percent", "wait, %"},
-               {"fetched_mb", "fetched, MB", 1},
-               {"scene_mb", "main memory, MB", 1},
-               {"references", "references"},
-               {"traversal_steps", "traversal steps"},
-               {"intersection_tests", "intersection tests"},
-               {"note", "note"}},
-              {}};
+  Table table =
+      make_table(name, "view", "configuration", std::move(parameter), "fps", Column("wait_percent", "wait, %"),
+                 Column("fetched_mb", "fetched, MB", 1), Column("scene_mb", "main memory, MB", 1), "references",
+                 "traversal_steps", "intersection_tests", "note");
   for (const Step& step : steps) {
     const RunResult& run = done.result(step.run);
     std::vector<Cell> row = {step.view->title, step.configuration, step.value};
@@ -68,8 +59,8 @@ Table step_table(const Plan& done, const std::vector<Step>& steps, const std::st
       constexpr double kMegabyte = 1 << 20;
       row.insert(row.end(), {run.fps(), run.wait_percent(), static_cast<double>(run.bytes_in()) / kMegabyte,
                              static_cast<double>(run.facts.scene_bytes) / kMegabyte,
-                             run.facts.grid ? Cell{std::uint64_t{run.facts.grid->reference_count}} : Cell{},
-                             run.facts.traversal_steps, run.facts.intersection_tests, Cell{}});
+                             run.facts.grid ? Cell{run.facts.grid->reference_count} : Cell{}, run.facts.traversal_steps,
+                             run.facts.intersection_tests, Cell{}});
     }
     table.add(std::move(row));
   }
@@ -302,21 +293,15 @@ Writer plan_packet_sweep(Plan& plan, const Stage& stage) {
     }
   }
   return [rows](const Plan& done, Book& book) {
-    Table table{"sweep_packet",
-                {{"view", "view"},
-                 {"culling", "culling"},
-                 {"packet_width", "packet width"},
-                 {"double_fps", "double buffering, fps"},
-                 {"double_wait_percent", "wait, %"},
-                 {"double_fetched_mb", "fetched, MB", 1},
-                 {"prefetch_fps", "prefetch of best, fps"},
-                 {"prefetch_wait_percent", "wait, %"},
-                 {"prefetch_fetched_mb", "fetched, MB", 1}},
-                {}};
+    Table table =
+        make_table("sweep_packet", "view", "culling", "packet_width", Column("double_fps", "double buffering, fps"),
+                   Column("double_wait_percent", "wait, %"), Column("double_fetched_mb", "fetched, MB", 1),
+                   Column("prefetch_fps", "prefetch of best, fps"), Column("prefetch_wait_percent", "wait, %"),
+                   Column("prefetch_fetched_mb", "fetched, MB", 1));
     for (const Row& row : rows) {
       const RunResult& two = done.result(row.two);
       const RunResult& deep = done.result(row.deep);
-      table.add({row.view->title, row.subpackets ? "subpackets" : "corner rays", std::uint64_t{row.width}, two.fps(),
+      table.add({row.view->title, row.subpackets ? "subpackets" : "corner rays", row.width, two.fps(),
                  two.wait_percent(), static_cast<double>(two.bytes_in()) / (1 << 20), deep.fps(), deep.wait_percent(),
                  static_cast<double>(deep.bytes_in()) / (1 << 20)});
     }

@@ -38,13 +38,13 @@ struct Point {
 
 Table point_table(const Plan& done, const std::vector<Curve>& curves, const std::vector<Point>& points,
                   const std::string& name, Column parameter) {
-  Table table{name, {{"view", "view"}, {"cores", "cores"}, std::move(parameter)}, {}};
+  Table table = make_table(name, "view", "cores", std::move(parameter));
   for (const Curve& curve : curves) {
     table.columns.push_back({curve.key + "_fps", curve.title + ": fps", 2});
     table.columns.push_back({curve.key + "_wait_percent", "wait, %", 1});
   }
   for (const Point& point : points) {
-    std::vector<Cell> row = {point.view->title, std::uint64_t{point.cores}, point.value};
+    std::vector<Cell> row = {point.view->title, point.cores, point.value};
     for (const Plan::RunId run : point.runs) {
       row.emplace_back(done.result(run).fps());
       row.emplace_back(done.result(run).wait_percent());

@@ -133,30 +133,15 @@ bool is_same_picture(const Sweep& sweep, const Plan& done, const Point& point) {
 
 // Everything, a row for each point.
 Table long_table(const Sweep& sweep, const Plan& done, const std::string& name) {
-  Table table{name,
-              {{"view", "view"},
-               {"configuration", "configuration"},
-               {"store_kb", "local store, KB"},
-               {"tile_width", "tile width"},
-               {"packet_width", "packet width"},
-               {"mailbox_slots", "mailbox slots"},
-               {"cell_blocks", "cell blocks"},
-               {"triangle_buffers", "triangle buffers"},
-               {"triangles_per_buffer", "triangles in each"},
-               {"fps", "fps"},
-               {"fps_over_usual", "fps over usual"},
-               {"wait_percent", "wait, %"},
-               {"idle_percent", "idle, %"},
-               {"fetched_mb", "fetched, MB", 1},
-               {"traversal_steps", "traversal steps"},
-               {"intersection_tests", "intersection tests"},
-               {"same_picture", "same picture"},
-               {"note", "note"}},
-              {}};
+  Table table = make_table(
+      name, "view", "configuration", Column("store_kb", "local store, KB"), "tile_width", "packet_width",
+      "mailbox_slots", "cell_blocks", "triangle_buffers", Column("triangles_per_buffer", "triangles in each"), "fps",
+      "fps_over_usual", Column("wait_percent", "wait, %"), Column("idle_percent", "idle, %"),
+      Column("fetched_mb", "fetched, MB", 1), "traversal_steps", "intersection_tests", "same_picture", "note");
   for (const Point& point : sweep.points) {
     const Place& place = sweep.places[point.place];
-    std::vector<Cell> row = {point.view->title, point.configuration, kilobytes(place.store),
-                             std::uint64_t{place.tile_width}, std::uint64_t{point.fitted.packet_width}};
+    std::vector<Cell> row = {point.view->title, point.configuration, kilobytes(place.store), place.tile_width,
+                             point.fitted.packet_width};
     const RunResult* run = Sweep::result(done, point);
     if (run == nullptr) {
       row.resize(table.columns.size() - 1);
@@ -164,9 +149,9 @@ Table long_table(const Sweep& sweep, const Plan& done, const std::string& name) 
     } else {
       const RunResult* usual = sweep.usual_result(done, point);
       row.insert(row.end(),
-                 {std::uint64_t{point.layout->mailbox_slots}, std::uint64_t{point.fitted.depths.macro},
-                  std::uint64_t{point.fitted.depths.triangle}, std::uint64_t{point.layout->triangles_per_buffer},
-                  run->fps(), usual != nullptr ? Cell{ratio_of(run->fps(), usual->fps())} : Cell{}, run->wait_percent(),
+                 {point.layout->mailbox_slots, point.fitted.depths.macro, point.fitted.depths.triangle,
+                  point.layout->triangles_per_buffer, run->fps(),
+                  usual != nullptr ? Cell{ratio_of(run->fps(), usual->fps())} : Cell{}, run->wait_percent(),
                   idle_percent(*run), megabytes_in(*run), run->facts.traversal_steps, run->facts.intersection_tests,
                   is_same_picture(sweep, done, point) ? "yes" : "no", point.note.empty() ? Cell{} : Cell{point.note}});
     }
@@ -177,7 +162,7 @@ Table long_table(const Sweep& sweep, const Plan& done, const std::string& name) 
 
 // What people read: a row for each view and configuration, the places side by side.
 Table short_table(const Sweep& sweep, const Plan& done) {
-  Table table{"", {{"view", "view"}, {"configuration", "configuration"}}, {}};
+  Table table = make_table("", "view", "configuration");
   struct Figure {
     const char* title;
     int decimals;
@@ -330,9 +315,9 @@ Writer plan_tile_sweep(Plan& plan, const Stage& stage) {
 namespace {
 
 Table bvh_map() {
-  Table map{"local_store_map_bvh", {{"region", "region"}, {"offset", "offset"}, {"bytes", "bytes"}}, {}};
+  Table map = make_table("local_store_map_bvh", "region", "offset", "bytes");
   for_each_region<bvh::BvhStore::Layout>([&map](const char* name, std::size_t offset_bytes, std::size_t bytes) {
-    map.add({name, std::uint64_t{offset_bytes}, std::uint64_t{bytes}});
+    map.add({name, offset_bytes, bytes});
   });
   const auto add_row = [&map](const char* name, std::uint64_t bytes) { map.add({name, Cell{}, bytes}); };
   using Layout = bvh::BvhStore::Layout;
@@ -366,7 +351,7 @@ std::vector<NamedLayout> layouts_of(const std::string& configuration) {
 
 Table map_table(const std::string& configuration) {
   const std::vector<NamedLayout> layouts = layouts_of(configuration);
-  Table map{"local_store_map_" + configuration, {{"region", "region"}}, {}};
+  Table map = make_table("local_store_map_" + configuration, "region");
   for (const NamedLayout& layout : layouts) {
     map.columns.push_back({layout.key + "_offset", layout.title + ": offset"});
     map.columns.push_back({layout.key + "_bytes", "bytes"});
@@ -383,7 +368,7 @@ Table map_table(const std::string& configuration) {
     std::vector<Cell> cells = {name};
     for (const NamedLayout& layout : layouts) {
       cells.emplace_back();
-      cells.emplace_back(std::uint64_t{value(layout.facts)});
+      cells.emplace_back(value(layout.facts));
     }
     map.add(std::move(cells));
   };
@@ -395,47 +380,30 @@ Table map_table(const std::string& configuration) {
 }
 
 Table contents_table() {
-  Table table{"local_store_layouts",
-              {{"configuration", "configuration"},
-               {"store_kb", "local store, KB"},
-               {"tile_width", "tile width"},
-               {"packet_width", "packet width"},
-               {"mailbox_slots", "mailbox slots"},
-               {"resident_macrocells", "macrocells resident"},
-               {"most_macro_width", "macrocell width, at most"},
-               {"most_cell_blocks", "cell blocks, at most"},
-               {"most_triangle_buffers", "triangle buffers, at most"},
-               {"triangles_per_buffer", "triangles in each"},
-               {"data_bytes", "data, bytes"},
-               {"free_bytes", "free, bytes"}},
-              {}};
+  Table table = make_table(
+      "local_store_layouts", "configuration", Column("store_kb", "local store, KB"), "tile_width", "packet_width",
+      "mailbox_slots", Column("resident_macrocells", "macrocells resident"),
+      Column("most_macro_width", "macrocell width, at most"), Column("most_cell_blocks", "cell blocks, at most"),
+      Column("most_triangle_buffers", "triangle buffers, at most"), Column("triangles_per_buffer", "triangles in each"),
+      Column("data_bytes", "data, bytes"), Column("free_bytes", "free, bytes"));
   for (const char* configuration : kSweptConfigurations) {
     for (const NamedLayout& layout : layouts_of(configuration)) {
       const tool::StoreFacts& facts = layout.facts;
-      table.add({configuration, std::uint64_t{facts.arena_bytes >> 10}, std::uint64_t{facts.tile_width},
-                 std::uint64_t{facts.packet_width}, std::uint64_t{facts.mailbox_slots},
-                 std::uint64_t{facts.resident_macro_cells}, std::uint64_t{facts.max_macro_width},
-                 std::uint64_t{facts.most_depths.macro}, std::uint64_t{facts.most_depths.triangle},
-                 std::uint64_t{facts.triangles_per_buffer}, facts.data_bytes(), free_bytes(facts)});
+      table.add({configuration, facts.arena_bytes >> 10, facts.tile_width, facts.packet_width, facts.mailbox_slots,
+                 facts.resident_macro_cells, facts.max_macro_width, facts.most_depths.macro, facts.most_depths.triangle,
+                 facts.triangles_per_buffer, facts.data_bytes(), free_bytes(facts)});
     }
   }
   return table;
 }
 
 Table fit_table() {
-  Table table{"local_store_fit",
-              {{"store_kb", "local store, KB"},
-               {"tile_width", "tile width"},
-               {"packet_width", "packet width"},
-               {"data_bytes", "data, bytes"},
-               {"room_bytes", "room for data, bytes"},
-               {"fits", "fits"},
-               {"built", "built"}},
-              {}};
+  Table table =
+      make_table("local_store_fit", Column("store_kb", "local store, KB"), "tile_width", "packet_width",
+                 Column("data_bytes", "data, bytes"), Column("room_bytes", "room for data, bytes"), "fits", "built");
   for (const tool::LayoutFit& fit : tool::layout_fits()) {
-    table.add({kilobytes(fit.layout.store), std::uint64_t{fit.layout.tile_width},
-               std::uint64_t{fit.layout.packet_width}, fit.data_bytes, std::uint64_t{fit.room_bytes},
-               fit.fits ? "yes" : "no", tool::find_store_facts(fit.layout) ? "yes" : "no"});
+    table.add({kilobytes(fit.layout.store), fit.layout.tile_width, fit.layout.packet_width, fit.data_bytes,
+               fit.room_bytes, fit.fits ? "yes" : "no", tool::find_store_facts(fit.layout) ? "yes" : "no"});
   }
   return table;
 }

@@ -38,6 +38,13 @@ std::string shortest_text(Number number) {
 
 }  // namespace
 
+Column::Column(const char* key) : key(key), title(key) {
+  std::ranges::replace(title, '_', ' ');
+}
+
+Column::Column(std::string key, std::string title, int decimals)
+    : key(std::move(key)), title(std::move(title)), decimals(decimals) {}
+
 std::string number_text(double number) {
   return shortest_text(number);
 }
