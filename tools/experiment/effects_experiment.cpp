@@ -1,6 +1,4 @@
 // The effects experiment. SPDX-License-Identifier: Apache-2.0
-#include "experiment/effects_experiment.h"
-
 #include <report/report.h>
 
 #include <algorithm>
@@ -10,7 +8,9 @@
 #include "base/words.h"
 #include "experiment/book.h"
 #include "experiment/effect_frames.h"
+#include "experiment/effect_scenes.h"
 #include "experiment/effect_sizes.h"
+#include "experiment/experiments.h"
 #include "experiment/svg_plot.h"
 #include "experiment/table.h"
 #include "experiment/workers.h"
@@ -84,9 +84,9 @@ struct Step {
   std::uint32_t expected;  ///< EffectBits
 };
 
-std::vector<Step> list_steps(std::vector<SceneFrames>& scenes, const EffectsExperiment& experiment) {
+std::vector<Step> list_steps(std::vector<SceneFrames>& scenes, const ExperimentSettings& settings) {
   std::vector<Step> steps;
-  EffectFrameRequest request{.width = experiment.width, .height = experiment.height, .lambda = kLambda};
+  EffectFrameRequest request{.width = settings.width, .height = settings.height, .lambda = kLambda};
   for (SceneFrames& frames : scenes) {
     const auto add = [&](const Variant& variant, EffectFrame& frame) {
       steps.push_back({&variant.scene, request, &frame, variant.scene.key + ", " + variant.title, variant.expected});
@@ -320,11 +320,11 @@ void write_sizes(Book& book) {
   book.table(table, "Code and data of a core by the set of effects that it is built for, in stores of two sizes.");
 }
 
-void write_method(const EffectsExperiment& experiment, Book& book) {
+void write_method(const ExperimentSettings& settings, Book& book) {
   book.section("method", "How it is measured");
   book.paragraph(
-      "All scenes are made in process, without files. Frames of " + std::to_string(experiment.width) + "x" +
-      std::to_string(experiment.height) +
+      "All scenes are made in process, without files. Frames of " + std::to_string(settings.width) + "x" +
+      std::to_string(settings.height) +
       " pixels are rendered by the kernel's real code in checked mode with four lanes, accuracy standard, "
       "configuration best with " +
       number_text(kLambda) +
@@ -349,13 +349,13 @@ std::vector<std::string> effects_file_names() {
   return names;
 }
 
-ExperimentResult run_effects_experiment(const EffectsExperiment& experiment, const ProgressCall& progress) {
+ExperimentResult run_effects_experiment(const ExperimentSettings& settings, const ProgressCall& progress) {
   std::vector<SceneFrames> scenes;
-  for (const std::string& key : experiment.scenes) scenes.push_back(list_frames(key));
-  std::vector<Step> steps = list_steps(scenes, experiment);
+  for (const std::string_view key : kEffectSceneKeys) scenes.push_back(list_frames(key));
+  std::vector<Step> steps = list_steps(scenes, settings);
   std::mutex mutex;
   std::uint32_t done = 0;
-  share_work(experiment.threads, steps.size(), [&](std::size_t i) {
+  share_work(settings.threads, steps.size(), [&](std::size_t i) {
     const Step& step = steps[i];
     *step.frame = render_effect_frame(*step.scene, step.request);
     check_absent_costs(*step.frame, step.expected, step.name);
@@ -368,8 +368,8 @@ ExperimentResult run_effects_experiment(const EffectsExperiment& experiment, con
 
   Book book("What effects cost",
             "Every figure below comes from one run of `gridiron experiment effects`: " +
-                tool::words_of_count(scenes.size(), "scene") + ", " + std::to_string(experiment.width) + "x" +
-                std::to_string(experiment.height) +
+                tool::words_of_count(scenes.size(), "scene") + ", " + std::to_string(settings.width) + "x" +
+                std::to_string(settings.height) +
                 " pixels, with all of their effects and without each of them, rendered by the kernel's real code on "
                 "the simulated chip cell-ps3 with six cores.");
   write_scenes(scenes, book);
@@ -379,7 +379,7 @@ ExperimentResult run_effects_experiment(const EffectsExperiment& experiment, con
   write_hiding(scenes, book);
   write_lambdas(scenes, book);
   write_sizes(book);
-  write_method(experiment, book);
+  write_method(settings, book);
   return {book.finish(), steps.size(), steps.size(), {}};
 }
 

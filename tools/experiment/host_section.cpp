@@ -18,7 +18,8 @@ constexpr std::uint32_t kRepeats = 5;
 struct Milliseconds {
   Cell wall, processor;
 
-  explicit Milliseconds(const HostSeconds& seconds) : wall(seconds.wall * 1e3), processor(seconds.processor * 1e3) {}
+  explicit Milliseconds(const tool::HostSeconds& seconds)
+      : wall(seconds.wall * 1e3), processor(seconds.processor * 1e3) {}
   explicit Milliseconds(const std::string& reason) : wall(reason), processor(reason) {}
 };
 
@@ -28,14 +29,14 @@ Milliseconds embree_milliseconds([[maybe_unused]] const View& view, [[maybe_unus
   if (frame.width % peer::kEmbreePacketWidth != 0 || frame.height % peer::kEmbreePacketWidth != 0) {
     return Milliseconds("size is no multiple of " + std::to_string(peer::kEmbreePacketWidth));
   }
-  HostSeconds least;
+  tool::HostSeconds least;
   std::vector<std::uint32_t> color;
   for (const peer::EmbreeQuality quality : {peer::EmbreeQuality::kLow, peer::EmbreeQuality::kMedium}) {
     tool::stop_if_interrupted();
     peer::EmbreeScene scene;
     scene.set_mesh(view.mesh().view());
     scene.build(quality);
-    const HostSeconds seconds = least_host_seconds(kRepeats, [&] { scene.render(frame, color); });
+    const tool::HostSeconds seconds = least_host_seconds(kRepeats, [&] { scene.render(frame, color); });
     if (least.wall <= 0 || seconds.processor < least.processor) least = seconds;
   }
   return Milliseconds(least);

@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <functional>
 #include <optional>
 
 #include "experiment/sections.h"
@@ -218,7 +219,8 @@ std::string ratio_words(const Sweep& sweep, const Plan& done, const std::string&
       if (point.configuration != configuration || point.place != i) continue;
       const RunResult* run = Sweep::result(done, point);
       const RunResult* usual = sweep.usual_result(done, point);
-      if (run != nullptr && usual != nullptr) ratios.add(ratio_of(value(*run), value(*usual)));
+      if (run != nullptr && usual != nullptr)
+        ratios.add(ratio_of(std::invoke(value, *run), std::invoke(value, *usual)));
     }
     const std::string words = ratios.empty() ? "not at all" : ratios.text(2) + " times";
     text += (text.empty() ? "" : ", ") + words + " with " + sweep.places[i].title;
@@ -231,7 +233,7 @@ std::string range_words(const Sweep& sweep, const Plan& done, const std::string&
   Range range;
   for (const Point& point : sweep.points) {
     const RunResult* run = Sweep::result(done, point);
-    if (point.configuration == configuration && run != nullptr) range.add(value(*run));
+    if (point.configuration == configuration && run != nullptr) range.add(std::invoke(value, *run));
   }
   return range.percent(2);
 }
@@ -265,16 +267,23 @@ std::string picture_words(const Sweep& sweep, const Plan& done) {
   return "All runs of every row render the same picture, pixel for pixel.";
 }
 
-double fps_of(const RunResult& run) {
-  return run.fps();
-}
-
 double tests_of(const RunResult& run) {
   return static_cast<double>(run.facts.intersection_tests);
 }
 
 double steps_of(const RunResult& run) {
   return static_cast<double>(run.facts.traversal_steps);
+}
+
+// What people read, a plot for each configuration, and a link to everything.
+void write_tables(const Sweep& sweep, const Plan& done, const std::string& name, const std::string& title,
+                  const std::string& swept, const std::string& caption, Book& book) {
+  book.shown_table(short_table(sweep, done), caption);
+  for (const std::string configuration : kSweptConfigurations) {
+    book.figure(name + "_" + configuration, bar_chart(sweep, done, configuration, title),
+                "Frames a second against " + swept + ", " + configuration + ", 6 cores.");
+  }
+  book.linked_table(long_table(sweep, done, name), "every frame, with buffers, work and idle time.");
 }
 
 }  // namespace
@@ -294,21 +303,16 @@ Writer plan_tile_sweep(Plan& plan, const Stage& stage) {
         "word of bits, so that tiles of 64 pixels take four. Packets of 8x8 have mailboxes of 64 slots, those of "
         "16x16 and of tiles of 64 pixels 256, the others 1,024. Two tiles of 64 pixels take 96 KB with their planes of "
         "colour, distance and triangle; beside them there is room for 8 triangle buffers instead of 12; best uses 3.");
-    book.paragraph(
-        "Frames over those at 32 pixels, all views: the reference renders " +
-        ratio_words(*sweep, done, "reference", fps_of) + "; best " + ratio_words(*sweep, done, "best", fps_of) +
-        ". Traversal steps of best: " + ratio_words(*sweep, done, "best", steps_of) +
-        ". Over all widths the reference stands idle for " + range_words(*sweep, done, "reference", idle_percent) +
-        " of its core cycles and best for " + range_words(*sweep, done, "best", idle_percent) +
-        ". Best is fastest with " + fastest_words(*sweep, done, "best") + ", the reference with " +
-        fastest_words(*sweep, done, "reference") + ". " + picture_words(*sweep, done));
-    book.shown_table(short_table(*sweep, done), "Widths of tiles, 256 KB, 6 cores, no shading.");
-    for (const char* configuration : kSweptConfigurations) {
-      book.figure(std::string("sweep_tile_width_") + configuration,
-                  bar_chart(*sweep, done, configuration, "Width of tiles"),
-                  std::string("Frames a second against the width of tiles, ") + configuration + ", 6 cores.");
-    }
-    book.linked_table(long_table(*sweep, done, "sweep_tile_width"), "every frame, with buffers, work and idle time.");
+    book.paragraph("Frames over those at 32 pixels, all views: the reference renders " +
+                   ratio_words(*sweep, done, "reference", &RunResult::fps) + "; best " +
+                   ratio_words(*sweep, done, "best", &RunResult::fps) + ". Traversal steps of best: " +
+                   ratio_words(*sweep, done, "best", steps_of) + ". Over all widths the reference stands idle for " +
+                   range_words(*sweep, done, "reference", idle_percent) + " of its core cycles and best for " +
+                   range_words(*sweep, done, "best", idle_percent) + ". Best is fastest with " +
+                   fastest_words(*sweep, done, "best") + ", the reference with " +
+                   fastest_words(*sweep, done, "reference") + ". " + picture_words(*sweep, done));
+    write_tables(*sweep, done, "sweep_tile_width", "Width of tiles", "the width of tiles",
+                 "Widths of tiles, 256 KB, 6 cores, no shading.", book);
   };
 }
 
@@ -489,24 +493,19 @@ Writer plan_store_sweep(Plan& plan, const Stage& stage) {
         "macrocells, the buffers and the mailbox of wide packets; what each holds is told below. Where a layout has "
         "fewer buffers than a configuration asks for, it is cut down to them; in 64 KB best traverses once per 16x16 "
         "tile.");
-    const auto wait_of = [](const RunResult& run) { return run.wait_percent(); };
-    book.paragraph(
-        "Frames over those from 256 KB, all views: the reference renders " +
-        ratio_words(*sweep, done, "reference", fps_of) + "; best " + ratio_words(*sweep, done, "best", fps_of) +
-        ". Over all sizes the reference waits for " + range_words(*sweep, done, "reference", wait_of) +
-        " of its core cycles and best for " + range_words(*sweep, done, "best", wait_of) +
-        ". Intersection tests of best: " + ratio_words(*sweep, done, "best", tests_of) + ", of the reference " +
-        ratio_words(*sweep, done, "reference", tests_of) + ". " + picture_words(*sweep, done));
+    book.paragraph("Frames over those from 256 KB, all views: the reference renders " +
+                   ratio_words(*sweep, done, "reference", &RunResult::fps) + "; best " +
+                   ratio_words(*sweep, done, "best", &RunResult::fps) + ". Over all sizes the reference waits for " +
+                   range_words(*sweep, done, "reference", &RunResult::wait_percent) +
+                   " of its core cycles and best for " + range_words(*sweep, done, "best", &RunResult::wait_percent) +
+                   ". Intersection tests of best: " + ratio_words(*sweep, done, "best", tests_of) +
+                   ", of the reference " + ratio_words(*sweep, done, "reference", tests_of) + ". " +
+                   picture_words(*sweep, done));
     book.paragraph(
         "A mailbox that forgets has triangles tested again, so its size shows in those tests. The price of clearing it "
         "is that of the 256 KB layouts at every size.");
-    book.shown_table(short_table(*sweep, done), "Sizes of the local store, 6 cores, no shading.");
-    for (const char* configuration : kSweptConfigurations) {
-      book.figure(std::string("sweep_local_store_") + configuration,
-                  bar_chart(*sweep, done, configuration, "Local store"),
-                  std::string("Frames a second against the size of the local store, ") + configuration + ", 6 cores.");
-    }
-    book.linked_table(long_table(*sweep, done, "sweep_local_store"), "every frame, with buffers, work and idle time.");
+    write_tables(*sweep, done, "sweep_local_store", "Local store", "the size of the local store",
+                 "Sizes of the local store, 6 cores, no shading.", book);
     write_maps(book);
   };
 }

@@ -38,12 +38,12 @@ std::string shortest_text(Number number) {
 
 }  // namespace
 
-Column::Column(const char* key) : key(key), title(key) {
+Column::Column(const char* name) : key(name), title(name) {
   std::ranges::replace(title, '_', ' ');
 }
 
-Column::Column(std::string key, std::string title, int decimals)
-    : key(std::move(key)), title(std::move(title)), decimals(decimals) {}
+Column::Column(std::string name, std::string words, int digits)
+    : key(std::move(name)), title(std::move(words)), decimals(digits) {}
 
 std::string number_text(double number) {
   return shortest_text(number);

@@ -15,8 +15,8 @@ namespace gridiron::experiment {
 using Cell = std::variant<std::monostate, std::string, std::uint64_t, double>;
 
 struct Column {
-  Column(const char* key);  ///< with the words of the key as title
-  Column(std::string key, std::string title, int decimals = 2);
+  Column(const char* name);  ///< as key, and its words as title
+  Column(std::string name, std::string words, int digits = 2);
 
   std::string key;    ///< snake_case with the unit as its suffix: the header of the CSV file
   std::string title;  ///< for people

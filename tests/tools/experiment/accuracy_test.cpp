@@ -8,7 +8,7 @@
 #include <vector>
 
 #include "csv_rows.h"
-#include "experiment/accuracy_experiment.h"
+#include "experiment/experiments.h"
 #include "experiment/table.h"
 #include "gridiron/device/accuracies.h"
 #include "markup.h"

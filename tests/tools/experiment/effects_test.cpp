@@ -11,7 +11,7 @@
 #include "csv_rows.h"
 #include "experiment/effect_frames.h"
 #include "experiment/effect_scenes.h"
-#include "experiment/effects_experiment.h"
+#include "experiment/experiments.h"
 #include "markup.h"
 #include "two_runs.h"
 

@@ -11,7 +11,7 @@
 #include <vector>
 
 #include "csv_rows.h"
-#include "experiment/paper_experiment.h"
+#include "experiment/experiments.h"
 #include "experiment/sections.h"
 #include "markup.h"
 #include "two_runs.h"
