@@ -85,12 +85,9 @@ TEST(EffectsExperiment, FilesDoNotDependOnThreads) {
 
 TEST(EffectsExperiment, HasNoScansAndNoKnots) {
   const TemporaryFolder folder;
-  for (const std::vector<std::string>& more : {std::vector<std::string>{"--scenes", "."}, {"--largest", "6000"}}) {
-    std::vector<std::string> arguments = {"experiment", "effects", "-o", "out"};
-    arguments.insert(arguments.end(), more.begin(), more.end());
-    EXPECT_EQ(run_program(folder.folder(), arguments).exit_code, 2) << more.front();
+  for (const Words& more : {Words{"--scenes", "."}, {"--largest", "6000"}}) {
+    expect_failure(folder, Words{"experiment", "effects", "-o", "out"} + more, 2, more.front());
   }
-  EXPECT_FALSE(fs::exists(folder.path("out")));
 }
 
 TEST(EffectsExperiment, ASceneWithoutAnEffectDoesNotCallForIt) {

@@ -36,8 +36,7 @@ TEST(Views, WithoutScansATeapotAndAKnotAreMade) {
 }
 
 TEST(Views, WhatIsThereIsUsedAndWhatIsNotIsNamed) {
-  const TemporaryFolder folder;
-  folder.write_ply("bunny.ply", make_torus(12, 8, 1.0f, 0.4f));
+  const TemporaryFolder folder("bunny.ply", make_torus(12, 8, 1.0f, 0.4f));
   folder.write_ply("conference.ply", make_torus(12, 8, 500.0f, 100.0f));
   const FoundViews found = find_views(folder.folder());
   EXPECT_FALSE(found.generated);
@@ -55,8 +54,7 @@ TEST(Views, WhatIsThereIsUsedAndWhatIsNotIsNamed) {
 }
 
 TEST(Views, CamerasAreThoseOfTheCameraFiles) {
-  const TemporaryFolder folder;
-  folder.write_ply("conference.ply", make_torus(12, 8, 1.0f, 0.4f));
+  const TemporaryFolder folder("conference.ply", make_torus(12, 8, 1.0f, 0.4f));
   const FoundViews found = find_views(folder.folder());
   ASSERT_EQ(found.views.size(), 2u);
   for (const View& view : found.views) {

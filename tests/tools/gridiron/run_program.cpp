@@ -131,6 +131,7 @@ ProgramResult run(const TemporaryFolder& folder, const Words& arguments) {
 
 void expect_failure(const TemporaryFolder& folder, const Words& arguments, int exit_code, const std::string& words) {
   constexpr int kCheckFailed = 3;  // what differs is told as a result
+  SCOPED_TRACE(testing::PrintToString(arguments));
   const Words before = folder.names();
   const ProgramResult result = run_program(folder.folder(), arguments);
   EXPECT_EQ(result.exit_code, exit_code) << result.err;
