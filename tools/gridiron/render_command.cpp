@@ -46,6 +46,10 @@ const char* word_of(sim::Mode mode) {
   return "unknown";
 }
 
+HostTime time_of(const HostSeconds& seconds) {
+  return {seconds.wall, seconds.processor};
+}
+
 // A frame that was rendered once or several times, always to the same pictures.
 struct Repeated {
   sim::ChipResult result;
@@ -83,9 +87,9 @@ ReportInput collect_report(const RenderPlan& plan, const SceneInput& input, cons
   report.regions = store.regions;
   report.code_bytes = store.code_bytes;
   report.stack_bytes = store.stack_bytes;
-  report.load = input.load_seconds;
-  report.build = repeated.build;
-  report.render = repeated.render;
+  report.load = time_of(input.load_seconds);
+  report.build = time_of(repeated.build);
+  report.render = time_of(repeated.render);
   report.host_threads = plan.threads;
   report.lanes = plan.lanes;
   report.repeats = plan.repeats;

@@ -60,12 +60,12 @@ Json scene_json(const ReportInput& input) {
 }
 
 Json host_json(const ReportInput& input) {
-  return {{"load_seconds", input.load.wall},
-          {"build_seconds", input.build.wall},
-          {"render_seconds", input.render.wall},
-          {"load_processor_seconds", input.load.processor},
-          {"build_processor_seconds", input.build.processor},
-          {"render_processor_seconds", input.render.processor},
+  return {{"load_seconds", input.load.seconds},
+          {"build_seconds", input.build.seconds},
+          {"render_seconds", input.render.seconds},
+          {"load_processor_seconds", input.load.processor_seconds},
+          {"build_processor_seconds", input.build.processor_seconds},
+          {"render_processor_seconds", input.render.processor_seconds},
           {"threads", input.host_threads},
           {"lanes", input.lanes},
           {"repeats", input.repeats},

@@ -16,8 +16,6 @@
 #include <string_view>
 #include <vector>
 
-#include "base/stopwatch.h"
-
 namespace gridiron::tool {
 
 /// Grows when a key changes its meaning or goes away; new keys do not change it.
@@ -34,6 +32,11 @@ struct LocalStoreRegion {
 struct RayCount {
   std::string kind;  ///< snake_case: primary
   std::uint64_t count = 0;
+};
+
+/// What a part of the work took on this host.
+struct HostTime {
+  double seconds = 0, processor_seconds = 0;  ///< processor: of all threads
 };
 
 /// Everything a report tells, filled by the program.
@@ -62,7 +65,7 @@ struct ReportInput {
   std::vector<LocalStoreRegion> regions;
   std::uint64_t code_bytes = 0, stack_bytes = 0;  ///< committed budgets
 
-  HostSeconds load, build, render;  ///< what these took on this host
+  HostTime load, build, render;
   std::uint32_t host_threads = 1, lanes = 4, repeats = 1;
   std::uint64_t trace_bytes = 0;  ///< what the replay reads, as it is held; 0 in plain mode
 
