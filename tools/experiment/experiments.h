@@ -1,4 +1,4 @@
-// The experiments: what they are asked for, what they make, and how they tell how far they are.
+// The experiments: their settings, their results, and how they report progress.
 // Memory: their own. Threads: they start their own. SPDX-License-Identifier: Apache-2.0
 #pragma once
 
@@ -13,8 +13,7 @@
 
 namespace gridiron::experiment {
 
-/// What an experiment is asked for. Every file that it makes but host_*.csv is a function of scenes, size and
-/// largest_knot.
+/// Every file that an experiment writes but host_*.csv is a function of scenes, size and largest_knot.
 struct ExperimentSettings {
   std::filesystem::path scenes;  ///< folder of scans; empty: none. Effects makes its own.
   std::uint32_t threads = 1;     ///< host threads; change host_*.csv at most
@@ -22,7 +21,7 @@ struct ExperimentSettings {
   std::uint32_t largest_knot = 1'000'000;  ///< triangles of the largest mesh of Table 1; of the paper alone
 };
 
-/// What an experiment made, and what it did for it.
+/// The files of an experiment, and the work done for them.
 struct ExperimentResult {
   std::vector<BookFile> files;
   std::size_t frame_count = 0;  ///< rendered on the simulated chip
@@ -30,23 +29,23 @@ struct ExperimentResult {
   std::vector<std::string> missing;  ///< a sentence for each view that was left out
 };
 
-/// Called serialised with steps done and steps in all.
+/// Called serialised with the steps done and all steps.
 using ProgressCall = std::function<void(std::uint32_t, std::uint32_t)>;
 
-// Each runs an experiment, or returns the names of all files that it may make: which ones depends on the scenes.
+// Each runs an experiment, or returns the names of all files that it may write; which ones depends on the scenes.
 // Errors: Failure.
 
-/// The evaluation of Cho, Kim, Han 2012 run again on the simulated chip, and sweeps beside it.
+/// The evaluation of Cho, Kim, Han 2012 run again on the simulated chip, with additional sweeps.
 [[nodiscard]] ExperimentResult run_paper_experiment(const ExperimentSettings& settings, const ProgressCall& progress);
 [[nodiscard]] std::vector<std::string> paper_file_names();
 
-/// What every accuracy profile costs on the simulated chip, and what is wrong with its answers.
+/// The cost of every accuracy profile on the simulated chip, and the errors of its answers.
 [[nodiscard]] ExperimentResult run_accuracy_experiment(const ExperimentSettings& settings,
                                                        const ProgressCall& progress);
 [[nodiscard]] std::vector<std::string> accuracy_file_names();
 
-/// What each effect costs on the simulated chip, and that one that is off costs nothing. Errors: kCheckFailed too,
-/// where such an effect cost anything, or buffering hides too little.
+/// The cost of each effect on the simulated chip, and that an effect that is off costs nothing. Errors: kCheckFailed too,
+/// if such an effect cost anything, or buffering hides too little.
 [[nodiscard]] ExperimentResult run_effects_experiment(const ExperimentSettings& settings,
                                                       const ProgressCall& progress);
 [[nodiscard]] std::vector<std::string> effects_file_names();

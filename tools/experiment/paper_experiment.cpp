@@ -105,7 +105,7 @@ ExperimentResult run_paper_experiment(const ExperimentSettings& settings, const 
   Stage stage = make_stage(settings);
   stage.sweep_views = choose_sweep_views(stage.found.views);
 
-  // 1. What is needed.
+  // 1. Plan the runs.
   Plan plan(settings.width, settings.height);
   std::vector<Writer> before_host, after_host;
   for (const auto section :
@@ -117,10 +117,10 @@ ExperimentResult run_paper_experiment(const ExperimentSettings& settings, const 
     after_host.push_back(section(plan, stage));
   }
 
-  // 2. Rendered and replayed.
+  // 2. Render and replay.
   plan.execute(settings.threads, progress);
 
-  // 3. Written down.
+  // 3. Write the tables, plots and sentences.
   const std::string size = std::to_string(settings.width) + "x" + std::to_string(settings.height);
   Book book(
       "Grid ray tracing from small local stores: the evaluation, run again",
