@@ -2,18 +2,13 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <gridiron/bvh/bvh_core.h>
 #include <gridiron/bvh/bvh_renderer.h>
-#include <gtest/gtest.h>
 
-#include <algorithm>
 #include <atomic>
-#include <cmath>
-#include <cstring>
 #include <numeric>
-#include <string>
-#include <vector>
 
 #include "support/no_threads.h"
 #include "support/render_mesh.h"
+#include "support/test_headers.h"
 #include "support/test_mesh.h"
 #include "support/views.h"
 

@@ -1,13 +1,8 @@
 // A packet's bounds leave out no box that one of its rays meets. SPDX-License-Identifier: Apache-2.0
 #include <gridiron/bvh/packet_bounds.h>
 #include <gridiron/ray/camera.h>
-#include <gtest/gtest.h>
 
-#include <algorithm>
-#include <cmath>
-#include <limits>
-#include <memory>
-
+#include "support/test_headers.h"
 #include "support/test_mesh.h"
 
 namespace gridiron::bvh {

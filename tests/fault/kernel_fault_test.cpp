@@ -11,22 +11,14 @@
 #include <gridiron/sim/core_runner.h>
 #include <gridiron/sim/sim_chip.h>
 #include <gridiron/store/local_store.h>
-#include <gtest/gtest.h>
 
-#include <algorithm>
-#include <cstddef>
-#include <cstdint>
-#include <cstring>
-#include <memory>
 #include <new>
-#include <span>
-#include <string>
-#include <vector>
 
 #include "failing_new.h"
 #include "host_board.h"
 #include "sim_platform/program_bench.h"
 #include "support/instrumented.h"
+#include "support/test_headers.h"
 #include "support/test_mesh.h"
 #include "support/views.h"
 #include "template_port.h"

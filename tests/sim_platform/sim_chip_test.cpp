@@ -2,18 +2,12 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <gridiron/sim/sim_chip.h>
 #include <gridiron/sim/sim_core.h>
-#include <gtest/gtest.h>
 
-#include <algorithm>
 #include <atomic>
-#include <cstdint>
-#include <cstring>
-#include <ostream>
-#include <string>
-#include <vector>
 
 #include "sim_platform/program_bench.h"
 #include "support/render_mesh.h"
+#include "support/test_headers.h"
 #include "support/test_mesh.h"
 #include "support/trace_steps.h"
 #include "support/views.h"

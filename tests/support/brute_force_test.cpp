@@ -3,16 +3,10 @@
 #include "support/brute_force.h"
 
 #include <gridiron/base/exact_sum.h>
-#include <gtest/gtest.h>
 
-#include <array>
 #include <boost/multiprecision/cpp_int.hpp>
-#include <cmath>
-#include <cstdint>
-#include <limits>
-#include <string>
-#include <vector>
 
+#include "support/test_headers.h"
 #include "support/test_mesh.h"
 
 namespace gridiron::test {

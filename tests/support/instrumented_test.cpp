@@ -3,12 +3,9 @@
 #include "support/instrumented.h"
 
 #include <gtest/gtest-spi.h>
-#include <gtest/gtest.h>
-
-#include <cstdlib>
-#include <string>
 
 #include "support/render_mesh.h"
+#include "support/test_headers.h"
 #include "support/test_mesh.h"
 #include "support/views.h"
 

@@ -1,17 +1,10 @@
 // Record gather: every item gets its own record, neighbours that want the same one share a transfer, at any depth.
 // SPDX-License-Identifier: Apache-2.0
 #include <gridiron/dma/record_gather.h>
-#include <gtest/gtest.h>
-
-#include <cstdint>
-#include <cstring>
-#include <memory>
-#include <optional>
-#include <string>
-#include <vector>
 
 #include "core/dma/test_platform.h"
 #include "core/seeds.h"
+#include "support/test_headers.h"
 #include "support/test_mesh.h"
 
 namespace gridiron::test {

@@ -2,13 +2,10 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <gridiron/dma/tags.h>
 #include <gridiron/dma/transfers.h>
-#include <gtest/gtest.h>
-
-#include <cstdint>
-#include <vector>
 
 #include "core/dma/test_platform.h"
 #include "core/seeds.h"
+#include "support/test_headers.h"
 #include "support/test_mesh.h"
 
 namespace gridiron::test {

@@ -1,20 +1,12 @@
 // Secondary rays against triangles: what they hit and where, by the oracle's integers; no ray leaves a closed mesh.
 // SPDX-License-Identifier: Apache-2.0
 #include <gridiron/ray/intersect_rays.h>
-#include <gtest/gtest.h>
-
-#include <algorithm>
-#include <bit>
-#include <cmath>
-#include <cstdint>
-#include <cstring>
-#include <optional>
-#include <vector>
 
 #include "core/lane_types.h"
 #include "core/seeds.h"
 #include "numeric/hard_rays.h"
 #include "numeric/oracle.h"
+#include "support/test_headers.h"
 #include "support/test_mesh.h"
 
 namespace gridiron::test {
@@ -149,7 +141,7 @@ TYPED_TEST(IntersectRaysTest, DecideAsTheOracleDoes) {
       ASSERT_EQ(other_settled, settled) << "seed " << seed;
     }
   });
-  if (testing::Test::HasFailure() || std::getenv("GRIDIRON_TEST_SEED") != nullptr) return;
+  if (testing::Test::HasFailure() || !all_seeds_run()) return;
   EXPECT_GT(pairs, 50'000u);
   EXPECT_GT(hits, 5'000u);
   EXPECT_GT(settled_hits, 1'000u);

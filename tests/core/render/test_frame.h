@@ -6,14 +6,9 @@
 #include <gridiron/frame/frame_setup.h>
 #include <gridiron/image/scene_image.h>
 #include <gridiron/render/tile_renderer.h>
-#include <gtest/gtest.h>
-
-#include <cstdint>
-#include <cstring>
-#include <memory>
-#include <vector>
 
 #include "core/dma/test_platform.h"
+#include "support/test_headers.h"
 #include "support/test_mesh.h"
 
 namespace gridiron::test {

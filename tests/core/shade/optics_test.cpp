@@ -1,11 +1,7 @@
 // Mirror and glass: Snell's law, Fresnel's shares and energy in doubles. SPDX-License-Identifier: Apache-2.0
 #include <gridiron/shade/optics.h>
-#include <gtest/gtest.h>
 
-#include <algorithm>
-#include <cmath>
-#include <cstdint>
-#include <random>
+#include "support/test_headers.h"
 
 namespace gridiron::test {
 namespace {

@@ -2,12 +2,8 @@
 #include <gridiron/ray/packet_hits.h>
 #include <gridiron/shade/shading.h>
 #include <gridiron/store/local_store.h>
-#include <gtest/gtest.h>
 
-#include <cmath>
-#include <cstdint>
-#include <cstring>
-#include <memory>
+#include "support/test_headers.h"
 
 namespace gridiron::test {
 namespace {

@@ -5,22 +5,13 @@
 #include <gridiron/engine/grid/walk_driver.h>
 #include <gridiron/image/scene_image.h>
 #include <gridiron/store/local_store.h>
-#include <gtest/gtest.h>
-
-#include <algorithm>
-#include <cstdint>
-#include <cstring>
-#include <limits>
-#include <memory>
-#include <optional>
-#include <string>
-#include <vector>
 
 #include "core/build/grid/line_buffer.h"
 #include "core/dma/test_platform.h"
 #include "core/lane_types.h"
 #include "numeric/hard_rays.h"
 #include "numeric/oracle.h"
+#include "support/test_headers.h"
 #include "support/test_mesh.h"
 
 namespace gridiron::test {
