@@ -13,15 +13,6 @@
 namespace gridiron::test {
 namespace {
 
-// A mesh with long triangle lists, empty space, silhouettes and overlapping surfaces.
-TestMesh make_mesh() {
-  TestMesh mesh = make_torus(60, 30, 1.0f, 0.35f);
-  mesh.append(make_random_soup(800, 0.15f, 3));
-  mesh.append(make_height_field(20, 0.2f, 4));
-  mesh.append(make_triangle({-3, -0.5f, -3}, {3, -0.5f, -3}, {0, -0.4f, 3}));
-  return mesh;
-}
-
 FrameSettings default_settings(Accuracy accuracy) {
   FrameSettings settings;
   settings.camera = {{1.2f, 1.5f, 2.5f}, {0, 0, 0}, {0, 1, 0}, 0.5f};
@@ -34,7 +25,8 @@ FrameSettings default_settings(Accuracy accuracy) {
 // Frames of one accuracy share the scene and the frame that all others are compared with.
 class Subject {
  public:
-  explicit Subject(Accuracy accuracy) : accuracy_(accuracy), mesh_(make_mesh()), scene_(mesh_.view(), grid(accuracy)) {
+  explicit Subject(Accuracy accuracy)
+      : accuracy_(accuracy), mesh_(make_mixed_mesh()), scene_(mesh_.view(), grid(accuracy)) {
     EXPECT_EQ(scene_.status(), Status::kOk);
     first_ = scene_.render(default_settings(accuracy), {});
     EXPECT_EQ(first_.result.status, Status::kOk);
@@ -230,10 +222,6 @@ void expect_same_frame(Accuracy accuracy, const std::string& name) {
   }
 }
 
-std::string parameter_name(const testing::TestParamInfo<std::string>& tested) {
-  return tested.param;
-}
-
 TEST_P(StandardDeterminism, GivesTheSameFrame) {
   expect_same_frame(Accuracy::kStandard, GetParam());
 }
@@ -242,6 +230,7 @@ TEST_P(PaperDeterminism, GivesTheSameFrame) {
   expect_same_frame(Accuracy::kPaper, GetParam());
 }
 
+const auto parameter_name = [](const auto& tested) { return tested.param; };
 INSTANTIATE_TEST_SUITE_P(Variations, StandardDeterminism, testing::ValuesIn(variation_names(Accuracy::kStandard)),
                          parameter_name);
 INSTANTIATE_TEST_SUITE_P(Variations, PaperDeterminism, testing::ValuesIn(variation_names(Accuracy::kPaper)),

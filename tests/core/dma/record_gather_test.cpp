@@ -174,9 +174,7 @@ TEST_P(RecordGather, FailuresAreReported) {
 }
 
 INSTANTIATE_TEST_SUITE_P(Depths, RecordGather, testing::Range(1u, kDepths + 1),
-                         [](const testing::TestParamInfo<std::uint32_t>& tested) {
-                           return "Depth" + std::to_string(tested.param);
-                         });
+                         [](const auto& tested) { return "Depth" + std::to_string(tested.param); });
 
 }  // namespace
 }  // namespace gridiron::test

@@ -3,6 +3,8 @@
 #include <gridiron/build/grid/triangle_records.h>
 #include <gridiron/ray/intersect_projection.h>
 
+#include <glm/geometric.hpp>
+
 #include "core/lane_types.h"
 #include "core/ray/packet_cases.h"
 #include "core/seeds.h"
@@ -15,12 +17,7 @@ namespace {
 using SmallPacket = Packet<4>;
 constexpr std::uint32_t kRays = SmallPacket::kRayCount;
 
-DVec3 cross(const DVec3& a, const DVec3& b) {
-  return {a.y * b.z - a.z * b.y, a.z * b.x - a.x * b.z, a.x * b.y - a.y * b.x};
-}
-double dot(const DVec3& a, const DVec3& b) {
-  return a.x * b.x + a.y * b.y + a.z * b.z;
-}
+using glm::cross, glm::dot;
 
 // A ray against a triangle in double.
 struct DoubleHit {
@@ -116,11 +113,10 @@ TYPED_TEST(ProjectionTest, AgreesWithDoubleWhereTheCaseIsClear) {
     }
     ASSERT_EQ(changed, any) << "seed " << seed;
   });
-  if (all_seeds_run()) {
-    EXPECT_GT(hits, 20000u);
-    EXPECT_GT(misses, 20000u);
-    EXPECT_GT(culled, 1000u);
-  }
+  if (!all_seeds_run()) return;
+  EXPECT_GT(hits, 20000u);
+  EXPECT_GT(misses, 20000u);
+  EXPECT_GT(culled, 1000u);
 }
 
 TYPED_TEST(ProjectionTest, LeastIdWinsATieAndTheLimitIsClosed) {
@@ -153,9 +149,8 @@ TYPED_TEST(ProjectionTest, LeastIdWinsATieAndTheLimitIsClosed) {
     }
     EXPECT_EQ(this->intersect(this->triangle_, false, false, work), 0u) << "seed " << seed;
   });
-  if (all_seeds_run()) {
-    EXPECT_GT(hits, 2000u);
-  }
+  if (!all_seeds_run()) return;
+  EXPECT_GT(hits, 2000u);
 }
 
 }  // namespace

@@ -73,10 +73,9 @@ TYPED_TEST(StandardTest, EveryRayHoldsTheLeastDistanceAndIdOfExactArithmetic) {
       ASSERT_EQ(packet.facing[ray], -1.0f);
     }
   });
-  if (all_seeds_run()) {
-    EXPECT_GT(hits, 10000u);
-    EXPECT_GT(ties, 1000u);
-  }
+  if (!all_seeds_run()) return;
+  EXPECT_GT(hits, 10000u);
+  EXPECT_GT(ties, 1000u);
 }
 
 TYPED_TEST(StandardTest, ABatchIsItsTrianglesOneByOne) {
@@ -151,9 +150,8 @@ TYPED_TEST(StandardTest, LimitIsClosed) {
       ASSERT_EQ(packet.id[ray], kNoTriangle) << "a hit behind t_far, seed " << seed << ", ray " << ray;
     }
   });
-  if (all_seeds_run()) {
-    EXPECT_GT(hits, 2000u);
-  }
+  if (!all_seeds_run()) return;
+  EXPECT_GT(hits, 2000u);
 }
 
 TYPED_TEST(StandardTest, OriginOnATriangleDoesNotHitIt) {
@@ -353,11 +351,10 @@ void expect_subpacket_culling_drops_no_hit() {
       hit_count += expected != 0 ? 1u : 0u;
     }
   });
-  if (all_seeds_run()) {
-    EXPECT_GT(left_out, 1000u);
-    EXPECT_GT(hit_count, 1000u);
-    EXPECT_GT(untested_hits, PacketType::kWidth / 8u);
-  }
+  if (!all_seeds_run()) return;
+  EXPECT_GT(left_out, 1000u);
+  EXPECT_GT(hit_count, 1000u);
+  EXPECT_GT(untested_hits, PacketType::kWidth / 8u);
 }
 
 TYPED_TEST(StandardTest, SubpacketCullingDropsNoHit) {
@@ -395,10 +392,9 @@ TYPED_TEST(StandardTest, EstimatesAreAsCloseAsTheySay) {
       }
     }
   });
-  if (all_seeds_run()) {
-    EXPECT_GT(close_count, 5000u);
-    EXPECT_GT(open_count, 1000u);
-  }
+  if (!all_seeds_run()) return;
+  EXPECT_GT(close_count, 5000u);
+  EXPECT_GT(open_count, 1000u);
 }
 
 // Estimates either find the exact winner or say that they cannot; then the exact pass finds it.
@@ -448,11 +444,10 @@ TYPED_TEST(StandardTest, EstimatesFindTheWinnerOrLeaveItOpen) {
       ASSERT_TRUE(same_bits(packet.facing[ray], exact.facing[ray])) << "seed " << seed << ", ray " << ray;
     }
   });
-  if (all_seeds_run()) {
-    EXPECT_GT(hits, 10000u);
-    EXPECT_GT(unsure_count, 100u);
-    EXPECT_GT(exact_groups, 1000u);
-  }
+  if (!all_seeds_run()) return;
+  EXPECT_GT(hits, 10000u);
+  EXPECT_GT(unsure_count, 100u);
+  EXPECT_GT(exact_groups, 1000u);
 }
 
 TYPED_TEST(StandardTest, CornerCullingDropsNoHit) {
@@ -483,10 +478,9 @@ TYPED_TEST(StandardTest, CornerCullingDropsNoHit) {
           << "culled, but hit: seed " << seed << ", pair " << i;
     }
   });
-  if (all_seeds_run()) {
-    EXPECT_GT(culled, 40000u);
-    EXPECT_GT(hit, 40000u);
-  }
+  if (!all_seeds_run()) return;
+  EXPECT_GT(culled, 40000u);
+  EXPECT_GT(hit, 40000u);
 }
 
 TYPED_TEST(StandardTest, NoRayLeavesAClosedSphere) {
@@ -527,10 +521,9 @@ TYPED_TEST(StandardTest, NoRayLeavesAClosedSphere) {
     }
     rays += WidePacket::kRayCount;
   });
-  if (all_seeds_run()) {
-    EXPECT_GT(rays * 3, 1000000u);  // over the three lane counts
-    EXPECT_GT(work[Work::kExactSign], 10000u) << "the rays are not hard enough";
-  }
+  if (!all_seeds_run()) return;
+  EXPECT_GT(rays * 3, 1000000u);  // over the three lane counts
+  EXPECT_GT(work[Work::kExactSign], 10000u) << "the rays are not hard enough";
 }
 
 }  // namespace

@@ -73,13 +73,13 @@ class TileRendererTest : public testing::Test {
     static const TestMesh mesh = make_scene();
     return mesh;
   }
-  static const BuiltScene& scene() {
-    static const BuiltScene scene(mesh().view(), {4.0f, 6, TriangleFormat::kVertices});
+  static const BuiltImage& scene() {
+    static const BuiltImage scene = build_image(mesh().view(), {4.0f, 6, TriangleFormat::kVertices});
     return scene;
   }
   // Over 512 macrocells: more than one line of the table.
-  static const BuiltScene& fine_scene() {
-    static const BuiltScene fine_scene(mesh().view(), {60.0f, 2, TriangleFormat::kVertices});
+  static const BuiltImage& fine_scene() {
+    static const BuiltImage fine_scene = build_image(mesh().view(), {60.0f, 2, TriangleFormat::kVertices});
     return fine_scene;
   }
   static void expect_truth(const TestFrame& frame, const KernelFrame& rendered) {
@@ -148,7 +148,7 @@ TEST_F(TileRendererTest, PlanesMayLieAtEveryMultipleOfTheirAlignment) {
 
 TEST_F(TileRendererTest, CellsOfManyRunsAreTestedWhole) {
   // A grid of a few cells with dozens of triangles each.
-  const BuiltScene coarse(mesh().view(), {0.05f, 3, TriangleFormat::kVertices});
+  const BuiltImage coarse = build_image(mesh().view(), {0.05f, 3, TriangleFormat::kVertices});
   TestFrame frame(coarse, settings_of(64, 48, TinyLayout::kTileWidth));
   const KernelFrame rendered = expect_reference<Lanes<4>, TinyLayout>(frame);
   EXPECT_GT(rendered.work[Work::kTriangleBatch], 5 * rendered.work[Work::kCellVisit]);
@@ -265,7 +265,7 @@ TEST_F(TileRendererTest, PlanesThatAreOffAreNotWritten) {
 }
 
 TEST_F(TileRendererTest, PaperFramesRenderTheSameShape) {
-  const BuiltScene projected(mesh().view(), {4.0f, 6, TriangleFormat::kProjection});
+  const BuiltImage projected = build_image(mesh().view(), {4.0f, 6, TriangleFormat::kProjection});
   FrameSettings settings = settings_of(64, 48, Normal::kTileWidth);
   settings.accuracy = Accuracy::kPaper;
   TestFrame frame(projected, settings);
@@ -341,7 +341,7 @@ std::vector<Refusal> refusals() {
 class RefusedFrame : public testing::TestWithParam<std::size_t> {};
 
 TEST_P(RefusedFrame, NamesItsReasonAndTouchesNothing) {
-  const BuiltScene scene(make_box({-1, -1, -1}, {1, 1, 1}).view(), GridParameters{});
+  const BuiltImage scene = build_image(make_box({-1, -1, -1}, {1, 1, 1}).view());
   const Refusal refusal = refusals()[GetParam()];
   TestFrame frame(scene, settings_of(70, 40, Normal::kTileWidth));
   const FrameRecord good = frame.record;
@@ -361,9 +361,7 @@ TEST_P(RefusedFrame, NamesItsReasonAndTouchesNothing) {
 }
 
 INSTANTIATE_TEST_SUITE_P(Reasons, RefusedFrame, testing::Range<std::size_t>(0, refusals().size()),
-                         [](const testing::TestParamInfo<std::size_t>& tested) {
-                           return refusals()[tested.param].name;
-                         });
+                         [](const auto& tested) { return refusals()[tested.param].name; });
 
 // --- Frames that end early ---------------------------------------------------------------------------------------
 

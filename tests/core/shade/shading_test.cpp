@@ -89,10 +89,9 @@ TEST_P(ShadeHits, PlanesThatAreOffStayAsTheyAre) {
   EXPECT_EQ(work[Work::kDepthGroup], 0u);
 }
 
-INSTANTIATE_TEST_SUITE_P(Both, ShadeHits, testing::Values(Shading::kNone, Shading::kSimple),
-                         [](const testing::TestParamInfo<Shading>& tested) {
-                           return tested.param == Shading::kNone ? std::string("None") : std::string("Simple");
-                         });
+INSTANTIATE_TEST_SUITE_P(Both, ShadeHits, testing::Values(Shading::kNone, Shading::kSimple), [](const auto& tested) {
+  return tested.param == Shading::kNone ? std::string("None") : std::string("Simple");
+});
 
 }  // namespace
 }  // namespace gridiron::test

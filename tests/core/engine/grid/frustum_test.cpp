@@ -148,9 +148,8 @@ TYPED_TEST(FrustumTest, RaysWithoutADirectionAreDroppedAndSpoilNoOther) {
     ASSERT_EQ(together.words[0], 0u) << "rays wait for ever, seed " << seed;
     ASSERT_EQ(taken, good) << "seed " << seed;
   });
-  if (all_seeds_run()) {
-    EXPECT_GT(compared, 3000u);
-  }
+  if (!all_seeds_run()) return;
+  EXPECT_GT(compared, 3000u);
 }
 
 // The slices worth a look: first, last, around the origin, some others; and the same as runs of several slices.
@@ -211,10 +210,9 @@ TYPED_TEST(FrustumTest, RectanglesHoldEveryCellTouched) {
       }
     }
   });
-  if (all_seeds_run()) {
-    EXPECT_GT(checked, 50000u);
-    EXPECT_GT(exact, checked / 3);
-  }
+  if (!all_seeds_run()) return;
+  EXPECT_GT(checked, 50000u);
+  EXPECT_GT(exact, checked / 3);
 }
 
 // A packet of a frame's pixels whose eye stands somewhere around a grid; now and then over the picture's edge.
@@ -318,12 +316,11 @@ void expect_slopes_of_squares(FrameKind kind) {
     while (take_pass<L>(grid, waiting, *packet, frustum, one_by_one_work)) continue;
   });
   ASSERT_EQ(one_by_one_work[Work::kPassSquare], 0u);
-  if (all_seeds_run() && !testing::Test::HasFailure()) {
-    EXPECT_GT(taken_count, kSeeds * PacketType::kRayCount / 2) << "kind " << static_cast<int>(kind);
-    // Nearly every square is taken as a whole.
-    EXPECT_GT(work[Work::kPassSquare], kSeeds * PacketType::kSquareCount / 2) << "kind " << static_cast<int>(kind);
-    EXPECT_LT(work[Work::kPassGroup], one_by_one_work[Work::kPassGroup] / 4) << "kind " << static_cast<int>(kind);
-  }
+  if (!all_seeds_run() || testing::Test::HasFailure()) return;
+  EXPECT_GT(taken_count, kSeeds * PacketType::kRayCount / 2) << "kind " << static_cast<int>(kind);
+  // Nearly every square is taken as a whole.
+  EXPECT_GT(work[Work::kPassSquare], kSeeds * PacketType::kSquareCount / 2) << "kind " << static_cast<int>(kind);
+  EXPECT_LT(work[Work::kPassGroup], one_by_one_work[Work::kPassGroup] / 4) << "kind " << static_cast<int>(kind);
 }
 
 TYPED_TEST(FrustumTest, SlopesOfSquaresHoldThoseOfTheirRays) {
@@ -377,10 +374,9 @@ void expect_rectangles_of_pixels() {
       }
     }
   });
-  if (all_seeds_run() && !testing::Test::HasFailure()) {
-    EXPECT_GT(checked, 5000u);
-    EXPECT_GT(tight, slab_count / 2);
-  }
+  if (!all_seeds_run() || testing::Test::HasFailure()) return;
+  EXPECT_GT(checked, 5000u);
+  EXPECT_GT(tight, slab_count / 2);
 }
 
 TYPED_TEST(FrustumTest, RectanglesOfPixelsHoldEveryCellTouched) {
@@ -423,9 +419,8 @@ TYPED_TEST(FrustumTest, NoSlabWithAPointInReachIsBeyond) {
       }
     }
   });
-  if (all_seeds_run()) {
-    EXPECT_GT(near_the_limit, 1000u);
-  }
+  if (!all_seeds_run()) return;
+  EXPECT_GT(near_the_limit, 1000u);
 }
 
 TEST(Frustum, BeyondIsBeyond) {
