@@ -44,8 +44,8 @@ using ProgressCall = std::function<void(std::uint32_t, std::uint32_t)>;
                                                        const ProgressCall& progress);
 [[nodiscard]] std::vector<std::string> accuracy_file_names();
 
-/// The cost of each effect on the simulated chip, and that an effect that is off costs nothing. Errors: kCheckFailed too,
-/// if such an effect cost anything, or buffering hides too little.
+/// The cost of each effect on the simulated chip, and that an effect that is off costs nothing. Errors: also
+/// kCheckFailed if such an effect cost anything, or buffering hides too little.
 [[nodiscard]] ExperimentResult run_effects_experiment(const ExperimentSettings& settings,
                                                       const ProgressCall& progress);
 [[nodiscard]] std::vector<std::string> effects_file_names();
