@@ -1,17 +1,10 @@
 // The accuracy experiment as a program: a tiny one, on generated scenes. SPDX-License-Identifier: Apache-2.0
-#include <gtest/gtest.h>
-
-#include <algorithm>
-#include <filesystem>
-#include <set>
-#include <string>
-#include <vector>
-
 #include "csv_rows.h"
 #include "experiment/experiments.h"
 #include "experiment/table.h"
 #include "gridiron/device/accuracies.h"
 #include "markup.h"
+#include "support/test_headers.h"
 #include "two_runs.h"
 
 namespace gridiron::test {

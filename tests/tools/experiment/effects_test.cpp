@@ -1,18 +1,11 @@
 // The effects experiment: as a program, tiny, and its checks. SPDX-License-Identifier: Apache-2.0
-#include <gtest/gtest.h>
-
-#include <algorithm>
-#include <filesystem>
-#include <set>
-#include <string>
-#include <vector>
-
 #include "../gridiron/failure_of.h"
 #include "csv_rows.h"
 #include "experiment/effect_frames.h"
 #include "experiment/effect_scenes.h"
 #include "experiment/experiments.h"
 #include "markup.h"
+#include "support/test_headers.h"
 #include "two_runs.h"
 
 namespace gridiron::test {

@@ -1,19 +1,13 @@
 // The experiment as a program: a tiny one, on generated scenes. SPDX-License-Identifier: Apache-2.0
-#include <gtest/gtest.h>
-
-#include <algorithm>
 #include <chrono>
 #include <csignal>
-#include <filesystem>
-#include <set>
-#include <string>
 #include <thread>
-#include <vector>
 
 #include "csv_rows.h"
 #include "experiment/experiments.h"
 #include "experiment/sections.h"
 #include "markup.h"
+#include "support/test_headers.h"
 #include "two_runs.h"
 
 namespace gridiron::test {

@@ -1,14 +1,9 @@
 // Statistics against closed forms. SPDX-License-Identifier: Apache-2.0
 #include "experiment/statistics.h"
 
-#include <gtest/gtest.h>
-
-#include <algorithm>
-#include <cmath>
-#include <limits>
 #include <numeric>
-#include <random>
-#include <vector>
+
+#include "support/test_headers.h"
 
 namespace gridiron::test {
 namespace {

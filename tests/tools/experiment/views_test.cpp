@@ -1,16 +1,9 @@
 // Views: which scenes, from where. SPDX-License-Identifier: Apache-2.0
 #include "experiment/views.h"
 
-#include <gtest/gtest.h>
-
-#include <cmath>
-#include <cstring>
-#include <filesystem>
-#include <string>
-#include <vector>
-
 #include "../gridiron/temporary_folder.h"
 #include "base/failure.h"
+#include "support/test_headers.h"
 #include "support/test_mesh.h"
 
 namespace gridiron::test {

@@ -1,19 +1,14 @@
 // animate: a picture and a row for each mesh, builds included. SPDX-License-Identifier: Apache-2.0
 #include <gridiron/build/grid/grid_builder.h>
 #include <gridiron/sim/build_work.h>
-#include <gtest/gtest.h>
 
-#include <algorithm>
 #include <cstdio>
-#include <map>
 #include <nlohmann/json.hpp>
-#include <sstream>
-#include <string>
-#include <vector>
 
 #include "gridiron/scene/scene_points.h"
 #include "gridiron/scene/view.h"
 #include "run_program.h"
+#include "support/test_headers.h"
 #include "temporary_folder.h"
 
 namespace gridiron::test {

@@ -1,19 +1,16 @@
 // machines and --machine: profiles that people print, edit and give back. SPDX-License-Identifier: Apache-2.0
 #include <fcntl.h>
 #include <gridiron/sim/work_costs.h>
-#include <gtest/gtest.h>
 #include <sys/stat.h>
 #include <unistd.h>
 
 #include <chrono>
-#include <fstream>
 #include <nlohmann/json.hpp>
-#include <set>
-#include <string>
 #include <thread>
 
 #include "gridiron/device/machine_keys.h"
 #include "run_program.h"
+#include "support/test_headers.h"
 #include "temporary_folder.h"
 
 namespace gridiron::test {

@@ -1,18 +1,14 @@
 // render: pictures, planes and reports of the whole program. SPDX-License-Identifier: Apache-2.0
-#include <gtest/gtest.h>
 #include <report/report.h>
 
-#include <algorithm>
-#include <cmath>
-#include <filesystem>
 #include <nlohmann/json.hpp>
-#include <set>
 
 #include "gridiron/scene/scene_points.h"
 #include "gridiron/scene/view.h"
 #include "run_program.h"
 #include "support/picture.h"
 #include "support/render_mesh.h"
+#include "support/test_headers.h"
 #include "temporary_folder.h"
 
 namespace gridiron::test {

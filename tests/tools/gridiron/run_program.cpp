@@ -2,17 +2,14 @@
 #include "run_program.h"
 
 #include <fcntl.h>
-#include <gtest/gtest.h>
 #include <signal.h>
 #include <stdlib.h>
 #include <sys/wait.h>
 #include <unistd.h>
 
-#include <cstdlib>
-#include <fstream>
-#include <string>
 #include <thread>
 
+#include "support/test_headers.h"
 #include "temporary_folder.h"
 
 namespace gridiron::test {

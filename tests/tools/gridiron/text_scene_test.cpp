@@ -1,14 +1,12 @@
 // Text scenes through the whole program: views, tolerance, near plane, effects, wrong ones.
 // SPDX-License-Identifier: Apache-2.0
 #include <gridiron/base/effect_records.h>
-#include <gtest/gtest.h>
 
 #include <nlohmann/json.hpp>
-#include <string>
-#include <vector>
 
 #include "run_program.h"
 #include "scene_makers/procedural.h"
+#include "support/test_headers.h"
 #include "temporary_folder.h"
 
 namespace gridiron::test {

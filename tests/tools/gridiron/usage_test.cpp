@@ -1,15 +1,10 @@
 // The command line: what is refused, with which exit code and words. SPDX-License-Identifier: Apache-2.0
-#include <gtest/gtest.h>
-
-#include <algorithm>
-#include <cstdlib>
-#include <fstream>
 #include <iterator>
 #include <nlohmann/json.hpp>
 #include <regex>
-#include <set>
 
 #include "run_program.h"
+#include "support/test_headers.h"
 #include "temporary_folder.h"
 
 namespace gridiron::test {

@@ -2,17 +2,9 @@
 // Memory: std::string. Threads: one. SPDX-License-Identifier: Apache-2.0
 #include "report/report.h"
 
-#include <gtest/gtest.h>
-
-#include <algorithm>
-#include <array>
-#include <cstdint>
-#include <fstream>
 #include <nlohmann/json.hpp>
-#include <set>
-#include <sstream>
-#include <string>
-#include <vector>
+
+#include "support/test_headers.h"
 
 namespace gridiron::tool {
 namespace {

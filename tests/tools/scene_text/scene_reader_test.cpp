@@ -1,13 +1,9 @@
 // Text scenes that are right: what each line becomes. SPDX-License-Identifier: Apache-2.0
-#include <gtest/gtest.h>
-
 #include <clocale>
-#include <cmath>
-#include <fstream>
-#include <string>
 
 #include "check_scene.h"
 #include "failure_of.h"
+#include "support/test_headers.h"
 #include "temporary_folder.h"
 
 namespace gridiron::test {
