@@ -2,18 +2,13 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <gridiron/bvh/bvh_core.h>
 #include <gridiron/bvh/bvh_renderer.h>
-#include <gtest/gtest.h>
 
-#include <algorithm>
 #include <atomic>
-#include <cmath>
-#include <cstring>
 #include <numeric>
-#include <string>
-#include <vector>
 
 #include "support/no_threads.h"
 #include "support/render_mesh.h"
+#include "support/test_headers.h"
 #include "support/test_mesh.h"
 #include "support/views.h"
 
@@ -32,12 +27,12 @@ FrameSettings settings_of(const Camera& camera, std::uint32_t width, std::uint32
   return settings;
 }
 
-test::TestMesh make_mixed_mesh() {
-  test::TestMesh mesh = test::make_torus(60, 30, 1.0f, 0.35f);
-  mesh.append(test::make_random_soup(800, 0.15f, 3));
-  mesh.append(test::make_height_field(20, 0.2f, 4));
-  mesh.append(test::make_triangle({-3, -0.5f, -3}, {3, -0.5f, -3}, {0, -0.4f, 3}));
-  return mesh;
+using test::make_mixed_mesh;
+
+Bvh bvh_of(const test::TestMesh& mesh) {
+  Bvh bvh;
+  EXPECT_EQ(build_bvh(mesh.view(), {}, bvh), Status::kOk);
+  return bvh;
 }
 
 const Camera kMixedCamera = {{1.2f, 1.5f, 2.5f}, {0, 0, 0}, {0, 1, 0}, 0.5f};
@@ -167,9 +162,7 @@ TEST(BvhRenderer, FourLinesOfEachCacheAreEnough) {
 }
 
 TEST(BvhRenderer, FiguresAreTheSameInEveryRun) {
-  const test::TestMesh mesh = make_mixed_mesh();
-  Bvh bvh;
-  ASSERT_EQ(build_bvh(mesh.view(), {}, bvh), Status::kOk);
+  const Bvh bvh = bvh_of(make_mixed_mesh());
   for (const sim::MachineProfile& machine : sim::machine_profiles()) {
     RenderOptions options;
     const BvhFrame first = render_bvh_frame(bvh, settings_of(kMixedCamera, 320, 200), machine, options);
@@ -195,9 +188,7 @@ TEST(BvhRenderer, FiguresAreTheSameInEveryRun) {
 
 // A claim that takes far longer than any tile's work deals the tiles out evenly.
 TEST(BvhRenderer, ClaimLatencyCountsInTheOrderOfClaims) {
-  const test::TestMesh mesh = make_mixed_mesh();
-  Bvh bvh;
-  ASSERT_EQ(build_bvh(mesh.view(), BvhParameters{}, bvh), Status::kOk);
+  const Bvh bvh = bvh_of(make_mixed_mesh());
   sim::MachineProfile machine = ps3();
   machine.claim_cycles = 1 << 20;
   for (double& cycles : machine.work_cycles) cycles /= 100;
@@ -211,8 +202,7 @@ TEST(BvhRenderer, ClaimLatencyCountsInTheOrderOfClaims) {
 
 TEST(BvhRenderer, HyperThreadingWaitsLess) {
   const test::TestMesh mesh = test::make_height_field(120, 0.3f, 6);
-  Bvh bvh;
-  ASSERT_EQ(build_bvh(mesh.view(), {}, bvh), Status::kOk);
+  const Bvh bvh = bvh_of(mesh);
   const FrameSettings settings = settings_of(test::framed_camera(mesh.view()), 320, 320);
   RenderOptions options;
   const BvhFrame with = render_bvh_frame(bvh, settings, ps3(), options);
@@ -230,9 +220,7 @@ TEST(BvhRenderer, HyperThreadingWaitsLess) {
 }
 
 TEST(BvhRenderer, FiguresAddUp) {
-  const test::TestMesh mesh = make_mixed_mesh();
-  Bvh bvh;
-  ASSERT_EQ(build_bvh(mesh.view(), {}, bvh), Status::kOk);
+  const Bvh bvh = bvh_of(make_mixed_mesh());
   const BvhFrame frame = render_bvh_frame(bvh, settings_of(kMixedCamera, 320, 200), ps3(), {});
   ASSERT_EQ(frame.status, Status::kOk);
   // Every tile on one core, as often as the replay says.
@@ -295,8 +283,7 @@ TEST(BvhRenderer, StopsWhenAsked) {
 
 TEST(BvhRenderer, RefusesWhatItCannotRender) {
   const test::TestMesh mesh = test::make_sphere(8, 8, 1);
-  Bvh bvh;
-  ASSERT_EQ(build_bvh(mesh.view(), {}, bvh), Status::kOk);
+  const Bvh bvh = bvh_of(mesh);
   const FrameSettings good = settings_of(test::framed_camera(mesh.view()), 64, 64);
   const auto status_of = [&](const FrameSettings& settings, const RenderOptions& options) {
     return render_bvh_frame(bvh, settings, ps3(), options).status;

@@ -2,13 +2,11 @@
 #include <gridiron/bvh/claim_order.h>
 #include <gridiron/dma/tags.h>
 #include <gridiron/sim/replay.h>
-#include <gtest/gtest.h>
 
-#include <array>
 #include <mutex>
 #include <thread>
-#include <vector>
 
+#include "support/test_headers.h"
 #include "support/test_mesh.h"
 #include "support/trace_steps.h"
 

@@ -2,13 +2,14 @@
 // Memory: none. Threads: any. SPDX-License-Identifier: Apache-2.0
 #pragma once
 
-#include <gtest/gtest.h>
-
-#include <cstdint>
-#include <cstdlib>
-#include <string>
+#include "support/test_headers.h"
 
 namespace gridiron::test {
+
+/// Whether a test runs with all of its seeds, so that what it counted says something.
+inline bool all_seeds_run() {
+  return std::getenv("GRIDIRON_TEST_SEED") == nullptr;
+}
 
 /// Calls body(seed) for the seeds 1..count until one fails, and then says how to run that one alone.
 template <class Body>

@@ -5,16 +5,10 @@
 #include <gridiron/image/scene_image.h>
 #include <gridiron/sim/sim_chip.h>
 #include <gridiron/store/local_store.h>
-#include <gtest/gtest.h>
-
-#include <cstdint>
-#include <cstring>
-#include <functional>
-#include <string>
-#include <vector>
 
 #include "determinism/trace_difference.h"
 #include "support/instrumented.h"
+#include "support/test_headers.h"
 #include "support/test_mesh.h"
 
 namespace gridiron::test {

@@ -1,19 +1,16 @@
 // The seam between engines: an engine that core does not know renders the grid's frames, effects and all, and the
 // simulated chip runs, counts and replays it. SPDX-License-Identifier: Apache-2.0
+#include "engine/brute_force_engine.h"
+
 #include <gridiron/render/tile_renderer.h>
 #include <gridiron/sim/core_runner.h>
 #include <gridiron/sim/machine_profile.h>
 #include <gridiron/sim/replay.h>
-#include <gtest/gtest.h>
-
-#include <cstring>
-#include <string>
-#include <utility>
 
 #include "effects/kernel_scene.h"
-#include "engine/brute_force_engine.h"
 #include "scene_text/scene_reader.h"
 #include "support/render_mesh.h"
+#include "support/test_headers.h"
 #include "support/test_mesh.h"
 
 namespace gridiron::test {

@@ -1,11 +1,8 @@
 // Machine profiles: complete, found by name, with the published figures.
 // Memory: std::set. Threads: one. SPDX-License-Identifier: Apache-2.0
 #include <gridiron/sim/machine_profile.h>
-#include <gtest/gtest.h>
 
-#include <cstdint>
-#include <set>
-#include <string>
+#include "support/test_headers.h"
 
 namespace gridiron::sim {
 namespace {

@@ -2,16 +2,9 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <gridiron/sim/core_runner.h>
 #include <gridiron/sim/sim_core.h>
-#include <gtest/gtest.h>
-
-#include <algorithm>
-#include <cstddef>
-#include <cstdint>
-#include <span>
-#include <string>
-#include <vector>
 
 #include "program_bench.h"
+#include "support/test_headers.h"
 #include "support/trace_steps.h"
 
 namespace gridiron::sim {
@@ -210,13 +203,10 @@ TEST(SimCoreFailure, OfSeveralFailingTilesTheLowestIsToldForAnyThreads) {
       bench.shape.tile_count = 64;
       bench.options.threads = threads;
       const ChipResult result = bench.run([&](SimCore& core, std::span<std::byte> data) {
-        for (;;) {
-          const TileClaim claim = core.claim_tile();
-          if (claim.kind == TileClaim::Kind::kAborted) return Status::kAborted;
-          if (claim.kind == TileClaim::Kind::kNone) return Status::kOk;
+        return for_each_tile(core, [&](std::uint32_t tile) {
           // Every tile from 20 on is wrong, each in its own way.
-          if (claim.tile_id >= 20) GRIDIRON_TRY(core.get(data.data(), bench.input(), claim.tile_id - 20, kTag));
-        }
+          return tile < 20 ? Status::kOk : core.get(data.data(), bench.input(), tile - 20, kTag);
+        });
       });
       ASSERT_EQ(result.status, Status::kTransferSize) << words(result);
       ASSERT_EQ(result.failed_tile, 20u) << "threads " << threads << " round " << round;
@@ -239,13 +229,8 @@ TEST(SimCoreFailure, AProgramsOwnErrorIsToldWithItsTile) {
   ProgramBench bench;
   bench.shape.tile_count = 9;
   bench.options.threads = 2;
-  const ChipResult result = bench.run([&](SimCore& core, std::span<std::byte>) {
-    for (;;) {
-      const TileClaim claim = core.claim_tile();
-      if (claim.kind == TileClaim::Kind::kAborted) return Status::kAborted;
-      if (claim.kind == TileClaim::Kind::kNone) return Status::kOk;
-      if (claim.tile_id == 4) return Status::kBadImage;
-    }
+  const ChipResult result = bench.run([](SimCore& core, std::span<std::byte>) {
+    return for_each_tile(core, [](std::uint32_t tile) { return tile == 4 ? Status::kBadImage : Status::kOk; });
   });
   EXPECT_EQ(result.status, Status::kBadImage);
   EXPECT_EQ(result.failed_tile, 4u);

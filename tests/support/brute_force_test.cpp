@@ -3,16 +3,10 @@
 #include "support/brute_force.h"
 
 #include <gridiron/base/exact_sum.h>
-#include <gtest/gtest.h>
 
-#include <array>
 #include <boost/multiprecision/cpp_int.hpp>
-#include <cmath>
-#include <cstdint>
-#include <limits>
-#include <string>
-#include <vector>
 
+#include "support/test_headers.h"
 #include "support/test_mesh.h"
 
 namespace gridiron::test {
@@ -172,9 +166,7 @@ TEST_P(BruteForceTest, IntegersAgreeWithRationals) {
 }
 
 INSTANTIATE_TEST_SUITE_P(Cases, BruteForceTest, testing::Range<std::size_t>(0, make_cases().size()),
-                         [](const testing::TestParamInfo<std::size_t>& tested) {
-                           return make_cases()[tested.param].name;
-                         });
+                         [](const auto& tested) { return make_cases()[tested.param].name; });
 
 TEST(BruteForceFilter, RejectsAlmostEverythingByItself) {
   const TestMesh mesh = make_sphere(40, 60, 1.0f);

@@ -17,6 +17,8 @@
 #include <string>
 #include <vector>
 
+#include "support/test_mesh.h"
+
 namespace gridiron::test {
 
 /// A frame's planes, row-major, row 0 on top.
@@ -27,6 +29,9 @@ struct Planes {
 
   friend bool operator==(const Planes&, const Planes&) = default;
 };
+
+/// Long lists of triangles, empty space, silhouettes and overlapping surfaces: 5,201 triangles.
+TestMesh make_mixed_mesh();
 
 /// Which planes a frame has. Without depth, distances are estimated where that decides.
 enum class PlaneSet : std::uint8_t { kColor, kColorAndIds, kAll };

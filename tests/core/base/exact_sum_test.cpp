@@ -1,16 +1,9 @@
 // Exact signs, zero areas and distances against rational numbers. SPDX-License-Identifier: Apache-2.0
 #include <gridiron/base/exact_sum.h>
-#include <gtest/gtest.h>
 
-#include <array>
-#include <bit>
 #include <boost/multiprecision/cpp_int.hpp>
-#include <cmath>
-#include <cstdint>
-#include <functional>
-#include <limits>
-#include <string>
 
+#include "support/test_headers.h"
 #include "support/test_mesh.h"
 
 namespace gridiron::test {

@@ -1,18 +1,10 @@
 // Lanes: every operation on W lanes is the same operation on each float alone.
 // SPDX-License-Identifier: Apache-2.0
 #include <gridiron/base/lanes.h>
-#include <gtest/gtest.h>
-
-#include <algorithm>
-#include <array>
-#include <bit>
-#include <cmath>
-#include <cstdint>
-#include <limits>
-#include <vector>
 
 #include "core/lane_types.h"
 #include "core/seeds.h"
+#include "support/test_headers.h"
 #include "support/test_mesh.h"
 
 namespace gridiron::test {

@@ -1,13 +1,11 @@
 // Buffer ring: buffers go out and come back in order, and none is handed out twice.
 // SPDX-License-Identifier: Apache-2.0
 #include <gridiron/dma/buffer_ring.h>
-#include <gtest/gtest.h>
 
-#include <cstdint>
 #include <deque>
-#include <set>
 
 #include "core/seeds.h"
+#include "support/test_headers.h"
 #include "support/test_mesh.h"
 
 namespace gridiron::test {

@@ -1,17 +1,10 @@
 // Record gather: every item gets its own record, neighbours that want the same one share a transfer, at any depth.
 // SPDX-License-Identifier: Apache-2.0
 #include <gridiron/dma/record_gather.h>
-#include <gtest/gtest.h>
-
-#include <cstdint>
-#include <cstring>
-#include <memory>
-#include <optional>
-#include <string>
-#include <vector>
 
 #include "core/dma/test_platform.h"
 #include "core/seeds.h"
+#include "support/test_headers.h"
 #include "support/test_mesh.h"
 
 namespace gridiron::test {
@@ -181,9 +174,7 @@ TEST_P(RecordGather, FailuresAreReported) {
 }
 
 INSTANTIATE_TEST_SUITE_P(Depths, RecordGather, testing::Range(1u, kDepths + 1),
-                         [](const testing::TestParamInfo<std::uint32_t>& tested) {
-                           return "Depth" + std::to_string(tested.param);
-                         });
+                         [](const auto& tested) { return "Depth" + std::to_string(tested.param); });
 
 }  // namespace
 }  // namespace gridiron::test

@@ -1,12 +1,9 @@
 // Packet generation: the rays of the pixels, those that exist, and corners that bound them.
 // SPDX-License-Identifier: Apache-2.0
 #include <gridiron/ray/camera.h>
-#include <gtest/gtest.h>
-
-#include <algorithm>
-#include <cstdint>
 
 #include "core/seeds.h"
+#include "support/test_headers.h"
 #include "support/test_mesh.h"
 
 namespace gridiron::test {

@@ -11,18 +11,14 @@
 #include <gridiron/ray/intersect_standard.h>
 #include <gridiron/ray/pixel_box.h>
 #include <gridiron/ray/subpackets.h>
-#include <gtest/gtest.h>
 
-#include <algorithm>
 #include <boost/multiprecision/cpp_int.hpp>
-#include <cmath>
-#include <cstdint>
-#include <memory>
 
 #include "core/engine/grid/bound_cases.h"
 #include "core/lane_types.h"
 #include "core/ray/exact_ray.h"
 #include "core/ray/packet_cases.h"
+#include "support/test_headers.h"
 
 namespace gridiron::test {
 namespace {

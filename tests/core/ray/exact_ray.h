@@ -5,10 +5,8 @@
 
 #include <gridiron/base/records.h>
 
-#include <cstdint>
-#include <optional>
-
 #include "numeric/exact_numbers.h"
+#include "support/test_headers.h"
 
 namespace gridiron::test {
 

@@ -1,20 +1,12 @@
 // Secondary rays against triangles: what they hit and where, by the oracle's integers; no ray leaves a closed mesh.
 // SPDX-License-Identifier: Apache-2.0
 #include <gridiron/ray/intersect_rays.h>
-#include <gtest/gtest.h>
-
-#include <algorithm>
-#include <bit>
-#include <cmath>
-#include <cstdint>
-#include <cstring>
-#include <optional>
-#include <vector>
 
 #include "core/lane_types.h"
 #include "core/seeds.h"
 #include "numeric/hard_rays.h"
 #include "numeric/oracle.h"
+#include "support/test_headers.h"
 #include "support/test_mesh.h"
 
 namespace gridiron::test {
@@ -95,6 +87,20 @@ std::vector<float> true_distances(const Oracle& oracle, const OracleRay& ray, st
   return result;
 }
 
+// The rays that a triangle stops: those settled, and those left open whose distance is within their limit.
+template <class L>
+std::uint32_t rays_stopped(const WalkRays& rays, const VertexTriangle& triangle, bool trusts_floats,
+                           WorkCounters& work) {
+  std::uint32_t settled = 0;
+  std::uint32_t open = rays_near<L>(rays, kAll, triangle, trusts_floats, settled, work);
+  for (std::uint32_t rest = open; rest != 0; rest &= rest - 1) {
+    const auto i = static_cast<std::uint32_t>(std::countr_zero(rest));
+    const float t = ray_distance(rays, i, triangle, work);
+    if (!(t > 0.0f && t <= rays.t[i])) open &= ~(1u << i);
+  }
+  return open | settled;
+}
+
 TYPED_TEST(IntersectRaysTest, DecideAsTheOracleDoes) {
   std::uint64_t hits = 0, settled_hits = 0, open_rays = 0, at_limit = 0, pairs = 0;
   WorkCounters work;
@@ -149,7 +155,7 @@ TYPED_TEST(IntersectRaysTest, DecideAsTheOracleDoes) {
       ASSERT_EQ(other_settled, settled) << "seed " << seed;
     }
   });
-  if (testing::Test::HasFailure() || std::getenv("GRIDIRON_TEST_SEED") != nullptr) return;
+  if (testing::Test::HasFailure() || !all_seeds_run()) return;
   EXPECT_GT(pairs, 50'000u);
   EXPECT_GT(hits, 5'000u);
   EXPECT_GT(settled_hits, 1'000u);
@@ -221,14 +227,7 @@ TYPED_TEST(IntersectRaysTest, TrustedFloatsAreRightAwayFromEdges) {
       expected |= hits && ray.t_max > 1.0f ? 1u << i : 0u;
       (hits ? inside : outside) += 1;
     }
-    std::uint32_t settled = 0;
-    std::uint32_t open = rays_near<TypeParam>(rays, kAll, triangle, true, settled, work);
-    for (std::uint32_t rest = open; rest != 0; rest &= rest - 1) {
-      const auto i = static_cast<std::uint32_t>(std::countr_zero(rest));
-      const float t = ray_distance(rays, i, triangle, work);
-      if (!(t > 0.0f && t <= rays.t[i])) open &= ~(1u << i);
-    }
-    ASSERT_EQ(settled | open, expected) << "round " << round;
+    ASSERT_EQ(rays_stopped<TypeParam>(rays, triangle, true, work), expected) << "round " << round;
   }
   EXPECT_GT(inside, 10'000u);
   EXPECT_GT(outside, 10'000u);
@@ -250,18 +249,9 @@ TYPED_TEST(IntersectRaysTest, NothingIsHitWithoutADirectionOrAnArea) {
     if (i == 5) ray = {{0.25f, 0.25f, 1}, {0, 0, 1}};       // away from it
     set_ray(rays, i, ray);
   }
-  const auto hit_by = [&](const VertexTriangle& tested) {
-    std::uint32_t settled = 0;
-    std::uint32_t result = rays_near<TypeParam>(rays, kAll, tested, false, settled, work);
-    for (std::uint32_t rest = result; rest != 0; rest &= rest - 1) {
-      const auto i = static_cast<std::uint32_t>(std::countr_zero(rest));
-      if (!(ray_distance(rays, i, tested, work) > 0.0f)) result &= ~(1u << i);
-    }
-    return result | settled;
-  };
-  EXPECT_EQ(hit_by(triangle), 1u << 1 | 1u << 2);
-  EXPECT_EQ(hit_by(line), 0u);
-  EXPECT_EQ(hit_by(point), 0u);
+  EXPECT_EQ(rays_stopped<TypeParam>(rays, triangle, false, work), 1u << 1 | 1u << 2);
+  EXPECT_EQ(rays_stopped<TypeParam>(rays, line, false, work), 0u);
+  EXPECT_EQ(rays_stopped<TypeParam>(rays, point, false, work), 0u);
 }
 
 // A closed mesh and what lies inside it, well away from its faces.
@@ -306,14 +296,9 @@ TYPED_TEST(IntersectRaysTest, NoRayLeavesAClosedMesh) {
         }
         std::uint32_t stopped = 0, twice = 0;
         for (const VertexTriangle& triangle : triangles) {
-          std::uint32_t settled = 0;
-          std::uint32_t open = rays_near<TypeParam>(rays, kAll, triangle, false, settled, work);
-          for (std::uint32_t rest = open; rest != 0; rest &= rest - 1) {
-            const auto i = static_cast<std::uint32_t>(std::countr_zero(rest));
-            if (!(ray_distance(rays, i, triangle, work) > 0.0f)) open &= ~(1u << i);
-          }
-          twice |= stopped & (open | settled);
-          stopped |= open | settled;
+          const std::uint32_t now = rays_stopped<TypeParam>(rays, triangle, false, work);
+          twice |= stopped & now;
+          stopped |= now;
         }
         rays_shot += kWalkRays;
         leaks += static_cast<std::uint32_t>(std::popcount(kAll & ~stopped));

@@ -2,18 +2,11 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <gridiron/ray/camera.h>
 #include <gridiron/ray/intersect_standard.h>
-#include <gtest/gtest.h>
-
-#include <algorithm>
-#include <bit>
-#include <cmath>
-#include <cstdint>
-#include <string>
-#include <vector>
 
 #include "core/lane_types.h"
 #include "core/ray/packet_cases.h"
 #include "core/seeds.h"
+#include "support/test_headers.h"
 #include "support/test_mesh.h"
 
 namespace gridiron::test {
@@ -21,28 +14,6 @@ namespace {
 
 using SmallPacket = Packet<4>;
 constexpr std::uint32_t kRays = SmallPacket::kRayCount;
-
-bool all_seeds_run() {
-  return std::getenv("GRIDIRON_TEST_SEED") == nullptr;
-}
-
-template <class PacketType>
-void reset_hits(PacketType& packet, float t_far) {
-  for (std::uint32_t ray = 0; ray < PacketType::kRayCount; ++ray) {
-    packet.t[ray] = t_far;
-    packet.id[ray] = kNoTriangle;
-    packet.facing[ray] = -1.0f;
-  }
-}
-
-template <class PacketType>
-void activate_all(PacketType& packet) {
-  for (std::uint32_t ray = 0; ray < PacketType::kRayCount; ++ray) packet.active.insert(ray);
-}
-
-bool same_bits(float a, float b) {
-  return std::bit_cast<std::uint32_t>(a) == std::bit_cast<std::uint32_t>(b);
-}
 
 template <class L>
 class StandardTest : public testing::Test {};
@@ -65,7 +36,7 @@ TYPED_TEST(StandardTest, EveryRayHoldsTheLeastDistanceAndIdOfExactArithmetic) {
     WorkCounters work;
     SmallPacket first_result{};
     for (int round = 0; round < 2; ++round) {
-      reset_hits(packet, kFloatMax);
+      reset_hits(packet);
       for (const std::size_t i : order) {
         const SmallPacket before = packet;
         const bool changed = intersect_standard<TypeParam, false>(packet, shown.triangles[i], false, work);
@@ -102,10 +73,9 @@ TYPED_TEST(StandardTest, EveryRayHoldsTheLeastDistanceAndIdOfExactArithmetic) {
       ASSERT_EQ(packet.facing[ray], -1.0f);
     }
   });
-  if (all_seeds_run()) {
-    EXPECT_GT(hits, 10000u);
-    EXPECT_GT(ties, 1000u);
-  }
+  if (!all_seeds_run()) return;
+  EXPECT_GT(hits, 10000u);
+  EXPECT_GT(ties, 1000u);
 }
 
 TYPED_TEST(StandardTest, ABatchIsItsTrianglesOneByOne) {
@@ -116,7 +86,7 @@ TYPED_TEST(StandardTest, ABatchIsItsTrianglesOneByOne) {
     SmallPacket single{};
     aim_at(random, shown, single);
     activate_all(single);
-    reset_hits(single, kFloatMax);
+    reset_hits(single);
     // Corner rays that bound nothing but themselves: culling has to be the same decision, right or wrong.
     for (auto& component : single.corner_dir) {
       for (float& value : component) value = random.between(-single.dir_max, single.dir_max);
@@ -162,17 +132,17 @@ TYPED_TEST(StandardTest, LimitIsClosed) {
     aim_at(random, shown, packet);
     activate_all(packet);
     WorkCounters work;
-    reset_hits(packet, kFloatMax);
+    reset_hits(packet);
     (void)intersect_standard<TypeParam, false>(packet, triangle, false, work);
     const SmallPacket free = packet;
-    reset_hits(packet, kFloatMax);
+    reset_hits(packet);
     for (std::uint32_t ray = 0; ray < kRays; ++ray) packet.t[ray] = free.t[ray];
     (void)intersect_standard<TypeParam, false>(packet, triangle, false, work);
     for (std::uint32_t ray = 0; ray < kRays; ++ray) {
       ASSERT_EQ(packet.id[ray], free.id[ray]) << "a hit at t_far counts, seed " << seed << ", ray " << ray;
       ASSERT_EQ(packet.t[ray], free.t[ray]) << "seed " << seed << ", ray " << ray;
     }
-    reset_hits(packet, kFloatMax);
+    reset_hits(packet);
     for (std::uint32_t ray = 0; ray < kRays; ++ray) packet.t[ray] = std::nextafter(free.t[ray], 0.0f);
     EXPECT_FALSE((intersect_standard<TypeParam, false>(packet, triangle, false, work))) << "seed " << seed;
     for (std::uint32_t ray = 0; ray < kRays; ++ray) {
@@ -180,9 +150,8 @@ TYPED_TEST(StandardTest, LimitIsClosed) {
       ASSERT_EQ(packet.id[ray], kNoTriangle) << "a hit behind t_far, seed " << seed << ", ray " << ray;
     }
   });
-  if (all_seeds_run()) {
-    EXPECT_GT(hits, 2000u);
-  }
+  if (!all_seeds_run()) return;
+  EXPECT_GT(hits, 2000u);
 }
 
 TYPED_TEST(StandardTest, OriginOnATriangleDoesNotHitIt) {
@@ -198,7 +167,7 @@ TYPED_TEST(StandardTest, OriginOnATriangleDoesNotHitIt) {
     }
     set_direction_bounds(packet);
     activate_all(packet);
-    reset_hits(packet, kFloatMax);
+    reset_hits(packet);
     WorkCounters work;
     EXPECT_FALSE((intersect_standard<TypeParam, false>(packet, triangle, false, work)));
     for (const std::uint32_t id : packet.id) EXPECT_EQ(id, kNoTriangle);
@@ -219,7 +188,7 @@ TYPED_TEST(StandardTest, FacingIsTheCosineOfTheUnitNormal) {
     SmallPacket packet{};
     aim_at(random, shown, packet);
     activate_all(packet);
-    reset_hits(packet, kFloatMax);
+    reset_hits(packet);
     WorkCounters work;
     (void)intersect_standard<TypeParam, true>(packet, triangle, false, work);
     for (std::uint32_t ray = 0; ray < kRays; ++ray) {
@@ -251,7 +220,7 @@ TYPED_TEST(StandardTest, FilterDecidesOrdinaryRays) {
     }
     set_direction_bounds(packet);
     activate_all(packet);
-    reset_hits(packet, kFloatMax);
+    reset_hits(packet);
     (void)intersect_standard<TypeParam, false>(packet, triangle, false, work);
     rays += kRays;
   }
@@ -359,7 +328,7 @@ void expect_subpacket_culling_drops_no_hit() {
     packet.ask_for_distances(true);
     packet.active = present;
     const auto intersect = [&](const VertexTriangle& triangle, bool by_subpackets) {
-      reset_hits(packet, kFloatMax);
+      reset_hits(packet);
       work = WorkCounters{};
       const Culling culling{.corner_rays = false, .subpackets = by_subpackets};
       OpenTriangle open[1];
@@ -382,11 +351,10 @@ void expect_subpacket_culling_drops_no_hit() {
       hit_count += expected != 0 ? 1u : 0u;
     }
   });
-  if (std::getenv("GRIDIRON_TEST_SEED") == nullptr) {
-    EXPECT_GT(left_out, 1000u);
-    EXPECT_GT(hit_count, 1000u);
-    EXPECT_GT(untested_hits, PacketType::kWidth / 8u);
-  }
+  if (!all_seeds_run()) return;
+  EXPECT_GT(left_out, 1000u);
+  EXPECT_GT(hit_count, 1000u);
+  EXPECT_GT(untested_hits, PacketType::kWidth / 8u);
 }
 
 TYPED_TEST(StandardTest, SubpacketCullingDropsNoHit) {
@@ -424,10 +392,9 @@ TYPED_TEST(StandardTest, EstimatesAreAsCloseAsTheySay) {
       }
     }
   });
-  if (all_seeds_run()) {
-    EXPECT_GT(close_count, 5000u);
-    EXPECT_GT(open_count, 1000u);
-  }
+  if (!all_seeds_run()) return;
+  EXPECT_GT(close_count, 5000u);
+  EXPECT_GT(open_count, 1000u);
 }
 
 // Estimates either find the exact winner or say that they cannot; then the exact pass finds it.
@@ -441,7 +408,7 @@ TYPED_TEST(StandardTest, EstimatesFindTheWinnerOrLeaveItOpen) {
     SmallPacket exact{};
     aim_at(random, shown, exact);
     activate_all(exact);
-    reset_hits(exact, kFloatMax);
+    reset_hits(exact);
     SmallPacket packet = exact;
     WorkCounters work;
     for (const VertexTriangle& triangle : shown.triangles) {
@@ -477,11 +444,10 @@ TYPED_TEST(StandardTest, EstimatesFindTheWinnerOrLeaveItOpen) {
       ASSERT_TRUE(same_bits(packet.facing[ray], exact.facing[ray])) << "seed " << seed << ", ray " << ray;
     }
   });
-  if (all_seeds_run()) {
-    EXPECT_GT(hits, 10000u);
-    EXPECT_GT(unsure_count, 100u);
-    EXPECT_GT(exact_groups, 1000u);
-  }
+  if (!all_seeds_run()) return;
+  EXPECT_GT(hits, 10000u);
+  EXPECT_GT(unsure_count, 100u);
+  EXPECT_GT(exact_groups, 1000u);
 }
 
 TYPED_TEST(StandardTest, CornerCullingDropsNoHit) {
@@ -500,7 +466,7 @@ TYPED_TEST(StandardTest, CornerCullingDropsNoHit) {
     packet.active = present;
     for (int i = 0; i < 100; ++i) {
       const VertexTriangle triangle = triangle_at_the_border(random, packet);
-      reset_hits(packet, kFloatMax);
+      reset_hits(packet);
       work = WorkCounters{};
       const bool with_culling = intersect_standard<TypeParam, false>(packet, triangle, true, work);
       if (work[Work::kGroupTestStandard] != 0) {  // not culled: the same code as without
@@ -512,10 +478,9 @@ TYPED_TEST(StandardTest, CornerCullingDropsNoHit) {
           << "culled, but hit: seed " << seed << ", pair " << i;
     }
   });
-  if (all_seeds_run()) {
-    EXPECT_GT(culled, 40000u);
-    EXPECT_GT(hit, 40000u);
-  }
+  if (!all_seeds_run()) return;
+  EXPECT_GT(culled, 40000u);
+  EXPECT_GT(hit, 40000u);
 }
 
 TYPED_TEST(StandardTest, NoRayLeavesAClosedSphere) {
@@ -546,7 +511,7 @@ TYPED_TEST(StandardTest, NoRayLeavesAClosedSphere) {
     }
     set_direction_bounds(packet);
     activate_all(packet);
-    reset_hits(packet, kFloatMax);
+    reset_hits(packet);
     for (const VertexTriangle& triangle : triangles) {
       (void)intersect_standard<TypeParam, false>(packet, triangle, false, work);
     }
@@ -556,10 +521,9 @@ TYPED_TEST(StandardTest, NoRayLeavesAClosedSphere) {
     }
     rays += WidePacket::kRayCount;
   });
-  if (all_seeds_run()) {
-    EXPECT_GT(rays * 3, 1000000u);  // over the three lane counts
-    EXPECT_GT(work[Work::kExactSign], 10000u) << "the rays are not hard enough";
-  }
+  if (!all_seeds_run()) return;
+  EXPECT_GT(rays * 3, 1000000u);  // over the three lane counts
+  EXPECT_GT(work[Work::kExactSign], 10000u) << "the rays are not hard enough";
 }
 
 }  // namespace

@@ -1,12 +1,10 @@
 // Unit normals of triangles of any shape, against rational numbers. SPDX-License-Identifier: Apache-2.0
 #include <gridiron/ray/distance.h>
-#include <gtest/gtest.h>
 
 #include <boost/multiprecision/cpp_bin_float.hpp>
 #include <boost/multiprecision/cpp_int.hpp>
-#include <cmath>
-#include <cstdint>
 
+#include "support/test_headers.h"
 #include "support/test_mesh.h"
 
 namespace gridiron::test {

@@ -6,10 +6,7 @@
 #include <gridiron/base/records.h>
 #include <gridiron/ray/packet.h>
 
-#include <cmath>
-#include <cstdint>
-#include <vector>
-
+#include "support/test_headers.h"
 #include "support/test_mesh.h"
 
 namespace gridiron::test {
@@ -137,6 +134,22 @@ void set_direction_bounds(PacketType& packet) {
   }
   packet.range_factor = std::fmax(packet.dir_max, 1.0f);
   packet.ask_for_distances(true);
+}
+
+/// All rays of a packet to be traced, and none with a hit.
+template <class PacketType>
+void activate_all(PacketType& packet) {
+  for (std::uint32_t ray = 0; ray < PacketType::kRayCount; ++ray) packet.active.insert(ray);
+}
+template <class PacketType>
+void reset_hits(PacketType& packet) {
+  std::ranges::fill(packet.t, kFloatMax);
+  std::ranges::fill(packet.id, kNoTriangle);
+  std::ranges::fill(packet.facing, -1.0f);
+}
+
+inline bool same_bits(float a, float b) {
+  return std::bit_cast<std::uint32_t>(a) == std::bit_cast<std::uint32_t>(b);
 }
 
 /// Directions at vertices, edges and insides of the triangles, in their planes, backwards, past them; of any length.

@@ -1,15 +1,9 @@
 // Sums of colours: the order of adding changes nothing, too much stays the most, what is no number adds nothing.
 // SPDX-License-Identifier: Apache-2.0
 #include <gridiron/shade/color_sums.h>
-#include <gtest/gtest.h>
-
-#include <algorithm>
-#include <cmath>
-#include <cstdint>
-#include <limits>
-#include <vector>
 
 #include "core/seeds.h"
+#include "support/test_headers.h"
 #include "support/test_mesh.h"
 
 namespace gridiron::test {

@@ -2,18 +2,10 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <gridiron/shade/ray_queue.h>
 #include <gridiron/store/local_store.h>
-#include <gtest/gtest.h>
-
-#include <algorithm>
-#include <cstddef>
-#include <cstdint>
-#include <cstring>
-#include <memory>
-#include <optional>
-#include <vector>
 
 #include "core/dma/test_platform.h"
 #include "core/seeds.h"
+#include "support/test_headers.h"
 #include "support/test_mesh.h"
 
 namespace gridiron::test {

@@ -4,16 +4,9 @@
 
 #include <gridiron/build/grid/grid_builder.h>
 #include <gridiron/image/scene_image.h>
-#include <gtest/gtest.h>
-
-#include <bit>
-#include <cstddef>
-#include <cstdint>
-#include <cstring>
-#include <span>
-#include <vector>
 
 #include "core/build/grid/line_buffer.h"
+#include "support/test_headers.h"
 
 namespace gridiron::test {
 

@@ -5,11 +5,8 @@
 #include <gridiron/base/math.h>
 #include <gridiron/base/records.h>
 
-#include <array>
-#include <cstddef>
-#include <vector>
-
 #include "numeric/exact_numbers.h"
+#include "support/test_headers.h"
 
 namespace gridiron::test {
 

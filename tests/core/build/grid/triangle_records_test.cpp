@@ -1,13 +1,8 @@
 // Zero areas and projections against rational arithmetic. SPDX-License-Identifier: Apache-2.0
 #include <gridiron/build/grid/triangle_records.h>
-#include <gtest/gtest.h>
-
-#include <array>
-#include <cmath>
-#include <cstdint>
-#include <string>
 
 #include "core/build/grid/exact_overlap.h"
+#include "support/test_headers.h"
 #include "support/test_mesh.h"
 
 namespace gridiron::test {

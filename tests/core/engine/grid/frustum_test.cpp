@@ -2,17 +2,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <gridiron/engine/grid/frustum.h>
 #include <gridiron/ray/camera.h>
-#include <gtest/gtest.h>
-
-#include <algorithm>
-#include <cmath>
-#include <cstdint>
-#include <cstdlib>
-#include <limits>
-#include <memory>
-#include <set>
-#include <string>
-#include <vector>
 
 #include "core/engine/grid/frustum_cases.h"
 #include "core/engine/grid/reach_of.h"
@@ -20,6 +9,7 @@
 #include "core/ray/exact_ray.h"
 #include "core/ray/frame_cases.h"
 #include "core/seeds.h"
+#include "support/test_headers.h"
 #include "support/test_mesh.h"
 
 namespace gridiron::test {
@@ -36,17 +26,6 @@ Rays all_waiting() {
   Rays waiting;
   waiting.words[0] = kAllRays;
   return waiting;
-}
-
-GridRecord unit_grid(std::uint32_t cells) {
-  GridRecord grid{};
-  for (int axis = 0; axis < 3; ++axis) {
-    grid.cells_per_unit[axis] = 1.0f;
-    grid.cell_count[axis] = cells;
-    grid.macro_cell_count[axis] = cells;
-  }
-  grid.macro_width = 1;
-  return grid;
 }
 
 void set_direction(SmallPacket& packet, std::uint32_t ray, float x, float y, float z) {
@@ -169,9 +148,8 @@ TYPED_TEST(FrustumTest, RaysWithoutADirectionAreDroppedAndSpoilNoOther) {
     ASSERT_EQ(together.words[0], 0u) << "rays wait for ever, seed " << seed;
     ASSERT_EQ(taken, good) << "seed " << seed;
   });
-  if (std::getenv("GRIDIRON_TEST_SEED") == nullptr) {
-    EXPECT_GT(compared, 3000u);
-  }
+  if (!all_seeds_run()) return;
+  EXPECT_GT(compared, 3000u);
 }
 
 // The slices worth a look: first, last, around the origin, some others; and the same as runs of several slices.
@@ -218,12 +196,11 @@ TYPED_TEST(FrustumTest, RectanglesHoldEveryCellTouched) {
           const Slab slab = frustum.slab_of(slices.first, slices.last);
           ASSERT_FALSE(frustum.behind(slab)) << "seed " << seed << ", ray " << ray << ", slice " << slices.first;
           const CellRect rect = frustum.rect_of(slab);
-          const bool inside = rect.u_first <= box->u.first && rect.u_last >= box->u.last &&
-                              rect.v_first <= box->v.first && rect.v_last >= box->v.last;
-          ASSERT_TRUE(inside) << "seed " << seed << ", ray " << ray << ", slices " << slices.first << " to "
-                              << slices.last << ": cells u " << box->u.first << " to " << box->u.last << ", v "
-                              << box->v.first << " to " << box->v.last << " leave the rectangle u " << rect.u_first
-                              << " to " << rect.u_last << ", v " << rect.v_first << " to " << rect.v_last;
+          ASSERT_TRUE(holds(rect, *box)) << "seed " << seed << ", ray " << ray << ", slices " << slices.first << " to "
+                                         << slices.last << ": cells u " << box->u.first << " to " << box->u.last
+                                         << ", v " << box->v.first << " to " << box->v.last << " leave the rectangle u "
+                                         << rect.u_first << " to " << rect.u_last << ", v " << rect.v_first << " to "
+                                         << rect.v_last;
           ASSERT_GE(rect.u_first, 0);
           ASSERT_GE(rect.v_first, 0);
           ASSERT_LT(rect.u_last, frustum.cells_u);
@@ -233,10 +210,9 @@ TYPED_TEST(FrustumTest, RectanglesHoldEveryCellTouched) {
       }
     }
   });
-  if (std::getenv("GRIDIRON_TEST_SEED") == nullptr) {
-    EXPECT_GT(checked, 50000u);
-    EXPECT_GT(exact, checked / 3);
-  }
+  if (!all_seeds_run()) return;
+  EXPECT_GT(checked, 50000u);
+  EXPECT_GT(exact, checked / 3);
 }
 
 // A packet of a frame's pixels whose eye stands somewhere around a grid; now and then over the picture's edge.
@@ -340,12 +316,11 @@ void expect_slopes_of_squares(FrameKind kind) {
     while (take_pass<L>(grid, waiting, *packet, frustum, one_by_one_work)) continue;
   });
   ASSERT_EQ(one_by_one_work[Work::kPassSquare], 0u);
-  if (std::getenv("GRIDIRON_TEST_SEED") == nullptr && !testing::Test::HasFailure()) {
-    EXPECT_GT(taken_count, kSeeds * PacketType::kRayCount / 2) << "kind " << static_cast<int>(kind);
-    // Nearly every square is taken as a whole.
-    EXPECT_GT(work[Work::kPassSquare], kSeeds * PacketType::kSquareCount / 2) << "kind " << static_cast<int>(kind);
-    EXPECT_LT(work[Work::kPassGroup], one_by_one_work[Work::kPassGroup] / 4) << "kind " << static_cast<int>(kind);
-  }
+  if (!all_seeds_run() || testing::Test::HasFailure()) return;
+  EXPECT_GT(taken_count, kSeeds * PacketType::kRayCount / 2) << "kind " << static_cast<int>(kind);
+  // Nearly every square is taken as a whole.
+  EXPECT_GT(work[Work::kPassSquare], kSeeds * PacketType::kSquareCount / 2) << "kind " << static_cast<int>(kind);
+  EXPECT_LT(work[Work::kPassGroup], one_by_one_work[Work::kPassGroup] / 4) << "kind " << static_cast<int>(kind);
 }
 
 TYPED_TEST(FrustumTest, SlopesOfSquaresHoldThoseOfTheirRays) {
@@ -388,26 +363,20 @@ void expect_rectangles_of_pixels() {
           if (!box) continue;
           ++checked;
           ASSERT_FALSE(frustum.behind(slab)) << "seed " << seed << ", ray " << ray << ", slice " << slices.first;
-          const bool inside = rect.u_first <= box->u.first && rect.u_last >= box->u.last &&
-                              rect.v_first <= box->v.first && rect.v_last >= box->v.last;
-          ASSERT_TRUE(inside) << "seed " << seed << ", ray " << ray << ", slices " << slices.first << " to "
-                              << slices.last;
+          ASSERT_TRUE(holds(rect, *box)) << "seed " << seed << ", ray " << ray << ", slices " << slices.first << " to "
+                                         << slices.last;
           all.u = {std::min(all.u.first, box->u.first), std::max(all.u.last, box->u.last)};
           all.v = {std::min(all.v.first, box->v.first), std::max(all.v.last, box->v.last)};
         }
         if (all.u.empty()) continue;
         ++slab_count;
-        tight += rect.u_first >= all.u.first - 1 && rect.u_last <= all.u.last + 1 && rect.v_first >= all.v.first - 1 &&
-                         rect.v_last <= all.v.last + 1
-                     ? 1u
-                     : 0u;
+        tight += is_tight(rect, all) ? 1u : 0u;
       }
     }
   });
-  if (std::getenv("GRIDIRON_TEST_SEED") == nullptr && !testing::Test::HasFailure()) {
-    EXPECT_GT(checked, 5000u);
-    EXPECT_GT(tight, slab_count / 2);
-  }
+  if (!all_seeds_run() || testing::Test::HasFailure()) return;
+  EXPECT_GT(checked, 5000u);
+  EXPECT_GT(tight, slab_count / 2);
 }
 
 TYPED_TEST(FrustumTest, RectanglesOfPixelsHoldEveryCellTouched) {
@@ -450,9 +419,8 @@ TYPED_TEST(FrustumTest, NoSlabWithAPointInReachIsBeyond) {
       }
     }
   });
-  if (std::getenv("GRIDIRON_TEST_SEED") == nullptr) {
-    EXPECT_GT(near_the_limit, 1000u);
-  }
+  if (!all_seeds_run()) return;
+  EXPECT_GT(near_the_limit, 1000u);
 }
 
 TEST(Frustum, BeyondIsBeyond) {
@@ -471,11 +439,8 @@ TEST(Frustum, BeyondIsBeyond) {
   EXPECT_TRUE(frustum.beyond(frustum.slab_of(39, 39), reach));
   EXPECT_FALSE(frustum.behind(frustum.slab_of(50, 50)));
   EXPECT_TRUE(frustum.behind(frustum.slab_of(51, 51)));
-  const CellRect rect = frustum.rect_of(frustum.slab_of(46, 46));
-  EXPECT_EQ(rect.u_first, 50);  // x from 50.675 to 50.725
-  EXPECT_EQ(rect.u_last, 50);
-  EXPECT_EQ(rect.v_first, 50);
-  EXPECT_EQ(rect.v_last, 50);
+  // x from 50.675 to 50.725
+  EXPECT_EQ(ends_of(frustum.rect_of(frustum.slab_of(46, 46))), (std::array{50, 50, 50, 50}));
 }
 
 TEST(Frustum, RaysInACellFaceTouchBothSides) {
@@ -489,11 +454,7 @@ TEST(Frustum, RaysInACellFaceTouchBothSides) {
   Frustum frustum;
   ASSERT_TRUE(take_pass<Lanes<4>>(grid, waiting, packet, frustum, pass_work));
   for (std::int32_t k = 0; k < 16; ++k) {
-    const CellRect rect = frustum.rect_of(frustum.slab_of(k, k));
-    EXPECT_EQ(rect.u_first, 2);
-    EXPECT_EQ(rect.u_last, 3);
-    EXPECT_EQ(rect.v_first, 6);
-    EXPECT_EQ(rect.v_last, 7);
+    EXPECT_EQ(ends_of(frustum.rect_of(frustum.slab_of(k, k))), (std::array{2, 3, 6, 7}));
   }
 }
 

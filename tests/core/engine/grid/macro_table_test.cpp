@@ -1,13 +1,10 @@
 // Macrocell table: the block of a macrocell, resident and streamed, is the one that counting finds.
 // SPDX-License-Identifier: Apache-2.0
 #include <gridiron/engine/grid/macro_table.h>
-#include <gtest/gtest.h>
-
-#include <cstdint>
-#include <memory>
 
 #include "core/engine/grid/table_cases.h"
 #include "core/seeds.h"
+#include "support/test_headers.h"
 #include "support/test_mesh.h"
 
 namespace gridiron::test {

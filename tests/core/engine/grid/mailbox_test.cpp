@@ -1,11 +1,8 @@
 // Mailbox: never claims a triangle that was not tested. SPDX-License-Identifier: Apache-2.0
 #include <gridiron/engine/grid/mailbox.h>
-#include <gtest/gtest.h>
-
-#include <cstdint>
-#include <map>
 
 #include "core/seeds.h"
+#include "support/test_headers.h"
 #include "support/test_mesh.h"
 
 namespace gridiron::test {

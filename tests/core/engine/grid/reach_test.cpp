@@ -1,13 +1,10 @@
 // Reaches of subpackets. SPDX-License-Identifier: Apache-2.0
 #include <gridiron/engine/grid/footprint.h>
 #include <gridiron/engine/grid/reach.h>
-#include <gtest/gtest.h>
-
-#include <algorithm>
-#include <string>
 
 #include "core/lane_types.h"
 #include "core/seeds.h"
+#include "support/test_headers.h"
 #include "support/test_mesh.h"
 
 namespace gridiron::test {
@@ -77,7 +74,7 @@ void expect_reaches() {
       }
     }
   });
-  if (std::getenv("GRIDIRON_TEST_SEED") == nullptr && PacketType::kSubpacketCount >= L::kCount) {
+  if (all_seeds_run() && PacketType::kSubpacketCount >= L::kCount) {
     EXPECT_GT(closed, 100u);
   }
 }
