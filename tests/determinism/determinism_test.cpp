@@ -292,7 +292,7 @@ TEST(ReplayOfAFrame, SumsToTheSameWorkForAnyNumberOfCores) {
     EXPECT_EQ(sum.bytes_in, of_tiles.bytes_in + cores * once.bytes_in) << cores << " cores";
     EXPECT_EQ(sum.bytes_out, of_tiles.bytes_out + cores * once.bytes_out) << cores << " cores";
 
-    // busy = tiles' work + cores * once-per-core work: two core counts tell both, the others must agree.
+    // busy = tiles' work + cores * once-per-core work: two core counts determine both, the others must agree.
     if (cores == 1) {
       one_core_cycles = timing.frame_cycles;
       work_of_tiles = busy;

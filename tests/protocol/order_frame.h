@@ -37,7 +37,7 @@ struct PacketOrderLayout {
   static constexpr std::uint32_t kRecentTriangles = 2;
 };
 
-/// The same for all effects: no packets, five walks, room for two materials.
+/// The same for all effects: no packets, five walks, slots for two materials.
 struct EffectOrderLayout {
   using Engine = GridEngine;
   static constexpr std::uint32_t kEffects = kAllEffects;

@@ -45,7 +45,8 @@ struct HitCase {
       distance[ray] = true_distance(packet.origin, direction, triangle);
     }
     reset_hits(packet);
-    // What the rays had: far behind; of some, one after the other, at or before the new hit or too close to tell.
+    // The rays' earlier hits: far behind; for some, one after the other, at or before the new hit or too close to
+    // decide.
     const std::uint32_t kind = random.below(4);
     if (kind == 0) return;
     constexpr float kLimit = 1.0f / kSurelyNearer;
