@@ -4,9 +4,7 @@
 
 #include <gridiron/scene/effects.h>
 
-#include <cstddef>
-#include <cstdint>
-#include <vector>
+#include "support/test_headers.h"
 
 namespace gridiron::test {
 

@@ -3,10 +3,7 @@
 
 #include <gridiron/base/records.h>
 
-#include <cstddef>
-#include <cstring>
-#include <span>
-#include <vector>
+#include "support/test_headers.h"
 
 namespace gridiron::test {
 
