@@ -4,7 +4,9 @@
 
 #include <gridiron/scene/effects.h>
 
-#include "support/test_headers.h"
+#include <cstddef>
+#include <cstdint>
+#include <vector>
 
 namespace gridiron::test {
 

@@ -3,7 +3,10 @@
 
 #include <gridiron/base/records.h>
 
-#include "support/test_headers.h"
+#include <cstddef>
+#include <cstring>
+#include <span>
+#include <vector>
 
 namespace gridiron::test {
 
