@@ -20,11 +20,7 @@ const sim::MachineProfile& ps3() {
 }
 
 FrameSettings settings_of(const Camera& camera, std::uint32_t width, std::uint32_t height) {
-  FrameSettings settings;
-  settings.camera = camera;
-  settings.width = width;
-  settings.height = height;
-  return settings;
+  return {.camera = camera, .width = width, .height = height};
 }
 
 using test::make_mixed_mesh;
@@ -109,11 +105,9 @@ TEST(BvhRenderer, PicturesAreTheGridsBitForBit) {
     for (const std::uint32_t packet_width : {8u, 16u}) {
       for (const bool hyper_threading : {false, true}) {
         for (const bool use_subpackets : {false, true}) {
-          RenderOptions options;
-          options.packet_width = packet_width;
-          options.hyper_threading = hyper_threading;
-          options.use_subpackets = use_subpackets;
-          scene.expect_same_picture(options, name + ", packets of " + std::to_string(packet_width));
+          scene.expect_same_picture(
+              {.hyper_threading = hyper_threading, .packet_width = packet_width, .use_subpackets = use_subpackets},
+              name + ", packets of " + std::to_string(packet_width));
         }
       }
     }
@@ -204,10 +198,8 @@ TEST(BvhRenderer, HyperThreadingWaitsLess) {
   const test::TestMesh mesh = test::make_height_field(120, 0.3f, 6);
   const Bvh bvh = bvh_of(mesh);
   const FrameSettings settings = settings_of(test::framed_camera(mesh.view()), 320, 320);
-  RenderOptions options;
-  const BvhFrame with = render_bvh_frame(bvh, settings, ps3(), options);
-  options.hyper_threading = false;
-  const BvhFrame without = render_bvh_frame(bvh, settings, ps3(), options);
+  const BvhFrame with = render_bvh_frame(bvh, settings, ps3(), {});
+  const BvhFrame without = render_bvh_frame(bvh, settings, ps3(), {.hyper_threading = false});
   ASSERT_EQ(with.status, Status::kOk);
   ASSERT_EQ(without.status, Status::kOk);
   EXPECT_TRUE(same_bits(with.picture.color, without.picture.color));
@@ -270,8 +262,7 @@ TEST(BvhRenderer, StopsWhenAsked) {
   Bvh bvh;
   std::atomic<bool> abort{false};
   ASSERT_EQ(build_bvh(mesh.view(), {}, bvh, &abort), Status::kOk);
-  RenderOptions options;
-  options.abort = &abort;
+  const RenderOptions options{.abort = &abort};
   EXPECT_EQ(render_bvh_frame(bvh, settings_of(kMixedCamera, 96, 96), ps3(), options).status, Status::kOk);
   abort = true;
   const BvhFrame frame = render_bvh_frame(bvh, settings_of(kMixedCamera, 96, 96), ps3(), options);
@@ -288,40 +279,29 @@ TEST(BvhRenderer, RefusesWhatItCannotRender) {
   const auto status_of = [&](const FrameSettings& settings, const RenderOptions& options) {
     return render_bvh_frame(bvh, settings, ps3(), options).status;
   };
-  RenderOptions options;
-  EXPECT_EQ(status_of(good, options), Status::kOk);
+  EXPECT_EQ(status_of(good, {}), Status::kOk);
   FrameSettings settings = good;
   settings.accuracy = Accuracy::kPaper;
-  EXPECT_EQ(status_of(settings, options), Status::kUnsupportedFrame);
+  EXPECT_EQ(status_of(settings, {}), Status::kUnsupportedFrame);
   settings = good;
   settings.width = 0;
-  EXPECT_EQ(status_of(settings, options), Status::kBadFrame);
+  EXPECT_EQ(status_of(settings, {}), Status::kBadFrame);
   settings = good;
   settings.camera.at = settings.camera.eye;
-  EXPECT_EQ(status_of(settings, options), Status::kBadFrame);
+  EXPECT_EQ(status_of(settings, {}), Status::kBadFrame);
   for (const std::uint32_t ring_size : {0u, 1u, kRingOf<16> + 1}) {
-    options.ring_size = ring_size;
-    EXPECT_EQ(status_of(good, options), Status::kBadParameter) << ring_size;
+    EXPECT_EQ(status_of(good, {.ring_size = ring_size}), Status::kBadParameter) << ring_size;
   }
-  options.packet_width = 8;
-  options.ring_size = kRingOf<8>;
-  EXPECT_EQ(status_of(good, options), Status::kOk);
-  options.ring_size = kRingOf<8> + 1;
-  EXPECT_EQ(status_of(good, options), Status::kBadParameter);
-  options = {};
+  EXPECT_EQ(status_of(good, {.ring_size = kRingOf<8>, .packet_width = 8}), Status::kOk);
+  EXPECT_EQ(status_of(good, {.ring_size = kRingOf<8> + 1, .packet_width = 8}), Status::kBadParameter);
   for (const std::uint32_t width : {0u, 4u, 32u}) {
-    options.packet_width = width;
-    EXPECT_EQ(status_of(good, options), Status::kBadParameter) << width;
+    EXPECT_EQ(status_of(good, {.packet_width = width}), Status::kBadParameter) << width;
   }
-  options = {};
   for (const std::uint32_t lines : {0u, 2u, 6u, 24u, 64u, 1024u}) {
-    options.caches.node_lines = lines;
-    EXPECT_EQ(status_of(good, options), Status::kBadParameter) << lines;
+    EXPECT_EQ(status_of(good, {.caches = {.node_lines = lines}}), Status::kBadParameter) << lines;
   }
   for (const std::uint32_t lines : {0u, 2u, 12u, 128u}) {
-    options.caches = {};
-    options.caches.triangle_lines = lines;
-    EXPECT_EQ(status_of(good, options), Status::kBadParameter) << lines;
+    EXPECT_EQ(status_of(good, {.caches = {.triangle_lines = lines}}), Status::kBadParameter) << lines;
   }
   Bvh odd;
   ASSERT_EQ(build_bvh(mesh.view(), {.line_triangles = 24}, odd), Status::kOk);

@@ -14,12 +14,8 @@ namespace gridiron::test {
 namespace {
 
 FrameSettings default_settings(Accuracy accuracy) {
-  FrameSettings settings;
-  settings.camera = {{1.2f, 1.5f, 2.5f}, {0, 0, 0}, {0, 1, 0}, 0.5f};
-  settings.width = 150;
-  settings.height = 110;
-  settings.accuracy = accuracy;
-  return settings;
+  const Camera camera{{1.2f, 1.5f, 2.5f}, {0, 0, 0}, {0, 1, 0}, 0.5f};
+  return {.camera = camera, .width = 150, .height = 110, .accuracy = accuracy};
 }
 
 // Frames of one accuracy share the scene and the frame that all others are compared with.
@@ -45,9 +41,7 @@ class Subject {
 
  private:
   static GridParameters grid(Accuracy accuracy) {
-    GridParameters parameters;
-    if (accuracy == Accuracy::kPaper) parameters.format = TriangleFormat::kProjection;
-    return parameters;
+    return {.format = accuracy == Accuracy::kPaper ? TriangleFormat::kProjection : TriangleFormat::kVertices};
   }
 
   Accuracy accuracy_;
@@ -275,8 +269,7 @@ TEST(ReplayOfAFrame, SumsToTheSameWorkForAnyNumberOfCores) {
   double work_per_core = 0;
   double last_cycles = 0;
   for (const std::uint32_t cores : {1u, 2u, 3u, 6u, 8u}) {
-    sim::ReplayOptions options;
-    options.core_count = cores;
+    const sim::ReplayOptions options{.core_count = cores};
     const sim::FrameTiming timing = sim::replay(trace, *machine, options);
     const sim::FrameTiming again = sim::replay(trace, *machine, options);
     EXPECT_EQ(timing.frame_cycles, again.frame_cycles);

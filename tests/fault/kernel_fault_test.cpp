@@ -82,8 +82,7 @@ class SmallFrame {
 
 TEST(KernelFault, EveryTransferThatFailsInTheSimulatorComesBackAsAStatus) {
   SmallFrame frame;
-  ChipOptions options;
-  options.store = StoreSize::k64KB;
+  ChipOptions options{.store = StoreSize::k64KB};
   const std::uint64_t count = test::render_in_test(frame.memory(), frame.record(), options).transfers;
   ASSERT_GT(count, 50u);
   for (const Completion completion : {Completion::kEarly, Completion::kRandom}) {
@@ -110,10 +109,7 @@ TEST(KernelFault, EveryAllocationThatFailsComesBackAsAStatus) {
   if (has_instrumented_mode()) modes.push_back(Mode::kInstrumented);
   for (const Mode mode : modes) {
     for (const std::uint32_t threads : {1u, 3u}) {
-      ChipOptions options;
-      options.store = StoreSize::k64KB;
-      options.mode = mode;
-      options.threads = threads;
+      const ChipOptions options{.mode = mode, .threads = threads, .store = StoreSize::k64KB};
       ASSERT_EQ(render_frame(frame.memory(), frame.record(), options).status, Status::kOk);
       const std::vector<std::byte> picture = frame.picture();
       std::uint64_t ended = 0;
@@ -140,9 +136,7 @@ TEST(KernelFault, EveryAllocationThatFailsComesBackAsAStatus) {
 
 /// The kernel over the decorator over a checked core.
 ChipResult render_faulty(SmallFrame& frame, const FaultPlan& plan, Completion completion, std::uint64_t* transfers) {
-  ChipOptions options;
-  options.completion = completion;
-  options.seed = plan.transfer;
+  const ChipOptions options{.completion = completion, .seed = plan.transfer};
   return run_cores(frame.memory(), frame.shape, options, [&](SimCore& core, std::span<std::byte> data) {
     FaultInjection<SimCore> faulty(core, plan);
     Store& store = *::new (static_cast<void*>(data.data())) Store;

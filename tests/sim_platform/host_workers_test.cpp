@@ -5,9 +5,7 @@
 #include <atomic>
 #include <new>
 #include <stdexcept>
-#include <string>
 #include <system_error>
-#include <vector>
 
 #include "program_bench.h"
 #include "support/no_threads.h"

@@ -20,9 +20,7 @@ namespace {
 class Scene {
  public:
   Scene() : mesh_(make()), scene_(mesh_.view(), {}) {
-    settings.camera = test::framed_camera(mesh_.view());
-    settings.width = 150;
-    settings.height = 100;
+    settings = {.camera = test::framed_camera(mesh_.view()), .width = 150, .height = 100};
   }
   [[nodiscard]] test::RenderedFrame render(const ChipOptions& options) { return scene_.render(settings, options); }
 
@@ -70,8 +68,7 @@ TEST(SimChip, PictureTraceAndTotalsAreTheSameForAnyThreadsCompletionAndSeed) {
     scene.settings.output_depth = std::min(depth, 2u);
     scene.settings.macro_depth = std::min(depth, 4u);
     scene.settings.triangle_depth = depth;
-    ChipOptions reference_options;
-    reference_options.limits.queue_depth = queue_depth;
+    const ChipOptions reference_options{.limits = {.queue_depth = queue_depth}};
     const test::RenderedFrame reference = scene.render(reference_options);
     ASSERT_EQ(reference.result.status, Status::kOk) << words(reference.result);
     std::vector<HowToRun> runs = {{1, Completion::kLate, 0},  {2, Completion::kEarly, 0}, {3, Completion::kLate, 0},
@@ -137,13 +134,12 @@ TEST(SimChip, PictureIsTheSameForAnyLanesStoreTilePacketAndQueue) {
     // The helper gives a frame with tiles of 32 the store's usual ones.
     if (layout.tile_width == 32 && usual_tile_width(layout.store) != 32) return;
     for (const std::uint32_t queue_depth : {1u, 2u, 16u}) {
-      ChipOptions options;
-      options.mode = mode;
-      options.lanes = lanes;
-      options.store = layout.store;
-      options.packet_width = layout.packet_width;
-      options.limits.queue_depth = queue_depth;
-      options.threads = 2;
+      const ChipOptions options{.mode = mode,
+                                .threads = 2,
+                                .lanes = lanes,
+                                .store = layout.store,
+                                .packet_width = layout.packet_width,
+                                .limits = {.queue_depth = queue_depth}};
       scene.settings.tile_width = layout.tile_width;
       SCOPED_TRACE(testing::Message() << "mode " << static_cast<int>(mode) << ", lanes " << lanes << ", store "
                                       << (arena_bytes(layout.store) >> 10) << ", tile " << layout.tile_width
@@ -171,10 +167,7 @@ TEST(SimChip, ATileRenderedAloneIsTheTileOfTheFrame) {
   ASSERT_EQ(whole.result.status, Status::kOk);
   for (const std::uint32_t tile : {0u, 7u, 19u}) {
     for (const Mode mode : {Mode::kChecked, Mode::kPlain}) {
-      ChipOptions options;
-      options.mode = mode;
-      options.only_tile = tile;
-      const test::RenderedFrame alone = scene.render(options);
+      const test::RenderedFrame alone = scene.render({.mode = mode, .only_tile = tile});
       ASSERT_EQ(alone.result.status, Status::kOk) << words(alone.result);
       const std::uint32_t left = tile % 5 * 32, top = tile / 5 * 32;
       for (std::uint32_t y = top; y < top + 32 && y < 100; ++y) {
@@ -196,9 +189,7 @@ TEST(SimChip, ProgressCountsEveryTileOnceAndAbortStopsBetweenTiles) {
   for (const Mode mode : {Mode::kChecked, Mode::kPlain}) {
     Scene scene;
     std::vector<std::uint32_t> seen;
-    ChipOptions options;
-    options.mode = mode;
-    options.threads = 3;
+    ChipOptions options{.mode = mode, .threads = 3};
     options.progress = [&](std::uint32_t done, std::uint32_t total) {
       EXPECT_EQ(total, 20u);
       seen.push_back(done);
@@ -237,9 +228,7 @@ TEST(SimChip, RefusesWhatItCannotRender) {
   EXPECT_EQ(render_frame(memory, MainAddress{0}, {}).status, Status::kBadFrame);
   const MemoryRegion record = *memory.allocate(sizeof(FrameRecord));
   for (const Mode mode : {Mode::kChecked, Mode::kPlain}) {
-    ChipOptions options;
-    options.mode = mode;
-    EXPECT_EQ(render_frame(memory, record.address, options).status, Status::kBadFrame);
+    EXPECT_EQ(render_frame(memory, record.address, {.mode = mode}).status, Status::kBadFrame);
   }
 }
 
@@ -293,9 +282,7 @@ class EffectsFrame {
     const std::uint64_t mark = memory_.used_bytes();
     const MemoryRegion record = *memory_.allocate(sizeof frame);
     std::memcpy(record.bytes.data(), &frame, sizeof frame);
-    ChipOptions options;
-    options.mode = mode;
-    options.spill = {MainAddress{4096 + 128}, 4096};
+    const ChipOptions options{.mode = mode, .spill = {MainAddress{4096 + 128}, 4096}};
     const Status status = render_frame(memory_, record.address, options).status;
     memory_.release_to(mark);
     return status;

@@ -3,12 +3,7 @@
 
 #include <gridiron/store/local_store.h>
 
-#include <bit>
-#include <cmath>
-#include <cstring>
 #include <new>
-#include <span>
-#include <sstream>
 
 #include "support/instrumented.h"
 #include "support/views.h"

@@ -10,13 +10,6 @@
 #include <gridiron/sim/sim_chip.h>
 #include <gridiron/sim/sim_memory.h>
 
-#include <cstddef>
-#include <cstdint>
-#include <memory>
-#include <span>
-#include <string>
-#include <vector>
-
 #include "support/test_mesh.h"
 
 namespace gridiron::test {

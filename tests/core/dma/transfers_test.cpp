@@ -41,8 +41,7 @@ TEST(NextPiece, EndsAtTheBoundaryTheLimitOrTheRest) {
 class TransfersTest : public testing::TestWithParam<std::uint32_t> {};
 
 TEST_P(TransfersTest, PiecesCoverEverythingOnceWithinTheRules) {
-  for_each_seed(300, [&](std::uint64_t seed) {
-    TestRandom random(seed);
+  for_each_seed(300, [&](TestRandom& random) {
     TestPlatform platform(GetParam(), random.below(2) != 0 ? Moves::kAtOnce : Moves::kAtTheWait, kMemoryBytes);
     WorkCounters work;
     Transfers<TestPlatform> transfers(platform, work);
@@ -55,7 +54,7 @@ TEST_P(TransfersTest, PiecesCoverEverythingOnceWithinTheRules) {
     const std::byte before_local = store[0].bytes[0];
     ASSERT_EQ(transfers.get(local, {address}, bytes, 3), Status::kOk);
     ASSERT_EQ(transfers.wait(3), Status::kOk);
-    ASSERT_EQ(std::memcmp(local, platform.at(address), bytes), 0) << "seed " << seed;
+    ASSERT_EQ(std::memcmp(local, platform.at(address), bytes), 0);
     if (address % 32 != 0) {
       ASSERT_EQ(store[0].bytes[0], before_local);
     }
@@ -63,10 +62,10 @@ TEST_P(TransfersTest, PiecesCoverEverythingOnceWithinTheRules) {
     const std::byte behind = *platform.at(target + bytes);
     ASSERT_EQ(transfers.put(local, {target}, bytes, 5), Status::kOk);
     ASSERT_EQ(transfers.wait(5), Status::kOk);
-    ASSERT_EQ(std::memcmp(local, platform.at(target), bytes), 0) << "seed " << seed;
+    ASSERT_EQ(std::memcmp(local, platform.at(target), bytes), 0);
     ASSERT_EQ(*(platform.at(target) - 1), before);
     ASSERT_EQ(*platform.at(target + bytes), behind);
-    ASSERT_EQ(platform.violation(), "") << "seed " << seed;
+    ASSERT_EQ(platform.violation(), "");
     ASSERT_LE(platform.most_pending(), GetParam());
     ASSERT_EQ(platform.pending(), 0u);
     // The pieces follow each other without gap or overlap, and each is counted.
@@ -74,11 +73,11 @@ TEST_P(TransfersTest, PiecesCoverEverythingOnceWithinTheRules) {
     std::uint64_t next_get = address, next_put = target;
     for (const Command& command : platform.commands()) {
       if (command.kind == Command::Kind::kGet) {
-        ASSERT_EQ(command.address, next_get) << "seed " << seed;
+        ASSERT_EQ(command.address, next_get);
         next_get += command.bytes;
         ++gets;
       } else if (command.kind == Command::Kind::kPut) {
-        ASSERT_EQ(command.address, next_put) << "seed " << seed;
+        ASSERT_EQ(command.address, next_put);
         next_put += command.bytes;
         ++puts;
       }
@@ -91,8 +90,7 @@ TEST_P(TransfersTest, PiecesCoverEverythingOnceWithinTheRules) {
 }
 
 TEST_P(TransfersTest, RandomTrafficNeverExceedsTheQueue) {
-  for_each_seed(200, [&](std::uint64_t seed) {
-    TestRandom random(seed);
+  for_each_seed(200, [&](TestRandom& random) {
     TestPlatform platform(GetParam(), Moves::kAtTheWait, kMemoryBytes);
     WorkCounters work;
     Transfers<TestPlatform> transfers(platform, work);
@@ -110,11 +108,11 @@ TEST_P(TransfersTest, RandomTrafficNeverExceedsTheQueue) {
       const MainAddress address{32 * std::uint64_t{random.below(6000)}};
       const Status status =
           random.below(2) != 0 ? transfers.get(local, address, bytes, tag) : transfers.put(local, address, bytes, tag);
-      ASSERT_EQ(status, Status::kOk) << platform.violation() << ", seed " << seed;
+      ASSERT_EQ(status, Status::kOk) << platform.violation();
       ASSERT_LE(platform.pending(), GetParam());
     }
-    ASSERT_EQ(platform.violation(), "") << "seed " << seed;
-    ASSERT_LE(platform.most_pending(), GetParam()) << "seed " << seed;
+    ASSERT_EQ(platform.violation(), "");
+    ASSERT_LE(platform.most_pending(), GetParam());
     std::uint32_t waits = 0;
     for (const Command& command : platform.commands()) waits += command.kind == Command::Kind::kWait ? 1u : 0u;
     ASSERT_EQ(work[Work::kWait], waits) << "a forced wait is a wait too";

@@ -84,8 +84,7 @@ TYPED_TEST(ProjectionTest, AgreesWithDoubleWhereTheCaseIsClear) {
   std::uint64_t hits = 0;
   std::uint64_t misses = 0;
   std::uint64_t culled = 0;
-  for_each_seed(20000, [&](std::uint64_t seed) {
-    TestRandom random(seed);
+  for_each_seed(20000, [&](TestRandom& random) {
     this->draw(random);
     SmallPacket& packet = this->packet_;
     if (random.below(2) != 0) packet.active.erase(random.below(kRays));
@@ -98,20 +97,20 @@ TYPED_TEST(ProjectionTest, AgreesWithDoubleWhereTheCaseIsClear) {
       const bool hit = packet.id[ray] == 5;
       any = any || hit;
       if (!packet.active.contains(ray)) {
-        ASSERT_FALSE(hit) << "seed " << seed;
-        ASSERT_EQ(packet.t[ray], kFloatMax) << "seed " << seed;
+        ASSERT_FALSE(hit);
+        ASSERT_EQ(packet.t[ray], kFloatMax);
         continue;
       }
       const DoubleHit expected = this->in_double(ray);
       if (expected.cosine < 0.05 || std::fabs(expected.margin) < 1e-4 || std::fabs(expected.t) < 1e-3) continue;
       const bool should_hit = expected.margin > 0.0 && expected.t > 0.0;
-      ASSERT_EQ(hit, should_hit) << "seed " << seed << ", ray " << ray;
+      ASSERT_EQ(hit, should_hit) << "ray " << ray;
       (should_hit ? hits : misses) += 1;
       if (!should_hit) continue;
-      ASSERT_NEAR(packet.t[ray], expected.t, 2e-4 * std::fmax(1.0, expected.t)) << "seed " << seed << ", ray " << ray;
-      ASSERT_NEAR(packet.facing[ray], expected.cosine, 1e-5 * (1.0 + expected.cosine)) << "seed " << seed;
+      ASSERT_NEAR(packet.t[ray], expected.t, 2e-4 * std::fmax(1.0, expected.t)) << "ray " << ray;
+      ASSERT_NEAR(packet.facing[ray], expected.cosine, 1e-5 * (1.0 + expected.cosine));
     }
-    ASSERT_EQ(changed, any) << "seed " << seed;
+    ASSERT_EQ(changed, any);
   });
   if (!all_seeds_run()) return;
   EXPECT_GT(hits, 20000u);
@@ -121,8 +120,7 @@ TYPED_TEST(ProjectionTest, AgreesWithDoubleWhereTheCaseIsClear) {
 
 TYPED_TEST(ProjectionTest, LeastIdWinsATieAndTheLimitIsClosed) {
   std::uint64_t hits = 0;
-  for_each_seed(2000, [&](std::uint64_t seed) {
-    TestRandom random(seed);
+  for_each_seed(2000, [&](TestRandom& random) {
     this->draw(random);
     SmallPacket& packet = this->packet_;
     WorkCounters work;
@@ -130,24 +128,24 @@ TYPED_TEST(ProjectionTest, LeastIdWinsATieAndTheLimitIsClosed) {
     const SmallPacket first = packet;
     ProjectionTriangle twin = this->triangle_;
     twin.triangle_id = 9;
-    EXPECT_EQ(this->intersect(twin, false, false, work), 0u) << "seed " << seed;
+    EXPECT_EQ(this->intersect(twin, false, false, work), 0u);
     twin.triangle_id = 3;
     (void)this->intersect(twin, false, false, work);
     for (std::uint32_t ray = 0; ray < kRays; ++ray) {
-      ASSERT_EQ(packet.t[ray], first.t[ray]) << "seed " << seed;
-      ASSERT_EQ(packet.id[ray], first.id[ray] == 5 ? 3u : kNoTriangle) << "seed " << seed;
+      ASSERT_EQ(packet.t[ray], first.t[ray]);
+      ASSERT_EQ(packet.id[ray], first.id[ray] == 5 ? 3u : kNoTriangle);
     }
     // From t_far = t the same hits; from the float below none.
     reset_hits(packet);
-    for (std::uint32_t ray = 0; ray < kRays; ++ray) packet.t[ray] = first.t[ray];
+    std::ranges::copy(first.t, packet.t);
     (void)this->intersect(this->triangle_, false, false, work);
     for (std::uint32_t ray = 0; ray < kRays; ++ray) {
-      ASSERT_EQ(packet.id[ray], first.id[ray]) << "seed " << seed;
+      ASSERT_EQ(packet.id[ray], first.id[ray]);
       hits += first.id[ray] == 5 ? 1u : 0u;
       packet.id[ray] = kNoTriangle;
       packet.t[ray] = std::nextafter(first.t[ray], 0.0f);
     }
-    EXPECT_EQ(this->intersect(this->triangle_, false, false, work), 0u) << "seed " << seed;
+    EXPECT_EQ(this->intersect(this->triangle_, false, false, work), 0u);
   });
   if (!all_seeds_run()) return;
   EXPECT_GT(hits, 2000u);

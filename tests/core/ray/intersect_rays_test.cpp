@@ -19,13 +19,8 @@ class IntersectRaysTest : public testing::Test {};
 TYPED_TEST_SUITE(IntersectRaysTest, WalkLaneTypes, LaneNames);
 
 VertexTriangle triangle_of(const TestMesh& mesh, std::uint32_t id) {
-  VertexTriangle triangle{};
-  for (int corner = 0; corner < 3; ++corner) {
-    const Vec3& vertex = mesh.vertices[mesh.triangles[id][corner]];
-    for (int axis = 0; axis < 3; ++axis) triangle.v[corner][axis] = vertex[axis];
-  }
-  triangle.triangle_id = id;
-  return triangle;
+  const UVec3& t = mesh.triangles[id];
+  return vertex_triangle(mesh.vertices[t.x], mesh.vertices[t.y], mesh.vertices[t.z], id);
 }
 
 void set_ray(WalkRays& rays, std::uint32_t i, const OracleRay& ray) {
@@ -128,21 +123,21 @@ TYPED_TEST(IntersectRaysTest, DecideAsTheOracleDoes) {
       const std::uint32_t wanted = random.below(3) == 0 ? static_cast<std::uint32_t>(random.next()) & kAll : kAll;
       std::uint32_t settled = 0;
       const std::uint32_t open = rays_near<TypeParam>(rays, wanted, triangle, false, settled, work);
-      ASSERT_EQ((open | settled) & ~wanted, 0u) << "seed " << seed << " triangle " << id;
-      ASSERT_EQ(open & settled, 0u) << "seed " << seed << " triangle " << id;
+      ASSERT_EQ((open | settled) & ~wanted, 0u) << "triangle " << id;
+      ASSERT_EQ(open & settled, 0u) << "triangle " << id;
       for (std::uint32_t i = 0; i < kWalkRays; ++i) {
         if ((wanted >> i & 1u) == 0) continue;
         const float truth = distances[i][id];
         if (truth == kFloatMax) continue;  // farther than all floats: may be a hit or none
         const bool is_hit = truth > 0.0f && truth <= rays.t[i];
         const bool is_settled = (settled >> i & 1u) != 0, is_open = (open >> i & 1u) != 0;
-        ASSERT_FALSE(is_settled && !is_hit) << "seed " << seed << " triangle " << id << " ray " << i;
+        ASSERT_FALSE(is_settled && !is_hit) << "triangle " << id << " ray " << i;
         const float found = is_settled || is_open ? ray_distance(rays, i, triangle, work) : 0.0f;
         if (is_settled || is_open) {
-          ASSERT_EQ(found, truth) << "seed " << seed << " triangle " << id << " ray " << i;
+          ASSERT_EQ(found, truth) << "triangle " << id << " ray " << i;
         }
         ASSERT_EQ(is_settled || (is_open && found > 0.0f && found <= rays.t[i]), is_hit)
-            << "seed " << seed << " triangle " << id << " ray " << i << " at " << truth << " of " << rays.t[i];
+            << "triangle " << id << " ray " << i << " at " << truth << " of " << rays.t[i];
         ++pairs;
         hits += is_hit ? 1u : 0u;
         settled_hits += is_settled ? 1u : 0u;
@@ -151,8 +146,8 @@ TYPED_TEST(IntersectRaysTest, DecideAsTheOracleDoes) {
       }
       // Other lanes, the same answer.
       std::uint32_t other_settled = 0;
-      ASSERT_EQ(rays_near<Lanes<4>>(rays, wanted, triangle, false, other_settled, work), open) << "seed " << seed;
-      ASSERT_EQ(other_settled, settled) << "seed " << seed;
+      ASSERT_EQ(rays_near<Lanes<4>>(rays, wanted, triangle, false, other_settled, work), open);
+      ASSERT_EQ(other_settled, settled);
     }
   });
   if (testing::Test::HasFailure() || !all_seeds_run()) return;
@@ -209,8 +204,7 @@ TYPED_TEST(IntersectRaysTest, TrustedFloatsAreRightAwayFromEdges) {
                     (b - a).x * (c - a).y - (b - a).y * (c - a).x};
     const float area = std::sqrt(n.x * n.x + n.y * n.y + n.z * n.z) / (scale * scale);
     if (area < 0.05f) continue;
-    VertexTriangle triangle;
-    set_triangle(triangle, a, b, c, 0);
+    const VertexTriangle triangle = vertex_triangle(a, b, c, 0);
     WalkRays rays{};
     std::uint32_t expected = 0;
     for (std::uint32_t i = 0; i < kWalkRays; ++i) {
@@ -235,10 +229,9 @@ TYPED_TEST(IntersectRaysTest, TrustedFloatsAreRightAwayFromEdges) {
 
 TYPED_TEST(IntersectRaysTest, NothingIsHitWithoutADirectionOrAnArea) {
   WorkCounters work;
-  VertexTriangle triangle, line, point;
-  set_triangle(triangle, {0, 0, 0}, {1, 0, 0}, {0, 1, 0}, 0);
-  set_triangle(line, {0, 0, 0}, {1, 1, 0}, {2, 2, 0}, 1);
-  set_triangle(point, {0, 0, 0}, {0, 0, 0}, {0, 0, 0}, 2);
+  const VertexTriangle triangle = vertex_triangle({0, 0, 0}, {1, 0, 0}, {0, 1, 0}, 0);
+  const VertexTriangle line = vertex_triangle({0, 0, 0}, {1, 1, 0}, {2, 2, 0}, 1);
+  const VertexTriangle point = vertex_triangle({0, 0, 0}, {0, 0, 0}, {0, 0, 0}, 2);
   WalkRays rays{};
   for (std::uint32_t i = 0; i < kWalkRays; ++i) {
     OracleRay ray{{0.25f, 0.25f, 1.0f}, {0, 0, 0}};

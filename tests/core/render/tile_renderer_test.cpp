@@ -40,12 +40,7 @@ TestMesh make_scene() {
 }
 
 FrameSettings settings_of(std::uint32_t width, std::uint32_t height, std::uint32_t tile_width) {
-  FrameSettings settings;
-  settings.camera.eye = {0.7f, 0.5f, 2.9f};
-  settings.width = width;
-  settings.height = height;
-  settings.tile_width = tile_width;
-  return settings;
+  return {.camera = {.eye = {0.7f, 0.5f, 2.9f}}, .width = width, .height = height, .tile_width = tile_width};
 }
 
 // @returns the first pixel that differs, in words.
@@ -84,10 +79,8 @@ class TileRendererTest : public testing::Test {
   }
   static void expect_truth(const TestFrame& frame, const KernelFrame& rendered) {
     std::vector<Vec3> directions;
-    for (std::uint32_t y = 0; y < frame.record.height; ++y) {
-      for (std::uint32_t x = 0; x < frame.record.width; ++x) {
-        directions.push_back(test::pixel_direction(frame.record, x, y));
-      }
+    for (std::uint32_t i = 0; i < frame.record.width * frame.record.height; ++i) {
+      directions.push_back(test::pixel_direction(frame.record, i % frame.record.width, i / frame.record.width));
     }
     const Vec3 eye(frame.record.eye[0], frame.record.eye[1], frame.record.eye[2]);
     const std::vector<TrueHit> truth = BruteForce(mesh().view(), eye).trace(directions, frame.record.t_far, 1);

@@ -46,37 +46,30 @@ TEST_P(MeshCells, HoldEveryTriangleThatTouchesThem) {
 
   std::vector<std::array<RationalPoint, 3>> triangles;
   for (const UVec3& t : mesh.triangles) {
-    std::array<RationalPoint, 3> triangle;
-    for (int corner = 0; corner < 3; ++corner) {
-      triangle[static_cast<std::size_t>(corner)] = exact_cell_point(grid, mesh.vertices[t[corner]]);
+    const auto corner_of = [&](std::uint32_t vertex) { return exact_cell_point(grid, mesh.vertices[vertex]); };
+    const std::array<RationalPoint, 3> triangle = {corner_of(t.x), corner_of(t.y), corner_of(t.z)};
+    for (const RationalPoint& corner : triangle) {
       for (std::size_t axis = 0; axis < 3; ++axis) {
-        const Rational& p = triangle[static_cast<std::size_t>(corner)][axis];
-        EXPECT_GE(p, 0);
-        EXPECT_LE(p, Rational(grid.cell_count[axis])) << "outside the grid";
+        EXPECT_GE(corner[axis], 0);
+        EXPECT_LE(corner[axis], Rational(grid.cell_count[axis])) << "outside the grid";
       }
     }
     triangles.push_back(triangle);
   }
   std::uint64_t references = 0;
-  for (std::uint32_t z = 0; z < grid.cell_count[2]; ++z) {
-    for (std::uint32_t y = 0; y < grid.cell_count[1]; ++y) {
-      for (std::uint32_t x = 0; x < grid.cell_count[0]; ++x) {
-        const std::vector<std::uint32_t>& ids = built.cell(x, y, z);
-        references += ids.size();
-        ASSERT_TRUE(std::is_sorted(ids.begin(), ids.end()));
-        const std::array<int, 3> cell = {static_cast<int>(x), static_cast<int>(y), static_cast<int>(z)};
-        for (std::uint32_t id = 0; id < triangles.size(); ++id) {
-          const bool holds = std::binary_search(ids.begin(), ids.end(), id);
-          if (holds) {
-            EXPECT_TRUE(touches_cell(triangles[id], cell, grown))
-                << "extra " << id << " in " << x << ' ' << y << ' ' << z;
-          } else {
-            EXPECT_FALSE(touches_cell(triangles[id], cell, 0)) << "lost " << id << " in " << x << ' ' << y << ' ' << z;
-          }
-        }
+  for_each_cell(grid, [&](std::uint32_t x, std::uint32_t y, std::uint32_t z) {
+    const std::vector<std::uint32_t>& ids = built.cell(x, y, z);
+    references += ids.size();
+    ASSERT_TRUE(std::is_sorted(ids.begin(), ids.end()));
+    const std::array<int, 3> cell = {static_cast<int>(x), static_cast<int>(y), static_cast<int>(z)};
+    for (std::uint32_t id = 0; id < triangles.size(); ++id) {
+      if (std::binary_search(ids.begin(), ids.end(), id)) {
+        EXPECT_TRUE(touches_cell(triangles[id], cell, grown)) << "extra " << id << " in " << x << ' ' << y << ' ' << z;
+      } else {
+        EXPECT_FALSE(touches_cell(triangles[id], cell, 0)) << "lost " << id << " in " << x << ' ' << y << ' ' << z;
       }
     }
-  }
+  });
   EXPECT_EQ(references, grid.reference_count);
   EXPECT_EQ(references, built.need.grid.reference_count);
 }
@@ -154,16 +147,11 @@ TEST(Counting, AgreesWithTheImageForEveryMacroWidthAndLambda) {
         EXPECT_EQ(std::memcmp(&built.view.grid, &built.need.grid, sizeof(GridRecord)), 0);
         std::uint64_t references = 0;
         std::set<std::uint64_t> macro_cells;
-        std::size_t index = 0;
-        for (std::uint32_t z = 0; z < built.view.grid.cell_count[2]; ++z) {
-          for (std::uint32_t y = 0; y < built.view.grid.cell_count[1]; ++y) {
-            for (std::uint32_t x = 0; x < built.view.grid.cell_count[0]; ++x, ++index) {
-              references += built.cells[index].size();
-              if (!built.cells[index].empty())
-                macro_cells.insert((std::uint64_t{z / m} << 40) + (std::uint64_t{y / m} << 20) + x / m);
-            }
-          }
-        }
+        for_each_cell(built.view.grid, [&](std::uint32_t x, std::uint32_t y, std::uint32_t z) {
+          const std::size_t in_cell = built.cell(x, y, z).size();
+          references += in_cell;
+          if (in_cell != 0) macro_cells.insert((std::uint64_t{z / m} << 40) + (std::uint64_t{y / m} << 20) + x / m);
+        });
         EXPECT_EQ(references, built.need.grid.reference_count);
         EXPECT_EQ(macro_cells.size() + 1, built.need.grid.cell_block_count);
       }

@@ -156,8 +156,7 @@ Shaft alone(const Shaft& shaft, std::uint32_t ray) {
 TYPED_TEST(ShaftTest, HoldEveryCellTouched) {
   std::uint64_t checked = 0, tight = 0, single = 0, shortened = 0;
   WorkCounters work;
-  for_each_seed(4000, [&](std::uint64_t seed) {
-    TestRandom random(seed);
+  for_each_seed(4000, [&](TestRandom& random) {
     const GridRecord grid = random_grid(random, random.below(2) != 0 ? 2048 : 24, 1);
     WalkRays rays;
     const std::uint32_t count = 1 + random.below(kWalkRays);
@@ -184,12 +183,12 @@ TYPED_TEST(ShaftTest, HoldEveryCellTouched) {
           const auto box = touched(exact, shaft, slices, t);
           if (box) {
             ++checked;
-            ASSERT_FALSE(shaft.behind(slab)) << "seed " << seed << " ray " << ray << " slice " << slices.first;
-            ASSERT_FALSE(shaft.beyond(slab, own.end[ray])) << "seed " << seed << " ray " << ray;
-            ASSERT_FALSE(shaft.beyond(slab, shaft.reach<TypeParam>())) << "seed " << seed << " ray " << ray;
+            ASSERT_FALSE(shaft.behind(slab)) << "ray " << ray << " slice " << slices.first;
+            ASSERT_FALSE(shaft.beyond(slab, own.end[ray])) << "ray " << ray;
+            ASSERT_FALSE(shaft.beyond(slab, shaft.reach<TypeParam>())) << "ray " << ray;
             const CellRect rect = own.rect_of<TypeParam>(slab, work);
-            ASSERT_TRUE(holds(rect, *box)) << "seed " << seed << " ray " << ray << " slice " << slices.first;
-            ASSERT_TRUE(holds(shaft.rect_of<TypeParam>(slab, work), *box)) << "seed " << seed << " ray " << ray;
+            ASSERT_TRUE(holds(rect, *box)) << "ray " << ray << " slice " << slices.first;
+            ASSERT_TRUE(holds(shaft.rect_of<TypeParam>(slab, work), *box)) << "ray " << ray;
             // A shaft that held the whole grid would hold them too.
             const auto whole = touched(exact, shaft, slices, kFloatMax);
             if (whole && std::fabs(own.place[0][ray]) < 4096.0f && std::fabs(own.place[1][ray]) < 4096.0f) {
@@ -220,8 +219,7 @@ bool can_be_traced(const GridRecord& grid, const WalkRays& rays, std::uint32_t r
 
 TYPED_TEST(ShaftTest, EveryRayIsInOnePass) {
   std::uint64_t passes = 0, joined = 0, dropped = 0;
-  for_each_seed(1500, [&](std::uint64_t seed) {
-    TestRandom random(seed);
+  for_each_seed(1500, [&](TestRandom& random) {
     const GridRecord grid = random_grid(random, 100, 1);
     WalkRays rays;
     const std::uint32_t count = 1 + random.below(kWalkRays);
@@ -241,17 +239,17 @@ TYPED_TEST(ShaftTest, EveryRayIsInOnePass) {
       const std::uint32_t before = waiting;
       const std::uint32_t active = take_walk_pass<TypeParam>(grid, rays, waiting, shaft, work);
       if (active == 0) break;
-      ASSERT_LE(++pass_count, kWalkRays) << "seed " << seed;
-      ASSERT_EQ(active & taken, 0u) << "seed " << seed << ": a ray twice";
-      ASSERT_EQ(active & ~before, 0u) << "seed " << seed << ": a ray that did not wait";
-      ASSERT_EQ(waiting & active, 0u) << "seed " << seed;
+      ASSERT_LE(++pass_count, kWalkRays);
+      ASSERT_EQ(active & taken, 0u) << "a ray twice";
+      ASSERT_EQ(active & ~before, 0u) << "a ray that did not wait";
+      ASSERT_EQ(waiting & active, 0u);
       taken |= active;
       const auto leader = static_cast<std::uint32_t>(std::countr_zero(active));
       const std::uint32_t axes[3] = {shaft.axis_k, shaft.axis_u, shaft.axis_v};
       ASSERT_EQ(1u << axes[0] | 1u << axes[1] | 1u << axes[2], 7u);
       for (std::uint32_t ray = 0; ray < kWalkRays; ++ray) {
         if ((active >> ray & 1u) == 0) {
-          ASSERT_EQ(shaft.end[ray], -kFloatMax) << "seed " << seed << " ray " << ray << " is not in the pass";
+          ASSERT_EQ(shaft.end[ray], -kFloatMax) << "ray " << ray << " is not in the pass";
           continue;
         }
         // In doubles: what the floats decided, to rounding.
@@ -268,25 +266,25 @@ TYPED_TEST(ShaftTest, EveryRayIsInOnePass) {
           leader_place[i] = in_cells(leader);
           largest = std::fmax(largest, std::fabs(rays.dir[i][ray]));
         }
-        ASSERT_EQ(along[0] < 0.0, shaft.reverse) << "seed " << seed << " ray " << ray;
+        ASSERT_EQ(along[0] < 0.0, shaft.reverse) << "ray " << ray;
         ASSERT_NE(along[0], 0.0);
         for (int i = 1; i < 3; ++i) {
-          ASSERT_LE(std::fabs(along[i]), 2.000001 * std::fabs(along[0])) << "seed " << seed << " ray " << ray;
+          ASSERT_LE(std::fabs(along[i]), 2.000001 * std::fabs(along[0])) << "ray " << ray;
           ASSERT_LE(std::fabs(along[i] / std::fabs(along[0]) - leads[i] / std::fabs(leads[0])), kTogetherSlope + 1e-5)
-              << "seed " << seed << " ray " << ray;
+              << "ray " << ray;
         }
         for (int i = 0; i < 3; ++i) {
           ASSERT_LE(std::fabs(place[i] - leader_place[i]), kTogetherCells + 1e-6 * (std::fabs(place[i]) + 3.0))
-              << "seed " << seed << " ray " << ray;
+              << "ray " << ray;
         }
-        ASSERT_EQ(rays.dir_max[ray], largest) << "seed " << seed << " ray " << ray;
+        ASSERT_EQ(rays.dir_max[ray], largest) << "ray " << ray;
         joined += ray != leader ? 1u : 0u;
       }
       ++passes;
     }
     EXPECT_EQ(waiting, 0u);
     for (std::uint32_t ray = 0; ray < count; ++ray) {
-      ASSERT_EQ((taken >> ray & 1u) != 0, can_be_traced(grid, rays, ray)) << "seed " << seed << " ray " << ray;
+      ASSERT_EQ((taken >> ray & 1u) != 0, can_be_traced(grid, rays, ray)) << "ray " << ray;
     }
     dropped += static_cast<std::uint32_t>(std::popcount(all & ~taken));
   });
@@ -333,7 +331,7 @@ TYPED_TEST(ShaftTest, LanesChangeNothing) {
   for_each_seed(400, [](std::uint64_t seed) {
     const auto words = transcript<TypeParam>(seed);
     ASSERT_FALSE(words.empty());
-    ASSERT_EQ(words, transcript<Lanes<4>>(seed)) << "seed " << seed;
+    ASSERT_EQ(words, transcript<Lanes<4>>(seed));
   });
 }
 

@@ -152,8 +152,7 @@ void check_pass(const WalkScene& scene, const SmallPacket& packet, const Frustum
   // 3. Every cell that a ray touches before its hit was visited.
   for (std::uint32_t ray = 0; ray < kRays; ++ray) {
     if (!packet.active.contains(ray)) continue;
-    const float direction[3] = {packet.dir[0][ray], packet.dir[1][ray], packet.dir[2][ray]};
-    const ExactRay truth(grid, packet.origin, direction);
+    const ExactRay truth(grid, packet, ray);
     for (std::int32_t k = 0; k < frustum.cells_k; ++k) {
       const auto box = truth.box_between(frustum.axis_k, k, k);
       if (!box || !truth.reaches(frustum.axis_k, k, k, packet.t[ray])) continue;
