@@ -48,9 +48,7 @@ void add_point_light(SceneDescription& scene, Vec3 position, Vec3 color) {
 }
 
 SceneMaterial matt(Vec3 color) {
-  SceneMaterial material;
-  material.color = color;
-  return material;
+  return {.color = color};
 }
 
 }  // namespace

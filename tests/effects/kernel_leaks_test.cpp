@@ -130,8 +130,7 @@ TEST_P(KernelAcneOfScans, NothingLiesBetweenWhatIsSeenAndALightAtTheEye) {
     scene.geometry.triangle_materials.assign(scene.geometry.triangles.size(), white);
     scene.point_lights.push_back({scene.view.from, Vec3(1)});
     transform_scene(scene, place.scale, place.offset);
-    KernelOptions planes;
-    planes.wants_planes = true;
+    const KernelOptions planes{.wants_planes = true};
     const KernelPicture shadowed = render_scene(scene, 2 * kSize, 2 * kSize, planes);
     ASSERT_EQ(shadowed.status, Status::kOk);
     scene.shadows = false;
@@ -238,9 +237,7 @@ TEST(KernelLeaks, NoLightGetsIntoAClosedRoom) {
     EXPECT_EQ(lit_pixels(closed), 0u) << "ambient occlusion";
 
     // Mirrors all around: seven reflections of each eye ray, none of which gets out.
-    tool::SceneMaterial mirror;
-    mirror.kd = 0;
-    mirror.ks = 1;
+    const tool::SceneMaterial mirror{.kd = 0, .ks = 1};
     SceneDescription mirrors = room(mirror);
     set_environment(mirrors, Vec3(1));
     mirrors.recursion_depth = 8;

@@ -42,9 +42,7 @@ TEST_P(ExactScans, EveryPixelShowsTheOraclesTriangle) {
   settings.techniques = kUseMailbox | kUseEmptySkip | kUseSubpackets;
   settings.macro_depth = 4;
   settings.triangle_depth = 3;
-  sim::ChipOptions chip;
-  chip.packet_width = 32;
-  chip.threads = threads;
+  const sim::ChipOptions chip{.threads = threads, .packet_width = 32};
   const RenderedFrame rendered = scene.render(settings, chip, PlaneSet::kColorAndIds);
   ASSERT_EQ(rendered.result.status, Status::kOk);
 

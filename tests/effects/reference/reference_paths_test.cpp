@@ -19,24 +19,15 @@ using tool::SceneMaterial;
 constexpr std::uint32_t kWidth = 65;  // odd: one ray straight down
 
 SceneMaterial mirror(float ks = 1.0f) {
-  SceneMaterial material;
-  material.kd = 0.0f;
-  material.ks = ks;
-  return material;
+  return {.kd = 0.0f, .ks = ks};
 }
 
 SceneMaterial glass(float index, float transmittance = 1.0f) {
-  SceneMaterial material;
-  material.kd = 0.0f;
-  material.transmittance = transmittance;
-  material.index_of_refraction = index;
-  return material;
+  return {.kd = 0.0f, .transmittance = transmittance, .index_of_refraction = index};
 }
 
 SceneMaterial black() {
-  SceneMaterial material;
-  material.kd = 0.0f;
-  return material;
+  return {.kd = 0.0f};
 }
 
 void add_sheet(SceneDescription& scene, float z, std::uint16_t material) {
@@ -73,8 +64,7 @@ TEST(ReferencePaths, AMirrorShowsATriangleAtTheMirroredPlace) {
   SceneDescription scene = empty_scene({0, -4, 2}, {0, 0, 0}, {0, 0, 1}, 50);
   scene.background = {0, 0, 1};
   add_sheet(scene, 0, add_material(scene, mirror(0.5f)));
-  SceneMaterial coloured;
-  coloured.color = {1, 0.5f, 0};
+  const SceneMaterial coloured{.color = {1, 0.5f, 0}};
   const Vec3 corners[3] = {{-1.1f, -0.5f, 1}, {0, 1.2f, 1}, {0.9f, -0.3f, 1}};
   const std::uint32_t id = add_triangle(scene, corners, add_material(scene, coloured));
   // Lit from beneath, from far away: the side that the mirror sees.
@@ -191,9 +181,7 @@ TEST(ReferencePaths, PathsAreNumberedAsABinaryTree) {
 TEST(ReferencePaths, DepthOfRecursionCutsAPathBetweenMirrors) {
   // Straight down between two mirrors, the upper one behind the eye: n reflections, then nothing is added.
   SceneDescription scene = empty_scene({0, 0, 1}, {0, 0, 0}, {0, 1, 0}, 5);
-  SceneMaterial half;
-  half.kd = 0.5f;
-  half.ks = 0.5f;
+  const SceneMaterial half{.kd = 0.5f, .ks = 0.5f};
   const std::uint16_t material = add_material(scene, half);
   add_sheet(scene, 0, material);
   add_parallelogram(scene, {-50, -50, 2}, {0, 100, 0}, {100, 0, 0}, material);

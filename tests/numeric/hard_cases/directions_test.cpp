@@ -219,9 +219,7 @@ void refuse_eyes_not_finite() {
   SceneInMemory scene(mesh.view(), {});
   for (const float odd : {kNaN, kInf, -kInf, 0x1p121f}) {
     for (int axis = 0; axis < 3; ++axis) {
-      FrameSettings settings;
-      settings.width = settings.height = 4;
-      settings.camera.eye = {0, 0, 4};
+      FrameSettings settings{.camera = {.eye = {0, 0, 4}}, .width = 4, .height = 4};
       EXPECT_EQ(scene.prepare(settings, {}).status(), Status::kOk);
       settings.camera.eye[axis] = odd;
       EXPECT_EQ(scene.prepare(settings, {}).status(), Status::kBadFrame);

@@ -91,9 +91,7 @@ TEST(HardCase44, QuantisedVertices) {
     for (const Vec3& offset : {Vec3(0.0f), Vec3(1000.25f, -3000.5f, 7.0f)}) {
       SCOPED_TRACE(solid.name);
       const TestMesh mesh = moved(solid.mesh, 1.0f, offset);
-      GridParameters grid;
-      grid.lambda = 64.0f;
-      grid.format = TriangleFormat::kLattice;
+      GridParameters grid{.lambda = 64.0f, .format = TriangleFormat::kLattice};
       const BuiltImage built = build_image(mesh.view(), grid);
       const GridRecord& record = built.view.grid;
       const std::span<const std::byte> bytes = built.image.bytes();

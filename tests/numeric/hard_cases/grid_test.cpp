@@ -319,8 +319,7 @@ TEST(HardCase27, AllInOneCell) {
   const auto aim = [](const TestMesh& mesh) {
     return salvo(mesh, Vec3(0.0f), 3.0f, {{Aim::kEdge, Aim::kVertex, Aim::kInside}, times(4), 24, 1}, 27);
   };
-  GridParameters one_cell;
-  one_cell.lambda = 1e-6f;
+  const GridParameters one_cell{.lambda = 1e-6f};
   EXPECT_GT(shoot({.mesh = cluster, .aim = aim, .grid = one_cell}).hits, 1000u);
   TestMesh with_far = moved(cluster, 1.0f, Vec3(5.0f));
   with_far.append(make_triangle({4000, 4000, 4000}, {4001, 4000, 4000}, {4000, 4001, 4000}));
@@ -357,8 +356,7 @@ TEST(HardCase28, GiantTriangle) {
   // are the mailbox's. Fetched it is for every cell, since a cell does not know of the others.
   const TestMesh alone =
       make_triangle(mesh.vertices[3 * giant], mesh.vertices[3 * giant + 1], mesh.vertices[3 * giant + 2]);
-  GridParameters fine;
-  fine.lambda = 4096.0f;
+  const GridParameters fine{.lambda = 4096.0f};
   Target target(alone, fine, kProfiles[0]);
   ASSERT_GT(target.grid().reference_count, 200u);
   const Rays view = picture({0, 0, 4}, {-2, -2, -2}, {0.0625f, 0, 0}, {0, 0.0625f, 0}, 64, 64);
@@ -490,9 +488,8 @@ TEST(HardCase42, Resolutions) {
         for (Vec3& v : mesh.vertices) v *= Vec3(0x1p-12f, 0x1p-12f, 1);
         total = wanted;
       }
-      GridParameters grid;
-      grid.lambda = static_cast<float>(total / static_cast<double>(mesh.triangles.size()));
-      grid.macro_width = cells == 1024 ? 8 : 1 + cells % 8;
+      GridParameters grid{.lambda = static_cast<float>(total / static_cast<double>(mesh.triangles.size())),
+                          .macro_width = cells == 1024 ? 8 : 1 + cells % 8};
       const Target target(mesh, grid, kProfiles[0]);
       ASSERT_EQ(target.status(), Status::kOk);
       for (int axis = 0; axis < 3; ++axis) EXPECT_EQ(target.grid().cell_count[axis], is_line && axis < 2 ? 1 : cells);

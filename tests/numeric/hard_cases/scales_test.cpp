@@ -97,8 +97,7 @@ TEST(HardCase11, FarFromTheOrigin) {
     const Tally tally = shoot({.mesh = mesh, .aim = aim});
     EXPECT_GT(tally.hits, tally.rays / 2);
     for (const float lambda : {4.0f, 200.0f}) {
-      GridParameters parameters;
-      parameters.lambda = lambda;
+      const GridParameters parameters{.lambda = lambda};
       const Target target(mesh, parameters, kProfiles[0]);
       const WalkTally walked = walk(target.grid(), aim(mesh));
       EXPECT_GT(walked.touched, walked.rays);
@@ -127,8 +126,7 @@ TEST(HardCase12, FarEye) {
   EXPECT_GT(tally.hits, tally.rays / 4);
   EXPECT_LT(tally.hits, tally.rays);
   for (const float lambda : {4.0f, 200.0f}) {
-    GridParameters parameters;
-    parameters.lambda = lambda;
+    const GridParameters parameters{.lambda = lambda};
     const Target target(mesh, parameters, kProfiles[0]);
     EXPECT_GT(walk(target.grid(), aim(mesh)).touched, 1000u);
   }

@@ -47,8 +47,8 @@ static_assert(std::size(kProfiles) == kAccuracyCount);
 
 /// Rays from one point: any directions, or the pixels of a picture.
 struct Rays {
-  Vec3 origin;
-  std::vector<Vec3> directions;
+  Vec3 origin{0.0f};
+  std::vector<Vec3> directions = {};
   float t_far = kFloatMax;
   std::uint32_t columns = 0;  ///< of the picture; 0: any directions
   Vec3 corner{}, step_x{}, step_y{};
