@@ -121,8 +121,7 @@ WalkTally walk(const GridRecord& grid, const std::vector<Rays>& all_rays) {
       std::sort(cells.begin(), cells.end());
       tally.touched += cells.size();
       // Alone: the narrowest frustum that there is.
-      Rays one;
-      one.origin = rays.origin;
+      Rays one{rays.origin};
       one.directions = {rays.directions[ray]};
       walk_packet<Packet<4>>(grid, one, 0, {cells}, block, tally);
     }

@@ -46,10 +46,9 @@ TEST(HardCase26, NothingOnePointOneTriangle) {
   for (const float scale : {1e-30f, 1.0f, 1e30f}) {
     const TestMesh triangle =
         make_triangle(scale * Vec3(-1, -1, 0.5f), scale * Vec3(1, -0.5f, 0.25f), scale * Vec3(0, 1, -0.5f));
-    tally += shoot({.mesh = triangle, .grade = Grade::kBounded, .aim = [scale](const TestMesh& mesh) {
-                      return salvo(mesh, scale * Vec3(0, 0, 2), scale,
-                                   {{Aim::kEdge, Aim::kVertex, Aim::kInside}, times(6), 24, 1}, 26);
-                    }});
+    tally += shoot({.mesh = triangle,
+                    .grade = Grade::kBounded,
+                    .aim = salvo_at(scale * Vec3(0, 0, 2), scale, {kFeatures, times(6), 24, 1}, 26)});
   }
   EXPECT_GT(tally.hits, tally.rays / 4);
 }

@@ -331,8 +331,7 @@ std::vector<Answer> Target::by_pipeline(const Rays& rays, const PipelineWay& way
   const std::size_t count = only.empty() ? rays.directions.size() : only.size();
   for (std::size_t i = 0; i < count; ++i) {
     const std::size_t ray = only.empty() ? i : only[i];
-    Rays one;
-    one.origin = rays.origin;
+    Rays one{rays.origin};
     one.corner = rays.directions[ray];
     one.t_far = rays.t_far;
     frame.set_record(aimed(untouched, one, way));
