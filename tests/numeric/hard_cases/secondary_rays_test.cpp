@@ -13,13 +13,6 @@
 namespace gridiron::test::hard {
 namespace {
 
-VertexTriangle triangle_of(const TestMesh& mesh, std::uint32_t id) {
-  const UVec3& t = mesh.triangles[id];
-  VertexTriangle triangle;
-  set_triangle(triangle, mesh.vertices[t.x], mesh.vertices[t.y], mesh.vertices[t.z], id);
-  return triangle;
-}
-
 // A point on the surface where a ray hits it, lifted off, and what the ray was.
 struct SurfacePoint {
   Vec3 point;
