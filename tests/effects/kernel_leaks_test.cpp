@@ -237,8 +237,7 @@ TEST(KernelLeaks, NoLightGetsIntoAClosedRoom) {
     EXPECT_EQ(lit_pixels(closed), 0u) << "ambient occlusion";
 
     // Mirrors all around: seven reflections of each eye ray, none of which gets out.
-    const tool::SceneMaterial mirror{.kd = 0, .ks = 1};
-    SceneDescription mirrors = room(mirror);
+    SceneDescription mirrors = room({.kd = 0, .ks = 1});
     set_environment(mirrors, Vec3(1));
     mirrors.recursion_depth = 8;
     transform_scene(mirrors, place.scale, place.offset);
