@@ -262,6 +262,7 @@ class GridShooting {
     chip.packet_width = has_small_packets ? 8 : 32;
     chip.lanes = std::min(kLanes[turn / 4 % 3], sim::widest_lanes());
     const FrameSettings settings{
+        .camera = {},
         .accuracy = profile.accuracy,
         .shading = Shading::kNone,
         .techniques = kUseMailbox | kUseEmptySkip | (has_small_packets ? kUseCornerCulling : kUseSubpackets)};
