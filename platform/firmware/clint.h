@@ -1,4 +1,4 @@
-// Waking a RISC-V hart, sleeping, and the time: the CLINT, as SiFive's chips and the emulator's machine virt have it.
+// Wakes a RISC-V hart, sleeps, and reads the time: the CLINT of SiFive's chips and of the emulator's machine virt.
 // Source: SiFive FU540-C000 Manual, chapter 9; RISC-V Privileged Architecture 1.12.
 // Memory: registers. Threads: any hart, in machine mode. SPDX-License-Identifier: Apache-2.0
 #pragma once
@@ -11,12 +11,12 @@ inline constexpr std::uintptr_t kClint = 0x02000000;
 
 /// Sends a software interrupt.
 inline void wake_hart(std::uint32_t hart) {
-  // What was stored before is seen by the one who wakes.
+  // The woken hart must see what was stored before.
   asm volatile("fence" ::: "memory");
   reinterpret_cast<volatile std::uint32_t*>(kClint)[hart] = 1;
 }
 
-/// Takes a hart's software interrupt back. What is looked at afterwards is as new as the interrupt or newer.
+/// Clears a hart's software interrupt. Loads after this are no older than the interrupt.
 inline void hush_hart(std::uint32_t hart) {
   reinterpret_cast<volatile std::uint32_t*>(kClint)[hart] = 0;
   asm volatile("fence" ::: "memory");
@@ -29,7 +29,7 @@ inline void hush_hart(std::uint32_t hart) {
   return (pending & 1u << 3) != 0;
 }
 
-/// Sleeps until a software interrupt is pending, or the timer's where `with_timer`. Neither is taken. May end early.
+/// Sleeps until a software interrupt is pending, or with `with_timer` the timer's. Takes neither. May return early.
 inline void sleep_hart(bool with_timer) {
   const std::uint64_t wanted = 1u << 3 | (with_timer ? 1u << 7 : 0u);
   asm volatile("csrw mie, %0\n wfi\n csrw mie, zero" ::"r"(wanted) : "memory");
@@ -40,7 +40,7 @@ inline void sleep_hart(bool with_timer) {
   return *reinterpret_cast<const volatile std::uint64_t*>(kClint + 0xBFF8);
 }
 
-/// When a hart's timer interrupt becomes pending.
+/// Sets the time at which a hart's timer interrupt becomes pending.
 inline void set_alarm(std::uint32_t hart, std::uint64_t ticks) {
   reinterpret_cast<volatile std::uint64_t*>(kClint + 0x4000)[hart] = ticks;
 }

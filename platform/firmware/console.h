@@ -9,7 +9,7 @@ namespace gridiron::port {
 /// Sends one character; the board defines it. May wait for the line, within a bound of its own.
 void put_character(char character);
 
-/// A number that is to be written in hexadecimal, with 0x.
+/// A number to write in hexadecimal, with 0x.
 struct Hex {
   std::uint64_t value;
 };

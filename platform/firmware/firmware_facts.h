@@ -1,4 +1,4 @@
-// The facts of a firmware that follow from what its workers are built for.
+// The facts of a firmware that follow from the layout of its workers.
 // Memory: none. Threads: none. SPDX-License-Identifier: Apache-2.0
 #pragma once
 
@@ -16,8 +16,8 @@ namespace gridiron::port {
 /// @param name         of board and image, for the console.
 /// @param core_count   workers.
 /// @param memory_end   first address behind the memory that a job may take.
-/// @param most_tiles   that the board has room for results of.
-/// @param board_stack_bytes  that a worker's stack has on top of the layout's budget, for the board's own functions.
+/// @param most_tiles   the most tiles whose results fit the board's memory.
+/// @param board_stack_bytes  of a worker's stack for the board's own functions, on top of the layout's budget.
 /// @param queue_depth  of the port's limits.
 template <class Layout, class L>
 [[nodiscard]] constexpr FirmwareFacts firmware_facts(const char* name, std::uint32_t core_count,

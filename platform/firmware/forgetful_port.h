@@ -1,4 +1,4 @@
-// Wrong on purpose, for images that show what is noticed: a port that forgets waits.
+// A port that forgets waits: wrong on purpose, for images that must fail.
 // Memory: none. Threads: one worker. SPDX-License-Identifier: Apache-2.0
 #pragma once
 

@@ -1,4 +1,4 @@
-// Whether a firmware can do a job that it was given.
+// Checks whether a firmware can run a job.
 // Memory: reads the job. Threads: the master. SPDX-License-Identifier: Apache-2.0
 #include "job_check.h"
 
@@ -17,10 +17,10 @@ namespace gridiron::port {
 namespace {
 
 bool is_equal(const char* what, std::uint64_t value, std::uint64_t wanted) {
-  return value == wanted || refuse(what, " ", Hex{value}, ", this firmware wants ", Hex{wanted});
+  return value == wanted || refuse(what, " ", Hex{value}, ", this firmware requires ", Hex{wanted});
 }
 
-// As the job's maker computes it, with the field itself taken as 0.
+// Computed as by the job's maker, with the field itself taken as 0.
 std::uint64_t check_value_of(const FrameJob& job) {
   FrameJob head = job;
   head.check_value = 0;
@@ -39,12 +39,12 @@ struct Part {
   }
 };
 
-// The file behind the job itself: what its check value speaks of and no transfer changes.
+// The file after the job itself: covered by its check value, and changed by no transfer.
 Part loaded_part(const FrameJob& job) {
   return {job.base_address + sizeof(FrameJob), job.loaded_bytes - sizeof(FrameJob)};
 }
 
-// Memory behind the file: what transfers may change.
+// Memory after the file, which transfers may change.
 Part open_part(const FrameJob& job) {
   return {job.base_address + job.loaded_bytes, job.memory_bytes - job.loaded_bytes};
 }
@@ -62,7 +62,7 @@ bool is_open(const FrameJob& job, const char* what, const Part& part, std::uint6
   return lies_in(open_part(job), "outside the job's memory behind its file", what, part, alignment);
 }
 
-// Planes lie in the result, behind what is there already.
+// Planes must lie in the result, after what it holds already.
 bool are_planes_in_result(const FrameJob& job) {
   const struct {
     const char* name;
@@ -70,7 +70,7 @@ bool are_planes_in_result(const FrameJob& job) {
   } planes[] = {
       {"colour plane", job.color_address}, {"depth plane", job.depth_address}, {"plane of ids", job.ids_address}};
   const std::uint64_t head = sizeof(FrameResult) + std::uint64_t{job.tile_count} * sizeof(TileResult);
-  if (job.result_bytes < head) return refuse("result of ", job.result_bytes, " bytes, without room for its head");
+  if (job.result_bytes < head) return refuse("result of ", job.result_bytes, " bytes, too small for its head");
   Part free{job.result_address + head, job.result_bytes - head};
   for (const auto& plane : planes) {
     if (plane.address == 0 && &plane != planes) continue;
@@ -119,7 +119,7 @@ bool check_job(const FrameJob& job, const FirmwareFacts& facts) {
   }
   if (!is_equal("check value", check_value_of(job), job.check_value)) return false;
 
-  // 2. What it is about.
+  // 2. Its settings.
   if (!is_equal("tile width", job.tile_width, facts.tile_width)) return false;
   if (job.store_bytes > facts.store_bytes) {
     return refuse("made for cores of ", job.store_bytes, " bytes, these have ", facts.store_bytes);
@@ -136,10 +136,10 @@ bool check_job(const FrameJob& job, const FirmwareFacts& facts) {
   const std::uint32_t tiles_y = (job.height + job.tile_width - 1) / job.tile_width;
   if (job.tile_count != tiles_x * tiles_y) return refuse(job.tile_count, " tiles, of ", tiles_x, " x ", tiles_y);
   if (job.tile_count > facts.most_tiles) {
-    return refuse(job.tile_count, " tiles, this board has room for the results of ", facts.most_tiles);
+    return refuse(job.tile_count, " tiles, this board can store the results of ", facts.most_tiles);
   }
 
-  // 3. Where its parts are.
+  // 3. The places of its parts.
   const std::uint64_t plane_bytes = std::uint64_t{job.tile_count} * job.tile_width * job.tile_width * 4;
   if (!is_equal("plane bytes", job.plane_bytes, plane_bytes)) return false;
   const Part result{job.result_address, job.result_bytes};
@@ -149,7 +149,7 @@ bool check_job(const FrameJob& job, const FirmwareFacts& facts) {
     return false;
   }
 
-  // 4. What the workers go by.
+  // 4. The frame record, which the workers use.
   return check_record(job);
 }
 

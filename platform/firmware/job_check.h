@@ -1,4 +1,4 @@
-// Whether a firmware can do a job that it was given, said in words on the console.
+// Checks whether a firmware can run a job, and prints the reason on the console if not.
 // Memory: reads the job. Threads: the master. SPDX-License-Identifier: Apache-2.0
 #pragma once
 
@@ -8,7 +8,7 @@
 
 namespace gridiron::port {
 
-/// What a firmware is, and what its board has.
+/// The properties of a firmware and its board.
 struct FirmwareFacts {
   const char* name;             ///< of board and image, for the console
   std::uint64_t memory_end;     ///< first address behind main memory
@@ -17,20 +17,20 @@ struct FirmwareFacts {
   std::uint32_t effects;        ///< EffectBits built
   std::uint32_t packet_width;   ///< of the layout, 0: no packets
   std::uint32_t store_bytes;    ///< of a worker's arena
-  std::uint32_t stack_bytes;    ///< that a worker's stack may take
+  std::uint32_t stack_bytes;    ///< the most that a worker's stack may take
   std::uint32_t lane_count;
   std::uint32_t queue_depth;    ///< of the port's limits
   std::uint32_t work_kinds;     ///< kWorkKindCount
-  std::uint32_t most_tiles;     ///< that the board has room for results of; never more than that in a frame
+  std::uint32_t most_tiles;     ///< the most tiles whose results fit the board's memory; a frame never has more
 };
 
-/// Holds a job against the firmware: magic, version, place, size, check value, tiles, effects, arena, every range
-/// inside its memory.
-/// @returns whether it may run; if not, a line on the console says why. A job for packets of another width runs, and is
-/// remarked on: the work is not that of the job's own layout.
+/// Checks a job against the firmware: magic, version, place, size, check value, tiles, effects, arena, and that every
+/// range lies inside its memory.
+/// @returns whether it may run; if not, a line on the console gives the reason. A job for packets of another width may
+/// run, with a note, since its work differs from that of the job's own layout.
 [[nodiscard]] bool check_job(const FrameJob& job, const FirmwareFacts& facts);
 
-/// TileResults of a job, behind its FrameResult.
+/// TileResults of a job, after its FrameResult.
 [[nodiscard]] inline TileResult* tile_results(const FrameJob& job) {
   return reinterpret_cast<TileResult*>(static_cast<std::uintptr_t>(job.result_address) + sizeof(FrameResult));
 }

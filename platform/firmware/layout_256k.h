@@ -1,4 +1,4 @@
-// The layout and lanes of an image for cores of 256 KB: GRIDIRON_EFFECTS, 0: none, and GRIDIRON_PACKET_WIDTH say which.
+// Layout and lanes of an image for cores of 256 KB, chosen by GRIDIRON_EFFECTS (0: none) and GRIDIRON_PACKET_WIDTH.
 // Memory: none. Threads: none. SPDX-License-Identifier: Apache-2.0
 #pragma once
 

@@ -1,5 +1,5 @@
 // The master of a frame: checks the job, starts the workers, waits for them within a bound, writes the result file.
-// Integers only: the core it runs on may have no floating point.
+// Integers only: the core it runs on may have no floating point unit.
 // Memory: fills RunControl and the job's FrameResult. Threads: one core. SPDX-License-Identifier: Apache-2.0
 #pragma once
 
@@ -17,23 +17,24 @@
 
 namespace gridiron::port {
 
-/// Exit codes of a run. None is 1, with which an emulator ends that did not start.
+/// Exit codes of a run. None is 1, which an emulator returns if it did not start.
 enum class RunExit : std::uint32_t {
-  kDone = 0,        ///< every core ended with kOk, the result is written
+  kDone = 0,  ///< every core ended with kOk, the result is written
   kJobRefused = 2,
-  kTimedOut = 3,    ///< no core finished a tile for kQuietMilliseconds
-  kTrapped = 4,     ///< a core did what it must not
-  kNotWritten = 5,  ///< the host did not take the result file
-  kFrameFailed = 6, ///< a core ended with another status; the result is written
+  kTimedOut = 3,     ///< no core finished a tile for kQuietMilliseconds
+  kTrapped = 4,      ///< a core did what it must not
+  kNotWritten = 5,   ///< the host did not write the result file
+  kFrameFailed = 6,  ///< a core ended with another status; the result is written
 };
 
 /// What the master needs of its board.
 ///
 /// start_core    wakes a worker; what was stored before is visible to it.
-/// take_part     called once all are started: where the master's core is a worker too, it works here, else nothing.
-/// pause         lets a little time pass, or the master's core do what else it has to.
-/// milliseconds  since some time before.
-/// take_results  called once all are finished: what they and their engines wrote is visible afterwards.
+/// take_part     called once after all are started: if the master's core is a worker too, it works here, else nothing.
+/// pause         lets a little time pass, or lets the master's core do its other duties.
+/// milliseconds  since an arbitrary time.
+/// take_results  called once after all are finished: afterwards the bytes that they and their engines wrote are
+/// visible.
 template <class B>
 concept MasterBoard = requires(B& board, std::uint32_t core_index) {
   { board.start_core(core_index) } -> std::same_as<void>;
@@ -46,16 +47,16 @@ concept MasterBoard = requires(B& board, std::uint32_t core_index) {
 template <MasterBoard B>
 class Master {
  public:
-  /// A frame in which no tile is finished for this long has failed.
+  /// A frame has failed if it finishes no tile for this long.
   static constexpr std::uint64_t kQuietMilliseconds = 600'000;
 
-  /// @param tiles  results of tiles as the workers write them: the job's own (tile_results), or facts.most_tiles of
-  ///               them elsewhere, from where they are copied into the job.
+  /// @param tiles  results of tiles as the workers write them: the job's own (tile_results), or facts.most_tiles
+  ///               elsewhere, which are then copied into the job.
   Master(B& board, const FirmwareFacts& facts, const FrameJob& job, RunControl& control, TileResult* tiles)
       : board_(board), facts_(facts), job_(job), control_(control), tiles_(tiles) {}
 
-  /// Does the job.
-  /// @param result_name  of the file that the host is given.
+  /// Runs the job.
+  /// @param result_name  name of the file that the host gets.
   [[nodiscard]] RunExit run(const char* result_name) {
     print(facts_.name, ": ", facts_.core_count, " cores\n");
     if (!check_job(job_, facts_)) return RunExit::kJobRefused;
@@ -63,7 +64,7 @@ class Master {
   }
 
   /// Renders a frame of a job that has been checked.
-  /// @param frame_address  of its record, the job's own or another like it.
+  /// @param frame_address  of its record: the job's own or another one.
   [[nodiscard]] RunExit render(const char* result_name, std::uint64_t frame_address) {
     prepare(frame_address);
     for (std::uint32_t core = 0; core < facts_.core_count; ++core) board_.start_core(core);
@@ -94,7 +95,7 @@ class Master {
     __atomic_thread_fence(__ATOMIC_SEQ_CST);
   }
 
-  // Tells of progress, an eighth of the frame at a time, until every core has finished.
+  // Prints the progress, an eighth of the frame at a time, until every core has finished.
   RunExit wait_for_cores() {
     std::uint32_t done_before = 0, told = 0;
     std::uint64_t quiet_since = board_.milliseconds();

@@ -1,5 +1,5 @@
 // The four memory functions that GCC calls in freestanding programs, for images that link no C library.
-// Memory: caller's. Threads: any. Compiled without the pass that would turn these loops into calls of themselves.
+// Memory: caller's. Threads: any. Compiled without the pass that would turn these loops into calls of these functions.
 // SPDX-License-Identifier: Apache-2.0
 #include <cstddef>
 #include <cstdint>

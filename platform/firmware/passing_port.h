@@ -1,4 +1,4 @@
-// A port that hands every call on to another: what is wrong on purpose replaces the call it is wrong in.
+// A port that passes every call on to another. Ports that are wrong on purpose derive from it and replace one call.
 // Memory: none. Threads: one worker. SPDX-License-Identifier: Apache-2.0
 #pragma once
 

@@ -1,4 +1,4 @@
-// How a job is refused: a line on the console.
+// Prints why a job is refused.
 // Memory: none. Threads: the master. SPDX-License-Identifier: Apache-2.0
 #pragma once
 
@@ -6,7 +6,7 @@
 
 namespace gridiron::port {
 
-/// Says why, as pieces of print().
+/// Prints the reason, as pieces of print().
 /// @returns false
 template <class... Pieces>
 bool refuse(const Pieces&... reason) {

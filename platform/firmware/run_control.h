@@ -1,5 +1,5 @@
-// What the master and the workers of a board share during a frame. The master clears and fills it before it starts a
-// core; afterwards each worker writes its own slot, its tiles' results and the tile counter.
+// Memory that the master and the workers of a board share during a frame. The master clears and fills it before it
+// starts a core. Afterwards each worker writes its own slot, its tiles' results and the tile counter.
 // Memory: main memory that is coherent or not cached. Threads: as above. SPDX-License-Identifier: Apache-2.0
 #pragma once
 
@@ -10,13 +10,13 @@
 namespace gridiron::port {
 
 enum class CoreState : std::uint32_t {
-  kAsleep = 0,   ///< has not begun the frame
+  kAsleep = 0,  ///< has not begun the frame
   kWorking = 1,
   kFinished = 2,  ///< its result is complete
-  kTrapped = 3,   ///< its trap is complete; it does not come back
+  kTrapped = 3,   ///< its trap is complete; it does not return
 };
 
-/// What stopped a core, in its own terms.
+/// The cause of a trap, in the registers of the core.
 struct Trap {
   std::uint64_t cause;    ///< RISC-V mcause, AArch64 ESR
   std::uint64_t address;  ///< that the access was to: mtval, FAR
@@ -48,7 +48,7 @@ inline void set_state(CoreSlot& slot, CoreState state) {
   __atomic_store_n(&slot.state, static_cast<std::uint32_t>(state), __ATOMIC_RELEASE);
 }
 
-/// The part of a Board (template_port.h) that all boards do alike: tiles by an atomic counter in memory that all share.
+/// The part of a Board (template_port.h) that all boards share: tiles by an atomic counter in shared memory.
 class SharedTiles {
  public:
   explicit SharedTiles(RunControl& control) : control_(control) {}

@@ -14,12 +14,12 @@ enum Operation : std::uint64_t {
   kExit = 0x20,
 };
 
-// Operation and address of its arguments go in, the answer comes out in the first register.
+// Takes an operation and the address of its arguments; returns the first register.
 std::uint64_t call(Operation operation, const void* arguments) {
 #if defined(__riscv)
   register std::uint64_t answer asm("a0") = operation;
   register const void* block asm("a1") = arguments;
-  // These three instructions, none compressed, on one page, are the call.
+  // The call is these three instructions, uncompressed and on one page.
   asm volatile(
       ".option push\n.option norvc\n.balign 16\n"
       "slli zero, zero, 0x1f\nebreak\nsrai zero, zero, 7\n.option pop"
@@ -57,7 +57,7 @@ void exit_run(std::uint32_t code) {
   constexpr std::uint64_t kApplicationExit = 0x20026;
   const std::uint64_t arguments[] = {kApplicationExit, code};
   call(kExit, arguments);
-  // Nobody listens, so nothing is left to do.
+  // The emulator does not respond, so stop here.
   for (;;) asm volatile("" ::: "memory");
 }
 

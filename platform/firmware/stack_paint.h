@@ -1,4 +1,4 @@
-// How deep a stack went: painted before, looked at afterwards.
+// Measures how deep a stack went: painted before the frame, inspected afterwards.
 // Memory: the stack's own. Threads: the core whose stack it is. SPDX-License-Identifier: Apache-2.0
 #pragma once
 
@@ -14,7 +14,7 @@ struct StackArea {
 
 inline constexpr std::uint64_t kStackPaint = 0x5AA5C33C0FF0A55A;
 
-/// Paints what lies below the caller's frame, but for the nearest bytes, which count as used from then on.
+/// Paints the stack below the caller's frame, except for the nearest bytes, which count as used from then on.
 [[gnu::noinline]] inline void paint_stack(StackArea stack) {
   constexpr std::uintptr_t kNearest = 512;
   const auto here = reinterpret_cast<std::uintptr_t>(__builtin_frame_address(0));
@@ -23,7 +23,7 @@ inline constexpr std::uint64_t kStackPaint = 0x5AA5C33C0FF0A55A;
   }
 }
 
-/// Bytes of the stack that are not painted any more, counted from its top to the deepest.
+/// Bytes of the stack from its top to the deepest that is no longer painted.
 [[nodiscard]] inline std::uint32_t used_stack_bytes(StackArea stack) {
   std::uintptr_t place = stack.low;
   while (place < stack.top && *reinterpret_cast<const volatile std::uint64_t*>(place) == kStackPaint) {

@@ -1,5 +1,5 @@
-// What a board's trespasses have in common: images in which core 1 does what it must not, to show that it is noticed.
-// The option trespass=N says what; each board numbers its own.
+// Shared by the boards' images in which core 1 makes forbidden accesses, which must be detected. The option trespass=N
+// selects the access; each board has its own numbers.
 // Memory: what is trespassed on. Threads: the master asks, core 1 acts. SPDX-License-Identifier: Apache-2.0
 #pragma once
 
@@ -11,7 +11,7 @@
 
 namespace gridiron::port {
 
-/// Number of the trespass asked for. A number that the board has not, or none, ends the run with kJobRefused.
+/// The selected trespass. A missing or unknown number ends the run with kJobRefused.
 /// @param count  trespasses of the board, which are numbered from 1.
 [[nodiscard]] inline std::uint64_t wanted_trespass(std::uint64_t count) {
   const std::uint64_t number = number_option("trespass=", 0);

@@ -1,4 +1,4 @@
-// What a worker core does with a frame: render tiles until none is left, and write down what it did.
+// A worker core's part of a frame: renders tiles until none is left, and records what it did.
 // Memory: its local store and slot; borrows the port. Threads: one core. SPDX-License-Identifier: Apache-2.0
 #pragma once
 
@@ -18,17 +18,17 @@ namespace gridiron::port {
 
 static_assert(kWorkKindCount <= kMostWorkKinds);
 
-/// A port that counts the instructions of its core; a board whose port does not has 0 in its results.
+/// A port that counts the instructions of its core; without one a board's results have 0.
 template <class P>
 concept InstructionCounter = requires(P& port) {
   { port.instructions() } -> std::same_as<std::uint64_t>;
 };
 
-/// Hands every call on to a port and counts what was moved, in all and for each tile.
+/// Passes every call on to a port and counts transfers and bytes, in all and for each tile.
 template <Platform P>
 class CountingPort {
  public:
-  /// @param tiles  one result for each tile of the frame; of those of this core alone is written.
+  /// @param tiles  one result for each tile of the frame; only those of this core are written.
   CountingPort(P& port, CoreSlot& slot, TileResult* tiles, std::uint32_t core_index)
       : port_(port), slot_(slot), tiles_(tiles), core_index_(core_index) {}
 
@@ -56,7 +56,7 @@ class CountingPort {
     return claim;
   }
 
-  /// Writes down what the last tile took, if there is one that was not.
+  /// Records the last tile, unless it has been recorded.
   void finish_tile() {
     if (!has_tile_) return;
     has_tile_ = false;
@@ -102,10 +102,10 @@ class CountingPort {
 ///
 /// @tparam L      lanes, as of render_tiles.
 /// @param store   start of the core's arena, its bytes need not be cleared.
-/// @param port    the core's own; where it has instructions(), they are counted.
+/// @param port    the core's own; if it has instructions(), they are counted.
 /// @param tiles   control.tile_count results.
-/// @param stack   of this core; nothing else may lie in it. It is painted, and measured afterwards.
-/// Errors: in the slot's result. The slot is finished when this returns; the board then tells the master.
+/// @param stack   of this core alone. It is painted before the frame, and measured afterwards.
+/// Errors: in the slot's result. The slot is finished when this returns; the board then notifies the master.
 template <class L, class Layout, Platform P>
 void run_worker(LocalStore<Layout>& store, P& port, RunControl& control, TileResult* tiles, std::uint32_t core_index,
                 StackArea stack) {

@@ -1,4 +1,4 @@
-// Version of Gridiron, as the top CMakeLists.txt has it too. What it promises: core/README.md, "Versions".
+// Version of Gridiron, the same as in the top CMakeLists.txt. What it promises: core/README.md, "Versions".
 // Memory: none. Threads: any. SPDX-License-Identifier: Apache-2.0
 #pragma once
 
@@ -13,7 +13,7 @@
 
 namespace gridiron {
 
-/// Of the headers that a program is compiled with.
+/// The version of the headers that a program is compiled with.
 inline constexpr std::uint32_t kVersionMajor = GRIDIRON_VERSION_MAJOR;
 inline constexpr std::uint32_t kVersionMinor = GRIDIRON_VERSION_MINOR;  ///< see GRIDIRON_VERSION_MINOR
 inline constexpr std::uint32_t kVersionPatch = GRIDIRON_VERSION_PATCH;  ///< see GRIDIRON_VERSION_PATCH

@@ -13,10 +13,10 @@
 
 namespace gridiron::port {
 
-/// Makes the mesh and its scene image, and points the workshop's frame record, a copy of the job's, to them: camera and
+/// Makes the mesh and its scene image, and points the workshop's frame record, a copy of the job's, to them. Camera and
 /// settings stay.
 ///
-/// Errors: those of count_scene_image and build_scene_image; kMemoryTooSmall where the workshop has not the room.
+/// Errors: those of count_scene_image and build_scene_image; kMemoryTooSmall if the workshop is too small.
 [[nodiscard]] inline Status build_wave_scene(SceneWorkshop& workshop, std::uint32_t animation_frame) {
   for (std::uint32_t i = 0; i < kWaveVertexCount; ++i) workshop.vertices[i] = wave_vertex(i, animation_frame);
   for (std::uint32_t i = 0; i < kWaveTriangleCount; ++i) workshop.triangles[i] = wave_triangle(i);

@@ -1,4 +1,4 @@
-// The engine behind DeskPort: the master moves the workers' bytes, each transfer after a delay by chance.
+// The engine behind DeskPort: the master moves the workers' bytes, each transfer after a random delay.
 // Memory: a delay for each slot. Threads: the master, integers only. SPDX-License-Identifier: Apache-2.0
 #pragma once
 
@@ -13,7 +13,7 @@ namespace gridiron::port {
 template <std::uint32_t kDesks>
 class DeskEngine {
  public:
-  /// Rounds that a transfer waits, at most; half of them wait less than an eighth of that.
+  /// The most rounds that a transfer waits; half of them wait less than an eighth of that.
   static constexpr std::uint32_t kLongestDelay = 256;
 
   DeskEngine(TransferDesk (&desks)[kDesks], std::uint64_t seed)
@@ -21,9 +21,9 @@ class DeskEngine {
     std::memset(&desks, 0, sizeof desks);
   }
 
-  /// Looks at every slot once: those that have waited long enough are done, the others wait on.
-  /// @param wake  told the desk of each transfer that is done.
-  /// @returns whether there was something to do.
+  /// Looks at every slot once: completes those that have waited long enough.
+  /// @param wake  called with the desk of each completed transfer.
+  /// @returns whether any transfer was pending.
   template <class Wake>
   bool run_round(Wake&& wake) {
     bool is_active = false;

@@ -1,5 +1,5 @@
-// A port whose transfers the master makes, some time later and in any order. The destination of a get holds poison
-// until then, so that a use before the wait, a buffer changed before it, or a reliance on order shows in the picture.
+// A port whose transfers the master makes, some time later and in any order. Until then the destination of a get holds
+// poison, so that a use before the wait, a buffer changed before it, or a reliance on order changes the picture.
 // Memory: 150 bytes by value, and a desk in shared memory. Threads: one worker. SPDX-License-Identifier: Apache-2.0
 #pragma once
 
@@ -16,7 +16,7 @@ namespace gridiron::port {
 
 class DeskPort {
  public:
-  /// How often a wait is woken for other transfers before it gives up.
+  /// How often a wait may be woken for other transfers before it gives up.
   static constexpr std::uint32_t kWakeBound = 1u << 20;
 
   DeskPort(RunControl& control, TransferDesk& desk, std::uint32_t core_index, const void* store,
@@ -50,7 +50,7 @@ class DeskPort {
     return Status::kOk;
   }
 
-  // Sleeps while a transfer is pending. The master wakes it, and watches over the sleep with its own bound.
+  // Sleeps while a transfer is pending. The master wakes it, and limits the sleep with its own bound.
   Status wait(TagMask tags) {
     Status status = Status::kOk;
     for (std::uint32_t i = 0; i < kDeskSlots; ++i) {

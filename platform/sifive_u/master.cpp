@@ -1,5 +1,5 @@
-// What hart 0, the monitor core, does: it is the frame's master, and with GRIDIRON_ASYNC the workers' DMA engine too.
-// No floating point: the build looks at every instruction of this and of all it calls.
+// Hart 0, the monitor core: the frame's master, and with GRIDIRON_ASYNC the workers' DMA engine too. No floating point:
+// the build checks every instruction of this code and of all it calls.
 // Memory: its own data, shared memory, the job. Threads: hart 0. SPDX-License-Identifier: Apache-2.0
 #include "master.h"
 
@@ -32,17 +32,17 @@ class Monitor {
   void take_part() {}
   void pause() {
 #ifdef GRIDIRON_ASYNC
-    // The desks come first; the frame is looked at now and then.
+    // Serves the desks first, and looks at the frame now and then.
     for (std::uint32_t round = 0; round < 4096; ++round) {
       if (!engine_.run_round([](std::uint32_t core_index) { wake_hart(core_index + 1); })) break;
       if (round == 4095) return;
     }
 #endif
 #ifdef GRIDIRON_COUNTED
-    // Until a worker calls: what this core executed meanwhile would be counted too.
+    // Sleeps until a worker calls; instructions that this core executed meanwhile would be counted too.
     sleep_hart(false);
 #else
-    // Sleeps for 20 ms, or until a worker calls; one that has called since the last sleep is heard at once.
+    // Sleeps for 20 ms, or until a worker calls. If one has called since the last sleep, returns at once.
     set_alarm(0, clock_ticks() + 20 * kTicksPerMillisecond);
     sleep_hart(true);
 #endif
@@ -133,7 +133,7 @@ void gridiron_master() {
 #endif
 }
 
-/// Any hart, from start.S. A worker cannot reach the serial line: it leaves word with the master.
+/// Any hart, from start.S. A worker cannot reach the serial line: it leaves the trap for the master.
 void gridiron_trap(std::uint64_t hart, std::uint64_t cause, std::uint64_t address, std::uint64_t pc) {
   if (hart == 0) {
     print("trap: master cause ", Hex{cause}, " address ", Hex{address}, " pc ", Hex{pc}, "\n");

@@ -1,5 +1,5 @@
-// Where things are: the chip's devices and memories, and what this firmware does with them. start.S and the linker
-// script read it too.
+// Addresses of the chip's devices and memories, and their use by this firmware. start.S and the linker script read it
+// too.
 // Source: SiFive FU540-C000 Manual, chapters 4 (memory map), 9 (CLINT), 11 (L2), 12 (PDMA), 13 (UART).
 // SPDX-License-Identifier: Apache-2.0
 #pragma once

@@ -36,7 +36,7 @@ class PdmaBoard : public SharedTiles {
   [[nodiscard]] bool is_busy() { return (register_at(channel_ + kControl) & (kDone | kError)) == 0; }
   [[nodiscard]] bool has_failed() {
     const bool failed = (register_at(channel_ + kControl) & kError) != 0;
-    // Loads of what arrived come after the load that said so.
+    // Loads of the data come after the load that reported it.
     asm volatile("fence" ::: "memory");
     return failed;
   }
@@ -53,8 +53,8 @@ class PdmaBoard : public SharedTiles {
   static constexpr std::uint64_t kControl = 0x00, kConfig = 0x04, kBytes = 0x08, kTarget = 0x10, kSource = 0x18;
   static constexpr std::uint32_t kClaim = 1u << 0, kRun = 1u << 1, kDone = 1u << 30, kError = 1u << 31;
 
-  // Bytes of one bus transaction, as a power of two: at most 64, and no more than what both ends and the size are
-  // multiples of, since the engine says nothing of transactions that are not aligned.
+  // Bytes of one bus transaction, as a power of two: at most 64, and a divisor of both addresses and the size, since
+  // the manual does not define unaligned transactions.
   [[nodiscard]] static std::uint32_t burst_of(const EngineCommand& command) {
     const std::uint64_t bits = command.target | command.source | command.bytes;
     if (bits % 64 == 0) return 6;

@@ -1,4 +1,4 @@
-// Where worker 0 of the dynamic image builds a frame's scene: the one region of main memory that its PMP opens besides.
+// Memory in which worker 0 of the dynamic image builds a frame's scene: the one extra region that its PMP opens.
 // Memory: GRIDIRON_WORKSHOP. Threads: worker 0 writes, then the master reads. SPDX-License-Identifier: Apache-2.0
 #pragma once
 

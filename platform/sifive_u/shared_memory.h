@@ -1,4 +1,4 @@
-// What the master and the workers of this board share: one region, the only main memory that workers can touch.
+// Memory that the master and the workers of this board share: one region, the only main memory that workers can touch.
 // Memory: GRIDIRON_SHARED. Threads: as run_control.h says. SPDX-License-Identifier: Apache-2.0
 #pragma once
 
@@ -19,17 +19,17 @@ inline constexpr std::uint32_t kMostTiles = 7000;
 struct SharedMemory {
   RunControl control;
   TransferDesk desks[GRIDIRON_WORKERS];  ///< where the master moves the bytes
-  std::uint64_t trespass;                ///< of the image that shows what a worker must not do: which of them it does
+  std::uint64_t trespass;                ///< which forbidden access the image for such accesses makes
   std::uint32_t must_build;              ///< of the dynamic image: 1 where worker 0 is woken to build a scene
   std::uint32_t animation_frame;         ///< which
-  std::uint32_t build_status;            ///< Status of it, or kNotRun while it goes on
+  std::uint32_t build_status;            ///< Status of the build, or kNotRun while it runs
   TileResult tiles[kMostTiles];
 };
 static_assert(sizeof(SharedMemory) <= GRIDIRON_SHARED_BYTES);
 static_assert(GRIDIRON_WORKERS <= kMostBoardCores);
 static_assert(GRIDIRON_CLINT == kClint);
 
-// What start.S opens by PMP; anything else would open more than was meant.
+// start.S opens such regions by PMP; any other region would open more than intended.
 constexpr bool is_pmp_region(std::uint64_t address, std::uint64_t bytes) {
   return std::has_single_bit(bytes) && address % bytes == 0;
 }

@@ -38,7 +38,7 @@ worker:
         li      t0, GRIDIRON_WORKERS
         bgtu    a0, t0, park
         addi    s0, a0, -1                      // core
-        // Its arena; every byte is written before one is read, since memory with ECC comes up without valid codes.
+        // Its arena. Every byte is written before it is read, since memory with ECC starts without valid codes.
         li      t0, GRIDIRON_ARENA_BYTES
         mul     t1, s0, t0
         li      s1, GRIDIRON_LIM
@@ -53,7 +53,7 @@ worker:
         csrs    mstatus, t0
         fscsr   zero
 
-        // Address registers of PMP: base / 4 with as many ones below as say the size.
+        // Address registers of PMP: base / 4, with one bits below that encode the size.
         li      t1, GRIDIRON_ARENA_BYTES / 8 - 1
         srli    t0, s1, 2
         or      t0, t0, t1
@@ -86,7 +86,7 @@ worker:
         csrw    pmpcfg0, t0
         sfence.vma
 
-        // Sleep until woken by a software interrupt, which is seen but not taken.
+        // Sleep until a software interrupt is pending, which is not taken.
 sleep:  li      t0, 1 << 3
         csrw    mie, t0
 3:      wfi
@@ -107,7 +107,7 @@ sleep:  li      t0, 1 << 3
 park:   wfi
         j       park
 
-// No trap is expected. The stack may be what went wrong, so it begins anew.
+// No trap is expected. The stack may be the cause, so it is reset.
         .balign 4
 trap_entry:
         csrr    a0, mhartid

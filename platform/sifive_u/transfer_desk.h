@@ -1,4 +1,4 @@
-// Where a worker leaves the transfers that the master makes for it, in the image whose master is the engine.
+// Slots in which a worker leaves its transfers for the master, in the image whose master is the engine.
 // Memory: shared. Threads: a slot belongs to the worker while it is free or done, else to the master.
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
@@ -8,7 +8,7 @@
 namespace gridiron::port {
 
 struct TransferSlot {
-  std::uint32_t is_pending;  ///< 1: asked for by the worker; the master makes it 0 when the bytes have moved
+  std::uint32_t is_pending;  ///< the worker sets it to 1; the master sets it to 0 when the bytes have moved
   std::uint32_t bytes;
   std::uint64_t target;
   std::uint64_t source;

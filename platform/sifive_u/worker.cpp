@@ -1,5 +1,5 @@
-// What harts 1 to 4 do: each renders its share of a frame, in its arena, through its channel.
-// Memory: the arena and shared memory; PMP keeps it to these. Threads: one hart each.
+// Harts 1 to 4: each renders its share of a frame, in its arena, through its channel.
+// Memory: the arena and shared memory; PMP blocks everything else. Threads: one hart each.
 // SPDX-License-Identifier: Apache-2.0
 #include "worker.h"
 
@@ -19,7 +19,7 @@
 namespace gridiron::port {
 
 #ifdef GRIDIRON_COUNTED
-/// Knows how many instructions the core has executed.
+/// Adds the number of instructions that the core has executed.
 class CountedPort : public TemplatePort<PdmaBoard> {
  public:
   using TemplatePort<PdmaBoard>::TemplatePort;
@@ -35,7 +35,7 @@ static_assert(InstructionCounter<CountedPort>);
 
 static_assert(FirmwareLayout::kArenaBytes == GRIDIRON_ARENA_BYTES);
 
-// For the linker script, which adds them up.
+// The linker script adds these up.
 alignas(128) [[gnu::section(".bss.arena_store"), gnu::used]] std::byte arena_store[sizeof(FirmwareStore)];
 [[gnu::section(".bss.arena_stack"), gnu::used]] std::byte arena_stack[FirmwareLayout::kStackBudgetBytes];
 

@@ -1,5 +1,5 @@
-// Wrong on purpose, for images that show what is noticed: a port that forgets waits, a worker that touches what is not
-// its own. No image of a frame that counts has them.
+// Wrong on purpose, for images that must fail: a port that forgets waits, a worker that makes forbidden accesses.
+// Images for real frames do not contain them.
 // Memory: none. Threads: one worker. SPDX-License-Identifier: Apache-2.0
 #pragma once
 
@@ -14,7 +14,7 @@ namespace gridiron::port {
 
 inline constexpr std::uint64_t kTrespassCount = 10;
 
-/// Does the trespass that shared_memory names; core 1 alone.
+/// Makes the forbidden access that shared_memory selects; core 1 alone.
 inline void trespass(std::uint32_t core_index, std::uint64_t arena) {
   if (core_index != 1) return;
   switch (shared_memory.trespass) {

@@ -10,7 +10,7 @@ template struct gridiron::port::ImageBudgets<gridiron::port::FirmwareLayout>;
 
 namespace {
 
-// Addresses of the made-up chip: the core's engine, what all cores share, the frame's record in main memory.
+// Addresses of the made-up chip: the core's engine, the memory that all cores share, the frame record in main memory.
 constexpr std::uintptr_t kEngine = 0x40000000, kControl = 0x50000000, kFrame = 0x60000000;
 
 gridiron::port::FirmwareStore store;
@@ -21,7 +21,7 @@ volatile std::byte own_variables[EXAMPLE_OWN_BYTES];
 
 }  // namespace
 
-/// What the core's start code calls, on the stack of the arena.
+/// The core's start code calls this on the stack of the arena.
 extern "C" void example_start();
 
 extern "C" void example_start() {

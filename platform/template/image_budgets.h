@@ -1,4 +1,4 @@
-// The sizes of a layout as symbols of an image, for image_budgets.ld, which compares them with what was linked.
+// The sizes of a layout as symbols of an image; image_budgets.ld compares them with the linked sizes.
 // Memory: none. Threads: any. SPDX-License-Identifier: Apache-2.0
 #pragma once
 
@@ -6,7 +6,8 @@
 
 namespace gridiron::port {
 
-// A number without the sign that a target puts before constants; GCC for RISC-V has none, and refuses the modifier.
+// A number without the sign that a target puts before constants. GCC for RISC-V has no such sign, and rejects the
+// modifier.
 #ifdef __riscv
 #define GRIDIRON_SYMBOL(name, operand) ".globl " name "\n\t.set " name ", %" operand "\n\t"
 #else

@@ -11,7 +11,7 @@
 
 namespace gridiron::port {
 
-/// Registers of the engine. Each core has one of its own.
+/// Registers of the engine. Each core has its own engine.
 struct EngineRegisters {
   std::uint64_t target;
   std::uint64_t source;
@@ -20,13 +20,13 @@ struct EngineRegisters {
   std::uint32_t status;   ///< kBusy, kError
 };
 
-/// What all cores share: in memory that is not cached, or kept coherent.
+/// Memory that all cores share: uncached, or kept coherent.
 struct FrameControl {
   std::uint32_t next_tile;  ///< set to 0 by the host before the frame
   std::uint32_t tile_count;
   std::uint32_t stop;  ///< set by the host to end the frame between tiles
   std::uint32_t core_count;      ///< cores that take part
-  std::uint64_t spill_address;   ///< memory for rays that wait, a multiple of kSpillAlignment; 0: none, no effects
+  std::uint64_t spill_address;   ///< memory for rays that wait, a multiple of kSpillAlignment; 0 without effects
   std::uint64_t spill_bytes;     ///< of each core, one after the other; spill_bytes(recursion_depth) of the scene
 };
 
@@ -52,7 +52,7 @@ class TemplateBoard {
   }
   [[nodiscard]] bool is_busy() { return (engine_->status & kBusy) != 0; }
   [[nodiscard]] bool has_failed() {
-    // Loads of what arrived come after the load that said so.
+    // Loads of the data come after the load that reported it.
     __atomic_thread_fence(__ATOMIC_SEQ_CST);
     return (engine_->status & kError) != 0;
   }
@@ -61,7 +61,7 @@ class TemplateBoard {
     const std::uint64_t offset = bus_address(local) - local_base_;
     return offset <= local_bytes_ && bytes <= local_bytes_ - offset;
   }
-  // Local memory has no cache in front of it on this chip; start() and has_failed() hold the fences.
+  // Local memory has no cache on this chip; start() and has_failed() contain the fences.
   void write_back(const void*, std::uint32_t) {}
   void discard(const void*, std::uint32_t) {}
 
@@ -71,8 +71,8 @@ class TemplateBoard {
   [[nodiscard]] bool must_stop() { return __atomic_load_n(&control_->stop, __ATOMIC_RELAXED) != 0; }
   [[nodiscard]] std::uint32_t tile_count() const { return control_->tile_count; }
 
-  /// The core's part of the memory for rays that wait; no board needs it for frames without effects. A core that is not
-  /// counted has none.
+  /// The core's part of the memory for rays that wait; only frames with effects need it. A core outside of core_count
+  /// has none.
   [[nodiscard]] SpillRegion spill_region(std::uint32_t core_index) const {
     if (core_index >= control_->core_count) return {};
     return {MainAddress{control_->spill_address + std::uint64_t{core_index} * control_->spill_bytes},

@@ -1,5 +1,5 @@
-// What runs on each core of the made-up chip: one call into the kernel, with the local store in the core's arena.
-// template_firmware.h says for which layout.
+// Runs on each core of the made-up chip: one call into the kernel, with the local store in the core's arena.
+// template_firmware.h has the layout.
 // Memory: the arena that the loader gives. Threads: one core. SPDX-License-Identifier: Apache-2.0
 #include "template_firmware.h"
 

@@ -1,6 +1,6 @@
-// Layout, lanes and entry of what runs on each core of the made-up chip. The build may give GRIDIRON_PACKET_WIDTH, the
-// rays along a packet's edge, and GRIDIRON_EFFECTS, the set of effects it is for; GRIDIRON_64K takes the layout of a
-// 64 KB core, which knows no packets; GRIDIRON_LAYOUT names any other.
+// Layout, lanes and entry point of the firmware of the made-up chip. The build may define GRIDIRON_PACKET_WIDTH, the
+// rays along a packet's edge, GRIDIRON_EFFECTS, the set of effects, GRIDIRON_64K for the layout of a 64 KB core, which
+// has no packets, or GRIDIRON_LAYOUT for any other layout.
 // Memory: none. Threads: any. SPDX-License-Identifier: Apache-2.0
 #pragma once
 
@@ -31,7 +31,7 @@ using FirmwareLayout = EffectLayout64K<GRIDIRON_EFFECTS>;
 #else
 using FirmwareLayout = EffectLayout256K<GRIDIRON_EFFECTS, GRIDIRON_PACKET_WIDTH>;
 #endif
-// Lanes of a core without vectors only make its code longer; packets are not for such a core.
+// Several lanes would only make the code of a core without vectors longer; such a core has no packets either.
 #if defined(GRIDIRON_64K) && !defined(__ARM_NEON) && !defined(__SSE2__)
 using FirmwareLanes = Lanes<1>;
 #else
@@ -43,9 +43,9 @@ static_assert(kFitsArena<FirmwareLayout>, "store, code and stack are more than t
 /// Renders the core's share of a frame.
 ///
 /// @param store       start of the core's arena, kLineBytes-aligned, sizeof(FirmwareStore) bytes.
-/// @param core_index  which part of the waiting rays' memory is this core's.
+/// @param core_index  selects the core's part of the memory for rays that wait.
 /// @param frame       the FrameRecord in main memory.
-/// Errors: those of render_tiles; the caller stores the status where the host looks for it.
+/// Errors: those of render_tiles; the caller stores the status for the host.
 Status render_on_template_board(FirmwareStore& store, volatile EngineRegisters* engine, FrameControl* control,
                                 std::uint32_t core_index, MainAddress frame);
 

@@ -1,4 +1,4 @@
-// A port to start from: the contract on top of a DMA engine with one command slot, by a queue in software.
+// A port to start from: the contract over a DMA engine with one command slot, with a queue in software.
 // Copy it, write a Board for your chip (template_board.h shows one), and run tests/contract against it.
 // Memory: a few hundred bytes by value. Threads: one core per object. SPDX-License-Identifier: Apache-2.0
 #pragma once
@@ -18,16 +18,16 @@ struct EngineCommand {
   std::uint32_t bytes = 0;
 };
 
-/// What a chip has to offer.
+/// What a port needs of a chip.
 ///
 /// start              writes the engine's registers; the engine is idle when it is called.
-/// is_busy, has_failed  read them. has_failed speaks of the last command and is asked once it is no longer busy. Where
-///                      software stands in for the engine, is_busy may be where it copies.
+/// is_busy, has_failed  read them. has_failed refers to the last command and is called once it is no longer busy. Where
+/// software replaces the engine, is_busy may do the copy.
 /// bus_address        of local memory, as the engine sees it.
 /// holds              whether bytes lie in this core's local memory.
 /// write_back         makes stored bytes visible to the engine (caches: clean), then orders them before start.
 /// discard            makes later loads fetch what the engine wrote (caches: invalidate), ordered after is_busy.
-/// next_tile          a number that no core has had in this frame: an atomic add in memory that all cores share.
+/// next_tile          a number that no other core gets in this frame: an atomic add in memory that all cores share.
 /// must_stop          the host's request to end the frame.
 template <class B>
 concept Board = requires(B& board, const B& constant, const EngineCommand& command, const void* local,
@@ -44,8 +44,8 @@ concept Board = requires(B& board, const B& constant, const EngineCommand& comma
   { constant.tile_count() } -> std::same_as<std::uint32_t>;
 };
 
-/// A Board that knows which main memory its core may transfer: what reaches() refuses is never started. One without it
-/// has an engine, or a guard before it, that fails such a transfer.
+/// A Board that knows which main memory its core may transfer: a transfer that reaches() rejects is never started.
+/// Without it, the engine or a guard before it must fail such a transfer.
 template <class B>
 concept BoundedBoard = Board<B> && requires(const B& constant, MainAddress address, std::uint32_t bytes) {
   { constant.reaches(address, bytes) } -> std::same_as<bool>;
@@ -53,8 +53,8 @@ concept BoundedBoard = Board<B> && requires(const B& constant, MainAddress addre
 
 /// The contract over a Board.
 ///
-/// @tparam kQueueDepth   commands that may be pending; the engine works on one, the others lie here in order.
-/// @tparam kPollBound    how often one command is asked whether it is done before it counts as timed out.
+/// @tparam kQueueDepth   commands that may be pending; the engine works on one, the others wait here in order.
+/// @tparam kPollBound    how often one command is polled before it counts as timed out.
 template <Board B, std::uint32_t kQueueDepth = 16, std::uint32_t kPollBound = 1u << 20>
 class TemplatePort {
  public:
@@ -128,7 +128,7 @@ class TemplatePort {
     if (count_ == kQueueDepth) return Status::kTransferQueueFull;
     if (is_stuck_) return Status::kTransferTimedOut;
 
-    // Duties before a transfer: stored bytes must have left the cache; of a get's destination too, lest the cache
+    // Duties before a transfer: stored bytes must have left the cache, also in a get's destination, lest the cache
     // write an old line over the new bytes.
     board_.write_back(command.local, command.engine.bytes);
     at(count_) = command;
@@ -137,8 +137,8 @@ class TemplatePort {
     return Status::kOk;
   }
 
-  // Waits for the oldest command, within a bound, and starts the next one. An engine that ran into the bound is never
-  // started again: nobody knows what it still does. Its commands all count as timed out.
+  // Waits for the oldest command, within a bound, and starts the next one. After a timeout the engine is never started
+  // again, because its state is unknown; all its commands count as timed out.
   void finish_first() {
     const Command& command = at(0);
     std::uint32_t polls = 0;
@@ -148,7 +148,7 @@ class TemplatePort {
     } else if (board_.has_failed()) {
       errors_.failed |= TagMask::of(command.tag).bits;
     } else if (command.is_get) {
-      // Duty after a get: no load may be served from a line that was fetched before the bytes arrived.
+      // Duty after a get: no load may read a line that was fetched before the bytes arrived.
       board_.discard(command.local, command.engine.bytes);
     }
     first_ = (first_ + 1) % kQueueDepth;

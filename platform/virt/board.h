@@ -1,5 +1,5 @@
-// The Board (template_port.h) of a worker. A copy is made when it is first asked whether it has ended, as late as the
-// contract allows: what is used before its wait is not there yet.
+// The Board (template_port.h) of a worker. A copy is made when its end is first polled, as late as the contract allows,
+// so that a use before the wait reads old bytes.
 // Memory: the command that was started. Threads: one worker. SPDX-License-Identifier: Apache-2.0
 #pragma once
 
@@ -22,7 +22,7 @@ class VirtBoard : public SharedTiles {
     command_ = command;
     is_started_ = true;
   }
-  // The hart itself copies, in machine mode: its own order of loads and stores is all the order that is needed.
+  // The hart itself copies, in machine mode: its own order of loads and stores is sufficient.
   [[nodiscard]] bool is_busy() {
     if (is_started_) {
       has_failed_ = gridiron_call(command_.target, command_.source, command_.bytes, Call::kCopy) == 0;
@@ -36,7 +36,7 @@ class VirtBoard : public SharedTiles {
     const std::uint64_t offset = bus_address(local) - store_begin_;
     return offset <= store_bytes_ && bytes <= store_bytes_ - offset;
   }
-  // The hart's own loads and stores copy: there is nothing that its cache could hold back.
+  // The hart's own loads and stores copy, so its cache cannot hold back anything.
   void write_back(const void*, std::uint32_t) {}
   void discard(const void*, std::uint32_t) {}
 

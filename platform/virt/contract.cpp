@@ -1,5 +1,5 @@
-// The contract checks on the board: on all workers at the same time, each with its arena and 64 KB of main memory where
-// a job would be. A worker looks at these by itself, which its PMP lets it in this image alone.
+// The contract checks on the board: on all workers at the same time, each with its arena and 64 KB of main memory in
+// place of a job. In this image alone PMP lets a worker read them directly.
 // Memory: arenas, 384 KB of main memory. Threads: all harts. SPDX-License-Identifier: Apache-2.0
 #include "contract_checks.h"
 
@@ -19,7 +19,7 @@ namespace {
 
 static_assert(kWindowBytes == contract::kMainBytes);
 
-/// Behind a worker's stack.
+/// Memory above a worker's stack.
 struct ContractArena {
   std::byte stack[kWorkerStackBytes];
   alignas(128) std::byte local[contract::kLocalBytes];

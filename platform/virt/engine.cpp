@@ -20,7 +20,7 @@ std::uint64_t gridiron_serve(std::uint64_t target, std::uint64_t source, std::ui
 [[noreturn]] void gridiron_trapped(std::uint64_t cause, std::uint64_t address, std::uint64_t pc);
 }
 
-// virt.ld has a place for each.
+// virt.ld places each of these.
 [[gnu::section(".shared")]] SharedMemory gridiron_shared;
 [[gnu::section(".arenas")]] Arena gridiron_arenas[kWorkerCount];
 
@@ -52,7 +52,7 @@ bool is_in_arena(std::uint64_t address, std::uint64_t bytes) {
 // pmpaddr of a region whose size is a power of two and whose address a multiple of it.
 constexpr std::uint64_t region(std::uint64_t address, std::uint64_t bytes) { return (address | (bytes / 2 - 1)) >> 2; }
 
-// What user mode may touch on this hart; what no entry names it may not.
+// Opens the memory that user mode may touch on this hart; without an entry it may not.
 void open_memory(std::uint32_t core) {
   constexpr std::uint64_t kRead = 1, kWrite = 2, kExecute = 4, kPowerOfTwo = 3 << 3;
   constexpr std::uint64_t kData = kRead | kWrite | kPowerOfTwo, kCode = kRead | kExecute | kPowerOfTwo;

@@ -1,6 +1,6 @@
-// Master and workers of a frame. The build gives GRIDIRON_PACKET_WIDTH and GRIDIRON_EFFECTS, the layout of the image;
+// Master and workers of a frame. The build defines GRIDIRON_PACKET_WIDTH and GRIDIRON_EFFECTS, the layout of the image;
 // GRIDIRON_FORGETFUL and GRIDIRON_TRESPASS make images that are wrong on purpose.
-// Memory: what the cores share, arenas, the job's memory. Threads: all harts.
+// Memory: shared memory, arenas, the job's memory. Threads: all harts.
 // SPDX-License-Identifier: Apache-2.0
 #include <cstdint>
 

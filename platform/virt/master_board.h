@@ -1,4 +1,4 @@
-// The MasterBoard (master.h): wakes workers, and sleeps until one of them wakes the master or a while has passed.
+// The MasterBoard (master.h): wakes workers, and sleeps until one of them wakes the master or some time has passed.
 // Memory: registers. Threads: hart 0. SPDX-License-Identifier: Apache-2.0
 #pragma once
 
@@ -19,7 +19,7 @@ class VirtMaster {
     hush_hart(0);
   }
   [[nodiscard]] std::uint64_t milliseconds() { return clock_ticks() / kTicksPerMillisecond; }
-  // Workers copied by their own stores, before they told that they have finished.
+  // Workers copied by their own stores, before they reported that they have finished.
   void take_results() {}
 
  private:

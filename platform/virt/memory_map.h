@@ -1,4 +1,4 @@
-// Where things are on the board: main memory, the arenas that stand for local memory, what the cores share, registers.
+// Addresses of the board: main memory, the arenas that serve as local memory, shared memory, registers.
 // Memory: virt.ld places the objects named here. Threads: none. SPDX-License-Identifier: Apache-2.0
 #pragma once
 
@@ -23,7 +23,7 @@ struct alignas(kArenaBytes) Arena {
   std::byte bytes[kArenaBytes];
 };
 
-/// What the contract checks of a worker came to.
+/// Results of the contract checks on a worker.
 struct ContractReport {
   std::uint32_t checks;
   std::uint32_t failures;
@@ -31,12 +31,12 @@ struct ContractReport {
   const char* failure;  ///< what did not hold there
 };
 
-/// What master and workers share: all that a worker may write beside its arena.
+/// Memory of master and workers: all that a worker may write besides its arena.
 inline constexpr std::size_t kSharedBytes = 0x20000;
 inline constexpr std::uint32_t kMostTiles = 7000;
 struct alignas(kSharedBytes) SharedMemory {
   RunControl control;
-  std::uint64_t trespass;                ///< of the image that shows what a worker must not do: which of them it does
+  std::uint64_t trespass;                ///< which forbidden access the image for such accesses makes
   ContractReport reports[kWorkerCount];  ///< of the image of the contract checks
   TileResult tiles[kMostTiles];
 };
@@ -46,7 +46,7 @@ extern "C" {
 extern Arena gridiron_arenas[kWorkerCount];
 extern SharedMemory gridiron_shared;
 
-// What else virt.ld knows: where the code's region and the job's memory begin and end.
+// Symbols of virt.ld: where the code's region and the job's memory begin and end.
 extern const std::byte code_begin[], code_end[], job_begin[], job_end[];
 }
 

@@ -50,8 +50,8 @@ gridiron_enter_worker:
   li      ra, 0
   mret
 
-# std::uint64_t gridiron_call(a0..a2 arguments, a3 which): a worker's call of machine mode, to the compiler a function
-# like any other, so that only its return address has to be kept.
+# std::uint64_t gridiron_call(a0..a2 arguments, a3 which): a worker's call of machine mode. To the compiler it is an
+# ordinary function, so only its return address has to be kept.
   .globl gridiron_call
 gridiron_call:
   ecall
@@ -74,7 +74,7 @@ trap_entry:
   csrrw   sp, mscratch, sp
   mret
 5:
-  # Anything else does not come back; the hart's stack is begun anew, whatever mode it came from.
+  # Anything else does not return; the hart's stack is reset, whatever mode it came from.
   csrr    t0, mhartid
   addi    t0, t0, 1
   slli    t0, t0, kHartStackShift

@@ -1,4 +1,4 @@
-// Wrong on purpose, for an image that shows what is noticed: worker 1 touches what is not its own, or has it copied.
+// Wrong on purpose, for an image that must fail: worker 1 touches memory of others, or has it copied.
 // Memory: none. Threads: worker 1. SPDX-License-Identifier: Apache-2.0
 #pragma once
 
@@ -17,13 +17,13 @@ namespace gridiron::port {
 
 inline constexpr std::uint64_t kTrespassCount = 15;
 
-/// What worker 1 must not do itself. @param kind  1 to 12; others: nothing.
+/// Makes a forbidden access of worker 1. @param kind  1 to 12; others: nothing.
 inline void trespass(std::uint64_t kind) {
   const std::uint64_t arena = address_of(&gridiron_arenas[1]);
   switch (kind) {
     case 1: load_from(arena - kArenaBytes); break;     // a neighbour's first word
-    case 2: store_to(arena - 4); break;                // what a stack that is too deep meets
-    case 3: load_from(arena + kArenaBytes); break;     // the first word behind its own
+    case 2: store_to(arena - 4); break;                // where a stack that is too deep would write
+    case 3: load_from(arena + kArenaBytes); break;     // the first word after its own
     case 4: store_to(address_of(code_begin) + 64); break;
     case 5: load_from(address_of(code_end)); break;    // the master's data
     case 6: load_from(address_of(job_begin)); break;
@@ -37,8 +37,8 @@ inline void trespass(std::uint64_t kind) {
   }
 }
 
-/// Asks for transfers with an end that is not the job's memory or the core's own: of kind 13 a get from the code, of 14
-/// puts from the neighbour's arena, of 15 the same without the port. Others are handed on as they are.
+/// Starts forbidden transfers: with kind 13 a get from the code, with 14 puts from the neighbour's arena, with 15 the
+/// same without the port. Other transfers are passed on unchanged.
 template <Platform P>
 class TrespassingPort : public PassingPort<P> {
  public:

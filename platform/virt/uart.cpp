@@ -1,4 +1,4 @@
-// The serial line: an NS16550 as the loader, or the emulator, has set it up.
+// The serial line: an NS16550 that the loader or the emulator has set up.
 // Memory: registers. Threads: the master. SPDX-License-Identifier: Apache-2.0
 #include <cstdint>
 

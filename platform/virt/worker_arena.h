@@ -1,5 +1,5 @@
 // A worker's arena: its stack at the bottom, so that one that is too deep leaves the arena and traps, then its store.
-// The build gives GRIDIRON_PACKET_WIDTH and GRIDIRON_EFFECTS, and GRIDIRON_CONTRACT for that of the contract checks.
+// The build defines GRIDIRON_PACKET_WIDTH and GRIDIRON_EFFECTS, and GRIDIRON_CONTRACT for the contract checks.
 // Memory: gridiron_arenas. Threads: each worker its own. SPDX-License-Identifier: Apache-2.0
 #pragma once
 
@@ -12,8 +12,8 @@
 
 namespace gridiron::port {
 
-/// Main memory that a worker may touch itself too, from the job's address on, one after the other: in the image of the
-/// contract checks, which look at what transfers did.
+/// Main memory that a worker may also touch directly, from the job's address on, one window after the other: only in
+/// the image of the contract checks, which inspect the result of transfers.
 inline constexpr std::uint64_t kWindowBytes = 0x10000;
 #ifdef GRIDIRON_CONTRACT
 inline constexpr bool kHasWindow = true;
@@ -21,7 +21,7 @@ inline constexpr bool kHasWindow = true;
 inline constexpr bool kHasWindow = false;
 #endif
 
-/// What the layout allows, run_worker and the port included.
+/// The layout's budget, which includes run_worker and the port.
 inline constexpr std::size_t kWorkerStackBytes = FirmwareLayout::kStackBudgetBytes;
 static_assert(kWorkerStackBytes % 128 == 0, "the store begins on 128 bytes");
 

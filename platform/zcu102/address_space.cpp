@@ -1,4 +1,4 @@
-// The page tables of the master and of the cores at work.
+// The page tables of the master and of the worker cores.
 // Source: Arm Architecture Reference Manual for A-profile (DDI 0487), VMSAv8-64.
 // Memory: section .master. Threads: core 0, MMU off, before the others start. SPDX-License-Identifier: Apache-2.0
 #include "address_space.h"
@@ -36,7 +36,7 @@ bool map_between(AddressSpace& space, const char* begin, const char* end, Rights
   return space.map(address, reinterpret_cast<std::uintptr_t>(end) - address, rights);
 }
 
-// What master and cores at work have in common: the program, what they tell each other, the console.
+// Maps what master and workers share: the program, their messages, the console.
 bool map_common(AddressSpace& space) {
   return map_between(space, code_begin, code_end, Rights::kCode) &&
          map_between(space, code_end, constants_end, Rights::kConstants) &&
@@ -44,7 +44,7 @@ bool map_common(AddressSpace& space) {
          space.map(kUartAddress, kRegisterPageBytes, Rights::kRegisters);
 }
 
-// The master reads the job and writes its result; it starts the cores.
+// Maps what the master needs to read the job, write its result and start the cores.
 bool map_master(AddressSpace& space) {
   return map_between(space, master_begin, master_end, Rights::kData) &&
          space.map(kJobAddress, kMainMemoryEnd - kJobAddress, Rights::kData) &&
@@ -52,13 +52,13 @@ bool map_master(AddressSpace& space) {
          space.map(kApuAddress, kRegisterPageBytes, Rights::kRegisters);
 }
 
-// A core at work: its arena and its DMA channel. Main memory is out of its reach but by DMA.
+// Maps a worker's arena and its DMA channel. It reaches main memory only by DMA.
 bool map_worker(AddressSpace& space, std::uint32_t core) {
   return space.map(kOnChipAddress + std::uint64_t{core} * kArenaBytes, kArenaBytes, Rights::kData) &&
          space.map(kGdmaAddress + core * kGdmaChannelBytes, kRegisterPageBytes, Rights::kRegisters);
 }
 
-// What was cleared and built above went past the caches: lines that they hold from before are old.
+// The clearing and building above bypassed the caches, so lines that they hold from before are old.
 void forget_old_lines() {
   invalidate(reinterpret_cast<std::uintptr_t>(cleared_begin), static_cast<std::uint64_t>(master_end - cleared_begin));
 }
@@ -99,7 +99,7 @@ bool AddressSpace::map(std::uint64_t address, std::uint64_t bytes, Rights rights
 
 void build_spaces() {
   using namespace gridiron::port;
-  // The master is core 0: what is that core's own is its too.
+  // The master is core 0, so it also gets that core's own mappings.
   bool is_mapped = map_common(spaces[0]) && map_master(spaces[0]) && map_worker(spaces[0], 0);
   for (std::uint32_t core = 0; core < kCoreCount; ++core) {
     is_mapped = is_mapped && map_common(spaces[1 + core]) && map_worker(spaces[1 + core], core);

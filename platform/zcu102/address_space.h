@@ -1,4 +1,4 @@
-// Page tables: what each core may touch. Identity everywhere; what is not listed faults.
+// Page tables: what each core may touch. All mappings are identities; unmapped addresses fault.
 // Memory: tables in main memory that no core but the first, as master, can write. Threads: built by one core before the
 // others run. SPDX-License-Identifier: Apache-2.0
 #pragma once
@@ -23,7 +23,7 @@ class AddressSpace {
   /// Maps [address, address + bytes) on itself.
   ///
   /// @param address  multiple of 4,096, as is bytes.
-  /// @returns        false where the tables do not suffice; what was mapped until then stays.
+  /// @returns        false if the tables do not suffice; earlier mappings stay.
   [[nodiscard]] bool map(std::uint64_t address, std::uint64_t bytes, Rights rights);
 
   /// For TTBR0 with T0SZ = 32.
@@ -38,7 +38,7 @@ class AddressSpace {
 
   Table* next_table(std::uint64_t& entry);
 
-  Table tables_[kTableCount];  // the first one is the root, 4 entries of which count
+  Table tables_[kTableCount];  // the first one is the root, of which 4 entries are used
   std::uint32_t used_;
 };
 

@@ -1,4 +1,4 @@
-// The data cache by address, to the point of coherency, and the barrier that goes with it.
+// Maintenance of the data cache by address, to the point of coherency, and the barrier that goes with it.
 // Source: Arm Architecture Reference Manual for A-profile (DDI 0487), D7.5.9.
 // Memory: none. Threads: any; the lines' owner calls. SPDX-License-Identifier: Apache-2.0
 #pragma once
@@ -9,7 +9,7 @@
 
 namespace gridiron::port {
 
-/// Everything before, cache operations and accesses to registers too, ends before anything that comes after.
+/// All earlier accesses, including cache operations and registers, end before any later one.
 inline void order_all() { asm volatile("dsb sy" : : : "memory"); }
 
 template <class Visit>
@@ -20,12 +20,12 @@ inline void for_each_line(std::uint64_t address, std::uint64_t bytes, Visit&& vi
   }
 }
 
-/// Dirty lines are in memory afterwards, and no line is cached; not ordered before what follows.
+/// Writes dirty lines to memory and removes all from the cache; not ordered before what follows.
 inline void clean_and_invalidate(std::uint64_t address, std::uint64_t bytes) {
   for_each_line(address, bytes, [](std::uint64_t line) { asm volatile("dc civac, %0" : : "r"(line) : "memory"); });
 }
 
-/// Lines are forgotten, dirty or not, those at the ends wholly; ordered before what follows.
+/// Discards lines, dirty or not, including whole lines at the ends; ordered before what follows.
 inline void invalidate(std::uint64_t address, std::uint64_t bytes) {
   for_each_line(address, bytes, [](std::uint64_t line) { asm volatile("dc ivac, %0" : : "r"(line) : "memory"); });
   order_all();

@@ -1,4 +1,4 @@
-// The contract checks on the board: core 0, its arena, its channel; main memory is where a job would be.
+// The contract checks on the board: core 0, its arena, its channel, and main memory in place of a job.
 // Memory: arena of core 0, 64 KB of main memory. Threads: core 0. SPDX-License-Identifier: Apache-2.0
 #include <cstddef>
 #include <cstdint>
@@ -51,7 +51,7 @@ class BoardBench {
   PlatformType& platform() { return port_; }
   std::byte* local() { return arena0.local; }
   MainAddress main() { return {kJobAddress}; }
-  // The DMA looks into no cache.
+  // The DMA does not read caches.
   void poke(std::uint32_t offset, std::byte value) {
     *main_memory(offset) = value;
     clean_and_invalidate(kJobAddress + offset, 1);

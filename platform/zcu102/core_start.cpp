@@ -1,4 +1,4 @@
-// How the other cores come to run: by PSCI where firmware owns EL3, else by taking them out of reset.
+// Starts the other cores: by PSCI if firmware owns EL3, else by taking them out of reset.
 // Source: UG1087, modules APU and CRF_APB; Arm Power State Coordination Interface (DEN 0022).
 // Memory: registers. Threads: core 0, as master. SPDX-License-Identifier: Apache-2.0
 #include "core_start.h"
@@ -10,7 +10,7 @@
 
 extern "C" {
 void _start();
-// Level that core 0 was entered at; start.S writes it before anything else runs.
+// Exception level in which core 0 was entered; start.S writes it first of all.
 std::uint32_t entry_level = 0;
 }
 
@@ -52,7 +52,7 @@ bool ask_firmware(std::uint32_t core, std::uint64_t entry) {
 
 bool start_core(std::uint32_t core) {
   const std::uint64_t entry = reinterpret_cast<std::uintptr_t>(&_start);
-  // What the core reads before its cache is on has left this one.
+  // The core reads these before its cache is on, so they must have left this one's.
   order_all();
   if (entry_level != 3) return ask_firmware(core, entry);
   release_from_reset(core, entry);

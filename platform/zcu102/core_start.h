@@ -6,10 +6,10 @@
 
 namespace gridiron::port {
 
-/// Lets a core run from _start (start.S): through the firmware that owns EL3 where there is one, else by its reset.
+/// Lets a core run from _start (start.S): through the firmware that owns EL3, or without one by its reset.
 ///
 /// @param core   [1, kCoreCount), not started before.
-/// @returns      false where that firmware refuses.
+/// @returns      false if that firmware refuses.
 [[nodiscard]] bool start_core(std::uint32_t core);
 
 }  // namespace gridiron::port

@@ -1,4 +1,4 @@
-// What a core does that did what it must not: tells, and ends the run.
+// Handles the fault of a core: prints it and ends the run.
 // Memory: a stack of start.S. Threads: any core. SPDX-License-Identifier: Apache-2.0
 #include <cstdint>
 
@@ -10,7 +10,7 @@
 extern "C" void report_fault(std::uint64_t vector, std::uint64_t core, std::uint64_t cause, std::uint64_t pc,
                              std::uint64_t address);
 
-// Called by start.S. The first core tells; others that fault too keep still.
+// Called by start.S. The first core prints; others that fault too stay silent.
 void report_fault(std::uint64_t vector, std::uint64_t core, std::uint64_t cause, std::uint64_t pc,
                   std::uint64_t address) {
   using namespace gridiron::port;

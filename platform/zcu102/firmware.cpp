@@ -1,7 +1,7 @@
-// What the cores do: core 0 is master and worker, cores 1 to 3 are workers. The build gives GRIDIRON_EFFECTS, the set
-// of effects of the image, 0: frames are rendered by packets; GRIDIRON_FORGETFUL and GRIDIRON_TRESPASS make images that
-// are wrong on purpose.
-// Memory: arenas in on-chip memory, what is shared in main memory. Threads: four cores.
+// Core 0 is master and worker, cores 1 to 3 are workers. The build defines GRIDIRON_EFFECTS, the set of effects of the
+// image (0: frames are rendered by packets); GRIDIRON_FORGETFUL and GRIDIRON_TRESPASS make images that are wrong on
+// purpose.
+// Memory: arenas in on-chip memory, shared data in main memory. Threads: four cores.
 // SPDX-License-Identifier: Apache-2.0
 #include <gridiron/base/effect_records.h>
 #include <gridiron/base/lanes.h>
@@ -55,16 +55,17 @@ using FirmwareLayout = EffectLayout64K<GRIDIRON_EFFECTS>;
 using FirmwareLanes = Lanes<4>;
 using FirmwareStore = LocalStore<FirmwareLayout>;
 
-// What the kernel may need, and what the board's own functions around it do.
+// Budget of the kernel's stack, and of the board's own functions around it.
 constexpr std::uint32_t kBoardStackBytes = 2048;
 constexpr std::uint32_t kStackBytes = FirmwareLayout::kStackBudgetBytes + kBoardStackBytes;
 constexpr std::uint32_t kMostTiles = 16384;
 
-// A core's local memory. The stack is below the store and grows down: one that is too deep leaves the arena and faults.
+// A core's local memory. The stack is below the store and grows down: if it is too deep, it leaves the arena and
+// faults.
 struct alignas(4096) Arena {
   alignas(16) std::byte stack[kStackBytes];
   union {
-    FirmwareStore store;  // as the memory comes up: nobody would run a constructor, run_worker wants none
+    FirmwareStore store;  // memory as it comes up: its constructor is not run, and run_worker does not need it
   };
 
   Arena() {}
@@ -88,7 +89,7 @@ TileResult tiles[kMostTiles];
 std::uint64_t trespass_kind;
 #endif
 
-// Core 0 tells how far the frame is when it claims a tile; the master's own words come when it has none left.
+// Core 0 prints the progress when it claims a tile; the master itself prints when core 0 has none left.
 class TellingBoard : public GdmaBoard {
  public:
   TellingBoard(std::uint32_t core, Arena& arena)
@@ -110,7 +111,7 @@ class TellingBoard : public GdmaBoard {
   std::uint32_t told_ = 0;
 };
 
-// On the core's own stack, with its own page tables.
+// Runs on the core's own stack, with its own page tables.
 void work(std::uint64_t core) {
   const auto index = static_cast<std::uint32_t>(core);
   Arena& arena = *kArenas[index];
@@ -138,7 +139,7 @@ class ZynqMaster {
 
   void start_core(std::uint32_t core) {
     if (core == 0) {
-      // The DMA looks into no cache: what a loader may have left there goes to memory before the first core runs.
+      // The DMA does not read caches: what a loader left there must be in memory before the first core runs.
       clean_and_invalidate(job_.base_address, job_.loaded_bytes);
       order_all();
     } else if (!port::start_core(core)) {
@@ -154,7 +155,7 @@ class ZynqMaster {
     constexpr std::uint64_t kUsualFrequency = 100'000'000;  // where no loader has told it
     return count / ((frequency != 0 ? frequency : kUsualFrequency) / 1000);
   }
-  // The planes came by DMA; this core has stored nothing there, so no line of them is dirty.
+  // The planes came by DMA. This core has stored nothing there, so none of their lines is dirty.
   void take_results() { invalidate(job_.result_address, job_.result_bytes); }
 
  private:
@@ -165,7 +166,7 @@ static_assert(MasterBoard<ZynqMaster>);
 }  // namespace
 }  // namespace gridiron::port
 
-// Where start.S puts the stacks of cores.
+// start.S puts the stacks of the cores here.
 extern "C" {
 extern const std::byte* const arena_stack_tops[gridiron::port::kCoreCount];
 const std::byte* const arena_stack_tops[gridiron::port::kCoreCount] = {

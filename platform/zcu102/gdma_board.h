@@ -1,4 +1,4 @@
-// One core's view of the chip, for TemplatePort: its GDMA channel, the cache in front of its arena, the tile counter.
+// One core's view of the chip, for TemplatePort: its GDMA channel, the cache of its arena, the tile counter.
 // Source: Zynq UltraScale+ register reference (UG1087), module ZDMA; UG1085, chapter 19.
 // Memory: registers and the shared RunControl. Threads: one core. SPDX-License-Identifier: Apache-2.0
 #pragma once
@@ -39,8 +39,8 @@ static_assert(offsetof(GdmaRegisters, interrupt_status) == 0x100 && offsetof(Gdm
               offsetof(GdmaRegisters, source_low) == 0x128 && offsetof(GdmaRegisters, target_low) == 0x138 &&
               offsetof(GdmaRegisters, control2) == 0x200);
 
-/// Local memory is on-chip memory behind the core's data cache, and the DMA does not look into caches: the lines are
-/// written back and discarded by address. Buffers share no line with other data.
+/// Local memory is on-chip memory behind the core's data cache, which the DMA does not read. So lines are written back
+/// and discarded by address. Buffers share no line with other data.
 class GdmaBoard : public SharedTiles {
  public:
   static constexpr std::uint32_t kEnable = 1u << 0;        // control2
@@ -74,7 +74,7 @@ class GdmaBoard : public SharedTiles {
   [[nodiscard]] bool is_busy() { return (engine_.interrupt_status & (kDone | kErrors)) == 0; }
   [[nodiscard]] bool has_failed() {
     const bool failed = (engine_.interrupt_status & kErrors) != 0;
-    // Loads of what arrived come after the load that said so.
+    // Loads of the data come after the load that reported it.
     order_all();
     return failed;
   }
@@ -83,16 +83,16 @@ class GdmaBoard : public SharedTiles {
     const std::uint64_t offset = bus_address(local) - local_base_;
     return offset <= local_bytes_ && bytes <= local_bytes_ - offset;
   }
-  // The DMA is behind no MMU: what a core must not touch it must not have copied either.
+  // The DMA is behind no MMU, so the board must also refuse copies of memory that the core must not touch.
   [[nodiscard]] bool reaches(MainAddress address, std::uint32_t bytes) const {
     constexpr std::uint64_t kJobBytes = kMainMemoryEnd - kJobAddress;
     const std::uint64_t offset = address.value - kJobAddress;
     return offset <= kJobBytes && bytes <= kJobBytes - offset;
   }
 
-  // Of a put the lines' bytes go out; of a get no dirty line stays that could fall on the new bytes.
+  // For a put this sends the stored bytes; for a get no dirty line is left that could overwrite the new bytes.
   void write_back(const void* local, std::uint32_t bytes) { clean_and_invalidate(bus_address(local), bytes); }
-  // What was fetched ahead while the DMA wrote is old.
+  // Lines that were fetched while the DMA wrote are old.
   void discard(const void* local, std::uint32_t bytes) { invalidate(bus_address(local), bytes); }
 
  private:

@@ -1,5 +1,5 @@
-// Where things are on a Zynq UltraScale+ as this port uses it: addresses, sizes, who may touch what. zcu102.ld and
-// start.S know the same numbers; address_space.cpp makes page tables of them.
+// Addresses of a Zynq UltraScale+ as this port uses it, sizes, and access rights. zcu102.ld and start.S use the same
+// numbers; address_space.cpp makes page tables of them.
 // Source: Zynq UltraScale+ Device Technical Reference Manual (UG1085), chapter 10, and register reference (UG1087).
 // Memory: constants alone. Threads: any. SPDX-License-Identifier: Apache-2.0
 #pragma once
@@ -16,7 +16,7 @@ inline constexpr std::uint64_t kOnChipAddress = 0xFFFC0000;
 inline constexpr std::uint32_t kOnChipBytes = 256 * 1024;
 inline constexpr std::uint32_t kArenaBytes = kOnChipBytes / kCoreCount;
 
-/// Main memory. Below the firmware nothing is mapped, so that null pointers fault; behind it lies the job.
+/// Main memory. Nothing is mapped below the firmware, so that null pointers fault; the job lies after it.
 inline constexpr std::uint64_t kFirmwareAddress = 0x00200000;
 inline constexpr std::uint64_t kFirmwareBytes = 0x00200000;
 inline constexpr std::uint64_t kJobAddress = kFirmwareAddress + kFirmwareBytes;

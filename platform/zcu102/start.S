@@ -5,9 +5,9 @@
 
 #define CPUECTLR_EL1 S3_1_C15_C2_1
 
-// EL1: MMU off, caches off, reserved ones as the architecture wants them.
+// EL1: MMU off, caches off, reserved bits as the architecture requires.
 #define SCTLR_OFF 0x30D00800
-// M, C, I, WXN: what is writable is not run.
+// M, C, I, WXN: writable memory is not executable.
 #define SCTLR_ON 0x00081005
 // 32-bit addresses from TTBR0 alone, tables of 4 KB pages, walks cached and inner shareable.
 #define TCR_VALUE 0x00803520
@@ -34,7 +34,7 @@ _start:
   b.eq from_el2
   br x0
 
-// Nothing ran before: coherence between the cores is ours to switch on. EL1 stays secure; there is no EL2 then.
+// Nothing ran before, so this code switches coherence between the cores on. EL1 stays secure; there is no EL2 then.
 from_el3:
   mrs x1, CPUECTLR_EL1
   orr x1, x1, #(1 << 6)          // SMPEN
@@ -50,7 +50,7 @@ from_el3:
   isb
   eret
 
-// Other firmware owns EL3 (PSCI) and has left EL2 to us: it is passed through.
+// Other firmware owns EL3 (PSCI) and has entered in EL2, which is passed through.
 from_el2:
   mov x1, #(1 << 31)             // RW
   msr hcr_el2, x1
@@ -133,7 +133,7 @@ map_on:
   ret
 
 // call_confined(function, argument, stack_top, inner_root, outer_root): calls function(argument) on another stack and
-// with other page tables, then takes back both.
+// with other page tables, then restores both.
   .section .text.call_confined, "ax"
   .global call_confined
 call_confined:
@@ -163,7 +163,7 @@ call_confined:
   ldp x29, x30, [sp], #32
   ret
 
-// Sixteen vectors, none of which is expected: each tells its number.
+// Sixteen vectors, none of which is expected: each reports its number.
   .section .text.vectors, "ax"
   .balign 2048
 vectors:
@@ -175,7 +175,7 @@ vectors:
   .set number, number + 1
   .endr
 
-// Reports on a stack of its own: the core's may be what failed. A fault in the report ends the core silently.
+// Reports on a stack of its own, because the core's may be the cause. A fault in the report ends the core silently.
 fault:
   mrs x1, tpidr_el1
   cbnz x1, park_here

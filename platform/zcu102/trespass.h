@@ -1,4 +1,4 @@
-// Wrong on purpose, for an image that shows what is noticed: a core at work touches what is not its own.
+// Wrong on purpose, for an image that must fail: a worker core touches memory of others.
 // Memory: none. Threads: core 1. SPDX-License-Identifier: Apache-2.0
 #pragma once
 
@@ -17,13 +17,13 @@ namespace gridiron::port {
 
 inline constexpr std::uint64_t kTrespassCount = 15;
 
-/// What core 1 must not do. @param kind  1 to 11; others: nothing.
+/// Makes a forbidden access of core 1. @param kind  1 to 11; others: nothing.
 inline void trespass(std::uint64_t kind) {
   constexpr std::uint64_t kArena = kOnChipAddress + kArenaBytes;
   switch (kind) {
     case 1: load_from(kOnChipAddress); break;           // a neighbour's first word
-    case 2: store_to(kArena - 4); break;                // what a stack that is too deep meets
-    case 3: load_from(kArena + kArenaBytes); break;     // the first word behind its own
+    case 2: store_to(kArena - 4); break;                // where a stack that is too deep would write
+    case 3: load_from(kArena + kArenaBytes); break;     // the first word after its own
     case 4: store_to(kFirmwareAddress + 64); break;     // code
     case 5: load_from(reinterpret_cast<std::uintptr_t>(master_begin)); break;
     case 6: load_from(kJobAddress); break;
@@ -36,9 +36,8 @@ inline void trespass(std::uint64_t kind) {
   }
 }
 
-/// Asks for transfers with an end that is not the job's memory or the core's own: of kind 12 puts to the firmware, of
-/// 13 a get from it, of 14 a get from behind main memory, of 15 puts from a neighbour's arena. Others are handed on as
-/// they are.
+/// Starts forbidden transfers: with kind 12 puts to the firmware, with 13 a get from it, with 14 a get from beyond main
+/// memory, with 15 puts from a neighbour's arena. Other transfers are passed on unchanged.
 template <Platform P>
 class TrespassingPort : public PassingPort<P> {
  public:

@@ -18,7 +18,7 @@ constexpr std::uint32_t kTransmitFull = 1u << 4;
 constexpr std::uint64_t kFifo = 0x30;
 constexpr std::uint32_t kPollBound = 1u << 20;
 
-std::uint32_t speaker = 0;  // core + 1 of the one that is heard; 0: all are
+std::uint32_t speaker = 0;  // core + 1 of the only one that may print; 0: all may
 
 std::uint32_t this_core() {
   std::uint64_t affinity = 0;
@@ -39,7 +39,7 @@ bool take_uart() {
   if (!__atomic_compare_exchange_n(&speaker, &nobody, this_core() + 1, false, __ATOMIC_ACQ_REL, __ATOMIC_ACQUIRE)) {
     return false;
   }
-  // Others may be between their look at the speaker and their character.
+  // Other cores may be between their check of the speaker and their character.
   for (std::uint32_t i = 0; i < kPollBound / 16; ++i) asm volatile("yield");
   return true;
 }

@@ -1,4 +1,4 @@
-// The linker scripts of the boards: what they refuse, linked as the boards' images are, with sections collected.
+// The linker scripts of the boards: which images they reject, linked like the boards' own, with sections collected.
 // SPDX-License-Identifier: Apache-2.0
 #include <gtest/gtest.h>
 

@@ -1,4 +1,4 @@
-// tools/fetch_scenes against a mirror on disk: nothing that is not what was asked for is left behind.
+// tools/fetch_scenes with a mirror on disk: a wrong download leaves no file behind.
 // SPDX-License-Identifier: Apache-2.0
 #include <gtest/gtest.h>
 

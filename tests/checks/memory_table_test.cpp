@@ -260,7 +260,7 @@ INSTANTIATE_TEST_SUITE_P(
               "malloc: a function of unknown depth"}),
     [](const testing::TestParamInfo<Break>& wrong) { return std::string(wrong.param.name); });
 
-// From one function: what it does not reach may be anything, what it reaches must be known or be said to be a leaf.
+// From one function: code that it does not reach is ignored; code that it reaches must be known or declared a leaf.
 TEST(CoreBreak, OfOtherPathsNothingIsAsked) {
   const ScratchDirectory scratch;
   scratch.write("a.ci",

@@ -1,4 +1,4 @@
-// The scenes of our own making: closed, turned outwards, of the size asked for, and the files in scenes/ are theirs.
+// Our own scenes: closed, turned outwards, of the requested size, and equal to the files in scenes/.
 // Memory: std::vector. Threads: one. SPDX-License-Identifier: Apache-2.0
 #include <gtest/gtest-spi.h>
 #include <gtest/gtest.h>

@@ -46,7 +46,7 @@ using Failure = const char*;
     if (!(condition)) return #condition;     \
   } while (false)
 
-/// A byte that tells its place.
+/// A byte that depends on its place.
 [[nodiscard]] constexpr std::byte pattern(std::uint32_t i) {
   return static_cast<std::byte>((i * 37u + (i >> 8) * 11u + 5u) & 0xFFu);
 }
@@ -115,7 +115,7 @@ Failure put_sends_the_bytes_and_no_others(B& bench) {
   return nullptr;
 }
 
-/// Bytes stored right before the call are what is sent, and after the wait the source is the core's again.
+/// The bytes stored right before the call are sent, and after the wait the core may change the source again.
 template <Bench B>
 Failure put_sends_what_was_stored_before_it(B& bench) {
   for (std::uint32_t round = 0; round < 8; ++round) {
@@ -130,7 +130,7 @@ Failure put_sends_what_was_stored_before_it(B& bench) {
   return nullptr;
 }
 
-/// The only order there is: what is waited for comes before what is started later.
+/// The only order that holds: transfers that were waited for precede those that are started later.
 template <Bench B>
 Failure a_get_after_a_waited_put_sees_it(B& bench) {
   for (std::uint32_t round = 0; round < 8; ++round) {
@@ -360,7 +360,7 @@ Failure overlapping_pending_transfers_are_refused(B& bench) {
   std::byte* const local = bench.local();
   const MainAddress main = bench.main();
   GRIDIRON_CONTRACT_REQUIRE(platform.get(local, main, 128, Tag{0}) == Status::kOk);
-  // Two writes to local memory; then a read of what is being written; then a write of what is being read.
+  // Two writes to local memory; then a read of bytes being written; then a write of bytes being read.
   GRIDIRON_CONTRACT_REQUIRE(platform.get(local + 96, main.offset_by(4096), 64, Tag{1}) == Status::kTransferOverlap);
   GRIDIRON_CONTRACT_REQUIRE(platform.put(local + 96, main.offset_by(4096), 64, Tag{1}) == Status::kTransferOverlap);
   GRIDIRON_CONTRACT_REQUIRE(platform.put(local + 1024, main.offset_by(96), 64, Tag{1}) == Status::kTransferOverlap);

@@ -17,7 +17,7 @@
 namespace gridiron::contract {
 namespace {
 
-/// Main memory, an arena and tiles; what all benches have in common.
+/// Main memory, an arena and tiles, shared by all benches.
 class HostBench {
  public:
   explicit HostBench(std::uint32_t queue_depth) : memory_(kMainBytes + 8192), tiles_(0, kTileCount) {

@@ -1,4 +1,4 @@
-// Seeds of property tests: as many as the test asks for, or the one that GRIDIRON_TEST_SEED names.
+// Seeds of property tests: as many as the test requests, or the one in GRIDIRON_TEST_SEED.
 // Memory: none. Threads: any. SPDX-License-Identifier: Apache-2.0
 #pragma once
 

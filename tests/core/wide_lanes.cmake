@@ -1,6 +1,6 @@
-# gridiron_lanes_test(NAME sources... LIBS libs...): a test for the baseline and, where compiler and host have them,
-# once more for AVX2 with 8 lanes and AVX-512 with 16, which take other code paths. Each is a program of its own, so that no function
-# built for one instruction set can stand in for another's.
+# gridiron_lanes_test(NAME sources... LIBS libs...): a test for the baseline and, if compiler and host have them, again
+# for AVX2 with 8 lanes and AVX-512 with 16, which take other code paths. Each is a program of its own, so that
+# functions built for different instruction sets never replace each other.
 # SPDX-License-Identifier: Apache-2.0
 include_guard(DIRECTORY)
 include(CheckCXXSourceRuns)

@@ -326,7 +326,7 @@ TEST(ReplayOfAFrame, SumsToTheSameWorkForAnyNumberOfCores) {
     EXPECT_EQ(sum.bytes_in, tile_bytes_in + once(bytes, sim::EventKind::kGet)) << cores << " cores";
     EXPECT_EQ(sum.bytes_out, tile_bytes_out + once(bytes, sim::EventKind::kPut)) << cores << " cores";
 
-    // busy = tiles' work + cores * once-per-core work: two core counts tell both, the others must agree.
+    // busy = tiles' work + cores * once-per-core work: two core counts determine both, the others must agree.
     if (cores == 1) {
       one_core_cycles = timing.frame_cycles;
       work_of_tiles = busy;

@@ -32,7 +32,7 @@ KernelOptions walk_options() {
   return {.walk_depth = 2, .macro_depth = 2, .triangle_depth = 2};
 }
 
-// A ball in a room with everything that there is.
+// A ball in a room, with all effects.
 tool::SceneDescription full_scene() {
   tool::SceneDescription scene = glass_ball_scene(true);
   set_environment(scene, Vec3(0.25f, 0.5f, 0.75f), 9);

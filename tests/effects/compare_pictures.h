@@ -1,4 +1,4 @@
-// A kernel's picture against the reference's: in steps of 1/255, and as OpenImageIO tells it.
+// Compares a kernel's picture with the reference's: in steps of 1/255, and with OpenImageIO.
 // Memory: borrowed. Threads: any. SPDX-License-Identifier: Apache-2.0
 #pragma once
 
@@ -29,7 +29,7 @@ struct ImageThresholds {
   float warn = 1.5f / 255.0f;  ///< as warned: more than 1 step
 };
 
-/// What OpenImageIO::ImageBufAlgo::compare tells, in units of full brightness.
+/// The result of OpenImageIO::ImageBufAlgo::compare, in units of full brightness.
 struct ImageComparison {
   double mean_error = 0.0, rms_error = 0.0, peak_signal_to_noise = 0.0, max_error = 0.0;
   std::uint32_t worst_x = 0, worst_y = 0;  ///< where max_error is

@@ -30,7 +30,7 @@ std::uint32_t add_triangle(tool::SceneDescription& scene, const Vec3 (&corners)[
 /// @returns the first one's id.
 std::uint32_t add_parallelogram(tool::SceneDescription& scene, Vec3 corner, Vec3 u, Vec3 v, std::uint16_t material);
 
-/// Appends a box of 12 triangles and 8 shared vertices, seen from outside; inwards: as a room is, from inside.
+/// Appends a box of 12 triangles and 8 shared vertices, seen from outside; inwards: like a room, seen from inside.
 std::uint32_t add_box(tool::SceneDescription& scene, Vec3 low, Vec3 high, std::uint16_t material,
                       bool is_inwards = false);
 

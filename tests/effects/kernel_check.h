@@ -1,4 +1,4 @@
-// What tests of the kernel's effects ask again and again: scenes by name, rays by kind, the reference's picture beside.
+// Common questions of the tests of the kernel's effects: scenes by name, rays by kind, and the reference's picture.
 // Memory: std::vector. Threads: the reference starts its own. SPDX-License-Identifier: Apache-2.0
 #pragma once
 
@@ -22,7 +22,7 @@ inline constexpr std::string_view kShippedScenes[] = {
     "shadow",       "area_light", "mirror",        "glass",    "ambient_occlusion",
     "environment", "smooth_normals", "highlight", "multisampling", "everything"};
 
-/// Rays that the kernel's counters tell of, as the reference counts them.
+/// The kernel's counters of rays, as the reference counts them.
 [[nodiscard]] ReferenceCounts rays_of(const KernelPicture& picture);
 [[nodiscard]] std::string words_of(const ReferenceCounts& counts);
 

@@ -1,4 +1,4 @@
-// Effects chosen: what a scene does not call for costs nothing; what a kernel was built without is told by name.
+// Choice of effects: one that a scene does not require costs nothing; one that a kernel lacks is reported by name.
 // SPDX-License-Identifier: Apache-2.0
 #include <gtest/gtest.h>
 
@@ -206,7 +206,7 @@ TEST(KernelChoice, FramesThatEffectsCannotBeRenderedForAreRefused) {
   }
 }
 
-// Smooth normals are fetched where a material asks for them: a ball in the first of four tiles.
+// Smooth normals are fetched only if a material requires them: a ball in the first of four tiles.
 TEST(KernelChoice, SmoothNormalsCostNothingInTilesWithoutThem) {
   const auto make = [](bool is_smooth) {
     SceneDescription scene = empty_scene({0, 0, 4}, {0, 0, 0}, {0, 1, 0}, 60);

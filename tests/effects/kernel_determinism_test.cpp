@@ -58,7 +58,7 @@ Base& base(Accuracy accuracy) {
 
 class KernelDeterminism : public testing::TestWithParam<Accuracy> {
  protected:
-  // Renders another way and holds picture, ids and work against the base; kWait alone may differ: on demand.
+  // Renders another way and compares picture, ids and work with the base; kWait alone may differ: on demand.
   void expect_same(const KernelOptions& changed, bool waits_alike, const std::string& what,
                    RenderKernel* render = render_all_effects) {
     SCOPED_TRACE(what);

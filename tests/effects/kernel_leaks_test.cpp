@@ -1,4 +1,5 @@
-// Shadows where none are, and light where none gets: over scales and places, of balls, boxes, rooms and closed scans.
+// No shadows in open space, and no light through walls: over scales and places, for balls, boxes, rooms and closed
+// scans.
 // SPDX-License-Identifier: Apache-2.0
 #include <gtest/gtest.h>
 
@@ -27,7 +28,7 @@ using tool::SceneDescription;
 constexpr std::uint32_t kSize = 64;
 constexpr std::uint32_t kBlack = 0xFF000000u;
 
-// Of bodies of radius 1: what they are multiplied with, then where they are.
+// For bodies of radius 1: their scales, then their places.
 struct Place {
   float scale;
   Vec3 offset;
@@ -211,7 +212,7 @@ TEST(KernelLeaks, NoLightGetsOutOfAClosedBody) {
   }
 }
 
-// A room without windows: light from outside, the environment and what ambient light there is stay out.
+// A room without windows: light from outside, the environment and any ambient light stay out.
 TEST(KernelLeaks, NoLightGetsIntoAClosedRoom) {
   for (const Place& place : places()) {
     SCOPED_TRACE(words_of(place));
@@ -236,7 +237,7 @@ TEST(KernelLeaks, NoLightGetsIntoAClosedRoom) {
     EXPECT_GT(closed.work[Work::kOcclusionRay], 4 * kSize * kSize);
     EXPECT_EQ(lit_pixels(closed), 0u) << "ambient occlusion";
 
-    // Mirrors all around: seven reflections of each eye ray, none of which gets out.
+    // Mirrors all around: seven reflections of each eye ray, and none gets out.
     SceneDescription mirrors = room({.kd = 0, .ks = 1});
     set_environment(mirrors, Vec3(1));
     mirrors.recursion_depth = 8;

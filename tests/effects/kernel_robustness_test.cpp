@@ -1,4 +1,4 @@
-// Numbers that nobody would choose, energy that must not grow, pictures of odd sizes.
+// Implausible numbers, energy that must not grow, pictures of odd sizes.
 // SPDX-License-Identifier: Apache-2.0
 #include <gtest/gtest.h>
 

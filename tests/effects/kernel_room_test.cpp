@@ -1,4 +1,4 @@
-// More than the local store has room for: materials, lights, rays that wait.
+// More than the local store can hold: materials, lights, rays that wait.
 // SPDX-License-Identifier: Apache-2.0
 #include <gtest/gtest.h>
 
@@ -112,7 +112,7 @@ TEST(KernelRoom, RaysThatWaitInMainMemory) {
     EXPECT_EQ(other.spilled_bytes, picture.spilled_bytes);
     EXPECT_EQ(different_work(other.work, picture.work, Work::kWait), "");
   }
-  // A room of half mirrors makes one ray of one: as few pixels as the queue has room for spill nothing.
+  // A room of half mirrors makes one ray of each: a picture with as few pixels as the queue holds spills nothing.
   EXPECT_EQ(render_scene(mirror_room_scene(), 16, 16).spilled_bytes, 0u);
 }
 

@@ -184,7 +184,7 @@ struct KernelFrame {
 void read_kernel_planes(const KernelFrame& frame, std::byte* base, std::uint32_t width, std::uint32_t height,
                         std::uint32_t tile_width, KernelPicture& picture);
 
-/// What of a layout tells its kernel from others.
+/// The parameters of a layout that identify its kernel.
 struct KernelLayout {
   std::uint32_t arena_bytes, tile_width, packet_width;
   bool has_effects;

@@ -20,7 +20,7 @@ struct KernelVariant {
   RenderKernel* render;   ///< packets of 32, four lanes
 };
 
-/// The kernel built with just these effects; whoever asks for it compiles it.
+/// The kernel built with just these effects; the test that uses it compiles it.
 template <std::uint32_t Effects>
 [[nodiscard]] constexpr KernelVariant variant(std::string_view name) {
   return {name, Effects, render_kernel<EffectLayout256K<Effects>, Lanes<4>>};

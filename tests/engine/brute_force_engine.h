@@ -58,7 +58,7 @@ class BruteForceCore {
       for (std::uint32_t x = 0; x < Layout::kTileWidth && view.left + x < store_.frame.width; x += packet.kWidth) {
         generate_packet<L>(store_.frame, view.left + x, view.top + y, packet, packet.active, store_.work, view.dx,
                            view.dy);
-        // Estimates may leave open what a ray hits; exact distances tell.
+        // If estimates leave a ray's hit open, exact distances decide.
         do {
           GRIDIRON_TRY(for_each_triangle([&](const VertexTriangle& triangle) {
             (void)(hits.facing != nullptr ? intersect_standard<L, true>(packet, triangle, true, store_.work)

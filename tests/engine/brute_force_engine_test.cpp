@@ -78,7 +78,7 @@ TEST(BruteForceEngine, RendersEffectsAsTheGridDoes) {
   EXPECT_EQ(brute_force.color, grid.color);
   EXPECT_EQ(brute_force.depth, grid.depth);
   EXPECT_EQ(brute_force.ids, grid.ids);
-  // Shading does the same whoever traces; only the order of some of it is the engine's.
+  // Shading does the same for every engine; only part of its order depends on the engine.
   for (const Work kind : {Work::kWaveRay, Work::kShadowRay, Work::kSurfacePoint, Work::kQueuedRay, Work::kColorAdded}) {
     EXPECT_EQ(brute_force.work[kind], grid.work[kind]) << static_cast<int>(kind);
   }

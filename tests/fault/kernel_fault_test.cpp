@@ -211,7 +211,7 @@ TEST(KernelFault, AnEndOfClaimsEndsTheFrameBetweenTiles) {
   }
 }
 
-/// The kernel over the template port: the same picture, and an engine that fails or hangs is told.
+/// The kernel over the template port: the same picture, and an engine that fails or hangs is reported.
 TEST(KernelFault, TheTemplatePortRendersTheSamePictureAndReportsItsEngine) {
   SmallFrame frame;
   ASSERT_EQ(render_faulty(frame, {}, Completion::kEarly, nullptr).status, Status::kOk);

@@ -83,7 +83,7 @@ std::size_t write_image(std::uint8_t* data, std::size_t max_size, const MeshView
   return image.bytes().size();
 }
 
-// One with effects; what a scene may leave out is left out by bits of the seed.
+// A scene with effects; bits of the seed leave optional parts out.
 std::size_t write_image_with_effects(std::uint8_t* data, std::size_t max_size, unsigned seed) {
   TestEffects scene = all_effects(seed % 4);
   if ((seed & 4) != 0) scene.lights.clear();

@@ -249,7 +249,7 @@ INSTANTIATE_TEST_SUITE_P(Cases, SmallScenesTest, testing::Range<std::size_t>(0, 
                            return name;
                          });
 
-// Who asks for no distances gets estimates where these decide: not a pixel may tell.
+// Without requested distances, estimates are used where they decide: no pixel may differ.
 TEST_P(SmallScenesTest, WithoutDepthThePictureIsTheSame) {
   const SceneCase c = make_cases()[GetParam()];
   const TestMesh mesh = c.make();

@@ -70,7 +70,7 @@ class CellWalk {
         is_tied[axis] = true;
       }
       if (first < 0 || compare(next[first], end) > 0) break;
-      // At this point both cells beside each plane crossed are touched.
+      // At this point both cells next to each crossed plane are touched.
       bool leaves = false;
       const CellSpan before[3] = {spans[0], spans[1], spans[2]};
       for (int axis = 0; axis < 3; ++axis) {
@@ -137,7 +137,7 @@ class CellWalk {
     if (compare(first, last) > 0) return false;
     for (int axis = 0; axis < 3; ++axis) {
       spans[axis] = cells_at(axis, first);
-      // Along an axis on which the ray stands still, or where it enters by a face, some may lie outside.
+      // Along an axis on which the ray does not move, or where it enters by a face, some may lie outside.
       const CellSpan inside{std::max(spans[axis].first, 0), std::min(spans[axis].last, count_[axis] - 1)};
       if (inside.empty()) return false;
     }

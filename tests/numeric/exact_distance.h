@@ -16,7 +16,7 @@ namespace gridiron::test {
 using WideInt = boost::multiprecision::number<boost::multiprecision::cpp_int_backend<
     2048, 2048, boost::multiprecision::signed_magnitude, boost::multiprecision::unchecked, void>>;
 
-/// How a distance is held against a ray's limits, and rounded.
+/// How a distance is compared with a ray's limits, and rounded.
 enum class Reading {
   kExact,     ///< limits: t_min < t <= t_max for the exact t. Floats: IEEE's nearest, ties to even, with denormals.
   kStandard,  ///< as core's `standard`: the limits hold for the float; halves away from zero; below the least normal

@@ -129,7 +129,7 @@ TEST(ExactDistance, OrderIsThatOfTheFractions) {
     ASSERT_EQ(a < b, a.rational() < b.rational()) << "seed " << seed;
     ASSERT_EQ(a == b, a.rational() == b.rational()) << "seed " << seed;
   });
-  // Closer than any double tells, and as wide as integers get.
+  // Closer than any double can distinguish, and with the longest integers.
   const WideInt big = (WideInt(1) << 836) - 1;
   EXPECT_LT((ExactDistance{big - 2, big - 1}), (ExactDistance{big - 1, big}));
   EXPECT_EQ((ExactDistance{big - 1, big}), (ExactDistance{big - 1, big}));

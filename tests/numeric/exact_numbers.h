@@ -1,4 +1,4 @@
-// Floats as integers times powers of two, and integers without end: what every exact check of the tests is made of.
+// Floats as integers times powers of two, and integers of any length: the base of every exact check of the tests.
 // Bits are taken apart by integers: no rounding mode and no flushing of denormals reaches them.
 // Memory: heap. Threads: any. SPDX-License-Identifier: Apache-2.0
 #pragma once

@@ -1,4 +1,4 @@
-// Meshes and rays that ask for exact arithmetic: few hard triangles, or whole meshes with rays at their features.
+// Meshes and rays that need exact arithmetic: few hard triangles, or whole meshes with rays at their features.
 // Memory: std::vector. Threads: any. SPDX-License-Identifier: Apache-2.0
 #pragma once
 

@@ -1,4 +1,4 @@
-// core's `standard` test held against the oracle: every ray's triangle and distance, bit for bit.
+// Compares core's `standard` test with the oracle: every ray's triangle and distance, bit for bit.
 // SPDX-License-Identifier: Apache-2.0
 #include <gridiron/ray/intersect_standard.h>
 #include <gtest/gtest.h>

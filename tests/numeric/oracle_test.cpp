@@ -210,7 +210,7 @@ TEST(Oracle, ThroughAVertexEveryTriangleAroundItIsHit) {
   ASSERT_EQ(origin + 2.0f * direction, p);
   const NearestHit found = oracle.nearest(ray_of(origin, direction));
   EXPECT_EQ(found.t, 2.0f);
-  // Those that stand edge-on are the only ones missing.
+  // Only triangles seen edge-on are missing.
   EXPECT_GE(found.ties.size(), static_cast<std::size_t>(uses[apex]) - 2);
   for (const std::uint32_t id : found.ties) {
     EXPECT_EQ(oracle.distance(ray_of(origin, direction), id).rational(), Rational(2));

@@ -234,7 +234,7 @@ TEST(SecondaryOrigin, LiesInItsTriangleOnTheRaysSideWithinTheBound) {
   EXPECT_GT(inset_tested, 2000u);
 }
 
-// Both sides at once, what shading needs besides, and room for points that rays end at.
+// Both sides at once, further data for shading, and tolerance for points that rays end at.
 TEST(SecondaryOrigin, SurfacePointsKnowTheirSides) {
   std::uint32_t tested = 0, entering = 0, grazing = 0, widened = 0;
   for_each_hit(

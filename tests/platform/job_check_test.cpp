@@ -78,7 +78,7 @@ class JobMemory {
     return *reinterpret_cast<EffectsRecord*>(image() + section(SectionKind::kEffects).offset_bytes);
   }
 
-  // Whether a firmware for this job takes it, once its check value is that of its bytes. Its words: told.
+  // Whether a firmware for this job accepts it, once its check value is that of its bytes. Its output: told.
   bool check() {
     job().check_value = tool::job_check_value({bytes_, file_.size()});
     FirmwareFacts facts{};

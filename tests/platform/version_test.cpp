@@ -1,4 +1,4 @@
-// The version header says what the project's CMake file does, in every form.
+// The version header agrees with the project's CMake file, in every form.
 // SPDX-License-Identifier: Apache-2.0
 #include <gridiron/version.h>
 

@@ -157,7 +157,7 @@ class OrderCore {
     return finish_call(what);
   }
 
-  // Everything in the store but where gets are pending: their bytes are nobody's. All are multiples of 16.
+  // Everything in the store but where gets are pending: those bytes are undefined. All are multiples of 16.
   void mix_store(std::uint64_t& digest) const {
     const std::byte* begin = store_.data();
     const std::byte* const end = begin + store_.size();

@@ -56,7 +56,7 @@ OrderFrame::OrderFrame(const OrderScene& scene, const OrderSettings& settings) {
   SceneImageView view;
   SceneImageError error;
   require(open_scene_image(image.bytes, view, error));
-  // 2. Planes, the second behind the first, and room for rays that wait.
+  // 2. Planes, the second after the first, and memory for rays that wait.
   const std::uint64_t plane_bytes = output_plane_bytes(settings.width, settings.height, 8);
   planes_ = memory_.allocate(plane_bytes * (settings.wants_ids ? 2 : 1), 4096).value();
   if (scene.recursion_depth > 1) {

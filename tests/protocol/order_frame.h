@@ -41,7 +41,7 @@ struct PacketOrderLayout : OrderLayout {
   static constexpr std::uint32_t kRecentTriangles = 2;
 };
 
-/// For all effects: no packets, five walks, room for two materials.
+/// The same for all effects: no packets, five walks, slots for two materials.
 struct EffectOrderLayout : OrderLayout {
   static constexpr std::uint32_t kEffects = kAllEffects;
   static constexpr std::uint32_t kArenaBytes = 96 * 1024;

@@ -43,7 +43,7 @@ OrderScene with_materials() {
   return scene;
 }
 
-// A row of pixels, each of which sees a triangle of its own.
+// A row of pixels, each of which shows a triangle of its own.
 OrderScene strips(std::uint32_t pixels, bool are_smooth) {
   OrderScene scene = with_materials();
   scene.normals = {Vec3(0, 0, 1), Vec3(0.6f, 0, 0.8f), Vec3(0, 0.6f, 0.8f)};

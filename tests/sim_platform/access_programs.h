@@ -12,7 +12,7 @@ namespace gridiron::sim::access {
 enum class Which : std::uint8_t {
   kRight,
   kLoadBeforeWait,
-  kStoreToDestinationBeforeWait,  ///< of the value that arrives, so that no later comparison can tell
+  kStoreToDestinationBeforeWait,  ///< of the value that arrives, so that no later comparison can detect it
   kStoreToSourceBeforeWait,       ///< of the value that is there
   kLoadBehindData,
   kLoadAcrossTheEnd,

@@ -1,4 +1,4 @@
-// The instrumented build: a core that touches what it must not is caught at the very access, in any completion mode.
+// The instrumented build: a forbidden access of a core is reported at the access itself, in any completion mode.
 // SPDX-License-Identifier: Apache-2.0
 #include <gridiron/sim/core_runner.h>
 #include <gtest/gtest.h>

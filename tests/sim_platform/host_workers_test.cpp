@@ -94,7 +94,7 @@ TEST(HostWorkers, ACoreWithoutMemoryEndsTheFrameWithAStatus) {
     std::atomic<std::uint32_t> begun = 0, stopped = 0;
     const ChipResult result = bench.run([&](SimCore& core, std::span<std::byte>) {
       if (begun++ == core_without) throw std::bad_alloc();
-      // There is an end to this only where the others are told to stop.
+      // This ends only if the others are told to stop.
       while (core.claim_tile().kind != TileClaim::Kind::kAborted) std::this_thread::yield();
       ++stopped;
       return Status::kAborted;

@@ -21,7 +21,7 @@ inline constexpr std::size_t kMacroLevel = static_cast<std::size_t>(WaitLevel::k
 inline constexpr std::size_t kTriangleLevel = static_cast<std::size_t>(WaitLevel::kTriangle);
 inline constexpr std::size_t kSetupLevel = static_cast<std::size_t>(WaitLevel::kSetup);
 
-/// A machine that costs nothing but what a test sets. One unit of work is one cycle, whatever the kind.
+/// A machine whose only costs are those that a test sets. One unit of work is one cycle, of every kind.
 inline MachineProfile free_machine() {
   MachineProfile machine{};
   machine.name = "free";

@@ -284,7 +284,7 @@ TEST(SimChipEffects, HaveLayoutsOfTheirOwn) {
   }
 }
 
-/// A frame with effects of which only the records are there: what is looked at before a core sees it.
+/// A frame with effects of which only the records exist: they are checked before a core reads them.
 class EffectsFrame {
  public:
   static constexpr std::uint32_t kTriangles = 30;

@@ -170,7 +170,7 @@ TEST(SimCoreOrder, MovesWhatItIsToldTo) {
     GRIDIRON_TRY(core.wait(TagMask::of(kTag)));
     EXPECT_TRUE(std::equal(input, input + 128, data.data()));
     EXPECT_FALSE(core.move_now(1));
-    // A destination that was written meanwhile is told at the next call.
+    // A destination that was written meanwhile is reported at the next call.
     GRIDIRON_TRY(core.get(data.data(), bench.input(), 64, kTag));
     data[5] = std::byte{1};
     EXPECT_TRUE(core.move_now(3));

@@ -129,7 +129,7 @@ TEST(SimMemory, WhatTheHostCannotGiveIsThrownAndChangesNothing) {
 }
 
 #if !defined(__SANITIZE_ADDRESS__) && !defined(__SANITIZE_THREAD__)  // these take terabytes of addresses themselves
-// Ends with 0 where a memory of 256 MB serves what is small, although the host has fewer addresses left.
+// Ends with 0 if a memory of 256 MB still serves small allocations although the host has fewer addresses left.
 [[noreturn]] void use_memory_of_limited_addresses() {
   constexpr std::uint64_t kMegabyte = 1 << 20;
   std::uint64_t pages = 0;

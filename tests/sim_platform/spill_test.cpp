@@ -1,4 +1,4 @@
-// Spill memory: each core has a slice of its own, a tile gets only what it has put there, traces know one slice only.
+// Spill memory: each core has its own slice, a tile gets only what it has put there, traces contain one slice only.
 // SPDX-License-Identifier: Apache-2.0
 #include <gridiron/sim/core_runner.h>
 #include <gtest/gtest.h>
@@ -139,7 +139,7 @@ TEST(Spill, ATileGetsOnlyWhatItHasPut) {
   const Act never_put = [&](SimCore& core, std::byte* data, std::uint32_t) {
     return core.get(data, spill_at(core, 256), 64, kTag);
   };
-  // The second half of what is got was put by nobody.
+  // The second half of this get has never been put.
   const Act half_put = [&](SimCore& core, std::byte* data, std::uint32_t) -> Status {
     GRIDIRON_TRY(core.put(data, spill_at(core, 256), 64, kTag));
     GRIDIRON_TRY(core.wait(TagMask::of(kTag)));

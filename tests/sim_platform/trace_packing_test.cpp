@@ -48,7 +48,7 @@ class Extremes {
   std::mt19937_64 random_;
 };
 
-/// @param kinds  of which steps have work, of all that there are; @param tags  of transfers.
+/// @param kinds  that have work in some step, of all kinds; @param tags  of transfers.
 StepList random_steps(Extremes& draw, std::uint32_t count, std::uint32_t kinds, std::uint32_t tags) {
   StepList steps;
   for (std::uint32_t i = 0; i < count; ++i) {
@@ -174,7 +174,7 @@ TEST(TracePacking, RepetitionsComeOutFromNearAndFar) {
   for (std::size_t i = 0; i < events.size(); ++i) ASSERT_TRUE(test::is_same_step(unpacked.events[i], events[i])) << i;
 }
 
-// What repeats costs little: a loop of gets and waits, of which a step took 48 bytes as a struct.
+// Repetitions cost little: a loop of gets and waits, in which a step took 48 bytes as a struct.
 TEST(TracePacking, RepeatedStepsTakeBits) {
   Steps steps;
   for (std::uint32_t i = 0; i < 2000; ++i) {

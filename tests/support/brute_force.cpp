@@ -58,7 +58,7 @@ void find_candidates(const FilterGroup* groups, std::size_t count, const RayBloc
       const Lanes e0 = normal[0][0] * d[0] + normal[0][1] * d[1] + normal[0][2] * d[2];
       const Lanes e1 = normal[1][0] * d[0] + normal[1][1] * d[1] + normal[1][2] * d[2];
       const Lanes e2 = normal[2][0] * d[0] + normal[2][1] * d[1] + normal[2][2] * d[2];
-      // Sign bits stand for comparisons: compilers split those of wide vectors into scalars.
+      // Sign bits replace comparisons, because compilers split those of wide vectors into scalars.
       const auto positive = reinterpret_cast<LaneMask>(bound[0] - e0) | reinterpret_cast<LaneMask>(bound[1] - e1) |
                             reinterpret_cast<LaneMask>(bound[2] - e2);
       const auto negative = reinterpret_cast<LaneMask>(bound[0] + e0) | reinterpret_cast<LaneMask>(bound[1] + e1) |
@@ -73,7 +73,7 @@ void find_candidates(const FilterGroup* groups, std::size_t count, const RayBloc
   }
 }
 
-// Side of edge `edge` of triangle `lane` on which the ray passes: +1, -1, or 0 where doubles cannot tell.
+// Side of edge `edge` of triangle `lane` on which the ray passes: +1, -1, or 0 if doubles cannot decide.
 int filtered_side(const FilterGroup& group, std::size_t edge, std::size_t lane, const DVec3& d, double size) {
   const double e =
       group.normal[edge][0][lane] * d.x + group.normal[edge][1][lane] * d.y + group.normal[edge][2][lane] * d.z;

@@ -20,7 +20,7 @@ struct TruthReport {
   std::size_t pixels = 0;
   std::size_t hits = 0;        ///< pixels whose true ray hits a triangle
   std::size_t mismatches = 0;  ///< pixels whose triangle or depth differs
-  std::string first_mismatch;  ///< in words, with the pixel; empty where there is none
+  std::string first_mismatch;  ///< in words, with the pixel; empty if there is none
   BruteForceCounts work;
 };
 

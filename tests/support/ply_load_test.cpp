@@ -18,7 +18,7 @@ namespace {
 
 static_assert(std::endian::native == std::endian::little, "little-endian words are copied as they are");
 
-// Only what the scans are: binary, little-endian, float x y z, triangles.
+// Only the form of the scans: binary, little-endian, float x y z, triangles.
 std::optional<TestMesh> copy_scan(const std::filesystem::path& path) {
   std::ifstream file(path, std::ios::binary);
   if (!file) return std::nullopt;

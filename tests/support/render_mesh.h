@@ -73,7 +73,7 @@ class PreparedFrame {
     });
   }
 
-  /// @returns what the last render left; planes that were not asked for are empty.
+  /// @returns the result of the last render; planes that were not requested are empty.
   [[nodiscard]] Planes planes() const;
 
  private:
@@ -94,7 +94,7 @@ class PreparedFrame {
 class SceneInMemory {
  public:
   /// Builds the image; failures show in status().
-  /// @param frame_bytes  room for the planes of the largest frame.
+  /// @param frame_bytes  space for the planes of the largest frame.
   SceneInMemory(const MeshView& mesh, const GridParameters& parameters,
                 std::uint64_t frame_bytes = std::uint64_t{1} << 25);
 

@@ -26,7 +26,7 @@ Vec3 to_vec3(double x, double y, double z) {
 
 }  // namespace
 
-// A mesh may be appended to itself: what it has is counted first.
+// A mesh may be appended to itself, so its size is taken first.
 void TestMesh::append(const TestMesh& other) {
   const auto base = static_cast<std::uint32_t>(vertices.size());
   const std::size_t vertex_count = other.vertices.size(), triangle_count = other.triangles.size();

@@ -9,7 +9,7 @@
 
 namespace gridiron::test {
 
-/// A view of ours of a model that Cho, Kim, Han 2012 render; the paper does not tell its views.
+/// Our view of a model that Cho, Kim, Han 2012 render; the paper does not describe its views.
 struct SceneView {
   const char* name;
   const char* file;              ///< in the directory of scans

@@ -1,4 +1,4 @@
-// Failure: how a command of the program ends when it cannot do what was asked.
+// Failure: ends a command of the program with an exit code and a message.
 // Memory: owns its message. Threads: any. SPDX-License-Identifier: Apache-2.0
 #pragma once
 
@@ -30,7 +30,6 @@ class Failure : public std::runtime_error {
   ExitCode code_;
 };
 
-/// Throws Failure (kUsage).
 [[noreturn]] inline void usage_error(const std::string& message) {
   throw Failure(ExitCode::kUsage, message);
 }

@@ -1,4 +1,4 @@
-// Numbers in text: one strict, locale-free way for the command line and for camera files.
+// Numbers in text: one strict, locale-free way for the command line and for files.
 // Memory: none. Threads: any. SPDX-License-Identifier: Apache-2.0
 #pragma once
 
@@ -10,7 +10,7 @@
 
 namespace gridiron::tool {
 
-/// @returns the float nearest to a decimal number that is the whole of `text`; nothing where it is none or not finite.
+/// @returns the float nearest to the decimal number that is the whole of `text`; nothing for any other text.
 [[nodiscard]] std::optional<float> parse_float(std::string_view text);
 
 /// @returns the whole number that is the whole of `text`.

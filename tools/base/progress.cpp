@@ -21,7 +21,7 @@ namespace {
 std::atomic<bool> stages_are_drawn{false};
 
 void draw_stage(const std::stop_token& stop, const std::string& words) {
-  // Signals are for the thread that may have to end a call.
+  // Signals must go to the thread whose calls they end.
   sigset_t all;
   sigfillset(&all);
   (void)::pthread_sigmask(SIG_BLOCK, &all, nullptr);
@@ -41,14 +41,14 @@ void draw_stage(const std::stop_token& stop, const std::string& words) {
 
 void TimeLeft::update(double seconds, double share) {
   constexpr double kMemory = 5;    // seconds that the rate remembers
-  constexpr double kPatience = 3;  // seconds in which what is told follows an estimate
+  constexpr double kPatience = 3;  // seconds in which the shown time follows an estimate
   constexpr double kLeastStep = 0.05;
   constexpr double kLeastSeconds = 1, kLeastShare = 0.01;
   const double step = seconds - last_seconds_;
   if (step < kLeastStep || share <= last_share_) return;
   const double now = (share - last_share_) / step;
   const double mean = share / seconds;
-  // At first the mean of all is the better guess: nothing is known of the last seconds yet.
+  // At first the mean of all is the better estimate, since the last seconds are unknown.
   const double weight = 1 - std::exp(-step / kMemory);
   rate_ = rate_ == 0 ? mean : rate_ + weight * (now - rate_);
   last_seconds_ = seconds;
@@ -111,6 +111,6 @@ Stage::Stage(const std::filesystem::path& input, const char* doing) {
   }
 }
 
-Stage::~Stage() = default;  // the thread is asked to end, and waited for
+Stage::~Stage() = default;  // ends the thread and waits for it
 
 }  // namespace gridiron::tool

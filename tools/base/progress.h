@@ -1,4 +1,4 @@
-// Progress: a bar on a terminal with the time that is left, nothing anywhere else.
+// Progress: a bar on a terminal with the time that is left; draws nothing elsewhere.
 // Memory: small. Threads: update() is called by one at a time. SPDX-License-Identifier: Apache-2.0
 #pragma once
 
@@ -12,14 +12,14 @@
 
 namespace gridiron::tool {
 
-/// Estimates when something will be done. Parts may differ in cost: the estimate follows the rate of the last few
-/// seconds, and what is told runs down with the clock and is drawn to the estimate slowly, so that it does not jump.
+/// Estimates the time that is left. Parts may differ in cost, so the estimate follows the rate of the last few seconds.
+/// The shown time runs down with the clock and approaches the estimate slowly, so that it does not jump.
 class TimeLeft {
  public:
-  /// @param seconds  since the start, never less than before. @param share  that is done, 0..1.
+  /// @param seconds  since the start, never decreasing. @param share  of the work that is done, 0..1.
   void update(double seconds, double share);
 
-  /// @returns seconds; nothing before there is enough to go by.
+  /// @returns seconds; nothing while too little is known.
   [[nodiscard]] std::optional<double> seconds() const { return told_; }
 
  private:
@@ -31,11 +31,11 @@ class TimeLeft {
 /// @returns "5 s", "1 min 20 s", "2 h 5 min".
 [[nodiscard]] std::string words_of_seconds(double seconds);
 
-/// Draws on standard error while it lives and wipes the line when it dies.
+/// Draws on standard error, and wipes the line at its end.
 class Progress {
  public:
-  /// @param wanted  false, or a standard error that is no terminal: nothing is ever drawn.
-  /// @param noun    what is counted, in the plural.
+  /// @param wanted  false, or standard error is no terminal: nothing is drawn.
+  /// @param noun    the items that are counted, in the plural.
   explicit Progress(bool wanted, const char* noun = "tiles");
   ~Progress();
   Progress(const Progress&) = delete;
@@ -52,7 +52,7 @@ class Progress {
   std::uint64_t drawn_percent_ = ~0ull;
 };
 
-/// While one lives, stages are drawn, where they are `wanted` and standard error is a terminal.
+/// Stages are drawn while one exists, if they are `wanted` and standard error is a terminal.
 class StageLines {
  public:
   explicit StageLines(bool wanted);
@@ -61,8 +61,8 @@ class StageLines {
   StageLines& operator=(const StageLines&) = delete;
 };
 
-/// What the command is busy with while it lives, where nobody can say how much of it is done: "a.ply: reading, 3 s". It
-/// is drawn by a thread of its own once it takes longer than a second, and wiped at the end.
+/// Shows a step whose share cannot be measured: "a.ply: reading, 3 s". A thread draws it once it takes longer than a
+/// second, and wipes it at the end.
 class Stage {
  public:
   Stage(const std::filesystem::path& input, const char* doing);

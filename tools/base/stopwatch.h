@@ -1,4 +1,4 @@
-// Stopwatch: seconds since it was made, of the host's clock and of its processors.
+// Stopwatch: seconds since its construction, of the host's clock and of its processors.
 // Memory: one time point. Threads: any. SPDX-License-Identifier: Apache-2.0
 #pragma once
 
@@ -7,7 +7,7 @@
 
 namespace gridiron::tool {
 
-/// What a part of the work took.
+/// Time of a part of the work.
 struct HostSeconds {
   double wall = 0;
   double processor = 0;  ///< of all threads of the program

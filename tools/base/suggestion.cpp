@@ -9,7 +9,7 @@ namespace gridiron::tool {
 namespace {
 
 constexpr std::size_t kMostSuggestions = 3;
-constexpr std::size_t kLeastPart = 3;  // letters: what is shorter lies within too many words
+constexpr std::size_t kLeastPart = 3;  // letters; shorter words occur in too many others
 constexpr std::size_t kMostLetters = 64;
 constexpr std::size_t kPart = 1000;  // a part of the word, or it of the part: behind all that are near
 constexpr std::size_t kFar = std::numeric_limits<std::size_t>::max();
@@ -26,7 +26,7 @@ std::string_view without_dashes(std::string_view word) {
   return word.substr(std::min(word.find_first_not_of('-'), word.size()));
 }
 
-// 0: the nearest. kFar: nobody would mean it.
+// 0: the nearest. kFar: no plausible mistake.
 std::size_t rank_of(std::string_view word, std::string_view candidate) {
   if (word.empty() || candidate.empty()) return kFar;
   const std::size_t distance = word_distance(word, candidate);

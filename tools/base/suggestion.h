@@ -1,4 +1,4 @@
-// Suggestions: the known words that a mistyped one is near to.
+// Suggestions: the known words that are similar to a mistyped one.
 // Memory: std::string. Threads: any. SPDX-License-Identifier: Apache-2.0
 #pragma once
 
@@ -10,15 +10,15 @@
 
 namespace gridiron::tool {
 
-/// @returns how many letters must be added, left out, replaced or exchanged with their neighbour to make b of a, upper
-///          and lower case alike. Source: "optimal string alignment" distance.
+/// @returns the fewest letters to add, leave out, replace or exchange with their neighbour to turn a into b, ignoring
+/// case. Source: "optimal string alignment" distance.
 [[nodiscard]] std::size_t word_distance(std::string_view a, std::string_view b);
 
-/// @returns the words that `word` may have been meant for, three at most, the list's order: those nearest to it, where
-///          at most a third of the letters differ, or those that it begins, ends or lies within.
+/// @returns the words that `word` may have been meant for, three at most, in the list's order: the nearest with at most
+/// a third of the letters different, or those that begin with it, end with it or contain it.
 [[nodiscard]] std::vector<std::string> near_words(std::string_view word, std::span<const std::string> known);
 
-/// @returns "; did you mean size?", "; did you mean tile-width or macro-width?", or nothing where no word is near.
+/// @returns "; did you mean size?", "; did you mean tile-width or macro-width?", or nothing if no word is near.
 [[nodiscard]] std::string did_you_mean(std::string_view word, std::span<const std::string> known);
 
 }  // namespace gridiron::tool

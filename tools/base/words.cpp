@@ -6,7 +6,7 @@
 
 namespace gridiron::tool {
 
-// No default: the compiler names a value that was forgotten.
+// Without a default the compiler names a missing value.
 const char* words_of(Status status) {
   switch (status) {
     case Status::kOk:
@@ -49,11 +49,11 @@ const char* words_of(Status status) {
     case Status::kDeadline:
       return "deadline passed between two tiles";
     case Status::kIncompleteFrame:
-      return "picture of which no core wrote a part";
+      return "picture with a part that no core wrote";
     case Status::kMissingEffect:
       return "the scene calls for an effect that this renderer was built without";
     case Status::kSpillTooSmall:
-      return "less main memory for rays that wait than the scene's depth of recursion asks for";
+      return "less main memory for rays that wait than the scene's depth of recursion requires";
     case Status::kMemoryTooSmall:
       return "memory smaller than the counted need";
     case Status::kTooManyTriangles:
@@ -72,7 +72,7 @@ const char* words_of(Status status) {
   return "unknown status";
 }
 
-// The reader's own table is the one table of these words.
+// The reader's own table is the only one of these words.
 const char* words_of(PlyError error) {
   return ply_error_reason(error);
 }

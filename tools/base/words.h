@@ -1,4 +1,4 @@
-// Words: what Status, PlyError and counts are to people.
+// Words: Status, PlyError, numbers and file text as they appear in messages.
 // Memory: static text. Threads: any. SPDX-License-Identifier: Apache-2.0
 #pragma once
 
@@ -16,13 +16,13 @@ namespace gridiron::tool {
 [[nodiscard]] const char* words_of(Status status);
 [[nodiscard]] const char* words_of(PlyError error);
 
-/// @returns what --format calls it.
+/// @returns the format's name in --format.
 [[nodiscard]] std::string word_of(TriangleFormat format);
 
-/// @returns "12.3 MB" and the like; 1 MB = 2^20 bytes.
+/// @returns "12.3 MB" and similar; 1 MB = 2^20 bytes.
 [[nodiscard]] std::string words_of_bytes(std::uint64_t bytes);
 
-/// @returns text of a file as a message may show it: in single quotes, cut to 64 bytes, what is not printable as \xNN.
+/// @returns text of a file for a message: in single quotes, cut to 64 bytes, unprintable bytes as \xNN.
 [[nodiscard]] std::string in_quotes(std::string_view text);
 
 /// @returns "1,234,567".

@@ -1,5 +1,5 @@
-# What `cmake --install` puts where, and what find_package and pkg-config find there. A component is a library that one
-# asks for by name: platform, core, sim_platform; each is an install component too. The libraries are static.
+# What `cmake --install` installs, and what find_package and pkg-config find there. A component is a library with a
+# public name: platform, core, sim_platform; each is an install component too. The libraries are static.
 # SPDX-License-Identifier: Apache-2.0
 include(GNUInstallDirs)
 include(CMakePackageConfigHelpers)
@@ -8,8 +8,8 @@ set(GRIDIRON_CMAKE_DIR ${CMAKE_INSTALL_LIBDIR}/cmake/gridiron)
 set(GRIDIRON_PKGCONFIG_DIR ${CMAKE_INSTALL_LIBDIR}/pkgconfig)
 set(GRIDIRON_PACKAGE_FILES ${CMAKE_CURRENT_LIST_DIR}/package)
 
-# gridiron_install_component(NAME TARGETS targets... HEADERS directories...): targets lose their prefix gridiron_ and are
-# gridiron::... for users; HEADERS are folders with all their .h, as install(DIRECTORY) takes them; they go to
+# gridiron_install_component(NAME TARGETS targets... HEADERS directories...): targets lose their prefix gridiron_ and
+# are gridiron::... for users; HEADERS are folders with all their .h, as install(DIRECTORY) takes them; they go to
 # include/gridiron.
 function(gridiron_install_component name)
   if(NOT GRIDIRON_INSTALL)
@@ -28,14 +28,14 @@ function(gridiron_install_component name)
   install(EXPORT gridiron_${name} NAMESPACE gridiron:: FILE gridiron-${name}.cmake
     DESTINATION ${GRIDIRON_CMAKE_DIR} COMPONENT ${name})
 
-  # From where the file lies to the prefix, so that a prefix can be moved.
+  # The relative path from the file to the prefix, so that a prefix can be moved.
   file(RELATIVE_PATH to_prefix ${CMAKE_INSTALL_PREFIX}/${GRIDIRON_PKGCONFIG_DIR} ${CMAKE_INSTALL_PREFIX})
   string(REGEX REPLACE "/$" "" to_prefix "${to_prefix}")
   configure_file(${GRIDIRON_PACKAGE_FILES}/gridiron-${name}.pc.in ${PROJECT_BINARY_DIR}/gridiron-${name}.pc @ONLY)
   install(FILES ${PROJECT_BINARY_DIR}/gridiron-${name}.pc DESTINATION ${GRIDIRON_PKGCONFIG_DIR} COMPONENT ${name})
 endfunction()
 
-# What all components share goes with the lowest one.
+# Files that all components share belong to the lowest one.
 function(gridiron_install_package)
   if(NOT GRIDIRON_INSTALL)
     return()
@@ -47,7 +47,7 @@ function(gridiron_install_package)
   write_basic_package_version_file(${PROJECT_BINARY_DIR}/gridiron-config-version.cmake COMPATIBILITY SameMinorVersion)
   install(FILES ${PROJECT_BINARY_DIR}/gridiron-config.cmake ${PROJECT_BINARY_DIR}/gridiron-config-version.cmake
     DESTINATION ${GRIDIRON_CMAKE_DIR} COMPONENT platform)
-  # The porting kit: a project to copy, with what it takes from other folders beside it.
+  # The porting kit: a project to copy, with its files from other folders.
   set(port_dir ${CMAKE_INSTALL_DATADIR}/gridiron/port)
   install(DIRECTORY ${PROJECT_SOURCE_DIR}/platform/template/ DESTINATION ${port_dir} COMPONENT platform)
   set(consumer ${PROJECT_SOURCE_DIR}/tests/package/consumer)

@@ -1,16 +1,16 @@
-# What a build is made of: the build type, packages that it can do without, one test where the tests are not built.
+# Choices of a build: the build type, optional packages, one test if the tests are not built.
 # SPDX-License-Identifier: Apache-2.0
 
-# gridiron_default_build_type(TYPE): for whoever gives none; not in somebody else's project.
+# gridiron_default_build_type(TYPE): used if none is given, except within another project.
 macro(gridiron_default_build_type type)
   if(PROJECT_IS_TOP_LEVEL AND NOT CMAKE_BUILD_TYPE AND NOT CMAKE_CONFIGURATION_TYPES)
     set(CMAKE_BUILD_TYPE ${type} CACHE STRING "Debug, Release, RelWithDebInfo, MinSizeRel or None" FORCE)
   endif()
 endmacro()
 
-# gridiron_with(NAME PURPOSE PACKAGE [VERSION]): the option GRIDIRON_WITH_<NAME>. AUTO uses the package where it is
-# installed, ON stops where it is not, OFF does not look for it. Sets GRIDIRON_HAS_<NAME>. A macro, so that what the
-# package defines can be seen in all directories.
+# gridiron_with(NAME PURPOSE PACKAGE [VERSION]): the option GRIDIRON_WITH_<NAME>. AUTO uses the package if it is
+# installed, ON requires it, OFF does not look for it. Sets GRIDIRON_HAS_<NAME>. A macro, so that the package's
+# definitions are visible in all directories.
 macro(gridiron_with name purpose package)
   set(GRIDIRON_WITH_${name} AUTO CACHE STRING "AUTO, ON or OFF: ${purpose}")
   set_property(CACHE GRIDIRON_WITH_${name} PROPERTY STRINGS AUTO ON OFF)
@@ -29,7 +29,7 @@ macro(gridiron_with name purpose package)
   endif()
 endmacro()
 
-# gridiron_use_png(TARGET): its sources know by GRIDIRON_HAS_PNG whether there is libpng.
+# gridiron_use_png(TARGET): defines GRIDIRON_HAS_PNG for its sources if there is libpng.
 function(gridiron_use_png target)
   if(GRIDIRON_HAS_PNG)
     target_compile_definitions(${target} PRIVATE GRIDIRON_HAS_PNG)
@@ -37,7 +37,7 @@ function(gridiron_use_png target)
   endif()
 endfunction()
 
-# Builds of one commit differ by these lines and by nothing else that was found on the machine.
+# Builds of one commit differ only by these lines, whatever else is on the machine.
 function(gridiron_print_options)
   if(NOT PROJECT_IS_TOP_LEVEL)
     return()
@@ -58,7 +58,7 @@ function(gridiron_print_options)
   endforeach()
 endfunction()
 
-# Where the tests are not built, `ctest` renders one picture with the program and compares its hash.
+# Without the tests, `ctest` renders one picture with the program and compares its hash.
 function(gridiron_add_smoke_test)
   add_test(NAME program_renders_the_teapot.GRIDIRON_BUILD_TESTS_is_OFF
     COMMAND gridiron render ${PROJECT_SOURCE_DIR}/scenes/teapot.ply --size 64x48 --eye 3.5,6,10 --at 0.25,1.45,0

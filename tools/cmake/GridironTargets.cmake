@@ -1,8 +1,8 @@
 # Helpers that give every target of the project the same language level, warnings and floating-point rules.
 # SPDX-License-Identifier: Apache-2.0
 
-# All targets: C++20, warnings (errors with GRIDIRON_WERROR), no contraction anywhere (it is part of correctness), square
-# roots that are an instruction.
+# All targets: C++20, warnings (errors with GRIDIRON_WERROR), no contraction anywhere (correctness depends on it),
+# square roots as an instruction.
 function(gridiron_target_defaults target)
   target_compile_features(${target} PUBLIC cxx_std_20)
   set_target_properties(${target} PROPERTIES CXX_EXTENSIONS OFF)
@@ -15,8 +15,8 @@ endfunction()
 function(gridiron_freestanding target)
   target_compile_options(${target} PRIVATE
     -ffreestanding -fno-exceptions -fno-rtti -fno-threadsafe-statics -ffunction-sections)
-  # Builds without an operating system are what tools/checks/memory_table measures: no tables for unwinding, which nothing
-  # reads, and frames of a fixed size, none as large as the stack of a 256 KB core.
+  # tools/checks/memory_table measures builds without an operating system: without tables for unwinding, which are
+  # unused, and with frames of a fixed size, none as large as the stack of a 256 KB core.
   if(NOT GRIDIRON_IS_HOSTED AND CMAKE_CXX_COMPILER_ID STREQUAL "GNU")
     target_compile_options(${target} PRIVATE
       -fno-asynchronous-unwind-tables -fno-unwind-tables -Wvla -Walloca -Wstack-usage=8704)

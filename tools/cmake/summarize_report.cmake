@@ -2,7 +2,7 @@
 # SPDX-License-Identifier: Apache-2.0
 file(READ "${REPORT}" report)
 
-# integer(OUT keys...): the value at `keys`, its fraction cut off (cycles, of which there are millions).
+# integer(OUT keys...): the value at `keys`, truncated to an integer (cycles, of which there are millions).
 function(integer out)
   string(JSON value GET "${report}" ${ARGN})
   string(REGEX REPLACE "\\..*$" "" value "${value}")
@@ -49,7 +49,7 @@ foreach(core RANGE ${last_core})
   endforeach()
 endforeach()
 
-# Data ends where the last region does: what lies between regions to align them counts.
+# Data ends where the last region does; alignment between regions counts.
 string(JSON region_count LENGTH "${report}" local_store regions)
 math(EXPR last_region "${region_count} - 1")
 integer(last_offset local_store regions ${last_region} offset)

@@ -41,7 +41,7 @@ void generate_rays(const FrameRecord& frame, std::uint32_t x, std::uint32_t y, R
   }
 }
 
-// Facing ratio with the geometric normal, background where nothing is hit.
+// Facing ratio with the geometric normal, background without a hit.
 void shade_rays(const FrameRecord& frame, const RTCRayHit16& packet, std::uint32_t out[kPacketRays]) {
   for (std::uint32_t i = 0; i < kPacketRays; ++i) {
     const float dx = packet.ray.dir_x[i], dy = packet.ray.dir_y[i], dz = packet.ray.dir_z[i];

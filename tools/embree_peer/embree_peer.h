@@ -1,4 +1,4 @@
-// Embree as the peer: scenes and frames of the same work as ours, single-threaded.
+// Embree as the peer: scenes and frames with the same work as ours, single-threaded.
 // Memory: Embree's own. Threads: one. SPDX-License-Identifier: Apache-2.0
 #pragma once
 
@@ -15,8 +15,7 @@ inline constexpr std::uint32_t kEmbreePacketWidth = 4;  ///< pixels along a pack
 
 enum class EmbreeQuality : std::uint8_t { kLow, kMedium };
 
-/// A mesh in Embree. Vertices and indices are handed over as shared buffers, so that building copies no more than
-/// Embree itself wants to.
+/// A mesh in Embree. Vertices and indices are shared buffers, so that building copies only what Embree itself copies.
 class EmbreeScene {
  public:
   EmbreeScene();
@@ -24,7 +23,7 @@ class EmbreeScene {
   EmbreeScene(const EmbreeScene&) = delete;
   EmbreeScene& operator=(const EmbreeScene&) = delete;
 
-  /// Gives the mesh to Embree; build() builds its hierarchy. The view's arrays are copied once, with Embree's padding.
+  /// Passes the mesh to Embree; build() builds its hierarchy. The view's arrays are copied once, with Embree's padding.
   void set_mesh(const MeshView& mesh);
   void build(EmbreeQuality quality);
 

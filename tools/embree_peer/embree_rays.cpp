@@ -1,4 +1,4 @@
-// Embree's answer to single rays: see the header. SPDX-License-Identifier: Apache-2.0
+// Single rays in Embree: see the header. SPDX-License-Identifier: Apache-2.0
 #include "embree_peer/embree_rays.h"
 
 #include <embree3/rtcore.h>

@@ -1,4 +1,4 @@
-// Embree's answer to single rays: which of them hit a mesh.
+// Single rays in Embree: which of them hit a mesh.
 // Memory: Embree's own. Threads: hits() from any number at once. SPDX-License-Identifier: Apache-2.0
 #pragma once
 
@@ -20,7 +20,7 @@ class EmbreeRays {
   EmbreeRays(const EmbreeRays&) = delete;
   EmbreeRays& operator=(const EmbreeRays&) = delete;
 
-  /// Shoots up to kMostRays rays from one origin, as far as they go.
+  /// Shoots up to kMostRays rays of unlimited length from one origin.
   ///
   /// @param active  bit i = ray i. @param width  rays of one of Embree's calls: 1, 4, 8 or 16.
   /// @returns those that hit something.

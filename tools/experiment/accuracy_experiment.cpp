@@ -11,7 +11,7 @@
 namespace gridiron::experiment {
 namespace {
 
-// What the reader has to know to trust the figures, and what they do not say.
+// What a reader must know to trust the figures, and their limits.
 void write_method(const PriceList& list, Book& book) {
   std::size_t compared = 0, alike = 0;
   for (const Price& price : list.prices()) {
@@ -22,7 +22,7 @@ void write_method(const PriceList& list, Book& book) {
   book.paragraph(
       "Truth is exact arithmetic on the mesh as it was read. Profile exact gives it: tests/numeric and tests/image "
       "hold its triangles and distances against integers and rational numbers. So its frame, with distances, in "
-      "configuration best is what all others are held against; whatever a profile does to the mesh is an error of the "
+      "configuration best is the reference for all others; whatever a profile does to the mesh is an error of the "
       "profile. All profiles of a view see it through the same camera, so a pixel is the same ray for all.");
   book.paragraph(
       "A ray that hits something in truth and nothing here is a hole, one that hits nothing in truth and something "
@@ -41,7 +41,7 @@ void write_method(const PriceList& list, Book& book) {
       "The plane of distances holds t times the length of the ray's direction, each rounded to a float; the length is "
       "the same for all profiles, so what differs is t. An ulp is a step from one float to the next in that plane. An "
       "error of 0 ulp means: the float that exact has there; as the product is rounded again, an error of t of one ulp "
-      "may show as 0, 1 or 2. Where distances are asked for, standard and exact round "
+      "may show as 0, 1 or 2. With distances requested, standard and exact round "
       "t correctly, and that is what they are timed for in frames with distances. Frames without distances estimate "
       "them (relative error 2^-14 at most) to choose triangles, and compute more where that leaves a choice open; they "
       "show the same triangles and give no t that could be wrong. Profile fast has floats for both, and paper too. So "
@@ -51,7 +51,7 @@ void write_method(const PriceList& list, Book& book) {
   book.paragraph(
       "Configuration best culls by the vertices of triangles. The records of profile paper have none, so it runs best "
       "without; its home is the reference configuration, and both are shown. All frames have simple shading, as "
-      "gridiron render has by default, and six cores. Bytes moved by DMA are those asked for by gets and puts of all "
+      "gridiron render has by default, and six cores. Bytes moved by DMA are those requested by gets and puts of all "
       "cores; main memory holds scene image, frame record and picture. " +
       std::string(kCostTableWords));
   for (std::size_t configuration = 0; configuration < std::size(kPricedConfigurations); ++configuration) {

@@ -17,7 +17,7 @@ struct AccuracyExperiment {
   std::uint32_t width = 1024, height = 1024;
 };
 
-/// @returns the names of all files that it may make: which views it has depends on the scenes.
+/// @returns the names of all files that it may write; which views it has depends on the scenes.
 [[nodiscard]] std::vector<std::string> accuracy_file_names();
 
 /// Runs the experiment. Every file but host_*.csv is a function of scenes and size. Errors: Failure.

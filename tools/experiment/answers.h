@@ -1,4 +1,4 @@
-// Answers: what a frame says of every pixel, held against what is true.
+// Answers: the hits of every pixel of a frame, compared with the truth.
 // Memory: std::vector. Threads: any, no shared state. SPDX-License-Identifier: Apache-2.0
 #pragma once
 
@@ -11,20 +11,20 @@
 
 namespace gridiron::experiment {
 
-/// What a frame says of its pixels, row-major, first row on top.
+/// The answers of a frame for its pixels, row-major, first row on top.
 struct Answers {
-  std::vector<std::uint32_t> color;  ///< 0xAABBGGRR; none where nobody asks
+  std::vector<std::uint32_t> color;  ///< 0xAABBGGRR; empty if not requested
   std::vector<std::uint32_t> ids;    ///< kNoTriangle where nothing is hit
   std::vector<float> depth;          ///< t times the length of the ray's direction, each rounded
 };
 
-/// Errors of t by their size in ulp: none, 1, 2 to 3, 4 to 7, ... the last bin also holds all that are greater.
+/// Errors of t by their size in ulp: none, 1, 2 to 3, 4 to 7, ... the last bin also holds all greater ones.
 inline constexpr std::size_t kUlpBinCount = 25;
 
 /// @returns the bin of an error. @param ulps  as ulp_distance() gives it.
 [[nodiscard]] std::size_t ulp_bin(std::uint64_t ulps);
 
-/// What rays hit, held against what they hit in truth.
+/// The hits of rays, compared with the true ones.
 struct HitCounts {
   std::uint64_t rays = 0;
   std::uint64_t true_hits = 0;        ///< rays that hit something in truth
@@ -35,26 +35,26 @@ struct HitCounts {
 
   /// `count` as a share of all rays, in millionths.
   [[nodiscard]] double per_million(std::uint64_t count) const;
-  /// Rays that hit neither the true triangle nor, where there is none, nothing.
+  /// Rays that neither hit the true triangle nor correctly miss.
   [[nodiscard]] std::uint64_t wrong_rays() const { return holes + false_hits + wrong_triangles; }
-  /// Rays that pass through what they hit in truth.
+  /// Rays that pass through their true hit.
   [[nodiscard]] std::uint64_t leaks() const { return holes + seen_through; }
 };
 
 inline constexpr double kBehind = 1e-3;
 
-/// Precondition: as many rays of each. Colours are not looked at.
+/// Precondition: as many rays of each. Ignores colours.
 [[nodiscard]] HitCounts count_hits(const Answers& truth, const Answers& answers);
 
-/// What is wrong with the answers of a frame. A pixel is a ray.
+/// The errors in the answers of a frame. A pixel is a ray.
 struct Comparison {
   HitCounts hits;
-  std::uint64_t wrong_at_true_depth = 0;  ///< of the wrong triangles, those whose distance is the true one all the same
+  std::uint64_t wrong_at_true_depth = 0;                    ///< of the wrong triangles, those at the true distance
   std::array<std::uint64_t, kUlpBinCount> ulp_histogram{};  ///< of the rays that hit the true triangle
   Spread ulps, relative;                                    ///< error of t of the rays that hit the true triangle
   Spread all_ulps, all_relative;                            ///< and of all that hit something and should
   std::uint64_t differing_pixels = 0;                       ///< of another colour
-  double psnr_db = 0;                      ///< over red, green and blue of all pixels; infinite where none differs
+  double psnr_db = 0;                      ///< over red, green and blue of all pixels; infinite if none differs
   std::uint32_t greatest_pixel_error = 0;  ///< 0 to 255, of red, green or blue
 };
 

@@ -1,4 +1,4 @@
-// Book: the files of an experiment in the making: CSV tables, SVG plots and the page that shows them.
+// Book: collects the files of an experiment: CSV tables, SVG plots and the page that shows them.
 // Memory: owns all text until it is written. Threads: one. SPDX-License-Identifier: Apache-2.0
 #pragma once
 
@@ -23,7 +23,7 @@ struct BookPicture {
   std::string words;
 };
 
-/// Text goes in as plain words; what has a meaning in HTML is escaped here.
+/// Text is passed as plain words and escaped for HTML here.
 class Book {
  public:
   /// @param title, lead  heading of the page and the paragraph below it.
@@ -35,18 +35,18 @@ class Book {
 
   /// Adds NAME.csv; `caption` stands above the table on the page.
   void table(const Table& table, std::string_view caption);
-  /// Adds NAME.csv and a link to it; for what is too long to read or differs between runs.
+  /// Adds NAME.csv and a link to it, for tables that are too long to read or differ between runs.
   void linked_table(const Table& table, std::string_view caption);
   /// Shows a table that is a view of others and has no file of its own.
   void shown_table(const Table& table, std::string_view caption);
   /// Adds NAME.svg.
   void figure(std::string_view name, std::string svg, std::string_view caption);
-  /// Adds a PNG file for each picture; they stand side by side, their words below them.
+  /// Adds a PNG file for each picture; they are shown side by side, with their words below.
   void pictures(std::vector<BookPicture> row);
   /// Adds a file of plain text under its whole name, and a link to it.
   void text(std::string_view name, std::string content, std::string_view caption);
 
-  /// @returns every file, index.html last. The book ends with it.
+  /// @returns every file, index.html last. The last call to the book.
   [[nodiscard]] std::vector<BookFile> finish();
 
  private:
@@ -57,8 +57,8 @@ class Book {
   std::vector<BookFile> files_;
 };
 
-/// Writes all files into `folder`, which exists: each whole under a hidden name, then all under their own.
-/// Errors: tool::Failure; nothing is left then that was not there before.
+/// Writes all files into `folder`, which exists: each under a hidden name first, then all under their own. Errors:
+/// tool::Failure, after which no new file is left.
 void write_files(const std::filesystem::path& folder, const std::vector<BookFile>& files);
 
 }  // namespace gridiron::experiment

@@ -41,7 +41,7 @@ std::vector<Row> plan_rows(Plan& plan, const Stage& stage) {
   return rows;
 }
 
-/// Which of the two is ahead, view by view, on one machine.
+/// Which of the two is faster, view by view, on one machine.
 struct Score {
   std::string best_views, bvh_views, level_views;
   Range ratios;
@@ -104,8 +104,8 @@ void write_caches(const Plan& done, const std::vector<Row>& rows, Book& book) {
              "its line has come.");
 }
 
-// How often each step of both builds is done, and its price. @returns BVH build over grid build, the sweeps over bins
-// being free.
+// The counts of each step of both builds, and their price. @returns BVH build over grid build, if the sweeps over bins
+// were free.
 Range write_build_steps(const Plan& done, const std::vector<Row>& rows, const Machine& machine, Book& book) {
   Table steps{"fig7_build_steps",
               {{"view", "view"},
@@ -239,7 +239,7 @@ Writer plan_figure7(Plan& plan, const Stage& stage) {
         (paper_cases.greatest() < 0.4
              ? "The difference is the cached BVH's: the reference keeps the paper's packets of 8x8 rays and its "
                "techniques, while the hierarchy is built with what is known since. Its packets are four times as "
-               "large, their quarters are held against four boxes at once, and their triangles are culled by "
+               "large, their quarters are tested against four boxes at once, and their triangles are culled by "
                "subpackets and their distances estimated first, by the code that it shares with best. What that is "
                "worth shows on the grid's own side: best, which has the like, renders " +
                    best_ratios.text(2) + " times the frames of the reference, and in the reference's place it has " +
@@ -249,7 +249,7 @@ Writer plan_figure7(Plan& plan, const Stage& stage) {
                    paper_cases_single.text(2) + ". "
              : std::string()) +
         "With both on cell-2006, frame alone, " + score.text() + ". Hyper-threading gains the hierarchy " +
-        gains.text(1) + " % fps on both machines; how often its caches hit is told below.");
+        gains.text(1) + " % fps on both machines; the hit rates of its caches are listed below.");
     book.table(frames, "Frames a second without shading.");
     book.figure("fig7_cell_2006", bar_chart_svg(bare),
                 "Frames a second on the chip that the paper compares itself with, no shading, the structure being "

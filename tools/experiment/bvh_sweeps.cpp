@@ -1,4 +1,4 @@
-// Sweep of the cached BVH: each of its settings changed by itself, so that a reader sees it is tuned.
+// Sweep of the cached BVH: each of its settings is changed by itself, to show that it is tuned.
 // SPDX-License-Identifier: Apache-2.0
 #include <algorithm>
 #include <cmath>
@@ -10,7 +10,7 @@
 namespace gridiron::experiment {
 namespace {
 
-/// A setting at another value than the tuned one.
+/// A setting with a value other than the tuned one.
 struct Change {
   const char* setting;
   std::string value, tuned;

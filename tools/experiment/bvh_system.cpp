@@ -16,7 +16,7 @@
 namespace gridiron::experiment {
 namespace {
 
-// Renders the frame on a machine. Errors: Failure; kBadInput where its main memory is too small.
+// Renders the frame on a machine. Errors: Failure; kBadInput if its main memory is too small.
 bvh::BvhFrame render(const bvh::Bvh& bvh, const FrameSettings& settings, bvh::RenderOptions options,
                      const sim::MachineProfile& machine, std::uint32_t core_count) {
   options.core_count = core_count;
@@ -47,7 +47,7 @@ class BvhRecording : public Recording {
                const bvh::RenderOptions& options)
       : bvh_(std::move(bvh)), settings_(settings), options_(options) {
     facts_.build = build;
-    // What is known without a clock comes from a frame at home; its time is kept for whoever asks for it.
+    // Facts without a clock come from a frame on the home machine; its time is kept for later calls.
     bvh::BvhFrame frame = render(bvh_, settings_, options_, *home_machine(), 0);
     const auto count_of = [&frame](bvh::BvhWork kind) { return frame.bvh_work[static_cast<std::size_t>(kind)]; };
     facts_.traversal_steps =

@@ -14,19 +14,19 @@
 
 namespace gridiron::experiment {
 
-/// How the hierarchy is built and traced; as it is tuned unless said otherwise.
+/// Settings of the hierarchy's build and traversal; tuned by default.
 struct BvhVariant {
   std::string key;
   bvh::BvhParameters build;
   bvh::RenderOptions options;  ///< core_count is not looked at
 };
 
-/// Packets through a hierarchy of boxes, software caches for nodes and triangles (sim_platform/gridiron/bvh). What a
-/// tile costs there depends on which core renders it, so each machine and core count is rendered anew, not replayed.
+/// Packets through a hierarchy of boxes, software caches for nodes and triangles (sim_platform/gridiron/bvh). The cost
+/// of a tile depends on the core that renders it, so each machine and core count is rendered anew, not replayed.
 class BvhSystem : public System {
  public:
   explicit BvhSystem(BvhVariant variant) : variant_(std::move(variant)) {}
-  /// @param hyper_threading  packets that miss make way for the next of a ring; else a core waits for every miss.
+  /// @param hyper_threading  packets that miss are suspended for the next of a ring; else a core waits for every miss.
   explicit BvhSystem(bool hyper_threading) : variant_{hyper_threading ? "bvh" : "bvh_single", {}, {}} {
     variant_.options.hyper_threading = hyper_threading;
   }

@@ -1,4 +1,4 @@
-// Edge points: places on edges and vertices of a mesh that a picture shows.
+// Edge points: points on edges and vertices of a mesh that a picture shows.
 // Memory: std::vector. Threads: any, no shared state. SPDX-License-Identifier: Apache-2.0
 #pragma once
 
@@ -12,9 +12,9 @@
 
 namespace gridiron::experiment {
 
-/// @returns `count` points on edges of triangles that a picture shows, spread evenly over its pixels, every fourth of
-/// them a vertex; none where nothing is shown. Rounded to floats, so beside the edge by as much.
-/// @param ids  the picture's triangles, kNoTriangle where nothing is hit.
+/// @returns `count` points on edges of visible triangles, spread evenly over the picture, every fourth of them a
+/// vertex; none if nothing is visible. Rounding to floats moves them off the edge.
+/// @param ids  the picture's triangles, kNoTriangle without a hit.
 [[nodiscard]] std::vector<Vec3> edge_points(const MeshView& mesh, std::span<const std::uint32_t> ids,
                                             std::size_t count);
 

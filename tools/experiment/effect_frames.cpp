@@ -53,7 +53,7 @@ AbsentCost absent_cost(const EffectFrame& frame, EffectBits effect) {
   const std::uint64_t lit = frame.count(Work::kSurfacePoint) * frame.light_count;
   switch (effect) {
     case kPointShadows:
-      // Area lights alone have shadows of their own.
+      // Only area lights cast shadows of their own.
       if (frame.has_shadows && (frame.called_for & kAreaLights) != 0)
         return counted(effect, "shadow rays of points", 0);
       return with_stage(counted(effect, "shadow rays", frame.count(Work::kShadowRay)), "shadow",
@@ -154,7 +154,7 @@ void check_absent_costs(const EffectFrame& frame, std::uint32_t expected, const 
   }
   for (const AbsentCost& cost : absent_costs(frame)) {
     if (cost.is_nothing()) continue;
-    fail_check(name + ": " + tool::words_of_effects(cost.effect) + " is not called for and cost " +
+    fail_check(name + ": " + tool::words_of_effects(cost.effect) + " is not required and cost " +
                std::to_string(cost.count) + " " + std::string(cost.what) + ", " + std::to_string(cost.bytes) +
                " bytes and " + number_text(cost.cycles) + " cycles");
   }

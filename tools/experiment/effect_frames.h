@@ -1,5 +1,4 @@
-// Frames of the effects experiment: what was counted while they were rendered, and what effects cost that a frame does
-// not call for.
+// Frames of the effects experiment: their counts, and the cost of the effects that a frame does not require.
 // Memory: a frame owns its picture. Threads: any, no shared state. SPDX-License-Identifier: Apache-2.0
 #pragma once
 
@@ -28,7 +27,7 @@ struct EffectFrameRequest {
   tool::BufferDepths depths = tool::kDoubleBuffering;
 };
 
-/// What a frame did.
+/// The counts of a frame.
 struct EffectFrame {
   std::uint32_t called_for = 0;   ///< EffectBits, as the scene image has them
   std::uint32_t light_count = 0;  ///< point and area lights
@@ -50,31 +49,31 @@ struct EffectFrame {
 /// Renders on the calling thread with configuration best on six cores of the home machine. Errors: tool::Failure.
 [[nodiscard]] EffectFrame render_effect_frame(const EffectScene& scene, const EffectFrameRequest& request);
 
-/// What a frame did for an effect that it does not call for.
+/// The counts of a frame for an effect that it does not require.
 struct AbsentCost {
   EffectBits effect{};
   std::string_view what{};  ///< that was counted
   std::uint64_t count = 0;
-  std::string_view stages{};  ///< in which `bytes` and `cycles` were counted; empty: the effect has none of its own
+  std::string_view stages{};  ///< with `bytes` and `cycles`; empty: the effect has none of its own
   std::uint64_t bytes = 0;    ///< moved, in and out
-  double cycles = 0;  ///< of computation and waiting; of shadows of waiting alone, for light has their stage too
+  double cycles = 0;          ///< computing and waiting; for shadows waiting alone, as light has the same stage
 
   [[nodiscard]] bool is_nothing() const { return count == 0 && bytes == 0 && cycles == 0; }
 };
 
-/// @returns one for each effect that the frame does not call for, in the order of their bits.
+/// @returns one for each effect that the frame does not require, in the order of their bits.
 [[nodiscard]] std::vector<AbsentCost> absent_costs(const EffectFrame& frame);
 
-/// Errors: tool::Failure (kCheckFailed) where an effect that is not called for cost anything, or other effects are
-/// called for than `expected`. @param name  of the frame, for people.
+/// Errors: tool::Failure (kCheckFailed) if an effect that is not required cost anything, or the required effects are
+/// not `expected`. @param name  of the frame, for messages.
 void check_absent_costs(const EffectFrame& frame, std::uint32_t expected, const std::string& name);
 
 inline constexpr double kLeastHiddenShare = 0.9;
 
-/// @returns the share of waits for secondary rays that buffering hides; 1 where there are none.
+/// @returns the share of waits for secondary rays that buffering hides; 1 without such waits.
 [[nodiscard]] double hidden_share(const EffectFrame& single, const EffectFrame& buffered);
 
-/// Errors: tool::Failure (kCheckFailed) where less than kLeastHiddenShare is hidden.
+/// Errors: tool::Failure (kCheckFailed) if less than kLeastHiddenShare is hidden.
 void check_hiding(const EffectFrame& single, const EffectFrame& buffered, const std::string& name);
 
 }  // namespace gridiron::experiment

@@ -14,7 +14,7 @@ namespace {
 
 constexpr std::uint32_t kSkyWidth = 32;
 
-// The program's own scenes/everything.nff without the files that it names: its teapot is a ball here.
+// scenes/everything.nff without the files that it names: the teapot is a ball here.
 constexpr std::string_view kGallery = R"(v
 from 4 3.5 9
 at 0 1.1 0
@@ -55,13 +55,13 @@ p 7
 )";
 
 tool::SceneDescription read(std::string_view key, std::string_view text) {
-  // Coarser than the program's: as round as so small a picture shows.
+  // Coarser than the program's default: sufficient for so small a picture.
   tool::SceneOptions options;
   options.relative_tolerance = 5e-4f;
   return tool::read_scene_text(text, std::string(key), options);
 }
 
-// The faces of the sky, which come as the bytes of PFM files: little-endian floats, the lowest row first.
+// The faces of the sky, made as bytes of PFM files: little-endian floats, the lowest row first.
 tool::EnvironmentMap make_sky() {
   tool::EnvironmentMap sky;
   sky.width = kSkyWidth;
@@ -80,7 +80,7 @@ tool::EnvironmentMap make_sky() {
   return sky;
 }
 
-// A light on the camera's left, as wide as a tenth of the way to what it looks at.
+// A light on the camera's left, as wide as a tenth of the distance to the point it looks at.
 tool::AreaLight light_beside(const tool::SceneView& view) {
   const Vec3 forward = view.at - view.from;
   const Vec3 right = glm::cross(forward, view.up), up = glm::cross(right, forward);
@@ -94,13 +94,13 @@ tool::AreaLight light_beside(const tool::SceneView& view) {
           .samples = 4};
 }
 
-// The lights that are there make room for it, so that pictures are not too bright.
+// The existing lights are dimmed, so that pictures are not too bright.
 void add_area_light(tool::SceneDescription& scene) {
   for (tool::PointLight& light : scene.point_lights) light.color *= 0.5f;
   scene.area_lights.push_back(light_beside(scene.view));
 }
 
-// Occlusion as far as a twentieth of the way to what the camera looks at.
+// Occlusion as far as a twentieth of the distance to the point that the camera looks at.
 tool::AmbientOcclusion occlusion_of(const tool::SceneView& view) {
   return {.samples = 4, .radius = 0.05f * glm::length(view.at - view.from)};
 }

@@ -1,5 +1,5 @@
 // The scenes of the effects experiment, made in process: four of the Standard Procedural Databases with some effects
-// added, and a gallery that calls for all.
+// added, and a gallery that requires all.
 // Memory: owns the scenes. Threads: any, no shared state. SPDX-License-Identifier: Apache-2.0
 #pragma once
 
@@ -17,7 +17,7 @@ namespace gridiron::experiment {
 
 struct EffectScene {
   std::string key;    ///< part of file names
-  std::string words;  ///< what it shows, a sentence for the page
+  std::string words;  ///< a sentence for the page that describes it
   tool::SceneDescription description;
 };
 
@@ -27,18 +27,18 @@ inline constexpr std::string_view kEffectSceneKeys[] = {"balls", "tetra", "mount
 /// @returns the scene of that key. Precondition: there is one.
 [[nodiscard]] EffectScene make_effect_scene(std::string_view key);
 
-/// @returns the scene as prepare_frame takes it.
+/// @returns the scene in the form that prepare_frame takes.
 [[nodiscard]] tool::SceneInput input_of(const EffectScene& scene);
 
-/// @returns the effects that a scene calls for, EffectBits.
+/// @returns the EffectBits that a scene requires.
 [[nodiscard]] std::uint32_t called_for(const EffectScene& scene);
 
-/// @returns the scene changed so that it does not call for `effect`: area lights become points of the same colour in
-/// their middle, shadows of all lights go, reflection goes with the depth of recursion, the rest by a share, an
-/// exponent or a count that becomes 0 or 1. Precondition: not kSceneShading.
+/// @returns the scene changed so that it does not require `effect`: area lights become points of the same colour in
+/// their middle; shadows of all lights are switched off; for reflection the depth of recursion becomes 1; for others a
+/// share, an exponent or a count becomes 0 or 1. Precondition: not kSceneShading.
 [[nodiscard]] EffectScene without_effect(EffectScene scene, EffectBits effect);
 
-/// @returns the set that is left of `called` without an effect: glass reflects, so without reflection there is no
+/// @returns the set that remains of `called` without an effect: glass reflects, so without reflection there is no
 /// refraction.
 [[nodiscard]] std::uint32_t left_without(std::uint32_t called, EffectBits effect);
 

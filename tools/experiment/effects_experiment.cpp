@@ -28,9 +28,9 @@ constexpr float kLambdas[] = {0.4f, 2, 4, 8, 16};
 struct Variant {
   std::string key;    ///< "all", "without_reflection"
   std::string title;  ///< "all effects", "without reflection"
-  std::string label;  ///< what stands under a bar below "without"
+  std::string label;  ///< shown under a bar, below "without"
   EffectScene scene;
-  std::uint32_t expected = 0;   ///< EffectBits that it has to call for
+  std::uint32_t expected = 0;   ///< EffectBits that it must require
   EffectFrame single, twofold;  ///< single and double buffering
 };
 

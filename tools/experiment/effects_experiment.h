@@ -19,11 +19,11 @@ struct EffectsExperiment {
   std::vector<std::string> scenes{std::begin(kEffectSceneKeys), std::end(kEffectSceneKeys)};  ///< by key
 };
 
-/// @returns the names of all files that it may make.
+/// @returns the names of all files that it may write.
 [[nodiscard]] std::vector<std::string> effects_file_names();
 
-/// Runs the experiment. Every file is a function of scenes and size. Errors: tool::Failure; kCheckFailed where an
-/// effect that is off cost anything, or buffering hides too little.
+/// Runs the experiment. Every file is a function of scenes and size. Errors: tool::Failure; kCheckFailed if an effect
+/// that is off cost anything, or buffering hides too little.
 [[nodiscard]] ExperimentResult run_effects_experiment(const EffectsExperiment& experiment,
                                                       const ProgressCall& progress);
 

@@ -1,4 +1,4 @@
-// What the experiments have in common: what they make, and how they tell how far they are.
+// Shared by the experiments: their results, and how they report progress.
 // Memory: owns the files' text. Threads: any. SPDX-License-Identifier: Apache-2.0
 #pragma once
 
@@ -12,7 +12,7 @@
 
 namespace gridiron::experiment {
 
-/// What an experiment made, and what it did for it.
+/// The files of an experiment, and the work done for them.
 struct ExperimentResult {
   std::vector<BookFile> files;
   std::size_t frame_count = 0;  ///< rendered on the simulated chip
@@ -20,7 +20,7 @@ struct ExperimentResult {
   std::vector<std::string> missing;  ///< a sentence for each view that was left out
 };
 
-/// Called serialised with steps done and steps in all.
+/// Called serialised with the steps done and all steps.
 using ProgressCall = std::function<void(std::uint32_t, std::uint32_t)>;
 
 }  // namespace gridiron::experiment

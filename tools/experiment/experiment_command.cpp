@@ -22,7 +22,7 @@
 namespace gridiron::tool {
 namespace {
 
-// Removes what an earlier run left under names that this one could have written and did not; nothing else.
+// Removes files of an earlier run whose names this experiment could have written and did not; nothing else.
 void remove_stale_files(const std::filesystem::path& folder, const std::vector<std::string>& names,
                         const std::vector<experiment::BookFile>& written) {
   for (const std::string& name : names) {

@@ -1,4 +1,4 @@
-// Sweeps of what the grid traversal is built with: lambda, macrocells, packets, prefetch.
+// Sweeps of the grid traversal's parameters: lambda, macrocells, packets, prefetch.
 // SPDX-License-Identifier: Apache-2.0
 #include <algorithm>
 #include <optional>
@@ -12,7 +12,7 @@ namespace {
 
 const char* const kSweptConfigurations[] = {"reference", "best"};
 
-/// One frame of a sweep: a view, a configuration, and the parameter's value in it.
+/// One frame of a sweep: a view, a configuration, and the parameter's value.
 struct Step {
   const View* view;
   std::string configuration;
@@ -24,7 +24,7 @@ bool is_same_curve(const Step& a, const Step& b) {
   return a.view == b.view && a.configuration == b.configuration;
 }
 
-// Plans each value for each swept view and configuration; `change` makes a variant, or nothing where there is none.
+// Plans each value for each swept view and configuration; `change` makes a variant, or nothing if there is none.
 template <class Change>
 std::vector<Step> plan_steps(Plan& plan, const Stage& stage, const std::vector<double>& values, const std::string& name,
                              Change change) {
@@ -97,7 +97,7 @@ double wait_of(const RunResult& run) {
   return run.wait_percent();
 }
 
-// "3 (Bunny, reference), ...": the value that gave each curve its most frames a second; the ends of its range told.
+// "3 (Bunny, reference), ...": the value with the most frames a second on each curve; marked at the ends of its range.
 std::string best_values(const Plan& done, const std::vector<Step>& steps) {
   std::vector<const Step*> best;
   for (const Step& step : steps) {
@@ -120,8 +120,8 @@ std::string best_values(const Plan& done, const std::vector<Step>& steps) {
   return text;
 }
 
-// Of a configuration: what its own value has fewer frames than the fastest one, in percent, over the views.
-// Of parameters that are floats only the float counts.
+// The frames, in percent, that a configuration's own value loses against the fastest one, over the views. Floats are
+// compared after rounding to float.
 Range lost_frames(const Plan& done, const std::vector<Step>& steps, const std::string& configuration, double own) {
   Range lost;
   for (const Step& chosen : steps) {
@@ -136,7 +136,7 @@ Range lost_frames(const Plan& done, const std::vector<Step>& steps, const std::s
   return lost;
 }
 
-// Waiting, in percent of core cycles, of a configuration at a value, over the views.
+// Waiting, in percent of core cycles, of a configuration with a value, over the views.
 Range waits_at(const Plan& done, const std::vector<Step>& steps, const std::string& configuration, double value) {
   Range waits;
   for (const Step& step : steps) {
@@ -145,7 +145,7 @@ Range waits_at(const Plan& done, const std::vector<Step>& steps, const std::stri
   return waits;
 }
 
-// "reference 5.5 to 30.1 %, best 0.5 to 3.3 %": what the last value fetches more than the first.
+// "reference 5.5 to 30.1 %, best 0.5 to 3.3 %": the extra bytes that the last value fetches over the first.
 std::string fetched_more(const Plan& done, const std::vector<Step>& steps) {
   std::string text;
   for (const char* configuration : kSweptConfigurations) {
@@ -178,7 +178,7 @@ std::vector<Step> plan_widths(Plan& plan, const Stage& stage) {
   });
 }
 
-// 1 to the most that the usual store has room for.
+// 1 to the most that fit the usual store.
 std::vector<double> depths_up_to(std::uint32_t most) {
   std::vector<double> depths;
   for (std::uint32_t depth = 1; depth <= most; ++depth) depths.push_back(depth);
@@ -257,7 +257,7 @@ Writer plan_grid_sweeps(Plan& plan, const Stage& stage) {
     book.section("macro-width", "Sweep: macrocell size");
     book.paragraph(
         "Cells along the edge of a macrocell, which one DMA command brings: a line of 128 bytes at width 2, 1,792 at "
-        "6, 4,096 at 8. Wide macrocells need fewer commands and carry more cells that nobody asks for. Most frames a "
+        "6, 4,096 at 8. Wide macrocells need fewer commands and carry more cells that are not needed. Most frames a "
         "second at " +
         best_values(done, widths) +
         "; the reference uses 6, best 4. A view whose waiting jumps at width 2 has more macrocells than the local "

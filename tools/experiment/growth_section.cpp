@@ -9,7 +9,7 @@
 namespace gridiron::experiment {
 namespace {
 
-// One quantity of Table 1: how it is called, what the paper says of it.
+// One quantity of Table 1: its name, and the paper's statement.
 struct Quantity {
   const char* title;
   std::string_view (*paper)(const Contender&);
@@ -36,8 +36,8 @@ const Quantity kQuantities[] = {
 };
 constexpr std::size_t kBuildSteps = 0, kTraversalSteps = 2;
 
-// The exponent that a function of the paper's notation shows when it is fitted over the same triangle counts; not a
-// number for what is none of Table 1's.
+// The exponent that a fit over the same triangle counts gives for a function in the paper's notation; NaN for functions
+// outside of Table 1.
 double exponent_of(std::string_view growth, const std::vector<Point2>& points) {
   if (growth.empty()) return std::nan("");
   std::vector<Point2> values;
@@ -59,7 +59,7 @@ std::string packet_words(std::string_view configuration) {
   return width + "x" + width + " rays";
 }
 
-// Systems whose counts are the same share a curve.
+// Systems with the same counts share a curve.
 void add_curve(LineChart& chart, const std::string& title, const std::vector<Point2>& points) {
   for (Series& series : chart.series) {
     if (!std::ranges::equal(series.points, points, [](Point2 a, Point2 b) { return a.x == b.x && a.y == b.y; }))
@@ -172,7 +172,7 @@ Writer plan_table1(Plan& plan, const Stage& stage) {
                    "reference with packets of " +
                    packet_words("reference") + " and best with " + packet_words("best") +
                    ". Skipping what is empty and stopping behind the last hit take steps away. The fits are "
-                   "least squares of the logarithms; they hold for this mesh and this range only, and r squared tells "
+                   "least squares of the logarithms; they hold for this mesh and this range only, and r squared says "
                    "how far from a power law the counts are.");
     book.table(exponents, "Fitted exponents: quantity ~ n^exponent.");
     book.figure("table1_build", line_chart_svg(build),
@@ -232,7 +232,7 @@ Writer plan_table2(Plan& plan, const Stage& stage) {
     if (stage.found.generated) {
       book.paragraph(
           "No scan was found, so every table below is about a generated teapot and torus knot, and no figure of the "
-          "paper stands beside ours. tools/fetch_scenes gets the scans.");
+          "paper is next to ours. tools/fetch_scenes gets the scans.");
     }
     book.paragraph(
         "Bunny and Horse are the models that the paper names. The armadillo is a stand-in wherever it appears: a scan "

@@ -1,4 +1,4 @@
-// Fig. 6, Table 4 and configuration best: where the time goes, and how much of the waiting is hidden.
+// Fig. 6, Table 4 and configuration best: where the time goes, and the share of the waiting that is hidden.
 // SPDX-License-Identifier: Apache-2.0
 #include <map>
 #include <string>
@@ -136,7 +136,7 @@ Writer plan_figure6(Plan& plan, const Stage& stage) {
 
 namespace {
 
-/// The reference without hiding, on six cores, where memory is nearer or farther.
+/// The reference without hiding, on six cores, with faster and slower memory.
 struct LatencyRun {
   const View* view;
   double cycles;
@@ -185,7 +185,7 @@ Writer plan_table4(Plan& plan, const Stage& stage) {
     hiding.columns.push_back({"paper_fps_gain_percent_printed", "paper: fps gain, % [P]", 1});
     wait.columns.push_back({"paper_hidden_wait_percent_derived", "paper: waiting, hidden, % [D]", 1});
 
-    // For the words: of the reference, of the same with the paper's own test, and of the paper.
+    // Ranges for sentences: of the reference, of the same with the paper's own test, and of the paper.
     struct Ranges {
       Range hidden, gain, single, hidden_wait;
     };
@@ -249,7 +249,7 @@ Writer plan_table4(Plan& plan, const Stage& stage) {
     book.table(
         hiding,
         "Share of the waiting that hiding removes, and the fps it gains, against the same system without hiding.");
-    // Views that the paper does not have leave nothing to compare with.
+    // Views outside of the paper have no figure to compare with.
     const std::string paper_words =
         of_paper.single.empty()
             ? ""

@@ -14,7 +14,7 @@ namespace {
 
 constexpr std::uint32_t kRepeats = 5;
 
-/// Milliseconds by the wall clock and of the processors, or why there are none.
+/// Milliseconds by the wall clock and of the processors, or why they are missing.
 struct Milliseconds {
   Cell wall, processor;
 
@@ -22,7 +22,7 @@ struct Milliseconds {
   explicit Milliseconds(const std::string& reason) : wall(reason), processor(reason) {}
 };
 
-// Embree's frame on one thread, the better of its two hierarchies.
+// Embree's frame on one thread, with the faster of its two hierarchies.
 Milliseconds embree_milliseconds([[maybe_unused]] const View& view, [[maybe_unused]] const FrameRecord& frame) {
 #ifdef GRIDIRON_HAS_EMBREE
   if (frame.width % peer::kEmbreePacketWidth != 0 || frame.height % peer::kEmbreePacketWidth != 0) {

@@ -10,11 +10,11 @@ namespace gridiron::experiment {
 namespace {
 
 constexpr double kLatencies[] = {100, 200, 300, 400, 500, 750, 1000, 1500, 2000};
-/// Of the built-in channel: a sixteenth of the paper's bandwidth to twice as much.
+/// Factors on the built-in channel: from a sixteenth of the paper's bandwidth to twice as much.
 constexpr double kBandwidthFactors[] = {0.0625, 0.125, 0.25, 0.5, 1, 2};
 constexpr std::uint32_t kManyCores = 16;
 
-/// A way of hiding latency, or of not hiding it.
+/// A way of hiding latency, or none.
 struct Curve {
   std::string key, title;
   std::shared_ptr<const System> system;
@@ -69,7 +69,7 @@ std::string point_chart(const Plan& done, const std::vector<Curve>& curves, cons
   return line_chart_svg(chart);
 }
 
-// Why the hierarchy waits as little as it does.
+// Explains the hierarchy's short waits.
 std::string ring_words(const Plan& done, const std::vector<std::pair<Plan::RunId, Plan::RunId>>& turns) {
   Range node_misses, triangle_misses, alone, in_turn;
   for (const auto& [single, ring] : turns) {
@@ -86,7 +86,7 @@ std::string ring_words(const Plan& done, const std::vector<std::pair<Plan::RunId
   return words + (alone.least() > in_turn.greatest() ? ": the ring is what hides its misses." : ".");
 }
 
-// Prefetch where bandwidth is scarce: the first curve is the reference's without it, the second with.
+// Prefetch with little bandwidth: the first curve is the reference without it, the second with it.
 std::string scarce_words(const Plan& done, const Stage& stage, const std::vector<Point>& points) {
   double least = points.front().value;
   for (const Point& point : points) least = std::min(least, point.value);

@@ -102,7 +102,7 @@ ExperimentResult run_paper_experiment(const PaperExperiment& experiment, const P
   Stage stage = make_stage(experiment);
   stage.sweep_views = choose_sweep_views(stage.found.views);
 
-  // 1. What is needed.
+  // 1. Plan the runs.
   Plan plan(experiment.width, experiment.height);
   std::vector<Writer> before_host, after_host;
   for (const auto section :
@@ -114,10 +114,10 @@ ExperimentResult run_paper_experiment(const PaperExperiment& experiment, const P
     after_host.push_back(section(plan, stage));
   }
 
-  // 2. Rendered and replayed.
+  // 2. Render and replay.
   plan.execute(experiment.threads, progress);
 
-  // 3. Written down.
+  // 3. Write the tables, plots and sentences.
   const std::string size = std::to_string(experiment.width) + "x" + std::to_string(experiment.height);
   Book book(
       "Grid ray tracing from small local stores: the evaluation, run again",

@@ -1,4 +1,4 @@
-// The paper experiment: the evaluation of Cho, Kim, Han 2012 run again on the simulated chip, and sweeps beside it.
+// The paper experiment: the evaluation of Cho, Kim, Han 2012 run again on the simulated chip, with additional sweeps.
 // Memory: its own. Threads: starts its own. SPDX-License-Identifier: Apache-2.0
 #pragma once
 
@@ -18,13 +18,12 @@ struct PaperExperiment {
   std::uint32_t largest_knot = 1'000'000;  ///< triangles of the largest mesh of Table 1
 };
 
-/// @returns the names of all files that it may make: which views it has depends on the scenes.
+/// @returns the names of all files that it may write; which views it has depends on the scenes.
 [[nodiscard]] std::vector<std::string> paper_file_names();
 
-/// Runs the experiment. Every file but host_*.csv is a function of scenes, size and largest_knot.
+/// Runs the experiment. Every file but host_*.csv is a function of scenes, size and largest_knot. Errors: Failure.
 ///
-/// @param progress  called serialised with steps done and steps in all.
-/// Errors: Failure.
+/// @param progress  called serialised with the steps done and all steps.
 [[nodiscard]] ExperimentResult run_paper_experiment(const PaperExperiment& experiment, const ProgressCall& progress);
 
 }  // namespace gridiron::experiment

@@ -1,5 +1,5 @@
 // The figures of Cho, Kim, Han, "Enhancing Visual Rendering on Multicore Accelerators with Explicitly Managed
-// Memories", Journal of Information Science and Engineering 28 (2012), 895-909, that this project is held against.
+// Memories", Journal of Information Science and Engineering 28 (2012), 895-909, for comparison.
 // Memory: constants. Threads: any. SPDX-License-Identifier: Apache-2.0
 #pragma once
 
@@ -10,10 +10,10 @@
 
 namespace gridiron::experiment {
 
-/// How we know a figure of the paper.
+/// The origin of a figure of the paper.
 enum class Provenance : std::uint8_t {
   kPrinted,  ///< [P] stands in the paper
-  kDerived,  ///< [D] follows from what stands there
+  kDerived,  ///< [D] follows from printed figures
 };
 
 /// @returns "[P]" or "[D]".
@@ -35,8 +35,8 @@ struct PaperView {
 /// @returns nullptr for a view that the paper does not have.
 [[nodiscard]] const PaperView* find_paper_view(std::string_view key);
 
-/// [D] Percent of a frame spent waiting. With w the single-buffered wait, h the hidden share and g the fps gain, and
-/// nothing but the wait changing: 1 / (1 - h w) = 1 + g, so w = g / ((1 + g) h).
+/// [D] Percent of a frame spent waiting. With w the single-buffered wait, h the hidden share and g the fps gain, and if
+/// only the wait changes: 1 / (1 - h w) = 1 + g, so w = g / ((1 + g) h).
 [[nodiscard]] double derived_single_wait_percent(const PaperView& view, std::size_t cores_index);
 /// [D] The same with double buffering: w (1 - h) (1 + g).
 [[nodiscard]] double derived_double_wait_percent(const PaperView& view, std::size_t cores_index);
@@ -47,7 +47,7 @@ inline constexpr std::string_view kPaperHidden = "60-76 %";           ///< secti
 inline constexpr std::string_view kPaperAgainstBvh = "slow by half";  ///< section 6.3
 inline constexpr std::string_view kPaperFpsGain = "10-22 %";          ///< section 6.2
 
-/// What Table 1 says of a structure: n is the number of triangles.
+/// Growth of a structure by Table 1: n is the number of triangles.
 struct PaperGrowth {
   std::string_view build, traversal;
 };

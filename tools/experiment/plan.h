@@ -1,5 +1,5 @@
-// Plan: the runs that an experiment needs. Each frame is rendered once and replayed for all its machines.
-// Memory: owns timings; traces live only while their frame is worked on. Threads: execute() starts its own.
+// Plan: the runs that an experiment needs. Each frame is rendered once and replayed for all its machines. Memory: owns
+// timings; traces exist only while their frame is worked on. Threads: execute() starts its own.
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
@@ -20,16 +20,16 @@
 
 namespace gridiron::experiment {
 
-/// A machine under a name that tells it from all others of the plan.
+/// A machine with a name that is unique in the plan.
 struct Machine {
   std::string key;
   sim::MachineProfile profile;
 };
 
-/// @returns a built-in profile. Precondition: there is one of that name.
+/// @returns a built-in profile. Precondition: it exists.
 [[nodiscard]] Machine built_in_machine(std::string_view name);
 
-/// What a run left: a time and facts, or why there are none.
+/// The result of a run: a time and facts, or why there are none.
 struct RunResult {
   std::string failure;  ///< empty where the run went well
   FrameFacts facts;
@@ -38,13 +38,13 @@ struct RunResult {
   double build_cycles = 0, build_seconds = 0;  ///< counted steps of the build on the machine's general core
 
   [[nodiscard]] bool failed() const { return !failure.empty(); }
-  /// Frames a second; not a number where the run failed.
+  /// Frames a second; NaN if the run failed.
   [[nodiscard]] double fps() const;
-  /// Frames a second where each frame is built anew and rendered after that; not a number where the run failed.
+  /// Frames a second if each frame is built anew and then rendered; NaN if the run failed.
   [[nodiscard]] double fps_with_build() const;
-  /// Core cycles standing still for transfers, all cores.
+  /// Core cycles stalled for transfers, all cores.
   [[nodiscard]] double wait_cycles() const;
-  /// Percent of all core cycles of the frame; not a number where the run failed.
+  /// Percent of all core cycles of the frame; NaN if the run failed.
   [[nodiscard]] double wait_percent() const;
   /// Bytes requested by gets, all cores.
   [[nodiscard]] std::uint64_t bytes_in() const;
@@ -59,21 +59,21 @@ class Plan {
   /// @param width, height  of every frame.
   Plan(std::uint32_t width, std::uint32_t height) : width_(width), height_(height) {}
 
-  /// Asks for a run. Asking for the same one again gives the same id. `view` must outlive the plan.
+  /// Adds a run. Adding the same one again gives the same id. `view` must outlive the plan.
   [[nodiscard]] RunId add(const View& view, const std::shared_ptr<const System>& system, Shading shading,
                           const Machine& machine, std::uint32_t core_count);
 
   /// Runs everything. Results do not depend on `threads`.
   ///
-  /// @param progress  called serialised with runs done and runs in all.
-  /// A frame that cannot be (Failure kBadInput) becomes the failure of its runs; any other Failure is thrown, that of
-  /// the first frame in the order of the plan.
+  /// @param progress  called serialised with the runs done and all runs.
+  /// A Failure kBadInput of a frame becomes the failure of its runs. Any other Failure is thrown, that of the first
+  /// frame in the order of the plan.
   void execute(std::uint32_t threads, const std::function<void(std::uint32_t, std::uint32_t)>& progress);
 
   [[nodiscard]] const RunResult& result(RunId id) const { return results_[id]; }
   [[nodiscard]] std::size_t frame_count() const { return frames_.size(); }
-  /// @returns frames rendered by execute(): one for each that was recorded and replayed, and one for each run of a
-  /// system with caches, which is rendered anew for every machine.
+  /// @returns frames rendered by execute(): one for each recorded and replayed frame, and one for each run of a system
+  /// with caches, which is rendered anew for every machine.
   [[nodiscard]] std::size_t rendered_count() const;
   [[nodiscard]] std::size_t run_count() const { return results_.size(); }
 

@@ -15,7 +15,7 @@ namespace {
 
 constexpr double kMegabyte = 1 << 20;
 
-/// A column and what a price says in it.
+/// A column, and its value for a price.
 struct Field {
   Column column;
   std::function<Cell(const Price&)> cell;
@@ -23,7 +23,7 @@ struct Field {
 
 using RunOf = const RunResult& (PriceList::*)(const Price&) const;
 
-// Fields of runs and of errors; empty where there is no result.
+// Fields of runs and of errors; empty without a result.
 class Fields {
  public:
   explicit Fields(const PriceList& list) : list_(list) {}
@@ -167,7 +167,7 @@ Table histogram_table(const PriceList& list) {
   return fields.table("t_histogram", [](const Price&) { return true; });
 }
 
-// What a view's figure beside its price is.
+// The figure of a view's errors and costs.
 std::string histogram_svg(const PriceList& list, std::size_t view, std::size_t configuration) {
   HistogramChart chart;
   chart.title = list.views()[view].title + ", configuration " + kPricedConfigurations[configuration];
@@ -217,7 +217,7 @@ struct FrontPoint {
   bool on_front = false;
 };
 
-// @param view  nothing: over all, the geometric mean of the times and the greatest of the errors.
+// @param view  nothing: all views, with the geometric mean of the times and the greatest of the errors.
 std::vector<FrontPoint> front_points(const PriceList& list, const Front& front, std::optional<std::size_t> view) {
   std::vector<FrontPoint> points;
   std::vector<Point2> places;
@@ -271,13 +271,13 @@ std::string front_svg(const PriceList& list, const Front& front, const std::stri
   return scatter_chart_svg(chart);
 }
 
-// Who is on the front, and who is beaten by whom.
+// Lists the points on the front, and for the others the points that beat them.
 std::string front_words(const PriceList& list, const std::vector<FrontPoint>& points) {
   std::string front, beaten;
   for (const FrontPoint& point : points) {
     if (point.on_front) front += (front.empty() ? "" : ", ") + name_of(list, point);
     if (point.on_front || !std::isfinite(point.point.x)) continue;
-    // By the fastest that is no worse in either.
+    // Beaten by the fastest that is no worse in either coordinate.
     const FrontPoint* by = nullptr;
     for (const FrontPoint& other : points) {
       const bool beats = other.on_front && other.point.x <= point.point.x && other.point.y <= point.point.y;
@@ -289,7 +289,7 @@ std::string front_words(const PriceList& list, const std::vector<FrontPoint>& po
   return "On the front: " + (front.empty() ? "none" : front) + "." + (beaten.empty() ? "" : " Beaten: " + beaten + ".");
 }
 
-// Geometric mean over the views, not a number where one has none.
+// Geometric mean over the views, NaN if a view has none.
 double mean_mcycles(const PriceList& list, RunOf run, std::size_t configuration, std::size_t profile) {
   double sum = 0;
   for (std::size_t view = 0; view < list.views().size(); ++view) {
@@ -475,7 +475,7 @@ void write_fronts(const PriceList& list, Book& book) {
   book.section("fronts", "Error against time");
   book.paragraph(
       "Who is on a Pareto front is not beaten: no other profile, in either configuration, is as fast and as accurate "
-      "and better in one of them. Three errors are told: wrong pixels (a hole, a false hit or another triangle) and "
+      "and better in one of them. Three errors are shown: wrong pixels (a hole, a false hit or another triangle) and "
       "leaks of rays aimed at edges (a hole, or something farther away seen through it), both against the time of a "
       "frame that gives a picture alone, and the error of t against that of a frame that gives distances too. Times "
       "are geometric means over the views, errors those of the worst view.");
@@ -542,7 +542,7 @@ void write_views(const PriceList& list, Book& book) {
     for (std::size_t configuration = 0; configuration < std::size(kPricedConfigurations); ++configuration) {
       const std::string name = kPricedConfigurations[configuration];
       book.figure("errors_" + name + "_" + shown.key, histogram_svg(list, view, configuration),
-                  shown.title + ", configuration " + name + ": pixels by the error of their t, beside what they cost.");
+                  shown.title + ", configuration " + name + ": pixels by the error of their t, next to their costs.");
     }
     for (const Front& front : make_fronts()) {
       const std::vector<FrontPoint> points = front_points(list, front, view);

@@ -18,7 +18,7 @@ namespace gridiron::experiment {
 namespace {
 
 constexpr const char* kTruth = "exact";
-constexpr double kStarvation = 8;  ///< the starved machine has the machine's bandwidth divided by that
+constexpr double kStarvation = 8;  ///< divisor of the bandwidth for the starved machine
 
 Machine make_starved(const Machine& machine) {
   Machine starved = machine;
@@ -91,7 +91,7 @@ Answers PriceList::answers_at(const std::vector<Vec3>& points, const Price& pric
 }
 
 void PriceList::compare_view(std::size_t view, const std::function<void()>& step_done) {
-  // A frame that was not rendered for the clock is not rendered for its answers; why is among the results of its runs.
+  // If a frame failed for the clock, it is not rendered for its answers; the results of its runs say why.
   const auto answers_of = [&](const Price& price) -> std::optional<Answers> {
     tool::stop_if_interrupted();
     if (frame(price).failed()) return std::nullopt;

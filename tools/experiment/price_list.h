@@ -1,4 +1,4 @@
-// Price list: what every accuracy profile costs on the simulated chip, and what is wrong with its answers.
+// Price list: the cost of every accuracy profile on the simulated chip, and the errors of its answers.
 // Memory: owns views and results. Threads: collect() starts its own. SPDX-License-Identifier: Apache-2.0
 #pragma once
 
@@ -19,14 +19,14 @@
 
 namespace gridiron::experiment {
 
-/// An accuracy profile as the list shows it.
+/// An accuracy profile as shown in the list.
 struct Profile {
   std::string key;  ///< its name on the command line
   Accuracy accuracy;
   std::string words;  ///< what it does
 };
 
-/// @returns all accuracy profiles, the least accurate first; those with a geometry of their own last.
+/// @returns all accuracy profiles, the least accurate first; those that change the geometry last.
 [[nodiscard]] std::vector<Profile> make_profiles();
 
 /// Names of the configurations that each profile is rendered with.
@@ -42,15 +42,14 @@ struct Price {
   bool same_picture = false;                   ///< with distances and without
 };
 
-/// What is timed, and once it is, what it came to.
+/// The runs to time, and their results.
 class PriceList {
  public:
-  /// Plans all frames. @param views  not empty; with cameras that no profile moves.
+  /// Plans all frames. @param views  not empty; their cameras do not depend on the profile.
   PriceList(std::vector<View> views, std::uint32_t width, std::uint32_t height);
 
-  /// Runs everything. Results do not depend on `threads`.
+  /// Runs everything. Results do not depend on `threads`. Errors: as Plan::execute().
   /// @param step_done  called serialised after each of step_count() steps.
-  /// Errors: as Plan::execute().
   void collect(std::uint32_t threads, const std::function<void()>& step_done);
   [[nodiscard]] std::size_t step_count() const { return plan_.run_count() + prices_.size(); }
 
@@ -63,7 +62,7 @@ class PriceList {
   [[nodiscard]] FrameRequest request() const;
 
   [[nodiscard]] const Price& price(std::size_t view, std::size_t configuration, std::size_t profile) const;
-  /// @returns the profile's index, nothing where there is no such profile.
+  /// @returns the profile's index, or nothing.
   [[nodiscard]] std::optional<std::size_t> find_profile(std::string_view key) const;
 
   [[nodiscard]] const RunResult& frame(const Price& price) const { return plan_.result(price.frame); }

@@ -110,7 +110,7 @@ std::string step_words(const PriceList& list, std::size_t configuration, std::si
       rises = rises || is > was;
     }
     if (before.empty()) continue;
-    // A change that no digit of the text would show is none.
+    // A change that rounds to zero in the text counts as none.
     const bool too_small = metric.is_cost && percents.text(metric.decimals) == fixed_text(0, metric.decimals);
     if ((!falls && !rises) || too_small) {
       kept.push_back(metric.words + (metric.is_cost ? "" : " (" + after.text(metric.decimals) + ")"));

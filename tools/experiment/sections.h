@@ -1,4 +1,4 @@
-// Sections of the paper experiment: each asks a plan for the runs it needs and returns how to write them down.
+// Sections of the paper experiment: each adds its runs to a plan and returns how to write their results.
 // Memory: writers share what they need. Threads: one. SPDX-License-Identifier: Apache-2.0
 #pragma once
 
@@ -16,7 +16,7 @@
 
 namespace gridiron::experiment {
 
-/// What all sections work on. Outlives the plan.
+/// Inputs of all sections. Outlives the plan.
 struct Stage {
   FoundViews found;
   std::vector<View> knots;               ///< of Table 1, rising
@@ -33,7 +33,7 @@ using Writer = std::function<void(const Plan&, Book&)>;
 
 inline constexpr std::uint32_t kPaperCores = 6;
 
-/// What is known of the cycles per unit of work (sim_platform/gridiron/sim/work_costs.h).
+/// Source of the cycles per unit of work (sim_platform/gridiron/sim/work_costs.h).
 inline constexpr const char* kCostTableWords =
     "The cycles per unit of work are counted on the kernel's own code and scheduled by published pipeline rules "
     "(tools/calibrate/README.md).";
@@ -53,7 +53,8 @@ inline constexpr const char* kBvhCostWords =
 [[nodiscard]] Writer plan_best(Plan& plan, const Stage& stage);
 [[nodiscard]] Writer plan_figure7(Plan& plan, const Stage& stage);
 
-/// Fig. 7 (b): the same kernel, and Embree, on this host's processor. One frame after another, nothing beside it.
+/// Fig. 7 (b): the same kernel, and Embree, on this host's processor. One frame after another, without other work of
+/// ours.
 /// @param threads  host threads of the grid's second row. Errors: Failure.
 void write_host_figures(const Stage& stage, std::uint32_t threads, Book& book);
 
@@ -65,26 +66,25 @@ void write_host_figures(const Stage& stage, std::uint32_t threads, Book& book);
 [[nodiscard]] Writer plan_store_sweep(Plan& plan, const Stage& stage);      ///< 64 to 512 KB, the maps
 [[nodiscard]] Writer plan_bvh_sweep(Plan& plan, const Stage& stage);        ///< settings of the hierarchy
 
-/// Words about the parameters that configuration best was given: what they cost and bring against the others of their
+/// Sentences about the parameters of configuration best: their costs and gains against the other values of their
 /// sweeps.
 using ChoiceWords = std::function<std::string(const Plan&)>;
 [[nodiscard]] ChoiceWords plan_choice_words(Plan& plan, const Stage& stage);
 
-/// @returns the value as a sweep's words give it: "16", or "16, the last of its sweep", where nobody knows what is
-/// behind.
+/// @returns the value for a sweep's sentences: "16", or "16, the last of its sweep", because larger values are unknown.
 /// @param values  the sweep's, rising, not empty.
 [[nodiscard]] std::string swept_value_words(double value, std::span<const double> values);
 
-/// @returns the machine with another latency, under the key that all sections give it.
+/// @returns the machine with another latency, under the key that all sections use.
 [[nodiscard]] Machine machine_with_latency(const Machine& machine, double cycles);
 
-/// @returns the contender of that key. Precondition: there is one.
+/// @returns the contender with that key. Precondition: it exists.
 [[nodiscard]] const Contender& contender_named(const Stage& stage, std::string_view key);
 
-/// Least and greatest of some figures, as words: "1.2 to 3.4"; one figure where both print alike; "none".
+/// Least and greatest of some figures, as words: "1.2 to 3.4"; one figure if both print alike; "none".
 class Range {
  public:
-  void add(double value);  ///< what is not finite is left out
+  void add(double value);  ///< ignores infinity and NaN
   [[nodiscard]] std::string text(int decimals) const;
   [[nodiscard]] std::string percent(int decimals) const;  ///< the same with a percent sign behind a figure
   [[nodiscard]] bool empty() const { return empty_; }
@@ -96,11 +96,11 @@ class Range {
   double least_ = 0, greatest_ = 0;
 };
 
-/// @returns part / whole, not a number where whole is none or not above 0.
+/// @returns part / whole; NaN unless whole is above 0.
 [[nodiscard]] double ratio_of(double part, double whole);
-/// @returns 100 * (1 - part / whole), not a number where whole is none or not above 0.
+/// @returns 100 * (1 - part / whole); NaN unless whole is above 0.
 [[nodiscard]] double percent_less(double part, double whole);
-/// @returns 100 * (changed / base - 1), not a number where base is none or not above 0.
+/// @returns 100 * (changed / base - 1); NaN unless base is above 0.
 [[nodiscard]] double percent_more(double changed, double base);
 
 }  // namespace gridiron::experiment

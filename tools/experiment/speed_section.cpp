@@ -42,7 +42,7 @@ Writer plan_table3(Plan& plan, const Stage& stage) {
       cost.columns.push_back({contender.key + "_percent", contender.title + ", %", 1});
     }
     cost.columns.push_back({"paper_printed", "paper [P]"});
-    // Of the systems that the paper has, of the others; cycles a pixel of the former.
+    // Costs of the paper's systems and of the others; cycles a pixel of the former.
     Range paper_like_costs, other_costs, pixel_cycles, paper_cycles;
     const double pixels = static_cast<double>(stage.width) * stage.height;
     const auto core_cycles_a_pixel = [&](const RunResult& run) {

@@ -1,4 +1,4 @@
-// Sweeps of the local store: its size, the tiles in it, what has room in it, and the maps.
+// Sweeps of the local store: its size, the tiles in it, the layouts that fit, and the maps.
 // SPDX-License-Identifier: Apache-2.0
 #include <gridiron/bvh/bvh_core.h>
 
@@ -29,7 +29,7 @@ struct Place {
   [[nodiscard]] bool is_usual() const { return store == GridVariant{}.store && tile_width == GridVariant{}.tile_width; }
 };
 
-/// A frame of a sweep, or why there is none.
+/// A frame of a sweep, or why it is missing.
 struct Point {
   const View* view;
   std::string configuration;
@@ -44,12 +44,12 @@ struct Sweep {
   std::vector<Place> places;
   std::vector<Point> points;  ///< by view, configuration, place
 
-  /// @returns what a point gave; nothing where it has no frame.
+  /// @returns the result of a point; nothing without a frame.
   [[nodiscard]] static const RunResult* result(const Plan& done, const Point& point) {
     const RunResult* run = point.run ? &done.result(*point.run) : nullptr;
     return run != nullptr && !run->failed() ? run : nullptr;
   }
-  /// @returns what the same view and configuration gave at the configurations' own place.
+  /// @returns the result of the same view and configuration at the usual place.
   [[nodiscard]] const RunResult* usual_result(const Plan& done, const Point& point) const {
     for (const Point& other : points) {
       const bool same = other.view == point.view && other.configuration == point.configuration;
@@ -72,7 +72,7 @@ std::string missing_words(const sim::LayoutChoice& layout) {
   return "not built";
 }
 
-// The configuration in another place: packets no wider than tiles, no more buffers than there are.
+// The configuration at another place: packets no wider than tiles, no more buffers than the layout has.
 Point make_point(Plan& plan, const Stage& stage, const View& view, const char* configuration,
                  const std::vector<Place>& places, std::size_t index) {
   const Place& place = places[index];
@@ -95,7 +95,7 @@ Point make_point(Plan& plan, const Stage& stage, const View& view, const char* c
   point.fitted = fitted;
   variant.store = place.store;
   variant.tile_width = place.tile_width;
-  // The usual frame keeps the name under which other sections ask for it.
+  // The usual frame keeps the key that other sections use.
   if (!place.is_usual()) variant.key += "/" + place.key;
   point.run =
       plan.add(view, std::make_shared<GridSystem>(std::move(variant)), Shading::kNone, stage.machine, kPaperCores);
@@ -131,7 +131,7 @@ bool is_same_picture(const Sweep& sweep, const Plan& done, const Point& point) {
   return run != nullptr && usual != nullptr && run->facts.picture_hash == usual->facts.picture_hash;
 }
 
-// Everything, a row for each point.
+// The whole table, a row for each point.
 Table long_table(const Sweep& sweep, const Plan& done, const std::string& name) {
   Table table{name,
               {{"view", "view"},
@@ -175,7 +175,7 @@ Table long_table(const Sweep& sweep, const Plan& done, const std::string& name) 
   return table;
 }
 
-// What people read: a row for each view and configuration, the places side by side.
+// The table for readers: a row for each view and configuration, the places side by side.
 Table short_table(const Sweep& sweep, const Plan& done) {
   Table table{"", {{"view", "view"}, {"configuration", "configuration"}}, {}};
   struct Figure {
@@ -222,7 +222,7 @@ std::string bar_chart(const Sweep& sweep, const Plan& done, const std::string& c
   return bar_chart_svg(chart);
 }
 
-// "1.00 to 1.02 times with 512 KB, ...": a figure of all places but the usual one, over that of the usual one.
+// "1.00 to 1.02 times with 512 KB, ...": a figure of all other places, over that of the usual one.
 template <class Value>
 std::string ratio_words(const Sweep& sweep, const Plan& done, const std::string& configuration, Value value) {
   std::string text;
@@ -251,7 +251,7 @@ std::string range_words(const Sweep& sweep, const Plan& done, const std::string&
   return range.percent(2);
 }
 
-// "64 KB (Bunny), ...": where each view is rendered fastest.
+// "64 KB (Bunny), ...": the fastest place of each view.
 std::string fastest_words(const Sweep& sweep, const Plan& done, const std::string& configuration) {
   std::string text;
   for (std::size_t first = 0; first < sweep.points.size(); first += sweep.places.size()) {
@@ -456,7 +456,7 @@ std::string widest_tiles() {
   return text;
 }
 
-// "; 64 KB hold fewer than best asks for": where a configuration is cut down.
+// "; 64 KB hold fewer than best asks for": the reduced configurations.
 std::string short_store_words() {
   std::string stores;
   const tool::BufferDepths wanted = grid_variant("best").configuration.depths;
@@ -468,7 +468,7 @@ std::string short_store_words() {
   return stores.empty() ? "" : "; " + stores + " have fewer than the " + buffer_words("best") + " of best";
 }
 
-// "64 KB: packet; ...": which regions have other sizes for reference and best.
+// "64 KB: packet; ...": the regions whose sizes differ between reference and best.
 std::string differing_regions() {
   std::string text;
   const std::vector<NamedLayout> reference = layouts_of("reference"), best = layouts_of("best");
@@ -487,7 +487,7 @@ void write_maps(Book& book) {
   book.section("map", "The local store, byte by byte");
   book.paragraph(
       "Everything a core works in, in address order. The sizes are those of the compiled layouts, whose buffers are as "
-      "many as the first table tells, however many of them a configuration uses" +
+      "many as in the first table, however many of them a configuration uses" +
       short_store_words() + ". The layouts of reference and best differ in these regions: " + differing_regions() +
       ". Code and stack are committed budgets; the cross builds prove those of the layouts of 256 KB "
       "with packets of 8x8 and 32x32, and of no others.");
@@ -518,7 +518,7 @@ Writer plan_store_sweep(Plan& plan, const Stage& stage) {
     book.section("store", "Sweep: local store");
     book.paragraph(
         "A layout for each size: tiles of 16 pixels in 64 KB and of 32 in the others, and with the size the table of "
-        "macrocells, the buffers and the mailbox of wide packets; what each holds is told below. Where a layout has "
+        "macrocells, the buffers and the mailbox of wide packets; the contents of each are below. Where a layout has "
         "fewer buffers than a configuration asks for, it is cut down to them; in 64 KB best traverses once per 16x16 "
         "tile.");
     const auto wait_of = [](const RunResult& run) { return run.wait_percent(); };

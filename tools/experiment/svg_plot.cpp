@@ -11,7 +11,7 @@
 namespace gridiron::experiment {
 namespace {
 
-// Okabe and Ito's colours, which people who confuse red and green can tell apart.
+// Okabe and Ito's colours, which remain distinct with red-green colour blindness.
 constexpr std::array<std::string_view, 8> kColors = {"#0072b2", "#d55e00", "#009e73", "#cc79a7",
                                                      "#e69f00", "#56b4e9", "#6b6b6b", "#b3a400"};
 
@@ -23,7 +23,7 @@ std::string units(double place) {
   return fixed_text(place, 2);
 }
 
-// An SVG document in the making.
+// Builds an SVG document.
 class Drawing {
  public:
   explicit Drawing(std::string_view title) {
@@ -245,7 +245,7 @@ std::string escape_markup(std::string_view text) {
 
 std::string line_chart_svg(const LineChart& chart) {
   const PlotArea area;
-  // 1. The axes hold every point that can be shown.
+  // 1. The axes contain every point that can be shown.
   double x_least = HUGE_VAL, x_greatest = 0, y_least = HUGE_VAL, y_greatest = 0;
   const auto shown = [&chart](const Point2& point) {
     return can_show(point.x, chart.log_x) && can_show(point.y, chart.log_y);
@@ -393,7 +393,7 @@ std::string scatter_chart_svg(const ScatterChart& chart) {
   drawing.write(area.left - 8, lane + 4.5, "0", "end", kLabel);
   draw_x_axis(drawing, area, x, tick_values(x.low, x.high, true), chart.x_title);
 
-  // The front first, so that it lies below the points.
+  // The front is drawn first, below the points.
   std::vector<const ScatterChart::Point*> front;
   for (const ScatterChart::Point& point : chart.points) {
     if (shown(point) && point.ringed) front.push_back(&point);
@@ -405,7 +405,7 @@ std::string scatter_chart_svg(const ScatterChart& chart) {
   for (const Point2& place : places) drawing.circle(place, kRingRadius, kRingStyle, chart.ring);
   for (const ScatterChart::Point& point : chart.points) {
     if (!shown(point)) continue;
-    // Later colours are drawn smaller: of points in one place all are seen.
+    // Later colours are drawn smaller, so that all points in one place are visible.
     const double radius = std::max(2.5, 6.5 - static_cast<double>(point.color));
     drawing.circle(place_of(point), radius, dot_style(color_of(point.color), point.hollow),
                    point.name + ": " + number_text(point.x) + ", " + number_text(point.y));
@@ -435,7 +435,7 @@ std::string histogram_chart_svg(const HistogramChart& chart) {
     return area.left + bin_width * static_cast<double>(bin) + (bin >= joined ? kSeparation : 0);
   };
 
-  // 1. Names of the bins: every fourth of those in a row, the others upright.
+  // 1. Names of the bins: every fourth of the contiguous ones, and all others, upright.
   Drawing drawing(chart.title);
   drawing.write(area.left, area.top - 14, chart.bin_title, "start", kLabel);
   drawing.write(kCostLeft, area.top - 14, chart.cost_title, "start", kLabel);

@@ -18,7 +18,7 @@ struct PlotArea {
 };
 inline constexpr double kPlotWidth = 720, kPlotHeight = 470;
 
-/// One axis: its end values, and where they lie in the picture.
+/// One axis: its end values, and their positions in the picture.
 struct Axis {
   double low = 0, high = 1;   ///< values; 0 < low on a logarithmic axis
   double begin = 0, end = 1;  ///< places of low and high
@@ -27,8 +27,8 @@ struct Axis {
   [[nodiscard]] double place(double value) const;
 };
 
-/// @returns round values from `low` to `high` (1, 2 or 5 times a power of ten apart; on a logarithmic axis the powers
-/// themselves, with 2 and 5 between where they are few), rising, at most about `most`.
+/// @returns rising round values from `low` to `high`, at most about `most`: 1, 2 or 5 times a power of ten apart; on a
+/// logarithmic axis the powers themselves, with 2 and 5 between if they are few.
 [[nodiscard]] std::vector<double> tick_values(double low, double high, bool logarithmic, std::size_t most = 8);
 
 /// @returns "0.5", "20", "10k", "1M": a tick's label.
@@ -58,7 +58,7 @@ struct BarChart {
   bool labels = false;              ///< the bar's height in figures above it, where bars are wide enough
 };
 
-/// Single points: how much of one thing is had for how much of another.
+/// Single points: the amount of one quantity against another.
 struct ScatterChart {
   struct Point {
     double x = 0, y = 0;
@@ -69,7 +69,7 @@ struct ScatterChart {
   };
   std::string title, x_title, y_title;
   std::vector<std::string> colors;   ///< what each colour stands for
-  std::string filled, hollow, ring;  ///< what these stand for; no words: not told
+  std::string filled, hollow, ring;  ///< words of the legend; an empty one has no entry
   std::vector<Point> points;
 };
 
@@ -82,20 +82,20 @@ struct HistogramChart {
   };
   std::string title, bin_title, cost_title;
   std::vector<std::string> bins;   ///< names
-  std::size_t separate_bins = 0;   ///< so many of the last bins stand apart from the others, their names upright
+  std::size_t separate_bins = 0;   ///< number of last bins that are drawn apart, with upright names
   std::vector<std::string> parts;  ///< of the cost
   std::vector<Row> rows;
 };
 
-/// @returns a whole SVG document, both axes logarithmic; a y of 0 has a lane of its own below them. Points with an x or
-/// y that cannot be shown are left out; those ringed are joined in the order of x.
+/// @returns a whole SVG document, both axes logarithmic; a y of 0 has a lane of its own below. Points that cannot be
+/// shown are left out; ringed points are joined in the order of x.
 [[nodiscard]] std::string scatter_chart_svg(const ScatterChart& chart);
 
-/// @returns a whole SVG document. Counts are drawn by their logarithms, costs from 0.
-/// Precondition: each row has a count for each bin and a cost for each part.
+/// @returns a whole SVG document. Counts are drawn by their logarithms, costs from 0. Precondition: each row has a
+/// count for each bin and a cost for each part.
 [[nodiscard]] std::string histogram_chart_svg(const HistogramChart& chart);
 
-/// @returns a whole SVG document. Points with a value that the axis cannot show are left out.
+/// @returns a whole SVG document. Points that the axes cannot show are left out.
 [[nodiscard]] std::string line_chart_svg(const LineChart& chart);
 
 /// @returns a whole SVG document. Precondition: values has groups x bars x parts elements.

@@ -75,7 +75,7 @@ std::uint64_t sum_of(const sim::WorkTotals& work, std::initializer_list<Work> ki
   return sum;
 }
 
-// Bytes that gets of triangle records ask for. The prologue of a core has none.
+// Bytes that gets of triangle records request. The prologue of a core has none.
 std::uint64_t fetched_triangle_bytes(const sim::FrameTrace& trace) {
   std::uint64_t bytes = 0;
   sim::TraceReader steps;
@@ -203,7 +203,7 @@ void CloseLook::look_at(const Vec3& point, Answers& answers) {
   tool::FrameMemory& frame = parts_->frame;
   Camera camera = frame.settings.camera;
   camera.at = point;
-  // Any direction across the view is up.
+  // Any direction across the view serves as up.
   const Vec3 forward = glm::abs(camera.at - camera.eye);
   camera.up = forward.x <= forward.y && forward.x <= forward.z ? Vec3(1, 0, 0)
               : forward.y <= forward.z                         ? Vec3(0, 1, 0)

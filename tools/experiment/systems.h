@@ -1,5 +1,5 @@
-// Systems: ways of rendering a frame on the simulated chip, and those that the experiment compares.
-// Memory: a recording owns its trace. Threads: any; record() and time() share nothing.
+// Systems: ways of rendering a frame on the simulated chip, and those that the experiment compares. Memory: a recording
+// owns its trace. Threads: any; record() and time() share nothing.
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
@@ -24,13 +24,13 @@
 
 namespace gridiron::experiment {
 
-/// What a frame asks for beside the view.
+/// Requirements of a frame besides the view.
 struct FrameRequest {
   std::uint32_t width = 1024, height = 1024;
   Shading shading = Shading::kNone;
 };
 
-/// What is known of a frame without any clock.
+/// Facts of a frame that need no clock.
 struct FrameFacts {
   sim::BuildWork build;                  ///< of the structure
   std::uint64_t traversal_steps = 0;     ///< steps through the structure, all packets
@@ -39,7 +39,7 @@ struct FrameFacts {
   std::uint64_t picture_hash = 0;
   std::uint32_t dropped_triangles = 0;  ///< of zero area
   std::optional<GridRecord> grid;       ///< of systems that have one
-  std::uint64_t triangle_bytes = 0;     ///< of the scene: triangle records; known of the grid alone, as what follows
+  std::uint64_t triangle_bytes = 0;     ///< of the scene: triangle records; from here on for the grid alone
   std::uint64_t fetched_triangle_bytes = 0;  ///< requested by gets of triangle records
   std::uint64_t main_memory_bytes = 0;       ///< scene, frame record and output planes
   std::uint64_t local_store_bytes = 0;       ///< data, and the budgets of code and stack
@@ -48,19 +48,19 @@ struct FrameFacts {
   [[nodiscard]] std::uint64_t build_steps() const;
 };
 
-/// How software caches did, over all cores.
+/// Counts of software caches, over all cores.
 struct CacheFacts {
   double node_hit_percent = 0, triangle_hit_percent = 0;  ///< look-ups that started no fetch
-  std::uint64_t suspended_packets = 0;                    ///< times that a packet made way until its line had come
+  std::uint64_t suspended_packets = 0;                    ///< times that a packet waited for its line
 };
 
-/// What a run on a machine gave.
+/// The result of a run on a machine.
 struct TimedFrame {
   sim::FrameTiming timing;
   std::optional<CacheFacts> caches;  ///< of systems that have them
 };
 
-/// A frame that can be given a time on any machine: by replay, or by rendering it again there.
+/// A frame that can be timed on any machine: by replay, or by rendering it again.
 class Recording {
  public:
   virtual ~Recording() = default;
@@ -73,27 +73,27 @@ class Recording {
 class System {
  public:
   virtual ~System() = default;
-  /// @returns a name by which two systems are the same.
+  /// @returns a name that identifies equal systems.
   [[nodiscard]] virtual std::string key() const = 0;
-  /// Renders a frame on the calling thread. Errors: Failure; kBadInput where the scene does not fit the machine.
+  /// Renders a frame on the calling thread. Errors: Failure; kBadInput if the scene does not fit the machine.
   [[nodiscard]] virtual std::unique_ptr<Recording> record(const View& view, const FrameRequest& request) const = 0;
 };
 
-/// A system as the tables show it: one column each.
+/// A system as shown in tables: one column each.
 struct Contender {
   std::string key;    ///< suffix of CSV columns
   std::string title;  ///< for people
   std::shared_ptr<const System> system;
-  std::shared_ptr<const System> unhidden;  ///< the same without hiding the latency of what it fetches
+  std::shared_ptr<const System> unhidden;  ///< the same without hiding the latency of its fetches
   std::string hiding;                      ///< how `system` hides it, for people
   bool is_grid = true;                     ///< false: a hierarchy
-  PaperGrowth paper_growth;                ///< what the paper's Table 1 says of such a structure
+  PaperGrowth paper_growth;                ///< growth of such a structure by the paper's Table 1
 };
 
 /// The columns of every table that compares systems.
 [[nodiscard]] std::vector<Contender> make_contenders();
 
-/// The machine whose main memory every scene has to fit.
+/// The machine whose main memory must hold every scene.
 [[nodiscard]] const tool::Machine& home_machine();
 
 /// Parameters of core's own grid traversal.
@@ -103,16 +103,16 @@ struct GridVariant {
   Accuracy accuracy = Accuracy::kStandard;
   sim::StoreSize store = sim::StoreSize::k256KB;
   std::uint32_t tile_width = sim::usual_tile_width(sim::StoreSize::k256KB);
-  bool depth = false;  ///< distances are asked for, beside the picture
+  bool depth = false;  ///< whether distances are requested too
 };
 
-/// @returns the configuration of that name, e.g. "best". Precondition: there is one.
+/// @returns the configuration with that name, e.g. "best". Precondition: it exists.
 [[nodiscard]] GridVariant grid_variant(std::string_view configuration);
 
-/// @returns "4 cell blocks and 3 triangle buffers": what a configuration keeps in rotation. Precondition as above.
+/// @returns "4 cell blocks and 3 triangle buffers": the buffers of a configuration. Precondition as above.
 [[nodiscard]] std::string buffer_words(std::string_view configuration);
 
-/// The grid traversal of core, rendered in checked mode with 4 lanes and given a time by replay.
+/// The grid traversal of core, rendered in checked mode with 4 lanes and timed by replay.
 class GridSystem : public System {
  public:
   explicit GridSystem(GridVariant variant) : variant_(std::move(variant)) {}
@@ -123,18 +123,18 @@ class GridSystem : public System {
   GridVariant variant_;
 };
 
-/// Renders the frame with all of its planes, without a clock: in plain mode, in the chip's own groups of 4 rays.
-/// Errors: Failure; kBadInput where the scene does not fit the machine.
+/// Renders the frame with all its planes, without a clock: in plain mode, in the chip's groups of 4 rays. Errors:
+/// Failure; kBadInput if the scene does not fit the machine.
 [[nodiscard]] Answers render_answers(const GridVariant& variant, const View& view, const FrameRequest& request);
 
-/// A profile's answers about rays that all but meet a point.
+/// A profile's answers about rays that pass very close to a point.
 ///
-/// A look is a picture of kWidth x kWidth pixels from the eye of a view, so small that all of its rays pass the point
-/// looked at within a few roundings of their directions.
+/// A look is a picture of kWidth x kWidth pixels from the eye of a view, so small that all its rays pass the point
+/// within a few roundings of their directions.
 class CloseLook {
  public:
   static constexpr std::uint32_t kWidth = 32;
-  /// Errors: Failure; kBadInput where the scene does not fit the machine.
+  /// Errors: Failure; kBadInput if the scene does not fit the machine.
   CloseLook(const GridVariant& variant, const View& view);
   ~CloseLook();
 
@@ -146,7 +146,7 @@ class CloseLook {
   std::unique_ptr<Parts> parts_;
 };
 
-/// Seconds of something on this host, by the wall clock and of its processors, all threads together.
+/// Seconds on this host, by the wall clock and of its processors, all threads together.
 struct HostSeconds {
   double wall = 0, processor = 0;
 };
@@ -154,15 +154,13 @@ struct HostSeconds {
 /// Runs `work` several times. @returns the least of each time.
 [[nodiscard]] HostSeconds least_host_seconds(std::uint32_t repeats, const std::function<void()>& work);
 
-/// A frame rendered directly on this host.
 struct HostFrame {
   HostSeconds seconds;   ///< the scene's build not included
   FrameRecord record{};  ///< camera and size of it
 };
 
-/// Renders the frame directly on this host: plain mode, no simulated clock.
-///
-/// @param threads  host threads. Errors: Failure.
+/// Renders the frame directly on this host: plain mode, no simulated clock. @param threads  host threads. Errors:
+/// Failure.
 [[nodiscard]] HostFrame render_on_host(const GridVariant& variant, const View& view, const FrameRequest& request,
                                        std::uint32_t threads, std::uint32_t repeats);
 

@@ -52,7 +52,7 @@ std::string fixed_text(double number, int decimals) {
   const auto [end, error] =
       std::to_chars(text.data(), text.data() + text.size(), number, std::chars_format::fixed, decimals);
   std::string fixed = error == std::errc{} ? std::string(text.data(), end) : "";
-  // A rounded zero has no sign.
+  // No sign for a rounded zero.
   if (!fixed.empty() && fixed.front() == '-' && fixed.find_first_not_of("-0.") == std::string::npos) fixed.erase(0, 1);
   return fixed;
 }

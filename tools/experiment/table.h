@@ -16,7 +16,7 @@ using Cell = std::variant<std::monostate, std::string, std::uint64_t, double>;
 struct Column {
   std::string key;    ///< snake_case with the unit as its suffix: the header of the CSV file
   std::string title;  ///< for people
-  int decimals = 2;   ///< of measures on the page, below 0: digits of 1.2e-07; the CSV file always holds all digits
+  int decimals = 2;   ///< of measures on the page, below 0: digits of 1.2e-07; the CSV file holds all digits
 };
 
 struct Table {
@@ -28,7 +28,7 @@ struct Table {
   void add(std::vector<Cell> row) { rows.push_back(std::move(row)); }
 };
 
-/// @returns the shortest decimal text that reads back as the same number (std::to_chars), "" where it is not finite.
+/// @returns the shortest decimal text that reads back as the same number (std::to_chars), "" for infinity and NaN.
 [[nodiscard]] std::string number_text(double number);
 /// The same for a float: as short as a float needs.
 [[nodiscard]] std::string number_text(float number);
@@ -40,13 +40,13 @@ struct Table {
 [[nodiscard]] std::string scientific_text(double number, int digits);
 
 /// @returns the table as CSV (RFC 4180 with plain line feeds): a header of keys, then the rows. A field with a comma, a
-/// quote or a line break stands in quotes, quotes inside it are doubled.
+/// quote or a line break is quoted, and quotes inside it are doubled.
 [[nodiscard]] std::string csv_text(const Table& table);
 
-/// @returns a cell for people: measures with the column's digits, counts with separators.
+/// @returns a cell's text for the page: measures with the column's digits, counts with separators.
 [[nodiscard]] std::string shown_text(const Cell& cell, int decimals);
 
-/// @returns whether a column is set like numbers: by its first cell that is not empty.
+/// @returns whether a column is aligned like numbers, decided by its first non-empty cell.
 [[nodiscard]] bool is_number_column(const Table& table, std::size_t column);
 
 /// @returns the table in columns of plain text, titles first, two spaces between columns, numbers to the right.

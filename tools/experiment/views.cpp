@@ -14,8 +14,8 @@
 namespace gridiron::experiment {
 namespace {
 
-// The paper does not say from where its views are taken. Scans are framed; the two of the conference room are ours,
-// those of scenes/conference_*.camera.
+// The paper does not describe its cameras. Scans are framed; the two of the conference room are ours, in
+// scenes/conference_*.camera.
 struct KnownView {
   const char* key;
   const char* title;
@@ -37,7 +37,7 @@ const KnownView kKnownViews[] = {
      {Vec3(1415, 389, -797), Vec3(-208, 160, -21), Vec3(0, 1, 0), 65.0f}},
 };
 
-// What is seen where there is no scan.
+// Shown if there is no scan.
 constexpr const char* kTeapotKey = "teapot";
 constexpr std::uint32_t kKnotTriangles = 20'000;
 
@@ -102,7 +102,7 @@ View make_knot_view(std::uint32_t triangle_count) {
 
 View with_published_camera(View view) {
   if (view.camera.eye && view.camera.at) return view;
-  // One cell: the bounds of what can be hit are the same in every grid.
+  // One cell: the bounds of the triangles are the same in every grid.
   GridNeed need;
   const Status status = count_scene_image(view.mesh().view(), {.lambda = 1e-6f}, need);
   if (status != Status::kOk) {

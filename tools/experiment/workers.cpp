@@ -16,7 +16,7 @@ void share_work(std::uint32_t threads, std::size_t count, const std::function<vo
   std::vector<std::exception_ptr> errors(count);
   const auto run = [&](std::uint32_t) {
     while (!stop) {
-      // What is claimed is done, whoever fails meanwhile: of pieces that fail the lowest is always among them.
+      // A claimed piece is always finished, so the lowest failing piece is always among the failures.
       const std::size_t i = next++;
       if (i >= count) return;
       try {

@@ -8,9 +8,9 @@
 
 namespace gridiron::experiment {
 
-/// Does work(0) to work(count - 1), each once, the lowest first, on `threads` threads of which the caller is one, or on
-/// as many as the host can start. After an exception no further piece begins; that of the lowest piece is thrown once
-/// all threads have ended.
+/// Calls work(0) to work(count - 1), each once, the lowest first, on `threads` threads including the caller's, or on as
+/// many as the host can start. After an exception no further piece begins; that of the lowest piece is thrown once all
+/// threads have ended.
 void share_work(std::uint32_t threads, std::size_t count, const std::function<void(std::size_t)>& work);
 
 }  // namespace gridiron::experiment

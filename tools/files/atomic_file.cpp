@@ -22,10 +22,10 @@ namespace {
 
 namespace fs = std::filesystem;
 
-// A signal may come between a look at the flag and a call that blocks: no call may block for longer than this.
+// A signal may come between a check of the flag and a call that blocks, so no call may block for longer than this.
 constexpr int kPatienceMilliseconds = 100;
 
-// Waits where the target is a pipe that nobody reads from yet.
+// Waits if the target is a pipe without a reader.
 int open_special(const fs::path& file) {
   struct stat status {};
   const bool is_pipe = ::stat(file.c_str(), &status) == 0 && S_ISFIFO(status.st_mode);
@@ -37,13 +37,13 @@ int open_special(const fs::path& file) {
   }
 }
 
-// Writes all bytes or returns false with errno set. Errors: Failure where a signal ends the wait for a pipe's reader.
+// Writes all bytes or returns false with errno set. Errors: Failure if a signal ends the wait for a pipe's reader.
 bool write_all(int descriptor, std::span<const std::byte> bytes, bool can_block) {
-  constexpr std::size_t kUnblockedBytes = 4096;  // a pipe that is ready takes as many at once
-  // No signal ends a write to a file, which may wait for the disk: a gigabyte takes seconds.
+  constexpr std::size_t kUnblockedBytes = 4096;  // a pipe that is ready takes this many at once
+  // Signals do not end a write to a file, which may wait for the disk: a gigabyte takes seconds.
   constexpr std::size_t kMostFileBytes = std::size_t{8} << 20;
   while (!bytes.empty()) {
-    stop_if_interrupted();  // a signal also ends a write of which a part is done
+    stop_if_interrupted();  // a signal also ends a partial write
     if (can_block) {
       pollfd ready{descriptor, POLLOUT, 0};
       if (::poll(&ready, 1, kPatienceMilliseconds) == 0) continue;
@@ -72,12 +72,12 @@ AtomicFile::~AtomicFile() {
 }
 
 void AtomicFile::open_temporary() {
-  // A name of its own, not one made of the target's: that may be as long as names can be.
+  // The name does not contain the target's, which may have the maximum length.
   std::string name = target_.file.parent_path() / ".gridiron.XXXXXX";
   {
     const Undivided step;
     descriptor_ = ::mkostemp(name.data(), O_CLOEXEC);
-    if (descriptor_ < 0) fail("create a temporary file beside it: ");
+    if (descriptor_ < 0) fail("create a temporary file in its folder: ");
     temporary_ = name;
     leftover_.remember(name);
   }
@@ -105,7 +105,7 @@ void AtomicFile::write(std::string_view text) {
 
 void AtomicFile::finish() {
   if (descriptor_ < 0) return;
-  // Some file systems report a full disk only here. After a signal the descriptor is closed all the same.
+  // Some file systems report a full disk only here. The descriptor is closed even after a signal.
   const int closed = ::close(std::exchange(descriptor_, -1));
   if (closed != 0 && errno != EINTR) fail("close: ");
 }

@@ -15,14 +15,14 @@
 
 namespace gridiron::tool {
 
-/// Bytes on their way to `path`: written under another name in the same folder, renamed by commit().
+/// Collects bytes for `path`: written under another name in the same folder, renamed by commit().
 ///
-/// A target that is a device, a pipe or a descriptor is written through at commit, since renaming over it would replace
-/// it. A file that is replaced keeps its rights. Errors: Failure (kBadInput) with path and reason, or
-/// stop_if_interrupted()'s where a signal ends the wait for a pipe's reader; nothing is left behind then.
+/// A target that is a device, a pipe or a descriptor is written through at commit, since renaming would replace it. A
+/// replaced file keeps its rights. Errors: Failure (kBadInput) with path and reason, or stop_if_interrupted()'s if a
+/// signal ends the wait for a pipe's reader; nothing is left behind then.
 class AtomicFile {
  public:
-  /// Opens the temporary file. The path leads where target_of() says.
+  /// Opens the temporary file. target_of() resolves the path.
   explicit AtomicFile(const std::filesystem::path& path);
   ~AtomicFile();
   AtomicFile(const AtomicFile&) = delete;
@@ -31,7 +31,7 @@ class AtomicFile {
   void write(std::span<const std::byte> bytes);
   void write(std::string_view text);
 
-  /// Closes the temporary file: all of its bytes are there. Nothing is written after that.
+  /// Closes the temporary file. Nothing is written after that.
   void finish();
 
   /// Finishes and makes the file appear under its name.
@@ -42,7 +42,7 @@ class AtomicFile {
  private:
   void open_temporary();
   void write_through();
-  /// @param action  of which writing consists, with ": " at its end; empty: writing itself.
+  /// @param action  the failed step, with ": " at its end; empty: writing itself.
   [[noreturn]] void fail(const char* action);
 
   OutputTarget target_;
@@ -63,10 +63,10 @@ class AtomicFiles {
     file.finish();
   }
 
-  /// Makes all files appear, devices and pipes first: they may fail where a rename no longer does. No file appears
-  /// where one of the targets cannot be replaced any more. Errors: of check_again() too.
+  /// Makes all files appear, devices and pipes first, because they may fail and a rename no longer does. No file
+  /// appears if one of the targets can no longer be replaced. Errors: of check_again() too.
   void commit();
-  /// Does so as the last thing of the command: an interrupt that comes after it comes too late.
+  /// Does so as the last step of the command; later interrupts have no effect.
   void commit_at_end();
 
  private:

@@ -1,4 +1,4 @@
-// Byte reader: records of a binary file, and complaints that name the byte.
+// Byte reader: records of a binary file, and errors that name the byte.
 // Memory: borrows path and bytes. Threads: any. SPDX-License-Identifier: Apache-2.0
 #pragma once
 
@@ -17,12 +17,12 @@ class ByteReader {
  public:
   ByteReader(const std::filesystem::path& path, std::span<const std::byte> bytes) : path_(path), bytes_(bytes) {}
 
-  /// Errors: Failure (kBadInput), `file:byte N: reason`, where it does not hold.
+  /// Errors: Failure (kBadInput), `file:byte N: reason`, unless `holds`.
   void require(bool holds, std::uint64_t place, const std::string& reason) const {
     if (!holds) throw Failure(ExitCode::kBadInput, path_.string() + ":byte " + std::to_string(place) + ": " + reason);
   }
 
-  /// @returns the record at a place. Precondition: the file reaches behind it.
+  /// @returns the record at a place. Precondition: it lies inside the file.
   template <class Record>
   [[nodiscard]] Record read(std::uint64_t place) const {
     Record record{};

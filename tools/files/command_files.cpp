@@ -18,13 +18,13 @@ namespace {
 
 namespace fs = std::filesystem;
 
-// Files by identity, and names by which they are known to people.
+// Files by identity, with the names that messages use.
 struct Ledger {
   std::mutex mutex;
   std::map<std::string, std::string> inputs, outputs;
   std::map<fs::path, OutputTarget> targets;
   std::size_t written_count = 0;
-  int standard_output = -1;  ///< where it really goes, once an output took it
+  int standard_output = -1;  ///< where it really goes, once an output uses it
 };
 
 std::unique_ptr<Ledger> ledger;
@@ -33,7 +33,7 @@ std::string quoted_name(const std::string& name) {
   return "'" + name + "'";
 }
 
-// What an output is called in messages: by its option, or as a file of a folder.
+// The name of an output in messages: its option, or a file of a folder.
 std::string words_of_output(const Output& output) {
   return output.option.empty() ? output.path.string() : output.option + " " + output.path.string();
 }
@@ -60,7 +60,7 @@ void check_terminal(const Output& output, const OutputTarget& target) {
                 words_of_output(output) + ": is a terminal, which cannot show it; name a file, or use a pipe");
 }
 
-// An output that is standard output has it for itself: all else that is printed goes to standard error.
+// An output that is standard output has it alone: everything else that is printed goes to standard error.
 void take_standard_output(OutputTarget& target) {
   if (target.descriptor != STDOUT_FILENO || ledger == nullptr) return;
   (void)std::fflush(stdout);
@@ -100,7 +100,8 @@ void declare_outputs(const std::vector<Output>& outputs) {
     check_ending(output, target);
     check_terminal(output, target);
     if (ledger == nullptr) continue;
-    // A device may be written to twice, but not by two names of one descriptor: nobody could tell the parts apart.
+    // A device may be written to twice, but not through two names of one descriptor, where the parts could not be
+    // separated.
     const std::string file = identity_of(target);
     const std::string descriptor = target.descriptor < 0 ? "" : "descriptor " + std::to_string(target.descriptor);
     const std::string words = words_of_output(output);

@@ -20,7 +20,7 @@ using std::string_view_literals::operator""sv;
 
 static_assert(std::endian::native == std::endian::little, "magic words are compared as they lie in the file");
 
-// Bytes at the start of a file, and what such a file is.
+// The first bytes of a kind of file, and its description.
 struct Magic {
   std::string_view bytes;
   const char* words;
@@ -72,7 +72,7 @@ bool is_blank(char c) {
   return c == ' ' || (c >= '\t' && c <= '\r');
 }
 
-// Takes the next word from the front of a text, blanks and comments left out; empty at the end.
+// Takes the next word from the front of a text, skipping blanks and comments; empty at the end.
 std::string_view take_word(std::string_view& text) {
   while (!text.empty() && (is_blank(text.front()) || text.front() == '#')) {
     text.remove_prefix(text.front() == '#' ? std::min(text.find_first_of("\r\n"), text.size()) : 1);
@@ -102,7 +102,7 @@ bool is_mesh(std::span<const std::byte> head) {
   return text.starts_with("ply") && (text.size() == 3 || is_blank(text[3]));
 }
 
-// The first entity of a text scene, as far as it tells it from other formats whose lines begin with a letter.
+// Checks the first entity of a text scene as far as needed to exclude other formats whose lines begin with a letter.
 bool is_text_scene(std::span<const std::byte> head) {
   if (is_binary(head)) return false;
   std::string_view text = text_of(head);
@@ -116,7 +116,7 @@ bool is_text_scene(std::span<const std::byte> head) {
   return second.empty() || (may_be_number(second) && second.find('/') == std::string_view::npos);
 }
 
-// @returns what text of a known format is; null where it is of none.
+// @returns the description of text in a known format, else null.
 const char* words_of_text(std::string_view text) {
   if (text.find_first_not_of(" \t\r\n") != std::string_view::npos && text[text.find_first_not_of(" \t\r\n")] == '{') {
     return text.find("\"asset\"") != std::string_view::npos ? "is a glTF scene" : "is JSON text";

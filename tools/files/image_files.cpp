@@ -13,11 +13,11 @@ namespace {
 
 static_assert(std::endian::native == std::endian::little, "floats are written as they lie in memory");
 
-// @param write_row  called with a row and the floats that it becomes, `channels` a pixel.
+// @param write_row  called with a row and the place for its floats, `channels` a pixel.
 template <class WriteRow>
 std::vector<std::byte> encode_floats(std::uint32_t width, std::uint32_t height, std::uint32_t channels,
                                      WriteRow write_row) {
-  // A negative scale is the format's way to say little-endian.
+  // In the format a negative scale means little-endian.
   const std::string header = std::string(channels == 3 ? "PF" : "Pf") + "\n" + std::to_string(width) + " " +
                              std::to_string(height) + "\n-1.0\n";
   std::vector<float> floats(std::size_t{width} * channels);

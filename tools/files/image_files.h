@@ -18,8 +18,8 @@ struct Picture {
 };
 
 /// @param picture  RGBA8, 0xAABBGGRR in each word: bytes R, G, B, A.
-/// @returns the bytes of a PNG file, 8-bit RGBA. It is compressed where
-///          the build has libpng (GRIDIRON_WITH_PNG). Errors: Failure (kBadInput) with libpng's reason.
+/// @returns the bytes of a PNG file, 8-bit RGBA, compressed if the build has libpng (GRIDIRON_WITH_PNG). Errors:
+/// Failure (kBadInput) with libpng's reason.
 [[nodiscard]] std::vector<std::byte> encode_png(const Picture<std::uint32_t>& picture);
 
 /// @returns the bytes of a PFM file: "Pf", little-endian floats, last row first as the format says.
@@ -28,7 +28,7 @@ struct Picture {
 /// @returns the bytes of a PFM file, "PF": red, green and blue of a picture as encode_png() takes it, from 0 to 1.
 [[nodiscard]] std::vector<std::byte> encode_color_pfm(const Picture<std::uint32_t>& picture);
 
-/// @returns the bytes of a picture in the format that the path's ending names: PFM for .pfm, PNG for all else.
+/// @returns the bytes of a picture in the format of the path's ending: PFM for .pfm, PNG for all others.
 [[nodiscard]] std::vector<std::byte> encode_picture(const Picture<std::uint32_t>& picture,
                                                     const std::filesystem::path& path);
 

@@ -22,7 +22,7 @@
 namespace gridiron::tool {
 namespace {
 
-// Scans that the repository does not carry.
+// Scans that are not in the repository.
 constexpr std::array<std::string_view, 4> kFetchedScans = {"bunny.ply", "horse.ply", "armadillo.ply", "dragon.ply"};
 constexpr std::array<std::string_view, 5> kOtherScans = {"conference.ply", "sponza_dabrovic.ply", "cornell_box.ply",
                                                          "armadillo_standin_345944.ply", "stanford_dragon_res2.ply"};
@@ -32,9 +32,9 @@ bool is_standard_input(const std::filesystem::path& path) {
   return path == "/dev/stdin" || path == "/dev/fd/0" || path == "/proc/self/fd/0";
 }
 
-// Waits where the path is a pipe that nobody writes to yet.
+// Waits if the path is a pipe without a writer.
 int open_for_reading(const std::filesystem::path& path) {
-  // The descriptor itself: it may be a socket, which has no name to open, or stand in the middle of a file.
+  // Duplicates the descriptor itself: it may be a socket, which has no name to open, or be in the middle of a file.
   if (is_standard_input(path)) return ::fcntl(STDIN_FILENO, F_DUPFD_CLOEXEC, 0);
   while (true) {
     stop_if_interrupted();
@@ -50,12 +50,12 @@ int open_for_reading(const std::filesystem::path& path) {
   if (error == ENOENT && is_one_of(kFetchedScans)) {
     message += "; " + name + " is a public scan that this repository does not carry: tools/fetch_scenes gets it";
   } else if (error == ENOENT && is_one_of(kOtherScans)) {
-    message += "; this repository does not carry it: 'tools/fetch_scenes --help' says where it comes from";
+    message += "; it is not in the repository: 'tools/fetch_scenes --help' names its source";
   }
   throw Failure(ExitCode::kBadInput, message);
 }
 
-// Hands bytes on piece by piece, each with its place, and then gives the piece's memory back to the host.
+// Passes bytes on piece by piece, each with its place, and then returns the piece's memory to the host.
 template <class Action>
 void for_each_piece(std::span<std::byte> bytes, Action action) {
   constexpr std::size_t kPieceBytes = std::size_t{16} << 20;
@@ -95,7 +95,7 @@ InputReader::~InputReader() {
   ::close(descriptor_);
 }
 
-// Fills the target, or less at the end of the input.
+// Fills the target, or a part of it at the end of the input.
 std::size_t InputReader::read_some(std::span<std::byte> target) const {
   std::size_t used = 0;
   while (used < target.size()) {
@@ -115,7 +115,7 @@ InputFile InputReader::read_all(std::size_t most_bytes) {
 }
 
 InputFile InputReader::read_rest(std::size_t most_bytes) const {
-  // A pipe has no size: start small and grow. One byte more than the size lets the first read meet the end.
+  // A pipe has no size: start small and grow. One byte more than the size lets the first read detect the end.
   constexpr std::size_t kReadBytes = std::size_t{16} << 20;
   std::size_t capacity = file_bytes_ ? static_cast<std::size_t>(*file_bytes_) + 1 : kReadBytes;
   capacity = std::max(capacity, head_.size() + 1);

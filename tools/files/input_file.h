@@ -43,21 +43,21 @@ class InputReader {
   /// Opens the input and reads its first kHeadBytes. A signal ends the wait for a pipe as stop_if_interrupted() does.
   ///
   /// @param expected  what the command reads here, for messages: "expected a PLY mesh".
-  /// Errors: Failure (kBadInput) that names the file and the reason; a folder is called one. Where a scan that
-  /// tools/fetch_scenes gets is missing, the message says so. Errors of note_input() too.
+  /// Errors: Failure (kBadInput) that names the file and the reason. For a missing scan that tools/fetch_scenes gets,
+  /// the message says so. Errors of note_input() too.
   InputReader(std::filesystem::path path, std::string expected);
   ~InputReader();
   InputReader(const InputReader&) = delete;
   InputReader& operator=(const InputReader&) = delete;
 
-  /// The first bytes, all of them where there are fewer than kHeadBytes.
+  /// The first bytes, all of them if there are fewer than kHeadBytes.
   [[nodiscard]] std::span<const std::byte> head() const { return head_; }
 
-  /// Reads to the end; the reader is used up then. Errors: Failure (kBadInput) where it cannot be read, is larger than
-  /// `most_bytes`, or larger than the memory of this host.
+  /// Reads to the end, which uses the reader up. Errors: Failure (kBadInput) if it cannot be read, or is larger than
+  /// `most_bytes` or than the memory of this host.
   [[nodiscard]] InputFile read_all(std::size_t most_bytes = kAnySize);
 
-  /// Throws Failure (kBadInput): what the file holds, and what is expected.
+  /// Throws Failure (kBadInput) with the file's content and what was expected.
   [[noreturn]] void refuse_content() const;
 
  private:
@@ -71,19 +71,18 @@ class InputReader {
   std::vector<std::byte> head_;
 };
 
-/// Reads a whole file. Errors: those of InputReader.
 [[nodiscard]] InputFile read_input_file(const std::filesystem::path& path, const std::string& expected,
                                         std::size_t most_bytes = kAnySize);
 
-/// The same for text that people write: empty files, pictures, scenes and the like are refused with what they are.
+/// The same for text that people write; rejects empty files, pictures, scenes and others with their kind.
 [[nodiscard]] InputFile read_text_file(const std::filesystem::path& path, const std::string& expected,
                                        std::size_t most_bytes);
 
-/// Copies bytes to another place and gives their memory back to the host piece by piece, so that they are held once.
-/// What `from` holds afterwards is undefined; it is still freed by its owner.
+/// Copies bytes to another place and returns their memory to the host piece by piece, so that they exist once.
+/// Afterwards the content of `from` is undefined; its owner still frees it.
 void move_bytes(std::span<std::byte> from, std::byte* target);
 
-/// The same to the end of a vector that has room for them.
+/// The same to the end of a vector with sufficient capacity.
 void append_moved(std::vector<std::byte>& target, std::span<std::byte> from);
 
 /// @returns the path of an input of the command line: `-` is standard input.
@@ -92,17 +91,17 @@ void append_moved(std::vector<std::byte>& target, std::span<std::byte> from);
 /// @returns whether a path is standard input or a pipe that the shell made: /dev/stdin, /dev/fd/N, /proc/self/fd/N.
 [[nodiscard]] bool is_descriptor(const std::filesystem::path& path);
 
-/// @returns whether what a path names can be read only once: a descriptor or a pipe.
+/// @returns whether a path can be read only once: a descriptor or a pipe.
 [[nodiscard]] bool is_stream(const std::filesystem::path& path);
 
-/// @returns whether reading one input takes away from the other: both are one stream.
+/// @returns whether two inputs are the same stream, so that reading one takes bytes from the other.
 [[nodiscard]] bool share_a_stream(const std::filesystem::path& a, const std::filesystem::path& b);
 
-/// @returns the folder where the files that an input names are looked for: its own, of a stream the current one.
+/// @returns the folder for files that an input names: its own, for a stream the current one.
 [[nodiscard]] std::filesystem::path folder_of_input(const std::filesystem::path& path);
 
-/// Runs an action; where this host has not enough memory for it, the Failure (kBadInput) names the file.
-/// @param purpose  what the memory is for: "read it".
+/// Runs an action; if this host has too little memory for it, the Failure (kBadInput) names the file.
+/// @param purpose  use of the memory: "read it".
 template <class Action>
 auto name_in_shortage(const std::filesystem::path& path, const char* purpose, Action action) -> decltype(action()) {
   try {

@@ -32,11 +32,11 @@ void watch_for_interrupt() {
   struct sigaction action {};
   action.sa_handler = note_interrupt;
   sigemptyset(&action.sa_mask);
-  action.sa_flags = 0;  // no SA_RESTART: a call that blocks, on a pipe say, ends with EINTR
+  action.sa_flags = 0;  // no SA_RESTART: a blocked call, on a pipe for example, ends with EINTR
   for (const int signal : {SIGINT, SIGTERM, SIGHUP}) {
     struct sigaction inherited {};
     sigaction(signal, nullptr, &inherited);
-    // What the parent ignores stays ignored: nohup does so with SIGHUP, shells with SIGINT of background jobs.
+    // Signals that the parent ignores stay ignored: nohup does so with SIGHUP, shells with SIGINT of background jobs.
     if (inherited.sa_handler != SIG_IGN) sigaction(signal, &action, nullptr);
   }
   std::signal(SIGPIPE, SIG_IGN);

@@ -12,7 +12,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-// Why a folder could not be made: what is there in its place, or the error.
+// Why a folder could not be made: the kind of file in its place, or the error.
 std::string words_of(const std::error_code& error, const fs::path& path) {
   std::error_code ignored;
   if (fs::exists(path, ignored)) return "a file of that name is there";

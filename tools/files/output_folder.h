@@ -1,4 +1,4 @@
-// Output folder: made where it is not there, gone again where nothing was written into it.
+// Output folder: created if it is missing, removed again if nothing was written into it.
 // Memory: its path. Threads: one. SPDX-License-Identifier: Apache-2.0
 #pragma once
 
@@ -12,7 +12,7 @@ namespace gridiron::tool {
 
 class OutputFolder {
  public:
-  /// @param names  of the files that may be written into it: all are declared as outputs of the command.
+  /// @param names  of the files that may be written into it; all are declared as outputs of the command.
   /// Errors: Failure (kBadInput), and those of declare_outputs().
   OutputFolder(std::filesystem::path path, const std::vector<std::string>& names);
   ~OutputFolder() { remove_if_made(); }

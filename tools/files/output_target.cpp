@@ -42,7 +42,7 @@ std::optional<int> descriptor_of(const fs::path& path) {
 
 OutputTarget descriptor_target(const fs::path& name, int descriptor) {
   const int flags = ::fcntl(descriptor, F_GETFD), mode = ::fcntl(descriptor, F_GETFL);
-  // What the program opened itself closes on exec; what it was given does not.
+  // Descriptors that the program opened close on exec; inherited ones do not.
   if (flags < 0 || mode < 0 || (flags & FD_CLOEXEC) != 0) throw cannot_write(name, std::strerror(EBADF));
   if ((mode & O_ACCMODE) == O_RDONLY) throw cannot_write(name, "it is not open for writing");
   return {name, {}, descriptor, true};
@@ -52,7 +52,7 @@ bool is_special_file(const struct stat& status) {
   return !S_ISREG(status.st_mode) && !S_ISDIR(status.st_mode);
 }
 
-// Whether only the owner of a file may replace it, as in /tmp, and it is another's.
+// Whether the folder lets only the owner of a file replace it, as /tmp does, and the file belongs to somebody else.
 bool is_protected_by_folder(const struct stat& folder, const struct stat& file) {
   const uid_t user = ::geteuid();
   return (folder.st_mode & S_ISVTX) != 0 && user != 0 && user != folder.st_uid && user != file.st_uid;
@@ -70,7 +70,7 @@ void check_folder(const OutputTarget& target, struct stat& status) {
   if (::access(folder.c_str(), W_OK | X_OK) != 0) fail(": " + std::string(std::strerror(errno)));
 }
 
-// Devices and sockets have no content that a second user could destroy.
+// Devices and sockets have no content that a second writer could destroy.
 std::string identity_of(const struct stat& status) {
   if (S_ISCHR(status.st_mode) || S_ISSOCK(status.st_mode)) return "";
   return "file " + std::to_string(status.st_dev) + ":" + std::to_string(status.st_ino);
@@ -104,7 +104,7 @@ OutputTarget resolve_output(const fs::path& name) {
     if (next.is_relative()) next = folder_of(target.file) / next;
     struct stat next_status {};
     if (exists && ::stat(next.c_str(), &next_status) != 0) {
-      target.is_special = true;  // a link whose text is not a path: a pipe or an open file of another process
+      target.is_special = true;  // a link whose text is no path: a pipe or an open file of another process
       return target;
     }
     target.file = next;
@@ -120,7 +120,7 @@ OutputTarget resolve_output(const fs::path& name) {
     throw cannot_write(name, errno == EACCES ? "the file is write-protected" : std::strerror(errno));
   }
   if (exists && is_protected_by_folder(folder, status)) {
-    throw cannot_write(name, "the file is another user's, and its folder lets nobody else replace it");
+    throw cannot_write(name, "the file is another user's, and only its owner may replace it in this folder");
   }
   return target;
 }

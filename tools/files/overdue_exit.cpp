@@ -25,7 +25,7 @@ static_assert(std::atomic<int>::is_always_lock_free && std::atomic<bool>::is_alw
               "a signal handler may only touch lock-free atomics");
 
 timer_t timer;
-std::mutex list_mutex;               // of those that change the list; the handler reads it while nobody does
+std::mutex list_mutex;               // locked by changes of the list; the handler reads it while none is made
 Leftover* first_leftover = nullptr;  // the newest, so that files go before their folder
 
 void arm(long nanoseconds) {
@@ -34,7 +34,7 @@ void arm(long nanoseconds) {
   (void)::timer_settime(timer, 0, &after, nullptr);
 }
 
-// As main says it, without memory or locks.
+// Prints as main does, without memory or locks.
 void say_interrupted() {
   char words[96] = "";
   char digits[12] = "";
@@ -64,7 +64,7 @@ namespace {
 
 extern "C" void leave_if_overdue(int) {
   const int error = errno;
-  // Whoever begins something undivided after this line waits; whoever began before it is waited for.
+  // An Undivided that begins after this line waits; this waits for those that began before.
   ++leaving_count;
   const bool is_busy = undivided_count.load() != 0;
   if (!is_busy && !is_complete.load()) {
@@ -95,7 +95,7 @@ void begin_overdue_exit() {
 
 void expect_exit(int code) {
   exit_code.store(code);
-  // A second signal does not put it off.
+  // A second signal does not delay it.
   if (has_timer.load() && !is_expected.exchange(true)) arm(kPatienceNanoseconds);
 }
 
@@ -140,7 +140,7 @@ void outputs_are_complete() {
 void say_last_words(const char* words) {
   const Undivided step;
   std::fputs(words, stderr);
-  outputs_are_complete();  // what is left to do is quick, or it is the host's
+  outputs_are_complete();  // the remaining work is quick, or it is the host's
 }
 
 }  // namespace gridiron::tool

@@ -1,5 +1,5 @@
-// Overdue exit: ends the program where an interrupt has not been noticed for a quarter of a second. Long calls, of the
-// grid's builder or the encoder of pictures say, so need not look at the flag.
+// Overdue exit: ends the program if an interrupt has not been noticed for a quarter of a second. Long calls, for
+// example of the grid's builder or the encoder of pictures, therefore need not check the flag.
 // Memory: a list of names in static storage. Threads: any. SPDX-License-Identifier: Apache-2.0
 #pragma once
 
@@ -8,14 +8,15 @@
 
 namespace gridiron::tool {
 
-/// Watches from now on. Where the host has no timer for it, an interrupt is noticed by whoever looks at the flag only.
+/// Starts the watch. If the host has no timer for it, only checks of the flag notice an interrupt.
 void begin_overdue_exit();
 
-/// Called by the handler of a signal: the program leaves with `exit_code` when it is still there a moment later. What
-/// has been remembered is removed then, and standard error says that the command was interrupted.
+/// Called by a signal's handler: if the program is still running a moment later, it exits with `exit_code`. Remembered
+/// files are removed then, and standard error says that the command was interrupted.
 void expect_exit(int exit_code);
 
-/// While one lives, on any thread, the program does not leave so: what it encloses is done whole or not at all. Short.
+/// While one exists, on any thread, the program does not exit so: the enclosed work is done completely or not at all.
+/// Short.
 class Undivided {
  public:
   Undivided();
@@ -45,14 +46,14 @@ class Leftover {
   Leftover* next_ = nullptr;
 };
 
-/// Says how many files have got their names, for the words at the end. Precondition: an Undivided lives.
+/// Sets the number of files that have got their names, for the last message. Precondition: an Undivided exists.
 void note_written_files(std::size_t count);
 
-/// From now on an interrupt comes too late: all files are written, and the command ends as if none had come.
-/// Precondition: an Undivided lives.
+/// From now on interrupts have no effect: all files are written, and the command ends normally. Precondition: an
+/// Undivided exists.
 void outputs_are_complete();
 
-/// Says on standard error how the command ended, unless an overdue exit has done so.
+/// Prints on standard error how the command ended, unless an overdue exit has done so.
 void say_last_words(const char* words);
 
 }  // namespace gridiron::tool

@@ -1,4 +1,4 @@
-// PNG files: by libpng where the build has it, else as the format's stored blocks.
+// PNG files: by libpng if the build has it, else with the format's stored blocks.
 // Source: PNG specification, third edition; RFC 1950 and RFC 1951. SPDX-License-Identifier: Apache-2.0
 #include "png_file.h"
 

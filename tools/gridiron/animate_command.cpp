@@ -1,4 +1,4 @@
-// animate: a mesh a frame, the grid built anew for each; what the frames cost. SPDX-License-Identifier: Apache-2.0
+// animate: one frame for each mesh, with a new grid each, and its cost. SPDX-License-Identifier: Apache-2.0
 #include <gridiron/sim/build_work.h>
 #include <gridiron/sim/replay.h>
 #include <report/report.h>
@@ -62,7 +62,7 @@ SceneInput read_mesh(const std::filesystem::path& path) {
   return input;
 }
 
-// Folders give their .ply files by name. Pictures are called after the meshes, those of streams after their places.
+// Folders contribute their .ply files by name. Pictures are named after the meshes; those of streams by their number.
 std::vector<AnimationFrame> collect_frames(const AnimateRequest& request) {
   std::vector<AnimationFrame> frames;
   for (const std::filesystem::path& input : request.inputs) {
@@ -93,7 +93,7 @@ std::vector<AnimationFrame> collect_frames(const AnimateRequest& request) {
   return frames;
 }
 
-// One camera for all frames: what is not asked for is framed for all of them together.
+// One camera for all frames; parts that are not given frame all of them together.
 ViewRequest common_view(std::vector<AnimationFrame>& frames, const RenderRequest& request, const RenderPlan& plan) {
   ViewRequest view = join_view(request.view, request.camera ? read_camera_file(*request.camera) : ViewRequest{});
   if (view.eye && view.at) return view;
@@ -103,7 +103,7 @@ ViewRequest common_view(std::vector<AnimationFrame>& frames, const RenderRequest
       SceneInput input = frame.mesh ? *std::exchange(frame.mesh, std::nullopt) : read_mesh(frame.input);
       const MeshView mesh = std::get<Mesh>(input.content).view();
       GridNeed need{};
-      const Status status = count_scene_image(mesh, {.lambda = 1e-6f}, need);  // refuses what cannot be rendered
+      const Status status = count_scene_image(mesh, {.lambda = 1e-6f}, need);  // rejects meshes that cannot be rendered
       if (status != Status::kOk) throw Failure(ExitCode::kBadInput, frame.input.string() + ": " + words_of(status));
       visit_points(mesh, visitor);
       if (is_stream(frame.input)) frame.mesh = std::move(input);
@@ -163,7 +163,7 @@ std::string table_of(const std::vector<AnimationFrame>& frames, const sim::Machi
       "hash\n";
   for (std::size_t i = 0; i < frames.size(); ++i) {
     const AnimationFrame& frame = frames[i];
-    // The general core may have another clock: the total is told in the cores'.
+    // The general core may have another clock; the total is in cycles of the cores.
     const double total_cycles = frame.build_seconds * machine.clock_hz + frame.render_cycles;
     for (const std::string& field : {text_of(i), in_csv(frame.input.filename().string()), text_of(frame.triangles),
                                      text_of(frame.lambda), text_of(frame.build_cycles), text_of(frame.render_cycles),
@@ -199,7 +199,7 @@ void run_command(const AnimateRequest& request) {
   std::vector<std::string> names = {kTableName};
   for (const AnimationFrame& frame : frames) names.push_back(frame.picture);
   OutputFolder folder(request.output, names);
-  // All of them now: a mesh must not be lost to the picture of another one before its turn comes.
+  // Noted before any picture is written, because a picture must not overwrite a later frame's mesh.
   for (const AnimationFrame& frame : frames) note_input(frame.input);
   const ViewRequest view = [&] {
     const StageLines stages(!quiet);

@@ -1,4 +1,4 @@
-// info: what a scene holds and what it needs, for people or as JSON. SPDX-License-Identifier: Apache-2.0
+// info: prints the contents and needs of a scene, as text or JSON. SPDX-License-Identifier: Apache-2.0
 #include <report/report.h>
 
 #include <algorithm>
@@ -35,7 +35,7 @@ Json json_of(const StoreFacts& store) {
           {"stack_bytes", store.stack_bytes}};
 }
 
-// Whether there is a renderer of effects for the store asked for.
+// Whether the requested store has a renderer of effects.
 bool has_effect_store(const InfoPlan& plan) {
   return plan.store != sim::StoreSize::k128KB;
 }
@@ -49,12 +49,12 @@ Json json_of(const LoopBounds& bounds) {
           {"triangle_tests_per_pass", bounds.triangle_tests_per_pass}};
 }
 
-// A count of a bound; null where it is more than can be told.
+// A count of a bound; null if 64 bits do not hold it.
 Json json_of_count(std::uint64_t count) {
   return count == ~std::uint64_t{0} ? Json() : Json(count);
 }
 
-// What a bound's cycles are.
+// The unit of a bound's cycles.
 const char* unit_of(const WorstTile& worst) {
   return worst.are_instructions ? "instructions" : "cycles";
 }
@@ -95,7 +95,7 @@ std::uint64_t tiles_across(std::uint32_t pixels, std::uint32_t tile_width) {
   return (std::uint64_t{pixels} + tile_width - 1) / tile_width;
 }
 
-// Every loop that no constant bounds of what runs on a core, with its bound for this scene, store and picture.
+// Every loop on a core without a constant bound, with its bound for this scene, store and picture.
 Json loops_json(const InfoPlan& plan, const SceneFacts& facts) {
   const std::uint64_t tiles =
       tiles_across(plan.size.x, plan.layout.tile_width) * tiles_across(plan.size.y, plan.layout.tile_width);
@@ -111,7 +111,7 @@ Json loops_json(const InfoPlan& plan, const SceneFacts& facts) {
   return rows;
 }
 
-// The local store and packets of the renderer that would do.
+// The local store and packets of the renderer that suffices.
 std::string renderer_of(const InfoPlan& plan, const SceneFacts& facts) {
   return renderer_type(facts.effects.record.called_for, sim::arena_bytes(plan.store) >> 10, plan.layout.packet_width);
 }
@@ -244,7 +244,7 @@ void print_text(const InfoPlan& plan, const SceneFacts& facts) {
   print_line("grid", joined(grid.cell_count) + " cells" + text + ", " + words_of_count(grid.reference_count) +
                          " references stored as " + word_of(static_cast<TriangleFormat>(grid.triangle_format)));
   if (!facts.roundness.groups.empty()) {
-    const char* rules[] = {"as asked for", "1e-4 of the scene's diagonal", "chosen by the picture"};
+    const char* rules[] = {"as requested", "1e-4 of the scene's diagonal", "chosen by the picture"};
     print_line("tolerance", words_of_tolerance(facts.roundness) + ", " +
                                 rules[static_cast<std::size_t>(facts.roundness.rule)] +
                                 ": facets are no farther from their spheres and cones");
@@ -257,7 +257,7 @@ void print_text(const InfoPlan& plan, const SceneFacts& facts) {
     const double places = static_cast<double>(longest) / static_cast<double>(grid.lattice.step);
     std::snprintf(text, sizeof text, "step %g, ", static_cast<double>(grid.lattice.step));
     print_line("lattice", text + words_of_count(static_cast<std::uint64_t>(places)) +
-                              " of them along the longest side; what has no area there is dropped");
+                              " of them along the longest side; triangles without area there are dropped");
   }
   if (grid.lambda != facts.wanted_lambda) {
     std::snprintf(text, sizeof text, "reduced from lambda %g to fit the main memory",
@@ -278,7 +278,7 @@ void print_text(const InfoPlan& plan, const SceneFacts& facts) {
                                 " data");
   const std::uint32_t called_for = facts.effects.record.called_for;
   if (called_for != 0 && called_for != kAllEffects) {
-    print_line("", "of a renderer with all effects; one with those called for takes less");
+    print_line("", "of a renderer with all effects; one with the required effects takes less");
   }
   for (const LocalStoreRegion& region : store.regions) {
     std::printf("%14s %8s  %s\n", "", words_of_count(region.bytes).c_str(),

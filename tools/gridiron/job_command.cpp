@@ -29,7 +29,7 @@ void run_command(const JobRequest& request) {
   std::memcpy(&job, file.data(), sizeof job);
   if (request.memory_bytes && job.memory_bytes > *request.memory_bytes) {
     throw Failure(ExitCode::kBadInput, requested.input.path.string() + ": the job needs " +
-                                           words_of_count(job.memory_bytes) + " bytes of memory, --memory gives " +
+                                           words_of_count(job.memory_bytes) + " bytes of memory, --memory allows " +
                                            words_of_count(*request.memory_bytes));
   }
   AtomicFiles files;

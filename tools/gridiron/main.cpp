@@ -24,14 +24,14 @@ namespace {
 using gridiron::tool::ExitCode;
 using gridiron::tool::Failure;
 
-// Runs before main and all other initialisers of the program: a signal that comes while these run is caught too. Where
-// standard input, output or error is closed, something unusable takes its place: else the next file that is opened
-// would take it, and get the words that are meant for people.
+// Runs before main and all other initialisers of the program, so that signals during these are caught too. If standard
+// input, output or error is closed, an unusable descriptor takes its place; otherwise the next opened file would take
+// it, and receive messages.
 [[gnu::constructor(101)]] void begin() {
   gridiron::tool::watch_for_interrupt();
   for (const int standard : {STDIN_FILENO, STDOUT_FILENO, STDERR_FILENO}) {
     if (::fcntl(standard, F_GETFD) >= 0) continue;
-    (void)::open("/dev/null", standard == STDIN_FILENO ? O_WRONLY : O_RDONLY);  // takes the lowest that is closed
+    (void)::open("/dev/null", standard == STDIN_FILENO ? O_WRONLY : O_RDONLY);  // takes the lowest closed descriptor
   }
 }
 
@@ -44,7 +44,7 @@ void flush_text() {
   throw Failure(ExitCode::kBadInput, "standard output: cannot write" + reason);
 }
 
-// What became of the files of a command that failed: all, some or none of them have got their names.
+// The state of a failed command's files: all, some or none of them have got their names.
 std::string words_of_files(const Failure& failure) {
   const std::size_t count = gridiron::tool::written_file_count();
   if (count == 0) return failure.is_interrupt() ? "; no file was written" : "";

@@ -29,7 +29,7 @@ void run_command(const PackRequest& request) {
 
   if (!request.scene.quiet) tell_notes(input);
 
-  // The budget of an ordinary picture, so that render would choose the same grid.
+  // The budget for an ordinary picture, so that render chooses the same grid.
   const sim::MachineProfile& machine = *request.scene.machine;
   constexpr std::uint32_t kUsualTileWidth = 32;
   const std::uint64_t spill_bytes = spill_bytes_of(machine.core_count, recursion_depth(input));

@@ -29,7 +29,7 @@
 namespace gridiron::tool {
 namespace {
 
-// Whether the frame left a trace that a clock can be put to: costs are those of 4 lanes and of whole frames.
+// Whether the frame left a trace that can be timed: costs are for 4 lanes and whole frames.
 bool has_time(const RenderPlan& plan) {
   return plan.mode != sim::Mode::kPlain && plan.lanes == 4 && !plan.tile;
 }
@@ -50,7 +50,7 @@ HostTime time_of(const HostSeconds& seconds) {
   return {seconds.wall, seconds.processor};
 }
 
-// A frame that was rendered once or several times, always to the same pictures.
+// A frame that was rendered one or more times, always with the same pictures.
 struct Repeated {
   sim::ChipResult result;
   PlaneHashes hashes;
@@ -128,7 +128,7 @@ PlaneHashes hashes_of(const FrameMemory& frame, const RenderPlan& plan) {
   return {hash(frame.color), hash(frame.depth), hash(frame.ids)};
 }
 
-// Builds and renders as often as asked for. What was packed is not built: it moves into main memory and stays there.
+// Builds and renders as often as requested. A packed scene is not built: it moves into main memory and stays there.
 Repeated render_repeatedly(std::optional<FrameMemory>& frame, RequestedFrame& requested) {
   const RenderPlan& plan = requested.plan;
   const bool is_packed = std::holds_alternative<PackedScene>(requested.input.content);

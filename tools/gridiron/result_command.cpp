@@ -1,4 +1,4 @@
-// result: what a device made of a job, as pictures and report, and held against the simulator's.
+// result: a device's result as pictures and report, and compared with the simulator's.
 // SPDX-License-Identifier: Apache-2.0
 #include <report/device_report.h>
 #include <report/report.h>
@@ -98,7 +98,7 @@ void run_command(const ResultRequest& request) {
   if (request.predict && !std::ranges::all_of(result.tiles, is_counted)) {
     throw Failure(ExitCode::kUsage, "--predict: " + request.result.string() + " has no counted instructions");
   }
-  const auto unseen = find_unseen(job, result);  // the comparison takes the job's bytes
+  const auto unseen = find_unseen(job, result);  // before the comparison takes the job's bytes
   std::optional<JobComparison> comparison;
   if (request.compare) comparison = compare(request, job, result);
 

@@ -1,4 +1,4 @@
-// Device report: what a device counted in a frame, as JSON. Keys and units: tools/README.md, "Report of a device".
+// Device report: a device's counts of a frame, as JSON. Keys and units: tools/README.md, "Devices".
 // Memory: std::string. Threads: any, no shared state. SPDX-License-Identifier: Apache-2.0
 #pragma once
 
@@ -12,7 +12,7 @@
 
 namespace gridiron::tool {
 
-/// Everything a device's report tells.
+/// The contents of a device's report.
 struct DeviceReportInput {
   std::uint32_t width = 0, height = 0, tile_width = 0;  ///< pixels
   std::span<const port::CoreResult> cores;              ///< those that took part
@@ -20,7 +20,7 @@ struct DeviceReportInput {
   std::uint64_t image_hash = 0;                         ///< image_hash() of report.h
   std::optional<std::uint64_t> depth_hash, ids_hash;    ///< of planes that the frame has
   std::span<const double> predicted_tiles;              ///< instructions a tile by a machine profile; or empty
-  std::optional<sim::WorkTotals> tile_work;             ///< work less what no tile is charged with, where known
+  std::optional<sim::WorkTotals> tile_work;             ///< work without the parts that belong to no tile, if known
 };
 
 /// @returns the sum of all cores' work, as they counted it.

@@ -17,7 +17,7 @@ namespace {
 
 using Json = nlohmann::ordered_json;
 
-// A value of an enumeration that ends in kCount, and what it is called.
+// A value of an enumeration that ends in kCount, and its name.
 template <class Value>
 struct Name {
   Value value;
@@ -32,7 +32,7 @@ constexpr std::string_view name_in(const Name<Value> (&names)[kCount], Value val
   return "";
 }
 
-// Whether a table names each value, so that the compiler misses a name when one is added.
+// Whether a table names each value, so that adding a value without a name does not compile.
 template <class Value, std::size_t kCount>
 constexpr bool names_all(const Name<Value> (&names)[kCount]) {
   for (std::size_t i = 0; i < static_cast<std::size_t>(Value::kCount); ++i) {

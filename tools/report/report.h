@@ -18,7 +18,7 @@
 
 namespace gridiron::tool {
 
-/// Grows when a key changes its meaning or goes away; new keys do not change it.
+/// Grows when a key changes its meaning or goes away; not for new keys.
 inline constexpr int kReportVersion = 1;
 
 /// One named part of the local store.
@@ -34,12 +34,12 @@ struct RayCount {
   std::uint64_t count = 0;
 };
 
-/// What a part of the work took on this host.
+/// Time of a part of the work on this host.
 struct HostTime {
   double seconds = 0, processor_seconds = 0;  ///< processor: of all threads
 };
 
-/// Everything a report tells, filled by the program.
+/// The contents of a report.
 struct ReportInput {
   std::string mode = "checked";  ///< of the simulator
   bool is_timed = true;          ///< false: machine, frame, cores, work and rays are left out
@@ -58,8 +58,8 @@ struct ReportInput {
   sim::WorkTotals work{};
 
   std::vector<std::string> effects_called_for;
-  bool is_scene_shaded = false;  ///< Shading::kScene: rays of effects and stages are told
-  std::vector<RayCount> rays;    ///< primary ones; those of effects are taken from `work`
+  bool is_scene_shaded = false;  ///< Shading::kScene: the report has rays of effects and stages
+  std::vector<RayCount> rays;    ///< primary rays; those of effects are taken from `work`
 
   std::uint64_t arena_bytes = 0;
   std::vector<LocalStoreRegion> regions;
@@ -67,7 +67,7 @@ struct ReportInput {
 
   HostTime load, build, render;
   std::uint32_t host_threads = 1, lanes = 4, repeats = 1;
-  std::uint64_t trace_bytes = 0;  ///< what the replay reads, as it is held; 0 in plain mode
+  std::uint64_t trace_bytes = 0;  ///< packed, as stored for the replay; 0 in plain mode
 
   std::uint64_t image_hash = 0;
   std::optional<std::uint64_t> depth_hash, ids_hash;  ///< of planes that the frame has

@@ -35,7 +35,7 @@ class Writer {
       : units_per_cycle_(machine.clock_hz > 0 ? kUnitsPerSecond / machine.clock_hz : 0),
         threshold_cycles_(threshold_cycles) {}
 
-  /// @returns false, with the text incomplete, when it grows beyond max_bytes.
+  /// @returns false, with the text incomplete, if it exceeds max_bytes.
   bool write(const sim::FrameTiming& timing, const sim::MachineProfile& machine, std::size_t max_bytes) {
     text_ = "{\"traceEvents\":[\n";
     write_names(timing, machine);
@@ -64,11 +64,11 @@ class Writer {
   std::string take_text() { return std::move(text_); }
 
  private:
-  // Times are whole units of 0.1 ns before they become text, so that spans which meet still meet.
+  // Times are rounded to 0.1 ns before they become text, so that adjacent spans stay adjacent.
   static constexpr double kUnitsPerSecond = 1e10;
   static constexpr std::uint64_t kUnitsPerMicrosecond = 10'000;
 
-  /// Short spans of one tile that follow each other.
+  /// Consecutive short spans of one tile.
   struct Run {
     TimelineSpan first{};
     double end_cycles = 0;

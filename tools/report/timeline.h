@@ -16,10 +16,10 @@ inline constexpr std::size_t kMaxTimelineBytes = 50'000'000;  ///< beyond it tra
 /// Writes the spans of a frame as complete events ("ph": "X"), times in microseconds of the machine's clock.
 ///
 /// Spans are named init, compute, "wait tile|macrocell|triangle|setup"; each tile's spans lie inside one named "tile".
-/// Only where the text would exceed max_bytes, neighbouring spans of one tile that are each shorter than a threshold
-/// become one span named "mixed", which tells its parts in its arguments; the threshold is the first of 64, 256, 1024,
-/// ... cycles that does it, and stands in otherData.merged_below_cycles (0: nothing was merged). Text that no threshold
-/// makes small enough is returned as short as it gets.
+/// Only if the text would exceed max_bytes, neighbouring spans of one tile that are each shorter than a threshold
+/// become one span named "mixed", with its parts in its arguments. The threshold is the first of 64, 256, 1024, ...
+/// cycles that suffices, and is stored in otherData.merged_below_cycles (0: nothing was merged). If no threshold
+/// suffices, the text is as short as possible.
 ///
 /// @param timing  of a replay with ReplayOptions::timeline.
 /// @returns       JSON text. Format: the Trace Event Format's JSON object form.

@@ -10,8 +10,8 @@ namespace {
 constexpr std::size_t kChildCount = 9;
 using Directions = std::array<Point, kChildCount>;
 
-// Where a ball that hangs on at -z has its children: at the corners of a cuboctahedron that stands on a triangle, but
-// for the three at the bottom. Six at the equator, three above the gaps.
+// The children of a ball that is attached at -z: at the corners of a cuboctahedron that stands on a triangle, without
+// the three at the bottom. Six at the equator, three above the gaps.
 Directions child_directions() {
   const double half_root = 0.5 * std::sqrt(3.0), height = std::sqrt(2.0 / 3.0), out = std::sqrt(1.0 / 3.0);
   return {{{1, 0, 0},

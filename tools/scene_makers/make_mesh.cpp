@@ -1,4 +1,4 @@
-// make_mesh: writes one of the scenes of our own making, at any size, as binary PLY.
+// make_mesh: writes one of our own scenes, at any size, as binary PLY.
 // Memory: std::vector. Threads: one. SPDX-License-Identifier: Apache-2.0
 #include <CLI/CLI.hpp>
 #include <cstdio>
@@ -15,7 +15,7 @@ using namespace gridiron::scene_makers;
 
 constexpr std::uint32_t kMaxTriangles = 100'000'000;
 
-// Largest teapot of at most `triangle_count` triangles.
+// Segments of the largest teapot of at most `triangle_count` triangles.
 std::uint32_t teapot_segments(std::uint32_t triangle_count) {
   std::uint32_t segments = 2;
   while (64 * (segments + 1) * (segments + 1) + 8 * (segments + 1) <= triangle_count) ++segments;

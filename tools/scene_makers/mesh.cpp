@@ -1,4 +1,4 @@
-// PLY bytes of a mesh, and a file that appears whole or not at all.
+// PLY bytes of a mesh, and a file that appears completely or not at all.
 // Memory: std::vector. Threads: any. SPDX-License-Identifier: Apache-2.0
 #include "scene_makers/mesh.h"
 

@@ -1,4 +1,4 @@
-// A triangle mesh as scene makers build it, and the file it ends up in.
+// A triangle mesh for scene makers, and its file.
 // Memory: std::vector. Threads: any. SPDX-License-Identifier: Apache-2.0
 #pragma once
 
@@ -27,7 +27,7 @@ struct Mesh {
 /// @returns the mesh as binary little-endian PLY: float x y z, lists of three 32-bit indices.
 [[nodiscard]] std::vector<char> ply_bytes(const Mesh& mesh, const std::string& comment);
 
-/// Writes `bytes` to `path`, a file whole or not at all. @returns an empty string, or why it could not be written.
+/// Writes `bytes` to `path`, completely or not at all. @returns an empty string, or the reason of a failure.
 [[nodiscard]] std::string write_whole_file(const std::string& path, const std::vector<char>& bytes);
 
 }  // namespace gridiron::scene_makers

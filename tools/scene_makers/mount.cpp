@@ -7,8 +7,8 @@
 namespace gridiron::scene_makers {
 namespace {
 
-// A number from -1 to 1 that depends on a place and on nothing else. Places are those of the finest grid, so that a
-// larger size adds detail to the same mountain.
+// A number from -1 to 1 that depends only on a place. Places are those of the finest grid, so that a larger size adds
+// detail to the same mountain.
 double noise(std::uint32_t column, std::uint32_t row) {
   std::uint64_t bits = std::uint64_t{column} << 32 | row;
   for (int round = 0; round < 3; ++round) {
@@ -20,7 +20,7 @@ double noise(std::uint32_t column, std::uint32_t row) {
   return static_cast<double>(bits >> 11) * 0x1p-52 - 1.0;
 }
 
-// Heights over a square grid of 2^size cells a side, edges halved again and again, middles moved by less and less.
+// Heights over a square grid of 2^size cells a side: edges are halved repeatedly, middles moved by less and less.
 class Heights {
  public:
   explicit Heights(std::uint32_t size) : width_((1u << size) + 1), heights_(std::size_t{width_} * width_) {
@@ -37,7 +37,7 @@ class Heights {
  private:
   double& at(std::uint32_t column, std::uint32_t row) { return heights_[std::size_t{row} * width_ + column]; }
 
-  // The middle of the whole grid is lifted: where the mountain has its top.
+  // The middle of the whole grid is lifted to form the top of the mountain.
   [[nodiscard]] double moved_by(std::uint32_t column, std::uint32_t row, double move) const {
     constexpr double kTop = 0.5;
     const std::uint32_t cells = width_ - 1, fine = (1u << kMostMountSize) / cells;
@@ -76,7 +76,7 @@ std::string make_mount(std::uint32_t size) {
   add_line(text, "b", {0.078, 0.361, 0.753});
   add_line(text, "l", {-100, -100, 100});
 
-  // Four balls of glass that touch each other: on the corners of a tetrahedron, one on top.
+  // Four touching balls of glass: at the corners of a tetrahedron, one on top.
   add_line(text, "f", {1, 1, 1, 0.1, 0.1, 6.7, 0.9, 1.5});
   const Point middle = {-0.8, 0.8, 1};
   const double radius = 0.17, around = radius * std::sqrt(1.5);

@@ -11,10 +11,10 @@
 
 namespace gridiron::scene_makers {
 
-/// Adds "word number number ...\n"; numbers are rounded to float and written as the shortest decimals that read back.
+/// Adds "word number number ...\n"; numbers are rounded to float and written as the shortest exact decimals.
 void add_line(std::string& text, const char* word, std::initializer_list<double> numbers);
 
-/// Adds a view with the angle 45 and 512x512 pixels, as all these scenes have.
+/// Adds a view with the angle 45 and 512x512 pixels, which all these scenes have.
 void add_view(std::string& text, const Point& from, const Point& at, const Point& up, double hither);
 
 /// Adds a sphere, a polygon, a cone.

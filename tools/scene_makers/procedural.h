@@ -11,7 +11,7 @@
 
 namespace gridiron::scene_makers {
 
-// Largest sizes: what a reader of this project still takes (2^24 objects, 1 GB of text).
+// Largest sizes that this project's reader accepts (2^24 objects, 1 GB of text).
 inline constexpr std::uint32_t kMostBallsSize = 7, kMostTetraSize = 11, kMostMountSize = 11, kMostRingsSize = 90;
 inline constexpr std::uint32_t kMostLatticeSize = 100, kMostShellsSize = 100;
 
@@ -23,8 +23,8 @@ inline constexpr std::uint32_t kMostLatticeSize = 100, kMostShellsSize = 100;
 /// size  1..kMostTetraSize.
 [[nodiscard]] std::string make_tetra(std::uint32_t size);
 
-/// A fractal mountain of 2 * 4^size triangles behind a pyramid of four glass balls; 1 light. The heights are of our own
-/// hash, not of the original's. @param size  1..kMostMountSize.
+/// A fractal mountain of 2 * 4^size triangles behind a pyramid of four glass balls; 1 light. The heights come from our
+/// own hash. @param size  1..kMostMountSize.
 [[nodiscard]] std::string make_mount(std::uint32_t size);
 
 /// A pyramid of 1 + 4 + ... + size^2 objects before a wall, seen from its tip. Each is six pentagonal rings through the

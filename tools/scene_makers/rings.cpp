@@ -37,7 +37,7 @@ std::vector<Point> edge_midpoints(double golden) {
   return points;
 }
 
-// The ten midpoints on the great circle across a five-fold axis, in order around it: each time the nearest one left.
+// The ten midpoints on the great circle across a five-fold axis, in order around it: always the nearest remaining one.
 std::vector<Point> circle_across(const std::vector<Point>& points, const Point& axis) {
   std::vector<Point> left, ordered;
   for (const Point& point : points) {

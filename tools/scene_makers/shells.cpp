@@ -9,12 +9,12 @@ namespace {
 
 constexpr std::uint32_t kTurn = 36;  // balls a turn
 
-// A spiral that grows from ball to ball, each turned by a tenth of a right angle or so and raised by its radius.
+// A spiral that grows from ball to ball; each is turned by about a tenth of a right angle and raised by its radius.
 void add_shell(std::string& text, const Point& tip, double radius, std::uint32_t balls) {
   // A turn of 10 degrees by the four operations: (1 - h^2, 2 h) / (1 + h^2), h close to the tangent of 5 degrees.
   constexpr double kHalf = 0.0874886635;
   constexpr double kCosine = (1 - kHalf * kHalf) / (1 + kHalf * kHalf), kSine = 2 * kHalf / (1 + kHalf * kHalf);
-  constexpr double kGrowth = 0.985;  // of each ball to the one outside it
+  constexpr double kGrowth = 0.985;  // radius of each ball over that of the next outer one
   double x = 1, y = 0, scale = 1;
   for (std::uint32_t i = 0; i < balls; ++i) {
     add_sphere(text, {tip[0] + radius * scale * x, tip[1] + radius * scale * y, tip[2] + 1.6 * radius * (1 - scale)},

@@ -12,7 +12,7 @@ namespace {
 
 static_assert(std::endian::native == std::endian::little, "floats are written as they lie in memory");
 
-// What a camera in the middle sees in each face: ahead, right, up.
+// Directions of a camera in the middle for each face: ahead, right, up.
 struct FaceFrame {
   Point ahead, right, up;
 };

@@ -23,7 +23,7 @@ constexpr Profile2 kPotProfile[6][4] = {
     {{1.5, 0.15}, {1.5, 0.075}, {1.425, 0}, {0, 0}},                 // bottom
 };
 
-// Newell's quarter circle: inner control points at 0.56 of the radius (a true circle would ask for 0.5523).
+// Newell's quarter circle: inner control points at 0.56 of the radius (0.5523 for a true circle).
 constexpr double kQuarterArc = 0.56;
 
 // A tube's cross-section is two mirrored cubics between an inner and an outer point of the plane of symmetry.
@@ -94,7 +94,7 @@ void add_pot(Mesh& mesh, std::uint32_t segments) {
   Ring above;
   const Profile2* last_end = nullptr;
   for (const auto& curve : kPotProfile) {
-    // Start a new row only where the curve does not begin at the last one's end.
+    // A new row starts only if the curve does not begin at the last one's end.
     const bool connected =
         last_end != nullptr && last_end->radius == curve[0].radius && last_end->height == curve[0].height;
     for (std::uint32_t i = connected ? 1 : 0; i <= segments; ++i) {

@@ -44,12 +44,12 @@ Point tube_point(double along, double around) {
 }  // namespace
 
 Mesh make_torus_knot(std::uint32_t triangle_count) {
-  // The curve is about ten times as long as the tube is around: quads about square.
+  // The curve is about ten times as long as the tube's circumference, so quads are about square.
   const std::uint32_t around_count =
       static_cast<std::uint32_t>(std::sqrt(static_cast<double>(triangle_count) / 20.0)) + 1;
   const std::uint32_t quad_count = triangle_count / 2;
   const std::uint32_t along_count = quad_count / around_count;
-  // Quads that do not fill a whole ring become four triangles instead of two, round a vertex in their middle.
+  // Quads that do not fill a whole ring become four triangles around a new middle vertex instead of two.
   const std::uint32_t split_count = quad_count - along_count * around_count;
 
   Mesh mesh;

@@ -35,7 +35,7 @@ void require_size(const std::filesystem::path& path, std::uint32_t width, std::u
 }
 
 #ifdef GRIDIRON_HAS_PNG
-// Frees what libpng keeps between the two calls, also where the second is never made.
+// Frees libpng's memory between the two calls, even if the second one is never made.
 struct PngImage : png_image {
   PngImage() : png_image{} { version = PNG_IMAGE_VERSION; }
   ~PngImage() { png_image_free(this); }
@@ -69,7 +69,7 @@ EnvironmentFace read_png(const std::filesystem::path& path, std::span<const std:
 }
 #endif
 
-// Takes the next word of a PFM header and the one white byte behind it. @returns an empty word where there is none.
+// Takes the next word of a PFM header and one white space after it. @returns an empty word if there is none.
 std::string_view take_word(std::string_view& text) {
   const std::size_t end = text.find_first_of(" \t\r\n");
   if (end == std::string_view::npos) return {};
@@ -111,7 +111,7 @@ EnvironmentFace read_pfm(const std::filesystem::path& path, std::span<const std:
         std::uint32_t bits = 0;
         const std::size_t from = x * channel_count + (channel_count == 3 ? channel : 0);
         std::memcpy(&bits, row + from * sizeof bits, sizeof bits);
-        if (scale > 0) bits = __builtin_bswap32(bits);  // a negative scale is the format's way to say little-endian
+        if (scale > 0) bits = __builtin_bswap32(bits);  // in the format a negative scale means little-endian
         const auto value = std::bit_cast<float>(bits);
         if (!(value >= 0) || std::isinf(value)) {
           fail(path, "texel " + std::to_string(x) + ", " + std::to_string(y) + " is negative, NaN or infinite");

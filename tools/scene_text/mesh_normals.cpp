@@ -11,7 +11,7 @@ namespace {
 
 constexpr std::uint32_t kNone = 0xFFFFFFFFu;
 
-// Scaled by its largest component, so that no square leaves the range of doubles. @returns 0 for 0.
+// Scales by the largest component first, so that no square leaves the range of doubles. @returns 0 for 0.
 DVec3 unit(const DVec3& vector) {
   const double largest = std::max({std::fabs(vector.x), std::fabs(vector.y), std::fabs(vector.z)});
   if (!(largest > 0) || !std::isfinite(largest)) return DVec3(0.0);

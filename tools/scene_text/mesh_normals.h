@@ -1,4 +1,4 @@
-// Normals at the vertices of a mesh that brings none.
+// Computes normals at the vertices of a mesh without normals.
 // Memory: std::vector. Threads: any. SPDX-License-Identifier: Apache-2.0
 #pragma once
 
@@ -16,8 +16,8 @@ struct MeshNormals {
 
 /// Means of the normals of the triangles around each vertex, weighted so that vertices on a sphere get the sphere's.
 ///
-/// A vertex whose mean is 0, as on both sides of a sheet, lends each of its triangles that triangle's own normal; one
-/// without area has z. Vertices are told apart by index, so where a mesh doubles a vertex it keeps an edge.
+/// If the mean of a vertex is 0, as on both sides of a sheet, each of its triangles gets that triangle's own normal
+/// there; z if it has no area. Vertices are distinguished by index, so a mesh keeps an edge by doubling its vertices.
 /// Cost: linear. Source: N. Max, "Weights for computing vertex normals from facet normals", 1999.
 [[nodiscard]] MeshNormals make_mesh_normals(std::span<const Vec3> vertices, std::span<const UVec3> triangles);
 

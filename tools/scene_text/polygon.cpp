@@ -12,7 +12,7 @@
 namespace gridiron::tool {
 namespace {
 
-// A corner as seen along the main axis of the normal, counter-clockwise.
+// A corner, projected along the main axis of the normal, counter-clockwise.
 struct Place {
   float x = 0, y = 0;
   friend bool operator==(const Place&, const Place&) = default;
@@ -23,7 +23,8 @@ int turn(const Place& a, const Place& b, const Place& c) {
   const double left = (double{a.x} - double{c.x}) * (double{b.y} - double{c.y});
   const double right = (double{a.y} - double{c.y}) * (double{b.x} - double{c.x});
   const double area = left - right;
-  // Each factor and product is off by half a unit at most, the difference too: 4 units of the sum are more than enough.
+  // Each factor and product has an error of at most half a unit, the difference too: 4 units of the sum are more than
+  // enough.
   if (std::fabs(area) > 4 * DBL_EPSILON * (std::fabs(left) + std::fabs(right))) return area > 0 ? 1 : -1;
   ExactSum sum;
   sum.add_product(1, a.x, b.y, 1.0f);
@@ -38,13 +39,13 @@ int turn(const Place& a, const Place& b, const Place& c) {
 // How strictly other corners must stay out of an ear.
 enum class Strictness : std::uint8_t { kBoundary, kInterior, kAnyConvex };
 
-// The outline while ears are cut off it.
+// The outline while ears are being cut off.
 class Outline {
  public:
   Outline(std::vector<Place> places, std::vector<std::uint32_t> corners)
       : places_(std::move(places)), corners_(std::move(corners)) {}
 
-  // Removes corners where the outline turns back on itself, and what then repeats the corner before.
+  // Removes corners where the outline turns back on itself, and the repeated corners that this leaves.
   void remove_spikes() {
     std::size_t kept = 0;  // corners in a row that are no spikes
     for (std::size_t at = 0; corners_.size() > 2 && kept < corners_.size();) {
@@ -59,7 +60,7 @@ class Outline {
     }
   }
 
-  // Cuts until nothing is left. @returns false where it gets stuck: the outline crosses itself.
+  // Cuts until nothing is left. @returns false if it gets stuck: the outline crosses itself.
   bool clip(std::vector<UVec3>& triangles) {
     Strictness strictness = Strictness::kBoundary;
     std::size_t at = 0, refused = 0;
@@ -70,7 +71,7 @@ class Outline {
         const std::size_t before = previous(at);
         triangles.emplace_back(corners_[before], corners_[at], corners_[following(at)]);
         remove(at);
-        // On to the corner behind the next one: fans around one corner make slivers.
+        // Continues with the corner after the next one: fans around one corner make slivers.
         at = corners_.empty() ? 0 : (at + 1) % corners_.size();
         refused = 0;
         strictness = Strictness::kBoundary;
@@ -85,8 +86,8 @@ class Outline {
         strictness = Strictness::kBoundary;
         at = 0;
       } else if (strictness == Strictness::kInterior) {
-        // Triangles that all turn left add up to the outline's winding numbers: where these are 0 and 1 nothing
-        // overlaps, whatever order they were cut in.
+        // Triangles that all turn left add up to the outline's winding numbers: if these are 0 and 1, nothing overlaps,
+        // in whatever order they are cut.
         strictness = Strictness::kAnyConvex;
       } else {
         return false;
@@ -169,7 +170,7 @@ bool crosses_itself(const std::vector<Place>& places, const std::vector<std::uin
   return false;
 }
 
-// Twice the area vector, relative to the first corner so that distance from the origin costs no digits.
+// Twice the area vector, relative to the first corner, so that distance from the origin costs no precision.
 DVec3 newell_normal(std::span<const Vec3> corners) {
   DVec3 sum(0.0);
   const DVec3 origin(corners[0]);

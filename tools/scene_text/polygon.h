@@ -18,7 +18,7 @@ enum class PolygonDefect : std::uint8_t {
   kCrosses,  ///< the outline crosses itself, or runs back on itself so that nothing is inside
 };
 
-/// What triangulate_polygon made.
+/// The result of triangulate_polygon.
 struct PolygonResult {
   PolygonDefect defect = PolygonDefect::kNone;
   double plane_distance = 0;  ///< largest distance of a corner from the plane through the corners' mean
@@ -26,9 +26,9 @@ struct PolygonResult {
 
 /// Cuts a polygon into triangles that keep its direction.
 ///
-/// The outline is seen along the axis that its normal (Newell's sum) is closest to; all signs are those of exact
-/// arithmetic on the floats. Corners on an edge stay corners of triangles; corners equal to the one before are dropped,
-/// and so is what sticks out without area. An outline may touch itself, as one around a hole does.
+/// The outline is projected along the axis that its normal (Newell's sum) is closest to; all signs are exact. Corners
+/// on an edge stay corners of triangles; corners equal to the one before and spikes without area are dropped. An
+/// outline may touch itself, for example around a hole.
 /// @param corners    3..kMostPolygonCorners, finite.
 /// @param triangles  appended to: indices into corners, each of positive area as seen.
 /// Cost: corners^2, at worst corners^3 / 6 tests. Source: G. H. Meisters, "Polygons have ears", 1975.

@@ -48,13 +48,13 @@ DVec3 between(const DVec3& a, const DVec3& b, std::uint32_t step, std::uint32_t 
   return (a * static_cast<double>(steps - step) + b * static_cast<double>(step)) / static_cast<double>(steps);
 }
 
-// Place (i, j), i + j <= n, of a face: i steps of n towards b, j towards c. Not yet on the sphere.
+// Point (i, j), i + j <= n, of a face: i steps of n towards b, j towards c. Not yet on the sphere.
 DVec3 place_on_face(const DVec3& a, const DVec3& b, const DVec3& c, std::uint32_t i, std::uint32_t j, std::uint32_t n) {
   return (a * static_cast<double>(n - i - j) + b * static_cast<double>(i) + c * static_cast<double>(j)) /
          static_cast<double>(n);
 }
 
-// Index of place (i, j) among all places of a face, row by row.
+// Index of point (i, j) among all points of a face, row by row.
 std::size_t place_index(std::uint32_t i, std::uint32_t j, std::uint32_t n) {
   return std::size_t{j} * (n + 1) - std::size_t{j} * (std::size_t{j} - 1) / 2 + i;
 }
@@ -74,7 +74,7 @@ UnitSphere make_sphere(std::uint32_t n) {
   const Corners corners = icosahedron_corners();
   UnitSphere sphere;
   sphere.vertices.assign(corners.begin(), corners.end());
-  // Each edge's inner vertices are made once, from its lower corner to its higher, so that both faces have the same.
+  // Each edge's inner vertices are made once, from its lower corner to its higher one, so that both faces share them.
   std::map<std::pair<std::uint32_t, std::uint32_t>, std::uint32_t> first_on_edge;
   const auto edge_vertex = [&](std::uint32_t from, std::uint32_t to, std::uint32_t step) {
     if (from > to) {
@@ -121,7 +121,8 @@ UnitSphere make_sphere(std::uint32_t n) {
   return sphere;
 }
 
-// Half the angle between two neighbours of a regular polygon, as its cosine: 1 - it is how far chords stay inside.
+// Cosine of half the angle between neighbours of a regular polygon; 1 minus it is the distance of chords from the
+// circle.
 struct CircleFineness {
   std::uint32_t segments;
   double cosine;       // of the angle from one corner to the next
@@ -139,7 +140,7 @@ struct CircleFineness {
 double RoundShapes::sphere_deviation(std::uint32_t frequency) {
   const auto known = deviations_.find(frequency);
   if (known != deviations_.end()) return known->second;
-  // All faces are alike: one tells.
+  // All faces are alike, so one is enough.
   const Corners corners = icosahedron_corners();
   const UVec3 face = icosahedron_faces(corners)[0];
   std::vector<DVec3> places;

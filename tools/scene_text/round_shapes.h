@@ -1,5 +1,5 @@
-// Spheres, cones and cylinders as facets whose corners lie on the true surface, no farther from it than asked for.
-// Only the four operations and square roots: the same bits on every host.
+// Spheres, cones and cylinders as facets with corners on the true surface, within a given distance of it. Only the four
+// operations and square roots: the same bits on every host.
 // Memory: tables of unit shapes, kept. Threads: one. SPDX-License-Identifier: Apache-2.0
 #pragma once
 
@@ -21,17 +21,17 @@ struct UnitSphere {
 inline constexpr std::uint32_t kMostSphereFrequency = 1024;
 inline constexpr std::uint32_t kMostCircleSegments = 3u << 18;
 
-/// Unit shapes by fineness, made when first asked for.
+/// Unit shapes by fineness, made on first use.
 class RoundShapes {
  public:
-  /// @returns the least frequency whose facets are at most `deviation` (> 0) from the unit sphere, 0 where none is.
+  /// @returns the least frequency whose facets are within `deviation` (> 0) of the unit sphere, 0 if there is none.
   [[nodiscard]] std::uint32_t sphere_frequency(double deviation);
 
   /// @param frequency  1..kMostSphereFrequency.
   [[nodiscard]] const UnitSphere& sphere(std::uint32_t frequency);
 
-  /// @returns the least of 3, 4, 6, 8, 12, 16, ... segments whose chords are at most `deviation` from the unit circle,
-  ///          0 where none is.
+  /// @returns the least of 3, 4, 6, 8, 12, 16, ... segments whose chords are within `deviation` of the unit circle, 0
+  /// if there is none.
   [[nodiscard]] static std::uint32_t circle_segments(double deviation);
 
   /// @param segments  as circle_segments returns. @returns that many (x, y, 0) on the unit circle from (1, 0, 0) on,

@@ -14,14 +14,14 @@
 
 namespace gridiron::tool {
 
-// Ranges of the values below; a reader refuses what lies outside.
+// Ranges of the values below; a reader rejects others.
 inline constexpr std::uint32_t kMostSceneMaterials = 65535;     ///< index 65535 is never used
 inline constexpr std::uint32_t kMostSceneTriangles = 1u << 26;  ///< after tessellation
 inline constexpr std::uint32_t kMostSceneVertices = 1u << 26;   ///< and as many normals
 inline constexpr std::uint32_t kMostSceneLights = 256;          ///< point and area lights together
 inline constexpr std::uint32_t kMostEffectSamples = 64;         ///< of an area light, of ambient occlusion
 inline constexpr std::uint32_t kMostRecursionDepth = 8;         ///< the eye ray is of depth 1
-inline constexpr std::uint32_t kDefaultRecursionDepth = 5;      ///< what readers of NFF use by custom
+inline constexpr std::uint32_t kDefaultRecursionDepth = 5;      ///< the readers' customary default for NFF
 inline constexpr std::uint32_t kMostEnvironmentWidth = 1024;    ///< texels of a face's edge
 inline constexpr double kMostSceneCoordinate = 1e18;            ///< |x|, so that squares of lengths stay finite
 inline constexpr float kLeastRefraction = 0.1f, kMostRefraction = 10.0f;
@@ -32,7 +32,7 @@ inline constexpr float kMostLightColor = 1e6f;
 struct SceneView {
   Vec3 from{0, 0, 1}, at{0, 0, 0}, up{0, 1, 0};
   float angle_degrees = 45.0f;          ///< between the top and the bottom edge of the picture, in (0, 180)
-  float hither = 0.0f;                  ///< >= 0: what lies nearer along at - from is not seen
+  float hither = 0.0f;                  ///< >= 0: nearer parts along at - from are invisible
   std::uint32_t width = 0, height = 0;  ///< pixels, 1..kMaxPictureWidth; 0 without a view
   std::uint64_t line = 0;               ///< of the text; 0: it has no view
 
@@ -54,7 +54,7 @@ struct AreaLight {
   std::uint32_t samples = 16;             ///< shadow rays from each point lit, 1..kMostEffectSamples
 };
 
-/// What a surface is. The names are NFF's.
+/// The properties of a surface. The names are NFF's.
 struct SceneMaterial {
   Vec3 color{1, 1, 1};            ///< 0..1 each, of diffuse and of transmitted light
   float kd = 1.0f;                ///< diffuse share, 0..1
@@ -67,12 +67,12 @@ struct SceneMaterial {
   friend bool operator==(const SceneMaterial&, const SceneMaterial&) = default;
 };
 
-/// Faces of an environment cube, in the order of the `e` line. A face's picture is what a camera in the middle sees:
-/// 90 degrees, up y; for the faces of y up is z (kPlusY) and -z (kMinusY). So right is z, -z, x, x, -x, x.
+/// Faces of an environment cube, in the order of the `e` line. A face is the view of a camera in the middle, with 90
+/// degrees and up y; for the faces of y up is z (kPlusY) and -z (kMinusY). So right is z, -z, x, x, -x, x.
 enum class CubeFace : std::uint8_t { kPlusX, kMinusX, kPlusY, kMinusY, kPlusZ, kMinusZ };
 inline constexpr std::uint32_t kCubeFaceCount = 6;
 
-/// What rays see that leave the scene, in place of the background colour.
+/// The background for rays that leave the scene, instead of a colour.
 struct EnvironmentMap {
   std::array<std::filesystem::path, kCubeFaceCount> paths;  ///< resolved against the scene's folder
   std::uint32_t width = 0;                                  ///< texels of each face's edge, 1..kMostEnvironmentWidth
@@ -81,10 +81,10 @@ struct EnvironmentMap {
 
 struct AmbientOcclusion {
   std::uint32_t samples = 16;  ///< rays from each point, 1..kMostEffectSamples
-  float radius = 1.0f;         ///< > 0, world units: what is farther does not occlude
+  float radius = 1.0f;         ///< > 0, world units: farther surfaces do not occlude
 };
 
-/// Stands in triangle_normals for a triangle without normals.
+/// Value of triangle_normals for a triangle without normals.
 inline constexpr std::uint32_t kNoNormal = std::numeric_limits<std::uint32_t>::max();
 
 /// All geometry. Triangles are counter-clockwise seen from outside, in the file's order. Closed shapes share vertices.
@@ -104,37 +104,37 @@ enum class ToleranceRule : std::uint8_t {
   kPicture,   ///< coarser than that where the picture does not show it: a share of a pixel, an object at a time
 };
 
-/// Round shapes of nearly one radius: how many triangles a tolerance makes of them can be told without making them.
+/// Round shapes of similar radius: gives the number of triangles for a tolerance without making them.
 struct RoundShapeGroup {
   bool is_sphere = true;
   double radius = 0;  ///< that of none is greater
   std::uint64_t count = 0;
 };
 
-/// How round shapes became triangles, and what other tolerances would make of them.
+/// How round shapes became triangles, with the data to predict other tolerances.
 struct SceneRoundness {
   float least_tolerance = 0.0f, most_tolerance = 0.0f;  ///< of all objects, world units; equal but for kPicture
   ToleranceRule rule = ToleranceRule::kDiagonal;
   float diagonal_tolerance = 0.0f;       ///< kPicture: that of kDiagonal
   std::uint64_t diagonal_triangles = 0;  ///< kPicture: that kDiagonal would have made, an estimate
   std::vector<RoundShapeGroup> groups;   ///< spheres and cones by their size
-  std::uint64_t flat_triangles = 0;      ///< of all other objects, those without area included
+  std::uint64_t flat_triangles = 0;      ///< of all other objects, including those without area
 };
 
-/// What the text held, before tessellation.
+/// Counts of the text, before tessellation.
 struct SceneCounts {
   std::uint64_t spheres = 0, cones = 0, polygons = 0, patches = 0, meshes = 0;
   std::uint64_t non_planar_polygons = 0;  ///< of polygons: corners off their plane by more than the tolerance
 };
 
-/// Something that a reader accepts and people may want to know.
+/// Accepted input that deserves a note.
 struct SceneNote {
   std::uint64_t line = 0;
   std::string text;  ///< without capital or full stop
 };
 inline constexpr std::size_t kMostSceneNotes = 20;  ///< later ones are only counted
 
-/// A scene that can be rendered: everything checked, nothing of the text left to look up.
+/// A complete scene: checked, and independent of the text.
 struct SceneDescription {
   SceneView view;
   Vec3 background{0, 0, 0};  ///< 0..1 each

@@ -1,4 +1,4 @@
-// Scene effects: lights, materials, normals and environment of a text scene as the image builder takes them.
+// Scene effects: lights, materials, normals and environment of a text scene in the image builder's form.
 // Memory: std::vector. Threads: any may read. SPDX-License-Identifier: Apache-2.0
 #pragma once
 
@@ -29,15 +29,15 @@ struct SceneEffects {
   std::uint32_t environment_width = 0;
   std::array<std::vector<Vec3>, kCubeFaceCount> environment_faces;
 
-  /// Spans into this object; they hold where it is moved, too.
+  /// Spans into this object; they remain valid when it is moved.
   [[nodiscard]] EffectsView view() const;
 };
 
-/// Takes what is of effects out of a scene: geometry keeps its vertices and triangles alone, the environment its width
-/// and paths.
+/// Takes the effects out of a scene: geometry keeps only its vertices and triangles, the environment its width and
+/// paths.
 [[nodiscard]] SceneEffects take_scene_effects(SceneDescription& scene);
 
-/// @returns vertices and triangles of a scene, which has to stay.
+/// @returns vertices and triangles of a scene, which must outlive the view.
 [[nodiscard]] MeshView mesh_view(const SceneDescription& scene);
 
 }  // namespace gridiron::tool

@@ -1,4 +1,4 @@
-// Entities of a text scene as they were read: parsed and checked one by one, not yet tessellated.
+// Entities of a text scene after reading: parsed and checked one by one, not yet tessellated.
 // Memory: std::vector. Threads: any may read. SPDX-License-Identifier: Apache-2.0
 #pragma once
 
@@ -11,7 +11,7 @@
 
 namespace gridiron::tool {
 
-/// Which surfaces of a material are shaded by normals of their own: the state of `sn`.
+/// The surfaces of a material with shading normals of their own: the state of `sn`.
 enum class Smoothness : std::uint8_t {
   kCurved,  ///< before the first `sn`: s, c and pp
   kAll,     ///< `sn on`: meshes too

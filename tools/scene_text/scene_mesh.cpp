@@ -78,7 +78,7 @@ SceneMesh read_scene_mesh(const std::filesystem::path& path, const std::optional
 void require_regular_file(const std::filesystem::path& path) {
   std::error_code error;
   const std::filesystem::file_status status = std::filesystem::status(path, error);
-  // What is not there is told by whoever opens it.
+  // A missing file is reported by the function that opens it.
   if (std::filesystem::exists(status) && !std::filesystem::is_regular_file(status)) {
     throw Failure(ExitCode::kBadInput, path.string() + ": not a regular file");
   }

@@ -53,7 +53,7 @@ class Parser {
 
   static constexpr std::size_t kKindCount = 16;
 
-  // In the order in which the README has them.
+  // In the order of the README.
   static const std::array<Kind, kKindCount>& kinds() {
     static constexpr std::array<Kind, kKindCount> kKinds = {{
         {"v", 13, true, &Parser::read_view},
@@ -239,7 +239,7 @@ class Parser {
     material.transmittance = take("T", 1);
     const SceneNumber index = words_.take_number(entity);
     const auto refraction = static_cast<float>(index.value);
-    // Files of the Standard Procedural Databases write 0 for what lets no light through.
+    // Files of the Standard Procedural Databases have 0 for opaque materials.
     const bool is_unused = material.transmittance == 0.0f;
     if (!(refraction >= kLeastRefraction && refraction <= kMostRefraction) && !(is_unused && refraction == 0.0f)) {
       words_.fail(index.word.line, "the index of refraction of 'f' must be from 0.1 to 10, not " +
@@ -353,7 +353,7 @@ class Parser {
     ++result_.scene.counts.meshes;
   }
 
-  // Runs what reads another file; its complaint gets the line that names the file.
+  // Reads another file; its errors get the line that names the file.
   template <class Action>
   auto with_line(std::uint64_t line, Action action) -> decltype(action()) {
     try {
@@ -367,7 +367,7 @@ class Parser {
   void finish() {
     const std::uint64_t last_line = words_.next().line;
     if (result_.shapes.empty()) words_.fail(last_line, "the scene has no object: no p, pp, c, s or m");
-    // What the Standard Procedural Databases advise, without their half: there is no ambient light here.
+    // The advice of the Standard Procedural Databases, without the factor of a half: there is no ambient light here.
     const std::size_t lights = result_.scene.point_lights.size() + result_.scene.area_lights.size();
     for (const std::size_t light : colorless_) {
       result_.scene.point_lights[light].color = Vec3(static_cast<float>(1 / std::sqrt(static_cast<double>(lights))));
@@ -379,7 +379,7 @@ class Parser {
   SceneEntities result_;
   Smoothness smoothness_ = Smoothness::kCurved;
   std::vector<std::size_t> colorless_;                  // point lights that wait for the number of lights
-  std::array<std::uint64_t, kKindCount> first_line_{};  // of those that may be there once; of others the last
+  std::array<std::uint64_t, kKindCount> first_line_{};  // of entities that may occur once; of others the last
   SceneWord last_{};                                    // keyword of the entity before
   std::uint64_t entity_count_ = 0, mesh_vertices_ = 0, mesh_triangles_ = 0;
 };

@@ -75,7 +75,7 @@ void SceneWords::advance() {
   for (; at < rest_.size(); ++at) {
     const char c = rest_[at];
     if (is_line_end(c)) {
-      // The last line is that of the last character: a line end at the very end opens no new one.
+      // The last line is that of the last character: a final line end does not start a new one.
       const bool is_pair = c == '\r' && at + 1 < rest_.size() && rest_[at + 1] == '\n';
       if (is_pair) ++at;
       if (at + 1 < rest_.size()) ++line_;
@@ -121,7 +121,7 @@ SceneNumber SceneWords::take_number(SceneEntity& entity) {
   }
   SceneNumber number{0, next_};
   if (!looks_like_number(next_.text)) {
-    fail(next_.line, in_quotes(next_.text) + " stands where " + which() + " of " + name_of(entity) +
+    fail(next_.line, in_quotes(next_.text) + " found where " + which() + " of " + name_of(entity) +
                          line_words(entity) + " is expected");
   }
   std::string_view text = next_.text;

@@ -1,4 +1,4 @@
-// Words of a text scene: split at white space, comments left out, numbers parsed, every complaint with its line.
+// Words of a text scene: split at white space, without comments, numbers parsed, every error with its line.
 // Memory: borrows text and path. Threads: one. SPDX-License-Identifier: Apache-2.0
 #pragma once
 
@@ -11,7 +11,7 @@
 
 namespace gridiron::tool {
 
-/// A word of the text. Empty: the text has ended, and line is its last.
+/// A word of the text. Empty at the end of the text, with its last line.
 struct SceneWord {
   std::string_view text;
   std::uint64_t line = 1;
@@ -28,7 +28,7 @@ struct SceneNumber {
   SceneWord word;
 };
 
-/// One entity while its numbers are read: what messages name.
+/// The entity whose numbers are being read, for messages.
 struct SceneEntity {
   SceneWord keyword;
   std::uint64_t wanted = 0;  ///< numbers that it has
@@ -43,10 +43,10 @@ class SceneWords {
  public:
   SceneWords(std::string_view text, const std::filesystem::path& path);
 
-  /// @returns the next word, which stays the next.
+  /// @returns the next word without taking it.
   [[nodiscard]] const SceneWord& next() const { return next_; }
 
-  /// @returns the next word, and goes on to the one behind it.
+  /// Takes the next word.
   SceneWord take();
 
   /// Takes a word that must be there. @param what  as in "the file ends before WHAT".
@@ -55,7 +55,7 @@ class SceneWords {
   /// Takes one of the entity's numbers: any finite double.
   SceneNumber take_number(SceneEntity& entity);
 
-  /// Takes a number from least to most. @param name  what it is called in messages.
+  /// Takes a number from least to most. @param name  its name in messages.
   double take_in_range(SceneEntity& entity, const char* name, double least, double most);
 
   /// Takes a whole number from least to most.

@@ -1,4 +1,4 @@
-// What each accuracy needs and promises: the one table of them. tools/gridiron/device/accuracies.cpp has their names.
+// What each accuracy needs and promises, in one table. tools/gridiron/device/accuracies.cpp has the names.
 // Memory: none. Threads: any. SPDX-License-Identifier: Apache-2.0
 #pragma once
 
@@ -13,9 +13,9 @@ namespace gridiron {
 
 /// What an accuracy needs and promises; core/README.md says more.
 struct AccuracyTraits {
-  TriangleFormat format{};         ///< of the triangles that it decides on; none: there is no such accuracy
+  TriangleFormat format{};         ///< form of triangles that it reads; TriangleFormat{} marks a missing accuracy
   bool may_leak = false;           ///< a ray may pass between two triangles that share an edge
-  bool has_scene_shading = false;  ///< its hits hold well enough for rays to start there
+  bool has_scene_shading = false;  ///< its hits are accurate enough for secondary rays to start there
 };
 
 // A value of Accuracy that is missing here does not compile.

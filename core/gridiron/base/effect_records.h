@@ -1,5 +1,5 @@
-// Effects in main memory: what a scene calls for, its lights, materials, surfaces, normals and environment. Layout as
-// core/SPEC.md tells it; what they mean as core/EFFECTS.md does.
+// Effects in main memory: what a scene requires, its lights, materials, surfaces, normals and environment. core/SPEC.md
+// has the layout, core/EFFECTS.md the meaning.
 // Memory: described, not owned. Threads: read-only during a frame. SPDX-License-Identifier: Apache-2.0
 #pragma once
 
@@ -10,18 +10,18 @@ namespace gridiron {
 /// Effects, as bits of a set. Plain light of point lights, without shadows, is no effect.
 enum EffectBits : std::uint32_t {
   kPointShadows = 1u << 0,
-  kAreaLights = 1u << 1,         ///< sampled, with shadows or without
+  kAreaLights = 1u << 1,  ///< sampled, with shadows or without
   kReflection = 1u << 2,
   kRefraction = 1u << 3,
   kAmbientOcclusion = 1u << 4,
   kEnvironment = 1u << 5,
   kSmoothNormals = 1u << 6,
-  kHighlights = 1u << 7,         ///< Blinn-Phong
+  kHighlights = 1u << 7,  ///< Blinn-Phong
   kMultisampling = 1u << 8,
-  kSceneShading = 1u << 9,       ///< light of point lights and the background; every scene with effects needs it
+  kSceneShading = 1u << 9,  ///< light of point lights and the background; every scene with effects has it
 };
 inline constexpr std::uint32_t kEffectCount = 10;  ///< bits of EffectBits
-inline constexpr std::uint32_t kAllEffects = (1u << kEffectCount) - 1u;  ///< the set of all
+inline constexpr std::uint32_t kAllEffects = (1u << kEffectCount) - 1u;  ///< the set of all effects
 
 inline constexpr std::uint32_t kMaxMaterials = 65535;      ///< of a scene
 inline constexpr std::uint32_t kMaxLights = 256;           ///< point and area lights together
@@ -31,7 +31,7 @@ inline constexpr std::uint32_t kMaxEnvironmentWidth = 1024;  ///< texels of a fa
 inline constexpr float kAmbientLight = 0.5f;               ///< what ambient occlusion darkens; core/EFFECTS.md
 inline constexpr float kMaxLightColor = 1e6f;              ///< of each channel
 
-/// One for a scene with effects. 128 bytes.
+/// Settings of a scene with effects; an image has one. 128 bytes.
 struct EffectsRecord {
   std::uint32_t called_for;          ///< EffectBits
   std::uint32_t material_count;      ///< 1..kMaxMaterials
@@ -40,7 +40,7 @@ struct EffectsRecord {
   std::uint32_t recursion_depth;     ///< 1..kMaxRecursionDepth
   std::uint32_t samples_per_pixel;   ///< 1, 4, 16
   std::uint32_t occlusion_samples;   ///< 0: no ambient occlusion; ..kMaxEffectSamples
-  float occlusion_radius;            ///< > 0 where there is
+  float occlusion_radius;            ///< above 0 if there are samples
   float background[3];               ///< 0..1
   std::uint32_t has_shadows;         ///< 0, 1
   std::uint32_t environment_width;   ///< texels of a face's edge, 0: no environment; ..kMaxEnvironmentWidth
@@ -55,7 +55,7 @@ struct EffectsRecord {
 };
 static_assert(sizeof(EffectsRecord) == 128);
 
-/// What a surface does with light. diffuse and transmitted hold the shares already: see core/EFFECTS.md.
+/// What a surface does with light. diffuse and transmitted already include the shares: see core/EFFECTS.md.
 struct MaterialRecord {
   float diffuse[3];      ///< kd times colour, 0..1
   float specular;        ///< ks, 0..1; of highlight and mirror
@@ -72,7 +72,7 @@ static_assert(sizeof(MaterialRecord) == 48);
 struct LightRecord {
   float corner[3];          ///< where it is, or begins
   std::uint32_t samples;    ///< 0: a point; 1..kMaxEffectSamples
-  float color[3];           ///< 0..kMaxLightColor; of an area light that of one sample
+  float color[3];           ///< 0..kMaxLightColor; for an area light the colour of one sample
   std::uint32_t is_near;    ///< 0, 1; shadow rays run from the light: it is about as near to 0 as the scene is
   float edge_u[3];          ///< of an area light
   std::uint32_t reserved0;
@@ -84,15 +84,15 @@ static_assert(sizeof(LightRecord) == 64);
 /// A point light is near where its largest coordinate is at most this times that of the scene.
 inline constexpr float kNearLightFactor = 4.0f;
 
-/// A triangle as shading needs it. Vertices as the grid's triangles have them: moved ones for lattice triangles.
+/// A triangle as shading needs it. Its vertices equal those of the grid's triangles: moved ones with lattice triangles.
 struct SurfaceRecord {
   float v[3][3];               ///< corner, axis
   std::uint32_t material;      ///< index
-  std::uint32_t normals;       ///< index in the kNormals section, kNoNormals where flat
+  std::uint32_t normals;       ///< index in the kNormals section, or kNoNormals for a flat triangle
   std::uint32_t reserved;
 };
 static_assert(sizeof(SurfaceRecord) == 48);
-inline constexpr std::uint32_t kNoNormals = 0xFFFFFFFFu;  ///< of a flat triangle
+inline constexpr std::uint32_t kNoNormals = 0xFFFFFFFFu;  ///< for a flat triangle
 
 /// Normals at a triangle's corners, unit to rounding, outwards.
 struct NormalRecord {
@@ -101,8 +101,8 @@ struct NormalRecord {
 };
 static_assert(sizeof(NormalRecord) == 48);
 
-/// 8 x 8 texels of a face, of which 7 x 7 begin a bilinear patch: block (i, j) holds columns 7 i..7 i + 7 and rows
-/// 7 j..7 j + 7, those beyond the face repeat its last. 768 bytes.
+/// 8 x 8 texels of a face; 7 x 7 of them are the first corner of a bilinear patch. Block (i, j) holds columns 7 i..7 i
+/// + 7 and rows 7 j..7 j + 7. Columns and rows beyond the face repeat its last. 768 bytes.
 struct EnvironmentBlock {
   float texels[8][8][3];  ///< row, column; finite, >= 0
 };
@@ -114,31 +114,31 @@ inline constexpr std::uint32_t kEnvironmentPatches = 7;  ///< along a block's ed
   return width <= 2 ? 1 : (width - 2) / kEnvironmentPatches + 1;
 }
 
-/// A ray that waits for its turn, in a queue of the local store or in main memory.
+/// A ray that waits in a queue of the local store or in main memory.
 struct QueuedRay {
   float origin[3];         ///< world space
   float dir[3];            ///< unit to rounding
-  float weight[3];         ///< what it adds is worth
+  float weight[3];         ///< factor on the light that it adds, RGB
   std::uint32_t pixel;     ///< row-major index in its tile | depth << 16
   std::uint32_t path;      ///< core/EFFECTS.md
   std::uint32_t reserved;
 };
 static_assert(sizeof(QueuedRay) == 48);
 
-/// Rays are traced in waves, the deepest first; a layout's are of at most this many.
+/// Rays are traced in waves, the deepest first. No layout has longer waves than this.
 inline constexpr std::uint32_t kMostWaveRays = 256;
 
 inline constexpr std::uint32_t kMostEffectTilePixels = 1024;  ///< of a layout with effects
 
-/// Rays that can wait at once on a core: two for each pixel of a tile, of depth 2, and two a ray of a wave for each
-/// depth more. For the queue is a stack: a wave of which pushed rays are left below was followed by one made of those
-/// alone, all of them deeper than its least deep; so at most one wave for each depth has some left.
+/// Rays that can wait at once on a core: two for each pixel of a tile, of depth 2, and for each further depth two for
+/// each ray of a wave. The queue is a stack: if a wave leaves pushed rays below, the next wave consists only of rays
+/// that it pushed itself, all of them deeper than its least deep one. So at most one wave of each depth has rays left.
 [[nodiscard]] constexpr std::uint32_t most_waiting_rays(std::uint32_t recursion_depth) {
   return recursion_depth <= 1 ? 0 : 2 * kMostEffectTilePixels + 2 * kMostWaveRays * (recursion_depth - 2);
 }
 
-/// Bytes of main memory that each core needs for waiting rays that its local store has no room for. The region begins
-/// at a multiple of kSpillAlignment, so that every core's transfers are cut alike.
+/// Bytes of main memory that each core needs for the rays that do not fit its local store. The region begins at a
+/// multiple of kSpillAlignment, so that the transfers of all cores are split alike.
 [[nodiscard]] constexpr std::uint64_t spill_bytes(std::uint32_t recursion_depth) {
   return (std::uint64_t{most_waiting_rays(recursion_depth)} * sizeof(QueuedRay) + 4095) / 4096 * 4096;
 }

@@ -66,7 +66,7 @@ void add_slope(ExactSum& sum, const float dir[3], const float a[3], const float 
   sum.add_determinant(-1, dir, b, a);
 }
 
-// A magnitude in half the bytes of its sum: four of them are in hand at once.
+// A magnitude in half the bytes of its sum, because four of them are needed at once.
 struct Digits {
   std::uint32_t digits[ExactSum::kLimbCount];
 };
@@ -140,7 +140,7 @@ int ExactSum::sign() {
     limb = digit;
     any |= digit;
   }
-  // A negative sum leaves carry -1; the top limb takes it back, so that the limbs still say the same number.
+  // A negative sum leaves carry -1. The top limb takes it back, so that the limbs still have the same value.
   limbs_[kLimbCount - 1] += carry * (std::int64_t{1} << 32);
   if (carry < 0) return -1;
   return any != 0 ? 1 : 0;

@@ -1,5 +1,5 @@
 // Exact sums of products of up to three floats, in integers: the last word on signs, ties and zero areas.
-// Integer arithmetic only, so that no rounding mode, contraction or flush-to-zero can touch it.
+// Integer arithmetic only, so that no rounding mode, contraction or flush-to-zero affects it.
 // Memory: 216 bytes by value. Threads: any. SPDX-License-Identifier: Apache-2.0
 #pragma once
 
@@ -52,8 +52,8 @@ class ExactSum {
 /// @returns true where (b - a) x (c - a) is exactly zero: the triangle has no area.
 [[nodiscard]] bool exact_zero_area(const float a[3], const float b[3], const float c[3]);
 
-/// The direction of (b - a) x (c - a): a positive multiple of it, its largest component in [1, 2^32), but for
-/// rounding to 2^-50 of that. All zero where the triangle has no area.
+/// The direction of (b - a) x (c - a): a positive multiple of it with its largest component in [1, 2^32), rounded to
+/// 2^-50 of that component. All zero if the triangle has no area.
 [[gnu::cold]] void exact_normal(const float a[3], const float b[3], const float c[3], double normal[3]);
 
 /// Distance at which a ray meets the plane of a triangle, rounded to the nearest float (halves away from zero).

@@ -1,6 +1,6 @@
-// SIMD lanes: W floats that go through the same operations. The type is the kernel's choice of width and changes no
-// pixel: every operation is the IEEE one per lane. Source: GCC vector extensions. Memory: values. Threads: any.
-// Everything is always inlined, so that files built for a wide ISA leave no function behind for baseline ones.
+// SIMD lanes: W floats that go through the same operations. The kernel chooses W; the choice changes no pixel, as every
+// operation is the IEEE one in each lane. Source: GCC vector extensions. Memory: values. Threads: any.
+// All functions are always inlined, so that files built for a wide ISA leave no function behind for baseline ones.
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
@@ -12,9 +12,9 @@
 
 #define GRIDIRON_INLINE inline __attribute__((always_inline))
 #define GRIDIRON_INLINE_LAMBDA __attribute__((always_inline))
-/// For what several instantiations share: one copy of it, for the sake of the local store.
+/// For code that several instantiations share: one copy saves local store.
 #define GRIDIRON_OUTLINE __attribute__((noinline))
-/// The same for code that hardly ever runs: as short as it can be.
+/// The same for code that hardly ever runs: optimised for size.
 #define GRIDIRON_RARE __attribute__((noinline, cold))
 
 namespace gridiron {
@@ -329,11 +329,11 @@ struct Lanes {
     using Halves = typename LaneVectors<W>::HalvesMemory;
     return Float(__builtin_convertvector(*reinterpret_cast<const Halves*>(source), FloatVector));
   }
-  /// Reciprocals, off by less than 2^-12 of themselves where these are normal; the same bits on every target.
+  /// Reciprocals with a relative error below 2^-12 if they are normal; the same bits on every target.
   ///
-  /// The pattern's complement is linear between powers of two and within e0 = 0.0506 of 1 / a; with r the first value
-  /// and e = 1 - |a| r, |e| <= e0, r (1 + e + e^2) is off by e0^3 < 2^-12.9. What is not normal, or above 2^125, gives
-  /// any pattern.
+  /// The complement of the bit pattern is linear between powers of two and within e0 = 0.0506 of 1 / a. With r this
+  /// first value and e = 1 - |a| r, |e| <= e0, the error of r (1 + e + e^2) is e0^3 < 2^-12.9. If a is not normal, or
+  /// above 2^125, the result is arbitrary.
   [[nodiscard]] static GRIDIRON_INLINE Float reciprocal_estimate(Float a) {
     const IntVector bits = reinterpret_cast<IntVector>(a.v);
     const IntVector sign = bits & static_cast<std::int32_t>(0x80000000u);
@@ -411,7 +411,7 @@ struct Lanes {
   }
 };
 
-/// Square root, correctly rounded as IEEE has it; the compiler's instruction, never a library call.
+/// Square root, correctly rounded as IEEE requires; the compiler's instruction, never a library call.
 [[nodiscard]] GRIDIRON_INLINE float square_root(float value) {
   return __builtin_sqrtf(value);
 }

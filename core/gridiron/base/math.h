@@ -16,7 +16,7 @@ using UVec3 = glm::uvec3;  ///< three indices
 
 /// Largest finite float; used where "no limit" is meant, since a chip may have no infinity.
 inline constexpr float kFloatMax = 3.402823466e+38f;
-inline constexpr float kInfinity = __builtin_inff();  ///< where a comparison is all that it is for
+inline constexpr float kInfinity = __builtin_inff();  ///< for comparisons only
 
 /// Rounds `value` up to a multiple of `step` (a power of two).
 template <class Integer>

@@ -1,5 +1,5 @@
-// One lane, for cores without vectors: what rays that are walked ask of lanes (a renderer without packets), in a third
-// of the code that four lanes take there. Changes no pixel.
+// One lane, for cores without vectors. It has what renderers without packets need of lanes, in a third of the code that
+// four lanes take there. Changes no pixel.
 // Memory: values. Threads: any. SPDX-License-Identifier: Apache-2.0
 #pragma once
 
@@ -9,7 +9,7 @@
 
 namespace gridiron {
 
-/// A truth value as lanes have it.
+/// A truth value with the interface of wider masks.
 template <>
 struct LaneMask<1> {
   bool is_set;
@@ -19,7 +19,7 @@ struct LaneMask<1> {
   friend GRIDIRON_INLINE LaneMask operator&(LaneMask a, LaneMask b) { return {a.is_set && b.is_set}; }
 };
 
-/// Every operation is the IEEE one, comparisons take their sides as those of wider lanes do.
+/// Every operation is the IEEE one; min and max choose operands as those of wider lanes do.
 template <>
 struct Lanes<1> {
   static constexpr int kCount = 1;

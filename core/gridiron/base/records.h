@@ -14,7 +14,7 @@ inline constexpr std::uint32_t kImageMagic = 0x49524447;  ///< "GDRI" as bytes
 inline constexpr std::uint32_t kImageVersion = 1;     ///< the only one that is read; core/README.md, "Versions"
 inline constexpr std::uint32_t kMaxSectionCount = 32;  ///< entries of a section table
 
-/// How a triangle is stored in the kTriangles section. Fixed at build time; a frame may ask only for what is stored.
+/// How a triangle is stored in the kTriangles section. Fixed at build time; a frame must match what is stored.
 enum class TriangleFormat : std::uint32_t {
   kVertices = 1,    ///< VertexTriangle: `standard`, `exact`, `fast`
   kProjection = 2,  ///< ProjectionTriangle: `paper`
@@ -27,12 +27,12 @@ enum class SectionKind : std::uint32_t {
   kMacroTable = 2,  ///< MacroTableEntry[ceil(macro_cell_count / 32)]
   kCellBlocks = 3,  ///< cell blocks of cell_block_bytes each; block 0 is the empty one (all zero)
   kTriangles = 4,   ///< triangle records, grouped by cell, in the order of the cells in the blocks
-  // Effects (base/effect_records.h): all of those that the EffectsRecord says are not empty, or none.
-  kEffects = 5,      ///< one EffectsRecord
-  kMaterials = 6,    ///< MaterialRecord[]
-  kLights = 7,       ///< LightRecord[]
-  kSurfaces = 8,     ///< SurfaceRecord[triangle_count]
-  kNormals = 9,      ///< NormalRecord[]
+  // Effects (base/effect_records.h): every section that the EffectsRecord counts, or none at all.
+  kEffects = 5,          ///< one EffectsRecord
+  kMaterials = 6,        ///< MaterialRecord[]
+  kLights = 7,           ///< LightRecord[]
+  kSurfaces = 8,         ///< SurfaceRecord[triangle_count]
+  kNormals = 9,          ///< NormalRecord[]
   kEnvironmentMap = 10,  ///< EnvironmentBlock[]
 };
 
@@ -51,7 +51,7 @@ struct ImageHeader {
 };
 static_assert(sizeof(ImageHeader) == 64);
 
-/// One section: where it lies and what it holds. Unknown kinds are skipped by readers.
+/// One section: its place and contents. Readers skip unknown kinds.
 struct SectionEntry {
   std::uint32_t kind;              ///< SectionKind
   std::uint32_t element_bytes;     ///< of one element
@@ -61,8 +61,8 @@ struct SectionEntry {
 };
 static_assert(sizeof(SectionEntry) == 32);
 
-/// Ranges in which no quantity of the traversal overflows and no scale is subnormal; beyond them a mesh, an image or a
-/// frame is refused.
+/// Within these ranges no quantity of the traversal overflows and no scale is subnormal. A mesh, an image or a frame
+/// beyond them is rejected.
 inline constexpr float kCoordinateLimit = 0x1p120f;       ///< |vertex|, |eye|
 inline constexpr float kLeastCellsPerUnit = 0x1p-122f;    ///< one cell across the widest mesh has more
 inline constexpr float kGreatestCellsPerUnit = 0x1p100f;  ///< smaller meshes get fewer cells
@@ -70,7 +70,7 @@ inline constexpr double kCellSpaceLimit = 0x1p120;        ///< |eye|, in cells
 inline constexpr double kCellDirectionLimit = 0x1p124;    ///< |direction|, in cells
 
 /// Where stored vertices can lie: origin + step * k, k whole, 0..65535 on each axis. Every such value is a float: step
-/// is a power of two, origin a multiple of it, and no value beyond 2^24 steps.
+/// is a power of two, origin a multiple of it, and no value is beyond 2^24 steps.
 struct Lattice {
   float origin[3];                 ///< place 0 of each axis
   float step;                      ///< kLeastLatticeStep or more
@@ -103,24 +103,24 @@ static_assert(sizeof(GridRecord) == 128);
 inline constexpr std::uint32_t kMaxCellsPerAxis = 2048;  ///< of a grid
 inline constexpr std::uint32_t kMaxMacroWidth = 8;       ///< of a macrocell, in cells
 
-/// 32 macrocells, x fastest, then y, then z. Macrocell i is bit i % 32 of entry i / 32; a set bit means non-empty,
-/// and its cell block is first_block + (set bits below it).
+/// 32 macrocells, x fastest, then y, then z. Macrocell i is bit i % 32 of entry i / 32. A set bit means non-empty; its
+/// cell block is first_block + (set bits below it).
 struct MacroTableEntry {
   std::uint32_t occupied;          ///< bit i: macrocell holds at least one reference
   std::uint32_t first_block;       ///< block index of the entry's first non-empty macrocell
 };
 static_assert(sizeof(MacroTableEntry) == 8);
 
-/// One cell inside a cell block; cells of a block are stored x fastest, then y, then z, m^3 of them always. In every
-/// block but the empty one first_triangle runs on, also through empty cells: a block's triangles are contiguous.
+/// One cell inside a cell block. A block always has m^3 cells, x fastest, then y, then z. In every block but the empty
+/// one first_triangle keeps counting, also through empty cells: a block's triangles are contiguous.
 struct CellRecord {
   std::uint32_t first_triangle;    ///< index into kTriangles
   std::uint32_t triangle_count;    ///< 0: an empty cell
 };
 static_assert(sizeof(CellRecord) == 8);
 
-/// The same in half the bytes, beside lattice triangles: a cell ends where the next one of its block begins. A block
-/// has m^3 + 1 of them; the last is where its last cell ends.
+/// A cell in half the bytes, for lattice triangles: a cell ends where the next one of its block begins. A block has m^3
+/// + 1 of these; the last one marks the end of the last cell.
 struct CellBound {
   std::uint32_t first_triangle;    ///< index into kTriangles
 };
@@ -163,12 +163,12 @@ inline constexpr std::uint32_t kTriangleRecordBytes = 48;
 inline constexpr std::uint32_t kFrameMagic = 0x4d524647;  ///< "GFRM" as bytes
 inline constexpr std::uint32_t kFrameVersion = 2;         ///< of FrameHead and of what follows it
 
-/// How exactly a frame is decided; core/README.md tells what each promises.
+/// How exactly hits are decided; core/README.md lists what each accuracy promises.
 enum class Accuracy : std::uint32_t {
   kStandard = 0,  ///< filtered edge signs with exact ones behind them, correctly rounded distance
   kPaper = 1,     ///< precomputed projection, reciprocals estimated, single precision; may leak
   kExact = 2,     ///< as kStandard, and of equal rounded distances the exact ones decide
-  kFast = 3,      ///< signs and distances as single precision gives them; may leak at edges, distances unbounded
+  kFast = 3,      ///< signs and distances in single precision alone; may leak at edges, distances unbounded
   kCompact = 4,   ///< as kStandard, of triangles on the scene's lattice
 };
 
@@ -183,11 +183,11 @@ enum class Shading : std::uint32_t {
 enum TechniqueBits : std::uint32_t {
   kUseMailbox = 1u << 0,
   kUseCornerCulling = 1u << 1,
-  kUseEmptySkip = 1u << 2,      ///< skip empty macrocells without a transfer
-  kUseSubpackets = 1u << 3,     ///< cull by subpackets: those a triangle cannot touch, those that hit nearer already
+  kUseEmptySkip = 1u << 2,   ///< skip empty macrocells without a transfer
+  kUseSubpackets = 1u << 3,  ///< cull by subpackets: those that a triangle cannot touch, those with nearer hits
 };
 
-/// Commands of a queue that stay for a tile's own gets while finished tiles leave under the rest.
+/// Queue commands that stay free for a tile's own gets while finished tiles are written with the rest.
 inline constexpr std::uint32_t kLeastInputCommands = 4;
 
 /// Which engine traces the rays of a frame.
@@ -223,13 +223,13 @@ struct FrameHead {
   std::uint64_t depth_address;         ///< float distance along the unit direction, kFloatMax where nothing; 0: off
   std::uint64_t id_address;            ///< triangle_id, kNoTriangle where nothing; 0: off
   std::uint64_t effects_address;       ///< EffectsRecord, of Shading::kScene; else 0
-  std::uint64_t image_address;         ///< what its offsets count from; else 0
+  std::uint64_t image_address;         ///< base of the effects' offsets; else 0
   std::uint32_t reserved1[10];
 };
 static_assert(sizeof(FrameHead) == 192);
 
-/// Everything a core needs to know of a frame. Fetched by every core at its start. 128-byte aligned, three lines of 128
-/// bytes at most. @tparam EngineRecord  the engine's part, a multiple of 16 bytes.
+/// Everything a core needs to know of a frame. Every core fetches it first. 128-byte aligned, at most three lines of
+/// 128 bytes. @tparam EngineRecord  the engine's part, a multiple of 16 bytes.
 template <class EngineRecord>
 struct Frame : FrameHead {
   EngineRecord engine;  ///< what the engine alone reads

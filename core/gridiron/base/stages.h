@@ -1,4 +1,4 @@
-// Stages of a frame with effects: what a core is busy with, for whoever keeps time. Each is a kind of rays or of data.
+// Stages of a frame with effects: what a core is busy with, reported to the clock. Each is a kind of rays or of data.
 // Memory: none. Threads: any. SPDX-License-Identifier: Apache-2.0
 #pragma once
 

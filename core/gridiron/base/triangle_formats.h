@@ -1,4 +1,4 @@
-// What the stored forms of triangles and of the cells beside them take.
+// Sizes of the stored forms of triangles and cells.
 // Memory: none. Threads: any. SPDX-License-Identifier: Apache-2.0
 #pragma once
 
@@ -13,8 +13,8 @@ namespace gridiron {
   return format == TriangleFormat::kLattice ? std::uint32_t{sizeof(LatticeTriangle)} : kTriangleRecordBytes;
 }
 
-/// @returns bytes of a block of macro_width^3 cells: CellRecords up to a line's end, or beside lattice triangles
-/// CellBounds up to a multiple of 32 bytes, modulo which every platform's transfers are congruent.
+/// @returns bytes of a block of macro_width^3 cells. CellRecords are padded to a line; the CellBounds of lattice
+/// triangles to a multiple of 32 bytes, the modulus in which every platform's transfers are congruent.
 [[nodiscard]] constexpr std::uint32_t cell_block_bytes_of(TriangleFormat format, std::uint32_t macro_width) {
   const std::uint32_t cells = macro_width * macro_width * macro_width;
   if (format == TriangleFormat::kLattice) {

@@ -9,7 +9,7 @@ namespace {
 
 constexpr double kLastPlace = kLatticePlaces - 1;
 
-// The least power of two that is not less. value > 0, normal, far from the ends of double.
+// The least power of two that is not below `value`. value > 0, normal, far from the ends of double.
 double power_of_two_from(double value) {
   constexpr std::uint64_t kMantissa = (std::uint64_t{1} << 52) - 1;
   const std::uint64_t bits = std::bit_cast<std::uint64_t>(value);
@@ -38,7 +38,7 @@ Status find_lattice(const MeshView& mesh, Lattice& lattice) {
       }
     }
   }
-  // One place is left over for an origin that is moved down to a whole number of steps.
+  // One place is left for an origin that is moved down to a whole number of steps.
   double step = double{kLeastLatticeStep};
   for (int axis = 0; axis < 3 && !mesh.triangles.empty(); ++axis) {
     const double by_extent = (double{high[axis]} - double{low[axis]}) / (kLastPlace - 1.0);

@@ -1,6 +1,6 @@
-// The lattice of a scene whose vertices are stored in 16 bits an axis: one for all of it, so that vertices that were
-// equal stay equal and a closed mesh stays closed. Vertices move by half a step at most; what is smaller than a step
-// may lose its area.
+// The lattice of a scene whose vertices are stored in 16 bits an axis. The whole scene has one, so that equal vertices
+// stay equal and a closed mesh stays closed. Vertices move by at most half a step. A triangle smaller than a step may
+// lose its area.
 // Source: own. Memory: values. Threads: any. SPDX-License-Identifier: Apache-2.0
 #pragma once
 
@@ -14,8 +14,8 @@
 
 namespace gridiron {
 
-/// The finest lattice over the vertices that triangles of a mesh have: its step is the least power of two that spans
-/// them with its places, keeps them within kMostStepsFromZero steps of zero and is not below kLeastLatticeStep.
+/// The finest lattice over the vertices of a mesh's triangles. Its step is the least power of two, not below
+/// kLeastLatticeStep, with which its places span them and keep them within kMostStepsFromZero steps of zero.
 ///
 /// Errors: kBadIndex; kBadVertex where a coordinate is beyond kCoordinateLimit. Cost: linear.
 [[nodiscard]] Status find_lattice(const MeshView& mesh, Lattice& lattice);
@@ -38,7 +38,7 @@ struct LatticeVertices {
   [[nodiscard]] std::size_t size() const { return vertices.size(); }
 };
 
-/// A mesh as it will be stored: what MeshView is to one stored as it stands.
+/// A mesh as it will be stored on a lattice; MeshView is the same for one that is stored unchanged.
 struct LatticeMesh {
   LatticeVertices vertices;
   std::span<const UVec3> triangles;

@@ -14,9 +14,9 @@
 
 namespace gridiron {
 
-/// Hands items their records in order. Neighbours in the list that want the same record share its transfer.
+/// Hands each item its record, in order. Neighbours in the list with the same record share its transfer.
 ///
-/// @param address_of  address_of(i), called twice for an item; 0: it wants none and is passed over.
+/// @param address_of  address_of(i), called twice for an item; 0: it needs no record and is skipped.
 /// @param bytes       of a record, a multiple of 16, at most kIdleBufferBytes less 16.
 /// @param use         use(i, const std::byte* record) -> Status.
 /// frame.walk_depth records are under way at once, at most kTriangleTagCount.

@@ -1,4 +1,4 @@
-// Transfer tags of the kernel: who waits for what. The clock of the simulated chip tells waits apart by them.
+// Transfer tags of the kernel: who waits for what. The simulated chip's clock uses them to classify waits.
 // Memory: none. Threads: any. SPDX-License-Identifier: Apache-2.0
 #pragma once
 
@@ -18,7 +18,7 @@ static_assert(kFirstMacroTag + kMacroTagCount == kFirstTriangleTag);
 static_assert(kFirstTriangleTag + kTriangleTagCount == kFirstOutputTag);
 static_assert(kFirstOutputTag + kOutputTagCount == 32);
 
-/// Tag of an output buffer; a tag of output whatever the number.
+/// Tag of an output buffer, for any slot number.
 constexpr std::uint8_t output_tag(std::uint32_t slot) {
   return static_cast<std::uint8_t>(kFirstOutputTag + slot % kOutputTagCount);
 }

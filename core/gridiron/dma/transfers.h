@@ -21,7 +21,7 @@ namespace gridiron {
   return piece < kPortableMaxTransferBytes ? piece : kPortableMaxTransferBytes;
 }
 
-/// A platform with a memory of what is pending. When its queue is full, the oldest tag is waited for first, so that
+/// Keeps track of a platform's pending commands. When its queue is full, it waits for the oldest tag first, so that
 /// queue_depth is never exceeded, down to a depth of 1.
 template <Platform P>
 class Transfers {
@@ -30,8 +30,8 @@ class Transfers {
 
   [[nodiscard]] std::uint32_t queue_depth() const { return platform_.limits().queue_depth; }
 
-  /// Keeps `commands` places of the queue for output tags; the caller never has more of them pending. All other
-  /// transfers share the rest, so that what they wait for does not depend on which tiles are still leaving.
+  /// Reserves `commands` places of the queue for output tags; the caller never has more of them pending. All other
+  /// transfers share the rest, so that their waits do not depend on which tiles are still being written.
   void reserve_for_output(std::uint32_t commands) { output_share_ = commands; }
 
   /// Starts a get of `bytes` > 0, a multiple of 16, both ends congruent modulo 32.
@@ -75,7 +75,7 @@ class Transfers {
     return platform_.wait(TagMask::of(Tag{tag}));
   }
 
-  /// Tells a platform that listens what the core is busy with from now on.
+  /// Reports the core's stage from now on, to platforms that have note_stage().
   GRIDIRON_INLINE void note_stage(Stage stage) {
     if constexpr (StageObserver<P>) {
       note_work();
@@ -111,7 +111,7 @@ class Transfers {
     return Status::kOk;
   }
 
-  // Does a command of `tag` take a place of the shared part of the queue?
+  // Whether a command of `tag` takes a place of the shared part of the queue.
   [[nodiscard]] bool is_counted(std::uint8_t tag) const { return output_share_ == 0 || tag < kFirstOutputTag; }
 
   GRIDIRON_INLINE void note_work() {

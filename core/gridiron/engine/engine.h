@@ -50,8 +50,8 @@ concept Engine = requires {
 /// begin()             once a frame, when the frame's head has been checked: checks the engine's part, initialises its
 ///                     memory and fetches what outlives tiles. It refuses accuracies and shadings that it does not
 ///                     support. Errors: kBadFrame, kUnsupportedFrame, kUnsupportedImage, of transfers.
-/// begin_tile()        before a tile: forgets whatever would make the tile depend on those before it. An engine whose
-///                     caches outlive tiles repeats its cycles only if tiles are assigned to cores in advance.
+/// begin_tile()        before a tile: discards all state that would make the tile depend on those before it. An engine
+///                     whose caches outlive tiles repeats its cycles only if tiles are assigned to cores in advance.
 /// trace_eyes(view, hits)  traces the eye rays of a tile: from frame.eye, in the direction of pixel (x + dx, y + dy) as
 ///                     FrameHead defines it, with every operation rounded as written there (ray/camera.h has it). A hit
 ///                     has 0 < t <= t_far. The nearest wins; of equal rounded distances the lowest id, or with kExact

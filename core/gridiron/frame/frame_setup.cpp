@@ -12,7 +12,7 @@ bool is_finite(double value) { return value - value == 0.0; }
 
 bool is_finite(const DVec3& v) { return is_finite(v.x) && is_finite(v.y) && is_finite(v.z); }
 
-// The built-in becomes the square root instruction; glm::sqrt would call libm.
+// The built-in compiles to the square root instruction; glm::sqrt would call libm.
 double length_of(const DVec3& v) { return __builtin_sqrt(glm::dot(v, v)); }
 
 void store(float out[3], const DVec3& v) {
@@ -23,7 +23,7 @@ void store(float out[3], const DVec3& v) {
 
 bool is_multiple(MainAddress address, std::uint32_t step) { return address.value % step == 0; }
 
-// A store's tiles lie at multiples of it: so both ends of their transfers are aligned, and congruent.
+// Tiles in a store start at multiples of it, so both ends of their transfers are aligned and congruent.
 static_assert(kPlaneAlignment % kPortableGranuleBytes == 0 && kPlaneAlignment % kPortableCongruenceBytes == 0);
 
 bool are_planes_aligned(const FrameSettings& settings) {
@@ -31,7 +31,7 @@ bool are_planes_aligned(const FrameSettings& settings) {
          is_multiple(settings.ids, kPlaneAlignment);
 }
 
-// Whether an eye can be computed with.
+// Whether an eye is finite and within its limits.
 bool is_in_space(const Vec3& eye) {
   for (int axis = 0; axis < 3; ++axis) {
     if (!(magnitude(eye[axis]) <= kCoordinateLimit)) return false;

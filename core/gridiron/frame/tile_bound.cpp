@@ -1,4 +1,4 @@
-// Tile bound: see the header. Names of loops and counters are those of the kernel's rooms.
+// Tile bound: see the header. Names of loops and counters are those of the kernel's folders.
 // Memory: values. Threads: any. SPDX-License-Identifier: Apache-2.0
 #include <gridiron/frame/tile_bound.h>
 
@@ -7,7 +7,7 @@
 namespace gridiron {
 namespace {
 
-/// A count that stays at 2^64 - 1 once it is there.
+/// A count that stays at 2^64 - 1 once it has reached it.
 struct Count {
   std::uint64_t value = 0;
 
@@ -35,8 +35,8 @@ std::uint64_t pieces_of(std::uint64_t bytes, std::uint64_t step) {
 
 constexpr std::uint64_t kSubpacketPixels = 16;
 constexpr std::uint64_t kRaysOfWalk = 16;
-// Every ray joins a pass of its own steepest axis and sign; one whose direction rounding has made zero goes alone, and
-// a camera has at most one of these: directions are further apart than their roundings.
+// Every ray joins a pass of its own steepest axis and sign. One whose direction rounding has made zero goes alone; a
+// camera has at most one, as directions are further apart than their roundings.
 constexpr std::uint64_t kAxesAndSigns = 6;
 
 class Sum {
@@ -83,10 +83,9 @@ class Sum {
     get_bytes_ = get_bytes_ + bytes;
   }
 
-  // What `passes` passes through the whole grid walk and fetch, whoever makes them.
-  // A transfer has one command, and one more for each boundary inside it: blocks lie one behind the other and are
-  // fetched once in a pass, so that each boundary of their section is inside one of them at most; so do runs. Empty
-  // macrocells share a block.
+  // What `passes` passes through the whole grid visit and fetch, for packets and walks alike. A transfer has one
+  // command, and one more for each boundary inside it. Blocks are contiguous and fetched once in a pass, so each
+  // boundary of their section is inside at most one of them; the same holds for runs. Empty macrocells share a block.
   void add_traversal(Count passes, bool skips_empty) {
     const std::uint64_t visits = skips_empty ? scene_.occupied_macro_cells : scene_.macro_cells;
     const std::uint64_t empty_visits = visits - scene_.occupied_macro_cells;
@@ -112,7 +111,7 @@ class Sum {
     gets_ = gets_ + passes * (block_gets + run_gets);
     waits_ = waits_ + passes * (Count{visits} + scene_.runs);
     get_bytes_ = get_bytes_ + passes * (Count{visits} * block_bytes + run_bytes + widened_bytes);
-    // Of a table that is fetched in lines, each macrocell may ask for its line.
+    // If the table is fetched in lines, each macrocell may need its line.
     if (!has_table()) add_gets(passes * scene_.macro_cells, 1, passes * scene_.macro_cells * kLineBytes);
   }
   [[nodiscard]] bool has_table() const {
@@ -120,8 +119,8 @@ class Sum {
     return parts(scene_.macro_cells, kCellsOfLine) <= layout_.resident_macro_cells / kCellsOfLine;
   }
 
-  // Packets of every sample. Rounds: rays of which estimates cannot tell the nearest hit are traced again, and for
-  // exact distances those that still are open once more, each alone.
+  // Packets of every sample. Rounds: rays whose nearest hit the estimates leave open are traced again, and with exact
+  // distances those that are still open once more, each alone.
   void add_packets(std::uint64_t samples) {
     const std::uint64_t packets_across = layout_.tile_width / layout_.packet_width;
     const std::uint64_t packets = packets_across * packets_across * samples;
@@ -137,8 +136,8 @@ class Sum {
     add_traversal(passes, uses(kUseEmptySkip));
     add_packet_culling(passes, subpackets, squares);
 
-    // A ray is in one pass of each round, so that pairs of rays and references are counted by rounds; groups and whole
-    // subpackets with a ray in a pass are at most the rays there are, or all of every pass.
+    // A ray is in one pass of each round, so pairs of rays and references are counted by rounds. Groups and whole
+    // subpackets with a ray in a pass are at most as many as the rays, or all of every pass.
     const Count ray_rounds = Count{packets} * rays * (rounds + (is_exact() ? 1 : 0));
     const Count group_rounds = smaller(passes * groups(rays), ray_rounds);
     const Count pairs = ray_rounds * scene_.references;
@@ -156,9 +155,9 @@ class Sum {
       add(Work::kHitSubpacket, Count{packets} * subpackets * rounds * scene_.references);
       add(Work::kEstimateSetup, smaller(tests, group_pairs));
       if (frame_.shading == Shading::kSimple) add(Work::kNormalSetup, smaller(tests, group_pairs));
-      // The side of the triangle on which the eye is; then edges, three a pair, where floats leave them open.
+      // The side of the triangle that the eye is on; then three edges a pair, if floats leave them open.
       const Count signs = tests + (is_fast() ? Count{} : pairs * 3);
-      // Distances of both triangles of a pair; of ties also whether three corners lie in the other's plane.
+      // Distances of both triangles of a pair; for ties also whether three corners lie in the other's plane.
       const Count ties = is_exact() ? pairs : Count{};
       add(Work::kDoubleSign, signs + ties * 3);
       add(Work::kExactSign, signs + ties * 3);
@@ -180,7 +179,7 @@ class Sum {
     add(Work::kIdGroup, planes * (tile_pixels() / 4));
   }
 
-  // Squares and subpackets held against cells and triangles; how far each looks.
+  // Squares and subpackets tested against cells and triangles, and how far each still looks.
   void add_packet_culling(Count passes, std::uint64_t subpackets, std::uint64_t squares) {
     const std::uint64_t measured = subpackets < 4 ? groups(kSubpacketPixels)
                                                   : squares * groups(4 * kSubpacketPixels) + (squares > 1 ? 1 : 0);
@@ -205,7 +204,7 @@ class Sum {
     add(Work::kReachGroup, passes * reach);
   }
 
-  // What becomes of the eye rays of every sample.
+  // The secondary rays of the eye rays of every sample.
   void add_effects(std::uint64_t samples) {
     const EffectsRecord& effects = scene_.effects;
     const auto calls_for = [&](std::uint32_t bits) { return (effects.called_for & bits) != 0; };
@@ -246,7 +245,7 @@ class Sum {
     add_records(rays, queued, samples * parts(pixels, layout_.wave_rays));
   }
 
-  // Walks: of a pass at least its leader is taken, so that there are at most as many passes as rays.
+  // Walks: each pass takes at least its leader, so there are at most as many passes as rays.
   void add_walks(Count rays) {
     const std::uint64_t shaft = groups(kRaysOfWalk);
     add(Work::kWalkPass, rays);
@@ -263,11 +262,11 @@ class Sum {
     add(Work::kExactSign, pairs * 3 + ties * 3);
     add(Work::kExactDistance, pairs);
     add(Work::kExactOrder, ties);
-    // Of a tie the other triangle is fetched.
+    // For a tie the other triangle is fetched.
     add_gets(ties, kPiecesOfRecord, ties * sizeof(SurfaceRecord));
   }
 
-  // Surfaces, normals, materials, environment and lights that hits ask for; rays that wait in main memory.
+  // Surfaces, normals, materials, environment and lights that hits need; rays that wait in main memory.
   void add_records(Count rays, Count queued, std::uint64_t eye_waves) {
     const EffectsRecord& effects = scene_.effects;
     const auto calls_for = [&](std::uint32_t bits) { return (effects.called_for & bits) != 0; };
@@ -283,7 +282,7 @@ class Sum {
       add_gets(waves * parts(effects.light_count, layout_.light_slots), kPiecesOfRecord,
                waves * (std::uint64_t{effects.light_count} * sizeof(LightRecord)));
     }
-    // Between two blocks that leave, a block of rays was pushed; each comes back once.
+    // Between two blocks that leave, a block of rays was pushed; each block comes back once.
     const std::uint64_t block_rays = layout_.wave_rays / 2;
     const Count blocks = queued.value / block_rays;
     const Count block_bytes = blocks * (block_rays * sizeof(QueuedRay));
@@ -307,7 +306,7 @@ class Sum {
     return planes() * (parts(plane_bytes(), kPortableBoundaryBytes) + 1);
   }
 
-  // Whether gets can find the queue full: what may be pending at once against what tiles that leave give free.
+  // Whether gets can find the queue full: what may be pending at once against the places that leaving tiles do not use.
   [[nodiscard]] bool needs_room() const {
     const std::uint64_t block = pieces_of(scene_.cell_block_bytes, kLineBytes);
     const std::uint64_t run =

@@ -26,7 +26,7 @@ bool same_bits(const float* a, const float* b, int count) {
 
 // --- The record -----------------------------------------------------------------------------------------------------
 
-// Reads the record and finds each of the sections that it counts, no other, where it says.
+// Reads the record, and requires exactly the sections that it counts, at the places that it names.
 bool check_record(ImageChecker& checker, const Sections& sections, SceneImageView& view) {
   if (!check_elements(checker, sections, SectionKind::kEffects, sizeof(EffectsRecord), 1)) return false;
   const std::uint64_t base = sections.entry(SectionKind::kEffects).offset_bytes;
@@ -121,7 +121,7 @@ bool check_lights(ImageChecker& checker, const SceneImageView& view, EffectsCall
 
 // --- Surfaces and normals -------------------------------------------------------------------------------------------
 
-// Whether corners lie where the image's format can store them.
+// Whether the image's format can store the corners.
 bool is_storable(const SurfaceRecord& surface, const GridRecord& grid) {
   for (const auto& corner : surface.v) {
     const Vec3 point(corner[0], corner[1], corner[2]);
@@ -168,7 +168,7 @@ bool check_surfaces(ImageChecker& checker, const SceneImageView& view, EffectsCa
   return true;
 }
 
-// What is shaded is what is hit: the surface of every triangle in a cell has that triangle's corners.
+// The surface of every triangle in a cell must have that triangle's corners, so that shading sees what was hit.
 bool check_corners(ImageChecker& checker, const SceneImageView& view) {
   const GridRecord& grid = view.grid;
   const bool lattice = grid.triangle_format == static_cast<std::uint32_t>(TriangleFormat::kLattice);
@@ -208,7 +208,8 @@ bool check_normals(ImageChecker& checker, const EffectsRecord& effects) {
 
 // --- Environment ----------------------------------------------------------------------------------------------------
 
-// Texels in their range, and those that a block shares with its neighbours, or repeats, the same in all of them.
+// Texels must be in their range, and those that a block shares with its neighbours, or repeats, must be the same
+// everywhere.
 bool check_environment(ImageChecker& checker, const EffectsRecord& effects) {
   if (effects.environment_width == 0) return true;
   const std::uint32_t last = effects.environment_width - 1;
@@ -217,7 +218,7 @@ bool check_environment(ImageChecker& checker, const EffectsRecord& effects) {
     return effects.environment_offset_bytes + block * sizeof(EnvironmentBlock) +
            (std::uint64_t{row} * 8 + column) * sizeof(EnvironmentBlock::texels[0][0]);
   };
-  // Where a row or column of a face begins a patch, or is the face's last: block, and place in it.
+  // Where a row or column of a face begins a patch, or is the face's last: block, and index in it.
   struct Home {
     std::uint32_t block, place;
   };
@@ -258,7 +259,7 @@ bool check_effect_sections(ImageChecker& checker, const Sections& sections, Scen
     }
     return true;
   }
-  // Surfaces are told by their vertices, which a projection has not.
+  // Surfaces store vertices, which a projection does not have.
   GRIDIRON_REQUIRE(view.grid.triangle_format != static_cast<std::uint32_t>(TriangleFormat::kProjection),
                    sections.entry_offset(SectionKind::kEffects), SectionEntry, kind, "section.kind");
   EffectsCall call;

@@ -55,7 +55,7 @@ class Records {
     return point;
   }
 
-  // References of a cell; first = end where there are none.
+  // References of a cell; first = end in an empty one.
   struct Range {
     std::uint64_t first, end;
   };
@@ -71,7 +71,7 @@ class Records {
   }
   [[nodiscard]] Range cell(std::int32_t x, std::int32_t y, std::int32_t z) {
     const std::uint64_t macro_cell = macros_.row_index(y, z) + macros_.macro_of(x);
-    if (macro_cell != last_macro_cell_) {  // neighbours mostly ask for neighbours
+    if (macro_cell != last_macro_cell_) {  // neighbours are mostly looked up after each other
       last_macro_cell_ = macro_cell;
       last_block_ = block_of(macro_cell);
     }
@@ -83,8 +83,8 @@ class Records {
     return cell_of_block(last_block_, number);
   }
 
-  // The triangle's record in [range.first, range.end), or kNowhere. Ids ascend; range.first becomes the first record of
-  // an id that is not less. Steps from the front double, so that what lies near is found in few.
+  // The triangle's record in [range.first, range.end), or kNowhere. Ids ascend; range.first becomes the first record
+  // whose id is not less. Steps from the front double, so that near records are found in few steps.
   [[nodiscard]] std::uint64_t find(Range& range, std::uint32_t id) const {
     for (int i = 0; i < 8 && range.first < range.end; ++i) {
       const std::uint32_t at = id_of(range.first);
@@ -152,8 +152,8 @@ class Records {
   std::uint64_t last_block_ = kNowhere;
 };
 
-// Looks up the triangles of one cell in the others, by ascending ids. In the cells around it every search begins where
-// the last one ended.
+// Looks up the triangles of one cell in the others, by ascending ids. In the surrounding cells every search begins
+// where the last one ended.
 class Search {
  public:
   explicit Search(Records& records) : records_(records) {}
@@ -188,7 +188,7 @@ class Search {
   Records::Range ranges_[27] = {};
 };
 
-// What the records of all triangles add up to; each triangle is counted once, in the cell of its first corner.
+// Sums over the records of all triangles; each triangle is counted once, in the cell of its first corner.
 struct Totals {
   std::uint64_t triangle_count = 0;
   std::uint64_t reference_count = 0;
@@ -205,9 +205,9 @@ bool lies_inside(const GridRecord& grid, const Vec3& corner) {
   return inside;
 }
 
-// One reference in its cell. Where the cell is that of the triangle's first corner, the triangle's other records are
-// looked up, in every cell that the builder would put them into: each has to be there, with the same bytes. Records
-// that no triangle has looked up are one too many, which the sum of them tells.
+// Checks one reference in its cell. In the cell of the triangle's first corner it looks up the triangle's other
+// records, in every cell that the builder would put them into: each must be there, with the same bytes. The sum of the
+// records that were found reveals a record that no triangle has looked up.
 bool check_reference(ImageChecker& checker, const Records& records, Search& search, const SceneImageView& view,
                      const CellSpace& space, const std::int32_t cell[3], std::uint64_t reference, Totals& totals) {
   const std::uint64_t place = records.place_of(reference);
@@ -252,8 +252,8 @@ bool check_reference(ImageChecker& checker, const Records& records, Search& sear
   return checker.require(good, good ? 0 : records.place_of(wrong), "triangle.v");
 }
 
-// A projection does not say where its triangle ends. Where a neighbour of its cell holds the triangle too, its record
-// has the same bytes; a triangle's cells hang together by their faces, so all of its records are compared.
+// A projection does not store where its triangle ends. If a neighbour of its cell holds the triangle too, both records
+// must have the same bytes; a triangle's cells are connected by their faces, so all its records are compared.
 bool check_projection(ImageChecker& checker, const Records& records, Search& search, const std::int32_t cell[3],
                       std::uint64_t reference) {
   search.move_to(cell);
@@ -375,7 +375,7 @@ bool check_geometry(ImageChecker& checker, const Sections& sections, const Scene
   const std::uint64_t dropped = view.header.dropped_triangle_count;
   GRIDIRON_REQUIRE(totals.triangle_count == count - dropped, 0, ImageHeader, dropped_triangle_count,
                    "header.dropped_triangle_count");
-  // Every id once: where none was dropped, their sum has to be that of all.
+  // Every id occurs once: if no triangle was dropped, their sum must be that of all ids.
   return checker.require(dropped != 0 || totals.id_sum == count * (count - 1) / 2, view.triangles_offset_bytes,
                          "triangle.triangle_id");
 }

@@ -1,4 +1,4 @@
-// What the checks of an image share: reading records, naming what is wrong, the sections that were found.
+// Shared by the checks of an image: reading records, naming the wrong field, the sections that were found.
 // Inside of this room. Memory: borrowed. Threads: one. SPDX-License-Identifier: Apache-2.0
 #pragma once
 
@@ -12,7 +12,7 @@
 
 namespace gridiron {
 
-/// Reads records out of the image and remembers what was wrong, and where.
+/// Reads records from the image and remembers the first error and its place.
 class ImageChecker {
  public:
   ImageChecker(std::span<const std::byte> image, SceneImageError& error) : image_(image), error_(error) {}
@@ -37,7 +37,7 @@ class ImageChecker {
   SceneImageError& error_;
 };
 
-/// Leaves a check that returns bool and has an ImageChecker `checker`, where a field of a record at `base` is wrong.
+/// Returns false from a check that has an ImageChecker `checker` if a field of a record at `base` is wrong.
 #define GRIDIRON_REQUIRE(holds, base, record_type, member, name) \
   if (!checker.require((holds), (base) + offsetof(record_type, member), (name))) return false
 
@@ -71,7 +71,7 @@ struct Sections {
   [[nodiscard]] bool has(SectionKind kind) const { return found[index_of(kind)]; }
 };
 
-/// A section that was found holds that many elements of that size; so all of them lie inside the image.
+/// Checks that a section was found and holds that many elements of that size, so that all of them lie inside the image.
 [[nodiscard]] inline bool check_elements(ImageChecker& checker, const Sections& sections, SectionKind kind,
                                          std::uint64_t element_bytes, std::uint64_t element_count) {
   const SectionEntry& entry = sections.entry(kind);
@@ -81,7 +81,7 @@ struct Sections {
   return true;
 }
 
-/// Bytes [begin, end) of the image, multiples of 4, are padding: all of them zero.
+/// Checks that bytes [begin, end) of the image, multiples of 4, are padding: all zero.
 [[nodiscard]] inline bool check_padding(ImageChecker& checker, std::uint64_t begin, std::uint64_t end) {
   for (std::uint64_t at = begin; at < end; at += sizeof(std::uint32_t)) {
     const auto word = checker.read<std::uint32_t>(at);
@@ -93,13 +93,14 @@ struct Sections {
   return true;
 }
 
-/// The triangles against the cells: every triangle stands in the cells that the builder puts it into and in no other,
-/// with the same bytes, and the grid's bounds are theirs. Of projections only that the records of a triangle are equal.
-/// Precondition: grid, macro table and cell blocks are right, and ids ascend within each cell. Cost: linear.
+/// Checks the triangles against the cells: every triangle is in the cells that the builder puts it into and in no
+/// other, with the same bytes, and the grid's bounds are theirs. For projections it checks only that the records of a
+/// triangle are equal. Precondition: grid, macro table and cell blocks are right, and ids ascend within each cell.
+/// Cost: linear.
 [[nodiscard]] bool check_geometry(ImageChecker& checker, const Sections& sections, const SceneImageView& view);
 
-/// The sections of effects, all or none, against header, grid and triangles. Fills the view's effects.
-/// Precondition: all else in the image is right. Cost: linear.
+/// Checks the sections of effects, all or none, against header, grid and triangles. Fills the view's effects.
+/// Precondition: everything else in the image is right. Cost: linear.
 [[nodiscard]] bool check_effect_sections(ImageChecker& checker, const Sections& sections, SceneImageView& view);
 
 }  // namespace gridiron

@@ -68,7 +68,7 @@ bool check_sections(ImageChecker& checker, const ImageHeader& header, Sections& 
       GRIDIRON_REQUIRE(apart, place, SectionEntry, offset_bytes, "section.offset_bytes");
     }
 
-    // Known kinds stand once; others are none of our business.
+    // Each known kind occurs once; others are skipped.
     const std::uint32_t index = entry.kind - 1;
     if (index >= Sections::kKnownCount) continue;
     GRIDIRON_REQUIRE(!sections.found[index], place, SectionEntry, kind, "section.kind");
@@ -96,7 +96,7 @@ bool is_negative_zero(float value) {
   return same_float(value, -0.0f);
 }
 
-// A lattice whose every value is a float within the limits of coordinates, or none.
+// A lattice whose values are all floats within the limits of coordinates, or none at all.
 bool check_lattice(ImageChecker& checker, std::uint64_t base, const GridRecord& grid) {
   const Lattice& lattice = grid.lattice;
   if (grid.triangle_format != static_cast<std::uint32_t>(TriangleFormat::kLattice)) {
@@ -130,9 +130,9 @@ bool same_cells(const GridRecord& a, const GridRecord& b) {
   return same;
 }
 
-// The grid that Eq. (1) gives over the bounds. With a lattice n is that of the mesh as it was, which the image does not
-// say: any number of triangles will do. More triangles never make fewer cells, so the least number that makes as many
-// is looked for.
+// The grid that Eq. (1) gives over the bounds. With a lattice, n is the number of triangles of the original mesh, which
+// the image does not store, so any number is accepted. More triangles never make fewer cells, so this finds the least
+// number that makes as many.
 GridRecord resolved_grid(const ImageHeader& header, const GridRecord& grid) {
   GridRecord expected = grid;
   const std::uint64_t kept = header.triangle_count - header.dropped_triangle_count;
@@ -156,7 +156,7 @@ GridRecord resolved_grid(const ImageHeader& header, const GridRecord& grid) {
   return expected;
 }
 
-// What follows from bounds, lambda and the number of triangles is what the builder would have stored.
+// Bounds, lambda and the number of triangles determine these fields; they must be what the builder would have stored.
 bool check_resolution(ImageChecker& checker, std::uint64_t base, const ImageHeader& header, const GridRecord& grid) {
   const GridRecord expected = resolved_grid(header, grid);
   for (int axis = 0; axis < 3; ++axis) {
@@ -210,7 +210,7 @@ bool check_grid(ImageChecker& checker, const Sections& sections, const ImageHead
   GRIDIRON_REQUIRE(all_zero(grid.reserved, 3), base, GridRecord, reserved, "grid.reserved");
   if (!check_resolution(checker, base, header, grid)) return false;
 
-  // What the other sections must hold, in numbers that cannot overflow: at most 2^33 macrocells.
+  // The sizes that the other sections must have, in numbers that cannot overflow: at most 2^33 macrocells.
   const std::uint64_t macro_cells =
       std::uint64_t{grid.macro_cell_count[0]} * grid.macro_cell_count[1] * grid.macro_cell_count[2];
   return check_elements(checker, sections, SectionKind::kMacroTable, sizeof(MacroTableEntry),
@@ -221,8 +221,8 @@ bool check_grid(ImageChecker& checker, const Sections& sections, const ImageHead
 
 // --- Cells and triangles ------------------------------------------------------------------------------------------
 
-// The cell whose record, or bound and the next one, lies at `place`. Bounds that go down: more triangles than any image
-// has.
+// The cell whose record, or bound and next bound, lies at `place`. Bounds that go down give more triangles than any
+// image has.
 CellRecord read_cell(ImageChecker& checker, bool is_bound, std::uint64_t place) {
   if (!is_bound) return checker.read<CellRecord>(place);
   const std::uint32_t first = checker.read<CellBound>(place).first_triangle;
@@ -230,7 +230,7 @@ CellRecord read_cell(ImageChecker& checker, bool is_bound, std::uint64_t place) 
   return {first, end >= first ? end - first : ~0u};
 }
 
-// One block: cells inside the grid hold running ranges of triangles, cells beyond its edge hold none.
+// Checks one block: cells inside the grid hold contiguous ranges of triangles, cells beyond its edge hold none.
 bool check_block(ImageChecker& checker, const SceneImageView& view, std::uint64_t block,
                  const std::uint32_t macro_cell[3], std::uint64_t& running) {
   const GridRecord& grid = view.grid;
@@ -255,11 +255,11 @@ bool check_block(ImageChecker& checker, const SceneImageView& view, std::uint64_
   }
   const std::uint64_t block_base = view.cell_blocks_offset_bytes + block * grid.cell_block_bytes;
   if (!checker.require(running > begin, block_base, "cell.triangle_count")) return false;
-  // Behind the last cell; behind the bound where it ends.
+  // After the last cell; with bounds, after the one that ends it.
   return check_padding(checker, base + (is_bound ? sizeof(CellBound) : 0), block_base + grid.cell_block_bytes);
 }
 
-// The macro table against the blocks, the blocks against the triangles.
+// Checks the macro table against the blocks, and the blocks against the triangles.
 bool check_cells(ImageChecker& checker, const Sections& sections, const SceneImageView& view) {
   const GridRecord& grid = view.grid;
   for (std::uint64_t offset = 0; offset < grid.cell_block_bytes; offset += sizeof(CellRecord)) {
@@ -299,7 +299,7 @@ bool check_cells(ImageChecker& checker, const Sections& sections, const SceneIma
 
 // --- Padding ------------------------------------------------------------------------------------------------------
 
-// What is in no section, and behind the elements of those that are known.
+// Checks the bytes in no section, and those after the elements of the known ones.
 bool check_gaps(ImageChecker& checker, const ImageHeader& header, const Sections& sections) {
   const std::uint64_t table_begin = header.section_table_offset_bytes;
   const std::uint64_t table_end = table_begin + std::uint64_t{header.section_count} * sizeof(SectionEntry);

@@ -19,7 +19,7 @@ char lower(char c) {
   return (c >= 'A' && c <= 'Z') ? static_cast<char>(c - 'A' + 'a') : c;
 }
 
-// The value is +-mantissa * 10^exponent, plus less than one unit of the mantissa where it has kMaxStoredDigits digits.
+// The value is +-mantissa * 10^exponent, plus less than one unit of the mantissa if it has kMaxStoredDigits digits.
 struct Scan {
   std::uint64_t mantissa = 0;
   int exponent = 0;
@@ -103,7 +103,7 @@ std::uint32_t round_to_float(std::uint64_t q, int exponent, bool sticky) {
   const std::uint64_t rest = q & (2 * half - 1);
   std::uint64_t mantissa = q >> dropped;
   if (rest > half || (rest == half && (sticky || (mantissa & 1) != 0))) ++mantissa;
-  // A carry out of the mantissa runs into the exponent, which is the right answer, infinity included.
+  // A carry out of the mantissa goes into the exponent, which is correct, infinity included.
   const std::uint64_t base = normal ? static_cast<std::uint64_t>(top + 126) << 23 : 0;
   return static_cast<std::uint32_t>(base + mantissa);
 }
@@ -242,8 +242,8 @@ bool round_quickly(const Scan& scan, std::uint32_t& magnitude) {
   const int power = scan.exponent < 0 ? -scan.exponent : scan.exponent;
   if (power > 44) return false;
   // Roundings: mantissa to double, and one or two operations. Each is half a unit, at most one unit after the scaling
-  // by the quotient of the mantissas; digits beyond the stored ones add 2^-59 of the value. Sixteen units bound all
-  // together.
+  // by the quotient of the mantissas. Digits beyond the stored ones add 2^-59 of the value. Sixteen units bound the
+  // sum.
   const bool exact = scan.mantissa <= (std::uint64_t{1} << 53) && power <= 22;
   double value = static_cast<double>(scan.mantissa);
   const double first = power_of_ten(power <= 22 ? power : 22);

@@ -7,10 +7,10 @@
 
 namespace gridiron {
 
-/// Longest text that parse_float and is_number accept; longer text is kSyntax.
+/// Longest text that parse_float and is_number accept; the status of longer text is kSyntax.
 inline constexpr std::size_t kMaxDecimalBytes = 256;
 
-/// What a piece of text turned out to be.
+/// Outcome of reading a piece of text.
 enum class [[nodiscard]] DecimalStatus : std::uint8_t{
     kOk = 0,
     kSyntax,     ///< not a number of the grammar below
@@ -23,8 +23,8 @@ enum class [[nodiscard]] DecimalStatus : std::uint8_t{
 /// @param text        text_bytes characters, need not end with NUL.
 /// @param float_bits  IEEE 754 single nearest to the exact decimal value, ties to even, denormals included.
 /// Errors: kSyntax, kNotFinite; float_bits is then unchanged.
-/// Cost: linear in text_bytes; one or two double operations, or at most 27 steps of division of 1,280-bit integers
-/// where the double lies too near the middle of two floats, the result is denormal, or the exponent is beyond 44.
+/// Cost: linear in text_bytes; one or two double operations, or at most 27 steps of division of 1,280-bit integers if
+/// the double lies too near the middle of two floats, the result is denormal, or the exponent is beyond 44.
 DecimalStatus parse_float(const char* text, std::size_t text_bytes, std::uint32_t& float_bits);
 
 /// Reads [+-] digits. Errors: kSyntax, kRange (value outside int64); value is then unchanged.

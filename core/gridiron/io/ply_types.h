@@ -7,7 +7,7 @@
 
 namespace gridiron {
 
-/// Why a PLY input was refused. kNone is zero. ply_error_reason() has short words for each.
+/// Why a PLY input was rejected. kNone is zero. ply_error_reason() describes each in a few words.
 enum class [[nodiscard]] PlyError : std::uint8_t{
     kNone = 0,
 
@@ -25,7 +25,7 @@ enum class [[nodiscard]] PlyError : std::uint8_t{
     kUnknownVersion,          ///< a version other than 1.0
     kBadElementCount,         ///< not a plain decimal number below 2^63
     kDuplicateElement,        ///< two elements of one name
-    kDuplicateProperty,       ///< two properties of one name in an element, or vertex_index beside vertex_indices
+    kDuplicateProperty,       ///< two properties of one name in an element, or both vertex_index and vertex_indices
     kPropertyWithoutElement,  ///< a property line before the first element line
     kUnknownType,             ///< a property type that the format does not know
     kBadListCountType,        ///< a list whose count is of a floating-point type
@@ -55,7 +55,7 @@ enum class [[nodiscard]] PlyError : std::uint8_t{
     kTriangleSpanTooSmall,  ///< fewer places than triangles; those that fit were written
 };
 
-/// Short words for an error, for the people's text that tools compose. Never null; "" for kNone.
+/// A short description of an error, for messages of tools. Never null; "" for kNone.
 [[nodiscard]] const char* ply_error_reason(PlyError error);
 
 inline constexpr std::size_t kPlyElementCapacity = 32;    ///< elements a reader can hold

@@ -34,10 +34,11 @@ inline constexpr SubpacketPixels kSubpacketPixels = [] {
 
 /// Generates the rays of the packet whose first pixel is (left, top).
 ///
-/// @param dx, dy   from the pixels' centres to where the rays go through, in pixels: multiples of 1/32 within a half.
+/// @param dx, dy   from the pixels' centres to the points that rays go through, in pixels: multiples of 1/32 within a
+///                 half.
 /// @param present  out: the rays whose pixels lie in the picture. Distances are exact where the frame wants depth.
-/// The corner rays bound all others: each operation above is monotone in x and y, rounding included, so every
-/// component lies between the corners'; corner_widening covers what rounding moves a ray out of their hull.
+/// The corner rays bound all others: each operation above is monotone in x and y, rounding included, so every component
+/// lies between the corners'; corner_widening covers the distance by which rounding moves a ray out of their hull.
 template <class L, class PacketType>
 void generate_packet(const FrameHead& frame, std::uint32_t left, std::uint32_t top, PacketType& packet,
                      RaySet<PacketType::kRayCount>& present, WorkCounters& work, float dx = 0.0f, float dy = 0.0f) {

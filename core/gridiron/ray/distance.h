@@ -1,5 +1,5 @@
-// Distances: which of a ray's hits is the nearest. Estimates with a bound of their error, distances rounded correctly
-// where they leave it open or where t itself is wanted; so the least (t, id) is the one of exact arithmetic.
+// Distances: which of a ray's hits is the nearest. Estimates with a bound of their error; if they cannot decide or t is
+// requested, distances are rounded correctly. So the least (t, id) is the one of exact arithmetic.
 // Source: own. Memory: values. Threads: one core. SPDX-License-Identifier: Apache-2.0
 #pragma once
 
@@ -30,14 +30,14 @@ inline constexpr double kDistanceError = 0x1p-48;
 
 void set_up_distance(const float origin[3], float dir_max, const VertexTriangle& triangle, DistanceSetup& setup);
 
-/// The same in single precision: a ray's distance but for a relative error of kEstimateError, where that can be had.
+/// The same in single precision: a ray's distance with a relative error of at most kEstimateError, if that can be had.
 ///
-/// Errors as in DistanceSetup with e = 2^-23 in the place of u: 8 e and 7 e; 8.5 e is charged. Where neither numerator
-/// nor denominator is uncertain by more than 4/9 of kEstimateError, their quotient is within 9/10 of it, and within all
-/// of it once rounded. Values below the least normal float may be lost; in the range that is asked for, that is less
-/// than what was charged too much: at most 2^-126 times 2^40 is lost of sums above 2^-60. The quotient of a ray that
-/// passes the test lies above the least normal float. Held against a hit at t by numerator and t * denominator: where
-/// that product overflows, the quotient is nearer by far; where it vanishes, behind by far.
+/// Errors as in DistanceSetup with e = 2^-23 in place of u: 8 e and 7 e; 8.5 e is charged. If neither numerator nor
+/// denominator is uncertain by more than 4/9 of kEstimateError, their quotient is within 9/10 of it, and within all of
+/// it once rounded. Values below the least normal float may be lost; in the accepted range the loss is less than the
+/// excess charge: at most 2^-126 times 2^40 is lost of sums above 2^-60. The quotient of a ray that passes the test
+/// lies above the least normal float. Numerator and t * denominator are compared with a hit at t: if that product
+/// overflows, the quotient is far nearer; if it vanishes, far behind.
 ///
 /// Numerator and normal are signed so that a positive denominator means a hit in front of the origin.
 struct DistanceEstimate {
@@ -51,14 +51,14 @@ inline constexpr float kUncertain = kFloatError * 2.25f / kEstimateError;
 
 [[nodiscard]] DistanceEstimate set_up_estimate(const float origin[3], float dir_max, const VertexTriangle& triangle);
 
-/// The unit normal of a triangle that has an area, to 2^-15: in single precision where the triangle's shape allows it,
-/// else in double, else from integers: the same bits whoever asks.
+/// The unit normal of a triangle that has an area, to 2^-15. Single precision is used if the triangle's shape allows
+/// it, else double, else integers, so all callers get the same bits.
 void set_up_normal(const VertexTriangle& triangle, float normal[3]);
 
 /// Distances of a group's rays to a triangle, rounded to the nearest float, for the lanes in `bits`.
 ///
-/// The quotient in double comes with a relative error; where both ends of its interval round to the same float, that
-/// float is the answer, else integers give it. Rounding is done on bit patterns: no rounding mode can change it.
+/// The quotient in double has a relative error. If both ends of its interval round to the same float, that float is the
+/// answer, else integers give it. Rounding works on bit patterns, so no rounding mode can change it.
 template <class L, class PacketType>
 GRIDIRON_INLINE void distances_of(const PacketType& packet, std::uint32_t base, std::uint32_t bits,
                                   const VertexTriangle& triangle, const DistanceSetup& setup, float* distance,
@@ -115,7 +115,7 @@ struct HitSetups {
     const DistanceEstimate found = set_up_estimate(packet.origin, packet.dir_max, triangle);
     for (int axis = 0; axis < 3; ++axis) normal[axis] = Float(found.normal[axis]);
     numerator = Float(found.numerator);
-    // A numerator of 0, the origin in the plane, leaves the latter infinite: t > 0 holds for floats too.
+    // A numerator of 0 (the origin in the plane) makes the error infinite. t > 0 is required with floats too.
     const bool trusts_quotient = packet.trusts_floats && found.numerator > 0.0f;
     least_denominator = Float(trusts_quotient ? 0.0f : found.least_denominator);
     packet.keep(triangle);
@@ -131,20 +131,21 @@ struct HitSetups {
   }
 };
 
-/// What a ray's distance to a triangle lies between, by double.
+/// An interval that contains a ray's distance to a triangle, from doubles.
 struct DistanceInterval {
   double low, high;
 };
 [[nodiscard]] DistanceInterval distance_interval(const float origin[3], float dir_max, const float dir[3],
                                                  const VertexTriangle& triangle);
 
-/// @returns whether it shows at once that two triangles lie in one plane: across an axis, or by equal vertices.
+/// @returns whether two triangles obviously lie in one plane: one across an axis, or by equal vertices.
 [[nodiscard]] bool in_one_plane(const VertexTriangle& first, const VertexTriangle& second);
 
-/// @returns whether they do, decided exactly: planes that meet in all corners of the second.
+/// @returns whether two triangles lie in one plane, decided exactly: the first one's plane contains all corners of the
+/// second.
 [[nodiscard]] bool surely_in_one_plane(const VertexTriangle& first, const VertexTriangle& second, WorkCounters& work);
 
-/// @returns whether of two triangles that a ray meets at the same rounded distance the first one is its hit.
+/// @returns whether the first of two triangles at the same rounded distance is the ray's hit.
 template <class PacketType>
 [[nodiscard]] GRIDIRON_RARE bool comes_first(const PacketType& packet, std::uint32_t ray, const VertexTriangle& first,
                                              const VertexTriangle& second, WorkCounters& work) {
@@ -163,10 +164,10 @@ template <class PacketType>
   return order < 0 || (order == 0 && has_lower_id);
 }
 
-/// Decides hits that lie too close to those that the rays had: both distances exact, then the least (t, id).
+/// Decides hits that are too close to the rays' earlier ones: both distances exact, then the least (t, id).
 ///
 /// @param close  lanes. @param distance  of the new hits, exact. @returns the lanes whose new hit is nearer; t of the
-/// others becomes exact. Where a ray's old triangle is no longer at hand, the ray becomes unsure.
+///               others becomes exact. If a ray's old triangle is no longer kept, the ray becomes unsure.
 template <class L, class PacketType>
 [[nodiscard]] GRIDIRON_RARE std::uint32_t settle_close_hits(PacketType& packet, std::uint32_t base, std::uint32_t close,
                                                             const VertexTriangle& triangle, const float* distance,
@@ -206,7 +207,7 @@ template <class L, class PacketType>
   return nearer;
 }
 
-/// Decides, by exact distances, the hits of a group that their estimates leave open.
+/// Decides, by exact distances, those hits of a group that the estimates leave open.
 ///
 /// @param open  lanes. @param distance  out, in these lanes. @returns the lanes that are nearer than what they had hit.
 template <class L, class PacketType>
@@ -249,11 +250,11 @@ template <class L, class PacketType>
   return nearer;
 }
 
-/// Merges a triangle's hits into a group of rays, all but facing: the least (t, id) stays. @returns those that are
-/// nearer.
+/// Merges a triangle's hits into a group of rays, all but facing: the least (t, id) stays. @returns the lanes whose new
+/// hit is nearer.
 ///
-/// An estimate of the distance decides nearly always; where it cannot, or where packet.estimates is 0 and t has to be
-/// exact, the distance is computed in double.
+/// An estimate of the distance decides nearly always. If it cannot, or packet.estimates is 0 and t has to be exact, the
+/// distance is computed in double.
 template <class L, class PacketType>
 [[nodiscard]] GRIDIRON_OUTLINE std::uint32_t merge_distances(PacketType& packet, std::uint32_t base, std::uint32_t hit,
                                                              const VertexTriangle& triangle, HitSetups<L>& setups,
@@ -266,14 +267,14 @@ template <class L, class PacketType>
   const Float d_z = Float::load(packet.dir[2] + base);
   const Float denominator = setups.normal[0] * d_x + setups.normal[1] * d_y + setups.normal[2] * d_z;
   Float old_t = Float::load(packet.t + base);
-  // Compared without the quotient, which need not be waited for.
+  // Compared without the quotient, to avoid waiting for it.
   const Float old_numerator = old_t * denominator;
   const auto is_close = denominator > setups.least_denominator;
   std::uint32_t nearer =
       (is_close & (setups.numerator < old_numerator * Float(kSurelyNearer))).bits() & hit & packet.estimates;
   Float t = setups.numerator / denominator;
   if (nearer != hit) [[unlikely]] {
-    // A hit behind another or behind the origin, or of a triangle that comes again, changes nothing.
+    // A hit behind another or behind the origin, or of a triangle that was tested before, changes nothing.
     const auto is_behind = (denominator < -setups.least_denominator) |
                            (is_close & (setups.numerator > old_numerator * Float(kSurelyBehind)));
     hit &= ~(is_behind | L::equal(triangle.triangle_id, packet.id + base)).bits();
@@ -322,8 +323,8 @@ template <class L, bool kWantFacing, class PacketType>
   return nearer != 0;
 }
 
-/// Takes a triangle's hits of a whole subpacket, all but facing, where it is surely the nearest of all its rays.
-/// @returns whether it is; where not, nothing has happened.
+/// Takes a triangle's hits of a whole subpacket, all but facing, if it is surely the nearest of all its rays.
+/// @returns whether it is; if not, nothing has changed.
 template <class L, class PacketType>
 [[nodiscard]] GRIDIRON_OUTLINE bool take_distances(PacketType& packet, std::uint32_t first_ray,
                                                    const VertexTriangle& triangle, HitSetups<L>& setups,
@@ -353,8 +354,8 @@ template <class L, class PacketType>
   return true;
 }
 
-/// Takes a triangle's hits of a whole subpacket where it is surely the nearest of all its rays.
-/// @returns whether it is; where not, nothing has happened.
+/// Takes a triangle's hits of a whole subpacket if it is surely the nearest of all its rays.
+/// @returns whether it is; if not, nothing has changed.
 template <class L, bool kWantFacing, class PacketType>
 [[nodiscard]] GRIDIRON_INLINE bool take_subpacket(PacketType& packet, std::uint32_t first_ray,
                                                   const VertexTriangle& triangle, HitSetups<L>& setups,

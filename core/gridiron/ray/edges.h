@@ -1,5 +1,5 @@
-// Edges: on which sides of a triangle's edges rays pass. A float test with a bound of its error, doubles where that is
-// not enough, then integers: every decision equals the one exact arithmetic takes.
+// Edges: on which sides of a triangle's edges rays pass. A float test with a bound of its error, then doubles, then
+// integers: every decision equals that of exact arithmetic.
 // Source: own; the edge functions' form n = (a + b) x (b - a) follows Kensler, Shirley 2006 in spirit.
 // Memory: values. Threads: one core. SPDX-License-Identifier: Apache-2.0
 #pragma once
@@ -38,16 +38,16 @@ struct EdgeBatch {
   static constexpr std::uint32_t kTriangles = L::kCount / 4;
   alignas(64) float n[3][L::kCount];     ///< signed so that inside means n . d >= 0 on all three edges
   alignas(64) float error[L::kCount];    ///< |n . d| above this has the right sign, for every active ray
-  std::uint32_t in_range;                ///< lanes for which the float test says something
+  std::uint32_t in_range;                ///< lanes for which the float test is valid
   std::uint32_t missed;                  ///< lanes whose edge all four corner rays surely pass on the outside
   std::int32_t orientation[kTriangles];  ///< +1, -1; 0: the origin lies in the triangle's plane, nothing can be hit
 
-  // For culling subpackets: n . d as a linear function of the pixel, and the value below which an edge is surely
-  // passed on the outside.
+  // For culling subpackets: n . d as a linear function of the pixel, and the value below which a ray surely passes the
+  // edge on the outside.
   alignas(64) float per_column[L::kCount];
   alignas(64) float per_row[L::kCount];
   alignas(64) float surely_outside[L::kCount];
-  // Its largest value over a quarter, a square and a row whose first pixel is that of the packet, and what leads from
+  // Its largest value over a quarter, a square and a row whose first pixel is that of the packet, and the offsets from
   // there to the largest and to the least value of a subpacket.
   alignas(64) float first_quarter[L::kCount];
   alignas(64) float first_square[L::kCount];
@@ -56,7 +56,7 @@ struct EdgeBatch {
   alignas(64) float subpacket_span[L::kCount];
 };
 
-/// What a test may leave out by looking at several rays at once.
+/// Tests that may be skipped by looking at several rays at once.
 struct Culling {
   bool corner_rays;  ///< the packet's corner rays bound it
   bool subpackets;   ///< its rays are a linear function of the pixel
@@ -78,15 +78,15 @@ inline constexpr float kCornerErrorFactor = 5.0f * 0x1p-23f;
 /// roundings of sums of at most 2 scale D each, 32 e scale D, happen on the way. 60 e covers all, 68 e is charged.
 inline constexpr float kSubpacketErrorFactor = 68.0f * 0x1p-23f;
 
-/// @returns sign of det[a - o, b - o, c - o]: float filter by the caller, then double, then integers.
+/// @returns sign of det[a - o, b - o, c - o]: the caller has tried floats; here doubles, then integers.
 [[nodiscard]] int volume_sign_in_double(const float origin[3], const VertexTriangle& triangle, WorkCounters& work);
 
-/// @returns sign of det[dir, a - o, b - o]: in double where that is sure, else in integers.
+/// @returns sign of det[dir, a - o, b - o]: doubles if they are sure, else integers.
 [[nodiscard]] int edge_sign_in_double(const float origin[3], const float dir[3], const float a[3], const float b[3],
                                       WorkCounters& work);
 
-/// Prepares the edge functions of a batch of triangles for a packet, and holds them against its corner rays: where all
-/// four pass on the outside of one and the same edge, so does every ray between them (Dmitriev, Havran, Seidel 2004).
+/// Prepares the edge functions of a batch of triangles for a packet, and tests its corner rays: if all four pass on the
+/// outside of the same edge, so does every ray between them (Dmitriev, Havran, Seidel 2004).
 ///
 /// @param triangles  EdgeBatch<L>::kTriangles of them; a shorter batch repeats one.
 template <class L, class PacketType>
@@ -94,7 +94,7 @@ GRIDIRON_OUTLINE void set_up_edges(const PacketType& packet, const VertexTriangl
                                    EdgeBatch<L>& batch, WorkCounters& work) {
   using Float = typename L::Float;
   constexpr std::uint32_t kTriangles = EdgeBatch<L>::kTriangles;
-  // A record's first 36 bytes are x0 y0 z0 x1 | y1 z1 x2 y2 | z2: turn them into one vector per axis.
+  // A record's first 36 bytes are x0 y0 z0 x1 | y1 z1 x2 y2 | z2; this makes one vector per axis of them.
   const float* rows[3][kTriangles];
   for (std::uint32_t i = 0; i < kTriangles; ++i) {
     for (int row = 0; row < 3; ++row) rows[row][i] = &triangles[i]->v[0][0] + 4 * row;
@@ -121,8 +121,8 @@ GRIDIRON_OUTLINE void set_up_edges(const PacketType& packet, const VertexTriangl
   const Float error = scale * Float(kEdgeErrorFactor * packet.dir_max) + Float(kUnderflow * packet.range_factor);
   batch.in_range = (scale * Float(packet.range_factor) < Float(kEdgeRangeLimit)).bits();
 
-  // Orientation: with c the vertex opposite an edge, n . c = 2 det[a, b, c], by the same bound with c in the place of
-  // d. The three edges give the same determinant; the quad's first lane speaks for it.
+  // Orientation: with c the vertex opposite an edge, n . c = 2 det[a, b, c], with the same bound and c in place of d.
+  // The three edges give the same determinant, so the quad's first lane is enough.
   const Float size_c = opposite(size_a);
   const Float volume = n_x * opposite(a_x) + n_y * opposite(a_y) + n_z * opposite(a_z);
   const Float volume_error =
@@ -217,7 +217,7 @@ struct SplatEdges {
   using Float = typename L::Float;
   Float n[3][3];  ///< edge, axis
   Float error[3];
-  std::uint32_t known;  ///< all lanes, or none: whether the float test says something
+  std::uint32_t known;  ///< all lanes or none: whether the float test is valid
 
   GRIDIRON_INLINE SplatEdges(const EdgeBatch<L>& batch, std::uint32_t index) {
     const std::uint32_t first_lane = 4 * index;
@@ -244,11 +244,11 @@ template <class L, class PacketType>
     return edges.n[edge][0] * d_x + edges.n[edge][1] * d_y + edges.n[edge][2] * d_z;
   };
   const Float e0 = along(0), e1 = along(1), e2 = along(2);
-  // 1. One edge that is surely passed on the outside ends it.
+  // 1. If a ray surely passes one edge on the outside, it misses.
   const std::uint32_t outside = ((e0 < -edges.error[0]) | (e1 < -edges.error[1]) | (e2 < -edges.error[2])).bits();
   std::uint32_t open = active & ~(outside & edges.known);
   if (open == 0) return 0;
-  // 2. Three edges surely passed on the inside: a hit. Anything else is decided in double, then exactly.
+  // 2. If it surely passes all three on the inside, it hits. Anything else is decided in double, then exactly.
   const auto inside0 = e0 > edges.error[0], inside1 = e1 > edges.error[1], inside2 = e2 > edges.error[2];
   const std::uint32_t inside = (inside0 & inside1 & inside2).bits() & open & edges.known;
   open &= ~inside;

@@ -39,7 +39,7 @@ template <class L>
 }
 
 /// Intersects one projected triangle with the active rays of some subpackets, keeping the least (t, id).
-/// @returns the subpackets of which a ray's hit changed. Errors: none (hot path).
+/// @returns the subpackets in which a ray's hit changed. Errors: none (hot path).
 template <class L, class PacketType>
 [[nodiscard]] GRIDIRON_OUTLINE SubpacketSet intersect_projection(PacketType& packet, const ProjectionTriangle& triangle,
                                                                  SubpacketSet subpackets, bool use_culling,

@@ -1,6 +1,6 @@
-// The `standard` test for rays with origins of their own: which of up to 16 rays a triangle stops, or is the
-// nearest hit of. Floats with a bound of their error, doubles where these leave it open, then integers: every decision
-// equals the one exact arithmetic takes.
+// The `standard` test for rays with origins of their own: which of up to 16 rays a triangle stops, or is the nearest
+// hit of. Floats with a bound of their error, then doubles, then integers: every decision equals that of exact
+// arithmetic.
 // Source: own; bounds as derived at edges.h and distance.h. Memory: values. Threads: one core.
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
@@ -19,7 +19,7 @@
 
 namespace gridiron {
 
-/// A triangle as the lanes take it.
+/// A triangle, prepared for lanes.
 struct RayTriangle {
   float edge[3][3];      ///< from vertex i to vertex i + 1
   float edge_size[3];    ///< largest |component|
@@ -40,7 +40,7 @@ GRIDIRON_INLINE void set_up_ray_triangle(const VertexTriangle& triangle, RayTria
   for (int i = 0; i < 3; ++i) {
     const int j = i == 2 ? 0 : i + 1;
     const int l = j == 2 ? 0 : j + 1;
-    // c - a is the last edge turned round.
+    // c - a is the last edge reversed.
     const float first = set.edge[0][l] * set.edge[2][j];
     const float second = set.edge[0][j] * set.edge[2][l];
     set.normal[i] = first - second;
@@ -48,8 +48,8 @@ GRIDIRON_INLINE void set_up_ray_triangle(const VertexTriangle& triangle, RayTria
   }
 }
 
-/// Decides whether the line of one ray passes through a triangle, boundary included, from its signs as far as they are
-/// known. @param above, below  bit k: surely on that side of edge k.
+/// Decides whether the line of one ray passes through a triangle, boundary included. The float test's sure signs are
+/// given. @param above, below  bit k: surely on that side of edge k.
 [[nodiscard]] GRIDIRON_RARE inline bool passes_through(const WalkRays& rays, std::uint32_t ray,
                                                        const VertexTriangle& triangle, std::uint32_t above,
                                                        std::uint32_t below, WorkCounters& work) {
@@ -62,12 +62,12 @@ GRIDIRON_INLINE void set_up_ray_triangle(const VertexTriangle& triangle, RayTria
     if (sign > 0) above |= 1u << k;
     if (sign < 0) below |= 1u << k;
   }
-  // Neither: the ray lies in the triangle's plane, and hits nothing.
+  // Neither: the ray lies in the triangle's plane and hits nothing.
   return (above == 0) != (below == 0);
 }
 
-/// The distance of one ray to a triangle whose plane it crosses in the triangle, rounded to the nearest float; 0 where
-/// that is no hit. Doubles, integers where these leave the rounding open.
+/// The distance of one ray to a triangle inside which it crosses the plane, rounded to the nearest float; 0 if that is
+/// no hit. Doubles, or integers if doubles leave the rounding open.
 [[nodiscard]] GRIDIRON_OUTLINE inline float ray_distance(const WalkRays& rays, std::uint32_t ray,
                                                          const VertexTriangle& triangle, WorkCounters& work) {
   work.add(Work::kRayDistance);
@@ -86,10 +86,11 @@ GRIDIRON_INLINE void set_up_ray_triangle(const VertexTriangle& triangle, RayTria
   return exact_distance(origin, dir, triangle.v[0], triangle.v[1], triangle.v[2]);
 }
 
-/// Holds a triangle against rays.
+/// Tests a triangle against rays.
 ///
 /// @param wanted   rays, bit i = ray i. @param settled  out: of these, rays that it surely stops at 0 < t <= rays.t.
-/// @returns rays that it may stop, or be nearer to: ray_distance tells. Of any_hit only those that floats leave open.
+/// @returns rays that it may stop, or be nearer to: ray_distance decides. With any_hit, only those that floats leave
+/// open.
 template <class L>
 [[nodiscard]] GRIDIRON_OUTLINE std::uint32_t rays_near(const WalkRays& rays, std::uint32_t wanted,
                                                        const VertexTriangle& triangle, bool trusts_floats,

@@ -25,7 +25,7 @@ void normal_of(const VertexTriangle& triangle, Real normal[3], Real products[3])
   }
 }
 
-// By the bits: where denormals are flushed, they compare equal to zero and to each other.
+// Compares the bits: where denormals are flushed, they compare equal to zero and to each other.
 bool is_same(float a, float b) {
   const std::uint32_t bits_a = std::bit_cast<std::uint32_t>(a);
   const std::uint32_t bits_b = std::bit_cast<std::uint32_t>(b);
@@ -45,7 +45,7 @@ void set_up_distance(const float origin[3], float dir_max, const VertexTriangle&
     numerator_error += magnitude(a) * products[i];
   }
   setup.numerator = numerator;
-  // A numerator of 0 makes these NaN or infinite: unsure, which is right.
+  // A numerator of 0 makes these NaN or infinite, that is unsure, which is correct.
   setup.relative_error = kDistanceError * numerator_error / magnitude(numerator) + 0x1p-50;
   setup.relative_error_per_t =
       kDistanceError * double{dir_max} * (products[0] + products[1] + products[2]) / magnitude(numerator);
@@ -58,7 +58,7 @@ DistanceInterval distance_interval(const float origin[3], float dir_max, const f
   const double quotient = setup.numerator / (double{dir[0]} * setup.normal[0] + double{dir[1]} * setup.normal[1] +
                                              double{dir[2]} * setup.normal[2]);
   const double relative = quotient * setup.relative_error_per_t + setup.relative_error;
-  // False for NaN too: then it is anywhere.
+  // False for NaN too; the distance is unknown then.
   if (!(quotient > 0.0 && relative < 0x1p-10)) return {0.0, static_cast<double>(kInfinity)};
   return {quotient - quotient * relative, quotient + quotient * relative};
 }
@@ -133,7 +133,7 @@ void set_up_normal(const VertexTriangle& triangle, float normal[3]) {
   normal_of(triangle, sure, products);
   const double sure_size = products[0] + products[1] + products[2];
   double squared_length = sure[0] * sure[0] + sure[1] * sure[1] + sure[2] * sure[2];
-  // The error of a component is below 2^-50 of that size: beyond 2^-20 of the length only integers tell.
+  // The error of a component is below 2^-50 of that size: if it exceeds 2^-20 of the length, only integers can decide.
   if (!(squared_length > 0x1p-60 * (sure_size * sure_size))) {
     exact_normal(triangle.v[0], triangle.v[1], triangle.v[2], sure);
     squared_length = sure[0] * sure[0] + sure[1] * sure[1] + sure[2] * sure[2];

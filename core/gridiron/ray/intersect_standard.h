@@ -1,4 +1,4 @@
-// The `standard` ray/triangle test, watertight by construction: every decision equals the one exact arithmetic takes.
+// The `standard` ray/triangle test, watertight by construction: every decision equals that of exact arithmetic.
 // Source: own. Memory: values. Threads: one core. SPDX-License-Identifier: Apache-2.0
 #pragma once
 
@@ -17,7 +17,7 @@ namespace gridiron {
 
 /// Intersects triangle `index` of a batch with the active rays of some subpackets, keeping the least (t, id).
 ///
-/// @param packet  t, id (and facing where wanted) are updated. @returns the subpackets of which a ray's hit changed.
+/// @param packet  t, id (and facing if requested) are updated. @returns the subpackets in which a ray's hit changed.
 /// Errors: none (hot path). Cost: at most kSubpacketRays / L::kCount group tests per subpacket.
 template <class L, bool kWantFacing, class PacketType>
 [[nodiscard]] GRIDIRON_INLINE SubpacketSet test_groups(PacketType& packet, const VertexTriangle& triangle,
@@ -57,7 +57,7 @@ template <class L, bool kWantFacing, class PacketType>
   return changed;
 }
 
-/// A triangle of a batch that goes on to its edges.
+/// A triangle of a batch that the edge tests still have to decide.
 struct OpenTriangle {
   const VertexTriangle* triangle;
   SubpacketSet subpackets;  ///< to be looked at
@@ -65,7 +65,7 @@ struct OpenTriangle {
   bool is_small;            ///< too few of them to be worth asking which it touches
 };
 
-/// Appends those of 1..L::kCount triangles that may cover a pixel of the subpackets wanted. @returns how many.
+/// Appends those of 1..L::kCount triangles that may cover a pixel of the wanted subpackets. @returns how many.
 template <class L, class PacketType>
 [[nodiscard]] GRIDIRON_OUTLINE std::uint32_t keep_covering(const PacketType& packet, const VertexTriangle* triangles,
                                                            std::uint32_t count, SubpacketSet wanted, OpenTriangle* open,
@@ -86,9 +86,9 @@ template <class L, class PacketType>
   return open_count;
 }
 
-/// Finds those of 1..L::kCount triangles that some subpackets have to look at.
+/// Finds those of 1..L::kCount triangles that some subpackets have to test.
 ///
-/// @param triangles  records, one behind the other. @param open  out: room for `count`. @returns how many these are.
+/// @param triangles  consecutive records. @param open  out: space for `count`. @returns how many were found.
 template <class L, class PacketType>
 [[nodiscard]] GRIDIRON_INLINE std::uint32_t open_triangles(const PacketType& packet, const VertexTriangle* triangles,
                                                            std::uint32_t count, SubpacketSet wanted, Culling culling,
@@ -102,7 +102,7 @@ template <class L, class PacketType>
 
 /// Intersects triangles with the active rays of a packet.
 ///
-/// @returns the subpackets of which a ray's hit changed.
+/// @returns the subpackets in which a ray's hit changed.
 template <class L, bool kWantFacing, class PacketType>
 [[nodiscard]] GRIDIRON_INLINE SubpacketSet intersect_standard_batch(PacketType& packet, const OpenTriangle* open,
                                                                     std::uint32_t open_count, Culling culling,

@@ -1,5 +1,4 @@
-// Runs of triangles that are stored by their vertices' places on the scene's lattice, made into triangles by their
-// vertices where they have arrived.
+// Converts runs of lattice triangles into triangles by their vertices, in the buffer where they have arrived.
 // Memory: the run's buffer. Threads: one core. SPDX-License-Identifier: Apache-2.0
 #pragma once
 
@@ -11,8 +10,8 @@
 
 namespace gridiron {
 
-/// Spreads LatticeTriangles over the buffer they lie in, from the last to the first: triangle i, `first_byte` + 24 i
-/// in, goes to 48 i, where no record lies that is still to be read (first_byte <= 24). Every place is a float, so
+/// Spreads LatticeTriangles over the buffer they lie in, from the last to the first: triangle i moves from `first_byte`
+/// + 24 i to 48 i, which overwrites no record that is still to be read (first_byte <= 24). Every place is a float, so
 /// nothing is rounded, and triangles that shared a vertex still do.
 ///
 /// @param buffer  16-byte aligned, room for 48 count bytes; its records at first_byte, a multiple of 8 up to 24.
@@ -21,7 +20,7 @@ GRIDIRON_INLINE const VertexTriangle* spread_lattice_run(const Lattice& lattice,
                                                          std::uint32_t first_byte, std::uint32_t count) {
   using Four = Lanes<4>;
   using Float = typename Four::Float;
-  // A record's words are x0 y0 z0 x1 | y1 z1 x2 y2 | z2, two without meaning, id.
+  // A record's words are x0 y0 z0 x1 | y1 z1 x2 y2 | z2, two unused ones, id.
   alignas(16) float words[3][4];
   for (int i = 0; i < 3; ++i) {
     for (int lane = 0; lane < 4; ++lane) words[i][lane] = lattice.origin[(4 * i + lane) % 3];

@@ -32,7 +32,7 @@ struct RaySet {
   [[nodiscard]] GRIDIRON_INLINE std::uint32_t group(std::uint32_t base) const {
     return (words[base / 32] >> (base % 32)) & L::kAllBits;
   }
-  /// Bits of subpacket i, see below.
+  /// Bits of subpacket i.
   [[nodiscard]] GRIDIRON_INLINE std::uint32_t subpacket(std::uint32_t i) const {
     return (words[i / 2] >> (16 * (i % 2))) & 0xFFFFu;
   }
@@ -42,8 +42,8 @@ struct RaySet {
   }
 };
 
-/// A subpacket is a square of a packet's pixels, the finest piece that is culled as a whole. Its rays follow each
-/// other, row by row; subpackets follow each other along a Z curve, so that every four of them are a square too.
+/// A subpacket is a square of a packet's pixels, the smallest part that is culled as a whole. Its rays are contiguous,
+/// row by row. Subpackets follow a Z curve, so that every four of them are a square too.
 inline constexpr std::uint32_t kSubpacketWidth = 4;
 inline constexpr std::uint32_t kSubpacketRays = kSubpacketWidth * kSubpacketWidth;
 inline constexpr std::uint32_t kAllSubpacketRays = (1u << kSubpacketRays) - 1u;
@@ -60,7 +60,7 @@ using SubpacketSet = std::uint64_t;
   return squares * 0xFu;
 }
 
-/// Calls visit(i) for every subpacket i of a set, in order. Of few, each is asked for: the loop can be unrolled.
+/// Calls visit(i) for every subpacket i of a set, in order. A short loop tests each bit, so that it can be unrolled.
 template <std::uint32_t SubpacketCount, class Visit>
 GRIDIRON_INLINE void for_each_subpacket(SubpacketSet set, Visit&& visit) {
   if constexpr (SubpacketCount <= 4) {
@@ -76,21 +76,21 @@ GRIDIRON_INLINE void for_each_subpacket(SubpacketSet set, Visit&& visit) {
 /// component: less than 6 e between the two, 4 e for the function's own sums and products, twice at most.
 inline constexpr float kLinearError = 16.0f * 0x1p-23f;
 
-/// Relative error of a distance that was estimated.
+/// Relative error of an estimated distance.
 inline constexpr float kEstimateError = 0x1p-14f;
-/// Times a distance, either or both estimated: another one beyond it is surely nearer, or behind.
+/// Factor on a distance: one beyond the product is surely nearer, or behind, even if both are estimates.
 inline constexpr float kSurelyNearer = 1.0f - 3.0f * kEstimateError;
 inline constexpr float kSurelyBehind = 1.0f + 3.0f * kEstimateError;
 
-/// From points, less the origin, to pixels of a packet: pixel_box.h.
+/// Maps points, less the origin, to pixels of a packet: pixel_box.h.
 struct PixelProjection {
   float rows[3][3];      ///< depth, column times depth, row times depth, all three times one factor
   float margin;          ///< by how many pixels a place may be off
-  float most_per_depth;  ///< a point's largest component per such depth, up to which the margin holds; 0: for none
+  float most_per_depth;  ///< the margin holds up to this ratio of a point's largest component to its depth
 };
 
 /// Width x Width rays, SoA. World space, directions not normalised.
-/// @tparam RecentCountV  how many triangles are kept of those hit lately, a power of two.
+/// @tparam RecentCountV  number of recently hit triangles that are kept, a power of two.
 template <std::uint32_t Width, std::uint32_t RecentCountV = 16>
 struct alignas(128) Packet {
   static constexpr std::uint32_t kWidth = Width;
@@ -107,7 +107,7 @@ struct alignas(128) Packet {
     return z_curve_row(ray / kSubpacketRays) * kSubpacketWidth + ray % kSubpacketRays / kSubpacketWidth;
   }
 
-  /// Asks for distances as floats nearest to the exact ones, or for estimates of them. Before any ray is traced.
+  /// Chooses between correctly rounded distances and estimates. Called before any ray is traced.
   GRIDIRON_INLINE void ask_for_distances(bool exact) {
     estimates = exact ? 0u : ~0u;
     surely_nearer = exact ? 1.0f : kSurelyNearer;
@@ -121,25 +121,25 @@ struct alignas(128) Packet {
   alignas(64) std::uint32_t id[kRayCount];  ///< its triangle, kNoTriangle before the first
   alignas(64) float facing[kRayCount];      ///< |normal . dir| of the nearest hit, normal of length 1
   RaySet<kRayCount> active;                 ///< the rays of this pass
-  RaySet<kRayCount> unsure;                 ///< rays of which estimates could not tell the nearest hit
+  RaySet<kRayCount> unsure;                 ///< rays whose nearest hit the estimates left open
   alignas(16) float corner_dir[3][4];       ///< the four corner rays, for culling
   float origin[3];
   float dir_max;          ///< largest |component| of all active directions
   float range_factor;     ///< the larger of dir_max and 1
-  float corner_widening;  ///< factor on edge errors that lets the corner rays speak for all
+  float corner_widening;  ///< factor on edge errors with which the corner rays bound all others
 
-  // Whether t may be off by kEstimateError of itself, or is the distance rounded to the nearest float.
+  // Whether t is an estimate within kEstimateError, or the distance rounded to the nearest float.
   std::uint32_t estimates;  ///< all bits, or none
   float surely_nearer;      ///< times t: a distance below is nearer, whatever the error of t
   float surely_behind;      ///< times t: a distance above is behind
   bool trusts_floats;       ///< nothing is settled beyond single precision
   bool breaks_ties;         ///< of equal rounded distances the exact ones decide, not the triangles' ids
 
-  // Triangles hit lately, each in the place that its id gives: where two estimates are too close to tell, the one that
-  // was there before can be measured again.
+  // Recently hit triangles, each in the slot that its id gives. If two estimates are too close to decide, the earlier
+  // triangle can be measured again.
   static constexpr std::uint32_t kRecentCount = RecentCountV;
   alignas(16) VertexTriangle recent[kRecentCount];
-  VertexTriangle taken;  ///< the one whose exact distance was nearer last: with one ray alive, its nearest hit
+  VertexTriangle taken;  ///< the nearer one of the last exact comparison: with one active ray, its nearest hit
 
   GRIDIRON_INLINE void keep(const VertexTriangle& triangle) { recent[triangle.triangle_id % kRecentCount] = triangle; }
   /// @returns the triangle if it is among the recent ones, else null.
@@ -156,22 +156,21 @@ struct alignas(128) Packet {
   float linear_error;        ///< by how much a component of a direction may differ from it, as evaluated in floats
   float subpacket_widening;  ///< factor on edge errors that covers this form and its evaluation
 
-  // For packets that are large beside the triangles: where these appear.
+  // For packets that are large compared with the triangles: where these appear.
   static constexpr bool kHasBoxes = kSubpacketCount >= 16;
   PixelProjection projection;
 
   // Slopes of this pass, in cells along u and v per cell along the march: least and greatest of the active rays of each
-  // square of 2x2 subpackets. Where none is active the least is above the greatest.
+  // square of 2x2 subpackets. Without active rays the least is above the greatest.
   static constexpr std::uint32_t kSquareCount = kSubpacketCount < 4 ? 1 : kSubpacketCount / 4;
   alignas(64) float slope_low[2][kSquareCount];
   alignas(64) float slope_high[2][kSquareCount];
-  alignas(
-      16) float march_high[kSquareCount];  ///< the most cells along the march per unit of t; where none is active, 0
+  alignas(16) float march_high[kSquareCount];  ///< the most cells along the march per unit of t; 0 without active rays
 };
 
-/// Prepares the rays that estimates left unsure for being traced again with exact distances.
+/// Prepares the rays that estimates left unsure for another pass with exact distances. Their hits are discarded, except
+/// as a bound: their nearest hit lies in front of it.
 ///
-/// What they have hit is forgotten, but for a bound: their nearest hit lies in front of it.
 /// @param unsure  out: these rays. @returns whether there are any.
 template <class PacketType>
 [[nodiscard]] GRIDIRON_OUTLINE bool take_unsure_rays(PacketType& packet, float t_far,

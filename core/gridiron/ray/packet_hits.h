@@ -30,7 +30,7 @@ void store_hits(const PacketType& packet, std::uint32_t x, std::uint32_t y, std:
   using Float = typename L::Float;
   using Int = typename L::Int;
   constexpr std::uint32_t kGroups = PacketType::kRayCount / L::kCount;
-  // A group of lanes is one row of a subpacket, or several: one quad of pixels beneath the other.
+  // A group of lanes is one or several rows of a subpacket: quads of pixels, one below the other.
   const auto for_each_group = [&](auto&& write) GRIDIRON_INLINE_LAMBDA {
     for (std::uint32_t first = 0; first < PacketType::kRayCount; first += kSubpacketRays) {
       const std::uint32_t first_pixel = (y + PacketType::row_of(first)) * tile_width + x + PacketType::column_of(first);

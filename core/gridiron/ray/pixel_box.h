@@ -1,4 +1,4 @@
-// Pixel box: the pixels of a packet that a triangle can cover, from its vertices' places on the picture.
+// Pixel box: the pixels of a packet that a triangle can cover, from the projections of its vertices.
 // Source: own; projections by the rows of the inverse camera matrix. Memory: values. Threads: one core.
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
@@ -19,16 +19,16 @@ namespace gridiron {
 /// the origin appears at column P . a / W . a and row Q . a / W . a.
 ///
 /// Errors, e = 2^-23, D = dir_bound, the largest sum of magnitudes that goes into a direction's component. The rows are
-/// rounded from doubles, e of themselves. A direction differs from the linear form by less than 6 e D: P . d is within
-/// 8 e D |P|1 of the column, W . d within 8 e D |W|1 of 1; at columns up to 32 that is 8 e D (|P|1 + 32 |W|1). The
-/// place of a point in the triangle lies between its vertices', as all have W . a > 0. A vertex less the origin, the
-/// products and sums carry 4 e |P|1 |a|max in the numerator, 4 e |W|1 |a|max in the denominator; where
-/// |a|max < 2 D W . a, that is 8 e D |P|1 in all, and of the quotient itself 8 e D |W|1 + 3 e. The latter on quotients
-/// up to 64; those beyond stay beyond 32 as long as it is below a quarter. Sum: 16 e D |P|1 + 768 e D |W|1 + 192 e.
-/// Twice that is charged.
+/// rounded from doubles, with an error of e of themselves. A direction differs from the linear form by less than 6 e D:
+/// P . d is within 8 e D |P|1 of the column, W . d within 8 e D |W|1 of 1; at columns up to 32 that is 8 e D (|P|1 + 32
+/// |W|1). The place of a point in the triangle lies between its vertices', as all have W . a > 0. The difference of a
+/// vertex and the origin, the products and sums carry 4 e |P|1 |a|max in the numerator, 4 e |W|1 |a|max in the
+/// denominator; if |a|max < 2 D W . a, that is 8 e D |P|1 in all, and of the quotient itself 8 e D |W|1 + 3 e. The
+/// latter holds for quotients up to 64; those beyond stay beyond 32 as long as it is below a quarter. Sum: 16 e D |P|1
+/// + 768 e D |W|1 + 192 e. Twice that is charged.
 ///
-/// Quotients are the same for rows times any factor; with that of the largest sum of magnitudes in a row 1, no
-/// coordinate up to 2^121 can overflow. Where the margin would be a pixel or more, nothing is sure about any point.
+/// A common factor on all rows does not change quotients. It makes the largest sum of magnitudes in a row 1, so that no
+/// coordinate up to 2^121 can overflow. If the margin would be a pixel or more, no box is trusted.
 template <class PacketType>
 void set_up_projection(PacketType& packet, float dir_bound) {
   double first[3], step_x[3], step_y[3];
@@ -55,7 +55,7 @@ void set_up_projection(PacketType& packet, float dir_bound) {
   const double bound_per_det = double{dir_bound} / magnitude(det);
   constexpr double kUnit = 0x1p-23;
   const double margin = kUnit * (bound_per_det * (32.0 * along + 1536.0 * size[0]) + 400.0);
-  // What doubles lose in a matrix that is nearly singular must not count.
+  // What doubles lose in a nearly singular matrix must not count.
   double scale = 1.0;
   for (const double* const vector : {first, step_x, step_y}) {
     scale *= magnitude(vector[0]) + magnitude(vector[1]) + magnitude(vector[2]);
@@ -107,8 +107,8 @@ struct TransposedWords {
   }
 };
 
-/// Computes for each triangle a box outside of which no ray of the packet can hit it; where that cannot be told, the
-/// whole packet.
+/// Computes for each triangle a box outside of which no ray of the packet can hit it; the whole packet if that is
+/// unknown.
 ///
 /// @param triangles  L::kCount of them; a shorter batch repeats one.
 template <class L, class PacketType>
@@ -160,7 +160,7 @@ GRIDIRON_INLINE void find_pixel_boxes(const PacketType& packet, const VertexTria
   boxes.covering = (has_columns & has_rows).bits();
 }
 
-/// Subpackets in the columns, or rows, of subpackets before one.
+/// For each column (or row) of subpackets, the set of subpackets before it.
 struct SubpacketsBefore {
   SubpacketSet column[9];
   SubpacketSet row[9];
@@ -190,7 +190,7 @@ struct PixelBox {
         kSubpacketsBefore.column[first_column / kSubpacketWidth] | kSubpacketsBefore.row[first_row / kSubpacketWidth];
     return before_end & ~before_first;
   }
-  /// @returns whether these are at most two by two.
+  /// @returns whether it touches at most two by two subpackets.
   [[nodiscard]] GRIDIRON_INLINE bool is_small() const {
     return end_column - first_column / kSubpacketWidth * kSubpacketWidth <= 2 * kSubpacketWidth &&
            end_row - first_row / kSubpacketWidth * kSubpacketWidth <= 2 * kSubpacketWidth;

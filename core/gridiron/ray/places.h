@@ -22,7 +22,7 @@ inline constexpr SquareOrigins kSquareOrigins = [] {
   return origins;
 }();
 
-/// Where the four lanes of a test stand, in pixels: quarters in a packet of 8x8 subpackets, subpackets in a square,
+/// Positions of the four lanes of a test, in pixels: quarters in a packet of 8x8 subpackets, subpackets in a square,
 /// rows in a subpacket, corner pixels of a square.
 struct LanePlaces {
   alignas(16) float quarter_column[4];

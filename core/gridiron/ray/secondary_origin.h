@@ -1,4 +1,4 @@
-// Where rays that leave a surface begin: in its triangle, lifted off it, by no more than rounding asks for.
+// Where rays that leave a surface begin: inside its triangle, lifted off it by no more than rounding requires.
 // Source: own. Memory: values. Threads: any. SPDX-License-Identifier: Apache-2.0
 #pragma once
 
@@ -23,19 +23,21 @@ namespace gridiron {
 ///   the triangle but for its own rounding, 2 e L for either edge's part, e L for either sum, less than 7 e L in all;
 ///   e M is the last sum's. So each component is within E of a point of the triangle, lifted.
 /// - lift = 4 E, and a vector whose components are within E is shorter than sqrt(3) E: the point is above the plane by
-///   2 E at least, and by 6 E at most. A ray that leaves a convex body from there can meet none of it.
-/// - inset = 16 E: the weights are drawn to their middle until the point is that far from each edge of the triangle.
+///   2 E at least, and by 6 E at most. A ray that leaves a convex body from there cannot meet it again.
+/// - inset = 16 E: the weights are moved towards their middle until the point is that far from each edge of the
+///   triangle.
 ///   Where another face meets an edge at an angle a on this side, the point is away from it by
 ///   16 E sin a - 4 E cos a - 2 E > 0 from a = 22 degrees on: no ray begins behind the neighbouring face.
-/// - M + 8 L is 2^-126 or more: of anything smaller E would be less than the least float.
-/// - A triangle lower than 48 E has no such point; its middle is taken, and of neighbouring faces nothing is promised.
+/// - M + 8 L is at least 2^-126: below it E would be less than the least float.
+/// - A triangle lower than 48 E has no such point. Its middle is taken, and nothing is promised about neighbouring
+///   faces.
 struct SecondaryOrigin {
   float point[3];
   float lift;   ///< above the triangle's plane
   float error;  ///< E
 };
 
-/// The same on both sides of the surface, and what shading needs besides.
+/// The same on both sides of the surface, and what shading needs in addition.
 struct SurfacePoint {
   float before[3];    ///< on the side that the ray comes from
   float behind[3];    ///< on the other
@@ -47,7 +49,7 @@ struct SurfacePoint {
 
 namespace secondary_origin_detail {
 
-/// @returns the power of two that brings a normal size into [1, 2), or nearest to it.
+/// @returns the power of two that scales a normal float into [1, 2), or near it.
 [[nodiscard]] inline float scale_to_one(float size) {
   const std::uint32_t exponent = std::bit_cast<std::uint32_t>(size) >> 23;
   if (exponent == 0 || exponent >= 254) return exponent == 0 ? 0x1p126f : 0x1p-127f;
@@ -62,7 +64,7 @@ namespace secondary_origin_detail {
 }  // namespace secondary_origin_detail
 
 /// @param origin, dir  the ray that hits. Precondition: the triangle has an area, the ray hits it (`standard`).
-/// @param least_size   a size that E allows for besides M: of points that rays come from which end here.
+/// @param least_size   a lower limit of M: the greatest coordinate of the points that rays to here come from.
 [[nodiscard]] inline SurfacePoint surface_point(const VertexTriangle& triangle, const float origin[3],
                                                 const float dir[3], float least_size, WorkCounters& work) {
   using secondary_origin_detail::largest;
@@ -87,8 +89,8 @@ namespace secondary_origin_detail {
   result.error = 0x1p-23f * (vertex_size + 8.0f * edge_size);
   result.lift = 4.0f * result.error;
 
-  // Weights by the volumes that the ray spans with each edge; all sizes near 1, so that nothing overflows and what
-  // underflows does not matter.
+  // Weights by the volumes that the ray spans with each edge. All sizes are scaled near 1, so that nothing overflows
+  // and underflow is harmless.
   const float near_one = scale_to_one(seen_size), dir_to_one = scale_to_one(largest(dir));
   float volume[3];
   float sum = 0.0f;
@@ -106,7 +108,7 @@ namespace secondary_origin_detail {
     volume[k] = value;
     sum += value;
   }
-  // Of a hit all have the sign of their sum.
+  // For a hit, all volumes have the sign of their sum.
   float total = 0.0f;
   for (float& value : volume) {
     value = sum < 0.0f ? -value : value;
@@ -118,7 +120,8 @@ namespace secondary_origin_detail {
   float weight1 = has_weights ? volume[1] / total : third;
   float weight2 = has_weights ? volume[2] / total : third;
 
-  // The triangle's least height is |e1 x e2| / (sqrt(3) * edge_size) or more; below 2^-18 of its size it is rounding.
+  // The triangle's least height is at least |e1 x e2| / (sqrt(3) * edge_size); below 2^-18 of its size it is rounding
+  // error.
   const float edge_to_one = scale_to_one(edge_size);
   float squared = 0.0f;
   for (int i = 0; i < 3; ++i) {
@@ -137,8 +140,8 @@ namespace secondary_origin_detail {
   set_up_normal(triangle, result.normal);
   float facing = 0.0f;
   for (int i = 0; i < 3; ++i) facing += result.normal[i] * (dir[i] * dir_to_one);
-  // The normal is off by 2^-14 at most, so is the sum of three such products below 2 by 2^-11; grazing rays ask for
-  // more.
+  // The normal has an error of at most 2^-14, so the sum of three such products below 2 has one of at most 2^-11.
+  // Grazing rays need a better decision.
   bool leads_along = facing > 0.0f;
   if (magnitude(facing) < 0x1p-10f) leads_along = volume_sign_in_double(origin, triangle, work) > 0;
   result.enters = !leads_along;

@@ -1,4 +1,4 @@
-// Subpackets: which parts of a packet a triangle may touch, by its edge functions' linear form in the pixel.
+// Subpackets: which parts of a packet a triangle may touch, by its edge functions as linear functions of the pixel.
 // Source: own; the idea of bounding an edge function over a square is Pineda's, 1988.
 // Memory: values. Threads: one core. SPDX-License-Identifier: Apache-2.0
 #pragma once
@@ -13,7 +13,7 @@
 
 namespace gridiron {
 
-/// @returns the places that an edge of triangle `index` surely passes on the outside, a bit each.
+/// @returns a bit for each place whose rays surely pass an edge of triangle `index` on the outside.
 ///
 /// @param largest  of EdgeBatch: the edge function's largest value over the place at column 0, row 0.
 template <class L, class Wide>
@@ -31,7 +31,7 @@ template <class L, class Wide>
   return outside;
 }
 
-/// @returns those squares of 2x2 subpackets that triangle `index` of a batch may touch.
+/// @returns the squares of 2x2 subpackets that triangle `index` of a batch may touch.
 template <class L, class PacketType>
 [[nodiscard]] GRIDIRON_INLINE std::uint32_t squares_near(const EdgeBatch<L>& batch, std::uint32_t index,
                                                          WorkCounters& work) {
@@ -59,17 +59,17 @@ template <class L, class PacketType>
   return squares & ((1u << kSquares) - 1u);
 }
 
-/// Subpackets beside a triangle.
+/// Subpackets that a triangle may touch.
 struct NearSubpackets {
   SubpacketSet touching;  ///< may be touched
   SubpacketSet covered;   ///< of these, all rays surely pass inside all three edges
   std::uint32_t rows;     ///< of these, rows of the packet that may be touched, bit i = row i
-  bool is_linear;         ///< rows may be asked for one by one: the edge functions' linear form holds
+  bool is_linear;         ///< whether rows may be tested one by one: the edge functions' linear form holds
 };
 
-/// @returns those of the `wanted` subpackets that triangle `index` of a batch may touch. One is left out where an edge
-/// surely passes all its rays on the outside: the edge function is linear, so its largest value is at a corner, and its
-/// least value, which shows that all are inside, at the opposite one.
+/// @returns those of the `wanted` subpackets that triangle `index` of a batch may touch. A subpacket is left out if all
+/// its rays surely pass an edge on the outside. The edge function is linear, so its largest value is at a corner; its
+/// least value, at the opposite corner, shows whether all rays are inside.
 template <class L, class PacketType>
 [[nodiscard]] GRIDIRON_OUTLINE NearSubpackets subpackets_near(const EdgeBatch<L>& batch, std::uint32_t index,
                                                               SubpacketSet wanted, std::uint32_t rows,

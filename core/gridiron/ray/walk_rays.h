@@ -17,10 +17,10 @@ struct WalkRays {
   alignas(64) float t[kWalkRays];           ///< how far to look; of closest hits: the nearest so far
   alignas(64) float dir_max[kWalkRays];     ///< largest |component|; set by the engine
   alignas(64) std::uint32_t id[kWalkRays];  ///< triangle of the nearest hit so far, kNoTriangle before
-  std::uint32_t owner[kWalkRays];           ///< whose ray it is: nothing to the walk
+  std::uint32_t owner[kWalkRays];           ///< index for the caller; the walk does not use it
 };
 
-/// What rays ask of their hits.
+/// What is asked about the hits of rays.
 struct RayQuestion {
   bool any_hit;          ///< whether there is one, or which is the nearest
   bool trusts_floats;    ///< Accuracy::kFast

@@ -88,7 +88,7 @@ class TileRenderer {
     return waits_for_output_ ? transfers_.wait(tag) : Status::kOk;
   }
 
-  // A tile without effects: what the eye rays hit becomes pixels in place, facing becomes colour.
+  // Renders a tile without effects: the hits become pixels in place, facing becomes colour.
   [[nodiscard]] Status render_hits(std::uint32_t left, std::uint32_t top, TileOutput& output) {
     const FrameHead& frame = store_.frame;
     Hits hits{output.id, frame.depth_address != 0 ? output.depth : nullptr, nullptr};
@@ -105,8 +105,8 @@ class TileRenderer {
     return Status::kOk;
   }
 
-  // A tile as the scene shades it: eye rays and what becomes of them, sample by sample. Depth and ids are those of the
-  // first.
+  // Renders a tile as the scene shades it: eye rays and their secondary rays, sample by sample. Depth and ids are those
+  // of the first sample.
   [[nodiscard]] Status render_effects(std::uint32_t left, std::uint32_t top, TileOutput& output) {
     const FrameHead& frame = store_.frame;
     effects_.begin_tile(left, top);
@@ -130,7 +130,7 @@ class TileRenderer {
     return Status::kOk;
   }
 
-  // Pixels of a tile that lie outside of the picture have no rays; their words leave with the tile all the same.
+  // Pixels of a tile outside of the picture have no rays, but their words are put with the tile.
   [[nodiscard]] bool is_at_edge(std::uint32_t left, std::uint32_t top) const {
     return left + Layout::kTileWidth > store_.frame.width || top + Layout::kTileWidth > store_.frame.height;
   }
@@ -141,8 +141,8 @@ class TileRenderer {
     fill_words(plane, Word{value});
   }
 
-  // What is waited for during a tile must not depend on the tiles before it: either those have places of their own in
-  // the queue, or, where it is too short for that, a tile has left before the next one begins.
+  // The waits during a tile must not depend on the tiles before it. So either those have places of their own in the
+  // queue, or, if it is too short for that, a tile has left before the next one begins.
   void share_queue() {
     const FrameHead& frame = store_.frame;
     std::uint32_t commands = 0;
@@ -188,7 +188,7 @@ class TileRenderer {
       return Status::kUnsupportedFrame;
     }
     if (is_scene_shaded() && !kHasEffects) return Status::kMissingEffect;
-    // An engine without code for eye rays has no other shading, and no exact distance of them.
+    // An engine without code for eye rays supports no other shading, and no exact distances of eye rays.
     if (!kTracesEyes<Layout> && (!is_scene_shaded() || frame.depth_address != 0)) return Status::kUnsupportedFrame;
     if (!is_scene_shaded()) return Status::kOk;
     if (frame.effects_address == 0 || frame.image_address == 0) return Status::kBadFrame;
@@ -196,7 +196,7 @@ class TileRenderer {
     return depth_ok && accuracy_traits(frame.accuracy).has_scene_shading ? Status::kOk : Status::kUnsupportedFrame;
   }
 
-  // Waits for the tiles still on their way, the oldest first: the order does not tell how many tiles this core had.
+  // Waits for all output slots, the oldest first; that order does not depend on the number of tiles this core had.
   [[nodiscard]] Status finish(Status outcome) {
     for (std::uint32_t i = 0; i < store_.frame.output_depth; ++i) {
       GRIDIRON_TRY(transfers_.wait(output_tag(output_slot_)));
@@ -238,8 +238,8 @@ template <class L, class Layout, Platform P>
   return renderer.run(frame);
 }
 
-/// @returns the EffectBits that a renderer lacks. Precondition: render_tiles has returned kMissingEffect for `store`.
-/// Built for no effect at all, it has not read the scene's and knows of kSceneShading alone.
+/// @returns the EffectBits that a renderer lacks. Precondition: render_tiles has returned kMissingEffect for `store`. A
+/// renderer built without effects does not read the scene's, and reports kSceneShading alone.
 template <class Layout>
 [[nodiscard]] std::uint32_t missing_effects(const LocalStore<Layout>& store) {
   if constexpr (Layout::kEffects != 0) {

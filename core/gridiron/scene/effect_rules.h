@@ -1,4 +1,4 @@
-// What holds for effects wherever they are: in a scene as it comes, in an image as it is written and as it is checked.
+// Rules of effects that a scene, the writer of an image and its checks share.
 // Source: core/EFFECTS.md. Memory: values. Threads: any. SPDX-License-Identifier: Apache-2.0
 #pragma once
 
@@ -20,16 +20,16 @@ inline constexpr float kMaxShareSum = 1.0f + 0x1p-20f;  ///< of scaled shares: 1
   return value >= low && value <= high;
 }
 
-/// Shares divided by m = max(1, (kd + ks) + T), each on its own; then diffuse = (kd / m) color and transmitted =
-/// (T / m) color. Every operation is rounded to float. An index that nothing is refracted by becomes 1.
+/// Shares divided by m = max(1, (kd + ks) + T), each on its own; then diffuse = (kd / m) color and transmitted = (T /
+/// m) color. Every operation is rounded to float. The index becomes 1 if nothing is transmitted.
 [[nodiscard]] MaterialRecord scaled_material(const Material& material);
 
 /// @returns the light as the image holds it: an area light's color divided by its samples, edges of a point light 0.
 /// @param grid  decides is_near: its bounds.
 [[nodiscard]] LightRecord light_record(const Light& light, const GridRecord& grid);
 
-/// @returns 1 where no coordinate of the light's point, or of an area light's four corners, is beyond kNearLightFactor
-/// times the largest of the bounds of the grid.
+/// @returns 1 if no coordinate of the light's point, or of an area light's four corners, exceeds kNearLightFactor times
+/// the largest of the grid's bounds.
 [[nodiscard]] std::uint32_t light_is_near(const LightRecord& light, const GridRecord& grid);
 
 /// @returns whether no coordinate of the light's point or corners is beyond kCoordinateLimit, and an area light's edges
@@ -45,7 +45,7 @@ inline constexpr float kMaxShareSum = 1.0f + 0x1p-20f;  ///< of scaled shares: 1
 /// @returns whether a normal's length differs from 1 by 2^-10 at most.
 [[nodiscard]] bool is_unit(const float normal[3]);
 
-/// What decides which effects a scene calls for: its lights, and the materials in use.
+/// The lights and the materials in use, which decide the effects that a scene needs.
 struct EffectsCall {
   bool point_light = false, area_light = false;  ///< of a color that is not 0
   bool reflects = false, refracts = false, shines = false, smooth = false;
@@ -58,11 +58,12 @@ struct EffectsCall {
   [[nodiscard]] std::uint32_t called_for(const EffectsRecord& scene) const;
 };
 
-/// @returns what of the record stands in the view itself; counts of triangles, called_for and offsets are 0.
+/// @returns the fields of the record that follow from the view alone; counts of triangles, called_for and offsets are
+/// 0.
 [[nodiscard]] EffectsRecord scene_settings(const EffectsView& effects);
 
-/// @returns whether the record's settings are within their ranges; else names the first field that is not, its place
-/// in the record beside it.
+/// Checks that the record's settings are within their ranges; else names the first field that is not, with its place in
+/// the record.
 struct SettingsError {
   const char* field = "";
   std::uint32_t offset = 0;

@@ -24,7 +24,7 @@ void copy(float out[3], const Vec3& v) {
   for (int axis = 0; axis < 3; ++axis) out[axis] = v[axis];
 }
 
-// The light without what the grid says of it.
+// The light without the fields that depend on the grid.
 LightRecord placed_light(const Light& light) {
   LightRecord record{};
   copy(record.corner, light.corner);
@@ -48,7 +48,7 @@ double corner_of(const LightRecord& light, int corner, int axis) {
   return double{light.corner[axis]} + (u + v);
 }
 
-// The largest |coordinate|; where one is no number or beyond the floats, that one.
+// The largest |coordinate|; if one is not a finite float, that one.
 double farthest_coordinate(const LightRecord& light) {
   double farthest = 0.0;
   for (int corner = 0; corner < corner_count(light); ++corner) {
@@ -89,7 +89,7 @@ Status check_lights(const EffectsView& effects) {
   return Status::kOk;
 }
 
-// Materials that are there; normals, all three or none, where the material is smooth.
+// Materials must exist; normals, all three or none, must be there exactly if the material is smooth.
 Status check_triangles(const MeshView& mesh, const EffectsView& effects) {
   const bool have_normals = !effects.triangle_normals.empty();
   for (std::size_t i = 0; i < mesh.triangles.size(); ++i) {
@@ -248,7 +248,7 @@ bool settings_are_in_range(const EffectsRecord& scene, SettingsError& error) {
 std::uint32_t effects_called_for(const EffectsView& effects) {
   EffectsCall call;
   for (const Light& light : effects.lights) call.add_light(placed_light(light));
-  std::uint32_t last = kNoTriangle;  // triangles of a material stand together more often than not
+  std::uint32_t last = kNoTriangle;  // triangles of a material are often contiguous
   for (const std::uint32_t index : effects.triangle_materials) {
     if (index == last || index >= effects.materials.size()) continue;
     call.add_material(scaled_material(effects.materials[index]));

@@ -1,5 +1,5 @@
-// The effects of a scene in the caller's memory: lights, materials, normals, environment. What readers fill and the
-// image builder takes. Model: core/EFFECTS.md.
+// The effects of a scene in the caller's memory: lights, materials, normals, environment. Readers fill it and the image
+// builder takes it. Model: core/EFFECTS.md.
 // Memory: borrowed. Threads: read-only. SPDX-License-Identifier: Apache-2.0
 #pragma once
 
@@ -13,7 +13,7 @@
 
 namespace gridiron {
 
-/// A material as a scene gives it; the image holds it scaled, so that energy never grows.
+/// A material as a scene describes it; the image holds it scaled, so that energy never grows.
 struct Material {
   Vec3 color{1, 1, 1};         ///< 0..1 each
   float kd = 1.0f;             ///< diffuse share, 0..1
@@ -24,7 +24,7 @@ struct Material {
   bool smooth_normals = false;  ///< its triangles have normals at their corners
 };
 
-/// A point light (samples = 0), or an area light corner + a edge_u + b edge_v, as bright in all as a point light.
+/// A point light (samples = 0), or an area light corner + a edge_u + b edge_v; both are equally bright.
 struct Light {
   Vec3 corner{0, 0, 0};       ///< where it is, or begins
   /// One edge of an area light.
@@ -50,14 +50,14 @@ struct EffectsView {
   std::span<const Vec3> environment_faces[6];           ///< +x -x +y -y +z -z; width^2 texels, first row on top; >= 0
 };
 
-/// @returns the effects that a scene calls for, EffectBits: of what its lights and its materials in use ask.
-/// Reflection and refraction: where a material in use has a share of them and the depth of recursion allows.
+/// @returns the EffectBits that a scene needs for its lights and its materials in use. Reflection and refraction need a
+/// material in use with a share of them and a sufficient depth of recursion.
 [[nodiscard]] std::uint32_t effects_called_for(const EffectsView& effects);
 
-/// Checks every range and count against the mesh, materials in use or not. Lights, all corners of area lights, lie
-/// within kCoordinateLimit, edges of area lights are not parallel; a triangle has normals where its material is
-/// smooth, and only there. What depends on the grid is count_scene_image's.
-/// Errors: kBadEffects, kBadIndex (a normal, a material that is not there). Cost: linear.
+/// Checks every range and count against the mesh, also for materials that are not in use. Lights and all corners of
+/// area lights lie within kCoordinateLimit, edges of area lights are not parallel, and exactly the triangles with
+/// smooth materials have normals. count_scene_image checks what depends on the grid.
+/// Errors: kBadEffects, kBadIndex (of a normal or a material). Cost: linear.
 [[nodiscard]] Status check_effects(const MeshView& mesh, const EffectsView& effects);
 
 }  // namespace gridiron

@@ -1,4 +1,4 @@
-// A triangle mesh in the caller's memory: what readers fill and the grid builder takes.
+// A triangle mesh in the caller's memory: readers fill it and the grid builder takes it.
 // Memory: borrowed. Threads: read-only. SPDX-License-Identifier: Apache-2.0
 #pragma once
 

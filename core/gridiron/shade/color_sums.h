@@ -10,16 +10,16 @@
 namespace gridiron {
 
 inline constexpr float kSumSteps = 0x1p20f;   ///< to a brightness of 1
-inline constexpr float kMostAdded = 4095.0f;  ///< what is brighter counts as this
+inline constexpr float kMostAdded = 4095.0f;  ///< brighter values count as this
 
-/// @returns the steps that one component adds; what is not above 0, NaN too, adds none.
+/// @returns the steps that one component adds; 0 unless it is above 0 (NaN included).
 [[nodiscard]] GRIDIRON_INLINE std::uint32_t sum_steps(float value) {
   const float positive = value > 0.0f ? value : 0.0f;
   const float within = positive < kMostAdded ? positive : kMostAdded;
   return static_cast<std::uint32_t>(static_cast<std::int64_t>(within * kSumSteps + 0.5f));
 }
 
-/// Adds without wrapping: of numbers that are not negative the order does not matter.
+/// Adds with saturation; for numbers that are not negative the order does not matter.
 GRIDIRON_INLINE void add_steps(std::uint32_t& sum, std::uint32_t steps) {
   const std::uint32_t total = sum + steps;
   sum = total < sum ? 0xFFFFFFFFu : total;

@@ -1,5 +1,6 @@
-// Effect renderer: what happens in a tile after its eye rays. Hits and the rays they cast are worked on in waves, the
-// deepest first; a wave fetches the surfaces it hit, lights them, and puts reflected and refracted rays into a queue.
+// Effect renderer: shades a tile's eye rays and traces their secondary rays. Hits and the rays they cast are handled in
+// waves, the deepest first; a wave fetches the surfaces it hit, lights them, and puts reflected and refracted rays into
+// a queue.
 // Source: core/EFFECTS.md. Memory: the local store; main memory for rays that wait. Threads: one core.
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
@@ -28,15 +29,14 @@
 
 namespace gridiron {
 
-/// @returns kOk, or kMissingEffect where not all effects called for are built; kBadFrame: there are no such effects.
+/// @returns kOk; kMissingEffect if a required effect is not built; kBadFrame if there is no such effect.
 [[nodiscard]] constexpr Status check_effects_built(std::uint32_t called_for, std::uint32_t built) {
   const std::uint32_t missing = called_for & ~built;
   if (missing == 0) return Status::kOk;
   return (missing & kAllEffects) != 0 ? Status::kMissingEffect : Status::kBadFrame;
 }
 
-/// Effects of one frame on one core. Layout::kEffects are those that there is code for; of these a scene gets what it
-/// calls for.
+/// Effects of one frame on one core. Layout::kEffects are those that are built; a scene uses those that it needs.
 template <class L, class Store, Platform P>
 class EffectRenderer {
  public:
@@ -59,7 +59,7 @@ class EffectRenderer {
         (spill_.bytes < spill_bytes(scene().recursion_depth) || spill_.address.value % kSpillAlignment != 0)) {
       return Status::kSpillTooSmall;
     }
-    // Materials that fit stay; a longer list is looked up one by one, and forgotten at every tile.
+    // Materials that fit stay. A longer list is fetched one by one, and discarded at every tile.
     for (std::uint32_t& index : store_.effects.material_of_slot) index = Effects::kNoMaterial;
     has_all_materials_ = scene().material_count <= Effects::kMaterialSlots;
     if (has_all_materials_) {
@@ -67,7 +67,7 @@ class EffectRenderer {
                            scene().material_count * static_cast<std::uint32_t>(sizeof(MaterialRecord))));
       for (std::uint32_t i = 0; i < scene().material_count; ++i) store_.effects.material_of_slot[i] = i;
     }
-    // Points that rays from lights end at are lifted by what the lights' places take of a float, see surface_point.
+    // The rounding of lights' positions adds to the lift of points that rays from lights end at, see surface_point.
     least_size_ = 0.0f;
     for (std::uint32_t first = 0; first < scene().light_count; first += Effects::kLightSlots) {
       GRIDIRON_TRY(load_lights(first));
@@ -92,14 +92,14 @@ class EffectRenderer {
     top_ = top;
     store_.work.charge_to(Work::kColorGroup);
     for (auto& sums : store_.effects.sums) fill_words(sums, std::uint32_t{0});
-    // So that a tile fetches the same whatever its core had before.
+    // So that a tile fetches the same whatever its core did before.
     if (scene().light_count > Effects::kLightSlots) store_.effects.first_light = Effects::kNoLight;
     if (has_all_materials_) return;
     for (std::uint32_t& index : store_.effects.material_of_slot) index = Effects::kNoMaterial;
   }
 
-  /// Works on what the eye rays of one sample of the tile have hit.
-  /// @param ids  a plane of the tile; written here where the engine has no code for eye rays.
+  /// Shades the hits of the eye rays of one sample of the tile.
+  /// @param ids  a plane of the tile; written here if the engine has no code for eye rays.
   [[nodiscard]] Status shade_sample(std::uint32_t sample, std::uint32_t* ids) {
     const FrameHead& frame = store_.frame;
     const PixelOffset offset = pixel_offset(samples_per_pixel(), sample);
@@ -131,11 +131,11 @@ class EffectRenderer {
       if constexpr (!kTracesEyes<Layout>) GRIDIRON_TRY(trace_eye_rays(count, ids));
       GRIDIRON_TRY(finish_wave(count, sample));
     }
-    // Not before: so that waves are full.
+    // Only now, so that waves are full.
     return empty_queue(sample);
   }
 
-  /// Makes pixels of the sums.
+  /// Turns the sums into pixels.
   void finish_tile(std::uint32_t* color) {
     transfers_.note_stage(Stage::kOutput);
     constexpr std::uint32_t kPixels = Store::kTilePixels;
@@ -187,7 +187,8 @@ class EffectRenderer {
                    lights_at_hand(first) * static_cast<std::uint32_t>(sizeof(LightRecord)));
   }
 
-  // Brings a material to hand. Records lie at multiples of 48 bytes, slots too: an odd index goes to an odd slot.
+  // Makes a material available. Records and slots both lie at multiples of 48 bytes, so an odd index goes to an odd
+  // slot.
   [[nodiscard]] Status find_material(std::uint32_t index, const MaterialRecord*& material) {
     const std::uint32_t slot = index % Effects::kMaterialSlots;
     material = store_.effects.materials + slot;
@@ -198,7 +199,7 @@ class EffectRenderer {
                    sizeof(MaterialRecord));
   }
 
-  // Traces the rays that wait, wave by wave, and what becomes of them.
+  // Traces the rays that wait, wave by wave, and the rays that they cast.
   [[nodiscard]] Status empty_queue(std::uint32_t sample) {
     if constexpr (has(kReflection | kRefraction)) {
       while (!queue_.empty()) {
@@ -216,7 +217,7 @@ class EffectRenderer {
     return Status::kOk;
   }
 
-  // Where the engine has no code for eye rays, they are traced like all others.
+  // Traces eye rays like all others, for engines without code for them.
   [[nodiscard]] Status trace_eye_rays(std::uint32_t ray_count, std::uint32_t* ids) {  // NOLINT: it is written to
     transfers_.note_stage(Stage::kPrimary);
     WaveRayJobs<Store> jobs(store_, ray_count, store_.frame.t_far);
@@ -226,7 +227,7 @@ class EffectRenderer {
     return Status::kOk;
   }
 
-  // Everything that happens to the rays of a wave once it is known what they hit.
+  // Shades the rays of a wave once their hits are known.
   [[nodiscard]] GRIDIRON_OUTLINE Status finish_wave(std::uint32_t ray_count, std::uint32_t sample) {
     store_.work.add(Work::kWaveRay, ray_count);
     Context context{store_, 0, sample, left_, top_};
@@ -244,7 +245,7 @@ class EffectRenderer {
     return Status::kOk;
   }
 
-  // Rays that leave the scene.
+  // Shades rays that leave the scene.
   [[nodiscard]] Status shade_misses(std::uint32_t ray_count, Context& context) {
     const auto add = [&](std::uint32_t i, Vector3 color) {
       store_.work.charge_to(Work::kColorAdded);
@@ -284,7 +285,7 @@ class EffectRenderer {
     return Status::kOk;
   }
 
-  // Turns the rays that hit something into points, and makes the rays that leave these.
+  // Turns the rays that hit something into points, and makes the rays that leave these points.
   [[nodiscard]] Status find_points(std::uint32_t ray_count, Context& context) {
     transfers_.note_stage(Stage::kSurface);
     std::uint32_t pending_count = 0;
@@ -306,7 +307,7 @@ class EffectRenderer {
     return Status::kOk;
   }
 
-  // Ray i, which hit `surface`, becomes the next point. Those before it are done: its place is free.
+  // Turns ray i, which hit `surface`, into the next point. The rays before it are done, so its place is free.
   [[nodiscard]] Status find_point(std::uint32_t i, const SurfaceRecord& surface, Context& context,
                                   std::uint32_t& pending_count) {
     store_.work.add(Work::kSurfacePoint);
@@ -378,7 +379,7 @@ class EffectRenderer {
         });
   }
 
-  // Knows a point's shading normal: makes the rays that leave it, and what light is worth there.
+  // Finishes a point with its shading normal: makes the rays that leave it, and prepares its light.
   [[nodiscard]] GRIDIRON_OUTLINE Status finish_point(WavePoint& point, Vector3 shading, Vector3 behind, Vector3 weight,
                                                      const MaterialRecord& material, bool enters) {
     store_.work.charge_to(Work::kSurfacePoint);
@@ -395,7 +396,7 @@ class EffectRenderer {
     return Status::kOk;
   }
 
-  // Reflected and refracted rays of a point.
+  // Casts reflected and refracted rays of a point.
   [[nodiscard]] Status cast_rays(const WavePoint& point, Vector3 shading, Vector3 behind, Vector3 weight,
                                  const MaterialRecord& material, bool enters) {
     const bool is_glass = has(kRefraction) && material.transmittance > 0.0f;
@@ -438,7 +439,7 @@ class EffectRenderer {
     return queue_.push(ray);
   }
 
-  // Light of all lights, as many at a time as are at hand.
+  // Adds the light of all lights, as many at a time as fit the store.
   [[nodiscard]] GRIDIRON_INLINE Status light_points(Context& context) {
     transfers_.note_stage(Stage::kShadow);
     for (std::uint32_t first = 0; first < scene().light_count; first += Effects::kLightSlots) {

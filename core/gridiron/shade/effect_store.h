@@ -1,5 +1,5 @@
-// What effects keep in the local store: the scene's record, materials and lights at hand, sums of pixels, a queue of
-// rays; and the wave, the rays and hits being worked on, which lies where the packet does while eye rays are traced.
+// Memory of the effects in the local store: the scene's record, materials and lights, sums of pixels, a queue of rays;
+// and the wave of rays and hits being worked on, which shares the packet's memory.
 // Memory: is the memory. Threads: one core. SPDX-License-Identifier: Apache-2.0
 #pragma once
 
@@ -15,14 +15,14 @@
 
 namespace gridiron {
 
-/// What a hit does with light: shares of what the ray is worth.
+/// How a hit reflects light: shares of the ray's weight.
 struct LitHit {
   float diffuse[3];
   float specular[3];
   float shine;
 };
 
-/// A hit whose shading normal is still to be made of its triangle's.
+/// A hit whose shading normal is still to be computed from its triangle's.
 struct PendingHit {
   float behind[3];         ///< origin of refracted rays
   float weight[3];         ///< of the ray
@@ -30,7 +30,7 @@ struct PendingHit {
   std::uint32_t material;  ///< index | enters << 31: the ray ran against the winding's normal
 };
 
-/// A hit, as light and secondary rays need it. Directions are unit to rounding.
+/// A hit with the data that light and secondary rays need. Directions are unit to rounding.
 struct WavePoint {
   float point[3];       ///< on the side that the ray came from, lifted
   float face[3];        ///< the triangle's normal on the ray's side
@@ -45,21 +45,21 @@ struct WavePoint {
   std::uint32_t is_pending;  ///< 0, 1
 };
 
-/// A ray of a wave becomes its hit, where there is one.
+/// A ray of a wave, which becomes its hit if there is one.
 union WaveItem {
   QueuedRay ray;
   WavePoint point;
 };
 
-/// @tparam RayStore  the engine's, while it traces other rays than eye rays.
+/// @tparam RayStore  the engine's memory while it traces rays other than eye rays.
 template <class RayStore, std::uint32_t WaveRayCount>
 struct alignas(128) Wave {
   RayStore engine;
-  std::uint32_t ids[WaveRayCount];  ///< triangles hit, kNoTriangle where none
+  std::uint32_t ids[WaveRayCount];  ///< triangles hit, kNoTriangle without a hit
   WaveItem items[WaveRayCount];
 };
 
-/// What a layout with effects keeps besides.
+/// Memory of a layout with effects for the whole frame.
 template <class Layout>
 struct alignas(128) EffectStore {
   static constexpr std::uint32_t kTilePixels = Layout::kTileWidth * Layout::kTileWidth;
@@ -77,19 +77,19 @@ struct alignas(128) EffectStore {
   alignas(128) MaterialRecord materials[kMaterialSlots];  ///< direct-mapped by index
   alignas(128) LightRecord lights[kLightSlots];           ///< first_light and those that follow it, or none
   alignas(128) QueuedRay queue[kQueueRays];
-  alignas(128) std::uint32_t sums[3][kTilePixels];  ///< RGB, steps of 2^-20, what all samples of a pixel add up to
+  alignas(128) std::uint32_t sums[3][kTilePixels];  ///< RGB in steps of 2^-20, summed over all samples of a pixel
   alignas(128) std::uint32_t hit_ids[kTilePixels];  ///< of the eye rays of samples after the first
   std::uint32_t material_of_slot[kMaterialSlots];
   std::uint32_t first_light;
 };
 
-/// Main memory of one core for secondary rays that wait; of frames without effects, none.
+/// Main memory of one core for secondary rays that wait; empty for frames without effects.
 struct SpillRegion {
   MainAddress address{};    ///< a multiple of kSpillAlignment
   std::uint64_t bytes = 0;  ///< at least spill_bytes(recursion_depth) of the frame's scene
 };
 
-/// Stand where a layout has no effects.
+/// Takes the effects' place in a layout without them.
 struct NoEffectStore {};
 struct NoWave {};
 

@@ -25,14 +25,14 @@ inline void sine_cosine_of_turn(float turn, float& sine, float& cosine) {
   cosine = ((quarter + 1) & 2) != 0 ? -cosine_part : cosine_part;
 }
 
-/// base^exponent for base in [0, 1], exponent in [0, 1e5]: in [0, 1], within 2^-21, and where it is 2^-126 or more
-/// within 2^-14 of itself. What would be less is 0. Exponent 0 gives 1, else a base below 2^-126 gives 0; a base above
-/// 1, which a cosine may be by rounding, counts as 1.
+/// base^exponent for base in [0, 1], exponent in [0, 1e5]: in [0, 1], within 2^-21, and results of at least 2^-126
+/// within 2^-14 of themselves. Smaller results are 0. Exponent 0 gives 1; else a base below 2^-126 gives 0. A base
+/// above 1, which rounding can make of a cosine, counts as 1.
 ///
-/// With z = exponent log2(base), an error of z relative to z is enough, for 2^z |z| ln 2 never exceeds 1 / e: so floats
-/// do for any exponent. log2(base) = k + log2(m), m in [sqrt(1/2), sqrt(2)): near base 1 k is 0 and m - 1 exact; else
-/// |log2(base)| >= 1/2 and nothing cancels. log2(m) = s P(s^2), s = (m - 1) / (m + 1), |s| < 0.172, P within 2^-30.4
-/// of itself. 2^z = 2^n 2^r, |r| <= 1/2, the latter within 2^-28.5 of itself.
+/// With z = exponent log2(base), a small error of z relative to z is enough, for 2^z |z| ln 2 never exceeds 1 / e: so
+/// floats suffice for any exponent. log2(base) = k + log2(m), m in [sqrt(1/2), sqrt(2)): near base 1, k is 0 and m - 1
+/// exact; else |log2(base)| >= 1/2 and nothing cancels. log2(m) = s P(s^2), s = (m - 1) / (m + 1), |s| < 0.172, P
+/// within 2^-30.4 of itself. 2^z = 2^n 2^r, |r| <= 1/2, the latter within 2^-28.5 of itself.
 /// Source: core/EFFECTS.md, "Lights".
 [[nodiscard]] inline float power(float base, float exponent) {
   constexpr std::uint32_t kOne = 0x3F800000u, kRootOfHalf = 0x3F3504F3u;  // 1, sqrt(1/2), as patterns

@@ -9,12 +9,12 @@
 
 namespace gridiron {
 
-/// `direction` thrown back by a mirror of this normal. Both unit to rounding; so is the result.
+/// Reflects `direction` about a normal. Both are unit to rounding; so is the result.
 [[nodiscard]] inline Vector3 reflect(Vector3 direction, Vector3 normal) {
   return direction - (2.0f * dot(direction, normal)) * normal;
 }
 
-/// reflect about the shading normal; about the face's where that would lead beneath the face.
+/// reflect about the shading normal, or about the face's normal if that would lead beneath the face.
 /// @param direction  unit. @param face  the face's normal on the side that the ray comes from.
 [[nodiscard]] inline Vector3 reflect_off(Vector3 direction, Vector3 shading, Vector3 face) {
   const Vector3 about_shading = reflect(direction, shading);
@@ -34,11 +34,10 @@ struct Refraction {
 
 /// Snell's law and Fresnel's share of unpolarised light.
 ///
-/// @param direction  unit to rounding. @param normal  likewise, against the direction: where dot(direction, normal) is
-///                   above 0, by rounding, the ray counts as grazing, c = 0.
+/// @param direction  unit to rounding. @param normal  likewise, against the direction: if rounding makes dot(direction,
+///                   normal) positive, the ray counts as grazing, c = 0.
 /// @param ratio      refraction_ratio, 0.1..10.
-/// No result is NaN: where c and f are both 0, a grazing ray where nothing bends, the share is 1, as of all grazing
-/// rays.
+/// No result is NaN: if c and f are both 0 (a grazing ray and no refraction) the share is 1, as for all grazing rays.
 [[nodiscard]] inline Refraction refract(Vector3 direction, Vector3 normal, float ratio) {
   const float against = -dot(direction, normal);
   const float c = against > 0.0f ? against : 0.0f;
@@ -54,18 +53,18 @@ struct Refraction {
   return {ratio * direction + (ec - f) * normal, is_total || !has_share ? 1.0f : share, is_total};
 }
 
-/// refract about the shading normal; about the face's where that would not lead through the face.
+/// refract about the shading normal, or about the face's normal if that would not lead through the face.
 [[nodiscard]] inline Refraction refract_through(Vector3 direction, Vector3 shading, Vector3 face, float ratio) {
   const Refraction about_shading = refract(direction, shading, ratio);
   if (about_shading.is_total || dot(about_shading.direction, face) < 0.0f) return about_shading;
   return refract(direction, face, ratio);
 }
 
-/// R: what a reflected ray's weight is multiplied with. @param fresnel  1 where the material lets nothing through.
+/// R: the factor on a reflected ray's weight. @param fresnel  1 if the material is opaque.
 [[nodiscard]] inline float reflected_share(const MaterialRecord& material, float fresnel) {
   return material.specular + material.transmittance * fresnel;
 }
-/// Q: what a refracted ray's weight is multiplied with, RGB.
+/// Q: the factor on a refracted ray's weight, RGB.
 [[nodiscard]] inline Vector3 refracted_share(const MaterialRecord& material, float fresnel) {
   return (1.0f - fresnel) * vector_of(material.transmitted);
 }

@@ -1,5 +1,5 @@
-// Ray queue: secondary rays that wait for their turn, a stack of which the top is in the local store; what it has no
-// room for goes to main memory in blocks, the oldest first, and comes back when it is needed.
+// Ray queue: secondary rays that wait for their turn. A stack with its top in the local store; when it is full, the
+// oldest rays go to main memory in blocks, and come back when they are needed.
 // Memory: EffectStore and the caller's SpillRegion. Threads: one core. SPDX-License-Identifier: Apache-2.0
 #pragma once
 
@@ -35,7 +35,8 @@ class RayQueue {
     return Status::kOk;
   }
 
-  /// Takes up to kWaveRays rays off the top, those pushed last; take(i, ray) is given them in the order of pushing.
+  /// Takes up to kWaveRays rays off the top, the last pushed; calls take(i, ray) in the order in which they were
+  /// pushed.
   template <class Take>
   [[nodiscard]] Status pop_wave(std::uint32_t& taken, Take&& take) {
     while (spilled_blocks_ != 0 && count_ < Store::kWaveRays && count_ + Store::kSpillBlockRays <= Store::kQueueRays) {

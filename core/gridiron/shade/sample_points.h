@@ -10,7 +10,7 @@
 
 namespace gridiron {
 
-/// A word of which every bit depends on every bit of `h`; no two words give the same. Source: "Jitter".
+/// A word whose every bit depends on every bit of `h`; one-to-one. Source: "Jitter".
 [[nodiscard]] constexpr std::uint32_t mix32(std::uint32_t h) {
   h ^= h >> 16;
   h *= 0x7feb352du;
@@ -24,7 +24,7 @@ namespace gridiron {
   return static_cast<float>(static_cast<std::int32_t>(word >> 8)) * 0x1p-24f;
 }
 
-/// What the jitter of a ray's hit begins with. @param pixel  row * width + column in the frame. Source: "Jitter".
+/// Start of the jitter of a ray's hit. @param pixel  row * width + column in the frame. Source: "Jitter".
 [[nodiscard]] constexpr std::uint32_t sample_seed(std::uint32_t path, std::uint32_t sample, std::uint32_t pixel) {
   return mix32(mix32(mix32(path) + sample) + pixel);
 }
@@ -54,7 +54,7 @@ struct Jitter {
   return static_cast<float>(static_cast<std::int32_t>(s)) * 0x1p-8f;
 }
 
-/// From a pixel's centre, in pixels, exact.
+/// Offset from a pixel's centre, in pixels, exact.
 struct PixelOffset {
   float dx, dy;
 };
@@ -68,13 +68,13 @@ struct PixelOffset {
   return {(column + 0.5f) * step - 0.5f, (row + 0.5f) * step - 0.5f};
 }
 
-/// Along the edges of an area light, or of the unit square.
+/// A point along the edges of an area light, or of the unit square.
 struct SquarePlace {
   float a;  ///< [0, 1]; 1 by rounding alone
   float b;  ///< [0, 1)
 };
 
-/// Place s of `count`: one in each stripe of a, well spread in b. Source: "Lights".
+/// Point s of `count`: one in each stripe of a, well spread in b. Source: "Lights".
 /// @param s  below count. @param count  1..kMaxEffectSamples.
 [[nodiscard]] inline SquarePlace area_light_place(std::uint32_t s, std::uint32_t count, Jitter jitter) {
   const float index = static_cast<float>(static_cast<std::int32_t>(s));
@@ -96,7 +96,8 @@ struct Tangents {
   return {{1.0f + g * x * x * q, g * p, -g * x}, {p, g + y * y * q, -y}};
 }
 
-/// Direction s of `count` over a normal, unit to 2^-20, spread as the cosine to the normal. Source: "Ambient light".
+/// Direction s of `count` over a normal, unit to 2^-20, distributed by the cosine to the normal. Source: "Ambient
+/// light".
 /// @param s  below count. @param count  1..kMaxEffectSamples. @param normal  unit to rounding.
 [[nodiscard]] inline Vector3 occlusion_direction(std::uint32_t s, std::uint32_t count, Jitter jitter, Vector3 normal) {
   const SquarePlace place = area_light_place(s, count, jitter);  // turn and u

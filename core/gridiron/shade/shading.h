@@ -21,11 +21,11 @@ template <class L>
   return level | (level << 8) | (level << 16) | L::Int::splat(0xFF000000u);
 }
 
-/// Writes the colours of a frame that the scene does not shade.
+/// Writes the colours of a frame without the scene's shading.
 ///
-/// @param hits         with facing where the frame is shaded by it.
-/// @param pixel_count  of the planes, from the first: a multiple of L::kCount.
-/// @param color        RGBA8, as many; may be hits.facing's own memory.
+/// @param hits         with facing for Shading::kSimple.
+/// @param pixel_count  pixels from the planes' start: a multiple of L::kCount.
+/// @param color        RGBA8, as many; may share the memory of hits.facing.
 template <class L>
 void shade_hits(const FrameHead& frame, const Hits& hits, std::uint32_t pixel_count, std::uint32_t* color,
                 WorkCounters& work) {

@@ -44,12 +44,13 @@ constexpr GRIDIRON_INLINE void store(Vector3 a, float* target) {
   return (a.x * b.x + a.y * b.y) + a.z * b.z;
 }
 
-/// a / |a|, its length 1 within 2^-21, whatever finite size a has; the zero vector stays one, so that a dot product
-/// with it is 0. Where a core flushes denormals, vectors of such components alone count as zero.
+/// a / |a|, its length 1 within 2^-21, for any finite size of a. The zero vector stays zero, so that a dot product with
+/// it is 0. Where a core flushes denormals, vectors of denormals alone count as zero.
 [[nodiscard]] inline Vector3 normalized(Vector3 a) {
   const float xy = magnitude(a.x) > magnitude(a.y) ? magnitude(a.x) : magnitude(a.y);
   const float size = magnitude(a.z) > xy ? magnitude(a.z) : xy;
-  // A power of two that brings the size near 1, so that squares neither overflow nor vanish. 2^-127 is no normal float.
+  // A power of two that brings the size near 1, so that squares neither overflow nor vanish; 2^-127 is not a normal
+  // float.
   std::uint32_t exponent = std::bit_cast<std::uint32_t>(size) >> 23;
   exponent = exponent < 1 ? 1 : exponent > 253 ? 253 : exponent;
   const Vector3 near_one = std::bit_cast<float>((254 - exponent) << 23) * a;

@@ -1,4 +1,4 @@
-// Jobs of a wave: which rays its hits send to lights and into the open, and what their answers are worth.
+// Jobs of a wave: the rays that its hits send to lights and into the open, and the light that their answers add.
 // Source: core/EFFECTS.md. Memory: the local store. Threads: one core. SPDX-License-Identifier: Apache-2.0
 #pragma once
 
@@ -31,7 +31,7 @@ GRIDIRON_INLINE void set_walk_ray(WalkRays& rays, std::uint32_t i, Vector3 origi
   rays.owner[i] = owner;
 }
 
-/// What jobs share: the hits of the wave, the pixels' sums.
+/// Shared by the jobs: the hits of the wave and the pixels' sums.
 ///
 /// @tparam Store  LocalStore of a layout with effects.
 template <class Store>
@@ -43,7 +43,7 @@ struct WaveContext {
 
   [[nodiscard]] const WavePoint& point(std::uint32_t i) const { return store.wave.items[i].point; }
 
-  /// Adds a colour to the sum of a pixel, given as in QueuedRay.
+  /// Adds a colour to a pixel's sum. @param pixel  as in QueuedRay.
   void add_color(std::uint32_t pixel, Vector3 color) const {
     store.work.add(Work::kColorAdded);
     store.work.charge_to(Work::kColorAdded);
@@ -61,7 +61,7 @@ struct WaveContext {
   }
 };
 
-/// Rays to the lights at hand. @tparam Built  EffectBits that there is code for.
+/// Rays to the lights in the local store. @tparam Built  EffectBits that the code is compiled for.
 template <class Store, std::uint32_t Built>
 class LightJobs {
  public:
@@ -155,7 +155,7 @@ class LightJobs {
     return corner;
   }
 
-  // Adds what a light does to a hit that it reaches.
+  // Adds the light that reaches a hit.
   GRIDIRON_OUTLINE void light_point(const LightRecord& light, const WavePoint& point, Vector3 to_light) {
     WorkCounters& work = context_.store.work;
     work.charge_to(Work::kLightSample);
@@ -181,7 +181,7 @@ class LightJobs {
   std::uint32_t light_ = 0, sample_ = 0, first_point_ = 0;
 };
 
-/// Rays into the open, which ambient light comes from.
+/// Rays into the open, for ambient light.
 template <class Store>
 class OcclusionJobs {
  public:

@@ -1,4 +1,4 @@
-// The local store: every byte a core works in, one struct, in address order.
+// The local store: all memory that a core works in, as one struct in address order.
 // Memory: is the memory. Threads: one core. SPDX-License-Identifier: Apache-2.0
 #pragma once
 
@@ -17,8 +17,8 @@
 
 namespace gridiron {
 
-// A layout is a set of sizes; none changes a pixel. The tile's width is a parameter of each: which widths a core has
-// room for, kFitsArena tells. The reference shows the members of one of them, for the others have the same.
+// A layout is a set of sizes; none changes a pixel. The tile's width is a template parameter; kFitsArena checks which
+// widths a core can hold. The reference documents the members of one layout; the others have the same.
 
 /// Sizes of a 256 KB core (Cho, Kim, Han 2012, section 6).
 /// @tparam PacketWidthV  rays along a packet's edge: 4, 8, 16, 32, at most the tile's width.
@@ -32,11 +32,11 @@ struct StoreLayout256K {
   static constexpr std::uint32_t kStackBudgetBytes = 8704;         ///< of it for the stack
   static constexpr std::uint32_t kTileWidth = TileWidthV;          ///< pixels along a tile's edge
   static constexpr std::uint32_t kPacketWidth = PacketWidthV;      ///< rays along a packet's edge; 0: no packets
-  /// Triangles that a packet remembers to have met.
+  /// Triangles that a packet remembers having tested.
   static constexpr std::uint32_t kMailboxSlots = PacketWidthV < 16                        ? 64
                                                  : PacketWidthV == 32 && TileWidthV != 64 ? 1024
                                                                                           : 256;
-  /// Triangles that a packet keeps of those hit lately.
+  /// Recently hit triangles that a packet keeps.
   static constexpr std::uint32_t kRecentTriangles = PacketWidthV == 32 && TileWidthV != 64 ? 256 : 32;
   static constexpr std::uint32_t kTableEntries = 4096;  ///< 131,072 macrocells resident
   static constexpr std::uint32_t kMaxMacroWidth = 8;   ///< cells along a macrocell's edge, at most
@@ -46,8 +46,8 @@ struct StoreLayout256K {
   static constexpr std::uint32_t kMaxOutputDepth = 2;  ///< tiles that are made or on their way out
 };
 
-/// Sizes of a 64 KB core: smaller tiles and buffers. The code budget is that of a core with vectors; without them the
-/// code of packets is too long for 64 KB, and EffectLayout64K is what such a core takes.
+/// Sizes of a 64 KB core: smaller tiles and buffers. The code budget is for a core with vectors. Without vectors the
+/// code of packets is too long for 64 KB, and a core requires EffectLayout64K.
 template <std::uint32_t PacketWidthV = 8, std::uint32_t TileWidthV = 16>
 struct StoreLayout64K {
   /// @cond
@@ -141,9 +141,9 @@ struct EffectLayout256K {
 };
 
 /// Sizes of a 64 KB core that renders effects: no packets, all rays by walks, whose code is shorter. All effects fit,
-/// as tools/checks/effect_sizes tells; on a core without vectors only with Lanes<1> (base/one_lane.h).
+/// as tools/checks/effect_sizes measures; on a core without vectors only with Lanes<1> (base/one_lane.h).
 /// @tparam BuiltV     as above.
-/// @tparam WaveRaysV  rays of a wave: 32, 64; what a longer one takes must be spared in code.
+/// @tparam WaveRaysV  rays of a wave: 32, 64; a longer one takes memory that a smaller set of effects leaves free.
 template <std::uint32_t BuiltV, std::uint32_t WaveRaysV = 32>
 struct EffectLayout64K {
   /// @cond
@@ -168,7 +168,7 @@ struct EffectLayout64K {
 };
 
 /// @cond
-/// Parts of a local store that depend on what its layout is for.
+/// Parts of a local store that depend on the layout's effects.
 template <class Layout, bool kHas = Layout::kEffects != 0>
 struct EffectParts {
   using StoreWave = NoWave;
@@ -201,12 +201,12 @@ struct alignas(128) LocalStore {
   };
 
   alignas(128) Frame<typename Engine::Record> frame;  ///< a copy of the frame's
-  alignas(128) WorkCounters work;  ///< what was done; of the last frame until the next one begins
-  EngineStore engine;              ///< the engine's, for the whole frame
+  alignas(128) WorkCounters work;  ///< work of the current frame, or of the last one until the next begins
+  EngineStore engine;              ///< the engine's memory for the whole frame
   /// @cond
   union {
-    EyeStore packet;  ///< the engine's, while eye rays are traced
-    StoreWave wave;   ///< while what they hit is worked on
+    EyeStore packet;  ///< the engine's memory while eye rays are traced
+    StoreWave wave;   ///< used while their hits are shaded
   };
   /// @endcond
   TileOutput output[Layout::kMaxOutputDepth];  ///< in rotation
@@ -223,7 +223,7 @@ template <class Layout>
 inline constexpr std::uint32_t kDataRoomBytes =
     Layout::kArenaBytes - Layout::kCodeBudgetBytes - Layout::kStackBudgetBytes;
 
-/// The budget of a layout holds. Of the layouts that are named here it does, or the build stops.
+/// Whether the store fits the layout's budget. The build fails if one of the layouts below does not.
 template <class Layout>
 inline constexpr bool kFitsArena = sizeof(LocalStore<Layout>) <= kDataRoomBytes<Layout>;
 
@@ -238,7 +238,7 @@ static_assert(kFitsArena<EffectLayout256K<kAllEffects, 8>> && kFitsArena<EffectL
 static_assert(kFitsArena<StoreLayout512K<8>> && kFitsArena<StoreLayout512K<32>> && kFitsArena<StoreLayout512K<8, 64>> &&
               kFitsArena<StoreLayout512K<32, 64>>);
 
-// A frame's record has two parts, one of them a base: for which compilers warn of offsetof, and have it all the same.
+// A frame's record has two parts, one of them a base. Compilers warn of offsetof on such a type, but support it.
 #pragma GCC diagnostic push
 #pragma GCC diagnostic ignored "-Winvalid-offsetof"
 /// Calls visit(name, offset_bytes, bytes) for every region of the store, in address order.

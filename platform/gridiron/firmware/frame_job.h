@@ -1,5 +1,5 @@
-// A frame as a device is given it, and what the device gives back: plain records in main memory, the same bytes on the
-// host and on every board. `gridiron job` writes the first, a board's firmware the second.
+// The input and output of a device that renders a frame: plain records in main memory, the same bytes on the host and
+// on every board. `gridiron job` writes the input, a board's firmware the output.
 // Memory: main memory; all addresses are absolute there. Threads: none. SPDX-License-Identifier: Apache-2.0
 #pragma once
 
@@ -14,13 +14,13 @@ inline constexpr std::uint32_t kFrameJobMagic = 0x424F4A47;     // "GJOB"
 inline constexpr std::uint32_t kFrameResultMagic = 0x53455247;  // "GRES"
 inline constexpr std::uint32_t kFrameJobVersion = 2;
 
-/// Cores of a board that take part in a frame, at most.
+/// The most cores of a board that take part in a frame.
 inline constexpr std::uint32_t kMostBoardCores = 16;
-/// Kinds of work that a result has room for; kWorkKindCount of core is held against it where both are known.
+/// The most kinds of work that a result can hold; checked against core's kWorkKindCount where both are known.
 inline constexpr std::uint32_t kMostWorkKinds = 95;
 
-/// The job stands at the start of its file, which is loaded at base_address. Frame record and scene image follow in the
-/// file; memory for the result and for rays that wait comes behind it. What is not loaded need not be zero.
+/// The job begins its file, which is loaded at base_address. Frame record and scene image follow in the file; the
+/// memory for the result and for rays that wait comes after it. Memory that is not loaded need not be zero.
 struct FrameJob {
   std::uint32_t magic;
   std::uint32_t version;
@@ -31,8 +31,8 @@ struct FrameJob {
   std::uint64_t image_address;   ///< the scene image
   std::uint64_t image_bytes;
   std::uint64_t result_address;  ///< FrameResult, then tile_count TileResults, then the planes
-  std::uint64_t result_bytes;    ///< all three: what the device writes out when the frame is done
-  std::uint64_t color_address;   ///< planes, tile-major whole tiles, on kLineBytes; depth and ids 0 where not wanted
+  std::uint64_t result_bytes;    ///< of all three; the device writes them out when the frame is done
+  std::uint64_t color_address;   ///< planes, tile-major whole tiles, on kLineBytes; depth and ids 0 if not requested
   std::uint64_t depth_address;
   std::uint64_t ids_address;
   std::uint64_t plane_bytes;     ///< of each
@@ -41,8 +41,8 @@ struct FrameJob {
   std::uint32_t spill_cores;     ///< cores that there is such memory for
   std::uint32_t tile_count;
   std::uint32_t width, height;   ///< pixels
-  std::uint32_t tile_width;      ///< pixels: a firmware refuses a job whose tiles are not its layout's
-  std::uint32_t effects;         ///< EffectBits that the scene calls for, 0: no scene shading
+  std::uint32_t tile_width;      ///< pixels: a firmware with another tile width refuses the job
+  std::uint32_t effects;         ///< EffectBits that the scene requires, 0: no scene shading
   std::uint32_t packet_width;    ///< rays along a packet's edge that the buffers were chosen for, 0: none; work depends
                                  ///< on it, the picture does not
   std::uint32_t store_bytes;     ///< the arena that they were chosen for: 64, 128, 256 or 512 KB
@@ -51,7 +51,7 @@ struct FrameJob {
 };
 static_assert(sizeof(FrameJob) == 256);
 
-/// What one core did.
+/// The work of one core.
 struct CoreResult {
   std::uint32_t status;           ///< Status of render_tiles; kNotRun where the core never came back
   std::uint32_t tiles;            ///< claimed
@@ -65,22 +65,22 @@ struct CoreResult {
 static_assert(sizeof(CoreResult) == 416);
 inline constexpr std::uint32_t kNotRun = 0xFFFFFFFFu;
 
-/// What one tile took, in the order of tile ids.
+/// The work of one tile; results are in the order of tile ids.
 struct TileResult {
-  std::uint32_t core;          ///< that claimed it; kNotRun where none did
+  std::uint32_t core;          ///< that claimed it; kNotRun if none did
   std::uint32_t transfers;     ///< between this claim and the next; 0: not counted
   std::uint64_t instructions;  ///< from this claim to the next, where the board counts them, else 0
 };
 static_assert(sizeof(TileResult) == 16);
 
-/// Written whole by the device before result_bytes from its address on are taken off the board.
+/// Written completely by the device, before the result_bytes from its address on are taken off the board.
 struct FrameResult {
   std::uint32_t magic;
   std::uint32_t version;
   std::uint32_t core_count;  ///< cores that took part
   std::uint32_t status;      ///< of the frame: the first that is not kOk, cores in order
   std::uint32_t work_kinds;  ///< kWorkKindCount of the firmware's core
-  std::uint32_t lane_count;  ///< rays of a group, as the firmware's Lanes have them; 0 stands for 4
+  std::uint32_t lane_count;  ///< rays of a group, as in the firmware's Lanes; 0 stands for 4
   std::uint32_t queue_depth; ///< of the port's limits; 0 stands for the default, 16
   std::uint32_t reserved[9];
   CoreResult cores[kMostBoardCores];  ///< all zero from core_count on

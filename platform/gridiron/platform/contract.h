@@ -17,7 +17,7 @@ struct MainAddress {
 
   /// Same address.
   friend constexpr bool operator==(MainAddress, MainAddress) = default;
-  /// @returns the address so many bytes on.
+  /// @returns the address `bytes` further on.
   [[nodiscard]] constexpr MainAddress offset_by(std::uint64_t bytes) const { return {value + bytes}; }
 };
 
@@ -36,8 +36,8 @@ struct TagMask {
   friend constexpr TagMask operator|(TagMask a, TagMask b) { return {a.bits | b.bits}; }
 };
 
-/// What one platform's transfers may look like. Core keeps to the portable subset (see kPortable...) on every platform,
-/// and to queue_depth; the rest is what the platform checks.
+/// Limits of a platform's transfers. Core keeps to the portable subset (see kPortable...) on every platform, and to
+/// queue_depth; the platform checks the other limits.
 struct PlatformLimits {
   std::uint32_t alignment_bytes = 16;      ///< both ends, and the size, are multiples of this
   std::uint32_t congruence_bytes = 32;     ///< both ends are congruent modulo this
@@ -47,8 +47,8 @@ struct PlatformLimits {
   std::uint32_t queue_depth = 16;          ///< commands that may be pending at once; 1 is legal
 };
 
-/// The transfers core issues, on every target alike, so that counters agree on every board: at most 4,096 bytes and
-/// a multiple of 16, both ends congruent modulo 32, the main-memory side crossing no multiple of 4,096.
+/// The transfers that core starts, the same on every target, so that counters agree on all boards: at most 4,096 bytes
+/// and a multiple of 16, both ends congruent modulo 32, the main-memory side crossing no multiple of 4,096.
 inline constexpr std::uint32_t kPortableGranuleBytes = 16;
 inline constexpr std::uint32_t kPortableCongruenceBytes = 32;     ///< both ends are congruent modulo this
 inline constexpr std::uint32_t kPortableMaxTransferBytes = 4096;  ///< largest transfer
@@ -56,7 +56,7 @@ inline constexpr std::uint32_t kPortableBoundaryBytes = 4096;     ///< no transf
 
 /// Answer of claim_tile().
 struct TileClaim {
-  /// What is to be done.
+  /// What the core has to do.
   enum class Kind : std::uint8_t {
     kTile,      ///< render tile `tile_id`
     kNone,      ///< no tile is left
@@ -70,8 +70,8 @@ struct TileClaim {
 /// One core of a chip, as seen by the code that runs on it.
 ///
 /// get   starts a copy of `bytes` from main memory to local memory. The destination is undefined until the wait.
-/// put   starts a copy of `bytes` from local memory to main memory. Bytes stored before the call are what is sent;
-///       the source must not change until the wait.
+/// put   starts a copy of `bytes` from local memory to main memory. The bytes stored before the call are sent; the
+///       source must not change until the wait.
 /// wait  blocks until every transfer of the tags in the mask has ended; afterwards loads see the data. A tag without
 ///       pending transfers is legal and ends at once. Returns kTransferFailed / kTransferTimedOut if one of them did
 ///       not succeed; all transfers of the mask have ended even then.
@@ -90,16 +90,16 @@ concept Platform = requires(P& platform, const P& constant, void* local, const v
   { platform.claim_tile() } -> std::same_as<TileClaim>;
 };
 
-/// A platform that also wants to know how much work was done between its calls (the simulator's clock). Core calls
-/// it before every get, put, wait and claim_tile; `counts` has `count` entries, ever growing within a frame, owned
-/// by core. Optional: a board leaves it out and pays nothing.
+/// A platform that also receives the amount of work between its calls (the simulator's clock). Core calls it before
+/// every get, put, wait and claim_tile; `counts` has `count` entries, owned by core, which only grow within a frame.
+/// Optional: a board leaves it out and pays nothing.
 template <class P>
 concept WorkObserver = requires(P& platform, const std::uint32_t* counts, std::uint32_t count) {
   { platform.note_work(counts, count) } -> std::same_as<void>;
 };
 
-/// A platform that also wants to know what the core is busy with. Core calls it where that changes, within a tile;
-/// every tile begins and ends with stage 0. `stage` is a Stage (base/stages.h) as a number. Optional, as above.
+/// A platform that also receives the stage of a core. Core calls it when the stage changes, within a tile; every tile
+/// begins and ends with stage 0. `stage` is a Stage (base/stages.h) as a number. Optional, as above.
 template <class P>
 concept StageObserver = requires(P& platform, std::uint8_t stage) {
   { platform.note_stage(stage) } -> std::same_as<void>;

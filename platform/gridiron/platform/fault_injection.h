@@ -1,4 +1,4 @@
-// Decorator that makes a chosen transfer or claim of any platform go wrong: refused, failed, timed out, late.
+// Decorator that makes a chosen transfer or claim of any platform fail: refused, failed, timed out, late.
 // Memory: values; borrows the platform. Threads: one core per object. SPDX-License-Identifier: Apache-2.0
 #pragma once
 
@@ -8,15 +8,15 @@
 
 namespace gridiron {
 
-/// What goes wrong, and when. The default is that nothing does.
+/// What fails, and when. By default nothing does.
 struct FaultPlan {
-  /// What goes wrong with a transfer.
+  /// How the transfer fails.
   enum class Kind : std::uint8_t {
     kRefuse,  ///< get or put returns `status` and starts nothing
     kReport,  ///< no byte moves, the wait for its tag returns `status`
     kDelay,   ///< the transfer starts only when its tag is waited for; no error
   };
-  std::uint64_t transfer = 0;  ///< gets and puts are counted together from 1; 0: none goes wrong
+  std::uint64_t transfer = 0;  ///< gets and puts are counted together from 1; 0: none fails
   Kind kind = Kind::kReport;   ///< how it goes wrong
   Status status = Status::kTransferFailed;  ///< of kRefuse and kReport
 
@@ -24,38 +24,38 @@ struct FaultPlan {
   TileClaim::Kind claim_answer = TileClaim::Kind::kAborted;  ///< kAborted, kDeadline or kNone
 };
 
-/// Hands every call on to the platform it wraps, but for what the plan says.
+/// Passes every call on to the platform it wraps, except where the plan makes it fail.
 template <Platform P>
 class FaultInjection {
  public:
   /// Borrows `inner` for as long as this lives.
   FaultInjection(P& inner, const FaultPlan& plan) : inner_(inner), plan_(plan) {}
 
-  /// Those of the platform it wraps.
+  /// The wrapped platform's limits.
   [[nodiscard]] PlatformLimits limits() const { return inner_.limits(); }
 
-  /// As of Platform; counted, and perhaps the transfer that goes wrong.
+  /// As of Platform; counted, and fails if it is the chosen transfer.
   Status get(void* local, MainAddress address, std::uint32_t bytes, Tag tag) {
     return transfer({local, nullptr, address, bytes, tag});
   }
 
-  /// As of Platform; counted, and perhaps the transfer that goes wrong.
+  /// As of Platform; counted, and fails if it is the chosen transfer.
   Status put(const void* source, MainAddress address, std::uint32_t bytes, Tag tag) {
     return transfer({nullptr, source, address, bytes, tag});
   }
 
-  /// As of Platform; reports, or starts late, the transfer that goes wrong.
+  /// As of Platform; reports the chosen transfer's failure, or starts it late.
   Status wait(TagMask tags) {
     const bool is_due = held_ && (tags.bits & TagMask::of(command_.tag).bits) != 0;
     if (is_due) held_ = false;
     const Status started = is_due && plan_.kind == FaultPlan::Kind::kDelay ? start(command_) : Status::kOk;
-    // The others of the mask must have ended even where one of them failed.
+    // The others of the mask must have ended even if one of them failed.
     const Status waited = inner_.wait(tags);
     if (started != Status::kOk) return started;
     return is_due && plan_.kind == FaultPlan::Kind::kReport ? plan_.status : waited;
   }
 
-  /// As of Platform, until the plan answers.
+  /// As of Platform, until the plan ends the claims.
   TileClaim claim_tile() {
     ++claims_;
     if (plan_.claim != 0 && claims_ >= plan_.claim) return {plan_.claim_answer, 0};

@@ -1,4 +1,4 @@
-// The name of a Status, for logs and serial lines. Apart from status.h, so that only what prints has the texts.
+// The name of a Status, for logs and serial lines. Not in status.h, so that only programs that print contain the texts.
 // Memory: constants, where a name is used. Threads: any. SPDX-License-Identifier: Apache-2.0
 #pragma once
 
@@ -15,7 +15,7 @@ namespace gridiron {
   case Status::name:               \
     return #name;
 
-/// @returns the enumerator's name, such as "kBadImage", which status.h explains; nullptr where there is no such value.
+/// @returns the enumerator's name, such as "kBadImage", which status.h explains; nullptr for an unknown value.
 [[nodiscard]] constexpr const char* status_name(Status status) {
   switch (status) {
     GRIDIRON_STATUS_NAME(kOk)
@@ -54,7 +54,7 @@ namespace gridiron {
 #undef GRIDIRON_STATUS_NAME
 #pragma GCC diagnostic pop
 
-/// The same for a number that was printed, stored or received, where a cast could cut off bits.
+/// The same for a number that was printed, stored or received; a cast could cut off bits.
 [[nodiscard]] constexpr const char* status_name(std::uint32_t number) {
   return number <= 0xFFu ? status_name(static_cast<Status>(number)) : nullptr;
 }

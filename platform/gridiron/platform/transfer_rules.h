@@ -9,8 +9,8 @@
 
 namespace gridiron {
 
-/// Checks size, tag, alignment, congruence and boundary of one transfer. What it cannot see is left to the port: the
-/// ranges of local and main memory, the queue, and other pending transfers.
+/// Checks size, tag, alignment, congruence and boundary of one transfer. The port itself checks the rest: the ranges of
+/// local and main memory, the queue, and other pending transfers.
 ///
 /// @param local_address  numeric address of the local side.
 /// @returns kTransferSize, kTransferTag, kTransferAlignment, kTransferBoundary (first that applies) or kOk.

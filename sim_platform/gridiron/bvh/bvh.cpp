@@ -98,7 +98,7 @@ class Builder {
     return 0.5 * (double{box.low[axis]} + double{box.high[axis]});
   }
 
-  // Top down, a list of open nodes in place of recursion.
+  // Top down, with a list of open nodes instead of recursion.
   [[nodiscard]] Status build_pairs() {
     struct Open {
       std::uint32_t node, depth;
@@ -133,7 +133,7 @@ class Builder {
     return box;
   }
 
-  // Orders the node's triangles left, right. @returns how many are on the left, 0: it becomes a leaf.
+  // Partitions the node's triangles. @returns how many are on the left, 0: it becomes a leaf.
   [[nodiscard]] std::uint32_t partition(const PairNode& node, std::uint32_t depth) {
     if (node.count == 1) return 0;
     Box centers;
@@ -142,7 +142,7 @@ class Builder {
       centers.grow(Vec3(static_cast<float>(center(box, 0)), static_cast<float>(center(box, 1)),
                         static_cast<float>(center(box, 2))));
     }
-    // The depth that is left must do for halving.
+    // The remaining depth must suffice for halving.
     const bool must_halve = depth + std::bit_width(node.count - 1) >= kMaxBvhDepth;
     const Split split = must_halve ? Split{} : best_split(node, centers);
     if (node.count <= parameters_.leaf_triangles) {
@@ -158,7 +158,7 @@ class Builder {
       });
       return static_cast<std::uint32_t>(middle - begin);
     }
-    // Nothing tells them apart, or the tree would get too deep: halves along the widest axis.
+    // All centres are equal, or the tree would get too deep: halves along the widest axis.
     int axis = 0;
     for (int other = 1; other < 3; ++other) {
       if (centers.high[other] - centers.low[other] > centers.high[axis] - centers.low[axis]) axis = other;
@@ -213,7 +213,7 @@ class Builder {
         left.grow(bins[i - 1].box);
         left_count += bins[i - 1].count;
         if (left_count == 0 || left_count == node.count) continue;
-        // Two more boxes to test wherever the node is met.
+        // Two more boxes to test at each visit of the node.
         const double cost =
             2.0 * node.box.area() + double{parameters_.triangle_cost} * (left.area() * left_count + right_cost[i]);
         if (!best.found || cost < best.cost) best = {true, axis, i, cost};
@@ -236,7 +236,7 @@ class Builder {
       bvh_.depth = std::max(bvh_.depth, current.depth);
       std::array<std::uint32_t, kNodeWidth> children{};
       std::uint32_t count = 1;
-      children[0] = wide_[current.node].children[0];  // the pair node that it stands for
+      children[0] = wide_[current.node].children[0];  // the pair node that it replaces
       while (count < kNodeWidth) {
         std::uint32_t widest = kNodeWidth;
         for (std::uint32_t i = 0; i < count; ++i) {
@@ -259,8 +259,8 @@ class Builder {
     bvh_.counts.wide_nodes = wide_.size();
   }
 
-  // Fills cache lines with pieces of the tree: a node, then again and again the child with the largest surface of those
-  // already in the line; what does not fit begins lines of its own. Triangles follow in the order of the nodes.
+  // Fills cache lines with pieces of the tree: a node, then repeatedly the child with the largest surface of the nodes
+  // in the line. Nodes that do not fit begin lines of their own. Triangles follow in the order of the nodes.
   [[nodiscard]] Status lay_out() {
     std::vector<std::uint32_t> place(wide_.size());
     std::vector<std::uint32_t> sequence;
@@ -270,7 +270,7 @@ class Builder {
     while (!roots.empty()) {
       frontier.assign(1, roots.back());
       roots.pop_back();
-      // A line that is not full takes the next piece where it has room for its root.
+      // A line that is not full takes the next piece if the piece's root fits.
       std::uint32_t room = line_nodes - static_cast<std::uint32_t>(sequence.size()) % line_nodes;
       for (; room != 0 && !frontier.empty(); --room) {
         const auto larger = [&](std::uint32_t a, std::uint32_t b) { return box_of(a).area() < box_of(b).area(); };
@@ -334,7 +334,7 @@ class Builder {
     ++bvh_.counts.records_written;
   }
 
-  /// Children are pair nodes; before a node is opened, the first one is the pair node it stands for.
+  /// Children are pair nodes; before a node is opened, the first one is the pair node that it replaces.
   struct WideNode {
     std::array<std::uint32_t, kNodeWidth> children{};
     std::uint32_t count = 0;

@@ -22,7 +22,7 @@ struct BvhParameters {
   std::uint32_t line_nodes = 16;      ///< nodes of a line of the node cache, neighbours in the tree
 };
 
-/// What a build did, for a price on a machine. Integers, the same on every host.
+/// Counts of a build, to be priced on a machine. Integers, the same on every host.
 struct BuildCounts {
   std::uint64_t bin_updates = 0;      ///< triangle boxes merged into bins, one per triangle, axis and split
   std::uint64_t bins_swept = 0;       ///< bins merged when splits were priced

@@ -1,4 +1,4 @@
-// Build work of the cached BVH: the steps of building a hierarchy, to be priced by the same table as the grid's.
+// Build work of the cached BVH: the steps of building a hierarchy, priced by the same table as the grid's.
 // Memory: plain values. Threads: any. SPDX-License-Identifier: Apache-2.0
 #pragma once
 
@@ -9,7 +9,7 @@
 
 namespace gridiron::bvh {
 
-/// Steps of build_bvh. What has no step of its own is left out, in its favour: bounds of centres, merging to
+/// Steps of build_bvh. Work without a step of its own is left out, in the BVH's favour: bounds of centres, merging to
 /// four children and writing these nodes.
 ///
 /// @param vertex_count, triangle_count  of the mesh, dropped triangles included.

@@ -23,8 +23,8 @@ namespace gridiron::bvh {
 
 /// The cached BVH on one core; see core/gridiron/engine/engine.h. It traces eye rays only. The caches outlive a tile.
 ///
-/// A packet runs until a line that it needs is not there; it starts the get and the next packet of the ring runs. A
-/// packet alone waits at once.
+/// A packet runs until it needs a line that is not cached. It then starts the get, and the next packet of the ring
+/// runs. A packet without others waits at once.
 /// @tparam L  Lanes<4>, as on the chip. @tparam Store  LocalStore of a BvhLayout.
 template <class L, class Store, Platform P>
 class BvhCore {
@@ -75,7 +75,7 @@ class BvhCore {
 
   // --- Tiles ------------------------------------------------------------------------------------------------------
 
-  // Lets the packets of the ring take turns until the tile has none left.
+  // Runs the packets of the ring in turn until the tile has none left.
   template <bool kWantFacing>
   [[nodiscard]] Status trace_tile() {
     const std::uint32_t ring_size = settings().ring_size;
@@ -92,7 +92,7 @@ class BvhCore {
     return Status::kOk;
   }
 
-  // The context's next packet of the tile. @returns false where there is none.
+  // Starts the context's next packet of the tile. @returns false if there is none.
   [[nodiscard]] bool start_packet(Context& context) {
     charge_to(BvhWork::kTileStart);
     context.state = Context::kIdle;
@@ -119,7 +119,7 @@ class BvhCore {
 
   // --- One packet -------------------------------------------------------------------------------------------------
 
-  // Where a running packet stands.
+  // State of a running packet.
   struct Cursor {
     BvhChild child;        // to be visited
     std::uint32_t missed;  // quarters that do not meet it
@@ -183,7 +183,7 @@ class BvhCore {
     return child.first_triangle() >> log_line_triangles_;
   }
 
-  // Starts the get of a line that is not there, or finds it on its way. A packet alone waits for it.
+  // Starts the get of a missing line, unless it is on its way already. A packet without others waits for it.
   [[nodiscard]] Status fetch_nodes(std::uint32_t line, std::uint32_t ring_index, std::uint32_t& slot) {
     count(BvhWork::kMiss);
     const auto claim = caches().node_cache.claim(line, now_, ring_index);
@@ -215,7 +215,7 @@ class BvhCore {
   }
   [[nodiscard]] static std::uint32_t record_bytes(std::uint32_t records) { return (records << 4) + (records << 5); }
 
-  // Leaves the core to the next packet of the ring.
+  // Suspends the packet in favour of the next one of the ring.
   [[nodiscard]] Status suspend(Context& context, const Cursor& cursor, std::uint32_t slot) {
     count(BvhWork::kSwitch);
     context.child = cursor.child;
@@ -226,8 +226,8 @@ class BvhCore {
     return Status::kOk;
   }
 
-  // Waits for the line that the packet was suspended for, unless another packet has. @param slot  out: kNoSlot where it
-  // has come and gone again.
+  // Waits for the line that the packet was suspended for, unless another packet has. @param slot  out: kNoSlot if the
+  // line has arrived and been replaced.
   [[nodiscard]] Status resume(const Context& context, BvhChild child, std::uint32_t& slot) {
     if (child.is_leaf()) {
       return resume(caches().triangle_cache, triangle_line(child), kFirstTriangleTag, context.slot, slot);
@@ -248,8 +248,8 @@ class BvhCore {
 
   // --- Traversal --------------------------------------------------------------------------------------------------
 
-  // Holds the children of the current node against the packet; the nearest becomes the current one, the others go on
-  // the stack, the nearer the higher. @returns false where none is met.
+  // Tests the children of the current node against the packet. The nearest becomes the current one, the others go on
+  // the stack, the nearer the higher. @returns false if none is met.
   [[nodiscard]] bool step_down(Context& context, Cursor& cursor, std::uint32_t slot) {
     const std::uint32_t place = (slot << log_line_nodes_) + (cursor.child.node_index() & node_mask_);
     if (context.bounds.is_mixed == 0) [[likely]] {
@@ -269,7 +269,7 @@ class BvhCore {
     if (children == 0) return false;
     count(BvhWork::kChildren);
     const OrderedChildren ordered(met.entry, met.none, FourWords::load(&node.children[0].bits), met.missed);
-    // What is not met lands above the top.
+    // Children that are not met land above the top.
     ordered.store(reinterpret_cast<float*>(context.stack + cursor.top));
     const std::uint32_t nearest = count_bits(children) - 1u;
     cursor.child.bits = ordered.child.word(nearest);
@@ -278,7 +278,7 @@ class BvhCore {
     return true;
   }
 
-  // Takes the next entry that is not behind everything hit so far. @returns false where none is left.
+  // Takes the next entry that is not behind all hits so far. @returns false if none is left.
   [[nodiscard]] bool pop(const Context& context, Cursor& cursor) {
     charge_to(BvhWork::kStackPop);
     while (cursor.top != 0) {
@@ -299,7 +299,7 @@ class BvhCore {
     count(BvhWork::kLeafVisit);
     const std::uint32_t first = (slot << log_line_triangles_) + (cursor.child.first_triangle() & triangle_mask_);
     const auto* triangle = reinterpret_cast<const VertexTriangle*>(triangle_lines_ + record_bytes(first));
-    // Subpackets do what corner rays would, and cheaper (as in the grid's configuration best).
+    // Subpackets do the work of corner rays, and cheaper (as in the grid's configuration best).
     const bool by_subpackets = settings().use_subpackets != 0;
     const Culling culling{.corner_rays = !by_subpackets, .subpackets = by_subpackets};
     const SubpacketSet open = subpackets_of(cursor.missed ^ kAllQuarters);
@@ -324,7 +324,7 @@ class BvhCore {
   // The subpackets of some quarters.
   [[nodiscard]] static SubpacketSet subpackets_of(std::uint32_t quarters) {
     if constexpr (kWidth == 8) return quarters;
-    // A bit becomes four.
+    // Each bit becomes four.
     const std::uint32_t pairs = (quarters | quarters << 6) & 0x0303u;
     const std::uint32_t apart = (pairs | pairs << 3) & 0x1111u;
     return (apart << 4) - apart;
@@ -350,13 +350,14 @@ class BvhCore {
 
   [[nodiscard]] Status check_record() const {
     const CoreSettings& core = settings();
-    // Of equal distances another accuracy may want the nearer in truth, which two rays could ask for without end.
+    // At equal distances another accuracy may require the truly nearer triangle; two rays could fetch for that without
+    // end.
     if (frame().accuracy != static_cast<std::uint32_t>(Accuracy::kStandard)) return Status::kUnsupportedFrame;
     if (core.packet_width != kWidth || core.ring_size < 1 || core.ring_size > kRingOf<kWidth>) return Status::kBadFrame;
     return are_caches_valid(core) ? Status::kOk : Status::kBadFrame;
   }
 
-  // The largest sum of magnitudes that goes into a component of a direction, over the whole picture.
+  // The largest sum of magnitudes that goes into a direction's component, over the whole picture.
   [[nodiscard]] static float direction_bound(const FrameHead& frame) {
     float bound = 0.0f;
     for (int axis = 0; axis < 3; ++axis) {
@@ -374,7 +375,7 @@ class BvhCore {
   Transfers<P>& transfers_;
   std::byte* triangle_lines_ = nullptr;
   std::uint32_t log_line_nodes_ = 0, log_line_triangles_ = 0, node_mask_ = 0, triangle_mask_ = 0;
-  float least_direction_ = 0.0f;           ///< directions below this are taken for none
+  float least_direction_ = 0.0f;           ///< directions below this count as zero
   std::uint32_t now_ = 0;                  ///< look-ups
   std::uint32_t left_ = 0, top_ = 0;       ///< of the tile, in pixels
   std::uint32_t next_x_ = 0, next_y_ = 0;  ///< of its next packet

@@ -1,4 +1,4 @@
-// Nodes of the hierarchy as they lie in main memory: four children, one node a line.
+// Nodes of the hierarchy as stored in main memory: four children, one node a line.
 // Source: Dammertz, Hanika, Keller 2008. Memory: values. Threads: any. SPDX-License-Identifier: Apache-2.0
 #pragma once
 
@@ -9,7 +9,7 @@ namespace gridiron::bvh {
 inline constexpr std::uint32_t kNodeWidth = 4;         ///< children a node has at most
 inline constexpr std::uint32_t kMaxLeafTriangles = 8;  ///< triangles a leaf has at most
 inline constexpr std::uint32_t kMaxBvhDepth = 40;      ///< nodes on any way from the root to a leaf
-/// A traversal needs no more: each node on the way leaves all children but one, the last one writes all.
+/// A traversal needs no more: each node on the way leaves all children but one on the stack, the last one all.
 inline constexpr std::uint32_t kStackEntries = (kNodeWidth - 1) * kMaxBvhDepth + 4;
 
 /// Names a node or a leaf: a node by its index, a leaf by its first triangle, their count and the top bit.
@@ -28,7 +28,7 @@ struct BvhChild {
   [[nodiscard]] constexpr std::uint32_t triangle_count() const { return (bits >> kFirstBits & 0xFu) + 1; }
 };
 
-/// A node as it lies in main memory: the boxes of its children, side by side in lanes. 128 bytes, 128-byte aligned.
+/// A stored node: the boxes of its children, side by side in lanes. 128 bytes, 128-byte aligned.
 struct alignas(128) BvhNode {
   alignas(16) float bounds[2][3][kNodeWidth];  ///< [low, high][axis][child], tight: the vertices' own floats
   alignas(16) BvhChild children[kNodeWidth];   ///< the first child_count are there, the others kNone

@@ -1,4 +1,4 @@
-// Sets a frame of the cached BVH up in simulated main memory, runs its cores in turn, and replays what they did.
+// Sets up a frame of the cached BVH in simulated main memory, runs its cores in turn, and replays their traces.
 // Memory: owns main memory and traces for the time of a frame. Threads: see the header.
 // SPDX-License-Identifier: Apache-2.0
 #include <gridiron/bvh/bvh_core.h>
@@ -86,14 +86,14 @@ template <class Element>
   return ring_ok && are_caches_valid(core_settings(bvh.parameters, options)) && !bvh.nodes.empty();
 }
 
-/// Also where the core cannot even be made.
+/// Leaves the order of claims even if the core cannot be made.
 struct LeaveAtEnd {
   ClaimOrder& order;
   std::uint32_t core;
   ~LeaveAtEnd() { order.leave(core); }
 };
 
-// What a core does. @returns its status, and adds its caches' counts.
+// Runs one core. @returns its status, and adds its caches' counts.
 template <std::uint32_t Width>
 [[nodiscard]] Status run_core(std::span<std::byte> data, OrderedCore& platform, MainAddress record, std::mutex& mutex,
                               BvhFrame& result) {
@@ -173,7 +173,7 @@ BvhFrame render_bvh_frame(const Bvh& bvh, const FrameSettings& settings, const s
       const std::scoped_lock lock(mutex);
       index = cores_begun++;
     }
-    // Whatever ends this core, the others must not wait for its turn.
+    // However this core ends, the others must not wait for its turn.
     const LeaveAtEnd leave{order, index};
     OrderedCore platform(core, index, order, priced, kOutputDepth, result.core_of_tile);
     return options.packet_width == 16 ? run_core<16>(data, platform, parts.record.address, mutex, result)

@@ -1,5 +1,5 @@
-// The cached BVH on the grid's chip: packets through a bounding volume hierarchy, software caches for nodes and
-// triangles, with and without a ring of packets that hide each other's misses. There to be compared with.
+// The cached BVH on the grid's chip, for comparison: packets through a bounding volume hierarchy, software caches for
+// nodes and triangles, with and without a ring of packets that hide each other's misses.
 // Source: Benthin, Wald, Scherbaum, Friedrich 2006. Memory: owns what it makes; borrows meshes.
 // Threads: starts its own, one per simulated core, one of which runs at a time. SPDX-License-Identifier: Apache-2.0
 #pragma once
@@ -21,7 +21,8 @@
 namespace gridiron::bvh {
 
 /// Sizes of both caches. Lines: a power of two, kCacheWays..kMaxNodeLines, kMaxTriangleLines; together at most
-/// kCacheBytes. What a line holds is decided when the hierarchy is built (BvhParameters::line_nodes, line_triangles).
+/// kCacheBytes. The contents of a line are fixed when the hierarchy is built (BvhParameters::line_nodes,
+/// line_triangles).
 struct CacheGeometry {
   std::uint32_t node_lines = 32;
   std::uint32_t triangle_lines = 16;
@@ -48,12 +49,12 @@ struct BvhPicture {
   std::vector<std::uint32_t> ids;    ///< triangle, kNoTriangle where nothing is hit
 };
 
-/// What a frame gave and what it cost.
+/// The results of a frame and its cost.
 struct BvhFrame {
   Status status = Status::kOk;
   sim::HostShortage host_shortage = sim::HostShortage::kNone;  ///< where it is any, status is kAborted
   std::vector<sim::Violation> violations;
-  BvhPicture picture;       ///< depth and ids only where asked for
+  BvhPicture picture;       ///< depth and ids only if requested
   sim::FrameTiming timing;  ///< with contention; waits for node lines under kMacroCell, triangles kTriangle
   sim::WorkTotals work{};   ///< core's kinds; those that carry the cached BVH's are 0
   std::array<std::uint64_t, kBvhWorkCount> bvh_work{};
@@ -62,21 +63,21 @@ struct BvhFrame {
   std::uint64_t main_memory_bytes = 0;      ///< nodes, triangles, planes
 };
 
-/// Writes what the cores of a frame need to know.
+/// Writes the record that the cores of a frame need.
 /// @param settings  with the addresses of the planes; tile width and output depth are set here.
-/// @param nodes, triangles  where bvh.nodes and bvh.triangles lie in main memory. Errors: kBadFrame (settings).
+/// @param nodes, triangles  addresses of bvh.nodes and bvh.triangles in main memory. Errors: kBadFrame (settings).
 [[nodiscard]] Status make_bvh_record(const Bvh& bvh, FrameSettings settings, const RenderOptions& options,
                                      MainAddress nodes, MainAddress triangles, BvhFrameRecord& frame);
 
-/// Renders a frame on the simulated chip, every rule of the contract checked.
+/// Renders a frame on the simulated chip, checking every rule of the contract.
 ///
-/// Claims are granted by each core's clock without contention, so the run depends on `machine` and the options, and on
-/// nothing of the host; the replay then gives its steps their times with contention.
-/// @param settings  camera, size, shading, t_far, background; accuracy kStandard. What a grid needs is not looked at;
-/// tile width, output depth and addresses are set here.
+/// Claims are granted by each core's clock without contention, so the run depends only on `machine` and the options,
+/// not on the host; the replay then gives its steps their times with contention.
+/// @param settings  camera, size, shading, t_far, background; accuracy kStandard. Settings of a grid are ignored; tile
+///                  width, output depth and addresses are set here.
 /// Errors: kUnsupportedFrame (accuracy; a machine with less than 256 KB of local store), kBadParameter (options),
-/// kMemoryTooSmall (main memory of the machine), kBadFrame (settings), kAborted (asked for, or a shortage of the host:
-/// each core needs a thread), and what a broken rule reports.
+/// kMemoryTooSmall (main memory of the machine), kBadFrame (settings), kAborted (by the options or a shortage of the
+/// host: each core needs a thread), and the errors of broken rules.
 [[nodiscard]] BvhFrame render_bvh_frame(const Bvh& bvh, const FrameSettings& settings,
                                         const sim::MachineProfile& machine, const RenderOptions& options);
 

@@ -24,17 +24,17 @@ inline constexpr std::uint32_t kMaxTriangleLines = 256;
 inline constexpr std::uint32_t kMaxLogLineNodes = 5;      ///< 32 nodes, 4 KB
 inline constexpr std::uint32_t kMaxLogLineTriangles = 6;  ///< 64 records, 3 KB
 
-/// Packets of 16x16 rays leave less to the caches and the ring than those of 8x8.
+/// Packets of 16x16 rays leave less memory for caches and ring than those of 8x8.
 template <std::uint32_t Width>
 inline constexpr std::uint32_t kCacheBytes = (Width == 16 ? 128 : 144) * 1024;
 template <std::uint32_t Width>
 inline constexpr std::uint32_t kRingOf = Width == 16 ? 3 : kMaxRing;
 
-// The tags that the replay tells apart: node lines as cell blocks, triangle lines as triangle buffers.
+// Tags by which the replay classifies waits: node lines count as cell blocks, triangle lines as triangle buffers.
 static_assert(kMaxRing <= kMacroTagCount && kMaxRing <= kTriangleTagCount && kOutputDepth <= kOutputTagCount);
 static_assert(kMaxRing <= kCacheWays);
 
-/// How a core runs; part of the frame's record. Sizes are powers of two.
+/// Settings of a core; part of the frame's record. Sizes are powers of two.
 struct CoreSettings {
   std::uint32_t packet_width;        ///< 8 or 16
   std::uint32_t ring_size;           ///< packets that take turns, 1..kRingOf<packet_width>; 1: none
@@ -46,7 +46,7 @@ struct CoreSettings {
   std::uint32_t reserved;
 };
 
-/// @returns whether both caches have a number of lines that they can have, and fit.
+/// @returns whether both caches have a valid number of lines, and fit.
 [[nodiscard]] inline bool are_caches_valid(const CoreSettings& core) {
   if (core.log_line_nodes > kMaxLogLineNodes || core.log_line_triangles > kMaxLogLineTriangles) return false;
   const auto lines_ok = [](std::uint32_t lines, std::uint32_t most) {
@@ -58,7 +58,7 @@ struct CoreSettings {
   return node_bytes + triangle_bytes <= (core.packet_width == 16 ? kCacheBytes<16> : kCacheBytes<8>);
 }
 
-/// Its part of a frame.
+/// The BVH's part of a frame.
 struct BvhRecord {
   std::uint64_t nodes_address;      ///< BvhNode[], node 0 is the root
   std::uint64_t triangles_address;  ///< VertexTriangle[]
@@ -66,7 +66,7 @@ struct BvhRecord {
 };
 using BvhFrameRecord = Frame<BvhRecord>;
 
-/// A quad of the stack: what is to be visited, and what has been found out about it.
+/// A quad of the stack: the node or leaf to visit, and the known results about it.
 struct alignas(16) StackEntry {
   float entry;  ///< no ray meets it before this t
   BvhChild child;
@@ -91,7 +91,7 @@ struct alignas(128) PacketContext {
   static constexpr std::uint32_t kIdle = 0, kRunning = 1, kWaiting = 2;
 };
 
-/// What stays for the frame.
+/// Memory for the whole frame.
 template <class Layout>
 struct alignas(128) CacheStore {
   SoftCache<kMaxNodeLines> node_cache;
@@ -107,7 +107,7 @@ struct alignas(128) CacheStore {
   }
 };
 
-/// While the eye rays of a tile are traced.
+/// Memory while the eye rays of a tile are traced.
 template <class Layout>
 struct RingStore {
   PacketContext<Layout::kPacketWidth> contexts[kRingOf<Layout::kPacketWidth>];

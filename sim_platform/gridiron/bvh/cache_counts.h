@@ -1,4 +1,4 @@
-// Look-ups of a software cache and how they ended, for reports: nothing a core would spend time on.
+// Look-ups of a software cache and their outcomes, for reports; they cost a core no time.
 // Memory: values. Threads: any. SPDX-License-Identifier: Apache-2.0
 #pragma once
 
@@ -6,7 +6,7 @@
 
 namespace gridiron::bvh {
 
-/// Look-ups of one cache and how they ended.
+/// Look-ups of one cache and their outcomes.
 struct CacheCounts {
   std::uint64_t lookups = 0;
   std::uint64_t hits = 0;          ///< the line was there
@@ -20,7 +20,7 @@ struct CacheCounts {
     misses += other.misses;
     return *this;
   }
-  /// Look-ups that started no fetch. 1 where there were none.
+  /// Share of look-ups that started no fetch. 1 if there were none.
   [[nodiscard]] double hit_rate() const {
     const std::uint64_t answered = hits + pending_hits + misses;
     return answered == 0 ? 1.0 : 1.0 - static_cast<double>(misses) / static_cast<double>(answered);

@@ -11,7 +11,7 @@
 
 namespace gridiron::bvh {
 
-/// What a lane of a child is told by, and which lanes keep the lesser key in the network's three steps.
+/// The number of each child's lane, and the lanes that keep the lesser key in the network's three steps.
 struct ChildLanes {
   alignas(16) std::uint32_t lane[kNodeWidth];
   alignas(16) std::uint32_t lesser[3][kNodeWidth];
@@ -20,14 +20,14 @@ inline constexpr ChildLanes kChildLanes = {{0, 1, 2, 3}, {{0, ~0u, 0, ~0u}, {0, 
 
 /// Children, the farthest first; those that are not met last.
 struct OrderedChildren {
-  FourWords entry;  ///< bits of the entry, of which the last two say which lane it came from; not met: negative
+  FourWords entry;  ///< bits of the entry; the last two are the number of its lane; not met: negative
   FourWords child;
   FourWords missed;
 
   /// @param entry  >= 0; raised by at most 3 units in its last place. @param none  children that are not met.
   GRIDIRON_INLINE OrderedChildren(Lanes<4>::Float entries, Lanes<4>::Mask none, FourWords children, FourWords misses)
       : child(children), missed(misses) {
-    // Different keys, so that of two lanes that exchange one takes where the other gives. An entry may be -0.
+    // Different keys, so that two lanes always exchange consistently. An entry may be -0.
     const FourWords marked =
         (FourWords::of(entries) & FourWords::splat(0x7FFFFFFCu)) | FourWords::load(kChildLanes.lane);
     entry = marked | FourWords::where(none, 0x80000000u);
@@ -36,8 +36,7 @@ struct OrderedChildren {
     exchange<0, 2, 1, 3>(FourWords::load(kChildLanes.lesser[2]));
   }
 
-  /// Writes (entry i, child i, missed i, missed i) to the quads that follow each other from `target` on, 16-byte
-  /// aligned, for each i.
+  /// Writes (entry i, child i, missed i, missed i) to consecutive quads from `target` on, 16-byte aligned, for each i.
   GRIDIRON_INLINE void store(float* target) const {
     using Four = Lanes<4>;
     const Four::Float low = Four::shuffle_quads<0, 4, 1, 5>(entry.floats(), child.floats());

@@ -100,7 +100,7 @@ void ClaimOrder::leave(std::uint32_t core) {
 }
 
 TileClaim OrderedCore::claim_tile() {
-  // Everything the core did since its last claim.
+  // The core's steps since its last claim.
   const sim::TileTrace& trace = inner_.end_trace();
   clock_.take(trace, in_tile_ ? tiles_++ : 0);
   order_.wait_for_turn(index_, clock_.now());

@@ -1,5 +1,5 @@
-// Who claims next: cores take turns by their own clocks, each as if it were alone with its memory. So which core gets
-// which tile depends on the machine's profile alone, not on host threads, and not on what it will decide.
+// The order of claims: cores take turns by their own clocks, each as if it were alone with its memory. So the machine's
+// profile alone decides which core gets which tile, not host threads, and not the contention that depends on it.
 // Memory: std::vector. Threads: one per core; all calls may come at once. SPDX-License-Identifier: Apache-2.0
 #pragma once
 
@@ -16,7 +16,7 @@
 
 namespace gridiron::bvh {
 
-/// Simulated time of one core that shares its channel with nobody: what sim::replay gives on one core, step by step.
+/// Simulated time of one core without contention: equal to sim::replay on one core, step by step.
 class CoreClock {
  public:
   using Ticks = std::uint64_t;  ///< 1/1024 cycle
@@ -24,9 +24,9 @@ class CoreClock {
 
   CoreClock(const sim::MachineProfile& machine, std::uint32_t output_depth);
 
-  /// Takes the steps of `trace`. @param ordinal  tiles this core had before this one.
+  /// Adds the steps of `trace`. @param ordinal  tiles this core had before this one.
   void take(const sim::TileTrace& trace, std::uint32_t ordinal);
-  /// Takes the time of a claim, granted or refused.
+  /// Adds the time of a claim, granted or refused.
   void take_claim() { now_ += claim_; }
 
   [[nodiscard]] Ticks now() const { return now_; }
@@ -51,14 +51,14 @@ class CoreClock {
   sim::TraceReader steps_;
 };
 
-/// Lets one core run at a time, always the one whose clock is least, ties by number.
+/// Lets one core run at a time: the one whose clock is least, ties by number.
 class ClaimOrder {
  public:
   explicit ClaimOrder(std::uint32_t cores) : turns_(cores) {}
 
   /// Blocks until every other core waits too or has left, and none is behind `now`.
   void wait_for_turn(std::uint32_t core, CoreClock::Ticks now);
-  /// The core claims no more.
+  /// The core makes no more claims.
   void leave(std::uint32_t core);
 
  private:
@@ -74,10 +74,10 @@ class ClaimOrder {
   std::vector<Turn> turns_;
 };
 
-/// A simulated core that claims in order. Everything else goes straight to it.
+/// A simulated core that claims in order. All other calls go straight to it.
 class OrderedCore {
  public:
-  /// @param core_of_tile  out: written at [tile] when one is claimed.
+  /// @param core_of_tile  out: element [tile] is written when the tile is claimed.
   OrderedCore(sim::SimCore& inner, std::uint32_t index, ClaimOrder& order, const sim::MachineProfile& machine,
               std::uint32_t output_depth, std::vector<std::uint32_t>& core_of_tile)
       : inner_(inner), index_(index), order_(order), clock_(machine, output_depth), core_of_tile_(core_of_tile) {}

@@ -1,4 +1,4 @@
-// Four 32-bit words in a vector, beside the floats of core's lanes. Source: GCC vector extensions.
+// Four 32-bit words in a vector, next to the floats of core's lanes. Source: GCC vector extensions.
 // Memory: values. Threads: any. SPDX-License-Identifier: Apache-2.0
 #pragma once
 
@@ -8,7 +8,7 @@
 
 namespace gridiron::bvh {
 
-/// Words side by side; operations per word. Bits of a mask: all or none of a word.
+/// Words side by side; operations per word. In a mask all bits of a word are equal.
 struct FourWords {
   using Four = Lanes<4>;
   LaneVectors<4>::IntVector v;
@@ -34,7 +34,7 @@ struct FourWords {
   [[nodiscard]] GRIDIRON_INLINE Four::Mask equal(FourWords other) const { return {v == other.v}; }
   /// As signed numbers.
   [[nodiscard]] GRIDIRON_INLINE Four::Mask less(FourWords other) const { return {v < other.v}; }
-  /// The same, turned around where `turned` is set.
+  /// The same, reversed where `turned` is set.
   [[nodiscard]] GRIDIRON_INLINE Four::Mask less_but(FourWords other, FourWords turned) const {
     return {(v < other.v) ^ turned.v};
   }

@@ -16,7 +16,7 @@
 
 namespace gridiron::bvh {
 
-/// A packet's quarters, in the order of its subpackets: of 8x8 rays its subpackets, of 16x16 its squares of them.
+/// A packet's quarters, in the order of its subpackets: with 8x8 rays its subpackets, with 16x16 its squares of them.
 inline constexpr std::uint32_t kQuarterCount = 4;
 inline constexpr std::uint32_t kAllQuarters = (1u << kQuarterCount) - 1u;
 
@@ -27,7 +27,7 @@ struct QuarterPlaces {
 };
 inline constexpr QuarterPlaces kQuarterPlaces = {{0, 1, 0, 1}, {0, 0, 1, 1}};
 
-/// How a node's children stand to a packet.
+/// Which children of a node a packet meets.
 struct ChildrenMet {
   Lanes<4>::Float entry;  ///< per child, no ray meets it at a t below this
   FourWords missed;       ///< per child, the quarters of which no ray meets it, a bit each
@@ -36,29 +36,28 @@ struct ChildrenMet {
 
 /// Conservative bound of a packet of primary rays, by quarters.
 ///
-/// Along an axis on which all rays run the same way, a ray meets the near side of a box at t >= (near - o) / d, d of
-/// all rays of the quarter the fastest, and leaves it at t <= (far - o) / d, d the slowest; where either is behind the
-/// eye the sign is right all the same. On an axis on which rays of the packet run both ways, the low side of a box in
-/// front is reached at t >= (low - o) / d by those that run up, d the greatest, the high side of one behind at t >=
-/// (high - o) / d, d the least; nothing is said of leaving. Where no ray runs that way, d is taken for almost none.
-/// Directions are the rays' own: each operation of generate_packet is monotone in column and row, so a component's
-/// extremes over a quarter are at its corners, and are computed here by the same operations. Difference, reciprocal,
-/// its widening and product are 4 roundings, u = 2^-24 each, and OrderedChildren raises entries by less than 8 u; 16 u
-/// are charged.
+/// Along an axis on which all rays run the same way, a ray meets the near side of a box at t >= (near - o) / d, with d
+/// of the fastest ray of the quarter, and leaves it at t <= (far - o) / d, with d of the slowest; if either side is
+/// behind the eye, the sign is still right. On an axis on which rays of the packet run both ways, rays that run up
+/// reach the low side of a box in front at t >= (low - o) / d, d the greatest; rays that run down reach the high side
+/// of one behind at t >= (high - o) / d, d the least. Then there is no bound for leaving. If no ray runs that way, d is
+/// almost zero. Each operation of generate_packet is monotone in column and row, so a component's extremes over a
+/// quarter are at its corners, and are computed here by the same operations. Difference, reciprocal, its widening and
+/// product are 4 roundings, u = 2^-24 each, and OrderedChildren raises entries by less than 8 u; 16 u are charged.
 template <std::uint32_t Width>
 struct alignas(128) PacketBounds {
   // Per quarter and axis, the same in all four lanes.
   alignas(16) float enter[kQuarterCount][3][4];  ///< of the near side's distance: t of the earliest entry
   alignas(16) float leave[kQuarterCount][3][4];  ///< of the far side's distance: t of the latest exit
-  // Of mixed packets only.
+  // For mixed packets only.
   alignas(16) float enter_back[kQuarterCount][3][4];   ///< of the far side's distance: t of the earliest entry
   alignas(16) float never_leave[kQuarterCount][3][4];  ///< added to the latest exit: 0 or kFloatMax
   std::uint32_t near_side[3];                          ///< bound that rays meet first: 0 low, 1 high
   std::uint32_t far_side[3];
   std::uint32_t is_mixed;  ///< 1: along some axis rays of a quarter run both ways, or quarters apart
 
-  /// @param left, top  the packet's first pixel. @param least  > 0; rays run along an axis whose direction is above it:
-  /// 2^-30 times the largest.
+  /// @param left, top  the packet's first pixel. @param least  > 0, 2^-30 times the largest direction: rays run along
+  ///                   an axis if their direction exceeds it.
   void set(const FrameHead& frame, std::uint32_t left, std::uint32_t top, float least, WorkCounters& work) {
     using Four = Lanes<4>;
     using Float = Four::Float;
@@ -102,8 +101,8 @@ struct alignas(128) PacketBounds {
     }
   }
 
-  /// Holds the children of a node against the packet.
-  /// @param reach  per quarter, the farthest hit that is still of interest. @tparam Mixed  is_mixed.
+  /// Tests the children of a node against the packet.
+  /// @param reach  per quarter, the farthest hit that still matters. @tparam Mixed  is_mixed.
   template <bool Mixed>
   [[nodiscard]] GRIDIRON_INLINE ChildrenMet children_met(const BvhNode& node, const float* origin,
                                                          const float* reach) const {

@@ -16,15 +16,15 @@ inline constexpr std::uint32_t kNoSlot = 0xFFFFFFFFu;
 
 /// Directory of a cache. Slot s holds one line; set i is slots [4 i, 4 i + 4); line l belongs to set l % (sets).
 ///
-/// A line on its way is never replaced. With at most kCacheWays fetches at once a line to replace is always there. One
-/// that has come may be replaced before the packet that asked for it goes on; the packet then asks again.
+/// A line on its way is never replaced. With at most kCacheWays fetches at once there is always a line to replace. A
+/// line that has arrived may be replaced before the packet that fetched it continues; the packet then fetches it again.
 /// @tparam MaxLines  the most slots, a power of two, at least kCacheWays.
 template <std::uint32_t MaxLines>
 class alignas(128) SoftCache {
  public:
   static_assert(MaxLines >= kCacheWays && (MaxLines & (MaxLines - 1)) == 0);
 
-  /// Forgets everything. @param line_count  slots in use, a power of two, kCacheWays..MaxLines.
+  /// Empties the cache. @param line_count  slots in use, a power of two, kCacheWays..MaxLines.
   void reset(std::uint32_t line_count) {
     set_mask_ = line_count / kCacheWays - 1u;
     counts_ = CacheCounts{};
@@ -34,8 +34,8 @@ class alignas(128) SoftCache {
     }
   }
 
-  /// @param line  below 2^27. @param now  grows from call to call, below 2^31. @returns its slot, kNoSlot where it is
-  /// not there.
+  /// @param line  below 2^27. @param now  grows from call to call, below 2^31. @returns its slot, kNoSlot if it is not
+  ///              cached.
   [[nodiscard]] GRIDIRON_INLINE std::uint32_t find(std::uint32_t line, std::uint32_t now) {
     ++counts_.lookups;
     const std::uint32_t first = (line & set_mask_) * kCacheWays;
@@ -47,12 +47,12 @@ class alignas(128) SoftCache {
     return first + lowest_bit(ways);
   }
 
-  /// Where a line will be that find() did not see.
+  /// The slot of a line that find() did not return.
   struct Claim {
     std::uint32_t slot;
     bool is_on_its_way;  ///< another packet fetches it; else the caller does
   };
-  /// @param filler  who asks, below kCacheWays.
+  /// @param filler  number of the fetching packet, below kCacheWays.
   [[nodiscard]] Claim claim(std::uint32_t line, std::uint32_t now, std::uint32_t filler) {
     const std::uint32_t first = (line & set_mask_) * kCacheWays;
     const FourWords lines = FourWords::load(lines_ + first);
@@ -72,22 +72,22 @@ class alignas(128) SoftCache {
     return {first + way, false};
   }
 
-  /// What has become of a line that a packet was suspended for.
+  /// State of a line that a packet was suspended for.
   enum class Arrival : std::uint8_t { kOnItsWay, kThere, kReplaced };
   [[nodiscard]] Arrival arrival(std::uint32_t slot, std::uint32_t line) const {
     const std::uint32_t word = lines_[slot];
     if (word == line) return Arrival::kThere;
     return (word & (kOnItsWay | kLineBits)) == (kOnItsWay | line) ? Arrival::kOnItsWay : Arrival::kReplaced;
   }
-  /// Who fetches the line of a slot that is on its way.
+  /// The filler of a slot whose line is on its way.
   [[nodiscard]] std::uint32_t filler_of(std::uint32_t slot) const { return lines_[slot] >> kFillerShift & 3u; }
-  /// The line has come.
+  /// Marks the line as arrived.
   void end_fill(std::uint32_t slot) { lines_[slot] = lines_[slot] & kLineBits; }
 
   [[nodiscard]] const CacheCounts& counts() const { return counts_; }
 
  private:
-  // A directory word: the line; of one on its way the top bit and who fetches it beside that.
+  // A directory word: the line; while it is on its way, also the top bit and its filler.
   static constexpr std::uint32_t kLineBits = 0x0FFFFFFFu;
   static constexpr std::uint32_t kFillerShift = 28;
   static constexpr std::uint32_t kOnItsWay = 0x80000000u;

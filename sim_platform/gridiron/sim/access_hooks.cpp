@@ -1,4 +1,4 @@
-// What the compiler's kernel-address instrumentation calls at each load and store of the instrumented kernel.
+// Functions that the compiler's kernel-address instrumentation calls at each load and store of the instrumented kernel.
 // Memory: none. Threads: each thread checks for its own core. SPDX-License-Identifier: Apache-2.0
 #include <gridiron/sim/sim_core.h>
 
@@ -37,7 +37,7 @@ extern "C" void __asan_storeN_noabort(std::uintptr_t address, std::uintptr_t byt
                                        reinterpret_cast<std::uintptr_t>(__builtin_return_address(0)));
 }
 
-// Called before functions that do not return; the instrumentation of the stack is off, so there is nothing to do.
+// Called before functions that do not return. The instrumentation of the stack is off, so nothing needs to be done.
 extern "C" void __asan_handle_no_return();
 extern "C" void __asan_handle_no_return() {}
 

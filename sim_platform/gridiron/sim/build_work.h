@@ -1,4 +1,4 @@
-// Build work: counted steps of building a scene's data structure, and what they cost on a machine's general core.
+// Build work: counted steps of building a scene's data structure, and their cost on a machine's general core.
 // Memory: plain values. Threads: any. SPDX-License-Identifier: Apache-2.0
 #pragma once
 
@@ -11,13 +11,13 @@
 
 namespace gridiron::sim {
 
-/// How often each step of a build was done. The same on every host.
+/// Counts of each step of a build. The same on every host.
 struct BuildWork {
   std::array<std::uint64_t, kBuildStepCount> counts{};  ///< by BuildStep
 
   /// Counts `amount` more of a step.
   constexpr void add(BuildStep step, std::uint64_t amount) { counts[static_cast<std::size_t>(step)] += amount; }
-  /// @returns how often a step was done.
+  /// @returns the count of a step.
   [[nodiscard]] constexpr std::uint64_t operator[](BuildStep step) const {
     return counts[static_cast<std::size_t>(step)];
   }
@@ -29,11 +29,11 @@ struct BuildWork {
 /// @param need                          from count_scene_image.
 [[nodiscard]] BuildWork grid_build_work(std::uint64_t vertex_count, std::uint64_t triangle_count, const GridNeed& need);
 
-/// @returns cycles of `master`'s clock that one core needs for `work`; a sum of whole counts times profile values in
-/// the order of BuildStep, so equal to the last digit on every host.
+/// @returns cycles of `master`'s clock that one core needs for `work`. Whole counts times profile values, summed in the
+/// order of BuildStep, so equal to the last digit on every host.
 [[nodiscard]] double build_cycles(const MasterProfile& master, const BuildWork& work);
 
-/// @returns simulated seconds; 0 where the clock is not positive.
+/// @returns simulated seconds; 0 unless the clock is positive.
 [[nodiscard]] double build_seconds(const MasterProfile& master, const BuildWork& work);
 
 }  // namespace gridiron::sim

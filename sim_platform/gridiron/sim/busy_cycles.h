@@ -1,4 +1,4 @@
-// What keeps a core busy with a tile, without a clock: work, commands and waits at a machine's costs, no stall.
+// The busy time of a core with a tile, without a clock: work, commands and waits at a machine's costs, no stall.
 // Memory: values. Threads: any. SPDX-License-Identifier: Apache-2.0
 #pragma once
 
@@ -7,8 +7,8 @@
 
 namespace gridiron::sim {
 
-/// @returns the cycles of a tile, its claim included, on a core that never stands still; with a profile that counts
-/// instructions, the instructions.
+/// @returns the cycles of a tile, its claim included, on a core that never stalls; instructions with a profile that
+/// counts these.
 [[nodiscard]] inline double busy_cycles(const TileTrace& tile, const MachineProfile& machine) {
   double cycles = machine.claim_cycles;
   for_each_event(tile, [&](const TraceEvent& event) {

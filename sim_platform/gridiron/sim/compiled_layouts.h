@@ -1,4 +1,4 @@
-// Compiled layouts: for which local stores the simulated chip has a kernel, and how one is picked at run time.
+// Compiled layouts: the local stores that the simulated chip has a kernel for, and the choice of one at run time.
 // Memory: types alone. Threads: any. SPDX-License-Identifier: Apache-2.0
 #pragma once
 
@@ -16,7 +16,7 @@ struct LayoutList {};
 using CommonLayouts = LayoutList<StoreLayout64K<4>, StoreLayout64K<8>, StoreLayout64K<16>, StoreLayout256K<4>,
                                  StoreLayout256K<8>, StoreLayout256K<16>, StoreLayout256K<32>>;
 
-/// In Mode::kChecked with 4 lanes only: what sweeps of the store's and the tile's size are timed with.
+/// In Mode::kChecked with 4 lanes only, for sweeps of the store's and the tile's size.
 using SweepLayouts =
     LayoutList<StoreLayout128K<8>, StoreLayout128K<32>, StoreLayout512K<8>, StoreLayout512K<32>, StoreLayout512K<8, 64>,
                StoreLayout512K<32, 64>, StoreLayout256K<8, 8>, StoreLayout256K<8, 16>, StoreLayout256K<16, 16>,
@@ -32,7 +32,7 @@ template <class Layout>
          Layout::kPacketWidth == choice.packet_width && (Layout::kEffects != 0) == choice.has_effects;
 }
 
-/// Calls visit.operator()<Layout>() of the layout that was chosen. @returns false where the list does not hold it.
+/// Calls visit.operator()<Layout>() for the chosen layout. @returns false if the list does not contain it.
 template <class... Layouts, class Visit>
 constexpr bool visit_layout(LayoutList<Layouts...>, const LayoutChoice& choice, Visit&& visit) {
   return ((is_layout<Layouts>(choice) && (visit.template operator()<Layouts>(), true)) || ...);

@@ -17,7 +17,7 @@ namespace gridiron::sim {
 
 namespace {
 
-// In front of and behind a core's arena. A multiple of any boundary, so that the arena stays aligned.
+// Bytes before and after a core's arena. A multiple of any boundary, so that the arena stays aligned.
 constexpr std::size_t kGuardBytes = 4096;
 constexpr std::byte kGuardPattern{0xC9};
 
@@ -37,7 +37,7 @@ class GuardedArena {
 
   [[nodiscard]] std::span<std::byte> data() const { return {bytes_ + kGuardBytes, data_bytes_}; }
 
-  /// @returns offset from the arena's start of a changed byte outside the data; 0 where there is none (0 is data).
+  /// @returns offset from the arena's start of a changed byte outside the data; 0 if there is none (0 is data).
   [[nodiscard]] std::ptrdiff_t find_damage() const {
     const auto damaged = [](std::byte b) { return b != kGuardPattern; };
     const std::byte* const data_begin = bytes_ + kGuardBytes;
@@ -55,7 +55,7 @@ class GuardedArena {
   std::byte* bytes_;
 };
 
-/// One core, what it ran in, and how it ended.
+/// One core, its memory, and how it ended.
 struct CoreRun {
   std::unique_ptr<SimCore> core;
   Status status = Status::kOk;
@@ -68,13 +68,13 @@ void run_core(CoreRun& run, const GuardedArena& arena, const CoreProgram& progra
   const std::uint32_t last_tile = core.tile_id();
   core.finish(returned == Status::kOk);
 
-  // The core's own record is the earlier and the more exact one; a program may even have dropped the status.
+  // The core's own record is earlier and more exact; a program may even have dropped the status.
   run.status = core.first_error() != Status::kOk ? core.first_error() : returned;
   run.tile = core.first_error() != Status::kOk ? core.first_error_tile() : last_tile;
   if (run.status != Status::kOk) tiles.stop();
 }
 
-/// A failure outranks an abort (which it causes on the other cores); of two failures the lower tile is told.
+/// A failure outranks an abort (which it causes on the other cores); of two failures the lower tile is reported.
 [[nodiscard]] bool outranks(const CoreRun& a, const CoreRun& b) {
   const auto rank = [](const CoreRun& run) { return run.status == Status::kOk ? 2 : run.status == Status::kAborted; };
   return rank(a) != rank(b) ? rank(a) < rank(b) : a.tile < b.tile;
@@ -91,9 +91,11 @@ void run_core(CoreRun& run, const GuardedArena& arena, const CoreProgram& progra
   return bytes;
 }
 
-/// A core that ends early, or puts less than its tile, would leave old bytes of main memory in the picture.
+/// Checks that all planes are complete. A core that ends early, or puts less than its tile, would leave old bytes of
+/// main memory in the picture.
 ///
-/// @param tile_bytes  of each tile, over all planes; tiles are known not to overlap, so as many bytes are all of them.
+/// @param tile_bytes  of each tile, over all planes; tiles are known not to overlap, so that many bytes are all of
+///                    them.
 [[nodiscard]] std::vector<Violation> check_complete(const std::vector<CoreRun>& runs, std::uint64_t tile_bytes,
                                                     std::uint32_t first_tile, std::uint32_t end_tile) {
   std::vector<bool> is_claimed(end_tile - first_tile);
@@ -126,7 +128,7 @@ bool are_limits_valid(const PlatformLimits& limits) {
 bool is_spill_valid(SimMemory& memory, const SpillMemory& spill, std::uint32_t cores,
                     std::span<const MainRange> writable) {
   if (spill.bytes_per_core == 0) return true;
-  // More than the memory holds is refused before anything is multiplied or rounded.
+  // Rejects more than the memory holds before anything is multiplied or rounded.
   if (spill.bytes_per_core > memory.capacity_bytes() || cores == 0) return false;
   const std::uint64_t begin = spill.address.value, slice_bytes = spill.slice_bytes();
   if (begin == 0 || begin % kSpillAlignment != 0 || slice_bytes > memory.capacity_bytes() / cores) return false;
@@ -138,7 +140,7 @@ bool is_spill_valid(SimMemory& memory, const SpillMemory& spill, std::uint32_t c
 
 namespace {
 
-/// As run_cores. Errors: throws what the host has not, and what the program throws.
+/// As run_cores. Errors: throws shortages of the host, and whatever the program throws.
 [[nodiscard]] ChipResult run_on_host(SimMemory& memory, const FrameShape& shape, const ChipOptions& options,
                                      const CoreProgram& program) {
   ChipResult result;

@@ -20,30 +20,30 @@ struct FrameShape {
   std::uint32_t arena_bytes = 256 * 1024;  ///< local memory of a core
   std::uint32_t data_bytes = 256 * 1024;   ///< its first bytes, where data lies; the rest is code and stack
   std::vector<MainRange> writable;         ///< where puts may go; sorted, disjoint
-  bool is_picture = false;                 ///< writable holds equal parts of every tile; each must be claimed and put
-  bool cores_meet = false;                 ///< cores wait for one another, so that each needs a host thread of its own
+  bool is_picture = false;                 ///< writable holds equal parts of all tiles; each must be claimed and put
+  bool cores_meet = false;                 ///< cores wait for one another, so each needs a host thread of its own
 };
 
-/// What a core runs: from its first claim to its last wait. `data` is zeroed and kLineBytes-aligned.
+/// The program of a core: from its first claim to its last wait. `data` is zeroed and kLineBytes-aligned.
 using CoreProgram = std::function<Status(SimCore& core, std::span<std::byte> data)>;
 
-/// Runs `program` on options.threads cores (options.mode, lanes, store and packet_width are not looked at). The bytes
-/// around a core's data carry a pattern that is checked at the end.
+/// Runs `program` on options.threads cores (options.mode, lanes, store and packet_width are ignored). The bytes around
+/// a core's data carry a pattern that is checked at the end.
 ///
 /// Errors: kBadParameter and kAborted as of render_frame; the program's, and those of the rules that it broke. A
-/// program that throws std::bad_alloc ends the frame with HostShortage::kMemory; what else it throws is thrown on by
-/// this call once all threads have ended.
+/// program that throws std::bad_alloc ends the frame with HostShortage::kMemory; any other exception leaves this call
+/// once all threads have ended.
 ///
-/// What a core puts before its first tile or after its last belongs to no tile: two cores that do so and overlap are
-/// told, but whether there are two of them is the caller's choice.
+/// Puts before a core's first tile or after its last belong to no tile. If two cores make such puts and overlap, this
+/// is reported, but it depends on the caller whether there are two such cores.
 [[nodiscard]] ChipResult run_cores(SimMemory& memory, const FrameShape& shape, const ChipOptions& options,
                                    const CoreProgram& program);
 
-/// @returns whether spill memory is none, or `cores` slices of it are aligned, allocated and apart from `writable`.
+/// @returns whether there is no spill memory, or `cores` slices of it are aligned, allocated and apart from `writable`.
 [[nodiscard]] bool is_spill_valid(SimMemory& memory, const SpillMemory& spill, std::uint32_t cores,
                                   std::span<const MainRange> writable);
 
-/// @returns whether `limits` describe a platform at all: powers of two, and counts above zero.
+/// @returns whether `limits` describe a possible platform: powers of two, and counts above zero.
 [[nodiscard]] bool are_limits_valid(const PlatformLimits& limits);
 
 }  // namespace gridiron::sim

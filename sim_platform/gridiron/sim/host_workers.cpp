@@ -31,7 +31,8 @@ WorkersEnd run_workers(std::uint32_t count, std::uint32_t least, const std::func
       threads.push_back(start ? start([&run, i] { run(i); }) : std::thread(run, i));
     }
   } catch (...) {
-    // The host has no more threads or memory: std::system_error or std::bad_alloc. Those that run are enough, or not.
+    // The host has no more threads or memory: std::system_error or std::bad_alloc. The caller decides whether those
+    // that run are enough.
   }
   const std::uint32_t started = count == 0 ? 0 : static_cast<std::uint32_t>(threads.size()) + 1;
   const bool goes_on = started >= least;

@@ -28,9 +28,9 @@ constexpr std::array<double, kWorkKindCount> two_pipe_work_cycles() {
 /// The general core: 3.2 GHz, in order, two instructions a cycle at best, 512 KB of cache before the same memory.
 ///
 /// ESTIMATES: instructions of the builder's loops counted by hand. The rules: an instruction costs 1.5 cycles (two
-/// issue together now and then, results of float instructions take 10), a branch that goes either way 12 (half of 23),
-/// streamed memory half a cycle a byte (128-byte lines, 8 under way, 500 cycles each), a line met at random that is not
-/// in the cache 500, a conversion to integer 10 (through memory, 40, four in a row overlap).
+/// sometimes issue together, results of float instructions take 10), a branch that goes either way 12 (half of 23),
+/// streamed memory half a cycle a byte (128-byte lines, 8 under way, 500 cycles each), a random line that is not cached
+/// 500, a conversion to integer 10 (through memory, 40, four in a row overlap).
 constexpr MasterProfile in_order_master() {
   MasterProfile master{.clock_hz = 3.2e9, .step_cycles = {}};
   const auto set = [&master](BuildStep step, double value) {
@@ -84,9 +84,9 @@ constexpr MachineProfile with_two_gigabytes(MachineProfile machine) {
   return machine;
 }
 
-// Eight cores of the same make at 2.4 GHz. What belongs to the memory keeps its time, so it takes fewer cycles; what
-// belongs to the core keeps its cycles. The size of its main memory is an assumption, and so is that its general core
-// is the same at 2.4 GHz; the share of its steps that is memory is not taken apart.
+// Eight cores of the same kind at 2.4 GHz. Costs of the memory keep their time, so they take fewer cycles; costs of the
+// core keep their cycles. The size of its main memory is an assumption, and so is the same general core at 2.4 GHz; the
+// steps of that core are not split into memory and computing.
 constexpr MachineProfile eight_cores_of_2006(MachineProfile machine) {
   machine.name = "cell-2006";
   machine.description = "8 cores at 2.4 GHz, 256 KB local stores, 512 MB main memory at 25.6 GB/s, 90 % of it usable";
@@ -100,7 +100,7 @@ constexpr MachineProfile eight_cores_of_2006(MachineProfile machine) {
   return machine;
 }
 
-/// Instructions of a scalar core that takes 4 lanes one after the other: counted in an emulator, see
+/// Instructions of a scalar core that executes 4 lanes one after the other: counted in an emulator, see
 /// instruction_costs.h. Commands and waits are charged where they happen.
 constexpr std::array<double, kWorkKindCount> scalar_instructions() {
   static_assert(kInstructionCosts.size() == kWorkKindCount - 3);
@@ -111,9 +111,9 @@ constexpr std::array<double, kWorkKindCount> scalar_instructions() {
   return instructions;
 }
 
-// Four scalar cores with scratchpad memory and a copy engine each, as platform/sifive_u drives them. Cycles of this
+// Four scalar cores, each with scratchpad memory and a copy engine, as platform/sifive_u drives them. Cycles of this
 // profile are INSTRUCTIONS: it predicts what an emulator counts, where a transfer has ended when its command has been
-// given; it does not predict seconds.
+// given. It does not predict seconds.
 constexpr MachineProfile counted_fu540(MachineProfile machine) {
   machine.name = "fu540";
   machine.description = "4 scalar cores, 256 KB local stores; counts instructions: transfers take none but their own";

@@ -1,4 +1,4 @@
-// Machine profile: what a chip's cores, transfers and memory cost. Applied by the replay, never seen by core.
+// Machine profile: the costs of a chip's cores, transfers and memory. Applied by the replay, never seen by core.
 // Memory: plain values. Threads: any. SPDX-License-Identifier: Apache-2.0
 #pragma once
 
@@ -14,7 +14,7 @@ namespace gridiron::sim {
 
 /// Steps of building a scene's data structure that cost time on the general core, for grid and hierarchy.
 enum class BuildStep : std::uint8_t {
-  kVertexCheck,      ///< vertices held against NaN and infinity
+  kVertexCheck,      ///< vertices checked for NaN and infinity
   kTriangleSurvey,   ///< triangles read: indices, zero area, bounds
   kCellBox,          ///< triangles swept: zero area, box of cells, once per sweep
   kCellRow,          ///< rows of cells met in all sweeps
@@ -31,7 +31,7 @@ enum class BuildStep : std::uint8_t {
   kNodeMade,         ///< hierarchy: nodes of the binary tree, inner and leaf, without their sweeps
   kCount
 };
-/// Steps, of grid and hierarchy.
+/// Number of steps, of grid and hierarchy.
 inline constexpr std::size_t kBuildStepCount = static_cast<std::size_t>(BuildStep::kCount);
 
 /// The general core, which builds the scene image before the cores render it. One core of it works.
@@ -45,7 +45,7 @@ struct MasterProfile {
 
 /// All times in cycles of the core clock, but those of `master`.
 struct MachineProfile {
-  std::string_view name;                ///< what find_machine_profile knows it by
+  std::string_view name;                ///< argument of find_machine_profile
   std::string_view description;         ///< one line for people
   std::uint32_t core_count;             ///< accelerator cores
   double clock_hz;                      ///< of the accelerator cores
@@ -70,7 +70,7 @@ struct MachineProfile {
 /// The built-in profiles, `cell-ps3` first.
 [[nodiscard]] std::span<const MachineProfile> machine_profiles();
 
-/// @returns nullptr where no profile has that name.
+/// @returns nullptr if no profile has that name.
 [[nodiscard]] const MachineProfile* find_machine_profile(std::string_view name);
 
 }  // namespace gridiron::sim

@@ -11,11 +11,11 @@
 
 namespace gridiron::sim {
 
-/// The host's memcpy, called: inlined, a copy of bounded but unknown size becomes a slow string instruction.
+/// Calls the host's memcpy: inlined, a copy of bounded but unknown size becomes a slow string instruction.
 void copy_bytes(void* to, const void* from, std::size_t bytes);
 
-/// One core that believes what it is told: a transfer that breaks a rule of the contract is undefined behaviour of the
-/// host. Asserts catch the cheapest mistakes in builds without NDEBUG.
+/// One core that checks nothing: a transfer that breaks a rule of the contract is undefined behaviour of the host.
+/// Asserts catch the cheapest mistakes in builds without NDEBUG.
 class PlainCore {
  public:
   /// @param base  host address of main address 0.
@@ -64,6 +64,6 @@ class PlainCore {
 };
 
 static_assert(Platform<PlainCore>);
-static_assert(!WorkObserver<PlainCore> && !StageObserver<PlainCore>, "no time is kept, so nobody listens");
+static_assert(!WorkObserver<PlainCore> && !StageObserver<PlainCore>, "no time is kept, so no observer is needed");
 
 }  // namespace gridiron::sim

@@ -1,5 +1,5 @@
-// One entry point of the kernel, compiled several times. The build says which: GRIDIRON_ENTRY_NAME of the function,
-// GRIDIRON_ENTRY_LANES, GRIDIRON_ENTRY_CORE (what stands for the platform), GRIDIRON_ENTRY_LAYOUTS (a list of layouts).
+// One entry point of the kernel, compiled several times. The build defines GRIDIRON_ENTRY_NAME (the function's),
+// GRIDIRON_ENTRY_LANES, GRIDIRON_ENTRY_CORE (the platform), GRIDIRON_ENTRY_LAYOUTS (a list of layouts).
 // Memory: the core's arena. Threads: one core per call. SPDX-License-Identifier: Apache-2.0
 #include <gridiron/base/lanes.h>
 #include <gridiron/render/tile_renderer.h>

@@ -1,6 +1,6 @@
-// Entry points of the kernel as compiled for one lane count and one mode. Each lives in an object of its own, from
-// which nothing but the entry point is visible: code built for a wide instruction set, or with instrumentation, is
-// never picked by the linker for anybody else.
+// Entry points of the kernel, each compiled for one lane count and one mode. Each is an object of its own in which only
+// the entry point is visible, so that the linker never uses code built for a wide instruction set, or with
+// instrumentation, elsewhere.
 // Memory: the core's arena. Threads: one core per call. SPDX-License-Identifier: Apache-2.0
 #pragma once
 
@@ -15,8 +15,8 @@
 extern "C" {
 
 /// Renders tiles until none is left. `store` is zeroed, kLineBytes-aligned, as large as the layout's LocalStore. The
-/// layout is one of CommonLayouts, of ..._sweep one of SweepLayouts, of ..._effects one of EffectLayouts
-/// (compiled_layouts.h); it is passed as a copy because instrumented code may look at a core's own memory only.
+/// layout is one of CommonLayouts; for ..._sweep one of SweepLayouts, for ..._effects one of EffectLayouts
+/// (compiled_layouts.h). It is passed as a copy because instrumented code may access a core's own memory only.
 /// Errors: kUnsupportedFrame for a layout that is not built; the kernel's.
 gridiron::Status gridiron_sim_render_checked_lanes4(gridiron::sim::LayoutChoice layout, std::byte* store,
                                                     gridiron::sim::SimCore& core, gridiron::MainAddress frame,

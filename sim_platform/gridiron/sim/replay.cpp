@@ -15,8 +15,8 @@ namespace gridiron::sim {
 
 namespace {
 
-/// Simulated time. Integers, so that no sum depends on its order; fine enough that a rounded profile value is off by
-/// less than 5e-4 cycles; exact in a double for frames below 2^43 cycles.
+/// Simulated time. Integers, so that no sum depends on its order; fine enough that rounding a profile value changes it
+/// by less than 5e-4 cycles; exact in a double for frames below 2^43 cycles.
 using Ticks = std::uint64_t;
 constexpr double kTicksPerCycle = 1024;
 constexpr Ticks kNever = ~Ticks{0};
@@ -34,7 +34,7 @@ double cycles_from_ticks(Ticks ticks) {
   return static_cast<double>(ticks) / kTicksPerCycle;
 }
 
-/// A machine profile in ticks, with counts that are safe to index by.
+/// A machine profile in ticks, with counts that are safe as indices.
 struct Constants {
   explicit Constants(const MachineProfile& machine)
       : line_bytes(std::max(1u, machine.line_bytes)),
@@ -65,7 +65,7 @@ struct Command {
 
 enum class Phase : std::uint8_t { kPrologue, kTile, kEpilogue, kEnded };
 
-/// One core: where its program stands, and its transfer engine.
+/// One core: the state of its program, and its transfer engine.
 struct Core {
   // Program.
   Phase phase = Phase::kPrologue;
@@ -81,7 +81,7 @@ struct Core {
   // Transfers, numbered from 1 in the order of issue.
   std::vector<Command> queue;  ///< command n at (n - 1) % queue_depth
   std::uint64_t issued_count = 0;
-  std::uint64_t granted_count = 0;                     ///< commands of which every line has had its turn
+  std::uint64_t granted_count = 0;                     ///< commands whose lines have all had their turn
   std::array<std::uint64_t, kTagCount> last_of_tag{};  ///< number of the last command of a tag, 0: none
   std::vector<Ticks> arrivals;                         ///< line n, numbered from 0, at n % lines_in_flight
   std::uint64_t line_count = 0;
@@ -119,14 +119,14 @@ class Replay {
       begin_steps(core, trace_.prologue);
       advance(core);
     }
-    // Nothing that an event causes lies before it, so the earliest one is always safe to take.
+    // An event never causes an earlier one, so the earliest one is always safe to take.
     while (take_earliest_event()) {
     }
     return result();
   }
 
  private:
-  /// Handles the earliest claim or line request, ties: claims first, then by core. @returns false where none is left.
+  /// Handles the earliest claim or line request; ties: claims first, then by core. @returns false if none is left.
   bool take_earliest_event() {
     Core* claimer = nullptr;
     Core* requester = nullptr;
@@ -175,7 +175,7 @@ class Replay {
     advance(core);
   }
 
-  /// @returns null where the core gets no more.
+  /// @returns null if the core gets no more tiles.
   const TileTrace* next_tile_of(Core& core) {
     const std::size_t count = trace_.tiles.size();
     if (core_of_tile_.empty()) return next_tile_ < count ? &trace_.tiles[next_tile_++] : nullptr;
@@ -224,7 +224,7 @@ class Replay {
     core.step = core.steps.next();
   }
 
-  /// Runs a core's program until it needs to know something that other cores may still change, or ends.
+  /// Runs a core's program until it ends, or depends on something that other cores may still change.
   void advance(Core& core) {
     core.blocked_until = 0;
     while (core.step != nullptr) {
@@ -245,7 +245,7 @@ class Replay {
     schedule_request(core);
   }
 
-  /// @returns false where the core is blocked and the step must be taken again later.
+  /// @returns false if the core is blocked and must retry the step later.
   bool take_step(Core& core, const TraceEvent& event) {
     switch (event.kind) {
       case EventKind::kWork:
@@ -324,13 +324,13 @@ class Replay {
     return kFirstOutputTag + (relative + core.ordinal) % output_depth_;
   }
 
-  /// Lets a core stand still until a command is done. @returns false where that time is not known yet.
+  /// Stalls a core until a command is done. @returns false if that time is not known yet.
   bool wait_for(Core& core, std::uint64_t command, WaitLevel level) {
     if (command > core.granted_count) {
       core.blocked_until = command;
       return false;
     }
-    // A command whose place has been taken by a later one left the queue long ago.
+    // If a later command has taken this one's place, it left the queue long ago.
     if (command + constants_.queue_depth <= core.issued_count) return true;
     const Ticks done = core.queue[(command - 1) % constants_.queue_depth].done;
     if (done > core.now) spend(core, TimelineSpan::Kind::kWait, level, done - core.now);

@@ -21,7 +21,7 @@ namespace gridiron::sim {
          kind == Work::kPassGroup || kind == Work::kPassSquare;
 }
 
-/// What one core did in one stage: a cycle and a command belong to the stage in which the core was.
+/// One core's time in one stage: cycles and commands belong to the stage in which the core was.
 struct StageTiming {
   double compute_cycles = 0;  ///< initialisation included
   double wait_cycles = 0;     ///< of all levels
@@ -29,11 +29,11 @@ struct StageTiming {
   std::uint64_t bytes_in = 0, bytes_out = 0;  ///< as requested
 };
 
-/// Where one core's cycles went: init + compute + sum of waits + idle = frame cycles, without any rounding.
+/// One core's cycles: init + compute + sum of waits + idle = frame cycles, without any rounding.
 ///
-/// Cycles that the core spends on transfers itself (issuing a command, asking whether tags are done) are computation:
-/// no buffering can hide them. Time in which it stands still is a wait: at a wait, of the level of the transfer that
-/// ended last; at a full queue, of the level of the transfer that could not be issued.
+/// Cycles that the core itself spends on transfers (issuing a command, asking whether tags are done) are computation:
+/// no buffering can hide them. Time in which it stalls is a wait: at a wait, of the level of the transfer that ended
+/// last; at a full queue, of the level of the transfer that could not be issued.
 struct CoreTiming {
   std::uint32_t tiles = 0;                       ///< claimed
   double init_cycles = 0;                        ///< work that is_initialisation
@@ -47,10 +47,10 @@ struct CoreTiming {
   std::array<StageTiming, kStageCount> stages{};
 };
 
-/// One bar of the timeline. A kTile span encloses the spans of its tile; the others do not overlap on one core. What no
-/// span covers is idle.
+/// One bar of the timeline. A kTile span encloses the spans of its tile; the others do not overlap on one core. Time
+/// without a span is idle.
 struct TimelineSpan {
-  /// What a core does meanwhile.
+  /// What the core does meanwhile.
   enum class Kind : std::uint8_t {
     kInit,     ///< work that is_initialisation
     kCompute,  ///< other work
@@ -70,37 +70,37 @@ struct FrameTiming {
   double seconds = 0;       ///< the same, by the clock of the machine
   double channel_busy_cycles = 0;  ///< time in which the shared channel carried a line
   std::vector<CoreTiming> cores;       ///< one a core
-  std::vector<TimelineSpan> timeline;  ///< filled only when asked for; core by core, each in order of time
+  std::vector<TimelineSpan> timeline;  ///< filled only if requested; core by core, each in order of time
 };
 
-/// What is asked of a replay.
+/// Options of a replay.
 struct ReplayOptions {
   std::uint32_t core_count = 0;  ///< 0: the profile's
-  bool timeline = false;         ///< FrameTiming::timeline is wanted
-  /// Core that renders trace.tiles[n], for programs whose tiles depend on what their core did before; empty: cores
-  /// claim. A tile of a core that there is not is rendered by none.
+  bool timeline = false;         ///< whether to fill FrameTiming::timeline
+  /// Core that renders trace.tiles[n], for programs whose tiles depend on their core's earlier tiles; empty: cores
+  /// claim. A tile of a core that does not exist is not rendered.
   std::span<const std::uint32_t> core_of_tile = {};
 };
 
 /// Gives every step of `trace` a time on `core_count` cores of `machine`.
 ///
 /// Each core runs the prologue, claims tiles, then runs the epilogue. Claims are granted in order of simulated time,
-/// ties by core; the n-th grant hands out trace.tiles[n], or, where options.core_of_tile names the cores, a core is
-/// given the next of its own, in the order of the trace. A core's commands are served one after another in the order
-/// of issue. Each line leaves the core when the command has been issued, core_line_interval_cycles after the line
-/// before it, and when fewer than lines_in_flight lines are under way; the channel serves lines of all cores, gets and
-/// puts alike, by the time they left, ties by core; latency_cycles after its turn on the channel has ended the line is
-/// there. A command leaves the queue with its last line.
+/// ties by core. The n-th grant hands out trace.tiles[n]; with options.core_of_tile a core gets the next of its own
+/// tiles instead, in the order of the trace. A core's commands are served one after another in the order of issue. Each
+/// line leaves the core when the command has been issued, core_line_interval_cycles have passed since the line before
+/// it, and fewer than lines_in_flight lines are under way. The channel serves lines of all cores, gets and puts alike,
+/// by the time they left, ties by core. A line arrives latency_cycles after its turn on the channel has ended. A
+/// command leaves the queue with its last line.
 ///
-/// First come, first served is fair: cores that stream alike get alike, and a line waits for at most lines_in_flight
-/// lines of each other core.
+/// First come, first served is fair: cores that stream equally get equal shares, and a line waits for at most
+/// lines_in_flight lines of each other core.
 ///
-/// Time is counted in integers of 1/1024 cycle: profile values are rounded to them first, and the result depends on
-/// nothing else. Values of the profile that mean nothing are taken as the nearest that does: cycles below 0 as 0 and
-/// above 2^20 as 2^20, counts of 0 as 1, queue_depth and lines_in_flight above 65,536 as that;
-/// channel_bytes_per_cycle <= 0 is a channel that costs no time. Preconditions: a frame shorter than 2^43 cycles; tags
-/// below 32; stages below kCount; packed steps as TraceWriter wrote them, which are read as cores come to them. Cost:
-/// linear in events and lines, times core_count; memory: the steps of one tile a core, unpacked, about 2 bytes a step.
+/// Time is counted in integers of 1/1024 cycle. Profile values are rounded to them first, so the result is exact and
+/// repeatable. Invalid values of the profile are replaced by the nearest valid one: cycles below 0 by 0 and above 2^20
+/// by 2^20, counts of 0 by 1, queue_depth and lines_in_flight above 65,536 by that; channel_bytes_per_cycle <= 0 is a
+/// channel that costs no time. Preconditions: a frame shorter than 2^43 cycles; tags below 32; stages below kCount;
+/// steps packed by TraceWriter, which are read as cores come to them. Cost: linear in events and lines, times
+/// core_count; memory: the steps of one tile a core, unpacked, about 2 bytes a step.
 [[nodiscard]] FrameTiming replay(const FrameTrace& trace, const MachineProfile& machine, const ReplayOptions& options);
 
 }  // namespace gridiron::sim

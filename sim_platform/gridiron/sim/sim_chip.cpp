@@ -30,13 +30,13 @@ consteval bool have_all_effects(LayoutList<Layouts...>) {
   return ((Layouts::kEffects == kAllEffects) && ...);
 }
 static_assert(have_all_effects(EffectLayouts{}),
-              "no frame ends with kMissingEffect, so that a result need not tell which");
+              "no frame ends with kMissingEffect, so results need not name effects");
 static_assert(fit_arenas(CommonLayouts{}) && fit_arenas(SweepLayouts{}) && fit_arenas(EffectLayouts{}));
 
 template <class Core>
 using RenderEntry = Status (*)(LayoutChoice, std::byte*, Core&, MainAddress, SpillRegion);
 
-/// Which list of compiled_layouts.h a layout stands in, and so which build of the kernel has it.
+/// The list of compiled_layouts.h that contains a layout, which decides the build of the kernel.
 enum class LayoutGroup : std::uint8_t { kCommon, kSweep, kEffects, kNone };
 
 [[nodiscard]] LayoutGroup group_of(const LayoutChoice& layout) {
@@ -60,7 +60,7 @@ enum class LayoutGroup : std::uint8_t { kCommon, kSweep, kEffects, kNone };
   return lanes == 4;
 }
 
-/// @returns null where this host cannot run what was built for these options.
+/// @returns null if this host cannot run the build for these options.
 [[nodiscard]] RenderEntry<SimCore> checked_entry(const ChipOptions& options, LayoutGroup group) {
   if (!host_runs_lanes(options.lanes)) return nullptr;
   if (group == LayoutGroup::kSweep) return gridiron_sim_render_checked_sweep_lanes4;
@@ -112,7 +112,7 @@ enum class LayoutGroup : std::uint8_t { kCommon, kSweep, kEffects, kNone };
     return false;
   }
   const std::uint64_t blocks = effects.environment_width == 0 ? 0 : environment_blocks(effects.environment_width);
-  // Images are made of whole lines, and sections begin on them, so cores may read whole lines.
+  // Images and their sections consist of whole lines, so cores may read whole lines.
   const auto lies_in_image = [&](std::uint64_t offset, std::uint64_t count, std::uint64_t record_bytes) {
     const std::uint64_t bytes = round_up<std::uint64_t>(count * record_bytes, kLineBytes);
     return offset <= image.image_bytes && bytes <= image.image_bytes - offset;
@@ -214,7 +214,7 @@ enum class LayoutGroup : std::uint8_t { kCommon, kSweep, kEffects, kNone };
     const Run& run = runs[i];
     result.transfers += run.core->transfers();
     if (run.status == Status::kOk) continue;
-    // A failure outranks the abort that it causes on other cores; of two failures the lower tile is told.
+    // A failure outranks the abort that it causes on other cores; of two failures the lower tile is reported.
     const bool is_first = result.status == Status::kOk;
     const bool was_abort = result.status == Status::kAborted, is_abort = run.status == Status::kAborted;
     if (is_first || (was_abort && !is_abort) || (was_abort == is_abort && run.core->tile_id() < result.failed_tile)) {
@@ -226,7 +226,7 @@ enum class LayoutGroup : std::uint8_t { kCommon, kSweep, kEffects, kNone };
   return result;
 }
 
-/// As render_frame. Errors: throws what the host has not, and what options.progress throws.
+/// As render_frame. Errors: throws shortages of the host, and whatever options.progress throws.
 [[nodiscard]] ChipResult render_on_host(SimMemory& memory, MainAddress frame, const ChipOptions& asked) {
   ChipResult result;
   const auto refuse = [&](Status status) {

@@ -24,7 +24,7 @@ enum class Completion : std::uint8_t {
   kRandom,  ///< at a seeded random call in between
 };
 
-/// How large a local store the cores have.
+/// The size of the cores' local stores.
 enum class StoreSize : std::uint8_t {
   k64KB,   ///< 65,536 bytes
   k128KB,  ///< 131,072 bytes
@@ -38,12 +38,12 @@ inline constexpr StoreSize kStoreSizes[] = {StoreSize::k64KB, StoreSize::k128KB,
 [[nodiscard]] constexpr std::uint32_t arena_bytes(StoreSize store) {
   return (64u << 10) << static_cast<std::uint32_t>(store);
 }
-/// Pixels along a tile's edge unless one asks for others.
+/// Pixels along a tile's edge by default.
 [[nodiscard]] constexpr std::uint32_t usual_tile_width(StoreSize store) {
   return store == StoreSize::k64KB ? 16 : 32;
 }
 
-/// What one build of the kernel is made for.
+/// The layout that a build of the kernel is for.
 struct LayoutChoice {
   StoreSize store = StoreSize::k256KB;  ///< local memory
   std::uint32_t tile_width = 32;   ///< pixels along a tile's edge
@@ -58,11 +58,11 @@ enum class Mode : std::uint8_t {
   kInstrumented,  ///< kChecked, and every load and store of the kernel checked too; 4 lanes, see has_instrumented_mode
 };
 
-/// Main memory in which cores lay down rays that wait (SpillRegion), a slice for each: core i's begins at
-/// address + i * slice_bytes(). Bytes are put and got there by that core alone, and a tile gets only what it has put.
+/// Main memory in which cores store rays that wait (SpillRegion), a slice for each: core i's begins at address + i *
+/// slice_bytes(). Only that core transfers bytes there, and a tile gets only what it has put.
 struct SpillMemory {
   MainAddress address{};             ///< a multiple of kSpillAlignment
-  std::uint64_t bytes_per_core = 0;  ///< spill_bytes() of the frame's scene or more; 0: there is none
+  std::uint64_t bytes_per_core = 0;  ///< at least spill_bytes() of the frame's scene; 0: there is none
 
   /// From one core's slice to the next: bytes_per_core in whole kSpillAlignment.
   [[nodiscard]] constexpr std::uint64_t slice_bytes() const {
@@ -70,7 +70,7 @@ struct SpillMemory {
   }
 };
 
-/// How a frame is rendered. None of it changes a pixel.
+/// Options of a render. None of them changes a pixel.
 struct ChipOptions {
   Mode mode = Mode::kChecked;  ///< what is checked
   std::uint32_t threads = 1;  ///< host threads, each one simulated core's worth of claims; fewer if the host has
@@ -88,7 +88,7 @@ struct ChipOptions {
   std::function<void(std::uint32_t done, std::uint32_t total)> progress{};  ///< called from any thread, serialised
 };
 
-/// A broken rule, found by the checks.
+/// A broken rule that the checks found.
 struct Violation {
   Status rule;            ///< that names it
   std::uint32_t core;     ///< that broke it
@@ -96,17 +96,17 @@ struct Violation {
   std::string detail;     ///< addresses and sizes, for people
 };
 
-/// What the host ran out of, so that it could not end a frame. The machine has no part in it.
+/// The host's shortage, if it could not finish a frame. The simulated machine has no part in it.
 enum class HostShortage : std::uint8_t {
   kNone,
-  kMemory,   ///< book-keeping of the checks, the trace or a local store found no room
+  kMemory,   ///< no memory for the checks, the trace or a local store
   kThreads,  ///< a thread could not be started, and the cores wait for one another
 };
 
-/// What came of a frame.
+/// The result of a frame.
 struct ChipResult {
   Status status = Status::kOk;  ///< of the frame
-  HostShortage host_shortage = HostShortage::kNone;  ///< where it is any, status is kAborted and nothing else is told
+  HostShortage host_shortage = HostShortage::kNone;  ///< if any, status is kAborted and nothing else is reported
   std::uint32_t failed_core = 0, failed_tile = 0;  ///< meaningful when status is not kOk; lowest tile that failed
   std::vector<Violation> violations;  ///< of the failed tile
   WorkTotals work{};            ///< over all tiles; the same for any number of threads
@@ -116,21 +116,21 @@ struct ChipResult {
 
 /// Renders the frame whose FrameRecord lies at `frame` in `memory`. The output lies in `memory` afterwards.
 ///
-/// Errors: kBadFrame (the record, or a part of memory that it names, is not there), kUnsupportedFrame (is_built says no
-/// of store, tile width, packet width, shading, mode and lanes, or this host cannot run it), kBadParameter (limits that
-/// are not a platform's, a tile that is not in the frame, no threads, spill memory that is misaligned, not allocated or
-/// part of the picture), kAborted (asked for by the options, or by a shortage of the host, which the result names), and
-/// whatever the kernel or a broken rule reports. When several tiles fail, the lowest one is told, with its violations,
-/// for any number of threads. What options.progress throws is thrown on by this call once all threads have ended.
+/// Errors: kBadFrame (the record, or a part of memory that it names, does not exist), kUnsupportedFrame (is_built
+/// rejects store, tile width, packet width, shading, mode and lanes, or this host cannot run it), kBadParameter (limits
+/// of no possible platform, a tile outside of the frame, no threads, spill memory that is misaligned, not allocated or
+/// part of the picture), kAborted (by the options, or by a shortage of the host, which the result names), and the
+/// errors of the kernel or of a broken rule. If several tiles fail, the lowest one is reported with its violations, for
+/// any number of threads. An exception of options.progress leaves this call once all threads have ended.
 [[nodiscard]] ChipResult render_frame(SimMemory& memory, MainAddress frame, const ChipOptions& options);
 
-/// @returns how a frame ends that the host cannot go on with.
+/// @returns the result of a frame that a shortage of the host has ended.
 [[nodiscard]] ChipResult ended_by(HostShortage shortage);
 
-/// @returns whether the kernel was built for a layout in a mode and for a lane count, whatever this host can run.
-/// Stores of 64 KB with tiles of 16 and of 256 KB with tiles of 32 pixels are built in every mode, the others in
-/// Mode::kChecked with 4 lanes. With effects: 256 KB, tiles of 32 pixels, packets of 8 and 32 rays; of several lane
-/// counts in Mode::kPlain alone, else with 4 lanes.
+/// @returns whether the kernel was built for a layout, a mode and a lane count, whatever this host can run. Stores of
+/// 64 KB with tiles of 16 and of 256 KB with tiles of 32 pixels are built in every mode, the others in Mode::kChecked
+/// with 4 lanes. With effects: 256 KB, tiles of 32 pixels, packets of 8 and 32 rays, and 64 KB; Mode::kPlain with every
+/// lane count, other modes with 4 lanes.
 [[nodiscard]] bool is_built(const LayoutChoice& layout, Mode mode, std::uint32_t lanes);
 
 /// @returns the widest lane count this host can run: 4, 8 or 16.

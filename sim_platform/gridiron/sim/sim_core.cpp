@@ -155,7 +155,7 @@ bool SimCore::is_own_spill(std::uint64_t address, std::uint32_t bytes) const {
   return own.bytes != 0 && own.address.value <= address && address + bytes <= own.address.value + own.bytes;
 }
 
-/// What an earlier tile left behind depends on the host's timing, so no tile may look at it.
+/// An earlier tile's bytes depend on the host's timing, so no tile may read them.
 Status SimCore::use_spill(const std::byte* local, std::uint64_t address, std::uint32_t bytes, Tag tag, bool is_get) {
   const std::uint64_t offset = address - spill().address.value;
   const std::uint64_t end = (offset + bytes + kGranuleBytes - 1) / kGranuleBytes;
@@ -255,7 +255,7 @@ Status SimCore::start(std::byte* local, MainAddress address, std::uint32_t bytes
 
 void SimCore::copy_bytes(Pending& pending) {
   std::byte* const main = frame_->memory->base() + pending.address;
-  // Cores of a wrong program may write the same bytes; that must not be a race of the host's.
+  // Cores of a wrong program may write the same bytes, which must not become a data race of the host.
   std::unique_lock lock(frame_->writable_bytes, std::defer_lock);
   if (meets_writable(pending.address, pending.bytes)) lock.lock();
   std::memcpy(pending.is_get ? pending.local : main, pending.is_get ? main : pending.local, pending.bytes);
@@ -321,7 +321,7 @@ Status SimCore::complete(Pending& pending) {
     record_error(Status::kTransferFailed, pending.tile_id);
     status = Status::kTransferFailed;
   } else {
-    // The order matters: a changed source is told from its copy, a late get is checked against the poison.
+    // The order matters: a changed source is detected by its copy, a late get by the poison.
     status = check_untouched(pending);
     if (!pending.arrived) {
       const Status moved = move_bytes(pending);
@@ -539,7 +539,7 @@ std::vector<Violation> check_across_tiles(std::span<const TileFootprint> footpri
                                                                 : "tile " + std::to_string(i.footprint->tile_id);
         return who + (i.is_put ? " puts" : " gets") + " main " + hex(i.begin) + ".." + hex(i.end);
       };
-      // Which core rendered a tile is chance, so it is not told.
+      // The core that rendered a tile depends on the host, so it is not reported.
       const bool in_tile = interval.footprint->tile_id != kNoTile;
       violations.push_back({Status::kTransferOverlap, in_tile ? 0 : interval.footprint->core,
                             interval.footprint->tile_id, name(interval) + ", " + name(*clash)});
@@ -624,7 +624,7 @@ void SimCore::unmark(const Pending& pending) {
 
 void SimCore::bad_access(std::uintptr_t address, std::uintptr_t bytes, bool is_store, std::uintptr_t code,
                          const char* what) {
-  // A loop repeats itself; each instruction is told once.
+  // A loop repeats itself; each instruction is reported once.
   if (std::find(bad_code_.begin(), bad_code_.end(), code) != bad_code_.end()) return;
   if (bad_code_.size() == kMaxViolations / 2) return;
   bad_code_.push_back(code);

@@ -32,7 +32,7 @@ struct MainRange {
 
 class TraceWriter;
 
-/// What the cores of one frame share. Constant while cores run, but for the counter and the lock.
+/// Shared by the cores of one frame. Constant while cores run, except for the counter and the lock.
 struct SimFrame {
   SimMemory* memory = nullptr;
   TileSource* tiles = nullptr;
@@ -48,7 +48,8 @@ struct SimFrame {
   std::mutex writable_bytes;  ///< held while bytes that more than one core may write are moved
 };
 
-/// What one tile read and wrote in main memory, for the check across tiles. Only ranges that meet writable memory.
+/// Ranges of main memory that one tile read and wrote, for the check across tiles. Only ranges that overlap writable
+/// memory.
 struct TileFootprint {
   std::uint32_t tile_id = 0;
   std::uint32_t core = 0;
@@ -59,14 +60,14 @@ struct TileFootprint {
 /// The platform of Mode::kChecked and Mode::kInstrumented.
 ///
 /// Each call checks its rules, in this order: size, tag, alignment and congruence, boundary, local range, main range,
-/// queue depth, overlap with pending transfers, use of spill memory; the first broken one is recorded as a Violation
+/// queue depth, overlap with pending transfers, use of spill memory. The first broken one is recorded as a Violation
 /// and returned, and nothing is started. A wait checks that neither the sources of its puts nor the destinations of its
 /// gets were touched meanwhile. finish() checks that nothing is left pending.
 ///
-/// Functions are out of line: the kernel that calls them may be compiled with instrumentation, they are not.
+/// Functions are out of line, because the kernel that calls them may be compiled with instrumentation and they are not.
 class SimCore {
  public:
-  /// @param arena  the core's local memory, kLineBytes-aligned; transfers may touch nothing else.
+  /// @param arena  the core's local memory, kLineBytes-aligned; transfers may touch no other local memory.
   SimCore(SimFrame& frame, std::uint32_t core, std::span<std::byte> arena);
   ~SimCore();
   SimCore(const SimCore&) = delete;
@@ -81,26 +82,26 @@ class SimCore {
   void note_work(const std::uint32_t* counts, std::uint32_t count);
   void note_stage(std::uint8_t stage);
 
-  /// The core's own slice of the frame's spill memory; none where the frame has none.
+  /// The core's own slice of the frame's spill memory, if there is any.
   [[nodiscard]] SpillRegion spill() const;
 
-  /// Ends the core's part of the frame. Pending transfers end, unreported but for Status::kTransferPending.
-  /// @param clean  false where the core gave up with an error, so that pending transfers are no second error.
+  /// Ends the core's part of the frame. Pending transfers end; only Status::kTransferPending is reported for them.
+  /// @param clean  false if the core gave up with an error, so that pending transfers are not a second error.
   void finish(bool clean = true);
 
-  /// Ends the trace of the tile, or of the prologue, as far as it is not ended: the next claim does so too. Between the
-  /// two calls the core does nothing.
-  /// @returns the trace, good until the next claim.
+  /// Ends the trace of the tile, or of the prologue, unless it has ended; the next claim does so too. The core makes no
+  /// calls between the two.
+  /// @returns the trace, valid until the next claim.
   const TileTrace& end_trace();
 
-  /// Moves the bytes of one pending transfer at once, before its wait: with Completion::kLate whoever calls this
-  /// between the core's calls chooses the order in which transfers complete. Rules are checked as at any other move.
+  /// Moves the bytes of one pending transfer at once, before its wait. With Completion::kLate the caller thereby
+  /// chooses the order in which transfers complete. Rules are checked as at any other move.
   ///
-  /// @param transfer  what transfers() was after its start.
-  /// @returns false where it is not pending, has moved, or fails.
+  /// @param transfer  the value of transfers() after its start.
+  /// @returns false if it is not pending, has moved, or fails.
   bool move_now(std::uint64_t transfer);
 
-  /// First error this core met (rule or failed transfer), and the tile that the error belongs to.
+  /// First error of this core (rule or failed transfer), and the tile that the error belongs to.
   [[nodiscard]] Status first_error() const { return first_error_; }
   [[nodiscard]] std::uint32_t first_error_tile() const { return first_error_tile_; }
   /// The tile claimed last; kNoTile before the first and after the last.
@@ -136,7 +137,7 @@ class SimCore {
   struct Pending {
     bool is_get = false;
     bool arrived = false;  ///< the bytes have moved
-    bool fails = false;    ///< they never will, and the wait says so
+    bool fails = false;    ///< the bytes never move, and the wait reports that
     bool in_use = false;
     std::uint8_t tag = 0;
     std::uint32_t bytes = 0;
@@ -188,7 +189,7 @@ class SimCore {
   std::uint64_t transfers_ = 0;
   std::uint64_t random_state_ = 0;
   std::array<std::uint32_t, kWorkKindCount> last_counts_{};
-  std::unique_ptr<TraceWriter> writer_;  ///< of the tile at hand, prologue or epilogue
+  std::unique_ptr<TraceWriter> writer_;  ///< of the current tile, prologue or epilogue
   bool is_trace_ended_ = false;
   Status first_error_ = Status::kOk;
   std::uint32_t first_error_tile_ = kNoTile;
@@ -203,8 +204,8 @@ static_assert(Platform<SimCore>);
 static_assert(WorkObserver<SimCore>);
 static_assert(StageObserver<SimCore>);
 
-/// Checks that no tile put to bytes that another tile put or got. The answer depends on the footprints only, not on
-/// the order in which tiles were rendered.
+/// Checks that no tile put to bytes that another tile put or got. The result depends on the footprints only, not on the
+/// order in which tiles were rendered.
 [[nodiscard]] std::vector<Violation> check_across_tiles(std::span<const TileFootprint> footprints);
 
 }  // namespace gridiron::sim

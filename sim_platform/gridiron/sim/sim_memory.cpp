@@ -1,5 +1,5 @@
-// Simulated main memory: one zeroed range of host addresses whose byte i stands for main address i. The range is
-// reserved whole; memory of the host is taken for what is handed out.
+// Simulated main memory: one zeroed range of host addresses whose byte i stands for main address i. The whole range is
+// reserved; the host's memory is taken only for allocations.
 // Memory: owns. Threads: allocate before the frame; bytes are shared during it. SPDX-License-Identifier: Apache-2.0
 #include <gridiron/base/math.h>
 #include <gridiron/sim/sim_memory.h>
@@ -22,8 +22,8 @@ namespace gridiron::sim {
 SimMemory::SimMemory(std::uint64_t capacity_bytes) : capacity_bytes_(capacity_bytes) {
   if (capacity_bytes > std::numeric_limits<std::uint64_t>::max() / 2) throw std::bad_alloc();
   page_bytes_ = static_cast<std::uint64_t>(::sysconf(_SC_PAGESIZE));
-  // The range begins on a page, which is as strict as any boundary a transfer rule knows. Where the host's addresses
-  // are limited (ulimit -v), half as many, or a quarter, still serve what is small beside the capacity.
+  // The range begins on a page, which is as strict as any boundary of a transfer rule. If the host's addresses are
+  // limited (ulimit -v), half as many, or a quarter, still suffice for small allocations.
   constexpr std::uint64_t kMostBytes = std::numeric_limits<std::size_t>::max() / 2;
   std::uint64_t bytes = capacity_bytes;
   while (true) {
@@ -58,7 +58,7 @@ void SimMemory::commit(std::uint64_t end_address) {
 #else
 
 SimMemory::SimMemory(std::uint64_t capacity_bytes) : capacity_bytes_(capacity_bytes) {
-  // Host alignment of main address 0: as strict as any boundary a transfer rule knows.
+  // Host alignment of main address 0: as strict as any boundary of a transfer rule.
   constexpr std::uint64_t kHostAlignmentBytes = 4096;
   constexpr std::uint64_t kOverhead = kFirstAddress + kHostAlignmentBytes;
   if (capacity_bytes > std::numeric_limits<std::size_t>::max() - kOverhead) throw std::bad_alloc();
@@ -86,7 +86,7 @@ std::optional<MemoryRegion> SimMemory::allocate(std::uint64_t bytes, std::uint64
   const std::uint64_t address = first_free + padding;
   commit(address + bytes);
   used_bytes_ += padding + bytes;
-  // Only bytes that were handed out before can be non-zero.
+  // Only bytes that were allocated before can be non-zero.
   const std::uint64_t dirty_end = kFirstAddress + dirty_bytes_;
   if (address < dirty_end) {
     const std::uint64_t dirty = dirty_end - address;

@@ -1,4 +1,4 @@
-// Tile cycles: what the worst tile of a scene can cost on a machine.
+// Tile cycles: the greatest cost of the worst tile of a scene on a machine.
 // Memory: values. Threads: any. SPDX-License-Identifier: Apache-2.0
 #pragma once
 
@@ -10,25 +10,25 @@
 
 namespace gridiron::sim {
 
-/// Most cycles of a tile, from the grant of its claim to the next claim: of the core's clock; instructions where the
+/// Most cycles of a tile, from the grant of its claim to the next claim, of the core's clock; instructions if the
 /// machine's profile counts these (`fu540`).
 struct TileCycles {
   double work = 0;       ///< counts times their prices
-  double commands = 0;   ///< commands issued, waits asked for
-  double transfers = 0;  ///< all lines, as if none travelled beside another or beside work
-  /// All of it: none of the three is taken to hide another.
+  double commands = 0;   ///< commands and waits
+  double transfers = 0;  ///< all lines, as if none overlapped another or work
+  /// The sum, as if nothing were hidden.
   [[nodiscard]] double total() const { return work + commands + transfers; }
 };
 
-/// Prices of `machine` for the counts of a bound, which are its own where lanes are 4 (MachineProfile::work_cycles).
+/// Prices the counts of a bound on `machine`, whose prices are for 4 lanes (MachineProfile::work_cycles).
 ///
-/// A line waits for those that every core may have under way, and is there a latency later (replay.h). A tile also
-/// waits for tiles that left the core before: as many as output buffers, each of them the largest.
+/// A line waits for those that every core may have under way, and arrives a latency later (replay.h). A tile also waits
+/// for earlier tiles that are leaving the core: as many as output buffers, each of them the largest.
 ///
 /// @param bound         of worst_tile(), for TileLayout::lanes of 4.
-/// @param machine       whose prices, lines and channel are taken.
+/// @param machine       provides prices, lines and channel.
 /// @param output_depth  TileFrame::output_depth of the same frame.
-/// Errors: none; a count of 2^64 - 1 is priced as that many.
+/// Errors: none; a count of 2^64 - 1 is priced as that number.
 [[nodiscard]] inline TileCycles worst_tile_cycles(const TileBound& bound, const MachineProfile& machine,
                                                   std::uint32_t output_depth) {
   const auto number = [](std::uint64_t count) { return static_cast<double>(count); };
@@ -38,7 +38,7 @@ struct TileCycles {
   }
   const double gets = number(bound[Work::kGetIssue]), puts = number(bound[Work::kPutIssue]);
   cycles.commands = (gets + puts) * machine.issue_cycles + number(bound[Work::kWait]) * machine.wait_cycles;
-  // The first and the last line of a transfer may be partly its own.
+  // The first and the last line of a transfer may be used only in part.
   const double line_bytes = machine.line_bytes;
   const auto lines = [&](std::uint64_t bytes, double transfers) { return number(bytes) / line_bytes + 2 * transfers; };
   const double all_lines = lines(bound.get_bytes, gets) + lines(bound.put_bytes, puts) * (1 + output_depth);

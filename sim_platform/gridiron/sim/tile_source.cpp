@@ -1,4 +1,4 @@
-// Tile source: what may throw, in code that is built with exceptions, which the kernel's builds are not.
+// Tile source: functions that may throw, in code built with exceptions, which the kernel's builds are not.
 // SPDX-License-Identifier: Apache-2.0
 #include <gridiron/sim/tile_source.h>
 

@@ -30,21 +30,21 @@ class TileSource {
         abort_(abort),
         progress_(std::move(progress)) {}
 
-  /// Next tile, kNone after the last, kAborted once the frame is to stop.
+  /// Next tile, kNone after the last, kAborted once the frame has to stop.
   [[nodiscard]] TileClaim claim() {
     if (stopped_.load(std::memory_order_relaxed) || (abort_ != nullptr && abort_->load(std::memory_order_relaxed))) {
       return {TileClaim::Kind::kAborted, 0};
     }
-    // A core asks once more after the last tile, so the counter cannot come near its range's end.
+    // A core claims once more after the last tile, so the counter cannot reach the end of its range.
     const std::uint64_t tile = next_.fetch_add(1, std::memory_order_relaxed);
     if (tile >= end_tile_) return {TileClaim::Kind::kNone, 0};
     return {TileClaim::Kind::kTile, static_cast<std::uint32_t>(tile)};
   }
 
-  /// Tells that a claimed tile is finished. Errors: what the progress call throws.
+  /// Reports that a claimed tile is finished. Errors: whatever the progress call throws.
   void tile_done();
 
-  /// From now on every claim is answered kAborted.
+  /// Answers every later claim with kAborted.
   void stop() { stopped_.store(true, std::memory_order_relaxed); }
 
  private:

@@ -1,4 +1,4 @@
-// Trace: what one tile did, in order, without any clock. The replay gives it a time on a machine.
+// Trace: the steps of one tile, in order, without any clock. The replay gives them times on a machine.
 // Memory: std::vector. Threads: a TileTrace is written by one core. SPDX-License-Identifier: Apache-2.0
 #pragma once
 
@@ -17,7 +17,7 @@ namespace gridiron::sim {
 /// % output_depth. A trace stores such a tag as (slot - tile ordinal) mod output_depth, without kFirstRotatingTag.
 inline constexpr std::uint32_t kFirstRotatingTag = 24;
 
-/// Pseudo tile of what a core does before its first and after its last claim: prologue and epilogue.
+/// Pseudo tile of a core's steps before its first and after its last claim: prologue and epilogue.
 inline constexpr std::uint32_t kNoTile = 0xFFFFFFFFu;
 
 /// Kinds of steps.
@@ -37,14 +37,14 @@ struct WorkAmount {
   friend constexpr bool operator==(const WorkAmount&, const WorkAmount&) = default;  ///< of all members
 };
 
-/// One step of a core. Tags of output buffers are stored relative to the core's tile ordinal (rotated), so that a
-/// trace does not depend on which core rendered the tile; all others are stored as they are. Addresses of spill memory
-/// are stored as if core 0 had rendered the tile. Every tile, prologue and epilogue starts in stage kPrimary.
+/// One step of a core. Tags of output buffers are stored relative to the core's tile ordinal (rotated), so that a trace
+/// does not depend on the core that rendered the tile; all others are stored unchanged. Addresses of spill memory are
+/// stored as if core 0 had rendered the tile. Every tile, prologue and epilogue starts in stage kPrimary.
 struct TraceEvent {
-  EventKind kind = {};              ///< says which of the others mean something; those that do not are zero
+  EventKind kind = {};              ///< decides which of the others are used; unused ones are zero
   std::uint8_t tag = 0;             ///< kGet, kPut: tag index
   bool rotating = false;            ///< kGet, kPut: tag is relative to the tile ordinal
-  Stage stage = {};                 ///< kStage: what the core is busy with from here on
+  Stage stage = {};                 ///< kStage: the core's stage from here on
   std::uint32_t bytes = 0;          ///< kGet, kPut
   std::uint64_t address = 0;        ///< kGet, kPut: main memory
   std::uint32_t tags = 0;           ///< kWait: mask of plain tags
@@ -53,7 +53,7 @@ struct TraceEvent {
 };
 
 /// The steps of one tile as TraceWriter packs them and TraceReader (trace_packing.h) reads them. The bytes depend on
-/// nothing else and hold no pointers: they may be moved, stored and read anywhere by a program of the same version.
+/// nothing else and hold no pointers: a program of the same version may move, store and read them anywhere.
 struct TileTrace {
   std::uint32_t tile_id = 0;      ///< row-major; kNoTile of prologue and epilogue
   std::vector<std::byte> packed;  ///< no bytes: no steps
@@ -62,12 +62,12 @@ struct TileTrace {
 /// Work of a frame, by kind.
 using WorkTotals = std::array<std::uint64_t, kWorkKindCount>;
 
-/// Everything a frame did. `prologue` is what every core does before its first claim (fetching the frame record and
-/// resident tables), `epilogue` what it does after its last tile (draining output).
+/// The trace of a frame. `prologue` is each core's steps before its first claim (fetching the frame record and resident
+/// tables), `epilogue` those after its last tile (draining output).
 struct FrameTrace {
   TileTrace prologue;             ///< before the first claim
   TileTrace epilogue;             ///< after the last tile
-  std::vector<TileTrace> tiles;  ///< index = tile_id; one entry where a tile was rendered alone
+  std::vector<TileTrace> tiles;   ///< index = tile_id; one entry if a single tile was rendered
   std::uint32_t output_depth = 1; ///< rotation of the relative tags
 
   /// @returns bytes of all packed steps.

@@ -1,4 +1,5 @@
-// Packing of traces; see the header. Steps become bytes by what both sides expect of them; repeated bytes go away last.
+// Packing of traces; see the header. Steps become bytes by predictions that both sides share; repetitions are removed
+// last.
 // Memory: the bytes of one tile, and tables, on the heap. Threads: one per object. SPDX-License-Identifier: Apache-2.0
 #include <gridiron/sim/trace_packing.h>
 #include <gridiron/sim/wait_levels.h>
@@ -40,7 +41,7 @@ constexpr std::size_t kMostNumberBytes = 10;
   return value >> 1 ^ (0 - (value & 1));
 }
 
-/// Keys of tables are mixed into places; where two keys meet, expectations get worse and nothing else happens.
+/// Hashes keys to places of a table. A collision only makes predictions worse.
 template <std::uint32_t kBits>
 [[nodiscard]] std::uint32_t slot_of(std::uint64_t key) {
   return static_cast<std::uint32_t>((key * 0x9E3779B97F4A7C15u) >> (64 - kBits));
@@ -48,8 +49,8 @@ template <std::uint32_t kBits>
 
 // --- Repetitions ------------------------------------------------------------------------------------------------
 
-/// Bytes that stood before are replaced by their distance (Ziv, Lempel 1977): pairs of bytes that stand for themselves
-/// and of bytes to repeat, headed by a byte with both counts; the repeat has at least kLeastRepeat.
+/// Bytes that occurred before are replaced by their distance (Ziv, Lempel 1977): pairs of literal bytes and of bytes to
+/// repeat, after a byte with both counts; a repeat has at least kLeastRepeat.
 constexpr std::uint32_t kLeastRepeat = 4, kCountBits = 4, kMostCount = (1u << kCountBits) - 1;
 constexpr std::uint32_t kFar = 1u << 14;  ///< distances from here on take three bytes
 constexpr std::uint32_t kMostPlaceBits = 14;
@@ -60,7 +61,7 @@ constexpr std::uint32_t kMostPlaceBits = 14;
   return value;
 }
 
-/// What packing needs for a while, kept from one tile to the next.
+/// Working memory of packing, reused from tile to tile.
 struct RepetitionTables {
   std::vector<std::uint32_t> places;  ///< where four bytes stood last, by their hash
   std::vector<std::byte> packed;
@@ -70,9 +71,9 @@ struct RepetitionTables {
   const std::byte* const begin = bytes.data();
   const std::size_t count = bytes.size();
   const auto bits = std::clamp(static_cast<std::uint32_t>(std::bit_width(count)), 8u, kMostPlaceBits);
-  tables.places.assign(std::size_t{1} << bits, 0);  // 0 stands for the beginning, which is a place like others
+  tables.places.assign(std::size_t{1} << bits, 0);  // 0 stands for the beginning, a place like any other
 
-  // Heads are fewer than a fourth of what they stand for, and repeats are no longer than that.
+  // Heads are fewer than a fourth of the bytes that they replace, and repeats are no longer than those.
   const std::size_t most = count + count / 4 + 4 * kMostNumberBytes;
   if (tables.packed.size() < most) tables.packed.resize(most);
   std::byte* to = put_number(tables.packed.data(), count);
@@ -99,7 +100,7 @@ struct RepetitionTables {
     }
     std::size_t repeated = kLeastRepeat;
     while (at + repeated < count && begin[earlier + repeated] == begin[at + repeated]) ++repeated;
-    if (distance >= kFar && repeated == kLeastRepeat) {  // as long as what it stands for
+    if (distance >= kFar && repeated == kLeastRepeat) {  // would be as long as the bytes it replaces
       ++at;
       continue;
     }
@@ -107,12 +108,12 @@ struct RepetitionTables {
     at += repeated;
     own_begin = at;
   }
-  // A distance of 0 says that the bytes end here.
+  // A distance of 0 ends the bytes.
   if (own_begin < count) put_pair(own_begin, count, kLeastRepeat, 0);
   return std::vector<std::byte>(tables.packed.data(), to);
 }
 
-/// Puts into `bytes` what without_repetitions was given. @returns its end.
+/// Appends to `bytes` the input of without_repetitions. @returns its end.
 const std::byte* with_repetitions(const std::byte* from, std::vector<std::byte>& bytes) {
   const std::size_t count = take_number(from);
   if (bytes.size() < count) bytes.resize(count);
@@ -144,14 +145,14 @@ void for_each_kind(Kinds kinds, Visit&& visit) {
   for (; kinds != 0; kinds &= kinds - 1) visit(static_cast<std::uint32_t>(std::countr_zero(kinds)));
 }
 
-/// Work, and what followed it: nothing where more work did.
+/// Work, and the event after it, unless more work follows.
 struct Step {
   enum class End : std::uint8_t { kNothing, kGet, kPut, kWait, kStage };
 
   Kinds kinds = 0;
   std::array<std::uint32_t, kWorkKindCount> amounts{};  ///< of the kinds that there are, others are 0
   End end = End::kNothing;
-  TraceEvent event;  ///< what followed, by the members that belong to it
+  TraceEvent event;  ///< the event after it; only its own members are set
 
   void add(const WorkAmount& work) {
     amounts[static_cast<std::size_t>(work.kind)] += work.amount;
@@ -164,7 +165,7 @@ struct Step {
   [[nodiscard]] bool is_transfer() const { return end == End::kGet || end == End::kPut; }
 };
 
-/// What a step is but for its numbers. Few differ, and a tile names them by the order in which they came.
+/// A step without its numbers. There are few, and a tile numbers them in the order of their first use.
 struct Shape {
   Kinds kinds = 0;
   Kinds unexpected = 0;     ///< of these: amounts are other than expected
@@ -191,24 +192,24 @@ static_assert(Work::kShaftGroup > Work::kMacroSliceStep && Work::kShaftGroup > W
                   Work::kShaftGroup > Work::kCellVisit,
               "a reader knows the amounts by which another is expected");
 
-/// What is expected of a step after those before it: the same to the writer and to the reader.
+/// The predictions for a step from those before it, the same for the writer and the reader.
 class Expectations {
  public:
-  /// Buffers take turns, so a tag is told as its difference from the one that was waited for.
+  /// Buffers take turns, so a tag is stored as its difference from the one last waited for.
   [[nodiscard]] std::uint8_t waited_tag() const { return waited_tag_; }
 
-  /// Triangles follow those that arrived, other bytes follow those that their buffer had.
+  /// Triangles follow those that arrived, other bytes follow the last ones of their buffer.
   [[nodiscard]] std::uint64_t address(std::uint32_t tag) const {
     return wait_level_of_tag(tag) == WaitLevel::kTriangle ? arrived_end_ : buffers_[tag % buffers_.size()].address;
   }
-  /// Cells follow one another as they did before: where the last get of this level went after the same bytes.
+  /// Cells follow one another as before: the next address after the last get of the same bytes at this level.
   [[nodiscard]] std::uint64_t& following(std::uint32_t tag) {
     return following_[slot_of<kFollowingBits>(arrived_end_ * 4 + static_cast<std::uint64_t>(wait_level_of_tag(tag)))];
   }
-  /// An address is that of the same bytes each time.
+  /// Each address has the same number of bytes every time.
   [[nodiscard]] std::uint32_t& bytes_at(std::uint64_t address) { return bytes_at_[slot_of<kBytesBits>(address)]; }
 
-  /// One of most kinds. A mailbox is asked for every triangle that arrived, a shaft is held against each slab.
+  /// Most kinds occur once. A mailbox is probed for every triangle that arrived, a shaft is tested against each slab.
   [[nodiscard]] std::uint32_t& amount(std::uint32_t kind, const Step& step) {
     if (kind == static_cast<std::uint32_t>(Work::kMailboxProbe)) return probes_[arrived_bytes_ / 16 % probes_.size()];
     if (kind == static_cast<std::uint32_t>(Work::kShaftGroup)) {
@@ -244,7 +245,7 @@ class Expectations {
   };
   std::array<Buffer, 32> buffers_{};  ///< by tag: what was got last
   std::uint8_t waited_tag_ = 0;       ///< of the last wait
-  std::uint64_t arrived_end_ = 0;     ///< of what arrived with it, or was got since
+  std::uint64_t arrived_end_ = 0;     ///< of the last arrival, or got since
   std::uint32_t arrived_bytes_ = 0;
   std::uint32_t one_ = 1;
   std::array<std::uint32_t, 64> probes_{}, shafts_{};
@@ -268,7 +269,7 @@ struct TraceWriter::State {
   std::size_t byte_count = 0;
   RepetitionTables repetitions;
 
-  /// The step that `step` is but for its numbers; what was expected of these is replaced.
+  /// Returns `step` without its numbers, and updates what was expected of these.
   Shape take_shape() {
     Shape shape = {.kinds = step.kinds, .end = static_cast<std::uint32_t>(step.end)};
     for_each_kind(step.kinds, [&](std::uint32_t kind) {
@@ -379,7 +380,7 @@ struct TraceReader::State {
   Expectations expectations;
   std::vector<Shape> shapes;
   Step step;
-  bool is_end_next = false;  ///< work was read; what followed it comes next
+  bool is_end_next = false;  ///< the work was read; the event after it comes next
   std::array<WorkAmount, kWorkKindCount> work;
   TraceEvent work_event{.kind = EventKind::kWork};
 

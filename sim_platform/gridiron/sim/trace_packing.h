@@ -1,4 +1,4 @@
-// Packing of traces: a frame with effects takes hundreds of steps a pixel, kept in little more than a byte each.
+// Packing of traces: a frame with effects takes hundreds of steps a pixel, stored in little more than a byte each.
 // Memory: the steps of one tile and about 100 KB, on the heap. Threads: one per object.
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
@@ -12,9 +12,9 @@
 
 namespace gridiron::sim {
 
-/// Packs the steps of one tile after another. Every tile is packed by itself: its bytes say the same whatever was
-/// packed before. A step is written as the few bytes in which it differs from what was expected, and once the tile has
-/// ended, bytes that repeat earlier ones become references to them. Any value of any member comes out as it went in.
+/// Packs the steps of one tile after another. A tile's bytes do not depend on earlier tiles. A step is written as the
+/// few bytes in which it differs from the prediction; once the tile has ended, bytes that repeat earlier ones become
+/// references to them. Every value is read back unchanged.
 class TraceWriter {
  public:
   TraceWriter();
@@ -22,11 +22,11 @@ class TraceWriter {
   TraceWriter(const TraceWriter&) = delete;
   TraceWriter& operator=(const TraceWriter&) = delete;
 
-  /// Amounts of 0 and steps of no work are left out, kinds of work are put in order, and amounts of one kind in one
-  /// step are added up. Members that mean nothing for the kind of step are not kept.
+  /// Drops amounts of 0 and steps without work, puts kinds of work in order, adds up amounts of one kind in one step,
+  /// and drops members that the kind of step does not use.
   void add(const TraceEvent& event);
 
-  /// @returns the steps added since the last call, packed; no bytes where there were none.
+  /// @returns the steps added since the last call, packed; no bytes if there were none.
   [[nodiscard]] TileTrace finish(std::uint32_t tile_id);
 
  private:
@@ -45,10 +45,10 @@ class TraceReader {
   TraceReader(TraceReader&&) noexcept;
   TraceReader& operator=(TraceReader&&) noexcept;
 
-  /// Goes to the first step of `trace`, which is borrowed until the next call or the end of reading.
+  /// Goes to the first step of `trace`, which is borrowed until the next open() or the end of reading.
   void open(const TileTrace& trace);
 
-  /// @returns the next step, good until the next call; null after the last one.
+  /// @returns the next step, valid until the next call; null after the last one.
   [[nodiscard]] const TraceEvent* next();
 
  private:

@@ -20,8 +20,8 @@ enum class WaitLevel : std::uint8_t {
 /// Levels, kSetup among them.
 inline constexpr std::size_t kWaitLevelCount = static_cast<std::size_t>(WaitLevel::kCount);
 
-/// Levels by name of the tag waited for (core/gridiron/dma/tags.h): kTile = output buffers, kMacroCell = cell
-/// blocks, kTriangle = triangle buffers, kSetup = frame record and macrocell table.
+/// Levels by the name of the awaited tag (core/gridiron/dma/tags.h): kTile = output buffers, kMacroCell = cell blocks,
+/// kTriangle = triangle buffers, kSetup = frame record and macrocell table.
 [[nodiscard]] constexpr WaitLevel wait_level_of_tag(std::uint32_t tag) {
   if (tag < kFirstMacroTag) return WaitLevel::kSetup;
   if (tag < kFirstTriangleTag) return WaitLevel::kMacroCell;

@@ -26,7 +26,7 @@ constexpr float kSamples[] = {
     0x1.fffffep-1f, kInfinity, -kInfinity, kNaN};
 constexpr std::size_t kSampleCount = std::size(kSamples);
 
-// Same bits, or both NaN: which NaN an operation returns is nobody's promise.
+// Same bits, or both NaN: which NaN an operation returns is not specified.
 testing::AssertionResult same(float actual, float expected) {
   const bool equal = std::isnan(expected)
                          ? std::isnan(actual)
@@ -54,7 +54,7 @@ class LanesTest : public testing::Test {
     return memory.values;
   }
 
-  // Calls body(a, b) with arrays in which every pair of samples stands in every lane at least once.
+  // Calls body(a, b) with arrays in which every pair of samples is in every lane at least once.
   template <class Body>
   static void for_each_pair(Body&& body) {
     for (std::size_t shift = 0; shift < kSampleCount; ++shift) {

@@ -154,7 +154,7 @@ TEST(LatticeImage, OfMeshesAsWideAsCoordinatesGoIsValid) {
   }
 }
 
-// What mixed scales lose: a small thing in a large room keeps few places.
+// Mixed scales lose precision: a small object in a large room keeps few places.
 TEST(LatticeImage, LosesWhatIsSmallerThanAStep) {
   TestMesh mesh = make_box({-100, -100, -100}, {100, 100, 100});
   mesh.append(make_sphere(40, 80, 0.05f));

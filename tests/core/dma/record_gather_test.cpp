@@ -52,7 +52,7 @@ struct Rig {
     }
   }
 
-  // Gathers, and holds every record against main memory. `used` becomes the items in the order of their calls.
+  // Gathers, and compares every record with main memory. `used` becomes the items in the order of their calls.
   Status gather(const std::vector<std::uint64_t>& list, std::uint32_t bytes, std::vector<std::uint32_t>& used,
                 std::optional<std::uint32_t> failing_use = std::nullopt) {
     used.clear();

@@ -73,7 +73,7 @@ TileLayout layout_of(const sim::LayoutChoice& choice) {
   return layout;
 }
 
-// A scene's image in simulated memory, with room for frames.
+// A scene's image in simulated memory, with space for frames.
 class BoundedScene {
  public:
   BoundedScene(const MeshView& mesh, GridParameters parameters, Accuracy accuracy,
@@ -257,7 +257,7 @@ TEST(TileBound, NorDoesOneOfASceneWithEffects) {
   }
 }
 
-// One packet from afar: a pass goes through the whole grid and holds every reference against its rays.
+// One packet from afar: a pass goes through the whole grid and tests every reference.
 TEST(TileBound, IsReachedPerPassByAPacketThatSeesAll) {
   const TestMesh soup = make_random_soup(400, 0.3f, 9);
   const Way way{"all", {StoreSize::k64KB, 16, 16},

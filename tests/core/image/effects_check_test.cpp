@@ -283,7 +283,7 @@ TEST(PartsOfEffects, StandBesideTrianglesThatHaveVertices) {
 
 class Words : public ::testing::TestWithParam<TriangleFormat> {};
 
-// Each bit of each word flipped, and each word made what floats and counts are worst at.
+// Each bit of each word is flipped, and each word is set to the worst values for floats and counts.
 TEST_P(Words, ThatAreChangedAreRefusedOrHarmless) {
   BuiltImage built = build(all_effects(1), GetParam());
   ASSERT_FALSE(HasFailure());

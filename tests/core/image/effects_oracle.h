@@ -1,4 +1,4 @@
-// What a kernel may rely on in the effects of an image that was opened, asked anew: range by range, from the bytes.
+// What a kernel may rely on in the effects of an opened image, checked independently: range by range, from the bytes.
 // Source: core/SPEC.md. Memory: none. Threads: any. SPDX-License-Identifier: Apache-2.0
 #pragma once
 

@@ -156,7 +156,7 @@ bool is_as_built(const BuiltImage& changed) {
                      again.image.bytes().size() - begin) == 0;
 }
 
-// Flips every bit. @returns the fields of which a flipped bit was accepted.
+// Flips every bit. @returns the fields in which a flipped bit was accepted.
 std::set<std::string> free_fields(BuiltImage& built) {
   std::set<std::string> fields;
   const std::span<std::byte> bytes = built.image.bytes();
@@ -250,7 +250,7 @@ TEST(SealedImage, PaddingIsNamedWithItsPlace) {
   }
 }
 
-// A triangle that stands in several cells.
+// A triangle that is in several cells.
 TEST(SealedImage, CopiesOfATriangleAreEqualToTheSignOfAZero) {
   const TestMesh mesh = make_triangle({0, 0, 0}, {1, 0.5f, 0.25f}, {0.25f, 1, 0.75f});
   BuiltImage built = build_image(mesh.view(), {64.0f, 2, TriangleFormat::kVertices});
@@ -306,7 +306,7 @@ TEST(SealedImage, BoundsLambdaAndCountsFollowFromTheTriangles) {
     edit<GridRecord>(built, 256, c.damage);
     EXPECT_EQ(refused_field(built), c.field);
   }
-  // One cell: its grid fits smaller bounds too, so that only the triangles tell.
+  // One cell: its grid also fits smaller bounds, so that only the triangles reveal the error.
   BuiltImage built = build_image(scattered_mesh().view(), {1e-6f, 1, TriangleFormat::kVertices});
   edit<ImageHeader>(built, 0, [](ImageHeader& r) { r.dropped_triangle_count = 0; });
   EXPECT_EQ(refused_field(built), "header.dropped_triangle_count");

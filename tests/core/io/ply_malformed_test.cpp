@@ -459,7 +459,7 @@ TEST(PlyMalformed, EveryPrefixOfEverySmallFile) {
         ASSERT_EQ(outcome.error, PlyError::kTruncatedBody) << what;
         ASSERT_EQ(outcome.byte_offset, bytes) << what;
       } else if (outcome.error == PlyError::kNone) {
-        // Nothing but the last number's last digits may be gone; text does not tell.
+        // Only the last digits of the last number may be missing; in text this cannot be detected.
         ASSERT_EQ(token_count(prefix), token_count(file)) << what;
       } else if (outcome.error == PlyError::kTruncatedBody) {
         ASSERT_EQ(outcome.byte_offset, bytes) << what;
@@ -506,7 +506,7 @@ TEST(PlyMalformed, EveryErrorHasWords) {
   }
 }
 
-// The caller stops feeding in the middle and asks for nothing more.
+// The caller stops feeding in the middle and makes no further call.
 TEST(PlyMalformed, AbandonedInTheMiddle) {
   for (const std::string& file : small_files()) {
     for (std::size_t bytes = 0; bytes < file.size(); bytes += 5) {

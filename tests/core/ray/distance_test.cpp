@@ -57,7 +57,8 @@ struct HitCase {
       packet.id[ray] = kNoTriangle;
       packet.facing[ray] = -1.0f;
     }
-    // What the rays had: far behind; of some, one after the other, at or before the new hit or too close to tell.
+    // The rays' earlier hits: far behind; for some, one after the other, at or before the new hit or too close to
+    // decide.
     const std::uint32_t kind = random.below(4);
     if (kind == 0) return;
     const float close[] = {0.5f,

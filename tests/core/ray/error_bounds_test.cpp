@@ -437,7 +437,8 @@ TYPED_TEST(ErrorBoundsTest, PadsCoverTheRoundingsOfAReach) {
   EXPECT_LT(largest, 0.5);
 }
 
-// kFloatError. Numerator or denominator is as small beside its terms as an estimate takes, or would take with 1 e.
+// kFloatError. Numerator or denominator is as small, compared with its terms, as an estimate accepts, or would accept
+// with 1 e.
 TYPED_TEST(ErrorBoundsTest, AnEstimatedDistanceIsAsCloseAsItSays) {
   double largest = 0.0;
   for (const DistanceCase& shown : kEstimateCases) {

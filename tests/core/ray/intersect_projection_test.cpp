@@ -1,4 +1,4 @@
-// The `paper` test against the same geometry in double, where single precision is good enough to tell.
+// The `paper` test compared with the same geometry in double, where single precision is good enough to decide.
 // SPDX-License-Identifier: Apache-2.0
 #include <gridiron/build/grid/triangle_records.h>
 #include <gridiron/ray/intersect_projection.h>

@@ -109,7 +109,7 @@ TYPED_TEST(IntersectRaysTest, DecideAsTheOracleDoes) {
     for (std::uint32_t i = 0; i < kWalkRays; ++i) {
       set_ray(rays, i, shot[i]);
       distances.push_back(true_distances(oracle, shot[i], triangle_count));
-      // Limits: none, anywhere, at a hit or a float beside it.
+      // Limits: none, anywhere, at a hit or one float away from it.
       const float hit = distances[i][random.below(static_cast<std::uint32_t>(triangle_count))];
       const std::uint32_t limit = random.below(6);
       if (limit == 1) rays.t[i] = 0.5f + random.unit();

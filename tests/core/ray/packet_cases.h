@@ -128,7 +128,7 @@ inline TriangleCase random_triangles(TestRandom& random, std::uint32_t count) {
   return result;
 }
 
-/// Fills what a packet knows of its directions as a whole, and asks for exact distances.
+/// Fills the data about a packet's directions as a whole, and requests exact distances.
 template <class PacketType>
 void set_direction_bounds(PacketType& packet) {
   packet.dir_max = 0.0f;

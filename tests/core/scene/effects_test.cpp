@@ -1,4 +1,4 @@
-// Effects of a scene: what they call for, and what is refused. SPDX-License-Identifier: Apache-2.0
+// Effects of a scene: which ones it requires, and what is rejected. SPDX-License-Identifier: Apache-2.0
 #include <gridiron/base/records.h>
 #include <gridiron/scene/effect_rules.h>
 #include <gridiron/scene/effects.h>

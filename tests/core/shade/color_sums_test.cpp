@@ -118,7 +118,7 @@ TEST(LevelOf, EveryLevelAtItsPlace) {
   }
 }
 
-// As many dark samples as a pixel has sum up to what one of their mean would be: nothing is lost but half a step each.
+// The many dark samples of a pixel add up to the same as one sample of their mean, within half a step each.
 TEST(LevelOf, SamplesAverage) {
   TestRandom random(5);
   for (std::uint32_t round = 0; round < 2000; ++round) {

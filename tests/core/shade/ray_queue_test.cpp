@@ -1,4 +1,4 @@
-// Ray queue: a stack, whatever part of it lies in main memory, within the region that the depth of recursion asks for.
+// Ray queue: a stack, whatever part of it is in main memory, within the region that the depth of recursion requires.
 // SPDX-License-Identifier: Apache-2.0
 #include <gridiron/shade/ray_queue.h>
 #include <gridiron/store/local_store.h>
@@ -66,7 +66,7 @@ struct QueueRig {
     model.push_back(ray);
     return queue.push(ray);
   }
-  // Takes a wave and holds it against the model's.
+  // Takes a wave and compares it with the model's.
   Status pop(std::vector<QueuedRay>& wave) {
     const std::size_t wanted = std::min<std::size_t>(model.size(), kWaveRays);
     wave.assign(model.end() - static_cast<std::ptrdiff_t>(wanted), model.end());
@@ -99,7 +99,7 @@ struct QueueRig {
     }
     return end - kSpill;
   }
-  // Nothing beside the ring has changed.
+  // Nothing outside of the ring has changed.
   [[nodiscard]] bool only_the_ring_is_written() const {
     const auto* const bytes = reinterpret_cast<const std::byte*>(store.get());
     const std::size_t first = offsetof(Store, queue), last = first + sizeof(Store::queue);
@@ -223,7 +223,7 @@ TEST(RayQueue, SmallTreesNeedNoMainMemory) {
   EXPECT_EQ(taken, 0u);
 }
 
-// Every command fails once: whoever caused it is told, and until then all is as it should be.
+// Every command fails once: the call that caused it reports it, and everything before is correct.
 TEST(RayQueue, FailingTransfersAreReported) {
   const auto run = [](std::optional<std::size_t> failing, std::size_t& commands) {
     QueueRig rig(2, Moves::kAtTheWait, spill_bytes(4));

@@ -1,4 +1,4 @@
-// Jobs of a wave without a kernel around them: which rays they make, and what answers are worth.
+// Jobs of a wave without a kernel around them: the rays that they make, and the light that answers add.
 // SPDX-License-Identifier: Apache-2.0
 #include <gridiron/shade/wave_jobs.h>
 #include <gridiron/store/local_store.h>

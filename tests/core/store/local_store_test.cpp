@@ -1,4 +1,4 @@
-// Local store: every layout's regions lie in its arena beside code and stack, and no region overlaps another.
+// Local store: every layout's regions fit its arena together with code and stack, and no region overlaps another.
 // SPDX-License-Identifier: Apache-2.0
 #include <gridiron/store/local_store.h>
 #include <gtest/gtest.h>
@@ -66,7 +66,7 @@ TEST(Layouts, WhatDoesNotFitIsTold) {
   EXPECT_FALSE((kFitsArena<StoreLayout128K<32, 64>>));
 }
 
-// One more wave does not fit beside the code of all effects; a queue that nothing waits in costs next to nothing.
+// One more wave does not fit together with the code of all effects; an unused queue costs next to nothing.
 TEST(Layouts, EffectsIn64KbHaveShortWaves) {
   EXPECT_TRUE((kFitsArena<EffectLayout64K<kAllEffects>>));
   EXPECT_TRUE((kFitsArena<EffectLayout64K<kSceneShading>>));

@@ -9,7 +9,7 @@
 namespace gridiron::test {
 namespace {
 
-// A few times what three products of sums of doubles are off by, relative.
+// A few times the relative error of three products of sums of doubles.
 constexpr double kRounding = 1e-15;
 
 // Distances as kernels compare them, then ids.

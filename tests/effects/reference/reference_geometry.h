@@ -17,7 +17,7 @@ namespace gridiron::test {
 /// Stands for "no triangle" in planes of ids and where a ray starts from none.
 inline constexpr std::uint32_t kReferenceNoTriangle = 0xFFFFFFFFu;
 
-/// A ray in world space; what is asked for lies at least_t < t <= most_t, in units of `dir`.
+/// A ray in world space; hits count if least_t < t <= most_t, in units of `dir`.
 struct ReferenceRay {
   glm::dvec3 origin{0.0}, dir{0.0};
   double least_t = 0.0;

@@ -187,7 +187,7 @@ TEST(ReferenceGeometry, OfEqualDistancesTheLowerIdIsNearer) {
   for (const std::uint32_t id : picture.ids) EXPECT_EQ(id, 0u);
 }
 
-// All effects at once. Every triangle is asked for a part of the picture only.
+// All effects at once. Each triangle is tested for a part of the picture only.
 TEST(ReferenceRenderer, TreeThreadsAndRegionsChangeNothing) {
   SceneDescription scene = tool::read_scene_text(std::filesystem::path(GRIDIRON_SOURCE_DIR) / "scenes/everything.nff",
                                                  {.tolerance = 0.05f});

@@ -258,7 +258,7 @@ TEST(ReferenceAmbient, NothingBeyondTheRadiusOccludes) {
   EXPECT_GT(occluded, 50u);
 }
 
-// A half plane's edge through a pixel: of its samples those beside the edge count.
+// A half plane's edge through a pixel: its samples outside of the edge count.
 TEST(ReferenceSamples, APixelIsTheMeanOfItsSamples) {
   for (const std::uint32_t samples : {1u, 4u, 16u}) {
     for (const bool is_row : {false, true}) {

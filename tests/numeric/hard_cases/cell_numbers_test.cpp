@@ -116,7 +116,8 @@ TEST(HardCase40, CellNumbers) {
   for (const GridRecord& grid : grids) {
     TestRandom random(40);
     for (std::uint32_t i = 0; i < times(300); ++i) {
-      // From in the grid or beside it, often from faces; along axes, in faces, anywhere, and what is no direction.
+      // From inside the grid or next to it, often from faces; along axes, in faces, anywhere, and with invalid
+      // directions.
       float origin[3], dir[3];
       for (std::uint32_t axis = 0; axis < 3; ++axis) {
         const auto cells = static_cast<float>(grid.cell_count[axis]);

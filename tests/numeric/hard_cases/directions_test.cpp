@@ -117,7 +117,7 @@ TEST(HardCase14, NegativeZeros) {
   EXPECT_GT(tally.ties, 50u);
 }
 
-// Components from the least float to beyond the least normal one, beside ones of ordinary length.
+// Components from the least float to beyond the least normal one, next to ones of ordinary length.
 TEST(HardCase15, DenormalDirectionComponents) {
   constexpr float kSmall[] = {0x1p-149f, 1e-40f, 0x1p-127f, 0x1p-126f, 1e-38f};
   for (const bool flush : {false, true}) {
@@ -199,7 +199,7 @@ void refuse_eyes_not_finite() {
   }
 }
 
-// No direction, or one that is not finite: a miss, in bounded steps, alone and beside rays that hit.
+// No direction, or one that is not finite: a miss, in bounded steps, alone and among rays that hit.
 TEST(HardCase17, NoDirectionOrNotFinite) {
   const auto odd_rays = [](const TestMesh& mesh) {
     TestRandom random(17);

@@ -61,7 +61,7 @@ Vec3 lattice_point(TestRandom& random, float low, float high, float step) {
   return {x, y, one()};
 }
 
-// Grids of whole powers of two, so that what is meant to lie on a face does.
+// Grids of whole powers of two, so that points intended for a face lie exactly on it.
 std::vector<GridRecord> exact_grids() {
   return {grid_of(Vec3(0.0f), Vec3(1.0f), {8, 8, 8}, 1), grid_of({-16, 0, 4}, {0.5f, 2, 1}, {16, 5, 9}, 3),
           grid_of({0x1p20f, -0x1p20f, 0}, Vec3(8.0f), {32, 24, 40}, 6), grid_of(Vec3(0.0f), Vec3(1.0f), {1, 64, 7}, 8)};
@@ -323,7 +323,7 @@ bool holds(const BuiltImage& built, std::uint32_t x, std::uint32_t y, std::uint3
   return std::find(ids.begin(), ids.end(), id) != ids.end();
 }
 
-// A triangle in a face of cells stands in the cells on both its sides.
+// A triangle in a face of cells is in the cells on both its sides.
 TEST(HardCase30, TriangleOnACellFace) {
   TestMesh faces;
   for (int axis = 0; axis < 3; ++axis) {

@@ -42,7 +42,7 @@ const char* Judge::fault_of(const Rays& rays, std::size_t ray, const Answer& ans
   if (is_hit && answer.id == wanted && form == Form::kDistance) {
     largest_error_ = std::fmax(largest_error_, std::fabs(double{answer.t} - double{truth.t}) / double{truth.t});
   }
-  // C: whoever promises more keeps this too.
+  // C: every accuracy with a stronger promise keeps this too.
   if (is_hit && answer.id >= target_.mesh().triangles.size()) return "no such triangle";
   if (is_hit && !target_.has_area(answer.id)) return "a triangle without area";
   if (form == Form::kDistance && is_hit &&

@@ -1,4 +1,4 @@
-// Judge: holds answers against the oracle, by what a profile promises.
+// Judge: compares answers with the oracle, by the promises of a profile.
 // Memory: borrows. Threads: one. SPDX-License-Identifier: Apache-2.0
 #pragma once
 
@@ -14,7 +14,7 @@ namespace gridiron::test::hard {
 /// Counts what differs and lets the running test fail by it, with the first ray of it in full.
 class Judge {
  public:
-  /// What an answer tells beside the triangle.
+  /// The parts of an answer besides the triangle.
   enum class Form : std::uint8_t {
     kDistance,  ///< in units of the direction
     kDepth,     ///< times the direction's length

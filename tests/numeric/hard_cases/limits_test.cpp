@@ -234,7 +234,7 @@ void refuse_absurd_frames(const TestMesh& mesh) {
   EXPECT_EQ(output_plane_bytes(0xFFFFFFFFu, 1, 32), (std::uint64_t{1} << 32) * 32 * 4);
 }
 
-// Counts as headers tell them, with nothing behind: an error each, before a byte is read.
+// Counts in headers without data behind them: an error each, before a byte is read.
 TEST(HardCase43, CountsOverflow) {
   const TestMesh mesh = make_sphere(6, 8, 1.0f);
   const std::span<const Vec3> vertices = mesh.vertices;
@@ -251,7 +251,7 @@ TEST(HardCase43, CountsOverflow) {
   const GridParameters fine{.lambda = 2000.0f, .macro_width = 8};
   GridNeed need{};
   EXPECT_EQ(count_scene_image(sheets.view(), fine, need), Status::kTooManyTriangles);
-  // Ids beyond what a float tells apart.
+  // Ids beyond those that a float can distinguish.
   auto packet = std::make_unique<Packet<4>>();
   for (const std::uint32_t id : {(1u << 24) + 1, (1u << 24) + 2, 0x7FFFFFFFu, 0xFFFFFFFEu}) {
     for (std::uint32_t ray = 0; ray < 16; ++ray) {

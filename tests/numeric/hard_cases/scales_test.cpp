@@ -42,7 +42,7 @@ TEST(HardCase09, ProductsOverflow) {
   }
 }
 
-// A sphere of two thousandths in a bowl of two thousand, from beside it and from the rim.
+// A sphere of two thousandths in a bowl of two thousand, from next to it and from the rim.
 TEST(HardCase10, TeapotInAStadium) {
   TestMesh mesh = make_sphere(8, 10, 1e-3f);
   mesh.transform(1.0f, {0, 300, 0});

@@ -74,7 +74,7 @@ Rays one_ray(Vec3 origin, Vec3 direction);
 /// The same rays with directions, each times a power of two, of a largest component in [1, 2).
 std::vector<Rays> with_unit_directions(std::vector<Rays> all);
 
-/// A salvo from origins within `room` of a place; every fourth origin is rounded to eighths of the room.
+/// A salvo from origins within `room` of a place; every fourth origin is rounded to eighths of `room`.
 std::vector<Rays> salvo(const TestMesh& mesh, Vec3 middle, float room, const Salvo& count, std::uint64_t seed);
 /// The same at whatever mesh a trial has.
 AimAtMesh salvo_at(Vec3 middle, float room, const Salvo& count, std::uint64_t seed);

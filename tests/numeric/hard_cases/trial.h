@@ -21,7 +21,7 @@
 
 namespace gridiron::test::hard {
 
-/// What is asked of a case, in the letters of README.md.
+/// The requirements of a case, in the letters of README.md.
 enum class Grade : std::uint8_t {
   kEqual,    ///< A: the oracle's triangle, and the float that its distance rounds to
   kTie,      ///< B: one of the oracle's ties
@@ -108,7 +108,7 @@ class Target {
   [[nodiscard]] std::vector<Answer> by_intersector(const Rays& rays, const IntersectorWay& way) const;
 
   /// Frames on the simulated chip: of a picture one, else one of a single pixel for each ray.
-  /// Steps beyond what the grid's counts allow, in checked modes, and broken rules fail the test that is running.
+  /// More steps than the grid's counts allow (in checked modes), and broken rules, fail the running test.
   /// @param only  rays to be shot, by index; empty: all. @param work  where not null, checked work is added to it.
   [[nodiscard]] std::vector<Answer> by_pipeline(const Rays& rays, const PipelineWay& way,
                                                 std::span<const std::size_t> only = {},
@@ -163,7 +163,7 @@ struct Tally {
 /// fails the test that is running. With GRIDIRON_HARD_CASES_TABLE=file the numbers of every trial are appended to it.
 Tally shoot(const Trial& trial);
 
-/// As many as a test asks for, times GRIDIRON_HARD_CASES_FACTOR where that is set.
+/// As many as a test requests, times GRIDIRON_HARD_CASES_FACTOR if that is set.
 std::uint32_t times(std::uint32_t count);
 
 }  // namespace gridiron::test::hard

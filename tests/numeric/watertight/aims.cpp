@@ -120,7 +120,7 @@ class Aimer {
         if (ray >= 4) {
           const auto axis = static_cast<int>(random_.below(3));
           const float limit = random_.below(2) != 0 ? kFloatMax : -kFloatMax;
-          // Zeros stay: the float beside them is a denormal.
+          // Zeros stay: their neighbouring floats are denormals.
           if (moved[axis] != 0.0f) moved[axis] = std::nextafter(moved[axis], limit);
         }
         add(ray, moved);

@@ -27,7 +27,7 @@ inline constexpr RayKind kRayKinds[] = {RayKind::kRandom,   RayKind::kEdge, RayK
 /// Rays of a kind that a packet holds at most.
 [[nodiscard]] std::uint32_t rays_of(RayKind kind);
 
-/// Aims the rays of one packet; what it does not use is not active. The same packet for the same seed.
+/// Aims the rays of one packet; unused rays are not active. The same packet for the same seed.
 ///
 /// Rays at edges and vertices go, packet by packet, to features around one triangle that is seen from the origin, to
 /// those around any triangle, or each to another part of the mesh.

@@ -27,9 +27,9 @@ class CandidateTree {
   /// Finds all triangles whose closed bounds hold a point.
   void find(const Vec3& point, std::vector<std::uint32_t>& found) const;
 
-  /// The triangles, those near each other beside each other.
+  /// The triangles, ordered so that near ones are next to each other.
   [[nodiscard]] const std::vector<std::uint32_t>& order() const { return order_; }
-  /// @returns where a triangle stands in it. Precondition: it is one of them.
+  /// @returns the place of a triangle in it. Precondition: it is one of them.
   [[nodiscard]] std::uint32_t place(std::uint32_t triangle_id) const { return places_[triangle_id]; }
 
  private:

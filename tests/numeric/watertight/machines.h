@@ -37,7 +37,7 @@ struct Machine {
   int rounding;            ///< of <cfenv>
   bool flushes_denormals;  ///< to zero, those that go in and those that come out
   bool is_promised;        ///< false: it shows what would break
-  /// The rays of Embree's calls beside it.
+  /// The rays of Embree's calls, for comparison.
   std::uint32_t peer_width = 1;
 };
 

@@ -1,4 +1,4 @@
-// Solids: the closed meshes of the suite, what closed means, and where they are put.
+// Solids: the closed meshes of the suite, the definition of closed, and their places.
 // Memory: std::vector. Threads: any. SPDX-License-Identifier: Apache-2.0
 #pragma once
 

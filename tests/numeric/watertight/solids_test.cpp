@@ -1,4 +1,4 @@
-// The suite's own parts: what closed means, that nothing is left out of the candidates, what lies inside.
+// The suite's own parts: which meshes are closed, that no candidate is left out, which points are inside.
 // SPDX-License-Identifier: Apache-2.0
 #include "numeric/watertight/solids.h"
 

@@ -17,7 +17,7 @@ namespace gridiron::test {
 
 inline constexpr std::size_t kProfileCount = std::size(kProfiles);
 
-/// Someone else's intersectors beside ours. @param width  the rays of one call. @returns the rays that hit something.
+/// Other intersectors, for comparison. @param width  the rays of one call. @returns the rays that hit something.
 using Peer = std::function<std::uint32_t(const watertight::Shot& shot, std::uint32_t width)>;
 
 /// What happened under one machine.
@@ -32,7 +32,7 @@ struct MachineTally {
 struct Tally {
   std::uint64_t packets = 0, rays = 0;
   std::uint64_t lost_packets = 0;  ///< for which no origin inside was found
-  std::uint64_t asked_rays = 0;    ///< of which the oracle was asked too
+  std::uint64_t asked_rays = 0;    ///< for which the oracle was used too
   std::uint64_t oracle_differences[kProfileCount] =
       {};  ///< under the first machine: triangle, or t where it was wanted
   std::vector<MachineTally> machines;
@@ -51,7 +51,7 @@ struct TallyOptions {
 /// Shoots rays. The same tally for any number of threads. Profiles on a lattice shoot at a solid that is on its
 /// lattice, the others at one that is not.
 ///
-/// @param machines  the first is what the others, and the oracle, are held against.
+/// @param machines  the first is the one that the others, and the oracle, are compared with.
 [[nodiscard]] Tally shoot_all(const PlacedSolid& solid, RayKind kind, std::span<const Machine> machines,
                               std::span<const Peer> peers, const TallyOptions& options);
 

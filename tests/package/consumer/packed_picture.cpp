@@ -22,7 +22,7 @@ using namespace gridiron;
 
 namespace {
 
-// Before the middle of what there is to see. Told on standard error as options of the gridiron program.
+// Before the middle of the visible part. Printed on standard error as options of the gridiron program.
 Camera camera_before(const GridRecord& grid) {
   const DVec3 low(grid.bounds_minimum[0], grid.bounds_minimum[1], grid.bounds_minimum[2]);
   const DVec3 high(grid.bounds_maximum[0], grid.bounds_maximum[1], grid.bounds_maximum[2]);

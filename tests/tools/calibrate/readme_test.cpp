@@ -1,4 +1,4 @@
-// What tools/calibrate/README.md repeats of the tables is what stands in them. SPDX-License-Identifier: Apache-2.0
+// The figures in tools/calibrate/README.md equal those of the tables. SPDX-License-Identifier: Apache-2.0
 #include <gridiron/bvh/bvh_costs.h>
 #include <gridiron/bvh/bvh_work.h>
 #include <gridiron/sim/work_costs.h>
@@ -21,7 +21,7 @@ std::string readme_text() {
   return {std::istreambuf_iterator<char>(file), {}};
 }
 
-/// @returns what stands between two marks; fails where one of them is missing.
+/// @returns the text between two marks; fails if one of them is missing.
 std::string between(const std::string& text, const std::string& from, const std::string& to) {
   const std::size_t begin = text.find(from), end = text.find(to, begin);
   EXPECT_NE(begin, std::string::npos) << from;
@@ -52,7 +52,7 @@ std::map<std::string, Opinion> opinions(const std::string& text) {
   return rows;
 }
 
-// One digit behind the point stands there, and two in the table of operations.
+// The page has one decimal, the table of operations two.
 constexpr double kLastDigit = 0.0601;
 
 // The instructions themselves come from tools/calibrate/second_opinion/run; that needs a cross compiler.

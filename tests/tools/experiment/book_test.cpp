@@ -1,4 +1,4 @@
-// Book: the page names what there is, and words stay words. SPDX-License-Identifier: Apache-2.0
+// Book: the page lists its contents, and text is escaped. SPDX-License-Identifier: Apache-2.0
 #include "experiment/book.h"
 
 #include <gtest/gtest.h>

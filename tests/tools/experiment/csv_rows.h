@@ -12,10 +12,10 @@ namespace gridiron::test {
 /// @returns the rows of a CSV file, quoted fields without their quotes; the first row holds the keys.
 std::vector<std::vector<std::string>> csv_rows(const std::filesystem::path& path);
 
-/// @returns what a row holds under a key; a test failure where there is no such column.
+/// @returns a row's value under a key; a test failure if there is no such column.
 std::string text_under(const std::vector<std::vector<std::string>>& rows, std::size_t row, const std::string& key);
 
-/// @returns the number in a row under a key; a test failure where there is none.
+/// @returns the number in a row under a key; a test failure if there is none.
 double number_under(const std::vector<std::vector<std::string>>& rows, std::size_t row, const std::string& key);
 
 }  // namespace gridiron::test

@@ -23,7 +23,7 @@ using experiment::EffectFrame;
 using experiment::EffectScene;
 using Rows = std::vector<std::vector<std::string>>;
 
-// Every effect is on somewhere and off somewhere; what is counted of one that is off is nothing, of one that is on not.
+// Every effect is on somewhere and off somewhere; one that is off has counts of zero, one that is on has not.
 void expect_frames(const fs::path& folder) {
   const Rows rows = csv_rows(folder / "effects.csv"), off = csv_rows(folder / "off.csv");
   std::set<std::string> without;
@@ -114,7 +114,7 @@ tool::ExitCode code_of(const EffectFrame& frame, std::uint32_t expected) {
   return tool::ExitCode::kDone;
 }
 
-// A frame that does more than it is asked for fails, whichever effect it is.
+// A frame that does more than required fails, for every effect.
 TEST(EffectsExperiment, WorkOfAnEffectThatIsOffFailsTheRun) {
   EffectFrame plain;
   plain.called_for = kSceneShading;

@@ -27,7 +27,7 @@ std::vector<std::string> tiny(const std::string& output, const std::string& thre
           "64x48",      "--largest", "6000", "--threads", threads,    "--quiet"};
 }
 
-// What stands about the cached BVH: every table has it, and what follows from two columns does follow.
+// The cached BVH: every table has it, and columns that follow from two others do follow.
 void expect_bvh(const fs::path& folder) {
   const auto frames = csv_rows(folder / "fig7_frames.csv"), built = csv_rows(folder / "fig7_with_build.csv");
   const auto cycles = csv_rows(folder / "fig7_cycles.csv");
@@ -116,7 +116,7 @@ void expect_sweeps(const fs::path& folder) {
   }
 }
 
-// Least and greatest of what rows have under a key, as the page's words give them.
+// Least and greatest values of rows under a key, as the page words them.
 experiment::Range range_under(const std::vector<std::vector<std::string>>& rows, const std::string& key) {
   experiment::Range range;
   for (std::size_t row = 1; row < rows.size(); ++row) range.add(number_under(rows, row, key));
@@ -133,7 +133,7 @@ std::vector<std::vector<std::string>> rows_of(const std::vector<std::vector<std:
   return chosen;
 }
 
-// What sentences of the page say follows from the tables beside them.
+// The sentences of the page follow from its tables.
 void expect_words(const fs::path& folder, const std::string& page) {
   const auto expect = [&page](const std::string& words) { EXPECT_NE(page.find(words), std::string::npos) << words; };
   // Table 3: the paper's systems apart from the others.
@@ -164,7 +164,7 @@ void expect_words(const fs::path& folder, const std::string& page) {
   expect("computation changes by " + growths.percent(1));
   expect("times the reference's bytes and computes for " + work_ratios.text(2) + " times its cycles");
 
-  // Best: what its depths cost and bring; the sweeps' tables have the same frames.
+  // Best: the costs and gains of its depths; the sweeps' tables have the same frames.
   const auto depths = rows_of(csv_rows(folder / "sweep_macro_depth.csv"), 1, "best");
   experiment::Range lost, waits;
   for (std::size_t row = 1; row < depths.size(); ++row) {
@@ -198,7 +198,7 @@ void expect_words(const fs::path& folder, const std::string& page) {
   }
   expect("gives the reference " + gains.text(2) + " times the frames of single buffering");
 
-  // Both runs of a row of the packet sweep tell their bytes; deeper prefetch never fetches less.
+  // Both runs of a row of the packet sweep report their bytes; deeper prefetch never fetches less.
   const auto packets = csv_rows(folder / "sweep_packet.csv");
   for (std::size_t row = 1; row < packets.size(); ++row) {
     EXPECT_GE(number_under(packets, row, "prefetch_fetched_mb"), number_under(packets, row, "double_fetched_mb"));

@@ -15,7 +15,7 @@ struct MarkupElement {
   std::map<std::string, std::string> attributes;
   std::string text;  ///< directly inside it, entities resolved
 
-  /// @returns the attribute as a number; a test failure where there is none.
+  /// @returns the attribute as a number; a test failure if there is none.
   [[nodiscard]] double number(const std::string& attribute) const;
 };
 

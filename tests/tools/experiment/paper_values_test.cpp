@@ -1,4 +1,4 @@
-// Paper values: what is derived follows from what is printed. SPDX-License-Identifier: Apache-2.0
+// Paper values: derived values follow from printed ones. SPDX-License-Identifier: Apache-2.0
 #include "experiment/paper_values.h"
 
 #include <gtest/gtest.h>

@@ -16,7 +16,7 @@ namespace {
 
 using namespace experiment;
 
-// Cycles that tell who asked: clock and cores of the machine.
+// Cycles that identify their run: clock and cores of the machine.
 class FakeRecording : public Recording {
  public:
   FakeRecording() { facts_.build.add(sim::BuildStep::kNodeMade, 16); }

@@ -1,4 +1,4 @@
-// Price list and its words: measured on small frames, told as they are. SPDX-License-Identifier: Apache-2.0
+// Price list and its words: measured on small frames, reported correctly. SPDX-License-Identifier: Apache-2.0
 #include "experiment/price_words.h"
 
 #include <gridiron/base/records.h>

@@ -79,7 +79,7 @@ TEST(SvgPlot, LinesGoThroughTheirPoints) {
   EXPECT_NEAR(falling[0].y, area.top, 0.01);
   EXPECT_EQ(curves[1].attributes.count("stroke-dasharray"), 1u);
   EXPECT_EQ(elements_named(elements, "circle").size(), 3u) << "a dashed line has no markers";
-  // A label stands under its value.
+  // A label is under its value.
   const MarkupElement* five = text_element(elements, "5");
   ASSERT_NE(five, nullptr);
   EXPECT_NEAR(five->number("x"), rising[1].x, 0.01);

@@ -1,4 +1,4 @@
-// Two runs of an experiment, on one thread and on three: what both have to leave behind.
+// Two runs of an experiment, on one thread and on three, and the files that both must leave.
 // Memory: strings. Threads: one. SPDX-License-Identifier: Apache-2.0
 #pragma once
 

@@ -1,4 +1,4 @@
-// Effect names: each effect has its own, and renderers are told as C++ has them. SPDX-License-Identifier: Apache-2.0
+// Effect names: each effect has its own, and renderers are named as in C++. SPDX-License-Identifier: Apache-2.0
 #include "gridiron/scene/effect_names.h"
 
 #include <gtest/gtest.h>

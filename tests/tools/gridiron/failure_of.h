@@ -9,7 +9,7 @@
 
 namespace gridiron::test {
 
-/// @returns what a call that must fail says; a test failure where it does not, or ends with another exit code.
+/// @returns the message of a call that must fail; a test failure if it does not, or has another exit code.
 template <class Action>
 std::string failure_of(Action action, tool::ExitCode code = tool::ExitCode::kBadInput) {
   try {

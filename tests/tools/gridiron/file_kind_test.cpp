@@ -41,7 +41,7 @@ TEST(FileKind, ScenesAreKnownByTheirContent) {
       EXPECT_EQ(tool::scene_kind_of(bytes_of(each.content), name), each.kind) << each.content << name;
     }
   }
-  // The reader of text scenes names the line of a mistake, where the name promises one and nothing speaks against it.
+  // The reader of text scenes names the line of a mistake, if the name promises a text scene and the content allows it.
   EXPECT_EQ(tool::scene_kind_of(bytes_of("spher 0 0 0 1\n"), "a.nff"), SceneKind::kText);
   EXPECT_EQ(tool::scene_kind_of(bytes_of("v 0.1 0.2 0.3\n"), "a.nff"), SceneKind::kUnknown);
   EXPECT_EQ(tool::scene_kind_of(bytes_of(""), "a.nff"), SceneKind::kUnknown);

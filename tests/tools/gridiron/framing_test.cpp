@@ -314,7 +314,7 @@ TEST(Framing, AnyFieldOfViewAndShapeWillDo) {
   const TestMesh mesh = make_torus(48, 24, 1.0f, 0.3f);
   for (const float fov : {0.01f, 1.0f, 150.0f, 170.0f, 179.0f}) {
     for (const double aspect : {1.0 / 300, 0.1, 1.0, 10.0, 300.0}) {
-      if (fov < 0.1f && aspect < 0.1) continue;  // narrower than the floats of a camera tell directions apart
+      if (fov < 0.1f && aspect < 0.1) continue;  // narrower than the floats of a camera can resolve
       SCOPED_TRACE(std::to_string(fov) + " degrees, " + std::to_string(aspect));
       const Camera camera = tool::complete_view(request_of(fov, {0, 1, 0}), aspect, points_of(mesh));
       const Outline outline = outline_of(camera, aspect, points_of(mesh));
@@ -385,7 +385,7 @@ TEST(Framing, SidesAreThoseOfUp) {
 }
 
 TEST(Framing, ABoxShowsThreeFaces) {
-  constexpr float kShare = 0.25f;  // of half an edge that the eye stands beyond a face's plane
+  constexpr float kShare = 0.25f;  // distance of the eye beyond a face's plane, over half an edge
   const std::vector<Vec3> corners = {{-1, -1, -1}, {1, -1, -1}, {-1, 1, -1}, {1, 1, -1},
                                      {-1, -1, 1},  {1, -1, 1},  {-1, 1, 1},  {1, 1, 1}};
   const tool::PointSource points = [&](const tool::PointVisitor& visit) { visit(corners); };
@@ -427,7 +427,7 @@ TEST(Framing, APointToLookAtStaysInTheMiddle) {
   }
 }
 
-// Wherever the point lies, in front of the model, behind it or beside it, near or so far that floats are coarse there.
+// The point may lie in front of the model, behind it or next to it, near or so far that floats are coarse there.
 TEST(Framing, APointAnywhereIsInTheMiddleOfAPictureOfAll) {
   const TestMesh torus = make_torus(24, 12, 1.0f, 0.3f);
   for (const TestMesh& mesh : {torus, moved(torus, 10.0f, {1e6f, 2e6f, -1e6f})}) {
@@ -446,7 +446,7 @@ TEST(Framing, APointAnywhereIsInTheMiddleOfAPictureOfAll) {
       const Outline outline = outline_of(camera, aspect, points_of(mesh));
       EXPECT_TRUE(outline.is_in_front);
       EXPECT_LE(outline.farthest(), 0.96);
-      // The view is from the side that was asked for.
+      // The view is from the requested side.
       request.at.reset();
       const Camera centred = tool::complete_view(request, aspect, points_of(mesh));
       const DVec3 back = glm::normalize(DVec3(camera.eye) - DVec3(camera.at));

@@ -68,7 +68,7 @@ TEST(Hither, TrianglesWhoseCornersAreAllOutside) {
   EXPECT_FALSE(cut_of(triangle({8, 0, -1}, {0, 0, -9}, {8, 0, -9}), 1.5));
 }
 
-// Points of a triangle, close together, told one by one.
+// Points of a triangle, close together, tested one by one.
 TEST(Hither, AgreesWithPoints) {
   std::uint32_t cuts = 0;
   const TestMesh soup = make_random_soup(400, 1.5f, 11);

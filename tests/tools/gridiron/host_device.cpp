@@ -91,7 +91,7 @@ class DeviceCore {
 std::string render_on_host_device(const std::string& file, std::uint32_t core_count) {
   port::FrameJob job{};
   std::memcpy(&job, file.data(), sizeof job);
-  // Memory below the job that nobody may touch, and nobody pays for.
+  // Memory below the job that must not be accessed, and that the host does not commit.
   sim::SimMemory memory(job.base_address + job.memory_bytes);
   const auto below = memory.allocate(job.base_address - sim::SimMemory::kFirstAddress, 1);
   const auto region = memory.allocate(job.memory_bytes, 4096);

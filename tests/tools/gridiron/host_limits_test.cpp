@@ -61,7 +61,7 @@ TEST(HostLimits, WhateverMemoryThereIsAFrameEndsWellOrSaysWhatIsShort) {
     const ProgramResult result = run_program(
         folder.folder(), {"render", "a.ply", "--size", "1024x1024", "-o", "a.png", "--threads", "3", "--quiet"});
     constexpr int kNotLoaded = 127;
-    if (result.exit_code == kNotLoaded) break;  // the program itself finds no room
+    if (result.exit_code == kNotLoaded) break;  // the program itself does not fit
     SCOPED_TRACE(std::to_string(megabytes) + " MB: exit code " + std::to_string(result.exit_code) + ", " + result.err);
     if (result.exit_code == 0) {
       has_ended_well = true;
@@ -82,7 +82,7 @@ TEST(HostLimits, NoMoreThreadsThanTilesAreStarted) {
   const TemporaryFolder folder;
   folder.write_ply("a.ply", make_sphere(8, 12, 1.0f));
   for (const char* mode : {"checked", "plain"}) {
-    // Addresses for some threads' stacks, not for all of those asked for.
+    // Addresses for some threads' stacks, but not for all the requested ones.
     const LowerLimit limit(RLIMIT_AS, rlim_t{700} << 20);
     const ProgramResult result = run_program(
         folder.folder(), {"render", "a.ply", "--size", "64x64", "--mode", mode, "-o", "a.png", "--threads", "256"});

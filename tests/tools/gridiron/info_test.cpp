@@ -162,7 +162,7 @@ TEST(Info, TheLayoutFollowsThePackets) {
     EXPECT_TRUE(found);
   }
   EXPECT_EQ(info_json(folder, {"a.ply", "--packet", "8"}), info_json(folder, {"a.ply"}));
-  // A store that was not asked for is one with a kernel for the packets, as it is for render.
+  // A default store is one with a kernel for the packets, as for render.
   folder.write("big.machine", "based_on cell-ps3\nlocal_store_bytes 524288\n");
   const Json smaller = info_json(folder, {"a.ply", "--packet", "4", "--machine", "big.machine"});
   EXPECT_EQ(smaller["local_store"]["arena_bytes"], 262144);

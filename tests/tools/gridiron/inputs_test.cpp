@@ -69,7 +69,7 @@ TEST_F(Inputs, EverySceneComesThroughEveryPipe) {
 }
 
 TEST_F(Inputs, ATextSceneOfAPipeIsShadedAsAFileIs) {
-  // The store and its tiles are those of effects, which only the content tells.
+  // The store and its tiles are those of effects, which only the content reveals.
   expect_done("render text --store 64 --tile-width 8 -o file.png --quiet");
   expect_done("render - --store 64 --tile-width 8 -o pipe.png --quiet < <(cat text)");
   EXPECT_EQ(bytes_of("pipe.png"), bytes_of("file.png"));

@@ -1,4 +1,4 @@
-// job and result: files that hold what they say, a device played by the host, and damage that is found.
+// job and result: correct files, a device simulated by the host, and damage that is found.
 // SPDX-License-Identifier: Apache-2.0
 #include <gridiron/base/work_counters.h>
 #include <gtest/gtest.h>
@@ -398,7 +398,7 @@ TEST(Result, DamageIsFoundWithItsPlace) {
   put_record(unclaimed, sizeof(FrameResult), port::kNotRun);
   expect_refused(unclaimed, 1, "no core claimed tile 0");
 
-  // A device that says so itself is believed.
+  // A device's own report of a failure is accepted.
   auto failed = record_at<FrameResult>(whole, 0);
   failed.status = failed.cores[1].status = static_cast<std::uint32_t>(Status::kTransferFailed);
   std::string result = whole;

@@ -1,4 +1,4 @@
-// Machine files: what is printed reads back identical, and every complaint has its line.
+// Machine files: printed ones read back identical, and every error has its line.
 // SPDX-License-Identifier: Apache-2.0
 #include "gridiron/device/machine_file.h"
 
@@ -78,7 +78,7 @@ TEST(MachineFile, NamesAndDescriptionsAreText) {
             text);
 }
 
-// A name tells the figures: who has that of a built-in machine has its figures.
+// A built-in machine's name implies its figures.
 TEST(MachineFile, NamesOfBuiltInMachinesAreTheirs) {
   const TemporaryFolder folder;
   const Machine same = tool::read_machine_file(
@@ -90,7 +90,7 @@ TEST(MachineFile, NamesOfBuiltInMachinesAreTheirs) {
   EXPECT_EQ(tool::read_machine_file(other)->name, "unnamed") << "the file's name is not the machine's";
 }
 
-// What 'gridiron machines NAME' prints still holds that name once it is edited; a report must tell the two apart.
+// An edited copy of 'gridiron machines NAME' still has that name; a report must distinguish the two.
 TEST(MachineFile, AnEditedCopyOfABuiltInMachineIsCalledEdited) {
   const TemporaryFolder folder;
   for (const MachineProfile& built_in : sim::machine_profiles()) {

@@ -139,7 +139,7 @@ TEST(Machines, TheSmallestMachineRenders) {
                          "--configuration", "deep", "--quiet"})
                 .err,
             "");
-  // Whoever asks for buffers by name of their number gets them.
+  // An explicit number of buffers is used.
   EXPECT_EQ(run(folder, {"render", "a.ply", "-o", "a.png", "--size", "128x128", "--machine", "least.machine",
                          "--configuration", "best", "--buffering", "double"})
                 .err,
@@ -172,7 +172,7 @@ TEST(Machines, BadFilesEndWithOneAndRenderNothing) {
       EXPECT_EQ(folder.names(), before);
     }
   }
-  // A mistake on the command line is told first.
+  // A mistake on the command line is reported first.
   EXPECT_EQ(run_program(folder.folder(), {"render", "a.ply", "--machine", "bad.machine", "--fov", "0"}).exit_code, 2);
 }
 

@@ -1,4 +1,4 @@
-// Predictions: sums, ranks, and what a profile that is off by a factor looks like.
+// Predictions: sums, ranks, and a profile that is wrong by a factor.
 // SPDX-License-Identifier: Apache-2.0
 #include "gridiron/job/prediction.h"
 

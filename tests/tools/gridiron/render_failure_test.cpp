@@ -99,7 +99,7 @@ TEST(RenderFailure, PicturesLargerThanTheMachine) {
   const TemporaryFolder folder;
   folder.write_ply("a.ply", make_box(Vec3(0), Vec3(1)));
   expect_failure(folder, {"render", "a.ply", "--size", "16384x16384"}, 1, "a whole frame of 16384x16384 needs 1,073,7");
-  // As much as there is but for what the simulator keeps; one tile is a part of the whole frame.
+  // All the memory but what the simulator keeps; one tile is a part of the whole frame.
   const std::string words =
       "a whole frame of 8192x8192 needs 268,435,840 bytes of main memory; cell-ps3 has 268,431,360 for it";
   expect_failure(folder, {"render", "a.ply", "--size", "8192x8192"}, 1, words);

@@ -1,4 +1,4 @@
-// Plans: what resolve() settles of a frame and of what info tells, and what it refuses; no file is there to be opened.
+// Plans: how resolve() completes requests for a frame and for info, and what it rejects; it opens no file.
 // SPDX-License-Identifier: Apache-2.0
 #include "gridiron/frame/render_plan.h"
 

@@ -115,7 +115,7 @@ TEST(Render, SaysThatNoPixelShowsTheSceneAndWhy) {
       {{"a.ply", "--eye", "0,0,9", "--at", "0,-30,0", "--depth", "d.pfm"}, "it lies above the picture"},
       {{"a.ply", "--eye", "0,0,90000", "--at", "0,0,0"}, "it is smaller than a pixel"},
       {{"a.ply", "--eye", "0,9,0", "--at", "0,0,0", "--up", "z", "--fov", "1", "--ids", "i.pfm"},
-       "all rays pass beside its triangles"},
+       "all rays miss its triangles"},
       {{"a.ply", "--eye", "0,0,9", "--at", "0,0,20", "--mode", "plain"}, "it lies behind the camera"},
       {{"sky.nff", "--at", "0,0,20"}, "it lies behind the camera"},
       {{"sky.nff", "--at", "0,0,20", "--mode", "plain"}, "it lies behind the camera"},

@@ -130,7 +130,7 @@ ProgramResult run(const TemporaryFolder& folder, const Words& arguments) {
 }
 
 void expect_failure(const TemporaryFolder& folder, const Words& arguments, int exit_code, const std::string& words) {
-  constexpr int kCheckFailed = 3;  // what differs is told as a result
+  constexpr int kCheckFailed = 3;  // differences are reported as a result
   const Words before = folder.names();
   const ProgramResult result = run_program(folder.folder(), arguments);
   EXPECT_EQ(result.exit_code, exit_code) << result.err;

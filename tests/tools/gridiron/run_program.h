@@ -22,7 +22,7 @@ struct ProgramResult {
   std::string out, err;
 };
 
-/// A running program, in `folder`, its output in files beside the folder.
+/// A running program, in `folder`, its output in files next to the folder.
 class RunningProgram {
  public:
   RunningProgram(const std::filesystem::path& folder, const Words& arguments);

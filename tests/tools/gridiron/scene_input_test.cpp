@@ -118,7 +118,7 @@ TEST_F(SceneInputTest, ASmallMemoryKeepsHalfOfItselfForThePicture) {
   EXPECT_EQ(budget_bytes, tool::image_budget_bytes(small, 1, 1, 1)) << "pack and render agree";
   EXPECT_LT(tool::image_budget_bytes(small, 448, 448, 1), budget_bytes) << "a picture of more than half";
   EXPECT_THROW((void)tool::image_budget_bytes(small, 512, 512, 1), tool::Failure);
-  // What is missing is told with what is kept.
+  // The message names the shortage and the reserved memory.
   request_.machine = std::make_shared<sim::MachineProfile>(small);
   request_.lambda = 64.0f;
   const std::string words = failure_of([&] { tool::require_fit(choose(budget_bytes), request_, input_); });

@@ -34,7 +34,7 @@ class TemporaryFolder {
   std::filesystem::path folder_;
 };
 
-/// @returns a file's bytes; a test failure where there is none.
+/// @returns a file's bytes; a test failure if there is none.
 std::string read_file(const std::filesystem::path& path);
 
 }  // namespace gridiron::test

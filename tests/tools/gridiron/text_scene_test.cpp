@@ -67,7 +67,7 @@ TEST(TextScene, BringsViewAndSize) {
             picture_of(run(folder, {"render", "ball.ply", "--size", "40x24", "--camera", "c.camera"})));
 }
 
-// Without a view a text scene is framed as a mesh is; a side asked for takes the place of its view's eye and at.
+// Without a view a text scene is framed like a mesh; a given side replaces its view's eye and at.
 TEST(TextScene, IsFramedWhereItBringsNoView) {
   const TemporaryFolder folder;
   folder.write_ply("ball.ply", make_sphere(12, 16, 1.0f));
@@ -120,7 +120,7 @@ TEST(TextScene, InfoTellsWhatItCallsFor) {
   EXPECT_GT(bytes, info["scene"]["triangles"].get<std::uint64_t>() * sizeof(SurfaceRecord));
   EXPECT_EQ(info["main_memory"]["picture_bytes"], 512 * 512 * 4 + 384) << "the scene's own size";
 
-  // The sections are what the image has more than the same triangles alone.
+  // The sections are the difference to an image of the same triangles alone.
   (void)run(folder, {"pack", everything, "-o", "e.gri"});
   const Json packed = info_json(folder, {"e.gri"});
   EXPECT_EQ(packed["effects"], effects);
@@ -274,7 +274,7 @@ TEST(TextScene, RendersItsEffects) {
   }
   EXPECT_EQ(picture, picture_of(run(folder, {"render", "a.nff", "--buffering", "single"})));
 
-  // A packed scene has lights but no view; it is shaded by them without being asked.
+  // A packed scene has lights but no view; it is shaded by them by default.
   (void)run(folder, {"pack", "a.nff", "-o", "a.gri"});
   const Words view = {"--eye", "1,2,6", "--at", "0.1,0,0", "--up", "0,1,0.1", "--fov", "30", "--size", "40x24"};
   Words packed = {"render", "a.gri"};

@@ -1,4 +1,4 @@
-// View: what is asked for, and what is not. SPDX-License-Identifier: Apache-2.0
+// View: given parts, and defaults. SPDX-License-Identifier: Apache-2.0
 #include "gridiron/scene/view.h"
 
 #include <gtest/gtest.h>
@@ -8,7 +8,7 @@
 namespace gridiron::test {
 namespace {
 
-// The corners of a box are all that a view asks for.
+// A view needs only the corners of a box.
 void box(const tool::PointVisitor& visitor) {
   const Vec3 corners[] = {{-1, 0, 2}, {3, 2, 6}, {-1, 2, 2}, {3, 0, 6}};
   visitor(corners);

@@ -243,7 +243,7 @@ TEST(Report, TolerancesAreThoseOfSceneWithRoundShapes) {
   EXPECT_EQ(scene["most_tolerance"], 0.5);
 }
 
-/// A frame with effects: what the other keys tell stays as it is.
+/// A frame with effects; the other keys keep their values.
 ReportInput effects_sample() {
   ReportInput input = sample();
   input.is_scene_shaded = true;

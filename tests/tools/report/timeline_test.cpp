@@ -156,7 +156,7 @@ TEST(Timeline, MergingStopsAtTilesGapsAndLongSpans) {
   const json trace = json::parse(timeline_json(timing, machine(), whole_bytes - 1));
   std::vector<std::string> names;
   for (const json& event : complete_events(trace)) names.push_back(event["name"]);
-  // Merged events are longer than plain ones, so a small sample needs no less text: what counts is which ones merged.
+  // Merged events are longer than plain ones, so a small sample gets no shorter; the test is which ones merged.
   EXPECT_EQ(names, (std::vector<std::string>{"mixed", "init", "mixed", "compute", "mixed", "mixed"}));
 }
 

@@ -13,7 +13,7 @@
 
 namespace gridiron::test {
 
-/// A view, so that a test's text can go on with what it is about. On line 1 alone.
+/// A view, so that a test's own lines begin on line 2.
 inline constexpr std::string_view kView = "v from 0 0 9 at 0 0 0 up 0 1 0 angle 40 hither 0 resolution 8 6 ";
 inline constexpr std::string_view kViewAndFill =
     "v from 0 0 9 at 0 0 0 up 0 1 0 angle 40 hither 0 resolution 8 6 f 1 1 1 1 0 0 0 0 ";
@@ -29,7 +29,7 @@ inline constexpr std::string_view kViewAndFill =
 /// Checks indices, counts, ranges and unit normals of a description; every material in use, smooth ones with normals.
 void expect_sound(const tool::SceneDescription& scene);
 
-/// @returns edges that no triangle runs along in the opposite direction, each counted; vertices told apart by index.
+/// @returns the number of edges along which no triangle runs in the opposite direction; vertices are compared by index.
 [[nodiscard]] std::size_t count_open_edges(std::span<const UVec3> triangles);
 
 /// @returns the volume inside closed triangles that are turned outwards; negative where they are turned inwards.

@@ -128,7 +128,7 @@ TEST(Polygon, SignsAreExact) {
   expect_cut({Vec3(far, far, 0), Vec3(far + 4, far, 0), Vec3(far + 4, far + 4, 0), Vec3(far + 3, far + 1, 0)}, 2);
   // Differences to the far corner lose the near one whole: only the integers see which way this sliver turns.
   expect_cut({Vec3(0, 0, 0), Vec3(1e10f, 1e10f, 0), Vec3(1e-10f, 2e-10f, 0)}, 1);
-  // Corners 1e-38 apart beside corners 1e18 away.
+  // Corners 1e-38 apart, together with corners 1e18 away.
   expect_cut({Vec3(0, 0, 0), Vec3(1e18f, 0, 0), Vec3(1e18f, 1e18f, 0), Vec3(1e-38f, 2e-38f, 0)}, 2);
 }
 
@@ -161,7 +161,7 @@ TEST(Polygon, TellsDefects) {
     star.emplace_back(std::cos(angle), std::sin(angle), 0);
   }
   EXPECT_EQ(defect(star), PolygonDefect::kCrosses);
-  // Twice around, every corner to the left: cut into triangles that lie on each other if nobody looks for crossings.
+  // Twice around, every corner to the left: without a search for crossings the triangles would overlap.
   EXPECT_EQ(defect({Vec3(0, 0, 0), Vec3(4, 0, 0), Vec3(4, 4, 0), Vec3(0, 4, 0), Vec3(1, 1, 0), Vec3(3, 1, 0),
                     Vec3(3, 3, 0), Vec3(1, 3, 0)}),
             PolygonDefect::kCrosses);

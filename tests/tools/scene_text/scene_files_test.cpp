@@ -18,7 +18,7 @@ using tool::SceneDescription;
 
 const std::filesystem::path kFolder = std::filesystem::path(GRIDIRON_SOURCE_DIR) / "scenes";
 
-// What a scene's lights, materials and settings ask for, told in the plainest way.
+// The effects that a scene's lights, materials and settings require, computed in the simplest way.
 std::set<std::string> called_for(const SceneDescription& scene) {
   std::set<std::string> effects;
   if (scene.shadows && !scene.point_lights.empty()) effects.insert("point shadows");

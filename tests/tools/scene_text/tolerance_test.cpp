@@ -88,8 +88,8 @@ TEST(Tolerance, ObjectsAlikeHaveOne) {
   EXPECT_EQ(far.rule, ToleranceRule::kPicture);
   EXPECT_EQ(far.least_tolerance, far.most_tolerance);
   EXPECT_GT(far.least_tolerance, far.diagonal_tolerance);
-  // A picture that shows all of it as fine as its diagonal asks for chooses nothing.
-  const float share = 4 * far.diagonal_tolerance / 199 * 32;  // of which a quarter is the diagonal's in 64 pixels
+  // A picture that shows everything as finely as the diagonal's tolerance chooses nothing.
+  const float share = 4 * far.diagonal_tolerance / 199 * 32;  // a quarter of it is the diagonal's in 64 pixels
   for (const float nearness : {1e-5f, 1.01f * share}) {
     const auto enlarge = [nearness](tool::ScenePicture& picture) { picture.tan_half_fov = nearness; };
     const SceneDescription near = read(text, for_its_picture(1, enlarge));

@@ -7,7 +7,7 @@ set(CMAKE_CXX_COMPILER ${GRIDIRON_TARGET}-linux-gnu-g++)
 set(CMAKE_TRY_COMPILE_TARGET_TYPE STATIC_LIBRARY)
 set(CMAKE_CXX_FLAGS_INIT
   "-fno-pie -fcallgraph-info=su,da -fno-tree-loop-distribute-patterns ${GRIDIRON_TARGET_FLAGS}")
-# Size counts on a core: -O3 unrolls and clones the kernel to nearly twice the code of -O2.
+# Size matters on a core: -O3 unrolls and clones the kernel to nearly twice the code of -O2.
 set(CMAKE_CXX_FLAGS_RELEASE "-O2 -DNDEBUG" CACHE STRING "Flags of a Release build")
 
 # The host's /usr/include must not be on a cross compiler's path: GLM is reached through a directory of its own.

@@ -97,10 +97,10 @@ Finish add_result(CLI::App& app) {
   ResultRequest& result = asked->request;
   const std::string name = "a file name";
   add_parsed(app, "JOB", result.job, parse_input, name, "",
-             "what the device was given, made by job; - is standard input")
+             "the device's input, made by job; - is standard input")
       ->required();
   add_parsed(app, "RESULT", result.result, parse_input, name, "",
-             "what it wrote: the bytes from result_address on; - is standard input")
+             "the device's output: the bytes from result_address on; - is standard input")
       ->required();
   add_parsed(app, "-o,--output", result.outputs.picture, parse_path, name, "FILE",
              "picture, .png or .pfm; - is standard output, here and for every output");
@@ -188,7 +188,7 @@ Finish add_experiment(CLI::App& app) {
   };
 }
 
-// A command, and what adds its options.
+// A command, and the function that adds its options.
 struct NamedCommand {
   const char* name;
   const char* help;
@@ -196,9 +196,9 @@ struct NamedCommand {
 };
 
 constexpr NamedCommand kCommands[] = {
-    {"render", "renders a scene and tells what the frame costs on the chip", add_render},
-    {"animate", "renders a mesh a frame, its grid built anew, and tells what the frames cost", add_animate},
-    {"info", "tells what a scene holds and what it needs", add_info},
+    {"render", "renders a scene and reports what the frame costs on the chip", add_render},
+    {"animate", "renders a mesh a frame, each with a new grid, and reports what the frames cost", add_animate},
+    {"info", "prints the contents and needs of a scene", add_info},
     {"pack", "makes a scene image (.gri) that render and firmware read as it is", add_pack},
     {"job", "makes the file of a frame that a device is given", add_job},
     {"result", "reads what a device made of a job", add_result},

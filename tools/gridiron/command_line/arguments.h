@@ -1,4 +1,4 @@
-// Arguments: the command line as values, one request a command.
+// Arguments: the command line as values, with one request type for each command.
 // Memory: owns strings. Threads: one. SPDX-License-Identifier: Apache-2.0
 #pragma once
 
@@ -14,7 +14,7 @@
 
 namespace gridiron::tool {
 
-/// A frame for each mesh, with the grid of each built for it.
+/// Frames of an animation: one for each mesh, with a new grid each.
 struct AnimateRequest {
   RenderRequest render;                       ///< of every frame; its input is the frame's
   std::vector<std::filesystem::path> inputs;  ///< meshes, and folders of them
@@ -35,12 +35,12 @@ struct JobRequest {
   std::optional<std::uint64_t> memory_bytes;  ///< that the device has from there on
 };
 
-/// What a device made of a job.
+/// The result that a device made of a job.
 struct ResultRequest {
   std::filesystem::path job, result;
   FrameOutputs outputs;
   bool compare = false;                  ///< with the simulator's frame
-  Machine predict;                       ///< what its tiles would take there; null: nobody asks
+  Machine predict;                       ///< whose prediction is compared; null: none
   std::optional<std::uint32_t> threads;  ///< nothing: the host's
   bool quiet = false;
 };
@@ -48,7 +48,7 @@ struct ResultRequest {
 struct MachinesRequest {
   Machine machine;  ///< the one to print; null: all built-in ones are listed
   bool json = false;
-  bool quiet = false;  ///< accepted as everywhere: a list has nothing beside its result
+  bool quiet = false;  ///< accepted as everywhere: a list has no other output
 };
 
 enum class ExperimentName { kPaper, kAccuracy, kEffects };
@@ -56,14 +56,14 @@ enum class ExperimentName { kPaper, kAccuracy, kEffects };
 struct ExperimentRequest {
   ExperimentName name = ExperimentName::kPaper;
   std::filesystem::path output;                 ///< folder
-  std::optional<std::filesystem::path> scenes;  ///< folder of scans; kEffects has none
+  std::optional<std::filesystem::path> scenes;  ///< folder of scans; not used by kEffects
   std::optional<std::uint32_t> threads;         ///< nothing: the host's
   std::optional<CountPair> size;
   std::optional<std::uint32_t> largest_knot;  ///< kPaper: triangles of the largest mesh of Table 1
   bool quiet = false;
 };
 
-/// Help or the version was asked for: text for standard output.
+/// Help or the version: text for standard output.
 struct TextRequest {
   std::string text;
 };
@@ -71,8 +71,8 @@ struct TextRequest {
 using Command = std::variant<RenderRequest, AnimateRequest, InfoRequest, PackRequest, JobRequest, ResultRequest,
                              MachinesRequest, ExperimentRequest, TextRequest>;
 
-/// Reads a machine file that is named, and nothing else. Errors: Failure, kUsage with what is wrong whatever the scene
-/// is, kBadInput of a machine file.
+/// Opens no file but the machine file. Errors: Failure, kUsage for everything that is wrong whatever the scene is,
+/// kBadInput for a machine file.
 [[nodiscard]] Command parse_arguments(int count, const char* const* values);
 
 }  // namespace gridiron::tool

@@ -69,8 +69,8 @@ std::string name_of(const CLI::Option& option) {
   return option.get_snames().empty() ? name : "-" + option.get_snames().front() + " (" + name + ")";
 }
 
-// Words of a command as they stand: the first option that it does not have, the first with a value that comes twice,
-// and what is no option or value of one.
+// The words of a command: the first unknown option, the first repeated option with a value, and words that are neither
+// options nor values.
 struct CommandWords {
   std::optional<std::string> unknown;
   const CLI::Option* repeated = nullptr;

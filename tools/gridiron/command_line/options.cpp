@@ -44,7 +44,7 @@ void add_size(CLI::App& app, std::optional<CountPair>& size, const std::string& 
 
 void add_input(CLI::App& app, SceneRequest& scene) {
   add_parsed(app, "INPUT", scene.input, parse_input, "a file name", "",
-             "scene: a PLY mesh, a text scene (NFF) or what pack made, whatever its name; - is standard input")
+             "scene: a PLY mesh, a text scene (NFF) or a packed scene, under any name; - is standard input")
       ->required();
   const auto tolerance = [](const std::string& text) {
     const std::optional<float> value = parse_float(text);
@@ -91,7 +91,7 @@ void add_store(CLI::App& app, std::optional<StoreSize>& store) {
       app, "--store", store,
       Choices<StoreSize>{
           {"64", StoreSize::k64KB}, {"128", StoreSize::k128KB}, {"256", StoreSize::k256KB}, {"512", StoreSize::k512KB}},
-      "local store in KB (default: the largest that the machine has room for)");
+      "local store in KB (default: the largest that fits the machine)");
 }
 
 void add_packet(CLI::App& app, std::optional<std::uint32_t>& packet_width) {

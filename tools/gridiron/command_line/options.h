@@ -1,4 +1,4 @@
-// Options: how words of the command line become values, and the options that several commands share.
+// Options: converts words of the command line to values; options that several commands share.
 // Memory: what they are added to outlives the parser. Threads: one. SPDX-License-Identifier: Apache-2.0
 #pragma once
 
@@ -17,7 +17,7 @@
 
 namespace gridiron::tool {
 
-/// A command once its words are parsed: the request, checked. Errors: Failure.
+/// Completes a parsed command: its request, checked. Errors: Failure.
 using Finish = std::function<Command()>;
 
 /// A request while its words are parsed.
@@ -27,8 +27,8 @@ struct Asked {
   std::string machine;  ///< name or file; empty: none
 };
 
-/// Adds an option whose text one of our own parsers turns into a value; `expected` completes the error message, which
-/// names those of `words` that the text may have been meant for.
+/// Adds an option whose text one of our own parsers converts; `expected` completes the error message, which suggests
+/// similar words from `words`.
 template <class Target, class Parser>
 CLI::Option* add_parsed(CLI::App& app, const std::string& name, Target& target, Parser parser,
                         const std::string& expected, const std::string& type, const std::string& help,
@@ -41,7 +41,7 @@ CLI::Option* add_parsed(CLI::App& app, const std::string& name, Target& target, 
   return app.add_option_function<std::string>(name, set, help)->type_name(type)->expected(1);
 }
 
-/// Words and what they stand for, in the order in which people are told them.
+/// Words and their values, in the order of the help.
 template <class Value>
 using Choices = std::vector<std::pair<std::string, Value>>;
 
@@ -62,16 +62,16 @@ CLI::Option* add_choice(CLI::App& app, const std::string& name, Target& target, 
   return add_parsed(app, name, target, find, "one of " + list, list, help, words);
 }
 
-/// @returns the count that the whole of a text is, if it is one of these.
+/// @returns a parser that accepts the given counts.
 [[nodiscard]] std::function<std::optional<std::uint32_t>(const std::string&)> count_between(std::uint32_t least,
                                                                                             std::uint32_t most);
 
 [[nodiscard]] std::optional<std::filesystem::path> parse_path(const std::string& text);
 
-/// The same of an input: `-` is standard input.
+/// The same for an input: `-` is standard input.
 [[nodiscard]] std::optional<std::filesystem::path> parse_input(const std::string& text);
 
-/// Every command has it: what runs them need not know which of them has more to say than its result.
+/// Every command has it, so that scripts can pass it to any of them.
 void add_quiet(CLI::App& app, bool& quiet);
 void add_size(CLI::App& app, std::optional<CountPair>& size, const std::string& help);
 void add_input(CLI::App& app, SceneRequest& scene);
@@ -80,7 +80,7 @@ void add_threads(CLI::App& app, std::optional<std::uint32_t>& threads, const std
 void add_store(CLI::App& app, std::optional<sim::StoreSize>& store);
 void add_packet(CLI::App& app, std::optional<std::uint32_t>& packet_width);
 
-/// @returns the accuracies as words, and in `help` what each is.
+/// @returns the accuracies as words, and in `help` a description of each.
 [[nodiscard]] Choices<Accuracy> accuracy_choices(std::string& help);
 
 template <class Target>
@@ -90,24 +90,24 @@ void add_accuracy(CLI::App& app, Target& target) {
   add_choice(app, "--accuracy", target, choices, help);
 }
 
-/// A file of the command line and the option that names it.
+/// A file of the command line and its option.
 struct NamedFile {
   const char* option;
   std::optional<std::filesystem::path> path;
 };
 
-/// The file of a machine, nothing where a built-in one is named.
+/// The file of a machine; nothing for a built-in one.
 [[nodiscard]] NamedFile machine_file(const std::string& name, const char* option = "--machine");
 
-/// What one input takes out of a pipe the other one would miss. Errors: Failure (kUsage) where two are one stream.
+/// Errors: Failure (kUsage) if two inputs are one stream, since each would take bytes from the other.
 void require_own_streams(const std::vector<NamedFile>& inputs);
 
-/// Finds the machine of a scene that is read with nothing but a camera beside it. Errors: those of
-/// require_own_streams() and find_machine().
+/// Finds the machine of a scene whose only other input may be a camera. Errors: those of require_own_streams() and
+/// find_machine().
 void complete_scene(SceneRequest& scene, const std::string& machine,
                     const std::optional<std::filesystem::path>& camera = std::nullopt);
 
-// The commands that render: their options are added, what is asked is handed out by the result.
+// Each adds the options of a command that renders, and returns the function that completes its request.
 [[nodiscard]] Finish add_render(CLI::App& app);
 [[nodiscard]] Finish add_animate(CLI::App& app);
 [[nodiscard]] Finish add_job(CLI::App& app);

@@ -111,7 +111,7 @@ void add_algorithm_options(CLI::App& app, RenderRequest& render) {
   app.add_flag("--no-empty-skip", render.no_empty_skip, "fetch the cell blocks of empty macrocells too");
 }
 
-// What makes no sense is refused before a file is opened.
+// Rejects impossible combinations before a file is opened.
 void complete_render(RenderRequest& render, const std::string& machine) {
   check_request(render, this_host());
   complete_scene(render.scene, machine, render.camera);

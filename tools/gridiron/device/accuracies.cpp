@@ -12,7 +12,7 @@ constexpr NamedAccuracy kAccuracies[] = {
     {"paper", Accuracy::kPaper,
      "precomputed projection and reciprocal estimate in single precision; may leak at edges"},
     {"fast", Accuracy::kFast,
-     "signs of edges and distances as single precision gives them; may leak at edges; for numbers of 1e-12 to 1e12"},
+     "signs of edges and distances in single precision; may leak at edges; for numbers of 1e-12 to 1e12"},
     {"standard", Accuracy::kStandard,
      "hits what exact arithmetic hits; of triangles whose distances round alike shows the lowest id"},
     {"exact", Accuracy::kExact,

@@ -18,7 +18,7 @@ struct NamedAccuracy {
 /// All accuracy profiles, from the paper's to the exact one, then those that change the geometry.
 [[nodiscard]] std::span<const NamedAccuracy> accuracies();
 
-/// @returns what --accuracy calls it.
+/// @returns the accuracy's name in --accuracy.
 [[nodiscard]] std::string_view accuracy_name(Accuracy accuracy);
 
 }  // namespace gridiron::tool

@@ -20,7 +20,7 @@ std::string words_of_layout(const sim::LayoutChoice& layout) {
          std::to_string(layout.packet_width) + "x" + std::to_string(layout.packet_width);
 }
 
-// Why a layout has no kernel, and which ones of its store have.
+// Reports that a layout has no kernel, and which ones of its store have.
 [[noreturn]] void refuse_layout(const sim::LayoutChoice& layout) {
   const std::string store = "--store " + std::to_string(sim::arena_bytes(layout.store) >> 10);
   const std::string shading = layout.has_effects ? ", --shading scene" : "";
@@ -44,7 +44,7 @@ std::string words_of_layout(const sim::LayoutChoice& layout) {
 
 sim::LayoutChoice layout_with(const LayoutRequest& asked, const Configuration& configuration, StoreSize store,
                               bool has_effects) {
-  // Effects out of 64 KB: all rays by walks, without packets.
+  // Effects with 64 KB: all rays by walks, without packets.
   if (has_effects && store == StoreSize::k64KB) {
     return {store, asked.tile_width.value_or(8), asked.packet_width.value_or(0), true};
   }

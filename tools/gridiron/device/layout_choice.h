@@ -1,4 +1,4 @@
-// Layout choice: which build of the kernel fits a machine and what was asked for.
+// Layout choice: the build of the kernel that fits a machine and a request.
 // Memory: plain values. Threads: any. SPDX-License-Identifier: Apache-2.0
 #pragma once
 
@@ -14,29 +14,30 @@
 
 namespace gridiron::tool {
 
-/// What a command line fixes of the kernel and its buffers; the rest is the scene's, machine's and configuration's.
+/// Parts of the kernel and its buffers that a command line sets; the rest follows from scene, machine and
+/// configuration.
 struct LayoutRequest {
   std::optional<sim::StoreSize> store;
   std::optional<std::uint32_t> tile_width, packet_width;
   std::optional<BufferDepths> depths;
 };
 
-/// @returns the layout with a store: what was not asked for is the store's and the configuration's.
+/// @returns the layout with a store; parts that were not requested are the store's and the configuration's.
 [[nodiscard]] sim::LayoutChoice layout_with(const LayoutRequest& asked, const Configuration& configuration,
                                             sim::StoreSize store, bool has_effects);
 
-/// @returns the store asked for, or the largest one of the machine that `is_built`; the machine's largest where none
-/// is. Errors: Failure (kUsage) where the machine has no room for the store that was asked for.
+/// @returns the requested store, or the largest one of the machine that `is_built`; the machine's largest if none is.
+/// Errors: Failure (kUsage) if the requested store does not fit the machine.
 [[nodiscard]] sim::StoreSize choose_store(const sim::MachineProfile& machine, std::optional<sim::StoreSize> asked,
                                           const std::function<bool(sim::StoreSize)>& is_built);
 
-/// Errors: Failure (kUsage) where packets are wider than tiles, or no kernel is built, with those that there are.
+/// Errors: Failure (kUsage) if packets are wider than tiles, or no kernel is built; lists the existing ones.
 void require_built(const sim::LayoutChoice& layout, bool is_built);
 
-/// Errors: Failure (kUsage) where distances are wanted of a layout that has none.
+/// Errors: Failure (kUsage) if distances are requested of a layout without them.
 void require_distances(const sim::LayoutChoice& layout, bool has_depth);
 
-/// Errors: Failure (kUsage) where effects cannot be rendered with an accuracy.
+/// Errors: Failure (kUsage) if effects cannot be rendered with an accuracy.
 void require_effects_of(std::optional<Accuracy> accuracy);
 
 }  // namespace gridiron::tool

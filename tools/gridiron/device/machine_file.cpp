@@ -40,7 +40,7 @@ std::vector<MachineKey> file_keys(MachineProfile& machine) {
   return keys;
 }
 
-// What there is instead of a machine that is not built in: the nearest name and all names.
+// Suggestions for an unknown machine: the nearest name and all names.
 std::string words_of_built_in_machines(std::string_view name) {
   std::string list;
   std::vector<std::string> names;
@@ -70,7 +70,7 @@ bool is_name(std::string_view word) {
   return !word.empty() && word.size() <= kMaxNameBytes && std::ranges::all_of(word, fits);
 }
 
-// @returns why text cannot be shown on a terminal and in JSON as it stands, null where it can.
+// @returns why a terminal or JSON cannot show the text unchanged, null if they can.
 const char* text_defect(std::string_view text) {
   std::size_t at = 0;
   while (at < text.size()) {
@@ -80,7 +80,7 @@ const char* text_defect(std::string_view text) {
       if (first == 0x7F) return "has a control character";
       continue;
     }
-    // Unicode, table 3-7: bytes that follow, and the range of the first of these.
+    // Unicode, table 3-7: the number of following bytes, and the range of the first of these.
     const std::size_t followers = first < 0xE0 ? 1 : first < 0xF0 ? 2 : 3;
     if (first < 0xC2 || first > 0xF4 || text.size() - at < followers) return "is not UTF-8";
     const unsigned second = byte(at);
@@ -96,7 +96,7 @@ const char* text_defect(std::string_view text) {
   return nullptr;
 }
 
-// @returns whether both are the same machine, whatever it is called.
+// @returns whether both machines are the same but for their names.
 bool has_same_values(MachineProfile a, const MachineProfile& b) {
   a.name = b.name;
   a.description = b.description;
@@ -210,7 +210,7 @@ class Reader {
         if (!is_given_[i]) fail("the file ends without '" + keys_[i].name + "', and has no 'based_on' to take it from");
       }
     }
-    // A base lends its figures, not its name; and a report must not show other figures under a built-in machine's name.
+    // A base provides its figures, not its name; a report must not show other figures under a built-in machine's name.
     const auto is_taken = [this](std::string_view name) {
       const MachineProfile* built_in = sim::find_machine_profile(name);
       return built_in != nullptr && !has_same_values(machine_->profile, *built_in);
@@ -221,7 +221,7 @@ class Reader {
     } else if (is_taken(machine_->name)) {
       machine_->name += kEditedSuffix;
     }
-    // Nor does an edited copy keep words about figures that it has changed.
+    // An edited copy must not keep a description of the figures that it has changed.
     const auto is_of_original = [this](const MachineProfile& built_in) {
       return built_in.description == machine_->description && !has_same_values(machine_->profile, built_in);
     };

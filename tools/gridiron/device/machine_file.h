@@ -1,4 +1,4 @@
-// Machine files: a machine profile as text that people write, and the machine that a command names.
+// Machine files: a machine profile as text, and the machine that a command names.
 // Memory: owns names and text. Threads: any. SPDX-License-Identifier: Apache-2.0
 #pragma once
 
@@ -11,18 +11,18 @@
 
 namespace gridiron::tool {
 
-/// A machine profile, built in or from a file, with the text its name and description point to.
+/// A machine profile, built in or from a file, with its name and description.
 using Machine = std::shared_ptr<const sim::MachineProfile>;
 
-/// @returns the built-in profile of that name, or what the file of that name describes.
-/// Errors: Failure (kBadInput) as `file:line: reason`, or the built-in names where there is no such file.
+/// @returns the built-in profile of that name, or the profile in the file of that name. Errors: Failure (kBadInput) as
+/// `file:line: reason`, or with the built-in names if there is no such file.
 [[nodiscard]] Machine find_machine(const std::string& name_or_file);
 
-/// Reads a machine file; the format is documented in tools/README.md, "Machines".
-/// Errors: Failure (kBadInput), `file:line: reason`.
+/// Reads a machine file; tools/README.md, "Machines", documents the format. Errors: Failure (kBadInput), `file:line:
+/// reason`.
 [[nodiscard]] Machine read_machine_file(const std::filesystem::path& path);
 
-/// @returns the largest of the stores core is built for that a core of the machine has room for.
+/// @returns the largest store that core is built for and that fits a core of the machine.
 [[nodiscard]] sim::StoreSize largest_store(const sim::MachineProfile& machine);
 
 /// @returns the profile in the same format, every constant in it; reading it gives the identical profile.

@@ -20,7 +20,7 @@ using sim::MasterProfile;
 struct Limits {
   double least, most;
 };
-constexpr Limits kCycles = {0, 1 << 20};  // of one step; more is nothing that the replay tells apart
+constexpr Limits kCycles = {0, 1 << 20};  // of one step; the replay limits larger values
 constexpr Limits kHertz = {1, 1e12};
 
 using Member = std::variant<std::uint32_t MachineProfile::*, std::uint64_t MachineProfile::*, double MachineProfile::*>;
@@ -51,7 +51,7 @@ constexpr const char* kWorkKey = "work_cycles.";
 constexpr const char* kMasterClockKey = "master.clock_hz";
 constexpr const char* kStepKey = "master.step_cycles.";
 
-// Members of an aggregate: with how many values it can be initialised.
+// Counts the members of an aggregate by the number of values that can initialise it.
 struct AnyValue {
   template <class T>
   operator T() const;
@@ -76,12 +76,12 @@ static_assert(have_members_of_their_own() && member_count<MachineProfile>() == s
               "each member but name, description, work_cycles and master has a row");
 static_assert(member_count<MasterProfile>() == 2, "clock_hz and step_cycles have keys");
 
-// Work that the replay charges as an event, by issue_cycles and wait_cycles; always 0 in a profile.
+// Work that the replay charges by issue_cycles and wait_cycles; always 0 in a profile.
 bool is_charged_as_event(Work kind) {
   return kind == Work::kGetIssue || kind == Work::kPutIssue || kind == Work::kWait;
 }
 
-// "2^40" where digits would have to be counted.
+// "2^40" instead of many digits.
 std::string limit_text(double limit) {
   const int exponent = std::ilogb(limit);
   return exponent >= 30 && std::exp2(exponent) == limit ? "2^" + std::to_string(exponent) : text_of(limit);
@@ -118,7 +118,7 @@ std::string text_of(double value) {
   char text[64];
   const auto [end, error] = std::to_chars(text, text + sizeof text, value);
   std::string result(text, error == std::errc{} ? end : text);
-  // 3.2e+09 is 3.2e9 to people.
+  // Shortens 3.2e+09 to 3.2e9.
   const std::size_t exponent = result.find("e+");
   if (exponent != std::string::npos) {
     const std::size_t digit = result.find_first_not_of('0', exponent + 2);

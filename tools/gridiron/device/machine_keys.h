@@ -1,4 +1,4 @@
-// Machine keys: the one table of a machine profile's numbers, by the names that machine files and JSON have for them.
+// Machine keys: all numbers of a machine profile in one table, by their names in machine files and JSON.
 // Memory: constants; borrows a profile where it says so. Threads: any. SPDX-License-Identifier: Apache-2.0
 #pragma once
 
@@ -19,7 +19,7 @@ struct MachineKey {
   bool is_in_files = true;                                       ///< false: always 0, and only shown in JSON
 };
 
-/// @returns every number of `machine`, in the order in which machine files and JSON show them.
+/// @returns every number of `machine`, in the order of machine files and JSON.
 [[nodiscard]] std::vector<MachineKey> machine_keys(sim::MachineProfile& machine);
 
 /// @returns the shortest text that reads back as the same double.

@@ -48,7 +48,7 @@ void add_choices(std::vector<sim::LayoutChoice>& choices, sim::LayoutList<Layout
   }
 }
 
-// Packets of 8x8 rays, and those of a whole tile as far as packets go, for each width of tiles.
+// Packets of 8x8 rays, and packets as wide as the tile if possible, for each width of tiles.
 template <template <std::uint32_t, std::uint32_t> class Layout>
 void add_fits(std::vector<LayoutFit>& fits, sim::StoreSize store) {
   add_fit<Layout<8, 8>>(fits, store);

@@ -1,4 +1,4 @@
-// Store facts: what the compiled local-store layouts hold, as values.
+// Store facts: the sizes of the compiled local-store layouts, as values.
 // Memory: std::vector. Threads: any. SPDX-License-Identifier: Apache-2.0
 #pragma once
 
@@ -22,26 +22,27 @@ struct StoreFacts {
   BufferDepths most_depths{};  ///< no walks: renders no effects
   std::uint32_t triangles_per_buffer = 0;
   std::uint32_t mailbox_slots = 0;         ///< 0: no packets
-  std::uint32_t resident_macro_cells = 0;  ///< as many as the table tells of without being fetched again
+  std::uint32_t resident_macro_cells = 0;  ///< size of the table that is fetched only once
   std::vector<LocalStoreRegion> regions;   ///< in address order
 
   [[nodiscard]] std::uint64_t data_bytes() const;
 };
 
-/// @returns nothing where no kernel is built for the layout, in no mode. With effects: the map that has room for all.
+/// @returns nothing if no kernel is built for the layout in any mode. With effects: the map of the build with all
+/// effects.
 [[nodiscard]] std::optional<StoreFacts> find_store_facts(const sim::LayoutChoice& layout);
 
-/// Every layout that a kernel is built for, in whatever modes, the common ones first.
+/// Every layout that a kernel is built for in any mode, the common ones first.
 [[nodiscard]] std::vector<sim::LayoutChoice> built_layouts();
 
-/// The layout with the store's usual tiles. @param packet_width  8 or 32; 32 is 16 where tiles are no wider.
+/// The layout with the store's usual tiles. @param packet_width  8 or 32; 32 becomes 16 if tiles are no wider.
 [[nodiscard]] StoreFacts usual_store_facts(sim::StoreSize store, std::uint32_t packet_width);
 
-/// The layout that renders effects. @param store  64 KB, else the one of 256 KB is meant. @param packet_width  8 or 32;
-/// 64 KB have no packets.
+/// The layout that renders effects. @param store  64 KB, else that of 256 KB is returned. @param packet_width  8 or 32;
+/// unused with 64 KB.
 [[nodiscard]] StoreFacts effect_store_facts(sim::StoreSize store, std::uint32_t packet_width);
 
-/// Whether a core has room for a layout, built or not.
+/// Whether a layout fits a core, built or not.
 struct LayoutFit {
   sim::LayoutChoice layout;
   std::uint64_t data_bytes = 0;  ///< what it takes
@@ -49,7 +50,7 @@ struct LayoutFit {
   bool fits = false;
 };
 
-/// Each size of store with tiles of 8 to 64 pixels, and packets of 8x8 rays and as wide as the tile, 32 at most.
+/// All sizes of store, with tiles of 8 to 64 pixels, and packets of 8x8 rays and as wide as the tile, 32 at most.
 [[nodiscard]] std::vector<LayoutFit> layout_fits();
 
 }  // namespace gridiron::tool

@@ -1,4 +1,4 @@
-// Chip frame: a prepared frame rendered on the simulated chip as the command line asks.
+// Chip frame: renders a prepared frame on the simulated chip with the options of the command line.
 // Memory: the frame's. Threads: starts the chip's. SPDX-License-Identifier: Apache-2.0
 #pragma once
 
@@ -12,15 +12,14 @@
 
 namespace gridiron::tool {
 
-/// Renders. @param plan  the one that the frame was prepared with.
-/// @param progress  of tiles; may be empty.
-/// Errors: Failure where the frame failed, of stop_if_interrupted(), kUsage for a tile that is not there.
+/// @param plan  the one that the frame was prepared with. @param progress  of tiles; may be empty.
+/// Errors: Failure if the frame failed, of stop_if_interrupted(), kUsage for a tile outside of the frame.
 [[nodiscard]] sim::ChipResult render_on_chip(FrameMemory& frame, const RenderPlan& plan,
                                              std::function<void(std::uint32_t done, std::uint32_t total)> progress);
 
 /// Renders the frame whose FrameRecord lies at `frame`; signals end it between two tiles.
-/// @param input  where the frame comes from, for messages.
-/// Errors: Failure where the frame failed, of stop_if_interrupted().
+/// @param input  source of the frame, for messages.
+/// Errors: Failure if the frame failed, of stop_if_interrupted().
 [[nodiscard]] sim::ChipResult run_on_chip(sim::SimMemory& memory, MainAddress frame, sim::ChipOptions options,
                                           const std::filesystem::path& input);
 

@@ -1,4 +1,4 @@
-// Frame failure: what went wrong on the simulated chip, in words.
+// Frame failure: describes the failure of a frame on the simulated chip.
 // Memory: strings. Threads: any. SPDX-License-Identifier: Apache-2.0
 #pragma once
 
@@ -11,10 +11,10 @@
 
 namespace gridiron::tool {
 
-/// @returns nothing for a frame that went well; else how the command ends: every violation on a line of its own (at
-/// most 20) and what the renderer said. kCheckFailed, or kUsage where the build cannot render what the options ask for,
-/// or kBadInput where it cannot use the scene image or the host has not enough memory or threads.
-/// @param input  what was rendered, for people; empty: nothing that has a name.
+/// @returns nothing for a successful frame; else the end of the command: every violation on a line of its own (at most
+/// 20) and the renderer's status. kCheckFailed, or kUsage if the build cannot render with these options, or kBadInput
+/// if it cannot use the scene image or the host has too little memory or threads.
+/// @param input  the rendered file, for messages; empty: it has no name.
 [[nodiscard]] std::optional<Failure> frame_failure(const sim::ChipResult& result,
                                                    const std::filesystem::path& input = {});
 

@@ -15,7 +15,7 @@
 namespace gridiron::tool {
 namespace {
 
-// Of the machine's main memory. @param input  the scene, for people.
+// Allocates from the machine's main memory. @param input  the scene, for messages.
 sim::MemoryRegion allocate(sim::SimMemory& memory, const std::filesystem::path& input, std::uint64_t bytes,
                            std::uint64_t alignment = kLineBytes) {
   try {
@@ -29,13 +29,13 @@ sim::MemoryRegion allocate(sim::SimMemory& memory, const std::filesystem::path& 
                 input.string() + ": the main memory of " + words_of_bytes(memory.capacity_bytes()) + " is full");
 }
 
-// Of rays that wait, 1 where none do.
+// Depth of recursion of waiting rays, 1 without any.
 std::uint32_t waiting_depth(const SceneInput& input, const RenderPlan& plan) {
   return plan.shading == Shading::kScene ? recursion_depth(input) : 1;
 }
 
-// Puts the scene image into main memory. @param movable  the packed scene's bytes where they may move; else null.
-// @returns where it lies.
+// Puts the scene image into main memory. @param movable  the packed scene's bytes if they may move; else null. @returns
+// its address.
 MainAddress place_image(FrameMemory& frame, const SceneInput& input, const RenderPlan& plan, std::uint64_t budget_bytes,
                         InputFile* movable) {
   const ImageLimits limits = {format_of(plan.accuracy), budget_bytes, plan.most_macro_width};
@@ -71,7 +71,7 @@ MainAddress place_image(FrameMemory& frame, const SceneInput& input, const Rende
   return region.address;
 }
 
-// Makes the record of the frame's settings. @param source  the scene, for people.
+// Makes the frame record from the settings. @param source  the scene, for messages.
 void make_record(FrameMemory& frame, const std::filesystem::path& source) {
   const Status status = make_frame_record(frame.settings, frame.image, frame.image_address, frame.record);
   if (status == Status::kBadFrame) {
@@ -104,11 +104,11 @@ void prepare(FrameMemory& frame, const SceneInput& input, const RenderPlan& plan
                                                         plan.layout.tile_width, spill_bytes_of(plan.cores, depth));
   frame.image_address = place_image(frame, input, plan, budget_bytes, movable);
 
-  // Identifiers travel as floats in a PFM file.
+  // A PFM file stores ids as floats.
   if (plan.outputs.ids) require_exact_ids(input.path, frame.image.header.triangle_count);
 
   FrameSettings& settings = frame.settings;
-  // An image of vertices as they were read has the points of its mesh, which has each of them once.
+  // An image of unchanged vertices has the points of its mesh, which has each of them once.
   const Mesh* mesh = std::get_if<Mesh>(&input.content);
   const bool is_exact = format_of(plan.accuracy) == TriangleFormat::kVertices;
   const PointSource points = mesh != nullptr && is_exact

@@ -1,4 +1,4 @@
-// Frame memory: a machine's main memory with scene image, frame record and output planes in it.
+// Frame memory: a machine's main memory with scene image, frame record and output planes.
 // Memory: owns the simulated main memory. Threads: one before the frame. SPDX-License-Identifier: Apache-2.0
 #pragma once
 
@@ -17,7 +17,7 @@
 
 namespace gridiron::tool {
 
-/// Everything a frame needs, in place.
+/// Everything that a frame needs in main memory.
 struct FrameMemory {
   explicit FrameMemory(std::uint64_t capacity_bytes) : memory(capacity_bytes) {}
 
@@ -27,29 +27,27 @@ struct FrameMemory {
   FrameSettings settings{};
   FrameRecord record{};
   MainAddress image_address{}, record_address{};
-  sim::MemoryRegion color, depth, ids;  ///< depth, ids: no bytes where not asked for
+  sim::MemoryRegion color, depth, ids;  ///< depth, ids: empty if not requested
   sim::MemoryRegion spill;              ///< for waiting rays of each host thread; no bytes without them
   std::uint64_t spill_bytes_per_core = 0;
   float wanted_lambda = 0;      ///< the image's own is image.grid.lambda
   HostSeconds build_seconds{};  ///< of building the image, 0 for a packed scene
 };
 
-/// @returns bytes to make a frame's memory of: the machine's, and room for waiting rays of the host threads that it has
-/// no cores for.
+/// @returns bytes of a frame's memory: the machine's, and memory for waiting rays of host threads beyond its cores.
 [[nodiscard]] std::uint64_t frame_memory_bytes(const SceneInput& input, const RenderPlan& plan);
 
-/// @returns the points of a frame's scene image. They are there once prepare_frame() has placed it.
+/// @returns the points of a frame's scene image, once prepare_frame() has placed it.
 [[nodiscard]] PointSource points_of(FrameMemory& frame);
 
-/// Fills `frame` for a render; with Shading::kScene room for waiting rays of plan.threads cores.
-/// @param view  parts of the view that were asked for.
-/// Errors: Failure.
+/// Fills `frame` for a render; with Shading::kScene also memory for waiting rays of plan.threads cores.
+/// @param view  requested parts of the view. Errors: Failure.
 void prepare_frame(FrameMemory& frame, const SceneInput& input, const RenderPlan& plan, const ViewRequest& view);
 
-/// The same. The bytes of a packed scene move into main memory, so that they are held once; the rest of `input` stays.
+/// The same. The bytes of a packed scene move into main memory, so that they exist once; the rest of `input` stays.
 void prepare_frame(FrameMemory& frame, SceneInput&& input, const RenderPlan& plan, const ViewRequest& view);
 
-/// Gives a prepared frame another camera. Errors: Failure (kUsage) where the frame can have none such.
+/// Gives a prepared frame another camera. Errors: Failure (kUsage) if the frame cannot have it.
 void aim_camera(FrameMemory& frame, const Camera& camera);
 
 }  // namespace gridiron::tool

@@ -33,7 +33,7 @@ Picture<std::uint32_t> words_of_plane(const FrameRecord& frame, std::span<const 
 
 Picture<float> depth_picture(const Picture<std::uint32_t>& words) {
   return convert_words(words, [](std::uint32_t word) {
-    // A chip may have no infinity, so its plane says "largest float" where nothing is hit.
+    // A chip may have no infinity, so its plane has the largest float without a hit.
     const float depth = std::bit_cast<float>(word);
     return depth >= kFloatMax ? std::numeric_limits<float>::infinity() : depth;
   });
@@ -48,7 +48,7 @@ void require_exact_ids(const std::filesystem::path& input, std::uint64_t triangl
   constexpr std::uint64_t kMostExactIds = 1u << 24;
   if (triangle_count <= kMostExactIds) return;
   throw Failure(ExitCode::kBadInput, input.string() + ": --ids: " + words_of_count(triangle_count) +
-                                         " triangles; the floats of a PFM file tell at most 16,777,216 apart");
+                                         " triangles; the floats of a PFM file distinguish at most 16,777,216");
 }
 
 void require_same_planes(const PlaneHashes& first, const PlaneHashes& again, std::uint32_t repeat) {

@@ -40,14 +40,14 @@ sim::LayoutChoice layout_of(const RenderRequest& request, const RenderPlan& plan
   return with(store);
 }
 
-// The buffers of the three levels and the width of macrocells, which the store has to hold.
+// The buffers of the three levels and the width of macrocells, limited by the store.
 void settle_depths(const RenderRequest& request, RenderPlan& plan) {
   const Configuration& configuration = *request.scene.configuration;
   const StoreFacts facts = *find_store_facts(plan.layout);
   const BufferDepths& most = facts.most_depths;
   const bool has_effects = plan.layout.has_effects;
   plan.depths = request.layout.depths.value_or(configuration.depths);
-  if (!request.layout.depths) {  // a name promises a way of rendering; how deep it goes is the store's to say
+  if (!request.layout.depths) {  // a named configuration is limited by the store, an explicit depth is not
     const std::uint32_t walks = plan.depths.walks;
     plan.depths = plan.depths.within(most);
     if (!has_effects) plan.depths.walks = walks;
@@ -63,11 +63,11 @@ void settle_depths(const RenderRequest& request, RenderPlan& plan) {
     };
     usage_error("--store " + std::to_string(facts.arena_bytes >> 10) + (has_effects ? ", --shading scene" : "") +
                 ": holds at most " + blocks(most, facts.max_macro_width) + "; " + blocks(plan.depths, macro_width) +
-                " are asked for");
+                " are requested");
   }
 }
 
-// Those of the configuration, without those that are not wanted.
+// The techniques of the configuration, without those that are switched off.
 std::uint32_t techniques_of(const RenderRequest& request) {
   const auto bit = [](bool is_off, std::uint32_t technique) { return is_off ? technique : 0u; };
   const std::uint32_t off = bit(request.no_mailbox, kUseMailbox) | bit(request.no_culling, kUseCornerCulling) |
@@ -79,7 +79,7 @@ std::uint32_t lanes_of(const RenderRequest& request, const Host& host) {
   return request.lanes.value_or(request.mode == Mode::kPlain ? host.lanes : 4);
 }
 
-// Threads that would find no tile are not started.
+// Limits the threads to the number of tiles.
 std::uint32_t threads_of(const RenderRequest& request, const RenderPlan& plan, const Host& host) {
   const auto tiles = [&plan](std::uint64_t pixels) {
     return (pixels + plan.layout.tile_width - 1) / plan.layout.tile_width;

@@ -1,4 +1,4 @@
-// Render plan: what was asked of a frame, and the frame that one pure function makes of it.
+// Render plan: the request for a frame, and the plan that one pure function makes of it.
 // Memory: owns paths; shares the machine. Threads: any. SPDX-License-Identifier: Apache-2.0
 #pragma once
 
@@ -27,11 +27,11 @@ struct FrameOutputs {
   [[nodiscard]] std::vector<Output> declared() const;
 };
 
-/// What is asked of a frame, as given. What is not given resolve() settles.
+/// The request for a frame, as given. resolve() completes it.
 struct RenderRequest {
   SceneRequest scene;
   FrameOutputs outputs;
-  bool depth_plane = false, ids_plane = false;  ///< wanted without a file of them
+  bool depth_plane = false, ids_plane = false;  ///< requested without a file
   std::optional<std::filesystem::path> camera;
   ViewRequest view;
   std::optional<CountPair> size;                       ///< of the picture
@@ -46,11 +46,11 @@ struct RenderRequest {
   std::optional<std::uint64_t> seed;
   std::uint32_t repeats = 1;  ///< the frame is built and rendered so often
 
-  /// With a picture: INPUT's name with .png where none was given.
+  /// Adds the picture's default name if none is given: INPUT's name with .png.
   [[nodiscard]] FrameOutputs named_outputs() const;
 };
 
-/// What frames depend on of the computer that simulates them.
+/// Properties of the host that frames depend on.
 struct Host {
   std::uint32_t threads = 1;
   std::uint32_t lanes = 4;  ///< of the widest kernel that it can run
@@ -58,7 +58,7 @@ struct Host {
 };
 [[nodiscard]] Host this_host();
 
-/// A frame, settled: the commands carry it out.
+/// A completed frame; the commands carry it out.
 struct RenderPlan {
   SceneRequest scene;
   FrameOutputs outputs;  ///< with a picture
@@ -69,7 +69,7 @@ struct RenderPlan {
   std::uint32_t threads = 1;  ///< of the host, no more than there are tiles to render
   std::uint32_t lanes = 4;
   sim::LayoutChoice layout{};
-  std::uint32_t most_macro_width = kMaxMacroWidth;  ///< that the store holds: a configuration's is cut to it
+  std::uint32_t most_macro_width = kMaxMacroWidth;  ///< of the store; a configuration's width is limited to it
   BufferDepths depths{};
   std::uint32_t techniques = 0;
   Accuracy accuracy = Accuracy::kStandard;
@@ -80,15 +80,15 @@ struct RenderPlan {
   std::uint32_t repeats = 1;
 };
 
-/// Refuses what makes no sense whatever the scene is. Errors: Failure (kUsage).
+/// Rejects impossible requests, whatever the scene is. Errors: Failure (kUsage).
 void check_request(const RenderRequest& request, const Host& host);
 
-/// Settles a frame. It opens no file and prints nothing: what it goes by is in its arguments.
+/// Completes a frame from its arguments alone; opens no file and prints nothing.
 ///
-/// The store is the one asked for, or the largest one of the machine that is built for the rest; a configuration that
-/// the store has too few buffers for gets those that there are.
-/// Errors: Failure (kUsage) of check_request(), where the scene cannot be rendered as asked, where no kernel is built
-/// for it, or its buffers do not hold what was asked for. Precondition: the scene's kind is known.
+/// The store is the requested one, or the largest one of the machine that is built for the rest. A configuration with
+/// more buffers than the store gets those that there are.
+/// Errors: Failure (kUsage) of check_request(), if the scene cannot be rendered as requested, if no kernel is built for
+/// it, or if its buffers do not hold what was requested. Precondition: the scene's kind is known.
 [[nodiscard]] RenderPlan resolve(const RenderRequest& request, const KnownScene& scene, const Host& host);
 
 }  // namespace gridiron::tool

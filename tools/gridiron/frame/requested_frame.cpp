@@ -10,7 +10,7 @@
 namespace gridiron::tool {
 namespace {
 
-// A named configuration that the store has too few buffers for is used with those that there are.
+// Notes that a named configuration is reduced to the store's buffers.
 void tell_fewer_buffers(const RenderRequest& request, const RenderPlan& plan) {
   const BufferDepths wanted = request.layout.depths.value_or(request.scene.configuration->depths);
   if (plan.depths == wanted) return;
@@ -22,7 +22,7 @@ void tell_fewer_buffers(const RenderRequest& request, const RenderPlan& plan) {
                blocks(wanted).c_str(), sim::arena_bytes(plan.layout.store) >> 10, blocks(plan.depths).c_str());
 }
 
-// Another place to look from has no use for the scene's near plane.
+// Another viewpoint does not use the scene's near plane.
 void check_scene_view(const RenderRequest& request, const RequestedFrame& frame) {
   const SceneInput& input = frame.input;
   const RenderPlan& plan = frame.plan;

@@ -1,4 +1,4 @@
-// Requested frame: what a command line, the scene it names and the host say of a frame together.
+// Requested frame: the frame that a command line, its scene and the host define together.
 // Memory: owns the scene. Threads: one. SPDX-License-Identifier: Apache-2.0
 #pragma once
 
@@ -10,18 +10,18 @@
 
 namespace gridiron::tool {
 
-/// All that prepare_frame() wants to know.
+/// All inputs of prepare_frame().
 struct RequestedFrame {
   SceneInput input;
   RenderPlan plan;
   ViewRequest view;
 };
 
-/// Reads scene and camera and settles the frame. A scene whose kind can be foreseen has it settled before it is read
-/// too: nobody should wait for what is refused then. Unless quiet it says on standard error what is odd in the scene,
-/// and where the store has fewer buffers than the configuration.
+/// Reads scene and camera and completes the frame. If the kind of scene can be foreseen, the frame is also completed
+/// before the scene is read, to report errors early. Unless quiet it prints notes of the scene on standard error, and
+/// whether the store has fewer buffers than the configuration.
 ///
-/// @param outputs  of the command; they are declared first: nobody should wait for what cannot be written.
+/// @param outputs  of the command; they are declared first, so that an output that cannot be written is reported early.
 /// Errors: Failure.
 [[nodiscard]] RequestedFrame read_requested_frame(const RenderRequest& request, const std::vector<Output>& outputs);
 

@@ -15,7 +15,7 @@
 namespace gridiron::tool {
 namespace {
 
-// Whether all pixels hit nothing; nothing where the planes do not tell.
+// Whether all pixels miss; nothing if the planes do not determine it.
 std::optional<bool> is_empty(const FrameRecord& frame, const SeenPlanes& planes) {
   const auto all_are = [&frame](std::span<const std::byte> plane, std::uint32_t wanted) {
     const Picture<std::uint32_t> words = words_of_plane(frame, plane);
@@ -26,14 +26,14 @@ std::optional<bool> is_empty(const FrameRecord& frame, const SeenPlanes& planes)
   if (!planes.depth.empty()) return all_are(planes.depth, std::bit_cast<std::uint32_t>(kFloatMax));
   if (frame.shading != static_cast<std::uint32_t>(Shading::kScene)) return all_are(planes.color, frame.background_rgba);
   if (planes.has_environment) return std::nullopt;
-  // The background's colour is the scene's; an object may have it too.
+  // An object may have the background's colour.
   const Picture<std::uint32_t> words = words_of_plane(frame, planes.color);
   const std::uint32_t first = words.pixels.front();
   const bool is_plain = std::ranges::all_of(words.pixels, [first](std::uint32_t word) { return word == first; });
   return is_plain ? std::nullopt : std::optional(false);
 }
 
-// Where the points lie, in pixels from the picture's top left corner; depths along the view.
+// Extremes of the points, in pixels from the picture's top left corner, and of their depths along the view.
 struct Extremes {
   double least_x = std::numeric_limits<double>::infinity(), most_x = -least_x;
   double least_y = least_x, most_y = -least_x;
@@ -93,7 +93,7 @@ std::optional<std::string> unseen_note(const FrameRecord& frame, const SeenPlane
   const char* reason = reason_of(extremes_of(frame, points));
   const std::string note = "no pixel shows the scene";
   if (reason != nullptr) return note + ": " + reason;
-  return is_missed ? std::optional(note + ": all rays pass beside its triangles") : std::nullopt;
+  return is_missed ? std::optional(note + ": all rays miss its triangles") : std::nullopt;
 }
 
 std::optional<std::string> unseen_note(FrameMemory& frame, const sim::ChipResult& result, sim::Mode mode) {

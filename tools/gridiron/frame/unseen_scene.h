@@ -16,20 +16,20 @@
 
 namespace gridiron::tool {
 
-/// What is known of a frame's pixels.
+/// The known planes of a frame.
 struct SeenPlanes {
-  std::span<const std::byte> color, depth, ids;  ///< output planes; depth, ids: empty where there are none
+  std::span<const std::byte> color, depth, ids;  ///< output planes; depth, ids: may be empty
   bool has_environment = false;                  ///< pixels that hit nothing differ from one another
   std::optional<bool> has_hits{};                ///< where the work of the frame was counted
 };
 
-/// @returns the note that no pixel of a frame shows the scene, with the reason where there is one for all of its
-/// points; nothing where a pixel shows it, or may.
-/// @param points  of the scene; asked only where no pixel seems to show it.
+/// @returns the note that no pixel of a frame shows the scene, with a reason if one applies to all of its points;
+/// nothing if a pixel shows it, or may.
+/// @param points  of the scene; used only if no pixel seems to show it.
 [[nodiscard]] std::optional<std::string> unseen_note(const FrameRecord& frame, const SeenPlanes& planes,
                                                      const PointSource& points);
 
-/// The same of a whole frame that the simulated chip has rendered.
+/// The same for a whole frame of the simulated chip.
 [[nodiscard]] std::optional<std::string> unseen_note(FrameMemory& frame, const sim::ChipResult& result, sim::Mode mode);
 
 /// Prints a note, if there is one, on standard error: `FILE: note: text`.

@@ -20,7 +20,7 @@ namespace gridiron::tool {
 /// Reads a plane of a frame, or one tile of it.
 ///
 /// @param plane    tile-major, output_plane_bytes() of the frame; one 32-bit word a pixel.
-/// @param tile     column and row of the tile that becomes the picture, clipped to the frame; nothing: the whole frame.
+/// @param tile     column and row of the tile to read, clipped to the frame; nothing: the whole frame.
 /// @param convert  turns the 32 bits of a pixel into its value.
 template <class Pixel, class Convert>
 [[nodiscard]] Picture<Pixel> untile(const FrameRecord& frame, std::span<const std::byte> plane,

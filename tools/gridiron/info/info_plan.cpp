@@ -23,7 +23,7 @@ TriangleFormat triangle_format_of(const InfoRequest& request) {
   return format;
 }
 
-// The layout that is told of, built or not.
+// The described layout, built or not.
 sim::LayoutChoice layout_of(const InfoRequest& request, StoreSize store, bool has_effects) {
   if (has_effects && store != StoreSize::k64KB) store = StoreSize::k256KB;
   return layout_with(request.layout, *request.scene.configuration, store, has_effects);
@@ -45,7 +45,7 @@ InfoPlan resolve(const InfoRequest& request, const KnownScene& scene) {
                 .has_depth = request.has_depth,
                 .size = request.size.value_or(scene.size.value_or(kUsualPictureSize)),
                 .json = request.json};
-  // A packed scene goes by the store that a mesh would get.
+  // A packed scene uses the store that a mesh would get.
   const bool is_text = scene.kind == SceneKind::kText;
   if (is_text) require_effects_of(request.accuracy);
   plan.store = choose_store(*request.scene.machine, request.layout.store, [&](StoreSize store) {

@@ -1,4 +1,4 @@
-// Info plan: what was asked of `info`, and which local store, format and picture it tells of.
+// Info plan: the request for `info`, and the local store, format and picture that it describes.
 // Memory: owns paths; shares the machine. Threads: any. SPDX-License-Identifier: Apache-2.0
 #pragma once
 
@@ -15,22 +15,22 @@
 
 namespace gridiron::tool {
 
-/// What is asked of `info`, as given. What is not given resolve() settles.
+/// The request for `info`, as given. resolve() completes it.
 struct InfoRequest {
   SceneRequest scene;
   LayoutRequest layout;                  ///< store and packets
   std::optional<TriangleFormat> format;  ///< of a mesh or a text scene
-  std::optional<Accuracy> accuracy;      ///< whose bounds are told; nothing: the one that the image's format is for
+  std::optional<Accuracy> accuracy;      ///< of the bounds; nothing: the one for the image's format
   bool has_depth = false;                ///< distances are wanted too
   std::optional<CountPair> size;         ///< of the picture whose memory is counted
   bool json = false;
 };
 
-/// The same, settled.
+/// The completed request.
 struct InfoPlan {
   SceneRequest scene;
-  sim::StoreSize store{};      ///< asked for, or the largest one of the machine that is built for the packets asked for
-  sim::LayoutChoice layout{};  ///< with effects, where the store has none for these, that of 256 KB
+  sim::StoreSize store{};      ///< the requested one, or the machine's largest one with such packets
+  sim::LayoutChoice layout{};  ///< with effects that the store cannot have, that of 256 KB
   StoreFacts local_store{};    ///< the layout's
   BufferDepths depths{};       ///< the configuration's, where the store has no fewer
   std::uint32_t most_macro_width = kMaxMacroWidth;
@@ -41,9 +41,9 @@ struct InfoPlan {
   bool json = false;
 };
 
-/// Settles what `info` tells of; opens no file and prints nothing. Precondition: the scene's kind is known.
-/// Errors: Failure (kUsage) where accuracy and format are of different triangles, no kernel is built for the layout, or
-/// it has no distances and these are wanted.
+/// Completes a request; opens no file and prints nothing. Precondition: the scene's kind is known.
+/// Errors: Failure (kUsage) if accuracy and format do not match, no kernel is built for the layout, or it lacks
+/// requested distances.
 [[nodiscard]] InfoPlan resolve(const InfoRequest& request, const KnownScene& scene);
 
 }  // namespace gridiron::tool

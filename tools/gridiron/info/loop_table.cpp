@@ -11,7 +11,7 @@
 namespace gridiron::tool {
 namespace {
 
-// What the table's expressions call.
+// Functions for the table's expressions.
 std::uint64_t smaller(std::uint64_t a, std::uint64_t b) {
   return std::min(a, b);
 }
@@ -40,8 +40,7 @@ LoopFacts loop_facts_of(const WorstTile& worst, std::uint32_t macro_width, std::
   facts.wave_rays = layout.wave_rays;
   facts.material_slots = layout.material_slots;
   facts.light_slots = layout.light_slots;
-  // The table, a plane of a tile, a cell block, triangles, rays that wait, lights, materials; one more for where it
-  // begins.
+  // The table, a plane of a tile, a cell block, triangles, rays that wait, lights, materials; one more for its offset.
   const std::uint64_t longest =
       std::max({facts.table_lines * kLineBytes, facts.tile_pixels * 4, std::uint64_t{worst.scene.cell_block_bytes},
                 facts.triangles_per_buffer * kTriangleRecordBytes, facts.wave_rays / 2 * sizeof(QueuedRay),

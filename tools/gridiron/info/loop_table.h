@@ -1,4 +1,4 @@
-// Loop table: core/loop_bounds.csv, each bound a number for a scene, a layout and a frame.
+// Loop table: core/loop_bounds.csv, with each bound evaluated for a scene, a layout and a frame.
 // Memory: std::vector. Threads: any. SPDX-License-Identifier: Apache-2.0
 #pragma once
 
@@ -10,19 +10,19 @@
 
 namespace gridiron::tool {
 
-/// A loop of what runs on a core that no constant bounds.
+/// A loop on a core without a constant bound.
 struct LoopRow {
   std::string_view file;      ///< below core/gridiron/
   std::string_view function;
   std::string_view loop;      ///< its header
-  std::string_view kind;      ///< constant, layout, frame, scene: what the bound depends on
+  std::string_view kind;      ///< constant, layout, frame, scene: the origin of the bound
   std::string_view bound;     ///< as the table has it
   std::uint64_t value;        ///< most turns each time it is entered; 0: of no use to the layout
 };
 
-/// What bounds are expressions of, by the names that they use.
+/// The variables of the bounds' expressions.
 struct LoopFacts {
-  // Of the layout; 0 where it has no such thing.
+  // Of the layout; 0 for parts that it does not have.
   std::uint64_t lanes = 0, tile_pixels = 0, packet_rays = 0;
   std::uint64_t squares = 0;  ///< of a packet
   std::uint64_t triangles_per_buffer = 0;

@@ -1,4 +1,4 @@
-// Scene facts: what `info` tells about a scene, as values.
+// Scene facts: the values that `info` prints about a scene.
 // Memory: plain values. Threads: any. SPDX-License-Identifier: Apache-2.0
 #pragma once
 
@@ -17,7 +17,7 @@
 
 namespace gridiron::tool {
 
-/// The most that the kernel's loops can turn for this scene: what a worst-case analysis multiplies.
+/// The most iterations of the kernel's loops for this scene; the input of a worst-case analysis.
 struct LoopBounds {
   std::uint32_t passes_per_packet = 0;      ///< three axes, two directions: of one round
   std::uint32_t macro_slices_per_pass = 0;  ///< macrocells along the longest axis
@@ -27,13 +27,13 @@ struct LoopBounds {
   std::uint64_t triangle_tests_per_pass = 0;  ///< references
 };
 
-/// A section of a scene image that is of its effects.
+/// A section of a scene image for effects.
 struct EffectSectionFact {
   std::string_view name;    ///< "materials"
   std::uint64_t bytes = 0;  ///< in main memory
 };
 
-/// What a scene with effects asks for; all empty where it has none.
+/// The effects that a scene requires; all empty without any.
 struct EffectFacts {
   bool has_effects = false;
   EffectsRecord record{};  ///< without its offsets
@@ -52,14 +52,14 @@ struct SceneFacts {
   bool is_packed = false;
   std::uint64_t image_bytes = 0;
   std::uint64_t scratch_bytes = 0;  ///< of the builder, free again afterwards; 0 for a packed scene
-  std::uint64_t picture_bytes = 0;  ///< planes that are wanted, and frame record
+  std::uint64_t picture_bytes = 0;  ///< requested planes and frame record
   bool fits = false;                ///< in the machine's main memory
   LoopBounds bounds;
   EffectFacts effects;
   std::optional<WorstTile> worst;  ///< where the image fits
 };
 
-/// Counts; an image that fits is built, to be counted too. Errors: Failure.
+/// Counts the scene; builds an image that fits, to count its contents too. Errors: Failure.
 [[nodiscard]] SceneFacts collect_scene_facts(const InfoPlan& plan, const SceneInput& input);
 
 }  // namespace gridiron::tool

@@ -7,7 +7,7 @@
 namespace gridiron::tool {
 namespace {
 
-// The first that an image is for: `standard` where there are several.
+// The first accuracy for an image's format: `standard` if there are several.
 Accuracy accuracy_of(const GridRecord& grid) {
   for (std::uint32_t number = 0; number < kAccuracyCount; ++number) {
     if (grid.triangle_format == static_cast<std::uint32_t>(accuracy_traits(number).format)) return Accuracy{number};

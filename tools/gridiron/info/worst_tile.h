@@ -1,4 +1,4 @@
-// Worst tile: the bound of a tile of a scene as `info` tells it, with what it was made of.
+// Worst tile: the bound of a scene's tiles that `info` prints, with its inputs.
 // Memory: plain values. Threads: any. SPDX-License-Identifier: Apache-2.0
 #pragma once
 
@@ -18,11 +18,11 @@ struct WorstTile {
   TileFrame frame{};  ///< of the configuration, without a plane of ids
   TileBound bound{};
   sim::TileCycles cycles;          ///< on the machine
-  bool are_instructions = false;   ///< what the machine's profile calls cycles: its prices are those of `fu540`
+  bool are_instructions = false;   ///< the unit of cycles is instructions: prices are those of fu540
 };
 
-/// The bound of a scene's frames as the configuration, the store and the machine asked for would render them, by the
-/// accuracy asked for, or the one that the image's format is for (`standard` of vertices).
+/// The bound for frames with the requested configuration, store, machine and accuracy; the default accuracy is the one
+/// for the image's format (`standard` for vertices).
 [[nodiscard]] WorstTile find_worst_tile(const InfoPlan& plan, std::span<const std::byte> image,
                                         const SceneImageView& view);
 

@@ -33,7 +33,7 @@ struct MovedJob {
   FrameRecord record{};
 };
 
-// A multiple of 4,096 further on, so that transfers are cut as the device's are.
+// Memory begins a multiple of 4,096 further on, so that transfers are split as on the device.
 constexpr std::uint64_t kMemoryAlignment = 4096;
 
 void load_job(OpenJob& open, MovedJob& moved) {
@@ -61,7 +61,7 @@ sim::ChipOptions options_of(const OpenJob& open, const OpenResult& result, const
   const sim::LayoutChoice layout = open.layout();
   sim::ChipOptions options;
   options.lanes = result.frame.lane_count != 0 ? result.frame.lane_count : kUsualLanes;
-  // Groups of other lanes are other counts, but the same picture.
+  // Other lanes give other counts of groups, but the same picture.
   if (options.lanes > sim::widest_lanes() || !sim::is_built(layout, options.mode, options.lanes)) {
     options.lanes = kUsualLanes;
   }
@@ -76,7 +76,7 @@ sim::ChipOptions options_of(const OpenJob& open, const OpenResult& result, const
   options.packet_width = layout.packet_width;
   if (result.frame.queue_depth != 0) options.limits.queue_depth = result.frame.queue_depth;
   if (open.job.spill_address != 0) {
-    // Of slices there are as many as the device has cores.
+    // There are as many slices as the device has cores.
     options.threads = std::min(threads, open.job.spill_cores);
     options.spill = {.address = {open.job.spill_address - open.job.base_address + moved.base_address},
                      .bytes_per_core = open.job.spill_bytes};

@@ -19,7 +19,7 @@ namespace {
 
 using port::FrameJob;
 
-// No transfer crosses a multiple of it, and job and spill memory begin on one.
+// Transfers cross no multiple of it, and job and spill memory begin on one.
 constexpr std::uint64_t kPageBytes = 4096;
 static_assert(kPageBytes % kPortableBoundaryBytes == 0 && kPageBytes % kSpillAlignment == 0);
 static_assert(kPageBytes % kLineBytes == 0 && kLineBytes % CheckValue::kGroupBytes == 0);
@@ -34,7 +34,7 @@ std::uint64_t result_head_bytes(std::uint32_t tile_count) {
   return sizeof(port::FrameResult) + std::uint64_t{tile_count} * sizeof(port::TileResult);
 }
 
-// The places of a job's parts, counted from its base.
+// The offsets of a job's parts from its base.
 FrameJob plan_job(const FrameMemory& frame, const RenderPlan& plan) {
   FrameJob job{};
   job.magic = port::kFrameJobMagic;
@@ -51,7 +51,7 @@ FrameJob plan_job(const FrameMemory& frame, const RenderPlan& plan) {
   job.packet_width = plan.layout.packet_width;
   job.store_bytes = sim::arena_bytes(plan.layout.store);
 
-  // The device's own stores and the planes share no page, lest a cache's line be of both.
+  // The device's own stores and the planes share no page, so that they share no cache line.
   job.result_address = round_up(job.loaded_bytes, kPageBytes);
   const std::uint64_t head_end = round_up(job.result_address + result_head_bytes(job.tile_count), kPageBytes);
   const auto plane_address = [&](const sim::MemoryRegion& plane) {
@@ -128,7 +128,7 @@ void check_head(const ByteReader& reader, const FrameJob& job) {
                  "store_bytes is not 64, 128, 256 or 512 KB");
 }
 
-// Results and spill memory lie behind what is loaded, apart from one another.
+// Results and spill memory lie after the loaded bytes, apart from one another.
 void check_places(const ByteReader& reader, const FrameJob& job, const FrameRecord& record) {
   const Part behind{job.base_address + job.loaded_bytes, job.memory_bytes - job.loaded_bytes};
   const Part result{job.result_address, job.result_bytes};
@@ -276,7 +276,7 @@ OpenJob read_job_file(const std::filesystem::path& path) {
                  "the file ends inside its first record, which has " + words_of_count(sizeof(FrameJob), "byte"));
   open.job = reader.read<FrameJob>(0);
   check_size(reader, open.job, open.file.bytes);
-  // A check value tells that something is wrong; the other checks may find where.
+  // A wrong check value only shows that something is wrong; the other checks may find the place.
   const bool is_damaged = open.job.check_value != job_check_value(open.file.bytes);
   try {
     check_parts(reader, open);

@@ -1,4 +1,4 @@
-// Prediction beside count. SPDX-License-Identifier: Apache-2.0
+// Quality of a prediction. SPDX-License-Identifier: Apache-2.0
 #include "prediction.h"
 
 #include <algorithm>
@@ -10,7 +10,7 @@
 namespace gridiron::tool {
 namespace {
 
-// Ranks from 0; values that are equal share the mean of theirs.
+// Ranks from 0; equal values share the mean of their ranks.
 std::vector<double> ranks_of(std::span<const double> values) {
   std::vector<std::size_t> order(values.size());
   std::iota(order.begin(), order.end(), std::size_t{0});

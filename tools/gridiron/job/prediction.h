@@ -1,4 +1,4 @@
-// Prediction: what a machine profile says a frame's tiles take, beside what a device counted.
+// Prediction: the cost of a frame's tiles by a machine profile, compared with the counts of a device.
 // Memory: std::vector. Threads: any, no shared state. SPDX-License-Identifier: Apache-2.0
 #pragma once
 
@@ -6,7 +6,7 @@
 
 namespace gridiron::tool {
 
-/// How predicted tiles go with counted ones.
+/// How well predicted tiles match counted ones.
 struct PredictionQuality {
   double counted = 0, predicted = 0;   ///< sums over the tiles
   double rank_correlation = 0;         ///< Spearman's, of the tiles; ties share their rank; 1 where all are tied
@@ -16,7 +16,7 @@ struct PredictionQuality {
   [[nodiscard]] double frame_error() const;
 };
 
-/// @param counted, predicted  a value for each tile, above 0, as many of one as of the other.
+/// @param counted, predicted  a value for each tile, above 0, equally many.
 [[nodiscard]] PredictionQuality quality_of(std::span<const double> counted, std::span<const double> predicted);
 
 }  // namespace gridiron::tool

@@ -22,7 +22,7 @@ using port::CoreResult;
 using port::FrameResult;
 using port::TileResult;
 
-// More than an engine has; the simulator looks through its queue with every transfer.
+// More than an engine has; the simulator searches its queue at every transfer.
 constexpr std::uint32_t kMostQueueDepth = 1024;
 
 std::uint64_t place_of_core(std::uint32_t core) {
@@ -57,7 +57,7 @@ void check_head(const ByteReader& reader, const FrameResult& frame) {
   reader.require(is_zero(frame.reserved), offsetof(FrameResult, reserved), "reserved is not 0");
 }
 
-// A device that says how its frame failed is not a damaged file.
+// A device that reports a failed frame has not written a damaged file.
 void check_statuses(const std::filesystem::path& path, const ByteReader& reader, const FrameResult& frame) {
   std::uint32_t first = 0;
   std::string message;
@@ -90,7 +90,7 @@ void check_cores(const ByteReader& reader, const OpenResult& result) {
     if (i >= frame.core_count) {
       constexpr CoreResult kNothing{};
       reader.require(std::memcmp(&core, &kNothing, sizeof core) == 0, place_of_core(i),
-                     "core " + std::to_string(i) + " is told of, but there are " + std::to_string(frame.core_count));
+                     "core " + std::to_string(i) + " has a record, but there are " + std::to_string(frame.core_count));
       continue;
     }
     reader.require(core.tiles == tiles[i], place_of_core(i) + offsetof(CoreResult, tiles),
@@ -119,7 +119,7 @@ OpenResult read_result_file(const std::filesystem::path& path, const OpenJob& op
   const ByteReader reader(path, file);
   reader.require(file.size() == job.result_bytes, std::min<std::uint64_t>(file.size(), job.result_bytes),
                  words_of_count(file.size()) + " bytes; the job's result has " + words_of_count(job.result_bytes));
-  result.frame = reader.read<FrameResult>(0);  // read_job_file has seen that it has room for it and the tiles
+  result.frame = reader.read<FrameResult>(0);  // read_job_file has checked the space for it and the tiles
   check_head(reader, result.frame);
   check_statuses(path, reader, result.frame);
   result.tiles.reserve(job.tile_count);

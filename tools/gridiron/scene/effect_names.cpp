@@ -7,7 +7,7 @@
 namespace gridiron::tool {
 namespace {
 
-// No effect goes without scene shading, which stands first therefore.
+// Every effect requires scene shading, which therefore comes first.
 constexpr auto kEffects = [] {
   std::array<EffectName, kEffectCount> effects{effect_name(kSceneShading)};
   std::size_t count = 1;

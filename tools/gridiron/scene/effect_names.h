@@ -21,12 +21,12 @@ namespace gridiron::tool {
 /// @returns "scene_shading, reflection", "none" for no effect.
 [[nodiscard]] std::string words_of_effects(std::uint32_t bits);
 
-/// @returns what Status::kMissingEffect is to people where it is known which: a phrase as words_of(Status) has.
+/// @returns a description of Status::kMissingEffect that names the effects: a phrase like those of words_of(Status).
 [[nodiscard]] std::string words_of_missing_effects(std::uint32_t bits);
 
-/// @returns the layout of a local store that renders a scene, as firmware writes it:
-/// `EffectLayout256K<kSceneShading | kReflection, 8>`, or `StoreLayout128K<8>` where no effect is called for.
-/// @param store_kilobytes  64, 128, 256 or 512; with effects it is 256 always.
+/// @returns the layout of a local store that renders a scene, as firmware writes it: `EffectLayout256K<kSceneShading |
+/// kReflection, 8>`, or `StoreLayout128K<8>` without effects.
+/// @param store_kilobytes  64, 128, 256 or 512; with effects always 256.
 [[nodiscard]] std::string renderer_type(std::uint32_t called_for, std::uint32_t store_kilobytes,
                                         std::uint32_t packet_width);
 

@@ -14,21 +14,22 @@
 namespace gridiron::tool {
 namespace {
 
-// Take a direction of view, and let a point have the place u across it and the depth z along it. An eye at (e, d) sees
-// it at the slope (u - e) / (z - d). Slopes up to s are in the picture: u - s z <= e - s d and -u - s z <= -e - s d. So
+// Take a direction of view. A point has the place u across it and the depth z along it. An eye at (e, d) sees the point
+// at the slope (u - e) / (z - d). Slopes up to s are in the picture: u - s z <= e - s d and -u - s z <= -e - s d. So
 // all points are in the picture if A = max(u - s z) and B = max(-u - s z) do not exceed these. The sum gives the
-// nearest eye: d = -(A + B) / (2 s), e = (A - B) / 2. Width and height each have such a d; the lesser one holds for
-// both. Where it leaves more room than needed, the slope s at which d = -(A(s) + B(s)) / (2 s) centres the points. Only
+// nearest eye: d = -(A + B) / (2 s), e = (A - B) / 2. Width and height each have such a d; the lesser one suits both.
+// In the other direction, the slope s at which d = -(A(s) + B(s)) / (2 s) centres the points. Only corners of the
+// convex hull of all (u, z) decide A and B. Source: own.
 // corners of the convex hull of all (u, z) decide A and B. Source: own.
 
 using DVec2 = glm::dvec2;
 
-// Greater than 0 where c lies to the left of the line from a to b.
+// Greater than 0 if c lies to the left of the line from a to b.
 double turn(const DVec2& a, const DVec2& b, const DVec2& c) {
   return (b.x - a.x) * (c.y - a.y) - (b.y - a.y) * (c.x - a.x);
 }
 
-// Points of a plane, of which those that are no corner of their convex hull are dropped from time to time.
+// Points of a plane. Points that are no corner of their convex hull are dropped from time to time.
 class Hull {
  public:
   void add(const DVec2& point) {
@@ -58,7 +59,7 @@ class Hull {
   static constexpr std::array<DVec2, kRingCorners> kDirections = {
       {{0, -1}, {1, -1}, {1, 0}, {1, 1}, {0, 1}, {-1, 1}, {-1, 0}, {-1, -1}}};
 
-  // Whether a point lies within the ring of the points that are extreme in eight directions, counterclockwise.
+  // Whether a point lies inside the ring of the points that are extreme in eight directions, counterclockwise.
   [[nodiscard]] bool is_surely_inside(const DVec2& point) const {
     bool is_inside = true;
     for (std::size_t i = 0; i < kRingCorners; ++i) {
@@ -67,7 +68,8 @@ class Hull {
     return is_inside;
   }
 
-  // The sides of the ring, a little further in, so that rounding takes no corner of the hull for an inner point.
+  // The sides of the ring, moved inwards a little, so that rounding never takes a corner of the hull for an inner
+  // point.
   void place_sides() {
     constexpr double kSlack = 1e-12;
     std::size_t sides = 0;
@@ -111,7 +113,7 @@ class Hull {
   std::array<double, kRingCorners> side_x_{}, side_y_{}, side_reaches_{};  // inside: x X + y Y > reach
 };
 
-// The corners that see a picture's opposite edges: A and B of the comment at the top, and the depths of these corners.
+// The corners at opposite edges of a picture: A and B of the comment at the top, and the depths of these corners.
 struct Support {
   double positive = 0, negative = 0;
   double positive_depth = 0, negative_depth = 0;
@@ -128,15 +130,15 @@ Support support_of(const std::vector<DVec2>& corners, double slope) {
   return support;
 }
 
-// The greatest depth of an eye that has all corners within the slope, wherever it stands or at a given place.
+// The greatest depth of an eye that has all corners within the slope, at any place or at a given one.
 double depth_of_eye(const std::vector<DVec2>& corners, double slope, const std::optional<double>& place) {
   const Support support = support_of(corners, slope);
   if (!place) return -(support.positive + support.negative) / (2 * slope);
   return std::min(*place - support.positive, -*place - support.negative) / slope;
 }
 
-// The place of an eye at a depth that sees the corners at opposite slopes: Newton's iteration for the slope at which
-// A + B + 2 s d = 0, which is convex, falls, and consists of straight parts, so that few steps reach its root.
+// The place of an eye at a depth that sees the corners at opposite slopes. Newton's iteration finds the slope at which
+// A + B + 2 s d = 0; the function is convex, decreasing and piecewise linear, so few steps reach its root.
 double centre_of(const std::vector<DVec2>& corners, double slope, double depth) {
   constexpr int kMostSteps = 32;
   Support support = support_of(corners, slope);
@@ -157,7 +159,7 @@ struct Axes {
 };
 
 Axes axes_of(const ViewAngles& from, const DVec3& up) {
-  // The least rotation that takes y to up; where up is -y, half a turn about x.
+  // The smallest rotation that takes y to up; half a turn about x if up is -y.
   const DVec3 to = glm::normalize(up);
   DVec3 x(1, 0, 0), y(0, -1, 0), z(0, 0, -1);
   if (to.y > -1 + 1e-9) {
@@ -177,8 +179,8 @@ double largest_of(const DVec3& v) {
   return std::max({std::abs(v.x), std::abs(v.y), std::abs(v.z)});
 }
 
-// What a camera holds of a place. GCC 12's vectorizer drops conversions of neighbours to float and back; volatile does
-// not let it.
+// A place rounded to the floats of a camera. GCC 12's vectorizer drops conversions of neighbours to float and back;
+// volatile prevents that.
 DVec3 rounded(const DVec3& place) {
   DVec3 result;
   for (int axis = 0; axis < 3; ++axis) {
@@ -188,7 +190,7 @@ DVec3 rounded(const DVec3& place) {
   return result;
 }
 
-// The slopes at which a camera sees the points; nothing where one of them lies beside or behind the eye.
+// The slopes at which a camera sees the points; nothing if one of them lies beside or behind the eye.
 struct Outline {
   DVec2 least{std::numeric_limits<double>::infinity()}, most{-std::numeric_limits<double>::infinity()};
 };
@@ -222,8 +224,8 @@ Axes turned(const Axes& axes, const DVec2& slope, const DVec3& up) {
   return looking_along(glm::normalize(axes.back - slope.x * axes.right - slope.y * axes.up), up);
 }
 
-// Moves an eye to a place that floats can hold, from which the scene is whole. Turns the axes to `at`, or to the
-// scene's middle as seen from there. The first step back is a twentieth of `depth`. `up` is the camera's.
+// Moves an eye to a place that floats can hold and from which the whole scene is visible. Turns the axes to `at`, or to
+// the scene's middle as seen from there. The first step back is a twentieth of `depth`. `up` is the camera's.
 DVec3 settle(const PointSource& points, const std::optional<Vec3>& at, const DVec2& slopes, double depth, DVec3 eye,
              const DVec3& up, Axes& axes) {
   constexpr int kMostTurns = 4;
@@ -240,8 +242,8 @@ DVec3 settle(const PointSource& points, const std::optional<Vec3>& at, const DVe
       axes = turned(axes, middle, up);
       outline = outline_of(points, held, axes);
     }
-    // Half of the margin may be lost. A point to look at may be seen from another side by less than four degrees, and
-    // the picture be turned as little.
+    // Half of the margin may be lost. The direction to a given `at` may change by less than four degrees, and so may
+    // the picture's rotation.
     const bool is_whole = outline && std::max(outline->most.x, -outline->least.x) <= 0.95 * slopes.x &&
                           std::max(outline->most.y, -outline->least.y) <= 0.95 * slopes.y;
     const bool is_straight =
@@ -256,7 +258,7 @@ DVec3 settle(const PointSource& points, const std::optional<Vec3>& at, const DVe
 Camera frame_points(const FramingRequest& request, const PointSource& points) {
   Axes axes = axes_of(request.from, DVec3(request.up));
 
-  // Places and depths count from one of the points, so that they are exact far from the origin too.
+  // Places and depths are relative to one of the points, so that they are exact far from the origin too.
   std::optional<DVec3> origin;
   Hull across, along;
   points([&](std::span<const Vec3> some) {
@@ -279,7 +281,7 @@ Camera frame_points(const FramingRequest& request, const PointSource& points) {
   const DVec2 slopes(request.tan_half_fov * request.aspect, request.tan_half_fov);
   const DVec2 inner = (1 - 2 * kFramingMargin) * slopes;
   std::optional<double> column, row;
-  // The nearest point stays a little away from the eye, even where it alone is seen of the scene.
+  // The nearest point stays a little away from the eye, even if it is the only visible part of the scene.
   double depth = nearest.y - 1e-3 * extent;
   double middle_depth = 0.5 * (nearest.y + farthest.y);
   if (request.at) {
@@ -306,7 +308,7 @@ Camera frame_points(const FramingRequest& request, const PointSource& points) {
     const double reach = std::max(middle_depth - depth, request.at ? largest_of(eye) * 0x1p-24 / least_slope : 0.0);
     eye = settle(points, request.at, slopes, reach, eye, DVec3(camera.up), axes);
   }
-  // Far from the origin `at` lies farther away, so that its own rounding does not turn the camera.
+  // Far from the origin `at` is placed farther away, so that its own rounding does not turn the camera.
   const double least_reach = largest_of(eye) * 0x1p-23 / (kMostTurn * least_slope);
   const double reach = std::max(middle_depth - depth, least_reach);
   camera.eye = Vec3(eye);

@@ -11,7 +11,7 @@
 
 namespace gridiron::tool {
 
-/// Where the eye stands around a scene, in degrees. Azimuth 0 is the front and grows to the right; elevation -90..90
+/// Direction from a scene to the eye, in degrees. Azimuth 0 is the front and grows to the right; elevation -90..90
 /// grows upwards. With up y the front is +z and the right is +x; with up z the front is -y.
 struct ViewAngles {
   double azimuth = 0, elevation = 0;
@@ -31,11 +31,10 @@ struct FramingRequest {
   std::optional<Vec3> at;   ///< point that the middle of the picture shows; nothing: the scene is centred
 };
 
-/// @returns the camera nearest to the scene that looks from the side asked for and leaves a margin of kFramingMargin.
-/// Its `at` lies in front of the eye, at the depth of the middle of the scene. Where the floats of a camera are too
-/// coarse for that (a small scene or `at` far from the origin), it turns a little, and stands farther away, until the
-/// scene is whole and centred again. Precondition: finite points.
-/// Cost: one pass over the points; up to 40 where the floats are too coarse.
+/// @returns the camera nearest to the scene that looks from the requested side and leaves a margin of kFramingMargin.
+/// Its `at` lies in front of the eye, at the depth of the middle of the scene. If the floats of a camera are too coarse
+/// (a small scene or `at` far from the origin), it turns a little, and moves back, until the scene is whole and centred
+/// again. Precondition: finite points. Cost: one pass over the points; up to 40 if the floats are too coarse.
 [[nodiscard]] Camera frame_points(const FramingRequest& request, const PointSource& points);
 
 /// @returns the middle of the points' bounds.

@@ -21,7 +21,7 @@ struct Polygon {
   void add(const DVec3& corner) { corners[count++] = corner; }
 };
 
-// What lies on the side of a plane through the eye where dot(normal, p) >= 0.
+// The part on the side of a plane through the eye where dot(normal, p) >= 0.
 Polygon clip(const Polygon& polygon, const DVec3& normal) {
   Polygon inside;
   for (std::size_t i = 0; i < polygon.count; ++i) {
@@ -60,7 +60,7 @@ std::optional<HitherCut> find_hither_cut(const Camera& camera, double aspect, do
     for (const DVec3& side : sides) polygon = clip(polygon, side);
     if (polygon.count == 0) continue;
     const auto [nearest, farthest] = std::minmax_element(first, first + polygon.count, is_nearer);
-    // Convex: where its depths span some of (0, hither), it has points there.
+    // Convex: it has points in (0, hither) if its depths overlap that interval.
     if (nearest->z < limit && farthest->z > 0) cut = HitherCut{i, std::max(nearest->z, 0.0)};
   }
   return cut;

@@ -13,21 +13,21 @@
 
 namespace gridiron::tool {
 
-/// Of the triangles that the hither plane would cut or hide the nearest, and how near it comes.
+/// The nearest triangle that the hither plane would cut or hide, and its least depth.
 struct HitherCut {
   std::size_t triangle = 0;
-  double depth = 0;  ///< least, along the view, of what the picture shows of it
+  double depth = 0;  ///< least depth of its visible part, along the view
 };
 
-/// @param aspect  width over height of the picture.
-/// @param hither  distance along at - eye before which nothing would be seen.
-/// @returns the triangle that comes nearest of those with a part inside the view pyramid, edges included, at a depth in
-///          (0, hither); of equally near ones the first.
+/// @param aspect  width over height of the picture. @param hither  distance along at - eye before which nothing is
+///                visible.
+/// @returns the nearest triangle with a part inside the view pyramid, edges included, at a depth in (0, hither); the
+/// first of equally near ones.
 [[nodiscard]] std::optional<HitherCut> find_hither_cut(const Camera& camera, double aspect, double hither,
                                                        const MeshView& mesh);
 
-/// Errors: Failure (kBadInput), `file:line: reason`, where the hither plane of a text scene would cut what the camera
-/// sees. Other scenes have none.
+/// Errors: Failure (kBadInput), `file:line: reason`, if the hither plane of a text scene would cut something visible.
+/// Other scenes have none.
 void check_hither(const SceneInput& input, const Camera& camera, std::uint32_t width, std::uint32_t height);
 
 }  // namespace gridiron::tool

@@ -1,4 +1,4 @@
-// Image damage: where a scene image that does not open is wrong, for messages.
+// Image damage: the place at which a scene image is wrong, for messages.
 // Memory: borrows the image. Threads: any. SPDX-License-Identifier: Apache-2.0
 #pragma once
 
@@ -16,8 +16,8 @@ struct ImageDamage {
   std::string reason;
 };
 
-/// Finds the place of what is wrong. A check value that differs says only that something is: the other checks run then
-/// too, with the value that the bytes have, and the first that fails names the place.
+/// Finds the place of an error. A wrong check value only shows that there is one, so the other checks are run with the
+/// actual value, and the first that fails names the place.
 ///
 /// @param image  kLineBytes-aligned; its check value may be overwritten. @param error  open_scene_image's.
 [[nodiscard]] ImageDamage find_image_damage(std::span<std::byte> image, const SceneImageError& error);

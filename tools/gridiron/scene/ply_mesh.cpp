@@ -25,7 +25,7 @@ namespace {
 }  // namespace
 
 Mesh read_ply_mesh(std::span<const std::byte> bytes, const std::filesystem::path& path) {
-  // Counting first: a header may promise more than the file holds, and memory is asked for by what it holds.
+  // Counts first: a header may promise more than the file holds, and memory is allocated for the actual content.
   const PlyResult counted = count_ply(bytes);
   if (counted.error != PlyError::kNone) fail(path, counted);
   stop_if_interrupted();

@@ -50,7 +50,7 @@ ScenePicture picture_of(const PictureRequest& asked, const SceneView& own, const
   return {camera.eye, camera.tan_half_fov, request.size->y};
 }
 
-// The triangles go to `mesh`, the rest to @returns.
+// Puts the triangles into `mesh`, and returns the rest.
 TextScene read_text_scene(const InputFile& file, const std::filesystem::path& path, std::optional<float> tolerance,
                           const std::optional<PictureRequest>& picture, Mesh& mesh) {
   SceneOptions options;
@@ -81,10 +81,10 @@ std::uint64_t two_digits(std::uint64_t count) {
   return (count + unit / 2) / unit * unit;
 }
 
-// Which tolerance would make a scene small enough: "; --tolerance 0.003 would fit", or nothing.
+// "; --tolerance 0.003 would fit": a tolerance that makes a scene small enough; empty if there is none.
 std::string words_of_fitting_tolerance(const GridChoice& choice, const SceneInput& input) {
   if (!input.text || choice.need.image_bytes == 0) return "";
-  // Larger triangles lie in more cells each, so that an image shrinks by less than its triangles.
+  // Larger triangles lie in more cells each, so an image shrinks less than its number of triangles.
   constexpr double kMargin = 0.8;
   const auto triangles = static_cast<double>(std::get<Mesh>(input.content).triangles.size());
   const double share = static_cast<double>(choice.budget_bytes) / static_cast<double>(choice.need.image_bytes);
@@ -217,7 +217,7 @@ std::uint64_t image_budget_bytes(const sim::MachineProfile& machine, std::uint32
   }
   const std::uint64_t memory = machine.main_memory_bytes - sim::SimMemory::kFirstAddress - spill_bytes;
   if (wanted > memory) {
-    // In single bytes: of a memory that the picture would fill the simulator keeps the first few.
+    // In bytes: the simulator keeps the first few, and the picture may be too large by just these.
     throw Failure(ExitCode::kBadInput, "a whole frame of " + std::to_string(width) + "x" + std::to_string(height) +
                                            " needs " + words_of_count(wanted) + " bytes of main memory; " +
                                            std::string(machine.name) + " has " + words_of_count(memory) + " for it");
@@ -240,7 +240,7 @@ GridChoice choose_grid(const SceneInput& input, const Mesh& mesh, const SceneReq
   constexpr std::size_t kMarks = std::size_t{1} << 21;  // words: one sweep over the triangles for most scenes
   const std::unique_ptr<std::uint64_t[]> storage(new (std::nothrow) std::uint64_t[kMarks]);
   const std::span<std::uint64_t> marks(storage.get(), storage != nullptr ? kMarks : 0);
-  // The size of an image that does not fit is counted too, but not for minutes.
+  // The size of an image that does not fit is counted too, within a limit of time.
   constexpr std::uint64_t kCountedBytes = std::uint64_t{8} << 30;
   const std::uint64_t most_bytes = std::max(limits.budget_bytes, kCountedBytes);
   const Status status = [&] {

@@ -1,5 +1,5 @@
-// Scene input: a PLY mesh, a text scene or a packed scene, told apart by what the file holds, read and checked, and the
-// grid that fits a machine.
+// Scene input: a PLY mesh, a text scene or a packed scene, distinguished by content, read and checked, and the grid
+// that fits a machine.
 // Memory: owns mesh or file. Threads: one. SPDX-License-Identifier: Apache-2.0
 #pragma once
 
@@ -40,7 +40,7 @@ struct PackedScene {
   SceneImageView view;
 };
 
-/// What a text scene holds beside its triangles.
+/// The parts of a text scene besides its triangles.
 struct TextScene {
   SceneView view;
   SceneEffects effects;
@@ -61,40 +61,41 @@ inline constexpr const char* kSceneExpected =
     "expected a scene: a PLY mesh, a text scene (NFF) or a packed scene (made by 'gridiron pack')";
 inline constexpr const char* kMeshExpected = "expected a PLY mesh";
 
-/// What a command asks of a picture. The rest is a text scene's own, where that brings a view.
+/// A command's settings of a picture; the others come from a text scene with a view.
 struct PictureRequest {
   ViewRequest view{};                   ///< parts that replace those of any other view
-  std::optional<ViewRequest> camera{};  ///< in place of the scene's own view
+  std::optional<ViewRequest> camera{};  ///< replaces the scene's own view
   std::optional<CountPair> size{};      ///< in place of the scene's own
 };
 
-/// @returns the picture of a scene that brings the view `own`, or none: `camera` and `size` are given.
+/// @returns the picture for a scene with the view `own`, or without one; `camera` and `size` are always set.
 [[nodiscard]] PictureRequest complete_request(PictureRequest request, const SceneView& own);
 
-/// @returns the kind of a scene before it is read: that of the file's first bytes; of one that cannot be opened what
-/// its ending promises, so that the command line is checked all the same; kUnknown of a stream, which is read once.
+/// @returns the kind of a scene before it is read: by the file's first bytes; by its ending if it cannot be opened, so
+/// that the command line is still checked; kUnknown for a stream, which can be read only once.
 [[nodiscard]] SceneKind foreseen_kind(const std::filesystem::path& path);
 
-/// @returns what that says of the scene of a command. Errors: Failure (kUsage) where it has no use for the tolerance.
+/// @returns what is known of a command's scene before it is read. Errors: Failure (kUsage) if it cannot use the
+/// tolerance.
 [[nodiscard]] KnownScene foreseen_scene(const SceneRequest& request);
 
-/// @returns what a scene is known to be once it is read.
+/// @returns what is known of a scene once it is read.
 [[nodiscard]] KnownScene known_scene(const SceneInput& input);
 
-/// @returns the depth of recursion of a scene's rays, 1 where it has no effects.
+/// @returns the depth of recursion of a scene's rays, 1 without effects.
 [[nodiscard]] std::uint32_t recursion_depth(const SceneInput& input);
 
-/// Reads the scene. @param tolerance  of round shapes in a text scene; nothing: the reader's own, which goes by
-/// `picture`, completed by complete_request(), where that is given. @param expected  of the file, for messages.
-/// Errors: Failure (kBadInput), `file:line: reason`, `file:byte N: reason`, or `file: ` what it is and what is
-/// expected; kUsage where a tolerance is given of another kind of scene, or `picture` has no camera.
+/// Reads the scene. @param tolerance  of round shapes in a text scene; nothing: the reader's own, which uses `picture`,
+/// completed by complete_request(), if given. @param expected  of the file, for messages.
+/// Errors: Failure (kBadInput), `file:line: reason`, `file:byte N: reason`, or `file: ` with its kind and the expected
+/// one; kUsage if a tolerance is given for another kind of scene, or `picture` has no camera.
 [[nodiscard]] SceneInput read_scene_input(const std::filesystem::path& path,
                                           std::optional<float> tolerance = std::nullopt,
                                           const std::optional<PictureRequest>& picture = std::nullopt,
                                           const char* expected = kSceneExpected);
 
-/// Says on standard error what is odd in a text scene: `file:line: note: text`, one line each; and which tolerance was
-/// chosen by the picture.
+/// Prints notes of a text scene on standard error: `file:line: note: text`, one line each; and the tolerance that the
+/// picture has chosen.
 void tell_notes(const SceneInput& input);
 
 /// @returns the mesh of a PLY file. Errors as read_scene_input. @param path  what messages call the bytes.
@@ -104,14 +105,14 @@ void tell_notes(const SceneInput& input);
 /// @returns every file that the scene was read from: itself, and those that a text names.
 [[nodiscard]] std::vector<std::filesystem::path> files_of(const SceneInput& input);
 
-/// What a scene image has to keep to.
+/// Limits of a scene image.
 struct ImageLimits {
   TriangleFormat format = TriangleFormat::kVertices;
   std::uint64_t budget_bytes = 0;                   ///< of main memory
-  std::uint32_t most_macro_width = kMaxMacroWidth;  ///< that the local store holds: a configuration's is cut to it
+  std::uint32_t most_macro_width = kMaxMacroWidth;  ///< of the local store; a configuration's width is limited to it
 };
 
-/// The grid that a mesh will get, or that a packed scene has.
+/// The grid that a mesh will get, or the grid of a packed scene.
 struct GridChoice {
   GridParameters parameters;
   GridNeed need;
@@ -122,35 +123,34 @@ struct GridChoice {
   [[nodiscard]] bool is_reduced() const { return parameters.lambda != wanted_lambda; }
 };
 
-/// Bytes of main memory that waiting rays of all cores may take, what alignment may waste included.
+/// Bytes of main memory for the waiting rays of all cores, including losses by alignment.
 [[nodiscard]] std::uint64_t spill_bytes_of(std::uint32_t core_count, std::uint32_t recursion_depth);
 
-/// Bytes of main memory that a scene image may take.
+/// Bytes of main memory for a scene image.
 ///
-/// @param spill_bytes  of all cores, kept for waiting rays.
-/// @param planes  output planes of the frame, 1..3. Room for a picture of 1024x1024 with three planes is always kept,
-///        or half of the main memory where that is less, so that pack and render choose the same grid for every
-///        picture that this holds.
-/// Errors: Failure (kBadInput) where the picture alone does not fit.
+/// @param spill_bytes  of all cores, reserved for waiting rays.
+/// @param planes  output planes of the frame, 1..3. The space of a picture of 1024x1024 with three planes is always
+///                reserved, or half of the main memory if that is less, so that pack and render choose the same grid
+///                for every picture that fits there.
+/// Errors: Failure (kBadInput) if the picture alone does not fit.
 [[nodiscard]] std::uint64_t image_budget_bytes(const sim::MachineProfile& machine, std::uint32_t width,
                                                std::uint32_t height, std::uint32_t planes,
                                                std::uint32_t tile_width = 32, std::uint64_t spill_bytes = 0);
 
-/// Errors: Failure (kBadInput) where a packed scene stores its triangles in another format.
+/// Errors: Failure (kBadInput) if a packed scene has another triangle format.
 void require_format(const SceneInput& input, const PackedScene& packed, TriangleFormat format);
 
 /// Chooses the grid of a mesh: the wanted lambda, halved until the image fits the budget unless the command line fixed
-/// it. Where nothing fits the choice says so and holds the least need found.
-/// @param effects  that the image will hold; null: none.
-/// Errors: Failure (kBadInput) where there is nothing to trace.
+/// it. If nothing fits, the choice says so and has the least need found.
+/// @param effects  for the image; null: none. Errors: Failure (kBadInput) if there is nothing to trace.
 [[nodiscard]] GridChoice choose_grid(const SceneInput& input, const Mesh& mesh, const SceneRequest& request,
                                      const ImageLimits& limits, const EffectsView* effects = nullptr);
 
-/// @returns "0.00018", or "0.00018 to 0.0021" where objects have tolerances of their own.
+/// @returns "0.00018", or "0.00018 to 0.0021" if objects have tolerances of their own.
 [[nodiscard]] std::string words_of_tolerance(const SceneRoundness& roundness);
 
-/// Says in one line of standard error that the grid was reduced; nothing where it was not, or is not to be told.
-/// Errors: Failure (kBadInput) where the choice does not fit; of a text scene with a tolerance that would.
+/// Prints a line on standard error if the grid was reduced, unless quiet. Errors: Failure (kBadInput) if the choice
+/// does not fit; for a text scene with a tolerance that would.
 void require_fit(const GridChoice& choice, const SceneRequest& request, const SceneInput& input);
 
 /// Builds the image of a mesh. @param image  kLineBytes-aligned, choice.need.image_bytes. @param effects  the choice's.
@@ -158,8 +158,8 @@ void require_fit(const GridChoice& choice, const SceneRequest& request, const Sc
 [[nodiscard]] SceneImageView build_image(const SceneInput& input, const Mesh& mesh, const GridChoice& choice,
                                          std::span<std::byte> image, const EffectsView* effects = nullptr);
 
-/// Throws Failure (kBadInput) where a packed scene cannot be used as asked: stored in another format, made with other
-/// grid parameters than the command line fixes, or larger than the budget.
+/// Throws Failure (kBadInput) if a packed scene cannot be used as requested: another format, other grid parameters than
+/// the command line fixes, or larger than the budget.
 void check_packed(const SceneInput& input, const PackedScene& packed, const SceneRequest& request,
                   const ImageLimits& limits);
 

@@ -14,7 +14,7 @@ namespace {
 
 using Corners = std::array<Vec3, 3>;
 
-// Hands points on in groups, so that few calls are needed.
+// Passes points on in groups, so that few calls are needed.
 class Groups {
  public:
   explicit Groups(const PointVisitor& visitor) : visitor_(visitor) { points_.reserve(kMostPoints); }
@@ -53,8 +53,8 @@ Corners corners_of(const LatticeTriangle& triangle, const Lattice& lattice) {
   return corners;
 }
 
-// The corners are where (beta, gamma) is (0, 0), (1, 0) and (0, 1). Slivers whose equations lost that to rounding end
-// at the scene's bounds.
+// The corners are where (beta, gamma) is (0, 0), (1, 0) and (0, 1). For slivers whose equations are dominated by
+// rounding, the corners are clamped to the scene's bounds.
 Corners corners_of(const ProjectionTriangle& triangle, const GridRecord& grid) {
   const double determinant = double{triangle.b_u} * triangle.c_v - double{triangle.b_v} * triangle.c_u;
   const int axes[3] = {static_cast<int>(triangle.axis_k + 1) % 3, static_cast<int>(triangle.axis_k + 2) % 3,
@@ -101,7 +101,7 @@ void visit_points(const MeshView& mesh, const PointVisitor& visitor) {
 void visit_points(const SceneImageView& view, std::span<const std::byte> image, const PointVisitor& visitor) {
   const GridRecord& grid = view.grid;
   const auto format = static_cast<TriangleFormat>(grid.triangle_format);
-  // Most triangles stand in several cells. An image may name more of them than it has.
+  // Most triangles are in several cells. An image may name more of them than it has.
   std::vector<bool> is_known(
       std::min(std::uint64_t{view.header.triangle_count}, std::uint64_t{8} * grid.reference_count));
   Groups groups(visitor);
@@ -126,7 +126,7 @@ void visit_points(const SceneImageView& view, std::span<const std::byte> image, 
     }
     for (const Vec3& corner : corners) groups.add(corner);
   };
-  // Records stand cell by cell. First some of everywhere: then most of the others lie between those that are known.
+  // Records are ordered by cell. Samples from everywhere come first, since most of the others lie between those.
   constexpr std::uint64_t kRun = 32, kRuns = 64;
   for (std::uint64_t first = 0; first < kRuns; ++first) {
     for (std::uint64_t run = first * kRun; run < grid.reference_count; run += kRun * kRuns) {

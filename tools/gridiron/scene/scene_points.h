@@ -12,13 +12,13 @@
 
 namespace gridiron::tool {
 
-/// Visits the corners of all triangles that have an area. Precondition: indices below the number of vertices.
+/// Visits the corners of all triangles with an area. Precondition: indices below the number of vertices.
 void visit_points(const MeshView& mesh, const PointVisitor& visitor);
 
-/// Visits the corners of all triangles of an image as it stores them: vertices as they were read, or their places on
-/// the lattice. A stored projection gives its corners up to the rounding of its numbers, within the scene's bounds.
+/// Visits the corners of all triangles of an image as it stores them: unchanged vertices, or their places on the
+/// lattice. A stored projection gives its corners up to the rounding of its numbers, within the scene's bounds.
 ///
-/// @param image  the bytes of which `view` was opened.
+/// @param image  the bytes from which `view` was opened.
 void visit_points(const SceneImageView& view, std::span<const std::byte> image, const PointVisitor& visitor);
 
 }  // namespace gridiron::tool

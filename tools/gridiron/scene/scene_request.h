@@ -1,4 +1,4 @@
-// Scene request: which scene a command reads, the grid and machine that were asked for it, and what is known of it.
+// Scene request: the scene that a command reads, the requested grid and machine, and what is known of the scene.
 // Memory: owns its path; shares the machine. Threads: any. SPDX-License-Identifier: Apache-2.0
 #pragma once
 
@@ -13,26 +13,26 @@
 
 namespace gridiron::tool {
 
-/// Which grid a mesh gets, and which machine's memory it has to fit. A packed scene brings its own grid.
+/// The grid of a mesh, and the machine whose memory must hold it. A packed scene has its own grid.
 struct SceneRequest {
   std::filesystem::path input;
   Machine machine;  ///< never null
   const Configuration* configuration = nullptr;
   std::optional<float> lambda;
   std::optional<std::uint32_t> macro_width;
-  std::optional<float> tolerance;  ///< of round shapes in a text scene, world units; nothing: the reader's own
+  std::optional<float> tolerance;  ///< of round shapes in a text scene, world units; nothing: the reader's default
   bool quiet = false;              ///< notes are not told
 };
 
-/// What is known of a scene when what is asked of it is settled.
+/// What is known of a scene when a request is completed.
 struct KnownScene {
   SceneKind kind = SceneKind::kUnknown;
   bool has_effects = false;         ///< it brings lights and materials
-  bool is_read = false;             ///< else foreseen: of a packed scene the kind alone is known
-  std::optional<CountPair> size{};  ///< of the picture, a text scene's own
+  bool is_read = false;             ///< else foreseen: for a packed scene only the kind is known
+  std::optional<CountPair> size{};  ///< the picture's size in a text scene
 };
 
-/// Of a picture that neither the command line nor a text scene gives a size.
+/// Size of a picture if neither the command line nor a text scene has one.
 inline constexpr CountPair kUsualPictureSize = {1024, 1024};
 
 }  // namespace gridiron::tool

@@ -16,7 +16,7 @@ std::uint64_t block_count(const EffectsRecord& record) {
   return record.environment_width == 0 ? 0 : 6 * blocks * blocks;
 }
 
-// Appends a section, where it is not empty. @returns its offset, or 0.
+// Appends a section unless it is empty. @returns its offset, or 0.
 std::uint64_t append(EffectSections& sections, SectionKind kind, std::uint64_t element_bytes,
                      std::uint64_t element_count) {
   if (element_count == 0) return 0;

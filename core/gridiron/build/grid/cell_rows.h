@@ -1,5 +1,5 @@
-// Which cells a triangle touches, as rows of cells along x. Conservative: every cell whose closed box the triangle
-// touches is reported, and no cell whose box, grown by 2^-34 of a cell, it does not touch.
+// Which cells a triangle touches, as rows of cells along x. Conservative: reports every cell whose closed box the
+// triangle touches, and no cell whose box, grown by 2^-34 of a cell, it does not touch.
 // Memory: stack. Threads: any. SPDX-License-Identifier: Apache-2.0
 #pragma once
 
@@ -12,14 +12,13 @@
 namespace gridiron {
 
 /// Why kCellPad is enough, with u = 2^-53 and coordinates of at most 2048 cells:
-/// - A computed cell coordinate (p - minimum) * cells_per_unit has two roundings and no underflow: it is off by at most
+/// - A computed cell coordinate (p - minimum) * cells_per_unit has two roundings and no underflow: its error is at most
 ///   2048 * 2.01 u < 2^-40. Call the triangle of the computed corners T'. Every point of the true triangle has a
 ///   partner in T' within 2^-40 per axis (the same barycentric weights).
 /// - A cut point of T' and a plane is r + (plane - s) * slope with plane between the ends of the edge: four roundings
-/// of
-///   terms of at most 2048, off by < 2^-39. Which edge is cut is decided by exact comparisons. Two cuts follow each
+///   of terms of at most 2048, an error below 2^-39. Exact comparisons decide which edge is cut. Two cuts follow each
 ///   other (z, then y): at most 2^-38.
-/// - Every slab is grown, and every range widened, by kCellPad = 2^-36, more than the sum of it all.
+/// - Every slab is grown, and every range widened, by kCellPad = 2^-36, more than the sum of all these errors.
 inline constexpr double kCellPad = 0x1p-36;
 
 /// World space to cell space, and the last cell of each axis.
@@ -115,12 +114,12 @@ struct Polygon {
     }
   }
 
-  /// Range of x over the part with low <= y <= high; an empty one where there is none.
+  /// Range of x over the part with low <= y <= high; empty if there is no such part.
   [[nodiscard]] Range range_in_slab(double low, double high) const {
     Range range{kNothing, -kNothing};
     for (int i = 0; i < count; ++i) {
       const int j = i + 1 < count ? i + 1 : 0;
-      // The edge's part within the slab, by its ends clamped to it; none where both ends lie beyond the same plane.
+      // The edge's part within the slab: its ends, clamped. There is none if both ends lie beyond the same plane.
       const double start = y[i] < low ? low : y[i] > high ? high : y[i];
       const double end = y[j] < low ? low : y[j] > high ? high : y[j];
       const bool outside = (y[i] < low && y[j] < low) || (y[i] > high && y[j] > high);
@@ -132,7 +131,8 @@ struct Polygon {
   }
 };
 
-/// Which cells of a 2 x 2 square around the corner (corner_s, corner_r) a triangle touches whose range spans both axes.
+/// Which cells of a 2 x 2 square around the corner (corner_s, corner_r) a triangle touches. The triangle's range must
+/// span both axes.
 ///
 /// A quadrant is missed only if an edge's normal n separates it: n points into it, and the corner lies farther along n
 /// than all of the triangle. Rounding: the edge is off by u of itself, the sums by less than 2^-49 |n|, and the partner

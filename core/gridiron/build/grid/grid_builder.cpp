@@ -55,10 +55,10 @@ void write_directory(const Mesh& mesh, const GridNeed& need, const ImageLayout& 
   store(image, layout.grid_offset, grid);
 }
 
-// The lists of references before they become triangle records. They lie in the triangle section itself, which has room
-// for w words per reference, 12 or 6: keys in words [0, 2 n), ids in [2 n, 3 n), ids by cell in [(w - 1) n, w n).
-// Writing record i over words [w i, w i + w) never reaches the ids by cell that are still to be read, word
-// (w - 1) n + i + 1 and later.
+// The lists of references before they become triangle records. They lie in the triangle section itself, which has w
+// words per reference, 12 or 6: keys in words [0, 2 n), ids in [2 n, 3 n), ids by cell in [(w - 1) n, w n). Writing
+// record i over words [w i, w i + w) never reaches the ids by cell that are still to be read, word (w - 1) n + i + 1
+// and later.
 struct ReferenceLists {
   std::uint64_t* keys;
   std::uint32_t* ids;
@@ -71,7 +71,7 @@ struct ReferenceLists {
 };
 
 // Lists (cell, triangle) for every reference, by ascending triangle, and marks the macrocells.
-// Errors: kBadParameter where there are more or fewer than counted.
+// Errors: kBadParameter if the number differs from the count.
 template <class Mesh>
 Status list_references(const Mesh& mesh, const GridRecord& grid, const ReferenceLists& lists,
                        MacroTableEntry* macro_table) {
@@ -117,7 +117,7 @@ Status list_references(const Mesh& mesh, const GridRecord& grid, const Reference
   return count == limit ? Status::kOk : Status::kBadParameter;
 }
 
-// Gives every non-empty macrocell its block. @returns how many blocks there are, the empty one included.
+// Gives every non-empty macrocell its block. @returns the number of blocks, including the empty one.
 std::uint64_t number_blocks(MacroTableEntry* macro_table, std::uint64_t entry_count) {
   std::uint64_t block = 1;
   for (std::uint64_t i = 0; i < entry_count; ++i) {
@@ -127,7 +127,7 @@ std::uint64_t number_blocks(MacroTableEntry* macro_table, std::uint64_t entry_co
   return block;
 }
 
-// Turns the keys into indices of cells: that many, of cell_bytes each, from the start of block 0.
+// Turns the keys into indices of cells of cell_bytes each, counted from the start of block 0.
 void find_cells(const GridRecord& grid, const ReferenceLists& lists, const MacroTableEntry* macro_table,
                 std::uint64_t cell_bytes) {
   const std::uint64_t cells_per_block = grid.cell_block_bytes / cell_bytes;  // with those that fill it up
@@ -154,7 +154,7 @@ void sort_references(const GridRecord& grid, const ReferenceLists& lists, const 
   find_cells(grid, lists, macro_table, sizeof(CellRecord));
   for (std::uint64_t i = 0; i < count; ++i) ++cells[lists.keys[i]].triangle_count;
 
-  // Counts become first triangles.
+  // Turns counts into first triangles.
   std::uint32_t running = 0;
   for (std::uint64_t block = 1; block < grid.cell_block_count; ++block) {
     for (std::uint64_t cell = 0; cell < cells_per_block; ++cell) {
@@ -165,15 +165,15 @@ void sort_references(const GridRecord& grid, const ReferenceLists& lists, const 
     }
   }
 
-  // Each reference goes to the next free place of its cell, whose count grows back.
+  // Puts each reference into the next free place of its cell; the cell's count grows back.
   for (std::uint64_t i = 0; i < count; ++i) {
     CellRecord& record = cells[lists.keys[i]];
     lists.ids_by_cell[record.first_triangle + record.triangle_count++] = lists.ids[i];
   }
 }
 
-// The same where cells are known by their bounds. A cell's references are counted in the bound behind it, which then
-// says where the cell's next reference goes, and in the end where the cell ends.
+// The same for cells that are stored as bounds. A cell's references are counted in the bound behind it, which then
+// holds the place of the cell's next reference, and at last the end of the cell.
 void sort_references(const GridRecord& grid, const ReferenceLists& lists, const MacroTableEntry* macro_table,
                      CellBound* bounds) {
   const std::uint64_t count = grid.reference_count;
@@ -208,7 +208,7 @@ LatticeTriangle lattice_triangle(const Lattice& lattice, const Vec3& a, const Ve
   return record;
 }
 
-// Writes the triangle records front to back and adds them to the check value while they are near.
+// Writes the triangle records front to back and adds them to the check value while they are in the cache.
 template <class Mesh>
 void write_triangles(const Mesh& mesh, const GridRecord& grid, const std::uint32_t* ids_by_cell, std::byte* triangles,
                      CheckValue& check) {
@@ -246,8 +246,8 @@ void write_triangles(const Mesh& mesh, const GridRecord& grid, const std::uint32
   check.add({triangles + checked_bytes, static_cast<std::size_t>(padded_end - checked_bytes)});
 }
 
-// Writes all of the image but the sections of effects, and adds it to the check value.
-// Errors: kBadParameter where the mesh is not the one that was counted.
+// Writes the image without the sections of effects, and adds it to the check value.
+// Errors: kBadParameter if the mesh is not the one that was counted.
 template <class Mesh>
 Status write_image(const Mesh& mesh, const GridNeed& need, const ImageLayout& layout, std::byte* bytes,
                    CheckValue& check) {

@@ -1,4 +1,4 @@
-// Builds the scene image (grid, macrocells, sorted triangle references) from a mesh, in memory that the caller gives.
+// Builds the scene image (grid, macrocells, sorted triangle references) from a mesh, in memory of the caller.
 // Source: Cho, Kim, Han 2012, sections 3.1 and 3.2. Memory: caller's. Threads: one. SPDX-License-Identifier: Apache-2.0
 #pragma once
 
@@ -20,10 +20,10 @@ struct GridParameters {
   TriangleFormat format = TriangleFormat::kVertices;  ///< how triangles are stored
 };
 
-/// Steps of counting and building that do not follow from the rest of a GridNeed: what a cost model multiplies.
+/// Steps of counting and building that a GridNeed does not imply otherwise; a cost model multiplies them.
 struct GridSteps {
   std::uint32_t sweep_count;      ///< sweeps over all triangles that counting took, at least 1; building takes one more
-  std::uint64_t swept_row_count;  ///< rows of cells that those sweeps met; for_each_cell_row's
+  std::uint64_t swept_row_count;  ///< rows of cells that those sweeps met, as for_each_cell_row counts them
   std::uint64_t row_count;        ///< rows of cells that building will meet
 };
 
@@ -36,28 +36,28 @@ struct GridNeed {
   GridSteps steps;                       ///< for those who keep time
 };
 
-inline constexpr std::uint64_t kAnyImageBytes = ~std::uint64_t{0};  ///< of an image whose size has no limit
+inline constexpr std::uint64_t kAnyImageBytes = ~std::uint64_t{0};  ///< for an image whose size has no limit
 
-/// Counts what build_scene_image will need. Itself needs a fixed stack frame, and `marks` if they are given.
+/// Counts what build_scene_image will need. Takes a fixed stack frame, and `marks` if given.
 ///
 /// @param effects           of the scene; null: the image holds geometry alone.
 /// @param most_image_bytes  ends the count of an image that needs more.
 /// @param marks             working memory, a bit for each macrocell; empty: 16,384 of them on the stack.
 /// Errors: kBadEffects (check_effects; a light farther from the grid than an eye may be), kBadVertex, kBadIndex,
-/// kBadParameter (also effects beside TriangleFormat::kProjection), kNoTriangles, kTooManyTriangles; kMemoryTooSmall,
-/// where need.image_bytes is less than the image would take, but more than most_image_bytes.
-/// Cost: linear in triangles + references that fit, for each part of the macrocells that has its marks at a time.
+/// kBadParameter (also effects with TriangleFormat::kProjection), kNoTriangles, kTooManyTriangles; kMemoryTooSmall:
+/// need.image_bytes is then more than most_image_bytes, but less than the image would take.
+/// Cost: linear in triangles + references that fit, once for each part of the macrocells that `marks` holds at a time.
 [[nodiscard]] Status count_scene_image(const MeshView& mesh, const GridParameters& parameters, GridNeed& need,
                                        const EffectsView* effects = nullptr,
                                        std::uint64_t most_image_bytes = kAnyImageBytes,
                                        std::span<std::uint64_t> marks = {});
 
 /// Counts as count_scene_image does, with the greatest lambda of parameters.lambda, its half, its quarter and so on
-/// whose image fits. need.grid.lambda says which. Where none fits, `need` is that of the last one, of 1e-6 or of a grid
-/// that is one cell; need.image_bytes is more than most_image_bytes then.
+/// whose image fits. need.grid.lambda is that lambda. If none fits, `need` describes the last one tried, 1e-6 or a grid
+/// of one cell, and need.image_bytes is more than most_image_bytes.
 ///
-/// Errors: as count_scene_image; kTooManyTriangles only where the last one has too many references.
-/// Cost: that of a count for each lambda that a bound of its references does not rule out.
+/// Errors: as count_scene_image; kTooManyTriangles only if the last lambda has too many references.
+/// Cost: one count for each lambda that a bound of its references does not rule out.
 [[nodiscard]] Status fit_scene_image(const MeshView& mesh, const GridParameters& parameters,
                                      std::uint64_t most_image_bytes, GridNeed& need,
                                      const EffectsView* effects = nullptr, std::span<std::uint64_t> marks = {});

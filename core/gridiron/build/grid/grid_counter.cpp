@@ -27,7 +27,8 @@ bool all_in_range(std::span<const Vec3> vertices) {
 
 // A mesh below is a MeshView, or a LatticeMesh of one: the triangles as they will be stored.
 
-// Indices, zero areas, and the triangles that are kept: their tight bounds, and sums that bound their references.
+// Checks of indices, zero areas, and the triangles that are kept: their tight bounds, and sums that bound their
+// references.
 struct KeptTriangles {
   std::uint64_t count = 0;
   Vec3 minimum{kFloatMax, kFloatMax, kFloatMax};
@@ -68,10 +69,10 @@ Status survey(const Mesh& mesh, KeptTriangles& kept) {
   return Status::kOk;
 }
 
-// A bound of the references in a grid, from below. A triangle touches a cell in each column under its projection, so
-// at least as many as the projection's area; and as its cells hang together by their faces, at least x + y + z - 2 of
-// them where its box takes x by y by z. Rounding: sums of 2^32 terms that are not negative are off by 2^-21 of
-// themselves; an area of at most 2048^2 cells is off by 2^-28 of a cell where its terms cancel. The margins cover both.
+// A lower bound of the references in a grid. A triangle touches a cell in each column under its projection, so at least
+// as many as the projection's area. Its cells are connected by their faces, so if its box has x by y by z cells it
+// touches at least x + y + z - 2 of them. Rounding: sums of 2^32 non-negative terms have an error of 2^-21 of
+// themselves; an area of at most 2048^2 cells has one of 2^-28 of a cell if its terms cancel. The margins cover both.
 std::uint64_t least_references(const KeptTriangles& kept, const GridRecord& grid) {
   double scale[3];
   double extents = 0.0;
@@ -126,7 +127,7 @@ class MacroWindow {
 
 // --- One grid -----------------------------------------------------------------------------------------------------
 
-// One sweep over the triangles: marks the macrocells inside the window, and finds where the next one has to begin.
+// One sweep over the triangles: marks the macrocells inside the window, and finds the start of the next window.
 struct Sweep {
   std::uint64_t reference_count = 0;
   std::uint64_t row_count = 0;
@@ -170,7 +171,7 @@ bool sweep_window(const Mesh& mesh, const GridRecord& grid, std::uint64_t most_r
   return true;
 }
 
-// What the count of one mesh takes beside the grid, and how far it goes.
+// The inputs of a count besides the grid, and its limits.
 struct Request {
   const GridParameters& parameters;
   const EffectsRecord* effects;  // as counted; null: none
@@ -181,14 +182,14 @@ struct Request {
   std::span<std::uint64_t> marks;
 };
 
-// Bytes of an image with that many references and blocks in the grid.
+// Bytes of an image of the grid with these numbers of references and blocks.
 std::uint64_t image_bytes_of(const Request& request, GridRecord grid, std::uint64_t references, std::uint64_t blocks) {
   grid.reference_count = static_cast<std::uint32_t>(references);
   grid.cell_block_count = static_cast<std::uint32_t>(blocks);
   return layout_of(grid, request.effects, request.triangle_count).image_bytes;
 }
 
-// The grid over what is kept; references and blocks are still to be counted. @param grid  so far: the lattice.
+// Makes the grid over the kept triangles; references and blocks are counted later. @param grid  so far: the lattice.
 void make_grid(const Request& request, const KeptTriangles& kept, float lambda, GridRecord& grid) {
   const GridParameters& parameters = request.parameters;
   for (int axis = 0; axis < 3; ++axis) {
@@ -203,15 +204,16 @@ void make_grid(const Request& request, const KeptTriangles& kept, float lambda, 
   resolve_grid(request.resolved_count, grid);
 }
 
-// Counts references and macrocells that are not empty. The first sweep meets every triangle, the others those beyond
-// its window. A bound of the references says first whether they can fit at all.
-// Errors: kMemoryTooSmall as soon as the image is seen to need more, need.image_bytes say; kTooManyTriangles.
+// Counts references and non-empty macrocells. The first sweep covers every triangle, the others those beyond its
+// window. A bound of the references decides first whether they can fit at all.
+// Errors: kMemoryTooSmall as soon as need.image_bytes is known to exceed the limit;
+// kTooManyTriangles.
 template <class Mesh>
 Status count_grid(const Mesh& mesh, const Request& request, const KeptTriangles& kept, std::uint64_t most_bytes,
                   GridRecord grid, GridNeed& need) {
   const std::uint64_t empty_bytes = image_bytes_of(request, grid, 0, 1);
   const std::uint64_t left_bytes = most_bytes > empty_bytes ? most_bytes - empty_bytes : 0;
-  const std::uint64_t fitting = left_bytes / grid.triangle_bytes + kLineBytes;  // a line more: what padding may hide
+  const std::uint64_t fitting = left_bytes / grid.triangle_bytes + kLineBytes;  // a line more, for padding
   const std::uint64_t most_references = fitting < kMaxCount ? fitting : kMaxCount;
   const auto refuse = [&](std::uint64_t references) {
     need.image_bytes = empty_bytes + references * grid.triangle_bytes;
@@ -254,7 +256,7 @@ Status count_grid(const Mesh& mesh, const Request& request, const KeptTriangles&
   return Status::kOk;
 }
 
-// Counts with the wanted lambda, or halves it until the image fits.
+// Counts with the requested lambda, or halves it until the image fits.
 template <class Mesh>
 Status count_mesh(const Mesh& mesh, const Request& request, const KeptTriangles& kept, GridRecord grid,
                   GridNeed& need) {
@@ -276,7 +278,7 @@ Status count_geometry(const MeshView& mesh, Request request, GridNeed& need) {
   GRIDIRON_TRY(survey(mesh, kept));
   request.resolved_count = kept.count;
   if (request.parameters.format != TriangleFormat::kLattice) return count_mesh(mesh, request, kept, grid, need);
-  // As many cells as without a lattice: fewer triangles are left on it, not larger ones.
+  // As many cells as without a lattice: it has fewer triangles left, not larger ones.
   GRIDIRON_TRY(find_lattice(mesh, grid.lattice));
   const LatticeMesh moved{{mesh.vertices, grid.lattice}, mesh.triangles};
   KeptTriangles moved_kept;

@@ -6,8 +6,8 @@
 namespace gridiron {
 namespace {
 
-// Both roots: Newton's iteration from a guess that is right to 6 % (the exponent divided, the mantissa bits carried
-// along); four steps square that to below 2^-53, the fifth settles rounding. x > 0, normal, far from the ends of
+// Both roots: Newton's iteration from a guess with an error of at most 6 % (the exponent divided, the mantissa bits
+// carried along). Four steps bring it below 2^-53, the fifth settles rounding. x > 0, normal, far from the ends of
 // double.
 double square_root(double x) {
   double root = std::bit_cast<double>((std::bit_cast<std::uint64_t>(x) + (std::uint64_t{1023} << 52)) / 2);
@@ -56,9 +56,9 @@ void solve_resolution(const double extent[3], double wanted_cells, std::uint32_t
   }
 }
 
-// Cells per unit as a float, such that (maximum - minimum) * result <= cell_count as real numbers: the quotient has
-// three roundings of 2^-53 at most, taken back by the factor, and the conversion to float goes down. More than
-// `greatest` are not given: the cells of an axis become fewer, none of them unused.
+// Cells per unit as a float, such that (maximum - minimum) * result <= cell_count as real numbers: the factor takes
+// back the quotient's three roundings of 2^-53 at most, and the conversion to float rounds down. The result is at most
+// `greatest`; an axis then gets fewer cells, and none of them is unused.
 float cells_per_unit_of(double extent, float greatest, std::uint32_t& cell_count) {
   if (!(extent > 0.0)) return 1.0f;
   const double quotient = static_cast<double>(cell_count) / extent * (1.0 - 0x1p-50);

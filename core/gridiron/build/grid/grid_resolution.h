@@ -1,4 +1,4 @@
-// How many cells a grid has and how the world maps to them. One place for the builder and for the checks of an image.
+// How many cells a grid has and how world space maps to them, for the builder and for the checks of an image.
 // Source: Cho, Kim, Han 2012, Eq. (1). Memory: values. Threads: any. SPDX-License-Identifier: Apache-2.0
 #pragma once
 

@@ -1,4 +1,4 @@
-// Where everything of a scene image lies, and which macrocell a cell belongs to. What counting and building share.
+// Where the parts of a scene image lie, and which macrocell a cell belongs to. Shared by counting and building.
 // Inside of this room. Memory: values. Threads: any. SPDX-License-Identifier: Apache-2.0
 #pragma once
 
@@ -24,14 +24,14 @@ inline Status check_parameters(const GridParameters& parameters) {
   return lambda_ok && width_ok && format_ok ? Status::kOk : Status::kBadParameter;
 }
 
-/// Surfaces are told by their vertices, which a projection has not.
+/// Surfaces store vertices, which a projection does not have.
 inline bool may_have_effects(const GridParameters& parameters) {
   return parameters.format != TriangleFormat::kProjection;
 }
 
 // --- Layout -----------------------------------------------------------------------------------------------------
 
-// Where everything lies; all of it follows from the counts.
+// Offsets of all parts; they follow from the counts.
 struct ImageLayout {
   std::uint64_t section_table_offset, grid_offset, macro_table_offset, cell_blocks_offset, triangles_offset;
   std::uint64_t macro_table_entries;

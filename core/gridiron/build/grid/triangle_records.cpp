@@ -89,7 +89,7 @@ void make_projection_triangle(const Vec3& a, const Vec3& b, const Vec3& c, std::
     error[axis] = component.error;
   }
   int k = largest_axis(normal);
-  if (!(absolute(normal[k]) > error[k])) {  // a sliver whose normal double loses in rounding
+  if (!(absolute(normal[k]) > error[k])) {  // a sliver whose normal is lost in the rounding of doubles
     for (int axis = 0; axis < 3; ++axis) {
       normal[axis] = exact_normal_component(a, b, c, (axis + 1) % 3, (axis + 2) % 3);
     }

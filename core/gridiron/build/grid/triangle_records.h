@@ -12,9 +12,9 @@ namespace gridiron {
 /// Decides has_zero_area where doubles in one plane are not sure.
 [[nodiscard]] bool decide_zero_area(const Vec3& a, const Vec3& b, const Vec3& c);
 
-/// @returns true where the triangle has exactly zero area. Corners finite. Doubles decide nearly always, integers else.
+/// @returns true if the triangle has exactly zero area. Corners finite. Doubles decide nearly always, else integers.
 ///
-/// Sure, with u = 2^-53: each edge component is off by u of itself, a product of two by 3 u, the difference by u more,
+/// Sure, with u = 2^-53: each edge component has an error of u of itself, a product of two 3 u, the difference u more,
 /// together less than 3.01 u (|p| + |q|) + u |p - q| <= 4.01 u (|p| + |q|). Differences of floats are 0 or at least
 /// 2^-149 and below 2^129, so nothing underflows or overflows.
 [[nodiscard]] inline bool has_zero_area(const Vec3& a, const Vec3& b, const Vec3& c) {

@@ -13,8 +13,8 @@
 
 namespace gridiron {
 
-/// @returns a bit for each of the `wanted` squares of 2x2 subpackets of which an active ray may touch cell (u, v) of a
-/// slab.
+/// @returns the `wanted` squares of 2x2 subpackets that have an active ray which may touch cell (u, v) of a slab, a bit
+/// each.
 ///
 /// The frustum's pads cover each square: its rays are among those that the pads were made for.
 template <class L, class PacketType>

@@ -27,11 +27,11 @@ struct Slab {
 /// Conservative bound of a packet whose rays share origin, march axis and march sign.
 ///
 /// Let o be the origin in cell space and s the slope of a ray (cells along u per cell along the march). In exact
-/// arithmetic the ray is at o_u + s x after marching x. Every quantity below carries at most a handful of roundings:
-/// o has 2, s has 4, x has 1 on |x| and 2 on |o_k|, the product and the sum one each. Their sum is at most
-/// e (6 |o_u| + |s| (9 |o_k| + 9 N_k)) with e = 2^-23, one unit in any rounding mode, the pad's own addition included.
-/// A slope may also be off by 2^-25 for good: what its numerator loses below the least normal float, 2^-148, over a
-/// march of at least 2^-123 (kLeastCellsPerUnit, directions of length 1 or more). Both are pad_u; pad_k likewise.
+/// arithmetic the ray is at o_u + s x after marching x. Every quantity below carries at most a handful of roundings: o
+/// has 2, s has 4, x has 1 on |x| and 2 on |o_k|, the product and the sum one each. Their sum is at most e (6 |o_u| +
+/// |s| (9 |o_k| + 9 N_k)) with e = 2^-23, one unit in any rounding mode, including the addition of the pad. A slope may
+/// have a further absolute error of 2^-25: what its numerator loses below the least normal float, 2^-148, over a march
+/// of at least 2^-123 (kLeastCellsPerUnit, directions of length 1 or more). pad_u covers both; pad_k likewise.
 struct Frustum {
   static constexpr float kReachFactor = 1.0f + 0x1p-20f;  ///< covers the roundings of a reach
 
@@ -80,18 +80,18 @@ struct Frustum {
     const Four::Int cell = Four::truncate(inside);
     return {cell[0], cell[1], cell[2], cell[3]};
   }
-  /// As walks ask any bound: the work of this one is part of a step's.
+  /// The interface that walks expect of any bound; the step's own count includes this work.
   [[nodiscard]] GRIDIRON_INLINE CellRect rect_of(const Slab& slab, WorkCounters&) const { return rect_of(slab); }
 };
 
-/// March axis and the two others, and what turns directions along them into cells; the march's is signed.
+/// March axis and the two others, and the factors from directions along them to cells; the march's is signed.
 struct PassAxes {
   std::uint32_t k, u, v;
   float march_scale, u_scale, v_scale;
 };
 
-/// Takes the rays of one square of 2x2 subpackets into a pass, each by itself, and finds the bounds of their slopes and
-/// the largest of their marches.
+/// Takes the rays of one square of 2x2 subpackets into a pass, ray by ray, and finds the bounds of their slopes and
+/// their greatest march.
 template <class L, class PacketType>
 GRIDIRON_INLINE void take_square(const PassAxes& axes, std::uint32_t square, RaySet<PacketType::kRayCount>& waiting,
                                  PacketType& packet, WorkCounters& work) {
@@ -125,10 +125,10 @@ GRIDIRON_INLINE void take_square(const PassAxes& axes, std::uint32_t square, Ray
   packet.march_high[square] = L::horizontal_max(high_march);
 }
 
-/// The same for all rays of a square at once, from its corners, where all of them wait and surely join.
+/// The same for all rays of a square at once, from its corners, if all of them wait and surely join.
 ///
-/// A direction is a linear function of the pixel within packet.linear_error, so that march and slopes over the square
-/// lie between those of its corners, but for what such an error makes of a quotient: with E its size in cells along an
+/// A direction is a linear function of the pixel within packet.linear_error. So march and slopes over the square lie
+/// between those of its corners, but for the effect of that error on a quotient: with E its size in cells along an
 /// axis, at most (E_u + 2 E_k) / (march - E_k) at slopes up to 2. @returns whether they were taken.
 template <class PacketType>
 [[nodiscard]] GRIDIRON_INLINE bool take_whole_square(const PassAxes& axes, std::uint32_t square,
@@ -176,12 +176,12 @@ template <class PacketType>
   return true;
 }
 
-/// Takes a pass of rays out of `waiting`: the first waiting ray decides axis and sign, and every waiting ray that
-/// runs the same way along that axis at a slope of at most 2 joins. A ray whose own steepest axis it is always joins,
-/// so six passes empty any packet.
+/// Takes a pass of rays out of `waiting`. The first waiting ray decides axis and sign. Every waiting ray that runs the
+/// same way along that axis at a slope of at most 2 joins; a ray always joins on its own steepest axis, so six passes
+/// empty any packet.
 ///
 /// @param waiting  rays not traced yet; the rays taken leave it. @param packet  its `active` becomes this pass.
-/// @returns false when no ray is waiting.
+/// @returns false if no ray is waiting.
 template <class L, class PacketType>
 [[nodiscard]] bool take_pass(const GridRecord& grid, RaySet<PacketType::kRayCount>& waiting, PacketType& packet,
                              Frustum& frustum, WorkCounters& work) {

@@ -58,9 +58,9 @@ class GridCore {
   using StorePacket = typename Store::EyeStore;
   using Table = MacroTableWindow<Layout::kTableEntries>;
 
-  // Generates a packet and traces it. Distances that nobody asks for are estimated; rays for which that leaves open
-  // what they hit are traced again, with exact ones. Where ties are to be broken, a ray of which one still is open goes
-  // alone: then its nearest triangle stays at hand.
+  // Generates a packet and traces it. If the frame does not need distances, they are estimated; rays whose hit the
+  // estimates leave open are traced again with exact distances. If ties must be broken too, a ray with an open tie is
+  // traced alone, since its nearest triangle is then still in the local store.
   [[nodiscard]] Status trace_packet(const TileView& view, std::uint32_t x, std::uint32_t y) {
     RaySet<StorePacket::kRayCount> waiting;
     generate_packet<L>(store_.frame, view.left + x, view.top + y, store_.packet, waiting, store_.work, view.dx,
@@ -82,7 +82,7 @@ class GridCore {
     return Status::kOk;
   }
 
-  // Takes rays through the grid, once per march axis and sign that they have.
+  // Traces rays through the grid, one pass for each march axis and sign that they have.
   [[nodiscard]] GRIDIRON_OUTLINE Status trace_rays(RaySet<StorePacket::kRayCount>& waiting) {
     store_.engine.mailbox.clear();
     Frustum frustum;
@@ -90,7 +90,7 @@ class GridCore {
       PacketDriver<L, Store, P> driver(store_, transfers_, frustum);
       GRIDIRON_TRY(driver.run());
       store_.work.charge_to(Work::kPacketStart);
-      // The next pass has other rays: what this one has seen says nothing about them.
+      // The next pass has other rays: what this one tested does not count for them.
       store_.engine.mailbox.clear();
     }
     return Status::kOk;

@@ -21,7 +21,7 @@
 namespace gridiron {
 
 /// @cond
-/// Stand where a layout has no packets: it traces eye rays by walks, like all others.
+/// Takes the packet's place in a layout without packets, which traces eye rays by walks, like all others.
 struct NoPacket {
   static constexpr std::uint32_t kRayCount = 32;
 };
@@ -40,8 +40,8 @@ struct GridPacketParts<Layout, true> {
 };
 /// @endcond
 
-/// What stays for the frame. Cell blocks start on lines in main memory and here; triangle runs start anywhere on 16
-/// bytes, so their buffers have room to start 16 bytes later.
+/// Memory for the whole frame. Cell blocks start on lines in main memory and here. Triangle runs start anywhere on 16
+/// bytes, so their buffers are 16 bytes longer.
 template <class Layout>
 struct alignas(128) GridStore {
   /// @cond
@@ -68,7 +68,7 @@ struct alignas(128) GridStore {
   TriangleBuffer triangles[Layout::kMaxTriangleDepth];
   [[no_unique_address]] StoreMailbox mailbox;
 
-  /// A buffer for whoever gathers records while no ray is traced. @param slot  below Layout::kMaxTriangleDepth.
+  /// A buffer to gather records in while no ray is traced. @param slot  below Layout::kMaxTriangleDepth.
   [[nodiscard]] std::byte* idle_buffer(std::uint32_t slot) { return triangles[slot].bytes; }
 
   /// Calls visit(name, offset_bytes, bytes) for every region, in address order.
@@ -81,7 +81,7 @@ struct alignas(128) GridStore {
   }
 };
 
-/// While rays other than eye rays are traced.
+/// Memory while rays other than eye rays are traced.
 template <class Layout>
 struct alignas(128) GridRayStore {
   Walk walks[kWalkCount<Layout>];

@@ -11,8 +11,8 @@
 
 namespace gridiron {
 
-/// Direct-mapped: per slot a triangle and the subpackets that were tested against it. Forgetting is harmless: a test
-/// done twice changes nothing. @tparam SlotCount  a power of two.
+/// Direct-mapped: each slot holds a triangle and the subpackets that were tested against it. Forgetting is harmless:
+/// testing twice changes nothing. @tparam SlotCount  a power of two.
 template <std::uint32_t SlotCount>
 struct alignas(128) Mailbox {
   static constexpr std::uint32_t kSlotCount = SlotCount;

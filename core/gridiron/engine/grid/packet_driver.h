@@ -1,5 +1,5 @@
-// Packet driver: takes one packet through the grid. It fetches what the walks ask for ahead of its use (cell blocks of
-// the next macrocells, triangles of the next cells) and tests what has arrived.
+// Packet driver: takes one packet through the grid. It fetches ahead what the walks will need (cell blocks of the next
+// macrocells, triangles of the next cells) and tests the triangles that have arrived.
 // Source: Cho, Kim, Han 2012, section 5, macrocell and triangle level. Memory: the local store. Threads: one core.
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
@@ -26,7 +26,7 @@ namespace gridiron {
 /// Traces the active rays of store.packet: one pass, one frustum.
 ///
 /// Two pipelines, each a ring of buffers. The front of the macrocell ring is the block being walked, the rest are in
-/// flight; the triangle ring holds runs of triangles on their way, the front one is tested next. With a depth of 1 a
+/// flight. The triangle ring holds runs of triangles on their way; the front one is tested next. With a depth of 1 a
 /// buffer is fetched, waited for and used before the next get; with 2 the next one travels meanwhile (the paper's
 /// double buffering); deeper rings look farther ahead.
 template <class L, class Store, Platform P>
@@ -138,7 +138,8 @@ class PacketDriver {
                           static_cast<std::uint8_t>(kFirstMacroTag + slot));
   }
 
-  // Subpackets with a ray that has hit nothing in front of a run's cell yet; where the cell is not, squares of them.
+  // Subpackets with a ray that has no hit in front of a run's cell yet; of the squares that the cell does not touch,
+  // all subpackets or none.
   [[nodiscard]] SubpacketSet open_subpackets(const TriangleRun& run) {
     if ((store_.frame.engine.techniques & kUseSubpackets) == 0) return StorePacket::kAllSubpackets;
     if constexpr (StorePacket::kSquareCount >= 4) {
@@ -148,7 +149,7 @@ class PacketDriver {
     }
   }
 
-  // Squares of subpackets that may touch a cell and have a ray that has hit nothing in front of it yet.
+  // Squares of subpackets that may touch a cell and have a ray with no hit in front of it yet.
   [[nodiscard]] std::uint32_t squares_that_see(const CellVisit& cell) {
     constexpr std::uint32_t kAllSquares = (1u << StorePacket::kSquareCount) - 1u;
     if ((store_.frame.engine.techniques & kUseSubpackets) == 0) return kAllSquares;
@@ -167,7 +168,7 @@ class PacketDriver {
       store_.work.add(Work::kTriangleBatch);
       const SubpacketSet open = open_subpackets(run);
       SubpacketSet changed = 0;
-      // The other open subpackets are tested too, so that no triangle comes again for them from a later cell.
+      // The other open subpackets are tested too, so that no triangle has to be fetched again for them by a later cell.
       if ((open & subpackets_of_squares(run.touching)) != 0) {
         changed = test_run(store_.engine.triangles[slot].bytes, run.first_byte, run.count, open);
       }
@@ -204,8 +205,8 @@ class PacketDriver {
     return intersect_standard_batch<L, kWantFacing>(store_.packet, open, open_count, culling, store_.work);
   }
 
-  // Finds those of a run that subpackets have to look at. Triangles that appear elsewhere need not be remembered: the
-  // mailbox is asked after their boxes. @returns how many these are.
+  // Finds the triangles of a run that subpackets have to test. The mailbox is asked only after the boxes, so triangles
+  // that appear elsewhere take no slot. @returns how many these are.
   [[nodiscard]] GRIDIRON_OUTLINE std::uint32_t keep_untested(const VertexTriangle* triangles, std::uint32_t count,
                                                              SubpacketSet wanted, Culling culling, OpenTriangle* open) {
     std::uint32_t open_count = 0;
@@ -255,7 +256,7 @@ class PacketDriver {
   CellWalk cell_walk_{};
   MacroVisit visits_[Layout::kMaxMacroDepth];
   TriangleRun runs_[Layout::kMaxTriangleDepth];
-  CellVisit cell_{};            ///< the cell whose triangles are being fetched, what is left of it
+  CellVisit cell_{};            ///< the rest of the cell whose triangles are being fetched
   std::uint32_t touching_ = 0;  ///< squares of subpackets that may touch it
   SubpacketReach<StorePacket> reaches_;
   float reach_ = 0.0f;    ///< the largest of them

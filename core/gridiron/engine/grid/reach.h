@@ -12,7 +12,7 @@
 namespace gridiron {
 
 /// Per subpacket, a march distance beyond which none of its active rays can have a nearer hit: the largest t of their
-/// nearest hits, were it as far as estimates may err, times the largest march of the rays of its square.
+/// nearest hits, plus the greatest error of an estimate, times the largest march of the rays of its square.
 template <class PacketType>
 struct SubpacketReach {
   static constexpr std::uint32_t kCount = PacketType::kSubpacketCount;
@@ -20,7 +20,7 @@ struct SubpacketReach {
   alignas(64) float reach[kCount];
   alignas(16) float square_reach[kSquareCount < 4 ? 4 : kSquareCount];  ///< the largest of each square's subpackets
 
-  /// Measures anew the subpackets whose hits changed, and their neighbours in a square.
+  /// Updates the subpackets whose hits changed, and their neighbours in a square.
   /// @returns the largest reach of the packet.
   template <class L>
   GRIDIRON_OUTLINE float update(const PacketType& packet, SubpacketSet changed, WorkCounters& work) {
@@ -53,7 +53,7 @@ struct SubpacketReach {
     }
   }
 
-  /// @returns a bit for each square of which a subpacket still looks beyond the march distance `entry`.
+  /// @returns a bit for each square that has a subpacket which still looks beyond the march distance `entry`.
   [[nodiscard]] GRIDIRON_OUTLINE std::uint32_t open_squares(const Frustum& frustum, float entry,
                                                             WorkCounters& work) const {
     using Four = Lanes<4>;
@@ -68,8 +68,8 @@ struct SubpacketReach {
     return result;
   }
 
-  /// @returns the subpackets that still look beyond the march distance `entry`: of the squares `exactly`, those that
-  /// do; of the others, all of a square where one of them does.
+  /// @returns the subpackets that still look beyond the march distance `entry`. Only the squares in `exactly` are
+  /// decided by subpacket; of any other square all subpackets are returned if one of them does.
   [[nodiscard]] GRIDIRON_INLINE SubpacketSet open(const Frustum& frustum, float entry, std::uint32_t exactly,
                                                   WorkCounters& work) const {
     using Four = Lanes<4>;

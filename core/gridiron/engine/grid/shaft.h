@@ -1,4 +1,4 @@
-// Shafts: what bounds rays with origins of their own that march through the grid along one axis.
+// Shafts: bounds of rays with origins of their own that march through the grid along one axis.
 // Memory: inside the local store. Threads: one core. SPDX-License-Identifier: Apache-2.0
 #pragma once
 
@@ -15,11 +15,11 @@ namespace gridiron {
 
 /// Conservative bound of a pass of rays: which cells of a slab they can touch.
 ///
-/// The march coordinate is the cell coordinate along axis k, or its negative where the rays run towards smaller k.
-/// Roundings as in frustum.h, with each ray's own origin: o has 2, s has 4, what is marched from a ray's start 2 |o_k|
-/// and one more, the product and the sum one each: e (3 |o_u| + |s| (9 |o_k| + 7 N_k)) is below what a frustum is
-/// charged; e and the loss of slopes are frustum.h's too. Where a ray ends along the march, start + march t, is off by
-/// 6 e (|o_k| + N_k) where that lies in the grid: pad_k covers it.
+/// The march coordinate is the cell coordinate along axis k, or its negative if the rays run towards smaller k.
+/// Roundings as in frustum.h, with each ray's own origin: o has 2, s has 4, the march from a ray's start 2 |o_k| and
+/// one more, the product and the sum one each: e (3 |o_u| + |s| (9 |o_k| + 7 N_k)) is below what a frustum is charged;
+/// e and the loss of slopes are frustum.h's too. The end of a ray along the march, start + march t, has an error of 6 e
+/// (|o_k| + N_k) if it lies in the grid: pad_k covers it.
 struct Shaft {
   std::uint32_t axis_k, axis_u, axis_v;
   std::int32_t cells_u, cells_v, cells_k;
@@ -106,13 +106,13 @@ struct Shaft {
     }
     return L::horizontal_max(farthest);
   }
-  /// Takes note of how far a ray now has to look.
+  /// Sets how far a ray now has to look.
   GRIDIRON_INLINE void shorten(std::uint32_t ray, float t) { end[ray] = start[ray] + march[ray] * t; }
-  /// A ray that need not look any more.
+  /// Ends a ray's search.
   GRIDIRON_INLINE void drop(std::uint32_t ray) { end[ray] = -kFloatMax; }
 };
 
-/// A shaft as walks ask any bound. @tparam L  lane type; changes nothing but speed.
+/// A shaft with the interface that walks expect of any bound. @tparam L  lane type; affects only speed.
 template <class L>
 struct ShaftBound {
   const Shaft& shaft;
@@ -130,15 +130,15 @@ struct ShaftBound {
   }
 };
 
-/// Rays go together where their origins are at most this many cells apart and their slopes differ by no more.
+/// Rays travel together if their origins are at most this many cells apart and their slopes differ by no more.
 inline constexpr float kTogetherCells = 4.0f;
 inline constexpr float kTogetherSlope = 0.5f;
 
-/// Takes a pass of rays out of `waiting`: the first waiting ray decides axis and sign; those that run alike along that
-/// axis, from nearby, at slopes of at most 2, join. A ray that none runs alike with goes alone.
+/// Takes a pass of rays out of `waiting`. The first waiting ray decides axis and sign. Rays that start nearby and run
+/// the same way along that axis at slopes of at most 2 join; if there are none, it goes alone.
 ///
-/// @param waiting  rays not traced yet, bit i = ray i; those taken leave it. @returns those of this pass; 0: none is
-/// left.
+/// @param waiting  rays not traced yet, bit i = ray i; those taken leave it. @returns the rays of this pass; 0: none
+///                 left.
 template <class L>
 [[nodiscard]] GRIDIRON_OUTLINE std::uint32_t take_walk_pass(const GridRecord& grid, WalkRays& rays,
                                                             std::uint32_t& waiting, Shaft& shaft, WorkCounters& work) {
@@ -214,7 +214,7 @@ template <class L>
       steepest_v = L::max(steepest_v, keep(L::abs(slope_v), Float(0.0f)));
     }
     waiting &= ~active;
-    if (active == 0) continue;  // the leader's numbers are none
+    if (active == 0) continue;  // the values of the leader are not used then
     shaft.least_start = L::horizontal_min(least_start);
     constexpr float kUnit = 0x1p-23f;
     constexpr float kSlopeLoss = 0x1p-25f / (9.0f * kUnit);

@@ -1,5 +1,5 @@
-// Slice walk: the macrocells a packet's frustum touches, macro slice by macro slice, and the cells inside each.
-// Plain resumable state machines: they say what they need next, someone else fetches it.
+// Slice walk: the macrocells that a packet's frustum touches, macro slice by macro slice, and the cells inside each.
+// Resumable state machines: they return what they need next, and the caller fetches it.
 // Source: Cho, Kim, Han 2012, sections 3.2 and 4.1; Wald, Ize, Kensler, Knoll, Parker 2006, section 3.3.
 // Memory: values. Threads: one core. SPDX-License-Identifier: Apache-2.0
 #pragma once
@@ -56,8 +56,8 @@ class MacroWalk {
     u_last_ = -1;
   }
 
-  /// @param reach  march distance beyond which no ray needs to look. @param skip_empty  empty macrocells are passed
-  /// over. @tparam Bound  Frustum, or Shaft.
+  /// @param reach  march distance beyond which no ray needs to look. @param skip_empty  whether to skip empty
+  ///               macrocells. @tparam Bound  Frustum or Shaft.
   template <class Bound, class Table>
   [[nodiscard]] WalkStep next(const Bound& frustum, const Table& table, float reach, bool skip_empty, MacroVisit& visit,
                               WorkCounters& work) {
@@ -116,7 +116,7 @@ class MacroWalk {
 
  private:
   static GRIDIRON_INLINE std::int32_t smaller(std::int32_t a, std::int32_t b) { return a < b ? a : b; }
-  /// cell / macro_width without a division; exact, as (c + 1/2) / m stays 1/16 away from every integer.
+  /// cell / macro_width without a division; exact, because (c + 1/2) / m is at least 1/16 away from every integer.
   [[nodiscard]] GRIDIRON_INLINE std::int32_t macro_of(std::int32_t cell) const {
     return static_cast<std::int32_t>((static_cast<float>(cell) + 0.5f) * macro_per_cell_);
   }
@@ -129,7 +129,7 @@ class MacroWalk {
   std::uint32_t needed_chunk_;
 };
 
-/// How many triangles a cell of a block has, and the work of looking it up.
+/// Number of triangles in a cell of a block; counts the look-up as work.
 [[nodiscard]] GRIDIRON_INLINE std::uint32_t triangle_count_of(const CellRecord* cell) {
   return cell->triangle_count;
 }

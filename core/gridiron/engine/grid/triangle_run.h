@@ -1,4 +1,4 @@
-// Triangle runs: where consecutive triangles lie in main memory, and what of it a transfer moves.
+// Triangle runs: where consecutive triangles lie in main memory, and which bytes around them a transfer moves.
 // Memory: values. Threads: any. SPDX-License-Identifier: Apache-2.0
 #pragma once
 
@@ -30,7 +30,7 @@ struct RunPlace {
   std::uint32_t bytes = count * kTriangleRecordBytes;
   std::uint32_t slack = 0;
   if (is_on_lattice(frame)) {
-    // Records half as long start and end between the 16 bytes that a transfer moves.
+    // Records of half the length start and end between the multiples of 16 bytes that a transfer moves.
     offset = offset / 2;
     slack = static_cast<std::uint32_t>(offset % kTransferStep);
     bytes = (slack + bytes / 2 + (kTransferStep - 1)) & ~(kTransferStep - 1);

@@ -1,5 +1,5 @@
-// Ray walks: rays through the grid, several groups of up to 16 at once. Each walk asks for one transfer at a time;
-// while it travels, the others go on. So waits are hidden without looking ahead.
+// Ray walks: rays through the grid, several groups of up to 16 at once. Each walk waits for one transfer at a time;
+// meanwhile the others continue. So waits are hidden without looking ahead.
 // Memory: the local store. Threads: one core. SPDX-License-Identifier: Apache-2.0
 #pragma once
 
@@ -23,7 +23,7 @@ namespace gridiron {
 
 /// Walks of one core.
 ///
-/// @tparam Store  LocalStore: cell_blocks and triangles are the walks' buffers, one of each for a walk.
+/// @tparam Store  LocalStore: each walk has one of its cell_blocks and one of its triangles as buffers.
 template <class L, class Store, Platform P>
 class WalkDriver {
  public:
@@ -32,11 +32,11 @@ class WalkDriver {
 
   WalkDriver(Store& store, Transfers<P>& transfers) : store_(store), transfers_(transfers) {}
 
-  /// Traces the rays of all jobs, frame.walk_depth of these at once.
+  /// Traces the rays of all jobs, frame.walk_depth jobs at once.
   ///
-  /// @param jobs  next(rays, purpose) makes the rays of the next job and returns how many, 0 when there are no more;
-  ///              finish(rays, count, purpose) is given their answers: id is kNoTriangle where nothing is hit. Which
-  ///              jobs finish first depends on the number of walks; what they answer does not.
+  /// @param jobs  next(rays, purpose) makes the rays of the next job and returns how many, 0 at the end; finish(rays,
+  ///              count, purpose) receives the answers: id is kNoTriangle without a hit. The order in which jobs finish
+  ///              depends on the number of walks; the answers do not.
   template <class Jobs>
   [[nodiscard]] Status run(const RayQuestion& asked, Jobs& jobs) {
     surfaces_ = asked.surfaces;
@@ -62,7 +62,7 @@ class WalkDriver {
       store_.work.charge_to(Work::kWalkPass);
       --under_way;
       walk.state = WalkState::kIdle;
-      // The next job begins at once, so that its first transfer travels while the others go on.
+      // The next job begins at once, so that its first transfer travels while the others continue.
       if (!has_more) continue;
       has_more = start(walk, jobs);
       if (walk.state == WalkState::kIdle) continue;
@@ -72,7 +72,7 @@ class WalkDriver {
   }
 
  private:
-  // What stays in registers of a RayQuestion.
+  // The part of a RayQuestion that stays in registers.
   struct Question {
     bool any_hit;
     bool trusts_floats;
@@ -90,7 +90,7 @@ class WalkDriver {
     return true;
   }
 
-  // Lets a walk go on until it waits for a transfer, or is done.
+  // Advances a walk until it waits for a transfer, or is done.
   [[nodiscard]] GRIDIRON_OUTLINE Status go_on(std::uint32_t i, Question question) {
     Walk& walk = walk_of(i);
     for (;;) {
@@ -194,7 +194,7 @@ class WalkDriver {
                           static_cast<std::uint8_t>(kFirstTriangleTag + i));
   }
 
-  // Holds the run that has arrived against the rays that still look.
+  // Tests the run that has arrived against the rays that still look.
   [[nodiscard]] Status test_run(std::uint32_t i, Question question) {
     Walk& walk = walk_of(i);
     store_.work.add(Work::kTriangleBatch);
@@ -255,8 +255,8 @@ class WalkDriver {
     return Status::kOk;
   }
 
-  // Of two triangles at the same rounded distance: the lower id, or where a frame wants it the nearer in truth. The one
-  // that was there before is fetched for that: it is needed hardly ever.
+  // Decides between two triangles at the same rounded distance: the lower id, or with kExact the truly nearer one. The
+  // earlier triangle is fetched for that, which is hardly ever needed.
   [[nodiscard]] GRIDIRON_RARE Status comes_before(const WalkRays& rays, std::uint32_t ray,
                                                   const VertexTriangle& triangle, bool& is_first) {
     is_first = triangle.triangle_id < rays.id[ray];

@@ -1,4 +1,4 @@
-// Sections of effects: what stands in an image that a scene with effects became. SPDX-License-Identifier: Apache-2.0
+// Sections of effects: their contents in the image of a scene with effects. SPDX-License-Identifier: Apache-2.0
 #include <gridiron/build/effects/effect_sections.h>
 #include <gridiron/build/lattice.h>
 #include <gridiron/ray/lattice_run.h>

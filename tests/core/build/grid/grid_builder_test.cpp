@@ -421,7 +421,7 @@ TEST(Errors, MoreReferencesThanThirtyTwoBits) {
 
 // --- The greatest lambda that fits --------------------------------------------------------------------------------
 
-// Halves lambda and counts everything each time: what fit_scene_image has to find.
+// Halves lambda and counts everything each time: the expected result of fit_scene_image.
 GridNeed halved_need(const MeshView& mesh, GridParameters parameters, std::uint64_t most_bytes) {
   GridNeed need{};
   for (;;) {

@@ -6,7 +6,7 @@
 
 namespace gridiron::test {
 
-/// A ray beside an edge.
+/// A ray next to an edge.
 struct EdgeCase {
   float origin[3], a[3], b[3], dir[3];
 };

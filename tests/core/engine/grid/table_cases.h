@@ -1,4 +1,4 @@
-// A macrocell table of random macrocells, and a naive one beside it.
+// A macrocell table of random macrocells, and a naive one to compare it with.
 // Memory: std::vector. Threads: any. SPDX-License-Identifier: Apache-2.0
 #pragma once
 

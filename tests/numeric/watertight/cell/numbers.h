@@ -1,4 +1,4 @@
-// The Cell's numbers instead of the host's in what follows: a source of core is compiled with this header before it.
+// Replaces the host's numbers by the Cell's in the following code: included before a source of core is compiled.
 // Headers whose numbers are the host's come first. The language reserves its keywords, compilers let them be replaced.
 // Memory: none. Threads: any. SPDX-License-Identifier: Apache-2.0
 #pragma once
