@@ -2,10 +2,9 @@
 // Nothing of core's code. Memory: std::vector. Threads: any, once built. SPDX-License-Identifier: Apache-2.0
 #pragma once
 
-#include <gridiron/base/math.h>
-
 #include <algorithm>
 #include <cstdint>
+#include <glm/vec3.hpp>
 #include <limits>
 #include <utility>
 #include <vector>
@@ -14,10 +13,10 @@ namespace gridiron::test {
 
 /// A closed box, and where it counts as being when halves are parted; times any number that all boxes share.
 struct PlacedBox {
-  DVec3 low{std::numeric_limits<double>::infinity()}, high{-low};
-  DVec3 middle{0.0};
+  glm::dvec3 low{std::numeric_limits<double>::infinity()}, high{-low};
+  glm::dvec3 middle{0.0};
 
-  void add(const DVec3& point) {
+  void add(const glm::dvec3& point) {
     for (int axis = 0; axis < 3; ++axis) {
       low[axis] = std::min(low[axis], point[axis]);
       high[axis] = std::max(high[axis], point[axis]);
@@ -31,7 +30,7 @@ class MedianTree {
   /// A leaf holds `count` boxes, from order()[first] on. Other nodes have none; their children are the next node, which
   /// is the lower one along `axis`, and `second`.
   struct Node {
-    DVec3 low, high;
+    glm::dvec3 low, high;
     std::uint32_t first, count, second;
     int axis;
   };
@@ -63,7 +62,7 @@ class MedianTree {
     if (count <= leaf_count) return index;
 
     int axis = 0;
-    const DVec3 extent = middles.high - middles.low;
+    const glm::dvec3 extent = middles.high - middles.low;
     for (int other = 1; other < 3; ++other) {
       if (extent[other] > extent[axis]) axis = other;
     }
