@@ -1,5 +1,5 @@
-// A tree of boxes, halved at the median of their middles: the search of those tests that look for triangles themselves.
-// Nothing of core's code. Memory: std::vector. Threads: any, once built. SPDX-License-Identifier: Apache-2.0
+// A tree of boxes, halved at the median of their middles, for the searches of the tests' references. Nothing of core's
+// code. Memory: std::vector. Threads: any, once built. SPDX-License-Identifier: Apache-2.0
 #pragma once
 
 #include <algorithm>
@@ -11,7 +11,7 @@
 
 namespace gridiron::test {
 
-/// A closed box, and where it counts as being when halves are parted; times any number that all boxes share.
+/// A closed box and the point by which it is sorted into a half: its middle times any factor that all boxes share.
 struct PlacedBox {
   glm::dvec3 low{std::numeric_limits<double>::infinity()}, high{-low};
   glm::dvec3 middle{0.0};
