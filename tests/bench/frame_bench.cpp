@@ -22,11 +22,8 @@ bool bench_view(const BenchOptions& options, const test::SceneView& view) {
     return true;
   }
   test::SceneInMemory scene(mesh->view(), GridParameters{});
-  FrameSettings settings;
-  settings.camera = view.camera ? *view.camera : test::framed_camera(mesh->view());
-  sim::ChipOptions plain;
-  plain.mode = sim::Mode::kPlain;
-  plain.lanes = sim::widest_lanes();
+  const FrameSettings settings{.camera = view.camera ? *view.camera : test::framed_camera(mesh->view())};
+  const sim::ChipOptions plain{.mode = sim::Mode::kPlain, .lanes = sim::widest_lanes()};
   test::PreparedFrame frame = scene.prepare(settings, plain, test::PlaneSet::kColor);
   sim::ChipOptions checked = plain;
   checked.mode = sim::Mode::kChecked;

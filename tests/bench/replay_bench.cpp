@@ -39,8 +39,7 @@ bool bench_view(const BenchOptions& options, const test::SceneView& view) {
     return true;
   }
   test::SceneInMemory scene(mesh->view(), GridParameters{});
-  FrameSettings settings;
-  settings.camera = view.camera ? *view.camera : test::framed_camera(mesh->view());
+  const FrameSettings settings{.camera = view.camera ? *view.camera : test::framed_camera(mesh->view())};
   const test::RenderedFrame frame = scene.render(settings, {});
   if (frame.result.status != Status::kOk) {
     std::printf("%s: status %u\n", view.name, static_cast<unsigned>(frame.result.status));

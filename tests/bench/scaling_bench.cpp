@@ -49,8 +49,7 @@ const sim::MachineProfile& roomy_machine() {
 // The largest lambda of 4, 2, 1 ... whose image and frame fit a machine's memory.
 void print_fit(const MeshView& mesh, std::uint64_t frame_bytes, const sim::MachineProfile& machine) {
   for (float lambda = 4.0f; lambda >= 1.0f / 64; lambda *= 0.5f) {
-    GridParameters parameters;
-    parameters.lambda = lambda;
+    const GridParameters parameters{.lambda = lambda};
     GridNeed need;
     if (count_scene_image(mesh, parameters, need) != Status::kOk) break;
     if (need.image_bytes + frame_bytes > machine.main_memory_bytes) continue;
@@ -79,9 +78,8 @@ bool measure(std::uint32_t cells, const sim::MachineProfile& machine, Point& poi
   }
 
   test::SceneInMemory scene(mesh.view(), GridParameters{});
-  FrameSettings settings;
-  settings.camera = {{0.3f, 1.2f, 1.9f}, {0, -0.1f, 0}, {0, 1, 0}, 0.5f};
-  settings.width = settings.height = width;
+  const FrameSettings settings{
+      .camera = {{0.3f, 1.2f, 1.9f}, {0, -0.1f, 0}, {0, 1, 0}, 0.5f}, .width = width, .height = width};
   const test::RenderedFrame rendered = scene.render(settings, {});
   if (rendered.result.status != Status::kOk) {
     std::printf("  %zu triangles: render status %u\n", mesh.triangles.size(),

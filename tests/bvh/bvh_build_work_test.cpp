@@ -2,7 +2,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <gridiron/bvh/bvh_build_work.h>
 #include <gridiron/sim/machine_profile.h>
-#include <gtest/gtest.h>
 
 #include "support/test_mesh.h"
 

@@ -3,18 +3,13 @@
 #include <gridiron/bvh/bvh_core.h>
 #include <gridiron/bvh/bvh_engine_work.h>
 #include <gridiron/bvh/bvh_renderer.h>
-#include <gtest/gtest.h>
 
-#include <algorithm>
 #include <atomic>
-#include <cmath>
-#include <cstring>
 #include <numeric>
-#include <string>
-#include <vector>
 
 #include "support/no_threads.h"
 #include "support/render_mesh.h"
+#include "support/test_headers.h"
 #include "support/test_mesh.h"
 #include "support/views.h"
 
@@ -26,19 +21,15 @@ const sim::MachineProfile& ps3() {
 }
 
 FrameSettings settings_of(const Camera& camera, std::uint32_t width, std::uint32_t height) {
-  FrameSettings settings;
-  settings.camera = camera;
-  settings.width = width;
-  settings.height = height;
-  return settings;
+  return {.camera = camera, .width = width, .height = height};
 }
 
-test::TestMesh make_mixed_mesh() {
-  test::TestMesh mesh = test::make_torus(60, 30, 1.0f, 0.35f);
-  mesh.append(test::make_random_soup(800, 0.15f, 3));
-  mesh.append(test::make_height_field(20, 0.2f, 4));
-  mesh.append(test::make_triangle({-3, -0.5f, -3}, {3, -0.5f, -3}, {0, -0.4f, 3}));
-  return mesh;
+using test::make_mixed_mesh;
+
+Bvh bvh_of(const test::TestMesh& mesh) {
+  Bvh bvh;
+  EXPECT_EQ(build_bvh(mesh.view(), {}, bvh), Status::kOk);
+  return bvh;
 }
 
 const Camera kMixedCamera = {{1.2f, 1.5f, 2.5f}, {0, 0, 0}, {0, 1, 0}, 0.5f};
@@ -115,11 +106,9 @@ TEST(BvhRenderer, PicturesAreTheGridsBitForBit) {
     for (const std::uint32_t packet_width : {8u, 16u}) {
       for (const bool hyper_threading : {false, true}) {
         for (const bool use_subpackets : {false, true}) {
-          RenderOptions options;
-          options.packet_width = packet_width;
-          options.hyper_threading = hyper_threading;
-          options.use_subpackets = use_subpackets;
-          scene.expect_same_picture(options, name + ", packets of " + std::to_string(packet_width));
+          scene.expect_same_picture(
+              {.hyper_threading = hyper_threading, .packet_width = packet_width, .use_subpackets = use_subpackets},
+              name + ", packets of " + std::to_string(packet_width));
         }
       }
     }
@@ -168,9 +157,7 @@ TEST(BvhRenderer, FourLinesOfEachCacheAreEnough) {
 }
 
 TEST(BvhRenderer, FiguresAreTheSameInEveryRun) {
-  const test::TestMesh mesh = make_mixed_mesh();
-  Bvh bvh;
-  ASSERT_EQ(build_bvh(mesh.view(), {}, bvh), Status::kOk);
+  const Bvh bvh = bvh_of(make_mixed_mesh());
   for (const sim::MachineProfile& machine : sim::machine_profiles()) {
     RenderOptions options;
     const BvhFrame first = render_bvh_frame(bvh, settings_of(kMixedCamera, 320, 200), machine, options);
@@ -195,9 +182,7 @@ TEST(BvhRenderer, FiguresAreTheSameInEveryRun) {
 
 // A claim that takes far longer than any tile's work deals the tiles out evenly.
 TEST(BvhRenderer, ClaimLatencyCountsInTheOrderOfClaims) {
-  const test::TestMesh mesh = make_mixed_mesh();
-  Bvh bvh;
-  ASSERT_EQ(build_bvh(mesh.view(), BvhParameters{}, bvh), Status::kOk);
+  const Bvh bvh = bvh_of(make_mixed_mesh());
   sim::MachineProfile machine = ps3();
   machine.claim_cycles = 1 << 20;
   for (double& cycles : machine.work_cycles) cycles /= 100;
@@ -211,13 +196,10 @@ TEST(BvhRenderer, ClaimLatencyCountsInTheOrderOfClaims) {
 
 TEST(BvhRenderer, HyperThreadingWaitsLess) {
   const test::TestMesh mesh = test::make_height_field(120, 0.3f, 6);
-  Bvh bvh;
-  ASSERT_EQ(build_bvh(mesh.view(), {}, bvh), Status::kOk);
+  const Bvh bvh = bvh_of(mesh);
   const FrameSettings settings = settings_of(test::framed_camera(mesh.view()), 320, 320);
-  RenderOptions options;
-  const BvhFrame with = render_bvh_frame(bvh, settings, ps3(), options);
-  options.hyper_threading = false;
-  const BvhFrame without = render_bvh_frame(bvh, settings, ps3(), options);
+  const BvhFrame with = render_bvh_frame(bvh, settings, ps3(), {});
+  const BvhFrame without = render_bvh_frame(bvh, settings, ps3(), {.hyper_threading = false});
   ASSERT_EQ(with.status, Status::kOk);
   ASSERT_EQ(without.status, Status::kOk);
   EXPECT_TRUE(same_bits(with.picture.color, without.picture.color));
@@ -230,9 +212,7 @@ TEST(BvhRenderer, HyperThreadingWaitsLess) {
 }
 
 TEST(BvhRenderer, FiguresAddUp) {
-  const test::TestMesh mesh = make_mixed_mesh();
-  Bvh bvh;
-  ASSERT_EQ(build_bvh(mesh.view(), {}, bvh), Status::kOk);
+  const Bvh bvh = bvh_of(make_mixed_mesh());
   const BvhFrame frame = render_bvh_frame(bvh, settings_of(kMixedCamera, 320, 200), ps3(), {});
   ASSERT_EQ(frame.status, Status::kOk);
   // Every tile on one core, as often as the replay says.
@@ -279,8 +259,7 @@ TEST(BvhRenderer, StopsWhenAsked) {
   Bvh bvh;
   std::atomic<bool> abort{false};
   ASSERT_EQ(build_bvh(mesh.view(), {}, bvh, &abort), Status::kOk);
-  RenderOptions options;
-  options.abort = &abort;
+  const RenderOptions options{.abort = &abort};
   EXPECT_EQ(render_bvh_frame(bvh, settings_of(kMixedCamera, 96, 96), ps3(), options).status, Status::kOk);
   abort = true;
   const BvhFrame frame = render_bvh_frame(bvh, settings_of(kMixedCamera, 96, 96), ps3(), options);
@@ -292,46 +271,34 @@ TEST(BvhRenderer, StopsWhenAsked) {
 
 TEST(BvhRenderer, RefusesWhatItCannotRender) {
   const test::TestMesh mesh = test::make_sphere(8, 8, 1);
-  Bvh bvh;
-  ASSERT_EQ(build_bvh(mesh.view(), {}, bvh), Status::kOk);
+  const Bvh bvh = bvh_of(mesh);
   const FrameSettings good = settings_of(test::framed_camera(mesh.view()), 64, 64);
   const auto status_of = [&](const FrameSettings& settings, const RenderOptions& options) {
     return render_bvh_frame(bvh, settings, ps3(), options).status;
   };
-  RenderOptions options;
-  EXPECT_EQ(status_of(good, options), Status::kOk);
+  EXPECT_EQ(status_of(good, {}), Status::kOk);
   FrameSettings settings = good;
   settings.accuracy = Accuracy::kPaper;
-  EXPECT_EQ(status_of(settings, options), Status::kUnsupportedFrame);
+  EXPECT_EQ(status_of(settings, {}), Status::kUnsupportedFrame);
   settings = good;
   settings.width = 0;
-  EXPECT_EQ(status_of(settings, options), Status::kBadFrame);
+  EXPECT_EQ(status_of(settings, {}), Status::kBadFrame);
   settings = good;
   settings.camera.at = settings.camera.eye;
-  EXPECT_EQ(status_of(settings, options), Status::kBadFrame);
+  EXPECT_EQ(status_of(settings, {}), Status::kBadFrame);
   for (const std::uint32_t ring_size : {0u, 1u, kRingOf<16> + 1}) {
-    options.ring_size = ring_size;
-    EXPECT_EQ(status_of(good, options), Status::kBadParameter) << ring_size;
+    EXPECT_EQ(status_of(good, {.ring_size = ring_size}), Status::kBadParameter) << ring_size;
   }
-  options.packet_width = 8;
-  options.ring_size = kRingOf<8>;
-  EXPECT_EQ(status_of(good, options), Status::kOk);
-  options.ring_size = kRingOf<8> + 1;
-  EXPECT_EQ(status_of(good, options), Status::kBadParameter);
-  options = {};
+  EXPECT_EQ(status_of(good, {.ring_size = kRingOf<8>, .packet_width = 8}), Status::kOk);
+  EXPECT_EQ(status_of(good, {.ring_size = kRingOf<8> + 1, .packet_width = 8}), Status::kBadParameter);
   for (const std::uint32_t width : {0u, 4u, 32u}) {
-    options.packet_width = width;
-    EXPECT_EQ(status_of(good, options), Status::kBadParameter) << width;
+    EXPECT_EQ(status_of(good, {.packet_width = width}), Status::kBadParameter) << width;
   }
-  options = {};
   for (const std::uint32_t lines : {0u, 2u, 6u, 24u, 64u, 1024u}) {
-    options.caches.node_lines = lines;
-    EXPECT_EQ(status_of(good, options), Status::kBadParameter) << lines;
+    EXPECT_EQ(status_of(good, {.caches = {.node_lines = lines}}), Status::kBadParameter) << lines;
   }
   for (const std::uint32_t lines : {0u, 2u, 12u, 128u}) {
-    options.caches = {};
-    options.caches.triangle_lines = lines;
-    EXPECT_EQ(status_of(good, options), Status::kBadParameter) << lines;
+    EXPECT_EQ(status_of(good, {.caches = {.triangle_lines = lines}}), Status::kBadParameter) << lines;
   }
   Bvh odd;
   ASSERT_EQ(build_bvh(mesh.view(), {.line_triangles = 24}, odd), Status::kOk);

@@ -1,12 +1,8 @@
 // Invariants of the hierarchy. SPDX-License-Identifier: Apache-2.0
 #include <gridiron/build/grid/triangle_records.h>
 #include <gridiron/bvh/bvh.h>
-#include <gtest/gtest.h>
 
-#include <cstring>
-#include <limits>
-#include <vector>
-
+#include "support/test_headers.h"
 #include "support/test_mesh.h"
 
 namespace gridiron::bvh {

@@ -2,18 +2,20 @@
 #include <gridiron/bvh/claim_order.h>
 #include <gridiron/dma/tags.h>
 #include <gridiron/sim/replay.h>
-#include <gtest/gtest.h>
 
-#include <array>
 #include <mutex>
 #include <thread>
-#include <vector>
 
+#include "support/test_headers.h"
 #include "support/test_mesh.h"
 #include "support/trace_steps.h"
 
 namespace gridiron::bvh {
 namespace {
+
+// How a tile ends: it puts its pixels and waits for those of the tile before.
+const sim::TraceEvent kPut{.kind = sim::EventKind::kPut, .rotating = true, .bytes = 4096, .address = 65536};
+const sim::TraceEvent kWait{.kind = sim::EventKind::kWait, .rotating_tags = 2};
 
 sim::TileTrace random_tile(std::uint32_t tile_id, test::TestRandom& random) {
   sim::TraceWriter writer;
@@ -45,16 +47,8 @@ sim::TileTrace random_tile(std::uint32_t tile_id, test::TestRandom& random) {
     }
     writer.add(event);
   }
-  sim::TraceEvent put{};
-  put.kind = sim::EventKind::kPut;
-  put.rotating = true;
-  put.bytes = 4096;
-  put.address = 65536;
-  writer.add(put);
-  sim::TraceEvent wait{};
-  wait.kind = sim::EventKind::kWait;
-  wait.rotating_tags = 2;  // the tile before this one
-  writer.add(wait);
+  writer.add(kPut);
+  writer.add(kWait);
   return writer.finish(tile_id);
 }
 
@@ -91,15 +85,7 @@ TEST(CoreClock, WindowOfLinesAndRotatingTagsHoldTheCore) {
     CoreClock clock(machine, sim::kGridEngine, 2);
     clock.take_claim();
     for (std::uint32_t tile = 0; tile < 6; ++tile) {
-      sim::TraceEvent put{};
-      put.kind = sim::EventKind::kPut;
-      put.rotating = true;
-      put.bytes = 4096;
-      put.address = 65536;
-      sim::TraceEvent wait{};
-      wait.kind = sim::EventKind::kWait;
-      wait.rotating_tags = 2;
-      const sim::TileTrace steps = test::packed_trace(tile, std::array{put, wait});
+      const sim::TileTrace steps = test::packed_trace(tile, std::array{kPut, kWait});
       trace.tiles.push_back(steps);
       clock.take(steps, tile);
       clock.take_claim();

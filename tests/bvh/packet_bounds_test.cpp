@@ -1,13 +1,8 @@
 // A packet's bounds leave out no box that one of its rays meets. SPDX-License-Identifier: Apache-2.0
 #include <gridiron/bvh/packet_bounds.h>
 #include <gridiron/ray/camera.h>
-#include <gtest/gtest.h>
 
-#include <algorithm>
-#include <cmath>
-#include <limits>
-#include <memory>
-
+#include "support/test_headers.h"
 #include "support/test_mesh.h"
 
 namespace gridiron::bvh {
@@ -39,6 +34,18 @@ FrameRecord make_frame(test::TestRandom& random, float eye_distance, bool along_
     frame.step_x[i] = static_cast<float>(pixel * side[i]);
     frame.step_y[i] = static_cast<float>(-pixel * up[i]);
   }
+  return frame;
+}
+
+/// A frame that looks along -z from the origin: pixels of 0.01, from (x, y) on to the right and down.
+FrameRecord frame_along_z(float x, float y) {
+  FrameRecord frame{};
+  frame.width = frame.height = 64;
+  frame.t_far = kFloatMax;
+  const float corner[3] = {x, y, -1.0f};
+  std::copy(corner, corner + 3, frame.corner);
+  frame.step_x[0] = 0.01f;
+  frame.step_y[1] = -0.01f;
   return frame;
 }
 
@@ -137,15 +144,9 @@ TEST(PacketBounds, BoxesThatARayMeetsAreMet) {
 }
 
 TEST(PacketBounds, BoxesBesideBehindAndBeyondAreLeftOut) {
-  FrameRecord frame{};
-  frame.width = frame.height = 64;
-  frame.t_far = kFloatMax;
-  // Looks along -z from the origin; the packet's rays lie within 0.01..0.09 of the axis on either side. Quarters are
+  // The packet's rays lie within 0.01..0.09 of the axis on either side. Quarters are
   // right and left of 0.05, above and below it.
-  const float corner[3] = {0.01f, 0.09f, -1.0f};
-  for (int axis = 0; axis < 3; ++axis) frame.corner[axis] = corner[axis];
-  frame.step_x[0] = 0.01f;
-  frame.step_y[1] = -0.01f;
+  const FrameRecord frame = frame_along_z(0.01f, 0.09f);
   const auto bounds = std::make_unique<PacketBounds<8>>();
   WorkCounters work;
   bounds->set(frame, 0, 0, 0x1p-28f, work);
@@ -195,13 +196,7 @@ TEST(PacketBounds, BoxesBesideBehindAndBeyondAreLeftOut) {
 
 // Rays to all sides of two axes: nothing is said of leaving, and still boxes behind and far to a side are left out.
 TEST(PacketBounds, MixedPacketsLeaveOutWhatLiesBehindOrFarBeside) {
-  FrameRecord frame{};
-  frame.width = frame.height = 64;
-  frame.t_far = kFloatMax;
-  const float corner[3] = {-0.075f, 0.075f, -1.0f};
-  for (int axis = 0; axis < 3; ++axis) frame.corner[axis] = corner[axis];
-  frame.step_x[0] = 0.01f;
-  frame.step_y[1] = -0.01f;
+  const FrameRecord frame = frame_along_z(-0.075f, 0.075f);
   const auto bounds = std::make_unique<PacketBounds<16>>();
   WorkCounters work;
   bounds->set(frame, 0, 0, 0x1p-28f, work);

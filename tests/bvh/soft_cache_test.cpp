@@ -1,12 +1,9 @@
 // The software cache against a list per set. SPDX-License-Identifier: Apache-2.0
 #include <gridiron/bvh/soft_cache.h>
-#include <gtest/gtest.h>
 
-#include <algorithm>
 #include <list>
-#include <memory>
-#include <vector>
 
+#include "support/test_headers.h"
 #include "support/test_mesh.h"
 
 namespace gridiron::bvh {

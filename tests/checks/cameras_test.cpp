@@ -1,18 +1,8 @@
 // The camera files of the scans show what the framing rule and the reference views say.
 // SPDX-License-Identifier: Apache-2.0
-#include <gtest/gtest.h>
-
-#include <cmath>
-#include <filesystem>
-#include <fstream>
-#include <map>
-#include <optional>
-#include <sstream>
-#include <string>
-#include <vector>
-
 #include "support/ply_load.h"
 #include "support/scenes.h"
+#include "support/test_headers.h"
 #include "support/views.h"
 
 namespace gridiron::test {

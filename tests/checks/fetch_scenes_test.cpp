@@ -1,13 +1,8 @@
 // tools/fetch_scenes with a mirror on disk: a wrong download leaves no file behind.
 // SPDX-License-Identifier: Apache-2.0
-#include <gtest/gtest.h>
-
-#include <cstdlib>
-#include <filesystem>
-#include <string>
-
 #include "run_script.h"
 #include "support/scenes.h"
+#include "support/test_headers.h"
 
 namespace gridiron::test {
 namespace {

@@ -1,15 +1,11 @@
 // The table of memory: measured on small builds of the cross compilers, compared with what was committed; and what must
 // not be in code for a core is refused, compiled as core is. SPDX-License-Identifier: Apache-2.0
 #include <gridiron/store/local_store.h>
-#include <gtest/gtest.h>
 
-#include <fstream>
 #include <iterator>
-#include <sstream>
-#include <string>
-#include <vector>
 
 #include "run_script.h"
+#include "support/test_headers.h"
 
 namespace gridiron::test {
 namespace {

@@ -1,14 +1,9 @@
 // The README: its example is short, its links lead somewhere, its picture is small. SPDX-License-Identifier: Apache-2.0
-#include <gtest/gtest.h>
-
-#include <algorithm>
-#include <filesystem>
-#include <fstream>
 #include <iterator>
 #include <regex>
-#include <string>
 
 #include "run_script.h"
+#include "support/test_headers.h"
 
 namespace gridiron::test {
 namespace {

@@ -1,14 +1,11 @@
 // Runs a command through the shell and keeps what it says. SPDX-License-Identifier: Apache-2.0
 #pragma once
 
-#include <gtest/gtest.h>
 #include <sys/wait.h>
 
-#include <array>
 #include <cstdio>
-#include <filesystem>
-#include <fstream>
-#include <string>
+
+#include "support/test_headers.h"
 
 namespace gridiron::test {
 

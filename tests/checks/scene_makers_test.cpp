@@ -1,23 +1,13 @@
 // Our own scenes: closed, turned outwards, of the requested size, and equal to the files in scenes/.
 // Memory: std::vector. Threads: one. SPDX-License-Identifier: Apache-2.0
 #include <gtest/gtest-spi.h>
-#include <gtest/gtest.h>
 
-#include <cstddef>
-#include <cstdint>
-#include <filesystem>
-#include <fstream>
-#include <functional>
 #include <iterator>
-#include <map>
 #include <numeric>
-#include <set>
-#include <string>
-#include <utility>
-#include <vector>
 
 #include "scene_makers/mesh.h"
 #include "scene_makers/shapes.h"
+#include "support/test_headers.h"
 
 namespace gridiron::scene_makers {
 namespace {

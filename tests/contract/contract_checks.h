@@ -61,6 +61,24 @@ void fill_local(B& bench, std::byte value) {
   for (std::uint32_t i = 0; i < kLocalBytes; ++i) bench.local()[i] = value;
 }
 
+/// Transfers that are waited for at once. @returns whether call and wait succeeded.
+template <Bench B>
+bool get_now(B& bench, std::uint32_t to, std::uint32_t from, std::uint32_t bytes, Tag tag) {
+  return bench.platform().get(bench.local() + to, bench.main().offset_by(from), bytes, tag) == Status::kOk &&
+         bench.platform().wait(TagMask::of(tag)) == Status::kOk;
+}
+template <Bench B>
+bool put_now(B& bench, std::uint32_t from, std::uint32_t to, std::uint32_t bytes, Tag tag) {
+  return bench.platform().put(bench.local() + from, bench.main().offset_by(to), bytes, tag) == Status::kOk &&
+         bench.platform().wait(TagMask::of(tag)) == Status::kOk;
+}
+/// Commands that may be under way, `most` of them where the queue has room.
+template <Bench B>
+std::uint32_t commands_at_once(B& bench, std::uint32_t most) {
+  const std::uint32_t depth = bench.platform().limits().queue_depth;
+  return depth < most ? depth : most;
+}
+
 // --- Function ---------------------------------------------------------------------------------------------------
 
 template <Bench B>
@@ -85,9 +103,7 @@ Failure get_brings_the_bytes_and_no_others(B& bench) {
     const std::uint32_t from = bytes == 4096 ? 8192 : 8192 + 32 * 3 + 16;
     const std::uint32_t to = bytes == 4096 ? 4096 : 1024 + 16;
     fill_local(bench, kUntouched);
-    GRIDIRON_CONTRACT_REQUIRE(bench.platform().get(bench.local() + to, bench.main().offset_by(from), bytes, Tag{3}) ==
-                              Status::kOk);
-    GRIDIRON_CONTRACT_REQUIRE(bench.platform().wait(TagMask::of(Tag{3})) == Status::kOk);
+    GRIDIRON_CONTRACT_REQUIRE(get_now(bench, to, from, bytes, Tag{3}));
     for (std::uint32_t i = 0; i < kLocalBytes; ++i) {
       const bool is_inside = i >= to && i < to + bytes;
       GRIDIRON_CONTRACT_REQUIRE(bench.local()[i] == (is_inside ? pattern(from + i - to) : kUntouched));
@@ -104,9 +120,7 @@ Failure put_sends_the_bytes_and_no_others(B& bench) {
     const std::uint32_t from = bytes == 4096 ? 4096 : 1024 + 16;
     fill_main(bench);
     for (std::uint32_t i = 0; i < kLocalBytes; ++i) bench.local()[i] = pattern(i + 77);
-    GRIDIRON_CONTRACT_REQUIRE(bench.platform().put(bench.local() + from, bench.main().offset_by(to), bytes, Tag{4}) ==
-                              Status::kOk);
-    GRIDIRON_CONTRACT_REQUIRE(bench.platform().wait(TagMask::of(Tag{4})) == Status::kOk);
+    GRIDIRON_CONTRACT_REQUIRE(put_now(bench, from, to, bytes, Tag{4}));
     for (std::uint32_t i = 0; i < kMainBytes; ++i) {
       const bool is_inside = i >= to && i < to + bytes;
       GRIDIRON_CONTRACT_REQUIRE(bench.peek(i) == (is_inside ? pattern(from + i - to + 77) : pattern(i)));
@@ -120,8 +134,7 @@ template <Bench B>
 Failure put_sends_what_was_stored_before_it(B& bench) {
   for (std::uint32_t round = 0; round < 8; ++round) {
     for (std::uint32_t i = 0; i < 256; ++i) bench.local()[i] = static_cast<std::byte>((round * 16 + i) & 0xFF);
-    GRIDIRON_CONTRACT_REQUIRE(bench.platform().put(bench.local(), bench.main(), 256, Tag{0}) == Status::kOk);
-    GRIDIRON_CONTRACT_REQUIRE(bench.platform().wait(TagMask::of(Tag{0})) == Status::kOk);
+    GRIDIRON_CONTRACT_REQUIRE(put_now(bench, 0, 0, 256, Tag{0}));
     for (std::uint32_t i = 0; i < 256; ++i) bench.local()[i] = std::byte{0};
     for (std::uint32_t i = 0; i < 256; ++i) {
       GRIDIRON_CONTRACT_REQUIRE(bench.peek(i) == static_cast<std::byte>((round * 16 + i) & 0xFF));
@@ -135,10 +148,8 @@ template <Bench B>
 Failure a_get_after_a_waited_put_sees_it(B& bench) {
   for (std::uint32_t round = 0; round < 8; ++round) {
     for (std::uint32_t i = 0; i < 512; ++i) bench.local()[i] = pattern(i + round);
-    GRIDIRON_CONTRACT_REQUIRE(bench.platform().put(bench.local(), bench.main(), 512, Tag{1}) == Status::kOk);
-    GRIDIRON_CONTRACT_REQUIRE(bench.platform().wait(TagMask::of(Tag{1})) == Status::kOk);
-    GRIDIRON_CONTRACT_REQUIRE(bench.platform().get(bench.local() + 1024, bench.main(), 512, Tag{2}) == Status::kOk);
-    GRIDIRON_CONTRACT_REQUIRE(bench.platform().wait(TagMask::of(Tag{2})) == Status::kOk);
+    GRIDIRON_CONTRACT_REQUIRE(put_now(bench, 0, 0, 512, Tag{1}));
+    GRIDIRON_CONTRACT_REQUIRE(get_now(bench, 1024, 0, 512, Tag{2}));
     for (std::uint32_t i = 0; i < 512; ++i) {
       GRIDIRON_CONTRACT_REQUIRE(bench.local()[1024 + i] == pattern(i + round));
     }
@@ -149,8 +160,7 @@ Failure a_get_after_a_waited_put_sees_it(B& bench) {
 template <Bench B>
 Failure transfers_that_share_a_tag_end_together(B& bench) {
   fill_main(bench);
-  const std::uint32_t depth = bench.platform().limits().queue_depth;
-  const std::uint32_t count = depth < 8 ? depth : 8;
+  const std::uint32_t count = commands_at_once(bench, 8);
   for (std::uint32_t round = 0; round < 3; ++round) {
     for (std::uint32_t i = 0; i < count; ++i) {
       GRIDIRON_CONTRACT_REQUIRE(bench.platform().get(bench.local() + i * 256,
@@ -169,8 +179,7 @@ Failure transfers_that_share_a_tag_end_together(B& bench) {
 template <Bench B>
 Failure tags_can_be_waited_for_in_any_order(B& bench) {
   fill_main(bench);
-  const std::uint32_t depth = bench.platform().limits().queue_depth;
-  const std::uint32_t count = depth < 8 ? depth : 8;
+  const std::uint32_t count = commands_at_once(bench, 8);
   for (std::uint32_t i = 0; i < count; ++i) {
     GRIDIRON_CONTRACT_REQUIRE(bench.platform().get(bench.local() + i * 128, bench.main().offset_by(i * 1024), 128,
                                                    Tag{static_cast<std::uint8_t>(i * 3)}) == Status::kOk);
@@ -188,8 +197,7 @@ Failure tags_can_be_waited_for_in_any_order(B& bench) {
 template <Bench B>
 Failure one_wait_takes_many_tags(B& bench) {
   fill_main(bench);
-  const std::uint32_t depth = bench.platform().limits().queue_depth;
-  const std::uint32_t count = depth < 8 ? depth : 8;
+  const std::uint32_t count = commands_at_once(bench, 8);
   TagMask tags{};
   for (std::uint32_t i = 0; i < count; ++i) {
     const Tag tag{static_cast<std::uint8_t>(31 - i)};
@@ -218,8 +226,7 @@ Failure waiting_for_nothing_ends_at_once(B& bench) {
 template <Bench B>
 Failure the_whole_queue_can_be_used(B& bench) {
   fill_main(bench);
-  const std::uint32_t depth = bench.platform().limits().queue_depth;
-  const std::uint32_t count = depth < 32 ? depth : 32;
+  const std::uint32_t count = commands_at_once(bench, 32);
   for (std::uint32_t round = 0; round < 3; ++round) {
     for (std::uint32_t i = 0; i < count; ++i) {
       const Tag tag{static_cast<std::uint8_t>(i % 32)};

@@ -4,14 +4,10 @@
 #include <gridiron/sim/plain_core.h>
 #include <gridiron/sim/sim_core.h>
 #include <gridiron/sim/sim_memory.h>
-#include <gtest/gtest.h>
-
-#include <cstdint>
-#include <memory>
-#include <string>
 
 #include "contract_checks.h"
 #include "host_board.h"
+#include "support/test_headers.h"
 #include "template_port.h"
 
 namespace gridiron::contract {

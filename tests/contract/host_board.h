@@ -4,11 +4,7 @@
 
 #include <gridiron/sim/sim_memory.h>
 
-#include <cstddef>
-#include <cstdint>
-#include <cstring>
-#include <span>
-
+#include "support/test_headers.h"
 #include "template_port.h"
 
 namespace gridiron::contract {

@@ -5,9 +5,8 @@
 
 #include <gridiron/base/lanes.h>
 #include <gridiron/base/one_lane.h>
-#include <gtest/gtest.h>
 
-#include <string>
+#include "support/test_headers.h"
 
 namespace gridiron::test {
 

@@ -2,15 +2,18 @@
 // Memory: none. Threads: any. SPDX-License-Identifier: Apache-2.0
 #pragma once
 
-#include <gtest/gtest.h>
-
-#include <cstdint>
-#include <cstdlib>
-#include <string>
+#include "support/test_headers.h"
+#include "support/test_mesh.h"
 
 namespace gridiron::test {
 
-/// Calls body(seed) for the seeds 1..count until one fails, and then says how to run that one alone.
+/// Whether a test runs with all of its seeds, so that what it counted says something.
+inline bool all_seeds_run() {
+  return std::getenv("GRIDIRON_TEST_SEED") == nullptr;
+}
+
+/// Calls body(seed), or body(random) with its random numbers, for the seeds 1..count until one fails, and then says
+/// which one that was and how to run it alone.
 template <class Body>
 void for_each_seed(std::uint64_t count, Body&& body) {
   const char* wanted = std::getenv("GRIDIRON_TEST_SEED");
@@ -18,7 +21,12 @@ void for_each_seed(std::uint64_t count, Body&& body) {
   const std::uint64_t first = only != 0 ? only : 1;
   const std::uint64_t last = only != 0 ? only : count;
   for (std::uint64_t seed = first; seed <= last; ++seed) {
-    body(seed);
+    if constexpr (std::is_invocable_v<Body&, TestRandom&>) {
+      TestRandom random(seed);
+      body(random);
+    } else {
+      body(seed);
+    }
     if (testing::Test::HasFailure()) {
       ADD_FAILURE() << "rerun with GRIDIRON_TEST_SEED=" << seed;
       return;

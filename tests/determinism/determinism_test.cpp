@@ -2,45 +2,27 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <gridiron/sim/machine_profile.h>
 #include <gridiron/sim/replay.h>
-#include <gtest/gtest.h>
-
-#include <algorithm>
-#include <cmath>
-#include <functional>
-#include <map>
-#include <string>
-#include <vector>
 
 #include "determinism/trace_difference.h"
+#include "sim_platform/replay_cases.h"
 #include "support/render_mesh.h"
+#include "support/test_headers.h"
 #include "support/test_mesh.h"
 #include "support/views.h"
 
 namespace gridiron::test {
 namespace {
 
-// A mesh with long triangle lists, empty space, silhouettes and overlapping surfaces.
-TestMesh make_mesh() {
-  TestMesh mesh = make_torus(60, 30, 1.0f, 0.35f);
-  mesh.append(make_random_soup(800, 0.15f, 3));
-  mesh.append(make_height_field(20, 0.2f, 4));
-  mesh.append(make_triangle({-3, -0.5f, -3}, {3, -0.5f, -3}, {0, -0.4f, 3}));
-  return mesh;
-}
-
 FrameSettings default_settings(Accuracy accuracy) {
-  FrameSettings settings;
-  settings.camera = {{1.2f, 1.5f, 2.5f}, {0, 0, 0}, {0, 1, 0}, 0.5f};
-  settings.width = 150;
-  settings.height = 110;
-  settings.accuracy = accuracy;
-  return settings;
+  const Camera camera{{1.2f, 1.5f, 2.5f}, {0, 0, 0}, {0, 1, 0}, 0.5f};
+  return {.camera = camera, .width = 150, .height = 110, .accuracy = accuracy};
 }
 
 // Frames of one accuracy share the scene and the frame that all others are compared with.
 class Subject {
  public:
-  explicit Subject(Accuracy accuracy) : accuracy_(accuracy), mesh_(make_mesh()), scene_(mesh_.view(), grid(accuracy)) {
+  explicit Subject(Accuracy accuracy)
+      : accuracy_(accuracy), mesh_(make_mixed_mesh()), scene_(mesh_.view(), grid(accuracy)) {
     EXPECT_EQ(scene_.status(), Status::kOk);
     first_ = scene_.render(default_settings(accuracy), {});
     EXPECT_EQ(first_.result.status, Status::kOk);
@@ -59,9 +41,7 @@ class Subject {
 
  private:
   static GridParameters grid(Accuracy accuracy) {
-    GridParameters parameters;
-    if (accuracy == Accuracy::kPaper) parameters.format = TriangleFormat::kProjection;
-    return parameters;
+    return {.format = accuracy == Accuracy::kPaper ? TriangleFormat::kProjection : TriangleFormat::kVertices};
   }
 
   Accuracy accuracy_;
@@ -236,10 +216,6 @@ void expect_same_frame(Accuracy accuracy, const std::string& name) {
   }
 }
 
-std::string parameter_name(const testing::TestParamInfo<std::string>& tested) {
-  return tested.param;
-}
-
 TEST_P(StandardDeterminism, GivesTheSameFrame) {
   expect_same_frame(Accuracy::kStandard, GetParam());
 }
@@ -248,6 +224,7 @@ TEST_P(PaperDeterminism, GivesTheSameFrame) {
   expect_same_frame(Accuracy::kPaper, GetParam());
 }
 
+const auto parameter_name = [](const auto& tested) { return tested.param; };
 INSTANTIATE_TEST_SUITE_P(Variations, StandardDeterminism, testing::ValuesIn(variation_names(Accuracy::kStandard)),
                          parameter_name);
 INSTANTIATE_TEST_SUITE_P(Variations, PaperDeterminism, testing::ValuesIn(variation_names(Accuracy::kPaper)),
@@ -272,59 +249,41 @@ TEST(ReplayOfAFrame, SumsToTheSameWorkForAnyNumberOfCores) {
   const sim::MachineProfile* machine = sim::find_machine_profile("cell-ps3");
   ASSERT_NE(machine, nullptr);
 
-  // What every core does once, whatever its tiles.
-  const auto count = [](const sim::TileTrace& part, sim::EventKind kind) {
-    std::uint64_t sum = 0;
-    sim::for_each_event(part, [&](const sim::TraceEvent& e) { sum += e.kind == kind ? 1 : 0; });
-    return sum;
+  sim::CoreTiming of_tiles, once;  // once: what every core does whatever its tiles
+  const auto add = [](const sim::TileTrace& part, sim::CoreTiming& sum) {
+    sim::for_each_event(part, [&](const sim::TraceEvent& e) {
+      sum.gets += e.kind == sim::EventKind::kGet ? 1 : 0;
+      sum.puts += e.kind == sim::EventKind::kPut ? 1 : 0;
+      sum.bytes_in += e.kind == sim::EventKind::kGet ? e.bytes : 0;
+      sum.bytes_out += e.kind == sim::EventKind::kPut ? e.bytes : 0;
+    });
   };
-  const auto bytes = [](const sim::TileTrace& part, sim::EventKind kind) {
-    std::uint64_t sum = 0;
-    sim::for_each_event(part, [&](const sim::TraceEvent& e) { sum += e.kind == kind ? e.bytes : 0; });
-    return sum;
-  };
-  std::uint64_t tile_gets = 0, tile_puts = 0, tile_bytes_in = 0, tile_bytes_out = 0;
-  for (const sim::TileTrace& tile : trace.tiles) {
-    tile_gets += count(tile, sim::EventKind::kGet);
-    tile_puts += count(tile, sim::EventKind::kPut);
-    tile_bytes_in += bytes(tile, sim::EventKind::kGet);
-    tile_bytes_out += bytes(tile, sim::EventKind::kPut);
-  }
-  ASSERT_GT(tile_gets, 0u);
-  ASSERT_GT(tile_puts, 0u);
+  for (const sim::TileTrace& tile : trace.tiles) add(tile, of_tiles);
+  add(trace.prologue, once);
+  add(trace.epilogue, once);
+  ASSERT_GT(of_tiles.gets, 0u);
+  ASSERT_GT(of_tiles.puts, 0u);
 
   double one_core_cycles = 0;
   double work_of_tiles = 0;  // computation and initialisation without the once-per-core part
   double work_per_core = 0;
   double last_cycles = 0;
   for (const std::uint32_t cores : {1u, 2u, 3u, 6u, 8u}) {
-    sim::ReplayOptions options;
-    options.core_count = cores;
+    const sim::ReplayOptions options{.core_count = cores};
     const sim::FrameTiming timing = sim::replay(trace, *machine, options);
     const sim::FrameTiming again = sim::replay(trace, *machine, options);
     EXPECT_EQ(timing.frame_cycles, again.frame_cycles);
     ASSERT_EQ(timing.cores.size(), cores);
-    sim::CoreTiming sum;
-    double busy = 0;
+    const sim::CoreTiming sum = sim::sum_of(timing.cores);
+    const double busy = sum.init_cycles + sum.compute_cycles;
     for (const sim::CoreTiming& core : timing.cores) {
-      sum.tiles += core.tiles;
-      sum.gets += core.gets;
-      sum.puts += core.puts;
-      sum.bytes_in += core.bytes_in;
-      sum.bytes_out += core.bytes_out;
-      busy += core.init_cycles + core.compute_cycles;
-      double all = core.init_cycles + core.compute_cycles + core.idle_cycles;
-      for (const double wait : core.dma_wait_cycles) all += wait;
-      EXPECT_EQ(all, timing.frame_cycles) << cores << " cores";
+      EXPECT_EQ(sim::accounted_cycles(core), timing.frame_cycles) << cores << " cores";
     }
-    const auto once = [&](auto part, sim::EventKind kind) {
-      return cores * (part(trace.prologue, kind) + part(trace.epilogue, kind));
-    };
     EXPECT_EQ(sum.tiles, trace.tiles.size()) << cores << " cores";
-    EXPECT_EQ(sum.gets, tile_gets + once(count, sim::EventKind::kGet)) << cores << " cores";
-    EXPECT_EQ(sum.puts, tile_puts + once(count, sim::EventKind::kPut)) << cores << " cores";
-    EXPECT_EQ(sum.bytes_in, tile_bytes_in + once(bytes, sim::EventKind::kGet)) << cores << " cores";
-    EXPECT_EQ(sum.bytes_out, tile_bytes_out + once(bytes, sim::EventKind::kPut)) << cores << " cores";
+    EXPECT_EQ(sum.gets, of_tiles.gets + cores * once.gets) << cores << " cores";
+    EXPECT_EQ(sum.puts, of_tiles.puts + cores * once.puts) << cores << " cores";
+    EXPECT_EQ(sum.bytes_in, of_tiles.bytes_in + cores * once.bytes_in) << cores << " cores";
+    EXPECT_EQ(sum.bytes_out, of_tiles.bytes_out + cores * once.bytes_out) << cores << " cores";
 
     // busy = tiles' work + cores * once-per-core work: two core counts determine both, the others must agree.
     if (cores == 1) {

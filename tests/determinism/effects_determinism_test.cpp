@@ -5,16 +5,10 @@
 #include <gridiron/image/scene_image.h>
 #include <gridiron/sim/sim_chip.h>
 #include <gridiron/store/local_store.h>
-#include <gtest/gtest.h>
-
-#include <cstdint>
-#include <cstring>
-#include <functional>
-#include <string>
-#include <vector>
 
 #include "determinism/trace_difference.h"
 #include "support/instrumented.h"
+#include "support/test_headers.h"
 #include "support/test_mesh.h"
 
 namespace gridiron::test {
@@ -91,12 +85,11 @@ struct EffectsFrame {
 EffectsFrame render(const EffectsSubject& subject,
                     const std::function<void(FrameSettings&, sim::ChipOptions&)>& apply) {
   const EffectsView effects = subject.view();
-  FrameSettings settings;
-  settings.camera = {{1.2f, 1.5f, 3.5f}, {0, 0, 0}, {0, 1, 0}, 0.5f};
-  settings.width = 50;
-  settings.height = 36;
-  settings.shading = Shading::kScene;
-  settings.walk_depth = 4;
+  FrameSettings settings{.camera = {{1.2f, 1.5f, 3.5f}, {0, 0, 0}, {0, 1, 0}, 0.5f},
+                         .width = 50,
+                         .height = 36,
+                         .shading = Shading::kScene,
+                         .walk_depth = 4};
   sim::ChipOptions chip;
   apply(settings, chip);
   EffectsFrame frame;

@@ -4,9 +4,7 @@
 
 #include <gridiron/sim/trace.h>
 
-#include <cstddef>
-#include <string>
-
+#include "support/test_headers.h"
 #include "support/trace_steps.h"
 
 namespace gridiron::test {

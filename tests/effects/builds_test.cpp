@@ -29,10 +29,7 @@ Status render_shadows(ShadowStore& store, P& platform, MainAddress frame) {
 constexpr std::uint32_t kWidth = 52, kHeight = 36;
 
 KernelOptions walk_options() {
-  KernelOptions options;
-  options.walk_depth = 2;
-  options.macro_depth = options.triangle_depth = 2;
-  return options;
+  return {.walk_depth = 2, .macro_depth = 2, .triangle_depth = 2};
 }
 
 // A ball in a room, with all effects.

@@ -1,11 +1,7 @@
 // Comparison of pictures: figures that can be counted by hand. SPDX-License-Identifier: Apache-2.0
 #include "effects/compare_pictures.h"
 
-#include <gtest/gtest.h>
-
-#include <cmath>
-#include <cstdint>
-#include <vector>
+#include "support/test_headers.h"
 
 namespace gridiron::test {
 namespace {

@@ -47,12 +47,6 @@ void add_point_light(SceneDescription& scene, Vec3 position, Vec3 color) {
   scene.point_lights.push_back({position, color});
 }
 
-SceneMaterial matt(Vec3 color) {
-  SceneMaterial material;
-  material.color = color;
-  return material;
-}
-
 }  // namespace
 
 SceneDescription empty_scene(Vec3 from, Vec3 at, Vec3 up, float angle_degrees) {
@@ -181,11 +175,9 @@ SceneDescription furnace_ball_scene(const SceneMaterial& material, std::uint32_t
 SceneDescription mirror_room_scene() {
   SceneDescription scene = empty_scene({1.5f, 0.7f, 1.8f}, {-0.3f, -0.4f, -0.5f}, {0, 1, 0}, 60);
   scene.recursion_depth = tool::kMostRecursionDepth;
-  SceneMaterial wall = matt({0.9f, 0.85f, 0.8f});
-  wall.kd = 0.4f;
-  wall.ks = 0.6f;
-  add_box(scene, Vec3(-2), Vec3(2), add_material(scene, wall), /*is_inwards=*/true);
-  add_box(scene, {-0.9f, -1.6f, -0.8f}, {0.2f, -0.4f, 0.3f}, add_material(scene, matt({0.2f, 0.6f, 0.9f})));
+  add_box(scene, Vec3(-2), Vec3(2), add_material(scene, {.color = {0.9f, 0.85f, 0.8f}, .kd = 0.4f, .ks = 0.6f}),
+          /*is_inwards=*/true);
+  add_box(scene, {-0.9f, -1.6f, -0.8f}, {0.2f, -0.4f, 0.3f}, add_material(scene, {.color = {0.2f, 0.6f, 0.9f}}));
   add_point_light(scene, {0.6f, 1.5f, 0.9f}, Vec3(0.9f));
   return scene;
 }
@@ -194,17 +186,16 @@ SceneDescription glass_ball_scene(bool is_smooth, std::uint32_t f) {
   SceneDescription scene = empty_scene({0.5f, 1.6f, 4}, {0, 0.4f, 0}, {0, 1, 0}, 40);
   scene.background = {0.3f, 0.4f, 0.6f};
   scene.recursion_depth = 6;
-  const std::uint16_t red = add_material(scene, matt({0.9f, 0.3f, 0.2f}));
-  const std::uint16_t green = add_material(scene, matt({0.3f, 0.8f, 0.3f}));
+  const std::uint16_t red = add_material(scene, {.color = {0.9f, 0.3f, 0.2f}});
+  const std::uint16_t green = add_material(scene, {.color = {0.3f, 0.8f, 0.3f}});
   add_parallelogram(scene, {-3, -0.7f, 3}, {3, 0, 0}, {0, 0, -6}, red);
   add_parallelogram(scene, {0, -0.7f, 3}, {3, 0, 0}, {0, 0, -6}, green);
-  SceneMaterial glass = matt(Vec3(1));
-  glass.kd = 0.0f;
-  glass.ks = 0.05f;
-  glass.shine = 80.0f;
-  glass.transmittance = 0.95f;
-  glass.index_of_refraction = 1.5f;
-  glass.smooth_normals = is_smooth;
+  const SceneMaterial glass{.kd = 0.0f,
+                            .ks = 0.05f,
+                            .shine = 80.0f,
+                            .transmittance = 0.95f,
+                            .index_of_refraction = 1.5f,
+                            .smooth_normals = is_smooth};
   add_ball(scene, {0, 0.4f, 0}, 1, f, add_material(scene, glass));
   add_point_light(scene, {-2, 5, 3}, Vec3(0.8f));
   return scene;
@@ -213,7 +204,7 @@ SceneDescription glass_ball_scene(bool is_smooth, std::uint32_t f) {
 SceneDescription occlusion_corner_scene(float size, float radius, std::uint32_t samples) {
   SceneDescription scene = empty_scene({2.1f, 2.2f, 0.1f}, {0, 0, 0}, {0, 1, 0}, 50);
   scene.ambient_occlusion = tool::AmbientOcclusion{samples, radius};
-  const std::uint16_t white = add_material(scene, matt(Vec3(1)));
+  const std::uint16_t white = add_material(scene, {.color = Vec3(1)});
   add_parallelogram(scene, {0, 0, size}, {size, 0, 0}, {0, 0, -2 * size}, white);
   add_parallelogram(scene, {0, 0, size}, {0, 0, -2 * size}, {0, size, 0}, white);
   return scene;
@@ -221,7 +212,7 @@ SceneDescription occlusion_corner_scene(float size, float radius, std::uint32_t 
 
 SceneDescription acne_scene(AcneLight light, float scale, Vec3 offset, std::uint32_t f) {
   SceneDescription scene = empty_scene({0.6f, 0.8f, 4}, {0, 0, 0}, {0, 1, 0}, 32);
-  add_ball(scene, Vec3(0), 1, f, add_material(scene, matt(Vec3(1))));
+  add_ball(scene, Vec3(0), 1, f, add_material(scene, {.color = Vec3(1)}));
   const Vec3 behind = scene.view.from * 1.5f;
   if (light == AcneLight::kPoint) add_point_light(scene, behind, Vec3(1));
   if (light == AcneLight::kArea) {

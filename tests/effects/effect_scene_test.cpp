@@ -50,8 +50,7 @@ TEST(EffectScene, BoxesAndBallsAreClosedAndTurnedOutwards) {
   EXPECT_TRUE(is_closed(room.geometry));
   EXPECT_NEAR(volume_of(room.geometry), -48.0, 1e-9);
   SceneDescription ball = empty_scene({0, 0, 5}, {0, 0, 0}, {0, 1, 0}, 45);
-  SceneMaterial smooth;
-  smooth.smooth_normals = true;
+  const SceneMaterial smooth{.smooth_normals = true};
   add_ball(ball, Vec3(0), 2, 16, add_material(ball, smooth));
   EXPECT_EQ(ball.geometry.triangles.size(), 8u * 16 * 16);
   EXPECT_EQ(ball.geometry.vertices.size(), 4u * 16 * 16 + 2);
@@ -68,8 +67,7 @@ TEST(EffectScene, BoxesAndBallsAreClosedAndTurnedOutwards) {
 
 TEST(EffectScene, FlatTrianglesBesideSmoothOnesHaveNoNormals) {
   SceneDescription scene = empty_scene({0, 0, 5}, {0, 0, 0}, {0, 1, 0}, 45);
-  SceneMaterial smooth;
-  smooth.smooth_normals = true;
+  const SceneMaterial smooth{.smooth_normals = true};
   const std::uint16_t flat_material = add_material(scene, {});
   const std::uint16_t smooth_material = add_material(scene, smooth);
   add_parallelogram(scene, Vec3(0), {1, 0, 0}, {0, 1, 0}, flat_material);

@@ -3,9 +3,6 @@
 
 namespace gridiron::test {
 
-KernelPicture render_all_effects(KernelScene& scene, const Camera& camera, std::uint32_t width, std::uint32_t height,
-                                 const KernelOptions& options) {
-  return render_kernel<EffectLayout256K<kAllEffects>, Lanes<4>>(scene, camera, width, height, options);
-}
+RenderKernel* const render_all_effects = render_kernel<EffectLayout256K<kAllEffects>, Lanes<4>>;
 
 }  // namespace gridiron::test

@@ -25,25 +25,20 @@ tool::SceneDescription shipped_scene(std::string_view name, float tolerance) {
 
 ReferenceCounts rays_of(const KernelPicture& picture) {
   const WorkCounters& work = picture.work;
-  ReferenceCounts counts;
-  counts.primary = std::uint64_t{work[Work::kWaveRay]} - work[Work::kQueuedRay];
-  counts.shadow = work[Work::kShadowRay];
-  counts.occlusion = work[Work::kOcclusionRay];
-  counts.reflected = work[Work::kMirrorRay];
-  counts.refracted = work[Work::kRefractedRay];
-  counts.environment = work[Work::kEnvironmentLookup];
-  return counts;
+  return {.primary = std::uint64_t{work[Work::kWaveRay]} - work[Work::kQueuedRay],
+          .shadow = work[Work::kShadowRay],
+          .occlusion = work[Work::kOcclusionRay],
+          .reflected = work[Work::kMirrorRay],
+          .refracted = work[Work::kRefractedRay],
+          .environment = work[Work::kEnvironmentLookup]};
 }
 
 std::string words_of(const ReferenceCounts& counts) {
-  char text[200];
-  std::snprintf(text, sizeof text,
-                "primary %llu, shadow %llu, occlusion %llu, reflected %llu, refracted %llu, environment %llu",
-                static_cast<unsigned long long>(counts.primary), static_cast<unsigned long long>(counts.shadow),
-                static_cast<unsigned long long>(counts.occlusion), static_cast<unsigned long long>(counts.reflected),
-                static_cast<unsigned long long>(counts.refracted),
-                static_cast<unsigned long long>(counts.environment));
-  return text;
+  std::string words;
+  for (const auto& [name, count] : kReferenceCounts) {
+    words += (words.empty() ? "" : ", ") + std::string(name) + ' ' + std::to_string(counts.*count);
+  }
+  return words;
 }
 
 double largest_share(const ReferenceCounts& a, const ReferenceCounts& b) {
@@ -52,9 +47,9 @@ double largest_share(const ReferenceCounts& a, const ReferenceCounts& b) {
     if (other == 0) return std::numeric_limits<double>::infinity();
     return std::abs(static_cast<double>(one) - static_cast<double>(other)) / static_cast<double>(other);
   };
-  return std::max({share(a.primary, b.primary), share(a.shadow, b.shadow), share(a.occlusion, b.occlusion),
-                   share(a.reflected, b.reflected), share(a.refracted, b.refracted),
-                   share(a.environment, b.environment)});
+  double largest = 0.0;
+  for (const auto& [name, count] : kReferenceCounts) largest = std::max(largest, share(a.*count, b.*count));
+  return largest;
 }
 
 std::string different_work(const WorkCounters& a, const WorkCounters& b, WorkId except) {

@@ -133,8 +133,7 @@ TEST(KernelChoice, WhatIsMissingIsToldByName) {
   Shipped& scene = shipped("shadow");
   const Camera camera = camera_of(scene.description.view);
   EXPECT_EQ(render_without_effects(scene.scene, camera, 8, 8, {}).missing_effects, kSceneShading);
-  KernelOptions plain;
-  plain.shading = Shading::kSimple;
+  const KernelOptions plain{.shading = Shading::kSimple};
   EXPECT_EQ(render_without_effects(scene.scene, camera, 8, 8, plain).status, Status::kOk);
 }
 
@@ -142,8 +141,7 @@ TEST(KernelChoice, WhatIsMissingIsToldByName) {
 TEST(KernelChoice, OtherShadingsLeaveEffectsAside) {
   Shipped& scene = shipped("everything");
   const Camera camera = camera_of(scene.description.view);
-  KernelOptions plain;
-  plain.shading = Shading::kSimple;
+  const KernelOptions plain{.shading = Shading::kSimple};
   const KernelPicture with = render_all_effects(scene.scene, camera, kSize, kSize, plain);
   const KernelPicture without = render_without_effects(scene.scene, camera, kSize, kSize, plain);
   ASSERT_EQ(with.status, Status::kOk);
@@ -212,8 +210,7 @@ TEST(KernelChoice, FramesThatEffectsCannotBeRenderedForAreRefused) {
 TEST(KernelChoice, SmoothNormalsCostNothingInTilesWithoutThem) {
   const auto make = [](bool is_smooth) {
     SceneDescription scene = empty_scene({0, 0, 4}, {0, 0, 0}, {0, 1, 0}, 60);
-    tool::SceneMaterial material;
-    material.smooth_normals = is_smooth;
+    const tool::SceneMaterial material{.smooth_normals = is_smooth};
     const std::uint16_t matt = add_material(scene, {});
     add_ball(scene, {-1.2f, 1.2f, 0}, 0.6f, 4, add_material(scene, material));
     add_parallelogram(scene, {-2, -2, -1}, {4, 0, 0}, {0, 4, 0}, matt);
@@ -227,8 +224,7 @@ TEST(KernelChoice, SmoothNormalsCostNothingInTilesWithoutThem) {
   EXPECT_EQ(flat.work[Work::kSmoothNormal], 0u);
   ASSERT_GT(smooth.work[Work::kSmoothNormal], 0u);
   // Every hit on the ball is one normal; they are all in the first tile.
-  KernelOptions planes;
-  planes.wants_planes = true;
+  const KernelOptions planes{.wants_planes = true};
   const SceneDescription scene = make(true);
   const KernelPicture ids = render_scene(scene, 64, 64, planes);
   std::uint32_t on_ball = 0;

@@ -27,10 +27,7 @@ constexpr std::uint32_t kWidth = 40, kHeight = 34;  // 2 x 2 tiles, cut
 SceneDescription everything_small() {
   // Not the shipped one: its triangles are many. All effects, all kinds of walks.
   SceneDescription scene = glass_ball_scene(/*is_smooth=*/true, 4);
-  tool::SceneMaterial mirror;
-  mirror.kd = 0.3f;
-  mirror.ks = 0.6f;
-  mirror.shine = 20.0f;
+  const tool::SceneMaterial mirror{.kd = 0.3f, .ks = 0.6f, .shine = 20.0f};
   add_box(scene, {-1.8f, -0.7f, -1.6f}, {-0.7f, 1.5f, -0.8f}, add_material(scene, mirror));
   scene.area_lights.push_back({{1, 4, 1}, {1, 0, 0}, {0, 0, 1}, {0.5f, 0.4f, 0.3f}, 4});
   scene.ambient_occlusion = tool::AmbientOcclusion{4, 1.5f};
@@ -49,8 +46,7 @@ Base& base(Accuracy accuracy) {
   const auto [entry, is_new] = known.try_emplace(accuracy);
   Base& made = entry->second;
   if (!is_new) return made;
-  KernelOptions options;
-  options.accuracy = accuracy;
+  const KernelOptions options{.accuracy = accuracy};
   made.description = everything_small();
   made.camera = camera_of(made.description.view);
   made.scene = build_kernel_scene(made.description, options);
@@ -81,8 +77,7 @@ class KernelDeterminism : public testing::TestWithParam<Accuracy> {
 
 TEST_P(KernelDeterminism, TheNumberOfWalksChangesNoWork) {
   for (const std::uint32_t depth : {1u, 2u, 3u, 5u, 8u}) {
-    KernelOptions options;
-    options.walk_depth = depth;
+    KernelOptions options{.walk_depth = depth};
     // Eight walks fetch blocks of the environment in up to two commands each: more than the queue takes.
     expect_same(options, /*waits_alike=*/false, "walks: " + std::to_string(depth));
     options.queue_depth = 32;
@@ -93,8 +88,7 @@ TEST_P(KernelDeterminism, TheNumberOfWalksChangesNoWork) {
 // A queue that is full waits for what began first: waits more, and nothing else.
 TEST_P(KernelDeterminism, TheQueueOfTransfersChangesWaitsAlone) {
   for (const std::uint32_t depth : {1u, 2u, 16u}) {
-    KernelOptions options;
-    options.queue_depth = depth;
+    KernelOptions options{.queue_depth = depth};
     expect_same(options, /*waits_alike=*/false, "commands: " + std::to_string(depth));
     options.walk_depth = 3;
     options.moves_late = true;
@@ -104,16 +98,13 @@ TEST_P(KernelDeterminism, TheQueueOfTransfersChangesWaitsAlone) {
 
 // Nothing is read before it was waited for.
 TEST_P(KernelDeterminism, BytesThatComeLateChangeNothing) {
-  KernelOptions options;
-  options.moves_late = true;
+  const KernelOptions options{.moves_late = true};
   expect_same(options, /*waits_alike=*/true, "late");
 }
 
 // Where the queue is long enough, how many walks there are does not even change waits.
 TEST_P(KernelDeterminism, InALongQueueWaitsAreAlike) {
-  KernelOptions options;
-  options.accuracy = GetParam();
-  options.queue_depth = 32;
+  KernelOptions options{.accuracy = GetParam(), .queue_depth = 32};
   Base& scene = base(GetParam());
   options.walk_depth = 1;
   const KernelPicture one = render_all_effects(scene.scene, scene.camera, kWidth, kHeight, options);
@@ -125,8 +116,7 @@ TEST_P(KernelDeterminism, InALongQueueWaitsAreAlike) {
 // Packets and lanes change how eye rays and groups are counted; pixels and rays they do not.
 TEST_P(KernelDeterminism, PacketsAndLanesChangeNoPixelAndNoRay) {
   Base& scene = base(GetParam());
-  KernelOptions options;
-  options.accuracy = GetParam();
+  const KernelOptions options{.accuracy = GetParam()};
   const std::pair<const char*, RenderKernel*> kernels[] = {{"packets of 8", render_packets_of_8},
                                                            {"packets of 16", render_packets_of_16},
                                                            {"8 lanes", render_eight_lanes},
@@ -160,10 +150,7 @@ TEST(KernelGrids, ChangeNoPixelAndNoRay) {
     Base& scene = base(accuracy);
     for (const auto& [lambda, macro_width] : {std::pair{0.5f, 4u}, {2.0f, 2u}, {2.0f, 6u}, {8.0f, 4u}, {8.0f, 6u}}) {
       SCOPED_TRACE(testing::Message() << "lambda " << lambda << ", macrocells of " << macro_width);
-      KernelOptions options;
-      options.accuracy = accuracy;
-      options.lambda = lambda;
-      options.macro_width = macro_width;
+      const KernelOptions options{.accuracy = accuracy, .lambda = lambda, .macro_width = macro_width};
       const KernelPicture picture = render_scene(scene.description, kWidth, kHeight, options);
       ASSERT_EQ(picture.status, Status::kOk) << picture.violation;
       EXPECT_EQ(picture.color, scene.picture.color);

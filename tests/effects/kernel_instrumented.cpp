@@ -22,11 +22,10 @@ std::string instrumented_violation(const KernelFrame& frame, const KernelLayout&
   const auto region = memory.allocate(bytes, sim::SimMemory::kFirstAddress);
   if (!region || region->address.value != sim::SimMemory::kFirstAddress) return "instrumented: no memory";
   std::copy_n(kernel_memory(frame) + sim::SimMemory::kFirstAddress, bytes, region->bytes.data());
-  sim::ChipOptions chip;
-  chip.mode = sim::Mode::kInstrumented;
-  chip.store = store;
-  chip.packet_width = kernel.packet_width;
-  chip.completion = options.moves_late ? sim::Completion::kLate : sim::Completion::kEarly;
+  sim::ChipOptions chip{.mode = sim::Mode::kInstrumented,
+                        .store = store,
+                        .packet_width = kernel.packet_width,
+                        .completion = options.moves_late ? sim::Completion::kLate : sim::Completion::kEarly};
   chip.limits.queue_depth = options.queue_depth;
   chip.spill = {frame.spill.address, frame.spill.bytes};
   const sim::ChipResult result = sim::render_frame(memory, MainAddress{frame.frame_address}, chip);

@@ -4,14 +4,7 @@
 
 namespace gridiron::test {
 
-KernelPicture render_eight_lanes(KernelScene& scene, const Camera& camera, std::uint32_t width, std::uint32_t height,
-                                 const KernelOptions& options) {
-  return render_kernel<EffectLayout256K<kAllEffects>, Lanes<8>>(scene, camera, width, height, options);
-}
-
-KernelPicture render_sixteen_lanes(KernelScene& scene, const Camera& camera, std::uint32_t width, std::uint32_t height,
-                                   const KernelOptions& options) {
-  return render_kernel<EffectLayout256K<kAllEffects>, Lanes<16>>(scene, camera, width, height, options);
-}
+RenderKernel* const render_eight_lanes = render_kernel<EffectLayout256K<kAllEffects>, Lanes<8>>;
+RenderKernel* const render_sixteen_lanes = render_kernel<EffectLayout256K<kAllEffects>, Lanes<16>>;
 
 }  // namespace gridiron::test

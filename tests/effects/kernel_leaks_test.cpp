@@ -131,8 +131,7 @@ TEST_P(KernelAcneOfScans, NothingLiesBetweenWhatIsSeenAndALightAtTheEye) {
     scene.geometry.triangle_materials.assign(scene.geometry.triangles.size(), white);
     scene.point_lights.push_back({scene.view.from, Vec3(1)});
     transform_scene(scene, place.scale, place.offset);
-    KernelOptions planes;
-    planes.wants_planes = true;
+    const KernelOptions planes{.wants_planes = true};
     const KernelPicture shadowed = render_scene(scene, 2 * kSize, 2 * kSize, planes);
     ASSERT_EQ(shadowed.status, Status::kOk);
     scene.shadows = false;
@@ -239,10 +238,7 @@ TEST(KernelLeaks, NoLightGetsIntoAClosedRoom) {
     EXPECT_EQ(lit_pixels(closed), 0u) << "ambient occlusion";
 
     // Mirrors all around: seven reflections of each eye ray, and none gets out.
-    tool::SceneMaterial mirror;
-    mirror.kd = 0;
-    mirror.ks = 1;
-    SceneDescription mirrors = room(mirror);
+    SceneDescription mirrors = room({.kd = 0, .ks = 1});
     set_environment(mirrors, Vec3(1));
     mirrors.recursion_depth = 8;
     transform_scene(mirrors, place.scale, place.offset);

@@ -1,17 +1,12 @@
 // Pictures of the kernel against the reference's: scenes of the repository, scenes in code, scenes of the makers.
 // SPDX-License-Identifier: Apache-2.0
-#include <gtest/gtest.h>
-
-#include <cstdint>
-#include <cstdlib>
 #include <ostream>
-#include <string>
-#include <string_view>
 
 #include "effects/effect_scene.h"
 #include "effects/kernel_check.h"
 #include "scene_makers/procedural.h"
 #include "scene_text/scene_reader.h"
+#include "support/test_headers.h"
 
 namespace gridiron::test {
 namespace {

@@ -14,9 +14,6 @@ constexpr KernelVariant kVariants[] = {
 
 std::span<const KernelVariant> plain_variants() { return kVariants; }
 
-KernelPicture render_without_effects(KernelScene& scene, const Camera& camera, std::uint32_t width,
-                                     std::uint32_t height, const KernelOptions& options) {
-  return render_kernel<StoreLayout256K<8>, Lanes<4>>(scene, camera, width, height, options);
-}
+RenderKernel* const render_without_effects = render_kernel<StoreLayout256K<8>, Lanes<4>>;
 
 }  // namespace gridiron::test

@@ -21,13 +21,11 @@ using tool::SceneMaterial;
 constexpr std::uint32_t kSize = 48;
 
 SceneMaterial shares(float kd, float ks, float transmittance, float index, bool is_smooth = false) {
-  SceneMaterial material;
-  material.kd = kd;
-  material.ks = ks;
-  material.transmittance = transmittance;
-  material.index_of_refraction = transmittance > 0 ? index : 1.0f;
-  material.smooth_normals = is_smooth;
-  return material;
+  return {.kd = kd,
+          .ks = ks,
+          .transmittance = transmittance,
+          .index_of_refraction = transmittance > 0 ? index : 1.0f,
+          .smooth_normals = is_smooth};
 }
 
 // --- Furnaces: in an environment of one half nothing is brighter than that.
@@ -201,10 +199,7 @@ TEST_P(KernelHostile, ScenesGiveTheSamePictureAlways) {
   ASSERT_EQ(picture.status, Status::kOk) << picture.violation;
   EXPECT_EQ(picture.violation, "");
   for (const std::uint32_t color : picture.color) ASSERT_EQ(color >> 24, 255u);
-  KernelOptions other;
-  other.walk_depth = 3;
-  other.moves_late = true;
-  other.queue_depth = 5;
+  KernelOptions other{.walk_depth = 3, .queue_depth = 5, .moves_late = true};
   const KernelPicture again = render_scene(scene, kSize, kSize, other);
   EXPECT_EQ(again.color, picture.color);
   EXPECT_EQ(different_work(again.work, picture.work, Work::kWait), "");

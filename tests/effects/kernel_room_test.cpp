@@ -20,10 +20,10 @@ SceneDescription scene_of_materials() {
   SceneDescription scene = empty_scene({0, 0, 6}, {0, 0, 0}, {0, 1, 0}, 40);
   scene.point_lights.push_back({{1, 2, 5}, Vec3(1)});
   for (std::uint32_t i = 0; i < 200; ++i) {
-    tool::SceneMaterial material;
-    material.color = Vec3(static_cast<float>(i % 7) / 6, static_cast<float>(i % 11) / 10, static_cast<float>(i) / 199);
-    material.smooth_normals = i % 3 == 0;
-    material.ks = i % 5 == 0 ? 0.3f : 0.0f;
+    const tool::SceneMaterial material{
+        .color = Vec3(static_cast<float>(i % 7) / 6, static_cast<float>(i % 11) / 10, static_cast<float>(i) / 199),
+        .ks = i % 5 == 0 ? 0.3f : 0.0f,
+        .smooth_normals = i % 3 == 0};
     // Neighbours 64 apart share a slot.
     const std::uint32_t place = i % 2 == 0 ? i / 2 : 199 - i / 2;
     const Vec3 center(static_cast<float>(place % 20) * 0.2f - 1.9f, static_cast<float>(place / 20) * 0.4f - 1.8f, 0);
@@ -36,8 +36,7 @@ SceneDescription scene_of_materials() {
 TEST(KernelRoom, MoreMaterialsThanSlots) {
   const SceneDescription scene = scene_of_materials();
   expect_reference(scene, 64, 64, {4, 2e-3, 0.1});
-  KernelOptions one_walk;
-  one_walk.walk_depth = 1;
+  const KernelOptions one_walk{.walk_depth = 1};
   EXPECT_EQ(render_scene(scene, 64, 64).color, render_scene(scene, 64, 64, one_walk).color);
 }
 
@@ -90,12 +89,8 @@ TEST(KernelRoom, AllLightsThatAreAllowed) {
 // Rays that wait overflow the local store, and come back: a stack of panes of glass that all reflect and refract.
 TEST(KernelRoom, RaysThatWaitInMainMemory) {
   SceneDescription scene = empty_scene({0.2f, 0.3f, 4}, {0, 0, 0}, {0, 1, 0}, 30);
-  tool::SceneMaterial glass;
-  glass.color = {0.9f, 0.95f, 1};
-  glass.kd = 0.1f;
-  glass.ks = 0.2f;
-  glass.transmittance = 0.7f;
-  glass.index_of_refraction = 1.2f;
+  const tool::SceneMaterial glass{
+      .color = {0.9f, 0.95f, 1}, .kd = 0.1f, .ks = 0.2f, .transmittance = 0.7f, .index_of_refraction = 1.2f};
   const std::uint16_t index = add_material(scene, glass);
   for (int i = 0; i < 5; ++i) {
     const float z = 1.0f - 0.5f * static_cast<float>(i);
@@ -111,10 +106,7 @@ TEST(KernelRoom, RaysThatWaitInMainMemory) {
   // What was put came back, all of it.
   expect_reference(scene, 40, 40, {0, 0.0, 0.12});
   for (const std::uint32_t depth : {1u, 3u}) {
-    KernelOptions options;
-    options.walk_depth = depth;
-    options.moves_late = true;
-    options.queue_depth = depth;
+    const KernelOptions options{.walk_depth = depth, .queue_depth = depth, .moves_late = true};
     const KernelPicture other = render_scene(scene, 40, 40, options);
     EXPECT_EQ(other.color, picture.color);
     EXPECT_EQ(other.spilled_bytes, picture.spilled_bytes);

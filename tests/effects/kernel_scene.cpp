@@ -14,10 +14,10 @@ KernelScene build_kernel_scene(const tool::SceneDescription& description, const 
   const EffectsView view = effects.view();
   scene.called_for = effects_called_for(view);
   const MeshView mesh = tool::mesh_view(copy);
-  GridParameters parameters;
-  parameters.lambda = options.lambda;
-  parameters.macro_width = options.macro_width;
-  parameters.format = options.accuracy == Accuracy::kCompact ? TriangleFormat::kLattice : TriangleFormat::kVertices;
+  const GridParameters parameters{
+      .lambda = options.lambda,
+      .macro_width = options.macro_width,
+      .format = options.accuracy == Accuracy::kCompact ? TriangleFormat::kLattice : TriangleFormat::kVertices};
   GridNeed need;
   scene.status = count_scene_image(mesh, parameters, need, &view);
   if (scene.status != Status::kOk) return scene;
@@ -32,12 +32,10 @@ KernelScene build_kernel_scene(const tool::SceneDescription& description, const 
 }
 
 Camera camera_of(const tool::SceneView& view) {
-  Camera camera;
-  camera.eye = view.from;
-  camera.at = view.at;
-  camera.up = view.up;
-  camera.tan_half_fov = static_cast<float>(std::tan(glm::radians(double{view.angle_degrees}) / 2));
-  return camera;
+  return {.eye = view.from,
+          .at = view.at,
+          .up = view.up,
+          .tan_half_fov = static_cast<float>(std::tan(glm::radians(double{view.angle_degrees}) / 2))};
 }
 
 KernelFrame make_kernel_frame(KernelScene& scene, const Camera& camera, std::uint32_t width, std::uint32_t height,
@@ -66,20 +64,19 @@ KernelFrame make_kernel_frame(KernelScene& scene, const Camera& camera, std::uin
   frame.memory.resize(end + 2 * 4096);
   std::byte* const base = const_cast<std::byte*>(kernel_memory(frame));
   std::memcpy(base + image, scene.image(), image_bytes);
-  FrameSettings settings;
-  settings.camera = camera;
-  settings.width = width;
-  settings.height = height;
-  settings.tile_width = tile_width;
-  settings.accuracy = options.accuracy;
-  settings.shading = options.shading;
-  settings.techniques = kUseMailbox | kUseCornerCulling | kUseEmptySkip | kUseSubpackets;
-  settings.walk_depth = options.walk_depth;
-  settings.macro_depth = options.macro_depth;
-  settings.triangle_depth = options.triangle_depth;
-  settings.color = MainAddress{frame.color};
-  settings.depth = MainAddress{frame.depth};
-  settings.ids = MainAddress{frame.ids};
+  const FrameSettings settings{.camera = camera,
+                               .width = width,
+                               .height = height,
+                               .tile_width = tile_width,
+                               .accuracy = options.accuracy,
+                               .shading = options.shading,
+                               .techniques = kUseMailbox | kUseCornerCulling | kUseEmptySkip | kUseSubpackets,
+                               .macro_depth = options.macro_depth,
+                               .triangle_depth = options.triangle_depth,
+                               .walk_depth = options.walk_depth,
+                               .color = MainAddress{frame.color},
+                               .depth = MainAddress{frame.depth},
+                               .ids = MainAddress{frame.ids}};
   FrameRecord record;
   frame.status = make_frame_record(settings, scene.view, MainAddress{image}, record);
   if (frame.status != Status::kOk) return frame;

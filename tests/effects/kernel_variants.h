@@ -23,22 +23,19 @@ struct KernelVariant {
 /// The kernel built with just these effects; the test that uses it compiles it.
 template <std::uint32_t Effects>
 [[nodiscard]] constexpr KernelVariant variant(std::string_view name) {
-  return {name, Effects, +[](KernelScene& scene, const Camera& camera, std::uint32_t width, std::uint32_t height,
-                             const KernelOptions& options) {
-            return render_kernel<EffectLayout256K<Effects>, Lanes<4>>(scene, camera, width, height, options);
-          }};
+  return {name, Effects, render_kernel<EffectLayout256K<Effects>, Lanes<4>>};
 }
 
 /// Built with all effects; packets of 32, four lanes.
-[[nodiscard]] RenderKernel render_all_effects;
+extern RenderKernel* const render_all_effects;
 /// The same with packets of 8 and of 16.
-[[nodiscard]] RenderKernel render_packets_of_8;
-[[nodiscard]] RenderKernel render_packets_of_16;
+extern RenderKernel* const render_packets_of_8;
+extern RenderKernel* const render_packets_of_16;
 /// The same as the first with 8 and with 16 lanes.
-[[nodiscard]] RenderKernel render_eight_lanes;
-[[nodiscard]] RenderKernel render_sixteen_lanes;
+extern RenderKernel* const render_eight_lanes;
+extern RenderKernel* const render_sixteen_lanes;
 /// Built without effects.
-[[nodiscard]] RenderKernel render_without_effects;
+extern RenderKernel* const render_without_effects;
 
 /// One for each scene of scenes/ but for the one that calls for everything.
 [[nodiscard]] std::span<const KernelVariant> plain_variants();    ///< no ray beyond shadow rays

@@ -30,8 +30,7 @@ tool::SceneDescription lit_glass() {
 
 TYPED_TEST(KernelLanes, ChangeNoPixelAndNoRay) {
   for (const Accuracy accuracy : {Accuracy::kStandard, Accuracy::kExact, Accuracy::kCompact, Accuracy::kFast}) {
-    KernelOptions options;
-    options.accuracy = accuracy;
+    const KernelOptions options{.accuracy = accuracy};
     const tool::SceneDescription description = lit_glass();
     KernelScene scene = build_kernel_scene(description, options);
     const Camera camera = camera_of(description.view);

@@ -6,18 +6,12 @@
 #include <gridiron/sim/core_runner.h>
 #include <gridiron/sim/machine_profile.h>
 #include <gridiron/sim/replay.h>
-#include <gtest/gtest.h>
-
-#include <cstring>
-#include <nlohmann/json.hpp>
-#include <string>
-#include <utility>
-
 #include "effects/kernel_scene.h"
 #include "report/report.h"
 #include "report/timeline.h"
 #include "scene_text/scene_reader.h"
 #include "support/render_mesh.h"
+#include "support/test_headers.h"
 #include "support/test_mesh.h"
 
 namespace gridiron::test {

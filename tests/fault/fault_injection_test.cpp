@@ -1,12 +1,9 @@
 // The fault-injecting decorator itself, over the simulated core.
 // SPDX-License-Identifier: Apache-2.0
 #include <gridiron/platform/fault_injection.h>
-#include <gtest/gtest.h>
-
-#include <cstdint>
-#include <span>
 
 #include "sim_platform/program_bench.h"
+#include "support/test_headers.h"
 
 namespace gridiron::sim {
 namespace {

@@ -3,30 +3,21 @@
 // changes. The same for every allocation of host memory that fails while a frame is rendered.
 // SPDX-License-Identifier: Apache-2.0
 #include <gridiron/base/lanes.h>
-#include <gridiron/build/grid/grid_builder.h>
 #include <gridiron/frame/frame_setup.h>
-#include <gridiron/image/scene_image.h>
 #include <gridiron/platform/fault_injection.h>
 #include <gridiron/render/tile_renderer.h>
 #include <gridiron/sim/core_runner.h>
 #include <gridiron/sim/sim_chip.h>
 #include <gridiron/store/local_store.h>
-#include <gtest/gtest.h>
 
-#include <algorithm>
-#include <cstddef>
-#include <cstdint>
-#include <cstring>
-#include <memory>
 #include <new>
-#include <span>
-#include <string>
-#include <vector>
 
+#include "core/build/grid/built_image.h"
 #include "failing_new.h"
 #include "host_board.h"
 #include "sim_platform/program_bench.h"
 #include "support/instrumented.h"
+#include "support/test_headers.h"
 #include "support/test_mesh.h"
 #include "support/views.h"
 #include "template_port.h"
@@ -41,16 +32,9 @@ class SmallFrame {
  public:
   SmallFrame() : memory_(std::uint64_t{1} << 22) {
     const test::TestMesh mesh = test::make_torus(8, 12, 0.6f, 0.25f);
-    GridNeed need;
-    EXPECT_EQ(count_scene_image(mesh.view(), {}, need), Status::kOk);
-    const MemoryRegion image = *memory_.allocate(need.image_bytes);
-    const auto scratch = std::make_unique<std::uint64_t[]>(need.scratch_bytes / 8 + 1);
-    EXPECT_EQ(build_scene_image(mesh.view(), {}, need, image.bytes,
-                                std::as_writable_bytes(std::span(scratch.get(), need.scratch_bytes / 8 + 1))),
-              Status::kOk);
-    SceneImageView view;
-    SceneImageError error;
-    EXPECT_EQ(open_scene_image(image.bytes, view, error), Status::kOk);
+    const test::BuiltImage built = test::build_image(mesh.view());
+    const MemoryRegion image = *memory_.allocate(built.need.image_bytes);
+    std::ranges::copy(built.image.bytes(), image.bytes.begin());
 
     FrameSettings settings;
     settings.camera = test::framed_camera(mesh.view());
@@ -62,7 +46,7 @@ class SmallFrame {
     settings.depth = picture_.address.offset_by(plane_bytes_);
     settings.ids = picture_.address.offset_by(2 * plane_bytes_);
     FrameRecord frame;
-    EXPECT_EQ(make_frame_record(settings, view, image.address, frame), Status::kOk);
+    EXPECT_EQ(make_frame_record(settings, built.view, image.address, frame), Status::kOk);
     record_ = *memory_.allocate(sizeof frame);
     std::memcpy(record_.bytes.data(), &frame, sizeof frame);
     before_ = outside_picture();
@@ -98,8 +82,7 @@ class SmallFrame {
 
 TEST(KernelFault, EveryTransferThatFailsInTheSimulatorComesBackAsAStatus) {
   SmallFrame frame;
-  ChipOptions options;
-  options.store = StoreSize::k64KB;
+  ChipOptions options{.store = StoreSize::k64KB};
   const std::uint64_t count = test::render_in_test(frame.memory(), frame.record(), options).transfers;
   ASSERT_GT(count, 50u);
   for (const Completion completion : {Completion::kEarly, Completion::kRandom}) {
@@ -126,10 +109,7 @@ TEST(KernelFault, EveryAllocationThatFailsComesBackAsAStatus) {
   if (has_instrumented_mode()) modes.push_back(Mode::kInstrumented);
   for (const Mode mode : modes) {
     for (const std::uint32_t threads : {1u, 3u}) {
-      ChipOptions options;
-      options.store = StoreSize::k64KB;
-      options.mode = mode;
-      options.threads = threads;
+      const ChipOptions options{.mode = mode, .threads = threads, .store = StoreSize::k64KB};
       ASSERT_EQ(render_frame(frame.memory(), frame.record(), options).status, Status::kOk);
       const std::vector<std::byte> picture = frame.picture();
       std::uint64_t ended = 0;
@@ -156,9 +136,7 @@ TEST(KernelFault, EveryAllocationThatFailsComesBackAsAStatus) {
 
 /// The kernel over the decorator over a checked core.
 ChipResult render_faulty(SmallFrame& frame, const FaultPlan& plan, Completion completion, std::uint64_t* transfers) {
-  ChipOptions options;
-  options.completion = completion;
-  options.seed = plan.transfer;
+  const ChipOptions options{.completion = completion, .seed = plan.transfer};
   return run_cores(frame.memory(), frame.shape, options, [&](SimCore& core, std::span<std::byte> data) {
     FaultInjection<SimCore> faulty(core, plan);
     Store& store = *::new (static_cast<void*>(data.data())) Store;

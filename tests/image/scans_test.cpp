@@ -30,11 +30,9 @@ TEST_P(ScansTest, PixelsEqualTheTruthBitForBit) {
 
   SceneInMemory scene(mesh->view(), GridParameters{});
   ASSERT_EQ(scene.status(), Status::kOk);
-  FrameSettings settings;
-  settings.width = settings.height = 1024;
-  settings.camera = view.camera ? *view.camera : framed_camera(mesh->view());
-  sim::ChipOptions chip;
-  chip.threads = std::max(1u, std::thread::hardware_concurrency());
+  FrameSettings settings{
+      .camera = view.camera ? *view.camera : framed_camera(mesh->view()), .width = 1024, .height = 1024};
+  sim::ChipOptions chip{.threads = std::max(1u, std::thread::hardware_concurrency())};
   const RenderedFrame rendered = scene.render(settings, chip);
   ASSERT_EQ(rendered.result.status, Status::kOk);
   EXPECT_TRUE(rendered.result.violations.empty()) << rendered.result.violations.front().detail;

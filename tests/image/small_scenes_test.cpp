@@ -36,6 +36,10 @@ TestMesh moved(TestMesh mesh, float scale, Vec3 offset) {
   return mesh;
 }
 
+std::function<TestMesh()> scaled_torus(std::uint32_t rings, float scale) {
+  return [=] { return moved(make_torus(rings, rings / 2, 1.0f, 0.4f), scale, {}); };
+}
+
 TestMesh joined(TestMesh mesh, const TestMesh& other) {
   mesh.append(other);
   return mesh;
@@ -108,10 +112,7 @@ TestMesh integer_lattice() {
 }
 
 GridParameters grid_of(float lambda, std::uint32_t macro_width) {
-  GridParameters parameters;
-  parameters.lambda = lambda;
-  parameters.macro_width = macro_width;
-  return parameters;
+  return {.lambda = lambda, .macro_width = macro_width};
 }
 
 std::vector<SceneCase> make_cases() {
@@ -160,14 +161,10 @@ std::vector<SceneCase> make_cases() {
        look({1e6f + 1, 1e6f + 1, -1e6f + 4}, {1e6f, 1e6f, -1e6f})},
       {"eye_1e6_away", sphere, look({0, 0, 1e6f}, {0, 0, 0}, 1e-6f)},
       {"eye_1e4_away", soup, look({1e4f, 1e4f, 0}, {0, 0, 0}, 1e-4f)},
-      {"scale_1e-15", [] { return moved(make_torus(32, 16, 1.0f, 0.4f), 1e-15f, {}); },
-       look({0, 2e-15f, 3e-15f}, {0, 0, 0})},
-      {"scale_1e15", [] { return moved(make_torus(32, 16, 1.0f, 0.4f), 1e15f, {}); },
-       look({0, 2e15f, 3e15f}, {0, 0, 0})},
-      {"scale_1e-30", [] { return moved(make_torus(32, 16, 1.0f, 0.4f), 1e-30f, {}); },
-       look({0, 2e-30f, 3e-30f}, {0, 0, 0})},
-      {"scale_1e30", [] { return moved(make_torus(32, 16, 1.0f, 0.4f), 1e30f, {}); },
-       look({0, 2e30f, 3e30f}, {0, 0, 0})},
+      {"scale_1e-15", scaled_torus(32, 1e-15f), look({0, 2e-15f, 3e-15f}, {0, 0, 0})},
+      {"scale_1e15", scaled_torus(32, 1e15f), look({0, 2e15f, 3e15f}, {0, 0, 0})},
+      {"scale_1e-30", scaled_torus(32, 1e-30f), look({0, 2e-30f, 3e-30f}, {0, 0, 0})},
+      {"scale_1e30", scaled_torus(32, 1e30f), look({0, 2e30f, 3e30f}, {0, 0, 0})},
       {"mixed_scale",
        [] { return joined(make_height_field(16, 60.0f, 3), moved(make_sphere(8, 10, 1.0f), 1e-3f, {})); },
        look({0, 0, 0.005f}, {0, 0, 0})},
@@ -176,14 +173,10 @@ std::vector<SceneCase> make_cases() {
       {"flat_z_denormal", [] { return make_box({-1, -1, 0}, {1, 1, 1e-40f}); }, look({0.3f, 0.2f, 3}, {0, 0, 0})},
       {"flat_z_denormal_side", [] { return make_box({-1, -1, -1e-39f}, {1, 1, 2e-39f}); },
        look({3, 0.2f, 0.4f}, {0, 0, 0})},
-      {"scale_1e-38", [] { return moved(make_torus(16, 8, 1.0f, 0.4f), 1e-38f, {}); },
-       look({0, 2e-38f, 3e-38f}, {0, 0, 0})},
-      {"scale_1e35", [] { return moved(make_torus(32, 16, 1.0f, 0.4f), 1e35f, {}); },
-       look({0, 2e35f, 3e35f}, {0, 0, 0})},
-      {"scale_1e33_far", [] { return moved(make_torus(16, 8, 1.0f, 0.4f), 1e33f, {}); },
-       look({7e35f, 5e35f, 8e35f}, {0, 0, 0}, 1.5e-3f)},
-      {"grazing_1e35", [] { return moved(make_torus(16, 8, 1.0f, 0.4f), 1e35f, {}); },
-       look({-1e29f, 0, -2e35f}, {0, 0, 3e35f}), 33, 33},
+      {"scale_1e-38", scaled_torus(16, 1e-38f), look({0, 2e-38f, 3e-38f}, {0, 0, 0})},
+      {"scale_1e35", scaled_torus(32, 1e35f), look({0, 2e35f, 3e35f}, {0, 0, 0})},
+      {"scale_1e33_far", scaled_torus(16, 1e33f), look({7e35f, 5e35f, 8e35f}, {0, 0, 0}, 1.5e-3f)},
+      {"grazing_1e35", scaled_torus(16, 1e35f), look({-1e29f, 0, -2e35f}, {0, 0, 3e35f}), 33, 33},
       {"flat_field", [] { return make_height_field(12, 0.0f, 1); }, look({0.5f, 1, 2}, {0, 0, 0})},
       {"flat_field_edge_on", [] { return make_height_field(12, 0.0f, 1); }, look({0.1f, 0, 3}, {0, 0, 0}), 33, 33, {},
        kFloatMax, false},
@@ -223,12 +216,7 @@ std::vector<SceneCase> make_cases() {
 }
 
 FrameSettings settings_of(const SceneCase& c) {
-  FrameSettings settings;
-  settings.camera = c.camera;
-  settings.width = c.width;
-  settings.height = c.height;
-  settings.t_far = c.t_far;
-  return settings;
+  return {.camera = c.camera, .width = c.width, .height = c.height, .t_far = c.t_far};
 }
 
 class SmallScenesTest : public testing::TestWithParam<std::size_t> {};
@@ -241,9 +229,7 @@ TEST_P(SmallScenesTest, EveryPixelEqualsTheTruth) {
   for (std::uint32_t lanes = 4; lanes <= sim::widest_lanes(); lanes *= 2) {
     for (const sim::StoreSize store : {sim::StoreSize::k256KB, sim::StoreSize::k64KB}) {
       if (store == sim::StoreSize::k64KB && c.grid.macro_width > 6) continue;  // more than its cell buffers hold
-      sim::ChipOptions chip;
-      chip.lanes = lanes;
-      chip.store = store;
+      const sim::ChipOptions chip{.lanes = lanes, .store = store};
       const RenderedFrame rendered = scene.render(settings_of(c), chip);
       ASSERT_EQ(rendered.result.status, Status::kOk) << lanes << " lanes";
       EXPECT_TRUE(rendered.result.violations.empty()) << rendered.result.violations.front().detail;
@@ -291,12 +277,9 @@ TEST_P(SmallScenesTest, WithoutDepthThePictureIsTheSame) {
 TEST(SmallScenes, WithoutDepthHardlyADistanceIsExact) {
   const TestMesh mesh = joined(make_torus(60, 30, 1.0f, 0.35f), make_random_soup(800, 0.15f, 3));
   SceneInMemory scene(mesh.view(), {});
-  FrameSettings settings;
-  settings.camera = look({1.2f, 1.5f, 2.5f}, {0, 0, 0});
-  settings.width = settings.height = 128;
+  FrameSettings settings{.camera = look({1.2f, 1.5f, 2.5f}, {0, 0, 0}), .width = 128, .height = 128};
   for (const std::uint32_t packet_width : {8u, 32u}) {
-    sim::ChipOptions chip;
-    chip.packet_width = packet_width;
+    const sim::ChipOptions chip{.packet_width = packet_width};
     if (packet_width > 8) settings.techniques |= kUseSubpackets;
     const auto exact = static_cast<std::size_t>(Work::kHitHalf);
     const RenderedFrame with = scene.render(settings, chip), without = scene.render(settings, chip, PlaneSet::kColor);
@@ -323,10 +306,9 @@ TEST(RandomSmallScenes, EveryPixelEqualsTheTruth) {
     const float y = random.between(-spread, spread);
     const float z = random.between(-spread, spread);
     const Vec3 eye = random.below(4) == 0 ? mesh.vertices[random.below(3)] : Vec3{x, y, z};
-    FrameSettings settings;
-    settings.camera = look(eye, eye + Vec3{-y - 0.1f, z + 0.05f, x}, random.between(0.05f, 3.0f));
-    settings.width = 1 + random.below(60);
-    settings.height = 1 + random.below(60);
+    FrameSettings settings{.camera = look(eye, eye + Vec3{-y - 0.1f, z + 0.05f, x}, random.between(0.05f, 3.0f)),
+                           .width = 1 + random.below(60),
+                           .height = 1 + random.below(60)};
     GridParameters grid = grid_of(random.between(0.1f, 12.0f), 1 + random.below(8));
     constexpr Accuracy kAccuracies[] = {Accuracy::kStandard, Accuracy::kExact, Accuracy::kCompact};
     settings.accuracy = kAccuracies[random.below(3)];
@@ -336,9 +318,8 @@ TEST(RandomSmallScenes, EveryPixelEqualsTheTruth) {
     if (scene.status() == Status::kNoTriangles) continue;
     if (settings.accuracy == Accuracy::kCompact) mesh.snap();
     ASSERT_EQ(scene.status(), Status::kOk) << "seed " << seed;
-    sim::ChipOptions chip;
-    chip.lanes = random.below(2) == 0 ? 4u : sim::widest_lanes();
-    chip.packet_width = 4u << random.below(4);
+    sim::ChipOptions chip{.lanes = random.below(2) == 0 ? 4u : sim::widest_lanes(),
+                          .packet_width = 4u << random.below(4)};
     if (random.below(2) == 0) settings.techniques |= kUseSubpackets;
     if (random.below(2) == 0) settings.techniques &= ~std::uint32_t{kUseCornerCulling};
     chip.completion = sim::Completion::kRandom;
@@ -369,11 +350,8 @@ TEST(SmallScenes, ExactTellsSheetsApartThatRoundAlike) {
     }
     SceneInMemory scene(mesh.view(), grid_of(0.5f, 2));
     ASSERT_EQ(scene.status(), Status::kOk);
-    FrameSettings settings;
-    settings.camera = look({0.1f, 0.2f, 3}, {0, 0, 0}, 0.5f);
-    settings.width = settings.height = 48;
-    sim::ChipOptions chip;
-    chip.packet_width = packet_width;
+    FrameSettings settings{.camera = look({0.1f, 0.2f, 3}, {0, 0, 0}, 0.5f), .width = 48, .height = 48};
+    const sim::ChipOptions chip{.packet_width = packet_width};
     if (packet_width > 8) settings.techniques |= kUseSubpackets;
     const RenderedFrame standard = scene.render(settings, chip);
     settings.accuracy = Accuracy::kExact;
@@ -448,9 +426,7 @@ enum class HungView : std::uint8_t {
 constexpr float kFarDistance = 4096.0f;
 
 FrameSettings hung_settings(HungView view, TestRandom& random) {
-  FrameSettings settings;
-  settings.width = settings.height = 64;
-  settings.camera = look({0, 0, 0}, {0, 0, -1}, 0.5f);
+  FrameSettings settings{.camera = look({0, 0, 0}, {0, 0, -1}, 0.5f), .width = 64, .height = 64};
   if (view == HungView::kFar) settings.camera = look({0, 0, kFarDistance}, {0, 0, 0}, 1.0f / kFarDistance);
   if (view == HungView::kAnyBits) {
     settings.camera.tan_half_fov = random.between(0.2f, 0.9f);
@@ -559,14 +535,11 @@ INSTANTIATE_TEST_SUITE_P(Views, HungOnRaysTest, testing::Values(HungView::kAnyBi
 // `paper` may leak and rounds its distances, so it is held to a share of pixels only.
 TEST(PaperAccuracy, AgreesWithTheTruthAlmostEverywhere) {
   const TestMesh mesh = make_torus(48, 24, 1.0f, 0.4f);
-  GridParameters grid;
-  grid.format = TriangleFormat::kProjection;
+  const GridParameters grid{.format = TriangleFormat::kProjection};
   SceneInMemory scene(mesh.view(), grid);
   ASSERT_EQ(scene.status(), Status::kOk);
-  FrameSettings settings;
-  settings.camera = look({0, 2, 3}, {0, 0, 0});
-  settings.width = settings.height = 128;
-  settings.accuracy = Accuracy::kPaper;
+  const FrameSettings settings{
+      .camera = look({0, 2, 3}, {0, 0, 0}), .width = 128, .height = 128, .accuracy = Accuracy::kPaper};
   const RenderedFrame rendered = scene.render(settings, {});
   ASSERT_EQ(rendered.result.status, Status::kOk);
   std::size_t equal = 0;

@@ -2,13 +2,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "numeric/exact_distance.h"
 
-#include <gtest/gtest.h>
-
-#include <bit>
-#include <cmath>
-#include <limits>
-
 #include "core/seeds.h"
+#include "support/test_headers.h"
 #include "support/test_mesh.h"
 
 namespace gridiron::test {

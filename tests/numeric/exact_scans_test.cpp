@@ -34,17 +34,15 @@ TEST_P(ExactScans, EveryPixelShowsTheOraclesTriangle) {
 
   SceneInMemory scene(mesh->view(), GridParameters{});
   ASSERT_EQ(scene.status(), Status::kOk);
-  FrameSettings settings;
-  settings.width = settings.height = kWidth;
-  settings.camera = view.camera ? *view.camera : framed_camera(mesh->view());
-  settings.accuracy = Accuracy::kExact;
-  settings.shading = Shading::kNone;
-  settings.techniques = kUseMailbox | kUseEmptySkip | kUseSubpackets;
-  settings.macro_depth = 4;
-  settings.triangle_depth = 3;
-  sim::ChipOptions chip;
-  chip.packet_width = 32;
-  chip.threads = threads;
+  const FrameSettings settings{.camera = view.camera ? *view.camera : framed_camera(mesh->view()),
+                               .width = kWidth,
+                               .height = kWidth,
+                               .accuracy = Accuracy::kExact,
+                               .shading = Shading::kNone,
+                               .techniques = kUseMailbox | kUseEmptySkip | kUseSubpackets,
+                               .macro_depth = 4,
+                               .triangle_depth = 3};
+  const sim::ChipOptions chip{.threads = threads, .packet_width = 32};
   const RenderedFrame rendered = scene.render(settings, chip, PlaneSet::kColorAndIds);
   ASSERT_EQ(rendered.result.status, Status::kOk);
 

@@ -111,10 +111,6 @@ DVec3 doubles_of(const float* v) {
   return {exact_double(v[0]), exact_double(v[1]), exact_double(v[2])};
 }
 
-DVec3 doubles_of(const Vec3& v) {
-  return {exact_double(v.x), exact_double(v.y), exact_double(v.z)};
-}
-
 bool is_finite(const float* v) {
   return test::is_finite(v[0]) && test::is_finite(v[1]) && test::is_finite(v[2]);
 }
@@ -147,7 +143,7 @@ struct Oracle::RayDoubles {
     }
   }
 
-  [[nodiscard]] bool meets(const Node& node, double limit) const {
+  [[nodiscard]] bool meets(const MedianTree::Node& node, double limit) const {
     double near = low;
     double far = limit;
     for (int axis = 0; axis < 3; ++axis) {
@@ -167,81 +163,40 @@ struct Oracle::RayDoubles {
 };
 
 Oracle::Oracle(const MeshView& mesh, OracleSettings settings) : mesh_(mesh), settings_(settings) {
-  std::vector<DVec3> middles(mesh.triangles.size());
+  std::vector<PlacedBox> boxes(mesh.triangles.size());
+  std::vector<std::uint32_t> ids;
   for (std::uint32_t i = 0; i < mesh.triangles.size(); ++i) {
     const Corners p = corners_of(mesh, i);
     if (!is_finite(p.at[0]) || !is_finite(p.at[1]) || !is_finite(p.at[2])) continue;
-    order_.push_back(i);
-    middles[i] = doubles_of(p.at[0]) + doubles_of(p.at[1]) + doubles_of(p.at[2]);
-  }
-  if (settings_.use_boxes && !order_.empty()) build_node(0, static_cast<std::uint32_t>(order_.size()), middles);
-}
-
-std::uint32_t Oracle::build_node(std::uint32_t first, std::uint32_t count, const std::vector<DVec3>& middles) {
-  const auto index = static_cast<std::uint32_t>(nodes_.size());
-  Node node{};
-  DVec3 low(std::numeric_limits<double>::max()), high(std::numeric_limits<double>::lowest());
-  DVec3 middle_low = low, middle_high = high;
-  for (std::uint32_t i = first; i < first + count; ++i) {
-    const UVec3& t = mesh_.triangles[order_[i]];
-    for (const std::uint32_t vertex : {t.x, t.y, t.z}) {
-      const DVec3 p = doubles_of(mesh_.vertices[vertex]);
-      for (int axis = 0; axis < 3; ++axis) {
-        low[axis] = std::min(low[axis], p[axis]);
-        high[axis] = std::max(high[axis], p[axis]);
-      }
-    }
-    for (int axis = 0; axis < 3; ++axis) {
-      middle_low[axis] = std::min(middle_low[axis], middles[order_[i]][axis]);
-      middle_high[axis] = std::max(middle_high[axis], middles[order_[i]][axis]);
+    ids.push_back(i);
+    for (const float* corner : p.at) {
+      boxes[i].add(doubles_of(corner));
+      boxes[i].middle += doubles_of(corner);
     }
   }
-  for (int axis = 0; axis < 3; ++axis) {
-    node.low[axis] = low[axis];
-    node.high[axis] = high[axis];
-  }
-  node.first_triangle = first;
-  if (count <= kLeafTriangles) {
-    node.triangle_count = count;
-    nodes_.push_back(node);
-    return index;
-  }
-  int widest = 0;
-  for (int axis = 1; axis < 3; ++axis) {
-    if (middle_high[axis] - middle_low[axis] > middle_high[widest] - middle_low[widest]) widest = axis;
-  }
-  node.axis = static_cast<std::uint32_t>(widest);
-  const std::uint32_t half = count / 2;
-  const auto begin = order_.begin() + first;
-  std::nth_element(begin, begin + half, begin + count, [&](std::uint32_t a, std::uint32_t b) {
-    return std::pair(middles[a][widest], a) < std::pair(middles[b][widest], b);
-  });
-  nodes_.push_back(node);
-  build_node(first, half, middles);
-  nodes_[index].second = build_node(first + half, count - half, middles);
-  return index;
+  tree_ = MedianTree(boxes, std::move(ids), kLeafTriangles);
 }
 
 template <class Visit>
 void Oracle::visit_candidates(const RayDoubles& doubles, double& limit, Visit&& visit) const {
   if (!settings_.use_boxes) {
-    for (const std::uint32_t triangle : order_) visit(triangle);
+    for (const std::uint32_t triangle : tree_.order()) visit(triangle);
     return;
   }
-  if (nodes_.empty()) return;
+  if (tree_.nodes().empty()) return;
   std::uint32_t stack[kMostDepth];
   std::size_t depth = 0;
   stack[depth++] = 0;
   while (depth != 0) {
     const std::uint32_t index = stack[--depth];
-    const Node& node = nodes_[index];
+    const MedianTree::Node& node = tree_.nodes()[index];
     if (!doubles.meets(node, limit)) continue;
-    if (node.triangle_count != 0) {
-      for (std::uint32_t i = 0; i < node.triangle_count; ++i) visit(order_[node.first_triangle + i]);
+    if (node.count != 0) {
+      for (std::uint32_t i = 0; i < node.count; ++i) visit(tree_.order()[node.first + i]);
       continue;
     }
     // The nearer child comes first: it lies on top.
-    const bool is_upward = doubles.direction[static_cast<int>(node.axis)] >= 0.0;
+    const bool is_upward = doubles.direction[node.axis] >= 0.0;
     stack[depth++] = is_upward ? node.second : index + 1;
     stack[depth++] = is_upward ? index + 1 : node.second;
   }

@@ -12,6 +12,7 @@
 #include <vector>
 
 #include "numeric/exact_distance.h"
+#include "support/median_tree.h"
 
 namespace gridiron::test {
 
@@ -80,16 +81,9 @@ class Oracle {
   [[nodiscard]] ExactDistance distance(const OracleRay& ray, std::uint32_t triangle_id) const;
 
  private:
-  // A box of the tree. Children of a node: the next one, and `second`. A leaf has a triangle_count.
-  struct Node {
-    double low[3], high[3];
-    std::uint32_t second, first_triangle, triangle_count;
-    std::uint32_t axis;  // along which the children were parted, the next one below
-  };
   struct RayDoubles;
   enum class Side { kNegative = -1, kZero = 0, kPositive = 1, kUnsure = 2 };
 
-  std::uint32_t build_node(std::uint32_t first, std::uint32_t count, const std::vector<DVec3>& middles);
   // Calls visit(triangle) for a superset of the triangles hit at a distance up to `limit`, which it may lower.
   template <class Visit>
   void visit_candidates(const RayDoubles& doubles, double& limit, Visit&& visit) const;
@@ -102,8 +96,7 @@ class Oracle {
 
   MeshView mesh_;
   OracleSettings settings_;
-  std::vector<std::uint32_t> order_;  // triangles, those of a leaf beside each other
-  std::vector<Node> nodes_;
+  MedianTree tree_;
 };
 
 }  // namespace gridiron::test

@@ -18,12 +18,8 @@ namespace gridiron::test {
 namespace {
 
 std::vector<VertexTriangle> records_of(const TestMesh& mesh) {
-  std::vector<VertexTriangle> records(mesh.triangles.size());
-  for (std::size_t i = 0; i < records.size(); ++i) {
-    const UVec3& t = mesh.triangles[i];
-    set_triangle(records[i], mesh.vertices[t.x], mesh.vertices[t.y], mesh.vertices[t.z],
-                 static_cast<std::uint32_t>(i));
-  }
+  std::vector<VertexTriangle> records;
+  for (std::uint32_t id = 0; id < mesh.triangles.size(); ++id) records.push_back(triangle_of(mesh, id));
   return records;
 }
 

@@ -2,17 +2,10 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "numeric/oracle.h"
 
-#include <gtest/gtest.h>
-
-#include <array>
-#include <bit>
-#include <cmath>
-#include <limits>
-#include <optional>
-
 #include "core/seeds.h"
 #include "numeric/hard_rays.h"
 #include "numeric/rounding_scope.h"
+#include "support/test_headers.h"
 #include "support/test_mesh.h"
 
 namespace gridiron::test {

@@ -6,6 +6,7 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <glm/geometric.hpp>
 #include <string>
 #include <vector>
 
@@ -29,16 +30,6 @@ const Place kPlaces[] = {
 TestMesh placed(TestMesh mesh, const Place& place) {
   for (Vec3& vertex : mesh.vertices) vertex = (vertex + place.offset) * place.scale;
   return mesh;
-}
-
-VertexTriangle triangle_of(const TestMesh& mesh, std::uint32_t id) {
-  VertexTriangle triangle{};
-  for (int corner = 0; corner < 3; ++corner) {
-    const Vec3& vertex = mesh.vertices[mesh.triangles[id][corner]];
-    for (int axis = 0; axis < 3; ++axis) triangle.v[corner][axis] = vertex[axis];
-  }
-  triangle.triangle_id = id;
-  return triangle;
 }
 
 int side_of(const float point[3], const VertexTriangle& triangle) {
@@ -118,36 +109,38 @@ bool is_convex(const TestMesh& mesh) {
   return true;
 }
 
-// Length of the part of `v` along unit vector `n`, doubles.
-double along(const DVec3& v, const DVec3& n) {
-  return v.x * n.x + v.y * n.y + v.z * n.z;
+DVec3 point_of(const float (&v)[3]) {
+  return {v[0], v[1], v[2]};
 }
-DVec3 cross(const DVec3& a, const DVec3& b) {
-  return {a.y * b.z - a.z * b.y, a.z * b.x - a.x * b.z, a.x * b.y - a.y * b.x};
-}
-DVec3 unit(const DVec3& v) {
-  return v / std::sqrt(along(v, v));
-}
+
+struct Corners {
+  DVec3 v[3];
+
+  explicit Corners(const VertexTriangle& triangle)
+      : v{point_of(triangle.v[0]), point_of(triangle.v[1]), point_of(triangle.v[2])} {}
+  [[nodiscard]] DVec3 normal() const { return glm::cross(v[1] - v[0], v[2] - v[0]); }  // of any length
+  [[nodiscard]] double longest_edge() const { return std::fmax(glm::length(v[1] - v[0]), glm::length(v[2] - v[0])); }
+};
 
 // Where a point lies by a triangle: above its plane, and inside its nearest edge.
 struct Standing {
   double height, inset;
 };
 Standing stand(const VertexTriangle& triangle, const DVec3& point) {
-  DVec3 v[3];
-  for (int i = 0; i < 3; ++i) v[i] = {triangle.v[i][0], triangle.v[i][1], triangle.v[i][2]};
-  const DVec3 normal = unit(cross(v[1] - v[0], v[2] - v[0]));
-  Standing result{along(point - v[0], normal), 1e300};
+  const Corners corners(triangle);
+  const auto& v = corners.v;
+  const DVec3 normal = glm::normalize(corners.normal());
+  Standing result{glm::dot(point - v[0], normal), 1e300};
   for (int i = 0; i < 3; ++i) {
-    const DVec3 inward = unit(cross(normal, v[(i + 1) % 3] - v[i]));
-    result.inset = std::fmin(result.inset, along(point - v[i], inward));
+    const DVec3 inward = glm::normalize(glm::cross(normal, v[(i + 1) % 3] - v[i]));
+    result.inset = std::fmin(result.inset, glm::dot(point - v[i], inward));
   }
   return result;
 }
 
 double least_height(const VertexTriangle& triangle) {
-  DVec3 middle{};
-  for (const auto& corner : triangle.v) middle += DVec3{corner[0], corner[1], corner[2]} / 3.0;
+  DVec3 middle(0.0);
+  for (const auto& corner : triangle.v) middle += point_of(corner) / 3.0;
   return 3.0 * stand(triangle, middle).inset;
 }
 
@@ -182,27 +175,49 @@ OracleRay ray_onto(const TestMesh& mesh, std::uint32_t id, TestRandom& random) {
   return {{origin.x, origin.y, origin.z}, {direction.x, direction.y, direction.z}};
 }
 
-TEST(SecondaryOrigin, LiesInItsTriangleOnTheRaysSideWithinTheBound) {
-  TestRandom random(17);
-  std::uint32_t tested = 0, inset_tested = 0;
-  for (std::uint32_t round = 0; round < 5000; ++round) {
-    const Place& place = kPlaces[round % std::size(kPlaces)];
-    TestMesh mesh = make_random_soup(1, random.below(2) == 0 ? 1.0f : 0.05f, random.next());
-    if (random.below(4) == 0) {  // a sliver
+// A triangle, a ray that hits it, and how far away by the oracle.
+struct HitCase {
+  VertexTriangle triangle;
+  OracleRay ray;
+  double t;
+};
+
+// Calls check(hit, random, round) for those of some random rays at random triangles that hit.
+// @param has_slivers  triangles of two sizes, every fourth one a sliver. @param place_of  (round) -> where it lies.
+template <class PlaceOf, class Check>
+void for_each_hit(std::uint64_t seed, std::uint32_t rounds, bool has_slivers, PlaceOf&& place_of, Check&& check) {
+  TestRandom random(seed);
+  for (std::uint32_t round = 0; round < rounds; ++round) {
+    const float extent = !has_slivers || random.below(2) == 0 ? 1.0f : 0.05f;
+    TestMesh mesh = make_random_soup(1, extent, random.next());
+    if (has_slivers && random.below(4) == 0) {
       mesh.vertices[2] = mesh.vertices[0] + random.unit() * (mesh.vertices[1] - mesh.vertices[0]) +
                          Vec3{1e-4f, 2e-4f, -1e-4f} * random.unit();
     }
-    mesh = placed(mesh, place);
+    mesh = placed(mesh, place_of(round));
     const VertexTriangle triangle = triangle_of(mesh, 0);
     if (exact_zero_area(triangle.v[0], triangle.v[1], triangle.v[2])) continue;
     const OracleRay ray = ray_onto(mesh, 0, random);
-    if (Oracle(mesh.view()).hits(ray).empty()) continue;
+    const std::vector<OracleHit> hits = Oracle(mesh.view()).hits(ray);
+    if (!hits.empty()) check(HitCase{triangle, ray, hits[0].low}, random, round);
+    if (testing::Test::HasFatalFailure()) return;
+  }
+}
+
+const Place& any_place(std::uint32_t round) {
+  return kPlaces[round % std::size(kPlaces)];
+}
+
+TEST(SecondaryOrigin, LiesInItsTriangleOnTheRaysSideWithinTheBound) {
+  std::uint32_t tested = 0, inset_tested = 0;
+  for_each_hit(17, 5000, /*has_slivers=*/true, any_place, [&](const HitCase& hit, TestRandom&, std::uint32_t round) {
+    const auto& [triangle, ray, t] = hit;
     ++tested;
     for (const bool through : {false, true}) {
       const SecondaryOrigin begun = begin(triangle, ray, through);
       const int wanted = through ? -side_of(ray.origin, triangle) : side_of(ray.origin, triangle);
       ASSERT_EQ(side_of(begun.point, triangle), wanted) << "round " << round;
-      const Standing standing = stand(triangle, {begun.point[0], begun.point[1], begun.point[2]});
+      const Standing standing = stand(triangle, point_of(begun.point));
       const double error = double{begun.error};
       EXPECT_GE(std::fabs(standing.height), 2.0 * error * 0.999) << "round " << round;
       EXPECT_LE(std::fabs(standing.height), 6.0 * error * 1.001) << "round " << round;
@@ -214,68 +229,57 @@ TEST(SecondaryOrigin, LiesInItsTriangleOnTheRaysSideWithinTheBound) {
         EXPECT_GE(standing.inset, -2.0 * error) << "round " << round;
       }
     }
-  }
+  });
   EXPECT_GT(tested, 2500u);
   EXPECT_GT(inset_tested, 2000u);
 }
 
 // Both sides at once, further data for shading, and tolerance for points that rays end at.
 TEST(SecondaryOrigin, SurfacePointsKnowTheirSides) {
-  TestRandom random(41);
   std::uint32_t tested = 0, entering = 0, grazing = 0, widened = 0;
-  for (std::uint32_t round = 0; round < 6000; ++round) {
-    const Place& place = kPlaces[round % std::size(kPlaces)];
-    TestMesh mesh = make_random_soup(1, random.below(2) == 0 ? 1.0f : 0.05f, random.next());
-    if (random.below(4) == 0) {  // a sliver
-      mesh.vertices[2] = mesh.vertices[0] + random.unit() * (mesh.vertices[1] - mesh.vertices[0]) +
-                         Vec3{1e-4f, 2e-4f, -1e-4f} * random.unit();
-    }
-    mesh = placed(mesh, place);
-    const VertexTriangle triangle = triangle_of(mesh, 0);
-    if (exact_zero_area(triangle.v[0], triangle.v[1], triangle.v[2])) continue;
-    const OracleRay ray = ray_onto(mesh, 0, random);
-    if (Oracle(mesh.view()).hits(ray).empty()) continue;
-    ++tested;
-    float vertex_size = 0.0f;
-    for (const auto& corner : triangle.v) {
-      for (const float value : corner) vertex_size = std::fmax(vertex_size, std::fabs(value));
-    }
-    const bool is_wider = random.below(3) == 0;
-    const float least_size = is_wider ? std::ldexp(vertex_size, static_cast<int>(random.below(8)) - 2) : 0.0f;
-    WorkCounters work;
-    const SurfacePoint found = surface_point(triangle, ray.origin, ray.direction, least_size, work);
-    const int side = side_of(ray.origin, triangle);
-    EXPECT_EQ(side_of(found.before, triangle), side) << "round " << round;
-    EXPECT_EQ(side_of(found.behind, triangle), -side) << "round " << round;
-    // Of a hit, det[a - o, b - o, c - o] has the sign of dir . normal.
-    EXPECT_EQ(found.enters, side < 0) << "round " << round;
-    entering += found.enters ? 1u : 0u;
-    const DVec3 d{ray.direction[0], ray.direction[1], ray.direction[2]};
-    const DVec3 normal{found.normal[0], found.normal[1], found.normal[2]};
-    EXPECT_NEAR(along(normal, normal), 1.0, 0x1p-12) << "round " << round;
-    grazing += std::fabs(along(unit(d), normal)) < 0x1p-11 ? 1u : 0u;
-    const float w1 = found.weights[0], w2 = found.weights[1];
-    EXPECT_TRUE(w1 >= 0.0f && w1 <= 1.0f && w2 >= 0.0f && w2 <= 1.0f) << w1 << ' ' << w2 << ", round " << round;
-    EXPECT_LE(w1 + w2, 1.0f + 0x1p-20f) << "round " << round;
-    const double error = double{found.error};
-    EXPECT_GE(error, 0x1p-23 * std::fmax(double{least_size}, double{vertex_size})) << "round " << round;
-    EXPECT_EQ(found.lift, 4.0f * found.error);
-    for (const auto* point : {&found.before, &found.behind}) {
-      const Standing standing = stand(triangle, {(*point)[0], (*point)[1], (*point)[2]});
-      EXPECT_GE(std::fabs(standing.height), 2.0 * error * 0.999) << "round " << round;
-      EXPECT_LE(std::fabs(standing.height), 6.0 * error * 1.001) << "round " << round;
-      EXPECT_GE(standing.inset, -2.0 * error) << "round " << round;
-    }
-    if (is_wider) {
-      widened += found.error > surface_point(triangle, ray.origin, ray.direction, 0.0f, work).error ? 1u : 0u;
-      continue;
-    }
-    for (const bool through : {false, true}) {
-      const SecondaryOrigin begun = begin(triangle, ray, through);
-      const auto& point = through ? found.behind : found.before;
-      for (int axis = 0; axis < 3; ++axis) EXPECT_EQ(begun.point[axis], point[axis]) << "round " << round;
-    }
-  }
+  for_each_hit(
+      41, 6000, /*has_slivers=*/true, any_place, [&](const HitCase& hit, TestRandom& random, std::uint32_t round) {
+        const auto& [triangle, ray, t] = hit;
+        ++tested;
+        float vertex_size = 0.0f;
+        for (const auto& corner : triangle.v) {
+          for (const float value : corner) vertex_size = std::fmax(vertex_size, std::fabs(value));
+        }
+        const bool is_wider = random.below(3) == 0;
+        const float least_size = is_wider ? std::ldexp(vertex_size, static_cast<int>(random.below(8)) - 2) : 0.0f;
+        WorkCounters work;
+        const SurfacePoint found = surface_point(triangle, ray.origin, ray.direction, least_size, work);
+        const int side = side_of(ray.origin, triangle);
+        EXPECT_EQ(side_of(found.before, triangle), side) << "round " << round;
+        EXPECT_EQ(side_of(found.behind, triangle), -side) << "round " << round;
+        // Of a hit, det[a - o, b - o, c - o] has the sign of dir . normal.
+        EXPECT_EQ(found.enters, side < 0) << "round " << round;
+        entering += found.enters ? 1u : 0u;
+        const DVec3 normal = point_of(found.normal);
+        EXPECT_NEAR(glm::dot(normal, normal), 1.0, 0x1p-12) << "round " << round;
+        grazing += std::fabs(glm::dot(glm::normalize(point_of(ray.direction)), normal)) < 0x1p-11 ? 1u : 0u;
+        const float w1 = found.weights[0], w2 = found.weights[1];
+        EXPECT_TRUE(w1 >= 0.0f && w1 <= 1.0f && w2 >= 0.0f && w2 <= 1.0f) << w1 << ' ' << w2 << ", round " << round;
+        EXPECT_LE(w1 + w2, 1.0f + 0x1p-20f) << "round " << round;
+        const double error = double{found.error};
+        EXPECT_GE(error, 0x1p-23 * std::fmax(double{least_size}, double{vertex_size})) << "round " << round;
+        EXPECT_EQ(found.lift, 4.0f * found.error);
+        for (const auto* point : {&found.before, &found.behind}) {
+          const Standing standing = stand(triangle, point_of(*point));
+          EXPECT_GE(std::fabs(standing.height), 2.0 * error * 0.999) << "round " << round;
+          EXPECT_LE(std::fabs(standing.height), 6.0 * error * 1.001) << "round " << round;
+          EXPECT_GE(standing.inset, -2.0 * error) << "round " << round;
+        }
+        if (is_wider) {
+          widened += found.error > surface_point(triangle, ray.origin, ray.direction, 0.0f, work).error ? 1u : 0u;
+          return;
+        }
+        for (const bool through : {false, true}) {
+          const SecondaryOrigin begun = begin(triangle, ray, through);
+          const auto& point = through ? found.behind : found.before;
+          for (int axis = 0; axis < 3; ++axis) EXPECT_EQ(begun.point[axis], point[axis]) << "round " << round;
+        }
+      });
   EXPECT_GT(tested, 3000u);
   EXPECT_GT(entering, tested / 4);
   EXPECT_LT(entering, tested - tested / 4);
@@ -285,56 +289,42 @@ TEST(SecondaryOrigin, SurfacePointsKnowTheirSides) {
 
 // Weights are where the ray meets the triangle, but for what is drawn to its middle.
 TEST(SecondaryOrigin, WeightsAreThoseOfTheHit) {
-  TestRandom random(43);
   std::uint32_t tested = 0;
-  for (std::uint32_t round = 0; round < 4000; ++round) {
-    const TestMesh mesh = placed(make_random_soup(1, 1.0f, random.next()), kPlaces[round % 3 == 0 ? 0 : 5 + round % 4]);
-    const VertexTriangle triangle = triangle_of(mesh, 0);
-    const OracleRay ray = ray_onto(mesh, 0, random);
-    const Oracle oracle(mesh.view());
-    const auto hits = oracle.hits(ray);
-    if (hits.empty()) continue;
-    DVec3 v[3];
-    for (int i = 0; i < 3; ++i) v[i] = {triangle.v[i][0], triangle.v[i][1], triangle.v[i][2]};
-    const DVec3 d{ray.direction[0], ray.direction[1], ray.direction[2]};
-    const DVec3 n = cross(v[1] - v[0], v[2] - v[0]);
-    const double edge = std::sqrt(std::fmax(along(v[1] - v[0], v[1] - v[0]), along(v[2] - v[0], v[2] - v[0])));
-    if (std::sqrt(along(n, n)) < 0.05 * edge * edge || std::fabs(along(unit(d), unit(n))) < 0.05) continue;
+  const auto place_of = [](std::uint32_t round) { return kPlaces[round % 3 == 0 ? 0 : 5 + round % 4]; };
+  for_each_hit(43, 4000, /*has_slivers=*/false, place_of, [&](const HitCase& hit, TestRandom&, std::uint32_t round) {
+    const auto& [triangle, ray, t] = hit;
+    const Corners corners(triangle);
+    const auto& v = corners.v;
+    const DVec3 d = point_of(ray.direction), n = corners.normal();
+    const double edge = corners.longest_edge();
+    if (glm::length(n) < 0.05 * edge * edge || std::fabs(glm::dot(glm::normalize(d), glm::normalize(n))) < 0.05) return;
     ++tested;
     WorkCounters work;
     const SurfacePoint found = surface_point(triangle, ray.origin, ray.direction, 0.0f, work);
-    const DVec3 hit = DVec3{ray.origin[0], ray.origin[1], ray.origin[2]} + hits[0].low * d - v[0];
-    const double w1 = along(cross(hit, v[2] - v[0]), n) / along(n, n);
-    const double w2 = along(cross(v[1] - v[0], hit), n) / along(n, n);
+    const DVec3 at = point_of(ray.origin) + t * d - v[0];
+    const double w1 = glm::dot(glm::cross(at, v[2] - v[0]), n) / glm::dot(n, n);
+    const double w2 = glm::dot(glm::cross(v[1] - v[0], at), n) / glm::dot(n, n);
     EXPECT_NEAR(double{found.weights[0]}, w1, 1e-3) << "round " << round;
     EXPECT_NEAR(double{found.weights[1]}, w2, 1e-3) << "round " << round;
-  }
+  });
   EXPECT_GT(tested, 500u);
 }
 
 TEST(SecondaryOrigin, StaysNearTheHit) {
-  TestRandom random(23);
   std::uint32_t tested = 0;
-  for (std::uint32_t round = 0; round < 8000; ++round) {
-    const TestMesh mesh = placed(make_random_soup(1, 1.0f, random.next()), kPlaces[round % std::size(kPlaces)]);
-    const VertexTriangle triangle = triangle_of(mesh, 0);
-    const OracleRay ray = ray_onto(mesh, 0, random);
-    const Oracle oracle(mesh.view());
-    const auto hits = oracle.hits(ray);
-    if (hits.empty()) continue;
-    DVec3 v[3];
-    for (int i = 0; i < 3; ++i) v[i] = {triangle.v[i][0], triangle.v[i][1], triangle.v[i][2]};
-    const DVec3 d{ray.direction[0], ray.direction[1], ray.direction[2]};
-    if (std::fabs(along(unit(d), unit(cross(v[1] - v[0], v[2] - v[0])))) < 0.2) continue;
-    const DVec3 hit = DVec3{ray.origin[0], ray.origin[1], ray.origin[2]} + hits[0].low * d;
+  for_each_hit(23, 8000, /*has_slivers=*/false, any_place, [&](const HitCase& hit, TestRandom&, std::uint32_t round) {
+    const auto& [triangle, ray, t] = hit;
+    const Corners corners(triangle);
+    const DVec3 d = point_of(ray.direction);
+    if (std::fabs(glm::dot(glm::normalize(d), glm::normalize(corners.normal()))) < 0.2) return;
     const double room = least_height(triangle) / 3.0;
     const SecondaryOrigin begun = begin(triangle, ray, false);
-    if (room < 1000.0 * double{begun.error}) continue;
+    if (room < 1000.0 * double{begun.error}) return;
     ++tested;
-    const DVec3 apart = DVec3{begun.point[0], begun.point[1], begun.point[2]} - hit;
-    const double edge = std::sqrt(std::fmax(along(v[1] - v[0], v[1] - v[0]), along(v[2] - v[0], v[2] - v[0])));
-    EXPECT_LE(std::sqrt(along(apart, apart)), (8.0 + 60.0 * edge / room) * double{begun.error}) << "round " << round;
-  }
+    const DVec3 apart = point_of(begun.point) - (point_of(ray.origin) + t * d);
+    EXPECT_LE(glm::length(apart), (8.0 + 60.0 * corners.longest_edge() / room) * double{begun.error})
+        << "round " << round;
+  });
   EXPECT_GT(tested, 300u);
 }
 

@@ -1,11 +1,8 @@
 // Every Status has a name of its own, the enumerator's, and no other number has one.
 // SPDX-License-Identifier: Apache-2.0
 #include <gridiron/platform/status_name.h>
-#include <gtest/gtest.h>
 
-#include <cstdint>
-#include <set>
-#include <string>
+#include "support/test_headers.h"
 
 namespace gridiron {
 namespace {

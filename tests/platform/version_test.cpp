@@ -2,9 +2,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <gridiron/version.h>
 
-#include <gtest/gtest.h>
-
-#include <string>
+#include "support/test_headers.h"
 
 #if GRIDIRON_VERSION < 100 || GRIDIRON_VERSION_MAJOR < 0
 #error "the preprocessor cannot compare versions"

@@ -835,8 +835,6 @@ active proctype core() {
 #else
     select(tile_commands : 1 .. MOST_TILE_COMMANDS);
 #endif
-#endif
-#if HAS_OUTPUT
   run_tiles();
 #elif HAS_DRIVER
   do
@@ -865,6 +863,16 @@ active proctype core() {
 
 #ifndef TRACE
 #define END(tag) :: end_one(tag)
+// One end for each buffer of a level.
+#if DEPTH == 1
+#define ENDS(first) END(first)
+#elif DEPTH == 2
+#define ENDS(first) END(first) END(first + 1)
+#elif DEPTH == 3
+#define ENDS(first) END(first) END(first + 1) END(first + 2)
+#else
+#define ENDS(first) END(first) END(first + 1) END(first + 2) END(first + 3)
+#endif
 active proctype engine() {
 end_engine:
   do
@@ -879,40 +887,13 @@ progress_scene:
 #endif
   END(K_SETUP_TAG)
 #if HAS_BLOCKS || LEVEL == WALKS
-  END(K_FIRST_MACRO_TAG)
-#if DEPTH > 1
-  END(K_FIRST_MACRO_TAG + 1)
-#endif
-#if DEPTH > 2
-  END(K_FIRST_MACRO_TAG + 2)
-#endif
-#if DEPTH > 3
-  END(K_FIRST_MACRO_TAG + 3)
-#endif
+  ENDS(K_FIRST_MACRO_TAG)
 #endif
 #if HAS_TRIANGLES || LEVEL == WALKS || LEVEL == GATHER
-  END(K_FIRST_TRIANGLE_TAG)
-#if DEPTH > 1
-  END(K_FIRST_TRIANGLE_TAG + 1)
-#endif
-#if DEPTH > 2
-  END(K_FIRST_TRIANGLE_TAG + 2)
-#endif
-#if DEPTH > 3
-  END(K_FIRST_TRIANGLE_TAG + 3)
-#endif
+  ENDS(K_FIRST_TRIANGLE_TAG)
 #endif
 #if HAS_OUTPUT
-  END(K_FIRST_OUTPUT_TAG)
-#if DEPTH > 1
-  END(K_FIRST_OUTPUT_TAG + 1)
-#endif
-#if DEPTH > 2
-  END(K_FIRST_OUTPUT_TAG + 2)
-#endif
-#if DEPTH > 3
-  END(K_FIRST_OUTPUT_TAG + 3)
-#endif
+  ENDS(K_FIRST_OUTPUT_TAG)
 #endif
   od
 }

@@ -63,17 +63,17 @@ OrderFrame::OrderFrame(const OrderScene& scene, const OrderSettings& settings) {
     spill_ = memory_.allocate(spill_bytes(scene.recursion_depth), kSpillAlignment).value();
   }
   // 3. The frame.
-  FrameSettings frame;
-  frame.camera.eye = scene.eye;
-  frame.width = settings.width;
-  frame.height = settings.height;
-  frame.tile_width = 8;
-  frame.shading = scene.has_effects() ? Shading::kScene : Shading::kSimple;
-  frame.output_depth = output_depth_ = settings.output_depth;
-  frame.macro_depth = settings.macro_depth;
-  frame.triangle_depth = settings.triangle_depth;
-  frame.walk_depth = settings.walk_depth;
-  frame.color = planes_.address;
+  output_depth_ = settings.output_depth;
+  FrameSettings frame{.camera = {.eye = scene.eye},
+                      .width = settings.width,
+                      .height = settings.height,
+                      .tile_width = 8,
+                      .shading = scene.has_effects() ? Shading::kScene : Shading::kSimple,
+                      .output_depth = settings.output_depth,
+                      .macro_depth = settings.macro_depth,
+                      .triangle_depth = settings.triangle_depth,
+                      .walk_depth = settings.walk_depth,
+                      .color = planes_.address};
   if (settings.wants_ids) frame.ids = planes_.address.offset_by(plane_bytes);
   const auto record = memory_.allocate(sizeof(FrameRecord)).value();
   FrameRecord& made = *new (record.bytes.data()) FrameRecord;

@@ -18,40 +18,37 @@
 
 namespace gridiron::test {
 
-/// Sizes of a store with packets of eight by eight and short buffers, so that small scenes need many.
-struct PacketOrderLayout {
+/// Sizes of a store with short buffers, so that small scenes need many.
+struct OrderLayout {
   using Engine = GridEngine;
+  static constexpr std::uint32_t kTileWidth = 8;
+  static constexpr std::uint32_t kTableEntries = 16;
+  static constexpr std::uint32_t kMaxMacroWidth = 2;
+  static constexpr std::uint32_t kMaxMacroDepth = 5;
+  static constexpr std::uint32_t kMaxTriangleDepth = 5;
+  static constexpr std::uint32_t kMaxOutputDepth = 5;
+};
+
+/// With packets of eight by eight.
+struct PacketOrderLayout : OrderLayout {
   static constexpr std::uint32_t kEffects = 0;
   static constexpr std::uint32_t kArenaBytes = 64 * 1024;
   static constexpr std::uint32_t kCodeBudgetBytes = 32 * 1024;
   static constexpr std::uint32_t kStackBudgetBytes = 6 * 1024;
-  static constexpr std::uint32_t kTileWidth = 8;
   static constexpr std::uint32_t kPacketWidth = 8;
   static constexpr std::uint32_t kMailboxSlots = 64;
-  static constexpr std::uint32_t kTableEntries = 16;
-  static constexpr std::uint32_t kMaxMacroWidth = 2;
-  static constexpr std::uint32_t kMaxMacroDepth = 5;
   static constexpr std::uint32_t kTrianglesPerBuffer = 2;
-  static constexpr std::uint32_t kMaxTriangleDepth = 5;
-  static constexpr std::uint32_t kMaxOutputDepth = 5;
   static constexpr std::uint32_t kRecentTriangles = 2;
 };
 
 /// The same for all effects: no packets, five walks, slots for two materials.
-struct EffectOrderLayout {
-  using Engine = GridEngine;
+struct EffectOrderLayout : OrderLayout {
   static constexpr std::uint32_t kEffects = kAllEffects;
   static constexpr std::uint32_t kArenaBytes = 96 * 1024;
   static constexpr std::uint32_t kCodeBudgetBytes = 44 * 1024;
   static constexpr std::uint32_t kStackBudgetBytes = 4 * 1024;
-  static constexpr std::uint32_t kTileWidth = 8;
   static constexpr std::uint32_t kPacketWidth = 0;
-  static constexpr std::uint32_t kTableEntries = 16;
-  static constexpr std::uint32_t kMaxMacroWidth = 2;
-  static constexpr std::uint32_t kMaxMacroDepth = 5;
   static constexpr std::uint32_t kTrianglesPerBuffer = 16;  // an environment's block fits
-  static constexpr std::uint32_t kMaxTriangleDepth = 5;
-  static constexpr std::uint32_t kMaxOutputDepth = 5;
   static constexpr std::uint32_t kWaveRays = 32;
   static constexpr std::uint32_t kMaterialSlots = 2;
   static constexpr std::uint32_t kLightSlots = 5;

@@ -1,19 +1,12 @@
 // The instrumented build: a forbidden access of a core is reported at the access itself, in any completion mode.
 // SPDX-License-Identifier: Apache-2.0
 #include <gridiron/sim/core_runner.h>
-#include <gtest/gtest.h>
 
-#include <cstddef>
-#include <cstdint>
-#include <cstring>
 #include <new>
-#include <ostream>
-#include <span>
-#include <string>
-#include <vector>
 
 #include "access_programs.h"
 #include "program_bench.h"
+#include "support/test_headers.h"
 
 namespace gridiron::sim {
 namespace {
@@ -82,8 +75,7 @@ TEST_P(Access, IsCaughtAtTheInstruction) {
   const AccessCase& c = GetParam();
   for (const Completion completion : {Completion::kEarly, Completion::kLate, Completion::kRandom}) {
     for (const std::uint32_t threads : {1u, 3u}) {
-      SCOPED_TRACE("completion " + std::to_string(static_cast<int>(completion)) + ", threads " +
-                   std::to_string(threads));
+      SCOPED_TRACE(testing::Message() << "completion " << static_cast<int>(completion) << ", threads " << threads);
       const ChipResult result = run_case(c.which, completion, threads);
       if (c.words == nullptr) {
         EXPECT_EQ(result.status, Status::kOk) << words(result);

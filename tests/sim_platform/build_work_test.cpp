@@ -1,8 +1,7 @@
 // Build work: counts of a grid small enough to count by hand, and their cycles. SPDX-License-Identifier: Apache-2.0
 #include <gridiron/sim/build_work.h>
-#include <gtest/gtest.h>
 
-#include <vector>
+#include "support/test_headers.h"
 
 namespace gridiron::sim {
 namespace {

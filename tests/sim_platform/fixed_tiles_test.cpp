@@ -1,9 +1,7 @@
 // Replay of tiles that are fixed to cores. SPDX-License-Identifier: Apache-2.0
 #include <gridiron/sim/replay.h>
-#include <gtest/gtest.h>
 
-#include <vector>
-
+#include "support/test_headers.h"
 #include "support/trace_steps.h"
 
 namespace gridiron::sim {

@@ -5,9 +5,7 @@
 #include <atomic>
 #include <new>
 #include <stdexcept>
-#include <string>
 #include <system_error>
-#include <vector>
 
 #include "program_bench.h"
 #include "support/no_threads.h"
@@ -82,9 +80,7 @@ TEST(HostWorkers, OfExceptionsTheLowestWorkersIsKeptAndEachStops) {
 
 /// Claims tiles until there are none.
 Status claim_all(SimCore& core) {
-  TileClaim claim = core.claim_tile();
-  while (claim.kind == TileClaim::Kind::kTile) claim = core.claim_tile();
-  return claim.kind == TileClaim::Kind::kNone ? Status::kOk : Status::kAborted;
+  return for_each_tile(core, [](std::uint32_t) { return Status::kOk; });
 }
 
 TEST(HostWorkers, ACoreWithoutMemoryEndsTheFrameWithAStatus) {

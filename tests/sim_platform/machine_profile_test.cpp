@@ -2,11 +2,8 @@
 // Memory: std::set. Threads: one. SPDX-License-Identifier: Apache-2.0
 #include <gridiron/sim/engine_work.h>
 #include <gridiron/sim/machine_profile.h>
-#include <gtest/gtest.h>
 
-#include <cstdint>
-#include <set>
-#include <string>
+#include "support/test_headers.h"
 
 namespace gridiron::sim {
 namespace {

@@ -5,12 +5,8 @@
 #include <gridiron/sim/core_runner.h>
 #include <gridiron/sim/sim_core.h>
 #include <gridiron/sim/sim_memory.h>
-#include <gtest/gtest.h>
 
-#include <cstddef>
-#include <cstdint>
-#include <span>
-#include <string>
+#include "support/test_headers.h"
 
 namespace gridiron::sim {
 
@@ -47,6 +43,17 @@ class ProgramBench {
   SimMemory memory_;
   MemoryRegion input_, output_;
 };
+
+/// Claims tiles and calls act(tile_id) -> Status for each, until there is none or one is no kOk.
+template <class Act>
+Status for_each_tile(SimCore& core, Act&& act) {
+  for (;;) {
+    const TileClaim claim = core.claim_tile();
+    if (claim.kind == TileClaim::Kind::kAborted) return Status::kAborted;
+    if (claim.kind != TileClaim::Kind::kTile) return Status::kOk;
+    GRIDIRON_TRY(act(claim.tile_id));
+  }
+}
 
 /// @returns the violations of a result in words, for messages.
 inline std::string words(const ChipResult& result) {

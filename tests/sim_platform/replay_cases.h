@@ -7,10 +7,7 @@
 #include <gridiron/sim/replay.h>
 #include <gridiron/sim/trace_packing.h>
 
-#include <cstddef>
-#include <cstdint>
-#include <utility>
-#include <vector>
+#include "support/test_headers.h"
 
 namespace gridiron::sim {
 
@@ -101,6 +98,21 @@ inline FrameTrace frame_of(std::vector<TileTrace> tiles) {
 
 inline FrameTiming replay_on(const FrameTrace& trace, const MachineProfile& machine, std::uint32_t cores = 1) {
   return replay(trace, machine, {.core_count = cores, .timeline = false});
+}
+
+/// What all cores together did.
+inline CoreTiming sum_of(const std::vector<CoreTiming>& cores) {
+  CoreTiming sum;
+  for (const CoreTiming& core : cores) {
+    sum.tiles += core.tiles;
+    sum.init_cycles += core.init_cycles;
+    sum.compute_cycles += core.compute_cycles;
+    sum.gets += core.gets;
+    sum.puts += core.puts;
+    sum.bytes_in += core.bytes_in;
+    sum.bytes_out += core.bytes_out;
+  }
+  return sum;
 }
 
 inline double accounted_cycles(const CoreTiming& core) {

@@ -2,14 +2,9 @@
 // Memory: std::vector. Threads: one. SPDX-License-Identifier: Apache-2.0
 #include <gridiron/sim/machine_profile.h>
 #include <gridiron/sim/replay.h>
-#include <gtest/gtest.h>
-
-#include <algorithm>
-#include <cmath>
-#include <cstdint>
-#include <vector>
 
 #include "replay_cases.h"
+#include "support/test_headers.h"
 
 namespace gridiron::sim {
 namespace {

@@ -3,19 +3,12 @@
 #include <gridiron/dma/tags.h>
 #include <gridiron/sim/machine_profile.h>
 #include <gridiron/sim/replay.h>
-#include <gtest/gtest.h>
 
-#include <algorithm>
-#include <cstdint>
 #include <cstdio>
 #include <ctime>
-#include <limits>
-#include <random>
-#include <set>
-#include <string>
-#include <vector>
 
 #include "replay_cases.h"
+#include "support/test_headers.h"
 
 namespace gridiron::sim {
 namespace {
@@ -218,13 +211,11 @@ TEST(Replay, EveryCycleIsAccountedFor) {
       for (std::uint32_t cores = 1; cores <= 16; ++cores) {
         const FrameTiming frame = replay_on(trace, machine, cores);
         ASSERT_EQ(frame.cores.size(), cores);
-        std::uint32_t tiles = 0;
         for (const CoreTiming& core : frame.cores) {
           ASSERT_EQ(accounted_cycles(core), frame.frame_cycles)
               << "seed " << seed << ", " << machine.name << ", " << cores << " cores";
-          tiles += core.tiles;
         }
-        ASSERT_EQ(tiles, 64u);
+        ASSERT_EQ(sum_of(frame.cores).tiles, 64u);
       }
     }
   }
@@ -234,14 +225,7 @@ TEST(Replay, WorkAndTransfersDoNotDependOnTheNumberOfCores) {
   const FrameTrace trace = synthetic_frame(7, 96, 4);
   const MachineProfile& machine = *find_machine_profile("cell-ps3");
   const auto totals = [&](std::uint32_t cores) {
-    const FrameTiming frame = replay_on(trace, machine, cores);
-    CoreTiming sum;
-    for (const CoreTiming& core : frame.cores) {
-      sum.init_cycles += core.init_cycles;
-      sum.compute_cycles += core.compute_cycles;
-      sum.puts += core.puts;
-      sum.bytes_in += core.bytes_in;
-    }
+    CoreTiming sum = sum_of(replay_on(trace, machine, cores).cores);
     // The prologue and the epilogue run once per core.
     sum.compute_cycles -= cores * (2 * machine.issue_cycles + 3 * machine.wait_cycles);
     sum.bytes_in -= cores * (384u + 8192u);

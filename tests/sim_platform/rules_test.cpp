@@ -1,27 +1,36 @@
 // For every rule of the contract, a core that breaks it: the simulator names the rule, the core and the tile.
 // SPDX-License-Identifier: Apache-2.0
 #include <gridiron/sim/core_runner.h>
-#include <gtest/gtest.h>
-
-#include <algorithm>
-#include <cstddef>
-#include <cstdint>
-#include <functional>
-#include <ostream>
-#include <span>
-#include <string>
-#include <vector>
 
 #include "program_bench.h"
+#include "support/test_headers.h"
 
 namespace gridiron::sim {
 namespace {
+
+constexpr Tag kTag{1}, kOtherTag{2};
+constexpr TagMask kBoth{0b110};
 
 /// What a program has at hand: the bench's addresses, its core, its data.
 struct At {
   const ProgramBench& bench;
   SimCore& core;
   std::byte* data;
+
+  [[nodiscard]] MainAddress in(std::uint64_t offset = 0) const { return bench.input(offset); }
+  [[nodiscard]] MainAddress out(std::uint64_t offset = 0) const { return bench.output(offset); }
+  /// Starts a transfer of the bytes that lie `local` bytes from the data's start.
+  [[nodiscard]] Status get(std::ptrdiff_t local, MainAddress main, std::uint32_t bytes = 64, Tag tag = kTag) const {
+    return core.get(data + local, main, bytes, tag);
+  }
+  [[nodiscard]] Status put(std::ptrdiff_t local, MainAddress main, std::uint32_t bytes = 64, Tag tag = kTag) const {
+    return core.put(data + local, main, bytes, tag);
+  }
+  /// Waits for transfers that were started one after the other.
+  [[nodiscard]] Status wait_for(std::initializer_list<Status> started) const {
+    for (const Status status : started) GRIDIRON_TRY(status);
+    return core.wait(kBoth);
+  }
 };
 using Program = Status (*)(At at);
 
@@ -35,98 +44,69 @@ struct WrongCore {
   friend std::ostream& operator<<(std::ostream& stream, const WrongCore& core) { return stream << core.name; }
 };
 
-constexpr Tag kTag{1}, kOtherTag{2};
-constexpr TagMask kBoth{0b110};
-
 const WrongCore kWrongCores[] = {
-    {"size_0_get", Status::kTransferSize, "size is 0",
-     [](At at) -> Status { return at.core.get(at.data, at.bench.input(), 0, kTag); }},
-    {"size_0_put", Status::kTransferSize, "size is 0",
-     [](At at) -> Status { return at.core.put(at.data, at.bench.output(), 0, kTag); }},
-    {"size_8", Status::kTransferSize, "multiple of 16",
-     [](At at) -> Status { return at.core.get(at.data, at.bench.input(), 8, kTag); }},
-    {"size_72", Status::kTransferSize, "multiple of 16",
-     [](At at) -> Status { return at.core.put(at.data, at.bench.output(), 72, kTag); }},
-    {"size_too_large", Status::kTransferSize, "above 16384",
-     [](At at) -> Status { return at.core.get(at.data, at.bench.input(), 16400, kTag); }},
-    {"tag_32", Status::kTransferTag, "32 tags",
-     [](At at) -> Status { return at.core.get(at.data, at.bench.input(), 64, Tag{32}); }},
-    {"local_misaligned", Status::kTransferAlignment, "local address",
-     [](At at) -> Status { return at.core.get(at.data + 8, at.bench.input(), 64, kTag); }},
-    {"main_misaligned", Status::kTransferAlignment, "main address",
-     [](At at) -> Status { return at.core.put(at.data, at.bench.output(4), 64, kTag); }},
-    {"not_congruent", Status::kTransferAlignment, "congruent modulo 32",
-     [](At at) -> Status { return at.core.get(at.data + 16, at.bench.input(), 64, kTag); }},
+    {"size_0_get", Status::kTransferSize, "size is 0", [](At at) { return at.get(0, at.in(), 0); }},
+    {"size_0_put", Status::kTransferSize, "size is 0", [](At at) { return at.put(0, at.out(), 0); }},
+    {"size_8", Status::kTransferSize, "multiple of 16", [](At at) { return at.get(0, at.in(), 8); }},
+    {"size_72", Status::kTransferSize, "multiple of 16", [](At at) { return at.put(0, at.out(), 72); }},
+    {"size_too_large", Status::kTransferSize, "above 16384", [](At at) { return at.get(0, at.in(), 16400); }},
+    {"tag_32", Status::kTransferTag, "32 tags", [](At at) { return at.get(0, at.in(), 64, Tag{32}); }},
+    {"local_misaligned", Status::kTransferAlignment, "local address", [](At at) { return at.get(8, at.in()); }},
+    {"main_misaligned", Status::kTransferAlignment, "main address", [](At at) { return at.put(0, at.out(4)); }},
+    {"not_congruent", Status::kTransferAlignment, "congruent modulo 32", [](At at) { return at.get(16, at.in()); }},
     {"crosses_4_kb", Status::kTransferBoundary, "crosses a multiple of 4096",
-     [](At at) -> Status { return at.core.get(at.data, at.bench.input(4096 - 32), 64, kTag); }},
+     [](At at) { return at.get(0, at.in(4096 - 32)); }},
     {"local_behind_data", Status::kTransferLocalRange, "not inside the arena",
-     [](At at) -> Status { return at.core.get(at.data + ProgramBench::kDataBytes - 32, at.bench.input(), 64, kTag); }},
-    {"local_before_data", Status::kTransferLocalRange, "arena-0x20",
-     [](At at) -> Status { return at.core.put(at.data - 32, at.bench.output(), 64, kTag); }},
+     [](At at) { return at.get(ProgramBench::kDataBytes - 32, at.in()); }},
+    {"local_before_data", Status::kTransferLocalRange, "arena-0x20", [](At at) { return at.put(-32, at.out()); }},
     {"main_not_allocated", Status::kTransferMainRange, "allocated",
-     [](At at) -> Status { return at.core.get(at.data, at.bench.output(ProgramBench::kPartBytes), 64, kTag); }},
-    {"main_address_0", Status::kTransferMainRange, "allocated",
-     [](At at) -> Status { return at.core.get(at.data, MainAddress{0}, 64, kTag); }},
+     [](At at) { return at.get(0, at.out(ProgramBench::kPartBytes)); }},
+    {"main_address_0", Status::kTransferMainRange, "allocated", [](At at) { return at.get(0, MainAddress{0}); }},
     {"main_address_wraps", Status::kTransferMainRange, "allocated",
-     [](At at) -> Status { return at.core.get(at.data, MainAddress{~std::uint64_t{0} - 127}, 64, kTag); }},
-    {"put_to_read_only", Status::kTransferMainRange, "may write",
-     [](At at) -> Status { return at.core.put(at.data, at.bench.input(), 64, kTag); }},
+     [](At at) { return at.get(0, MainAddress{~std::uint64_t{0} - 127}); }},
+    {"put_to_read_only", Status::kTransferMainRange, "may write", [](At at) { return at.put(0, at.in()); }},
     {"queue_overflow", Status::kTransferQueueFull, "16 commands",
      [](At at) -> Status {
-       for (std::uint32_t i = 0; i < 17; ++i)
-         GRIDIRON_TRY(at.core.get(at.data + i * 64, at.bench.input(i * 64), 64, kTag));
+       for (std::uint32_t i = 0; i < 17; ++i) GRIDIRON_TRY(at.get(i * 64, at.in(i * 64)));
        return at.core.wait(kBoth);
      }},
     {"get_over_get_local", Status::kTransferOverlap, "local side",
-     [](At at) -> Status {
-       GRIDIRON_TRY(at.core.get(at.data, at.bench.input(), 64, kTag));
-       GRIDIRON_TRY(at.core.get(at.data + 32, at.bench.input(1024), 64, kOtherTag));
-       return at.core.wait(kBoth);
+     [](At at) {
+       return at.wait_for({at.get(0, at.in()), at.get(32, at.in(1024), 64, kOtherTag)});
      }},
     {"put_from_get_local", Status::kTransferOverlap, "local side",
-     [](At at) -> Status {
-       GRIDIRON_TRY(at.core.get(at.data, at.bench.input(), 64, kTag));
-       GRIDIRON_TRY(at.core.put(at.data, at.bench.output(), 16, kOtherTag));
-       return at.core.wait(kBoth);
+     [](At at) {
+       return at.wait_for({at.get(0, at.in()), at.put(0, at.out(), 16, kOtherTag)});
      }},
     {"get_over_put_local", Status::kTransferOverlap, "local side",
-     [](At at) -> Status {
-       GRIDIRON_TRY(at.core.put(at.data, at.bench.output(), 64, kTag));
-       GRIDIRON_TRY(at.core.get(at.data + 32, at.bench.input(), 64, kTag));
-       return at.core.wait(kBoth);
+     [](At at) {
+       return at.wait_for({at.put(0, at.out()), at.get(32, at.in())});
      }},
     {"put_over_put_main", Status::kTransferOverlap, "main side",
-     [](At at) -> Status {
-       GRIDIRON_TRY(at.core.put(at.data, at.bench.output(), 64, kTag));
-       GRIDIRON_TRY(at.core.put(at.data + 1024, at.bench.output(), 64, kOtherTag));
-       return at.core.wait(kBoth);
+     [](At at) {
+       return at.wait_for({at.put(0, at.out()), at.put(1024, at.out(), 64, kOtherTag)});
      }},
     {"get_of_put_main", Status::kTransferOverlap, "main side",
-     [](At at) -> Status {
-       GRIDIRON_TRY(at.core.put(at.data, at.bench.output(), 64, kTag));
-       GRIDIRON_TRY(at.core.get(at.data + 1024, at.bench.output(), 64, kOtherTag));
-       return at.core.wait(kBoth);
+     [](At at) {
+       return at.wait_for({at.put(0, at.out()), at.get(1024, at.out(), 64, kOtherTag)});
      }},
     {"put_of_get_main", Status::kTransferOverlap, "main side",
-     [](At at) -> Status {
-       GRIDIRON_TRY(at.core.get(at.data, at.bench.output(), 64, kTag));
-       GRIDIRON_TRY(at.core.put(at.data + 1024, at.bench.output(), 64, kOtherTag));
-       return at.core.wait(kBoth);
+     [](At at) {
+       return at.wait_for({at.get(0, at.out()), at.put(1024, at.out(), 64, kOtherTag)});
      }},
     {"source_changed_before_wait", Status::kTransferOverlap, "changed byte 5 of the source",
      [](At at) -> Status {
-       GRIDIRON_TRY(at.core.put(at.data, at.bench.output(), 64, kTag));
+       GRIDIRON_TRY(at.put(0, at.out()));
        at.data[5] = std::byte{0x77};
        return at.core.wait(kBoth);
      }},
     {"destination_written_before_wait", Status::kTransferOverlap, "byte 6 of the destination",
      [](At at) -> Status {
-       GRIDIRON_TRY(at.core.get(at.data, at.bench.input(), 64, kTag));
+       GRIDIRON_TRY(at.get(0, at.in()));
        at.data[6] = static_cast<std::byte>(~static_cast<unsigned>(at.data[6]) & 0xFF);
        return at.core.wait(kBoth);
      }},
-    {"never_waited_for", Status::kTransferPending, "never waited for",
-     [](At at) -> Status { return at.core.get(at.data, at.bench.input(), 64, kTag); }},
+    {"never_waited_for", Status::kTransferPending, "never waited for", [](At at) { return at.get(0, at.in()); }},
     {"wrote_behind_data", Status::kBadAccess, "byte 32768 from the arena's start",
      [](At at) -> Status {
        at.data[ProgramBench::kDataBytes] = std::byte{1};
@@ -150,12 +130,9 @@ constexpr HowToRun kRuns[] = {{Completion::kEarly, 1}, {Completion::kLate, 1},  
 ChipResult run_wrong(ProgramBench& bench, const WrongCore& wrong, bool is_wrong = true) {
   bench.shape.tile_count = 5;
   return bench.run([&](SimCore& core, std::span<std::byte> data) {
-    for (;;) {
-      const TileClaim claim = core.claim_tile();
-      if (claim.kind == TileClaim::Kind::kAborted) return Status::kAborted;
-      if (claim.kind == TileClaim::Kind::kNone) return Status::kOk;
-      if (claim.tile_id == 2 && is_wrong) GRIDIRON_TRY(wrong.in_tile({bench, core, data.data()}));
-    }
+    return for_each_tile(core, [&](std::uint32_t tile) {
+      return tile == 2 && is_wrong ? wrong.in_tile({bench, core, data.data()}) : Status::kOk;
+    });
   });
 }
 
@@ -164,8 +141,8 @@ class Rules : public testing::TestWithParam<WrongCore> {};
 TEST_P(Rules, ABrokenRuleIsNamedWithItsTile) {
   const WrongCore& wrong = GetParam();
   for (const HowToRun& how : kRuns) {
-    SCOPED_TRACE("completion " + std::to_string(static_cast<int>(how.completion)) + ", threads " +
-                 std::to_string(how.threads));
+    SCOPED_TRACE(testing::Message() << "completion " << static_cast<int>(how.completion) << ", threads "
+                                    << how.threads);
     ProgramBench bench;
     bench.options.completion = how.completion;
     bench.options.threads = how.threads;
@@ -206,23 +183,15 @@ TEST(RulesBench, OtherLimitsGiveOtherRules) {
                 })
         .status;
   };
-  EXPECT_EQ(status_of([](At at) { return at.core.get(at.data, at.bench.input(), 32, kTag); }), Status::kTransferSize);
-  EXPECT_EQ(status_of([](At at) { return at.core.get(at.data, at.bench.input(), 1088, kTag); }), Status::kTransferSize);
-  EXPECT_EQ(status_of([](At at) { return at.core.get(at.data, at.bench.input(32), 64, kTag); }),
-            Status::kTransferAlignment);
-  EXPECT_EQ(status_of([](At at) { return at.core.get(at.data, at.bench.input(), 64, Tag{4}); }), Status::kTransferTag);
+  EXPECT_EQ(status_of([](At at) { return at.get(0, at.in(), 32); }), Status::kTransferSize);
+  EXPECT_EQ(status_of([](At at) { return at.get(0, at.in(), 1088); }), Status::kTransferSize);
+  EXPECT_EQ(status_of([](At at) { return at.get(0, at.in(32)); }), Status::kTransferAlignment);
+  EXPECT_EQ(status_of([](At at) { return at.get(0, at.in(), 64, Tag{4}); }), Status::kTransferTag);
   EXPECT_EQ(status_of([](At at) { return at.core.wait(TagMask{0x10}); }), Status::kTransferTag);
   // No boundary here.
-  EXPECT_EQ(status_of([](At at) -> Status {
-              GRIDIRON_TRY(at.core.get(at.data, at.bench.input(4096 - 64), 128, kTag));
-              return at.core.wait(kBoth);
-            }),
-            Status::kOk);
-  EXPECT_EQ(status_of([](At at) -> Status {
-              for (std::uint32_t i = 0; i < 3; ++i) {
-                GRIDIRON_TRY(at.core.get(at.data + i * 64, at.bench.input(), 64, kTag));
-              }
-              return at.core.wait(kBoth);
+  EXPECT_EQ(status_of([](At at) { return at.wait_for({at.get(0, at.in(4096 - 64), 128)}); }), Status::kOk);
+  EXPECT_EQ(status_of([](At at) {
+              return at.wait_for({at.get(0, at.in()), at.get(64, at.in()), at.get(128, at.in())});
             }),
             Status::kTransferQueueFull);
 }
@@ -307,12 +276,10 @@ ChipResult run_tiles(ProgramBench& bench, std::uint32_t threads,
   bench.shape.tile_count = 8;
   bench.options.threads = threads;
   return bench.run([&](SimCore& core, std::span<std::byte> data) {
-    for (;;) {
-      const TileClaim claim = core.claim_tile();
-      if (claim.kind != TileClaim::Kind::kTile) return Status::kOk;
-      GRIDIRON_TRY(act(core, data.data(), claim.tile_id));
-      GRIDIRON_TRY(core.wait(kBoth));
-    }
+    return for_each_tile(core, [&](std::uint32_t tile) -> Status {
+      GRIDIRON_TRY(act(core, data.data(), tile));
+      return core.wait(kBoth);
+    });
   });
 }
 

@@ -2,44 +2,17 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <gridiron/sim/sim_chip.h>
 #include <gridiron/sim/sim_core.h>
-#include <gtest/gtest.h>
 
-#include <algorithm>
 #include <atomic>
-#include <cstdint>
-#include <cstring>
-#include <ostream>
-#include <string>
-#include <vector>
 
+#include "determinism/trace_difference.h"
 #include "sim_platform/program_bench.h"
 #include "support/render_mesh.h"
+#include "support/test_headers.h"
 #include "support/test_mesh.h"
-#include "support/trace_steps.h"
 #include "support/views.h"
 
 namespace gridiron::sim {
-
-[[nodiscard]] static std::string difference(const TileTrace& packed_a, const TileTrace& packed_b) {
-  if (packed_a.tile_id != packed_b.tile_id) return "tile_id";
-  const test::UnpackedTrace a(packed_a), b(packed_b);
-  for (std::size_t i = 0; i < a.events.size() && i < b.events.size(); ++i) {
-    if (!test::is_same_step(a.events[i], b.events[i])) return "event " + std::to_string(i);
-  }
-  if (a.events.size() != b.events.size()) return "number of events";
-  return packed_a.packed == packed_b.packed ? "" : "packed bytes";
-}
-[[nodiscard]] static std::string difference(const FrameTrace& a, const FrameTrace& b) {
-  if (const std::string d = difference(a.prologue, b.prologue); !d.empty()) return "prologue: " + d;
-  if (const std::string d = difference(a.epilogue, b.epilogue); !d.empty()) return "epilogue: " + d;
-  if (a.tiles.size() != b.tiles.size()) return "number of tiles";
-  for (std::size_t i = 0; i < a.tiles.size(); ++i) {
-    if (const std::string d = difference(a.tiles[i], b.tiles[i]); !d.empty()) {
-      return "tile " + std::to_string(i) + ": " + d;
-    }
-  }
-  return a.output_depth == b.output_depth ? "" : "output_depth";
-}
 
 namespace {
 
@@ -47,9 +20,7 @@ namespace {
 class Scene {
  public:
   Scene() : mesh_(make()), scene_(mesh_.view(), {}) {
-    settings.camera = test::framed_camera(mesh_.view());
-    settings.width = 150;
-    settings.height = 100;
+    settings = {.camera = test::framed_camera(mesh_.view()), .width = 150, .height = 100};
   }
   [[nodiscard]] test::RenderedFrame render(const ChipOptions& options) { return scene_.render(settings, options); }
 
@@ -97,8 +68,7 @@ TEST(SimChip, PictureTraceAndTotalsAreTheSameForAnyThreadsCompletionAndSeed) {
     scene.settings.output_depth = std::min(depth, 2u);
     scene.settings.macro_depth = std::min(depth, 4u);
     scene.settings.triangle_depth = depth;
-    ChipOptions reference_options;
-    reference_options.limits.queue_depth = queue_depth;
+    const ChipOptions reference_options{.limits = {.queue_depth = queue_depth}};
     const test::RenderedFrame reference = scene.render(reference_options);
     ASSERT_EQ(reference.result.status, Status::kOk) << words(reference.result);
     std::vector<HowToRun> runs = {{1, Completion::kLate, 0},  {2, Completion::kEarly, 0}, {3, Completion::kLate, 0},
@@ -109,9 +79,9 @@ TEST(SimChip, PictureTraceAndTotalsAreTheSameForAnyThreadsCompletionAndSeed) {
     }
     if (has_instrumented_mode()) runs.push_back({2, Completion::kEarly, 0, Mode::kInstrumented});
     for (const HowToRun& how : runs) {
-      SCOPED_TRACE("depth " + std::to_string(depth) + ", threads " + std::to_string(how.threads) + ", completion " +
-                   std::to_string(static_cast<int>(how.completion)) + ", seed " + std::to_string(how.seed) + ", mode " +
-                   std::to_string(static_cast<int>(how.mode)));
+      SCOPED_TRACE(testing::Message() << "depth " << depth << ", threads " << how.threads << ", completion "
+                                      << static_cast<int>(how.completion) << ", seed " << how.seed << ", mode "
+                                      << static_cast<int>(how.mode));
       ChipOptions options = reference_options;
       options.threads = how.threads;
       options.completion = how.completion;
@@ -120,7 +90,7 @@ TEST(SimChip, PictureTraceAndTotalsAreTheSameForAnyThreadsCompletionAndSeed) {
       const test::RenderedFrame frame = scene.render(options);
       ASSERT_EQ(frame.result.status, Status::kOk) << words(frame.result);
       EXPECT_EQ(test::first_difference(reference, frame), "");
-      EXPECT_EQ(difference(reference.result.trace, frame.result.trace), "");
+      EXPECT_EQ(test::first_difference(reference.result.trace, frame.result.trace), "");
       EXPECT_EQ(frame.result.work, reference.result.work);
     }
   }
@@ -140,49 +110,54 @@ bool is_built_here(const LayoutChoice& layout, Mode mode, std::uint32_t lanes) {
   return mode == Mode::kChecked && lanes == 4 && std::ranges::find(kSwept, asked) != std::end(kSwept);
 }
 
-TEST(SimChip, PictureIsTheSameForAnyLanesStoreTilePacketAndQueue) {
-  Scene scene;
-  const test::RenderedFrame reference = scene.render({});
-  ASSERT_EQ(reference.result.status, Status::kOk) << words(reference.result);
-  int rendered = 0;
+// Every mode, lane count and layout that can be asked for.
+void for_each_build(const std::function<void(Mode, std::uint32_t lanes, const LayoutChoice&)>& visit) {
   for (const Mode mode : {Mode::kChecked, Mode::kPlain, Mode::kInstrumented}) {
     for (const std::uint32_t lanes : {4u, 8u, 16u}) {
       for (const StoreSize store : kStoreSizes) {
         for (const std::uint32_t tile_width : {8u, 16u, 32u, 64u}) {
           for (const std::uint32_t packet_width : {4u, 8u, 16u, 32u, 64u}) {
-            for (const std::uint32_t queue_depth : {1u, 2u, 16u}) {
-              // The helper gives a frame with tiles of 32 the store's usual ones.
-              if (tile_width == 32 && usual_tile_width(store) != 32) continue;
-              ChipOptions options;
-              options.mode = mode;
-              options.lanes = lanes;
-              options.store = store;
-              options.packet_width = packet_width;
-              options.limits.queue_depth = queue_depth;
-              options.threads = 2;
-              scene.settings.tile_width = tile_width;
-              SCOPED_TRACE("mode " + std::to_string(static_cast<int>(mode)) + ", lanes " + std::to_string(lanes) +
-                           ", store " + std::to_string(arena_bytes(store) >> 10) + ", tile " +
-                           std::to_string(tile_width) + ", packet " + std::to_string(packet_width) + ", queue " +
-                           std::to_string(queue_depth));
-              const bool built = is_built_here({store, tile_width, packet_width}, mode, lanes);
-              if (lanes <= widest_lanes()) {
-                EXPECT_EQ(is_built({store, tile_width, packet_width}, mode, lanes), built);
-              }
-              const test::RenderedFrame frame = scene.render(options);
-              if (!built || lanes > widest_lanes()) {
-                EXPECT_EQ(frame.result.status, Status::kUnsupportedFrame);
-                continue;
-              }
-              ASSERT_EQ(frame.result.status, Status::kOk) << words(frame.result);
-              EXPECT_EQ(test::first_difference(reference, frame), "");
-              ++rendered;
-            }
+            visit(mode, lanes, {store, tile_width, packet_width});
           }
         }
       }
     }
   }
+}
+
+TEST(SimChip, PictureIsTheSameForAnyLanesStoreTilePacketAndQueue) {
+  Scene scene;
+  const test::RenderedFrame reference = scene.render({});
+  ASSERT_EQ(reference.result.status, Status::kOk) << words(reference.result);
+  int rendered = 0;
+  for_each_build([&](Mode mode, std::uint32_t lanes, const LayoutChoice& layout) {
+    // The helper gives a frame with tiles of 32 the store's usual ones.
+    if (layout.tile_width == 32 && usual_tile_width(layout.store) != 32) return;
+    for (const std::uint32_t queue_depth : {1u, 2u, 16u}) {
+      const ChipOptions options{.mode = mode,
+                                .threads = 2,
+                                .lanes = lanes,
+                                .store = layout.store,
+                                .packet_width = layout.packet_width,
+                                .limits = {.queue_depth = queue_depth}};
+      scene.settings.tile_width = layout.tile_width;
+      SCOPED_TRACE(testing::Message() << "mode " << static_cast<int>(mode) << ", lanes " << lanes << ", store "
+                                      << (arena_bytes(layout.store) >> 10) << ", tile " << layout.tile_width
+                                      << ", packet " << layout.packet_width << ", queue " << queue_depth);
+      const bool built = is_built_here(layout, mode, lanes);
+      if (lanes <= widest_lanes()) {
+        EXPECT_EQ(is_built(layout, mode, lanes), built);
+      }
+      const test::RenderedFrame frame = scene.render(options);
+      if (!built || lanes > widest_lanes()) {
+        EXPECT_EQ(frame.result.status, Status::kUnsupportedFrame);
+        continue;
+      }
+      ASSERT_EQ(frame.result.status, Status::kOk) << words(frame.result);
+      EXPECT_EQ(test::first_difference(reference, frame), "");
+      ++rendered;
+    }
+  });
   EXPECT_GE(rendered, 3 * (7 + 7 + 11)) << "each layout in checked mode, the common ones in plain mode too";
 }
 
@@ -192,10 +167,7 @@ TEST(SimChip, ATileRenderedAloneIsTheTileOfTheFrame) {
   ASSERT_EQ(whole.result.status, Status::kOk);
   for (const std::uint32_t tile : {0u, 7u, 19u}) {
     for (const Mode mode : {Mode::kChecked, Mode::kPlain}) {
-      ChipOptions options;
-      options.mode = mode;
-      options.only_tile = tile;
-      const test::RenderedFrame alone = scene.render(options);
+      const test::RenderedFrame alone = scene.render({.mode = mode, .only_tile = tile});
       ASSERT_EQ(alone.result.status, Status::kOk) << words(alone.result);
       const std::uint32_t left = tile % 5 * 32, top = tile / 5 * 32;
       for (std::uint32_t y = top; y < top + 32 && y < 100; ++y) {
@@ -207,7 +179,8 @@ TEST(SimChip, ATileRenderedAloneIsTheTileOfTheFrame) {
       }
       if (mode == Mode::kPlain) continue;
       ASSERT_EQ(alone.result.trace.tiles.size(), 1u);
-      EXPECT_EQ(difference(alone.result.trace.tiles[0], whole.result.trace.tiles[tile]), "") << "tile " << tile;
+      EXPECT_EQ(test::first_difference(alone.result.trace.tiles[0], whole.result.trace.tiles[tile]), "")
+          << "tile " << tile;
     }
   }
 }
@@ -216,9 +189,7 @@ TEST(SimChip, ProgressCountsEveryTileOnceAndAbortStopsBetweenTiles) {
   for (const Mode mode : {Mode::kChecked, Mode::kPlain}) {
     Scene scene;
     std::vector<std::uint32_t> seen;
-    ChipOptions options;
-    options.mode = mode;
-    options.threads = 3;
+    ChipOptions options{.mode = mode, .threads = 3};
     options.progress = [&](std::uint32_t done, std::uint32_t total) {
       EXPECT_EQ(total, 20u);
       seen.push_back(done);
@@ -257,31 +228,21 @@ TEST(SimChip, RefusesWhatItCannotRender) {
   EXPECT_EQ(render_frame(memory, MainAddress{0}, {}).status, Status::kBadFrame);
   const MemoryRegion record = *memory.allocate(sizeof(FrameRecord));
   for (const Mode mode : {Mode::kChecked, Mode::kPlain}) {
-    ChipOptions options;
-    options.mode = mode;
-    EXPECT_EQ(render_frame(memory, record.address, options).status, Status::kBadFrame);
+    EXPECT_EQ(render_frame(memory, record.address, {.mode = mode}).status, Status::kBadFrame);
   }
 }
 
 // --- Frames with effects ----------------------------------------------------------------------------------------
 
 TEST(SimChipEffects, HaveLayoutsOfTheirOwn) {
-  for (const Mode mode : {Mode::kChecked, Mode::kPlain, Mode::kInstrumented}) {
-    for (const std::uint32_t lanes : {4u, 8u, 16u}) {
-      if (lanes > widest_lanes()) continue;
-      for (const StoreSize store : kStoreSizes) {
-        for (const std::uint32_t tile_width : {8u, 16u, 32u, 64u}) {
-          for (const std::uint32_t packet_width : {4u, 8u, 16u, 32u, 64u}) {
-            const bool has_layout =
-                store == StoreSize::k256KB && tile_width == 32 && (packet_width == 8 || packet_width == 32);
-            const bool has_mode =
-                mode == Mode::kPlain || (lanes == 4 && (mode == Mode::kChecked || has_instrumented_mode()));
-            EXPECT_EQ(is_built({store, tile_width, packet_width, true}, mode, lanes), has_layout && has_mode);
-          }
-        }
-      }
-    }
-  }
+  for_each_build([](Mode mode, std::uint32_t lanes, LayoutChoice layout) {
+    if (lanes > widest_lanes()) return;
+    const bool has_layout = layout.store == StoreSize::k256KB && layout.tile_width == 32 &&
+                            (layout.packet_width == 8 || layout.packet_width == 32);
+    const bool has_mode = mode == Mode::kPlain || (lanes == 4 && (mode == Mode::kChecked || has_instrumented_mode()));
+    layout.has_effects = true;
+    EXPECT_EQ(is_built(layout, mode, lanes), has_layout && has_mode);
+  });
 }
 
 /// A frame with effects of which only the records exist: they are checked before a core reads them.
@@ -323,9 +284,7 @@ class EffectsFrame {
     const std::uint64_t mark = memory_.used_bytes();
     const MemoryRegion record = *memory_.allocate(sizeof frame);
     std::memcpy(record.bytes.data(), &frame, sizeof frame);
-    ChipOptions options;
-    options.mode = mode;
-    options.spill = {MainAddress{4096 + 128}, 4096};
+    const ChipOptions options{.mode = mode, .spill = {MainAddress{4096 + 128}, 4096}};
     const Status status = render_frame(memory_, record.address, options).status;
     memory_.release_to(mark);
     return status;

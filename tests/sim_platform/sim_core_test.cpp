@@ -2,16 +2,10 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <gridiron/sim/core_runner.h>
 #include <gridiron/sim/sim_core.h>
-#include <gtest/gtest.h>
 
-#include <algorithm>
-#include <cstddef>
-#include <cstdint>
-#include <span>
-#include <string>
-#include <vector>
-
+#include "determinism/trace_difference.h"
 #include "program_bench.h"
+#include "support/test_headers.h"
 #include "support/trace_steps.h"
 
 namespace gridiron::sim {
@@ -62,10 +56,8 @@ TEST(SimCoreTrace, ATileListsItsStepsInOrderWithTheWorkBetweenThem) {
     const test::UnpackedTrace tile(result.trace.tiles[id]);
     EXPECT_EQ(tile.tile_id, id);
     ASSERT_EQ(tile.events.size(), 4u);
-    EXPECT_EQ(tile.events[0].kind, EventKind::kWork);
-    EXPECT_EQ(tile.events[1].kind, EventKind::kWait);
-    EXPECT_EQ(tile.events[2].kind, EventKind::kWork);
-    EXPECT_EQ(tile.events[3].kind, EventKind::kPut);
+    const EventKind kinds[] = {EventKind::kWork, EventKind::kWait, EventKind::kWork, EventKind::kPut};
+    for (std::size_t i = 0; i < 4; ++i) EXPECT_EQ(tile.events[i].kind, kinds[i]) << "step " << i;
     // Output slots count from the tile's own, whatever tiles the core had before.
     EXPECT_EQ(tile.events[1].tags, 0u);
     EXPECT_EQ(tile.events[1].rotating_tags, 1u);
@@ -126,14 +118,7 @@ TEST(SimCoreTrace, DoesNotDependOnWhichCoreRenderedATile) {
     const ChipResult result = run_like(bench, 3);
     ASSERT_EQ(result.status, Status::kOk) << words(result);
     EXPECT_EQ(result.work, reference.work);
-    for (std::uint32_t id = 0; id < 40; ++id) {
-      const test::UnpackedTrace a(result.trace.tiles[id]), b(reference.trace.tiles[id]);
-      ASSERT_EQ(a.events.size(), b.events.size());
-      for (std::size_t i = 0; i < a.events.size(); ++i) {
-        EXPECT_EQ(a.events[i].tag, b.events[i].tag) << "threads " << threads << " tile " << id;
-        EXPECT_EQ(a.events[i].rotating_tags, b.events[i].rotating_tags) << "threads " << threads << " tile " << id;
-      }
-    }
+    EXPECT_EQ(test::first_difference(result.trace, reference.trace), "") << "threads " << threads;
   }
 }
 
@@ -210,13 +195,10 @@ TEST(SimCoreFailure, OfSeveralFailingTilesTheLowestIsToldForAnyThreads) {
       bench.shape.tile_count = 64;
       bench.options.threads = threads;
       const ChipResult result = bench.run([&](SimCore& core, std::span<std::byte> data) {
-        for (;;) {
-          const TileClaim claim = core.claim_tile();
-          if (claim.kind == TileClaim::Kind::kAborted) return Status::kAborted;
-          if (claim.kind == TileClaim::Kind::kNone) return Status::kOk;
+        return for_each_tile(core, [&](std::uint32_t tile) {
           // Every tile from 20 on is wrong, each in its own way.
-          if (claim.tile_id >= 20) GRIDIRON_TRY(core.get(data.data(), bench.input(), claim.tile_id - 20, kTag));
-        }
+          return tile < 20 ? Status::kOk : core.get(data.data(), bench.input(), tile - 20, kTag);
+        });
       });
       ASSERT_EQ(result.status, Status::kTransferSize) << words(result);
       ASSERT_EQ(result.failed_tile, 20u) << "threads " << threads << " round " << round;
@@ -239,13 +221,8 @@ TEST(SimCoreFailure, AProgramsOwnErrorIsToldWithItsTile) {
   ProgramBench bench;
   bench.shape.tile_count = 9;
   bench.options.threads = 2;
-  const ChipResult result = bench.run([&](SimCore& core, std::span<std::byte>) {
-    for (;;) {
-      const TileClaim claim = core.claim_tile();
-      if (claim.kind == TileClaim::Kind::kAborted) return Status::kAborted;
-      if (claim.kind == TileClaim::Kind::kNone) return Status::kOk;
-      if (claim.tile_id == 4) return Status::kBadImage;
-    }
+  const ChipResult result = bench.run([](SimCore& core, std::span<std::byte>) {
+    return for_each_tile(core, [](std::uint32_t tile) { return tile == 4 ? Status::kBadImage : Status::kOk; });
   });
   EXPECT_EQ(result.status, Status::kBadImage);
   EXPECT_EQ(result.failed_tile, 4u);

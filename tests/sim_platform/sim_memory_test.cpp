@@ -1,16 +1,12 @@
 // Simulated main memory: addresses, zeroing, capacity and range queries.
 // SPDX-License-Identifier: Apache-2.0
 #include <gridiron/sim/sim_memory.h>
-#include <gtest/gtest.h>
 #include <sys/resource.h>
 #include <unistd.h>
 
-#include <algorithm>
-#include <cstdint>
-#include <fstream>
-#include <limits>
 #include <new>
-#include <string>
+
+#include "support/test_headers.h"
 
 namespace gridiron::sim {
 namespace {

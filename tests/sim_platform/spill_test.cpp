@@ -1,18 +1,11 @@
 // Spill memory: each core has its own slice, a tile gets only what it has put there, traces contain one slice only.
 // SPDX-License-Identifier: Apache-2.0
 #include <gridiron/sim/core_runner.h>
-#include <gtest/gtest.h>
 
 #include <atomic>
-#include <cstddef>
-#include <cstdint>
-#include <functional>
-#include <set>
-#include <span>
-#include <string>
-#include <vector>
 
 #include "program_bench.h"
+#include "support/test_headers.h"
 #include "support/trace_steps.h"
 
 namespace gridiron::sim {
@@ -35,12 +28,10 @@ class SpillBench : public ProgramBench {
   /// Every tile does what `act` says and waits.
   ChipResult run_tiles(const Act& act) {
     return run([&](SimCore& core, std::span<std::byte> data) {
-      for (;;) {
-        const TileClaim claim = core.claim_tile();
-        if (claim.kind != TileClaim::Kind::kTile) return Status::kOk;
-        GRIDIRON_TRY(act(core, data.data(), claim.tile_id));
-        GRIDIRON_TRY(core.wait(TagMask::of(kTag)));
-      }
+      return for_each_tile(core, [&](std::uint32_t tile) -> Status {
+        GRIDIRON_TRY(act(core, data.data(), tile));
+        return core.wait(TagMask::of(kTag));
+      });
     });
   }
 
@@ -68,9 +59,7 @@ TEST(Spill, EachCoreHasASliceOfWholePages) {
   std::atomic<std::uint32_t> next{0};
   const ChipResult result = bench.run([&](SimCore& core, std::span<std::byte>) {
     regions[next++] = core.spill();
-    while (core.claim_tile().kind == TileClaim::Kind::kTile) {
-    }
-    return Status::kOk;
+    return for_each_tile(core, [](std::uint32_t) { return Status::kOk; });
   });
   EXPECT_EQ(result.status, Status::kOk) << words(result);
   std::set<std::uint64_t> begins;
@@ -164,11 +153,10 @@ TEST(Spill, ATileGetsOnlyWhatItHasPut) {
   const ChipResult prologue = bench.run([&](SimCore& core, std::span<std::byte> data) -> Status {
     GRIDIRON_TRY(core.put(data.data(), spill_at(core, 0), 64, kTag));
     GRIDIRON_TRY(core.wait(TagMask::of(kTag)));
-    while (core.claim_tile().kind == TileClaim::Kind::kTile) {
+    return for_each_tile(core, [&](std::uint32_t) -> Status {
       GRIDIRON_TRY(core.get(data.data(), spill_at(core, 0), 64, kTag));
-      GRIDIRON_TRY(core.wait(TagMask::of(kTag)));
-    }
-    return Status::kOk;
+      return core.wait(TagMask::of(kTag));
+    });
   });
   EXPECT_EQ(prologue.status, Status::kTransferMainRange);
   EXPECT_EQ(prologue.failed_tile, 0u);

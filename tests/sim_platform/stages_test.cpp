@@ -4,19 +4,12 @@
 #include <gridiron/sim/core_runner.h>
 #include <gridiron/sim/plain_core.h>
 #include <gridiron/sim/replay.h>
-#include <gtest/gtest.h>
 
-#include <cstddef>
-#include <cstdint>
-#include <iterator>
 #include <numeric>
-#include <random>
-#include <span>
-#include <string>
-#include <vector>
 
 #include "program_bench.h"
 #include "replay_cases.h"
+#include "support/test_headers.h"
 #include "support/trace_steps.h"
 
 namespace gridiron::sim {

@@ -1,14 +1,9 @@
 // Packing of traces: whatever steps go in come out, and a tile's bytes depend on its steps alone.
 // Memory: std::vector. Threads: one. SPDX-License-Identifier: Apache-2.0
 #include <gridiron/sim/trace_packing.h>
-#include <gtest/gtest.h>
-
-#include <array>
-#include <cstdint>
-#include <random>
-#include <vector>
 
 #include "replay_cases.h"
+#include "support/test_headers.h"
 #include "support/trace_steps.h"
 
 namespace gridiron::sim {

@@ -3,9 +3,6 @@
 
 #include <gridiron/base/exact_sum.h>
 
-#include <algorithm>
-#include <cmath>
-#include <limits>
 #include <thread>
 
 // One copy of the filter per instruction set, picked at load time. Sanitizers come up after the picking, so that

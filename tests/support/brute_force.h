@@ -5,10 +5,7 @@
 #include <gridiron/base/records.h>
 #include <gridiron/scene/mesh.h>
 
-#include <cstddef>
-#include <cstdint>
-#include <span>
-#include <vector>
+#include "support/test_headers.h"
 
 namespace gridiron::test {
 

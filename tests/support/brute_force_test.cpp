@@ -3,35 +3,13 @@
 #include "support/brute_force.h"
 
 #include <gridiron/base/exact_sum.h>
-#include <gtest/gtest.h>
 
-#include <array>
-#include <boost/multiprecision/cpp_int.hpp>
-#include <cmath>
-#include <cstdint>
-#include <limits>
-#include <string>
-#include <vector>
-
+#include "support/rational_vectors.h"
+#include "support/test_headers.h"
 #include "support/test_mesh.h"
 
 namespace gridiron::test {
 namespace {
-
-using Rational = boost::multiprecision::cpp_rational;
-using RationalVec = std::array<Rational, 3>;
-
-RationalVec to_rational(Vec3 v) {
-  return {Rational(v.x), Rational(v.y), Rational(v.z)};
-}
-
-RationalVec operator-(const RationalVec& a, const RationalVec& b) {
-  return {a[0] - b[0], a[1] - b[1], a[2] - b[2]};
-}
-
-Rational determinant(const RationalVec& a, const RationalVec& b, const RationalVec& c) {
-  return a[0] * (b[1] * c[2] - b[2] * c[1]) + a[1] * (b[2] * c[0] - b[0] * c[2]) + a[2] * (b[0] * c[1] - b[1] * c[0]);
-}
 
 // The float nearest to a positive rational: start from a guess, walk to the neighbour while it is nearer.
 float round_to_float(const Rational& value) {
@@ -54,13 +32,13 @@ float round_to_float(const Rational& value) {
 // Accuracy `standard` word for word, in rationals.
 TrueHit trace_in_rationals(const TestMesh& mesh, Vec3 origin, Vec3 direction, float t_far) {
   TrueHit best;
-  const RationalVec o = to_rational(origin);
-  const RationalVec d = to_rational(direction);
+  const RationalPoint o = exact_point(origin);
+  const RationalPoint d = exact_point(direction);
   for (std::size_t i = 0; i < mesh.triangles.size(); ++i) {
     const UVec3& t = mesh.triangles[i];
-    const RationalVec a = to_rational(mesh.vertices[t.x]) - o;
-    const RationalVec b = to_rational(mesh.vertices[t.y]) - o;
-    const RationalVec c = to_rational(mesh.vertices[t.z]) - o;
+    const RationalPoint a = exact_point(mesh.vertices[t.x]) - o;
+    const RationalPoint b = exact_point(mesh.vertices[t.y]) - o;
+    const RationalPoint c = exact_point(mesh.vertices[t.z]) - o;
     const Rational edges[3] = {determinant(d, a, b), determinant(d, b, c), determinant(d, c, a)};
     bool positive = false;
     bool negative = false;
@@ -172,9 +150,7 @@ TEST_P(BruteForceTest, IntegersAgreeWithRationals) {
 }
 
 INSTANTIATE_TEST_SUITE_P(Cases, BruteForceTest, testing::Range<std::size_t>(0, make_cases().size()),
-                         [](const testing::TestParamInfo<std::size_t>& tested) {
-                           return make_cases()[tested.param].name;
-                         });
+                         [](const auto& tested) { return make_cases()[tested.param].name; });
 
 TEST(BruteForceFilter, RejectsAlmostEverythingByItself) {
   const TestMesh mesh = make_sphere(40, 60, 1.0f);

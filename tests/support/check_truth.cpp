@@ -1,12 +1,8 @@
 // Compares pixels with the ground truth: see the header. SPDX-License-Identifier: Apache-2.0
 #include "support/check_truth.h"
 
-#include <algorithm>
-#include <bit>
 #include <numeric>
-#include <sstream>
 #include <thread>
-#include <utility>
 
 #include "support/test_mesh.h"
 

@@ -4,12 +4,6 @@
 
 #include <gridiron/scene/mesh.h>
 
-#include <cstddef>
-#include <cstdint>
-#include <span>
-#include <string>
-#include <vector>
-
 #include "support/brute_force.h"
 #include "support/render_mesh.h"
 

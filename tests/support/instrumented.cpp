@@ -1,11 +1,9 @@
 // Frames of tests by the instrumented kernel: see the header. SPDX-License-Identifier: Apache-2.0
 #include "support/instrumented.h"
 
-#include <gtest/gtest.h>
-
 #include <atomic>
-#include <cstdlib>
-#include <cstring>
+
+#include "support/test_headers.h"
 
 namespace gridiron::test {
 namespace {

@@ -3,12 +3,9 @@
 #include "support/instrumented.h"
 
 #include <gtest/gtest-spi.h>
-#include <gtest/gtest.h>
-
-#include <cstdlib>
-#include <string>
 
 #include "support/render_mesh.h"
+#include "support/test_headers.h"
 #include "support/test_mesh.h"
 #include "support/views.h"
 
@@ -31,13 +28,21 @@ class Environment {
   std::string before_;
 };
 
-RenderedFrame render(const sim::ChipOptions& options) {
-  const TestMesh mesh = make_torus(24, 12, 1.0f, 0.4f);
-  SceneInMemory scene(mesh.view(), {});
+// A torus in a small picture.
+struct Shown {
+  TestMesh mesh = make_torus(24, 12, 1.0f, 0.4f);
+  SceneInMemory scene{mesh.view(), {}};
   FrameSettings settings;
-  settings.camera = framed_camera(mesh.view());
-  settings.width = settings.height = 24;
-  return scene.render(settings, options);
+
+  Shown() {
+    settings.camera = framed_camera(mesh.view());
+    settings.width = settings.height = 24;
+  }
+};
+
+RenderedFrame render(const sim::ChipOptions& options) {
+  Shown shown;
+  return shown.scene.render(shown.settings, options);
 }
 
 TEST(Instrumented, IsAskedForByTheEnvironmentAlone) {
@@ -69,14 +74,10 @@ TEST(Instrumented, EveryFrameOfATestIsRenderedTwiceAndIsTheSame) {
 // Two planes at one place: plain cores do not mind.
 TEST(Instrumented, AFrameThatBreaksARuleFailsItsTest) {
   if (!sim::has_instrumented_mode()) GTEST_SKIP() << "built with another sanitizer";
-  const TestMesh mesh = make_torus(24, 12, 1.0f, 0.4f);
-  SceneInMemory scene(mesh.view(), {});
-  FrameSettings settings;
-  settings.camera = framed_camera(mesh.view());
-  settings.width = settings.height = 24;
+  Shown shown;
   sim::ChipOptions options;
   options.mode = sim::Mode::kPlain;
-  PreparedFrame frame = scene.prepare(settings, options);
+  PreparedFrame frame = shown.scene.prepare(shown.settings, options);
   FrameRecord record = frame.record();
   record.id_address = record.depth_address;
   frame.set_record(record);

@@ -2,10 +2,9 @@
 // Memory: none. Threads: changes a default of the process; one at a time. SPDX-License-Identifier: Apache-2.0
 #pragma once
 
-#include <gtest/gtest.h>
 #include <pthread.h>
 
-#include <cstddef>
+#include "support/test_headers.h"
 
 namespace gridiron::test {
 

@@ -3,9 +3,6 @@
 
 #include <OpenImageIO/imageio.h>
 
-#include <algorithm>
-#include <cmath>
-
 namespace gridiron::test {
 
 std::optional<Picture> load_picture(const std::filesystem::path& path) {

@@ -2,11 +2,7 @@
 // Memory: std::vector. Threads: any. SPDX-License-Identifier: Apache-2.0
 #pragma once
 
-#include <cstddef>
-#include <cstdint>
-#include <filesystem>
-#include <optional>
-#include <vector>
+#include "support/test_headers.h"
 
 namespace gridiron::test {
 

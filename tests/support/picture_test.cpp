@@ -1,13 +1,9 @@
 // The reader of picture files, on a file made by hand. SPDX-License-Identifier: Apache-2.0
 #include "support/picture.h"
 
-#include <gtest/gtest.h>
 #include <unistd.h>
 
-#include <filesystem>
-#include <fstream>
-#include <limits>
-#include <string>
+#include "support/test_headers.h"
 
 namespace gridiron::test {
 namespace {

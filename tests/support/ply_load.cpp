@@ -3,11 +3,7 @@
 
 #include <gridiron/io/ply_reader.h>
 
-#include <cstddef>
-#include <fstream>
 #include <iterator>
-#include <span>
-#include <vector>
 
 namespace gridiron::test {
 

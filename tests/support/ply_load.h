@@ -2,9 +2,6 @@
 // Memory: std::vector. Threads: any. SPDX-License-Identifier: Apache-2.0
 #pragma once
 
-#include <filesystem>
-#include <optional>
-
 #include "support/test_mesh.h"
 
 namespace gridiron::test {

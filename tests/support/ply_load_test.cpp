@@ -2,16 +2,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "support/ply_load.h"
 
-#include <gtest/gtest.h>
-
-#include <bit>
-#include <cstring>
-#include <fstream>
-#include <iterator>
-#include <sstream>
-#include <string>
-
 #include "support/scenes.h"
+#include "support/test_headers.h"
 
 namespace gridiron::test {
 namespace {

@@ -3,12 +3,7 @@
 
 #include <gridiron/store/local_store.h>
 
-#include <bit>
-#include <cmath>
-#include <cstring>
 #include <new>
-#include <span>
-#include <sstream>
 
 #include "support/instrumented.h"
 #include "support/views.h"
@@ -38,6 +33,14 @@ std::vector<Element> untile(const FrameRecord& frame, std::span<const std::byte>
 }
 
 }  // namespace
+
+TestMesh make_mixed_mesh() {
+  TestMesh mesh = make_torus(60, 30, 1.0f, 0.35f);
+  mesh.append(make_random_soup(800, 0.15f, 3));
+  mesh.append(make_height_field(20, 0.2f, 4));
+  mesh.append(make_triangle({-3, -0.5f, -3}, {3, -0.5f, -3}, {0, -0.4f, 3}));
+  return mesh;
+}
 
 Camera framed_camera(const MeshView& mesh) {
   DVec3 low(mesh.vertices.front());

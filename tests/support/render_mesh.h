@@ -10,12 +10,7 @@
 #include <gridiron/sim/sim_chip.h>
 #include <gridiron/sim/sim_memory.h>
 
-#include <cstddef>
-#include <cstdint>
-#include <memory>
-#include <span>
-#include <string>
-#include <vector>
+#include "support/test_mesh.h"
 
 namespace gridiron::test {
 
@@ -27,6 +22,9 @@ struct Planes {
 
   friend bool operator==(const Planes&, const Planes&) = default;
 };
+
+/// Long lists of triangles, empty space, silhouettes and overlapping surfaces: 5,201 triangles.
+TestMesh make_mixed_mesh();
 
 /// Which planes a frame has. Without depth, distances are estimated where that decides.
 enum class PlaneSet : std::uint8_t { kColor, kColorAndIds, kAll };

@@ -2,12 +2,7 @@
 // Memory: strings. Threads: any. SPDX-License-Identifier: Apache-2.0
 #pragma once
 
-#include <gtest/gtest.h>
-
-#include <cstdlib>
-#include <filesystem>
-#include <string>
-#include <string_view>
+#include "support/test_headers.h"
 
 namespace gridiron::test {
 

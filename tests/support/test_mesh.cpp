@@ -3,7 +3,6 @@
 
 #include <gridiron/build/lattice.h>
 
-#include <cmath>
 #include <numbers>
 #include <stdexcept>
 

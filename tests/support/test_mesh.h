@@ -4,8 +4,7 @@
 
 #include <gridiron/scene/mesh.h>
 
-#include <cstdint>
-#include <vector>
+#include "support/test_headers.h"
 
 namespace gridiron::test {
 

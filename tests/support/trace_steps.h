@@ -4,11 +4,7 @@
 
 #include <gridiron/sim/trace_packing.h>
 
-#include <algorithm>
-#include <cstddef>
-#include <cstdint>
-#include <span>
-#include <vector>
+#include "support/test_headers.h"
 
 namespace gridiron::test {
 

@@ -1,9 +1,8 @@
 // The accuracy experiment. SPDX-License-Identifier: Apache-2.0
-#include "experiment/accuracy_experiment.h"
-
 #include <utility>
 
 #include "base/words.h"
+#include "experiment/experiments.h"
 #include "experiment/price_book.h"
 #include "experiment/price_list.h"
 #include "experiment/sections.h"
@@ -88,14 +87,14 @@ std::vector<std::string> accuracy_file_names() {
   return names;
 }
 
-ExperimentResult run_accuracy_experiment(const AccuracyExperiment& experiment, const ProgressCall& progress) {
-  FoundViews found = find_views(experiment.scenes);
-  PriceList list(std::move(found.views), experiment.width, experiment.height);
+ExperimentResult run_accuracy_experiment(const ExperimentSettings& settings, const ProgressCall& progress) {
+  FoundViews found = find_views(settings.scenes);
+  PriceList list(std::move(found.views), settings.width, settings.height);
   const auto total = static_cast<std::uint32_t>(list.step_count());
   std::uint32_t done = 0;
-  list.collect(experiment.threads, [&] { progress(++done, total); });
+  list.collect(settings.threads, [&] { progress(++done, total); });
 
-  const std::string size = std::to_string(experiment.width) + "x" + std::to_string(experiment.height);
+  const std::string size = std::to_string(settings.width) + "x" + std::to_string(settings.height);
   Book book(
       "What accuracy costs",
       "Every figure below comes from one run of `gridiron experiment accuracy`: pictures of " + size +

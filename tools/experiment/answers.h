@@ -7,7 +7,7 @@
 #include <cstdint>
 #include <vector>
 
-#include "experiment/error_statistics.h"
+#include "experiment/statistics.h"
 
 namespace gridiron::experiment {
 

@@ -80,16 +80,11 @@ BarChart make_chart(const std::string& title) {
 }
 
 void write_caches(const Plan& done, const std::vector<Row>& rows, Book& book) {
-  Table caches{"fig7_caches",
-               {{"machine", "machine"},
-                {"view", "view"},
-                {"packets", "packets"},
-                {"node_hit_percent", "node look-ups that hit, %", 2},
-                {"triangle_hit_percent", "triangle look-ups that hit, %", 2},
-                {"suspended_packets", "packets suspended"},
-                {"fetched_mb", "fetched, MB", 1},
-                {"wait_percent", "waiting, %", 2}},
-               {}};
+  Table caches = make_table("fig7_caches", "machine", "view", "packets",
+                            Column("node_hit_percent", "node look-ups that hit, %", 2),
+                            Column("triangle_hit_percent", "triangle look-ups that hit, %", 2),
+                            Column("suspended_packets", "packets suspended"), Column("fetched_mb", "fetched, MB", 1),
+                            Column("wait_percent", "waiting, %", 2));
   for (const Row& row : rows) {
     for (const Side side : {kBvhSingle, kBvh}) {
       const RunResult& run = done.result(row.runs[side]);
@@ -107,15 +102,10 @@ void write_caches(const Plan& done, const std::vector<Row>& rows, Book& book) {
 // The counts of each step of both builds, and their price. @returns BVH build over grid build, if the sweeps over bins
 // were free.
 Range write_build_steps(const Plan& done, const std::vector<Row>& rows, const Machine& machine, Book& book) {
-  Table steps{"fig7_build_steps",
-              {{"view", "view"},
-               {"step", "step"},
-               {"grid_count", "grid"},
-               {"bvh_count", "BVH"},
-               {"cycles_a_step", "cycles a step", 0},
-               {"grid_mcycles", "grid, million cycles", 1},
-               {"bvh_mcycles", "BVH, million cycles", 1}},
-              {}};
+  Table steps =
+      make_table("fig7_build_steps", "view", "step", Column("grid_count", "grid"), Column("bvh_count", "BVH"),
+                 Column("cycles_a_step", "cycles a step", 0), Column("grid_mcycles", "grid, million cycles", 1),
+                 Column("bvh_mcycles", "BVH, million cycles", 1));
   Range without_sweeps;
   for (const Row& row : rows) {
     if (row.machine.key != machine.key) continue;
@@ -144,22 +134,18 @@ Range write_build_steps(const Plan& done, const std::vector<Row>& rows, const Ma
 Writer plan_figure7(Plan& plan, const Stage& stage) {
   const std::vector<Row> rows = plan_rows(plan, stage);
   return [&stage, rows](const Plan& done, Book& book) {
-    Table frames{"fig7_frames", {{"machine", "machine"}, {"view", "view"}}, {}};
+    Table frames = make_table("fig7_frames", "machine", "view");
     add_columns(frames, "_fps", ": fps", 2);
     frames.columns.insert(frames.columns.end(), {{"reference_over_bvh", "reference / BVH", 2},
                                                  {"paper_case_ratio", "reference on cell-ps3 / BVH", 2},
                                                  {"paper_printed", "paper [P]"},
                                                  {"best_over_bvh", "best / BVH", 2}});
-    Table with_build{"fig7_with_build",
-                     {{"machine", "machine"},
-                      {"view", "view"},
-                      {"reference_build_ms", "grid, reference: build, ms", 1},
-                      {"best_build_ms", "grid, best: build, ms", 1},
-                      {"bvh_build_ms", "BVH: build, ms", 1}},
-                     {}};
+    Table with_build =
+        make_table("fig7_with_build", "machine", "view", Column("reference_build_ms", "grid, reference: build, ms", 1),
+                   Column("best_build_ms", "grid, best: build, ms", 1), Column("bvh_build_ms", "BVH: build, ms", 1));
     add_columns(with_build, "_with_build_fps", ": fps with build", 2);
     with_build.columns.insert(with_build.columns.end(), {{"best_over_bvh", "best / BVH", 2}});
-    Table cycles{"fig7_cycles", {{"machine", "machine"}, {"view", "view"}}, {}};
+    Table cycles = make_table("fig7_cycles", "machine", "view");
     add_columns(cycles, "_mcycles", ": million cycles", 1);
     BarChart bare = make_chart("cell-2006: 8 cores at 2.4 GHz, frame alone");
     BarChart whole = make_chart("cell-2006: 8 cores at 2.4 GHz, build and frame");

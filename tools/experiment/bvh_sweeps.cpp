@@ -94,7 +94,7 @@ Writer plan_bvh_sweep(Plan& plan, const Stage& stage) {
     rows.push_back({std::move(change), runs_of(std::move(system))});
   }
   return [&stage, tuned, rows](const Plan& done, Book& book) {
-    Table table{"sweep_bvh", {{"setting", "setting"}, {"value", "value"}, {"tuned_value", "instead of"}}, {}};
+    Table table = make_table("sweep_bvh", "setting", "value", Column("tuned_value", "instead of"));
     for (const View& view : stage.views()) {
       table.columns.push_back({view.key + "_cycles_percent", view.title + ": cycles, % more", 1});
     }

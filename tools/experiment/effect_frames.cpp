@@ -8,8 +8,8 @@
 #include "experiment/table.h"
 #include "gridiron/frame/chip_frame.h"
 #include "gridiron/frame/frame_memory.h"
+#include "gridiron/frame/frame_pictures.h"
 #include "gridiron/frame/render_plan.h"
-#include "gridiron/frame/untile.h"
 #include "gridiron/scene/effect_names.h"
 
 namespace gridiron::experiment {
@@ -134,8 +134,7 @@ EffectFrame render_effect_frame(const EffectScene& scene, const EffectFrameReque
   frame.seconds = timing.seconds;
   frame.core_cycles = timing.frame_cycles * static_cast<double>(timing.cores.size());
   frame.scene_bytes = memory.image.header.image_bytes;
-  frame.picture = tool::untile<std::uint32_t>(memory.record, memory.color.bytes, std::nullopt,
-                                              [](std::uint32_t word) { return word; });
+  frame.picture = tool::words_of_plane(memory.record, memory.color.bytes);
   return frame;
 }
 

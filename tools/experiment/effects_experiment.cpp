@@ -1,6 +1,4 @@
 // The effects experiment. SPDX-License-Identifier: Apache-2.0
-#include "experiment/effects_experiment.h"
-
 #include <report/report.h>
 
 #include <algorithm>
@@ -10,7 +8,9 @@
 #include "base/words.h"
 #include "experiment/book.h"
 #include "experiment/effect_frames.h"
+#include "experiment/effect_scenes.h"
 #include "experiment/effect_sizes.h"
+#include "experiment/experiments.h"
 #include "experiment/svg_plot.h"
 #include "experiment/table.h"
 #include "experiment/workers.h"
@@ -84,9 +84,9 @@ struct Step {
   std::uint32_t expected;  ///< EffectBits
 };
 
-std::vector<Step> list_steps(std::vector<SceneFrames>& scenes, const EffectsExperiment& experiment) {
+std::vector<Step> list_steps(std::vector<SceneFrames>& scenes, const ExperimentSettings& settings) {
   std::vector<Step> steps;
-  EffectFrameRequest request{.width = experiment.width, .height = experiment.height, .lambda = kLambda};
+  EffectFrameRequest request{.width = settings.width, .height = settings.height, .lambda = kLambda};
   for (SceneFrames& frames : scenes) {
     const auto add = [&](const Variant& variant, EffectFrame& frame) {
       steps.push_back({&variant.scene, request, &frame, variant.scene.key + ", " + variant.title, variant.expected});
@@ -140,22 +140,12 @@ void write_scenes(const std::vector<SceneFrames>& scenes, Book& book) {
 }
 
 void write_costs(const std::vector<SceneFrames>& scenes, Book& book) {
-  Table table{"effects",
-              {{"scene", "scene"},
-               {"variant", "variant"},
-               {"effects", "effects called for"},
-               {"primary_rays", "eye rays"},
-               {"shadow_rays", "shadow rays"},
-               {"occlusion_rays", "occlusion rays"},
-               {"reflected_rays", "reflected rays"},
-               {"refracted_rays", "refracted rays"},
-               {"environment_lookups", "sky lookups"},
-               {"cycles", "cycles", 0},
-               {"fps", "frames/s"},
-               {"cycles_of_all_percent", "% of all effects' cycles", 1},
-               {"dma_wait_cycles", "cycles waiting for DMA", 0},
-               {"dma_wait_percent", "% waiting"}},
-              {}};
+  Table table =
+      make_table("effects", "scene", "variant", Column("effects", "effects called for"),
+                 Column("primary_rays", "eye rays"), "shadow_rays", "occlusion_rays", "reflected_rays",
+                 "refracted_rays", Column("environment_lookups", "sky lookups"), Column("cycles", "cycles", 0),
+                 Column("fps", "frames/s"), Column("cycles_of_all_percent", "% of all effects' cycles", 1),
+                 Column("dma_wait_cycles", "cycles waiting for DMA", 0), Column("dma_wait_percent", "% waiting"));
   for (const SceneFrames& scene : scenes) {
     for (const Variant& variant : scene.variants) {
       const EffectFrame& frame = variant.twofold;
@@ -176,16 +166,9 @@ void write_costs(const std::vector<SceneFrames>& scenes, Book& book) {
 }
 
 void write_stages(const std::vector<SceneFrames>& scenes, Book& book) {
-  Table table{"stages",
-              {{"scene", "scene"},
-               {"variant", "variant"},
-               {"stage", "stage"},
-               {"compute_cycles", "computing", 0},
-               {"wait_cycles_single", "waiting, single buffering", 0},
-               {"wait_cycles_double", "waiting, double buffering", 0},
-               {"bytes_in", "bytes in"},
-               {"bytes_out", "bytes out"}},
-              {}};
+  Table table = make_table("stages", "scene", "variant", "stage", Column("compute_cycles", "computing", 0),
+                           Column("wait_cycles_single", "waiting, single buffering", 0),
+                           Column("wait_cycles_double", "waiting, double buffering", 0), "bytes_in", "bytes_out");
   book.section("stages", "Where the cycles go");
   book.paragraph(
       "A core is in one stage at a time: primary is eye rays and the set-up of tiles, surface finds points, normals "
@@ -214,17 +197,12 @@ void write_stages(const std::vector<SceneFrames>& scenes, Book& book) {
 }
 
 void write_hiding(const std::vector<SceneFrames>& scenes, Book& book) {
-  Table table{"hiding",
-              {{"scene", "scene"},
-               {"single_wait_cycles", "waiting, single buffering", 0},
-               {"double_wait_cycles", "waiting, double buffering", 0},
-               {"hidden_percent", "% gone"},
-               {"best_wait_cycles", "waiting, the configuration's buffers", 0},
-               {"best_hidden_percent", "% gone"},
-               {"single_fps", "frames/s, single"},
-               {"double_fps", "double"},
-               {"best_fps", "the configuration's"}},
-              {}};
+  Table table =
+      make_table("hiding", "scene", Column("single_wait_cycles", "waiting, single buffering", 0),
+                 Column("double_wait_cycles", "waiting, double buffering", 0), Column("hidden_percent", "% gone"),
+                 Column("best_wait_cycles", "waiting, the configuration's buffers", 0),
+                 Column("best_hidden_percent", "% gone"), Column("single_fps", "frames/s, single"),
+                 Column("double_fps", "double"), Column("best_fps", "the configuration's"));
   BarChart chart{"Waits for secondary rays",
                  "million cycles of all cores",
                  {},
@@ -260,16 +238,8 @@ void write_hiding(const std::vector<SceneFrames>& scenes, Book& book) {
 }
 
 void write_off(const std::vector<SceneFrames>& scenes, Book& book) {
-  Table table{"off",
-              {{"scene", "scene"},
-               {"variant", "variant"},
-               {"effect", "effect that is off"},
-               {"what", "counted"},
-               {"count", "count"},
-               {"stage", "stage"},
-               {"bytes", "bytes moved in it"},
-               {"cycles", "cycles in it", 0}},
-              {}};
+  Table table = make_table("off", "scene", "variant", Column("effect", "effect that is off"), Column("what", "counted"),
+                           "count", "stage", Column("bytes", "bytes moved in it"), Column("cycles", "cycles in it", 0));
   std::uint32_t on = 0, off = 0;
   for (const SceneFrames& scene : scenes) {
     for (const Variant& variant : scene.variants) {
@@ -296,13 +266,8 @@ void write_off(const std::vector<SceneFrames>& scenes, Book& book) {
 }
 
 void write_lambdas(const std::vector<SceneFrames>& scenes, Book& book) {
-  Table table{"lambda",
-              {{"scene", "scene"},
-               {"lambda", "cells per triangle", 1},
-               {"cycles", "cycles", 0},
-               {"fps", "frames/s"},
-               {"scene_bytes", "bytes of the scene in main memory"}},
-              {}};
+  Table table = make_table("lambda", "scene", Column("lambda", "cells per triangle", 1), Column("cycles", "cycles", 0),
+                           Column("fps", "frames/s"), Column("scene_bytes", "bytes of the scene in main memory"));
   BarChart chart{"Grids for secondary rays", "frames/s", {}, {}, {"frames/s"}, {}, true};
   for (const float lambda : kLambdas) chart.bars.push_back("lambda " + number_text(lambda));
   std::string fastest;
@@ -336,35 +301,30 @@ void write_sizes(Book& book) {
       "the one with all effects, whose code and stack have budgets:");
   const tool::StoreFacts facts =
       tool::effect_store_facts(sim::StoreSize::k256KB, tool::find_configuration("best")->packet_width);
-  Table map{"", {{"region", "region"}, {"offset", "offset"}, {"bytes", "bytes"}}, {}};
+  Table map = make_table("", "region", "offset", "bytes");
   for (const tool::LocalStoreRegion& region : facts.regions) {
-    map.add({std::string(region.name), std::uint64_t{region.offset_bytes}, std::uint64_t{region.bytes}});
+    map.add({region.name, region.offset_bytes, region.bytes});
   }
-  map.add({std::string("stack"), std::monostate{}, std::uint64_t{facts.stack_bytes}});
-  map.add({std::string("code"), std::monostate{}, std::uint64_t{facts.code_bytes}});
+  map.add({"stack", Cell{}, facts.stack_bytes});
+  map.add({"code", Cell{}, facts.code_bytes});
   book.shown_table(map, "The local store of 256 KB with all effects.");
   if (kEffectSizes.empty()) return;
-  Table table{"sizes",
-              {{"effects", "effects"},
-               {"code_bytes_256k", "code bytes, 256 KB"},
-               {"store_bytes_256k", "data bytes, 256 KB"},
-               {"code_bytes_64k", "code bytes, 64 KB"},
-               {"store_bytes_64k", "data bytes, 64 KB"},
-               {"fits_64k", "64 KB hold it"}},
-              {}};
+  Table table =
+      make_table("sizes", "effects", Column("code_bytes_256k", "code bytes, 256 KB"),
+                 Column("store_bytes_256k", "data bytes, 256 KB"), Column("code_bytes_64k", "code bytes, 64 KB"),
+                 Column("store_bytes_64k", "data bytes, 64 KB"), Column("fits_64k", "64 KB hold it"));
   for (const EffectSize& size : kEffectSizes) {
-    const auto cell = [](std::uint32_t bytes) { return std::uint64_t{bytes}; };
-    table.add({tool::words_of_effects(size.effects), cell(size.code_bytes_256k), cell(size.store_bytes_256k),
-               cell(size.code_bytes_64k), cell(size.store_bytes_64k), std::string(size.fits_64k ? "yes" : "no")});
+    table.add({tool::words_of_effects(size.effects), size.code_bytes_256k, size.store_bytes_256k, size.code_bytes_64k,
+               size.store_bytes_64k, size.fits_64k ? "yes" : "no"});
   }
   book.table(table, "Code and data of a core by the set of effects that it is built for, in stores of two sizes.");
 }
 
-void write_method(const EffectsExperiment& experiment, Book& book) {
+void write_method(const ExperimentSettings& settings, Book& book) {
   book.section("method", "How it is measured");
   book.paragraph(
-      "All scenes are made in process, without files. Frames of " + std::to_string(experiment.width) + "x" +
-      std::to_string(experiment.height) +
+      "All scenes are made in process, without files. Frames of " + std::to_string(settings.width) + "x" +
+      std::to_string(settings.height) +
       " pixels are rendered by the kernel's real code in checked mode with four lanes, accuracy standard, "
       "configuration best with " +
       number_text(kLambda) +
@@ -389,13 +349,13 @@ std::vector<std::string> effects_file_names() {
   return names;
 }
 
-ExperimentResult run_effects_experiment(const EffectsExperiment& experiment, const ProgressCall& progress) {
+ExperimentResult run_effects_experiment(const ExperimentSettings& settings, const ProgressCall& progress) {
   std::vector<SceneFrames> scenes;
-  for (const std::string& key : experiment.scenes) scenes.push_back(list_frames(key));
-  std::vector<Step> steps = list_steps(scenes, experiment);
+  for (const std::string_view key : kEffectSceneKeys) scenes.push_back(list_frames(key));
+  std::vector<Step> steps = list_steps(scenes, settings);
   std::mutex mutex;
   std::uint32_t done = 0;
-  share_work(experiment.threads, steps.size(), [&](std::size_t i) {
+  share_work(settings.threads, steps.size(), [&](std::size_t i) {
     const Step& step = steps[i];
     *step.frame = render_effect_frame(*step.scene, step.request);
     check_absent_costs(*step.frame, step.expected, step.name);
@@ -408,8 +368,8 @@ ExperimentResult run_effects_experiment(const EffectsExperiment& experiment, con
 
   Book book("What effects cost",
             "Every figure below comes from one run of `gridiron experiment effects`: " +
-                tool::words_of_count(scenes.size(), "scene") + ", " + std::to_string(experiment.width) + "x" +
-                std::to_string(experiment.height) +
+                tool::words_of_count(scenes.size(), "scene") + ", " + std::to_string(settings.width) + "x" +
+                std::to_string(settings.height) +
                 " pixels, with all of their effects and without each of them, rendered by the kernel's real code on "
                 "the simulated chip cell-ps3 with six cores.");
   write_scenes(scenes, book);
@@ -419,7 +379,7 @@ ExperimentResult run_effects_experiment(const EffectsExperiment& experiment, con
   write_hiding(scenes, book);
   write_lambdas(scenes, book);
   write_sizes(book);
-  write_method(experiment, book);
+  write_method(settings, book);
   return {book.finish(), steps.size(), steps.size(), {}};
 }
 

@@ -11,9 +11,7 @@
 #include "base/progress.h"
 #include "base/stopwatch.h"
 #include "base/words.h"
-#include "experiment/accuracy_experiment.h"
-#include "experiment/effects_experiment.h"
-#include "experiment/paper_experiment.h"
+#include "experiment/experiments.h"
 #include "files/atomic_file.h"
 #include "files/interrupt.h"
 #include "files/output_folder.h"
@@ -45,42 +43,44 @@ void check_scenes(const std::filesystem::path& folder) {
   }
 }
 
-std::vector<std::string> file_names_of(ExperimentName name) {
-  if (name == ExperimentName::kEffects) return experiment::effects_file_names();
-  return name == ExperimentName::kPaper ? experiment::paper_file_names() : experiment::accuracy_file_names();
-}
+// An experiment, and the size of its pictures where none is asked for.
+struct Experiment {
+  experiment::ExperimentResult (*run)(const experiment::ExperimentSettings&, const experiment::ProgressCall&);
+  std::vector<std::string> (*file_names)();
+  CountPair usual_size = kUsualPictureSize;
+};
 
-experiment::ExperimentResult run(const ExperimentRequest& request, const experiment::ProgressCall& progress) {
-  const std::uint32_t threads = request.threads.value_or(this_host().threads);
-  const std::filesystem::path scenes = request.scenes.value_or("");
-  const CountPair usual = request.name == ExperimentName::kEffects ? CountPair{96, 96} : kUsualPictureSize;
-  const auto [width, height] = request.size.value_or(usual);
-  if (request.name == ExperimentName::kAccuracy) {
-    return experiment::run_accuracy_experiment({.scenes = scenes, .threads = threads, .width = width, .height = height},
-                                               progress);
+Experiment experiment_of(ExperimentName name) {
+  switch (name) {
+    case ExperimentName::kAccuracy:
+      return {experiment::run_accuracy_experiment, experiment::accuracy_file_names};
+    case ExperimentName::kEffects:
+      return {experiment::run_effects_experiment, experiment::effects_file_names, {96, 96}};
+    case ExperimentName::kPaper:
+      break;
   }
-  if (request.name == ExperimentName::kEffects) {
-    return experiment::run_effects_experiment({.threads = threads, .width = width, .height = height}, progress);
-  }
-  return experiment::run_paper_experiment({.scenes = scenes,
-                                           .threads = threads,
-                                           .width = width,
-                                           .height = height,
-                                           .largest_knot = request.largest_knot.value_or(1'000'000)},
-                                          progress);
+  return {experiment::run_paper_experiment, experiment::paper_file_names};
 }
 
 }  // namespace
 
 void run_command(const ExperimentRequest& request) {
   check_scenes(request.scenes.value_or(""));
-  const std::vector<std::string> names = file_names_of(request.name);
+  const Experiment chosen = experiment_of(request.name);
+  const auto [width, height] = request.size.value_or(chosen.usual_size);
+  experiment::ExperimentSettings settings{.scenes = request.scenes.value_or(""),
+                                          .threads = request.threads.value_or(this_host().threads),
+                                          .width = width,
+                                          .height = height};
+  settings.largest_knot = request.largest_knot.value_or(settings.largest_knot);
+  const std::vector<std::string> names = chosen.file_names();
   OutputFolder folder(request.output, names);
   const Stopwatch stopwatch;
   experiment::ExperimentResult result;
   {
     Progress progress(!request.quiet, "runs");
-    result = run(request, [&progress](std::uint32_t done, std::uint32_t total) { progress.update(done, total); });
+    result =
+        chosen.run(settings, [&progress](std::uint32_t done, std::uint32_t total) { progress.update(done, total); });
   }
   experiment::write_files(request.output, result.files);
   folder.keep();

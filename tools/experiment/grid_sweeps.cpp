@@ -1,6 +1,8 @@
 // Sweeps of the grid traversal's parameters: lambda, macrocells, packets, prefetch.
 // SPDX-License-Identifier: Apache-2.0
 #include <algorithm>
+#include <functional>
+#include <numeric>
 #include <optional>
 
 #include "experiment/sections.h"
@@ -24,7 +26,7 @@ bool is_same_curve(const Step& a, const Step& b) {
   return a.view == b.view && a.configuration == b.configuration;
 }
 
-// Plans each value for each swept view and configuration; `change` makes a variant, or nothing if there is none.
+// Plans each value for each swept view and configuration; `change` sets it in a variant.
 template <class Change>
 std::vector<Step> plan_steps(Plan& plan, const Stage& stage, const std::vector<double>& values, const std::string& name,
                              Change change) {
@@ -33,7 +35,7 @@ std::vector<Step> plan_steps(Plan& plan, const Stage& stage, const std::vector<d
     for (const char* configuration : kSweptConfigurations) {
       for (const double value : values) {
         GridVariant variant = grid_variant(configuration);
-        if (!change(variant, value)) continue;
+        change(variant, value);
         variant.key += "/" + name + "=" + number_text(value);
         const auto system = std::make_shared<GridSystem>(std::move(variant));
         steps.push_back(
@@ -45,19 +47,10 @@ std::vector<Step> plan_steps(Plan& plan, const Stage& stage, const std::vector<d
 }
 
 Table step_table(const Plan& done, const std::vector<Step>& steps, const std::string& name, Column parameter) {
-  Table table{name,
-              {{"view", "view"},
-               {"configuration", "configuration"},
-               std::move(parameter),
-               {"fps", "fps"},
-               {"wait_percent", "wait, %"},
-               {"fetched_mb", "fetched, MB", 1},
-               {"scene_mb", "main memory, MB", 1},
-               {"references", "references"},
-               {"traversal_steps", "traversal steps"},
-               {"intersection_tests", "intersection tests"},
-               {"note", "note"}},
-              {}};
+  Table table =
+      make_table(name, "view", "configuration", std::move(parameter), "fps", Column("wait_percent", "wait, %"),
+                 Column("fetched_mb", "fetched, MB", 1), Column("scene_mb", "main memory, MB", 1), "references",
+                 "traversal_steps", "intersection_tests", "note");
   for (const Step& step : steps) {
     const RunResult& run = done.result(step.run);
     std::vector<Cell> row = {step.view->title, step.configuration, step.value};
@@ -68,8 +61,8 @@ Table step_table(const Plan& done, const std::vector<Step>& steps, const std::st
       constexpr double kMegabyte = 1 << 20;
       row.insert(row.end(), {run.fps(), run.wait_percent(), static_cast<double>(run.bytes_in()) / kMegabyte,
                              static_cast<double>(run.facts.scene_bytes) / kMegabyte,
-                             run.facts.grid ? Cell{std::uint64_t{run.facts.grid->reference_count}} : Cell{},
-                             run.facts.traversal_steps, run.facts.intersection_tests, Cell{}});
+                             run.facts.grid ? Cell{run.facts.grid->reference_count} : Cell{}, run.facts.traversal_steps,
+                             run.facts.intersection_tests, Cell{}});
     }
     table.add(std::move(row));
   }
@@ -84,17 +77,9 @@ std::string step_chart(const Plan& done, const std::vector<Step>& steps, LineCha
     auto series = std::ranges::find(chart.series, name, &Series::name);
     if (series == chart.series.end()) series = chart.series.insert(series, {name, {}, false});
     const RunResult& run = done.result(step.run);
-    if (!run.failed()) series->points.push_back({step.value, value(run)});
+    if (!run.failed()) series->points.push_back({step.value, std::invoke(value, run)});
   }
   return line_chart_svg(chart);
-}
-
-double fps_of(const RunResult& run) {
-  return run.fps();
-}
-
-double wait_of(const RunResult& run) {
-  return run.wait_percent();
 }
 
 // "3 (Bunny, reference), ...": the value with the most frames a second on each curve; marked at the ends of its range.
@@ -164,25 +149,15 @@ std::string fetched_more(const Plan& done, const std::vector<Step>& steps) {
 }
 
 std::vector<Step> plan_lambdas(Plan& plan, const Stage& stage) {
-  return plan_steps(plan, stage, {0.125, 0.25, 0.4, 0.7, 1, 2, 3, 4, 5, 6, 8, 16}, "lambda",
-                    [](GridVariant& variant, double value) {
-                      variant.configuration.lambda = static_cast<float>(value);
-                      return true;
-                    });
+  return plan_steps(
+      plan, stage, {0.125, 0.25, 0.4, 0.7, 1, 2, 3, 4, 5, 6, 8, 16}, "lambda",
+      [](GridVariant& variant, double value) { variant.configuration.lambda = static_cast<float>(value); });
 }
 
 std::vector<Step> plan_widths(Plan& plan, const Stage& stage) {
   return plan_steps(plan, stage, {2, 3, 4, 5, 6, 7, 8}, "macro_width", [](GridVariant& variant, double value) {
     variant.configuration.macro_width = static_cast<std::uint32_t>(value);
-    return true;
   });
-}
-
-// 1 to the most that fit the usual store.
-std::vector<double> depths_up_to(std::uint32_t most) {
-  std::vector<double> depths;
-  for (std::uint32_t depth = 1; depth <= most; ++depth) depths.push_back(depth);
-  return depths;
 }
 
 /// A ring of buffers whose depth is swept.
@@ -190,8 +165,11 @@ struct Ring {
   std::uint32_t tool::BufferDepths::*depth;
   const char *key, *noun;  ///< "macro_depth", "cell blocks"
 
+  // 1 to the most that the usual store has room for.
   [[nodiscard]] std::vector<double> values() const {
-    return depths_up_to(tool::usual_store_facts(sim::StoreSize::k256KB, 32).most_depths.*depth);
+    std::vector<double> depths(tool::usual_store_facts(sim::StoreSize::k256KB, 32).most_depths.*depth);
+    std::iota(depths.begin(), depths.end(), 1);
+    return depths;
   }
 };
 constexpr Ring kMacroRing = {&tool::BufferDepths::macro, "macro_depth", "cell blocks"};
@@ -200,7 +178,6 @@ constexpr Ring kTriangleRing = {&tool::BufferDepths::triangle, "triangle_depth",
 std::vector<Step> plan_depths(Plan& plan, const Stage& stage, const Ring& ring) {
   return plan_steps(plan, stage, ring.values(), ring.key, [&ring](GridVariant& variant, double value) {
     variant.configuration.depths.*ring.depth = static_cast<std::uint32_t>(value);
-    return true;
   });
 }
 
@@ -249,7 +226,7 @@ Writer plan_grid_sweeps(Plan& plan, const Stage& stage) {
                             .y_title = "frames a second",
                             .log_x = true,
                             .x_ticks = {0.125, 0.25, 0.5, 1, 2, 4, 8, 16}},
-                           fps_of),
+                           &RunResult::fps),
                 "Frames a second against lambda, 6 cores, no shading.");
     book.linked_table(step_table(done, lambdas, "sweep_lambda", {"lambda", "lambda", 3}),
                       "every step, with work, bytes and memory.");
@@ -268,7 +245,7 @@ Writer plan_grid_sweeps(Plan& plan, const Stage& stage) {
                             .x_title = "cells along an edge",
                             .y_title = "frames a second",
                             .x_ticks = {2, 3, 4, 5, 6, 7, 8}},
-                           fps_of),
+                           &RunResult::fps),
                 "Frames a second against the width of macrocells, 6 cores, no shading.");
     book.linked_table(step_table(done, widths, "sweep_macro_width", {"macro_width", "width", 0}),
                       "every step, with work, bytes and memory.");
@@ -302,21 +279,15 @@ Writer plan_packet_sweep(Plan& plan, const Stage& stage) {
     }
   }
   return [rows](const Plan& done, Book& book) {
-    Table table{"sweep_packet",
-                {{"view", "view"},
-                 {"culling", "culling"},
-                 {"packet_width", "packet width"},
-                 {"double_fps", "double buffering, fps"},
-                 {"double_wait_percent", "wait, %"},
-                 {"double_fetched_mb", "fetched, MB", 1},
-                 {"prefetch_fps", "prefetch of best, fps"},
-                 {"prefetch_wait_percent", "wait, %"},
-                 {"prefetch_fetched_mb", "fetched, MB", 1}},
-                {}};
+    Table table =
+        make_table("sweep_packet", "view", "culling", "packet_width", Column("double_fps", "double buffering, fps"),
+                   Column("double_wait_percent", "wait, %"), Column("double_fetched_mb", "fetched, MB", 1),
+                   Column("prefetch_fps", "prefetch of best, fps"), Column("prefetch_wait_percent", "wait, %"),
+                   Column("prefetch_fetched_mb", "fetched, MB", 1));
     for (const Row& row : rows) {
       const RunResult& two = done.result(row.two);
       const RunResult& deep = done.result(row.deep);
-      table.add({row.view->title, row.subpackets ? "subpackets" : "corner rays", std::uint64_t{row.width}, two.fps(),
+      table.add({row.view->title, row.subpackets ? "subpackets" : "corner rays", row.width, two.fps(),
                  two.wait_percent(), static_cast<double>(two.bytes_in()) / (1 << 20), deep.fps(), deep.wait_percent(),
                  static_cast<double>(deep.bytes_in()) / (1 << 20)});
     }
@@ -352,7 +323,7 @@ Writer plan_prefetch_sweeps(Plan& plan, const Stage& stage) {
                               .x_title = nouns + " in rotation",
                               .y_title = "waiting, % of core cycles",
                               .x_ticks = ring.values()},
-                             wait_of),
+                             &RunResult::wait_percent),
                   "Share of waiting against the number of " + buffers + ", 6 cores, no shading.");
       return std::pair(step_table(done, steps, name, {ring.key, nouns, 0}), nouns + ".");
     };

@@ -81,29 +81,14 @@ Writer plan_table1(Plan& plan, const Stage& stage) {
     }
   }
   return [&stage, runs](const Plan& done, Book& book) {
-    Table growth{"table1_growth",
-                 {{"system", "system"},
-                  {"triangles", "triangles"},
-                  {"vertices", "vertices"},
-                  {"cells", "cells"},
-                  {"references", "references"},
-                  {"build_steps", "build steps"},
-                  {"build_cycles", "build cycles of the general core", 0},
-                  {"traversal_steps", "traversal steps"},
-                  {"intersection_tests", "intersection tests"},
-                  {"frame_cycles", "frame cycles", 0},
-                  {"fetched_bytes", "bytes fetched"},
-                  {"scene_bytes", "bytes of main memory"},
-                  {"note", "note"}},
-                 {}};
-    Table exponents{"table1_exponents",
-                    {{"system", "system"},
-                     {"quantity", "quantity"},
-                     {"exponent", "fitted exponent", 3},
-                     {"r_squared", "r squared", 4},
-                     {"paper_printed", "paper [P]"},
-                     {"paper_exponent_derived", "fitted alike, paper [D]", 3}},
-                    {}};
+    Table growth =
+        make_table("table1_growth", "system", "triangles", "vertices", "cells", "references", "build_steps",
+                   Column("build_cycles", "build cycles of the general core", 0), "traversal_steps",
+                   "intersection_tests", Column("frame_cycles", "frame cycles", 0),
+                   Column("fetched_bytes", "bytes fetched"), Column("scene_bytes", "bytes of main memory"), "note");
+    Table exponents = make_table("table1_exponents", "system", "quantity", Column("exponent", "fitted exponent", 3),
+                                 Column("r_squared", "r squared", 4), Column("paper_printed", "paper [P]"),
+                                 Column("paper_exponent_derived", "fitted alike, paper [D]", 3));
     LineChart build{.title = "Build: cycles of the general core",
                     .x_title = "triangles",
                     .y_title = "cycles",
@@ -121,7 +106,7 @@ Writer plan_table1(Plan& plan, const Stage& stage) {
       for (std::size_t k = 0; k < stage.knots.size(); ++k) {
         const RunResult& run = done.result(runs[c][k]);
         const std::uint64_t count = stage.knots[k].mesh().triangles.size();
-        std::vector<Cell> row = {contender.key, count, std::uint64_t{stage.knots[k].mesh().vertices.size()}};
+        std::vector<Cell> row = {contender.key, count, stage.knots[k].mesh().vertices.size()};
         if (run.failed()) {
           row.resize(growth.columns.size() - 1);
           row.emplace_back(run.failure);
@@ -131,7 +116,7 @@ Writer plan_table1(Plan& plan, const Stage& stage) {
         if (run.facts.grid) {
           const GridRecord& grid = *run.facts.grid;
           row.emplace_back(std::uint64_t{grid.cell_count[0]} * grid.cell_count[1] * grid.cell_count[2]);
-          row.emplace_back(std::uint64_t{grid.reference_count});
+          row.emplace_back(grid.reference_count);
         } else {
           row.resize(5);
         }
@@ -191,27 +176,18 @@ Writer plan_table2(Plan& plan, const Stage& stage) {
     runs.push_back(plan.add(view, stage.contenders.front().system, Shading::kNone, stage.machine, kPaperCores));
   }
   return [&stage, runs](const Plan& done, Book& book) {
-    Table table{"table2_scenes",
-                {{"view", "view"},
-                 {"vertices", "vertices"},
-                 {"paper_vertices_printed", "paper [P]"},
-                 {"triangles", "triangles"},
-                 {"paper_triangles_printed", "paper [P]"},
-                 {"dropped_triangles", "of zero area"},
-                 {"cells_x", "cells x"},
-                 {"cells_y", "y"},
-                 {"cells_z", "z"},
-                 {"references_per_triangle", "references per triangle", 2},
-                 {"macrocells_used_percent", "macrocells used, %", 1},
-                 {"scene_mb", "main memory, MB", 1}},
-                {}};
+    Table table = make_table(
+        "table2_scenes", "view", "vertices", Column("paper_vertices_printed", "paper [P]"), "triangles",
+        Column("paper_triangles_printed", "paper [P]"), Column("dropped_triangles", "of zero area"), "cells_x",
+        Column("cells_y", "y"), Column("cells_z", "z"), Column("references_per_triangle", "references per triangle", 2),
+        Column("macrocells_used_percent", "macrocells used, %", 1), Column("scene_mb", "main memory, MB", 1));
     for (std::size_t v = 0; v < runs.size(); ++v) {
       const View& view = stage.views()[v];
       const RunResult& run = done.result(runs[v]);
       const PaperView* paper = find_paper_view(view.key);
-      std::vector<Cell> row = {
-          view.title, std::uint64_t{view.mesh().vertices.size()}, paper != nullptr ? Cell{paper->vertices} : Cell{},
-          std::uint64_t{view.mesh().triangles.size()}, paper != nullptr ? Cell{paper->triangles} : Cell{}};
+      std::vector<Cell> row = {view.title, view.mesh().vertices.size(),
+                               paper != nullptr ? Cell{paper->vertices} : Cell{}, view.mesh().triangles.size(),
+                               paper != nullptr ? Cell{paper->triangles} : Cell{}};
       if (run.failed() || !run.facts.grid) {
         row.resize(table.columns.size());
         table.add(std::move(row));
@@ -221,8 +197,7 @@ Writer plan_table2(Plan& plan, const Stage& stage) {
       const double macro_cells =
           static_cast<double>(grid.macro_cell_count[0]) * grid.macro_cell_count[1] * grid.macro_cell_count[2];
       const double kept = static_cast<double>(view.mesh().triangles.size()) - run.facts.dropped_triangles;
-      row.insert(row.end(), {std::uint64_t{run.facts.dropped_triangles}, std::uint64_t{grid.cell_count[0]},
-                             std::uint64_t{grid.cell_count[1]}, std::uint64_t{grid.cell_count[2]},
+      row.insert(row.end(), {run.facts.dropped_triangles, grid.cell_count[0], grid.cell_count[1], grid.cell_count[2],
                              grid.reference_count / kept, 100 * (grid.cell_block_count - 1) / macro_cells,
                              static_cast<double>(run.facts.scene_bytes) / (1 << 20)});
       table.add(std::move(row));

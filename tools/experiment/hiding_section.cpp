@@ -65,20 +65,11 @@ struct Breakdown {
 Writer plan_figure6(Plan& plan, const Stage& stage) {
   const std::vector<Pair> pairs = plan_pairs(plan, stage, Shading::kNone);
   return [&stage, pairs](const Plan& done, Book& book) {
-    Table table{"fig6_breakdown",
-                {{"system", "system"},
-                 {"cores", "cores"},
-                 {"view", "view"},
-                 {"latency", "latency"},
-                 {"init_ms", "initialisation, ms"},
-                 {"compute_ms", "computation, ms"},
-                 {"wait_tile_ms", "wait: tiles, ms", 3},
-                 {"wait_macrocell_ms", "cell blocks, ms", 3},
-                 {"wait_triangle_ms", "triangles, ms", 3},
-                 {"wait_setup_ms", "set-up, ms", 3},
-                 {"idle_ms", "idle, ms", 3},
-                 {"frame_ms", "frame, ms"}},
-                {}};
+    Table table = make_table(
+        "fig6_breakdown", "system", "cores", "view", "latency", Column("init_ms", "initialisation, ms"),
+        Column("compute_ms", "computation, ms"), Column("wait_tile_ms", "wait: tiles, ms", 3),
+        Column("wait_macrocell_ms", "cell blocks, ms", 3), Column("wait_triangle_ms", "triangles, ms", 3),
+        Column("wait_setup_ms", "set-up, ms", 3), Column("idle_ms", "idle, ms", 3), Column("frame_ms", "frame, ms"));
     std::map<std::string, std::string> hidden_by;
     for (const Contender& contender : stage.contenders) {
       std::string& titles = hidden_by[contender.hiding];
@@ -119,7 +110,7 @@ Writer plan_figure6(Plan& plan, const Stage& stage) {
           for (const Plan::RunId run : {pair.unhidden[c], pair.hidden[c]}) {
             const Breakdown ms(done.result(run));
             chart.values.insert(chart.values.end(), {ms.init, ms.compute, ms.all_waits(), ms.idle});
-            table.add({stage.contenders[c].key, std::uint64_t{pair.cores()}, pair.view->title,
+            table.add({stage.contenders[c].key, pair.cores(), pair.view->title,
                        run == pair.unhidden[c] ? "single" : "hidden", ms.init, ms.compute,
                        ms.wait_of(sim::WaitLevel::kTile), ms.wait_of(sim::WaitLevel::kMacroCell),
                        ms.wait_of(sim::WaitLevel::kTriangle), ms.wait_of(sim::WaitLevel::kSetup), ms.idle,
@@ -170,8 +161,8 @@ Writer plan_table4(Plan& plan, const Stage& stage) {
   const std::vector<Pair> pairs = plan_pairs(plan, stage, Shading::kNone);
   const std::vector<LatencyRun> latencies = plan_latencies(plan, stage);
   return [&stage, pairs, latencies](const Plan& done, Book& book) {
-    Table hiding{"table4_hiding", {{"view", "view"}, {"cores", "cores"}}, {}};
-    Table wait{"table4_wait_share", {{"view", "view"}, {"cores", "cores"}}, {}};
+    Table hiding = make_table("table4_hiding", "view", "cores");
+    Table wait = make_table("table4_wait_share", "view", "cores");
     for (const Contender& contender : stage.contenders) {
       hiding.columns.push_back({contender.key + "_hidden_percent", contender.title + ": waiting removed, %", 1});
       wait.columns.push_back({contender.key + "_single_wait_percent", contender.title + ": waiting, single, %", 1});
@@ -193,7 +184,7 @@ Writer plan_table4(Plan& plan, const Stage& stage) {
     Range growth_range, byte_ratios, work_ratios;  // the last two: projection over reference
     for (const Pair& pair : pairs) {
       const PaperView* paper = find_paper_view(pair.view->key);
-      std::vector<Cell> hidden = {pair.view->title, std::uint64_t{pair.cores()}};
+      std::vector<Cell> hidden = {pair.view->title, pair.cores()};
       std::vector<Cell> shares = hidden;
       std::vector<Cell> gains, hidden_shares;
       for (std::size_t c = 0; c < stage.contenders.size(); ++c) {
@@ -297,18 +288,12 @@ Writer plan_best(Plan& plan, const Stage& stage) {
   }
   const ChoiceWords choice_words = plan_choice_words(plan, stage);
   return [rows, choice_words](const Plan& done, Book& book) {
-    Table table{"best_against_reference",
-                {{"shading", "shading"},
-                 {"view", "view"},
-                 {"reference_fps", "reference, fps"},
-                 {"best_fps", "best, fps"},
-                 {"fps_ratio", "ratio", 2},
-                 {"best_wait_percent", "best: wait, %"},
-                 {"single_wait_gone_percent", "of reference's single-buffered wait gone, %", 1},
-                 {"best_speedup_6_cores", "best: speed-up on 6", 2},
-                 {"fetched_ratio", "bytes fetched, best / reference", 2},
-                 {"same_picture", "same picture"}},
-                {}};
+    Table table = make_table("best_against_reference", "shading", "view", Column("reference_fps", "reference, fps"),
+                             Column("best_fps", "best, fps"), Column("fps_ratio", "ratio", 2),
+                             Column("best_wait_percent", "best: wait, %"),
+                             Column("single_wait_gone_percent", "of reference's single-buffered wait gone, %", 1),
+                             Column("best_speedup_6_cores", "best: speed-up on 6", 2),
+                             Column("fetched_ratio", "bytes fetched, best / reference", 2), "same_picture");
     Range ratios, waits, gone;
     bool all_same = true;
     for (const Row& row : rows) {

@@ -18,7 +18,8 @@ constexpr std::uint32_t kRepeats = 5;
 struct Milliseconds {
   Cell wall, processor;
 
-  explicit Milliseconds(const HostSeconds& seconds) : wall(seconds.wall * 1e3), processor(seconds.processor * 1e3) {}
+  explicit Milliseconds(const tool::HostSeconds& seconds)
+      : wall(seconds.wall * 1e3), processor(seconds.processor * 1e3) {}
   explicit Milliseconds(const std::string& reason) : wall(reason), processor(reason) {}
 };
 
@@ -28,14 +29,14 @@ Milliseconds embree_milliseconds([[maybe_unused]] const View& view, [[maybe_unus
   if (frame.width % peer::kEmbreePacketWidth != 0 || frame.height % peer::kEmbreePacketWidth != 0) {
     return Milliseconds("size is no multiple of " + std::to_string(peer::kEmbreePacketWidth));
   }
-  HostSeconds least;
+  tool::HostSeconds least;
   std::vector<std::uint32_t> color;
   for (const peer::EmbreeQuality quality : {peer::EmbreeQuality::kLow, peer::EmbreeQuality::kMedium}) {
     tool::stop_if_interrupted();
     peer::EmbreeScene scene;
     scene.set_mesh(view.mesh().view());
     scene.build(quality);
-    const HostSeconds seconds = least_host_seconds(kRepeats, [&] { scene.render(frame, color); });
+    const tool::HostSeconds seconds = least_host_seconds(kRepeats, [&] { scene.render(frame, color); });
     if (least.wall <= 0 || seconds.processor < least.processor) least = seconds;
   }
   return Milliseconds(least);
@@ -47,17 +48,10 @@ Milliseconds embree_milliseconds([[maybe_unused]] const View& view, [[maybe_unus
 }  // namespace
 
 void write_host_figures(const Stage& stage, std::uint32_t threads, Book& book) {
-  Table table{"host_fig7",
-              {{"view", "view"},
-               {"threads", "threads"},
-               {"lanes", "lanes"},
-               {"reference_ms", "reference, ms"},
-               {"best_ms", "best, ms"},
-               {"embree_ms", "Embree, ms"},
-               {"reference_processor_ms", "processor, ms"},
-               {"best_processor_ms", "processor, ms"},
-               {"embree_processor_ms", "processor, ms"}},
-              {}};
+  Table table = make_table(
+      "host_fig7", "view", "threads", "lanes", Column("reference_ms", "reference, ms"), Column("best_ms", "best, ms"),
+      Column("embree_ms", "Embree, ms"), Column("reference_processor_ms", "processor, ms"),
+      Column("best_processor_ms", "processor, ms"), Column("embree_processor_ms", "processor, ms"));
   const FrameRequest request = {.width = stage.width, .height = stage.height, .shading = Shading::kSimple};
   std::vector<std::uint32_t> thread_counts = {1};
   if (threads > 1) thread_counts.push_back(threads);
@@ -68,8 +62,8 @@ void write_host_figures(const Stage& stage, std::uint32_t threads, Book& book) {
       const Milliseconds ours(reference.seconds), ours_best(best.seconds);
       const Milliseconds peer =
           count == 1 ? embree_milliseconds(view, reference.record) : Milliseconds(std::string("one thread only"));
-      table.add({view.title, std::uint64_t{count}, std::uint64_t{sim::widest_lanes()}, ours.wall, ours_best.wall,
-                 peer.wall, ours.processor, ours_best.processor, peer.processor});
+      table.add({view.title, count, sim::widest_lanes(), ours.wall, ours_best.wall, peer.wall, ours.processor,
+                 ours_best.processor, peer.processor});
     }
   }
   book.section("host", "Fig. 7 (b): this host");

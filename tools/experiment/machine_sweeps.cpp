@@ -1,6 +1,7 @@
 // Sweeps of the machine: latency and bandwidth of main memory. The grid's work stays the same; only the replay changes.
 // SPDX-License-Identifier: Apache-2.0
 #include <algorithm>
+#include <functional>
 #include <utility>
 
 #include "experiment/sections.h"
@@ -38,13 +39,13 @@ struct Point {
 
 Table point_table(const Plan& done, const std::vector<Curve>& curves, const std::vector<Point>& points,
                   const std::string& name, Column parameter) {
-  Table table{name, {{"view", "view"}, {"cores", "cores"}, std::move(parameter)}, {}};
+  Table table = make_table(name, "view", "cores", std::move(parameter));
   for (const Curve& curve : curves) {
     table.columns.push_back({curve.key + "_fps", curve.title + ": fps", 2});
     table.columns.push_back({curve.key + "_wait_percent", "wait, %", 1});
   }
   for (const Point& point : points) {
-    std::vector<Cell> row = {point.view->title, std::uint64_t{point.cores}, point.value};
+    std::vector<Cell> row = {point.view->title, point.cores, point.value};
     for (const Plan::RunId run : point.runs) {
       row.emplace_back(done.result(run).fps());
       row.emplace_back(done.result(run).wait_percent());
@@ -61,7 +62,7 @@ std::string point_chart(const Plan& done, const std::vector<Curve>& curves, cons
     Series series{curves[c].title, {}, false};
     for (const Point& point : points) {
       if (point.view == &view && point.cores == cores) {
-        series.points.push_back({point.value, value(done.result(point.runs[c]))});
+        series.points.push_back({point.value, std::invoke(value, done.result(point.runs[c]))});
       }
     }
     chart.series.push_back(std::move(series));
@@ -170,11 +171,9 @@ Writer plan_machine_sweeps(Plan& plan, const Stage& stage) {
         "every cycle of latency is waited for; double buffering hides a transfer only as long as the work beside it "
         "lasts, and more buffers, as best has them, move that limit out. " +
         ring_words(done, turns));
-    draw(
-        "sweep_latency", latencies, kPaperCores,
-        {.title = "Latency", .x_title = "latency, cycles", .y_title = "waiting, % of core cycles"},
-        [](const RunResult& run) { return run.wait_percent(); },
-        "share of waiting against latency, 6 cores, no shading.");
+    draw("sweep_latency", latencies, kPaperCores,
+         {.title = "Latency", .x_title = "latency, cycles", .y_title = "waiting, % of core cycles"},
+         &RunResult::wait_percent, "share of waiting against latency, 6 cores, no shading.");
     book.table(point_table(done, curves, latencies, "sweep_latency", {"latency_cycles", "latency, cycles", 0}),
                "Latency of main memory.");
 
@@ -184,10 +183,9 @@ Writer plan_machine_sweeps(Plan& plan, const Stage& stage) {
         "on sixteen cores. Where halving it changes nothing the frame is bound by work or latency; where fps halves "
         "with it the channel is full, and only fetching fewer bytes helps. " +
         scarce_words(done, stage, bandwidths));
-    draw(
-        "sweep_bandwidth", bandwidths, kManyCores,
-        {.title = "Bandwidth", .x_title = "GB/s, shared", .y_title = "frames a second", .log_x = true},
-        [](const RunResult& run) { return run.fps(); }, "frames a second against bandwidth, 16 cores, no shading.");
+    draw("sweep_bandwidth", bandwidths, kManyCores,
+         {.title = "Bandwidth", .x_title = "GB/s, shared", .y_title = "frames a second", .log_x = true},
+         &RunResult::fps, "frames a second against bandwidth, 16 cores, no shading.");
     book.table(point_table(done, curves, bandwidths, "sweep_bandwidth", {"gigabytes_per_second", "GB/s", 2}),
                "Bandwidth of main memory.");
   };

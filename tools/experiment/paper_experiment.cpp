@@ -1,9 +1,8 @@
 // The paper experiment. SPDX-License-Identifier: Apache-2.0
-#include "experiment/paper_experiment.h"
-
 #include <algorithm>
 #include <cmath>
 
+#include "experiment/experiments.h"
 #include "experiment/plan.h"
 #include "experiment/sections.h"
 #include "experiment/svg_plot.h"
@@ -12,17 +11,17 @@
 namespace gridiron::experiment {
 namespace {
 
-Stage make_stage(const PaperExperiment& experiment) {
+Stage make_stage(const ExperimentSettings& settings) {
   Stage stage;
-  stage.found = find_views(experiment.scenes);
-  for (const std::uint32_t count : growth_counts(experiment.largest_knot)) {
+  stage.found = find_views(settings.scenes);
+  for (const std::uint32_t count : growth_counts(settings.largest_knot)) {
     tool::stop_if_interrupted();
     stage.knots.push_back(make_knot_view(count));
   }
   stage.contenders = make_contenders();
   stage.machine = built_in_machine("cell-ps3");
-  stage.width = experiment.width;
-  stage.height = experiment.height;
+  stage.width = settings.width;
+  stage.height = settings.height;
   return stage;
 }
 
@@ -41,6 +40,10 @@ std::vector<const View*> choose_sweep_views(const std::vector<View>& views) {
 
 const Contender& contender_named(const Stage& stage, std::string_view key) {
   return *std::ranges::find(stage.contenders, key, &Contender::key);
+}
+
+Range::Range(std::span<const double> values) {
+  for (const double value : values) add(value);
 }
 
 void Range::add(double value) {
@@ -98,12 +101,12 @@ std::vector<std::string> paper_file_names() {
   return names;
 }
 
-ExperimentResult run_paper_experiment(const PaperExperiment& experiment, const ProgressCall& progress) {
-  Stage stage = make_stage(experiment);
+ExperimentResult run_paper_experiment(const ExperimentSettings& settings, const ProgressCall& progress) {
+  Stage stage = make_stage(settings);
   stage.sweep_views = choose_sweep_views(stage.found.views);
 
   // 1. Plan the runs.
-  Plan plan(experiment.width, experiment.height);
+  Plan plan(settings.width, settings.height);
   std::vector<Writer> before_host, after_host;
   for (const auto section :
        {plan_table1, plan_table2, plan_table3, plan_figure5, plan_figure6, plan_table4, plan_best, plan_figure7}) {
@@ -115,10 +118,10 @@ ExperimentResult run_paper_experiment(const PaperExperiment& experiment, const P
   }
 
   // 2. Render and replay.
-  plan.execute(experiment.threads, progress);
+  plan.execute(settings.threads, progress);
 
   // 3. Write the tables, plots and sentences.
-  const std::string size = std::to_string(experiment.width) + "x" + std::to_string(experiment.height);
+  const std::string size = std::to_string(settings.width) + "x" + std::to_string(settings.height);
   Book book(
       "Grid ray tracing from small local stores: the evaluation, run again",
       "Every figure below comes from one run of `gridiron experiment paper`: pictures of " + size +
@@ -132,7 +135,7 @@ ExperimentResult run_paper_experiment(const PaperExperiment& experiment, const P
           "Visual Rendering on Multicore Accelerators "
           "with Explicitly Managed Memories, Journal of Information Science and Engineering 28 (2012), 895-909.");
   for (const Writer& write : before_host) write(plan, book);
-  write_host_figures(stage, experiment.threads, book);
+  write_host_figures(stage, settings.threads, book);
   for (const Writer& write : after_host) write(plan, book);
   return {book.finish(), plan.rendered_count(), plan.run_count(), stage.found.missing};
 }

@@ -47,7 +47,7 @@ class Fields {
     if (with_view)
       add({"view", "view"}, [&list = list_](const Price& price) { return list.views()[price.view].title; });
     add({"configuration", with_view ? "configuration" : "config"},
-        [](const Price& price) { return std::string(kPricedConfigurations[price.configuration]); });
+        [](const Price& price) { return kPricedConfigurations[price.configuration]; });
     add({"profile", "profile"}, [&list = list_](const Price& price) { return list.profiles()[price.profile].key; });
   }
 
@@ -143,8 +143,7 @@ Table all_prices(const PriceList& list) {
   add_spread("t_all_hits_relative", &Comparison::all_relative);
   fields.add_error({"differing_pixels", ""}, [](const Comparison& found) { return found.differing_pixels; });
   fields.add_error({"psnr_db", ""}, [](const Comparison& found) { return found.psnr_db; });
-  fields.add_error({"greatest_pixel_error", ""},
-                   [](const Comparison& found) { return std::uint64_t{found.greatest_pixel_error}; });
+  fields.add_error({"greatest_pixel_error", ""}, [](const Comparison& found) { return found.greatest_pixel_error; });
   return fields.table("prices", [](const Price&) { return true; });
 }
 
@@ -349,12 +348,12 @@ Table view_errors(const PriceList& list, std::size_t view, bool split_leaks) {
   fields.add_error({"", "max", 0}, [](const Comparison& found) { return found.ulps.greatest; });
   fields.add_error({"", "t 99%", -2}, [](const Comparison& found) { return found.relative.percentile_99; });
   fields.add_error({"", "PSNR", 1}, [](const Comparison& found) { return found.psnr_db; });
-  fields.add_error({"", "pixel"}, [](const Comparison& found) { return std::uint64_t{found.greatest_pixel_error}; });
+  fields.add_error({"", "pixel"}, [](const Comparison& found) { return found.greatest_pixel_error; });
   return fields.table("", [view](const Price& price) { return price.view == view; });
 }
 
 void write_overview(const PriceList& list, Book& book) {
-  Table table{"overview", {{"configuration", "configuration"}, {"profile", "profile"}}, {}};
+  Table table = make_table("overview", "configuration", "profile");
   struct Time {
     const char *key, *title;
     RunOf run;
@@ -397,7 +396,7 @@ void write_overview(const PriceList& list, Book& book) {
   for (const Worst& worst : worsts) table.columns.push_back(worst.column);
   for (std::size_t configuration = 0; configuration < std::size(kPricedConfigurations); ++configuration) {
     for (std::size_t profile = 0; profile < list.profiles().size(); ++profile) {
-      std::vector<Cell> row = {std::string(kPricedConfigurations[configuration]), list.profiles()[profile].key};
+      std::vector<Cell> row = {kPricedConfigurations[configuration], list.profiles()[profile].key};
       for (const Time& time : times) row.emplace_back(mean_mcycles(list, time.run, configuration, profile));
       for (const Worst& worst : worsts) {
         Range range;
@@ -429,20 +428,14 @@ void write_overview(const PriceList& list, Book& book) {
 }
 
 void write_targets(const PriceList& list, Book& book) {
-  Table table{"targets",
-              {{"configuration", "configuration"},
-               {"what", "what"},
-               {"from", "from"},
-               {"to", "to"},
-               {"worst_percent", "change in the worst view, %", 1},
-               {"limit_percent", "limit, %", 0},
-               {"met", "met"}},
-              {}};
+  Table table = make_table("targets", "configuration", "what", "from", "to",
+                           Column("worst_percent", "change in the worst view, %", 1),
+                           Column("limit_percent", "limit, %", 0), "met");
   book.section("targets", "What was asked for");
   for (const Target& target : price_targets(list)) {
     book.paragraph(target_words(list, target));
     table.add({target.configuration, target.what, target.from, target.to, target.worst_percent(), target.limit_percent,
-               std::string(target.is_met() ? "yes" : "no")});
+               target.is_met() ? "yes" : "no"});
   }
   book.table(table, "Changes from one profile to another, and how far they may go.");
 }
@@ -463,15 +456,8 @@ void write_steps(const PriceList& list, Book& book) {
 }
 
 void write_fronts(const PriceList& list, Book& book) {
-  Table table{"pareto",
-              {{"view", "view"},
-               {"error", "error"},
-               {"configuration", "configuration"},
-               {"profile", "profile"},
-               {"mcycles", "Mcycles"},
-               {"error_value", "error", 1},
-               {"on_front", "on the front"}},
-              {}};
+  Table table = make_table("pareto", "view", "error", "configuration", "profile", Column("mcycles", "Mcycles"),
+                           Column("error_value", "error", 1), Column("on_front", "on the front"));
   book.section("fronts", "Error against time");
   book.paragraph(
       "Who is on a Pareto front is not beaten: no other profile, in either configuration, is as fast and as accurate "
@@ -485,9 +471,8 @@ void write_fronts(const PriceList& list, Book& book) {
                 "All views: " + front.error + ", against " + front.time + ". " + front_words(list, over_all));
     const auto add_rows = [&](const std::string& view, const std::vector<FrontPoint>& points) {
       for (const FrontPoint& point : points) {
-        table.add({view, front.error, std::string(kPricedConfigurations[point.configuration]),
-                   list.profiles()[point.profile].key, point.point.x, point.point.y,
-                   std::string(point.on_front ? "yes" : "no")});
+        table.add({view, front.error, kPricedConfigurations[point.configuration], list.profiles()[point.profile].key,
+                   point.point.x, point.point.y, point.on_front ? "yes" : "no"});
       }
     };
     add_rows("all", over_all);
@@ -554,21 +539,14 @@ void write_views(const PriceList& list, Book& book) {
 
 void write_host_prices(const PriceList& list, Book& book) {
   constexpr std::uint32_t kRepeats = 3;
-  Table table{"host_prices",
-              {{"view", ""},
-               {"configuration", ""},
-               {"profile", ""},
-               {"lanes", ""},
-               {"frame_ms", ""},
-               {"frame_processor_ms", ""},
-               {"with_distances_ms", ""},
-               {"with_distances_processor_ms", ""}},
-              {}};
+  Table table = make_table("host_prices", Column("view", ""), Column("configuration", ""), Column("profile", ""),
+                           Column("lanes", ""), Column("frame_ms", ""), Column("frame_processor_ms", ""),
+                           Column("with_distances_ms", ""), Column("with_distances_processor_ms", ""));
   for (const Price& price : list.prices()) {
     tool::stop_if_interrupted();
     if (list.frame(price).failed()) continue;
-    std::vector<Cell> row = {list.views()[price.view].title, std::string(kPricedConfigurations[price.configuration]),
-                             list.profiles()[price.profile].key, std::uint64_t{sim::widest_lanes()}};
+    std::vector<Cell> row = {list.views()[price.view].title, kPricedConfigurations[price.configuration],
+                             list.profiles()[price.profile].key, sim::widest_lanes()};
     for (const bool depth : {false, true}) {
       GridVariant variant = price.variant;
       variant.depth = depth;

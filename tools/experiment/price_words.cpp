@@ -2,6 +2,7 @@
 #include "experiment/price_words.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <utility>
 
@@ -84,10 +85,7 @@ std::string change_words(const Range& percents, int decimals) {
   if (percents.empty()) return "none";
   const double low = percents.least(), high = percents.greatest();
   const auto magnitudes = [decimals](double a, double b) {
-    Range range;
-    range.add(std::fabs(a));
-    range.add(std::fabs(b));
-    return range.percent(decimals);
+    return Range(std::array{std::fabs(a), std::fabs(b)}).percent(decimals);
   };
   if (low >= 0) return magnitudes(low, high) + " more";
   if (high <= 0) return magnitudes(low, high) + " fewer";
@@ -134,8 +132,7 @@ bool is_at_home(std::string_view profile, std::size_t configuration) {
 }
 
 double Target::worst_percent() const {
-  Range range;
-  for (const double percent : percents) range.add(percent);
+  const Range range(percents);
   return range.empty() ? std::nan("") : range.greatest();
 }
 
@@ -189,16 +186,12 @@ std::vector<Target> price_targets(const PriceList& list) {
 }
 
 std::string target_words(const PriceList& list, const Target& target) {
-  Range changes;
+  const Range changes(target.percents);
   std::vector<std::string> missed;
   for (std::size_t view = 0; view < target.percents.size(); ++view) {
     const double percent = target.percents[view];
-    if (!std::isfinite(percent)) continue;
-    changes.add(percent);
-    Range of_view;
-    of_view.add(percent);
-    if (percent > target.limit_percent)
-      missed.push_back(list.views()[view].title + " (" + change_words(of_view, 1) + ")");
+    if (!(percent > target.limit_percent)) continue;
+    missed.push_back(list.views()[view].title + " (" + change_words(Range(std::array{percent}), 1) + ")");
   }
   const std::string text = "Configuration " + target.configuration + ", " + target.what + ": " + target.to + " takes " +
                            change_words(changes, 1) + " than " + target.from + "; asked for: " + target.limit_words() +
@@ -235,15 +228,11 @@ std::string starved_words(const PriceList& list) {
   if (!standard || !compact) return "";
   std::string text;
   for (std::size_t configuration = 0; configuration < std::size(kPricedConfigurations); ++configuration) {
-    Range here, there;
-    for (const double percent : changes_of(list, configuration, *standard, *compact,
-                                           [&list](const Price& price) { return cycles_of(list.frame(price)); })) {
-      here.add(percent);
-    }
-    for (const double percent : changes_of(list, configuration, *standard, *compact,
-                                           [&list](const Price& price) { return cycles_of(list.on_starved(price)); })) {
-      there.add(percent);
-    }
+    const auto changes = [&](RunOf run) {
+      return Range(changes_of(list, configuration, *standard, *compact,
+                              [&list, run](const Price& price) { return cycles_of((list.*run)(price)); }));
+    };
+    const Range here = changes(&PriceList::frame), there = changes(&PriceList::on_starved);
     text += (text.empty() ? "In configuration " : " In configuration ") +
             std::string(kPricedConfigurations[configuration]) + " compact takes " + change_words(there, 1) +
             " cycles a frame than standard there, and " + change_words(here, 1) + " at full bandwidth.";

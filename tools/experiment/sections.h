@@ -84,6 +84,8 @@ using ChoiceWords = std::function<std::string(const Plan&)>;
 /// Least and greatest of some figures, as words: "1.2 to 3.4"; one figure if both print alike; "none".
 class Range {
  public:
+  Range() = default;
+  explicit Range(std::span<const double> values);
   void add(double value);  ///< ignores infinity and NaN
   [[nodiscard]] std::string text(int decimals) const;
   [[nodiscard]] std::string percent(int decimals) const;  ///< the same with a percent sign behind a figure

@@ -35,8 +35,8 @@ Writer plan_table3(Plan& plan, const Stage& stage) {
     }
   }
   return [&stage, rows](const Plan& done, Book& book) {
-    Table fps{"table3_fps", {{"shading", "shading"}, {"cores", "cores"}, {"view", "view"}}, {}};
-    Table cost{"table3_shading_cost", {{"view", "view"}, {"cores", "cores"}}, {}};
+    Table fps = make_table("table3_fps", "shading", "cores", "view");
+    Table cost = make_table("table3_shading_cost", "view", "cores");
     for (const Contender& contender : stage.contenders) {
       fps.columns.push_back({contender.key + "_fps", contender.title, 2});
       cost.columns.push_back({contender.key + "_percent", contender.title + ", %", 1});
@@ -49,11 +49,11 @@ Writer plan_table3(Plan& plan, const Stage& stage) {
       return run.timing.frame_cycles * static_cast<double>(run.timing.cores.size()) / pixels;
     };
     for (const Row& row : rows) {
-      std::vector<Cell> cells = {shading_name(row.shading), std::uint64_t{row.cores}, row.view->title};
+      std::vector<Cell> cells = {shading_name(row.shading), row.cores, row.view->title};
       for (const Plan::RunId run : row.runs) cells.emplace_back(done.result(run).fps());
       fps.add(std::move(cells));
       if (row.shading != Shading::kSimple) continue;
-      std::vector<Cell> drops = {row.view->title, std::uint64_t{row.cores}};
+      std::vector<Cell> drops = {row.view->title, row.cores};
       for (const Row& bare : rows) {
         if (bare.shading != Shading::kNone || bare.view != row.view || bare.cores != row.cores) continue;
         for (std::size_t c = 0; c < row.runs.size(); ++c) {
@@ -107,16 +107,9 @@ Writer plan_figure5(Plan& plan, const Stage& stage) {
     }
   }
   return [&stage, runs](const Plan& done, Book& book) {
-    Table table{"fig5_speedup",
-                {{"system", "system"},
-                 {"view", "view"},
-                 {"cores", "cores"},
-                 {"fps", "fps"},
-                 {"projected_fps", "projected"},
-                 {"speedup", "speed-up"},
-                 {"wait_percent", "wait, %"}},
-                {}};
-    Table at_six{"", {{"view", "view"}}, {}};
+    Table table = make_table("fig5_speedup", "system", "view", "cores", "fps", Column("projected_fps", "projected"),
+                             Column("speedup", "speed-up"), Column("wait_percent", "wait, %"));
+    Table at_six = make_table("", "view");
     for (const Contender& contender : stage.contenders) {
       at_six.columns.push_back({"", contender.title + ", 6 cores", 2});
       at_six.columns.push_back({"", "16 cores", 2});
@@ -147,8 +140,8 @@ Writer plan_figure5(Plan& plan, const Stage& stage) {
         for (std::uint32_t cores = 1; cores <= kMostCores; ++cores) {
           const RunResult& run = done.result(runs[c][v][cores - 1]);
           const double speedup = one > 0 ? run.fps() / one : 0;
-          table.add({stage.contenders[c].key, stage.views()[v].title, std::uint64_t{cores}, run.fps(), one * cores,
-                     speedup, run.wait_percent()});
+          table.add({stage.contenders[c].key, stage.views()[v].title, cores, run.fps(), one * cores, speedup,
+                     run.wait_percent()});
           series.points.push_back({static_cast<double>(cores), speedup});
           shares.points.push_back({static_cast<double>(cores), 100 * speedup / cores});
           if (cores == kPaperCores) speedups.add(speedup);

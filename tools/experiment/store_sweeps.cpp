@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <functional>
 #include <optional>
 
 #include "experiment/sections.h"
@@ -133,30 +134,15 @@ bool is_same_picture(const Sweep& sweep, const Plan& done, const Point& point) {
 
 // The whole table, a row for each point.
 Table long_table(const Sweep& sweep, const Plan& done, const std::string& name) {
-  Table table{name,
-              {{"view", "view"},
-               {"configuration", "configuration"},
-               {"store_kb", "local store, KB"},
-               {"tile_width", "tile width"},
-               {"packet_width", "packet width"},
-               {"mailbox_slots", "mailbox slots"},
-               {"cell_blocks", "cell blocks"},
-               {"triangle_buffers", "triangle buffers"},
-               {"triangles_per_buffer", "triangles in each"},
-               {"fps", "fps"},
-               {"fps_over_usual", "fps over usual"},
-               {"wait_percent", "wait, %"},
-               {"idle_percent", "idle, %"},
-               {"fetched_mb", "fetched, MB", 1},
-               {"traversal_steps", "traversal steps"},
-               {"intersection_tests", "intersection tests"},
-               {"same_picture", "same picture"},
-               {"note", "note"}},
-              {}};
+  Table table = make_table(
+      name, "view", "configuration", Column("store_kb", "local store, KB"), "tile_width", "packet_width",
+      "mailbox_slots", "cell_blocks", "triangle_buffers", Column("triangles_per_buffer", "triangles in each"), "fps",
+      "fps_over_usual", Column("wait_percent", "wait, %"), Column("idle_percent", "idle, %"),
+      Column("fetched_mb", "fetched, MB", 1), "traversal_steps", "intersection_tests", "same_picture", "note");
   for (const Point& point : sweep.points) {
     const Place& place = sweep.places[point.place];
-    std::vector<Cell> row = {point.view->title, point.configuration, kilobytes(place.store),
-                             std::uint64_t{place.tile_width}, std::uint64_t{point.fitted.packet_width}};
+    std::vector<Cell> row = {point.view->title, point.configuration, kilobytes(place.store), place.tile_width,
+                             point.fitted.packet_width};
     const RunResult* run = Sweep::result(done, point);
     if (run == nullptr) {
       row.resize(table.columns.size() - 1);
@@ -164,9 +150,9 @@ Table long_table(const Sweep& sweep, const Plan& done, const std::string& name) 
     } else {
       const RunResult* usual = sweep.usual_result(done, point);
       row.insert(row.end(),
-                 {std::uint64_t{point.layout->mailbox_slots}, std::uint64_t{point.fitted.depths.macro},
-                  std::uint64_t{point.fitted.depths.triangle}, std::uint64_t{point.layout->triangles_per_buffer},
-                  run->fps(), usual != nullptr ? Cell{ratio_of(run->fps(), usual->fps())} : Cell{}, run->wait_percent(),
+                 {point.layout->mailbox_slots, point.fitted.depths.macro, point.fitted.depths.triangle,
+                  point.layout->triangles_per_buffer, run->fps(),
+                  usual != nullptr ? Cell{ratio_of(run->fps(), usual->fps())} : Cell{}, run->wait_percent(),
                   idle_percent(*run), megabytes_in(*run), run->facts.traversal_steps, run->facts.intersection_tests,
                   is_same_picture(sweep, done, point) ? "yes" : "no", point.note.empty() ? Cell{} : Cell{point.note}});
     }
@@ -177,7 +163,7 @@ Table long_table(const Sweep& sweep, const Plan& done, const std::string& name) 
 
 // The table for readers: a row for each view and configuration, the places side by side.
 Table short_table(const Sweep& sweep, const Plan& done) {
-  Table table{"", {{"view", "view"}, {"configuration", "configuration"}}, {}};
+  Table table = make_table("", "view", "configuration");
   struct Figure {
     const char* title;
     int decimals;
@@ -233,7 +219,8 @@ std::string ratio_words(const Sweep& sweep, const Plan& done, const std::string&
       if (point.configuration != configuration || point.place != i) continue;
       const RunResult* run = Sweep::result(done, point);
       const RunResult* usual = sweep.usual_result(done, point);
-      if (run != nullptr && usual != nullptr) ratios.add(ratio_of(value(*run), value(*usual)));
+      if (run != nullptr && usual != nullptr)
+        ratios.add(ratio_of(std::invoke(value, *run), std::invoke(value, *usual)));
     }
     const std::string words = ratios.empty() ? "not at all" : ratios.text(2) + " times";
     text += (text.empty() ? "" : ", ") + words + " with " + sweep.places[i].title;
@@ -246,7 +233,7 @@ std::string range_words(const Sweep& sweep, const Plan& done, const std::string&
   Range range;
   for (const Point& point : sweep.points) {
     const RunResult* run = Sweep::result(done, point);
-    if (point.configuration == configuration && run != nullptr) range.add(value(*run));
+    if (point.configuration == configuration && run != nullptr) range.add(std::invoke(value, *run));
   }
   return range.percent(2);
 }
@@ -280,16 +267,23 @@ std::string picture_words(const Sweep& sweep, const Plan& done) {
   return "All runs of every row render the same picture, pixel for pixel.";
 }
 
-double fps_of(const RunResult& run) {
-  return run.fps();
-}
-
 double tests_of(const RunResult& run) {
   return static_cast<double>(run.facts.intersection_tests);
 }
 
 double steps_of(const RunResult& run) {
   return static_cast<double>(run.facts.traversal_steps);
+}
+
+// What people read, a plot for each configuration, and a link to everything.
+void write_tables(const Sweep& sweep, const Plan& done, const std::string& name, const std::string& title,
+                  const std::string& swept, const std::string& caption, Book& book) {
+  book.shown_table(short_table(sweep, done), caption);
+  for (const std::string configuration : kSweptConfigurations) {
+    book.figure(name + "_" + configuration, bar_chart(sweep, done, configuration, title),
+                "Frames a second against " + swept + ", " + configuration + ", 6 cores.");
+  }
+  book.linked_table(long_table(sweep, done, name), "every frame, with buffers, work and idle time.");
 }
 
 }  // namespace
@@ -309,30 +303,25 @@ Writer plan_tile_sweep(Plan& plan, const Stage& stage) {
         "word of bits, so that tiles of 64 pixels take four. Packets of 8x8 have mailboxes of 64 slots, those of "
         "16x16 and of tiles of 64 pixels 256, the others 1,024. Two tiles of 64 pixels take 96 KB with their planes of "
         "colour, distance and triangle; beside them there is room for 8 triangle buffers instead of 12; best uses 3.");
-    book.paragraph(
-        "Frames over those at 32 pixels, all views: the reference renders " +
-        ratio_words(*sweep, done, "reference", fps_of) + "; best " + ratio_words(*sweep, done, "best", fps_of) +
-        ". Traversal steps of best: " + ratio_words(*sweep, done, "best", steps_of) +
-        ". Over all widths the reference stands idle for " + range_words(*sweep, done, "reference", idle_percent) +
-        " of its core cycles and best for " + range_words(*sweep, done, "best", idle_percent) +
-        ". Best is fastest with " + fastest_words(*sweep, done, "best") + ", the reference with " +
-        fastest_words(*sweep, done, "reference") + ". " + picture_words(*sweep, done));
-    book.shown_table(short_table(*sweep, done), "Widths of tiles, 256 KB, 6 cores, no shading.");
-    for (const char* configuration : kSweptConfigurations) {
-      book.figure(std::string("sweep_tile_width_") + configuration,
-                  bar_chart(*sweep, done, configuration, "Width of tiles"),
-                  std::string("Frames a second against the width of tiles, ") + configuration + ", 6 cores.");
-    }
-    book.linked_table(long_table(*sweep, done, "sweep_tile_width"), "every frame, with buffers, work and idle time.");
+    book.paragraph("Frames over those at 32 pixels, all views: the reference renders " +
+                   ratio_words(*sweep, done, "reference", &RunResult::fps) + "; best " +
+                   ratio_words(*sweep, done, "best", &RunResult::fps) + ". Traversal steps of best: " +
+                   ratio_words(*sweep, done, "best", steps_of) + ". Over all widths the reference stands idle for " +
+                   range_words(*sweep, done, "reference", idle_percent) + " of its core cycles and best for " +
+                   range_words(*sweep, done, "best", idle_percent) + ". Best is fastest with " +
+                   fastest_words(*sweep, done, "best") + ", the reference with " +
+                   fastest_words(*sweep, done, "reference") + ". " + picture_words(*sweep, done));
+    write_tables(*sweep, done, "sweep_tile_width", "Width of tiles", "the width of tiles",
+                 "Widths of tiles, 256 KB, 6 cores, no shading.", book);
   };
 }
 
 namespace {
 
 Table bvh_map() {
-  Table map{"local_store_map_bvh", {{"region", "region"}, {"offset", "offset"}, {"bytes", "bytes"}}, {}};
+  Table map = make_table("local_store_map_bvh", "region", "offset", "bytes");
   for_each_region<bvh::BvhStore::Layout>([&map](const char* name, std::size_t offset_bytes, std::size_t bytes) {
-    map.add({name, std::uint64_t{offset_bytes}, std::uint64_t{bytes}});
+    map.add({name, offset_bytes, bytes});
   });
   const auto add_row = [&map](const char* name, std::uint64_t bytes) { map.add({name, Cell{}, bytes}); };
   using Layout = bvh::BvhStore::Layout;
@@ -366,7 +355,7 @@ std::vector<NamedLayout> layouts_of(const std::string& configuration) {
 
 Table map_table(const std::string& configuration) {
   const std::vector<NamedLayout> layouts = layouts_of(configuration);
-  Table map{"local_store_map_" + configuration, {{"region", "region"}}, {}};
+  Table map = make_table("local_store_map_" + configuration, "region");
   for (const NamedLayout& layout : layouts) {
     map.columns.push_back({layout.key + "_offset", layout.title + ": offset"});
     map.columns.push_back({layout.key + "_bytes", "bytes"});
@@ -383,7 +372,7 @@ Table map_table(const std::string& configuration) {
     std::vector<Cell> cells = {name};
     for (const NamedLayout& layout : layouts) {
       cells.emplace_back();
-      cells.emplace_back(std::uint64_t{value(layout.facts)});
+      cells.emplace_back(value(layout.facts));
     }
     map.add(std::move(cells));
   };
@@ -395,47 +384,30 @@ Table map_table(const std::string& configuration) {
 }
 
 Table contents_table() {
-  Table table{"local_store_layouts",
-              {{"configuration", "configuration"},
-               {"store_kb", "local store, KB"},
-               {"tile_width", "tile width"},
-               {"packet_width", "packet width"},
-               {"mailbox_slots", "mailbox slots"},
-               {"resident_macrocells", "macrocells resident"},
-               {"most_macro_width", "macrocell width, at most"},
-               {"most_cell_blocks", "cell blocks, at most"},
-               {"most_triangle_buffers", "triangle buffers, at most"},
-               {"triangles_per_buffer", "triangles in each"},
-               {"data_bytes", "data, bytes"},
-               {"free_bytes", "free, bytes"}},
-              {}};
+  Table table = make_table(
+      "local_store_layouts", "configuration", Column("store_kb", "local store, KB"), "tile_width", "packet_width",
+      "mailbox_slots", Column("resident_macrocells", "macrocells resident"),
+      Column("most_macro_width", "macrocell width, at most"), Column("most_cell_blocks", "cell blocks, at most"),
+      Column("most_triangle_buffers", "triangle buffers, at most"), Column("triangles_per_buffer", "triangles in each"),
+      Column("data_bytes", "data, bytes"), Column("free_bytes", "free, bytes"));
   for (const char* configuration : kSweptConfigurations) {
     for (const NamedLayout& layout : layouts_of(configuration)) {
       const tool::StoreFacts& facts = layout.facts;
-      table.add({configuration, std::uint64_t{facts.arena_bytes >> 10}, std::uint64_t{facts.tile_width},
-                 std::uint64_t{facts.packet_width}, std::uint64_t{facts.mailbox_slots},
-                 std::uint64_t{facts.resident_macro_cells}, std::uint64_t{facts.max_macro_width},
-                 std::uint64_t{facts.most_depths.macro}, std::uint64_t{facts.most_depths.triangle},
-                 std::uint64_t{facts.triangles_per_buffer}, facts.data_bytes(), free_bytes(facts)});
+      table.add({configuration, facts.arena_bytes >> 10, facts.tile_width, facts.packet_width, facts.mailbox_slots,
+                 facts.resident_macro_cells, facts.max_macro_width, facts.most_depths.macro, facts.most_depths.triangle,
+                 facts.triangles_per_buffer, facts.data_bytes(), free_bytes(facts)});
     }
   }
   return table;
 }
 
 Table fit_table() {
-  Table table{"local_store_fit",
-              {{"store_kb", "local store, KB"},
-               {"tile_width", "tile width"},
-               {"packet_width", "packet width"},
-               {"data_bytes", "data, bytes"},
-               {"room_bytes", "room for data, bytes"},
-               {"fits", "fits"},
-               {"built", "built"}},
-              {}};
+  Table table =
+      make_table("local_store_fit", Column("store_kb", "local store, KB"), "tile_width", "packet_width",
+                 Column("data_bytes", "data, bytes"), Column("room_bytes", "room for data, bytes"), "fits", "built");
   for (const tool::LayoutFit& fit : tool::layout_fits()) {
-    table.add({kilobytes(fit.layout.store), std::uint64_t{fit.layout.tile_width},
-               std::uint64_t{fit.layout.packet_width}, fit.data_bytes, std::uint64_t{fit.room_bytes},
-               fit.fits ? "yes" : "no", tool::find_store_facts(fit.layout) ? "yes" : "no"});
+    table.add({kilobytes(fit.layout.store), fit.layout.tile_width, fit.layout.packet_width, fit.data_bytes,
+               fit.room_bytes, fit.fits ? "yes" : "no", tool::find_store_facts(fit.layout) ? "yes" : "no"});
   }
   return table;
 }
@@ -521,24 +493,19 @@ Writer plan_store_sweep(Plan& plan, const Stage& stage) {
         "macrocells, the buffers and the mailbox of wide packets; the contents of each are below. Where a layout has "
         "fewer buffers than a configuration asks for, it is cut down to them; in 64 KB best traverses once per 16x16 "
         "tile.");
-    const auto wait_of = [](const RunResult& run) { return run.wait_percent(); };
-    book.paragraph(
-        "Frames over those from 256 KB, all views: the reference renders " +
-        ratio_words(*sweep, done, "reference", fps_of) + "; best " + ratio_words(*sweep, done, "best", fps_of) +
-        ". Over all sizes the reference waits for " + range_words(*sweep, done, "reference", wait_of) +
-        " of its core cycles and best for " + range_words(*sweep, done, "best", wait_of) +
-        ". Intersection tests of best: " + ratio_words(*sweep, done, "best", tests_of) + ", of the reference " +
-        ratio_words(*sweep, done, "reference", tests_of) + ". " + picture_words(*sweep, done));
+    book.paragraph("Frames over those from 256 KB, all views: the reference renders " +
+                   ratio_words(*sweep, done, "reference", &RunResult::fps) + "; best " +
+                   ratio_words(*sweep, done, "best", &RunResult::fps) + ". Over all sizes the reference waits for " +
+                   range_words(*sweep, done, "reference", &RunResult::wait_percent) +
+                   " of its core cycles and best for " + range_words(*sweep, done, "best", &RunResult::wait_percent) +
+                   ". Intersection tests of best: " + ratio_words(*sweep, done, "best", tests_of) +
+                   ", of the reference " + ratio_words(*sweep, done, "reference", tests_of) + ". " +
+                   picture_words(*sweep, done));
     book.paragraph(
         "A mailbox that forgets has triangles tested again, so its size shows in those tests. The price of clearing it "
         "is that of the 256 KB layouts at every size.");
-    book.shown_table(short_table(*sweep, done), "Sizes of the local store, 6 cores, no shading.");
-    for (const char* configuration : kSweptConfigurations) {
-      book.figure(std::string("sweep_local_store_") + configuration,
-                  bar_chart(*sweep, done, configuration, "Local store"),
-                  std::string("Frames a second against the size of the local store, ") + configuration + ", 6 cores.");
-    }
-    book.linked_table(long_table(*sweep, done, "sweep_local_store"), "every frame, with buffers, work and idle time.");
+    write_tables(*sweep, done, "sweep_local_store", "Local store", "the size of the local store",
+                 "Sizes of the local store, 6 cores, no shading.", book);
     write_maps(book);
   };
 }

@@ -8,7 +8,7 @@
 #include <string_view>
 #include <vector>
 
-#include "experiment/power_fit.h"
+#include "experiment/statistics.h"
 
 namespace gridiron::experiment {
 

@@ -6,21 +6,18 @@
 
 #include <algorithm>
 #include <bit>
-#include <ctime>
 #include <glm/common.hpp>
 #include <numeric>
 #include <utility>
 
-#include "base/failure.h"
-#include "base/stopwatch.h"
 #include "base/words.h"
 #include "experiment/bvh_system.h"
 #include "files/interrupt.h"
 #include "gridiron/device/store_facts.h"
-#include "gridiron/frame/frame_failure.h"
+#include "gridiron/frame/chip_frame.h"
 #include "gridiron/frame/frame_memory.h"
+#include "gridiron/frame/frame_pictures.h"
 #include "gridiron/frame/render_plan.h"
-#include "gridiron/frame/untile.h"
 
 namespace gridiron::experiment {
 namespace {
@@ -43,30 +40,14 @@ tool::RenderPlan plan_of(const GridVariant& variant, const View& view, const Fra
   return plan;
 }
 
-sim::ChipResult run_chip(tool::FrameMemory& frame, const tool::RenderPlan& plan, sim::Mode mode, std::uint32_t lanes,
-                         std::uint32_t threads) {
-  sim::ChipOptions options;
-  options.mode = mode;
-  options.threads = threads;
-  options.lanes = lanes;
-  options.store = plan.layout.store;
-  options.packet_width = plan.layout.packet_width;
-  options.limits.queue_depth = plan.scene.machine->queue_depth;
-  options.abort = &tool::interrupt_flag();
-  sim::ChipResult result = sim::render_frame(frame.memory, frame.record_address, options);
-  tool::stop_if_interrupted();
-  if (const std::optional<tool::Failure> failure = tool::frame_failure(result)) throw *failure;
-  return result;
-}
-
 std::vector<std::uint32_t> words_of(const tool::FrameMemory& frame, const sim::MemoryRegion& plane) {
-  const auto same = [](std::uint32_t word) { return word; };
-  return tool::untile<std::uint32_t>(frame.record, plane.bytes, std::nullopt, same).pixels;
+  return tool::words_of_plane(frame.record, plane.bytes).pixels;
 }
 
 std::vector<float> depth_of(const tool::FrameMemory& frame) {
-  const auto to_float = [](std::uint32_t word) { return std::bit_cast<float>(word); };
-  return tool::untile<float>(frame.record, frame.depth.bytes, std::nullopt, to_float).pixels;
+  std::vector<float> depth;
+  for (const std::uint32_t word : words_of(frame, frame.depth)) depth.push_back(std::bit_cast<float>(word));
+  return depth;
 }
 
 std::uint64_t sum_of(const sim::WorkTotals& work, std::initializer_list<WorkId> kinds) {
@@ -156,7 +137,7 @@ std::unique_ptr<Recording> GridSystem::record(const View& view, const FrameReque
   const tool::RenderPlan plan = plan_of(variant_, view, request);
   tool::FrameMemory frame(home_machine()->main_memory_bytes);
   tool::prepare_frame(frame, *view.scene, plan, view.camera);
-  sim::ChipResult result = run_chip(frame, plan, sim::Mode::kChecked, 4, 1);
+  sim::ChipResult result = tool::render_on_chip(frame, plan, {});
 
   FrameFacts facts;
   facts.build = sim::grid_build_work(view.mesh().vertices.size(), view.mesh().triangles.size(), frame.need);
@@ -179,9 +160,10 @@ std::unique_ptr<Recording> GridSystem::record(const View& view, const FrameReque
 Answers render_answers(const GridVariant& variant, const View& view, const FrameRequest& request) {
   tool::RenderPlan plan = plan_of(variant, view, request);
   plan.has_depth = plan.has_ids = true;
+  plan.mode = sim::Mode::kPlain;
   tool::FrameMemory frame(home_machine()->main_memory_bytes);
   tool::prepare_frame(frame, *view.scene, plan, view.camera);
-  (void)run_chip(frame, plan, sim::Mode::kPlain, 4, 1);
+  (void)tool::render_on_chip(frame, plan, {});
   return {words_of(frame, frame.color), words_of(frame, frame.ids), depth_of(frame)};
 }
 
@@ -190,6 +172,7 @@ struct CloseLook::Parts {
       : plan(plan_of(variant, view, {.width = kWidth, .height = kWidth, .shading = Shading::kNone})),
         frame(home_machine()->main_memory_bytes) {
     plan.has_depth = plan.has_ids = true;
+    plan.mode = sim::Mode::kPlain;
     tool::prepare_frame(frame, *view.scene, plan, view.camera);
   }
   tool::RenderPlan plan;
@@ -212,36 +195,34 @@ void CloseLook::look_at(const Vec3& point, Answers& answers) {
   constexpr float kPixel = 0x1p-25f;
   camera.tan_half_fov = kPixel * kWidth / 2;
   tool::aim_camera(frame, camera);
-  (void)run_chip(frame, parts_->plan, sim::Mode::kPlain, 4, 1);
+  (void)tool::render_on_chip(frame, parts_->plan, {});
   const std::vector<std::uint32_t> ids = words_of(frame, frame.ids);
   const std::vector<float> depth = depth_of(frame);
   answers.ids.insert(answers.ids.end(), ids.begin(), ids.end());
   answers.depth.insert(answers.depth.end(), depth.begin(), depth.end());
 }
 
-HostSeconds least_host_seconds(std::uint32_t repeats, const std::function<void()>& work) {
-  HostSeconds least;
+tool::HostSeconds least_host_seconds(std::uint32_t repeats, const std::function<void()>& work) {
+  tool::HostSeconds least;
   for (std::uint32_t i = 0; i < repeats; ++i) {
     tool::stop_if_interrupted();
     const tool::Stopwatch stopwatch;
-    const std::clock_t begin = std::clock();
     work();
-    const double processor = static_cast<double>(std::clock() - begin) / CLOCKS_PER_SEC;
-    const double wall = stopwatch.seconds();
-    least = i == 0 ? HostSeconds{wall, processor}
-                   : HostSeconds{std::min(least.wall, wall), std::min(least.processor, processor)};
+    const tool::HostSeconds taken = stopwatch.both();
+    least = i == 0 ? taken : least.least(taken);
   }
   return least;
 }
 
 HostFrame render_on_host(const GridVariant& variant, const View& view, const FrameRequest& request,
                          std::uint32_t threads, std::uint32_t repeats) {
-  const tool::RenderPlan plan = plan_of(variant, view, request);
+  tool::RenderPlan plan = plan_of(variant, view, request);
+  plan.mode = sim::Mode::kPlain;
+  plan.lanes = sim::widest_lanes();
+  plan.threads = threads;
   tool::FrameMemory frame(home_machine()->main_memory_bytes);
   tool::prepare_frame(frame, *view.scene, plan, view.camera);
-  const HostSeconds seconds =
-      least_host_seconds(repeats, [&] { run_chip(frame, plan, sim::Mode::kPlain, sim::widest_lanes(), threads); });
-  return {seconds, frame.record};
+  return {least_host_seconds(repeats, [&] { (void)tool::render_on_chip(frame, plan, {}); }), frame.record};
 }
 
 }  // namespace gridiron::experiment

@@ -16,6 +16,7 @@
 #include <string>
 #include <vector>
 
+#include "base/stopwatch.h"
 #include "experiment/answers.h"
 #include "experiment/paper_values.h"
 #include "experiment/views.h"
@@ -146,16 +147,11 @@ class CloseLook {
   std::unique_ptr<Parts> parts_;
 };
 
-/// Seconds on this host, by the wall clock and of its processors, all threads together.
-struct HostSeconds {
-  double wall = 0, processor = 0;
-};
-
 /// Runs `work` several times. @returns the least of each time.
-[[nodiscard]] HostSeconds least_host_seconds(std::uint32_t repeats, const std::function<void()>& work);
+[[nodiscard]] tool::HostSeconds least_host_seconds(std::uint32_t repeats, const std::function<void()>& work);
 
 struct HostFrame {
-  HostSeconds seconds;   ///< the scene's build not included
+  tool::HostSeconds seconds;  ///< the scene's build not included
   FrameRecord record{};  ///< camera and size of it
 };
 

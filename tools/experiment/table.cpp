@@ -38,6 +38,13 @@ std::string shortest_text(Number number) {
 
 }  // namespace
 
+Column::Column(const char* name) : key(name), title(name) {
+  std::ranges::replace(title, '_', ' ');
+}
+
+Column::Column(std::string name, std::string words, int digits)
+    : key(std::move(name)), title(std::move(words)), decimals(digits) {}
+
 std::string number_text(double number) {
   return shortest_text(number);
 }

@@ -5,6 +5,7 @@
 #include <cstdint>
 #include <string>
 #include <string_view>
+#include <utility>
 #include <variant>
 #include <vector>
 
@@ -14,6 +15,9 @@ namespace gridiron::experiment {
 using Cell = std::variant<std::monostate, std::string, std::uint64_t, double>;
 
 struct Column {
+  Column(const char* name);  ///< as key, and its words as title
+  Column(std::string name, std::string words, int digits = 2);
+
   std::string key;    ///< snake_case with the unit as its suffix: the header of the CSV file
   std::string title;  ///< for people
   int decimals = 2;   ///< of measures on the page, below 0: digits of 1.2e-07; the CSV file holds all digits
@@ -27,6 +31,12 @@ struct Table {
   /// Appends a row. Precondition: as many cells as columns.
   void add(std::vector<Cell> row) { rows.push_back(std::move(row)); }
 };
+
+/// @returns a table without rows. @param columns  each a Column, or the key of one.
+template <class... Columns>
+[[nodiscard]] Table make_table(std::string name, const Columns&... columns) {
+  return {std::move(name), {columns...}, {}};
+}
 
 /// @returns the shortest decimal text that reads back as the same number (std::to_chars), "" for infinity and NaN.
 [[nodiscard]] std::string number_text(double number);

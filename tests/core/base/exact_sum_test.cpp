@@ -1,44 +1,21 @@
 // Exact signs, zero areas and distances against rational numbers. SPDX-License-Identifier: Apache-2.0
 #include <gridiron/base/exact_sum.h>
-#include <gtest/gtest.h>
 
-#include <array>
-#include <bit>
-#include <boost/multiprecision/cpp_int.hpp>
-#include <cmath>
-#include <cstdint>
-#include <functional>
-#include <limits>
-#include <string>
-
+#include "support/rational_vectors.h"
+#include "support/test_headers.h"
 #include "support/test_mesh.h"
 
 namespace gridiron::test {
 namespace {
 
-using boost::multiprecision::cpp_int;
-using Rational = boost::multiprecision::cpp_rational;
 using Floats = std::array<float, 3>;
-using Rationals = std::array<Rational, 3>;
-
-Rationals exact(const Floats& p) {
-  return {Rational(p[0]), Rational(p[1]), Rational(p[2])};
-}
-
-Rationals minus(const Rationals& a, const Rationals& b) {
-  return {a[0] - b[0], a[1] - b[1], a[2] - b[2]};
-}
-
-Rational determinant(const Rationals& a, const Rationals& b, const Rationals& c) {
-  return a[0] * (b[1] * c[2] - b[2] * c[1]) + a[1] * (b[2] * c[0] - b[0] * c[2]) + a[2] * (b[0] * c[1] - b[1] * c[0]);
-}
 
 int sign_of(const Rational& value) {
   return value > 0 ? 1 : value < 0 ? -1 : 0;
 }
 
 Rational power_of_two(int exponent) {
-  return exponent >= 0 ? Rational(cpp_int(1) << exponent) : Rational(1, cpp_int(1) << -exponent);
+  return exponent >= 0 ? Rational(BigInt(1) << exponent) : Rational(1, BigInt(1) << -exponent);
 }
 
 // Nearest float with unbounded exponent, halves away from zero; then 0 below the normal floats, kFloatMax above.
@@ -48,7 +25,7 @@ float rounded(const Rational& value) {
   while (power_of_two(exponent) > value) --exponent;
   while (power_of_two(exponent + 1) <= value) ++exponent;
   const Rational scaled = value / power_of_two(exponent - 23) + Rational(1, 2);
-  const cpp_int mantissa = numerator(scaled) / denominator(scaled);
+  const BigInt mantissa = numerator(scaled) / denominator(scaled);
   const Rational result = Rational(mantissa) * power_of_two(exponent - 23);
   if (result < power_of_two(-126)) return 0.0f;
   if (result > Rational(kFloatMax)) return kFloatMax;
@@ -57,8 +34,9 @@ float rounded(const Rational& value) {
 
 // Where a ray meets a triangle's plane, 0 where it does not or the triangle has no area.
 Rational exact_quotient(const Floats& o, const Floats& d, const Floats& a, const Floats& b, const Floats& c) {
-  const Rational n = determinant(minus(exact(a), exact(o)), minus(exact(b), exact(o)), minus(exact(c), exact(o)));
-  const Rational m = determinant(exact(d), minus(exact(b), exact(a)), minus(exact(c), exact(a)));
+  const Rational n =
+      determinant(exact_point(a) - exact_point(o), exact_point(b) - exact_point(o), exact_point(c) - exact_point(o));
+  const Rational m = determinant(exact_point(d), exact_point(b) - exact_point(a), exact_point(c) - exact_point(a));
   return n == 0 || m == 0 ? Rational(0) : Rational(n / m);
 }
 
@@ -97,9 +75,10 @@ TEST_P(Sources, SignsEqualRationalSigns) {
   for (int seed = 0; seed < GetParam().seeds; ++seed) {
     TestRandom random(static_cast<std::uint64_t>(seed));
     const Floats o = point(random), d = point(random), a = point(random), b = point(random), c = point(random);
-    const Rationals ao = minus(exact(a), exact(o)), bo = minus(exact(b), exact(o)), co = minus(exact(c), exact(o));
+    const RationalPoint ao = exact_point(a) - exact_point(o), bo = exact_point(b) - exact_point(o),
+                        co = exact_point(c) - exact_point(o);
     const int edge = exact_edge_sign(o.data(), d.data(), a.data(), b.data());
-    EXPECT_EQ(edge, sign_of(determinant(exact(d), ao, bo))) << GetParam().name << " seed " << seed;
+    EXPECT_EQ(edge, sign_of(determinant(exact_point(d), ao, bo))) << GetParam().name << " seed " << seed;
     EXPECT_EQ(edge, -exact_edge_sign(o.data(), d.data(), b.data(), a.data())) << GetParam().name << " seed " << seed;
     const int volume = exact_volume_sign(o.data(), a.data(), b.data(), c.data());
     EXPECT_EQ(volume, sign_of(determinant(ao, bo, co))) << GetParam().name << " seed " << seed;
@@ -116,12 +95,8 @@ TEST_P(Sources, ZeroAreaEqualsRationalZeroArea) {
     const Floats a = point(random), b = point(random);
     Floats c = point(random);
     if (seed % 3 == 0) c[0] = a[0], c[1] = a[1];
-    const Rationals e1 = minus(exact(b), exact(a)), e2 = minus(exact(c), exact(a));
-    bool expected = true;
-    for (std::size_t u = 0; u < 3; ++u) {
-      const std::size_t v = (u + 1) % 3;
-      expected = expected && e1[u] * e2[v] == e1[v] * e2[u];
-    }
+    const RationalPoint e1 = exact_point(b) - exact_point(a), e2 = exact_point(c) - exact_point(a);
+    const bool expected = cross(e1, e2) == RationalPoint{};
     EXPECT_EQ(exact_zero_area(a.data(), b.data(), c.data()), expected) << GetParam().name << " seed " << seed;
     if (expected) ++zeros;
   }

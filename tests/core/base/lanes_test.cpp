@@ -1,18 +1,10 @@
 // Lanes: every operation on W lanes is the same operation on each float alone.
 // SPDX-License-Identifier: Apache-2.0
 #include <gridiron/base/lanes.h>
-#include <gtest/gtest.h>
-
-#include <algorithm>
-#include <array>
-#include <bit>
-#include <cmath>
-#include <cstdint>
-#include <limits>
-#include <vector>
 
 #include "core/lane_types.h"
 #include "core/seeds.h"
+#include "support/test_headers.h"
 #include "support/test_mesh.h"
 
 namespace gridiron::test {
@@ -212,8 +204,7 @@ TYPED_TEST(LanesTest, HalfBitsAreTheSigns) {
 }
 
 TYPED_TEST(LanesTest, HorizontalExtremesAreThoseOfAllLanes) {
-  for_each_seed(2000, [&](std::uint64_t seed) {
-    TestRandom random(seed);
+  for_each_seed(2000, [&](TestRandom& random) {
     typename TestFixture::Array values;
     for (float& value : values) value = random.between(-1.0f, 1.0f) * (random.below(2) != 0 ? 1.0f : 1e30f);
     float least = values[0];
@@ -248,8 +239,7 @@ Words<kCount> random_words(TestRandom& random) {
 TYPED_TEST(LanesTest, WordsAreThoseOfEachLane) {
   using Int = typename TypeParam::Int;
   constexpr std::size_t kLanes = TypeParam::kCount;
-  for_each_seed(2000, [&](std::uint64_t seed) {
-    TestRandom random(seed);
+  for_each_seed(2000, [&](TestRandom& random) {
     const auto a = random_words<kLanes>(random), b = random_words<kLanes>(random);
     const std::uint32_t word = random_word(random);
     const Int first = Int::load(a.values), second = Int::load(b.values);
@@ -268,16 +258,15 @@ TYPED_TEST(LanesTest, WordsAreThoseOfEachLane) {
     ASSERT_EQ((less | equal) & ~TypeParam::kAllBits, 0u);
     for (std::size_t i = 0; i < kLanes; ++i) {
       const bool is_set = (mask >> i & 1u) != 0;
-      ASSERT_EQ(first[static_cast<int>(i)], static_cast<std::int32_t>(a.values[i])) << "seed " << seed;
-      ASSERT_EQ(copied.values[i], a.values[i]) << "seed " << seed;
-      ASSERT_EQ(joined.values[i], a.values[i] | b.values[i]) << "seed " << seed;
-      ASSERT_EQ(shifted.values[i], a.values[i] << shift) << "seed " << seed;
-      ASSERT_EQ(splat.values[i], word) << "seed " << seed;
-      ASSERT_EQ((less >> i & 1u) != 0, static_cast<std::int32_t>(a.values[i]) < static_cast<std::int32_t>(b.values[i]))
-          << "seed " << seed;
-      ASSERT_EQ((equal >> i & 1u) != 0, a.values[i] == word) << "seed " << seed;
-      ASSERT_EQ(chosen.values[i], is_set ? a.values[i] : b.values[i]) << "seed " << seed;
-      ASSERT_EQ(where.values[i], is_set ? word : a.values[i]) << "seed " << seed;
+      ASSERT_EQ(first[static_cast<int>(i)], static_cast<std::int32_t>(a.values[i]));
+      ASSERT_EQ(copied.values[i], a.values[i]);
+      ASSERT_EQ(joined.values[i], a.values[i] | b.values[i]);
+      ASSERT_EQ(shifted.values[i], a.values[i] << shift);
+      ASSERT_EQ(splat.values[i], word);
+      ASSERT_EQ((less >> i & 1u) != 0, static_cast<std::int32_t>(a.values[i]) < static_cast<std::int32_t>(b.values[i]));
+      ASSERT_EQ((equal >> i & 1u) != 0, a.values[i] == word);
+      ASSERT_EQ(chosen.values[i], is_set ? a.values[i] : b.values[i]);
+      ASSERT_EQ(where.values[i], is_set ? word : a.values[i]);
     }
   });
 }
@@ -310,20 +299,19 @@ TYPED_TEST(LanesTest, QuadsAreStoredAStrideApart) {
 TYPED_TEST(LanesTest, SquareRootsAndWholePartsAreThoseOfEachLane) {
   this->expect_same([](auto a, auto) { return TypeParam::square_root(a); }, [](float a, float) { return std::sqrt(a); },
                     "square root");
-  for_each_seed(2000, [&](std::uint64_t seed) {
-    TestRandom random(seed);
+  for_each_seed(2000, [&](TestRandom& random) {
     typename TestFixture::Array values, roots;
     for (float& value : values) value = std::ldexp(random.unit(), static_cast<int>(random.below(250)) - 125);
     roots = this->store(TypeParam::square_root(this->load(values)));
     for (std::size_t i = 0; i < values.size(); ++i) {
       // A float's square root in double is precise enough to be rounded a second time (2 * 24 + 2 <= 53 bits).
-      ASSERT_TRUE(same(roots[i], static_cast<float>(std::sqrt(double{values[i]})))) << "seed " << seed;
+      ASSERT_TRUE(same(roots[i], static_cast<float>(std::sqrt(double{values[i]}))));
     }
     for (float& value : values) value = random.between(-1, 1) * std::ldexp(1.0f, static_cast<int>(random.below(31)));
     const auto whole = TypeParam::truncate(this->load(values));
     for (std::size_t i = 0; i < values.size(); ++i) {
-      ASSERT_EQ(whole[static_cast<int>(i)], static_cast<std::int32_t>(values[i])) << "seed " << seed;
-      ASSERT_EQ(TypeParam::lane(this->load(values), static_cast<std::uint32_t>(i)), values[i]) << "seed " << seed;
+      ASSERT_EQ(whole[static_cast<int>(i)], static_cast<std::int32_t>(values[i]));
+      ASSERT_EQ(TypeParam::lane(this->load(values), static_cast<std::uint32_t>(i)), values[i]);
     }
   });
 }

@@ -1,12 +1,8 @@
 // Lattices: their places, their steps, and images built on them. SPDX-License-Identifier: Apache-2.0
 #include <gridiron/build/lattice.h>
-#include <gtest/gtest.h>
-
-#include <cmath>
-#include <limits>
-#include <set>
 
 #include "core/build/grid/built_image.h"
+#include "support/test_headers.h"
 #include "support/test_mesh.h"
 
 namespace gridiron::test {

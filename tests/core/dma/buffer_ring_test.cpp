@@ -1,13 +1,11 @@
 // Buffer ring: buffers go out and come back in order, and none is handed out twice.
 // SPDX-License-Identifier: Apache-2.0
 #include <gridiron/dma/buffer_ring.h>
-#include <gtest/gtest.h>
 
-#include <cstdint>
 #include <deque>
-#include <set>
 
 #include "core/seeds.h"
+#include "support/test_headers.h"
 #include "support/test_mesh.h"
 
 namespace gridiron::test {
@@ -26,24 +24,23 @@ TEST(BufferRing, DepthOneIsSingleBuffering) {
 }
 
 TEST(BufferRing, HandsOutInOrderAndNoneTwice) {
-  for_each_seed(200, [&](std::uint64_t seed) {
-    TestRandom random(seed);
+  for_each_seed(200, [&](TestRandom& random) {
     const std::uint32_t depth = 1 + random.below(15);
     BufferRing ring(depth);
     std::deque<std::uint32_t> out;
     for (int step = 0; step < 500; ++step) {
-      ASSERT_EQ(ring.empty(), out.empty()) << "seed " << seed;
-      ASSERT_EQ(ring.full(), out.size() == depth) << "seed " << seed;
+      ASSERT_EQ(ring.empty(), out.empty());
+      ASSERT_EQ(ring.full(), out.size() == depth);
       if (!out.empty()) {
-        ASSERT_EQ(ring.front(), out.front()) << "seed " << seed;
+        ASSERT_EQ(ring.front(), out.front());
       }
       if (!out.empty() && (ring.full() || random.below(2) != 0)) {
         ring.pop();
         out.pop_front();
       } else {
         const std::uint32_t slot = ring.push();
-        ASSERT_LT(slot, depth) << "seed " << seed;
-        ASSERT_EQ(std::set<std::uint32_t>(out.begin(), out.end()).count(slot), 0u) << "seed " << seed;
+        ASSERT_LT(slot, depth);
+        ASSERT_EQ(std::set<std::uint32_t>(out.begin(), out.end()).count(slot), 0u);
         out.push_back(slot);
       }
     }

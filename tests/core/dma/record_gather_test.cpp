@@ -1,17 +1,10 @@
 // Record gather: every item gets its own record, neighbours that want the same one share a transfer, at any depth.
 // SPDX-License-Identifier: Apache-2.0
 #include <gridiron/dma/record_gather.h>
-#include <gtest/gtest.h>
-
-#include <cstdint>
-#include <cstring>
-#include <memory>
-#include <optional>
-#include <string>
-#include <vector>
 
 #include "core/dma/test_platform.h"
 #include "core/seeds.h"
+#include "support/test_headers.h"
 #include "support/test_mesh.h"
 
 namespace gridiron::test {
@@ -107,8 +100,7 @@ std::uint64_t random_address(TestRandom& random, std::uint32_t bytes, std::uint3
 class RecordGather : public testing::TestWithParam<std::uint32_t> {};
 
 TEST_P(RecordGather, EveryItemGetsItsRecord) {
-  for_each_seed(120, [&](std::uint64_t seed) {
-    TestRandom random(seed);
+  for_each_seed(120, [&](TestRandom& random) {
     constexpr std::uint32_t kSizes[] = {48, 768, 16, 1008};  // surfaces and normals, environment, least, most
     const std::uint32_t bytes = kSizes[random.below(4)];
     const std::uint32_t kinds = random.below(2) != 0 ? 3 : 100;
@@ -121,16 +113,16 @@ TEST_P(RecordGather, EveryItemGetsItsRecord) {
     }
     Rig rig(GetParam(), 1 + random.below(16), random.below(3) != 0 ? Moves::kAtTheWait : Moves::kAtOnce);
     std::vector<std::uint32_t> used, wanted;
-    ASSERT_EQ(rig.gather(list, bytes, used), Status::kOk) << "seed " << seed;
+    ASSERT_EQ(rig.gather(list, bytes, used), Status::kOk);
     for (std::uint32_t i = 0; i < list.size(); ++i) {
       if (list[i] != 0) wanted.push_back(i);
     }
-    EXPECT_EQ(used, wanted) << "seed " << seed;
-    EXPECT_EQ(gets_of(rig.platform), runs_of(list)) << "seed " << seed;
-    EXPECT_EQ(rig.platform.pending(), 0u) << "seed " << seed;
-    EXPECT_EQ(rig.platform.violation(), "") << "seed " << seed;
-    EXPECT_LE(rig.platform.most_pending(), GetParam()) << "seed " << seed;
-    EXPECT_TRUE(rig.others_are_untouched()) << "seed " << seed;
+    EXPECT_EQ(used, wanted);
+    EXPECT_EQ(gets_of(rig.platform), runs_of(list));
+    EXPECT_EQ(rig.platform.pending(), 0u);
+    EXPECT_EQ(rig.platform.violation(), "");
+    EXPECT_LE(rig.platform.most_pending(), GetParam());
+    EXPECT_TRUE(rig.others_are_untouched());
   });
 }
 
@@ -181,9 +173,7 @@ TEST_P(RecordGather, FailuresAreReported) {
 }
 
 INSTANTIATE_TEST_SUITE_P(Depths, RecordGather, testing::Range(1u, kDepths + 1),
-                         [](const testing::TestParamInfo<std::uint32_t>& tested) {
-                           return "Depth" + std::to_string(tested.param);
-                         });
+                         [](const auto& tested) { return "Depth" + std::to_string(tested.param); });
 
 }  // namespace
 }  // namespace gridiron::test

@@ -5,12 +5,7 @@
 
 #include <gridiron/platform/contract.h>
 
-#include <cstddef>
-#include <cstdint>
-#include <cstring>
-#include <optional>
-#include <string>
-#include <vector>
+#include "support/test_headers.h"
 
 namespace gridiron::test {
 

@@ -2,14 +2,9 @@
 // Memory: std::vector, std::string. Threads: any. SPDX-License-Identifier: Apache-2.0
 #include "core/io/ply_run.h"
 
-#include <gtest/gtest.h>
-
-#include <algorithm>
-#include <bit>
 #include <cstdio>
-#include <memory>
-#include <random>
-#include <sstream>
+
+#include "support/test_headers.h"
 
 namespace gridiron::test {
 
@@ -110,6 +105,22 @@ PlyOutcome run_ply(std::string_view input) {
   return run_ply(input, chunks_of(input.size()));
 }
 
+PlyOutcome run_ply_in_pieces(const std::string& input, const PlyRunOptions& options) {
+  const PlyOutcome whole = run_ply(input, chunks_of(input.size()), options);
+  const auto expect_same = [&](const Chunking& chunking, const std::string& what) {
+    const PlyOutcome pieces = run_ply(input, chunking, options);
+    EXPECT_TRUE(pieces == whole) << what << ": " << describe(pieces) << "\ninstead of " << describe(whole) << "\n"
+                                 << input.substr(0, 600);
+  };
+  for (const std::size_t bytes : {1u, 2u, 3u, 7u, 64u, 4096u}) {
+    expect_same(chunks_of(bytes), "pieces of " + std::to_string(bytes));
+  }
+  for (const std::uint32_t seed : {1u, 2u, 3u, 9u}) {
+    expect_same(random_chunks(seed), "random pieces, seed " + std::to_string(seed));
+  }
+  return whole;
+}
+
 std::string describe(const PlyOutcome& outcome) {
   std::ostringstream out;
   if (outcome.error != PlyError::kNone) {
@@ -133,6 +144,11 @@ PlyMaker::PlyMaker(PlyFormat format, std::string line_end) : format_(format), li
 PlyMaker& PlyMaker::line(std::string_view text) {
   text_ += text;
   text_ += line_end_;
+  return *this;
+}
+
+PlyMaker& PlyMaker::coordinates(std::string_view type) {
+  for (const char* name : {" x", " y", " z"}) line("property " + std::string(type) + name);
   return *this;
 }
 

@@ -4,12 +4,7 @@
 
 #include <gridiron/io/ply_reader.h>
 
-#include <array>
-#include <cstdint>
-#include <functional>
-#include <string>
-#include <string_view>
-#include <vector>
+#include "support/test_headers.h"
 
 namespace gridiron::test {
 
@@ -52,18 +47,25 @@ PlyOutcome run_ply(std::string_view input, const Chunking& chunking, const PlyRu
 /// The same with the whole input as one piece.
 PlyOutcome run_ply(std::string_view input);
 
+/// The same in pieces of several sizes, which must give what the whole gives: EXPECTs that. @returns it.
+PlyOutcome run_ply_in_pieces(const std::string& input, const PlyRunOptions& options = {});
+
 /// One line for the message of a failing test.
 std::string describe(const PlyOutcome& outcome);
 
 inline constexpr std::array<std::string_view, 8> kPlyTypes = {"char", "uchar", "short", "ushort",
                                                               "int",  "uint",  "float", "double"};
 
+inline constexpr PlyFormat kPlyFormats[] = {PlyFormat::kAscii, PlyFormat::kBinaryLittleEndian,
+                                            PlyFormat::kBinaryBigEndian};
+
 /// Writes a PLY input value by value.
 class PlyMaker {
  public:
   explicit PlyMaker(PlyFormat format, std::string line_end = "\n");
 
-  PlyMaker& line(std::string_view text);  ///< a header line
+  PlyMaker& line(std::string_view text);         ///< a header line
+  PlyMaker& coordinates(std::string_view type);  ///< the header lines of properties x, y, z
   PlyMaker& end_header();
   PlyMaker& value(std::string_view type, double value);  ///< ASCII: %.17g
   PlyMaker& token(std::string_view text);                ///< ASCII only: as it stands

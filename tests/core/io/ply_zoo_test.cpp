@@ -1,17 +1,12 @@
 // Every file of the PLY zoo against the verdict of its manifest, in several chunkings.
 // SPDX-License-Identifier: Apache-2.0
 #include <gridiron/io/ply_reader.h>
-#include <gtest/gtest.h>
 
 #include <cstdio>
-#include <fstream>
-#include <map>
-#include <sstream>
-#include <string>
-#include <vector>
 
 #include "core/io/ply_run.h"
 #include "support/scenes.h"
+#include "support/test_headers.h"
 
 namespace gridiron::test {
 namespace {

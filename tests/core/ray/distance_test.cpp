@@ -1,17 +1,11 @@
 // Whole subpackets that take a hit at once, against the same hits merged group by group.
 // SPDX-License-Identifier: Apache-2.0
 #include <gridiron/ray/distance.h>
-#include <gtest/gtest.h>
-
-#include <algorithm>
-#include <bit>
-#include <cmath>
-#include <cstdint>
-#include <cstdlib>
 
 #include "core/lane_types.h"
 #include "core/ray/packet_cases.h"
 #include "core/seeds.h"
+#include "support/test_headers.h"
 #include "support/test_mesh.h"
 
 namespace gridiron::test {
@@ -19,10 +13,6 @@ namespace {
 
 using SmallPacket = Packet<8>;
 constexpr std::uint32_t kOldId = 77;
-
-bool same_bits(float a, float b) {
-  return std::bit_cast<std::uint32_t>(a) == std::bit_cast<std::uint32_t>(b);
-}
 
 // A triangle across all rays of a packet, and what these had hit before: nothing, or `kOldId` at distances of all
 // kinds.
@@ -41,7 +31,7 @@ struct HitCase {
     set_direction_bounds(packet);
     packet.ask_for_distances(random.below(8) == 0);
     for (float& coordinate : packet.origin) coordinate = scale * random.between(-1, 1);
-    const Vec3 origin(packet.origin[0], packet.origin[1], packet.origin[2]);
+    const Vec3 origin = vec_of(packet.origin);
     const bool is_behind = random.below(8) == 0;
     const auto corner = [&](float x, float y) {
       const float z = (is_behind ? 4.0f : -4.0f) + random.between(-1, 1);
@@ -51,22 +41,20 @@ struct HitCase {
     const bool over = random.below(2) != 0;
     set_triangle(triangle, a, over ? c : b, over ? b : c, random.below(1000) + 1000 * random.below(2) + 100);
     for (std::uint32_t ray = 0; ray < SmallPacket::kRayCount; ++ray) {
-      const float direction[3] = {packet.dir[0][ray], packet.dir[1][ray], packet.dir[2][ray]};
-      distance[ray] = true_distance(packet.origin, direction, triangle);
-      packet.t[ray] = kFloatMax;
-      packet.id[ray] = kNoTriangle;
-      packet.facing[ray] = -1.0f;
+      distance[ray] = true_distance(packet, ray, triangle);
     }
+    reset_hits(packet);
     // The rays' earlier hits: far behind; for some, one after the other, at or before the new hit or too close to
     // decide.
     const std::uint32_t kind = random.below(4);
     if (kind == 0) return;
+    constexpr float kLimit = 1.0f / kSurelyNearer;
     const float close[] = {0.5f,
                            1.0f,
                            1.0f + 0x1p-23f,
                            1.0f + kEstimateError,
-                           1.0f / kSurelyNearer - 0.5f * kEstimateError,
-                           1.0f / kSurelyNearer + 2.5f * kEstimateError,
+                           kLimit - 0.5f * kEstimateError,
+                           kLimit + 2.5f * kEstimateError,
                            1.5f};
     const std::uint32_t special = random.below(SmallPacket::kRayCount);
     for (std::uint32_t ray = 0; ray < SmallPacket::kRayCount; ++ray) {
@@ -84,8 +72,7 @@ TYPED_TEST_SUITE(DistanceTest, LaneTypes, LaneNames);
 template <class L, bool kWantFacing>
 void expect_subpackets_as_groups() {
   std::uint64_t taken_count = 0, refused_count = 0, exact_count = 0;
-  for_each_seed(800, [&](std::uint64_t seed) {
-    TestRandom random(seed);
+  for_each_seed(800, [&](TestRandom& random) {
     const HitCase shown(random);
     for (std::uint32_t subpacket = 0; subpacket < SmallPacket::kSubpacketCount; ++subpacket) {
       const std::uint32_t first = subpacket * kSubpacketRays;
@@ -102,7 +89,7 @@ void expect_subpackets_as_groups() {
         all_new = all_new && by_groups.id[ray] == shown.triangle.triangle_id;
       }
       // Taken where groups take all of them, too, and need no exact distance for it.
-      ASSERT_EQ(taken, all_new && group_work[Work::kHitHalf] == 0) << "seed " << seed << ", subpacket " << subpacket;
+      ASSERT_EQ(taken, all_new && group_work[Work::kHitHalf] == 0) << "subpacket " << subpacket;
       ASSERT_EQ(work[Work::kHitSubpacket], 1u);
       ASSERT_EQ(work[Work::kHitHalf], 0u);
       taken_count += taken ? 1u : 0u;
@@ -110,29 +97,28 @@ void expect_subpackets_as_groups() {
       exact_count += !taken && all_new ? 1u : 0u;
       const SmallPacket& expected = taken ? by_groups : shown.packet;
       for (std::uint32_t ray = 0; ray < SmallPacket::kRayCount; ++ray) {
-        ASSERT_EQ(at_once.id[ray], expected.id[ray]) << "seed " << seed << ", ray " << ray;
-        ASSERT_TRUE(same_bits(at_once.t[ray], expected.t[ray])) << "seed " << seed << ", ray " << ray;
-        ASSERT_TRUE(same_bits(at_once.facing[ray], expected.facing[ray])) << "seed " << seed << ", ray " << ray;
-        ASSERT_FALSE(at_once.unsure.contains(ray)) << "seed " << seed << ", ray " << ray;
+        ASSERT_EQ(at_once.id[ray], expected.id[ray]) << "ray " << ray;
+        ASSERT_TRUE(same_bits(at_once.t[ray], expected.t[ray])) << "ray " << ray;
+        ASSERT_TRUE(same_bits(at_once.facing[ray], expected.facing[ray])) << "ray " << ray;
+        ASSERT_FALSE(at_once.unsure.contains(ray)) << "ray " << ray;
         if (!taken || !is_own(ray)) {
-          ASSERT_EQ(at_once.id[ray], shown.packet.id[ray]) << "seed " << seed << ", ray " << ray;
+          ASSERT_EQ(at_once.id[ray], shown.packet.id[ray]) << "ray " << ray;
           continue;
         }
-        ASSERT_EQ(at_once.id[ray], shown.triangle.triangle_id) << "seed " << seed << ", ray " << ray;
-        ASSERT_LT(shown.distance[ray], shown.packet.t[ray]) << "not nearer, seed " << seed << ", ray " << ray;
-        ASSERT_GT(shown.distance[ray], 0.0f) << "behind, seed " << seed << ", ray " << ray;
+        ASSERT_EQ(at_once.id[ray], shown.triangle.triangle_id) << "ray " << ray;
+        ASSERT_LT(shown.distance[ray], shown.packet.t[ray]) << "not nearer, ray " << ray;
+        ASSERT_GT(shown.distance[ray], 0.0f) << "behind, ray " << ray;
         ASSERT_LE(std::fabs(double{at_once.t[ray]} - double{shown.distance[ray]}),
                   double{kEstimateError} * double{shown.distance[ray]})
-            << "seed " << seed << ", ray " << ray;
-        ASSERT_EQ(at_once.facing[ray] >= 0.0f, kWantFacing) << "seed " << seed << ", ray " << ray;
+            << "ray " << ray;
+        ASSERT_EQ(at_once.facing[ray] >= 0.0f, kWantFacing) << "ray " << ray;
       }
     }
   });
-  if (std::getenv("GRIDIRON_TEST_SEED") == nullptr) {
-    EXPECT_GT(taken_count, 1000u);
-    EXPECT_GT(refused_count, 500u);
-    EXPECT_GT(exact_count, 50u);
-  }
+  if (!all_seeds_run()) return;
+  EXPECT_GT(taken_count, 1000u);
+  EXPECT_GT(refused_count, 500u);
+  EXPECT_GT(exact_count, 50u);
 }
 
 TYPED_TEST(DistanceTest, ASubpacketTakesWhatItsGroupsTake) {
@@ -141,15 +127,14 @@ TYPED_TEST(DistanceTest, ASubpacketTakesWhatItsGroupsTake) {
 }
 
 TYPED_TEST(DistanceTest, WithExactDistancesNoSubpacketTakesAnything) {
-  for_each_seed(200, [&](std::uint64_t seed) {
-    TestRandom random(seed);
+  for_each_seed(200, [&](TestRandom& random) {
     HitCase shown(random);
     shown.packet.ask_for_distances(true);
     std::ranges::fill(shown.packet.t, kFloatMax);
     HitSetups<TypeParam> setups;
     WorkCounters work;
-    ASSERT_FALSE((take_subpacket<TypeParam, true>(shown.packet, 0, shown.triangle, setups, work))) << "seed " << seed;
-    ASSERT_TRUE(std::ranges::all_of(shown.packet.t, [](float t) { return t == kFloatMax; })) << "seed " << seed;
+    ASSERT_FALSE((take_subpacket<TypeParam, true>(shown.packet, 0, shown.triangle, setups, work)));
+    ASSERT_TRUE(std::ranges::all_of(shown.packet.t, [](float t) { return t == kFloatMax; }));
   });
 }
 

@@ -11,18 +11,13 @@
 #include <gridiron/ray/intersect_standard.h>
 #include <gridiron/ray/pixel_box.h>
 #include <gridiron/ray/subpackets.h>
-#include <gtest/gtest.h>
-
-#include <algorithm>
-#include <boost/multiprecision/cpp_int.hpp>
-#include <cmath>
-#include <cstdint>
-#include <memory>
 
 #include "core/engine/grid/bound_cases.h"
 #include "core/lane_types.h"
 #include "core/ray/exact_ray.h"
 #include "core/ray/packet_cases.h"
+#include "support/rational_vectors.h"
+#include "support/test_headers.h"
 
 namespace gridiron::test {
 namespace {
@@ -40,10 +35,7 @@ void set_ray(SmallPacket& packet, const float origin[3], const float dir[3]) {
     packet.origin[axis] = origin[axis];
     std::ranges::fill(packet.dir[axis], dir[axis]);
   }
-  std::ranges::fill(packet.t, kFloatMax);
-  std::ranges::fill(packet.id, kNoTriangle);
-  packet.active.fill();
-  set_direction_bounds(packet);
+  start_all(packet);
 }
 
 // 2 det[dir, a - origin, b - origin]
@@ -78,9 +70,7 @@ VertexTriangle triangle_at_edge(const float origin[3], const float a[3], const f
   for (int i = 0; i < 3; ++i) {
     c[i] = static_cast<float>(0.5 * (double{a[i]} + double{b[i]}) + side * size * normal[i] / length);
   }
-  alignas(16) VertexTriangle triangle;
-  set_triangle(triangle, Vec3(a[0], a[1], a[2]), Vec3(b[0], b[1], b[2]), c, 5);
-  return triangle;
+  return vertex_triangle(vec_of(a), vec_of(b), c, 5);
 }
 
 template <class L>
@@ -150,11 +140,6 @@ std::uint32_t ray_at(std::uint32_t column, std::uint32_t row) {
   return ~0u;
 }
 
-template <class PacketType>
-void direction_of(const PacketType& packet, std::uint32_t ray, float dir[3]) {
-  for (int axis = 0; axis < 3; ++axis) dir[axis] = packet.dir[axis][ray];
-}
-
 template <class L, class PacketType>
 void expect_same_hits(PacketType& packet, const VertexTriangle& triangle, Culling culling) {
   const auto plain = std::make_unique<PacketType>(packet);
@@ -173,13 +158,14 @@ template <class L, class PacketType>
 struct PictureEdges {
   std::unique_ptr<PacketType> packet;
   std::uint32_t ray;
-  float dir[3];
+  std::array<float, 3> dir;
   alignas(16) VertexTriangle triangle;
   EdgeBatch<L> batch;
 
   PictureEdges(const PictureCase& shown, Culling culling)
-      : packet(packet_of<L, PacketType>(shown)), ray(ray_at<PacketType>(shown.column, shown.row)) {
-    direction_of(*packet, ray, dir);
+      : packet(packet_of<L, PacketType>(shown)),
+        ray(ray_at<PacketType>(shown.column, shown.row)),
+        dir(direction_of(*packet, ray)) {
     triangle = triangle_at_edge(packet->origin, shown.a, shown.b, 1.0);
     const VertexTriangle* triangles[EdgeBatch<L>::kTriangles];
     std::ranges::fill(triangles, &triangle);
@@ -188,7 +174,7 @@ struct PictureEdges {
   }
   // The edge function at the case's ray.
   [[nodiscard]] Wide exact_value() const {
-    return batch.orientation[0] * edge_value(packet->origin, dir, triangle.v[0], triangle.v[1]);
+    return batch.orientation[0] * edge_value(packet->origin, dir.data(), triangle.v[0], triangle.v[1]);
   }
 };
 
@@ -198,7 +184,7 @@ double expect_no_hit_lost_to_corners(const PictureCase& shown, std::uint32_t& hi
   constexpr Culling kCulling{.corner_rays = true, .subpackets = false};
   PictureEdges<L, PacketType> edges(shown, kCulling);
   PacketType& packet = *edges.packet;
-  const bool hit = true_distance(packet.origin, edges.dir, edges.triangle) > 0.0f;
+  const bool hit = true_distance(packet, edges.ray, edges.triangle) > 0.0f;
   hits += hit ? 1u : 0u;
   float nearest = -kFloatMax;
   for (int corner = 0; corner < 4; ++corner) {
@@ -326,8 +312,7 @@ TYPED_TEST(ErrorBoundsTest, PixelBoxesHoldACornerOnARay) {
   for (const PictureCase& shown : kPlaceCases) {
     const auto packet = packet_of<TypeParam, PacketType>(shown);
     const std::uint32_t ray = ray_at<PacketType>(shown.column, shown.row);
-    float dir[3];
-    direction_of(*packet, ray, dir);
+    const auto dir = direction_of(*packet, ray);
     const PixelProjection& projection = packet->projection;
     ASSERT_GT(projection.most_per_depth, 0.0f);
     const auto along = [&](int row) {
@@ -340,17 +325,12 @@ TYPED_TEST(ErrorBoundsTest, PixelBoxesHoldACornerOnARay) {
     largest = std::fmax(largest, std::fabs(off[axis]) / double{projection.margin});
     // The other corners lie eight pixels farther to where the place is off.
     const float way = off[axis] > 0.0 ? 8.0f : -8.0f;
-    Vec3 corners[3];
-    for (int i = 0; i < 3; ++i) {
-      corners[0][i] = dir[i];
-      const float* const ahead = axis == 0 ? packet->step_x : packet->step_y;
-      const float* const beside = axis == 0 ? packet->step_y : packet->step_x;
-      corners[1][i] = dir[i] + way * ahead[i] + 4.0f * beside[i];
-      corners[2][i] = dir[i] + way * ahead[i] - 4.0f * beside[i];
-    }
-    alignas(16) VertexTriangle triangle;
-    set_triangle(triangle, corners[0], corners[1], corners[2], 5);
-    ASSERT_GT(true_distance(packet->origin, dir, triangle), 0.0f);
+    const Vec3 corner = vec_of(dir.data());
+    const Vec3 ahead = way * vec_of(axis == 0 ? packet->step_x : packet->step_y);
+    const Vec3 beside = 4.0f * vec_of(axis == 0 ? packet->step_y : packet->step_x);
+    alignas(16) const VertexTriangle triangle =
+        vertex_triangle(corner, corner + ahead + beside, corner + ahead - beside, 5);
+    ASSERT_GT(true_distance(*packet, ray, triangle), 0.0f);
     const VertexTriangle* triangles[TypeParam::kCount];
     std::ranges::fill(triangles, &triangle);
     PixelBoxes<TypeParam> boxes;
@@ -437,14 +417,16 @@ TYPED_TEST(ErrorBoundsTest, PadsCoverTheRoundingsOfAReach) {
   EXPECT_LT(largest, 0.5);
 }
 
+VertexTriangle triangle_of(const DistanceCase& shown) {
+  return vertex_triangle(vec_of(shown.a), vec_of(shown.b), vec_of(shown.c), 5);
+}
+
 // kFloatError. Numerator or denominator is as small, compared with its terms, as an estimate accepts, or would accept
 // with 1 e.
 TYPED_TEST(ErrorBoundsTest, AnEstimatedDistanceIsAsCloseAsItSays) {
   double largest = 0.0;
   for (const DistanceCase& shown : kEstimateCases) {
-    alignas(16) VertexTriangle triangle;
-    set_triangle(triangle, Vec3(shown.a[0], shown.a[1], shown.a[2]), Vec3(shown.b[0], shown.b[1], shown.b[2]),
-                 Vec3(shown.c[0], shown.c[1], shown.c[2]), 5);
+    alignas(16) const VertexTriangle triangle = triangle_of(shown);
     float dir_max = 0.0f;
     for (const float component : shown.dir) dir_max = std::fmax(dir_max, std::fabs(component));
     const DistanceEstimate estimate = set_up_estimate(shown.origin, dir_max, triangle);
@@ -463,31 +445,18 @@ TYPED_TEST(ErrorBoundsTest, AnEstimatedDistanceIsAsCloseAsItSays) {
   EXPECT_LT(largest, 0.9);
 }
 
-using Ratio = boost::multiprecision::cpp_rational;
-
 // Distance of a triangle's plane along a ray, without any rounding.
-Ratio exact_quotient(const DistanceCase& shown) {
-  Ratio e1[3], e2[3], numerator = 0, denominator = 0;
-  for (int i = 0; i < 3; ++i) {
-    e1[i] = Ratio(shown.b[i]) - Ratio(shown.a[i]);
-    e2[i] = Ratio(shown.c[i]) - Ratio(shown.a[i]);
-  }
-  for (int i = 0; i < 3; ++i) {
-    const int j = (i + 1) % 3, k = (i + 2) % 3;
-    const Ratio normal = e1[j] * e2[k] - e1[k] * e2[j];
-    numerator += (Ratio(shown.a[i]) - Ratio(shown.origin[i])) * normal;
-    denominator += Ratio(shown.dir[i]) * normal;
-  }
-  return numerator / denominator;
+Rational exact_quotient(const DistanceCase& shown) {
+  const RationalPoint a = exact_point(shown.a);
+  const RationalPoint normal = cross(exact_point(shown.b) - a, exact_point(shown.c) - a);
+  return dot(a - exact_point(shown.origin), normal) / dot(exact_point(shown.dir), normal);
 }
 
 // kDistanceError. Numerator and denominator lose so much that a quotient said to be sure would round to another float.
 TYPED_TEST(ErrorBoundsTest, ASureDistanceIsTheNearestFloat) {
   double largest = 0.0;
   for (const DistanceCase& shown : kQuotientCases) {
-    alignas(16) VertexTriangle triangle;
-    set_triangle(triangle, Vec3(shown.a[0], shown.a[1], shown.a[2]), Vec3(shown.b[0], shown.b[1], shown.b[2]),
-                 Vec3(shown.c[0], shown.c[1], shown.c[2]), 5);
+    alignas(16) const VertexTriangle triangle = triangle_of(shown);
     SmallPacket packet{};
     set_ray(packet, shown.origin, shown.dir);
     DistanceSetup setup;
@@ -501,7 +470,7 @@ TYPED_TEST(ErrorBoundsTest, ASureDistanceIsTheNearestFloat) {
         shown.dir[0] * setup.normal[0] + shown.dir[1] * setup.normal[1] + shown.dir[2] * setup.normal[2];
     const double quotient = setup.numerator / denominator;
     const double bound = quotient * (quotient * setup.relative_error_per_t + setup.relative_error);
-    const double error = std::fabs((Ratio(quotient) - exact_quotient(shown)).convert_to<double>());
+    const double error = std::fabs((Rational(quotient) - exact_quotient(shown)).convert_to<double>());
     largest = std::fmax(largest, error / bound);
   }
   EXPECT_GT(largest, kQuotientShare);

@@ -5,10 +5,9 @@
 
 #include <gridiron/base/records.h>
 
-#include <cstdint>
-#include <optional>
-
+#include "core/ray/packet_cases.h"
 #include "numeric/exact_numbers.h"
+#include "support/test_headers.h"
 
 namespace gridiron::test {
 
@@ -44,6 +43,11 @@ class ExactRay {
       cells_[axis] = static_cast<std::int32_t>(grid.cell_count[axis]);
     }
   }
+
+  /// One of the rays of a packet.
+  template <class PacketType>
+  ExactRay(const GridRecord& grid, const PacketType& packet, std::uint32_t ray)
+      : ExactRay(grid, packet.origin, direction_of(packet, ray).data()) {}
 
   /// A parameter t as numerator / denominator * 2^n, n the same for all of a ray. The denominator is positive.
   struct Parameter {

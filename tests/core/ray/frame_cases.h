@@ -5,10 +5,8 @@
 #include <gridiron/base/math.h>
 #include <gridiron/base/records.h>
 
-#include <cmath>
-#include <cstdint>
-
 #include "core/ray/packet_cases.h"
+#include "support/test_headers.h"
 #include "support/test_mesh.h"
 
 namespace gridiron::test {

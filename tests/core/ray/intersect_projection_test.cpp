@@ -2,15 +2,13 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <gridiron/build/grid/triangle_records.h>
 #include <gridiron/ray/intersect_projection.h>
-#include <gtest/gtest.h>
 
-#include <cmath>
-#include <cstdint>
-#include <string>
+#include <glm/geometric.hpp>
 
 #include "core/lane_types.h"
 #include "core/ray/packet_cases.h"
 #include "core/seeds.h"
+#include "support/test_headers.h"
 #include "support/test_mesh.h"
 
 namespace gridiron::test {
@@ -19,12 +17,7 @@ namespace {
 using SmallPacket = Packet<4>;
 constexpr std::uint32_t kRays = SmallPacket::kRayCount;
 
-DVec3 cross(const DVec3& a, const DVec3& b) {
-  return {a.y * b.z - a.z * b.y, a.z * b.x - a.x * b.z, a.x * b.y - a.y * b.x};
-}
-double dot(const DVec3& a, const DVec3& b) {
-  return a.x * b.x + a.y * b.y + a.z * b.z;
-}
+using glm::cross, glm::dot;
 
 // A ray against a triangle in double.
 struct DoubleHit {
@@ -74,14 +67,11 @@ class ProjectionTest : public testing::Test {
       packet_.corner_dir[axis][2] = packet_.dir[axis][12];
       packet_.corner_dir[axis][3] = packet_.dir[axis][15];
     }
-    reset();
+    reset_hits(packet_);
   }
-  void reset() {
-    for (std::uint32_t ray = 0; ray < kRays; ++ray) {
-      packet_.t[ray] = kFloatMax;
-      packet_.id[ray] = kNoTriangle;
-      packet_.facing[ray] = -1.0f;
-    }
+  // @returns the subpackets of which a ray hit.
+  SubpacketSet intersect(const ProjectionTriangle& triangle, bool use_culling, bool wants_facing, WorkCounters& work) {
+    return intersect_projection<L>(packet_, triangle, SmallPacket::kAllSubpackets, use_culling, wants_facing, work);
   }
   [[nodiscard]] DoubleHit in_double(std::uint32_t ray) const {
     return hit_in_double(DVec3(packet_.origin[0], packet_.origin[1], packet_.origin[2]),
@@ -94,79 +84,71 @@ TYPED_TEST(ProjectionTest, AgreesWithDoubleWhereTheCaseIsClear) {
   std::uint64_t hits = 0;
   std::uint64_t misses = 0;
   std::uint64_t culled = 0;
-  for_each_seed(20000, [&](std::uint64_t seed) {
-    TestRandom random(seed);
+  for_each_seed(20000, [&](TestRandom& random) {
     this->draw(random);
     SmallPacket& packet = this->packet_;
     if (random.below(2) != 0) packet.active.erase(random.below(kRays));
     const bool use_culling = random.below(2) != 0;
     WorkCounters work;
-    const bool changed = intersect_projection<TypeParam>(packet, this->triangle_, SmallPacket::kAllSubpackets,
-                                                         use_culling, true, work) != 0;
+    const bool changed = this->intersect(this->triangle_, use_culling, true, work) != 0;
     culled += work[Work::kGroupTestPaper] == 0 ? 1u : 0u;
     bool any = false;
     for (std::uint32_t ray = 0; ray < kRays; ++ray) {
       const bool hit = packet.id[ray] == 5;
       any = any || hit;
       if (!packet.active.contains(ray)) {
-        ASSERT_FALSE(hit) << "seed " << seed;
-        ASSERT_EQ(packet.t[ray], kFloatMax) << "seed " << seed;
+        ASSERT_FALSE(hit);
+        ASSERT_EQ(packet.t[ray], kFloatMax);
         continue;
       }
       const DoubleHit expected = this->in_double(ray);
       if (expected.cosine < 0.05 || std::fabs(expected.margin) < 1e-4 || std::fabs(expected.t) < 1e-3) continue;
       const bool should_hit = expected.margin > 0.0 && expected.t > 0.0;
-      ASSERT_EQ(hit, should_hit) << "seed " << seed << ", ray " << ray;
+      ASSERT_EQ(hit, should_hit) << "ray " << ray;
       (should_hit ? hits : misses) += 1;
       if (!should_hit) continue;
-      ASSERT_NEAR(packet.t[ray], expected.t, 2e-4 * std::fmax(1.0, expected.t)) << "seed " << seed << ", ray " << ray;
-      ASSERT_NEAR(packet.facing[ray], expected.cosine, 1e-5 * (1.0 + expected.cosine)) << "seed " << seed;
+      ASSERT_NEAR(packet.t[ray], expected.t, 2e-4 * std::fmax(1.0, expected.t)) << "ray " << ray;
+      ASSERT_NEAR(packet.facing[ray], expected.cosine, 1e-5 * (1.0 + expected.cosine));
     }
-    ASSERT_EQ(changed, any) << "seed " << seed;
+    ASSERT_EQ(changed, any);
   });
-  if (std::getenv("GRIDIRON_TEST_SEED") == nullptr) {
-    EXPECT_GT(hits, 20000u);
-    EXPECT_GT(misses, 20000u);
-    EXPECT_GT(culled, 1000u);
-  }
+  if (!all_seeds_run()) return;
+  EXPECT_GT(hits, 20000u);
+  EXPECT_GT(misses, 20000u);
+  EXPECT_GT(culled, 1000u);
 }
 
 TYPED_TEST(ProjectionTest, LeastIdWinsATieAndTheLimitIsClosed) {
   std::uint64_t hits = 0;
-  for_each_seed(2000, [&](std::uint64_t seed) {
-    TestRandom random(seed);
+  for_each_seed(2000, [&](TestRandom& random) {
     this->draw(random);
     SmallPacket& packet = this->packet_;
     WorkCounters work;
-    (void)intersect_projection<TypeParam>(packet, this->triangle_, SmallPacket::kAllSubpackets, false, false, work);
+    (void)this->intersect(this->triangle_, false, false, work);
     const SmallPacket first = packet;
     ProjectionTriangle twin = this->triangle_;
     twin.triangle_id = 9;
-    EXPECT_EQ((intersect_projection<TypeParam>(packet, twin, SmallPacket::kAllSubpackets, false, false, work)), 0u)
-        << "seed " << seed;
+    EXPECT_EQ(this->intersect(twin, false, false, work), 0u);
     twin.triangle_id = 3;
-    (void)intersect_projection<TypeParam>(packet, twin, SmallPacket::kAllSubpackets, false, false, work);
+    (void)this->intersect(twin, false, false, work);
     for (std::uint32_t ray = 0; ray < kRays; ++ray) {
-      ASSERT_EQ(packet.t[ray], first.t[ray]) << "seed " << seed;
-      ASSERT_EQ(packet.id[ray], first.id[ray] == 5 ? 3u : kNoTriangle) << "seed " << seed;
+      ASSERT_EQ(packet.t[ray], first.t[ray]);
+      ASSERT_EQ(packet.id[ray], first.id[ray] == 5 ? 3u : kNoTriangle);
     }
     // From t_far = t the same hits; from the float below none.
-    this->reset();
-    for (std::uint32_t ray = 0; ray < kRays; ++ray) packet.t[ray] = first.t[ray];
-    (void)intersect_projection<TypeParam>(packet, this->triangle_, SmallPacket::kAllSubpackets, false, false, work);
+    reset_hits(packet);
+    std::ranges::copy(first.t, packet.t);
+    (void)this->intersect(this->triangle_, false, false, work);
     for (std::uint32_t ray = 0; ray < kRays; ++ray) {
-      ASSERT_EQ(packet.id[ray], first.id[ray]) << "seed " << seed;
+      ASSERT_EQ(packet.id[ray], first.id[ray]);
       hits += first.id[ray] == 5 ? 1u : 0u;
       packet.id[ray] = kNoTriangle;
       packet.t[ray] = std::nextafter(first.t[ray], 0.0f);
     }
-    const SubpacketSet changed =
-        intersect_projection<TypeParam>(packet, this->triangle_, SmallPacket::kAllSubpackets, false, false, work);
-    EXPECT_EQ(changed, 0u) << "seed " << seed;
+    EXPECT_EQ(this->intersect(this->triangle_, false, false, work), 0u);
   });
-  if (std::getenv("GRIDIRON_TEST_SEED") == nullptr) {
-    EXPECT_GT(hits, 2000u);
-  }
+  if (!all_seeds_run()) return;
+  EXPECT_GT(hits, 2000u);
 }
 
 }  // namespace

@@ -1,20 +1,12 @@
 // Secondary rays against triangles: what they hit and where, by the oracle's integers; no ray leaves a closed mesh.
 // SPDX-License-Identifier: Apache-2.0
 #include <gridiron/ray/intersect_rays.h>
-#include <gtest/gtest.h>
-
-#include <algorithm>
-#include <bit>
-#include <cmath>
-#include <cstdint>
-#include <cstring>
-#include <optional>
-#include <vector>
 
 #include "core/lane_types.h"
 #include "core/seeds.h"
 #include "numeric/hard_rays.h"
 #include "numeric/oracle.h"
+#include "support/test_headers.h"
 #include "support/test_mesh.h"
 
 namespace gridiron::test {
@@ -27,13 +19,8 @@ class IntersectRaysTest : public testing::Test {};
 TYPED_TEST_SUITE(IntersectRaysTest, WalkLaneTypes, LaneNames);
 
 VertexTriangle triangle_of(const TestMesh& mesh, std::uint32_t id) {
-  VertexTriangle triangle{};
-  for (int corner = 0; corner < 3; ++corner) {
-    const Vec3& vertex = mesh.vertices[mesh.triangles[id][corner]];
-    for (int axis = 0; axis < 3; ++axis) triangle.v[corner][axis] = vertex[axis];
-  }
-  triangle.triangle_id = id;
-  return triangle;
+  const UVec3& t = mesh.triangles[id];
+  return vertex_triangle(mesh.vertices[t.x], mesh.vertices[t.y], mesh.vertices[t.z], id);
 }
 
 void set_ray(WalkRays& rays, std::uint32_t i, const OracleRay& ray) {
@@ -95,6 +82,20 @@ std::vector<float> true_distances(const Oracle& oracle, const OracleRay& ray, st
   return result;
 }
 
+// The rays that a triangle stops: those settled, and those left open whose distance is within their limit.
+template <class L>
+std::uint32_t rays_stopped(const WalkRays& rays, const VertexTriangle& triangle, bool trusts_floats,
+                           WorkCounters& work) {
+  std::uint32_t settled = 0;
+  std::uint32_t open = rays_near<L>(rays, kAll, triangle, trusts_floats, settled, work);
+  for (std::uint32_t rest = open; rest != 0; rest &= rest - 1) {
+    const auto i = static_cast<std::uint32_t>(std::countr_zero(rest));
+    const float t = ray_distance(rays, i, triangle, work);
+    if (!(t > 0.0f && t <= rays.t[i])) open &= ~(1u << i);
+  }
+  return open | settled;
+}
+
 TYPED_TEST(IntersectRaysTest, DecideAsTheOracleDoes) {
   std::uint64_t hits = 0, settled_hits = 0, open_rays = 0, at_limit = 0, pairs = 0;
   WorkCounters work;
@@ -122,21 +123,21 @@ TYPED_TEST(IntersectRaysTest, DecideAsTheOracleDoes) {
       const std::uint32_t wanted = random.below(3) == 0 ? static_cast<std::uint32_t>(random.next()) & kAll : kAll;
       std::uint32_t settled = 0;
       const std::uint32_t open = rays_near<TypeParam>(rays, wanted, triangle, false, settled, work);
-      ASSERT_EQ((open | settled) & ~wanted, 0u) << "seed " << seed << " triangle " << id;
-      ASSERT_EQ(open & settled, 0u) << "seed " << seed << " triangle " << id;
+      ASSERT_EQ((open | settled) & ~wanted, 0u) << "triangle " << id;
+      ASSERT_EQ(open & settled, 0u) << "triangle " << id;
       for (std::uint32_t i = 0; i < kWalkRays; ++i) {
         if ((wanted >> i & 1u) == 0) continue;
         const float truth = distances[i][id];
         if (truth == kFloatMax) continue;  // farther than all floats: may be a hit or none
         const bool is_hit = truth > 0.0f && truth <= rays.t[i];
         const bool is_settled = (settled >> i & 1u) != 0, is_open = (open >> i & 1u) != 0;
-        ASSERT_FALSE(is_settled && !is_hit) << "seed " << seed << " triangle " << id << " ray " << i;
+        ASSERT_FALSE(is_settled && !is_hit) << "triangle " << id << " ray " << i;
         const float found = is_settled || is_open ? ray_distance(rays, i, triangle, work) : 0.0f;
         if (is_settled || is_open) {
-          ASSERT_EQ(found, truth) << "seed " << seed << " triangle " << id << " ray " << i;
+          ASSERT_EQ(found, truth) << "triangle " << id << " ray " << i;
         }
         ASSERT_EQ(is_settled || (is_open && found > 0.0f && found <= rays.t[i]), is_hit)
-            << "seed " << seed << " triangle " << id << " ray " << i << " at " << truth << " of " << rays.t[i];
+            << "triangle " << id << " ray " << i << " at " << truth << " of " << rays.t[i];
         ++pairs;
         hits += is_hit ? 1u : 0u;
         settled_hits += is_settled ? 1u : 0u;
@@ -145,11 +146,11 @@ TYPED_TEST(IntersectRaysTest, DecideAsTheOracleDoes) {
       }
       // Other lanes, the same answer.
       std::uint32_t other_settled = 0;
-      ASSERT_EQ(rays_near<Lanes<4>>(rays, wanted, triangle, false, other_settled, work), open) << "seed " << seed;
-      ASSERT_EQ(other_settled, settled) << "seed " << seed;
+      ASSERT_EQ(rays_near<Lanes<4>>(rays, wanted, triangle, false, other_settled, work), open);
+      ASSERT_EQ(other_settled, settled);
     }
   });
-  if (testing::Test::HasFailure() || std::getenv("GRIDIRON_TEST_SEED") != nullptr) return;
+  if (testing::Test::HasFailure() || !all_seeds_run()) return;
   EXPECT_GT(pairs, 50'000u);
   EXPECT_GT(hits, 5'000u);
   EXPECT_GT(settled_hits, 1'000u);
@@ -203,8 +204,7 @@ TYPED_TEST(IntersectRaysTest, TrustedFloatsAreRightAwayFromEdges) {
                     (b - a).x * (c - a).y - (b - a).y * (c - a).x};
     const float area = std::sqrt(n.x * n.x + n.y * n.y + n.z * n.z) / (scale * scale);
     if (area < 0.05f) continue;
-    VertexTriangle triangle;
-    set_triangle(triangle, a, b, c, 0);
+    const VertexTriangle triangle = vertex_triangle(a, b, c, 0);
     WalkRays rays{};
     std::uint32_t expected = 0;
     for (std::uint32_t i = 0; i < kWalkRays; ++i) {
@@ -221,14 +221,7 @@ TYPED_TEST(IntersectRaysTest, TrustedFloatsAreRightAwayFromEdges) {
       expected |= hits && ray.t_max > 1.0f ? 1u << i : 0u;
       (hits ? inside : outside) += 1;
     }
-    std::uint32_t settled = 0;
-    std::uint32_t open = rays_near<TypeParam>(rays, kAll, triangle, true, settled, work);
-    for (std::uint32_t rest = open; rest != 0; rest &= rest - 1) {
-      const auto i = static_cast<std::uint32_t>(std::countr_zero(rest));
-      const float t = ray_distance(rays, i, triangle, work);
-      if (!(t > 0.0f && t <= rays.t[i])) open &= ~(1u << i);
-    }
-    ASSERT_EQ(settled | open, expected) << "round " << round;
+    ASSERT_EQ(rays_stopped<TypeParam>(rays, triangle, true, work), expected) << "round " << round;
   }
   EXPECT_GT(inside, 10'000u);
   EXPECT_GT(outside, 10'000u);
@@ -236,10 +229,9 @@ TYPED_TEST(IntersectRaysTest, TrustedFloatsAreRightAwayFromEdges) {
 
 TYPED_TEST(IntersectRaysTest, NothingIsHitWithoutADirectionOrAnArea) {
   WorkCounters work;
-  VertexTriangle triangle, line, point;
-  set_triangle(triangle, {0, 0, 0}, {1, 0, 0}, {0, 1, 0}, 0);
-  set_triangle(line, {0, 0, 0}, {1, 1, 0}, {2, 2, 0}, 1);
-  set_triangle(point, {0, 0, 0}, {0, 0, 0}, {0, 0, 0}, 2);
+  const VertexTriangle triangle = vertex_triangle({0, 0, 0}, {1, 0, 0}, {0, 1, 0}, 0);
+  const VertexTriangle line = vertex_triangle({0, 0, 0}, {1, 1, 0}, {2, 2, 0}, 1);
+  const VertexTriangle point = vertex_triangle({0, 0, 0}, {0, 0, 0}, {0, 0, 0}, 2);
   WalkRays rays{};
   for (std::uint32_t i = 0; i < kWalkRays; ++i) {
     OracleRay ray{{0.25f, 0.25f, 1.0f}, {0, 0, 0}};
@@ -250,18 +242,9 @@ TYPED_TEST(IntersectRaysTest, NothingIsHitWithoutADirectionOrAnArea) {
     if (i == 5) ray = {{0.25f, 0.25f, 1}, {0, 0, 1}};       // away from it
     set_ray(rays, i, ray);
   }
-  const auto hit_by = [&](const VertexTriangle& tested) {
-    std::uint32_t settled = 0;
-    std::uint32_t result = rays_near<TypeParam>(rays, kAll, tested, false, settled, work);
-    for (std::uint32_t rest = result; rest != 0; rest &= rest - 1) {
-      const auto i = static_cast<std::uint32_t>(std::countr_zero(rest));
-      if (!(ray_distance(rays, i, tested, work) > 0.0f)) result &= ~(1u << i);
-    }
-    return result | settled;
-  };
-  EXPECT_EQ(hit_by(triangle), 1u << 1 | 1u << 2);
-  EXPECT_EQ(hit_by(line), 0u);
-  EXPECT_EQ(hit_by(point), 0u);
+  EXPECT_EQ(rays_stopped<TypeParam>(rays, triangle, false, work), 1u << 1 | 1u << 2);
+  EXPECT_EQ(rays_stopped<TypeParam>(rays, line, false, work), 0u);
+  EXPECT_EQ(rays_stopped<TypeParam>(rays, point, false, work), 0u);
 }
 
 // A closed mesh and what lies inside it, well away from its faces.
@@ -306,14 +289,9 @@ TYPED_TEST(IntersectRaysTest, NoRayLeavesAClosedMesh) {
         }
         std::uint32_t stopped = 0, twice = 0;
         for (const VertexTriangle& triangle : triangles) {
-          std::uint32_t settled = 0;
-          std::uint32_t open = rays_near<TypeParam>(rays, kAll, triangle, false, settled, work);
-          for (std::uint32_t rest = open; rest != 0; rest &= rest - 1) {
-            const auto i = static_cast<std::uint32_t>(std::countr_zero(rest));
-            if (!(ray_distance(rays, i, triangle, work) > 0.0f)) open &= ~(1u << i);
-          }
-          twice |= stopped & (open | settled);
-          stopped |= open | settled;
+          const std::uint32_t now = rays_stopped<TypeParam>(rays, triangle, false, work);
+          twice |= stopped & now;
+          stopped |= now;
         }
         rays_shot += kWalkRays;
         leaks += static_cast<std::uint32_t>(std::popcount(kAll & ~stopped));

@@ -2,18 +2,11 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <gridiron/ray/camera.h>
 #include <gridiron/ray/intersect_standard.h>
-#include <gtest/gtest.h>
-
-#include <algorithm>
-#include <bit>
-#include <cmath>
-#include <cstdint>
-#include <string>
-#include <vector>
 
 #include "core/lane_types.h"
 #include "core/ray/packet_cases.h"
 #include "core/seeds.h"
+#include "support/test_headers.h"
 #include "support/test_mesh.h"
 
 namespace gridiron::test {
@@ -22,28 +15,6 @@ namespace {
 using SmallPacket = Packet<4>;
 constexpr std::uint32_t kRays = SmallPacket::kRayCount;
 
-bool all_seeds_run() {
-  return std::getenv("GRIDIRON_TEST_SEED") == nullptr;
-}
-
-template <class PacketType>
-void reset_hits(PacketType& packet, float t_far) {
-  for (std::uint32_t ray = 0; ray < PacketType::kRayCount; ++ray) {
-    packet.t[ray] = t_far;
-    packet.id[ray] = kNoTriangle;
-    packet.facing[ray] = -1.0f;
-  }
-}
-
-template <class PacketType>
-void activate_all(PacketType& packet) {
-  for (std::uint32_t ray = 0; ray < PacketType::kRayCount; ++ray) packet.active.insert(ray);
-}
-
-bool same_bits(float a, float b) {
-  return std::bit_cast<std::uint32_t>(a) == std::bit_cast<std::uint32_t>(b);
-}
-
 template <class L>
 class StandardTest : public testing::Test {};
 TYPED_TEST_SUITE(StandardTest, LaneTypes, LaneNames);
@@ -51,8 +22,7 @@ TYPED_TEST_SUITE(StandardTest, LaneTypes, LaneNames);
 TYPED_TEST(StandardTest, EveryRayHoldsTheLeastDistanceAndIdOfExactArithmetic) {
   std::uint64_t hits = 0;
   std::uint64_t ties = 0;
-  for_each_seed(1500, [&](std::uint64_t seed) {
-    TestRandom random(seed);
+  for_each_seed(1500, [&](TestRandom& random) {
     const TriangleCase shown = random_triangles(random, 4);
     SmallPacket packet{};
     aim_at(random, shown, packet);
@@ -65,7 +35,7 @@ TYPED_TEST(StandardTest, EveryRayHoldsTheLeastDistanceAndIdOfExactArithmetic) {
     WorkCounters work;
     SmallPacket first_result{};
     for (int round = 0; round < 2; ++round) {
-      reset_hits(packet, kFloatMax);
+      reset_hits(packet);
       for (const std::size_t i : order) {
         const SmallPacket before = packet;
         const bool changed = intersect_standard<TypeParam, false>(packet, shown.triangles[i], false, work);
@@ -73,7 +43,7 @@ TYPED_TEST(StandardTest, EveryRayHoldsTheLeastDistanceAndIdOfExactArithmetic) {
         for (std::uint32_t ray = 0; ray < kRays; ++ray) {
           differs = differs || packet.id[ray] != before.id[ray] || !same_bits(packet.t[ray], before.t[ray]);
         }
-        ASSERT_EQ(changed, differs) << "seed " << seed << ", triangle " << i;
+        ASSERT_EQ(changed, differs) << "triangle " << i;
       }
       if (round == 0) first_result = packet;
       std::reverse(order.begin(), order.end());
@@ -82,9 +52,8 @@ TYPED_TEST(StandardTest, EveryRayHoldsTheLeastDistanceAndIdOfExactArithmetic) {
       float best = kFloatMax;
       std::uint32_t best_id = kNoTriangle;
       if (packet.active.contains(ray)) {
-        const float direction[3] = {packet.dir[0][ray], packet.dir[1][ray], packet.dir[2][ray]};
         for (const VertexTriangle& triangle : shown.triangles) {
-          const float t = true_distance(packet.origin, direction, triangle);
+          const float t = true_distance(packet, ray, triangle);
           if (!(t > 0.0f)) continue;
           ++hits;
           ties += t == best && best_id != kNoTriangle ? 1u : 0u;
@@ -95,28 +64,24 @@ TYPED_TEST(StandardTest, EveryRayHoldsTheLeastDistanceAndIdOfExactArithmetic) {
         }
       }
       ASSERT_TRUE(same_bits(packet.t[ray], best) && packet.id[ray] == best_id)
-          << "seed " << seed << ", ray " << ray << ": t " << std::hexfloat << packet.t[ray] << " of " << packet.id[ray]
-          << " instead of " << best << " of " << best_id;
+          << "ray " << ray << ": t " << std::hexfloat << packet.t[ray] << " of " << packet.id[ray] << " instead of "
+          << best << " of " << best_id;
       ASSERT_TRUE(same_bits(first_result.t[ray], best) && first_result.id[ray] == best_id)
-          << "the order of the triangles matters, seed " << seed << ", ray " << ray;
+          << "the order of the triangles matters, ray " << ray;
       ASSERT_EQ(packet.facing[ray], -1.0f);
     }
   });
-  if (all_seeds_run()) {
-    EXPECT_GT(hits, 10000u);
-    EXPECT_GT(ties, 1000u);
-  }
+  if (!all_seeds_run()) return;
+  EXPECT_GT(hits, 10000u);
+  EXPECT_GT(ties, 1000u);
 }
 
 TYPED_TEST(StandardTest, ABatchIsItsTrianglesOneByOne) {
   constexpr std::uint32_t kBatch = EdgeBatch<TypeParam>::kTriangles;
-  for_each_seed(3000, [&](std::uint64_t seed) {
-    TestRandom random(seed);
+  for_each_seed(3000, [&](TestRandom& random) {
     const TriangleCase shown = random_triangles(random, 6);
     SmallPacket single{};
     aim_at(random, shown, single);
-    activate_all(single);
-    reset_hits(single, kFloatMax);
     // Corner rays that bound nothing but themselves: culling has to be the same decision, right or wrong.
     for (auto& component : single.corner_dir) {
       for (float& value : component) value = random.between(-single.dir_max, single.dir_max);
@@ -137,57 +102,52 @@ TYPED_TEST(StandardTest, ABatchIsItsTrianglesOneByOne) {
       const Culling culling{.corner_rays = use_culling, .subpackets = false};
       const SubpacketSet batch_changed =
           intersect_standard_batch<TypeParam, true>(batched, batch, count, culling, batch_work);
-      ASSERT_EQ(batch_changed != 0, changed) << "seed " << seed;
+      ASSERT_EQ(batch_changed != 0, changed);
       first += count;
     }
     for (std::uint32_t ray = 0; ray < kRays; ++ray) {
-      ASSERT_TRUE(same_bits(batched.t[ray], single.t[ray])) << "seed " << seed << ", ray " << ray;
-      ASSERT_EQ(batched.id[ray], single.id[ray]) << "seed " << seed << ", ray " << ray;
-      ASSERT_TRUE(same_bits(batched.facing[ray], single.facing[ray])) << "seed " << seed << ", ray " << ray;
+      ASSERT_TRUE(same_bits(batched.t[ray], single.t[ray])) << "ray " << ray;
+      ASSERT_EQ(batched.id[ray], single.id[ray]) << "ray " << ray;
+      ASSERT_TRUE(same_bits(batched.facing[ray], single.facing[ray])) << "ray " << ray;
     }
     for (const Work kind : {Work::kTriangleSetup, Work::kCullTest, Work::kGroupTestStandard, Work::kHitSetup}) {
-      ASSERT_EQ(batch_work[kind], single_work[kind]) << "seed " << seed << ", kind " << static_cast<int>(kind);
+      ASSERT_EQ(batch_work[kind], single_work[kind]) << "kind " << static_cast<int>(kind);
     }
   });
 }
 
 TYPED_TEST(StandardTest, LimitIsClosed) {
   std::uint64_t hits = 0;
-  for_each_seed(1500, [&](std::uint64_t seed) {
-    TestRandom random(seed);
+  for_each_seed(1500, [&](TestRandom& random) {
     TriangleCase shown = random_triangles(random, 1);
     shown.triangles.resize(1);
     const VertexTriangle& triangle = shown.triangles[0];
     SmallPacket packet{};
     aim_at(random, shown, packet);
-    activate_all(packet);
     WorkCounters work;
-    reset_hits(packet, kFloatMax);
     (void)intersect_standard<TypeParam, false>(packet, triangle, false, work);
     const SmallPacket free = packet;
-    reset_hits(packet, kFloatMax);
-    for (std::uint32_t ray = 0; ray < kRays; ++ray) packet.t[ray] = free.t[ray];
+    reset_hits(packet);
+    std::ranges::copy(free.t, packet.t);
     (void)intersect_standard<TypeParam, false>(packet, triangle, false, work);
     for (std::uint32_t ray = 0; ray < kRays; ++ray) {
-      ASSERT_EQ(packet.id[ray], free.id[ray]) << "a hit at t_far counts, seed " << seed << ", ray " << ray;
-      ASSERT_EQ(packet.t[ray], free.t[ray]) << "seed " << seed << ", ray " << ray;
+      ASSERT_EQ(packet.id[ray], free.id[ray]) << "a hit at t_far counts, ray " << ray;
+      ASSERT_EQ(packet.t[ray], free.t[ray]) << "ray " << ray;
     }
-    reset_hits(packet, kFloatMax);
+    reset_hits(packet);
     for (std::uint32_t ray = 0; ray < kRays; ++ray) packet.t[ray] = std::nextafter(free.t[ray], 0.0f);
-    EXPECT_FALSE((intersect_standard<TypeParam, false>(packet, triangle, false, work))) << "seed " << seed;
+    EXPECT_FALSE((intersect_standard<TypeParam, false>(packet, triangle, false, work)));
     for (std::uint32_t ray = 0; ray < kRays; ++ray) {
       hits += free.id[ray] != kNoTriangle ? 1u : 0u;
-      ASSERT_EQ(packet.id[ray], kNoTriangle) << "a hit behind t_far, seed " << seed << ", ray " << ray;
+      ASSERT_EQ(packet.id[ray], kNoTriangle) << "a hit behind t_far, ray " << ray;
     }
   });
-  if (all_seeds_run()) {
-    EXPECT_GT(hits, 2000u);
-  }
+  if (!all_seeds_run()) return;
+  EXPECT_GT(hits, 2000u);
 }
 
 TYPED_TEST(StandardTest, OriginOnATriangleDoesNotHitIt) {
-  VertexTriangle triangle;
-  set_triangle(triangle, {0, 0, 0}, {4, 0, 0}, {0, 4, 0}, 7);
+  const VertexTriangle triangle = vertex_triangle({0, 0, 0}, {4, 0, 0}, {0, 4, 0}, 7);
   const Vec3 origins[] = {{1, 1, 0}, {0, 0, 0}, {2, 2, 0}, {2, 0, 0}, {9, 9, 0}};
   for (const Vec3& origin : origins) {
     SmallPacket packet{};
@@ -196,9 +156,7 @@ TYPED_TEST(StandardTest, OriginOnATriangleDoesNotHitIt) {
       packet.origin[axis] = origin[axis];
       for (std::uint32_t ray = 0; ray < kRays; ++ray) packet.dir[axis][ray] = random.between(-1, 1);
     }
-    set_direction_bounds(packet);
-    activate_all(packet);
-    reset_hits(packet, kFloatMax);
+    start_all(packet);
     WorkCounters work;
     EXPECT_FALSE((intersect_standard<TypeParam, false>(packet, triangle, false, work)));
     for (const std::uint32_t id : packet.id) EXPECT_EQ(id, kNoTriangle);
@@ -206,20 +164,16 @@ TYPED_TEST(StandardTest, OriginOnATriangleDoesNotHitIt) {
 }
 
 TYPED_TEST(StandardTest, FacingIsTheCosineOfTheUnitNormal) {
-  for_each_seed(500, [&](std::uint64_t seed) {
-    TestRandom random(seed);
+  for_each_seed(500, [&](TestRandom& random) {
     const float scale = random.below(2) == 0 ? 1.0f : 1e15f;
     const Vec3 a = random_vec(random, scale), b = random_vec(random, scale), c = random_vec(random, scale);
-    VertexTriangle triangle;
-    set_triangle(triangle, a, b, c, 1);
+    const VertexTriangle triangle = vertex_triangle(a, b, c, 1);
     const DVec3 u = DVec3(b) - DVec3(a), v = DVec3(c) - DVec3(a);
     const DVec3 normal(u.y * v.z - u.z * v.y, u.z * v.x - u.x * v.z, u.x * v.y - u.y * v.x);
     const double length = std::sqrt(normal.x * normal.x + normal.y * normal.y + normal.z * normal.z);
     const TriangleCase shown{{0.1f * scale, -3.0f * scale, 2.0f * scale}, {triangle}};
     SmallPacket packet{};
     aim_at(random, shown, packet);
-    activate_all(packet);
-    reset_hits(packet, kFloatMax);
     WorkCounters work;
     (void)intersect_standard<TypeParam, true>(packet, triangle, false, work);
     for (std::uint32_t ray = 0; ray < kRays; ++ray) {
@@ -229,7 +183,7 @@ TYPED_TEST(StandardTest, FacingIsTheCosineOfTheUnitNormal) {
       }
       const double along =
           normal.x * packet.dir[0][ray] + normal.y * packet.dir[1][ray] + normal.z * packet.dir[2][ray];
-      ASSERT_NEAR(packet.facing[ray], std::fabs(along) / length, 0x1p-15 * packet.dir_max) << "seed " << seed;
+      ASSERT_NEAR(packet.facing[ray], std::fabs(along) / length, 0x1p-15 * packet.dir_max);
     }
   });
 }
@@ -240,8 +194,8 @@ TYPED_TEST(StandardTest, FilterDecidesOrdinaryRays) {
   std::uint64_t rays = 0;
   for (std::uint64_t seed = 1; seed <= 2000; ++seed) {
     TestRandom random(seed);
-    VertexTriangle triangle;
-    set_triangle(triangle, random_vec(random, 1), random_vec(random, 1), random_vec(random, 1), 1);
+    const Vec3 a = random_vec(random, 1), b = random_vec(random, 1), c = random_vec(random, 1);
+    const VertexTriangle triangle = vertex_triangle(a, b, c, 1);
     SmallPacket packet{};
     packet.origin[2] = 4.0f;
     for (std::uint32_t ray = 0; ray < kRays; ++ray) {
@@ -249,9 +203,7 @@ TYPED_TEST(StandardTest, FilterDecidesOrdinaryRays) {
       packet.dir[1][ray] = random.between(-0.25f, 0.25f);
       packet.dir[2][ray] = -1.0f;
     }
-    set_direction_bounds(packet);
-    activate_all(packet);
-    reset_hits(packet, kFloatMax);
+    start_all(packet);
     (void)intersect_standard<TypeParam, false>(packet, triangle, false, work);
     rays += kRays;
   }
@@ -294,7 +246,7 @@ VertexTriangle triangle_at_the_border(TestRandom& random, const PacketType& pack
     const std::uint32_t i = kCorners[(side + corner) % 4];
     return Vec3(packet.corner_dir[0][i], packet.corner_dir[1][i], packet.corner_dir[2][i]);
   };
-  const Vec3 origin(packet.origin[0], packet.origin[1], packet.origin[2]);
+  const Vec3 origin = vec_of(packet.origin);
   const Vec3 outward = direction(1) - direction(2);
   const float gap =
       std::ldexp(random.unit() - (random.below(4) == 0 ? 0.5f : 0.0f), -static_cast<int>(random.below(20)));
@@ -306,9 +258,7 @@ VertexTriangle triangle_at_the_border(TestRandom& random, const PacketType& pack
   const float longer = random.below(4) == 0 ? -0.3f : 2.0f * random.unit();
   const Vec3 a = from - longer * (to - from);
   const Vec3 b = to + longer * (to - from);
-  VertexTriangle triangle;
-  set_triangle(triangle, a, b, b + (1.0f + 9.0f * random.unit()) * outward, 5);
-  return triangle;
+  return vertex_triangle(a, b, b + (1.0f + 9.0f * random.unit()) * outward, 5);
 }
 
 // A triangle with an edge along the border between two columns or rows of a packet's pixels, from within rounding of
@@ -316,7 +266,7 @@ VertexTriangle triangle_at_the_border(TestRandom& random, const PacketType& pack
 template <class PacketType>
 VertexTriangle triangle_at_a_row(TestRandom& random, const PacketType& packet) {
   constexpr std::uint32_t kWidth = PacketType::kWidth;
-  const Vec3 origin(packet.origin[0], packet.origin[1], packet.origin[2]);
+  const Vec3 origin = vec_of(packet.origin);
   const auto along = [&](float column, float row) {
     Vec3 direction;
     for (int axis = 0; axis < 3; ++axis) {
@@ -334,11 +284,9 @@ VertexTriangle triangle_at_a_row(TestRandom& random, const PacketType& packet) {
   const float depth = 1.0f + 4.0f * random.unit();
   const float tilt = 1.0f + std::ldexp(random.unit(), -static_cast<int>(random.below(12)));
   const float side = (random.below(2) == 0 ? 1.0f : -1.0f) * random.between(0.25f, 9.0f);
-  VertexTriangle triangle;
   const Vec3 a = origin + depth * pixel(first, line);
   const Vec3 b = origin + depth * tilt * pixel(first + length, line + slant);
-  set_triangle(triangle, a, b, origin + depth * pixel(first + random.unit() * length, line + side), 5);
-  return triangle;
+  return vertex_triangle(a, b, origin + depth * pixel(first + random.unit() * length, line + side), 5);
 }
 
 template <class L, class PacketType>
@@ -346,8 +294,7 @@ void expect_subpacket_culling_drops_no_hit() {
   std::uint64_t left_out = 0;
   std::uint64_t hit_count = 0;
   std::uint64_t untested_hits = 0;  // triangles with whole subpackets inside
-  for_each_seed(400, [&](std::uint64_t seed) {
-    TestRandom random(seed);
+  for_each_seed(400, [&](TestRandom& random) {
     const FrameRecord frame = random_frame(random);
     RaySet<PacketType::kRayCount> present;
     PacketType packet{};
@@ -359,7 +306,7 @@ void expect_subpacket_culling_drops_no_hit() {
     packet.ask_for_distances(true);
     packet.active = present;
     const auto intersect = [&](const VertexTriangle& triangle, bool by_subpackets) {
-      reset_hits(packet, kFloatMax);
+      reset_hits(packet);
       work = WorkCounters{};
       const Culling culling{.corner_rays = false, .subpackets = by_subpackets};
       OpenTriangle open[1];
@@ -373,20 +320,19 @@ void expect_subpacket_culling_drops_no_hit() {
       const std::uint32_t all_tests = work[Work::kGroupTestStandard];
       const PacketType wanted = packet;
       const SubpacketSet found = intersect(triangle, true);
-      ASSERT_EQ(found, expected) << "seed " << seed << ", triangle " << i;
-      ASSERT_TRUE(std::ranges::equal(packet.id, wanted.id)) << "seed " << seed << ", triangle " << i;
-      ASSERT_TRUE(std::ranges::equal(packet.t, wanted.t, same_bits)) << "seed " << seed << ", triangle " << i;
+      ASSERT_EQ(found, expected) << "triangle " << i;
+      ASSERT_TRUE(std::ranges::equal(packet.id, wanted.id)) << "triangle " << i;
+      ASSERT_TRUE(std::ranges::equal(packet.t, wanted.t, same_bits)) << "triangle " << i;
       ASSERT_LE(work[Work::kGroupTestStandard], all_tests);
       untested_hits += work[Work::kHitGroup] > work[Work::kGroupTestStandard] ? 1u : 0u;
       left_out += all_tests - work[Work::kGroupTestStandard];
       hit_count += expected != 0 ? 1u : 0u;
     }
   });
-  if (std::getenv("GRIDIRON_TEST_SEED") == nullptr) {
-    EXPECT_GT(left_out, 1000u);
-    EXPECT_GT(hit_count, 1000u);
-    EXPECT_GT(untested_hits, PacketType::kWidth / 8u);
-  }
+  if (!all_seeds_run()) return;
+  EXPECT_GT(left_out, 1000u);
+  EXPECT_GT(hit_count, 1000u);
+  EXPECT_GT(untested_hits, PacketType::kWidth / 8u);
 }
 
 TYPED_TEST(StandardTest, SubpacketCullingDropsNoHit) {
@@ -398,36 +344,33 @@ TYPED_TEST(StandardTest, SubpacketCullingDropsNoHit) {
 TYPED_TEST(StandardTest, EstimatesAreAsCloseAsTheySay) {
   std::uint64_t close_count = 0;
   std::uint64_t open_count = 0;
-  for_each_seed(4000, [&](std::uint64_t seed) {
-    TestRandom random(seed);
+  for_each_seed(4000, [&](TestRandom& random) {
     const TriangleCase shown = random_triangles(random, 2);
     SmallPacket packet{};
     aim_at(random, shown, packet);
     for (const VertexTriangle& triangle : shown.triangles) {
       const DistanceEstimate estimate = set_up_estimate(packet.origin, packet.dir_max, triangle);
       for (std::uint32_t ray = 0; ray < kRays; ++ray) {
-        const float direction[3] = {packet.dir[0][ray], packet.dir[1][ray], packet.dir[2][ray]};
-        const float distance = true_distance(packet.origin, direction, triangle);
+        const float distance = true_distance(packet, ray, triangle);
         if (!(distance > 0.0f)) continue;
+        const auto direction = direction_of(packet, ray);
         const float denominator =
             estimate.normal[0] * direction[0] + estimate.normal[1] * direction[1] + estimate.normal[2] * direction[2];
-        if (std::fabs(denominator) > estimate.least_denominator) {
-          ASSERT_GT(denominator, 0.0f) << "in front, seed " << seed << ", ray " << ray;
-        } else {
+        if (!(std::fabs(denominator) > estimate.least_denominator)) {
           ++open_count;
           continue;
         }
+        ASSERT_GT(denominator, 0.0f) << "in front, ray " << ray;
         ++close_count;
         const double error = double{estimate.numerator / denominator} - double{distance};
         ASSERT_LE(std::fabs(error), double{kEstimateError} * double{distance})
-            << std::hexfloat << "seed " << seed << ", ray " << ray << ": " << distance;
+            << std::hexfloat << "ray " << ray << ": " << distance;
       }
     }
   });
-  if (all_seeds_run()) {
-    EXPECT_GT(close_count, 5000u);
-    EXPECT_GT(open_count, 1000u);
-  }
+  if (!all_seeds_run()) return;
+  EXPECT_GT(close_count, 5000u);
+  EXPECT_GT(open_count, 1000u);
 }
 
 // Estimates either find the exact winner or say that they cannot; then the exact pass finds it.
@@ -435,13 +378,10 @@ TYPED_TEST(StandardTest, EstimatesFindTheWinnerOrLeaveItOpen) {
   std::uint64_t hits = 0;
   std::uint64_t unsure_count = 0;
   std::uint64_t exact_groups = 0;
-  for_each_seed(3000, [&](std::uint64_t seed) {
-    TestRandom random(seed);
+  for_each_seed(3000, [&](TestRandom& random) {
     const TriangleCase shown = random_triangles(random, 6);
     SmallPacket exact{};
     aim_at(random, shown, exact);
-    activate_all(exact);
-    reset_hits(exact, kFloatMax);
     SmallPacket packet = exact;
     WorkCounters work;
     for (const VertexTriangle& triangle : shown.triangles) {
@@ -457,10 +397,10 @@ TYPED_TEST(StandardTest, EstimatesFindTheWinnerOrLeaveItOpen) {
     for (std::uint32_t ray = 0; ray < kRays; ++ray) {
       if (packet.unsure.contains(ray)) continue;
       hits += packet.id[ray] != kNoTriangle ? 1u : 0u;
-      ASSERT_EQ(packet.id[ray], exact.id[ray]) << "seed " << seed << ", ray " << ray;
+      ASSERT_EQ(packet.id[ray], exact.id[ray]) << "ray " << ray;
       ASSERT_LE(std::fabs(double{packet.t[ray]} - double{exact.t[ray]}), double{kEstimateError} * double{exact.t[ray]})
-          << "seed " << seed << ", ray " << ray;
-      ASSERT_TRUE(same_bits(packet.facing[ray], exact.facing[ray])) << "seed " << seed << ", ray " << ray;
+          << "ray " << ray;
+      ASSERT_TRUE(same_bits(packet.facing[ray], exact.facing[ray])) << "ray " << ray;
     }
     RaySet<kRays> again;
     if (!take_unsure_rays(packet, kFloatMax, again)) return;
@@ -472,24 +412,22 @@ TYPED_TEST(StandardTest, EstimatesFindTheWinnerOrLeaveItOpen) {
       ASSERT_EQ(again.contains(ray), unsure_before.contains(ray));
       if (!again.contains(ray)) continue;
       ++unsure_count;
-      ASSERT_EQ(packet.id[ray], exact.id[ray]) << "seed " << seed << ", ray " << ray;
-      ASSERT_TRUE(same_bits(packet.t[ray], exact.t[ray])) << "seed " << seed << ", ray " << ray;
-      ASSERT_TRUE(same_bits(packet.facing[ray], exact.facing[ray])) << "seed " << seed << ", ray " << ray;
+      ASSERT_EQ(packet.id[ray], exact.id[ray]) << "ray " << ray;
+      ASSERT_TRUE(same_bits(packet.t[ray], exact.t[ray])) << "ray " << ray;
+      ASSERT_TRUE(same_bits(packet.facing[ray], exact.facing[ray])) << "ray " << ray;
     }
   });
-  if (all_seeds_run()) {
-    EXPECT_GT(hits, 10000u);
-    EXPECT_GT(unsure_count, 100u);
-    EXPECT_GT(exact_groups, 1000u);
-  }
+  if (!all_seeds_run()) return;
+  EXPECT_GT(hits, 10000u);
+  EXPECT_GT(unsure_count, 100u);
+  EXPECT_GT(exact_groups, 1000u);
 }
 
 TYPED_TEST(StandardTest, CornerCullingDropsNoHit) {
   using WidePacket = Packet<8>;
   std::uint64_t culled = 0;
   std::uint64_t hit = 0;
-  for_each_seed(6000, [&](std::uint64_t seed) {
-    TestRandom random(seed);
+  for_each_seed(6000, [&](TestRandom& random) {
     const FrameRecord frame = random_frame(random);
     RaySet<WidePacket::kRayCount> present;
     WidePacket packet{};
@@ -500,7 +438,7 @@ TYPED_TEST(StandardTest, CornerCullingDropsNoHit) {
     packet.active = present;
     for (int i = 0; i < 100; ++i) {
       const VertexTriangle triangle = triangle_at_the_border(random, packet);
-      reset_hits(packet, kFloatMax);
+      reset_hits(packet);
       work = WorkCounters{};
       const bool with_culling = intersect_standard<TypeParam, false>(packet, triangle, true, work);
       if (work[Work::kGroupTestStandard] != 0) {  // not culled: the same code as without
@@ -509,28 +447,25 @@ TYPED_TEST(StandardTest, CornerCullingDropsNoHit) {
       }
       ++culled;
       ASSERT_FALSE((intersect_standard<TypeParam, false>(packet, triangle, false, work)))
-          << "culled, but hit: seed " << seed << ", pair " << i;
+          << "culled, but hit, pair " << i;
     }
   });
-  if (all_seeds_run()) {
-    EXPECT_GT(culled, 40000u);
-    EXPECT_GT(hit, 40000u);
-  }
+  if (!all_seeds_run()) return;
+  EXPECT_GT(culled, 40000u);
+  EXPECT_GT(hit, 40000u);
 }
 
 TYPED_TEST(StandardTest, NoRayLeavesAClosedSphere) {
   using WidePacket = Packet<16>;
   const TestMesh sphere = make_sphere(10, 13, 1.0f);
-  std::vector<VertexTriangle> triangles(sphere.triangles.size());
-  for (std::size_t i = 0; i < triangles.size(); ++i) {
+  std::vector<VertexTriangle> triangles;
+  for (std::uint32_t i = 0; i < sphere.triangles.size(); ++i) {
     const UVec3& t = sphere.triangles[i];
-    set_triangle(triangles[i], sphere.vertices[t.x], sphere.vertices[t.y], sphere.vertices[t.z],
-                 static_cast<std::uint32_t>(i));
+    triangles.push_back(vertex_triangle(sphere.vertices[t.x], sphere.vertices[t.y], sphere.vertices[t.z], i));
   }
   std::uint64_t rays = 0;
   WorkCounters work;
-  for_each_seed(1350, [&](std::uint64_t seed) {
-    TestRandom random(seed);
+  for_each_seed(1350, [&](TestRandom& random) {
     WidePacket packet{};
     // From anywhere inside: the insphere of this tessellation has a radius above 0.9.
     const Vec3 origin = random_vec(random, 0.5f);
@@ -544,22 +479,19 @@ TYPED_TEST(StandardTest, NoRayLeavesAClosedSphere) {
         packet.dir[axis][ray] = p[axis] - origin[axis];
       }
     }
-    set_direction_bounds(packet);
-    activate_all(packet);
-    reset_hits(packet, kFloatMax);
+    start_all(packet);
     for (const VertexTriangle& triangle : triangles) {
       (void)intersect_standard<TypeParam, false>(packet, triangle, false, work);
     }
     for (std::uint32_t ray = 0; ray < WidePacket::kRayCount; ++ray) {
-      ASSERT_NE(packet.id[ray], kNoTriangle) << "seed " << seed << ", ray " << ray;
-      ASSERT_NEAR(packet.t[ray], 1.0f, 1e-5f) << "seed " << seed << ", ray " << ray;
+      ASSERT_NE(packet.id[ray], kNoTriangle) << "ray " << ray;
+      ASSERT_NEAR(packet.t[ray], 1.0f, 1e-5f) << "ray " << ray;
     }
     rays += WidePacket::kRayCount;
   });
-  if (all_seeds_run()) {
-    EXPECT_GT(rays * 3, 1000000u);  // over the three lane counts
-    EXPECT_GT(work[Work::kExactSign], 10000u) << "the rays are not hard enough";
-  }
+  if (!all_seeds_run()) return;
+  EXPECT_GT(rays * 3, 1000000u);  // over the three lane counts
+  EXPECT_GT(work[Work::kExactSign], 10000u) << "the rays are not hard enough";
 }
 
 }  // namespace

@@ -1,37 +1,27 @@
 // Unit normals of triangles of any shape, against rational numbers. SPDX-License-Identifier: Apache-2.0
 #include <gridiron/ray/distance.h>
-#include <gtest/gtest.h>
 
 #include <boost/multiprecision/cpp_bin_float.hpp>
-#include <boost/multiprecision/cpp_int.hpp>
-#include <cmath>
-#include <cstdint>
 
+#include "support/rational_vectors.h"
+#include "support/test_headers.h"
 #include "support/test_mesh.h"
 
 namespace gridiron::test {
 namespace {
 
-using Rational = boost::multiprecision::cpp_rational;
 using Long = boost::multiprecision::cpp_bin_float_100;
 
 // The unit normal, to far more than a double's digits. @returns false where the triangle has no area.
 bool exact_unit_normal(const VertexTriangle& triangle, double normal[3]) {
-  Rational edges[2][3];
-  for (int axis = 0; axis < 3; ++axis) {
-    for (int i = 0; i < 2; ++i) edges[i][axis] = Rational(triangle.v[i + 1][axis]) - Rational(triangle.v[0][axis]);
-  }
-  Rational components[3], squared;
-  for (int axis = 0; axis < 3; ++axis) {
-    const int j = (axis + 1) % 3, k = (axis + 2) % 3;
-    components[axis] = edges[0][j] * edges[1][k] - edges[0][k] * edges[1][j];
-    squared += components[axis] * components[axis];
-  }
+  const RationalPoint a = exact_point(triangle.v[0]);
+  const RationalPoint exact = cross(exact_point(triangle.v[1]) - a, exact_point(triangle.v[2]) - a);
+  const Rational squared = dot(exact, exact);
   if (squared == 0) return false;
-  const Long length = sqrt(Long(numerator(squared)) / Long(denominator(squared)));
-  for (int axis = 0; axis < 3; ++axis) {
-    normal[axis] =
-        (Long(numerator(components[axis])) / Long(denominator(components[axis])) / length).convert_to<double>();
+  const auto as_long = [](const Rational& value) -> Long { return Long(numerator(value)) / Long(denominator(value)); };
+  const Long length = sqrt(as_long(squared));
+  for (std::size_t axis = 0; axis < 3; ++axis) {
+    normal[axis] = Long(as_long(exact[axis]) / length).convert_to<double>();
   }
   return true;
 }

@@ -6,10 +6,7 @@
 #include <gridiron/base/records.h>
 #include <gridiron/ray/packet.h>
 
-#include <cmath>
-#include <cstdint>
-#include <vector>
-
+#include "support/test_headers.h"
 #include "support/test_mesh.h"
 
 namespace gridiron::test {
@@ -24,6 +21,16 @@ inline float true_distance(const float origin[3], const float direction[3], cons
   const bool positive = side[0] > 0 || side[1] > 0 || side[2] > 0;
   const bool negative = side[0] < 0 || side[1] < 0 || side[2] < 0;
   return positive != negative ? exact_distance(origin, direction, a, b, c) : 0.0f;
+}
+
+/// The direction of one of the rays of a packet.
+template <class PacketType>
+std::array<float, 3> direction_of(const PacketType& packet, std::uint32_t ray) {
+  return {packet.dir[0][ray], packet.dir[1][ray], packet.dir[2][ray]};
+}
+template <class PacketType>
+float true_distance(const PacketType& packet, std::uint32_t ray, const VertexTriangle& triangle) {
+  return true_distance(packet.origin, direction_of(packet, ray).data(), triangle);
 }
 
 /// One origin and some triangles around it.
@@ -43,12 +50,14 @@ inline Vec3 random_vec(TestRandom& random, float scale) {
 }
 
 inline void set_triangle(VertexTriangle& triangle, Vec3 a, Vec3 b, Vec3 c, std::uint32_t id) {
-  triangle = {};
-  const Vec3 corners[3] = {a, b, c};
-  for (int corner = 0; corner < 3; ++corner) {
-    for (int axis = 0; axis < 3; ++axis) triangle.v[corner][axis] = corners[corner][axis];
-  }
-  triangle.triangle_id = id;
+  triangle = {{{a.x, a.y, a.z}, {b.x, b.y, b.z}, {c.x, c.y, c.z}}, {}, id};
+}
+inline VertexTriangle vertex_triangle(Vec3 a, Vec3 b, Vec3 c, std::uint32_t id) {
+  return {{{a.x, a.y, a.z}, {b.x, b.y, b.z}, {c.x, c.y, c.z}}, {}, id};
+}
+/// The three numbers of a corner, an origin or a direction.
+inline Vec3 vec_of(const float v[3]) {
+  return {v[0], v[1], v[2]};
 }
 
 /// Triangles of one size and place, some twice under other ids and turned round, some sharing an edge with the one
@@ -89,21 +98,17 @@ inline TriangleCase random_triangles(TestRandom& random, std::uint32_t count) {
       const auto axis = static_cast<int>(random.below(3));
       b[axis] = c[axis] = a[axis];
     }
-    VertexTriangle triangle;
-    set_triangle(triangle, a, b, c, 10 * i + random.below(10));
-    result.triangles.push_back(triangle);
+    result.triangles.push_back(vertex_triangle(a, b, c, 10 * i + random.below(10)));
     if (random.below(4) == 0) {  // again, turned round or over
       const bool over = random.below(2) != 0;
-      set_triangle(triangle, over ? b : c, over ? a : b, over ? c : a, 10 * i + random.below(10));
-      result.triangles.push_back(triangle);
+      const std::uint32_t id = 10 * i + random.below(10);
+      result.triangles.push_back(over ? vertex_triangle(b, a, c, id) : vertex_triangle(c, b, a, id));
     }
     last_b = b;
     last_c = c;
   }
   const VertexTriangle& seen = result.triangles[random.below(static_cast<std::uint32_t>(result.triangles.size()))];
-  const Vec3 a(seen.v[0][0], seen.v[0][1], seen.v[0][2]);
-  const Vec3 b(seen.v[1][0], seen.v[1][1], seen.v[1][2]);
-  const Vec3 c(seen.v[2][0], seen.v[2][1], seen.v[2][2]);
+  const Vec3 a = vec_of(seen.v[0]), b = vec_of(seen.v[1]), c = vec_of(seen.v[2]);
   Vec3 origin = offset + random_vec(random, 3.0f * scale);
   switch (static_cast<PlaceKind>(random.below(2 * static_cast<std::uint32_t>(PlaceKind::kCount)))) {
     case PlaceKind::kFar:
@@ -128,6 +133,10 @@ inline TriangleCase random_triangles(TestRandom& random, std::uint32_t count) {
   return result;
 }
 
+inline bool same_bits(float a, float b) {
+  return std::bit_cast<std::uint32_t>(a) == std::bit_cast<std::uint32_t>(b);
+}
+
 /// Fills the data about a packet's directions as a whole, and requests exact distances.
 template <class PacketType>
 void set_direction_bounds(PacketType& packet) {
@@ -139,24 +148,36 @@ void set_direction_bounds(PacketType& packet) {
   packet.ask_for_distances(true);
 }
 
+template <class PacketType>
+void reset_hits(PacketType& packet) {
+  std::ranges::fill(packet.t, kFloatMax);
+  std::ranges::fill(packet.id, kNoTriangle);
+  std::ranges::fill(packet.facing, -1.0f);
+}
+/// To be called when a packet's directions stand: all its rays are to be traced, and none has hit.
+template <class PacketType>
+void start_all(PacketType& packet) {
+  set_direction_bounds(packet);
+  packet.active.fill();
+  reset_hits(packet);
+}
+
 /// Directions at vertices, edges and insides of the triangles, in their planes, backwards, past them; of any length.
+/// All rays are to be traced, and none has hit.
 template <class PacketType>
 void aim_at(TestRandom& random, const TriangleCase& shown, PacketType& packet) {
-  const Vec3 origin(shown.origin[0], shown.origin[1], shown.origin[2]);
+  const Vec3 origin = vec_of(shown.origin);
   // By powers of two, so that the aim stays: as it comes, or to a length that has nothing to do with the triangles'.
   constexpr int kExponents[] = {0, 60, -60, -100, 100};
   const std::uint32_t stretch = random.below(10);
   for (std::uint32_t ray = 0; ray < PacketType::kRayCount; ++ray) {
     const VertexTriangle& target = shown.triangles[random.below(static_cast<std::uint32_t>(shown.triangles.size()))];
-    const auto corner = [&](std::uint32_t i) {
-      return Vec3(target.v[i % 3][0], target.v[i % 3][1], target.v[i % 3][2]);
-    };
     const std::uint32_t first = random.below(3);
     const float s = random.unit();
     const float r = random.unit() * (1.0f - s);
-    const Vec3 p = corner(first);
-    const Vec3 along = corner(first + 1) - p;
-    const Vec3 across = corner(first + 2) - p;
+    const Vec3 p = vec_of(target.v[first]);
+    const Vec3 along = vec_of(target.v[(first + 1) % 3]) - p;
+    const Vec3 across = vec_of(target.v[(first + 2) % 3]) - p;
     Vec3 direction = p + s * along + r * across - origin;
     switch (random.below(10)) {
       case 0:
@@ -190,8 +211,8 @@ void aim_at(TestRandom& random, const TriangleCase& shown, PacketType& packet) {
       packet.dir[axis][ray] = value;
     }
   }
-  set_direction_bounds(packet);
-  for (int axis = 0; axis < 3; ++axis) packet.origin[axis] = shown.origin[axis];
+  start_all(packet);
+  std::ranges::copy(shown.origin, packet.origin);
 }
 
 }  // namespace gridiron::test

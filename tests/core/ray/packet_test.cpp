@@ -1,12 +1,7 @@
 // Order of a packet's rays. SPDX-License-Identifier: Apache-2.0
 #include <gridiron/ray/packet.h>
-#include <gtest/gtest.h>
 
-#include <algorithm>
-#include <set>
-#include <string>
-#include <utility>
-#include <vector>
+#include "support/test_headers.h"
 
 namespace gridiron::test {
 namespace {

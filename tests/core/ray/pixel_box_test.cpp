@@ -3,20 +3,14 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <gridiron/ray/camera.h>
 #include <gridiron/ray/pixel_box.h>
-#include <gtest/gtest.h>
 
-#include <algorithm>
-#include <cmath>
-#include <cstdint>
-#include <cstdlib>
 #include <glm/geometric.hpp>
-#include <limits>
-#include <memory>
 
 #include "core/lane_types.h"
 #include "core/ray/frame_cases.h"
 #include "core/ray/packet_cases.h"
 #include "core/seeds.h"
+#include "support/test_headers.h"
 #include "support/test_mesh.h"
 
 namespace gridiron::test {
@@ -75,15 +69,13 @@ VertexTriangle make_triangle(TestRandom& random, const PacketType& packet) {
     if (shape == 5) at *= std::ldexp(1.0, static_cast<int>(random.below(40)) - 20);  // seen almost edge-on
     corners[i] = point_at(packet, at, place[0], place[1]);
   }
-  const Vec3 eye(packet.origin[0], packet.origin[1], packet.origin[2]);
+  const Vec3 eye = vec_of(packet.origin);
   if (shape == 6 && random.below(2) == 0) corners[random.below(3)] = eye;
   if (shape == 7 && random.below(2) == 0) {  // around the eye, up to the largest coordinates
     const float reach = std::ldexp(1.0f, static_cast<int>(random.below(150)) - 30);
     for (Vec3& corner : corners) corner = eye + random_vec(random, reach);
   }
-  VertexTriangle triangle;
-  set_triangle(triangle, corners[0], corners[1], corners[2], 3);
-  return triangle;
+  return vertex_triangle(corners[0], corners[1], corners[2], 3);
 }
 
 // Whether a ray hits a triangle in exact arithmetic. A wide float says so for those that pass far beside it.
@@ -160,25 +152,23 @@ void expect_no_hit_beside_boxes(FrameKind kind) {
         const bool rim = inside && (column == shown.boxes.first_column[i] || column + 1 == shown.boxes.end_column[i] ||
                                     row == shown.boxes.first_row[i] || row + 1 == shown.boxes.end_row[i]);
         if (inside && (!rim || is_rim_hit)) continue;
-        const float direction[3] = {packet.dir[0][ray], packet.dir[1][ray], packet.dir[2][ray]};
-        if (!truly_hits(packet.origin, direction, shown.triangles[i])) continue;
-        ASSERT_TRUE(inside) << "kind " << static_cast<int>(kind) << ", seed " << seed << ", triangle " << i
-                            << ": pixel " << column << ", " << row << " beside columns " << shown.boxes.first_column[i]
-                            << " to " << shown.boxes.end_column[i] << ", rows " << shown.boxes.first_row[i] << " to "
+        if (!truly_hits(packet.origin, direction_of(packet, ray).data(), shown.triangles[i])) continue;
+        ASSERT_TRUE(inside) << "kind " << static_cast<int>(kind) << ", triangle " << i << ": pixel " << column << ", "
+                            << row << " beside columns " << shown.boxes.first_column[i] << " to "
+                            << shown.boxes.end_column[i] << ", rows " << shown.boxes.first_row[i] << " to "
                             << shown.boxes.end_row[i] << ", covering " << (shown.boxes.covering >> i & 1u);
         is_rim_hit = true;
       }
       at_rim += is_rim_hit ? 1u : 0u;
     }
   });
-  if (std::getenv("GRIDIRON_TEST_SEED") == nullptr && !testing::Test::HasFailure()) {
-    const std::uint64_t triangles = kSeeds * L::kCount;
-    EXPECT_GT(at_rim, triangles / 6) << "kind " << static_cast<int>(kind);
-    if (kind == FrameKind::kDegenerate) {
-      EXPECT_EQ(rays_out, 0u) << "there is no picture, but somebody knows where triangles are in it";
-    } else {
-      EXPECT_GT(rays_out, triangles * PacketType::kRayCount / 10) << "kind " << static_cast<int>(kind);
-    }
+  if (!all_seeds_run() || testing::Test::HasFailure()) return;
+  const std::uint64_t triangles = kSeeds * L::kCount;
+  EXPECT_GT(at_rim, triangles / 6) << "kind " << static_cast<int>(kind);
+  if (kind == FrameKind::kDegenerate) {
+    EXPECT_EQ(rays_out, 0u) << "there is no picture, but somebody knows where triangles are in it";
+  } else {
+    EXPECT_GT(rays_out, triangles * PacketType::kRayCount / 10) << "kind " << static_cast<int>(kind);
   }
 }
 
@@ -234,7 +224,7 @@ void expect_tight_boxes() {
     TestRandom random(seed);
     BoxCase<L, PacketType> shown(random, seed % 2 == 0 ? FrameKind::kOrdinary : FrameKind::kExact);
     const PacketType& packet = *shown.packet;
-    ASSERT_LT(packet.projection.margin, 0.25f) << "seed " << seed;
+    ASSERT_LT(packet.projection.margin, 0.25f);
     for (VertexTriangle& triangle : shown.triangles) {
       const double center[2] = {random_place(random, kWidth), random_place(random, kWidth)};
       const double size = random.below(2) == 0 ? 0.5 : std::ldexp(1.0, static_cast<int>(random.below(7)));
@@ -244,7 +234,7 @@ void expect_tight_boxes() {
         const double column = center[0] + 0.5 * size * double{random.between(-1, 1)};
         corner = point_at(packet, depth, column, center[1] + 0.5 * size * double{random.between(-1, 1)});
       }
-      set_triangle(triangle, corners[0], corners[1], corners[2], 3);
+      triangle = vertex_triangle(corners[0], corners[1], corners[2], 3);
     }
     shown.find_boxes();
     for (int i = 0; i < L::kCount; ++i) {
@@ -258,13 +248,13 @@ void expect_tight_boxes() {
         const PixelRange truth = clipped(std::ceil(least[axis]), std::floor(greatest[axis]) + 1.0, kWidth);
         meets_centers = meets_centers && truth.first < truth.end;
         ASSERT_LE(end[axis], kWidth);
-        ASSERT_GE(first[axis] + 1.0, truth.first) << "seed " << seed << ", triangle " << i << ", axis " << axis;
-        ASSERT_LE(end[axis] - 1.0, truth.end) << "seed " << seed << ", triangle " << i << ", axis " << axis;
+        ASSERT_GE(first[axis] + 1.0, truth.first) << "triangle " << i << ", axis " << axis;
+        ASSERT_LE(end[axis] - 1.0, truth.end) << "triangle " << i << ", axis " << axis;
         bounds += 2;
         exact += (first[axis] == truth.first ? 1u : 0u) + (end[axis] == truth.end ? 1u : 0u);
       }
       if (!is_covering) {
-        ASSERT_FALSE(meets_centers && greatest[0] - least[0] > 1.5 && greatest[1] - least[1] > 1.5) << "seed " << seed;
+        ASSERT_FALSE(meets_centers && greatest[0] - least[0] > 1.5 && greatest[1] - least[1] > 1.5);
       }
       if (greatest[0] - least[0] > 1.0 || greatest[1] - least[1] > 1.0) continue;
       ++small_count;
@@ -275,12 +265,11 @@ void expect_tight_boxes() {
       left_out += is_covering ? 0u : 1u;
     }
   });
-  if (std::getenv("GRIDIRON_TEST_SEED") == nullptr && !testing::Test::HasFailure()) {
-    EXPECT_GT(exact, bounds / 10 * 9);
-    EXPECT_GT(in_packet, 500u);
-    EXPECT_GT(beside_centers, small_count / 3);
-    EXPECT_GT(left_out, beside_centers / 10 * 9) << "of " << beside_centers;
-  }
+  if (!all_seeds_run() || testing::Test::HasFailure()) return;
+  EXPECT_GT(exact, bounds / 10 * 9);
+  EXPECT_GT(in_packet, 500u);
+  EXPECT_GT(beside_centers, small_count / 3);
+  EXPECT_GT(left_out, beside_centers / 10 * 9) << "of " << beside_centers;
 }
 
 TYPED_TEST(PixelBoxTest, BoxesAreHardlyLargerThanWhatIsCovered) {
@@ -311,13 +300,13 @@ TYPED_TEST(PixelBoxTest, PlacesOnCentersCount) {
     for (const Case& shown : cases) {
       const std::uint32_t end = std::min(shown.end, Wide::kWidth), first = std::min(shown.first, Wide::kWidth);
       for (const bool is_column : {true, false}) {
-        alignas(16) VertexTriangle triangle;
         const auto at = [is_column](float value, float other) {
           return is_column ? Vec3(value, other, 1) : Vec3(other, value, 1);
         };
-        set_triangle(triangle, at(shown.low, 3), at(shown.high, 5), at(shown.high, 7), 1);
+        alignas(16) const VertexTriangle triangle =
+            vertex_triangle(at(shown.low, 3), at(shown.high, 5), at(shown.high, 7), 1);
         const VertexTriangle* pointers[TypeParam::kCount];
-        for (const VertexTriangle*& pointer : pointers) pointer = &triangle;
+        std::ranges::fill(pointers, &triangle);
         PixelBoxes<TypeParam> boxes;
         find_pixel_boxes<TypeParam>(*packet, pointers, boxes);
         ASSERT_EQ(boxes.covering, first < end ? TypeParam::kAllBits : 0u) << shown.low << " to " << shown.high;

@@ -2,42 +2,15 @@
 // Memory: std::vector. Threads: one. SPDX-License-Identifier: Apache-2.0
 #pragma once
 
-#include <gridiron/build/grid/grid_builder.h>
 #include <gridiron/frame/frame_setup.h>
-#include <gridiron/image/scene_image.h>
 #include <gridiron/render/tile_renderer.h>
-#include <gtest/gtest.h>
 
-#include <cstdint>
-#include <cstring>
-#include <memory>
-#include <vector>
-
+#include "core/build/grid/built_image.h"
 #include "core/dma/test_platform.h"
+#include "support/test_headers.h"
 #include "support/test_mesh.h"
 
 namespace gridiron::test {
-
-/// A scene image on a line's start.
-struct BuiltScene {
-  std::vector<std::uint64_t> words;
-  std::span<std::byte> bytes;
-  SceneImageView view{};
-
-  BuiltScene(const MeshView& mesh, const GridParameters& parameters) {
-    GridNeed need{};
-    EXPECT_EQ(count_scene_image(mesh, parameters, need), Status::kOk);
-    words.resize(need.image_bytes / 8 + 16);
-    const auto place = reinterpret_cast<std::uintptr_t>(words.data());
-    bytes = std::as_writable_bytes(std::span(words))
-                .subspan((kLineBytes - place % kLineBytes) % kLineBytes, need.image_bytes);
-    std::vector<std::uint64_t> scratch(need.scratch_bytes / 8 + 1);
-    EXPECT_EQ(build_scene_image(mesh, parameters, need, bytes, std::as_writable_bytes(std::span(scratch))),
-              Status::kOk);
-    SceneImageError error;
-    EXPECT_EQ(open_scene_image(bytes, view, error), Status::kOk) << error.field;
-  }
-};
 
 /// What a core did with a frame. Planes are row-major, row 0 on top.
 struct KernelFrame {
@@ -55,18 +28,18 @@ inline constexpr std::uint64_t kPlanesAddress = 8192;
 class TestFrame {
  public:
   /// @param settings  output addresses are set here. Planes start 128 bytes and `plane_shift` into a 4 KB page.
-  TestFrame(const BuiltScene& scene, FrameSettings settings, std::uint32_t queue_depth = 16,
+  TestFrame(const BuiltImage& scene, FrameSettings settings, std::uint32_t queue_depth = 16,
             Moves moves = Moves::kAtTheWait, std::uint64_t plane_shift = 0) {
     plane_bytes_ = output_plane_bytes(settings.width, settings.height, settings.tile_width);
     settings.color = {kPlanesAddress + kLineBytes + plane_shift};
     settings.depth = {settings.color.value + plane_bytes_ + kLineBytes};
     settings.ids = {settings.depth.value + plane_bytes_ + kLineBytes};
     const std::uint64_t image_address = round_up(settings.ids.value + plane_bytes_ + kLineBytes, std::uint64_t{4096});
-    platform = std::make_unique<TestPlatform>(queue_depth, moves, image_address + scene.bytes.size());
+    platform = std::make_unique<TestPlatform>(queue_depth, moves, image_address + scene.image.bytes().size());
     const Status made = make_frame_record(settings, scene.view, {image_address}, record);
     EXPECT_EQ(made, Status::kOk);
     std::memset(platform->at(0), 0xA5, image_address);
-    std::memcpy(platform->at(image_address), scene.bytes.data(), scene.bytes.size());
+    std::memcpy(platform->at(image_address), scene.image.bytes().data(), scene.image.bytes().size());
     claim_all();
   }
 

@@ -1,17 +1,10 @@
 // Tile renderer on one core: the picture is the ground truth's whatever the buffers, and wrong frames are refused.
 // SPDX-License-Identifier: Apache-2.0
 #include <gridiron/render/tile_renderer.h>
-#include <gtest/gtest.h>
-
-#include <cmath>
-#include <cstdint>
-#include <functional>
-#include <limits>
-#include <string>
-#include <vector>
 
 #include "core/render/test_frame.h"
 #include "support/brute_force.h"
+#include "support/test_headers.h"
 #include "support/test_mesh.h"
 
 namespace gridiron::test {
@@ -47,12 +40,7 @@ TestMesh make_scene() {
 }
 
 FrameSettings settings_of(std::uint32_t width, std::uint32_t height, std::uint32_t tile_width) {
-  FrameSettings settings;
-  settings.camera.eye = {0.7f, 0.5f, 2.9f};
-  settings.width = width;
-  settings.height = height;
-  settings.tile_width = tile_width;
-  return settings;
+  return {.camera = {.eye = {0.7f, 0.5f, 2.9f}}, .width = width, .height = height, .tile_width = tile_width};
 }
 
 // @returns the first pixel that differs, in words.
@@ -80,21 +68,19 @@ class TileRendererTest : public testing::Test {
     static const TestMesh mesh = make_scene();
     return mesh;
   }
-  static const BuiltScene& scene() {
-    static const BuiltScene scene(mesh().view(), {4.0f, 6, TriangleFormat::kVertices});
+  static const BuiltImage& scene() {
+    static const BuiltImage scene = build_image(mesh().view(), {4.0f, 6, TriangleFormat::kVertices});
     return scene;
   }
   // Over 512 macrocells: more than one line of the table.
-  static const BuiltScene& fine_scene() {
-    static const BuiltScene fine_scene(mesh().view(), {60.0f, 2, TriangleFormat::kVertices});
+  static const BuiltImage& fine_scene() {
+    static const BuiltImage fine_scene = build_image(mesh().view(), {60.0f, 2, TriangleFormat::kVertices});
     return fine_scene;
   }
   static void expect_truth(const TestFrame& frame, const KernelFrame& rendered) {
     std::vector<Vec3> directions;
-    for (std::uint32_t y = 0; y < frame.record.height; ++y) {
-      for (std::uint32_t x = 0; x < frame.record.width; ++x) {
-        directions.push_back(test::pixel_direction(frame.record, x, y));
-      }
+    for (std::uint32_t i = 0; i < frame.record.width * frame.record.height; ++i) {
+      directions.push_back(test::pixel_direction(frame.record, i % frame.record.width, i / frame.record.width));
     }
     const Vec3 eye(frame.record.eye[0], frame.record.eye[1], frame.record.eye[2]);
     const std::vector<TrueHit> truth = BruteForce(mesh().view(), eye).trace(directions, frame.record.t_far, 1);
@@ -119,6 +105,15 @@ class TileRendererTest : public testing::Test {
     }();
     return reference;
   }
+  // Renders a frame that may give no other picture than reference(), without a broken rule.
+  template <class L, class Layout>
+  static KernelFrame expect_reference(TestFrame& frame, const std::string& name = "") {
+    const KernelFrame rendered = frame.render<L, Layout>();
+    EXPECT_EQ(rendered.status, Status::kOk) << name << ": " << frame.platform->violation();
+    EXPECT_EQ(difference(rendered, reference()), "") << name;
+    expect_clean(frame);
+    return rendered;
+  }
 };
 
 TEST_F(TileRendererTest, PictureIsTheGroundTruth) {
@@ -133,41 +128,32 @@ TEST_F(TileRendererTest, StreamedTableAndLongRunsChangeNothing) {
   ASSERT_GT(grid.macro_cell_count[0] * grid.macro_cell_count[1] * grid.macro_cell_count[2],
             32u * TinyLayout::kTableEntries);
   TestFrame frame(fine_scene(), settings_of(64, 48, TinyLayout::kTileWidth));
-  const KernelFrame rendered = frame.render<Lanes<4>, TinyLayout>();
-  ASSERT_EQ(rendered.status, Status::kOk);
-  EXPECT_EQ(difference(rendered, reference()), "");
-  expect_clean(frame);
+  expect_reference<Lanes<4>, TinyLayout>(frame);
 }
 
 // Every place that make_frame_record takes does for every transfer.
 TEST_F(TileRendererTest, PlanesMayLieAtEveryMultipleOfTheirAlignment) {
   for (std::uint64_t shift = kPlaneAlignment; shift < kLineBytes; shift += kPlaneAlignment) {
     TestFrame frame(fine_scene(), settings_of(64, 48, Normal::kTileWidth), 16, Moves::kAtTheWait, shift);
-    const KernelFrame rendered = frame.render<Lanes<4>, Normal>();
-    ASSERT_EQ(rendered.status, Status::kOk);
-    EXPECT_EQ(difference(rendered, reference()), "") << shift;
-    expect_clean(frame);
+    expect_reference<Lanes<4>, Normal>(frame, std::to_string(shift));
   }
 }
 
 TEST_F(TileRendererTest, CellsOfManyRunsAreTestedWhole) {
   // A grid of a few cells with dozens of triangles each.
-  const BuiltScene coarse(mesh().view(), {0.05f, 3, TriangleFormat::kVertices});
+  const BuiltImage coarse = build_image(mesh().view(), {0.05f, 3, TriangleFormat::kVertices});
   TestFrame frame(coarse, settings_of(64, 48, TinyLayout::kTileWidth));
-  const KernelFrame rendered = frame.render<Lanes<4>, TinyLayout>();
-  ASSERT_EQ(rendered.status, Status::kOk);
+  const KernelFrame rendered = expect_reference<Lanes<4>, TinyLayout>(frame);
   EXPECT_GT(rendered.work[GridWork::kTriangleBatch], 5 * rendered.work[GridWork::kCellVisit]);
-  EXPECT_EQ(difference(rendered, reference()), "");
-  expect_clean(frame);
 }
 
 TEST_F(TileRendererTest, LanesChangeNothing) {
   TestFrame frame(fine_scene(), settings_of(64, 48, Normal::kTileWidth));
-  EXPECT_EQ(difference(frame.render<Lanes<8>, Normal>(), reference()), "");
+  expect_reference<Lanes<8>, Normal>(frame);
   frame.claim_all();
-  EXPECT_EQ(difference(frame.render<Lanes<16>, Normal>(), reference()), "");
+  expect_reference<Lanes<16>, Normal>(frame);
   TestFrame tiny(fine_scene(), settings_of(64, 48, TinyLayout::kTileWidth));
-  EXPECT_EQ(difference(tiny.render<Lanes<16>, TinyLayout>(), reference()), "");
+  expect_reference<Lanes<16>, TinyLayout>(tiny);
 }
 
 TEST_F(TileRendererTest, BufferingQueueAndOrderOfMovesChangeNothing) {
@@ -181,12 +167,9 @@ TEST_F(TileRendererTest, BufferingQueueAndOrderOfMovesChangeNothing) {
           settings.macro_depth = macro;
           settings.triangle_depth = triangles;
           TestFrame frame(fine_scene(), settings, queue, moves);
-          const KernelFrame rendered = frame.render<Lanes<4>, TinyLayout>();
           const std::string name = std::to_string(output) + std::to_string(macro) + std::to_string(triangles) +
                                    " in a queue of " + std::to_string(queue);
-          ASSERT_EQ(rendered.status, Status::kOk) << name << ": " << frame.platform->violation();
-          ASSERT_EQ(difference(rendered, reference()), "") << name;
-          expect_clean(frame);
+          expect_reference<Lanes<4>, TinyLayout>(frame, name);
         }
       }
     }
@@ -205,9 +188,7 @@ TEST_F(TileRendererTest, TechniquesChangeNoPixelButTheWork) {
     FrameSettings settings = settings_of(64, 48, Normal::kTileWidth);
     settings.techniques &= ~tested.bit;
     TestFrame frame(fine_scene(), settings);
-    const KernelFrame without = frame.render<Lanes<4>, Normal>();
-    ASSERT_EQ(without.status, Status::kOk);
-    EXPECT_EQ(difference(without, reference()), "") << tested.bit;
+    const KernelFrame without = expect_reference<Lanes<4>, Normal>(frame, std::to_string(tested.bit));
     EXPECT_GT(without.work[tested.counter], with_all.work[tested.counter]) << tested.bit;
   }
 }
@@ -216,18 +197,14 @@ TEST_F(TileRendererTest, SubpacketsChangeNoPixelButTheWork) {
   using WholeTiles = StoreLayout256K<32>;
   FrameSettings settings = settings_of(64, 48, WholeTiles::kTileWidth);
   TestFrame whole(fine_scene(), settings);
-  const KernelFrame without = whole.render<Lanes<4>, WholeTiles>();
-  ASSERT_EQ(without.status, Status::kOk);
-  EXPECT_EQ(difference(without, reference()), "");
+  const KernelFrame without = expect_reference<Lanes<4>, WholeTiles>(whole);
   settings.techniques |= kUseSubpackets;
   TestFrame by_subpackets(fine_scene(), settings);
-  const KernelFrame with = by_subpackets.render<Lanes<4>, WholeTiles>();
-  ASSERT_EQ(with.status, Status::kOk);
-  EXPECT_EQ(difference(with, reference()), "");
+  const KernelFrame with = expect_reference<Lanes<4>, WholeTiles>(by_subpackets);
   EXPECT_LT(4 * with.work[Work::kGroupTestStandard], without.work[Work::kGroupTestStandard]);
   EXPECT_EQ(without.work[Work::kSubpacketGroup], 0u);
   TestFrame small(fine_scene(), settings);
-  EXPECT_EQ(difference(small.render<Lanes<4>, Normal>(), reference()), "");
+  expect_reference<Lanes<4>, Normal>(small);
 }
 
 TEST_F(TileRendererTest, OddSizes) {
@@ -281,7 +258,7 @@ TEST_F(TileRendererTest, PlanesThatAreOffAreNotWritten) {
 }
 
 TEST_F(TileRendererTest, PaperFramesRenderTheSameShape) {
-  const BuiltScene projected(mesh().view(), {4.0f, 6, TriangleFormat::kProjection});
+  const BuiltImage projected = build_image(mesh().view(), {4.0f, 6, TriangleFormat::kProjection});
   FrameSettings settings = settings_of(64, 48, Normal::kTileWidth);
   settings.accuracy = Accuracy::kPaper;
   TestFrame frame(projected, settings);
@@ -300,6 +277,15 @@ struct Refusal {
   std::function<void(FrameRecord&)> change;
 };
 
+// As many tiles as a picture of the frame's size has.
+void retile(FrameRecord& f, std::uint32_t width, std::uint32_t height, std::uint32_t tile_width) {
+  f.width = width;
+  f.height = height;
+  f.tile_width = tile_width;
+  f.tiles_x = (width + tile_width - 1) / tile_width;
+  f.tiles_y = (height + tile_width - 1) / tile_width;
+}
+
 std::vector<Refusal> refusals() {
   const Status bad = Status::kBadFrame;
   const Status unsupported = Status::kUnsupportedFrame;
@@ -309,22 +295,9 @@ std::vector<Refusal> refusals() {
       {"Version", bad, [](FrameRecord& f) { ++f.version; }},
       {"WidthZero", bad, [](FrameRecord& f) { f.width = f.tiles_x = 0; }},
       {"HeightZero", bad, [](FrameRecord& f) { f.height = f.tiles_y = 0; }},
-      {"WidthTooLarge", bad,
-       [](FrameRecord& f) {
-         f.width = kMaxPictureWidth + 1;
-         f.tiles_x = (f.width + f.tile_width - 1) / f.tile_width;
-       }},
-      {"HeightTooLarge", bad,
-       [](FrameRecord& f) {
-         f.height = kMaxPictureWidth + 1;
-         f.tiles_y = (f.height + f.tile_width - 1) / f.tile_width;
-       }},
-      {"OtherTileWidth", unsupported,
-       [](FrameRecord& f) {
-         f.tile_width = 16;
-         f.tiles_x = (f.width + 15) / 16;
-         f.tiles_y = (f.height + 15) / 16;
-       }},
+      {"WidthTooLarge", bad, [](FrameRecord& f) { retile(f, kMaxPictureWidth + 1, f.height, f.tile_width); }},
+      {"HeightTooLarge", bad, [](FrameRecord& f) { retile(f, f.width, kMaxPictureWidth + 1, f.tile_width); }},
+      {"OtherTileWidth", unsupported, [](FrameRecord& f) { retile(f, f.width, f.height, 16); }},
       {"OtherEngine", unsupported, [](FrameRecord& f) { ++f.engine_id; }},
       {"TilesAcross", bad, [](FrameRecord& f) { ++f.tiles_x; }},
       {"TilesDown", bad, [](FrameRecord& f) { --f.tiles_y; }},
@@ -361,7 +334,7 @@ std::vector<Refusal> refusals() {
 class RefusedFrame : public testing::TestWithParam<std::size_t> {};
 
 TEST_P(RefusedFrame, NamesItsReasonAndTouchesNothing) {
-  const BuiltScene scene(make_box({-1, -1, -1}, {1, 1, 1}).view(), GridParameters{});
+  const BuiltImage scene = build_image(make_box({-1, -1, -1}, {1, 1, 1}).view());
   const Refusal refusal = refusals()[GetParam()];
   TestFrame frame(scene, settings_of(70, 40, Normal::kTileWidth));
   const FrameRecord good = frame.record;
@@ -381,9 +354,7 @@ TEST_P(RefusedFrame, NamesItsReasonAndTouchesNothing) {
 }
 
 INSTANTIATE_TEST_SUITE_P(Reasons, RefusedFrame, testing::Range<std::size_t>(0, refusals().size()),
-                         [](const testing::TestParamInfo<std::size_t>& tested) {
-                           return refusals()[tested.param].name;
-                         });
+                         [](const auto& tested) { return refusals()[tested.param].name; });
 
 // --- Frames that end early ---------------------------------------------------------------------------------------
 
@@ -416,12 +387,10 @@ TEST_F(TileRendererTest, AbortAndDeadlineComeBetweenTwoTiles) {
 
 TEST_F(TileRendererTest, TilesComeInAnyOrder) {
   TestFrame frame(fine_scene(), settings_of(64, 48, Normal::kTileWidth));
-  frame.platform->claims = {{TileClaim::Kind::kTile, 3},
-                            {TileClaim::Kind::kTile, 0},
-                            {TileClaim::Kind::kTile, 2},
-                            {TileClaim::Kind::kTile, 1},
-                            {}};
-  EXPECT_EQ(difference(frame.render<Lanes<4>, Normal>(), reference()), "");
+  frame.platform->claims.clear();
+  for (const std::uint32_t tile : {3u, 0u, 2u, 1u}) frame.platform->claims.push_back({TileClaim::Kind::kTile, tile});
+  frame.platform->claims.push_back({});
+  expect_reference<Lanes<4>, Normal>(frame);
 }
 
 TEST_F(TileRendererTest, ATileThatTheFrameDoesNotHaveIsAnError) {

@@ -2,14 +2,9 @@
 #include <gridiron/base/records.h>
 #include <gridiron/scene/effect_rules.h>
 #include <gridiron/scene/effects.h>
-#include <gtest/gtest.h>
-
-#include <functional>
-#include <limits>
-#include <string>
-#include <vector>
 
 #include "core/scene/test_effects.h"
+#include "support/test_headers.h"
 
 namespace gridiron::test {
 namespace {

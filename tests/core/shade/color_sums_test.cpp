@@ -1,15 +1,9 @@
 // Sums of colours: the order of adding changes nothing, too much stays the most, what is no number adds nothing.
 // SPDX-License-Identifier: Apache-2.0
 #include <gridiron/shade/color_sums.h>
-#include <gtest/gtest.h>
-
-#include <algorithm>
-#include <cmath>
-#include <cstdint>
-#include <limits>
-#include <vector>
 
 #include "core/seeds.h"
+#include "support/test_headers.h"
 #include "support/test_mesh.h"
 
 namespace gridiron::test {
@@ -72,8 +66,7 @@ TEST(AddSteps, StopAtTheMost) {
 
 TEST(AddSteps, OrderDoesNotMatter) {
   std::uint32_t full = 0, not_full = 0;
-  for_each_seed(500, [&](std::uint64_t seed) {
-    TestRandom random(seed);
+  for_each_seed(500, [&](TestRandom& random) {
     std::vector<float> values(1 + random.below(60));
     const int brightest = static_cast<int>(random.below(16)) - 4;
     for (float& value : values) {
@@ -89,10 +82,10 @@ TEST(AddSteps, OrderDoesNotMatter) {
       for (std::size_t i = values.size(); i > 1; --i) {
         std::swap(values[i - 1], values[random.below(static_cast<std::uint32_t>(i))]);
       }
-      ASSERT_EQ(sum_of(values), sum) << "seed " << seed;
+      ASSERT_EQ(sum_of(values), sum);
     }
     std::sort(values.begin(), values.end(), [](float a, float b) { return sum_steps(a) < sum_steps(b); });
-    ASSERT_EQ(sum_of(values), sum) << "seed " << seed;
+    ASSERT_EQ(sum_of(values), sum);
   });
   EXPECT_GT(full, 20u);
   EXPECT_GT(not_full, 100u);

@@ -1,9 +1,8 @@
 // What an effect renderer says of effects that it was not built for; frames are rendered by tests/effects.
 // SPDX-License-Identifier: Apache-2.0
 #include <gridiron/shade/effect_renderer.h>
-#include <gtest/gtest.h>
 
-#include <cstdint>
+#include "support/test_headers.h"
 
 namespace gridiron {
 namespace {

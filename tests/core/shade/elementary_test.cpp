@@ -1,14 +1,9 @@
 // Sine, cosine and power against those of doubles. SPDX-License-Identifier: Apache-2.0
 #include <gridiron/shade/elementary.h>
-#include <gtest/gtest.h>
 
-#include <algorithm>
-#include <bit>
-#include <cmath>
-#include <cstdint>
 #include <numbers>
-#include <random>
-#include <string>
+
+#include "support/test_headers.h"
 
 namespace gridiron::test {
 namespace {

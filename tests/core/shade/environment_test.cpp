@@ -1,13 +1,7 @@
 // The environment: faces, texels and blocks against a computation in doubles. SPDX-License-Identifier: Apache-2.0
 #include <gridiron/shade/environment.h>
-#include <gtest/gtest.h>
 
-#include <algorithm>
-#include <cmath>
-#include <cstdint>
-#include <limits>
-#include <random>
-#include <vector>
+#include "support/test_headers.h"
 
 namespace gridiron::test {
 namespace {

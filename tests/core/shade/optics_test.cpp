@@ -1,29 +1,19 @@
 // Mirror and glass: Snell's law, Fresnel's shares and energy in doubles. SPDX-License-Identifier: Apache-2.0
+#include <gridiron/base/math.h>
 #include <gridiron/shade/optics.h>
-#include <gtest/gtest.h>
 
-#include <algorithm>
-#include <cmath>
-#include <cstdint>
-#include <random>
+#include <glm/geometric.hpp>
+
+#include "support/test_headers.h"
 
 namespace gridiron::test {
 namespace {
 
-struct DVector {
-  double x, y, z;
-};
-DVector precise(Vector3 a) {
+DVec3 precise(Vector3 a) {
   return {a.x, a.y, a.z};
 }
-double dot(DVector a, DVector b) {
-  return a.x * b.x + a.y * b.y + a.z * b.z;
-}
-double length(DVector a) {
-  return std::sqrt(dot(a, a));
-}
-DVector cross(DVector a, DVector b) {
-  return {a.y * b.z - a.z * b.y, a.z * b.x - a.x * b.z, a.x * b.y - a.y * b.x};
+bool same(Vector3 a, Vector3 b) {
+  return a.x == b.x && a.y == b.y && a.z == b.z;
 }
 bool is_finite(Vector3 a) {
   return std::isfinite(a.x) && std::isfinite(a.y) && std::isfinite(a.z);
@@ -68,7 +58,7 @@ TEST(Reflect, KeepsTheAngleAndThePlane) {
   Rays rays;
   for (int i = 0; i < 300000; ++i) {
     const Vector3 n = rays.unit(), d = rays.against(n);
-    const DVector r = precise(reflect(d, n));
+    const DVec3 r = precise(reflect(d, n));
     ASSERT_NEAR(length(r), 1.0, 0x1p-20) << i;
     ASSERT_NEAR(dot(r, precise(n)), -dot(precise(d), precise(n)), 0x1p-20) << i;
     ASSERT_NEAR(dot(cross(precise(d), precise(n)), r), 0.0, 0x1p-20) << i;
@@ -86,11 +76,10 @@ TEST(ReflectOff, LeavesTheFace) {
     // What cannot leave is grazing, by rounding.
     ASSERT_GT(dot(r, face), dot(d, face) < -0x1p-20f ? 0.0f : -0x1p-20f) << i;
     if (dot(about_shading, face) > 0.0f) {
-      ASSERT_TRUE(r.x == about_shading.x && r.y == about_shading.y && r.z == about_shading.z) << i;
+      ASSERT_TRUE(same(r, about_shading)) << i;
     } else {
       ++about_face;
-      const Vector3 wanted = reflect(d, face);
-      ASSERT_TRUE(r.x == wanted.x && r.y == wanted.y && r.z == wanted.z) << i;
+      ASSERT_TRUE(same(r, reflect(d, face))) << i;
     }
   }
   EXPECT_GT(about_face, 1000);
@@ -121,11 +110,11 @@ TEST(Refract, IsSnellsLawAndFresnelsShare) {
     ++through;
     const double f = std::sqrt(std::max(k, 0.0));
     const double slack = std::min(slack_of_k / std::max(f, 1e-30), std::sqrt(2.0 * slack_of_k)) + (1.0 + e) * 0x1p-21;
-    const DVector t = precise(got.direction);
+    const DVec3 t = precise(got.direction);
     ASSERT_NEAR(length(t), 1.0, slack) << i;
     ASSERT_NEAR(dot(t, precise(n)), -f, slack) << i;
     // Sines: |d x n| e = |t x n|, and on the same side of the normal.
-    const DVector from = cross(precise(d), precise(n)), to = cross(t, precise(n));
+    const DVec3 from = cross(precise(d), precise(n)), to = cross(t, precise(n));
     ASSERT_NEAR(to.x, e * from.x, (1.0 + e) * 0x1p-20) << i;
     ASSERT_NEAR(to.y, e * from.y, (1.0 + e) * 0x1p-20) << i;
     ASSERT_NEAR(to.z, e * from.z, (1.0 + e) * 0x1p-20) << i;
@@ -212,9 +201,7 @@ TEST(RefractThrough, LeavesTheFaceOnTheOtherSide) {
     about_face += again ? 1 : 0;
     ASSERT_EQ(got.is_total, wanted.is_total) << i;
     ASSERT_EQ(got.fresnel, wanted.fresnel) << i;
-    ASSERT_TRUE(got.direction.x == wanted.direction.x && got.direction.y == wanted.direction.y &&
-                got.direction.z == wanted.direction.z)
-        << i;
+    ASSERT_TRUE(same(got.direction, wanted.direction)) << i;
     if (!got.is_total) {
       ASSERT_LT(dot(got.direction, face), 0x1p-10f) << i;
     }

@@ -2,18 +2,10 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <gridiron/shade/ray_queue.h>
 #include <gridiron/store/local_store.h>
-#include <gtest/gtest.h>
-
-#include <algorithm>
-#include <cstddef>
-#include <cstdint>
-#include <cstring>
-#include <memory>
-#include <optional>
-#include <vector>
 
 #include "core/dma/test_platform.h"
 #include "core/seeds.h"
+#include "support/test_headers.h"
 #include "support/test_mesh.h"
 
 namespace gridiron::test {
@@ -113,8 +105,7 @@ struct QueueRig {
 
 TEST(RayQueue, IsAStackWhateverIsSpilled) {
   std::uint64_t spilled = 0, partial = 0;
-  for_each_seed(60, [&](std::uint64_t seed) {
-    TestRandom random(seed);
+  for_each_seed(60, [&](TestRandom& random) {
     const std::uint32_t most = most_waiting_rays(kMaxRecursionDepth);
     QueueRig rig(1 + random.below(16), random.below(2) != 0 ? Moves::kAtOnce : Moves::kAtTheWait,
                  spill_bytes(kMaxRecursionDepth));
@@ -135,7 +126,7 @@ TEST(RayQueue, IsAStackWhateverIsSpilled) {
         ASSERT_EQ(rig.pop(wave), Status::kOk);
         partial += !wave.empty() && wave.size() < kWaveRays ? 1u : 0u;
       }
-      ASSERT_FALSE(testing::Test::HasFailure()) << "seed " << seed << " step " << step;
+      ASSERT_FALSE(testing::Test::HasFailure()) << "step " << step;
     }
     while (!rig.queue.empty()) ASSERT_EQ(rig.pop(wave), Status::kOk);
     EXPECT_TRUE(rig.model.empty());
@@ -194,8 +185,7 @@ TEST(RayQueue, TwoChildrenARayFitTheRegion) {
 
 // Any number of children: waves then hold several depths.
 TEST(RayQueue, AnyTreeFitsTheRegion) {
-  for_each_seed(60, [&](std::uint64_t seed) {
-    TestRandom random(seed);
+  for_each_seed(60, [&](TestRandom& random) {
     const std::uint32_t depth = 2 + random.below(kMaxRecursionDepth - 1);
     const std::uint32_t kind = random.below(3), share = 90 + random.below(60);
     QueueRig rig(1 + random.below(16), Moves::kAtTheWait, spill_bytes(depth));

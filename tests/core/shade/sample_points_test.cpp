@@ -1,15 +1,8 @@
 // Samples: the hash, places in pixels and on lights, directions over a point. SPDX-License-Identifier: Apache-2.0
 #include <gridiron/base/effect_records.h>
 #include <gridiron/shade/sample_points.h>
-#include <gtest/gtest.h>
 
-#include <algorithm>
-#include <cmath>
-#include <cstdint>
-#include <random>
-#include <set>
-#include <utility>
-#include <vector>
+#include "support/test_headers.h"
 
 namespace gridiron::test {
 namespace {

@@ -2,12 +2,8 @@
 #include <gridiron/ray/packet_hits.h>
 #include <gridiron/shade/shading.h>
 #include <gridiron/store/local_store.h>
-#include <gtest/gtest.h>
 
-#include <cmath>
-#include <cstdint>
-#include <cstring>
-#include <memory>
+#include "support/test_headers.h"
 
 namespace gridiron::test {
 namespace {
@@ -93,10 +89,9 @@ TEST_P(ShadeHits, PlanesThatAreOffStayAsTheyAre) {
   EXPECT_EQ(work[Work::kDepthGroup], 0u);
 }
 
-INSTANTIATE_TEST_SUITE_P(Both, ShadeHits, testing::Values(Shading::kNone, Shading::kSimple),
-                         [](const testing::TestParamInfo<Shading>& tested) {
-                           return tested.param == Shading::kNone ? std::string("None") : std::string("Simple");
-                         });
+INSTANTIATE_TEST_SUITE_P(Both, ShadeHits, testing::Values(Shading::kNone, Shading::kSimple), [](const auto& tested) {
+  return tested.param == Shading::kNone ? std::string("None") : std::string("Simple");
+});
 
 }  // namespace
 }  // namespace gridiron::test

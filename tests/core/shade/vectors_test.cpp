@@ -1,10 +1,7 @@
 // Vectors of the effects: unit vectors of vectors of any size. SPDX-License-Identifier: Apache-2.0
 #include <gridiron/shade/vectors.h>
-#include <gtest/gtest.h>
 
-#include <cmath>
-#include <limits>
-#include <random>
+#include "support/test_headers.h"
 
 namespace gridiron::test {
 namespace {

@@ -2,15 +2,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <gridiron/shade/wave_jobs.h>
 #include <gridiron/store/local_store.h>
-#include <gtest/gtest.h>
 
-#include <cmath>
-#include <cstdint>
-#include <cstring>
-#include <memory>
-#include <set>
-#include <tuple>
-#include <vector>
+#include "support/test_headers.h"
 
 namespace gridiron {
 namespace {

@@ -1,13 +1,8 @@
 // Local store: every layout's regions fit its arena together with code and stack, and no region overlaps another.
 // SPDX-License-Identifier: Apache-2.0
 #include <gridiron/store/local_store.h>
-#include <gtest/gtest.h>
 
-#include <cstddef>
-#include <cstdint>
-#include <string>
-#include <string_view>
-#include <vector>
+#include "support/test_headers.h"
 
 namespace gridiron::test {
 namespace {

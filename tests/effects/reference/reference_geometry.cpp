@@ -23,16 +23,16 @@ bool is_nearer(const ReferenceHit& a, const ReferenceHit& b) {
 constexpr double kFloatShare = 1e-6;
 
 // @returns where the ray enters a box; infinity where it misses it by more than rounding.
-double entry(const glm::dvec3& low, const glm::dvec3& high, const ReferenceRay& ray) {
+double entry(const MedianTree::Node& box, const ReferenceRay& ray) {
   double enter = 0.0;
   double leave = std::numeric_limits<double>::infinity();
   for (int axis = 0; axis < 3; ++axis) {
     if (ray.dir[axis] == 0.0) {
-      if (ray.origin[axis] < low[axis] || ray.origin[axis] > high[axis]) return leave;
+      if (ray.origin[axis] < box.low[axis] || ray.origin[axis] > box.high[axis]) return leave;
       continue;
     }
-    const double a = (low[axis] - ray.origin[axis]) / ray.dir[axis];
-    const double b = (high[axis] - ray.origin[axis]) / ray.dir[axis];
+    const double a = (box.low[axis] - ray.origin[axis]) / ray.dir[axis];
+    const double b = (box.high[axis] - ray.origin[axis]) / ray.dir[axis];
     enter = std::max(enter, std::min(a, b));
     leave = std::min(leave, std::max(a, b));
   }
@@ -56,40 +56,19 @@ ReferenceGeometry::ReferenceGeometry(const tool::SceneGeometry& geometry)
     triangle.normal = area / glm::length(area);
     triangles_.push_back(triangle);
   }
-  margin_ = 1e-9 * size;
-  nodes_.reserve(2 * triangles_.size() + 1);
-  if (!triangles_.empty()) make_node(0, static_cast<std::uint32_t>(triangles_.size()));
-  for (std::uint32_t i = 0; i < triangles_.size(); ++i) index_of_[triangles_[i].id] = i;
-}
-
-std::uint32_t ReferenceGeometry::make_node(std::uint32_t first, std::uint32_t count) {
-  constexpr std::uint32_t kLeafTriangles = 4;
-  Node node{triangles_[first].v[0], triangles_[first].v[0], first, count};
-  for (std::uint32_t i = first; i < first + count; ++i) {
-    for (const glm::dvec3& v : triangles_[i].v) {
-      node.low = glm::min(node.low, v);
-      node.high = glm::max(node.high, v);
+  const double margin = 1e-9 * size;
+  std::vector<PlacedBox> boxes(triangles_.size());
+  std::vector<std::uint32_t> places(triangles_.size());
+  for (std::uint32_t i = 0; i < triangles_.size(); ++i) {
+    const Triangle& triangle = triangles_[i];
+    for (const glm::dvec3& v : triangle.v) {
+      boxes[i].add(v - margin);
+      boxes[i].add(v + margin);
+      boxes[i].middle += v;
     }
+    index_of_[triangle.id] = places[i] = i;
   }
-  const glm::dvec3 extent = node.high - node.low;
-  node.low -= margin_;
-  node.high += margin_;
-  const auto index = static_cast<std::uint32_t>(nodes_.size());
-  nodes_.push_back(node);
-  if (count <= kLeafTriangles) return index;
-
-  // Half of the triangles on either side, along the longest edge of the box.
-  int axis = extent.x >= extent.y ? 0 : 1;
-  if (extent.z > extent[axis]) axis = 2;
-  const auto begin = triangles_.begin() + first;
-  std::nth_element(begin, begin + count / 2, begin + count, [axis](const Triangle& a, const Triangle& b) {
-    return a.v[0][axis] + a.v[1][axis] + a.v[2][axis] < b.v[0][axis] + b.v[1][axis] + b.v[2][axis];
-  });
-  const std::uint32_t left = make_node(first, count / 2);
-  const std::uint32_t right = make_node(first + count / 2, count - count / 2);
-  nodes_[index].left = left;
-  nodes_[index].right = right;
-  return index;
+  tree_ = MedianTree(boxes, std::move(places), /*leaf_count=*/4);
 }
 
 std::optional<ReferenceHit> ReferenceGeometry::hit(const Triangle& triangle, const ReferenceRay& ray) const {
@@ -124,21 +103,21 @@ std::optional<ReferenceHit> ReferenceGeometry::hit(const Triangle& triangle, con
 
 template <class Take>
 bool ReferenceGeometry::visit(std::uint32_t index, ReferenceRay& ray, const Take& take) const {
-  const Node& node = nodes_[index];
-  if (node.left != 0) {
-    const double left = entry(nodes_[node.left].low, nodes_[node.left].high, ray);
-    const double right = entry(nodes_[node.right].low, nodes_[node.right].high, ray);
+  const MedianTree::Node& node = tree_.nodes()[index];
+  if (node.count == 0) {
+    const double left = entry(tree_.nodes()[index + 1], ray);
+    const double right = entry(tree_.nodes()[node.second], ray);
     const bool is_left_first = left <= right;
     const double far = is_left_first ? right : left;
     if (std::isfinite(std::min(left, right)) && std::min(left, right) <= ray.most_t &&
-        !visit(is_left_first ? node.left : node.right, ray, take)) {
+        !visit(is_left_first ? index + 1 : node.second, ray, take)) {
       return false;
     }
     // The nearer one may have brought the end nearer.
-    return !std::isfinite(far) || far > ray.most_t || visit(is_left_first ? node.right : node.left, ray, take);
+    return !std::isfinite(far) || far > ray.most_t || visit(is_left_first ? node.second : index + 1, ray, take);
   }
   for (std::uint32_t i = node.first; i < node.first + node.count; ++i) {
-    if (!take(triangles_[i])) return false;
+    if (!take(triangles_[tree_.order()[i]])) return false;
   }
   return true;
 }
@@ -155,7 +134,7 @@ std::optional<ReferenceHit> ReferenceGeometry::nearest(const ReferenceRay& ray, 
     return true;
   };
   if (search == ReferenceSearch::kBoxTree) {
-    if (!nodes_.empty()) visit(0, shortened, take);
+    if (!triangles_.empty()) visit(0, shortened, take);
   } else {
     for (const Triangle& triangle : triangles_) take(triangle);
   }
@@ -166,7 +145,7 @@ bool ReferenceGeometry::is_any(const ReferenceRay& ray, ReferenceSearch search) 
   const auto take = [&](const Triangle& triangle) { return !hit(triangle, ray); };
   if (search == ReferenceSearch::kBoxTree) {
     ReferenceRay asked = ray;
-    return !nodes_.empty() && !visit(0, asked, take);
+    return !triangles_.empty() && !visit(0, asked, take);
   }
   return !std::all_of(triangles_.begin(), triangles_.end(), take);
 }

@@ -11,6 +11,7 @@
 #include <vector>
 
 #include "scene_text/scene_description.h"
+#include "support/median_tree.h"
 
 namespace gridiron::test {
 
@@ -55,13 +56,6 @@ class ReferenceGeometry {
     glm::dvec3 v[3], normal;
     std::uint32_t id;
   };
-  // A box of the tree: a leaf where left is 0.
-  struct Node {
-    glm::dvec3 low, high;
-    std::uint32_t first = 0, count = 0, left = 0, right = 0;
-  };
-
-  std::uint32_t make_node(std::uint32_t first, std::uint32_t count);
   [[nodiscard]] std::optional<ReferenceHit> hit(const Triangle& triangle, const ReferenceRay& ray) const;
   // Gives each triangle near the ray to `take`, which returns whether to go on and may bring most_t nearer.
   template <class Take>
@@ -69,8 +63,7 @@ class ReferenceGeometry {
 
   std::vector<Triangle> triangles_;
   std::vector<std::uint32_t> index_of_;  // of an id; none for triangles without area
-  std::vector<Node> nodes_;
-  double margin_ = 0.0;
+  MedianTree tree_;
 };
 
 }  // namespace gridiron::test

@@ -29,12 +29,12 @@ TEST(ReferenceCamera, IsTheFramesBitForBit) {
   tool::SceneView view;
   for (const auto& [width, height, angle] : {std::tuple{64u, 48u, 45.0f}, {511u, 767u, 3.0f}, {33u, 7u, 120.0f}}) {
     view = {{4.1f, 3.7f, 9.3f}, {0.2f, 1.1f, -0.4f}, {0.1f, 1, 0.05f}, angle, 0.0f, 1, 1};
-    FrameSettings settings;
-    settings.camera = {view.from, view.at, view.up,
-                       static_cast<float>(std::tan(0.5 * double{angle} * 3.14159265358979323846 / 180.0))};
-    settings.width = width;
-    settings.height = height;
-    settings.color = MainAddress{kLineBytes};
+    const FrameSettings settings{
+        .camera = {view.from, view.at, view.up,
+                   static_cast<float>(std::tan(0.5 * double{angle} * 3.14159265358979323846 / 180.0))},
+        .width = width,
+        .height = height,
+        .color = MainAddress{kLineBytes}};
     SceneImageView image{};
     image.grid.triangle_format = static_cast<std::uint32_t>(TriangleFormat::kVertices);
     FrameRecord frame{};

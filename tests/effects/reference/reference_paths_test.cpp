@@ -19,24 +19,15 @@ using tool::SceneMaterial;
 constexpr std::uint32_t kWidth = 65;  // odd: one ray straight down
 
 SceneMaterial mirror(float ks = 1.0f) {
-  SceneMaterial material;
-  material.kd = 0.0f;
-  material.ks = ks;
-  return material;
+  return {.kd = 0.0f, .ks = ks};
 }
 
 SceneMaterial glass(float index, float transmittance = 1.0f) {
-  SceneMaterial material;
-  material.kd = 0.0f;
-  material.transmittance = transmittance;
-  material.index_of_refraction = index;
-  return material;
+  return {.kd = 0.0f, .transmittance = transmittance, .index_of_refraction = index};
 }
 
 SceneMaterial black() {
-  SceneMaterial material;
-  material.kd = 0.0f;
-  return material;
+  return {.kd = 0.0f};
 }
 
 void add_sheet(SceneDescription& scene, float z, std::uint16_t material) {
@@ -73,10 +64,8 @@ TEST(ReferencePaths, AMirrorShowsATriangleAtTheMirroredPlace) {
   SceneDescription scene = empty_scene({0, -4, 2}, {0, 0, 0}, {0, 0, 1}, 50);
   scene.background = {0, 0, 1};
   add_sheet(scene, 0, add_material(scene, mirror(0.5f)));
-  SceneMaterial coloured;
-  coloured.color = {1, 0.5f, 0};
   const Vec3 corners[3] = {{-1.1f, -0.5f, 1}, {0, 1.2f, 1}, {0.9f, -0.3f, 1}};
-  const std::uint32_t id = add_triangle(scene, corners, add_material(scene, coloured));
+  const std::uint32_t id = add_triangle(scene, corners, add_material(scene, {.color = {1, 0.5f, 0}}));
   // Lit from beneath, from far away: the side that the mirror sees.
   scene.shadows = false;
   scene.point_lights.push_back({{0, 0, -1e6f}, Vec3(0.8f)});
@@ -109,8 +98,7 @@ TEST(ReferencePaths, ASlabOfGlassMovesRaysAside) {
   const std::uint16_t slab = add_material(scene, glass(1.5f));
   add_sheet(scene, 1, slab);
   add_parallelogram(scene, {-50, -50, 0.25f}, {0, 100, 0}, {100, 0, 0}, slab);  // turned down
-  SceneMaterial white;
-  const std::uint16_t floor = add_material(scene, white);
+  const std::uint16_t floor = add_material(scene, {});
   add_sheet(scene, -1, floor);
   scene.shadows = false;
   scene.point_lights.push_back({{0.5f, 0.3f, 0.2f}, Vec3(1)});
@@ -191,10 +179,7 @@ TEST(ReferencePaths, PathsAreNumberedAsABinaryTree) {
 TEST(ReferencePaths, DepthOfRecursionCutsAPathBetweenMirrors) {
   // Straight down between two mirrors, the upper one behind the eye: n reflections, then nothing is added.
   SceneDescription scene = empty_scene({0, 0, 1}, {0, 0, 0}, {0, 1, 0}, 5);
-  SceneMaterial half;
-  half.kd = 0.5f;
-  half.ks = 0.5f;
-  const std::uint16_t material = add_material(scene, half);
+  const std::uint16_t material = add_material(scene, {.kd = 0.5f, .ks = 0.5f});
   add_sheet(scene, 0, material);
   add_parallelogram(scene, {-50, -50, 2}, {0, 100, 0}, {100, 0, 0}, material);
   scene.shadows = false;
@@ -215,18 +200,15 @@ TEST(ReferenceFurnace, NothingIsBrighterThanItsSurroundings) {
     SceneMaterial material;
     double least_mean;
   };
-  SceneMaterial both = glass(1.5f, 0.7f);
-  both.ks = 0.3f;
-  SceneMaterial too_much = glass(1.3f, 1.0f);  // is scaled
-  too_much.ks = 1.0f;
-  SceneMaterial smooth = glass(1.5f);
-  smooth.smooth_normals = true;
-  SceneMaterial smooth_mirror = mirror();
-  smooth_mirror.smooth_normals = true;
-  const Case cases[] = {{"mirror", mirror(), 1.0 - 1e-12},       {"glass", glass(1.5f), 0.93},
-                        {"thin glass", glass(0.6f), 0.95},       {"glass that mirrors", both, 0.9},
-                        {"more than all", too_much, 0.85},       {"smooth glass", smooth, 0.95},
-                        {"smooth mirror", smooth_mirror, 1.0 - 1e-12}};
+  const Case cases[] = {
+      {"mirror", mirror(), 1.0 - 1e-12},
+      {"glass", glass(1.5f), 0.93},
+      {"thin glass", glass(0.6f), 0.95},
+      {"glass that mirrors", {.kd = 0, .ks = 0.3f, .transmittance = 0.7f, .index_of_refraction = 1.5f}, 0.9},
+      // Is scaled.
+      {"more than all", {.kd = 0, .ks = 1, .transmittance = 1, .index_of_refraction = 1.3f}, 0.85},
+      {"smooth glass", {.kd = 0, .transmittance = 1, .index_of_refraction = 1.5f, .smooth_normals = true}, 0.95},
+      {"smooth mirror", {.kd = 0, .ks = 1, .smooth_normals = true}, 1.0 - 1e-12}};
   for (const Case& c : cases) {
     for (const bool is_ball : {false, true}) {
       const SceneDescription scene = is_ball ? furnace_ball_scene(c.material) : furnace_box_scene(c.material);

@@ -369,12 +369,7 @@ ReferencePicture render_reference(const tool::SceneDescription& scene, std::uint
   for (ReferenceCounts& own : counts) threads.emplace_back([&render_rows, &own] { render_rows(own); });
   for (std::thread& thread : threads) thread.join();
   for (const ReferenceCounts& own : counts) {
-    picture.counts.primary += own.primary;
-    picture.counts.shadow += own.shadow;
-    picture.counts.occlusion += own.occlusion;
-    picture.counts.reflected += own.reflected;
-    picture.counts.refracted += own.refracted;
-    picture.counts.environment += own.environment;
+    for (const auto& [name, count] : kReferenceCounts) picture.counts.*count += own.*count;
   }
   return picture;
 }

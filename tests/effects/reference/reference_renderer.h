@@ -8,6 +8,7 @@
 #include <glm/vec2.hpp>
 #include <glm/vec3.hpp>
 #include <optional>
+#include <utility>
 #include <vector>
 
 #include "effects/reference/reference_geometry.h"
@@ -23,6 +24,11 @@ struct ReferenceCounts {
 
   friend bool operator==(const ReferenceCounts&, const ReferenceCounts&) = default;
 };
+/// Each of them by name.
+inline constexpr std::pair<const char*, std::uint64_t ReferenceCounts::*> kReferenceCounts[] = {
+    {"primary", &ReferenceCounts::primary},     {"shadow", &ReferenceCounts::shadow},
+    {"occlusion", &ReferenceCounts::occlusion}, {"reflected", &ReferenceCounts::reflected},
+    {"refracted", &ReferenceCounts::refracted}, {"environment", &ReferenceCounts::environment}};
 
 /// A part of the picture, in pixels.
 struct ReferenceRegion {

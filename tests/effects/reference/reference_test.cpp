@@ -25,10 +25,7 @@ SceneDescription scene_from_above(float height, float angle = 60) {
 }
 
 SceneMaterial matt(Vec3 color, float kd = 1.0f) {
-  SceneMaterial material;
-  material.color = color;
-  material.kd = kd;
-  return material;
+  return {.color = color, .kd = kd};
 }
 
 std::uint32_t add_floor(SceneDescription& scene, std::uint16_t material, float size = 50) {

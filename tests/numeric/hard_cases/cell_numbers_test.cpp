@@ -4,12 +4,6 @@
 
 #include <gridiron/build/grid/triangle_records.h>
 #include <gridiron/build/lattice.h>
-#include <gtest/gtest.h>
-
-#include <algorithm>
-#include <cmath>
-#include <cstring>
-#include <string>
 
 #include "core/ray/packet_cases.h"
 #include "numeric/exact_cells.h"
@@ -18,6 +12,7 @@
 #include "numeric/hard_cases/shapes.h"
 #include "numeric/hard_cases/trial.h"
 #include "numeric/watertight/shot.h"
+#include "support/test_headers.h"
 
 namespace gridiron_cell {
 void shoot(const watertight::Shot& shot, std::uint32_t accuracy_value, watertight::Hits& hits);

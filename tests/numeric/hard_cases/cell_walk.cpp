@@ -1,53 +1,25 @@
 // Cell walks: see the header. SPDX-License-Identifier: Apache-2.0
 #include "numeric/hard_cases/cell_walk.h"
 
-#include <gridiron/engine/grid/frustum.h>
-#include <gridiron/engine/grid/slice_walk.h>
 #include <gtest/gtest.h>
 
 #include <algorithm>
 #include <memory>
 
 #include "core/ray/packet_cases.h"
+#include "numeric/hard_cases/full_grid_walk.h"
 
 namespace gridiron::test::hard {
 namespace {
 
-// A macrocell table in which none is empty: block = macrocell + 1.
-struct FullTable {
-  [[nodiscard]] static std::uint32_t chunk_of(std::uint32_t) { return 0; }
-  [[nodiscard]] static bool holds(std::uint32_t) { return true; }
-  [[nodiscard]] static std::uint32_t block_of(std::uint32_t macro_cell) { return macro_cell + 1; }
-};
-
-std::uint64_t cell_id(const GridRecord& grid, const std::uint32_t cell[3]) {
-  return (std::uint64_t{cell[2]} * grid.cell_count[1] + cell[1]) * grid.cell_count[0] + cell[0];
-}
-
 // Cells that a frustum's walk visits, sorted.
-std::vector<std::uint64_t> visited_cells(const GridRecord& grid, const Frustum& frustum,
-                                         const std::vector<CellRecord>& block) {
+std::vector<std::uint64_t> visited_cells(const GridRecord& grid, const Frustum& frustum) {
   std::vector<std::uint64_t> cells;
-  const std::uint32_t m = grid.macro_width;
   WorkCounters work;
-  MacroWalk macro_walk{};
-  macro_walk.begin(grid, frustum);
-  MacroVisit visit{};
-  while (macro_walk.next(frustum, FullTable{}, kFloatMax, true, visit, work) == WalkStep::kFound) {
-    std::uint32_t corner[3];
-    corner[frustum.axis_k] = static_cast<std::uint32_t>(visit.k_first);
-    corner[frustum.axis_u] = static_cast<std::uint32_t>(visit.u_first);
-    corner[frustum.axis_v] = static_cast<std::uint32_t>(visit.v_first);
-    CellWalk cell_walk{};
-    cell_walk.begin(grid, frustum, visit);
-    CellVisit found{};
-    while (cell_walk.next(frustum, block.data(), kFloatMax, found, work)) {
-      const std::uint32_t i = found.first_triangle;  // place in the block
-      const std::uint32_t cell[3] = {corner[0] + i % m, corner[1] + i / m % m, corner[2] + i / m / m};
-      for (int axis = 0; axis < 3; ++axis) EXPECT_LT(cell[axis], grid.cell_count[axis]) << "a cell beyond the grid";
-      cells.push_back(cell_id(grid, cell));
-    }
-  }
+  walk_full_grid(grid, frustum, work, [&](const std::uint32_t* cell) {
+    for (int axis = 0; axis < 3; ++axis) EXPECT_LT(cell[axis], grid.cell_count[axis]) << "a cell beyond the grid";
+    cells.push_back(full_grid_id(grid, cell));
+  });
   std::sort(cells.begin(), cells.end());
   EXPECT_TRUE(std::adjacent_find(cells.begin(), cells.end()) == cells.end()) << "a cell was visited twice";
   return cells;
@@ -58,7 +30,7 @@ using TouchedCells = std::vector<std::vector<std::uint64_t>>;
 
 template <class PacketType>
 void walk_packet(const GridRecord& grid, const Rays& rays, std::size_t first, const TouchedCells& touched,
-                 const std::vector<CellRecord>& block, WalkTally& tally) {
+                 WalkTally& tally) {
   auto packet = std::make_unique<PacketType>();
   RaySet<PacketType::kRayCount> waiting;
   waiting.clear();
@@ -72,7 +44,7 @@ void walk_packet(const GridRecord& grid, const Rays& rays, std::size_t first, co
   Frustum frustum;
   WorkCounters work;
   while (take_pass<Lanes<4>>(grid, waiting, *packet, frustum, work)) {
-    const std::vector<std::uint64_t> visited = visited_cells(grid, frustum, block);
+    const std::vector<std::uint64_t> visited = visited_cells(grid, frustum);
     tally.visited += visited.size();
     for (std::uint32_t ray = 0; ray < PacketType::kRayCount; ++ray) {
       if (!packet->active.contains(ray)) continue;
@@ -104,9 +76,6 @@ GridRecord grid_of(Vec3 minimum, Vec3 cells_per_unit, const UVec3& cell_count, s
 
 WalkTally walk(const GridRecord& grid, const std::vector<Rays>& all_rays) {
   WalkTally tally;
-  const std::uint32_t m = grid.macro_width;
-  std::vector<CellRecord> block(std::size_t{m} * m * m);
-  for (std::uint32_t i = 0; i < block.size(); ++i) block[i] = {i, 1};
   for (const Rays& rays : all_rays) {
     TouchedCells touched;
     for (std::size_t ray = 0; ray < rays.directions.size(); ++ray) {
@@ -116,22 +85,21 @@ WalkTally walk(const GridRecord& grid, const std::vector<Rays>& all_rays) {
       for (const CellIndex& cell : touched_cells(grid, asked)) {
         const std::uint32_t place[3] = {static_cast<std::uint32_t>(cell[0]), static_cast<std::uint32_t>(cell[1]),
                                         static_cast<std::uint32_t>(cell[2])};
-        cells.push_back(cell_id(grid, place));
+        cells.push_back(full_grid_id(grid, place));
       }
       std::sort(cells.begin(), cells.end());
       tally.touched += cells.size();
       // Alone: the narrowest frustum that there is.
-      Rays one;
-      one.origin = rays.origin;
+      Rays one{rays.origin};
       one.directions = {rays.directions[ray]};
-      walk_packet<Packet<4>>(grid, one, 0, {cells}, block, tally);
+      walk_packet<Packet<4>>(grid, one, 0, {cells}, tally);
     }
     tally.rays += rays.directions.size();
     // Side by side, but for rays of all directions: the frustum of those is the whole grid.
     for (std::size_t first = 0; rays.columns != 0 && first < touched.size(); first += 64) {
-      walk_packet<Packet<8>>(grid, rays, first, touched, block, tally);
+      walk_packet<Packet<8>>(grid, rays, first, touched, tally);
       for (std::size_t i = first; i < first + 64 && i < touched.size(); i += 16) {
-        walk_packet<Packet<4>>(grid, rays, i, touched, block, tally);
+        walk_packet<Packet<4>>(grid, rays, i, touched, tally);
       }
     }
     if (testing::Test::HasFailure()) return tally;

@@ -23,41 +23,32 @@ TEST(HardCase13, AxisParallelDirections) {
   Tally inside, outside;
   for (const Solid& solid : solids()) {
     SCOPED_TRACE(solid.name);
-    inside += shoot({.mesh = solid.mesh, .grade = Grade::kClosed, .aim = [&](const TestMesh& mesh) {
-                       TestRandom random(13);
-                       std::vector<Rays> all;
-                       for (std::uint32_t i = 0; i < times(10); ++i) {
-                         Rays rays =
-                             rays_at(mesh, solid.middle + random_vec(random, solid.room), Aim::kVertex, 30, random);
-                         if (i % 2 == 0) rays.origin = solid.middle;
-                         for (std::size_t k = 0; k < rays.directions.size(); ++k) {
-                           Vec3& d = rays.directions[k];
-                           const auto axis = static_cast<int>(k % 3);
-                           if (k % 2 == 0) d = Vec3(0.0f), d[axis] = k % 4 == 0 ? 1.0f : -1.0f;
-                           if (k % 2 == 1) d[axis] = 0.0f;
-                           if (d == Vec3(0.0f)) d[axis] = 1.0f;
-                         }
-                         all.push_back(rays);
-                         // A picture with the axis in its middle.
-                         const auto axis = static_cast<int>(i % 3);
-                         Vec3 forward(0.0f), right(0.0f), down(0.0f);
-                         forward[axis] = i % 2 == 0 ? 1.0f : -1.0f;
-                         right[(axis + 1) % 3] = 0x1p-6f;
-                         down[(axis + 2) % 3] = -0x1p-6f;
-                         all.push_back(picture(rays.origin, forward - 8.0f * right - 8.0f * down, right, down, 17, 17));
-                       }
-                       return all;
-                     }});
-    outside += shoot({.mesh = solid.mesh, .aim = [](const TestMesh& mesh) {
-                        TestRandom random(14);
-                        std::vector<Rays> all;
-                        for (std::uint32_t i = 0; i < times(120); ++i) {
-                          const OracleRay ray = ray_at(mesh, random_vec(random, 9.0f), Aim::kAxis, random);
-                          all.push_back(one_ray({ray.origin[0], ray.origin[1], ray.origin[2]},
-                                                {ray.direction[0], ray.direction[1], ray.direction[2]}));
-                        }
-                        return all;
-                      }});
+    const auto add = [&](std::vector<Rays>& all, std::uint32_t i, TestRandom& random, const TestMesh& mesh) {
+      Rays rays = rays_at(mesh, solid.middle + random_vec(random, solid.room), Aim::kVertex, 30, random);
+      if (i % 2 == 0) rays.origin = solid.middle;
+      for (std::size_t k = 0; k < rays.directions.size(); ++k) {
+        Vec3& d = rays.directions[k];
+        const auto axis = static_cast<int>(k % 3);
+        if (k % 2 == 0) d = Vec3(0.0f), d[axis] = k % 4 == 0 ? 1.0f : -1.0f;
+        if (k % 2 == 1) d[axis] = 0.0f;
+        if (d == Vec3(0.0f)) d[axis] = 1.0f;
+      }
+      all.push_back(rays);
+      // A picture with the axis in its middle.
+      const auto axis = static_cast<int>(i % 3);
+      Vec3 forward(0.0f), right(0.0f), down(0.0f);
+      forward[axis] = i % 2 == 0 ? 1.0f : -1.0f;
+      right[(axis + 1) % 3] = 0x1p-6f;
+      down[(axis + 2) % 3] = -0x1p-6f;
+      all.push_back(picture(rays.origin, forward - 8.0f * right - 8.0f * down, right, down, 17, 17));
+    };
+    inside += shoot({.mesh = solid.mesh, .grade = Grade::kClosed, .aim = rounds(10, 13, add)});
+    const auto add_along_axis = [](std::vector<Rays>& all, std::uint32_t, TestRandom& random, const TestMesh& mesh) {
+      const OracleRay ray = ray_at(mesh, random_vec(random, 9.0f), Aim::kAxis, random);
+      all.push_back(one_ray({ray.origin[0], ray.origin[1], ray.origin[2]},
+                            {ray.direction[0], ray.direction[1], ray.direction[2]}));
+    };
+    outside += shoot({.mesh = solid.mesh, .aim = rounds(120, 14, add_along_axis)});
   }
   EXPECT_EQ(inside.hits, inside.rays);
   EXPECT_GT(inside.ties, inside.rays / 20);
@@ -79,8 +70,7 @@ TEST(HardCase14, NegativeZeros) {
         const float x = one(), y = one();
         return Vec3(x, y, one());
       };
-      Rays rays;
-      rays.origin = lattice(0.5f);
+      Rays rays{lattice(0.5f)};
       rays.origin[static_cast<int>(i % 3)] = 0.0f;
       while (rays.directions.size() < 16) {
         Vec3 d = lattice(1.0f);
@@ -107,24 +97,23 @@ TEST(HardCase14, NegativeZeros) {
   }
   EXPECT_GT(compared, 5000u);
   // And they are the oracle's.
-  const Tally tally = shoot(
-      {.mesh = mesh, .grade = Grade::kClosed, .aim = [](const TestMesh&) {
-         std::vector<Rays> all;
-         for (const float zero : {0.0f, -0.0f}) {
-           Rays rays;
-           rays.origin = {zero, 0.25f, zero};
-           for (const float x : {-1.0f, -0.0f, 0.0f, 1.0f}) {
-             for (const float y : {-1.0f, -0.0f, 0.0f, 0.5f}) {
-               for (const float z : {-0.0f, 0.0f, 1.0f}) {
-                 if (x != 0.0f || y != 0.0f || z != 0.0f) rays.directions.push_back({x, y, z});
-               }
-             }
-           }
-           all.push_back(rays);
-           all.push_back(picture(rays.origin, {-1, 0.125f, zero}, {0.125f, zero, -0.0f}, {-0.0f, 0.125f, zero}, 17, 9));
-         }
-         return all;
-       }});
+  const auto aim = [](const TestMesh&) {
+    std::vector<Rays> all;
+    for (const float zero : {0.0f, -0.0f}) {
+      Rays rays{{zero, 0.25f, zero}};
+      for (const float x : {-1.0f, -0.0f, 0.0f, 1.0f}) {
+        for (const float y : {-1.0f, -0.0f, 0.0f, 0.5f}) {
+          for (const float z : {-0.0f, 0.0f, 1.0f}) {
+            if (x != 0.0f || y != 0.0f || z != 0.0f) rays.directions.push_back({x, y, z});
+          }
+        }
+      }
+      all.push_back(rays);
+      all.push_back(picture(rays.origin, {-1, 0.125f, zero}, {0.125f, zero, -0.0f}, {-0.0f, 0.125f, zero}, 17, 9));
+    }
+    return all;
+  };
+  const Tally tally = shoot({.mesh = mesh, .grade = Grade::kClosed, .aim = aim});
   EXPECT_GT(tally.ties, 50u);
 }
 
@@ -135,32 +124,22 @@ TEST(HardCase15, DenormalDirectionComponents) {
     SCOPED_TRACE(flush ? "denormals flushed" : "denormals kept");
     for (const Solid& solid : solids()) {
       SCOPED_TRACE(solid.name);
+      const auto add = [&](std::vector<Rays>& all, std::uint32_t i, TestRandom& random, const TestMesh& mesh) {
+        Rays rays = rays_at(mesh, solid.middle + static_cast<float>(i % 2) * random_vec(random, solid.room),
+                            Aim::kVertex, 32, random);
+        for (std::size_t k = 0; k < rays.directions.size(); ++k) {
+          Vec3& d = rays.directions[k];
+          const auto axis = static_cast<int>(random.below(3));
+          d[axis] = (k % 2 == 0 ? 1.0f : -1.0f) * kSmall[random.below(5)];
+          if (k % 3 == 0) d[(axis + 1) % 3] = kSmall[random.below(5)];
+          if (std::fabs(d.x) + std::fabs(d.y) + std::fabs(d.z) < 0.125f) d[(axis + 2) % 3] = 1.0f;
+        }
+        all.push_back(rays);
+        const float small = kSmall[i % 5];
+        all.push_back(picture(rays.origin, {-8 * small, 1.0f, -4 * small}, {small, 0, 0}, {0, 0, small}, 17, 9));
+      };
       const Tally tally =
-          shoot({.mesh = solid.mesh,
-                 .grade = Grade::kClosed,
-                 .aim =
-                     [&](const TestMesh& mesh) {
-                       TestRandom random(15);
-                       std::vector<Rays> all;
-                       for (std::uint32_t i = 0; i < times(6); ++i) {
-                         Rays rays =
-                             rays_at(mesh, solid.middle + static_cast<float>(i % 2) * random_vec(random, solid.room),
-                                     Aim::kVertex, 32, random);
-                         for (std::size_t k = 0; k < rays.directions.size(); ++k) {
-                           Vec3& d = rays.directions[k];
-                           const auto axis = static_cast<int>(random.below(3));
-                           d[axis] = (k % 2 == 0 ? 1.0f : -1.0f) * kSmall[random.below(5)];
-                           if (k % 3 == 0) d[(axis + 1) % 3] = kSmall[random.below(5)];
-                           if (std::fabs(d.x) + std::fabs(d.y) + std::fabs(d.z) < 0.125f) d[(axis + 2) % 3] = 1.0f;
-                         }
-                         all.push_back(rays);
-                         const float small = kSmall[i % 5];
-                         all.push_back(
-                             picture(rays.origin, {-8 * small, 1.0f, -4 * small}, {small, 0, 0}, {0, 0, small}, 17, 9));
-                       }
-                       return all;
-                     },
-                 .flush = flush});
+          shoot({.mesh = solid.mesh, .grade = Grade::kClosed, .aim = rounds(6, 15, add), .flush = flush});
       EXPECT_EQ(tally.hits, tally.rays);
     }
   }
@@ -170,25 +149,18 @@ TEST(HardCase15, DenormalDirectionComponents) {
 TEST(HardCase16, LengthOfDirections) {
   for (const Solid& solid : solids()) {
     SCOPED_TRACE(solid.name);
-    const auto aim = [&](const TestMesh& mesh) {
-      return salvo(mesh, solid.middle, solid.room, {{Aim::kEdge, Aim::kVertex, Aim::kInside}, times(2), 32, 1}, 16);
-    };
+    const auto aim = salvo_at(solid.middle, solid.room, {kFeatures, times(2), 32, 1}, 16);
     const auto stretched = [](std::vector<Rays> all, float factor) {
       for (Rays& rays : all) {
-        rays.corner *= factor;
-        rays.step_x *= factor;
-        rays.step_y *= factor;
+        for (Vec3* const vector : {&rays.corner, &rays.step_x, &rays.step_y}) *vector *= factor;
         for (Vec3& d : rays.directions) d *= factor;
-        if (rays.columns == 0) continue;
-        const auto rows = static_cast<std::uint32_t>(rays.directions.size()) / rays.columns;
-        rays = picture(rays.origin, rays.corner, rays.step_x, rays.step_y, rays.columns, rows);
+        recompute_picture(rays);
       }
       return all;
     };
     for (const float factor : {1e-18f, 1e18f}) {
-      const Tally tally = shoot({.mesh = solid.mesh, .grade = Grade::kClosed, .aim = [&](const TestMesh& mesh) {
-                                   return stretched(aim(mesh), factor);
-                                 }});
+      const auto stretched_aim = [&](const TestMesh& mesh) { return stretched(aim(mesh), factor); };
+      const Tally tally = shoot({.mesh = solid.mesh, .grade = Grade::kClosed, .aim = stretched_aim});
       EXPECT_EQ(tally.hits, tally.rays);
     }
     for (const Profile& profile : kProfiles) {
@@ -219,9 +191,7 @@ void refuse_eyes_not_finite() {
   SceneInMemory scene(mesh.view(), {});
   for (const float odd : {kNaN, kInf, -kInf, 0x1p121f}) {
     for (int axis = 0; axis < 3; ++axis) {
-      FrameSettings settings;
-      settings.width = settings.height = 4;
-      settings.camera.eye = {0, 0, 4};
+      FrameSettings settings{.camera = {.eye = {0, 0, 4}}, .width = 4, .height = 4};
       EXPECT_EQ(scene.prepare(settings, {}).status(), Status::kOk);
       settings.camera.eye[axis] = odd;
       EXPECT_EQ(scene.prepare(settings, {}).status(), Status::kBadFrame);
@@ -231,33 +201,32 @@ void refuse_eyes_not_finite() {
 
 // No direction, or one that is not finite: a miss, in bounded steps, alone and among rays that hit.
 TEST(HardCase17, NoDirectionOrNotFinite) {
-  const Tally tally =
-      shoot({.mesh = make_sphere(10, 13, 1.0f), .grade = Grade::kBounded, .aim = [](const TestMesh& mesh) {
-               TestRandom random(17);
-               std::vector<Rays> all;
-               constexpr float kOdd[] = {kNaN, kInf, -kInf, 0.0f, -0.0f, 1.0f, kFloatMax};
-               for (std::uint32_t i = 0; i < times(4); ++i) {
-                 Rays rays;
-                 rays.origin = random_vec(random, i % 2 == 0 ? 0.5f : 3.0f);
-                 for (std::uint32_t k = 0; k < 7 * 7 * 7; ++k)
-                   rays.directions.push_back({kOdd[k % 7], kOdd[k / 7 % 7], kOdd[k / 49]});
-                 // What is finite is bounded by what a grid takes.
-                 for (Vec3& d : rays.directions) {
-                   for (int axis = 0; axis < 3; ++axis) {
-                     if (d[axis] == kFloatMax) d[axis] = 1e-30f;
-                   }
-                 }
-                 all.push_back(rays);
-                 all.push_back(rays_at(mesh, rays.origin, Aim::kVertex, 8, random));
-               }
-               const Vec3 inside(0.1f, 0.2f, 0.3f);
-               all.push_back(picture(inside, Vec3(0.0f), Vec3(0.0f), Vec3(0.0f), 9, 5));
-               all.push_back(picture(inside, Vec3(kNaN), Vec3(1.0f), Vec3(1.0f), 9, 5));
-               all.push_back(picture(inside, {1, 0, 0}, {kInf, 0, 0}, {0, kNaN, 0}, 9, 5));
-               // Columns 4 and on overflow, and where both steps do there is no number.
-               all.push_back(picture(inside, {0, 0, 1e30f}, {1e38f, 0, 0}, {-1e38f, 1e30f, 0}, 9, 9));
-               return all;
-             }});
+  const auto odd_rays = [](const TestMesh& mesh) {
+    TestRandom random(17);
+    std::vector<Rays> all;
+    constexpr float kOdd[] = {kNaN, kInf, -kInf, 0.0f, -0.0f, 1.0f, kFloatMax};
+    for (std::uint32_t i = 0; i < times(4); ++i) {
+      Rays rays{random_vec(random, i % 2 == 0 ? 0.5f : 3.0f)};
+      for (std::uint32_t k = 0; k < 7 * 7 * 7; ++k)
+        rays.directions.push_back({kOdd[k % 7], kOdd[k / 7 % 7], kOdd[k / 49]});
+      // What is finite is bounded by what a grid takes.
+      for (Vec3& d : rays.directions) {
+        for (int axis = 0; axis < 3; ++axis) {
+          if (d[axis] == kFloatMax) d[axis] = 1e-30f;
+        }
+      }
+      all.push_back(rays);
+      all.push_back(rays_at(mesh, rays.origin, Aim::kVertex, 8, random));
+    }
+    const Vec3 inside(0.1f, 0.2f, 0.3f);
+    all.push_back(picture(inside, Vec3(0.0f), Vec3(0.0f), Vec3(0.0f), 9, 5));
+    all.push_back(picture(inside, Vec3(kNaN), Vec3(1.0f), Vec3(1.0f), 9, 5));
+    all.push_back(picture(inside, {1, 0, 0}, {kInf, 0, 0}, {0, kNaN, 0}, 9, 5));
+    // Columns 4 and on overflow, and where both steps do there is no number.
+    all.push_back(picture(inside, {0, 0, 1e30f}, {1e38f, 0, 0}, {-1e38f, 1e30f, 0}, 9, 9));
+    return all;
+  };
+  const Tally tally = shoot({.mesh = make_sphere(10, 13, 1.0f), .grade = Grade::kBounded, .aim = odd_rays});
   EXPECT_GT(tally.hits, 20u);
   EXPECT_LT(tally.hits, tally.rays / 4);
   refuse_eyes_not_finite();
@@ -269,27 +238,22 @@ TEST(HardCase21, OriginOnATriangle) {
   Tally tally;
   for (const TestMesh& mesh :
        {on_lattice(make_sphere(8, 12, 1.0f), 0x1p-5f), make_cubes(6, 21), make_box({-1, -1, -1}, {1, 1, 1})}) {
-    tally += shoot({.mesh = mesh, .aim = [](const TestMesh& stored) {
-                      TestRandom random(21);
-                      std::vector<Rays> all;
-                      for (std::uint32_t i = 0; i < times(20); ++i) {
-                        const UVec3& t = stored.triangles[random.below(count_of(stored))];
-                        const Vec3 a = stored.vertices[t.x], b = stored.vertices[t.y], c = stored.vertices[t.z];
-                        Vec3 origin = a;
-                        if (i % 3 == 1) origin = 0.5f * a + 0.5f * b;
-                        if (i % 3 == 2) origin = a + (0.25f * (b - a) + 0.5f * (c - a));
-                        for (const Aim aim : {Aim::kVertex, Aim::kEdge, Aim::kInside})
-                          all.push_back(rays_at(stored, origin, aim, 16, random));
-                        Rays away;
-                        away.origin = origin;
-                        for (std::uint32_t k = 0; k < 16; ++k) away.directions.push_back(random_vec(random, 1.0f));
-                        away.directions.push_back(b - a);
-                        away.directions.push_back(c - b);
-                        all.push_back(away);
-                        all.push_back(picture_at(stored, origin, Aim::kVertex, random));
-                      }
-                      return all;
-                    }});
+    const auto add = [](std::vector<Rays>& all, std::uint32_t i, TestRandom& random, const TestMesh& stored) {
+      const UVec3& t = stored.triangles[random.below(count_of(stored))];
+      const Vec3 a = stored.vertices[t.x], b = stored.vertices[t.y], c = stored.vertices[t.z];
+      Vec3 origin = a;
+      if (i % 3 == 1) origin = 0.5f * a + 0.5f * b;
+      if (i % 3 == 2) origin = a + (0.25f * (b - a) + 0.5f * (c - a));
+      for (const Aim aim : {Aim::kVertex, Aim::kEdge, Aim::kInside})
+        all.push_back(rays_at(stored, origin, aim, 16, random));
+      Rays away{origin};
+      for (std::uint32_t k = 0; k < 16; ++k) away.directions.push_back(random_vec(random, 1.0f));
+      away.directions.push_back(b - a);
+      away.directions.push_back(c - b);
+      all.push_back(away);
+      all.push_back(picture_at(stored, origin, Aim::kVertex, random));
+    };
+    tally += shoot({.mesh = mesh, .aim = rounds(20, 21, add)});
   }
   EXPECT_GT(tally.hits, tally.rays / 3);
   EXPECT_LT(tally.hits, tally.rays);
@@ -301,33 +265,34 @@ TEST(HardCase24, LimitAtTheHit) {
   Tally tally;
   for (const Solid& solid : solids()) {
     SCOPED_TRACE(solid.name);
-    tally += shoot({.mesh = solid.mesh, .aim = [&](const TestMesh& mesh) {
-                      const Oracle oracle(mesh.view(), {.reading = Reading::kStandard});
-                      TestRandom random(24);
-                      std::vector<Rays> all;
-                      for (std::uint32_t i = 0; i < times(60); ++i) {
-                        const Aim aim = i % 3 == 0 ? Aim::kVertex : i % 3 == 1 ? Aim::kEdge : Aim::kInside;
-                        Rays rays = rays_at(mesh, solid.middle + random_vec(random, solid.room), aim, 1, random);
-                        const float t = oracle.nearest(oracle_ray(rays, 0)).t;
-                        for (const float limit : {t, std::nextafter(t, 0.0f), std::nextafter(t, kFloatMax)}) {
-                          rays.t_far = limit;
-                          all.push_back(rays);
-                        }
-                      }
-                      return all;
-                    }});
+    const auto limited_rays = [&](const TestMesh& mesh) {
+      const Oracle oracle(mesh.view(), {.reading = Reading::kStandard});
+      TestRandom random(24);
+      std::vector<Rays> all;
+      for (std::uint32_t i = 0; i < times(60); ++i) {
+        const Aim aim = i % 3 == 0 ? Aim::kVertex : i % 3 == 1 ? Aim::kEdge : Aim::kInside;
+        Rays rays = rays_at(mesh, solid.middle + random_vec(random, solid.room), aim, 1, random);
+        const float t = oracle.nearest(oracle_ray(rays, 0)).t;
+        for (const float limit : {t, std::nextafter(t, 0.0f), std::nextafter(t, kFloatMax)}) {
+          rays.t_far = limit;
+          all.push_back(rays);
+        }
+      }
+      return all;
+    };
+    tally += shoot({.mesh = solid.mesh, .aim = limited_rays});
   }
   EXPECT_EQ(tally.hits * 3, tally.rays * 2);
-  const Tally near = shoot({.mesh = make_box({-1, -1, -1}, {1, 1, 0}), .aim = [](const TestMesh&) {
-                              std::vector<Rays> all;
-                              for (int exponent = -140; exponent <= -110; ++exponent) {
-                                Rays rays;
-                                rays.origin = {0.25f, 0.125f, std::ldexp(1.0f, exponent / 2)};
-                                rays.directions = {{0, 0, -std::ldexp(1.0f, exponent / 2 - exponent)}};
-                                all.push_back(rays);
-                              }
-                              return all;
-                            }});
+  const auto near_rays = [](const TestMesh&) {
+    std::vector<Rays> all;
+    for (int exponent = -140; exponent <= -110; ++exponent) {
+      Rays rays{{0.25f, 0.125f, std::ldexp(1.0f, exponent / 2)}};
+      rays.directions = {{0, 0, -std::ldexp(1.0f, exponent / 2 - exponent)}};
+      all.push_back(rays);
+    }
+    return all;
+  };
+  const Tally near = shoot({.mesh = make_box({-1, -1, -1}, {1, 1, 0}), .aim = near_rays});
   EXPECT_EQ(near.rays, 31u);
 }
 

@@ -26,15 +26,12 @@ TEST(HardCase39, RoundingModesAndFlushing) {
       SCOPED_TRACE("mode " + std::to_string(mode) + (flush ? ", flushed" : ""));
       for (const Solid& solid : solids()) {
         SCOPED_TRACE(solid.name);
-        const Tally tally = shoot(
-            {.mesh = solid.mesh,
-             .grade = Grade::kClosed,
-             .aim =
-                 [&](const TestMesh& mesh) {
-                   return salvo(mesh, solid.middle, solid.room, {{Aim::kEdge, Aim::kVertex}, times(1), 24, 1}, 39);
-                 },
-             .rounding = mode,
-             .flush = flush});
+        const Tally tally =
+            shoot({.mesh = solid.mesh,
+                   .grade = Grade::kClosed,
+                   .aim = salvo_at(solid.middle, solid.room, {{Aim::kEdge, Aim::kVertex}, times(1), 24, 1}, 39),
+                   .rounding = mode,
+                   .flush = flush});
         EXPECT_EQ(tally.hits, tally.rays);
       }
     }
@@ -77,9 +74,9 @@ TEST(HardCase41, ReciprocalEstimate) {
   // Nobody who promises a closed mesh to be closed estimates.
   for (const Solid& solid : solids()) {
     const Tally tally =
-        shoot({.mesh = solid.mesh, .grade = Grade::kClosed, .aim = [&](const TestMesh& mesh) {
-                 return salvo(mesh, solid.middle, solid.room, {{Aim::kEdge, Aim::kVertex}, times(4), 32, 1}, 41);
-               }});
+        shoot({.mesh = solid.mesh,
+               .grade = Grade::kClosed,
+               .aim = salvo_at(solid.middle, solid.room, {{Aim::kEdge, Aim::kVertex}, times(4), 32, 1}, 41)});
     EXPECT_EQ(tally.hits, tally.rays);
   }
 }
@@ -91,9 +88,7 @@ TEST(HardCase44, QuantisedVertices) {
     for (const Vec3& offset : {Vec3(0.0f), Vec3(1000.25f, -3000.5f, 7.0f)}) {
       SCOPED_TRACE(solid.name);
       const TestMesh mesh = moved(solid.mesh, 1.0f, offset);
-      GridParameters grid;
-      grid.lambda = 64.0f;
-      grid.format = TriangleFormat::kLattice;
+      GridParameters grid{.lambda = 64.0f, .format = TriangleFormat::kLattice};
       const BuiltImage built = build_image(mesh.view(), grid);
       const GridRecord& record = built.view.grid;
       const std::span<const std::byte> bytes = built.image.bytes();
@@ -118,14 +113,11 @@ TEST(HardCase44, QuantisedVertices) {
       for (const UVec3& t : mesh.triangles) is_used[t.x] = is_used[t.y] = is_used[t.z] = true;
       for (const bool one : is_used) used += one;
       EXPECT_EQ(seen.size(), used) << "vertices were split or joined";
-      const Tally tally = shoot({.mesh = mesh,
-                                 .grade = Grade::kClosed,
-                                 .aim =
-                                     [&](const TestMesh& stored) {
-                                       return salvo(stored, solid.middle + offset, 0.5f * solid.room,
-                                                    {{Aim::kEdge, Aim::kVertex}, times(3), 32, 1}, 44);
-                                     },
-                                 .grid = grid});
+      const Tally tally = shoot(
+          {.mesh = mesh,
+           .grade = Grade::kClosed,
+           .aim = salvo_at(solid.middle + offset, 0.5f * solid.room, {{Aim::kEdge, Aim::kVertex}, times(3), 32, 1}, 44),
+           .grid = grid});
       EXPECT_EQ(tally.hits, tally.rays);
     }
   }

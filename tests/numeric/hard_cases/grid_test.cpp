@@ -77,100 +77,82 @@ std::vector<Rays> in_cells(const GridRecord& grid, std::vector<Rays> all) {
     };
     scaled(rays.origin, true);
     for (Vec3& d : rays.directions) scaled(d, false);
-    if (rays.columns == 0) continue;
     for (Vec3* const d : {&rays.corner, &rays.step_x, &rays.step_y}) scaled(*d, false);
-    const auto rows = static_cast<std::uint32_t>(rays.directions.size()) / rays.columns;
-    rays = picture(rays.origin, rays.corner, rays.step_x, rays.step_y, rays.columns, rows);
+    recompute_picture(rays);
   }
   return all;
 }
 
 // Walks through every exact grid, and all of it through the unit cells.
-template <class Aim>
-Tally shoot_on_faces(std::uint64_t first_seed, Aim&& aim) {
+Tally shoot_on_faces(std::uint64_t first_seed, const AimAtMesh& aim) {
   for (const GridRecord& grid : exact_grids()) {
-    const WalkTally walked = walk(grid, in_cells(grid, aim()));
+    const WalkTally walked = walk(grid, in_cells(grid, aim({})));
     EXPECT_GT(2 * walked.touched, walked.rays) << "many leave the grid at once, not most";
   }
   Tally tally;
   for (std::uint64_t seed = first_seed; seed < first_seed + 3; ++seed) {
     const UnitCells cells(seed);
-    tally += shoot({.mesh = cells.mesh, .aim = [&](const TestMesh&) { return aim(); }, .grid = cells.grid});
+    tally += shoot({.mesh = cells.mesh, .aim = aim, .grid = cells.grid});
   }
   return tally;
 }
 
 TEST(HardCase18, OriginOnCellBoundary) {
-  const Tally tally = shoot_on_faces(18, [] {
-    TestRandom random(18);
-    std::vector<Rays> all;
-    for (std::uint32_t i = 0; i < times(12); ++i) {
-      Rays rays;
-      rays.origin = lattice_point(random, 0, 8, 1);  // a corner
-      if (i % 3 >= 1) rays.origin.x += 0.375f;       // on an edge
-      if (i % 3 == 2) rays.origin.y += 0.625f;       // on a face
-      for (std::uint32_t k = 0; k < 24; ++k) {
-        rays.directions.push_back(k % 2 == 0 ? random_vec(random, 1.0f) : lattice_point(random, -3, 3, 1));
-        if (rays.directions.back() == Vec3(0.0f)) rays.directions.back().z = -1.0f;
-      }
-      all.push_back(rays);
-      all.push_back(picture(rays.origin, {-1, -1, 1}, {0.25f, 0, 0}, {0, 0.25f, 0}, 9, 9));
+  const auto add = [](std::vector<Rays>& all, std::uint32_t i, TestRandom& random, const TestMesh&) {
+    Rays rays{lattice_point(random, 0, 8, 1)};  // a corner
+    if (i % 3 >= 1) rays.origin.x += 0.375f;    // on an edge
+    if (i % 3 == 2) rays.origin.y += 0.625f;    // on a face
+    for (std::uint32_t k = 0; k < 24; ++k) {
+      rays.directions.push_back(k % 2 == 0 ? random_vec(random, 1.0f) : lattice_point(random, -3, 3, 1));
+      if (rays.directions.back() == Vec3(0.0f)) rays.directions.back().z = -1.0f;
     }
-    return all;
-  });
+    all.push_back(rays);
+    all.push_back(picture(rays.origin, {-1, -1, 1}, {0.25f, 0, 0}, {0, 0.25f, 0}, 9, 9));
+  };
+  const Tally tally = shoot_on_faces(18, rounds(12, 18, add));
   EXPECT_GT(tally.hits, tally.rays / 6);
 }
 
 TEST(HardCase19, RayInACellFace) {
-  const Tally tally = shoot_on_faces(19, [] {
-    TestRandom random(19);
-    std::vector<Rays> all;
-    for (std::uint32_t i = 0; i < times(12); ++i) {
-      Rays rays;
-      rays.origin = lattice_point(random, -2, 10, 1);
-      const auto axis = static_cast<int>(i % 3);
-      if (i % 2 == 0) rays.origin[(axis + 1) % 3] += 0.375f;
-      for (std::uint32_t k = 0; k < 24; ++k) {
-        Vec3 d = random_vec(random, 1.0f);
-        d[axis] = k % 4 == 0 ? -0.0f : 0.0f;  // in a face
-        if (k % 3 == 0) {                     // along an edge
-          d = Vec3(0.0f);
-          d[(axis + 1) % 3] = k % 2 == 0 ? 1.0f : -1.0f;
-        }
-        rays.directions.push_back(d);
+  const auto add = [](std::vector<Rays>& all, std::uint32_t i, TestRandom& random, const TestMesh&) {
+    Rays rays{lattice_point(random, -2, 10, 1)};
+    const auto axis = static_cast<int>(i % 3);
+    if (i % 2 == 0) rays.origin[(axis + 1) % 3] += 0.375f;
+    for (std::uint32_t k = 0; k < 24; ++k) {
+      Vec3 d = random_vec(random, 1.0f);
+      d[axis] = k % 4 == 0 ? -0.0f : 0.0f;  // in a face
+      if (k % 3 == 0) {                     // along an edge
+        d = Vec3(0.0f);
+        d[(axis + 1) % 3] = k % 2 == 0 ? 1.0f : -1.0f;
       }
-      all.push_back(rays);
-      Vec3 along(0.0f), across(0.0f), forward(0.0f);
-      forward[(axis + 1) % 3] = 1.0f;
-      across[(axis + 2) % 3] = 0.125f;
-      along[axis] = 0x1p-23f;  // the middle row runs in the face, the others beside it
-      all.push_back(picture(rays.origin, forward - 4.0f * across - 4.0f * along, across, along, 9, 9));
+      rays.directions.push_back(d);
     }
-    return all;
-  });
+    all.push_back(rays);
+    Vec3 along(0.0f), across(0.0f), forward(0.0f);
+    forward[(axis + 1) % 3] = 1.0f;
+    across[(axis + 2) % 3] = 0.125f;
+    along[axis] = 0x1p-23f;  // the middle row runs in the face, the others beside it
+    all.push_back(picture(rays.origin, forward - 4.0f * across - 4.0f * along, across, along, 9, 9));
+  };
+  const Tally tally = shoot_on_faces(19, rounds(12, 19, add));
   EXPECT_GT(tally.hits, tally.rays / 10);
 }
 
 // Through corners of cells, one after the other. Where two axes are as steep, the first of them is marched along.
 TEST(HardCase20, DiagonalTies) {
-  const Tally tally = shoot_on_faces(20, [] {
-    TestRandom random(20);
-    std::vector<Rays> all;
-    for (std::uint32_t i = 0; i < times(12); ++i) {
-      Rays rays;
-      rays.origin = lattice_point(random, -1, 9, i % 3 == 0 ? 0.5f : 1.0f);
-      for (std::uint32_t k = 0; k < 27; ++k) {
-        const Vec3 d(static_cast<float>(k % 3) - 1.0f, static_cast<float>(k / 3 % 3) - 1.0f,
-                     static_cast<float>(k / 9) - 1.0f);
-        if (d != Vec3(0.0f)) rays.directions.push_back(d);
-      }
-      all.push_back(rays);
-      const float step = i % 2 == 0 ? 0x1p-23f : 0.25f;
-      all.push_back(
-          picture(rays.origin, Vec3(1.0f) - Vec3(4.0f * step, 4.0f * step, 0), {step, 0, 0}, {0, step, 0}, 9, 9));
+  const auto add = [](std::vector<Rays>& all, std::uint32_t i, TestRandom& random, const TestMesh&) {
+    Rays rays{lattice_point(random, -1, 9, i % 3 == 0 ? 0.5f : 1.0f)};
+    for (std::uint32_t k = 0; k < 27; ++k) {
+      const Vec3 d(static_cast<float>(k % 3) - 1.0f, static_cast<float>(k / 3 % 3) - 1.0f,
+                   static_cast<float>(k / 9) - 1.0f);
+      if (d != Vec3(0.0f)) rays.directions.push_back(d);
     }
-    return all;
-  });
+    all.push_back(rays);
+    const float step = i % 2 == 0 ? 0x1p-23f : 0.25f;
+    all.push_back(
+        picture(rays.origin, Vec3(1.0f) - Vec3(4.0f * step, 4.0f * step, 0), {step, 0, 0}, {0, step, 0}, 9, 9));
+  };
+  const Tally tally = shoot_on_faces(20, rounds(12, 20, add));
   EXPECT_GT(tally.hits, tally.rays / 8);
   const GridRecord grid = exact_grids()[0];
   for (std::uint32_t ties = 1; ties < 8; ++ties) {
@@ -190,9 +172,7 @@ TEST(HardCase20, DiagonalTies) {
 // From outside, at the corners, edges and faces of the bounds, and past them by a float.
 TEST(HardCase22, GrazingTheBounds) {
   const auto aim = [](float low, float high) {
-    TestRandom random(22);
-    std::vector<Rays> all;
-    for (std::uint32_t i = 0; i < times(300); ++i) {
+    return rounds(300, 22, [=](std::vector<Rays>& all, std::uint32_t i, TestRandom& random, const TestMesh&) {
       const auto side = [&] { return random.below(2) == 0 ? low : high; };
       Vec3 at;
       at.x = side();
@@ -209,31 +189,22 @@ TEST(HardCase22, GrazingTheBounds) {
         rays.directions.push_back(beside);
       }
       all.push_back(rays);
-    }
-    return all;
+    });
   };
-  Tally tally = shoot({.mesh = make_box(Vec3(-1.0f), Vec3(1.0f)), .grade = Grade::kTie, .aim = [&](const TestMesh&) {
-                         return aim(-1, 1);
-                       }});
+  Tally tally = shoot({.mesh = make_box(Vec3(-1.0f), Vec3(1.0f)), .grade = Grade::kTie, .aim = aim(-1, 1)});
   EXPECT_GT(tally.ties, 100u);
   const UnitCells cells(22, make_box(Vec3(0.0f), Vec3(UnitCells::kLast)));
-  tally += shoot({.mesh = cells.mesh,
-                  .grade = Grade::kTie,
-                  .aim = [&](const TestMesh&) { return aim(0, UnitCells::kLast); },
-                  .grid = cells.grid});
+  tally += shoot({.mesh = cells.mesh, .grade = Grade::kTie, .aim = aim(0, UnitCells::kLast), .grid = cells.grid});
   EXPECT_GT(tally.hits, tally.rays / 6);
   EXPECT_LT(tally.hits, tally.rays);
-  for (const GridRecord& grid : exact_grids()) EXPECT_GT(walk(grid, in_cells(grid, aim(0, 8))).touched, 1000u);
+  for (const GridRecord& grid : exact_grids()) EXPECT_GT(walk(grid, in_cells(grid, aim(0, 8)({}))).touched, 1000u);
 }
 
 // Rays that leave by the last face, the last edge, the last corner; triangles there. No walk visits a cell beyond.
 TEST(HardCase23, ExitAtTheLastFace) {
   const auto aim = [](float last) {
-    TestRandom random(23);
-    std::vector<Rays> all;
-    for (std::uint32_t i = 0; i < times(16); ++i) {
-      Rays rays;
-      rays.origin = lattice_point(random, 1, 7, 0.5f);
+    return rounds(16, 23, [=](std::vector<Rays>& all, std::uint32_t, TestRandom& random, const TestMesh&) {
+      Rays rays{lattice_point(random, 1, 7, 0.5f)};
       for (std::uint32_t k = 0; k < 32; ++k) {
         Vec3 at = lattice_point(random, 0, 8, 1);
         at[static_cast<int>(k % 3)] = last;
@@ -244,16 +215,13 @@ TEST(HardCase23, ExitAtTheLastFace) {
       all.push_back(rays);
       all.push_back(
           picture(rays.origin, (Vec3(last) - rays.origin) - Vec3(0x1p-20f), {0x1p-22f, 0, 0}, {0, 0x1p-22f, 0}, 9, 9));
-    }
-    return all;
+    });
   };
-  for (const GridRecord& grid : exact_grids()) EXPECT_GT(walk(grid, in_cells(grid, aim(8))).touched, 300u);
+  for (const GridRecord& grid : exact_grids()) EXPECT_GT(walk(grid, in_cells(grid, aim(8)({}))).touched, 300u);
   for (std::uint64_t seed = 23; seed < 26; ++seed) {
     const UnitCells cells(seed, make_box(Vec3(0.0f), Vec3(UnitCells::kLast)));
-    const Tally tally = shoot({.mesh = cells.mesh,
-                               .grade = Grade::kClosed,
-                               .aim = [&](const TestMesh&) { return aim(UnitCells::kLast); },
-                               .grid = cells.grid});
+    const Tally tally =
+        shoot({.mesh = cells.mesh, .grade = Grade::kClosed, .aim = aim(UnitCells::kLast), .grid = cells.grid});
     EXPECT_EQ(tally.hits, tally.rays);
   }
 }
@@ -274,36 +242,30 @@ TEST(HardCase25, FlatBounds) {
         EXPECT_LE(target.grid().cells_per_unit[i], kGreatestCellsPerUnit);
         EXPECT_EQ(target.grid().cell_count[i] == 1, i == axis);
       }
-      const Tally tally = shoot({.mesh = sheet, .grade = Grade::kClosed, .aim = [&](const TestMesh&) {
-                                   TestRandom random(25);
-                                   std::vector<Rays> all;
-                                   for (std::uint32_t i = 0; i < times(6); ++i) {
-                                     Rays rays;
-                                     rays.origin = random_vec(random, 0.5f);
-                                     rays.origin[axis] = height + (i % 2 == 0 ? 2.0f : -1.0f);
-                                     while (rays.directions.size() <
-                                            32) {  // at eighths, off the border: what the float aims at lies inside
-                                       Vec3 at = lattice_point(random, -0.75f, 0.75f, 0.0625f);
-                                       at[axis] = height;
-                                       rays.directions.push_back(at - rays.origin);
-                                     }
-                                     all.push_back(rays);
-                                   }
-                                   return all;
-                                 }});
+      const auto add = [&](std::vector<Rays>& all, std::uint32_t i, TestRandom& random, const TestMesh&) {
+        Rays rays{random_vec(random, 0.5f)};
+        rays.origin[axis] = height + (i % 2 == 0 ? 2.0f : -1.0f);
+        while (rays.directions.size() < 32) {  // at eighths, off the border: what the float aims at lies inside
+          Vec3 at = lattice_point(random, -0.75f, 0.75f, 0.0625f);
+          at[axis] = height;
+          rays.directions.push_back(at - rays.origin);
+        }
+        all.push_back(rays);
+      };
+      const Tally tally = shoot({.mesh = sheet, .grade = Grade::kClosed, .aim = rounds(6, 25, add)});
       EXPECT_EQ(tally.hits, tally.rays);
       // Rays in the sheet: no hit, bounded.
-      const Tally inside = shoot({.mesh = sheet, .grade = Grade::kBounded, .aim = [&](const TestMesh&) {
-                                    TestRandom random(26);
-                                    Rays rays;
-                                    rays.origin[axis] = height;
-                                    for (std::uint32_t k = 0; k < 64; ++k) {
-                                      Vec3 d = random_vec(random, 1.0f);
-                                      d[axis] = 0.0f;
-                                      rays.directions.push_back(d);
-                                    }
-                                    return std::vector<Rays>{rays};
-                                  }});
+      const auto in_the_sheet = [&](const TestMesh&) {
+        TestRandom random(26);
+        Rays rays;
+        rays.origin[axis] = height;
+        for (std::uint32_t k = 0; k < 64; ++k) {
+          rays.directions.push_back(random_vec(random, 1.0f));
+          rays.directions.back()[axis] = 0.0f;
+        }
+        return std::vector<Rays>{rays};
+      };
+      const Tally inside = shoot({.mesh = sheet, .grade = Grade::kBounded, .aim = in_the_sheet});
       EXPECT_EQ(inside.hits, 0u);
     }
   }
@@ -316,11 +278,8 @@ TEST(HardCase27, AllInOneCell) {
     const Vec3 middle = (cluster.vertices[i] + cluster.vertices[i + 1] + cluster.vertices[i + 2]) / 3.0f;
     for (std::size_t k = 0; k < 3; ++k) cluster.vertices[i + k] -= middle;
   }
-  const auto aim = [](const TestMesh& mesh) {
-    return salvo(mesh, Vec3(0.0f), 3.0f, {{Aim::kEdge, Aim::kVertex, Aim::kInside}, times(4), 24, 1}, 27);
-  };
-  GridParameters one_cell;
-  one_cell.lambda = 1e-6f;
+  const auto aim = salvo_at(Vec3(0.0f), 3.0f, {kFeatures, times(4), 24, 1}, 27);
+  const GridParameters one_cell{.lambda = 1e-6f};
   EXPECT_GT(shoot({.mesh = cluster, .aim = aim, .grid = one_cell}).hits, 1000u);
   TestMesh with_far = moved(cluster, 1.0f, Vec3(5.0f));
   with_far.append(make_triangle({4000, 4000, 4000}, {4001, 4000, 4000}, {4000, 4001, 4000}));
@@ -328,15 +287,7 @@ TEST(HardCase27, AllInOneCell) {
   EXPECT_GT(target.grid().cell_count[0], 8u);
   EXPECT_LT(target.grid().reference_count, 320u);
   EXPECT_LT(target.need().image_bytes, 1u << 20);
-  EXPECT_GT(
-      shoot(
-          {.mesh = with_far,
-           .aim =
-               [](const TestMesh& mesh) {
-                 return salvo(mesh, Vec3(5.0f), 3.0f, {{Aim::kEdge, Aim::kVertex, Aim::kInside}, times(4), 24, 1}, 28);
-               }})
-          .hits,
-      1000u);
+  EXPECT_GT(shoot({.mesh = with_far, .aim = salvo_at(Vec3(5.0f), 3.0f, {kFeatures, times(4), 24, 1}, 28)}).hits, 1000u);
 }
 
 // A triangle through all cells: the mailbox sees to it that a packet tests it once.
@@ -344,21 +295,12 @@ TEST(HardCase28, GiantTriangle) {
   TestMesh mesh = make_random_soup(500, 0.05f, 28);
   const auto giant = static_cast<std::uint32_t>(mesh.triangles.size());
   mesh.append(make_triangle({-4, -4, -1.5f}, {4, -4, -1.5f}, {0.1f, 6, 1.5f}));
-  EXPECT_GT(
-      shoot(
-          {.mesh = mesh,
-           .aim =
-               [](const TestMesh& stored) {
-                 return salvo(stored, {0, 0, 4}, 1.0f, {{Aim::kEdge, Aim::kVertex, Aim::kInside}, times(8), 32, 1}, 28);
-               }})
-          .hits,
-      1000u);
+  EXPECT_GT(shoot({.mesh = mesh, .aim = salvo_at({0, 0, 4}, 1.0f, {kFeatures, times(8), 32, 1}, 28)}).hits, 1000u);
   // The giant alone, in many cells. Rays that miss it stay in the grid to its end; all but the first test of a packet
   // are the mailbox's. Fetched it is for every cell, since a cell does not know of the others.
   const TestMesh alone =
       make_triangle(mesh.vertices[3 * giant], mesh.vertices[3 * giant + 1], mesh.vertices[3 * giant + 2]);
-  GridParameters fine;
-  fine.lambda = 4096.0f;
+  const GridParameters fine{.lambda = 4096.0f};
   Target target(alone, fine, kProfiles[0]);
   ASSERT_GT(target.grid().reference_count, 200u);
   const Rays view = picture({0, 0, 4}, {-2, -2, -2}, {0.0625f, 0, 0}, {0, 0.0625f, 0}, 64, 64);
@@ -411,28 +353,20 @@ TEST(HardCase30, TriangleOnACellFace) {
       }
     }
   }
-  const Tally tally = shoot({.mesh = cells.mesh,
-                             .aim =
-                                 [](const TestMesh& mesh) {
-                                   TestRandom random(30);
-                                   std::vector<Rays> all;
-                                   for (std::uint32_t i = 0; i < times(16); ++i) {
-                                     const Vec3 origin = lattice_point(random, -1, 9, 0.5f);
-                                     for (const Aim aim : {Aim::kVertex, Aim::kEdge, Aim::kInside})
-                                       all.push_back(rays_at(mesh, origin, aim, 24, random));
-                                     Rays straight;
-                                     straight.origin = origin;
-                                     for (int axis = 0; axis < 6; ++axis) {
-                                       Vec3 d(0.0f);
-                                       d[axis % 3] = axis < 3 ? 1.0f : -1.0f;
-                                       straight.directions.push_back(d);
-                                     }
-                                     all.push_back(straight);
-                                     all.push_back(picture_at(mesh, origin, Aim::kVertex, random));
-                                   }
-                                   return all;
-                                 },
-                             .grid = cells.grid});
+  const auto add = [](std::vector<Rays>& all, std::uint32_t, TestRandom& random, const TestMesh& mesh) {
+    const Vec3 origin = lattice_point(random, -1, 9, 0.5f);
+    for (const Aim aim : {Aim::kVertex, Aim::kEdge, Aim::kInside})
+      all.push_back(rays_at(mesh, origin, aim, 24, random));
+    Rays straight{origin};
+    for (int axis = 0; axis < 6; ++axis) {
+      Vec3 d(0.0f);
+      d[axis % 3] = axis < 3 ? 1.0f : -1.0f;
+      straight.directions.push_back(d);
+    }
+    all.push_back(straight);
+    all.push_back(picture_at(mesh, origin, Aim::kVertex, random));
+  };
+  const Tally tally = shoot({.mesh = cells.mesh, .aim = rounds(16, 30, add), .grid = cells.grid});
   EXPECT_GT(tally.hits, tally.rays / 2);
 }
 
@@ -456,19 +390,12 @@ TEST(HardCase31, TriangleAtACellCorner) {
       ASSERT_TRUE(holds(built, cell.x, cell.y, cell.z, 2 + i)) << "triangle " << 2 + i;
     }
   }
-  const Tally tally = shoot({.mesh = cells.mesh,
-                             .aim =
-                                 [&](const TestMesh&) {
-                                   TestRandom random(31);
-                                   std::vector<Rays> all;
-                                   for (std::uint32_t i = 0; i < times(400); ++i) {
-                                     const Vec3 tip = tips.vertices[tips.triangles[random.below(40)].x];
-                                     const Vec3 d = lattice_point(random, -1, 1, 0.25f) + Vec3(0, 0, 0.0625f);
-                                     all.push_back(one_ray(tip - 0.5f * d, d));
-                                   }
-                                   return all;
-                                 },
-                             .grid = cells.grid});
+  const auto add = [&](std::vector<Rays>& all, std::uint32_t, TestRandom& random, const TestMesh&) {
+    const Vec3 tip = tips.vertices[tips.triangles[random.below(40)].x];
+    const Vec3 d = lattice_point(random, -1, 1, 0.25f) + Vec3(0, 0, 0.0625f);
+    all.push_back(one_ray(tip - 0.5f * d, d));
+  };
+  const Tally tally = shoot({.mesh = cells.mesh, .aim = rounds(400, 31, add), .grid = cells.grid});
   EXPECT_EQ(tally.hits, tally.rays);
   EXPECT_GT(tally.ties, 40u);
 }
@@ -490,15 +417,13 @@ TEST(HardCase42, Resolutions) {
         for (Vec3& v : mesh.vertices) v *= Vec3(0x1p-12f, 0x1p-12f, 1);
         total = wanted;
       }
-      GridParameters grid;
-      grid.lambda = static_cast<float>(total / static_cast<double>(mesh.triangles.size()));
-      grid.macro_width = cells == 1024 ? 8 : 1 + cells % 8;
+      GridParameters grid{.lambda = static_cast<float>(total / static_cast<double>(mesh.triangles.size())),
+                          .macro_width = cells == 1024 ? 8 : 1 + cells % 8};
       const Target target(mesh, grid, kProfiles[0]);
       ASSERT_EQ(target.status(), Status::kOk);
       for (int axis = 0; axis < 3; ++axis) EXPECT_EQ(target.grid().cell_count[axis], is_line && axis < 2 ? 1 : cells);
       const auto aim = [&](const TestMesh& stored) {
-        std::vector<Rays> all = salvo(stored, Vec3(0.0f), is_line ? 0x1p-12f : 1.5f,
-                                      {{Aim::kEdge, Aim::kVertex, Aim::kInside}, times(2), 16, 0}, 42);
+        std::vector<Rays> all = salvo(stored, Vec3(0.0f), is_line ? 0x1p-12f : 1.5f, {kFeatures, times(2), 16, 0}, 42);
         // Narrow: a wide view of 1024 cells on each axis passes a billion of them.
         const float step = is_line ? 0x1p-23f : 0x1p-14f;
         const Vec3 forward = is_line ? Vec3(0, 0, 1) : Vec3(-0.3f, 0.1f, 1);

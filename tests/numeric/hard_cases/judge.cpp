@@ -1,12 +1,9 @@
 // Judge: see the header. SPDX-License-Identifier: Apache-2.0
 #include "numeric/hard_cases/judge.h"
 
-#include <gtest/gtest.h>
-
-#include <algorithm>
-#include <bit>
-#include <cmath>
 #include <ios>
+
+#include "support/test_headers.h"
 
 namespace gridiron::test::hard {
 namespace {

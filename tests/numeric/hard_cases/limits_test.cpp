@@ -24,8 +24,7 @@ constexpr TriangleFormat kFormats[] = {TriangleFormat::kVertices, TriangleFormat
                                        TriangleFormat::kLattice};
 
 Status count(const MeshView& mesh, TriangleFormat format, GridNeed& need) {
-  GridParameters parameters;
-  parameters.format = format;
+  const GridParameters parameters{.format = format};
   return count_scene_image(mesh, parameters, need);
 }
 
@@ -47,10 +46,9 @@ TEST(HardCase26, NothingOnePointOneTriangle) {
   for (const float scale : {1e-30f, 1.0f, 1e30f}) {
     const TestMesh triangle =
         make_triangle(scale * Vec3(-1, -1, 0.5f), scale * Vec3(1, -0.5f, 0.25f), scale * Vec3(0, 1, -0.5f));
-    tally += shoot({.mesh = triangle, .grade = Grade::kBounded, .aim = [scale](const TestMesh& mesh) {
-                      return salvo(mesh, scale * Vec3(0, 0, 2), scale,
-                                   {{Aim::kEdge, Aim::kVertex, Aim::kInside}, times(6), 24, 1}, 26);
-                    }});
+    tally += shoot({.mesh = triangle,
+                    .grade = Grade::kBounded,
+                    .aim = salvo_at(scale * Vec3(0, 0, 2), scale, {kFeatures, times(6), 24, 1}, 26)});
   }
   EXPECT_GT(tally.hits, tally.rays / 4);
 }
@@ -208,9 +206,7 @@ void refuse_absurd_images(const TestMesh& mesh) {
 // A frame: sizes whose product wraps, macrocells whose product wraps.
 void refuse_absurd_frames(const TestMesh& mesh) {
   SceneInMemory scene(mesh.view(), {});
-  FrameSettings settings;
-  settings.camera.eye = {0, 0, 4};
-  settings.width = settings.height = 8;
+  FrameSettings settings{.camera = {.eye = {0, 0, 4}}, .width = 8, .height = 8};
   PreparedFrame frame = scene.prepare(settings, {});
   ASSERT_EQ(frame.status(), Status::kOk);
   ASSERT_EQ(frame.render({}).status, Status::kOk);
@@ -252,9 +248,7 @@ TEST(HardCase43, CountsOverflow) {
   // References: two thousand triangles, each in two million cells.
   TestMesh sheets;
   for (std::uint32_t i = 0; i < 2200; ++i) sheets.append(make_triangle({-1, -1, 0}, {1, -1, 0}, {-1, 1, 0}));
-  GridParameters fine;
-  fine.lambda = 2000.0f;
-  fine.macro_width = 8;
+  const GridParameters fine{.lambda = 2000.0f, .macro_width = 8};
   GridNeed need{};
   EXPECT_EQ(count_scene_image(sheets.view(), fine, need), Status::kTooManyTriangles);
   // Ids beyond those that a float can distinguish.

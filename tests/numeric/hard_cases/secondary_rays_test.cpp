@@ -13,13 +13,6 @@
 namespace gridiron::test::hard {
 namespace {
 
-VertexTriangle triangle_of(const TestMesh& mesh, std::uint32_t id) {
-  const UVec3& t = mesh.triangles[id];
-  VertexTriangle triangle;
-  set_triangle(triangle, mesh.vertices[t.x], mesh.vertices[t.y], mesh.vertices[t.z], id);
-  return triangle;
-}
-
 // A point on the surface where a ray hits it, lifted off, and what the ray was.
 struct SurfacePoint {
   Vec3 point;
@@ -33,7 +26,7 @@ std::vector<SurfacePoint> surface_points(const TestMesh& mesh, Vec3 middle, floa
                                          std::uint32_t count, std::uint64_t seed) {
   const Oracle oracle(mesh.view(), {.reading = Reading::kStandard});
   std::vector<SurfacePoint> points;
-  for (const Rays& rays : salvo(mesh, middle, room, {{Aim::kEdge, Aim::kVertex, Aim::kInside}, count, 8, 0}, seed)) {
+  for (const Rays& rays : salvo(mesh, middle, room, {kFeatures, count, 8, 0}, seed)) {
     for (std::size_t i = 0; i < rays.directions.size(); ++i) {
       const Vec3& d = rays.directions[i];
       const float origin[3] = {rays.origin.x, rays.origin.y, rays.origin.z}, dir[3] = {d.x, d.y, d.z};
@@ -86,8 +79,7 @@ TEST(HardCase35, SecondaryRaysLeaveTheSurface) {
         std::vector<Rays> all;
         for (const SurfacePoint& at :
              surface_points(stored, from, is_inside ? 16.0f : 100.0f, is_inside, times(3), 35)) {
-          Rays rays;
-          rays.origin = at.point;
+          Rays rays{at.point};
           rays.directions = directions_above(at.normal, random, 12);
           // A light beyond the body: in the shadow, or not.
           rays.directions.push_back(place + random_vec(random, 200.0f) - rays.origin);
@@ -112,33 +104,31 @@ TEST(HardCase35, SecondaryRaysLeaveTheSurface) {
 // is a miss, and t_far = 1 keeps what lies at the light itself.
 TEST(HardCase36, LightOnTheSurface) {
   const TestMesh sphere = make_sphere(10, 13, 1.0f);
-  const Tally tally =
-      shoot({.mesh = sphere, .aim = [](const TestMesh& mesh) {
-               std::vector<SurfacePoint> points = surface_points(mesh, Vec3(0.0f), 0.5f, true, times(6), 36);
-               const std::vector<SurfacePoint> from_outside =
-                   surface_points(mesh, Vec3(0, 0, 3), 1.0f, false, times(6), 37);
-               points.insert(points.end(), from_outside.begin(), from_outside.end());
-               std::vector<Rays> all;
-               TestRandom random(36);
-               for (const SurfacePoint& at : points) {
-                 const SurfacePoint& other = points[random.below(static_cast<std::uint32_t>(points.size()))];
-                 const Vec3& vertex = mesh.vertices[random.below(static_cast<std::uint32_t>(mesh.vertices.size()))];
-                 const UVec3& t = mesh.triangles[at.triangle_id];
-                 Rays rays;
-                 rays.origin = at.point;
-                 rays.directions = {Vec3(0.0f),
-                                    other.point - at.point,
-                                    vertex - at.point,
-                                    mesh.vertices[t.x] - at.point,
-                                    (mesh.vertices[t.x] + mesh.vertices[t.y]) * 0.5f - at.point,
-                                    -0x1p-20f * at.normal};
-                 for (const float limit : {1.0f, std::nextafter(1.0f, 0.0f)}) {
-                   rays.t_far = limit;
-                   all.push_back(rays);
-                 }
-               }
-               return all;
-             }});
+  const auto wanted_rays = [](const TestMesh& mesh) {
+    std::vector<SurfacePoint> points = surface_points(mesh, Vec3(0.0f), 0.5f, true, times(6), 36);
+    const std::vector<SurfacePoint> from_outside = surface_points(mesh, Vec3(0, 0, 3), 1.0f, false, times(6), 37);
+    points.insert(points.end(), from_outside.begin(), from_outside.end());
+    std::vector<Rays> all;
+    TestRandom random(36);
+    for (const SurfacePoint& at : points) {
+      const SurfacePoint& other = points[random.below(static_cast<std::uint32_t>(points.size()))];
+      const Vec3& vertex = mesh.vertices[random.below(static_cast<std::uint32_t>(mesh.vertices.size()))];
+      const UVec3& t = mesh.triangles[at.triangle_id];
+      Rays rays{at.point};
+      rays.directions = {Vec3(0.0f),
+                         other.point - at.point,
+                         vertex - at.point,
+                         mesh.vertices[t.x] - at.point,
+                         (mesh.vertices[t.x] + mesh.vertices[t.y]) * 0.5f - at.point,
+                         -0x1p-20f * at.normal};
+      for (const float limit : {1.0f, std::nextafter(1.0f, 0.0f)}) {
+        rays.t_far = limit;
+        all.push_back(rays);
+      }
+    }
+    return all;
+  };
+  const Tally tally = shoot({.mesh = sphere, .aim = wanted_rays});
   EXPECT_GT(tally.hits, tally.rays / 10);
   EXPECT_LT(tally.hits, tally.rays);
 }

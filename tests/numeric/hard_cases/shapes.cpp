@@ -148,8 +148,7 @@ std::vector<Solid> solids() {
 }
 
 Rays rays_at(const TestMesh& mesh, Vec3 origin, Aim aim, std::uint32_t count, TestRandom& random) {
-  Rays rays;
-  rays.origin = origin;
+  Rays rays{origin};
   for (std::uint32_t i = 0; i < count; ++i) {
     OracleRay ray = ray_at(mesh, origin, aim, random);
     // What is aimed at may be where the ray starts: that is no direction.
@@ -195,10 +194,7 @@ Rays picture_of_triangle(const TestMesh& mesh, std::uint32_t triangle, Vec3 orig
 }
 
 Rays one_ray(Vec3 origin, Vec3 direction) {
-  Rays rays;
-  rays.origin = origin;
-  rays.directions = {direction};
-  return rays;
+  return {origin, {direction}};
 }
 
 std::vector<Rays> with_unit_directions(std::vector<Rays> all) {
@@ -212,8 +208,7 @@ std::vector<Rays> with_unit_directions(std::vector<Rays> all) {
     if (rays.columns != 0) {
       const int exponent = exponent_of(rays.corner);
       for (Vec3* const vector : {&rays.corner, &rays.step_x, &rays.step_y}) scale(*vector, exponent);
-      const auto rows = static_cast<std::uint32_t>(rays.directions.size()) / rays.columns;
-      rays = picture(rays.origin, rays.corner, rays.step_x, rays.step_y, rays.columns, rows);
+      recompute_picture(rays);
     } else {
       for (Vec3& direction : rays.directions) scale(direction, exponent_of(direction));
     }
@@ -236,6 +231,20 @@ std::vector<Rays> salvo(const TestMesh& mesh, Vec3 middle, float room, const Sal
     }
   }
   return all;
+}
+
+AimAtMesh salvo_at(Vec3 middle, float room, const Salvo& count, std::uint64_t seed) {
+  return [=](const TestMesh& mesh) { return salvo(mesh, middle, room, count, seed); };
+}
+
+AimAtMesh all_of(std::vector<AimAtMesh> aims) {
+  return [aims = std::move(aims)](const TestMesh& mesh) {
+    std::vector<Rays> all;
+    for (const AimAtMesh& aim : aims) {
+      for (Rays& rays : aim(mesh)) all.push_back(std::move(rays));
+    }
+    return all;
+  };
 }
 
 }  // namespace gridiron::test::hard

@@ -3,7 +3,6 @@
 #pragma once
 
 #include <cstdint>
-#include <initializer_list>
 #include <vector>
 
 #include "numeric/hard_cases/trial.h"
@@ -58,9 +57,12 @@ Rays picture_at(const TestMesh& mesh, Vec3 origin, Aim aim, TestRandom& random);
 /// as far as floats allow it.
 Rays picture_of_triangle(const TestMesh& mesh, std::uint32_t triangle, Vec3 origin);
 
+/// What a mesh has at every triangle.
+inline const std::vector<Aim> kFeatures = {Aim::kEdge, Aim::kVertex, Aim::kInside};
+
 /// How many rays, at what.
 struct Salvo {
-  std::initializer_list<Aim> aims;
+  std::vector<Aim> aims;
   std::uint32_t origins;
   std::uint32_t rays;      ///< for each origin and aim
   std::uint32_t pictures;  ///< the same
@@ -74,5 +76,21 @@ std::vector<Rays> with_unit_directions(std::vector<Rays> all);
 
 /// A salvo from origins within `room` of a place; every fourth origin is rounded to eighths of `room`.
 std::vector<Rays> salvo(const TestMesh& mesh, Vec3 middle, float room, const Salvo& count, std::uint64_t seed);
+/// The same at whatever mesh a trial has.
+AimAtMesh salvo_at(Vec3 middle, float room, const Salvo& count, std::uint64_t seed);
+
+/// Rays of times(count) calls of add(all, number of the call, random, mesh).
+template <class Add>
+AimAtMesh rounds(std::uint32_t count, std::uint64_t seed, Add add) {
+  return [=](const TestMesh& mesh) {
+    TestRandom random(seed);
+    std::vector<Rays> all;
+    for (std::uint32_t i = 0; i < times(count); ++i) add(all, i, random, mesh);
+    return all;
+  };
+}
+
+/// The rays of several aims, one after the other.
+AimAtMesh all_of(std::vector<AimAtMesh> aims);
 
 }  // namespace gridiron::test::hard

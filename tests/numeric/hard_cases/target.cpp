@@ -228,14 +228,11 @@ std::vector<Answer> Target::by_intersector(const Rays& rays, const IntersectorWa
 FrameSettings Target::settings_of(const PipelineWay& way, std::uint32_t width, std::uint32_t height) const {
   // A camera that every grid takes; the rays are put in afterwards.
   const float* const m = grid().minimum;
-  FrameSettings settings;
-  settings.camera.eye = {m[0], m[1], m[2]};
-  settings.camera.at = {m[0], m[1], m[2] + std::fmax(std::fabs(m[2]), 1.0f)};
-  settings.width = width;
-  settings.height = height;
-  settings.accuracy = profile_.accuracy;
-  settings.techniques = way.techniques;
-  return settings;
+  return {.camera = {.eye = {m[0], m[1], m[2]}, .at = {m[0], m[1], m[2] + std::fmax(std::fabs(m[2]), 1.0f)}},
+          .width = width,
+          .height = height,
+          .accuracy = profile_.accuracy,
+          .techniques = way.techniques};
 }
 
 FrameRecord Target::aimed(const FrameRecord& record, const Rays& rays, const PipelineWay& way) const {
@@ -254,12 +251,10 @@ FrameRecord Target::aimed(const FrameRecord& record, const Rays& rays, const Pip
 namespace {
 
 sim::ChipOptions chip_of(const PipelineWay& way) {
-  sim::ChipOptions chip;
-  chip.mode = way.mode;
-  chip.lanes = std::min(way.lanes, sim::widest_lanes());
-  chip.store = way.store;
-  chip.packet_width = way.packet_width;
-  return chip;
+  return {.mode = way.mode,
+          .lanes = std::min(way.lanes, sim::widest_lanes()),
+          .store = way.store,
+          .packet_width = way.packet_width};
 }
 
 // C: as many steps as the counts of the grid allow.
@@ -336,8 +331,7 @@ std::vector<Answer> Target::by_pipeline(const Rays& rays, const PipelineWay& way
   const std::size_t count = only.empty() ? rays.directions.size() : only.size();
   for (std::size_t i = 0; i < count; ++i) {
     const std::size_t ray = only.empty() ? i : only[i];
-    Rays one;
-    one.origin = rays.origin;
+    Rays one{rays.origin};
     one.corner = rays.directions[ray];
     one.t_far = rays.t_far;
     frame.set_record(aimed(untouched, one, way));

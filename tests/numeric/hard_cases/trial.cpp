@@ -87,13 +87,11 @@ void shoot_by_pipeline(Judge& judge, Target& target, const Rays& rays, std::size
 // The rays as a frame has them: rounded, and flushed, as it computes their directions.
 Rays as_in_frame(const Rays& rays, const Trial& trial) {
   const RoundingScope scope(trial.rounding, trial.flush);
+  Rays computed = rays;
   if (rays.columns != 0) {
-    const auto rows = static_cast<std::uint32_t>(rays.directions.size()) / rays.columns;
-    Rays computed = picture(rays.origin, rays.corner, rays.step_x, rays.step_y, rays.columns, rows);
-    computed.t_far = rays.t_far;
+    recompute_picture(computed);
     return computed;
   }
-  Rays computed = rays;
   for (std::size_t i = 0; i < rays.directions.size(); ++i) {
     computed.directions[i] = picture(rays.origin, rays.directions[i], Vec3(0.0f), Vec3(0.0f), 1, 1).directions[0];
   }
@@ -128,18 +126,16 @@ bool operator==(const Answer& a, const Answer& b) {
 }
 
 Rays picture(Vec3 origin, Vec3 corner, Vec3 step_x, Vec3 step_y, std::uint32_t columns, std::uint32_t rows) {
-  Rays rays;
-  rays.origin = origin;
-  rays.columns = columns;
-  rays.corner = corner;
-  rays.step_x = step_x;
-  rays.step_y = step_y;
-  for (std::uint32_t y = 0; y < rows; ++y) {
-    for (std::uint32_t x = 0; x < columns; ++x) {
-      rays.directions.push_back((corner + static_cast<float>(x) * step_x) + static_cast<float>(y) * step_y);
-    }
-  }
+  Rays rays{origin, std::vector<Vec3>(std::size_t{columns} * rows), kFloatMax, columns, corner, step_x, step_y};
+  recompute_picture(rays);
   return rays;
+}
+
+void recompute_picture(Rays& rays) {
+  for (std::size_t i = 0; rays.columns != 0 && i < rays.directions.size(); ++i) {
+    const auto x = static_cast<float>(i % rays.columns), y = static_cast<float>(i / rays.columns);
+    rays.directions[i] = (rays.corner + x * rays.step_x) + y * rays.step_y;
+  }
 }
 
 OracleRay oracle_ray(const Rays& rays, std::size_t i) {

@@ -47,8 +47,8 @@ static_assert(std::size(kProfiles) == kAccuracyCount);
 
 /// Rays from one point: any directions, or the pixels of a picture.
 struct Rays {
-  Vec3 origin;
-  std::vector<Vec3> directions;
+  Vec3 origin{0.0f};
+  std::vector<Vec3> directions = {};
   float t_far = kFloatMax;
   std::uint32_t columns = 0;  ///< of the picture; 0: any directions
   Vec3 corner{}, step_x{}, step_y{};
@@ -56,6 +56,8 @@ struct Rays {
 
 /// Rays through the pixels of a picture: (corner + x step_x) + y step_y, row by row.
 Rays picture(Vec3 origin, Vec3 corner, Vec3 step_x, Vec3 step_y, std::uint32_t columns, std::uint32_t rows);
+/// Makes a picture's directions anew, from its corner and steps. Any other directions stay.
+void recompute_picture(Rays& rays);
 
 /// @returns ray i as the oracle takes it.
 OracleRay oracle_ray(const Rays& rays, std::size_t i);
@@ -132,11 +134,14 @@ class Target {
   std::uint64_t frames_ = 0;
 };
 
+/// Rays at the mesh as an accuracy stores it.
+using AimAtMesh = std::function<std::vector<Rays>(const TestMesh& stored)>;
+
 /// One mesh and the rays at it.
 struct Trial {
   TestMesh mesh;
   Grade grade = Grade::kEqual;
-  std::function<std::vector<Rays>(const TestMesh&)> aim;  ///< at the mesh as an accuracy stores it
+  AimAtMesh aim;
   GridParameters grid = {};
   int rounding = FE_TONEAREST;  ///< while the scene is built and rays are traced
   bool flush = false;           ///< denormals, likewise

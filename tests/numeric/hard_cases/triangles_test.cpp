@@ -11,8 +11,6 @@
 namespace gridiron::test::hard {
 namespace {
 
-const Salvo kAllFeatures = {{Aim::kEdge, Aim::kVertex, Aim::kInside}, 4, 24, 1};
-
 // Every triangle split by one of 1 : 10^2 to 1 : 10^8, some of them turned round by rounding; and a fan of open ones.
 TEST(HardCase05, Slivers) {
   Tally tally;
@@ -21,18 +19,12 @@ TEST(HardCase05, Slivers) {
     SCOPED_TRACE(width);
     const TestMesh mesh = split_by_slivers(make_sphere(6, 8, 1.0f), width, static_cast<std::uint64_t>(exponent));
     ASSERT_TRUE(is_closed(mesh));
-    tally += shoot({.mesh = mesh, .grade = Grade::kClosed, .aim = [](const TestMesh& stored) {
-                      Salvo count = kAllFeatures;
-                      count.origins = times(4);
-                      return salvo(stored, Vec3(0.0f), 0.4f, count, 5);
-                    }});
+    tally += shoot(
+        {.mesh = mesh, .grade = Grade::kClosed, .aim = salvo_at(Vec3(0.0f), 0.4f, {kFeatures, times(4), 24, 1}, 5)});
   }
   EXPECT_EQ(tally.hits, tally.rays);
-  const Tally fan = shoot({.mesh = make_sliver_fan(300, 1e-5f), .aim = [](const TestMesh& stored) {
-                             Salvo count = kAllFeatures;
-                             count.origins = times(4);
-                             return salvo(stored, Vec3(0, 0, 1), 0.5f, count, 6);
-                           }});
+  const Tally fan = shoot(
+      {.mesh = make_sliver_fan(300, 1e-5f), .aim = salvo_at(Vec3(0, 0, 1), 0.5f, {kFeatures, times(4), 24, 1}, 6)});
   EXPECT_GT(fan.hits, fan.rays / 8);
 }
 
@@ -42,11 +34,9 @@ TEST(HardCase06, NeedlesOfOneFloat) {
     SCOPED_TRACE(solid.name);
     const TestMesh mesh = split_by_needles(solid.mesh, 6);
     ASSERT_TRUE(is_closed(mesh));
-    tally += shoot({.mesh = mesh, .grade = Grade::kClosed, .aim = [&](const TestMesh& stored) {
-                      Salvo count = kAllFeatures;
-                      count.origins = times(4);
-                      return salvo(stored, solid.middle, solid.room, count, 6);
-                    }});
+    tally += shoot({.mesh = mesh,
+                    .grade = Grade::kClosed,
+                    .aim = salvo_at(solid.middle, solid.room, {kFeatures, times(4), 24, 1}, 6)});
   }
   EXPECT_EQ(tally.hits, tally.rays);
   EXPECT_GT(tally.ties, 300u);
@@ -80,11 +70,8 @@ TEST(HardCase07, NoArea) {
     const Target target(mesh, {}, kProfiles[0]);
     EXPECT_EQ(target.need().dropped_triangle_count, none + whole.triangles.size());
     const Vec3 middle = tally.rays == 0 ? Vec3(0.0f) : Vec3(1, 0, 0);
-    tally += shoot({.mesh = mesh, .grade = Grade::kClosed, .aim = [&](const TestMesh& stored) {
-                      Salvo count = kAllFeatures;
-                      count.origins = times(12);
-                      return salvo(stored, middle, 0.2f, count, 7);
-                    }});
+    tally +=
+        shoot({.mesh = mesh, .grade = Grade::kClosed, .aim = salvo_at(middle, 0.2f, {kFeatures, times(12), 24, 1}, 7)});
   }
   EXPECT_EQ(tally.hits, tally.rays);
   EXPECT_GT(tally.ties, 80u);
@@ -106,8 +93,7 @@ TEST(HardCase29, IdenticalTriangles) {
     hits += wanted.back().ties.size();
   }
   EXPECT_GT(hits, 16u);
-  GridParameters grid;
-  grid.lambda = 1e-5f;  // one cell
+  const GridParameters grid{.lambda = 1e-5f};  // one cell
   std::size_t turn = 0;
   for (const Profile& profile : kProfiles) {
     Target target(mesh, grid, profile);
@@ -135,16 +121,9 @@ TEST(HardCase34, CoplanarStack) {
       const auto raised = [&](float z) { return std::bit_cast<float>(std::bit_cast<std::uint32_t>(z) + steps); };
       mesh.append(make_triangle({-2, -2, raised(1.0f + tilt)}, {2, -2, raised(1.5f)}, {0, 2, raised(1.25f + tilt)}));
     }
-    tally += shoot({.mesh = mesh, .aim = [](const TestMesh& stored) {
-                      std::vector<Rays> rays;
-                      for (const float side : {-2.0f, 5.0f}) {
-                        Salvo count = kAllFeatures;
-                        count.origins = times(8);
-                        const auto more = salvo(stored, {0, 0, side}, 1.5f, count, 34);
-                        rays.insert(rays.end(), more.begin(), more.end());
-                      }
-                      return rays;
-                    }});
+    tally += shoot({.mesh = mesh,
+                    .aim = all_of({salvo_at({0, 0, -2}, 1.5f, {kFeatures, times(8), 24, 1}, 34),
+                                   salvo_at({0, 0, 5}, 1.5f, {kFeatures, times(8), 24, 1}, 34)})});
   }
   EXPECT_GT(tally.hits, tally.rays / 3);
   EXPECT_GT(tally.ties, 1000u);

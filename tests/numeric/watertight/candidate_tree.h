@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "numeric/watertight/shot.h"
+#include "support/median_tree.h"
 
 namespace gridiron::test {
 
@@ -28,29 +29,19 @@ class CandidateTree {
   void find(const Vec3& point, std::vector<std::uint32_t>& found) const;
 
   /// The triangles, ordered so that near ones are next to each other.
-  [[nodiscard]] const std::vector<std::uint32_t>& order() const { return order_; }
+  [[nodiscard]] const std::vector<std::uint32_t>& order() const { return tree_.order(); }
   /// @returns the place of a triangle in it. Precondition: it is one of them.
   [[nodiscard]] std::uint32_t place(std::uint32_t triangle_id) const { return places_[triangle_id]; }
 
  private:
-  struct Box {
-    float low[3], high[3];
-  };
-  // Children: the next node, and `second`. A leaf has a count.
-  struct Node {
-    Box box;
-    std::uint32_t second, first, count;
-  };
   struct Rays;
 
-  std::uint32_t build(std::uint32_t first, std::uint32_t count, const std::vector<Box>& boxes);
   template <class Touches, class Visit>
   void walk(std::uint32_t node, std::uint32_t mask, const Touches& touches, const Visit& visit) const;
 
-  std::vector<Node> nodes_;
-  std::vector<std::uint32_t> order_;
+  MedianTree tree_;
   std::vector<std::uint32_t> places_;  // by id
-  std::vector<Box> boxes_;             // of the triangles in order_
+  std::vector<PlacedBox> boxes_;       // by id
 };
 
 }  // namespace gridiron::test

@@ -2,16 +2,12 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "numeric/watertight/cell/cell_float.h"
 
-#include <gtest/gtest.h>
-
-#include <bit>
 #include <cfenv>
-#include <cmath>
-#include <cstdint>
 
 #include "core/seeds.h"
 #include "numeric/watertight/cell/cell_vector.h"
 #include "numeric/watertight/machines.h"
+#include "support/test_headers.h"
 #include "support/test_mesh.h"
 
 namespace gridiron::test {

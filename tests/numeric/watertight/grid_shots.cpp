@@ -141,8 +141,7 @@ class FrameAimer {
 class GridScene {
  public:
   GridScene(const MeshView& mesh, TriangleFormat format) {
-    GridParameters parameters;
-    parameters.format = format;
+    const GridParameters parameters{.format = format};
     GridNeed need;
     require(count_scene_image(mesh, parameters, need) == Status::kOk, "a solid has no scene image");
     constexpr std::uint64_t kFrameBytes = 4 * kPixels * sizeof(std::uint32_t) + sizeof(FrameRecord) + 4096;
@@ -262,10 +261,11 @@ class GridShooting {
     chip.mode = mode_;
     chip.packet_width = has_small_packets ? 8 : 32;
     chip.lanes = std::min(kLanes[turn / 4 % 3], sim::widest_lanes());
-    FrameSettings settings;
-    settings.accuracy = profile.accuracy;
-    settings.shading = Shading::kNone;
-    settings.techniques = kUseMailbox | kUseEmptySkip | (has_small_packets ? kUseCornerCulling : kUseSubpackets);
+    const FrameSettings settings{
+        .camera = {},
+        .accuracy = profile.accuracy,
+        .shading = Shading::kNone,
+        .techniques = kUseMailbox | kUseEmptySkip | (has_small_packets ? kUseCornerCulling : kUseSubpackets)};
     return scenes_[static_cast<std::size_t>(format_of(profile.accuracy))]->render(rays, settings, with_depth, chip,
                                                                                   machine);
   }

@@ -1,18 +1,12 @@
 // The same triangle at the same distance, in whatever order the triangles come, whatever lane a ray is in and whatever
 // other rays its packet has. SPDX-License-Identifier: Apache-2.0
-#include <gtest/gtest.h>
-
-#include <algorithm>
-#include <bit>
-#include <cmath>
 #include <numeric>
-#include <utility>
-#include <vector>
 
 #include "core/seeds.h"
 #include "numeric/watertight/aims.h"
 #include "numeric/watertight/machines.h"
 #include "numeric/watertight/placed_solid.h"
+#include "support/test_headers.h"
 
 namespace gridiron::test {
 namespace {

@@ -8,6 +8,8 @@
 #include <algorithm>
 #include <cmath>
 #include <cstring>
+#include <glm/common.hpp>
+#include <glm/geometric.hpp>
 #include <stdexcept>
 
 namespace gridiron::test {
@@ -32,10 +34,6 @@ std::vector<std::uint32_t> kept_triangles(const TestMesh& mesh) {
   return kept;
 }
 
-DVec3 cross(const DVec3& a, const DVec3& b) {
-  return {a.y * b.z - a.z * b.y, a.z * b.x - a.x * b.z, a.x * b.y - a.y * b.x};
-}
-
 // det[a, b, c], and the sum of the magnitudes of its products. Of differences of floats its error is below 2^-49 times
 // that: 3 roundings of differences, 2 of products, 3 of sums.
 struct Determinant {
@@ -47,7 +45,7 @@ struct Determinant {
 };
 Determinant determinant(const DVec3& a, const DVec3& b, const DVec3& c) {
   const auto size = [](double p, double q) { return std::fabs(p) + std::fabs(q); };
-  const DVec3 n = cross(b, c);
+  const DVec3 n = glm::cross(b, c);
   return {a.x * n.x + a.y * n.y + a.z * n.z, std::fabs(a.x) * size(b.y * c.z, b.z * c.y) +
                                                  std::fabs(a.y) * size(b.z * c.x, b.x * c.z) +
                                                  std::fabs(a.z) * size(b.x * c.y, b.y * c.x)};
@@ -79,10 +77,8 @@ PlacedSolid::PlacedSolid(const Solid& solid, const Placement& placement, Vertice
   }
   if (vertices == Vertices::kOnLattice) find_places();
   for (const Vec3& vertex : mesh_.vertices) {
-    for (int axis = 0; axis < 3; ++axis) {
-      low_[axis] = std::fmin(low_[axis], vertex[axis]);
-      high_[axis] = std::fmax(high_[axis], vertex[axis]);
-    }
+    low_ = glm::min(low_, vertex);
+    high_ = glm::max(high_, vertex);
   }
   const Vec3 extent = high_ - low_;
   width_ = std::fmax(extent.x, std::fmax(extent.y, extent.z));

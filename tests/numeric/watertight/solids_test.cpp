@@ -2,16 +2,11 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "numeric/watertight/solids.h"
 
-#include <gtest/gtest.h>
-
-#include <algorithm>
-#include <cmath>
-#include <vector>
-
 #include "core/seeds.h"
 #include "numeric/hard_rays.h"
 #include "numeric/watertight/aims.h"
 #include "numeric/watertight/placed_solid.h"
+#include "support/test_headers.h"
 
 namespace gridiron::test {
 namespace {

@@ -1,13 +1,9 @@
 // gridiron_calibrate as a program: what it refuses before it counts. SPDX-License-Identifier: Apache-2.0
-#include <gtest/gtest.h>
-
 #include <chrono>
-#include <filesystem>
-#include <string>
-#include <vector>
 
 #include "../gridiron/run_program.h"
 #include "../gridiron/temporary_folder.h"
+#include "support/test_headers.h"
 
 namespace gridiron::test {
 namespace {

@@ -1,17 +1,10 @@
 // The accuracy experiment as a program: a tiny one, on generated scenes. SPDX-License-Identifier: Apache-2.0
-#include <gtest/gtest.h>
-
-#include <algorithm>
-#include <filesystem>
-#include <set>
-#include <string>
-#include <vector>
-
 #include "csv_rows.h"
-#include "experiment/accuracy_experiment.h"
+#include "experiment/experiments.h"
 #include "experiment/table.h"
 #include "gridiron/device/accuracies.h"
 #include "markup.h"
+#include "support/test_headers.h"
 #include "two_runs.h"
 
 namespace gridiron::test {
@@ -151,30 +144,23 @@ TEST(AccuracyExperiment, FilesDoNotDependOnThreads) {
 
 TEST(AccuracyExperiment, MistakesAreTold) {
   const TemporaryFolder folder;
-  struct Case {
-    std::vector<std::string> arguments;
+  const struct {
+    Words arguments;
     int exit_code;
     const char* words;
-  };
-  const Case cases[] = {
+  } cases[] = {
       {{"experiment", "accuracy"}, 2, "-o DIR is required"},
       {{"experiment", "accuracy", "-o", "out", "--largest", "6000"}, 2, "--largest: is of experiment paper alone"},
       {{"experiment", "accuracy", "-o", "out", "--size", "0x9"}, 2, "WxH"},
       {{"experiment", "accuracy", "-o", "out", "--scenes", "nowhere"}, 1, "nowhere: no such folder"},
       {{"experiment", "accuracy", "-o", "no/such/out"}, 1, "no/such/out"},
   };
-  for (const Case& mistake : cases) {
-    const ProgramResult result = run_program(folder.folder(), mistake.arguments);
-    EXPECT_EQ(result.exit_code, mistake.exit_code) << result.err;
-    EXPECT_NE(result.err.find(mistake.words), std::string::npos) << result.err;
-  }
-  EXPECT_EQ(folder.names(), std::vector<std::string>{});
+  for (const auto& [arguments, exit_code, words] : cases) expect_failure(folder, arguments, exit_code, words);
 }
 
 // Found before anything is read or rendered: the scan, which is wrong, is not even looked at.
 TEST(AccuracyExperiment, AnOutputThatCannotBeIsToldFirst) {
-  const TemporaryFolder folder;
-  folder.write("bunny.ply", "nonsense");
+  const TemporaryFolder folder("bunny.ply", "nonsense");
   for (const char* name : {"index.html", "host_prices.csv", "errors_best_bunny.svg", "prices_conference_2.txt"}) {
     fs::create_directories(folder.path("out") / name);
     expect_failure(folder, tiny("out", "1"), 1, std::string("out/") + name + ": cannot write: it is a folder");
@@ -184,8 +170,7 @@ TEST(AccuracyExperiment, AnOutputThatCannotBeIsToldFirst) {
 
 // Where there is a scan nothing is made.
 TEST(AccuracyExperiment, ScansAreTheViews) {
-  const TemporaryFolder folder;
-  folder.write_ply("bunny.ply", make_torus(24, 16, 1.0f, 0.4f));
+  const TemporaryFolder folder("bunny.ply", make_torus(24, 16, 1.0f, 0.4f));
   std::vector<std::string> arguments = tiny("out", "2");
   arguments.pop_back();
   const ProgramResult result = run_program(folder.folder(), arguments);

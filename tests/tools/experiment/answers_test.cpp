@@ -3,10 +3,8 @@
 
 #include <gridiron/base/math.h>
 #include <gridiron/base/records.h>
-#include <gtest/gtest.h>
 
-#include <cmath>
-#include <limits>
+#include "support/test_headers.h"
 
 namespace gridiron::test {
 namespace {

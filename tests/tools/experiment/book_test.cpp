@@ -1,15 +1,10 @@
 // Book: the page lists its contents, and text is escaped. SPDX-License-Identifier: Apache-2.0
 #include "experiment/book.h"
 
-#include <gtest/gtest.h>
-
-#include <algorithm>
-#include <string>
-#include <vector>
-
 #include "../gridiron/temporary_folder.h"
 #include "base/failure.h"
 #include "markup.h"
+#include "support/test_headers.h"
 
 namespace gridiron::test {
 namespace {

@@ -3,16 +3,14 @@
 #include "experiment/bvh_system.h"
 
 #include <gridiron/sim/build_work.h>
-#include <gtest/gtest.h>
 
 #include <chrono>
 #include <csignal>
-#include <cstdlib>
-#include <memory>
 #include <thread>
 
 #include "../gridiron/failure_of.h"
 #include "files/interrupt.h"
+#include "support/test_headers.h"
 
 namespace gridiron::test {
 namespace {

@@ -2,13 +2,11 @@
 #include "experiment/edge_points.h"
 
 #include <gridiron/base/records.h>
-#include <gtest/gtest.h>
 
-#include <algorithm>
 #include <glm/geometric.hpp>
-#include <vector>
 
 #include "experiment/views.h"
+#include "support/test_headers.h"
 
 namespace gridiron::test {
 namespace {

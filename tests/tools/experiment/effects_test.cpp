@@ -1,18 +1,11 @@
 // The effects experiment: as a program, tiny, and its checks. SPDX-License-Identifier: Apache-2.0
-#include <gtest/gtest.h>
-
-#include <algorithm>
-#include <filesystem>
-#include <set>
-#include <string>
-#include <vector>
-
 #include "../gridiron/failure_of.h"
 #include "csv_rows.h"
 #include "experiment/effect_frames.h"
 #include "experiment/effect_scenes.h"
-#include "experiment/effects_experiment.h"
+#include "experiment/experiments.h"
 #include "markup.h"
+#include "support/test_headers.h"
 #include "two_runs.h"
 
 namespace gridiron::test {
@@ -85,12 +78,9 @@ TEST(EffectsExperiment, FilesDoNotDependOnThreads) {
 
 TEST(EffectsExperiment, HasNoScansAndNoKnots) {
   const TemporaryFolder folder;
-  for (const std::vector<std::string>& more : {std::vector<std::string>{"--scenes", "."}, {"--largest", "6000"}}) {
-    std::vector<std::string> arguments = {"experiment", "effects", "-o", "out"};
-    arguments.insert(arguments.end(), more.begin(), more.end());
-    EXPECT_EQ(run_program(folder.folder(), arguments).exit_code, 2) << more.front();
+  for (const Words& more : {Words{"--scenes", "."}, {"--largest", "6000"}}) {
+    expect_failure(folder, Words{"experiment", "effects", "-o", "out"} + more, 2, more.front());
   }
-  EXPECT_FALSE(fs::exists(folder.path("out")));
 }
 
 TEST(EffectsExperiment, ASceneWithoutAnEffectDoesNotCallForIt) {

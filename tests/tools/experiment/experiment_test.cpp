@@ -1,19 +1,13 @@
 // The experiment as a program: a tiny one, on generated scenes. SPDX-License-Identifier: Apache-2.0
-#include <gtest/gtest.h>
-
-#include <algorithm>
 #include <chrono>
 #include <csignal>
-#include <filesystem>
-#include <set>
-#include <string>
 #include <thread>
-#include <vector>
 
 #include "csv_rows.h"
-#include "experiment/paper_experiment.h"
+#include "experiment/experiments.h"
 #include "experiment/sections.h"
 #include "markup.h"
+#include "support/test_headers.h"
 #include "two_runs.h"
 
 namespace gridiron::test {
@@ -239,12 +233,11 @@ TEST(Experiment, FilesDoNotDependOnThreads) {
 TEST(Experiment, MistakesAreTold) {
   const TemporaryFolder folder;
   folder.write("file", "no folder");
-  struct Case {
-    std::vector<std::string> arguments;
+  const struct {
+    Words arguments;
     int exit_code;
     const char* words;
-  };
-  const Case cases[] = {
+  } cases[] = {
       {{"experiment"}, 2, "NAME"},
       {{"experiment", "paper"}, 2, "-o DIR is required"},
       {{"experiment", "speed", "-o", "out"}, 2, "'speed' is not one of paper|accuracy"},
@@ -257,18 +250,12 @@ TEST(Experiment, MistakesAreTold) {
       {{"experiment", "paper", "-o", "file/out"}, 1, "file/out: cannot make the folder"},
       {{"experiment", "paper", "-o", ""}, 2, "'' is not the name of a folder"},
   };
-  for (const Case& mistake : cases) {
-    const ProgramResult result = run_program(folder.folder(), mistake.arguments);
-    EXPECT_EQ(result.exit_code, mistake.exit_code) << result.err;
-    EXPECT_NE(result.err.find(mistake.words), std::string::npos) << result.err;
-  }
-  EXPECT_EQ(folder.names(), std::vector<std::string>{"file"});
+  for (const auto& [arguments, exit_code, words] : cases) expect_failure(folder, arguments, exit_code, words);
 }
 
 // Found before anything is read or rendered: the scan, which is wrong, is not even looked at.
 TEST(Experiment, AnOutputThatCannotBeIsToldFirst) {
-  const TemporaryFolder folder;
-  folder.write("bunny.ply", "nonsense");
+  const TemporaryFolder folder("bunny.ply", "nonsense");
   for (const char* name : {"index.html", "sweep_local_store.csv", "fig6_best_6_cores.svg", "sweep_latency_bunny.svg"}) {
     const fs::path obstacle = folder.path("out") / name;
     fs::create_directories(obstacle);
@@ -282,8 +269,7 @@ TEST(Experiment, AnOutputThatCannotBeIsToldFirst) {
 }
 
 TEST(Experiment, AWrongScanLeavesNothing) {
-  const TemporaryFolder folder;
-  folder.write("bunny.ply", "ply\nformat ascii 1.0\nnonsense\n");
+  const TemporaryFolder folder("bunny.ply", "ply\nformat ascii 1.0\nnonsense\n");
   expect_failure(folder, tiny("out", "1"), 1, "bunny.ply:3");
   EXPECT_EQ(folder.names(), std::vector<std::string>{"bunny.ply"});
 }

@@ -1,15 +1,10 @@
 // Plan: each frame once, each run once, no result from the number of threads. SPDX-License-Identifier: Apache-2.0
 #include "experiment/plan.h"
 
-#include <gtest/gtest.h>
-
 #include <atomic>
-#include <cmath>
-#include <memory>
-#include <string>
-#include <vector>
 
 #include "base/failure.h"
+#include "support/test_headers.h"
 
 namespace gridiron::test {
 namespace {

@@ -2,19 +2,15 @@
 #include "experiment/price_words.h"
 
 #include <gridiron/base/records.h>
-#include <gtest/gtest.h>
 
-#include <algorithm>
-#include <cmath>
 #include <glm/geometric.hpp>
 #include <initializer_list>
-#include <string>
-#include <vector>
 
 #include "experiment/edge_points.h"
 #include "experiment/price_book.h"
 #include "experiment/price_list.h"
 #include "gridiron/device/accuracies.h"
+#include "support/test_headers.h"
 
 namespace gridiron::test {
 namespace {

@@ -1,14 +1,8 @@
 // SVG plots: well formed, and values land where they should. SPDX-License-Identifier: Apache-2.0
 #include "experiment/svg_plot.h"
 
-#include <gtest/gtest.h>
-
-#include <cmath>
-#include <sstream>
-#include <string>
-#include <vector>
-
 #include "markup.h"
+#include "support/test_headers.h"
 
 namespace gridiron::test {
 namespace {

@@ -1,15 +1,9 @@
 // Table: numbers as text, CSV. SPDX-License-Identifier: Apache-2.0
 #include "experiment/table.h"
 
-#include <gtest/gtest.h>
-
-#include <bit>
 #include <charconv>
-#include <cmath>
-#include <cstdint>
-#include <limits>
-#include <random>
-#include <string>
+
+#include "support/test_headers.h"
 
 namespace gridiron::test {
 namespace {

@@ -1,16 +1,9 @@
 // Views: which scenes, from where. SPDX-License-Identifier: Apache-2.0
 #include "experiment/views.h"
 
-#include <gtest/gtest.h>
-
-#include <cmath>
-#include <cstring>
-#include <filesystem>
-#include <string>
-#include <vector>
-
 #include "../gridiron/temporary_folder.h"
 #include "base/failure.h"
+#include "support/test_headers.h"
 #include "support/test_mesh.h"
 
 namespace gridiron::test {
@@ -36,8 +29,7 @@ TEST(Views, WithoutScansATeapotAndAKnotAreMade) {
 }
 
 TEST(Views, WhatIsThereIsUsedAndWhatIsNotIsNamed) {
-  const TemporaryFolder folder;
-  folder.write_ply("bunny.ply", make_torus(12, 8, 1.0f, 0.4f));
+  const TemporaryFolder folder("bunny.ply", make_torus(12, 8, 1.0f, 0.4f));
   folder.write_ply("conference.ply", make_torus(12, 8, 500.0f, 100.0f));
   const FoundViews found = find_views(folder.folder());
   EXPECT_FALSE(found.generated);
@@ -55,8 +47,7 @@ TEST(Views, WhatIsThereIsUsedAndWhatIsNotIsNamed) {
 }
 
 TEST(Views, CamerasAreThoseOfTheCameraFiles) {
-  const TemporaryFolder folder;
-  folder.write_ply("conference.ply", make_torus(12, 8, 1.0f, 0.4f));
+  const TemporaryFolder folder("conference.ply", make_torus(12, 8, 1.0f, 0.4f));
   const FoundViews found = find_views(folder.folder());
   ASSERT_EQ(found.views.size(), 2u);
   for (const View& view : found.views) {

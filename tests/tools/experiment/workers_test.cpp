@@ -1,12 +1,10 @@
 // Workers: every piece once, the first error. SPDX-License-Identifier: Apache-2.0
 #include "experiment/workers.h"
 
-#include <gtest/gtest.h>
-
 #include <atomic>
 #include <stdexcept>
-#include <string>
-#include <vector>
+
+#include "support/test_headers.h"
 
 namespace gridiron::test {
 namespace {

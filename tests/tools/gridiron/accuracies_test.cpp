@@ -1,10 +1,7 @@
 // Accuracies: every profile of core has one name. SPDX-License-Identifier: Apache-2.0
 #include "gridiron/device/accuracies.h"
 
-#include <gtest/gtest.h>
-
-#include <set>
-#include <string_view>
+#include "support/test_headers.h"
 
 namespace gridiron::test {
 namespace {

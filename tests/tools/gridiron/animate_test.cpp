@@ -1,19 +1,14 @@
 // animate: a picture and a row for each mesh, builds included. SPDX-License-Identifier: Apache-2.0
 #include <gridiron/build/grid/grid_builder.h>
 #include <gridiron/sim/build_work.h>
-#include <gtest/gtest.h>
 
-#include <algorithm>
 #include <cstdio>
-#include <map>
 #include <nlohmann/json.hpp>
-#include <sstream>
-#include <string>
-#include <vector>
 
 #include "gridiron/scene/scene_points.h"
 #include "gridiron/scene/view.h"
 #include "run_program.h"
+#include "support/test_headers.h"
 #include "temporary_folder.h"
 
 namespace gridiron::test {
@@ -107,10 +102,8 @@ TEST(Animate, FramesAreThoseOfRender) {
     return std::string(text);
   };
   for (std::size_t i = 0; i < 2; ++i) {
-    Words arguments = common(i == 0 ? "a.ply" : "b.ply");
-    arguments.insert(arguments.end(), {"--eye", text_of(camera.eye), "--at", text_of(camera.at)});
-    const ProgramResult result = run_program(folder.folder(), arguments);
-    ASSERT_EQ(result.exit_code, 0) << result.err;
+    const Words view = {"--eye", text_of(camera.eye), "--at", text_of(camera.at)};
+    const ProgramResult result = run(folder, common(i == 0 ? "a.ply" : "b.ply") + view);
     EXPECT_NE(result.out.find("hash " + rows[i].at("hash")), std::string::npos) << result.out;
     const Json report = Json::parse(read_file(folder.path("r.json")), nullptr, false);
     EXPECT_EQ(report["frame"]["cycles"].get<double>(), std::stod(rows[i].at("render_cycles")));
@@ -123,24 +116,18 @@ TEST(Animate, FramesAreThoseOfRender) {
 }
 
 TEST(Animate, SaysWhichFrameShowsNothing) {
-  const TemporaryFolder folder;
-  folder.write_ply("a.ply", make_sphere(10, 14, 1.0f));
+  const TemporaryFolder folder("a.ply", make_sphere(10, 14, 1.0f));
   folder.write_ply("b.ply", moved(make_sphere(10, 14, 1.0f), Vec3(0, 0, 40)));
   const Words common = {"animate", "a.ply", "b.ply", "-o", "out", "--size", "48x32"};
-  Words behind = common;
-  behind.insert(behind.end(), {"--eye", "0,0,9", "--at", "0,0,0"});
-  EXPECT_EQ(run_program(folder.folder(), behind).err,
+  EXPECT_EQ(run_program(folder.folder(), common + Words{"--eye", "0,0,9", "--at", "0,0,0"}).err,
             "b.ply: note: no pixel shows the scene: it lies behind the camera\n");
   EXPECT_EQ(run_program(folder.folder(), common).err, "") << "both frames are in the common view";
 }
 
 TEST(Animate, OptionsChangeCostOrPicture) {
-  const TemporaryFolder folder;
-  folder.write_ply("a.ply", make_sphere(20, 30, 1.0f));
+  const TemporaryFolder folder("a.ply", make_sphere(20, 30, 1.0f));
   const auto row_of = [&folder](const Words& more) {
-    Words arguments = {"a.ply", "-o", "out", "--size", "64x64", "--quiet"};
-    arguments.insert(arguments.end(), more.begin(), more.end());
-    EXPECT_EQ(animate(folder, arguments).out, "");
+    EXPECT_EQ(animate(folder, Words{"a.ply", "-o", "out", "--size", "64x64", "--quiet"} + more).out, "");
     return read_table(folder.path("out/animation.csv")).at(0);
   };
   const Row usual = row_of({});
@@ -157,8 +144,7 @@ TEST(Animate, OptionsChangeCostOrPicture) {
 }
 
 TEST(Animate, WhatCannotBeDoneIsTold) {
-  const TemporaryFolder folder;
-  folder.write_ply("a.ply", make_sphere(8, 12, 1.0f));
+  const TemporaryFolder folder("a.ply", make_sphere(8, 12, 1.0f));
   std::filesystem::create_directory(folder.path("empty"));
   std::filesystem::create_directory(folder.path("twin"));
   folder.write_ply("twin/a.ply", make_sphere(8, 12, 1.0f));
@@ -183,16 +169,7 @@ TEST(Animate, WhatCannotBeDoneIsTold) {
       {{"a.png", "-o", "out"}, 1, "a.png: is a PNG picture; animate takes PLY meshes and folders of .ply files\n"},
       {{"nested", "-o", "out"}, 1, "nested/b.ply: is a folder; animate takes PLY meshes and folders of .ply files\n"},
   };
-  const Words before = folder.names();
-  for (const auto& bad : cases) {
-    Words arguments = bad.arguments;
-    arguments.insert(arguments.begin(), "animate");
-    const ProgramResult result = run_program(folder.folder(), arguments);
-    EXPECT_EQ(result.exit_code, bad.exit_code) << result.err;
-    EXPECT_NE(result.err.find(bad.words), std::string::npos) << result.err << "\nlacks: " << bad.words;
-    EXPECT_EQ(result.out, "");
-    EXPECT_EQ(folder.names(), before) << bad.words;
-  }
+  for (const auto& bad : cases) expect_failure(folder, Words{"animate"} + bad.arguments, bad.exit_code, bad.words);
 }
 
 }  // namespace

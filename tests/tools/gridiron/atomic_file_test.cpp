@@ -49,8 +49,7 @@ TEST(AtomicFile, LeavesNothingWithoutCommit) {
 }
 
 TEST(AtomicFile, KeepsTheOldFileUntilCommit) {
-  const TemporaryFolder folder;
-  folder.write("a.txt", "old");
+  const TemporaryFolder folder("a.txt", "old");
   { AtomicFile(folder.path("a.txt")).write("new"); }
   EXPECT_EQ(read_file(folder.path("a.txt")), "old");
   AtomicFile file(folder.path("a.txt"));
@@ -60,8 +59,7 @@ TEST(AtomicFile, KeepsTheOldFileUntilCommit) {
 }
 
 TEST(AtomicFile, FollowsLinks) {
-  const TemporaryFolder folder;
-  folder.write("target.txt", "old");
+  const TemporaryFolder folder("target.txt", "old");
   std::filesystem::create_symlink("target.txt", folder.path("link.txt"));
   AtomicFile file(folder.path("link.txt"));
   file.write("new");
@@ -85,8 +83,7 @@ TEST(AtomicFile, TellsThatADeviceIsFull) {
 }
 
 TEST(AtomicFile, RefusesPathsThatCannotBe) {
-  const TemporaryFolder folder;
-  folder.write("file", "");
+  const TemporaryFolder folder("file", "");
   EXPECT_EQ(code_of_opening(folder.path("missing") / "a.txt"), ExitCode::kBadInput);
   EXPECT_EQ(code_of_opening(folder.path("file") / "a.txt"), ExitCode::kBadInput);
   EXPECT_EQ(code_of_opening(folder.folder()), ExitCode::kBadInput);

@@ -2,13 +2,9 @@
 #include "gridiron/device/configurations.h"
 
 #include <gridiron/base/records.h>
-#include <gtest/gtest.h>
-
-#include <algorithm>
-#include <optional>
-#include <vector>
 
 #include "gridiron/device/store_facts.h"
+#include "support/test_headers.h"
 
 namespace gridiron::test {
 namespace {

@@ -2,10 +2,8 @@
 #include "gridiron/frame/frame_failure.h"
 
 #include <gridiron/sim/sim_core.h>
-#include <gtest/gtest.h>
 
-#include <algorithm>
-#include <string>
+#include "support/test_headers.h"
 
 namespace gridiron::test {
 namespace {

@@ -2,26 +2,17 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "gridiron/scene/framing.h"
 
-#include <gtest/gtest.h>
 #include <scene_makers/shapes.h>
 
-#include <algorithm>
-#include <cmath>
-#include <cstdlib>
-#include <filesystem>
 #include <glm/geometric.hpp>
-#include <limits>
 #include <numbers>
-#include <optional>
-#include <random>
-#include <string>
-#include <vector>
 
 #include "gridiron/scene/scene_input.h"
 #include "gridiron/scene/scene_points.h"
 #include "gridiron/scene/view.h"
 #include "support/render_mesh.h"
 #include "support/scenes.h"
+#include "support/test_headers.h"
 #include "support/test_mesh.h"
 
 namespace gridiron::test {

@@ -8,13 +8,10 @@
 #include <gridiron/sim/render_entry.h>
 #include <gridiron/sim/sim_memory.h>
 #include <gridiron/sim/tile_source.h>
-#include <gtest/gtest.h>
 
-#include <algorithm>
-#include <cstring>
-#include <memory>
 #include <new>
-#include <vector>
+
+#include "support/test_headers.h"
 
 namespace gridiron::test {
 namespace {

@@ -30,11 +30,10 @@ class LowerLimit {
 constexpr rlim_t kHugeStackBytes = rlim_t{1} << 47;
 
 TEST(HostLimits, AHostWithoutThreadsRendersTheSamePicture) {
-  const TemporaryFolder folder;
-  folder.write_ply("a.ply", make_sphere(8, 12, 1.0f));
+  const TemporaryFolder folder("a.ply", make_sphere(8, 12, 1.0f));
   for (const char* mode : {"checked", "plain"}) {
     const Words render = {"render", "a.ply", "--size", "64x64", "--mode", mode, "--threads"};
-    ASSERT_EQ(run_program(folder.folder(), render + Words{"1", "-o", "one.png"}).exit_code, 0);
+    run(folder, render + Words{"1", "-o", "one.png"});
     const LowerLimit limit(RLIMIT_STACK, kHugeStackBytes);
     const ProgramResult result = run(folder, render + Words{"3", "-o", "three.png"});
     EXPECT_EQ(read_file(folder.path("one.png")), read_file(folder.path("three.png")));
@@ -42,19 +41,17 @@ TEST(HostLimits, AHostWithoutThreadsRendersTheSamePicture) {
 }
 
 TEST(HostLimits, AMachineMayHaveMoreMemoryThanTheHost) {
-  const TemporaryFolder folder;
-  folder.write_ply("a.ply", make_sphere(8, 12, 1.0f));
+  const TemporaryFolder folder("a.ply", make_sphere(8, 12, 1.0f));
   folder.write("large.machine", "based_on cell-ps3\nmain_memory_bytes 1099511627776\n");
   const Words scene = {"render", "a.ply", "--size", "64x64", "-o"};
-  ASSERT_EQ(run_program(folder.folder(), scene + Words{"a.png"}).exit_code, 0);
+  run(folder, scene + Words{"a.png"});
   const ProgramResult result = run(folder, scene + Words{"b.png", "--machine", "large.machine"});
   EXPECT_EQ(read_file(folder.path("a.png")), read_file(folder.path("b.png")));
 }
 
 #if !defined(GRIDIRON_TEST_SANITIZED)  // these take terabytes of addresses themselves
 TEST(HostLimits, WhateverMemoryThereIsAFrameEndsWellOrSaysWhatIsShort) {
-  const TemporaryFolder folder;
-  folder.write_ply("a.ply", make_sphere(8, 12, 1.0f));
+  const TemporaryFolder folder("a.ply", make_sphere(8, 12, 1.0f));
   bool has_failed = false, has_ended_well = false;
   for (rlim_t megabytes = 320; megabytes >= 24; megabytes = megabytes * 4 / 5) {
     const LowerLimit limit(RLIMIT_AS, megabytes << 20);
@@ -79,8 +76,7 @@ TEST(HostLimits, WhateverMemoryThereIsAFrameEndsWellOrSaysWhatIsShort) {
 }
 
 TEST(HostLimits, NoMoreThreadsThanTilesAreStarted) {
-  const TemporaryFolder folder;
-  folder.write_ply("a.ply", make_sphere(8, 12, 1.0f));
+  const TemporaryFolder folder("a.ply", make_sphere(8, 12, 1.0f));
   for (const char* mode : {"checked", "plain"}) {
     // Addresses for some threads' stacks, but not for all the requested ones.
     const LowerLimit limit(RLIMIT_AS, rlim_t{700} << 20);

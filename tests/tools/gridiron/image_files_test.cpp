@@ -1,14 +1,9 @@
 // Picture files, read back by OpenImageIO. SPDX-License-Identifier: Apache-2.0
 #include "files/image_files.h"
 
-#include <gtest/gtest.h>
-
-#include <cmath>
-#include <limits>
-#include <string>
-
 #include "files/png_file.h"
 #include "support/picture.h"
+#include "support/test_headers.h"
 #include "support/test_mesh.h"
 #include "temporary_folder.h"
 

@@ -25,8 +25,7 @@ Json info_json(const TemporaryFolder& folder, const Words& arguments) {
 }
 
 TEST(Info, ANameThatIsNoUtf8IsWrittenWithReplacements) {
-  const TemporaryFolder folder;
-  folder.write_ply("bad\xff.ply", make_scene());
+  const TemporaryFolder folder("bad\xff.ply", make_scene());
   EXPECT_EQ(info_json(folder, {"bad\xff.ply"})["input"], "bad\xEF\xBF\xBD.ply");
 }
 
@@ -58,8 +57,7 @@ TEST(Info, TellsWhatTheBuilderCounts) {
 
 // The bound of a tile, on the counts that it is made of, and each loop's.
 TEST(Info, TellsTheWorstTileAndEveryLoop) {
-  const TemporaryFolder folder;
-  folder.write_ply("a.ply", make_scene());
+  const TemporaryFolder folder("a.ply", make_scene());
   const Json info = info_json(folder, {"a.ply"});
   const Json& worst = info["worst_tile"];
   EXPECT_EQ(worst["accuracy"], "standard");
@@ -98,8 +96,7 @@ TEST(Info, TellsTheWorstTileAndEveryLoop) {
 
 // Another accuracy is another bound, of its own format; and the default is that of the format.
 TEST(Info, TheWorstTileIsOfTheAccuracyAskedFor) {
-  const TemporaryFolder folder;
-  folder.write_ply("a.ply", make_scene());
+  const TemporaryFolder folder("a.ply", make_scene());
   const Json usual = info_json(folder, {"a.ply"});
   const Json standard = info_json(folder, {"a.ply", "--accuracy", "standard"});
   EXPECT_EQ(usual, standard);
@@ -123,21 +120,17 @@ TEST(Info, TheWorstTileIsOfTheAccuracyAskedFor) {
 }
 
 TEST(Info, AnAccuracyThatAPackedSceneDoesNotServeIsRefused) {
-  const TemporaryFolder folder;
-  folder.write_ply("a.ply", make_scene());
-  ASSERT_EQ(run_program(folder.folder(), {"pack", "a.ply", "-o", "a.gri"}).exit_code, 0);
+  const TemporaryFolder folder("a.ply", make_scene());
+  run(folder, {"pack", "a.ply", "-o", "a.gri"});
   EXPECT_EQ(info_json(folder, {"a.gri", "--accuracy", "exact"})["worst_tile"],
             info_json(folder, {"a.ply", "--accuracy", "exact"})["worst_tile"]);
-  const ProgramResult result = run_program(folder.folder(), {"info", "a.gri", "--accuracy", "paper"});
-  EXPECT_EQ(result.exit_code, 1);
-  EXPECT_NE(result.err.find("was packed with --format vertices; this needs --format projection"), std::string::npos)
-      << result.err;
+  expect_failure(folder, {"info", "a.gri", "--accuracy", "paper"}, 1,
+                 "was packed with --format vertices; this needs --format projection");
 }
 
 // The map, the bound and the loops are of the same layout.
 TEST(Info, TheLayoutFollowsThePackets) {
-  const TemporaryFolder folder;
-  folder.write_ply("a.ply", make_scene());
+  const TemporaryFolder folder("a.ply", make_scene());
   const auto packet_bytes = [](const Json& info) {
     for (const Json& region : info["local_store"]["regions"]) {
       if (region["name"] == "packet") return region["bytes"].get<int>();
@@ -169,8 +162,7 @@ TEST(Info, TheLayoutFollowsThePackets) {
 }
 
 TEST(Info, APlaneOfDistancesCountsItsBytesAndItsWork) {
-  const TemporaryFolder folder;
-  folder.write_ply("a.ply", make_scene());
+  const TemporaryFolder folder("a.ply", make_scene());
   const Json without = info_json(folder, {"a.ply"});
   const Json with = info_json(folder, {"a.ply", "--depth"});
   EXPECT_EQ(with["local_store"], without["local_store"]);
@@ -185,8 +177,7 @@ TEST(Info, APlaneOfDistancesCountsItsBytesAndItsWork) {
 
 // What there is no image to count of is null, not missing.
 TEST(Info, WithoutAnImageThatFitsThereIsNoWorstTile) {
-  const TemporaryFolder folder;
-  folder.write_ply("a.ply", make_torus(100, 100, 1.0f, 0.4f));
+  const TemporaryFolder folder("a.ply", make_torus(100, 100, 1.0f, 0.4f));
   folder.write("small.machine", "based_on cell-ps3\nmain_memory_bytes 1048576\n");
   const Json info = info_json(folder, {"a.ply", "--machine", "small.machine", "--lambda", "8", "--size", "64x64"});
   EXPECT_EQ(info["main_memory"]["fits"], false);
@@ -198,8 +189,7 @@ TEST(Info, WithoutAnImageThatFitsThereIsNoWorstTile) {
 
 // A machine whose prices are instructions says so, and one that is based on it.
 TEST(Info, WhatIsCountedInInstructionsIsCalledSo) {
-  const TemporaryFolder folder;
-  folder.write_ply("a.ply", make_scene());
+  const TemporaryFolder folder("a.ply", make_scene());
   folder.write("board.machine", "based_on fu540\ncore_count 2\n");
   const auto worst_line = [&folder](const std::string& machine) {
     const ProgramResult result = run(folder, {"info", "a.ply", "--machine", machine});
@@ -217,15 +207,13 @@ TEST(Info, WhatIsCountedInInstructionsIsCalledSo) {
 }
 
 TEST(Info, EachStoreHasItsMap) {
-  const TemporaryFolder folder;
-  folder.write_ply("a.ply", make_scene());
+  const TemporaryFolder folder("a.ply", make_scene());
   folder.write("big.machine", "based_on cell-ps3\nlocal_store_bytes 524288\n");
-  const std::vector<std::string> command = {"a.ply", "--machine", "big.machine"};
+  const Words command = {"a.ply", "--machine", "big.machine"};
   EXPECT_EQ(info_json(folder, command)["local_store"]["arena_bytes"], 524288) << "the largest there is room for";
   for (const int kilobytes : {64, 128, 256, 512}) {
-    std::vector<std::string> with_store = command;
-    with_store.insert(with_store.end(), {"--store", std::to_string(kilobytes), "--configuration", "best"});
-    const Json store = info_json(folder, with_store)["local_store"];
+    const Words store_options = {"--store", std::to_string(kilobytes), "--configuration", "best"};
+    const Json store = info_json(folder, command + store_options)["local_store"];
     EXPECT_EQ(store["arena_bytes"], kilobytes * 1024);
     const Json& last = store["regions"].back();
     EXPECT_EQ(last["name"], "output");
@@ -236,9 +224,8 @@ TEST(Info, EachStoreHasItsMap) {
 }
 
 TEST(Info, APackedSceneTellsTheSameScene) {
-  const TemporaryFolder folder;
-  folder.write_ply("a.ply", make_scene());
-  ASSERT_EQ(run_program(folder.folder(), {"pack", "a.ply", "-o", "a.gri"}).exit_code, 0);
+  const TemporaryFolder folder("a.ply", make_scene());
+  run(folder, {"pack", "a.ply", "-o", "a.gri"});
   Json mesh = info_json(folder, {"a.ply"});
   Json packed = info_json(folder, {"a.gri"});
   EXPECT_EQ(packed["packed"], true);
@@ -248,8 +235,7 @@ TEST(Info, APackedSceneTellsTheSameScene) {
 }
 
 TEST(Info, ParametersReachTheGrid) {
-  const TemporaryFolder folder;
-  folder.write_ply("a.ply", make_scene());
+  const TemporaryFolder folder("a.ply", make_scene());
   const Json info = info_json(folder, {"a.ply", "--lambda", "0.5", "--macro-width", "3", "--format", "projection"});
   EXPECT_EQ(info["grid"]["lambda"], 0.5);
   EXPECT_EQ(info["grid"]["macro_width"], 3);
@@ -257,8 +243,7 @@ TEST(Info, ParametersReachTheGrid) {
 }
 
 TEST(Info, PeopleReadTheSameNumbers) {
-  const TemporaryFolder folder;
-  folder.write_ply("a.ply", make_scene());
+  const TemporaryFolder folder("a.ply", make_scene());
   const ProgramResult result = run(folder, {"info", "a.ply"});
   EXPECT_NE(result.out.find("770 triangles (2 of zero area dropped)"), std::string::npos) << result.out;
   EXPECT_NE(result.out.find("256.0 KB"), std::string::npos) << result.out;

@@ -1,13 +1,9 @@
 // Inputs of every command: standard input, pipes, files whose names say nothing, and what is refused.
 // SPDX-License-Identifier: Apache-2.0
-#include <gtest/gtest.h>
-
-#include <filesystem>
-#include <fstream>
-
 #include "host_device.h"
 #include "run_program.h"
 #include "support/sanitizers.h"
+#include "support/test_headers.h"
 #include "temporary_folder.h"
 
 namespace gridiron::test {

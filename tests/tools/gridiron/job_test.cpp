@@ -1,18 +1,14 @@
 // job and result: correct files, a device simulated by the host, and damage that is found.
 // SPDX-License-Identifier: Apache-2.0
 #include <gridiron/base/work_counters.h>
-#include <gtest/gtest.h>
 #include <report/report.h>
 
-#include <cstring>
-#include <functional>
 #include <nlohmann/json.hpp>
-#include <string>
-#include <vector>
 
 #include "gridiron/job/job_file.h"
 #include "host_device.h"
 #include "run_program.h"
+#include "support/test_headers.h"
 #include "temporary_folder.h"
 
 namespace gridiron::test {

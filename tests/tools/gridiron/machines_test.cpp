@@ -1,19 +1,16 @@
 // machines and --machine: profiles that people print, edit and give back. SPDX-License-Identifier: Apache-2.0
 #include <fcntl.h>
 #include <gridiron/sim/work_costs.h>
-#include <gtest/gtest.h>
 #include <sys/stat.h>
 #include <unistd.h>
 
 #include <chrono>
-#include <fstream>
 #include <nlohmann/json.hpp>
-#include <set>
-#include <string>
 #include <thread>
 
 #include "gridiron/device/machine_keys.h"
 #include "run_program.h"
+#include "support/test_headers.h"
 #include "temporary_folder.h"
 
 namespace gridiron::test {
@@ -56,8 +53,7 @@ TEST(Machines, AProfileComesThroughAPipe) {
 }
 
 TEST(Machines, EditedFiguresCount) {
-  const TemporaryFolder folder;
-  folder.write("slow.machine", "based_on cell-ps3\nlatency_cycles 5000\ncore_count 2\n");
+  const TemporaryFolder folder("slow.machine", "based_on cell-ps3\nlatency_cycles 5000\ncore_count 2\n");
   const Json slow = report_on(folder, "slow.machine");
   EXPECT_EQ(slow["machine"]["name"], "slow");
   EXPECT_EQ(slow["machine"]["cores"], 2);
@@ -78,8 +74,7 @@ TEST(Machines, AnEditedCopyRendersAtFirstTryUnderANameOfItsOwn) {
 }
 
 TEST(Machines, InfoAndPackFitTheMachineOfAFile) {
-  const TemporaryFolder folder;
-  folder.write_ply("a.ply", make_torus(240, 120, 1.0f, 0.4f));
+  const TemporaryFolder folder("a.ply", make_torus(240, 120, 1.0f, 0.4f));
   folder.write("small.machine", "based_on cell-ps3\nmain_memory_bytes 12650000\nlocal_store_bytes 65536\n");
   const Json info = Json::parse(run(folder, {"info", "a.ply", "--json", "--machine", "small.machine"}).out);
   EXPECT_EQ(info["main_memory"]["machine"], "small");
@@ -93,8 +88,7 @@ TEST(Machines, InfoAndPackFitTheMachineOfAFile) {
 
 // A short queue reaches the kernel, which keeps to it: it waits more often, and does nothing else more often.
 TEST(Machines, AShortQueueChangesWaitsAlone) {
-  const TemporaryFolder folder;
-  folder.write("short.machine", "based_on cell-ps3\nqueue_depth 1\n");
+  const TemporaryFolder folder("short.machine", "based_on cell-ps3\nqueue_depth 1\n");
   folder.write("far.machine", "based_on cell-ps3\nlatency_cycles 5000\n");
   const Json usual = report_on(folder, "cell-ps3"), brief = report_on(folder, "short.machine");
   EXPECT_EQ(report_on(folder, "far.machine")["work"], usual["work"]) << "times have no say in the work";
@@ -109,8 +103,7 @@ TEST(Machines, AShortQueueChangesWaitsAlone) {
 
 // The least that a machine file may say renders a small picture of a small scene, in every configuration.
 TEST(Machines, TheSmallestMachineRenders) {
-  const TemporaryFolder folder;
-  folder.write_ply("a.ply", make_torus(24, 16, 1.0f, 0.4f));
+  const TemporaryFolder folder("a.ply", make_torus(24, 16, 1.0f, 0.4f));
   folder.write("least.machine", "based_on cell-ps3\nmain_memory_bytes 1048576\nlocal_store_bytes 65536\n");
   const struct {
     const char* configuration;
@@ -147,8 +140,7 @@ TEST(Machines, TheSmallestMachineRenders) {
 }
 
 TEST(Machines, BadFilesEndWithOneAndRenderNothing) {
-  const TemporaryFolder folder;
-  folder.write_ply("a.ply", make_torus(24, 16, 1.0f, 0.4f));
+  const TemporaryFolder folder("a.ply", make_torus(24, 16, 1.0f, 0.4f));
   folder.write("bad.machine", "based_on cell-ps3\ncore_count 0\n");
   const Words before = folder.names();
   const struct {
@@ -177,8 +169,7 @@ TEST(Machines, BadFilesEndWithOneAndRenderNothing) {
 }
 
 TEST(Machines, OneMachineAsJson) {
-  const TemporaryFolder folder;
-  folder.write("mine.machine", "based_on cell-ps3\nmaster.step_cycles.cell_row 99.5\n");
+  const TemporaryFolder folder("mine.machine", "based_on cell-ps3\nmaster.step_cycles.cell_row 99.5\n");
   const Json document = Json::parse(run(folder, {"machines", "mine.machine", "--json"}).out);
   ASSERT_EQ(document["machines"].size(), 1u);
   EXPECT_EQ(document["machines"][0]["name"], "mine");

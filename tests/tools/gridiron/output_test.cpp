@@ -76,8 +76,7 @@ TEST(Output, NeverTakesThePlaceOfAnInput) {
 }
 
 TEST(Output, IsStandardOutputAsBytesOfTheFile) {
-  const TemporaryFolder folder;
-  folder.write_ply("a.ply", make_sphere(8, 12, 1.0f));
+  const TemporaryFolder folder("a.ply", make_sphere(8, 12, 1.0f));
   const std::string render = "\"$G\" render a.ply --size 40x24 ";
   ASSERT_EQ(run_line(folder, render + "-o a.png --depth d.pfm --report r.json"), 0) << read_file(folder.path("err"));
   const std::string png = read_file(folder.path("a.png"));
@@ -111,8 +110,7 @@ TEST(Output, IsStandardOutputAsBytesOfTheFile) {
 }
 
 TEST(Output, StandardOutputThatCannotTakeItIsTold) {
-  const TemporaryFolder folder;
-  folder.write_ply("a.ply", make_sphere(8, 12, 1.0f));
+  const TemporaryFolder folder("a.ply", make_sphere(8, 12, 1.0f));
   const std::string render = "\"$G\" render a.ply --size 8x8 ";
   const struct {
     std::string line;
@@ -146,8 +144,7 @@ TEST(Output, StandardOutputThatCannotTakeItIsTold) {
 }
 
 TEST(Output, NoPictureGoesToATerminal) {
-  const TemporaryFolder folder;
-  folder.write_ply("a.ply", make_sphere(8, 12, 1.0f));
+  const TemporaryFolder folder("a.ply", make_sphere(8, 12, 1.0f));
   const int terminal = ::posix_openpt(O_RDWR | O_NOCTTY | O_CLOEXEC);
   if (terminal < 0 || ::grantpt(terminal) != 0 || ::unlockpt(terminal) != 0) GTEST_SKIP() << "no terminals here";
   const std::string name = ::ptsname(terminal), render = "\"$G\" render a.ply --size 8x8 ";
@@ -161,8 +158,7 @@ TEST(Output, NoPictureGoesToATerminal) {
 }
 
 TEST(Output, AFileThatOutgrowsItsLimitIsLeftOut) {
-  const TemporaryFolder folder;
-  folder.write_ply("a.ply", make_sphere(8, 12, 1.0f));
+  const TemporaryFolder folder("a.ply", make_sphere(8, 12, 1.0f));
   folder.write("a.png", "earlier");
   EXPECT_EQ(run_line(folder, "ulimit -f 4; \"$G\" render a.ply --size 64x64 -o a.png --depth d.pfm"), 1);
   EXPECT_EQ(read_file(folder.path("err")), "d.pfm: cannot write: File too large\n");
@@ -171,8 +167,7 @@ TEST(Output, AFileThatOutgrowsItsLimitIsLeftOut) {
 }
 
 TEST(Output, LinksInALoopAreAnErrorAndStay) {
-  const TemporaryFolder folder;
-  folder.write_ply("a.ply", make_sphere(8, 12, 1.0f));
+  const TemporaryFolder folder("a.ply", make_sphere(8, 12, 1.0f));
   fs::create_symlink("b.png", folder.path("a.png"));
   fs::create_symlink("a.png", folder.path("b.png"));
   const ProgramResult result = run_program(folder.folder(), {"render", "a.ply", "--size", "8x8", "-o", "a.png"});
@@ -182,8 +177,7 @@ TEST(Output, LinksInALoopAreAnErrorAndStay) {
 }
 
 TEST(Output, AnInterruptedAnimationTellsWhatIsKept) {
-  const TemporaryFolder folder;
-  folder.write_ply("a.ply", make_sphere(8, 12, 1.0f));
+  const TemporaryFolder folder("a.ply", make_sphere(8, 12, 1.0f));
   ASSERT_EQ(::mkfifo(folder.path("b.ply").c_str(), 0600), 0);  // the second frame waits for ever
   const Words view = {"--eye", "0,0,5", "--at", "0,0,0"};
   for (const int signal : {SIGTERM, SIGHUP}) {

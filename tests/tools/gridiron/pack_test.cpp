@@ -10,7 +10,6 @@ namespace {
 
 // "hash 0123456789abcdef" of the program's first line.
 std::string hash_of(const ProgramResult& result) {
-  EXPECT_EQ(result.exit_code, 0) << result.err;
   const std::size_t place = result.out.find("hash ");
   return place == std::string::npos ? "" : result.out.substr(place, 21);
 }
@@ -31,30 +30,26 @@ TEST(Pack, RendersTheSamePictureAsTheMesh) {
       {{"--lambda", "1", "--macro-width", "4"}, {}},
   };
   for (const auto& choice : cases) {
-    Words pack = {"pack", "a.ply", "-o", "a.gri"}, render = {"render", "a.gri", "--size", "96x64"};
-    pack.insert(pack.end(), choice.pack.begin(), choice.pack.end());
-    render.insert(render.end(), choice.render.begin(), choice.render.end());
-    const ProgramResult packed = run_program(folder.folder(), pack);
-    ASSERT_EQ(packed.exit_code, 0) << packed.err;
-    const std::string hash = hash_of(run_program(folder.folder(), render));
-    render[1] = "a.ply";
-    EXPECT_EQ(hash, hash_of(run_program(folder.folder(), render)));
+    run(folder, Words{"pack", "a.ply", "-o", "a.gri"} + choice.pack);
+    const auto rendered_hash = [&](const char* input) {
+      return hash_of(run(folder, Words{"render", input, "--size", "96x64"} + choice.render));
+    };
+    const std::string hash = rendered_hash("a.gri");
+    EXPECT_EQ(hash, rendered_hash("a.ply"));
     EXPECT_EQ(hash.size(), 21u);
   }
 }
 
 TEST(Pack, IsTheSameBytesEveryTime) {
-  const TemporaryFolder folder;
-  folder.write_ply("a.ply", make_random_soup(300, 0.2f, 7));
-  ASSERT_EQ(run_program(folder.folder(), {"pack", "a.ply", "-o", "a.gri"}).exit_code, 0);
-  ASSERT_EQ(run_program(folder.folder(), {"pack", "a.ply", "-o", "b.gri"}).exit_code, 0);
+  const TemporaryFolder folder("a.ply", make_random_soup(300, 0.2f, 7));
+  run(folder, {"pack", "a.ply", "-o", "a.gri"});
+  run(folder, {"pack", "a.ply", "-o", "b.gri"});
   EXPECT_EQ(read_file(folder.path("a.gri")), read_file(folder.path("b.gri")));
 }
 
 TEST(Pack, ImagesAreUsedAsTheyWerePacked) {
-  const TemporaryFolder folder;
-  folder.write_ply("a.ply", make_sphere(12, 16, 1.0f));
-  ASSERT_EQ(run_program(folder.folder(), {"pack", "a.ply", "-o", "a.gri"}).exit_code, 0);
+  const TemporaryFolder folder("a.ply", make_sphere(12, 16, 1.0f));
+  run(folder, {"pack", "a.ply", "-o", "a.gri"});
   const struct {
     Words arguments;
     const char* words;
@@ -65,16 +60,12 @@ TEST(Pack, ImagesAreUsedAsTheyWerePacked) {
       {{"render", "a.gri", "--macro-width", "4"}, "width 6"},
       {{"pack", "a.gri", "-o", "b.gri"}, "already"},
   };
-  for (const auto& mistake : cases) {
-    expect_failure(folder, mistake.arguments, 1, mistake.words);
-  }
-  EXPECT_EQ(folder.names(), (Words{"a.gri", "a.ply"}));
+  for (const auto& mistake : cases) expect_failure(folder, mistake.arguments, 1, mistake.words);
 }
 
 TEST(Pack, DamagedImagesAreNamedWithTheirByte) {
-  const TemporaryFolder folder;
-  folder.write_ply("a.ply", make_sphere(12, 16, 1.0f));
-  ASSERT_EQ(run_program(folder.folder(), {"pack", "a.ply", "-o", "a.gri"}).exit_code, 0);
+  const TemporaryFolder folder("a.ply", make_sphere(12, 16, 1.0f));
+  run(folder, {"pack", "a.ply", "-o", "a.gri"});
   const std::string image = read_file(folder.path("a.gri"));
   std::string flipped = image;
   flipped[flipped.size() / 2] = static_cast<char>(flipped[flipped.size() / 2] ^ 1);

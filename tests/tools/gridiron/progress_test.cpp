@@ -2,15 +2,14 @@
 #include "base/progress.h"
 
 #include <fcntl.h>
-#include <gtest/gtest.h>
 #include <poll.h>
 #include <stdlib.h>
 #include <unistd.h>
 
-#include <algorithm>
 #include <chrono>
-#include <cmath>
 #include <thread>
+
+#include "support/test_headers.h"
 
 namespace gridiron::tool {
 namespace {

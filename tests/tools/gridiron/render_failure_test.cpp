@@ -15,8 +15,7 @@ namespace gridiron::test {
 namespace {
 
 TEST(RenderFailure, BadInputNamesFileAndLineOrByte) {
-  const TemporaryFolder folder;
-  folder.write("text.ply", "ply\nformat ascii 1.0\nelement vertex many\n");
+  const TemporaryFolder folder("text.ply", "ply\nformat ascii 1.0\nelement vertex many\n");
   folder.write("index.ply",
                "ply\nformat ascii 1.0\nelement vertex 3\nproperty float x\nproperty float y\nproperty float z\n"
                "element face 1\nproperty list uchar int vertex_indices\nend_header\n0 0 0\n1 0 0\n0 1 0\n3 0 1 3\n");
@@ -63,15 +62,13 @@ TEST(RenderFailure, ScenesWithoutATriangleToTrace) {
 }
 
 TEST(RenderFailure, ViewsBeyondFloatsNameTheScene) {
-  const TemporaryFolder folder;
-  folder.write_ply("a.ply", make_box(Vec3(0), Vec3(1)));
+  const TemporaryFolder folder("a.ply", make_box(Vec3(0), Vec3(1)));
   expect_failure(folder, {"render", "a.ply", "--size", "8x8", "--eye", "0,0,1e37", "--at", "0,0,0"}, 2,
                  "no camera can be made of it for a.ply; ");
 }
 
 TEST(RenderFailure, OutputsThatCannotBeWritten) {
-  const TemporaryFolder folder;
-  folder.write_ply("a.ply", make_box(Vec3(0), Vec3(1)));
+  const TemporaryFolder folder("a.ply", make_box(Vec3(0), Vec3(1)));
   std::filesystem::create_directory(folder.path("folder"));
   const Words scene = {"render", "a.ply", "--size", "8x8"};
   for (const char* option : {"-o", "--depth", "--ids", "--report", "--timeline"}) {
@@ -88,16 +85,14 @@ TEST(RenderFailure, OutputsThatCannotBeWritten) {
 }
 
 TEST(RenderFailure, AFailureKeepsTheFilesOfAnEarlierRun) {
-  const TemporaryFolder folder;
-  folder.write_ply("a.ply", make_box(Vec3(0), Vec3(1)));
+  const TemporaryFolder folder("a.ply", make_box(Vec3(0), Vec3(1)));
   folder.write("out.png", "earlier");
   expect_failure(folder, {"render", "a.ply", "-o", "out.png", "--report", "/dev/full"}, 1, "/dev/full");
   EXPECT_EQ(read_file(folder.path("out.png")), "earlier");
 }
 
 TEST(RenderFailure, PicturesLargerThanTheMachine) {
-  const TemporaryFolder folder;
-  folder.write_ply("a.ply", make_box(Vec3(0), Vec3(1)));
+  const TemporaryFolder folder("a.ply", make_box(Vec3(0), Vec3(1)));
   expect_failure(folder, {"render", "a.ply", "--size", "16384x16384"}, 1, "a whole frame of 16384x16384 needs 1,073,7");
   // All the memory but what the simulator keeps; one tile is a part of the whole frame.
   const std::string words =
@@ -107,8 +102,7 @@ TEST(RenderFailure, PicturesLargerThanTheMachine) {
 }
 
 TEST(RenderFailure, ViewsThatNoCameraHas) {
-  const TemporaryFolder folder;
-  folder.write_ply("a.ply", make_box(Vec3(0), Vec3(1)));
+  const TemporaryFolder folder("a.ply", make_box(Vec3(0), Vec3(1)));
   folder.write("bad.camera", "eye 1 2 3\nat 0 0\n");
   expect_failure(folder, {"render", "a.ply", "--eye", "1,2,3", "--at", "1,2,3"}, 2, "eye and at are the same point");
   expect_failure(folder, {"render", "a.ply", "--eye", "0,5,0", "--at", "0,0,0"}, 2, "up points along the view");
@@ -119,15 +113,13 @@ TEST(RenderFailure, ViewsThatNoCameraHas) {
 }
 
 TEST(RenderFailure, TheStoreMustHoldThePackedMacrocells) {
-  const TemporaryFolder folder;
-  folder.write_ply("a.ply", make_box(Vec3(0), Vec3(1)));
-  ASSERT_EQ(run_program(folder.folder(), {"pack", "a.ply", "-o", "a.gri", "--macro-width", "8"}).exit_code, 0);
+  const TemporaryFolder folder("a.ply", make_box(Vec3(0), Vec3(1)));
+  run(folder, {"pack", "a.ply", "-o", "a.gri", "--macro-width", "8"});
   expect_failure(folder, {"render", "a.gri", "--store", "64"}, 1, "a.gri: scene image that this local store");
 }
 
 TEST(RenderFailure, SignalsThatTheParentIgnoresStayIgnored) {
-  const TemporaryFolder folder;
-  folder.write_ply("a.ply", make_box(Vec3(0), Vec3(1)));
+  const TemporaryFolder folder("a.ply", make_box(Vec3(0), Vec3(1)));
   const ProgramResult result = run_shell(folder.folder(), R"sh(
 mkfifo pipe
 trap '' INT TERM HUP
@@ -145,8 +137,7 @@ wait $!)sh");
 
 // Sends `signal` some time into a render that would last for most of a minute.
 void expect_interrupt(int signal, std::chrono::milliseconds delay) {
-  const TemporaryFolder folder;
-  folder.write_ply("a.ply", make_torus(200, 100, 1.0f, 0.4f));
+  const TemporaryFolder folder("a.ply", make_torus(200, 100, 1.0f, 0.4f));
   folder.write("a.png", "earlier");
   RunningProgram program(
       folder.folder(), {"render", "a.ply", "-o", "a.png", "--report", "r.json", "--size", "7000x7000", "--threads", "1",
@@ -197,8 +188,7 @@ TEST(RenderFailure, AnInterruptEndsTheWaitForAPipe) {
   for (const Words& arguments : cases) {
     for (const bool is_open : {false, true}) {
       SCOPED_TRACE(arguments[0] + " " + arguments.back() + (is_open ? ", open" : ", not open"));
-      const TemporaryFolder folder;
-      folder.write_ply("a.ply", make_sphere(8, 12, 1.0f));
+      const TemporaryFolder folder("a.ply", make_sphere(8, 12, 1.0f));
       const Pipe pipe(folder.path("pipe.ply"), is_open);
       RunningProgram program(folder.folder(), arguments);
       const int signal = is_open ? SIGTERM : SIGINT;
@@ -215,8 +205,7 @@ TEST(RenderFailure, AnInterruptEndsTheWaitForAPipe) {
 
 TEST(RenderFailure, AnInterruptAtAnyTimeLeavesAllOrNothing) {
   for (int step = 0; step < 8; ++step) {
-    const TemporaryFolder folder;
-    folder.write_ply("a.ply", make_torus(40, 24, 1.0f, 0.4f));
+    const TemporaryFolder folder("a.ply", make_torus(40, 24, 1.0f, 0.4f));
     RunningProgram program(folder.folder(),
                            {"render", "a.ply", "-o", "a.png", "--report", "r.json", "--size", "256x256"});
     std::this_thread::sleep_for(std::chrono::milliseconds(7 * step));

@@ -1,18 +1,14 @@
 // render: pictures, planes and reports of the whole program. SPDX-License-Identifier: Apache-2.0
-#include <gtest/gtest.h>
 #include <report/report.h>
 
-#include <algorithm>
-#include <cmath>
-#include <filesystem>
 #include <nlohmann/json.hpp>
-#include <set>
 
 #include "gridiron/scene/scene_points.h"
 #include "gridiron/scene/view.h"
 #include "run_program.h"
 #include "support/picture.h"
 #include "support/render_mesh.h"
+#include "support/test_headers.h"
 #include "temporary_folder.h"
 
 namespace gridiron::test {
@@ -48,8 +44,7 @@ TEST(Render, FilesHoldThePlanesOfTheChip) {
   const TestMesh mesh = make_torus(40, 24, 1.0f, 0.4f);
   const struct { std::uint32_t width, height; } sizes[] = {{96, 64}, {33, 17}, {1, 1}, {1, 300}, {300, 1}};
   for (const auto& size : sizes) {
-    const TemporaryFolder folder;
-    folder.write_ply("a.ply", mesh);
+    const TemporaryFolder folder("a.ply", mesh);
     const std::string text = std::to_string(size.width) + "x" + std::to_string(size.height);
     (void)render(folder, {"a.ply", "-o", "a.png", "--depth", "d.pfm", "--ids", "i.pfm", "--size", text});
     const RenderedFrame expected = expected_frame(mesh, size.width, size.height);
@@ -84,8 +79,7 @@ TEST(Render, TheDefaultPictureIsNamedAfterTheInput) {
 }
 
 TEST(Render, QuietPrintsNothing) {
-  const TemporaryFolder folder;
-  folder.write_ply("a.ply", make_box(Vec3(0), Vec3(1)));
+  const TemporaryFolder folder("a.ply", make_box(Vec3(0), Vec3(1)));
   const ProgramResult quiet = render(folder, {"a.ply", "--size", "8x8", "--quiet"});
   EXPECT_EQ(quiet.out + quiet.err, "");
   const ProgramResult loud = render(folder, {"a.ply", "--size", "8x8"});
@@ -94,8 +88,7 @@ TEST(Render, QuietPrintsNothing) {
 }
 
 TEST(Render, SaysThatNoPixelShowsTheSceneAndWhy) {
-  const TemporaryFolder folder;
-  folder.write_ply("a.ply", make_torus(40, 24, 1.0f, 0.2f));
+  const TemporaryFolder folder("a.ply", make_torus(40, 24, 1.0f, 0.2f));
   folder.write("a.nff", "b 0 0 0\nf 0 0 0 0 0 0 0 0\ns 0 0 0 1\n");  // black in front of black
   folder.write("sky.nff",
                "v from 0 0 9 at 0 0 0 up 0 1 0 angle 40 hither 0 resolution 8 8\n"
@@ -138,8 +131,7 @@ TEST(Render, SaysThatNoPixelShowsTheSceneAndWhy) {
 }
 
 TEST(Render, AnySideAndUpShowTheWholeScene) {
-  const TemporaryFolder folder;
-  folder.write_ply("a.ply", make_random_soup(400, 0.15f, 11));
+  const TemporaryFolder folder("a.ply", make_random_soup(400, 0.15f, 11));
   std::set<std::string> pictures;
   for (const char* from : {"front", "back", "left", "right", "top", "bottom", "iso", "-20,75.5"}) {
     for (const char* up : {"y", "-z", "0.5,1,0"}) {
@@ -163,8 +155,7 @@ TEST(Render, AnySideAndUpShowTheWholeScene) {
 
 // All formats: the packed scene is framed as the mesh is that a frame stores so.
 TEST(Render, APackedSceneIsSeenAsItsMesh) {
-  const TemporaryFolder folder;
-  folder.write_ply("a.ply", make_random_soup(400, 0.15f, 11));
+  const TemporaryFolder folder("a.ply", make_random_soup(400, 0.15f, 11));
   const struct {
     const char *accuracy, *format;
   } cases[] = {{"standard", "vertices"}, {"paper", "projection"}, {"compact", "lattice"}};
@@ -180,8 +171,7 @@ TEST(Render, APackedSceneIsSeenAsItsMesh) {
 }
 
 TEST(Render, PlainModeReportsItsHost) {
-  const TemporaryFolder folder;
-  folder.write_ply("a.ply", make_torus(40, 24, 1.0f, 0.4f));
+  const TemporaryFolder folder("a.ply", make_torus(40, 24, 1.0f, 0.4f));
   const Json checked = render_report(folder, {"a.ply", "--size", "96x64"});
   EXPECT_EQ(checked["mode"], "checked");
   EXPECT_EQ(checked["host"]["lanes"], 4);
@@ -206,8 +196,7 @@ TEST(Render, PlainModeReportsItsHost) {
 }
 
 TEST(Render, RepeatedFramesAreTheSame) {
-  const TemporaryFolder folder;
-  folder.write_ply("a.ply", make_torus(40, 24, 1.0f, 0.4f));
+  const TemporaryFolder folder("a.ply", make_torus(40, 24, 1.0f, 0.4f));
   ASSERT_EQ(run_program(folder.folder(), {"pack", "a.ply", "-o", "a.gri", "--quiet"}).out, "");
   Json once = render_report(folder, {"a.ply", "--size", "96x64"});
   once.erase("host");
@@ -246,8 +235,7 @@ Json without_host(Json report) {
 }
 
 TEST(Render, OptionsOfTheHostChangeNothing) {
-  const TemporaryFolder folder;
-  folder.write_ply("a.ply", make_random_soup(400, 0.15f, 11));
+  const TemporaryFolder folder("a.ply", make_random_soup(400, 0.15f, 11));
   const Words scene = {"a.ply", "-o", "a.png", "--size", "100x70"};
   const Json reference = without_host(render_report(folder, scene + Words{"--threads", "1"}));
   const Words variants[] = {{"--threads", "3"},
@@ -260,8 +248,7 @@ TEST(Render, OptionsOfTheHostChangeNothing) {
 }
 
 TEST(Render, TechniquesChangeTheWorkAndNotThePicture) {
-  const TemporaryFolder folder;
-  folder.write_ply("a.ply", make_torus(60, 40, 1.0f, 0.3f));
+  const TemporaryFolder folder("a.ply", make_torus(60, 40, 1.0f, 0.3f));
   const Words scene = {"a.ply", "-o", "a.png", "--size", "100x70"};
   const Json reference = render_report(folder, scene);
   const Words variants[] = {{"--no-mailbox"},
@@ -310,8 +297,7 @@ double wait_cycles(const Json& report, const char* level) {
 }
 
 TEST(Render, BufferingHidesWaitsAtEachLevel) {
-  const TemporaryFolder folder;
-  folder.write_ply("a.ply", make_torus(60, 40, 1.0f, 0.3f));
+  const TemporaryFolder folder("a.ply", make_torus(60, 40, 1.0f, 0.3f));
   const Words scene = {"a.ply", "-o", "a.png", "--size", "200x200", "--cores", "1"};
   const Json twice = render_report(folder, scene);
   const Json once = render_report(folder, scene + Words{"--buffering", "single"});
@@ -325,8 +311,7 @@ TEST(Render, BufferingHidesWaitsAtEachLevel) {
 }
 
 TEST(Render, ModesAndLanesMakeTheSamePicture) {
-  const TemporaryFolder folder;
-  folder.write_ply("a.ply", make_random_soup(400, 0.15f, 13));
+  const TemporaryFolder folder("a.ply", make_random_soup(400, 0.15f, 13));
   const Words scene = {"a.ply", "-o", "a.png", "--size", "50x40"};
   (void)render(folder, scene);
   const std::string reference = read_file(folder.path("a.png"));
@@ -343,8 +328,7 @@ TEST(Render, ModesAndLanesMakeTheSamePicture) {
 }
 
 TEST(Render, OneTileIsThatPartOfThePicture) {
-  const TemporaryFolder folder;
-  folder.write_ply("a.ply", make_torus(40, 24, 1.0f, 0.4f));
+  const TemporaryFolder folder("a.ply", make_torus(40, 24, 1.0f, 0.4f));
   const Words scene = {"a.ply", "--size", "100x70"};
   (void)render(folder, scene + Words{"-o", "a.png", "--depth", "a.pfm"});
   (void)render(folder, scene + Words{"-o", "b.png", "--depth", "b.pfm", "--tile", "3,1"});
@@ -364,8 +348,7 @@ TEST(Render, OneTileIsThatPartOfThePicture) {
 }
 
 TEST(Render, ACameraFileIsAView) {
-  const TemporaryFolder folder;
-  folder.write_ply("a.ply", make_torus(40, 24, 1.0f, 0.4f));
+  const TemporaryFolder folder("a.ply", make_torus(40, 24, 1.0f, 0.4f));
   folder.write("a.camera", "eye -1 2 3\nat 0 0.5 0\nup 0 0 1\nfov 30\n");
   const Words scene = {"a.ply", "-o", "a.png", "--size", "64x48"};
   const Words spelled = {"--eye", "-1,2,3", "--at", "0,0.5,0", "--up", "0,0,1"};
@@ -379,8 +362,7 @@ TEST(Render, ACameraFileIsAView) {
 
 TEST(Render, ReducesLambdaToFitTheMachineAndSaysSo) {
   // Large triangles in many cells: far more references than the 256 MB of cell-ps3 hold at lambda 4.
-  const TemporaryFolder folder;
-  folder.write_ply("a.ply", make_random_soup(30000, 3.0f, 14));
+  const TemporaryFolder folder("a.ply", make_random_soup(30000, 3.0f, 14));
   const Words scene = {"a.ply", "-o", "a.png", "--size", "8x8"};
   const ProgramResult result = run_program(folder.folder(), Words{"render"} + scene + Words{"--report", "r.json"});
   ASSERT_EQ(result.exit_code, 0) << result.err;

@@ -2,17 +2,14 @@
 #include "run_program.h"
 
 #include <fcntl.h>
-#include <gtest/gtest.h>
 #include <signal.h>
 #include <stdlib.h>
 #include <sys/wait.h>
 #include <unistd.h>
 
-#include <cstdlib>
-#include <fstream>
-#include <string>
 #include <thread>
 
+#include "support/test_headers.h"
 #include "temporary_folder.h"
 
 namespace gridiron::test {
@@ -131,6 +128,7 @@ ProgramResult run(const TemporaryFolder& folder, const Words& arguments) {
 
 void expect_failure(const TemporaryFolder& folder, const Words& arguments, int exit_code, const std::string& words) {
   constexpr int kCheckFailed = 3;  // differences are reported as a result
+  SCOPED_TRACE(testing::PrintToString(arguments));
   const Words before = folder.names();
   const ProgramResult result = run_program(folder.folder(), arguments);
   EXPECT_EQ(result.exit_code, exit_code) << result.err;

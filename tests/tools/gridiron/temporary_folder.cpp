@@ -1,12 +1,11 @@
 // Temporary folder. SPDX-License-Identifier: Apache-2.0
 #include "temporary_folder.h"
 
-#include <gtest/gtest.h>
 #include <stdlib.h>
 
-#include <algorithm>
-#include <fstream>
 #include <iterator>
+
+#include "support/test_headers.h"
 
 namespace gridiron::test {
 

@@ -10,10 +10,12 @@
 
 namespace gridiron::test {
 
-/// A new empty folder, gone with everything in it when the object dies.
+/// A new folder, empty or with one file, gone with everything in it when the object dies.
 class TemporaryFolder {
  public:
   TemporaryFolder();
+  TemporaryFolder(const std::string& name, const std::string& content) : TemporaryFolder() { write(name, content); }
+  TemporaryFolder(const std::string& name, const TestMesh& mesh) : TemporaryFolder() { write_ply(name, mesh); }
   ~TemporaryFolder();
   TemporaryFolder(const TemporaryFolder&) = delete;
   TemporaryFolder& operator=(const TemporaryFolder&) = delete;

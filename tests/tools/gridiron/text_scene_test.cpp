@@ -1,14 +1,12 @@
 // Text scenes through the whole program: views, tolerance, near plane, effects, wrong ones.
 // SPDX-License-Identifier: Apache-2.0
 #include <gridiron/base/effect_records.h>
-#include <gtest/gtest.h>
 
 #include <nlohmann/json.hpp>
-#include <string>
-#include <vector>
 
 #include "run_program.h"
 #include "scene_makers/procedural.h"
+#include "support/test_headers.h"
 #include "temporary_folder.h"
 
 namespace gridiron::test {
@@ -33,8 +31,7 @@ Json info_json(const TemporaryFolder& folder, const Words& arguments) {
 }
 
 TEST(TextScene, BringsViewAndSize) {
-  const TemporaryFolder folder;
-  folder.write_ply("ball.ply", make_sphere(12, 16, 1.0f));
+  const TemporaryFolder folder("ball.ply", make_sphere(12, 16, 1.0f));
   folder.write("a.nff",
                "v from 1 2 6 at 0.1 0 0 up 0 1 0.1 angle 30 hither 0 resolution 40 24\n"
                "f 1 1 1 1 0 0 0 0 m ball.ply\n");
@@ -69,8 +66,7 @@ TEST(TextScene, BringsViewAndSize) {
 
 // Without a view a text scene is framed like a mesh; a given side replaces its view's eye and at.
 TEST(TextScene, IsFramedWhereItBringsNoView) {
-  const TemporaryFolder folder;
-  folder.write_ply("ball.ply", make_sphere(12, 16, 1.0f));
+  const TemporaryFolder folder("ball.ply", make_sphere(12, 16, 1.0f));
   folder.write("a.nff", "f 1 1 1 1 0 0 0 0 m ball.ply\n");
   folder.write("v.nff",
                "v from 1 2 6 at 9 0 0 up 0 0 1 angle 30 hither 8 resolution 40 24\n"
@@ -90,8 +86,7 @@ TEST(TextScene, IsFramedWhereItBringsNoView) {
 }
 
 TEST(TextScene, ToleranceMakesFinerBalls) {
-  const TemporaryFolder folder;
-  folder.write("a.nff", kBall);
+  const TemporaryFolder folder("a.nff", kBall);
   const Json coarse = info_json(folder, {"a.nff", "--tolerance", "0.1"});
   const Json fine = info_json(folder, {"a.nff", "--tolerance", "0.001"});
   EXPECT_GT(fine["scene"]["triangles"].get<int>(), 20 * coarse["scene"]["triangles"].get<int>());
@@ -166,8 +161,7 @@ TEST(TextScene, ANearPlaneThatCutsIsRefused) {
 }
 
 TEST(TextScene, WrongOnesAreToldWithFileAndLine) {
-  const TemporaryFolder folder;
-  folder.write_ply("ball.ply", make_sphere(8, 12, 1.0f));
+  const TemporaryFolder folder("ball.ply", make_sphere(8, 12, 1.0f));
   const std::string good = kBall;  // 4 lines
   const std::string face = std::string("PF\n2 2\n-1.0\n") + std::string(48, '\0');
   for (const char* name : {"px", "nx", "py", "ny", "pz"}) folder.write(std::string(name) + ".pfm", face);
@@ -191,16 +185,14 @@ TEST(TextScene, WrongOnesAreToldWithFileAndLine) {
 }
 
 TEST(TextScene, OddOnesAreRenderedWithANote) {
-  const TemporaryFolder folder;
-  folder.write("a.nff", std::string(kBall) + "p 3 0 0 0 1 1 1 2 2 2\n");
+  const TemporaryFolder folder("a.nff", std::string(kBall) + "p 3 0 0 0 1 1 1 2 2 2\n");
   const ProgramResult result = run(folder, {"render", "a.nff", "--shading", "simple"});
   EXPECT_EQ(result.err.find("a.nff:5: note: "), 0u) << result.err;
   EXPECT_EQ(run(folder, {"render", "a.nff", "--shading", "simple", "--quiet"}).err, "");
 }
 
 TEST(TextScene, ManyTrianglesGetTheToleranceOfThePicture) {
-  const TemporaryFolder folder;
-  folder.write("a.nff", scene_makers::make_lattice(8));
+  const TemporaryFolder folder("a.nff", scene_makers::make_lattice(8));
   const auto json = [&folder](const Words& options) {
     return info_json(folder, Words{"a.nff", "--lambda", "0.1"} + options);
   };
@@ -241,8 +233,7 @@ TEST(TextScene, ManyTrianglesGetTheToleranceOfThePicture) {
 }
 
 TEST(TextScene, WhatDoesNotFitNamesATolerance) {
-  const TemporaryFolder folder;
-  folder.write("a.nff", scene_makers::make_lattice(3));
+  const TemporaryFolder folder("a.nff", scene_makers::make_lattice(3));
   folder.write("small.machine", "based_on cell-ps3\nname small\nmain_memory_bytes 6291456\n");
   const Words render = {"render", "a.nff", "--machine", "small.machine", "--size", "8x8", "--quiet", "--mode", "plain"};
   const ProgramResult refused = run_program(folder.folder(), render);
@@ -256,15 +247,13 @@ TEST(TextScene, WhatDoesNotFitNamesATolerance) {
 }
 
 TEST(TextScene, MeshImagesHaveNoSceneShading) {
-  const TemporaryFolder folder;
-  folder.write_ply("ball.ply", make_sphere(8, 12, 1.0f));
+  const TemporaryFolder folder("ball.ply", make_sphere(8, 12, 1.0f));
   (void)run(folder, {"pack", "ball.ply", "-o", "ball.gri"});
   expect_failure(folder, {"render", "ball.gri", "--shading", "scene"}, 2, "ball.gri has no lights and materials");
 }
 
 TEST(TextScene, RendersItsEffects) {
-  const TemporaryFolder folder;
-  folder.write("a.nff", kBall);
+  const TemporaryFolder folder("a.nff", kBall);
   const std::string picture = picture_of(run(folder, {"render", "a.nff"}));
   EXPECT_EQ(picture.substr(0, 7), "40x24, ");
   EXPECT_NE(picture, picture_of(run(folder, {"render", "a.nff", "--shading", "simple"})));
@@ -283,8 +272,7 @@ TEST(TextScene, RendersItsEffects) {
 }
 
 TEST(TextScene, NoOutputTakesThePlaceOfItsFiles) {
-  const TemporaryFolder folder;
-  folder.write_ply("ball.ply", make_sphere(6, 8, 1.0f));
+  const TemporaryFolder folder("ball.ply", make_sphere(6, 8, 1.0f));
   folder.write("a.nff",
                "v from 0 0 5 at 0 0 0 up 0 1 0 angle 40 hither 0 resolution 8 8\nf 1 1 1 1 0 0 0 0\nm ball.ply\n");
   const auto bytes = std::filesystem::file_size(folder.path("ball.ply"));

@@ -1,15 +1,10 @@
 // The command line: what is refused, with which exit code and words. SPDX-License-Identifier: Apache-2.0
-#include <gtest/gtest.h>
-
-#include <algorithm>
-#include <cstdlib>
-#include <fstream>
 #include <iterator>
 #include <nlohmann/json.hpp>
 #include <regex>
-#include <set>
 
 #include "run_program.h"
+#include "support/test_headers.h"
 #include "temporary_folder.h"
 
 namespace gridiron::test {
@@ -138,20 +133,11 @@ TEST(Usage, MistakesExitWithTwoAndSayWhy) {
       {{"machines", "cell-ps3", "cell-2006"}, "cell-2006"},
   };
   const TemporaryFolder folder;
-  for (const Case& mistake : cases) {
-    const ProgramResult result = run_program(folder.folder(), mistake.arguments);
-    std::string line;
-    for (const std::string& word : mistake.arguments) line += " " + word;
-    EXPECT_EQ(result.exit_code, 2) << line << "\n" << result.err;
-    EXPECT_NE(result.err.find(mistake.words), std::string::npos) << line << "\n" << result.err;
-    EXPECT_EQ(result.out, "") << line;
-  }
-  EXPECT_EQ(folder.names(), Words{});
+  for (const Case& mistake : cases) expect_failure(folder, mistake.arguments, 2, mistake.words);
 }
 
 TEST(Usage, MachinesThatAreNotThereHaveNearOnes) {
-  const TemporaryFolder folder;
-  folder.write("a.machine", "based_on cell-ps\n");
+  const TemporaryFolder folder("a.machine", "based_on cell-ps\n");
   folder.write("b.machine", "based_on cell-ps3\ncorecount 3\n");
   const auto expect = [&folder](const std::string& machine, const std::string& words) {
     expect_failure(folder, {"render", "a.ply", "--machine", machine}, 1, words);
@@ -164,8 +150,7 @@ TEST(Usage, MachinesThatAreNotThereHaveNearOnes) {
 }
 
 TEST(Usage, AFileInPlaceOfACommandIsToldHowToBeRendered) {
-  const TemporaryFolder folder;
-  folder.write("a.ply", "ply\n");
+  const TemporaryFolder folder("a.ply", "ply\n");
   expect_failure(folder, {"a.ply"}, 2, "gridiron render a.ply");
 }
 

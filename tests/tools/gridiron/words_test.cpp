@@ -1,10 +1,7 @@
 // Words: one phrase for every value. SPDX-License-Identifier: Apache-2.0
 #include "base/words.h"
 
-#include <gtest/gtest.h>
-
-#include <set>
-#include <string>
+#include "support/test_headers.h"
 
 namespace gridiron::test {
 namespace {

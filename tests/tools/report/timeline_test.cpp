@@ -2,14 +2,9 @@
 // Memory: std::string. Threads: one. SPDX-License-Identifier: Apache-2.0
 #include "report/timeline.h"
 
-#include <gtest/gtest.h>
-
-#include <cmath>
-#include <cstdint>
-#include <map>
 #include <nlohmann/json.hpp>
-#include <string>
-#include <vector>
+
+#include "support/test_headers.h"
 
 namespace gridiron::tool {
 namespace {

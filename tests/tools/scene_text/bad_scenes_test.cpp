@@ -1,14 +1,9 @@
 // A zoo of scenes that are wrong: each complaint names the file, the line and the reason.
 // Memory: a folder on disk. Threads: one. SPDX-License-Identifier: Apache-2.0
-#include <gtest/gtest.h>
-
-#include <filesystem>
-#include <string>
-#include <vector>
-
 #include "base/failure.h"
 #include "check_scene.h"
 #include "scene_makers/procedural.h"
+#include "support/test_headers.h"
 #include "temporary_folder.h"
 
 namespace gridiron::test {

@@ -1,14 +1,10 @@
 // Checks of scenes. SPDX-License-Identifier: Apache-2.0
 #include "check_scene.h"
 
-#include <gtest/gtest.h>
-
-#include <cmath>
 #include <glm/geometric.hpp>
-#include <map>
-#include <utility>
 
 #include "failure_of.h"
+#include "support/test_headers.h"
 
 namespace gridiron::test {
 

@@ -1,17 +1,11 @@
 // Faces of environment cubes from PFM and PNG. SPDX-License-Identifier: Apache-2.0
-#include <gtest/gtest.h>
 #include <png.h>
-
-#include <bit>
-#include <cmath>
-#include <cstring>
-#include <string>
-#include <vector>
 
 #include "base/failure.h"
 #include "check_scene.h"
 #include "scene_makers/procedural.h"
 #include "scene_text/scene_files.h"
+#include "support/test_headers.h"
 #include "temporary_folder.h"
 
 namespace gridiron::test {

@@ -1,15 +1,11 @@
 // Scenes cut short and scrambled: a sound scene or a complaint with file and line, never a crash.
 // Memory: a folder on disk. Threads: one. SPDX-License-Identifier: Apache-2.0
-#include <gtest/gtest.h>
-
-#include <algorithm>
 #include <cctype>
-#include <string>
-#include <vector>
 
 #include "base/failure.h"
 #include "check_scene.h"
 #include "scene_makers/procedural.h"
+#include "support/test_headers.h"
 #include "temporary_folder.h"
 
 namespace gridiron::test {

@@ -1,15 +1,11 @@
 // Polygons to triangles: the outline kept, the area kept, nothing turned over. SPDX-License-Identifier: Apache-2.0
 #include "scene_text/polygon.h"
 
-#include <gtest/gtest.h>
-
-#include <algorithm>
-#include <cmath>
 #include <glm/geometric.hpp>
-#include <map>
 #include <numbers>
 
 #include "check_scene.h"
+#include "support/test_headers.h"
 #include "support/test_mesh.h"
 
 namespace gridiron::test {

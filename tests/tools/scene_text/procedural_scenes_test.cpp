@@ -1,16 +1,11 @@
 // The procedural scenes: as many objects as published, the same bytes everywhere, closed and turned outwards.
 // Memory: std::vector. Threads: one. SPDX-License-Identifier: Apache-2.0
-#include <gtest/gtest.h>
-
-#include <cmath>
 #include <glm/geometric.hpp>
-#include <map>
-#include <set>
-#include <string>
 #include <tuple>
 
 #include "check_scene.h"
 #include "scene_makers/procedural.h"
+#include "support/test_headers.h"
 
 namespace gridiron::test {
 namespace {

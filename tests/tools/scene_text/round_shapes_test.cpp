@@ -2,16 +2,12 @@
 // Memory: std::vector. Threads: one. SPDX-License-Identifier: Apache-2.0
 #include "scene_text/round_shapes.h"
 
-#include <gtest/gtest.h>
-
-#include <cmath>
 #include <glm/geometric.hpp>
 #include <numbers>
-#include <set>
-#include <sstream>
 #include <tuple>
 
 #include "check_scene.h"
+#include "support/test_headers.h"
 
 namespace gridiron::test {
 namespace {

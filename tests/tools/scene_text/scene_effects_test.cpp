@@ -2,14 +2,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "scene_text/scene_effects.h"
 
-#include <gtest/gtest.h>
-
-#include <algorithm>
-#include <filesystem>
-#include <string>
-#include <utility>
-
 #include "check_scene.h"
+#include "support/test_headers.h"
 
 namespace gridiron::test {
 namespace {

@@ -1,15 +1,10 @@
 // The scenes of the repository: readable, sound, and each calls for what it says.
 // Memory: std::vector. Threads: one. SPDX-License-Identifier: Apache-2.0
-#include <gtest/gtest.h>
-
-#include <filesystem>
-#include <fstream>
 #include <iterator>
-#include <set>
-#include <string>
 
 #include "check_scene.h"
 #include "scene_makers/procedural.h"
+#include "support/test_headers.h"
 
 namespace gridiron::test {
 namespace {

@@ -1,13 +1,9 @@
 // Text scenes that are right: what each line becomes. SPDX-License-Identifier: Apache-2.0
-#include <gtest/gtest.h>
-
 #include <clocale>
-#include <cmath>
-#include <fstream>
-#include <string>
 
 #include "check_scene.h"
 #include "failure_of.h"
+#include "support/test_headers.h"
 #include "temporary_folder.h"
 
 namespace gridiron::test {
@@ -191,8 +187,7 @@ TEST(SceneReader, MovesAMeshByItsMatrixAndKeepsItTurnedOutwards) {
 TEST(SceneReader, NormalsOfAMeshAreThoseOfASphereWhereItIsOne) {
   // The tessellated sphere as a mesh: each vertex on the sphere, so each normal is its direction.
   const SceneDescription sphere = read_good(scene("s 0 0 0 2"));
-  const TemporaryFolder folder;
-  folder.write_ply("s.ply", {sphere.geometry.vertices, sphere.geometry.triangles});
+  const TemporaryFolder folder("s.ply", {sphere.geometry.vertices, sphere.geometry.triangles});
   const SceneDescription read =
       read_good(std::string(kView) + "sn on f 1 1 1 1 0 0 0 0 m s.ply", {}, folder.path("a.nff").string());
   ASSERT_EQ(read.geometry.normals.size(), read.geometry.vertices.size());
@@ -205,9 +200,8 @@ TEST(SceneReader, NormalsOfAMeshAreThoseOfASphereWhereItIsOne) {
 }
 
 TEST(SceneReader, BothSidesOfASheetHaveNormals) {
-  const TemporaryFolder folder;
-  folder.write_ply("sheet.ply",
-                   {{Vec3(0, 0, 0), Vec3(1, 0, 0), Vec3(0, 1, 0)}, {UVec3(0, 1, 2), UVec3(0, 2, 1), UVec3(0, 0, 1)}});
+  const TemporaryFolder folder(
+      "sheet.ply", {{Vec3(0, 0, 0), Vec3(1, 0, 0), Vec3(0, 1, 0)}, {UVec3(0, 1, 2), UVec3(0, 2, 1), UVec3(0, 0, 1)}});
   const SceneDescription read =
       read_good(std::string(kView) + "sn on f 1 1 1 1 0 0 0 0 m sheet.ply", {}, folder.path("a.nff").string());
   expect_sound(read);

@@ -1,15 +1,10 @@
 // The tolerance of round shapes that a picture allows. SPDX-License-Identifier: Apache-2.0
-#include <gtest/gtest.h>
-
-#include <cmath>
-#include <functional>
 #include <glm/common.hpp>
-#include <span>
-#include <string>
 
 #include "check_scene.h"
 #include "failure_of.h"
 #include "scene_makers/procedural.h"
+#include "support/test_headers.h"
 
 namespace gridiron::test {
 namespace {

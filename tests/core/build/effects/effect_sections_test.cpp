@@ -3,14 +3,10 @@
 #include <gridiron/build/lattice.h>
 #include <gridiron/ray/lattice_run.h>
 #include <gridiron/scene/effect_rules.h>
-#include <gtest/gtest.h>
-
-#include <algorithm>
-#include <cstring>
-#include <vector>
 
 #include "core/build/grid/built_image.h"
 #include "core/scene/test_effects.h"
+#include "support/test_headers.h"
 
 namespace gridiron::test {
 namespace {

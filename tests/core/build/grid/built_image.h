@@ -4,16 +4,9 @@
 
 #include <gridiron/build/grid/grid_builder.h>
 #include <gridiron/image/scene_image.h>
-#include <gtest/gtest.h>
-
-#include <bit>
-#include <cstddef>
-#include <cstdint>
-#include <cstring>
-#include <span>
-#include <vector>
 
 #include "core/build/grid/line_buffer.h"
+#include "support/test_headers.h"
 
 namespace gridiron::test {
 
@@ -23,6 +16,16 @@ Record read_record(std::span<const std::byte> bytes, std::uint64_t offset) {
   EXPECT_LE(offset + sizeof(Record), bytes.size());
   if (offset + sizeof(Record) <= bytes.size()) std::memcpy(&record, bytes.data() + offset, sizeof(Record));
   return record;
+}
+
+/// Calls visit(x, y, z) for every cell of a grid: x fastest, then y, then z.
+template <class Visit>
+void for_each_cell(const GridRecord& grid, Visit&& visit) {
+  for (std::uint32_t z = 0; z < grid.cell_count[2]; ++z) {
+    for (std::uint32_t y = 0; y < grid.cell_count[1]; ++y) {
+      for (std::uint32_t x = 0; x < grid.cell_count[0]; ++x) visit(x, y, z);
+    }
+  }
 }
 
 /// An image, its view, and the triangle ids of every cell (x fastest, then y, then z), in their stored order.
@@ -45,37 +48,34 @@ inline std::vector<std::vector<std::uint32_t>> read_cells(std::span<const std::b
   std::vector<std::vector<std::uint32_t>> cells(std::size_t{grid.cell_count[0]} * grid.cell_count[1] *
                                                 grid.cell_count[2]);
   std::size_t index = 0;
-  for (std::uint32_t z = 0; z < grid.cell_count[2]; ++z) {
-    for (std::uint32_t y = 0; y < grid.cell_count[1]; ++y) {
-      for (std::uint32_t x = 0; x < grid.cell_count[0]; ++x, ++index) {
-        const std::uint64_t macro =
-            (std::uint64_t{z / m} * grid.macro_cell_count[1] + y / m) * grid.macro_cell_count[0] + x / m;
-        const auto entry =
-            read_record<MacroTableEntry>(bytes, view.macro_table_offset_bytes + macro / 32 * sizeof(MacroTableEntry));
-        const std::uint32_t bit = 1u << (macro % 32);
-        if ((entry.occupied & bit) == 0) continue;
-        const std::uint64_t block =
-            std::uint64_t{entry.first_block} + static_cast<std::uint32_t>(std::popcount(entry.occupied & (bit - 1)));
-        const std::uint32_t local = ((z % m) * m + y % m) * m + x % m;
-        const std::uint64_t base = view.cell_blocks_offset_bytes + block * grid.cell_block_bytes;
-        CellRecord record;
-        if (grid.triangle_format == static_cast<std::uint32_t>(TriangleFormat::kLattice)) {
-          const auto bound = [&](std::uint32_t i) {
-            return read_record<CellBound>(bytes, base + i * sizeof(CellBound)).first_triangle;
-          };
-          record = {bound(local), bound(local + 1) - bound(local)};
-        } else {
-          record = read_record<CellRecord>(bytes, base + local * sizeof(CellRecord));
-        }
-        for (std::uint32_t i = 0; i < record.triangle_count; ++i) {
-          const std::uint64_t place = std::uint64_t{record.first_triangle} + i;
-          // Every record ends with its id.
-          cells[index].push_back(read_record<std::uint32_t>(
-              bytes, view.triangles_offset_bytes + (place + 1) * grid.triangle_bytes - sizeof(std::uint32_t)));
-        }
-      }
+  for_each_cell(grid, [&](std::uint32_t x, std::uint32_t y, std::uint32_t z) {
+    std::vector<std::uint32_t>& ids = cells[index++];
+    const std::uint64_t macro =
+        (std::uint64_t{z / m} * grid.macro_cell_count[1] + y / m) * grid.macro_cell_count[0] + x / m;
+    const auto entry =
+        read_record<MacroTableEntry>(bytes, view.macro_table_offset_bytes + macro / 32 * sizeof(MacroTableEntry));
+    const std::uint32_t bit = 1u << (macro % 32);
+    if ((entry.occupied & bit) == 0) return;
+    const std::uint64_t block =
+        std::uint64_t{entry.first_block} + static_cast<std::uint32_t>(std::popcount(entry.occupied & (bit - 1)));
+    const std::uint32_t local = ((z % m) * m + y % m) * m + x % m;
+    const std::uint64_t base = view.cell_blocks_offset_bytes + block * grid.cell_block_bytes;
+    CellRecord record;
+    if (grid.triangle_format == static_cast<std::uint32_t>(TriangleFormat::kLattice)) {
+      const auto bound = [&](std::uint32_t i) {
+        return read_record<CellBound>(bytes, base + i * sizeof(CellBound)).first_triangle;
+      };
+      record = {bound(local), bound(local + 1) - bound(local)};
+    } else {
+      record = read_record<CellRecord>(bytes, base + local * sizeof(CellRecord));
     }
-  }
+    for (std::uint32_t i = 0; i < record.triangle_count; ++i) {
+      const std::uint64_t place = std::uint64_t{record.first_triangle} + i;
+      // Every record ends with its id.
+      ids.push_back(read_record<std::uint32_t>(
+          bytes, view.triangles_offset_bytes + (place + 1) * grid.triangle_bytes - sizeof(std::uint32_t)));
+    }
+  });
   return cells;
 }
 

@@ -1,13 +1,8 @@
 // Cells of single triangles against rational arithmetic. SPDX-License-Identifier: Apache-2.0
 #include <gridiron/build/grid/cell_rows.h>
-#include <gtest/gtest.h>
-
-#include <array>
-#include <cstdint>
-#include <set>
-#include <string>
 
 #include "core/build/grid/exact_overlap.h"
+#include "support/test_headers.h"
 #include "support/test_mesh.h"
 
 namespace gridiron::test {

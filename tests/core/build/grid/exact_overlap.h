@@ -5,15 +5,9 @@
 #include <gridiron/base/math.h>
 #include <gridiron/base/records.h>
 
-#include <array>
-#include <cstddef>
-#include <vector>
-
-#include "numeric/exact_numbers.h"
+#include "support/rational_vectors.h"
 
 namespace gridiron::test {
-
-using RationalPoint = std::array<Rational, 3>;
 
 /// The point's exact place in cell space.
 inline RationalPoint exact_cell_point(const GridRecord& grid, const Vec3& p) {

@@ -1,22 +1,11 @@
 // Grid builder: cells against rational arithmetic, counts, memory, errors, bytes. SPDX-License-Identifier: Apache-2.0
 #include <gridiron/build/grid/grid_builder.h>
-#include <gtest/gtest.h>
-
-#include <algorithm>
-#include <array>
-#include <cmath>
-#include <cstdint>
-#include <cstring>
-#include <functional>
-#include <limits>
-#include <set>
-#include <string>
-#include <vector>
 
 #include "core/build/grid/built_image.h"
 #include "core/build/grid/exact_overlap.h"
 #include "support/ply_load.h"
 #include "support/scenes.h"
+#include "support/test_headers.h"
 #include "support/test_mesh.h"
 
 namespace gridiron::test {
@@ -30,7 +19,7 @@ bool same_bytes(std::span<const std::byte> a, std::span<const std::byte> b) {
 
 struct MeshCase {
   const char* name;
-  std::function<TestMesh()> make;
+  TestMesh mesh;
   float lambda = 4.0f;
   std::uint32_t macro_width = 6;
 };
@@ -48,7 +37,7 @@ TestMesh with(TestMesh mesh, const TestMesh& other) {
 class MeshCells : public ::testing::TestWithParam<MeshCase> {};
 
 TEST_P(MeshCells, HoldEveryTriangleThatTouchesThem) {
-  const TestMesh mesh = GetParam().make();
+  const TestMesh& mesh = GetParam().mesh;
   const GridParameters parameters{GetParam().lambda, GetParam().macro_width, TriangleFormat::kVertices};
   const BuiltImage built = build_image(mesh.view(), parameters);
   ASSERT_FALSE(HasFailure());
@@ -57,101 +46,59 @@ TEST_P(MeshCells, HoldEveryTriangleThatTouchesThem) {
 
   std::vector<std::array<RationalPoint, 3>> triangles;
   for (const UVec3& t : mesh.triangles) {
-    std::array<RationalPoint, 3> triangle;
-    for (int corner = 0; corner < 3; ++corner) {
-      triangle[static_cast<std::size_t>(corner)] = exact_cell_point(grid, mesh.vertices[t[corner]]);
+    const auto corner_of = [&](std::uint32_t vertex) { return exact_cell_point(grid, mesh.vertices[vertex]); };
+    const std::array<RationalPoint, 3> triangle = {corner_of(t.x), corner_of(t.y), corner_of(t.z)};
+    for (const RationalPoint& corner : triangle) {
       for (std::size_t axis = 0; axis < 3; ++axis) {
-        const Rational& p = triangle[static_cast<std::size_t>(corner)][axis];
-        EXPECT_GE(p, 0);
-        EXPECT_LE(p, Rational(grid.cell_count[axis])) << "outside the grid";
+        EXPECT_GE(corner[axis], 0);
+        EXPECT_LE(corner[axis], Rational(grid.cell_count[axis])) << "outside the grid";
       }
     }
     triangles.push_back(triangle);
   }
   std::uint64_t references = 0;
-  for (std::uint32_t z = 0; z < grid.cell_count[2]; ++z) {
-    for (std::uint32_t y = 0; y < grid.cell_count[1]; ++y) {
-      for (std::uint32_t x = 0; x < grid.cell_count[0]; ++x) {
-        const std::vector<std::uint32_t>& ids = built.cell(x, y, z);
-        references += ids.size();
-        ASSERT_TRUE(std::is_sorted(ids.begin(), ids.end()));
-        const std::array<int, 3> cell = {static_cast<int>(x), static_cast<int>(y), static_cast<int>(z)};
-        for (std::uint32_t id = 0; id < triangles.size(); ++id) {
-          const bool holds = std::binary_search(ids.begin(), ids.end(), id);
-          if (holds) {
-            EXPECT_TRUE(touches_cell(triangles[id], cell, grown))
-                << "extra " << id << " in " << x << ' ' << y << ' ' << z;
-          } else {
-            EXPECT_FALSE(touches_cell(triangles[id], cell, 0)) << "lost " << id << " in " << x << ' ' << y << ' ' << z;
-          }
-        }
+  for_each_cell(grid, [&](std::uint32_t x, std::uint32_t y, std::uint32_t z) {
+    const std::vector<std::uint32_t>& ids = built.cell(x, y, z);
+    references += ids.size();
+    ASSERT_TRUE(std::is_sorted(ids.begin(), ids.end()));
+    const std::array<int, 3> cell = {static_cast<int>(x), static_cast<int>(y), static_cast<int>(z)};
+    for (std::uint32_t id = 0; id < triangles.size(); ++id) {
+      if (std::binary_search(ids.begin(), ids.end(), id)) {
+        EXPECT_TRUE(touches_cell(triangles[id], cell, grown)) << "extra " << id << " in " << x << ' ' << y << ' ' << z;
+      } else {
+        EXPECT_FALSE(touches_cell(triangles[id], cell, 0)) << "lost " << id << " in " << x << ' ' << y << ' ' << z;
       }
     }
-  }
+  });
   EXPECT_EQ(references, grid.reference_count);
   EXPECT_EQ(references, built.need.grid.reference_count);
 }
 
-INSTANTIATE_TEST_SUITE_P(
-    Meshes, MeshCells,
-    ::testing::Values(MeshCase{"triangle",
-                               [] {
-                                 return make_triangle({0, 0, 0}, {1, 0.5f, 0.25f}, {0.25f, 1, 0.75f});
-                               }},
-                      MeshCase{"giant",
-                               [] {
-                                 return make_triangle({0, 0, 0}, {3, 0.1f, 1}, {0.5f, 3, 2});
-                               },
-                               500.0f, 3},
-                      MeshCase{"needle",
-                               [] {
-                                 return make_triangle({0, 0, 0}, {1, 1, 1}, {1, 1, 0.999f});
-                               },
-                               300.0f, 4},
-                      MeshCase{"box",
-                               [] {
-                                 return make_box({-1, -2, -3}, {1, 2, 3});
-                               },
-                               12.0f, 2},
-                      MeshCase{"box_on_cells",
-                               [] {
-                                 return make_box({0, 0, 0}, {4, 4, 4});
-                               },
-                               64.0f / 12.0f + 0.01f, 2},
-                      MeshCase{"soup", [] { return make_random_soup(24, 0.4f, 5); }},
-                      MeshCase{"soup_m1", [] { return make_random_soup(24, 0.3f, 6); }, 6.0f, 1},
-                      MeshCase{"soup_m8", [] { return make_random_soup(16, 0.9f, 7); }, 9.0f, 8},
-                      MeshCase{"sphere", [] { return make_sphere(5, 6, 2.0f); }, 3.0f},
-                      MeshCase{"fan", [] { return make_sliver_fan(20, 0.01f); }, 5.0f},
-                      MeshCase{"huge", [] { return scaled(make_random_soup(16, 0.5f, 8), 1e30f, Vec3(0)); }},
-                      MeshCase{"largest", [] { return scaled(make_random_soup(16, 0.5f, 8), 8e35f, Vec3(0)); }},
-                      MeshCase{"tiny", [] { return scaled(make_random_soup(16, 0.5f, 9), 1e-30f, Vec3(0)); }},
-                      MeshCase{"denormal", [] { return scaled(make_random_soup(16, 0.5f, 10), 1e-42f, Vec3(0)); }},
-                      MeshCase{"moved", [] { return scaled(make_random_soup(16, 0.5f, 11), 100.0f, Vec3(1e7f)); }},
-                      MeshCase{"moved_far",
-                               [] { return scaled(make_random_soup(16, 0.5f, 12), 1.0f, Vec3(1e6f, -1e5f, 3e6f)); }},
-                      MeshCase{"mixed",
-                               [] {
-                                 return with(make_box({-100, 0, -100}, {100, 1, 100}),
-                                             scaled(make_sphere(3, 4, 1.0f), 0.05f, Vec3(0.3f, 0.5f, 0.1f)));
-                               }},
-                      MeshCase{"flat",
-                               [] {
-                                 return with(make_triangle({0, 0, 1}, {4, 0, 1}, {0, 4, 1}),
-                                             make_triangle({4, 4, 1}, {4, 0, 1}, {0, 4, 1}));
-                               },
-                               20.0f},
-                      MeshCase{"thin",
-                               [] {
-                                 return make_triangle({0, 0, 0}, {100, 0.001f, 0.001f}, {50, 0.002f, 0});
-                               },
-                               30.0f},
-                      MeshCase{"denormal_axis",
-                               [] {
-                                 return make_triangle({0, 0, 0}, {1, 0, 1e-45f}, {0, 1, 1e-44f});
-                               },
-                               9.0f}),
-    [](const auto& test) { return test.param.name; });
+const MeshCase kMeshCases[] = {
+    {"triangle", make_triangle({0, 0, 0}, {1, 0.5f, 0.25f}, {0.25f, 1, 0.75f})},
+    {"giant", make_triangle({0, 0, 0}, {3, 0.1f, 1}, {0.5f, 3, 2}), 500.0f, 3},
+    {"needle", make_triangle({0, 0, 0}, {1, 1, 1}, {1, 1, 0.999f}), 300.0f, 4},
+    {"box", make_box({-1, -2, -3}, {1, 2, 3}), 12.0f, 2},
+    {"box_on_cells", make_box({0, 0, 0}, {4, 4, 4}), 64.0f / 12.0f + 0.01f, 2},
+    {"soup", make_random_soup(24, 0.4f, 5)},
+    {"soup_m1", make_random_soup(24, 0.3f, 6), 6.0f, 1},
+    {"soup_m8", make_random_soup(16, 0.9f, 7), 9.0f, 8},
+    {"sphere", make_sphere(5, 6, 2.0f), 3.0f},
+    {"fan", make_sliver_fan(20, 0.01f), 5.0f},
+    {"huge", scaled(make_random_soup(16, 0.5f, 8), 1e30f, Vec3(0))},
+    {"largest", scaled(make_random_soup(16, 0.5f, 8), 8e35f, Vec3(0))},
+    {"tiny", scaled(make_random_soup(16, 0.5f, 9), 1e-30f, Vec3(0))},
+    {"denormal", scaled(make_random_soup(16, 0.5f, 10), 1e-42f, Vec3(0))},
+    {"moved", scaled(make_random_soup(16, 0.5f, 11), 100.0f, Vec3(1e7f))},
+    {"moved_far", scaled(make_random_soup(16, 0.5f, 12), 1.0f, Vec3(1e6f, -1e5f, 3e6f))},
+    {"mixed",
+     with(make_box({-100, 0, -100}, {100, 1, 100}), scaled(make_sphere(3, 4, 1.0f), 0.05f, Vec3(0.3f, 0.5f, 0.1f)))},
+    {"flat", with(make_triangle({0, 0, 1}, {4, 0, 1}, {0, 4, 1}), make_triangle({4, 4, 1}, {4, 0, 1}, {0, 4, 1})),
+     20.0f},
+    {"thin", make_triangle({0, 0, 0}, {100, 0.001f, 0.001f}, {50, 0.002f, 0}), 30.0f},
+    {"denormal_axis", make_triangle({0, 0, 0}, {1, 0, 1e-45f}, {0, 1, 1e-44f}), 9.0f}};
+INSTANTIATE_TEST_SUITE_P(Meshes, MeshCells, ::testing::ValuesIn(kMeshCases),
+                         [](const auto& test) { return test.param.name; });
 
 // --- Eq. (1) ------------------------------------------------------------------------------------------------------
 
@@ -200,16 +147,11 @@ TEST(Counting, AgreesWithTheImageForEveryMacroWidthAndLambda) {
         EXPECT_EQ(std::memcmp(&built.view.grid, &built.need.grid, sizeof(GridRecord)), 0);
         std::uint64_t references = 0;
         std::set<std::uint64_t> macro_cells;
-        std::size_t index = 0;
-        for (std::uint32_t z = 0; z < built.view.grid.cell_count[2]; ++z) {
-          for (std::uint32_t y = 0; y < built.view.grid.cell_count[1]; ++y) {
-            for (std::uint32_t x = 0; x < built.view.grid.cell_count[0]; ++x, ++index) {
-              references += built.cells[index].size();
-              if (!built.cells[index].empty())
-                macro_cells.insert((std::uint64_t{z / m} << 40) + (std::uint64_t{y / m} << 20) + x / m);
-            }
-          }
-        }
+        for_each_cell(built.view.grid, [&](std::uint32_t x, std::uint32_t y, std::uint32_t z) {
+          const std::size_t in_cell = built.cell(x, y, z).size();
+          references += in_cell;
+          if (in_cell != 0) macro_cells.insert((std::uint64_t{z / m} << 40) + (std::uint64_t{y / m} << 20) + x / m);
+        });
         EXPECT_EQ(references, built.need.grid.reference_count);
         EXPECT_EQ(macro_cells.size() + 1, built.need.grid.cell_block_count);
       }

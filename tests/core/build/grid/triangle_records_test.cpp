@@ -1,42 +1,20 @@
 // Zero areas and projections against rational arithmetic. SPDX-License-Identifier: Apache-2.0
 #include <gridiron/build/grid/triangle_records.h>
-#include <gtest/gtest.h>
 
-#include <array>
-#include <cmath>
-#include <cstdint>
-#include <string>
-
-#include "core/build/grid/exact_overlap.h"
+#include "support/rational_vectors.h"
+#include "support/test_headers.h"
 #include "support/test_mesh.h"
 
 namespace gridiron::test {
 namespace {
 
-RationalPoint exact_point(const Vec3& p) {
-  return {Rational(p.x), Rational(p.y), Rational(p.z)};
-}
-
 RationalPoint exact_normal(const Vec3& a, const Vec3& b, const Vec3& c) {
   const RationalPoint p = exact_point(a);
-  RationalPoint e1 = exact_point(b);
-  RationalPoint e2 = exact_point(c);
-  RationalPoint normal;
-  for (std::size_t i = 0; i < 3; ++i) {
-    e1[i] -= p[i];
-    e2[i] -= p[i];
-  }
-  for (std::size_t i = 0; i < 3; ++i) {
-    const std::size_t u = (i + 1) % 3;
-    const std::size_t v = (i + 2) % 3;
-    normal[i] = e1[u] * e2[v] - e1[v] * e2[u];
-  }
-  return normal;
+  return cross(exact_point(b) - p, exact_point(c) - p);
 }
 
 bool exactly_zero_area(const Vec3& a, const Vec3& b, const Vec3& c) {
-  const RationalPoint normal = exact_normal(a, b, c);
-  return normal[0] == 0 && normal[1] == 0 && normal[2] == 0;
+  return exact_normal(a, b, c) == RationalPoint{};
 }
 
 Vec3 random_point(TestRandom& random, float scale) {
@@ -114,11 +92,8 @@ TEST_P(Projection, IsTheRationalOneRounded) {
     const std::size_t u = (k + 1) % 3;
     const std::size_t v = (k + 2) % 3;
     const RationalPoint a = exact_point(p[0]);
-    RationalPoint e1 = exact_point(p[1]);
-    RationalPoint e2 = exact_point(p[2]);
+    const RationalPoint e1 = exact_point(p[1]) - a, e2 = exact_point(p[2]) - a;
     for (std::size_t i = 0; i < 3; ++i) {
-      e1[i] -= a[i];
-      e2[i] -= a[i];
       EXPECT_LE(abs(n[i]), abs(n[k]) * Rational(1 + 1e-12)) << "seed " << seed << ": axis_k is not the largest";
     }
     const Rational n_k = n[k];

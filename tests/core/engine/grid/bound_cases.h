@@ -32,42 +32,33 @@ inline constexpr EdgeCase kEdgeCases[] = {
      {0x1.ef97c2p-9f, -0x1.b21daep-7f, 0x1.b21c0cp-7f}},
 };
 
-/// A packet of a picture, the eye at 0, and an edge in its sight.
-struct PictureCase {
+/// A packet of a picture, and the ray of it that matters.
+struct PacketPlace {
   std::uint32_t width;        ///< pixels of the packet
   std::uint32_t left, top;    ///< its first pixel
-  std::uint32_t column, row;  ///< in it, the ray that matters
+  std::uint32_t column, row;  ///< of the ray in the packet
+};
+/// A packet of a picture, the eye at 0, and an edge in its sight.
+struct PictureCase : PacketPlace {
   float corner[3], step_x[3], step_y[3];
   float a[3], b[3];
 };
 inline constexpr double kCornerShare = 0.09;  ///< of what kEdgeErrorFactor and kCornerErrorFactor come to
 /// In the first one rounding moves rays by far more than 17 e of the edge alone would cover; and its ray hits.
 inline constexpr PictureCase kCornerCases[] = {
-    {8,
-     32,
-     4064,
-     6,
-     7,
+    {{8, 32, 4064, 6, 7},
      {0x1.25c9fcp+10f, -0x1.8526e6p+7f, -0x1.0168b4p+12f},
      {0x1.e18ceep-2f, 0x1.5beacap-2f, -0x1.263fa2p-3f},
      {-0x1.2da13ep-2f, 0x1.70b854p-5f, 0x1.034586p+0f},
      {-0x1.7c0112p+3f, 0x1.bb65bap+1f, -0x1.0c2168p+1f},
      {-0x1.761d66p+3f, 0x1.43d65ap+1f, -0x1.a4d922p+0f}},
-    {8,
-     0,
-     256,
-     6,
-     0,
+    {{8, 0, 256, 6, 0},
      {-0x1.f12e4cp-31f, 0x1.56a5bp+2f, -0x1.ef8e02p-35f},
      {0x1.7f87eep-33f, -0x1.96851ap-33f, -0x1.e518aep-31f},
      {-0x1.4d8732p-6f, -0x1.511bdp-30f, -0x1.4d83e8p-6f},
      {-0x1.0026dep-30f, 0x1.fffff6p-31f, 0x1.04a868p-30f},
      {0x1.080d76p-6f, -0x1.0c3516p-6f, -0x1.0f3ef8p-6f}},
-    {32,
-     256,
-     4064,
-     28,
-     20,
+    {{32, 256, 4064, 28, 20},
      {-0x1.a0507ap-24f, -0x1.e5d75ap+0f, -0x1.43dff2p-25f},
      {-0x1.ccef98p-3f, -0x1.a8664ep-27f, -0x1.ccef26p-3f},
      {-0x1.6bce5ap-39f, -0x1.f11108p-7f, -0x1.005882p-24f},
@@ -76,61 +67,37 @@ inline constexpr PictureCase kCornerCases[] = {
 };
 inline constexpr double kSubpacketShare = 0.034;  ///< of kSubpacketErrorFactor's 68 e
 inline constexpr PictureCase kSubpacketCases[] = {
-    {32,
-     4064,
-     8160,
-     31,
-     31,
+    {{32, 4064, 8160, 31, 31},
      {0x1.00011ep+0f, 0x1.d7996ep-17f, 0x1.00007cp+0f},
      {0x1.5f3228p-13f, -0x1.5f3548p-13f, 0x1.95c332p-17f},
      {-0x1.e08cacp-23f, -0x1.01cf56p-13f, 0x1.971856p-25f},
      {0x1.c3506cp+1f, -0x1.7e2cf6p+1f, 0x1.daefb4p+0f},
      {0x1.7238fcp+1f, -0x1.d1bafp+1f, 0x1.205166p+1f}},
-    {32,
-     0,
-     8160,
-     31,
-     31,
+    {{32, 0, 8160, 31, 31},
      {-0x1.2031a2p-14f, -0x1.180e3cp+0f, 0x1.3f703ep-5f},
      {-0x1.04e7e8p-4f, 0x1.976e6p-11f, -0x1.1bb492p-4f},
      {0x1.f7748ap-15f, -0x1.00bd88p-13f, 0x1.1daae6p-21f},
      {-0x1.2ecd12p+1f, -0x1.7f3ce2p+2f, -0x1.ff225p+1f},
      {-0x1.ea42ep+1f, -0x1.f8550ep+1f, -0x1.463ce6p+2f}},
-    {32,
-     4064,
-     1024,
-     12,
-     31,
+    {{32, 4064, 1024, 12, 31},
      {-0x1.62b532p-5f, -0x1.000026p+0f, -0x1.0936fap+0f},
      {-0x1.4a96b8p-22f, -0x1.02f94ap-12f, -0x1.049b6ep-12f},
      {-0x1.f8797ep-11f, -0x1.f37a4ap-15f, -0x1.00d642p-24f},
      {-0x1.f14d04p-1f, -0x1.7112fp+1f, -0x1.4c0ea2p+2f},
      {-0x1.90ae3ep+1f, -0x1.55c262p+2f, -0x1.baa548p+1f}},
-    {32,
-     256,
-     32,
-     8,
-     31,
+    {{32, 256, 32, 8, 31},
      {0x1.0067cp+0f, 0x1.f3b15p-1f, 0x1.fffffep-1f},
      {0x1.e541dcp-9f, 0x1.116362p-8f, 0x1.009eeep-12f},
      {0x1.561c8p-6f, 0x1.3be4cep-8f, 0x1.46f23ep-6f},
      {0x1.049fecp+3f, 0x1.0f4bf4p+2f, 0x1.81cfa2p+2f},
      {0x1.d06a3ap+2f, 0x1.9bdcf8p+2f, 0x1.39f394p+2f}},
-    {32,
-     1024,
-     32,
-     31,
-     31,
+    {{32, 1024, 32, 31, 31},
      {0x1.357c4ap+0f, 0x1.72611ep-1f, -0x1.40a95p+0f},
      {0x1.f81f8ap-11f, -0x1.d67108p-11f, -0x1.f844f4p-11f},
      {0x1.80cf92p-7f, -0x1.555556p-6f, 0x1.339beep-12f},
      {0x1.a259fap+2f, -0x1.13dd46p+1f, -0x1.89f4eep+2f},
      {0x1.8df478p+2f, -0x1.0ff534p+2f, -0x1.dca8a2p+1f}},
-    {32,
-     0,
-     256,
-     31,
-     31,
+    {{32, 0, 256, 31, 31},
      {-0x1.00001p+0f, 0x1p+0f, -0x1.1dded6p-3f},
      {0x1.0e1eb2p-5f, 0x1.4fd666p-5f, -0x1.00000ep-4f},
      {-0x1.e1e1ep-9f, 0x1.e1e23ep-9f, -0x1.eaf16p-9f},
@@ -138,11 +105,7 @@ inline constexpr PictureCase kSubpacketCases[] = {
      {-0x1.1279c4p+0f, 0x1.a8bf7p+2f, -0x1.9e205ep+2f}},
 };
 inline constexpr double kRoundingShare = 0.32;  ///< of the same, if all roundings went the wrong way
-inline constexpr PictureCase kWorstSubpacketCase = {32,
-                                                    8160,
-                                                    0,
-                                                    22,
-                                                    31,
+inline constexpr PictureCase kWorstSubpacketCase = {{32, 8160, 0, 22, 31},
                                                     {0.0f, 0.0f, 0.0f},
                                                     {0.0f, 0x1.5b1ad4p-13f, -0x1.c4d306p-25f},
                                                     {-0x1.681fc6p-5f, 0x1.390288p-21f, -0x1.68029p-5f},
@@ -151,31 +114,19 @@ inline constexpr PictureCase kWorstSubpacketCase = {32,
 inline constexpr double kPlaceShare = 0.081;  ///< of a projection's margin
 /// Corners of triangles on a ray.
 inline constexpr PictureCase kPlaceCases[] = {
-    {32,
-     0,
-     8160,
-     27,
-     31,
+    {{32, 0, 8160, 27, 31},
      {0x1.4798e4p+4f, 0x1.8143fep-5f, 0x1.d3d78p-2f},
      {-0x1.123dd2p-14f, -0x1.9683e4p-15f, 0x1.b497cap-10f},
      {-0x1.d9202ep-13f, 0x1.15d93cp-8f, -0x1.0526fcp-8f},
      {},
      {}},
-    {32,
-     8160,
-     32,
-     31,
-     31,
+    {{32, 8160, 32, 31, 31},
      {-0x1.cb4ea6p-7f, -0x1.395388p+6f, 0x1.32941ap+7f},
      {0x1.471bf8p-32f, -0x1.65ecaep-6f, 0x1.b2be7ep-7f},
      {0x1.7f3dfp-4f, -0x1.55f2bp-6f, 0x1.7af4dcp-6f},
      {},
      {}},
-    {32,
-     8160,
-     8160,
-     31,
-     11,
+    {{32, 8160, 8160, 31, 11},
      {-0x1.f7af3p+2f, -0x1.dddb76p+2f, 0x1.94743p+2f},
      {0x1.27153ap-7f, 0x1.ae61d6p-32f, 0x1.0beefep-7f},
      {0x1.b2727p-21f, 0x1.8c4072p-8f, 0x1.48a8a8p-20f},
@@ -183,62 +134,52 @@ inline constexpr PictureCase kPlaceCases[] = {
      {}},
 };
 
-/// A ray through a grid along its first two axes, close to the first; it matters at a plane between slices.
-struct MarchCase {
+/// Slices of a grid, and the plane between two of them that matters.
+struct SlicePlane {
   std::uint32_t slices, plane;
+};
+/// A ray through a grid along its first two axes, close to the first; it matters at a plane between slices.
+struct MarchCase : SlicePlane {
   float origin[2], minimum[2], cells_per_unit[2], dir[2];
-  float t;  ///< of a hit
+  float t = 1.0f;  ///< of a hit
 };
 inline constexpr double kMarchShare = 0.34;  ///< of a frustum's pad
 /// The first three would be lost with 1 e (|o_k| + N_k).
 inline constexpr MarchCase kMarchCases[] = {
-    {2048,
-     2048,
+    {{2048, 2048},
      {-0x1.fda44ep+0f, 0x1.1d59f2p+0f},
      {-0x1.919cdp-1f, 0x1.4117ccp-3f},
      {0x1.054ddap+1f, 0x1.ab479ap-2f},
-     {0x1.fe0298p-2f, 0x1.7a54b2p+0f},
-     1.0f},
-    {1,
-     1,
+     {0x1.fe0298p-2f, 0x1.7a54b2p+0f}},
+    {{1, 1},
      {-0x1.077bb4p+7f, 0x1.e3e914p-1f},
      {-0x1.e61c82p+0f, 0x1.7e19ap-1f},
      {0x1.031bdp+1f, 0x1.dc764cp+2f},
-     {0x1.6dbbbap+0f, 0x1.5b8cc8p-2f},
-     1.0f},
-    {1,
-     1,
+     {0x1.6dbbbap+0f, 0x1.5b8cc8p-2f}},
+    {{1, 1},
      {-0x1.03d3dcp+9f, 0x1.9b2e6ep-5f},
      {-0x1.75af8p+2f, 0x1.e75154p-1f},
      {0x1.19ac5cp+0f, 0x1.45ba4cp-1f},
-     {0x1.1d5eeap-1f, 0x1.e6c6d2p-1f},
-     1.0f},
-    {8,
-     7,
+     {0x1.1d5eeap-1f, 0x1.e6c6d2p-1f}},
+    {{8, 7},
      {-0x1.09f846p+10f, 0x1.bd6bfep-10f},
      {0x1.c0e7fep-1f, -0x1.2b4fcp+0f},
      {0x1.01a8dep+0f, 0x1.0e650ap+0f},
-     {0x1.00009ep+1f, 0x1.e80e82p-1f},
-     1.0f},
-    {1,
-     1,
+     {0x1.00009ep+1f, 0x1.e80e82p-1f}},
+    {{1, 1},
      {-0x1.11ef2cp+7f, -0x1.f560a6p-1f},
      {-0x1.9626p-2f, -0x1.735deap+0f},
      {0x1.fcf722p-1f, 0x1.375166p+1f},
-     {0x1.0770aap-1f, 0x1.b91198p-4f},
-     1.0f},
-    {2,
-     2,
+     {0x1.0770aap-1f, 0x1.b91198p-4f}},
+    {{2, 2},
      {-0x1.ea8548p+4f, -0x1.aef172p+1f},
      {-0x1.17cd12p+0f, -0x1.ff84aep+1f},
      {0x1.0402e6p+0f, 0x1.b15654p-1f},
-     {0x1.fffa84p-2f, 0x1.38e7c8p-2f},
-     1.0f},
+     {0x1.fffa84p-2f, 0x1.38e7c8p-2f}},
 };
 inline constexpr double kReachShare = 0.16;  ///< of pad_k
 inline constexpr MarchCase kReachCases[] = {
-    {2,
-     1,
+    {{2, 1},
      {-0x1.574c74p+7f, 0.5f},
      {-0x1.2701cp-2f, 0.0f},
      {0x1.fffcbap-1f, 1.0f},

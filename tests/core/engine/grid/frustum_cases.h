@@ -2,12 +2,10 @@
 // Memory: values. Threads: any. SPDX-License-Identifier: Apache-2.0
 #pragma once
 
-#include <gridiron/base/records.h>
-#include <gridiron/ray/packet.h>
+#include <gridiron/engine/grid/frustum.h>
 
-#include <cmath>
-#include <cstdint>
-
+#include "core/ray/exact_ray.h"
+#include "support/test_headers.h"
 #include "support/test_mesh.h"
 
 namespace gridiron::test {
@@ -33,6 +31,33 @@ inline GridRecord random_grid(TestRandom& random, std::uint32_t max_cells, std::
   }
   grid.macro_width = macro_width;
   return grid;
+}
+
+/// A grid of `cells` cells of size 1 per axis, each a macrocell.
+inline GridRecord unit_grid(std::uint32_t cells) {
+  GridRecord grid{};
+  for (int axis = 0; axis < 3; ++axis) {
+    grid.cells_per_unit[axis] = 1.0f;
+    grid.cell_count[axis] = grid.macro_cell_count[axis] = cells;
+  }
+  grid.macro_width = 1;
+  return grid;
+}
+
+/// The rectangle's cells, to be compared: first and last along u, first and last along v.
+inline std::array<std::int32_t, 4> ends_of(const CellRect& rect) {
+  return {rect.u_first, rect.u_last, rect.v_first, rect.v_last};
+}
+
+/// @returns whether a rectangle lies around a box.
+inline bool holds(const CellRect& rect, const CellBox& box) {
+  return rect.u_first <= box.u.first && rect.u_last >= box.u.last && rect.v_first <= box.v.first &&
+         rect.v_last >= box.v.last;
+}
+/// @returns whether a rectangle is at most a cell larger than a box on every side.
+inline bool is_tight(const CellRect& rect, const CellBox& box) {
+  return rect.u_first >= box.u.first - 1 && rect.u_last <= box.u.last + 1 && rect.v_first >= box.v.first - 1 &&
+         rect.v_last <= box.v.last + 1;
 }
 
 /// World position of a point of cell space, rounded.

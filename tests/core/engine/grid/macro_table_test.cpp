@@ -1,13 +1,10 @@
 // Macrocell table: the block of a macrocell, resident and streamed, is the one that counting finds.
 // SPDX-License-Identifier: Apache-2.0
 #include <gridiron/engine/grid/macro_table.h>
-#include <gtest/gtest.h>
-
-#include <cstdint>
-#include <memory>
 
 #include "core/engine/grid/table_cases.h"
 #include "core/seeds.h"
+#include "support/test_headers.h"
 #include "support/test_mesh.h"
 
 namespace gridiron::test {
@@ -29,8 +26,7 @@ TEST(MacroTable, ResidentTableKnowsEveryBlock) {
 }
 
 TEST(MacroTable, StreamedTableHoldsOnlyWhatWasFetched) {
-  for_each_seed(100, [&](std::uint64_t seed) {
-    TestRandom random(seed);
+  for_each_seed(100, [&](TestRandom& random) {
     const std::uint32_t macro_cells = 1 + random.below(20000);
     const TableCase table(random, macro_cells, 40);
     const auto check = [&](auto& window) {
@@ -45,7 +41,7 @@ TEST(MacroTable, StreamedTableHoldsOnlyWhatWasFetched) {
           ++fetches;
         }
         ASSERT_TRUE(window.holds(cell));
-        ASSERT_EQ(window.block_of(cell), table.block_of[cell]) << "seed " << seed << ", macrocell " << cell;
+        ASSERT_EQ(window.block_of(cell), table.block_of[cell]) << "macrocell " << cell;
       }
       const std::uint32_t chunks = (macro_cells + 511) / 512;
       ASSERT_GE(fetches, chunks <= 2 ? 1u : 3u);

@@ -1,13 +1,10 @@
 // Reaches of subpackets. SPDX-License-Identifier: Apache-2.0
 #include <gridiron/engine/grid/footprint.h>
 #include <gridiron/engine/grid/reach.h>
-#include <gtest/gtest.h>
-
-#include <algorithm>
-#include <string>
 
 #include "core/lane_types.h"
 #include "core/seeds.h"
+#include "support/test_headers.h"
 #include "support/test_mesh.h"
 
 namespace gridiron::test {
@@ -21,8 +18,7 @@ template <class L, class PacketType>
 void expect_reaches() {
   using Reaches = SubpacketReach<PacketType>;
   std::uint64_t closed = 0;
-  for_each_seed(50, [&](std::uint64_t seed) {
-    TestRandom random(seed);
+  for_each_seed(50, [&](TestRandom& random) {
     PacketType packet{};
     Frustum frustum{};
     frustum.pad_k = 0x1p-18f;
@@ -49,10 +45,10 @@ void expect_reaches() {
       }
       const std::uint32_t square = PacketType::kSubpacketCount < 4 ? 0 : subpacket / 4;
       expected *= packet.march_high[square] * (1.0f + 2.0f * kEstimateError);
-      ASSERT_EQ(reaches.reach[subpacket], expected) << "seed " << seed << ", subpacket " << subpacket;
+      ASSERT_EQ(reaches.reach[subpacket], expected) << "subpacket " << subpacket;
       expected_largest = std::max(expected_largest, expected);
     }
-    ASSERT_EQ(largest, expected_largest) << "seed " << seed;
+    ASSERT_EQ(largest, expected_largest);
 
     for (int i = 0; i < 20; ++i) {
       const std::uint32_t edge = random.below(PacketType::kSubpacketCount);
@@ -63,21 +59,21 @@ void expect_reaches() {
         const bool is_open = (open >> subpacket & 1u) != 0;
         closed += is_open ? 0u : 1u;
         if (frustum.beyond(Slab{entry, entry}, reaches.reach[subpacket])) continue;
-        ASSERT_TRUE(is_open) << "seed " << seed << ", subpacket " << subpacket;
+        ASSERT_TRUE(is_open) << "subpacket " << subpacket;
       }
       ASSERT_EQ(open & ~PacketType::kAllSubpackets, 0u);
       if (PacketType::kSubpacketCount < L::kCount) continue;
       // A square is open where one of its subpackets is.
       for (std::uint32_t square = 0; square < PacketType::kSquareCount; ++square) {
         const bool any = PacketType::kSubpacketCount < 4 || (open >> (4 * square) & 0xFu) != 0;
-        ASSERT_TRUE(!any || (open_squares >> (4 * square) & 1u) != 0) << "seed " << seed << ", square " << square;
+        ASSERT_TRUE(!any || (open_squares >> (4 * square) & 1u) != 0) << "square " << square;
         if (PacketType::kSquareCount >= 4) {
-          ASSERT_EQ(any, (open_squares >> (4 * square) & 1u) != 0) << "seed " << seed << ", square " << square;
+          ASSERT_EQ(any, (open_squares >> (4 * square) & 1u) != 0) << "square " << square;
         }
       }
     }
   });
-  if (std::getenv("GRIDIRON_TEST_SEED") == nullptr && PacketType::kSubpacketCount >= L::kCount) {
+  if (all_seeds_run() && PacketType::kSubpacketCount >= L::kCount) {
     EXPECT_GT(closed, 100u);
   }
 }

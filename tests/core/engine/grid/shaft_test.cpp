@@ -1,22 +1,12 @@
 // Shafts: every cell that a ray touches on its way lies in them, by exact arithmetic; passes: who goes with whom.
 // SPDX-License-Identifier: Apache-2.0
 #include <gridiron/engine/grid/shaft.h>
-#include <gtest/gtest.h>
-
-#include <algorithm>
-#include <array>
-#include <bit>
-#include <cmath>
-#include <cstdint>
-#include <cstring>
-#include <limits>
-#include <optional>
-#include <vector>
 
 #include "core/engine/grid/frustum_cases.h"
 #include "core/lane_types.h"
 #include "core/ray/exact_ray.h"
 #include "core/seeds.h"
+#include "support/test_headers.h"
 #include "support/test_mesh.h"
 
 namespace gridiron::test {
@@ -29,16 +19,6 @@ constexpr float kNaN = std::numeric_limits<float>::quiet_NaN();
 template <class L>
 class ShaftTest : public testing::Test {};
 TYPED_TEST_SUITE(ShaftTest, WalkLaneTypes, LaneNames);
-
-GridRecord unit_grid(std::uint32_t cells) {
-  GridRecord grid{};
-  for (int axis = 0; axis < 3; ++axis) {
-    grid.cells_per_unit[axis] = 1.0f;
-    grid.cell_count[axis] = grid.macro_cell_count[axis] = cells;
-  }
-  grid.macro_width = 1;
-  return grid;
-}
 
 void set_ray(WalkRays& rays, std::uint32_t ray, Vec3 origin, Vec3 dir, float t = kFloatMax) {
   for (int axis = 0; axis < 3; ++axis) {
@@ -143,11 +123,6 @@ std::optional<CellBox> touched(const ExactRay& ray, const Shaft& shaft, const Ce
   return box;
 }
 
-bool holds(const CellRect& rect, const CellBox& box) {
-  return rect.u_first <= box.u.first && rect.u_last >= box.u.last && rect.v_first <= box.v.first &&
-         rect.v_last >= box.v.last;
-}
-
 // Slabs of one slice and of several: at both ends, anywhere, around a place.
 std::vector<CellSpan> some_slabs(TestRandom& random, const Shaft& shaft) {
   std::vector<CellSpan> slabs;
@@ -181,8 +156,7 @@ Shaft alone(const Shaft& shaft, std::uint32_t ray) {
 TYPED_TEST(ShaftTest, HoldEveryCellTouched) {
   std::uint64_t checked = 0, tight = 0, single = 0, shortened = 0;
   WorkCounters work;
-  for_each_seed(4000, [&](std::uint64_t seed) {
-    TestRandom random(seed);
+  for_each_seed(4000, [&](TestRandom& random) {
     const GridRecord grid = random_grid(random, random.below(2) != 0 ? 2048 : 24, 1);
     WalkRays rays;
     const std::uint32_t count = 1 + random.below(kWalkRays);
@@ -209,20 +183,17 @@ TYPED_TEST(ShaftTest, HoldEveryCellTouched) {
           const auto box = touched(exact, shaft, slices, t);
           if (box) {
             ++checked;
-            ASSERT_FALSE(shaft.behind(slab)) << "seed " << seed << " ray " << ray << " slice " << slices.first;
-            ASSERT_FALSE(shaft.beyond(slab, own.end[ray])) << "seed " << seed << " ray " << ray;
-            ASSERT_FALSE(shaft.beyond(slab, shaft.reach<TypeParam>())) << "seed " << seed << " ray " << ray;
+            ASSERT_FALSE(shaft.behind(slab)) << "ray " << ray << " slice " << slices.first;
+            ASSERT_FALSE(shaft.beyond(slab, own.end[ray])) << "ray " << ray;
+            ASSERT_FALSE(shaft.beyond(slab, shaft.reach<TypeParam>())) << "ray " << ray;
             const CellRect rect = own.rect_of<TypeParam>(slab, work);
-            ASSERT_TRUE(holds(rect, *box)) << "seed " << seed << " ray " << ray << " slice " << slices.first;
-            ASSERT_TRUE(holds(shaft.rect_of<TypeParam>(slab, work), *box)) << "seed " << seed << " ray " << ray;
+            ASSERT_TRUE(holds(rect, *box)) << "ray " << ray << " slice " << slices.first;
+            ASSERT_TRUE(holds(shaft.rect_of<TypeParam>(slab, work), *box)) << "ray " << ray;
             // A shaft that held the whole grid would hold them too.
             const auto whole = touched(exact, shaft, slices, kFloatMax);
             if (whole && std::fabs(own.place[0][ray]) < 4096.0f && std::fabs(own.place[1][ray]) < 4096.0f) {
               ++single;
-              tight += rect.u_first >= whole->u.first - 1 && rect.u_last <= whole->u.last + 1 &&
-                               rect.v_first >= whole->v.first - 1 && rect.v_last <= whole->v.last + 1
-                           ? 1u
-                           : 0u;
+              tight += is_tight(rect, *whole) ? 1u : 0u;
             }
           }
           own.shorten(ray, rays.t[ray]);
@@ -230,7 +201,7 @@ TYPED_TEST(ShaftTest, HoldEveryCellTouched) {
       }
     }
   });
-  if (testing::Test::HasFailure() || std::getenv("GRIDIRON_TEST_SEED") != nullptr) return;
+  if (testing::Test::HasFailure() || !all_seeds_run()) return;
   EXPECT_GT(checked, 50'000u);
   EXPECT_GT(shortened, 25'000u);
   EXPECT_GT(tight, single - single / 20);
@@ -248,8 +219,7 @@ bool can_be_traced(const GridRecord& grid, const WalkRays& rays, std::uint32_t r
 
 TYPED_TEST(ShaftTest, EveryRayIsInOnePass) {
   std::uint64_t passes = 0, joined = 0, dropped = 0;
-  for_each_seed(1500, [&](std::uint64_t seed) {
-    TestRandom random(seed);
+  for_each_seed(1500, [&](TestRandom& random) {
     const GridRecord grid = random_grid(random, 100, 1);
     WalkRays rays;
     const std::uint32_t count = 1 + random.below(kWalkRays);
@@ -269,17 +239,17 @@ TYPED_TEST(ShaftTest, EveryRayIsInOnePass) {
       const std::uint32_t before = waiting;
       const std::uint32_t active = take_walk_pass<TypeParam>(grid, rays, waiting, shaft, work);
       if (active == 0) break;
-      ASSERT_LE(++pass_count, kWalkRays) << "seed " << seed;
-      ASSERT_EQ(active & taken, 0u) << "seed " << seed << ": a ray twice";
-      ASSERT_EQ(active & ~before, 0u) << "seed " << seed << ": a ray that did not wait";
-      ASSERT_EQ(waiting & active, 0u) << "seed " << seed;
+      ASSERT_LE(++pass_count, kWalkRays);
+      ASSERT_EQ(active & taken, 0u) << "a ray twice";
+      ASSERT_EQ(active & ~before, 0u) << "a ray that did not wait";
+      ASSERT_EQ(waiting & active, 0u);
       taken |= active;
       const auto leader = static_cast<std::uint32_t>(std::countr_zero(active));
       const std::uint32_t axes[3] = {shaft.axis_k, shaft.axis_u, shaft.axis_v};
       ASSERT_EQ(1u << axes[0] | 1u << axes[1] | 1u << axes[2], 7u);
       for (std::uint32_t ray = 0; ray < kWalkRays; ++ray) {
         if ((active >> ray & 1u) == 0) {
-          ASSERT_EQ(shaft.end[ray], -kFloatMax) << "seed " << seed << " ray " << ray << " is not in the pass";
+          ASSERT_EQ(shaft.end[ray], -kFloatMax) << "ray " << ray << " is not in the pass";
           continue;
         }
         // In doubles: what the floats decided, to rounding.
@@ -296,29 +266,29 @@ TYPED_TEST(ShaftTest, EveryRayIsInOnePass) {
           leader_place[i] = in_cells(leader);
           largest = std::fmax(largest, std::fabs(rays.dir[i][ray]));
         }
-        ASSERT_EQ(along[0] < 0.0, shaft.reverse) << "seed " << seed << " ray " << ray;
+        ASSERT_EQ(along[0] < 0.0, shaft.reverse) << "ray " << ray;
         ASSERT_NE(along[0], 0.0);
         for (int i = 1; i < 3; ++i) {
-          ASSERT_LE(std::fabs(along[i]), 2.000001 * std::fabs(along[0])) << "seed " << seed << " ray " << ray;
+          ASSERT_LE(std::fabs(along[i]), 2.000001 * std::fabs(along[0])) << "ray " << ray;
           ASSERT_LE(std::fabs(along[i] / std::fabs(along[0]) - leads[i] / std::fabs(leads[0])), kTogetherSlope + 1e-5)
-              << "seed " << seed << " ray " << ray;
+              << "ray " << ray;
         }
         for (int i = 0; i < 3; ++i) {
           ASSERT_LE(std::fabs(place[i] - leader_place[i]), kTogetherCells + 1e-6 * (std::fabs(place[i]) + 3.0))
-              << "seed " << seed << " ray " << ray;
+              << "ray " << ray;
         }
-        ASSERT_EQ(rays.dir_max[ray], largest) << "seed " << seed << " ray " << ray;
+        ASSERT_EQ(rays.dir_max[ray], largest) << "ray " << ray;
         joined += ray != leader ? 1u : 0u;
       }
       ++passes;
     }
     EXPECT_EQ(waiting, 0u);
     for (std::uint32_t ray = 0; ray < count; ++ray) {
-      ASSERT_EQ((taken >> ray & 1u) != 0, can_be_traced(grid, rays, ray)) << "seed " << seed << " ray " << ray;
+      ASSERT_EQ((taken >> ray & 1u) != 0, can_be_traced(grid, rays, ray)) << "ray " << ray;
     }
     dropped += static_cast<std::uint32_t>(std::popcount(all & ~taken));
   });
-  if (testing::Test::HasFailure() || std::getenv("GRIDIRON_TEST_SEED") != nullptr) return;
+  if (testing::Test::HasFailure() || !all_seeds_run()) return;
   EXPECT_GT(joined, passes / 4);
   EXPECT_GT(passes, 2000u);
   EXPECT_GT(dropped, 500u);
@@ -351,9 +321,7 @@ std::vector<std::uint32_t> transcript(std::uint64_t seed) {
     for (const CellSpan& slices : some_slabs(random, shaft)) {
       const Slab slab = shaft.slab_of(slices.first, slices.last);
       const CellRect rect = shaft.template rect_of<L>(slab, work);
-      for (const std::int32_t cell : {rect.u_first, rect.u_last, rect.v_first, rect.v_last}) {
-        words.push_back(static_cast<std::uint32_t>(cell));
-      }
+      for (const std::int32_t cell : ends_of(rect)) words.push_back(static_cast<std::uint32_t>(cell));
     }
   }
   return words;
@@ -363,7 +331,7 @@ TYPED_TEST(ShaftTest, LanesChangeNothing) {
   for_each_seed(400, [](std::uint64_t seed) {
     const auto words = transcript<TypeParam>(seed);
     ASSERT_FALSE(words.empty());
-    ASSERT_EQ(words, transcript<Lanes<4>>(seed)) << "seed " << seed;
+    ASSERT_EQ(words, transcript<Lanes<4>>(seed));
   });
 }
 
@@ -378,11 +346,7 @@ TYPED_TEST(ShaftTest, RaysInACellFaceTouchBothSides) {
   WorkCounters work;
   ASSERT_EQ(take_walk_pass<TypeParam>(grid, rays, waiting, shaft, work), 15u);
   for (std::int32_t k = 0; k < 16; ++k) {
-    const CellRect rect = shaft.rect_of<TypeParam>(shaft.slab_of(k, k), work);
-    EXPECT_EQ(rect.u_first, 2);
-    EXPECT_EQ(rect.u_last, 3);
-    EXPECT_EQ(rect.v_first, 6);
-    EXPECT_EQ(rect.v_last, 7);
+    EXPECT_EQ(ends_of(shaft.rect_of<TypeParam>(shaft.slab_of(k, k), work)), (std::array{2, 3, 6, 7}));
   }
 }
 
@@ -402,11 +366,7 @@ TYPED_TEST(ShaftTest, EndsAndDropsShrinkIt) {
   EXPECT_FALSE(shaft.beyond(shaft.slab_of(31, 31), shaft.reach<TypeParam>()));
   EXPECT_TRUE(shaft.beyond(shaft.slab_of(30, 30), shaft.reach<TypeParam>()));
   const auto expect_rect = [&](std::int32_t k, std::int32_t u0, std::int32_t u1, std::int32_t v0, std::int32_t v1) {
-    const CellRect rect = shaft.rect_of<TypeParam>(shaft.slab_of(k, k), work);
-    EXPECT_EQ(rect.u_first, u0) << k;
-    EXPECT_EQ(rect.u_last, u1) << k;
-    EXPECT_EQ(rect.v_first, v0) << k;
-    EXPECT_EQ(rect.v_last, v1) << k;
+    EXPECT_EQ(ends_of(shaft.rect_of<TypeParam>(shaft.slab_of(k, k), work)), (std::array{u0, u1, v0, v1})) << k;
   };
   expect_rect(51, 52, 52, 48, 48);  // the second alone has begun
   expect_rect(50, 50, 52, 48, 50);

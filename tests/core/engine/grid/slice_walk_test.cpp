@@ -1,20 +1,13 @@
 // Macrocell walk and cell walk together, against the cells that exact arithmetic says the rays touch.
 // SPDX-License-Identifier: Apache-2.0
 #include <gridiron/engine/grid/slice_walk.h>
-#include <gtest/gtest.h>
-
-#include <cmath>
-#include <cstdint>
-#include <optional>
-#include <set>
-#include <string>
-#include <vector>
 
 #include "core/engine/grid/frustum_cases.h"
 #include "core/engine/grid/reach_of.h"
 #include "core/engine/grid/table_cases.h"
 #include "core/ray/exact_ray.h"
 #include "core/seeds.h"
+#include "support/test_headers.h"
 #include "support/test_mesh.h"
 
 namespace gridiron::test {
@@ -159,8 +152,7 @@ void check_pass(const WalkScene& scene, const SmallPacket& packet, const Frustum
   // 3. Every cell that a ray touches before its hit was visited.
   for (std::uint32_t ray = 0; ray < kRays; ++ray) {
     if (!packet.active.contains(ray)) continue;
-    const float direction[3] = {packet.dir[0][ray], packet.dir[1][ray], packet.dir[2][ray]};
-    const ExactRay truth(grid, packet.origin, direction);
+    const ExactRay truth(grid, packet, ray);
     for (std::int32_t k = 0; k < frustum.cells_k; ++k) {
       const auto box = truth.box_between(frustum.axis_k, k, k);
       if (!box || !truth.reaches(frustum.axis_k, k, k, packet.t[ray])) continue;
@@ -205,9 +197,8 @@ TEST(SliceWalk, VisitsEveryCellTouchedOnceAndInOrder) {
       if (HasFatalFailure()) return;
     }
   });
-  if (std::getenv("GRIDIRON_TEST_SEED") == nullptr) {
-    EXPECT_GT(touched, 30000u);
-  }
+  if (!all_seeds_run()) return;
+  EXPECT_GT(touched, 30000u);
 }
 
 // A packet of parallel rays along +x or -x in a grid of 24 x 8 x 8 unit cells, macrocells of 4.
@@ -217,10 +208,9 @@ class StraightWalk : public testing::TestWithParam<bool> {
     TestRandom random(1);
     scene_.emplace(random, 100);
     GridRecord& grid = scene_->grid;
-    grid = {};
+    grid = unit_grid(8);
     const std::uint32_t counts[3] = {24, 8, 8};
     for (int axis = 0; axis < 3; ++axis) {
-      grid.cells_per_unit[axis] = 1.0f;
       grid.cell_count[axis] = counts[axis];
       grid.macro_cell_count[axis] = counts[axis] / 4;
     }
@@ -277,20 +267,14 @@ TEST_P(StraightWalk, OriginInsideStartsThere) {
   EXPECT_EQ(visited.entries[0], 0.0f);
 }
 
-INSTANTIATE_TEST_SUITE_P(BothWays, StraightWalk, testing::Bool(), [](const testing::TestParamInfo<bool>& tested) {
+INSTANTIATE_TEST_SUITE_P(BothWays, StraightWalk, testing::Bool(), [](const auto& tested) {
   return tested.param ? std::string("Reverse") : std::string("Forward");
 });
 
 TEST(SliceWalk, ChunksAreFetchedOnDemandOnly) {
   TestRandom random(3);
   WalkScene scene(random, 100);
-  GridRecord& grid = scene.grid;
-  grid = {};
-  for (int axis = 0; axis < 3; ++axis) {
-    grid.cells_per_unit[axis] = 1.0f;
-    grid.cell_count[axis] = grid.macro_cell_count[axis] = 16;
-  }
-  grid.macro_width = 1;
+  scene.grid = unit_grid(16);
   scene.table = TableCase(random, 4096, 100);  // 8 chunks of 512, two z slices each
   SmallPacket packet{};
   for (std::uint32_t ray = 0; ray < kRays; ++ray) {
@@ -300,9 +284,9 @@ TEST(SliceWalk, ChunksAreFetchedOnDemandOnly) {
   packet.origin[0] = packet.origin[1] = 3.5f;
   packet.origin[2] = -1.0f;
   RaySet<kRays> waiting;
-  waiting.words[0] = (1u << kRays) - 1;
+  waiting.fill();
   Frustum frustum;
-  ASSERT_TRUE(take_pass<Lanes<4>>(grid, waiting, packet, frustum, pass_work));
+  ASSERT_TRUE(take_pass<Lanes<4>>(scene.grid, waiting, packet, frustum, pass_work));
   Visited visited;
   walk(scene, frustum, kFloatMax, true, visited);
   EXPECT_EQ(visited.cells.size(), 16u);

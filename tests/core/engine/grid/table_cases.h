@@ -4,9 +4,7 @@
 
 #include <gridiron/base/records.h>
 
-#include <cstdint>
-#include <vector>
-
+#include "support/test_headers.h"
 #include "support/test_mesh.h"
 
 namespace gridiron::test {

@@ -1,26 +1,15 @@
 // Ray walks: secondary rays through a grid hit what testing every triangle finds, however many walks are
 // under way, whenever transfers arrive; transfers that fail are reported.
 // SPDX-License-Identifier: Apache-2.0
-#include <gridiron/build/grid/grid_builder.h>
 #include <gridiron/engine/grid/walk_driver.h>
-#include <gridiron/image/scene_image.h>
 #include <gridiron/store/local_store.h>
-#include <gtest/gtest.h>
 
-#include <algorithm>
-#include <cstdint>
-#include <cstring>
-#include <limits>
-#include <memory>
-#include <optional>
-#include <string>
-#include <vector>
-
-#include "core/build/grid/line_buffer.h"
+#include "core/build/grid/built_image.h"
 #include "core/dma/test_platform.h"
 #include "core/lane_types.h"
 #include "numeric/hard_rays.h"
 #include "numeric/oracle.h"
+#include "support/test_headers.h"
 #include "support/test_mesh.h"
 
 namespace gridiron::test {
@@ -58,15 +47,9 @@ struct WalkScene {
     EffectsView effects{};
     effects.materials = materials;
     effects.triangle_materials = triangle_materials;
-    GridNeed need{};
-    EXPECT_EQ(count_scene_image(mesh.view(), parameters, need, &effects), Status::kOk);
-    image = LineBuffer(static_cast<std::size_t>(need.image_bytes));
-    std::vector<std::uint64_t> scratch(static_cast<std::size_t>((need.scratch_bytes + 7) / 8));
-    EXPECT_EQ(build_scene_image(mesh.view(), parameters, need, image.bytes(),
-                                std::as_writable_bytes(std::span(scratch)), &effects),
-              Status::kOk);
-    SceneImageError error;
-    EXPECT_EQ(open_scene_image(image.bytes(), view, error), Status::kOk) << error.field;
+    BuiltImage built = build_image(mesh.view(), parameters, std::byte{0}, &effects);
+    image = std::move(built.image);
+    view = built.view;
   }
   [[nodiscard]] std::uint32_t macro_cells() const {
     return view.grid.macro_cell_count[0] * view.grid.macro_cell_count[1] * view.grid.macro_cell_count[2];

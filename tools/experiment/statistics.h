@@ -1,4 +1,4 @@
-// Error statistics: distances in steps of floats, percentiles, signal to noise, Pareto front.
+// Statistics: exponents of power laws, errors in steps of floats, percentiles, signal to noise, Pareto front.
 // Memory: std::vector. Threads: any, no shared state. SPDX-License-Identifier: Apache-2.0
 #pragma once
 
@@ -6,9 +6,21 @@
 #include <span>
 #include <vector>
 
-#include "experiment/power_fit.h"
-
 namespace gridiron::experiment {
+
+struct Point2 {
+  double x = 0, y = 0;
+};
+
+/// y = factor * x^exponent.
+struct PowerFit {
+  double exponent = 0, factor = 0;
+  double r_squared = 0;  ///< of the logarithms; 1: every point is on the curve
+};
+
+/// Least squares through the logarithms. Points with x or y <= 0 are left out. @returns all zero if fewer than two
+/// different x remain.
+[[nodiscard]] PowerFit fit_power(std::span<const Point2> points);
 
 /// @returns the number of steps between two floats through all floats between them, which are units in the last place
 /// if no power of two lies between: 0 for equal ones, 1 for neighbours; +0 and -0 are one float. Precondition: none is
