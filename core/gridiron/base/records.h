@@ -190,9 +190,10 @@ enum TechniqueBits : unsigned {
 /// Queue commands that stay free for a tile's own gets while finished tiles are written with the rest.
 inline constexpr std::uint32_t kLeastInputCommands = 4;
 
-/// Which engine traces the rays of a frame.
+/// Which engine traces the rays of a frame. sim/engine_work.h has a row for each.
 enum class EngineId : unsigned {
   kGrid = 1,  ///< GridEngine
+  kEnd
 };
 inline constexpr std::uint32_t kFirstOtherEngine = 1000;  ///< from here on, engines outside core
 

@@ -8,7 +8,7 @@ namespace gridiron {
 
 /// Kinds of work that cost time on a chip, whatever engine traces the rays: of rays, tests, shading and output. An
 /// engine's own kinds are an enumeration of its own, which goes on from kSharedWorkCount. "Group" is one SIMD group of
-/// kLaneCount rays.
+/// L::kCount rays.
 enum class Work : std::uint8_t {
   kTileStart,          ///< tiles begun: parameter reset, output buffer turned over         (initialisation)
   kRayGenerated,       ///< primary ray groups generated                                     (initialisation)
@@ -16,11 +16,11 @@ enum class Work : std::uint8_t {
   kPixelBoxGroup,      ///< SIMD groups of triangles of which the pixels that they can cover were computed
   kTriangleSetup,      ///< per (packet, triangle) set-ups of the `standard` test
   kSubpacketSetup,     ///< triangles whose edge functions were made linear in the pixel, for culling subpackets
-  kSubpacketGroup,     ///< SIMD groups of squares or subpackets held against a triangle's edges
+  kSubpacketGroup,     ///< SIMD groups of squares or subpackets tested against a triangle's edges
   kGroupTestStandard,  ///< (group, triangle) tests, filtered edge functions
   kGroupTestPaper,     ///< (group, triangle) tests, precomputed projection
   kHitGroup,           ///< groups with hits to be merged, `standard` test
-  kHitSubpacket,       ///< whole subpackets inside a triangle, held against what they had hit
+  kHitSubpacket,       ///< whole subpackets inside a triangle, tested against what they hit before
   kHitGroupPaper,      ///< groups of which hits were merged, precomputed projection
   kHitSetup,           ///< triangles for which the distance set-up was computed
   kDoubleSign,         ///< edge signs the float filter left open, tried in double
@@ -30,11 +30,11 @@ enum class Work : std::uint8_t {
   kShadedSimpleGroup,  ///< ray groups shaded by facing ratio
   kDepthGroup,         ///< ray groups written to the depth plane
   kIdGroup,            ///< groups of triangle ids written to a plane, or of words cleared
-  kRowGroup,           ///< subpackets whose rows were held against a triangle's edges
+  kRowGroup,           ///< subpackets whose rows were tested against a triangle's edges
   kEstimateSetup,      ///< triangles for which estimates of distances were set up
   kNormalSetup,        ///< triangles whose unit normal was computed for shading
   kHitHalf,            ///< halves of groups of which distances were computed in double
-  kExactOrder,         ///< pairs of distances, equal once rounded, of which integers told the nearer
+  kExactOrder,         ///< pairs of distances, equal once rounded, of which integers found the nearer
   kLatticeTriangle,    ///< triangles made of their vertices' places on a lattice
   // Effects.
   kWaveRay,            ///< rays of a wave taken from pixels or from the queue

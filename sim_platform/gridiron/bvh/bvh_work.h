@@ -14,7 +14,7 @@ enum class BvhWork : std::uint8_t {
   kFirst = kSharedWorkCount,
   kPacketStart = kFirst,  ///< packets begun: bounds of their quarters
   kMixedStart,            ///< packets whose rays run both ways along an axis: the rest of their bounds
-  kNodeStep,              ///< nodes whose children were held against the quarters of a packet
+  kNodeStep,              ///< nodes whose children were tested against the quarters of a packet
   kMixedNodeStep,         ///< the same of those packets
   kChildren,              ///< nodes of which a child was met: the nearest was taken, the others put on the stack
   kStackPop,              ///< entries taken from the stack

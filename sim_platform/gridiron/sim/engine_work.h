@@ -1,8 +1,9 @@
-// What the host knows of kinds of work and of waits: names, which work is initialisation, what else than on the grid's
-// profile it costs. The kinds of core stand here, those of each engine in its record.
+// The table of engines, and what the host knows of their kinds of work and of waits: names, which work is
+// initialisation, prices that no machine profile has. Kinds of core are listed here, those of an engine in its record.
 // Memory: constants. Threads: any. SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <gridiron/base/records.h>
 #include <gridiron/base/work_counters.h>
 #include <gridiron/engine/grid/grid_work.h>
 #include <gridiron/sim/wait_levels.h>
@@ -97,6 +98,15 @@ inline constexpr WorkKind kGridWorkKinds[] = {
 inline constexpr EngineWork kGridEngine = EngineWork::make(
     GridWork::kEnd,
     {.name = "grid", .kinds = kGridWorkKinds, .prices = {}, .wait_levels = {"tile", "macrocell", "triangle", "setup"}});
+
+/// The engines of core, by EngineId. An engine without a row does not compile.
+inline constexpr std::array kCoreEngines = {&kGridEngine};
+static_assert(kCoreEngines.size() + 1 == static_cast<std::size_t>(EngineId::kEnd), "an engine of core lacks its row");
+
+/// @returns the record of a frame's engine, null if core does not have it. @param id  FrameHead::engine_id.
+[[nodiscard]] constexpr const EngineWork* core_engine(std::uint32_t id) {
+  return id - 1 < kCoreEngines.size() ? kCoreEngines[id - 1] : nullptr;
+}
 
 /// @returns the row of a kind of an engine's frames. Precondition: it has the kind.
 [[nodiscard]] constexpr const WorkKind& work_kind(WorkId id, const EngineWork& engine = kGridEngine) {

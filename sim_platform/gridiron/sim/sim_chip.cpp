@@ -128,7 +128,8 @@ enum class LayoutGroup : std::uint8_t { kCommon, kSweep, kEffects, kNone };
   std::memcpy(&frame, bytes.data(), sizeof frame);
 
   GRIDIRON_TRY(find_picture_fault<AnyLayout>(frame).status);
-  if (frame.engine_id != static_cast<std::uint32_t>(EngineId::kGrid)) return Status::kBadFrame;
+  shape.engine = core_engine(frame.engine_id);
+  if (shape.engine != &kGridEngine) return Status::kBadFrame;  // whose record follows the head
   shape.tile_count = frame.tiles_x * frame.tiles_y;
   shape.output_depth = frame.output_depth;
   shape.is_picture = true;

@@ -11,8 +11,8 @@ namespace gridiron {
 enum class GridWork : std::uint8_t {
   kFirst = kSharedWorkCount,
   kPacketStart = kFirst,  ///< packet passes begun: frustum, mailbox reset (initialisation)
-  kPassGroup,             ///< ray groups held against a pass's march axis, and their slopes (initialisation)
-  kPassSquare,            ///< squares of ray groups held against it by their corners (initialisation)
+  kPassGroup,             ///< ray groups tested against a pass's march axis, and their slopes (initialisation)
+  kPassSquare,            ///< squares of ray groups tested against it by their corners (initialisation)
   kMacroSliceStep,        ///< macro slices entered
   kMacroCellStep,         ///< macrocells looked up in the macrocell table
   kMacroCellVisit,        ///< non-empty macrocells whose cell block was walked
@@ -21,11 +21,11 @@ enum class GridWork : std::uint8_t {
   kCellVisit,             ///< non-empty cells visited
   kTriangleBatch,         ///< triangle buffers consumed
   kMailboxProbe,          ///< mailbox look-ups
-  kReachGroup,            ///< SIMD groups of which the farthest hit was sought, or held against a cell's entry
-  kFootprintGroup,        ///< SIMD groups of squares of subpackets held against a cell
+  kReachGroup,            ///< SIMD groups of which the farthest hit was sought, or tested against a cell's entry
+  kFootprintGroup,        ///< SIMD groups of squares of subpackets tested against a cell
   kCellBoundStep,         ///< cells looked up inside a visited macrocell by their bounds, beside lattice triangles
   kWalkPass,              ///< walks of up to 16 rays begun: axis, shaft
-  kShaftGroup,            ///< SIMD groups of walked rays held against a slab of the grid
+  kShaftGroup,            ///< SIMD groups of walked rays tested against a slab of the grid
   kEnd
 };
 
