@@ -77,9 +77,7 @@ inline HardCase make_hard_case(std::uint64_t seed) {
 /// A mesh's triangle as the intersector takes it.
 inline VertexTriangle triangle_of(const TestMesh& mesh, std::uint32_t id) {
   const UVec3& t = mesh.triangles[id];
-  VertexTriangle triangle;
-  set_triangle(triangle, mesh.vertices[t.x], mesh.vertices[t.y], mesh.vertices[t.z], id);
-  return triangle;
+  return vertex_triangle(mesh.vertices[t.x], mesh.vertices[t.y], mesh.vertices[t.z], id);
 }
 
 /// Where a ray is aimed.

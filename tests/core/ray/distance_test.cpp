@@ -39,7 +39,7 @@ struct HitCase {
     };
     const Vec3 a = corner(-40, -40), b = corner(40, -40), c = corner(0, 60);
     const bool over = random.below(2) != 0;
-    set_triangle(triangle, a, over ? c : b, over ? b : c, random.below(1000) + 1000 * random.below(2) + 100);
+    triangle = vertex_triangle(a, over ? c : b, over ? b : c, random.below(1000) + 1000 * random.below(2) + 100);
     for (std::uint32_t ray = 0; ray < SmallPacket::kRayCount; ++ray) {
       distance[ray] = true_distance(packet, ray, triangle);
     }

@@ -18,11 +18,6 @@ template <class L>
 class IntersectRaysTest : public testing::Test {};
 TYPED_TEST_SUITE(IntersectRaysTest, WalkLaneTypes, LaneNames);
 
-VertexTriangle triangle_of(const TestMesh& mesh, std::uint32_t id) {
-  const UVec3& t = mesh.triangles[id];
-  return vertex_triangle(mesh.vertices[t.x], mesh.vertices[t.y], mesh.vertices[t.z], id);
-}
-
 void set_ray(WalkRays& rays, std::uint32_t i, const OracleRay& ray) {
   rays.dir_max[i] = 0.0f;
   for (int axis = 0; axis < 3; ++axis) {

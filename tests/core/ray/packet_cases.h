@@ -49,9 +49,6 @@ inline Vec3 random_vec(TestRandom& random, float scale) {
   return Vec3(x, y, z) * scale;
 }
 
-inline void set_triangle(VertexTriangle& triangle, Vec3 a, Vec3 b, Vec3 c, std::uint32_t id) {
-  triangle = {{{a.x, a.y, a.z}, {b.x, b.y, b.z}, {c.x, c.y, c.z}}, {}, id};
-}
 inline VertexTriangle vertex_triangle(Vec3 a, Vec3 b, Vec3 c, std::uint32_t id) {
   return {{{a.x, a.y, a.z}, {b.x, b.y, b.z}, {c.x, c.y, c.z}}, {}, id};
 }

@@ -33,7 +33,7 @@ struct ShotTriangles {
       if (!target.has_area(id)) continue;
       const UVec3& t = mesh.triangles[id];
       const Vec3 corners[3] = {mesh.vertices[t.x], mesh.vertices[t.y], mesh.vertices[t.z]};
-      set_triangle(vertices.emplace_back(), corners[0], corners[1], corners[2], id);
+      vertices.push_back(vertex_triangle(corners[0], corners[1], corners[2], id));
       make_projection_triangle(corners[0], corners[1], corners[2], id, projections.emplace_back());
       LatticeTriangle& stored = places.emplace_back();
       stored = {};

@@ -60,11 +60,9 @@ void test_neighbours_of_poison() {
   constexpr std::uint32_t kPoisoned = 1000;
   std::vector<VertexTriangle> clean, poisoned;
   for (std::uint32_t i = 0; i < mesh.triangles.size(); ++i) {
-    const UVec3& t = mesh.triangles[i];
-    set_triangle(clean.emplace_back(), mesh.vertices[t.x], mesh.vertices[t.y], mesh.vertices[t.z], i);
+    clean.push_back(triangle_of(mesh, i));
     poisoned.push_back(clean.back());
-    set_triangle(poisoned.emplace_back(), Vec3(std::numeric_limits<float>::quiet_NaN()), {1, 0, 0}, {0, 1, 0},
-                 kPoisoned);
+    poisoned.push_back(vertex_triangle(Vec3(std::numeric_limits<float>::quiet_NaN()), {1, 0, 0}, {0, 1, 0}, kPoisoned));
   }
   TestRandom random(32);
   const Rays rays = rays_at(mesh, {0.1f, 0.2f, 0.3f}, Aim::kVertex, 64, random);
@@ -264,8 +262,7 @@ TEST(HardCase43, CountsOverflow) {
     set_direction_bounds(*packet);
     WorkCounters work;
     for (const std::uint32_t which : {id, id - 1, id}) {
-      VertexTriangle triangle;
-      set_triangle(triangle, {-1, -1, 0}, {1, -1, 0}, {0, 1, 0}, which);
+      const VertexTriangle triangle = vertex_triangle({-1, -1, 0}, {1, -1, 0}, {0, 1, 0}, which);
       (void)intersect_standard<Lanes<4>, false>(*packet, triangle, false, work);
     }
     for (std::uint32_t ray = 0; ray < 16; ++ray) ASSERT_EQ(packet->id[ray], id - 1);

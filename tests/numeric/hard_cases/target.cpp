@@ -69,7 +69,7 @@ Target::Target(const TestMesh& mesh, const GridParameters& grid, const Profile& 
     if (profile.accuracy == Accuracy::kPaper) {
       make_projection_triangle(a, b, c, id, records_->projections[0].emplace_back());
     } else {
-      set_triangle(records_->vertices[0].emplace_back(), a, b, c, id);
+      records_->vertices[0].push_back(vertex_triangle(a, b, c, id));
     }
   }
   const auto reorder = [&](auto* orders) {
