@@ -83,7 +83,7 @@ inline constexpr float kSubpacketErrorFactor = 68.0f * 0x1p-23f;
 
 /// @returns sign of det[dir, a - o, b - o]: doubles if they are sure, else integers.
 [[nodiscard]] std::int32_t edge_sign(const float origin[3], const float dir[3], const float a[3], const float b[3],
-                            WorkCounters& work);
+                                     WorkCounters& work);
 
 /// Prepares the edge functions of a batch of triangles for a packet, and tests its corner rays: if all four pass on the
 /// outside of the same edge, so does every ray between them (Dmitriev, Havran, Seidel 2004).

@@ -144,7 +144,8 @@ void set_up_normal(const VertexTriangle& triangle, float normal[3]) {
 }
 
 // The float test's form and bound with u = 2^-52 in the place of 2^-23; nothing here can leave the range of a double.
-std::int32_t edge_sign(const float origin[3], const float dir[3], const float a[3], const float b[3], WorkCounters& work) {
+std::int32_t edge_sign(const float origin[3], const float dir[3], const float a[3], const float b[3],
+                       WorkCounters& work) {
   work.add(Work::kDoubleSign);
   double sum[3], edge[3];
   double size_sum = 0.0, size_edge = 0.0, size_dir = 0.0;

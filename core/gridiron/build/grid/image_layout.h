@@ -2,8 +2,8 @@
 // Internal header. Memory: values. Threads: any. SPDX-License-Identifier: Apache-2.0
 #pragma once
 
-#include <gridiron/base/lanes.h>
 #include <gridiron/base/image_rules.h>
+#include <gridiron/base/lanes.h>
 #include <gridiron/base/math.h>
 #include <gridiron/base/records.h>
 #include <gridiron/build/effects/effect_sections.h>
