@@ -49,7 +49,7 @@ TileCounts counts_of(const sim::TileTrace& tile) {
       ++of(Work::kWait);
     } else if (event.kind == sim::EventKind::kWork) {
       for (const sim::WorkAmount& amount : event.work) {
-        if (amount.kind < Work::kGetIssue) of(amount.kind) += amount.amount;
+        if (!sim::is_charged_as_event(amount.kind)) of(amount.kind) += amount.amount;
       }
     }
   });

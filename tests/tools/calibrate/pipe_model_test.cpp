@@ -1,4 +1,5 @@
 // The pipeline model against schedules by hand. SPDX-License-Identifier: Apache-2.0
+#include <gridiron/engine/grid/grid_work.h>
 #include <gtest/gtest.h>
 #include <pipe_model.h>
 
