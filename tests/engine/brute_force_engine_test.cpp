@@ -40,7 +40,8 @@ constexpr double kBufferCycles = 64, kTriangleCycles = 3;
 constexpr sim::WorkPrice kBruteForcePrices[] = {{BruteForceWork::kBuffer, kBufferCycles},
                                                 {BruteForceWork::kTriangle, kTriangleCycles}};
 constexpr sim::EngineWork kBruteForce =
-    sim::EngineWork::make(BruteForceWork::kEnd, {.name = "brute_force",
+    sim::EngineWork::make(BruteForceWork::kEnd, {.id = BruteForceEngine::kId,
+                                                 .name = "brute_force",
                                                  .kinds = kBruteForceKinds,
                                                  .prices = kBruteForcePrices,
                                                  .wait_levels = {"planes", "nothing", "all_triangles", "record"}});

@@ -1,4 +1,5 @@
-// The rules of a frame. Set-up, simulator, firmware and kernel find faults with these functions alone.
+// The rules of a frame's fields, for set-up, simulator, firmware and kernel. What a layout of the kernel lacks (another
+// engine, effects) is TileRenderer's; that addresses fit the memory is checked by set-up, simulator and firmware.
 // Memory: none. Threads: any; integers only. SPDX-License-Identifier: Apache-2.0
 #pragma once
 
@@ -15,11 +16,11 @@ namespace gridiron {
 /// The first rule that a frame breaks.
 struct FrameFault {
   Status status = Status::kOk;  ///< why the frame is rejected
-  std::uint16_t place = 0;      ///< of the field, in bytes of the frame record
+  std::uint16_t place = 0;      ///< offset of the field in the frame record, bytes
   const char* field = "";       ///< its name in that record
 };
 
-/// The limits of a checker that does not render. A renderer takes those of its layout, which have the same names.
+/// The limits of checkers that accept any layout. A renderer takes those of its layout, which have the same names.
 struct AnyLayout {
   static constexpr std::uint32_t kLeastTileWidth = 1;
   static constexpr std::uint32_t kMostTileWidth = kMaxPictureWidth;

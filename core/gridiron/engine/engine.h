@@ -1,6 +1,7 @@
 // Engine: an acceleration structure with its traversals, as render/ and shade/ see it. A layout of the local store
-// names its engine as Layout::Engine; no other code of the kernel names one. Memory: its parts of the local store.
-// Threads: one core. SPDX-License-Identifier: Apache-2.0
+// names its engine as Layout::Engine; render/ and shade/ name none. The grid's record and the rules of its frames are
+// in base/, since set-up and checks share them. Memory: its parts of the local store. Threads: one core.
+// SPDX-License-Identifier: Apache-2.0
 #pragma once
 
 #include <gridiron/base/records.h>
@@ -13,7 +14,7 @@
 
 namespace gridiron {
 
-/// Bytes of a buffer that an engine lends.
+/// Bytes of a buffer that an engine lends to shading: the longest record that shading gathers.
 inline constexpr std::uint32_t kIdleBufferBytes = 784;
 
 /// What an engine brings. `store` is the LocalStore of a layout.
@@ -26,8 +27,8 @@ inline constexpr std::uint32_t kIdleBufferBytes = 784;
 ///                      separate 32-byte aligned buffers of kIdleBufferBytes, lent while no ray is traced. What was in
 ///                      them is lost.
 /// E::EyeStore<Layout>  its memory while eye rays are traced, store.packet. With effects, shading overwrites it.
-/// E::RayStore<Layout>  its memory while other rays are traced, in the same place, store.wave.engine; may be void
-///                      where kMaxRayDepth is 0.
+/// E::RayStore<Layout>  its memory while other rays are traced, store.wave.engine, in the place of EyeStore: only one
+///                      of the two is valid at a time. May be void where kMaxRayDepth is 0.
 /// E::kTracesEyes<Layout>  whether there is code for eye rays; if not, they are traced like all other rays.
 /// E::kMaxRayDepth<Layout> the greatest frame.walk_depth: groups of other rays under way at once, at most
 ///                         kTriangleTagCount. 0: it traces eye rays alone, and has no Shading::kScene.
@@ -53,18 +54,21 @@ concept Engine = requires {
 /// begin_tile()        before a tile: discards all state that would make the tile depend on those before it. An engine
 ///                     whose caches outlive tiles repeats its cycles only if tiles are assigned to cores in advance.
 /// trace_eyes(view, hits)  traces the eye rays of a tile: from frame.eye, in the direction of pixel (x + dx, y + dy) as
-///                     FrameHead defines it, with every operation rounded as written there (ray/camera.h has it). A hit
+///                     FrameHead defines it, with every operation rounded as written there (ray/hits.h has it). A hit
 ///                     has 0 < t <= t_far. The nearest wins; of equal rounded distances the lowest id, or with kExact
-///                     the nearer in truth. Every pixel of the tile that lies in the picture is written; others may be.
-///                     Whether distances and facing are wanted follows from the frame: the planes agree with it, but
-///                     for samples after the first, which have no distances.
-/// trace(question, jobs)   answers other rays: jobs.next(rays, purpose) fills origin, dir, t, id (kNoTriangle) and
-///                     owner of the first n lanes and returns n, at most kWalkRays; 0: no more. The other lanes are
-///                     undefined, directions have any length, and a component may be 0. A hit has 0 < t <= rays.t. Each
-///                     group is given to jobs.finish(rays, n, purpose) once, in any order, with owner as it was and id
-///                     answered. Of question.any_hit any hit will do; else what is hit does not depend on the engine,
-///                     but with kFast, where single precision decides. next and finish count work of their own:
-///                     charge_to() comes after them. The engine sets dir_max, which ray/intersect_rays.h reads.
+///                     the one that exact arithmetic finds nearer. Every pixel of the tile that lies in the picture is
+///                     written; others may be. hits.distance is given if the frame has a plane of distances, for the
+///                     first sample only; hits.facing with Shading::kSimple only.
+/// trace(question, jobs)   answers other rays, group by group, and returns a Status.
+///                     jobs.next(rays, purpose) fills origin, dir, t, id (kNoTriangle) and owner of the first n lanes
+///                     and returns n, at most kWalkRays; 0: no more. The other lanes are undefined. Directions have any
+///                     length, and a component may be 0. A hit has 0 < t <= rays.t.
+///                     jobs.finish(rays, n, purpose) takes each group once, in any order, with owner as it was and id
+///                     answered. With question.any_hit any hit will do; else the hit does not depend on the engine,
+///                     except with kFast, where single precision decides.
+///                     next and finish charge work of their own: call charge_to() after them. The engine sets dir_max,
+///                     which ray/intersect_rays.h reads.
+/// The compiler checks begin, begin_tile and trace_eyes here, the rest where it is used.
 template <class C>
 concept EngineCore = requires(C core, const TileView& view, const Hits& hits) {
   { core.begin() } -> std::same_as<Status>;

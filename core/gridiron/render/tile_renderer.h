@@ -1,6 +1,6 @@
 // The entry point of a core: claim a tile, have its rays traced, shade, put the pixels, until no tile is left.
-// Source: Cho, Kim, Han 2012, section 2. Memory: the local store the caller places; nothing else.
-// Threads: one core; cores share nothing but the frame in main memory. SPDX-License-Identifier: Apache-2.0
+// Source: Cho, Kim, Han 2012, section 2. Memory: the local store that the caller places, and this core's spill region.
+// Threads: one core; cores share frame, scene and picture in main memory. SPDX-License-Identifier: Apache-2.0
 #pragma once
 
 #include <gridiron/base/frame_rules.h>
@@ -21,7 +21,7 @@ namespace gridiron {
 
 /// Renders tiles of one frame on one core.
 ///
-/// @tparam L       lane type, Lanes<4>, Lanes<8> or Lanes<16>, without packets Lanes<1> too; changes no pixel.
+/// @tparam L       Lanes<4>, Lanes<8> or Lanes<16>, in layouts without packets Lanes<1> too; it changes no pixel.
 /// @tparam Layout  sizes of the local store.
 template <class L, class Layout, Platform P>
 class TileRenderer {
@@ -30,11 +30,11 @@ class TileRenderer {
   TileRenderer(LocalStore<Layout>& store, P& platform, SpillRegion spill)
       : store_(store), transfers_(platform, store.work), engine_(store, transfers_), effects_(make_effects(spill)) {}
 
-  /// Renders every tile this core can claim of the frame whose record lies at `frame`.
+  /// Renders every tile that this core can claim of the frame whose record lies at `frame`. Called once.
   ///
-  /// Errors: kBadFrame, kUnsupportedFrame, kUnsupportedImage, kMissingEffect, kSpillTooSmall before the first
-  /// claim; kAborted, kDeadline between tiles; whatever the platform's transfers report. All transfers have been waited
-  /// for when kOk is returned.
+  /// Errors: kBadFrame, kUnsupportedFrame, kUnsupportedImage, kMissingEffect, kSpillTooSmall before the first claim;
+  /// kAborted, kDeadline between tiles; at any time those of transfers, and kBadFrame if a claimed tile is not of the
+  /// frame. After kOk, kAborted and kDeadline no transfer is pending; after other errors some may be.
   [[nodiscard]] Status run(MainAddress frame) {
     // 1. What every core needs: the frame, and what the engine keeps for all tiles.
     store_.work = WorkCounters{};
@@ -71,7 +71,7 @@ class TileRenderer {
     const std::uint32_t left = tile_id % frame.tiles_x * Layout::kTileWidth;
     const std::uint32_t top = tile_id / frame.tiles_x * Layout::kTileWidth;
 
-    // The output buffer's last tile must have left.
+    // The tile that was in this buffer before must have arrived in main memory.
     const std::uint32_t slot = output_slot_;
     const std::uint8_t tag = output_tag(slot);
     output_slot_ = output_slot_ + 1 == frame.output_depth ? std::uint32_t{0} : output_slot_ + 1;
@@ -88,7 +88,8 @@ class TileRenderer {
     return waits_for_output_ ? transfers_.wait(tag) : Status::kOk;
   }
 
-  // Renders a tile without effects: the hits become pixels in place, facing becomes colour.
+  // Renders a tile without effects. Distances and ids are planes of the output already; the engine writes facing where
+  // colours go, and shading turns each word into a colour.
   [[nodiscard]] Status render_hits(std::uint32_t left, std::uint32_t top, TileOutput& output) {
     const FrameHead& frame = store_.frame;
     Hits hits{output.id, frame.depth_address != 0 ? output.depth : nullptr, nullptr};
@@ -141,8 +142,8 @@ class TileRenderer {
     fill_words(plane, Word{value});
   }
 
-  // The waits during a tile must not depend on the tiles before it. So either those have places of their own in the
-  // queue, or, if it is too short for that, a tile has left before the next one begins.
+  // So that cycles repeat, the waits during a tile must not depend on the tiles before it. So either puts of tiles have
+  // places of their own in the queue, or, if it is too short for that, a tile has left before the next one begins.
   void share_queue() {
     const FrameHead& frame = store_.frame;
     std::uint32_t commands = 0;
@@ -183,7 +184,7 @@ class TileRenderer {
     GRIDIRON_TRY(find_picture_fault<Limits>(frame).status);
     if (frame.engine_id != Layout::Engine::kId) return Status::kUnsupportedFrame;
     if (is_scene_shaded() && !kHasEffects) return Status::kMissingEffect;
-    // An engine without code for eye rays supports no other shading, and no exact distances of eye rays.
+    // Without code for eye rays only Shading::kScene is possible, and no plane of distances.
     if (!kTracesEyes<Layout> && (!is_scene_shaded() || frame.depth_address != 0)) return Status::kUnsupportedFrame;
     if (!kHasEffects) return Status::kOk;
     return find_scene_fault<Limits>(frame).status;

@@ -33,7 +33,8 @@ inline constexpr auto kBvhPrices = [] {
 
 /// The cached BVH. Its prices are those of a core of two pipes whatever the machine.
 inline constexpr sim::EngineWork kBvhEngine =
-    sim::EngineWork::make(BvhWork::kEnd, {.name = "bvh",
+    sim::EngineWork::make(BvhWork::kEnd, {.id = kFirstOtherEngine,  // bvh_core.h's kId
+                                          .name = "bvh",
                                           .kinds = kBvhWorkKinds,
                                           .prices = kBvhPrices,
                                           .wait_levels = {"tile", "macrocell", "triangle", "setup"}});

@@ -1,5 +1,6 @@
-// The table of engines, and what the host knows of their kinds of work and of waits: names, which work is
-// initialisation, prices that no machine profile has. Kinds of core are listed here, those of an engine in its record.
+// The table of engines, and names and prices of their kinds of work, for reports and the clock. A new kind needs a
+// value of its enumeration (base/work_counters.h or the engine's), a row here in the same order, and a price
+// (tools/calibrate). A new engine needs a description like kGridEngine; in core also an EngineId and a row.
 // Memory: constants. Threads: any. SPDX-License-Identifier: Apache-2.0
 #pragma once
 
@@ -37,23 +38,33 @@ struct WorkPrice {
   return kinds.size() == end - first;
 }
 
-/// An engine's record. A trace points to that of the engine that made it.
+/// The description of an engine. A trace points to that of the engine that made it.
 struct EngineWork {
+  std::uint32_t id;  ///< FrameHead::engine_id
   std::string_view name;
   std::span<const WorkKind> kinds;    ///< its own, from kSharedWorkCount on
-  std::span<const WorkPrice> prices;  ///< instead of the profile's, which are those of core and of the grid
+  std::span<const WorkPrice> prices;  ///< one at least for each of its own; none: the profile has them, as the grid's
   std::array<std::string_view, kWaitLevelCount> wait_levels;  ///< by WaitLevel
 
-  /// A kind without a row, a row without a name, or a wait level without one does not compile.
+  /// A kind without a row or a price, a row without a name, or a wait level without one does not compile.
   template <class Kind>
-  [[nodiscard]] static consteval EngineWork make(Kind end, const EngineWork& record) {
-    bool is_whole = lists_kinds(record.kinds, kSharedWorkCount, WorkId(end).number());
-    for (const std::string_view level : record.wait_levels) is_whole = is_whole && !level.empty();
+  [[nodiscard]] static consteval EngineWork make(Kind end, const EngineWork& engine) {
+    bool is_whole = lists_kinds(engine.kinds, kSharedWorkCount, WorkId(end).number());
+    for (const std::string_view level : engine.wait_levels) is_whole = is_whole && !level.empty();
+    for (const WorkKind& kind : engine.kinds) {
+      is_whole = is_whole && (engine.prices.empty() || engine.has_price(kind.id));
+    }
     if (!is_whole) a_row_of_the_engine_is_missing();
-    return record;
+    return engine;
   }
   static void a_row_of_the_engine_is_missing();  ///< defined nowhere: its name stands in the compiler's message
-  /// The kinds of its frames are those below.
+  [[nodiscard]] constexpr bool has_price(WorkId kind) const {
+    for (const WorkPrice& price : prices) {
+      if (price.id == kind) return true;
+    }
+    return false;
+  }
+  /// Its frames count the kinds 0 to kind_count() - 1.
   [[nodiscard]] constexpr std::uint32_t kind_count() const {
     return kSharedWorkCount + static_cast<std::uint32_t>(kinds.size());
   }
@@ -96,14 +107,24 @@ inline constexpr WorkKind kGridWorkKinds[] = {
 
 /// The grid. Machine profiles have its prices.
 inline constexpr EngineWork kGridEngine = EngineWork::make(
-    GridWork::kEnd,
-    {.name = "grid", .kinds = kGridWorkKinds, .prices = {}, .wait_levels = {"tile", "macrocell", "triangle", "setup"}});
+    GridWork::kEnd, {.id = static_cast<std::uint32_t>(EngineId::kGrid),
+                     .name = "grid",
+                     .kinds = kGridWorkKinds,
+                     .prices = {},
+                     .wait_levels = {"tile", "macrocell", "triangle", "setup"}});
 
-/// The engines of core, by EngineId. An engine without a row does not compile.
+/// The engines of core, by EngineId. Engines outside core, such as the cached BVH, have their description alone.
 inline constexpr std::array kCoreEngines = {&kGridEngine};
-static_assert(kCoreEngines.size() + 1 == static_cast<std::size_t>(EngineId::kEnd), "an engine of core lacks its row");
+static_assert(
+    [] {
+      for (std::size_t i = 0; i < kCoreEngines.size(); ++i) {
+        if (kCoreEngines[i]->id != i + 1) return false;
+      }
+      return kCoreEngines.size() + 1 == static_cast<std::size_t>(EngineId::kEnd);
+    }(),
+    "an engine of core lacks its row, or it is in another's place");
 
-/// @returns the record of a frame's engine, null if core does not have it. @param id  FrameHead::engine_id.
+/// @returns the description of a frame's engine, null if core does not have it. @param id  FrameHead::engine_id.
 [[nodiscard]] constexpr const EngineWork* core_engine(std::uint32_t id) {
   return id - 1 < kCoreEngines.size() ? kCoreEngines[id - 1] : nullptr;
 }

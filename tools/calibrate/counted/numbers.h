@@ -1,6 +1,7 @@
 // Compiled before core's own sources, which so become the counted kernel: other numbers, lanes and counters, another
-// namespace, and branches that record where they are. The language reserves its keywords, but compilers let a macro
-// replace them. Headers that stay as they are for the host are included first.
+// namespace, and branches that record where they are. Never part of a product: the language reserves its keywords, but
+// GCC and clang let a macro replace them. Every standard header that core includes must be included here, above the
+// macros. A new engine adds its kinds of work to the headers and names that stay as they are.
 // Memory: none. Threads: any. SPDX-License-Identifier: Apache-2.0
 #pragma once
 
@@ -45,7 +46,7 @@ using gridiron::TileClaim;
 using gridiron::Work;
 using gridiron::WorkId;
 
-/// An address, which the kernel computes.
+/// Core's MainAddress with a counted value.
 struct MainAddress {
   Counted<std::uint64_t> value;
 
@@ -67,7 +68,7 @@ using gridiron::bvh::CacheCounts;
 
 }  // namespace gridiron_counted
 
-// The kernel writes std:: before them.
+// The kernel writes std::uint32_t, so what replaces it must be in std.
 namespace std {
 using counted_int32 = gridiron_counted::Counted<int32_t>;
 using counted_int64 = gridiron_counted::Counted<int64_t>;
@@ -98,7 +99,7 @@ using gridiron_counted::counted_bit_cast;
       if constexpr (const ::gridiron_counted::CountedTurn counted_turn(counted_loop); false) {      \
       } else
 // clang-format on
-// That a transfer fails is no branch of the kernel.
+// That a transfer fails is not counted as a branch: switch_at() leaves a Status alone.
 #undef GRIDIRON_TRY
 #define GRIDIRON_TRY(expression)                                    \
   {                                                                 \
