@@ -7,6 +7,8 @@
 #include <gridiron/sim/machine_profile.h>
 #include <gridiron/sim/replay.h>
 
+#include <nlohmann/json.hpp>
+
 #include "effects/kernel_scene.h"
 #include "report/report.h"
 #include "report/timeline.h"
