@@ -1,8 +1,4 @@
 // Frames of the reference configuration against Embree's packets. SPDX-License-Identifier: Apache-2.0
-#include <algorithm>
-#include <cstdio>
-#include <string>
-
 #include "bench/bench.h"
 #include "embree_peer/embree_peer.h"
 #include "support/ply_load.h"

@@ -3,10 +3,6 @@
 #include <gridiron/build/grid/grid_builder.h>
 #include <gridiron/image/scene_image.h>
 
-#include <cstdio>
-#include <cstdlib>
-#include <string>
-
 #include "bench/bench.h"
 #include "core/build/grid/line_buffer.h"
 #include "embree_peer/embree_peer.h"

@@ -4,11 +4,6 @@
 #include <gridiron/sim/replay.h>
 #include <gridiron/sim/trace_packing.h>
 
-#include <cstdio>
-#include <string>
-#include <utility>
-#include <vector>
-
 #include "bench/bench.h"
 #include "support/ply_load.h"
 #include "support/render_mesh.h"

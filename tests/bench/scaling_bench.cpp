@@ -3,10 +3,6 @@
 #include <gridiron/sim/machine_profile.h>
 #include <gridiron/sim/replay.h>
 
-#include <cmath>
-#include <cstdio>
-#include <vector>
-
 #include "bench/bench.h"
 #include "support/render_mesh.h"
 #include "support/test_mesh.h"

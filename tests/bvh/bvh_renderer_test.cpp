@@ -9,7 +9,6 @@
 
 #include "support/no_threads.h"
 #include "support/render_mesh.h"
-#include "support/test_headers.h"
 #include "support/test_mesh.h"
 #include "support/views.h"
 

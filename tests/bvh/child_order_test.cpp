@@ -1,7 +1,6 @@
 // Children come in the order of their entries. SPDX-License-Identifier: Apache-2.0
 #include <gridiron/bvh/child_order.h>
 
-#include "support/test_headers.h"
 #include "support/test_mesh.h"
 
 namespace gridiron::bvh {

@@ -6,7 +6,6 @@
 #include <mutex>
 #include <thread>
 
-#include "support/test_headers.h"
 #include "support/test_mesh.h"
 #include "support/trace_steps.h"
 

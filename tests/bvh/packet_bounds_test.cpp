@@ -2,7 +2,6 @@
 #include <gridiron/bvh/packet_bounds.h>
 #include <gridiron/ray/camera.h>
 
-#include "support/test_headers.h"
 #include "support/test_mesh.h"
 
 namespace gridiron::bvh {

@@ -3,7 +3,6 @@
 
 #include <list>
 
-#include "support/test_headers.h"
 #include "support/test_mesh.h"
 
 namespace gridiron::bvh {

@@ -1,7 +1,6 @@
 // tools/boards/run_*, with a stand-in for the emulator: what they refuse, and what they leave behind.
 // SPDX-License-Identifier: Apache-2.0
 #include "run_script.h"
-#include "support/test_headers.h"
 
 namespace gridiron::test {
 namespace {

@@ -1,7 +1,6 @@
 // The linker scripts of the boards: which images they reject, linked like the boards' own, with sections collected.
 // SPDX-License-Identifier: Apache-2.0
 #include "run_script.h"
-#include "support/test_headers.h"
 
 namespace gridiron::test {
 namespace {

@@ -1,8 +1,4 @@
 // The budget check finds the deepest stack and refuses what has none. SPDX-License-Identifier: Apache-2.0
-#include <gtest/gtest.h>
-
-#include <string>
-
 #include "run_script.h"
 
 namespace gridiron::test {

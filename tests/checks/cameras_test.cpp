@@ -2,7 +2,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "support/ply_load.h"
 #include "support/scenes.h"
-#include "support/test_headers.h"
 #include "support/views.h"
 
 namespace gridiron::test {

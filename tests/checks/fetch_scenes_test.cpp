@@ -2,7 +2,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "run_script.h"
 #include "support/scenes.h"
-#include "support/test_headers.h"
 
 namespace gridiron::test {
 namespace {

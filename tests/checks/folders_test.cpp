@@ -1,8 +1,4 @@
 // The rules of the folders: the sources keep them, and a breach of each is noticed. SPDX-License-Identifier: Apache-2.0
-#include <gtest/gtest.h>
-
-#include <string>
-
 #include "run_script.h"
 
 namespace gridiron::test {

@@ -1,7 +1,6 @@
 // The table of loop bounds: every loop that no constant bounds has its row, and a loop or a row too many is noticed.
 // SPDX-License-Identifier: Apache-2.0
 #include "run_script.h"
-#include "support/test_headers.h"
 
 namespace gridiron::test {
 namespace {

@@ -2,10 +2,7 @@
 // not be in code for a core is refused, compiled as core is. SPDX-License-Identifier: Apache-2.0
 #include <gridiron/store/local_store.h>
 
-#include <iterator>
-
 #include "run_script.h"
-#include "support/test_headers.h"
 
 namespace gridiron::test {
 namespace {

@@ -1,9 +1,7 @@
 // The README: its example is short, its links lead somewhere, its picture is small. SPDX-License-Identifier: Apache-2.0
-#include <iterator>
 #include <regex>
 
 #include "run_script.h"
-#include "support/test_headers.h"
 
 namespace gridiron::test {
 namespace {

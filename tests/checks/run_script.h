@@ -3,8 +3,6 @@
 
 #include <sys/wait.h>
 
-#include <cstdio>
-
 #include "support/test_headers.h"
 
 namespace gridiron::test {

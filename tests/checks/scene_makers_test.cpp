@@ -2,7 +2,6 @@
 // Memory: std::vector. Threads: one. SPDX-License-Identifier: Apache-2.0
 #include <gtest/gtest-spi.h>
 
-#include <iterator>
 #include <numeric>
 
 #include "scene_makers/mesh.h"

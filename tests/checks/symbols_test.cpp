@@ -1,8 +1,4 @@
 // The symbol check lets freestanding archives pass and names what others need. SPDX-License-Identifier: Apache-2.0
-#include <gtest/gtest.h>
-
-#include <string>
-
 #include "run_script.h"
 
 namespace gridiron::test {

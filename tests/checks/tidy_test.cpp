@@ -1,8 +1,4 @@
 // The rules of .clang-tidy, and those of its paths, report what they are for. SPDX-License-Identifier: Apache-2.0
-#include <gtest/gtest.h>
-
-#include <string>
-
 #include "run_script.h"
 
 namespace gridiron::test {

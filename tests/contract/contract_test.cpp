@@ -7,7 +7,6 @@
 
 #include "contract_checks.h"
 #include "host_board.h"
-#include "support/test_headers.h"
 #include "template_port.h"
 
 namespace gridiron::contract {

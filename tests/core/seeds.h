@@ -2,7 +2,6 @@
 // Memory: none. Threads: any. SPDX-License-Identifier: Apache-2.0
 #pragma once
 
-#include "support/test_headers.h"
 #include "support/test_mesh.h"
 
 namespace gridiron::test {

@@ -6,7 +6,6 @@
 #include "determinism/trace_difference.h"
 #include "sim_platform/replay_cases.h"
 #include "support/render_mesh.h"
-#include "support/test_headers.h"
 #include "support/test_mesh.h"
 #include "support/views.h"
 

@@ -8,7 +8,6 @@
 
 #include "determinism/trace_difference.h"
 #include "support/instrumented.h"
-#include "support/test_headers.h"
 #include "support/test_mesh.h"
 
 namespace gridiron::test {

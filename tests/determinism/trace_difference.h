@@ -4,7 +4,6 @@
 
 #include <gridiron/sim/trace.h>
 
-#include "support/test_headers.h"
 #include "support/trace_steps.h"
 
 namespace gridiron::test {

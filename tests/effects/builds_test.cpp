@@ -4,13 +4,6 @@
 #include <gridiron/base/one_lane.h>
 #include <gridiron/render/tile_renderer.h>
 #include <gridiron/store/local_store.h>
-#include <gtest/gtest.h>
-
-#include <cstdint>
-#include <fstream>
-#include <iterator>
-#include <memory>
-#include <string>
 
 #include "effects/effect_scene.h"
 #include "effects/kernel_scene.h"

@@ -2,12 +2,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "effects/effect_scene.h"
 
-#include <gtest/gtest.h>
-
-#include <cmath>
 #include <glm/geometric.hpp>
-#include <map>
-#include <utility>
 
 #include "effects/reference/reference_renderer.h"
 

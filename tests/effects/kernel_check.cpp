@@ -1,15 +1,6 @@
 // Checks of the kernel: see the header. SPDX-License-Identifier: Apache-2.0
 #include "effects/kernel_check.h"
 
-#include <gtest/gtest.h>
-
-#include <algorithm>
-#include <cmath>
-#include <cstdio>
-#include <cstdlib>
-#include <filesystem>
-#include <limits>
-
 #include "effects/compare_pictures.h"
 #include "effects/kernel_variants.h"
 #include "scene_text/scene_reader.h"

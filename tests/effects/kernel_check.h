@@ -2,11 +2,6 @@
 // Memory: std::vector. Threads: the reference starts its own. SPDX-License-Identifier: Apache-2.0
 #pragma once
 
-#include <cstddef>
-#include <cstdint>
-#include <string>
-#include <string_view>
-
 #include "effects/kernel_scene.h"
 #include "effects/reference/reference_renderer.h"
 #include "scene_text/scene_description.h"

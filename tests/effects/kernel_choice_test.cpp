@@ -1,12 +1,5 @@
 // Choice of effects: one that a scene does not call for costs nothing; one that a kernel lacks is reported by name.
 // SPDX-License-Identifier: Apache-2.0
-#include <gtest/gtest.h>
-
-#include <map>
-#include <set>
-#include <string>
-#include <vector>
-
 #include "effects/effect_scene.h"
 #include "effects/kernel_check.h"
 #include "effects/kernel_variants.h"

@@ -1,11 +1,5 @@
 // The same picture and the same work, however a core is built and whatever its platform is like.
 // SPDX-License-Identifier: Apache-2.0
-#include <gtest/gtest.h>
-
-#include <map>
-#include <string>
-#include <utility>
-
 #include "effects/effect_scene.h"
 #include "effects/kernel_check.h"
 #include "effects/kernel_variants.h"

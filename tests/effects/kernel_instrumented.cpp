@@ -2,8 +2,6 @@
 #include <gridiron/sim/sim_chip.h>
 #include <gridiron/sim/sim_memory.h>
 
-#include <algorithm>
-
 #include "effects/kernel_scene.h"
 #include "support/instrumented.h"
 

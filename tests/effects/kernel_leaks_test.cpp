@@ -1,18 +1,8 @@
 // No shadows in open space, and no light through walls: over scales and places, for balls, boxes, rooms and closed
 // scans.
 // SPDX-License-Identifier: Apache-2.0
-#include <gtest/gtest.h>
-
-#include <algorithm>
-#include <cmath>
-#include <cstdio>
-#include <cstdlib>
-#include <filesystem>
 #include <glm/common.hpp>
 #include <ostream>
-#include <string>
-#include <utility>
-#include <vector>
 
 #include "effects/compare_pictures.h"
 #include "effects/effect_scene.h"

@@ -6,7 +6,6 @@
 #include "effects/kernel_check.h"
 #include "scene_makers/procedural.h"
 #include "scene_text/scene_reader.h"
-#include "support/test_headers.h"
 
 namespace gridiron::test {
 namespace {

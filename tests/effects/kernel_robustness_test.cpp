@@ -1,13 +1,6 @@
 // Implausible numbers, energy that must not grow, pictures of odd sizes.
 // SPDX-License-Identifier: Apache-2.0
-#include <gtest/gtest.h>
-
-#include <algorithm>
-#include <cstdint>
 #include <ostream>
-#include <string>
-#include <string_view>
-#include <utility>
 
 #include "effects/effect_scene.h"
 #include "effects/kernel_check.h"

@@ -1,12 +1,5 @@
 // More than the local store can hold: materials, lights, rays that wait.
 // SPDX-License-Identifier: Apache-2.0
-#include <gtest/gtest.h>
-
-#include <algorithm>
-#include <cmath>
-#include <cstddef>
-#include <cstdint>
-
 #include "effects/effect_scene.h"
 #include "effects/kernel_check.h"
 

@@ -3,8 +3,6 @@
 
 #include <glm/trigonometric.hpp>
 
-#include <cmath>
-
 namespace gridiron::test {
 
 KernelScene build_kernel_scene(const tool::SceneDescription& description, const KernelOptions& options) {

@@ -12,16 +12,9 @@
 #include <gridiron/render/tile_renderer.h>
 #include <gridiron/store/local_store.h>
 
-#include <array>
-#include <cstddef>
-#include <cstdint>
-#include <cstring>
-#include <memory>
-#include <string>
-#include <vector>
-
 #include "scene_text/scene_description.h"
 #include "scene_text/scene_effects.h"
+#include "support/test_headers.h"
 
 namespace gridiron::test {
 

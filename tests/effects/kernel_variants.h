@@ -2,10 +2,6 @@
 // once. Memory: none. Threads: any. SPDX-License-Identifier: Apache-2.0
 #pragma once
 
-#include <cstdint>
-#include <span>
-#include <string_view>
-
 #include "effects/kernel_scene.h"
 
 namespace gridiron::test {

@@ -1,9 +1,5 @@
 // Lanes of other instruction sets: their pictures are those of four lanes, and the reference's.
 // SPDX-License-Identifier: Apache-2.0
-#include <gtest/gtest.h>
-
-#include <cstdint>
-
 #include "core/lane_types.h"
 #include "effects/compare_pictures.h"
 #include "effects/effect_scene.h"

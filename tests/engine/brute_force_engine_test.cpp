@@ -6,12 +6,14 @@
 #include <gridiron/sim/core_runner.h>
 #include <gridiron/sim/machine_profile.h>
 #include <gridiron/sim/replay.h>
+
+#include <nlohmann/json.hpp>
+
 #include "effects/kernel_scene.h"
 #include "report/report.h"
 #include "report/timeline.h"
 #include "scene_text/scene_reader.h"
 #include "support/render_mesh.h"
-#include "support/test_headers.h"
 #include "support/test_mesh.h"
 
 namespace gridiron::test {
@@ -150,8 +152,7 @@ void expect_reported(const sim::ChipResult& result, const sim::MachineProfile& m
 // On the simulated chip, every rule checked; counted, replayed and reported like any other program of a core.
 TEST(BruteForceEngine, RunsOnTheSimulatedChip) {
   using Layout = BruteForceLayout<0, 32>;
-  TestMesh mesh = make_sphere(9, 14, 0.8f);
-  mesh.append(make_random_soup(60, 0.3f, 5));
+  const TestMesh mesh = joined(make_sphere(9, 14, 0.8f), make_random_soup(60, 0.3f, 5));
   SceneInMemory scene(mesh.view(), {});
   ASSERT_EQ(scene.status(), Status::kOk);
   FrameSettings settings;

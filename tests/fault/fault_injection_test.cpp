@@ -3,7 +3,6 @@
 #include <gridiron/platform/fault_injection.h>
 
 #include "sim_platform/program_bench.h"
-#include "support/test_headers.h"
 
 namespace gridiron::sim {
 namespace {

@@ -17,7 +17,6 @@
 #include "host_board.h"
 #include "sim_platform/program_bench.h"
 #include "support/instrumented.h"
-#include "support/test_headers.h"
 #include "support/test_mesh.h"
 #include "support/views.h"
 #include "template_port.h"

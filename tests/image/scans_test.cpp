@@ -1,8 +1,4 @@
 // The scans at full size, pixel by pixel against the ground truth. SPDX-License-Identifier: Apache-2.0
-#include <gtest/gtest.h>
-
-#include <cstdio>
-#include <string>
 #include <thread>
 
 #include "support/check_truth.h"

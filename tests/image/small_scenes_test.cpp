@@ -1,12 +1,5 @@
 // Generated scenes, every pixel against the ground truth: the hard cases of grids, packets and predicates.
 // SPDX-License-Identifier: Apache-2.0
-#include <gtest/gtest.h>
-
-#include <cmath>
-#include <functional>
-#include <string>
-#include <vector>
-
 #include "support/check_truth.h"
 #include "support/render_mesh.h"
 #include "support/test_mesh.h"
@@ -31,18 +24,8 @@ Camera look(Vec3 eye, Vec3 at, float tan_half_fov = 0.5f) {
   return {eye, at, vertical ? Vec3{0, 0, 1} : Vec3{0, 1, 0}, tan_half_fov};
 }
 
-TestMesh moved(TestMesh mesh, float scale, Vec3 offset) {
-  mesh.transform(scale, offset);
-  return mesh;
-}
-
 std::function<TestMesh()> scaled_torus(std::uint32_t rings, float scale) {
   return [=] { return moved(make_torus(rings, rings / 2, 1.0f, 0.4f), scale, {}); };
-}
-
-TestMesh joined(TestMesh mesh, const TestMesh& other) {
-  mesh.append(other);
-  return mesh;
 }
 
 TestMesh repeated(const TestMesh& mesh, int count) {

@@ -1,12 +1,6 @@
 // Cells along a ray, exactly: see the header. SPDX-License-Identifier: Apache-2.0
 #include "numeric/exact_cells.h"
 
-#include <algorithm>
-#include <cmath>
-#include <cstddef>
-#include <optional>
-#include <utility>
-
 #include "core/ray/exact_ray.h"
 
 namespace gridiron::test {

@@ -4,10 +4,6 @@
 
 #include <gridiron/base/records.h>
 
-#include <array>
-#include <cstdint>
-#include <vector>
-
 #include "numeric/oracle.h"
 
 namespace gridiron::test {

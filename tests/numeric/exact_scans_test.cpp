@@ -1,12 +1,5 @@
 // `exact` on the scans: every pixel of five views shows the oracle's triangle. SPDX-License-Identifier: Apache-2.0
-#include <gtest/gtest.h>
-
-#include <algorithm>
-#include <cstdint>
-#include <cstdio>
-#include <string>
 #include <thread>
-#include <vector>
 
 #include "numeric/oracle.h"
 #include "support/brute_force.h"

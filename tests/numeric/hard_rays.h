@@ -4,10 +4,6 @@
 
 #include <gridiron/ray/packet.h>
 
-#include <cmath>
-#include <cstdint>
-#include <vector>
-
 #include "core/ray/packet_cases.h"
 #include "numeric/oracle.h"
 #include "support/test_mesh.h"

@@ -1,12 +1,7 @@
 // The oracle: see the header. SPDX-License-Identifier: Apache-2.0
 #include "numeric/oracle.h"
 
-#include <algorithm>
-#include <bit>
-#include <cmath>
-#include <limits>
 #include <thread>
-#include <utility>
 
 namespace gridiron::test {
 namespace {

@@ -6,13 +6,9 @@
 #include <gridiron/base/math.h>
 #include <gridiron/scene/mesh.h>
 
-#include <cstddef>
-#include <cstdint>
-#include <span>
-#include <vector>
-
 #include "numeric/exact_distance.h"
 #include "support/median_tree.h"
+#include "support/test_headers.h"
 
 namespace gridiron::test {
 

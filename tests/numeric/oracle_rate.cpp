@@ -1,13 +1,7 @@
 // How fast the oracle answers: CPU time on this machine. Not a test; README.md shows its table.
 //   oracle_rate [RAYS]      RAYS: of each kind, default 100000
 // SPDX-License-Identifier: Apache-2.0
-#include <cmath>
-#include <cstdint>
-#include <cstdio>
-#include <cstdlib>
 #include <ctime>
-#include <utility>
-#include <vector>
 
 #include "numeric/exact_cells.h"
 #include "numeric/hard_rays.h"

@@ -1,11 +1,6 @@
 // Compares core's `standard` test with the oracle: every ray's triangle and distance, bit for bit.
 // SPDX-License-Identifier: Apache-2.0
 #include <gridiron/ray/intersect_standard.h>
-#include <gtest/gtest.h>
-
-#include <bit>
-#include <cstdint>
-#include <vector>
 
 #include "core/lane_types.h"
 #include "core/ray/packet_cases.h"

@@ -5,7 +5,6 @@
 #include "core/seeds.h"
 #include "numeric/hard_rays.h"
 #include "numeric/rounding_scope.h"
-#include "support/test_headers.h"
 #include "support/test_mesh.h"
 
 namespace gridiron::test {
@@ -54,11 +53,6 @@ std::vector<std::uint32_t> ids_of(const std::vector<OracleHit>& hits) {
 
 OracleRay ray_of(Vec3 origin, Vec3 direction) {
   return {{origin.x, origin.y, origin.z}, {direction.x, direction.y, direction.z}};
-}
-
-TestMesh scaled(TestMesh mesh, float scale) {
-  for (Vec3& v : mesh.vertices) v *= scale;
-  return mesh;
 }
 
 using Ids = std::vector<std::uint32_t>;
@@ -139,8 +133,8 @@ TEST(Oracle, FilterAndBoxesChangeNothing) {
 TEST(Oracle, BoxesAndThreadsChangeNothingOnWholeMeshes) {
   std::vector<TestMesh> meshes = {make_sphere(12, 17, 1.0f), make_height_field(12, 0.2f, 3),
                                   make_random_soup(300, 0.3f, 7), make_sliver_fan(40, 1e-4f)};
-  meshes.push_back(scaled(meshes[0], 0x1p-60f));
-  meshes.push_back(scaled(meshes[2], 0x1p60f));
+  meshes.push_back(moved(meshes[0], 0x1p-60f));
+  meshes.push_back(moved(meshes[2], 0x1p60f));
   meshes.push_back(meshes[0]);
   meshes.back().transform(1.0f, {148376.0f, 1234.0f, -223423.0f});
   meshes.push_back(make_box({-1, -1, -1}, {1, 1, 1}));
@@ -216,7 +210,7 @@ TEST(Oracle, BoundariesAreClosed) {
   quad.triangles = {{0, 1, 2}, {0, 2, 3}, {2, 1, 0}};
   const float scales[] = {0x1p-126f, 0x1p-60f, 1.0f, 0x1p60f, 0x1p100f};
   for (const float scale : scales) {
-    const TestMesh mesh = scaled(quad, scale);
+    const TestMesh mesh = moved(quad, scale);
     const Oracle oracle(mesh.view());
     const auto hits_at = [&](float x, float y) {
       return ids_of(oracle.hits(ray_of(Vec3(x, y, -1) * scale, Vec3(0, 0, scale))));

@@ -3,12 +3,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <gridiron/base/exact_sum.h>
 #include <gridiron/ray/secondary_origin.h>
-#include <gtest/gtest.h>
 
-#include <cmath>
 #include <glm/geometric.hpp>
-#include <string>
-#include <vector>
 
 #include "numeric/hard_rays.h"
 #include "numeric/oracle.h"

@@ -4,21 +4,16 @@
 
 #include <gridiron/base/effect_records.h>
 #include <gridiron/base/records.h>
-#include <gtest/gtest.h>
 
-#include <cstring>
-#include <filesystem>
-#include <functional>
 #include <new>
-#include <string>
 #include <variant>
-#include <vector>
 
 #include "console.h"
 #include "gridiron/command_line/arguments.h"
 #include "gridiron/frame/frame_memory.h"
 #include "gridiron/frame/requested_frame.h"
 #include "gridiron/job/job_file.h"
+#include "support/test_headers.h"
 
 namespace gridiron::port {
 

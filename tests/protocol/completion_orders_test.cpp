@@ -2,18 +2,8 @@
 // the same calls, the same picture and work; and a port that drops a wait is found, whichever it drops.
 // GRIDIRON_ALL_ORDERS=1: up to eight fives of every mix, where else it is the first of some.
 // SPDX-License-Identifier: Apache-2.0
-#include <gtest/gtest.h>
 #include <sys/wait.h>
 #include <unistd.h>
-
-#include <algorithm>
-#include <cstdio>
-#include <cstdlib>
-#include <map>
-#include <set>
-#include <string>
-#include <utility>
-#include <vector>
 
 #include "protocol/order_frame.h"
 #include "protocol/order_scenes.h"

@@ -7,10 +7,7 @@
 #include <gridiron/render/tile_renderer.h>
 #include <gridiron/sim/tile_source.h>
 
-#include <algorithm>
-#include <cstring>
 #include <new>
-#include <span>
 #include <stdexcept>
 
 namespace gridiron::test {

@@ -7,12 +7,6 @@
 #include <gridiron/sim/sim_memory.h>
 #include <gridiron/store/local_store.h>
 
-#include <cstddef>
-#include <cstdint>
-#include <memory>
-#include <string>
-#include <vector>
-
 #include "protocol/order_core.h"
 #include "support/test_mesh.h"
 

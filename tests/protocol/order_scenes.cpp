@@ -2,7 +2,6 @@
 #include "protocol/order_scenes.h"
 
 #include <stdexcept>
-#include <utility>
 
 namespace gridiron::test {
 namespace {

@@ -2,10 +2,6 @@
 // Memory: std::vector. Threads: any. SPDX-License-Identifier: Apache-2.0
 #pragma once
 
-#include <string>
-#include <string_view>
-#include <vector>
-
 #include "protocol/order_frame.h"
 
 namespace gridiron::test {

@@ -2,14 +2,6 @@
 // Memory: std::vector. Threads: any. SPDX-License-Identifier: Apache-2.0
 #pragma once
 
-#include <algorithm>
-#include <cstddef>
-#include <cstdint>
-#include <map>
-#include <span>
-#include <string>
-#include <vector>
-
 #include "protocol/order_core.h"
 #include "protocol/order_frame.h"
 

@@ -2,12 +2,6 @@
 // 2 put). TILE: a frame of packets; WALKS, GATHER, SPILL: the part of a frame with effects that is theirs.
 //   protocol_calls LEVEL DEPTH QUEUE_DEPTH [forgets]      forgets: without a wait in the middle that ended something
 // SPDX-License-Identifier: Apache-2.0
-#include <cstdio>
-#include <cstdlib>
-#include <iterator>
-#include <map>
-#include <string>
-
 #include "protocol/order_frame.h"
 #include "protocol/order_scenes.h"
 

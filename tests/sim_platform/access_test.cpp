@@ -6,7 +6,6 @@
 
 #include "access_programs.h"
 #include "program_bench.h"
-#include "support/test_headers.h"
 
 namespace gridiron::sim {
 namespace {

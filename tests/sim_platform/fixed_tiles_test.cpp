@@ -1,36 +1,27 @@
 // Replay of tiles that are fixed to cores. SPDX-License-Identifier: Apache-2.0
-#include <gridiron/sim/replay.h>
-
-#include "support/test_headers.h"
-#include "support/trace_steps.h"
+#include "replay_cases.h"
 
 namespace gridiron::sim {
 namespace {
 
-/// One unit of work is one cycle; a claim takes 10.
+/// Two cores; a claim takes 10 cycles.
 MachineProfile claim_machine() {
-  MachineProfile machine{};
+  MachineProfile machine = free_machine();
   machine.core_count = 2;
-  machine.line_bytes = 128;
-  machine.queue_depth = 16;
-  machine.lines_in_flight = 16;
   machine.claim_cycles = 10;
-  machine.work_cycles.fill(1);
   return machine;
 }
 
-FrameTrace frame_of(const std::vector<std::uint32_t>& tile_cycles) {
-  FrameTrace trace;
+FrameTrace frame_of_cycles(const std::vector<std::uint32_t>& tile_cycles) {
+  std::vector<TileTrace> tiles;
   for (const std::uint32_t cycles : tile_cycles) {
-    const WorkAmount work = {GridWork::kCellStep, cycles};
-    const TraceEvent event = {.kind = EventKind::kWork, .work = {&work, 1}};
-    trace.tiles.push_back(test::packed_trace(static_cast<std::uint32_t>(trace.tiles.size()), {&event, 1}));
+    tiles.push_back(Steps(static_cast<std::uint32_t>(tiles.size())).work(cycles));
   }
-  return trace;
+  return frame_of(tiles);
 }
 
 TEST(FixedTiles, EachCoreRendersItsOwnInOrder) {
-  const FrameTrace trace = frame_of({100, 20, 30, 400, 50});
+  const FrameTrace trace = frame_of_cycles({100, 20, 30, 400, 50});
   const std::vector<std::uint32_t> core_of_tile = {1, 0, 1, 1, 0};
   const FrameTiming frame =
       replay(trace, claim_machine(), {.core_count = 2, .timeline = true, .core_of_tile = core_of_tile});
@@ -50,7 +41,7 @@ TEST(FixedTiles, EachCoreRendersItsOwnInOrder) {
 
 TEST(FixedTiles, TheOrderOfClaimsIsTheOneWithoutThem) {
   const std::vector<std::uint32_t> cycles = {100, 20, 30, 400, 50, 70, 5, 5, 300};
-  const FrameTrace trace = frame_of(cycles);
+  const FrameTrace trace = frame_of_cycles(cycles);
   const FrameTiming claimed = replay(trace, claim_machine(), {.timeline = true});
   std::vector<std::uint32_t> core_of_tile(cycles.size());
   for (const TimelineSpan& span : claimed.timeline) core_of_tile[span.tile_id] = span.core;
@@ -60,7 +51,7 @@ TEST(FixedTiles, TheOrderOfClaimsIsTheOneWithoutThem) {
 }
 
 TEST(FixedTiles, TilesOfNobodyAreNotRendered) {
-  const FrameTrace trace = frame_of({100, 20, 30});
+  const FrameTrace trace = frame_of_cycles({100, 20, 30});
   const std::vector<std::uint32_t> core_of_tile = {0, 7};
   const FrameTiming frame = replay(trace, claim_machine(), {.core_of_tile = core_of_tile});
   EXPECT_EQ(frame.cores[0].tiles, 1u);

@@ -4,7 +4,6 @@
 #include <gridiron/sim/replay.h>
 
 #include "replay_cases.h"
-#include "support/test_headers.h"
 
 namespace gridiron::sim {
 namespace {

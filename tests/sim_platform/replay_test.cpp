@@ -4,11 +4,9 @@
 #include <gridiron/sim/machine_profile.h>
 #include <gridiron/sim/replay.h>
 
-#include <cstdio>
 #include <ctime>
 
 #include "replay_cases.h"
-#include "support/test_headers.h"
 
 namespace gridiron::sim {
 namespace {

@@ -3,7 +3,6 @@
 #include <gridiron/sim/core_runner.h>
 
 #include "program_bench.h"
-#include "support/test_headers.h"
 
 namespace gridiron::sim {
 namespace {

@@ -8,7 +8,6 @@
 #include "determinism/trace_difference.h"
 #include "sim_platform/program_bench.h"
 #include "support/render_mesh.h"
-#include "support/test_headers.h"
 #include "support/test_mesh.h"
 #include "support/views.h"
 

@@ -5,7 +5,6 @@
 
 #include "determinism/trace_difference.h"
 #include "program_bench.h"
-#include "support/test_headers.h"
 #include "support/trace_steps.h"
 
 namespace gridiron::sim {

@@ -5,7 +5,6 @@
 #include <atomic>
 
 #include "program_bench.h"
-#include "support/test_headers.h"
 #include "support/trace_steps.h"
 
 namespace gridiron::sim {

@@ -9,7 +9,6 @@
 
 #include "program_bench.h"
 #include "replay_cases.h"
-#include "support/test_headers.h"
 #include "support/trace_steps.h"
 
 namespace gridiron::sim {

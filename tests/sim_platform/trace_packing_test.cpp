@@ -3,7 +3,6 @@
 #include <gridiron/sim/trace_packing.h>
 
 #include "replay_cases.h"
-#include "support/test_headers.h"
 #include "support/trace_steps.h"
 
 namespace gridiron::sim {

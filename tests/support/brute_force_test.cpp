@@ -5,7 +5,6 @@
 #include <gridiron/base/exact_sum.h>
 
 #include "support/rational_vectors.h"
-#include "support/test_headers.h"
 #include "support/test_mesh.h"
 
 namespace gridiron::test {
@@ -65,14 +64,8 @@ struct Case {
   Vec3 origin;
 };
 
-TestMesh transformed(TestMesh mesh, float scale, Vec3 offset) {
-  mesh.transform(scale, offset);
-  return mesh;
-}
-
 std::vector<Case> make_cases() {
-  TestMesh doubled = make_sphere(6, 8, 1.0f);
-  doubled.append(make_sphere(6, 8, 1.0f));
+  const TestMesh doubled = joined(make_sphere(6, 8, 1.0f), make_sphere(6, 8, 1.0f));
   TestMesh coplanar = make_height_field(6, 0.0f, 1);
   coplanar.append(make_box({-0.5f, 0, -0.5f}, {0.5f, 0.5f, 0.5f}));
   return {
@@ -81,9 +74,9 @@ std::vector<Case> make_cases() {
       {"sphere", make_sphere(6, 8, 1.0f), {0.0f, 0.0f, 4.0f}},
       {"sphere_from_its_pole", make_sphere(6, 8, 1.0f), {0.0f, 1.0f, 0.0f}},
       {"sphere_twice", doubled, {0.3f, 2.5f, 1.0f}},
-      {"far_sphere", transformed(make_sphere(6, 8, 1.0f), 1.0f, {1e6f, -1e6f, 1e6f}), {1e6f, -1e6f, 1e6f + 4.0f}},
-      {"tiny_torus", transformed(make_torus(6, 5, 1.0f, 0.4f), 1e-30f, {}), {0.0f, 2e-30f, 3e-30f}},
-      {"huge_torus", transformed(make_torus(6, 5, 1.0f, 0.4f), 1e30f, {}), {0.0f, 2e30f, 3e30f}},
+      {"far_sphere", moved(make_sphere(6, 8, 1.0f), 1.0f, {1e6f, -1e6f, 1e6f}), {1e6f, -1e6f, 1e6f + 4.0f}},
+      {"tiny_torus", moved(make_torus(6, 5, 1.0f, 0.4f), 1e-30f, {}), {0.0f, 2e-30f, 3e-30f}},
+      {"huge_torus", moved(make_torus(6, 5, 1.0f, 0.4f), 1e30f, {}), {0.0f, 2e30f, 3e30f}},
       {"slivers", make_sliver_fan(50, 1e-6f), {0.0f, 0.5f, 2.0f}},
       {"coplanar_pieces", coplanar, {0.25f, 1.0f, 0.25f}},
       {"in_the_plane", make_height_field(6, 0.0f, 1), {-3.0f, 0.0f, 0.1f}},

@@ -5,7 +5,6 @@
 #include <gtest/gtest-spi.h>
 
 #include "support/render_mesh.h"
-#include "support/test_headers.h"
 #include "support/test_mesh.h"
 #include "support/views.h"
 

@@ -3,8 +3,6 @@
 
 #include <unistd.h>
 
-#include "support/test_headers.h"
-
 namespace gridiron::test {
 namespace {
 

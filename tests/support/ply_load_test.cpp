@@ -3,7 +3,6 @@
 #include "support/ply_load.h"
 
 #include "support/scenes.h"
-#include "support/test_headers.h"
 
 namespace gridiron::test {
 namespace {

@@ -1,4 +1,5 @@
 // What nearly every test reads: GoogleTest and the parts of the standard library that tests use most, precompiled once.
+// To be included where no other header of the tests brings it.
 // Memory: none. Threads: any. SPDX-License-Identifier: Apache-2.0
 #pragma once
 
@@ -10,11 +11,13 @@
 #include <cmath>
 #include <cstddef>
 #include <cstdint>
+#include <cstdio>
 #include <cstdlib>
 #include <cstring>
 #include <filesystem>
 #include <fstream>
 #include <functional>
+#include <iterator>
 #include <limits>
 #include <map>
 #include <memory>

@@ -43,6 +43,16 @@ void TestMesh::transform(float scale, Vec3 offset) {
   for (Vec3& p : vertices) p = Vec3(DVec3(p) * double{scale} + DVec3(offset));
 }
 
+TestMesh moved(TestMesh mesh, float scale, Vec3 offset) {
+  mesh.transform(scale, offset);
+  return mesh;
+}
+
+TestMesh joined(TestMesh mesh, const TestMesh& other) {
+  mesh.append(other);
+  return mesh;
+}
+
 std::uint64_t TestRandom::next() {
   // SplitMix64 (Steele, Lea, Flood 2014): a bijection of a counter.
   state_ += 0x9E3779B97F4A7C15u;

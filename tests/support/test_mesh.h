@@ -25,6 +25,12 @@ struct TestMesh {
   void transform(float scale, Vec3 offset);
 };
 
+/// A mesh whose vertices p are the floats nearest to p * scale + offset.
+TestMesh moved(TestMesh mesh, float scale, Vec3 offset = Vec3(0));
+
+/// The triangles of two meshes, those of `other` behind.
+TestMesh joined(TestMesh mesh, const TestMesh& other);
+
 /// SplitMix64 random numbers: the same for a seed on every host and library.
 class TestRandom {
  public:

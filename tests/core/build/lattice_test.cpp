@@ -2,7 +2,6 @@
 #include <gridiron/build/lattice.h>
 
 #include "core/build/grid/built_image.h"
-#include "support/test_headers.h"
 #include "support/test_mesh.h"
 
 namespace gridiron::test {
@@ -28,8 +27,7 @@ const Placed kPlaces[] = {
 
 TEST(Lattice, HoldsEveryVertexWithinHalfAStepAsAFloat) {
   for (const Placed& place : kPlaces) {
-    TestMesh mesh = make_random_soup(400, 0.3f, 11);
-    mesh.transform(place.scale, place.offset);
+    const TestMesh mesh = moved(make_random_soup(400, 0.3f, 11), place.scale, place.offset);
     const Lattice lattice = lattice_of(mesh);
     EXPECT_GE(lattice.step, kLeastLatticeStep);
     int exponent = 0;
@@ -94,9 +92,8 @@ TEST(Lattice, OfBadMeshesIsRefused) {
 TEST(LatticeImage, IsTheSnappedMeshInHalfTheBytes) {
   int same_cells = 0, other_cells = 0;
   for (const Placed& place : kPlaces) {
-    TestMesh mesh = make_torus(24, 12, 1.0f, 0.4f);
-    mesh.append(make_random_soup(30, 0.2f, 5));
-    mesh.transform(place.scale, place.offset);
+    const TestMesh mesh =
+        moved(joined(make_torus(24, 12, 1.0f, 0.4f), make_random_soup(30, 0.2f, 5)), place.scale, place.offset);
     TestMesh snapped = mesh;
     snapped.snap();
     GridNeed plain_need{};
@@ -152,8 +149,7 @@ TEST(LatticeImage, OfMeshesAsWideAsCoordinatesGoIsValid) {
 
 // Mixed scales lose precision: a small object in a large room keeps few places.
 TEST(LatticeImage, LosesWhatIsSmallerThanAStep) {
-  TestMesh mesh = make_box({-100, -100, -100}, {100, 100, 100});
-  mesh.append(make_sphere(40, 80, 0.05f));
+  const TestMesh mesh = joined(make_box({-100, -100, -100}, {100, 100, 100}), make_sphere(40, 80, 0.05f));
   const Lattice lattice = lattice_of(mesh);
   EXPECT_EQ(lattice.step, 0x1p-8f);
   std::set<float> places;

@@ -1,7 +1,6 @@
 // Frame set-up: where planes and image may lie; frames with the effects of a scene, and those without.
 // SPDX-License-Identifier: Apache-2.0
 #include <gridiron/frame/frame_setup.h>
-#include <gtest/gtest.h>
 
 #include "core/build/grid/built_image.h"
 #include "core/scene/test_effects.h"

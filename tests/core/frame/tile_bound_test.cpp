@@ -9,16 +9,8 @@
 #include <gridiron/sim/sim_chip.h>
 #include <gridiron/sim/tile_cycles.h>
 #include <gridiron/sim/trace_packing.h>
-#include <gtest/gtest.h>
 
-#include <array>
-#include <cmath>
-#include <cstring>
 #include <initializer_list>
-#include <memory>
-#include <optional>
-#include <string>
-#include <vector>
 
 #include "core/scene/test_effects.h"
 #include "support/instrumented.h"
@@ -205,8 +197,7 @@ const Way kWays[] = {
 
 TEST(TileBound, NoTileOfAnyFrameExceedsIt) {
   // Cells with many triangles, few, and none; ties by the dozen; a table longer than the smallest store's.
-  TestMesh ties = make_sphere(6, 8, 0.8f);
-  ties.append(ties);
+  const TestMesh ties = joined(make_sphere(6, 8, 0.8f), make_sphere(6, 8, 0.8f));
   TestMesh room = make_box({-1, -1, -1}, {1, 1, 1});
   room.append(make_sliver_fan(300, 0.001f));
   const TestMesh soup = make_random_soup(1500, 0.2f, 5), torus = make_torus(40, 20, 0.7f, 0.25f);

@@ -1,45 +1,14 @@
 // Sections of effects in an image: every hostile word is refused or harmless. SPDX-License-Identifier: Apache-2.0
-#include <gridiron/image/scene_image.h>
-#include <gtest/gtest.h>
-
-#include <cstdint>
-#include <cstring>
-#include <functional>
-#include <limits>
-#include <string>
-#include <vector>
-
-#include "core/build/grid/built_image.h"
 #include "core/image/effects_oracle.h"
+#include "core/image/image_damage.h"
 #include "core/scene/test_effects.h"
 
 namespace gridiron::test {
 namespace {
 
-constexpr float kNan = std::numeric_limits<float>::quiet_NaN();
-constexpr float kInfinite = std::numeric_limits<float>::infinity();
-constexpr std::uint64_t kTableOffset = 128;
-
 BuiltImage build(const TestEffects& scene, TriangleFormat format = TriangleFormat::kVertices) {
   const EffectsView view = scene.view();
   return build_image(scene.mesh(), {4.0f, 2, format}, std::byte{0xCD}, &view);
-}
-
-template <class Record>
-void edit(LineBuffer& image, std::uint64_t offset, const std::function<void(Record&)>& change) {
-  auto record = read_record<Record>(image.bytes(), offset);
-  change(record);
-  ASSERT_LE(offset + sizeof(Record), image.bytes().size());
-  std::memcpy(image.bytes().data() + offset, &record, sizeof(Record));
-}
-
-void renew_check_value(LineBuffer& image) {
-  const std::uint64_t value = scene_image_check_value(image.bytes());
-  edit<ImageHeader>(image, 0, [&](ImageHeader& header) { header.check_value = value; });
-}
-
-std::uint64_t entry_offset(SectionKind kind) {
-  return kTableOffset + (static_cast<std::uint64_t>(kind) - 1) * sizeof(SectionEntry);
 }
 
 // --- Valid --------------------------------------------------------------------------------------------------------
@@ -77,23 +46,6 @@ TEST(EffectsOfAnImage, MaterialsPassHoweverTheirSharesRound) {
 
 // --- Errors by name -----------------------------------------------------------------------------------------------
 
-struct Damage {
-  const char* name;
-  const char* field;
-  std::function<std::uint64_t(LineBuffer&, const SceneImageView&)> apply;  // @returns the field's byte offset
-};
-
-#define DAMAGE_IN(label, field_name, record, member, base, statement)      \
-  Damage {                                                                 \
-    label, field_name, [](LineBuffer& image, const SceneImageView& view) { \
-      const std::uint64_t offset = (base);                                 \
-      edit<record>(image, offset, [&](record& r) {                         \
-        (void)view;                                                        \
-        statement;                                                         \
-      });                                                                  \
-      return offset + offsetof(record, member);                            \
-    }                                                                      \
-  }
 #define EFFECTS_DAMAGE(label, member, statement) \
   DAMAGE_IN(label, "effects." #member, EffectsRecord, member, view.effects_offset_bytes, statement)
 #define MATERIAL_DAMAGE(label, member, statement) \
@@ -107,8 +59,6 @@ struct Damage {
             statement)
 #define NORMAL_DAMAGE(label, member, statement) \
   DAMAGE_IN(label, "normal." #member, NormalRecord, member, view.effects.normals_offset_bytes + 48, statement)
-#define SECTION_DAMAGE(label, kind, member, statement) \
-  DAMAGE_IN(label, "section." #member, SectionEntry, member, entry_offset(kind), (void)view; statement)
 // One texel, its place in the section in bytes.
 #define TEXEL_DAMAGE(label, place, statement)                                        \
   Damage {                                                                           \
@@ -133,7 +83,7 @@ const Damage kDamages[] = {
     EFFECTS_DAMAGE("occlusion_off_with_radius", occlusion_radius, r.occlusion_samples = 0),
     EFFECTS_DAMAGE("occlusion_radius_zero", occlusion_radius, r.occlusion_radius = 0.0f),
     EFFECTS_DAMAGE("occlusion_radius_nan", occlusion_radius, r.occlusion_radius = kNan),
-    EFFECTS_DAMAGE("occlusion_radius_infinite", occlusion_radius, r.occlusion_radius = kInfinite),
+    EFFECTS_DAMAGE("occlusion_radius_infinite", occlusion_radius, r.occlusion_radius = kInfinity),
     EFFECTS_DAMAGE("background", background, r.background[2] = 1.25f),
     EFFECTS_DAMAGE("background_nan", background, r.background[0] = kNan),
     EFFECTS_DAMAGE("shadows", has_shadows, r.has_shadows = 2),
@@ -161,7 +111,7 @@ const Damage kDamages[] = {
     MATERIAL_DAMAGE("shine_above", shine, r.shine = 1.5e5f),
     MATERIAL_DAMAGE("shine_nan", shine, r.shine = kNan),
     MATERIAL_DAMAGE("index_small", index, r.index = 0.0625f),
-    MATERIAL_DAMAGE("index_great", index, r.index = kInfinite),
+    MATERIAL_DAMAGE("index_great", index, r.index = kInfinity),
     MATERIAL_DAMAGE("smooth_two", is_smooth, r.is_smooth = 2),
     MATERIAL_DAMAGE("material_reserved", reserved, r.reserved = 1),
 
@@ -184,7 +134,7 @@ const Damage kDamages[] = {
     AREA_DAMAGE("area_near", is_near, r.is_near = 1),
 
     SURFACE_DAMAGE("surface_nan", 3, v, r.v[2][2] = kNan),
-    SURFACE_DAMAGE("dropped_surface_infinite", 2, v, r.v[0][0] = kInfinite),
+    SURFACE_DAMAGE("dropped_surface_infinite", 2, v, r.v[0][0] = kInfinity),
     SURFACE_DAMAGE("surface_of_another_triangle", 1, v, r.v[1][1] += 0.5f),
     SURFACE_DAMAGE("surface_material", 0, material, r.material = 3),
     SURFACE_DAMAGE("surface_material_far", 0, material, r.material = 0xFFFFFFFFu),
@@ -199,7 +149,7 @@ const Damage kDamages[] = {
     NORMAL_DAMAGE("normal_nan", n, r.n[0][1] = kNan),
     NORMAL_DAMAGE("normal_reserved", reserved, r.reserved[2] = 1),
     TEXEL_DAMAGE("texel_negative", 0, r.x = -1.0f),
-    TEXEL_DAMAGE("texel_infinite", 12, r.y = kInfinite),
+    TEXEL_DAMAGE("texel_infinite", 12, r.y = kInfinity),
     TEXEL_DAMAGE("texel_nan_in_the_last_block", 768 * 5 + 96 + 12, r.z = kNan),
     TEXEL_DAMAGE("texel_of_the_apron", 768 + 96 * 7 + 12 * 7, r.z += 1.0f),
     SECTION_DAMAGE("effects_count", SectionKind::kEffects, element_count, r.element_count = 0),
@@ -214,15 +164,7 @@ const Damage kDamages[] = {
 class Damages : public ::testing::TestWithParam<Damage> {};
 
 TEST_P(Damages, AreNamedWithTheirPlace) {
-  BuiltImage built = build(all_effects());
-  ASSERT_FALSE(HasFailure());
-  const std::uint64_t expected = GetParam().apply(built.image, built.view);
-  renew_check_value(built.image);
-  SceneImageError error;
-  SceneImageView view{};
-  EXPECT_EQ(open_scene_image(built.image.bytes(), view, error), Status::kBadImage);
-  EXPECT_STREQ(error.field, GetParam().field);
-  EXPECT_EQ(error.byte_offset, expected);
+  expect_named(GetParam(), build(all_effects()));
 }
 INSTANTIATE_TEST_SUITE_P(All, Damages, ::testing::ValuesIn(kDamages), [](const auto& test) { return test.param.name; });
 
@@ -240,11 +182,7 @@ TEST(PartsOfEffects, StandAllOrNone) {
   for (int i = 0; i < 6; ++i) {
     BuiltImage built = build(all_effects());
     edit<SectionEntry>(built.image, entry_offset(kinds[i]), [](SectionEntry& entry) { entry.kind = 1000; });
-    renew_check_value(built.image);
-    SceneImageError error;
-    SceneImageView view{};
-    EXPECT_EQ(open_scene_image(built.image.bytes(), view, error), Status::kBadImage);
-    EXPECT_STREQ(error.field, fields[i]);
+    expect_refused(built.image, fields[i]);
   }
   // None of them: geometry alone.
   BuiltImage built = build(all_effects());
@@ -252,11 +190,10 @@ TEST(PartsOfEffects, StandAllOrNone) {
     edit<SectionEntry>(built.image, entry_offset(kind), [](SectionEntry& entry) { entry.kind += 1000; });
   }
   renew_check_value(built.image);
-  SceneImageError error;
-  SceneImageView view{};
-  EXPECT_EQ(open_scene_image(built.image.bytes(), view, error), Status::kOk);
-  EXPECT_FALSE(view.has_effects);
-  EXPECT_STREQ(broken_effects(built.image.bytes(), view), nullptr);
+  const OpenedImage opened = open_image(built.image.bytes());
+  EXPECT_EQ(opened.status, Status::kOk);
+  EXPECT_FALSE(opened.view.has_effects);
+  EXPECT_STREQ(broken_effects(built.image.bytes(), opened.view), nullptr);
 }
 
 TEST(PartsOfEffects, StandBesideTrianglesThatHaveVertices) {
@@ -271,12 +208,7 @@ TEST(PartsOfEffects, StandBesideTrianglesThatHaveVertices) {
   edit<GridRecord>(built.image, grid.offset_bytes, [](GridRecord& record) {
     record.triangle_format = static_cast<std::uint32_t>(TriangleFormat::kProjection);
   });
-  renew_check_value(built.image);
-  SceneImageError error;
-  SceneImageView view{};
-  EXPECT_EQ(open_scene_image(built.image.bytes(), view, error), Status::kBadImage);
-  EXPECT_STREQ(error.field, "section.kind");
-  EXPECT_EQ(error.byte_offset, entry_offset(SectionKind::kEffects));
+  expect_refused(built.image, "section.kind", entry_offset(SectionKind::kEffects));
 }
 
 // --- Every word -----------------------------------------------------------------------------------------------------
@@ -299,14 +231,13 @@ TEST_P(Words, ThatAreChangedAreRefusedOrHarmless) {
         const std::uint32_t changed = i < 32 ? word ^ (1u << i) : worst[i - 32];
         std::memcpy(bytes.data() + at, &changed, sizeof(changed));
         renew_check_value(built.image);
-        SceneImageError error;
-        SceneImageView view{};
-        if (open_scene_image(bytes, view, error) != Status::kOk) {
+        const OpenedImage image = open_image(bytes);
+        if (image.status != Status::kOk) {
           ++refused;
           continue;
         }
         ++opened;
-        ASSERT_STREQ(broken_effects(bytes, view), nullptr) << "word at " << at << ", " << std::hex << changed;
+        ASSERT_STREQ(broken_effects(bytes, image.view), nullptr) << "word at " << at << ", " << std::hex << changed;
       }
       std::memcpy(bytes.data() + at, &word, sizeof(word));
     }

@@ -1,55 +1,21 @@
 // Scene image: every hostile byte is refused or harmless. SPDX-License-Identifier: Apache-2.0
-#include <gridiron/image/scene_image.h>
-#include <gtest/gtest.h>
-
-#include <cstdint>
-#include <cstring>
-#include <functional>
-#include <limits>
-#include <string>
-#include <vector>
-
-#include "core/build/grid/built_image.h"
+#include "core/image/image_damage.h"
 #include "support/test_mesh.h"
 
 namespace gridiron::test {
 namespace {
 
-template <class Record>
-void write_record(LineBuffer& image, std::uint64_t offset, const Record& record) {
-  ASSERT_LE(offset + sizeof(Record), image.bytes().size());
-  std::memcpy(image.bytes().data() + offset, &record, sizeof(Record));
-}
-
-template <class Record>
-void edit(LineBuffer& image, std::uint64_t offset, const std::function<void(Record&)>& change) {
-  auto record = read_record<Record>(image.bytes(), offset);
-  change(record);
-  write_record(image, offset, record);
-}
-
-void renew_check_value(LineBuffer& image) {
-  const std::uint64_t value = scene_image_check_value(image.bytes());
-  edit<ImageHeader>(image, 0, [&](ImageHeader& header) { header.check_value = value; });
-}
-
 // Opens; where that succeeds, reads everything as the kernel would, with every read checked.
-Status open_and_read(const LineBuffer& image, SceneImageError& error) {
-  SceneImageView view{};
-  const Status status = open_scene_image(image.bytes(), view, error);
-  if (status != Status::kOk) {
-    EXPECT_NE(std::string(error.field), "");
-    EXPECT_EQ(error.status, status);
-    EXPECT_LE(error.byte_offset, image.bytes().size());
-    return status;
-  }
+OpenedImage open_and_read(const LineBuffer& image) {
+  const OpenedImage opened = open_image(image.bytes());
+  if (opened.status != Status::kOk) return opened;
   std::uint64_t references = 0;
-  for (const auto& ids : read_cells(image.bytes(), view)) {
+  for (const auto& ids : read_cells(image.bytes(), opened.view)) {
     references += ids.size();
-    for (const std::uint32_t id : ids) EXPECT_LT(id, view.header.triangle_count);
+    for (const std::uint32_t id : ids) EXPECT_LT(id, opened.view.header.triangle_count);
   }
-  EXPECT_EQ(references, view.grid.reference_count);
-  return status;
+  EXPECT_EQ(references, opened.view.grid.reference_count);
+  return opened;
 }
 
 BuiltImage small_image(TriangleFormat format, std::uint32_t macro_width = 2) {
@@ -66,10 +32,7 @@ TEST_P(Formats, EveryFlippedBitIsSeenByTheCheckValue) {
   for (std::size_t i = 0; i < built.image.bytes().size(); ++i) {
     for (int bit = 0; bit < 8; ++bit) {
       built.image.bytes()[i] ^= std::byte{1} << bit;
-      SceneImageError error;
-      SceneImageView view{};
-      ASSERT_EQ(open_scene_image(built.image.bytes(), view, error), Status::kBadImage)
-          << "byte " << i << " bit " << bit;
+      ASSERT_EQ(open_image(built.image.bytes()).status, Status::kBadImage) << "byte " << i << " bit " << bit;
       built.image.bytes()[i] ^= std::byte{1} << bit;
     }
   }
@@ -84,8 +47,7 @@ TEST_P(Formats, EveryChangedByteIsRefusedOrHarmless) {
       LineBuffer image = built.image;
       image.bytes()[i] ^= static_cast<std::byte>(change);
       renew_check_value(image);
-      SceneImageError error;
-      if (open_and_read(image, error) != Status::kOk) ++refused;
+      if (open_and_read(image).status != Status::kOk) ++refused;
       ASSERT_FALSE(HasFailure()) << "byte " << i << " change " << change;
     }
   }
@@ -98,10 +60,8 @@ INSTANTIATE_TEST_SUITE_P(All, Formats,
 
 TEST(SceneImage, EveryTruncationIsRefused) {
   const BuiltImage built = small_image(TriangleFormat::kVertices);
-  SceneImageError error;
-  SceneImageView view{};
   for (std::size_t bytes = 0; bytes < built.image.bytes().size(); ++bytes) {
-    ASSERT_EQ(open_scene_image(built.image.bytes().first(bytes), view, error), Status::kBadImage) << bytes;
+    ASSERT_EQ(open_image(built.image.bytes().first(bytes)).status, Status::kBadImage) << bytes;
   }
   // A prefix that claims to be whole, with a check value to match.
   for (std::size_t bytes = kLineBytes; bytes < built.image.bytes().size(); bytes += kLineBytes) {
@@ -109,7 +69,7 @@ TEST(SceneImage, EveryTruncationIsRefused) {
     std::memcpy(image.bytes().data(), built.image.bytes().data(), bytes);
     edit<ImageHeader>(image, 0, [&](ImageHeader& header) { header.image_bytes = bytes; });
     renew_check_value(image);
-    ASSERT_EQ(open_scene_image(image.bytes(), view, error), Status::kBadImage) << bytes;
+    ASSERT_EQ(open_image(image.bytes()).status, Status::kBadImage) << bytes;
   }
 }
 
@@ -117,19 +77,16 @@ TEST(SceneImage, BytesBehindTheImageDoNotMatter) {
   const BuiltImage built = small_image(TriangleFormat::kVertices);
   LineBuffer longer(built.image.bytes().size() + 333, std::byte{0x5A});
   std::memcpy(longer.bytes().data(), built.image.bytes().data(), built.image.bytes().size());
-  SceneImageError error;
-  SceneImageView view{};
-  EXPECT_EQ(open_scene_image(longer.bytes(), view, error), Status::kOk);
+  EXPECT_EQ(open_image(longer.bytes()).status, Status::kOk);
 }
 
 TEST(SceneImage, MisalignedIsRefused) {
   const BuiltImage built = small_image(TriangleFormat::kVertices);
   LineBuffer moved(built.image.bytes().size() + 64);
   std::memcpy(moved.bytes().data() + 64, built.image.bytes().data(), built.image.bytes().size());
-  SceneImageError error;
-  SceneImageView view{};
-  EXPECT_EQ(open_scene_image(moved.bytes().subspan(64), view, error), Status::kBadImage);
-  EXPECT_STREQ(error.field, "image");
+  const OpenedImage opened = open_image(moved.bytes().subspan(64));
+  EXPECT_EQ(opened.status, Status::kBadImage);
+  EXPECT_STREQ(opened.error.field, "image");
 }
 
 TEST(SceneImage, AFailureLeavesTheViewAlone) {
@@ -143,39 +100,9 @@ TEST(SceneImage, AFailureLeavesTheViewAlone) {
 
 // --- Errors by name -----------------------------------------------------------------------------------------------
 
-struct Damage {
-  const char* name;
-  const char* field;
-  std::function<std::uint64_t(LineBuffer&, const SceneImageView&)> apply;  // @returns the field's byte offset
-};
-
-constexpr std::uint64_t kTableOffset = 128;
-constexpr std::uint64_t kGridOffset = 256;
-
-std::uint64_t entry_offset(SectionKind kind) {
-  return kTableOffset + (static_cast<std::uint64_t>(kind) - 1) * sizeof(SectionEntry);
-}
-
-#define DAMAGE_IN(label, field_name, record, member, base, statement)      \
-  Damage {                                                                 \
-    label, field_name, [](LineBuffer& image, const SceneImageView& view) { \
-      const std::uint64_t offset = (base);                                 \
-      edit<record>(image, offset, [&](record& r) {                         \
-        (void)view;                                                        \
-        statement;                                                         \
-      });                                                                  \
-      return offset + offsetof(record, member);                            \
-    }                                                                      \
-  }
-#define HEADER_DAMAGE(label, member, statement) \
-  DAMAGE_IN(label, "header." #member, ImageHeader, member, 0 * view.grid.lambda == 0 ? 0u : 0u, statement)
+#define HEADER_DAMAGE(label, member, statement) DAMAGE_IN(label, "header." #member, ImageHeader, member, 0, statement)
 #define GRID_DAMAGE(label, member, statement) \
-  DAMAGE_IN(label, "grid." #member, GridRecord, member, 0 * view.grid.lambda == 0 ? kGridOffset : 0u, statement)
-#define SECTION_DAMAGE(label, kind, member, statement) \
-  DAMAGE_IN(label, "section." #member, SectionEntry, member, entry_offset(kind), statement)
-
-constexpr float kNan = std::numeric_limits<float>::quiet_NaN();
-constexpr float kInfinity = std::numeric_limits<float>::infinity();
+  DAMAGE_IN(label, "grid." #member, GridRecord, member, kGridOffset, statement)
 
 const Damage kDamages[] = {
     HEADER_DAMAGE("magic", magic, r.magic ^= 1),
@@ -254,24 +181,14 @@ const Damage kDamages[] = {
 class Damages : public ::testing::TestWithParam<Damage> {};
 
 TEST_P(Damages, AreNamedWithTheirPlace) {
-  BuiltImage built = small_image(TriangleFormat::kVertices);
-  ASSERT_FALSE(HasFailure());
-  const std::uint64_t expected = GetParam().apply(built.image, built.view);
-  renew_check_value(built.image);
-  SceneImageError error;
-  EXPECT_EQ(open_and_read(built.image, error), Status::kBadImage);
-  EXPECT_STREQ(error.field, GetParam().field);
-  EXPECT_EQ(error.byte_offset, expected);
+  expect_named(GetParam(), small_image(TriangleFormat::kVertices));
 }
 INSTANTIATE_TEST_SUITE_P(All, Damages, ::testing::ValuesIn(kDamages), [](const auto& test) { return test.param.name; });
 
 TEST(SceneImage, ProjectionAxisAboveTwoIsRefused) {
   BuiltImage built = small_image(TriangleFormat::kProjection);
   edit<ProjectionTriangle>(built.image, built.view.triangles_offset_bytes, [](auto& r) { r.axis_k = 3; });
-  renew_check_value(built.image);
-  SceneImageError error;
-  EXPECT_EQ(open_and_read(built.image, error), Status::kBadImage);
-  EXPECT_STREQ(error.field, "triangle.axis_k");
+  expect_refused(built.image, "triangle.axis_k");
 }
 
 TEST(SceneImage, LatticesWhoseValuesAreNoFloatsAreRefused) {
@@ -295,18 +212,12 @@ TEST(SceneImage, LatticesWhoseValuesAreNoFloatsAreRefused) {
   for (const Case& c : cases) {
     BuiltImage built = small_image(TriangleFormat::kLattice);
     edit<GridRecord>(built.image, kGridOffset, [&](GridRecord& grid) { c.damage(grid.lattice); });
-    renew_check_value(built.image);
-    SceneImageError error;
-    EXPECT_EQ(open_and_read(built.image, error), Status::kBadImage);
-    EXPECT_STREQ(error.field, c.field);
+    expect_refused(built.image, c.field);
   }
   BuiltImage built = small_image(TriangleFormat::kLattice);
   edit<LatticeTriangle>(built.image, built.view.triangles_offset_bytes + 24, [](auto& r) { r.reserved = 1; });
-  renew_check_value(built.image);
-  SceneImageError error;
-  EXPECT_EQ(open_and_read(built.image, error), Status::kBadImage);
-  EXPECT_STREQ(error.field, "triangle.reserved");
-  EXPECT_EQ(error.byte_offset, built.view.triangles_offset_bytes + 24 + offsetof(LatticeTriangle, reserved));
+  expect_refused(built.image, "triangle.reserved",
+                 built.view.triangles_offset_bytes + 24 + offsetof(LatticeTriangle, reserved));
 }
 
 TEST(SceneImage, CellsOnALatticeMustEndWhereTheNextOneBegins) {
@@ -327,11 +238,7 @@ TEST(SceneImage, CellsOnALatticeMustEndWhereTheNextOneBegins) {
     BuiltImage built = small_image(TriangleFormat::kLattice);
     const std::uint64_t place = built.view.cell_blocks_offset_bytes + c.bound * sizeof(CellBound);
     edit<CellBound>(built.image, place, [&](auto& r) { r.first_triangle = c.value; });
-    renew_check_value(built.image);
-    SceneImageError error;
-    EXPECT_EQ(open_and_read(built.image, error), Status::kBadImage) << c.what;
-    EXPECT_STREQ(error.field, c.field) << c.what;
-    EXPECT_EQ(error.byte_offset, place) << c.what;
+    expect_refused(built.image, c.field, place, c.what);
   }
 }
 
@@ -341,10 +248,7 @@ TEST(SceneImage, IdsMustAscendWithinACell) {
   BuiltImage built = build_image(mesh.view(), {0.01f, 1, TriangleFormat::kVertices});
   ASSERT_EQ(built.view.grid.reference_count, 2u);
   edit<VertexTriangle>(built.image, built.view.triangles_offset_bytes, [](auto& r) { r.triangle_id = 1; });
-  renew_check_value(built.image);
-  SceneImageError error;
-  EXPECT_EQ(open_and_read(built.image, error), Status::kBadImage);
-  EXPECT_STREQ(error.field, "triangle.triangle_id");
+  expect_refused(built.image, "triangle.triangle_id");
 }
 
 // --- Sections of kinds yet to come --------------------------------------------------------------------------------
@@ -369,19 +273,15 @@ LineBuffer with_unknown_section(const BuiltImage& built, std::uint64_t unknown_o
 
 TEST(SceneImage, UnknownSectionsAreSkipped) {
   const BuiltImage built = small_image(TriangleFormat::kVertices);
-  SceneImageError error;
-  EXPECT_EQ(open_and_read(with_unknown_section(built, kLineBytes), error), Status::kOk) << error.field;
+  const OpenedImage opened = open_and_read(with_unknown_section(built, kLineBytes));
+  EXPECT_EQ(opened.status, Status::kOk) << opened.error.field;
 }
 
 TEST(SceneImage, UnknownSectionsMayNotOverlapEither) {
   const BuiltImage built = small_image(TriangleFormat::kVertices);
-  SceneImageError error;
-  EXPECT_EQ(open_and_read(with_unknown_section(built, 2 * kLineBytes), error), Status::kBadImage) << "on the table";
-  EXPECT_STREQ(error.field, "section.offset_bytes");
-  EXPECT_EQ(open_and_read(with_unknown_section(built, 4 * kLineBytes), error), Status::kBadImage) << "on the triangles";
-  EXPECT_STREQ(error.field, "section.offset_bytes");
-  EXPECT_EQ(open_and_read(with_unknown_section(built, 0), error), Status::kBadImage) << "beyond the end";
-  EXPECT_STREQ(error.field, "section.section_bytes");
+  expect_refused(with_unknown_section(built, 2 * kLineBytes), "section.offset_bytes", {}, "on the table");
+  expect_refused(with_unknown_section(built, 4 * kLineBytes), "section.offset_bytes", {}, "on the triangles");
+  expect_refused(with_unknown_section(built, 0), "section.section_bytes", {}, "beyond the end");
 }
 
 // --- Layout ---------------------------------------------------------------------------------------------------------

@@ -1,43 +1,18 @@
 // Images that were changed and sealed again with a check value of their own: what SPEC.md forbids is refused, and every
 // bit that may change is one that SPEC.md leaves free. SPDX-License-Identifier: Apache-2.0
-#include <gridiron/image/scene_image.h>
-#include <gtest/gtest.h>
-
-#include <algorithm>
-#include <cmath>
-#include <cstring>
-#include <functional>
-#include <set>
-#include <string>
-#include <vector>
-
-#include "core/build/grid/built_image.h"
+#include "core/image/image_damage.h"
 #include "core/scene/test_effects.h"
 #include "support/test_mesh.h"
 
 namespace gridiron::test {
 namespace {
 
-void seal(std::span<std::byte> image) {
-  const std::uint64_t value = scene_image_check_value(image);
-  std::memcpy(image.data() + offsetof(ImageHeader, check_value), &value, sizeof(value));
-}
-
-template <class Record>
-void edit(BuiltImage& built, std::uint64_t offset, const std::function<void(Record&)>& change) {
-  auto record = read_record<Record>(built.image.bytes(), offset);
-  change(record);
-  std::memcpy(built.image.bytes().data() + offset, &record, sizeof(Record));
-}
-
 // Seals and opens. @returns the field that was refused, "" where the image opened.
 std::string refused_field(BuiltImage& built) {
-  seal(built.image.bytes());
-  SceneImageView view{};
-  SceneImageError error;
-  const Status status = open_scene_image(built.image.bytes(), view, error);
-  EXPECT_EQ(status == Status::kOk, error.field[0] == '\0');
-  return error.field;
+  renew_check_value(built.image);
+  const OpenedImage opened = open_image(built.image.bytes());
+  EXPECT_EQ(opened.status == Status::kOk, opened.error.field[0] == '\0');
+  return opened.error.field;
 }
 
 // --- Fields by name -------------------------------------------------------------------------------------------------
@@ -132,9 +107,8 @@ BuiltImage image_with_effects(TriangleFormat format, std::uint32_t environment_w
 
 // Makes the image again, of the triangles that it holds. @returns whether grid, cells and triangles are the same bytes.
 bool is_as_built(const BuiltImage& changed) {
-  SceneImageView view{};
-  SceneImageError error;
-  EXPECT_EQ(open_scene_image(changed.image.bytes(), view, error), Status::kOk);
+  const auto [status, error, view] = open_image(changed.image.bytes());
+  EXPECT_EQ(status, Status::kOk) << error.field;
   TestMesh mesh;
   mesh.vertices.resize(std::max(view.header.vertex_count % 64, 3u), Vec3(0));  // those that no triangle has
   mesh.triangles.resize(view.header.triangle_count, UVec3(0));                 // dropped
@@ -177,7 +151,7 @@ std::set<std::string> free_fields(BuiltImage& built) {
       bytes[i] ^= std::byte{1} << bit;
     }
   }
-  seal(bytes);
+  renew_check_value(built.image);
   return fields;
 }
 
@@ -237,12 +211,7 @@ TEST(SealedImage, PaddingIsNamedWithItsPlace) {
     for (std::uint64_t i = 0; i < built.image.bytes().size(); ++i) {
       if (field_at(built, i) != "padding") continue;
       built.image.bytes()[i] = std::byte{0x10};
-      seal(built.image.bytes());
-      SceneImageView view{};
-      SceneImageError error;
-      EXPECT_EQ(open_scene_image(built.image.bytes(), view, error), Status::kBadImage) << i;
-      EXPECT_STREQ(error.field, "padding");
-      EXPECT_EQ(error.byte_offset, i);
+      expect_refused(built.image, "padding", i);
       built.image.bytes()[i] = std::byte{0};
       ++paddings;
     }
@@ -259,13 +228,13 @@ TEST(SealedImage, CopiesOfATriangleAreEqualToTheSignOfAZero) {
   ASSERT_GT(copies, 8u);
   for (std::uint32_t copy = 0; copy < copies; ++copy) {
     const std::uint64_t place = built.view.triangles_offset_bytes + copy * sizeof(VertexTriangle);
-    edit<VertexTriangle>(built, place, [](VertexTriangle& r) { r.v[0][1] = -0.0f; });
+    edit<VertexTriangle>(built.image, place, [](VertexTriangle& r) { r.v[0][1] = -0.0f; });
     EXPECT_EQ(refused_field(built), "triangle.v") << copy;
-    edit<VertexTriangle>(built, place, [](VertexTriangle& r) { r.v[0][1] = 0.0f; });
+    edit<VertexTriangle>(built.image, place, [](VertexTriangle& r) { r.v[0][1] = 0.0f; });
   }
   for (std::uint32_t copy = 0; copy < copies; ++copy) {
     const std::uint64_t place = built.view.triangles_offset_bytes + copy * sizeof(VertexTriangle);
-    edit<VertexTriangle>(built, place, [](VertexTriangle& r) { r.v[0][1] = -0.0f; });
+    edit<VertexTriangle>(built.image, place, [](VertexTriangle& r) { r.v[0][1] = -0.0f; });
   }
   EXPECT_EQ(refused_field(built), "") << "all copies alike are another mesh";
 }
@@ -276,9 +245,9 @@ TEST(SealedImage, CopiesOfAProjectionAreEqual) {
   ASSERT_FALSE(HasFailure());
   for (std::uint32_t copy = 0; copy < built.view.grid.reference_count; ++copy) {
     const std::uint64_t place = built.view.triangles_offset_bytes + copy * sizeof(ProjectionTriangle);
-    edit<ProjectionTriangle>(built, place, [](ProjectionTriangle& r) { r.c_d += 1.0f; });
+    edit<ProjectionTriangle>(built.image, place, [](ProjectionTriangle& r) { r.c_d += 1.0f; });
     EXPECT_EQ(refused_field(built), "triangle.n_u") << copy;
-    edit<ProjectionTriangle>(built, place, [](ProjectionTriangle& r) { r.c_d -= 1.0f; });
+    edit<ProjectionTriangle>(built.image, place, [](ProjectionTriangle& r) { r.c_d -= 1.0f; });
   }
 }
 
@@ -303,16 +272,16 @@ TEST(SealedImage, BoundsLambdaAndCountsFollowFromTheTriangles) {
   };
   for (const Case& c : cases) {
     BuiltImage built = build_image(scattered_mesh().view(), {4.0f, 2, TriangleFormat::kVertices});
-    edit<GridRecord>(built, 256, c.damage);
+    edit<GridRecord>(built.image, 256, c.damage);
     EXPECT_EQ(refused_field(built), c.field);
   }
   // One cell: its grid also fits smaller bounds, so that only the triangles reveal the error.
   BuiltImage built = build_image(scattered_mesh().view(), {1e-6f, 1, TriangleFormat::kVertices});
-  edit<ImageHeader>(built, 0, [](ImageHeader& r) { r.dropped_triangle_count = 0; });
+  edit<ImageHeader>(built.image, 0, [](ImageHeader& r) { r.dropped_triangle_count = 0; });
   EXPECT_EQ(refused_field(built), "header.dropped_triangle_count");
-  edit<ImageHeader>(built, 0, [](ImageHeader& r) { r.dropped_triangle_count = 1; });
+  edit<ImageHeader>(built.image, 0, [](ImageHeader& r) { r.dropped_triangle_count = 1; });
   EXPECT_EQ(refused_field(built), "");
-  edit<ImageHeader>(built, 0, [](ImageHeader& r) { r.vertex_count = 2; });
+  edit<ImageHeader>(built.image, 0, [](ImageHeader& r) { r.vertex_count = 2; });
   EXPECT_EQ(refused_field(built), "header.vertex_count");
 }
 
@@ -325,8 +294,8 @@ TEST(SealedImage, ATriangleStandsInTheCellsThatItTouches) {
   const std::uint64_t first = built.view.triangles_offset_bytes;
   auto a = read_record<VertexTriangle>(built.image.bytes(), first);
   auto b = read_record<VertexTriangle>(built.image.bytes(), first + sizeof(VertexTriangle));
-  std::memcpy(built.image.bytes().data() + first, &b, sizeof(b));
-  std::memcpy(built.image.bytes().data() + first + sizeof(a), &a, sizeof(a));
+  write_record(built.image, first, b);
+  write_record(built.image, first + sizeof(a), a);
   EXPECT_EQ(refused_field(built), "grid.reference_count");
 }
 

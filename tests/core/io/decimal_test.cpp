@@ -2,8 +2,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <gridiron/io/decimal.h>
 
-#include <cstdio>
-
 #include "support/test_headers.h"
 
 namespace gridiron {

@@ -3,7 +3,6 @@
 #include <gridiron/io/ply_reader.h>
 
 #include "core/io/ply_run.h"
-#include "support/test_headers.h"
 
 namespace gridiron::test {
 namespace {

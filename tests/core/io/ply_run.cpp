@@ -2,10 +2,6 @@
 // Memory: std::vector, std::string. Threads: any. SPDX-License-Identifier: Apache-2.0
 #include "core/io/ply_run.h"
 
-#include <cstdio>
-
-#include "support/test_headers.h"
-
 namespace gridiron::test {
 
 Chunking chunks_of(std::size_t bytes) {

@@ -2,11 +2,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <gridiron/io/ply_reader.h>
 
-#include <cstdio>
-
 #include "core/io/ply_run.h"
 #include "support/scenes.h"
-#include "support/test_headers.h"
 
 namespace gridiron::test {
 namespace {

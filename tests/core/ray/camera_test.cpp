@@ -3,7 +3,6 @@
 #include <gridiron/ray/camera.h>
 
 #include "core/seeds.h"
-#include "support/test_headers.h"
 #include "support/test_mesh.h"
 
 namespace gridiron::test {

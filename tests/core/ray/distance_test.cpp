@@ -5,7 +5,6 @@
 #include "core/lane_types.h"
 #include "core/ray/packet_cases.h"
 #include "core/seeds.h"
-#include "support/test_headers.h"
 #include "support/test_mesh.h"
 
 namespace gridiron::test {

@@ -17,7 +17,6 @@
 #include "core/ray/exact_ray.h"
 #include "core/ray/packet_cases.h"
 #include "support/rational_vectors.h"
-#include "support/test_headers.h"
 
 namespace gridiron::test {
 namespace {

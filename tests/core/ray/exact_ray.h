@@ -7,7 +7,6 @@
 
 #include "core/ray/packet_cases.h"
 #include "numeric/exact_numbers.h"
-#include "support/test_headers.h"
 
 namespace gridiron::test {
 

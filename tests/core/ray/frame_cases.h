@@ -6,7 +6,6 @@
 #include <gridiron/base/records.h>
 
 #include "core/ray/packet_cases.h"
-#include "support/test_headers.h"
 #include "support/test_mesh.h"
 
 namespace gridiron::test {

@@ -6,7 +6,6 @@
 #include "core/seeds.h"
 #include "numeric/hard_rays.h"
 #include "numeric/oracle.h"
-#include "support/test_headers.h"
 #include "support/test_mesh.h"
 
 namespace gridiron::test {

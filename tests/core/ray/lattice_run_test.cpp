@@ -1,7 +1,6 @@
 // Runs of lattice triangles spread where they have arrived. SPDX-License-Identifier: Apache-2.0
 #include <gridiron/ray/lattice_run.h>
 
-#include "support/test_headers.h"
 #include "support/test_mesh.h"
 
 namespace gridiron::test {

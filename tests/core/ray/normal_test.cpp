@@ -4,7 +4,6 @@
 #include <boost/multiprecision/cpp_bin_float.hpp>
 
 #include "support/rational_vectors.h"
-#include "support/test_headers.h"
 #include "support/test_mesh.h"
 
 namespace gridiron::test {

@@ -6,7 +6,6 @@
 #include <gridiron/base/records.h>
 #include <gridiron/ray/packet.h>
 
-#include "support/test_headers.h"
 #include "support/test_mesh.h"
 
 namespace gridiron::test {

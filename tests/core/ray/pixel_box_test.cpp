@@ -10,7 +10,6 @@
 #include "core/ray/frame_cases.h"
 #include "core/ray/packet_cases.h"
 #include "core/seeds.h"
-#include "support/test_headers.h"
 #include "support/test_mesh.h"
 
 namespace gridiron::test {

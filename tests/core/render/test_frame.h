@@ -7,7 +7,6 @@
 
 #include "core/build/grid/built_image.h"
 #include "core/dma/test_platform.h"
-#include "support/test_headers.h"
 #include "support/test_mesh.h"
 
 namespace gridiron::test {

@@ -4,7 +4,6 @@
 
 #include "core/render/test_frame.h"
 #include "support/brute_force.h"
-#include "support/test_headers.h"
 #include "support/test_mesh.h"
 
 namespace gridiron::test {
@@ -34,9 +33,7 @@ struct TinyLayout {
 static_assert(kFitsArena<TinyLayout>);
 
 TestMesh make_scene() {
-  TestMesh mesh = make_sphere(12, 16, 0.8f);
-  mesh.append(make_random_soup(150, 0.4f, 4));
-  return mesh;
+  return joined(make_sphere(12, 16, 0.8f), make_random_soup(150, 0.4f, 4));
 }
 
 FrameSettings settings_of(std::uint32_t width, std::uint32_t height, std::uint32_t tile_width) {

@@ -3,7 +3,6 @@
 #include <gridiron/shade/color_sums.h>
 
 #include "core/seeds.h"
-#include "support/test_headers.h"
 #include "support/test_mesh.h"
 
 namespace gridiron::test {

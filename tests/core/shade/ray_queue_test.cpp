@@ -5,7 +5,6 @@
 
 #include "core/dma/test_platform.h"
 #include "core/seeds.h"
-#include "support/test_headers.h"
 #include "support/test_mesh.h"
 
 namespace gridiron::test {

@@ -1,8 +1,6 @@
 // Triangles of the reference: see the header. SPDX-License-Identifier: Apache-2.0
 #include "effects/reference/reference_geometry.h"
 
-#include <algorithm>
-#include <cmath>
 #include <glm/common.hpp>
 #include <glm/geometric.hpp>
 

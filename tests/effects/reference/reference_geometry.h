@@ -3,15 +3,11 @@
 // Memory: std::vector. Threads: any may ask. SPDX-License-Identifier: Apache-2.0
 #pragma once
 
-#include <cstddef>
-#include <cstdint>
 #include <glm/vec3.hpp>
-#include <limits>
-#include <optional>
-#include <vector>
 
 #include "scene_text/scene_description.h"
 #include "support/median_tree.h"
+#include "support/test_headers.h"
 
 namespace gridiron::test {
 

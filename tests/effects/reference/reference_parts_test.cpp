@@ -1,15 +1,8 @@
 // Parts of the reference: camera, samples, jitter, environment, and how rays find triangles.
 // SPDX-License-Identifier: Apache-2.0
 #include <gridiron/frame/frame_setup.h>
-#include <gtest/gtest.h>
 
-#include <algorithm>
-#include <cmath>
-#include <cstdint>
-#include <filesystem>
 #include <glm/geometric.hpp>
-#include <random>
-#include <set>
 
 #include "effects/effect_scene.h"
 #include "effects/reference/reference_renderer.h"

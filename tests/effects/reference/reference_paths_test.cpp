@@ -1,10 +1,5 @@
 // Paths of the reference against closed forms: mirrors, glass, total reflection, furnaces.
 // SPDX-License-Identifier: Apache-2.0
-#include <gtest/gtest.h>
-
-#include <algorithm>
-#include <cmath>
-#include <cstdint>
 #include <glm/geometric.hpp>
 
 #include "effects/effect_scene.h"

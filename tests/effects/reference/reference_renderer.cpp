@@ -1,9 +1,7 @@
 // Reference renderer: see the header. Headings are those of core/EFFECTS.md. SPDX-License-Identifier: Apache-2.0
 #include "effects/reference/reference_renderer.h"
 
-#include <algorithm>
 #include <atomic>
-#include <cmath>
 #include <glm/common.hpp>
 #include <glm/geometric.hpp>
 #include <numbers>

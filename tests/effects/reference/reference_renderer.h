@@ -3,13 +3,8 @@
 // Source: core/EFFECTS.md. Memory: std::vector. Threads: starts its own. SPDX-License-Identifier: Apache-2.0
 #pragma once
 
-#include <cstddef>
-#include <cstdint>
 #include <glm/vec2.hpp>
 #include <glm/vec3.hpp>
-#include <optional>
-#include <utility>
-#include <vector>
 
 #include "effects/reference/reference_geometry.h"
 #include "scene_text/scene_description.h"

@@ -1,9 +1,5 @@
 // The reference's light against closed forms: Lambert, highlights, shadows, area lights, occlusion, normals, samples.
 // SPDX-License-Identifier: Apache-2.0
-#include <gtest/gtest.h>
-
-#include <cmath>
-#include <cstdint>
 #include <glm/geometric.hpp>
 #include <numbers>
 

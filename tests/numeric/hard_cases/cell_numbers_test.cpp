@@ -12,7 +12,6 @@
 #include "numeric/hard_cases/shapes.h"
 #include "numeric/hard_cases/trial.h"
 #include "numeric/watertight/shot.h"
-#include "support/test_headers.h"
 
 namespace gridiron_cell {
 void shoot(const watertight::Shot& shot, std::uint32_t accuracy_value, watertight::Hits& hits);
@@ -79,7 +78,7 @@ TEST(HardCase40, CellNumbers) {
     for (const Solid& solid : solids()) {
       SCOPED_TRACE(std::string(solid.name) + " times " + std::to_string(scale));
       for (const Profile& profile : kProfiles) {
-        const Target target(moved(solid.mesh, scale, Vec3(0.0f)), {}, profile);
+        const Target target(moved(solid.mesh, scale), {}, profile);
         ASSERT_EQ(target.status(), Status::kOk);
         const Oracle oracle(target.mesh().view(), {.reading = Reading::kStandard});
         const ShotTriangles triangles(target);

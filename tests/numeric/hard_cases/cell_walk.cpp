@@ -1,11 +1,6 @@
 // Cell walks: see the header. SPDX-License-Identifier: Apache-2.0
 #include "numeric/hard_cases/cell_walk.h"
 
-#include <gtest/gtest.h>
-
-#include <algorithm>
-#include <memory>
-
 #include "core/ray/packet_cases.h"
 #include "numeric/hard_cases/full_grid_walk.h"
 

@@ -5,9 +5,6 @@
 
 #include <gridiron/base/records.h>
 
-#include <cstdint>
-#include <vector>
-
 #include "numeric/exact_cells.h"
 #include "numeric/hard_cases/trial.h"
 

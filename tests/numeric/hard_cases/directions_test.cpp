@@ -1,10 +1,5 @@
 // Directions, origins and limits of rays: zeros of either sign, denormal, of any length, not finite; on a triangle; as
 // far as the hit; packets of all kinds of rays. SPDX-License-Identifier: Apache-2.0
-#include <gtest/gtest.h>
-
-#include <cmath>
-#include <limits>
-
 #include "numeric/hard_cases/shapes.h"
 #include "numeric/hard_cases/trial.h"
 

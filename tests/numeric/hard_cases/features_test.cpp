@@ -1,7 +1,4 @@
 // Rays at features: through edges and vertices, along edges and in planes, edge-on. SPDX-License-Identifier: Apache-2.0
-#include <gtest/gtest.h>
-
-#include <cmath>
 #include <glm/geometric.hpp>
 
 #include "numeric/hard_cases/shapes.h"

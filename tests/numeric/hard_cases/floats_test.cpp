@@ -3,12 +3,7 @@
 #include <gridiron/base/lanes.h>
 #include <gridiron/build/lattice.h>
 #include <gridiron/ray/lattice_run.h>
-#include <gtest/gtest.h>
 
-#include <bit>
-#include <cmath>
-#include <cstring>
-#include <map>
 #include <tuple>
 
 #include "core/build/grid/built_image.h"

@@ -3,8 +3,6 @@
 
 #include <ios>
 
-#include "support/test_headers.h"
-
 namespace gridiron::test::hard {
 namespace {
 

@@ -2,11 +2,6 @@
 // Memory: borrows. Threads: one. SPDX-License-Identifier: Apache-2.0
 #pragma once
 
-#include <cstdint>
-#include <span>
-#include <string>
-#include <vector>
-
 #include "numeric/hard_cases/trial.h"
 
 namespace gridiron::test::hard {

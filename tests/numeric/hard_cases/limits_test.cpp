@@ -5,12 +5,6 @@
 #include <gridiron/image/scene_image.h>
 #include <gridiron/io/ply_reader.h>
 #include <gridiron/ray/intersect_standard.h>
-#include <gtest/gtest.h>
-
-#include <bit>
-#include <cstring>
-#include <limits>
-#include <string>
 
 #include "core/build/grid/built_image.h"
 #include "core/ray/packet_cases.h"

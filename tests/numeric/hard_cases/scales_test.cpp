@@ -1,9 +1,5 @@
 // Scales and places: tiny, huge, mixed, far from the origin, far from the eye, denormal.
 // SPDX-License-Identifier: Apache-2.0
-#include <gtest/gtest.h>
-
-#include <cmath>
-
 #include "numeric/hard_cases/cell_walk.h"
 #include "numeric/hard_cases/shapes.h"
 #include "numeric/hard_cases/trial.h"
@@ -23,8 +19,7 @@ Tally shoot_scaled(float scale, std::uint64_t seed) {
     const auto aim = all_of({salvo_at(middle, room, {{Aim::kEdge, Aim::kInside}, times(2), 24, 0}, seed),
                              salvo_at(middle, room, {{Aim::kVertex}, times(1), 48, 1}, seed + 1)});
     const auto of_length_one = [&](const TestMesh& mesh) { return with_unit_directions(aim(mesh)); };
-    tally += shoot(
-        {.mesh = moved(solid.mesh, scale, Vec3(0.0f)), .grade = Grade::kClosed, .aim = all_of({aim, of_length_one})});
+    tally += shoot({.mesh = moved(solid.mesh, scale), .grade = Grade::kClosed, .aim = all_of({aim, of_length_one})});
   }
   EXPECT_EQ(tally.hits, tally.rays);
   return tally;
@@ -44,10 +39,9 @@ TEST(HardCase09, ProductsOverflow) {
 
 // A sphere of two thousandths in a bowl of two thousand, from next to it and from the rim.
 TEST(HardCase10, TeapotInAStadium) {
-  TestMesh mesh = make_sphere(8, 10, 1e-3f);
-  mesh.transform(1.0f, {0, 300, 0});
+  TestMesh mesh = moved(make_sphere(8, 10, 1e-3f), 1.0f, {0, 300, 0});
   const auto small = static_cast<std::uint32_t>(mesh.vertices.size());
-  mesh.append(moved(make_height_field(20, 0.2f, 10), 1000.0f, Vec3(0.0f)));
+  mesh.append(moved(make_height_field(20, 0.2f, 10), 1000.0f));
   const auto add = [&](std::vector<Rays>& all, std::uint32_t i, TestRandom& random, const TestMesh& stored) {
     Rays near, far;
     near.origin = Vec3(0, 300, 0) + random_vec(random, i % 2 == 0 ? 5e-3f : 0.9e-3f);
@@ -88,8 +82,7 @@ TEST(HardCase11, FarFromTheOrigin) {
 }
 
 TEST(HardCase12, FarEye) {
-  TestMesh mesh = make_sphere(16, 20, 50.0f);
-  mesh.append(make_torus(20, 9, 90.0f, 20.0f));
+  const TestMesh mesh = joined(make_sphere(16, 20, 50.0f), make_torus(20, 9, 90.0f, 20.0f));
   const auto add = [](std::vector<Rays>& all, std::uint32_t i, TestRandom& random, const TestMesh& stored) {
     Vec3 away = random_vec(random, 1e7f);
     away[static_cast<int>(random.below(3))] = random.below(2) == 0 ? 1e7f : -1e7f;
@@ -112,7 +105,7 @@ TEST(HardCase12, FarEye) {
 // Meshes of denormal vertices, and of denormal thickness; with and without flushing the hits are those of the oracle,
 // which never flushes.
 TEST(HardCase33, DenormalVertices) {
-  const TestMesh cloud = moved(make_sphere(8, 10, 1.0f), 1e-42f, Vec3(0.0f));
+  const TestMesh cloud = moved(make_sphere(8, 10, 1.0f), 1e-42f);
   for (const bool flush : {false, true}) {
     SCOPED_TRACE(flush ? "denormals flushed" : "denormals kept");
     // Directions of 2^-60: distances are floats above the least normal one.

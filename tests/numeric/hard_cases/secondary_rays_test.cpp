@@ -2,9 +2,6 @@
 // face each other. SPDX-License-Identifier: Apache-2.0
 #include <gridiron/base/exact_sum.h>
 #include <gridiron/ray/secondary_origin.h>
-#include <gtest/gtest.h>
-
-#include <cmath>
 
 #include "core/ray/packet_cases.h"
 #include "numeric/hard_cases/shapes.h"

@@ -1,12 +1,6 @@
 // Shapes: see the header. SPDX-License-Identifier: Apache-2.0
 #include "numeric/hard_cases/shapes.h"
 
-#include <algorithm>
-#include <array>
-#include <cmath>
-#include <map>
-#include <utility>
-
 namespace gridiron::test::hard {
 namespace {
 
@@ -53,11 +47,6 @@ TestMesh on_lattice(TestMesh mesh, float step) {
   for (Vec3& p : mesh.vertices) {
     for (int axis = 0; axis < 3; ++axis) p[axis] = std::nearbyint(p[axis] / step) * step;
   }
-  return mesh;
-}
-
-TestMesh moved(TestMesh mesh, float scale, Vec3 offset) {
-  mesh.transform(scale, offset);
   return mesh;
 }
 

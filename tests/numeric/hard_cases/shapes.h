@@ -2,9 +2,6 @@
 // Memory: std::vector. Threads: any. SPDX-License-Identifier: Apache-2.0
 #pragma once
 
-#include <cstdint>
-#include <vector>
-
 #include "numeric/hard_cases/trial.h"
 #include "numeric/hard_rays.h"
 #include "support/test_mesh.h"
@@ -16,8 +13,6 @@ bool is_closed(const TestMesh& mesh);
 
 /// Rounds every vertex to multiples of `step`, a power of two.
 TestMesh on_lattice(TestMesh mesh, float step);
-
-TestMesh moved(TestMesh mesh, float scale, Vec3 offset);
 
 /// The surface of a heap of unit cubes in [0, n]^3: those around the middle, others by chance. Whole-numbered vertices.
 TestMesh make_cubes(std::uint32_t n, std::uint64_t seed);

@@ -5,12 +5,6 @@
 #include <gridiron/ray/camera.h>
 #include <gridiron/ray/intersect_projection.h>
 #include <gridiron/ray/intersect_standard.h>
-#include <gtest/gtest.h>
-
-#include <algorithm>
-#include <cmath>
-#include <cstring>
-#include <utility>
 
 #include "core/ray/packet_cases.h"
 #include "numeric/hard_cases/trial.h"

@@ -2,17 +2,6 @@
 #include "numeric/hard_cases/trial.h"
 
 #include <gridiron/build/grid/triangle_records.h>
-#include <gtest/gtest.h>
-
-#include <algorithm>
-#include <bit>
-#include <cmath>
-#include <cstdlib>
-#include <cstring>
-#include <fstream>
-#include <optional>
-#include <sstream>
-#include <string>
 
 #include "numeric/hard_cases/judge.h"
 #include "numeric/rounding_scope.h"

@@ -8,12 +8,6 @@
 #include <gridiron/build/grid/grid_builder.h>
 
 #include <cfenv>
-#include <cstdint>
-#include <functional>
-#include <iterator>
-#include <memory>
-#include <span>
-#include <vector>
 
 #include "numeric/oracle.h"
 #include "support/render_mesh.h"

@@ -1,10 +1,5 @@
 // Degenerate triangles: slivers, needles, no area, many in one place, a float apart.
 // SPDX-License-Identifier: Apache-2.0
-#include <gtest/gtest.h>
-
-#include <bit>
-#include <cmath>
-
 #include "numeric/hard_cases/shapes.h"
 #include "numeric/hard_cases/trial.h"
 

@@ -1,11 +1,6 @@
 // Aims: see the header. SPDX-License-Identifier: Apache-2.0
 #include "numeric/watertight/aims.h"
 
-#include <algorithm>
-#include <bit>
-#include <cmath>
-#include <limits>
-
 namespace gridiron::test {
 namespace {
 

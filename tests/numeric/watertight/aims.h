@@ -2,8 +2,6 @@
 // Memory: borrows the solid. Threads: any. SPDX-License-Identifier: Apache-2.0
 #pragma once
 
-#include <cstdint>
-
 #include "numeric/watertight/placed_solid.h"
 #include "numeric/watertight/shot.h"
 #include "support/test_mesh.h"

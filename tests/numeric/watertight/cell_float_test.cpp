@@ -7,7 +7,6 @@
 #include "core/seeds.h"
 #include "numeric/watertight/cell/cell_vector.h"
 #include "numeric/watertight/machines.h"
-#include "support/test_headers.h"
 #include "support/test_mesh.h"
 
 namespace gridiron::test {

@@ -7,16 +7,10 @@
 #include <gridiron/image/scene_image.h>
 #include <gridiron/sim/sim_memory.h>
 
-#include <algorithm>
 #include <atomic>
-#include <bit>
-#include <cmath>
-#include <cstring>
 #include <exception>
-#include <memory>
 #include <mutex>
 #include <new>
-#include <sstream>
 #include <stdexcept>
 #include <thread>
 

@@ -5,9 +5,6 @@
 
 #include <gridiron/sim/sim_chip.h>
 
-#include <span>
-#include <vector>
-
 #include "numeric/watertight/placed_solid.h"
 #include "numeric/watertight/tally.h"
 

@@ -1,9 +1,5 @@
 // Watertightness through the grid: of frames from inside closed meshes no pixel is left without a hit, whatever the
 // mesh's place and size, the rounding, the packets and lanes. SPDX-License-Identifier: Apache-2.0
-#include <gtest/gtest.h>
-
-#include <vector>
-
 #include "numeric/watertight/grid_shots.h"
 #include "numeric/watertight/tally.h"
 

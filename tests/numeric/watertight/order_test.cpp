@@ -6,7 +6,6 @@
 #include "numeric/watertight/aims.h"
 #include "numeric/watertight/machines.h"
 #include "numeric/watertight/placed_solid.h"
-#include "support/test_headers.h"
 
 namespace gridiron::test {
 namespace {

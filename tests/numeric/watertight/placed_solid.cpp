@@ -5,9 +5,6 @@
 #include <gridiron/build/grid/triangle_records.h>
 #include <gridiron/build/lattice.h>
 
-#include <algorithm>
-#include <cmath>
-#include <cstring>
 #include <glm/common.hpp>
 #include <glm/geometric.hpp>
 #include <stdexcept>

@@ -4,9 +4,6 @@
 
 #include <gridiron/base/records.h>
 
-#include <cstdint>
-#include <vector>
-
 #include "numeric/oracle.h"
 #include "numeric/watertight/candidate_tree.h"
 #include "numeric/watertight/shot.h"

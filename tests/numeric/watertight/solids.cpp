@@ -1,11 +1,6 @@
 // Closed meshes: see the header. SPDX-License-Identifier: Apache-2.0
 #include "numeric/watertight/solids.h"
 
-#include <algorithm>
-#include <cmath>
-#include <cstdlib>
-#include <utility>
-
 #include "support/ply_load.h"
 
 namespace gridiron::test {

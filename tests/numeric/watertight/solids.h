@@ -2,12 +2,7 @@
 // Memory: std::vector. Threads: any. SPDX-License-Identifier: Apache-2.0
 #pragma once
 
-#include <cstddef>
-#include <cstdint>
-#include <filesystem>
 #include <ostream>
-#include <string>
-#include <vector>
 
 #include "support/test_mesh.h"
 

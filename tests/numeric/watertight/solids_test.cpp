@@ -6,7 +6,6 @@
 #include "numeric/hard_rays.h"
 #include "numeric/watertight/aims.h"
 #include "numeric/watertight/placed_solid.h"
-#include "support/test_headers.h"
 
 namespace gridiron::test {
 namespace {

@@ -1,12 +1,8 @@
 // Tallies: see the header. SPDX-License-Identifier: Apache-2.0
 #include "numeric/watertight/tally.h"
 
-#include <algorithm>
 #include <atomic>
-#include <bit>
-#include <cstring>
 #include <mutex>
-#include <sstream>
 #include <thread>
 
 namespace gridiron::test {

@@ -2,12 +2,6 @@
 // Memory: std::vector. Threads: starts its own. SPDX-License-Identifier: Apache-2.0
 #pragma once
 
-#include <cstdint>
-#include <functional>
-#include <span>
-#include <string>
-#include <vector>
-
 #include "numeric/watertight/aims.h"
 #include "numeric/watertight/machines.h"
 #include "numeric/watertight/placed_solid.h"

@@ -3,16 +3,8 @@
 // Memory: some 400 bytes a triangle, twice. Threads: as many as asked for. SPDX-License-Identifier: Apache-2.0
 #include <CLI/CLI.hpp>
 #include <chrono>
-#include <cstdint>
-#include <cstdio>
-#include <cstdlib>
-#include <fstream>
 #include <iostream>
-#include <memory>
-#include <sstream>
 #include <stdexcept>
-#include <string>
-#include <vector>
 
 #include "numeric/watertight/grid_shots.h"
 #include "numeric/watertight/tally.h"

@@ -1,10 +1,5 @@
 // Watertightness: of rays from inside closed meshes none leaves, whatever the mesh's place and size, the build and the
 // rules of floating point; and all hit the same triangle at the same distance. SPDX-License-Identifier: Apache-2.0
-#include <gtest/gtest.h>
-
-#include <cstdio>
-#include <memory>
-
 #include "numeric/watertight/tally.h"
 #include "support/scenes.h"
 

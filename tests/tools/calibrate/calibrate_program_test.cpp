@@ -3,7 +3,6 @@
 
 #include "../gridiron/run_program.h"
 #include "../gridiron/temporary_folder.h"
-#include "support/test_headers.h"
 
 namespace gridiron::test {
 namespace {

@@ -2,16 +2,11 @@
 #include <gridiron/bvh/bvh_costs.h>
 #include <gridiron/bvh/bvh_engine_work.h>
 #include <gridiron/sim/work_costs.h>
-#include <gtest/gtest.h>
 #include <report/report.h>
 
-#include <cstdio>
-#include <fstream>
-#include <iterator>
-#include <map>
 #include <regex>
-#include <set>
-#include <string>
+
+#include "support/test_headers.h"
 
 namespace gridiron::calibrate {
 namespace {

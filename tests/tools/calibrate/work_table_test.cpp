@@ -4,12 +4,9 @@
 #include <gridiron/sim/instruction_costs.h>
 #include <gridiron/sim/machine_profile.h>
 #include <gridiron/sim/work_costs.h>
-#include <gtest/gtest.h>
 #include <work_table.h>
 
-#include <array>
-#include <cstddef>
-#include <string>
+#include "support/test_headers.h"
 
 namespace gridiron::calibrate {
 namespace {

@@ -4,7 +4,6 @@
 #include "experiment/table.h"
 #include "gridiron/device/accuracies.h"
 #include "markup.h"
-#include "support/test_headers.h"
 #include "two_runs.h"
 
 namespace gridiron::test {

@@ -4,7 +4,6 @@
 #include "../gridiron/temporary_folder.h"
 #include "base/failure.h"
 #include "markup.h"
-#include "support/test_headers.h"
 
 namespace gridiron::test {
 namespace {

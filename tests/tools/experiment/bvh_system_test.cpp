@@ -10,7 +10,6 @@
 
 #include "../gridiron/failure_of.h"
 #include "files/interrupt.h"
-#include "support/test_headers.h"
 
 namespace gridiron::test {
 namespace {

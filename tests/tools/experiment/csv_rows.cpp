@@ -1,10 +1,6 @@
 // CSV rows. SPDX-License-Identifier: Apache-2.0
 #include "csv_rows.h"
 
-#include <gtest/gtest.h>
-
-#include <algorithm>
-
 #include "../gridiron/temporary_folder.h"
 
 namespace gridiron::test {

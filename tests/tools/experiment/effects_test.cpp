@@ -5,7 +5,6 @@
 #include "experiment/effect_scenes.h"
 #include "experiment/experiments.h"
 #include "markup.h"
-#include "support/test_headers.h"
 #include "two_runs.h"
 
 namespace gridiron::test {

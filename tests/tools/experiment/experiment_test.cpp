@@ -7,7 +7,6 @@
 #include "experiment/experiments.h"
 #include "experiment/sections.h"
 #include "markup.h"
-#include "support/test_headers.h"
 #include "two_runs.h"
 
 namespace gridiron::test {

@@ -1,10 +1,9 @@
 // Markup. SPDX-License-Identifier: Apache-2.0
 #include "markup.h"
 
-#include <gtest/gtest.h>
-
 #include <cctype>
-#include <cstddef>
+
+#include "support/test_headers.h"
 
 namespace gridiron::test {
 namespace {

@@ -1,10 +1,6 @@
 // Two runs of an experiment. SPDX-License-Identifier: Apache-2.0
 #include "two_runs.h"
 
-#include <gtest/gtest.h>
-
-#include <algorithm>
-
 #include "markup.h"
 
 namespace gridiron::test {

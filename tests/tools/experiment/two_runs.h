@@ -2,12 +2,6 @@
 // Memory: strings. Threads: one. SPDX-License-Identifier: Apache-2.0
 #pragma once
 
-#include <filesystem>
-#include <functional>
-#include <set>
-#include <string>
-#include <vector>
-
 #include "../gridiron/run_program.h"
 
 namespace gridiron::test {

@@ -3,7 +3,6 @@
 
 #include "../gridiron/temporary_folder.h"
 #include "base/failure.h"
-#include "support/test_headers.h"
 #include "support/test_mesh.h"
 
 namespace gridiron::test {

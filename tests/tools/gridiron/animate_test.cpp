@@ -2,13 +2,11 @@
 #include <gridiron/build/grid/grid_builder.h>
 #include <gridiron/sim/build_work.h>
 
-#include <cstdio>
 #include <nlohmann/json.hpp>
 
 #include "gridiron/scene/scene_points.h"
 #include "gridiron/scene/view.h"
 #include "run_program.h"
-#include "support/test_headers.h"
 #include "temporary_folder.h"
 
 namespace gridiron::test {
@@ -16,11 +14,6 @@ namespace {
 
 using Json = nlohmann::json;
 using Row = std::map<std::string, std::string>;
-
-TestMesh moved(TestMesh mesh, Vec3 by) {
-  for (Vec3& vertex : mesh.vertices) vertex += by;
-  return mesh;
-}
 
 std::vector<Row> read_table(const std::filesystem::path& path) {
   std::istringstream text(read_file(path));
@@ -52,7 +45,7 @@ TEST(Animate, APictureAndARowForEachMesh) {
   const TemporaryFolder folder;
   const TestMesh ball = make_sphere(10, 14, 1.0f);
   std::filesystem::create_directory(folder.path("in"));
-  folder.write_ply("in/b.ply", moved(ball, Vec3(2, 0, 0)));
+  folder.write_ply("in/b.ply", moved(ball, 1.0f, Vec3(2, 0, 0)));
   folder.write_ply("in/a.ply", ball);
   folder.write("in/notes.txt", "no mesh\n");
   folder.write_ply("last.ply", make_torus(24, 16, 1.0f, 0.4f));
@@ -79,11 +72,10 @@ TEST(Animate, APictureAndARowForEachMesh) {
 // The same numbers as of one frame alone, seen from where all of them are seen.
 TEST(Animate, FramesAreThoseOfRender) {
   const TemporaryFolder folder;
-  const TestMesh first = make_sphere(10, 14, 1.0f), second = moved(first, Vec3(3, 1, 0));
+  const TestMesh first = make_sphere(10, 14, 1.0f), second = moved(first, 1.0f, Vec3(3, 1, 0));
   folder.write_ply("a.ply", first);
   folder.write_ply("b.ply", second);
-  TestMesh both = first;
-  both.append(second);
+  const TestMesh both = joined(first, second);
   folder.write_ply("both.ply", both);
   const auto common = [](const char* input) {
     return Words{"render", input, "--size", "48x32", "--report", "r.json", "-o", "a.png"};
@@ -117,7 +109,7 @@ TEST(Animate, FramesAreThoseOfRender) {
 
 TEST(Animate, SaysWhichFrameShowsNothing) {
   const TemporaryFolder folder("a.ply", make_sphere(10, 14, 1.0f));
-  folder.write_ply("b.ply", moved(make_sphere(10, 14, 1.0f), Vec3(0, 0, 40)));
+  folder.write_ply("b.ply", moved(make_sphere(10, 14, 1.0f), 1.0f, Vec3(0, 0, 40)));
   const Words common = {"animate", "a.ply", "b.ply", "-o", "out", "--size", "48x32"};
   EXPECT_EQ(run_program(folder.folder(), common + Words{"--eye", "0,0,9", "--at", "0,0,0"}).err,
             "b.ply: note: no pixel shows the scene: it lies behind the camera\n");

@@ -1,10 +1,6 @@
 // AtomicFile: whole or not at all. SPDX-License-Identifier: Apache-2.0
 #include "files/atomic_file.h"
 
-#include <gtest/gtest.h>
-
-#include <functional>
-
 #include "base/failure.h"
 #include "files/command_files.h"
 #include "temporary_folder.h"

@@ -1,6 +1,4 @@
 // Camera files: strict, every complaint with its line. SPDX-License-Identifier: Apache-2.0
-#include <gtest/gtest.h>
-
 #include "failure_of.h"
 #include "gridiron/scene/view.h"
 #include "temporary_folder.h"

@@ -1,9 +1,7 @@
 // Effect names: each effect has its own, and renderers are named as in C++. SPDX-License-Identifier: Apache-2.0
 #include "gridiron/scene/effect_names.h"
 
-#include <gtest/gtest.h>
-
-#include <set>
+#include "support/test_headers.h"
 
 namespace gridiron::test {
 namespace {

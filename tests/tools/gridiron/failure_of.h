@@ -1,11 +1,8 @@
 // What a call complains of. Memory: a string. Threads: any. SPDX-License-Identifier: Apache-2.0
 #pragma once
 
-#include <gtest/gtest.h>
-
-#include <string>
-
 #include "base/failure.h"
+#include "support/test_headers.h"
 
 namespace gridiron::test {
 

@@ -12,7 +12,6 @@
 #include "gridiron/scene/view.h"
 #include "support/render_mesh.h"
 #include "support/scenes.h"
-#include "support/test_headers.h"
 #include "support/test_mesh.h"
 
 namespace gridiron::test {
@@ -35,16 +34,6 @@ constexpr Shape kShapes[] = {{"1:1", 96, 96}, {"16:9", 128, 72}, {"9:21", 54, 12
 const Vec3 kUps[] = {{0, 1, 0}, {0, 0, 1}};
 
 // --- Models -------------------------------------------------------------------------------------------------------
-
-TestMesh moved(TestMesh mesh, float scale, Vec3 offset = Vec3(0)) {
-  mesh.transform(scale, offset);
-  return mesh;
-}
-
-TestMesh joined(TestMesh mesh, const std::vector<TestMesh>& others) {
-  for (const TestMesh& other : others) mesh.append(other);
-  return mesh;
-}
 
 TestMesh made(const scene_makers::Mesh& source) {
   TestMesh mesh;
@@ -101,12 +90,12 @@ std::vector<Model> generated_models() {
       {"torus knot", made(scene_makers::make_torus_knot(6000))},
       {"helix", make_helix()},
       {"stairs", make_stairs()},
-      {"L", joined(make_box({0, 0, 0}, {1, 8, 1}), {make_box({0, 0, 0}, {5, 1, 1})})},
-      {"deep L", joined(make_box({0, 0, 0}, {1, 8, 1}), {make_box({0, 0, 0}, {1, 1, 9})})},
+      {"L", joined(make_box({0, 0, 0}, {1, 8, 1}), make_box({0, 0, 0}, {5, 1, 1}))},
+      {"deep L", joined(make_box({0, 0, 0}, {1, 8, 1}), make_box({0, 0, 0}, {1, 1, 9}))},
       {"terrain", make_height_field(40, 0.2f, 3)},
       {"random triangles", make_random_soup(800, 0.1f, 5)},
-      {"two distant balls", joined(ball, {moved(ball, 1.0f, {900, 40, -700})})},
-      {"large and small ball", joined(ball, {moved(ball, 0.01f, {3, 0, 6})})},
+      {"two distant balls", joined(ball, moved(ball, 1.0f, {900, 40, -700}))},
+      {"large and small ball", joined(ball, moved(ball, 0.01f, {3, 0, 6}))},
       {"tiny", moved(ball, 1e-30f)},
       {"least floats", moved(ball, 1e-41f)},
       {"huge", moved(ball, 1e30f)},

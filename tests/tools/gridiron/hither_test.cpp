@@ -1,10 +1,6 @@
 // Hither plane: what is in front of it and seen. SPDX-License-Identifier: Apache-2.0
 #include "gridiron/scene/hither.h"
 
-#include <gtest/gtest.h>
-
-#include <cmath>
-
 #include "support/test_mesh.h"
 
 namespace gridiron::test {

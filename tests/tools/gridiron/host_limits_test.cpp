@@ -1,5 +1,4 @@
 // The program on a host that has too few threads or too little memory. SPDX-License-Identifier: Apache-2.0
-#include <gtest/gtest.h>
 #include <sys/resource.h>
 
 #include "run_program.h"

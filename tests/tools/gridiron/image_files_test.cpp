@@ -3,7 +3,6 @@
 
 #include "files/png_file.h"
 #include "support/picture.h"
-#include "support/test_headers.h"
 #include "support/test_mesh.h"
 #include "temporary_folder.h"
 

@@ -1,6 +1,5 @@
 // info: counts, memory, store map. SPDX-License-Identifier: Apache-2.0
 #include <gridiron/build/grid/grid_builder.h>
-#include <gtest/gtest.h>
 
 #include <nlohmann/json.hpp>
 

@@ -3,7 +3,6 @@
 #include "host_device.h"
 #include "run_program.h"
 #include "support/sanitizers.h"
-#include "support/test_headers.h"
 #include "temporary_folder.h"
 
 namespace gridiron::test {

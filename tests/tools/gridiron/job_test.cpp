@@ -8,7 +8,6 @@
 #include "gridiron/job/job_file.h"
 #include "host_device.h"
 #include "run_program.h"
-#include "support/test_headers.h"
 #include "temporary_folder.h"
 
 namespace gridiron::test {

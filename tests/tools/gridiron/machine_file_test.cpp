@@ -2,8 +2,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "gridiron/device/machine_file.h"
 
-#include <gtest/gtest.h>
-
 #include "failure_of.h"
 #include "temporary_folder.h"
 

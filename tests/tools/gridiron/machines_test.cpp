@@ -10,7 +10,6 @@
 
 #include "gridiron/device/machine_keys.h"
 #include "run_program.h"
-#include "support/test_headers.h"
 #include "temporary_folder.h"
 
 namespace gridiron::test {

@@ -1,6 +1,5 @@
 // Outputs of the program: nothing is lost, and pipes are outputs too. SPDX-License-Identifier: Apache-2.0
 #include <fcntl.h>
-#include <gtest/gtest.h>
 #include <signal.h>
 #include <stdlib.h>
 #include <sys/stat.h>

@@ -2,10 +2,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "files/overdue_exit.h"
 
-#include <gtest/gtest.h>
 #include <unistd.h>
 
-#include <cstdio>
 #include <thread>
 
 #include "temporary_folder.h"

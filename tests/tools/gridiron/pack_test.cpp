@@ -1,6 +1,4 @@
 // pack: scene images. SPDX-License-Identifier: Apache-2.0
-#include <gtest/gtest.h>
-
 #include "base/words.h"
 #include "run_program.h"
 #include "temporary_folder.h"

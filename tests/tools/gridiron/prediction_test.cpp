@@ -4,9 +4,8 @@
 
 #include <gridiron/sim/busy_cycles.h>
 #include <gridiron/sim/trace_packing.h>
-#include <gtest/gtest.h>
 
-#include <array>
+#include "support/test_headers.h"
 
 namespace gridiron::tool {
 namespace {

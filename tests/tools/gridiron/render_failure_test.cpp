@@ -1,6 +1,5 @@
 // render that cannot: exit codes, words, and no file left behind. SPDX-License-Identifier: Apache-2.0
 #include <fcntl.h>
-#include <gtest/gtest.h>
 #include <signal.h>
 #include <sys/stat.h>
 #include <unistd.h>

@@ -2,10 +2,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "gridiron/frame/render_plan.h"
 
-#include <gtest/gtest.h>
-
-#include <string>
-
 #include "failure_of.h"
 #include "gridiron/info/info_plan.h"
 

@@ -8,7 +8,6 @@
 #include "run_program.h"
 #include "support/picture.h"
 #include "support/render_mesh.h"
-#include "support/test_headers.h"
 #include "temporary_folder.h"
 
 namespace gridiron::test {

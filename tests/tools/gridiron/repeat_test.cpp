@@ -1,11 +1,8 @@
 // Repeated frames: planes that differ are no success. SPDX-License-Identifier: Apache-2.0
-#include <gtest/gtest.h>
-
-#include <string>
-
 #include "base/failure.h"
 #include "base/stopwatch.h"
 #include "gridiron/frame/frame_pictures.h"
+#include "support/test_headers.h"
 
 namespace gridiron::tool {
 namespace {

@@ -9,7 +9,6 @@
 
 #include <thread>
 
-#include "support/test_headers.h"
 #include "temporary_folder.h"
 
 namespace gridiron::test {

@@ -5,9 +5,6 @@
 #include <sys/types.h>
 
 #include <chrono>
-#include <filesystem>
-#include <string>
-#include <vector>
 
 #include "temporary_folder.h"
 

@@ -1,8 +1,6 @@
 // Scene input: which grid a mesh gets in a given main memory. SPDX-License-Identifier: Apache-2.0
 #include "gridiron/scene/scene_input.h"
 
-#include <gtest/gtest.h>
-
 #include "failure_of.h"
 #include "temporary_folder.h"
 

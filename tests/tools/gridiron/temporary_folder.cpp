@@ -3,10 +3,6 @@
 
 #include <stdlib.h>
 
-#include <iterator>
-
-#include "support/test_headers.h"
-
 namespace gridiron::test {
 
 namespace fs = std::filesystem;

@@ -2,10 +2,6 @@
 // Memory: owns the folder on disk. Threads: one. SPDX-License-Identifier: Apache-2.0
 #pragma once
 
-#include <filesystem>
-#include <string>
-#include <vector>
-
 #include "support/test_mesh.h"
 
 namespace gridiron::test {

@@ -6,7 +6,6 @@
 
 #include "run_program.h"
 #include "scene_makers/procedural.h"
-#include "support/test_headers.h"
 #include "temporary_folder.h"
 
 namespace gridiron::test {

@@ -1,10 +1,8 @@
 // The command line: what is refused, with which exit code and words. SPDX-License-Identifier: Apache-2.0
-#include <iterator>
 #include <nlohmann/json.hpp>
 #include <regex>
 
 #include "run_program.h"
-#include "support/test_headers.h"
 #include "temporary_folder.h"
 
 namespace gridiron::test {

@@ -1,8 +1,6 @@
 // View: given parts, and defaults. SPDX-License-Identifier: Apache-2.0
 #include "gridiron/scene/view.h"
 
-#include <gtest/gtest.h>
-
 #include "failure_of.h"
 
 namespace gridiron::test {

@@ -5,7 +5,6 @@
 #include <numbers>
 
 #include "check_scene.h"
-#include "support/test_headers.h"
 #include "support/test_mesh.h"
 
 namespace gridiron::test {

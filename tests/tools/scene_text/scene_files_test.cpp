@@ -1,7 +1,5 @@
 // The scenes of the repository: readable, sound, and each calls for what it says.
 // Memory: std::vector. Threads: one. SPDX-License-Identifier: Apache-2.0
-#include <iterator>
-
 #include "check_scene.h"
 #include "scene_makers/procedural.h"
 #include "support/test_headers.h"

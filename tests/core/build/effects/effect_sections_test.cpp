@@ -6,7 +6,6 @@
 
 #include "core/build/grid/built_image.h"
 #include "core/scene/test_effects.h"
-#include "support/test_headers.h"
 
 namespace gridiron::test {
 namespace {

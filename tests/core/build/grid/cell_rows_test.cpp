@@ -2,7 +2,6 @@
 #include <gridiron/build/grid/cell_rows.h>
 
 #include "core/build/grid/exact_overlap.h"
-#include "support/test_headers.h"
 #include "support/test_mesh.h"
 
 namespace gridiron::test {

@@ -5,7 +5,6 @@
 #include "core/build/grid/exact_overlap.h"
 #include "support/ply_load.h"
 #include "support/scenes.h"
-#include "support/test_headers.h"
 #include "support/test_mesh.h"
 
 namespace gridiron::test {
@@ -23,16 +22,6 @@ struct MeshCase {
   float lambda = 4.0f;
   std::uint32_t macro_width = 6;
 };
-
-TestMesh scaled(TestMesh mesh, float scale, Vec3 offset) {
-  mesh.transform(scale, offset);
-  return mesh;
-}
-
-TestMesh with(TestMesh mesh, const TestMesh& other) {
-  mesh.append(other);
-  return mesh;
-}
 
 class MeshCells : public ::testing::TestWithParam<MeshCase> {};
 
@@ -85,15 +74,15 @@ const MeshCase kMeshCases[] = {
     {"soup_m8", make_random_soup(16, 0.9f, 7), 9.0f, 8},
     {"sphere", make_sphere(5, 6, 2.0f), 3.0f},
     {"fan", make_sliver_fan(20, 0.01f), 5.0f},
-    {"huge", scaled(make_random_soup(16, 0.5f, 8), 1e30f, Vec3(0))},
-    {"largest", scaled(make_random_soup(16, 0.5f, 8), 8e35f, Vec3(0))},
-    {"tiny", scaled(make_random_soup(16, 0.5f, 9), 1e-30f, Vec3(0))},
-    {"denormal", scaled(make_random_soup(16, 0.5f, 10), 1e-42f, Vec3(0))},
-    {"moved", scaled(make_random_soup(16, 0.5f, 11), 100.0f, Vec3(1e7f))},
-    {"moved_far", scaled(make_random_soup(16, 0.5f, 12), 1.0f, Vec3(1e6f, -1e5f, 3e6f))},
+    {"huge", moved(make_random_soup(16, 0.5f, 8), 1e30f)},
+    {"largest", moved(make_random_soup(16, 0.5f, 8), 8e35f)},
+    {"tiny", moved(make_random_soup(16, 0.5f, 9), 1e-30f)},
+    {"denormal", moved(make_random_soup(16, 0.5f, 10), 1e-42f)},
+    {"moved", moved(make_random_soup(16, 0.5f, 11), 100.0f, Vec3(1e7f))},
+    {"moved_far", moved(make_random_soup(16, 0.5f, 12), 1.0f, Vec3(1e6f, -1e5f, 3e6f))},
     {"mixed",
-     with(make_box({-100, 0, -100}, {100, 1, 100}), scaled(make_sphere(3, 4, 1.0f), 0.05f, Vec3(0.3f, 0.5f, 0.1f)))},
-    {"flat", with(make_triangle({0, 0, 1}, {4, 0, 1}, {0, 4, 1}), make_triangle({4, 4, 1}, {4, 0, 1}, {0, 4, 1})),
+     joined(make_box({-100, 0, -100}, {100, 1, 100}), moved(make_sphere(3, 4, 1.0f), 0.05f, Vec3(0.3f, 0.5f, 0.1f)))},
+    {"flat", joined(make_triangle({0, 0, 1}, {4, 0, 1}, {0, 4, 1}), make_triangle({4, 4, 1}, {4, 0, 1}, {0, 4, 1})),
      20.0f},
     {"thin", make_triangle({0, 0, 0}, {100, 0.001f, 0.001f}, {50, 0.002f, 0}), 30.0f},
     {"denormal_axis", make_triangle({0, 0, 0}, {1, 0, 1e-45f}, {0, 1, 1e-44f}), 9.0f}};
@@ -161,7 +150,7 @@ TEST(Counting, AgreesWithTheImageForEveryMacroWidthAndLambda) {
 
 // More macrocells than the window of one sweep holds: several sweeps must find the same ones.
 TEST(Counting, SweepsAsOftenAsItMust) {
-  const TestMesh mesh = with(make_random_soup(300, 0.2f, 21), make_triangle({-1, -1, -1}, {1, 1, 1}, {1, -1, 0.5f}));
+  const TestMesh mesh = joined(make_random_soup(300, 0.2f, 21), make_triangle({-1, -1, -1}, {1, 1, 1}, {1, -1, 0.5f}));
   const BuiltImage built = build_image(mesh.view(), {400.0f, 1, TriangleFormat::kVertices});
   ASSERT_FALSE(HasFailure());
   EXPECT_GT(built.cells.size(), 100000u);
@@ -233,7 +222,7 @@ TEST(Building, GivesTheSameBytesWhateverTheMemoryHeld) {
 
 // These values are part of the format: an image has the same bytes on every host, compiler and version.
 TEST(Building, GivesTheBytesItAlwaysGave) {
-  const TestMesh mesh = scaled(make_random_soup(500, 0.1f, 2024), 3.7f, Vec3(12, -7, 0.5f));
+  const TestMesh mesh = moved(make_random_soup(500, 0.1f, 2024), 3.7f, Vec3(12, -7, 0.5f));
   EXPECT_EQ(build_image(mesh.view(), {4.0f, 6, TriangleFormat::kVertices}).view.header.check_value,
             15657268733149261266u);
   EXPECT_EQ(build_image(mesh.view(), {2.0f, 3, TriangleFormat::kProjection}).view.header.check_value,

@@ -2,7 +2,6 @@
 #include <gridiron/build/grid/triangle_records.h>
 
 #include "support/rational_vectors.h"
-#include "support/test_headers.h"
 #include "support/test_mesh.h"
 
 namespace gridiron::test {

@@ -5,7 +5,6 @@
 #include <gridiron/engine/grid/frustum.h>
 
 #include "core/ray/exact_ray.h"
-#include "support/test_headers.h"
 #include "support/test_mesh.h"
 
 namespace gridiron::test {

@@ -9,7 +9,6 @@
 #include "core/ray/exact_ray.h"
 #include "core/ray/frame_cases.h"
 #include "core/seeds.h"
-#include "support/test_headers.h"
 #include "support/test_mesh.h"
 
 namespace gridiron::test {

@@ -4,7 +4,6 @@
 
 #include "core/engine/grid/table_cases.h"
 #include "core/seeds.h"
-#include "support/test_headers.h"
 #include "support/test_mesh.h"
 
 namespace gridiron::test {

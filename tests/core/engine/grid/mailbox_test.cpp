@@ -2,7 +2,6 @@
 #include <gridiron/engine/grid/mailbox.h>
 
 #include "core/seeds.h"
-#include "support/test_headers.h"
 #include "support/test_mesh.h"
 
 namespace gridiron::test {

@@ -6,7 +6,6 @@
 #include "core/lane_types.h"
 #include "core/ray/exact_ray.h"
 #include "core/seeds.h"
-#include "support/test_headers.h"
 #include "support/test_mesh.h"
 
 namespace gridiron::test {

@@ -7,7 +7,6 @@
 #include "core/engine/grid/table_cases.h"
 #include "core/ray/exact_ray.h"
 #include "core/seeds.h"
-#include "support/test_headers.h"
 #include "support/test_mesh.h"
 
 namespace gridiron::test {

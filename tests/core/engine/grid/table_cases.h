@@ -4,7 +4,6 @@
 
 #include <gridiron/base/records.h>
 
-#include "support/test_headers.h"
 #include "support/test_mesh.h"
 
 namespace gridiron::test {

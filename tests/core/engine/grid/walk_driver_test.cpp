@@ -9,7 +9,6 @@
 #include "core/lane_types.h"
 #include "numeric/hard_rays.h"
 #include "numeric/oracle.h"
-#include "support/test_headers.h"
 #include "support/test_mesh.h"
 
 namespace gridiron::test {
