@@ -65,8 +65,8 @@ SceneWords::SceneWords(std::string_view text, const std::filesystem::path& path)
   advance();
 }
 
-void SceneWords::fail(std::uint64_t line, const std::string& reason) const {
-  throw Failure(ExitCode::kBadInput, path_.string() + ":" + std::to_string(line) + ": " + reason);
+void fail_at(const std::filesystem::path& path, std::uint64_t line, const std::string& reason) {
+  throw Failure(ExitCode::kBadInput, path.string() + ":" + std::to_string(line) + ": " + reason);
 }
 
 void SceneWords::advance() {

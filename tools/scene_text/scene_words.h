@@ -11,6 +11,9 @@
 
 namespace gridiron::tool {
 
+/// Throws the Failure (kBadInput) `file:line: reason`.
+[[noreturn]] void fail_at(const std::filesystem::path& path, std::uint64_t line, const std::string& reason);
+
 /// A word of the text. Empty at the end of the text, with its last line.
 struct SceneWord {
   std::string_view text;
@@ -70,7 +73,7 @@ class SceneWords {
   /// Takes `on` or `off`. @returns true for `on`.
   bool take_switch(const SceneEntity& entity);
 
-  [[noreturn]] void fail(std::uint64_t line, const std::string& reason) const;
+  [[noreturn]] void fail(std::uint64_t line, const std::string& reason) const { fail_at(path_, line, reason); }
 
  private:
   void advance();
