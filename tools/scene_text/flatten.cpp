@@ -66,7 +66,7 @@ class Flattener {
  private:
   static constexpr std::uint32_t kUnknownMaterial = kMostSceneMaterials;
 
-  [[noreturn]] void fail(std::uint64_t line, const std::string& reason) const { fail_at(path_, line, reason); }
+  [[noreturn]] void fail(std::uint64_t line, const std::string& reason) const { input_error(path_, line, reason); }
 
   void note(std::uint64_t line, std::string text) {
     if (++scene_.note_count <= kMostSceneNotes) scene_.notes.push_back({line, std::move(text)});

@@ -1,7 +1,6 @@
 // Shapes of a text scene. SPDX-License-Identifier: Apache-2.0
 #include "scene_text/scene_shapes.h"
 
-#include <algorithm>
 #include <cfloat>
 #include <cmath>
 #include <glm/common.hpp>

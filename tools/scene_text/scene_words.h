@@ -9,10 +9,9 @@
 #include <string>
 #include <string_view>
 
-namespace gridiron::tool {
+#include "base/failure.h"
 
-/// Throws the Failure (kBadInput) `file:line: reason`.
-[[noreturn]] void fail_at(const std::filesystem::path& path, std::uint64_t line, const std::string& reason);
+namespace gridiron::tool {
 
 /// A word of the text. Empty at the end of the text, with its last line.
 struct SceneWord {
@@ -73,7 +72,7 @@ class SceneWords {
   /// Takes `on` or `off`. @returns true for `on`.
   bool take_switch(const SceneEntity& entity);
 
-  [[noreturn]] void fail(std::uint64_t line, const std::string& reason) const { fail_at(path_, line, reason); }
+  [[noreturn]] void fail(std::uint64_t line, const std::string& reason) const { input_error(path_, line, reason); }
 
  private:
   void advance();

@@ -51,9 +51,9 @@ void ShapeTolerance::choose_tolerance(const SceneOptions& options, const std::fi
     if (options.relative_tolerance > 0) scene_.tolerance = std::max(scene_.tolerance, FLT_MIN);
   }
   if (!(scene_.tolerance > 0 && std::isfinite(scene_.tolerance))) {
-    fail_at(path, 1,
-            "the tolerance of round shapes must be a number greater than 0, not " +
-                text_of_number(static_cast<double>(scene_.tolerance)));
+    input_error(path, 1,
+                "the tolerance of round shapes must be a number greater than 0, not " +
+                    text_of_number(static_cast<double>(scene_.tolerance)));
   }
 }
 
