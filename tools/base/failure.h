@@ -2,6 +2,8 @@
 // Memory: owns its message. Threads: any. SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <cstdint>
+#include <filesystem>
 #include <stdexcept>
 #include <string>
 
@@ -32,6 +34,16 @@ class Failure : public std::runtime_error {
 
 [[noreturn]] inline void usage_error(const std::string& message) {
   throw Failure(ExitCode::kUsage, message);
+}
+
+/// Throws the Failure (kBadInput) `source: reason`. @param source  a file or folder.
+[[noreturn]] inline void input_error(const std::filesystem::path& source, const std::string& reason) {
+  throw Failure(ExitCode::kBadInput, source.string() + ": " + reason);
+}
+
+/// The same for `file:line: reason`.
+[[noreturn]] inline void input_error(const std::filesystem::path& file, std::uint64_t line, const std::string& reason) {
+  throw Failure(ExitCode::kBadInput, file.string() + ":" + std::to_string(line) + ": " + reason);
 }
 
 }  // namespace gridiron::tool

@@ -1,7 +1,6 @@
 // Numbers in text. SPDX-License-Identifier: Apache-2.0
 #include "numbers.h"
 
-#include <charconv>
 #include <cmath>
 
 namespace gridiron::tool {

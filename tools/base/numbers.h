@@ -4,11 +4,20 @@
 
 #include <gridiron/base/math.h>
 
+#include <charconv>
 #include <cstdint>
 #include <optional>
+#include <string>
 #include <string_view>
 
 namespace gridiron::tool {
+
+/// @returns the shortest decimals that read back as the same number.
+template <class Number>
+[[nodiscard]] std::string shortest_text(Number number) {
+  char text[32];  // more than any number of 64 bits needs
+  return {text, std::to_chars(text, text + sizeof text, number).ptr};
+}
 
 /// @returns the float nearest to the decimal number that is the whole of `text`; nothing for any other text.
 [[nodiscard]] std::optional<float> parse_float(std::string_view text);

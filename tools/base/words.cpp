@@ -120,6 +120,13 @@ std::string in_quotes(std::string_view text) {
   return quoted;
 }
 
+std::string in_csv(std::string_view text) {
+  if (text.find_first_of(",\"\r\n") == std::string_view::npos) return std::string(text);
+  std::string quoted = "\"";
+  for (const char letter : text) quoted.append(letter == '"' ? 2 : 1, letter);
+  return quoted + "\"";
+}
+
 std::string words_of_count(std::uint64_t count) {
   const std::string digits = std::to_string(count);
   std::string words;

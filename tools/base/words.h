@@ -25,6 +25,9 @@ namespace gridiron::tool {
 /// @returns text of a file for a message: in single quotes, cut to 64 bytes, unprintable bytes as \xNN.
 [[nodiscard]] std::string in_quotes(std::string_view text);
 
+/// @returns text as a field of CSV (RFC 4180): quoted where it has a comma, a quote or a line break.
+[[nodiscard]] std::string in_csv(std::string_view text);
+
 /// @returns "1,234,567".
 [[nodiscard]] std::string words_of_count(std::uint64_t count);
 

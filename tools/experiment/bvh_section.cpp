@@ -71,12 +71,11 @@ void add_columns(Table& table, const std::string& suffix, const std::string& uni
 }
 
 BarChart make_chart(const std::string& title) {
-  BarChart chart;
-  chart.title = title;
-  chart.y_title = "frames a second";
-  chart.parts = {"fps"};
-  chart.bars.assign(std::begin(kSideTitles), std::end(kSideTitles));
-  return chart;
+  return {.title = title,
+          .y_title = "frames a second",
+          .bars = {std::begin(kSideTitles), std::end(kSideTitles)},
+          .parts = {"fps"},
+          .labels = true};
 }
 
 void write_caches(const Plan& done, const std::vector<Row>& rows, Book& book) {
@@ -91,7 +90,7 @@ void write_caches(const Plan& done, const std::vector<Row>& rows, Book& book) {
       if (run.failed() || !run.caches) continue;
       caches.add({row.machine.key, row.view->title, side == kBvh ? "take turns" : "one at a time",
                   run.caches->node_hit_percent, run.caches->triangle_hit_percent, run.caches->suspended_packets,
-                  static_cast<double>(run.bytes_in()) / (1 << 20), run.wait_percent()});
+                  run.megabytes_in(), run.wait_percent()});
     }
   }
   book.table(caches,
@@ -149,7 +148,6 @@ Writer plan_figure7(Plan& plan, const Stage& stage) {
     add_columns(cycles, "_mcycles", ": million cycles", 1);
     BarChart bare = make_chart("cell-2006: 8 cores at 2.4 GHz, frame alone");
     BarChart whole = make_chart("cell-2006: 8 cores at 2.4 GHz, build and frame");
-    bare.labels = whole.labels = true;
 
     Score score, build_score;  // of cell-2006
     Range paper_cases, paper_cases_single, paper_cases_best, best_ratios, build_ratios, gains;

@@ -1,6 +1,5 @@
 // Sweep of the cached BVH: each of its settings is changed by itself, to show that it is tuned.
 // SPDX-License-Identifier: Apache-2.0
-#include <algorithm>
 #include <cmath>
 #include <functional>
 

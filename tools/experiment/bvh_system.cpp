@@ -2,11 +2,9 @@
 #include "experiment/bvh_system.h"
 
 #include <gridiron/bvh/bvh_build_work.h>
-#include <gridiron/bvh/bvh_renderer.h>
 #include <report/report.h>
 
 #include <optional>
-#include <utility>
 
 #include "base/failure.h"
 #include "base/words.h"
@@ -82,7 +80,7 @@ std::unique_ptr<Recording> BvhSystem::record(const View& view, const FrameReques
   const Status status = bvh::build_bvh(mesh.view(), variant_.build, bvh, &tool::interrupt_flag());
   tool::stop_if_interrupted();
   if (status != Status::kOk) {
-    throw tool::Failure(tool::ExitCode::kBadInput, view.scene->path.string() + ": " + tool::words_of(status));
+    tool::input_error(view.scene->path, tool::words_of(status));
   }
   FrameSettings settings;
   settings.camera =

@@ -1,7 +1,7 @@
 // Frames of the effects experiment. SPDX-License-Identifier: Apache-2.0
 #include "experiment/effect_frames.h"
 
-#include <algorithm>
+#include <report/report.h>
 
 #include "base/failure.h"
 #include "experiment/systems.h"
@@ -118,18 +118,7 @@ EffectFrame render_effect_frame(const EffectScene& scene, const EffectFrameReque
   frame.light_count = memory.image.effects.light_count;
   frame.has_shadows = memory.image.effects.has_shadows != 0;
   frame.work = result.work;
-  for (const sim::CoreTiming& core : timing.cores) {
-    for (std::size_t i = 0; i < kStageCount; ++i) {
-      sim::StageTiming& sum = frame.stages[i];
-      const sim::StageTiming& part = core.stages[i];
-      sum.compute_cycles += part.compute_cycles;
-      sum.wait_cycles += part.wait_cycles;
-      sum.gets += part.gets;
-      sum.puts += part.puts;
-      sum.bytes_in += part.bytes_in;
-      sum.bytes_out += part.bytes_out;
-    }
-  }
+  frame.stages = tool::stage_sums(timing.cores);
   frame.cycles = timing.frame_cycles;
   frame.seconds = timing.seconds;
   frame.core_cycles = timing.frame_cycles * static_cast<double>(timing.cores.size());

@@ -8,7 +8,6 @@
 #include <cstdint>
 #include <string>
 #include <string_view>
-#include <vector>
 
 #include "gridiron/scene/scene_input.h"
 #include "scene_text/scene_description.h"

@@ -203,13 +203,10 @@ void write_hiding(const std::vector<SceneFrames>& scenes, Book& book) {
                  Column("best_wait_cycles", "waiting, the configuration's buffers", 0),
                  Column("best_hidden_percent", "% gone"), Column("single_fps", "frames/s, single"),
                  Column("double_fps", "double"), Column("best_fps", "the configuration's"));
-  BarChart chart{"Waits for secondary rays",
-                 "million cycles of all cores",
-                 {},
-                 {"buffering"},
-                 {"waiting that is left", "waiting hidden by double buffering"},
-                 {},
-                 false};
+  BarChart chart{.title = "Waits for secondary rays",
+                 .y_title = "million cycles of all cores",
+                 .bars = {"buffering"},
+                 .parts = {"waiting that is left", "waiting hidden by double buffering"}};
   double least = 1;
   for (const SceneFrames& scene : scenes) {
     const EffectFrame& single = scene.whole().single;

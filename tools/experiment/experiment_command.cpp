@@ -4,7 +4,6 @@
 #include <filesystem>
 #include <string>
 #include <system_error>
-#include <utility>
 #include <vector>
 
 #include "base/failure.h"
@@ -30,8 +29,7 @@ void remove_stale_files(const std::filesystem::path& folder, const std::vector<s
     const std::filesystem::file_status status = std::filesystem::symlink_status(path, error);
     if (!std::filesystem::is_regular_file(status) && !std::filesystem::is_symlink(status)) continue;
     if (!std::filesystem::remove(path, error) && error) {
-      throw Failure(ExitCode::kBadInput,
-                    path.string() + ": is of an earlier run and cannot be removed: " + error.message());
+      input_error(path, "is of an earlier run and cannot be removed: " + error.message());
     }
   }
 }
@@ -39,7 +37,7 @@ void remove_stale_files(const std::filesystem::path& folder, const std::vector<s
 void check_scenes(const std::filesystem::path& folder) {
   std::error_code ignored;
   if (!folder.empty() && !std::filesystem::is_directory(folder, ignored)) {
-    throw Failure(ExitCode::kBadInput, folder.string() + ": no such folder of scenes");
+    input_error(folder, "no such folder of scenes");
   }
 }
 

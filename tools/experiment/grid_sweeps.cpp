@@ -3,7 +3,6 @@
 #include <algorithm>
 #include <functional>
 #include <numeric>
-#include <optional>
 
 #include "experiment/sections.h"
 #include "experiment/svg_plot.h"
@@ -59,7 +58,7 @@ Table step_table(const Plan& done, const std::vector<Step>& steps, const std::st
       row.emplace_back(run.failure);
     } else {
       constexpr double kMegabyte = 1 << 20;
-      row.insert(row.end(), {run.fps(), run.wait_percent(), static_cast<double>(run.bytes_in()) / kMegabyte,
+      row.insert(row.end(), {run.fps(), run.wait_percent(), run.megabytes_in(),
                              static_cast<double>(run.facts.scene_bytes) / kMegabyte,
                              run.facts.grid ? Cell{run.facts.grid->reference_count} : Cell{}, run.facts.traversal_steps,
                              run.facts.intersection_tests, Cell{}});
@@ -288,8 +287,7 @@ Writer plan_packet_sweep(Plan& plan, const Stage& stage) {
       const RunResult& two = done.result(row.two);
       const RunResult& deep = done.result(row.deep);
       table.add({row.view->title, row.subpackets ? "subpackets" : "corner rays", row.width, two.fps(),
-                 two.wait_percent(), static_cast<double>(two.bytes_in()) / (1 << 20), deep.fps(), deep.wait_percent(),
-                 static_cast<double>(deep.bytes_in()) / (1 << 20)});
+                 two.wait_percent(), two.megabytes_in(), deep.fps(), deep.wait_percent(), deep.megabytes_in()});
     }
     book.section("packets", "Sweep: packet size");
     book.paragraph(

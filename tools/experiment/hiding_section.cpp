@@ -99,11 +99,10 @@ Writer plan_figure6(Plan& plan, const Stage& stage) {
         "paper does not show it. All values are of the mean core, without shading.");
     for (std::size_t c = 0; c < stage.contenders.size(); ++c) {
       for (std::size_t i = 0; i < std::size(kPaperCoreCounts); ++i) {
-        BarChart chart;
-        chart.title = stage.contenders[c].title + (i == 0 ? ", 1 core" : ", 6 cores");
-        chart.y_title = "milliseconds of a frame";
-        chart.bars = {"single", "hidden"};
-        chart.parts = {"initialisation", "computation", "waiting for DMA", "idle"};
+        BarChart chart{.title = stage.contenders[c].title + (i == 0 ? ", 1 core" : ", 6 cores"),
+                       .y_title = "milliseconds of a frame",
+                       .bars = {"single", "hidden"},
+                       .parts = {"initialisation", "computation", "waiting for DMA", "idle"}};
         for (const Pair& pair : pairs) {
           if (pair.cores_index != i) continue;
           chart.groups.push_back(pair.view->title);

@@ -10,16 +10,7 @@
 
 namespace gridiron::experiment {
 
-/// The origin of a figure of the paper.
-enum class Provenance : std::uint8_t {
-  kPrinted,  ///< [P] stands in the paper
-  kDerived,  ///< [D] follows from printed figures
-};
-
-/// @returns "[P]" or "[D]".
-[[nodiscard]] constexpr std::string_view mark_of(Provenance provenance) {
-  return provenance == Provenance::kPrinted ? "[P]" : "[D]";
-}
+// [P]: printed, stands in the paper. [D]: derived, follows from printed figures.
 
 /// One of the paper's five views.
 struct PaperView {

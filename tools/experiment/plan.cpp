@@ -1,7 +1,6 @@
 // Plan. SPDX-License-Identifier: Apache-2.0
 #include "experiment/plan.h"
 
-#include <algorithm>
 #include <cmath>
 #include <mutex>
 #include <utility>
@@ -24,17 +23,13 @@ double RunResult::fps_with_build() const {
   return timing.seconds > 0 ? 1 / (timing.seconds + build_seconds) : std::nan("");
 }
 
-double RunResult::wait_cycles() const {
-  double cycles = 0;
-  for (const sim::CoreTiming& core : timing.cores) {
-    for (const double wait : core.dma_wait_cycles) cycles += wait;
-  }
-  return cycles;
-}
-
 double RunResult::wait_percent() const {
   const double all = timing.frame_cycles * static_cast<double>(timing.cores.size());
   return all > 0 ? 100 * wait_cycles() / all : std::nan("");
+}
+
+double RunResult::megabytes_in() const {
+  return static_cast<double>(bytes_in()) / (1 << 20);
 }
 
 std::uint64_t RunResult::bytes_in() const {

@@ -5,6 +5,7 @@
 
 #include <gridiron/sim/machine_profile.h>
 #include <gridiron/sim/replay.h>
+#include <report/report.h>
 
 #include <cstddef>
 #include <functional>
@@ -43,11 +44,12 @@ struct RunResult {
   /// Frames a second if each frame is built anew and then rendered; NaN if the run failed.
   [[nodiscard]] double fps_with_build() const;
   /// Core cycles stalled for transfers, all cores.
-  [[nodiscard]] double wait_cycles() const;
+  [[nodiscard]] double wait_cycles() const { return tool::wait_cycles_of(timing); }
   /// Percent of all core cycles of the frame; NaN if the run failed.
   [[nodiscard]] double wait_percent() const;
   /// Bytes requested by gets, all cores.
   [[nodiscard]] std::uint64_t bytes_in() const;
+  [[nodiscard]] double megabytes_in() const;  ///< the same in units of 2^20
   /// Bytes requested by gets and puts, all cores.
   [[nodiscard]] std::uint64_t moved_bytes() const;
 };

@@ -539,9 +539,8 @@ void write_views(const PriceList& list, Book& book) {
 
 void write_host_prices(const PriceList& list, Book& book) {
   constexpr std::uint32_t kRepeats = 3;
-  Table table = make_table("host_prices", Column("view", ""), Column("configuration", ""), Column("profile", ""),
-                           Column("lanes", ""), Column("frame_ms", ""), Column("frame_processor_ms", ""),
-                           Column("with_distances_ms", ""), Column("with_distances_processor_ms", ""));
+  Table table = make_table("host_prices", "view", "configuration", "profile", "lanes", "frame_ms", "frame_processor_ms",
+                           "with_distances_ms", "with_distances_processor_ms");
   for (const Price& price : list.prices()) {
     tool::stop_if_interrupted();
     if (list.frame(price).failed()) continue;

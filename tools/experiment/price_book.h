@@ -2,9 +2,7 @@
 // Memory: the book's. Threads: one. SPDX-License-Identifier: Apache-2.0
 #pragma once
 
-#include <cstdint>
 #include <string>
-#include <vector>
 
 #include "experiment/book.h"
 #include "experiment/price_list.h"

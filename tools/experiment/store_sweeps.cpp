@@ -116,10 +116,6 @@ std::shared_ptr<const Sweep> plan_sweep(Plan& plan, const Stage& stage, std::vec
   return sweep;
 }
 
-double megabytes_in(const RunResult& run) {
-  return static_cast<double>(run.bytes_in()) / (1 << 20);
-}
-
 double idle_percent(const RunResult& run) {
   double idle = 0;
   for (const sim::CoreTiming& core : run.timing.cores) idle += core.idle_cycles;
@@ -153,7 +149,7 @@ Table long_table(const Sweep& sweep, const Plan& done, const std::string& name) 
                  {point.layout->mailbox_slots, point.fitted.depths.macro, point.fitted.depths.triangle,
                   point.layout->triangles_per_buffer, run->fps(),
                   usual != nullptr ? Cell{ratio_of(run->fps(), usual->fps())} : Cell{}, run->wait_percent(),
-                  idle_percent(*run), megabytes_in(*run), run->facts.traversal_steps, run->facts.intersection_tests,
+                  idle_percent(*run), run->megabytes_in(), run->facts.traversal_steps, run->facts.intersection_tests,
                   is_same_picture(sweep, done, point) ? "yes" : "no", point.note.empty() ? Cell{} : Cell{point.note}});
     }
     table.add(std::move(row));
@@ -167,11 +163,11 @@ Table short_table(const Sweep& sweep, const Plan& done) {
   struct Figure {
     const char* title;
     int decimals;
-    double (*value)(const RunResult&);
+    double (RunResult::*value)() const;
   };
-  const Figure figures[] = {{"fps", 2, [](const RunResult& run) { return run.fps(); }},
-                            {"wait, %", 2, [](const RunResult& run) { return run.wait_percent(); }},
-                            {"fetched, MB", 1, megabytes_in}};
+  const Figure figures[] = {{"fps", 2, &RunResult::fps},
+                            {"wait, %", 2, &RunResult::wait_percent},
+                            {"fetched, MB", 1, &RunResult::megabytes_in}};
   for (const Figure& figure : figures) {
     for (const Place& place : sweep.places) {
       table.columns.push_back({place.key, place.title + ": " + figure.title, figure.decimals});
@@ -184,7 +180,7 @@ Table short_table(const Sweep& sweep, const Plan& done) {
     for (const Figure& figure : figures) {
       for (std::size_t i = first; i < first + sweep.places.size(); ++i) {
         const RunResult* run = Sweep::result(done, sweep.points[i]);
-        row.push_back(run != nullptr ? Cell{figure.value(*run)} : Cell{sweep.points[i].run ? "failed" : "no room"});
+        row.push_back(run != nullptr ? Cell{(run->*figure.value)()} : Cell{sweep.points[i].run ? "failed" : "no room"});
         all_same = all_same && (run == nullptr || is_same_picture(sweep, done, sweep.points[i]));
       }
     }

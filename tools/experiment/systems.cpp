@@ -4,7 +4,6 @@
 #include <gridiron/sim/trace_packing.h>
 #include <report/report.h>
 
-#include <algorithm>
 #include <bit>
 #include <glm/common.hpp>
 #include <numeric>
@@ -37,6 +36,26 @@ tool::RenderPlan plan_of(const GridVariant& variant, const View& view, const Fra
   plan.accuracy = variant.accuracy;
   plan.shading = request.shading;
   plan.has_depth = variant.depth;
+  return plan;
+}
+
+// A frame in the main memory of the home machine.
+struct PreparedFrame {
+  PreparedFrame(tool::RenderPlan plan_of_frame, const View& view)
+      : plan(std::move(plan_of_frame)), memory(home_machine()->main_memory_bytes) {
+    tool::prepare_frame(memory, *view.scene, plan, view.camera);
+  }
+  sim::ChipResult render() { return tool::render_on_chip(memory, plan, {}); }
+
+  tool::RenderPlan plan;
+  tool::FrameMemory memory;
+};
+
+// The same with all its planes, without a clock.
+tool::RenderPlan answers_plan_of(const GridVariant& variant, const View& view, const FrameRequest& request) {
+  tool::RenderPlan plan = plan_of(variant, view, request);
+  plan.has_depth = plan.has_ids = true;
+  plan.mode = sim::Mode::kPlain;
   return plan;
 }
 
@@ -134,10 +153,9 @@ std::vector<Contender> make_contenders() {
 }
 
 std::unique_ptr<Recording> GridSystem::record(const View& view, const FrameRequest& request) const {
-  const tool::RenderPlan plan = plan_of(variant_, view, request);
-  tool::FrameMemory frame(home_machine()->main_memory_bytes);
-  tool::prepare_frame(frame, *view.scene, plan, view.camera);
-  sim::ChipResult result = tool::render_on_chip(frame, plan, {});
+  PreparedFrame prepared(plan_of(variant_, view, request), view);
+  sim::ChipResult result = prepared.render();
+  const tool::FrameMemory& frame = prepared.memory;
 
   FrameFacts facts;
   facts.build = sim::grid_build_work(view.mesh().vertices.size(), view.mesh().triangles.size(), frame.need);
@@ -151,39 +169,29 @@ std::unique_ptr<Recording> GridSystem::record(const View& view, const FrameReque
   facts.triangle_bytes = std::uint64_t{frame.image.grid.triangle_bytes} * frame.image.grid.reference_count;
   facts.fetched_triangle_bytes = fetched_triangle_bytes(result.trace);
   facts.main_memory_bytes = frame.memory.used_bytes();
-  const tool::StoreFacts store = *tool::find_store_facts(plan.layout);  // it has rendered
+  const tool::StoreFacts store = *tool::find_store_facts(prepared.plan.layout);  // it has rendered
   facts.local_store_bytes = store.data_bytes() + store.code_bytes + store.stack_bytes;
   facts.picture_hash = tool::image_hash(words_of(frame, frame.color));
   return std::make_unique<GridRecording>(std::move(facts), std::move(result.trace));
 }
 
 Answers render_answers(const GridVariant& variant, const View& view, const FrameRequest& request) {
-  tool::RenderPlan plan = plan_of(variant, view, request);
-  plan.has_depth = plan.has_ids = true;
-  plan.mode = sim::Mode::kPlain;
-  tool::FrameMemory frame(home_machine()->main_memory_bytes);
-  tool::prepare_frame(frame, *view.scene, plan, view.camera);
-  (void)tool::render_on_chip(frame, plan, {});
-  return {words_of(frame, frame.color), words_of(frame, frame.ids), depth_of(frame)};
+  PreparedFrame frame(answers_plan_of(variant, view, request), view);
+  (void)frame.render();
+  return {words_of(frame.memory, frame.memory.color), words_of(frame.memory, frame.memory.ids), depth_of(frame.memory)};
 }
 
-struct CloseLook::Parts {
-  Parts(const GridVariant& variant, const View& view)
-      : plan(plan_of(variant, view, {.width = kWidth, .height = kWidth, .shading = Shading::kNone})),
-        frame(home_machine()->main_memory_bytes) {
-    plan.has_depth = plan.has_ids = true;
-    plan.mode = sim::Mode::kPlain;
-    tool::prepare_frame(frame, *view.scene, plan, view.camera);
-  }
-  tool::RenderPlan plan;
-  tool::FrameMemory frame;
+struct CloseLook::Parts : PreparedFrame {
+  using PreparedFrame::PreparedFrame;
 };
 
-CloseLook::CloseLook(const GridVariant& variant, const View& view) : parts_(std::make_unique<Parts>(variant, view)) {}
+CloseLook::CloseLook(const GridVariant& variant, const View& view)
+    : parts_(std::make_unique<Parts>(
+          answers_plan_of(variant, view, {.width = kWidth, .height = kWidth, .shading = Shading::kNone}), view)) {}
 CloseLook::~CloseLook() = default;
 
 void CloseLook::look_at(const Vec3& point, Answers& answers) {
-  tool::FrameMemory& frame = parts_->frame;
+  tool::FrameMemory& frame = parts_->memory;
   Camera camera = frame.settings.camera;
   camera.at = point;
   // Any direction across the view serves as up.
@@ -195,7 +203,7 @@ void CloseLook::look_at(const Vec3& point, Answers& answers) {
   constexpr float kPixel = 0x1p-25f;
   camera.tan_half_fov = kPixel * kWidth / 2;
   tool::aim_camera(frame, camera);
-  (void)tool::render_on_chip(frame, parts_->plan, {});
+  (void)parts_->render();
   const std::vector<std::uint32_t> ids = words_of(frame, frame.ids);
   const std::vector<float> depth = depth_of(frame);
   answers.ids.insert(answers.ids.end(), ids.begin(), ids.end());
@@ -220,9 +228,8 @@ HostFrame render_on_host(const GridVariant& variant, const View& view, const Fra
   plan.mode = sim::Mode::kPlain;
   plan.lanes = sim::widest_lanes();
   plan.threads = threads;
-  tool::FrameMemory frame(home_machine()->main_memory_bytes);
-  tool::prepare_frame(frame, *view.scene, plan, view.camera);
-  return {least_host_seconds(repeats, [&] { (void)tool::render_on_chip(frame, plan, {}); }), frame.record};
+  PreparedFrame frame(std::move(plan), view);
+  return {least_host_seconds(repeats, [&frame] { (void)frame.render(); }), frame.memory.record};
 }
 
 }  // namespace gridiron::experiment

@@ -6,33 +6,23 @@
 #include <charconv>
 #include <cmath>
 
+#include "base/numbers.h"
 #include "base/words.h"
 
 namespace gridiron::experiment {
 namespace {
 
-std::string csv_quoted(std::string_view field) {
-  if (field.find_first_of(",\"\r\n") == std::string_view::npos) return std::string(field);
-  std::string text = "\"";
-  for (const char letter : field) {
-    if (letter == '"') text += '"';
-    text += letter;
-  }
-  return text + "\"";
-}
-
 std::string field_of(const Cell& cell) {
-  if (const auto* words = std::get_if<std::string>(&cell)) return csv_quoted(*words);
+  if (const auto* words = std::get_if<std::string>(&cell)) return tool::in_csv(*words);
   if (const auto* count = std::get_if<std::uint64_t>(&cell)) return std::to_string(*count);
   if (const auto* measure = std::get_if<double>(&cell)) return number_text(*measure);
   return "";
 }
 
-template <class Number>
-std::string shortest_text(Number number) {
+std::string text_of(double number, std::chars_format format, int precision) {
   if (!std::isfinite(number)) return "";
-  std::array<char, 32> text{};
-  const auto [end, error] = std::to_chars(text.data(), text.data() + text.size(), number);
+  std::array<char, 400> text{};
+  const auto [end, error] = std::to_chars(text.data(), text.data() + text.size(), number, format, precision);
   return error == std::errc{} ? std::string(text.data(), end) : "";
 }
 
@@ -46,37 +36,29 @@ Column::Column(std::string name, std::string words, int digits)
     : key(std::move(name)), title(std::move(words)), decimals(digits) {}
 
 std::string number_text(double number) {
-  return shortest_text(number);
+  return std::isfinite(number) ? tool::shortest_text(number) : "";
 }
 
 std::string number_text(float number) {
-  return shortest_text(number);
+  return std::isfinite(number) ? tool::shortest_text(number) : "";
 }
 
 std::string fixed_text(double number, int decimals) {
-  if (!std::isfinite(number)) return "";
-  std::array<char, 400> text{};
-  const auto [end, error] =
-      std::to_chars(text.data(), text.data() + text.size(), number, std::chars_format::fixed, decimals);
-  std::string fixed = error == std::errc{} ? std::string(text.data(), end) : "";
+  std::string fixed = text_of(number, std::chars_format::fixed, decimals);
   // No sign for a rounded zero.
   if (!fixed.empty() && fixed.front() == '-' && fixed.find_first_not_of("-0.") == std::string::npos) fixed.erase(0, 1);
   return fixed;
 }
 
 std::string scientific_text(double number, int digits) {
-  if (!std::isfinite(number)) return "";
-  std::array<char, 400> text{};
-  const auto [end, error] =
-      std::to_chars(text.data(), text.data() + text.size(), number, std::chars_format::scientific, digits - 1);
-  return error == std::errc{} ? std::string(text.data(), end) : "";
+  return text_of(number, std::chars_format::scientific, digits - 1);
 }
 
 std::string csv_text(const Table& table) {
   std::string text;
   for (std::size_t i = 0; i < table.columns.size(); ++i) {
     if (i > 0) text += ',';
-    text += csv_quoted(table.columns[i].key);
+    text += tool::in_csv(table.columns[i].key);
   }
   text += '\n';
   for (const std::vector<Cell>& row : table.rows) {

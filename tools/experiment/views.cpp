@@ -106,7 +106,7 @@ View with_published_camera(View view) {
   GridNeed need;
   const Status status = count_scene_image(view.mesh().view(), {.lambda = 1e-6f}, need);
   if (status != Status::kOk) {
-    throw tool::Failure(tool::ExitCode::kBadInput, view.scene->path.string() + ": " + tool::words_of(status));
+    tool::input_error(view.scene->path, tool::words_of(status));
   }
   // Double, so that bounds near the largest float neither overflow nor lose the centre.
   const float* const low = need.grid.bounds_minimum;

@@ -15,7 +15,6 @@
 #include "base/failure.h"
 #include "command_files.h"
 #include "interrupt.h"
-#include "overdue_exit.h"
 
 namespace gridiron::tool {
 namespace {
@@ -132,7 +131,7 @@ void AtomicFile::commit() {
 
 void AtomicFile::fail(const char* action) {
   const std::string reason = std::strerror(errno);
-  throw Failure(ExitCode::kBadInput, target_.name.string() + ": cannot write: " + action + reason);
+  input_error(target_.name, std::string("cannot write: ") + action + reason);
 }
 
 AtomicFile& AtomicFiles::open(const fs::path& path) {

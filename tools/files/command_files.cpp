@@ -39,25 +39,24 @@ std::string words_of_output(const Output& output) {
 }
 
 [[noreturn]] void fail_as_input(const std::string& output, const fs::path& input) {
-  throw Failure(ExitCode::kUsage, output + ": is the input " + quoted_name(input.string()) +
-                                      " of this command; writing there would destroy it");
+  usage_error(output + ": is the input " + quoted_name(input.string()) +
+              " of this command; writing there would destroy it");
 }
 
 void check_ending(const Output& output, const OutputTarget& target) {
   if (target.is_special) return;  // a device has no ending
   const bool is_pfm = has_ending(output.path, ".pfm");
   if (output.kind == OutputKind::kPicture && !is_pfm && !has_ending(output.path, ".png")) {
-    throw Failure(ExitCode::kUsage, words_of_output(output) + ": the name of a picture must end in .png or .pfm");
+    usage_error(words_of_output(output) + ": the name of a picture must end in .png or .pfm");
   }
   if (output.kind == OutputKind::kFloats && !is_pfm) {
-    throw Failure(ExitCode::kUsage, words_of_output(output) + ": the name must end in .pfm");
+    usage_error(words_of_output(output) + ": the name must end in .pfm");
   }
 }
 
 void check_terminal(const Output& output, const OutputTarget& target) {
   if (output.kind == OutputKind::kText || !is_terminal(target)) return;
-  throw Failure(ExitCode::kUsage,
-                words_of_output(output) + ": is a terminal, which cannot show it; name a file, or use a pipe");
+  usage_error(words_of_output(output) + ": is a terminal, which cannot show it; name a file, or use a pipe");
 }
 
 // An output that is standard output has it alone: everything else that is printed goes to standard error.
@@ -112,7 +111,7 @@ void declare_outputs(const std::vector<Output>& outputs) {
         fail_as_input(words, input->second);
       }
       const auto [other, is_new] = ledger->outputs.emplace(identity, words);
-      if (!is_new) throw Failure(ExitCode::kUsage, other->second + " and " + words + " are the same file");
+      if (!is_new) usage_error(other->second + " and " + words + " are the same file");
     }
     take_standard_output(target);
     ledger->targets[output.path] = std::move(target);
@@ -131,14 +130,13 @@ void check_again(const OutputTarget& target) {
   if (target.is_special) return;
   std::error_code error;
   if (fs::is_directory(target.file, error)) {
-    throw Failure(ExitCode::kBadInput, target.name.string() + ": cannot write: it has become a folder");
+    input_error(target.name, "cannot write: it has become a folder");
   }
   if (ledger == nullptr) return;
   const std::lock_guard lock(ledger->mutex);
   const auto input = ledger->inputs.find(identity_of(target));
   if (input == ledger->inputs.end()) return;
-  throw Failure(ExitCode::kBadInput, target.name.string() + ": cannot write: it has become the input " +
-                                         quoted_name(input->second) + " of this command");
+  input_error(target.name, "cannot write: it has become the input " + quoted_name(input->second) + " of this command");
 }
 
 void count_written_file() {

@@ -64,10 +64,6 @@ std::string_view text_of(std::span<const std::byte> head) {
   return {reinterpret_cast<const char*>(head.data()), head.size()};
 }
 
-bool starts_with_word(std::span<const std::byte> head, std::uint32_t magic) {
-  return head.size() >= sizeof magic && std::memcmp(head.data(), &magic, sizeof magic) == 0;
-}
-
 bool is_blank(char c) {
   return c == ' ' || (c >= '\t' && c <= '\r');
 }
@@ -142,6 +138,10 @@ bool is_binary_stl(std::span<const std::byte> head, std::optional<std::uint64_t>
 }
 
 }  // namespace
+
+bool starts_with_word(std::span<const std::byte> head, std::uint32_t magic) {
+  return head.size() >= sizeof magic && std::memcmp(head.data(), &magic, sizeof magic) == 0;
+}
 
 SceneKind scene_kind_by_ending(const std::filesystem::path& path) {
   std::string ending = path.extension().string();

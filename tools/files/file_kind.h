@@ -17,6 +17,9 @@ inline constexpr std::size_t kHeadBytes = std::size_t{1} << 16;
 /// Kinds of scenes that the program reads.
 enum class SceneKind : std::uint8_t { kUnknown, kMesh, kText, kPacked };
 
+/// @returns whether a file begins with a magic word.
+[[nodiscard]] bool starts_with_word(std::span<const std::byte> head, std::uint32_t magic);
+
 /// @returns the kind of scene in a file. Text with an unknown first word is a text scene if the name ends with .nff, so
 /// that the reader of text scenes can name the wrong line.
 /// @param head  the first bytes, kHeadBytes if the file has that many.

@@ -10,11 +10,9 @@
 #include <array>
 #include <cerrno>
 #include <cstring>
-#include <string>
 #include <string_view>
 #include <utility>
 
-#include "base/failure.h"
 #include "command_files.h"
 #include "file_kind.h"
 #include "interrupt.h"
@@ -80,7 +78,7 @@ InputReader::InputReader(std::filesystem::path path, std::string expected)
     struct stat status {};
     if (descriptor_ < 0 || ::fstat(descriptor_, &status) != 0) fail(path_, errno);
     if (S_ISDIR(status.st_mode)) {
-      throw Failure(ExitCode::kBadInput, path_.string() + ": is a folder; " + expected_);
+      input_error(path_, "is a folder; " + expected_);
     }
     if (S_ISREG(status.st_mode)) file_bytes_ = static_cast<std::uint64_t>(status.st_size);
     head_.resize(kHeadBytes);
@@ -139,7 +137,7 @@ InputFile InputReader::read_rest(std::size_t most_bytes) const {
 }
 
 void InputReader::refuse_content() const {
-  throw Failure(ExitCode::kBadInput, path_.string() + ": " + words_of_content(head_, file_bytes_) + "; " + expected_);
+  input_error(path_, words_of_content(head_, file_bytes_) + "; " + expected_);
 }
 
 InputFile read_input_file(const std::filesystem::path& path, const std::string& expected, std::size_t most_bytes) {

@@ -107,7 +107,7 @@ auto name_in_shortage(const std::filesystem::path& path, const char* purpose, Ac
   try {
     return action();
   } catch (const std::bad_alloc&) {
-    throw Failure(ExitCode::kBadInput, path.string() + ": this host has not enough memory to " + purpose);
+    input_error(path, std::string("this host has not enough memory to ") + purpose);
   }
 }
 

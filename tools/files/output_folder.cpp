@@ -23,7 +23,7 @@ std::string words_of(const std::error_code& error, const fs::path& path) {
 }  // namespace
 
 OutputFolder::OutputFolder(std::filesystem::path path, const std::vector<std::string>& names) : path_(std::move(path)) {
-  if (path_ == "-") throw Failure(ExitCode::kUsage, "-o -: a folder cannot be standard output");
+  if (path_ == "-") usage_error("-o -: a folder cannot be standard output");
   std::error_code error;
   {
     const Undivided step;
@@ -31,7 +31,7 @@ OutputFolder::OutputFolder(std::filesystem::path path, const std::vector<std::st
     if (made_) leftover_.remember(path_);
   }
   if (error) {
-    throw Failure(ExitCode::kBadInput, path_.string() + ": cannot make the folder: " + words_of(error, path_));
+    input_error(path_, "cannot make the folder: " + words_of(error, path_));
   }
   try {
     std::vector<Output> outputs;

@@ -10,7 +10,6 @@
 #include <cerrno>
 #include <cstring>
 #include <optional>
-#include <string>
 #include <system_error>
 
 #include "base/failure.h"

@@ -4,7 +4,6 @@
 #include <report/report.h>
 
 #include <algorithm>
-#include <charconv>
 #include <cstdio>
 #include <optional>
 #include <set>
@@ -13,6 +12,7 @@
 #include <vector>
 
 #include "base/failure.h"
+#include "base/numbers.h"
 #include "base/progress.h"
 #include "base/words.h"
 #include "commands.h"
@@ -51,8 +51,7 @@ constexpr const char* kExpected = "animate takes PLY meshes and folders of .ply 
 
 void require_mesh(const std::filesystem::path& path, SceneKind kind) {
   if (kind != SceneKind::kText && kind != SceneKind::kPacked) return;
-  throw Failure(ExitCode::kBadInput,
-                path.string() + ": is a " + (kind == SceneKind::kText ? "text" : "packed") + " scene; " + kExpected);
+  input_error(path, std::string("is a ") + (kind == SceneKind::kText ? "text" : "packed") + " scene; " + kExpected);
 }
 
 SceneInput read_mesh(const std::filesystem::path& path) {
@@ -76,9 +75,8 @@ std::vector<AnimationFrame> collect_frames(const AnimateRequest& request) {
     for (std::filesystem::directory_iterator entry(input, error), end; !error && entry != end; entry.increment(error)) {
       if (scene_kind_by_ending(entry->path()) == SceneKind::kMesh) files.push_back(entry->path());
     }
-    if (error) throw Failure(ExitCode::kBadInput, input.string() + ": cannot be read: " + error.message());
-    if (files.empty())
-      throw Failure(ExitCode::kBadInput, input.string() + ": holds no file that ends with .ply; " + kExpected);
+    if (error) input_error(input, "cannot be read: " + error.message());
+    if (files.empty()) input_error(input, std::string("holds no file that ends with .ply; ") + kExpected);
     std::ranges::sort(files);
     for (const std::filesystem::path& file : files) frames.push_back({.input = file});
   }
@@ -87,7 +85,7 @@ std::vector<AnimationFrame> collect_frames(const AnimateRequest& request) {
     AnimationFrame& frame = frames[i];
     frame.picture = (is_descriptor(frame.input) ? "frame" + std::to_string(i) : frame.input.stem().string()) + ".png";
     if (!pictures.insert(frame.picture).second) {
-      throw Failure(ExitCode::kUsage, "two frames would be called " + frame.picture);
+      usage_error("two frames would be called " + frame.picture);
     }
   }
   return frames;
@@ -104,7 +102,7 @@ ViewRequest common_view(std::vector<AnimationFrame>& frames, const RenderRequest
       const MeshView mesh = std::get<Mesh>(input.content).view();
       GridNeed need{};
       const Status status = count_scene_image(mesh, {.lambda = 1e-6f}, need);  // rejects meshes that cannot be rendered
-      if (status != Status::kOk) throw Failure(ExitCode::kBadInput, frame.input.string() + ": " + words_of(status));
+      if (status != Status::kOk) input_error(frame.input, words_of(status));
       visit_points(mesh, visitor);
       if (is_stream(frame.input)) frame.mesh = std::move(input);
     }
@@ -142,21 +140,6 @@ void render(AnimationFrame& frame, RenderPlan plan, const ViewRequest& view, con
   if (!plan.scene.quiet) tell_note(frame.input, unseen_note(memory, result, plan.mode));
 }
 
-// The shortest decimals that read back as the same number.
-template <class Number>
-std::string text_of(Number number) {
-  char text[32];
-  return {text, std::to_chars(text, text + sizeof text, number).ptr};
-}
-
-// A name as a field of CSV.
-std::string in_csv(const std::string& text) {
-  if (text.find_first_of(",\"\r\n") == std::string::npos) return text;
-  std::string quoted = "\"";
-  for (const char letter : text) quoted.append(letter == '"' ? 2 : 1, letter);
-  return quoted + "\"";
-}
-
 std::string table_of(const std::vector<AnimationFrame>& frames, const sim::MachineProfile& machine) {
   std::string table =
       "frame,mesh,triangles,lambda,build_cycles,render_cycles,total_cycles,build_seconds,render_seconds,seconds,fps,"
@@ -165,10 +148,11 @@ std::string table_of(const std::vector<AnimationFrame>& frames, const sim::Machi
     const AnimationFrame& frame = frames[i];
     // The general core may have another clock; the total is in cycles of the cores.
     const double total_cycles = frame.build_seconds * machine.clock_hz + frame.render_cycles;
-    for (const std::string& field : {text_of(i), in_csv(frame.input.filename().string()), text_of(frame.triangles),
-                                     text_of(frame.lambda), text_of(frame.build_cycles), text_of(frame.render_cycles),
-                                     text_of(total_cycles), text_of(frame.build_seconds), text_of(frame.render_seconds),
-                                     text_of(frame.seconds()), text_of(frame.fps())}) {
+    for (const std::string& field :
+         {shortest_text(i), in_csv(frame.input.filename().string()), shortest_text(frame.triangles),
+          shortest_text(frame.lambda), shortest_text(frame.build_cycles), shortest_text(frame.render_cycles),
+          shortest_text(total_cycles), shortest_text(frame.build_seconds), shortest_text(frame.render_seconds),
+          shortest_text(frame.seconds()), shortest_text(frame.fps())}) {
       table += field + ",";
     }
     table += hash_text(frame.hash) + "\n";

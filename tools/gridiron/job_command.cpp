@@ -1,7 +1,6 @@
 // job: a frame becomes the file that a device is given. SPDX-License-Identifier: Apache-2.0
 #include <cstdio>
 #include <cstring>
-#include <string>
 #include <utility>
 
 #include "base/failure.h"
@@ -28,9 +27,8 @@ void run_command(const JobRequest& request) {
   port::FrameJob job{};
   std::memcpy(&job, file.data(), sizeof job);
   if (request.memory_bytes && job.memory_bytes > *request.memory_bytes) {
-    throw Failure(ExitCode::kBadInput, requested.input.path.string() + ": the job needs " +
-                                           words_of_count(job.memory_bytes) + " bytes of memory, --memory allows " +
-                                           words_of_count(*request.memory_bytes));
+    input_error(requested.input.path, "the job needs " + words_of_count(job.memory_bytes) +
+                                          " bytes of memory, --memory allows " + words_of_count(*request.memory_bytes));
   }
   AtomicFiles files;
   files.add(request.output, file);

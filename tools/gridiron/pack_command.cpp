@@ -1,6 +1,5 @@
 // pack: a mesh becomes a scene image. SPDX-License-Identifier: Apache-2.0
 #include <cstdio>
-#include <new>
 
 #include "base/failure.h"
 #include "base/progress.h"
@@ -24,7 +23,7 @@ void run_command(const PackRequest& request) {
   const SceneInput input = read_scene_input(request.scene.input, request.scene.tolerance, PictureRequest{}, kExpected);
   const Mesh* mesh = std::get_if<Mesh>(&input.content);
   if (mesh == nullptr) {
-    throw Failure(ExitCode::kBadInput, input.path.string() + ": is a scene image already; " + kExpected);
+    input_error(input.path, std::string("is a scene image already; ") + kExpected);
   }
 
   if (!request.scene.quiet) tell_notes(input);

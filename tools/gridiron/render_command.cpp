@@ -11,7 +11,6 @@
 #include <utility>
 
 #include "base/progress.h"
-#include "base/stopwatch.h"
 #include "base/words.h"
 #include "commands.h"
 #include "files/atomic_file.h"
@@ -35,15 +34,8 @@ bool has_time(const RenderPlan& plan) {
 }
 
 const char* word_of(sim::Mode mode) {
-  switch (mode) {
-    case sim::Mode::kChecked:
-      return "checked";
-    case sim::Mode::kPlain:
-      return "plain";
-    case sim::Mode::kInstrumented:
-      return "instrumented";
-  }
-  return "unknown";
+  if (mode == sim::Mode::kPlain) return "plain";
+  return mode == sim::Mode::kInstrumented ? "instrumented" : "checked";
 }
 
 HostTime time_of(const HostSeconds& seconds) {
@@ -106,15 +98,12 @@ void print_picture(const RenderPlan& plan, const Picture<std::uint32_t>& color, 
 }
 
 void print_timing(const RenderPlan& plan, const sim::FrameTiming& timing) {
-  double wait_cycles = 0;
-  for (const sim::CoreTiming& core : timing.cores) {
-    for (const double cycles : core.dma_wait_cycles) wait_cycles += cycles;
-  }
   const double core_cycles = timing.frame_cycles * static_cast<double>(timing.cores.size());
   std::printf("%s, %s: %s cycles, %.2f ms, %.2f frames/s; %.2f %% of the cycles wait for DMA\n",
               std::string(plan.scene.machine->name).c_str(), words_of_count(timing.cores.size(), "core").c_str(),
               words_of_count(static_cast<std::uint64_t>(timing.frame_cycles)).c_str(), timing.seconds * 1e3,
-              timing.seconds > 0 ? 1 / timing.seconds : 0.0, core_cycles > 0 ? 100 * wait_cycles / core_cycles : 0.0);
+              timing.seconds > 0 ? 1 / timing.seconds : 0.0,
+              core_cycles > 0 ? 100 * wait_cycles_of(timing) / core_cycles : 0.0);
 }
 
 Picture<std::uint32_t> plane_words(const FrameMemory& frame, const RenderPlan& plan, const sim::MemoryRegion& plane) {

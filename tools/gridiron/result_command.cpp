@@ -32,8 +32,7 @@ namespace {
 void require_planes(const ResultRequest& request, const OpenJob& job) {
   const auto require = [&request](const char* option, bool wanted, std::uint64_t address) {
     if (wanted && address == 0) {
-      throw Failure(ExitCode::kUsage,
-                    std::string(option) + ": " + request.job.string() + " was made without " + option);
+      usage_error(std::string(option) + ": " + request.job.string() + " was made without " + option);
     }
   };
   require("--depth", request.outputs.depth.has_value(), job.job.depth_address);
@@ -96,7 +95,7 @@ void run_command(const ResultRequest& request) {
   const OpenResult result = read_result_file(request.result, job);
   const auto is_counted = [](const port::TileResult& tile) { return tile.instructions != 0; };
   if (request.predict && !std::ranges::all_of(result.tiles, is_counted)) {
-    throw Failure(ExitCode::kUsage, "--predict: " + request.result.string() + " has no counted instructions");
+    usage_error("--predict: " + request.result.string() + " has no counted instructions");
   }
   const auto unseen = find_unseen(job, result);  // before the comparison takes the job's bytes
   std::optional<JobComparison> comparison;

@@ -2,14 +2,8 @@
 // Memory: std::string. Threads: any, no shared state. SPDX-License-Identifier: Apache-2.0
 #include "report/report.h"
 
-#include <cstddef>
-#include <cstdint>
 #include <nlohmann/json.hpp>
-#include <span>
-#include <string>
-#include <string_view>
 #include <utility>
-#include <vector>
 
 namespace gridiron::tool {
 
@@ -101,15 +95,9 @@ Json work_json(const sim::WorkTotals& work, const sim::EngineWork& engine) {
 
 Json stages_json(const std::vector<sim::CoreTiming>& cores) {
   Json stages = Json::array();
+  const std::array<sim::StageTiming, kStageCount> sums = stage_sums(cores);
   for (std::uint32_t stage = 0; stage < kStageCount; ++stage) {
-    sim::StageTiming sum;
-    for (const sim::CoreTiming& core : cores) {
-      const sim::StageTiming& part = core.stages[stage];
-      sum.compute_cycles += part.compute_cycles;
-      sum.wait_cycles += part.wait_cycles;
-      sum.bytes_in += part.bytes_in;
-      sum.bytes_out += part.bytes_out;
-    }
+    const sim::StageTiming& sum = sums[stage];
     stages.push_back(Json{{"name", std::string(stage_name(static_cast<Stage>(stage)))},
                           {"compute_cycles", sum.compute_cycles},
                           {"dma_wait_cycles", sum.wait_cycles},
@@ -177,6 +165,31 @@ std::string report_json(const ReportInput& input) {
   if (input.depth_hash) report["depth_hash"] = hash_text(*input.depth_hash);
   if (input.ids_hash) report["ids_hash"] = hash_text(*input.ids_hash);
   return report.dump(2, ' ', false, Json::error_handler_t::replace) + "\n";
+}
+
+std::array<sim::StageTiming, kStageCount> stage_sums(std::span<const sim::CoreTiming> cores) {
+  std::array<sim::StageTiming, kStageCount> sums{};
+  for (const sim::CoreTiming& core : cores) {
+    for (std::size_t i = 0; i < kStageCount; ++i) {
+      sim::StageTiming& sum = sums[i];
+      const sim::StageTiming& part = core.stages[i];
+      sum.compute_cycles += part.compute_cycles;
+      sum.wait_cycles += part.wait_cycles;
+      sum.gets += part.gets;
+      sum.puts += part.puts;
+      sum.bytes_in += part.bytes_in;
+      sum.bytes_out += part.bytes_out;
+    }
+  }
+  return sums;
+}
+
+double wait_cycles_of(const sim::FrameTiming& timing) {
+  double cycles = 0;
+  for (const sim::CoreTiming& core : timing.cores) {
+    for (const double wait : core.dma_wait_cycles) cycles += wait;
+  }
+  return cycles;
 }
 
 // clang-format off

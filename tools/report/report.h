@@ -9,6 +9,7 @@
 #include <gridiron/sim/replay.h>
 #include <gridiron/sim/trace.h>
 
+#include <array>
 #include <cstdint>
 #include <optional>
 #include <span>
@@ -75,6 +76,12 @@ struct ReportInput {
 
 /// @returns the report as JSON text, two spaces of indentation, keys in the documented order, newline at the end.
 [[nodiscard]] std::string report_json(const ReportInput& input);
+
+/// @returns the sums over the cores, by Stage.
+[[nodiscard]] std::array<sim::StageTiming, kStageCount> stage_sums(std::span<const sim::CoreTiming> cores);
+
+/// @returns core cycles stalled for transfers, all cores.
+[[nodiscard]] double wait_cycles_of(const sim::FrameTiming& timing);
 
 /// @returns the stable snake_case name of a stage of a frame with effects.
 [[nodiscard]] std::string_view stage_name(Stage stage);

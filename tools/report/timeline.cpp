@@ -3,11 +3,7 @@
 #include "report/timeline.h"
 
 #include <array>
-#include <charconv>
-#include <cstddef>
-#include <cstdint>
 #include <nlohmann/json.hpp>
-#include <string>
 #include <string_view>
 #include <utility>
 
@@ -21,12 +17,6 @@ using sim::TimelineSpan;
 
 constexpr double kFirstThresholdCycles = 64;
 constexpr double kThresholdFactor = 4;
-
-void append_number(std::string& text, std::uint64_t value) {
-  std::array<char, 20> digits;
-  const auto result = std::to_chars(digits.data(), digits.data() + digits.size(), value);
-  text.append(digits.data(), result.ptr);
-}
 
 /// Writes the events of one frame with one threshold.
 class Writer {
@@ -54,11 +44,9 @@ class Writer {
       if (text_.size() > max_bytes) return false;
     }
     write_run();
-    text_ += "\n],\n\"displayTimeUnit\":\"ns\",\n\"otherData\":{\"version\":";
-    append_number(text_, kTimelineVersion);
-    text_ += ",\"machine\":" + quoted(machine.name) + ",\"merged_below_cycles\":";
-    append_number(text_, static_cast<std::uint64_t>(threshold_cycles_));
-    text_ += "}}\n";
+    text_ += "\n],\n\"displayTimeUnit\":\"ns\",\n\"otherData\":{\"version\":" + std::to_string(kTimelineVersion) +
+             ",\"machine\":" + quoted(machine.name) +
+             ",\"merged_below_cycles\":" + std::to_string(static_cast<std::uint64_t>(threshold_cycles_)) + "}}\n";
     return text_.size() <= max_bytes;
   }
 
@@ -100,12 +88,10 @@ class Writer {
     } else if (run_.span_count > 1) {
       begin_event("mixed", run_.first.core, run_.first.begin_cycles, run_.end_cycles);
       write_tile(run_.first.tile_id);
-      text_ += run_.first.tile_id != sim::kNoTile ? ",\"spans\":" : "\"spans\":";
-      append_number(text_, run_.span_count);
+      text_ += (run_.first.tile_id != sim::kNoTile ? ",\"spans\":" : "\"spans\":") + std::to_string(run_.span_count);
       constexpr std::array<std::string_view, 3> kKeys = {",\"init_us\":", ",\"compute_us\":", ",\"wait_us\":"};
       for (std::size_t kind = 0; kind < kKeys.size(); ++kind) {
-        text_ += kKeys[kind];
-        append_microseconds(units(run_.cycles[kind]));
+        text_.append(kKeys[kind]).append(microseconds(units(run_.cycles[kind])));
       }
       text_ += "}}";
     }
@@ -131,11 +117,9 @@ class Writer {
   void write_names(const sim::FrameTiming& timing, const sim::MachineProfile& machine) {
     text_ += "{\"name\":\"process_name\",\"ph\":\"M\",\"pid\":0,\"args\":{\"name\":" + quoted(machine.name) + "}}";
     for (std::size_t core = 0; core < timing.cores.size(); ++core) {
-      text_ += ",\n{\"name\":\"thread_name\",\"ph\":\"M\",\"pid\":0,\"tid\":";
-      append_number(text_, core);
-      text_ += ",\"args\":{\"name\":\"core ";
-      append_number(text_, core);
-      text_ += "\"}}";
+      const std::string number = std::to_string(core);
+      text_ += ",\n{\"name\":\"thread_name\",\"ph\":\"M\",\"pid\":0,\"tid\":" + number + ",\"args\":{\"name\":\"core " +
+               number + "\"}}";
     }
   }
 
@@ -143,30 +127,20 @@ class Writer {
   void begin_event(std::string_view name, std::uint32_t core, double begin_cycles, double end_cycles) {
     const std::uint64_t begin = units(begin_cycles);
     text_.append(",\n{\"name\":\"").append(name).append("\",\"ph\":\"X\",\"pid\":0,\"tid\":");
-    append_number(text_, core);
-    text_ += ",\"ts\":";
-    append_microseconds(begin);
-    text_ += ",\"dur\":";
-    append_microseconds(units(end_cycles) - begin);
-    text_ += ",\"args\":{";
+    text_ += std::to_string(core) + ",\"ts\":" + microseconds(begin) +
+             ",\"dur\":" + microseconds(units(end_cycles) - begin) + ",\"args\":{";
   }
 
   void write_tile(std::uint32_t tile_id) {
-    if (tile_id == sim::kNoTile) return;
-    text_ += "\"tile\":";
-    append_number(text_, tile_id);
+    if (tile_id != sim::kNoTile) text_ += "\"tile\":" + std::to_string(tile_id);
   }
 
   std::uint64_t units(double cycles) const { return static_cast<std::uint64_t>(cycles * units_per_cycle_ + 0.5); }
 
-  void append_microseconds(std::uint64_t units) {
-    append_number(text_, units / kUnitsPerMicrosecond);
-    std::uint64_t rest = units % kUnitsPerMicrosecond;
-    text_ += '.';
-    for (std::uint64_t digit = kUnitsPerMicrosecond / 10; digit > 0; digit /= 10) {
-      text_ += static_cast<char>('0' + rest / digit);
-      rest %= digit;
-    }
+  static std::string microseconds(std::uint64_t units) {
+    // The leading 1 keeps the zeros behind the point.
+    const std::string rest = std::to_string(kUnitsPerMicrosecond + units % kUnitsPerMicrosecond);
+    return std::to_string(units / kUnitsPerMicrosecond) + "." + rest.substr(1);
   }
 
   double units_per_cycle_;

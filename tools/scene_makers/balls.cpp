@@ -47,9 +47,7 @@ void add_ball(std::string& text, const Directions& directions, const Point& cent
 }  // namespace
 
 std::string make_balls(std::uint32_t size) {
-  std::string text = "# balls, size " + std::to_string(size) + ": made by make_scene\n";
-  add_view(text, {2.1, 1.3, 1.7}, {0, 0, 0}, {0, 0, 1}, 0.01);
-  add_line(text, "b", {0.078, 0.361, 0.753});
+  std::string text = begin_scene("balls", size, {2.1, 1.3, 1.7}, {0, 0, 0}, {0, 0, 1}, 0.01);
   add_line(text, "l", {4, 3, 2});
   add_line(text, "l", {1, -4, 4});
   add_line(text, "l", {-3, 1, 5});

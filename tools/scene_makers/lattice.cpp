@@ -5,9 +5,7 @@
 namespace gridiron::scene_makers {
 
 std::string make_lattice(std::uint32_t size) {
-  std::string text = "# lattice, size " + std::to_string(size) + ": made by make_scene\n";
-  add_view(text, {1.75, 1.55, 3}, {0.5, 0.5, 0.5}, {0, 1, 0}, 0.01);
-  add_line(text, "b", {0.078, 0.361, 0.753});
+  std::string text = begin_scene("lattice", size, {1.75, 1.55, 3}, {0.5, 0.5, 0.5}, {0, 1, 0}, 0.01);
   add_line(text, "l", {4, 5, 6});
   add_line(text, "l", {-3, 6, 4});
   const double step = 1.0 / size, ball = 0.2 * step, tube = 0.06 * step;

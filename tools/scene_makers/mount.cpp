@@ -71,9 +71,7 @@ class Heights {
 }  // namespace
 
 std::string make_mount(std::uint32_t size) {
-  std::string text = "# mount, size " + std::to_string(size) + ": made by make_scene\n";
-  add_view(text, {-1.6, 1.6, 1.7}, {0, 0, 0}, {0, 0, 1}, 0.01);
-  add_line(text, "b", {0.078, 0.361, 0.753});
+  std::string text = begin_scene("mount", size, {-1.6, 1.6, 1.7}, {0, 0, 0}, {0, 0, 1}, 0.01);
   add_line(text, "l", {-100, -100, 100});
 
   // Four touching balls of glass: at the corners of a tetrahedron, one on top.

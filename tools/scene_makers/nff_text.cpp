@@ -18,14 +18,17 @@ void add_line(std::string& text, const char* word, std::initializer_list<double>
   text += '\n';
 }
 
-void add_view(std::string& text, const Point& from, const Point& at, const Point& up, double hither) {
-  text += "v\n";
+std::string begin_scene(const std::string& name, std::uint32_t size, const Point& from, const Point& at,
+                        const Point& up, double hither) {
+  std::string text = "# " + name + ", size " + std::to_string(size) + ": made by make_scene\nv\n";
   add_line(text, "from", {from[0], from[1], from[2]});
   add_line(text, "at", {at[0], at[1], at[2]});
   add_line(text, "up", {up[0], up[1], up[2]});
   add_line(text, "angle", {45});
   add_line(text, "hither", {hither});
   add_line(text, "resolution", {512, 512});
+  add_line(text, "b", {0.078, 0.361, 0.753});
+  return text;
 }
 
 void add_sphere(std::string& text, const Point& center, double radius) {

@@ -2,8 +2,6 @@
 // Memory: std::string. Threads: any. SPDX-License-Identifier: Apache-2.0
 #pragma once
 
-#include <array>
-#include <cstdint>
 #include <initializer_list>
 #include <string>
 
@@ -14,8 +12,10 @@ namespace gridiron::scene_makers {
 /// Adds "word number number ...\n"; numbers are rounded to float and written as the shortest exact decimals.
 void add_line(std::string& text, const char* word, std::initializer_list<double> numbers);
 
-/// Adds a view with the angle 45 and 512x512 pixels, which all these scenes have.
-void add_view(std::string& text, const Point& from, const Point& at, const Point& up, double hither);
+/// @returns the beginning that all these scenes have: a comment, a view with the angle 45 and 512x512 pixels, and the
+/// background.
+[[nodiscard]] std::string begin_scene(const std::string& name, std::uint32_t size, const Point& from, const Point& at,
+                                      const Point& up, double hither);
 
 /// Adds a sphere, a polygon, a cone.
 void add_sphere(std::string& text, const Point& center, double radius);

@@ -93,11 +93,9 @@ void add_object(std::string& text, const Rings& rings, const Point& center) {
 }  // namespace
 
 std::string make_rings(std::uint32_t size) {
-  std::string text = "# rings, size " + std::to_string(size) + ": made by make_scene\n";
   const double eye_y = -4.5, wall_y = kSpacing * size;
   const Point from = {-1, eye_y, 0.5};
-  add_view(text, from, from + Point{0, 1, 0}, {0, 0, 1}, 1);
-  add_line(text, "b", {0.078, 0.361, 0.753});
+  std::string text = begin_scene("rings", size, from, from + Point{0, 1, 0}, {0, 0, 1}, 1);
   add_line(text, "l", {3, eye_y, 3});
   add_line(text, "l", {-4, eye_y, 1});
   add_line(text, "l", {2, eye_y, -4});

@@ -1,6 +1,4 @@
 // Sea shells of balls along spirals. SPDX-License-Identifier: Apache-2.0
-#include <cmath>
-
 #include "scene_makers/nff_text.h"
 #include "scene_makers/procedural.h"
 
@@ -29,9 +27,7 @@ void add_shell(std::string& text, const Point& tip, double radius, std::uint32_t
 }  // namespace
 
 std::string make_shells(std::uint32_t size) {
-  std::string text = "# shells, size " + std::to_string(size) + ": made by make_scene\n";
-  add_view(text, {0, -3.2 * size, 3.0 * size}, {0, 0, 0.5}, {0, 0, 1}, 0.01);
-  add_line(text, "b", {0.078, 0.361, 0.753});
+  std::string text = begin_scene("shells", size, {0, -3.2 * size, 3.0 * size}, {0, 0, 0.5}, {0, 0, 1}, 0.01);
   add_line(text, "l", {2.0 * size, -3.0 * size, 5.0 * size});
   add_line(text, "f", {0.9, 0.8, 0.6, 1, 0, 0, 0, 0});
   const double reach = 1.5 * size + 1.5;

@@ -26,10 +26,8 @@ void add_tetrahedron(std::string& text, const Point& center, double scale, std::
 }  // namespace
 
 std::string make_tetra(std::uint32_t size) {
-  std::string text = "# tetra, size " + std::to_string(size) + ": made by make_scene\n";
-  add_view(text, {1.022846, -3.177154, -2.174512}, {-0.004103, -0.004103, 0.216539}, {-0.816497, -0.816497, 0.816497},
-           1);
-  add_line(text, "b", {0.078, 0.361, 0.753});
+  std::string text = begin_scene("tetra", size, {1.022846, -3.177154, -2.174512}, {-0.004103, -0.004103, 0.216539},
+                                 {-0.816497, -0.816497, 0.816497}, 1);
   add_line(text, "l", {2, -18, -5});
   add_line(text, "f", {1, 0.2, 0.2, 1, 0, 0, 0, 0});
   add_tetrahedron(text, {0, 0, 0}, 1, size);

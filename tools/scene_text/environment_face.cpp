@@ -22,15 +22,11 @@ constexpr std::size_t kMostFaceBytes = std::size_t{64} << 20;
 
 static_assert(std::endian::native == std::endian::little, "PFM floats are read as they lie in memory");
 
-[[noreturn]] void fail(const std::filesystem::path& path, const std::string& reason) {
-  throw Failure(ExitCode::kBadInput, path.string() + ": " + reason);
-}
-
 void require_size(const std::filesystem::path& path, std::uint32_t width, std::uint32_t height) {
   const std::string size = std::to_string(width) + "x" + std::to_string(height);
-  if (width != height) fail(path, "is " + size + " texels; a face of an environment cube is square");
+  if (width != height) input_error(path, "is " + size + " texels; a face of an environment cube is square");
   if (width == 0 || width > kMostEnvironmentWidth) {
-    fail(path, "is " + size + " texels; a face has 1 to " + std::to_string(kMostEnvironmentWidth) + " a side");
+    input_error(path, "is " + size + " texels; a face has 1 to " + std::to_string(kMostEnvironmentWidth) + " a side");
   }
 }
 
@@ -46,7 +42,7 @@ struct PngImage : png_image {
 EnvironmentFace read_png(const std::filesystem::path& path, std::span<const std::byte> bytes) {
   PngImage image;
   if (png_image_begin_read_from_memory(&image, bytes.data(), bytes.size()) == 0) {
-    fail(path, std::string("broken PNG file: ") + image.message);
+    input_error(path, std::string("broken PNG file: ") + image.message);
   }
   require_size(path, image.width, image.height);
   image.format = PNG_FORMAT_RGB;
@@ -54,7 +50,7 @@ EnvironmentFace read_png(const std::filesystem::path& path, std::span<const std:
   std::vector<std::uint8_t> channels(PNG_IMAGE_SIZE(image));
   const png_color black{};
   if (png_image_finish_read(&image, &black, channels.data(), 0, nullptr) == 0) {
-    fail(path, std::string("broken PNG file: ") + image.message);
+    input_error(path, std::string("broken PNG file: ") + image.message);
   }
   face.texels.resize(std::size_t{face.width} * face.width);
   for (std::size_t i = 0; i < face.texels.size(); ++i) {
@@ -65,7 +61,8 @@ EnvironmentFace read_png(const std::filesystem::path& path, std::span<const std:
 }
 #else
 [[noreturn]] EnvironmentFace read_png(const std::filesystem::path& path, std::span<const std::byte>) {
-  fail(path, "is a PNG file, which this build of gridiron cannot read (GRIDIRON_WITH_PNG=OFF); a PFM file it can");
+  input_error(path,
+              "is a PNG file, which this build of gridiron cannot read (GRIDIRON_WITH_PNG=OFF); a PFM file it can");
 }
 #endif
 
@@ -84,7 +81,7 @@ Number take_number(const std::filesystem::path& path, std::string_view& text) {
   Number number{};
   const auto [end, error] = std::from_chars(word.data(), word.data() + word.size(), number);
   if (word.empty() || error != std::errc{} || end != word.data() + word.size())
-    fail(path, "broken header of a PFM file");
+    input_error(path, "broken header of a PFM file");
   return number;
 }
 
@@ -95,11 +92,11 @@ EnvironmentFace read_pfm(const std::filesystem::path& path, std::span<const std:
   face.width = take_number<std::uint32_t>(path, text);
   require_size(path, face.width, take_number<std::uint32_t>(path, text));
   const auto scale = take_number<double>(path, text);
-  if (!std::isfinite(scale) || scale == 0) fail(path, "the scale of a PFM file is a finite number other than 0");
+  if (!std::isfinite(scale) || scale == 0) input_error(path, "the scale of a PFM file is a finite number other than 0");
   const std::size_t row_floats = face.width * channel_count;
   if (text.size() != row_floats * face.width * sizeof(float)) {
-    fail(path, "holds " + std::to_string(text.size()) + " bytes of texels instead of " +
-                   std::to_string(row_floats * face.width * sizeof(float)));
+    input_error(path, "holds " + std::to_string(text.size()) + " bytes of texels instead of " +
+                          std::to_string(row_floats * face.width * sizeof(float)));
   }
   face.texels.resize(std::size_t{face.width} * face.width);
   for (std::uint32_t y = 0; y < face.width; ++y) {
@@ -114,7 +111,7 @@ EnvironmentFace read_pfm(const std::filesystem::path& path, std::span<const std:
         if (scale > 0) bits = __builtin_bswap32(bits);  // in the format a negative scale means little-endian
         const auto value = std::bit_cast<float>(bits);
         if (!(value >= 0) || std::isinf(value)) {
-          fail(path, "texel " + std::to_string(x) + ", " + std::to_string(y) + " is negative, NaN or infinite");
+          input_error(path, "texel " + std::to_string(x) + ", " + std::to_string(y) + " is negative, NaN or infinite");
         }
         texel[static_cast<int>(channel)] = value;
       }
@@ -134,7 +131,7 @@ EnvironmentFace read_environment_face(const std::filesystem::path& path) {
     return text.starts_with(magic) && text.size() > 2 && (text[2] == '\n' || text[2] == '\r' || text[2] == ' ');
   };
   if (is_pfm("PF") || is_pfm("Pf")) return read_pfm(path, file.bytes);
-  fail(path, "is neither a PNG nor a PFM file");
+  input_error(path, "is neither a PNG nor a PFM file");
 }
 
 }  // namespace gridiron::tool

@@ -52,7 +52,7 @@ SceneMesh read_scene_mesh(const std::filesystem::path& path, const std::optional
   config.max_triangles = kMostSceneTriangles;
   const PlyResult counted = count_ply(file.bytes, config);
   if (counted.error != PlyError::kNone) fail(path, counted);
-  if (counted.counts.triangles == 0) throw Failure(ExitCode::kBadInput, path.string() + ": holds no triangle");
+  if (counted.counts.triangles == 0) input_error(path, "holds no triangle");
   stop_if_interrupted();
   SceneMesh mesh;
   mesh.vertices.resize(counted.counts.vertices);
@@ -64,7 +64,7 @@ SceneMesh read_scene_mesh(const std::filesystem::path& path, const std::optional
     const DVec3 place = matrix ? moved(*matrix, DVec3(vertex)) : DVec3(vertex);
     for (int axis = 0; axis < 3; ++axis) {
       if (!(std::fabs(place[axis]) <= kMostSceneCoordinate)) {
-        throw Failure(ExitCode::kBadInput, path.string() + ": a vertex lies farther than 1e18 from the origin");
+        input_error(path, "a vertex lies farther than 1e18 from the origin");
       }
     }
     vertex = Vec3(place);
@@ -80,7 +80,7 @@ void require_regular_file(const std::filesystem::path& path) {
   const std::filesystem::file_status status = std::filesystem::status(path, error);
   // A missing file is reported by the function that opens it.
   if (std::filesystem::exists(status) && !std::filesystem::is_regular_file(status)) {
-    throw Failure(ExitCode::kBadInput, path.string() + ": not a regular file");
+    input_error(path, "not a regular file");
   }
 }
 

@@ -3,6 +3,7 @@
 
 #include <gridiron/base/records.h>
 
+#include <algorithm>
 #include <array>
 #include <cmath>
 #include <glm/geometric.hpp>
@@ -108,8 +109,7 @@ class Parser {
     std::array<bool, kParts.size()> is_given{};
     for (std::size_t i = 0; i < kParts.size(); ++i) {
       const SceneWord word = words_.take_word(entity, "from, at, up, angle, hither and resolution are all given");
-      std::size_t part = 0;
-      while (part < kParts.size() && kParts[part] != word.text) ++part;
+      const auto part = static_cast<std::size_t>(std::ranges::find(kParts, word.text) - kParts.begin());
       if (part == kParts.size()) {
         words_.fail(word.line, in_quotes(word.text) +
                                    " is no part of a view, which has from, at, up, angle, hither and resolution");
@@ -127,12 +127,8 @@ class Parser {
   }
 
   void read_view_part(SceneEntity& entity, const SceneWord& part, SceneView& view) {
-    if (part.text == "from") {
-      view.from = words_.take_point(entity);
-    } else if (part.text == "at") {
-      view.at = words_.take_point(entity);
-    } else if (part.text == "up") {
-      view.up = words_.take_point(entity);
+    if (part.text == "from" || part.text == "at" || part.text == "up") {
+      (part.text == "from" ? view.from : part.text == "at" ? view.at : view.up) = words_.take_point(entity);
     } else if (part.text == "angle") {
       const SceneNumber number = words_.take_number(entity);
       view.angle_degrees = static_cast<float>(number.value);

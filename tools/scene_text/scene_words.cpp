@@ -6,7 +6,7 @@
 #include <cmath>
 #include <system_error>
 
-#include "base/failure.h"
+#include "base/numbers.h"
 #include "base/words.h"
 #include "scene_text/scene_description.h"
 
@@ -54,19 +54,13 @@ bool looks_like_number(std::string_view word) {
 }
 
 std::string text_of_number(double value) {
-  char text[32];
-  const auto [end, error] = std::to_chars(text, text + sizeof text, static_cast<float>(value));
-  return {text, error == std::errc{} ? end : text};
+  return shortest_text(static_cast<float>(value));
 }
 
 SceneWords::SceneWords(std::string_view text, const std::filesystem::path& path) : rest_(text), path_(path) {
   constexpr std::string_view kByteOrderMark = "\xEF\xBB\xBF";
   if (rest_.starts_with(kByteOrderMark)) rest_.remove_prefix(kByteOrderMark.size());
   advance();
-}
-
-void SceneWords::fail(std::uint64_t line, const std::string& reason) const {
-  throw Failure(ExitCode::kBadInput, path_.string() + ":" + std::to_string(line) + ": " + reason);
 }
 
 void SceneWords::advance() {
@@ -121,15 +115,15 @@ SceneNumber SceneWords::take_number(SceneEntity& entity) {
   }
   SceneNumber number{0, next_};
   if (!looks_like_number(next_.text)) {
-    fail(next_.line, in_quotes(next_.text) + " found where " + which() + " of " + name_of(entity) +
-                         line_words(entity) + " is expected");
+    fail(next_.line, in_quotes(next_.text) + " found where " + which() + " of " + name_of(entity) + line_words(entity) +
+                         " is expected");
   }
   std::string_view text = next_.text;
   if (text.front() == '+' && text.size() > 1 && text[1] != '-') text.remove_prefix(1);  // from_chars knows no plus
   const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), number.value);
   if (error == std::errc::result_out_of_range) {
-    fail(next_.line, in_quotes(next_.text) + " is too large or too small a number (" + which() + " of " +
-                         name_of(entity) + ")");
+    fail(next_.line,
+         in_quotes(next_.text) + " is too large or too small a number (" + which() + " of " + name_of(entity) + ")");
   }
   if (error != std::errc{} || end != text.data() + text.size() || !std::isfinite(number.value)) {
     fail(next_.line, in_quotes(next_.text) + " is not a finite number (" + which() + " of " + name_of(entity) + ")");

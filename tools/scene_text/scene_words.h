@@ -9,6 +9,8 @@
 #include <string>
 #include <string_view>
 
+#include "base/failure.h"
+
 namespace gridiron::tool {
 
 /// A word of the text. Empty at the end of the text, with its last line.
@@ -70,7 +72,7 @@ class SceneWords {
   /// Takes `on` or `off`. @returns true for `on`.
   bool take_switch(const SceneEntity& entity);
 
-  [[noreturn]] void fail(std::uint64_t line, const std::string& reason) const;
+  [[noreturn]] void fail(std::uint64_t line, const std::string& reason) const { input_error(path_, line, reason); }
 
  private:
   void advance();

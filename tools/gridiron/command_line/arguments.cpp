@@ -7,7 +7,6 @@
 #include <map>
 #include <memory>
 #include <span>
-#include <string>
 #include <string_view>
 
 #include "base/failure.h"
@@ -82,8 +81,7 @@ Finish add_pack(CLI::App& app) {
   PackRequest& pack = asked->request;
   add_input(app, pack.scene);
   add_grid_options(app, pack.scene, asked->machine);
-  add_parsed(app, "-o,--output", pack.output, parse_path, "a file name", "FILE", "scene image; - is standard output")
-      ->required();
+  add_output(app, "-o,--output", pack.output, "scene image; - is standard output")->required();
   add_choice(app, "--format", pack.format, kFormats, format_help());
   add_quiet(app, pack.scene.quiet);
   return [asked] {
@@ -95,21 +93,16 @@ Finish add_pack(CLI::App& app) {
 Finish add_result(CLI::App& app) {
   const auto asked = std::make_shared<Asked<ResultRequest>>();
   ResultRequest& result = asked->request;
-  const std::string name = "a file name";
-  add_parsed(app, "JOB", result.job, parse_input, name, "",
-             "the device's input, made by job; - is standard input")
-      ->required();
-  add_parsed(app, "RESULT", result.result, parse_input, name, "",
-             "the device's output: the bytes from result_address on; - is standard input")
-      ->required();
-  add_parsed(app, "-o,--output", result.outputs.picture, parse_path, name, "FILE",
+  add_input_file(app, "JOB", result.job, "the device's input, made by job; - is standard input");
+  add_input_file(app, "RESULT", result.result,
+                 "the device's output: the bytes from result_address on; - is standard input");
+  add_output(app, "-o,--output", result.outputs.picture,
              "picture, .png or .pfm; - is standard output, here and for every output");
-  add_parsed(app, "--depth", result.outputs.depth, parse_path, name, "FILE",
+  add_output(app, "--depth", result.outputs.depth,
              "distance of every pixel, .pfm, +inf where nothing is hit; of a job with distances");
-  add_parsed(app, "--ids", result.outputs.ids, parse_path, name, "FILE",
+  add_output(app, "--ids", result.outputs.ids,
              "triangle of every pixel, .pfm, -1 where nothing is hit; of a job with ids");
-  add_parsed(app, "--report", result.outputs.report, parse_path, name, "FILE",
-             "hashes, work and tiles of each core, JSON");
+  add_output(app, "--report", result.outputs.report, "hashes, work and tiles of each core, JSON");
   app.add_flag("--compare", result.compare,
                "render the job on the simulated chip and compare planes, work and transfers; exit code 3 where they "
                "differ; all outputs are written even then");
@@ -165,9 +158,8 @@ Finish add_experiment(CLI::App& app) {
       "out, and without any a teapot and a torus knot are made; effects makes its own scenes");
   add_threads(app, experiment.threads, "no file but host_*.csv, which measures this host, depends on it");
   add_size(app, experiment.size, "pictures in pixels (default 1024x1024; effects: 96x96, at least 16x16)");
-  add_parsed(app, "--largest", experiment.largest_knot, count_between(6'000, 10'000'000),
-             "a whole number from 6000 to 10000000", "N",
-             "paper: triangles of the largest mesh of Table 1 (default 1000000)");
+  add_count(app, "--largest", experiment.largest_knot, 6'000, 10'000'000,
+            "paper: triangles of the largest mesh of Table 1 (default 1000000)");
   add_quiet(app, experiment.quiet);
   return [asked] {
     ExperimentRequest& request = *asked;

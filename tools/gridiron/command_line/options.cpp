@@ -18,19 +18,15 @@ std::optional<CountPair> parse_picture_size(const std::string& text) {
 
 }  // namespace
 
-std::function<std::optional<std::uint32_t>(const std::string&)> count_between(std::uint32_t least, std::uint32_t most) {
-  return [least, most](const std::string& text) {
-    const std::optional<std::uint32_t> count = parse_count(text);
-    return count && *count >= least && *count <= most ? count : std::nullopt;
-  };
-}
-
 std::optional<std::filesystem::path> parse_path(const std::string& text) {
   return text.empty() ? std::nullopt : std::optional<std::filesystem::path>(text);
 }
 
-std::optional<std::filesystem::path> parse_input(const std::string& text) {
-  return text.empty() ? std::nullopt : std::optional(input_path(text));
+void add_input_file(CLI::App& app, const std::string& name, std::filesystem::path& target, const std::string& help) {
+  const auto parse = [](const std::string& text) {
+    return text.empty() ? std::nullopt : std::optional(input_path(text));
+  };
+  add_parsed(app, name, target, parse, "a file name", "", help)->required();
 }
 
 void add_quiet(CLI::App& app, bool& quiet) {
@@ -43,9 +39,8 @@ void add_size(CLI::App& app, std::optional<CountPair>& size, const std::string& 
 }
 
 void add_input(CLI::App& app, SceneRequest& scene) {
-  add_parsed(app, "INPUT", scene.input, parse_input, "a file name", "",
-             "scene: a PLY mesh, a text scene (NFF) or a packed scene, under any name; - is standard input")
-      ->required();
+  add_input_file(app, "INPUT", scene.input,
+                 "scene: a PLY mesh, a text scene (NFF) or a packed scene, under any name; - is standard input");
   const auto tolerance = [](const std::string& text) {
     const std::optional<float> value = parse_float(text);
     return value && *value > 0 ? value : std::nullopt;
@@ -76,14 +71,12 @@ void add_grid_options(CLI::App& app, SceneRequest& scene, std::string& machine) 
   };
   add_parsed(app, "--lambda", scene.lambda, lambda, "a number from 1e-6 to 1e6", "NUMBER",
              "grid cells per triangle; given, it is never reduced to fit the machine's memory");
-  add_parsed(app, "--macro-width", scene.macro_width, count_between(1, kMaxMacroWidth), "a whole number from 1 to 8",
-             "N", "cells along a macrocell's edge");
+  add_count(app, "--macro-width", scene.macro_width, 1, kMaxMacroWidth, "cells along a macrocell's edge");
 }
 
 void add_threads(CLI::App& app, std::optional<std::uint32_t>& threads, const std::string& effect) {
   constexpr std::uint32_t kMostThreads = 256;
-  add_parsed(app, "--threads", threads, count_between(1, kMostThreads), "a whole number from 1 to 256", "N",
-             "host threads (default: the host's); " + effect);
+  add_count(app, "--threads", threads, 1, kMostThreads, "host threads (default: the host's); " + effect);
 }
 
 void add_store(CLI::App& app, std::optional<StoreSize>& store) {

@@ -62,14 +62,28 @@ CLI::Option* add_choice(CLI::App& app, const std::string& name, Target& target, 
   return add_parsed(app, name, target, find, "one of " + list, list, help, words);
 }
 
-/// @returns a parser that accepts the given counts.
-[[nodiscard]] std::function<std::optional<std::uint32_t>(const std::string&)> count_between(std::uint32_t least,
-                                                                                            std::uint32_t most);
+/// Adds an option that takes a whole number, one from least to most.
+template <class Target>
+void add_count(CLI::App& app, const std::string& name, Target& target, std::uint32_t least, std::uint32_t most,
+               const std::string& help) {
+  const auto parse = [least, most](const std::string& text) {
+    const std::optional<std::uint32_t> count = parse_count(text);
+    return count && *count >= least && *count <= most ? count : std::nullopt;
+  };
+  add_parsed(app, name, target, parse, "a whole number from " + std::to_string(least) + " to " + std::to_string(most),
+             "N", help);
+}
 
 [[nodiscard]] std::optional<std::filesystem::path> parse_path(const std::string& text);
 
-/// The same for an input: `-` is standard input.
-[[nodiscard]] std::optional<std::filesystem::path> parse_input(const std::string& text);
+/// Adds an option that takes the name of an output.
+template <class Target>
+CLI::Option* add_output(CLI::App& app, const std::string& name, Target& target, const std::string& help) {
+  return add_parsed(app, name, target, parse_path, "a file name", "FILE", help);
+}
+
+/// Adds an argument that names an input: `-` is standard input.
+void add_input_file(CLI::App& app, const std::string& name, std::filesystem::path& target, const std::string& help);
 
 /// Every command has it, so that scripts can pass it to any of them.
 void add_quiet(CLI::App& app, bool& quiet);

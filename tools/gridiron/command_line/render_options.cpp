@@ -47,28 +47,24 @@ void add_view_options(CLI::App& app, RenderRequest& render) {
 
 void add_output_options(CLI::App& app, RenderRequest& render) {
   FrameOutputs& outputs = render.outputs;
-  const std::string name = "a file name";
-  add_parsed(app, "-o,--output", outputs.picture, parse_path, name, "FILE",
+  add_output(app, "-o,--output", outputs.picture,
              "picture, .png or .pfm (default: INPUT's name with .png, in the current folder); - is standard output, "
              "here and for every output");
-  add_parsed(app, "--depth", outputs.depth, parse_path, name, "FILE",
-             "distance of every pixel, .pfm, +inf where nothing is hit");
-  add_parsed(app, "--ids", outputs.ids, parse_path, name, "FILE",
-             "triangle of every pixel, .pfm, -1 where nothing is hit");
-  add_parsed(app, "--report", outputs.report, parse_path, name, "FILE",
+  add_output(app, "--depth", outputs.depth, "distance of every pixel, .pfm, +inf where nothing is hit");
+  add_output(app, "--ids", outputs.ids, "triangle of every pixel, .pfm, -1 where nothing is hit");
+  add_output(app, "--report", outputs.report,
              "where cycles and bytes went, JSON; without cycles where none are counted (--mode plain, --lanes other "
              "than 4, --tile)");
-  add_parsed(app, "--timeline", outputs.timeline, parse_path, name, "FILE",
+  add_output(app, "--timeline", outputs.timeline,
              "what each core did when, Chrome trace format; not with --mode plain");
-  add_parsed(app, "--repeat", render.repeats, count_between(1, 1000), "a whole number from 1 to 1000", "N",
-             "build and render N times and print the least of the host's times (default 1)");
+  add_count(app, "--repeat", render.repeats, 1, 1000,
+            "build and render N times and print the least of the host's times (default 1)");
   add_quiet(app, render.scene.quiet);
 }
 
 void add_cores(CLI::App& app, std::optional<std::uint32_t>& cores) {
   constexpr std::uint32_t kMostCores = 1024;
-  add_parsed(app, "--cores", cores, count_between(1, kMostCores), "a whole number from 1 to 1024", "N",
-             "cores of the machine (default: the profile's)");
+  add_count(app, "--cores", cores, 1, kMostCores, "cores of the machine (default: the profile's)");
 }
 
 void add_machine_options(CLI::App& app, RenderRequest& render) {
@@ -172,8 +168,7 @@ Finish add_job(CLI::App& app) {
   JobRequest& job = asked->request;
   RenderRequest& render = job.render;
   add_input(app, render.scene);
-  add_parsed(app, "-o,--output", job.output, parse_path, "a file name", "FILE", "the job; - is standard output")
-      ->required();
+  add_output(app, "-o,--output", job.output, "the job; - is standard output")->required();
   const auto base = [](const std::string& text) {
     const std::optional<std::uint64_t> address = parse_address(text);
     return address && *address % 4096 == 0 ? address : std::nullopt;
@@ -188,8 +183,8 @@ Finish add_job(CLI::App& app) {
   add_view_options(app, render);
   app.add_flag("--depth", render.depth_plane, "distances too");
   app.add_flag("--ids", render.ids_plane, "triangle ids too");
-  add_parsed(app, "--cores", render.cores, count_between(1, port::kMostBoardCores), "a whole number from 1 to 16", "N",
-             "cores of the device that there is memory for rays that wait for (default: the profile's)");
+  add_count(app, "--cores", render.cores, 1, port::kMostBoardCores,
+            "cores of the device that there is memory for rays that wait for (default: the profile's)");
   add_store(app, render.layout.store);
   add_algorithm_options(app, render);
   add_quiet(app, render.scene.quiet);

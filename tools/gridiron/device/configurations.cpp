@@ -3,8 +3,6 @@
 
 #include <gridiron/base/records.h>
 
-#include <algorithm>
-
 namespace gridiron::tool {
 namespace {
 

@@ -4,10 +4,8 @@
 #include <algorithm>
 #include <charconv>
 #include <cmath>
-#include <optional>
 #include <string_view>
 #include <system_error>
-#include <type_traits>
 #include <vector>
 
 #include "base/failure.h"
@@ -127,7 +125,7 @@ class Reader {
  private:
   [[noreturn]] void fail(const std::string& reason) const {
     const std::size_t number = std::max<std::size_t>(line_number_, 1);
-    throw Failure(ExitCode::kBadInput, path_.string() + ":" + std::to_string(number) + ": " + reason);
+    input_error(path_, number, reason);
   }
 
   void read_line(std::string_view line) {

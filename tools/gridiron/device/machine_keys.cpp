@@ -3,12 +3,12 @@
 
 #include <report/report.h>
 
-#include <charconv>
 #include <cmath>
 #include <cstddef>
 #include <cstdint>
 #include <iterator>
-#include <system_error>
+
+#include "base/numbers.h"
 
 namespace gridiron::tool {
 namespace {
@@ -109,9 +109,7 @@ std::vector<MachineKey> machine_keys(MachineProfile& machine) {
 }
 
 std::string text_of(double value) {
-  char text[64];
-  const auto [end, error] = std::to_chars(text, text + sizeof text, value);
-  std::string result(text, error == std::errc{} ? end : text);
+  std::string result = shortest_text(value);
   // Shortens 3.2e+09 to 3.2e9.
   const std::size_t exponent = result.find("e+");
   if (exponent != std::string::npos) {

@@ -2,7 +2,6 @@
 #include "chip_frame.h"
 
 #include <optional>
-#include <string>
 #include <utility>
 
 #include "base/failure.h"
@@ -16,8 +15,8 @@ namespace {
 std::optional<std::uint32_t> chosen_tile(const RenderPlan& plan, const FrameRecord& record) {
   if (!plan.tile) return std::nullopt;
   if (plan.tile->x >= record.tiles_x || plan.tile->y >= record.tiles_y) {
-    throw Failure(ExitCode::kUsage, "--tile: the picture has " + words_of_count(record.tiles_x, "column") + " and " +
-                                        words_of_count(record.tiles_y, "row") + " of tiles, counted from 0,0");
+    usage_error("--tile: the picture has " + words_of_count(record.tiles_x, "column") + " and " +
+                words_of_count(record.tiles_y, "row") + " of tiles, counted from 0,0");
   }
   return plan.tile->y * record.tiles_x + plan.tile->x;
 }

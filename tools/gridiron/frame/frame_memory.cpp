@@ -4,10 +4,8 @@
 #include <algorithm>
 #include <cstring>
 #include <new>
-#include <string>
 
 #include "base/failure.h"
-#include "base/stopwatch.h"
 #include "base/words.h"
 #include "frame_pictures.h"
 #include "gridiron/scene/scene_points.h"
@@ -22,11 +20,10 @@ sim::MemoryRegion allocate(sim::SimMemory& memory, const std::filesystem::path& 
     const std::optional<sim::MemoryRegion> region = memory.allocate(bytes, alignment);
     if (region) return *region;
   } catch (const std::bad_alloc&) {
-    throw Failure(ExitCode::kBadInput, input.string() + ": this host has not enough memory: the machine's main " +
-                                           "memory needs " + words_of_bytes(bytes) + " more for the frame");
+    input_error(input, "this host has not enough memory: the machine's main memory needs " + words_of_bytes(bytes) +
+                           " more for the frame");
   }
-  throw Failure(ExitCode::kBadInput,
-                input.string() + ": the main memory of " + words_of_bytes(memory.capacity_bytes()) + " is full");
+  input_error(input, "the main memory of " + words_of_bytes(memory.capacity_bytes()) + " is full");
 }
 
 // Depth of recursion of waiting rays, 1 without any.
@@ -75,10 +72,10 @@ MainAddress place_image(FrameMemory& frame, const SceneInput& input, const Rende
 void make_record(FrameMemory& frame, const std::filesystem::path& source) {
   const Status status = make_frame_record(frame.settings, frame.image, frame.image_address, frame.record);
   if (status == Status::kBadFrame) {
-    throw Failure(ExitCode::kUsage, "view: no camera can be made of it for " + source.string() +
-                                        "; eye, at, up, fov or the scene's bounds are extreme");
+    usage_error("view: no camera can be made of it for " + source.string() +
+                "; eye, at, up, fov or the scene's bounds are extreme");
   }
-  if (status != Status::kOk) throw Failure(ExitCode::kBadInput, source.string() + ": " + words_of(status));
+  if (status != Status::kOk) input_error(source, words_of(status));
 }
 
 void store_record(FrameMemory& frame) {

@@ -9,7 +9,6 @@
 #include <gridiron/sim/sim_memory.h>
 
 #include <cstdint>
-#include <span>
 
 #include "base/stopwatch.h"
 #include "gridiron/scene/scene_input.h"

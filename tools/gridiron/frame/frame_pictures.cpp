@@ -2,16 +2,18 @@
 #include "frame_pictures.h"
 
 #include <gridiron/base/math.h>
+#include <gridiron/frame/frame_setup.h>
 #include <report/report.h>
 
+#include <algorithm>
 #include <bit>
+#include <cstring>
 #include <limits>
 #include <string>
 #include <tuple>
 
 #include "base/failure.h"
 #include "base/words.h"
-#include "untile.h"
 
 namespace gridiron::tool {
 namespace {
@@ -28,7 +30,20 @@ Picture<float> convert_words(const Picture<std::uint32_t>& words, Convert conver
 
 Picture<std::uint32_t> words_of_plane(const FrameRecord& frame, std::span<const std::byte> plane,
                                       std::optional<CountPair> tile) {
-  return untile<std::uint32_t>(frame, plane, tile, [](std::uint32_t word) { return word; });
+  const std::uint32_t first_x = tile ? tile->x * frame.tile_width : 0;
+  const std::uint32_t first_y = tile ? tile->y * frame.tile_width : 0;
+  Picture<std::uint32_t> picture;
+  picture.width = tile ? std::min(frame.tile_width, frame.width - first_x) : frame.width;
+  picture.height = tile ? std::min(frame.tile_width, frame.height - first_y) : frame.height;
+  picture.pixels.resize(std::size_t{picture.width} * picture.height);
+  std::uint32_t* word = picture.pixels.data();
+  for (std::uint32_t y = first_y; y < first_y + picture.height; ++y) {
+    for (std::uint32_t x = first_x; x < first_x + picture.width; ++x, ++word) {
+      const std::uint64_t index = output_plane_index(frame.width, frame.tile_width, x, y);
+      std::memcpy(word, plane.data() + index * sizeof *word, sizeof *word);
+    }
+  }
+  return picture;
 }
 
 Picture<float> depth_picture(const Picture<std::uint32_t>& words) {
@@ -47,8 +62,8 @@ Picture<float> id_picture(const Picture<std::uint32_t>& words) {
 void require_exact_ids(const std::filesystem::path& input, std::uint64_t triangle_count) {
   constexpr std::uint64_t kMostExactIds = 1u << 24;
   if (triangle_count <= kMostExactIds) return;
-  throw Failure(ExitCode::kBadInput, input.string() + ": --ids: " + words_of_count(triangle_count) +
-                                         " triangles; the floats of a PFM file distinguish at most 16,777,216");
+  input_error(input, "--ids: " + words_of_count(triangle_count) +
+                         " triangles; the floats of a PFM file distinguish at most 16,777,216");
 }
 
 void require_same_planes(const PlaneHashes& first, const PlaneHashes& again, std::uint32_t repeat) {

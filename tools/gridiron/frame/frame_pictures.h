@@ -15,7 +15,10 @@
 
 namespace gridiron::tool {
 
-/// The words of a plane, unchanged: colours 0xAABBGGRR, bits of distances, triangle ids. Parameters: those of untile().
+/// Reads a plane of a frame, or one tile of it: colours 0xAABBGGRR, bits of distances, triangle ids.
+///
+/// @param plane  tile-major, output_plane_bytes() of the frame; one 32-bit word a pixel.
+/// @param tile   column and row of the tile to read, clipped to the frame; nothing: the whole frame.
 [[nodiscard]] Picture<std::uint32_t> words_of_plane(const FrameRecord& frame, std::span<const std::byte> plane,
                                                     std::optional<CountPair> tile = std::nullopt);
 

@@ -66,10 +66,9 @@ sim::ChipOptions options_of(const OpenJob& open, const OpenResult& result, const
     options.lanes = kUsualLanes;
   }
   if (!sim::is_built(layout, options.mode, options.lanes)) {
-    throw Failure(ExitCode::kUsage, "--compare: the simulator has no kernel for the job's layout, a store of " +
-                                        words_of_bytes(open.job.store_bytes) + " with tiles of " +
-                                        std::to_string(layout.tile_width) + " and packets of " +
-                                        std::to_string(layout.packet_width) + " pixels");
+    usage_error("--compare: the simulator has no kernel for the job's layout, a store of " +
+                words_of_bytes(open.job.store_bytes) + " with tiles of " + std::to_string(layout.tile_width) +
+                " and packets of " + std::to_string(layout.packet_width) + " pixels");
   }
   options.threads = threads;
   options.store = layout.store;

@@ -13,6 +13,7 @@
 #include "base/failure.h"
 #include "base/words.h"
 #include "files/byte_reader.h"
+#include "files/file_kind.h"
 #include "gridiron/scene/image_damage.h"
 #include "job_rules.h"
 
@@ -153,16 +154,12 @@ void check_parts(const ByteReader& reader, OpenJob& open) {
   static_cast<void>(check_scene(job, open.record, open.image, require));
 }
 
-bool starts_with(std::span<const std::byte> bytes, std::uint32_t magic) {
-  return bytes.size() >= sizeof(FrameJob::magic) && std::memcmp(bytes.data(), &magic, sizeof(FrameJob::magic)) == 0;
-}
-
 }  // namespace
 
 std::vector<std::byte> make_job_file(FrameMemory& frame, const RenderPlan& plan, std::uint64_t base_address) {
   FrameJob job = plan_job(frame, plan);
   if (job.memory_bytes > std::numeric_limits<std::uint64_t>::max() - base_address) {
-    throw Failure(ExitCode::kUsage, "--base: the job would end behind the last address");
+    usage_error("--base: the job would end behind the last address");
   }
   move_job(job, base_address);
   const FrameRecord record = make_record(frame, job);
@@ -189,7 +186,7 @@ sim::LayoutChoice OpenJob::layout() const {
 OpenJob read_job_file(const std::filesystem::path& path) {
   OpenJob open;
   InputReader input(path, "expected a job, as 'gridiron job' makes it");
-  if (!starts_with(input.head(), port::kFrameJobMagic)) input.refuse_content();
+  if (!starts_with_word(input.head(), port::kFrameJobMagic)) input.refuse_content();
   open.file = input.read_all();
   const ByteReader reader(path, open.file.bytes);
   reader.require(open.file.bytes.size() >= sizeof(FrameJob), open.file.bytes.size(),

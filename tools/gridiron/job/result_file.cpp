@@ -13,6 +13,7 @@
 #include "base/failure.h"
 #include "base/words.h"
 #include "files/byte_reader.h"
+#include "files/file_kind.h"
 #include "gridiron/scene/effect_names.h"
 
 namespace gridiron::tool {
@@ -110,10 +111,7 @@ OpenResult read_result_file(const std::filesystem::path& path, const OpenJob& op
   const port::FrameJob& job = open.job;
   OpenResult result;
   InputReader input(path, "expected the result of a job: the bytes that a device wrote");
-  const std::uint32_t magic = port::kFrameResultMagic;
-  if (input.head().size() < sizeof magic || std::memcmp(input.head().data(), &magic, sizeof magic) != 0) {
-    input.refuse_content();
-  }
+  if (!starts_with_word(input.head(), port::kFrameResultMagic)) input.refuse_content();
   result.file = input.read_all();
   const std::span<const std::byte> file = result.file.bytes;
   const ByteReader reader(path, file);

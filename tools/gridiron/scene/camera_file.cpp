@@ -19,9 +19,7 @@ struct Line {
   const std::filesystem::path& path;
   std::size_t number;
 
-  [[noreturn]] void fail(const std::string& reason) const {
-    throw Failure(ExitCode::kBadInput, path.string() + ":" + std::to_string(number) + ": " + reason);
-  }
+  [[noreturn]] void fail(const std::string& reason) const { input_error(path, number, reason); }
 };
 
 // Words of a line without its comment.

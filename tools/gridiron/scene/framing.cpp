@@ -20,7 +20,6 @@ namespace {
 // nearest eye: d = -(A + B) / (2 s), e = (A - B) / 2. Width and height each have such a d; the lesser one suits both.
 // In the other direction, the slope s at which d = -(A(s) + B(s)) / (2 s) centres the points. Only corners of the
 // convex hull of all (u, z) decide A and B. Source: own.
-// corners of the convex hull of all (u, z) decide A and B. Source: own.
 
 using DVec2 = glm::dvec2;
 
@@ -320,10 +319,8 @@ DVec3 middle_of(const PointSource& points) {
   DVec3 least(std::numeric_limits<double>::infinity()), most(-std::numeric_limits<double>::infinity());
   points([&least, &most](std::span<const Vec3> some) {
     for (const Vec3& point : some) {
-      for (int axis = 0; axis < 3; ++axis) {
-        least[axis] = std::min(least[axis], double{point[axis]});
-        most[axis] = std::max(most[axis], double{point[axis]});
-      }
+      least = glm::min(least, DVec3(point));
+      most = glm::max(most, DVec3(point));
     }
   });
   return 0.5 * (least + most);

@@ -75,7 +75,7 @@ void check_hither(const SceneInput& input, const Camera& camera, std::uint32_t w
   char text[160];
   std::snprintf(text, sizeof text, "hither %g would cut what is seen from %.8g on; this renderer has no near plane",
                 static_cast<double>(view.hither), cut->depth);
-  throw Failure(ExitCode::kBadInput, input.path.string() + ":" + std::to_string(view.line) + ": " + text);
+  input_error(input.path, view.line, text);
 }
 
 }  // namespace gridiron::tool

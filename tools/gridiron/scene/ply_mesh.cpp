@@ -38,7 +38,7 @@ Mesh read_ply_mesh(std::span<const std::byte> bytes, const std::filesystem::path
 }
 
 Mesh read_ply_mesh(const std::filesystem::path& path) {
-  const InputFile file = read_input_file(path, kMeshExpected);
+  const InputFile file = read_input_file(path, "expected a PLY mesh");
   return name_in_shortage(path, "read it", [&] { return read_ply_mesh(file.bytes, path); });
 }
 

@@ -9,23 +9,17 @@
 #include <cstdio>
 #include <memory>
 #include <new>
-#include <string>
 #include <string_view>
 #include <utility>
 
 #include "base/failure.h"
 #include "base/progress.h"
-#include "base/stopwatch.h"
 #include "base/words.h"
 #include "files/interrupt.h"
 #include "image_damage.h"
 
 namespace gridiron::tool {
 namespace {
-
-[[noreturn]] void fail(const std::filesystem::path& path, const std::string& reason) {
-  throw Failure(ExitCode::kBadInput, path.string() + ": " + reason);
-}
 
 PackedScene open_packed_scene(InputFile file, const std::filesystem::path& path) {
   PackedScene packed{std::move(file), {}};
@@ -62,8 +56,8 @@ TextScene read_text_scene(const InputFile& file, const std::filesystem::path& pa
   }
   const std::string_view words(reinterpret_cast<const char*>(file.bytes.data()), file.bytes.size());
   SceneDescription scene = read_scene_text(words, path, options);
-  TextScene text{scene.view,       take_scene_effects(scene), std::move(scene.notes),
-                 scene.note_count, std::move(scene.files),    std::move(scene.roundness)};
+  TextScene text{scene.view, take_scene_effects(scene), std::move(scene.notes), scene.note_count,
+                 std::move(scene.roundness)};
   mesh.vertices = std::move(scene.geometry.vertices);
   mesh.triangles = std::move(scene.geometry.triangles);
   return text;
@@ -169,12 +163,6 @@ SceneInput read_scene_input(const std::filesystem::path& path, std::optional<flo
   return input;
 }
 
-std::vector<std::filesystem::path> files_of(const SceneInput& input) {
-  std::vector<std::filesystem::path> files = {input.path};
-  if (input.text) files.insert(files.end(), input.text->files.begin(), input.text->files.end());
-  return files;
-}
-
 void tell_notes(const SceneInput& input) {
   if (!input.text) return;
   for (const SceneNote& note : input.text->notes) {
@@ -250,33 +238,35 @@ GridChoice choose_grid(const SceneInput& input, const Mesh& mesh, const SceneReq
                : fit_scene_image(mesh.view(), choice.parameters, limits.budget_bytes, choice.need, effects, marks);
   }();
   if (status == Status::kMemoryTooSmall) {
-    fail(input.path, "the scene needs more than " + words_of_bytes(choice.need.image_bytes) + " at lambda " +
-                         text_of(choice.wanted_lambda) + "; " + words_of_budget(*request.machine, limits.budget_bytes) +
-                         "; a smaller --lambda needs less" + (input.text ? ", and so does a greater --tolerance" : ""));
+    input_error(input.path,
+                "the scene needs more than " + words_of_bytes(choice.need.image_bytes) + " at lambda " +
+                    text_of(choice.wanted_lambda) + "; " + words_of_budget(*request.machine, limits.budget_bytes) +
+                    "; a smaller --lambda needs less" + (input.text ? ", and so does a greater --tolerance" : ""));
   }
   if (status == Status::kTooManyTriangles) {
     const float lambda = request.lambda ? choice.wanted_lambda : kLeastLambda;
-    fail(input.path, std::string(words_of(status)) + " at lambda " + text_of(lambda) +
-                         (request.lambda ? "; a smaller --lambda needs fewer" : "") +
-                         (input.text ? "; a greater --tolerance makes fewer triangles" : ""));
+    input_error(input.path, std::string(words_of(status)) + " at lambda " + text_of(lambda) +
+                                (request.lambda ? "; a smaller --lambda needs fewer" : "") +
+                                (input.text ? "; a greater --tolerance makes fewer triangles" : ""));
   }
   if (status == Status::kNoTriangles) {
-    fail(input.path, mesh.triangles.empty()
-                         ? "no triangles: a point cloud of " + words_of_count(mesh.vertices.size()) +
-                               (mesh.vertices.size() == 1 ? " vertex" : " vertices")
-                         : "no triangle to trace: all " + words_of_count(mesh.triangles.size()) + " have zero area");
+    input_error(input.path,
+                mesh.triangles.empty()
+                    ? "no triangles: a point cloud of " + words_of_count(mesh.vertices.size()) +
+                          (mesh.vertices.size() == 1 ? " vertex" : " vertices")
+                    : "no triangle to trace: all " + words_of_count(mesh.triangles.size()) + " have zero area");
   }
-  if (status != Status::kOk) fail(input.path, std::string("cannot build the grid: ") + words_of(status));
+  if (status != Status::kOk) input_error(input.path, std::string("cannot build the grid: ") + words_of(status));
   choice.parameters.lambda = choice.need.grid.lambda;
   return choice;
 }
 
 void require_fit(const GridChoice& choice, const SceneRequest& request, const SceneInput& input) {
   if (!choice.fits()) {
-    fail(request.input, "the scene needs " + words_of_bytes(choice.need.image_bytes) + " at lambda " +
-                            text_of(choice.parameters.lambda) + "; " +
-                            words_of_budget(*request.machine, choice.budget_bytes) +
-                            words_of_fitting_tolerance(choice, input));
+    input_error(request.input, "the scene needs " + words_of_bytes(choice.need.image_bytes) + " at lambda " +
+                                   text_of(choice.parameters.lambda) + "; " +
+                                   words_of_budget(*request.machine, choice.budget_bytes) +
+                                   words_of_fitting_tolerance(choice, input));
   }
   if (!choice.is_reduced() || request.quiet) return;
   std::fprintf(stderr, "%s: lambda reduced from %g to %g so that the scene fits the main memory of %s\n",
@@ -293,7 +283,7 @@ SceneImageView build_image(const SceneInput& input, const Mesh& mesh, const Grid
   });
   const Status status = build_scene_image(mesh.view(), choice.parameters, choice.need, image,
                                           std::as_writable_bytes(std::span(scratch)), effects);
-  if (status != Status::kOk) fail(input.path, std::string("cannot build the grid: ") + words_of(status));
+  if (status != Status::kOk) input_error(input.path, std::string("cannot build the grid: ") + words_of(status));
   SceneImageView view{};
   SceneImageError error;
   if (open_scene_image(image, view, error) != Status::kOk) {
@@ -306,8 +296,8 @@ SceneImageView build_image(const SceneInput& input, const Mesh& mesh, const Grid
 void require_format(const SceneInput& input, const PackedScene& packed, TriangleFormat format) {
   const std::uint32_t stored = packed.view.grid.triangle_format;
   if (stored == static_cast<std::uint32_t>(format)) return;
-  fail(input.path, "was packed with --format " + word_of(static_cast<TriangleFormat>(stored)) +
-                       "; this needs --format " + word_of(format));
+  input_error(input.path, "was packed with --format " + word_of(static_cast<TriangleFormat>(stored)) +
+                              "; this needs --format " + word_of(format));
 }
 
 void check_packed(const SceneInput& input, const PackedScene& packed, const SceneRequest& request,
@@ -315,19 +305,20 @@ void check_packed(const SceneInput& input, const PackedScene& packed, const Scen
   const GridRecord& grid = packed.view.grid;
   require_format(input, packed, limits.format);
   if (request.lambda && *request.lambda != grid.lambda) {
-    fail(input.path, "was packed with lambda " + text_of(grid.lambda) + "; --lambda cannot change it");
+    input_error(input.path, "was packed with lambda " + text_of(grid.lambda) + "; --lambda cannot change it");
   }
   if (grid.macro_width > limits.most_macro_width) {
-    fail(input.path, "was packed with macrocells of width " + std::to_string(grid.macro_width) +
-                         "; the local store holds cell blocks of width " + std::to_string(limits.most_macro_width));
+    input_error(input.path, "was packed with macrocells of width " + std::to_string(grid.macro_width) +
+                                "; the local store holds cell blocks of width " +
+                                std::to_string(limits.most_macro_width));
   }
   if (request.macro_width && *request.macro_width != grid.macro_width) {
-    fail(input.path, "was packed with macrocells of width " + std::to_string(grid.macro_width) +
-                         "; --macro-width cannot change it");
+    input_error(input.path, "was packed with macrocells of width " + std::to_string(grid.macro_width) +
+                                "; --macro-width cannot change it");
   }
   if (packed.view.header.image_bytes > limits.budget_bytes) {
-    fail(input.path, "the scene needs " + words_of_bytes(packed.view.header.image_bytes) + "; " +
-                         words_of_budget(*request.machine, limits.budget_bytes));
+    input_error(input.path, "the scene needs " + words_of_bytes(packed.view.header.image_bytes) + "; " +
+                                words_of_budget(*request.machine, limits.budget_bytes));
   }
 }
 

@@ -46,7 +46,6 @@ struct TextScene {
   SceneEffects effects;
   std::vector<SceneNote> notes;
   std::uint64_t note_count = 0;
-  std::vector<std::filesystem::path> files;  ///< that the text names
   SceneRoundness roundness;
 };
 
@@ -59,7 +58,6 @@ struct SceneInput {
 
 inline constexpr const char* kSceneExpected =
     "expected a scene: a PLY mesh, a text scene (NFF) or a packed scene (made by 'gridiron pack')";
-inline constexpr const char* kMeshExpected = "expected a PLY mesh";
 
 /// A command's settings of a picture; the others come from a text scene with a view.
 struct PictureRequest {
@@ -101,9 +99,6 @@ void tell_notes(const SceneInput& input);
 /// @returns the mesh of a PLY file. Errors as read_scene_input. @param path  what messages call the bytes.
 [[nodiscard]] Mesh read_ply_mesh(const std::filesystem::path& path);
 [[nodiscard]] Mesh read_ply_mesh(std::span<const std::byte> bytes, const std::filesystem::path& path);
-
-/// @returns every file that the scene was read from: itself, and those that a text names.
-[[nodiscard]] std::vector<std::filesystem::path> files_of(const SceneInput& input);
 
 /// Limits of a scene image.
 struct ImageLimits {

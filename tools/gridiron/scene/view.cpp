@@ -73,7 +73,7 @@ Camera complete_view(const ViewRequest& request, double aspect, const PointSourc
   framing.at = request.at;
 
   const auto require = [](const char* defect) {
-    if (defect != nullptr) throw Failure(ExitCode::kUsage, std::string("view: ") + defect);
+    if (defect != nullptr) usage_error(std::string("view: ") + defect);
   };
   if (!request.eye) {
     require(framing.up == Vec3(0.0f) ? "up has length 0" : nullptr);
