@@ -27,7 +27,7 @@ inline constexpr auto kInstructionCosts = std::to_array<InstructionCost>({
     {WorkId( 4),   792.3},  // triangle_setup
     {WorkId( 5),   315.9},  // subpacket_setup, not in `dense`
     {WorkId( 6),   403.6},  // subpacket_group, not in `dense`
-    {WorkId( 7),   299.8},  // group_test_standard
+    {WorkId( 7),   300.0},  // group_test_standard
     {WorkId( 8),   406.2},  // group_test_paper, not in `dense`
     {WorkId( 9),   365.6},  // hit_group
     {WorkId(10),  1111.0},  // hit_subpacket, not in `dense`
