@@ -360,6 +360,7 @@ std::vector<Vec3> directions_of(FrameSettings settings) {
   settings.color = MainAddress{kLineBytes};
   SceneImageView any_image{};
   any_image.grid.triangle_format = static_cast<std::uint32_t>(TriangleFormat::kVertices);
+  any_image.grid.macro_width = 1;
   FrameRecord frame{};
   EXPECT_EQ(make_frame_record(settings, any_image, {}, frame), Status::kOk);
   std::vector<Vec3> directions;

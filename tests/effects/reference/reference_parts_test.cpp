@@ -30,6 +30,7 @@ TEST(ReferenceCamera, IsTheFramesBitForBit) {
         .color = MainAddress{kLineBytes}};
     SceneImageView image{};
     image.grid.triangle_format = static_cast<std::uint32_t>(TriangleFormat::kVertices);
+    image.grid.macro_width = 1;
     FrameRecord frame{};
     ASSERT_EQ(make_frame_record(settings, image, {}, frame), Status::kOk);
     const ReferenceCamera camera = reference_camera(view, width, height);
