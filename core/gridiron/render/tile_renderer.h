@@ -179,7 +179,7 @@ class TileRenderer {
   };
 
   // The scene image was validated when it was loaded; here the frame is checked against the store's limits.
-  [[nodiscard]] Status check_frame() const {
+  [[nodiscard]] GRIDIRON_OUTLINE Status check_frame() const {
     const FrameHead& frame = store_.frame;
     GRIDIRON_TRY(find_picture_fault<Limits>(frame).status);
     if (frame.engine_id != Layout::Engine::kId) return Status::kUnsupportedFrame;
