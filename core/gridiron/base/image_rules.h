@@ -32,7 +32,7 @@ struct AnyFault {
   if (!checker.require((holds), (base) + offsetof(std::remove_cvref_t<decltype(record)>, member), #record "." #member, \
                        (value)))                                                                                       \
   return false
-#define GRIDIRON_RULE(holds, base, record, member) GRIDIRON_RULE_OF(record.member, holds, base, record, member)
+#define GRIDIRON_RULE(holds, base, record, member) GRIDIRON_RULE_OF((record).member, holds, base, record, member)
 
 [[nodiscard]] constexpr bool all_zero(const std::uint32_t* words, int count) {
   std::uint32_t any = 0;

@@ -68,6 +68,7 @@ inline constexpr std::uint32_t kWorkKindCount = 64;
 class WorkId {
  public:
   constexpr WorkId() = default;
+  /// A kind that all engines share.
   constexpr WorkId(Work kind) : number_(static_cast<std::uint32_t>(kind)) {}  // NOLINT: kinds are passed as they are
   /// @tparam Kind  an engine's kinds: kFirst to kEnd - 1.
   template <class Kind>
@@ -76,9 +77,9 @@ class WorkId {
     static_assert(static_cast<std::uint32_t>(Kind::kFirst) == kSharedWorkCount);
     static_assert(static_cast<std::uint32_t>(Kind::kEnd) <= kWorkKindCount);
   }
-  explicit constexpr WorkId(std::uint32_t number) : number_(number) {}
+  explicit constexpr WorkId(std::uint32_t number) : number_(number) {}  ///< by the number of its counter
 
-  [[nodiscard]] constexpr std::uint32_t number() const { return number_; }
+  [[nodiscard]] constexpr std::uint32_t number() const { return number_; }  ///< of its counter
   friend constexpr bool operator==(WorkId, WorkId) = default;  ///< the same kind of the same engine
 
  private:

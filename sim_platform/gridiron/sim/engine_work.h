@@ -19,15 +19,15 @@ namespace gridiron::sim {
 
 /// A row of a table of kinds.
 struct WorkKind {
-  WorkId id;
+  WorkId id;                       ///< the kind
   std::string_view name;           ///< stable, snake_case
   bool is_initialisation = false;  ///< all other work is computation
 };
 
 /// What a unit of a kind costs on a machine of which the profile does not say it.
 struct WorkPrice {
-  WorkId id;
-  double cycles;
+  WorkId id;      ///< the kind
+  double cycles;  ///< of a unit
 };
 
 /// Whether a table has the kinds from `first` on, in their order, each with a name.
@@ -40,8 +40,8 @@ struct WorkPrice {
 
 /// The description of an engine. A trace points to that of the engine that made it.
 struct EngineWork {
-  std::uint32_t id;  ///< FrameHead::engine_id
-  std::string_view name;
+  std::uint32_t id;                   ///< FrameHead::engine_id
+  std::string_view name;              ///< stable, snake_case
   std::span<const WorkKind> kinds;    ///< its own, from kSharedWorkCount on
   std::span<const WorkPrice> prices;  ///< one at least for each of its own; none: the profile has them, as the grid's
   std::array<std::string_view, kWaitLevelCount> wait_levels;  ///< by WaitLevel
@@ -58,6 +58,7 @@ struct EngineWork {
     return engine;
   }
   static void a_row_of_the_engine_is_missing();  ///< defined nowhere: its name stands in the compiler's message
+  /// Whether it brings a price for a kind.
   [[nodiscard]] constexpr bool has_price(WorkId kind) const {
     for (const WorkPrice& price : prices) {
       if (price.id == kind) return true;
@@ -94,6 +95,7 @@ inline constexpr WorkKind kSharedWork[] = {
     {Work::kWait, "wait"}};
 static_assert(lists_kinds(kSharedWork, 0, kSharedWorkCount), "a kind of Work lacks its row");
 
+/// The grid's own kinds.
 inline constexpr WorkKind kGridWorkKinds[] = {
     {GridWork::kPacketStart, "packet_start", true}, {GridWork::kPassGroup, "pass_group", true},
     {GridWork::kPassSquare, "pass_square", true}, {GridWork::kMacroSliceStep, "macro_slice_step"},

@@ -89,7 +89,8 @@ EffectsRecord count_effects(const EffectsView& effects) {
 
 std::uint32_t effect_section_count(const EffectsRecord& counted) {
   std::uint32_t count = 1;
-  for_each_effect_part(counted, 1, [&count](const EffectPart& part) { return count += part.element_count != 0, true; });
+  for_each_effect_part(counted, 1,
+                       [&count](const EffectPart& part) { return count += part.element_count != 0 ? 1 : 0, true; });
   return count;
 }
 
