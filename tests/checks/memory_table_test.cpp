@@ -68,12 +68,9 @@ TEST(MemoryTable, MoreFailsEitherWayAndIsNamed) {
             std::string::npos)
       << code.output;
   EXPECT_NE(code.output.find("--update"), std::string::npos) << code.output;
-  EXPECT_EQ(compare(rows_of({}), rows_of({.code = "9800"})).exit_code, 1);
-  EXPECT_EQ(compare(rows_of({}), rows_of({.read_only = "1011"})).exit_code, 1);
-  EXPECT_EQ(compare(rows_of({}), rows_of({.data = "4"})).exit_code, 1);
-  EXPECT_EQ(compare(rows_of({}), rows_of({.stack = "2032"})).exit_code, 1);
-  EXPECT_EQ(compare(rows_of({}), rows_of({.arena = "65535"})).exit_code, 1);
-  EXPECT_EQ(compare(rows_of({}), rows_of({.verdict = "over_arena"})).exit_code, 1);
+  const Figures others[] = {{.code = "9800"},  {.read_only = "1011"}, {.data = "4"},
+                            {.stack = "2032"}, {.arena = "65535"},    {.verdict = "over_arena"}};
+  for (const Figures& other : others) EXPECT_EQ(compare(rows_of({}), rows_of(other)).exit_code, 1) << rows_of(other);
 }
 
 TEST(MemoryTable, RowsThatComeAndGoFail) {
@@ -279,9 +276,8 @@ TEST(CoreBreak, OfOtherPathsNothingIsAsked) {
                 {"--from master", "master: a call through a pointer"},
                 {"--from step_2 --leaf in_assembly", "step_2: no such function"}};
   for (const auto& wrong : wrongs) {
-    const ScriptResult result = deepest(wrong.options);
     SCOPED_TRACE(wrong.options);
-    expect_said(result, 1, wrong.expected);
+    expect_said(deepest(wrong.options), 1, wrong.expected);
   }
 }
 
