@@ -21,6 +21,11 @@ std::string quoted(const std::filesystem::path& path) {
   return "'" + path.string() + "'";
 }
 
+void expect_said(const ScriptResult& result, int exit_code, const std::string& words) {
+  EXPECT_EQ(result.exit_code, exit_code) << result.output;
+  EXPECT_NE(result.output.find(words), std::string::npos) << result.output << "lacks: " << words;
+}
+
 std::string memory_table() {
   return source_path("tools/checks/memory_table");
 }
@@ -63,22 +68,15 @@ TEST(MemoryTable, MoreFailsEitherWayAndIsNamed) {
             std::string::npos)
       << code.output;
   EXPECT_NE(code.output.find("--update"), std::string::npos) << code.output;
-  EXPECT_EQ(compare(rows_of({}), rows_of({.code = "9800"})).exit_code, 1);
-  EXPECT_EQ(compare(rows_of({}), rows_of({.read_only = "1011"})).exit_code, 1);
-  EXPECT_EQ(compare(rows_of({}), rows_of({.data = "4"})).exit_code, 1);
-  EXPECT_EQ(compare(rows_of({}), rows_of({.stack = "2032"})).exit_code, 1);
-  EXPECT_EQ(compare(rows_of({}), rows_of({.arena = "65535"})).exit_code, 1);
-  EXPECT_EQ(compare(rows_of({}), rows_of({.verdict = "over_arena"})).exit_code, 1);
+  const Figures others[] = {{.code = "9800"},  {.read_only = "1011"}, {.data = "4"},
+                            {.stack = "2032"}, {.arena = "65535"},    {.verdict = "over_arena"}};
+  for (const Figures& other : others) EXPECT_EQ(compare(rows_of({}), rows_of(other)).exit_code, 1) << rows_of(other);
 }
 
 TEST(MemoryTable, RowsThatComeAndGoFail) {
   const std::string row = "riscv64,prepare,count_ply,,,,5000,,,9120,,,,,\n";
-  const ScriptResult more = compare(rows_of({}), rows_of({}) + row);
-  EXPECT_EQ(more.exit_code, 1);
-  EXPECT_NE(more.output.find("riscv64 prepare count_ply: a new row"), std::string::npos) << more.output;
-  const ScriptResult fewer = compare(rows_of({}) + row, rows_of({}));
-  EXPECT_EQ(fewer.exit_code, 1);
-  EXPECT_NE(fewer.output.find("riscv64 prepare count_ply: a row without its"), std::string::npos) << fewer.output;
+  expect_said(compare(rows_of({}), rows_of({}) + row), 1, "riscv64 prepare count_ply: a new row");
+  expect_said(compare(rows_of({}) + row, rows_of({})), 1, "riscv64 prepare count_ply: a row without its");
 }
 
 TEST(MemoryTable, TheReadmeShowsWhatIsCommitted) {
@@ -196,14 +194,11 @@ TEST(MemoryTable, DataAndRecursionAreRefused) {
   if (!has_cross_compilers()) GTEST_SKIP() << "no cross compilers";
   const ScratchDirectory scratch;
   const ScriptResult data = measure(scratch, std::string(kKernel) + "extern int count; int count = 3;", kPrepare);
-  EXPECT_EQ(data.exit_code, 1);
-  EXPECT_NE(data.output.find("gridiron_template_port_packet8: 4 bytes of data that is not constant"), std::string::npos)
-      << data.output;
+  expect_said(data, 1, "gridiron_template_port_packet8: 4 bytes of data that is not constant");
   const ScriptResult recursion = measure(
       scratch, kKernel,
       std::string(kPrepare) + "namespace gridiron { int deep(int x) { return x > 0 ? helper(deep(x - 1)) : 1; } }");
-  EXPECT_EQ(recursion.exit_code, 1);
-  EXPECT_NE(recursion.output.find("deep"), std::string::npos) << recursion.output;
+  expect_said(recursion, 1, "deep");
   EXPECT_NE(recursion.output.find("recursion"), std::string::npos) << recursion.output;
 }
 
@@ -229,10 +224,8 @@ TEST_P(CoreBreak, IsNamed) {
     const ScriptResult built = run_script("cd " + quoted(scratch.path()) + " && " + target + "-linux-gnu-g++ " +
                                           kFlags + " -c a.cpp -o a.obj");
     ASSERT_EQ(built.exit_code, 0) << built.output;
-    const ScriptResult stack =
-        run_script(source_path("tools/checks/deepest_stack") + " " + quoted(scratch.path()) + "/*.ci");
-    EXPECT_EQ(stack.exit_code, 1) << stack.output;
-    EXPECT_NE(stack.output.find(GetParam().expected), std::string::npos) << stack.output;
+    expect_said(run_script(source_path("tools/checks/deepest_stack") + " " + quoted(scratch.path()) + "/*.ci"), 1,
+                GetParam().expected);
   }
 }
 
@@ -283,9 +276,8 @@ TEST(CoreBreak, OfOtherPathsNothingIsAsked) {
                 {"--from master", "master: a call through a pointer"},
                 {"--from step_2 --leaf in_assembly", "step_2: no such function"}};
   for (const auto& wrong : wrongs) {
-    const ScriptResult result = deepest(wrong.options);
-    EXPECT_EQ(result.exit_code, 1) << wrong.options;
-    EXPECT_NE(result.output.find(wrong.expected), std::string::npos) << wrong.options << ": " << result.output;
+    SCOPED_TRACE(wrong.options);
+    expect_said(deepest(wrong.options), 1, wrong.expected);
   }
 }
 
@@ -297,9 +289,7 @@ TEST(CoreBreak, ACallGraphThatEndsEarlyIsRefused) {
     scratch.write("a.ci", whole + end);
     const ScriptResult result =
         run_script(source_path("tools/checks/deepest_stack") + " " + quoted(scratch.path()) + "/a.ci");
-    EXPECT_EQ(result.exit_code, end.empty() ? 1 : 0) << result.output;
-    EXPECT_NE(result.output.find(end.empty() ? "a call graph that ends early" : "16"), std::string::npos)
-        << result.output;
+    expect_said(result, end.empty() ? 1 : 0, end.empty() ? "a call graph that ends early" : "16");
   }
 }
 
@@ -317,8 +307,7 @@ TEST(CoreBreak, AFrameOverTheBudgetIsNamed) {
   ASSERT_EQ(built.exit_code, 0) << built.output;
   const ScriptResult result =
       run_script(source_path("tools/checks/check_budgets") + " riscv64-linux-gnu-size " + quoted(scratch.path()));
-  EXPECT_EQ(result.exit_code, 1);
-  EXPECT_NE(result.output.find("of 44544 bytes, stack 4"), std::string::npos) << result.output;
+  expect_said(result, 1, "of 44544 bytes, stack 4");
   EXPECT_NE(result.output.find(" of 4096 bytes"), std::string::npos) << result.output;
 }
 

@@ -530,11 +530,7 @@ TEST(PaperAccuracy, AgreesWithTheTruthAlmostEverywhere) {
   std::size_t near = 0;
   const std::vector<std::size_t> pixels = all_pixels(rendered.frame);
   const BruteForce truth(mesh.view(), settings.camera.eye);
-  std::vector<Vec3> directions;
-  for (const std::size_t pixel : pixels) {
-    directions.push_back(pixel_direction(rendered.frame, static_cast<std::uint32_t>(pixel % 128),
-                                         static_cast<std::uint32_t>(pixel / 128)));
-  }
+  const std::vector<Vec3> directions = directions_of({.camera = settings.camera, .width = 128, .height = 128});
   const std::vector<TrueHit> hits = truth.trace(directions, kFloatMax, 1);
   for (const std::size_t pixel : pixels) {
     equal += rendered.planes.ids[pixel] == hits[pixel].triangle_id;

@@ -68,13 +68,17 @@ void add_faces(PlyMaker& maker, std::string_view count_type = "uchar", std::stri
   }
 }
 
-std::string plain_file(PlyFormat format, const std::string& line_end = "\n") {
+struct PlainTypes {
+  std::string_view coordinate = "float", count = "uchar", index = "int", indices_name = "vertex_indices";
+};
+
+std::string plain_file(PlyFormat format, const std::string& line_end = "\n", const PlainTypes& types = {}) {
   PlyMaker maker(format, line_end);
-  add_vertex_header(maker, "float");
-  add_face_header(maker);
+  add_vertex_header(maker, types.coordinate);
+  add_face_header(maker, types.count, types.index, types.indices_name);
   maker.end_header();
-  add_vertices(maker, "float");
-  add_faces(maker);
+  add_vertices(maker, types.coordinate);
+  add_faces(maker, types.count, types.index);
   return maker.text();
 }
 
@@ -86,22 +90,23 @@ void expect_plain(const PlyOutcome& outcome, const std::string& what) {
   EXPECT_EQ(outcome.surplus_bytes, 0u) << what;
 }
 
+PlyOutcome run_good(const std::string& input, const PlyRunOptions& options = {}) {
+  PlyOutcome outcome = run_ply_in_pieces(input, options);
+  EXPECT_EQ(outcome.error, PlyError::kNone) << describe(outcome);
+  return outcome;
+}
+
 TEST(PlyReader, EveryFormatAndType) {
   for (const PlyFormat format : kPlyFormats) {
     for (const std::string_view coordinate : kPlyTypes) {
       for (const std::string_view count : kPlyTypes) {
         for (const std::string_view index : kPlyTypes) {
           if (count == "float" || count == "double" || index == "float" || index == "double") continue;
-          PlyMaker maker(format);
-          add_vertex_header(maker, coordinate);
-          add_face_header(maker, count, index);
-          maker.end_header();
-          add_vertices(maker, coordinate);
-          add_faces(maker, count, index);
+          const std::string input = plain_file(format, "\n", {coordinate, count, index});
           const std::string what = "format " + std::to_string(static_cast<int>(format)) + ", " +
                                    std::string(coordinate) + ", list " + std::string(count) + " " + std::string(index);
-          expect_plain(run_ply(maker.text()), what);
-          expect_plain(run_ply(maker.text(), random_chunks(5)), what);
+          expect_plain(run_ply(input), what);
+          expect_plain(run_ply(input, random_chunks(5)), what);
         }
       }
     }
@@ -109,16 +114,12 @@ TEST(PlyReader, EveryFormatAndType) {
 }
 
 TEST(PlyReader, SizedTypeNames) {
-  for (const auto& [coordinate, count, index] :
-       {std::array{"float32", "uint8", "int32"}, std::array{"float64", "int8", "uint32"},
-        std::array{"int16", "uint16", "int16"}, std::array{"uint32", "int32", "uint8"}}) {
-    PlyMaker maker(PlyFormat::kAscii);
-    add_vertex_header(maker, coordinate);
-    add_face_header(maker, count, index, "vertex_index");
-    maker.end_header();
-    add_vertices(maker, coordinate);
-    add_faces(maker, count, index);
-    expect_plain(run_ply_in_pieces(maker.text()), coordinate);
+  for (const PlainTypes& types : {PlainTypes{"float32", "uint8", "int32", "vertex_index"},
+                                  {"float64", "int8", "uint32", "vertex_index"},
+                                  {"int16", "uint16", "int16", "vertex_index"},
+                                  {"uint32", "int32", "uint8", "vertex_index"}}) {
+    const std::string input = plain_file(PlyFormat::kAscii, "\n", types);
+    expect_plain(run_ply_in_pieces(input), std::string(types.coordinate));
   }
 }
 
@@ -153,8 +154,7 @@ TEST(PlyReader, CountingNeedsNoMemory) {
   PlyRunOptions options;
   options.vertex_batch = options.triangle_batch = 0;
   for (const PlyFormat format : kPlyFormats) {
-    const PlyOutcome outcome = run_ply_in_pieces(plain_file(format), options);
-    EXPECT_EQ(outcome.error, PlyError::kNone);
+    const PlyOutcome outcome = run_good(plain_file(format), options);
     EXPECT_EQ(outcome.counted_vertices, corners().size());
     EXPECT_EQ(outcome.counted_triangles, 14u);
     EXPECT_EQ(outcome.batches.size(), 2u);
@@ -265,8 +265,7 @@ TEST(PlyReader, RowsOfTrianglesWithScalarsAround) {
         PlyRunOptions options;
         options.vertex_batch = 128;
         options.triangle_batch = 100;
-        const PlyOutcome outcome = run_ply_in_pieces(maker.text(), options);
-        EXPECT_EQ(outcome.error, PlyError::kNone) << describe(outcome);
+        const PlyOutcome outcome = run_good(maker.text(), options);
         EXPECT_EQ(outcome.vertices, vertices);
         EXPECT_EQ(outcome.triangles, triangles);
       }
@@ -289,8 +288,7 @@ TEST(PlyReader, Strips) {
     }
     const std::vector<Triple> wanted = {{0, 1, 2}, {2, 1, 3}, {2, 3, 4}, {7, 7, 8},
                                         {8, 7, 1}, {3, 4, 5}, {0, 2, 4}, {4, 2, 6}};
-    const PlyOutcome outcome = run_ply_in_pieces(maker.text());
-    EXPECT_EQ(outcome.error, PlyError::kNone) << describe(outcome);
+    const PlyOutcome outcome = run_good(maker.text());
     EXPECT_EQ(outcome.triangles, wanted);
     EXPECT_EQ(outcome.strip_rows, 3u);
     EXPECT_EQ(outcome.strip_row_count, 3u);
@@ -324,18 +322,15 @@ TEST(PlyReader, PointCloudsAndEmptyFiles) {
   const auto file = [&](const std::string& format, const std::string& header, const std::string& body) {
     return "ply\nformat " + format + " 1.0\n" + header + "end_header\n" + body;
   };
-  PlyOutcome outcome = run_ply_in_pieces(file("ascii", "element vertex 2\n" + coordinates, "1 2 3\n4 5 6\n"));
-  EXPECT_EQ(outcome.error, PlyError::kNone);
+  PlyOutcome outcome = run_good(file("ascii", "element vertex 2\n" + coordinates, "1 2 3\n4 5 6\n"));
   EXPECT_EQ(outcome.vertices.size(), 2u);
   EXPECT_EQ(outcome.counted_triangles, 0u);
   const std::string no_faces = "element face 0\nproperty list uchar int vertex_indices\n";
   for (const char* format : {"ascii", "binary_little_endian", "binary_big_endian"}) {
-    outcome = run_ply_in_pieces(file(format, "element vertex 0\n" + coordinates + no_faces, ""));
-    EXPECT_EQ(outcome.error, PlyError::kNone) << describe(outcome);
+    outcome = run_good(file(format, "element vertex 0\n" + coordinates + no_faces, ""));
     EXPECT_EQ(outcome.counted_vertices, 0u);
     // Faces without properties, but also without rows.
-    outcome = run_ply_in_pieces(file(format, "element face 0\nelement vertex 0\n" + coordinates, ""));
-    EXPECT_EQ(outcome.error, PlyError::kNone) << describe(outcome);
+    outcome = run_good(file(format, "element face 0\nelement vertex 0\n" + coordinates, ""));
   }
   // The last line may lack its end even where it is the header's.
   std::string cut = file("binary_little_endian", "element vertex 0\n" + coordinates, "");
@@ -384,8 +379,7 @@ TEST(PlyReader, SkippedAsciiValuesMayBeNanButNotWords) {
 
 TEST(PlyReader, SurplusIsCounted) {
   for (const PlyFormat format : kPlyFormats) {
-    const PlyOutcome outcome = run_ply_in_pieces(plain_file(format) + "a bc\n\n");
-    EXPECT_EQ(outcome.error, PlyError::kNone);
+    const PlyOutcome outcome = run_good(plain_file(format) + "a bc\n\n");
     EXPECT_EQ(outcome.surplus_bytes, format == PlyFormat::kAscii ? 3u : 6u);
     EXPECT_EQ(outcome.triangles, fanned(polygons()));
   }
@@ -401,8 +395,7 @@ TEST(PlyReader, PayloadThatBeginsLikeALineEnd) {
       // The count is the first byte of the payload, and the list holds the rest of it.
       const std::size_t count = static_cast<unsigned char>(start[0]);
       std::string row = start + std::string(count + 1 - start.size(), 'q') + "\x01\x02\x03";
-      const PlyOutcome outcome = run_ply_in_pieces(maker.text() + row);
-      EXPECT_EQ(outcome.error, PlyError::kNone) << describe(outcome);
+      const PlyOutcome outcome = run_good(maker.text() + row);
       EXPECT_EQ(outcome.vertices, (std::vector<Triple>{{bits_of(1), bits_of(2), bits_of(3)}}));
       EXPECT_EQ(outcome.surplus_bytes, 0u);
     }
@@ -411,8 +404,7 @@ TEST(PlyReader, PayloadThatBeginsLikeALineEnd) {
   PlyMaker maker(PlyFormat::kBinaryLittleEndian);
   maker.line("comment\r").line("element vertex 1").line("property uchar x").line("property uchar y\r");
   maker.line("property uchar z").line("end_header\r");
-  const PlyOutcome outcome = run_ply_in_pieces(maker.text() + "\n\r\n");
-  EXPECT_EQ(outcome.error, PlyError::kNone) << describe(outcome);
+  const PlyOutcome outcome = run_good(maker.text() + "\n\r\n");
   EXPECT_EQ(outcome.vertices, (std::vector<Triple>{{bits_of(10), bits_of(13), bits_of(10)}}));
 }
 

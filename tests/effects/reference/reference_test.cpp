@@ -41,6 +41,19 @@ void for_each_pixel(const ReferencePicture& picture, const Check& check) {
   }
 }
 
+// Calls check(pixel, at) for each pixel that shows the floor, the first two triangles: `at` on it, where axis is 0.
+template <class Check>
+void for_each_floor_point(const SceneDescription& scene, const ReferencePicture& picture, int axis,
+                          const Check& check) {
+  const ReferenceCamera camera = reference_camera(scene.view, picture.region.width, picture.region.height);
+  for_each_pixel(picture, [&](std::uint32_t x, std::uint32_t y, const DVec3&) {
+    const std::size_t pixel = picture.index(x, y);
+    if (picture.ids[pixel] > 1) return;
+    const DVec3 dir(camera.direction(static_cast<float>(x), static_cast<float>(y)));
+    check(pixel, DVec3(scene.view.from) - dir * (double{scene.view.from[axis]} / dir[axis]));
+  });
+}
+
 TEST(ReferenceLight, PlaneUnderAPointLightFollowsLambert) {
   SceneDescription scene = scene_from_above(4);
   add_floor(scene, add_material(scene, matt({0.9f, 0.5f, 0.1f}, 0.8f)));
@@ -133,27 +146,20 @@ TEST(ReferenceLight, ShadowOfASquareHasTheRightSize) {
   add_floor(scene, white);
   add_parallelogram(scene, {-1, -1, 1}, {2, 0, 0}, {0, 2, 0}, white);
   scene.point_lights.push_back({{0.2f, 0.1f, 3}, Vec3(1)});
-  const ReferenceCamera camera = reference_camera(scene.view, 120, 120);
   const ReferencePicture picture = render_reference(scene, 120, 120);
   scene.shadows = false;
   const ReferencePicture unshadowed = render_reference(scene, 120, 120);
   EXPECT_EQ(unshadowed.counts.shadow, 0u);
   std::size_t dark = 0, lit = 0;
-  for (std::uint32_t y = 0; y < 120; ++y) {
-    for (std::uint32_t x = 0; x < 120; ++x) {
-      const std::size_t i = picture.index(x, y);
-      if (picture.ids[i] > 1) continue;
-      EXPECT_GT(unshadowed.linear[i].x, 0.0);
-      const DVec3 dir(camera.direction(static_cast<float>(x), static_cast<float>(y)));
-      const DVec3 at = DVec3(scene.view.from) - dir * (double{scene.view.from.z} / dir.z);
-      // Light + (corner - light) * 3 / 2.
-      const double across = std::abs(at.x - 0.2 * -0.5), along = std::abs(at.y - 0.1 * -0.5);
-      if (std::abs(across - 1.5) < 1e-4 || std::abs(along - 1.5) < 1e-4) continue;
-      const bool is_dark = across < 1.5 && along < 1.5;
-      (is_dark ? dark : lit) += 1;
-      EXPECT_EQ(picture.linear[i].x == 0.0, is_dark) << x << ' ' << y;
-    }
-  }
+  for_each_floor_point(scene, picture, 2, [&](std::size_t i, const DVec3& at) {
+    EXPECT_GT(unshadowed.linear[i].x, 0.0);
+    // Light + (corner - light) * 3 / 2.
+    const double across = std::abs(at.x - 0.2 * -0.5), along = std::abs(at.y - 0.1 * -0.5);
+    if (std::abs(across - 1.5) < 1e-4 || std::abs(along - 1.5) < 1e-4) return;
+    const bool is_dark = across < 1.5 && along < 1.5;
+    (is_dark ? dark : lit) += 1;
+    EXPECT_EQ(picture.linear[i].x == 0.0, is_dark) << at.x << ' ' << at.y;
+  });
   EXPECT_GT(dark, 300u);
   EXPECT_GT(lit, 300u);
 }
@@ -167,34 +173,27 @@ TEST(ReferenceLight, HalfAnAreaLightIsSeenUnderAnEdge) {
   add_floor(scene, white);
   add_parallelogram(scene, {-50, -50, 1}, {50, 0, 0}, {0, 100, 0}, white);
   scene.area_lights.push_back({{-1, -0.001f, 2}, {2, 0, 0}, {0, 0.002f, 0}, Vec3(1), kSamples});
-  const ReferenceCamera camera = reference_camera(scene.view, 64, 64);
   const ReferencePicture picture = render_reference(scene, 64, 64);
   scene.shadows = false;
   const ReferencePicture all = render_reference(scene, 64, 64);
   std::size_t umbra = 0, penumbra = 0, full = 0;
-  for (std::uint32_t y = 0; y < 64; ++y) {
-    for (std::uint32_t x = 0; x < 64; ++x) {
-      const std::size_t i = picture.index(x, y);
-      if (picture.ids[i] > 1) continue;
-      const DVec3 dir(camera.direction(static_cast<float>(x), static_cast<float>(y)));
-      const DVec3 at = DVec3(scene.view.from) - dir * (double{scene.view.from.z} / dir.z);
-      if (std::abs(at.y) > 1 || std::abs(std::abs(at.x) - 1) < 1e-4) continue;
-      // Lambert over the part of the light that is seen: the mean over u of h / (h^2 + (u - x)^2 + y^2)^(1/2).
-      const auto integral = [&](double u) { return 0.5 * 2.0 * std::asinh((u - at.x) / std::hypot(2.0, at.y)); };
-      const double from = std::min(1.0, std::max(-1.0, -at.x));
-      EXPECT_NEAR(all.linear[i].x, integral(1) - integral(-1), 1.0 / kSamples);
-      EXPECT_NEAR(picture.linear[i].x, integral(1) - integral(from), 1.5 / kSamples) << at.x;
-      if (at.x < -1) {
-        EXPECT_EQ(picture.linear[i].x, 0.0);
-        ++umbra;
-      } else if (at.x > 1) {
-        EXPECT_EQ(picture.linear[i].x, all.linear[i].x);
-        ++full;
-      } else {
-        ++penumbra;
-      }
+  for_each_floor_point(scene, picture, 2, [&](std::size_t i, const DVec3& at) {
+    if (std::abs(at.y) > 1 || std::abs(std::abs(at.x) - 1) < 1e-4) return;
+    // Lambert over the part of the light that is seen: the mean over u of h / (h^2 + (u - x)^2 + y^2)^(1/2).
+    const auto integral = [&](double u) { return 0.5 * 2.0 * std::asinh((u - at.x) / std::hypot(2.0, at.y)); };
+    const double from = std::min(1.0, std::max(-1.0, -at.x));
+    EXPECT_NEAR(all.linear[i].x, integral(1) - integral(-1), 1.0 / kSamples);
+    EXPECT_NEAR(picture.linear[i].x, integral(1) - integral(from), 1.5 / kSamples) << at.x;
+    if (at.x < -1) {
+      EXPECT_EQ(picture.linear[i].x, 0.0);
+      ++umbra;
+    } else if (at.x > 1) {
+      EXPECT_EQ(picture.linear[i].x, all.linear[i].x);
+      ++full;
+    } else {
+      ++penumbra;
     }
-  }
+  });
   EXPECT_GT(umbra, 20u);
   EXPECT_GT(penumbra, 100u);
   EXPECT_GT(full, 20u);
@@ -210,11 +209,8 @@ TEST(ReferenceAmbient, CornerOfTwoPlanesHasTheFormFactor) {
   const ReferencePicture picture = render_reference(scene, 48, 48);
   double sum = 0.0, expected_sum = 0.0;
   std::size_t floor_pixels = 0, at_the_edge = 0;
-  for_each_pixel(picture, [&](std::uint32_t x, std::uint32_t y, const DVec3& value) {
-    if (picture.ids[picture.index(x, y)] > 1) return;
-    const DVec3 dir(
-        reference_camera(scene.view, 48, 48).direction(static_cast<float>(x), static_cast<float>(y)));
-    const DVec3 at = DVec3(scene.view.from) - dir * (double{scene.view.from.y} / dir.y);
+  for_each_floor_point(scene, picture, 1, [&](std::size_t i, const DVec3& at) {
+    const DVec3& value = picture.linear[i];
     const double expected = 0.5 * (1.0 - 0.5 * (1.0 - at.x / std::hypot(at.x, 3.0)));
     EXPECT_NEAR(value.x, expected, 0.5 * 5.0 / 64.0) << at.x;
     if (at.x < 0.05) {
