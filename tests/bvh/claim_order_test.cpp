@@ -3,7 +3,6 @@
 #include <gridiron/dma/tags.h>
 #include <gridiron/sim/replay.h>
 
-#include <mutex>
 #include <thread>
 
 #include "support/test_mesh.h"

@@ -1,8 +1,6 @@
 // Scenes in code: see the header. SPDX-License-Identifier: Apache-2.0
 #include "effects/effect_scene.h"
 
-#include <cmath>
-#include <cstdlib>
 #include <glm/geometric.hpp>
 #include <map>
 #include <tuple>

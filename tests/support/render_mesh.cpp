@@ -3,8 +3,6 @@
 
 #include <gridiron/store/local_store.h>
 
-#include <new>
-
 #include "support/instrumented.h"
 #include "support/views.h"
 

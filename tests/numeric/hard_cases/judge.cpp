@@ -1,8 +1,6 @@
 // Judge: see the header. SPDX-License-Identifier: Apache-2.0
 #include "numeric/hard_cases/judge.h"
 
-#include <ios>
-
 namespace gridiron::test::hard {
 namespace {
 

@@ -2,7 +2,6 @@
 #include "numeric/watertight/tally.h"
 
 #include <atomic>
-#include <mutex>
 #include <thread>
 
 namespace gridiron::test {

@@ -3,7 +3,6 @@
 // Memory: some 400 bytes a triangle, twice. Threads: as many as asked for. SPDX-License-Identifier: Apache-2.0
 #include <CLI/CLI.hpp>
 #include <chrono>
-#include <iostream>
 #include <stdexcept>
 
 #include "numeric/watertight/grid_shots.h"

@@ -8,7 +8,6 @@
 #include <gridiron/image/scene_image.h>
 #include <gridiron/sim/sim_chip.h>
 
-#include <cstddef>
 #include <cstdint>
 #include <cstdio>
 #include <filesystem>

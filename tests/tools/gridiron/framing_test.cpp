@@ -5,7 +5,6 @@
 #include <scene_makers/shapes.h>
 
 #include <glm/geometric.hpp>
-#include <numbers>
 
 #include "gridiron/scene/scene_input.h"
 #include "gridiron/scene/scene_points.h"

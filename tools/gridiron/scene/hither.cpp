@@ -5,7 +5,6 @@
 #include <array>
 #include <cstdio>
 #include <glm/geometric.hpp>
-#include <string>
 
 #include "base/failure.h"
 #include "base/words.h"
