@@ -252,17 +252,22 @@ const TileTrace& SimCore::end_trace() {
 }
 
 void SimCore::note_work(const std::uint32_t* counts, std::uint32_t count) {
-  std::array<WorkAmount, kWorkKindCount> work;
+  constexpr std::uint32_t kKindsAtOnce = 8;
   std::uint32_t done = 0;
   const std::uint32_t known = std::min(count, kWorkKindCount);
-  for (std::uint32_t kind = 0; kind < known; ++kind) {
-    const std::uint32_t amount = counts[kind] - last_counts_[kind];
-    if (amount == 0) continue;
-    work[done++] = {WorkId(kind), amount};
-    last_counts_[kind] = counts[kind];
-    if (in_tile_) tile_work[kind] += amount;
+  for (std::uint32_t first = 0; first < known; first += kKindsAtOnce) {
+    const std::uint32_t end = std::min(first + kKindsAtOnce, known);
+    // From one call to the next few kinds change.
+    if (std::equal(counts + first, counts + end, &last_counts_[first])) continue;
+    for (std::uint32_t kind = first; kind < end; ++kind) {
+      const std::uint32_t amount = counts[kind] - last_counts_[kind];
+      if (amount == 0) continue;
+      new_work_[done++] = {WorkId(kind), amount};
+      last_counts_[kind] = counts[kind];
+      if (in_tile_) tile_work[kind] += amount;
+    }
   }
-  writer_->add({.kind = EventKind::kWork, .work = std::span(work).first(done)});
+  writer_->add({.kind = EventKind::kWork, .work = std::span(new_work_).first(done)});
 }
 
 void SimCore::note_stage(std::uint8_t stage) {

@@ -191,6 +191,7 @@ class SimCore {
   std::uint64_t transfers_ = 0;
   std::uint64_t random_state_ = 0;
   std::array<std::uint32_t, kWorkKindCount> last_counts_{};
+  std::array<WorkAmount, kWorkKindCount> new_work_{};  // of one note_work
   std::unique_ptr<TraceWriter> writer_;  ///< of the current tile, prologue or epilogue
   bool is_trace_ended_ = false;
   Status first_error_ = Status::kOk;
