@@ -28,5 +28,6 @@ inline constexpr std::array<sim::WorkCost, kBvhWorkCount + 1> kBvhCosts = {{
     {    4.6,     4.0,     5.3,    1.47,    0.00,    0.91,    0.77,    0.14},  // leaf_triangle
     {   93.4,    59.3,   111.7,   55.94,    0.00,   23.11,    1.38,    0.19},  // reach
 }};
+static_assert(kBvhCosts.back().cycles > 0, "a kind of work lacks its row");
 
 }  // namespace gridiron::bvh

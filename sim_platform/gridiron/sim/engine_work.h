@@ -43,17 +43,16 @@ struct EngineWork {
   std::uint32_t id;                   ///< FrameHead::engine_id
   std::string_view name;              ///< stable, snake_case
   std::span<const WorkKind> kinds;    ///< its own, from kSharedWorkCount on
-  std::span<const WorkPrice> prices;  ///< one at least for each of its own; none: the profile has them, as the grid's
+  std::span<const WorkPrice> prices;  ///< one at least for each of its own; the grid has none, profiles have them
   std::array<std::string_view, kWaitLevelCount> wait_levels;  ///< by WaitLevel
 
-  /// A kind without a row or a price, a row without a name, or a wait level without one does not compile.
+  /// A kind without a row or a price, or a row, a wait level or an engine without a name does not compile.
   template <class Kind>
   [[nodiscard]] static consteval EngineWork make(Kind end, const EngineWork& engine) {
-    bool is_whole = lists_kinds(engine.kinds, kSharedWorkCount, WorkId(end).number());
+    const bool is_grid = engine.id == static_cast<std::uint32_t>(EngineId::kGrid);
+    bool is_whole = !engine.name.empty() && lists_kinds(engine.kinds, kSharedWorkCount, WorkId(end).number());
     for (const std::string_view level : engine.wait_levels) is_whole = is_whole && !level.empty();
-    for (const WorkKind& kind : engine.kinds) {
-      is_whole = is_whole && (engine.prices.empty() || engine.has_price(kind.id));
-    }
+    for (const WorkKind& kind : engine.kinds) is_whole = is_whole && (is_grid || engine.has_price(kind.id));
     if (!is_whole) a_row_of_the_engine_is_missing();
     return engine;
   }

@@ -87,5 +87,6 @@ inline constexpr std::array<WorkCost, kGridEngine.kind_count()> kWorkCosts = {{
     {  924.9,   707.1,  1184.0,  582.56,    0.00,  362.35,   43.21,    6.92},  // walk_pass
     {   56.4,    54.3,    68.1,   51.91,    0.00,   12.50,    0.49,    0.13},  // shaft_group
 }};
+static_assert(kWorkCosts.back().cycles > 0, "a kind of work lacks its row");
 
 }  // namespace gridiron::sim
