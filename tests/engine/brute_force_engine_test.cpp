@@ -41,12 +41,34 @@ constexpr sim::WorkKind kBruteForceKinds[] = {{BruteForceWork::kBuffer, "buffer_
 constexpr double kBufferCycles = 64, kTriangleCycles = 3;
 constexpr sim::WorkPrice kBruteForcePrices[] = {{BruteForceWork::kBuffer, kBufferCycles},
                                                 {BruteForceWork::kTriangle, kTriangleCycles}};
-constexpr sim::EngineWork kBruteForce =
-    sim::EngineWork::make(BruteForceWork::kEnd, {.id = BruteForceEngine::kId,
-                                                 .name = "brute_force",
-                                                 .kinds = kBruteForceKinds,
-                                                 .prices = kBruteForcePrices,
-                                                 .wait_levels = {"planes", "nothing", "all_triangles", "record"}});
+constexpr sim::EngineWork kDescription = {.id = BruteForceEngine::kId,
+                                          .name = "brute_force",
+                                          .kinds = kBruteForceKinds,
+                                          .prices = kBruteForcePrices,
+                                          .wait_levels = {"planes", "nothing", "all_triangles", "record"}};
+constexpr sim::EngineWork kBruteForce = sim::EngineWork::make(BruteForceWork::kEnd, kDescription);
+
+// Whether the description would still compile after a change.
+template <class Change>
+consteval bool is_whole_after(Change change) {
+  sim::EngineWork engine = kDescription;
+  change(engine);
+  return sim::EngineWork::is_whole(BruteForceWork::kEnd, engine);
+}
+constexpr sim::WorkKind kSwapped[] = {kBruteForceKinds[1], kBruteForceKinds[0]};
+constexpr sim::WorkKind kNameless[] = {kBruteForceKinds[0], {BruteForceWork::kTriangle, ""}};
+constexpr sim::WorkKind kNamedAlike[] = {kBruteForceKinds[0], {BruteForceWork::kTriangle, "buffer_read"}};
+constexpr sim::WorkKind kNamedAsShared[] = {kBruteForceKinds[0], {BruteForceWork::kTriangle, "triangle_setup"}};
+static_assert(is_whole_after([](sim::EngineWork&) {}));
+static_assert(!is_whole_after([](sim::EngineWork& engine) { engine.name = ""; }));
+static_assert(!is_whole_after([](sim::EngineWork& engine) { engine.id = static_cast<std::uint32_t>(EngineId::kGrid); }));
+static_assert(!is_whole_after([](sim::EngineWork& engine) { engine.wait_levels[2] = ""; }));
+static_assert(!is_whole_after([](sim::EngineWork& engine) { engine.prices = engine.prices.first(1); }));
+static_assert(!is_whole_after([](sim::EngineWork& engine) { engine.kinds = engine.kinds.first(1); }));
+static_assert(!is_whole_after([](sim::EngineWork& engine) { engine.kinds = kSwapped; }));
+static_assert(!is_whole_after([](sim::EngineWork& engine) { engine.kinds = kNameless; }));
+static_assert(!is_whole_after([](sim::EngineWork& engine) { engine.kinds = kNamedAlike; }));
+static_assert(!is_whole_after([](sim::EngineWork& engine) { engine.kinds = kNamedAsShared; }));
 
 using GridLayout = EffectLayout256K<kAllEffects, 8>;
 static_assert(kFitsArena<BruteForceLayout<0, 32>> && kFitsArena<BruteForceLayout<kAllEffects, 16>>);

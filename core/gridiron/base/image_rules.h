@@ -45,7 +45,7 @@ struct AnyFault {
 /// The known sections by kind, and where their entries stand.
 struct Sections {
   static constexpr std::uint32_t kGeometryCount = 4;  ///< in every image
-  static constexpr std::uint32_t kKnownCount = 10;
+  static constexpr std::uint32_t kKnownCount = static_cast<std::uint32_t>(SectionKind::kEnd) - 1;
   SectionEntry entries[kKnownCount] = {};
   std::uint64_t entry_offsets[kKnownCount] = {};
   bool found[kKnownCount] = {};

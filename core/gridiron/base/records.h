@@ -34,6 +34,7 @@ enum class SectionKind : unsigned {
   kSurfaces = 8,         ///< SurfaceRecord[triangle_count]
   kNormals = 9,          ///< NormalRecord[]
   kEnvironmentMap = 10,  ///< EnvironmentBlock[]
+  kEnd                   ///< kinds from here on are unknown, and skipped
 };
 
 /// First bytes of a scene image. 64 bytes, 128-byte aligned.

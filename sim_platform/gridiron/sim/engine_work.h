@@ -14,6 +14,7 @@
 #include <cstdint>
 #include <span>
 #include <string_view>
+#include <type_traits>
 
 namespace gridiron::sim {
 
@@ -28,46 +29,6 @@ struct WorkKind {
 struct WorkPrice {
   WorkId id;      ///< the kind
   double cycles;  ///< of a unit
-};
-
-/// Whether a table has the kinds from `first` on, in their order, each with a name.
-[[nodiscard]] constexpr bool lists_kinds(std::span<const WorkKind> kinds, std::uint32_t first, std::uint32_t end) {
-  for (std::size_t i = 0; i < kinds.size(); ++i) {
-    if (kinds[i].id != WorkId(first + static_cast<std::uint32_t>(i)) || kinds[i].name.empty()) return false;
-  }
-  return kinds.size() == end - first;
-}
-
-/// The description of an engine. A trace points to that of the engine that made it.
-struct EngineWork {
-  std::uint32_t id;                   ///< FrameHead::engine_id
-  std::string_view name;              ///< stable, snake_case
-  std::span<const WorkKind> kinds;    ///< its own, from kSharedWorkCount on
-  std::span<const WorkPrice> prices;  ///< one at least for each of its own; the grid has none, profiles have them
-  std::array<std::string_view, kWaitLevelCount> wait_levels;  ///< by WaitLevel
-
-  /// A kind without a row or a price, or a row, a wait level or an engine without a name does not compile.
-  template <class Kind>
-  [[nodiscard]] static consteval EngineWork make(Kind end, const EngineWork& engine) {
-    const bool is_grid = engine.id == static_cast<std::uint32_t>(EngineId::kGrid);
-    bool is_whole = !engine.name.empty() && lists_kinds(engine.kinds, kSharedWorkCount, WorkId(end).number());
-    for (const std::string_view level : engine.wait_levels) is_whole = is_whole && !level.empty();
-    for (const WorkKind& kind : engine.kinds) is_whole = is_whole && (is_grid || engine.has_price(kind.id));
-    if (!is_whole) a_row_of_the_engine_is_missing();
-    return engine;
-  }
-  static void a_row_of_the_engine_is_missing();  ///< defined nowhere: its name stands in the compiler's message
-  /// Whether it brings a price for a kind.
-  [[nodiscard]] constexpr bool has_price(WorkId kind) const {
-    for (const WorkPrice& price : prices) {
-      if (price.id == kind) return true;
-    }
-    return false;
-  }
-  /// Its frames count the kinds 0 to kind_count() - 1.
-  [[nodiscard]] constexpr std::uint32_t kind_count() const {
-    return kSharedWorkCount + static_cast<std::uint32_t>(kinds.size());
-  }
 };
 
 // clang-format off
@@ -92,8 +53,70 @@ inline constexpr WorkKind kSharedWork[] = {
     {Work::kEnvironmentLookup, "environment_lookup"}, {Work::kColorAdded, "color_added"},
     {Work::kColorGroup, "color_group"}, {Work::kGetIssue, "get_issue"}, {Work::kPutIssue, "put_issue"},
     {Work::kWait, "wait"}};
+// clang-format on
+
+/// Whether a name stands in none of these rows.
+[[nodiscard]] constexpr bool is_new_name(std::span<const WorkKind> kinds, std::string_view name) {
+  for (const WorkKind& kind : kinds) {
+    if (kind.name == name) return false;
+  }
+  return true;
+}
+
+/// Whether a table has the kinds from `first` on, in their order, each with a name of its own.
+[[nodiscard]] constexpr bool lists_kinds(std::span<const WorkKind> kinds, std::uint32_t first, std::uint32_t end) {
+  for (std::size_t i = 0; i < kinds.size(); ++i) {
+    if (kinds[i].id != WorkId(first + static_cast<std::uint32_t>(i)) || kinds[i].name.empty()) return false;
+    if (!is_new_name(kinds.first(i), kinds[i].name)) return false;
+  }
+  return kinds.size() == end - first;
+}
 static_assert(lists_kinds(kSharedWork, 0, kSharedWorkCount), "a kind of Work lacks its row");
 
+/// The description of an engine. A trace points to that of the engine that made it.
+struct EngineWork {
+  std::uint32_t id;                   ///< FrameHead::engine_id
+  std::string_view name;              ///< stable, snake_case
+  std::span<const WorkKind> kinds;    ///< its own, from kSharedWorkCount on
+  std::span<const WorkPrice> prices;  ///< one at least for each of its own; the grid has none, profiles have them
+  std::array<std::string_view, kWaitLevelCount> wait_levels;  ///< by WaitLevel
+
+  /// Whether each of its kinds has a row and a price, and the engine, each row and each wait level a name. Only the
+  /// grid has kGrid's number, and no prices.
+  template <class Kind>
+  [[nodiscard]] static consteval bool is_whole(Kind end, const EngineWork& engine) {
+    constexpr bool kIsGrid = std::is_same_v<Kind, GridWork>;
+    if (kIsGrid != (engine.id == static_cast<std::uint32_t>(EngineId::kGrid)) || engine.name.empty()) return false;
+    if (!lists_kinds(engine.kinds, kSharedWorkCount, WorkId(end).number())) return false;
+    for (const std::string_view level : engine.wait_levels) {
+      if (level.empty()) return false;
+    }
+    for (const WorkKind& kind : engine.kinds) {
+      if (!is_new_name(kSharedWork, kind.name) || (!kIsGrid && !engine.has_price(kind.id))) return false;
+    }
+    return true;
+  }
+  /// The description of an engine; one that is not whole does not compile.
+  template <class Kind>
+  [[nodiscard]] static consteval EngineWork make(Kind end, const EngineWork& engine) {
+    if (!is_whole(end, engine)) a_row_of_the_engine_is_missing();
+    return engine;
+  }
+  static void a_row_of_the_engine_is_missing();  ///< defined nowhere: its name stands in the compiler's message
+  /// Whether it brings a price for a kind.
+  [[nodiscard]] constexpr bool has_price(WorkId kind) const {
+    for (const WorkPrice& price : prices) {
+      if (price.id == kind) return true;
+    }
+    return false;
+  }
+  /// Its frames count the kinds 0 to kind_count() - 1.
+  [[nodiscard]] constexpr std::uint32_t kind_count() const {
+    return kSharedWorkCount + static_cast<std::uint32_t>(kinds.size());
+  }
+};
+
+// clang-format off
 /// The grid's own kinds.
 inline constexpr WorkKind kGridWorkKinds[] = {
     {GridWork::kPacketStart, "packet_start", true}, {GridWork::kPassGroup, "pass_group", true},

@@ -58,6 +58,8 @@ std::string field_of_element(const SectionEntry& entry, TriangleFormat format, s
       return field_in({{"normal.n", 36}, {"normal.reserved", 48}}, offset);
     case SectionKind::kEnvironmentMap:
       return "environment.texels";
+    case SectionKind::kEnd:
+      break;
   }
   return "unknown";
 }

@@ -138,7 +138,7 @@ TEST(Job, IsRefusedWhereItDoesNotFit) {
   expect_failure(folder, with({"--base", "0", "--memory", "many"}), 2, "--memory");
   expect_failure(folder, {"job", "a.ply", "-o", "a.ply", "--base", "0"}, 2, "is the input 'a.ply'");
   expect_failure(folder, {"job", "a.nff", "-o", "a.job", "--base", "0", "--store", "64", "--depth"}, 2,
-                 "--depth: a local store of 64 KB (--store 64) has no distances with --shading scene");
+                 "--depth: --shading scene has no distances with tiles 8 pixels wide and no packets");
   expect_failure(folder, {"job", "b.ply", "-o", "a.job", "--base", "0"}, 1, "b.ply: No such file");
   run(folder, with({"--base", "0x80200000", "--memory", std::to_string(bytes)}));
 }

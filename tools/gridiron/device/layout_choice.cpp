@@ -78,7 +78,8 @@ void require_built(const sim::LayoutChoice& layout, bool is_built) {
 
 void require_distances(const sim::LayoutChoice& layout, bool has_depth) {
   if (!has_depth || !layout.has_effects || layout.packet_width != 0) return;
-  usage_error("--depth: a local store of 64 KB (--store 64) has no distances with --shading scene; 256 KB have them");
+  usage_error("--depth: --shading scene has no distances with " + words_of_layout(layout) +
+              ", which are those of a 64 KB store; --store 256 without --tile-width and --packet has them");
 }
 
 void require_effects_of(std::optional<Accuracy> accuracy) {

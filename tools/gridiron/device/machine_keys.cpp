@@ -64,15 +64,16 @@ consteval std::size_t member_count() {
     return sizeof...(Values);
   }
 }
-consteval bool have_members_of_their_own() {
+consteval bool are_sound() {
   for (const Row& row : kRows) {
     int count = 0;
-    for (const Row& other : kRows) count += other.member == row.member ? 1 : 0;
-    if (count != 1) return false;
+    for (const Row& other : kRows) count += other.member == row.member || other.key == row.key ? 1 : 0;
+    if (count != 1 || row.limits.least >= row.limits.most) return false;
   }
   return true;
 }
-static_assert(have_members_of_their_own() && member_count<MachineProfile>() == std::size(kRows) + 4,
+static_assert(are_sound(), "each row has a key and a member of its own, and limits in their order");
+static_assert(member_count<MachineProfile>() == std::size(kRows) + 4,
               "each member but name, description, work_cycles and master has a row");
 static_assert(member_count<MasterProfile>() == 2, "clock_hz and step_cycles have keys");
 
