@@ -16,7 +16,7 @@ TEST(MachineProfile, BuiltInProfilesAreComplete) {
     EXPECT_TRUE(names.insert(std::string(machine.name)).second) << machine.name;
     EXPECT_EQ(find_machine_profile(machine.name), &machine);
     EXPECT_FALSE(machine.description.empty());
-    EXPECT_GT(machine.latency_cycles, 0);
+    EXPECT_GT(machine.latency_cycles.mean(), 0);
     EXPECT_GT(machine.channel_bytes_per_cycle, 0);
     for (std::uint32_t kind = 0; kind < kWorkKindCount; ++kind) {
       const bool has_none = is_charged_as_event(WorkId(kind)) || kind >= kGridEngine.kind_count();
@@ -38,7 +38,7 @@ TEST(MachineProfile, FiguresAreThePublishedOnes) {
   EXPECT_EQ(blade.clock_hz, 2.4e9);
   // The same memory: as many bytes a second, as many nanoseconds.
   EXPECT_DOUBLE_EQ(blade.channel_bytes_per_cycle * blade.clock_hz, ps3.channel_bytes_per_cycle * ps3.clock_hz);
-  EXPECT_DOUBLE_EQ(blade.latency_cycles / blade.clock_hz, ps3.latency_cycles / ps3.clock_hz);
+  EXPECT_DOUBLE_EQ(blade.latency_cycles.mean() / blade.clock_hz, ps3.latency_cycles.mean() / ps3.clock_hz);
   MachineProfile large = *find_machine_profile("cell-ps3-2gb");
   EXPECT_EQ(large.main_memory_bytes, 2048ull << 20);
   EXPECT_EQ(large.work_cycles, ps3.work_cycles);

@@ -3,13 +3,10 @@
 // Memory: std::vector. Threads: one per core; all calls may come at once. SPDX-License-Identifier: Apache-2.0
 #pragma once
 
-#include <gridiron/sim/machine_profile.h>
+#include <gridiron/sim/replay.h>
 #include <gridiron/sim/sim_core.h>
-#include <gridiron/sim/trace_packing.h>
 
-#include <array>
 #include <condition_variable>
-#include <cstddef>
 #include <cstdint>
 #include <mutex>
 #include <utility>
@@ -17,40 +14,7 @@
 
 namespace gridiron::bvh {
 
-/// Simulated time of one core without contention: equal to sim::replay on one core, step by step.
-class CoreClock {
- public:
-  using Ticks = std::uint64_t;  ///< 1/1024 cycle
-  static constexpr double kTicksPerCycle = 1024;
-
-  CoreClock(const sim::MachineProfile& machine, const sim::EngineWork& engine, std::uint32_t output_depth);
-
-  /// Adds the steps of `trace`. @param ordinal  tiles this core had before this one.
-  void take(const sim::TileTrace& trace, std::uint32_t ordinal);
-  /// Adds the time of a claim, granted or refused.
-  void take_claim() { now_ += claim_; }
-
-  [[nodiscard]] Ticks now() const { return now_; }
-
- private:
-  [[nodiscard]] static Ticks ticks_of(double cycles);
-  void issue(std::uint64_t address, std::uint32_t bytes, std::uint32_t tag);
-  void wait_until(Ticks time) { now_ = time > now_ ? time : now_; }
-
-  std::array<Ticks, kWorkKindCount> work_{};
-  Ticks issue_, wait_, latency_, slot_, interval_, claim_;
-  std::uint32_t line_bytes_;
-  std::uint32_t output_depth_;
-  Ticks now_ = 0;
-  Ticks last_request_ = 0;
-  Ticks channel_free_ = 0;
-  std::vector<Ticks> done_;      ///< of command n, at n % queue depth
-  std::vector<Ticks> arrivals_;  ///< of line n, at n % lines in flight
-  std::uint64_t command_count_ = 0;
-  std::uint64_t line_count_ = 0;
-  std::array<Ticks, 32> done_of_tag_{};
-  sim::TraceReader steps_;
-};
+using sim::CoreClock;
 
 /// Lets one core run at a time: the one whose clock is least, ties by number.
 class ClaimOrder {

@@ -3,6 +3,7 @@
 #pragma once
 
 #include <gridiron/base/work_counters.h>
+#include <gridiron/sim/latency.h>
 
 #include <array>
 #include <cstddef>
@@ -56,7 +57,8 @@ struct MachineProfile {
   std::uint32_t lines_in_flight;        ///< per core
   double issue_cycles;                  ///< per command, on the core
   double wait_cycles;                   ///< per wait, on the core, even when nothing is pending
-  double latency_cycles;                ///< from the end of a line's turn on the channel to its arrival
+  Latency latency_cycles;               ///< from the end of a line's turn on the channel to its arrival
+  std::uint32_t latency_seed;           ///< decides which line has which, where there are several
   double channel_bytes_per_cycle;       ///< shared by all cores
   double core_line_interval_cycles;     ///< least distance between two lines of one core
   double claim_cycles;                  ///< from asking for a tile to having it

@@ -17,8 +17,8 @@ namespace {
 
 /// Simulated time. Integers, so that no sum depends on its order; fine enough that rounding a profile value changes it
 /// by less than 5e-4 cycles; exact in a double for frames below 2^43 cycles.
-using Ticks = std::uint64_t;
-constexpr double kTicksPerCycle = 1024;
+using Ticks = CoreClock::Ticks;
+constexpr double kTicksPerCycle = CoreClock::kTicksPerCycle;
 constexpr Ticks kNever = ~Ticks{0};
 constexpr double kMaxConstantCycles = 1 << 20;
 constexpr std::uint32_t kMaxWindow = 65536;
@@ -34,6 +34,31 @@ double cycles_from_ticks(Ticks ticks) {
   return static_cast<double>(ticks) / kTicksPerCycle;
 }
 
+/// A latency in ticks, ready to be drawn.
+struct LatencyTicks {
+  explicit LatencyTicks(const Latency& latency) {
+    double sum = 0;
+    for (const LatencyShare& one : latency.shares()) {
+      sum += one.share;
+      // The last one gets what rounding leaves.
+      entries.push_back({sum < 1 ? static_cast<std::uint64_t>(sum * 0x1p64) : ~std::uint64_t{0},
+                         ticks_from_cycles(one.cycles)});
+    }
+  }
+  [[nodiscard]] bool is_one_number() const { return entries.size() == 1; }
+  [[nodiscard]] Ticks drawn(std::uint64_t draw) const {
+    std::size_t i = 0;
+    while (i + 1 < entries.size() && draw >= entries[i].end) ++i;
+    return entries[i].ticks;
+  }
+
+  struct Entry {
+    std::uint64_t end;  ///< draws below it, and not below that of the entry before
+    Ticks ticks;
+  };
+  std::vector<Entry> entries;
+};
+
 /// A machine profile in ticks, with counts that are safe as indices.
 struct Constants {
   Constants(const MachineProfile& machine, const EngineWork& engine)
@@ -42,7 +67,8 @@ struct Constants {
         lines_in_flight(std::clamp(machine.lines_in_flight, 1u, kMaxWindow)),
         issue(ticks_from_cycles(machine.issue_cycles)),
         wait(ticks_from_cycles(machine.wait_cycles)),
-        latency(ticks_from_cycles(machine.latency_cycles)),
+        latency(machine.latency_cycles),
+        latency_seed(machine.latency_seed),
         slot(machine.channel_bytes_per_cycle > 0 ? ticks_from_cycles(line_bytes / machine.channel_bytes_per_cycle) : 0),
         line_interval(ticks_from_cycles(machine.core_line_interval_cycles)),
         claim(ticks_from_cycles(machine.claim_cycles)) {
@@ -56,21 +82,58 @@ struct Constants {
   std::uint32_t line_bytes;
   std::uint32_t queue_depth;
   std::uint32_t lines_in_flight;
-  Ticks issue, wait, latency, slot, line_interval, claim;
+  Ticks issue, wait;
+  LatencyTicks latency;
+  std::uint32_t latency_seed;
+  Ticks slot, line_interval, claim;
   std::array<Ticks, kWorkKindCount> work{};
   std::array<bool, kWorkKindCount> is_initialisation{};
 };
 
 struct Command {
   Ticks issued = 0;
-  Ticks done = 0;           ///< meaningful once all lines are granted
-  std::uint64_t lines = 0;  ///< not granted yet
+  Ticks done = 0;             ///< when the last of its lines arrives; meaningful once all are granted
+  std::uint64_t lines = 0;
+  std::uint64_t granted = 0;  ///< of them
+  std::uint32_t tag = 0;
+  std::uint32_t item = 0, transfer = 0;  ///< which of its tile's transfers it is
+};
+
+/// When the lines of a core that may still be under way arrive, the earliest first.
+class Arrivals {
+ public:
+  explicit Arrivals(std::uint32_t most) : times_(most) {}
+
+  /// Whether as many are known as may be under way: the next one leaves no earlier than the earliest of them arrives.
+  [[nodiscard]] bool are_full() const { return count_ == times_.size(); }
+  [[nodiscard]] Ticks earliest() const { return times_[first_]; }
+
+  void add(Ticks arrival) {
+    if (are_full()) {
+      first_ = place(1);
+      --count_;
+    }
+    // Later ones make room; with one latency for all lines there are none.
+    std::size_t i = count_++;
+    for (; i > 0 && times_[place(i - 1)] > arrival; --i) times_[place(i)] = times_[place(i - 1)];
+    times_[place(i)] = arrival;
+  }
+
+ private:
+  [[nodiscard]] std::size_t place(std::size_t i) const {
+    const std::size_t sum = first_ + i;
+    return sum < times_.size() ? sum : sum - times_.size();
+  }
+  std::vector<Ticks> times_;  // a ring
+  std::size_t first_ = 0, count_ = 0;
 };
 
 enum class Phase : std::uint8_t { kPrologue, kTile, kEpilogue, kEnded };
 
 /// One core: the state of its program, and its transfer engine.
 struct Core {
+  explicit Core(const Constants& constants) : queue(constants.queue_depth), arrivals(constants.lines_in_flight) {}
+
   // Program.
   Phase phase = Phase::kPrologue;
   TraceReader steps;
@@ -86,8 +149,10 @@ struct Core {
   std::vector<Command> queue;  ///< command n at (n - 1) % queue_depth
   std::uint64_t issued_count = 0;
   std::uint64_t granted_count = 0;                     ///< commands whose lines have all had their turn
+  std::uint32_t transfer_count = 0;                    ///< of the current tile
   std::array<std::uint64_t, kTagCount> last_of_tag{};  ///< number of the last command of a tag, 0: none
-  std::vector<Ticks> arrivals;                         ///< line n, numbered from 0, at n % lines_in_flight
+  std::array<Ticks, kTagCount> done_of_tag{};          ///< when the last granted commands of a tag are all done
+  Arrivals arrivals;
   std::uint64_t line_count = 0;
   Ticks last_request = 0;
   Ticks next_request = kNever;  ///< when the next line leaves the core
@@ -110,12 +175,10 @@ class Replay {
         constants_(machine, *trace.engine),
         output_depth_(std::clamp(trace.output_depth, 1u, std::uint32_t{kOutputTagCount})),
         with_timeline_(options.timeline),
-        core_of_tile_(options.core_of_tile),
-        cores_(std::max(1u, options.core_count != 0 ? options.core_count : machine.core_count)) {
-    for (Core& core : cores_) {
-      core.queue.resize(constants_.queue_depth);
-      core.arrivals.resize(constants_.lines_in_flight);
-    }
+        core_of_tile_(options.core_of_tile) {
+    const std::uint32_t count = std::max(1u, options.core_count != 0 ? options.core_count : machine.core_count);
+    cores_.reserve(count);
+    for (std::uint32_t i = 0; i < count; ++i) cores_.emplace_back(constants_);
   }
 
   FrameTiming run() {
@@ -128,6 +191,18 @@ class Replay {
     }
     return result();
   }
+
+  /// Of the first core, alone: takes all steps, and what they wait for.
+  void run_alone(const TileTrace& trace, std::uint32_t ordinal) {
+    Core& core = cores_.front();
+    core.ordinal = ordinal;
+    core.tile_id = trace.tile_id;
+    begin_steps(core, trace);
+    advance(core);
+    while (core.step != nullptr) grant_line(core);
+  }
+  void claim_alone() { cores_.front().now += constants_.claim; }
+  [[nodiscard]] Ticks now_alone() const { return cores_.front().now; }
 
  private:
   /// Handles the earliest claim or line request; ties: claims first, then by core. @returns false if none is left.
@@ -195,14 +270,14 @@ class Replay {
     const Ticks turn = std::max(core.next_request, channel_free_);
     channel_free_ = turn + constants_.slot;
     channel_busy_ += constants_.slot;
-    const Ticks arrival = channel_free_ + constants_.latency;
-    core.arrivals[core.line_count % constants_.lines_in_flight] = arrival;
+    Command& command = core.queue[core.granted_count % constants_.queue_depth];
+    const Ticks arrival = channel_free_ + latency_of(command);
+    core.arrivals.add(arrival);
     ++core.line_count;
     core.last_request = core.next_request;
-
-    Command& command = core.queue[core.granted_count % constants_.queue_depth];
-    if (--command.lines == 0) {
-      command.done = arrival;
+    command.done = std::max(command.done, arrival);
+    if (++command.granted == command.lines) {
+      core.done_of_tag[command.tag] = std::max(core.done_of_tag[command.tag], command.done);
       ++core.granted_count;
       if (core.blocked_until != 0 && core.blocked_until <= core.granted_count) {
         advance(core);
@@ -212,20 +287,26 @@ class Replay {
     schedule_request(core);
   }
 
+  // Of the command's next line.
+  [[nodiscard]] Ticks latency_of(const Command& command) const {
+    if (constants_.latency.is_one_number()) return constants_.latency.drawn(0);
+    return constants_.latency.drawn(
+        line_draw(constants_.latency_seed, command.item, command.transfer, command.granted));
+  }
+
   void schedule_request(Core& core) const {
     core.next_request = kNever;
     if (core.granted_count == core.issued_count) return;
     Ticks time = core.queue[core.granted_count % constants_.queue_depth].issued;
     if (core.line_count > 0) time = std::max(time, core.last_request + constants_.line_interval);
-    if (core.line_count >= constants_.lines_in_flight) {
-      time = std::max(time, core.arrivals[core.line_count % constants_.lines_in_flight]);
-    }
+    if (core.arrivals.are_full()) time = std::max(time, core.arrivals.earliest());
     core.next_request = time;
   }
 
   static void begin_steps(Core& core, const TileTrace& trace) {
     core.steps.open(trace);
     core.step = core.steps.next();
+    core.transfer_count = 0;
   }
 
   /// Runs a core's program until it ends, or depends on something that other cores may still change.
@@ -282,16 +363,27 @@ class Replay {
     const std::uint32_t tag = event.rotating ? rotated_tag(core, event.tag) : event.tag % kTagCount;
 
     // A full queue: the command queue_depth before this one must have left it.
-    if (core.issued_count >= constants_.queue_depth &&
-        !wait_for(core, core.issued_count + 1 - constants_.queue_depth, wait_level_of_tag(tag))) {
-      return false;
+    if (core.issued_count >= constants_.queue_depth) {
+      const std::uint64_t command = core.issued_count + 1 - constants_.queue_depth;
+      if (command > core.granted_count) {
+        core.blocked_until = command;
+        return false;
+      }
+      const Ticks done = core.queue[(command - 1) % constants_.queue_depth].done;
+      if (done > core.now) spend(core, TimelineSpan::Kind::kWait, wait_level_of_tag(tag), done - core.now);
     }
     spend(core, TimelineSpan::Kind::kCompute, WaitLevel::kTile, constants_.issue);
 
     const std::uint64_t first_line = event.address / constants_.line_bytes;
     const std::uint64_t last_line = (event.address + std::max(1u, event.bytes) - 1) / constants_.line_bytes;
     const std::uint64_t lines = last_line - first_line + 1;
-    core.queue[core.issued_count % constants_.queue_depth] = {.issued = core.now, .done = 0, .lines = lines};
+    core.queue[core.issued_count % constants_.queue_depth] = {.issued = core.now,
+                                                              .done = 0,
+                                                              .lines = lines,
+                                                              .granted = 0,
+                                                              .tag = tag,
+                                                              .item = core.tile_id,
+                                                              .transfer = core.transfer_count++};
     core.last_of_tag[tag] = ++core.issued_count;
 
     CoreTiming& timing = core.timing;
@@ -310,35 +402,32 @@ class Replay {
     for (std::uint32_t relative = 0; relative < kTagCount; ++relative) {
       if ((event.rotating_tags >> relative & 1u) != 0) tags |= 1u << rotated_tag(core, relative);
     }
-    // Commands end in the order of issue, so the last one of the tags decides.
+    // Lines have their turns in the order of issue: once those of the last command have had theirs, all are known. The
+    // command that is done last, of several the last issued, gives the wait its level.
     std::uint64_t last = 0;
-    std::uint32_t last_tag = 0;
+    Ticks done = 0;
+    std::uint64_t late_command = 0;
+    std::uint32_t late_tag = 0;
     for (std::uint32_t tag = 0; tag < kTagCount; ++tag) {
-      if ((tags >> tag & 1u) != 0 && core.last_of_tag[tag] > last) {
-        last = core.last_of_tag[tag];
-        last_tag = tag;
-      }
+      if ((tags >> tag & 1u) == 0) continue;
+      const std::uint64_t command = core.last_of_tag[tag];
+      last = std::max(last, command);
+      if (core.done_of_tag[tag] < done || (core.done_of_tag[tag] == done && command < late_command)) continue;
+      done = core.done_of_tag[tag];
+      late_command = command;
+      late_tag = tag;
     }
-    if (last != 0 && !wait_for(core, last, wait_level_of_tag(last_tag))) return false;
+    if (last > core.granted_count) {
+      core.blocked_until = last;
+      return false;
+    }
+    if (done > core.now) spend(core, TimelineSpan::Kind::kWait, wait_level_of_tag(late_tag), done - core.now);
     spend(core, TimelineSpan::Kind::kCompute, WaitLevel::kTile, constants_.wait);
     return true;
   }
 
   std::uint32_t rotated_tag(const Core& core, std::uint32_t relative) const {
     return kFirstOutputTag + (relative + core.ordinal) % output_depth_;
-  }
-
-  /// Stalls a core until a command is done. @returns false if that time is not known yet.
-  bool wait_for(Core& core, std::uint64_t command, WaitLevel level) {
-    if (command > core.granted_count) {
-      core.blocked_until = command;
-      return false;
-    }
-    // If a later command has taken this one's place, it left the queue long ago.
-    if (command + constants_.queue_depth <= core.issued_count) return true;
-    const Ticks done = core.queue[(command - 1) % constants_.queue_depth].done;
-    if (done > core.now) spend(core, TimelineSpan::Kind::kWait, level, done - core.now);
-    return true;
   }
 
   void spend(Core& core, TimelineSpan::Kind kind, WaitLevel level, Ticks ticks) {
@@ -423,6 +512,28 @@ class Replay {
 
 FrameTiming replay(const FrameTrace& trace, const MachineProfile& machine, const ReplayOptions& options) {
   return Replay(trace, machine, options).run();
+}
+
+struct CoreClock::State {
+  const MachineProfile machine;
+  const FrameTrace frame;
+  Replay replay{frame, machine, {.core_count = 1}};
+};
+
+CoreClock::CoreClock(const MachineProfile& machine, const EngineWork& engine, std::uint32_t output_depth)
+    : state_(new State{machine, {{}, {}, {}, output_depth, &engine}}) {}
+CoreClock::~CoreClock() = default;
+CoreClock::CoreClock(CoreClock&&) noexcept = default;
+CoreClock& CoreClock::operator=(CoreClock&&) noexcept = default;
+
+void CoreClock::take(const TileTrace& trace, std::uint32_t ordinal) {
+  state_->replay.run_alone(trace, ordinal);
+}
+void CoreClock::take_claim() {
+  state_->replay.claim_alone();
+}
+CoreClock::Ticks CoreClock::now() const {
+  return state_->replay.now_alone();
 }
 
 }  // namespace gridiron::sim

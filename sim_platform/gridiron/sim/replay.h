@@ -10,6 +10,7 @@
 #include <array>
 #include <cstddef>
 #include <cstdint>
+#include <memory>
 #include <span>
 #include <vector>
 
@@ -83,9 +84,12 @@ struct ReplayOptions {
 /// ties by core. The n-th grant hands out trace.tiles[n]; with options.core_of_tile a core gets the next of its own
 /// tiles instead, in the order of the trace. A core's commands are served one after another in the order of issue. Each
 /// line leaves the core when the command has been issued, core_line_interval_cycles have passed since the line before
-/// it, and fewer than lines_in_flight lines are under way. The channel serves lines of all cores, gets and puts alike,
-/// by the time they left, ties by core. A line arrives latency_cycles after its turn on the channel has ended. A
-/// command leaves the queue with its last line.
+/// it, and fewer than lines_in_flight lines are under way: a line is under way until it arrives. The channel serves lines
+/// of all cores, gets and puts alike, by the time they left, ties by core. A line arrives latency_cycles after its turn on
+/// the channel has ended; where that is several numbers, line_draw() / 2^64 falls into the share of one of them, in their
+/// order. A command is done when the last of its lines to arrive is there, which need not be in the order of issue. A
+/// wait ends when all commands of its tags are done. The queue is full until the command queue_depth before the new one
+/// is done.
 ///
 /// First come, first served is fair: cores that stream equally get equal shares, and a line waits for at most
 /// lines_in_flight lines of each other core.
@@ -97,5 +101,28 @@ struct ReplayOptions {
 /// steps packed by TraceWriter, which are read as cores come to them. Cost: linear in events and lines, times
 /// core_count; memory: the steps of one tile a core, unpacked, about 2 bytes a step.
 [[nodiscard]] FrameTiming replay(const FrameTrace& trace, const MachineProfile& machine, const ReplayOptions& options);
+
+/// A replay of one core that is alone with its memory, step by step while the core runs.
+class CoreClock {
+ public:
+  using Ticks = std::uint64_t;  ///< 1/1024 cycle
+  static constexpr double kTicksPerCycle = 1024;
+
+  CoreClock(const MachineProfile& machine, const EngineWork& engine, std::uint32_t output_depth);
+  ~CoreClock();
+  CoreClock(CoreClock&&) noexcept;
+  CoreClock& operator=(CoreClock&&) noexcept;
+
+  /// Adds the steps of `trace`. @param ordinal  tiles this core had before this one.
+  void take(const TileTrace& trace, std::uint32_t ordinal);
+  /// Adds the time of a claim, granted or refused.
+  void take_claim();
+
+  [[nodiscard]] Ticks now() const;
+
+ private:
+  struct State;
+  std::unique_ptr<State> state_;
+};
 
 }  // namespace gridiron::sim

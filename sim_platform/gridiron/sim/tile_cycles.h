@@ -46,7 +46,7 @@ struct TileCycles {
       machine.channel_bytes_per_cycle > 0 ? line_bytes / machine.channel_bytes_per_cycle : 0.0;
   const double in_flight = static_cast<double>(machine.core_count) * machine.lines_in_flight;
   cycles.transfers =
-      all_lines * (machine.core_line_interval_cycles + machine.latency_cycles + in_flight * turn_cycles);
+      all_lines * (machine.core_line_interval_cycles + machine.latency_cycles.longest() + in_flight * turn_cycles);
   return cycles;
 }
 

@@ -162,9 +162,41 @@ class Reader {
     const auto index = static_cast<std::size_t>(known - keys_.begin());
     if (is_given_[index]) fail("second " + quoted);
     if (value.empty()) fail(quoted + " has no value");
+    is_given_[index] = true;
+    if (sim::Latency* const* const latency = std::get_if<sim::Latency*>(&known->number)) {
+      **latency = read_latency(*known, quoted, value);
+      return;
+    }
     if (value.find_first_of(kBlanks) != std::string_view::npos) fail(quoted + " takes one number");
     read_number(*known, quoted, value);
-    is_given_[index] = true;
+  }
+
+  // "500", or "400:0.98 5400:0.02".
+  sim::Latency read_latency(const MachineKey& key, const std::string& quoted, std::string_view value) const {
+    std::vector<sim::LatencyShare> shares;
+    double sum = 0;
+    while (!value.empty()) {
+      const std::string_view word = value.substr(0, std::min(value.find_first_of(kBlanks), value.size()));
+      value = trimmed(value.substr(word.size()));
+      const std::size_t colon = word.find(':');
+      if (colon == std::string_view::npos) {
+        if (!shares.empty() || !value.empty()) {
+          fail(quoted + " takes one number, or several with shares, like 400:0.98 5400:0.02");
+        }
+        return real_number(key, quoted, word);
+      }
+      if (shares.size() == sim::Latency::kMaxShares) {
+        fail(quoted + " takes at most " + std::to_string(sim::Latency::kMaxShares) + " numbers");
+      }
+      MachineKey share = key;
+      share.least = 0x1p-32;
+      share.most = 1;
+      shares.push_back({real_number(key, quoted, word.substr(0, colon)),
+                        real_number(share, "a share of " + quoted, word.substr(colon + 1))});
+      sum += shares.back().share;
+    }
+    if (std::abs(sum - 1) > 1e-9) fail("the shares of " + quoted + " add up to " + text_of(sum) + ", not to 1");
+    return std::span<const sim::LatencyShare>(shares);
   }
 
   void read_base(std::string_view value) {
@@ -176,6 +208,14 @@ class Reader {
     }
     machine_->profile = *base;
     has_base_ = true;
+  }
+
+  double real_number(const MachineKey& key, const std::string& quoted_key, std::string_view text) const {
+    double value = 0;
+    MachineKey number = key;
+    number.number = &value;
+    read_number(number, quoted_key, text);
+    return value;
   }
 
   void read_number(const MachineKey& key, const std::string& quoted_key, std::string_view text) const {
@@ -197,7 +237,9 @@ class Reader {
            in_quotes(text));
     }
     const auto store = [&]<class Number>(Number* number) {
-      *number = is_whole ? static_cast<Number>(count) : static_cast<Number>(value);
+      if constexpr (std::is_arithmetic_v<Number>) {
+        *number = is_whole ? static_cast<Number>(count) : static_cast<Number>(value);
+      }
     };
     std::visit(store, key.number);
   }
@@ -284,9 +326,14 @@ std::string machine_text(const MachineProfile& machine) {
   add("name", std::string(machine.name));
   add("description", std::string(machine.description));
   for (const MachineKey& key : keys) {
-    double* const* const real = std::get_if<double*>(&key.number);
-    add(key.name,
-        real != nullptr ? text_of(**real) : std::visit([](const auto* n) { return std::to_string(*n); }, key.number));
+    const auto words_of = []<class Number>(const Number* number) {
+      if constexpr (std::is_integral_v<Number>) {
+        return std::to_string(*number);
+      } else {
+        return text_of(*number);
+      }
+    };
+    add(key.name, std::visit(words_of, key.number));
   }
   return text;
 }

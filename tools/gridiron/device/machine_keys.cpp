@@ -23,7 +23,8 @@ struct Limits {
 constexpr Limits kCycles = {0, 1 << 20};  // of one step; the replay limits larger values
 constexpr Limits kHertz = {1, 1e12};
 
-using Member = std::variant<std::uint32_t MachineProfile::*, std::uint64_t MachineProfile::*, double MachineProfile::*>;
+using Member = std::variant<std::uint32_t MachineProfile::*, std::uint64_t MachineProfile::*, double MachineProfile::*,
+                            sim::Latency MachineProfile::*>;
 
 struct Row {
   std::string_view key;
@@ -41,7 +42,10 @@ constexpr Row kRows[] = {
     {"lines_in_flight", &MachineProfile::lines_in_flight, {1, 4096}, "lines a core may have under way"},
     {"issue_cycles", &MachineProfile::issue_cycles, kCycles, "of the core, per command"},
     {"wait_cycles", &MachineProfile::wait_cycles, kCycles, "of the core, per wait, even when nothing is pending"},
-    {"latency_cycles", &MachineProfile::latency_cycles, kCycles, "from a line's turn on the channel to its arrival"},
+    {"latency_cycles", &MachineProfile::latency_cycles, kCycles,
+     "from a line's turn on the channel to its arrival; or several, with the share of the lines that take so long: "
+     "400:0.98 5400:0.02"},
+    {"latency_seed", &MachineProfile::latency_seed, {0, 4294967295.0}, "decides which line has which of several"},
     {"channel_bytes_per_cycle", &MachineProfile::channel_bytes_per_cycle, {0.0625, 65536}, "shared by all cores"},
     {"core_line_interval_cycles", &MachineProfile::core_line_interval_cycles, kCycles,
      "least distance between two lines of one core"},
@@ -118,6 +122,15 @@ std::string text_of(double value) {
     result.erase(exponent + 1, digit - exponent - 1);
   }
   return result;
+}
+
+std::string text_of(const sim::Latency& latency) {
+  if (latency.shares().size() == 1) return text_of(latency.shares().front().cycles);
+  std::string text;
+  for (const sim::LatencyShare& one : latency.shares()) {
+    text += (text.empty() ? "" : " ") + text_of(one.cycles) + ":" + text_of(one.share);
+  }
+  return text;
 }
 
 std::vector<MachineKeyHelp> machine_key_help() {

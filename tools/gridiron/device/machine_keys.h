@@ -14,9 +14,9 @@ namespace gridiron::tool {
 /// One number of a profile.
 struct MachineKey {
   std::string name;  ///< "core_count", "work_cycles.cell_step"; its last word but numbers of things is its unit
-  std::variant<std::uint32_t*, std::uint64_t*, double*> number;  ///< whole ones, or a real one; in the profile
-  double least, most;                                            ///< what a machine file may say
-  bool is_in_files = true;                                       ///< false: always 0, and only shown in JSON
+  std::variant<std::uint32_t*, std::uint64_t*, double*, sim::Latency*> number;  ///< in the profile
+  double least, most;       ///< what a machine file may say; of a latency, each of its numbers
+  bool is_in_files = true;  ///< false: always 0, and only shown in JSON
 };
 
 /// @returns every number of `machine`, in the order of machine files and JSON.
@@ -24,6 +24,8 @@ struct MachineKey {
 
 /// @returns the shortest text that reads back as the same double.
 [[nodiscard]] std::string text_of(double value);
+/// @returns "500", or "400:0.98 5400:0.02".
+[[nodiscard]] std::string text_of(const sim::Latency& latency);
 
 /// A row of the help and of the table in tools/README.md.
 struct MachineKeyHelp {
