@@ -61,7 +61,7 @@ constexpr sim::WorkKind kNamedAlike[] = {kBruteForceKinds[0], {BruteForceWork::k
 constexpr sim::WorkKind kNamedAsShared[] = {kBruteForceKinds[0], {BruteForceWork::kTriangle, "triangle_setup"}};
 static_assert(is_whole_after([](sim::EngineWork&) {}));
 static_assert(!is_whole_after([](sim::EngineWork& engine) { engine.name = ""; }));
-static_assert(!is_whole_after([](sim::EngineWork& engine) { engine.id = static_cast<std::uint32_t>(EngineId::kGrid); }));
+static_assert(!is_whole_after([](sim::EngineWork& engine) { engine.id = sim::kGridEngine.id; }));
 static_assert(!is_whole_after([](sim::EngineWork& engine) { engine.wait_levels[2] = ""; }));
 static_assert(!is_whole_after([](sim::EngineWork& engine) { engine.prices = engine.prices.first(1); }));
 static_assert(!is_whole_after([](sim::EngineWork& engine) { engine.kinds = engine.kinds.first(1); }));

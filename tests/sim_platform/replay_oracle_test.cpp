@@ -1,5 +1,5 @@
-// Replay against a second model of the clock, written from what replay.h says: lists that are searched instead of rings,
-// every command and every line kept. Machines with several latencies, short queues and many tags.
+// Replay against a second model of the clock, written from what replay.h says, that keeps every command and every line
+// and searches them. Machines with several latencies, short queues and many tags.
 // Memory: std::vector. Threads: one. SPDX-License-Identifier: Apache-2.0
 #include <random>
 
@@ -280,7 +280,7 @@ TEST(Latency, SharesAreThoseOfTheLines) {
   }
 }
 
-// One line at a time and a channel that is never full: what all cores together wait for does not depend on their number.
+// One line at a time and a channel that is never full: what all cores wait for does not depend on their number.
 TEST(Latency, DoesNotDependOnTheCore) {
   MachineProfile machine = blocking_machine(0);
   machine.channel_bytes_per_cycle = 0;

@@ -1,6 +1,7 @@
 // Engine: an acceleration structure with its traversals, as render/ and shade/ see it. A layout of the local store
-// names its engine as Layout::Engine; render/ and shade/ name none. The grid's record and the rules of its frames are
-// in base/, since set-up and checks share them. Memory: its parts of the local store. Threads: one core.
+// names its engine as Layout::Engine; render/ and shade/ name none. The grid's record in a frame, and the rules of its
+// frames, are in base/: setting a frame up and checking one need them too.
+// Memory: its parts of the local store. Threads: one core.
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
@@ -14,7 +15,8 @@
 
 namespace gridiron {
 
-/// Bytes of a buffer that an engine lends to shading: the longest record that shading gathers.
+/// Bytes of a buffer that an engine lends to shading. The longest record that shading gathers is a block of the
+/// environment map, 768 bytes, and a get begins up to 16 bytes before it.
 inline constexpr std::uint32_t kIdleBufferBytes = 784;
 
 /// What an engine brings. `store` is the LocalStore of a layout.

@@ -51,7 +51,7 @@ const char* ply_error_reason(PlyError error) {
     case PlyError::kMissingCoordinate:
       return "vertices lack x, y or z";
     case PlyError::kMissingIndices:
-      return "faces or strips lack vertex indices";
+      return "faces or strips lack a list vertex_indices or vertex_index";
     case PlyError::kTooManyElements:
       return "too many elements";
     case PlyError::kTooManyProperties:
@@ -75,7 +75,7 @@ const char* ply_error_reason(PlyError error) {
     case PlyError::kIndexRange:
       return "index names no vertex";
     case PlyError::kRowsAndLinesDisagree:
-      return "row starts inside a line: lines hold more values than declared";
+      return "row starts inside a line: a line does not hold the values that the header declares for it";
     case PlyError::kTooManyTriangles:
       return "too many triangles";
     case PlyError::kVertexSpanTooSmall:

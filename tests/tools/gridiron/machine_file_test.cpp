@@ -45,6 +45,8 @@ TEST(MachineFile, EveryDigitReadsBackIdentical) {
   machine.work_cycles[0] = 123456.0 / 7;
   machine.master.step_cycles[0] = 1.0 / 3;
   EXPECT_EQ(*read_text(tool::machine_text(machine)), machine);
+  machine.latency_cycles = {{0.1 + 0.2, 1.0 / 3}, {500, 1.0 / 3}, {7e5, 1.0 / 3}};
+  EXPECT_EQ(*read_text(tool::machine_text(machine)), machine);
 }
 
 TEST(MachineFile, ABaseGivesWhatIsNotSaid) {
@@ -117,8 +119,8 @@ TEST(MachineFile, WithoutABaseEveryKeyIsAsked) {
     EXPECT_EQ(complaint_of(path), path.string() + ":" + lines + ": the file ends without '" + key +
                                       "', and has no 'based_on' to take it from");
   }
-  // 13 numbers and the master's clock; three kinds of work are charged as events and have no key.
-  EXPECT_EQ(keys, static_cast<int>(14 + sim::kGridEngine.kind_count() - 3 + sim::kBuildStepCount));
+  // 14 numbers and the master's clock; three kinds of work are charged as events and have no key.
+  EXPECT_EQ(keys, static_cast<int>(15 + sim::kGridEngine.kind_count() - 3 + sim::kBuildStepCount));
   EXPECT_NE(read_text(without_line(text, "description"), "b.machine")->description, "");
 }
 
@@ -160,6 +162,14 @@ TEST(MachineFile, NamesTheLineOfEveryDefect) {
       {base + "local_store_bytes 32768\n", ":2: 'local_store_bytes' must be from 65536 to 1073741824, not '32768'"},
       {base + "main_memory_bytes 1\n", ":2: 'main_memory_bytes' must be from 1048576 to 1099511627776, not '1'"},
       {base + "latency_cycles -1\n", ":2: 'latency_cycles' must be from 0 to 1048576, not '-1'"},
+      {base + "latency_cycles 400 500\n", ":2: 'latency_cycles' takes one number, or several with shares"},
+      {base + "latency_cycles 400:0.5 500\n", ":2: 'latency_cycles' takes one number, or several with shares"},
+      {base + "latency_cycles 400:0.5 500:0.4\n", ":2: the shares of 'latency_cycles' add up to 0.9, not to 1"},
+      {base + "latency_cycles 400:0 500:1\n", ":2: a share of 'latency_cycles' must be from "},
+      {base + "latency_cycles 400:half\n", ":2: 'half' is not a number"},
+      {base + "latency_cycles 400:0.5 -1:0.5\n", ":2: 'latency_cycles' must be from 0 to 1048576, not '-1'"},
+      {base + "latency_cycles 1:.1 2:.1 3:.1 4:.1 5:.1 6:.1 7:.1 8:.1 9:.2\n",
+       ":2: 'latency_cycles' takes at most 8 numbers"},
       {base + "channel_bytes_per_cycle 0\n", ":2: 'channel_bytes_per_cycle' must be from 0.0625 to 65536, not '0'"},
       {base + "queue_depth 4097\n", ":2: 'queue_depth' must be from 1 to 4096"},
       {base + "line_bytes 0\n", ":2: 'line_bytes' must be from 1 to 16384"},
@@ -204,7 +214,7 @@ TEST(MachineFile, NamesOfBuiltInMachinesComeFirst) {
   EXPECT_EQ(tool::find_machine(path)->core_count, 3u);
   EXPECT_EQ(failure_of([] { return tool::find_machine("abacus"); }),
             "abacus: no such file, and no built-in machine of that name; there are cell-ps3, cell-2006, "
-            "cell-ps3-2gb, fu540");
+            "cell-ps3-2gb, cell-ps3-dram, cell-ps3-tlb, fu540");
 }
 
 TEST(MachineFile, TheStoreFollowsTheMachine) {

@@ -28,7 +28,7 @@ Json report_on(const TemporaryFolder& folder, const std::string& machine) {
 
 TEST(Machines, APrintedProfileRendersTheSameFrame) {
   const TemporaryFolder folder;
-  for (const char* name : {"cell-ps3", "cell-2006", "cell-ps3-2gb"}) {
+  for (const char* name : {"cell-ps3", "cell-2006", "cell-ps3-tlb"}) {
     const std::string text = run(folder, {"machines", name}).out;
     folder.write("copy.machine", text);
     EXPECT_EQ(run(folder, {"machines", "copy.machine"}).out, text);
@@ -83,6 +83,22 @@ TEST(Machines, InfoAndPackFitTheMachineOfAFile) {
   run(folder, {"pack", "a.ply", "-o", "a.gri", "--machine", "small.machine"});
   const Json packed = Json::parse(run(folder, {"info", "a.gri", "--json"}).out);
   EXPECT_EQ(packed["grid"]["lambda"], info["grid"]["lambda"]);
+}
+
+// The same mean: the more latencies differ, the less waiting is hidden. Another seed gives another frame.
+TEST(Machines, LatencyMayBeATable) {
+  const TemporaryFolder folder("table.machine", "based_on cell-ps3\nlatency_cycles 400:0.98 5400:0.02\n");
+  folder.write("seed.machine", "based_on cell-ps3\nlatency_cycles 400:0.98 5400:0.02\nlatency_seed 2\n");
+  const Json usual = report_on(folder, "cell-ps3"), table = report_on(folder, "table.machine");
+  EXPECT_EQ(table["work"], usual["work"]);
+  EXPECT_EQ(table["image_hash"], usual["image_hash"]);
+  EXPECT_GT(table["frame"]["cycles"], usual["frame"]["cycles"]);
+  EXPECT_NE(report_on(folder, "seed.machine")["frame"]["cycles"], table["frame"]["cycles"]);
+  EXPECT_EQ(report_on(folder, "cell-ps3-tlb")["frame"]["cycles"], table["frame"]["cycles"]);
+  const Json listed = Json::parse(run(folder, {"machines", "table.machine", "--json"}).out)["machines"][0];
+  EXPECT_EQ(listed["latency_cycles"],
+            Json::parse(R"([{"cycles": 400.0, "share": 0.98}, {"cycles": 5400.0, "share": 0.02}])"));
+  EXPECT_EQ(listed["latency_seed"], 1);
 }
 
 // A short queue reaches the kernel, which keeps to it: it waits more often, and does nothing else more often.
@@ -211,7 +227,8 @@ TEST(Machines, HelpShowsTheFormat) {
   EXPECT_NE(help.find("based_on       cell-ps3"), std::string::npos) << help;
   EXPECT_NE(help.find("line_bytes: 1 to 16384; a transfer costs whole lines of this size\n"), std::string::npos)
       << help;
-  EXPECT_NE(run(folder, {"render", "--help"}).out.find("cell-ps3-2gb|fu540|FILE"), std::string::npos);
+  EXPECT_NE(run(folder, {"render", "--help"}).out.find("cell-ps3-2gb|cell-ps3-dram|cell-ps3-tlb|fu540|FILE"),
+            std::string::npos);
 }
 
 }  // namespace

@@ -43,9 +43,8 @@ constexpr Row kRows[] = {
     {"issue_cycles", &MachineProfile::issue_cycles, kCycles, "of the core, per command"},
     {"wait_cycles", &MachineProfile::wait_cycles, kCycles, "of the core, per wait, even when nothing is pending"},
     {"latency_cycles", &MachineProfile::latency_cycles, kCycles,
-     "from a line's turn on the channel to its arrival; or several, with the share of the lines that take so long: "
-     "400:0.98 5400:0.02"},
-    {"latency_seed", &MachineProfile::latency_seed, {0, 4294967295.0}, "decides which line has which of several"},
+     "from a line's turn on the channel to its arrival; or several, with their shares: 400:0.98 5400:0.02"},
+    {"latency_seed", &MachineProfile::latency_seed, {0, 0xFFFFFFFFu}, "decides which line has which of several"},
     {"channel_bytes_per_cycle", &MachineProfile::channel_bytes_per_cycle, {0.0625, 65536}, "shared by all cores"},
     {"core_line_interval_cycles", &MachineProfile::core_line_interval_cycles, kCycles,
      "least distance between two lines of one core"},
@@ -128,7 +127,10 @@ std::string text_of(const sim::Latency& latency) {
   if (latency.shares().size() == 1) return text_of(latency.shares().front().cycles);
   std::string text;
   for (const sim::LatencyShare& one : latency.shares()) {
-    text += (text.empty() ? "" : " ") + text_of(one.cycles) + ":" + text_of(one.share);
+    if (!text.empty()) text += ' ';
+    text += text_of(one.cycles);
+    text += ':';
+    text += text_of(one.share);
   }
   return text;
 }
