@@ -48,7 +48,8 @@ class Model {
       ModelCore* sender = nullptr;
       for (ModelCore& core : cores_) {
         if (core.is_claiming && (claimer == nullptr || core.now < claimer->now)) claimer = &core;
-        if (open_command(core) != nullptr && (sender == nullptr || request_of(core) < request_of(*sender))) sender = &core;
+        if (open_command(core) != nullptr && (sender == nullptr || request_of(core) < request_of(*sender)))
+          sender = &core;
       }
       if (claimer != nullptr && (sender == nullptr || claimer->now <= request_of(*sender))) {
         grant(*claimer);

@@ -26,7 +26,8 @@ nlohmann::ordered_json json_of_machine(sim::MachineProfile machine) {
   for (const MachineKey& key : machine_keys(machine)) {
     std::string path = "/" + key.name;
     std::ranges::replace(path, '.', '/');
-    std::visit([&](const auto* number) { json[nlohmann::ordered_json::json_pointer(path)] = json_of(*number); }, key.number);
+    std::visit([&](const auto* number) { json[nlohmann::ordered_json::json_pointer(path)] = json_of(*number); },
+               key.number);
   }
   return json;
 }

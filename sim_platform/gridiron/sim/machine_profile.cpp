@@ -64,12 +64,12 @@ constexpr MachineProfile kCellPs3 = {
     .clock_hz = 3.2e9,
     .main_memory_bytes = 256 * kMegabyte,
     .local_store_bytes = 256 * 1024,
-    .line_bytes = 128,                // a partial line is a bus request like a whole one
-    .queue_depth = 16,                // commands of one core's transfer engine; published
-    .lines_in_flight = 16,            // 16 * 128 bytes per 518 cycles = 12.7 GB/s for one core; about 10 in practice
-    .issue_cycles = 24,               // 6 channel writes at 6 cycles, partly overlapped, and the address arithmetic
-    .wait_cycles = 14,                // write the mask, read the status
-    .latency_cycles = 500,            // "several hundred" published; report 300, 500 and 1,000
+    .line_bytes = 128,      // a partial line is a bus request like a whole one
+    .queue_depth = 16,      // commands of one core's transfer engine; published
+    .lines_in_flight = 16,  // 16 * 128 bytes per 518 cycles = 12.7 GB/s for one core; about 10 in practice
+    .issue_cycles = 24,     // 6 channel writes at 6 cycles, partly overlapped, and the address arithmetic
+    .wait_cycles = 14,      // write the mask, read the status
+    .latency_cycles = 500,  // "several hundred" published; report 300, 500 and 1,000
     .latency_seed = 1,
     .channel_bytes_per_cycle = 7.2,   // 25.6 GB/s = 8 bytes a cycle, 90 % of it usable: 23 GB/s; 20-23 in practice
     .core_line_interval_cycles = 16,  // 8 bytes a cycle into one local store

@@ -41,8 +41,8 @@ struct LatencyTicks {
     for (const LatencyShare& one : latency.shares()) {
       sum += one.share;
       // The last one gets what rounding leaves.
-      entries.push_back({sum < 1 ? static_cast<std::uint64_t>(sum * 0x1p64) : ~std::uint64_t{0},
-                         ticks_from_cycles(one.cycles)});
+      entries.push_back(
+          {sum < 1 ? static_cast<std::uint64_t>(sum * 0x1p64) : ~std::uint64_t{0}, ticks_from_cycles(one.cycles)});
     }
   }
   [[nodiscard]] bool is_one_number() const { return entries.size() == 1; }
@@ -92,7 +92,7 @@ struct Constants {
 
 struct Command {
   Ticks issued = 0;
-  Ticks done = 0;             ///< when the last of its lines arrives; meaningful once all are granted
+  Ticks done = 0;  ///< when the last of its lines arrives; meaningful once all are granted
   std::uint64_t lines = 0;
   std::uint64_t granted = 0;  ///< of them
   std::uint32_t tag = 0;
