@@ -42,33 +42,6 @@ struct EffectName {
 #undef GRIDIRON_EFFECT_NAME
 #pragma GCC diagnostic pop
 
-[[nodiscard]] consteval unsigned letters_of(const char* text) {
-  unsigned count = 0;
-  while (text[count] != '\0') ++count;
-  return count;
-}
-[[nodiscard]] consteval bool is_same_text(const char* a, const char* b) {
-  for (unsigned i = 0; a[i] == b[i]; ++i) {
-    if (a[i] == '\0') return true;
-  }
-  return false;
-}
-/// Whether each effect has a name, words and a label of its own, and the label fits below a bar.
-[[nodiscard]] consteval bool have_names_of_their_own() {
-  for (unsigned i = 0; i < kEffectCount; ++i) {
-    const EffectName effect = effect_name(static_cast<EffectBits>(1u << i));
-    if (effect.name == nullptr || letters_of(effect.label) > 10) return false;
-    for (unsigned j = 0; j < i; ++j) {
-      const EffectName other = effect_name(static_cast<EffectBits>(1u << j));
-      if (is_same_text(effect.name, other.name) || is_same_text(effect.words, other.words) ||
-          is_same_text(effect.label, other.label)) {
-        return false;
-      }
-    }
-  }
-  return true;
-}
-static_assert(have_names_of_their_own(), "an effect has the name of another, or a label longer than ten letters");
 static_assert(effect_name(static_cast<EffectBits>(1u << (kEffectCount - 1))).name != nullptr &&
                   effect_name(static_cast<EffectBits>(1u << kEffectCount)).name == nullptr,
               "kEffectCount is not the number of effects");

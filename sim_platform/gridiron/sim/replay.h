@@ -105,20 +105,21 @@ struct ReplayOptions {
 /// A replay of one core that is alone with its memory, step by step while the core runs.
 class CoreClock {
  public:
-  using Ticks = std::uint64_t;  ///< 1/1024 cycle
-  static constexpr double kTicksPerCycle = 1024;
+  using Ticks = std::uint64_t;                     ///< simulated time
+  static constexpr double kTicksPerCycle = 1024;  ///< of `machine`'s cores
 
+  /// At time 0.
   CoreClock(const MachineProfile& machine, const EngineWork& engine, std::uint32_t output_depth);
   ~CoreClock();
-  CoreClock(CoreClock&&) noexcept;
-  CoreClock& operator=(CoreClock&&) noexcept;
+  CoreClock(CoreClock&&) noexcept;             ///< leaves a clock that can only be destroyed
+  CoreClock& operator=(CoreClock&&) noexcept;  ///< the same
 
   /// Adds the steps of `trace`. @param ordinal  tiles this core had before this one.
   void take(const TileTrace& trace, std::uint32_t ordinal);
   /// Adds the time of a claim, granted or refused.
   void take_claim();
 
-  [[nodiscard]] Ticks now() const;
+  [[nodiscard]] Ticks now() const;  ///< of the core, which may have transfers under way
 
  private:
   struct State;

@@ -17,6 +17,23 @@ constexpr auto kEffects = [] {
   return effects;
 }();
 
+// Labels stand below the bars of a chart.
+consteval bool have_names_of_their_own() {
+  const auto is_same = [](std::string_view a, std::string_view b) { return a == b; };
+  for (const EffectName& effect : kEffects) {
+    if (std::string_view(effect.label).size() > 10) return false;
+    for (const EffectName& other : kEffects) {
+      if (effect.bit == other.bit) continue;
+      if (is_same(effect.name, other.name) || is_same(effect.words, other.words) ||
+          is_same(effect.label, other.label)) {
+        return false;
+      }
+    }
+  }
+  return true;
+}
+static_assert(have_names_of_their_own(), "an effect has the name of another, or a label longer than ten letters");
+
 }  // namespace
 
 std::span<const EffectName> effects() {
