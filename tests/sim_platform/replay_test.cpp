@@ -296,27 +296,6 @@ TEST(Replay, TwiceIsEqualToTheLastDigit) {
   EXPECT_EQ(fingerprint(replay(copy, machine, {.core_count = 6, .timeline = true})), first);
 }
 
-TEST(Replay, KnownFrameHasKnownCycles) {
-  // Pins the result across hosts and compilers: the trace is a closed formula, no random numbers.
-  FrameTrace trace;
-  trace.output_depth = 2;
-  for (std::uint32_t i = 0; i < 50; ++i) {
-    Steps tile(i);
-    tile.work(1, Work::kTileStart).wait(0, 1);
-    for (std::uint32_t k = 0; k < 20; ++k) {
-      tile.get(48 * (1 + (i * 7 + k * 3) % 60), kTriangleTag, 16 * (i * 31 + k * 17))
-          .work((i * k) % 37, Work::kCullTest);
-      tile.wait(bit(kTriangleTag)).work((i + k) % 90, Work::kGroupTestPaper);
-    }
-    trace.tiles.push_back(tile.put(4096, 0, true));
-  }
-  trace.epilogue = Steps().wait(0, 3);
-  MachineProfile machine = *find_machine_profile("cell-ps3");
-  machine.work_cycles.fill(33.3);
-  const FrameTiming frame = replay_on(trace, machine, 6);
-  EXPECT_EQ(frame.frame_cycles, 409544.7607421875);
-}
-
 TEST(Replay, TimelineCoversEveryCycleThatIsNotIdle) {
   const FrameTrace trace = synthetic_frame(5, 40, 3);
   const FrameTiming frame = replay(trace, *find_machine_profile("cell-ps3"), {.core_count = 6, .timeline = true});
@@ -363,7 +342,8 @@ TEST(Replay, SenselessProfileValuesAreTakenAsDocumented) {
   EXPECT_EQ(frame.frame_cycles, 9);
 }
 
-TEST(Replay, BunnySizedFrameTakesWellUnderASecond) {
+// How long it takes is told, not judged: tests/bench has the comparison.
+TEST(Replay, BunnySizedFrameIsReplayed) {
   const FrameTrace trace = synthetic_frame(1, 1024, 20);
   const MachineProfile& machine = *find_machine_profile("cell-ps3");
   const std::clock_t begin = std::clock();  // processor time: other load on the host does not count
@@ -374,9 +354,6 @@ TEST(Replay, BunnySizedFrameTakesWellUnderASecond) {
   RecordProperty("lines", std::to_string(line_bytes / 128));
   RecordProperty("seconds", std::to_string(seconds));
   EXPECT_GT(line_bytes / 128, 900000u);
-#if defined(NDEBUG) && !defined(__SANITIZE_ADDRESS__) && !defined(__SANITIZE_THREAD__)
-  EXPECT_LT(seconds, 1.0);
-#endif
 }
 
 }  // namespace
