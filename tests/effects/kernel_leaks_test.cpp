@@ -66,6 +66,21 @@ TEST(KernelAcne, NothingLiesBetweenAConvexBodyAndALightThatItFaces) {
   }
 }
 
+// The rounding of the light's place decides, on either side of 0: far beyond the body, near by the scene's size.
+TEST(KernelAcne, NothingLiesBetweenASmallBodyAndALightFarOff) {
+  for (const float sign : {1.0f, -1.0f}) {
+    SceneDescription scene = empty_scene(sign * Vec3(3, 2, 3.5f), {0, 0, 0}, {0, 1, 0}, 32);
+    const std::uint16_t white = add_material(scene, {});
+    add_ball(scene, Vec3(0), 1, 12, white);
+    add_triangle(scene, {-sign * Vec3(1e4f), -sign * Vec3(1e4f, 9e3f, 1e4f), -sign * Vec3(9e3f, 1e4f, 1e4f)}, white);
+    scene.point_lights.push_back({sign * Vec3(3e4f, 2e4f, 3.5e4f), Vec3(1)});
+    const KernelPicture shadowed = render_scene(scene, kSize, kSize);
+    scene.shadows = false;
+    const auto steps = compare_steps(shadowed.color, render_scene(scene, kSize, kSize).color);
+    EXPECT_EQ(steps.value().off_by_more_than_1, 0u) << sign;
+  }
+}
+
 TEST(KernelAcne, AConvexBodyOccludesNothingOfItself) {
   for (const Place& place : places()) {
     SCOPED_TRACE(words_of(place));

@@ -151,6 +151,14 @@ TEST(Transfers, ATagIsAsOldAsItsFirstTransferSinceItsWait) {
   EXPECT_EQ(waited, (std::vector<std::uint32_t>{1u << 2}));
 }
 
+TEST(Transfers, ASecondTransferMakesATagNoYounger) {
+  Rig rig(3);
+  EXPECT_EQ(rig.transfers.get(rig.store[7].bytes, {0}, 128, 7), Status::kOk);
+  EXPECT_EQ(rig.transfers.get(rig.store[2].bytes, {128}, 128, 2), Status::kOk);
+  EXPECT_EQ(rig.transfers.get(rig.store[8].bytes, {256}, 128, 7), Status::kOk);
+  EXPECT_EQ(forced_waits(rig, {9}), (std::vector<std::uint32_t>{1u << 7}));
+}
+
 TEST(Transfers, OutputHasItsOwnShareOfTheQueue) {
   Rig rig(6);
   rig.transfers.reserve_for_output(2);

@@ -77,6 +77,8 @@ TEST(Settings, AreInRange) {
   };
   const Status bad = Status::kBadFrame, unsupported = Status::kUnsupportedFrame;
   EXPECT_EQ(status_with([](FrameSettings&) {}), Status::kOk);
+  EXPECT_EQ(status_with([](FrameSettings& s) { s.t_far = std::numeric_limits<float>::infinity(); }), Status::kOk);
+  EXPECT_EQ(status_with([](FrameSettings& s) { s.t_far = std::numeric_limits<float>::quiet_NaN(); }), bad);
   EXPECT_EQ(status_with([](FrameSettings& s) { s.tile_width = 0; }), bad);
   EXPECT_EQ(status_with([](FrameSettings& s) { s.tile_width = kMaxPictureWidth + 1; }), bad);
   EXPECT_EQ(status_with([](FrameSettings& s) { s.output_depth = 0; }), bad);

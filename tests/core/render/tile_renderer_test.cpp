@@ -131,8 +131,10 @@ TEST_F(TileRendererTest, StreamedTableAndLongRunsChangeNothing) {
 // Every place that make_frame_record takes does for every transfer.
 TEST_F(TileRendererTest, PlanesMayLieAtEveryMultipleOfTheirAlignment) {
   for (std::uint64_t shift = kPlaneAlignment; shift < kLineBytes; shift += kPlaneAlignment) {
-    TestFrame frame(fine_scene(), settings_of(64, 48, Normal::kTileWidth), 16, Moves::kAtTheWait, shift);
-    expect_reference<Lanes<4>, Normal>(frame, std::to_string(shift));
+    for (std::uint32_t queue = 1; queue <= 17; ++queue) {
+      TestFrame frame(fine_scene(), settings_of(64, 48, Normal::kTileWidth), queue, Moves::kAtTheWait, shift);
+      expect_reference<Lanes<4>, Normal>(frame, std::to_string(shift) + ", queue of " + std::to_string(queue));
+    }
   }
 }
 

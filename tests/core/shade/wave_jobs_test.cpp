@@ -163,6 +163,14 @@ TEST_F(WaveJobs, AmbientLightIsAskedForOnceASampleWithinTheRadius) {
   for (std::uint32_t i = 0; i < kPoints; ++i) EXPECT_NEAR(sum(i), open[i], 1e-5f) << i;
 }
 
+TEST_F(WaveJobs, AmbientLightIsNotAskedForBeneathTheFace) {
+  gridiron::store({0, -1, 0}, store->wave.items[1].point.face);
+  OcclusionJobs<Store> jobs(context);
+  const std::vector<Ray> rays = run(jobs);
+  EXPECT_EQ(rays.size(), 5 * (kPoints - 1));
+  for (const Ray& ray : rays) EXPECT_NE(ray.owner, 1u);
+}
+
 TEST_F(WaveJobs, AHighlightIsThePowerOfTheCosineHalfWay) {
   const Vector3 place{3, 2, 0};
   for (std::uint32_t i = 0; i < kPoints; ++i) store->wave.items[i].point.lit = {{0, 0, 0}, {0.5f, 0.5f, 0.5f}, 3.0f};

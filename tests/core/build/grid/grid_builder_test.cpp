@@ -455,6 +455,20 @@ TEST(Count, EndsWhereTheImageCannotFit) {
   EXPECT_EQ(count_scene_image(mesh.view(), hopeless, need), Status::kTooManyTriangles);
 }
 
+// Windows that begin with a macrocell of which every triangle lies in it alone.
+TEST(Count, ASweepCountsTheMacrocellThatItBeginsWith) {
+  TestMesh mesh = make_triangle({0, 0, 0}, {0.01f, 0, 0}, {0, 0.01f, 0.01f});
+  for (int i = 1; i < 41; ++i) {
+    const auto at = static_cast<float>(i);
+    mesh.append(make_triangle({at, at, at}, {at + 0.01f, at, at}, {at, at + 0.01f, at + 0.01f}));
+  }
+  GridNeed need{}, swept{};
+  std::uint64_t marks[1];
+  ASSERT_EQ(count_scene_image(mesh.view(), {64.0f, 1}, need), Status::kOk);
+  ASSERT_EQ(count_scene_image(mesh.view(), {64.0f, 1}, swept, nullptr, kAnyImageBytes, marks), Status::kOk);
+  EXPECT_EQ(swept.grid.cell_block_count, need.grid.cell_block_count);
+}
+
 TEST(Count, MarksSaveSweepsAndChangeNothingElse) {
   const TestMesh mesh = make_sliver_fan(100, 1e-3f);
   const GridParameters parameters{3000.0f, 1, TriangleFormat::kVertices};
