@@ -63,7 +63,8 @@ TEST(Camera, RaysGoThroughThePixelsOfThePicture) {
     ASSERT_GE(packet.range_factor, 1.0f);
     float bound = 0.0f;
     for (int axis = 0; axis < 3; ++axis) {
-      bound = std::fmax(bound, std::fabs(frame.corner[axis]) + static_cast<float>(left + 7) * std::fabs(frame.step_x[axis]) +
+      bound = std::fmax(bound, std::fabs(frame.corner[axis]) +
+                                   static_cast<float>(left + 7) * std::fabs(frame.step_x[axis]) +
                                    static_cast<float>(top + 7) * std::fabs(frame.step_y[axis]));
     }
     ASSERT_FLOAT_EQ(packet.linear_error, kLinearError * bound);
