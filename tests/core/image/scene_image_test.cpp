@@ -118,7 +118,7 @@ const Damage kDamages[] = {
     HEADER_DAMAGE("section_table_misaligned", section_table_offset_bytes, r.section_table_offset_bytes = 132),
     HEADER_DAMAGE("section_table_beyond", section_table_offset_bytes, r.section_table_offset_bytes = 0xFFFFFFF8u),
     HEADER_DAMAGE("section_table_ends_beyond", section_table_offset_bytes,
-                  r.section_table_offset_bytes = static_cast<std::uint32_t>(r.image_bytes) - 128),
+                  r.section_table_offset_bytes = static_cast<std::uint32_t>(r.image_bytes) - 8),
     HEADER_DAMAGE("no_triangles", triangle_count, r.triangle_count = 0),
     HEADER_DAMAGE("all_dropped", dropped_triangle_count, r.dropped_triangle_count = r.triangle_count),
     HEADER_DAMAGE("reserved", reserved, r.reserved[4] = 1),
