@@ -159,7 +159,10 @@ class Builder {
       return static_cast<std::uint32_t>(middle - begin);
     }
     // All centres are equal, or the tree would get too deep: halves along the widest axis.
-    const int axis = widest_axis(centers);
+    int axis = 0;
+    for (int other = 1; other < 3; ++other) {
+      if (centers.high[other] - centers.low[other] > centers.high[axis] - centers.low[axis]) axis = other;
+    }
     const std::uint32_t half = node.count / 2;
     std::nth_element(begin, begin + half, end, [&](std::uint32_t a, std::uint32_t b) {
       const double center_a = center(boxes_[a], axis), center_b = center(boxes_[b], axis);
@@ -169,14 +172,6 @@ class Builder {
     std::sort(begin, begin + half);
     std::sort(begin + half, end);
     return half;
-  }
-
-  [[nodiscard]] static int widest_axis(const Box& centers) {
-    int axis = 0;
-    for (int other = 1; other < 3; ++other) {
-      if (centers.high[other] - centers.low[other] > centers.high[axis] - centers.low[axis]) axis = other;
-    }
-    return axis;
   }
 
   [[nodiscard]] std::uint32_t bin_of(const Box& box, const Box& centers, int axis) const {
@@ -192,11 +187,9 @@ class Builder {
       std::uint32_t count = 0;
     };
     const std::uint32_t bin_count = parameters_.bin_count;
-    const bool has_three_axes = node.count <= parameters_.three_axes_triangles;
-    const int widest = widest_axis(centers);
     Split best;
     for (int axis = 0; axis < 3; ++axis) {
-      if (!(centers.high[axis] > centers.low[axis]) || (!has_three_axes && axis != widest)) continue;
+      if (!(centers.high[axis] > centers.low[axis])) continue;
       std::array<Bin, kMaxBins> bins{};
       for (std::uint32_t i = node.first; i < node.first + node.count; ++i) {
         const Box& box = boxes_[order_[i]];

@@ -16,8 +16,6 @@ namespace gridiron::bvh {
 
 struct BvhParameters {
   std::uint32_t bin_count = 6;        ///< per axis, 2..64
-  /// Nodes of at most so many triangles bin all three axes, larger ones only that along which the centres spread most.
-  std::uint32_t three_axes_triangles = 0xFFFFFFFFu;
   std::uint32_t leaf_triangles = 8;   ///< most triangles of a leaf, 1..kMaxLeafTriangles
   float triangle_cost = 0.35f;        ///< of a test, in tests of a child's box
   std::uint32_t line_triangles = 64;  ///< records of a line of the triangle cache; a leaf lies in one line
