@@ -138,7 +138,8 @@ std::string text_of(const sim::Latency& latency) {
 std::vector<MachineKeyHelp> machine_key_help() {
   std::vector<MachineKeyHelp> help;
   for (const Row& row : kRows) help.push_back(help_of(std::string(row.key), row.limits, row.meaning));
-  help.push_back(help_of(std::string(kWorkKey).append("KIND"), kCycles, "per unit of work; a group of 4 rays is one unit"));
+  help.push_back(
+      help_of(std::string(kWorkKey).append("KIND"), kCycles, "per unit of work; a group of 4 rays is one unit"));
   help.push_back(help_of(kMasterClockKey, kHertz, "clock of the general core, which builds the grid"));
   help.push_back(help_of(std::string(kStepKey).append("STEP"), kCycles, "of its clock, per step of a build"));
   return help;
