@@ -97,8 +97,8 @@ bool measure(std::uint32_t cells, const sim::MachineProfile& machine, Point& poi
       mesh.triangles.size(), width, width, 1e3 * build_seconds, 0x1p-20 * static_cast<double>(need.image_bytes),
       0x1p-20 * static_cast<double>(need.scratch_bytes), point.references / point.triangles, need.grid.cell_count[0],
       need.grid.cell_count[1], need.grid.cell_count[2], per_ray(GridWork::kMacroCellStep), per_ray(GridWork::kCellStep),
-      per_ray(GridWork::kCellVisit), per_ray(Work::kTriangleSetup), per_ray(Work::kGroupTestStandard),
-      point.cycles_per_ray, machine.name.data());
+      per_ray(GridWork::kCellVisit), per_ray(Work::kTriangleSetup),
+      per_ray(Work::kGroupTestStandard) + per_ray(Work::kRowTest), point.cycles_per_ray, machine.name.data());
   if (const sim::MachineProfile* small = sim::find_machine_profile("cell-ps3"); small != nullptr) {
     print_fit(mesh.view(), 3 * output_plane_bytes(width, width, rendered.frame.tile_width), *small);
   }

@@ -68,7 +68,7 @@ class BruteForceCore {
                                           : intersect_standard<L, false>(packet, triangle, true, store_.work));
             return Status::kOk;
           }));
-        } while (take_unsure_rays(packet, store_.frame.t_far, packet.active));
+        } while (take_unsure_rays(packet, store_.frame.t_far, packet.active, store_.work));
         store_hits<L>(packet, x, y, Layout::kTileWidth, hits, store_.work);
       }
     }

@@ -33,12 +33,32 @@ TEST(MachineProfile, FiguresAreThePublishedOnes) {
   EXPECT_EQ(ps3.main_memory_bytes, 256u << 20);
   EXPECT_EQ(ps3.local_store_bytes, 262144u);
   EXPECT_EQ(ps3.queue_depth, 16u);
+  EXPECT_EQ(ps3.line_bytes, 128u);
+  EXPECT_EQ(ps3.latency_cycles.mean(), 500);
+  EXPECT_DOUBLE_EQ(ps3.channel_bytes_per_cycle, 0.9 * 25.6e9 / 3.2e9);
+  EXPECT_EQ(ps3.core_line_interval_cycles, 128 / 8);
+  // One core alone takes lines_in_flight lines in a latency: over 10 GB/s, as measured, and below a channel.
+  const double lines_a_second = ps3.lines_in_flight * ps3.clock_hz / (ps3.latency_cycles.mean() + 18);
+  EXPECT_GT(lines_a_second * 128, 10e9);
+  EXPECT_LT(lines_a_second * 128, 16e9);
+  // Six channel writes; a mask written and a status read; a mailbox there and back.
+  EXPECT_EQ(ps3.issue_cycles, 24);
+  EXPECT_EQ(ps3.wait_cycles, 14);
+  EXPECT_EQ(ps3.claim_cycles, 300);
   const MachineProfile& blade = *find_machine_profile("cell-2006");
   EXPECT_EQ(blade.core_count, 8u);
   EXPECT_EQ(blade.clock_hz, 2.4e9);
   // The same memory: as many bytes a second, as many nanoseconds.
   EXPECT_DOUBLE_EQ(blade.channel_bytes_per_cycle * blade.clock_hz, ps3.channel_bytes_per_cycle * ps3.clock_hz);
   EXPECT_DOUBLE_EQ(blade.latency_cycles.mean() / blade.clock_hz, ps3.latency_cycles.mean() / ps3.clock_hz);
+  EXPECT_DOUBLE_EQ(blade.claim_cycles / blade.clock_hz, ps3.claim_cycles / ps3.clock_hz);
+  EXPECT_EQ(blade.main_memory_bytes, 512u << 20);
+  // The same mean, spread.
+  for (const char* name : {"cell-ps3-dram", "cell-ps3-tlb"}) {
+    MachineProfile spread = *find_machine_profile(name);
+    EXPECT_DOUBLE_EQ(spread.latency_cycles.mean(), ps3.latency_cycles.mean()) << name;
+    EXPECT_EQ(spread.work_cycles, ps3.work_cycles) << name;
+  }
   MachineProfile large = *find_machine_profile("cell-ps3-2gb");
   EXPECT_EQ(large.main_memory_bytes, 2048ull << 20);
   EXPECT_EQ(large.work_cycles, ps3.work_cycles);

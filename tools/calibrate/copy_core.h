@@ -33,10 +33,10 @@ class LineBytes {
   std::unique_ptr<std::byte, Free> data_;
 };
 
-/// A core whose transfers are copies, and who has every tile of the frame.
+/// A core whose transfers are copies, and that has all these tiles.
 class CopyCore {
  public:
-  CopyCore(std::span<std::byte> memory, std::uint32_t tile_count) : memory_(memory), tile_count_(tile_count) {}
+  CopyCore(std::span<std::byte> memory, std::span<const std::uint32_t> tiles) : memory_(memory), tiles_(tiles) {}
 
   [[nodiscard]] PlatformLimits limits() const { return {}; }
   [[nodiscard]] Status get(void* local, MainAddress address, std::uint32_t bytes, Tag) {
@@ -49,14 +49,14 @@ class CopyCore {
   }
   [[nodiscard]] Status wait(TagMask) { return Status::kOk; }
   [[nodiscard]] TileClaim claim_tile() {
-    if (next_tile_ == tile_count_) return {TileClaim::Kind::kNone, 0};
-    return {TileClaim::Kind::kTile, next_tile_++};
+    if (next_ == tiles_.size()) return {TileClaim::Kind::kNone, 0};
+    return {TileClaim::Kind::kTile, tiles_[next_++]};
   }
 
  private:
   std::span<std::byte> memory_;
-  std::uint32_t tile_count_;
-  std::uint32_t next_tile_ = 0;
+  std::span<const std::uint32_t> tiles_;
+  std::size_t next_ = 0;
 };
 
 /// Errors: std::runtime_error where a frame cannot be set up or rendered.

@@ -18,7 +18,7 @@ __attribute__((noinline)) void render(const CountedRun& run, PipeModel& model) {
   LineBytes bytes(sizeof(Store));
   Store& store = *reinterpret_cast<Store*>(bytes.bytes().data());
   model.set_store(&store, sizeof(store));
-  CopyCore core(run.memory, run.tile_count);
+  CopyCore core(run.memory, run.tiles);
   require(twin::render_tiles<twin::Lanes<4>>(store, core, twin::MainAddress{0},
                                              {twin::MainAddress{run.spill_address}, run.spill_bytes}));
 }
@@ -67,26 +67,35 @@ __attribute__((noinline)) void decide(std::span<const ExactDecision> decisions, 
 }
 
 template <class Run>
-Totals count_twice(const Run& run, std::uint32_t superblock_branches) {
+Branches learn(const Run& run) {
   const int stack_base = 0;
-  PipeModel first(nullptr);
-  first.set_stack(&stack_base);
-  run(first);
-  (void)first.finish();
-  PipeModel second(&first.branches(), superblock_branches);
-  second.set_stack(&stack_base);
-  run(second);
-  return second.finish();
+  PipeModel model(nullptr);
+  model.set_stack(&stack_base);
+  run(model);
+  return model.branches();
+}
+template <class Run>
+Counts count(const Run& run, const Branches& usual, const PipeRules& rules) {
+  const int stack_base = 0;
+  PipeModel model(&usual, rules);
+  model.set_stack(&stack_base);
+  run(model);
+  return model.finish();
 }
 
 }  // namespace
 
-Totals run_counted(const CountedRun& run, std::uint32_t superblock_branches) {
-  return count_twice([&](PipeModel& model) { render_program(run, model); }, superblock_branches);
+Branches branches_of(const CountedRun& run) {
+  return learn([&](PipeModel& model) { render_program(run, model); });
 }
 
-Totals count_decisions(std::span<const ExactDecision> decisions, std::uint32_t superblock_branches) {
-  return count_twice([&](PipeModel& model) { decide(decisions, model); }, superblock_branches);
+Counts run_counted(const CountedRun& run, const Branches& usual, const PipeRules& rules) {
+  return count([&](PipeModel& model) { render_program(run, model); }, usual, rules);
+}
+
+Totals count_decisions(std::span<const ExactDecision> decisions, const PipeRules& rules) {
+  const auto decide_all = [&](PipeModel& model) { decide(decisions, model); };
+  return count(decide_all, learn(decide_all), rules).totals;
 }
 
 }  // namespace gridiron::calibrate

@@ -17,20 +17,22 @@ enum class CountedProgram { kPackets8, kPackets32, kEffects, kBvh };
 /// What a counted core renders: memory that begins with the frame's record.
 struct CountedRun {
   std::span<std::byte> memory;
-  std::uint32_t tile_count = 0;
+  std::span<const std::uint32_t> tiles;
   std::uint64_t spill_address = 0, spill_bytes = 0;
   CountedProgram program = CountedProgram::kPackets8;
 };
 
-/// Counts twice: what the branches usually do, then what everything costs.
-/// Errors: std::runtime_error where the kernel refuses the frame.
-[[nodiscard]] Totals run_counted(const CountedRun& run, std::uint32_t superblock_branches);
+/// @returns what the branches do. Errors: std::runtime_error where the kernel refuses the frame.
+[[nodiscard]] Branches branches_of(const CountedRun& run);
+/// @param usual  what the program's branches usually do: the program is laid out for that. @returns what everything
+/// costs. Errors: as above.
+[[nodiscard]] Counts run_counted(const CountedRun& run, const Branches& usual, const PipeRules& rules);
 
 /// A ray and a triangle that are decided in integers: sign, distance, and its order with the distance of the same
 /// triangle from another corner.
 struct ExactDecision {
   float eye[3], direction[3], a[3], b[3], c[3];
 };
-[[nodiscard]] Totals count_decisions(std::span<const ExactDecision> decisions, std::uint32_t superblock_branches);
+[[nodiscard]] Totals count_decisions(std::span<const ExactDecision> decisions, const PipeRules& rules);
 
 }  // namespace gridiron::calibrate

@@ -1,4 +1,5 @@
 // The two pipes: see the header. SPDX-License-Identifier: Apache-2.0
+#include <gridiron/sim/engine_work.h>
 #include <pipe_model.h>
 
 #include <algorithm>
@@ -42,19 +43,23 @@ double KindTotals::single_issue_cycles() const {
   return cycles() + static_cast<double>(pairs) / 2;
 }
 
-bool BranchWays::usual() const {
-  std::uint64_t taken = 0;
-  std::uint64_t not_taken = 0;
-  for (const auto& kind : by_kind) {
-    not_taken += kind[0];
-    taken += kind[1];
-  }
-  return taken > not_taken;
+void add(KindTotals& sum, const KindTotals& more) {
+  sum.units += more.units;
+  sum.half_cycles += more.half_cycles;
+  sum.pairs += more.pairs;
+  sum.misses += more.misses;
+  for (std::size_t i = 0; i < kOpClassCount; ++i) sum.operations[i] += more.operations[i];
 }
 
-PipeModel::PipeModel(const Branches* branches, std::uint32_t superblock_branches)
+void add(Branches& sum, const Branches& more) {
+  for (const auto& [site, ways] : more) {
+    for (std::size_t way = 0; way < 2; ++way) sum[site][way] += ways[way];
+  }
+}
+
+PipeModel::PipeModel(const Branches* branches, const PipeRules& rules)
     : schedules_(branches != nullptr),
-      superblock_branches_(superblock_branches),
+      rules_(rules),
       ready_(kRememberedNodes),
       history_(kRememberedNodes),
       depth_(kRememberedNodes),
@@ -62,7 +67,7 @@ PipeModel::PipeModel(const Branches* branches, std::uint32_t superblock_branches
       outer_(current_model) {
   current_model = this;
   if (branches == nullptr) return;
-  for (const auto& [site, ways] : *branches) usual_[site] = ways.usual();
+  for (const auto& [site, ways] : *branches) usual_[site] = ways[1] > ways[0];
 }
 
 PipeModel::~PipeModel() {
@@ -76,21 +81,36 @@ PipeModel& PipeModel::current() {
 void PipeModel::add_units(WorkId kind, std::uint32_t amount) {
   totals_[kind.number()].units += amount;
   kind_ = kind;
+  // A unit that is only a branch has no operation that could take its miss.
+  if (missed_ && !sim::is_charged_as_event(kind)) charge_miss();
+}
+
+void PipeModel::charge_miss() {
+  const bool is_charged = !sim::is_charged_as_event(kind_);
+  ++totals_[(is_charged ? kind_ : *missed_).number()].misses;
+  missed_.reset();
 }
 
 Node PipeModel::emit(OpClass op, std::uint64_t tie, Node a, Node b, Node c) {
+  if (missed_) charge_miss();
   // A value is told from others by how it came about.
   std::uint64_t history = tie * 16 + static_cast<std::uint64_t>(op);
   for (const Node node : {a, b, c}) {
     const std::uint64_t before = node == 0 ? 0 : history_[node % kRememberedNodes];
     history = (history ^ (history >> 29)) * 0x9E3779B97F4A7C15u + before;
   }
-  block_.push_back({op, kind_, segment_, {a, b, c}, history});
+  block_.push_back({op, kind_, segment_, {a, b, c}, history, false});
   const Node node = first_node_ + static_cast<Node>(block_.size()) - 1;
   history_[node % kRememberedNodes] = history;
   std::uint64_t depth = 0;
   for (const Node before : {a, b, c}) depth = std::max(depth, before == 0 ? 0 : depth_[before % kRememberedNodes]);
   depth_[node % kRememberedNodes] = depth + facts(op).latency_cycles;
+  return node;
+}
+
+Node PipeModel::emit_product(std::uint64_t tie, Node a, Node b) {
+  const Node node = emit(OpClass::kFloat, tie, a, b);
+  block_.back().is_product = true;
   return node;
 }
 
@@ -106,11 +126,19 @@ void PipeModel::branch(Site site, bool taken, Node condition) {
     if (last == 0 || depth_[node % kRememberedNodes] > depth_[last % kRememberedNodes]) last = node;
   }
   conditions_.clear();
-  emit(OpClass::kBranch, site, condition, last);
-  ++branches_[site].by_kind[kind_.number()][taken ? 1 : 0];
+  const Node hint = rules_.has_hints && is_usually_taken(site) ? emit(OpClass::kHint, site) : 0;
+  emit(OpClass::kBranch, site, condition, last, hint);
+  ++branches_[site][taken ? 1 : 0];
   ++block_number_;
   ++segment_;
-  if (!schedules_ || segment_ >= superblock_branches_ || taken != usual_.at(site)) schedule();
+  const bool is_usual = taken == is_usually_taken(site);
+  if (!schedules_ || segment_ >= rules_.superblock_branches || !is_usual) schedule();
+  if (!is_usual) missed_ = kind_;
+}
+
+bool PipeModel::is_usually_taken(Site site) const {
+  const auto found = usual_.find(site);
+  return found != usual_.end() && found->second;
 }
 
 void PipeModel::use_condition(bool value, Node node) {
@@ -223,17 +251,71 @@ void PipeModel::forget(const void* pointer, std::size_t bytes) {
   for (std::uintptr_t quad = first; quad <= first + bytes / 16; ++quad) quads_.erase(quad);
 }
 
+std::vector<bool> PipeModel::fuse_products() {
+  std::vector<bool> is_part(block_.size());
+  if (!rules_.fuses) return is_part;
+  std::vector<std::uint32_t> uses(block_.size());
+  for (const Op& op : block_) {
+    for (const Node node : op.deps) {
+      if (node >= first_node_) ++uses[node - first_node_];
+    }
+  }
+  for (Op& op : block_) {
+    if (op.op != OpClass::kFloat || op.is_product || op.deps[2] != 0) continue;
+    for (int i = 0; i < 2; ++i) {
+      if (op.deps[i] < first_node_) continue;
+      const std::size_t place = op.deps[i] - first_node_;
+      if (!block_[place].is_product || uses[place] != 1) continue;
+      is_part[place] = true;
+      op.deps[2] = op.deps[1 - i];
+      op.deps[0] = block_[place].deps[0];
+      op.deps[1] = block_[place].deps[1];
+      break;
+    }
+  }
+  return is_part;
+}
+
+std::uint32_t PipeModel::note_pressure(const std::vector<std::uint32_t>& turns) {
+  const auto count = static_cast<std::uint32_t>(block_.size());
+  std::unordered_map<Node, std::uint32_t> last_use;  // turns
+  for (std::uint32_t i = 0; i < count; ++i) {
+    for (const Node node : block_[i].deps) {
+      if (node != 0) last_use[node] = std::max(last_use[node], turns[i]);
+    }
+  }
+  std::uint32_t kept = 0;
+  for (const auto& [address, quad] : quads_) {
+    if (block_number_ - quad.last_block > kRegisterBlocks) continue;
+    ++kept;
+    last_use.erase(quad.node);
+  }
+  std::vector<std::int32_t> change(count + 2);  // of the values that are needed, by turn
+  for (const auto& [node, last] : last_use) {
+    ++change[node < first_node_ ? 0 : turns[node - first_node_] + 1];
+    --change[last + 1];
+  }
+  std::int32_t needed = 0, most = 0;
+  for (const std::int32_t more : change) most = std::max(most, needed += more);
+  const std::uint32_t registers = kept + static_cast<std::uint32_t>(most);
+  ++pressure_[std::min<std::size_t>(registers, pressure_.size() - 1)];
+  return registers > kRegisters ? registers - kRegisters : 0;
+}
+
 // Issues the block's operations in cycles: of those whose operands are there, the one with the longest chain behind it
 // on each pipe. A branch leaves when all that stands before it has left; stores stay behind the branches before them.
 void PipeModel::schedule() {
   const std::uint32_t count = static_cast<std::uint32_t>(block_.size());
   const std::uint32_t segments = segment_ + 1;
   segment_ = 0;
-  if (!schedules_) {
+  if (!schedules_ || count == 0) {
     first_node_ += count;
     block_.clear();
     return;
   }
+  const std::vector<bool> is_part = fuse_products();
+  std::vector<std::uint32_t> turns(rules_.has_spills ? count : 0);
+  std::uint32_t turn = 0;
   height_.assign(count, 0);
   earliest_.assign(count, 0);
   missing_.assign(count, 0);
@@ -243,6 +325,7 @@ void PipeModel::schedule() {
 
   // 1. Who waits for whom, and how long the chains are.
   for (std::uint32_t i = 0; i < count; ++i) {
+    if (is_part[i]) continue;
     if (block_[i].op != OpClass::kBranch) ++left_in_segment_[block_[i].segment];
     for (const Node node : block_[i].deps) {
       if (in_block(node)) {
@@ -257,6 +340,7 @@ void PipeModel::schedule() {
   successors_.assign(first_successor_[count], 0);
   candidates_.assign(first_successor_.begin(), first_successor_.end());
   for (std::uint32_t i = 0; i < count; ++i) {
+    if (is_part[i]) continue;
     for (const Node node : block_[i].deps) {
       if (in_block(node)) successors_[candidates_[node - first_node_]++] = i;
     }
@@ -272,7 +356,7 @@ void PipeModel::schedule() {
   // 2. Cycle by cycle.
   candidates_.clear();
   for (std::uint32_t i = 0; i < count; ++i) {
-    if (missing_[i] == 0) candidates_.push_back(i);
+    if (missing_[i] == 0 && !is_part[i]) candidates_.push_back(i);
   }
   constexpr std::uint32_t kNone = 0xFFFFFFFFu;
   // What stands earlier on the path comes first: a branch must not wait for what may not even be needed.
@@ -320,6 +404,7 @@ void PipeModel::schedule() {
       if (both) ++totals_of(i).pairs;
       ++totals_of(i).operations[static_cast<std::size_t>(block_[i].op)];
       std::erase(candidates_, i);
+      if (rules_.has_spills) turns[i] = turn++;
       if (block_[i].op == OpClass::kBranch) {
         ++open_segment;
       } else {
@@ -338,18 +423,16 @@ void PipeModel::schedule() {
     }
     clock_ = cycle + held;
   }
+  // Stored and loaded again, in the odd pipe.
+  if (rules_.has_spills) totals_of(count - 1).half_cycles += 4 * std::uint64_t{note_pressure(turns)};
   first_node_ += count;
   block_.clear();
 }
 
-Totals PipeModel::finish() {
+Counts PipeModel::finish() {
   schedule();
-  // A branch is laid out for the way it goes most often; the other way is a miss.
-  for (const auto& [site, ways] : branches_) {
-    const std::size_t rarer = ways.usual() ? 0 : 1;
-    for (std::size_t kind = 0; kind < kWorkKindCount; ++kind) totals_[kind].misses += ways.by_kind[kind][rarer];
-  }
-  return totals_;
+  if (missed_) charge_miss();
+  return {totals_, pressure_};
 }
 
 }  // namespace gridiron::calibrate

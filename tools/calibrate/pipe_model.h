@@ -8,6 +8,7 @@
 #include <array>
 #include <cstddef>
 #include <cstdint>
+#include <optional>
 #include <unordered_map>
 #include <vector>
 
@@ -24,6 +25,7 @@ enum class OpClass : std::uint8_t {
   kLoad,     ///< of 16 aligned bytes
   kStore,    ///< of 16 aligned bytes
   kBranch,   ///< hinted
+  kHint,     ///< where a branch will go; only where PipeRules ask for it
   kCount
 };
 inline constexpr std::size_t kOpClassCount = static_cast<std::size_t>(OpClass::kCount);
@@ -47,6 +49,7 @@ inline constexpr std::array<ClassFacts, kOpClassCount> kClassFacts = {{
     {"load", 6, 0, true},      // load and store: 6
     {"store", 6, 0, true},     // nobody waits for it
     {"branch", 1, 0, true},    // hinted: 0 beyond its own slot
+    {"hint", 11, 0, true},     // at least 11 cycles before its branch
 }};
 /// A mispredicted branch costs 18 to 19 cycles.
 inline constexpr std::uint32_t kBranchMissCycles = 18;
@@ -54,10 +57,22 @@ inline constexpr std::uint32_t kBranchMissCycles = 18;
 /// 128 registers: an assumption.
 inline constexpr std::uint32_t kRegisterBlocks = 8;
 
+/// Registers of 16 bytes.
+inline constexpr std::uint32_t kRegisters = 128;
+
 /// Basic blocks that a compiler schedules as one where the branches between them go their usual way: what unrolling a
 /// loop four times and moving operations above branches gives. An assumption, compared with the published rate of dual
 /// issue, see README.md.
 inline constexpr std::uint32_t kSuperblockBranches = 4;
+
+/// What the model assumes of the compiler and of the core. The defaults are charged; others show what they would
+/// change.
+struct PipeRules {
+  std::uint32_t superblock_branches = kSuperblockBranches;
+  bool has_hints = false;   ///< a branch that is usually taken needs a hint before it
+  bool fuses = false;       ///< a product that is only added to another number costs nothing: fused multiply-add
+  bool has_spills = false;  ///< values beyond the registers are stored and loaded again
+};
 
 /// What all units of one kind of work came to.
 struct KindTotals {
@@ -75,6 +90,8 @@ struct KindTotals {
   /// Upper bound: the same schedule, nothing issued together.
   [[nodiscard]] double single_issue_cycles() const;
 };
+/// Adds what other units of the same kind came to.
+void add(KindTotals& sum, const KindTotals& more);
 using Totals = std::array<KindTotals, kWorkKindCount>;
 
 /// A value that an operation made; 0: a constant, always there.
@@ -83,21 +100,30 @@ using Node = std::uint32_t;
 /// Where a branch stands: file number * 65536 + line.
 using Site = std::uint32_t;
 
-/// How often each branch was taken and not.
-struct BranchWays {
-  std::array<std::array<std::uint64_t, 2>, kWorkKindCount> by_kind{};
-  [[nodiscard]] bool usual() const;  ///< true: it is taken more often than not
-};
+/// How often a branch was not taken, and taken.
+using BranchWays = std::array<std::uint64_t, 2>;
 using Branches = std::unordered_map<Site, BranchWays>;
+/// Adds what the branches did in another run.
+void add(Branches& sum, const Branches& more);
 
-/// Schedules superblocks of at most `superblock_branches` basic blocks as a compiler would, longest chain first, and
-/// keeps what it costs by kind of work.
+/// Superblocks by how many registers their values take at once.
+using Pressure = std::array<std::uint64_t, 512>;
+
+/// What a run came to.
+struct Counts {
+  Totals totals{};
+  Pressure pressure{};  ///< where the rules have spills
+};
+
+/// Schedules superblocks as a compiler would, longest chain first, and keeps what they cost by kind of work.
 ///
 /// Ties are broken by how values came about, so that the order in which a compiler evaluates operands changes nothing.
 class PipeModel {
  public:
-  /// @param branches  of an earlier run of the same: what is usual. Null: nothing is scheduled, branches are counted.
-  explicit PipeModel(const Branches* branches, std::uint32_t superblock_branches = kSuperblockBranches);
+  /// @param branches  of earlier runs of the same program: what is usual. Where one of them did not occur, it is
+  /// usually
+  ///                  not taken. Null: nothing is scheduled, branches are counted.
+  explicit PipeModel(const Branches* branches, const PipeRules& rules = {});
   ~PipeModel();
   PipeModel(const PipeModel&) = delete;
   PipeModel& operator=(const PipeModel&) = delete;
@@ -111,6 +137,8 @@ class PipeModel {
 
   /// One operation. @param tie  bits of the result.
   Node emit(OpClass op, std::uint64_t tie, Node a = 0, Node b = 0, Node c = 0);
+  /// A float product, which may become part of a sum.
+  Node emit_product(std::uint64_t tie, Node a, Node b);
   /// A branch that ends the block, on `condition` and on what use_condition() joined.
   void branch(Site site, bool taken, Node condition);
   /// The next condition that is used as a bool is that of the loop at `site`; 0: of none.
@@ -143,8 +171,8 @@ class PipeModel {
 
   [[nodiscard]] const Branches& branches() const { return branches_; }
 
-  /// Ends the last block. @returns the totals, branch misses included.
-  [[nodiscard]] Totals finish();
+  /// Ends the last block. @returns what it came to, branch misses included.
+  [[nodiscard]] Counts finish();
 
  private:
   struct Op {
@@ -153,6 +181,7 @@ class PipeModel {
     std::uint32_t segment;  // branches before it in the block
     Node deps[3];
     std::uint64_t tie;
+    bool is_product;
   };
   struct Quad {
     Node node;
@@ -163,12 +192,21 @@ class PipeModel {
     Node node;
     bool in_memory;
   };
+  [[nodiscard]] bool is_usually_taken(Site site) const;
   [[nodiscard]] bool on_stack(std::uintptr_t address) const { return stack_base_ - address < kStackBytes; }
   [[nodiscard]] Slot& slot_of(std::uintptr_t address) { return slots_[(address >> 2) % slots_.size()]; }
   [[nodiscard]] Quad& quad_at(std::uintptr_t address);
   [[nodiscard]] std::uint64_t ready_of(Node node) const;
   [[nodiscard]] std::array<Node, 2> gather_addresses();
   void schedule();
+  /// Makes products that only one sum needs a part of it. @returns by operation, whether it is one.
+  [[nodiscard]] std::vector<bool> fuse_products();
+  /// How many registers the superblock needs at once: for values that it makes, by the turns in which its operations
+  /// left, for those that it takes from before, and for quadwords that stay in theirs. @returns those that there are
+  /// not.
+  [[nodiscard]] std::uint32_t note_pressure(const std::vector<std::uint32_t>& turns);
+  /// A branch that goes its rarer way delays what comes next, which is charged for it, unless that has no price.
+  void charge_miss();
 
   static constexpr std::uintptr_t kStackBytes = std::uintptr_t{1} << 20;
   static constexpr std::size_t kRememberedNodes = std::size_t{1} << 20;
@@ -177,7 +215,7 @@ class PipeModel {
   WorkId kind_ = Work::kWait;  // what is done before the first tile is not charged by the tile
   bool schedules_;
   std::unordered_map<Site, bool> usual_;
-  std::uint32_t superblock_branches_;
+  PipeRules rules_;
   std::uint32_t segment_ = 0;
   std::vector<Op> block_;
   Node first_node_ = 1;  // of the block
@@ -185,7 +223,8 @@ class PipeModel {
   std::uint64_t clock_ = 0;                             // of the last issue
   std::vector<std::uint64_t> ready_, history_, depth_;  // by node, of the last kRememberedNodes
   std::vector<Node> conditions_;
-  Site loop_ = 0;  // whose condition is used next
+  std::optional<WorkId> missed_;  // of a branch that went its rarer way and is not charged yet
+  Site loop_ = 0;                 // whose condition is used next
   std::vector<Node> addresses_;
   bool addresses_used_ = false;
   std::uintptr_t stack_base_ = 0, store_base_ = 0;
@@ -193,6 +232,7 @@ class PipeModel {
   std::vector<Slot> slots_;
   std::unordered_map<std::uintptr_t, Quad> quads_;
   Branches branches_;
+  Pressure pressure_{};
   PipeModel* outer_;
 
   // Working space of schedule().

@@ -1,6 +1,5 @@
 // Frames, table and words: see the header. SPDX-License-Identifier: Apache-2.0
 #include <counted_frame.h>
-#include <counted_kernel.h>
 #include <gridiron/base/lanes.h>
 #include <gridiron/bvh/bvh_engine_work.h>
 #include <scene_makers/shapes.h>
@@ -10,10 +9,15 @@
 #include <array>
 #include <cstdio>
 #include <fstream>
+#include <functional>
+#include <numeric>
 #include <span>
 #include <stdexcept>
 #include <string_view>
+#include <thread>
 #include <vector>
+
+#include "experiment/workers.h"
 
 namespace gridiron::calibrate {
 
@@ -38,9 +42,9 @@ Scene make_scene() {
   return scene_of(scene_makers::make_teapot(kSegments));
 }
 
+constexpr std::uint32_t kFineSegments = 20;  // triangles as small as a scan's
+
 constexpr Vec3 kEye{2.0f, 3.0f, 8.0f};
-constexpr std::uint32_t kReference = kUseMailbox | kUseCornerCulling | kUseEmptySkip;
-constexpr std::uint32_t kBest = kUseMailbox | kUseEmptySkip | kUseSubpackets;
 
 /// The teapot on a floor, under a lamp, with every effect.
 struct EffectScene {
@@ -144,14 +148,7 @@ bool is_of_planes(std::size_t kind) {
 template <class Takes>
 void add(Totals& sum, const Totals& more, const Takes& takes) {
   for (std::size_t kind = 0; kind < kWorkKindCount; ++kind) {
-    if (!takes(kind)) continue;
-    KindTotals& to = sum[kind];
-    const KindTotals& from = more[kind];
-    to.units += from.units;
-    to.half_cycles += from.half_cycles;
-    to.pairs += from.pairs;
-    to.misses += from.misses;
-    for (std::size_t i = 0; i < kOpClassCount; ++i) to.operations[i] += from.operations[i];
+    if (takes(kind)) add(sum[kind], more[kind]);
   }
 }
 
@@ -193,22 +190,28 @@ double per_unit(const KindTotals& totals, std::uint64_t value) {
 }
 
 struct NamedFrame {
-  const char* name;
+  std::string_view name;
   CountedFrame frame;
-  /// Whether the frame stands for a kind of work: frames with planes, on a lattice, or with effects, for what only they
-  /// do, the others for the rest.
+  bool is_apart = false;  ///< counted for second_opinion alone
+  bool is_wide = false;   ///< has packets that need two passes
+  /// Whether the frame stands for a kind of work: frames with planes, on a lattice, wide or with effects, for what only
+  /// they do, the others for the rest.
   [[nodiscard]] bool operator()(std::size_t kind) const {
     const WorkId work(static_cast<std::uint32_t>(kind));
     const bool is_of_lattice = work == Work::kLatticeTriangle || work == GridWork::kCellBoundStep;
+    const bool is_of_passes = work == Work::kGroupSkip || work == GridWork::kPassGroup;
+    if (is_apart) return false;
     if ((frame.effects != nullptr) != is_of_effects(kind)) return false;
     if (frame.effects != nullptr) return true;
-    return frame.has_planes == is_of_planes(kind) && (frame.accuracy == Accuracy::kCompact) == is_of_lattice;
+    return frame.has_planes == is_of_planes(kind) && (frame.accuracy == Accuracy::kCompact) == is_of_lattice &&
+           is_wide == is_of_passes;
   }
 };
 
 /// What the frames show.
 struct Scenes {
   Scene teapot = make_scene();
+  Scene fine = scene_of(scene_makers::make_teapot(kFineSegments));
   EffectScene lamp, sun;
   Scenes() {
     make_effect_scene(teapot, true, lamp);
@@ -217,17 +220,18 @@ struct Scenes {
 };
 
 CountedFrame teapot_frame(const Scene& scene) {
-  return {.vertices = scene.vertices,
-          .triangles = scene.triangles,
-          .eye = kEye,
-          .at = {0.25f, 1.5f, 0.0f},
-          .tan_half_fov = 0.41421356f,
-          .width = 96};
+  return {.vertices = scene.vertices, .triangles = scene.triangles, .camera = {.eye = kEye, .at = {0.25f, 1.5f, 0.0f}}};
+}
+
+CountedFrame of_mesh(CountedFrame frame, const Scene& scene) {
+  frame.vertices = scene.vertices;
+  frame.triangles = scene.triangles;
+  return frame;
 }
 
 // Few pixels, but as dense as those of a larger picture.
 CountedFrame effect_frame(CountedFrame frame, const EffectScene& scene, std::uint32_t width) {
-  frame.tan_half_fov = 0.25f;
+  frame.camera.tan_half_fov = 0.25f;
   frame.vertices = scene.mesh.vertices;
   frame.triangles = scene.mesh.triangles;
   frame.effects = &scene.view;
@@ -236,18 +240,30 @@ CountedFrame effect_frame(CountedFrame frame, const EffectScene& scene, std::uin
   return frame;
 }
 
-std::array<NamedFrame, 8> frames_of(const Scenes& scenes) {
-  CountedFrame reference = teapot_frame(scenes.teapot);
-  reference.techniques = kReference;
+// A part of a picture ten times as wide.
+CountedFrame close_up(CountedFrame frame, Vec3 at) {
+  frame.camera.at = at;
+  frame.camera.tan_half_fov = 0.04f;
+  return frame;
+}
+
+constexpr std::size_t kFrameCount = 14;
+
+std::array<NamedFrame, kFrameCount> frames_of(const Scenes& scenes) {
+  const CountedFrame reference = teapot_frame(scenes.teapot);
   CountedFrame best = reference;
-  best.packet_width = 32;
-  best.techniques = kBest;
+  best.configuration = tool::find_configuration("best");
   CountedFrame near = best;  // triangles as large as subpackets and larger
-  near.tan_half_fov = 0.06f;
+  near.camera.tan_half_fov = 0.06f;
+  // Triangles as large as a scan's, cells as full and as empty: a body, and its edge before empty cells.
+  const Vec3 body{0.25f, 1.5f, 0.0f}, spout{3.0f, 2.2f, 0.0f};
+  const CountedFrame fine = of_mesh(reference, scenes.fine), fine_best = of_mesh(best, scenes.fine);
   CountedFrame paper = reference;
   paper.accuracy = Accuracy::kPaper;
   paper.shading = Shading::kNone;
-  paper.width = 90;  // packets at the border are not whole
+  paper.width = 90;               // packets at the border are not whole
+  CountedFrame wide = reference;  // rays of a packet march along two axes
+  wide.camera = {.eye = {3.5f, 2.5f, 2.5f}, .at = {0.3f, 1.5f, 0.0f}, .tan_half_fov = 3.0f};
   CountedFrame planes = best;
   planes.has_planes = true;
   CountedFrame compact = best;
@@ -255,20 +271,17 @@ std::array<NamedFrame, 8> frames_of(const Scenes& scenes) {
   return {{{"reference", reference},
            {"best", best},
            {"near", near},
+           {"body", close_up(fine, body)},
+           {"spout", close_up(fine, spout)},
+           {"body_best", close_up(fine_best, body)},
+           {"spout_best", close_up(fine_best, spout)},
+           {"dense", fine, true},
+           {"wide", wide, false, true},
            {"paper", paper},
            {"planes", planes},
            {"compact", compact},
            {"lamp", effect_frame(best, scenes.lamp, 12)},
            {"sun", effect_frame(best, scenes.sun, 20)}}};
-}
-
-void require_same(const CountedPicture& counted, const CountedPicture& plain) {
-  if (counted.pixels != plain.pixels) throw std::runtime_error("calibration: the counted picture is another one");
-  for (std::size_t kind = 0; kind < kWorkKindCount; ++kind) {
-    if (is_charged(kind) && counted.totals[kind].units != plain.totals[kind].units) {
-      throw std::runtime_error("calibration: the counted twin did other work");
-    }
-  }
 }
 
 constexpr std::string_view kTableHead =
@@ -335,39 +348,176 @@ std::string table_row(const KindTotals& t, const std::string& name) {
 
 }  // namespace
 
-Totals count_frames(std::uint32_t superblock_branches) {
+namespace {
+
+// On all threads.
+void for_each_index(std::size_t count, const std::function<void(std::size_t)>& work) {
+  experiment::share_work(std::max(1u, std::thread::hardware_concurrency()), count, work);
+}
+
+/// Frames in memory, and what their branches do.
+struct FramesInMemory {
+  std::vector<FrameInMemory> frames;
+  std::map<CountedProgram, Branches> usual;
+
+  /// @param counted  those for which `teaches` is false do not say which way a branch usually goes.
+  template <class Teaches>
+  FramesInMemory(std::span<const CountedFrame> counted, const Teaches& teaches) {
+    for (const CountedFrame& frame : counted) frames.emplace_back(frame);
+    std::vector<Branches> branches(counted.size());
+    for_each_index(counted.size(), [&](std::size_t i) { branches[i] = frames[i].branches(); });
+    for (std::size_t i = 0; i < counted.size(); ++i) {
+      if (teaches(i)) calibrate::add(usual[frames[i].program()], branches[i]);
+    }
+  }
+  [[nodiscard]] std::vector<Totals> count(const PipeRules& rules = {}) const {
+    std::vector<Totals> totals(frames.size());
+    for_each_index(frames.size(), [&](std::size_t i) {
+      totals[i] = frames[i].count(usual.at(frames[i].program()), {}, rules).counts.totals;
+    });
+    return totals;
+  }
+};
+
+FramesInMemory grid_frames(std::span<const NamedFrame> named) {
+  std::vector<CountedFrame> frames;
+  for (const NamedFrame& one : named) frames.push_back(one.frame);
+  // Where distances have to be exact, hits go another way; few frames ask for it. Few packets need two passes.
+  return {frames, [&](std::size_t i) { return !named[i].frame.has_planes && !named[i].is_wide && !named[i].is_apart; }};
+}
+
+FramesInMemory bvh_frames() {
+  constexpr std::uint32_t kKnotTriangles = 12'000;
+  constexpr std::uint32_t kRing = 3;
+  const Scene teapot = make_scene(), fine = scene_of(scene_makers::make_teapot(kFineSegments));
+  const Scene knot = scene_of(scene_makers::make_torus_knot(kKnotTriangles));
+  std::vector<CountedFrame> frames;
+  for (const std::uint32_t ring_size : {1u, kRing}) {
+    CountedFrame frame = teapot_frame(teapot);
+    frame.ring_size = ring_size;
+    frames.push_back(frame);
+    frames.push_back(close_up(of_mesh(frame, fine), {0.25f, 1.5f, 0.0f}));
+    frame.camera = {.eye = {3.0f, 2.0f, 8.0f}};
+    frames.push_back(of_mesh(frame, knot));
+  }
+  return {frames, [](std::size_t) { return true; }};
+}
+
+}  // namespace
+
+Totals count_frames(const PipeRules& rules) {
   const Scenes scenes;
-  Totals sum = count_decisions(decisions_of(scenes.teapot), superblock_branches);
-  for (const NamedFrame& named : frames_of(scenes)) {
-    const CountedPicture counted = render_counted(named.frame, superblock_branches);
-    require_same(counted, render_plain(named.frame));
-    add(sum, counted.totals, named);
+  const auto named = frames_of(scenes);
+  const FramesInMemory memory = grid_frames(named);
+  Totals sum = count_decisions(decisions_of(scenes.teapot), rules);
+  const std::vector<Totals> counted = memory.count(rules);
+  for (std::size_t i = 0; i < named.size(); ++i) add(sum, counted[i], named[i]);
+  return sum;
+}
+
+Totals count_frame(std::string_view name) {
+  const Scenes scenes;
+  const auto named = frames_of(scenes);
+  const auto found = std::ranges::find(named, name, &NamedFrame::name);
+  if (found == named.end()) throw std::runtime_error("calibration: no frame " + std::string(name));
+  const FramesInMemory memory = grid_frames(named);
+  const FrameInMemory& frame = memory.frames[static_cast<std::size_t>(found - named.begin())];
+  return frame.count(memory.usual.at(frame.program())).counts.totals;
+}
+
+namespace {
+
+// Registers that a share of the superblocks does with.
+std::uint32_t registers_of(const Pressure& pressure, double share) {
+  double left = share * static_cast<double>(std::accumulate(pressure.begin(), pressure.end(), std::uint64_t{0}));
+  std::uint32_t registers = 0;
+  for (; registers + 1 < pressure.size(); ++registers) {
+    left -= static_cast<double>(pressure[registers]);
+    if (left <= 0) break;
+  }
+  return registers;
+}
+
+struct RuledCycles {
+  double cycles = 0, pairs = 0;
+  Pressure pressure{};
+};
+RuledCycles cycles_under(const PipeRules& rules, const FrameInMemory& frame, const Branches& usual) {
+  const Counts counts = frame.count(usual, {}, rules).counts;
+  RuledCycles sum{.pressure = counts.pressure};
+  for (std::size_t kind = 0; kind < kWorkKindCount; ++kind) {
+    if (!is_charged(kind)) continue;
+    sum.cycles += counts.totals[kind].cycles();
+    sum.pairs += static_cast<double>(counts.totals[kind].pairs) / 2;
   }
   return sum;
 }
 
-Totals count_bvh_frames(std::uint32_t superblock_branches) {
-  constexpr std::uint32_t kKnotTriangles = 12'000;
-  constexpr std::uint32_t kRing = 3;
-  const Scene teapot = make_scene();
-  const Scene knot = scene_of(scene_makers::make_torus_knot(kKnotTriangles));
-  Totals sum{};
-  for (const std::uint32_t ring_size : {1u, kRing}) {
-    CountedFrame frame = teapot_frame(teapot);
-    frame.ring_size = ring_size;
-    for (const Scene* scene : {&teapot, &knot}) {
-      if (scene == &knot) {
-        frame.eye = {3.0f, 2.0f, 8.0f};
-        frame.at = {0.0f, 0.0f, 0.0f};
-      }
-      frame.vertices = scene->vertices;
-      frame.triangles = scene->triangles;
-      const CountedPicture counted = render_counted(frame, superblock_branches);
-      require_same(counted, render_plain(frame));
-      add(sum, counted.totals, [](std::size_t) { return true; });
+}  // namespace
+
+std::string rules_text() {
+  struct Row {
+    const char* name;
+    PipeRules rules;
+  };
+  constexpr auto kCharged = kSuperblockBranches;
+  const Row rows[] = {{"charged", {}},
+                      {"superblocks of 1", {.superblock_branches = 1}},
+                      {"of 2", {.superblock_branches = 2}},
+                      {"of 8", {.superblock_branches = 8}},
+                      {"of 16", {.superblock_branches = 16}},
+                      {"hints", {.has_hints = true}},
+                      {"fused multiply-add", {.fuses = true}},
+                      {"spills", {.has_spills = true}},
+                      {"spills, superblocks of 8", {.superblock_branches = 8, .has_spills = true}},
+                      {"spills, of 16", {.superblock_branches = 16, .has_spills = true}}};
+  static_assert(kCharged == 4, "rows name the lengths beside the charged one");
+  const Scenes scenes;
+  const auto named = frames_of(scenes);
+  const FramesInMemory grid = grid_frames(named), of_bvh = bvh_frames();
+  struct Column {
+    const FrameInMemory& frame;
+    const Branches& usual;
+  };
+  const auto column = [](const FramesInMemory& memory, std::size_t i) {
+    return Column{memory.frames[i], memory.usual.at(memory.frames[i].program())};
+  };
+  const Column columns[] = {column(grid, 0), column(grid, 1), column(of_bvh, 4)};
+  double charged[std::size(columns)] = {};
+  std::string text =
+      "| rule | reference | best | cached BVH | dual issue | registers of half the superblocks | of 99 % |\n"
+      "|---|---|---|---|---|---|---|\n";
+  for (const Row& row : rows) {
+    text += format("| %s |", row.name);
+    RuledCycles sum;
+    for (std::size_t i = 0; i < std::size(columns); ++i) {
+      const RuledCycles one = cycles_under(row.rules, columns[i].frame, columns[i].usual);
+      if (charged[i] == 0) charged[i] = one.cycles;
+      text += format(" %+.1f %% |", 100 * (one.cycles / charged[i] - 1));
+      sum.cycles += one.cycles;
+      sum.pairs += one.pairs;
+      for (std::size_t k = 0; k < sum.pressure.size(); ++k) sum.pressure[k] += one.pressure[k];
     }
+    text += format(" %.1f %% |", 100 * sum.pairs / sum.cycles);
+    text += row.rules.has_spills
+                ? format(" %u | %u |\n", registers_of(sum.pressure, 0.5), registers_of(sum.pressure, 0.99))
+                : " | |\n";
   }
+  return text;
+}
+
+Totals count_bvh_frames(const PipeRules& rules) {
+  const FramesInMemory memory = bvh_frames();
+  Totals sum{};
+  for (const Totals& totals : memory.count(rules)) add(sum, totals, [](std::size_t) { return true; });
   return sum;
+}
+
+std::map<CountedProgram, Branches> usual_branches() {
+  const Scenes scenes;
+  std::map<CountedProgram, Branches> usual = grid_frames(frames_of(scenes)).usual;
+  usual.merge(bvh_frames().usual);
+  return usual;
 }
 
 std::string table_text(const Totals& totals) {
@@ -399,46 +549,45 @@ void write_file(const std::string& path, std::span<const std::byte> bytes) {
   if (!file.flush()) throw std::runtime_error("calibration: cannot write " + path);
 }
 
-void write_units(const std::string& path, const Totals& counted) {
-  std::ofstream units(path);
-  for (std::size_t kind = 0; kind < sim::kGridEngine.kind_count(); ++kind)
-    units << kind << ' ' << counted[kind].units << '\n';
-  if (!units.flush()) throw std::runtime_error("calibration: cannot write " + path);
-}
-
-// Writes a frame's memory and units. @returns what was counted.
-Totals write_memory(const std::string& folder, const NamedFrame& named) {
-  write_file(folder + "/" + named.name + ".memory", main_memory_of(named.frame));
-  const Totals counted = render_counted(named.frame).totals;
-  write_units(folder + "/" + named.name + ".units", counted);
-  return counted;
-}
-
 }  // namespace
 
 void write_memories(const std::string& folder) {
   const Scenes scenes;
   const auto frames = frames_of(scenes);
   const std::vector<ExactDecision> decisions = decisions_of(scenes.teapot);
-  Totals totals = count_decisions(decisions, kSuperblockBranches);
+  Totals totals = count_decisions(decisions, PipeRules{});
+  std::ofstream frame_list(folder + "/frames"), parts(folder + "/parts"), kinds(folder + "/units");
+  const std::uint32_t kind_count = sim::kGridEngine.kind_count();
+  const auto write_frame = [&](const std::string& name, const Totals& counted, const auto& stands_for) {
+    std::ofstream units(folder + "/" + name + ".units");
+    for (std::uint32_t kind = 0; kind < kind_count; ++kind) {
+      units << kind << ' ' << counted[kind].units << '\n';
+      if (stands_for(kind)) parts << name << ' ' << kind << '\n';
+    }
+    if (!units.flush()) throw std::runtime_error("calibration: cannot write into " + folder);
+  };
   write_file(folder + "/exact.memory", std::as_bytes(std::span(decisions)));
-  write_units(folder + "/exact.units", totals);
-  for (const NamedFrame& named : frames) add(totals, write_memory(folder, named), named);
-  constexpr std::uint32_t kFineSegments = 20;  // triangles as small as a scan's
-  const Scene fine = scene_of(scene_makers::make_teapot(kFineSegments));
-  NamedFrame dense{"dense", frames[0].frame};
-  dense.frame.vertices = fine.vertices;
-  dense.frame.triangles = fine.triangles;
-  (void)write_memory(folder, dense);
-  std::ofstream file(folder + "/units");
-  for (std::uint32_t kind = 0; kind < sim::kGridEngine.kind_count(); ++kind) {
-    const KindTotals& t = totals[kind];
-    if (!is_charged(kind)) continue;
-    const char* stands_for = is_of_effects(kind) ? "effects" : "packets";
-    file << kind << ' ' << name_of(kind, sim::kGridEngine) << ' ' << t.units << ' ' << per_unit(t, t.even() + t.odd())
-         << ' ' << stands_for << '\n';
+  frame_list << "exact decisions 0\n";
+  write_frame("exact", totals, [&](std::uint32_t kind) { return totals[kind].units != 0; });
+  const std::vector<Totals> counted = grid_frames(frames).count();
+  for (std::size_t i = 0; i < frames.size(); ++i) {
+    const CountedFrame& frame = frames[i].frame;
+    const std::string name(frames[i].name);
+    write_file(folder + "/" + name + ".memory", FrameInMemory(frame).bytes());
+    const std::uint32_t effects = frame.effects == nullptr ? 0 : kAllEffects;
+    frame_list << name << ' ' << frame.configuration->packet_width << ' ' << effects << '\n';
+    write_frame(name, counted[i], frames[i]);
+    add(totals, counted[i], frames[i]);
   }
-  if (!file.flush()) throw std::runtime_error("calibration: cannot write into " + folder);
+  for (std::uint32_t kind = 0; kind < kind_count; ++kind) {
+    const KindTotals& t = totals[kind];
+    const char* group = !is_charged(kind) ? "events" : is_of_effects(kind) ? "effects" : "packets";
+    kinds << kind << ' ' << name_of(kind, sim::kGridEngine) << ' ' << t.units << ' ' << per_unit(t, t.even() + t.odd())
+          << ' ' << group << '\n';
+  }
+  for (std::ofstream* file : {&frame_list, &parts, &kinds}) {
+    if (!file->flush()) throw std::runtime_error("calibration: cannot write into " + folder);
+  }
 }
 
 namespace {

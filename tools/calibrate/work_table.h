@@ -3,9 +3,11 @@
 // Memory: owned. Threads: the caller's only. SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <counted_kernel.h>
 #include <pipe_model.h>
 
 #include <cstdint>
+#include <map>
 #include <string>
 
 namespace gridiron::calibrate {
@@ -14,24 +16,35 @@ namespace gridiron::calibrate {
 /// `best`, from near, with the paper's test, with planes and on a lattice; the teapot on a floor with every effect,
 /// 12 x 12 and 20 x 20 pixels; and the exact decisions on 64 rays and triangles of it.
 ///
+/// Each program is laid out once, for what branches usually do in all its frames.
 /// @returns the sum over the frames. Errors: std::runtime_error where a counted picture differs from the kernel's.
-[[nodiscard]] Totals count_frames(std::uint32_t superblock_branches = kSuperblockBranches);
+[[nodiscard]] Totals count_frames(const PipeRules& rules = {});
+
+/// @returns what the named one of these frames came to.
+[[nodiscard]] Totals count_frame(std::string_view name);
 
 /// @returns the generated source file, sim_platform/gridiron/sim/work_costs.h.
 [[nodiscard]] std::string table_text(const Totals& totals);
 
 /// The same for the cached BVH: the teapot and a torus knot of 12,000 triangles, whose lines exceed the caches, each
 /// with packets one after another and in a ring. By Work and bvh::BvhWork.
-[[nodiscard]] Totals count_bvh_frames(std::uint32_t superblock_branches = kSuperblockBranches);
+[[nodiscard]] Totals count_bvh_frames(const PipeRules& rules = {});
+
+/// Frames of `reference`, `best` and the cached BVH under other rules than those charged: cycles against theirs, dual
+/// issue, registers. @returns a table, Markdown.
+[[nodiscard]] std::string rules_text();
+
+/// @returns what branches usually do in each program, over the frames of count_frames() and count_bvh_frames().
+[[nodiscard]] std::map<CountedProgram, Branches> usual_branches();
 
 /// @returns the generated source file, sim_platform/gridiron/bvh/bvh_costs.h.
 [[nodiscard]] std::string bvh_table_text(const Totals& totals);
 
-/// Writes into a folder, for second_opinion: of each frame and of `dense`, which is `reference` of a teapot of 16 times
-/// the triangles, the main memory, NAME.memory, and the units, NAME.units (kind, units); of the exact decisions their
-/// numbers, exact.memory, and units; and of all but `dense` together a file `units` (kind, name, units, counted
-/// operations per unit, `effects` where frames with effects stand for the kind, else `packets`).
-/// Errors: std::runtime_error where a file cannot be written.
+/// Writes into a folder, for second_opinion, of each frame, those apart too, and of the exact decisions, `exact`: the
+/// main memory, NAME.memory, the units, NAME.units (kind, units), a line of `frames` (name, width of packets or
+/// `decisions`, effects of the store) and lines of `parts` (name, kind that it stands for); and of all together `units`
+/// (kind, name, units, counted operations per unit, `events`: not charged, `effects`: of frames with effects, or
+/// `packets`). Errors: std::runtime_error where a file cannot be written.
 void write_memories(const std::string& folder);
 
 /// @returns the same for people: every kind with its bounds and classes, and the rate of dual issue.

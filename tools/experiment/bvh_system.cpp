@@ -50,7 +50,8 @@ class BvhRecording : public Recording {
     const auto count_of = [&frame](bvh::BvhWork kind) { return frame.work[static_cast<std::size_t>(kind)]; };
     facts_.traversal_steps =
         count_of(bvh::BvhWork::kNodeStep) + count_of(bvh::BvhWork::kMixedNodeStep) + count_of(bvh::BvhWork::kLeafVisit);
-    facts_.intersection_tests = frame.work[static_cast<std::size_t>(Work::kGroupTestStandard)];
+    facts_.intersection_tests = frame.work[static_cast<std::size_t>(Work::kGroupTestStandard)] +
+                                frame.work[static_cast<std::size_t>(Work::kRowTest)];
     facts_.scene_bytes = bvh_.nodes.size() * sizeof(bvh::BvhNode) + bvh_.triangles.size() * sizeof(VertexTriangle);
     facts_.dropped_triangles = bvh_.triangle_count - static_cast<std::uint32_t>(bvh_.counts.records_written);
     facts_.picture_hash = tool::image_hash(frame.picture.color);

@@ -19,27 +19,27 @@ struct EffectSize {
 };
 
 inline constexpr std::array kEffectSizes{
-    EffectSize{0x000, 54194, 163840, 0, 0, false},  // none
-    EffectSize{0x200, 60242, 126592, 24920, 14720, true},  // scene shading
-    EffectSize{0x201, 79860, 126592, 26030, 14720, true},  // + point shadows
-    EffectSize{0x202, 80522, 126592, 26696, 14720, true},  // + area lights
-    EffectSize{0x204, 80986, 144896, 26442, 16896, true},  // + reflection
-    EffectSize{0x208, 82000, 144896, 27456, 16896, true},  // + refraction
-    EffectSize{0x210, 80736, 126592, 26886, 14720, true},  // + ambient occlusion
-    EffectSize{0x220, 62202, 126592, 26880, 14720, true},  // + environment
-    EffectSize{0x240, 61572, 126592, 26242, 14720, true},  // + smooth normals
-    EffectSize{0x280, 60984, 126592, 25662, 14720, true},  // + highlights
-    EffectSize{0x300, 60764, 126592, 25078, 14720, true},  // + multisampling
-    EffectSize{0x3fe, 91116, 144896, 36010, 16896, true},  // all but point shadows
-    EffectSize{0x3fd, 90030, 144896, 34958, 16896, true},  // all but area lights
-    EffectSize{0x3fb, 91116, 144896, 36010, 16896, true},  // all but reflection
-    EffectSize{0x3f7, 90092, 144896, 34986, 16896, true},  // all but refraction
-    EffectSize{0x3ef, 88742, 144896, 33648, 16896, true},  // all but ambient occlusion
-    EffectSize{0x3df, 89146, 144896, 34064, 16896, true},  // all but environment
-    EffectSize{0x3bf, 89736, 144896, 34648, 16896, true},  // all but smooth normals
-    EffectSize{0x37f, 90376, 144896, 35270, 16896, true},  // all but highlights
-    EffectSize{0x2ff, 90576, 144896, 35666, 16896, true},  // all but multisampling
-    EffectSize{0x3ff, 91110, 144896, 36004, 16896, true},  // all
+    EffectSize{0x000, 54794, 163968, 0, 0, false},  // none
+    EffectSize{0x200, 60840, 126720, 24948, 14848, true},  // scene shading
+    EffectSize{0x201, 80450, 126720, 26056, 14848, true},  // + point shadows
+    EffectSize{0x202, 81110, 126720, 26702, 14848, true},  // + area lights
+    EffectSize{0x204, 81588, 145024, 26478, 17024, true},  // + reflection
+    EffectSize{0x208, 82602, 145024, 27486, 17024, true},  // + refraction
+    EffectSize{0x210, 81336, 126720, 26932, 14848, true},  // + ambient occlusion
+    EffectSize{0x220, 62804, 126720, 26914, 14848, true},  // + environment
+    EffectSize{0x240, 62188, 126720, 26302, 14848, true},  // + smooth normals
+    EffectSize{0x280, 61582, 126720, 25690, 14848, true},  // + highlights
+    EffectSize{0x300, 61370, 126720, 25110, 14848, true},  // + multisampling
+    EffectSize{0x3fe, 91754, 145024, 36066, 17024, true},  // all but point shadows
+    EffectSize{0x3fd, 90686, 145024, 35016, 17024, true},  // all but area lights
+    EffectSize{0x3fb, 91754, 145024, 36066, 17024, true},  // all but reflection
+    EffectSize{0x3f7, 90730, 145024, 35042, 17024, true},  // all but refraction
+    EffectSize{0x3ef, 89382, 145024, 33686, 17024, true},  // all but ambient occlusion
+    EffectSize{0x3df, 89776, 145024, 34120, 17024, true},  // all but environment
+    EffectSize{0x3bf, 90354, 145024, 34672, 17024, true},  // all but smooth normals
+    EffectSize{0x37f, 91014, 145024, 35326, 17024, true},  // all but highlights
+    EffectSize{0x2ff, 91204, 145024, 35742, 17024, true},  // all but multisampling
+    EffectSize{0x3ff, 91748, 145024, 36060, 17024, true},  // all
 };
 
 }  // namespace gridiron::experiment

@@ -89,7 +89,7 @@ std::vector<std::string> paper_file_names() {
       "sweep_tile_width.csv", "sweep_tile_width_best.svg", "sweep_tile_width_reference.svg",
       "sweep_triangle_depth.csv", "sweep_triangle_depth.svg", "table1_build.svg", "table1_exponents.csv",
       "table1_growth.csv", "table1_traversal.svg", "table2_scenes.csv", "table3_fps.csv", "table3_shading_cost.csv",
-      "table4_hiding.csv", "table4_wait_share.csv"};
+      "table4_hiding.csv", "table4_levers.csv", "table4_wait_share.csv"};
   // clang-format on
   for (const Contender& contender : make_contenders()) {
     for (const char* kind : {"", "_efficiency"}) names.push_back("fig5_" + contender.key + kind + ".svg");

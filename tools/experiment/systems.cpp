@@ -1,9 +1,11 @@
 // Systems. SPDX-License-Identifier: Apache-2.0
 #include "experiment/systems.h"
 
+#include <gridiron/dma/tags.h>
 #include <gridiron/sim/trace_packing.h>
 #include <report/report.h>
 
+#include <algorithm>
 #include <bit>
 #include <glm/common.hpp>
 #include <numeric>
@@ -90,6 +92,55 @@ std::uint64_t fetched_triangle_bytes(const sim::FrameTrace& trace) {
   return bytes;
 }
 
+// The same frame where every packet fetches the normals of the triangles that it shows before it shades. They are
+// fetched at the end of the tile, which takes a core as long.
+sim::FrameTrace with_late_normals(const sim::FrameTrace& trace, const std::vector<std::uint32_t>& ids,
+                                  const FrameRecord& frame, std::uint32_t packet_width) {
+  constexpr std::uint32_t kNormalBytes = 16;
+  constexpr TagMask kTags = TagMask::of(Tag{kFirstTriangleTag});
+  sim::FrameTrace with = trace;
+  sim::TraceReader steps;
+  sim::TraceWriter writer;
+  std::vector<std::uint32_t> shown;
+  const std::uint32_t tiles_across = (frame.width + frame.tile_width - 1) / frame.tile_width;
+  const auto fetch_normals = [&](std::uint32_t tile, std::uint32_t packet) {
+    const std::uint32_t packets_across = frame.tile_width / packet_width;
+    const std::uint32_t left = tile % tiles_across * frame.tile_width + packet % packets_across * packet_width;
+    const std::uint32_t top = tile / tiles_across * frame.tile_width + packet / packets_across * packet_width;
+    shown.clear();
+    for (std::uint32_t y = top; y < std::min(top + packet_width, frame.height); ++y) {
+      for (std::uint32_t x = left; x < std::min(left + packet_width, frame.width); ++x) {
+        const std::uint32_t id = ids[std::size_t{y} * frame.width + x];
+        if (id != kNoTriangle) shown.push_back(id);
+      }
+    }
+    std::ranges::sort(shown);
+    shown.erase(std::unique(shown.begin(), shown.end()), shown.end());
+    for (const std::uint32_t id : shown) {
+      writer.add({.kind = sim::EventKind::kGet,
+                  .tag = kFirstTriangleTag,
+                  .bytes = kNormalBytes,
+                  .address = std::uint64_t{kNormalBytes} * id});
+      writer.add({.kind = sim::EventKind::kWait, .tags = kTags.bits});
+    }
+  };
+  for (std::size_t i = 0; i < with.tiles.size(); ++i) {
+    sim::TileTrace& tile = with.tiles[i];
+    bool is_shaded = false;
+    steps.open(trace.tiles[i]);
+    while (const sim::TraceEvent* const event = steps.next()) {
+      if (event->kind == sim::EventKind::kPut && !is_shaded) {
+        const std::uint32_t packets = frame.tile_width / packet_width * (frame.tile_width / packet_width);
+        for (std::uint32_t packet = 0; packet < packets; ++packet) fetch_normals(tile.tile_id, packet);
+        is_shaded = true;
+      }
+      writer.add(*event);
+    }
+    tile = writer.finish(tile.tile_id);
+  }
+  return with;
+}
+
 class GridRecording : public Recording {
  public:
   GridRecording(FrameFacts facts, sim::FrameTrace trace) : facts_(std::move(facts)), trace_(std::move(trace)) {}
@@ -162,7 +213,7 @@ std::unique_ptr<Recording> GridSystem::record(const View& view, const FrameReque
   facts.traversal_steps = sum_of(result.work, {GridWork::kMacroSliceStep, GridWork::kMacroCellStep,
                                                GridWork::kSliceStep, GridWork::kCellStep, GridWork::kCellBoundStep});
   facts.intersection_tests =
-      sum_of(result.work, {Work::kGroupTestStandard, Work::kGroupTestPaper, Work::kRayGroupTest});
+      sum_of(result.work, {Work::kGroupTestStandard, Work::kRowTest, Work::kGroupTestPaper, Work::kRayGroupTest});
   facts.scene_bytes = frame.image.header.image_bytes;
   facts.dropped_triangles = frame.image.header.dropped_triangle_count;
   facts.grid = frame.image.grid;
@@ -172,6 +223,10 @@ std::unique_ptr<Recording> GridSystem::record(const View& view, const FrameReque
   const tool::StoreFacts store = *tool::find_store_facts(prepared.plan.layout);  // it has rendered
   facts.local_store_bytes = store.data_bytes() + store.code_bytes + store.stack_bytes;
   facts.picture_hash = tool::image_hash(words_of(frame, frame.color));
+  if (variant_.late_normals) {
+    const std::vector<std::uint32_t> ids = render_answers(variant_, view, request).ids;
+    result.trace = with_late_normals(result.trace, ids, frame.record, variant_.configuration.packet_width);
+  }
   return std::make_unique<GridRecording>(std::move(facts), std::move(result.trace));
 }
 

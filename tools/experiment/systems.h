@@ -105,6 +105,9 @@ struct GridVariant {
   sim::StoreSize store = sim::StoreSize::k256KB;
   std::uint32_t tile_width = sim::usual_tile_width(sim::StoreSize::k256KB);
   bool depth = false;  ///< whether distances are requested too
+  /// Whether a packet fetches the normals of the triangles that it shows, one after another, when it has traced its
+  /// rays.
+  bool late_normals = false;
 };
 
 /// @returns the configuration with that name, e.g. "best". Precondition: it exists.

@@ -11,16 +11,37 @@ namespace gridiron {
 /// L::kCount rays.
 enum class Work : std::uint8_t {
   kTileStart,          ///< tiles begun: parameter reset, output buffer turned over         (initialisation)
+  kRayPacket,          ///< packets of primary rays begun                                    (initialisation)
+  kPixelProjection,    ///< packets of which the projection to pixels was set up             (initialisation)
   kRayGenerated,       ///< primary ray groups generated                                     (initialisation)
+  kRaySetWord,         ///< words of sets of rays that were gone through                     (initialisation)
+  kRecentSlot,         ///< places of recently hit triangles cleared                         (initialisation)
   kCullTest,           ///< corner-ray culling tests, one per triangle
   kPixelBoxGroup,      ///< SIMD groups of triangles of which the pixels that they can cover were computed
+  kOpenTriangle,       ///< of these, triangles that may cover some: listed to be tested
+  kListedTriangle,     ///< triangles listed to be tested, whatever pixels they cover
   kTriangleSetup,      ///< per (packet, triangle) set-ups of the `standard` test
-  kSubpacketSetup,     ///< triangles whose edge functions were made linear in the pixel, for culling subpackets
+  kSlopeSetup,         ///< triangles whose edge functions were made linear in the pixel, for culling subpackets
+  kSubpacketSetup,     ///< triangles of which the subpackets were looked for that they may touch
   kSubpacketGroup,     ///< SIMD groups of squares or subpackets tested against a triangle's edges
+  kTriangleTest,       ///< triangles tested ray by ray: their edge functions spread over the lanes
+  kSubpacketPick,      ///< of many subpackets, those that were picked to be visited
+  kSubpacketVisit,     ///< (subpacket, triangle) pairs of which the groups were gone through
   kGroupTestStandard,  ///< (group, triangle) tests, filtered edge functions
+  kGroupSkip,          ///< groups of these that were left out: no ray is active
+  kInsideTest,         ///< of the others, groups with rays that do not surely miss: asked whether they surely hit
+  kRowVisit,           ///< such pairs where rows may be left out
+  kRowTest,            ///< (group, triangle) tests of rows of them, filtered edge functions
+  kRowSkip,            ///< rows of them that were left out: no ray is active, or none is near
+  kRowInsideTest,      ///< of the others, rows with rays that do not surely miss: asked whether they surely hit
+  kCullTestPaper,      ///< corner-ray culling tests, precomputed projection
   kGroupTestPaper,     ///< (group, triangle) tests, precomputed projection
   kHitGroup,           ///< groups with hits to be merged, `standard` test
+  kOpenHitGroup,       ///< of these, groups with hits that are not surely the nearest so far
+  kSettledGroup,       ///< of these, groups of which exact distances decided
   kHitSubpacket,       ///< whole subpackets inside a triangle, tested against what they hit before
+  kTakenSubpacket,     ///< of these, those that took the triangle
+  kFacingGroup,        ///< groups with hits of which the angle to the triangle was computed for shading
   kHitGroupPaper,      ///< groups of which hits were merged, precomputed projection
   kHitSetup,           ///< triangles for which the distance set-up was computed
   kDoubleSign,         ///< edge signs the float filter left open, tried in double
@@ -62,7 +83,7 @@ enum class Work : std::uint8_t {
 /// The number of the first kind of an engine.
 inline constexpr std::uint32_t kSharedWorkCount = static_cast<std::uint32_t>(Work::kCount);
 /// Kinds that there are counters for. No frame has two engines, so all engines use the same ones.
-inline constexpr std::uint32_t kWorkKindCount = 64;
+inline constexpr std::uint32_t kWorkKindCount = 87;
 
 /// A kind of Work or of an engine: the number of its counter.
 class WorkId {
@@ -80,7 +101,7 @@ class WorkId {
   explicit constexpr WorkId(std::uint32_t number) : number_(number) {}  ///< by the number of its counter
 
   [[nodiscard]] constexpr std::uint32_t number() const { return number_; }  ///< of its counter
-  friend constexpr bool operator==(WorkId, WorkId) = default;  ///< the same kind of the same engine
+  friend constexpr bool operator==(WorkId, WorkId) = default;               ///< the same kind of the same engine
 
  private:
   std::uint32_t number_ = 0;

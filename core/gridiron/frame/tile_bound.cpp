@@ -92,10 +92,13 @@ class Sum {
     const std::uint64_t empty_visits = visits - scene_.occupied_macro_cells;
     add(GridWork::kMacroSliceStep, passes * scene_.macro_slices);
     add(GridWork::kMacroCellStep, passes * scene_.macro_cells);
+    // A row has a cell at least, and is gone on with after each visit and each line of the table.
+    add(GridWork::kMacroRow, passes * (Count{scene_.macro_cells} * (has_table() ? 1 : 2) + visits));
     add(GridWork::kMacroCellVisit, passes * visits);
     add(GridWork::kSliceStep, passes * (skips_empty ? scene_.occupied_slices : scene_.slices));
     add(is_compact() ? GridWork::kCellBoundStep : GridWork::kCellStep,
         passes * (skips_empty ? scene_.occupied_cells : scene_.cells));
+    add(GridWork::kCellRow, passes * (Count{skips_empty ? scene_.occupied_cells : scene_.cells} + scene_.filled_cells));
     add(GridWork::kCellVisit, passes * scene_.filled_cells);
     add(GridWork::kTriangleBatch, passes * scene_.runs);
     if (is_compact()) add(Work::kLatticeTriangle, passes * scene_.references);
@@ -130,7 +133,16 @@ class Sum {
     const std::uint64_t squares = subpackets < 4 ? 1 : subpackets / 4;
     const std::uint64_t rounds = is_paper() || is_fast() ? 1 : 2;
     const Count passes = Count{packets} * (kAxesAndSigns * rounds + (is_exact() ? rays : 0)) + samples * rounds;
+    add(Work::kRayPacket, packets);
+    if (subpackets >= 16) add(Work::kPixelProjection, packets);
     add(Work::kRayGenerated, Count{packets} * groups(rays));
+    const std::uint64_t rounds_and_ties = rounds + (is_exact() ? 1 : 0);
+    add(Work::kRecentSlot, Count{packets} * rounds_and_ties * layout_.recent_triangles);
+    // Each round begins with a look for unsure rays and ends with one for rays of another pass.
+    const std::uint64_t set_words = parts(rays, 32);
+    add(Work::kRaySetWord, Count{set_words} * (Count{packets} * 7 + passes));
+    add(GridWork::kMailboxGroup, (Count{packets} * 2 + passes * 2) * (layout_.mailbox_slots / 4));
+    add(GridWork::kPassSlope, passes * squares);
     add(GridWork::kPacketStart, passes);
     if (rays >= 64) add(GridWork::kPassSquare, passes * squares);
     add(GridWork::kPassGroup, passes * groups(rays));
@@ -139,23 +151,37 @@ class Sum {
 
     // A ray is in one pass of each round, so pairs of rays and references are counted by rounds. Groups and whole
     // subpackets with a ray in a pass are at most as many as the rays, or all of every pass.
-    const Count ray_rounds = Count{packets} * rays * (rounds + (is_exact() ? 1 : 0));
+    const Count ray_rounds = Count{packets} * rays * rounds_and_ties;
     const Count group_rounds = smaller(passes * groups(rays), ray_rounds);
     const Count pairs = ray_rounds * scene_.references;
     const Count group_pairs = group_rounds * scene_.references;
     const Count tests = passes * scene_.references;
     if (uses(kUseMailbox)) add(GridWork::kMailboxProbe, tests);
-    if (uses(kUseCornerCulling)) add(Work::kCullTest, tests);
+    if (uses(kUseCornerCulling)) add(is_paper() ? Work::kCullTestPaper : Work::kCullTest, tests);
     if (is_paper()) {
       add(Work::kGroupTestPaper, group_pairs);
       add(Work::kHitGroupPaper, group_pairs);
     } else {
       add(Work::kTriangleSetup, tests);
-      add(Work::kGroupTestStandard, group_pairs);
+      add(Work::kTriangleTest, tests);
+      if (subpackets > 4) add(Work::kSubpacketPick, tests * subpackets);
+      const bool picks_rows = uses(kUseSubpackets);
+      add(picks_rows ? Work::kRowVisit : Work::kSubpacketVisit, tests * subpackets);
+      add(picks_rows ? Work::kRowSkip : Work::kGroupSkip, tests * groups(rays));
+      if (!picks_rows || subpackets < 16) add(Work::kListedTriangle, tests);
+      add(picks_rows ? Work::kRowTest : Work::kGroupTestStandard, group_pairs);
+      add(picks_rows ? Work::kRowInsideTest : Work::kInsideTest, group_pairs);
       add(Work::kHitGroup, group_pairs);
-      add(Work::kHitSubpacket, Count{packets} * subpackets * rounds * scene_.references);
+      add(Work::kOpenHitGroup, group_pairs);
+      add(Work::kSettledGroup, group_pairs);
+      for (const Work kind : {Work::kHitSubpacket, Work::kTakenSubpacket}) {
+        add(kind, Count{packets} * subpackets * rounds * scene_.references);
+      }
       add(Work::kEstimateSetup, smaller(tests, group_pairs));
-      if (frame_.shading == Shading::kSimple) add(Work::kNormalSetup, smaller(tests, group_pairs));
+      if (frame_.shading == Shading::kSimple) {
+        add(Work::kNormalSetup, smaller(tests, group_pairs));
+        add(Work::kFacingGroup, group_pairs);
+      }
       // The side of the triangle that the eye is on; then three edges a pair, if floats leave them open.
       const Count signs = tests + (is_fast() ? Count{} : pairs * 3);
       // Distances of both triangles of a pair; for ties also whether three corners lie in the other's plane.
@@ -184,17 +210,20 @@ class Sum {
   void add_packet_culling(Count passes, std::uint64_t subpackets, std::uint64_t squares) {
     const std::uint64_t measured =
         subpackets < 4 ? groups(kSubpacketRays) : squares * groups(4 * kSubpacketRays) + (squares > 1 ? 1 : 0);
-    Count reach = Count{measured} * (Count{1} + scene_.runs);
+    const Count reach = Count{measured} * (Count{1} + scene_.runs);
     if (uses(kUseSubpackets)) {
       if (squares >= 4) {
-        reach = reach + Count{squares / 4} * scene_.filled_cells + Count{squares / 4 + squares} * scene_.runs;
+        add(GridWork::kReachTest,
+            passes * (Count{squares / 4} * scene_.filled_cells + Count{squares / 4 + squares} * scene_.runs));
         add(GridWork::kFootprintGroup, passes * (Count{groups(squares)} * scene_.filled_cells));
       } else {
-        reach = reach + Count{groups(subpackets)} * scene_.runs;
+        add(GridWork::kReachTest, passes * (Count{groups(subpackets)} * scene_.runs));
       }
       if (!is_paper()) {
         const Count tests = passes * scene_.references;
         if (subpackets >= 16) add(Work::kPixelBoxGroup, passes * scene_.run_groups);
+        if (subpackets >= 16) add(Work::kOpenTriangle, tests);
+        add(Work::kSlopeSetup, tests);
         add(Work::kSubpacketSetup, tests);
         const std::uint64_t quarters = squares == 16 && layout_.lanes == 4 ? 1 : 0;
         const std::uint64_t of_squares = squares > 1 ? quarters + groups(squares) : 0;

@@ -22,6 +22,8 @@ struct TileLayout {
   std::uint32_t packet_width;          ///< rays along a packet's edge; 0: all rays by walks
   std::uint32_t triangles_per_buffer;  ///< most of one transfer
   std::uint32_t resident_macro_cells;  ///< the greatest table of macrocells that the local store holds whole
+  std::uint32_t mailbox_slots;         ///< of packets, like the next
+  std::uint32_t recent_triangles;      ///< of which estimated distances can be made exact
   std::uint32_t wave_rays;             ///< rays worked on together; from here on 0 in layouts without effects
   std::uint32_t material_slots;        ///< materials at hand
   std::uint32_t light_slots;           ///< lights at hand
@@ -32,8 +34,20 @@ struct TileLayout {
 /// @returns        the sizes of the layout.
 template <class Layout>
 [[nodiscard]] constexpr TileLayout tile_layout_of(std::uint32_t lanes) {
-  TileLayout layout{lanes, Layout::kTileWidth, Layout::kPacketWidth, Layout::kTrianglesPerBuffer,
-                    32 * Layout::kTableEntries, 0, 0, 0};
+  TileLayout layout{lanes,
+                    Layout::kTileWidth,
+                    Layout::kPacketWidth,
+                    Layout::kTrianglesPerBuffer,
+                    32 * Layout::kTableEntries,
+                    0,
+                    0,
+                    0,
+                    0,
+                    0};
+  if constexpr (Layout::kPacketWidth != 0) {
+    layout.mailbox_slots = Layout::kMailboxSlots;
+    layout.recent_triangles = Layout::kRecentTriangles;
+  }
   if constexpr (Layout::kEffects != 0) {
     layout.wave_rays = Layout::kWaveRays;
     layout.material_slots = Layout::kMaterialSlots;
@@ -47,33 +61,33 @@ struct TileFrame {
   Accuracy accuracy = Accuracy::kStandard;  ///< one that the image stores triangles for
   Shading shading = Shading::kSimple;       ///< kScene: of layouts and scenes with effects
   std::uint32_t techniques = kUseMailbox | kUseCornerCulling | kUseEmptySkip;  ///< TechniqueBits
-  std::uint32_t output_depth = 2;    ///< tile buffers in rotation
-  std::uint32_t macro_depth = 2;     ///< cell blocks in rotation
-  std::uint32_t triangle_depth = 2;  ///< triangle buffers in rotation
-  std::uint32_t walk_depth = 2;      ///< walks of secondary rays under way at once
-  bool has_depth = false;            ///< whether distances are requested
-  bool has_ids = false;              ///< whether triangle ids are requested
-  std::uint32_t queue_depth = 16;    ///< commands that fit the platform's queue
+  std::uint32_t output_depth = 2;                                              ///< tile buffers in rotation
+  std::uint32_t macro_depth = 2;                                               ///< cell blocks in rotation
+  std::uint32_t triangle_depth = 2;                                            ///< triangle buffers in rotation
+  std::uint32_t walk_depth = 2;    ///< walks of secondary rays under way at once
+  bool has_depth = false;          ///< whether distances are requested
+  bool has_ids = false;            ///< whether triangle ids are requested
+  std::uint32_t queue_depth = 16;  ///< commands that fit the platform's queue
 };
 
 /// The counts of a scene that bound a tile. count_tile_scene() fills it.
 struct TileScene {
-  std::uint64_t macro_cells;            ///< of the grid
-  std::uint64_t occupied_macro_cells;   ///< that hold triangles
-  std::uint32_t macro_slices;           ///< macrocells along the longest axis
-  std::uint64_t slices;                 ///< slices of cells of all macrocells, along the axis of most
-  std::uint64_t occupied_slices;        ///< the same over the occupied macrocells
-  std::uint64_t cells;                  ///< of all macrocells
-  std::uint64_t occupied_cells;         ///< of the occupied macrocells
-  std::uint64_t filled_cells;           ///< cells that hold triangles
-  std::uint64_t references;             ///< triangles, one for each cell that holds it
-  std::uint64_t runs;                   ///< transfers of at most a buffer of triangles that all cells need
-  std::uint64_t run_groups;             ///< SIMD groups of triangles in these
-  std::uint32_t most_cell_triangles;    ///< in one cell
-  std::uint32_t most_macro_triangles;   ///< in one macrocell
-  std::uint32_t cell_block_bytes;       ///< of a macrocell's cells
-  EffectsRecord effects;                ///< all zero without effects
-  std::uint64_t light_samples;          ///< rays that a point sends to all lights: one for a point light
+  std::uint64_t macro_cells;           ///< of the grid
+  std::uint64_t occupied_macro_cells;  ///< that hold triangles
+  std::uint32_t macro_slices;          ///< macrocells along the longest axis
+  std::uint64_t slices;                ///< slices of cells of all macrocells, along the axis of most
+  std::uint64_t occupied_slices;       ///< the same over the occupied macrocells
+  std::uint64_t cells;                 ///< of all macrocells
+  std::uint64_t occupied_cells;        ///< of the occupied macrocells
+  std::uint64_t filled_cells;          ///< cells that hold triangles
+  std::uint64_t references;            ///< triangles, one for each cell that holds it
+  std::uint64_t runs;                  ///< transfers of at most a buffer of triangles that all cells need
+  std::uint64_t run_groups;            ///< SIMD groups of triangles in these
+  std::uint32_t most_cell_triangles;   ///< in one cell
+  std::uint32_t most_macro_triangles;  ///< in one macrocell
+  std::uint32_t cell_block_bytes;      ///< of a macrocell's cells
+  EffectsRecord effects;               ///< all zero without effects
+  std::uint64_t light_samples;         ///< rays that a point sends to all lights: one for a point light
 };
 
 /// Counts the parts of an image that bound a tile.

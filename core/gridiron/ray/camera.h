@@ -40,9 +40,10 @@ void generate_packet(const FrameHead& frame, std::uint32_t left, std::uint32_t t
                      RaySet<PacketType::kRayCount>& present, WorkCounters& work, float dx = 0.0f, float dy = 0.0f) {
   using Float = typename L::Float;
   static constexpr std::uint32_t kWidth = PacketType::kWidth;
-  work.add(Work::kRayGenerated, PacketType::kRayCount / L::kCount);
+  work.add(Work::kRayPacket);
   const float x0 = static_cast<float>(left) + dx;
   const float y0 = static_cast<float>(top) + dy;
+  work.add(Work::kRayGenerated, PacketType::kRayCount / L::kCount);
   for (int axis = 0; axis < 3; ++axis) {
     packet.origin[axis] = frame.eye[axis];
     for (std::uint32_t first = 0; first < PacketType::kRayCount; first += kSubpacketRays) {
@@ -58,20 +59,24 @@ void generate_packet(const FrameHead& frame, std::uint32_t left, std::uint32_t t
   fill_words(packet.t, frame.t_far);
   fill_words(packet.id, kNoTriangle);
   fill_words(packet.facing, 0.0f);
+  work.add(Work::kRecentSlot, PacketType::kRecentCount);
+  packet.forget();
+  work.add(Work::kRaySetWord, 2 * PacketType::kRayCount / 32);
   packet.unsure.clear();
+  present.fill();
+  work.charge_to(Work::kRayPacket);
   packet.breaks_ties = frame.accuracy == static_cast<std::uint32_t>(Accuracy::kExact);
   packet.trusts_floats = frame.accuracy == static_cast<std::uint32_t>(Accuracy::kFast);
-  packet.ask_for_distances(frame.depth_address != 0 && !packet.trusts_floats);
+  packet.choose(frame.depth_address != 0 && !packet.trusts_floats);
   const std::uint32_t columns = frame.width - left;
   const std::uint32_t rows = frame.height - top;
-  if (columns >= kWidth && rows >= kWidth) [[likely]] {
-    present.fill();
-  } else {
+  if (columns < kWidth || rows < kWidth) [[unlikely]] {
     work.charge_to(Work::kRayGenerated);
     present.clear();
     for (std::uint32_t ray = 0; ray < PacketType::kRayCount; ++ray) {
       if (PacketType::column_of(ray) < columns && PacketType::row_of(ray) < rows) present.insert(ray);
     }
+    work.charge_to(Work::kRayPacket);
   }
 
   static constexpr float kLast = static_cast<float>(kWidth - 1);
@@ -97,7 +102,11 @@ void generate_packet(const FrameHead& frame, std::uint32_t left, std::uint32_t t
     packet.step_x[axis] = frame.step_x[axis];
     packet.step_y[axis] = frame.step_y[axis];
   }
-  if constexpr (PacketType::kHasBoxes) set_up_projection(packet, dir_bound);
+  if constexpr (PacketType::kHasBoxes) {
+    work.add(Work::kPixelProjection);
+    set_up_projection(packet, dir_bound);
+    work.charge_to(Work::kRayPacket);
+  }
   packet.is_linear = true;
   packet.linear_error = kLinearError * dir_bound;
   packet.subpacket_widening = kSubpacketErrorFactor / kEdgeErrorFactor * (dir_bound / dir_max);

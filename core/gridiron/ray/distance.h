@@ -281,6 +281,7 @@ template <class L, class PacketType>
       (is_close & (setups.numerator < old_numerator * Float(kSurelyNearer))).bits() & hit & packet.estimates;
   Float t = setups.numerator / denominator;
   if (nearer != hit) [[unlikely]] {
+    work.add(Work::kOpenHitGroup);
     // A hit behind another or behind the origin, or of a triangle that was tested before, changes nothing.
     const auto is_behind = (denominator < -setups.least_denominator) |
                            (is_close & (setups.numerator > old_numerator * Float(kSurelyBehind)));
@@ -288,14 +289,16 @@ template <class L, class PacketType>
     if (packet.trusts_floats) {
       nearer = (is_close & (setups.numerator < old_numerator)).bits() & hit;
     } else if (nearer != hit) {
+      work.add(Work::kSettledGroup);
       alignas(64) float distance[L::kCount];
       const auto estimated = L::mask_from_bits(nearer);
       nearer |= settle_hits<L>(packet, base, hit & ~nearer, triangle, setups, distance, work);
-      work.charge_to(Work::kHitGroup);
+      work.charge_to(Work::kSettledGroup);
       t = L::select(estimated, t, Float::load(distance));
       old_t = Float::load(packet.t + base);  // may have become exact
     }
     if (nearer == 0) return 0;
+    work.charge_to(Work::kHitGroup);
   }
   const auto taken = L::mask_from_bits(nearer);
   L::select(taken, t, old_t).store(packet.t + base);
@@ -323,7 +326,7 @@ template <class L, bool kWantFacing, class PacketType>
     if (nearer == 0) return false;
     using Float = typename L::Float;
     setups.find_normal(triangle, work);
-    work.charge_to(Work::kHitGroup);
+    work.add(Work::kFacingGroup);
     L::select(L::mask_from_bits(nearer), facing_of<L>(packet, base, setups), Float::load(packet.facing + base))
         .store(packet.facing + base);
   }
@@ -352,6 +355,7 @@ template <class L, class PacketType>
                 (setups.numerator < old_numerator * Float(kSurelyNearer));
   }
   if (is_nearer.bits() != L::kAllBits) return false;
+  work.add(Work::kTakenSubpacket);
   const typename L::Int id = L::Int::splat(triangle.triangle_id);
   for (std::uint32_t group = 0; group < kGroups; ++group) {
     const std::uint32_t base = first_ray + group * L::kCount;
@@ -370,7 +374,7 @@ template <class L, bool kWantFacing, class PacketType>
   if (!take_distances<L>(packet, first_ray, triangle, setups, work)) return false;
   if constexpr (kWantFacing) {
     setups.find_normal(triangle, work);
-    work.charge_to(Work::kHitSubpacket);
+    work.add(Work::kFacingGroup, kSubpacketRays / L::kCount);
     for (std::uint32_t ray = first_ray; ray < first_ray + kSubpacketRays; ray += L::kCount) {
       facing_of<L>(packet, ray, setups).store(packet.facing + ray);
     }

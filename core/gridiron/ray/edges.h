@@ -149,6 +149,7 @@ GRIDIRON_OUTLINE void set_up_edges(const PacketType& packet, const VertexTriangl
   error.store(batch.error);
 
   if (culling.subpackets) {
+    work.charge_to(Work::kSlopeSetup);
     const auto along = [&](const float* direction) {
       return inward_x * Float(direction[0]) + inward_y * Float(direction[1]) + inward_z * Float(direction[2]);
     };
@@ -233,9 +234,9 @@ template <class L, class PacketType>
 [[nodiscard]] GRIDIRON_INLINE std::uint32_t lanes_inside(const PacketType& packet, std::uint32_t base,
                                                          std::uint32_t active, const SplatEdges<L>& edges,
                                                          const VertexTriangle& triangle, std::int32_t orientation,
-                                                         WorkCounters& work) {
+                                                         bool is_row, WorkCounters& work) {
   using Float = typename L::Float;
-  work.add(Work::kGroupTestStandard);
+  work.add(is_row ? Work::kRowTest : Work::kGroupTestStandard);
   const Float d_x = Float::load(packet.dir[0] + base);
   const Float d_y = Float::load(packet.dir[1] + base);
   const Float d_z = Float::load(packet.dir[2] + base);
@@ -247,6 +248,8 @@ template <class L, class PacketType>
   const std::uint32_t outside = ((e0 < -edges.error[0]) | (e1 < -edges.error[1]) | (e2 < -edges.error[2])).bits();
   std::uint32_t open = active & ~(outside & edges.known);
   if (open == 0) return 0;
+  const Work inside_kind = is_row ? Work::kRowInsideTest : Work::kInsideTest;
+  work.add(inside_kind);
   // 2. If it surely passes all three on the inside, it hits. Anything else is decided in double, then exactly.
   const auto inside0 = e0 > edges.error[0], inside1 = e1 > edges.error[1], inside2 = e2 > edges.error[2];
   const std::uint32_t inside = (inside0 & inside1 & inside2).bits() & open & edges.known;
@@ -259,7 +262,7 @@ template <class L, class PacketType>
   const std::uint32_t sure_inside[3] = {inside0.bits() & edges.known, inside1.bits() & edges.known,
                                         inside2.bits() & edges.known};
   const std::uint32_t settled = settle_open_lanes<L>(packet, base, open, sure_inside, triangle, orientation, work);
-  work.charge_to(Work::kGroupTestStandard);
+  work.charge_to(inside_kind);
   return inside | settled;
 }
 

@@ -45,6 +45,7 @@ template <class L, class PacketType>
                                                                  SubpacketSet subpackets, bool use_culling,
                                                                  bool want_facing, WorkCounters& work) {
   using Float = typename L::Float;
+  if (use_culling) work.add(Work::kCullTestPaper);
   const std::uint32_t k = triangle.axis_k;
   const std::uint32_t u = k == 2 ? std::uint32_t{0} : k + 1;
   const std::uint32_t v = u == 2 ? std::uint32_t{0} : u + 1;
@@ -55,7 +56,6 @@ template <class L, class PacketType>
     // All four corner rays outside of one barycentric edge, all in front of the plane.
     using Four = Lanes<4>;
     using Corner = typename Four::Float;
-    work.add(Work::kCullTest);
     const ProjectionHit<Four> corner =
         project<Four>(triangle, numerator, o_u, o_v, Corner::load(packet.corner_dir[k]),
                       Corner::load(packet.corner_dir[u]), Corner::load(packet.corner_dir[v]));

@@ -22,13 +22,20 @@ namespace gridiron {
 template <class L, bool kWantFacing, class PacketType>
 [[nodiscard]] GRIDIRON_INLINE SubpacketSet test_groups(PacketType& packet, const VertexTriangle& triangle,
                                                        const EdgeBatch<L>& batch, std::uint32_t index,
-                                                       const NearSubpackets& near, WorkCounters& work) {
+                                                       const NearSubpackets& near, Culling culling,
+                                                       WorkCounters& work) {
   constexpr bool kGroupsAreRows = L::kCount == kSubpacketWidth;
-  work.charge_to(Work::kTriangleSetup);
+  // Rows that may be left out make tests dearer: a branch each that goes either way, and fewer operations side by side.
+  const Work visit_kind = culling.subpackets ? Work::kRowVisit : Work::kSubpacketVisit;
+  const Work skip_kind = culling.subpackets ? Work::kRowSkip : Work::kGroupSkip;
+  // A few subpackets are gone through one by one, many are picked.
+  constexpr Work kPick = PacketType::kSubpacketCount > 4 ? Work::kSubpacketPick : Work::kSubpacketVisit;
+  work.add(Work::kTriangleTest);
   const SplatEdges<L> edges(batch, index);
   HitSetups<L> setups;
   SubpacketSet changed = 0;
   for_each_subpacket<PacketType::kSubpacketCount>(near.touching, [&](std::uint32_t subpacket) GRIDIRON_INLINE_LAMBDA {
+    if constexpr (kPick == Work::kSubpacketPick) work.add(kPick);
     const std::uint32_t first_ray = subpacket * kSubpacketRays;
     const bool is_covered = (near.covered >> subpacket & 1u) != 0;
     std::uint32_t rows = ~0u;
@@ -38,21 +45,29 @@ template <class L, bool kWantFacing, class PacketType>
     }
     if (is_covered && packet.active.subpacket(subpacket) == kAllSubpacketRays &&
         take_subpacket<L, kWantFacing>(packet, first_ray, triangle, setups, work)) {
+      work.charge_to(kPick);
       changed |= SubpacketSet{1} << subpacket;
       return;
     }
-    work.charge_to(Work::kGroupTestStandard);
+    work.add(visit_kind);
     for (std::uint32_t group = 0; group < kSubpacketRays / L::kCount; ++group) {
+      work.charge_to(visit_kind);
       const std::uint32_t base = first_ray + group * L::kCount;
       const std::uint32_t active = packet.active.template group<L>(base);
-      if (active == 0 || (kGroupsAreRows && (rows >> group & 1u) == 0)) continue;
-      const std::uint32_t hit =
-          is_covered ? active : lanes_inside<L>(packet, base, active, edges, triangle, batch.orientation[index], work);
+      if (active == 0 || (kGroupsAreRows && (rows >> group & 1u) == 0)) {
+        work.add(skip_kind);
+        continue;
+      }
+      const std::uint32_t hit = is_covered ? active
+                                           : lanes_inside<L>(packet, base, active, edges, triangle,
+                                                             batch.orientation[index], culling.subpackets, work);
       if (hit == 0) continue;
       if (merge_hits<L, kWantFacing>(packet, base, hit, triangle, setups, work)) {
+        work.charge_to(Work::kHitGroup);
         changed |= SubpacketSet{1} << subpacket;
       }
     }
+    work.charge_to(kPick);
   });
   return changed;
 }
@@ -75,9 +90,9 @@ template <class L, class PacketType>
   for (std::uint32_t i = 0; i < L::kCount; ++i) padded[i] = i < count ? triangles + i : triangles;
   PixelBoxes<L> boxes;
   find_pixel_boxes<L>(packet, padded, boxes);
-  work.charge_to(Work::kTriangleSetup);
   std::uint32_t open_count = 0;
   for (std::uint32_t rest = boxes.covering & (~0u >> (32 - count)); rest != 0; rest &= rest - 1) {
+    work.add(Work::kOpenTriangle);
     const std::uint32_t i = lowest_bit(rest);
     const PixelBox box{boxes.first_column[i], boxes.end_column[i], boxes.first_row[i], boxes.end_row[i]};
     open[open_count] = {triangles + i, wanted & box.subpackets(), box.rows(), box.is_small()};
@@ -96,6 +111,7 @@ template <class L, class PacketType>
   if constexpr (PacketType::kHasBoxes) {
     if (culling.subpackets) return keep_covering<L>(packet, triangles, count, wanted, open, work);
   }
+  work.add(Work::kListedTriangle, count);
   for (std::uint32_t i = 0; i < count; ++i) open[i] = {triangles + i, wanted, ~0u, false};
   return count;
 }
@@ -119,6 +135,7 @@ template <class L, bool kWantFacing, class PacketType>
     }
     work.add(Work::kTriangleSetup, in_batch);
     if (culling.corner_rays) work.add(Work::kCullTest, in_batch);
+    if (culling.subpackets) work.add(Work::kSlopeSetup, in_batch);
     work.charge_to(Work::kTriangleSetup);
     EdgeBatch<L> batch;
     set_up_edges<L>(packet, batched, culling, batch, work);
@@ -130,7 +147,7 @@ template <class L, bool kWantFacing, class PacketType>
         work.add(Work::kSubpacketSetup);
         near = subpackets_near<L, PacketType>(batch, i, one.subpackets, one.rows, work);
       }
-      changed |= test_groups<L, kWantFacing>(packet, *one.triangle, batch, i, near, work);
+      changed |= test_groups<L, kWantFacing>(packet, *one.triangle, batch, i, near, culling, work);
     }
   }
   return changed;

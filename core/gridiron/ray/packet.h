@@ -5,6 +5,7 @@
 #include <gridiron/base/lanes.h>
 #include <gridiron/base/math.h>
 #include <gridiron/base/records.h>
+#include <gridiron/base/work_counters.h>
 #include <gridiron/ray/z_curve.h>
 
 #include <cstdint>
@@ -209,19 +210,20 @@ struct alignas(128) Packet : PacketDirections<Width * Width>,
 };
 
 /// Prepares the rays that estimates left unsure for another pass with exact distances. Their hits are discarded, except
-/// as a bound: their nearest hit lies in front of it.
+/// as a bound: their nearest hit lies in front of it. Work::kRaySetWord is charged.
 ///
 /// @param unsure  out: these rays. @returns whether there are any.
 template <class PacketType>
 [[nodiscard]] GRIDIRON_OUTLINE bool take_unsure_rays(PacketType& packet, float t_far,
-                                                     RaySet<PacketType::kRayCount>& unsure) {
+                                                     RaySet<PacketType::kRayCount>& unsure, WorkCounters& work) {
+  work.add(Work::kRaySetWord, unsure.kWordCount);
   std::uint32_t any = 0;
   for (std::uint32_t i = 0; i < unsure.kWordCount; ++i) any |= packet.unsure.words[i];
   if (any == 0) [[likely]]
     return false;
+  work.add(Work::kRaySetWord, unsure.kWordCount);
   unsure = packet.unsure;
   packet.unsure.clear();
-  packet.ask_for_distances(true);
   for (std::uint32_t i = 0; i < unsure.kWordCount; ++i) {
     for (std::uint32_t rest = unsure.words[i]; rest != 0; rest &= rest - 1) {
       const std::uint32_t ray = 32 * i + lowest_bit(rest);
@@ -230,6 +232,8 @@ template <class PacketType>
       packet.id[ray] = kNoTriangle;
     }
   }
+  work.add(Work::kRecentSlot, PacketType::kRecentCount);
+  packet.ask_for_distances(true);
   return true;
 }
 

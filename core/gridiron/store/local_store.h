@@ -25,22 +25,22 @@ namespace gridiron {
 /// @tparam TileWidthV    pixels along a tile's edge: 8, 16, 32, 64.
 template <std::uint32_t PacketWidthV = 8, std::uint32_t TileWidthV = 32>
 struct StoreLayout256K {
-  using Engine = GridEngine;                    ///< what traces its rays
-  static constexpr std::uint32_t kEffects = 0;  ///< EffectBits it is built for
-  static constexpr std::uint32_t kArenaBytes = 256 * 1024;         ///< local memory of a core
-  static constexpr std::uint32_t kCodeBudgetBytes = 53 * 1024;     ///< of it for code: check_budgets proves it
-  static constexpr std::uint32_t kStackBudgetBytes = 8704;         ///< of it for the stack
-  static constexpr std::uint32_t kTileWidth = TileWidthV;          ///< pixels along a tile's edge
-  static constexpr std::uint32_t kPacketWidth = PacketWidthV;      ///< rays along a packet's edge; 0: no packets
+  using Engine = GridEngine;                                    ///< what traces its rays
+  static constexpr std::uint32_t kEffects = 0;                  ///< EffectBits it is built for
+  static constexpr std::uint32_t kArenaBytes = 256 * 1024;      ///< local memory of a core
+  static constexpr std::uint32_t kCodeBudgetBytes = 54 * 1024;  ///< of it for code: check_budgets proves it
+  static constexpr std::uint32_t kStackBudgetBytes = 8960;      ///< of it for the stack
+  static constexpr std::uint32_t kTileWidth = TileWidthV;       ///< pixels along a tile's edge
+  static constexpr std::uint32_t kPacketWidth = PacketWidthV;   ///< rays along a packet's edge; 0: no packets
   /// Triangles that a packet remembers having tested.
   static constexpr std::uint32_t kMailboxSlots = PacketWidthV < 16                        ? 64
                                                  : PacketWidthV == 32 && TileWidthV != 64 ? 1024
                                                                                           : 256;
   /// Recently hit triangles that a packet keeps.
   static constexpr std::uint32_t kRecentTriangles = PacketWidthV == 32 && TileWidthV != 64 ? 256 : 32;
-  static constexpr std::uint32_t kTableEntries = 4096;  ///< 131,072 macrocells resident
-  static constexpr std::uint32_t kMaxMacroWidth = 8;   ///< cells along a macrocell's edge, at most
-  static constexpr std::uint32_t kMaxMacroDepth = 4;   ///< buffers of cell blocks
+  static constexpr std::uint32_t kTableEntries = TileWidthV == 64 ? 4000 : 4096;  ///< 32 macrocells each
+  static constexpr std::uint32_t kMaxMacroWidth = 8;        ///< cells along a macrocell's edge, at most
+  static constexpr std::uint32_t kMaxMacroDepth = 4;        ///< buffers of cell blocks
   static constexpr std::uint32_t kTrianglesPerBuffer = 64;  ///< records
   static constexpr std::uint32_t kMaxTriangleDepth = TileWidthV == 64 ? 6 : 12;  ///< two tiles of 64 take 96 KB
   static constexpr std::uint32_t kMaxOutputDepth = 2;  ///< tiles that are made or on their way out
@@ -54,13 +54,13 @@ struct StoreLayout64K {
   using Engine = GridEngine;
   static constexpr std::uint32_t kEffects = 0;  ///< EffectBits it is built for
   static constexpr std::uint32_t kArenaBytes = 64 * 1024;
-  static constexpr std::uint32_t kCodeBudgetBytes = PacketWidthV >= 16 ? 35 * 1024 + 512 : 32 * 1024;
-  static constexpr std::uint32_t kStackBudgetBytes = 6 * 1024;
+  static constexpr std::uint32_t kCodeBudgetBytes = PacketWidthV >= 16 ? 36 * 1024 + 256 : 32 * 1024 + 512;
+  static constexpr std::uint32_t kStackBudgetBytes = PacketWidthV >= 16 ? 6 * 1024 - 128 : 6 * 1024;
   static constexpr std::uint32_t kTileWidth = TileWidthV;
   static constexpr std::uint32_t kPacketWidth = PacketWidthV;
   static constexpr std::uint32_t kMailboxSlots = PacketWidthV >= 16 ? 128 : 64;
   static constexpr std::uint32_t kRecentTriangles = PacketWidthV >= 16 ? 4 : 16;
-  static constexpr std::uint32_t kTableEntries = PacketWidthV >= 16 ? 256 : 512;  ///< 32 macrocells each
+  static constexpr std::uint32_t kTableEntries = PacketWidthV >= 16 ? 176 : 512;  ///< 32 macrocells each
   static constexpr std::uint32_t kMaxMacroWidth = 6;
   static constexpr std::uint32_t kMaxMacroDepth = 2;
   static constexpr std::uint32_t kTrianglesPerBuffer = PacketWidthV >= 16 ? 8 : 16;
@@ -77,7 +77,7 @@ struct StoreLayout128K {
   static constexpr std::uint32_t kEffects = 0;  ///< EffectBits it is built for
   static constexpr std::uint32_t kArenaBytes = 128 * 1024;
   static constexpr std::uint32_t kCodeBudgetBytes = 53 * 1024;
-  static constexpr std::uint32_t kStackBudgetBytes = 8704;
+  static constexpr std::uint32_t kStackBudgetBytes = 8 * 1024;
   static constexpr std::uint32_t kTileWidth = TileWidthV;
   static constexpr std::uint32_t kPacketWidth = PacketWidthV;
   static constexpr std::uint32_t kMailboxSlots = PacketWidthV >= 16 ? 256 : 64;
@@ -98,7 +98,7 @@ struct StoreLayout512K {
   using Engine = GridEngine;
   static constexpr std::uint32_t kEffects = 0;  ///< EffectBits it is built for
   static constexpr std::uint32_t kArenaBytes = 512 * 1024;
-  static constexpr std::uint32_t kCodeBudgetBytes = 53 * 1024;
+  static constexpr std::uint32_t kCodeBudgetBytes = 54 * 1024;
   static constexpr std::uint32_t kStackBudgetBytes = 10 * 1024 + 512;
   static constexpr std::uint32_t kTileWidth = TileWidthV;
   static constexpr std::uint32_t kPacketWidth = PacketWidthV;
@@ -150,7 +150,7 @@ struct EffectLayout64K {
   using Engine = GridEngine;
   static constexpr std::uint32_t kEffects = BuiltV;
   static constexpr std::uint32_t kArenaBytes = 64 * 1024;
-  static constexpr std::uint32_t kCodeBudgetBytes = 43 * 1024 + 512;
+  static constexpr std::uint32_t kCodeBudgetBytes = 43 * 1024;
   static constexpr std::uint32_t kStackBudgetBytes = 4 * 1024;
   static constexpr std::uint32_t kTileWidth = 8;
   static constexpr std::uint32_t kPacketWidth = 0;

@@ -159,10 +159,7 @@ class Builder {
       return static_cast<std::uint32_t>(middle - begin);
     }
     // All centres are equal, or the tree would get too deep: halves along the widest axis.
-    int axis = 0;
-    for (int other = 1; other < 3; ++other) {
-      if (centers.high[other] - centers.low[other] > centers.high[axis] - centers.low[axis]) axis = other;
-    }
+    const int axis = widest_axis(centers);
     const std::uint32_t half = node.count / 2;
     std::nth_element(begin, begin + half, end, [&](std::uint32_t a, std::uint32_t b) {
       const double center_a = center(boxes_[a], axis), center_b = center(boxes_[b], axis);
@@ -172,6 +169,14 @@ class Builder {
     std::sort(begin, begin + half);
     std::sort(begin + half, end);
     return half;
+  }
+
+  [[nodiscard]] static int widest_axis(const Box& box) {
+    int widest = 0;
+    for (int axis = 1; axis < 3; ++axis) {
+      if (box.high[axis] - box.low[axis] > box.high[widest] - box.low[widest]) widest = axis;
+    }
+    return widest;
   }
 
   [[nodiscard]] std::uint32_t bin_of(const Box& box, const Box& centers, int axis) const {
@@ -187,8 +192,9 @@ class Builder {
       std::uint32_t count = 0;
     };
     const std::uint32_t bin_count = parameters_.bin_count;
+    const bool every_axis = node.count >= parameters_.every_axis_from;
     Split best;
-    for (int axis = 0; axis < 3; ++axis) {
+    for (int axis = every_axis ? 0 : widest_axis(centers); axis < 3; axis = every_axis ? axis + 1 : 3) {
       if (!(centers.high[axis] > centers.low[axis])) continue;
       std::array<Bin, kMaxBins> bins{};
       for (std::uint32_t i = node.first; i < node.first + node.count; ++i) {

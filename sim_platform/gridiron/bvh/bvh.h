@@ -20,6 +20,9 @@ struct BvhParameters {
   float triangle_cost = 0.35f;        ///< of a test, in tests of a child's box
   std::uint32_t line_triangles = 64;  ///< records of a line of the triangle cache; a leaf lies in one line
   std::uint32_t line_nodes = 16;      ///< nodes of a line of the node cache, neighbours in the tree
+  /// Nodes of so many triangles bin every axis, smaller ones the widest alone.
+  std::uint32_t every_axis_from = kWidestAxisAlone;
+  static constexpr std::uint32_t kWidestAxisAlone = 0xFFFFFFFF;
 };
 
 /// Counts of a build, to be priced on a machine. Integers, the same on every host.

@@ -165,7 +165,7 @@ class BvhCore {
       slot = kNoSlot;
       if (goes_on) [[likely]]
         continue;
-      if (take_unsure_rays(context.packet, frame().t_far, context.packet.active)) {
+      if (take_unsure_rays(context.packet, frame().t_far, context.packet.active, store_.work)) {
         cursor = {BvhChild::node(0), 0, 0};
         Four::Float(frame().t_far).store(context.reach);
         continue;

@@ -34,12 +34,21 @@ struct WorkPrice {
 // clang-format off
 /// The kinds that all engines share.
 inline constexpr WorkKind kSharedWork[] = {
-    {Work::kTileStart, "tile_start", true}, {Work::kRayGenerated, "ray_generated", true},
-    {Work::kCullTest, "cull_test"}, {Work::kPixelBoxGroup, "pixel_box_group"},
-    {Work::kTriangleSetup, "triangle_setup"}, {Work::kSubpacketSetup, "subpacket_setup"},
-    {Work::kSubpacketGroup, "subpacket_group"}, {Work::kGroupTestStandard, "group_test_standard"},
+    {Work::kTileStart, "tile_start", true}, {Work::kRayPacket, "ray_packet", true},
+    {Work::kPixelProjection, "pixel_projection", true}, {Work::kRayGenerated, "ray_generated", true},
+    {Work::kRaySetWord, "ray_set_word", true}, {Work::kRecentSlot, "recent_slot", true}, {Work::kCullTest, "cull_test"},
+    {Work::kPixelBoxGroup, "pixel_box_group"}, {Work::kOpenTriangle, "open_triangle"},
+    {Work::kListedTriangle, "listed_triangle"}, {Work::kTriangleSetup, "triangle_setup"},
+    {Work::kSlopeSetup, "slope_setup"}, {Work::kSubpacketSetup, "subpacket_setup"},
+    {Work::kSubpacketGroup, "subpacket_group"}, {Work::kTriangleTest, "triangle_test"},
+    {Work::kSubpacketPick, "subpacket_pick"}, {Work::kSubpacketVisit, "subpacket_visit"},
+    {Work::kGroupTestStandard, "group_test_standard"}, {Work::kGroupSkip, "group_skip"},
+    {Work::kInsideTest, "inside_test"}, {Work::kRowVisit, "row_visit"}, {Work::kRowTest, "row_test"},
+    {Work::kRowSkip, "row_skip"}, {Work::kRowInsideTest, "row_inside_test"}, {Work::kCullTestPaper, "cull_test_paper"},
     {Work::kGroupTestPaper, "group_test_paper"}, {Work::kHitGroup, "hit_group"},
-    {Work::kHitSubpacket, "hit_subpacket"}, {Work::kHitGroupPaper, "hit_group_paper"}, {Work::kHitSetup, "hit_setup"},
+    {Work::kOpenHitGroup, "open_hit_group"}, {Work::kSettledGroup, "settled_group"},
+    {Work::kHitSubpacket, "hit_subpacket"}, {Work::kTakenSubpacket, "taken_subpacket"},
+    {Work::kFacingGroup, "facing_group"}, {Work::kHitGroupPaper, "hit_group_paper"}, {Work::kHitSetup, "hit_setup"},
     {Work::kDoubleSign, "double_sign"}, {Work::kExactSign, "exact_sign"}, {Work::kExactDistance, "exact_distance"},
     {Work::kShadedGroup, "shaded_group"}, {Work::kShadedSimpleGroup, "shaded_simple_group"},
     {Work::kDepthGroup, "depth_group"}, {Work::kIdGroup, "id_group"}, {Work::kRowGroup, "row_group"},
@@ -119,23 +128,25 @@ struct EngineWork {
 // clang-format off
 /// The grid's own kinds.
 inline constexpr WorkKind kGridWorkKinds[] = {
-    {GridWork::kPacketStart, "packet_start", true}, {GridWork::kPassGroup, "pass_group", true},
+    {GridWork::kPacketStart, "packet_start", true}, {GridWork::kPassSlope, "pass_slope", true},
+    {GridWork::kMailboxGroup, "mailbox_group", true}, {GridWork::kPassGroup, "pass_group", true},
     {GridWork::kPassSquare, "pass_square", true}, {GridWork::kMacroSliceStep, "macro_slice_step"},
-    {GridWork::kMacroCellStep, "macro_cell_step"}, {GridWork::kMacroCellVisit, "macro_cell_visit"},
-    {GridWork::kSliceStep, "slice_step"}, {GridWork::kCellStep, "cell_step"}, {GridWork::kCellVisit, "cell_visit"},
+    {GridWork::kMacroRow, "macro_row"}, {GridWork::kMacroCellStep, "macro_cell_step"},
+    {GridWork::kMacroCellVisit, "macro_cell_visit"}, {GridWork::kSliceStep, "slice_step"},
+    {GridWork::kCellRow, "cell_row"}, {GridWork::kCellStep, "cell_step"}, {GridWork::kCellVisit, "cell_visit"},
     {GridWork::kTriangleBatch, "triangle_batch"}, {GridWork::kMailboxProbe, "mailbox_probe"},
-    {GridWork::kReachGroup, "reach_group"}, {GridWork::kFootprintGroup, "footprint_group"},
-    {GridWork::kCellBoundStep, "cell_bound_step"}, {GridWork::kWalkPass, "walk_pass"},
-    {GridWork::kShaftGroup, "shaft_group"}};
+    {GridWork::kReachGroup, "reach_group"}, {GridWork::kReachTest, "reach_test"},
+    {GridWork::kFootprintGroup, "footprint_group"}, {GridWork::kCellBoundStep, "cell_bound_step"},
+    {GridWork::kWalkPass, "walk_pass"}, {GridWork::kShaftGroup, "shaft_group"}};
 // clang-format on
 
 /// The grid. Machine profiles have its prices.
-inline constexpr EngineWork kGridEngine = EngineWork::make(
-    GridWork::kEnd, {.id = static_cast<std::uint32_t>(EngineId::kGrid),
-                     .name = "grid",
-                     .kinds = kGridWorkKinds,
-                     .prices = {},
-                     .wait_levels = {"tile", "macrocell", "triangle", "setup"}});
+inline constexpr EngineWork kGridEngine =
+    EngineWork::make(GridWork::kEnd, {.id = static_cast<std::uint32_t>(EngineId::kGrid),
+                                      .name = "grid",
+                                      .kinds = kGridWorkKinds,
+                                      .prices = {},
+                                      .wait_levels = {"tile", "macrocell", "triangle", "setup"}});
 
 /// The engines of core, by EngineId. Engines outside core, such as the cached BVH, have their description alone.
 inline constexpr std::array kCoreEngines = {&kGridEngine};

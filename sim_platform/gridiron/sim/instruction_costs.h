@@ -21,67 +21,93 @@ struct InstructionCost {
 /// All kinds but commands and waits.
 inline constexpr auto kInstructionCosts = std::to_array<InstructionCost>({
     {WorkId( 0),    89.4},  // tile_start
-    {WorkId( 1),   264.0},  // ray_generated
-    {WorkId( 2),   354.0},  // cull_test
-    {WorkId( 3),  1562.4},  // pixel_box_group, not in `dense`
-    {WorkId( 4),   792.3},  // triangle_setup
-    {WorkId( 5),   315.9},  // subpacket_setup, not in `dense`
-    {WorkId( 6),   403.6},  // subpacket_group, not in `dense`
-    {WorkId( 7),   300.0},  // group_test_standard
-    {WorkId( 8),   406.2},  // group_test_paper, not in `dense`
-    {WorkId( 9),   365.6},  // hit_group
-    {WorkId(10),  1111.0},  // hit_subpacket, not in `dense`
-    {WorkId(11),   182.8},  // hit_group_paper, not in `dense`
-    {WorkId(12),   255.6},  // hit_setup
-    {WorkId(13),   178.3},  // double_sign
-    {WorkId(14),  2430.8},  // exact_sign, of 64 decisions
-    {WorkId(15), 66091.2},  // exact_distance, of 64 decisions
-    {WorkId(16),    26.2},  // shaded_group, not in `dense`
-    {WorkId(17),   178.2},  // shaded_simple_group
-    {WorkId(18),   107.3},  // depth_group, not in `dense`
-    {WorkId(19),    18.0},  // id_group
-    {WorkId(20),   297.0},  // row_group, not in `dense`
-    {WorkId(21),   356.1},  // estimate_setup
-    {WorkId(22),   228.0},  // normal_setup
-    {WorkId(23),   351.4},  // hit_half
-    {WorkId(24), 27547.3},  // exact_order, of 64 decisions
-    {WorkId(25),   123.1},  // lattice_triangle, not in `dense`
-    {WorkId(26),   147.1},  // wave_ray, of effects
-    {WorkId(27),   105.0},  // queued_ray, of effects
-    {WorkId(28),   274.6},  // ray_triangle_setup, of effects
-    {WorkId(29),  1722.3},  // ray_group_test, of effects
-    {WorkId(30),   350.0},  // ray_distance, of effects
-    {WorkId(31),  1489.4},  // surface_point, of effects
-    {WorkId(32),   268.8},  // smooth_normal, of effects
-    {WorkId(33),   148.4},  // shadow_ray, of effects
-    {WorkId(34),    67.0},  // light_sample, of effects
-    {WorkId(35),   153.2},  // highlight, of effects
-    {WorkId(36),   188.6},  // occlusion_ray, of effects
-    {WorkId(37),    57.1},  // mirror_ray, of effects
-    {WorkId(38),   131.8},  // refracted_ray, of effects
-    {WorkId(39),   380.3},  // environment_lookup, of effects
-    {WorkId(40),    84.2},  // color_added, of effects
-    {WorkId(41),   193.1},  // color_group, of effects
-    {WorkId(45),  1059.6},  // packet_start
-    {WorkId(46),   412.4},  // pass_group, not in `dense`
-    {WorkId(47),   408.9},  // pass_square
-    {WorkId(48),   242.5},  // macro_slice_step
-    {WorkId(49),    68.2},  // macro_cell_step
-    {WorkId(50),   277.4},  // macro_cell_visit
-    {WorkId(51),   260.7},  // slice_step
-    {WorkId(52),    12.5},  // cell_step
-    {WorkId(53),   153.3},  // cell_visit
-    {WorkId(54),   387.1},  // triangle_batch
-    {WorkId(55),    38.8},  // mailbox_probe
-    {WorkId(56),    25.6},  // reach_group
-    {WorkId(57),   359.8},  // footprint_group, not in `dense`
-    {WorkId(58),    15.0},  // cell_bound_step, not in `dense`
-    {WorkId(59),  5255.5},  // walk_pass, of effects
-    {WorkId(60),   314.1},  // shaft_group, of effects
+    {WorkId( 1),   428.6},  // ray_packet
+    {WorkId( 2),   337.6},  // pixel_projection, not in `dense`
+    {WorkId( 3),   232.0},  // ray_generated
+    {WorkId( 4),    21.8},  // ray_set_word
+    {WorkId( 5),     3.5},  // recent_slot
+    {WorkId( 6),   358.6},  // cull_test
+    {WorkId( 7),  1613.4},  // pixel_box_group, not in `dense`
+    {WorkId( 8),   160.8},  // open_triangle, not in `dense`
+    {WorkId( 9),    14.1},  // listed_triangle
+    {WorkId(10),   595.4},  // triangle_setup
+    {WorkId(11),   330.5},  // slope_setup, not in `dense`
+    {WorkId(12),   337.1},  // subpacket_setup, not in `dense`
+    {WorkId(13),   391.7},  // subpacket_group, not in `dense`
+    {WorkId(14),   226.0},  // triangle_test
+    {WorkId(15),    70.3},  // subpacket_pick, not in `dense`
+    {WorkId(16),   108.5},  // subpacket_visit
+    {WorkId(17),   287.7},  // group_test_standard
+    {WorkId(18),    11.7},  // group_skip, not in `dense`
+    {WorkId(19),   197.1},  // inside_test
+    {WorkId(20),    83.1},  // row_visit, not in `dense`
+    {WorkId(21),   284.3},  // row_test, not in `dense`
+    {WorkId(22),    11.0},  // row_skip, not in `dense`
+    {WorkId(23),   211.2},  // row_inside_test, not in `dense`
+    {WorkId(24),   530.1},  // cull_test_paper, not in `dense`
+    {WorkId(25),   406.2},  // group_test_paper, not in `dense`
+    {WorkId(26),   211.4},  // hit_group
+    {WorkId(27),   159.2},  // open_hit_group
+    {WorkId(28),    95.5},  // settled_group
+    {WorkId(29),   609.0},  // hit_subpacket, not in `dense`
+    {WorkId(30),   123.0},  // taken_subpacket, not in `dense`
+    {WorkId(31),    96.4},  // facing_group
+    {WorkId(32),   182.7},  // hit_group_paper, not in `dense`
+    {WorkId(33),   255.6},  // hit_setup
+    {WorkId(34),   181.2},  // double_sign
+    {WorkId(35),  2430.8},  // exact_sign, of 64 decisions
+    {WorkId(36), 66091.2},  // exact_distance, of 64 decisions
+    {WorkId(37),    26.2},  // shaded_group, not in `dense`
+    {WorkId(38),   178.3},  // shaded_simple_group
+    {WorkId(39),   107.3},  // depth_group, not in `dense`
+    {WorkId(40),    18.0},  // id_group
+    {WorkId(41),   300.0},  // row_group, not in `dense`
+    {WorkId(42),   356.1},  // estimate_setup
+    {WorkId(43),   229.0},  // normal_setup
+    {WorkId(44),   351.4},  // hit_half
+    {WorkId(45), 27547.3},  // exact_order, of 64 decisions
+    {WorkId(46),    95.6},  // lattice_triangle, not in `dense`
+    {WorkId(47),   147.1},  // wave_ray, of effects
+    {WorkId(48),   105.0},  // queued_ray, of effects
+    {WorkId(49),   274.6},  // ray_triangle_setup, of effects
+    {WorkId(50),  1721.5},  // ray_group_test, of effects
+    {WorkId(51),   350.5},  // ray_distance, of effects
+    {WorkId(52),  1490.4},  // surface_point, of effects
+    {WorkId(53),   269.8},  // smooth_normal, of effects
+    {WorkId(54),   148.7},  // shadow_ray, of effects
+    {WorkId(55),    67.0},  // light_sample, of effects
+    {WorkId(56),   153.2},  // highlight, of effects
+    {WorkId(57),   188.7},  // occlusion_ray, of effects
+    {WorkId(58),    57.1},  // mirror_ray, of effects
+    {WorkId(59),   131.8},  // refracted_ray, of effects
+    {WorkId(60),   380.8},  // environment_lookup, of effects
+    {WorkId(61),    84.2},  // color_added, of effects
+    {WorkId(62),   193.1},  // color_group, of effects
+    {WorkId(66),   386.8},  // packet_start
+    {WorkId(67),    23.0},  // pass_slope
+    {WorkId(68),    15.5},  // mailbox_group
+    {WorkId(69),   422.6},  // pass_group, not in `dense`
+    {WorkId(70),   409.9},  // pass_square
+    {WorkId(71),   239.0},  // macro_slice_step
+    {WorkId(72),    13.9},  // macro_row
+    {WorkId(73),    28.8},  // macro_cell_step
+    {WorkId(74),   337.7},  // macro_cell_visit
+    {WorkId(75),   241.4},  // slice_step
+    {WorkId(76),    23.7},  // cell_row
+    {WorkId(77),     7.9},  // cell_step
+    {WorkId(78),    22.0},  // cell_visit
+    {WorkId(79),   365.9},  // triangle_batch
+    {WorkId(80),    39.1},  // mailbox_probe
+    {WorkId(81),    25.6},  // reach_group
+    {WorkId(82),   121.8},  // reach_test, not in `dense`
+    {WorkId(83),   357.5},  // footprint_group, not in `dense`
+    {WorkId(84),    10.6},  // cell_bound_step, not in `dense`
+    {WorkId(85),  5297.5},  // walk_pass, of effects
+    {WorkId(86),   312.8},  // shaft_group, of effects
 });
 
 /// A command: from where core counts it to the next kind of work, and its end in a wait.
-inline constexpr double kCommandInstructions = 254.6;
+inline constexpr double kCommandInstructions = 254.4;
 /// A wait: from where core counts it to the next kind of work, without the ends of commands.
 inline constexpr double kWaitInstructions = 91.2;
 /// A claim: from asking for a tile to the tile's first work.

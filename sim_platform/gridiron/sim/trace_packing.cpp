@@ -135,42 +135,51 @@ const std::byte* with_repetitions(const std::byte* from, std::vector<std::byte>&
 
 // --- Steps ------------------------------------------------------------------------------------------------------
 
-static_assert(kWorkKindCount <= 64, "a set of kinds of work is one word");
+/// The kinds of work in a step: a bit each.
+struct Kinds {
+  std::uint64_t words[2] = {};
 
-/// The kinds of work in a step are bits of a word.
-using Kinds = std::uint64_t;
-/// They are written with an engine's own kinds in front: most steps have no others, and small numbers are short.
-constexpr int kRotation = kSharedWorkCount;
+  [[nodiscard]] bool is_empty() const { return (words[0] | words[1]) == 0; }
+  [[nodiscard]] bool has(std::uint32_t kind) const { return (words[kind / 64] >> (kind % 64) & 1) != 0; }
+  void insert(std::uint32_t kind) { words[kind / 64] |= std::uint64_t{1} << (kind % 64); }
+  friend constexpr bool operator==(const Kinds&, const Kinds&) = default;
+};
+static_assert(kWorkKindCount <= 128, "two words hold all kinds");
 
+/// In the order of their numbers.
 template <class Visit>
-void for_each_kind(Kinds kinds, Visit&& visit) {
-  for (; kinds != 0; kinds &= kinds - 1) visit(static_cast<std::uint32_t>(std::countr_zero(kinds)));
+void for_each_kind(const Kinds& kinds, Visit&& visit) {
+  for (std::uint32_t first = 0; first < 128; first += 64) {
+    for (std::uint64_t word = kinds.words[first / 64]; word != 0; word &= word - 1) {
+      visit(first + static_cast<std::uint32_t>(std::countr_zero(word)));
+    }
+  }
 }
 
 /// Work, and the event after it, unless more work follows.
 struct Step {
   enum class End : std::uint8_t { kNothing, kGet, kPut, kWait, kStage };
 
-  Kinds kinds = 0;
+  Kinds kinds;
   std::array<std::uint32_t, kWorkKindCount> amounts{};  ///< of the kinds that there are, others are 0
   End end = End::kNothing;
   TraceEvent event;  ///< the event after it; only its own members are set
 
   void add(const WorkAmount& work) {
     amounts[work.kind.number()] += work.amount;
-    if (work.amount != 0) kinds |= Kinds{1} << work.kind.number();
+    if (work.amount != 0) kinds.insert(work.kind.number());
   }
   void clear() {
     for_each_kind(kinds, [&](std::uint32_t kind) { amounts[kind] = 0; });
-    kinds = 0;
+    kinds = {};
   }
   [[nodiscard]] bool is_transfer() const { return end == End::kGet || end == End::kPut; }
 };
 
 /// A step without its numbers. There are few, and a tile numbers them in the order of their first use.
 struct Shape {
-  Kinds kinds = 0;
-  Kinds unexpected = 0;     ///< of these: amounts are other than expected
+  Kinds kinds;
+  Kinds unexpected;         ///< of these: amounts are other than expected
   std::uint64_t masks = 0;  ///< kWait for other than one plain tag: the tags, rotating ones in the lower half
   std::uint32_t end = 0;    ///< Step::End, flags, and from kFirstTagBit on the tag or stage
 
@@ -181,7 +190,11 @@ struct Shape {
   friend constexpr bool operator==(const Shape&, const Shape&) = default;
   [[nodiscard]] std::uint64_t key() const {
     constexpr std::uint64_t kFactor = 0xD1B54A32D192ED03u;
-    return ((kinds * kFactor + unexpected) * kFactor + masks) * kFactor + end;
+    std::uint64_t key = 0;
+    for (const std::uint64_t part : {kinds.words[0], kinds.words[1], unexpected.words[0], unexpected.words[1], masks}) {
+      key = key * kFactor + part;
+    }
+    return key * kFactor + end;
   }
 };
 
@@ -275,10 +288,12 @@ struct TraceWriter::State {
 
   /// Returns `step` without its numbers, and updates what was expected of these.
   Shape take_shape() {
-    Shape shape = {.kinds = step.kinds, .end = static_cast<std::uint32_t>(step.end)};
+    Shape shape;
+    shape.kinds = step.kinds;
+    shape.end = static_cast<std::uint32_t>(step.end);
     for_each_kind(step.kinds, [&](std::uint32_t kind) {
       std::uint32_t& expected = expectations.amount(kind, step);
-      if (expected != step.amounts[kind]) shape.unexpected |= Kinds{1} << kind;
+      if (expected != step.amounts[kind]) shape.unexpected.insert(kind);
       expected = step.amounts[kind];
     });
     const TraceEvent& event = step.event;
@@ -319,7 +334,8 @@ struct TraceWriter::State {
       to = put_number(to, place);
     } else {
       *to++ = std::byte{0};
-      for (const Kinds kinds : {shape.kinds, shape.unexpected}) to = put_number(to, std::rotr(kinds, kRotation));
+      for (const Kinds& kinds : {shape.kinds, shape.unexpected})
+        to = put_number(put_number(to, kinds.words[1]), kinds.words[0]);
       to = put_number(to, shape.end);
       if (has_masks(shape)) to = put_number(to, shape.masks);
       shapes.push_back(shape);
@@ -347,7 +363,7 @@ void TraceWriter::add(const TraceEvent& event) {
   State& state = *state_;
   switch (event.kind) {
     case EventKind::kWork:
-      if (state.step.kinds != 0) state.end_step(Step::End::kNothing, {});
+      if (!state.step.kinds.is_empty()) state.end_step(Step::End::kNothing, {});
       for (const WorkAmount& work : event.work) state.step.add(work);
       return;
     case EventKind::kGet:
@@ -363,7 +379,7 @@ void TraceWriter::add(const TraceEvent& event) {
 
 TileTrace TraceWriter::finish(std::uint32_t tile_id) {
   State& state = *state_;
-  if (state.step.kinds != 0) state.end_step(Step::End::kNothing, {});
+  if (!state.step.kinds.is_empty()) state.end_step(Step::End::kNothing, {});
   TileTrace trace = {tile_id, {}};
   if (state.byte_count == 0) return trace;
   trace.packed = without_repetitions(std::span(state.bytes).first(state.byte_count), state.repetitions);
@@ -391,7 +407,10 @@ struct TraceReader::State {
     const std::uint64_t number = take_number(next);
     if (number == 0) {
       Shape& shape = shapes.emplace_back();
-      for (Kinds* const kinds : {&shape.kinds, &shape.unexpected}) *kinds = std::rotl(take_number(next), kRotation);
+      for (Kinds* const kinds : {&shape.kinds, &shape.unexpected}) {
+        kinds->words[1] = take_number(next);
+        kinds->words[0] = take_number(next);
+      }
       shape.end = static_cast<std::uint32_t>(take_number(next));
       if (has_masks(shape)) shape.masks = take_number(next);
     }
@@ -408,7 +427,7 @@ struct TraceReader::State {
     WorkAmount* amount = work.data();
     for_each_kind(shape.kinds, [&](std::uint32_t kind) {
       std::uint32_t& expected = expectations.amount(kind, step);
-      if ((shape.unexpected >> kind & 1) != 0) expected = static_cast<std::uint32_t>(take_number(next));
+      if (shape.unexpected.has(kind)) expected = static_cast<std::uint32_t>(take_number(next));
       step.amounts[kind] = expected;
       *amount++ = {WorkId(kind), expected};
     });
@@ -470,7 +489,7 @@ const TraceEvent* TraceReader::next() {
     if (state.next == state.end) return nullptr;
     state.take_step();
     state.is_end_next = state.step.end != Step::End::kNothing;
-    if (state.step.kinds != 0) return &state.work_event;
+    if (!state.step.kinds.is_empty()) return &state.work_event;
   }
   state.is_end_next = false;
   return &state.step.event;

@@ -322,9 +322,9 @@ void expect_subpacket_culling_drops_no_hit() {
       ASSERT_EQ(found, expected) << "triangle " << i;
       ASSERT_TRUE(std::ranges::equal(packet.id, wanted.id)) << "triangle " << i;
       ASSERT_TRUE(std::ranges::equal(packet.t, wanted.t, same_bits)) << "triangle " << i;
-      ASSERT_LE(work[Work::kGroupTestStandard], all_tests);
-      untested_hits += work[Work::kHitGroup] > work[Work::kGroupTestStandard] ? 1u : 0u;
-      left_out += all_tests - work[Work::kGroupTestStandard];
+      ASSERT_LE(work[Work::kRowTest], all_tests);
+      untested_hits += work[Work::kHitGroup] > work[Work::kRowTest] ? 1u : 0u;
+      left_out += all_tests - work[Work::kRowTest];
       hit_count += expected != 0 ? 1u : 0u;
     }
   });
@@ -402,7 +402,7 @@ TYPED_TEST(StandardTest, EstimatesFindTheWinnerOrLeaveItOpen) {
       ASSERT_TRUE(same_bits(packet.facing[ray], exact.facing[ray])) << "ray " << ray;
     }
     RaySet<kRays> again;
-    if (!take_unsure_rays(packet, kFloatMax, again)) return;
+    if (!take_unsure_rays(packet, kFloatMax, again, work)) return;
     packet.active = again;
     for (const VertexTriangle& triangle : shown.triangles) {
       (void)intersect_standard<TypeParam, true>(packet, triangle, false, work);

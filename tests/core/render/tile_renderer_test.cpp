@@ -200,7 +200,8 @@ TEST_F(TileRendererTest, SubpacketsChangeNoPixelButTheWork) {
   settings.techniques |= kUseSubpackets;
   TestFrame by_subpackets(fine_scene(), settings);
   const KernelFrame with = expect_reference<Lanes<4>, WholeTiles>(by_subpackets);
-  EXPECT_LT(4 * with.work[Work::kGroupTestStandard], without.work[Work::kGroupTestStandard]);
+  EXPECT_LT(4 * with.work[Work::kRowTest], without.work[Work::kGroupTestStandard]);
+  EXPECT_EQ(with.work[Work::kGroupTestStandard], 0u);
   EXPECT_EQ(without.work[Work::kSubpacketGroup], 0u);
   TestFrame small(fine_scene(), settings);
   expect_reference<Lanes<4>, Normal>(small);

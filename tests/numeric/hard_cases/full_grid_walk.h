@@ -14,6 +14,7 @@ namespace gridiron {
 struct FullTable {
   [[nodiscard]] static std::uint32_t chunk_of(std::uint32_t) { return 0; }
   [[nodiscard]] static bool holds(std::uint32_t) { return true; }
+  [[nodiscard]] static bool is_occupied(std::uint32_t) { return true; }
   [[nodiscard]] static std::uint32_t block_of(std::uint32_t macro_cell) { return macro_cell + 1; }
 };
 

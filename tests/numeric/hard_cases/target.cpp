@@ -88,14 +88,15 @@ namespace {
 
 // Traces rays as TileRenderer does: again where estimates left one unsure, one by one where ties are open.
 template <class PacketType, class Trace>
-void trace_rays(PacketType& packet, const RaySet<PacketType::kRayCount>& rays, float t_far, Trace&& trace) {
+void trace_rays(PacketType& packet, const RaySet<PacketType::kRayCount>& rays, float t_far, WorkCounters& work,
+                Trace&& trace) {
   packet.active = rays;
   trace();
   RaySet<PacketType::kRayCount> unsure;
-  if (!take_unsure_rays(packet, t_far, unsure)) return;
+  if (!take_unsure_rays(packet, t_far, unsure, work)) return;
   packet.active = unsure;
   trace();
-  if (!packet.breaks_ties || !take_unsure_rays(packet, t_far, unsure)) return;
+  if (!packet.breaks_ties || !take_unsure_rays(packet, t_far, unsure, work)) return;
   for (std::uint32_t ray = 0; ray < PacketType::kRayCount; ++ray) {
     if (!unsure.contains(ray)) continue;
     packet.active.clear();
@@ -109,7 +110,7 @@ void trace_all(PacketType& packet, const RaySet<PacketType::kRayCount>& rays, fl
                std::span<const VertexTriangle> vertices, std::span<const ProjectionTriangle> projections) {
   WorkCounters work;
   const Culling culling{.corner_rays = is_picture, .subpackets = is_picture};
-  trace_rays(packet, rays, t_far, [&] {
+  trace_rays(packet, rays, t_far, work, [&] {
     for (const ProjectionTriangle& triangle : projections) {
       (void)intersect_projection<L>(packet, triangle, PacketType::kAllSubpackets, is_picture, false, work);
     }

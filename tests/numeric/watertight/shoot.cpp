@@ -92,12 +92,13 @@ void shoot(const watertight::Shot& shot, std::uint32_t accuracy_value, watertigh
   packet.ask_for_distances(shot.with_distances && !packet.trusts_floats);
   packet.active.words[0] = shot.active;
   test_all(shot, accuracy, packet);
+  WorkCounters work;
   RaySet<ShotPacket::kRayCount> unsure;
-  if (take_unsure_rays(packet, kFloatMax, unsure)) {
+  if (take_unsure_rays(packet, kFloatMax, unsure, work)) {
     packet.active = unsure;
     test_all(shot, accuracy, packet);
     RaySet<ShotPacket::kRayCount> open;
-    if (packet.breaks_ties && take_unsure_rays(packet, kFloatMax, open)) {
+    if (packet.breaks_ties && take_unsure_rays(packet, kFloatMax, open, work)) {
       for (std::uint32_t ray = 0; ray < ShotPacket::kRayCount; ++ray) {
         if (!open.contains(ray)) continue;
         packet.active.clear();

@@ -3,6 +3,9 @@
 #include <gtest/gtest.h>
 #include <pipe_model.h>
 
+#include <utility>
+#include <vector>
+
 namespace gridiron::calibrate {
 namespace {
 
@@ -11,17 +14,17 @@ constexpr Site kSite = 1;
 // One usual branch, taken.
 Branches taken_branch() {
   Branches branches;
-  branches[kSite].by_kind[0][1] = 1;
+  branches[kSite][1] = 1;
   return branches;
 }
 
 class PipeModelTest : public testing::Test {
  protected:
   Branches branches_ = taken_branch();
-  PipeModel model_{&branches_, 1};
+  PipeModel model_{&branches_, {.superblock_branches = 1}};
 
   void SetUp() override { model_.add_units(GridWork::kCellStep, 1); }
-  KindTotals finish() { return model_.finish()[static_cast<std::size_t>(GridWork::kCellStep)]; }
+  KindTotals finish() { return model_.finish().totals[static_cast<std::size_t>(GridWork::kCellStep)]; }
 };
 
 TEST_F(PipeModelTest, ChainWaitsForEachResult) {
@@ -80,14 +83,79 @@ TEST_F(PipeModelTest, BranchWaitsForItsConditionAndUnusualOneMisses) {
 TEST(PipeModel, SuperblockMovesWorkAboveUsualBranchesButNoStores) {
   for (const bool stores : {false, true}) {
     Branches branches = taken_branch();
-    PipeModel model(&branches, 4);
+    PipeModel model(&branches, {.superblock_branches = 4});
     model.add_units(GridWork::kCellStep, 1);
     const Node condition = model.emit(OpClass::kFloat, 1);
     model.branch(kSite, true, condition);
     for (std::uint64_t i = 0; i < 5; ++i) (void)model.emit(stores ? OpClass::kStore : OpClass::kFixed, i);
-    const Totals totals = model.finish();
+    const Totals totals = model.finish().totals;
     EXPECT_EQ(totals[static_cast<std::size_t>(GridWork::kCellStep)].cycles(), stores ? 7 + 5 : 7);
   }
+}
+
+// The refill delays what comes next, unless that is a command or a wait, which have no price.
+TEST(PipeModel, MissIsChargedToTheWorkBehindIt) {
+  const Branches branches = taken_branch();
+  const auto misses_of = [&](WorkId next) {
+    PipeModel model(&branches);
+    model.add_units(GridWork::kCellStep, 1);
+    model.branch(kSite, false, 0);
+    model.add_units(next, 1);
+    (void)model.emit(OpClass::kFixed, 1);
+    const Totals totals = model.finish().totals;
+    return std::pair(totals[WorkId(GridWork::kCellStep).number()].misses, totals[next.number()].misses);
+  };
+  EXPECT_EQ(misses_of(GridWork::kCellVisit), std::pair(std::uint64_t{0}, std::uint64_t{1}));
+  EXPECT_EQ(misses_of(Work::kWait), std::pair(std::uint64_t{1}, std::uint64_t{0}));
+}
+
+double cycles_under(const PipeRules& rules, const auto& run) {
+  const Branches branches = taken_branch();
+  PipeModel model(&branches, rules);
+  model.add_units(GridWork::kCellStep, 1);
+  run(model);
+  return model.finish().totals[WorkId(GridWork::kCellStep).number()].cycles();
+}
+
+TEST(PipeModel, HintStandsElevenCyclesBeforeATakenBranch) {
+  const auto branch = [](PipeModel& model) { model.branch(kSite, true, 0); };
+  EXPECT_EQ(cycles_under({}, branch), 1);
+  EXPECT_EQ(cycles_under({.has_hints = true}, branch), 1 + 11);
+  // One that is usually not taken needs none.
+  const auto other = [](PipeModel& model) { model.branch(kSite + 1, false, 0); };
+  EXPECT_EQ(cycles_under({.has_hints = true}, other), 1);
+}
+
+TEST(PipeModel, ProductOfOneSumIsPartOfIt) {
+  const auto sum = [](PipeModel& model) {
+    const Node a = model.emit(OpClass::kLoad, 1), b = model.emit(OpClass::kLoad, 2);
+    (void)model.emit(OpClass::kFloat, 4, model.emit_product(3, a, b), a);
+  };
+  EXPECT_EQ(cycles_under({}, sum), 1 + 1 + 6 + 6);
+  EXPECT_EQ(cycles_under({.fuses = true}, sum), 1 + 1 + 6);
+  const auto two_sums = [](PipeModel& model) {
+    const Node product = model.emit_product(1, 0, 0);
+    (void)model.emit(OpClass::kFloat, 2, product);
+    (void)model.emit(OpClass::kFloat, 3, product);
+  };
+  EXPECT_EQ(cycles_under({.fuses = true}, two_sums), cycles_under({}, two_sums));
+}
+
+TEST(PipeModel, ValuesBeyondTheRegistersAreSpilled) {
+  const auto run = [](std::uint32_t values) {
+    return [values](PipeModel& model) {
+      std::vector<Node> nodes;
+      Node sum = 0;
+      for (std::uint32_t i = 0; i + 1 < values; ++i) {
+        nodes.push_back(model.emit(OpClass::kFixed, i));
+        sum = model.emit(OpClass::kFixed, i, sum, nodes.back());
+      }
+      // All are needed again, with what they come to.
+      for (const Node node : nodes) (void)model.emit(OpClass::kShuffle, node, node, sum);
+    };
+  };
+  EXPECT_EQ(cycles_under({.has_spills = true}, run(kRegisters)), cycles_under({}, run(kRegisters)));
+  EXPECT_EQ(cycles_under({.has_spills = true}, run(kRegisters + 3)), cycles_under({}, run(kRegisters + 3)) + 2 * 3);
 }
 
 TEST_F(PipeModelTest, MemoryIsLoadedOnceAndForgotten) {

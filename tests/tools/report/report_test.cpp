@@ -99,19 +99,28 @@ Json documented_report() {
   Json& work = report["work"];
   // clang-format off
   for (const char* name :
-       {"tile_start",       "ray_generated",   "cull_test",        "pixel_box_group",    "triangle_setup",
-        "subpacket_setup",  "subpacket_group", "group_test_standard", "group_test_paper", "hit_group",
-        "hit_subpacket",    "hit_group_paper", "hit_setup",        "double_sign",        "exact_sign",
-        "exact_distance",   "shaded_group",    "shaded_simple_group", "depth_group",     "id_group",
-        "row_group",        "estimate_setup",  "normal_setup",     "hit_half",           "exact_order",
-        "lattice_triangle", "wave_ray",        "queued_ray",       "ray_triangle_setup", "ray_group_test",
-        "ray_distance",     "surface_point",   "smooth_normal",    "shadow_ray",         "light_sample",
-        "highlight",        "occlusion_ray",   "mirror_ray",       "refracted_ray",      "environment_lookup",
-        "color_added",      "color_group",     "get_issue",        "put_issue",          "wait",
-        "packet_start",     "pass_group",      "pass_square",      "macro_slice_step",   "macro_cell_step",
-        "macro_cell_visit", "slice_step",      "cell_step",        "cell_visit",         "triangle_batch",
-        "mailbox_probe",    "reach_group",     "footprint_group",  "cell_bound_step",    "walk_pass",
-        "shaft_group"}) {
+       {"tile_start", "ray_packet", "pixel_projection", "ray_generated",
+        "ray_set_word", "recent_slot", "cull_test", "pixel_box_group",
+        "open_triangle", "listed_triangle", "triangle_setup", "slope_setup",
+        "subpacket_setup", "subpacket_group", "triangle_test", "subpacket_pick",
+        "subpacket_visit", "group_test_standard", "group_skip", "inside_test",
+        "row_visit", "row_test", "row_skip", "row_inside_test",
+        "cull_test_paper", "group_test_paper", "hit_group", "open_hit_group",
+        "settled_group", "hit_subpacket", "taken_subpacket", "facing_group",
+        "hit_group_paper", "hit_setup", "double_sign", "exact_sign",
+        "exact_distance", "shaded_group", "shaded_simple_group", "depth_group",
+        "id_group", "row_group", "estimate_setup",
+        "normal_setup", "hit_half", "exact_order", "lattice_triangle",
+        "wave_ray", "queued_ray", "ray_triangle_setup", "ray_group_test",
+        "ray_distance", "surface_point", "smooth_normal", "shadow_ray",
+        "light_sample", "highlight", "occlusion_ray", "mirror_ray",
+        "refracted_ray", "environment_lookup", "color_added", "color_group",
+        "get_issue", "put_issue", "wait", "packet_start",
+        "pass_slope", "mailbox_group", "pass_group", "pass_square",
+        "macro_slice_step", "macro_row", "macro_cell_step", "macro_cell_visit",
+        "slice_step", "cell_row", "cell_step", "cell_visit",
+        "triangle_batch", "mailbox_probe", "reach_group", "reach_test",
+        "footprint_group", "cell_bound_step", "walk_pass", "shaft_group"}) {
     work[name] = 1000 + work.size();
   }
   // clang-format on

@@ -142,8 +142,10 @@ inline Node shift_long(Node a, Node count, std::uint64_t tie, bool right, bool w
   return emit(OpClass::kFixed, tie + 1, bytes, sign);
 }
 
-// Multipliers are of 16 bits: two cross products and a low one, two additions.
-inline Node multiply_words(Node a, Node b, std::uint64_t tie) {
+// Multipliers are of 16 bits: one product where both operands fit, else two cross products and a low one, two
+// additions.
+inline Node multiply_words(Node a, Node b, std::uint64_t tie, bool fits) {
+  if (fits) return emit(OpClass::kConvert, tie, a, b);
   const Node cross = emit(OpClass::kConvert, tie, a, b);
   const Node other = emit(OpClass::kConvert, tie + 1, b, a);
   const Node low = emit(OpClass::kConvert, tie + 2, a, b);
@@ -313,6 +315,17 @@ bool is_power_of_two(const T& value) {
     return is_constant(value) && std::has_single_bit(static_cast<std::make_unsigned_t<Plain<T>>>(plain(value)));
 }
 
+/// Whether an integer is one that a 16-bit multiplier takes: of the few numbers that the kernel multiplies, places in
+/// the grid and strides, the largest are known where it is written.
+template <class T>
+bool fits_16_bits(const T& value) {
+  if constexpr (std::is_signed_v<Plain<T>>) {
+    return plain(value) >= -32768 && plain(value) <= 32767;
+  } else {
+    return plain(value) <= 65535u;
+  }
+}
+
 // An operand as the operation takes it: in floating point, if the other one is. Integers stay as they are.
 template <class Common, class T>
 Node operand_node(const T& operand, std::uint64_t tie) {
@@ -330,6 +343,7 @@ auto counted_result(const A& a, const B& b, R value, char symbol) {
   Node node = 0;
   if (x == 0 && y == 0) return Counted<R>::made(value, 0);
   if constexpr (std::is_same_v<Common, float>) {
+    if (symbol == '*') return Counted<R>::made(value, PipeModel::current().emit_product(tie, x, y));
     node = symbol == '/' ? divide_floats(x, y, tie) : emit(OpClass::kFloat, tie, x, y);
   } else if constexpr (std::is_same_v<Common, double>) {
     node = symbol == '/' ? divide_doubles(x, y, tie) : emit(OpClass::kDouble, tie, x, y);
@@ -344,11 +358,12 @@ auto counted_result(const A& a, const B& b, R value, char symbol) {
       }
     } else if (symbol == '*') {
       // Of 64 bits, only products of 32-bit values occur, and products with +-1.
-      node = sizeof(R) == 8 ? multiply_to_long(x, y, tie) : multiply_words(x, y, tie);
+      node =
+          sizeof(R) == 8 ? multiply_to_long(x, y, tie) : multiply_words(x, y, tie, fits_16_bits(a) && fits_16_bits(b));
     } else {
       // By way of float, the quotient checked by a product.
       const Node quotient = divide_floats(emit(OpClass::kConvert, tie, x), emit(OpClass::kConvert, tie + 1, y), tie);
-      node = multiply_words(emit(OpClass::kConvert, tie + 2, quotient), y, tie);
+      node = multiply_words(emit(OpClass::kConvert, tie + 2, quotient), y, tie, fits_16_bits(b));
       node = emit(OpClass::kFixed, tie + 2, node, x);
     }
   } else if (shift) {

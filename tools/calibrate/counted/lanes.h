@@ -61,7 +61,10 @@ struct Lanes {
 
     friend Float operator+(Float a, Float b) { return make(OpClass::kFloat, a.v + b.v, a, b); }
     friend Float operator-(Float a, Float b) { return make(OpClass::kFloat, a.v - b.v, a, b); }
-    friend Float operator*(Float a, Float b) { return make(OpClass::kFloat, a.v * b.v, a, b); }
+    friend Float operator*(Float a, Float b) {
+      const Native::Float value = a.v * b.v;
+      return {value, a.node == 0 && b.node == 0 ? 0 : PipeModel::current().emit_product(tie(value.v), a.node, b.node)};
+    }
     friend Float operator/(Float a, Float b) {
       const Native::Float value = a.v / b.v;
       return {value, divide_floats(a.node, b.node, tie(value.v))};

@@ -1,37 +1,32 @@
 # Reads the emulator's traces of the frame programs, one after the other, each behind a line FRAME NAME, and prints what
-# second_opinion/run promises. Variables: work (folder with units and NAME.units), target, as_header (not empty: yes).
+# second_opinion/run promises. Variables: work (the folder of write_memories), target, as_header (not empty: yes).
 # SPDX-License-Identifier: Apache-2.0
 BEGIN {
-  # n = 63 + kind, and the marks of program_core.h: hint #n is d503201f + 32 n, slti zero, zero, n 00002013 + n * 2^20.
-  for (kind = 0; kind < 65; ++kind) {
-    code = target == "riscv64" ? sprintf("%03x02013", 63 + kind) : sprintf("d5032%03x", 2047 + 32 * kind)
+  # n = 128 + kind, and the marks of program_core.h: movz xzr, #n is d280001f + 32 n, slti zero, zero, n
+  # 00002013 + n * 2^20.
+  for (kind = 0; kind < 100; ++kind) {
+    code = target == "riscv64" ? sprintf("%03x02013", 128 + kind) : sprintf("d28%05x", 31 + 32 * (128 + kind))
     kind_of[code] = kind
   }
-  kGet = 42; kPut = 43; kWait = 44; kKinds = kClaim = 61; kCommandEnd = 62; kCopied = 63; kNothing = 64
+  kKinds = kClaim = 96; kCommandEnd = 97; kCopied = 98; kNothing = 99
   while ((getline line < (work "/units")) > 0) {
     split(line, part, " ")
     name[part[1]] = part[2]
+    if (part[5] == "events") { event[part[2]] = part[1]; continue }
     units[part[1]] = part[3]
     operations[part[1]] = part[4]
     is_of_effects[part[1]] = part[5] == "effects"
   }
-  while ((getline line < (work "/dense.units")) > 0) {
+  kGet = event["get_issue"]; kPut = event["put_issue"]; kWait = event["wait"]
+  while ((getline line < (work "/exact.units")) > 0) {
     split(line, part, " ")
-    dense_units[part[1]] = part[2]
+    if (part[2] > 0) of_decisions[name[part[1]]] = 1
   }
-  # What the frame with planes stands for, and no other; what the compact one is for; the exact decisions.
-  of_planes["hit_setup"] = of_planes["hit_half"] = of_planes["depth_group"] = 1
-  of_lattice["lattice_triangle"] = of_lattice["cell_bound_step"] = 1
-  of_decisions["exact_sign"] = of_decisions["exact_distance"] = of_decisions["exact_order"] = 1
-}
-
-# Is what a frame counted of a kind a part of the table? As in work_table.cpp.
-function stands_for(frame, kind) {
-  if (frame == "dense") return 0
-  if (frame == "exact") return name[kind] in of_decisions
-  if (is_of_effects[kind]) return frame == "lamp" || frame == "sun"
-  if (frame == "lamp" || frame == "sun") return 0
-  return (name[kind] in of_planes) == (frame == "planes") && (name[kind] in of_lattice) == (frame == "compact")
+  # What a frame counted of a kind is a part of the table.
+  while ((getline line < (work "/parts")) > 0) {
+    split(line, part, " ")
+    is_part[part[1], part[2]] = 1
+  }
 }
 
 function go_to(kind) {
@@ -65,7 +60,16 @@ function end_of(f,    n, sum, ends) {
 function command_of(f) { return (counted[f, kGet] + counted[f, kPut]) / commands_of(f) }
 function claim_of(f) { return counted[f, kClaim] / marks[f, kClaim] }
 
-/^FRAME/ { frame = $2; frames[++frame_count] = frame; current = kNothing; next }
+/^FRAME/ {
+  frame = $2
+  frames[++frame_count] = frame
+  current = kNothing
+  while ((getline line < (work "/" frame ".units")) > 0) {
+    split(line, part, " ")
+    frame_units[frame, part[1]] = part[2]
+  }
+  next
+}
 /^FAILED/ { failed = failed " " $2; next }
 /^IN:/ { fresh = 1; next }
 /^0x/ {
@@ -97,30 +101,45 @@ END {
   }
   for (kind = 0; kind < kKinds; ++kind) {
     for (i = 1; i <= frame_count; ++i) {
-      if (stands_for(frames[i], kind)) count[kind] += counted[frames[i], kind]
+      if ((frames[i], kind) in is_part) count[kind] += counted[frames[i], kind]
     }
   }
-  if (as_header != "") { print_header(); exit }
-  printf "%-20s %12s %12s %8s\n", "kind", "instructions", "operations", "ratio"
+  if (as_header != "") print_header()
+  table = as_header != "" ? "/dev/stderr" : "/dev/stdout"
+  printf "%-20s %12s %12s %8s\n", "kind", "instructions", "operations", "ratio" > table
   for (kind = 0; kind < kKinds; ++kind) {
     if (units[kind] == 0) continue
     per_unit = count[kind] / units[kind]
-    printf "%-20s %12.1f %12.1f %8.2f\n", name[kind], per_unit, operations[kind], per_unit / operations[kind]
+    printf "%-20s %12.1f %12.1f %8.2f\n", name[kind], per_unit, operations[kind], per_unit / operations[kind] > table
   }
   if (target == "riscv64") print_commands()
 }
 
-function print_commands(    i, f) {
-  printf "\n%-12s %9s %9s %9s %9s %9s %9s\n", "frame", "commands", "command", "its end", "waits", "idle wait", "claim"
+# Where triangles are large, or subpackets culled, other groups are tested: more are hit.
+function price_of(kind) {
+  if (frame_units["dense", kind] > 0) return counted["dense", kind] / frame_units["dense", kind]
+  return units[kind] ? count[kind] / units[kind] : 0
+}
+
+function print_commands(    i, f, kind, work_sum, priced) {
+  printf "\n%-12s %9s %9s %9s %9s %9s %9s %9s %9s\n", "frame", "work, M", "priced", "commands", "command", "its end", \
+    "waits", "idle wait", "claim" > table
   for (i = 1; i <= frame_count; ++i) {
     f = frames[i]
     if (!marks[f, kClaim]) continue
-    printf "%-12s %9d %9.1f %9.1f %9d %9.1f %9.1f\n", f, commands_of(f), command_of(f), end_of(f), marks[f, kWait],
-      idle_wait_of(f), claim_of(f)
+    work_sum = priced = 0
+    for (kind = 0; kind < kKinds; ++kind) {
+      if (kind == kGet || kind == kPut || kind == kWait) continue
+      work_sum += counted[f, kind]
+      priced += price_of(kind) * frame_units[f, kind]
+    }
+    printf "%-12s %9.2f %+8.1f%% %9d %9.1f %9.1f %9d %9.1f %9.1f\n", f, work_sum / 1e6,
+      100 * (priced / work_sum - 1), commands_of(f), command_of(f), end_of(f), marks[f, kWait],
+      idle_wait_of(f), claim_of(f) > table
   }
 }
 
-function print_header(    kind, per_unit, f, note) {
+function print_header(    kind, f, note) {
   f = "dense"
   print "// What a unit of each kind of work takes in instructions of a " target " core, 4 lanes, and what commands,"
   print "// waits and claims take on the port of platform/sifive_u. Written by tools/calibrate/second_opinion/run from"
@@ -135,13 +154,11 @@ function print_header(    kind, per_unit, f, note) {
   print "inline constexpr auto kInstructionCosts = std::to_array<InstructionCost>({"
   for (kind = 0; kind < kKinds; ++kind) {
     if (units[kind] == 0 || count[kind] == 0) continue
-    # Where triangles are large, or subpackets culled, other groups are tested: more are hit.
-    per_unit = count[kind] / units[kind]
     note = ", not in `dense`"
     if (is_of_effects[kind]) note = ", of effects"
     if (name[kind] in of_decisions) note = ", of 64 decisions"
-    if (dense_units[kind] > 0) { per_unit = counted[f, kind] / dense_units[kind]; note = "" }
-    printf "    {WorkId(%2d), %7.1f},  // %s%s\n", kind, per_unit, name[kind], note
+    if (frame_units["dense", kind] > 0) note = ""
+    printf "    {WorkId(%2d), %7.1f},  // %s%s\n", kind, price_of(kind), name[kind], note
   }
   print "});\n"
   print "/// A command: from where core counts it to the next kind of work, and its end in a wait."

@@ -14,13 +14,13 @@
 
 #include "program_core.h"
 
-asm(".data\n.balign 4096\n.global gridiron_memory\ngridiron_memory:\n.incbin \"" GRIDIRON_MEMORY "\"\n"
+asm(".data\n.balign 4096\n.global gridiron_memory\ngridiron_memory:\n.incbin \"" GRIDIRON_MEMORY
+    "\"\n"
     ".global gridiron_memory_end\ngridiron_memory_end:\n.text\n");
 
 namespace {
 
 using namespace gridiron;
-static_assert(WorkId(GridWork::kEnd).number() <= 61, "each kind has a mark");
 
 [[noreturn]] void exit_with(long code) {
 #ifdef __riscv
@@ -41,8 +41,8 @@ static_assert(WorkId(GridWork::kEnd).number() <= 61, "each kind has a mark");
 int decide_all() {
   WorkCounters work;
   int sum = 0;
-  for (const auto* at = reinterpret_cast<const float*>(gridiron_memory);
-       at != reinterpret_cast<const float*>(gridiron_memory_end); at += 15) {
+  for (const auto *at = reinterpret_cast<const float *>(gridiron_memory);
+       at != reinterpret_cast<const float *>(gridiron_memory_end); at += 15) {
     const float *const eye = at, *const dir = at + 3, *const a = at + 6, *const b = at + 9, *const c = at + 12;
     float first[3][3], second[3][3];
     for (int axis = 0; axis < 3; ++axis) {
@@ -63,9 +63,9 @@ int decide_all() {
 #else
 
 #if GRIDIRON_EFFECTS == 0
-using Store = LocalStore<StoreLayout256K<GRIDIRON_PACKET_WIDTH>>;
+using Store = LocalStore<StoreLayout256K<GRIDIRON_PACKET_WIDTH> >;
 #else
-using Store = LocalStore<EffectLayout256K<GRIDIRON_EFFECTS, GRIDIRON_PACKET_WIDTH>>;
+using Store = LocalStore<EffectLayout256K<GRIDIRON_EFFECTS, GRIDIRON_PACKET_WIDTH> >;
 #endif
 
 alignas(128) std::byte store_bytes[sizeof(Store)];
@@ -90,7 +90,7 @@ extern "C" [[noreturn]] void _start() {
   const auto& frame = *reinterpret_cast<const FrameRecord*>(gridiron_memory);
   Store& store = *::new (static_cast<void*>(store_bytes)) Store;
   ProgramCore core(store_bytes, sizeof store_bytes, frame.tiles_x * frame.tiles_y);
-  const Status status = render_tiles<Lanes<4>>(store, core.port(), MainAddress{0}, spill_of(frame));
+  const Status status = render_tiles<Lanes<4> >(store, core.port(), MainAddress{0}, spill_of(frame));
   exit_with(status == Status::kOk ? 0 : 1);
 #endif
 }

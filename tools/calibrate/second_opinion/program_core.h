@@ -18,8 +18,10 @@
 
 extern "C" std::byte gridiron_memory[], gridiron_memory_end[];
 
-// Marks beside those of kinds of work, which `run` knows: 124 begins a claim, 125 stands in a wait where it ends a
-// command, 127 and 126 stand around what no core does: copies are a transfer engine's work.
+// Marks beside those of kinds of work, which `count.awk` knows: the first begins a claim, the next stands in a wait
+// where it ends a command, the last two stand around what no core does: copies are a transfer engine's work.
+inline constexpr int kClaimMark = 224, kCommandEndMark = 225, kCopiedMark = 226, kNothingMark = 227;
+static_assert(gridiron::kEndOfKindMarks <= kClaimMark);
 template <int kNumber>
 [[gnu::always_inline]] inline void put_mark() {
   asm volatile(GRIDIRON_MARK_TEXT : : "n"(kNumber));
@@ -29,10 +31,16 @@ template <int kNumber>
 [[gnu::always_inline]] inline void put_fence_mark() {
   asm volatile(GRIDIRON_MARK_TEXT : : "n"(kNumber) : "memory");
 }
-[[gnu::always_inline]] inline void mark_copy() { put_fence_mark<127>(); }
-[[gnu::always_inline]] inline void mark_copied() { put_fence_mark<126>(); }
+[[gnu::always_inline]] inline void mark_copy() {
+  put_fence_mark<kNothingMark>();
+}
+[[gnu::always_inline]] inline void mark_copied() {
+  put_fence_mark<kCopiedMark>();
+}
 /// What follows is no kind of work.
-[[gnu::always_inline]] inline void mark_nothing() { put_mark<127>(); }
+[[gnu::always_inline]] inline void mark_nothing() {
+  put_mark<kNothingMark>();
+}
 
 #ifdef __riscv
 
@@ -53,7 +61,7 @@ class ChannelBoard : public gridiron::port::PdmaBoard {
     mark_copied();
   }
   [[nodiscard]] bool is_busy() {
-    put_mark<125>();
+    put_mark<kCommandEndMark>();
     return PdmaBoard::is_busy();
   }
 
@@ -84,7 +92,7 @@ class MarkedPort : public gridiron::port::CountingPort<InstructionPort> {
   using CountingPort::CountingPort;
 
   gridiron::TileClaim claim_tile() {
-    put_mark<124>();
+    put_mark<kClaimMark>();
     return CountingPort::claim_tile();
   }
 };

@@ -186,9 +186,10 @@ template <class PacketType>
 template <class L, class PacketType>
 [[nodiscard]] bool take_pass(const GridRecord& grid, RaySet<PacketType::kRayCount>& waiting, PacketType& packet,
                              Frustum& frustum, WorkCounters& work) {
-  work.charge_to(GridWork::kPacketStart);
+  work.charge_to(Work::kRaySetWord);
   std::uint32_t word = 0;
   while (word < waiting.kWordCount && waiting.words[word] == 0) ++word;
+  work.add(Work::kRaySetWord, word);
   if (word == waiting.kWordCount) return false;
   const std::uint32_t leader = 32 * word + lowest_bit(waiting.words[word]);
   work.add(GridWork::kPacketStart);
@@ -252,8 +253,12 @@ template <class L, class PacketType>
     for (std::uint32_t i = 0; i < PacketType::kSquareCount; ++i) result = values[i] > result ? values[i] : result;
     return result;
   };
-  set_bounds(u, 0, least(packet.slope_low[0]), greatest(packet.slope_high[0]));
-  set_bounds(v, 2, least(packet.slope_low[1]), greatest(packet.slope_high[1]));
+  work.add(GridWork::kPassSlope, PacketType::kSquareCount);
+  const float low_u = least(packet.slope_low[0]), high_u = greatest(packet.slope_high[0]);
+  const float low_v = least(packet.slope_low[1]), high_v = greatest(packet.slope_high[1]);
+  work.charge_to(GridWork::kPacketStart);
+  set_bounds(u, 0, low_u, high_u);
+  set_bounds(v, 2, low_v, high_v);
   return true;
 }
 

@@ -65,14 +65,13 @@ class GridCore {
     RaySet<StorePacket::kRayCount> waiting;
     generate_packet<L>(store_.frame, view.left + x, view.top + y, store_.packet, waiting, store_.work, view.dx,
                        view.dy);
-    store_.work.charge_to(GridWork::kPacketStart);
     GRIDIRON_TRY(trace_rays(waiting));
-    if (!take_unsure_rays(store_.packet, store_.frame.t_far, waiting)) [[likely]]
+    if (!take_unsure_rays(store_.packet, store_.frame.t_far, waiting, store_.work)) [[likely]]
       return Status::kOk;
     GRIDIRON_TRY(trace_rays(waiting));
     if (!store_.packet.breaks_ties) return Status::kOk;
     RaySet<StorePacket::kRayCount> open;
-    if (!take_unsure_rays(store_.packet, store_.frame.t_far, open)) return Status::kOk;
+    if (!take_unsure_rays(store_.packet, store_.frame.t_far, open, store_.work)) return Status::kOk;
     for (std::uint32_t ray = 0; ray < StorePacket::kRayCount; ++ray) {
       if (!open.contains(ray)) continue;
       waiting.clear();
@@ -84,16 +83,19 @@ class GridCore {
 
   // Traces rays through the grid, one pass for each march axis and sign that they have.
   [[nodiscard]] GRIDIRON_OUTLINE Status trace_rays(RaySet<StorePacket::kRayCount>& waiting) {
-    store_.engine.mailbox.clear();
+    clear_mailbox();
     Frustum frustum;
     while (take_pass<L>(store_.frame.engine.grid, waiting, store_.packet, frustum, store_.work)) {
       PacketDriver<L, Store, P> driver(store_, transfers_, frustum);
       GRIDIRON_TRY(driver.run());
-      store_.work.charge_to(GridWork::kPacketStart);
       // The next pass has other rays: what this one tested does not count for them.
-      store_.engine.mailbox.clear();
+      clear_mailbox();
     }
     return Status::kOk;
+  }
+  void clear_mailbox() {
+    store_.work.add(GridWork::kMailboxGroup, Layout::kMailboxSlots / 4);
+    store_.engine.mailbox.clear();
   }
 
   // Limits of this store.

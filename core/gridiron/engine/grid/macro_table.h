@@ -33,12 +33,14 @@ struct alignas(128) MacroTableWindow {
     const std::uint32_t chunk = chunk_of(macro_cell);
     return chunk_of_slot[slot_of(chunk)] == chunk;
   }
-  /// @returns the cell block of a macrocell, 0 (the empty block) where it holds nothing. Precondition: holds().
+  /// @returns whether a macrocell holds triangles. Precondition: holds().
+  [[nodiscard]] GRIDIRON_INLINE bool is_occupied(std::uint32_t macro_cell) const {
+    return ((entries[macro_cell / 32 % EntryCount].occupied >> (macro_cell % 32)) & 1u) != 0;
+  }
+  /// @returns the cell block of a macrocell. Precondition: is_occupied().
   [[nodiscard]] GRIDIRON_INLINE std::uint32_t block_of(std::uint32_t macro_cell) const {
     const MacroTableEntry& entry = entries[macro_cell / 32 % EntryCount];
-    const std::uint32_t bit = macro_cell % 32;
-    if (((entry.occupied >> bit) & 1u) == 0) return 0;
-    return entry.first_block + count_bits(entry.occupied & ((1u << bit) - 1u));
+    return entry.first_block + count_bits(entry.occupied & ((1u << (macro_cell % 32)) - 1u));
   }
 };
 

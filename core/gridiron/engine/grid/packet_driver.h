@@ -79,7 +79,7 @@ class PacketDriver {
       GRIDIRON_TRY(enter_next_macro_cell());
       if (cells_done_) return Status::kOk;
     }
-    store_.work.charge_to(GridWork::kCellVisit);
+    store_.work.charge_to(GridWork::kTriangleBatch);
     const std::uint32_t count = cell_.triangle_count < kRunTriangles ? cell_.triangle_count : kRunTriangles;
     const RunPlace place = run_place(store_.frame, cell_.first_triangle, count);
     const std::uint32_t slot = triangle_ring_.push();
@@ -240,7 +240,7 @@ class PacketDriver {
         store_.work.add(GridWork::kMailboxProbe);
         untested = store_.engine.mailbox.untested(triangles[i].triangle_id, wanted);
       }
-      store_.work.charge_to(GridWork::kTriangleBatch);
+      store_.work.charge_to(Work::kCullTestPaper);
       if (untested == 0) continue;
       changed |=
           intersect_projection<L>(store_.packet, triangles[i], untested, use_corner_rays, want_facing, store_.work);

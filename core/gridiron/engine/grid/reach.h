@@ -63,7 +63,7 @@ struct SubpacketReach {
     if constexpr (kSquareCount < 4) return (1u << kSquareCount) - 1u;
     std::uint32_t result = 0;
     for (std::uint32_t base = 0; base < kSquareCount; base += 4) {
-      work.add(GridWork::kReachGroup);
+      work.add(GridWork::kReachTest);
       const Float limit = Float::load(square_reach + base) * Float(Frustum::kReachFactor) + Float(frustum.pad_k);
       result |= (Float(entry) <= limit).bits() << base;
     }
@@ -80,7 +80,7 @@ struct SubpacketReach {
     SubpacketSet result = subpackets_of_squares(squares);
     for (std::uint32_t rest = squares & exactly; rest != 0; rest &= rest - 1) {
       const std::uint32_t square = lowest_bit(rest);
-      work.add(GridWork::kReachGroup);
+      work.add(GridWork::kReachTest);
       const Float limit = Float::load(reach + 4 * square) * Float(Frustum::kReachFactor) + Float(frustum.pad_k);
       const std::uint32_t behind = ~(Float(entry) <= limit).bits() & 0xFu;
       result &= ~(SubpacketSet{behind} << (4 * square));
@@ -97,7 +97,7 @@ struct SubpacketReach {
       using Float = typename L::Float;
       SubpacketSet result = 0;
       for (std::uint32_t base = 0; base < kCount; base += L::kCount) {
-        work.add(GridWork::kReachGroup);
+        work.add(GridWork::kReachTest);
         const Float limit = Float::load(reach + base) * Float(Frustum::kReachFactor) + Float(frustum.pad_k);
         result |= SubpacketSet{(Float(entry) <= limit).bits()} << base;
       }

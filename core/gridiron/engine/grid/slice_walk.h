@@ -65,6 +65,7 @@ class MacroWalk {
     for (;;) {
       // 1. The rest of the current macro slice.
       for (; v_ <= v_last_; ++v_, u_ = u_first_) {
+        work.add(GridWork::kMacroRow);
         for (; u_ <= u_last_; ++u_) {
           work.charge_to(GridWork::kMacroCellStep);
           const std::uint32_t cell = static_cast<std::uint32_t>(k_) * stride_k_ +
@@ -75,9 +76,10 @@ class MacroWalk {
             return WalkStep::kNeedsChunk;
           }
           work.add(GridWork::kMacroCellStep);
-          const std::uint32_t block = table.block_of(cell);
-          if (block == 0 && skip_empty) continue;
-          visit.block = block;
+          const bool is_occupied = table.is_occupied(cell);
+          if (!is_occupied && skip_empty) continue;
+          work.charge_to(GridWork::kMacroCellVisit);
+          visit.block = is_occupied ? table.block_of(cell) : std::uint32_t{0};  // the empty block
           visit.k_first = slice_first_;
           visit.k_last = slice_last_;
           visit.u_first = u_ * macro_width_;
@@ -87,6 +89,7 @@ class MacroWalk {
           ++u_;
           return WalkStep::kFound;
         }
+        work.charge_to(GridWork::kMacroRow);
       }
       // 2. The next macro slice.
       work.charge_to(GridWork::kMacroSliceStep);
@@ -170,6 +173,7 @@ class CellWalk {
     const std::int32_t slice_count = visit_.k_last - visit_.k_first + 1;
     for (;;) {
       for (; v_ <= v_last_; ++v_, u_ = u_first_) {
+        work.add(GridWork::kCellRow);
         for (; u_ <= u_last_; ++u_) {
           work.add(step_kind_of(cells));
           const Cell* const cell =
@@ -181,6 +185,7 @@ class CellWalk {
           ++u_;
           return true;
         }
+        work.charge_to(GridWork::kCellRow);
       }
       work.charge_to(GridWork::kSliceStep);
       if (step_ == slice_count) return false;

@@ -9,14 +9,18 @@
 
 #include <cstdint>
 
-// A mark: hints 63 and up of aarch64 are not given to anything; riscv64 compares register 0 with a number, for nothing.
+// A mark: aarch64 moves a number to the register that is always 0; riscv64 compares that register with a number.
 #ifdef __riscv
 #define GRIDIRON_MARK_TEXT "slti zero, zero, %0"
 #else
-#define GRIDIRON_MARK_TEXT "hint %0"
+#define GRIDIRON_MARK_TEXT "movz xzr, #%0"
 #endif
 
 namespace gridiron {
+
+/// Numbers of marks: of kinds of work first, of what else there is at the end.
+inline constexpr int kFirstMark = 128, kEndOfKindMarks = kFirstMark + 88;
+static_assert(kFirstMark + kWorkKindCount <= kEndOfKindMarks, "each kind has a mark");
 
 struct WorkCounters : PlainWorkCounters {
   [[gnu::always_inline]] constexpr void add(WorkId kind, std::uint32_t amount = 1) {
@@ -31,15 +35,20 @@ struct WorkCounters : PlainWorkCounters {
   [[gnu::always_inline]] static constexpr void mark(WorkId kind) {
     if (!__builtin_is_constant_evaluated()) {
       switch (kind.number()) {
-#define GRIDIRON_MARK(i) case i: asm volatile(GRIDIRON_MARK_TEXT : : "n"(63 + i)); break;
-#define GRIDIRON_MARKS(i) GRIDIRON_MARK(i) GRIDIRON_MARK(i + 1) GRIDIRON_MARK(i + 2) GRIDIRON_MARK(i + 3) \
-  GRIDIRON_MARK(i + 4) GRIDIRON_MARK(i + 5) GRIDIRON_MARK(i + 6) GRIDIRON_MARK(i + 7)
-        GRIDIRON_MARKS(0) GRIDIRON_MARKS(8) GRIDIRON_MARKS(16) GRIDIRON_MARKS(24) GRIDIRON_MARKS(32) \
-          GRIDIRON_MARKS(40) GRIDIRON_MARKS(48) GRIDIRON_MARK(56) GRIDIRON_MARK(57) GRIDIRON_MARK(58) \
-          GRIDIRON_MARK(59) GRIDIRON_MARK(60)
+#define GRIDIRON_MARK(i)                                      \
+  case i:                                                     \
+    asm volatile(GRIDIRON_MARK_TEXT : : "n"(kFirstMark + i)); \
+    break;
+#define GRIDIRON_MARKS(i)                                                                                  \
+  GRIDIRON_MARK(i)                                                                                         \
+  GRIDIRON_MARK(i + 1) GRIDIRON_MARK(i + 2) GRIDIRON_MARK(i + 3) GRIDIRON_MARK(i + 4) GRIDIRON_MARK(i + 5) \
+      GRIDIRON_MARK(i + 6) GRIDIRON_MARK(i + 7)
+        GRIDIRON_MARKS(0)
+        GRIDIRON_MARKS(8) GRIDIRON_MARKS(16) GRIDIRON_MARKS(24) GRIDIRON_MARKS(32) GRIDIRON_MARKS(40) GRIDIRON_MARKS(48)
+            GRIDIRON_MARKS(56) GRIDIRON_MARKS(64) GRIDIRON_MARKS(72) GRIDIRON_MARKS(80)
 #undef GRIDIRON_MARKS
 #undef GRIDIRON_MARK
-        default: break;
+                default : break;
       }
     }
   }
