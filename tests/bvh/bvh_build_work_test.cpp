@@ -17,12 +17,26 @@ TEST(BvhBuildWork, EachCountIsAStep) {
   counts.binary_nodes = 5;
   counts.triangles_moved = 30;
   counts.records_written = 11;
-  const sim::BuildWork work = bvh_build_work(20, 12, counts);
-  EXPECT_EQ(work[BuildStep::kVertexCheck], 20u);
-  EXPECT_EQ(work[BuildStep::kTriangleSurvey], 12u);
-  EXPECT_EQ(work[BuildStep::kTriangleWrite], 11u);
+  counts.halving_steps = 7;
+  counts.centers_bounded = 40;
+  counts.boxes_bounded = 50;
+  counts.wide_nodes = 4;
+  counts.far_triangles = 24;
+  const sim::BuildWork work = bvh_build_work(
+      20, 12, counts, {.vertices_in_order = 5, .vertices_in_space = 3, .triangles_in_space = 2, .boxes_in_space = 6});
+  EXPECT_EQ(work[BuildStep::kBvhOnce], 1u);
+  EXPECT_EQ(work[BuildStep::kBvhVertexCheck], 20u);
+  EXPECT_EQ(work[BuildStep::kBvhTriangleSurvey], 12u);
+  EXPECT_EQ(work[BuildStep::kBvhTriangleWrite], 11u);
   EXPECT_EQ(work[BuildStep::kBinUpdate], 700u);
   EXPECT_EQ(work[BuildStep::kTriangleMoved], 30u);
+  EXPECT_EQ(work[BuildStep::kTriangleHalved], 7u);
+  EXPECT_EQ(work[BuildStep::kCenterBound], 40u);
+  EXPECT_EQ(work[BuildStep::kBoxBound], 50u);
+  EXPECT_EQ(work[BuildStep::kNodeMerged], 4u);
+  EXPECT_EQ(work[BuildStep::kNodePlaced], 4u);
+  EXPECT_EQ(work[BuildStep::kNodeWritten], 4u);
+  EXPECT_EQ(work[BuildStep::kBvhFarLine], 5u + 3u + 2u + 4 * 24 * 6 / 12);
   EXPECT_EQ(work[BuildStep::kBinSwept], 480u);
   EXPECT_EQ(work[BuildStep::kNodeMade], 5u);
   EXPECT_EQ(work[BuildStep::kCellBox] + work[BuildStep::kReferenceSort] + work[BuildStep::kCheckedLine], 0u);
@@ -33,13 +47,13 @@ TEST(BvhBuildWork, SweepsOfARealTree) {
   const test::TestMesh mesh = test::make_torus(80, 40, 1.0f, 0.35f);
   const auto work_of = [&mesh](std::uint32_t bin_count, Bvh& bvh) {
     EXPECT_EQ(build_bvh(mesh.view(), {.bin_count = bin_count}, bvh), Status::kOk);
-    return bvh_build_work(mesh.view().vertices.size(), mesh.view().triangles.size(), bvh.counts);
+    return bvh_build_work(mesh.view().vertices.size(), mesh.view().triangles.size(), bvh.counts, {});
   };
   Bvh bvh, coarse;
   const sim::BuildWork work = work_of(16, bvh);
-  EXPECT_EQ(work[BuildStep::kTriangleWrite], mesh.view().triangles.size());
+  EXPECT_EQ(work[BuildStep::kBvhTriangleWrite], mesh.view().triangles.size());
   EXPECT_EQ(work[BuildStep::kNodeMade], bvh.counts.binary_nodes);
-  EXPECT_GE(work[BuildStep::kNodeMade], 2 * (work[BuildStep::kTriangleWrite] / bvh.parameters.leaf_triangles) - 1);
+  EXPECT_GE(work[BuildStep::kNodeMade], 2 * (work[BuildStep::kBvhTriangleWrite] / bvh.parameters.leaf_triangles) - 1);
   EXPECT_GE(work[BuildStep::kBinSwept], (bvh.counts.binary_nodes - bvh.counts.leaves) * 16);
   EXPECT_LE(work[BuildStep::kBinSwept], bvh.counts.binary_nodes * 3 * 2 * 16);
   EXPECT_LT(work_of(6, coarse)[BuildStep::kBinSwept], work[BuildStep::kBinSwept] / 2);

@@ -157,6 +157,9 @@ TEST(Bvh, CountsWhatABuildOfTwoTrianglesDoes) {
   EXPECT_EQ(bvh.counts.bin_updates, 2u);
   EXPECT_EQ(bvh.counts.bins_swept, 16u);
   EXPECT_EQ(bvh.counts.triangles_moved, 2u);
+  EXPECT_EQ(bvh.counts.centers_bounded, 2u);
+  EXPECT_EQ(bvh.counts.boxes_bounded, 4u);
+  EXPECT_EQ(bvh.counts.halving_steps, 0u);
   EXPECT_EQ(bvh.counts.records_written, 2u);
   EXPECT_EQ(bvh.counts.binary_nodes, 3u);
   EXPECT_EQ(bvh.counts.wide_nodes, 1u);

@@ -239,8 +239,8 @@ Writer plan_figure7(Plan& plan, const Stage& stage) {
                 "Frames a second on the chip that the paper compares itself with, no shading, the structure being "
                 "there already.");
     book.paragraph(
-        "The build is counted work, priced in cycles of the machine's one general core: the same table "
-        "prices the steps of both structures. The hierarchy takes " +
+        "The build is counted work, priced in cycles of the machine's one general core: each builder's own code, "
+        "executed through one model of that core. The hierarchy takes " +
         build_ratios.text(2) +
         " times as long to build as the grid of best. Where every frame builds its structure anew and is rendered "
         "after that, " +

@@ -89,7 +89,8 @@ std::unique_ptr<Recording> BvhSystem::record(const View& view, const FrameReques
   settings.width = request.width;
   settings.height = request.height;
   settings.shading = request.shading;
-  const sim::BuildWork build = bvh::bvh_build_work(mesh.vertices.size(), mesh.triangles.size(), bvh.counts);
+  const sim::BuildWork build =
+      bvh::bvh_build_work(mesh.vertices.size(), mesh.triangles.size(), bvh.counts, sim::count_mesh_lines(mesh.view()));
   return std::make_unique<BvhRecording>(std::move(bvh), build, settings, variant_.options);
 }
 

@@ -209,7 +209,8 @@ std::unique_ptr<Recording> GridSystem::record(const View& view, const FrameReque
   const tool::FrameMemory& frame = prepared.memory;
 
   FrameFacts facts;
-  facts.build = sim::grid_build_work(view.mesh().vertices.size(), view.mesh().triangles.size(), frame.need);
+  facts.build = sim::grid_build_work(view.mesh().vertices.size(), view.mesh().triangles.size(), frame.need,
+                                     sim::count_mesh_lines(view.mesh().view()));
   facts.traversal_steps = sum_of(result.work, {GridWork::kMacroSliceStep, GridWork::kMacroCellStep,
                                                GridWork::kSliceStep, GridWork::kCellStep, GridWork::kCellBoundStep});
   facts.intersection_tests =

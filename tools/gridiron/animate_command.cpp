@@ -123,7 +123,8 @@ void render(AnimationFrame& frame, RenderPlan plan, const ViewRequest& view, con
   const sim::ChipResult result = render_on_chip(memory, plan, {});
 
   const sim::MachineProfile& machine = *plan.scene.machine;
-  const sim::BuildWork build = sim::grid_build_work(mesh.vertices.size(), mesh.triangles.size(), memory.need);
+  const sim::BuildWork build = sim::grid_build_work(mesh.vertices.size(), mesh.triangles.size(), memory.need,
+                                                    sim::count_mesh_lines(mesh.view()));
   const sim::FrameTiming timing = sim::replay(result.trace, machine, {.core_count = plan.cores});
   frame.triangles = mesh.triangles.size();
   frame.lambda = memory.image.grid.lambda;

@@ -2,6 +2,8 @@
 // Memory: std::string. Threads: any, no shared state. SPDX-License-Identifier: Apache-2.0
 #include "report/report.h"
 
+#include <gridiron/sim/build_work.h>
+
 #include <nlohmann/json.hpp>
 #include <utility>
 
@@ -201,19 +203,11 @@ std::string_view stage_name(Stage stage) {
   static_assert(names_all(kNames));
   return name_in(kNames, stage);
 }
+// clang-format on
 
 std::string_view build_step_name(sim::BuildStep step) {
-  using enum sim::BuildStep;
-  static constexpr Name<sim::BuildStep> kNames[] = {
-      {kVertexCheck, "vertex_check"}, {kTriangleSurvey, "triangle_survey"}, {kCellBox, "cell_box"},
-      {kCellRow, "cell_row"}, {kReferenceInsert, "reference_insert"}, {kReferenceSort, "reference_sort"},
-      {kTriangleWrite, "triangle_write"}, {kProjectionSetup, "projection_setup"}, {kCellSum, "cell_sum"},
-      {kMacroWord, "macro_word"}, {kCheckedLine, "checked_line"}, {kBinUpdate, "bin_update"},
-      {kTriangleMoved, "triangle_moved"}, {kBinSwept, "bin_swept"}, {kNodeMade, "node_made"}};
-  static_assert(names_all(kNames));
-  return name_in(kNames, step);
+  return sim::name_of(step);
 }
-// clang-format on
 
 std::uint64_t image_hash(std::span<const std::uint32_t> pixels) {
   std::uint64_t hash = 0xcbf29ce484222325u;

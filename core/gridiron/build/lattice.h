@@ -43,5 +43,9 @@ struct LatticeMesh {
   LatticeVertices vertices;
   std::span<const UVec3> triangles;
 };
+template <class Mesh>
+inline constexpr bool kIsOnLattice = false;
+template <>
+inline constexpr bool kIsOnLattice<LatticeMesh> = true;
 
 }  // namespace gridiron

@@ -1,8 +1,10 @@
 // Binned build by surface area, merging of pairs to four children, layout in cache lines.
 // Memory: std::vector. Threads: any. SPDX-License-Identifier: Apache-2.0
 #include <gridiron/base/math.h>
+#include <gridiron/build/grid/build_step.h>
 #include <gridiron/build/grid/triangle_records.h>
 #include <gridiron/bvh/bvh.h>
+#include <gridiron/sim/machine_profile.h>
 
 #include <algorithm>
 #include <array>
@@ -13,6 +15,8 @@
 namespace gridiron::bvh {
 
 namespace {
+
+using sim::BuildStep;
 
 constexpr std::uint32_t kMaxBins = 64;
 constexpr std::uint32_t kMaxRecords = 1u << BvhChild::kFirstBits;
@@ -48,6 +52,11 @@ struct PairNode {
   std::uint32_t first = 0, count = 0;
 };
 
+struct Bin {
+  Box box;
+  std::uint32_t count = 0;
+};
+
 struct Split {
   bool found = false;
   int axis = 0;
@@ -62,8 +71,11 @@ class Builder {
 
   [[nodiscard]] Status build() {
     GRIDIRON_TRY(take_triangles());
+    enter_step<BuildStep::kNodeMade>();
     GRIDIRON_TRY(build_pairs());
+    enter_step<BuildStep::kNodeMerged>();
     merge_to_four();
+    enter_step<BuildStep::kNodePlaced>();
     if (is_aborted()) return Status::kAborted;
     return lay_out();
   }
@@ -72,11 +84,13 @@ class Builder {
   [[nodiscard]] bool is_aborted() const { return abort_ != nullptr && abort_->load(std::memory_order_relaxed); }
 
   [[nodiscard]] Status take_triangles() {
+    enter_step<BuildStep::kBvhVertexCheck>();
     for (const Vec3& vertex : mesh_.vertices) {
       for (int axis = 0; axis < 3; ++axis) {
         if (!std::isfinite(vertex[axis])) return Status::kBadVertex;
       }
     }
+    enter_step<BuildStep::kBvhTriangleSurvey>();
     if (mesh_.triangles.size() >= kMaxRecords) return Status::kTooManyTriangles;
     for (std::uint32_t i = 0; i < mesh_.triangles.size(); ++i) {
       const UVec3& corners = mesh_.triangles[i];
@@ -104,8 +118,10 @@ class Builder {
       std::uint32_t node, depth;
     };
     const auto count = static_cast<std::uint32_t>(boxes_.size());
+    enter_step<BuildStep::kBvhTriangleSurvey>();
     order_.resize(count);
     for (std::uint32_t i = 0; i < count; ++i) order_[i] = i;
+    enter_step<BuildStep::kNodeMade>();
     pairs_.push_back({bounds_of(0, count), 0, 0, count});
     std::vector<Open> open = {{0, 1}};
     while (!open.empty()) {
@@ -127,21 +143,30 @@ class Builder {
     return Status::kOk;
   }
 
-  [[nodiscard]] Box bounds_of(std::uint32_t first, std::uint32_t count) const {
+  [[nodiscard]] Box bounds_of(std::uint32_t first, std::uint32_t count) {
+    bvh_.counts.boxes_bounded += count;
+    enter_step<BuildStep::kBoxBound>();
     Box box;
     for (std::uint32_t i = first; i < first + count; ++i) box.grow(boxes_[order_[i]]);
+    enter_step<BuildStep::kNodeMade>();
     return box;
   }
 
   // Partitions the node's triangles. @returns how many are on the left, 0: it becomes a leaf.
   [[nodiscard]] std::uint32_t partition(const PairNode& node, std::uint32_t depth) {
     if (node.count == 1) return 0;
+    enter_step<BuildStep::kCenterBound>();
+    bvh_.counts.centers_bounded += node.count;
+    if (node.count > BuildCounts::kNearTriangles && node.count <= order_.size() / 4) {
+      bvh_.counts.far_triangles += node.count;
+    }
     Box centers;
     for (std::uint32_t i = node.first; i < node.first + node.count; ++i) {
       const Box& box = boxes_[order_[i]];
       centers.grow(Vec3(static_cast<float>(center(box, 0)), static_cast<float>(center(box, 1)),
                         static_cast<float>(center(box, 2))));
     }
+    enter_step<BuildStep::kNodeMade>();
     // The remaining depth must suffice for halving.
     const bool must_halve = depth + std::bit_width(node.count - 1) >= kMaxBvhDepth;
     const Split split = must_halve ? Split{} : best_split(node, centers);
@@ -149,15 +174,19 @@ class Builder {
       const double leaf_cost = double{parameters_.triangle_cost} * node.count * node.box.area();
       if (!split.found || split.cost >= leaf_cost) return 0;
     }
-    bvh_.counts.triangles_moved += node.count;
     const auto begin = order_.begin() + node.first;
     const auto end = begin + node.count;
     if (split.found) {
+      enter_step<BuildStep::kTriangleMoved>();
+      bvh_.counts.triangles_moved += node.count;
       const auto middle = std::stable_partition(begin, end, [&](std::uint32_t triangle) {
         return bin_of(boxes_[triangle], centers, split.axis) < split.bin;
       });
+      enter_step<BuildStep::kNodeMade>();
       return static_cast<std::uint32_t>(middle - begin);
     }
+    enter_step<BuildStep::kTriangleHalved>();
+    bvh_.counts.halving_steps += std::uint64_t{node.count} * static_cast<std::uint64_t>(std::bit_width(node.count));
     // All centres are equal, or the tree would get too deep: halves along the widest axis.
     const int axis = widest_axis(centers);
     const std::uint32_t half = node.count / 2;
@@ -168,6 +197,7 @@ class Builder {
     // nth_element leaves an order that depends on the library; a sorted one does not.
     std::sort(begin, begin + half);
     std::sort(begin + half, end);
+    enter_step<BuildStep::kNodeMade>();
     return half;
   }
 
@@ -187,43 +217,43 @@ class Builder {
   }
 
   [[nodiscard]] Split best_split(const PairNode& node, const Box& centers) {
-    struct Bin {
-      Box box;
-      std::uint32_t count = 0;
-    };
     const std::uint32_t bin_count = parameters_.bin_count;
     const bool every_axis = node.count >= parameters_.every_axis_from;
     Split best;
     for (int axis = every_axis ? 0 : widest_axis(centers); axis < 3; axis = every_axis ? axis + 1 : 3) {
       if (!(centers.high[axis] > centers.low[axis])) continue;
-      std::array<Bin, kMaxBins> bins{};
+      enter_step<BuildStep::kBinSwept>();
+      bins_.assign(bin_count, Bin{});
+      enter_step<BuildStep::kBinUpdate>();
       for (std::uint32_t i = node.first; i < node.first + node.count; ++i) {
         const Box& box = boxes_[order_[i]];
-        Bin& bin = bins[bin_of(box, centers, axis)];
+        Bin& bin = bins_[bin_of(box, centers, axis)];
         bin.box.grow(box);
         ++bin.count;
       }
+      enter_step<BuildStep::kBinSwept>();
       bvh_.counts.bin_updates += node.count;
       bvh_.counts.bins_swept += 2 * bin_count;
-      std::array<double, kMaxBins> right_cost{};
+      right_cost_.resize(bin_count);
       Box right;
       std::uint32_t right_count = 0;
       for (std::uint32_t i = bin_count - 1; i > 0; --i) {
-        right.grow(bins[i].box);
-        right_count += bins[i].count;
-        right_cost[i] = right_count == 0 ? 0.0 : right.area() * right_count;
+        right.grow(bins_[i].box);
+        right_count += bins_[i].count;
+        right_cost_[i] = right_count == 0 ? 0.0 : right.area() * right_count;
       }
       Box left;
       std::uint32_t left_count = 0;
       for (std::uint32_t i = 1; i < bin_count; ++i) {
-        left.grow(bins[i - 1].box);
-        left_count += bins[i - 1].count;
+        left.grow(bins_[i - 1].box);
+        left_count += bins_[i - 1].count;
         if (left_count == 0 || left_count == node.count) continue;
         // Two more boxes to test at each visit of the node.
         const double cost =
-            2.0 * node.box.area() + double{parameters_.triangle_cost} * (left.area() * left_count + right_cost[i]);
+            2.0 * node.box.area() + double{parameters_.triangle_cost} * (left.area() * left_count + right_cost_[i]);
         if (!best.found || cost < best.cost) best = {true, axis, i, cost};
       }
+      enter_step<BuildStep::kNodeMade>();
     }
     return best;
   }
@@ -293,8 +323,10 @@ class Builder {
       roots.insert(roots.end(), frontier.rbegin(), frontier.rend());
     }
     const std::size_t padded = (sequence.size() + line_nodes - 1) / line_nodes * line_nodes;
+    enter_step<BuildStep::kNodeWritten>();
     bvh_.nodes.assign(padded, BvhNode{});
     for (std::uint32_t i = 0; i < sequence.size(); ++i) GRIDIRON_TRY(write_node(wide_[sequence[i]], place, i));
+    enter_step<BuildStep::kNodeWritten>();
     while (bvh_.triangles.size() % parameters_.line_triangles != 0) bvh_.triangles.push_back(VertexTriangle{});
     std::copy_n(pairs_[0].box.low, 3, bvh_.low);
     std::copy_n(pairs_[0].box.high, 3, bvh_.high);
@@ -302,6 +334,7 @@ class Builder {
   }
 
   [[nodiscard]] Status write_node(const auto& wide, const std::vector<std::uint32_t>& place, std::uint32_t index) {
+    enter_step<BuildStep::kNodeWritten>();
     BvhNode& node = bvh_.nodes[index];
     node.child_count = wide.count;
     for (std::uint32_t i = 0; i < kNodeWidth; ++i) {
@@ -324,7 +357,9 @@ class Builder {
       if (bvh_.triangles.size() + child.count > kMaxRecords) return Status::kTooManyTriangles;
       node.children[i] = BvhChild::leaf(static_cast<std::uint32_t>(bvh_.triangles.size()), child.count);
       ++bvh_.counts.leaves;
+      enter_step<BuildStep::kBvhTriangleWrite>();
       for (std::uint32_t k = child.first; k < child.first + child.count; ++k) append_record(ids_[order_[k]]);
+      enter_step<BuildStep::kNodeWritten>();
     }
     return Status::kOk;
   }
@@ -359,6 +394,8 @@ class Builder {
   std::vector<Box> boxes_;            ///< of the triangles that are kept
   std::vector<std::uint32_t> ids_;    ///< their places in the mesh
   std::vector<std::uint32_t> order_;  ///< of the kept triangles
+  std::vector<Bin> bins_;             ///< of the node that is split
+  std::vector<double> right_cost_;    ///< by the first bin of the right side
   std::vector<PairNode> pairs_;
   std::vector<WideNode> wide_;
   std::vector<std::uint32_t> wide_of_pair_;
@@ -376,6 +413,7 @@ Status build_bvh(const MeshView& mesh, const BvhParameters& parameters, Bvh& bvh
       !(parameters.triangle_cost > 0.0f) || !std::isfinite(parameters.triangle_cost)) {
     return Status::kBadParameter;
   }
+  enter_step<BuildStep::kBvhOnce>();
   bvh = Bvh{};
   bvh.parameters = parameters;
   return Builder(mesh, bvh.parameters, bvh, abort).build();

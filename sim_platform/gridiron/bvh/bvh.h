@@ -30,6 +30,12 @@ struct BuildCounts {
   std::uint64_t bin_updates = 0;      ///< triangle boxes merged into bins, one per triangle, axis and split
   std::uint64_t bins_swept = 0;       ///< bins merged when splits were priced
   std::uint64_t triangles_moved = 0;  ///< places in the order written while partitioning
+  std::uint64_t halving_steps = 0;    ///< triangles of nodes that were halved, times the bits of their number
+  std::uint64_t centers_bounded = 0;  ///< triangles of nodes whose centres were bounded
+  std::uint64_t boxes_bounded = 0;    ///< triangles of all nodes of pairs
+  std::uint64_t far_triangles = 0;    ///< triangles of nodes with more than kNearTriangles and at most a quarter of all
+  static constexpr std::uint32_t kNearTriangles =
+      4096;                           ///< their boxes fit 512 KB though each lies in a line of its own
   std::uint64_t records_written = 0;  ///< triangle records
   std::uint64_t binary_nodes = 0;     ///< nodes of the tree of pairs, leaves included
   std::uint64_t wide_nodes = 0;       ///< nodes after merging to four children

@@ -9,11 +9,11 @@
 
 namespace gridiron::bvh {
 
-/// Steps of build_bvh. Work without a step of its own is left out, in the BVH's favour: bounds of centres, merging to
-/// four children and writing these nodes.
+/// Steps of build_bvh.
 ///
 /// @param vertex_count, triangle_count  of the mesh, dropped triangles included.
+/// @param lines                         of the mesh.
 [[nodiscard]] sim::BuildWork bvh_build_work(std::uint64_t vertex_count, std::uint64_t triangle_count,
-                                            const BuildCounts& counts);
+                                            const BuildCounts& counts, const sim::MeshLines& lines);
 
 }  // namespace gridiron::bvh

@@ -4,10 +4,12 @@
 
 #include <gridiron/build/grid/grid_builder.h>
 #include <gridiron/sim/machine_profile.h>
+#include <gridiron/sim/mesh_lines.h>
 
 #include <array>
 #include <cstddef>
 #include <cstdint>
+#include <string_view>
 
 namespace gridiron::sim {
 
@@ -27,7 +29,12 @@ struct BuildWork {
 ///
 /// @param vertex_count, triangle_count  of the mesh, dropped triangles included.
 /// @param need                          from count_scene_image.
-[[nodiscard]] BuildWork grid_build_work(std::uint64_t vertex_count, std::uint64_t triangle_count, const GridNeed& need);
+/// @param lines                         of the mesh.
+[[nodiscard]] BuildWork grid_build_work(std::uint64_t vertex_count, std::uint64_t triangle_count, const GridNeed& need,
+                                        const MeshLines& lines);
+
+/// @returns the stable snake_case name of a step.
+[[nodiscard]] std::string_view name_of(BuildStep step);
 
 /// @returns cycles of `master`'s clock that one core needs for `work`. Whole counts times profile values, summed in the
 /// order of BuildStep, so equal to the last digit on every host.

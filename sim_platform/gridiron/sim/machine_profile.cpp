@@ -1,5 +1,6 @@
 // The built-in machine profiles and where their figures come from.
 // Memory: constants. Threads: any. SPDX-License-Identifier: Apache-2.0
+#include <gridiron/sim/build_costs.h>
 #include <gridiron/sim/instruction_costs.h>
 #include <gridiron/sim/machine_profile.h>
 #include <gridiron/sim/work_costs.h>
@@ -25,34 +26,12 @@ constexpr std::array<double, kWorkKindCount> two_pipe_work_cycles() {
   return cycles;
 }
 
-/// The general core: 3.2 GHz, in order, two instructions a cycle at best, 512 KB of cache before the same memory.
-///
-/// ESTIMATES: instructions of the builder's loops counted by hand. The rules: an instruction costs 1.5 cycles (two
-/// sometimes issue together, results of float instructions take 10), a branch that goes either way 12 (half of 23),
-/// streamed memory half a cycle a byte (128-byte lines, 8 under way, 500 cycles each), a random line that is not cached
-/// 500, a conversion to integer 10 (through memory, 40, four in a row overlap).
+/// The general core: 3.2 GHz, in order, two instructions a cycle at best, 512 KB of cache before the same memory. Both
+/// builders' own code, executed through a model of this core; see build_costs.h.
 constexpr MasterProfile in_order_master() {
+  static_assert(kBuildCosts.size() == kBuildStepCount);
   MasterProfile master{.clock_hz = 3.2e9, .step_cycles = {}};
-  const auto set = [&master](BuildStep step, double value) {
-    master.step_cycles[static_cast<std::size_t>(step)] = value;
-  };
-  set(BuildStep::kVertexCheck, 27);       // 14 instructions; 12 bytes streamed
-  set(BuildStep::kTriangleSurvey, 140);   // 66 instructions (loads 12, checks 6, area 24, bounds 24); 12 bytes; 3
-                                          // vertices met in the cache behind the first: 35
-  set(BuildStep::kCellBox, 230);          // 78 instructions (loads 12, area 24, to cells 18, box 24); 6 conversions; a
-                                          // branch; triangle and vertices as above: 41
-  set(BuildStep::kCellRow, 100);          // 41 instructions (two edges cut, range, index); 2 conversions; 1.5 branches
-  set(BuildStep::kReferenceInsert, 36);   // 12 instructions; 12 bytes streamed out; a branch
-  set(BuildStep::kReferenceSort, 240);    // 27 instructions; 28 bytes; 3 random lines, each missed 1 time in 8
-  set(BuildStep::kTriangleWrite, 315);    // 27 instructions; 48 bytes out; 4 random lines, each missed 1 time in 8
-  set(BuildStep::kProjectionSetup, 340);  // 80 instructions; 3 divisions at 74
-  set(BuildStep::kCellSum, 21);           // 6 instructions; 8 bytes cleared, read, written
-  set(BuildStep::kMacroWord, 31);         // 18 instructions (bits counted and summed); 8 bytes
-  set(BuildStep::kCheckedLine, 370);      // 16 multiplications of 64 bits at 15; 128 bytes cleared, then read
-  set(BuildStep::kBinUpdate, 50);         // 27 instructions (bin 8, bounds 18, count 1); a conversion
-  set(BuildStep::kTriangleMoved, 65);     // 16 instructions; 28 bytes read and written; a branch
-  set(BuildStep::kBinSwept, 18);          // 12 instructions
-  set(BuildStep::kNodeMade, 272);         // the rest of a node, taken for 180 instructions: not counted one by one
+  for (std::size_t step = 0; step < kBuildCosts.size(); ++step) master.step_cycles[step] = kBuildCosts[step].cycles;
   return master;
 }
 

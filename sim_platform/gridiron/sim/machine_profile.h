@@ -3,6 +3,7 @@
 #pragma once
 
 #include <gridiron/base/work_counters.h>
+#include <gridiron/build/grid/build_step.h>
 #include <gridiron/sim/latency.h>
 
 #include <array>
@@ -13,23 +14,49 @@
 
 namespace gridiron::sim {
 
-/// Steps of building a scene's data structure that cost time on the general core, for grid and hierarchy.
+/// Steps of building a scene's data structure that cost time on the general core: those of the grid, then the
+/// hierarchy's. GridStep says what the grid's are. Steps are priced with what they need in the cache; far lines cost
+/// besides.
 enum class BuildStep : std::uint8_t {
-  kVertexCheck,      ///< vertices checked for NaN and infinity
-  kTriangleSurvey,   ///< triangles read: indices, zero area, bounds
-  kCellBox,          ///< triangles swept: zero area, box of cells, once per sweep
-  kCellRow,          ///< rows of cells met in all sweeps
-  kReferenceInsert,  ///< references listed as (cell, triangle)
-  kReferenceSort,    ///< references sorted by cell
-  kTriangleWrite,    ///< triangle records written, one a reference
-  kProjectionSetup,  ///< of these, records of the paper's projected form
-  kCellSum,          ///< cells of blocks cleared and summed
-  kMacroWord,        ///< words of the macrocell table
-  kCheckedLine,      ///< 128-byte lines of the scene image cleared and added to its check value
-  kBinUpdate,        ///< hierarchy: (triangle, axis) entered into a bin of the surface area heuristic
-  kTriangleMoved,    ///< hierarchy: triangles moved to their side of a split
-  kBinSwept,         ///< hierarchy: bins merged when the splits of a node are priced, there and back
-  kNodeMade,         ///< hierarchy: nodes of the binary tree, inner and leaf, without their sweeps
+  kBuildOnce = static_cast<std::uint8_t>(GridStep::kBuildOnce),
+  kVertexCheck = static_cast<std::uint8_t>(GridStep::kVertexCheck),
+  kTriangleSurvey = static_cast<std::uint8_t>(GridStep::kTriangleSurvey),
+  kCellBox = static_cast<std::uint8_t>(GridStep::kCellBox),
+  kCellRow = static_cast<std::uint8_t>(GridStep::kCellRow),
+  kSquareTest = static_cast<std::uint8_t>(GridStep::kSquareTest),
+  kOutline = static_cast<std::uint8_t>(GridStep::kOutline),
+  kSlabCut = static_cast<std::uint8_t>(GridStep::kSlabCut),
+  kPolygonCut = static_cast<std::uint8_t>(GridStep::kPolygonCut),
+  kPolygonRow = static_cast<std::uint8_t>(GridStep::kPolygonRow),
+  kReferenceInsert = static_cast<std::uint8_t>(GridStep::kReferenceInsert),
+  kReferenceSort = static_cast<std::uint8_t>(GridStep::kReferenceSort),
+  kTriangleWrite = static_cast<std::uint8_t>(GridStep::kTriangleWrite),
+  kProjectionSetup = static_cast<std::uint8_t>(GridStep::kProjectionSetup),
+  kCellSum = static_cast<std::uint8_t>(GridStep::kCellSum),
+  kMacroWord = static_cast<std::uint8_t>(GridStep::kMacroWord),
+  kClearedLine = static_cast<std::uint8_t>(GridStep::kClearedLine),
+  kCheckedLine = static_cast<std::uint8_t>(GridStep::kCheckedLine),
+  kLatticeSurvey = static_cast<std::uint8_t>(GridStep::kLatticeSurvey),
+  kLatticeBox = static_cast<std::uint8_t>(GridStep::kLatticeBox),
+  kLatticeSort = static_cast<std::uint8_t>(GridStep::kLatticeSort),
+  kLatticeWrite = static_cast<std::uint8_t>(GridStep::kLatticeWrite),
+  kLatticeCellSum = static_cast<std::uint8_t>(GridStep::kLatticeCellSum),
+  kFarLine = static_cast<std::uint8_t>(GridStep::kCount),  ///< grid: lines that no cache holds, met out of sequence
+  kBvhOnce,                                                ///< what is done once a build
+  kBvhVertexCheck,                                         ///< vertices checked for NaN and infinity
+  kBvhTriangleSurvey,                                      ///< triangles read: indices, zero area, bounds
+  kCenterBound,       ///< triangles of a node entered into the bounds of its triangles' centres
+  kBinUpdate,         ///< (triangle, axis) entered into a bin of the surface area heuristic
+  kBinSwept,          ///< bins merged when the splits of a node are priced, there and back
+  kTriangleMoved,     ///< triangles moved to their side of a split
+  kTriangleHalved,    ///< triangles of nodes split in halves, times the bits of their number: selected and sorted
+  kBoxBound,          ///< triangles entered into the bounds of a new node
+  kNodeMade,          ///< nodes of the binary tree, inner and leaf, without what is counted above
+  kNodeMerged,        ///< nodes of four children: merged from pairs
+  kNodePlaced,        ///< the same, laid out in cache lines
+  kNodeWritten,       ///< the same, written
+  kBvhTriangleWrite,  ///< triangle records written
+  kBvhFarLine,        ///< lines that no cache holds, met out of sequence
   kCount
 };
 /// Number of steps, of grid and hierarchy.
@@ -37,7 +64,7 @@ inline constexpr std::size_t kBuildStepCount = static_cast<std::size_t>(BuildSte
 
 /// The general core, which builds the scene image before the cores render it. One core of it works.
 struct MasterProfile {
-  double clock_hz;  ///< of the general core
+  double clock_hz;                                  ///< of the general core
   std::array<double, kBuildStepCount> step_cycles;  ///< cycles of its own clock per step, memory included
 
   /// Equal in every figure.
@@ -46,24 +73,24 @@ struct MasterProfile {
 
 /// All times in cycles of the core clock, but those of `master`.
 struct MachineProfile {
-  std::string_view name;                ///< argument of find_machine_profile
-  std::string_view description;         ///< one line for people
-  std::uint32_t core_count;             ///< accelerator cores
-  double clock_hz;                      ///< of the accelerator cores
-  std::uint64_t main_memory_bytes;      ///< shared by all cores
-  std::uint32_t local_store_bytes;      ///< of each core
-  std::uint32_t line_bytes;             ///< a transfer costs whole lines of this size
-  std::uint32_t queue_depth;            ///< commands pending per core; the kernel keeps to it, a replay of more stalls
-  std::uint32_t lines_in_flight;        ///< per core
-  double issue_cycles;                  ///< per command, on the core
-  double wait_cycles;                   ///< per wait, on the core, even when nothing is pending
-  Latency latency_cycles;               ///< from the end of a line's turn on the channel to its arrival
-  std::uint32_t latency_seed;           ///< decides which line has which, where there are several
-  double channel_bytes_per_cycle;       ///< shared by all cores
-  double core_line_interval_cycles;     ///< least distance between two lines of one core
-  double claim_cycles;                  ///< from asking for a tile to having it
+  std::string_view name;             ///< argument of find_machine_profile
+  std::string_view description;      ///< one line for people
+  std::uint32_t core_count;          ///< accelerator cores
+  double clock_hz;                   ///< of the accelerator cores
+  std::uint64_t main_memory_bytes;   ///< shared by all cores
+  std::uint32_t local_store_bytes;   ///< of each core
+  std::uint32_t line_bytes;          ///< a transfer costs whole lines of this size
+  std::uint32_t queue_depth;         ///< commands pending per core; the kernel keeps to it, a replay of more stalls
+  std::uint32_t lines_in_flight;     ///< per core
+  double issue_cycles;               ///< per command, on the core
+  double wait_cycles;                ///< per wait, on the core, even when nothing is pending
+  Latency latency_cycles;            ///< from the end of a line's turn on the channel to its arrival
+  std::uint32_t latency_seed;        ///< decides which line has which, where there are several
+  double channel_bytes_per_cycle;    ///< shared by all cores
+  double core_line_interval_cycles;  ///< least distance between two lines of one core
+  double claim_cycles;               ///< from asking for a tile to having it
   std::array<double, kWorkKindCount> work_cycles;  ///< per unit of each kind of work of core and the grid, 4 lanes
-  MasterProfile master;                 ///< builds scenes
+  MasterProfile master;                            ///< builds scenes
 
   /// Equal in every figure and name.
   bool operator==(const MachineProfile&) const = default;

@@ -1,6 +1,8 @@
 // The figures in tools/calibrate/README.md equal those of the tables. SPDX-License-Identifier: Apache-2.0
 #include <gridiron/bvh/bvh_costs.h>
 #include <gridiron/bvh/bvh_engine_work.h>
+#include <gridiron/sim/build_costs.h>
+#include <gridiron/sim/build_work.h>
 #include <gridiron/sim/work_costs.h>
 #include <report/report.h>
 
@@ -76,6 +78,28 @@ TEST(CalibrateReadme, SecondOpinionStandsBesideTheTableOfToday) {
   for (const std::string& name : apart) EXPECT_EQ(explained.count(name), 1u) << name << " has no reason";
   for (const std::string& name : explained) EXPECT_EQ(apart.count(name), 1u) << name << " is not apart";
   EXPECT_EQ(quoted_words(between(text, "Four are below 0.67", "aarch64 takes more than 1.5 times")), below);
+}
+
+// The table itself comes from tools/calibrate/general_core/run; that needs a cross compiler.
+TEST(CalibrateReadme, EveryStepOfABuildHasAPrice) {
+  static_assert(sim::kBuildCosts.size() == sim::kBuildStepCount);
+  const std::string text = readme_text();
+  const sim::MasterProfile& master = sim::find_machine_profile("cell-ps3")->master;
+  for (std::size_t i = 0; i < sim::kBuildStepCount; ++i) {
+    const std::string name(sim::name_of(static_cast<sim::BuildStep>(i)));
+    SCOPED_TRACE(name + ": run tools/calibrate/general_core/run and write the README's table anew");
+    const sim::BuildCost& cost = sim::kBuildCosts[i];
+    EXPECT_GT(cost.cycles, 0);
+    EXPECT_EQ(master.step_cycles[i], cost.cycles);
+    const std::regex row("\\| `" + name + R"(` \| ([0-9.]+) \| ([0-9.]+) \| ([0-9.]+) \| ([0-9.]+) \| ([0-9.]+) \|)");
+    std::smatch match;
+    const std::string section = between(text, "## The general core", "## Limits");
+    ASSERT_TRUE(std::regex_search(section, match, row));
+    EXPECT_NEAR(std::stod(match[1]), cost.cycles, 1e-9);
+    EXPECT_NEAR(std::stod(match[2]), cost.instructions, 1e-9);
+    EXPECT_NEAR(std::stod(match[3]), cost.branch_misses, 1e-9);
+    EXPECT_NEAR(std::stod(match[4]) + std::stod(match[5]), cost.lines, 0.0011);
+  }
 }
 
 TEST(CalibrateReadme, KindsBelowTheirLeastAreNamed) {

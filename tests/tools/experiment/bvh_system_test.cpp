@@ -39,23 +39,23 @@ TEST(BvhSystem, RendersTheGridsPicture) {
   }
 }
 
-TEST(BvhSystem, BuildIsCountedInStepsOfBothStructures) {
+TEST(BvhSystem, BuildIsCountedInStepsOfItsOwn) {
   const View knot = make_knot_view(6000);
   const FrameFacts bvh = BvhSystem(true).record(knot, kSmall)->facts();
   const FrameFacts grid = GridSystem(grid_variant("reference")).record(knot, kSmall)->facts();
-  for (const FrameFacts* facts : {&bvh, &grid}) {
-    EXPECT_EQ(facts->build[sim::BuildStep::kTriangleSurvey], 6000u);
-    EXPECT_GE(facts->build[sim::BuildStep::kTriangleWrite], 6000u);
-  }
+  EXPECT_EQ(bvh.build[sim::BuildStep::kBvhTriangleSurvey], 6000u);
+  EXPECT_EQ(bvh.build[sim::BuildStep::kBvhTriangleWrite], 6000u);
+  EXPECT_EQ(grid.build[sim::BuildStep::kTriangleSurvey], 6000u);
+  EXPECT_GE(grid.build[sim::BuildStep::kTriangleWrite], 6000u);
   EXPECT_GT(bvh.build[sim::BuildStep::kBinUpdate], 0u);
   EXPECT_GT(bvh.build[sim::BuildStep::kNodeMade], 0u);
   EXPECT_GT(bvh.build[sim::BuildStep::kBinSwept], bvh.build[sim::BuildStep::kNodeMade]);
   EXPECT_EQ(grid.build[sim::BuildStep::kBinUpdate], 0u);
   EXPECT_GT(grid.build[sim::BuildStep::kReferenceSort], 0u);
-  EXPECT_EQ(bvh.build_steps(), bvh.build[sim::BuildStep::kVertexCheck] + 6000 +
-                                   bvh.build[sim::BuildStep::kTriangleWrite] + bvh.build[sim::BuildStep::kBinUpdate] +
-                                   bvh.build[sim::BuildStep::kTriangleMoved] + bvh.build[sim::BuildStep::kBinSwept] +
-                                   bvh.build[sim::BuildStep::kNodeMade]);
+  // No step belongs to both.
+  for (std::size_t i = 0; i < sim::kBuildStepCount; ++i) {
+    EXPECT_TRUE(bvh.build.counts[i] == 0 || grid.build.counts[i] == 0) << i;
+  }
 }
 
 // The time that was kept from the first frame is that of a frame rendered anew.

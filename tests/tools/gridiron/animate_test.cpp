@@ -102,7 +102,8 @@ TEST(Animate, FramesAreThoseOfRender) {
 
     const TestMesh& mesh = i == 0 ? first : second;
     ASSERT_EQ(count_scene_image(mesh.view(), {}, need), Status::kOk);
-    const sim::BuildWork work = sim::grid_build_work(mesh.vertices.size(), mesh.triangles.size(), need);
+    const sim::BuildWork work =
+        sim::grid_build_work(mesh.vertices.size(), mesh.triangles.size(), need, sim::count_mesh_lines(mesh.view()));
     EXPECT_EQ(sim::build_cycles(sim::machine_profiles().front().master, work), std::stod(rows[i].at("build_cycles")));
   }
 }

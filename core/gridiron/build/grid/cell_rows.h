@@ -5,6 +5,8 @@
 
 #include <gridiron/base/math.h>
 #include <gridiron/base/records.h>
+#include <gridiron/build/grid/build_step.h>
+#include <gridiron/build/grid/grid_builder.h>
 
 #include <cstddef>
 #include <cstdint>
@@ -202,9 +204,10 @@ struct CellBox {
 
 /// Calls row(first_x, last_x, y, z), bounds included, for every row of cells the triangle touches; each cell once.
 ///
+/// @param cuts  adds what was cut for it.
 /// Errors: none. Cost: O(slabs in z + rows), each with at most two cuts of the outline; no memory but the stack.
 template <class Row>
-inline void for_each_cell_row(const CellBox& box, Row&& row) {
+inline void for_each_cell_row(const CellBox& box, CellCuts& cuts, Row&& row) {
   using namespace cell_rows_detail;
   const auto& p = box.p;
   const auto& first = box.first;
@@ -236,6 +239,8 @@ inline void for_each_cell_row(const CellBox& box, Row&& row) {
     }
   };
   if (!all_wide && last[slab_axis] == first[slab_axis] + 1 && last[range_axis] == first[range_axis] + 1) {
+    enter_step<GridStep::kSquareTest>();
+    ++cuts.square_count;
     const std::uint32_t touched = touched_quadrants(s, r, last[slab_axis], last[range_axis]);
     const std::int32_t from = first[range_axis];
     for (std::int32_t i = 0; i < 2; ++i) {
@@ -246,6 +251,8 @@ inline void for_each_cell_row(const CellBox& box, Row&& row) {
   }
 
   // Larger: cut the outline into slabs and take the range of r in each.
+  enter_step<GridStep::kOutline>();
+  cuts.outline_count += all_wide ? 2 : 1;
   const SortedCorners corners(s);
   const double s_middle = s[corners.middle];
   // Cuts stay on the outline, also where rounding puts a slab's plane beyond its end.
@@ -258,6 +265,8 @@ inline void for_each_cell_row(const CellBox& box, Row&& row) {
   if (!all_wide) {
     const Chains chains(corners, s, r);
     for (std::int32_t slab = first[slab_axis]; slab <= last[slab_axis]; ++slab) {
+      enter_step<GridStep::kSlabCut>();
+      ++cuts.slab_count;
       const double low = lowest_in(slab);
       const double high = highest_in(slab);
       const double start = chains.long_from(low);
@@ -276,6 +285,8 @@ inline void for_each_cell_row(const CellBox& box, Row&& row) {
   const Chains chains_y(corners, s, p[1]);
   const Chains chains_x(corners, s, p[0]);
   for (std::int32_t z = first[2]; z <= last[2]; ++z) {
+    enter_step<GridStep::kPolygonCut>();
+    ++cuts.polygon_count;
     const double low = lowest_in(z);
     const double high = highest_in(z);
     Polygon part;
@@ -308,12 +319,21 @@ inline void for_each_cell_row(const CellBox& box, Row&& row) {
     }
     part.set_slopes();
     for (std::int32_t y = rows.first; y <= rows.last; ++y) {
+      enter_step<GridStep::kPolygonRow>();
+      ++cuts.polygon_row_count;
       const Range in_row = part.range_in_slab(y - kCellPad, y + 1 + kCellPad);
       if (in_row.low > in_row.high) continue;
       const CellRange cells(in_row, first[0], last[0]);
       row(cells.first, cells.last, y, z);
     }
   }
+}
+
+/// The same for those who do not count.
+template <class Row>
+inline void for_each_cell_row(const CellBox& box, Row&& row) {
+  CellCuts cuts{};
+  for_each_cell_row(box, cuts, row);
 }
 
 }  // namespace gridiron

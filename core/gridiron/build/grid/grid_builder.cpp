@@ -2,6 +2,7 @@
 #include <gridiron/base/check_value.h>
 #include <gridiron/base/triangle_formats.h>
 #include <gridiron/build/effects/effect_sections.h>
+#include <gridiron/build/grid/build_step.h>
 #include <gridiron/build/grid/cell_rows.h>
 #include <gridiron/build/grid/grid_builder.h>
 #include <gridiron/build/grid/image_layout.h>
@@ -80,14 +81,17 @@ Status list_references(const Mesh& mesh, const GridRecord& grid, const Reference
   const std::uint64_t limit = grid.reference_count;
   std::uint64_t count = 0;
   std::uint32_t triangle_id = 0;
+  CellCuts cuts{};  // as counted
   for (const UVec3& t : mesh.triangles) {
+    enter_step<kIsOnLattice<Mesh> ? GridStep::kLatticeBox : GridStep::kCellBox>();
     const Vec3& a = mesh.vertices[t.x];
     const Vec3& b = mesh.vertices[t.y];
     const Vec3& c = mesh.vertices[t.z];
     const std::uint32_t id = triangle_id++;
     if (has_zero_area(a, b, c)) continue;
-    for_each_cell_row(CellBox::of(space, a, b, c),
+    for_each_cell_row(CellBox::of(space, a, b, c), cuts,
                       [&](std::int32_t x0, std::int32_t x1, std::int32_t y, std::int32_t z) {
+                        enter_step<GridStep::kCellRow>();
                         if (count + static_cast<std::uint64_t>(x1 - x0 + 1) > limit) {
                           count = limit + 1;
                           return;
@@ -100,6 +104,7 @@ Status list_references(const Mesh& mesh, const GridRecord& grid, const Reference
                         std::uint64_t macro_cell = macros.row_index(y, z) + macro_x;
                         std::uint32_t local_x = static_cast<std::uint32_t>(x0) - macro_x * width;
                         macro_table[macro_cell / 32].occupied |= 1u << (macro_cell % 32);
+                        enter_step<GridStep::kReferenceInsert>();
                         for (std::int32_t x = x0;; ++x) {
                           lists.keys[count] = (macro_cell << kCellBits) | (local_row + local_x);
                           lists.ids[count] = id;
@@ -119,6 +124,7 @@ Status list_references(const Mesh& mesh, const GridRecord& grid, const Reference
 
 // Gives every non-empty macrocell its block. @returns the number of blocks, including the empty one.
 std::uint64_t number_blocks(MacroTableEntry* macro_table, std::uint64_t entry_count) {
+  enter_step<GridStep::kMacroWord>();
   std::uint64_t block = 1;
   for (std::uint64_t i = 0; i < entry_count; ++i) {
     macro_table[i].first_block = static_cast<std::uint32_t>(block);
@@ -148,6 +154,7 @@ void find_cells(const GridRecord& grid, const ReferenceLists& lists, const Macro
 // Counting sort of the references by the order of cells in the blocks; stable, so ids ascend within a cell.
 void sort_references(const GridRecord& grid, const ReferenceLists& lists, const MacroTableEntry* macro_table,
                      CellRecord* cells) {
+  enter_step<GridStep::kReferenceSort>();
   const std::uint64_t count = grid.reference_count;
   const std::uint64_t records_per_block = grid.cell_block_bytes / sizeof(CellRecord);
   const std::uint64_t cells_per_block = std::uint64_t{grid.macro_width} * grid.macro_width * grid.macro_width;
@@ -155,6 +162,7 @@ void sort_references(const GridRecord& grid, const ReferenceLists& lists, const 
   for (std::uint64_t i = 0; i < count; ++i) ++cells[lists.keys[i]].triangle_count;
 
   // Turns counts into first triangles.
+  enter_step<GridStep::kCellSum>();
   std::uint32_t running = 0;
   for (std::uint64_t block = 1; block < grid.cell_block_count; ++block) {
     for (std::uint64_t cell = 0; cell < cells_per_block; ++cell) {
@@ -165,6 +173,7 @@ void sort_references(const GridRecord& grid, const ReferenceLists& lists, const 
     }
   }
 
+  enter_step<GridStep::kReferenceSort>();
   // Puts each reference into the next free place of its cell; the cell's count grows back.
   for (std::uint64_t i = 0; i < count; ++i) {
     CellRecord& record = cells[lists.keys[i]];
@@ -176,12 +185,14 @@ void sort_references(const GridRecord& grid, const ReferenceLists& lists, const 
 // holds the place of the cell's next reference, and at last the end of the cell.
 void sort_references(const GridRecord& grid, const ReferenceLists& lists, const MacroTableEntry* macro_table,
                      CellBound* bounds) {
+  enter_step<GridStep::kLatticeSort>();
   const std::uint64_t count = grid.reference_count;
   const std::uint64_t bounds_per_block = grid.cell_block_bytes / sizeof(CellBound);
   const std::uint64_t cells_per_block = std::uint64_t{grid.macro_width} * grid.macro_width * grid.macro_width;
   find_cells(grid, lists, macro_table, sizeof(CellBound));
   CellBound* const ends = bounds + 1;
   for (std::uint64_t i = 0; i < count; ++i) ++ends[lists.keys[i]].first_triangle;
+  enter_step<GridStep::kLatticeCellSum>();
   std::uint32_t running = 0;
   for (std::uint64_t block = 1; block < grid.cell_block_count; ++block) {
     bounds[block * bounds_per_block].first_triangle = running;
@@ -192,6 +203,7 @@ void sort_references(const GridRecord& grid, const ReferenceLists& lists, const 
       end.first_triangle = begin;
     }
   }
+  enter_step<GridStep::kLatticeSort>();
   for (std::uint64_t i = 0; i < count; ++i) {
     lists.ids_by_cell[ends[lists.keys[i]].first_triangle++] = lists.ids[i];
   }
@@ -219,12 +231,14 @@ void write_triangles(const Mesh& mesh, const GridRecord& grid, const std::uint32
   const std::uint64_t triangle_bytes = grid.triangle_bytes;
   std::uint64_t checked_bytes = 0;
   for (std::uint64_t i = 0; i < grid.reference_count; ++i) {
+    enter_step<kIsOnLattice<Mesh> ? GridStep::kLatticeWrite : GridStep::kTriangleWrite>();
     const std::uint32_t id = ids_by_cell[i];
     const UVec3& t = mesh.triangles[id];
     const Vec3& a = mesh.vertices[t.x];
     const Vec3& b = mesh.vertices[t.y];
     const Vec3& c = mesh.vertices[t.z];
     if (projection) {
+      enter_step<GridStep::kProjectionSetup>();
       ProjectionTriangle record;
       make_projection_triangle(a, b, c, id, record);
       store(triangles, i * triangle_bytes, record);
@@ -235,11 +249,13 @@ void write_triangles(const Mesh& mesh, const GridRecord& grid, const std::uint32
       store(triangles, i * triangle_bytes, record);
     }
     if ((i + 1) % kPieceRecords == 0) {
+      enter_step<GridStep::kCheckedLine>();
       const std::uint64_t end = (i + 1) * triangle_bytes;
       check.add({triangles + checked_bytes, static_cast<std::size_t>(end - checked_bytes)});
       checked_bytes = end;
     }
   }
+  enter_step<GridStep::kCheckedLine>();
   const std::uint64_t end = grid.reference_count * triangle_bytes;
   const std::uint64_t padded_end = round_up<std::uint64_t>(end, kLineBytes);
   clear(triangles, end, padded_end);
@@ -254,6 +270,7 @@ Status write_image(const Mesh& mesh, const GridNeed& need, const ImageLayout& la
   const GridRecord& grid = need.grid;
   std::byte* const triangles = bytes + layout.triangles_offset;
   write_directory(mesh, need, layout, bytes);
+  enter_step<GridStep::kClearedLine>();
   clear(bytes, layout.cell_blocks_offset, layout.triangles_offset);
   auto* const macro_table = reinterpret_cast<MacroTableEntry*>(bytes + layout.macro_table_offset);
   std::byte* const cells = bytes + layout.cell_blocks_offset;
@@ -267,6 +284,7 @@ Status write_image(const Mesh& mesh, const GridNeed& need, const ImageLayout& la
     sort_references(grid, lists, macro_table, reinterpret_cast<CellRecord*>(cells));
   }
 
+  enter_step<GridStep::kClearedLine>();
   check.add({bytes, static_cast<std::size_t>(layout.triangles_offset)});
   write_triangles(mesh, grid, lists.ids_by_cell, triangles, check);
   return Status::kOk;
@@ -276,6 +294,7 @@ Status write_image(const Mesh& mesh, const GridNeed& need, const ImageLayout& la
 
 Status build_scene_image(const MeshView& mesh, const GridParameters& parameters, const GridNeed& need,
                          std::span<std::byte> image, std::span<std::byte> scratch, const EffectsView* effects) {
+  enter_step<GridStep::kBuildOnce>();
   GRIDIRON_TRY(check_parameters(parameters));
   const GridRecord& grid = need.grid;
   EffectsRecord record{};
@@ -305,6 +324,7 @@ Status build_scene_image(const MeshView& mesh, const GridParameters& parameters,
     const std::uint64_t bytes = layout.effects.end_bytes - layout.effects.begin_bytes;
     check.add({image.data() + layout.effects.begin_bytes, static_cast<std::size_t>(bytes)});
   }
+  enter_step<GridStep::kBuildOnce>();
   store(image.data(), offsetof(ImageHeader, check_value), check.value());
   return Status::kOk;
 }

@@ -20,11 +20,22 @@ struct GridParameters {
   TriangleFormat format = TriangleFormat::kVertices;  ///< how triangles are stored
 };
 
+/// What had to be cut to know which cells triangles touch.
+struct CellCuts {
+  std::uint64_t square_count;       ///< triangles in 2 x 2 cells
+  std::uint64_t outline_count;      ///< outlines of larger ones
+  std::uint64_t slab_count;         ///< slabs of outlines of two axes
+  std::uint64_t polygon_count;      ///< slabs of outlines of three axes
+  std::uint64_t polygon_row_count;  ///< rows of those
+};
+
 /// Steps of counting and building that a GridNeed does not imply otherwise; a cost model multiplies them.
 struct GridSteps {
   std::uint32_t sweep_count;      ///< sweeps over all triangles that counting took, at least 1; building takes one more
   std::uint64_t swept_row_count;  ///< rows of cells that those sweeps met, as for_each_cell_row counts them
   std::uint64_t row_count;        ///< rows of cells that building will meet
+  CellCuts swept_cuts;            ///< of those sweeps
+  CellCuts cuts;                  ///< of building
 };
 
 /// What a scene image of a mesh will hold and need, counted exactly.

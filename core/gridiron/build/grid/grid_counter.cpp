@@ -1,5 +1,6 @@
 // Counting of scene images: see grid_builder.h. SPDX-License-Identifier: Apache-2.0
 #include <gridiron/base/triangle_formats.h>
+#include <gridiron/build/grid/build_step.h>
 #include <gridiron/build/grid/cell_rows.h>
 #include <gridiron/build/grid/grid_builder.h>
 #include <gridiron/build/grid/grid_resolution.h>
@@ -15,6 +16,7 @@ namespace {
 // --- The mesh, whatever the grid ----------------------------------------------------------------------------------
 
 bool all_in_range(std::span<const Vec3> vertices) {
+  enter_step<GridStep::kVertexCheck>();
   constexpr std::uint32_t kLimit = std::bit_cast<std::uint32_t>(kCoordinateLimit);  // bits grow with the magnitude
   std::uint32_t outside = 0;
   for (const Vec3& v : vertices) {
@@ -39,6 +41,7 @@ struct KeptTriangles {
 
 template <class Mesh>
 Status survey(const Mesh& mesh, KeptTriangles& kept) {
+  enter_step<kIsOnLattice<Mesh> ? GridStep::kLatticeBox : GridStep::kTriangleSurvey>();
   const std::uint64_t vertex_count = mesh.vertices.size();
   for (const UVec3& t : mesh.triangles) {
     if (t.x >= vertex_count || t.y >= vertex_count || t.z >= vertex_count) return Status::kBadIndex;
@@ -131,6 +134,7 @@ class MacroWindow {
 struct Sweep {
   std::uint64_t reference_count = 0;
   std::uint64_t row_count = 0;
+  CellCuts cuts{};
   std::uint64_t next_begin = ~std::uint64_t{0};  // no macrocell between the window's end and this one is touched
 };
 
@@ -142,6 +146,7 @@ bool sweep_window(const Mesh& mesh, const GridRecord& grid, std::uint64_t most_r
   const MacroMap macros(grid);
   const bool first_sweep = window.begin() == 0;
   for (const UVec3& t : mesh.triangles) {
+    enter_step<kIsOnLattice<Mesh> ? GridStep::kLatticeBox : GridStep::kCellBox>();
     const Vec3& a = mesh.vertices[t.x];
     const Vec3& b = mesh.vertices[t.y];
     const Vec3& c = mesh.vertices[t.z];
@@ -156,7 +161,8 @@ bool sweep_window(const Mesh& mesh, const GridRecord& grid, std::uint64_t most_r
         continue;
       }
     }
-    for_each_cell_row(box, [&](std::int32_t x0, std::int32_t x1, std::int32_t y, std::int32_t z) {
+    for_each_cell_row(box, sweep.cuts, [&](std::int32_t x0, std::int32_t x1, std::int32_t y, std::int32_t z) {
+      enter_step<GridStep::kCellRow>();
       sweep.reference_count += static_cast<std::uint64_t>(x1 - x0 + 1);
       ++sweep.row_count;
       const std::uint64_t row = macros.row_index(y, z);
@@ -169,6 +175,14 @@ bool sweep_window(const Mesh& mesh, const GridRecord& grid, std::uint64_t most_r
     if (sweep.reference_count > most_references) return false;
   }
   return true;
+}
+
+void add_cuts(const CellCuts& more, CellCuts& sum) {
+  sum.square_count += more.square_count;
+  sum.outline_count += more.outline_count;
+  sum.slab_count += more.slab_count;
+  sum.polygon_count += more.polygon_count;
+  sum.polygon_row_count += more.polygon_row_count;
 }
 
 // The inputs of a count besides the grid, and its limits.
@@ -230,6 +244,7 @@ Status count_grid(const Mesh& mesh, const Request& request, const KeptTriangles&
   GridSteps steps{};
   for (std::uint64_t begin = 0; begin != ~std::uint64_t{0};) {
     Sweep sweep;
+    enter_step<GridStep::kMacroWord>();
     window.move_to(begin);
     if (!sweep_window(mesh, grid, most_references, window, sweep)) {
       return refuse(least > sweep.reference_count ? least : sweep.reference_count);
@@ -237,10 +252,14 @@ Status count_grid(const Mesh& mesh, const Request& request, const KeptTriangles&
     if (begin == 0) {
       reference_count = sweep.reference_count;
       steps.row_count = sweep.row_count;
+      steps.cuts = sweep.cuts;
     }
     ++steps.sweep_count;
     steps.swept_row_count += sweep.row_count;
+    add_cuts(sweep.cuts, steps.swept_cuts);
+    enter_step<GridStep::kMacroWord>();
     block_count += window.size();
+    enter_step<GridStep::kBuildOnce>();
     begin = sweep.next_begin;
     if (block_count > kMaxCount) return Status::kTooManyTriangles;
     need.image_bytes = image_bytes_of(request, grid, reference_count, block_count);
@@ -260,6 +279,7 @@ Status count_grid(const Mesh& mesh, const Request& request, const KeptTriangles&
 template <class Mesh>
 Status count_mesh(const Mesh& mesh, const Request& request, const KeptTriangles& kept, GridRecord grid,
                   GridNeed& need) {
+  enter_step<GridStep::kBuildOnce>();
   if (kept.count == 0) return Status::kNoTriangles;
   float lambda = request.parameters.lambda;
   for (;;) {
@@ -279,6 +299,7 @@ Status count_geometry(const MeshView& mesh, Request request, GridNeed& need) {
   request.resolved_count = kept.count;
   if (request.parameters.format != TriangleFormat::kLattice) return count_mesh(mesh, request, kept, grid, need);
   // As many cells as without a lattice: it has fewer triangles left, not larger ones.
+  enter_step<GridStep::kLatticeSurvey>();
   GRIDIRON_TRY(find_lattice(mesh, grid.lattice));
   const LatticeMesh moved{{mesh.vertices, grid.lattice}, mesh.triangles};
   KeptTriangles moved_kept;
@@ -287,6 +308,7 @@ Status count_geometry(const MeshView& mesh, Request request, GridNeed& need) {
 }
 
 Status count_within(const MeshView& mesh, Request request, const EffectsView* effects, GridNeed& need) {
+  enter_step<GridStep::kBuildOnce>();
   GRIDIRON_TRY(check_parameters(request.parameters));
   if (effects != nullptr && !may_have_effects(request.parameters)) return Status::kBadParameter;
   if (mesh.triangles.size() > kMaxCount || mesh.vertices.size() > kMaxCount) return Status::kTooManyTriangles;
