@@ -4,7 +4,9 @@
 #include <gridiron/bvh/bvh_engine_work.h>
 #include <gridiron/bvh/bvh_renderer.h>
 
+#include <algorithm>
 #include <atomic>
+#include <bit>
 #include <numeric>
 
 #include "support/no_threads.h"
@@ -102,8 +104,9 @@ TEST(BvhRenderer, PicturesAreTheGridsBitForBit) {
   for (Scene& scene : scenes) {
     ASSERT_NO_FATAL_FAILURE(scene.prepare());
     const std::string name = "scene " + std::to_string(&scene - scenes);
-    for (const std::uint32_t packet_width : {8u, 16u}) {
+    for (const std::uint32_t packet_width : {8u, 16u, 32u}) {
       for (const bool hyper_threading : {false, true}) {
+        if (hyper_threading && ring_of(packet_width) == 1) continue;
         for (const bool use_subpackets : {false, true}) {
           scene.expect_same_picture(
               {.hyper_threading = hyper_threading, .packet_width = packet_width, .use_subpackets = use_subpackets},
@@ -124,11 +127,12 @@ TEST(BvhRenderer, PicturesOfRandomSoupsAreTheGridsBitForBit) {
                            random.between(0.1f, 1.0f)};
     Scene scene{test::make_random_soup(1 + random.below(1500), extent, seed), settings_of(camera, 90, 60)};
     scene.parameters.leaf_triangles = 1 + random.below(kMaxLeafTriangles);
-    scene.parameters.line_triangles = 8u << random.below(3);
+    scene.parameters.line_triangles = std::max(8u << random.below(3), std::bit_ceil(scene.parameters.leaf_triangles));
     ASSERT_NO_FATAL_FAILURE(scene.prepare());
     RenderOptions options;
-    options.packet_width = seed % 3 == 0 ? 8 : 16;
-    options.ring_size = 2 + random.below(options.packet_width == 8 ? 3 : 2);
+    options.packet_width = 8u << seed % 3;
+    options.hyper_threading = options.packet_width < kTileWidth;
+    options.ring_size = 2 + random.below(kMaxRing - 1);
     options.completion = static_cast<sim::Completion>(random.below(3));
     options.seed = seed;
     scene.expect_same_picture(options, "seed " + std::to_string(seed));
@@ -139,6 +143,7 @@ TEST(BvhRenderer, PicturesOfRandomSoupsAreTheGridsBitForBit) {
 TEST(BvhRenderer, FourLinesOfEachCacheAreEnough) {
   Scene scene{make_mixed_mesh(), settings_of(kMixedCamera, 150, 110)};
   scene.parameters.line_nodes = 1;
+  scene.parameters.line_triangles = kMaxLineTriangles;
   ASSERT_NO_FATAL_FAILURE(scene.prepare());
   RenderOptions options;
   options.caches = {.node_lines = 4, .triangle_lines = 4};
@@ -146,7 +151,6 @@ TEST(BvhRenderer, FourLinesOfEachCacheAreEnough) {
     options.completion = completion;
     for (const std::uint32_t ring_size : {2u, 3u, 4u}) {
       options.ring_size = ring_size;
-      options.packet_width = ring_size == 4 ? 8 : 16;
       scene.expect_same_picture(options, "ring of " + std::to_string(ring_size));
     }
     options.hyper_threading = false;
@@ -285,12 +289,14 @@ TEST(BvhRenderer, RefusesWhatItCannotRender) {
   settings = good;
   settings.camera.at = settings.camera.eye;
   EXPECT_EQ(status_of(settings, {}), Status::kBadFrame);
-  for (const std::uint32_t ring_size : {0u, 1u, kRingOf<16> + 1}) {
+  for (const std::uint32_t ring_size : {0u, 1u, ring_of(16) + 1}) {
     EXPECT_EQ(status_of(good, {.ring_size = ring_size}), Status::kBadParameter) << ring_size;
   }
-  EXPECT_EQ(status_of(good, {.ring_size = kRingOf<8>, .packet_width = 8}), Status::kOk);
-  EXPECT_EQ(status_of(good, {.ring_size = kRingOf<8> + 1, .packet_width = 8}), Status::kBadParameter);
-  for (const std::uint32_t width : {0u, 4u, 32u}) {
+  EXPECT_EQ(status_of(good, {.ring_size = ring_of(8), .packet_width = 8}), Status::kOk);
+  EXPECT_EQ(status_of(good, {.ring_size = ring_of(8) + 1, .packet_width = 8}), Status::kBadParameter);
+  EXPECT_EQ(status_of(good, {.ring_size = 2, .packet_width = 32}), Status::kBadParameter);
+  EXPECT_EQ(status_of(good, {.hyper_threading = false, .packet_width = 32}), Status::kOk);
+  for (const std::uint32_t width : {0u, 4u, 12u, 64u}) {
     EXPECT_EQ(status_of(good, {.packet_width = width}), Status::kBadParameter) << width;
   }
   for (const std::uint32_t lines : {0u, 2u, 6u, 24u, 64u, 1024u}) {

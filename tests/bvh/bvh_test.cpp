@@ -120,7 +120,9 @@ TEST(Bvh, EveryTriangleLiesInOneLeafInsideItsBoxes) {
   const BvhParameters parameters[] = {
       {},
       {.bin_count = 4, .leaf_triangles = 1, .triangle_cost = 1, .line_triangles = 2, .line_nodes = 1},
-      {.bin_count = 64, .leaf_triangles = 8, .triangle_cost = 8, .line_triangles = 16, .line_nodes = 8}};
+      {.bin_count = 64, .leaf_triangles = 8, .triangle_cost = 8, .line_triangles = 16, .line_nodes = 8},
+      {.leaf_triangles = kMaxLeafTriangles, .triangle_cost = 0.01f, .every_axis_from = 0},
+      {.line_triangles = kMaxLineTriangles, .every_axis_from = 100}};
   test::TestMesh with_empty_ones = test::make_random_soup(100, 0.2f, 5);
   with_empty_ones.append(test::make_triangle({0, 0, 0}, {1, 1, 1}, {2, 2, 2}));
   with_empty_ones.append(test::make_triangle({1, 0, 0}, {1, 0, 0}, {2, 2, 2}));
@@ -170,7 +172,9 @@ TEST(Bvh, RefusesWhatItCannotBuild) {
   Bvh bvh;
   const test::TestMesh good = test::make_triangle({0, 0, 0}, {1, 0, 0}, {0, 1, 0});
   EXPECT_EQ(build_bvh(good.view(), {.bin_count = 1}, bvh), Status::kBadParameter);
-  EXPECT_EQ(build_bvh(good.view(), {.leaf_triangles = 9, .line_triangles = 16}, bvh), Status::kBadParameter);
+  EXPECT_EQ(build_bvh(good.view(), {.leaf_triangles = kMaxLeafTriangles + 1, .line_triangles = 128}, bvh),
+            Status::kBadParameter);
+  EXPECT_EQ(build_bvh(good.view(), {.line_triangles = kMaxLineTriangles + 2}, bvh), Status::kBadParameter);
   EXPECT_EQ(build_bvh(good.view(), {.leaf_triangles = 4, .line_triangles = 2}, bvh), Status::kBadParameter);
   EXPECT_EQ(build_bvh(good.view(), {.line_triangles = 5}, bvh), Status::kBadParameter);
   EXPECT_EQ(build_bvh(good.view(), {.line_nodes = 0}, bvh), Status::kBadParameter);

@@ -137,6 +137,7 @@ TEST(PacketBounds, BoxesThatARayMeetsAreMet) {
   Tally tally;
   expect_boxes_met<8>(tally);
   expect_boxes_met<16>(tally);
+  expect_boxes_met<32>(tally);
   EXPECT_GT(tally.met, 20000u);
   EXPECT_GT(tally.mixed, 30u);
   EXPECT_GT(tally.left_out, 3 * tally.kept_in_vain);

@@ -408,7 +408,7 @@ Status build_bvh(const MeshView& mesh, const BvhParameters& parameters, Bvh& bvh
     return value >= least && value <= most;
   };
   if (!in_range(parameters.bin_count, 2, kMaxBins) || !in_range(parameters.leaf_triangles, 1, kMaxLeafTriangles) ||
-      !in_range(parameters.line_triangles, 2, 64) || parameters.line_triangles % 2 != 0 ||
+      !in_range(parameters.line_triangles, 2, kMaxLineTriangles) || parameters.line_triangles % 2 != 0 ||
       parameters.line_triangles < parameters.leaf_triangles || !in_range(parameters.line_nodes, 1, 32) ||
       !(parameters.triangle_cost > 0.0f) || !std::isfinite(parameters.triangle_cost)) {
     return Status::kBadParameter;

@@ -14,10 +14,12 @@
 
 namespace gridiron::bvh {
 
+inline constexpr std::uint32_t kMaxLineTriangles = 128;  ///< records of a cache line at most
+
 struct BvhParameters {
-  std::uint32_t bin_count = 6;        ///< per axis, 2..64
-  std::uint32_t leaf_triangles = 8;   ///< most triangles of a leaf, 1..kMaxLeafTriangles
-  float triangle_cost = 0.35f;        ///< of a test, in tests of a child's box
+  std::uint32_t bin_count = 8;        ///< per axis, 2..64
+  std::uint32_t leaf_triangles = 24;  ///< most triangles of a leaf, 1..kMaxLeafTriangles
+  float triangle_cost = 0.15f;        ///< of a test, in tests of a child's box
   std::uint32_t line_triangles = 64;  ///< records of a line of the triangle cache; a leaf lies in one line
   std::uint32_t line_nodes = 16;      ///< nodes of a line of the node cache, neighbours in the tree
   /// Nodes of so many triangles bin every axis, smaller ones the widest alone.
@@ -56,7 +58,7 @@ struct Bvh {
 /// Builds the hierarchy.
 ///
 /// @param abort  stop between two nodes when it becomes true; may be null.
-/// Errors: kBadParameter, kTooManyTriangles (2^27 records), kBadIndex, kBadVertex (not finite), kNoTriangles (none has
+/// Errors: kBadParameter, kTooManyTriangles (2^25 records), kBadIndex, kBadVertex (not finite), kNoTriangles (none has
 /// an area), kAborted. Cost: some 20 passes over the triangles.
 [[nodiscard]] Status build_bvh(const MeshView& mesh, const BvhParameters& parameters, Bvh& bvh,
                                const std::atomic<bool>* abort = nullptr);

@@ -18,6 +18,7 @@
 #include <gridiron/store/local_store.h>
 
 #include <cstdint>
+#include <type_traits>
 
 namespace gridiron::bvh {
 
@@ -29,7 +30,7 @@ namespace gridiron::bvh {
 template <class L, class Store, Platform P>
 class BvhCore {
   static constexpr std::uint32_t kWidth = Store::Layout::kPacketWidth;
-  static_assert(EdgeBatch<L>::kTriangles == 1 && (kWidth == 8 || kWidth == 16));
+  static_assert(EdgeBatch<L>::kTriangles == 1 && (kWidth == 8 || kWidth == 16 || kWidth == 32));
   static_assert(Store::Layout::kEffects == 0, "all its eye rays go through the centres of pixels");
 
  public:
@@ -63,6 +64,8 @@ class BvhCore {
   using Four = Lanes<4>;
   using StorePacket = Packet<kWidth>;
   using Context = PacketContext<kWidth>;
+  /// Subpackets of all quarters: 64 bits only where a packet has so many, since a core's words have 32.
+  using QuarterSets = std::conditional_t<(StorePacket::kSubpacketCount > 32), SubpacketSet, std::uint32_t>;
   static constexpr std::uint32_t kLogNodeBytes = 7;
   static_assert(sizeof(BvhNode) == 1u << kLogNodeBytes && kTriangleRecordBytes == 48);
   static constexpr float kLeastDirection = 0x1p-30f;
@@ -318,12 +321,13 @@ class BvhCore {
       triangle += in_batch;
       left -= in_batch;
     }
-    if (changed != 0) update_reach(context, static_cast<std::uint32_t>(changed));
+    if (changed != 0) update_reach(context, static_cast<QuarterSets>(changed));
   }
 
   // The subpackets of some quarters.
   [[nodiscard]] static SubpacketSet subpackets_of(std::uint32_t quarters) {
     if constexpr (kWidth == 8) return quarters;
+    if constexpr (kWidth == 32) return subpackets_of_squares(subpackets_of_squares(quarters));
     // Each bit becomes four.
     const std::uint32_t pairs = (quarters | quarters << 6) & 0x0303u;
     const std::uint32_t apart = (pairs | pairs << 3) & 0x1111u;
@@ -331,7 +335,7 @@ class BvhCore {
   }
 
   // The farthest of the rays' nearest hits, of all quarters. Rays beyond the picture's edge stay at t_far.
-  void update_reach(Context& context, std::uint32_t changed) {
+  void update_reach(Context& context, QuarterSets changed) {
     using Float = Four::Float;
     static constexpr std::uint32_t kQuarterRays = StorePacket::kRayCount / kQuarterCount;
     static constexpr std::uint32_t kQuarterSubpackets = StorePacket::kSubpacketCount / kQuarterCount;
@@ -400,7 +404,7 @@ struct BvhEngine {
   using Core = BvhCore<L, Store, P>;
 };
 
-/// Sizes of a 256 KB core with the cached BVH. @tparam Width  of a packet, 8 or 16.
+/// Sizes of a 256 KB core with the cached BVH. @tparam Width  of a packet, 8, 16 or 32.
 template <std::uint32_t Width>
 struct BvhLayout {
   using Engine = BvhEngine;
@@ -412,7 +416,7 @@ struct BvhLayout {
   static constexpr std::uint32_t kPacketWidth = Width;
   static constexpr std::uint32_t kMaxOutputDepth = kOutputDepth;
 };
-static_assert(kFitsArena<BvhLayout<8>> && kFitsArena<BvhLayout<16>>);
+static_assert(kFitsArena<BvhLayout<8>> && kFitsArena<BvhLayout<16>> && kFitsArena<BvhLayout<32>>);
 
 using BvhStore = LocalStore<BvhLayout<kPacketWidth>>;
 

@@ -6,9 +6,9 @@
 
 namespace gridiron::bvh {
 
-inline constexpr std::uint32_t kNodeWidth = 4;         ///< children a node has at most
-inline constexpr std::uint32_t kMaxLeafTriangles = 8;  ///< triangles a leaf has at most
-inline constexpr std::uint32_t kMaxBvhDepth = 40;      ///< nodes on any way from the root to a leaf
+inline constexpr std::uint32_t kNodeWidth = 4;          ///< children a node has at most
+inline constexpr std::uint32_t kMaxLeafTriangles = 64;  ///< triangles a leaf has at most, a power of two
+inline constexpr std::uint32_t kMaxBvhDepth = 40;       ///< nodes on any way from the root to a leaf
 /// A traversal needs no more: each node on the way leaves all children but one on the stack, the last one all.
 inline constexpr std::uint32_t kStackEntries = (kNodeWidth - 1) * kMaxBvhDepth + 4;
 
@@ -16,7 +16,7 @@ inline constexpr std::uint32_t kStackEntries = (kNodeWidth - 1) * kMaxBvhDepth +
 struct BvhChild {
   std::uint32_t bits;
 
-  static constexpr std::uint32_t kFirstBits = 27;
+  static constexpr std::uint32_t kFirstBits = 25;
   static constexpr std::uint32_t kNone = 0xFFFFFFFFu;  ///< no child
   [[nodiscard]] static constexpr BvhChild node(std::uint32_t index) { return {index}; }
   [[nodiscard]] static constexpr BvhChild leaf(std::uint32_t first, std::uint32_t count) {
@@ -25,7 +25,9 @@ struct BvhChild {
   [[nodiscard]] constexpr bool is_leaf() const { return (bits >> 31) != 0; }
   [[nodiscard]] constexpr std::uint32_t node_index() const { return bits; }
   [[nodiscard]] constexpr std::uint32_t first_triangle() const { return bits & ((1u << kFirstBits) - 1); }
-  [[nodiscard]] constexpr std::uint32_t triangle_count() const { return (bits >> kFirstBits & 0xFu) + 1; }
+  [[nodiscard]] constexpr std::uint32_t triangle_count() const {
+    return (bits >> kFirstBits & (kMaxLeafTriangles - 1)) + 1;
+  }
 };
 
 /// A stored node: the boxes of its children, side by side in lanes. 128 bytes, 128-byte aligned.

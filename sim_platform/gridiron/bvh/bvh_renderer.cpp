@@ -77,13 +77,12 @@ template <class Element>
 }
 
 [[nodiscard]] bool are_options_valid(const Bvh& bvh, const RenderOptions& options) {
-  if (options.packet_width != 8 && options.packet_width != 16) return false;
+  if (!is_packet_width(options.packet_width)) return false;
   if (!std::has_single_bit(bvh.parameters.line_nodes) || !std::has_single_bit(bvh.parameters.line_triangles)) {
     return false;
   }
   const bool ring_ok =
-      !options.hyper_threading ||
-      (options.ring_size >= 2 && options.ring_size <= (options.packet_width == 16 ? kRingOf<16> : kRingOf<8>));
+      !options.hyper_threading || (options.ring_size >= 2 && options.ring_size <= ring_of(options.packet_width));
   return ring_ok && are_caches_valid(core_settings(bvh.parameters, options)) && !bvh.nodes.empty();
 }
 
@@ -94,11 +93,18 @@ struct LeaveAtEnd {
   ~LeaveAtEnd() { order.leave(core); }
 };
 
+// Calls visit(a layout) with that of a packet width.
+template <class Visit>
+auto with_layout(std::uint32_t packet_width, Visit&& visit) {
+  if (packet_width == 8) return visit(BvhLayout<8>{});
+  return packet_width == 16 ? visit(BvhLayout<16>{}) : visit(BvhLayout<32>{});
+}
+
 // Runs one core. @returns its status, and adds its caches' counts.
-template <std::uint32_t Width>
+template <class Layout>
 [[nodiscard]] Status run_core(std::span<std::byte> data, OrderedCore& platform, MainAddress record, std::mutex& mutex,
                               BvhFrame& result) {
-  auto& store = *::new (static_cast<void*>(data.data())) LocalStore<BvhLayout<Width>>;
+  auto& store = *::new (static_cast<void*>(data.data())) LocalStore<Layout>;
   const Status status = render_tiles<Lanes<4>>(store, platform, record);
   const std::scoped_lock lock(mutex);
   result.node_cache += store.engine.node_cache.counts();
@@ -157,7 +163,9 @@ BvhFrame render_bvh_frame(const Bvh& bvh, const FrameSettings& settings, const s
   shape.cores_meet = true;
   shape.output_depth = kOutputDepth;
   shape.arena_bytes = BvhStore::Layout::kArenaBytes;
-  shape.data_bytes = options.packet_width == 16 ? sizeof(LocalStore<BvhLayout<16>>) : sizeof(LocalStore<BvhLayout<8>>);
+  shape.data_bytes = with_layout(options.packet_width, [](auto layout) {
+    return static_cast<std::uint32_t>(sizeof(LocalStore<decltype(layout)>));
+  });
   for (const sim::MemoryRegion* plane : {&parts.color, &parts.depth, &parts.ids}) {
     if (plane != &parts.color && !options.all_planes) continue;
     shape.writable.push_back({plane->address.value, plane->address.value + plane->bytes.size()});
@@ -176,8 +184,9 @@ BvhFrame render_bvh_frame(const Bvh& bvh, const FrameSettings& settings, const s
     // However this core ends, the others must not wait for its turn.
     const LeaveAtEnd leave{order, index};
     OrderedCore platform(core, index, order, CoreClock(machine, kBvhEngine, kOutputDepth), result.core_of_tile);
-    return options.packet_width == 16 ? run_core<16>(data, platform, parts.record.address, mutex, result)
-                                      : run_core<8>(data, platform, parts.record.address, mutex, result);
+    return with_layout(options.packet_width, [&](auto layout) {
+      return run_core<decltype(layout)>(data, platform, parts.record.address, mutex, result);
+    });
   });
   result.status = run.status;
   result.host_shortage = run.host_shortage;

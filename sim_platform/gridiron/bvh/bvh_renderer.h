@@ -31,7 +31,7 @@ struct RenderOptions {
   std::uint32_t core_count = 0;               ///< 0: the profile's
   bool hyper_threading = true;                ///< packets take turns; else one after another
   std::uint32_t ring_size = 3;                ///< of them, 2..kRingOf; without hyper-threading not looked at
-  std::uint32_t packet_width = kPacketWidth;  ///< 8 or 16
+  std::uint32_t packet_width = kPacketWidth;  ///< 8, 16 or 32, which has no ring
   CacheGeometry caches = {};
   bool use_subpackets = true;                            ///< cull triangles by 4x4 pixels too
   bool all_planes = false;                               ///< depth and ids beside colour

@@ -17,18 +17,26 @@ namespace gridiron::bvh {
 inline constexpr std::uint32_t kTileWidth = 32;
 inline constexpr std::uint32_t kTilePixels = kTileWidth * kTileWidth;
 inline constexpr std::uint32_t kPacketWidth = 16;  ///< of the settings that render fastest
-inline constexpr std::uint32_t kMaxRing = 4;       ///< packets of the ring
+inline constexpr std::uint32_t kMaxRing = 4;       ///< packets of the ring: a set of a cache has a way for each
 inline constexpr std::uint32_t kOutputDepth = 2;   ///< tiles in rotation
 inline constexpr std::uint32_t kMaxNodeLines = 256;
 inline constexpr std::uint32_t kMaxTriangleLines = 256;
 inline constexpr std::uint32_t kMaxLogLineNodes = 5;      ///< 32 nodes, 4 KB
-inline constexpr std::uint32_t kMaxLogLineTriangles = 6;  ///< 64 records, 3 KB
+inline constexpr std::uint32_t kMaxLogLineTriangles = 7;  ///< 128 records, 6 KB
 
-/// Packets of 16x16 rays leave less memory for caches and ring than those of 8x8.
+/// Packets of 16x16 and 32x32 rays leave less memory for caches than those of 8x8.
 template <std::uint32_t Width>
-inline constexpr std::uint32_t kCacheBytes = (Width == 16 ? 128 : 144) * 1024;
+inline constexpr std::uint32_t kCacheBytes = (Width == 8 ? 144 : 112) * 1024;
+/// Packets of the ring at most: those of a tile, if there are fewer than kMaxRing. One of 32x32 is the tile.
 template <std::uint32_t Width>
-inline constexpr std::uint32_t kRingOf = Width == 16 ? std::uint32_t{3} : kMaxRing;
+inline constexpr std::uint32_t kRingOf = Width == kTileWidth ? std::uint32_t{1} : kMaxRing;
+
+[[nodiscard]] inline bool is_packet_width(std::uint32_t width) {
+  return width == 8 || width == 16 || width == 32;
+}
+[[nodiscard]] inline std::uint32_t ring_of(std::uint32_t packet_width) {
+  return packet_width == kTileWidth ? kRingOf<kTileWidth> : kRingOf<8>;
+}
 
 // Tags by which the replay classifies waits: node lines count as cell blocks, triangle lines as triangle buffers.
 static_assert(kMaxRing <= kMacroTagCount && kMaxRing <= kTriangleTagCount && kOutputDepth <= kOutputTagCount);
@@ -36,7 +44,7 @@ static_assert(kMaxRing <= kCacheWays);
 
 /// Settings of a core; part of the frame's record. Sizes are powers of two.
 struct CoreSettings {
-  std::uint32_t packet_width;        ///< 8 or 16
+  std::uint32_t packet_width;        ///< 8, 16 or 32
   std::uint32_t ring_size;           ///< packets that take turns, 1..kRingOf<packet_width>; 1: none
   std::uint32_t node_lines;          ///< lines of the node cache, at least kCacheWays
   std::uint32_t triangle_lines;      ///< of the triangle cache
@@ -55,7 +63,7 @@ struct CoreSettings {
   if (!lines_ok(core.node_lines, kMaxNodeLines) || !lines_ok(core.triangle_lines, kMaxTriangleLines)) return false;
   const std::uint32_t node_bytes = core.node_lines * kNodeBytes << core.log_line_nodes;
   const std::uint32_t triangle_bytes = core.triangle_lines * kTriangleRecordBytes << core.log_line_triangles;
-  return node_bytes + triangle_bytes <= (core.packet_width == 16 ? kCacheBytes<16> : kCacheBytes<8>);
+  return node_bytes + triangle_bytes <= (core.packet_width == 8 ? kCacheBytes<8> : kCacheBytes<16>);
 }
 
 /// The BVH's part of a frame.
@@ -77,7 +85,7 @@ struct alignas(16) StackEntry {
 /// One packet of the ring. Its stack never overflows: kStackEntries is the bound of the deepest tree.
 template <std::uint32_t Width>
 struct alignas(128) PacketContext {
-  using StorePacket = Packet<Width, Width == 16 ? 64 : 4>;
+  using StorePacket = Packet<Width, Width == 8 ? 4 : 64>;
   StorePacket packet;
   PacketBounds<Width> bounds;
   alignas(16) float reach[kQuarterCount];  ///< per quarter, the farthest of its rays' nearest hits
