@@ -18,7 +18,6 @@ TEST(BvhBuildWork, EachCountIsAStep) {
   counts.triangles_moved = 30;
   counts.records_written = 11;
   counts.halving_steps = 7;
-  counts.centers_bounded = 40;
   counts.boxes_bounded = 50;
   counts.wide_nodes = 4;
   counts.far_triangles = 24;
@@ -31,12 +30,11 @@ TEST(BvhBuildWork, EachCountIsAStep) {
   EXPECT_EQ(work[BuildStep::kBinUpdate], 700u);
   EXPECT_EQ(work[BuildStep::kTriangleMoved], 30u);
   EXPECT_EQ(work[BuildStep::kTriangleHalved], 7u);
-  EXPECT_EQ(work[BuildStep::kCenterBound], 40u);
   EXPECT_EQ(work[BuildStep::kBoxBound], 50u);
   EXPECT_EQ(work[BuildStep::kNodeMerged], 4u);
   EXPECT_EQ(work[BuildStep::kNodePlaced], 4u);
   EXPECT_EQ(work[BuildStep::kNodeWritten], 4u);
-  EXPECT_EQ(work[BuildStep::kBvhFarLine], 5u + 3u + 2u + 4 * 24 * 6 / 12);
+  EXPECT_EQ(work[BuildStep::kBvhFarLine], 5u + 3u + 2u + 2 * 24 * 6 / 12);
   EXPECT_EQ(work[BuildStep::kBinSwept], 480u);
   EXPECT_EQ(work[BuildStep::kNodeMade], 5u);
   EXPECT_EQ(work[BuildStep::kCellBox] + work[BuildStep::kReferenceSort] + work[BuildStep::kCheckedLine], 0u);

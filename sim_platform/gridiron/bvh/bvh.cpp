@@ -43,6 +43,10 @@ struct Box {
     for (int axis = 0; axis < 3; ++axis) size[axis] = double{high[axis]} - double{low[axis]};
     return size[0] * size[1] + size[1] * size[2] + size[2] * size[0];
   }
+  [[nodiscard]] double center(int axis) const { return 0.5 * (double{low[axis]} + double{high[axis]}); }
+  [[nodiscard]] Vec3 center() const {
+    return {static_cast<float>(center(0)), static_cast<float>(center(1)), static_cast<float>(center(2))};
+  }
 };
 
 /// A node of the tree of pairs. first_child 0: a leaf with the triangles [first, first + count) of the order.
@@ -57,11 +61,36 @@ struct Bin {
   std::uint32_t count = 0;
 };
 
+/// Which bin of an axis a triangle is in, by the centre of its box.
+class Binning {
+ public:
+  Binning() = default;
+  Binning(const Box& centers, int axis, std::uint32_t bin_count)
+      : axis_(axis),
+        low_(centers.low[axis]),
+        scale_(bin_count / (double{centers.high[axis]} - low_)),
+        last_(bin_count - 1) {}
+  [[nodiscard]] std::uint32_t bin_of(const Box& box) const {
+    return static_cast<std::uint32_t>(std::clamp((box.center(axis_) - low_) * scale_, 0.0, last_));
+  }
+
+ private:
+  int axis_ = 0;
+  double low_ = 0, scale_ = 0, last_ = 0;
+};
+
 struct Split {
   bool found = false;
-  int axis = 0;
+  Binning binning;
   std::uint32_t bin = 0;  ///< the first bin of the right side
   double cost = 0;        ///< in tests of a box, times half surfaces
+  Box left, right;        ///< of the triangles of each side
+};
+
+/// A part of a node's triangles.
+struct Part {
+  std::uint32_t count = 0;
+  Box box, centers;  ///< of its triangles, and of their centres
 };
 
 class Builder {
@@ -108,97 +137,112 @@ class Builder {
     return Status::kOk;
   }
 
-  [[nodiscard]] static double center(const Box& box, int axis) {
-    return 0.5 * (double{box.low[axis]} + double{box.high[axis]});
-  }
-
   // Top down, with a list of open nodes instead of recursion.
   [[nodiscard]] Status build_pairs() {
     struct Open {
       std::uint32_t node, depth;
+      Box centers;
     };
     const auto count = static_cast<std::uint32_t>(boxes_.size());
     enter_step<BuildStep::kBvhTriangleSurvey>();
     order_.resize(count);
+    right_order_.resize(count);
     for (std::uint32_t i = 0; i < count; ++i) order_[i] = i;
     enter_step<BuildStep::kNodeMade>();
-    pairs_.push_back({bounds_of(0, count), 0, 0, count});
-    std::vector<Open> open = {{0, 1}};
+    const Part all = part_of(0, count);
+    pairs_.push_back({all.box, 0, 0, count});
+    std::vector<Open> open = {{0, 1, all.centers}};
     while (!open.empty()) {
       if (is_aborted()) return Status::kAborted;
-      const auto [index, depth] = open.back();
+      const auto [index, depth, centers] = open.back();
       open.pop_back();
       const PairNode node = pairs_[index];
-      const std::uint32_t left_count = partition(node, depth);
-      if (left_count == 0) continue;
+      Part left, right;
+      if (!partition(node, depth, centers, left, right)) continue;
       const auto first_child = static_cast<std::uint32_t>(pairs_.size());
-      const std::uint32_t middle = node.first + left_count;
       pairs_[index].first_child = first_child;
-      pairs_.push_back({bounds_of(node.first, left_count), 0, node.first, left_count});
-      pairs_.push_back({bounds_of(middle, node.count - left_count), 0, middle, node.count - left_count});
-      open.push_back({first_child + 1, depth + 1});
-      open.push_back({first_child, depth + 1});
+      pairs_.push_back({left.box, 0, node.first, left.count});
+      pairs_.push_back({right.box, 0, node.first + left.count, right.count});
+      open.push_back({first_child + 1, depth + 1, right.centers});
+      open.push_back({first_child, depth + 1, left.centers});
     }
     bvh_.counts.binary_nodes = pairs_.size();
     return Status::kOk;
   }
 
-  [[nodiscard]] Box bounds_of(std::uint32_t first, std::uint32_t count) {
+  [[nodiscard]] Part part_of(std::uint32_t first, std::uint32_t count) {
     bvh_.counts.boxes_bounded += count;
     enter_step<BuildStep::kBoxBound>();
-    Box box;
-    for (std::uint32_t i = first; i < first + count; ++i) box.grow(boxes_[order_[i]]);
+    Part part{.count = count, .box = {}, .centers = {}};
+    for (std::uint32_t i = first; i < first + count; ++i) {
+      const Box& box = boxes_[order_[i]];
+      part.box.grow(box);
+      part.centers.grow(box.center());
+    }
     enter_step<BuildStep::kNodeMade>();
-    return box;
+    return part;
   }
 
-  // Partitions the node's triangles. @returns how many are on the left, 0: it becomes a leaf.
-  [[nodiscard]] std::uint32_t partition(const PairNode& node, std::uint32_t depth) {
-    if (node.count == 1) return 0;
-    enter_step<BuildStep::kCenterBound>();
-    bvh_.counts.centers_bounded += node.count;
-    if (node.count > BuildCounts::kNearTriangles && node.count <= order_.size() / 4) {
-      bvh_.counts.far_triangles += node.count;
-    }
-    Box centers;
-    for (std::uint32_t i = node.first; i < node.first + node.count; ++i) {
-      const Box& box = boxes_[order_[i]];
-      centers.grow(Vec3(static_cast<float>(center(box, 0)), static_cast<float>(center(box, 1)),
-                        static_cast<float>(center(box, 2))));
-    }
-    enter_step<BuildStep::kNodeMade>();
+  // Partitions the node's triangles. @returns false: it becomes a leaf.
+  [[nodiscard]] bool partition(const PairNode& node, std::uint32_t depth, const Box& centers, Part& left, Part& right) {
+    if (node.count == 1) return false;
     // The remaining depth must suffice for halving.
     const bool must_halve = depth + std::bit_width(node.count - 1) >= kMaxBvhDepth;
     const Split split = must_halve ? Split{} : best_split(node, centers);
     if (node.count <= parameters_.leaf_triangles) {
       const double leaf_cost = double{parameters_.triangle_cost} * node.count * node.box.area();
-      if (!split.found || split.cost >= leaf_cost) return 0;
+      if (!split.found || split.cost >= leaf_cost) return false;
     }
-    const auto begin = order_.begin() + node.first;
-    const auto end = begin + node.count;
     if (split.found) {
-      enter_step<BuildStep::kTriangleMoved>();
-      bvh_.counts.triangles_moved += node.count;
-      const auto middle = std::stable_partition(begin, end, [&](std::uint32_t triangle) {
-        return bin_of(boxes_[triangle], centers, split.axis) < split.bin;
-      });
-      enter_step<BuildStep::kNodeMade>();
-      return static_cast<std::uint32_t>(middle - begin);
+      move_triangles(node, split, left, right);
+    } else {
+      // All centres are equal, or the tree would get too deep.
+      halve(node, widest_axis(centers));
+      left = part_of(node.first, node.count / 2);
+      right = part_of(node.first + left.count, node.count - left.count);
     }
+    return true;
+  }
+
+  // Keeps the order on each side. Boxes of the sides are known from the bins, those of their centres are not.
+  void move_triangles(const PairNode& node, const Split& split, Part& left, Part& right) {
+    enter_step<BuildStep::kTriangleMoved>();
+    bvh_.counts.triangles_moved += node.count;
+    if (node.count > BuildCounts::kNearTriangles && node.count <= order_.size() / 4) {
+      bvh_.counts.far_triangles += node.count;
+    }
+    left.box = split.left;
+    right.box = split.right;
+    std::uint32_t* const order = &order_[node.first];
+    for (std::uint32_t i = 0; i < node.count; ++i) {
+      const std::uint32_t triangle = order[i];
+      const Box& box = boxes_[triangle];
+      if (split.binning.bin_of(box) < split.bin) {
+        left.centers.grow(box.center());
+        order[left.count++] = triangle;
+      } else {
+        right.centers.grow(box.center());
+        right_order_[right.count++] = triangle;
+      }
+    }
+    std::copy_n(right_order_.begin(), right.count, order + left.count);
+    enter_step<BuildStep::kNodeMade>();
+  }
+
+  void halve(const PairNode& node, int axis) {
     enter_step<BuildStep::kTriangleHalved>();
     bvh_.counts.halving_steps += std::uint64_t{node.count} * static_cast<std::uint64_t>(std::bit_width(node.count));
-    // All centres are equal, or the tree would get too deep: halves along the widest axis.
-    const int axis = widest_axis(centers);
+    const auto begin = order_.begin() + node.first;
+    const auto end = begin + node.count;
     const std::uint32_t half = node.count / 2;
     std::nth_element(begin, begin + half, end, [&](std::uint32_t a, std::uint32_t b) {
-      const double center_a = center(boxes_[a], axis), center_b = center(boxes_[b], axis);
+      const double center_a = boxes_[a].center(axis), center_b = boxes_[b].center(axis);
       return center_a != center_b ? center_a < center_b : a < b;
     });
     // nth_element leaves an order that depends on the library; a sorted one does not.
     std::sort(begin, begin + half);
     std::sort(begin + half, end);
     enter_step<BuildStep::kNodeMade>();
-    return half;
   }
 
   [[nodiscard]] static int widest_axis(const Box& box) {
@@ -209,38 +253,31 @@ class Builder {
     return widest;
   }
 
-  [[nodiscard]] std::uint32_t bin_of(const Box& box, const Box& centers, int axis) const {
-    const double low = centers.low[axis], size = double{centers.high[axis]} - low;
-    const double place = (center(box, axis) - low) / size * parameters_.bin_count;
-    const double last = parameters_.bin_count - 1;
-    return static_cast<std::uint32_t>(std::clamp(place, 0.0, last));
-  }
-
   [[nodiscard]] Split best_split(const PairNode& node, const Box& centers) {
     const std::uint32_t bin_count = parameters_.bin_count;
     const bool every_axis = node.count >= parameters_.every_axis_from;
     Split best;
     for (int axis = every_axis ? 0 : widest_axis(centers); axis < 3; axis = every_axis ? axis + 1 : 3) {
       if (!(centers.high[axis] > centers.low[axis])) continue;
+      const Binning binning(centers, axis, bin_count);
       enter_step<BuildStep::kBinSwept>();
       bins_.assign(bin_count, Bin{});
       enter_step<BuildStep::kBinUpdate>();
       for (std::uint32_t i = node.first; i < node.first + node.count; ++i) {
         const Box& box = boxes_[order_[i]];
-        Bin& bin = bins_[bin_of(box, centers, axis)];
+        Bin& bin = bins_[binning.bin_of(box)];
         bin.box.grow(box);
         ++bin.count;
       }
       enter_step<BuildStep::kBinSwept>();
       bvh_.counts.bin_updates += node.count;
       bvh_.counts.bins_swept += 2 * bin_count;
-      right_cost_.resize(bin_count);
-      Box right;
-      std::uint32_t right_count = 0;
+      rights_.resize(bin_count);
+      Bin right;
       for (std::uint32_t i = bin_count - 1; i > 0; --i) {
-        right.grow(bins_[i].box);
-        right_count += bins_[i].count;
-        right_cost_[i] = right_count == 0 ? 0.0 : right.area() * right_count;
+        right.box.grow(bins_[i].box);
+        right.count += bins_[i].count;
+        rights_[i] = right;
       }
       Box left;
       std::uint32_t left_count = 0;
@@ -250,8 +287,9 @@ class Builder {
         if (left_count == 0 || left_count == node.count) continue;
         // Two more boxes to test at each visit of the node.
         const double cost =
-            2.0 * node.box.area() + double{parameters_.triangle_cost} * (left.area() * left_count + right_cost_[i]);
-        if (!best.found || cost < best.cost) best = {true, axis, i, cost};
+            2.0 * node.box.area() +
+            double{parameters_.triangle_cost} * (left.area() * left_count + rights_[i].box.area() * rights_[i].count);
+        if (!best.found || cost < best.cost) best = {true, binning, i, cost, left, rights_[i].box};
       }
       enter_step<BuildStep::kNodeMade>();
     }
@@ -391,11 +429,12 @@ class Builder {
   const BvhParameters& parameters_;
   Bvh& bvh_;
   const std::atomic<bool>* abort_;
-  std::vector<Box> boxes_;            ///< of the triangles that are kept
-  std::vector<std::uint32_t> ids_;    ///< their places in the mesh
-  std::vector<std::uint32_t> order_;  ///< of the kept triangles
-  std::vector<Bin> bins_;             ///< of the node that is split
-  std::vector<double> right_cost_;    ///< by the first bin of the right side
+  std::vector<Box> boxes_;                  ///< of the triangles that are kept
+  std::vector<std::uint32_t> ids_;          ///< their places in the mesh
+  std::vector<std::uint32_t> order_;        ///< of the kept triangles
+  std::vector<std::uint32_t> right_order_;  ///< of the right side, while a node's triangles are moved
+  std::vector<Bin> bins_;                   ///< of the node that is split
+  std::vector<Bin> rights_;                 ///< right sides, by their first bins
   std::vector<PairNode> pairs_;
   std::vector<WideNode> wide_;
   std::vector<std::uint32_t> wide_of_pair_;

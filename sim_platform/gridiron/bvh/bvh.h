@@ -33,8 +33,7 @@ struct BuildCounts {
   std::uint64_t bins_swept = 0;       ///< bins merged when splits were priced
   std::uint64_t triangles_moved = 0;  ///< places in the order written while partitioning
   std::uint64_t halving_steps = 0;    ///< triangles of nodes that were halved, times the bits of their number
-  std::uint64_t centers_bounded = 0;  ///< triangles of nodes whose centres were bounded
-  std::uint64_t boxes_bounded = 0;    ///< triangles of all nodes of pairs
+  std::uint64_t boxes_bounded = 0;    ///< triangles of the root and of halves, whose bounds no bins tell
   std::uint64_t far_triangles = 0;    ///< triangles of nodes with more than kNearTriangles and at most a quarter of all
   static constexpr std::uint32_t kNearTriangles =
       4096;                           ///< their boxes fit 512 KB though each lies in a line of its own

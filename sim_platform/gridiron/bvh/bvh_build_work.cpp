@@ -10,7 +10,6 @@ sim::BuildWork bvh_build_work(std::uint64_t vertex_count, std::uint64_t triangle
   work.add(BuildStep::kBvhOnce, 1);
   work.add(BuildStep::kBvhVertexCheck, vertex_count);
   work.add(BuildStep::kBvhTriangleSurvey, triangle_count);
-  work.add(BuildStep::kCenterBound, counts.centers_bounded);
   work.add(BuildStep::kBinUpdate, counts.bin_updates);
   work.add(BuildStep::kBinSwept, counts.bins_swept);
   work.add(BuildStep::kTriangleMoved, counts.triangles_moved);
@@ -22,9 +21,9 @@ sim::BuildWork bvh_build_work(std::uint64_t vertex_count, std::uint64_t triangle
   work.add(BuildStep::kNodeWritten, counts.wide_nodes);
   work.add(BuildStep::kBvhTriangleWrite, counts.records_written);
   // The survey meets vertices as the mesh has them, writing meets all by their place in space. So do, with boxes, the
-  // four passes over the triangles of a node that is neither small enough for the cache nor so large that its boxes
+  // two passes over the triangles of a node that is neither small enough for the cache nor so large that its boxes
   // still lie one behind the other.
-  constexpr std::uint64_t kPasses = 4;  // bounds, bounds of centres, bins, sides
+  constexpr std::uint64_t kPasses = 2;  // bins, sides
   const std::uint64_t far_boxes =
       triangle_count == 0 ? 0 : kPasses * counts.far_triangles * lines.boxes_in_space / triangle_count;
   work.add(BuildStep::kBvhFarLine,

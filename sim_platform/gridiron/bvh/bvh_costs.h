@@ -15,8 +15,8 @@ namespace gridiron::bvh {
 inline constexpr std::array<sim::WorkCost, kBvhWorkCount + 1> kBvhCosts = {{
     //  cycles    least     most     even  doubles      odd branches   misses
     {  317.4,   220.2,   372.3,   85.56,    0.00,   87.83,   26.80,    7.35},  // tile_start
-    {  166.5,   152.2,   286.2,  139.50,    0.00,  133.24,    2.00,    0.70},  // packet_start
-    {   46.8,    54.0,    90.0,   36.00,    0.00,   54.00,    0.00,    0.00},  // mixed_start
+    {  166.6,   152.2,   286.2,  139.50,    0.00,  133.24,    2.00,    0.70},  // packet_start
+    {   46.7,    54.0,    90.0,   36.00,    0.00,   54.00,    0.00,    0.00},  // mixed_start
     {  119.4,   111.3,   144.4,  110.00,    0.00,   32.37,    1.07,    0.07},  // node_step
     {  186.4,   177.6,   225.4,  158.00,    0.00,   47.10,    1.09,    1.09},  // mixed_node_step
     {   61.9,    36.2,    71.2,   25.96,    0.00,   27.21,    4.00,    0.50},  // children

@@ -85,7 +85,7 @@ std::string_view name_of(BuildStep step) {
       {kLatticeBox, "lattice_box"}, {kLatticeSort, "lattice_sort"}, {kLatticeWrite, "lattice_write"},
       {kLatticeCellSum, "lattice_cell_sum"}, {kFarLine, "far_line"}, {kBvhOnce, "bvh_once"},
       {kBvhVertexCheck, "bvh_vertex_check"}, {kBvhTriangleSurvey, "bvh_triangle_survey"},
-      {kCenterBound, "center_bound"}, {kBinUpdate, "bin_update"}, {kBinSwept, "bin_swept"},
+      {kBinUpdate, "bin_update"}, {kBinSwept, "bin_swept"},
       {kTriangleMoved, "triangle_moved"}, {kTriangleHalved, "triangle_halved"}, {kBoxBound, "box_bound"},
       {kNodeMade, "node_made"}, {kNodeMerged, "node_merged"}, {kNodePlaced, "node_placed"},
       {kNodeWritten, "node_written"}, {kBvhTriangleWrite, "bvh_triangle_write"}, {kBvhFarLine, "bvh_far_line"}};

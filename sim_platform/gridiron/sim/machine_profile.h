@@ -45,12 +45,11 @@ enum class BuildStep : std::uint8_t {
   kBvhOnce,                                                ///< what is done once a build
   kBvhVertexCheck,                                         ///< vertices checked for NaN and infinity
   kBvhTriangleSurvey,                                      ///< triangles read: indices, zero area, bounds
-  kCenterBound,       ///< triangles of a node entered into the bounds of its triangles' centres
   kBinUpdate,         ///< (triangle, axis) entered into a bin of the surface area heuristic
   kBinSwept,          ///< bins merged when the splits of a node are priced, there and back
-  kTriangleMoved,     ///< triangles moved to their side of a split
+  kTriangleMoved,     ///< triangles moved to their side of a split, whose bounds of centres they enter
   kTriangleHalved,    ///< triangles of nodes split in halves, times the bits of their number: selected and sorted
-  kBoxBound,          ///< triangles entered into the bounds of a new node
+  kBoxBound,          ///< triangles entered into the bounds of the root or a half: of boxes, of their centres
   kNodeMade,          ///< nodes of the binary tree, inner and leaf, without what is counted above
   kNodeMerged,        ///< nodes of four children: merged from pairs
   kNodePlaced,        ///< the same, laid out in cache lines
