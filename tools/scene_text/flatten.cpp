@@ -55,6 +55,10 @@ class Flattener {
       fail(entities_.shapes.back().line, "the scene has no triangle: none of its polygons has an area");
     }
     if (geometry.normals.empty()) geometry.triangle_normals.clear();
+    if (scene_.point_lights.empty() && scene_.area_lights.empty() && !scene_.ambient_occlusion) {
+      note(entities_.shapes.front().line,
+           "the scene has no light: surfaces show only what they reflect or let through");
+    }
     SceneRoundness& roundness = scene_.roundness;
     if (roundness.rule == ToleranceRule::kPicture && !has_coarser_) {
       roundness.rule = ToleranceRule::kDiagonal;  // the picture shows every object as fine as that

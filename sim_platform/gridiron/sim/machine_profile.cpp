@@ -148,4 +148,8 @@ const MachineProfile* find_machine_profile(std::string_view name) {
   return nullptr;
 }
 
+bool counts_instructions(const MachineProfile& machine) {
+  return machine.work_cycles == find_machine_profile("fu540")->work_cycles;
+}
+
 }  // namespace gridiron::sim

@@ -101,4 +101,7 @@ struct MachineProfile {
 /// @returns nullptr if no profile has that name.
 [[nodiscard]] const MachineProfile* find_machine_profile(std::string_view name);
 
+/// @returns whether the prices of work are instructions, as those of fu540 are, so that times are in instructions too.
+[[nodiscard]] bool counts_instructions(const MachineProfile& machine);
+
 }  // namespace gridiron::sim

@@ -84,18 +84,22 @@ TEST(Render, QuietPrintsNothing) {
   const ProgramResult loud = render(folder, {"a.ply", "--size", "8x8"});
   EXPECT_NE(loud.out.find("hash "), std::string::npos) << loud.out;
   EXPECT_EQ(loud.err, "") << "no progress bar where standard error is no terminal";
+  EXPECT_NE(loud.out.find(" cycles, "), std::string::npos) << loud.out;
+  const ProgramResult counted = render(folder, {"a.ply", "--size", "8x8", "--machine", "fu540"});
+  EXPECT_NE(counted.out.find(" instructions, "), std::string::npos) << counted.out;
+  EXPECT_EQ(counted.out.find("cycles"), std::string::npos) << counted.out;
 }
 
 TEST(Render, SaysThatNoPixelShowsTheSceneAndWhy) {
   const TemporaryFolder folder("a.ply", make_torus(40, 24, 1.0f, 0.2f));
-  folder.write("a.nff", "b 0 0 0\nf 0 0 0 0 0 0 0 0\ns 0 0 0 1\n");  // black in front of black
+  folder.write("a.nff", "b 0 0 0\nl 0 0 9\nf 0 0 0 0 0 0 0 0\ns 0 0 0 1\n");  // black in front of black
   folder.write("sky.nff",
                "v from 0 0 9 at 0 0 0 up 0 1 0 angle 40 hither 0 resolution 8 8\n"
                "e " +
                    (kScenes / "sky_px.pfm").string() + " " + (kScenes / "sky_nx.pfm").string() + " " +
                    (kScenes / "sky_py.pfm").string() + " " + (kScenes / "sky_ny.pfm").string() + " " +
                    (kScenes / "sky_pz.pfm").string() + " " + (kScenes / "sky_nz.pfm").string() +
-                   "\nf 1 1 1 1 0 0 0 0\ns 0 0 0 1\n");
+                   "\nl 0 0 9\nf 1 1 1 1 0 0 0 0\ns 0 0 0 1\n");
   const struct {
     Words view;
     std::string reason;

@@ -212,7 +212,7 @@ TEST(SceneReader, BothSidesOfASheetHaveNormals) {
 
 TEST(SceneReader, NotesWhatIsOdd) {
   const SceneDescription read = read_good(std::string(kView) +
-                                          "\nf 1 1 1 1 0 0 0 0\np 3 0 0 0 1 1 1 2 2 2\n"
+                                          " l 0 9 0\nf 1 1 1 1 0 0 0 0\np 3 0 0 0 1 1 1 2 2 2\n"
                                           "p 4 0 0 0 1 0 0 1 1 0.5 0 1 0\n" +
                                           "s 0 0 0 1");
   ASSERT_EQ(read.notes.size(), 2u);
@@ -221,7 +221,10 @@ TEST(SceneReader, NotesWhatIsOdd) {
   EXPECT_EQ(read.notes[1].line, 4u);
   EXPECT_NE(read.notes[1].text.find("polygon is not planar: a corner is 0.1"), std::string::npos) << read.notes[1].text;
   EXPECT_EQ(read.counts.non_planar_polygons, 1u);
-  std::string many(kViewAndFill);
+  const SceneDescription dark = read_good(std::string(kViewAndFill) + "s 0 0 0 1");
+  ASSERT_EQ(dark.notes.size(), 1u);
+  EXPECT_EQ(dark.notes[0].text, "the scene has no light: surfaces show only what they reflect or let through");
+  std::string many = std::string(kViewAndFill) + "l 0 9 0 ";
   for (int i = 0; i < 30; ++i) many += "p 3 0 0 0 1 1 1 2 2 2 ";
   const SceneDescription noted = read_good(many + "s 0 0 0 1");
   EXPECT_EQ(noted.notes.size(), tool::kMostSceneNotes);

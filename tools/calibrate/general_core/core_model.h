@@ -1,13 +1,13 @@
 // Model of a general core of 2006: in order, two instructions a cycle, two caches before a memory far away. Takes
 // instructions one after the other, as they were executed, and says when each leaves.
-//
+// Memory: 100 KB, the caches' tags. Threads: one a model. SPDX-License-Identifier: Apache-2.0
+#pragma once
+
 // PUBLISHED of the general core of the Cell chip, and measured on it: two instructions a cycle of different units;
 // latencies of fixed-point and float results; float divisions that hold their unit; a branch that was guessed wrong
 // takes 23 cycles; 4,096 counters of 2 bits; 32 KB 4-way and 512 KB 8-way with lines of 128 bytes; loads go on behind a
 // miss until a result is used, eight at once; the first cache writes through. ASSUMED, and marked so below: what was
-// published as a range, or not at all. Memory: 100 KB, the caches' tags. Threads: one a model. SPDX-License-Identifier:
-// Apache-2.0
-#pragma once
+// published as a range, or not at all.
 
 #include <algorithm>
 #include <array>

@@ -1,12 +1,12 @@
-// Prices of build steps from what the core model measured. Reads runs from standard input, a line each:
-//   ROLE NAME BUILDER FILE [HOST_SECONDS]
-// with FILE.steps of the model and FILE.work of the program. Writes the header to the file of its argument, and tables
-// of prices and of the check to standard output. Roles:
+// Prices of build steps from what the core model measured, by runs on standard input. Writes the header to the file of
+// its argument, tables of prices and of the check to standard output.
+// Memory: std::vector. Threads: one. SPDX-License-Identifier: Apache-2.0
+
+// A line a run: ROLE NAME BUILDER FILE [HOST_SECONDS], with FILE.steps of the model and FILE.work of the program.
 //   plain      prices every step that it has units of, by totals
 //   shuffled   the plain run of the same name and builder before it, in an order that says nothing: prices far lines
 //   special    prices the steps that no plain run has
 //   check      compared with the prices
-// Memory: std::vector. Threads: one. SPDX-License-Identifier: Apache-2.0
 #include <gridiron/sim/build_work.h>
 
 #include <array>

@@ -36,8 +36,7 @@ WorstTile find_worst_tile(const InfoPlan& plan, std::span<const std::byte> image
   worst.scene = count_tile_scene(image, view, worst.layout);
   worst.bound = worst_tile(worst.scene, worst.layout, worst.frame);
   worst.cycles = sim::worst_tile_cycles(worst.bound, *plan.scene.machine, worst.frame.output_depth);
-  const sim::MachineProfile* const counted = sim::find_machine_profile("fu540");
-  worst.are_instructions = plan.scene.machine->work_cycles == counted->work_cycles;
+  worst.are_instructions = sim::counts_instructions(*plan.scene.machine);
   return worst;
 }
 
