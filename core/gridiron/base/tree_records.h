@@ -1,0 +1,44 @@
+// The wide tree in main memory: nodes of 16 children over runs of triangle records. core/SPEC.md is the text form.
+// Memory: described, not owned. Threads: read-only during a frame. SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <gridiron/base/records.h>
+
+#include <cstdint>
+
+namespace gridiron {
+
+inline constexpr std::uint32_t kTreeWidth = 16;               ///< children of a node, at most
+inline constexpr std::uint32_t kMaxTreeDepth = 12;            ///< nodes on a path
+inline constexpr std::uint32_t kMaxTreeLeaf = 16;             ///< triangles of a leaf, at most
+inline constexpr std::uint32_t kMaxTreeTriangles = 1u << 27;  ///< records of a tree, at most
+
+/// A child of a node: another node, or a run of triangle records.
+struct TreeChild {
+  std::uint32_t bits;  ///< node: its index. leaf: bit 31, count - 1 in bits 27 to 30, first record below
+
+  static constexpr std::uint32_t kLeaf = 1u << 31;
+  [[nodiscard]] static constexpr TreeChild node(std::uint32_t index) { return {index}; }
+  [[nodiscard]] static constexpr TreeChild leaf(std::uint32_t first, std::uint32_t count) {
+    return {kLeaf | (count - 1) << 27 | first};
+  }
+  [[nodiscard]] constexpr bool is_leaf() const { return (bits & kLeaf) != 0; }
+  [[nodiscard]] constexpr std::uint32_t node_index() const { return bits; }
+  [[nodiscard]] constexpr std::uint32_t first() const { return bits & (kMaxTreeTriangles - 1); }
+  [[nodiscard]] constexpr std::uint32_t count() const { return (bits >> 27 & 15u) + 1; }
+};
+
+/// A node. Children cover its records in order, and those that are nodes come later in the section than it does, in
+/// order too. Boxes are tight: the least that hold the child's triangles.
+struct TreeNode {
+  float low[3][kTreeWidth];        ///< axis, child; of a child that is not there kFloatMax
+  float high[3][kTreeWidth];       ///< of one that is not there -kFloatMax
+  TreeChild children[kTreeWidth];  ///< of one that is not there 0
+  std::uint64_t order;             ///< 4 bits a place: which child to ask first where any hit will do, then the next;
+                                   ///< a permutation of 16, children that are not there last
+  std::uint32_t child_count;       ///< 1..kTreeWidth, at least 2 but in the root
+  std::uint32_t reserved[13];
+};
+static_assert(sizeof(TreeNode) == 4 * kLineBytes);
+
+}  // namespace gridiron

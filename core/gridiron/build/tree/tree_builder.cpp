@@ -1,0 +1,489 @@
+// Building the wide tree: see the header. SPDX-License-Identifier: Apache-2.0
+#include <gridiron/build/grid/triangle_records.h>
+#include <gridiron/build/tree/tree_builder.h>
+
+#include <bit>
+#include <cstddef>
+
+namespace gridiron {
+namespace {
+
+constexpr std::uint32_t kCodeBits = 30;      // 10 an axis
+constexpr std::uint32_t kPlaces = 1u << 10;  // of an axis, and of a digit when codes are sorted
+constexpr std::uint32_t kDigits = 3;
+
+// Equal codes of more triangles are coded again, on a lattice of their own; fewer are split by their number.
+constexpr std::uint32_t kFewTriangles = 32;
+
+// A leaf stands for more of what it holds than a node, whose triangles a ray may still miss.
+constexpr double kLeafDensity = 1.5;
+
+struct Key {
+  std::uint32_t code;  // along the Z curve
+  std::uint32_t id;    // of a triangle, or its place in a range that is sorted again
+};
+
+struct Box {
+  float low[3] = {kFloatMax, kFloatMax, kFloatMax};
+  float high[3] = {-kFloatMax, -kFloatMax, -kFloatMax};
+
+  void add(int axis, float value) {
+    low[axis] = value < low[axis] ? value : low[axis];
+    high[axis] = value > high[axis] ? value : high[axis];
+  }
+  void add(const Vec3& p) {
+    for (int axis = 0; axis < 3; ++axis) add(axis, p[axis]);
+  }
+  void add(const Box& box) {
+    for (int axis = 0; axis < 3; ++axis) {
+      low[axis] = box.low[axis] < low[axis] ? box.low[axis] : low[axis];
+      high[axis] = box.high[axis] > high[axis] ? box.high[axis] : high[axis];
+    }
+  }
+  // Twice the centre, rounded.
+  [[nodiscard]] Vec3 middle() const { return {low[0] + high[0], low[1] + high[1], low[2] + high[2]}; }
+  [[nodiscard]] double half_surface() const {
+    double size[3];
+    for (int axis = 0; axis < 3; ++axis) size[axis] = double{high[axis]} - double{low[axis]};
+    return size[0] * size[1] + size[1] * size[2] + size[2] * size[0];
+  }
+};
+
+Box box_of(const Vec3& a, const Vec3& b, const Vec3& c) {
+  Box box;
+  box.add(a);
+  box.add(b);
+  box.add(c);
+  return box;
+}
+
+double area_of(const Vec3& a, const Vec3& b, const Vec3& c) {
+  const DVec3 e = DVec3(b) - DVec3(a), f = DVec3(c) - DVec3(a);
+  const double x = e.y * f.z - e.z * f.y, y = e.z * f.x - e.x * f.z, z = e.x * f.y - e.y * f.x;
+  return 0.5 * __builtin_sqrt(x * x + y * y + z * z);
+}
+
+// The lattice of a Z curve: kPlaces along each axis of a box of middles.
+class Curve {
+ public:
+  explicit Curve(const Box& middles) {
+    for (int axis = 0; axis < 3; ++axis) {
+      low_[axis] = middles.low[axis];
+      const float extent = middles.high[axis] - middles.low[axis];
+      // The last middle falls into the last place; a smaller extent would have a scale that is no number.
+      if (extent > 0x1p-100f) {
+        scale_[axis] = 1023.9375f / extent;
+        is_flat_ = false;
+      }
+    }
+  }
+  // All triangles are at one place.
+  [[nodiscard]] bool is_flat() const { return is_flat_; }
+
+  [[nodiscard]] std::uint32_t code_of(const Vec3& middle) const {
+    std::uint32_t code = 0;
+    for (int axis = 0; axis < 3; ++axis) {
+      const float place = (middle[axis] - low_[axis]) * scale_[axis];
+      code |= spread(static_cast<std::uint32_t>(static_cast<std::int32_t>(place))) << axis;
+    }
+    return code;
+  }
+
+ private:
+  // Two zeros behind each of ten bits.
+  [[nodiscard]] static std::uint32_t spread(std::uint32_t bits) {
+    bits = (bits | bits << 16) & 0x030000FFu;
+    bits = (bits | bits << 8) & 0x0300F00Fu;
+    bits = (bits | bits << 4) & 0x030C30C3u;
+    return (bits | bits << 2) & 0x09249249u;
+  }
+
+  float low_[3], scale_[3] = {0.0f, 0.0f, 0.0f};
+  bool is_flat_ = true;
+};
+
+// Sorts keys by their codes, equal ones in the order they have. `from` is changed too.
+void sort_keys(Key* from, Key* to, std::uint32_t count, std::uint32_t* histograms) {
+  for (std::uint32_t i = 0; i < kDigits * kPlaces; ++i) histograms[i] = 0;
+  for (std::uint32_t i = 0; i < count; ++i) {
+    for (std::uint32_t digit = 0; digit < kDigits; ++digit) {
+      ++histograms[digit * kPlaces + (from[i].code >> 10 * digit) % kPlaces];
+    }
+  }
+  for (std::uint32_t digit = 0; digit < kDigits; ++digit) {
+    std::uint32_t* const places = histograms + digit * kPlaces;
+    std::uint32_t sum = 0;
+    for (std::uint32_t i = 0; i < kPlaces; ++i) {
+      const std::uint32_t here = places[i];
+      places[i] = sum;
+      sum += here;
+    }
+    for (std::uint32_t i = 0; i < count; ++i) to[places[(from[i].code >> 10 * digit) % kPlaces]++] = from[i];
+    Key* const sorted = to;
+    to = from;
+    from = sorted;
+  }
+}
+
+// What a mesh's records are.
+struct VertexForm {
+  using Record = VertexTriangle;
+
+  explicit VertexForm(const MeshView&) {}
+  static void write(const MeshView& mesh, std::uint32_t id, Record& record) {
+    const UVec3& t = mesh.triangles[id];
+    record = {};
+    for (int corner = 0; corner < 3; ++corner) {
+      const Vec3& p = mesh.vertices[t[corner]];
+      for (int axis = 0; axis < 3; ++axis) record.v[corner][axis] = p[axis];
+    }
+    record.triangle_id = id;
+  }
+  [[nodiscard]] static Vec3 corner(const Record& record, int i) {
+    return {record.v[i][0], record.v[i][1], record.v[i][2]};
+  }
+};
+
+struct LatticeForm {
+  using Record = LatticeTriangle;
+  Lattice lattice;
+
+  explicit LatticeForm(const LatticeMesh& mesh) : lattice(mesh.vertices.lattice) {}
+  void write(const LatticeMesh& mesh, std::uint32_t id, Record& record) const {
+    const UVec3& t = mesh.triangles[id];
+    record = {};
+    for (int corner = 0; corner < 3; ++corner) {
+      const LatticePoint p = lattice_point(lattice, mesh.vertices.vertices[t[corner]]);
+      for (int axis = 0; axis < 3; ++axis) record.v[corner][axis] = p.place[axis];
+    }
+    record.triangle_id = id;
+  }
+  // Exact: see Lattice.
+  [[nodiscard]] Vec3 corner(const Record& record, int i) const {
+    Vec3 p;
+    for (int axis = 0; axis < 3; ++axis) {
+      p[axis] = lattice.origin[axis] + lattice.step * static_cast<float>(std::int32_t{record.v[i][axis]});
+    }
+    return p;
+  }
+};
+
+template <class Mesh, class Form>
+class TreeBuilder {
+ public:
+  using Record = typename Form::Record;
+
+  TreeBuilder(const Mesh& mesh, std::uint32_t leaf_triangles, std::span<Record> records, std::span<TreeNode> nodes,
+              std::span<std::byte> scratch, TreeSize& size)
+      : mesh_(mesh),
+        form_(mesh),
+        leaf_triangles_(leaf_triangles),
+        records_(records),
+        nodes_(nodes),
+        keys_(reinterpret_cast<Key*>(scratch.data())),
+        spare_(keys_ + mesh.triangles.size()),
+        histograms_(reinterpret_cast<std::uint32_t*>(spare_ + mesh.triangles.size())),
+        size_(size) {}
+
+  [[nodiscard]] Status build() {
+    size_ = {};
+    Box middles;
+    GRIDIRON_TRY(take_triangles(middles));
+    const std::uint32_t count = size_.triangle_count;
+    if (count > records_.size()) return Status::kMemoryTooSmall;
+    const Curve curve(middles);
+    for (std::uint32_t i = 0; i < count; ++i) spare_[i].code = curve.code_of(box_of_id(spare_[i].id).middle());
+    sort_keys(spare_, keys_, count, histograms_);
+    for (std::uint32_t i = 0; i < count; ++i) form_.write(mesh_, keys_[i].id, records_[i]);
+    GRIDIRON_TRY(split_all(count));
+    bound_all();
+    return Status::kOk;
+  }
+
+ private:
+  struct Range {
+    std::uint32_t begin, end;
+    std::int32_t level;  // the highest bit in which codes differ, from 1; 0: they are equal; -1: a leaf
+  };
+
+  // --- Triangles --------------------------------------------------------------------------------------------------
+
+  // Checks the mesh, lists the triangles that have an area, and bounds them.
+  [[nodiscard]] Status take_triangles(Box& middles) {
+    const std::size_t vertex_count = mesh_.vertices.size();
+    for (std::size_t i = 0; i < vertex_count; ++i) {
+      const Vec3 p = mesh_.vertices[i];
+      for (int axis = 0; axis < 3; ++axis) {
+        if (!(__builtin_fabsf(p[axis]) <= kCoordinateLimit)) return Status::kBadVertex;
+      }
+    }
+    Box bounds;
+    std::uint32_t id = 0, count = 0;
+    for (const UVec3& t : mesh_.triangles) {
+      if (t.x >= vertex_count || t.y >= vertex_count || t.z >= vertex_count) return Status::kBadIndex;
+      const Vec3 a = mesh_.vertices[t.x], b = mesh_.vertices[t.y], c = mesh_.vertices[t.z];
+      const std::uint32_t here = id++;
+      if (has_zero_area(a, b, c)) continue;
+      const Box box = box_of(a, b, c);
+      bounds.add(box);
+      middles.add(box.middle());
+      spare_[count++].id = here;
+    }
+    if (count == 0) return Status::kNoTriangles;
+    size_.triangle_count = count;
+    size_.dropped_triangle_count = id - count;
+    for (int axis = 0; axis < 3; ++axis) {
+      size_.low[axis] = bounds.low[axis];
+      size_.high[axis] = bounds.high[axis];
+    }
+    return Status::kOk;
+  }
+
+  [[nodiscard]] Box box_of_id(std::uint32_t id) const {
+    const UVec3& t = mesh_.triangles[id];
+    return box_of(mesh_.vertices[t.x], mesh_.vertices[t.y], mesh_.vertices[t.z]);
+  }
+  [[nodiscard]] Box box_of_record(std::uint32_t i) const {
+    const Record& record = records_[i];
+    return box_of(form_.corner(record, 0), form_.corner(record, 1), form_.corner(record, 2));
+  }
+
+  // --- Nodes ------------------------------------------------------------------------------------------------------
+
+  [[nodiscard]] Range range_of(std::uint32_t begin, std::uint32_t end) const {
+    if (end - begin <= leaf_triangles_) return {begin, end, -1};
+    return {begin, end, static_cast<std::int32_t>(std::bit_width(keys_[begin].code ^ keys_[end - 1].code))};
+  }
+
+  // Level by level: nodes that are still to be split lie behind those that are done.
+  [[nodiscard]] Status split_all(std::uint32_t count) {
+    size_.node_count = 0;
+    GRIDIRON_TRY(append_node({0, count, 0}, 1));
+    for (std::uint32_t i = 0; i < size_.node_count; ++i) GRIDIRON_TRY(split(nodes_[i]));
+    return Status::kOk;
+  }
+
+  // Until a node is split it holds its range and its depth.
+  [[nodiscard]] Status append_node(const Range& range, std::uint32_t depth) {
+    if (size_.node_count == nodes_.size()) return Status::kMemoryTooSmall;
+    TreeNode& node = nodes_[size_.node_count++];
+    node.children[0].bits = range.begin;
+    node.children[1].bits = range.end;
+    node.children[2].bits = depth;
+    size_.depth = depth > size_.depth ? depth : size_.depth;
+    return Status::kOk;
+  }
+
+  [[nodiscard]] Status split(TreeNode& node) {
+    const std::uint32_t begin = node.children[0].bits, end = node.children[1].bits, depth = node.children[2].bits;
+    Range ranges[kTreeWidth];
+    const std::uint32_t count =
+        is_deep(end - begin, depth) ? split_by_number(begin, end, ranges) : split_by_codes(begin, end, ranges);
+    node = {};
+    node.child_count = count;
+    for (std::uint32_t i = 0; i < count; ++i) {
+      const Range& range = ranges[i];
+      if (range.level < 0) {
+        node.children[i] = TreeChild::leaf(range.begin, range.end - range.begin);
+        continue;
+      }
+      node.children[i] = TreeChild::node(size_.node_count);
+      GRIDIRON_TRY(append_node(range, depth + 1));
+    }
+    return Status::kOk;
+  }
+
+  // Whether so many triangles might not fit below a node: of d levels of nodes below it, each 16 times as many as of
+  // d - 1. Splitting them by their number makes a sixteenth of them fit a level less.
+  [[nodiscard]] bool is_deep(std::uint32_t count, std::uint32_t depth) const {
+    std::uint64_t fitting = leaf_triangles_;
+    for (std::uint32_t level = depth; level < kMaxTreeDepth && fitting < count; ++level) fitting *= kTreeWidth;
+    return count > fitting;
+  }
+
+  // Into as many parts as leaves are needed, at most 16.
+  [[nodiscard]] std::uint32_t split_by_number(std::uint32_t begin, std::uint32_t end, Range* ranges) const {
+    const std::uint64_t count = end - begin;
+    const std::uint64_t leaves = (count + leaf_triangles_ - 1) / leaf_triangles_;
+    const std::uint64_t parts = leaves < kTreeWidth ? leaves : kTreeWidth;
+    for (std::uint64_t i = 0; i < parts; ++i) {
+      ranges[i] = range_of(begin + static_cast<std::uint32_t>(count * i / parts),
+                           begin + static_cast<std::uint32_t>(count * (i + 1) / parts));
+    }
+    return static_cast<std::uint32_t>(parts);
+  }
+
+  // Splits the range with the highest differing bit, or the larger of two, until there are 16 or all are leaves.
+  [[nodiscard]] std::uint32_t split_by_codes(std::uint32_t begin, std::uint32_t end, Range* ranges) {
+    ranges[0] = range_of(begin, end);
+    std::uint32_t count = 1;
+    while (count < kTreeWidth) {
+      std::uint32_t best = 0;
+      for (std::uint32_t i = 1; i < count; ++i) {
+        const Range &a = ranges[i], &b = ranges[best];
+        if (a.level > b.level || (a.level == b.level && a.end - a.begin > b.end - b.begin)) best = i;
+      }
+      Range& chosen = ranges[best];
+      if (chosen.level < 0) break;
+      if (chosen.level == 0) {
+        code_again(chosen.begin, chosen.end);
+        chosen = range_of(chosen.begin, chosen.end);
+      }
+      const std::uint32_t middle = first_with_bit(chosen);
+      const Range left = range_of(chosen.begin, middle), right = range_of(middle, chosen.end);
+      for (std::uint32_t i = count; i > best + 1; --i) ranges[i] = ranges[i - 1];
+      ranges[best] = left;
+      ranges[best + 1] = right;
+      ++count;
+    }
+    return count;
+  }
+
+  [[nodiscard]] std::uint32_t first_with_bit(const Range& range) const {
+    const std::uint32_t bit = 1u << (range.level - 1);
+    std::uint32_t low = range.begin, high = range.end;
+    while (low < high) {
+      const std::uint32_t middle = low + (high - low) / 2;
+      if ((keys_[middle].code & bit) != 0) {
+        high = middle;
+      } else {
+        low = middle + 1;
+      }
+    }
+    return low;
+  }
+
+  // Gives triangles of one code new ones that differ, and sorts them: on a lattice around them, or by their number if
+  // they are few or all in one place.
+  void code_again(std::uint32_t begin, std::uint32_t end) {
+    const std::uint32_t count = end - begin;
+    Box middles;
+    if (count > kFewTriangles) {
+      for (std::uint32_t i = begin; i < end; ++i) middles.add(box_of_record(i).middle());
+    }
+    const Curve curve(middles);
+    Key* const keys = keys_ + begin;
+    if (count <= kFewTriangles || curve.is_flat()) {
+      for (std::uint32_t i = 0; i < count; ++i) keys[i].code = i;
+      return;
+    }
+    Key* const unsorted = spare_ + begin;
+    for (std::uint32_t i = 0; i < count; ++i) unsorted[i] = {curve.code_of(box_of_record(begin + i).middle()), i};
+    sort_keys(unsorted, keys, count, histograms_);
+    // Record i comes from keys[i].id: cycle by cycle. One that is in its place is its own.
+    Record* const records = &records_[begin];
+    for (std::uint32_t start = 0; start < count; ++start) {
+      if (keys[start].id == start) continue;
+      const Record first = records[start];
+      std::uint32_t place = start;
+      while (keys[place].id != start) {
+        const std::uint32_t from = keys[place].id;
+        records[place] = records[from];
+        keys[place].id = place;
+        place = from;
+      }
+      records[place] = first;
+      keys[place].id = place;
+    }
+  }
+
+  // --- Boxes ------------------------------------------------------------------------------------------------------
+
+  // From the last node to the first, so that children come before their parents. Codes are not needed any more.
+  void bound_all() {
+    auto* const areas = reinterpret_cast<double*>(spare_);  // by node; there are no more nodes than triangles
+    for (std::uint32_t i = size_.node_count; i-- > 0;) areas[i] = bound(nodes_[i], areas);
+  }
+
+  // @returns the area of the node's triangles.
+  [[nodiscard]] double bound(TreeNode& node, const double* areas) const {
+    double total = 0.0, densities[kTreeWidth];
+    for (std::uint32_t i = 0; i < kTreeWidth; ++i) {
+      Box box;
+      if (i < node.child_count) {
+        const TreeChild child = node.children[i];
+        double area = 0.0;
+        if (child.is_leaf()) {
+          for (std::uint32_t k = child.first(); k < child.first() + child.count(); ++k) {
+            const Record& record = records_[k];
+            const Vec3 a = form_.corner(record, 0), b = form_.corner(record, 1), c = form_.corner(record, 2);
+            box.add(box_of(a, b, c));
+            area += area_of(a, b, c);
+          }
+        } else {
+          box = box_of_node(nodes_[child.node_index()]);
+          area = areas[child.node_index()];
+        }
+        total += area;
+        densities[i] = area * (child.is_leaf() ? kLeafDensity : 1.0) / box.half_surface();
+      }
+      for (int axis = 0; axis < 3; ++axis) {
+        node.low[axis][i] = box.low[axis];
+        node.high[axis][i] = box.high[axis];
+      }
+    }
+    node.order = order_of(densities, node.child_count);
+    return total;
+  }
+
+  [[nodiscard]] static Box box_of_node(const TreeNode& node) {
+    Box box;
+    for (std::uint32_t i = 0; i < node.child_count; ++i) {
+      for (int axis = 0; axis < 3; ++axis) {
+        box.low[axis] = node.low[axis][i] < box.low[axis] ? node.low[axis][i] : box.low[axis];
+        box.high[axis] = node.high[axis][i] > box.high[axis] ? node.high[axis][i] : box.high[axis];
+      }
+    }
+    return box;
+  }
+
+  // The densest first; of equal ones the first.
+  [[nodiscard]] static std::uint64_t order_of(const double* densities, std::uint32_t count) {
+    std::uint32_t children[kTreeWidth];
+    for (std::uint32_t i = 0; i < kTreeWidth; ++i) {
+      std::uint32_t place = i;
+      if (i < count) {
+        for (; place > 0 && densities[children[place - 1]] < densities[i]; --place) {
+          children[place] = children[place - 1];
+        }
+      }
+      children[place] = i;
+    }
+    std::uint64_t order = 0;
+    for (std::uint32_t i = 0; i < kTreeWidth; ++i) order |= std::uint64_t{children[i]} << 4 * i;
+    return order;
+  }
+
+  const Mesh& mesh_;
+  Form form_;
+  std::uint32_t leaf_triangles_;
+  std::span<Record> records_;
+  std::span<TreeNode> nodes_;
+  Key* keys_;
+  Key* spare_;
+  std::uint32_t* histograms_;
+  TreeSize& size_;
+};
+
+template <class Form, class Mesh>
+Status build(const Mesh& mesh, std::uint32_t leaf_triangles, std::span<typename Form::Record> records,
+             std::span<TreeNode> nodes, std::span<std::byte> scratch, TreeSize& size) {
+  if (leaf_triangles == 0 || leaf_triangles > kMaxTreeLeaf) return Status::kBadParameter;
+  if (mesh.triangles.size() > kMaxTreeTriangles) return Status::kTooManyTriangles;
+  if (scratch.size() < tree_scratch_bytes(mesh.triangles.size())) return Status::kMemoryTooSmall;
+  return TreeBuilder<Mesh, Form>(mesh, leaf_triangles, records, nodes, scratch, size).build();
+}
+
+}  // namespace
+
+Status build_tree(const MeshView& mesh, std::uint32_t leaf_triangles, std::span<VertexTriangle> records,
+                  std::span<TreeNode> nodes, std::span<std::byte> scratch, TreeSize& size) {
+  return build<VertexForm>(mesh, leaf_triangles, records, nodes, scratch, size);
+}
+
+Status build_tree(const LatticeMesh& mesh, std::uint32_t leaf_triangles, std::span<LatticeTriangle> records,
+                  std::span<TreeNode> nodes, std::span<std::byte> scratch, TreeSize& size) {
+  return build<LatticeForm>(mesh, leaf_triangles, records, nodes, scratch, size);
+}
+
+}  // namespace gridiron
