@@ -278,12 +278,13 @@ TEST(TreeBuilder, EveryTreeOnALatticeIsSound) {
 }
 
 TEST(TreeBuilder, CrowdedCellsAreSplitByPlaceNotByNumber) {
-  // Two small tori at the ends of a long box: most triangles share two codes. Their order is random.
-  TestMesh mesh = joined(moved(make_torus(60, 40, 1.0f, 0.35f), 1e-5f),
-                         moved(make_torus(60, 40, 1.0f, 0.35f), 1e-5f, {1000, 0, 0}));
+  // Two small tori at the ends of a large box: most triangles share two codes. Their order is random.
+  const TestMesh torus = moved(make_torus(60, 40, 1.0f, 0.35f), 0x1p-16f);
+  TestMesh mesh = joined(torus, moved(torus, 1.0f, {4, 4, 4}));
   TestRandom random(5);
-  for (std::size_t i = mesh.triangles.size(); i > 1; --i)
-    std::swap(mesh.triangles[i - 1], mesh.triangles[random.next() % i]);
+  for (std::size_t i = mesh.triangles.size(); i > 1; --i) {
+    std::swap(mesh.triangles[i - 1], mesh.triangles[static_cast<std::size_t>(random.next() % i)]);
+  }
   const Tree<VertexTriangle> tree = built<VertexTriangle>(mesh.view(), 8);
   double surfaces = 0, leaves = 0;
   for (const TreeNode& node : tree.nodes) {
@@ -295,8 +296,8 @@ TEST(TreeBuilder, CrowdedCellsAreSplitByPlaceNotByNumber) {
       ++leaves;
     }
   }
-  // Each of 1,200 leaves of random triangles would have the surface of a torus, some 1e-9.
-  EXPECT_LT(surfaces, 3e-8);
+  // Each of 1,200 leaves of random triangles would have half the surface of a torus, some 6 squares of 2^-16.
+  EXPECT_LT(surfaces, 250 * 0x1p-32);
   EXPECT_LT(leaves, 9600 / 3.0);
 }
 
