@@ -16,7 +16,7 @@ constexpr std::uint32_t kDigits = 3;
 constexpr std::uint32_t kFewTriangles = 32;
 
 // A leaf stands for more of what it holds than a node, whose triangles a ray may still miss.
-constexpr double kLeafDensity = 1.5;
+constexpr float kLeafDensity = 1.5f;
 
 struct Key {
   std::uint32_t code;  // along the Z curve
@@ -40,11 +40,13 @@ struct Box {
       high[axis] = box.high[axis] > high[axis] ? box.high[axis] : high[axis];
     }
   }
-  // Twice the centre, rounded.
+  // Twice the centre, rounded; the least and the greatest that boxes inside can have.
   [[nodiscard]] Vec3 middle() const { return {low[0] + high[0], low[1] + high[1], low[2] + high[2]}; }
-  [[nodiscard]] double half_surface() const {
-    double size[3];
-    for (int axis = 0; axis < 3; ++axis) size[axis] = double{high[axis]} - double{low[axis]};
+  [[nodiscard]] Vec3 low_middle() const { return {low[0] + low[0], low[1] + low[1], low[2] + low[2]}; }
+  [[nodiscard]] Vec3 high_middle() const { return {high[0] + high[0], high[1] + high[1], high[2] + high[2]}; }
+  [[nodiscard]] float half_surface() const {
+    float size[3];
+    for (int axis = 0; axis < 3; ++axis) size[axis] = high[axis] - low[axis];
     return size[0] * size[1] + size[1] * size[2] + size[2] * size[0];
   }
 };
@@ -57,19 +59,20 @@ Box box_of(const Vec3& a, const Vec3& b, const Vec3& c) {
   return box;
 }
 
-double area_of(const Vec3& a, const Vec3& b, const Vec3& c) {
-  const DVec3 e = DVec3(b) - DVec3(a), f = DVec3(c) - DVec3(a);
-  const double x = e.y * f.z - e.z * f.y, y = e.z * f.x - e.x * f.z, z = e.x * f.y - e.y * f.x;
-  return 0.5 * __builtin_sqrt(x * x + y * y + z * z);
+// Twice the area; where floats overflow or underflow any number, as it decides an order alone.
+float area_of(const Vec3& a, const Vec3& b, const Vec3& c) {
+  const Vec3 e = b - a, f = c - a;
+  const float x = e.y * f.z - e.z * f.y, y = e.z * f.x - e.x * f.z, z = e.x * f.y - e.y * f.x;
+  return __builtin_sqrtf(x * x + y * y + z * z);
 }
 
-// The lattice of a Z curve: kPlaces along each axis of a box of middles.
+// The lattice of a Z curve: kPlaces along each axis of a range of middles.
 class Curve {
  public:
-  explicit Curve(const Box& middles) {
+  Curve(const Vec3& low, const Vec3& high) {
     for (int axis = 0; axis < 3; ++axis) {
-      low_[axis] = middles.low[axis];
-      const float extent = middles.high[axis] - middles.low[axis];
+      low_[axis] = low[axis];
+      const float extent = high[axis] - low[axis];
       // The last middle falls into the last place; a smaller extent would have a scale that is no number.
       if (extent > 0x1p-100f) {
         scale_[axis] = 1023.9375f / extent;
@@ -187,12 +190,11 @@ class TreeBuilder {
 
   [[nodiscard]] Status build() {
     size_ = {};
-    Box middles;
-    GRIDIRON_TRY(take_triangles(middles));
+    Box vertices;
+    GRIDIRON_TRY(bound_vertices(vertices));
+    GRIDIRON_TRY(take_triangles(Curve(vertices.low_middle(), vertices.high_middle())));
     const std::uint32_t count = size_.triangle_count;
     if (count > records_.size()) return Status::kMemoryTooSmall;
-    const Curve curve(middles);
-    for (std::uint32_t i = 0; i < count; ++i) spare_[i].code = curve.code_of(box_of_id(spare_[i].id).middle());
     sort_keys(spare_, keys_, count, histograms_);
     for (std::uint32_t i = 0; i < count; ++i) form_.write(mesh_, keys_[i].id, records_[i]);
     GRIDIRON_TRY(split_all(count));
@@ -208,15 +210,20 @@ class TreeBuilder {
 
   // --- Triangles --------------------------------------------------------------------------------------------------
 
-  // Checks the mesh, lists the triangles that have an area, and bounds them.
-  [[nodiscard]] Status take_triangles(Box& middles) {
+  [[nodiscard]] Status bound_vertices(Box& box) const {
     const std::size_t vertex_count = mesh_.vertices.size();
+    std::uint32_t outside = 0;
     for (std::size_t i = 0; i < vertex_count; ++i) {
       const Vec3 p = mesh_.vertices[i];
-      for (int axis = 0; axis < 3; ++axis) {
-        if (!(__builtin_fabsf(p[axis]) <= kCoordinateLimit)) return Status::kBadVertex;
-      }
+      for (int axis = 0; axis < 3; ++axis) outside |= __builtin_fabsf(p[axis]) <= kCoordinateLimit ? 0u : 1u;
+      box.add(p);
     }
+    return outside == 0 ? Status::kOk : Status::kBadVertex;
+  }
+
+  // Lists the triangles that have an area, with their codes, and bounds them.
+  [[nodiscard]] Status take_triangles(const Curve& curve) {
+    const std::size_t vertex_count = mesh_.vertices.size();
     Box bounds;
     std::uint32_t id = 0, count = 0;
     for (const UVec3& t : mesh_.triangles) {
@@ -226,8 +233,7 @@ class TreeBuilder {
       if (has_zero_area(a, b, c)) continue;
       const Box box = box_of(a, b, c);
       bounds.add(box);
-      middles.add(box.middle());
-      spare_[count++].id = here;
+      spare_[count++] = {curve.code_of(box.middle()), here};
     }
     if (count == 0) return Status::kNoTriangles;
     size_.triangle_count = count;
@@ -239,10 +245,6 @@ class TreeBuilder {
     return Status::kOk;
   }
 
-  [[nodiscard]] Box box_of_id(std::uint32_t id) const {
-    const UVec3& t = mesh_.triangles[id];
-    return box_of(mesh_.vertices[t.x], mesh_.vertices[t.y], mesh_.vertices[t.z]);
-  }
   [[nodiscard]] Box box_of_record(std::uint32_t i) const {
     const Record& record = records_[i];
     return box_of(form_.corner(record, 0), form_.corner(record, 1), form_.corner(record, 2));
@@ -361,7 +363,8 @@ class TreeBuilder {
     if (count > kFewTriangles) {
       for (std::uint32_t i = begin; i < end; ++i) middles.add(box_of_record(i).middle());
     }
-    const Curve curve(middles);
+    const Curve curve({middles.low[0], middles.low[1], middles.low[2]},
+                      {middles.high[0], middles.high[1], middles.high[2]});
     Key* const keys = keys_ + begin;
     if (count <= kFewTriangles || curve.is_flat()) {
       for (std::uint32_t i = 0; i < count; ++i) keys[i].code = i;
@@ -391,18 +394,18 @@ class TreeBuilder {
 
   // From the last node to the first, so that children come before their parents. Codes are not needed any more.
   void bound_all() {
-    auto* const areas = reinterpret_cast<double*>(spare_);  // by node; there are no more nodes than triangles
+    auto* const areas = reinterpret_cast<float*>(spare_);  // by node; there are no more nodes than triangles
     for (std::uint32_t i = size_.node_count; i-- > 0;) areas[i] = bound(nodes_[i], areas);
   }
 
   // @returns the area of the node's triangles.
-  [[nodiscard]] double bound(TreeNode& node, const double* areas) const {
-    double total = 0.0, densities[kTreeWidth];
+  [[nodiscard]] float bound(TreeNode& node, const float* areas) const {
+    float total = 0.0f, densities[kTreeWidth];
     for (std::uint32_t i = 0; i < kTreeWidth; ++i) {
       Box box;
       if (i < node.child_count) {
         const TreeChild child = node.children[i];
-        double area = 0.0;
+        float area = 0.0f;
         if (child.is_leaf()) {
           for (std::uint32_t k = child.first(); k < child.first() + child.count(); ++k) {
             const Record& record = records_[k];
@@ -415,7 +418,7 @@ class TreeBuilder {
           area = areas[child.node_index()];
         }
         total += area;
-        densities[i] = area * (child.is_leaf() ? kLeafDensity : 1.0) / box.half_surface();
+        densities[i] = area * (child.is_leaf() ? kLeafDensity : 1.0f) / box.half_surface();
       }
       for (int axis = 0; axis < 3; ++axis) {
         node.low[axis][i] = box.low[axis];
@@ -438,7 +441,7 @@ class TreeBuilder {
   }
 
   // The densest first; of equal ones the first.
-  [[nodiscard]] static std::uint64_t order_of(const double* densities, std::uint32_t count) {
+  [[nodiscard]] static std::uint64_t order_of(const float* densities, std::uint32_t count) {
     std::uint32_t children[kTreeWidth];
     for (std::uint32_t i = 0; i < kTreeWidth; ++i) {
       std::uint32_t place = i;
