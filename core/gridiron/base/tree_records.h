@@ -30,7 +30,7 @@ struct TreeChild {
 
 /// A node. Children cover its records in order, and those that are nodes come later in the section than it does, in
 /// order too. Boxes are tight: the least that hold the child's triangles.
-struct TreeNode {
+struct alignas(kLineBytes) TreeNode {
   float low[3][kTreeWidth];        ///< axis, child; of a child that is not there kFloatMax
   float high[3][kTreeWidth];       ///< of one that is not there -kFloatMax
   TreeChild children[kTreeWidth];  ///< of one that is not there 0
