@@ -109,6 +109,20 @@ TEST(PipeModel, MissIsChargedToTheWorkBehindIt) {
   EXPECT_EQ(misses_of(Work::kWait), std::pair(std::uint64_t{1}, std::uint64_t{0}));
 }
 
+// A unit without operations of its own takes the miss before it, or its successor would.
+TEST(PipeModel, MissIsChargedToAUnitThatIsOnlyABranch) {
+  const Branches branches = taken_branch();
+  PipeModel model(&branches);
+  model.add_units(GridWork::kCellStep, 1);
+  model.branch(kSite, false, 0);
+  model.add_units(GridWork::kCellVisit, 1);
+  model.add_units(GridWork::kMacroRow, 1);
+  (void)model.emit(OpClass::kFixed, 1);
+  const Totals totals = model.finish().totals;
+  EXPECT_EQ(totals[WorkId(GridWork::kCellVisit).number()].misses, 1u);
+  EXPECT_EQ(totals[WorkId(GridWork::kMacroRow).number()].misses, 0u);
+}
+
 double cycles_under(const PipeRules& rules, const auto& run) {
   const Branches branches = taken_branch();
   PipeModel model(&branches, rules);
