@@ -36,6 +36,13 @@ TEST_F(PipeModelTest, ChainWaitsForEachResult) {
   EXPECT_EQ(totals.pairs, 0u);
 }
 
+TEST_F(PipeModelTest, ResultIsWaitedForBehindItsSuperblockToo) {
+  const Node a = model_.emit(OpClass::kFloat, 1);
+  model_.branch(kSite, true, 0);
+  (void)model_.emit(OpClass::kFixed, 2, a);
+  EXPECT_EQ(finish().cycles(), 1 + 6);  // the branch leaves with the float, in cycle 1
+}
+
 TEST_F(PipeModelTest, EvenAndOddPair) {
   for (std::uint64_t i = 0; i < 5; ++i) {
     (void)model_.emit(OpClass::kFloat, i);
