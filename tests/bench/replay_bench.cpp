@@ -1,4 +1,4 @@
-// Replay of recorded frames for other machines: promised to take under a second each.
+// Replay of recorded frames for other machines: limit half a second each.
 // SPDX-License-Identifier: Apache-2.0
 #include <gridiron/sim/machine_profile.h>
 #include <gridiron/sim/replay.h>
@@ -12,7 +12,7 @@
 namespace gridiron::bench {
 namespace {
 
-constexpr double kLimitSeconds = 1.0;
+constexpr double kLimitSeconds = 0.5;
 
 // Events of a frame, and its lines of 128 bytes as one core moves them.
 std::pair<std::size_t, std::uint64_t> extent_of(const sim::FrameTrace& trace) {

@@ -100,10 +100,7 @@ struct Fastest {
 };
 
 constexpr const char* kChoiceWords =
-    "Among the settings whose frame alone takes at most 1 % longer than the fastest that was tried with one axis "
-    "binned, the tuned ones take the least for build and frame, but for half a percent. Larger leaves build faster "
-    "still, for a slower frame: where each frame builds its hierarchy anew, the comparison with the grid is to be "
-    "read with that in mind.";
+    "How the tuned values were chosen is told by sim_platform/README.md, \"What was tried\".";
 
 }  // namespace
 

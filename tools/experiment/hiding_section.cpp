@@ -254,7 +254,8 @@ void write_levers(const Plan& done, const std::vector<Lever>& levers, Book& book
   book.paragraph(
       "Some things that move these shares the paper does not tell: how wide its macrocells are, how its memory's "
       "latency "
-      "is distributed, when its shading fetches a triangle's normal. Each row changes one of them in the reference. "
+      "is distributed, when its shading fetches a triangle's normal. Each row changes one of them in the reference, "
+      "the last one in the row above it. "
       "Shares are means over the paper's views on one and six cores; their distance from the paper's is the root of "
       "the "
       "mean square, in percentage points. Normals fetched after traversal are added to the frame's steps: each packet "

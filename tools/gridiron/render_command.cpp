@@ -99,12 +99,17 @@ void print_picture(const RenderPlan& plan, const Picture<std::uint32_t>& color, 
 
 void print_timing(const RenderPlan& plan, const sim::FrameTiming& timing) {
   const double core_cycles = timing.frame_cycles * static_cast<double>(timing.cores.size());
-  const char* const unit = sim::counts_instructions(*plan.scene.machine) ? "instructions" : "cycles";
-  std::printf("%s, %s: %s %s, %.2f ms, %.2f frames/s; %.2f %% of the %s wait for DMA\n",
+  if (sim::counts_instructions(*plan.scene.machine)) {
+    std::printf("%s, %s: %s\n", std::string(plan.scene.machine->name).c_str(),
+                words_of_count(timing.cores.size(), "core").c_str(),
+                words_of_count(static_cast<std::uint64_t>(timing.frame_cycles), "instruction").c_str());
+    return;
+  }
+  std::printf("%s, %s: %s cycles, %.2f ms, %.2f frames/s; %.2f %% of the cycles wait for DMA\n",
               std::string(plan.scene.machine->name).c_str(), words_of_count(timing.cores.size(), "core").c_str(),
-              words_of_count(static_cast<std::uint64_t>(timing.frame_cycles)).c_str(), unit, timing.seconds * 1e3,
+              words_of_count(static_cast<std::uint64_t>(timing.frame_cycles)).c_str(), timing.seconds * 1e3,
               timing.seconds > 0 ? 1 / timing.seconds : 0.0,
-              core_cycles > 0 ? 100 * wait_cycles_of(timing) / core_cycles : 0.0, unit);
+              core_cycles > 0 ? 100 * wait_cycles_of(timing) / core_cycles : 0.0);
 }
 
 Picture<std::uint32_t> plane_words(const FrameMemory& frame, const RenderPlan& plan, const sim::MemoryRegion& plane) {

@@ -57,7 +57,7 @@ class Flattener {
     if (geometry.normals.empty()) geometry.triangle_normals.clear();
     if (scene_.point_lights.empty() && scene_.area_lights.empty() && !scene_.ambient_occlusion) {
       note(entities_.shapes.front().line,
-           "the scene has no light: surfaces show only what they reflect or let through");
+           "the scene has no light: shaded by it, surfaces show only what they reflect or let through");
     }
     SceneRoundness& roundness = scene_.roundness;
     if (roundness.rule == ToleranceRule::kPicture && !has_coarser_) {

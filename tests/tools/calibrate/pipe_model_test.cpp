@@ -36,6 +36,13 @@ TEST_F(PipeModelTest, ChainWaitsForEachResult) {
   EXPECT_EQ(totals.pairs, 0u);
 }
 
+TEST_F(PipeModelTest, ResultIsWaitedForBehindItsSuperblockToo) {
+  const Node a = model_.emit(OpClass::kFloat, 1);
+  model_.branch(kSite, true, 0);
+  (void)model_.emit(OpClass::kFixed, 2, a);
+  EXPECT_EQ(finish().cycles(), 1 + 6);  // the branch leaves with the float, in cycle 1
+}
+
 TEST_F(PipeModelTest, EvenAndOddPair) {
   for (std::uint64_t i = 0; i < 5; ++i) {
     (void)model_.emit(OpClass::kFloat, i);
@@ -107,6 +114,20 @@ TEST(PipeModel, MissIsChargedToTheWorkBehindIt) {
   };
   EXPECT_EQ(misses_of(GridWork::kCellVisit), std::pair(std::uint64_t{0}, std::uint64_t{1}));
   EXPECT_EQ(misses_of(Work::kWait), std::pair(std::uint64_t{1}, std::uint64_t{0}));
+}
+
+// A unit without operations of its own takes the miss before it, or its successor would.
+TEST(PipeModel, MissIsChargedToAUnitThatIsOnlyABranch) {
+  const Branches branches = taken_branch();
+  PipeModel model(&branches);
+  model.add_units(GridWork::kCellStep, 1);
+  model.branch(kSite, false, 0);
+  model.add_units(GridWork::kCellVisit, 1);
+  model.add_units(GridWork::kMacroRow, 1);
+  (void)model.emit(OpClass::kFixed, 1);
+  const Totals totals = model.finish().totals;
+  EXPECT_EQ(totals[WorkId(GridWork::kCellVisit).number()].misses, 1u);
+  EXPECT_EQ(totals[WorkId(GridWork::kMacroRow).number()].misses, 0u);
 }
 
 double cycles_under(const PipeRules& rules, const auto& run) {

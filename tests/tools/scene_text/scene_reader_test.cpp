@@ -223,7 +223,8 @@ TEST(SceneReader, NotesWhatIsOdd) {
   EXPECT_EQ(read.counts.non_planar_polygons, 1u);
   const SceneDescription dark = read_good(std::string(kViewAndFill) + "s 0 0 0 1");
   ASSERT_EQ(dark.notes.size(), 1u);
-  EXPECT_EQ(dark.notes[0].text, "the scene has no light: surfaces show only what they reflect or let through");
+  EXPECT_EQ(dark.notes[0].text,
+            "the scene has no light: shaded by it, surfaces show only what they reflect or let through");
   std::string many = std::string(kViewAndFill) + "l 0 9 0 ";
   for (int i = 0; i < 30; ++i) many += "p 3 0 0 0 1 1 1 2 2 2 ";
   const SceneDescription noted = read_good(many + "s 0 0 0 1");

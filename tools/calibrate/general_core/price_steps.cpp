@@ -184,7 +184,7 @@ inline constexpr auto kBuildCosts = std::to_array<BuildCost>({
 }
 
 void print_prices(const Prices& prices) {
-  std::puts("| step | cycles | instructions | branch misses | lines waited for | lines fetched ahead |");
+  std::puts("| step | cycles | instructions | branch misses | lines fetched on demand | lines fetched ahead |");
   std::puts("|---|---|---|---|---|---|");
   for (std::size_t step = 0; step < kSteps; ++step) {
     const Sum& price = prices[step];
@@ -196,7 +196,7 @@ void print_prices(const Prices& prices) {
 
 void print_check(const Prices& prices, const std::vector<Run>& runs) {
   constexpr double kMillion = 1e6;
-  std::puts("\n| mesh | builder | measured, M cycles | priced | difference | priced, ms at 3.2 GHz | host, ms |");
+  std::puts("\n| mesh | builder | modelled, M cycles | priced | difference | priced, ms at 3.2 GHz | host, ms |");
   std::puts("|---|---|---|---|---|---|---|");
   for (const Run& run : runs) {
     if (run.role != "check") continue;
@@ -205,7 +205,7 @@ void print_check(const Prices& prices, const std::vector<Run>& runs) {
                 run.cycles() / kMillion, sum / kMillion, 100 * (sum / run.cycles() - 1), sum / 3.2e6,
                 1e3 * run.host_seconds);
   }
-  std::puts("\n| mesh | grid | BVH / grid: measured | priced | host |");
+  std::puts("\n| mesh | grid | BVH / grid: modelled | priced | host |");
   std::puts("|---|---|---|---|---|");
   for (const Run& grid : runs) {
     if (grid.role != "check" || grid.builder == "bvh") continue;
