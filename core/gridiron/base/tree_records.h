@@ -28,8 +28,22 @@ struct TreeChild {
   [[nodiscard]] constexpr std::uint32_t count() const { return (bits >> 27 & 15u) + 1; }
 };
 
+/// How far the side of a box lies outside the triangles: `margin` and a share of its own place, so that a ray along it,
+/// with a component of 0, does not leave it. @param margin  tree_margin() of all triangles.
+inline constexpr float kTreeGrowth = 0x1p-22f;
+[[nodiscard]] constexpr float tree_margin(float largest_coordinate) {
+  const float margin = largest_coordinate * 0x1p-24f;
+  return margin > 0x1p-126f ? margin : 0x1p-126f;
+}
+[[nodiscard]] constexpr float grown_low(float low, float margin) {
+  return low - ((low < 0.0f ? -low : low) * kTreeGrowth + margin);
+}
+[[nodiscard]] constexpr float grown_high(float high, float margin) {
+  return high + ((high < 0.0f ? -high : high) * kTreeGrowth + margin);
+}
+
 /// A node. Children cover its records in order, and those that are nodes come later in the section than it does, in
-/// order too. Boxes are tight: the least that hold the child's triangles.
+/// order too. Boxes are the least that hold the child's triangles, grown.
 struct alignas(kLineBytes) TreeNode {
   float low[3][kTreeWidth];        ///< axis, child; of a child that is not there kFloatMax
   float high[3][kTreeWidth];       ///< of one that is not there -kFloatMax

@@ -40,6 +40,12 @@ struct Box {
       high[axis] = box.high[axis] > high[axis] ? box.high[axis] : high[axis];
     }
   }
+  void grow(float margin) {
+    for (int axis = 0; axis < 3; ++axis) {
+      low[axis] = grown_low(low[axis], margin);
+      high[axis] = grown_high(high[axis], margin);
+    }
+  }
   // Twice the centre, rounded; the least and the greatest that boxes inside can have.
   [[nodiscard]] Vec3 middle() const { return {low[0] + high[0], low[1] + high[1], low[2] + high[2]}; }
   [[nodiscard]] Vec3 low_middle() const { return {low[0] + low[0], low[1] + low[1], low[2] + low[2]}; }
@@ -394,6 +400,13 @@ class TreeBuilder {
 
   // From the last node to the first, so that children come before their parents. Codes are not needed any more.
   void bound_all() {
+    float largest = 0.0f;
+    for (int axis = 0; axis < 3; ++axis) {
+      const float low = __builtin_fabsf(size_.low[axis]), high = __builtin_fabsf(size_.high[axis]);
+      largest = low > largest ? low : largest;
+      largest = high > largest ? high : largest;
+    }
+    margin_ = tree_margin(largest);
     auto* const areas = reinterpret_cast<float*>(spare_);  // by node; there are no more nodes than triangles
     for (std::uint32_t i = size_.node_count; i-- > 0;) areas[i] = bound(nodes_[i], areas);
   }
@@ -401,6 +414,7 @@ class TreeBuilder {
   // @returns the area of the node's triangles.
   [[nodiscard]] float bound(TreeNode& node, const float* areas) const {
     float total = 0.0f, densities[kTreeWidth];
+    const float margin = margin_;
     for (std::uint32_t i = 0; i < kTreeWidth; ++i) {
       Box box;
       if (i < node.child_count) {
@@ -413,6 +427,7 @@ class TreeBuilder {
             box.add(box_of(a, b, c));
             area += area_of(a, b, c);
           }
+          box.grow(margin);
         } else {
           box = box_of_node(nodes_[child.node_index()]);
           area = areas[child.node_index()];
@@ -466,6 +481,7 @@ class TreeBuilder {
   Key* spare_;
   std::uint32_t* histograms_;
   TreeSize& size_;
+  float margin_ = 0.0f;
 };
 
 template <class Form, class Mesh>

@@ -78,6 +78,20 @@ struct Bounds {
   bool operator==(const Bounds&) const = default;
 };
 
+Bounds grown(Bounds bounds, const TreeSize& size) {
+  float largest = 0;
+  for (int axis = 0; axis < 3; ++axis) {
+    largest = std::max({largest, std::fabs(size.low[axis]), std::fabs(size.high[axis])});
+  }
+  const float margin = tree_margin(largest);
+  for (int axis = 0; axis < 3; ++axis) {
+    bounds.low[axis] = grown_low(bounds.low[axis], margin);
+    bounds.high[axis] = grown_high(bounds.high[axis], margin);
+    EXPECT_LE(bounds.low[axis] + margin / 2, bounds.high[axis]);
+  }
+  return bounds;
+}
+
 Bounds bounds_of(const TreeNode& node, std::uint32_t child) {
   Bounds bounds;
   for (int axis = 0; axis < 3; ++axis) {
@@ -168,7 +182,7 @@ void expect_sound(const Mesh& mesh, std::uint32_t leaf_triangles) {
       part.end = below.end;
       part.height = std::max(part.height, below.height + 1);
       part.bounds.add(below.bounds.low, below.bounds.high);
-      EXPECT_EQ(bounds_of(node, k), below.bounds) << "node " << i << ", child " << k;
+      EXPECT_EQ(bounds_of(node, k), grown(below.bounds, size)) << "node " << i << ", child " << k;
     }
     std::uint32_t children = 0;
     for (std::uint32_t k = 0; k < kTreeWidth; ++k) {
@@ -297,7 +311,7 @@ TEST(TreeBuilder, CrowdedCellsAreSplitByPlaceNotByNumber) {
     }
   }
   // Each of 1,200 leaves of random triangles would have half the surface of a torus, some 6 squares of 2^-16.
-  EXPECT_LT(surfaces, 250 * 0x1p-32);
+  EXPECT_LT(surfaces, 400 * 0x1p-32);
   EXPECT_LT(leaves, 9600 / 3.0);
 }
 
