@@ -234,21 +234,41 @@ class RayLists {
     return order;
   }
 
-  GRIDIRON_OUTLINE void set_up(TreeChild leaf) {
-    const VertexTriangle* record = records_ + leaf.first();
-    for (std::uint32_t i = 0; i < leaf.count(); ++i, ++record) {
-      for (int axis = 0; axis < 3; ++axis) {
-        triangles_.v[axis][i] = record->v[0][axis];
-        triangles_.e1[axis][i] = record->v[1][axis];
-        triangles_.e2[axis][i] = record->v[2][axis];
-      }
+  // Word w of records base, base + 1 and so on in the lanes of words[w]; behind the last one it again.
+  GRIDIRON_INLINE void load_records(TreeChild leaf, std::uint32_t base, Float (&words)[12]) const {
+    static_assert(sizeof(VertexTriangle) == 48);
+    const float* places[4][L::kCount / 4];
+    for (std::uint32_t i = 0; i < L::kCount; ++i) {
+      const std::uint32_t place = base + i < leaf.count() ? base + i : leaf.count() - 1;
+      places[i % 4][i / 4] = records_[leaf.first() + place].v[0];
     }
+    for (int part = 0; part < 3; ++part) {
+      Float rows[4];
+      for (int i = 0; i < 4; ++i) {
+        rows[i] = L::load_quads(places[i]);
+        for (const float*& place : places[i]) place += 4;
+      }
+      const Float low_01 = L::template shuffle_quads<0, 4, 1, 5>(rows[0], rows[1]),
+                  high_01 = L::template shuffle_quads<2, 6, 3, 7>(rows[0], rows[1]),
+                  low_23 = L::template shuffle_quads<0, 4, 1, 5>(rows[2], rows[3]),
+                  high_23 = L::template shuffle_quads<2, 6, 3, 7>(rows[2], rows[3]);
+      words[4 * part] = L::template shuffle_quads<0, 1, 4, 5>(low_01, low_23);
+      words[4 * part + 1] = L::template shuffle_quads<2, 3, 6, 7>(low_01, low_23);
+      words[4 * part + 2] = L::template shuffle_quads<0, 1, 4, 5>(high_01, high_23);
+      words[4 * part + 3] = L::template shuffle_quads<2, 3, 6, 7>(high_01, high_23);
+    }
+  }
+
+  GRIDIRON_OUTLINE void set_up(TreeChild leaf) {
     for (std::uint32_t base = 0; base < leaf.count(); base += L::kCount) {
+      Float corners[12];  // words of a record: nine coordinates, three more
+      load_records(leaf, base, corners);
       Float e1[3], e2[3], sizes(0.0f), edges(0.0f);
       for (int axis = 0; axis < 3; ++axis) {
-        const Float v = Float::load(triangles_.v[axis] + base);
-        e1[axis] = Float::load(triangles_.e1[axis] + base) - v;
-        e2[axis] = Float::load(triangles_.e2[axis] + base) - v;
+        const Float v = corners[axis];
+        e1[axis] = corners[3 + axis] - v;
+        e2[axis] = corners[6 + axis] - v;
+        v.store(triangles_.v[axis] + base);
         e1[axis].store(triangles_.e1[axis] + base);
         e2[axis].store(triangles_.e2[axis] + base);
         edges = edges + (L::abs(e1[axis]) + L::abs(e2[axis]));
