@@ -8,7 +8,6 @@
 namespace gridiron {
 namespace {
 
-constexpr std::uint32_t kCodeBits = 30;      // 10 an axis
 constexpr std::uint32_t kPlaces = 1u << 10;  // of an axis, and of a digit when codes are sorted
 constexpr std::uint32_t kDigits = 3;
 
