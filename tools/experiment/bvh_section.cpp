@@ -1,7 +1,5 @@
 // Fig. 7 (a): the grid against the hierarchy with software caches, frame and frame with build.
 // SPDX-License-Identifier: Apache-2.0
-#include <report/report.h>
-
 #include <cmath>
 
 #include "experiment/bvh_system.h"
@@ -125,7 +123,7 @@ void write_build_steps(const Plan& done, const std::vector<Row>& rows, const Mac
       const std::uint64_t grid_count = grid.facts.build[step], bvh_count = bvh.facts.build[step];
       if (grid_count == 0 && bvh_count == 0) continue;
       const double price = machine.profile.master.step_cycles[i];
-      steps.add({row.view->title, std::string(tool::build_step_name(step)), grid_count, bvh_count, price,
+      steps.add({row.view->title, std::string(sim::name_of(step)), grid_count, bvh_count, price,
                  static_cast<double>(grid_count) * price / 1e6, static_cast<double>(bvh_count) * price / 1e6});
     }
   }

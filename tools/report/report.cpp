@@ -2,8 +2,6 @@
 // Memory: std::string. Threads: any, no shared state. SPDX-License-Identifier: Apache-2.0
 #include "report/report.h"
 
-#include <gridiron/sim/build_work.h>
-
 #include <nlohmann/json.hpp>
 #include <utility>
 
@@ -204,10 +202,6 @@ std::string_view stage_name(Stage stage) {
   return name_in(kNames, stage);
 }
 // clang-format on
-
-std::string_view build_step_name(sim::BuildStep step) {
-  return sim::name_of(step);
-}
 
 std::uint64_t image_hash(std::span<const std::uint32_t> pixels) {
   std::uint64_t hash = 0xcbf29ce484222325u;

@@ -86,9 +86,6 @@ struct ReportInput {
 /// @returns the stable snake_case name of a stage of a frame with effects.
 [[nodiscard]] std::string_view stage_name(Stage stage);
 
-/// @returns the stable snake_case name of a step of a build.
-[[nodiscard]] std::string_view build_step_name(sim::BuildStep step);
-
 /// FNV-1a, 64 bits, over the bytes of each pixel's word, lowest first: R, G, B, A of a colour.
 ///
 /// @param pixels  0xAABBGGRR, bits of a distance, or triangle ids; row-major, top row first.

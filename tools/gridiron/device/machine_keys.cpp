@@ -1,7 +1,8 @@
 // Machine keys: see the header. SPDX-License-Identifier: Apache-2.0
 #include "machine_keys.h"
 
-#include <report/report.h>
+#include <gridiron/sim/build_work.h>
+#include <gridiron/sim/engine_work.h>
 
 #include <cmath>
 #include <cstddef>
@@ -106,7 +107,7 @@ std::vector<MachineKey> machine_keys(MachineProfile& machine) {
   }
   keys.push_back({kMasterClockKey, &machine.master.clock_hz, kHertz.least, kHertz.most});
   for (std::size_t i = 0; i < sim::kBuildStepCount; ++i) {
-    keys.push_back({kStepKey + std::string(build_step_name(static_cast<BuildStep>(i))), &machine.master.step_cycles[i],
+    keys.push_back({kStepKey + std::string(sim::name_of(static_cast<BuildStep>(i))), &machine.master.step_cycles[i],
                     kCycles.least, kCycles.most});
   }
   return keys;
