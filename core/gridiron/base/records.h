@@ -34,6 +34,10 @@ enum class SectionKind : unsigned {
   kSurfaces = 8,         ///< SurfaceRecord[triangle_count]
   kNormals = 9,          ///< NormalRecord[]
   kEnvironmentMap = 10,  ///< EnvironmentBlock[]
+  // The wide tree (base/tree_records.h): all three or none. Images with effects have it.
+  kTree = 11,           ///< one TreeRecord
+  kTreeNodes = 12,      ///< TreeNode[node_count]
+  kTreeTriangles = 13,  ///< triangle records, in the order of the leaves
   kEnd                   ///< kinds from here on are unknown, and skipped
 };
 
@@ -225,8 +229,9 @@ struct FrameHead {
   std::uint64_t depth_address;         ///< float distance along the unit direction, kFloatMax where nothing; 0: off
   std::uint64_t id_address;            ///< triangle_id, kNoTriangle where nothing; 0: off
   std::uint64_t effects_address;       ///< EffectsRecord, of Shading::kScene; else 0
-  std::uint64_t image_address;         ///< base of the effects' offsets; else 0
-  std::uint32_t reserved1[10];
+  std::uint64_t image_address;         ///< base of the offsets of effects and tree; else 0
+  std::uint64_t tree_address;          ///< TreeRecord, of Shading::kScene; else 0
+  std::uint32_t reserved1[8];
 };
 static_assert(sizeof(FrameHead) == 192);
 

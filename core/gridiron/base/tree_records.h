@@ -55,4 +55,21 @@ struct alignas(kLineBytes) TreeNode {
 };
 static_assert(sizeof(TreeNode) == 4 * kLineBytes);
 
+/// A tree and where it lies. An image has one or none; a core fetches it when a frame begins.
+struct TreeRecord {
+  std::uint32_t node_count;             ///< 1..; node 0 is the root
+  std::uint32_t triangle_count;         ///< records, 1..kMaxTreeTriangles: the kept triangles, each once
+  std::uint32_t depth;                  ///< nodes on the longest path, 1..kMaxTreeDepth
+  std::uint32_t leaf_triangles;         ///< of a leaf, at most; 1..kMaxTreeLeaf
+  std::uint32_t triangle_format;        ///< TriangleFormat, kVertices or kLattice
+  std::uint32_t triangle_bytes;         ///< record size
+  std::uint64_t nodes_offset_bytes;     ///< TreeNode[node_count], from the image's first byte
+  std::uint64_t triangles_offset_bytes;  ///< triangle records in the order of the leaves
+  float bounds_minimum[3];              ///< tight bounds of the triangles, world space
+  float bounds_maximum[3];              ///< the other corner
+  Lattice lattice;                      ///< of kLattice; all zero in other formats
+  std::uint32_t reserved[12];
+};
+static_assert(sizeof(TreeRecord) == 128);
+
 }  // namespace gridiron
