@@ -60,8 +60,15 @@ enum class Work : std::uint8_t {
   // Effects.
   kWaveRay,            ///< rays of a wave taken from pixels or from the queue
   kQueuedRay,          ///< reflected and refracted rays made, and put into the queue
-  kRayTriangleSetup,   ///< triangles set up to be tested by rays with origins of their own
-  kRayGroupTest,       ///< (group, triangle) tests of rays with origins of their own
+  kListRay,            ///< rays of a batch prepared for lists
+  kListChild,          ///< lists made for a child of a node
+  kListEntry,          ///< rays that were gone through for these
+  kListNode,           ///< nodes that a list of rays has entered
+  kListRayNode,        ///< rays of these lists: tested against a node's union boxes
+  kListBoxQuad,        ///< quads of boxes tested by a ray
+  kListLeaf,           ///< leaves that a list of rays was tested against: triangles spread over lanes
+  kListTriangleGroup,  ///< SIMD groups of a leaf's triangles tested by a ray
+  kListCandidate,      ///< of these, groups with triangles that floats do not rule out
   kRayDistance,        ///< distances of single rays, in double
   kSurfacePoint,       ///< hits of which point, normal and material were found
   kSmoothNormal,       ///< hits of which the normal was interpolated
@@ -83,7 +90,7 @@ enum class Work : std::uint8_t {
 /// The number of the first kind of an engine.
 inline constexpr std::uint32_t kSharedWorkCount = static_cast<std::uint32_t>(Work::kCount);
 /// Kinds that there are counters for. No frame has two engines, so all engines use the same ones.
-inline constexpr std::uint32_t kWorkKindCount = 87;
+inline constexpr std::uint32_t kWorkKindCount = 92;
 
 /// A kind of Work or of an engine: the number of its counter.
 class WorkId {

@@ -29,8 +29,6 @@ enum class GridWork : std::uint8_t {
   kReachTest,             ///< groups of squares or subpackets asked whether they look beyond a cell's entry
   kFootprintGroup,        ///< SIMD groups of squares of subpackets tested against a cell
   kCellBoundStep,         ///< cells looked up inside a visited macrocell by their bounds, beside lattice triangles
-  kWalkPass,              ///< walks of up to 16 rays begun: axis, shaft
-  kShaftGroup,            ///< SIMD groups of walked rays tested against a slab of the grid
   kEnd
 };
 

@@ -1,0 +1,163 @@
+// Triangles of a leaf, in lanes, against one ray after another: which it surely hits, which it may hit.
+// Source: own; bounds below. Memory: values. Threads: one core. SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <gridiron/base/lanes.h>
+#include <gridiron/base/records.h>
+#include <gridiron/engine/tree/list_memory.h>
+#include <gridiron/ray/ray_batch.h>
+
+#include <cstdint>
+
+namespace gridiron {
+
+// With e = 2^-23, the largest relative error of an operation in any rounding mode, X, D, E the sums of magnitudes of
+// the components of corner - origin, direction and edge: products of three carry 4 e by their factors, 3 e by their own
+// products and differences, and two sums 2 e, together less than 10 e X D E. The normal's products have 3 e, its
+// components 4 e, their product with the direction and its sums 7 e. The third side is the difference of these: less
+// than 2 e of both more. 14 e with what computing the bound loses.
+inline constexpr float kSideErrorFactor = 14.0f * 0x1p-23f;
+/// Added to sizes, so that what becomes subnormal on the way is covered: a product below 2^-126 loses 2^-150, which
+/// later factors of 2^122 at most enlarge.
+inline constexpr float kLeastListSize = 0x1p-110f, kLeastReach = 0x1p-20f;
+/// Where a bound is as great, a product of a hundred thousandth of it might overflow.
+inline constexpr float kGreatestListError = 0x1p100f;
+
+/// Word w of the records in words[w]: of record base in the first lane, and so on; behind the last one it again.
+template <class L>
+GRIDIRON_INLINE void load_records(const VertexTriangle* records, std::uint32_t base, std::uint32_t count,
+                                  typename L::Float (&words)[12]) {
+  using Float = typename L::Float;
+  static_assert(sizeof(VertexTriangle) == 48);
+  if constexpr (L::kCount == 1) {
+    for (int word = 0; word < 9; ++word) words[word] = Float(records[base].v[word / 3][word % 3]);
+  } else {
+    const float* places[4][L::kCount / 4];
+    for (std::uint32_t i = 0; i < L::kCount; ++i) {
+      places[i % 4][i / 4] = records[base + i < count ? base + i : count - 1].v[0];
+    }
+    for (int part = 0; part < 3; ++part) {
+      Float rows[4];
+      for (int i = 0; i < 4; ++i) {
+        rows[i] = L::load_quads(places[i]);
+        for (const float*& place : places[i]) place += 4;
+      }
+      const Float low_01 = L::template shuffle_quads<0, 4, 1, 5>(rows[0], rows[1]),
+                  low_23 = L::template shuffle_quads<0, 4, 1, 5>(rows[2], rows[3]);
+      words[4 * part] = L::template shuffle_quads<0, 1, 4, 5>(low_01, low_23);
+      if (part == 2) break;  // what follows the last coordinate is no float
+      const Float high_01 = L::template shuffle_quads<2, 6, 3, 7>(rows[0], rows[1]),
+                  high_23 = L::template shuffle_quads<2, 6, 3, 7>(rows[2], rows[3]);
+      words[4 * part + 1] = L::template shuffle_quads<2, 3, 6, 7>(low_01, low_23);
+      words[4 * part + 2] = L::template shuffle_quads<0, 1, 4, 5>(high_01, high_23);
+      words[4 * part + 3] = L::template shuffle_quads<2, 3, 6, 7>(high_01, high_23);
+    }
+  }
+}
+
+/// Spreads `count` records over lanes. @param trusts_floats  no errors of sides: Accuracy::kFast.
+template <class L>
+GRIDIRON_INLINE void set_up_leaf(const VertexTriangle* records, std::uint32_t count, bool trusts_floats,
+                                 TriangleLanes& lanes) {
+  using Float = typename L::Float;
+  const Float factor(trusts_floats ? 0.0f : kSideErrorFactor);
+  for (std::uint32_t base = 0; base < count; base += L::kCount) {
+    Float corners[12];  // nine coordinates
+    load_records<L>(records, base, count, corners);
+    Float e1[3], e2[3], sizes(kLeastListSize), edges(kLeastListSize);
+    for (int axis = 0; axis < 3; ++axis) {
+      const Float v = corners[axis];
+      e1[axis] = corners[3 + axis] - v;
+      e2[axis] = corners[6 + axis] - v;
+      v.store(lanes.v[axis] + base);
+      e1[axis].store(lanes.e1[axis] + base);
+      e2[axis].store(lanes.e2[axis] + base);
+      edges = edges + (L::abs(e1[axis]) + L::abs(e2[axis]));
+    }
+    for (int axis = 0; axis < 3; ++axis) {
+      const int j = axis == 2 ? 0 : axis + 1, k = j == 2 ? 0 : j + 1;
+      const Float p = e1[j] * e2[k], q = e1[k] * e2[j];
+      (p - q).store(lanes.normal[axis] + base);
+      sizes = sizes + (L::abs(p) + L::abs(q));
+    }
+    (edges * factor).store(lanes.edge_error + base);
+    (sizes * factor).store(lanes.normal_error + base);
+  }
+}
+
+/// What floats say of L::kCount triangles and a ray; bit i = triangle i of the lanes.
+struct LeafAnswer {
+  std::uint32_t inside;  ///< the ray's line surely passes through, and the plane is not surely out of reach
+  std::uint32_t unsure;  ///< the line may pass through, likewise
+  std::uint32_t within;  ///< the plane is surely at 0 < t <= the ray's
+};
+
+/// The lanes of a leaf from `base` on, in registers.
+template <class L>
+struct LeafLanes {
+  using Float = typename L::Float;
+  Float v[3], e1[3], e2[3], n[3], edge_error, normal_error;
+
+  GRIDIRON_INLINE LeafLanes(const TriangleLanes& lanes, std::uint32_t base)
+      : edge_error(Float::load(lanes.edge_error + base)), normal_error(Float::load(lanes.normal_error + base)) {
+    for (int axis = 0; axis < 3; ++axis) {
+      v[axis] = Float::load(lanes.v[axis] + base);
+      e1[axis] = Float::load(lanes.e1[axis] + base);
+      e2[axis] = Float::load(lanes.e2[axis] + base);
+      n[axis] = Float::load(lanes.normal[axis] + base);
+    }
+  }
+
+  /// @param there  the lanes that have a triangle.
+  [[nodiscard]] GRIDIRON_INLINE LeafAnswer test(const BatchRay& ray, std::uint32_t there) const {
+    Float o_x, o_y, o_z, d_x, d_y, d_z, t, dir_max;
+    if constexpr (L::kCount == 4) {
+      const Float place = Float::load(ray.origin), sizes = Float::load(ray.inverse), dir = Float::load(ray.dir);
+      o_x = L::template shuffle_quads<0, 0, 0, 0>(place);
+      o_y = L::template shuffle_quads<1, 1, 1, 1>(place);
+      o_z = L::template shuffle_quads<2, 2, 2, 2>(place);
+      t = L::template shuffle_quads<3, 3, 3, 3>(place);
+      d_x = L::template shuffle_quads<0, 0, 0, 0>(dir);
+      d_y = L::template shuffle_quads<1, 1, 1, 1>(dir);
+      d_z = L::template shuffle_quads<2, 2, 2, 2>(dir);
+      dir_max = L::template shuffle_quads<3, 3, 3, 3>(sizes);
+    } else {
+      o_x = Float(ray.origin[0]), o_y = Float(ray.origin[1]), o_z = Float(ray.origin[2]);
+      d_x = Float(ray.dir[0]), d_y = Float(ray.dir[1]), d_z = Float(ray.dir[2]);
+      t = Float(ray.t), dir_max = Float(ray.dir_max);
+    }
+    const Float x = v[0] - o_x, y = v[1] - o_y, z = v[2] - o_z;
+    const Float r_x = y * d_z - z * d_y, r_y = z * d_x - x * d_z, r_z = x * d_y - y * d_x;
+    const Float denominator = d_x * n[0] + d_y * n[1] + d_z * n[2];
+    const auto backwards = denominator < Float(0.0f);
+    const Float first = L::flip_sign(backwards, r_x * e2[0] + r_y * e2[1] + r_z * e2[2]);
+    const Float second = L::flip_sign(backwards, r_x * e1[0] + r_y * e1[1] + r_z * e1[2]);
+    const Float size = L::abs(denominator);
+    const Float third = size - first + second;
+    const Float far = L::abs(x) + L::abs(y) + L::abs(z);
+    const Float span = dir_max * Float(3.0f);
+    const Float turn = normal_error * span + (dir_max * Float(0x1p-100f) + Float(0x1p-100f));
+    const Float error = (far * span + Float(kLeastReach)) * edge_error + turn;
+    const Float least = L::min(L::min(first, -second), third);
+    // NaN and infinities are neither inside nor outside.
+    const std::uint32_t in_range = (error < Float(kGreatestListError)).bits() & there;
+    const std::uint32_t outside = (least < -error).bits() & in_range;
+    const std::uint32_t candidates = there & ~outside;
+    if (candidates == 0) return {0, 0, 0};
+    // Where along the ray.
+    const Float ahead = L::flip_sign(backwards, x * n[0] + y * n[1] + z * n[2]);
+    const Float limit = size * t;
+    const Float ahead_error = far * normal_error + Float(0x1p-100f);
+    const Float limit_error = turn * t + limit * Float(0x1p-20f) + ahead_error;
+    const std::uint32_t sign_known =
+        ((size > turn) & (ahead_error < Float(kGreatestListError))).bits() & in_range;
+    const std::uint32_t in_front = (ahead > ahead_error).bits() & sign_known;
+    const std::uint32_t behind = (ahead < -ahead_error).bits() & sign_known;
+    const std::uint32_t beyond = (ahead - limit > limit_error).bits() & sign_known;
+    const std::uint32_t in_reach = candidates & ~(behind | beyond);
+    const std::uint32_t inside = (least > error).bits() & in_range;
+    return {in_reach & inside, in_reach & ~inside, (limit - ahead > limit_error).bits() & in_front};
+  }
+};
+
+}  // namespace gridiron

@@ -1,0 +1,59 @@
+// Memory of the lists of rays: the batch, lists and masks of the nodes on the way down, triangles of one leaf in lanes.
+// core/TREE.md has the bound. Memory: is the memory. Threads: one core. SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <gridiron/base/tree_records.h>
+#include <gridiron/ray/ray_batch.h>
+
+#include <cstdint>
+
+namespace gridiron {
+
+/// Lists begin and end at multiples of so many rays, whatever the lanes, so that all lanes go through the same pieces.
+inline constexpr std::uint32_t kListStep = 32;
+
+/// Words of an arena for batches of so many rays: their list and masks, and below them at each level a list and masks
+/// of one step at least. @param spare  words for longer lists, which spare nodes and leaves second visits.
+[[nodiscard]] constexpr std::uint32_t list_arena_words(std::uint32_t rays, std::uint32_t spare) {
+  return 2 * rays + (kMaxTreeDepth - 1) * 2 * kListStep + spare;
+}
+
+/// A node on the way down, and the rays that met its box.
+struct ListLevel {
+  TreeChild children[kTreeWidth];    ///< those that rays meet, in the order of their turns
+  std::uint8_t places[kTreeWidth];   ///< of each: its bit in the masks
+  std::uint32_t child_count;         ///< of these
+  std::uint32_t turn;                ///< the child whose rays are next
+  std::uint32_t asked;               ///< children asked for ahead of their turns
+  std::uint32_t list, masks, end;    ///< where they begin in the arena, and what is free behind them
+  std::uint32_t ray_count;           ///< of the list
+  std::uint32_t taken;               ///< of its rays, those that the child whose turn it is has seen
+};
+
+/// Up to 16 triangles in lanes.
+struct TriangleLanes {
+  alignas(64) float v[3][kMaxTreeLeaf];          ///< the first corner
+  alignas(64) float e1[3][kMaxTreeLeaf];         ///< from it to the second one
+  alignas(64) float e2[3][kMaxTreeLeaf];         ///< from it to the third one
+  alignas(64) float normal[3][kMaxTreeLeaf];     ///< e1 x e2
+  alignas(64) float edge_error[kMaxTreeLeaf];    ///< factor on sizes of rays: bounds the error of a side
+  alignas(64) float normal_error[kMaxTreeLeaf];  ///< likewise, of products with the normal
+};
+
+/// @tparam Rays   of a batch: a multiple of kListStep.
+/// @tparam Spare  words of the arena beyond the least.
+template <std::uint32_t Rays, std::uint32_t Spare>
+struct alignas(128) ListMemory {
+  static constexpr std::uint32_t kRays = Rays;
+  static constexpr std::uint32_t kArenaWords = list_arena_words(Rays, Spare);
+  static_assert(Rays % kListStep == 0 && 3 * Rays <= 1u << 13, "an entry of a list has 13 bits for a ray's place");
+  static_assert(Spare % kListStep == 0);
+
+  BatchRay rays[Rays];
+  std::uint32_t owners[Rays];
+  alignas(64) std::uint16_t arena[kArenaWords];
+  TriangleLanes triangles;
+  ListLevel levels[kMaxTreeDepth];
+};
+
+}  // namespace gridiron

@@ -1,0 +1,57 @@
+// The tree engine's part of a local store: its record for the whole frame; lists, nodes and leaves while rays other
+// than eye rays are traced.
+// Memory: is the memory. Threads: one core. SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <gridiron/base/effect_records.h>
+#include <gridiron/base/records.h>
+#include <gridiron/base/tree_records.h>
+#include <gridiron/engine/tree/list_memory.h>
+#include <gridiron/platform/contract.h>
+
+#include <cstddef>
+#include <cstdint>
+
+namespace gridiron {
+
+/// Memory for the whole frame.
+struct alignas(128) TreeStore {
+  TreeRecord tree;
+};
+
+/// Nodes and leaves that were fetched: sets of four, in which the one used longest ago makes room.
+/// @tparam Slots  4 times a power of two, at most 64. @tparam LeafTriangles  of a leaf, at most.
+template <std::uint32_t Slots, std::uint32_t LeafTriangles>
+struct TreeCache {
+  static constexpr std::uint32_t kSlots = Slots, kWays = 4, kSets = Slots / kWays;
+  static constexpr std::uint32_t kLeafTriangles = LeafTriangles;
+  static constexpr std::uint32_t kLeafBytes = LeafTriangles * kTriangleRecordBytes + kPortableCongruenceBytes;
+  static constexpr std::uint32_t kSlotBytes =
+      ((kLeafBytes > sizeof(TreeNode) ? kLeafBytes : static_cast<std::uint32_t>(sizeof(TreeNode))) + 63) / 64 * 64;
+  static constexpr std::uint32_t kNoKey = 0xFFFFFFFFu;  ///< of no child
+  static_assert(Slots <= 64 && kSets * kWays == Slots && (kSets & (kSets - 1)) == 0);
+  static_assert(LeafTriangles <= kMaxTreeLeaf);
+
+  struct alignas(64) Slot {
+    std::byte bytes[kSlotBytes];
+  };
+  Slot slots[Slots];
+  alignas(16) std::uint32_t keys[Slots];  ///< TreeChild::bits of what a slot has, or will have
+  std::uint32_t uses[Slots];              ///< when it was last used
+  std::uint8_t is_pending[Slots];         ///< 0, 1: not waited for yet
+};
+
+/// Memory while rays are traced.
+template <class Layout>
+struct alignas(128) TreeRayStore {
+  using Lists = ListMemory<Layout::kBatchRays, Layout::kSpareListWords>;
+  using Cache = TreeCache<Layout::kTreeSlots, Layout::kLeafTriangles>;
+  /// Buffers lent to shading: two slots each.
+  static constexpr std::uint32_t kIdleBuffers = Layout::kTreeSlots / 2;
+
+  Lists lists;
+  Cache cache;
+  alignas(32) std::byte surface_bytes[sizeof(SurfaceRecord) + kPortableCongruenceBytes];  ///< one that settles a tie
+};
+
+}  // namespace gridiron
