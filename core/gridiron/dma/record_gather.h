@@ -1,5 +1,5 @@
 // Record gather: fetches records that lie anywhere in main memory, one for each item of a list, ahead of their use.
-// Memory: buffers that the engine lends while it traces no ray. Threads: one core.
+// Memory: buffers that the engine of rays lends while it traces none. Threads: one core.
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
@@ -24,12 +24,13 @@ template <class Store, Platform P, class AddressOf, class Use>
 [[nodiscard]] Status gather_records(Store& store, Transfers<P>& transfers, std::uint32_t count, std::uint32_t bytes,
                                     AddressOf&& address_of, Use&& use) {
   BufferRing ring(store.frame.walk_depth);
+  store.wave.rays.lend(store.frame.walk_depth);
   std::uint64_t wanted[kTriangleTagCount];  // by slot
   std::uint64_t last_wanted = 0;
   std::uint64_t at_hand = 0;  // in the front slot, waited for
   std::uint32_t ahead = 0;
   const auto place_of = [&](std::uint32_t slot, std::uint64_t address) {
-    return store.engine.idle_buffer(slot) + address % kPortableCongruenceBytes;
+    return store.wave.rays.idle_buffer(slot) + address % kPortableCongruenceBytes;
   };
   for (std::uint32_t i = 0; i < count; ++i) {
     const std::uint64_t address = address_of(i);

@@ -170,11 +170,15 @@ class TileRenderer {
     return Status::kOk;
   }
 
+  [[nodiscard]] static constexpr std::uint32_t most_walk_depth() {
+    if constexpr (kHasEffects) return Layout::RayEngine::template kMaxDepth<Layout>;
+    return 0;
+  }
   // Limits of this store.
   struct Limits : Layout {
     static constexpr std::uint32_t kLeastTileWidth = Layout::kTileWidth;
     static constexpr std::uint32_t kMostTileWidth = Layout::kTileWidth;
-    static constexpr std::uint32_t kMaxWalkDepth = Layout::Engine::template kMaxRayDepth<Layout>;
+    static constexpr std::uint32_t kMaxWalkDepth = most_walk_depth();
     static constexpr Status kBeyond = Status::kUnsupportedFrame;
   };
 
@@ -205,7 +209,7 @@ class TileRenderer {
 
   [[nodiscard]] Effects make_effects([[maybe_unused]] SpillRegion spill) {
     if constexpr (kHasEffects) {
-      return Effects(store_, transfers_, engine_, spill);
+      return Effects(store_, transfers_, spill);
     } else {
       return Effects{};
     }

@@ -43,17 +43,16 @@ class EffectRenderer {
  public:
   using Layout = typename Store::Layout;
 
-  using Core = typename Layout::Engine::template Core<L, Store, P>;
-
-  EffectRenderer(Store& store, Transfers<P>& transfers, Core& engine, SpillRegion spill)
+  EffectRenderer(Store& store, Transfers<P>& transfers, SpillRegion spill)
       : store_(store),
         transfers_(transfers),
-        engine_(engine),
+        rays_(store, transfers),
         spill_(spill),
         queue_(store.effects, transfers, spill.address) {}
 
-  /// Fetches what all tiles need. Errors: kMissingEffect, kSpillTooSmall, of transfers.
+  /// Fetches what all tiles need. Errors: kMissingEffect, kSpillTooSmall, of the engine of rays, of transfers.
   [[nodiscard]] Status begin_frame() {
+    GRIDIRON_TRY(rays_.begin());
     GRIDIRON_TRY(get_now(&scene(), MainAddress{store_.frame.effects_address}, sizeof(EffectsRecord)));
     GRIDIRON_TRY(check_effects_built(scene().called_for, kBuilt));
     if (scene().recursion_depth > 1 && calls_for(kReflection | kRefraction) &&
@@ -106,6 +105,7 @@ class EffectRenderer {
     const PixelOffset offset = pixel_offset(samples_per_pixel(), sample);
     static constexpr std::uint32_t kPixels = Store::kTilePixels, kSquareWidth = 4,
                                    kSquarePixels = kSquareWidth * kSquareWidth;
+    rays_.begin_rays();
     std::uint32_t place = 0;  // along a Z curve of squares, so that neighbours go together
     while (place < kPixels) {
       store_.work.charge_to(Work::kWaveRay);
@@ -154,7 +154,7 @@ class EffectRenderer {
   }
 
  private:
-  static_assert(Layout::Engine::template kMaxRayDepth<Layout> <= kTriangleTagCount, "each record gathered has a tag");
+  static_assert(Layout::RayEngine::template kMaxDepth<Layout> <= kTriangleTagCount, "each record gathered has a tag");
   static_assert(kIdleBufferBytes >= sizeof(EnvironmentBlock) + kPortableGranuleBytes, "the longest record gathered");
   using Effects = typename Store::Effects;
   using Context = WaveContext<Store>;
@@ -170,6 +170,7 @@ class EffectRenderer {
   }
   [[nodiscard]] RayQuestion question(bool any_hit) const {
     return {any_hit, store_.frame.accuracy == static_cast<std::uint32_t>(Accuracy::kFast),
+            store_.frame.accuracy == static_cast<std::uint32_t>(Accuracy::kExact),
             section(scene().surfaces_offset_bytes)};
   }
 
@@ -211,7 +212,7 @@ class EffectRenderer {
         GRIDIRON_TRY(
             queue_.pop_wave(count, [&](std::uint32_t i, const QueuedRay& ray) { store_.wave.items[i].ray = ray; }));
         WaveRayJobs<Store> jobs(store_, count, kFloatMax);
-        GRIDIRON_TRY(engine_.trace(question(false), jobs));
+        GRIDIRON_TRY(rays_.trace(question(false), jobs));
         GRIDIRON_TRY(finish_wave(count, sample));
       }
     }
@@ -223,7 +224,7 @@ class EffectRenderer {
   [[nodiscard]] Status trace_eye_rays(std::uint32_t ray_count, std::uint32_t* ids) {  // NOLINT: it is written to
     transfers_.note_stage(Stage::kPrimary);
     WaveRayJobs<Store> jobs(store_, ray_count, store_.frame.t_far);
-    GRIDIRON_TRY(engine_.trace(question(false), jobs));
+    GRIDIRON_TRY(rays_.trace(question(false), jobs));
     store_.work.charge_to(Work::kWaveRay);
     for (std::uint32_t i = 0; i < ray_count; ++i) ids[store_.wave.items[i].ray.pixel & 0xFFFFu] = store_.wave.ids[i];
     return Status::kOk;
@@ -241,7 +242,7 @@ class EffectRenderer {
       if (calls_for(kAmbientOcclusion)) {
         transfers_.note_stage(Stage::kOcclusion);
         OcclusionJobs<Store> jobs(context);
-        GRIDIRON_TRY(engine_.trace(question(true), jobs));
+        GRIDIRON_TRY(rays_.trace(question(true), jobs));
       }
     }
     return Status::kOk;
@@ -450,7 +451,7 @@ class EffectRenderer {
       LightJobs<Store, kBuilt> jobs(context, first, lights_at_hand(first));
       if constexpr (has(kPointShadows | kAreaLights)) {
         if (has_shadows()) {
-          GRIDIRON_TRY(engine_.trace(question(true), jobs));
+          GRIDIRON_TRY(rays_.trace(question(true), jobs));
           continue;
         }
       }
@@ -461,7 +462,7 @@ class EffectRenderer {
 
   Store& store_;
   Transfers<P>& transfers_;
-  Core& engine_;
+  typename Layout::RayEngine::template Core<L, Store, P> rays_;
   SpillRegion spill_;
   RayQueue<Effects, P> queue_;
   std::uint32_t left_ = 0, top_ = 0;  ///< of the tile, in pixels

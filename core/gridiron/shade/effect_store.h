@@ -8,7 +8,7 @@
 #include <gridiron/base/records.h>
 #include <gridiron/dma/tags.h>
 #include <gridiron/platform/contract.h>
-#include <gridiron/ray/walk_rays.h>
+#include <gridiron/ray/ray_batch.h>
 
 #include <cstddef>
 #include <cstdint>
@@ -51,10 +51,10 @@ union WaveItem {
   WavePoint point;
 };
 
-/// @tparam RayStore  the engine's memory while it traces rays other than eye rays.
+/// @tparam RayStore  the memory of the engine of rays while it traces some.
 template <class RayStore, std::uint32_t WaveRayCount>
 struct alignas(128) Wave {
-  RayStore engine;
+  RayStore rays;
   std::uint32_t ids[WaveRayCount];  ///< triangles hit, kNoTriangle without a hit
   WaveItem items[WaveRayCount];
 };
@@ -72,7 +72,7 @@ struct alignas(128) EffectStore {
       kHasQueue ? 3 * kSpillBlockRays : std::uint32_t{1};  ///< of a queue that is not used: 1
   static constexpr std::uint32_t kNoMaterial = 0xFFFFFFFFu, kNoLight = 0xFFFFFFFFu;
   static_assert(kTilePixels <= kMostEffectTilePixels, "spill_bytes() counts on it");
-  static_assert(kWaveRays <= kMostWaveRays && kWaveRays % (2 * kWalkRays) == 0 && kMaterialSlots % 2 == 0);
+  static_assert(kWaveRays <= kMostWaveRays && kWaveRays % (2 * kJobRays) == 0 && kMaterialSlots % 2 == 0);
 
   alignas(128) EffectsRecord scene;
   alignas(128) MaterialRecord materials[kMaterialSlots];  ///< direct-mapped by index
@@ -93,5 +93,6 @@ struct SpillRegion {
 /// Takes the effects' place in a layout without them.
 struct NoEffectStore {};
 struct NoWave {};
+struct NoRayStore {};
 
 }  // namespace gridiron

@@ -6,7 +6,7 @@
 #include <gridiron/base/lanes.h>
 #include <gridiron/base/math.h>
 #include <gridiron/base/work_counters.h>
-#include <gridiron/ray/walk_rays.h>
+#include <gridiron/ray/ray_batch.h>
 #include <gridiron/shade/color_sums.h>
 #include <gridiron/shade/effect_store.h>
 #include <gridiron/shade/elementary.h>
@@ -17,18 +17,15 @@
 
 namespace gridiron {
 
-/// Writes ray `i` of a job.
-GRIDIRON_INLINE void set_walk_ray(WalkRays& rays, std::uint32_t i, Vector3 origin, Vector3 dir, float t,
-                                  std::uint32_t owner) {
-  rays.origin[0][i] = origin.x;
-  rays.origin[1][i] = origin.y;
-  rays.origin[2][i] = origin.z;
-  rays.dir[0][i] = dir.x;
-  rays.dir[1][i] = dir.y;
-  rays.dir[2][i] = dir.z;
-  rays.t[i] = t;
-  rays.id[i] = kNoTriangle;
-  rays.owner[i] = owner;
+/// Adds a ray to a batch.
+GRIDIRON_INLINE void add_ray(RayBatch& batch, Vector3 origin, Vector3 dir, float t, std::uint32_t owner) {
+  BatchRay& ray = batch.rays[batch.count];
+  store(origin, ray.origin);
+  ray.t = t;
+  store(dir, ray.dir);
+  ray.id = kNoTriangle;
+  batch.owners[batch.count] = owner;
+  ++batch.count;
 }
 
 /// Shared by the jobs: the hits of the wave and the pixels' sums.
@@ -69,17 +66,17 @@ class LightJobs {
   LightJobs(const WaveContext<Store>& context, std::uint32_t first_light, std::uint32_t light_count)
       : context_(context), first_light_(first_light), light_count_(light_count) {}
 
-  /// The next rays of up to 16 neighbouring hits to one place. @returns how many, 0: no more.
-  [[nodiscard]] GRIDIRON_OUTLINE std::uint32_t next(WalkRays& rays, std::uint32_t& purpose) {
+  /// The next rays of up to 16 neighbouring hits to one place. @returns whether there are any.
+  [[nodiscard]] GRIDIRON_OUTLINE bool next(RayBatch& batch) {
     context_.store.work.charge_to(Work::kShadowRay);
+    const std::uint32_t before = batch.count;
     while (light_ < light_count_) {
       const std::uint32_t index = light_;
       const LightRecord& light = context_.store.effects.lights[index];
-      purpose = index;
+      const bool from_light = light.samples == 0 && light.is_near != 0;
       const std::uint32_t first = first_point_, sample = sample_;
       step(light);
-      std::uint32_t count = 0;
-      std::uint32_t end = first + kWalkRays;
+      std::uint32_t end = first + kJobRays;
       if (end > context_.point_count) end = context_.point_count;
       for (std::uint32_t i = first; i < end; ++i) {
         const WavePoint& point = context_.point(i);
@@ -88,27 +85,28 @@ class LightJobs {
             dot(to_light, vector_of(point.face)) > 0.0f && dot(to_light, vector_of(point.shading)) > 0.0f;
         if (!is_lit) continue;
         context_.store.work.add(Work::kShadowRay);
-        const bool from_light = light.samples == 0 && light.is_near != 0;
+        const std::uint32_t owner = i | index << kLightShift;
         if (from_light) {
-          set_walk_ray(rays, count, vector_of(light.corner), -to_light, 1.0f, i);
+          add_ray(batch, vector_of(light.corner), -to_light, 1.0f, owner);
         } else {
-          set_walk_ray(rays, count, vector_of(point.point), to_light, 1.0f, i);
+          add_ray(batch, vector_of(point.point), to_light, 1.0f, owner);
         }
-        ++count;
       }
-      if (count != 0) return count;
+      if (batch.count != before) return true;
     }
-    return 0;
+    return false;
   }
 
-  void finish(const WalkRays& rays, std::uint32_t count, std::uint32_t purpose) {
-    const LightRecord& light = context_.store.effects.lights[purpose];
-    const bool from_light = light.samples == 0 && light.is_near != 0;
-    for (std::uint32_t i = 0; i < count; ++i) {
+  void finish(const RayBatch& batch) {
+    for (std::uint32_t i = 0; i < batch.count; ++i) {
       context_.store.work.charge_to(Work::kShadowRay);
-      if (rays.id[i] != kNoTriangle) continue;
-      const Vector3 dir{rays.dir[0][i], rays.dir[1][i], rays.dir[2][i]};
-      light_point(light, context_.point(rays.owner[i]), from_light ? -dir : dir);
+      const BatchRay& ray = batch.rays[i];
+      if (ray.id != kNoTriangle) continue;
+      const std::uint32_t owner = batch.owners[i];
+      const LightRecord& light = context_.store.effects.lights[owner >> kLightShift];
+      const bool from_light = light.samples == 0 && light.is_near != 0;
+      const Vector3 dir = vector_of(ray.dir);
+      light_point(light, context_.point(owner & (kMostWaveRays - 1)), from_light ? -dir : dir);
     }
   }
 
@@ -119,7 +117,7 @@ class LightJobs {
       const LightRecord& light = context_.store.effects.lights[index];
       const std::uint32_t first = first_point_, sample = sample_;
       step(light);
-      std::uint32_t end = first + kWalkRays;
+      std::uint32_t end = first + kJobRays;
       if (end > context_.point_count) end = context_.point_count;
       for (std::uint32_t i = first; i < end; ++i) {
         context_.store.work.charge_to(Work::kLightSample);
@@ -131,9 +129,12 @@ class LightJobs {
   }
 
  private:
+  static constexpr std::uint32_t kLightShift = 16;  // of a ray's owner: the light above its hit
+  static_assert(kMostWaveRays <= 1u << kLightShift && (kMostWaveRays & (kMostWaveRays - 1)) == 0);
+
   // Hits first, then samples, then lights.
   void step(const LightRecord& light) {
-    first_point_ += kWalkRays;
+    first_point_ += kJobRays;
     if (first_point_ < context_.point_count) return;
     first_point_ = 0;
     ++sample_;
@@ -187,18 +188,17 @@ class OcclusionJobs {
  public:
   explicit OcclusionJobs(const WaveContext<Store>& context) : context_(context) {}
 
-  [[nodiscard]] GRIDIRON_OUTLINE std::uint32_t next(WalkRays& rays, std::uint32_t& purpose) {
+  [[nodiscard]] GRIDIRON_OUTLINE bool next(RayBatch& batch) {
     context_.store.work.charge_to(Work::kOcclusionRay);
     const EffectsRecord& scene = context_.store.effects.scene;
-    purpose = 0;
+    const std::uint32_t before = batch.count;
     while (first_point_ < context_.point_count) {
       const std::uint32_t first = first_point_, sample = sample_;
       if (++sample_ == scene.occlusion_samples) {
         sample_ = 0;
-        first_point_ += kWalkRays;
+        first_point_ += kJobRays;
       }
-      std::uint32_t count = 0;
-      std::uint32_t end = first + kWalkRays;
+      std::uint32_t end = first + kJobRays;
       if (end > context_.point_count) end = context_.point_count;
       for (std::uint32_t i = first; i < end; ++i) {
         const WavePoint& point = context_.point(i);
@@ -206,21 +206,20 @@ class OcclusionJobs {
         const Vector3 dir = occlusion_direction(sample, scene.occlusion_samples, jitter, vector_of(point.shading));
         if (!(dot(dir, vector_of(point.face)) > 0.0f)) continue;
         context_.store.work.add(Work::kOcclusionRay);
-        set_walk_ray(rays, count, vector_of(point.point), scene.occlusion_radius * dir, 1.0f, i);
-        ++count;
+        add_ray(batch, vector_of(point.point), scene.occlusion_radius * dir, 1.0f, i);
       }
-      if (count != 0) return count;
+      if (batch.count != before) return true;
     }
-    return 0;
+    return false;
   }
 
-  void finish(const WalkRays& rays, std::uint32_t count, std::uint32_t) {
+  void finish(const RayBatch& batch) {
     const auto samples = static_cast<std::int32_t>(context_.store.effects.scene.occlusion_samples);
     const float share = kAmbientLight / static_cast<float>(samples);
-    for (std::uint32_t i = 0; i < count; ++i) {
+    for (std::uint32_t i = 0; i < batch.count; ++i) {
       context_.store.work.charge_to(Work::kOcclusionRay);
-      if (rays.id[i] != kNoTriangle) continue;
-      const WavePoint& point = context_.point(rays.owner[i]);
+      if (batch.rays[i].id != kNoTriangle) continue;
+      const WavePoint& point = context_.point(batch.owners[i]);
       context_.add_color(point.pixel, share * vector_of(point.lit.diffuse));
     }
   }
@@ -237,22 +236,21 @@ class WaveRayJobs {
   WaveRayJobs(Store& store, std::uint32_t ray_count, float t_far)
       : store_(store), ray_count_(ray_count), t_far_(t_far) {}
 
-  [[nodiscard]] GRIDIRON_OUTLINE std::uint32_t next(WalkRays& rays, std::uint32_t& purpose) {
+  [[nodiscard]] GRIDIRON_OUTLINE bool next(RayBatch& batch) {
     store_.work.charge_to(Work::kWaveRay);
-    purpose = 0;
-    std::uint32_t count = ray_count_ - first_;
-    if (count > kWalkRays) count = kWalkRays;
-    for (std::uint32_t i = 0; i < count; ++i) {
-      const QueuedRay& ray = store_.wave.items[first_ + i].ray;
-      set_walk_ray(rays, i, vector_of(ray.origin), vector_of(ray.dir), t_far_, first_ + i);
+    std::uint32_t end = first_ + kJobRays;
+    if (end > ray_count_) end = ray_count_;
+    if (first_ == end) return false;
+    for (; first_ < end; ++first_) {
+      const QueuedRay& ray = store_.wave.items[first_].ray;
+      add_ray(batch, vector_of(ray.origin), vector_of(ray.dir), t_far_, first_);
     }
-    first_ += count;
-    return count;
+    return true;
   }
 
-  void finish(const WalkRays& rays, std::uint32_t count, std::uint32_t) {
+  void finish(const RayBatch& batch) {
     store_.work.charge_to(Work::kWaveRay);
-    for (std::uint32_t i = 0; i < count; ++i) store_.wave.ids[rays.owner[i]] = rays.id[i];
+    for (std::uint32_t i = 0; i < batch.count; ++i) store_.wave.ids[batch.owners[i]] = batch.rays[i].id;
   }
 
  private:

@@ -8,6 +8,7 @@
 #include <gridiron/dma/tags.h>
 #include <gridiron/engine/engine.h>
 #include <gridiron/engine/grid/grid_engine.h>
+#include <gridiron/engine/tree/tree_engine.h>
 #include <gridiron/platform/contract.h>
 #include <gridiron/shade/effect_store.h>
 
@@ -134,13 +135,18 @@ struct EffectLayout256K {
   static constexpr std::uint32_t kMaxTriangleDepth = 8;
   static constexpr std::uint32_t kMaxOutputDepth = 2;
   /// @endcond
+  using RayEngine = TreeEngine;                             ///< what traces all rays but eye rays
+  static constexpr std::uint32_t kBatchRays = 512;          ///< rays that its lists take at once
+  static constexpr std::uint32_t kSpareListWords = 1024;    ///< of its lists, beyond the least
+  static constexpr std::uint32_t kTreeSlots = 32;           ///< nodes and leaves at hand
+  static constexpr std::uint32_t kLeafTriangles = 8;        ///< of a leaf, at most
   static constexpr std::uint32_t kWaveRays = 256;      ///< rays worked on together
   static constexpr std::uint32_t kMaterialSlots = 64;  ///< materials at hand
   static constexpr std::uint32_t kLightSlots = 16;     ///< lights at hand
   static_assert((BuiltV & kSceneShading) != 0);
 };
 
-/// Sizes of a 64 KB core that renders effects: no packets, all rays by walks, whose code is shorter. All effects fit,
+/// Sizes of a 64 KB core that renders effects: no packets, all rays by lists. All effects fit,
 /// as tools/checks/memory_table --effects measures; on a core without vectors only with Lanes<1> (base/one_lane.h).
 /// @tparam BuiltV     as above.
 /// @tparam WaveRaysV  rays of a wave: 32, 64; a longer one takes memory that a smaller set of effects leaves free.
@@ -150,16 +156,16 @@ struct EffectLayout64K {
   using Engine = GridEngine;
   static constexpr std::uint32_t kEffects = BuiltV;
   static constexpr std::uint32_t kArenaBytes = 64 * 1024;
-  static constexpr std::uint32_t kCodeBudgetBytes = 43 * 1024;
+  static constexpr std::uint32_t kCodeBudgetBytes = 39 * 1024;
   static constexpr std::uint32_t kStackBudgetBytes = 4 * 1024;
   static constexpr std::uint32_t kTileWidth = 8;
   static constexpr std::uint32_t kPacketWidth = 0;
-  static constexpr std::uint32_t kTableEntries = 128;  ///< 4,096 macrocells resident
-  static constexpr std::uint32_t kMaxMacroWidth = 4;
-  static constexpr std::uint32_t kMaxMacroDepth = 2;
-  static constexpr std::uint32_t kTrianglesPerBuffer = 16;
-  static constexpr std::uint32_t kMaxTriangleDepth = 2;
   static constexpr std::uint32_t kMaxOutputDepth = 2;
+  using RayEngine = TreeEngine;
+  static constexpr std::uint32_t kBatchRays = 64;
+  static constexpr std::uint32_t kSpareListWords = 0;
+  static constexpr std::uint32_t kTreeSlots = 8;
+  static constexpr std::uint32_t kLeafTriangles = 8;
   static constexpr std::uint32_t kWaveRays = WaveRaysV;
   static constexpr std::uint32_t kMaterialSlots = 8;
   static constexpr std::uint32_t kLightSlots = 4;
@@ -171,13 +177,18 @@ struct EffectLayout64K {
 /// Parts of a local store that depend on the layout's effects.
 template <class Layout, bool kHas = Layout::kEffects != 0>
 struct EffectParts {
+  using RayStore = NoWave;
   using StoreWave = NoWave;
   using Effects = NoEffectStore;
+  using Rays = NoRayStore;
 };
 template <class Layout>
 struct EffectParts<Layout, true> {
-  using StoreWave = Wave<typename Layout::Engine::template RayStore<Layout>, Layout::kWaveRays>;
+  using RayStore = typename Layout::RayEngine::template RayStore<Layout>;
+  using StoreWave = Wave<RayStore, Layout::kWaveRays>;
   using Effects = EffectStore<Layout>;
+  using Rays = typename Layout::RayEngine::Store;
+  static_assert(RayEngine<typename Layout::RayEngine, Layout>);
 };
 /// @endcond
 
@@ -189,7 +200,9 @@ struct alignas(128) LocalStore {
   using Engine = typename Layout::Engine;
   using EngineStore = typename Engine::template Store<Layout>;
   using EyeStore = typename Engine::template EyeStore<Layout>;
+  using RayStore = typename EffectParts<Layout>::RayStore;
   using StoreWave = typename EffectParts<Layout>::StoreWave;
+  using Rays = typename EffectParts<Layout>::Rays;
   using Effects = typename EffectParts<Layout>::Effects;
   static constexpr std::uint32_t kTilePixels = Layout::kTileWidth * Layout::kTileWidth;
   /// @endcond
@@ -202,8 +215,9 @@ struct alignas(128) LocalStore {
 
   alignas(128) Frame<typename Engine::Record> frame;  ///< a copy of the frame's
   alignas(128) WorkCounters work;  ///< work of the current frame, or of the last one until the next begins
-  EngineStore engine;              ///< the engine's memory for the whole frame
+  [[no_unique_address]] EngineStore engine;  ///< the memory of the engine of eye rays for the whole frame
   /// @cond
+  [[no_unique_address]] Rays rays;  ///< that of the engine of other rays
   union {
     EyeStore packet;  ///< the engine's memory while eye rays are traced
     StoreWave wave;   ///< used while their hits are shaded
@@ -251,8 +265,11 @@ constexpr void for_each_region(Visit&& visit) {
     visit(name, offsetof(Store, engine) + offset, bytes);
   });
   if constexpr (Layout::kEffects == 0) {
-    visit("packet", offsetof(Store, packet), sizeof(Store::packet));
+    Store::EyeStore::for_each_region([&](const char* name, std::size_t offset, std::size_t bytes) {
+      visit(name, offsetof(Store, packet) + offset, bytes);
+    });
   } else {
+    visit("rays", offsetof(Store, rays), sizeof(Store::rays));
     constexpr bool kWaveIsLarger =
         !kTracesEyes<Layout> || sizeof(typename Store::StoreWave) > sizeof(typename Store::EyeStore);
     visit(kTracesEyes<Layout> ? "packet_or_wave" : "wave", offsetof(Store, packet),

@@ -1,4 +1,4 @@
-// The grid as an engine: packets of eye rays through slices of macrocells, walks of all other rays.
+// The grid as an engine: packets of eye rays through slices of macrocells.
 // Source: Cho, Kim, Han 2012, sections 4 and 5. Memory: its parts of the local store. Threads: one core.
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
@@ -10,13 +10,13 @@
 #include <gridiron/engine/grid/grid_store.h>
 #include <gridiron/engine/grid/grid_work.h>
 #include <gridiron/engine/grid/packet_driver.h>
-#include <gridiron/engine/grid/walk_driver.h>
 #include <gridiron/platform/contract.h>
 #include <gridiron/ray/camera.h>
 #include <gridiron/ray/hits.h>
 #include <gridiron/ray/packet_hits.h>
 
 #include <cstdint>
+#include <type_traits>
 
 namespace gridiron {
 
@@ -47,11 +47,6 @@ class GridCore {
       }
     }
     return Status::kOk;
-  }
-
-  template <class Jobs>
-  [[nodiscard]] Status trace(const RayQuestion& question, Jobs& jobs) {
-    return WalkDriver<L, Store, P>(store_, transfers_).run(question, jobs);
   }
 
  private:
@@ -95,12 +90,12 @@ class GridCore {
   }
   void clear_mailbox() {
     store_.work.add(GridWork::kMailboxGroup, Layout::kMailboxSlots / 4);
-    store_.engine.mailbox.clear();
+    store_.packet.mailbox.clear();
   }
 
   // Limits of this store.
   struct Limits : Layout {
-    static constexpr std::uint32_t kMaxCellBlockBytes = Store::EngineStore::kCellBlockBytes;
+    static constexpr std::uint32_t kMaxCellBlockBytes = Store::EyeStore::kCellBlockBytes;
     static constexpr Status kBeyond = Status::kUnsupportedFrame;
   };
 
@@ -125,22 +120,48 @@ class GridCore {
   bool table_resident_ = false;
 };
 
+/// Without packets there is no code for eye rays, and no memory.
+struct NoGridCore {
+  /// @cond
+  template <class Store, class Moves>
+  NoGridCore(Store&, Moves&) {}
+  [[nodiscard]] Status begin() { return Status::kOk; }
+  void begin_tile() {}
+  [[nodiscard]] Status trace_eyes(const TileView&, const Hits&) { return Status::kBadFrame; }
+  /// @endcond
+};
+
+/// @cond
+template <class Layout, bool kHas = kHasPackets<Layout>>
+struct GridEyeStoreOf {
+  using Type = GridEyeStore<Layout>;
+};
+template <class Layout>
+struct GridEyeStoreOf<Layout, false> {
+  using Type = NoGridStore;
+};
+template <class L, class Store, Platform P, bool kHas>
+struct GridCoreOf {
+  using Type = GridCore<L, Store, P>;
+};
+template <class L, class Store, Platform P>
+struct GridCoreOf<L, Store, P, false> {
+  using Type = NoGridCore;
+};
+/// @endcond
+
 /// The grid as a layout names it.
 struct GridEngine {
   static constexpr std::uint32_t kId = static_cast<std::uint32_t>(EngineId::kGrid);
   using Record = GridFrame;
   template <class Layout>
-  using Store = GridStore<Layout>;
+  using Store = std::conditional_t<kHasPackets<Layout>, GridStore<Layout>, NoGridStore>;
   template <class Layout>
-  using EyeStore = typename GridPacketParts<Layout>::StorePacket;
-  template <class Layout>
-  using RayStore = GridRayStore<Layout>;
+  using EyeStore = typename GridEyeStoreOf<Layout>::Type;
   template <class Layout>
   static constexpr bool kTracesEyes = kHasPackets<Layout>;
-  template <class Layout>
-  static constexpr std::uint32_t kMaxRayDepth = kWalkCount<Layout>;
   template <class L, class Store, Platform P>
-  using Core = GridCore<L, Store, P>;
+  using Core = typename GridCoreOf<L, Store, P, kHasPackets<typename Store::Layout>>::Type;
 };
 
 }  // namespace gridiron

@@ -86,12 +86,12 @@ class PacketDriver {
     runs_[slot] = {count, place.first_byte, cell_.entry, touching_};
     cell_.first_triangle += count;
     cell_.triangle_count -= count;
-    return transfers_.get(store_.engine.triangles[slot].bytes + (place.first_byte - place.slack), place.begin,
+    return transfers_.get(store_.packet.triangles[slot].bytes + (place.first_byte - place.slack), place.begin,
                           place.bytes, static_cast<std::uint8_t>(kFirstTriangleTag + slot));
   }
 
   [[nodiscard]] bool find_next_cell() {
-    const std::byte* const block = store_.engine.cell_blocks[macro_ring_.front()].bytes;
+    const std::byte* const block = store_.packet.cell_blocks[macro_ring_.front()].bytes;
     if (is_on_lattice(store_.frame)) {
       return cell_walk_.next(frustum_, reinterpret_cast<const CellBound*>(block), reach_, cell_, store_.work);
     }
@@ -135,7 +135,7 @@ class PacketDriver {
     visits_[slot] = visit;
     const std::uint32_t block_bytes = store_.frame.engine.grid.cell_block_bytes;
     const MainAddress address{store_.frame.engine.cell_blocks_address + std::uint64_t{visit.block} * block_bytes};
-    return transfers_.get(store_.engine.cell_blocks[slot].bytes, address, block_bytes,
+    return transfers_.get(store_.packet.cell_blocks[slot].bytes, address, block_bytes,
                           static_cast<std::uint8_t>(kFirstMacroTag + slot));
   }
 
@@ -171,7 +171,7 @@ class PacketDriver {
       SubpacketSet changed = 0;
       // The other open subpackets are tested too, so that no triangle has to be fetched again for them by a later cell.
       if ((open & subpackets_of_squares(run.touching)) != 0) {
-        changed = test_run(store_.engine.triangles[slot].bytes, run.first_byte, run.count, open);
+        changed = test_run(store_.packet.triangles[slot].bytes, run.first_byte, run.count, open);
       }
       if (changed != 0) reach_ = reaches_.template update<L>(store_.packet, changed, store_.work);
     }
@@ -222,7 +222,7 @@ class PacketDriver {
     std::uint32_t untested_count = 0;
     for (std::uint32_t i = 0; i < open_count; ++i) {
       open[untested_count] = open[i];
-      const SubpacketSet untested = store_.engine.mailbox.untested(open[i].triangle->triangle_id, open[i].subpackets);
+      const SubpacketSet untested = store_.packet.mailbox.untested(open[i].triangle->triangle_id, open[i].subpackets);
       open[untested_count].subpackets = untested;
       untested_count += untested != 0 ? 1u : 0u;
     }
@@ -238,7 +238,7 @@ class PacketDriver {
       SubpacketSet untested = wanted;
       if (use_mailbox) {
         store_.work.add(GridWork::kMailboxProbe);
-        untested = store_.engine.mailbox.untested(triangles[i].triangle_id, wanted);
+        untested = store_.packet.mailbox.untested(triangles[i].triangle_id, wanted);
       }
       store_.work.charge_to(Work::kCullTestPaper);
       if (untested == 0) continue;

@@ -6,6 +6,7 @@
 #include <gridiron/base/accuracies.h>
 #include <gridiron/base/records.h>
 #include <gridiron/base/tree_records.h>
+#include <gridiron/dma/tags.h>
 #include <gridiron/dma/transfers.h>
 #include <gridiron/engine/tree/ray_lists.h>
 #include <gridiron/engine/tree/tree_source.h>
@@ -25,7 +26,7 @@ class TreeCore {
 
   /// Fetches the tree's record.
   [[nodiscard]] Status begin() {
-    TreeRecord& tree = store_.tree.tree;
+    TreeRecord& tree = store_.rays.tree;
     GRIDIRON_TRY(transfers_.get(&tree, MainAddress{store_.frame.tree_address}, sizeof tree, kSetupTag));
     GRIDIRON_TRY(transfers_.wait(kSetupTag));
     if (tree.node_count == 0 || tree.depth > kMaxTreeDepth || tree.leaf_triangles > Cache::kLeafTriangles ||
@@ -76,6 +77,9 @@ struct TreeEngine {
   using Store = TreeStore;
   template <class Layout>
   using RayStore = TreeRayStore<Layout>;
+  template <class Layout>
+  static constexpr std::uint32_t kMaxDepth =
+      RayStore<Layout>::kBuffers < kTriangleTagCount ? RayStore<Layout>::kBuffers : std::uint32_t{kTriangleTagCount};
   template <class L, class Store, Platform P>
   using Core = TreeCore<L, Store, P>;
 };

@@ -87,7 +87,7 @@ class TreeSource {
     std::uint32_t bytes, first_byte, slack;
   };
   [[nodiscard]] Place place_of(TreeChild child) const {
-    const TreeRecord& tree = store_.tree.tree;
+    const TreeRecord& tree = store_.rays.tree;
     if (!child.is_leaf()) {
       const std::uint64_t offset = tree.nodes_offset_bytes + std::uint64_t{child.node_index()} * sizeof(TreeNode);
       return {MainAddress{store_.frame.image_address + offset}, sizeof(TreeNode), 0, 0};
@@ -103,7 +103,7 @@ class TreeSource {
 
   [[nodiscard]] Cache& cache() { return store_.wave.rays.cache; }
   [[nodiscard]] bool is_on_lattice() const {
-    return store_.tree.tree.triangle_format == static_cast<std::uint32_t>(TriangleFormat::kLattice);
+    return store_.rays.tree.triangle_format == static_cast<std::uint32_t>(TriangleFormat::kLattice);
   }
   [[nodiscard]] static std::uint32_t set_of(TreeChild child) {
     const std::uint32_t bits = child.bits;
@@ -154,7 +154,7 @@ class TreeSource {
     if (!child.is_leaf() || !is_on_lattice()) return Status::kOk;
     store_.work.add(Work::kLatticeTriangle, child.count());
     store_.work.charge_to(Work::kLatticeTriangle);
-    spread_lattice_run(store_.tree.tree.lattice, cache().slots[slot].bytes, place_of(child).first_byte, child.count());
+    spread_lattice_run(store_.rays.tree.lattice, cache().slots[slot].bytes, place_of(child).first_byte, child.count());
     return Status::kOk;
   }
 

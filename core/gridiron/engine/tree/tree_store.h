@@ -6,6 +6,7 @@
 #include <gridiron/base/effect_records.h>
 #include <gridiron/base/records.h>
 #include <gridiron/base/tree_records.h>
+#include <gridiron/engine/engine.h>
 #include <gridiron/engine/tree/list_memory.h>
 #include <gridiron/platform/contract.h>
 
@@ -46,11 +47,18 @@ template <class Layout>
 struct alignas(128) TreeRayStore {
   using Lists = ListMemory<Layout::kBatchRays, Layout::kSpareListWords>;
   using Cache = TreeCache<Layout::kTreeSlots, Layout::kLeafTriangles>;
-  /// Buffers lent to shading: two slots each.
-  static constexpr std::uint32_t kIdleBuffers = Layout::kTreeSlots / 2;
+  /// Buffers that can be lent: as many slots each as hold one.
+  static constexpr std::uint32_t kBufferSlots = (kIdleBufferBytes + Cache::kSlotBytes - 1) / Cache::kSlotBytes;
+  static constexpr std::uint32_t kBuffers = Layout::kTreeSlots / kBufferSlots;
 
   Lists lists;
   Cache cache;
+  /// Gives up the slots of the first `count` buffers.
+  void lend(std::uint32_t count) {
+    for (std::uint32_t slot = 0; slot < count * kBufferSlots; ++slot) cache.keys[slot] = Cache::kNoKey;
+  }
+  [[nodiscard]] std::byte* idle_buffer(std::uint32_t buffer) { return cache.slots[buffer * kBufferSlots].bytes; }
+
   alignas(32) std::byte surface_bytes[sizeof(SurfaceRecord) + kPortableCongruenceBytes];  ///< one that settles a tie
 };
 

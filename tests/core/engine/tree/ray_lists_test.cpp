@@ -1,9 +1,10 @@
-// Lists of rays through the tree find what exact arithmetic finds, triangle by triangle. SPDX-License-Identifier:
-// Apache-2.0
+// Lists of rays through the tree find what exact arithmetic finds, triangle by triangle.
+// SPDX-License-Identifier: Apache-2.0
 #include <gridiron/build/grid/triangle_records.h>
-#include <gridiron/build/tree/tree_builder.h>
+#include <gridiron/base/one_lane.h>
 #include <gridiron/engine/tree/ray_lists.h>
 
+#include "support/memory_tree.h"
 #include "support/test_mesh.h"
 
 namespace gridiron::test {
@@ -20,17 +21,22 @@ struct Answer {
   bool operator==(const Answer&) const = default;
 };
 
+BatchRay batch_ray(const Ray& ray) {
+  BatchRay made{};
+  for (int axis = 0; axis < 3; ++axis) {
+    made.origin[axis] = ray.origin[axis];
+    made.dir[axis] = ray.dir[axis];
+  }
+  made.t = ray.t;
+  made.id = kNoTriangle;
+  return made;
+}
+
 // Every triangle, by exact signs and the correctly rounded distance; of equal distances the lowest id.
 Answer exact_answer(const TestMesh& mesh, const Ray& ray) {
   WorkCounters work;
-  WalkRays rays{};
-  float dir_max = 0;
-  for (int axis = 0; axis < 3; ++axis) {
-    rays.origin[axis][0] = ray.origin[axis];
-    rays.dir[axis][0] = ray.dir[axis];
-    dir_max = std::max(dir_max, std::fabs(ray.dir[axis]));
-  }
-  rays.dir_max[0] = dir_max;
+  BatchRay tested = batch_ray(ray);
+  for (const float component : tested.dir) tested.dir_max = std::max(tested.dir_max, std::fabs(component));
   Answer answer{ray.t, kNoTriangle};
   for (std::uint32_t id = 0; id < mesh.triangles.size(); ++id) {
     VertexTriangle triangle{};
@@ -39,46 +45,34 @@ Answer exact_answer(const TestMesh& mesh, const Ray& ray) {
     for (int corner = 0; corner < 3; ++corner) {
       for (int axis = 0; axis < 3; ++axis) triangle.v[corner][axis] = mesh.vertices[t[corner]][axis];
     }
-    if (!passes_through(rays, 0, triangle, 0, 0, work)) continue;
-    const float distance = ray_distance(rays, 0, triangle, work);
+    if (!passes_through(tested, triangle, work)) continue;
+    const float distance = ray_distance(tested, triangle, work);
     if (!(distance > 0) || distance > answer.t || (distance == answer.t && answer.id != kNoTriangle)) continue;
     answer = {distance, id};
   }
   return answer;
 }
 
-template <class L>
-std::vector<Answer> answers(const TestMesh& mesh, std::uint32_t leaf_triangles, const std::vector<Ray>& rays,
-                            bool any_hit) {
-  constexpr std::uint32_t kBatch = 256;
-  const std::size_t count = mesh.triangles.size();
-  std::vector<VertexTriangle> records(count);
-  std::vector<TreeNode> nodes(most_tree_nodes(count, leaf_triangles));
-  std::vector<std::uint64_t> scratch(tree_scratch_bytes(count) / 8);
-  TreeSize size;
-  EXPECT_EQ(build_tree(mesh.view(), leaf_triangles, records, nodes, std::as_writable_bytes(std::span(scratch)), size),
-            Status::kOk);
+template <class L, std::uint32_t Rays, std::uint32_t Spare>
+std::vector<Answer> answers(MemoryTree& tree, const std::vector<Ray>& rays, bool any_hit) {
+  using Memory = ListMemory<Rays, Spare>;
   WorkCounters work;
-  const auto lists = std::make_unique<RayLists<L, kBatch>>(nodes.data(), records.data(), work);
-  std::vector<ListRays> batch(kBatch / kWalkRays);
+  const auto memory = std::make_unique<Memory>();
   std::vector<Answer> all;
-  for (std::size_t first = 0; first < rays.size(); first += kBatch) {
-    const auto n = static_cast<std::uint32_t>(std::min<std::size_t>(kBatch, rays.size() - first));
-    for (std::uint32_t i = 0; i < kBatch; ++i) {
-      const Ray& ray = rays[first + std::min(i, n - 1)];
-      ListRays& group = batch[i / kWalkRays];
-      for (int axis = 0; axis < 3; ++axis) {
-        group.origin[axis][i % kWalkRays] = ray.origin[axis];
-        group.dir[axis][i % kWalkRays] = ray.dir[axis];
-      }
-      group.t[i % kWalkRays] = ray.t;
-      group.id[i % kWalkRays] = kNoTriangle;
-    }
-    for (ListRays& group : batch) set_up_list_rays<L>(group);
-    lists->trace(batch.data(), n, any_hit);
+  for (std::size_t first = 0; first < rays.size(); first += Rays) {
+    const auto n = static_cast<std::uint32_t>(std::min<std::size_t>(Rays, rays.size() - first));
+    for (std::uint32_t i = 0; i < n; ++i) memory->rays[i] = batch_ray(rays[first + i]);
+    RayLists<L, Memory, MemoryTree> lists(*memory, tree, work);
+    EXPECT_EQ(lists.trace(RayQuestion{any_hit, false, false, {}}, n, tree.largest()), Status::kOk);
     for (std::uint32_t i = 0; i < n; ++i) {
-      const ListRays& group = batch[i / kWalkRays];
-      all.push_back({group.t[i % kWalkRays], group.id[i % kWalkRays]});
+      // Directions may have been scaled by a power of two, and t with them.
+      float scale = 1.0f;
+      for (int axis = 0; axis < 3; ++axis) {
+        const float before = rays[first + i].dir[axis];
+        if (before != 0.0f) scale = memory->rays[i].dir[axis] / before;
+      }
+      const BatchRay& ray = memory->rays[i];
+      all.push_back({ray.id == kNoTriangle ? rays[first + i].t : ray.t * scale, ray.id});
     }
   }
   return all;
@@ -133,7 +127,7 @@ std::vector<Ray> hard_rays(const TestMesh& mesh, std::uint32_t count, std::uint6
 
 template <class L>
 class RayListsTest : public testing::Test {};
-using AllLanes = testing::Types<Lanes<4>, Lanes<8>, Lanes<16>>;
+using AllLanes = testing::Types<Lanes<1>, Lanes<4>, Lanes<8>, Lanes<16>>;
 TYPED_TEST_SUITE(RayListsTest, AllLanes);
 
 TYPED_TEST(RayListsTest, FindWhatExactArithmeticFinds) {
@@ -151,17 +145,23 @@ TYPED_TEST(RayListsTest, FindWhatExactArithmeticFinds) {
       {"far", moved(torus, 1.0f, {1e5f, -1e5f, 3e4f})},
       {"tiny", moved(soup, 0x1p-60f)},
       {"huge", moved(soup, 0x1p60f)},
+      {"least", moved(soup, 0x1p-110f)},
+      {"greatest", moved(soup, 0x1p118f)},
       {"stadium", joined(moved(torus, 1e-3f), make_box({-100, -1, -100}, {100, 50, 100}))},
   };
   for (const auto& tested : cases) {
     SCOPED_TRACE(tested.name);
-    const std::vector<Ray> rays = hard_rays(tested.mesh, 1500, 17);
+    const std::vector<Ray> rays = hard_rays(tested.mesh, 500, 17);
     std::vector<Answer> exact;
     for (const Ray& ray : rays) exact.push_back(exact_answer(tested.mesh, ray));
     for (const std::uint32_t leaf : {1u, 8u, 16u}) {
       SCOPED_TRACE(leaf);
-      const std::vector<Answer> closest = answers<TypeParam>(tested.mesh, leaf, rays, false);
-      const std::vector<Answer> any = answers<TypeParam>(tested.mesh, leaf, rays, true);
+      MemoryTree tree(tested.mesh.view(), leaf);
+      ASSERT_EQ(tree.status(), Status::kOk);
+      const std::vector<Answer> closest = answers<TypeParam, 256, 512>(tree, rays, false);
+      const std::vector<Answer> any = answers<TypeParam, 256, 512>(tree, rays, true);
+      // With the least arena most lists go through nodes in pieces.
+      EXPECT_EQ((answers<TypeParam, 256, 0>(tree, rays, false)), closest);
       for (std::size_t i = 0; i < rays.size(); ++i) {
         ASSERT_EQ(closest[i].id, exact[i].id) << i;
         ASSERT_EQ(closest[i].t, exact[i].t) << i;
