@@ -137,11 +137,12 @@ TreeBox box_of_child(const ImageChecker& checker, const SceneImageView& view, Tr
 }
 
 // Every child begins where the one before it ends, so the leaves of any node cover its records in order. A child that
-// is a node has too many records for a leaf. Boxes are as built.
+// is a node has too many records for a leaf. Boxes are as built; from the last node to the first, so that a wrong box
+// is named, not that of its parent, which is made of it.
 bool check_runs_and_boxes(ImageChecker& checker, const SceneImageView& view) {
   const TreeRecord& tree = view.tree;
   const float margin = tree_margin_of(tree.bounds_minimum, tree.bounds_maximum);
-  for (std::uint32_t i = 0; i < tree.node_count; ++i) {
+  for (std::uint32_t i = tree.node_count; i-- > 0;) {
     const std::uint64_t base = place_of_node(tree, i);
     const auto node = checker.read<TreeNode>(base);
     std::uint64_t end = i == 0 ? 0 : run_of(checker, tree, node.children[0]).first;
