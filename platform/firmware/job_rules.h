@@ -166,7 +166,8 @@ template <class Require>
          require(job.effects == called_for, offsetof(FrameJob, effects), "effects ", Hex{job.effects},
                  ", frame record and scene image call for ", Hex{called_for}) &&
          GRIDIRON_HEAD_IS(effects_address, (is_scene ? base + image.effects_offset_bytes : 0), "scene image") &&
-         GRIDIRON_HEAD_IS(image_address, (is_scene ? base : 0), "scene image");
+         GRIDIRON_HEAD_IS(image_address, (is_scene ? base : 0), "scene image") &&
+         GRIDIRON_HEAD_IS(tree_address, (is_scene ? base + image.tree_offset_bytes : 0), "scene image");
 }
 
 #undef GRIDIRON_ENGINE_IS

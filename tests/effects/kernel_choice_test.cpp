@@ -180,6 +180,7 @@ TEST(KernelChoice, FramesThatEffectsCannotBeRenderedForAreRefused) {
   EXPECT_EQ(status_of(+[](FrameRecord& frame) { frame.walk_depth = 0xFFFFFFFFu; }), Status::kUnsupportedFrame);
   EXPECT_EQ(status_of(+[](FrameRecord& frame) { frame.effects_address = 0; }), Status::kBadFrame);
   EXPECT_EQ(status_of(+[](FrameRecord& frame) { frame.image_address = 0; }), Status::kBadFrame);
+  EXPECT_EQ(status_of(+[](FrameRecord& frame) { frame.tree_address = 0; }), Status::kBadFrame);
   EXPECT_EQ(status_of(+[](FrameRecord& frame) {
               frame.accuracy = static_cast<std::uint32_t>(Accuracy::kPaper);
               frame.engine.grid.triangle_format = static_cast<std::uint32_t>(TriangleFormat::kProjection);

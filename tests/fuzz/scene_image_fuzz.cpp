@@ -10,9 +10,12 @@
 #include <cstdlib>
 #include <cstring>
 #include <span>
+#include <vector>
 
 #include "core/build/grid/line_buffer.h"
+#include "core/build/tree/tree_scene.h"
 #include "core/image/effects_oracle.h"
+#include "core/image/tree_oracle.h"
 #include "core/scene/test_effects.h"
 
 namespace gridiron::test {
@@ -32,7 +35,7 @@ Record read(std::span<const std::byte> bytes, std::uint64_t offset) {
   return record;
 }
 
-// Every macrocell, block, cell and triangle.
+// Every macrocell, block, cell and triangle; every record of effects; the tree along every path.
 void read_all(std::span<const std::byte> bytes, const SceneImageView& view) {
   const GridRecord& grid = view.grid;
   const std::uint64_t macro_cells =
@@ -68,19 +71,29 @@ void read_all(std::span<const std::byte> bytes, const SceneImageView& view) {
     }
   }
   require(references == grid.reference_count, "references are miscounted");
-  const char* const broken = broken_effects(bytes.first(static_cast<std::size_t>(view.header.image_bytes)), view);
+  const std::span<const std::byte> image = bytes.first(static_cast<std::size_t>(view.header.image_bytes));
+  const char* const broken = broken_effects(image, view);
   require(broken == nullptr, broken);
+  const char* const broken_nodes = broken_tree(image, view);
+  require(broken_nodes == nullptr, broken_nodes);
 }
 
 // A valid image, where it fits. @returns its size, else 0.
 std::size_t write_image(std::uint8_t* data, std::size_t max_size, const MeshView& mesh,
                         const GridParameters& parameters, const EffectsView* effects) {
   GridNeed need{};
-  if (count_scene_image(mesh, parameters, need, effects) != Status::kOk || need.image_bytes > max_size) return 0;
+  if (count_scene_image(mesh, parameters, need, effects) != Status::kOk) return 0;
   LineBuffer image(static_cast<std::size_t>(need.image_bytes));
-  if (build_scene_image(mesh, parameters, need, image.bytes(), {}, effects) != Status::kOk) std::abort();
-  std::memcpy(data, image.bytes().data(), image.bytes().size());
-  return image.bytes().size();
+  std::vector<std::uint64_t> scratch(static_cast<std::size_t>((need.scratch_bytes + 7) / 8));
+  const Status status =
+      build_scene_image(mesh, parameters, need, image.bytes(), std::as_writable_bytes(std::span(scratch)), effects);
+  if (status != Status::kOk) std::abort();
+  ImageHeader header;
+  std::memcpy(&header, image.bytes().data(), sizeof(header));
+  const auto bytes = static_cast<std::size_t>(header.image_bytes);
+  if (bytes > max_size) return 0;
+  std::memcpy(data, image.bytes().data(), bytes);
+  return bytes;
 }
 
 // A scene with effects; bits of the seed leave optional parts out.
@@ -96,21 +109,29 @@ std::size_t write_image_with_effects(std::uint8_t* data, std::size_t max_size, u
   return write_image(data, max_size, scene.mesh(), {2.0f, 1 + (seed >> 8) % 3, format}, &view);
 }
 
-// Changes one word of the sections of effects to what floats, counts and offsets are worst at, or by one bit: blind
-// changes meet grid and cells, which refuse nearly all. @returns whether there are any.
+// A scene without lights whose tree has several nodes.
+std::size_t write_image_with_nodes(std::uint8_t* data, std::size_t max_size, unsigned seed) {
+  const TestEffects scene = tree_scene(1 + seed % 32);
+  const TriangleFormat format = (seed & 64) != 0 ? TriangleFormat::kVertices : TriangleFormat::kLattice;
+  const EffectsView view = scene.view();
+  return write_image(data, max_size, scene.mesh(), {1e-6f, 1, format, 1 + (seed >> 8) % 2}, &view);
+}
+
+// Changes one word of the sections of effects and tree to what floats, counts and offsets are worst at, or by one bit:
+// blind changes meet grid and cells, which refuse nearly all. @returns whether there are any.
 bool change_effects(std::span<std::byte> bytes, unsigned seed) {
   if (bytes.size() < 2 * kLineBytes) return false;
   ImageHeader header;
   std::memcpy(&header, bytes.data(), sizeof(header));
   const std::uint64_t table = header.section_table_offset_bytes;
   SectionEntry found{};
-  std::uint32_t pick = seed % 7;
+  std::uint32_t pick = seed % 10;
   for (std::uint32_t i = 0; i < header.section_count && i < kMaxSectionCount; ++i) {
     SectionEntry entry;
     if (table + (i + 1) * sizeof(entry) > bytes.size()) break;
     std::memcpy(&entry, bytes.data() + table + i * sizeof(entry), sizeof(entry));
     const bool of_effects = entry.kind >= static_cast<std::uint32_t>(SectionKind::kEffects) &&
-                            entry.kind <= static_cast<std::uint32_t>(SectionKind::kEnvironmentMap);
+                            entry.kind < static_cast<std::uint32_t>(SectionKind::kEnd);
     const bool inside = entry.section_bytes >= 4 && entry.offset_bytes <= bytes.size() &&
                         entry.section_bytes <= bytes.size() - entry.offset_bytes;
     if (!of_effects || !inside) continue;
@@ -165,8 +186,12 @@ extern "C" std::size_t LLVMFuzzerMutate(std::uint8_t* data, std::size_t size, st
 extern "C" std::size_t LLVMFuzzerCustomMutator(std::uint8_t* data, std::size_t size, std::size_t max_size,
                                                unsigned int seed) {
   if (size < sizeof(gridiron::ImageHeader) || seed % 64 == 0) {
-    const std::size_t valid = seed / 64 % 2 == 0 ? gridiron::test::write_valid_image(data, max_size, seed / 128)
-                                                 : gridiron::test::write_image_with_effects(data, max_size, seed / 128);
+    using gridiron::test::write_image_with_effects, gridiron::test::write_image_with_nodes,
+        gridiron::test::write_valid_image;
+    const auto write = seed / 64 % 2 == 0    ? write_valid_image
+                       : seed / 128 % 2 == 0 ? write_image_with_effects
+                                             : write_image_with_nodes;
+    const std::size_t valid = write(data, max_size, seed / 256);
     if (valid != 0) return valid;
   }
   if (seed % 4 == 1 && gridiron::test::change_effects(std::as_writable_bytes(std::span(data, size)), seed / 4)) {

@@ -78,6 +78,8 @@ class JobMemory {
     return *reinterpret_cast<EffectsRecord*>(image() + section(SectionKind::kEffects).offset_bytes);
   }
 
+  TreeRecord& tree() { return *reinterpret_cast<TreeRecord*>(image() + section(SectionKind::kTree).offset_bytes); }
+
   // Whether a firmware for this job accepts it, once its check value is that of its bytes. `told`: its output.
   bool check() {
     job().check_value = tool::job_check_value({bytes_, file_.size()});
@@ -169,6 +171,7 @@ TEST(JobCheck, HoldsTheRecordAgainstTheJob) {
                            WRONG("frame record: triangles_address", ++m.record().engine.triangles_address),
                            WRONG("frame record: effects_address", m.record().effects_address = m.job().image_address),
                            WRONG("frame record: image_address", m.record().image_address = m.job().image_address),
+                           WRONG("frame record: tree_address", m.record().tree_address = m.job().image_address),
                            WRONG("frame record: the grid", ++m.record().engine.grid.reference_count),
                            WRONG("frame record: the grid", m.record().engine.grid.cells_per_unit[2] *= 2),
                            WRONG("frame record: accuracy 0x5", m.record().accuracy = 5),
@@ -178,7 +181,7 @@ TEST(JobCheck, HoldsTheRecordAgainstTheJob) {
                            WRONG("frame record: effects_address 0x0", m.record().shading = 2),
                            WRONG("frame record: shading 2, the scene image has no effects",
                                  m.record().shading = m.record().walk_depth = 2,
-                                 m.record().effects_address = m.record().image_address = 4096),
+                                 m.record().effects_address = m.record().image_address = m.record().tree_address = 4096),
                            WRONG("47 tiles, of ", m.job().tile_count = 47)});
 }
 
@@ -214,7 +217,8 @@ TEST(JobCheck, HoldsEffectsAgainstTheJob) {
   expect_refusals(
       memory,
       {WRONG("frame record: effects_address", m.record().effects_address += 128),
-       WRONG("frame record: image_address", m.record().image_address -= 4096), WRONG("effects", m.record().shading = 1),
+       WRONG("frame record: image_address", m.record().image_address -= 4096),
+       WRONG("frame record: tree_address", m.record().tree_address += 128), WRONG("effects", m.record().shading = 1),
        WRONG("frame record: walk_depth", m.record().walk_depth = 0),
        WRONG("effects", m.effects().called_for ^= kReflection), WRONG("effects", m.job().effects ^= kReflection),
        WRONG("effects reflection, smooth_normals are not built into this firmware", m.built &= ~kMirrors),
@@ -226,6 +230,15 @@ TEST(JobCheck, HoldsEffectsAgainstTheJob) {
        WRONG("scene image: section.element_count", m.effects().smooth_triangle_count = ~0u),
        WRONG("scene image: effects.environment_offset_bytes", m.effects().environment_offset_bytes = ~127ull),
        WRONG("scene image: effects.environment_offset_bytes", m.effects().environment_width = 0),
+       WRONG("scene image: header.section_count", m.section(SectionKind::kTree).kind = 1000),
+       WRONG("scene image: tree.nodes_offset_bytes", m.section(SectionKind::kTreeNodes).kind = 1000),
+       WRONG("scene image: tree.nodes_offset_bytes", m.tree().nodes_offset_bytes = ~127ull),
+       WRONG("scene image: tree.triangles_offset_bytes", m.tree().triangles_offset_bytes += 128),
+       WRONG("scene image: section.element_count", m.tree().node_count = ~0u),
+       WRONG("scene image: tree.triangle_count 4294967295 ", m.tree().triangle_count = ~0u),
+       WRONG("scene image: tree.depth 13 ", m.tree().depth = kMaxTreeDepth + 1),
+       WRONG("scene image: tree.leaf_triangles 17 ", m.tree().leaf_triangles = kMaxTreeLeaf + 1),
+       WRONG("scene image: tree.triangle_format 2 ", m.tree().triangle_format = 2),
        WRONG("scene image: effects.recursion_depth 0 ", m.effects().recursion_depth = 0),
        WRONG("scene image: effects.recursion_depth 9 ", m.effects().recursion_depth = 9),
        // Of which the bytes of waiting rays are none, modulo 2^32.

@@ -264,6 +264,14 @@ class EffectsFrame {
     effects.surfaces_offset_bytes = 1408;
     effects.normals_offset_bytes = 2944;
     effects.environment_offset_bytes = 4096;
+    tree.node_count = 4;
+    tree.triangle_count = kTriangles;
+    tree.depth = 2;
+    tree.leaf_triangles = 8;
+    tree.triangle_format = static_cast<std::uint32_t>(TriangleFormat::kVertices);
+    tree.triangle_bytes = sizeof(VertexTriangle);
+    tree.triangles_offset_bytes = 3328;
+    tree.nodes_offset_bytes = 2048;
     frame.magic = kFrameMagic;
     frame.version = kFrameVersion;
     frame.width = frame.height = frame.tile_width = 32;
@@ -274,12 +282,14 @@ class EffectsFrame {
     frame.color_address = color_.address.value;
     frame.effects_address = image_.address.value + 512;
     frame.image_address = image_.address.value;
+    frame.tree_address = image_.address.value + 768;
   }
 
   /// @returns kBadParameter where the frame is sound: the spill memory is not, and that is looked at last.
   [[nodiscard]] Status status(Mode mode = Mode::kChecked) {
     std::memcpy(image_.bytes.data(), &image, sizeof image);
     std::memcpy(image_.bytes.data() + 512, &effects, sizeof effects);
+    std::memcpy(image_.bytes.data() + 768, &tree, sizeof tree);
     const std::uint64_t mark = memory_.used_bytes();
     const MemoryRegion record = *memory_.allocate(sizeof frame);
     std::memcpy(record.bytes.data(), &frame, sizeof frame);
@@ -291,6 +301,7 @@ class EffectsFrame {
 
   ImageHeader image{};
   EffectsRecord effects{};
+  TreeRecord tree{};
   FrameRecord frame{};
 
  private:
@@ -334,6 +345,21 @@ TEST(SimChipEffects, WhatAFrameNamesMustLieInMemory) {
     EXPECT_EQ(status_of([&](F& f) { f.effects.environment_offset_bytes = end - 6 * 9 * 768 + 128; }),
               Status::kBadFrame);
     EXPECT_EQ(status_of([&](F& f) { f.effects.environment_offset_bytes = end - 6 * 9 * 768; }), Status::kBadParameter);
+    EXPECT_EQ(status_of([](F& f) { f.frame.tree_address = 0; }), Status::kBadFrame);
+    EXPECT_EQ(status_of([](F& f) { f.frame.tree_address = 1 << 20; }), Status::kBadFrame);
+    EXPECT_EQ(status_of([](F& f) { f.frame.tree_address = ~std::uint64_t{0} - 63; }), Status::kBadFrame);
+    EXPECT_EQ(status_of([](F& f) { f.tree.node_count = 0; }), Status::kBadFrame);
+    EXPECT_EQ(status_of([](F& f) { f.tree.node_count = ~0u; }), Status::kBadFrame);
+    EXPECT_EQ(status_of([](F& f) { f.tree.triangle_count = kMaxTreeTriangles; }), Status::kBadFrame);
+    EXPECT_EQ(status_of([](F& f) { f.tree.triangle_bytes = 1 << 20; }), Status::kBadFrame);
+    EXPECT_EQ(status_of([](F& f) { f.tree.depth = kMaxTreeDepth + 1; }), Status::kBadFrame);
+    EXPECT_EQ(status_of([](F& f) { f.tree.leaf_triangles = kMaxTreeLeaf + 1; }), Status::kBadFrame);
+    EXPECT_EQ(status_of([&](F& f) { f.tree.nodes_offset_bytes = end - 4 * sizeof(TreeNode) + 128; }),
+              Status::kBadFrame);
+    EXPECT_EQ(status_of([&](F& f) { f.tree.nodes_offset_bytes = end - 4 * sizeof(TreeNode); }), Status::kBadParameter);
+    EXPECT_EQ(status_of([&](F& f) { f.tree.triangles_offset_bytes = end - 1408; }), Status::kBadFrame);
+    EXPECT_EQ(status_of([&](F& f) { f.tree.triangles_offset_bytes = ~std::uint64_t{127}; }), Status::kBadFrame);
+    EXPECT_EQ(status_of([&](F& f) { f.tree.triangles_offset_bytes = end - 1536; }), Status::kBadParameter);
     // Other shadings have neither effects nor spill memory.
     EXPECT_NE(status_of([](F& f) { f.frame.shading = 1, f.frame.effects_address = 0; }), Status::kBadParameter);
   }

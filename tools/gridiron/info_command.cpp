@@ -141,6 +141,17 @@ Json effects_json(const InfoPlan& plan, const SceneFacts& facts) {
   return json;
 }
 
+// Null where there is no tree.
+Json tree_json(const SceneFacts& facts) {
+  const TreeRecord& tree = facts.tree;
+  if (tree.node_count == 0) return {};
+  return {{"nodes", tree.node_count},
+          {"triangles", tree.triangle_count},
+          {"depth", tree.depth},
+          {"leaf_triangles", tree.leaf_triangles},
+          {"bytes", facts.tree_bytes}};
+}
+
 void print_json(const InfoPlan& plan, const SceneFacts& facts) {
   const GridRecord& grid = facts.grid;
   Json document = {
@@ -164,6 +175,7 @@ void print_json(const InfoPlan& plan, const SceneFacts& facts) {
         {"references", grid.reference_count},
         {"triangle_format", word_of(static_cast<TriangleFormat>(grid.triangle_format))},
         {"lattice_step", grid.lattice.step}}},
+      {"tree", tree_json(facts)},
       {"main_memory",
        {{"machine", plan.scene.machine->name},
         {"capacity_bytes", plan.scene.machine->main_memory_bytes},
@@ -243,6 +255,11 @@ void print_text(const InfoPlan& plan, const SceneFacts& facts) {
   std::snprintf(text, sizeof text, ", lambda %g", static_cast<double>(grid.lambda));
   print_line("grid", joined(grid.cell_count) + " cells" + text + ", " + words_of_count(grid.reference_count) +
                          " references stored as " + word_of(static_cast<TriangleFormat>(grid.triangle_format)));
+  if (const TreeRecord& tree = facts.tree; tree.node_count != 0) {
+    print_line("tree", words_of_count(tree.node_count, "node") + ", " + std::to_string(tree.depth) +
+                           " on the longest path, " + words_of_count(tree.triangle_count, "triangle") + " in leaves of " +
+                           std::to_string(tree.leaf_triangles) + ", " + words_of_bytes(facts.tree_bytes));
+  }
   if (!facts.roundness.groups.empty()) {
     const char* rules[] = {"as requested", "1e-4 of the scene's diagonal", "chosen by the picture"};
     print_line("tolerance", words_of_tolerance(facts.roundness) + ", " +

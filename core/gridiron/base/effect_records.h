@@ -89,7 +89,7 @@ struct SurfaceRecord {
   float v[3][3];               ///< corner, axis
   std::uint32_t material;      ///< index
   std::uint32_t normals;       ///< index in the kNormals section, or kNoNormals for a flat triangle
-  std::uint32_t reserved;
+  std::uint32_t tree_place;    ///< index of its record in the kTreeTriangles section; kNoTriangle if it was dropped
 };
 static_assert(sizeof(SurfaceRecord) == 48);
 inline constexpr std::uint32_t kNoNormals = 0xFFFFFFFFu;  ///< for a flat triangle

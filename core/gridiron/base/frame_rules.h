@@ -79,6 +79,7 @@ template <class Limits>
   if (frame.shading != static_cast<std::uint32_t>(Shading::kScene)) return {};
   GRIDIRON_HEAD_RULE(frame.effects_address != 0, Status::kBadFrame, effects_address);
   GRIDIRON_HEAD_RULE(frame.image_address != 0, Status::kBadFrame, image_address);
+  GRIDIRON_HEAD_RULE(frame.tree_address != 0, Status::kBadFrame, tree_address);
   GRIDIRON_HEAD_RULE(is_in_range(frame.walk_depth, 1, Limits::kMaxWalkDepth), Limits::kBeyond, walk_depth);
   GRIDIRON_HEAD_RULE(accuracy_traits(frame.accuracy).has_scene_shading, Status::kUnsupportedFrame, accuracy);
   return {};

@@ -1,10 +1,11 @@
-// The rules of a scene image that need integers only: header, sections, sizes of the grid, counts of the effects.
+// The rules of a scene image that need integers only: header, sections, sizes of grid and tree, counts of the effects.
 // open_scene_image, firmware and simulator use them from here. core/SPEC.md is the text form. Memory:
 // borrowed. Threads: any; integers only. SPDX-License-Identifier: Apache-2.0
 #pragma once
 
 #include <gridiron/base/effect_records.h>
 #include <gridiron/base/records.h>
+#include <gridiron/base/tree_records.h>
 #include <gridiron/base/triangle_formats.h>
 
 #include <cstddef>
@@ -62,6 +63,7 @@ struct ImageHead {
   Sections sections;
   GridRecord grid{};
   EffectsRecord effects{};  ///< all zero if the image has none
+  TreeRecord tree{};        ///< all zero if the image has no effects
 };
 
 /// @param available  bytes of memory from the image's first on.
@@ -199,21 +201,21 @@ template <class Checker>
 }
 inline constexpr std::uint32_t kCountedEffects = kAmbientOcclusion | kEnvironment | kMultisampling;
 
-/// A section whose elements an EffectsRecord counts and whose offset it holds: 0 if it has no elements.
-struct EffectPart {
+/// A section whose elements an EffectsRecord or TreeRecord counts and whose offset it holds: 0 if it has no elements.
+struct CountedPart {
   SectionKind kind;
   std::uint64_t element_bytes, element_count, offset_bytes;
   std::uint32_t place;  ///< of offset_bytes in the record
   const char* field;    ///< its name
 };
 
-/// Calls body(EffectPart) for each of the five, empty ones too, in the order of the image, until it returns false.
+/// Calls body(CountedPart) for each of the five, empty ones too, in the order of the image, until it returns false.
 template <class Body>
 constexpr bool for_each_effect_part(const EffectsRecord& effects, std::uint64_t triangle_count, Body&& body) {
   const std::uint64_t blocks = effects.environment_width == 0 ? 0 : environment_blocks(effects.environment_width);
-#define GRIDIRON_PART(kind, record, count, member)                                                             \
-  body(EffectPart{SectionKind::kind, sizeof(record), (count), effects.member, offsetof(EffectsRecord, member), \
-                  "effects." #member})
+#define GRIDIRON_PART(kind, record, count, member)                                                              \
+  body(CountedPart{SectionKind::kind, sizeof(record), (count), effects.member, offsetof(EffectsRecord, member), \
+                   "effects." #member})
   return GRIDIRON_PART(kMaterials, MaterialRecord, effects.material_count, materials_offset_bytes) &&
          GRIDIRON_PART(kLights, LightRecord, effects.light_count, lights_offset_bytes) &&
          GRIDIRON_PART(kSurfaces, SurfaceRecord, triangle_count, surfaces_offset_bytes) &&
@@ -222,12 +224,22 @@ constexpr bool for_each_effect_part(const EffectsRecord& effects, std::uint64_t 
 #undef GRIDIRON_PART
 }
 
+/// Checks that a section is there if it has elements, at its place and of its size. @param base  the record's place.
+template <class Checker>
+[[nodiscard]] bool check_part(Checker& checker, const Sections& sections, std::uint64_t base, const CountedPart& part) {
+  const bool wanted = part.element_count != 0;
+  const bool found = sections.has(part.kind) == wanted;
+  const std::uint64_t expected = wanted ? sections.entry(part.kind).offset_bytes : 0;
+  return checker.require(found && part.offset_bytes == expected, base + part.place, part.field, part.offset_bytes) &&
+         (!wanted || check_elements(checker, sections, part.kind, part.element_bytes, part.element_count));
+}
+
 /// Reads the record of effects, and requires exactly the sections that it counts, at the places that it names.
 template <class Checker>
 [[nodiscard]] bool check_effect_sizes(Checker& checker, ImageHead& head) {
   const Sections& sections = head.sections;
   if (!sections.has(SectionKind::kEffects)) {
-    return for_each_effect_part(head.effects, 0, [&](const EffectPart& part) {
+    return for_each_effect_part(head.effects, 0, [&](const CountedPart& part) {
       const SectionEntry& section = sections.entry(part.kind);
       GRIDIRON_RULE(!sections.has(part.kind), sections.entry_offset(part.kind), section, kind);
       return true;
@@ -242,20 +254,66 @@ template <class Checker>
   const EffectsRecord& effects = head.effects = checker.template read<EffectsRecord>(base);
   if (!check_effect_counts(checker, base, effects)) return false;
   GRIDIRON_RULE_OF(effects.reserved[0], all_zero(effects.reserved, 8), base, effects, reserved);
-  return for_each_effect_part(effects, head.header.triangle_count, [&](const EffectPart& part) {
-    const bool wanted = part.element_count != 0;
-    const bool found = sections.has(part.kind) == wanted;
-    const std::uint64_t expected = wanted ? sections.entry(part.kind).offset_bytes : 0;
-    return checker.require(found && part.offset_bytes == expected, base + part.place, part.field, part.offset_bytes) &&
-           (!wanted || check_elements(checker, sections, part.kind, part.element_bytes, part.element_count));
-  });
+  return for_each_effect_part(effects, head.header.triangle_count,
+                              [&](const CountedPart& part) { return check_part(checker, sections, base, part); });
+}
+
+// --- Tree ---------------------------------------------------------------------------------------------------------
+
+/// Checks the counts that bound loops, stacks and addresses. @param base  the record's place in the image.
+template <class Checker>
+[[nodiscard]] constexpr bool check_tree_counts(Checker&& checker, std::uint64_t base, const TreeRecord& tree) {
+  GRIDIRON_RULE(tree.node_count >= 1, base, tree, node_count);
+  GRIDIRON_RULE(tree.triangle_count >= 1 && tree.triangle_count <= kMaxTreeTriangles, base, tree, triangle_count);
+  GRIDIRON_RULE(tree.depth >= 1 && tree.depth <= kMaxTreeDepth, base, tree, depth);
+  GRIDIRON_RULE(tree.leaf_triangles >= 1 && tree.leaf_triangles <= kMaxTreeLeaf, base, tree, leaf_triangles);
+  const auto format = static_cast<TriangleFormat>(tree.triangle_format);
+  GRIDIRON_RULE(format == TriangleFormat::kVertices || format == TriangleFormat::kLattice, base, tree, triangle_format);
+  GRIDIRON_RULE(tree.triangle_bytes == triangle_bytes_of(format), base, tree, triangle_bytes);
+  return true;
+}
+
+/// Calls body(CountedPart) for the triangles and the nodes, in the order of the image, until it returns false.
+template <class Body>
+constexpr bool for_each_tree_part(const TreeRecord& tree, Body&& body) {
+  return body(CountedPart{SectionKind::kTreeTriangles, tree.triangle_bytes, tree.triangle_count,
+                          tree.triangles_offset_bytes, offsetof(TreeRecord, triangles_offset_bytes),
+                          "tree.triangles_offset_bytes"}) &&
+         body(CountedPart{SectionKind::kTreeNodes, sizeof(TreeNode), tree.node_count, tree.nodes_offset_bytes,
+                          offsetof(TreeRecord, nodes_offset_bytes), "tree.nodes_offset_bytes"});
+}
+
+/// Reads the tree's record of an image with effects, and requires exactly the sections that it counts, at the places
+/// that it names. Other images have none.
+template <class Checker>
+[[nodiscard]] bool check_tree_sizes(Checker& checker, ImageHead& head) {
+  const Sections& sections = head.sections;
+  if (!sections.has(SectionKind::kEffects)) {
+    for (const SectionKind kind : {SectionKind::kTree, SectionKind::kTreeNodes, SectionKind::kTreeTriangles}) {
+      const SectionEntry& section = sections.entry(kind);
+      GRIDIRON_RULE(!sections.has(kind), sections.entry_offset(kind), section, kind);
+    }
+    return true;
+  }
+  const ImageHeader& header = head.header;
+  GRIDIRON_RULE(sections.has(SectionKind::kTree), 0, header, section_count);
+  if (!check_elements(checker, sections, SectionKind::kTree, sizeof(TreeRecord), 1)) return false;
+  const std::uint64_t base = sections.entry(SectionKind::kTree).offset_bytes;
+  const TreeRecord& tree = head.tree = checker.template read<TreeRecord>(base);
+  if (!check_tree_counts(checker, base, tree)) return false;
+  GRIDIRON_RULE(tree.triangle_count == header.triangle_count - header.dropped_triangle_count, base, tree,
+                triangle_count);
+  GRIDIRON_RULE(tree.triangle_format == head.grid.triangle_format, base, tree, triangle_format);
+  GRIDIRON_RULE_OF(tree.reserved[0], all_zero(tree.reserved, 12), base, tree, reserved);
+  return for_each_tree_part(tree, [&](const CountedPart& part) { return check_part(checker, sections, base, part); });
 }
 
 /// All of the above.
 template <class Checker>
 [[nodiscard]] bool check_image_head(Checker& checker, std::uint64_t available, ImageHead& head) {
   return check_header(checker, available, head.header) && check_sections(checker, head.header, head.sections) &&
-         check_grid_sizes(checker, head.sections, head.grid) && check_effect_sizes(checker, head);
+         check_grid_sizes(checker, head.sections, head.grid) && check_effect_sizes(checker, head) &&
+         check_tree_sizes(checker, head);
 }
 
 }  // namespace gridiron

@@ -42,14 +42,14 @@ inline constexpr float kTreeGrowth = 0x1p-22f;
   return high + ((high < 0.0f ? -high : high) * kTreeGrowth + margin);
 }
 
-/// A node. Children cover its records in order, and those that are nodes come later in the section than it does, in
-/// order too. Boxes are the least that hold the child's triangles, grown.
+/// A node. It has 16 children, or leaves alone. Children cover its records in order. Nodes are numbered level by level,
+/// and within a level in the order of their records. Boxes are the least that hold the child's triangles, grown.
 struct alignas(kLineBytes) TreeNode {
   float low[3][kTreeWidth];        ///< axis, child; of a child that is not there kFloatMax
   float high[3][kTreeWidth];       ///< of one that is not there -kFloatMax
   TreeChild children[kTreeWidth];  ///< of one that is not there 0
   std::uint64_t order;             ///< 4 bits a place: which child to ask first where any hit will do, then the next;
-                                   ///< a permutation of 16, children that are not there last
+                                   ///< a permutation of 16; children that are not there last, by number
   std::uint32_t child_count;       ///< 1..kTreeWidth, at least 2 but in the root
   std::uint32_t reserved[13];
 };
@@ -57,17 +57,17 @@ static_assert(sizeof(TreeNode) == 4 * kLineBytes);
 
 /// A tree and where it lies. An image has one or none; a core fetches it when a frame begins.
 struct TreeRecord {
-  std::uint32_t node_count;             ///< 1..; node 0 is the root
-  std::uint32_t triangle_count;         ///< records, 1..kMaxTreeTriangles: the kept triangles, each once
-  std::uint32_t depth;                  ///< nodes on the longest path, 1..kMaxTreeDepth
-  std::uint32_t leaf_triangles;         ///< of a leaf, at most; 1..kMaxTreeLeaf
-  std::uint32_t triangle_format;        ///< TriangleFormat, kVertices or kLattice
-  std::uint32_t triangle_bytes;         ///< record size
-  std::uint64_t nodes_offset_bytes;     ///< TreeNode[node_count], from the image's first byte
+  std::uint32_t node_count;              ///< 1..; node 0 is the root
+  std::uint32_t triangle_count;          ///< records, 1..kMaxTreeTriangles: the kept triangles, each once
+  std::uint32_t depth;                   ///< nodes on the longest path, 1..kMaxTreeDepth
+  std::uint32_t leaf_triangles;          ///< of a leaf, at most; 1..kMaxTreeLeaf
+  std::uint32_t triangle_format;         ///< TriangleFormat, kVertices or kLattice
+  std::uint32_t triangle_bytes;          ///< record size
+  std::uint64_t nodes_offset_bytes;      ///< TreeNode[node_count], from the image's first byte
   std::uint64_t triangles_offset_bytes;  ///< triangle records in the order of the leaves
-  float bounds_minimum[3];              ///< tight bounds of the triangles, world space
-  float bounds_maximum[3];              ///< the other corner
-  Lattice lattice;                      ///< of kLattice; all zero in other formats
+  float bounds_minimum[3];               ///< tight bounds of the triangles, world space; the grid's
+  float bounds_maximum[3];               ///< the other corner
+  Lattice lattice;                       ///< of kLattice; all zero in other formats
   std::uint32_t reserved[12];
 };
 static_assert(sizeof(TreeRecord) == 128);

@@ -15,12 +15,6 @@ bool all_within(const float* values, int count, float low, float high) {
   return good;
 }
 
-bool same_bits(const float* a, const float* b, int count) {
-  std::uint32_t differ = 0;
-  for (int i = 0; i < count; ++i) differ |= std::bit_cast<std::uint32_t>(a[i]) ^ std::bit_cast<std::uint32_t>(b[i]);
-  return differ == 0;
-}
-
 // --- Materials and lights -------------------------------------------------------------------------------------------
 
 bool check_materials(ImageChecker& checker, const EffectsRecord& effects) {
@@ -99,7 +93,11 @@ bool check_surfaces(ImageChecker& checker, const SceneImageView& view, EffectsCa
     const auto surface = checker.read<SurfaceRecord>(base);
     GRIDIRON_REQUIRE(is_storable(surface, view.grid), base, surface, v);
     const auto corner = [&](int k) { return Vec3(surface.v[k][0], surface.v[k][1], surface.v[k][2]); };
-    if (has_zero_area(corner(0), corner(1), corner(2))) ++dropped;
+    const bool is_dropped = has_zero_area(corner(0), corner(1), corner(2));
+    dropped += is_dropped ? 1u : 0u;
+    const bool place_ok =
+        is_dropped ? surface.tree_place == kNoTriangle : surface.tree_place < view.tree.triangle_count;
+    GRIDIRON_REQUIRE(place_ok, base, surface, tree_place);
     GRIDIRON_REQUIRE(surface.material < effects.material_count, base, surface, material);
     if (surface.material != last_material) {
       last_material = surface.material;
@@ -110,7 +108,6 @@ bool check_surfaces(ImageChecker& checker, const SceneImageView& view, EffectsCa
     const bool is_smooth = material.is_smooth != 0;
     GRIDIRON_REQUIRE(surface.normals == (is_smooth ? normals : kNoNormals), base, surface, normals);
     normals += is_smooth ? 1u : 0u;
-    GRIDIRON_REQUIRE(surface.reserved == 0, base, surface, reserved);
   }
   GRIDIRON_REQUIRE(dropped == header.dropped_triangle_count, 0, header, dropped_triangle_count);
   GRIDIRON_REQUIRE(normals == effects.smooth_triangle_count, view.effects_offset_bytes, effects, smooth_triangle_count);
@@ -120,22 +117,8 @@ bool check_surfaces(ImageChecker& checker, const SceneImageView& view, EffectsCa
 // The surface of every triangle in a cell must have that triangle's corners, so that shading sees what was hit.
 bool check_corners(ImageChecker& checker, const SceneImageView& view) {
   const GridRecord& grid = view.grid;
-  const bool lattice = grid.triangle_format == static_cast<std::uint32_t>(TriangleFormat::kLattice);
   for (std::uint64_t i = 0; i < grid.reference_count; ++i) {
-    const std::uint64_t place = view.triangles_offset_bytes + i * grid.triangle_bytes;
-    VertexTriangle triangle{};
-    if (lattice) {
-      const auto packed = checker.read<LatticeTriangle>(place);
-      triangle.triangle_id = packed.triangle_id;
-      for (int corner = 0; corner < 3; ++corner) {
-        for (int axis = 0; axis < 3; ++axis) {
-          triangle.v[corner][axis] =
-              static_cast<float>(packed.v[corner][axis]) * grid.lattice.step + grid.lattice.origin[axis];
-        }
-      }
-    } else {
-      triangle = checker.read<VertexTriangle>(place);
-    }
+    const VertexTriangle triangle = checker.read_triangle(view.triangles_offset_bytes + i * grid.triangle_bytes, grid);
     const std::uint64_t base =
         view.effects.surfaces_offset_bytes + std::uint64_t{triangle.triangle_id} * sizeof(SurfaceRecord);
     const auto surface = checker.read<SurfaceRecord>(base);

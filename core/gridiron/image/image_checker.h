@@ -35,6 +35,23 @@ class ImageChecker {
     return header.check_value == scene_image_check_value(image_.first(static_cast<std::size_t>(header.image_bytes)));
   }
 
+  /// The triangle at `offset`, in a format that has corners. Reserved words of a lattice's record are left out.
+  [[nodiscard]] VertexTriangle read_triangle(std::uint64_t offset, const GridRecord& grid) const {
+    if (grid.triangle_format != static_cast<std::uint32_t>(TriangleFormat::kLattice)) {
+      return read<VertexTriangle>(offset);
+    }
+    const auto packed = read<LatticeTriangle>(offset);
+    VertexTriangle triangle{};
+    triangle.triangle_id = packed.triangle_id;
+    for (int corner = 0; corner < 3; ++corner) {
+      for (int axis = 0; axis < 3; ++axis) {
+        triangle.v[corner][axis] =
+            static_cast<float>(packed.v[corner][axis]) * grid.lattice.step + grid.lattice.origin[axis];
+      }
+    }
+    return triangle;
+  }
+
   [[nodiscard]] std::span<const std::byte> image() const { return image_; }
 
  private:
@@ -53,6 +70,12 @@ class ImageChecker {
   bool finite = true;
   for (int i = 0; i < count; ++i) finite = finite && is_finite(values[i]);
   return finite;
+}
+
+[[nodiscard]] inline bool same_bits(const float* a, const float* b, int count) {
+  std::uint32_t differ = 0;
+  for (int i = 0; i < count; ++i) differ |= std::bit_cast<std::uint32_t>(a[i]) ^ std::bit_cast<std::uint32_t>(b[i]);
+  return differ == 0;
 }
 
 /// Checks that bytes [begin, end) of the image, multiples of 4, are padding: all zero.
@@ -76,5 +99,10 @@ class ImageChecker {
 /// Checks the contents of the sections of effects against header, grid and triangles.
 /// Precondition: everything else in the image is right. Cost: linear.
 [[nodiscard]] bool check_effect_sections(ImageChecker& checker, const SceneImageView& view);
+
+/// Checks the contents of the tree's sections: every kept triangle is there once, with the corners of its surface; the
+/// nodes are numbered level by level, on paths no longer than the record says, and their leaves cover the triangles in
+/// order; boxes are as built. Precondition: everything else in the image is right. Cost: linear.
+[[nodiscard]] bool check_tree(ImageChecker& checker, const SceneImageView& view);
 
 }  // namespace gridiron

@@ -236,7 +236,7 @@ Status open_scene_image(std::span<const std::byte> image, SceneImageView& view, 
   const std::uint64_t grid_place = head.sections.entry(SectionKind::kGrid).offset_bytes;
   if (!check_grid(checker, grid_place, opened.header, opened.grid) || !check_cells(checker, head.sections, opened) ||
       !check_geometry(checker, head.sections, opened) || !check_effect_sections(checker, opened) ||
-      !check_gaps(checker, opened.header, head.sections)) {
+      !check_tree(checker, opened) || !check_gaps(checker, opened.header, head.sections)) {
     return Status::kBadImage;
   }
   view = opened;

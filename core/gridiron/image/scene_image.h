@@ -11,7 +11,7 @@
 
 namespace gridiron {
 
-/// A validated scene image: header, grid, effects and where each section lies. Offsets count from the
+/// A validated scene image: header, grid, effects, tree and where each section lies. Offsets count from the
 /// image's first byte.
 struct SceneImageView {
   ImageHeader header;                      ///< as it stands in the image
@@ -20,8 +20,10 @@ struct SceneImageView {
   std::uint64_t cell_blocks_offset_bytes;  ///< blocks of cells
   std::uint64_t triangles_offset_bytes;    ///< triangle records
   bool has_effects;                        ///< the scene has lights and materials
-  EffectsRecord effects;               ///< all zero where the image has none
-  std::uint64_t effects_offset_bytes;  ///< of that record; 0 where the image has none
+  EffectsRecord effects;                   ///< all zero where the image has none
+  std::uint64_t effects_offset_bytes;      ///< of that record; 0 where the image has none
+  TreeRecord tree;                         ///< of the same images; else all zero
+  std::uint64_t tree_offset_bytes;         ///< of that record; else 0
 };
 
 /// The view of an image whose head is right.
@@ -34,7 +36,9 @@ struct SceneImageView {
           offset_of(SectionKind::kTriangles),
           head.sections.has(SectionKind::kEffects),
           head.effects,
-          offset_of(SectionKind::kEffects)};
+          offset_of(SectionKind::kEffects),
+          head.tree,
+          offset_of(SectionKind::kTree)};
 }
 
 /// What was wrong with an image: for the words of tools.

@@ -99,22 +99,25 @@ enum class LayoutGroup : std::uint8_t { kCommon, kSweep, kEffects, kNone };
 /// how many bytes there are.
 [[nodiscard]] bool are_effects_in_memory(SimMemory& memory, const FrameRecord& frame) {
   EffectsRecord effects;
+  TreeRecord tree;
   ImageHeader image;
   const auto read = [&](void* record, std::uint64_t address, std::size_t byte_count) {
     const std::span<std::byte> bytes = memory.bytes_at(MainAddress{address}, byte_count);
     if (!bytes.empty()) std::memcpy(record, bytes.data(), byte_count);
     return !bytes.empty();
   };
-  if (!read(&effects, frame.effects_address, sizeof effects) || !read(&image, frame.image_address, sizeof image) ||
-      image.magic != kImageMagic || memory.bytes_at(MainAddress{frame.image_address}, image.image_bytes).empty()) {
+  if (!read(&effects, frame.effects_address, sizeof effects) || !read(&tree, frame.tree_address, sizeof tree) ||
+      !read(&image, frame.image_address, sizeof image) || image.magic != kImageMagic ||
+      memory.bytes_at(MainAddress{frame.image_address}, image.image_bytes).empty()) {
     return false;
   }
   // Images and their sections consist of whole lines, so cores may read whole lines.
-  return check_effect_counts(AnyFault{}, 0, effects) &&
-         for_each_effect_part(effects, image.triangle_count, [&](const EffectPart& part) {
-           const std::uint64_t bytes = round_up<std::uint64_t>(part.element_count * part.element_bytes, kLineBytes);
-           return part.offset_bytes <= image.image_bytes && bytes <= image.image_bytes - part.offset_bytes;
-         });
+  const auto lies_in_image = [&image](const CountedPart& part) {
+    const std::uint64_t bytes = round_up<std::uint64_t>(part.element_count * part.element_bytes, kLineBytes);
+    return part.offset_bytes <= image.image_bytes && bytes <= image.image_bytes - part.offset_bytes;
+  };
+  return check_effect_counts(AnyFault{}, 0, effects) && check_tree_counts(AnyFault{}, 0, tree) &&
+         for_each_effect_part(effects, image.triangle_count, lies_in_image) && for_each_tree_part(tree, lies_in_image);
 }
 
 [[nodiscard]] bool is_scene_shaded(const FrameRecord& frame) {

@@ -133,6 +133,9 @@ TEST(FramesWithEffects, SayWhereTheEffectsLie) {
     EXPECT_EQ(frame.image_address, kImageAddress.value);
     const auto record = read_record<EffectsRecord>(built.image.bytes(), frame.effects_address - kImageAddress.value);
     EXPECT_EQ(record.called_for, kAllEffects);
+    const auto tree = read_record<TreeRecord>(built.image.bytes(), frame.tree_address - kImageAddress.value);
+    EXPECT_EQ(std::memcmp(&tree, &built.view.tree, sizeof tree), 0);
+    EXPECT_EQ(tree.node_count, 1u);
     EXPECT_EQ(frame.walk_depth, 2u);
     EXPECT_EQ(frame.background_rgba, 0xFF112233u);
     settings.walk_depth = 5;
@@ -172,6 +175,7 @@ TEST(FramesWithoutEffects, LeaveTheirFieldsZero) {
     ASSERT_EQ(make_frame_record(settings, built.view, kImageAddress, frame), Status::kOk);
     EXPECT_EQ(frame.effects_address, 0u);
     EXPECT_EQ(frame.image_address, 0u);
+    EXPECT_EQ(frame.tree_address, 0u);
     EXPECT_EQ(frame.walk_depth, 0u);
   }
 }

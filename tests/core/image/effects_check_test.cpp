@@ -1,6 +1,7 @@
 // Sections of effects in an image: every hostile word is refused or harmless. SPDX-License-Identifier: Apache-2.0
 #include "core/image/effects_oracle.h"
 #include "core/image/image_damage.h"
+#include "core/image/tree_oracle.h"
 #include "core/scene/test_effects.h"
 
 namespace gridiron::test {
@@ -143,7 +144,10 @@ const Damage kDamages[] = {
     SURFACE_DAMAGE("flat_surface_with_normals", 3, normals, r.normals = 0),
     SURFACE_DAMAGE("normals_of_another", 2, normals, r.normals = 0),
     SURFACE_DAMAGE("normals_beyond", 2, normals, r.normals = 2),
-    SURFACE_DAMAGE("surface_reserved", 1, reserved, r.reserved = 1),
+    SURFACE_DAMAGE("surface_without_a_place", 1, tree_place, r.tree_place = kNoTriangle),
+    SURFACE_DAMAGE("surface_with_a_place_beyond", 1, tree_place, r.tree_place = 3),
+    SURFACE_DAMAGE("surface_with_the_place_of_another", 1, tree_place, r.tree_place = (r.tree_place + 1) % 3),
+    SURFACE_DAMAGE("dropped_surface_with_a_place", 2, tree_place, r.tree_place = 0),
     NORMAL_DAMAGE("normal_long", n, r.n[2][0] = 1.0f),
     NORMAL_DAMAGE("normal_zero", n, std::memset(r.n[1], 0, sizeof(r.n[1]))),
     NORMAL_DAMAGE("normal_nan", n, r.n[0][1] = kNan),
@@ -172,14 +176,18 @@ INSTANTIATE_TEST_SUITE_P(All, Damages, ::testing::ValuesIn(kDamages), [](const a
 
 TEST(PartsOfEffects, StandAllOrNone) {
   const SectionKind kinds[] = {SectionKind::kEffects,  SectionKind::kMaterials, SectionKind::kLights,
-                               SectionKind::kSurfaces, SectionKind::kNormals,   SectionKind::kEnvironmentMap};
+                               SectionKind::kSurfaces, SectionKind::kNormals,   SectionKind::kEnvironmentMap,
+                               SectionKind::kTree,     SectionKind::kTreeNodes, SectionKind::kTreeTriangles};
   const char* const fields[] = {"section.kind",
                                 "effects.materials_offset_bytes",
                                 "effects.lights_offset_bytes",
                                 "effects.surfaces_offset_bytes",
                                 "effects.normals_offset_bytes",
-                                "effects.environment_offset_bytes"};
-  for (int i = 0; i < 6; ++i) {
+                                "effects.environment_offset_bytes",
+                                "header.section_count",
+                                "tree.nodes_offset_bytes",
+                                "tree.triangles_offset_bytes"};
+  for (int i = 0; i < 9; ++i) {
     BuiltImage built = build(all_effects());
     edit<SectionEntry>(built.image, entry_offset(kinds[i]), [](SectionEntry& entry) { entry.kind = 1000; });
     expect_refused(built.image, fields[i]);
@@ -194,6 +202,12 @@ TEST(PartsOfEffects, StandAllOrNone) {
   EXPECT_EQ(opened.status, Status::kOk);
   EXPECT_FALSE(opened.view.has_effects);
   EXPECT_STREQ(broken_effects(built.image.bytes(), opened.view), nullptr);
+  // A part of the tree is none of an image without effects.
+  for (int i = 6; i < 9; ++i) {
+    edit<SectionEntry>(built.image, entry_offset(kinds[i]), [](SectionEntry& entry) { entry.kind -= 1000; });
+    expect_refused(built.image, "section.kind", entry_offset(kinds[i]));
+    edit<SectionEntry>(built.image, entry_offset(kinds[i]), [](SectionEntry& entry) { entry.kind += 1000; });
+  }
 }
 
 TEST(PartsOfEffects, StandBesideTrianglesThatHaveVertices) {
@@ -220,7 +234,7 @@ TEST_P(Words, ThatAreChangedAreRefusedOrHarmless) {
   BuiltImage built = build(all_effects(1), GetParam());
   ASSERT_FALSE(HasFailure());
   const std::span<std::byte> bytes = built.image.bytes();
-  const std::uint64_t table_end = kTableOffset + 10 * sizeof(SectionEntry);
+  const std::uint64_t table_end = kTableOffset + 13 * sizeof(SectionEntry);
   const std::uint32_t worst[] = {0u,          1u,          0x7F800000u, 0xFF800000u, 0x7FC00000u,
                                  0xFFFFFFFFu, 0x7F7FFFFFu, 0x80000000u, 0x3F800001u, 256u};
   std::uint64_t opened = 0, refused = 0;
@@ -238,6 +252,7 @@ TEST_P(Words, ThatAreChangedAreRefusedOrHarmless) {
         }
         ++opened;
         ASSERT_STREQ(broken_effects(bytes, image.view), nullptr) << "word at " << at << ", " << std::hex << changed;
+        ASSERT_STREQ(broken_tree(bytes, image.view), nullptr) << "word at " << at << ", " << std::hex << changed;
       }
       std::memcpy(bytes.data() + at, &word, sizeof(word));
     }
@@ -269,9 +284,11 @@ TEST(EffectsLayout, FieldsStandWhereTheSpecificationSays) {
   EXPECT_EQ(offsetof(LightRecord, edge_v), 48u);
   EXPECT_EQ(offsetof(SurfaceRecord, material), 36u);
   EXPECT_EQ(offsetof(SurfaceRecord, normals), 40u);
+  EXPECT_EQ(offsetof(SurfaceRecord, tree_place), 44u);
   EXPECT_EQ(offsetof(NormalRecord, reserved), 36u);
   EXPECT_EQ(offsetof(FrameHead, effects_address), 136u);
   EXPECT_EQ(offsetof(FrameHead, image_address), 144u);
+  EXPECT_EQ(offsetof(FrameHead, tree_address), 152u);
   EXPECT_EQ(offsetof(FrameHead, walk_depth), 44u);
 }
 

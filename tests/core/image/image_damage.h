@@ -11,8 +11,13 @@ inline constexpr float kInfinity = std::numeric_limits<float>::infinity();
 inline constexpr std::uint64_t kTableOffset = 128;
 inline constexpr std::uint64_t kGridOffset = 256;
 
+/// Where a section's entry stands in an image that has all sections up to its own.
 inline std::uint64_t entry_offset(SectionKind kind) {
-  return kTableOffset + (static_cast<std::uint64_t>(kind) - 1) * sizeof(SectionEntry);
+  // The nodes of the tree stand behind its triangles.
+  const std::uint64_t number = kind == SectionKind::kTreeNodes       ? 12
+                               : kind == SectionKind::kTreeTriangles ? 11
+                                                                     : static_cast<std::uint64_t>(kind) - 1;
+  return kTableOffset + number * sizeof(SectionEntry);
 }
 
 template <class Record>

@@ -52,12 +52,18 @@ std::string field_of_element(const SectionEntry& entry, TriangleFormat format, s
     case SectionKind::kLights:
       return field_in({{"light", 44}, {"light.reserved0", 48}, {"light", 60}, {"light.reserved1", 64}}, offset);
     case SectionKind::kSurfaces:
-      return field_in({{"surface.v", 36}, {"surface.material", 40}, {"surface.normals", 44}, {"surface.reserved", 48}},
-                      offset);
+      return field_in(
+          {{"surface.v", 36}, {"surface.material", 40}, {"surface.normals", 44}, {"surface.tree_place", 48}}, offset);
     case SectionKind::kNormals:
       return field_in({{"normal.n", 36}, {"normal.reserved", 48}}, offset);
     case SectionKind::kEnvironmentMap:
       return "environment.texels";
+    case SectionKind::kTree:
+      return field_in({{"tree", 12}, {"tree.leaf_triangles", 16}, {"tree", 128}}, offset);
+    case SectionKind::kTreeNodes:
+      return "node";
+    case SectionKind::kTreeTriangles:
+      return "tree_triangle";
     case SectionKind::kEnd:
       break;
   }
@@ -187,7 +193,7 @@ TEST(SealedImage, OfEffectsOnlyWhatAnotherSceneMayHaveIsFree) {
     BuiltImage built = image_with_effects(format, 2);
     ASSERT_FALSE(HasFailure());
     EXPECT_EQ(free_fields(built), (Names{"effects", "environment.texels", "grid.lambda", "header.vertex_count", "light",
-                                         "material", "normal.n", "surface.v"}));
+                                         "material", "normal.n", "surface.v", "tree.leaf_triangles"}));
   }
 }
 

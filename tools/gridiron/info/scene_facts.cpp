@@ -1,6 +1,7 @@
 // Scene facts. SPDX-License-Identifier: Apache-2.0
 #include "scene_facts.h"
 
+#include <gridiron/base/math.h>
 #include <gridiron/build/effects/effect_sections.h>
 #include <gridiron/frame/frame_setup.h>
 
@@ -51,6 +52,16 @@ EffectFacts effects_of(const EffectsRecord& record, std::uint32_t triangle_count
   return facts;
 }
 
+void add_tree(const SceneImageView& view, SceneFacts& facts) {
+  if (!view.has_effects) return;
+  facts.tree = view.tree;
+  facts.tree_bytes = sizeof(TreeRecord);
+  for_each_tree_part(view.tree, [&facts](const CountedPart& part) {
+    facts.tree_bytes += round_up<std::uint64_t>(part.element_count * part.element_bytes, kLineBytes);
+    return true;
+  });
+}
+
 }  // namespace
 
 std::uint64_t EffectFacts::bytes_of(std::string_view section) const {
@@ -77,6 +88,7 @@ SceneFacts collect_scene_facts(const InfoPlan& plan, const SceneInput& input) {
     facts.image_bytes = header.image_bytes;
     facts.fits = header.image_bytes <= budget_bytes;
     facts.worst = find_worst_tile(plan, packed->file.bytes, packed->view);
+    add_tree(packed->view, facts);
     if (packed->view.has_effects) facts.effects = effects_of(packed->view.effects, header.triangle_count);
   } else {
     const Mesh& mesh = std::get<Mesh>(input.content);
@@ -97,6 +109,8 @@ SceneFacts collect_scene_facts(const InfoPlan& plan, const SceneInput& input) {
                                                     [&] { return allocate_aligned(choice.need.image_bytes); });
       const std::span<std::byte> image(storage.get(), choice.need.image_bytes);
       const SceneImageView built = build_image(input, mesh, choice, image, effects);
+      facts.image_bytes = built.header.image_bytes;
+      add_tree(built, facts);
       facts.worst = find_worst_tile(plan, image, built);
     }
     if (input.text) facts.roundness = input.text->roundness;

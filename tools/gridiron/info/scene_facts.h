@@ -4,6 +4,7 @@
 
 #include <gridiron/base/effect_records.h>
 #include <gridiron/base/records.h>
+#include <gridiron/base/tree_records.h>
 
 #include <cstdint>
 #include <optional>
@@ -50,7 +51,9 @@ struct SceneFacts {
   float wanted_lambda = 0;
   SceneRoundness roundness;  ///< of a text scene
   bool is_packed = false;
-  std::uint64_t image_bytes = 0;
+  TreeRecord tree{};              ///< of an image with effects that was built or packed; else all zero
+  std::uint64_t tree_bytes = 0;   ///< of its sections
+  std::uint64_t image_bytes = 0;  ///< of the image, or what building it needs where it does not fit
   std::uint64_t scratch_bytes = 0;  ///< of the builder, free again afterwards; 0 for a packed scene
   std::uint64_t picture_bytes = 0;  ///< requested planes and frame record
   bool fits = false;                ///< in the machine's main memory

@@ -48,9 +48,10 @@ void load_job(OpenJob& open, MovedJob& moved) {
   moved.frame = {move(open.job.frame_address)};
   moved.record = open.record;
   FrameRecord& record = moved.record;
-  for (std::uint64_t* address : {&record.color_address, &record.depth_address, &record.id_address,
-                                 &record.engine.macro_table_address, &record.engine.cell_blocks_address,
-                                 &record.engine.triangles_address, &record.effects_address, &record.image_address}) {
+  for (std::uint64_t* address :
+       {&record.color_address, &record.depth_address, &record.id_address, &record.engine.macro_table_address,
+        &record.engine.cell_blocks_address, &record.engine.triangles_address, &record.effects_address,
+        &record.image_address, &record.tree_address}) {
     *address = move(*address);
   }
   std::memcpy(moved.memory.bytes_at(moved.frame, sizeof record).data(), &record, sizeof record);

@@ -38,6 +38,7 @@ void write_surfaces(const MeshView& mesh, const EffectsView& effects, const Grid
     SurfaceRecord surface{};
     surface.material = effects.triangle_materials[i];
     surface.normals = kNoNormals;
+    surface.tree_place = kNoTriangle;  // until the tree is there
     for (int corner = 0; corner < 3; ++corner) {
       const Vec3& vertex = mesh.vertices[mesh.triangles[i][corner]];
       copy(surface.v[corner], lattice ? snap(grid.lattice, vertex) : vertex);
@@ -90,7 +91,7 @@ EffectsRecord count_effects(const EffectsView& effects) {
 std::uint32_t effect_section_count(const EffectsRecord& counted) {
   std::uint32_t count = 1;
   for_each_effect_part(counted, 1,
-                       [&count](const EffectPart& part) { return count += part.element_count != 0 ? 1 : 0, true; });
+                       [&count](const CountedPart& part) { return count += part.element_count != 0 ? 1 : 0, true; });
   return count;
 }
 
@@ -102,7 +103,7 @@ EffectSections place_effect_sections(const EffectsRecord& counted, std::uint32_t
   sections.begin_bytes = begin_bytes;
   sections.end_bytes = begin_bytes;
   static_cast<void>(append(sections, SectionKind::kEffects, sizeof(EffectsRecord), 1));
-  for_each_effect_part(counted, triangle_count, [&](const EffectPart& part) {
+  for_each_effect_part(counted, triangle_count, [&](const CountedPart& part) {
     const std::uint64_t offset = append(sections, part.kind, part.element_bytes, part.element_count);
     store(reinterpret_cast<std::byte*>(&record), part.place, offset);
     return true;

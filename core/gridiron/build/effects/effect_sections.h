@@ -39,7 +39,8 @@ struct EffectSections {
 [[nodiscard]] Status check_reach(const EffectsView& effects, const GridRecord& grid);
 
 /// Writes [begin_bytes, end_bytes) of the image. With lattice triangles the surfaces' vertices are moved like those of
-/// the triangles. Precondition: mesh and effects are those that were counted. Cost: linear.
+/// the triangles, and have no place in the tree yet (link_surfaces). Precondition: mesh and effects are those that were
+/// counted. Cost: linear.
 void write_effect_sections(const MeshView& mesh, const EffectsView& effects, const GridRecord& grid,
                            const EffectSections& sections, std::byte* image);
 

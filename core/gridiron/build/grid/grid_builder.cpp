@@ -8,6 +8,8 @@
 #include <gridiron/build/grid/image_layout.h>
 #include <gridiron/build/grid/triangle_records.h>
 #include <gridiron/build/lattice.h>
+#include <gridiron/build/tree/tree_builder.h>
+#include <gridiron/build/tree/tree_sections.h>
 
 namespace gridiron {
 namespace {
@@ -50,9 +52,13 @@ void write_directory(const Mesh& mesh, const GridNeed& need, const ImageLayout& 
       section(SectionKind::kTriangles, grid.triangle_bytes, grid.reference_count, layout.triangles_offset,
               layout.effects.begin_bytes)};
   store(image, layout.section_table_offset, sections);
-  for (std::uint32_t i = 0; i < layout.effects.section_count; ++i) {
-    store(image, layout.section_table_offset + (kSectionCount + i) * sizeof(SectionEntry), layout.effects.entries[i]);
-  }
+  std::uint64_t entry_at = layout.section_table_offset + sizeof sections;
+  const auto append_entry = [&](const SectionEntry& entry) {
+    store(image, entry_at, entry);
+    entry_at += sizeof entry;
+  };
+  for (std::uint32_t i = 0; i < layout.effects.section_count; ++i) append_entry(layout.effects.entries[i]);
+  for (std::uint32_t i = 0; i < layout.tree.section_count; ++i) append_entry(layout.tree.entries[i]);
   store(image, layout.grid_offset, grid);
 }
 
@@ -262,12 +268,18 @@ void write_triangles(const Mesh& mesh, const GridRecord& grid, const std::uint32
   check.add({triangles + checked_bytes, static_cast<std::size_t>(padded_end - checked_bytes)});
 }
 
-// Writes the image without the sections of effects, and adds it to the check value.
+// Writes the image without the sections of effects, and adds what stands before them to the check value.
+// @param layout  image_bytes and the number of nodes become those of the image that is written.
 // Errors: kBadParameter if the mesh is not the one that was counted.
 template <class Mesh>
-Status write_image(const Mesh& mesh, const GridNeed& need, const ImageLayout& layout, std::byte* bytes,
-                   CheckValue& check) {
+Status write_image(const Mesh& mesh, const GridNeed& need, std::span<std::byte> scratch, ImageLayout& layout,
+                   std::byte* bytes, CheckValue& check) {
   const GridRecord& grid = need.grid;
+  // The directory says how many nodes the tree has, so the tree comes first.
+  if (layout.tree.section_count != 0) {
+    GRIDIRON_TRY(write_tree_sections(mesh, scratch, layout.tree, bytes));
+    layout.image_bytes = layout.tree.end_bytes;
+  }
   std::byte* const triangles = bytes + layout.triangles_offset;
   write_directory(mesh, need, layout, bytes);
   enter_step<GridStep::kClearedLine>();
@@ -302,26 +314,31 @@ Status build_scene_image(const MeshView& mesh, const GridParameters& parameters,
     if (!may_have_effects(parameters) || check_effects(mesh, *effects) != Status::kOk) return Status::kBadParameter;
     record = count_effects(*effects);
   }
-  const ImageLayout layout = layout_of(grid, effects != nullptr ? &record : nullptr, mesh.triangles.size());
+  const std::uint64_t triangle_count = mesh.triangles.size();
+  if (need.dropped_triangle_count >= triangle_count) return Status::kBadParameter;
+  ImageLayout layout = layout_of(grid, {effects != nullptr ? &record : nullptr, triangle_count,
+                                        triangle_count - need.dropped_triangle_count, parameters.leaf_triangles});
+  const std::uint64_t scratch_bytes = effects != nullptr ? tree_scratch_bytes(triangle_count) : 0;
   const bool need_ok = grid.lambda == parameters.lambda && grid.macro_width == parameters.macro_width &&
                        grid.triangle_format == static_cast<std::uint32_t>(parameters.format) &&
                        grid.triangle_bytes == triangle_bytes_of(parameters.format) &&
-                       need.image_bytes == layout.image_bytes && need.dropped_triangle_count < mesh.triangles.size() &&
-                       mesh.triangles.size() <= kMaxCount && mesh.vertices.size() <= kMaxCount;
+                       need.image_bytes == layout.image_bytes && need.scratch_bytes == scratch_bytes &&
+                       triangle_count <= kMaxCount && mesh.vertices.size() <= kMaxCount;
   if (!need_ok || reinterpret_cast<std::uintptr_t>(image.data()) % kLineBytes != 0) return Status::kBadParameter;
   if (image.size() < need.image_bytes || scratch.size() < need.scratch_bytes) return Status::kMemoryTooSmall;
 
   CheckValue check;
   if (parameters.format != TriangleFormat::kLattice) {
-    GRIDIRON_TRY(write_image(mesh, need, layout, image.data(), check));
+    GRIDIRON_TRY(write_image(mesh, need, scratch, layout, image.data(), check));
   } else {
     if (!(grid.lattice.step >= kLeastLatticeStep)) return Status::kBadParameter;
     const LatticeMesh moved{{mesh.vertices, grid.lattice}, mesh.triangles};
-    GRIDIRON_TRY(write_image(moved, need, layout, image.data(), check));
+    GRIDIRON_TRY(write_image(moved, need, scratch, layout, image.data(), check));
   }
   if (effects != nullptr) {
     write_effect_sections(mesh, *effects, grid, layout.effects, image.data());
-    const std::uint64_t bytes = layout.effects.end_bytes - layout.effects.begin_bytes;
+    link_surfaces(layout.tree, layout.effects.record, image.data());
+    const std::uint64_t bytes = layout.tree.end_bytes - layout.effects.begin_bytes;
     check.add({image.data() + layout.effects.begin_bytes, static_cast<std::size_t>(bytes)});
   }
   enter_step<GridStep::kBuildOnce>();

@@ -1,4 +1,5 @@
-// Builds the scene image (grid, macrocells, sorted triangle references) from a mesh, in memory of the caller.
+// Builds the scene image (grid, macrocells, sorted triangle references; with effects the wide tree too) from a mesh, in
+// memory of the caller.
 // Source: Cho, Kim, Han 2012, sections 3.1 and 3.2. Memory: caller's. Threads: one. SPDX-License-Identifier: Apache-2.0
 #pragma once
 
@@ -13,11 +14,12 @@
 
 namespace gridiron {
 
-/// Parameters of the grid.
+/// Parameters of the grid and of the tree.
 struct GridParameters {
   float lambda = 4.0f;                                ///< cells per triangle, Eq. (1); 1e-6..1e6
   std::uint32_t macro_width = 6;                      ///< m; 1..kMaxMacroWidth
   TriangleFormat format = TriangleFormat::kVertices;  ///< how triangles are stored
+  std::uint32_t leaf_triangles = 8;                   ///< of a leaf of the tree, at most; 1..kMaxTreeLeaf
 };
 
 /// What had to be cut to know which cells triangles touch.
@@ -38,26 +40,31 @@ struct GridSteps {
   CellCuts cuts;                  ///< of building
 };
 
-/// What a scene image of a mesh will hold and need, counted exactly.
+/// What a scene image of a mesh will hold and need. All is exact, but image_bytes with effects.
 struct GridNeed {
   GridRecord grid;                       ///< complete, as it will stand in the image
   std::uint32_t dropped_triangle_count;  ///< zero-area triangles (decided exactly)
-  std::uint64_t image_bytes;             ///< size of the image, a multiple of kLineBytes
-  std::uint64_t scratch_bytes;           ///< working memory of build_scene_image, free again afterwards
-  GridSteps steps;                       ///< for those who keep time
+  std::uint64_t image_bytes;  ///< memory to build the image in, a multiple of kLineBytes: the size of an image without
+                              ///< effects. With them the tree's nodes, its end, are counted while they are built; then
+                              ///< this has room for the most that so many triangles can have (most_tree_nodes), and
+                              ///< the size is ImageHeader::image_bytes.
+  std::uint64_t scratch_bytes;  ///< working memory of build_scene_image, free again afterwards; tree_scratch_bytes of
+                                ///< all triangles, 0 without effects
+  GridSteps steps;              ///< for those who keep time
 };
 
 inline constexpr std::uint64_t kAnyImageBytes = ~std::uint64_t{0};  ///< for an image whose size has no limit
 
 /// Counts what build_scene_image will need. Takes a fixed stack frame, and `marks` if given.
 ///
-/// @param effects           of the scene; null: the image holds geometry alone.
+/// @param effects           of the scene; null: the image holds the grid alone, neither effects nor a tree.
 /// @param most_image_bytes  ends the count of an image that needs more.
 /// @param marks             working memory, a bit for each macrocell; empty: 16,384 of them on the stack.
 /// Errors: kBadEffects (check_effects; a light farther from the grid than an eye may be), kBadVertex, kBadIndex,
-/// kBadParameter (also effects with TriangleFormat::kProjection), kNoTriangles, kTooManyTriangles; kMemoryTooSmall:
-/// need.image_bytes is then more than most_image_bytes, but less than the image would take.
-/// Cost: linear in triangles + references that fit, once for each part of the macrocells that `marks` holds at a time.
+/// kBadParameter (also effects with TriangleFormat::kProjection), kNoTriangles, kTooManyTriangles (with effects more
+/// than kMaxTreeTriangles too); kMemoryTooSmall: need.image_bytes is then more than most_image_bytes, but less than the
+/// image would take. Cost: linear in triangles + references that fit, once for each part of the macrocells that `marks`
+/// holds at a time.
 [[nodiscard]] Status count_scene_image(const MeshView& mesh, const GridParameters& parameters, GridNeed& need,
                                        const EffectsView* effects = nullptr,
                                        std::uint64_t most_image_bytes = kAnyImageBytes,
@@ -77,7 +84,8 @@ inline constexpr std::uint64_t kAnyImageBytes = ~std::uint64_t{0};  ///< for an 
 ///
 /// @param need     from count_scene_image with the same mesh, parameters and effects, or from fit_scene_image; then
 ///                 parameters.lambda is need.grid.lambda.
-/// @param image    kLineBytes-aligned, at least need.image_bytes; only the first image_bytes are written.
+/// @param image    kLineBytes-aligned, at least need.image_bytes. The image takes the first ImageHeader::image_bytes of
+///                 them; the others, if any, are free again.
 /// @param scratch  8-byte aligned, at least need.scratch_bytes.
 /// Errors: kMemoryTooSmall (nothing is touched), kBadParameter. Cost: linear.
 [[nodiscard]] Status build_scene_image(const MeshView& mesh, const GridParameters& parameters, const GridNeed& need,

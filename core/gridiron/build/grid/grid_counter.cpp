@@ -7,6 +7,7 @@
 #include <gridiron/build/grid/image_layout.h>
 #include <gridiron/build/grid/triangle_records.h>
 #include <gridiron/build/lattice.h>
+#include <gridiron/build/tree/tree_builder.h>
 
 #include <bit>
 
@@ -191,6 +192,7 @@ struct Request {
   const EffectsRecord* effects;  // as counted; null: none
   std::uint64_t triangle_count;  // of the input
   std::uint64_t resolved_count;  // n of Eq. (1)
+  std::uint64_t kept_count;      // triangles that have an area as they are stored
   std::uint64_t most_bytes;
   bool may_reduce;  // halves lambda until the image fits
   std::span<std::uint64_t> marks;
@@ -200,7 +202,9 @@ struct Request {
 std::uint64_t image_bytes_of(const Request& request, GridRecord grid, std::uint64_t references, std::uint64_t blocks) {
   grid.reference_count = static_cast<std::uint32_t>(references);
   grid.cell_block_count = static_cast<std::uint32_t>(blocks);
-  return layout_of(grid, request.effects, request.triangle_count).image_bytes;
+  return layout_of(grid,
+                   {request.effects, request.triangle_count, request.kept_count, request.parameters.leaf_triangles})
+      .image_bytes;
 }
 
 // Makes the grid over the kept triangles; references and blocks are counted later. @param grid  so far: the lattice.
@@ -270,7 +274,7 @@ Status count_grid(const Mesh& mesh, const Request& request, const KeptTriangles&
 
   need.grid = grid;
   need.dropped_triangle_count = static_cast<std::uint32_t>(mesh.triangles.size() - kept.count);
-  need.scratch_bytes = 0;
+  need.scratch_bytes = request.effects != nullptr ? tree_scratch_bytes(request.triangle_count) : 0;
   need.steps = steps;
   return Status::kOk;
 }
@@ -297,6 +301,7 @@ Status count_geometry(const MeshView& mesh, Request request, GridNeed& need) {
   KeptTriangles kept;
   GRIDIRON_TRY(survey(mesh, kept));
   request.resolved_count = kept.count;
+  request.kept_count = kept.count;
   if (request.parameters.format != TriangleFormat::kLattice) return count_mesh(mesh, request, kept, grid, need);
   // As many cells as without a lattice: it has fewer triangles left, not larger ones.
   enter_step<GridStep::kLatticeSurvey>();
@@ -304,6 +309,7 @@ Status count_geometry(const MeshView& mesh, Request request, GridNeed& need) {
   const LatticeMesh moved{{mesh.vertices, grid.lattice}, mesh.triangles};
   KeptTriangles moved_kept;
   GRIDIRON_TRY(survey(moved, moved_kept));
+  request.kept_count = moved_kept.count;
   return count_mesh(moved, request, moved_kept, grid, need);
 }
 
@@ -315,6 +321,7 @@ Status count_within(const MeshView& mesh, Request request, const EffectsView* ef
   if (!all_in_range(mesh.vertices)) return Status::kBadVertex;
   EffectsRecord record{};
   if (effects != nullptr) {
+    if (mesh.triangles.size() > kMaxTreeTriangles) return Status::kTooManyTriangles;
     GRIDIRON_TRY(check_effects(mesh, *effects));
     record = count_effects(*effects);
     request.effects = &record;
@@ -332,13 +339,13 @@ Status count_within(const MeshView& mesh, Request request, const EffectsView* ef
 
 Status count_scene_image(const MeshView& mesh, const GridParameters& parameters, GridNeed& need,
                          const EffectsView* effects, std::uint64_t most_image_bytes, std::span<std::uint64_t> marks) {
-  const Request request{parameters, nullptr, mesh.triangles.size(), 0, most_image_bytes, false, marks};
+  const Request request{parameters, nullptr, mesh.triangles.size(), 0, 0, most_image_bytes, false, marks};
   return count_within(mesh, request, effects, need);
 }
 
 Status fit_scene_image(const MeshView& mesh, const GridParameters& parameters, std::uint64_t most_image_bytes,
                        GridNeed& need, const EffectsView* effects, std::span<std::uint64_t> marks) {
-  const Request request{parameters, nullptr, mesh.triangles.size(), 0, most_image_bytes, true, marks};
+  const Request request{parameters, nullptr, mesh.triangles.size(), 0, 0, most_image_bytes, true, marks};
   return count_within(mesh, request, effects, need);
 }
 

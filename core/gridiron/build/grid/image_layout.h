@@ -9,6 +9,7 @@
 #include <gridiron/build/effects/effect_sections.h>
 #include <gridiron/build/grid/grid_builder.h>
 #include <gridiron/build/grid/grid_resolution.h>
+#include <gridiron/build/tree/tree_sections.h>
 
 #include <cstdint>
 
@@ -23,7 +24,8 @@ inline Status check_parameters(const GridParameters& parameters) {
   const bool format_ok = parameters.format == TriangleFormat::kVertices ||
                          parameters.format == TriangleFormat::kProjection ||
                          parameters.format == TriangleFormat::kLattice;
-  return lambda_ok && width_ok && format_ok ? Status::kOk : Status::kBadParameter;
+  const bool leaf_ok = parameters.leaf_triangles >= 1 && parameters.leaf_triangles <= kMaxTreeLeaf;
+  return lambda_ok && width_ok && format_ok && leaf_ok ? Status::kOk : Status::kBadParameter;
 }
 
 /// Surfaces store vertices, which a projection does not have.
@@ -33,22 +35,31 @@ inline bool may_have_effects(const GridParameters& parameters) {
 
 // --- Layout -----------------------------------------------------------------------------------------------------
 
-// Offsets of all parts; they follow from the counts.
+// Offsets of all parts; they follow from the counts, but for the end of the tree's nodes.
 struct ImageLayout {
   std::uint64_t section_table_offset, grid_offset, macro_table_offset, cell_blocks_offset, triangles_offset;
   std::uint64_t macro_table_entries;
   std::uint32_t section_count;
-  EffectSections effects;  // from the end of the triangles to the end of the image
+  EffectSections effects;  // from the end of the triangles on
+  TreeSections tree;       // from the end of the effects to the end of the image, with room for the most nodes
   std::uint64_t image_bytes;
 };
 
-// @param effects  as counted; null: none.
-inline ImageLayout layout_of(const GridRecord& grid, const EffectsRecord* effects, std::uint64_t triangle_count) {
+// What an image holds besides the grid.
+struct ImageParts {
+  const EffectsRecord* effects;  // as counted; null: neither effects nor a tree
+  std::uint64_t triangle_count;  // of the input
+  std::uint64_t kept_count;      // of these, those that have an area as they are stored
+  std::uint32_t leaf_triangles;  // of the tree
+};
+
+inline ImageLayout layout_of(const GridRecord& grid, const ImageParts& parts) {
   constexpr std::uint64_t kLine = kLineBytes;
   ImageLayout layout{};
   layout.macro_table_entries = (macro_cell_total(grid) + 31) / 32;
   layout.section_table_offset = round_up<std::uint64_t>(sizeof(ImageHeader), kLine);
-  layout.section_count = kSectionCount + (effects != nullptr ? effect_section_count(*effects) : 0);
+  layout.section_count =
+      kSectionCount + (parts.effects != nullptr ? effect_section_count(*parts.effects) + kTreeSectionCount : 0);
   layout.grid_offset = round_up(layout.section_table_offset + layout.section_count * sizeof(SectionEntry), kLine);
   layout.macro_table_offset = round_up(layout.grid_offset + sizeof(GridRecord), kLine);
   layout.cell_blocks_offset =
@@ -59,10 +70,15 @@ inline ImageLayout layout_of(const GridRecord& grid, const EffectsRecord* effect
       round_up(layout.triangles_offset + std::uint64_t{grid.reference_count} * grid.triangle_bytes, kLine);
   layout.effects.begin_bytes = triangles_end;
   layout.effects.end_bytes = triangles_end;
-  if (effects != nullptr) {
-    layout.effects = place_effect_sections(*effects, static_cast<std::uint32_t>(triangle_count), triangles_end);
+  layout.tree.begin_bytes = triangles_end;
+  layout.tree.end_bytes = triangles_end;
+  if (parts.effects != nullptr) {
+    layout.effects =
+        place_effect_sections(*parts.effects, static_cast<std::uint32_t>(parts.triangle_count), triangles_end);
+    layout.tree = place_tree_sections(static_cast<TriangleFormat>(grid.triangle_format), parts.kept_count,
+                                      parts.leaf_triangles, layout.effects.end_bytes);
   }
-  layout.image_bytes = layout.effects.end_bytes;
+  layout.image_bytes = layout.tree.end_bytes;
   return layout;
 }
 

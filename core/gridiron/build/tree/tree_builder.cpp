@@ -1,5 +1,6 @@
 // Building the wide tree: see the header. SPDX-License-Identifier: Apache-2.0
 #include <gridiron/build/grid/triangle_records.h>
+#include <gridiron/build/tree/tree_box.h>
 #include <gridiron/build/tree/tree_builder.h>
 
 #include <bit>
@@ -21,48 +22,6 @@ struct Key {
   std::uint32_t code;  // along the Z curve
   std::uint32_t id;    // of a triangle, or its place in a range that is sorted again
 };
-
-struct Box {
-  float low[3] = {kFloatMax, kFloatMax, kFloatMax};
-  float high[3] = {-kFloatMax, -kFloatMax, -kFloatMax};
-
-  void add(int axis, float value) {
-    low[axis] = value < low[axis] ? value : low[axis];
-    high[axis] = value > high[axis] ? value : high[axis];
-  }
-  void add(const Vec3& p) {
-    for (int axis = 0; axis < 3; ++axis) add(axis, p[axis]);
-  }
-  void add(const Box& box) {
-    for (int axis = 0; axis < 3; ++axis) {
-      low[axis] = box.low[axis] < low[axis] ? box.low[axis] : low[axis];
-      high[axis] = box.high[axis] > high[axis] ? box.high[axis] : high[axis];
-    }
-  }
-  void grow(float margin) {
-    for (int axis = 0; axis < 3; ++axis) {
-      low[axis] = grown_low(low[axis], margin);
-      high[axis] = grown_high(high[axis], margin);
-    }
-  }
-  // Twice the centre, rounded; the least and the greatest that boxes inside can have.
-  [[nodiscard]] Vec3 middle() const { return {low[0] + high[0], low[1] + high[1], low[2] + high[2]}; }
-  [[nodiscard]] Vec3 low_middle() const { return {low[0] + low[0], low[1] + low[1], low[2] + low[2]}; }
-  [[nodiscard]] Vec3 high_middle() const { return {high[0] + high[0], high[1] + high[1], high[2] + high[2]}; }
-  [[nodiscard]] float half_surface() const {
-    float size[3];
-    for (int axis = 0; axis < 3; ++axis) size[axis] = high[axis] - low[axis];
-    return size[0] * size[1] + size[1] * size[2] + size[2] * size[0];
-  }
-};
-
-Box box_of(const Vec3& a, const Vec3& b, const Vec3& c) {
-  Box box;
-  box.add(a);
-  box.add(b);
-  box.add(c);
-  return box;
-}
 
 // Twice the area; where floats overflow or underflow any number, as it decides an order alone.
 float area_of(const Vec3& a, const Vec3& b, const Vec3& c) {
@@ -195,7 +154,7 @@ class TreeBuilder {
 
   [[nodiscard]] Status build() {
     size_ = {};
-    Box vertices;
+    TreeBox vertices;
     GRIDIRON_TRY(bound_vertices(vertices));
     GRIDIRON_TRY(take_triangles(Curve(vertices.low_middle(), vertices.high_middle())));
     const std::uint32_t count = size_.triangle_count;
@@ -215,7 +174,7 @@ class TreeBuilder {
 
   // --- Triangles --------------------------------------------------------------------------------------------------
 
-  [[nodiscard]] Status bound_vertices(Box& box) const {
+  [[nodiscard]] Status bound_vertices(TreeBox& box) const {
     const std::size_t vertex_count = mesh_.vertices.size();
     std::uint32_t outside = 0;
     for (std::size_t i = 0; i < vertex_count; ++i) {
@@ -229,14 +188,14 @@ class TreeBuilder {
   // Lists the triangles that have an area, with their codes, and bounds them.
   [[nodiscard]] Status take_triangles(const Curve& curve) {
     const std::size_t vertex_count = mesh_.vertices.size();
-    Box bounds;
+    TreeBox bounds;
     std::uint32_t id = 0, count = 0;
     for (const UVec3& t : mesh_.triangles) {
       if (t.x >= vertex_count || t.y >= vertex_count || t.z >= vertex_count) return Status::kBadIndex;
       const Vec3 a = mesh_.vertices[t.x], b = mesh_.vertices[t.y], c = mesh_.vertices[t.z];
       const std::uint32_t here = id++;
       if (has_zero_area(a, b, c)) continue;
-      const Box box = box_of(a, b, c);
+      const TreeBox box = box_of(a, b, c);
       bounds.add(box);
       spare_[count++] = {curve.code_of(box.middle()), here};
     }
@@ -250,7 +209,7 @@ class TreeBuilder {
     return Status::kOk;
   }
 
-  [[nodiscard]] Box box_of_record(std::uint32_t i) const {
+  [[nodiscard]] TreeBox box_of_record(std::uint32_t i) const {
     const Record& record = records_[i];
     return box_of(form_.corner(record, 0), form_.corner(record, 1), form_.corner(record, 2));
   }
@@ -364,7 +323,7 @@ class TreeBuilder {
   // they are few or all in one place.
   void code_again(std::uint32_t begin, std::uint32_t end) {
     const std::uint32_t count = end - begin;
-    Box middles;
+    TreeBox middles;
     if (count > kFewTriangles) {
       for (std::uint32_t i = begin; i < end; ++i) middles.add(box_of_record(i).middle());
     }
@@ -399,13 +358,7 @@ class TreeBuilder {
 
   // From the last node to the first, so that children come before their parents. Codes are not needed any more.
   void bound_all() {
-    float largest = 0.0f;
-    for (int axis = 0; axis < 3; ++axis) {
-      const float low = __builtin_fabsf(size_.low[axis]), high = __builtin_fabsf(size_.high[axis]);
-      largest = low > largest ? low : largest;
-      largest = high > largest ? high : largest;
-    }
-    margin_ = tree_margin(largest);
+    margin_ = tree_margin_of(size_.low, size_.high);
     auto* const areas = reinterpret_cast<float*>(spare_);  // by node; there are no more nodes than triangles
     for (std::uint32_t i = size_.node_count; i-- > 0;) areas[i] = bound(nodes_[i], areas);
   }
@@ -415,7 +368,7 @@ class TreeBuilder {
     float total = 0.0f, densities[kTreeWidth];
     const float margin = margin_;
     for (std::uint32_t i = 0; i < kTreeWidth; ++i) {
-      Box box;
+      TreeBox box;
       if (i < node.child_count) {
         const TreeChild child = node.children[i];
         float area = 0.0f;
@@ -441,17 +394,6 @@ class TreeBuilder {
     }
     node.order = order_of(densities, node.child_count);
     return total;
-  }
-
-  [[nodiscard]] static Box box_of_node(const TreeNode& node) {
-    Box box;
-    for (std::uint32_t i = 0; i < node.child_count; ++i) {
-      for (int axis = 0; axis < 3; ++axis) {
-        box.low[axis] = node.low[axis][i] < box.low[axis] ? node.low[axis][i] : box.low[axis];
-        box.high[axis] = node.high[axis][i] > box.high[axis] ? node.high[axis][i] : box.high[axis];
-      }
-    }
-    return box;
   }
 
   // The densest first; of equal ones the first.

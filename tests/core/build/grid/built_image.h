@@ -79,7 +79,7 @@ inline std::vector<std::vector<std::uint32_t>> read_cells(std::span<const std::b
   return cells;
 }
 
-/// Counts, builds in exactly the counted memory, opens and reads. Failures are reported to GoogleTest.
+/// Counts, builds in exactly the counted memory, opens and reads. `image` is then as long as its header says. Failures are reported to GoogleTest.
 inline BuiltImage build_image(const MeshView& mesh, const GridParameters& parameters = {},
                               std::byte fill = std::byte{0xCD}, const EffectsView* effects = nullptr) {
   BuiltImage built;
@@ -94,6 +94,9 @@ inline BuiltImage build_image(const MeshView& mesh, const GridParameters& parame
   EXPECT_EQ(open_scene_image(built.image.bytes(), built.view, error), Status::kOk)
       << error.field << " at byte " << error.byte_offset;
   if (::testing::Test::HasFailure()) return built;
+  EXPECT_LE(built.view.header.image_bytes, built.need.image_bytes);
+  EXPECT_TRUE(effects != nullptr || built.view.header.image_bytes == built.need.image_bytes);
+  built.image.shrink(static_cast<std::size_t>(built.view.header.image_bytes));
   built.cells = read_cells(built.image.bytes(), built.view);
   return built;
 }

@@ -18,6 +18,11 @@ class LineBuffer {
       : lines_((size + kLineBytes - 1) / kLineBytes), size_(size) {
     if (size != 0) std::memset(lines_.data(), std::to_integer<int>(fill), lines_.size() * kLineBytes);
   }
+  /// Drops the bytes behind the first `size`; copies take as much memory as they need.
+  void shrink(std::size_t size) {
+    lines_.resize((size + kLineBytes - 1) / kLineBytes);
+    size_ = size;
+  }
   [[nodiscard]] std::span<std::byte> bytes() { return {reinterpret_cast<std::byte*>(lines_.data()), size_}; }
   [[nodiscard]] std::span<const std::byte> bytes() const {
     return {reinterpret_cast<const std::byte*>(lines_.data()), size_};
