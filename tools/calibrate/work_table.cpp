@@ -135,8 +135,7 @@ void make_effect_scene(const Scene& teapot, bool with_environment, EffectScene& 
 
 // Work that only frames with effects have.
 bool is_of_effects(std::size_t kind) {
-  const bool is_shared = kind >= WorkId(Work::kWaveRay).number() && kind <= WorkId(Work::kColorGroup).number();
-  return is_shared || kind == WorkId(GridWork::kWalkPass).number() || kind == WorkId(GridWork::kShaftGroup).number();
+  return kind >= WorkId(Work::kWaveRay).number() && kind <= WorkId(Work::kColorGroup).number();
 }
 
 // Work that only frames with exact distances have, or hardly any other.

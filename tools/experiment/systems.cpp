@@ -214,7 +214,7 @@ std::unique_ptr<Recording> GridSystem::record(const View& view, const FrameReque
   facts.traversal_steps = sum_of(result.work, {GridWork::kMacroSliceStep, GridWork::kMacroCellStep,
                                                GridWork::kSliceStep, GridWork::kCellStep, GridWork::kCellBoundStep});
   facts.intersection_tests =
-      sum_of(result.work, {Work::kGroupTestStandard, Work::kRowTest, Work::kGroupTestPaper, Work::kRayGroupTest});
+      sum_of(result.work, {Work::kGroupTestStandard, Work::kRowTest, Work::kGroupTestPaper, Work::kListTriangleGroup});
   facts.scene_bytes = frame.image.header.image_bytes;
   facts.dropped_triangles = frame.image.header.dropped_triangle_count;
   facts.grid = frame.image.grid;

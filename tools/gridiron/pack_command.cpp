@@ -33,8 +33,8 @@ void run_command(const PackRequest& request) {
   constexpr std::uint32_t kUsualTileWidth = 32;
   const std::uint64_t spill_bytes = spill_bytes_of(machine.core_count, recursion_depth(input));
   const ImageLimits limits = {request.format, image_budget_bytes(machine, 1, 1, 1, kUsualTileWidth, spill_bytes)};
-  const EffectsView view = input.text ? input.text->effects.view() : EffectsView{};
-  const EffectsView* effects = input.text ? &view : nullptr;
+  const EffectsView of_text = input.text ? input.text->effects.view() : EffectsView{};
+  const EffectsView* effects = input.text ? &of_text : nullptr;
   const GridChoice choice = choose_grid(input, *mesh, request.scene, limits, effects);
   require_fit(choice, request.scene, input);
 

@@ -35,7 +35,6 @@ std::uint64_t pieces_of(std::uint64_t bytes, std::uint64_t step) {
 }
 
 constexpr std::uint64_t kSubpacketRays = 16;
-constexpr std::uint64_t kRaysOfWalk = 16;
 // Every ray joins a pass of its own steepest axis and sign. One whose direction rounding has made zero goes alone; a
 // camera has at most one, as directions are further apart than their roundings.
 constexpr std::uint64_t kAxesAndSigns = 6;
@@ -84,7 +83,7 @@ class Sum {
     get_bytes_ = get_bytes_ + bytes;
   }
 
-  // What `passes` passes through the whole grid visit and fetch, for packets and walks alike. A transfer has one
+  // What `passes` passes through the whole grid visit and fetch, for packets. A transfer has one
   // command, and one more for each boundary inside it. Blocks are contiguous and fetched once in a pass, so each
   // boundary of their section is inside at most one of them; the same holds for runs. Empty macrocells share a block.
   void add_traversal(Count passes, bool skips_empty) {
@@ -268,30 +267,40 @@ class Sum {
     add(Work::kColorAdded, larger(rays, to_lights + into_the_open));  // a ray that hits nothing adds one colour
     add(Work::kColorGroup, pixels / 4);
 
-    Count walked = queued + into_the_open;
-    if (effects.has_shadows != 0) walked = walked + to_lights;
-    if (layout_.packet_width == 0) walked = walked + eye_rays;
-    add_walks(walked);
+    Count listed = queued + into_the_open;
+    if (effects.has_shadows != 0) listed = listed + to_lights;
+    if (layout_.packet_width == 0) listed = listed + eye_rays;
+    add_lists(listed);
     add_records(rays, queued, samples * parts(pixels, layout_.wave_rays));
   }
 
-  // Walks: each pass takes at least its leader, so there are at most as many passes as rays.
-  void add_walks(Count rays) {
-    const std::uint64_t shaft = groups(kRaysOfWalk);
-    add(GridWork::kWalkPass, rays);
-    add(GridWork::kShaftGroup,
-        rays * (Count{shaft} * (Count{scene_.macro_slices} + scene_.occupied_slices + scene_.filled_cells)));
-    add_traversal(rays, true);
-    const Count pairs = rays * scene_.references;
-    const Count ties = is_exact() ? pairs : Count{};
-    add(GridWork::kMailboxProbe, pairs);
-    add(Work::kRayTriangleSetup, pairs);
-    add(Work::kRayGroupTest, pairs);
-    add(Work::kRayDistance, pairs);
-    add(Work::kDoubleSign, pairs * 3 + ties * 3);
-    add(Work::kExactSign, pairs * 3 + ties * 3);
-    add(Work::kExactDistance, pairs);
+  // Lists: a ray is in the list of a node or leaf once at most, and a list has one ray at least. Each child is asked for
+  // ahead and taken, and may have been evicted in between; the root is asked for once a batch.
+  void add_lists(Count rays) {
+    const Count nodes = rays * scene_.nodes, leaves = rays * scene_.leaves, triangles = rays * scene_.tree_triangles;
+    const Count children = nodes + leaves, groups = rays * scene_.leaf_groups;
+    add(Work::kListRay, rays);
+    add(Work::kListNode, nodes);
+    add(Work::kListRayNode, nodes);
+    if (layout_.lanes <= kTreeWidth / 4) add(Work::kListBoxQuad, nodes * (kTreeWidth / 4));
+    add(Work::kListChild, children);
+    add(Work::kListEntry, children);
+    add(Work::kListLeaf, leaves);
+    add(Work::kListTriangleGroup, groups);
+    add(Work::kListCandidate, groups);
+    const Count ties = is_exact() ? triangles : Count{};
+    add(Work::kRayDistance, triangles);
+    add(Work::kDoubleSign, triangles * 3 + ties * 3);
+    add(Work::kExactSign, triangles * 3 + ties * 3);
+    add(Work::kExactDistance, triangles);
     add(Work::kExactOrder, ties);
+    const std::uint64_t record = is_compact() ? sizeof(LatticeTriangle) : sizeof(VertexTriangle);
+    if (is_compact()) add(Work::kLatticeTriangle, triangles * 2);
+    add_gets(nodes * 2 + rays, pieces_of(sizeof(TreeNode), kLineBytes), (nodes * 2 + rays) * sizeof(TreeNode));
+    // Runs of lattice triangles are widened to whole granules at both ends.
+    const std::uint64_t widened = is_compact() ? 2 * kPortableGranuleBytes : 0;
+    add_gets(leaves * 2, pieces_of(scene_.leaf_triangles * record + widened, kPortableGranuleBytes),
+             triangles * (2 * record) + leaves * (2 * widened));
     // For a tie the other triangle is fetched.
     add_gets(ties, kPiecesOfRecord, ties * sizeof(SurfaceRecord));
   }
@@ -344,9 +353,11 @@ class Sum {
     const bool has_effects = frame_.shading == Shading::kScene;
     const std::uint64_t of_packets =
         layout_.packet_width == 0 ? 0 : frame_.macro_depth * block + frame_.triangle_depth * run;
-    const std::uint64_t of_walks = has_effects ? frame_.walk_depth * (block + larger(run, kPiecesOfRecord).value) : 0;
+    // A level of the tree asks for walk_depth children ahead, as long as there is room for them.
+    const std::uint64_t children = smaller(std::uint64_t{kMaxTreeDepth} * frame_.walk_depth, layout_.tree_slots).value;
+    const std::uint64_t of_lists = has_effects ? children * kPiecesOfRecord : 0;
     const std::uint64_t at_once = pieces_of(kMostWaveRays / 2 * sizeof(QueuedRay), kPortableGranuleBytes);
-    const std::uint64_t pending = larger(of_packets, of_walks).value + at_once;
+    const std::uint64_t pending = larger(of_packets, of_lists).value + at_once;
     std::uint64_t room = frame_.queue_depth;
     if (frame_.output_depth != 1) {
       const std::uint64_t leaving = frame_.output_depth * output_commands();
@@ -410,10 +421,11 @@ TileScene count_tile_scene(std::span<const std::byte> image, const SceneImageVie
           const std::uint32_t count = is_on_lattice ? bounds[cell + 1].first_triangle - bounds[cell].first_triangle
                                                     : reinterpret_cast<const CellRecord*>(bytes)[cell].triangle_count;
           if (count == 0) continue;
-          const std::uint32_t whole = count / layout.triangles_per_buffer, rest = count % layout.triangles_per_buffer;
+          const std::uint32_t run = layout.packet_width != 0 ? layout.triangles_per_buffer : count;
+          const std::uint32_t whole = count / run, rest = count % run;
           ++scene.filled_cells;
           scene.runs += whole + (rest != 0 ? 1 : 0);
-          scene.run_groups += whole * parts(layout.triangles_per_buffer, layout.lanes) + parts(rest, layout.lanes);
+          scene.run_groups += whole * parts(run, layout.lanes) + parts(rest, layout.lanes);
           macro_triangles += count;
           if (count > scene.most_cell_triangles) scene.most_cell_triangles = count;
         }
@@ -429,6 +441,19 @@ TileScene count_tile_scene(std::span<const std::byte> image, const SceneImageVie
   const auto* const lights = reinterpret_cast<const LightRecord*>(image.data() + view.effects.lights_offset_bytes);
   for (std::uint32_t i = 0; i < view.effects.light_count; ++i) {
     scene.light_samples += lights[i].samples == 0 ? 1 : lights[i].samples;
+  }
+  const TreeRecord& tree = view.tree;
+  scene.nodes = tree.node_count;
+  scene.tree_triangles = tree.triangle_count;
+  scene.leaf_triangles = tree.leaf_triangles;
+  const auto* const nodes = reinterpret_cast<const TreeNode*>(image.data() + tree.nodes_offset_bytes);
+  for (std::uint32_t i = 0; i < tree.node_count; ++i) {
+    for (std::uint32_t child = 0; child < nodes[i].child_count; ++child) {
+      const TreeChild& below = nodes[i].children[child];
+      if (!below.is_leaf()) continue;
+      ++scene.leaves;
+      scene.leaf_groups += parts(below.count(), layout.lanes);
+    }
   }
   return scene;
 }

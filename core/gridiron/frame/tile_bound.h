@@ -19,12 +19,13 @@ namespace gridiron {
 struct TileLayout {
   std::uint32_t lanes;                 ///< rays of a group, 1 or 4, the unit of counts of groups
   std::uint32_t tile_width;            ///< pixels along a tile's edge
-  std::uint32_t packet_width;          ///< rays along a packet's edge; 0: all rays by walks
-  std::uint32_t triangles_per_buffer;  ///< most of one transfer
+  std::uint32_t packet_width;          ///< rays along a packet's edge; 0: all rays by lists
+  std::uint32_t triangles_per_buffer;  ///< most of one transfer of a cell's; of packets, like those to recent_triangles
   std::uint32_t resident_macro_cells;  ///< the greatest table of macrocells that the local store holds whole
-  std::uint32_t mailbox_slots;         ///< of packets, like the next
+  std::uint32_t mailbox_slots;         ///< places
   std::uint32_t recent_triangles;      ///< of which estimated distances can be made exact
-  std::uint32_t wave_rays;             ///< rays worked on together; from here on 0 in layouts without effects
+  std::uint32_t tree_slots;            ///< nodes and leaves at hand; from here on 0 in layouts without effects
+  std::uint32_t wave_rays;             ///< rays worked on together
   std::uint32_t material_slots;        ///< materials at hand
   std::uint32_t light_slots;           ///< lights at hand
 };
@@ -34,21 +35,18 @@ struct TileLayout {
 /// @returns        the sizes of the layout.
 template <class Layout>
 [[nodiscard]] constexpr TileLayout tile_layout_of(std::uint32_t lanes) {
-  TileLayout layout{lanes,
-                    Layout::kTileWidth,
-                    Layout::kPacketWidth,
-                    Layout::kTrianglesPerBuffer,
-                    32 * Layout::kTableEntries,
-                    0,
-                    0,
-                    0,
-                    0,
-                    0};
+  TileLayout layout{};
+  layout.lanes = lanes;
+  layout.tile_width = Layout::kTileWidth;
+  layout.packet_width = Layout::kPacketWidth;
   if constexpr (Layout::kPacketWidth != 0) {
+    layout.triangles_per_buffer = Layout::kTrianglesPerBuffer;
+    layout.resident_macro_cells = 32 * Layout::kTableEntries;
     layout.mailbox_slots = Layout::kMailboxSlots;
     layout.recent_triangles = Layout::kRecentTriangles;
   }
   if constexpr (Layout::kEffects != 0) {
+    layout.tree_slots = Layout::kTreeSlots;
     layout.wave_rays = Layout::kWaveRays;
     layout.material_slots = Layout::kMaterialSlots;
     layout.light_slots = Layout::kLightSlots;
@@ -64,7 +62,7 @@ struct TileFrame {
   std::uint32_t output_depth = 2;                                              ///< tile buffers in rotation
   std::uint32_t macro_depth = 2;                                               ///< cell blocks in rotation
   std::uint32_t triangle_depth = 2;                                            ///< triangle buffers in rotation
-  std::uint32_t walk_depth = 2;    ///< walks of secondary rays under way at once
+  std::uint32_t walk_depth = 2;    ///< transfers for secondary rays under way at once
   bool has_depth = false;          ///< whether distances are requested
   bool has_ids = false;            ///< whether triangle ids are requested
   std::uint32_t queue_depth = 16;  ///< commands that fit the platform's queue
@@ -86,7 +84,12 @@ struct TileScene {
   std::uint32_t most_cell_triangles;   ///< in one cell
   std::uint32_t most_macro_triangles;  ///< in one macrocell
   std::uint32_t cell_block_bytes;      ///< of a macrocell's cells
-  EffectsRecord effects;               ///< all zero without effects
+  EffectsRecord effects;               ///< all zero without effects, like what follows
+  std::uint64_t nodes;                 ///< of the tree
+  std::uint64_t leaves;                ///< of the tree
+  std::uint64_t leaf_groups;           ///< SIMD groups of triangles in these
+  std::uint64_t tree_triangles;        ///< in these
+  std::uint32_t leaf_triangles;        ///< of a leaf, at most
   std::uint64_t light_samples;         ///< rays that a point sends to all lights: one for a point light
 };
 
@@ -112,9 +115,9 @@ struct TileBound {
 /// The most work of each kind and the most transfers of one tile, for every camera that make_frame_record accepts and
 /// for any place of image and planes. What a core does before its first tile and after its last is not included.
 ///
-/// Assumes that each pass crosses the whole grid and tests every reference. A packet that sees all of a scene from afar
-/// does so; its bound is reached but for culling and hits. A tile of many packets stays farther below. Walks are
-/// assumed to have one ray a pass.
+/// Assumes that each pass of packets crosses the whole grid and tests every reference. A packet that sees all of a scene from afar
+/// does so; its bound is reached but for culling and hits. A tile of many packets stays farther below. Other rays are
+/// assumed to enter every node and leaf, each alone, and to find nothing of it at hand.
 ///
 /// @param scene   counted for the same layout.
 /// @param layout  of a renderer that takes the frame.

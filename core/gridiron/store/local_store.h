@@ -265,9 +265,14 @@ constexpr void for_each_region(Visit&& visit) {
     visit(name, offsetof(Store, engine) + offset, bytes);
   });
   if constexpr (Layout::kEffects == 0) {
-    Store::EyeStore::for_each_region([&](const char* name, std::size_t offset, std::size_t bytes) {
-      visit(name, offsetof(Store, packet) + offset, bytes);
-    });
+    constexpr auto visit_part = [](const char*, std::size_t, std::size_t) {};
+    if constexpr (requires { Store::EyeStore::for_each_region(visit_part); }) {
+      Store::EyeStore::for_each_region([&](const char* name, std::size_t offset, std::size_t bytes) {
+        visit(name, offsetof(Store, packet) + offset, bytes);
+      });
+    } else {
+      visit("packet", offsetof(Store, packet), sizeof(Store::packet));
+    }
   } else {
     visit("rays", offsetof(Store, rays), sizeof(Store::rays));
     constexpr bool kWaveIsLarger =

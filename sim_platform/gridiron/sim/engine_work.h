@@ -54,8 +54,11 @@ inline constexpr WorkKind kSharedWork[] = {
     {Work::kDepthGroup, "depth_group"}, {Work::kIdGroup, "id_group"}, {Work::kRowGroup, "row_group"},
     {Work::kEstimateSetup, "estimate_setup"}, {Work::kNormalSetup, "normal_setup"}, {Work::kHitHalf, "hit_half"},
     {Work::kExactOrder, "exact_order"}, {Work::kLatticeTriangle, "lattice_triangle"}, {Work::kWaveRay, "wave_ray"},
-    {Work::kQueuedRay, "queued_ray"}, {Work::kRayTriangleSetup, "ray_triangle_setup"},
-    {Work::kRayGroupTest, "ray_group_test"}, {Work::kRayDistance, "ray_distance"},
+    {Work::kQueuedRay, "queued_ray"}, {Work::kListRay, "list_ray"}, {Work::kListChild, "list_child"},
+    {Work::kListEntry, "list_entry"}, {Work::kListNode, "list_node"}, {Work::kListRayNode, "list_ray_node"},
+    {Work::kListBoxQuad, "list_box_quad"}, {Work::kListLeaf, "list_leaf"},
+    {Work::kListTriangleGroup, "list_triangle_group"}, {Work::kListCandidate, "list_candidate"},
+    {Work::kRayDistance, "ray_distance"},
     {Work::kSurfacePoint, "surface_point"}, {Work::kSmoothNormal, "smooth_normal"}, {Work::kShadowRay, "shadow_ray"},
     {Work::kLightSample, "light_sample"}, {Work::kHighlight, "highlight"}, {Work::kOcclusionRay, "occlusion_ray"},
     {Work::kMirrorRay, "mirror_ray"}, {Work::kRefractedRay, "refracted_ray"},
@@ -136,8 +139,7 @@ inline constexpr WorkKind kGridWorkKinds[] = {
     {GridWork::kCellRow, "cell_row"}, {GridWork::kCellStep, "cell_step"}, {GridWork::kCellVisit, "cell_visit"},
     {GridWork::kTriangleBatch, "triangle_batch"}, {GridWork::kMailboxProbe, "mailbox_probe"},
     {GridWork::kReachGroup, "reach_group"}, {GridWork::kReachTest, "reach_test"},
-    {GridWork::kFootprintGroup, "footprint_group"}, {GridWork::kCellBoundStep, "cell_bound_step"},
-    {GridWork::kWalkPass, "walk_pass"}, {GridWork::kShaftGroup, "shaft_group"}};
+    {GridWork::kFootprintGroup, "footprint_group"}, {GridWork::kCellBoundStep, "cell_bound_step"}};
 // clang-format on
 
 /// The grid. Machine profiles have its prices.

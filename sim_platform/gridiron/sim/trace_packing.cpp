@@ -203,11 +203,6 @@ struct Shape {
          (shape.end & Shape::kMasks) != 0;
 }
 
-// Made for the grid; of another engine some amounts are expected worse, no more.
-static_assert(GridWork::kShaftGroup > GridWork::kMacroSliceStep && GridWork::kShaftGroup > GridWork::kSliceStep &&
-                  GridWork::kShaftGroup > GridWork::kCellVisit,
-              "a reader knows the amounts by which another is expected");
-
 /// The predictions for a step from those before it, the same for the writer and the reader.
 class Expectations {
  public:
@@ -225,16 +220,10 @@ class Expectations {
   /// Each address has the same number of bytes every time.
   [[nodiscard]] std::uint32_t& bytes_at(std::uint64_t address) { return bytes_at_[slot_of<kBytesBits>(address)]; }
 
-  /// Most kinds occur once. A mailbox is probed for every triangle that arrived, a shaft is tested against each slab.
-  [[nodiscard]] std::uint32_t& amount(std::uint32_t kind, const Step& step) {
+  /// Most kinds occur once. A mailbox is probed for every triangle that arrived.
+  [[nodiscard]] std::uint32_t& amount(std::uint32_t kind) {
     if (kind == static_cast<std::uint32_t>(GridWork::kMailboxProbe))
       return probes_[arrived_bytes_ / 16 % probes_.size()];
-    if (kind == static_cast<std::uint32_t>(GridWork::kShaftGroup)) {
-      const auto amount_of = [&](WorkId work) { return step.amounts[work.number()]; };
-      const std::uint32_t slabs =
-          amount_of(GridWork::kMacroSliceStep) + amount_of(GridWork::kSliceStep) + amount_of(GridWork::kCellVisit);
-      return shafts_[slabs % shafts_.size()];
-    }
     one_ = 1;
     return one_;
   }
@@ -265,7 +254,7 @@ class Expectations {
   std::uint64_t arrived_end_ = 0;     ///< of the last arrival, or got since
   std::uint32_t arrived_bytes_ = 0;
   std::uint32_t one_ = 1;
-  std::array<std::uint32_t, 64> probes_{}, shafts_{};
+  std::array<std::uint32_t, 64> probes_{};
   std::array<std::uint32_t, 1u << kBytesBits> bytes_at_{};
   std::array<std::uint64_t, 1u << kFollowingBits> following_{};
 };
@@ -292,7 +281,7 @@ struct TraceWriter::State {
     shape.kinds = step.kinds;
     shape.end = static_cast<std::uint32_t>(step.end);
     for_each_kind(step.kinds, [&](std::uint32_t kind) {
-      std::uint32_t& expected = expectations.amount(kind, step);
+      std::uint32_t& expected = expectations.amount(kind);
       if (expected != step.amounts[kind]) shape.unexpected.insert(kind);
       expected = step.amounts[kind];
     });
@@ -426,7 +415,7 @@ struct TraceReader::State {
   void take_work(const Shape& shape) {
     WorkAmount* amount = work.data();
     for_each_kind(shape.kinds, [&](std::uint32_t kind) {
-      std::uint32_t& expected = expectations.amount(kind, step);
+      std::uint32_t& expected = expectations.amount(kind);
       if (shape.unexpected.has(kind)) expected = static_cast<std::uint32_t>(take_number(next));
       step.amounts[kind] = expected;
       *amount++ = {WorkId(kind), expected};

@@ -17,12 +17,16 @@ StoreFacts facts_of() {
   facts.stack_bytes = Layout::kStackBudgetBytes;
   facts.tile_width = Layout::kTileWidth;
   facts.packet_width = Layout::kPacketWidth;
-  facts.max_macro_width = Layout::kMaxMacroWidth;
-  facts.most_depths = {Layout::kMaxOutputDepth, Layout::kMaxMacroDepth, Layout::kMaxTriangleDepth, 0};
-  facts.triangles_per_buffer = Layout::kTrianglesPerBuffer;
-  if constexpr (Layout::kEffects != 0) facts.most_depths.walks = kWalkCount<Layout>;
-  if constexpr (kHasPackets<Layout>) facts.mailbox_slots = Layout::kMailboxSlots;
-  facts.resident_macro_cells = 32 * Layout::kTableEntries;
+  facts.most_depths.output = Layout::kMaxOutputDepth;
+  if constexpr (Layout::kEffects != 0) facts.most_depths.walks = Layout::RayEngine::template kMaxDepth<Layout>;
+  if constexpr (kHasPackets<Layout>) {
+    facts.max_macro_width = Layout::kMaxMacroWidth;
+    facts.most_depths.macro = Layout::kMaxMacroDepth;
+    facts.most_depths.triangle = Layout::kMaxTriangleDepth;
+    facts.triangles_per_buffer = Layout::kTrianglesPerBuffer;
+    facts.mailbox_slots = Layout::kMailboxSlots;
+    facts.resident_macro_cells = 32 * Layout::kTableEntries;
+  }
   for_each_region<Layout>([&facts](const char* name, std::size_t offset_bytes, std::size_t bytes) {
     facts.regions.push_back({name, offset_bytes, bytes});
   });

@@ -2,9 +2,8 @@
 #include "loop_table.h"
 
 #include <gridiron/base/exact_sum.h>
-#include <gridiron/engine/grid/walk.h>
 #include <gridiron/ray/packet.h>
-#include <gridiron/ray/walk_rays.h>
+#include <gridiron/ray/ray_batch.h>
 
 #include <algorithm>
 

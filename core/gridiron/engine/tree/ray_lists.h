@@ -118,9 +118,9 @@ class RayLists {
     std::uint32_t count = 0, i = level.taken;
     for (; i < level.ray_count && count + kListStep <= room; i += kListStep) {
       const std::uint32_t rest = level.ray_count - i;
+      work_.add(Work::kListEntry, rest < kListStep ? rest : kListStep);
       count += take_marked<L>(list + i, masks + i, rest < kListStep ? rest : kListStep, place, target + count);
     }
-    work_.add(Work::kListEntry, i - level.taken);
     level.taken = i;
     if constexpr (kAny) {
       // Rays that have their answer leave lists only once they are many: they meet no box any more.
