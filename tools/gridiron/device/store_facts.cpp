@@ -26,6 +26,11 @@ StoreFacts facts_of() {
     facts.triangles_per_buffer = Layout::kTrianglesPerBuffer;
     facts.mailbox_slots = Layout::kMailboxSlots;
     facts.resident_macro_cells = 32 * Layout::kTableEntries;
+  } else {
+    // Nothing reads the grid.
+    facts.max_macro_width = kMaxMacroWidth;
+    facts.most_depths.macro = 1;
+    facts.most_depths.triangle = 1;
   }
   for_each_region<Layout>([&facts](const char* name, std::size_t offset_bytes, std::size_t bytes) {
     facts.regions.push_back({name, offset_bytes, bytes});

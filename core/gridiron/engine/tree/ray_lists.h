@@ -52,14 +52,16 @@ class RayLists {
     for (std::uint32_t octant = 0; octant < 8; ++octant) places[octant] = ends[octant];
     for (std::uint32_t i = 0; i < count; ++i) {
       const std::uint16_t entry = unsorted[i];
-      memory_.arena[places[octant_of(entry)]++] = entry;
+      std::uint32_t& place = places[octant_of(entry)];
+      memory_.arena[place] = entry;
+      ++place;
     }
     if (question.any_hit) return walk<true>(0, count);
     // The nearest hit is found soonest front to back, and front is another side for each octant. The last list goes
     // first: it needs the room behind it.
-    for (std::uint32_t octant = 8; octant-- > 0;) {
-      if (ends[octant] == ends[octant + 1]) continue;
-      GRIDIRON_TRY(walk<false>(ends[octant], ends[octant + 1]));
+    for (std::uint32_t octant = 8; octant > 0; --octant) {
+      if (ends[octant - 1] == ends[octant]) continue;
+      GRIDIRON_TRY(walk<false>(ends[octant - 1], ends[octant]));
     }
     return Status::kOk;
   }
@@ -134,7 +136,7 @@ class RayLists {
     for (std::uint32_t i = 0; i < count; ++i) {
       const std::uint16_t entry = list[i];
       list[living] = entry;
-      living += ray_of(memory_.rays, entry).id == kNoTriangle ? std::uint32_t{1} : 0;
+      living += ray_of(memory_.rays, entry).id == kNoTriangle ? std::uint32_t{1} : std::uint32_t{0};
     }
     return living;
   }
