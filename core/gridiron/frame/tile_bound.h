@@ -24,7 +24,8 @@ struct TileLayout {
   std::uint32_t resident_macro_cells;  ///< the greatest table of macrocells that the local store holds whole
   std::uint32_t mailbox_slots;         ///< places
   std::uint32_t recent_triangles;      ///< of which estimated distances can be made exact
-  std::uint32_t tree_slots;            ///< nodes and leaves at hand; from here on 0 in layouts without effects
+  std::uint32_t batch_rays;            ///< secondary rays traced at once; from here on 0 in layouts without effects
+  std::uint32_t tree_slots;            ///< nodes and leaves at hand
   std::uint32_t wave_rays;             ///< rays worked on together
   std::uint32_t material_slots;        ///< materials at hand
   std::uint32_t light_slots;           ///< lights at hand
@@ -46,6 +47,7 @@ template <class Layout>
     layout.recent_triangles = Layout::kRecentTriangles;
   }
   if constexpr (Layout::kEffects != 0) {
+    layout.batch_rays = Layout::kBatchRays;
     layout.tree_slots = Layout::kTreeSlots;
     layout.wave_rays = Layout::kWaveRays;
     layout.material_slots = Layout::kMaterialSlots;

@@ -2,6 +2,7 @@
 #include "loop_table.h"
 
 #include <gridiron/base/exact_sum.h>
+#include <gridiron/engine/tree/list_memory.h>
 #include <gridiron/ray/packet.h>
 #include <gridiron/ray/ray_batch.h>
 
@@ -36,6 +37,8 @@ LoopFacts loop_facts_of(const WorstTile& worst, std::uint32_t macro_width, std::
   facts.squares = layout.packet_width == 0 ? 0 : std::max(facts.packet_rays / kSubpacketRays / 4, std::uint64_t{1});
   facts.triangles_per_buffer = layout.triangles_per_buffer;
   facts.table_lines = layout.resident_macro_cells / 32 * sizeof(MacroTableEntry) / kLineBytes;
+  facts.batch_rays = layout.batch_rays;
+  facts.tree_slots = layout.tree_slots;
   facts.wave_rays = layout.wave_rays;
   facts.material_slots = layout.material_slots;
   facts.light_slots = layout.light_slots;
@@ -61,6 +64,8 @@ LoopFacts loop_facts_of(const WorstTile& worst, std::uint32_t macro_width, std::
   facts.samples = effects.samples_per_pixel;
   facts.occlusion_samples = effects.occlusion_samples;
   facts.light_rays = worst.scene.light_samples;
+  facts.nodes = worst.scene.nodes;
+  facts.leaves = worst.scene.leaves;
   facts.queued_rays = worst.bound[Work::kQueuedRay];
   facts.job_rays = facts.wave_rays * std::max({facts.light_rays, facts.occlusion_samples, std::uint64_t{1}});
   return facts;

@@ -27,6 +27,7 @@ struct LoopFacts {
   std::uint64_t squares = 0;  ///< of a packet
   std::uint64_t triangles_per_buffer = 0;
   std::uint64_t table_lines = 0;  ///< of 128 bytes
+  std::uint64_t batch_rays = 0, tree_slots = 0;  ///< of lists
   std::uint64_t wave_rays = 0, material_slots = 0, light_slots = 0;
   std::uint64_t most_pieces = 0;  ///< commands of the longest transfer
   // Of the frame.
@@ -36,7 +37,8 @@ struct LoopFacts {
   std::uint64_t material_count = 0, light_count = 0, samples = 1, occlusion_samples = 0;
   std::uint64_t light_rays = 0;   ///< of a point, to the lights
   std::uint64_t queued_rays = 0;  ///< that a tile's rays cast
-  std::uint64_t job_rays = 0;     ///< that walks trace between two waves' steps
+  std::uint64_t nodes = 0, leaves = 0;  ///< of the tree
+  std::uint64_t job_rays = 0;     ///< traced between two waves' steps
 
   /// The table, in the order of the sources.
   [[nodiscard]] std::vector<LoopRow> rows() const;

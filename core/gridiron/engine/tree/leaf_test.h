@@ -86,10 +86,18 @@ GRIDIRON_INLINE void set_up_leaf(const VertexTriangle* records, std::uint32_t co
 }
 
 /// What floats say of L::kCount triangles and a ray; bit i = triangle i of the lanes.
+template <class L>
 struct LeafAnswer {
   std::uint32_t inside;  ///< the ray's line surely passes through, and the plane is not surely out of reach
   std::uint32_t unsure;  ///< the line may pass through, likewise
   std::uint32_t within;  ///< the plane is surely at 0 < t <= the ray's
+  typename L::Float ahead, ahead_error, size, turn;  ///< of the plane's t = ahead / size, and errors of both
+
+  /// @returns a bound of t from below. Where the sign of size is not known, it is below 0.
+  [[nodiscard]] GRIDIRON_INLINE typename L::Float least_t() const {
+    using Float = typename L::Float;
+    return L::select(size > turn, (ahead - ahead_error) / (size + turn) * Float(1.0f - 0x1p-20f), Float(-1.0f));
+  }
 };
 
 /// The lanes of a leaf from `base` on, in registers.
@@ -109,7 +117,7 @@ struct LeafLanes {
   }
 
   /// @param there  the lanes that have a triangle.
-  [[nodiscard]] GRIDIRON_INLINE LeafAnswer test(const BatchRay& ray, std::uint32_t there) const {
+  [[nodiscard]] GRIDIRON_INLINE LeafAnswer<L> test(const BatchRay& ray, std::uint32_t there) const {
     Float o_x, o_y, o_z, d_x, d_y, d_z, t, dir_max;
     if constexpr (L::kCount == 4) {
       const Float place = Float::load(ray.origin), sizes = Float::load(ray.inverse), dir = Float::load(ray.dir);
@@ -143,7 +151,7 @@ struct LeafLanes {
     const std::uint32_t in_range = (error < Float(kGreatestListError)).bits() & there;
     const std::uint32_t outside = (least < -error).bits() & in_range;
     const std::uint32_t candidates = there & ~outside;
-    if (candidates == 0) return {0, 0, 0};
+    if (candidates == 0) return {0, 0, 0, Float(0.0f), Float(0.0f), Float(0.0f), Float(0.0f)};
     // Where along the ray.
     const Float ahead = L::flip_sign(backwards, x * n[0] + y * n[1] + z * n[2]);
     const Float limit = size * t;
@@ -156,7 +164,8 @@ struct LeafLanes {
     const std::uint32_t beyond = (ahead - limit > limit_error).bits() & sign_known;
     const std::uint32_t in_reach = candidates & ~(behind | beyond);
     const std::uint32_t inside = (least > error).bits() & in_range;
-    return {in_reach & inside, in_reach & ~inside, (limit - ahead > limit_error).bits() & in_front};
+    return {in_reach & inside, in_reach & ~inside, (limit - ahead > limit_error).bits() & in_front,
+            ahead, ahead_error, size, turn};
   }
 };
 

@@ -212,7 +212,7 @@ class RayLists {
       work_.charge_to(Work::kListTriangleGroup);
       for (std::uint32_t i = 0; i < count; ++i) {
         BatchRay& ray = ray_of(memory_.rays, list[i]);
-        const LeafAnswer answer = lanes.test(ray, there);
+        const LeafAnswer<L> answer = lanes.test(ray, there);
         if ((answer.inside | answer.unsure) == 0) continue;
         GRIDIRON_TRY(decide<kAny>(ray, records + base, answer, base));
         work_.charge_to(Work::kListTriangleGroup);
@@ -223,7 +223,7 @@ class RayLists {
 
   // Decides the triangles that floats leave to one ray. @param base  of the answer's lanes.
   template <bool kAny>
-  [[nodiscard]] GRIDIRON_OUTLINE Status decide(BatchRay& ray, const VertexTriangle* triangles, const LeafAnswer& answer,
+  [[nodiscard]] GRIDIRON_OUTLINE Status decide(BatchRay& ray, const VertexTriangle* triangles, const LeafAnswer<L>& answer,
                                                std::uint32_t base) {
     work_.add(Work::kListCandidate);
     work_.charge_to(Work::kListCandidate);
@@ -232,8 +232,19 @@ class RayLists {
       const std::uint32_t sure = answer.inside & answer.within;
       if (sure != 0) return stop(ray, triangles[lowest_bit(sure)].triangle_id);
     }
-    for (std::uint32_t rest = answer.inside | answer.unsure; rest != 0; rest &= rest - 1) {
-      const std::uint32_t lane = lowest_bit(rest);
+    // The nearest first, by estimates: exact distances cost the most, and a near hit spares those behind it.
+    const std::uint32_t candidates = answer.inside | answer.unsure;
+    alignas(64) float least[L::kCount];
+    const bool are_several = !kAny && (candidates & (candidates - 1)) != 0;
+    if (are_several) answer.least_t().store(least);
+    for (std::uint32_t rest = candidates, lane = 0; rest != 0; rest &= ~(1u << lane)) {
+      lane = lowest_bit(rest);
+      if (are_several) {
+        for (std::uint32_t more = rest & (rest - 1); more != 0; more &= more - 1) {
+          if (least[lowest_bit(more)] < least[lane]) lane = lowest_bit(more);
+        }
+        if (least[lane] > ray.t) break;
+      }
       const VertexTriangle& triangle = triangles[lane];
       if ((answer.inside >> lane & 1u) == 0 && !passes_through(ray, triangle, work_)) continue;
       if constexpr (kAny) {

@@ -30,6 +30,7 @@ class TreeSource {
       cache().is_pending[i] = 0;
     }
     clock_ = 0;
+    surface_ = kNoTriangle;
   }
 
   /// Children under way at once.
@@ -68,8 +69,12 @@ class TreeSource {
   [[nodiscard]] Status triangle_of(MainAddress surfaces, std::uint32_t id, VertexTriangle& triangle) {
     const MainAddress address{surfaces.value + std::uint64_t{id} * sizeof(SurfaceRecord)};
     std::byte* const place = store_.wave.rays.surface_bytes + address.value % kPortableCongruenceBytes;
-    GRIDIRON_TRY(transfers_.get(place, address, sizeof(SurfaceRecord), kSetupTag));
-    GRIDIRON_TRY(transfers_.wait(kSetupTag));
+    // Where one tie is, its neighbours are.
+    if (id != surface_) {
+      GRIDIRON_TRY(transfers_.get(place, address, sizeof(SurfaceRecord), kSetupTag));
+      GRIDIRON_TRY(transfers_.wait(kSetupTag));
+      surface_ = id;
+    }
     const auto& surface = *reinterpret_cast<const SurfaceRecord*>(place);
     for (int corner = 0; corner < 3; ++corner) {
       for (int axis = 0; axis < 3; ++axis) triangle.v[corner][axis] = surface.v[corner][axis];
@@ -128,7 +133,8 @@ class TreeSource {
 
   [[nodiscard]] Status start(TreeChild child, std::uint32_t& slot) {
     slot = set_of(child) * Cache::kWays;
-    for (std::uint32_t i = slot + 1; i < set_of(child) * Cache::kWays + Cache::kWays; ++i) {
+    const std::uint32_t end = slot + Cache::kWays;
+    for (std::uint32_t i = slot + 1; i < end; ++i) {
       if (cache().uses[i] < cache().uses[slot]) slot = i;
     }
     if (cache().is_pending[slot] != 0) GRIDIRON_TRY(arrive(slot));
@@ -161,6 +167,7 @@ class TreeSource {
   Store& store_;
   Transfers<P>& transfers_;
   std::uint32_t clock_ = 0;
+  std::uint32_t surface_ = kNoTriangle;  ///< the triangle that was fetched last for a tie
 };
 
 }  // namespace gridiron
