@@ -178,6 +178,7 @@ struct Lanes {
     [[nodiscard]] GRIDIRON_INLINE std::int32_t operator[](int lane) const { return v[lane]; }
     GRIDIRON_INLINE void store(std::uint32_t* target) const { *reinterpret_cast<IntMemory*>(target) = v; }
     friend GRIDIRON_INLINE Int operator|(Int a, Int b) { return {a.v | b.v}; }
+    friend GRIDIRON_INLINE Int operator&(Int a, Int b) { return {a.v & b.v}; }
     friend GRIDIRON_INLINE Int operator<<(Int a, int count) { return {a.v << count}; }
     friend GRIDIRON_INLINE Mask operator<(Int a, Int b) {
 #if defined(__AVX512F__)
@@ -295,6 +296,21 @@ struct Lanes {
     else
 #endif
       return {loaded == wanted};
+  }
+  /// Stores the lanes whose bit is set, in order. @param target  room for W words, aligned to 4 bytes; those behind
+  /// the ones stored are undefined.
+  static GRIDIRON_INLINE void compress(Int a, std::uint32_t bits, std::uint32_t* target) {
+#if defined(__AVX512F__)
+    if constexpr (W == 16) {
+      _mm512_storeu_si512(target, _mm512_maskz_compress_epi32(static_cast<__mmask16>(bits), __m512i(a.v)));
+      return;
+    }
+#endif
+    std::uint32_t count = 0;
+    for (int i = 0; i < W; ++i) {
+      target[count] = static_cast<std::uint32_t>(a.v[i]);
+      count += bits >> i & 1u;
+    }
   }
   /// Mask with lane i set where bit i is.
   [[nodiscard]] static GRIDIRON_INLINE Mask mask_from_bits(std::uint32_t bits) {

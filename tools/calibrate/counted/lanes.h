@@ -107,6 +107,9 @@ struct Lanes {
     friend Int operator|(Int a, Int b) {
       return {a.v | b.v, emit(OpClass::kFixed, tie((a.v | b.v).v), a.node, b.node)};
     }
+    friend Int operator&(Int a, Int b) {
+      return {a.v & b.v, emit(OpClass::kFixed, tie((a.v & b.v).v), a.node, b.node)};
+    }
     friend Int operator<<(Int a, int count) {
       return {a.v << count, emit(OpClass::kShift, tie((a.v << count).v), a.node)};
     }

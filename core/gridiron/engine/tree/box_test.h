@@ -48,7 +48,8 @@ struct BoxSides {
   using Float = typename L::Float;
   Float near[3], far[3];
 
-  [[nodiscard]] GRIDIRON_INLINE auto met_by(const BoxRay<L>& ray) const {
+  /// @returns the boxes that a ray meets, as bits.
+  [[nodiscard]] GRIDIRON_INLINE std::uint32_t met_by(const BoxRay<L>& ray) const {
     Float in[3], out[3];
     for (int axis = 0; axis < 3; ++axis) {
       in[axis] = (near[axis] - ray.origin[axis]) * ray.inverse[axis];
@@ -56,21 +57,33 @@ struct BoxSides {
     }
     const Float first = L::max(L::max(in[0], in[1]), L::max(in[2], Float(0.0f)));
     const Float last = L::min(L::min(out[0], out[1]), L::min(out[2], ray.t));
-    return first <= last * Float(kExitFactor);
+    return ~(first > last * Float(kExitFactor)).bits() & L::kAllBits;
   }
 };
 
-/// @param base  the first of the boxes: a multiple of L::kCount.
-template <class L>
-[[nodiscard]] GRIDIRON_INLINE BoxSides<L> sides_of(const TreeNode& node, std::uint32_t octant, std::uint32_t base) {
-  BoxSides<L> sides;
-  for (std::uint32_t axis = 0; axis < 3; ++axis) {
-    const bool is_backwards = (octant >> axis & 1u) != 0;
-    sides.near[axis] = L::Float::load((is_backwards ? node.high[axis] : node.low[axis]) + base);
-    sides.far[axis] = L::Float::load((is_backwards ? node.low[axis] : node.high[axis]) + base);
+/// Where the sides of a node's boxes, or of their unions, lie that rays of one octant enter and leave by.
+struct SidePlaces {
+  const float *near[3], *far[3];
+
+  template <class Boxes>
+  GRIDIRON_INLINE SidePlaces(const Boxes& boxes, std::uint32_t octant) {
+    for (std::uint32_t axis = 0; axis < 3; ++axis) {
+      const bool is_backwards = (octant >> axis & 1u) != 0;
+      near[axis] = is_backwards ? boxes.high[axis] : boxes.low[axis];
+      far[axis] = is_backwards ? boxes.low[axis] : boxes.high[axis];
+    }
   }
-  return sides;
-}
+  /// @param base  the first of the boxes: a multiple of L::kCount.
+  template <class L>
+  [[nodiscard]] GRIDIRON_INLINE BoxSides<L> load(std::uint32_t base) const {
+    BoxSides<L> sides;
+    for (int axis = 0; axis < 3; ++axis) {
+      sides.near[axis] = L::Float::load(near[axis] + base);
+      sides.far[axis] = L::Float::load(far[axis] + base);
+    }
+    return sides;
+  }
+};
 
 /// The union boxes of a node's four quads of children.
 struct NodeUnions {
@@ -102,28 +115,11 @@ GRIDIRON_INLINE void unite_boxes(const TreeNode& node, NodeUnions& unions) {
   }
 }
 
-/// @returns the quads whose union box a ray meets, as bits.
+/// Finds the boxes of a node that each ray of a list meets, and writes them into its word.
+/// @returns the children that any ray meets.
 template <class L>
-[[nodiscard]] GRIDIRON_INLINE std::uint32_t quads_met(const NodeUnions& unions, std::uint32_t octant,
-                                                      const BoxRay<L>& ray) {
-  std::uint32_t met = 0;
-  for (std::uint32_t base = 0; base < 4; base += L::kCount) {
-    BoxSides<L> sides;
-    for (std::uint32_t axis = 0; axis < 3; ++axis) {
-      const bool is_backwards = (octant >> axis & 1u) != 0;
-      sides.near[axis] = L::Float::load((is_backwards ? unions.high[axis] : unions.low[axis]) + base);
-      sides.far[axis] = L::Float::load((is_backwards ? unions.low[axis] : unions.high[axis]) + base);
-    }
-    met |= sides.met_by(ray).bits() << base;
-  }
-  return met;
-}
-
-/// Finds the boxes of a node that each ray of a list meets: bit i of its mask = child i.
-/// @param masks  room for `count`. @returns the children that any ray meets.
-template <class L>
-[[nodiscard]] GRIDIRON_INLINE std::uint32_t mark_boxes(const TreeNode& node, BatchRay* rays, const std::uint16_t* list,
-                                                       std::uint32_t count, std::uint16_t* masks, WorkCounters& work) {
+[[nodiscard]] GRIDIRON_INLINE std::uint32_t mark_boxes(const TreeNode& node, BatchRay* rays, std::uint32_t* list,
+                                                       std::uint32_t count, WorkCounters& work) {
   const std::uint32_t there = (2u << (node.child_count - 1)) - 1;
   std::uint32_t open = 0;
   NodeUnions unions;
@@ -131,36 +127,37 @@ template <class L>
   work.add(Work::kListRayNode, count);
   for (std::uint32_t i = 0; i < count;) {
     const std::uint32_t octant = octant_of(list[i]);
+    const SidePlaces boxes(node, octant);
     if constexpr (L::kCount > 4) {
-      const BoxSides<L> sides = sides_of<L>(node, octant, 0);
-      const BoxSides<L> others = sides_of<L>(node, octant, L::kCount == 16 ? 0 : 8);
+      const BoxSides<L> sides = boxes.load<L>(0), others = boxes.load<L>(L::kCount == 16 ? 0 : 8);
       do {
         const BoxRay<L> ray(ray_of(rays, list[i]));
-        std::uint32_t met = sides.met_by(ray).bits();
-        if constexpr (L::kCount == 8) met |= others.met_by(ray).bits() << 8;
+        std::uint32_t met = sides.met_by(ray);
+        if constexpr (L::kCount == 8) met |= others.met_by(ray) << 8;
         met &= there;
-        masks[i] = static_cast<std::uint16_t>(met);
+        list[i] = (list[i] & ~kMaskBits) | met;
         open |= met;
         ++i;
       } while (i < count && octant_of(list[i]) == octant);
     } else {
+      const SidePlaces united(unions, octant);
+      work.charge_to(Work::kListRayNode);
       do {
-        work.charge_to(Work::kListRayNode);
-        const BoxRay<L> ray(ray_of(rays, list[i]));
-        std::uint32_t quads = quads_met<L>(unions, octant, ray), met = 0;
+        const std::uint32_t word = list[i];
+        const BoxRay<L> ray(ray_of(rays, word));
+        std::uint32_t quads = 0, met = 0;
+        for (std::uint32_t base = 0; base < 4; base += L::kCount) quads |= united.load<L>(base).met_by(ray) << base;
+        work.charge_to(Work::kListBoxQuad);
         for (; quads != 0; quads &= quads - 1) {
           work.add(Work::kListBoxQuad);
-          work.charge_to(Work::kListBoxQuad);
           const std::uint32_t base = 4 * lowest_bit(quads);
           std::uint32_t of_quad = 0;
-          for (std::uint32_t k = 0; k < 4; k += L::kCount) {
-            of_quad |= sides_of<L>(node, octant, base + k).met_by(ray).bits() << k;
-          }
+          for (std::uint32_t k = 0; k < 4; k += L::kCount) of_quad |= boxes.load<L>(base + k).met_by(ray) << k;
           met |= of_quad << base;
         }
         work.charge_to(Work::kListRayNode);
         met &= there;
-        masks[i] = static_cast<std::uint16_t>(met);
+        list[i] = (word & ~kMaskBits) | met;
         open |= met;
         ++i;
       } while (i < count && octant_of(list[i]) == octant);

@@ -10,22 +10,26 @@
 namespace gridiron {
 
 /// Lists begin and end at multiples of so many rays, whatever the lanes, so that all lanes go through the same pieces.
-inline constexpr std::uint32_t kListStep = 32;
+inline constexpr std::uint32_t kListStep = 16;
 
-/// Words of an arena for batches of so many rays: their list and masks, and below them at each level a list and masks
-/// of one step at least. @param spare  words for longer lists, which spare nodes and leaves second visits.
+/// Words of an arena for batches of so many rays: their list, in up to eight parts that each begin at a step, and below
+/// it at each level a list of one step at least, and a step to write over. The list is sorted out of another of its
+/// length. @param spare  words for longer lists, which spare nodes and leaves
+/// second visits.
 [[nodiscard]] constexpr std::uint32_t list_arena_words(std::uint32_t rays, std::uint32_t spare) {
-  return 2 * rays + (kMaxTreeDepth - 1) * 2 * kListStep + spare;
+  const std::uint32_t least = rays + (8 + kMaxTreeDepth + 1) * kListStep + spare;
+  const std::uint32_t unsorted = 2 * rays + 8 * kListStep;
+  return least > unsorted ? least : unsorted;
 }
 
 /// A node on the way down, and the rays that met its box.
 struct ListLevel {
   TreeChild children[kTreeWidth];    ///< those that rays meet, in the order of their turns
-  std::uint8_t places[kTreeWidth];   ///< of each: its bit in the masks
+  std::uint32_t places[kTreeWidth];  ///< of each: its bit in the masks
   std::uint32_t child_count;         ///< of these
   std::uint32_t turn;                ///< the child whose rays are next
   std::uint32_t asked;               ///< children asked for ahead of their turns
-  std::uint32_t list, masks, end;    ///< where they begin in the arena, and what is free behind them
+  std::uint32_t list, end;           ///< where it begins in the arena, and what is free behind it
   std::uint32_t ray_count;           ///< of the list
   std::uint32_t taken;               ///< of its rays, those that the child whose turn it is has seen
 };
@@ -46,12 +50,12 @@ template <std::uint32_t Rays, std::uint32_t Spare>
 struct alignas(128) ListMemory {
   static constexpr std::uint32_t kRays = Rays;
   static constexpr std::uint32_t kArenaWords = list_arena_words(Rays, Spare);
-  static_assert(Rays % kListStep == 0 && 3 * Rays <= 1u << 13, "an entry of a list has 13 bits for a ray's place");
+  static_assert(Rays % kListStep == 0 && 3 * Rays <= 1u << 13, "a word of a list has 13 bits for a ray's place");
   static_assert(Spare % kListStep == 0);
 
   BatchRay rays[Rays];
   std::uint32_t owners[Rays];
-  alignas(64) std::uint16_t arena[kArenaWords];
+  alignas(64) std::uint32_t arena[kArenaWords];
   TriangleLanes triangles;
   ListLevel levels[kMaxTreeDepth];
 };

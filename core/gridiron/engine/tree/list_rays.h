@@ -7,19 +7,25 @@
 #include <gridiron/ray/ray_batch.h>
 
 #include <bit>
+#include <cstddef>
 #include <cstdint>
 
 namespace gridiron {
 
-/// An entry of a list: a ray's octant above its place, in quads of words from the first ray.
-inline constexpr std::uint32_t kOctantShift = 13;
-inline constexpr std::uint32_t kPlaceBits = (1u << kOctantShift) - 1;
+/// A word of a list: the boxes of the node that its ray meets, bit i = child i; above them the ray's place, in quads of
+/// words from the first ray, and its octant.
+inline constexpr std::uint32_t kPlaceShift = 16, kOctantShift = 29;
+inline constexpr std::uint32_t kMaskBits = (1u << kPlaceShift) - 1;
 inline constexpr std::uint32_t kRayQuads = sizeof(BatchRay) / 16;
 
+[[nodiscard]] GRIDIRON_INLINE std::uint32_t list_word(std::uint32_t ray, std::uint32_t octant) {
+  return octant << kOctantShift | (kRayQuads * ray) << kPlaceShift;
+}
 /// @returns the octant: bit 0, 1, 2 where the ray runs towards smaller x, y, z.
-[[nodiscard]] GRIDIRON_INLINE std::uint32_t octant_of(std::uint32_t entry) { return entry >> kOctantShift; }
-[[nodiscard]] GRIDIRON_INLINE BatchRay& ray_of(BatchRay* rays, std::uint32_t entry) {
-  return *reinterpret_cast<BatchRay*>(reinterpret_cast<std::byte*>(rays) + 16 * (entry & kPlaceBits));
+[[nodiscard]] GRIDIRON_INLINE std::uint32_t octant_of(std::uint32_t word) { return word >> kOctantShift; }
+[[nodiscard]] GRIDIRON_INLINE BatchRay& ray_of(BatchRay* rays, std::uint32_t word) {
+  constexpr std::uint32_t kPlaces = ((1u << kOctantShift) - 1) & ~kMaskBits;
+  return *reinterpret_cast<BatchRay*>(reinterpret_cast<std::byte*>(rays) + ((word & kPlaces) >> (kPlaceShift - 4)));
 }
 
 /// Rays with directions of such sizes, and origins at most so far away, in the scene's largest |coordinate|, are tested
@@ -92,24 +98,29 @@ GRIDIRON_INLINE std::uint32_t set_up_list_ray(BatchRay& ray, float largest) {
   return octant;
 }
 
-/// Copies the entries whose mask has bit `place`, in order. @param count  at most kListStep.
-/// @param target  room for kListStep entries. @returns how many.
+/// Copies the words of rays that meet a child. @param list    at a multiple of kListStep words.
+/// @param place   of the child in their masks. @param target  room for as many, and L::kCount more.
+/// @returns how many.
 template <class L>
-GRIDIRON_INLINE std::uint32_t take_marked(const std::uint16_t* list, const std::uint16_t* masks, std::uint32_t count,
-                                          std::uint32_t place, std::uint16_t* target) {
-#if defined(__AVX512VBMI2__)
-  if constexpr (L::kCount == 16) {
-    const __mmask32 there = count < 32 ? (__mmask32{1} << count) - 1 : ~__mmask32{0};
-    const __mmask32 marked = _mm512_mask_test_epi16_mask(there, _mm512_loadu_si512(masks),
-                                                         _mm512_set1_epi16(static_cast<short>(1u << place)));
-    _mm512_storeu_si512(target, _mm512_maskz_compress_epi16(marked, _mm512_loadu_si512(list)));
-    return static_cast<std::uint32_t>(__builtin_popcount(marked));
-  }
-#endif
+GRIDIRON_INLINE std::uint32_t take_marked(const std::uint32_t* list, std::uint32_t count, std::uint32_t place,
+                                          std::uint32_t* target) {
   std::uint32_t taken = 0;
-  for (std::uint32_t i = 0; i < count; ++i) {
-    target[taken] = list[i];
-    taken += std::uint32_t{masks[i]} >> place & 1u;
+  if constexpr (L::kCount == 1) {
+    for (std::uint32_t i = 0; i < count; ++i) {
+      target[taken] = list[i];
+      taken += list[i] >> place & 1u;
+    }
+  } else {
+    using Int = typename L::Int;
+    const Int bit = Int::splat(1u << place), none = Int::splat(0);
+    for (std::uint32_t i = 0; i < count; i += L::kCount) {
+      const Int words = Int::load(list + i);
+      const std::uint32_t rest = count - i;
+      const std::uint32_t there = rest >= L::kCount ? std::uint32_t{L::kAllBits} : (1u << rest) - 1u;
+      const std::uint32_t marked = (none < (words & bit)).bits() & there;
+      L::compress(words, marked, target + taken);
+      taken += count_bits(marked);
+    }
   }
   return taken;
 }

@@ -38,30 +38,32 @@ class RayLists {
     ray_count_ = count;
     dead_count_ = 0;
     // A list in the order of octants: rays that run alike along all axes follow each other.
-    std::uint32_t ends[9] = {};
-    std::uint16_t* const unsorted = memory_.arena + Memory::kRays;
+    std::uint32_t counts[8] = {};
+    std::uint32_t* const unsorted = memory_.arena + (Memory::kArenaWords - Memory::kRays);
     work_.add(Work::kListRay, count);
     work_.charge_to(Work::kListRay);
     for (std::uint32_t i = 0; i < count; ++i) {
       const std::uint32_t octant = set_up_list_ray<L>(memory_.rays[i], largest);
-      unsorted[i] = static_cast<std::uint16_t>(octant << kOctantShift | kRayQuads * i);
-      ++ends[octant + 1];
+      unsorted[i] = list_word(i, octant);
+      ++counts[octant];
     }
-    for (std::uint32_t octant = 1; octant < 8; ++octant) ends[octant + 1] += ends[octant];
-    std::uint32_t places[8];
-    for (std::uint32_t octant = 0; octant < 8; ++octant) places[octant] = ends[octant];
+    std::uint32_t begins[8], places[8], end = 0;
+    for (std::uint32_t octant = 0; octant < 8; ++octant) {
+      begins[octant] = places[octant] = end;
+      end += question.any_hit ? counts[octant] : step_up(counts[octant]);
+    }
     for (std::uint32_t i = 0; i < count; ++i) {
-      const std::uint16_t entry = unsorted[i];
-      std::uint32_t& place = places[octant_of(entry)];
-      memory_.arena[place] = entry;
+      const std::uint32_t word = unsorted[i];
+      std::uint32_t& place = places[octant_of(word)];
+      memory_.arena[place] = word;
       ++place;
     }
     if (question.any_hit) return walk<true>(0, count);
     // The nearest hit is found soonest front to back, and front is another side for each octant. The last list goes
     // first: it needs the room behind it.
     for (std::uint32_t octant = 8; octant > 0; --octant) {
-      if (ends[octant - 1] == ends[octant]) continue;
-      GRIDIRON_TRY(walk<false>(ends[octant - 1], ends[octant]));
+      if (counts[octant - 1] == 0) continue;
+      GRIDIRON_TRY(walk<false>(begins[octant - 1], counts[octant - 1]));
     }
     return Status::kOk;
   }
@@ -72,11 +74,11 @@ class RayLists {
     return (words + (kListStep - 1)) & ~(kListStep - 1);
   }
 
-  // Takes the list [begin, end) of the arena down the tree. What lies behind it is overwritten.
+  // Takes a list of the arena down the tree. What lies behind it is overwritten.
   template <bool kAny>
-  [[nodiscard]] Status walk(std::uint32_t begin, std::uint32_t end) {
+  [[nodiscard]] Status walk(std::uint32_t list, std::uint32_t count) {
     std::uint32_t depth = 0;
-    GRIDIRON_TRY(enter<kAny>(memory_.levels[0], 0, begin, end - begin));
+    GRIDIRON_TRY(enter<kAny>(memory_.levels[0], 0, list, count));
     for (;;) {
       ListLevel& level = memory_.levels[depth];
       work_.charge_to(Work::kListChild);
@@ -91,17 +93,17 @@ class RayLists {
       }
       work_.charge_to(Work::kListChild);
       const TreeChild child = level.children[level.turn];
-      const std::uint32_t count = select<kAny>(level, depth);
+      const std::uint32_t selected = select<kAny>(level, depth);
       if (level.taken >= level.ray_count) {
         level.taken = 0;
         ++level.turn;
       }
-      if (count == 0) continue;
+      if (selected == 0) continue;
       if (child.is_leaf()) {
-        GRIDIRON_TRY(visit_leaf<kAny>(child, memory_.arena + level.end, count));
+        GRIDIRON_TRY(visit_leaf<kAny>(child, memory_.arena + level.end, selected));
       } else {
         ++depth;
-        GRIDIRON_TRY(enter<kAny>(memory_.levels[depth], child.node_index(), level.end, count));
+        GRIDIRON_TRY(enter<kAny>(memory_.levels[depth], child.node_index(), level.end, selected));
       }
     }
   }
@@ -112,18 +114,19 @@ class RayLists {
   [[nodiscard]] std::uint32_t select(ListLevel& level, std::uint32_t depth) {
     work_.add(Work::kListChild);
     const std::uint32_t place = level.places[level.turn];
-    const std::uint32_t below = (kMaxTreeDepth - 2 - depth) * 2 * kListStep;
-    const std::uint32_t room = (Memory::kArenaWords - level.end - below) / 2 & ~(kListStep - 1);
-    const std::uint16_t* const list = memory_.arena + level.list;
-    const std::uint16_t* const masks = memory_.arena + level.masks;
-    std::uint16_t* const target = memory_.arena + level.end;
-    std::uint32_t count = 0, i = level.taken;
-    for (; i < level.ray_count && count + kListStep <= room; i += kListStep) {
-      const std::uint32_t rest = level.ray_count - i;
-      work_.add(Work::kListEntry, rest < kListStep ? rest : kListStep);
-      count += take_marked<L>(list + i, masks + i, rest < kListStep ? rest : kListStep, place, target + count);
-    }
-    level.taken = i;
+    const std::uint32_t below = (kMaxTreeDepth - 1 - depth) * kListStep;
+    const std::uint32_t room = Memory::kArenaWords - level.end - below;
+    const std::uint32_t* const list = memory_.arena + level.list;
+    std::uint32_t* const target = memory_.arena + level.end;
+    // All of them, if they fit even where each meets the child.
+    std::uint32_t end = level.ray_count;
+    if (end - level.taken + kListStep > room) end = level.taken + (room - kListStep) / kListStep * kListStep;
+    const std::uint32_t seen = end - level.taken;
+    work_.add(Work::kListEntry, seen);
+    work_.charge_to(Work::kListEntry);
+    std::uint32_t count = take_marked<L>(list + level.taken, seen, place, target);
+    work_.charge_to(Work::kListChild);
+    level.taken = end;
     if constexpr (kAny) {
       // Rays that have their answer leave lists only once they are many: they meet no box any more.
       if (dead_count_ * 5 > ray_count_) count = keep_living(target, count);
@@ -131,12 +134,12 @@ class RayLists {
     return count;
   }
 
-  [[nodiscard]] std::uint32_t keep_living(std::uint16_t* list, std::uint32_t count) const {
+  [[nodiscard]] std::uint32_t keep_living(std::uint32_t* list, std::uint32_t count) const {
     std::uint32_t living = 0;
     for (std::uint32_t i = 0; i < count; ++i) {
-      const std::uint16_t entry = list[i];
-      list[living] = entry;
-      living += ray_of(memory_.rays, entry).id == kNoTriangle ? std::uint32_t{1} : std::uint32_t{0};
+      const std::uint32_t word = list[i];
+      list[living] = word;
+      living += ray_of(memory_.rays, word).id == kNoTriangle ? std::uint32_t{1} : std::uint32_t{0};
     }
     return living;
   }
@@ -152,22 +155,20 @@ class RayLists {
     work_.charge_to(Work::kListNode);
     level.list = list;
     level.ray_count = count;
-    level.masks = step_up(list + count);
-    level.end = level.masks + step_up(count);
+    level.end = step_up(list + count);
     level.taken = 0;
     level.turn = 0;
     level.asked = 0;
-    const std::uint16_t* const entries = memory_.arena + list;
-    const std::uint32_t open =
-        mark_boxes<L>(*node, memory_.rays, entries, count, memory_.arena + level.masks, work_);
+    std::uint32_t* const words = memory_.arena + list;
+    const std::uint32_t open = mark_boxes<L>(*node, memory_.rays, words, count, work_);
     work_.charge_to(Work::kListNode);
-    const std::uint64_t order = kAny ? node->order : order_along(*node, octant_of(entries[0]));
+    const std::uint64_t order = kAny ? node->order : order_along(*node, octant_of(words[0]));
     std::uint32_t children = 0;
     for (std::uint32_t i = 0; i < kTreeWidth; ++i) {
       const auto child = static_cast<std::uint32_t>(order >> 4 * i & 15);
       if ((open >> child & 1u) == 0) continue;
       level.children[children] = node->children[child];
-      level.places[children] = static_cast<std::uint8_t>(child);
+      level.places[children] = child;
       ++children;
     }
     level.child_count = children;
@@ -197,7 +198,7 @@ class RayLists {
   }
 
   template <bool kAny>
-  [[nodiscard]] GRIDIRON_OUTLINE Status visit_leaf(TreeChild leaf, const std::uint16_t* list, std::uint32_t count) {
+  [[nodiscard]] GRIDIRON_OUTLINE Status visit_leaf(TreeChild leaf, const std::uint32_t* list, std::uint32_t count) {
     work_.charge_to(Work::kListLeaf);
     const VertexTriangle* records = nullptr;
     GRIDIRON_TRY(source_.leaf(leaf, records));

@@ -151,7 +151,7 @@ TYPED_TEST(RayListsTest, FindWhatExactArithmeticFinds) {
   };
   for (const auto& tested : cases) {
     SCOPED_TRACE(tested.name);
-    const std::vector<Ray> rays = hard_rays(tested.mesh, 500, 17);
+    const std::vector<Ray> rays = hard_rays(tested.mesh, 250, 17);
     std::vector<Answer> exact;
     for (const Ray& ray : rays) exact.push_back(exact_answer(tested.mesh, ray));
     for (const std::uint32_t leaf : {1u, 8u, 16u}) {
