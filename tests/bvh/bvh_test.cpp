@@ -1,5 +1,5 @@
 // Invariants of the hierarchy. SPDX-License-Identifier: Apache-2.0
-#include <gridiron/build/grid/triangle_records.h>
+#include <gridiron/build/triangle_records.h>
 #include <gridiron/bvh/bvh.h>
 
 #include "support/test_mesh.h"

@@ -257,8 +257,9 @@ void print_text(const InfoPlan& plan, const SceneFacts& facts) {
                          " references stored as " + word_of(static_cast<TriangleFormat>(grid.triangle_format)));
   if (const TreeRecord& tree = facts.tree; tree.node_count != 0) {
     print_line("tree", words_of_count(tree.node_count, "node") + ", " + std::to_string(tree.depth) +
-                           " on the longest path, " + words_of_count(tree.triangle_count, "triangle") + " in leaves of " +
-                           std::to_string(tree.leaf_triangles) + ", " + words_of_bytes(facts.tree_bytes));
+                           " on the longest path, " + words_of_count(tree.triangle_count, "triangle") +
+                           " in leaves of " + std::to_string(tree.leaf_triangles) + ", " +
+                           words_of_bytes(facts.tree_bytes));
   }
   if (!facts.roundness.groups.empty()) {
     const char* rules[] = {"as requested", "1e-4 of the scene's diagonal", "chosen by the picture"};

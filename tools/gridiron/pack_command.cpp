@@ -41,8 +41,8 @@ void run_command(const PackRequest& request) {
   const AlignedBytes storage =
       name_in_shortage(input.path, "build its scene image", [&] { return allocate_aligned(choice.need.image_bytes); });
   const std::span<std::byte> memory(storage.get(), choice.need.image_bytes);
-  const SceneImageView view = build_image(input, *mesh, choice, memory, effects);
-  const std::span<std::byte> image = memory.first(view.header.image_bytes);
+  const SceneImageView built = build_image(input, *mesh, choice, memory, effects);
+  const std::span<std::byte> image = memory.first(built.header.image_bytes);
 
   AtomicFiles files;
   files.add(request.output, image);

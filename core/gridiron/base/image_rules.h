@@ -289,7 +289,8 @@ template <class Checker>
 [[nodiscard]] bool check_tree_sizes(Checker& checker, ImageHead& head) {
   const Sections& sections = head.sections;
   if (!sections.has(SectionKind::kEffects)) {
-    for (const SectionKind kind : {SectionKind::kTree, SectionKind::kTreeNodes, SectionKind::kTreeTriangles}) {
+    constexpr SectionKind kKinds[] = {SectionKind::kTree, SectionKind::kTreeNodes, SectionKind::kTreeTriangles};
+    for (const SectionKind kind : kKinds) {
       const SectionEntry& section = sections.entry(kind);
       GRIDIRON_RULE(!sections.has(kind), sections.entry_offset(kind), section, kind);
     }

@@ -1,7 +1,7 @@
 // Checks of the sections of effects: see image_checker.h. SPDX-License-Identifier: Apache-2.0
 #include <gridiron/base/lanes.h>
 #include <gridiron/base/math.h>
-#include <gridiron/build/grid/triangle_records.h>
+#include <gridiron/build/triangle_records.h>
 #include <gridiron/build/lattice.h>
 #include <gridiron/image/image_checker.h>
 #include <gridiron/scene/effect_rules.h>

@@ -2,7 +2,7 @@
 #include <gridiron/base/math.h>
 #include <gridiron/build/grid/cell_rows.h>
 #include <gridiron/build/grid/image_layout.h>
-#include <gridiron/build/grid/triangle_records.h>
+#include <gridiron/build/triangle_records.h>
 #include <gridiron/image/image_checker.h>
 
 namespace gridiron {

@@ -2,7 +2,7 @@
 // Memory: std::vector. Threads: any. SPDX-License-Identifier: Apache-2.0
 #include <gridiron/base/math.h>
 #include <gridiron/build/grid/build_step.h>
-#include <gridiron/build/grid/triangle_records.h>
+#include <gridiron/build/triangle_records.h>
 #include <gridiron/bvh/bvh.h>
 #include <gridiron/sim/machine_profile.h>
 

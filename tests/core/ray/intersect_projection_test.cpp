@@ -1,6 +1,6 @@
 // The `paper` test compared with the same geometry in double, where single precision is good enough to decide.
 // SPDX-License-Identifier: Apache-2.0
-#include <gridiron/build/grid/triangle_records.h>
+#include <gridiron/build/triangle_records.h>
 #include <gridiron/ray/intersect_projection.h>
 
 #include <glm/geometric.hpp>

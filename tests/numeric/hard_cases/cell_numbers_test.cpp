@@ -2,7 +2,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "numeric/hard_cases/cell_numbers.h"
 
-#include <gridiron/build/grid/triangle_records.h>
+#include <gridiron/build/triangle_records.h>
 #include <gridiron/build/lattice.h>
 
 #include "core/ray/packet_cases.h"

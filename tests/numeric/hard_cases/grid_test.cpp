@@ -1,6 +1,6 @@
 // Grids: faces, edges and corners of cells, ties between them, flat and crowded ones, of every resolution.
 // SPDX-License-Identifier: Apache-2.0
-#include <gridiron/build/grid/triangle_records.h>
+#include <gridiron/build/triangle_records.h>
 #include <gridiron/engine/grid/frustum.h>
 
 #include "core/build/grid/built_image.h"

@@ -1,6 +1,6 @@
 // Target: a mesh in all the forms that rays can be shot at. SPDX-License-Identifier: Apache-2.0
 #include <gridiron/base/accuracies.h>
-#include <gridiron/build/grid/triangle_records.h>
+#include <gridiron/build/triangle_records.h>
 #include <gridiron/build/lattice.h>
 #include <gridiron/ray/camera.h>
 #include <gridiron/ray/intersect_projection.h>

@@ -1,7 +1,7 @@
 // Trials: see the header. SPDX-License-Identifier: Apache-2.0
 #include "numeric/hard_cases/trial.h"
 
-#include <gridiron/build/grid/triangle_records.h>
+#include <gridiron/build/triangle_records.h>
 
 #include "numeric/hard_cases/judge.h"
 #include "numeric/rounding_scope.h"

@@ -2,7 +2,7 @@
 #include "numeric/watertight/placed_solid.h"
 
 #include <gridiron/base/records.h>
-#include <gridiron/build/grid/triangle_records.h>
+#include <gridiron/build/triangle_records.h>
 #include <gridiron/build/lattice.h>
 
 #include <glm/common.hpp>

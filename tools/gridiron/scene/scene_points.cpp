@@ -1,7 +1,7 @@
 // Scene points. SPDX-License-Identifier: Apache-2.0
 #include "scene_points.h"
 
-#include <gridiron/build/grid/triangle_records.h>
+#include <gridiron/build/triangle_records.h>
 
 #include <algorithm>
 #include <array>

@@ -1,5 +1,5 @@
 // Building the wide tree: see the header. SPDX-License-Identifier: Apache-2.0
-#include <gridiron/build/grid/triangle_records.h>
+#include <gridiron/build/triangle_records.h>
 #include <gridiron/build/tree/tree_box.h>
 #include <gridiron/build/tree/tree_builder.h>
 

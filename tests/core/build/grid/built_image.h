@@ -79,7 +79,8 @@ inline std::vector<std::vector<std::uint32_t>> read_cells(std::span<const std::b
   return cells;
 }
 
-/// Counts, builds in exactly the counted memory, opens and reads. `image` is then as long as its header says. Failures are reported to GoogleTest.
+/// Counts, builds in exactly the counted memory, opens and reads. `image` is then as long as its header says. Failures
+/// are reported to GoogleTest.
 inline BuiltImage build_image(const MeshView& mesh, const GridParameters& parameters = {},
                               std::byte fill = std::byte{0xCD}, const EffectsView* effects = nullptr) {
   BuiltImage built;

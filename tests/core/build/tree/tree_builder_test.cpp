@@ -1,5 +1,5 @@
 // The wide tree: what every tree has, whatever the mesh. SPDX-License-Identifier: Apache-2.0
-#include <gridiron/build/grid/triangle_records.h>
+#include <gridiron/build/triangle_records.h>
 #include <gridiron/build/tree/tree_builder.h>
 
 #include "support/test_mesh.h"

@@ -1,5 +1,5 @@
 // Zero areas and projections against rational arithmetic. SPDX-License-Identifier: Apache-2.0
-#include <gridiron/build/grid/triangle_records.h>
+#include <gridiron/build/triangle_records.h>
 
 #include "support/rational_vectors.h"
 #include "support/test_mesh.h"

@@ -1,6 +1,6 @@
 // Zero area and projection: see the header. SPDX-License-Identifier: Apache-2.0
 #include <gridiron/base/exact_sum.h>
-#include <gridiron/build/grid/triangle_records.h>
+#include <gridiron/build/triangle_records.h>
 
 #include <bit>
 
