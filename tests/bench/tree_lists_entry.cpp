@@ -1,11 +1,11 @@
 // Rays through the wide tree by lists, compiled once per instruction set. The build defines GRIDIRON_ENTRY_NAME (the
 // function's) and GRIDIRON_ENTRY_LANES. SPDX-License-Identifier: Apache-2.0
-#include "bench/tree_lists.h"
-
 #include <gridiron/engine/tree/ray_lists.h>
 
 #include <cstring>
 #include <optional>
+
+#include "bench/tree_lists.h"
 
 namespace gridiron::bench {
 namespace {
