@@ -12,6 +12,7 @@
 #include <gridiron/ray/walk_rays.h>
 
 #include <cstdint>
+#include <utility>
 
 namespace gridiron {
 
