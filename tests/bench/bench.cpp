@@ -30,10 +30,15 @@ double seconds_of(const Candidate& candidate) {
 }
 
 int usage() {
-  std::printf("usage: gridiron_bench [--rounds N] [--quick] [--scenes DIR] [NAME...]\nnames:");
+  std::printf("usage: gridiron_bench [--rounds N] [--quick] [--scenes DIR] [--batch RAYS] [NAME...]\nnames:");
   for (const auto& [name, function] : registry()) std::printf(" %s", name.c_str());
   std::printf("\n");
   return 2;
+}
+
+[[nodiscard]] bool parse(std::string_view value, unsigned& number) {
+  const auto [end, error] = std::from_chars(value.data(), value.data() + value.size(), number);
+  return error == std::errc() && end == value.data() + value.size();
 }
 
 int run(std::span<char*> arguments) {
@@ -46,9 +51,10 @@ int run(std::span<char*> arguments) {
     if (argument == "--quick") {
       options.quick = true;
     } else if (argument == "--rounds" && has_value) {
-      const std::string_view value = arguments[++i];
-      const auto [end, error] = std::from_chars(value.data(), value.data() + value.size(), options.rounds);
-      if (error != std::errc() || end != value.data() + value.size() || options.rounds == 0) return usage();
+      if (!parse(arguments[++i], options.rounds) || options.rounds == 0) return usage();
+    } else if (argument == "--batch" && has_value) {
+      unsigned& rays = options.batch_rays;
+      if (!parse(arguments[++i], rays) || rays == 0 || rays % 16 != 0 || rays > 4096) return usage();
     } else if (argument == "--scenes" && has_value) {
       options.scenes = arguments[++i];
     } else if (registry().contains(argument)) {

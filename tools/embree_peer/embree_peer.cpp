@@ -111,8 +111,9 @@ void EmbreeScene::set_mesh(const MeshView& mesh) {
 }
 
 void EmbreeScene::build(EmbreeQuality quality) {
-  const RTCBuildQuality embree_quality =
-      quality == EmbreeQuality::kLow ? RTC_BUILD_QUALITY_LOW : RTC_BUILD_QUALITY_MEDIUM;
+  const RTCBuildQuality embree_quality = quality == EmbreeQuality::kLow      ? RTC_BUILD_QUALITY_LOW
+                                         : quality == EmbreeQuality::kMedium ? RTC_BUILD_QUALITY_MEDIUM
+                                                                             : RTC_BUILD_QUALITY_HIGH;
   if (state_->scene != nullptr) rtcReleaseScene(state_->scene);
   state_->scene = rtcNewScene(state_->device);
   rtcSetSceneBuildQuality(state_->scene, embree_quality);

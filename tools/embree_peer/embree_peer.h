@@ -13,7 +13,8 @@ namespace gridiron::peer {
 
 inline constexpr std::uint32_t kEmbreePacketWidth = 4;  ///< pixels along a packet's edge
 
-enum class EmbreeQuality : std::uint8_t { kLow, kMedium };
+/// How much time Embree takes to build its hierarchy.
+enum class EmbreeQuality : std::uint8_t { kLow, kMedium, kHigh };
 
 /// A mesh in Embree. Vertices and indices are shared buffers, so that building copies only what Embree itself copies.
 class EmbreeScene {

@@ -17,6 +17,7 @@
 #include <gridiron/ray/ray_batch.h>
 
 #include <cstdint>
+#include <utility>
 
 namespace gridiron {
 
