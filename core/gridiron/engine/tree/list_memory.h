@@ -25,7 +25,7 @@ inline constexpr std::uint32_t kListStep = 16;
 /// A node on the way down, and the rays that met its box.
 struct ListLevel {
   TreeChild children[kTreeWidth];    ///< those that rays meet, in the order of their turns
-  std::uint32_t places[kTreeWidth];  ///< of each: its bit in the masks
+  std::uint32_t places[2];           ///< of each: its bit in the masks, 4 bits, eight to a word
   std::uint32_t child_count;         ///< of these
   std::uint32_t turn;                ///< the child whose rays are next
   std::uint32_t asked;               ///< children asked for ahead of their turns

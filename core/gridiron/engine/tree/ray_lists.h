@@ -114,7 +114,7 @@ class RayLists {
   template <bool kAny>
   [[nodiscard]] std::uint32_t select(ListLevel& level, std::uint32_t depth) {
     work_.add(Work::kListChild);
-    const std::uint32_t place = level.places[level.turn];
+    const std::uint32_t place = level.places[level.turn / 8] >> 4 * (level.turn % 8) & 15;
     const std::uint32_t below = (kMaxTreeDepth - 1 - depth) * kListStep;
     const std::uint32_t room = Memory::kArenaWords - level.end - below;
     const std::uint32_t* const list = memory_.arena + level.list;
@@ -165,11 +165,12 @@ class RayLists {
     work_.charge_to(Work::kListNode);
     const std::uint64_t order = kAny ? node->order : order_along(*node, octant_of(words[0]));
     std::uint32_t children = 0;
-    for (std::uint32_t i = 0; i < kTreeWidth; ++i) {
+    level.places[0] = level.places[1] = 0;
+    for (std::uint32_t i = 0; i < node->child_count; ++i) {
       const auto child = static_cast<std::uint32_t>(order >> 4 * i & 15);
       if ((open >> child & 1u) == 0) continue;
       level.children[children] = node->children[child];
-      level.places[children] = child;
+      level.places[children / 8] |= child << 4 * (children % 8);
       ++children;
     }
     level.child_count = children;
