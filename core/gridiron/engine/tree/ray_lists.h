@@ -71,8 +71,10 @@ class RayLists {
 
  private:
   using Float = typename L::Float;
+  static constexpr std::uint32_t kStep = kListStep<L>, kParts = kBoxParts<L>;
+  static constexpr std::uint32_t kLevelWords = (1 + kListParts<L>)*kStep;
   [[nodiscard]] static std::uint32_t step_up(std::uint32_t words) {
-    return (words + (kListStep - 1)) & ~(kListStep - 1);
+    return (words + (kStep - 1)) & ~(kStep - 1);
   }
 
   // Takes a list of the arena down the tree. What lies behind it is overwritten.
@@ -95,10 +97,6 @@ class RayLists {
       work_.charge_to(Work::kListChild);
       const TreeChild child = level.children[level.turn];
       const std::uint32_t selected = select<kAny>(level, depth);
-      if (level.taken >= level.ray_count) {
-        level.taken = 0;
-        ++level.turn;
-      }
       if (selected == 0) continue;
       if (child.is_leaf()) {
         GRIDIRON_TRY(visit_leaf<kAny>(child, memory_.arena + level.end, selected));
@@ -114,20 +112,29 @@ class RayLists {
   template <bool kAny>
   [[nodiscard]] std::uint32_t select(ListLevel& level, std::uint32_t depth) {
     work_.add(Work::kListChild);
-    const std::uint32_t place = level.places[level.turn / 8] >> 4 * (level.turn % 8) & 15;
-    const std::uint32_t below = (kMaxTreeDepth - 1 - depth) * kListStep;
+    const std::uint32_t child = level.places[level.turn / 8] >> 4 * (level.turn % 8) & 15;
+    const std::uint32_t part = child / (kTreeWidth / kParts), place = child % (kTreeWidth / kParts);
+    const std::uint32_t below = (kMaxTreeDepth - 1 - depth) * kLevelWords;
     const std::uint32_t room = Memory::kArenaWords - level.end - below;
-    const std::uint32_t* const list = memory_.arena + level.list;
+    const std::uint32_t* const list = memory_.arena + level.lists[part];
     std::uint32_t* const target = memory_.arena + level.end;
-    // All of them, if they fit even where each meets the child.
-    std::uint32_t end = level.ray_count;
-    if (end - level.taken + kListStep > room) end = level.taken + (room - kListStep) / kListStep * kListStep;
+    // All of them, if they fit even where each meets the child, and all boxes below it. With d = depth and words W of a
+    // step of rays at all parts of a level, 13 - d of W are free behind the level's lists: of the root's by
+    // list_arena_words, and so 2 W here, and 13 - (d + 1) behind a child's lists, which take W less than the room.
+    const std::uint32_t ray_count = level.ray_counts[part];
+    std::uint32_t end = ray_count;
+    const std::uint32_t most = room / kLevelWords * kStep - kStep;
+    if (end - level.taken > most) end = level.taken + most;
     const std::uint32_t seen = end - level.taken;
     work_.add(Work::kListEntry, seen);
     work_.charge_to(Work::kListEntry);
     std::uint32_t count = take_marked<L>(list + level.taken, seen, place, target);
     work_.charge_to(Work::kListChild);
     level.taken = end;
+    if (end == ray_count) {
+      level.taken = 0;
+      ++level.turn;
+    }
     if constexpr (kAny) {
       // Rays that have their answer leave lists only once they are many: they meet no box any more.
       if (dead_count_ * 5 > ray_count_) count = keep_living(target, count);
@@ -154,16 +161,12 @@ class RayLists {
     GRIDIRON_TRY(source_.node(index, node));
     work_.add(Work::kListNode);
     work_.charge_to(Work::kListNode);
-    level.list = list;
-    level.ray_count = count;
-    level.end = step_up(list + count);
     level.taken = 0;
     level.turn = 0;
     level.asked = 0;
-    std::uint32_t* const words = memory_.arena + list;
-    const std::uint32_t open = mark_boxes<L>(*node, memory_.rays, words, count, work_);
+    const std::uint32_t open = mark_boxes<L>(*node, memory_.rays, memory_.arena, list, count, level, work_);
     work_.charge_to(Work::kListNode);
-    const std::uint64_t order = kAny ? node->order : order_along(*node, octant_of(words[0]));
+    const std::uint64_t order = kAny ? node->order : order_along(*node, octant_of(memory_.arena[list]));
     std::uint32_t children = 0;
     level.places[0] = level.places[1] = 0;
     for (std::uint32_t i = 0; i < node->child_count; ++i) {
