@@ -434,6 +434,11 @@ struct Lanes {
   [[nodiscard]] static GRIDIRON_INLINE Float flip_sign(Mask mask, Float a) {
     return select(mask, -a, a);
   }
+  /// a with its sign flipped in the lanes where `by` is negative, -0 included.
+  [[nodiscard]] static GRIDIRON_INLINE Float turn_by(Float by, Float a) {
+    const IntVector sign = reinterpret_cast<IntVector>(by.v) & static_cast<std::int32_t>(0x80000000u);
+    return Float(reinterpret_cast<FloatVector>(reinterpret_cast<IntVector>(a.v) ^ sign));
+  }
   /// Largest lane, smallest lane: halves against each other, four times for 16 lanes.
   [[nodiscard]] static GRIDIRON_INLINE float horizontal_max(Float a) {
     if constexpr (W == 16) a = max(a, swap_lanes<8>(a));

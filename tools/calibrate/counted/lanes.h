@@ -274,6 +274,12 @@ struct Lanes {
     return shuffle_quads<I0, I1, I2, I3>(a, a);
   }
   /// The mask's sign bit, exclusive or.
+  /// The sign bits, which several share, and an exclusive or.
+  [[nodiscard]] static Float turn_by(Float by, Float a) {
+    const Native::Float value = Native::turn_by(by.v, a.v);
+    const Node sign = emit(OpClass::kFixed, tie(by.v.v), by.node);
+    return {value, emit(OpClass::kFixed, tie(value.v), a.node, sign)};
+  }
   [[nodiscard]] static Float flip_sign(Mask mask, Float a) {
     const Native::Float value = Native::flip_sign(mask.v, a.v);
     const Node sign = emit(OpClass::kFixed, tie(value.v), mask.node);

@@ -15,13 +15,16 @@ namespace gridiron {
 // the components of corner - origin, direction and edge: products of three carry 4 e by their factors, 3 e by their own
 // products and differences, and two sums 2 e, together less than 10 e X D E. The normal's products have 3 e, its
 // components 4 e, their product with the direction and its sums 7 e. The third side is the difference of these: less
-// than 2 e of both more. 14 e with what computing the bound loses.
-inline constexpr float kSideErrorFactor = 14.0f * 0x1p-23f;
-/// Added to sizes, so that what becomes subnormal on the way is covered: a product below 2^-126 loses 2^-150, which
-/// later factors of 2^122 at most enlarge.
-inline constexpr float kLeastListSize = 0x1p-110f, kLeastReach = 0x1p-20f;
-/// Where a bound is as great, a product of a hundred thousandth of it might overflow.
-inline constexpr float kGreatestListError = 0x1p100f;
+// than 2 e of both more. 14 e with what computing the bound loses; D is at most 3 times the largest component.
+inline constexpr float kSideErrorFactor = 3.0f * 14.0f * 0x1p-23f;
+/// Added to sizes, so that what becomes subnormal on the way is covered. Directions are at least 2^-40: the bound of a
+/// product with the normal is at least 2^-143, where losses are 2^-148; that of three factors at least 2^-125 times what
+/// 2^-149 of the inner product become by the edge.
+inline constexpr float kLeastListSize = 0x1p-85f;
+inline constexpr float kLeastAhead = 0x1p-120f;
+/// No product of such coordinates, and of directions up to 2^40, overflows. Rays that start beyond, or are in a larger
+/// scene, have no bound: everything about them is unsure.
+inline constexpr float kGreatestListPlace = 0x1p40f;
 
 /// Word w of the records in words[w]: of record base in the first lane, and so on; behind the last one it again.
 template <class L>
@@ -70,7 +73,7 @@ GRIDIRON_INLINE void set_up_leaf(const VertexTriangle* records, std::uint32_t co
       e1[axis] = corners[3 + axis] - v;
       e2[axis] = corners[6 + axis] - v;
       v.store(lanes.v[axis] + base);
-      e1[axis].store(lanes.e1[axis] + base);
+      (-e1[axis]).store(lanes.back_e1[axis] + base);
       e2[axis].store(lanes.e2[axis] + base);
       edges = edges + (L::abs(e1[axis]) + L::abs(e2[axis]));
     }
@@ -104,13 +107,13 @@ struct LeafAnswer {
 template <class L>
 struct LeafLanes {
   using Float = typename L::Float;
-  Float v[3], e1[3], e2[3], n[3], edge_error, normal_error;
+  Float v[3], back_e1[3], e2[3], n[3], edge_error, normal_error;
 
   GRIDIRON_INLINE LeafLanes(const TriangleLanes& lanes, std::uint32_t base)
       : edge_error(Float::load(lanes.edge_error + base)), normal_error(Float::load(lanes.normal_error + base)) {
     for (int axis = 0; axis < 3; ++axis) {
       v[axis] = Float::load(lanes.v[axis] + base);
-      e1[axis] = Float::load(lanes.e1[axis] + base);
+      back_e1[axis] = Float::load(lanes.back_e1[axis] + base);
       e2[axis] = Float::load(lanes.e2[axis] + base);
       n[axis] = Float::load(lanes.normal[axis] + base);
     }
@@ -137,33 +140,28 @@ struct LeafLanes {
     const Float x = v[0] - o_x, y = v[1] - o_y, z = v[2] - o_z;
     const Float r_x = y * d_z - z * d_y, r_y = z * d_x - x * d_z, r_z = x * d_y - y * d_x;
     const Float denominator = d_x * n[0] + d_y * n[1] + d_z * n[2];
-    const auto backwards = denominator < Float(0.0f);
-    const Float first = L::flip_sign(backwards, r_x * e2[0] + r_y * e2[1] + r_z * e2[2]);
-    const Float second = L::flip_sign(backwards, r_x * e1[0] + r_y * e1[1] + r_z * e1[2]);
+    const Float first = L::turn_by(denominator, r_x * e2[0] + r_y * e2[1] + r_z * e2[2]);
+    const Float second = L::turn_by(denominator, r_x * back_e1[0] + r_y * back_e1[1] + r_z * back_e1[2]);
     const Float size = L::abs(denominator);
-    const Float third = size - first + second;
-    const Float far = L::abs(x) + L::abs(y) + L::abs(z);
-    const Float span = dir_max * Float(3.0f);
-    const Float turn = normal_error * span + (dir_max * Float(0x1p-100f) + Float(0x1p-100f));
-    const Float error = (far * span + Float(kLeastReach)) * edge_error + turn;
-    const Float least = L::min(L::min(first, -second), third);
-    // NaN and infinities are neither inside nor outside.
-    const std::uint32_t in_range = (error < Float(kGreatestListError)).bits() & there;
-    const std::uint32_t outside = (least < -error).bits() & in_range;
-    const std::uint32_t candidates = there & ~outside;
+    const Float third = size - first - second;
+    const Float far = L::abs(x) + L::abs(y) + (L::abs(z) + Float(kLeastListSize));
+    const Float turn = normal_error * dir_max;
+    const Float error = far * dir_max * edge_error + turn;
+    const Float least = L::min(L::min(first, second), third);
+    // Where there is no bound, nothing is outside or inside.
+    const std::uint32_t candidates = there & ~(least + error < Float(0.0f)).bits();
     if (candidates == 0) return {0, 0, 0, Float(0.0f), Float(0.0f), Float(0.0f), Float(0.0f)};
     // Where along the ray.
-    const Float ahead = L::flip_sign(backwards, x * n[0] + y * n[1] + z * n[2]);
+    const Float ahead = L::turn_by(denominator, x * n[0] + y * n[1] + z * n[2]);
     const Float limit = size * t;
-    const Float ahead_error = far * normal_error + Float(0x1p-100f);
+    const Float ahead_error = far * normal_error + Float(kLeastAhead);
     const Float limit_error = turn * t + limit * Float(0x1p-20f) + ahead_error;
-    const std::uint32_t sign_known =
-        ((size > turn) & (ahead_error < Float(kGreatestListError))).bits() & in_range;
+    const std::uint32_t sign_known = (size > turn).bits();
     const std::uint32_t in_front = (ahead > ahead_error).bits() & sign_known;
     const std::uint32_t behind = (ahead < -ahead_error).bits() & sign_known;
     const std::uint32_t beyond = (ahead - limit > limit_error).bits() & sign_known;
     const std::uint32_t in_reach = candidates & ~(behind | beyond);
-    const std::uint32_t inside = (least > error).bits() & in_range;
+    const std::uint32_t inside = (least > error).bits();
     return {in_reach & inside, in_reach & ~inside, (limit - ahead > limit_error).bits() & in_front,
             ahead, ahead_error, size, turn};
   }

@@ -44,7 +44,7 @@ struct ListLevel {
 /// Up to 16 triangles in lanes.
 struct TriangleLanes {
   alignas(64) float v[3][kMaxTreeLeaf];          ///< the first corner
-  alignas(64) float e1[3][kMaxTreeLeaf];         ///< from it to the second one
+  alignas(64) float back_e1[3][kMaxTreeLeaf];    ///< from the second one to it
   alignas(64) float e2[3][kMaxTreeLeaf];         ///< from it to the third one
   alignas(64) float normal[3][kMaxTreeLeaf];     ///< e1 x e2
   alignas(64) float edge_error[kMaxTreeLeaf];    ///< factor on sizes of rays: bounds the error of a side

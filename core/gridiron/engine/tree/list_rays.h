@@ -3,6 +3,8 @@
 #pragma once
 
 #include <gridiron/base/lanes.h>
+#include <gridiron/base/math.h>
+#include <gridiron/engine/tree/leaf_test.h>
 #include <gridiron/engine/tree/list_memory.h>
 #include <gridiron/ray/ray_batch.h>
 
@@ -83,19 +85,37 @@ GRIDIRON_INLINE std::uint32_t set_up_reciprocals(BatchRay& ray) {
   }
 }
 
-/// Prepares a ray for lists. One that boxes cannot be tested against meets all of them.
+/// What set_up_list_ray() does with other rays than most.
+template <class L>
+GRIDIRON_RARE inline std::uint32_t set_up_odd_ray(BatchRay& ray, std::uint32_t octant, bool is_near, bool is_large) {
+  bool is_scaled = ray.dir_max >= kLeastListDirection && ray.dir_max <= kGreatestListDirection;
+  if (!is_scaled && scale_list_ray(ray)) {
+    is_scaled = true;
+    octant = set_up_reciprocals<L>(ray);
+  }
+  if (!is_near || !is_scaled) {
+    for (float& component : ray.inverse) component = 0.0f;
+  }
+  if (is_large || !is_scaled) ray.dir_max = kInfinity;
+  return octant;
+}
+
+/// Prepares a ray for lists. One that boxes cannot be tested against meets all of them, one that triangles cannot be
+/// tested against by floats has no bound of its direction.
 /// @param largest  |coordinate| of the scene. @returns its octant.
 template <class L>
 GRIDIRON_INLINE std::uint32_t set_up_list_ray(BatchRay& ray, float largest) {
   const std::uint32_t octant = set_up_reciprocals<L>(ray);
+  const auto is_within = [&ray](float limit) GRIDIRON_INLINE_LAMBDA {
+    return magnitude(ray.origin[0]) <= limit && magnitude(ray.origin[1]) <= limit && magnitude(ray.origin[2]) <= limit;
+  };
   const float far = largest * kFarOrigin;
-  const bool is_near =
-      magnitude(ray.origin[0]) <= far && magnitude(ray.origin[1]) <= far && magnitude(ray.origin[2]) <= far;
-  if (is_near && ray.dir_max >= kLeastListDirection && ray.dir_max <= kGreatestListDirection) [[likely]]
+  const bool is_large = !(largest <= kGreatestListPlace);
+  if (is_within(far < kGreatestListPlace ? far : kGreatestListPlace) && !is_large &&
+      ray.dir_max >= kLeastListDirection && ray.dir_max <= kGreatestListDirection) [[likely]] {
     return octant;
-  if (is_near && scale_list_ray(ray)) return set_up_reciprocals<L>(ray);
-  for (float& component : ray.inverse) component = 0.0f;
-  return octant;
+  }
+  return set_up_odd_ray<L>(ray, octant, is_within(far), is_large || !is_within(kGreatestListPlace));
 }
 
 /// Copies the words of rays that meet a child. @param list    at a multiple of kListStep<L> words.
