@@ -77,8 +77,6 @@ std::vector<Build> builds_of_host() {
                           __builtin_cpu_supports("avx512vl") != 0;
   add_where(has_avx2, {"8", 8, gridiron_bench_trace_lanes8});
   add_where(has_avx512, {"16", 16, gridiron_bench_trace_lanes16});
-  add_where(has_avx512 && __builtin_cpu_supports("avx512vbmi2") != 0,
-            {"16+vbmi2", 16, gridiron_bench_trace_lanes16_vbmi2});
 #endif
   return builds;
 }
@@ -94,7 +92,11 @@ class OwnedTree {
     const std::span records(reinterpret_cast<VertexTriangle*>(records_.bytes().data()), count);
     const std::span nodes(reinterpret_cast<TreeNode*>(nodes_.bytes().data()), most_tree_nodes(count, leaf_triangles));
     status_ = build_tree(mesh, leaf_triangles, records, nodes, scratch.bytes(), size_);
-    if (status_ == Status::kOk) tree_ = {nodes.first(size_.node_count), records.first(size_.triangle_count)};
+    float largest = 0.0f;
+    for (int axis = 0; axis < 3; ++axis) {
+      largest = std::max({largest, std::fabs(size_.low[axis]), std::fabs(size_.high[axis])});
+    }
+    if (status_ == Status::kOk) tree_ = {nodes.first(size_.node_count), records.first(size_.triangle_count), largest};
   }
 
   [[nodiscard]] Status status() const { return status_; }
@@ -110,17 +112,12 @@ class OwnedTree {
   ListTree tree_;
 };
 
-std::vector<RayGroup> groups_of(std::span<const peer::PeerRay> rays) {
-  std::vector<RayGroup> groups(rays.size() / kGroupRays);
-  for (std::size_t i = 0; i < rays.size(); ++i) {
-    RayGroup& group = groups[i / kGroupRays];
-    for (std::size_t axis = 0; axis < 3; ++axis) {
-      group.origin[axis][i % kGroupRays] = rays[i].origin[axis];
-      group.dir[axis][i % kGroupRays] = rays[i].dir[axis];
-    }
-    group.t[i % kGroupRays] = rays[i].t;
+std::vector<MemoryRay> memory_rays(std::span<const peer::PeerRay> rays) {
+  std::vector<MemoryRay> copies;
+  for (const peer::PeerRay& ray : rays) {
+    copies.push_back({{ray.origin[0], ray.origin[1], ray.origin[2]}, ray.t, {ray.dir[0], ray.dir[1], ray.dir[2]}});
   }
-  return groups;
+  return copies;
 }
 
 // --- Embree -------------------------------------------------------------------------------------------------------
@@ -179,12 +176,12 @@ std::vector<Way> ways_of(const EmbreeScenes& scenes) {
 class RaySet {
  public:
   RaySet(const std::vector<peer::PeerRay>& rays, bool any_hit, std::uint32_t batch_rays)
-      : rays_(rays), any_hit_(any_hit), batch_rays_(batch_rays), groups_(groups_of(rays)), answers_(groups_.size()) {
+      : rays_(rays), any_hit_(any_hit), batch_rays_(batch_rays), ours_(memory_rays(rays)), answers_(rays.size() / kGroupRays) {
     for (const peer::EmbreeCall call : kCalls) batches_.emplace_back(call, any_hit);
   }
 
   [[nodiscard]] Candidate ours(const Build& build, const ListTree& tree) {
-    return {build.name, [this, &build, &tree] { build.trace(tree, groups_, answers_, batch_rays_, any_hit_); }};
+    return {build.name, [this, &build, &tree] { build.trace(tree, ours_, answers_, batch_rays_, any_hit_); }};
   }
   // Embree writes into its rays, so they are written anew for each round.
   [[nodiscard]] Candidate embree(const Way& way) {
@@ -227,7 +224,7 @@ class RaySet {
   const std::vector<peer::PeerRay>& rays_;
   bool any_hit_;
   std::uint32_t batch_rays_;
-  std::vector<RayGroup> groups_;
+  std::vector<MemoryRay> ours_;
   std::vector<AnswerGroup> answers_;
   std::vector<peer::EmbreeRayBatch> batches_;
 };

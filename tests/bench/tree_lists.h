@@ -11,19 +11,18 @@
 namespace gridiron::bench {
 
 inline constexpr std::uint32_t kGroupRays = 16;
-inline constexpr std::uint32_t kMaxBatchRays = 4096;
+inline constexpr std::uint32_t kMaxBatchRays = 2048;
 
 /// A tree in memory; borrowed.
 struct ListTree {
   std::span<const TreeNode> nodes;
   std::span<const VertexTriangle> records;
+  float largest;  ///< |coordinate| of the triangles
 };
 
-/// 16 rays as they lie in memory: what defines them, nothing derived.
-struct RayGroup {
-  alignas(64) float origin[3][kGroupRays];
-  float dir[3][kGroupRays];
-  float t[kGroupRays];
+/// A ray as it lies in memory: what defines it, nothing derived.
+struct alignas(32) MemoryRay {
+  float origin[3], t, dir[3];
 };
 
 /// Answers of 16 rays. Of any hit `hits` alone is written.
@@ -33,15 +32,14 @@ struct AnswerGroup {
   std::uint32_t hits;               ///< bit i: ray i hits something
 };
 
-/// Answers rays[i] in answers[i]. @param batch_rays  traced together: a multiple of kGroupRays, at most kMaxBatchRays.
-using TraceLists = void(const ListTree& tree, std::span<const RayGroup> rays, std::span<AnswerGroup> answers,
+/// Answers rays[i] in answers[i / kGroupRays]. @param batch_rays  traced together: a multiple of kGroupRays, at most kMaxBatchRays.
+using TraceLists = void(const ListTree& tree, std::span<const MemoryRay> rays, std::span<AnswerGroup> answers,
                         std::uint32_t batch_rays, bool any_hit);
 
 extern "C" {
 TraceLists gridiron_bench_trace_lanes4;
 TraceLists gridiron_bench_trace_lanes8;
 TraceLists gridiron_bench_trace_lanes16;
-TraceLists gridiron_bench_trace_lanes16_vbmi2;
 }
 
 }  // namespace gridiron::bench

@@ -8,6 +8,8 @@
 
 #if defined(__AVX512F__) || defined(__AVX2__) || defined(__SSE2__)
 #include <immintrin.h>
+#elif defined(__ARM_NEON)
+#include <arm_neon.h>
 #endif
 
 #define GRIDIRON_INLINE inline __attribute__((always_inline))
@@ -303,6 +305,35 @@ struct Lanes {
 #if defined(__AVX512F__)
     if constexpr (W == 16) {
       _mm512_storeu_si512(target, _mm512_maskz_compress_epi32(static_cast<__mmask16>(bits), __m512i(a.v)));
+      return;
+    }
+#endif
+#if defined(__ARM_NEON) || defined(__SSSE3__)
+    if constexpr (W == 4) {
+      // Bytes of the words that stay, by bits.
+      static constexpr auto kPatterns = [] {
+        struct {
+          std::uint8_t bytes[16][16];
+        } patterns{};
+        for (std::uint32_t set = 0; set < 16; ++set) {
+          std::uint32_t words = 0;
+          for (std::uint32_t word = 0; word < 4; ++word) {
+            if ((set >> word & 1u) == 0) continue;
+            for (std::uint32_t byte = 0; byte < 4; ++byte) {
+              patterns.bytes[set][4 * words + byte] = static_cast<std::uint8_t>(4 * word + byte);
+            }
+            ++words;
+          }
+        }
+        return patterns;
+      }();
+      const std::uint8_t* const pattern = kPatterns.bytes[bits];
+#if defined(__ARM_NEON)
+      vst1q_u8(reinterpret_cast<std::uint8_t*>(target), vqtbl1q_u8(uint8x16_t(a.v), vld1q_u8(pattern)));
+#else
+      const __m128i loaded = _mm_loadu_si128(reinterpret_cast<const __m128i*>(pattern));
+      _mm_storeu_si128(reinterpret_cast<__m128i*>(target), _mm_shuffle_epi8(__m128i(a.v), loaded));
+#endif
       return;
     }
 #endif

@@ -137,7 +137,7 @@ struct EffectLayout256K {
   /// @endcond
   using RayEngine = TreeEngine;                             ///< what traces all rays but eye rays
   static constexpr std::uint32_t kBatchRays = 512;          ///< rays that its lists take at once
-  static constexpr std::uint32_t kSpareListWords = 1024;    ///< of its lists, beyond the least
+  static constexpr std::uint32_t kSpareListWords = 0;       ///< of its lists, beyond the least
   static constexpr std::uint32_t kTreeSlots = 32;           ///< nodes and leaves at hand
   static constexpr std::uint32_t kLeafTriangles = 8;        ///< of a leaf, at most
   static constexpr std::uint32_t kWaveRays = 256;      ///< rays worked on together
@@ -156,13 +156,13 @@ struct EffectLayout64K {
   using Engine = GridEngine;
   static constexpr std::uint32_t kEffects = BuiltV;
   static constexpr std::uint32_t kArenaBytes = 64 * 1024;
-  static constexpr std::uint32_t kCodeBudgetBytes = 39 * 1024;
+  static constexpr std::uint32_t kCodeBudgetBytes = 40 * 1024;
   static constexpr std::uint32_t kStackBudgetBytes = 4 * 1024;
   static constexpr std::uint32_t kTileWidth = 8;
   static constexpr std::uint32_t kPacketWidth = 0;
   static constexpr std::uint32_t kMaxOutputDepth = 2;
   using RayEngine = TreeEngine;
-  static constexpr std::uint32_t kBatchRays = 64;
+  static constexpr std::uint32_t kBatchRays = 32;
   static constexpr std::uint32_t kSpareListWords = 0;
   static constexpr std::uint32_t kTreeSlots = 8;
   static constexpr std::uint32_t kLeafTriangles = 8;

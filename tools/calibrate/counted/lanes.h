@@ -224,6 +224,24 @@ struct Lanes {
     PipeModel::current().store_quad(target, a.node, tie(a.v.v));
   }
   static void store_quads(Float a, Counted<float>* target, const Counted<std::uint32_t>&) { a.store(target); }
+  /// A pattern by the bits for one shuffle, then a store across two quads.
+  static void compress(Int a, const Counted<std::uint32_t>& bits, Counted<std::uint32_t>* target) {
+    alignas(16) std::uint32_t words[4];
+    Native::compress(a.v, bits.value, words);
+    const std::uint64_t tied = tie(a.v.v) + bits.value;
+    const Node place = emit(OpClass::kShift, tied, node_of(bits));
+    const Node pattern = emit(OpClass::kLoad, tied, place);
+    const Node packed = emit(OpClass::kShuffle, tied, a.node, pattern);
+    const auto first = reinterpret_cast<std::uintptr_t>(target) / 16 * 16;
+    for (const std::uintptr_t part : {first, first + 16}) {
+      const auto* const quad = reinterpret_cast<const void*>(part);
+      const Node before = PipeModel::current().load_quad(quad, tied);
+      const Node turned = emit(OpClass::kShuffle, tied + 1, packed);
+      PipeModel::current().store_quad(quad, emit(OpClass::kFixed, tied + 2, before, turned), tied);
+    }
+    const std::uint32_t count = gridiron::count_bits(bits.value);
+    for (std::uint32_t i = 0; i < count; ++i) target[i].value = words[i];
+  }
   static void store_where(Mask mask, const Counted<std::uint32_t>& value, Counted<std::uint32_t>* target) {
     store_quads(select(mask, Int::splat(value), Int::load(target)), target, 0);
   }

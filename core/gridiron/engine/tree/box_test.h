@@ -115,54 +115,79 @@ GRIDIRON_INLINE void unite_boxes(const TreeNode& node, NodeUnions& unions) {
   }
 }
 
-/// Finds the boxes of a node that each ray of a list meets, and writes them into its word.
-/// @returns the children that any ray meets.
+/// Tests rays of one octant, those of a list from `begin` on, against the same boxes: words get their masks.
+/// @param there  the boxes that there are. @returns where the octant ends.
 template <class L>
-[[nodiscard]] GRIDIRON_INLINE std::uint32_t mark_boxes(const TreeNode& node, BatchRay* rays, std::uint32_t* list,
-                                                       std::uint32_t count, WorkCounters& work) {
-  const std::uint32_t there = (2u << (node.child_count - 1)) - 1;
+GRIDIRON_INLINE std::uint32_t mark_run(const BoxSides<L>* sides, std::uint32_t there, BatchRay* rays,
+                                       std::uint32_t* list, std::uint32_t begin, std::uint32_t count,
+                                       std::uint32_t& open) {
+  static constexpr std::uint32_t kGroups = L::kCount < 4 ? 4 : L::kCount == 8 ? 2 : 1;
+  const std::uint32_t octant = octant_of(list[begin]);
+  std::uint32_t i = begin;
+  do {
+    const std::uint32_t word = list[i];
+    const BoxRay<L> ray(ray_of(rays, word));
+    std::uint32_t met = 0;
+    for (std::uint32_t group = 0; group < kGroups; ++group) met |= sides[group].met_by(ray) << group * L::kCount;
+    met &= there;
+    list[i] = (word & ~kMaskBits) | met;
+    open |= met;
+    ++i;
+  } while (i < count && octant_of(list[i]) == octant);
+  return i;
+}
+
+/// The same for all octants of a list. @param boxes  TreeNode or NodeUnions. @param base  the first of them.
+/// @returns the boxes that any ray meets.
+template <class L, class Boxes>
+GRIDIRON_INLINE std::uint32_t mark_list(const Boxes& boxes, std::uint32_t base, std::uint32_t there, BatchRay* rays,
+                                        std::uint32_t* list, std::uint32_t count) {
+  static constexpr std::uint32_t kGroups = L::kCount < 4 ? 4 : L::kCount == 8 ? 2 : 1;
   std::uint32_t open = 0;
-  NodeUnions unions;
-  if constexpr (L::kCount <= 4) unite_boxes<L>(node, unions);
-  work.add(Work::kListRayNode, count);
   for (std::uint32_t i = 0; i < count;) {
-    const std::uint32_t octant = octant_of(list[i]);
-    const SidePlaces boxes(node, octant);
-    if constexpr (L::kCount > 4) {
-      const BoxSides<L> sides = boxes.load<L>(0), others = boxes.load<L>(L::kCount == 16 ? 0 : 8);
-      do {
-        const BoxRay<L> ray(ray_of(rays, list[i]));
-        std::uint32_t met = sides.met_by(ray);
-        if constexpr (L::kCount == 8) met |= others.met_by(ray) << 8;
-        met &= there;
-        list[i] = (list[i] & ~kMaskBits) | met;
-        open |= met;
-        ++i;
-      } while (i < count && octant_of(list[i]) == octant);
-    } else {
-      const SidePlaces united(unions, octant);
-      work.charge_to(Work::kListRayNode);
-      do {
-        const std::uint32_t word = list[i];
-        const BoxRay<L> ray(ray_of(rays, word));
-        std::uint32_t quads = 0, met = 0;
-        for (std::uint32_t base = 0; base < 4; base += L::kCount) quads |= united.load<L>(base).met_by(ray) << base;
-        work.charge_to(Work::kListBoxQuad);
-        for (; quads != 0; quads &= quads - 1) {
-          work.add(Work::kListBoxQuad);
-          const std::uint32_t base = 4 * lowest_bit(quads);
-          std::uint32_t of_quad = 0;
-          for (std::uint32_t k = 0; k < 4; k += L::kCount) of_quad |= boxes.load<L>(base + k).met_by(ray) << k;
-          met |= of_quad << base;
-        }
-        work.charge_to(Work::kListRayNode);
-        met &= there;
-        list[i] = (word & ~kMaskBits) | met;
-        open |= met;
-        ++i;
-      } while (i < count && octant_of(list[i]) == octant);
+    const SidePlaces places(boxes, octant_of(list[i]));
+    BoxSides<L> sides[kGroups];
+    for (std::uint32_t group = 0; group < kGroups; ++group) sides[group] = places.load<L>(base + group * L::kCount);
+    i = mark_run<L>(sides, there, rays, list, i, count, open);
+  }
+  return open;
+}
+
+/// Finds the boxes of a node that each ray of a list meets. @param level  gets the lists of its parts, behind `list`.
+/// @param arena  of the lists. @returns the children that any ray meets.
+template <class L>
+[[nodiscard]] GRIDIRON_INLINE std::uint32_t mark_boxes(const TreeNode& node, BatchRay* rays, std::uint32_t* arena,
+                                                       std::uint32_t list, std::uint32_t count, ListLevel& level,
+                                                       WorkCounters& work) {
+  const std::uint32_t there = (2u << (node.child_count - 1)) - 1;
+  static constexpr std::uint32_t kStep = kListStep<L>;
+  std::uint32_t end = (list + count + (kStep - 1)) & ~(kStep - 1);
+  std::uint32_t open = 0;
+  work.add(Work::kListRayNode, count);
+  work.charge_to(Work::kListRayNode);
+  if constexpr (kBoxParts<L> == 1) {
+    open = mark_list<L>(node, 0, there, rays, arena + list, count);
+    level.lists[0] = list;
+    level.ray_counts[0] = count;
+  } else {
+    NodeUnions unions;
+    unite_boxes<L>(node, unions);
+    const std::uint32_t quads = mark_list<L>(unions, 0, 15, rays, arena + list, count);
+    for (std::uint32_t quad = 0; quad < kBoxParts<L>; ++quad) {
+      level.ray_counts[quad] = 0;
+      if ((quads >> quad & 1u) == 0) continue;
+      work.add(Work::kListEntry, count);
+      work.charge_to(Work::kListEntry);
+      const std::uint32_t taken = take_marked<L>(arena + list, count, quad, arena + end);
+      level.lists[quad] = end;
+      level.ray_counts[quad] = taken;
+      work.add(Work::kListBoxQuad, taken);
+      work.charge_to(Work::kListBoxQuad);
+      open |= mark_list<L>(node, 4 * quad, there >> 4 * quad & 15, rays, arena + end, taken) << 4 * quad;
+      end = (end + taken + (kStep - 1)) & ~(kStep - 1);
     }
   }
+  level.end = end;
   return open;
 }
 

@@ -9,29 +9,36 @@
 
 namespace gridiron {
 
-/// Lists begin and end at multiples of so many rays, whatever the lanes, so that all lanes go through the same pieces.
-inline constexpr std::uint32_t kListStep = 16;
+/// Lanes of up to four boxes test a node's boxes in four parts, quads under a union box, and have a list for each; wider
+/// ones test all boxes at once.
+template <class L>
+inline constexpr std::uint32_t kBoxParts = L::kCount <= 4 ? 4 : 1;
+/// Lists begin at multiples of so many words.
+template <class L>
+inline constexpr std::uint32_t kListStep = L::kCount <= 4 ? 4 : 16;
+/// Words that a node's lists take beyond its own list, for each of its rays, at most.
+template <class L>
+inline constexpr std::uint32_t kListParts = kBoxParts<L> == 1 ? 0 : kBoxParts<L>;
 
-/// Words of an arena for batches of so many rays: their list, in up to eight parts that each begin at a step, and below
-/// it at each level a list of one step at least, and a step to write over. The list is sorted out of another of its
-/// length. @param spare  words for longer lists, which spare nodes and leaves
-/// second visits.
+/// Words of an arena for batches of so many rays, whatever the lanes: their list, in up to eight parts that each begin
+/// at a step, those of the root's parts, and at each level below at least those of one step of rays, and a step to
+/// write over. @param spare  words for longer lists, which spare nodes and leaves second visits.
 [[nodiscard]] constexpr std::uint32_t list_arena_words(std::uint32_t rays, std::uint32_t spare) {
-  const std::uint32_t least = rays + (8 + kMaxTreeDepth + 1) * kListStep + spare;
-  const std::uint32_t unsorted = 2 * rays + 8 * kListStep;
-  return least > unsorted ? least : unsorted;
+  constexpr std::uint32_t kLevelWords = 5 * 4 > 16 ? 5 * 4 : 16;
+  return 5 * rays + 8 * 16 + (kMaxTreeDepth + 2) * kLevelWords + spare;
 }
 
 /// A node on the way down, and the rays that met its box.
 struct ListLevel {
   TreeChild children[kTreeWidth];    ///< those that rays meet, in the order of their turns
-  std::uint32_t places[kTreeWidth];  ///< of each: its bit in the masks
+  std::uint32_t places[2];           ///< of each: its bit in the masks, 4 bits, eight to a word
   std::uint32_t child_count;         ///< of these
   std::uint32_t turn;                ///< the child whose rays are next
   std::uint32_t asked;               ///< children asked for ahead of their turns
-  std::uint32_t list, end;           ///< where it begins in the arena, and what is free behind it
-  std::uint32_t ray_count;           ///< of the list
-  std::uint32_t taken;               ///< of its rays, those that the child whose turn it is has seen
+  std::uint32_t lists[4];            ///< of each part: where its list begins in the arena
+  std::uint32_t ray_counts[4];       ///< of these lists
+  std::uint32_t end;                 ///< what is free behind them
+  std::uint32_t taken;               ///< of a part's rays, those that the child whose turn it is has seen
 };
 
 /// Up to 16 triangles in lanes.
@@ -44,14 +51,14 @@ struct TriangleLanes {
   alignas(64) float normal_error[kMaxTreeLeaf];  ///< likewise, of products with the normal
 };
 
-/// @tparam Rays   of a batch: a multiple of kListStep.
+/// @tparam Rays   of a batch: a multiple of 16.
 /// @tparam Spare  words of the arena beyond the least.
 template <std::uint32_t Rays, std::uint32_t Spare>
 struct alignas(128) ListMemory {
   static constexpr std::uint32_t kRays = Rays;
   static constexpr std::uint32_t kArenaWords = list_arena_words(Rays, Spare);
-  static_assert(Rays % kListStep == 0 && 3 * Rays <= 1u << 13, "a word of a list has 13 bits for a ray's place");
-  static_assert(Spare % kListStep == 0);
+  static_assert(Rays % 16 == 0 && 3 * Rays <= 1u << 13, "a word of a list has 13 bits for a ray's place");
+  static_assert(Spare % 16 == 0);
 
   BatchRay rays[Rays];
   std::uint32_t owners[Rays];

@@ -98,7 +98,7 @@ GRIDIRON_INLINE std::uint32_t set_up_list_ray(BatchRay& ray, float largest) {
   return octant;
 }
 
-/// Copies the words of rays that meet a child. @param list    at a multiple of kListStep words.
+/// Copies the words of rays that meet a child. @param list    at a multiple of kListStep<L> words.
 /// @param place   of the child in their masks. @param target  room for as many, and L::kCount more.
 /// @returns how many.
 template <class L>

@@ -34,7 +34,7 @@ class RayLists {
   /// Answers the first `count` rays of the memory: id is a triangle's where a ray hits one, else kNoTriangle, as which
   /// it begins. Directions, t and origins of rays may be changed by powers of two.
   /// @param largest  |coordinate| of the tree's triangles.
-  [[nodiscard]] Status trace(const RayQuestion& question, std::uint32_t count, float largest) {
+  [[nodiscard]] GRIDIRON_OUTLINE Status trace(const RayQuestion& question, std::uint32_t count, float largest) {
     question_ = question;
     ray_count_ = count;
     dead_count_ = 0;
@@ -59,27 +59,28 @@ class RayLists {
       memory_.arena[place] = word;
       ++place;
     }
-    if (question.any_hit) return walk<true>(0, count);
+    if (question.any_hit) return walk(0, count);
     // The nearest hit is found soonest front to back, and front is another side for each octant. The last list goes
     // first: it needs the room behind it.
     for (std::uint32_t octant = 8; octant > 0; --octant) {
       if (counts[octant - 1] == 0) continue;
-      GRIDIRON_TRY(walk<false>(begins[octant - 1], counts[octant - 1]));
+      GRIDIRON_TRY(walk(begins[octant - 1], counts[octant - 1]));
     }
     return Status::kOk;
   }
 
  private:
   using Float = typename L::Float;
+  static constexpr std::uint32_t kStep = kListStep<L>, kParts = kBoxParts<L>;
+  static constexpr std::uint32_t kLevelWords = (1 + kListParts<L>)*kStep;
   [[nodiscard]] static std::uint32_t step_up(std::uint32_t words) {
-    return (words + (kListStep - 1)) & ~(kListStep - 1);
+    return (words + (kStep - 1)) & ~(kStep - 1);
   }
 
   // Takes a list of the arena down the tree. What lies behind it is overwritten.
-  template <bool kAny>
-  [[nodiscard]] Status walk(std::uint32_t list, std::uint32_t count) {
+  [[nodiscard]] GRIDIRON_OUTLINE Status walk(std::uint32_t list, std::uint32_t count) {
     std::uint32_t depth = 0;
-    GRIDIRON_TRY(enter<kAny>(memory_.levels[0], 0, list, count));
+    GRIDIRON_TRY(enter(memory_.levels[0], 0, list, count));
     for (;;) {
       ListLevel& level = memory_.levels[depth];
       work_.charge_to(Work::kListChild);
@@ -94,43 +95,47 @@ class RayLists {
       }
       work_.charge_to(Work::kListChild);
       const TreeChild child = level.children[level.turn];
-      const std::uint32_t selected = select<kAny>(level, depth);
-      if (level.taken >= level.ray_count) {
-        level.taken = 0;
-        ++level.turn;
-      }
+      const std::uint32_t selected = select(level, depth);
       if (selected == 0) continue;
       if (child.is_leaf()) {
-        GRIDIRON_TRY(visit_leaf<kAny>(child, memory_.arena + level.end, selected));
+        GRIDIRON_TRY(visit_leaf(child, memory_.arena + level.end, selected));
       } else {
         ++depth;
-        GRIDIRON_TRY(enter<kAny>(memory_.levels[depth], child.node_index(), level.end, selected));
+        GRIDIRON_TRY(enter(memory_.levels[depth], child.node_index(), level.end, selected));
       }
     }
   }
 
   // Lists the rays that meet the child whose turn it is: of those that are left of the level's, as many as there is
   // room for. Below the child's level each has a step of rays, so that there is always room for one.
-  template <bool kAny>
   [[nodiscard]] std::uint32_t select(ListLevel& level, std::uint32_t depth) {
     work_.add(Work::kListChild);
-    const std::uint32_t place = level.places[level.turn];
-    const std::uint32_t below = (kMaxTreeDepth - 1 - depth) * kListStep;
+    const std::uint32_t child = level.places[level.turn / 8] >> 4 * (level.turn % 8) & 15;
+    const std::uint32_t part = child / (kTreeWidth / kParts), place = child % (kTreeWidth / kParts);
+    const std::uint32_t below = (kMaxTreeDepth - 1 - depth) * kLevelWords;
     const std::uint32_t room = Memory::kArenaWords - level.end - below;
-    const std::uint32_t* const list = memory_.arena + level.list;
+    const std::uint32_t* const list = memory_.arena + level.lists[part];
     std::uint32_t* const target = memory_.arena + level.end;
-    // All of them, if they fit even where each meets the child.
-    std::uint32_t end = level.ray_count;
-    if (end - level.taken + kListStep > room) end = level.taken + (room - kListStep) / kListStep * kListStep;
+    // All of them, if they fit even where each meets the child, and all boxes below it. With d = depth and words W of a
+    // step of rays at all parts of a level, 13 - d of W are free behind the level's lists: of the root's by
+    // list_arena_words, and so 2 W here, and 13 - (d + 1) behind a child's lists, which take W less than the room.
+    const std::uint32_t ray_count = level.ray_counts[part];
+    std::uint32_t end = ray_count;
+    const std::uint32_t most = room / kLevelWords * kStep - kStep;
+    if (end - level.taken > most) end = level.taken + most;
     const std::uint32_t seen = end - level.taken;
     work_.add(Work::kListEntry, seen);
     work_.charge_to(Work::kListEntry);
     std::uint32_t count = take_marked<L>(list + level.taken, seen, place, target);
     work_.charge_to(Work::kListChild);
     level.taken = end;
-    if constexpr (kAny) {
+    if (end == ray_count) {
+      level.taken = 0;
+      ++level.turn;
+    }
+    if (dead_count_ * 5 > ray_count_) {
       // Rays that have their answer leave lists only once they are many: they meet no box any more.
-      if (dead_count_ * 5 > ray_count_) count = keep_living(target, count);
+      count = keep_living(target, count);
     }
     return count;
   }
@@ -146,7 +151,6 @@ class RayLists {
   }
 
   // Finds which boxes of a node each ray of a list meets: surely all that hold a hit.
-  template <bool kAny>
   [[nodiscard]] GRIDIRON_OUTLINE Status enter(ListLevel& level, std::uint32_t index, std::uint32_t list,
                                               std::uint32_t count) {
     work_.charge_to(Work::kListNode);
@@ -154,22 +158,19 @@ class RayLists {
     GRIDIRON_TRY(source_.node(index, node));
     work_.add(Work::kListNode);
     work_.charge_to(Work::kListNode);
-    level.list = list;
-    level.ray_count = count;
-    level.end = step_up(list + count);
     level.taken = 0;
     level.turn = 0;
     level.asked = 0;
-    std::uint32_t* const words = memory_.arena + list;
-    const std::uint32_t open = mark_boxes<L>(*node, memory_.rays, words, count, work_);
+    const std::uint32_t open = mark_boxes<L>(*node, memory_.rays, memory_.arena, list, count, level, work_);
     work_.charge_to(Work::kListNode);
-    const std::uint64_t order = kAny ? node->order : order_along(*node, octant_of(words[0]));
+    const std::uint64_t order = question_.any_hit ? node->order : order_along(*node, octant_of(memory_.arena[list]));
     std::uint32_t children = 0;
-    for (std::uint32_t i = 0; i < kTreeWidth; ++i) {
+    level.places[0] = level.places[1] = 0;
+    for (std::uint32_t i = 0; i < node->child_count; ++i) {
       const auto child = static_cast<std::uint32_t>(order >> 4 * i & 15);
       if ((open >> child & 1u) == 0) continue;
       level.children[children] = node->children[child];
-      level.places[children] = child;
+      level.places[children / 8] |= child << 4 * (children % 8);
       ++children;
     }
     level.child_count = children;
@@ -198,7 +199,6 @@ class RayLists {
     return order;
   }
 
-  template <bool kAny>
   [[nodiscard]] GRIDIRON_OUTLINE Status visit_leaf(TreeChild leaf, const std::uint32_t* list, std::uint32_t count) {
     work_.charge_to(Work::kListLeaf);
     const VertexTriangle* records = nullptr;
@@ -216,7 +216,7 @@ class RayLists {
         BatchRay& ray = ray_of(memory_.rays, list[i]);
         const LeafAnswer<L> answer = lanes.test(ray, there);
         if ((answer.inside | answer.unsure) == 0) continue;
-        GRIDIRON_TRY(decide<kAny>(ray, records + base, answer, base));
+        GRIDIRON_TRY(decide(ray, records + base, answer, base));
         work_.charge_to(Work::kListTriangleGroup);
       }
     }
@@ -224,12 +224,12 @@ class RayLists {
   }
 
   // Decides the triangles that floats leave to one ray. @param base  of the answer's lanes.
-  template <bool kAny>
   [[nodiscard]] GRIDIRON_OUTLINE Status decide(BatchRay& ray, const VertexTriangle* triangles, const LeafAnswer<L>& answer,
                                                std::uint32_t base) {
     work_.add(Work::kListCandidate);
     work_.charge_to(Work::kListCandidate);
-    if constexpr (kAny) {
+    const bool any_hit = question_.any_hit;
+    if (any_hit) {
       if (ray.id != kNoTriangle) return Status::kOk;
       const std::uint32_t sure = answer.inside & answer.within;
       if (sure != 0) return stop(ray, triangles[lowest_bit(sure)].triangle_id);
@@ -237,7 +237,7 @@ class RayLists {
     // The nearest first, by estimates: exact distances cost the most, and a near hit spares those behind it.
     const std::uint32_t candidates = answer.inside | answer.unsure;
     alignas(64) float least[L::kCount];
-    const bool are_several = !kAny && (candidates & (candidates - 1)) != 0;
+    const bool are_several = !any_hit && (candidates & (candidates - 1)) != 0;
     if (are_several) answer.least_t().store(least);
     for (std::uint32_t rest = candidates, lane = 0; rest != 0; rest &= ~(1u << lane)) {
       lane = lowest_bit(rest);
@@ -249,14 +249,12 @@ class RayLists {
       }
       const VertexTriangle& triangle = triangles[lane];
       if ((answer.inside >> lane & 1u) == 0 && !passes_through(ray, triangle, work_)) continue;
-      if constexpr (kAny) {
-        if ((answer.within >> lane & 1u) != 0) return stop(ray, triangle.triangle_id);
-      }
+      if (any_hit && (answer.within >> lane & 1u) != 0) return stop(ray, triangle.triangle_id);
       const float t =
           question_.trusts_floats ? float_distance(ray, base + lane) : ray_distance(ray, triangle, work_);
       work_.charge_to(Work::kListCandidate);
       if (!(t > 0.0f) || t > ray.t) continue;
-      if constexpr (kAny) return stop(ray, triangle.triangle_id);
+      if (any_hit) return stop(ray, triangle.triangle_id);
       if (t == ray.t && ray.id != kNoTriangle) {
         bool is_first = false;
         GRIDIRON_TRY(comes_before(ray, triangle, is_first));
