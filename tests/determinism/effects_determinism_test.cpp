@@ -206,10 +206,10 @@ TEST(EffectsDeterminism, BuffersQueuesLanesAndStoresChangeNoPixel) {
     EXPECT_TRUE(frame.result.violations.empty()) << name << ": " << frame.result.violations.front().detail;
     EXPECT_EQ(frame.color, first_frame().color) << name;
   };
-  for (const std::uint32_t walks : {1u, 2u, 8u}) {
-    expect_same("walks " + std::to_string(walks), [walks](FrameSettings& settings, sim::ChipOptions& chip) {
-      settings.walk_depth = walks;
-      settings.output_depth = settings.macro_depth = settings.triangle_depth = walks == 1 ? 1 : 2;
+  for (const std::uint32_t depth : {1u, 2u, 8u, 15u}) {
+    expect_same("ray depth " + std::to_string(depth), [depth](FrameSettings& settings, sim::ChipOptions& chip) {
+      settings.walk_depth = depth;
+      settings.output_depth = settings.macro_depth = settings.triangle_depth = depth == 1 ? 1 : 2;
       chip.completion = sim::Completion::kLate;
     });
   }

@@ -21,7 +21,7 @@ Status render_shadows(ShadowStore& store, P& platform, MainAddress frame) {
 
 constexpr std::uint32_t kWidth = 52, kHeight = 36;
 
-KernelOptions walk_options() {
+KernelOptions small_options() {
   return {.walk_depth = 2, .macro_depth = 2, .triangle_depth = 2};
 }
 
@@ -35,7 +35,7 @@ tool::SceneDescription full_scene() {
 }
 
 template <class Layout, class L = Lanes<4>>
-KernelPicture picture_of(const tool::SceneDescription& description, KernelOptions options = walk_options()) {
+KernelPicture picture_of(const tool::SceneDescription& description, KernelOptions options = small_options()) {
   KernelScene scene = build_kernel_scene(description, options);
   EXPECT_EQ(scene.status, Status::kOk);
   KernelPicture picture = render_kernel<Layout, L>(scene, camera_of(description.view), kWidth, kHeight, options);
@@ -46,7 +46,7 @@ KernelPicture picture_of(const tool::SceneDescription& description, KernelOption
 TEST(Builds, OfAllEffectsIn64KbGiveThePictureOf256Kb) {
   for (const Accuracy accuracy : {Accuracy::kStandard, Accuracy::kExact, Accuracy::kCompact, Accuracy::kFast}) {
     SCOPED_TRACE(static_cast<int>(accuracy));
-    KernelOptions options = walk_options();
+    KernelOptions options = small_options();
     options.accuracy = accuracy;
     const KernelPicture large = picture_of<EffectLayout256K<kAllEffects>>(full_scene(), options);
     ASSERT_EQ(large.status, Status::kOk);
@@ -75,7 +75,7 @@ TEST(Builds, ASceneGetsWhatItCallsForFromEverySetThatHasIt) {
     material.kd = 1.0f;
     material.ks = material.transmittance = 0.0f;
   }
-  const KernelScene built = build_kernel_scene(scene, walk_options());
+  const KernelScene built = build_kernel_scene(scene, small_options());
   constexpr std::uint32_t kShadows = kSceneShading | kPointShadows;
   ASSERT_EQ(built.called_for & ~kShadows, 0u);
   const KernelPicture all = picture_of<EffectLayout256K<kAllEffects>>(scene);
@@ -101,14 +101,14 @@ TEST(Builds, WhatWasLeftOutIsNamed) {
     EXPECT_EQ(picture.status, Status::kMissingEffect);
     return picture.missing_effects;
   };
-  const std::uint32_t called_for = build_kernel_scene(glass_ball_scene(false), walk_options()).called_for;
+  const std::uint32_t called_for = build_kernel_scene(glass_ball_scene(false), small_options()).called_for;
   constexpr std::uint32_t kShadows = kSceneShading | kPointShadows;
   constexpr std::uint32_t kMirrors = kSceneShading | kReflection | kRefraction;
   EXPECT_EQ(missing.operator()<EffectLayout256K<kShadows>>(), called_for & ~kShadows);
   EXPECT_NE(called_for & ~kShadows, 0u);
   EXPECT_EQ(missing.operator()<EffectLayout64K<kMirrors>>(), called_for & ~kMirrors);
   EXPECT_EQ(missing.operator()<StoreLayout256K<8>>(), kSceneShading) << "it has not read which others there are";
-  KernelOptions planes = walk_options();
+  KernelOptions planes = small_options();
   planes.wants_planes = true;
   EXPECT_EQ(picture_of<EffectLayout64K<kAllEffects>>(glass_ball_scene(false), planes).status,
             Status::kUnsupportedFrame)

@@ -81,10 +81,10 @@ TEST(KernelChoice, WhatASceneDoesNotCallForHappensNever) {
     const std::uint32_t samples = (effects & kMultisampling) != 0 ? scene.description.samples_per_pixel : 1;
     EXPECT_EQ((effects & kMultisampling) != 0, samples > 1);
     EXPECT_EQ(work[Work::kWaveRay] - work[Work::kQueuedRay], samples * kSize * kSize);
-    // Without any ray beyond the eye's no walk begins.
-    if (!has_shadows && (effects & (kAmbientOcclusion | kReflection | kRefraction)) == 0) {
-      EXPECT_EQ(work[GridWork::kWalkPass], 0u);
-      EXPECT_EQ(work[Work::kRayGroupTest], 0u);
+    // Without any ray beyond the eye's no list begins.
+    const bool has_rays = has_shadows || (effects & (kAmbientOcclusion | kReflection | kRefraction)) != 0;
+    for (const Work kind : {Work::kListRay, Work::kListNode, Work::kListRayNode, Work::kListChild}) {
+      EXPECT_EQ(work[kind] != 0, has_rays) << static_cast<int>(kind);
     }
   }
   EXPECT_EQ(called, kAllEffects);
@@ -176,7 +176,7 @@ TEST(KernelChoice, FramesThatEffectsCannotBeRenderedForAreRefused) {
   };
   EXPECT_EQ(status_of(+[](FrameRecord&) {}), Status::kOk);
   EXPECT_EQ(status_of(+[](FrameRecord& frame) { frame.walk_depth = 0; }), Status::kUnsupportedFrame);
-  EXPECT_EQ(status_of(+[](FrameRecord& frame) { frame.walk_depth = 9; }), Status::kUnsupportedFrame);
+  EXPECT_EQ(status_of(+[](FrameRecord& frame) { frame.walk_depth = 16; }), Status::kUnsupportedFrame);
   EXPECT_EQ(status_of(+[](FrameRecord& frame) { frame.walk_depth = 0xFFFFFFFFu; }), Status::kUnsupportedFrame);
   EXPECT_EQ(status_of(+[](FrameRecord& frame) { frame.effects_address = 0; }), Status::kBadFrame);
   EXPECT_EQ(status_of(+[](FrameRecord& frame) { frame.image_address = 0; }), Status::kBadFrame);
@@ -190,11 +190,11 @@ TEST(KernelChoice, FramesThatEffectsCannotBeRenderedForAreRefused) {
   // The set-up of frames does not make them either.
   options.walk_depth = 0;
   EXPECT_NE(render_all_effects(scene.scene, camera, 8, 8, options).status, Status::kOk);
-  options.walk_depth = 8;
+  options.walk_depth = 15;
   options.accuracy = Accuracy::kPaper;
   EXPECT_NE(render_all_effects(scene.scene, camera, 8, 8, options).status, Status::kOk);
   options.accuracy = Accuracy::kStandard;
-  for (const std::uint32_t depth : {1u, 8u}) {
+  for (const std::uint32_t depth : {1u, 8u, 15u}) {
     options.walk_depth = depth;
     EXPECT_EQ(render_all_effects(scene.scene, camera, 8, 8, options).status, Status::kOk) << depth;
   }

@@ -29,8 +29,8 @@ SceneDescription scene_of_materials() {
 TEST(KernelRoom, MoreMaterialsThanSlots) {
   const SceneDescription scene = scene_of_materials();
   expect_reference(scene, 64, 64, {4, 2e-3, 0.1});
-  const KernelOptions one_walk{.walk_depth = 1};
-  EXPECT_EQ(render_scene(scene, 64, 64).color, render_scene(scene, 64, 64, one_walk).color);
+  const KernelOptions one_at_once{.walk_depth = 1};
+  EXPECT_EQ(render_scene(scene, 64, 64).color, render_scene(scene, 64, 64, one_at_once).color);
 }
 
 TEST(KernelRoom, MoreLightsThanSlots) {

@@ -1,5 +1,5 @@
 // Renders a scene with the kernel's effects on one core, without a simulated chip: for any set of effects built, any
-// lane type, any number of walks under way.
+// lane type, any number of records of rays under way.
 // Memory: std::vector. Threads: any. SPDX-License-Identifier: Apache-2.0
 #pragma once
 

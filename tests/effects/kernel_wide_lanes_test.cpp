@@ -34,9 +34,9 @@ TYPED_TEST(KernelLanes, ChangeNoPixelAndNoRay) {
     const KernelPicture picture = render_kernel<Layout, TypeParam>(scene, camera, kWidth, kHeight, options);
     ASSERT_EQ(picture.status, Status::kOk) << picture.violation;
     EXPECT_EQ(picture.color, four.color);
-    EXPECT_EQ(picture.work[GridWork::kWalkPass], four.work[GridWork::kWalkPass]);
     for (const Work kind :
-         {Work::kWaveRay, Work::kQueuedRay, Work::kSurfacePoint, Work::kShadowRay, Work::kLightSample,
+         {Work::kListRay, Work::kListNode, Work::kListRayNode, Work::kListChild, Work::kListEntry, Work::kListLeaf,
+          Work::kWaveRay, Work::kQueuedRay, Work::kSurfacePoint, Work::kShadowRay, Work::kLightSample,
           Work::kOcclusionRay, Work::kMirrorRay, Work::kRefractedRay, Work::kEnvironmentLookup, Work::kColorAdded}) {
       EXPECT_EQ(picture.work[kind], four.work[kind]) << "kind " << static_cast<int>(kind);
     }

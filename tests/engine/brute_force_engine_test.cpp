@@ -1,4 +1,4 @@
-// The seam between engines: an engine that core does not know renders the grid's frames, effects and all, and the
+// The seam between engines: engines that core does not know render the frames of grid and tree, effects and all, and the
 // simulated chip runs, counts and replays it. SPDX-License-Identifier: Apache-2.0
 #include "engine/brute_force_engine.h"
 
@@ -24,6 +24,7 @@ using BruteForceFrame = Frame<BruteForceRecord>;
 template <std::uint32_t Effects, std::uint32_t TileWidth>
 struct BruteForceLayout {
   using Engine = BruteForceEngine;
+  using RayEngine = BruteForceRays;
   static constexpr std::uint32_t kEffects = Effects;
   static constexpr std::uint32_t kArenaBytes = 256 * 1024;
   static constexpr std::uint32_t kCodeBudgetBytes = 92 * 1024;
@@ -96,26 +97,26 @@ KernelScene everything(tool::SceneDescription& scene, const KernelOptions& optio
 // Edges of tiles lie across both edges of the picture.
 constexpr std::uint32_t kWidth = 37, kHeight = 27;
 
-TEST(BruteForceEngine, RendersEffectsAsTheGridDoes) {
+TEST(BruteForceEngine, RendersEffectsAsGridAndTreeDo) {
   tool::SceneDescription scene;
   KernelOptions options;
   options.wants_planes = true;
   KernelScene built = everything(scene, options);
   ASSERT_EQ(built.status, Status::kOk);
   const Camera camera = camera_of(scene.view);
-  const KernelPicture grid = render_kernel<GridLayout>(built, camera, kWidth, kHeight, options);
-  ASSERT_EQ(grid.status, Status::kOk) << grid.violation;
+  const KernelPicture shipped = render_kernel<GridLayout>(built, camera, kWidth, kHeight, options);
+  ASSERT_EQ(shipped.status, Status::kOk) << shipped.violation;
   options.alter = make_brute_force;
   options.walk_depth = 1;
   const KernelPicture brute_force =
       render_kernel<BruteForceLayout<kAllEffects, 16>>(built, camera, kWidth, kHeight, options);
   ASSERT_EQ(brute_force.status, Status::kOk) << brute_force.violation;
-  EXPECT_EQ(brute_force.color, grid.color);
-  EXPECT_EQ(brute_force.depth, grid.depth);
-  EXPECT_EQ(brute_force.ids, grid.ids);
+  EXPECT_EQ(brute_force.color, shipped.color);
+  EXPECT_EQ(brute_force.depth, shipped.depth);
+  EXPECT_EQ(brute_force.ids, shipped.ids);
   // Shading does the same for every engine; only part of its order depends on the engine.
   for (const Work kind : {Work::kWaveRay, Work::kShadowRay, Work::kSurfacePoint, Work::kQueuedRay, Work::kColorAdded}) {
-    EXPECT_EQ(brute_force.work[kind], grid.work[kind]) << static_cast<int>(kind);
+    EXPECT_EQ(brute_force.work[kind], shipped.work[kind]) << static_cast<int>(kind);
   }
 }
 

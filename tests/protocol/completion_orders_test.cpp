@@ -252,7 +252,7 @@ TEST(CompletionOrdersOfAFrame, ALevelHasItsDepthPending) {
     EXPECT_EQ(most("triangles_at_5", {.triangle_depth = depth}, Purpose::kRun), depth);
     EXPECT_EQ(most("blocks_at_5", {.macro_depth = depth}, Purpose::kBlock), depth);
     EXPECT_EQ(most("tiles", {.width = 40, .output_depth = depth}, Purpose::kTile), depth);
-    EXPECT_EQ(most("walks", {.width = 2, .height = 1, .walk_depth = depth}, Purpose::kRun), depth);
+    EXPECT_EQ(most("leaves", {.width = 2, .height = 1, .walk_depth = depth}, Purpose::kRun), depth);
     EXPECT_EQ(most("surfaces", {.width = 6, .height = 1, .walk_depth = depth}, Purpose::kRecord), depth);
     EXPECT_EQ(most("spilling", {.width = 8, .height = 4, .walk_depth = depth}, Purpose::kSpill), 1u);
   }

@@ -21,7 +21,7 @@ namespace gridiron::test {
 /// What a transfer is for.
 enum class Purpose : char {
   kSetup = 'm',   ///< frame, table, materials, lights
-  kBlock = 'b',   ///< cells of a macrocell
+  kBlock = 'b',   ///< cells of a macrocell, or a node
   kRun = 'r',     ///< triangles
   kRecord = 'g',  ///< a record that is gathered
   kSpill = 's',   ///< rays on their way to main memory or back

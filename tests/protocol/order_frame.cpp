@@ -44,7 +44,10 @@ OrderFrame::OrderFrame(const OrderScene& scene, const OrderSettings& settings) {
     for (auto& face : effects.environment_faces) face = scene.environment_face;
   }
   const EffectsView* const called_for = scene.has_effects() ? &effects : nullptr;
-  const GridParameters grid{scene.lambda, 2, TriangleFormat::kVertices};
+  const GridParameters grid{.lambda = scene.lambda,
+                            .macro_width = 2,
+                            .format = TriangleFormat::kVertices,
+                            .leaf_triangles = EffectOrderLayout::kLeafTriangles};
   GridNeed need{};
   require(count_scene_image(scene.mesh.view(), grid, need, called_for));
   const auto image = memory_.allocate(need.image_bytes).value();

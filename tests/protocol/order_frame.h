@@ -16,10 +16,6 @@ namespace gridiron::test {
 struct OrderLayout {
   using Engine = GridEngine;
   static constexpr std::uint32_t kTileWidth = 8;
-  static constexpr std::uint32_t kTableEntries = 16;
-  static constexpr std::uint32_t kMaxMacroWidth = 2;
-  static constexpr std::uint32_t kMaxMacroDepth = 5;
-  static constexpr std::uint32_t kMaxTriangleDepth = 5;
   static constexpr std::uint32_t kMaxOutputDepth = 5;
 };
 
@@ -30,19 +26,27 @@ struct PacketOrderLayout : OrderLayout {
   static constexpr std::uint32_t kCodeBudgetBytes = 32 * 1024;
   static constexpr std::uint32_t kStackBudgetBytes = 6 * 1024;
   static constexpr std::uint32_t kPacketWidth = 8;
+  static constexpr std::uint32_t kTableEntries = 16;
+  static constexpr std::uint32_t kMaxMacroWidth = 2;
+  static constexpr std::uint32_t kMaxMacroDepth = 5;
+  static constexpr std::uint32_t kMaxTriangleDepth = 5;
   static constexpr std::uint32_t kMailboxSlots = 64;
   static constexpr std::uint32_t kTrianglesPerBuffer = 2;
   static constexpr std::uint32_t kRecentTriangles = 2;
 };
 
-/// The same for all effects: no packets, five walks, slots for two materials.
+/// The same for all effects: no packets, lists of a few rays, leaves of two triangles, slots for two materials.
 struct EffectOrderLayout : OrderLayout {
   static constexpr std::uint32_t kEffects = kAllEffects;
   static constexpr std::uint32_t kArenaBytes = 96 * 1024;
   static constexpr std::uint32_t kCodeBudgetBytes = 44 * 1024;
   static constexpr std::uint32_t kStackBudgetBytes = 4 * 1024;
   static constexpr std::uint32_t kPacketWidth = 0;
-  static constexpr std::uint32_t kTrianglesPerBuffer = 16;  // an environment's block fits
+  using RayEngine = TreeEngine;
+  static constexpr std::uint32_t kBatchRays = 32;
+  static constexpr std::uint32_t kSpareListWords = 0;
+  static constexpr std::uint32_t kTreeSlots = 16;  // eight records under way
+  static constexpr std::uint32_t kLeafTriangles = 2;
   static constexpr std::uint32_t kWaveRays = 32;
   static constexpr std::uint32_t kMaterialSlots = 2;
   static constexpr std::uint32_t kLightSlots = 5;

@@ -59,9 +59,9 @@ OrderScene strips(std::uint32_t pixels, bool are_smooth) {
 }
 
 // Triangles one behind the other in sight of few pixels that five lights shine on.
-OrderScene lit() {
+OrderScene lit(std::uint32_t triangles) {
   OrderScene scene = with_materials();
-  const TestMesh things = make_random_soup(12, 1.2f, 5);
+  const TestMesh things = make_random_soup(triangles, 1.2f, 5);
   for (std::size_t i = 0; i < things.triangles.size(); ++i) {
     const auto corner = [&](int k) { return things.vertices[things.triangles[i][k]]; };
     add_triangle(scene, corner(0), corner(1), corner(2), static_cast<std::uint16_t>(i % 5));
@@ -118,8 +118,10 @@ std::vector<OrderCase> order_cases() {
                    {.macro_depth = 4, .triangle_depth = 4, .queue_depth = 5}, {"bbbrr", "bbrrr", "brrrr"}});
   cases.push_back({"tiles", wide(soup(14, 0.6f, 7, 2.0f)),
                    {.width = 40, .output_depth = 4, .macro_depth = 2, .triangle_depth = 1}, {"bbttt", "brttt"}});
-  // Effects: everything by walks.
-  cases.push_back({"walks", lit(), {.width = 2, .height = 1, .walk_depth = 5}, {"bbbbb", "brrrr", "rrrrr"}});
+  // Effects: everything by lists. A root with leaves alone has five of them under way; below a root with nodes, it is the
+  // queue that has no room for more.
+  cases.push_back({"leaves", lit(12), {.width = 2, .height = 1, .walk_depth = 5}, {"rrrrr"}});
+  cases.push_back({"nodes", lit(70), {.width = 2, .height = 1, .walk_depth = 4, .queue_depth = 5}, {"bbbrr", "bbrrr"}});
   cases.push_back({"surfaces", strips(6, false), {.width = 6, .height = 1, .walk_depth = 5}, {"ggggg", "ggggm"}});
   cases.push_back({"normals", strips(6, true), {.width = 6, .height = 1, .walk_depth = 5}, {"ggggg", "ggggm"}});
   cases.push_back({"environment", open_air(), {.width = 6, .height = 1, .walk_depth = 5}, {"ggggg"}});

@@ -10,7 +10,7 @@ namespace {
 
 int print_calls(const std::string& level, std::uint32_t depth, std::uint32_t queue_depth, bool forgets) {
   const std::map<std::string, const char*> scenes = {
-      {"TILE", "tiles"}, {"WALKS", "walks"}, {"GATHER", "surfaces"}, {"SPILL", "spilling"}};
+      {"TILE", "tiles"}, {"WALKS", "leaves"}, {"GATHER", "surfaces"}, {"SPILL", "spilling"}};
   OrderCase one = order_case(scenes.at(level));
   one.settings.queue_depth = queue_depth;
   one.settings.walk_depth = depth;

@@ -22,9 +22,16 @@ struct GatherStore {
     std::byte bytes[kBufferBytes];
   };
   struct {
-    Buffer buffers[kDepths + 1];  // the last is nobody's
-    [[nodiscard]] std::byte* idle_buffer(std::uint32_t slot) { return buffers[slot].bytes; }
-  } engine;
+    struct {
+      Buffer buffers[kDepths + 1];  // the last is nobody's
+      std::uint32_t lent;
+      void lend(std::uint32_t count) { lent = count; }
+      [[nodiscard]] std::byte* idle_buffer(std::uint32_t slot) {
+        EXPECT_LT(slot, lent) << "not lent";
+        return buffers[slot].bytes;
+      }
+    } rays;
+  } wave;
 };
 
 struct Rig {
@@ -37,6 +44,7 @@ struct Rig {
       : platform(queue_depth, moves, kMemoryBytes), transfers(platform, work), store(std::make_unique<GatherStore>()) {
     std::memset(static_cast<void*>(store.get()), 0x3C, sizeof(GatherStore));
     store->frame.walk_depth = walk_depth;
+    store->wave.rays.lent = 0;
     TestRandom random(1);
     for (std::uint64_t i = 0; i < kMemoryBytes; i += 8) {
       const std::uint64_t word = random.next();
@@ -62,7 +70,7 @@ struct Rig {
   }
   [[nodiscard]] bool others_are_untouched() const {
     for (std::uint32_t slot = store->frame.walk_depth; slot <= kDepths; ++slot) {
-      for (const std::byte value : store->engine.buffers[slot].bytes) {
+      for (const std::byte value : store->wave.rays.buffers[slot].bytes) {
         if (value != std::byte{0x3C}) return false;
       }
     }

@@ -6,6 +6,7 @@
 #include <gridiron/platform/contract.h>
 
 #include "support/test_headers.h"
+#include "support/test_mesh.h"
 
 namespace gridiron::test {
 
@@ -19,13 +20,15 @@ struct Command {
   std::uint32_t tags = 0;  ///< of a wait: its mask; of a transfer: its tag's bit
 };
 
-/// When a transfer's bytes move: at the call, or not before the wait; until then a get's destination holds garbage.
-enum class Moves : std::uint8_t { kAtOnce, kAtTheWait };
+/// When a transfer's bytes move: at the call, not before the wait, or in between, each at any time and in any order; until
+/// then a get's destination holds garbage.
+enum class Moves : std::uint8_t { kAtOnce, kAtTheWait, kAtAnyTime };
 
 class TestPlatform {
  public:
-  TestPlatform(std::uint32_t queue_depth, Moves moves, std::uint64_t memory_bytes)
-      : moves_(moves), memory_(memory_bytes + 256) {
+  /// @param seed  of Moves::kAtAnyTime.
+  TestPlatform(std::uint32_t queue_depth, Moves moves, std::uint64_t memory_bytes, std::uint64_t seed = 1)
+      : moves_(moves), random_(seed), memory_(memory_bytes + 256) {
     limits_.queue_depth = queue_depth;
   }
 
@@ -58,11 +61,12 @@ class TestPlatform {
   Status wait(TagMask tags) {
     const bool fails = fails_now();
     commands_.push_back({Command::Kind::kWait, nullptr, 0, 0, tags.bits});
+    move_some();
     std::vector<Pending> rest;
     for (const Pending& transfer : pending_) {
       if ((transfer.command.tags & tags.bits) == 0) {
         rest.push_back(transfer);
-      } else if (moves_ == Moves::kAtTheWait) {
+      } else if (!transfer.has_moved) {
         move(transfer);
       } else if (transfer.command.kind == Command::Kind::kPut &&
                  std::memcmp(transfer.local, transfer.sent.data(), transfer.sent.size()) != 0) {
@@ -85,7 +89,18 @@ class TestPlatform {
     Command command;
     std::byte* local;
     std::vector<std::byte> sent;  ///< a put's bytes at the call
+    bool has_moved;
   };
+
+  // Of the transfers under way about a quarter arrive with each command.
+  void move_some() {
+    if (moves_ != Moves::kAtAnyTime) return;
+    for (Pending& transfer : pending_) {
+      if (transfer.has_moved || random_.below(4) != 0) continue;
+      move(transfer);
+      transfer.has_moved = true;
+    }
+  }
 
   Status start(Command::Kind kind, std::byte* local, MainAddress address, std::uint32_t bytes, Tag tag) {
     const bool fails = fails_now();
@@ -107,7 +122,8 @@ class TestPlatform {
     }
     if (!violation_.empty()) return Status::kTransferFailed;
     if (fails) return failure;
-    Pending transfer{command, local, {}};
+    move_some();
+    Pending transfer{command, local, {}, moves_ == Moves::kAtOnce};
     if (kind == Command::Kind::kPut) transfer.sent.assign(local, local + bytes);
     if (moves_ == Moves::kAtOnce) {
       move(transfer);
@@ -138,6 +154,7 @@ class TestPlatform {
 
   PlatformLimits limits_;
   Moves moves_;
+  TestRandom random_;
   std::vector<std::byte> memory_;
   std::vector<Pending> pending_;
   std::vector<Command> commands_;

@@ -335,9 +335,55 @@ TEST(TileBound, RaysByKindAreReachedOnALitFloor) {
   ASSERT_TRUE(trace.has_value());
   const TileCounts tile = counts_of(trace->tiles[0]);
   for (const Work kind : {Work::kWaveRay, Work::kQueuedRay, Work::kSurfacePoint, Work::kShadowRay, Work::kLightSample,
-                          Work::kOcclusionRay, Work::kColorAdded, Work::kColorGroup}) {
+                          Work::kOcclusionRay, Work::kColorAdded, Work::kColorGroup, Work::kListRay,
+                          Work::kListRayNode}) {
     EXPECT_EQ(tile[kind], bound[kind]) << "kind " << static_cast<int>(kind);
   }
+}
+
+// Triangles of one bounding box: a ray that meets it enters every node and leaf. One pixel has one ray, whose lists are
+// its own, where a tile has 64.
+TEST(TileBound, ListsAreReachedByARayThatMeetsEveryBox) {
+  TestEffects subject = all_effects();
+  subject.vertices = {{-1, -1, -1}, {1, 1, 1}};
+  subject.triangles.clear();
+  TestRandom random(3);
+  for (std::uint32_t i = 0; i < 200; ++i) {
+    subject.vertices.push_back(random_vec(random, 0.9f));
+    subject.triangles.emplace_back(0, 1, i + 2);
+  }
+  subject.triangle_materials.assign(subject.triangles.size(), 0);
+  subject.triangle_normals.assign(subject.triangles.size(), UVec3(kNoNormals));
+  subject.lights.clear();
+  subject.settings.recursion_depth = 1;
+  subject.settings.occlusion_samples = 0;
+  subject.settings.samples_per_pixel = 1;
+  const EffectsView effects = subject.view();
+  const Way way{"one box", {StoreSize::k64KB, 8, 0, true}, {.shading = Shading::kScene}};
+  BoundedScene scene(subject.mesh(), {}, way.frame.accuracy, &effects);
+  const TileBound bound = scene.bound(way);
+  const TileScene counts = scene.counts(way);
+  ASSERT_GT(counts.nodes, 2u);
+  ASSERT_EQ(counts.tree_triangles, 200u);
+  Camera camera;
+  camera.eye = {0.3f, -0.2f, 6};
+  camera.at = {0.1f, 0.1f, 0};
+  const auto trace = scene.render(way, camera, 1, 1);
+  ASSERT_TRUE(trace.has_value());
+  const TileCounts tile = counts_of(trace->tiles[0]);
+  ASSERT_EQ(tile[Work::kListRay], 1u);
+  constexpr std::uint64_t kRays = 64;
+  for (const Work kind : {Work::kListRay, Work::kListNode, Work::kListRayNode, Work::kListLeaf,
+                          Work::kListTriangleGroup}) {
+    EXPECT_EQ(kRays * tile[kind], bound[kind]) << "kind " << static_cast<int>(kind);
+  }
+  // The root is no one's child.
+  for (const Work kind : {Work::kListChild, Work::kListEntry}) {
+    EXPECT_EQ(kRays * (tile[kind] + 1), bound[kind]) << "kind " << static_cast<int>(kind);
+  }
+  EXPECT_GT(tile[Work::kListBoxQuad], tile[Work::kListRayNode]);
+  // Each child may be fetched twice; here it is once.
+  EXPECT_LE(bound.get_bytes, 3 * kRays * tile.get_bytes);
 }
 
 TEST(TileBound, CountsThatDoNotFitStayAtTheTop) {

@@ -326,7 +326,7 @@ std::vector<Refusal> refusals() {
       {"MacroWidthTooLarge", image, [](FrameRecord& f) { f.engine.grid.macro_width = Normal::kMaxMacroWidth + 1; }},
       {"CellBlockTooLarge", image,
        [](FrameRecord& f) {
-         f.engine.grid.cell_block_bytes = LocalStore<Normal>::EngineStore::kCellBlockBytes + kLineBytes;
+         f.engine.grid.cell_block_bytes = LocalStore<Normal>::EyeStore::kCellBlockBytes + kLineBytes;
        }},
   };
 }

@@ -50,19 +50,24 @@ class WaveJobs : public testing::Test {
   template <class Jobs>
   std::vector<Ray> run(Jobs& jobs) {
     std::vector<Ray> found;
-    WalkRays rays{};
-    std::uint32_t purpose = 0;
+    BatchRay rays[4 * kJobRays] = {};
+    std::uint32_t owners[4 * kJobRays] = {};
+    RayBatch batch{rays, owners, 0};
     for (std::uint32_t job = 0; job < 1000; ++job) {
-      const std::uint32_t count = jobs.next(rays, purpose);
-      if (count == 0) return found;
-      for (std::uint32_t i = 0; i < count; ++i) {
-        found.push_back({{rays.origin[0][i], rays.origin[1][i], rays.origin[2][i]},
-                         {rays.dir[0][i], rays.dir[1][i], rays.dir[2][i]},
-                         rays.t[i],
-                         rays.owner[i]});
-        if (found.size() % 2 == 0) rays.id[i] = 7;
+      // Batches of up to four jobs.
+      const std::uint32_t before = batch.count;
+      const bool has_more = jobs.next(batch);
+      EXPECT_EQ(has_more, batch.count > before) << "a job without rays, or rays without one";
+      EXPECT_LE(batch.count, before + kJobRays);
+      if (has_more && batch.count + kJobRays <= std::size(rays)) continue;
+      for (std::uint32_t i = 0; i < batch.count; ++i) {
+        EXPECT_EQ(rays[i].id, kNoTriangle);
+        found.push_back({vector_of(rays[i].origin), vector_of(rays[i].dir), rays[i].t, owners[i]});
+        if (found.size() % 2 == 0) rays[i].id = 7;
       }
-      jobs.finish(rays, count, purpose);
+      if (batch.count != 0) jobs.finish(batch);
+      if (!has_more) return found;
+      batch.count = 0;
     }
     ADD_FAILURE() << "no end";
     return found;
@@ -77,6 +82,8 @@ class WaveJobs : public testing::Test {
   }
 
   std::unique_ptr<Store> store = std::make_unique<Store>();
+  [[nodiscard]] static std::uint32_t place_of(const Ray& ray) { return ray.owner & 0xFFFFu; }
+
   Context context{*store, kPoints, kSample, kLeft, kTop};
 };
 
@@ -92,7 +99,7 @@ TEST_F(WaveJobs, EveryPointAsksEveryLightOnceAlongTheSegmentBetween) {
     const Ray& ray = rays[i];
     const bool from_light = i < kPoints;
     const Vector3 point = vector_of(context.point(i % kPoints).point), light = from_light ? near : far;
-    EXPECT_EQ(ray.owner, i % kPoints);
+    EXPECT_EQ(ray.owner & 0xFFFFu, i % kPoints);
     EXPECT_EQ(ray.t, 1.0f);
     EXPECT_EQ(length(ray.origin - (from_light ? light : point)), 0.0f) << i;
     EXPECT_LE(length(ray.origin + ray.dir - (from_light ? point : light)), 1e-6f) << i;
@@ -189,18 +196,21 @@ TEST_F(WaveJobs, RaysOfAWaveGetTheirOwnHits) {
     store->wave.items[i].ray = {{static_cast<float>(i), 0, 0}, {0, 0, 1}, {1, 1, 1}, i, 1, 0};
   }
   WaveRayJobs<Store> jobs(*store, kPoints, 9.0f);
-  WalkRays rays{};
-  std::uint32_t purpose = 0;
-  for (const std::uint32_t expected : {16u, 4u}) {
-    const std::uint32_t count = jobs.next(rays, purpose);
-    ASSERT_EQ(count, expected);
-    for (std::uint32_t i = 0; i < count; ++i) {
-      EXPECT_EQ(rays.t[i], 9.0f);
-      rays.id[i] = 100 + static_cast<std::uint32_t>(rays.origin[0][i]);
-    }
-    jobs.finish(rays, count, purpose);
+  BatchRay rays[3 * kJobRays] = {};
+  std::uint32_t owners[3 * kJobRays] = {};
+  RayBatch batch{rays, owners, 0};
+  for (const std::uint32_t expected : {16u, 20u}) {
+    ASSERT_TRUE(jobs.next(batch));
+    ASSERT_EQ(batch.count, expected);
   }
-  EXPECT_EQ(jobs.next(rays, purpose), 0u);
+  ASSERT_FALSE(jobs.next(batch));
+  ASSERT_EQ(batch.count, kPoints);
+  for (std::uint32_t i = 0; i < batch.count; ++i) {
+    EXPECT_EQ(rays[i].t, 9.0f);
+    EXPECT_EQ(rays[i].id, kNoTriangle);
+    rays[i].id = 100 + static_cast<std::uint32_t>(rays[i].origin[0]);
+  }
+  jobs.finish(batch);
   for (std::uint32_t i = 0; i < kPoints; ++i) EXPECT_EQ(store->wave.ids[i], 100 + i);
 }
 

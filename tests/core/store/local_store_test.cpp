@@ -49,9 +49,9 @@ TYPED_TEST(LayoutTest, BuffersHoldWhatTheirNamesSay) {
   EXPECT_EQ(TypeParam::kTileWidth % TypeParam::kPacketWidth, 0u);
   // A run of triangles starts anywhere on 16 bytes of a congruence of 32.
   constexpr std::size_t kRunBytes = TypeParam::kTrianglesPerBuffer * kTriangleRecordBytes + 16;
-  EXPECT_GE(sizeof(typename Store::EngineStore::TriangleBuffer), kRunBytes);
+  EXPECT_GE(sizeof(typename Store::EyeStore::TriangleBuffer), kRunBytes);
   constexpr std::size_t kCells = TypeParam::kMaxMacroWidth * TypeParam::kMaxMacroWidth * TypeParam::kMaxMacroWidth;
-  EXPECT_GE(sizeof(typename Store::EngineStore::CellBlock), kCells * sizeof(CellRecord));
+  EXPECT_GE(sizeof(typename Store::EyeStore::CellBlock), kCells * sizeof(CellRecord));
   EXPECT_EQ(TypeParam::kMailboxSlots & (TypeParam::kMailboxSlots - 1), 0u) << "a power of two";
 }
 
@@ -69,6 +69,30 @@ TEST(Layouts, EffectsIn64KbHaveShortWaves) {
   EXPECT_FALSE(LocalStore<EffectLayout64K<kSceneShading>>::Effects::kHasQueue);
   EXPECT_LE(LocalStore<EffectLayout64K<kSceneShading>>::Effects::kQueueRays, 1u);
   EXPECT_EQ(LocalStore<EffectLayout64K<kSceneShading | kRefraction>>::Effects::kQueueRays, 48u);
+}
+
+// Buffers of an engine of rays that shading borrows lie apart, each as long as the longest record.
+template <class Layout>
+void expect_buffers_to_lend() {
+  using RayStore = typename LocalStore<Layout>::RayStore;
+  constexpr std::uint32_t kBuffers = Layout::RayEngine::template kMaxDepth<Layout>;
+  EXPECT_GE(kBuffers, 2u);
+  EXPECT_LE(kBuffers, kTriangleTagCount);
+  const auto rays = std::make_unique<RayStore>();
+  const auto* const begin = reinterpret_cast<const std::byte*>(rays.get());
+  const std::byte* end = begin;
+  for (std::uint32_t i = 0; i < kBuffers; ++i) {
+    const std::byte* const buffer = rays->idle_buffer(i);
+    EXPECT_EQ(reinterpret_cast<std::uintptr_t>(buffer) % kPortableCongruenceBytes, 0u);
+    EXPECT_GE(buffer, end);
+    end = buffer + kIdleBufferBytes;
+  }
+  EXPECT_LE(end, begin + sizeof(RayStore));
+}
+TEST(Layouts, BuffersToLendLieApart) {
+  expect_buffers_to_lend<EffectLayout64K<kAllEffects>>();
+  expect_buffers_to_lend<EffectLayout256K<kAllEffects, 8>>();
+  expect_buffers_to_lend<EffectLayout256K<kAllEffects, 32>>();
 }
 
 TEST(Layouts, AreAsLargeAsTheirNames) {

@@ -111,8 +111,9 @@ Json documented_report() {
         "exact_distance", "shaded_group", "shaded_simple_group", "depth_group",
         "id_group", "row_group", "estimate_setup",
         "normal_setup", "hit_half", "exact_order", "lattice_triangle",
-        "wave_ray", "queued_ray", "ray_triangle_setup", "ray_group_test",
-        "ray_distance", "surface_point", "smooth_normal", "shadow_ray",
+        "wave_ray", "queued_ray", "list_ray", "list_child",
+        "list_entry", "list_node", "list_ray_node", "list_box_quad",
+        "list_leaf", "list_triangle_group", "list_candidate", "ray_distance", "surface_point", "smooth_normal", "shadow_ray",
         "light_sample", "highlight", "occlusion_ray", "mirror_ray",
         "refracted_ray", "environment_lookup", "color_added", "color_group",
         "get_issue", "put_issue", "wait", "packet_start",
@@ -120,7 +121,7 @@ Json documented_report() {
         "macro_slice_step", "macro_row", "macro_cell_step", "macro_cell_visit",
         "slice_step", "cell_row", "cell_step", "cell_visit",
         "triangle_batch", "mailbox_probe", "reach_group", "reach_test",
-        "footprint_group", "cell_bound_step", "walk_pass", "shaft_group"}) {
+        "footprint_group", "cell_bound_step"}) {
     work[name] = 1000 + work.size();
   }
   // clang-format on

@@ -96,10 +96,12 @@ struct LeafAnswer {
   std::uint32_t within;  ///< the plane is surely at 0 < t <= the ray's
   typename L::Float ahead, ahead_error, size, turn;  ///< of the plane's t = ahead / size, and errors of both
 
-  /// @returns a bound of t from below. Where the sign of size is not known, it is below 0.
+  /// @returns a bound of t from below. Where the sign of size is not known, or products may have overflowed, it is below
+  /// 0: never NaN, which would come behind all others.
   [[nodiscard]] GRIDIRON_INLINE typename L::Float least_t() const {
     using Float = typename L::Float;
-    return L::select(size > turn, (ahead - ahead_error) / (size + turn) * Float(1.0f - 0x1p-20f), Float(-1.0f));
+    return L::select((size > turn) & (ahead_error < Float(kGreatestListError)),
+                     (ahead - ahead_error) / (size + turn) * Float(1.0f - 0x1p-20f), Float(-1.0f));
   }
 };
 
