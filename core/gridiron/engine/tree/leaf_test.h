@@ -100,8 +100,7 @@ struct LeafAnswer {
   /// 0: never NaN, which would come behind all others.
   [[nodiscard]] GRIDIRON_INLINE typename L::Float least_t() const {
     using Float = typename L::Float;
-    return L::select((size > turn) & (ahead_error < Float(kGreatestListError)),
-                     (ahead - ahead_error) / (size + turn) * Float(1.0f - 0x1p-20f), Float(-1.0f));
+    return L::select(size > turn, (ahead - ahead_error) / (size + turn) * Float(1.0f - 0x1p-20f), Float(-1.0f));
   }
 };
 
