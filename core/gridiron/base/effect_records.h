@@ -121,7 +121,7 @@ struct QueuedRay {
   float weight[3];         ///< factor on the light that it adds, RGB
   std::uint32_t pixel;     ///< row-major index in its tile | depth << 16
   std::uint32_t path;      ///< core/EFFECTS.md
-  std::uint32_t reserved;
+  std::uint32_t own;       ///< a triangle that it surely does not hit, kNoTriangle: there is none
 };
 static_assert(sizeof(QueuedRay) == 48);
 

@@ -8,6 +8,15 @@
 
 namespace gridiron {
 
+/// Triangles that rays are tested against have lower numbers. From here on, an id says that nothing was hit.
+inline constexpr std::uint32_t kNoHit = 1u << 31;
+/// @param own  a triangle that the ray surely does not hit, as the one that it begins on or ends at: an engine that
+///             would have to decide that exactly may skip it. kNoTriangle: there is none.
+/// @returns the id of a ray that has hit nothing so far.
+[[nodiscard]] constexpr std::uint32_t no_hit(std::uint32_t own) {
+  return own | kNoHit;
+}
+
 /// A ray of a batch: three quads of words. World space, direction not normalised; it looks for hits with 0 < t <= its t.
 struct alignas(16) BatchRay {
   float origin[3];
@@ -15,7 +24,9 @@ struct alignas(16) BatchRay {
   float inverse[3];  ///< reciprocals of dir; set by the engine
   float dir_max;     ///< largest |component| of dir; set by the engine
   float dir[3];
-  std::uint32_t id;  ///< triangle of the hit so far, kNoTriangle before
+  std::uint32_t id;  ///< triangle of the hit so far; before, what no_hit() gives
+
+  [[nodiscard]] bool has_hit() const { return id < kNoHit; }
 };
 static_assert(sizeof(BatchRay) == 48);
 

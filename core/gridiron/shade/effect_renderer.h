@@ -125,6 +125,7 @@ class EffectRenderer {
         }
         ray.pixel = (y * Layout::kTileWidth + x) | 1u << 16;
         ray.path = 1;
+        ray.own = kNoTriangle;
         if constexpr (kTracesEyes<Layout>) {
           store_.wave.ids[count] = ids[y * Layout::kTileWidth + x];
         }
@@ -333,6 +334,7 @@ class EffectRenderer {
     point.pixel = ray.pixel;
     point.path = ray.path;
     point.is_pending = 0;
+    point.triangle = store_.wave.ids[i];
     if constexpr (has(kSmoothNormals)) {
       if (material->is_smooth != 0 && surface.normals != kNoNormals) {
         point.shading[0] = found.weights[0];
@@ -420,6 +422,7 @@ class EffectRenderer {
           store_.work.add(Work::kRefractedRay);
           store(behind, next.origin);
           store(through.direction, next.dir);
+          next.own = own_triangle(point.triangle, through.direction, -face);
           store(refracted, next.weight);
           next.path = 2 * point.path + 1;
           GRIDIRON_TRY(push(next));
@@ -431,7 +434,9 @@ class EffectRenderer {
     if (!(reflected.x > 0.0f || reflected.y > 0.0f || reflected.z > 0.0f)) return Status::kOk;
     store_.work.add(Work::kMirrorRay);
     store(vector_of(point.point), next.origin);
-    store(reflect_off(direction, shading, face), next.dir);
+    const Vector3 mirrored = reflect_off(direction, shading, face);
+    store(mirrored, next.dir);
+    next.own = own_triangle(point.triangle, mirrored, face);
     store(reflected, next.weight);
     next.path = 2 * point.path;
     return push(next);

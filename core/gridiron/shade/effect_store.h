@@ -43,6 +43,7 @@ struct WavePoint {
     LitHit lit;
   };
   std::uint32_t is_pending;  ///< 0, 1
+  std::uint32_t triangle;    ///< that it lies on
 };
 
 /// A ray of a wave, which becomes its hit if there is one.

@@ -17,15 +17,26 @@
 
 namespace gridiron {
 
-/// Adds a ray to a batch.
-GRIDIRON_INLINE void add_ray(RayBatch& batch, Vector3 origin, Vector3 dir, float t, std::uint32_t owner) {
+/// Adds a ray to a batch. @param own  as in no_hit().
+GRIDIRON_INLINE void add_ray(RayBatch& batch, Vector3 origin, Vector3 dir, float t, std::uint32_t own,
+                             std::uint32_t owner) {
   BatchRay& ray = batch.rays[batch.count];
   store(origin, ray.origin);
   ray.t = t;
   store(dir, ray.dir);
-  ray.id = kNoTriangle;
+  ray.id = no_hit(own);
   batch.owners[batch.count] = owner;
   ++batch.count;
+}
+
+/// @returns `triangle` where a line between the point lifted off it and one in the direction of `along` is surely on
+/// the side of its face: it begins or ends at least 2 E above the plane (ray/secondary_origin.h), which rounding of the
+/// direction shortens by less than sqrt(3) E, and rises with a slope far above the face's error of 2^-14. Else
+/// kNoTriangle.
+GRIDIRON_INLINE std::uint32_t own_triangle(std::uint32_t triangle, Vector3 along, Vector3 face) {
+  const float xy = magnitude(along.x) > magnitude(along.y) ? magnitude(along.x) : magnitude(along.y);
+  const float size = magnitude(along.z) > xy ? magnitude(along.z) : xy;
+  return dot(along, face) > 0x1p-10f * size ? triangle : std::uint32_t{kNoTriangle};
 }
 
 /// Shared by the jobs: the hits of the wave and the pixels' sums.
@@ -86,10 +97,11 @@ class LightJobs {
         if (!is_lit) continue;
         context_.store.work.add(Work::kShadowRay);
         const std::uint32_t owner = i | index << kLightShift;
+        const std::uint32_t own = own_triangle(point.triangle, to_light, vector_of(point.face));
         if (from_light) {
-          add_ray(batch, vector_of(light.corner), -to_light, 1.0f, owner);
+          add_ray(batch, vector_of(light.corner), -to_light, 1.0f, own, owner);
         } else {
-          add_ray(batch, vector_of(point.point), to_light, 1.0f, owner);
+          add_ray(batch, vector_of(point.point), to_light, 1.0f, own, owner);
         }
       }
       if (batch.count != before) return true;
@@ -101,7 +113,7 @@ class LightJobs {
     for (std::uint32_t i = 0; i < batch.count; ++i) {
       context_.store.work.charge_to(Work::kShadowRay);
       const BatchRay& ray = batch.rays[i];
-      if (ray.id != kNoTriangle) continue;
+      if (ray.has_hit()) continue;
       const std::uint32_t owner = batch.owners[i];
       const LightRecord& light = context_.store.effects.lights[owner >> kLightShift];
       const bool from_light = light.samples == 0 && light.is_near != 0;
@@ -206,7 +218,8 @@ class OcclusionJobs {
         const Vector3 dir = occlusion_direction(sample, scene.occlusion_samples, jitter, vector_of(point.shading));
         if (!(dot(dir, vector_of(point.face)) > 0.0f)) continue;
         context_.store.work.add(Work::kOcclusionRay);
-        add_ray(batch, vector_of(point.point), scene.occlusion_radius * dir, 1.0f, i);
+        const std::uint32_t own = own_triangle(point.triangle, dir, vector_of(point.face));
+        add_ray(batch, vector_of(point.point), scene.occlusion_radius * dir, 1.0f, own, i);
       }
       if (batch.count != before) return true;
     }
@@ -218,7 +231,7 @@ class OcclusionJobs {
     const float share = kAmbientLight / static_cast<float>(samples);
     for (std::uint32_t i = 0; i < batch.count; ++i) {
       context_.store.work.charge_to(Work::kOcclusionRay);
-      if (batch.rays[i].id != kNoTriangle) continue;
+      if (batch.rays[i].has_hit()) continue;
       const WavePoint& point = context_.point(batch.owners[i]);
       context_.add_color(point.pixel, share * vector_of(point.lit.diffuse));
     }
@@ -243,14 +256,17 @@ class WaveRayJobs {
     if (first_ == end) return false;
     for (; first_ < end; ++first_) {
       const QueuedRay& ray = store_.wave.items[first_].ray;
-      add_ray(batch, vector_of(ray.origin), vector_of(ray.dir), t_far_, first_);
+      add_ray(batch, vector_of(ray.origin), vector_of(ray.dir), t_far_, ray.own, first_);
     }
     return true;
   }
 
   void finish(const RayBatch& batch) {
     store_.work.charge_to(Work::kWaveRay);
-    for (std::uint32_t i = 0; i < batch.count; ++i) store_.wave.ids[batch.owners[i]] = batch.rays[i].id;
+    for (std::uint32_t i = 0; i < batch.count; ++i) {
+      const BatchRay& ray = batch.rays[i];
+      store_.wave.ids[batch.owners[i]] = ray.has_hit() ? ray.id : std::uint32_t{kNoTriangle};
+    }
   }
 
  private:

@@ -31,8 +31,7 @@ class RayLists {
  public:
   RayLists(Memory& memory, Source& source, WorkCounters& work) : memory_(memory), source_(source), work_(work) {}
 
-  /// Answers the first `count` rays of the memory: id is a triangle's where a ray hits one, else kNoTriangle, as which
-  /// it begins. Directions, t and origins of rays may be changed by powers of two.
+  /// Answers the first `count` rays of the memory: id is a triangle's where a ray hits one. Directions, t and origins of rays may be changed by powers of two.
   /// @param largest  |coordinate| of the tree's triangles.
   [[nodiscard]] GRIDIRON_OUTLINE Status trace(const RayQuestion& question, std::uint32_t count, float largest) {
     question_ = question;
@@ -145,7 +144,7 @@ class RayLists {
     for (std::uint32_t i = 0; i < count; ++i) {
       const std::uint32_t word = list[i];
       list[living] = word;
-      living += ray_of(memory_.rays, word).id == kNoTriangle ? std::uint32_t{1} : std::uint32_t{0};
+      living += ray_of(memory_.rays, word).has_hit() ? std::uint32_t{0} : std::uint32_t{1};
     }
     return living;
   }
@@ -230,7 +229,7 @@ class RayLists {
     work_.charge_to(Work::kListCandidate);
     const bool any_hit = question_.any_hit;
     if (any_hit) {
-      if (ray.id != kNoTriangle) return Status::kOk;
+      if (ray.has_hit()) return Status::kOk;
       const std::uint32_t sure = answer.inside & answer.within;
       if (sure != 0) return stop(ray, triangles[lowest_bit(sure)].triangle_id);
     }
@@ -248,6 +247,7 @@ class RayLists {
         if (least[lane] > ray.t) break;
       }
       const VertexTriangle& triangle = triangles[lane];
+      if ((triangle.triangle_id | kNoHit) == ray.id) continue;
       if ((answer.inside >> lane & 1u) == 0 && !passes_through(ray, triangle, work_)) continue;
       if (any_hit && (answer.within >> lane & 1u) != 0) return stop(ray, triangle.triangle_id);
       const float t =
@@ -255,7 +255,7 @@ class RayLists {
       work_.charge_to(Work::kListCandidate);
       if (!(t > 0.0f) || t > ray.t) continue;
       if (any_hit) return stop(ray, triangle.triangle_id);
-      if (t == ray.t && ray.id != kNoTriangle) {
+      if (t == ray.t && ray.has_hit()) {
         bool is_first = false;
         GRIDIRON_TRY(comes_before(ray, triangle, is_first));
         if (!is_first) continue;
