@@ -123,8 +123,7 @@ TEST_P(KernelDeterminism, PacketsAndLanesChangeNoPixelAndNoRay) {
     EXPECT_EQ(rays_of(picture), rays_of(scene.picture)) << words_of(rays_of(picture));
     EXPECT_EQ(picture.work[Work::kLightSample], scene.picture.work[Work::kLightSample]);
     EXPECT_EQ(picture.work[Work::kColorAdded], scene.picture.work[Work::kColorAdded]);
-    for (const Work kind : {Work::kListRay, Work::kListNode, Work::kListRayNode, Work::kListChild, Work::kListEntry,
-                            Work::kListLeaf}) {
+    for (const Work kind : {Work::kListRay, Work::kListNode, Work::kListRayNode, Work::kListChild, Work::kListLeaf}) {
       EXPECT_EQ(picture.work[kind], scene.picture.work[kind]) << static_cast<int>(kind);
     }
   }

@@ -35,7 +35,7 @@ TYPED_TEST(KernelLanes, ChangeNoPixelAndNoRay) {
     ASSERT_EQ(picture.status, Status::kOk) << picture.violation;
     EXPECT_EQ(picture.color, four.color);
     for (const Work kind :
-         {Work::kListRay, Work::kListNode, Work::kListRayNode, Work::kListChild, Work::kListEntry, Work::kListLeaf,
+         {Work::kListRay, Work::kListNode, Work::kListRayNode, Work::kListChild, Work::kListLeaf,
           Work::kWaveRay, Work::kQueuedRay, Work::kSurfacePoint, Work::kShadowRay, Work::kLightSample,
           Work::kOcclusionRay, Work::kMirrorRay, Work::kRefractedRay, Work::kEnvironmentLookup, Work::kColorAdded}) {
       EXPECT_EQ(picture.work[kind], four.work[kind]) << "kind " << static_cast<int>(kind);

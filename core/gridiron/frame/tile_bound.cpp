@@ -282,9 +282,11 @@ class Sum {
     add(Work::kListRay, rays);
     add(Work::kListNode, nodes);
     add(Work::kListRayNode, nodes);
-    if (layout_.lanes <= kTreeWidth / 4) add(Work::kListBoxQuad, nodes * (kTreeWidth / 4));
+    // Narrow lanes make a list for each quad of boxes first.
+    const Count quads = layout_.lanes <= kTreeWidth / 4 ? nodes * (kTreeWidth / 4) : Count{};
+    add(Work::kListBoxQuad, quads);
     add(Work::kListChild, children);
-    add(Work::kListEntry, children);
+    add(Work::kListEntry, children + quads);
     add(Work::kListLeaf, leaves);
     add(Work::kListTriangleGroup, groups);
     add(Work::kListCandidate, groups);

@@ -69,8 +69,12 @@ struct Tally {
 // All rays against all nodes, whether or not they meet their parents.
 template <class L>
 void expect_boxes_met(MemoryTree& tree, const std::vector<Shot>& shots, Tally& tally) {
+  constexpr std::uint32_t kStep = kListStep<L>, kPartBoxes = kTreeWidth / kBoxParts<L>;
+  const auto count = static_cast<std::uint32_t>(shots.size());
   std::vector<BatchRay> rays(shots.size());
-  std::vector<std::uint32_t> list(shots.size()), marked;
+  std::vector<std::uint32_t> list(shots.size());
+  // A list, the parts' lists behind it, and a step to write over.
+  const std::uint32_t arena_words = (1 + kListParts<L>) * (count + kStep) + 16;
   WorkCounters work;
   for (std::uint32_t i = 0; i < shots.size(); ++i) {
     for (int axis = 0; axis < 3; ++axis) {
@@ -86,23 +90,36 @@ void expect_boxes_met(MemoryTree& tree, const std::vector<Shot>& shots, Tally& t
     const TreeNode* node = nullptr;
     ASSERT_EQ(tree.node(open.back().node_index(), node), Status::kOk);
     open.pop_back();
-    marked = list;
-    for (std::uint32_t& word : marked) word |= 0xA5A5u;  // of the node before
-    const std::uint32_t any =
-        mark_boxes<L>(*node, rays.data(), marked.data(), static_cast<std::uint32_t>(marked.size()), work);
+    // Places of lists are multiples of a step; masks are of the node before.
+    std::vector<std::uint32_t> arena(arena_words + kStep, 0xDEADBEEFu);
+    for (std::uint32_t i = 0; i < count; ++i) arena[kStep + i] = list[i] | 0xA5A5u;
+    ListLevel level;
+    const std::uint32_t any = mark_boxes<L>(*node, rays.data(), arena.data(), kStep, count, level, work);
+    ASSERT_LE(level.end, kStep + (1 + kListParts<L>) * (count + kStep));
+    std::vector<std::uint32_t> met(shots.size(), 0);  // by ray, all boxes of the node
     std::uint32_t all = 0;
-    for (const std::uint32_t word : marked) all |= word & kMaskBits;
+    for (std::uint32_t part = 0; part < kBoxParts<L>; ++part) {
+      ASSERT_LE(level.ray_counts[part], count);
+      for (std::uint32_t i = 0; i < level.ray_counts[part]; ++i) {
+        const std::uint32_t word = arena[level.lists[part] + i];
+        const auto ray = static_cast<std::uint32_t>(&ray_of(rays.data(), word) - rays.data());
+        ASSERT_LT(ray, count);
+        ASSERT_TRUE(std::find(list.begin(), list.end(), word & ~kMaskBits) != list.end()) << "not the ray's word";
+        const std::uint32_t boxes = word & kMaskBits;
+        ASSERT_EQ(boxes >> (kPartBoxes - 1) >> 1, 0u) << "boxes of another part";
+        met[ray] |= boxes << part * kPartBoxes;
+        all |= met[ray];
+      }
+    }
     ASSERT_EQ(any, all);
     ASSERT_EQ(all >> node->child_count, 0u) << "a child that is not there";
     for (std::uint32_t child = 0; child < node->child_count; ++child) {
       const TreeChild below = node->children[child];
       if (!below.is_leaf()) open.push_back(below);
       const Range range = range_of(tree, below);
-      for (std::uint32_t place = 0; place < marked.size(); ++place) {
-        const std::uint32_t word = marked[place];
-        ASSERT_EQ(word & ~kMaskBits, list[place]) << "not the ray's word any more";
-        const Shot& shot = shots[static_cast<std::size_t>(&ray_of(rays.data(), word) - rays.data())];
-        const bool is_met = (word >> child & 1u) != 0;
+      for (std::uint32_t place = 0; place < count; ++place) {
+        const Shot& shot = shots[place];
+        const bool is_met = (met[place] >> child & 1u) != 0;
         ++tally.pairs;
         tally.met += is_met ? 1u : 0u;
         for (std::uint32_t i = range.first; i < range.end; ++i) {
@@ -140,7 +157,7 @@ std::vector<Shot> shots_at(const TestMesh& mesh, float largest, std::uint32_t co
     unlimited.t_max = kFloatMax;
     for (const OracleHit& hit : oracle.hits(unlimited)) {
       const float t = oracle.distance(unlimited, hit.triangle_id).rounded(Reading::kStandard);
-      shot.hits[hit.triangle_id] = t > 0.0f && t <= ray.t_max;
+      shot.hits[hit.triangle_id] = t > 0.0f && t <= ray.t_max && t != kFloatMax;
     }
     shots.push_back(shot);
   }
@@ -199,7 +216,7 @@ TYPED_TEST(BoxTest, HardCasesMeetThem) {
       Shot shot{ray, std::vector<bool>(hard.mesh.triangles.size(), false)};
       for (const OracleHit& hit : oracle.hits(ray)) {
         const float t = oracle.distance(ray, hit.triangle_id).rounded(Reading::kStandard);
-        shot.hits[hit.triangle_id] = t > 0.0f && t <= ray.t_max;
+        shot.hits[hit.triangle_id] = t > 0.0f && t <= ray.t_max && t != kFloatMax;
       }
       shots.push_back(shot);
     }

@@ -17,8 +17,9 @@ namespace {
 
 using Large = EffectLayout256K<kAllEffects, 8>;
 using Small = EffectLayout64K<kAllEffects>;
-/// The small layout with lists that never go through a node in pieces.
+/// The small layout with longer batches and lists.
 struct Roomy : Small {
+  static constexpr std::uint32_t kBatchRays = 4 * Small::kBatchRays;
   static constexpr std::uint32_t kSpareListWords = 1024;
 };
 
@@ -247,8 +248,9 @@ TYPED_TEST(TreeEngineTest, AnswersAsTheOracleDoes) {
         ASSERT_EQ(run.status, Status::kOk);
         EXPECT_EQ(run.violation, "");
         EXPECT_EQ(run.left_pending, 0u);
-        EXPECT_GE(run.batches, is_small ? 1200 / 64u : 1200 / 512u);
-        EXPECT_LE(run.batches, is_small ? 1200 / 48u + 1 : 1200 / 496u + 1) << "batches that are not full";
+        const std::uint32_t batch_rays = is_small ? Small::kBatchRays : Large::kBatchRays;
+        EXPECT_GE(run.batches, 1200 / batch_rays);
+        EXPECT_LE(run.batches, 1200 / (batch_rays - kJobRays + 1) + 1) << "batches that are not full";
         EXPECT_EQ(run.work[Work::kListRay], rays.size());
         const std::uint32_t hits = expect_truth(scene, rays, any_hit, run.answers);
         EXPECT_GT(hits, 500u);
@@ -309,17 +311,22 @@ TYPED_TEST(TreeEngineTest, DepthAndTransfersChangeNothing) {
   }
 }
 
-// Where lists do not fit, they go through a node in pieces: its children are visited more often, with the same answers.
-TYPED_TEST(TreeEngineTest, PiecesOfListsChangeNoAnswer) {
+// Which rays are traced together decides what is done for them, and no answer.
+TYPED_TEST(TreeEngineTest, BatchesChangeNoAnswer) {
+  const TreeScene scene(Accuracy::kStandard, 1);
+  const std::vector<OracleRay> rays = random_rays(scene.mesh, 600, 9);
   for (const bool any_hit : {false, true}) {
-    const TreeScene scene(Accuracy::kStandard, 1);
-    const std::vector<OracleRay> rays = random_rays(scene.mesh, 600, 9);
-    const Run whole = trace<TypeParam, Roomy>(scene, rays, {.any_hit = any_hit});
-    const Run pieces = trace<TypeParam, Small>(scene, rays, {.any_hit = any_hit});
-    ASSERT_EQ(whole.status, Status::kOk) << whole.violation;
-    ASSERT_EQ(pieces.status, Status::kOk) << pieces.violation;
-    EXPECT_TRUE(pieces.answers == whole.answers);
-    EXPECT_GT(pieces.work[Work::kListChild], whole.work[Work::kListChild]);
+    const Run long_batches = trace<TypeParam, Roomy>(scene, rays, {.any_hit = any_hit});
+    const Run short_batches = trace<TypeParam, Small>(scene, rays, {.any_hit = any_hit});
+    ASSERT_EQ(long_batches.status, Status::kOk) << long_batches.violation;
+    ASSERT_EQ(short_batches.status, Status::kOk) << short_batches.violation;
+    EXPECT_GT(short_batches.batches, 3 * long_batches.batches);
+    EXPECT_GT(short_batches.work[Work::kListNode], long_batches.work[Work::kListNode]);
+    for (std::size_t i = 0; i < rays.size(); ++i) {
+      const Answer &one = short_batches.answers[i], &other = long_batches.answers[i];
+      EXPECT_EQ(one.id == kNoTriangle, other.id == kNoTriangle) << "ray " << i;
+      EXPECT_TRUE(any_hit || one == other) << "ray " << i;
+    }
   }
 }
 
