@@ -137,7 +137,7 @@ GRIDIRON_INLINE std::uint32_t mark_run(const BoxSides<L>* sides, std::uint32_t t
   return i;
 }
 
-/// The same for all octants of a list. @param boxes  TreeNode or NodeUnions. @param base  the first of them.
+/// The same for all octants of a list, with room for L::kCount words more. @param boxes  TreeNode or NodeUnions. @param base  the first of them.
 /// @returns the boxes that any ray meets.
 template <class L, class Boxes>
 GRIDIRON_INLINE std::uint32_t mark_list(const Boxes& boxes, std::uint32_t base, std::uint32_t there, BatchRay* rays,
@@ -150,6 +150,8 @@ GRIDIRON_INLINE std::uint32_t mark_list(const Boxes& boxes, std::uint32_t base, 
     for (std::uint32_t group = 0; group < kGroups; ++group) sides[group] = places.load<L>(base + group * L::kCount);
     i = mark_run<L>(sides, there, rays, list, i, count, open);
   }
+  // Words up to the next group of lanes meet nothing, so that take_marked() need not look where the list ends.
+  for (std::uint32_t i = count; i % L::kCount != 0; ++i) list[i] = 0;
   return open;
 }
 

@@ -118,7 +118,8 @@ GRIDIRON_INLINE std::uint32_t set_up_list_ray(BatchRay& ray, float largest) {
   return set_up_odd_ray<L>(ray, octant, is_within(far), is_large || !is_within(kGreatestListPlace));
 }
 
-/// Copies the words of rays that meet a child. @param list    at a multiple of kListStep<L> words.
+/// Copies the words of rays that meet a child. @param list    at a multiple of kListStep<L> words, as mark_list() left it.
+/// @param count   of words: all, or a multiple of L::kCount.
 /// @param place   of the child in their masks. @param target  room for as many, and L::kCount more.
 /// @returns how many.
 template <class L>
@@ -135,9 +136,7 @@ GRIDIRON_INLINE std::uint32_t take_marked(const std::uint32_t* list, std::uint32
     const Int bit = Int::splat(1u << place), none = Int::splat(0);
     for (std::uint32_t i = 0; i < count; i += L::kCount) {
       const Int words = Int::load(list + i);
-      const std::uint32_t rest = count - i;
-      const std::uint32_t there = rest >= L::kCount ? std::uint32_t{L::kAllBits} : (1u << rest) - 1u;
-      const std::uint32_t marked = (none < (words & bit)).bits() & there;
+      const std::uint32_t marked = (none < (words & bit)).bits();
       L::compress(words, marked, target + taken);
       taken += count_bits(marked);
     }
