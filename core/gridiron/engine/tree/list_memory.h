@@ -12,13 +12,13 @@ namespace gridiron {
 /// Lanes of up to four boxes test a node's boxes in four parts, quads under a union box, and have a list for each; wider
 /// ones test all boxes at once.
 template <class L>
-inline constexpr std::uint32_t kBoxParts = L::kCount <= 4 ? 4 : 1;
+inline constexpr std::uint32_t kBoxParts = L::kCount <= 4 ? 4u : 1u;
 /// Lists begin at multiples of so many words.
 template <class L>
-inline constexpr std::uint32_t kListStep = L::kCount <= 4 ? 4 : 16;
+inline constexpr std::uint32_t kListStep = L::kCount <= 4 ? 4u : 16u;
 /// Words that a node's lists take beyond its own list, for each of its rays, at most.
 template <class L>
-inline constexpr std::uint32_t kListParts = kBoxParts<L> == 1 ? 0 : kBoxParts<L>;
+inline constexpr std::uint32_t kListParts = kBoxParts<L> == 1 ? std::uint32_t{0} : kBoxParts<L>;
 
 /// Words of an arena for batches of so many rays, whatever the lanes: their list, in up to eight parts that each begin
 /// at a step, those of the root's parts, and at each level below at least those of one step of rays, and a step to
