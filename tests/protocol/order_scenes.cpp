@@ -58,10 +58,21 @@ OrderScene strips(std::uint32_t pixels, bool are_smooth) {
   return scene;
 }
 
+// Triangles with one edge, a diagonal of the box that all of them fill: a ray that meets it meets the box of each leaf.
+TestMesh in_one_box(std::uint32_t count) {
+  TestMesh mesh;
+  mesh.vertices = {{-2, -2, -2}, {2, 2, 2}};
+  const TestMesh corners = make_random_soup(count, 0.1f, 5);
+  for (std::uint32_t i = 0; i < count; ++i) {
+    mesh.vertices.push_back(corners.vertices[3 * i]);
+    mesh.triangles.emplace_back(0, 1, i + 2);
+  }
+  return mesh;
+}
+
 // Triangles one behind the other in sight of few pixels that five lights shine on.
-OrderScene lit(std::uint32_t triangles) {
+OrderScene lit(const TestMesh& things) {
   OrderScene scene = with_materials();
-  const TestMesh things = make_random_soup(triangles, 1.2f, 5);
   for (std::size_t i = 0; i < things.triangles.size(); ++i) {
     const auto corner = [&](int k) { return things.vertices[things.triangles[i][k]]; };
     add_triangle(scene, corner(0), corner(1), corner(2), static_cast<std::uint16_t>(i % 5));
@@ -120,11 +131,13 @@ std::vector<OrderCase> order_cases() {
                    {.width = 40, .output_depth = 4, .macro_depth = 2, .triangle_depth = 1}, {"bbttt", "brttt"}});
   // Effects: everything by lists. A root with leaves alone has five of them under way; below a root with nodes, it is the
   // queue that has no room for more.
-  cases.push_back({"leaves", lit(12), {.width = 2, .height = 1, .walk_depth = 5}, {"rrrrr"}});
-  cases.push_back({"nodes", lit(70), {.width = 2, .height = 1, .walk_depth = 4, .queue_depth = 5}, {"bbbrr", "bbrrr"}});
+  cases.push_back({"leaves", lit(in_one_box(12)), {.width = 2, .height = 1, .walk_depth = 5}, {"rrrrr"}});
+  cases.push_back({"nodes", lit(make_random_soup(70, 1.2f, 5)),
+                   {.width = 2, .height = 1, .walk_depth = 4, .queue_depth = 5}, {"bbbrr", "bbrrr"}});
   cases.push_back({"surfaces", strips(6, false), {.width = 6, .height = 1, .walk_depth = 5}, {"ggggg", "ggggm"}});
   cases.push_back({"normals", strips(6, true), {.width = 6, .height = 1, .walk_depth = 5}, {"ggggg", "ggggm"}});
-  cases.push_back({"environment", open_air(), {.width = 6, .height = 1, .walk_depth = 5}, {"ggggg"}});
+  // Records across a boundary take two commands, so that it is the queue that has no room for more.
+  cases.push_back({"environment", open_air(), {.width = 6, .height = 1, .walk_depth = 5, .queue_depth = 5}, {"ggggg"}});
   cases.push_back({"spilling", glass(1), {.width = 8, .height = 4, .walk_depth = 5}, {"ggggs"}});
   cases.push_back({"spilled_back", glass(5), {.width = 40, .height = 4, .output_depth = 5}, {"stttt"}});
   return cases;

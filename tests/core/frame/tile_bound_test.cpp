@@ -349,7 +349,8 @@ TEST(TileBound, ListsAreReachedByARayThatMeetsEveryBox) {
   subject.triangles.clear();
   TestRandom random(3);
   for (std::uint32_t i = 0; i < 200; ++i) {
-    subject.vertices.push_back(random_vec(random, 0.9f));
+    const auto coordinate = [&] { return random.between(-0.9f, 0.9f); };
+    subject.vertices.emplace_back(coordinate(), coordinate(), coordinate());
     subject.triangles.emplace_back(0, 1, i + 2);
   }
   subject.triangle_materials.assign(subject.triangles.size(), 0);
