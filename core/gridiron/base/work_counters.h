@@ -64,6 +64,7 @@ enum class Work : std::uint8_t {
   kListChild,          ///< lists made for a child of a node
   kListEntry,          ///< rays that were gone through for these
   kListNode,           ///< nodes that a list of rays has entered
+  kListRun,            ///< runs of their rays of one octant: the sides of boxes that these enter and leave by
   kListRayNode,        ///< rays of these lists: tested against a node's union boxes
   kListBoxQuad,        ///< quads of boxes tested by a ray
   kListLeaf,           ///< leaves that a list of rays was tested against: triangles spread over lanes
@@ -90,7 +91,7 @@ enum class Work : std::uint8_t {
 /// The number of the first kind of an engine.
 inline constexpr std::uint32_t kSharedWorkCount = static_cast<std::uint32_t>(Work::kCount);
 /// Kinds that there are counters for. No frame has two engines, so all engines use the same ones.
-inline constexpr std::uint32_t kWorkKindCount = 92;
+inline constexpr std::uint32_t kWorkKindCount = 93;
 
 /// A kind of Work or of an engine: the number of its counter.
 class WorkId {

@@ -285,6 +285,7 @@ class Sum {
     // Narrow lanes make a list for each quad of boxes first.
     const Count quads = layout_.lanes <= kTreeWidth / 4 ? nodes * (kTreeWidth / 4) : Count{};
     add(Work::kListBoxQuad, quads);
+    add(Work::kListRun, nodes + quads);
     add(Work::kListChild, children);
     add(Work::kListEntry, children + quads);
     add(Work::kListLeaf, leaves);

@@ -55,7 +55,7 @@ inline constexpr WorkKind kSharedWork[] = {
     {Work::kEstimateSetup, "estimate_setup"}, {Work::kNormalSetup, "normal_setup"}, {Work::kHitHalf, "hit_half"},
     {Work::kExactOrder, "exact_order"}, {Work::kLatticeTriangle, "lattice_triangle"}, {Work::kWaveRay, "wave_ray"},
     {Work::kQueuedRay, "queued_ray"}, {Work::kListRay, "list_ray"}, {Work::kListChild, "list_child"},
-    {Work::kListEntry, "list_entry"}, {Work::kListNode, "list_node"}, {Work::kListRayNode, "list_ray_node"},
+    {Work::kListEntry, "list_entry"}, {Work::kListNode, "list_node"}, {Work::kListRun, "list_run"}, {Work::kListRayNode, "list_ray_node"},
     {Work::kListBoxQuad, "list_box_quad"}, {Work::kListLeaf, "list_leaf"},
     {Work::kListTriangleGroup, "list_triangle_group"}, {Work::kListCandidate, "list_candidate"},
     {Work::kRayDistance, "ray_distance"},

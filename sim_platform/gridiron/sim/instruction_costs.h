@@ -73,42 +73,43 @@ inline constexpr auto kInstructionCosts = std::to_array<InstructionCost>({
     {WorkId(50),   600.0},  // list_child
     {WorkId(51),   600.0},  // list_entry
     {WorkId(52),   600.0},  // list_node
-    {WorkId(53),   600.0},  // list_ray_node
-    {WorkId(54),   600.0},  // list_box_quad
-    {WorkId(55),   600.0},  // list_leaf
-    {WorkId(56),   600.0},  // list_triangle_group
-    {WorkId(57),   600.0},  // list_candidate
-    {WorkId(58),   350.5},  // ray_distance, of effects
-    {WorkId(59),  1490.4},  // surface_point, of effects
-    {WorkId(60),   269.8},  // smooth_normal, of effects
-    {WorkId(61),   148.7},  // shadow_ray, of effects
-    {WorkId(62),    67.0},  // light_sample, of effects
-    {WorkId(63),   153.2},  // highlight, of effects
-    {WorkId(64),   188.7},  // occlusion_ray, of effects
-    {WorkId(65),    57.1},  // mirror_ray, of effects
-    {WorkId(66),   131.8},  // refracted_ray, of effects
-    {WorkId(67),   380.8},  // environment_lookup, of effects
-    {WorkId(68),    84.2},  // color_added, of effects
-    {WorkId(69),   193.1},  // color_group, of effects
-    {WorkId(73),   386.8},  // packet_start
-    {WorkId(74),    23.0},  // pass_slope
-    {WorkId(75),    15.5},  // mailbox_group
-    {WorkId(76),   422.6},  // pass_group, not in `dense`
-    {WorkId(77),   409.9},  // pass_square
-    {WorkId(78),   239.0},  // macro_slice_step
-    {WorkId(79),    13.9},  // macro_row
-    {WorkId(80),    28.8},  // macro_cell_step
-    {WorkId(81),   337.7},  // macro_cell_visit
-    {WorkId(82),   241.4},  // slice_step
-    {WorkId(83),    23.7},  // cell_row
-    {WorkId(84),     7.9},  // cell_step
-    {WorkId(85),    22.0},  // cell_visit
-    {WorkId(86),   365.9},  // triangle_batch
-    {WorkId(87),    39.1},  // mailbox_probe
-    {WorkId(88),    25.6},  // reach_group
-    {WorkId(89),   121.8},  // reach_test, not in `dense`
-    {WorkId(90),   357.5},  // footprint_group, not in `dense`
-    {WorkId(91),    10.6},  // cell_bound_step, not in `dense`
+    {WorkId(53),   600.0},  // list_run
+    {WorkId(54),   600.0},  // list_ray_node
+    {WorkId(55),   600.0},  // list_box_quad
+    {WorkId(56),   600.0},  // list_leaf
+    {WorkId(57),   600.0},  // list_triangle_group
+    {WorkId(58),   600.0},  // list_candidate
+    {WorkId(59),   350.5},  // ray_distance, of effects
+    {WorkId(60),  1490.4},  // surface_point, of effects
+    {WorkId(61),   269.8},  // smooth_normal, of effects
+    {WorkId(62),   148.7},  // shadow_ray, of effects
+    {WorkId(63),    67.0},  // light_sample, of effects
+    {WorkId(64),   153.2},  // highlight, of effects
+    {WorkId(65),   188.7},  // occlusion_ray, of effects
+    {WorkId(66),    57.1},  // mirror_ray, of effects
+    {WorkId(67),   131.8},  // refracted_ray, of effects
+    {WorkId(68),   380.8},  // environment_lookup, of effects
+    {WorkId(69),    84.2},  // color_added, of effects
+    {WorkId(70),   193.1},  // color_group, of effects
+    {WorkId(74),   386.8},  // packet_start
+    {WorkId(75),    23.0},  // pass_slope
+    {WorkId(76),    15.5},  // mailbox_group
+    {WorkId(77),   422.6},  // pass_group, not in `dense`
+    {WorkId(78),   409.9},  // pass_square
+    {WorkId(79),   239.0},  // macro_slice_step
+    {WorkId(80),    13.9},  // macro_row
+    {WorkId(81),    28.8},  // macro_cell_step
+    {WorkId(82),   337.7},  // macro_cell_visit
+    {WorkId(83),   241.4},  // slice_step
+    {WorkId(84),    23.7},  // cell_row
+    {WorkId(85),     7.9},  // cell_step
+    {WorkId(86),    22.0},  // cell_visit
+    {WorkId(87),   365.9},  // triangle_batch
+    {WorkId(88),    39.1},  // mailbox_probe
+    {WorkId(89),    25.6},  // reach_group
+    {WorkId(90),   121.8},  // reach_test, not in `dense`
+    {WorkId(91),   357.5},  // footprint_group, not in `dense`
+    {WorkId(92),    10.6},  // cell_bound_step, not in `dense`
 });
 
 /// A command: from where core counts it to the next kind of work, and its end in a wait.

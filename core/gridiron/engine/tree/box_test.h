@@ -138,18 +138,23 @@ GRIDIRON_INLINE std::uint32_t mark_run(const BoxSides<L>* sides, std::uint32_t t
 }
 
 /// The same for all octants of a list, with room for L::kCount words more. @param boxes  TreeNode or NodeUnions. @param base  the first of them.
-/// @returns the boxes that any ray meets.
+/// @param kind  of work that a ray is. @returns the boxes that any ray meets.
 template <class L, class Boxes>
 GRIDIRON_INLINE std::uint32_t mark_list(const Boxes& boxes, std::uint32_t base, std::uint32_t there, BatchRay* rays,
-                                        std::uint32_t* list, std::uint32_t count) {
+                                        std::uint32_t* list, std::uint32_t count, Work kind, WorkCounters& work) {
   static constexpr std::uint32_t kGroups = L::kCount < 4 ? 4 : L::kCount == 8 ? 2 : 1;
   std::uint32_t open = 0;
+  work.add(kind, count);
   for (std::uint32_t i = 0; i < count;) {
+    work.add(Work::kListRun);
+    work.charge_to(Work::kListRun);
     const SidePlaces places(boxes, octant_of(list[i]));
     BoxSides<L> sides[kGroups];
     for (std::uint32_t group = 0; group < kGroups; ++group) sides[group] = places.load<L>(base + group * L::kCount);
+    work.charge_to(kind);
     i = mark_run<L>(sides, there, rays, list, i, count, open);
   }
+  work.charge_to(Work::kListNode);
   // Words up to the next group of lanes meet nothing, so that take_marked() need not look where the list ends.
   for (std::uint32_t i = count; i % L::kCount != 0; ++i) list[i] = 0;
   return open;
@@ -165,16 +170,14 @@ template <class L>
   static constexpr std::uint32_t kStep = kListStep<L>;
   std::uint32_t end = (list + count + (kStep - 1)) & ~(kStep - 1);
   std::uint32_t open = 0;
-  work.add(Work::kListRayNode, count);
-  work.charge_to(Work::kListRayNode);
   if constexpr (kBoxParts<L> == 1) {
-    open = mark_list<L>(node, 0, there, rays, arena + list, count);
+    open = mark_list<L>(node, 0, there, rays, arena + list, count, Work::kListRayNode, work);
     level.lists[0] = list;
     level.ray_counts[0] = count;
   } else {
     NodeUnions unions;
     unite_boxes<L>(node, unions);
-    const std::uint32_t quads = mark_list<L>(unions, 0, 15, rays, arena + list, count);
+    const std::uint32_t quads = mark_list<L>(unions, 0, 15, rays, arena + list, count, Work::kListRayNode, work);
     for (std::uint32_t quad = 0; quad < kBoxParts<L>; ++quad) {
       level.ray_counts[quad] = 0;
       if ((quads >> quad & 1u) == 0) continue;
@@ -183,9 +186,8 @@ template <class L>
       const std::uint32_t taken = take_marked<L>(arena + list, count, quad, arena + end);
       level.lists[quad] = end;
       level.ray_counts[quad] = taken;
-      work.add(Work::kListBoxQuad, taken);
-      work.charge_to(Work::kListBoxQuad);
-      open |= mark_list<L>(node, 4 * quad, there >> 4 * quad & 15, rays, arena + end, taken) << 4 * quad;
+      open |= mark_list<L>(node, 4 * quad, there >> 4 * quad & 15, rays, arena + end, taken, Work::kListBoxQuad, work)
+              << 4 * quad;
       end = (end + taken + (kStep - 1)) & ~(kStep - 1);
     }
   }

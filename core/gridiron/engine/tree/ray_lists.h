@@ -120,8 +120,9 @@ class RayLists {
     // list_arena_words, and so 2 W here, and 13 - (d + 1) behind a child's lists, which take W less than the room.
     const std::uint32_t ray_count = level.ray_counts[part];
     std::uint32_t end = ray_count;
-    const std::uint32_t most = room / kLevelWords * kStep - kStep;
-    if (end - level.taken > most) end = level.taken + most;
+    if ((1 + kListParts<L>)*step_up(end - level.taken) + kLevelWords > room) [[unlikely]] {
+      end = level.taken + (room / kLevelWords - 1) * kStep;
+    }
     const std::uint32_t seen = end - level.taken;
     work_.add(Work::kListEntry, seen);
     work_.charge_to(Work::kListEntry);
