@@ -115,36 +115,53 @@ GRIDIRON_INLINE void unite_boxes(const TreeNode& node, NodeUnions& unions) {
   }
 }
 
-/// Tests rays of one octant, those of a list from `begin` on, against the same boxes: words get their masks.
-/// @param there  the boxes that there are. @returns where the octant ends.
+/// Rays that are tested at once: one ray's test is a chain of results, two of them fill four lanes' pipes.
 template <class L>
-GRIDIRON_INLINE std::uint32_t mark_run(const BoxSides<L>* sides, std::uint32_t there, BatchRay* rays,
-                                       std::uint32_t* list, std::uint32_t begin, std::uint32_t count,
-                                       std::uint32_t& open) {
+inline constexpr std::uint32_t kBoxRays = L::kCount == 4 ? 2 : 1;
+
+/// Tests rays of one octant, those of a list from `begin` on, against the same boxes: words without masks get them.
+/// @param list  ends with kListEnd. @returns where the octant ends.
+template <class L>
+GRIDIRON_INLINE std::uint32_t mark_run(const BoxSides<L>* sides, BatchRay* rays, std::uint32_t* list,
+                                       std::uint32_t begin, Work kind, std::uint32_t& open, WorkCounters& work) {
   static constexpr std::uint32_t kGroups = L::kCount < 4 ? 4 : L::kCount == 8 ? 2 : 1;
-  const std::uint32_t octant = octant_of(list[begin]);
-  std::uint32_t i = begin;
+  const std::uint32_t behind = behind_octant(list[begin]);
+  std::uint32_t i = begin, word = list[i];
   do {
-    const std::uint32_t word = list[i];
-    const BoxRay<L> ray(ray_of(rays, word));
-    std::uint32_t met = 0;
-    for (std::uint32_t group = 0; group < kGroups; ++group) met |= sides[group].met_by(ray) << group * L::kCount;
-    met &= there;
-    list[i] = (word & ~kMaskBits) | met;
-    open |= met;
-    ++i;
-  } while (i < count && octant_of(list[i]) == octant);
+    work.add(kind);
+    if constexpr (kBoxRays<L> == 2) {
+      // The last ray of an odd number is tested twice.
+      const std::uint32_t next = list[i + 1];
+      const bool are_two = next < behind;
+      const std::uint32_t second = are_two ? i + 1 : i, second_word = are_two ? next : word;
+      const BoxRay<L> first_ray(ray_of(rays, word)), second_ray(ray_of(rays, second_word));
+      const std::uint32_t first_met = sides->met_by(first_ray), second_met = sides->met_by(second_ray);
+      list[i] = word | first_met;
+      list[second] = second_word | second_met;
+      open |= first_met | second_met;
+      i = second + 1;
+    } else {
+      const BoxRay<L> ray(ray_of(rays, word));
+      std::uint32_t met = 0;
+      for (std::uint32_t group = 0; group < kGroups; ++group) met |= sides[group].met_by(ray) << group * L::kCount;
+      list[i] = word | met;
+      open |= met;
+      ++i;
+    }
+    word = list[i];
+  } while (word < behind);
   return i;
 }
 
-/// The same for all octants of a list, with room for L::kCount words more. @param boxes  TreeNode or NodeUnions. @param base  the first of them.
-/// @param kind  of work that a ray is. @returns the boxes that any ray meets.
+/// The same for all octants of a list, with room for a word and for L::kCount words more.
+/// @param boxes  TreeNode or NodeUnions. @param base  the first of them.
+/// @param kind   of work that a test of kBoxRays is. @returns the boxes that any ray meets, of those that there are.
 template <class L, class Boxes>
-GRIDIRON_INLINE std::uint32_t mark_list(const Boxes& boxes, std::uint32_t base, std::uint32_t there, BatchRay* rays,
-                                        std::uint32_t* list, std::uint32_t count, Work kind, WorkCounters& work) {
+GRIDIRON_INLINE std::uint32_t mark_list(const Boxes& boxes, std::uint32_t base, BatchRay* rays, std::uint32_t* list,
+                                        std::uint32_t count, Work kind, WorkCounters& work) {
   static constexpr std::uint32_t kGroups = L::kCount < 4 ? 4 : L::kCount == 8 ? 2 : 1;
   std::uint32_t open = 0;
-  work.add(kind, count);
+  list[count] = kListEnd;
   for (std::uint32_t i = 0; i < count;) {
     work.add(Work::kListRun);
     work.charge_to(Work::kListRun);
@@ -152,7 +169,7 @@ GRIDIRON_INLINE std::uint32_t mark_list(const Boxes& boxes, std::uint32_t base, 
     BoxSides<L> sides[kGroups];
     for (std::uint32_t group = 0; group < kGroups; ++group) sides[group] = places.load<L>(base + group * L::kCount);
     work.charge_to(kind);
-    i = mark_run<L>(sides, there, rays, list, i, count, open);
+    i = mark_run<L>(sides, rays, list, i, kind, open, work);
   }
   work.charge_to(Work::kListNode);
   // Words up to the next group of lanes meet nothing, so that take_marked() need not look where the list ends.
@@ -171,13 +188,13 @@ template <class L>
   std::uint32_t end = (list + count + (kStep - 1)) & ~(kStep - 1);
   std::uint32_t open = 0;
   if constexpr (kBoxParts<L> == 1) {
-    open = mark_list<L>(node, 0, there, rays, arena + list, count, Work::kListRayNode, work);
+    open = mark_list<L>(node, 0, rays, arena + list, count, Work::kListRayNode, work);
     level.lists[0] = list;
     level.ray_counts[0] = count;
   } else {
     NodeUnions unions;
     unite_boxes<L>(node, unions);
-    const std::uint32_t quads = mark_list<L>(unions, 0, 15, rays, arena + list, count, Work::kListRayNode, work);
+    const std::uint32_t quads = mark_list<L>(unions, 0, rays, arena + list, count, Work::kListRayNode, work);
     for (std::uint32_t quad = 0; quad < kBoxParts<L>; ++quad) {
       level.ray_counts[quad] = 0;
       if ((quads >> quad & 1u) == 0) continue;
@@ -186,13 +203,12 @@ template <class L>
       const std::uint32_t taken = take_marked<L>(arena + list, count, quad, arena + end);
       level.lists[quad] = end;
       level.ray_counts[quad] = taken;
-      open |= mark_list<L>(node, 4 * quad, there >> 4 * quad & 15, rays, arena + end, taken, Work::kListBoxQuad, work)
-              << 4 * quad;
+      open |= mark_list<L>(node, 4 * quad, rays, arena + end, taken, Work::kListBoxQuad, work) << 4 * quad;
       end = (end + taken + (kStep - 1)) & ~(kStep - 1);
     }
   }
   level.end = end;
-  return open;
+  return open & there;
 }
 
 }  // namespace gridiron

@@ -23,6 +23,12 @@ inline constexpr std::uint32_t kRayQuads = sizeof(BatchRay) / 16;
 [[nodiscard]] GRIDIRON_INLINE std::uint32_t list_word(std::uint32_t ray, std::uint32_t octant) {
   return octant << kOctantShift | (kRayQuads * ray) << kPlaceShift;
 }
+/// Behind all words of rays.
+inline constexpr std::uint32_t kListEnd = ~0u;
+/// @returns a number above the words of a word's octant, and not above those of the next, or of the list's end.
+[[nodiscard]] GRIDIRON_INLINE std::uint32_t behind_octant(std::uint32_t word) {
+  return word | ((1u << kOctantShift) - 1);
+}
 /// @returns the octant: bit 0, 1, 2 where the ray runs towards smaller x, y, z.
 [[nodiscard]] GRIDIRON_INLINE std::uint32_t octant_of(std::uint32_t word) { return word >> kOctantShift; }
 [[nodiscard]] GRIDIRON_INLINE BatchRay& ray_of(BatchRay* rays, std::uint32_t word) {
@@ -118,7 +124,8 @@ GRIDIRON_INLINE std::uint32_t set_up_list_ray(BatchRay& ray, float largest) {
   return set_up_odd_ray<L>(ray, octant, is_within(far), is_large || !is_within(kGreatestListPlace));
 }
 
-/// Copies the words of rays that meet a child. @param list    at a multiple of kListStep<L> words, as mark_list() left it.
+/// Copies the words of rays that meet a child, without their masks.
+/// @param list    at a multiple of kListStep<L> words, as mark_list() left it.
 /// @param count   of words: all, or a multiple of L::kCount.
 /// @param place   of the child in their masks. @param target  room for as many, and L::kCount more.
 /// @returns how many.
@@ -128,16 +135,16 @@ GRIDIRON_INLINE std::uint32_t take_marked(const std::uint32_t* list, std::uint32
   std::uint32_t taken = 0;
   if constexpr (L::kCount == 1) {
     for (std::uint32_t i = 0; i < count; ++i) {
-      target[taken] = list[i];
+      target[taken] = list[i] & ~kMaskBits;
       taken += list[i] >> place & 1u;
     }
   } else {
     using Int = typename L::Int;
-    const Int bit = Int::splat(1u << place), none = Int::splat(0);
+    const Int bit = Int::splat(1u << place), none = Int::splat(0), rays = Int::splat(~kMaskBits);
     for (std::uint32_t i = 0; i < count; i += L::kCount) {
       const Int words = Int::load(list + i);
       const std::uint32_t marked = (none < (words & bit)).bits();
-      L::compress(words, marked, target + taken);
+      L::compress(words & rays, marked, target + taken);
       taken += count_bits(marked);
     }
   }

@@ -71,6 +71,8 @@ class RayLists {
  private:
   using Float = typename L::Float;
   static constexpr std::uint32_t kStep = kListStep<L>, kParts = kBoxParts<L>;
+  // Rays that a leaf's lanes are tested against at once, as kBoxRays.
+  static constexpr std::uint32_t kLeafRays = kBoxRays<L>;
   static constexpr std::uint32_t kLevelWords = (1 + kListParts<L>)*kStep;
   [[nodiscard]] static std::uint32_t step_up(std::uint32_t words) {
     return (words + (kStep - 1)) & ~(kStep - 1);
@@ -163,22 +165,29 @@ class RayLists {
     level.asked = 0;
     const std::uint32_t open = mark_boxes<L>(*node, memory_.rays, memory_.arena, list, count, level, work_);
     work_.charge_to(Work::kListNode);
-    const std::uint64_t order = question_.any_hit ? node->order : order_along(*node, octant_of(memory_.arena[list]));
-    std::uint32_t children = 0;
+    level.child_count = 0;
     level.places[0] = level.places[1] = 0;
-    for (std::uint32_t i = 0; i < node->child_count; ++i) {
-      const auto child = static_cast<std::uint32_t>(order >> 4 * i & 15);
-      if ((open >> child & 1u) == 0) continue;
-      level.children[children] = node->children[child];
-      level.places[children / 8] |= child << 4 * (children % 8);
-      ++children;
+    if (question_.any_hit) {
+      std::uint64_t order = node->order;
+      for (std::uint32_t i = 0; i < node->child_count; ++i, order >>= 4) {
+        const auto child = static_cast<std::uint32_t>(order & 15);
+        if ((open >> child & 1u) != 0) add_child(level, *node, child);
+      }
+      return Status::kOk;
     }
-    level.child_count = children;
+    add_nearest_first(level, *node, open, octant_of(memory_.arena[list]));
     return Status::kOk;
   }
 
-  // Children in the order of their boxes' middles along the diagonal of an octant.
-  [[nodiscard]] static std::uint64_t order_along(const TreeNode& node, std::uint32_t octant) {
+  static void add_child(ListLevel& level, const TreeNode& node, std::uint32_t child) {
+    const std::uint32_t turn = level.child_count;
+    level.children[turn] = node.children[child];
+    level.places[turn / 8] |= child << 4 * (turn % 8);
+    level.child_count = turn + 1;
+  }
+
+  // The open children in the order of their boxes' middles along the diagonal of an octant.
+  static void add_nearest_first(ListLevel& level, const TreeNode& node, std::uint32_t open, std::uint32_t octant) {
     alignas(64) float keys[kTreeWidth];
     for (std::uint32_t base = 0; base < kTreeWidth; base += L::kCount) {
       Float sum(0.0f);
@@ -188,15 +197,15 @@ class RayLists {
       }
       sum.store(keys + base);
     }
-    std::uint8_t sorted[kTreeWidth];
-    for (std::uint32_t child = 0; child < node.child_count; ++child) {
-      std::uint32_t place = child;
-      for (; place > 0 && keys[sorted[place - 1]] > keys[child]; --place) sorted[place] = sorted[place - 1];
-      sorted[place] = static_cast<std::uint8_t>(child);
+    for (std::uint32_t rest = open; rest != 0;) {
+      std::uint32_t nearest = lowest_bit(rest);
+      for (std::uint32_t others = rest & (rest - 1); others != 0; others &= others - 1) {
+        const std::uint32_t child = lowest_bit(others);
+        if (keys[child] < keys[nearest]) nearest = child;
+      }
+      add_child(level, node, nearest);
+      rest &= ~(1u << nearest);
     }
-    std::uint64_t order = 0;
-    for (std::uint32_t i = 0; i < node.child_count; ++i) order |= std::uint64_t{sorted[i]} << 4 * i;
-    return order;
   }
 
   [[nodiscard]] GRIDIRON_OUTLINE Status visit_leaf(TreeChild leaf, const std::uint32_t* list, std::uint32_t count) {
@@ -210,14 +219,28 @@ class RayLists {
       const std::uint32_t rest = leaf.count() - base;
       const std::uint32_t there = rest >= L::kCount ? std::uint32_t{L::kAllBits} : (1u << rest) - 1u;
       const LeafLanes<L> lanes(memory_.triangles, base);
-      work_.add(Work::kListTriangleGroup, count);
       work_.charge_to(Work::kListTriangleGroup);
-      for (std::uint32_t i = 0; i < count; ++i) {
-        BatchRay& ray = ray_of(memory_.rays, list[i]);
-        const LeafAnswer<L> answer = lanes.test(ray, there);
-        if ((answer.inside | answer.unsure) == 0) continue;
-        GRIDIRON_TRY(decide(ray, records + base, answer, base));
-        work_.charge_to(Work::kListTriangleGroup);
+      for (std::uint32_t i = 0; i < count; i += kLeafRays) {
+        work_.add(Work::kListTriangleGroup);
+        // The last ray of an odd number is tested twice, and answered once.
+        const bool are_two = kLeafRays == 2 && i + 1 < count;
+        BatchRay* const pair[2] = {&ray_of(memory_.rays, list[i]), &ray_of(memory_.rays, list[are_two ? i + 1 : i])};
+        const std::uint32_t asked[2] = {there, are_two ? there : std::uint32_t{0}};
+        std::uint32_t candidates[kLeafRays], any = 0;
+        LineSides<L> sides[kLeafRays];
+        for (std::uint32_t k = 0; k < kLeafRays; ++k) {
+          sides[k] = lanes.sides_of(*pair[k]);
+          candidates[k] = sides[k].not_missed() & asked[k];
+          any |= candidates[k];
+        }
+        if (any == 0) continue;
+        for (std::uint32_t k = 0; k < kLeafRays; ++k) {
+          if (candidates[k] == 0) continue;
+          const LeafAnswer<L> answer = lanes.answer(sides[k], candidates[k]);
+          if ((answer.inside | answer.unsure) == 0) continue;
+          GRIDIRON_TRY(decide(*pair[k], records + base, answer, base));
+          work_.charge_to(Work::kListTriangleGroup);
+        }
       }
     }
     return Status::kOk;
