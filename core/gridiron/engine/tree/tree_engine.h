@@ -33,6 +33,7 @@ class TreeCore {
         !reads_format(store_.frame.accuracy, tree.triangle_format)) {
       return Status::kUnsupportedImage;
     }
+    source_.begin();
     largest_ = 0.0f;
     for (int axis = 0; axis < 3; ++axis) {
       const float low = magnitude(tree.bounds_minimum[axis]), high = magnitude(tree.bounds_maximum[axis]);
@@ -64,7 +65,7 @@ class TreeCore {
   using RayStore = typename Store::RayStore;
   using Lists = typename RayStore::Lists;
   using Cache = typename RayStore::Cache;
-  using Source = TreeSource<Store, P>;
+  using Source = TreeSource<L, Store, P>;
 
   Store& store_;
   Transfers<P>& transfers_;

@@ -17,19 +17,24 @@ namespace gridiron {
 
 /// A source of RayLists.
 /// @tparam Store  LocalStore of a layout whose rays this engine traces.
-template <class Store, Platform P>
+template <class L, class Store, Platform P>
 class TreeSource {
  public:
   TreeSource(Store& store, Transfers<P>& transfers) : store_(store), transfers_(transfers) {}
 
+  /// The store has another tree's record.
+  void begin() {
+    const TreeRecord& tree = store_.rays.tree;
+    nodes_ = store_.frame.image_address + tree.nodes_offset_bytes;
+    triangles_ = store_.frame.image_address + tree.triangles_offset_bytes;
+    is_on_lattice_ = tree.triangle_format == static_cast<std::uint32_t>(TriangleFormat::kLattice);
+  }
+
   /// Discards what the cache has. Precondition: nothing is pending.
   void forget() {
-    for (std::uint32_t i = 0; i < Cache::kSlots; ++i) {
-      cache().keys[i] = Cache::kNoKey;
-      cache().uses[i] = 0;
-      cache().is_pending[i] = 0;
-    }
-    clock_ = 0;
+    for (std::uint32_t i = 0; i < Cache::kSlots; ++i) cache().keys[i] = Cache::kNoKey;
+    for (std::uint32_t i = 0; i < Cache::kSets; ++i) cache().turns[i] = 0;
+    pending_ = 0;
     surface_ = kNoTriangle;
   }
 
@@ -37,10 +42,8 @@ class TreeSource {
   [[nodiscard]] std::uint32_t window() const { return store_.frame.walk_depth; }
 
   [[nodiscard]] Status ahead(TreeChild child) {
-    const std::uint32_t slot = find(child);
-    if (slot != Cache::kSlots) return Status::kOk;
-    std::uint32_t started = 0;
-    return start(child, started);
+    std::uint32_t slot = 0;
+    return find(child, slot) ? Status::kOk : start(child, slot);
   }
 
   [[nodiscard]] Status node(std::uint32_t index, const TreeNode*& node) {
@@ -53,16 +56,14 @@ class TreeSource {
   [[nodiscard]] Status leaf(TreeChild child, const VertexTriangle*& records) {
     std::uint32_t slot = 0;
     GRIDIRON_TRY(take(child, slot));
-    const std::uint32_t first_byte = is_on_lattice() ? std::uint32_t{0} : place_of(child).first_byte;
+    const std::uint32_t first_byte = is_on_lattice_ ? std::uint32_t{0} : first_byte_of(address_of(child));
     records = reinterpret_cast<const VertexTriangle*>(cache().slots[slot].bytes + first_byte);
     return Status::kOk;
   }
 
   /// Waits for what was asked for and not taken.
   [[nodiscard]] Status finish() {
-    for (std::uint32_t i = 0; i < Cache::kSlots; ++i) {
-      if (cache().is_pending[i] != 0) GRIDIRON_TRY(arrive(i));
-    }
+    while (pending_ != 0) GRIDIRON_TRY(arrive(lowest_bit(pending_)));
     return Status::kOk;
   }
 
@@ -86,88 +87,92 @@ class TreeSource {
   using RayStore = typename Store::RayStore;
   using Cache = typename RayStore::Cache;
 
-  // Where a child lies in main memory, and in its slot.
-  struct Place {
-    MainAddress begin;  // of the transfer
-    std::uint32_t bytes, first_byte, slack;
-  };
-  [[nodiscard]] Place place_of(TreeChild child) const {
-    const TreeRecord& tree = store_.rays.tree;
+  [[nodiscard]] Cache& cache() { return store_.wave.rays.cache; }
+
+  // Where a child lies in main memory.
+  [[nodiscard]] std::uint64_t address_of(TreeChild child) const {
+    if (!child.is_leaf()) return nodes_ + std::uint64_t{child.node_index()} * sizeof(TreeNode);
+    static_assert(sizeof(VertexTriangle) == 48 && sizeof(LatticeTriangle) == 24);
+    const std::uint64_t thirds = child.first() * std::uint32_t{3};
+    return triangles_ + (thirds << (is_on_lattice_ ? 3 : 4));
+  }
+  // And in its slot, if it is a leaf.
+  [[nodiscard]] static std::uint32_t first_byte_of(std::uint64_t address) {
+    return static_cast<std::uint32_t>(address) % kPortableCongruenceBytes;
+  }
+  // Waits for nodes count as those for cell blocks do, waits for leaves as those for triangles. Children that are asked
+  // for together lie in different sets, and have tags of their own.
+  [[nodiscard]] static std::uint8_t tag_of(std::uint32_t slot, TreeChild child) {
+    static constexpr std::uint32_t kTags = 8;
+    static constexpr std::uint32_t kTagSlots = Cache::kSlots < kTags ? std::uint32_t{1} : Cache::kSlots / kTags;
+    static_assert(kTags <= kMacroTagCount && kTags <= kTriangleTagCount);
+    const std::uint32_t first = child.is_leaf() ? std::uint32_t{kFirstTriangleTag} : std::uint32_t{kFirstMacroTag};
+    return static_cast<std::uint8_t>(first + slot / kTagSlots);
+  }
+
+  // Finds a child's slot, or the first of those that it may have.
+  [[nodiscard]] GRIDIRON_INLINE bool find(TreeChild child, std::uint32_t& slot) {
+    slot = ((child.bits ^ child.bits >> 3) & (Cache::kSets - 1)) * Cache::kWays;
+    const std::uint32_t* const keys = cache().keys + slot;
+    std::uint32_t found = 0;
+    if constexpr (L::kCount == 1) {
+      for (std::uint32_t way = 0; way < Cache::kWays; ++way) {
+        if (keys[way] == child.bits) found = 1u << way;
+      }
+    } else {
+      found = Lanes<4>::equal(child.bits, keys).bits();
+    }
+    if (found == 0) return false;
+    slot += lowest_bit(found);
+    return true;
+  }
+
+  // @param slot  as find() left it; gets the child's.
+  [[nodiscard]] GRIDIRON_OUTLINE Status start(TreeChild child, std::uint32_t& slot) {
+    std::uint32_t& turn = cache().turns[slot / Cache::kWays];
+    slot += turn;
+    turn = (turn + 1) % Cache::kWays;
+    if ((pending_ >> slot & 1u) != 0) GRIDIRON_TRY(arrive(slot));
+    cache().keys[slot] = child.bits;
+    pending_ |= 1u << slot;
+    const std::uint64_t address = address_of(child);
     if (!child.is_leaf()) {
-      const std::uint64_t offset = tree.nodes_offset_bytes + std::uint64_t{child.node_index()} * sizeof(TreeNode);
-      return {MainAddress{store_.frame.image_address + offset}, sizeof(TreeNode), 0, 0};
+      return transfers_.get(cache().slots[slot].bytes, MainAddress{address}, sizeof(TreeNode), tag_of(slot, child));
     }
     // Records of half the length start and end between the multiples of 16 bytes that a transfer moves.
     static constexpr std::uint32_t kStep = kPortableGranuleBytes;
-    const std::uint64_t begin = store_.frame.image_address + tree.triangles_offset_bytes +
-                                std::uint64_t{child.first()} * tree.triangle_bytes;
-    const std::uint32_t slack = static_cast<std::uint32_t>(begin % kStep);
-    const std::uint32_t bytes = (slack + child.count() * tree.triangle_bytes + (kStep - 1)) & ~(kStep - 1);
-    return {MainAddress{begin - slack}, bytes, static_cast<std::uint32_t>(begin % kPortableCongruenceBytes), slack};
+    const std::uint32_t slack = static_cast<std::uint32_t>(address) % kStep;
+    const std::uint32_t length = child.count() * (is_on_lattice_ ? std::uint32_t{24} : std::uint32_t{48});
+    const std::uint32_t bytes = (slack + length + (kStep - 1)) & ~(kStep - 1);
+    return transfers_.get(cache().slots[slot].bytes + (first_byte_of(address) - slack), MainAddress{address - slack},
+                          bytes, tag_of(slot, child));
   }
 
-  [[nodiscard]] Cache& cache() { return store_.wave.rays.cache; }
-  [[nodiscard]] bool is_on_lattice() const {
-    return store_.rays.tree.triangle_format == static_cast<std::uint32_t>(TriangleFormat::kLattice);
-  }
-  [[nodiscard]] static std::uint32_t set_of(TreeChild child) {
-    const std::uint32_t bits = child.bits;
-    return (bits ^ bits >> 4 ^ bits >> 8 ^ bits >> 27) & (Cache::kSets - 1);
-  }
-  // Waits for nodes count as those for cell blocks do, waits for leaves as those for triangles.
-  [[nodiscard]] std::uint8_t tag_of(std::uint32_t slot) {
-    return static_cast<std::uint8_t>((cache().keys[slot] & TreeChild::kLeaf) != 0
-                                         ? kFirstTriangleTag + slot % kTriangleTagCount
-                                         : kFirstMacroTag + slot % kMacroTagCount);
+  [[nodiscard]] GRIDIRON_INLINE Status take(TreeChild child, std::uint32_t& slot) {
+    if (!find(child, slot)) GRIDIRON_TRY(start(child, slot));
+    return (pending_ >> slot & 1u) != 0 ? arrive(slot) : Status::kOk;
   }
 
-  // @returns the child's slot, or kSlots.
-  [[nodiscard]] std::uint32_t find(TreeChild child) {
-    const std::uint32_t first = set_of(child) * Cache::kWays;
-    const std::uint32_t* const keys = cache().keys + first;
-    if (keys[0] == child.bits) return first;
-    if (keys[1] == child.bits) return first + 1;
-    if (keys[2] == child.bits) return first + 2;
-    return keys[3] == child.bits ? first + 3 : std::uint32_t{Cache::kSlots};
-  }
-
-  [[nodiscard]] Status start(TreeChild child, std::uint32_t& slot) {
-    slot = set_of(child) * Cache::kWays;
-    const std::uint32_t end = slot + Cache::kWays;
-    for (std::uint32_t i = slot + 1; i < end; ++i) {
-      if (cache().uses[i] < cache().uses[slot]) slot = i;
-    }
-    if (cache().is_pending[slot] != 0) GRIDIRON_TRY(arrive(slot));
-    cache().keys[slot] = child.bits;
-    cache().uses[slot] = ++clock_;
-    cache().is_pending[slot] = 1;
-    const Place place = place_of(child);
-    return transfers_.get(cache().slots[slot].bytes + (place.first_byte - place.slack), place.begin, place.bytes,
-                          tag_of(slot));
-  }
-
-  [[nodiscard]] Status take(TreeChild child, std::uint32_t& slot) {
-    slot = find(child);
-    if (slot == Cache::kSlots) GRIDIRON_TRY(start(child, slot));
-    cache().uses[slot] = ++clock_;
-    return cache().is_pending[slot] != 0 ? arrive(slot) : Status::kOk;
-  }
-
-  [[nodiscard]] GRIDIRON_OUTLINE Status arrive(std::uint32_t slot) {
-    GRIDIRON_TRY(transfers_.wait(tag_of(slot)));
-    cache().is_pending[slot] = 0;
+  [[nodiscard]] Status arrive(std::uint32_t slot) {
     const TreeChild child{cache().keys[slot]};
-    if (!child.is_leaf() || !is_on_lattice()) return Status::kOk;
+    GRIDIRON_TRY(transfers_.wait(tag_of(slot, child)));
+    pending_ &= ~(1u << slot);
+    return is_on_lattice_ && child.is_leaf() ? spread(slot, child) : Status::kOk;
+  }
+  [[nodiscard]] GRIDIRON_OUTLINE Status spread(std::uint32_t slot, TreeChild child) {
     store_.work.add(Work::kLatticeTriangle, child.count());
     store_.work.charge_to(Work::kLatticeTriangle);
-    spread_lattice_run(store_.rays.tree.lattice, cache().slots[slot].bytes, place_of(child).first_byte, child.count());
+    spread_lattice_run(store_.rays.tree.lattice, cache().slots[slot].bytes, first_byte_of(address_of(child)),
+                       child.count());
     return Status::kOk;
   }
 
   Store& store_;
   Transfers<P>& transfers_;
-  std::uint32_t clock_ = 0;
-  std::uint32_t surface_ = kNoTriangle;  ///< the triangle that was fetched last for a tie
+  std::uint64_t nodes_ = 0, triangles_ = 0;  ///< where they begin in main memory
+  std::uint32_t pending_ = 0;                ///< slots whose transfers were not waited for yet, as bits
+  std::uint32_t surface_ = kNoTriangle;      ///< the triangle that was fetched last for a tie
+  bool is_on_lattice_ = false;
 };
 
 }  // namespace gridiron

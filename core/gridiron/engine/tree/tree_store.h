@@ -20,8 +20,8 @@ struct alignas(128) TreeStore {
   TreeRecord tree;
 };
 
-/// Nodes and leaves that were fetched: sets of four, in which the one used longest ago makes room.
-/// @tparam Slots  4 times a power of two, at most 64. @tparam LeafTriangles  of a leaf, at most.
+/// Nodes and leaves that were fetched: sets of four, in which the one fetched longest ago makes room.
+/// @tparam Slots  4 times a power of two, at most 32. @tparam LeafTriangles  of a leaf, at most.
 template <std::uint32_t Slots, std::uint32_t LeafTriangles>
 struct TreeCache {
   static constexpr std::uint32_t kSlots = Slots, kWays = 4, kSets = Slots / kWays;
@@ -30,7 +30,7 @@ struct TreeCache {
   static constexpr std::uint32_t kSlotBytes =
       ((kLeafBytes > sizeof(TreeNode) ? kLeafBytes : static_cast<std::uint32_t>(sizeof(TreeNode))) + 63) / 64 * 64;
   static constexpr std::uint32_t kNoKey = 0xFFFFFFFFu;  ///< of no child
-  static_assert(Slots <= 64 && kSets * kWays == Slots && (kSets & (kSets - 1)) == 0);
+  static_assert(Slots <= 32 && kSets * kWays == Slots && (kSets & (kSets - 1)) == 0);
   static_assert(LeafTriangles <= kMaxTreeLeaf);
 
   struct alignas(64) Slot {
@@ -38,8 +38,7 @@ struct TreeCache {
   };
   Slot slots[Slots];
   alignas(16) std::uint32_t keys[Slots];  ///< TreeChild::bits of what a slot has, or will have
-  std::uint32_t uses[Slots];              ///< when it was last used
-  std::uint8_t is_pending[Slots];         ///< 0, 1: not waited for yet
+  std::uint32_t turns[kSets];             ///< of each set: the slot that makes room next
 };
 
 /// Memory while rays are traced.
