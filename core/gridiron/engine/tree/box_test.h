@@ -48,8 +48,8 @@ struct BoxSides {
   using Float = typename L::Float;
   Float near[3], far[3];
 
-  /// @returns the boxes that a ray meets, as bits.
-  [[nodiscard]] GRIDIRON_INLINE std::uint32_t met_by(const BoxRay<L>& ray) const {
+  /// @returns the boxes that a ray misses, as bits.
+  [[nodiscard]] GRIDIRON_INLINE std::uint32_t missed_by(const BoxRay<L>& ray) const {
     Float in[3], out[3];
     for (int axis = 0; axis < 3; ++axis) {
       in[axis] = (near[axis] - ray.origin[axis]) * ray.inverse[axis];
@@ -57,29 +57,24 @@ struct BoxSides {
     }
     const Float first = L::max(L::max(in[0], in[1]), L::max(in[2], Float(0.0f)));
     const Float last = L::min(L::min(out[0], out[1]), L::min(out[2], ray.t));
-    return ~(first > last * Float(kExitFactor)).bits() & L::kAllBits;
+    return (first > last * Float(kExitFactor)).bits();
   }
 };
 
-/// Where the sides of a node's boxes, or of their unions, lie that rays of one octant enter and leave by.
-struct SidePlaces {
-  const float *near[3], *far[3];
+/// Boxes of a node, or their unions: [axis][box].
+struct BoxTable {
+  const float *low, *high;
+  std::uint32_t boxes;  ///< of an axis
 
-  template <class Boxes>
-  GRIDIRON_INLINE SidePlaces(const Boxes& boxes, std::uint32_t octant) {
+  /// @returns the sides that rays of an octant enter and leave by. @param base  the first box: a multiple of L::kCount.
+  template <class L>
+  [[nodiscard]] GRIDIRON_INLINE BoxSides<L> sides(std::uint32_t octant, std::uint32_t base) const {
+    BoxSides<L> sides;
     for (std::uint32_t axis = 0; axis < 3; ++axis) {
       const bool is_backwards = (octant >> axis & 1u) != 0;
-      near[axis] = is_backwards ? boxes.high[axis] : boxes.low[axis];
-      far[axis] = is_backwards ? boxes.low[axis] : boxes.high[axis];
-    }
-  }
-  /// @param base  the first of the boxes: a multiple of L::kCount.
-  template <class L>
-  [[nodiscard]] GRIDIRON_INLINE BoxSides<L> load(std::uint32_t base) const {
-    BoxSides<L> sides;
-    for (int axis = 0; axis < 3; ++axis) {
-      sides.near[axis] = L::Float::load(near[axis] + base);
-      sides.far[axis] = L::Float::load(far[axis] + base);
+      const std::uint32_t place = axis * boxes + base;
+      sides.near[axis] = L::Float::load((is_backwards ? high : low) + place);
+      sides.far[axis] = L::Float::load((is_backwards ? low : high) + place);
     }
     return sides;
   }
@@ -119,11 +114,13 @@ GRIDIRON_INLINE void unite_boxes(const TreeNode& node, NodeUnions& unions) {
 template <class L>
 inline constexpr std::uint32_t kBoxRays = L::kCount == 4 ? 2 : 1;
 
-/// Tests rays of one octant, those of a list from `begin` on, against the same boxes: words without masks get them.
-/// @param list  ends with kListEnd. @returns where the octant ends.
+/// Tests rays of one octant, those of a list from `begin` on, against the same boxes.
+/// @param list    ends with kListEnd; its words get bits of missed boxes, from `place` on.
+/// @param closed  boxes that no ray meets so far. @returns where the octant ends.
 template <class L>
 GRIDIRON_INLINE std::uint32_t mark_run(const BoxSides<L>* sides, BatchRay* rays, std::uint32_t* list,
-                                       std::uint32_t begin, Work kind, std::uint32_t& open, WorkCounters& work) {
+                                       std::uint32_t begin, std::uint32_t place, Work kind, std::uint32_t& closed,
+                                       WorkCounters& work) {
   static constexpr std::uint32_t kGroups = L::kCount < 4 ? 4 : L::kCount == 8 ? 2 : 1;
   const std::uint32_t behind = behind_octant(list[begin]);
   std::uint32_t i = begin, word = list[i];
@@ -135,17 +132,19 @@ GRIDIRON_INLINE std::uint32_t mark_run(const BoxSides<L>* sides, BatchRay* rays,
       const bool are_two = next < behind;
       const std::uint32_t second = are_two ? i + 1 : i, second_word = are_two ? next : word;
       const BoxRay<L> first_ray(ray_of(rays, word)), second_ray(ray_of(rays, second_word));
-      const std::uint32_t first_met = sides->met_by(first_ray), second_met = sides->met_by(second_ray);
-      list[i] = word | first_met;
-      list[second] = second_word | second_met;
-      open |= first_met | second_met;
+      const std::uint32_t first_missed = sides->missed_by(first_ray), second_missed = sides->missed_by(second_ray);
+      list[i] = word | first_missed << place;
+      list[second] = second_word | second_missed << place;
+      closed &= first_missed & second_missed;
       i = second + 1;
     } else {
       const BoxRay<L> ray(ray_of(rays, word));
-      std::uint32_t met = 0;
-      for (std::uint32_t group = 0; group < kGroups; ++group) met |= sides[group].met_by(ray) << group * L::kCount;
-      list[i] = word | met;
-      open |= met;
+      std::uint32_t missed = 0;
+      for (std::uint32_t group = 0; group < kGroups; ++group) {
+        missed |= sides[group].missed_by(ray) << group * L::kCount;
+      }
+      list[i] = word | missed << place;
+      closed &= missed;
       ++i;
     }
     word = list[i];
@@ -154,28 +153,33 @@ GRIDIRON_INLINE std::uint32_t mark_run(const BoxSides<L>* sides, BatchRay* rays,
 }
 
 /// The same for all octants of a list, with room for a word and for L::kCount words more.
-/// @param boxes  TreeNode or NodeUnions. @param base  the first of them.
-/// @param kind   of work that a test of kBoxRays is. @returns the boxes that any ray meets, of those that there are.
-template <class L, class Boxes>
-GRIDIRON_INLINE std::uint32_t mark_list(const Boxes& boxes, std::uint32_t base, BatchRay* rays, std::uint32_t* list,
-                                        std::uint32_t count, Work kind, WorkCounters& work) {
+/// @param base   the first box: as many are tested as a part has. @param place  of its bit.
+/// @param kind   of work that a test of kBoxRays is. @returns the boxes that any ray meets.
+template <class L>
+GRIDIRON_OUTLINE std::uint32_t mark_list(const BoxTable& boxes, std::uint32_t base, std::uint32_t place, BatchRay* rays,
+                                         std::uint32_t* list, std::uint32_t count, Work kind, WorkCounters& work) {
   static constexpr std::uint32_t kGroups = L::kCount < 4 ? 4 : L::kCount == 8 ? 2 : 1;
-  std::uint32_t open = 0;
+  static constexpr std::uint32_t kBoxes = kTreeWidth / kBoxParts<L>;
+  std::uint32_t closed = (1u << kBoxes) - 1;
   list[count] = kListEnd;
   for (std::uint32_t i = 0; i < count;) {
     work.add(Work::kListRun);
     work.charge_to(Work::kListRun);
-    const SidePlaces places(boxes, octant_of(list[i]));
     BoxSides<L> sides[kGroups];
-    for (std::uint32_t group = 0; group < kGroups; ++group) sides[group] = places.load<L>(base + group * L::kCount);
+    for (std::uint32_t group = 0; group < kGroups; ++group) {
+      sides[group] = boxes.template sides<L>(octant_of(list[i]), base + group * L::kCount);
+    }
     work.charge_to(kind);
-    i = mark_run<L>(sides, rays, list, i, kind, open, work);
+    i = mark_run<L>(sides, rays, list, i, place, kind, closed, work);
   }
   work.charge_to(Work::kListNode);
-  // Words up to the next group of lanes meet nothing, so that take_marked() need not look where the list ends.
-  for (std::uint32_t i = count; i % L::kCount != 0; ++i) list[i] = 0;
-  return open;
+  // Words up to the next group of lanes miss all, so that take_marked() need not look where the list ends.
+  for (std::uint32_t i = count; i % L::kCount != 0; ++i) list[i] = kMaskBits;
+  return ~closed & ((1u << kBoxes) - 1);
 }
+
+/// Nodes of so many children are tested as they are, without unions.
+inline constexpr std::uint32_t kFewChildren = 8;
 
 /// Finds the boxes of a node that each ray of a list meets. @param level  gets the lists of its parts, behind `list`.
 /// @param arena  of the lists. @returns the children that any ray meets.
@@ -184,26 +188,33 @@ template <class L>
                                                        std::uint32_t list, std::uint32_t count, ListLevel& level,
                                                        WorkCounters& work) {
   const std::uint32_t there = (2u << (node.child_count - 1)) - 1;
-  static constexpr std::uint32_t kStep = kListStep<L>;
+  static constexpr std::uint32_t kStep = kListStep<L>, kParts = kBoxParts<L>, kPartBoxes = kTreeWidth / kParts;
   std::uint32_t end = (list + count + (kStep - 1)) & ~(kStep - 1);
   std::uint32_t open = 0;
-  if constexpr (kBoxParts<L> == 1) {
-    open = mark_list<L>(node, 0, rays, arena + list, count, Work::kListRayNode, work);
-    level.lists[0] = list;
-    level.ray_counts[0] = count;
+  const BoxTable boxes{node.low[0], node.high[0], kTreeWidth};
+  if (kParts == 1 || node.child_count <= kFewChildren) {
+    static constexpr Work kKind = kParts == 1 ? Work::kListRayNode : Work::kListBoxQuad;
+    for (std::uint32_t part = 0; part * kPartBoxes < node.child_count; ++part) {
+      const std::uint32_t base = part * kPartBoxes;
+      level.lists[part] = list;
+      level.ray_counts[part] = count;
+      open |= mark_list<L>(boxes, base, base, rays, arena + list, count, kKind, work) << base;
+    }
   } else {
     NodeUnions unions;
     unite_boxes<L>(node, unions);
-    const std::uint32_t quads = mark_list<L>(unions, 0, rays, arena + list, count, Work::kListRayNode, work);
-    for (std::uint32_t quad = 0; quad < kBoxParts<L>; ++quad) {
-      level.ray_counts[quad] = 0;
-      if ((quads >> quad & 1u) == 0) continue;
+    const BoxTable united{unions.low[0], unions.high[0], 4};
+    const std::uint32_t quads = mark_list<L>(united, 0, 0, rays, arena + list, count, Work::kListRayNode, work);
+    for (std::uint32_t part = 0; part < kParts; ++part) {
+      level.ray_counts[part] = 0;
+      if ((quads >> part & 1u) == 0) continue;
       work.add(Work::kListEntry, count);
       work.charge_to(Work::kListEntry);
-      const std::uint32_t taken = take_marked<L>(arena + list, count, quad, arena + end);
-      level.lists[quad] = end;
-      level.ray_counts[quad] = taken;
-      open |= mark_list<L>(node, 4 * quad, rays, arena + end, taken, Work::kListBoxQuad, work) << 4 * quad;
+      const std::uint32_t taken = take_marked<L>(arena + list, count, part, arena + end);
+      const std::uint32_t base = part * kPartBoxes;
+      level.lists[part] = end;
+      level.ray_counts[part] = taken;
+      open |= mark_list<L>(boxes, base, base, rays, arena + end, taken, Work::kListBoxQuad, work) << base;
       end = (end + taken + (kStep - 1)) & ~(kStep - 1);
     }
   }

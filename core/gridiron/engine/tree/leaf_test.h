@@ -104,16 +104,6 @@ struct LeafAnswer {
   }
 };
 
-/// On which side of three edges a ray's line passes L::kCount triangles, and what its distance follows from.
-template <class L>
-struct LineSides {
-  using Float = typename L::Float;
-  Float x, y, z, t, denominator, size, least, far, turn, error;
-
-  /// @returns the triangles that the line does not surely miss. Where there is no bound, it misses none.
-  [[nodiscard]] GRIDIRON_INLINE std::uint32_t not_missed() const { return ~(least + error < Float(0.0f)).bits(); }
-};
-
 /// The lanes of a leaf from `base` on, in registers.
 template <class L>
 struct LeafLanes {
@@ -130,7 +120,8 @@ struct LeafLanes {
     }
   }
 
-  [[nodiscard]] GRIDIRON_INLINE LineSides<L> sides_of(const BatchRay& ray) const {
+  /// @param there  the lanes that have a triangle.
+  [[nodiscard]] GRIDIRON_INLINE LeafAnswer<L> test(const BatchRay& ray, std::uint32_t there) const {
     Float o_x, o_y, o_z, d_x, d_y, d_z, t, dir_max;
     if constexpr (L::kCount == 4) {
       const Float place = Float::load(ray.origin), sizes = Float::load(ray.inverse), dir = Float::load(ray.dir);
@@ -157,23 +148,23 @@ struct LeafLanes {
     const Float far = L::abs(x) + L::abs(y) + (L::abs(z) + Float(kLeastListSize));
     const Float turn = normal_error * dir_max;
     const Float error = far * dir_max * edge_error + turn;
-    return {x, y, z, t, denominator, size, L::min(L::min(first, second), third), far, turn, error};
-  }
-
-  /// Where along the ray. @param candidates  the triangles that are asked for, some of not_missed().
-  [[nodiscard]] GRIDIRON_INLINE LeafAnswer<L> answer(const LineSides<L>& sides, std::uint32_t candidates) const {
-    const Float ahead = L::turn_by(sides.denominator, sides.x * n[0] + sides.y * n[1] + sides.z * n[2]);
-    const Float limit = sides.size * sides.t;
-    const Float ahead_error = sides.far * normal_error + Float(kLeastAhead);
-    const Float limit_error = sides.turn * sides.t + limit * Float(0x1p-20f) + ahead_error;
-    const std::uint32_t sign_known = (sides.size > sides.turn).bits();
+    const Float least = L::min(L::min(first, second), third);
+    // Where there is no bound, nothing is outside or inside.
+    const std::uint32_t candidates = there & ~(least + error < Float(0.0f)).bits();
+    if (candidates == 0) return {0, 0, 0, Float(0.0f), Float(0.0f), Float(0.0f), Float(0.0f)};
+    // Where along the ray.
+    const Float ahead = L::turn_by(denominator, x * n[0] + y * n[1] + z * n[2]);
+    const Float limit = size * t;
+    const Float ahead_error = far * normal_error + Float(kLeastAhead);
+    const Float limit_error = turn * t + limit * Float(0x1p-20f) + ahead_error;
+    const std::uint32_t sign_known = (size > turn).bits();
     const std::uint32_t in_front = (ahead > ahead_error).bits() & sign_known;
     const std::uint32_t behind = (ahead < -ahead_error).bits() & sign_known;
     const std::uint32_t beyond = (ahead - limit > limit_error).bits() & sign_known;
     const std::uint32_t in_reach = candidates & ~(behind | beyond);
-    const std::uint32_t inside = (sides.least > sides.error).bits();
+    const std::uint32_t inside = (least > error).bits();
     return {in_reach & inside, in_reach & ~inside, (limit - ahead > limit_error).bits() & in_front,
-            ahead, ahead_error, sides.size, sides.turn};
+            ahead, ahead_error, size, turn};
   }
 };
 

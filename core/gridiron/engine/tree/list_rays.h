@@ -14,7 +14,7 @@
 
 namespace gridiron {
 
-/// A word of a list: the boxes of the node that its ray meets, bit i = child i; above them the ray's place, in quads of
+/// A word of a list: the boxes of the node that its ray misses, bit i = child i; above them the ray's place, in quads of
 /// words from the first ray, and its octant.
 inline constexpr std::uint32_t kPlaceShift = 16, kOctantShift = 29;
 inline constexpr std::uint32_t kMaskBits = (1u << kPlaceShift) - 1;
@@ -136,14 +136,14 @@ GRIDIRON_INLINE std::uint32_t take_marked(const std::uint32_t* list, std::uint32
   if constexpr (L::kCount == 1) {
     for (std::uint32_t i = 0; i < count; ++i) {
       target[taken] = list[i] & ~kMaskBits;
-      taken += list[i] >> place & 1u;
+      taken += 1 - (list[i] >> place & 1u);
     }
   } else {
     using Int = typename L::Int;
-    const Int bit = Int::splat(1u << place), none = Int::splat(0), rays = Int::splat(~kMaskBits);
+    const Int bit = Int::splat(1u << place), rays = Int::splat(~kMaskBits);
     for (std::uint32_t i = 0; i < count; i += L::kCount) {
       const Int words = Int::load(list + i);
-      const std::uint32_t marked = (none < (words & bit)).bits();
+      const std::uint32_t marked = ((words & bit) < bit).bits();
       L::compress(words & rays, marked, target + taken);
       taken += count_bits(marked);
     }

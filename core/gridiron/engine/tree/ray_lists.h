@@ -71,8 +71,6 @@ class RayLists {
  private:
   using Float = typename L::Float;
   static constexpr std::uint32_t kStep = kListStep<L>, kParts = kBoxParts<L>;
-  // Rays that a leaf's lanes are tested against at once, as kBoxRays.
-  static constexpr std::uint32_t kLeafRays = kBoxRays<L>;
   static constexpr std::uint32_t kLevelWords = (1 + kListParts<L>)*kStep;
   [[nodiscard]] static std::uint32_t step_up(std::uint32_t words) {
     return (words + (kStep - 1)) & ~(kStep - 1);
@@ -112,7 +110,7 @@ class RayLists {
   [[nodiscard]] std::uint32_t select(ListLevel& level, std::uint32_t depth) {
     work_.add(Work::kListChild);
     const std::uint32_t child = level.places[level.turn / 8] >> 4 * (level.turn % 8) & 15;
-    const std::uint32_t part = child / (kTreeWidth / kParts), place = child % (kTreeWidth / kParts);
+    const std::uint32_t part = child / (kTreeWidth / kParts);
     const std::uint32_t below = (kMaxTreeDepth - 1 - depth) * kLevelWords;
     const std::uint32_t room = Memory::kArenaWords - level.end - below;
     const std::uint32_t* const list = memory_.arena + level.lists[part];
@@ -128,7 +126,7 @@ class RayLists {
     const std::uint32_t seen = end - level.taken;
     work_.add(Work::kListEntry, seen);
     work_.charge_to(Work::kListEntry);
-    std::uint32_t count = take_marked<L>(list + level.taken, seen, place, target);
+    std::uint32_t count = take_marked<L>(list + level.taken, seen, child, target);
     work_.charge_to(Work::kListChild);
     level.taken = end;
     if (end == ray_count) {
@@ -219,28 +217,14 @@ class RayLists {
       const std::uint32_t rest = leaf.count() - base;
       const std::uint32_t there = rest >= L::kCount ? std::uint32_t{L::kAllBits} : (1u << rest) - 1u;
       const LeafLanes<L> lanes(memory_.triangles, base);
+      work_.add(Work::kListTriangleGroup, count);
       work_.charge_to(Work::kListTriangleGroup);
-      for (std::uint32_t i = 0; i < count; i += kLeafRays) {
-        work_.add(Work::kListTriangleGroup);
-        // The last ray of an odd number is tested twice, and answered once.
-        const bool are_two = kLeafRays == 2 && i + 1 < count;
-        BatchRay* const pair[2] = {&ray_of(memory_.rays, list[i]), &ray_of(memory_.rays, list[are_two ? i + 1 : i])};
-        const std::uint32_t asked[2] = {there, are_two ? there : std::uint32_t{0}};
-        std::uint32_t candidates[kLeafRays], any = 0;
-        LineSides<L> sides[kLeafRays];
-        for (std::uint32_t k = 0; k < kLeafRays; ++k) {
-          sides[k] = lanes.sides_of(*pair[k]);
-          candidates[k] = sides[k].not_missed() & asked[k];
-          any |= candidates[k];
-        }
-        if (any == 0) continue;
-        for (std::uint32_t k = 0; k < kLeafRays; ++k) {
-          if (candidates[k] == 0) continue;
-          const LeafAnswer<L> answer = lanes.answer(sides[k], candidates[k]);
-          if ((answer.inside | answer.unsure) == 0) continue;
-          GRIDIRON_TRY(decide(*pair[k], records + base, answer, base));
-          work_.charge_to(Work::kListTriangleGroup);
-        }
+      for (std::uint32_t i = 0; i < count; ++i) {
+        BatchRay& ray = ray_of(memory_.rays, list[i]);
+        const LeafAnswer<L> answer = lanes.test(ray, there);
+        if ((answer.inside | answer.unsure) == 0) continue;
+        GRIDIRON_TRY(decide(ray, records + base, answer, base));
+        work_.charge_to(Work::kListTriangleGroup);
       }
     }
     return Status::kOk;

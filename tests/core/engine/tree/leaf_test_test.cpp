@@ -56,9 +56,7 @@ class Leaf {
     for (std::uint32_t base = 0; base < count_; base += L::kCount) {
       const std::uint32_t rest = count_ - base;
       const std::uint32_t there = rest >= L::kCount ? std::uint32_t{L::kAllBits} : (1u << rest) - 1u;
-      const LeafLanes<L> lanes(lanes_, base);
-      const LineSides<L> sides = lanes.sides_of(ray);
-      const LeafAnswer<L> answer = lanes.answer(sides, sides.not_missed() & there);
+      const LeafAnswer<L> answer = LeafLanes<L>(lanes_, base).test(ray, there);
       EXPECT_EQ(answer.inside & answer.unsure, 0u);
       EXPECT_EQ((answer.inside | answer.unsure) & ~there, 0u) << "a lane without a triangle";
       bits.inside |= answer.inside << base;
