@@ -152,7 +152,7 @@ GRIDIRON_INLINE std::uint32_t mark_run(const BoxSides<L>* sides, BatchRay* rays,
   return i;
 }
 
-/// The same for all octants of a list, with room for a word and for L::kCount words more.
+/// The same for all octants of a list, with room for L::kCount words more.
 /// @param base   the first box: as many are tested as a part has. @param place  of its bit.
 /// @param kind   of work that a test of kBoxRays is. @returns the boxes that any ray meets.
 template <class L>
@@ -205,9 +205,8 @@ template <class L>
     unite_boxes<L>(node, unions);
     const BoxTable united{unions.low[0], unions.high[0], 4};
     const std::uint32_t quads = mark_list<L>(united, 0, 0, rays, arena + list, count, Work::kListRayNode, work);
-    for (std::uint32_t part = 0; part < kParts; ++part) {
-      level.ray_counts[part] = 0;
-      if ((quads >> part & 1u) == 0) continue;
+    for (std::uint32_t rest = quads; rest != 0; rest &= rest - 1) {
+      const std::uint32_t part = lowest_bit(rest);
       work.add(Work::kListEntry, count);
       work.charge_to(Work::kListEntry);
       const std::uint32_t taken = take_marked<L>(arena + list, count, part, arena + end);

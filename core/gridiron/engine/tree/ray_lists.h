@@ -166,11 +166,15 @@ class RayLists {
     level.child_count = 0;
     level.places[0] = level.places[1] = 0;
     if (question_.any_hit) {
-      std::uint64_t order = node->order;
-      for (std::uint32_t i = 0; i < node->child_count; ++i, order >>= 4) {
-        const auto child = static_cast<std::uint32_t>(order & 15);
-        if ((open >> child & 1u) != 0) add_child(level, *node, child);
-      }
+      // By turns first, without a branch for each child.
+      const std::uint32_t order[2] = {static_cast<std::uint32_t>(node->order),
+                                      static_cast<std::uint32_t>(node->order >> 32)};
+      const auto child_at = [&order](std::uint32_t turn) GRIDIRON_INLINE_LAMBDA {
+        return order[turn / 8] >> 4 * (turn % 8) & 15;
+      };
+      std::uint32_t turns = 0;
+      for (std::uint32_t i = 0; i < node->child_count; ++i) turns |= (open >> child_at(i) & 1u) << i;
+      for (; turns != 0; turns &= turns - 1) add_child(level, *node, child_at(lowest_bit(turns)));
       return Status::kOk;
     }
     add_nearest_first(level, *node, open, octant_of(memory_.arena[list]));
