@@ -137,8 +137,8 @@ GRIDIRON_INLINE std::uint32_t mark_run(const BoxSides<L>* sides, std::uint32_t t
   return i;
 }
 
-/// The same for all octants of a list, with room for L::kCount words more. @param boxes  TreeNode or NodeUnions. @param base  the first of them.
-/// @param kind  of work that a ray is. @returns the boxes that any ray meets.
+/// The same for all octants of a list, with room for L::kCount words more. @param boxes  TreeNode or NodeUnions.
+/// @param base  the first of them. @param kind  of work that a ray is. @returns the boxes that any ray meets.
 template <class L, class Boxes>
 GRIDIRON_INLINE std::uint32_t mark_list(const Boxes& boxes, std::uint32_t base, std::uint32_t there, BatchRay* rays,
                                         std::uint32_t* list, std::uint32_t count, Work kind, WorkCounters& work) {

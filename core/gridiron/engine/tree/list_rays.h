@@ -118,7 +118,8 @@ GRIDIRON_INLINE std::uint32_t set_up_list_ray(BatchRay& ray, float largest) {
   return set_up_odd_ray<L>(ray, octant, is_within(far), is_large || !is_within(kGreatestListPlace));
 }
 
-/// Copies the words of rays that meet a child. @param list    at a multiple of kListStep<L> words, as mark_list() left it.
+/// Copies the words of rays that meet a child.
+/// @param list    at a multiple of kListStep<L> words, as mark_list() left it.
 /// @param count   of words: all, or a multiple of L::kCount.
 /// @param place   of the child in their masks. @param target  room for as many, and L::kCount more.
 /// @returns how many.
