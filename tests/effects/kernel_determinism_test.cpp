@@ -105,8 +105,8 @@ TEST_P(KernelDeterminism, BytesThatComeLateChangeNothing) {
   expect_same(options, Alike::kAll, "late");
 }
 
-// Packets and lanes change how eye rays and groups are counted; pixels and rays they do not. Packets leave lists as they
-// are. Four lanes have five lists a node where wider ones have one, so lists are cut into pieces elsewhere: KernelLanes.
+// Packets and lanes change how eye rays and groups are counted; pixels and rays they do not. Packets leave lists as
+// they are. Four lanes have five lists a node where wider ones have one, so lists are cut elsewhere: KernelLanes.
 TEST_P(KernelDeterminism, PacketsAndLanesChangeNoPixelAndNoRay) {
   Base& scene = base(GetParam());
   const KernelOptions options{.accuracy = GetParam()};
