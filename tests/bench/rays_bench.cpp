@@ -176,7 +176,11 @@ std::vector<Way> ways_of(const EmbreeScenes& scenes) {
 class RaySet {
  public:
   RaySet(const std::vector<peer::PeerRay>& rays, bool any_hit, std::uint32_t batch_rays)
-      : rays_(rays), any_hit_(any_hit), batch_rays_(batch_rays), ours_(memory_rays(rays)), answers_(rays.size() / kGroupRays) {
+      : rays_(rays),
+        any_hit_(any_hit),
+        batch_rays_(batch_rays),
+        ours_(memory_rays(rays)),
+        answers_(rays.size() / kGroupRays) {
     for (const peer::EmbreeCall call : kCalls) batches_.emplace_back(call, any_hit);
   }
 

@@ -32,7 +32,8 @@ struct AnswerGroup {
   std::uint32_t hits;               ///< bit i: ray i hits something
 };
 
-/// Answers rays[i] in answers[i / kGroupRays]. @param batch_rays  traced together: a multiple of kGroupRays, at most kMaxBatchRays.
+/// Answers rays[i] in answers[i / kGroupRays].
+/// @param batch_rays  traced together: a multiple of kGroupRays, at most kMaxBatchRays.
 using TraceLists = void(const ListTree& tree, std::span<const MemoryRay> rays, std::span<AnswerGroup> answers,
                         std::uint32_t batch_rays, bool any_hit);
 

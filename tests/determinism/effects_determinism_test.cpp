@@ -154,8 +154,8 @@ TEST(EffectsDeterminism, TracesTakeFewBytes) {
   const std::uint64_t bytes = trace.packed_bytes();
   RecordProperty("steps", std::to_string(steps));
   RecordProperty("bytes", std::to_string(bytes));
-  EXPECT_GT(steps, 400000u) << "of 1,800 pixels";
-  EXPECT_LT(bytes, 600000u);
+  EXPECT_GT(steps, 90000u) << "of 1,800 pixels";
+  EXPECT_LT(bytes, 220000u);
 }
 
 TEST(EffectsDeterminism, ThreadsAndOrderOfTransfersChangeNothing) {

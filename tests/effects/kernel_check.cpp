@@ -43,10 +43,11 @@ double largest_share(const ReferenceCounts& a, const ReferenceCounts& b) {
   return largest;
 }
 
-std::string different_work(const WorkCounters& a, const WorkCounters& b, WorkId except) {
+std::string different_work(const WorkCounters& a, const WorkCounters& b, std::initializer_list<WorkId> except) {
   std::string words;
   for (std::uint32_t kind = 0; kind < kWorkKindCount; ++kind) {
-    if (a.counts[kind] == b.counts[kind] || kind == except.number()) continue;
+    if (a.counts[kind] == b.counts[kind]) continue;
+    if (std::find(except.begin(), except.end(), WorkId(kind)) != except.end()) continue;
     words += "kind " + std::to_string(kind) + ": " + std::to_string(a.counts[kind]) + " and " +
              std::to_string(b.counts[kind]) + "; ";
   }

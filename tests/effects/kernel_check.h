@@ -24,9 +24,14 @@ inline constexpr std::string_view kShippedScenes[] = {
 /// @returns the largest difference of a kind of rays, as a share of the second's rays of that kind.
 [[nodiscard]] double largest_share(const ReferenceCounts& a, const ReferenceCounts& b);
 
-/// @returns the kinds of work in which two frames differ, "" where in none. @param except  a kind left aside.
+/// @returns the kinds of work in which two frames differ, "" where in none. @param except  kinds left aside.
 [[nodiscard]] std::string different_work(const WorkCounters& a, const WorkCounters& b,
-                                         WorkId except = WorkId(kWorkKindCount));
+                                         std::initializer_list<WorkId> except = {});
+/// The same but for transfers: frames that ask for another number of nodes and leaves ahead may fetch some again that
+/// were displaced, and make their triangles of the lattice again.
+[[nodiscard]] inline std::string different_but_in_transfers(const WorkCounters& a, const WorkCounters& b) {
+  return different_work(a, b, {Work::kGetIssue, Work::kWait, Work::kLatticeTriangle});
+}
 
 /// @returns the brightest channel of a pixel. @param color  0xAABBGGRR.
 [[nodiscard]] constexpr std::uint32_t brightest(std::uint32_t color) {

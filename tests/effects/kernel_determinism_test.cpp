@@ -64,16 +64,14 @@ class KernelDeterminism : public testing::TestWithParam<Accuracy> {
     ASSERT_EQ(picture.status, Status::kOk) << picture.violation;
     EXPECT_EQ(picture.violation, "");
     EXPECT_EQ(picture.color, scene.picture.color);
-    WorkCounters work = picture.work;
     if (alike == Alike::kAllButTransfers) {
-      // Triangles of the lattice are made when they arrive.
-      for (const WorkId kind : {WorkId(Work::kGetIssue), WorkId(Work::kLatticeTriangle)}) {
-        work.counts[kind.number()] = scene.picture.work[kind];
-      }
+      EXPECT_EQ(different_but_in_transfers(picture.work, scene.picture.work), "");
+      return;
     }
-    EXPECT_EQ(different_work(work, scene.picture.work, alike == Alike::kAll ? WorkId(kWorkKindCount) : Work::kWait),
+    const bool is_all = alike == Alike::kAll;
+    EXPECT_EQ(is_all ? different_work(picture.work, scene.picture.work)
+                     : different_work(picture.work, scene.picture.work, {Work::kWait}),
               "");
-    if (alike == Alike::kAllButTransfers) return;
     EXPECT_EQ(picture.stage_bytes, scene.picture.stage_bytes);
     EXPECT_EQ(picture.stage_transfers, scene.picture.stage_transfers);
   }
@@ -107,7 +105,8 @@ TEST_P(KernelDeterminism, BytesThatComeLateChangeNothing) {
   expect_same(options, Alike::kAll, "late");
 }
 
-// Packets and lanes change how eye rays and groups are counted; pixels and rays they do not.
+// Packets and lanes change how eye rays and groups are counted; pixels and rays they do not. Packets leave lists as
+// they are. Four lanes have five lists a node where wider ones have one, so lists are cut elsewhere: KernelLanes.
 TEST_P(KernelDeterminism, PacketsAndLanesChangeNoPixelAndNoRay) {
   Base& scene = base(GetParam());
   const KernelOptions options{.accuracy = GetParam()};
@@ -123,7 +122,11 @@ TEST_P(KernelDeterminism, PacketsAndLanesChangeNoPixelAndNoRay) {
     EXPECT_EQ(rays_of(picture), rays_of(scene.picture)) << words_of(rays_of(picture));
     EXPECT_EQ(picture.work[Work::kLightSample], scene.picture.work[Work::kLightSample]);
     EXPECT_EQ(picture.work[Work::kColorAdded], scene.picture.work[Work::kColorAdded]);
-    for (const Work kind : {Work::kListRay, Work::kListNode, Work::kListRayNode, Work::kListChild, Work::kListLeaf}) {
+    EXPECT_EQ(picture.work[Work::kListRay], scene.picture.work[Work::kListRay]);
+    if (render == render_eight_lanes || render == render_sixteen_lanes) continue;
+    for (const Work kind : {Work::kListChild, Work::kListEntry, Work::kListNode, Work::kListRun, Work::kListRayNode,
+                            Work::kListBoxQuad, Work::kListLeaf, Work::kListTriangleGroup, Work::kListCandidate,
+                            Work::kRayDistance}) {
       EXPECT_EQ(picture.work[kind], scene.picture.work[kind]) << static_cast<int>(kind);
     }
   }

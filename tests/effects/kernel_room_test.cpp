@@ -99,11 +99,16 @@ TEST(KernelRoom, RaysThatWaitInMainMemory) {
   // What was put came back, all of it.
   expect_reference(scene, 40, 40, {0, 0.0, 0.12});
   for (const std::uint32_t depth : {1u, 3u}) {
-    const KernelOptions options{.walk_depth = depth, .queue_depth = depth, .moves_late = true};
+    KernelOptions options{.queue_depth = depth, .moves_late = true};
     const KernelPicture other = render_scene(scene, 40, 40, options);
     EXPECT_EQ(other.color, picture.color);
     EXPECT_EQ(other.spilled_bytes, picture.spilled_bytes);
-    EXPECT_EQ(different_work(other.work, picture.work, Work::kWait), "");
+    EXPECT_EQ(different_work(other.work, picture.work, {Work::kWait}), "");
+    options.walk_depth = depth;
+    const KernelPicture shallow = render_scene(scene, 40, 40, options);
+    EXPECT_EQ(shallow.color, picture.color);
+    EXPECT_EQ(shallow.spilled_bytes, picture.spilled_bytes);
+    EXPECT_EQ(different_but_in_transfers(shallow.work, picture.work), "");
   }
   // A room of half mirrors makes one ray of each: a picture with as few pixels as the queue holds spills nothing.
   EXPECT_EQ(render_scene(mirror_room_scene(), 16, 16).spilled_bytes, 0u);

@@ -170,7 +170,7 @@ class BruteForceRaysCore {
           store_.frame.engine, memory.triangles, transfers_, store_.work, [&](const VertexTriangle& triangle) {
             for (std::uint32_t i = 0; i < batch.count; ++i) {
               BatchRay& ray = batch.rays[i];
-              const bool has_answer = question.any_hit && ray.id != kNoTriangle;
+              const bool has_answer = question.any_hit && ray.has_hit();
               if (has_answer || !passes_through(ray, triangle, store_.work)) continue;
               const float t = ray_distance(ray, triangle, store_.work);
               // A limit is still a hit; of equal distances the lowest id counts.

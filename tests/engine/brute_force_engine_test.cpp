@@ -1,5 +1,5 @@
-// The seam between engines: engines that core does not know render the frames of grid and tree, effects and all, and the
-// simulated chip runs, counts and replays it. SPDX-License-Identifier: Apache-2.0
+// The seam between engines: engines that core does not know render the frames of grid and tree, effects and all, and
+// the simulated chip runs, counts and replays it. SPDX-License-Identifier: Apache-2.0
 #include "engine/brute_force_engine.h"
 
 #include <gridiron/render/tile_renderer.h>

@@ -12,7 +12,7 @@
 #define OUTPUT 3       // TileRenderer's output slots, the tracing left out
 #define DRIVER 4       // PacketDriver: both rings
 #define TILE 5         // TileRenderer with PacketDriver: all three
-#define WALKS 6        // WalkDriver
+#define LISTS 6        // TreeSource: nodes and leaves for lists of rays
 #define GATHER 7       // gather_records
 #define SPILL 8        // RayQueue
 
@@ -55,12 +55,28 @@
 #error "the model's arrays are made for 32 tags"
 #endif
 
+#if LEVEL == LISTS
+// Slots for nodes and leaves, DEPTH of them, or as many as the code's. There are fewer tags, so slots share them.
+#ifndef SLOTS
+#define SLOTS DEPTH
+#endif
+#ifdef TRACE
+#define NODE_TAGS K_MACRO_TAG_COUNT
+#define LEAF_TAGS K_TRIANGLE_TAG_COUNT
+#else
+#define NODE_TAGS ((SLOTS + 1) / 2)
+#define LEAF_TAGS ((SLOTS + 1) / 2)
+#endif
+#define SETUP_BUFFER SLOTS
+#define BUFFERS (SLOTS + 1)
+#else
 // Buffers: blocks, triangles, tiles, and the place that setup transfers go to.
 #define BLOCK(slot) (slot)
 #define RUN(slot) (DEPTH + (slot))
 #define TILE_OF(slot) (2 * DEPTH + (slot))
 #define SETUP_BUFFER (3 * DEPTH)
 #define BUFFERS (3 * DEPTH + 1)
+#endif
 
 #if BREAK == SHARED_TAG
 #define TAG_OF(first, slot) (first)
@@ -98,7 +114,11 @@ byte ranked, pending_count;
 byte total;          // commands that were started and not waited for
 byte issued[32];     // ... by tag
 byte moving[32];     // those of them that the engine has not ended
+#if LEVEL == LISTS
+byte moving_of[BUFFERS];  // ... by buffer
+#else
 byte owner[32];      // buffer whose bytes a tag's pending commands move
+#endif
 byte busy[BUFFERS];  // tag + 1 that moves a buffer's bytes and was not waited for; 0: none
 bool is_put[BUFFERS];
 byte left[BUFFERS];  // pieces of a get that the engine has not moved
@@ -155,21 +175,32 @@ inline platform_wait(tag) {
   atomic {
     CALLED(WAIT_CALL, tag);
     moving[tag] == 0;
+#if LEVEL == LISTS
+    for (t_ : 0 .. BUFFERS - 1) {
+      if :: busy[t_] == (tag) + 1 -> busy[t_] = 0 :: else fi
+    }
+    t_ = 0;
+    total = total - issued[tag];
+    issued[tag] = 0;
+#else
     if
     :: issued[tag] != 0 -> busy[owner[tag]] = 0; is_put[owner[tag]] = false; sent[owner[tag]] = 0; total = total - issued[tag]; issued[tag] = 0; owner[tag] = 0
     :: else
     fi;
+#endif
     YIELD
   }
 }
 
-// P::get and P::put of one piece. A tag's pending commands are those of one buffer; a buffer in flight or in use is
-// not started on; there is room in the queue.
+// P::get and P::put of one piece. A tag's pending commands are those of one buffer, but in LISTS; a buffer in flight or
+// in use is not started on; there is room in the queue.
 inline platform_start(put, buffer, tag, is_first) {
   atomic {
     CALLED((put -> PUT_CALL : GET_CALL), tag);
     assert(total < queue_depth);
+#if LEVEL != LISTS
     assert(issued[tag] == 0 || owner[tag] == buffer);
+#endif
     assert(busy[buffer] == 0 || (busy[buffer] == (tag) + 1 && !(is_first)));
     assert(!in_use[buffer]);
     total++;
@@ -179,8 +210,13 @@ inline platform_start(put, buffer, tag, is_first) {
     if :: !(put) -> left[buffer]-- :: else fi;
 #else
     moving[tag]++;
+#if LEVEL == LISTS
+    moving_of[buffer]++;
 #endif
+#endif
+#if LEVEL != LISTS
     owner[tag] = buffer;
+#endif
     busy[buffer] = (tag) + 1;
     is_put[buffer] = put;
     if :: put -> sent[buffer] = content[buffer] :: else fi;
@@ -189,6 +225,18 @@ inline platform_start(put, buffer, tag, is_first) {
 }
 
 // The engine moves the bytes of one pending command of a tag: those of a put are read now, those of a get arrive.
+#if LEVEL == LISTS
+inline end_one_of(buffer) {
+  d_step {
+    moving_of[buffer] != 0;
+    assert(!in_use[buffer]);
+    left[buffer]--;
+    if :: left[buffer] == 0 -> content[buffer] = wanted[buffer]; wanted[buffer] = 0 :: else fi;
+    moving_of[buffer]--;
+    moving[busy[buffer] - 1]--
+  }
+}
+#else
 inline end_one(tag) {
   d_step {
     moving[tag] != 0;
@@ -203,6 +251,7 @@ inline end_one(tag) {
     moving[tag]--
   }
 }
+#endif
 
 // Transfers::wait.
 inline wait(tag) {
@@ -548,114 +597,76 @@ inline run_tiles() {
 }
 #endif
 
-// --- WalkDriver: core/gridiron/engine/grid/walk_driver.h -------------------------------------------------------------------
+// --- TreeSource: core/gridiron/engine/tree/tree_source.h -----------------------------------------------------------------
 
-#if LEVEL == WALKS
-mtype { kIdle, kNextPass, kNextMacro, kHasBlock, kNextCell, kHasRun, kDone };
-mtype state[DEPTH];
-bool walk_cell_left[DEPTH];
+#if LEVEL == LISTS
+// What was fetched stays in its slot, to be used again, until the slot is fetched anew. Which slot makes room is a free
+// choice; in core it is one of a set.
+mtype = { kNothing, kNode, kLeaf };
+mtype has[SLOTS];
+bool is_pending[SLOTS];
+bit serial[SLOTS];  // of what a slot has, or will have
+#define SLOT_TAG(i) (has[i] == kLeaf -> K_FIRST_TRIANGLE_TAG + (i) % LEAF_TAGS : K_FIRST_MACRO_TAG + (i) % NODE_TAGS)
 
-// go_on: until the walk waits for a transfer, or is done.
-inline go_on(i) {
-  do
-  :: state[i] == kIdle || state[i] == kDone -> break
-  :: state[i] == kNextPass ->
-    if
-    :: true -> DECIDED(done); state[i] = kDone
-    :: true -> DECIDED(pass); state[i] = kNextMacro
-    fi
-  :: state[i] == kNextMacro ->  // find_macro_cell
-    do
-    :: true -> NOTED(chunk); get_now()
-    :: true -> NOTED(end); state[i] = kNextPass; break
-    :: true ->
-      NOTED(block);
-      state[i] = kHasBlock;
-      get(BLOCK(PLACE(i)), TAG_OF(K_FIRST_MACRO_TAG, i), i, PIECES);
-      break
-    od;
-    if :: state[i] == kHasBlock -> break :: else fi
-  :: state[i] == kHasBlock ->
+// arrive.
+inline arrive(i) {
 #if BREAK != NO_WAIT
-    wait(WAITED_TAG(K_FIRST_MACRO_TAG, i));
+  wait(SLOT_TAG(i));
 #endif
-    walk_cell_left[i] = false;
-    state[i] = kNextCell
-  :: state[i] == kNextCell ->  // find_run
-    if :: walk_cell_left[i] -> NOTED(beyond); walk_cell_left[i] = false :: true fi;
-    if
-    :: walk_cell_left[i] -> state[i] = kHasRun
-    :: else ->
-      begin_use(BLOCK(PLACE(i)), i);
-      in_use[BLOCK(PLACE(i))] = false;
-      if
-      :: true -> NOTED(no_cell); state[i] = kNextMacro
-      :: true -> DECIDED(unseen)
-      :: true -> DECIDED(cell); state[i] = kHasRun
-      fi
-    fi;
-    if
-    :: state[i] == kHasRun ->
-      if :: walk_cell_left[i] = false :: walk_cell_left[i] = true fi;
-      get(RUN(PLACE(i)), TAG_OF(K_FIRST_TRIANGLE_TAG, i), i, PIECES);
-      break
-    :: else
-    fi
-  :: state[i] == kHasRun ->
-    wait(TAG_OF(K_FIRST_TRIANGLE_TAG, i));
-    begin_use(RUN(PLACE(i)), i);  // test_run
-    do
-    :: true -> NOTED(tie); get_now()  // comes_before
-    :: true -> break
-    od;
-    end_use(RUN(PLACE(i)));
-    if
-    :: true -> NOTED(settled); state[i] = kNextPass
-    :: true -> NOTED(next); state[i] = kNextCell
-    fi
-  od
+  is_pending[i] = false
 }
 
 // start.
-inline start_walk(i) {
+inline start_child(i) {
+  select(i : 0 .. SLOTS - 1);
   if
-  :: true -> NOTED(job); state[i] = kNextPass
-  :: true -> has_more = false
-  fi
+#if BREAK != EARLY_GET
+  :: is_pending[i] -> arrive(i)
+  :: else
+#else
+  :: true
+#endif
+  fi;
+  if :: has[i] = kNode :: has[i] = kLeaf fi;
+  serial[i] = 1 - serial[i];
+  is_pending[i] = true;
+  get(i, SLOT_TAG(i), 1 + serial[i], PIECES)
 }
 
-// run.
-inline run_walks() {
+inline run_lists() {
   d_step {
-    for (t_ : 0 .. DEPTH - 1) { state[t_] = kIdle }
+    for (t_ : 0 .. SLOTS - 1) { has[t_] = kNothing }
     t_ = 0
   }
   do
-  :: true ->
+  :: true -> DECIDED(ahead); start_child(slot)  // ahead: a child that is not at hand
+  :: true ->                                    // node, leaf
+    DECIDED(take);
     if
-    :: state[walk] == kIdle && has_more -> start_walk(walk); if :: state[walk] != kIdle -> under_way++ :: else fi
-    :: else
+    :: true -> start_child(slot)
+    :: true -> select(slot : 0 .. SLOTS - 1)
     fi;
     if
-    :: state[walk] == kIdle && under_way == 0 -> break
-    :: state[walk] == kIdle && under_way != 0
-    :: state[walk] != kIdle ->
-      go_on(walk);
-      if
-      :: state[walk] == kDone ->
-        under_way--;
-        state[walk] = kIdle;
-        if
-        :: has_more ->
-          start_walk(walk);
-          if :: state[walk] != kIdle -> under_way++; go_on(walk) :: else fi
-        :: else
-        fi
-      :: else
-      fi
-    fi;
-    walk = (walk + 1) % DEPTH
-  od
+    :: has[slot] == kNothing
+    :: else ->
+      if :: is_pending[slot] -> arrive(slot) :: else fi;
+      begin_use(slot, 1 + serial[slot]);
+      do
+      :: has[slot] == kLeaf -> NOTED(tie); get_now()  // comes_before
+      :: true -> break
+      od;
+      in_use[slot] = false
+    fi
+  :: true -> break
+  od;
+  slot = 0;  // finish
+  do
+  :: slot < SLOTS ->
+    if :: is_pending[slot] -> arrive(slot) :: else fi;
+    slot++
+  :: else -> break
+  od;
+  slot = 0
 }
 #endif
 
@@ -808,10 +819,6 @@ active proctype core() {
 #if HAS_OUTPUT
   byte drawn;
 #endif
-#if LEVEL == WALKS
-  byte walk, under_way;
-  bool has_more = true;
-#endif
 #if LEVEL == GATHER
   byte i, ahead, front, used, last, at_hand, choice;
 #endif
@@ -841,8 +848,8 @@ active proctype core() {
   :: true -> DECIDED(pass); run_driver()
   :: true -> break
   od;
-#elif LEVEL == WALKS
-  run_walks();
+#elif LEVEL == LISTS
+  run_lists();
 #elif LEVEL == GATHER
   gather();
 #elif LEVEL == SPILL
@@ -873,6 +880,18 @@ active proctype core() {
 #else
 #define ENDS(first) END(first) END(first + 1) END(first + 2) END(first + 3)
 #endif
+#if LEVEL == LISTS
+#define END_OF(buffer) :: end_one_of(buffer)
+#if DEPTH == 1
+#define ENDS_OF_SLOTS END_OF(0)
+#elif DEPTH == 2
+#define ENDS_OF_SLOTS END_OF(0) END_OF(1)
+#elif DEPTH == 3
+#define ENDS_OF_SLOTS END_OF(0) END_OF(1) END_OF(2)
+#else
+#define ENDS_OF_SLOTS END_OF(0) END_OF(1) END_OF(2) END_OF(3)
+#endif
+#endif
 active proctype engine() {
 end_engine:
   do
@@ -885,11 +904,16 @@ progress_scene:
 #else
   :: yields -> yields = false
 #endif
+#if LEVEL == LISTS
+  END_OF(SETUP_BUFFER)
+  ENDS_OF_SLOTS
+#else
   END(K_SETUP_TAG)
-#if HAS_BLOCKS || LEVEL == WALKS
+#endif
+#if HAS_BLOCKS
   ENDS(K_FIRST_MACRO_TAG)
 #endif
-#if HAS_TRIANGLES || LEVEL == WALKS || LEVEL == GATHER
+#if HAS_TRIANGLES || LEVEL == GATHER
   ENDS(K_FIRST_TRIANGLE_TAG)
 #endif
 #if HAS_OUTPUT

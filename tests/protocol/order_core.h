@@ -22,7 +22,7 @@ namespace gridiron::test {
 enum class Purpose : char {
   kSetup = 'm',   ///< frame, table, materials, lights
   kBlock = 'b',   ///< cells of a macrocell, or a node
-  kRun = 'r',     ///< triangles
+  kRun = 'r',     ///< triangles, or a leaf
   kRecord = 'g',  ///< a record that is gathered
   kSpill = 's',   ///< rays on their way to main memory or back
   kTile = 't',    ///< a finished tile
@@ -62,6 +62,8 @@ struct OrderPlan {
   std::uint32_t dropped_wait = kNoCall;   ///< this call's wait ends at once, as if nothing were pending
   std::uint32_t swapped_transfer = 0;     ///< goes out under ...
   std::uint8_t swapped_tag = 0;           ///< ... this tag
+  std::uint32_t held_transfer = 0;        ///< a get whose bytes are poison beyond its wait, and come at the end ...
+  std::uint32_t held_until = kNoCall;     ///< ... of this call, unless another get took its place meanwhile
   bool reads_store = false;               ///< the store's bytes are part of every call
 };
 
@@ -92,6 +94,7 @@ class OrderCore {
         if (!ends(pending)) continue;
         transfers[pending.number - 1].wait_call = call;
         if (!pending.has_moved) completions.push_back({pending.number, call});
+        if (pending.number == plan_.held_transfer && call < plan_.held_until) hold(pending);
       }
       std::erase_if(pending_, ends);
     }
@@ -148,7 +151,9 @@ class OrderCore {
     transfers.push_back({purpose_of(address, tag), tag.index, !is_get, stage_, call, kNoCall});
     const auto number = static_cast<std::uint32_t>(transfers.size());
     const std::uint8_t under = number == plan_.swapped_transfer ? plan_.swapped_tag : tag.index;
-    pending_.push_back({number, under, false, local, is_get ? bytes : 0});
+    const Pending made{number, under, false, local, is_get ? bytes : 0};
+    pending_.push_back(made);
+    if (made.begin < held_.begin + held_.bytes && held_.begin < made.begin + made.bytes) held_ = {};
     most_pending = std::max(most_pending, static_cast<std::uint32_t>(pending_.size()));
     std::uint64_t what = address.value;
     mix(what, bytes);
@@ -156,6 +161,14 @@ class OrderCore {
     mix(what, tag.index * 2u + (is_get ? 1u : 0u));
     return finish_call(what);
   }
+
+  // Takes the bytes of a get away that has just ended.
+  void hold(const Pending& pending) {
+    held_ = pending;
+    held_bytes_.assign(pending.begin, pending.begin + pending.bytes);
+    std::memset(in_store(held_), 0x5A, held_.bytes);
+  }
+  [[nodiscard]] static std::byte* in_store(const Pending& get) { return const_cast<std::byte*>(get.begin); }
 
   // Everything in the store but where gets are pending: those bytes are undefined. All are multiples of 16.
   void mix_store(std::uint64_t& digest) const {
@@ -182,6 +195,7 @@ class OrderCore {
     if (plan_.reads_store) mix_store(what);
     const auto call = static_cast<std::uint32_t>(calls.size());
     calls.push_back(what);
+    if (call == plan_.held_until && held_.bytes != 0) std::memcpy(in_store(held_), held_bytes_.data(), held_.bytes);
     if (!plan_.schedule) return Status::kOk;
     for (;;) {
       std::uint32_t open[32];
@@ -204,6 +218,8 @@ class OrderCore {
   std::span<const std::byte> store_;
   const OrderPlan& plan_;
   std::vector<Pending> pending_;
+  Pending held_{};  ///< the get of held_bytes_; empty: none
+  std::vector<std::byte> held_bytes_;
   std::uint64_t work_ = 0;
   Stage stage_ = Stage::kPrimary;
 };

@@ -129,8 +129,8 @@ std::vector<OrderCase> order_cases() {
                    {.macro_depth = 4, .triangle_depth = 4, .queue_depth = 5}, {"bbbrr", "bbrrr", "brrrr"}});
   cases.push_back({"tiles", wide(soup(14, 0.6f, 7, 2.0f)),
                    {.width = 40, .output_depth = 4, .macro_depth = 2, .triangle_depth = 1}, {"bbttt", "brttt"}});
-  // Effects: everything by lists. A root with leaves alone has five of them under way; below a root with nodes, it is the
-  // queue that has no room for more.
+  // Effects: everything by lists. A root with leaves alone has five of them under way; below a root with nodes, it is
+  // the queue that has no room for more.
   cases.push_back({"leaves", lit(in_one_box(12)), {.width = 2, .height = 1, .walk_depth = 5}, {"rrrrr"}});
   cases.push_back({"nodes", lit(make_random_soup(70, 1.2f, 5)),
                    {.width = 2, .height = 1, .walk_depth = 4, .queue_depth = 5}, {"bbbrr", "bbrrr"}});

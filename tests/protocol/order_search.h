@@ -156,6 +156,8 @@ std::uint64_t run_orders(OrderFrame& frame, const Window& window, Each&& each) {
       window.calls.push_back(frame.transfers[number - 1].wait_call);
     }
     std::sort(window.calls.begin(), window.calls.end());
+    // One wait can end several: two pieces of a record, or nodes and leaves whose slots share a tag.
+    window.calls.erase(std::unique(window.calls.begin(), window.calls.end()), window.calls.end());
     fives[purposes_of(frame, window.members)].push_back(window);
   }
   return fives;

@@ -1,8 +1,8 @@
 // Engine: an acceleration structure with its traversals, as render/ and shade/ see it. A layout of the local store
-// names its engines, Layout::Engine for eye rays and Layout::RayEngine for all others; render/ and shade/ name none. The grid's record in a frame, and the rules of its
-// frames, are in base/: setting a frame up and checking one need them too.
-// Memory: its parts of the local store. Threads: one core.
-// SPDX-License-Identifier: Apache-2.0
+// names its engines, Layout::Engine for eye rays and Layout::RayEngine for all others; render/ and shade/ name none.
+// The grid's record in a frame, and the rules of its frames, are in base/: setting a frame up and checking one need
+// them too.
+// Memory: its parts of the local store. Threads: one core. SPDX-License-Identifier: Apache-2.0
 #pragma once
 
 #include <gridiron/base/records.h>

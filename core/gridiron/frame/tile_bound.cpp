@@ -274,8 +274,8 @@ class Sum {
     add_records(rays, queued, samples * parts(pixels, layout_.wave_rays));
   }
 
-  // Lists: a ray is in the list of a node or leaf once at most, and a list has one ray at least. Each child is asked for
-  // ahead and taken, and may have been evicted in between; the root is asked for once a batch.
+  // Lists: a ray is in the list of a node or leaf once at most, and a list has one ray at least. Each child is asked
+  // for ahead and taken, and may have been evicted in between; the root is asked for once a batch.
   void add_lists(Count rays) {
     const Count nodes = rays * scene_.nodes, leaves = rays * scene_.leaves, triangles = rays * scene_.tree_triangles;
     const Count children = nodes + leaves, groups = rays * scene_.leaf_groups;

@@ -117,9 +117,9 @@ struct TileBound {
 /// The most work of each kind and the most transfers of one tile, for every camera that make_frame_record accepts and
 /// for any place of image and planes. What a core does before its first tile and after its last is not included.
 ///
-/// Assumes that each pass of packets crosses the whole grid and tests every reference. A packet that sees all of a scene from afar
-/// does so; its bound is reached but for culling and hits. A tile of many packets stays farther below. Other rays are
-/// assumed to enter every node and leaf, each alone, and to find nothing of it at hand.
+/// Assumes that each pass of packets crosses the whole grid and tests every reference. A packet that sees all of a
+/// scene from afar does so; its bound is reached but for culling and hits. A tile of many packets stays farther below.
+/// Other rays are assumed to enter every node and leaf, each alone, and to find nothing of it at hand.
 ///
 /// @param scene   counted for the same layout.
 /// @param layout  of a renderer that takes the frame.

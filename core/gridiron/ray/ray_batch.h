@@ -17,7 +17,8 @@ inline constexpr std::uint32_t kNoHit = 1u << 31;
   return own | kNoHit;
 }
 
-/// A ray of a batch: three quads of words. World space, direction not normalised; it looks for hits with 0 < t <= its t.
+/// A ray of a batch: three quads of words. World space, direction not normalised; it looks for hits with 0 < t <= its
+/// t.
 struct alignas(16) BatchRay {
   float origin[3];
   float t;           ///< how far to look; of closest hits: the nearest so far

@@ -20,8 +20,8 @@ struct Command {
   std::uint32_t tags = 0;  ///< of a wait: its mask; of a transfer: its tag's bit
 };
 
-/// When a transfer's bytes move: at the call, not before the wait, or in between, each at any time and in any order; until
-/// then a get's destination holds garbage.
+/// When a transfer's bytes move: at the call, not before the wait, or in between, each at any time and in any order;
+/// until then a get's destination holds garbage.
 enum class Moves : std::uint8_t { kAtOnce, kAtTheWait, kAtAnyTime };
 
 class TestPlatform {

@@ -26,7 +26,7 @@ QueuedRay make_ray(std::uint32_t serial, std::uint32_t depth) {
   }
   ray.pixel = serial % 1024 | depth << 16;
   ray.path = serial;
-  ray.reserved = ~serial;
+  ray.own = ~serial;
   return ray;
 }
 

@@ -12,6 +12,7 @@ using Store = LocalStore<EffectLayout64K<kAllEffects>>;
 using Context = WaveContext<Store>;
 constexpr std::uint32_t kPoints = 20;  // a job of 16 and one of 4
 constexpr std::uint32_t kWidth = 40, kLeft = 16, kTop = 8, kSample = 2;
+constexpr std::uint32_t kFirstTriangle = 300;  // of the points, one each
 
 LightRecord point_light(Vector3 place, bool is_near, float color = 1.0f) {
   return {{place.x, place.y, place.z}, 0, {color, color, color}, is_near ? 1u : 0u, {}, 0, {}, 0};
@@ -37,6 +38,7 @@ class WaveJobs : public testing::Test {
       gridiron::store({0, 1, 0}, point.view);
       point.pixel = i | 1u << 16;
       point.path = 1;
+      point.triangle = kFirstTriangle + i;
       point.lit = {{1, 1, 1}, {0, 0, 0}, 0};
     }
   }
@@ -45,6 +47,7 @@ class WaveJobs : public testing::Test {
     Vector3 origin, dir;
     float t;
     std::uint32_t owner;
+    std::uint32_t id;  // before it was traced
   };
   // All rays of a kind; every second one is answered by a hit.
   template <class Jobs>
@@ -61,8 +64,8 @@ class WaveJobs : public testing::Test {
       EXPECT_LE(batch.count, before + kJobRays);
       if (has_more && batch.count + kJobRays <= std::size(rays)) continue;
       for (std::uint32_t i = 0; i < batch.count; ++i) {
-        EXPECT_EQ(rays[i].id, kNoTriangle);
-        found.push_back({vector_of(rays[i].origin), vector_of(rays[i].dir), rays[i].t, owners[i]});
+        EXPECT_FALSE(rays[i].has_hit());
+        found.push_back({vector_of(rays[i].origin), vector_of(rays[i].dir), rays[i].t, owners[i], rays[i].id});
         if (found.size() % 2 == 0) rays[i].id = 7;
       }
       if (batch.count != 0) jobs.finish(batch);
@@ -103,7 +106,28 @@ TEST_F(WaveJobs, EveryPointAsksEveryLightOnceAlongTheSegmentBetween) {
     EXPECT_EQ(ray.t, 1.0f);
     EXPECT_EQ(length(ray.origin - (from_light ? light : point)), 0.0f) << i;
     EXPECT_LE(length(ray.origin + ray.dir - (from_light ? point : light)), 1e-6f) << i;
+    // The point's own triangle, whichever end of the segment it lies at.
+    EXPECT_EQ(ray.id, no_hit(kFirstTriangle + i % kPoints)) << i;
   }
+}
+
+// Engines may skip the triangle that a ray names, so a ray names its own only where it surely rises from it: with more
+// than 2^-10 of its largest component.
+TEST_F(WaveJobs, RaysAlongTheFaceNameNoTriangle) {
+  for (const float slope : {0x1p-12f, 0x1.ffp-11f, 0x1.01p-10f, 0x1p-8f}) {
+    for (const bool is_near : {true, false}) {
+      for (std::uint32_t i = 0; i < kPoints; ++i) gridiron::store({0, 0, 0}, store->wave.items[i].point.point);
+      const std::vector<Ray> rays = light_rays({point_light({-2, 2 * slope, 1}, is_near)});
+      ASSERT_EQ(rays.size(), kPoints);
+      for (std::uint32_t i = 0; i < kPoints; ++i) {
+        const std::uint32_t named = slope > 0x1p-10f ? kFirstTriangle + i : std::uint32_t{kNoTriangle};
+        EXPECT_EQ(rays[i].id, no_hit(named)) << slope << ", " << is_near;
+      }
+    }
+  }
+  // By the face: what the shading normal says does not matter.
+  gridiron::store({1, 0, 0}, store->wave.items[1].point.face);
+  EXPECT_EQ(light_rays({point_light({2, 0x1p-12f, 0}, true)})[1].id, no_hit(kFirstTriangle + 1));
 }
 
 TEST_F(WaveJobs, LightComesWhereNothingIsHitAndEitherNormalFacesIt) {
@@ -163,6 +187,8 @@ TEST_F(WaveJobs, AmbientLightIsAskedForOnceASampleWithinTheRadius) {
     EXPECT_NEAR(length(ray.dir), 0.5f, 1e-5f);
     EXPECT_GT(ray.dir.y, 0.0f);
     EXPECT_EQ(length(ray.origin - vector_of(context.point(ray.owner).point)), 0.0f);
+    const bool is_steep = ray.dir.y > 0x1p-10f * std::max(std::fabs(ray.dir.x), std::fabs(ray.dir.z));
+    EXPECT_EQ(ray.id, no_hit(is_steep ? kFirstTriangle + ray.owner : std::uint32_t{kNoTriangle})) << i;
     directions.insert({ray.owner, ray.dir.x, ray.dir.z});
     if (i % 2 == 0) open[ray.owner] += kAmbientLight / 5;
   }
@@ -193,7 +219,7 @@ TEST_F(WaveJobs, AHighlightIsThePowerOfTheCosineHalfWay) {
 
 TEST_F(WaveJobs, RaysOfAWaveGetTheirOwnHits) {
   for (std::uint32_t i = 0; i < kPoints; ++i) {
-    store->wave.items[i].ray = {{static_cast<float>(i), 0, 0}, {0, 0, 1}, {1, 1, 1}, i, 1, 0};
+    store->wave.items[i].ray = {{static_cast<float>(i), 0, 0}, {0, 0, 1}, {1, 1, 1}, i, 1, 40 + i};
   }
   WaveRayJobs<Store> jobs(*store, kPoints, 9.0f);
   BatchRay rays[3 * kJobRays] = {};
@@ -207,11 +233,14 @@ TEST_F(WaveJobs, RaysOfAWaveGetTheirOwnHits) {
   ASSERT_EQ(batch.count, kPoints);
   for (std::uint32_t i = 0; i < batch.count; ++i) {
     EXPECT_EQ(rays[i].t, 9.0f);
-    EXPECT_EQ(rays[i].id, kNoTriangle);
+    EXPECT_EQ(rays[i].id, no_hit(40 + i)) << "the triangle that the ray's maker names";
+    if (i == 3) continue;  // hits nothing
     rays[i].id = 100 + static_cast<std::uint32_t>(rays[i].origin[0]);
   }
   jobs.finish(batch);
-  for (std::uint32_t i = 0; i < kPoints; ++i) EXPECT_EQ(store->wave.ids[i], 100 + i);
+  for (std::uint32_t i = 0; i < kPoints; ++i) {
+    EXPECT_EQ(store->wave.ids[i], i == 3 ? std::uint32_t{kNoTriangle} : 100 + i);
+  }
 }
 
 }  // namespace

@@ -18,8 +18,8 @@ namespace gridiron {
 // than 2 e of both more. 14 e with what computing the bound loses; D is at most 3 times the largest component.
 inline constexpr float kSideErrorFactor = 3.0f * 14.0f * 0x1p-23f;
 /// Added to sizes, so that what becomes subnormal on the way is covered. Directions are at least 2^-40: the bound of a
-/// product with the normal is at least 2^-143, where losses are 2^-148; that of three factors at least 2^-125 times what
-/// 2^-149 of the inner product become by the edge.
+/// product with the normal is at least 2^-143, where losses are 2^-148; that of three factors at least 2^-125 times
+/// what 2^-149 of the inner product become by the edge.
 inline constexpr float kLeastListSize = 0x1p-85f;
 inline constexpr float kLeastAhead = 0x1p-120f;
 /// No product of such coordinates, and of directions up to 2^40, overflows. Rays that start beyond, or are in a larger
@@ -96,8 +96,8 @@ struct LeafAnswer {
   std::uint32_t within;  ///< the plane is surely at 0 < t <= the ray's
   typename L::Float ahead, ahead_error, size, turn;  ///< of the plane's t = ahead / size, and errors of both
 
-  /// @returns a bound of t from below. Where the sign of size is not known, or products may have overflowed, it is below
-  /// 0: never NaN, which would come behind all others.
+  /// @returns a bound of t from below. Where the sign of size is not known, or products may have overflowed, it is
+  /// below 0: never NaN, which would come behind all others.
   [[nodiscard]] GRIDIRON_INLINE typename L::Float least_t() const {
     using Float = typename L::Float;
     return L::select(size > turn, (ahead - ahead_error) / (size + turn) * Float(1.0f - 0x1p-20f), Float(-1.0f));

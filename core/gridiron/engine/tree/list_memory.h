@@ -9,8 +9,8 @@
 
 namespace gridiron {
 
-/// Lanes of up to four boxes test a node's boxes in four parts, quads under a union box, and have a list for each; wider
-/// ones test all boxes at once.
+/// Lanes of up to four boxes test a node's boxes in four parts, quads under a union box, and have a list for each;
+/// wider ones test all boxes at once.
 template <class L>
 inline constexpr std::uint32_t kBoxParts = L::kCount <= 4 ? 4u : 1u;
 /// Lists begin at multiples of so many words.

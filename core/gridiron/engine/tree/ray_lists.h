@@ -31,7 +31,8 @@ class RayLists {
  public:
   RayLists(Memory& memory, Source& source, WorkCounters& work) : memory_(memory), source_(source), work_(work) {}
 
-  /// Answers the first `count` rays of the memory: id is a triangle's where a ray hits one. Directions, t and origins of rays may be changed by powers of two.
+  /// Answers the first `count` rays of the memory: id is a triangle's where a ray hits one. Directions and t of rays
+  /// may be changed by powers of two.
   /// @param largest  |coordinate| of the tree's triangles.
   [[nodiscard]] GRIDIRON_OUTLINE Status trace(const RayQuestion& question, std::uint32_t count, float largest) {
     question_ = question;
@@ -235,8 +236,8 @@ class RayLists {
   }
 
   // Decides the triangles that floats leave to one ray. @param base  of the answer's lanes.
-  [[nodiscard]] GRIDIRON_OUTLINE Status decide(BatchRay& ray, const VertexTriangle* triangles, const LeafAnswer<L>& answer,
-                                               std::uint32_t base) {
+  [[nodiscard]] GRIDIRON_OUTLINE Status decide(BatchRay& ray, const VertexTriangle* triangles,
+                                               const LeafAnswer<L>& answer, std::uint32_t base) {
     work_.add(Work::kListCandidate);
     work_.charge_to(Work::kListCandidate);
     const bool any_hit = question_.any_hit;

@@ -144,7 +144,8 @@ std::vector<Shot> shots_at(const TestMesh& mesh, float largest, std::uint32_t co
   for (std::uint32_t tries = 0; shots.size() < count && tries < 20 * count; ++tries) {
     Vec3 origin = 1.5f * random_vec(random, largest);
     if (random.below(3) == 0) origin = mesh.vertices[random.below(static_cast<std::uint32_t>(mesh.vertices.size()))];
-    OracleRay ray = ray_at(mesh, origin, static_cast<Aim>(random.below(static_cast<std::uint32_t>(Aim::kCount))), random);
+    const auto aim = static_cast<Aim>(random.below(static_cast<std::uint32_t>(Aim::kCount)));
+    OracleRay ray = ray_at(mesh, origin, aim, random);
     if (random.below(3) == 0) ray.t_max = random.below(2) != 0 ? 1.0f : random.unit();
     twist(how, largest, random, ray);
     bool is_finite_ray = is_finite(ray.t_max) && ray.t_max > 0.0f;

@@ -31,6 +31,34 @@ BatchRay batch_ray(const OracleRay& ray) {
   return made;
 }
 
+float largest_of(const TestMesh& mesh) {
+  float largest = 0.0f;
+  for (const Vec3& v : mesh.vertices) {
+    largest = std::fmax(largest, std::fmax(std::fabs(v.x), std::fmax(std::fabs(v.y), std::fabs(v.z))));
+  }
+  return largest;
+}
+
+// A ray as RayLists prepares it for a scene: leaves are tested against such rays alone. Its direction may be another by
+// a power of two, and its t with it.
+template <class L>
+BatchRay list_ray(const OracleRay& ray, float largest) {
+  BatchRay made = batch_ray(ray);
+  set_up_list_ray<L>(made, largest);
+  return made;
+}
+
+// The same ray for the oracle.
+OracleRay oracle_ray(const BatchRay& ray) {
+  OracleRay made{};
+  for (int axis = 0; axis < 3; ++axis) {
+    made.origin[axis] = ray.origin[axis];
+    made.direction[axis] = ray.dir[axis];
+  }
+  made.t_max = kFloatMax;
+  return made;
+}
+
 // What floats say of all triangles of a leaf; bit i = triangle i.
 struct LeafBits {
   std::uint32_t inside = 0, unsure = 0, within = 0;
@@ -138,7 +166,7 @@ std::vector<float> true_distances(const Oracle& oracle, const OracleRay& ray, st
 }
 
 TYPED_TEST(LeafTest, DecidesAsTheOracleDoes) {
-  std::uint64_t hits = 0, sure_hits = 0, unsure = 0, at_limit = 0, bounded = 0, pairs = 0;
+  std::uint64_t hits = 0, sure_hits = 0, unsure = 0, at_limit = 0, bounded = 0, pairs = 0, scaled = 0, boundless = 0;
   WorkCounters work;
   for_each_seed(1500, [&](std::uint64_t seed) {
     TestRandom random(seed * 7919);
@@ -151,9 +179,12 @@ TYPED_TEST(LeafTest, DecidesAsTheOracleDoes) {
     for (VertexTriangle& triangle : triangles) triangle = triangle_of(hard.mesh, random.below(triangle_count));
     const Leaf<TypeParam> leaf(triangles);
     const Leaf<Lanes<4>> other_leaf(triangles);
+    const float largest = largest_of(hard.mesh);
     for (const OracleRay& shot_ray : shot) {
-      BatchRay ray = batch_ray(shot_ray);
-      const std::vector<float> distances = true_distances(oracle, shot_ray, triangle_count);
+      BatchRay ray = list_ray<TypeParam>(shot_ray, largest);
+      scaled += ray.t != shot_ray.t_max ? 1u : 0u;
+      boundless += ray.dir_max == kInfinity ? 1u : 0u;
+      const std::vector<float> distances = true_distances(oracle, oracle_ray(ray), triangle_count);
       // Limits: none, anywhere, at a hit or one float away from it.
       const float hit = distances[random.below(triangle_count)];
       const std::uint32_t limit = random.below(6);
@@ -198,6 +229,8 @@ TYPED_TEST(LeafTest, DecidesAsTheOracleDoes) {
   EXPECT_GT(unsure, 1'000u);
   EXPECT_GT(at_limit, 500u);
   EXPECT_GT(bounded, hits / 4) << "estimates say nothing";
+  EXPECT_GT(scaled, 500u) << "rays of sizes that are brought to 1";
+  EXPECT_GT(boundless, 500u) << "rays that floats say nothing of";
   EXPECT_GT(work[Work::kExactDistance], 0u);
 }
 
@@ -340,7 +373,7 @@ TYPED_TEST(LeafTest, NoRayLeavesAClosedMesh) {
         const Aim aim = random.below(2) != 0 ? Aim::kVertex : Aim::kEdge;
         OracleRay shot = ray_at(mesh, put(body.inside(random)), aim, random);
         for (float& value : shot.direction) value = std::ldexp(value, stretch);
-        const BatchRay ray = batch_ray(shot);
+        const BatchRay ray = list_ray<TypeParam>(shot, largest_of(mesh));
         std::uint32_t stops = 0;
         for (std::size_t i = 0; i < runs.size(); ++i) {
           stops += static_cast<std::uint32_t>(std::popcount(stopping(ray, runs[i], leaves[i].test(ray), work)));
