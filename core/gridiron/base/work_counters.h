@@ -65,8 +65,8 @@ enum class Work : std::uint8_t {
   kListEntry,          ///< rays that were gone through for these
   kListNode,           ///< nodes that a list of rays has entered
   kListRun,            ///< runs of their rays of one octant: the sides of boxes that these enter and leave by
-  kListRayNode,        ///< rays of these lists: tested against a node's union boxes
-  kListBoxQuad,        ///< quads of boxes tested by a ray
+  kListRayNode,        ///< tests of one ray, or two at once, against a node's union boxes; wide lanes: against all boxes
+  kListBoxQuad,        ///< likewise, against a quad of a node's boxes
   kListLeaf,           ///< leaves that a list of rays was tested against: triangles spread over lanes
   kListTriangleGroup,  ///< SIMD groups of a leaf's triangles tested by a ray
   kListCandidate,      ///< of these, groups with triangles that floats do not rule out

@@ -14,8 +14,8 @@
 
 namespace gridiron {
 
-/// A word of a list: the boxes of the node that its ray misses, bit i = child i; above them the ray's place, in quads of
-/// words from the first ray, and its octant.
+/// A word of a list: the boxes of the node that its ray misses, bit i = child i, or quad i; above them the ray's place,
+/// in quads of words from the first ray, and its octant.
 inline constexpr std::uint32_t kPlaceShift = 16, kOctantShift = 29;
 inline constexpr std::uint32_t kMaskBits = (1u << kPlaceShift) - 1;
 inline constexpr std::uint32_t kRayQuads = sizeof(BatchRay) / 16;
