@@ -65,7 +65,7 @@ enum class Work : std::uint8_t {
   kListEntry,          ///< rays that were gone through for these
   kListNode,           ///< nodes that a list of rays has entered
   kListRun,            ///< runs of their rays of one octant: the sides of boxes that these enter and leave by
-  kListRayNode,        ///< tests of one ray, or two at once, against a node's union boxes; wide lanes: against all boxes
+  kListRayNode,        ///< tests of one or two rays against a node's union boxes; wide lanes: against all boxes
   kListBoxQuad,        ///< likewise, against a quad of a node's boxes
   kListLeaf,           ///< leaves that a list of rays was tested against: triangles spread over lanes
   kListTriangleGroup,  ///< SIMD groups of a leaf's triangles tested by a ray
