@@ -60,7 +60,7 @@ GRIDIRON_INLINE void load_records(const VertexTriangle* records, std::uint32_t b
 
 /// Spreads `count` records over lanes. @param trusts_floats  no errors of sides: Accuracy::kFast.
 template <class L>
-GRIDIRON_INLINE void set_up_leaf(const VertexTriangle* records, std::uint32_t count, bool trusts_floats,
+GRIDIRON_OUTLINE void set_up_leaf(const VertexTriangle* records, std::uint32_t count, bool trusts_floats,
                                  TriangleLanes& lanes) {
   using Float = typename L::Float;
   const Float factor(trusts_floats ? 0.0f : kSideErrorFactor);

@@ -24,8 +24,9 @@ inline constexpr std::uint32_t kListParts = kBoxParts<L> == 1 ? std::uint32_t{0}
 /// at a step, those of the root's parts, and at each level below at least those of one step of rays, and a step to
 /// write over. @param spare  words for longer lists, which spare nodes and leaves second visits.
 [[nodiscard]] constexpr std::uint32_t list_arena_words(std::uint32_t rays, std::uint32_t spare) {
-  constexpr std::uint32_t kLevelWords = 5 * 4 > 16 ? 5 * 4 : 16;
-  return 5 * rays + 8 * 16 + (kMaxTreeDepth + 2) * kLevelWords + spare;
+  const std::uint32_t narrow = 5 * rays + 8 * 4 + (kMaxTreeDepth + 2) * (5 * 4);
+  const std::uint32_t wide = rays + 8 * 16 + (kMaxTreeDepth + 2) * 16;
+  return (narrow > wide ? narrow : wide) / 16 * 16 + 16 + spare;
 }
 
 /// A node on the way down, and the rays that met its box.

@@ -38,27 +38,8 @@ class RayLists {
     question_ = question;
     ray_count_ = count;
     dead_count_ = 0;
-    // A list in the order of octants: rays that run alike along all axes follow each other.
-    std::uint32_t counts[8] = {};
-    std::uint32_t* const unsorted = memory_.arena + (Memory::kArenaWords - Memory::kRays);
-    work_.add(Work::kListRay, count);
-    work_.charge_to(Work::kListRay);
-    for (std::uint32_t i = 0; i < count; ++i) {
-      const std::uint32_t octant = set_up_list_ray<L>(memory_.rays[i], largest);
-      unsorted[i] = list_word(i, octant);
-      ++counts[octant];
-    }
-    std::uint32_t begins[8], places[8], end = 0;
-    for (std::uint32_t octant = 0; octant < 8; ++octant) {
-      begins[octant] = places[octant] = end;
-      end += question.any_hit ? counts[octant] : step_up(counts[octant]);
-    }
-    for (std::uint32_t i = 0; i < count; ++i) {
-      const std::uint32_t word = unsorted[i];
-      std::uint32_t& place = places[octant_of(word)];
-      memory_.arena[place] = word;
-      ++place;
-    }
+    std::uint32_t begins[8], counts[8];
+    list_rays(count, largest, begins, counts);
     if (question.any_hit) return walk(0, count);
     // The nearest hit is found soonest front to back, and front is another side for each octant. The last list goes
     // first: it needs the room behind it.
@@ -75,6 +56,30 @@ class RayLists {
   static constexpr std::uint32_t kLevelWords = (1 + kListParts<L>)*kStep;
   [[nodiscard]] static std::uint32_t step_up(std::uint32_t words) {
     return (words + (kStep - 1)) & ~(kStep - 1);
+  }
+
+  // Lists the batch in the order of octants: rays that run alike along all axes follow each other.
+  GRIDIRON_OUTLINE void list_rays(std::uint32_t count, float largest, std::uint32_t* begins, std::uint32_t* counts) {
+    for (std::uint32_t octant = 0; octant < 8; ++octant) counts[octant] = 0;
+    std::uint32_t* const unsorted = memory_.arena + (Memory::kArenaWords - Memory::kRays);
+    work_.add(Work::kListRay, count);
+    work_.charge_to(Work::kListRay);
+    for (std::uint32_t i = 0; i < count; ++i) {
+      const std::uint32_t octant = set_up_list_ray<L>(memory_.rays[i], largest);
+      unsorted[i] = list_word(i, octant);
+      ++counts[octant];
+    }
+    std::uint32_t places[8], end = 0;
+    for (std::uint32_t octant = 0; octant < 8; ++octant) {
+      begins[octant] = places[octant] = end;
+      end += question_.any_hit ? counts[octant] : step_up(counts[octant]);
+    }
+    for (std::uint32_t i = 0; i < count; ++i) {
+      const std::uint32_t word = unsorted[i];
+      std::uint32_t& place = places[octant_of(word)];
+      memory_.arena[place] = word;
+      ++place;
+    }
   }
 
   // Takes a list of the arena down the tree. What lies behind it is overwritten.
@@ -221,18 +226,31 @@ class RayLists {
     for (std::uint32_t base = 0; base < leaf.count(); base += L::kCount) {
       const std::uint32_t rest = leaf.count() - base;
       const std::uint32_t there = rest >= L::kCount ? std::uint32_t{L::kAllBits} : (1u << rest) - 1u;
-      const LeafLanes<L> lanes(memory_.triangles, base);
       work_.add(Work::kListTriangleGroup, count);
       work_.charge_to(Work::kListTriangleGroup);
-      for (std::uint32_t i = 0; i < count; ++i) {
-        BatchRay& ray = ray_of(memory_.rays, list[i]);
-        const LeafAnswer<L> answer = lanes.test(ray, there);
-        if ((answer.inside | answer.unsure) == 0) continue;
-        GRIDIRON_TRY(decide(ray, records + base, answer, base));
+      LeafAnswer<L> answer;
+      for (std::uint32_t i = next_candidate(list, 0, count, base, there, answer); i < count;
+           i = next_candidate(list, i + 1, count, base, there, answer)) {
+        GRIDIRON_TRY(decide(ray_of(memory_.rays, list[i]), records + base, answer, base));
         work_.charge_to(Work::kListTriangleGroup);
       }
     }
     return Status::kOk;
+  }
+
+  // @returns the first ray of a list, from `begin` on, that floats do not rule out for all triangles of a group, or the
+  // list's end. @param answer  gets what they say.
+  [[nodiscard]] GRIDIRON_OUTLINE std::uint32_t next_candidate(const std::uint32_t* list, std::uint32_t begin,
+                                                              std::uint32_t end, std::uint32_t base,
+                                                              std::uint32_t there, LeafAnswer<L>& answer) const {
+    const LeafLanes<L> lanes(memory_.triangles, base);
+    for (std::uint32_t i = begin; i < end; ++i) {
+      const LeafAnswer<L> found = lanes.test(ray_of(memory_.rays, list[i]), there);
+      if ((found.inside | found.unsure) == 0) continue;
+      answer = found;
+      return i;
+    }
+    return end;
   }
 
   // Decides the triangles that floats leave to one ray. @param base  of the answer's lanes.
