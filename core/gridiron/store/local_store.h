@@ -137,7 +137,7 @@ struct EffectLayout256K {
   /// @endcond
   using RayEngine = TreeEngine;                             ///< what traces all rays but eye rays
   static constexpr std::uint32_t kBatchRays = 512;          ///< rays that its lists take at once
-  static constexpr std::uint32_t kSpareListWords = 0;       ///< of its lists, beyond the least
+  static constexpr std::uint32_t kSpareListWords = 576;      ///< of its lists, beyond the least
   static constexpr std::uint32_t kTreeSlots = 32;           ///< nodes and leaves at hand
   static constexpr std::uint32_t kLeafTriangles = 8;        ///< of a leaf, at most
   static constexpr std::uint32_t kWaveRays = 256;      ///< rays worked on together

@@ -148,7 +148,7 @@ class TreeSource {
                           bytes, tag_of(slot, child));
   }
 
-  [[nodiscard]] GRIDIRON_INLINE Status take(TreeChild child, std::uint32_t& slot) {
+  [[nodiscard]] GRIDIRON_OUTLINE Status take(TreeChild child, std::uint32_t& slot) {
     if (!find(child, slot)) GRIDIRON_TRY(start(child, slot));
     return (pending_ >> slot & 1u) != 0 ? arrive(slot) : Status::kOk;
   }
