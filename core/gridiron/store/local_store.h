@@ -135,14 +135,14 @@ struct EffectLayout256K {
   static constexpr std::uint32_t kMaxTriangleDepth = 8;
   static constexpr std::uint32_t kMaxOutputDepth = 2;
   /// @endcond
-  using RayEngine = TreeEngine;                             ///< what traces all rays but eye rays
-  static constexpr std::uint32_t kBatchRays = 512;          ///< rays that its lists take at once
-  static constexpr std::uint32_t kSpareListWords = 576;      ///< of its lists, beyond the least
-  static constexpr std::uint32_t kTreeSlots = 32;           ///< nodes and leaves at hand
-  static constexpr std::uint32_t kLeafTriangles = 8;        ///< of a leaf, at most
-  static constexpr std::uint32_t kWaveRays = 256;      ///< rays worked on together
-  static constexpr std::uint32_t kMaterialSlots = 64;  ///< materials at hand
-  static constexpr std::uint32_t kLightSlots = 16;     ///< lights at hand
+  using RayEngine = TreeEngine;                          ///< what traces all rays but eye rays
+  static constexpr std::uint32_t kBatchRays = 512;       ///< rays that its lists take at once
+  static constexpr std::uint32_t kSpareListWords = 576;  ///< of its lists, beyond the least
+  static constexpr std::uint32_t kTreeSlots = 32;        ///< nodes and leaves at hand
+  static constexpr std::uint32_t kLeafTriangles = 8;     ///< of a leaf, at most
+  static constexpr std::uint32_t kWaveRays = 256;        ///< rays worked on together
+  static constexpr std::uint32_t kMaterialSlots = 64;    ///< materials at hand
+  static constexpr std::uint32_t kLightSlots = 16;       ///< lights at hand
   static_assert((BuiltV & kSceneShading) != 0);
 };
 
@@ -214,7 +214,7 @@ struct alignas(128) LocalStore {
   };
 
   alignas(128) Frame<typename Engine::Record> frame;  ///< a copy of the frame's
-  alignas(128) WorkCounters work;  ///< work of the current frame, or of the last one until the next begins
+  alignas(128) WorkCounters work;            ///< work of the current frame, or of the last one until the next begins
   [[no_unique_address]] EngineStore engine;  ///< the memory of the engine of eye rays for the whole frame
   /// @cond
   [[no_unique_address]] Rays rays;  ///< that of the engine of other rays

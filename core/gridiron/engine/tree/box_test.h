@@ -92,10 +92,8 @@ GRIDIRON_INLINE void unite_boxes(const TreeNode& node, NodeUnions& unions) {
     if constexpr (L::kCount == 4) {
       const Float a = Float::load(sides), b = Float::load(sides + 4), c = Float::load(sides + 8),
                   d = Float::load(sides + 12);
-      const Float ab =
-          least(L::template shuffle_quads<0, 4, 1, 5>(a, b), L::template shuffle_quads<2, 6, 3, 7>(a, b));
-      const Float cd =
-          least(L::template shuffle_quads<0, 4, 1, 5>(c, d), L::template shuffle_quads<2, 6, 3, 7>(c, d));
+      const Float ab = least(L::template shuffle_quads<0, 4, 1, 5>(a, b), L::template shuffle_quads<2, 6, 3, 7>(a, b));
+      const Float cd = least(L::template shuffle_quads<0, 4, 1, 5>(c, d), L::template shuffle_quads<2, 6, 3, 7>(c, d));
       least(L::template shuffle_quads<0, 1, 4, 5>(ab, cd), L::template shuffle_quads<2, 3, 6, 7>(ab, cd)).store(united);
     } else {
       for (std::uint32_t quad = 0; quad < 4; ++quad) {
@@ -105,8 +103,10 @@ GRIDIRON_INLINE void unite_boxes(const TreeNode& node, NodeUnions& unions) {
     }
   };
   for (int axis = 0; axis < 3; ++axis) {
-    unite(node.low[axis], [](Float a, Float b) GRIDIRON_INLINE_LAMBDA { return L::min(a, b); }, unions.low[axis]);
-    unite(node.high[axis], [](Float a, Float b) GRIDIRON_INLINE_LAMBDA { return L::max(a, b); }, unions.high[axis]);
+    unite(
+        node.low[axis], [](Float a, Float b) GRIDIRON_INLINE_LAMBDA { return L::min(a, b); }, unions.low[axis]);
+    unite(
+        node.high[axis], [](Float a, Float b) GRIDIRON_INLINE_LAMBDA { return L::max(a, b); }, unions.high[axis]);
   }
 }
 

@@ -61,7 +61,7 @@ GRIDIRON_INLINE void load_records(const VertexTriangle* records, std::uint32_t b
 /// Spreads `count` records over lanes. @param trusts_floats  no errors of sides: Accuracy::kFast.
 template <class L>
 GRIDIRON_OUTLINE void set_up_leaf(const VertexTriangle* records, std::uint32_t count, bool trusts_floats,
-                                 TriangleLanes& lanes) {
+                                  TriangleLanes& lanes) {
   using Float = typename L::Float;
   const Float factor(trusts_floats ? 0.0f : kSideErrorFactor);
   for (std::uint32_t base = 0; base < count; base += L::kCount) {
@@ -163,8 +163,13 @@ struct LeafLanes {
     const std::uint32_t beyond = (ahead - limit > limit_error).bits() & sign_known;
     const std::uint32_t in_reach = candidates & ~(behind | beyond);
     const std::uint32_t inside = (least > error).bits();
-    return {in_reach & inside, in_reach & ~inside, (limit - ahead > limit_error).bits() & in_front,
-            ahead, ahead_error, size, turn};
+    return {in_reach & inside,
+            in_reach & ~inside,
+            (limit - ahead > limit_error).bits() & in_front,
+            ahead,
+            ahead_error,
+            size,
+            turn};
   }
 };
 

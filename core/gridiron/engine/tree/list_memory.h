@@ -31,15 +31,15 @@ inline constexpr std::uint32_t kListParts = kBoxParts<L> == 1 ? std::uint32_t{0}
 
 /// A node on the way down, and the rays that met its box.
 struct ListLevel {
-  TreeChild children[kTreeWidth];    ///< those that rays meet, in the order of their turns
-  std::uint32_t places[2];           ///< of each: its bit in the masks, 4 bits, eight to a word
-  std::uint32_t child_count;         ///< of these
-  std::uint32_t turn;                ///< the child whose rays are next
-  std::uint32_t asked;               ///< children asked for ahead of their turns
-  std::uint32_t lists[4];            ///< of each part: where its list begins in the arena
-  std::uint32_t ray_counts[4];       ///< of these lists
-  std::uint32_t end;                 ///< what is free behind them
-  std::uint32_t taken;               ///< of a part's rays, those that the child whose turn it is has seen
+  TreeChild children[kTreeWidth];  ///< those that rays meet, in the order of their turns
+  std::uint32_t places[2];         ///< of each: its bit in the masks, 4 bits, eight to a word
+  std::uint32_t child_count;       ///< of these
+  std::uint32_t turn;              ///< the child whose rays are next
+  std::uint32_t asked;             ///< children asked for ahead of their turns
+  std::uint32_t lists[4];          ///< of each part: where its list begins in the arena
+  std::uint32_t ray_counts[4];     ///< of these lists
+  std::uint32_t end;               ///< what is free behind them
+  std::uint32_t taken;             ///< of a part's rays, those that the child whose turn it is has seen
 };
 
 /// Up to 16 triangles in lanes.

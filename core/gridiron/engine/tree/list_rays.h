@@ -30,7 +30,9 @@ inline constexpr std::uint32_t kListEnd = ~0u;
   return word | ((1u << kOctantShift) - 1);
 }
 /// @returns the octant: bit 0, 1, 2 where the ray runs towards smaller x, y, z.
-[[nodiscard]] GRIDIRON_INLINE std::uint32_t octant_of(std::uint32_t word) { return word >> kOctantShift; }
+[[nodiscard]] GRIDIRON_INLINE std::uint32_t octant_of(std::uint32_t word) {
+  return word >> kOctantShift;
+}
 [[nodiscard]] GRIDIRON_INLINE BatchRay& ray_of(BatchRay* rays, std::uint32_t word) {
   constexpr std::uint32_t kPlaces = ((1u << kOctantShift) - 1) & ~kMaskBits;
   return *reinterpret_cast<BatchRay*>(reinterpret_cast<std::byte*>(rays) + ((word & kPlaces) >> (kPlaceShift - 4)));

@@ -54,9 +54,7 @@ class RayLists {
   using Float = typename L::Float;
   static constexpr std::uint32_t kStep = kListStep<L>, kParts = kBoxParts<L>;
   static constexpr std::uint32_t kLevelWords = (1 + kListParts<L>)*kStep;
-  [[nodiscard]] static std::uint32_t step_up(std::uint32_t words) {
-    return (words + (kStep - 1)) & ~(kStep - 1);
-  }
+  [[nodiscard]] static std::uint32_t step_up(std::uint32_t words) { return (words + (kStep - 1)) & ~(kStep - 1); }
 
   // Lists the batch in the order of octants: rays that run alike along all axes follow each other.
   GRIDIRON_OUTLINE void list_rays(std::uint32_t count, float largest, std::uint32_t* begins, std::uint32_t* counts) {
@@ -175,9 +173,8 @@ class RayLists {
       // By turns first, without a branch for each child.
       const std::uint32_t order[2] = {static_cast<std::uint32_t>(node->order),
                                       static_cast<std::uint32_t>(node->order >> 32)};
-      const auto child_at = [&order](std::uint32_t turn) GRIDIRON_INLINE_LAMBDA {
-        return order[turn / 8] >> 4 * (turn % 8) & 15;
-      };
+      const auto child_at = [&order](std::uint32_t turn)
+                                GRIDIRON_INLINE_LAMBDA { return order[turn / 8] >> 4 * (turn % 8) & 15; };
       std::uint32_t turns = 0;
       for (std::uint32_t i = 0; i < node->child_count; ++i) turns |= (open >> child_at(i) & 1u) << i;
       for (; turns != 0; turns &= turns - 1) add_child(level, *node, child_at(lowest_bit(turns)));
@@ -281,8 +278,7 @@ class RayLists {
       if ((triangle.triangle_id | kNoHit) == ray.id) continue;
       if ((answer.inside >> lane & 1u) == 0 && !passes_through(ray, triangle, work_)) continue;
       if (any_hit && (answer.within >> lane & 1u) != 0) return stop(ray, triangle.triangle_id);
-      const float t =
-          question_.trusts_floats ? float_distance(ray, base + lane) : ray_distance(ray, triangle, work_);
+      const float t = question_.trusts_floats ? float_distance(ray, base + lane) : ray_distance(ray, triangle, work_);
       work_.charge_to(Work::kListCandidate);
       if (!(t > 0.0f) || t > ray.t) continue;
       if (any_hit) return stop(ray, triangle.triangle_id);
@@ -318,8 +314,7 @@ class RayLists {
 
   // Decides between two triangles at the same rounded distance: the lower id, or the truly nearer one. The earlier
   // triangle is fetched for that, which is hardly ever needed.
-  [[nodiscard]] GRIDIRON_RARE Status comes_before(const BatchRay& ray, const VertexTriangle& triangle,
-                                                  bool& is_first) {
+  [[nodiscard]] GRIDIRON_RARE Status comes_before(const BatchRay& ray, const VertexTriangle& triangle, bool& is_first) {
     is_first = triangle.triangle_id < ray.id;
     if (!question_.breaks_ties) return Status::kOk;
     VertexTriangle other;

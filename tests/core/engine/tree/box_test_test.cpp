@@ -34,9 +34,12 @@ void twist(Twist how, float largest, TestRandom& random, OracleRay& ray) {
   const auto axis = random.below(3);
   const int far = how == Twist::kFar ? 10 + static_cast<int>(random.below(29)) : 41;
   switch (how) {
-    case Twist::kLong: return scale(30 + static_cast<int>(random.below(60)));
-    case Twist::kShort: return scale(-30 - static_cast<int>(random.below(60)));
-    case Twist::kLeast: return scale(-149 - std::ilogb(largest));
+    case Twist::kLong:
+      return scale(30 + static_cast<int>(random.below(60)));
+    case Twist::kShort:
+      return scale(-30 - static_cast<int>(random.below(60)));
+    case Twist::kLeast:
+      return scale(-149 - std::ilogb(largest));
     case Twist::kFar:
     case Twist::kBeyond:
       for (int i = 0; i < 3; ++i) ray.origin[i] = ray.origin[i] - std::ldexp(ray.direction[i], far);
@@ -47,7 +50,8 @@ void twist(Twist how, float largest, TestRandom& random, OracleRay& ray) {
     case Twist::kTiny:
       ray.direction[axis] = std::ldexp(random.between(-1.0f, 1.0f), -50 - static_cast<int>(random.below(80)));
       return;
-    default: return;
+    default:
+      return;
   }
 }
 
@@ -74,7 +78,7 @@ void expect_boxes_met(MemoryTree& tree, const std::vector<Shot>& shots, Tally& t
   std::vector<BatchRay> rays(shots.size());
   std::vector<std::uint32_t> list(shots.size());
   // A list, the parts' lists behind it, and a step to write over.
-  const std::uint32_t arena_words = (1 + kListParts<L>) * (count + kStep) + 16;
+  const std::uint32_t arena_words = (1 + kListParts<L>)*(count + kStep) + 16;
   WorkCounters work;
   for (std::uint32_t i = 0; i < shots.size(); ++i) {
     for (int axis = 0; axis < 3; ++axis) {
@@ -95,7 +99,7 @@ void expect_boxes_met(MemoryTree& tree, const std::vector<Shot>& shots, Tally& t
     for (std::uint32_t i = 0; i < count; ++i) arena[kStep + i] = list[i] | 0xA5A5u;
     ListLevel level;
     const std::uint32_t any = mark_boxes<L>(*node, rays.data(), arena.data(), kStep, count, level, work);
-    ASSERT_LE(level.end, kStep + (1 + kListParts<L>) * (count + kStep));
+    ASSERT_LE(level.end, kStep + (1 + kListParts<L>)*(count + kStep));
     std::vector<std::uint32_t> met(shots.size(), 0);  // by ray, all boxes of the node
     std::uint32_t all = 0;
     for (std::uint32_t part = 0; part < kBoxParts<L>; ++part) {
@@ -127,7 +131,7 @@ void expect_boxes_met(MemoryTree& tree, const std::vector<Shot>& shots, Tally& t
           ASSERT_EQ(tree.leaf(TreeChild::leaf(i, 1), record), Status::kOk);
           if (!shot.hits[record->triangle_id]) continue;
           ++tally.hits;
-            ASSERT_TRUE(is_met) << "child " << child << ", triangle " << record->triangle_id << ", origin "
+          ASSERT_TRUE(is_met) << "child " << child << ", triangle " << record->triangle_id << ", origin "
                               << shot.ray.origin[0] << " " << shot.ray.origin[1] << " " << shot.ray.origin[2]
                               << ", direction " << shot.ray.direction[0] << " " << shot.ray.direction[1] << " "
                               << shot.ray.direction[2] << ", up to " << shot.ray.t_max << ", scene of "

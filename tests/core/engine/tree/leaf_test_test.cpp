@@ -318,12 +318,12 @@ TYPED_TEST(LeafTest, NothingIsHitWithoutADirectionOrAnArea) {
     OracleRay ray;
     std::uint32_t stopping;
   } cases[] = {
-      {{{0.25f, 0.25f, 1.0f}, {0, 0, 0}}, 0},   // without a direction
-      {{{0, 0, 1}, {0, 0, -1}}, 1},             // at a corner
-      {{{0.5f, 0.5f, 1}, {0, 0, -1}}, 1},       // at the edge, and at the line
-      {{{-1, 0.25f, 0}, {1, 0, 0}}, 0},         // in the plane
-      {{{0.25f, 0.25f, 0}, {0, 0, 1}}, 0},      // from within it
-      {{{0.25f, 0.25f, 1}, {0, 0, 1}}, 0},      // away from it
+      {{{0.25f, 0.25f, 1.0f}, {0, 0, 0}}, 0},  // without a direction
+      {{{0, 0, 1}, {0, 0, -1}}, 1},            // at a corner
+      {{{0.5f, 0.5f, 1}, {0, 0, -1}}, 1},      // at the edge, and at the line
+      {{{-1, 0.25f, 0}, {1, 0, 0}}, 0},        // in the plane
+      {{{0.25f, 0.25f, 0}, {0, 0, 1}}, 0},     // from within it
+      {{{0.25f, 0.25f, 1}, {0, 0, 1}}, 0},     // away from it
       {{{0.25f, 0.25f, 1}, {0, 0, -1}}, 1},
   };
   for (const auto& tested : cases) {
@@ -346,9 +346,8 @@ struct Body {
 };
 
 TYPED_TEST(LeafTest, NoRayLeavesAClosedMesh) {
-  const Body bodies[] = {{make_box({-1, -1, -1}, {1, 1, 1}), 0},
-                         {make_sphere(7, 9, 1.0f), 1},
-                         {make_torus(10, 7, 1.0f, 0.4f), 2}};
+  const Body bodies[] = {
+      {make_box({-1, -1, -1}, {1, 1, 1}), 0}, {make_sphere(7, 9, 1.0f), 1}, {make_torus(10, 7, 1.0f, 0.4f), 2}};
   const struct {
     int exponent;
     Vec3 offset;

@@ -1,7 +1,7 @@
 // Lists of rays through the tree find what exact arithmetic finds, triangle by triangle.
 // SPDX-License-Identifier: Apache-2.0
-#include <gridiron/build/triangle_records.h>
 #include <gridiron/base/one_lane.h>
+#include <gridiron/build/triangle_records.h>
 #include <gridiron/engine/tree/ray_lists.h>
 
 #include "support/memory_tree.h"

@@ -180,9 +180,7 @@ struct Rig {
                 MainAddress{kImage + scene.view.effects.surfaces_offset_bytes}};
     platform.failing_command = options.failing_command;
   }
-  [[nodiscard]] TreeRecord& tree() {
-    return *reinterpret_cast<TreeRecord*>(platform.at(store->frame.tree_address));
-  }
+  [[nodiscard]] TreeRecord& tree() { return *reinterpret_cast<TreeRecord*>(platform.at(store->frame.tree_address)); }
   [[nodiscard]] Run trace(const std::vector<OracleRay>& rays) {
     Run run;
     RayJobs jobs(rays, Layout::kBatchRays);
