@@ -50,9 +50,14 @@ class TreeCore {
   [[nodiscard]] Status trace(const RayQuestion& question, Jobs& jobs) {
     auto& lists = store_.wave.rays.lists;
     for (bool has_more = true; has_more;) {
-      GRIDIRON_TRY(source_.ahead(TreeChild::node(0)));
       RayBatch batch{lists.rays, lists.owners, 0};
-      while (has_more && batch.count + kJobRays <= Lists::kRays) has_more = jobs.next(batch);
+      bool is_asked = false;
+      while (has_more && batch.count + kJobRays <= Lists::kRays) {
+        has_more = jobs.next(batch);
+        // The root comes while the other rays are made; if there are none, nothing is fetched.
+        if (batch.count != 0 && !is_asked) GRIDIRON_TRY(source_.ahead(TreeChild::node(0)));
+        is_asked = batch.count != 0;
+      }
       if (batch.count != 0) {
         GRIDIRON_TRY((RayLists<L, Lists, Source>(lists, source_, store_.work).trace(question, batch.count, largest_)));
         jobs.finish(batch);
