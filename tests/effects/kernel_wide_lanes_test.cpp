@@ -19,7 +19,7 @@ struct UncutLayout : Layout {
 static_assert(kFitsArena<UncutLayout>);
 
 // What any lanes do with the same lists.
-constexpr Work kListWork[] = {Work::kListChild, Work::kListNode, Work::kListRayNode, Work::kListLeaf};
+constexpr Work kListWork[] = {Work::kListChild, Work::kListNode, Work::kListLeaf};
 // What they do for the same rays, however lists are cut.
 constexpr Work kRayWork[] = {Work::kListRay,    Work::kWaveRay,      Work::kQueuedRay,  Work::kSurfacePoint,
                              Work::kShadowRay,  Work::kLightSample,  Work::kHighlight,  Work::kOcclusionRay,
