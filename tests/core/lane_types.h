@@ -13,10 +13,10 @@ namespace gridiron::test {
 // Of rays that are walked, one lane too.
 #if defined(GRIDIRON_TEST_LANES)
 using LaneTypes = testing::Types<Lanes<GRIDIRON_TEST_LANES>>;
-using WalkLaneTypes = LaneTypes;
+using ListLaneTypes = LaneTypes;
 #else
 using LaneTypes = testing::Types<Lanes<4>, Lanes<8>, Lanes<16>>;
-using WalkLaneTypes = testing::Types<Lanes<1>, Lanes<4>, Lanes<8>, Lanes<16>>;
+using ListLaneTypes = testing::Types<Lanes<1>, Lanes<4>, Lanes<8>, Lanes<16>>;
 #endif
 
 struct LaneNames {

@@ -88,7 +88,7 @@ EffectsFrame render(const EffectsSubject& subject,
                          .width = 50,
                          .height = 36,
                          .shading = Shading::kScene,
-                         .walk_depth = 4};
+                         .fetch_depth = 4};
   sim::ChipOptions chip;
   apply(settings, chip);
   EffectsFrame frame;
@@ -208,7 +208,7 @@ TEST(EffectsDeterminism, BuffersQueuesLanesAndStoresChangeNoPixel) {
   };
   for (const std::uint32_t depth : {1u, 2u, 8u, 15u}) {
     expect_same("ray depth " + std::to_string(depth), [depth](FrameSettings& settings, sim::ChipOptions& chip) {
-      settings.walk_depth = depth;
+      settings.fetch_depth = depth;
       settings.output_depth = settings.macro_depth = settings.triangle_depth = depth == 1 ? 1 : 2;
       chip.completion = sim::Completion::kLate;
     });
@@ -223,7 +223,7 @@ TEST(EffectsDeterminism, BuffersQueuesLanesAndStoresChangeNoPixel) {
   });
   expect_same("64 KB", [](FrameSettings& settings, sim::ChipOptions& chip) {
     settings.tile_width = 8;
-    settings.walk_depth = 2;
+    settings.fetch_depth = 2;
     chip.store = sim::StoreSize::k64KB;
     chip.packet_width = 0;
     chip.completion = sim::Completion::kLate;
@@ -238,7 +238,7 @@ TEST(EffectsDeterminism, BuffersQueuesLanesAndStoresChangeNoPixel) {
   }
   if (sim::has_instrumented_mode()) {
     expect_same("instrumented", [](FrameSettings& settings, sim::ChipOptions& chip) {
-      settings.walk_depth = 8;
+      settings.fetch_depth = 8;
       chip.mode = sim::Mode::kInstrumented;
     });
   }

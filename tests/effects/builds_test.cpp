@@ -22,7 +22,7 @@ Status render_shadows(ShadowStore& store, P& platform, MainAddress frame) {
 constexpr std::uint32_t kWidth = 52, kHeight = 36;
 
 KernelOptions small_options() {
-  return {.walk_depth = 2, .macro_depth = 2, .triangle_depth = 2};
+  return {.fetch_depth = 2, .macro_depth = 2, .triangle_depth = 2};
 }
 
 // A ball in a room, with all effects.

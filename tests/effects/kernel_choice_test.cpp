@@ -175,9 +175,9 @@ TEST(KernelChoice, FramesThatEffectsCannotBeRenderedForAreRefused) {
     return render_all_effects(scene.scene, camera, 8, 8, options).status;
   };
   EXPECT_EQ(status_of(+[](FrameRecord&) {}), Status::kOk);
-  EXPECT_EQ(status_of(+[](FrameRecord& frame) { frame.walk_depth = 0; }), Status::kUnsupportedFrame);
-  EXPECT_EQ(status_of(+[](FrameRecord& frame) { frame.walk_depth = 16; }), Status::kUnsupportedFrame);
-  EXPECT_EQ(status_of(+[](FrameRecord& frame) { frame.walk_depth = 0xFFFFFFFFu; }), Status::kUnsupportedFrame);
+  EXPECT_EQ(status_of(+[](FrameRecord& frame) { frame.fetch_depth = 0; }), Status::kUnsupportedFrame);
+  EXPECT_EQ(status_of(+[](FrameRecord& frame) { frame.fetch_depth = 16; }), Status::kUnsupportedFrame);
+  EXPECT_EQ(status_of(+[](FrameRecord& frame) { frame.fetch_depth = 0xFFFFFFFFu; }), Status::kUnsupportedFrame);
   EXPECT_EQ(status_of(+[](FrameRecord& frame) { frame.effects_address = 0; }), Status::kBadFrame);
   EXPECT_EQ(status_of(+[](FrameRecord& frame) { frame.image_address = 0; }), Status::kBadFrame);
   EXPECT_EQ(status_of(+[](FrameRecord& frame) { frame.tree_address = 0; }), Status::kBadFrame);
@@ -188,14 +188,14 @@ TEST(KernelChoice, FramesThatEffectsCannotBeRenderedForAreRefused) {
             Status::kUnsupportedFrame);
   options.alter = nullptr;
   // The set-up of frames does not make them either.
-  options.walk_depth = 0;
+  options.fetch_depth = 0;
   EXPECT_NE(render_all_effects(scene.scene, camera, 8, 8, options).status, Status::kOk);
-  options.walk_depth = 15;
+  options.fetch_depth = 15;
   options.accuracy = Accuracy::kPaper;
   EXPECT_NE(render_all_effects(scene.scene, camera, 8, 8, options).status, Status::kOk);
   options.accuracy = Accuracy::kStandard;
   for (const std::uint32_t depth : {1u, 8u, 15u}) {
-    options.walk_depth = depth;
+    options.fetch_depth = depth;
     EXPECT_EQ(render_all_effects(scene.scene, camera, 8, 8, options).status, Status::kOk) << depth;
   }
 }

@@ -80,7 +80,7 @@ class KernelDeterminism : public testing::TestWithParam<Accuracy> {
 // Nodes and leaves that are asked for ahead may displace others, which are then fetched again.
 TEST_P(KernelDeterminism, HowMuchIsAskedForAheadChangesNoWorkButTransfers) {
   for (const std::uint32_t depth : {1u, 2u, 3u, 5u, 8u, 15u}) {
-    KernelOptions options{.walk_depth = depth};
+    KernelOptions options{.fetch_depth = depth};
     expect_same(options, Alike::kAllButTransfers, "depth: " + std::to_string(depth));
     options.queue_depth = 32;
     expect_same(options, Alike::kAllButTransfers, "depth: " + std::to_string(depth) + ", a longer queue");
@@ -94,7 +94,7 @@ TEST_P(KernelDeterminism, TheQueueOfTransfersChangesWaitsAlone) {
     expect_same(options, Alike::kAllButWaits, "commands: " + std::to_string(depth));
     options.moves_late = true;
     expect_same(options, Alike::kAllButWaits, "late, commands: " + std::to_string(depth));
-    options.walk_depth = 3;
+    options.fetch_depth = 3;
     expect_same(options, Alike::kAllButTransfers, "late, depth: 3, commands: " + std::to_string(depth));
   }
 }

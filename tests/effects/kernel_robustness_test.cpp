@@ -196,7 +196,7 @@ TEST_P(KernelHostile, ScenesGiveTheSamePictureAlways) {
   const KernelPicture again = render_scene(scene, kSize, kSize, other);
   EXPECT_EQ(again.color, picture.color);
   EXPECT_EQ(different_work(again.work, picture.work, {Work::kWait}), "");
-  other.walk_depth = 3;
+  other.fetch_depth = 3;
   const KernelPicture shallow = render_scene(scene, kSize, kSize, other);
   EXPECT_EQ(shallow.color, picture.color);
   EXPECT_EQ(different_but_in_transfers(shallow.work, picture.work), "");

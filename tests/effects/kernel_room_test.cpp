@@ -29,7 +29,7 @@ SceneDescription scene_of_materials() {
 TEST(KernelRoom, MoreMaterialsThanSlots) {
   const SceneDescription scene = scene_of_materials();
   expect_reference(scene, 64, 64, {4, 2e-3, 0.1});
-  const KernelOptions one_at_once{.walk_depth = 1};
+  const KernelOptions one_at_once{.fetch_depth = 1};
   EXPECT_EQ(render_scene(scene, 64, 64).color, render_scene(scene, 64, 64, one_at_once).color);
 }
 
@@ -104,7 +104,7 @@ TEST(KernelRoom, RaysThatWaitInMainMemory) {
     EXPECT_EQ(other.color, picture.color);
     EXPECT_EQ(other.spilled_bytes, picture.spilled_bytes);
     EXPECT_EQ(different_work(other.work, picture.work, {Work::kWait}), "");
-    options.walk_depth = depth;
+    options.fetch_depth = depth;
     const KernelPicture shallow = render_scene(scene, 40, 40, options);
     EXPECT_EQ(shallow.color, picture.color);
     EXPECT_EQ(shallow.spilled_bytes, picture.spilled_bytes);

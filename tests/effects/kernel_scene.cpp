@@ -71,7 +71,7 @@ KernelFrame make_kernel_frame(KernelScene& scene, const Camera& camera, std::uin
                                .techniques = kUseMailbox | kUseCornerCulling | kUseEmptySkip | kUseSubpackets,
                                .macro_depth = options.macro_depth,
                                .triangle_depth = options.triangle_depth,
-                               .walk_depth = options.walk_depth,
+                               .fetch_depth = options.fetch_depth,
                                .color = MainAddress{frame.color},
                                .depth = MainAddress{frame.depth},
                                .ids = MainAddress{frame.ids}};

@@ -22,7 +22,7 @@ struct KernelOptions {
   Accuracy accuracy = Accuracy::kStandard;
   float lambda = 2.0f;
   std::uint32_t macro_width = 4;
-  std::uint32_t walk_depth = 8, macro_depth = 2, triangle_depth = 4;
+  std::uint32_t fetch_depth = 8, macro_depth = 2, triangle_depth = 4;
   std::uint32_t queue_depth = 16;
   bool moves_late = false;   ///< a get's bytes come at the wait, garbage before
   std::uint64_t spill_bytes = ~0ull;  ///< ~0: what the scene asks for

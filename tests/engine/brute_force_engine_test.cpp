@@ -107,7 +107,7 @@ TEST(BruteForceEngine, RendersEffectsAsGridAndTreeDo) {
   const KernelPicture shipped = render_kernel<GridLayout>(built, camera, kWidth, kHeight, options);
   ASSERT_EQ(shipped.status, Status::kOk) << shipped.violation;
   options.alter = make_brute_force;
-  options.walk_depth = 1;
+  options.fetch_depth = 1;
   const KernelPicture brute_force =
       render_kernel<BruteForceLayout<kAllEffects, 16>>(built, camera, kWidth, kHeight, options);
   ASSERT_EQ(brute_force.status, Status::kOk) << brute_force.violation;
@@ -125,9 +125,9 @@ TEST(BruteForceEngine, FramesOfOtherEnginesAreRefused) {
   KernelOptions options;
   KernelScene built = everything(scene, options);
   const Camera camera = camera_of(scene.view);
-  const auto status_of = [&](auto layout, void (*alter)(FrameRecord&), std::uint32_t walk_depth) {
+  const auto status_of = [&](auto layout, void (*alter)(FrameRecord&), std::uint32_t fetch_depth) {
     options.alter = alter;
-    options.walk_depth = walk_depth;
+    options.fetch_depth = fetch_depth;
     return render_kernel<decltype(layout)>(built, camera, kWidth, kHeight, options).status;
   };
   using BruteForce = BruteForceLayout<kAllEffects, 16>;

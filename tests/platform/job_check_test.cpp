@@ -181,7 +181,7 @@ TEST(JobCheck, HoldsTheRecordAgainstTheJob) {
        WRONG("frame record: shading 0x3", m.record().shading = 3),
        WRONG("effects 0x1, frame record and", m.job().effects = kPointShadows),
        WRONG("frame record: effects_address 0x0", m.record().shading = 2),
-       WRONG("frame record: shading 2, the scene image has no effects", m.record().shading = m.record().walk_depth = 2,
+       WRONG("frame record: shading 2, the scene image has no effects", m.record().shading = m.record().fetch_depth = 2,
              m.record().effects_address = m.record().image_address = m.record().tree_address = 4096),
        WRONG("47 tiles, of ", m.job().tile_count = 47)});
 }
@@ -220,7 +220,7 @@ TEST(JobCheck, HoldsEffectsAgainstTheJob) {
       {WRONG("frame record: effects_address", m.record().effects_address += 128),
        WRONG("frame record: image_address", m.record().image_address -= 4096),
        WRONG("frame record: tree_address", m.record().tree_address += 128), WRONG("effects", m.record().shading = 1),
-       WRONG("frame record: walk_depth", m.record().walk_depth = 0),
+       WRONG("frame record: fetch_depth", m.record().fetch_depth = 0),
        WRONG("effects", m.effects().called_for ^= kReflection), WRONG("effects", m.job().effects ^= kReflection),
        WRONG("effects reflection, smooth_normals are not built into this firmware", m.built &= ~kMirrors),
        WRONG("effects 0x400 are not built", m.job().effects |= 1u << kEffectCount),

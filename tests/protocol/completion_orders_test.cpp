@@ -76,7 +76,7 @@ class CompletionOrders : public testing::TestWithParam<std::size_t> {
     std::uint32_t first = kFirstOutputTag, depth = settings.output_depth;
     if (transfer.purpose == Purpose::kBlock) first = kFirstMacroTag, depth = settings.macro_depth;
     if (transfer.purpose == Purpose::kRun) first = kFirstTriangleTag, depth = settings.triangle_depth;
-    if (transfer.purpose == Purpose::kRecord) first = kFirstTriangleTag, depth = settings.walk_depth;
+    if (transfer.purpose == Purpose::kRecord) first = kFirstTriangleTag, depth = settings.fetch_depth;
     const bool is_in_cache = transfer.purpose == Purpose::kBlock || transfer.purpose == Purpose::kRun;
     if (!case_.scene.has_effects() || !is_in_cache) {
       return static_cast<std::uint8_t>(first + (transfer.tag - first + 1) % depth);
@@ -297,9 +297,9 @@ TEST(CompletionOrdersOfAFrame, ALevelHasItsDepthPending) {
     EXPECT_EQ(most("triangles_at_5", {.triangle_depth = depth}, Purpose::kRun), depth);
     EXPECT_EQ(most("blocks_at_5", {.macro_depth = depth}, Purpose::kBlock), depth);
     EXPECT_EQ(most("tiles", {.width = 40, .output_depth = depth}, Purpose::kTile), depth);
-    EXPECT_EQ(most("leaves", {.width = 2, .height = 1, .walk_depth = depth}, Purpose::kRun), depth);
-    EXPECT_EQ(most("surfaces", {.width = 6, .height = 1, .walk_depth = depth}, Purpose::kRecord), depth);
-    EXPECT_EQ(most("spilling", {.width = 8, .height = 4, .walk_depth = depth}, Purpose::kSpill), 1u);
+    EXPECT_EQ(most("leaves", {.width = 2, .height = 1, .fetch_depth = depth}, Purpose::kRun), depth);
+    EXPECT_EQ(most("surfaces", {.width = 6, .height = 1, .fetch_depth = depth}, Purpose::kRecord), depth);
+    EXPECT_EQ(most("spilling", {.width = 8, .height = 4, .fetch_depth = depth}, Purpose::kSpill), 1u);
   }
 }
 

@@ -72,7 +72,7 @@ OrderFrame::OrderFrame(const OrderScene& scene, const OrderSettings& settings) {
                       .output_depth = settings.output_depth,
                       .macro_depth = settings.macro_depth,
                       .triangle_depth = settings.triangle_depth,
-                      .walk_depth = settings.walk_depth,
+                      .fetch_depth = settings.fetch_depth,
                       .color = planes_.address};
   if (settings.wants_ids) frame.ids = planes_.address.offset_by(plane_bytes);
   const auto record = memory_.allocate(sizeof(FrameRecord)).value();

@@ -73,7 +73,7 @@ struct OrderScene {
 /// Its size and buffers.
 struct OrderSettings {
   std::uint32_t width = 8, height = 8;
-  std::uint32_t output_depth = 1, macro_depth = 1, triangle_depth = 1, walk_depth = 1;
+  std::uint32_t output_depth = 1, macro_depth = 1, triangle_depth = 1, fetch_depth = 1;
   std::uint32_t queue_depth = 16;
   bool wants_ids = false;  ///< a second plane, so two puts a tile
 };

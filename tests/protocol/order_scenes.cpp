@@ -131,14 +131,14 @@ std::vector<OrderCase> order_cases() {
                    {.width = 40, .output_depth = 4, .macro_depth = 2, .triangle_depth = 1}, {"bbttt", "brttt"}});
   // Effects: everything by lists. A root with leaves alone has five of them under way; below a root with nodes, it is
   // the queue that has no room for more.
-  cases.push_back({"leaves", lit(in_one_box(12)), {.width = 2, .height = 1, .walk_depth = 5}, {"rrrrr"}});
+  cases.push_back({"leaves", lit(in_one_box(12)), {.width = 2, .height = 1, .fetch_depth = 5}, {"rrrrr"}});
   cases.push_back({"nodes", lit(make_random_soup(70, 1.2f, 5)),
-                   {.width = 2, .height = 1, .walk_depth = 4, .queue_depth = 5}, {"bbbrr", "bbrrr"}});
-  cases.push_back({"surfaces", strips(6, false), {.width = 6, .height = 1, .walk_depth = 5}, {"ggggg", "ggggm"}});
-  cases.push_back({"normals", strips(6, true), {.width = 6, .height = 1, .walk_depth = 5}, {"ggggg", "ggggm"}});
+                   {.width = 2, .height = 1, .fetch_depth = 4, .queue_depth = 5}, {"bbbrr", "bbrrr"}});
+  cases.push_back({"surfaces", strips(6, false), {.width = 6, .height = 1, .fetch_depth = 5}, {"ggggg", "ggggm"}});
+  cases.push_back({"normals", strips(6, true), {.width = 6, .height = 1, .fetch_depth = 5}, {"ggggg", "ggggm"}});
   // Records across a boundary take two commands, so that it is the queue that has no room for more.
-  cases.push_back({"environment", open_air(), {.width = 6, .height = 1, .walk_depth = 5, .queue_depth = 5}, {"ggggg"}});
-  cases.push_back({"spilling", glass(1), {.width = 8, .height = 4, .walk_depth = 5}, {"ggggs"}});
+  cases.push_back({"environment", open_air(), {.width = 6, .height = 1, .fetch_depth = 5, .queue_depth = 5}, {"ggggg"}});
+  cases.push_back({"spilling", glass(1), {.width = 8, .height = 4, .fetch_depth = 5}, {"ggggs"}});
   cases.push_back({"spilled_back", glass(5), {.width = 40, .height = 4, .output_depth = 5}, {"stttt"}});
   return cases;
 }

@@ -15,7 +15,7 @@ int print_calls(const std::string& level, std::uint32_t depth, std::uint32_t que
       {"TILE", "tiles"}, {"LISTS", "nodes"}, {"GATHER", "surfaces"}, {"SPILL", "spilling"}};
   OrderCase one = order_case(scenes.at(level));
   one.settings.queue_depth = queue_depth;
-  one.settings.walk_depth = depth;
+  one.settings.fetch_depth = depth;
   if (level == "TILE") one.settings.output_depth = one.settings.macro_depth = one.settings.triangle_depth = depth;
   const OrderOutcome outcome = OrderFrame(one.scene, one.settings).run({});
   const auto is_wanted = [&](Stage stage, bool is_spill) {

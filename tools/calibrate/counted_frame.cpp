@@ -57,7 +57,7 @@ void FrameInMemory::set_up_grid(const CountedFrame& frame) {
   const tool::Configuration& configuration = *frame.configuration;
   const MeshView mesh{frame.vertices, frame.triangles};
   GridParameters grid;
-  grid.lambda = frame.effects != nullptr ? configuration.walk_lambda : configuration.lambda;
+  grid.lambda = frame.effects != nullptr ? configuration.effect_lambda : configuration.lambda;
   grid.macro_width = configuration.macro_width;
   grid.format = format_of(frame.accuracy);
   GridNeed need;
@@ -82,7 +82,7 @@ void FrameInMemory::set_up_grid(const CountedFrame& frame) {
   settings.techniques = configuration.techniques;
   settings.macro_depth = configuration.depths.macro;
   settings.triangle_depth = configuration.depths.triangle;
-  if (frame.effects != nullptr) settings.walk_depth = 8;
+  if (frame.effects != nullptr) settings.fetch_depth = 8;
   if (frame.has_planes) {
     settings.depth = MainAddress{picture_address_ + plane_bytes_};
     settings.ids = MainAddress{picture_address_ + 2 * plane_bytes_};

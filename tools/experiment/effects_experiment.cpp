@@ -228,7 +228,7 @@ void write_hiding(const std::vector<SceneFrames>& scenes, Book& book) {
       "surface, shadow, occlusion, bounce and environment, all effects on. The run ends with an error where less "
       "than " +
       fixed_text(100 * kLeastHiddenShare, 0) + " % of them go; the least here is " + fixed_text(100 * least, 1) +
-      " %. The configuration itself has " + std::to_string(tool::find_configuration("best")->depths.walks) +
+      " %. The configuration itself has " + std::to_string(tool::find_configuration("best")->depths.fetch) +
       " walks under way.");
   book.figure("hiding", bar_chart_svg(chart), "A bar is all waiting for secondary rays with single buffering.");
   book.table(table, "Waiting in the stages of secondary rays, all effects on.");

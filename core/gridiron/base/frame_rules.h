@@ -25,7 +25,7 @@ struct AnyLayout {
   static constexpr std::uint32_t kLeastTileWidth = 1;
   static constexpr std::uint32_t kMostTileWidth = kMaxPictureWidth;
   static constexpr std::uint32_t kMaxOutputDepth = 0xFFFFFFFFu;
-  static constexpr std::uint32_t kMaxWalkDepth = 0xFFFFFFFFu;
+  static constexpr std::uint32_t kMaxFetchDepth = 0xFFFFFFFFu;
   static constexpr std::uint32_t kMaxMacroDepth = 0xFFFFFFFFu;
   static constexpr std::uint32_t kMaxTriangleDepth = 0xFFFFFFFFu;
   static constexpr Status kBeyond = Status::kBadFrame;  ///< why a frame beyond these is rejected
@@ -80,7 +80,7 @@ template <class Limits>
   GRIDIRON_HEAD_RULE(frame.effects_address != 0, Status::kBadFrame, effects_address);
   GRIDIRON_HEAD_RULE(frame.image_address != 0, Status::kBadFrame, image_address);
   GRIDIRON_HEAD_RULE(frame.tree_address != 0, Status::kBadFrame, tree_address);
-  GRIDIRON_HEAD_RULE(is_in_range(frame.walk_depth, 1, Limits::kMaxWalkDepth), Limits::kBeyond, walk_depth);
+  GRIDIRON_HEAD_RULE(is_in_range(frame.fetch_depth, 1, Limits::kMaxFetchDepth), Limits::kBeyond, fetch_depth);
   GRIDIRON_HEAD_RULE(accuracy_traits(frame.accuracy).has_scene_shading, Status::kUnsupportedFrame, accuracy);
   return {};
 }

@@ -19,12 +19,12 @@ namespace gridiron {
 /// @param address_of  address_of(i), called twice for an item; 0: it needs no record and is skipped.
 /// @param bytes       of a record, a multiple of 16, at most kIdleBufferBytes less 16.
 /// @param use         use(i, const std::byte* record) -> Status.
-/// frame.walk_depth records are under way at once, at most kTriangleTagCount.
+/// frame.fetch_depth records are under way at once, at most kTriangleTagCount.
 template <class Store, Platform P, class AddressOf, class Use>
 [[nodiscard]] Status gather_records(Store& store, Transfers<P>& transfers, std::uint32_t count, std::uint32_t bytes,
                                     AddressOf&& address_of, Use&& use) {
-  BufferRing ring(store.frame.walk_depth);
-  store.wave.rays.lend(store.frame.walk_depth);
+  BufferRing ring(store.frame.fetch_depth);
+  store.wave.rays.lend(store.frame.fetch_depth);
   std::uint64_t wanted[kTriangleTagCount];  // by slot
   std::uint64_t last_wanted = 0;
   std::uint64_t at_hand = 0;  // in the front slot, waited for

@@ -131,7 +131,7 @@ Status make_frame_record(const FrameSettings& settings, const SceneImageView& im
     made.effects_address = image_address.value + image.effects_offset_bytes;
     made.image_address = image_address.value;
     made.tree_address = image_address.value + image.tree_offset_bytes;
-    made.walk_depth = settings.walk_depth;
+    made.fetch_depth = settings.fetch_depth;
     GRIDIRON_TRY(find_scene_fault<AnyLayout>(made).status);
   }
   frame = made;

@@ -356,8 +356,8 @@ class Sum {
     const bool has_effects = frame_.shading == Shading::kScene;
     const std::uint64_t of_packets =
         layout_.packet_width == 0 ? 0 : frame_.macro_depth * block + frame_.triangle_depth * run;
-    // A level of the tree asks for walk_depth children ahead, as long as there is room for them.
-    const std::uint64_t children = smaller(std::uint64_t{kMaxTreeDepth} * frame_.walk_depth, layout_.tree_slots).value;
+    // A level of the tree asks for fetch_depth children ahead, as long as there is room for them.
+    const std::uint64_t children = smaller(std::uint64_t{kMaxTreeDepth} * frame_.fetch_depth, layout_.tree_slots).value;
     const std::uint64_t of_lists = has_effects ? children * kPiecesOfRecord : 0;
     const std::uint64_t at_once = pieces_of(kMostWaveRays / 2 * sizeof(QueuedRay), kPortableGranuleBytes);
     const std::uint64_t pending = larger(of_packets, of_lists).value + at_once;

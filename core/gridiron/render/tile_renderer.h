@@ -170,7 +170,7 @@ class TileRenderer {
     return Status::kOk;
   }
 
-  [[nodiscard]] static constexpr std::uint32_t most_walk_depth() {
+  [[nodiscard]] static constexpr std::uint32_t most_fetch_depth() {
     if constexpr (kHasEffects) return Layout::RayEngine::template kMaxDepth<Layout>;
     return 0;
   }
@@ -178,7 +178,7 @@ class TileRenderer {
   struct Limits : Layout {
     static constexpr std::uint32_t kLeastTileWidth = Layout::kTileWidth;
     static constexpr std::uint32_t kMostTileWidth = Layout::kTileWidth;
-    static constexpr std::uint32_t kMaxWalkDepth = most_walk_depth();
+    static constexpr std::uint32_t kMaxFetchDepth = most_fetch_depth();
     static constexpr Status kBeyond = Status::kUnsupportedFrame;
   };
 

@@ -16,7 +16,7 @@ constexpr std::uint32_t kBufferBytes = 1024;
 // What gather_records needs of a local store.
 struct GatherStore {
   struct {
-    std::uint32_t walk_depth;
+    std::uint32_t fetch_depth;
   } frame;
   struct alignas(128) Buffer {
     std::byte bytes[kBufferBytes];
@@ -40,10 +40,10 @@ struct Rig {
   Transfers<TestPlatform> transfers;
   std::unique_ptr<GatherStore> store;
 
-  Rig(std::uint32_t walk_depth, std::uint32_t queue_depth, Moves moves)
+  Rig(std::uint32_t fetch_depth, std::uint32_t queue_depth, Moves moves)
       : platform(queue_depth, moves, kMemoryBytes), transfers(platform, work), store(std::make_unique<GatherStore>()) {
     std::memset(static_cast<void*>(store.get()), 0x3C, sizeof(GatherStore));
-    store->frame.walk_depth = walk_depth;
+    store->frame.fetch_depth = fetch_depth;
     store->wave.rays.lent = 0;
     TestRandom random(1);
     for (std::uint64_t i = 0; i < kMemoryBytes; i += 8) {
@@ -69,7 +69,7 @@ struct Rig {
         });
   }
   [[nodiscard]] bool others_are_untouched() const {
-    for (std::uint32_t slot = store->frame.walk_depth; slot <= kDepths; ++slot) {
+    for (std::uint32_t slot = store->frame.fetch_depth; slot <= kDepths; ++slot) {
       for (const std::byte value : store->wave.rays.buffers[slot].bytes) {
         if (value != std::byte{0x3C}) return false;
       }

@@ -84,7 +84,7 @@ TEST(Settings, AreInRange) {
   EXPECT_EQ(status_with([](FrameSettings& s) { s.output_depth = 0; }), bad);
   EXPECT_EQ(status_with([](FrameSettings& s) { s.macro_depth = 0; }), bad);
   EXPECT_EQ(status_with([](FrameSettings& s) { s.triangle_depth = 0; }), bad);
-  EXPECT_EQ(status_with([](FrameSettings& s) { s.walk_depth = 0; }), bad);
+  EXPECT_EQ(status_with([](FrameSettings& s) { s.fetch_depth = 0; }), bad);
   EXPECT_EQ(status_with([](FrameSettings& s) { s.accuracy = static_cast<Accuracy>(kAccuracyCount); }), unsupported);
   EXPECT_EQ(status_with([](FrameSettings& s) { s.shading = static_cast<Shading>(3); }), unsupported);
 }
@@ -136,11 +136,11 @@ TEST(FramesWithEffects, SayWhereTheEffectsLie) {
     const auto tree = read_record<TreeRecord>(built.image.bytes(), frame.tree_address - kImageAddress.value);
     EXPECT_EQ(std::memcmp(&tree, &built.view.tree, sizeof tree), 0);
     EXPECT_EQ(tree.node_count, 1u);
-    EXPECT_EQ(frame.walk_depth, 2u);
+    EXPECT_EQ(frame.fetch_depth, 2u);
     EXPECT_EQ(frame.background_rgba, 0xFF112233u);
-    settings.walk_depth = 5;
+    settings.fetch_depth = 5;
     ASSERT_EQ(make_frame_record(settings, built.view, kImageAddress, frame), Status::kOk);
-    EXPECT_EQ(frame.walk_depth, 5u);
+    EXPECT_EQ(frame.fetch_depth, 5u);
   }
 }
 
@@ -161,7 +161,7 @@ TEST(FramesWithEffects, AreNotForProjections) {
 TEST(FramesWithEffects, WalkAtLeastOnce) {
   const BuiltImage built = image_with_effects();
   FrameSettings settings = scene_settings_of();
-  settings.walk_depth = 0;
+  settings.fetch_depth = 0;
   FrameRecord frame{};
   EXPECT_EQ(make_frame_record(settings, built.view, kImageAddress, frame), Status::kBadFrame);
 }
@@ -176,7 +176,7 @@ TEST(FramesWithoutEffects, LeaveTheirFieldsZero) {
     EXPECT_EQ(frame.effects_address, 0u);
     EXPECT_EQ(frame.image_address, 0u);
     EXPECT_EQ(frame.tree_address, 0u);
-    EXPECT_EQ(frame.walk_depth, 0u);
+    EXPECT_EQ(frame.fetch_depth, 0u);
   }
 }
 

@@ -112,7 +112,7 @@ class BoundedScene {
     settings.output_depth = way.frame.output_depth;
     settings.macro_depth = way.frame.macro_depth;
     settings.triangle_depth = way.frame.triangle_depth;
-    settings.walk_depth = way.frame.walk_depth;
+    settings.fetch_depth = way.frame.fetch_depth;
     settings.color = planes_[0].address;
     if (way.frame.has_depth) settings.depth = planes_[1].address;
     if (way.frame.has_ids) settings.ids = planes_[2].address;
@@ -223,7 +223,7 @@ TEST(TileBound, NorDoesOneOfASceneWithEffects) {
       {"packets of 8", {StoreSize::k256KB, 32, 8, true},
        {.shading = Shading::kScene, .has_depth = true, .has_ids = true}},
       {"packets of 32", {StoreSize::k256KB, 32, 32, true},
-       {.shading = Shading::kScene, .techniques = kAll, .macro_depth = 4, .triangle_depth = 3, .walk_depth = 8}},
+       {.shading = Shading::kScene, .techniques = kAll, .macro_depth = 4, .triangle_depth = 3, .fetch_depth = 8}},
       {"exact", {StoreSize::k256KB, 32, 32, true}, {.accuracy = Accuracy::kExact, .shading = Shading::kScene}},
       {"compact", {StoreSize::k256KB, 32, 8, true}, {.accuracy = Accuracy::kCompact, .shading = Shading::kScene}},
       {"64 KB", {StoreSize::k64KB, 8, 0, true}, {.shading = Shading::kScene, .has_ids = true}},

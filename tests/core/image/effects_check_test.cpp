@@ -289,7 +289,7 @@ TEST(EffectsLayout, FieldsStandWhereTheSpecificationSays) {
   EXPECT_EQ(offsetof(FrameHead, effects_address), 136u);
   EXPECT_EQ(offsetof(FrameHead, image_address), 144u);
   EXPECT_EQ(offsetof(FrameHead, tree_address), 152u);
-  EXPECT_EQ(offsetof(FrameHead, walk_depth), 44u);
+  EXPECT_EQ(offsetof(FrameHead, fetch_depth), 44u);
 }
 
 }  // namespace

@@ -23,7 +23,7 @@ TEST(Configurations, ReferenceIsTheReferenceSystem) {
 }
 
 TEST(Configurations, DeeperOnesWalkMoreSecondaryRays) {
-  const auto walks = [](const char* name) { return tool::find_configuration(name)->depths.walks; };
+  const auto walks = [](const char* name) { return tool::find_configuration(name)->depths.fetch; };
   EXPECT_EQ(walks("reference"), 2u);
   EXPECT_EQ(walks("deep"), 4u);
   EXPECT_EQ(walks("best"), 8u);

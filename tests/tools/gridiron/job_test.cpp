@@ -353,7 +353,7 @@ TEST(Job, DamageIsFoundWithItsPlace) {
   expect_wrong(256 + offsetof(FrameHead, effects_address), [](Job&, Record& record) { record.shading = 2; });
   expect_wrong(256 + offsetof(FrameHead, tree_address), [](Job&, Record& record) { record.tree_address = kBase; });
   expect_wrong(256 + offsetof(FrameHead, shading), [](Job&, Record& record) {
-    record.shading = record.walk_depth = 2;
+    record.shading = record.fetch_depth = 2;
     record.effects_address = record.image_address = record.tree_address = kBase;
   });
 }

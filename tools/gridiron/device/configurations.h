@@ -24,15 +24,15 @@ struct BufferDepths {
             std::min(walks, most.walks)};
   }
 };
-inline constexpr BufferDepths kSingleBuffering = {.output = 1, .macro = 1, .triangle = 1, .walks = 1};
-inline constexpr BufferDepths kDoubleBuffering = {.output = 2, .macro = 2, .triangle = 2, .walks = 2};
+inline constexpr BufferDepths kSingleBuffering = {.output = 1, .macro = 1, .triangle = 1, .fetch = 1};
+inline constexpr BufferDepths kDoubleBuffering = {.output = 2, .macro = 2, .triangle = 2, .fetch = 2};
 
 /// Default parameters of a frame; options of the command line override them.
 struct Configuration {
   std::string_view name;
   std::string_view description;
   float lambda;                ///< cells per triangle, Eq. (1)
-  float walk_lambda;           ///< the same for scenes that cast secondary rays: single rays need small cells
+  float effect_lambda;           ///< the same for scenes that cast secondary rays: single rays need small cells
   std::uint32_t macro_width;   ///< cells along a macrocell's edge
   std::uint32_t packet_width;  ///< rays along a packet's edge
   BufferDepths depths;

@@ -18,7 +18,7 @@ StoreFacts facts_of() {
   facts.tile_width = Layout::kTileWidth;
   facts.packet_width = Layout::kPacketWidth;
   facts.most_depths.output = Layout::kMaxOutputDepth;
-  if constexpr (Layout::kEffects != 0) facts.most_depths.walks = Layout::RayEngine::template kMaxDepth<Layout>;
+  if constexpr (Layout::kEffects != 0) facts.most_depths.fetch = Layout::RayEngine::template kMaxDepth<Layout>;
   if constexpr (kHasPackets<Layout>) {
     facts.max_macro_width = Layout::kMaxMacroWidth;
     facts.most_depths.macro = Layout::kMaxMacroDepth;

@@ -121,7 +121,7 @@ void prepare(FrameMemory& frame, const SceneInput& input, const RenderPlan& plan
   settings.output_depth = plan.depths.output;
   settings.macro_depth = plan.depths.macro;
   settings.triangle_depth = plan.depths.triangle;
-  settings.walk_depth = plan.depths.walks;
+  settings.fetch_depth = plan.depths.fetch;
 
   const std::uint64_t plane_bytes = output_plane_bytes(settings.width, settings.height, settings.tile_width);
   frame.color = allocate(frame.memory, input.path, plane_bytes);

@@ -58,7 +58,7 @@ LoopFacts loop_facts_of(const WorstTile& worst, std::uint32_t macro_width, std::
   facts.filled_cells = worst.scene.filled_cells;
   facts.runs = worst.scene.runs;
   if (worst.frame.shading != Shading::kScene) return facts;
-  facts.walk_depth = worst.frame.walk_depth;
+  facts.fetch_depth = worst.frame.fetch_depth;
   facts.material_count = effects.material_count;
   facts.light_count = effects.light_count;
   facts.samples = effects.samples_per_pixel;

@@ -31,7 +31,7 @@ struct LoopFacts {
   std::uint64_t wave_rays = 0, material_slots = 0, light_slots = 0;
   std::uint64_t most_pieces = 0;  ///< commands of the longest transfer
   // Of the frame.
-  std::uint64_t tiles = 0, output_depth = 0, macro_depth = 0, triangle_depth = 0, walk_depth = 0;
+  std::uint64_t tiles = 0, output_depth = 0, macro_depth = 0, triangle_depth = 0, fetch_depth = 0;
   // Of the scene.
   std::uint64_t macro_width = 0, macro_slices = 0, macro_cells = 0, filled_cells = 0, runs = 0;
   std::uint64_t material_count = 0, light_count = 0, samples = 1, occlusion_samples = 0;

@@ -30,7 +30,7 @@ WorstTile find_worst_tile(const InfoPlan& plan, std::span<const std::byte> image
   worst.frame.output_depth = plan.depths.output;
   worst.frame.macro_depth = plan.depths.macro;
   worst.frame.triangle_depth = plan.depths.triangle;
-  worst.frame.walk_depth = plan.depths.walks;
+  worst.frame.fetch_depth = plan.depths.fetch;
   worst.frame.has_depth = plan.has_depth;
   worst.frame.queue_depth = plan.scene.machine->queue_depth;
   worst.scene = count_tile_scene(image, view, worst.layout);

@@ -39,7 +39,7 @@ class TreeSource {
   }
 
   /// Children under way at once.
-  [[nodiscard]] std::uint32_t window() const { return store_.frame.walk_depth; }
+  [[nodiscard]] std::uint32_t window() const { return store_.frame.fetch_depth; }
 
   [[nodiscard]] Status ahead(TreeChild child) {
     std::uint32_t slot = 0;

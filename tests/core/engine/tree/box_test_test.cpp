@@ -15,7 +15,7 @@ namespace {
 
 template <class L>
 class BoxTest : public testing::Test {};
-TYPED_TEST_SUITE(BoxTest, WalkLaneTypes, LaneNames);
+TYPED_TEST_SUITE(BoxTest, ListLaneTypes, LaneNames);
 
 // A ray of a list, and the triangles that it hits by exact arithmetic.
 struct Shot {

@@ -17,7 +17,7 @@ constexpr std::uint32_t kRays = 16;  // of a case
 
 template <class L>
 class LeafTest : public testing::Test {};
-TYPED_TEST_SUITE(LeafTest, WalkLaneTypes, LaneNames);
+TYPED_TEST_SUITE(LeafTest, ListLaneTypes, LaneNames);
 
 BatchRay batch_ray(const OracleRay& ray) {
   BatchRay made{};

@@ -173,7 +173,7 @@ struct Rig {
     store->frame = {};
     store->work = {};
     store->frame.accuracy = static_cast<std::uint32_t>(scene.accuracy);
-    store->frame.walk_depth = options.depth;
+    store->frame.fetch_depth = options.depth;
     store->frame.image_address = kImage;
     store->frame.tree_address = kImage + scene.view.tree_offset_bytes;
     question = {options.any_hit, scene.accuracy == Accuracy::kFast, scene.accuracy == Accuracy::kExact,
@@ -231,7 +231,7 @@ std::uint32_t expect_truth(const TreeScene& scene, const std::vector<OracleRay>&
 
 template <class L>
 class TreeEngineTest : public testing::Test {};
-TYPED_TEST_SUITE(TreeEngineTest, WalkLaneTypes, LaneNames);
+TYPED_TEST_SUITE(TreeEngineTest, ListLaneTypes, LaneNames);
 
 TYPED_TEST(TreeEngineTest, AnswersAsTheOracleDoes) {
   for (const Accuracy accuracy : {Accuracy::kStandard, Accuracy::kExact, Accuracy::kCompact}) {
