@@ -10,7 +10,7 @@
 
 namespace gridiron::test {
 
-// Of rays that are walked, one lane too.
+// Of lists of rays, one lane too.
 #if defined(GRIDIRON_TEST_LANES)
 using LaneTypes = testing::Types<Lanes<GRIDIRON_TEST_LANES>>;
 using ListLaneTypes = LaneTypes;

@@ -158,7 +158,7 @@ TEST(FramesWithEffects, AreNotForProjections) {
             Status::kUnsupportedImage);
 }
 
-TEST(FramesWithEffects, WalkAtLeastOnce) {
+TEST(FramesWithEffects, FetchAtLeastOneAtATime) {
   const BuiltImage built = image_with_effects();
   FrameSettings settings = scene_settings_of();
   settings.fetch_depth = 0;

@@ -22,11 +22,11 @@ TEST(Configurations, ReferenceIsTheReferenceSystem) {
   EXPECT_EQ(reference->techniques, std::uint32_t{kUseMailbox} | kUseCornerCulling | kUseEmptySkip);
 }
 
-TEST(Configurations, DeeperOnesWalkMoreSecondaryRays) {
-  const auto walks = [](const char* name) { return tool::find_configuration(name)->depths.fetch; };
-  EXPECT_EQ(walks("reference"), 2u);
-  EXPECT_EQ(walks("deep"), 4u);
-  EXPECT_EQ(walks("best"), 8u);
+TEST(Configurations, DeeperOnesFetchMoreForEffects) {
+  const auto fetch = [](const char* name) { return tool::find_configuration(name)->depths.fetch; };
+  EXPECT_EQ(fetch("reference"), 2u);
+  EXPECT_EQ(fetch("deep"), 4u);
+  EXPECT_EQ(fetch("best"), 8u);
 }
 
 TEST(Configurations, EachFitsAStoreWithEffects) {

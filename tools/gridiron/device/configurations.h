@@ -14,14 +14,14 @@ struct BufferDepths {
   std::uint32_t output = 2;    ///< finished tiles
   std::uint32_t macro = 2;     ///< cell blocks
   std::uint32_t triangle = 2;  ///< triangle buffers
-  std::uint32_t walks = 2;     ///< walks of secondary rays under way at once
+  std::uint32_t fetch = 2;     ///< transfers for rays of effects under way at once
 
   bool operator==(const BufferDepths&) const = default;
 
   /// @returns the same depths, limited to those of `most`.
   [[nodiscard]] BufferDepths within(const BufferDepths& most) const {
     return {std::min(output, most.output), std::min(macro, most.macro), std::min(triangle, most.triangle),
-            std::min(walks, most.walks)};
+            std::min(fetch, most.fetch)};
   }
 };
 inline constexpr BufferDepths kSingleBuffering = {.output = 1, .macro = 1, .triangle = 1, .fetch = 1};
@@ -32,7 +32,7 @@ struct Configuration {
   std::string_view name;
   std::string_view description;
   float lambda;                ///< cells per triangle, Eq. (1)
-  float effect_lambda;           ///< the same for scenes that cast secondary rays: single rays need small cells
+  float effect_lambda;         ///< the same for scenes that cast secondary rays
   std::uint32_t macro_width;   ///< cells along a macrocell's edge
   std::uint32_t packet_width;  ///< rays along a packet's edge
   BufferDepths depths;

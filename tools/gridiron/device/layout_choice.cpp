@@ -44,7 +44,7 @@ std::string words_of_layout(const sim::LayoutChoice& layout) {
 
 sim::LayoutChoice layout_with(const LayoutRequest& asked, const Configuration& configuration, StoreSize store,
                               bool has_effects) {
-  // Effects with 64 KB: all rays by walks, without packets.
+  // Effects with 64 KB: all rays by lists, without packets.
   if (has_effects && store == StoreSize::k64KB) {
     return {store, asked.tile_width.value_or(8), asked.packet_width.value_or(0), true};
   }

@@ -48,9 +48,9 @@ void settle_depths(const RenderRequest& request, RenderPlan& plan) {
   const bool has_effects = plan.layout.has_effects;
   plan.depths = request.layout.depths.value_or(configuration.depths);
   if (!request.layout.depths) {  // a named configuration is limited by the store, an explicit depth is not
-    const std::uint32_t walks = plan.depths.fetch;
+    const std::uint32_t fetch = plan.depths.fetch;
     plan.depths = plan.depths.within(most);
-    if (!has_effects) plan.depths.fetch = walks;
+    if (!has_effects) plan.depths.fetch = fetch;
   }
   if (has_effects) plan.most_macro_width = facts.max_macro_width;
   const std::uint32_t macro_width =
