@@ -137,7 +137,8 @@ std::vector<OrderCase> order_cases() {
   cases.push_back({"surfaces", strips(6, false), {.width = 6, .height = 1, .fetch_depth = 5}, {"ggggg", "ggggm"}});
   cases.push_back({"normals", strips(6, true), {.width = 6, .height = 1, .fetch_depth = 5}, {"ggggg", "ggggm"}});
   // Records across a boundary take two commands, so that it is the queue that has no room for more.
-  cases.push_back({"environment", open_air(), {.width = 6, .height = 1, .fetch_depth = 5, .queue_depth = 5}, {"ggggg"}});
+  cases.push_back({"environment", open_air(),
+                   {.width = 6, .height = 1, .fetch_depth = 5, .queue_depth = 5}, {"ggggg"}});
   cases.push_back({"spilling", glass(1), {.width = 8, .height = 4, .fetch_depth = 5}, {"ggggs"}});
   cases.push_back({"spilled_back", glass(5), {.width = 40, .height = 4, .output_depth = 5}, {"stttt"}});
   return cases;

@@ -25,7 +25,7 @@ struct CountedFrame {
   std::span<const UVec3> triangles;
   Camera camera{};
   std::uint32_t width = 96;  ///< and height, pixels
-  /// Parameters of the grid, but for the depth of walks, which is 8; of packets 8 or 32 wide.
+  /// Parameters of the grid; packets are 8 or 32 wide. fetch_depth is 8.
   const tool::Configuration* configuration = tool::find_configuration("reference");
   Accuracy accuracy = Accuracy::kStandard;
   Shading shading = Shading::kSimple;

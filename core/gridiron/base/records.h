@@ -213,7 +213,7 @@ struct FrameHead {
   std::uint32_t shading;               ///< Shading
   std::uint32_t engine_id;             ///< EngineId: whose record follows
   std::uint32_t output_depth;          ///< tile buffers in rotation: 1 single, 2 double
-  std::uint32_t fetch_depth;           ///< transfers for rays of effects under way at once; of Shading::kScene, else 0
+  std::uint32_t fetch_depth;           ///< children of a tree's node under way at once; of Shading::kScene, else 0
   std::uint32_t background_rgba;       ///< 0xAABBGGRR
   float t_far;                         ///< a hit has 0 < t <= t_far; in units of the ray's direction
   std::uint32_t reserved0[2];

@@ -44,8 +44,8 @@ concept Engine = requires {
 /// E::RayStore<Layout>   its memory while rays are traced, store.wave.rays, in the place of EyeStore: only one of the
 ///                       two is valid at a time. lend(count) gives up `count` separate 32-byte aligned buffers of
 ///                       kIdleBufferBytes, idle_buffer(0) and on, while no ray is traced.
-/// E::kMaxDepth<Layout>  the greatest frame.fetch_depth: transfers under way at once, and buffers that it lends; at most
-///                       kTriangleTagCount.
+/// E::kMaxDepth<Layout>  the greatest frame.fetch_depth: children of a node, or records for shading, under way
+///                       at once, and buffers that it lends; at most kTriangleTagCount.
 /// E::Core<L, Store, P>  the engine on one core:
 ///   begin()       as EngineCore's.
 ///   begin_rays()  before the first rays after eye rays were traced: discards what its memory held.

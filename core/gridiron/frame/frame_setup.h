@@ -47,7 +47,8 @@ struct FrameSettings {
   std::uint32_t output_depth = 2;    ///< tile buffers in rotation, at most kMaxOutputDepth
   std::uint32_t macro_depth = 2;     ///< cell blocks in rotation, at most kMaxMacroDepth
   std::uint32_t triangle_depth = 2;  ///< triangle buffers in rotation, at most kMaxTriangleDepth
-  /// Transfers for rays of effects under way at once, at most the ray engine's kMaxDepth; only for Shading::kScene.
+  /// Children of a tree's node, or records for shading, under way at once: at most the ray engine's kMaxDepth. Only for
+  /// Shading::kScene.
   std::uint32_t fetch_depth = 2;
   std::uint32_t background_rgba = 0xFF000000u;  ///< 0xAABBGGRR, where nothing is hit
   /// Hits farther away do not count. Above 0 [kBadFrame], in units of the ray's direction, which has length 1 in the

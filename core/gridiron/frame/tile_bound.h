@@ -64,7 +64,7 @@ struct TileFrame {
   std::uint32_t output_depth = 2;                                              ///< tile buffers in rotation
   std::uint32_t macro_depth = 2;                                               ///< cell blocks in rotation
   std::uint32_t triangle_depth = 2;                                            ///< triangle buffers in rotation
-  std::uint32_t fetch_depth = 2;   ///< transfers for secondary rays under way at once
+  std::uint32_t fetch_depth = 2;   ///< as FrameHead's
   bool has_depth = false;          ///< whether distances are requested
   bool has_ids = false;            ///< whether triangle ids are requested
   std::uint32_t queue_depth = 16;  ///< commands that fit the platform's queue

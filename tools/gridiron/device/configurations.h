@@ -14,7 +14,7 @@ struct BufferDepths {
   std::uint32_t output = 2;    ///< finished tiles
   std::uint32_t macro = 2;     ///< cell blocks
   std::uint32_t triangle = 2;  ///< triangle buffers
-  std::uint32_t fetch = 2;     ///< transfers for rays of effects under way at once
+  std::uint32_t fetch = 2;     ///< children of a tree's node, or records for shading
 
   bool operator==(const BufferDepths&) const = default;
 

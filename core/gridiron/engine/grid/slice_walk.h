@@ -58,7 +58,7 @@ class MacroWalk {
   }
 
   /// @param reach  march distance beyond which no ray needs to look. @param skip_empty  whether to skip empty
-  ///               macrocells. @tparam Bound  Frustum or Shaft.
+  ///               macrocells. @tparam Bound  Frustum, or one of its interface.
   template <class Bound, class Table>
   [[nodiscard]] WalkStep next(const Bound& frustum, const Table& table, float reach, bool skip_empty, MacroVisit& visit,
                               WorkCounters& work) {
