@@ -222,14 +222,14 @@ void write_hiding(const std::vector<SceneFrames>& scenes, Book& book) {
   }
   book.section("hiding", "Waits hidden");
   book.paragraph(
-      "Secondary rays go where they like, and so do the cells, triangles, materials and texels that they ask for. With "
-      "single buffering a core asks for what a walk of rays needs, waits, and uses it; with double buffering two walks "
-      "are under way and one computes while the other's data come. Counted are the waits of all cores in the stages "
-      "surface, shadow, occlusion, bounce and environment, all effects on. The run ends with an error where less "
+      "Secondary rays go where they like, and so do the nodes, leaves, materials and texels that they ask for. With "
+      "single buffering a core asks for a child of a node or a record, waits, and uses it; with double buffering two "
+      "are under way, and the core computes with one while the other comes. Counted are the waits of all cores in the "
+      "stages surface, shadow, occlusion, bounce and environment, all effects on. The run ends with an error where less "
       "than " +
       fixed_text(100 * kLeastHiddenShare, 0) + " % of them go; the least here is " + fixed_text(100 * least, 1) +
       " %. The configuration itself has " + std::to_string(tool::find_configuration("best")->depths.fetch) +
-      " walks under way.");
+      " children or records under way.");
   book.figure("hiding", bar_chart_svg(chart), "A bar is all waiting for secondary rays with single buffering.");
   book.table(table, "Waiting in the stages of secondary rays, all effects on.");
 }
@@ -265,7 +265,7 @@ void write_off(const std::vector<SceneFrames>& scenes, Book& book) {
 void write_lambdas(const std::vector<SceneFrames>& scenes, Book& book) {
   Table table = make_table("lambda", "scene", Column("lambda", "cells per triangle", 1), Column("cycles", "cycles", 0),
                            Column("fps", "frames/s"), Column("scene_bytes", "bytes of the scene in main memory"));
-  BarChart chart{"Grids for secondary rays", "frames/s", {}, {}, {"frames/s"}, {}, true};
+  BarChart chart{"Grids for eye rays", "frames/s", {}, {}, {"frames/s"}, {}, true};
   for (const float lambda : kLambdas) chart.bars.push_back("lambda " + number_text(lambda));
   std::string fastest;
   for (const SceneFrames& scene : scenes) {
@@ -282,8 +282,8 @@ void write_lambdas(const std::vector<SceneFrames>& scenes, Book& book) {
   book.section("lambda", "How fine a grid");
   book.paragraph(
       "Configuration best has a coarse grid of " + number_text(tool::find_configuration("best")->lambda) +
-      " cells per triangle, which suits packets of eye rays that share what they fetch. Walks of secondary rays meet "
-      "fewer triangles in a finer one, but take more steps and fetch more cells, and the scene grows in main memory. "
+      " cells per triangle, which suits packets of eye rays that share what they fetch. Secondary rays go through a "
+      "tree and do not use the grid. A finer one has fewer triangles a cell, but more cells, and takes more main memory. "
       "All other frames of this page have " +
       number_text(kLambda) + " cells per triangle. Fastest of those tried is " + fastest +
       ". All effects are on, with double buffering.");
@@ -326,7 +326,7 @@ void write_method(const ExperimentSettings& settings, Book& book) {
       "configuration best with " +
       number_text(kLambda) +
       " cells per triangle, and their traces get a time on six cores of cell-ps3. Single buffering is one buffer of "
-      "each kind and one walk of secondary rays at a time, double buffering two of each. Rays are counted where they "
+      "each kind and one child of a node at a time, double buffering two of each. Rays are counted where they "
       "are made, bytes as gets and puts ask for them.");
 }
 

@@ -1,8 +1,7 @@
 // What a unit of each kind of work takes in instructions of a riscv64 core, 4 lanes, and what commands,
 // waits and claims take on the port of platform/sifive_u. Written by tools/calibrate/second_opinion/run from
 // the kernel in an emulator; do not edit: tools/calibrate/README.md. Of the frame `dense`; kinds that it has
-// none of, of the others. Kinds do not tell the steps through the grid that walks of secondary rays take from
-// those of packets: they have one cost, that of packets.
+// none of, of the others.
 // Memory: constants. Threads: any. SPDX-License-Identifier: Apache-2.0
 #pragma once
 

@@ -1,4 +1,4 @@
-// Where rays run through the cells of a grid, in integers without end: the oracle of frustum and walks.
+// Where rays run through the cells of a grid, in integers without end: the oracle of frustum and slice walk.
 // A float is an integer times a power of two, so cell space is too; nothing here rounds.
 // Memory: heap. Threads: any. SPDX-License-Identifier: Apache-2.0
 #pragma once

@@ -81,7 +81,7 @@ struct Frustum {
     const Four::Int cell = Four::truncate(inside);
     return {cell[0], cell[1], cell[2], cell[3]};
   }
-  /// The interface that walks expect of any bound; the step's own count includes this work.
+  /// The interface that the slice walk expects of any bound; the step's own count includes this work.
   [[nodiscard]] GRIDIRON_INLINE CellRect rect_of(const Slab& slab, WorkCounters&) const { return rect_of(slab); }
 };
 
