@@ -225,8 +225,8 @@ void write_hiding(const std::vector<SceneFrames>& scenes, Book& book) {
       "Secondary rays go where they like, and so do the nodes, leaves, materials and texels that they ask for. With "
       "single buffering a core asks for a child of a node or a record, waits, and uses it; with double buffering two "
       "are under way, and the core computes with one while the other comes. Counted are the waits of all cores in the "
-      "stages surface, shadow, occlusion, bounce and environment, all effects on. The run ends with an error where less "
-      "than " +
+      "stages surface, shadow, occlusion, bounce and environment, all effects on. The run ends with an error where "
+      "less than " +
       fixed_text(100 * kLeastHiddenShare, 0) + " % of them go; the least here is " + fixed_text(100 * least, 1) +
       " %. The configuration itself has " + std::to_string(tool::find_configuration("best")->depths.fetch) +
       " children or records under way.");
@@ -283,7 +283,7 @@ void write_lambdas(const std::vector<SceneFrames>& scenes, Book& book) {
   book.paragraph(
       "Configuration best has a coarse grid of " + number_text(tool::find_configuration("best")->lambda) +
       " cells per triangle, which suits packets of eye rays that share what they fetch. Secondary rays go through a "
-      "tree and do not use the grid. A finer one has fewer triangles a cell, but more cells, and takes more main memory. "
+      "tree and do not use the grid. A finer one has fewer triangles a cell, but more cells and references. "
       "All other frames of this page have " +
       number_text(kLambda) + " cells per triangle. Fastest of those tried is " + fastest +
       ". All effects are on, with double buffering.");
