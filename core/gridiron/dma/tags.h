@@ -7,9 +7,9 @@
 namespace gridiron {
 
 inline constexpr std::uint8_t kSetupTag = 0;           ///< frame record, macrocell table
-inline constexpr std::uint8_t kFirstMacroTag = 1;      ///< cell blocks, one tag per buffer
+inline constexpr std::uint8_t kFirstMacroTag = 1;      ///< cell blocks, one tag per buffer; nodes of the tree
 inline constexpr std::uint8_t kMacroTagCount = 8;      ///< most cell blocks in rotation
-inline constexpr std::uint8_t kFirstTriangleTag = 9;   ///< triangle buffers, one tag per buffer
+inline constexpr std::uint8_t kFirstTriangleTag = 9;   ///< triangle buffers, one tag per buffer; leaves, records
 inline constexpr std::uint8_t kTriangleTagCount = 15;  ///< most triangle buffers in rotation
 inline constexpr std::uint8_t kFirstOutputTag = 24;    ///< finished tiles, one tag per buffer
 inline constexpr std::uint8_t kOutputTagCount = 8;     ///< most output buffers in rotation
