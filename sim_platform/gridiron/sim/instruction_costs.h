@@ -20,12 +20,12 @@ struct InstructionCost {
 /// All kinds but commands and waits.
 inline constexpr auto kInstructionCosts = std::to_array<InstructionCost>({
     {WorkId( 0),    89.4},  // tile_start
-    {WorkId( 1),   428.6},  // ray_packet
+    {WorkId( 1),   464.6},  // ray_packet
     {WorkId( 2),   337.6},  // pixel_projection, not in `dense`
     {WorkId( 3),   232.0},  // ray_generated
-    {WorkId( 4),    21.8},  // ray_set_word
+    {WorkId( 4),    19.2},  // ray_set_word
     {WorkId( 5),     3.5},  // recent_slot
-    {WorkId( 6),   358.6},  // cull_test
+    {WorkId( 6),   359.6},  // cull_test
     {WorkId( 7),  1613.4},  // pixel_box_group, not in `dense`
     {WorkId( 8),   160.8},  // open_triangle, not in `dense`
     {WorkId( 9),    14.1},  // listed_triangle
@@ -33,25 +33,25 @@ inline constexpr auto kInstructionCosts = std::to_array<InstructionCost>({
     {WorkId(11),   330.5},  // slope_setup, not in `dense`
     {WorkId(12),   337.1},  // subpacket_setup, not in `dense`
     {WorkId(13),   391.7},  // subpacket_group, not in `dense`
-    {WorkId(14),   226.0},  // triangle_test
+    {WorkId(14),   227.0},  // triangle_test
     {WorkId(15),    70.3},  // subpacket_pick, not in `dense`
     {WorkId(16),   108.5},  // subpacket_visit
     {WorkId(17),   287.7},  // group_test_standard
     {WorkId(18),    11.7},  // group_skip, not in `dense`
-    {WorkId(19),   197.1},  // inside_test
+    {WorkId(19),   197.2},  // inside_test
     {WorkId(20),    83.1},  // row_visit, not in `dense`
     {WorkId(21),   284.3},  // row_test, not in `dense`
     {WorkId(22),    11.0},  // row_skip, not in `dense`
     {WorkId(23),   211.2},  // row_inside_test, not in `dense`
-    {WorkId(24),   530.1},  // cull_test_paper, not in `dense`
-    {WorkId(25),   406.2},  // group_test_paper, not in `dense`
+    {WorkId(24),   528.8},  // cull_test_paper, not in `dense`
+    {WorkId(25),   405.0},  // group_test_paper, not in `dense`
     {WorkId(26),   211.4},  // hit_group
     {WorkId(27),   159.2},  // open_hit_group
     {WorkId(28),    95.5},  // settled_group
     {WorkId(29),   609.0},  // hit_subpacket, not in `dense`
     {WorkId(30),   123.0},  // taken_subpacket, not in `dense`
     {WorkId(31),    96.4},  // facing_group
-    {WorkId(32),   182.7},  // hit_group_paper, not in `dense`
+    {WorkId(32),   180.5},  // hit_group_paper, not in `dense`
     {WorkId(33),   255.6},  // hit_setup
     {WorkId(34),   181.2},  // double_sign
     {WorkId(35),  2430.8},  // exact_sign, of 64 decisions
@@ -66,35 +66,35 @@ inline constexpr auto kInstructionCosts = std::to_array<InstructionCost>({
     {WorkId(44),   351.4},  // hit_half
     {WorkId(45), 27547.3},  // exact_order, of 64 decisions
     {WorkId(46),    95.6},  // lattice_triangle, not in `dense`
-    {WorkId(47),   147.1},  // wave_ray, of effects
-    {WorkId(48),   105.0},  // queued_ray, of effects
-    {WorkId(49),   600.0},  // list_ray
-    {WorkId(50),   600.0},  // list_child
-    {WorkId(51),   600.0},  // list_entry
-    {WorkId(52),   600.0},  // list_node
-    {WorkId(53),   600.0},  // list_run
-    {WorkId(54),   600.0},  // list_ray_node
-    {WorkId(55),   600.0},  // list_box_quad
-    {WorkId(56),   600.0},  // list_leaf
-    {WorkId(57),   600.0},  // list_triangle_group
-    {WorkId(58),   600.0},  // list_candidate
-    {WorkId(59),   350.5},  // ray_distance, of effects
-    {WorkId(60),  1490.4},  // surface_point, of effects
-    {WorkId(61),   269.8},  // smooth_normal, of effects
-    {WorkId(62),   148.7},  // shadow_ray, of effects
+    {WorkId(47),   161.8},  // wave_ray, of effects
+    {WorkId(48),    92.1},  // queued_ray, of effects
+    {WorkId(49),   181.9},  // list_ray, of effects
+    {WorkId(50),   265.4},  // list_child, of effects
+    {WorkId(51),    43.2},  // list_entry, of effects
+    {WorkId(52),  1403.5},  // list_node, of effects
+    {WorkId(53),   147.5},  // list_run, of effects
+    {WorkId(54),   459.7},  // list_ray_node, of effects
+    {WorkId(55),   462.7},  // list_box_quad, of effects
+    {WorkId(56),  1885.7},  // list_leaf, of effects
+    {WorkId(57),   781.6},  // list_triangle_group, of effects
+    {WorkId(58),   116.5},  // list_candidate, of effects
+    {WorkId(59),   309.2},  // ray_distance, of effects
+    {WorkId(60),  1501.2},  // surface_point, of effects
+    {WorkId(61),   268.7},  // smooth_normal, of effects
+    {WorkId(62),   252.8},  // shadow_ray, of effects
     {WorkId(63),    67.0},  // light_sample, of effects
     {WorkId(64),   153.2},  // highlight, of effects
-    {WorkId(65),   188.7},  // occlusion_ray, of effects
-    {WorkId(66),    57.1},  // mirror_ray, of effects
-    {WorkId(67),   131.8},  // refracted_ray, of effects
-    {WorkId(68),   380.8},  // environment_lookup, of effects
-    {WorkId(69),    84.2},  // color_added, of effects
+    {WorkId(65),   224.5},  // occlusion_ray, of effects
+    {WorkId(66),    75.1},  // mirror_ray, of effects
+    {WorkId(67),   159.4},  // refracted_ray, of effects
+    {WorkId(68),   384.2},  // environment_lookup, of effects
+    {WorkId(69),    84.8},  // color_added, of effects
     {WorkId(70),   193.1},  // color_group, of effects
-    {WorkId(74),   386.8},  // packet_start
+    {WorkId(74),   387.8},  // packet_start
     {WorkId(75),    23.0},  // pass_slope
-    {WorkId(76),    15.5},  // mailbox_group
+    {WorkId(76),    15.7},  // mailbox_group
     {WorkId(77),   422.6},  // pass_group, not in `dense`
-    {WorkId(78),   409.9},  // pass_square
+    {WorkId(78),   407.9},  // pass_square
     {WorkId(79),   239.0},  // macro_slice_step
     {WorkId(80),    13.9},  // macro_row
     {WorkId(81),    28.8},  // macro_cell_step
@@ -103,8 +103,8 @@ inline constexpr auto kInstructionCosts = std::to_array<InstructionCost>({
     {WorkId(84),    23.7},  // cell_row
     {WorkId(85),     7.9},  // cell_step
     {WorkId(86),    22.0},  // cell_visit
-    {WorkId(87),   365.9},  // triangle_batch
-    {WorkId(88),    39.1},  // mailbox_probe
+    {WorkId(87),   368.9},  // triangle_batch
+    {WorkId(88),    39.2},  // mailbox_probe
     {WorkId(89),    25.6},  // reach_group
     {WorkId(90),   121.8},  // reach_test, not in `dense`
     {WorkId(91),   357.5},  // footprint_group, not in `dense`

@@ -51,6 +51,9 @@ void settle_depths(const RenderRequest& request, RenderPlan& plan) {
     const std::uint32_t fetch = plan.depths.fetch;
     plan.depths = plan.depths.within(most);
     if (!has_effects) plan.depths.fetch = fetch;
+  } else if (plan.layout.packet_width == 0) {  // without packets nothing reads the grid
+    plan.depths.macro = most.macro;
+    plan.depths.triangle = most.triangle;
   }
   if (has_effects) plan.most_macro_width = facts.max_macro_width;
   const std::uint32_t macro_width =

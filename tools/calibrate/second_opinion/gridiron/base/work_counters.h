@@ -19,7 +19,7 @@
 namespace gridiron {
 
 /// Numbers of marks: of kinds of work first, of what else there is at the end.
-inline constexpr int kFirstMark = 128, kEndOfKindMarks = kFirstMark + 88;
+inline constexpr int kFirstMark = 128, kEndOfKindMarks = kFirstMark + 96;
 static_assert(kFirstMark + kWorkKindCount <= kEndOfKindMarks, "each kind has a mark");
 
 struct WorkCounters : PlainWorkCounters {
@@ -41,11 +41,13 @@ struct WorkCounters : PlainWorkCounters {
     break;
 #define GRIDIRON_MARKS(i)                                                                                  \
   GRIDIRON_MARK(i)                                                                                         \
-  GRIDIRON_MARK(i + 1) GRIDIRON_MARK(i + 2) GRIDIRON_MARK(i + 3) GRIDIRON_MARK(i + 4) GRIDIRON_MARK(i + 5) \
-      GRIDIRON_MARK(i + 6) GRIDIRON_MARK(i + 7)
+  GRIDIRON_MARK(i + 1)                                                                                     \
+  GRIDIRON_MARK(i + 2) GRIDIRON_MARK(i + 3) GRIDIRON_MARK(i + 4) GRIDIRON_MARK(i + 5) GRIDIRON_MARK(i + 6) \
+      GRIDIRON_MARK(i + 7)
         GRIDIRON_MARKS(0)
-        GRIDIRON_MARKS(8) GRIDIRON_MARKS(16) GRIDIRON_MARKS(24) GRIDIRON_MARKS(32) GRIDIRON_MARKS(40) GRIDIRON_MARKS(48)
-            GRIDIRON_MARKS(56) GRIDIRON_MARKS(64) GRIDIRON_MARKS(72) GRIDIRON_MARKS(80)
+        GRIDIRON_MARKS(8)
+        GRIDIRON_MARKS(16) GRIDIRON_MARKS(24) GRIDIRON_MARKS(32) GRIDIRON_MARKS(40) GRIDIRON_MARKS(48)
+            GRIDIRON_MARKS(56) GRIDIRON_MARKS(64) GRIDIRON_MARKS(72) GRIDIRON_MARKS(80) GRIDIRON_MARKS(88)
 #undef GRIDIRON_MARKS
 #undef GRIDIRON_MARK
                 default : break;
