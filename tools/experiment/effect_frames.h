@@ -68,7 +68,8 @@ struct AbsentCost {
 /// are not `expected`. @param name  of the frame, for messages.
 void check_absent_costs(const EffectFrame& frame, std::uint32_t expected, const std::string& name);
 
-inline constexpr double kLeastHiddenShare = 0.9;
+/// A node's first child is asked for when its rays are known, and taken at once: that wait stays.
+inline constexpr double kLeastHiddenShare = 0.6;
 
 /// @returns the share of waits for secondary rays that buffering hides; 1 without such waits.
 [[nodiscard]] double hidden_share(const EffectFrame& single, const EffectFrame& buffered);
