@@ -51,7 +51,9 @@ struct Lanes<1> {
   [[nodiscard]] static GRIDIRON_INLINE Float abs(Float a) { return Float(magnitude(a.v)); }
   [[nodiscard]] static GRIDIRON_INLINE Float select(Mask mask, Float a, Float b) { return mask.is_set ? a : b; }
   [[nodiscard]] static GRIDIRON_INLINE Float flip_sign(Mask mask, Float a) { return mask.is_set ? -a : a; }
-  [[nodiscard]] static GRIDIRON_INLINE Float turn_by(Float by, Float a) { return __builtin_signbit(by.v) ? -a : a; }
+  [[nodiscard]] static GRIDIRON_INLINE Float turn_by(Float by, Float a) {
+    return __builtin_signbit(by.v) != 0 ? -a : a;
+  }
   [[nodiscard]] static GRIDIRON_INLINE Mask mask_from_bits(std::uint32_t bits) { return {(bits & 1u) != 0}; }
   [[nodiscard]] static GRIDIRON_INLINE float horizontal_max(Float a) { return a.v; }
   [[nodiscard]] static GRIDIRON_INLINE float horizontal_min(Float a) { return a.v; }
