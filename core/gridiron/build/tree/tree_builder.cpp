@@ -3,7 +3,6 @@
 #include <gridiron/build/tree/tree_box.h>
 #include <gridiron/build/tree/tree_builder.h>
 
-#include <bit>
 #include <cstddef>
 
 namespace gridiron {
@@ -68,6 +67,23 @@ class Curve {
   float low_[3], scale_[3] = {0.0f, 0.0f, 0.0f};
   bool is_flat_ = true;
 };
+
+// The number of the highest bit, from 1; 0 of none. As std::bit_width(), which calls a library where there is no
+// instruction for it.
+[[nodiscard]] std::int32_t width_of(std::uint32_t bits) {
+  std::int32_t width = 0;
+  const auto shift_by = [&bits, &width](std::int32_t step) {
+    if (bits >> step == 0) return;
+    bits >>= step;
+    width += step;
+  };
+  shift_by(16);
+  shift_by(8);
+  shift_by(4);
+  shift_by(2);
+  shift_by(1);
+  return width + static_cast<std::int32_t>(bits);
+}
 
 // Sorts keys by their codes, equal ones in the order they have. `from` is changed too.
 void sort_keys(Key* from, Key* to, std::uint32_t count, std::uint32_t* histograms) {
@@ -218,7 +234,7 @@ class TreeBuilder {
 
   [[nodiscard]] Range range_of(std::uint32_t begin, std::uint32_t end) const {
     if (end - begin <= leaf_triangles_) return {begin, end, -1};
-    return {begin, end, static_cast<std::int32_t>(std::bit_width(keys_[begin].code ^ keys_[end - 1].code))};
+    return {begin, end, width_of(keys_[begin].code ^ keys_[end - 1].code)};
   }
 
   // Level by level: nodes that are still to be split lie behind those that are done.
