@@ -62,7 +62,7 @@
 #endif
 #ifdef TRACE
 #define NODE_TAGS K_MACRO_TAG_COUNT
-#define LEAF_TAGS K_TRIANGLE_TAG_COUNT
+#define LEAF_TAGS K_MACRO_TAG_COUNT
 #else
 #define NODE_TAGS ((SLOTS + 1) / 2)
 #define LEAF_TAGS ((SLOTS + 1) / 2)
@@ -606,7 +606,7 @@ mtype = { kNothing, kNode, kLeaf };
 mtype has[SLOTS];
 bool is_pending[SLOTS];
 bit serial[SLOTS];  // of what a slot has, or will have
-#define SLOT_TAG(i) (has[i] == kLeaf -> K_FIRST_TRIANGLE_TAG + (i) % LEAF_TAGS : K_FIRST_MACRO_TAG + (i) % NODE_TAGS)
+#define SLOT_TAG(i) (has[i] == kLeaf -> K_FIRST_TRIANGLE_TAG + (i) * LEAF_TAGS / SLOTS : K_FIRST_MACRO_TAG + (i) * NODE_TAGS / SLOTS)
 
 // arrive.
 inline arrive(i) {

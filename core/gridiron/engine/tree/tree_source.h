@@ -103,9 +103,9 @@ class TreeSource {
   // Waits for nodes count as those for cell blocks do, waits for leaves as those for triangles. Children that are asked
   // for together lie in different sets, and have tags of their own.
   [[nodiscard]] static std::uint8_t tag_of(std::uint32_t slot, TreeChild child) {
-    static constexpr std::uint32_t kTags = 8;
+    static constexpr std::uint32_t kTags = kMacroTagCount;
     static constexpr std::uint32_t kTagSlots = Cache::kSlots < kTags ? std::uint32_t{1} : Cache::kSlots / kTags;
-    static_assert(kTags <= kMacroTagCount && kTags <= kTriangleTagCount);
+    static_assert(kTags <= kTriangleTagCount);
     const std::uint32_t first = child.is_leaf() ? std::uint32_t{kFirstTriangleTag} : std::uint32_t{kFirstMacroTag};
     return static_cast<std::uint8_t>(first + slot / kTagSlots);
   }
