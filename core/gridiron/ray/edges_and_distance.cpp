@@ -58,10 +58,11 @@ DistanceInterval distance_interval(const float origin[3], float dir_max, const f
   set_up_distance(origin, dir_max, triangle, setup);
   const double quotient = setup.numerator / (double{dir[0]} * setup.normal[0] + double{dir[1]} * setup.normal[1] +
                                              double{dir[2]} * setup.normal[2]);
-  const double relative = quotient * setup.relative_error_per_t + setup.relative_error;
+  const double size = magnitude(quotient);
+  const double relative = size * setup.relative_error_per_t + setup.relative_error;
   // False for NaN too; the distance is unknown then.
-  if (!(quotient > 0.0 && relative < 0x1p-10)) return {0.0, static_cast<double>(kInfinity)};
-  return {quotient - quotient * relative, quotient + quotient * relative};
+  if (!(size > 0.0 && relative < 0x1p-10)) return {0.0, static_cast<double>(kInfinity)};
+  return {quotient - size * relative, quotient + size * relative};
 }
 
 DistanceEstimate set_up_estimate(const float origin[3], float dir_max, const VertexTriangle& triangle) {

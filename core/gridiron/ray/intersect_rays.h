@@ -35,6 +35,7 @@ namespace gridiron {
                                                          WorkCounters& work) {
   work.add(Work::kRayDistance);
   const DistanceInterval interval = distance_interval(ray.origin, ray.dir_max, ray.dir, triangle);
+  if (interval.high < 0.0) return 0.0f;  // surely behind the origin
   const std::int64_t half_step = std::int64_t{1} << 28;
   const std::int64_t low = (std::bit_cast<std::int64_t>(interval.low) + half_step) >> 29;
   const std::int64_t high = (std::bit_cast<std::int64_t>(interval.high) + half_step) >> 29;
