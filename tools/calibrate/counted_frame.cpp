@@ -57,7 +57,7 @@ void FrameInMemory::set_up_grid(const CountedFrame& frame) {
   const tool::Configuration& configuration = *frame.configuration;
   const MeshView mesh{frame.vertices, frame.triangles};
   GridParameters grid;
-  grid.lambda = frame.effects != nullptr ? configuration.effect_lambda : configuration.lambda;
+  grid.lambda = configuration.lambda;
   grid.macro_width = configuration.macro_width;
   grid.format = format_of(frame.accuracy);
   GridNeed need;

@@ -11,7 +11,7 @@ inline constexpr std::uint32_t kLineBytes = 128;  ///< alignment of every sectio
 // --- Scene image ------------------------------------------------------------------------------------------------
 
 inline constexpr std::uint32_t kImageMagic = 0x49524447;  ///< "GDRI" as bytes
-inline constexpr std::uint32_t kImageVersion = 1;     ///< the only one that is read; core/README.md, "Versions"
+inline constexpr std::uint32_t kImageVersion = 2;     ///< the only one that is read; core/README.md, "Versions"
 inline constexpr std::uint32_t kMaxSectionCount = 32;  ///< entries of a section table
 
 /// How a triangle is stored in the kTriangles section. Fixed at build time; a frame must match what is stored.

@@ -337,6 +337,7 @@ class EffectRenderer {
     point.triangle = store_.wave.ids[i];
     if constexpr (has(kSmoothNormals)) {
       if (material->is_smooth != 0 && surface.normals != kNoNormals) {
+        store_.work.charge_to(Work::kSmoothNormal);
         point.shading[0] = found.weights[0];
         point.shading[1] = found.weights[1];
         for (int axis = 0; axis < 3; ++axis) {
@@ -407,6 +408,7 @@ class EffectRenderer {
     constexpr bool kRefracts = has(kRefraction);
     const bool is_glass = kRefracts && material.transmittance > 0.0f;
     if (point.pixel >> 16 >= scene().recursion_depth || !(material.specular > 0.0f || is_glass)) return Status::kOk;
+    store_.work.charge_to(Work::kMirrorRay);
     const Vector3 direction = -vector_of(point.view);
     const Vector3 face = vector_of(point.face);
     float share = material.specular;

@@ -106,7 +106,7 @@ TEST(SceneImage, AFailureLeavesTheViewAlone) {
 
 const Damage kDamages[] = {
     HEADER_DAMAGE("magic", magic, r.magic ^= 1),
-    HEADER_DAMAGE("version", version, r.version = 2),
+    HEADER_DAMAGE("version", version, r.version = 1),
     HEADER_DAMAGE("odd_image_bytes", image_bytes, r.image_bytes -= 64),
     HEADER_DAMAGE("no_image_bytes", image_bytes, r.image_bytes = 0),
     HEADER_DAMAGE("too_many_image_bytes", image_bytes, r.image_bytes += kLineBytes),

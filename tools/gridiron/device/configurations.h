@@ -32,7 +32,6 @@ struct Configuration {
   std::string_view name;
   std::string_view description;
   float lambda;                ///< cells per triangle, Eq. (1)
-  float effect_lambda;         ///< the same for scenes that cast secondary rays
   std::uint32_t macro_width;   ///< cells along a macrocell's edge
   std::uint32_t packet_width;  ///< rays along a packet's edge
   BufferDepths depths;

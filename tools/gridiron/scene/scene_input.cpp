@@ -216,10 +216,8 @@ std::uint64_t image_budget_bytes(const sim::MachineProfile& machine, std::uint32
 GridChoice choose_grid(const SceneInput& input, const Mesh& mesh, const SceneRequest& request,
                        const ImageLimits& limits, const EffectsView* effects) {
   GridChoice choice;
-  constexpr std::uint32_t kRayEffects = kPointShadows | kAreaLights | kReflection | kRefraction | kAmbientOcclusion;
-  const bool casts_rays = effects != nullptr && (effects_called_for(*effects) & kRayEffects) != 0;
   const Configuration& configuration = *request.configuration;
-  choice.wanted_lambda = request.lambda.value_or(casts_rays ? configuration.effect_lambda : configuration.lambda);
+  choice.wanted_lambda = request.lambda.value_or(configuration.lambda);
   choice.parameters.lambda = choice.wanted_lambda;
   choice.parameters.macro_width =
       request.macro_width.value_or(std::min(configuration.macro_width, limits.most_macro_width));
