@@ -153,11 +153,20 @@ double hidden_share(const EffectFrame& single, const EffectFrame& buffered) {
   return before > 0 ? 1 - buffered.secondary_wait_cycles() / before : 1.0;
 }
 
+double secondary_wait_share(const EffectFrame& frame) {
+  return frame.core_cycles > 0 ? frame.secondary_wait_cycles() / frame.core_cycles : 0.0;
+}
+
 void check_hiding(const EffectFrame& single, const EffectFrame& buffered, const std::string& name) {
-  const double share = hidden_share(single, buffered);
-  if (share >= kLeastHiddenShare) return;
-  fail_check(name + ": " + fixed_text(100 * share, 1) + " % of the waits for secondary rays are hidden, fewer than " +
-             fixed_text(100 * kLeastHiddenShare, 0) + " %");
+  const double share = hidden_share(single, buffered), left = secondary_wait_share(buffered);
+  if (share < kLeastHiddenShare) {
+    fail_check(name + ": " + fixed_text(100 * share, 1) + " % of the waits for secondary rays are hidden, fewer than " +
+               fixed_text(100 * kLeastHiddenShare, 0) + " %");
+  }
+  if (left > kMostWaitShare) {
+    fail_check(name + ": cores wait for secondary rays for " + fixed_text(100 * left, 1) +
+               " % of their time, more than " + fixed_text(100 * kMostWaitShare, 0) + " %");
+  }
 }
 
 }  // namespace gridiron::experiment

@@ -68,13 +68,17 @@ struct AbsentCost {
 /// are not `expected`. @param name  of the frame, for messages.
 void check_absent_costs(const EffectFrame& frame, std::uint32_t expected, const std::string& name);
 
-/// A node's first child is asked for when its rays are known, and taken at once: that wait stays.
-inline constexpr double kLeastHiddenShare = 0.6;
+/// A node's first child is asked for when its rays are known, and taken at once: that wait stays, but it is little of
+/// the cores' time.
+inline constexpr double kLeastHiddenShare = 0.6, kMostWaitShare = 0.03;
 
 /// @returns the share of waits for secondary rays that buffering hides; 1 without such waits.
 [[nodiscard]] double hidden_share(const EffectFrame& single, const EffectFrame& buffered);
 
-/// Errors: tool::Failure (kCheckFailed) if less than kLeastHiddenShare is hidden.
+/// @returns the share of the cores' time that they wait for secondary rays; 0 for a frame of no time.
+[[nodiscard]] double secondary_wait_share(const EffectFrame& frame);
+
+/// Errors: tool::Failure (kCheckFailed) if less than kLeastHiddenShare is hidden or more than kMostWaitShare is left.
 void check_hiding(const EffectFrame& single, const EffectFrame& buffered, const std::string& name);
 
 }  // namespace gridiron::experiment

@@ -207,12 +207,13 @@ void write_hiding(const std::vector<SceneFrames>& scenes, Book& book) {
                  .y_title = "million cycles of all cores",
                  .bars = {"buffering"},
                  .parts = {"waiting that is left", "waiting hidden by double buffering"}};
-  double least = 1;
+  double least = 1, most_left = 0;
   for (const SceneFrames& scene : scenes) {
     const EffectFrame& single = scene.whole().single;
     const EffectFrame& twofold = scene.whole().twofold;
     const double before = single.secondary_wait_cycles(), after = twofold.secondary_wait_cycles();
     least = std::min(least, hidden_share(single, twofold));
+    most_left = std::max(most_left, secondary_wait_share(twofold));
     table.add({scene.key(), before, after, 100 * hidden_share(single, twofold), scene.deep.secondary_wait_cycles(),
                100 * hidden_share(single, scene.deep), 1 / single.seconds, 1 / twofold.seconds,
                1 / scene.deep.seconds});
@@ -228,6 +229,8 @@ void write_hiding(const std::vector<SceneFrames>& scenes, Book& book) {
       "stages surface, shadow, occlusion, bounce and environment, all effects on. The run ends with an error where "
       "less than " +
       fixed_text(100 * kLeastHiddenShare, 0) + " % of them go; the least here is " + fixed_text(100 * least, 1) +
+      " %. It does so too where the rest is more than " + fixed_text(100 * kMostWaitShare, 0) +
+      " % of the cores' time; the most here is " + fixed_text(100 * most_left, 1) +
       " %. The configuration itself has " + std::to_string(tool::find_configuration("best")->depths.fetch) +
       " children or records under way.");
   book.figure("hiding", bar_chart_svg(chart), "A bar is all waiting for secondary rays with single buffering.");

@@ -165,6 +165,18 @@ TEST(EffectsExperiment, TooLittleHidingFailsTheRun) {
   EXPECT_NE(words.find("52.8"), std::string::npos) << words;
 }
 
+TEST(EffectsExperiment, TooMuchWaitingFailsTheRun) {
+  EffectFrame single, twofold;
+  single.stages[static_cast<std::size_t>(Stage::kBounce)].wait_cycles = 1000;
+  twofold.stages[static_cast<std::size_t>(Stage::kBounce)].wait_cycles = 40;
+  const auto check = [&] { experiment::check_hiding(single, twofold, "frame"); };
+  twofold.core_cycles = 1340;  // 2.99 %
+  EXPECT_NO_THROW(check());
+  twofold.core_cycles = 1250;  // 3.2 %
+  const std::string words = failure_of(check, tool::ExitCode::kCheckFailed);
+  EXPECT_NE(words.find("3.2"), std::string::npos) << words;
+}
+
 // The library renders one scene as the program does; without an effect the kernel has nothing of it.
 TEST(EffectsExperiment, AFrameCallsForWhatItsSceneDoes) {
   const EffectScene gallery = experiment::make_effect_scene("gallery");
