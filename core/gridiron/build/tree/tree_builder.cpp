@@ -185,8 +185,13 @@ class TreeBuilder {
  private:
   struct Range {
     std::uint32_t begin, end;
-    std::int32_t level;  // the highest bit in which codes differ, from 1; 0: they are equal; -1: a leaf
+    std::int32_t level;   // the highest bit in which codes differ, from 1; 0: they are equal; -1: a leaf
+    std::uint32_t group;  // of a node's first four parts: from which it comes
   };
+
+  // What a level is worth beside bits of the number of triangles, and more than any part weighs.
+  static constexpr std::int32_t kLevelWeight = 2, kMostWeight = 100;
+  static constexpr std::uint32_t kGroups = 4, kGroupSize = kTreeWidth / kGroups;
 
   // --- Triangles --------------------------------------------------------------------------------------------------
 
@@ -233,14 +238,14 @@ class TreeBuilder {
   // --- Nodes ------------------------------------------------------------------------------------------------------
 
   [[nodiscard]] Range range_of(std::uint32_t begin, std::uint32_t end) const {
-    if (end - begin <= leaf_triangles_) return {begin, end, -1};
-    return {begin, end, width_of(keys_[begin].code ^ keys_[end - 1].code)};
+    if (end - begin <= leaf_triangles_) return {begin, end, -1, 0};
+    return {begin, end, width_of(keys_[begin].code ^ keys_[end - 1].code), 0};
   }
 
   // Level by level: nodes that are still to be split lie behind those that are done.
   [[nodiscard]] Status split_all(std::uint32_t count) {
     size_.node_count = 0;
-    GRIDIRON_TRY(append_node({0, count, 0}, 1));
+    GRIDIRON_TRY(append_node({0, count, 0, 0}, 1));
     for (std::uint32_t i = 0; i < size_.node_count; ++i) GRIDIRON_TRY(split(nodes_[i]));
     return Status::kOk;
   }
@@ -295,30 +300,58 @@ class TreeBuilder {
     return static_cast<std::uint32_t>(parts);
   }
 
-  // Splits the range with the highest differing bit, or the larger of two, until there are 16 or all are leaves.
+  // Splits the part that weighs the most until there are 16 or all are leaves. A core tests rays against the union box
+  // of each four children first, so the first four parts become groups of four: below the root a group gets more only
+  // if no other can be split. At the root, which all rays enter, a group that is fuller by more than a level may grow.
   [[nodiscard]] std::uint32_t split_by_codes(std::uint32_t begin, std::uint32_t end, Range* ranges) {
+    const std::int32_t full_weight = end - begin == size_.triangle_count ? kLevelWeight : kMostWeight;
+    std::uint32_t group_sizes[kGroups] = {1, 1, 1, 1};
     ranges[0] = range_of(begin, end);
     std::uint32_t count = 1;
     while (count < kTreeWidth) {
       std::uint32_t best = 0;
-      for (std::uint32_t i = 1; i < count; ++i) {
-        const Range &a = ranges[i], &b = ranges[best];
-        if (a.level > b.level || (a.level == b.level && a.end - a.begin > b.end - b.begin)) best = i;
+      std::int32_t best_weight = -2 * kMostWeight;
+      for (std::uint32_t i = 0; i < count; ++i) {
+        const Range& range = ranges[i];
+        if (range.level < 0) continue;
+        const bool is_full = count >= kGroups && group_sizes[range.group] >= kGroupSize;
+        const std::int32_t weight = weight_of(range) - (is_full ? full_weight : 0);
+        if (weight > best_weight || (weight == best_weight && size_of(range) > size_of(ranges[best]))) {
+          best = i;
+          best_weight = weight;
+        }
       }
-      Range& chosen = ranges[best];
-      if (chosen.level < 0) break;
-      if (chosen.level == 0) {
-        code_again(chosen.begin, chosen.end);
-        chosen = range_of(chosen.begin, chosen.end);
-      }
-      const std::uint32_t middle = first_with_bit(chosen);
-      const Range left = range_of(chosen.begin, middle), right = range_of(middle, chosen.end);
-      for (std::uint32_t i = count; i > best + 1; --i) ranges[i] = ranges[i - 1];
-      ranges[best] = left;
-      ranges[best + 1] = right;
+      if (ranges[best].level < 0) break;
+      split_part(ranges, count, best);
       ++count;
+      if (count > kGroups) ++group_sizes[ranges[best].group];
+      if (count == kGroups) {
+        for (std::uint32_t i = 0; i < kGroups; ++i) ranges[i].group = i;
+      }
     }
     return count;
+  }
+
+  [[nodiscard]] static std::uint32_t size_of(const Range& range) { return range.end - range.begin; }
+
+  // Rays meet large cells, and a box is worth more above many triangles.
+  [[nodiscard]] static std::int32_t weight_of(const Range& range) {
+    return kLevelWeight * range.level + width_of(size_of(range));
+  }
+
+  // Splits part i of `count` in two.
+  void split_part(Range* ranges, std::uint32_t count, std::uint32_t i) {
+    Range& part = ranges[i];
+    const std::uint32_t group = part.group;
+    if (part.level == 0) {
+      code_again(part.begin, part.end);
+      part = range_of(part.begin, part.end);
+    }
+    const std::uint32_t middle = first_with_bit(part);
+    for (std::uint32_t k = count; k > i + 1; --k) ranges[k] = ranges[k - 1];
+    ranges[i + 1] = range_of(middle, part.end);
+    part = range_of(part.begin, middle);
+    part.group = ranges[i + 1].group = group;
   }
 
   [[nodiscard]] std::uint32_t first_with_bit(const Range& range) const {
