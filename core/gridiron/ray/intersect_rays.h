@@ -24,9 +24,10 @@ namespace gridiron {
     const std::int32_t sign = edge_sign(ray.origin, ray.dir, triangle.v[k], triangle.v[k == 2 ? 0 : k + 1], work);
     is_above = is_above || sign > 0;
     is_below = is_below || sign < 0;
+    if (is_above && is_below) return false;
   }
   // Neither: the ray lies in the triangle's plane and hits nothing.
-  return is_above != is_below;
+  return is_above || is_below;
 }
 
 /// The distance of a ray to a triangle inside which it crosses the plane, rounded to the nearest float; 0 if that is
