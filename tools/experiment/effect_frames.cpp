@@ -50,7 +50,6 @@ std::uint64_t excess(std::uint64_t count, std::uint64_t most) {
 }
 
 AbsentCost absent_cost(const EffectFrame& frame, EffectBits effect) {
-  const std::uint64_t lit = frame.count(Work::kSurfacePoint) * frame.light_count;
   switch (effect) {
     case kPointShadows:
       // Only area lights cast shadows of their own.
@@ -59,8 +58,7 @@ AbsentCost absent_cost(const EffectFrame& frame, EffectBits effect) {
       return with_stage(counted(effect, "shadow rays", frame.count(Work::kShadowRay)), "shadow",
                         frame.stage(Stage::kShadow), false);
     case kAreaLights:
-      return counted(effect, "shadow rays and lights beyond one a point and light",
-                     excess(frame.count(Work::kShadowRay), lit) + excess(frame.count(Work::kLightSample), lit));
+      return counted(effect, "places on area lights", frame.count(Work::kAreaPlace));
     case kReflection:
       return with_stage(
           counted(effect, "reflected and queued rays", frame.count(Work::kMirrorRay) + frame.count(Work::kQueuedRay)),
@@ -115,7 +113,6 @@ EffectFrame render_effect_frame(const EffectScene& scene, const EffectFrameReque
 
   EffectFrame frame;
   frame.called_for = memory.image.effects.called_for;
-  frame.light_count = memory.image.effects.light_count;
   frame.has_shadows = memory.image.effects.has_shadows != 0;
   frame.work = result.work;
   frame.stages = tool::stage_sums(timing.cores);

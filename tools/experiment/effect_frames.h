@@ -30,7 +30,6 @@ struct EffectFrameRequest {
 /// The counts of a frame.
 struct EffectFrame {
   std::uint32_t called_for = 0;   ///< EffectBits, as the scene image has them
-  std::uint32_t light_count = 0;  ///< point and area lights
   bool has_shadows = true;
   sim::WorkTotals work{};
   std::array<sim::StageTiming, kStageCount> stages{};  ///< sums over the cores

@@ -74,6 +74,7 @@ enum class Work : std::uint8_t {
   kSurfacePoint,       ///< hits of which point, normal and material were found
   kSmoothNormal,       ///< hits of which the normal was interpolated
   kShadowRay,          ///< shadow rays made, of point and area lights
+  kAreaPlace,          ///< places found on area lights, one for each point and ray to it
   kLightSample,        ///< lights, or samples of them, that light a point: their share of the colour
   kHighlight,          ///< of these, highlights
   kOcclusionRay,       ///< rays of ambient occlusion made
@@ -91,7 +92,7 @@ enum class Work : std::uint8_t {
 /// The number of the first kind of an engine.
 inline constexpr std::uint32_t kSharedWorkCount = static_cast<std::uint32_t>(Work::kCount);
 /// Kinds that there are counters for. No frame has two engines, so all engines use the same ones.
-inline constexpr std::uint32_t kWorkKindCount = 93;
+inline constexpr std::uint32_t kWorkKindCount = 94;
 
 /// A kind of Work or of an engine: the number of its counter.
 class WorkId {

@@ -261,6 +261,7 @@ class Sum {
     if (calls_for(kSmoothNormals)) add(Work::kSmoothNormal, rays);
     if (calls_for(kEnvironment)) add(Work::kEnvironmentLookup, rays);
     if (effects.has_shadows != 0) add(Work::kShadowRay, to_lights);
+    if (calls_for(kAreaLights)) add(Work::kAreaPlace, to_lights);
     add(Work::kLightSample, to_lights);
     if (calls_for(kHighlights)) add(Work::kHighlight, to_lights);
     add(Work::kOcclusionRay, into_the_open);

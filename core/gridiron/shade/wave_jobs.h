@@ -92,6 +92,7 @@ class LightJobs {
       for (std::uint32_t i = first; i < end; ++i) {
         const WavePoint& point = context_.point(i);
         const Vector3 to_light = place_of(index, sample, point) - vector_of(point.point);
+        context_.store.work.charge_to(Work::kShadowRay);
         const bool is_lit =
             dot(to_light, vector_of(point.face)) > 0.0f && dot(to_light, vector_of(point.shading)) > 0.0f;
         if (!is_lit) continue;
@@ -135,6 +136,7 @@ class LightJobs {
         context_.store.work.charge_to(Work::kLightSample);
         const WavePoint& point = context_.point(i);
         const Vector3 to_light = place_of(index, sample, point) - vector_of(point.point);
+        context_.store.work.charge_to(Work::kLightSample);
         if (dot(to_light, vector_of(point.face)) > 0.0f) light_point(light, point, to_light);
       }
     }
@@ -160,6 +162,8 @@ class LightJobs {
     const Vector3 corner = vector_of(light.corner);
     if constexpr ((Built & kAreaLights) != 0) {
       if (light.samples != 0) {
+        context_.store.work.add(Work::kAreaPlace);
+        context_.store.work.charge_to(Work::kAreaPlace);
         const Jitter jitter = context_.jitter(point, area_light_purpose(first_light_ + index));
         const SquarePlace place = area_light_place(sample, light.samples, jitter);
         return corner + (place.a * vector_of(light.edge_u) + place.b * vector_of(light.edge_v));

@@ -60,8 +60,8 @@ inline constexpr WorkKind kSharedWork[] = {
     {Work::kListTriangleGroup, "list_triangle_group"}, {Work::kListCandidate, "list_candidate"},
     {Work::kRayDistance, "ray_distance"},
     {Work::kSurfacePoint, "surface_point"}, {Work::kSmoothNormal, "smooth_normal"}, {Work::kShadowRay, "shadow_ray"},
-    {Work::kLightSample, "light_sample"}, {Work::kHighlight, "highlight"}, {Work::kOcclusionRay, "occlusion_ray"},
-    {Work::kMirrorRay, "mirror_ray"}, {Work::kRefractedRay, "refracted_ray"},
+    {Work::kAreaPlace, "area_place"}, {Work::kLightSample, "light_sample"}, {Work::kHighlight, "highlight"},
+    {Work::kOcclusionRay, "occlusion_ray"}, {Work::kMirrorRay, "mirror_ray"}, {Work::kRefractedRay, "refracted_ray"},
     {Work::kEnvironmentLookup, "environment_lookup"}, {Work::kColorAdded, "color_added"},
     {Work::kColorGroup, "color_group"}, {Work::kGetIssue, "get_issue"}, {Work::kPutIssue, "put_issue"},
     {Work::kWait, "wait"}};

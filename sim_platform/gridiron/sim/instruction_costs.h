@@ -67,48 +67,49 @@ inline constexpr auto kInstructionCosts = std::to_array<InstructionCost>({
     {WorkId(45), 27547.3},  // exact_order, of 64 decisions
     {WorkId(46),    95.6},  // lattice_triangle, not in `dense`
     {WorkId(47),   161.8},  // wave_ray, of effects
-    {WorkId(48),    92.1},  // queued_ray, of effects
+    {WorkId(48),    92.0},  // queued_ray, of effects
     {WorkId(49),   181.9},  // list_ray, of effects
-    {WorkId(50),   265.4},  // list_child, of effects
-    {WorkId(51),    43.2},  // list_entry, of effects
-    {WorkId(52),  1403.5},  // list_node, of effects
+    {WorkId(50),   264.3},  // list_child, of effects
+    {WorkId(51),    43.1},  // list_entry, of effects
+    {WorkId(52),  1399.9},  // list_node, of effects
     {WorkId(53),   147.5},  // list_run, of effects
-    {WorkId(54),   459.7},  // list_ray_node, of effects
+    {WorkId(54),   459.2},  // list_ray_node, of effects
     {WorkId(55),   462.7},  // list_box_quad, of effects
-    {WorkId(56),  1885.7},  // list_leaf, of effects
+    {WorkId(56),  1886.4},  // list_leaf, of effects
     {WorkId(57),   781.6},  // list_triangle_group, of effects
     {WorkId(58),   116.5},  // list_candidate, of effects
-    {WorkId(59),   309.2},  // ray_distance, of effects
-    {WorkId(60),  1501.2},  // surface_point, of effects
-    {WorkId(61),   268.7},  // smooth_normal, of effects
-    {WorkId(62),   252.8},  // shadow_ray, of effects
-    {WorkId(63),    67.0},  // light_sample, of effects
-    {WorkId(64),   153.2},  // highlight, of effects
-    {WorkId(65),   224.5},  // occlusion_ray, of effects
-    {WorkId(66),    75.1},  // mirror_ray, of effects
-    {WorkId(67),   159.4},  // refracted_ray, of effects
-    {WorkId(68),   384.2},  // environment_lookup, of effects
-    {WorkId(69),    84.8},  // color_added, of effects
-    {WorkId(70),   193.1},  // color_group, of effects
-    {WorkId(74),   387.8},  // packet_start
-    {WorkId(75),    23.0},  // pass_slope
-    {WorkId(76),    15.7},  // mailbox_group
-    {WorkId(77),   422.6},  // pass_group, not in `dense`
-    {WorkId(78),   407.9},  // pass_square
-    {WorkId(79),   239.0},  // macro_slice_step
-    {WorkId(80),    13.9},  // macro_row
-    {WorkId(81),    28.8},  // macro_cell_step
-    {WorkId(82),   337.7},  // macro_cell_visit
-    {WorkId(83),   241.4},  // slice_step
-    {WorkId(84),    23.7},  // cell_row
-    {WorkId(85),     7.9},  // cell_step
-    {WorkId(86),    22.0},  // cell_visit
-    {WorkId(87),   368.9},  // triangle_batch
-    {WorkId(88),    39.2},  // mailbox_probe
-    {WorkId(89),    25.6},  // reach_group
-    {WorkId(90),   121.8},  // reach_test, not in `dense`
-    {WorkId(91),   357.5},  // footprint_group, not in `dense`
-    {WorkId(92),    10.6},  // cell_bound_step, not in `dense`
+    {WorkId(59),   315.4},  // ray_distance, of effects
+    {WorkId(60),  1456.2},  // surface_point, of effects
+    {WorkId(61),   318.8},  // smooth_normal, of effects
+    {WorkId(62),   161.6},  // shadow_ray, of effects
+    {WorkId(63),   154.2},  // area_place, of effects
+    {WorkId(64),    67.0},  // light_sample, of effects
+    {WorkId(65),   153.2},  // highlight, of effects
+    {WorkId(66),   224.5},  // occlusion_ray, of effects
+    {WorkId(67),    96.1},  // mirror_ray, of effects
+    {WorkId(68),   159.4},  // refracted_ray, of effects
+    {WorkId(69),   383.7},  // environment_lookup, of effects
+    {WorkId(70),    84.8},  // color_added, of effects
+    {WorkId(71),   193.1},  // color_group, of effects
+    {WorkId(75),   387.8},  // packet_start
+    {WorkId(76),    23.0},  // pass_slope
+    {WorkId(77),    15.7},  // mailbox_group
+    {WorkId(78),   422.6},  // pass_group, not in `dense`
+    {WorkId(79),   407.9},  // pass_square
+    {WorkId(80),   239.0},  // macro_slice_step
+    {WorkId(81),    13.9},  // macro_row
+    {WorkId(82),    28.8},  // macro_cell_step
+    {WorkId(83),   337.7},  // macro_cell_visit
+    {WorkId(84),   241.4},  // slice_step
+    {WorkId(85),    23.7},  // cell_row
+    {WorkId(86),     7.9},  // cell_step
+    {WorkId(87),    22.0},  // cell_visit
+    {WorkId(88),   368.9},  // triangle_batch
+    {WorkId(89),    39.2},  // mailbox_probe
+    {WorkId(90),    25.6},  // reach_group
+    {WorkId(91),   121.8},  // reach_test, not in `dense`
+    {WorkId(92),   357.5},  // footprint_group, not in `dense`
+    {WorkId(93),    10.6},  // cell_bound_step, not in `dense`
 });
 
 /// A command: from where core counts it to the next kind of work, and its end in a wait.

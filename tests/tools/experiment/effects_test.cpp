@@ -108,7 +108,6 @@ TEST(EffectsExperiment, WorkOfAnEffectThatIsOffFailsTheRun) {
   EffectFrame plain;
   plain.called_for = kSceneShading;
   plain.has_shadows = false;
-  plain.light_count = 2;
   plain.picture = {2, 2, {0, 0, 0, 0}};
   const auto count_of = [](EffectFrame& frame, Work kind) -> std::uint64_t& {
     return frame.work[static_cast<std::size_t>(kind)];
@@ -122,7 +121,7 @@ TEST(EffectsExperiment, WorkOfAnEffectThatIsOffFailsTheRun) {
   EXPECT_EQ(code_of(plain, kSceneShading | kReflection), tool::ExitCode::kCheckFailed) << "not what the scene should";
 
   for (const Work kind :
-       {Work::kShadowRay, Work::kLightSample, Work::kMirrorRay, Work::kQueuedRay, Work::kRefractedRay,
+       {Work::kShadowRay, Work::kAreaPlace, Work::kMirrorRay, Work::kQueuedRay, Work::kRefractedRay,
         Work::kOcclusionRay, Work::kEnvironmentLookup, Work::kSmoothNormal, Work::kHighlight, Work::kWaveRay}) {
     EffectFrame frame = plain;
     ++count_of(frame, kind);
