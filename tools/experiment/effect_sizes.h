@@ -19,27 +19,27 @@ struct EffectSize {
 };
 
 inline constexpr std::array kEffectSizes{
-    EffectSize{0x000, 54794, 163968, 0, 0, false},  // none
-    EffectSize{0x200, 60840, 126720, 24948, 14848, true},  // scene shading
-    EffectSize{0x201, 80450, 126720, 26056, 14848, true},  // + point shadows
-    EffectSize{0x202, 81110, 126720, 26702, 14848, true},  // + area lights
-    EffectSize{0x204, 81588, 145024, 26478, 17024, true},  // + reflection
-    EffectSize{0x208, 82602, 145024, 27486, 17024, true},  // + refraction
-    EffectSize{0x210, 81336, 126720, 26932, 14848, true},  // + ambient occlusion
-    EffectSize{0x220, 62804, 126720, 26914, 14848, true},  // + environment
-    EffectSize{0x240, 62188, 126720, 26302, 14848, true},  // + smooth normals
-    EffectSize{0x280, 61582, 126720, 25690, 14848, true},  // + highlights
-    EffectSize{0x300, 61370, 126720, 25110, 14848, true},  // + multisampling
-    EffectSize{0x3fe, 91754, 145024, 36066, 17024, true},  // all but point shadows
-    EffectSize{0x3fd, 90686, 145024, 35016, 17024, true},  // all but area lights
-    EffectSize{0x3fb, 91754, 145024, 36066, 17024, true},  // all but reflection
-    EffectSize{0x3f7, 90730, 145024, 35042, 17024, true},  // all but refraction
-    EffectSize{0x3ef, 89382, 145024, 33686, 17024, true},  // all but ambient occlusion
-    EffectSize{0x3df, 89776, 145024, 34120, 17024, true},  // all but environment
-    EffectSize{0x3bf, 90354, 145024, 34672, 17024, true},  // all but smooth normals
-    EffectSize{0x37f, 91014, 145024, 35326, 17024, true},  // all but highlights
-    EffectSize{0x2ff, 91204, 145024, 35742, 17024, true},  // all but multisampling
-    EffectSize{0x3ff, 91748, 145024, 36060, 17024, true},  // all
+    EffectSize{0x000, 54762, 163968, 0, 0, false},  // none
+    EffectSize{0x200, 61224, 140288, 23584, 18048, true},  // scene shading
+    EffectSize{0x201, 79128, 140288, 25016, 18048, true},  // + point shadows
+    EffectSize{0x202, 79842, 140288, 25724, 18048, true},  // + area lights
+    EffectSize{0x204, 80230, 158592, 25270, 20224, true},  // + reflection
+    EffectSize{0x208, 81358, 158592, 26398, 20224, true},  // + refraction
+    EffectSize{0x210, 79944, 140288, 25842, 18048, true},  // + ambient occlusion
+    EffectSize{0x220, 63248, 140288, 25596, 18048, true},  // + environment
+    EffectSize{0x240, 62646, 140288, 24998, 18048, true},  // + smooth normals
+    EffectSize{0x280, 61966, 140288, 24326, 18048, true},  // + highlights
+    EffectSize{0x300, 61746, 140288, 23912, 18048, true},  // + multisampling
+    EffectSize{0x3fe, 91276, 158592, 35648, 20224, true},  // all but point shadows
+    EffectSize{0x3fd, 90024, 158592, 34412, 20224, true},  // all but area lights
+    EffectSize{0x3fb, 91276, 158592, 35648, 20224, true},  // all but reflection
+    EffectSize{0x3f7, 90166, 158592, 34538, 20224, true},  // all but refraction
+    EffectSize{0x3ef, 88500, 158592, 32964, 20224, true},  // all but ambient occlusion
+    EffectSize{0x3df, 89188, 158592, 33606, 20224, true},  // all but environment
+    EffectSize{0x3bf, 89832, 158592, 34208, 20224, true},  // all but smooth normals
+    EffectSize{0x37f, 90536, 158592, 34908, 20224, true},  // all but highlights
+    EffectSize{0x2ff, 90730, 158592, 35316, 20224, true},  // all but multisampling
+    EffectSize{0x3ff, 91268, 158592, 35640, 20224, true},  // all
 };
 
 }  // namespace gridiron::experiment
