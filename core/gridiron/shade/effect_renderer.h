@@ -351,7 +351,8 @@ class EffectRenderer {
         return Status::kOk;
       }
     }
-    return finish_point(point, face, vector_of(found.behind), vector_of(ray.weight), *material, found.enters);
+    return finish_point(context, point, face, vector_of(found.behind), vector_of(ray.weight), *material,
+                        found.enters);
   }
 
   // Gives pending points their shading normals.
@@ -381,13 +382,15 @@ class EffectRenderer {
           point.is_pending = 0;
           const MaterialRecord* material = nullptr;
           GRIDIRON_TRY(find_material(pending.material & 0x7FFFFFFFu, material));
-          return finish_point(point, shading, vector_of(pending.behind), vector_of(pending.weight), *material, enters);
+          return finish_point(context, point, shading, vector_of(pending.behind), vector_of(pending.weight), *material,
+                              enters);
         });
   }
 
   // Finishes a point with its shading normal: makes the rays that leave it, and prepares its light.
-  [[nodiscard]] GRIDIRON_OUTLINE Status finish_point(WavePoint& point, Vector3 shading, Vector3 behind, Vector3 weight,
-                                                     const MaterialRecord& material, bool enters) {
+  [[nodiscard]] GRIDIRON_OUTLINE Status finish_point(const Context& context, WavePoint& point, Vector3 shading,
+                                                     Vector3 behind, Vector3 weight, const MaterialRecord& material,
+                                                     bool enters) {
     store_.work.charge_to(Work::kSurfacePoint);
     store(shading, point.shading);
     if constexpr (has(kReflection | kRefraction)) {
@@ -395,6 +398,9 @@ class EffectRenderer {
         GRIDIRON_TRY(cast_rays(point, shading, behind, weight, material, enters));
         store_.work.charge_to(Work::kSurfacePoint);
       }
+    }
+    if constexpr (has(kAreaLights | kAmbientOcclusion)) {
+      if (calls_for(kAreaLights | kAmbientOcclusion)) context.set_seed(point);
     }
     store(weight * vector_of(material.diffuse), point.lit.diffuse);
     store(material.specular * weight, point.lit.specular);

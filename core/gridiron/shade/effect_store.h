@@ -37,7 +37,7 @@ struct WavePoint {
   float shading[3];     ///< the normal of light; while the hit is pending the corners' weights
   float view[3];        ///< against the ray
   std::uint32_t pixel;  ///< as in QueuedRay
-  std::uint32_t path;
+  std::uint32_t path;  ///< as in QueuedRay; of a finished point: the seed of its jitter
   union {
     PendingHit pending;
     LitHit lit;

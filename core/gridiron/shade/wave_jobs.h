@@ -61,11 +61,12 @@ struct WaveContext {
     add_steps(store.effects.sums[2][index], sum_steps(color.z));
   }
 
-  [[nodiscard]] Jitter jitter(const WavePoint& point, std::uint32_t purpose) const {
+  /// Puts the seed of a point's jitter in the place of its path.
+  void set_seed(WavePoint& point) const {
     static constexpr std::uint32_t kWidth = Store::Layout::kTileWidth;
     const std::uint32_t index = point.pixel & 0xFFFFu;
     const std::uint32_t pixel = (top + index / kWidth) * store.frame.width + left + index % kWidth;
-    return jitter_of(sample_seed(point.path, sample, pixel), purpose);
+    point.path = sample_seed(point.path, sample, pixel);
   }
 };
 
@@ -164,7 +165,7 @@ class LightJobs {
       if (light.samples != 0) {
         context_.store.work.add(Work::kAreaPlace);
         context_.store.work.charge_to(Work::kAreaPlace);
-        const Jitter jitter = context_.jitter(point, area_light_purpose(first_light_ + index));
+        const Jitter jitter = jitter_of(point.path, area_light_purpose(first_light_ + index));
         const SquarePlace place = area_light_place(sample, light.samples, jitter);
         return corner + (place.a * vector_of(light.edge_u) + place.b * vector_of(light.edge_v));
       }
@@ -218,7 +219,7 @@ class OcclusionJobs {
       if (end > context_.point_count) end = context_.point_count;
       for (std::uint32_t i = first; i < end; ++i) {
         const WavePoint& point = context_.point(i);
-        const Jitter jitter = context_.jitter(point, kOcclusionPurpose);
+        const Jitter jitter = jitter_of(point.path, kOcclusionPurpose);
         const Vector3 dir = occlusion_direction(sample, scene.occlusion_samples, jitter, vector_of(point.shading));
         if (!(dot(dir, vector_of(point.face)) > 0.0f)) continue;
         context_.store.work.add(Work::kOcclusionRay);

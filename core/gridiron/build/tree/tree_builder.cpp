@@ -189,8 +189,8 @@ class TreeBuilder {
     std::uint32_t group;  // of a node's first four parts: from which it comes
   };
 
-  // What a level is worth beside bits of the number of triangles, and more than any part weighs.
-  static constexpr std::int32_t kLevelWeight = 2, kMostWeight = 100;
+  // By trial with two scans, a room and balls on a floor. More than any part weighs: kMostWeight.
+  static constexpr std::int32_t kLevelWeight = 5, kNumberWeight = 2, kRootWeight = 3, kMostWeight = 1000;
   static constexpr std::uint32_t kGroups = 4, kGroupSize = kTreeWidth / kGroups;
 
   // --- Triangles --------------------------------------------------------------------------------------------------
@@ -302,9 +302,9 @@ class TreeBuilder {
 
   // Splits the part that weighs the most until there are 16 or all are leaves. A core tests rays against the union box
   // of each four children first, so the first four parts become groups of four: below the root a group gets more only
-  // if no other can be split. At the root, which all rays enter, a group that is fuller by more than a level may grow.
+  // if no other can be split. At the root, which all rays enter, a group may grow where its parts weigh much more.
   [[nodiscard]] std::uint32_t split_by_codes(std::uint32_t begin, std::uint32_t end, Range* ranges) {
-    const std::int32_t full_weight = end - begin == size_.triangle_count ? kLevelWeight : kMostWeight;
+    const std::int32_t full_weight = end - begin == size_.triangle_count ? kRootWeight : kMostWeight;
     std::uint32_t group_sizes[kGroups] = {1, 1, 1, 1};
     ranges[0] = range_of(begin, end);
     std::uint32_t count = 1;
@@ -336,7 +336,7 @@ class TreeBuilder {
 
   // Rays meet large cells, and a box is worth more above many triangles.
   [[nodiscard]] static std::int32_t weight_of(const Range& range) {
-    return kLevelWeight * range.level + width_of(size_of(range));
+    return kLevelWeight * range.level + kNumberWeight * width_of(size_of(range));
   }
 
   // Splits part i of `count` in two.
