@@ -22,24 +22,24 @@ inline constexpr std::array kEffectSizes{
     EffectSize{0x000, 54762, 163968, 0, 0, false},  // none
     EffectSize{0x200, 61224, 140288, 23584, 18048, true},  // scene shading
     EffectSize{0x201, 79128, 140288, 25016, 18048, true},  // + point shadows
-    EffectSize{0x202, 79842, 140288, 25724, 18048, true},  // + area lights
+    EffectSize{0x202, 79890, 140288, 25772, 18048, true},  // + area lights
     EffectSize{0x204, 80230, 158592, 25270, 20224, true},  // + reflection
     EffectSize{0x208, 81358, 158592, 26398, 20224, true},  // + refraction
-    EffectSize{0x210, 79944, 140288, 25842, 18048, true},  // + ambient occlusion
+    EffectSize{0x210, 79994, 140288, 25866, 18048, true},  // + ambient occlusion
     EffectSize{0x220, 63248, 140288, 25596, 18048, true},  // + environment
-    EffectSize{0x240, 62646, 140288, 24998, 18048, true},  // + smooth normals
+    EffectSize{0x240, 62648, 140288, 25000, 18048, true},  // + smooth normals
     EffectSize{0x280, 61966, 140288, 24326, 18048, true},  // + highlights
     EffectSize{0x300, 61746, 140288, 23912, 18048, true},  // + multisampling
-    EffectSize{0x3fe, 91276, 158592, 35648, 20224, true},  // all but point shadows
-    EffectSize{0x3fd, 90024, 158592, 34412, 20224, true},  // all but area lights
-    EffectSize{0x3fb, 91276, 158592, 35648, 20224, true},  // all but reflection
-    EffectSize{0x3f7, 90166, 158592, 34538, 20224, true},  // all but refraction
-    EffectSize{0x3ef, 88500, 158592, 32964, 20224, true},  // all but ambient occlusion
-    EffectSize{0x3df, 89188, 158592, 33606, 20224, true},  // all but environment
-    EffectSize{0x3bf, 89832, 158592, 34208, 20224, true},  // all but smooth normals
-    EffectSize{0x37f, 90536, 158592, 34908, 20224, true},  // all but highlights
-    EffectSize{0x2ff, 90730, 158592, 35316, 20224, true},  // all but multisampling
-    EffectSize{0x3ff, 91268, 158592, 35640, 20224, true},  // all
+    EffectSize{0x3fe, 90910, 158592, 35258, 20224, true},  // all but point shadows
+    EffectSize{0x3fd, 90080, 158592, 34442, 20224, true},  // all but area lights
+    EffectSize{0x3fb, 90910, 158592, 35258, 20224, true},  // all but reflection
+    EffectSize{0x3f7, 89774, 158592, 34122, 20224, true},  // all but refraction
+    EffectSize{0x3ef, 88554, 158592, 33018, 20224, true},  // all but ambient occlusion
+    EffectSize{0x3df, 88822, 158592, 33216, 20224, true},  // all but environment
+    EffectSize{0x3bf, 89466, 158592, 33818, 20224, true},  // all but smooth normals
+    EffectSize{0x37f, 90170, 158592, 34518, 20224, true},  // all but highlights
+    EffectSize{0x2ff, 90364, 158592, 34926, 20224, true},  // all but multisampling
+    EffectSize{0x3ff, 90902, 158592, 35250, 20224, true},  // all
 };
 
 }  // namespace gridiron::experiment

@@ -79,13 +79,13 @@ inline constexpr auto kInstructionCosts = std::to_array<InstructionCost>({
     {WorkId(57),   781.6},  // list_triangle_group, of effects
     {WorkId(58),   116.5},  // list_candidate, of effects
     {WorkId(59),   315.4},  // ray_distance, of effects
-    {WorkId(60),  1456.2},  // surface_point, of effects
-    {WorkId(61),   318.8},  // smooth_normal, of effects
+    {WorkId(60),  1500.0},  // surface_point, of effects
+    {WorkId(61),   322.8},  // smooth_normal, of effects
     {WorkId(62),   161.6},  // shadow_ray, of effects
-    {WorkId(63),   154.2},  // area_place, of effects
+    {WorkId(63),   116.2},  // area_place, of effects
     {WorkId(64),    67.0},  // light_sample, of effects
     {WorkId(65),   153.2},  // highlight, of effects
-    {WorkId(66),   224.5},  // occlusion_ray, of effects
+    {WorkId(66),   186.0},  // occlusion_ray, of effects
     {WorkId(67),    96.1},  // mirror_ray, of effects
     {WorkId(68),   159.4},  // refracted_ray, of effects
     {WorkId(69),   383.7},  // environment_lookup, of effects
