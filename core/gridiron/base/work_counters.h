@@ -74,7 +74,7 @@ enum class Work : std::uint8_t {
   kSurfacePoint,       ///< hits of which point, normal and material were found
   kSmoothNormal,       ///< hits of which the normal was interpolated
   kShadowRay,          ///< shadow rays made, of point and area lights
-  kAreaPlace,          ///< places found on area lights, one for each point and ray to it
+  kAreaPlace,          ///< places found on area lights, one for each point and sample
   kLightSample,        ///< lights, or samples of them, that light a point: their share of the colour
   kHighlight,          ///< of these, highlights
   kOcclusionRay,       ///< rays of ambient occlusion made
