@@ -24,7 +24,7 @@ constexpr Work kListWork[] = {Work::kListChild, Work::kListNode, Work::kListLeaf
 constexpr Work kRayWork[] = {Work::kListRay,    Work::kWaveRay,      Work::kQueuedRay,  Work::kSurfacePoint,
                              Work::kShadowRay,  Work::kLightSample,  Work::kHighlight,  Work::kOcclusionRay,
                              Work::kMirrorRay,  Work::kRefractedRay, Work::kColorAdded, Work::kEnvironmentLookup,
-                             Work::kSmoothNormal, Work::kAreaPlace};
+                             Work::kSmoothNormal, Work::kAreaPlace,   Work::kJitterSeed};
 
 template <class L>
 class KernelLanes : public testing::Test {};

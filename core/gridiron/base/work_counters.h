@@ -73,6 +73,7 @@ enum class Work : std::uint8_t {
   kRayDistance,        ///< distances of single rays, in double
   kSurfacePoint,       ///< hits of which point, normal and material were found
   kSmoothNormal,       ///< hits of which the normal was interpolated
+  kJitterSeed,         ///< hits of which the jitter's seed was found, for places on area lights and occlusion rays
   kShadowRay,          ///< shadow rays made, of point and area lights
   kAreaPlace,          ///< places found on area lights, one for each point and sample
   kLightSample,        ///< lights, or samples of them, that light a point: their share of the colour
@@ -92,7 +93,7 @@ enum class Work : std::uint8_t {
 /// The number of the first kind of an engine.
 inline constexpr std::uint32_t kSharedWorkCount = static_cast<std::uint32_t>(Work::kCount);
 /// Kinds that there are counters for. No frame has two engines, so all engines use the same ones.
-inline constexpr std::uint32_t kWorkKindCount = 94;
+inline constexpr std::uint32_t kWorkKindCount = 95;
 
 /// A kind of Work or of an engine: the number of its counter.
 class WorkId {

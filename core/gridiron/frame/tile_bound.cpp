@@ -259,6 +259,7 @@ class Sum {
     add(Work::kDoubleSign, rays);  // on which side of its triangle a ray that grazes it began
     add(Work::kExactSign, rays);
     if (calls_for(kSmoothNormals)) add(Work::kSmoothNormal, rays);
+    if (calls_for(kAreaLights | kAmbientOcclusion)) add(Work::kJitterSeed, rays);
     if (calls_for(kEnvironment)) add(Work::kEnvironmentLookup, rays);
     if (effects.has_shadows != 0) add(Work::kShadowRay, to_lights);
     if (calls_for(kAreaLights)) add(Work::kAreaPlace, to_lights);
@@ -357,9 +358,8 @@ class Sum {
     const bool has_effects = frame_.shading == Shading::kScene;
     const std::uint64_t of_packets =
         layout_.packet_width == 0 ? 0 : frame_.macro_depth * block + frame_.triangle_depth * run;
-    // A level of the tree asks for fetch_depth children ahead, as long as there is room for them.
-    const std::uint64_t children = smaller(std::uint64_t{kMaxTreeDepth} * frame_.fetch_depth, layout_.tree_slots).value;
-    const std::uint64_t of_lists = has_effects ? children * kPiecesOfRecord : 0;
+    // Children that were asked for stay under way where their rays are found to need them no more.
+    const std::uint64_t of_lists = has_effects ? std::uint64_t{layout_.tree_slots} * kPiecesOfRecord : 0;
     const std::uint64_t at_once = pieces_of(kMostWaveRays / 2 * sizeof(QueuedRay), kPortableGranuleBytes);
     const std::uint64_t pending = larger(of_packets, of_lists).value + at_once;
     std::uint64_t room = frame_.queue_depth;

@@ -16,12 +16,35 @@
 
 namespace gridiron {
 
+/// @returns the sign of det[dir, a - o, b - o], or 0 if floats leave it open. The bound is that of EdgeBatch.
+[[nodiscard]] GRIDIRON_OUTLINE inline std::int32_t float_edge_sign(const BatchRay& ray, const float a[3],
+                                                                   const float b[3]) {
+  float sum[3], edge[3], size_sum = 0.0f, size_edge = 0.0f;
+  for (int i = 0; i < 3; ++i) {
+    const float from_a = a[i] - ray.origin[i], from_b = b[i] - ray.origin[i];
+    sum[i] = from_a + from_b;
+    edge[i] = b[i] - a[i];
+    size_sum += magnitude(from_a) + magnitude(from_b);
+    size_edge = magnitude(edge[i]) > size_edge ? magnitude(edge[i]) : size_edge;
+  }
+  const float value = (sum[1] * edge[2] - sum[2] * edge[1]) * ray.dir[0] +
+                      (sum[2] * edge[0] - sum[0] * edge[2]) * ray.dir[1] +
+                      (sum[0] * edge[1] - sum[1] * edge[0]) * ray.dir[2];
+  const float range = ray.dir_max > 1.0f ? ray.dir_max : 1.0f;
+  const float scale = size_sum * size_edge;
+  const float error = scale * (kEdgeErrorFactor * ray.dir_max) + kUnderflow * range;
+  if (!(scale * range < kEdgeRangeLimit)) return 0;
+  return value > error ? 1 : value < -error ? -1 : 0;
+}
+
 /// Decides whether the line of a ray passes through a triangle, boundary included.
 [[nodiscard]] GRIDIRON_RARE inline bool passes_through(const BatchRay& ray, const VertexTriangle& triangle,
                                                        WorkCounters& work) {
   bool is_above = false, is_below = false;
   for (int k = 0; k < 3; ++k) {
-    const std::int32_t sign = edge_sign(ray.origin, ray.dir, triangle.v[k], triangle.v[k == 2 ? 0 : k + 1], work);
+    const float *const a = triangle.v[k], *const b = triangle.v[k == 2 ? 0 : k + 1];
+    std::int32_t sign = float_edge_sign(ray, a, b);
+    if (sign == 0) sign = edge_sign(ray.origin, ray.dir, a, b, work);
     is_above = is_above || sign > 0;
     is_below = is_below || sign < 0;
     if (is_above && is_below) return false;

@@ -400,7 +400,10 @@ class EffectRenderer {
       }
     }
     if constexpr (has(kAreaLights | kAmbientOcclusion)) {
-      if (calls_for(kAreaLights | kAmbientOcclusion)) context.set_seed(point);
+      if (calls_for(kAreaLights | kAmbientOcclusion)) {
+        context.set_seed(point);
+        store_.work.charge_to(Work::kSurfacePoint);
+      }
     }
     store(weight * vector_of(material.diffuse), point.lit.diffuse);
     store(material.specular * weight, point.lit.specular);

@@ -63,6 +63,8 @@ struct WaveContext {
 
   /// Puts the seed of a point's jitter in the place of its path.
   void set_seed(WavePoint& point) const {
+    store.work.add(Work::kJitterSeed);
+    store.work.charge_to(Work::kJitterSeed);
     static constexpr std::uint32_t kWidth = Store::Layout::kTileWidth;
     const std::uint32_t index = point.pixel & 0xFFFFu;
     const std::uint32_t pixel = (top + index / kWidth) * store.frame.width + left + index % kWidth;

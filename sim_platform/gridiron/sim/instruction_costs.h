@@ -81,35 +81,36 @@ inline constexpr auto kInstructionCosts = std::to_array<InstructionCost>({
     {WorkId(59),   315.4},  // ray_distance, of effects
     {WorkId(60),  1500.0},  // surface_point, of effects
     {WorkId(61),   322.8},  // smooth_normal, of effects
-    {WorkId(62),   161.6},  // shadow_ray, of effects
-    {WorkId(63),   116.2},  // area_place, of effects
-    {WorkId(64),    67.0},  // light_sample, of effects
-    {WorkId(65),   153.2},  // highlight, of effects
-    {WorkId(66),   186.0},  // occlusion_ray, of effects
-    {WorkId(67),    96.1},  // mirror_ray, of effects
-    {WorkId(68),   159.4},  // refracted_ray, of effects
-    {WorkId(69),   383.7},  // environment_lookup, of effects
-    {WorkId(70),    84.8},  // color_added, of effects
-    {WorkId(71),   193.1},  // color_group, of effects
-    {WorkId(75),   387.8},  // packet_start
-    {WorkId(76),    23.0},  // pass_slope
-    {WorkId(77),    15.7},  // mailbox_group
-    {WorkId(78),   422.6},  // pass_group, not in `dense`
-    {WorkId(79),   407.9},  // pass_square
-    {WorkId(80),   239.0},  // macro_slice_step
-    {WorkId(81),    13.9},  // macro_row
-    {WorkId(82),    28.8},  // macro_cell_step
-    {WorkId(83),   337.7},  // macro_cell_visit
-    {WorkId(84),   241.4},  // slice_step
-    {WorkId(85),    23.7},  // cell_row
-    {WorkId(86),     7.9},  // cell_step
-    {WorkId(87),    22.0},  // cell_visit
-    {WorkId(88),   368.9},  // triangle_batch
-    {WorkId(89),    39.2},  // mailbox_probe
-    {WorkId(90),    25.6},  // reach_group
-    {WorkId(91),   121.8},  // reach_test, not in `dense`
-    {WorkId(92),   357.5},  // footprint_group, not in `dense`
-    {WorkId(93),    10.6},  // cell_bound_step, not in `dense`
+    {WorkId(62),   161.6},  // jitter_seed, of effects
+    {WorkId(63),   161.6},  // shadow_ray, of effects
+    {WorkId(64),   116.2},  // area_place, of effects
+    {WorkId(65),    67.0},  // light_sample, of effects
+    {WorkId(66),   153.2},  // highlight, of effects
+    {WorkId(67),   186.0},  // occlusion_ray, of effects
+    {WorkId(68),    96.1},  // mirror_ray, of effects
+    {WorkId(69),   159.4},  // refracted_ray, of effects
+    {WorkId(70),   383.7},  // environment_lookup, of effects
+    {WorkId(71),    84.8},  // color_added, of effects
+    {WorkId(72),   193.1},  // color_group, of effects
+    {WorkId(76),   387.8},  // packet_start
+    {WorkId(77),    23.0},  // pass_slope
+    {WorkId(78),    15.7},  // mailbox_group
+    {WorkId(79),   422.6},  // pass_group, not in `dense`
+    {WorkId(80),   407.9},  // pass_square
+    {WorkId(81),   239.0},  // macro_slice_step
+    {WorkId(82),    13.9},  // macro_row
+    {WorkId(83),    28.8},  // macro_cell_step
+    {WorkId(84),   337.7},  // macro_cell_visit
+    {WorkId(85),   241.4},  // slice_step
+    {WorkId(86),    23.7},  // cell_row
+    {WorkId(87),     7.9},  // cell_step
+    {WorkId(88),    22.0},  // cell_visit
+    {WorkId(89),   368.9},  // triangle_batch
+    {WorkId(90),    39.2},  // mailbox_probe
+    {WorkId(91),    25.6},  // reach_group
+    {WorkId(92),   121.8},  // reach_test, not in `dense`
+    {WorkId(93),   357.5},  // footprint_group, not in `dense`
+    {WorkId(94),    10.6},  // cell_bound_step, not in `dense`
 });
 
 /// A command: from where core counts it to the next kind of work, and its end in a wait.

@@ -114,7 +114,7 @@ Json documented_report() {
         "wave_ray", "queued_ray", "list_ray", "list_child",
         "list_entry", "list_node", "list_run", "list_ray_node", "list_box_quad",
         "list_leaf", "list_triangle_group", "list_candidate", "ray_distance",
-        "surface_point", "smooth_normal", "shadow_ray",
+        "surface_point", "smooth_normal", "jitter_seed", "shadow_ray",
         "area_place", "light_sample", "highlight", "occlusion_ray", "mirror_ray",
         "refracted_ray", "environment_lookup", "color_added", "color_group",
         "get_issue", "put_issue", "wait", "packet_start",

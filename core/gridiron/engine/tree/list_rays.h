@@ -39,18 +39,22 @@ inline constexpr std::uint32_t kListEnd = ~0u;
 }
 
 /// Rays with directions of such sizes, and origins at most so far away, in the scene's largest |coordinate|, are tested
-/// against boxes as they are: no product overflows, none that counts is subnormal, and what kLeastListComponent changes
-/// is less than the growth of boxes.
-inline constexpr float kLeastListDirection = 0x1p-40f, kGreatestListDirection = 0x1p40f, kFarOrigin = 0x1p40f;
+/// as they are: no product overflows, and what kLeastListComponent changes is less than the growth of boxes. Products
+/// that count are not subnormal, where denormals are flushed neither: leaf_test.h.
+inline constexpr float kLeastListDirection = 0x1p-16f, kGreatestListDirection = 0x1p40f, kFarOrigin = 0x1p40f;
 /// Of the largest component: smaller ones are taken for this much.
 inline constexpr float kLeastListComponent = 0x1p-80f;
 
-/// Brings a ray's direction to a size of 1 by a power of two, and t with it. @returns whether that lost no bit.
+/// Brings a ray's direction to a size of kLeastListDirection, or 1 from above, by a power of two, and t with it. A hit
+/// must not come below the least normal t, so small directions do not grow more than they have to.
+/// @returns whether that lost no bit.
 GRIDIRON_RARE inline bool scale_list_ray(BatchRay& ray) {
   std::uint32_t exponent = std::bit_cast<std::uint32_t>(ray.dir_max) >> 23;
   if (exponent == 0) exponent = 1;
   if (exponent > 252) return false;
-  const float up = std::bit_cast<float>((254 - exponent) << 23), down = std::bit_cast<float>(exponent << 23);
+  const std::uint32_t wanted = exponent < 127 ? std::bit_cast<std::uint32_t>(kLeastListDirection) >> 23 : 127u;
+  const float up = std::bit_cast<float>((127 + wanted - exponent) << 23),
+              down = std::bit_cast<float>((127 + exponent - wanted) << 23);
   bool is_exact = ray.dir_max > 0.0f;
   for (const float component : ray.dir) is_exact = is_exact && component * up * down == component;
   if (!is_exact) return false;

@@ -4,6 +4,9 @@
 #include <gridiron/build/triangle_records.h>
 #include <gridiron/engine/tree/ray_lists.h>
 
+#include <cmath>
+
+#include "numeric/rounding_scope.h"
 #include "support/memory_tree.h"
 #include "support/test_mesh.h"
 
@@ -169,6 +172,50 @@ TYPED_TEST(RayListsTest, FindWhatExactArithmeticFinds) {
         ASSERT_EQ(closest[i].id, exact[i].id) << i;
         ASSERT_EQ(closest[i].t, exact[i].t) << i;
         ASSERT_EQ(any[i].id == kNoTriangle, exact[i].id == kNoTriangle) << i;
+      }
+    }
+  }
+}
+
+// Shadow rays are as short as the scene is small. A hit of an ordinary t counts however near it is.
+TYPED_TEST(RayListsTest, NearHitsOfSmallScenesCount) {
+  for (const int exponent : {-40, -60, -90, -104, -110, -118}) {
+    SCOPED_TRACE(exponent);
+    const float s = std::ldexp(1.0f, exponent), z = s * (1.0f + 0x1p-20f);
+    TestMesh mesh;
+    mesh.vertices = {{-s, -s, z}, {s, -s, z}, {0, s, z}};
+    mesh.triangles = {{0, 1, 2}};
+    MemoryTree tree(mesh.view(), 8);
+    ASSERT_EQ(tree.status(), Status::kOk);
+    const std::vector<Ray> rays = {{{0, 0, s}, {0, 0, s}, 1.0f}};
+    for (const bool any_hit : {false, true}) {
+      EXPECT_EQ((answers<TypeParam, 64, 512>(tree, rays, any_hit))[0].id, 0u) << any_hit;
+    }
+  }
+}
+
+// Small triangles in scenes whose directions are small too: what floats lose must not rule a hit out.
+TYPED_TEST(RayListsTest, HoldWithEveryRoundingAndFlushedDenormals) {
+  const TestMesh soup = make_random_soup(60, 0x1p-7f, 5);
+  for (const int exponent : {0, -14, -18, -30, -36, -38}) {
+    SCOPED_TRACE(exponent);
+    const TestMesh mesh = moved(soup, std::ldexp(1.0f, exponent));
+    MemoryTree tree(mesh.view(), 8);
+    ASSERT_EQ(tree.status(), Status::kOk);
+    std::vector<Ray> rays = hard_rays(mesh, 600, 23);
+    for (Ray& ray : rays) {
+      ray.dir *= 1.25f;
+      ray.t = 1.0f;
+    }
+    for (const int mode : kRoundingModes) {
+      SCOPED_TRACE(mode);
+      const RoundingScope scope(mode, true);
+      const std::vector<Answer> closest = answers<TypeParam, 256, 512>(tree, rays, false);
+      const std::vector<Answer> any = answers<TypeParam, 256, 512>(tree, rays, true);
+      for (std::size_t i = 0; i < rays.size(); ++i) {
+        const Answer exact = exact_answer(mesh, rays[i]);
+        ASSERT_EQ(closest[i], exact) << i;
+        ASSERT_EQ(any[i].id == kNoTriangle, exact.id == kNoTriangle) << i;
       }
     }
   }
