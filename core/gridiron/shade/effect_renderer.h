@@ -395,6 +395,7 @@ class EffectRenderer {
     store(shading, point.shading);
     if constexpr (has(kReflection | kRefraction)) {
       if (calls_for(kReflection | kRefraction)) {
+        store_.work.charge_to(Work::kMirrorRay);
         GRIDIRON_TRY(cast_rays(point, shading, behind, weight, material, enters));
         store_.work.charge_to(Work::kSurfacePoint);
       }
@@ -417,7 +418,6 @@ class EffectRenderer {
     constexpr bool kRefracts = has(kRefraction);
     const bool is_glass = kRefracts && material.transmittance > 0.0f;
     if (point.pixel >> 16 >= scene().recursion_depth || !(material.specular > 0.0f || is_glass)) return Status::kOk;
-    store_.work.charge_to(Work::kMirrorRay);
     const Vector3 direction = -vector_of(point.view);
     const Vector3 face = vector_of(point.face);
     float share = material.specular;

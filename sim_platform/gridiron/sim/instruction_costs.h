@@ -67,7 +67,7 @@ inline constexpr auto kInstructionCosts = std::to_array<InstructionCost>({
     {WorkId(45), 27547.3},  // exact_order, of 64 decisions
     {WorkId(46),    95.6},  // lattice_triangle, not in `dense`
     {WorkId(47),   161.8},  // wave_ray, of effects
-    {WorkId(48),    92.0},  // queued_ray, of effects
+    {WorkId(48),    92.1},  // queued_ray, of effects
     {WorkId(49),   181.9},  // list_ray, of effects
     {WorkId(50),   264.3},  // list_child, of effects
     {WorkId(51),    43.1},  // list_entry, of effects
@@ -77,17 +77,17 @@ inline constexpr auto kInstructionCosts = std::to_array<InstructionCost>({
     {WorkId(55),   462.7},  // list_box_quad, of effects
     {WorkId(56),  1886.4},  // list_leaf, of effects
     {WorkId(57),   781.6},  // list_triangle_group, of effects
-    {WorkId(58),   116.5},  // list_candidate, of effects
+    {WorkId(58),   117.1},  // list_candidate, of effects
     {WorkId(59),   315.4},  // ray_distance, of effects
-    {WorkId(60),  1500.0},  // surface_point, of effects
+    {WorkId(60),  1422.3},  // surface_point, of effects
     {WorkId(61),   322.8},  // smooth_normal, of effects
-    {WorkId(62),   161.6},  // jitter_seed, of effects
+    {WorkId(62),    47.0},  // jitter_seed, of effects
     {WorkId(63),   161.6},  // shadow_ray, of effects
     {WorkId(64),   116.2},  // area_place, of effects
     {WorkId(65),    67.0},  // light_sample, of effects
     {WorkId(66),   153.2},  // highlight, of effects
     {WorkId(67),   186.0},  // occlusion_ray, of effects
-    {WorkId(68),    96.1},  // mirror_ray, of effects
+    {WorkId(68),   159.9},  // mirror_ray, of effects
     {WorkId(69),   159.4},  // refracted_ray, of effects
     {WorkId(70),   383.7},  // environment_lookup, of effects
     {WorkId(71),    84.8},  // color_added, of effects

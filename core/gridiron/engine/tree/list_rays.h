@@ -52,7 +52,8 @@ GRIDIRON_RARE inline bool scale_list_ray(BatchRay& ray) {
   std::uint32_t exponent = std::bit_cast<std::uint32_t>(ray.dir_max) >> 23;
   if (exponent == 0) exponent = 1;
   if (exponent > 252) return false;
-  const std::uint32_t wanted = exponent < 127 ? std::bit_cast<std::uint32_t>(kLeastListDirection) >> 23 : 127u;
+  const std::uint32_t wanted = exponent < 127 ? std::uint32_t{127 - 16} : std::uint32_t{127};
+  static_assert(kLeastListDirection == 0x1p-16f);
   const float up = std::bit_cast<float>((127 + wanted - exponent) << 23),
               down = std::bit_cast<float>((127 + exponent - wanted) << 23);
   bool is_exact = ray.dir_max > 0.0f;
