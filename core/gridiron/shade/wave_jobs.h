@@ -92,10 +92,10 @@ class LightJobs {
       step(light);
       std::uint32_t end = first + kJobRays;
       if (end > context_.point_count) end = context_.point_count;
+      if (light.samples != 0) context_.store.work.charge_to(Work::kAreaPlace);
       for (std::uint32_t i = first; i < end; ++i) {
         const WavePoint& point = context_.point(i);
         const Vector3 to_light = place_of(index, sample, point) - vector_of(point.point);
-        context_.store.work.charge_to(Work::kShadowRay);
         const bool is_lit =
             dot(to_light, vector_of(point.face)) > 0.0f && dot(to_light, vector_of(point.shading)) > 0.0f;
         if (!is_lit) continue;
@@ -139,7 +139,6 @@ class LightJobs {
         context_.store.work.charge_to(Work::kLightSample);
         const WavePoint& point = context_.point(i);
         const Vector3 to_light = place_of(index, sample, point) - vector_of(point.point);
-        context_.store.work.charge_to(Work::kLightSample);
         if (dot(to_light, vector_of(point.face)) > 0.0f) light_point(light, point, to_light);
       }
     }
@@ -166,7 +165,6 @@ class LightJobs {
     if constexpr ((Built & kAreaLights) != 0) {
       if (light.samples != 0) {
         context_.store.work.add(Work::kAreaPlace);
-        context_.store.work.charge_to(Work::kAreaPlace);
         const Jitter jitter = jitter_of(point.path, area_light_purpose(first_light_ + index));
         const SquarePlace place = area_light_place(sample, light.samples, jitter);
         return corner + (place.a * vector_of(light.edge_u) + place.b * vector_of(light.edge_v));

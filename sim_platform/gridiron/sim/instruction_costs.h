@@ -79,11 +79,11 @@ inline constexpr auto kInstructionCosts = std::to_array<InstructionCost>({
     {WorkId(57),   781.6},  // list_triangle_group, of effects
     {WorkId(58),   117.1},  // list_candidate, of effects
     {WorkId(59),   315.4},  // ray_distance, of effects
-    {WorkId(60),  1422.3},  // surface_point, of effects
+    {WorkId(60),  1422.2},  // surface_point, of effects
     {WorkId(61),   322.8},  // smooth_normal, of effects
     {WorkId(62),    47.0},  // jitter_seed, of effects
-    {WorkId(63),   161.6},  // shadow_ray, of effects
-    {WorkId(64),   116.2},  // area_place, of effects
+    {WorkId(63),   114.6},  // shadow_ray, of effects
+    {WorkId(64),    88.4},  // area_place, of effects
     {WorkId(65),    67.0},  // light_sample, of effects
     {WorkId(66),   153.2},  // highlight, of effects
     {WorkId(67),   186.0},  // occlusion_ray, of effects
