@@ -38,6 +38,7 @@ class WaveJobs : public testing::Test {
       gridiron::store({0, 1, 0}, point.view);
       point.pixel = i | 1u << 16;
       point.path = 1;
+      context.set_seed(point);
       point.triangle = kFirstTriangle + i;
       point.lit = {{1, 1, 1}, {0, 0, 0}, 0};
     }
