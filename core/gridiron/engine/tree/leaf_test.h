@@ -17,9 +17,9 @@ namespace gridiron {
 // components 4 e, their product with the direction and its sums 7 e. The third side is the difference of these: less
 // than 2 e of both more. 14 e with what computing the bound loses; D is at most 3 times the largest component.
 inline constexpr float kSideErrorFactor = 3.0f * 14.0f * 0x1p-23f;
-/// Added to sizes, so that what becomes subnormal on the way is covered. Directions are at least 2^-16: the bound of a
-/// product with the normal is at least 2^-143, where losses are 2^-148; that of three factors at least 2^-125 times
-/// what 2^-149 of the inner product become by the edge.
+/// Added to sizes, so that what becomes subnormal on the way is covered, with denormals flushed too. Directions are at
+/// least 2^-16: the bound of a product with the normal is at least 2^-119, where losses are below 2^-122; that of three
+/// factors is at least 2^-119 times the edge, of which inner products lose 2^-125.
 inline constexpr float kLeastListSize = 0x1p-85f;
 inline constexpr float kLeastAhead = 0x1p-120f;
 /// No product of such coordinates, and of directions up to 2^40, overflows. Rays that start beyond, or are in a larger
