@@ -236,11 +236,48 @@ struct Lanes {
     *reinterpret_cast<HalfIntMemory*>(target) = __builtin_convertvector(patterns.v, HalfIntVector);
   }
 
+  /// a < b ? a : b, also of NaN and zeros.
   [[nodiscard]] static GRIDIRON_INLINE Float min(Float a, Float b) {
-    return Float(a.v < b.v ? a.v : b.v);
+#if defined(__AVX512F__)
+    if constexpr (W == 16)
+      return Float(FloatVector(_mm512_maskz_min_ps(static_cast<__mmask16>(kAllBits), __m512(a.v), __m512(b.v))));
+    else
+#endif
+      return Float(a.v < b.v ? a.v : b.v);
   }
+  /// a > b ? a : b, likewise.
   [[nodiscard]] static GRIDIRON_INLINE Float max(Float a, Float b) {
-    return Float(a.v > b.v ? a.v : b.v);
+#if defined(__AVX512F__)
+    if constexpr (W == 16)
+      return Float(FloatVector(_mm512_maskz_max_ps(static_cast<__mmask16>(kAllBits), __m512(a.v), __m512(b.v))));
+    else
+#endif
+      return Float(a.v > b.v ? a.v : b.v);
+  }
+  /// Whether bounded_sum() rounds once.
+  static constexpr bool kRoundsOnce =
+#if defined(__AVX512F__)
+      W == 16 ||
+#endif
+#if defined(__FMA__)
+      W == 8 ||
+#endif
+      false;
+  /// a b + c with one rounding or two, whichever is faster: for values with a bound of their error, never for what must
+  /// have the same bits everywhere.
+  [[nodiscard]] static GRIDIRON_INLINE Float bounded_sum(Float a, Float b, Float c) {
+#if defined(__AVX512F__)
+    if constexpr (W == 16) return Float(FloatVector(_mm512_fmadd_ps(__m512(a.v), __m512(b.v), __m512(c.v))));
+#endif
+#if defined(__FMA__)
+    if constexpr (W == 8) return Float(FloatVector(_mm256_fmadd_ps(__m256(a.v), __m256(b.v), __m256(c.v))));
+#endif
+    return a * b + c;
+  }
+  /// a b - c d, likewise.
+  [[nodiscard]] static GRIDIRON_INLINE Float bounded_difference(Float a, Float b, Float c, Float d) {
+    if constexpr (kRoundsOnce) return bounded_sum(a, b, -(c * d));
+    return a * b - c * d;
   }
   [[nodiscard]] static GRIDIRON_INLINE Float abs(Float a) {
     const IntVector magnitude = reinterpret_cast<IntVector>(a.v) & 0x7FFFFFFF;
@@ -499,9 +536,13 @@ GRIDIRON_INLINE void fill_words(Word (&target)[Count], Word value) {
 
 /// Number of set bits.
 [[nodiscard]] GRIDIRON_INLINE std::uint32_t count_bits(std::uint32_t bits) {
+#if defined(__POPCNT__)
+  return static_cast<std::uint32_t>(__builtin_popcount(bits));
+#else
   bits -= (bits >> 1) & 0x55555555u;
   bits = (bits & 0x33333333u) + ((bits >> 2) & 0x33333333u);
   return (((bits + (bits >> 4)) & 0x0F0F0F0Fu) * 0x01010101u) >> 24;
+#endif
 }
 
 }  // namespace gridiron

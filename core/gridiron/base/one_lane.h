@@ -48,6 +48,11 @@ struct Lanes<1> {
 
   [[nodiscard]] static GRIDIRON_INLINE Float min(Float a, Float b) { return a.v < b.v ? a : b; }
   [[nodiscard]] static GRIDIRON_INLINE Float max(Float a, Float b) { return a.v > b.v ? a : b; }
+  static constexpr bool kRoundsOnce = false;
+  [[nodiscard]] static GRIDIRON_INLINE Float bounded_sum(Float a, Float b, Float c) { return a * b + c; }
+  [[nodiscard]] static GRIDIRON_INLINE Float bounded_difference(Float a, Float b, Float c, Float d) {
+    return a * b - c * d;
+  }
   [[nodiscard]] static GRIDIRON_INLINE Float abs(Float a) { return Float(magnitude(a.v)); }
   [[nodiscard]] static GRIDIRON_INLINE Float select(Mask mask, Float a, Float b) { return mask.is_set ? a : b; }
   [[nodiscard]] static GRIDIRON_INLINE Float flip_sign(Mask mask, Float a) { return mask.is_set ? -a : a; }

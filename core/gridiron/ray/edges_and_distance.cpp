@@ -54,15 +54,25 @@ void set_up_distance(const float origin[3], float dir_max, const VertexTriangle&
 
 DistanceInterval distance_interval(const float origin[3], float dir_max, const float dir[3],
                                    const VertexTriangle& triangle) {
-  DistanceSetup setup;
-  set_up_distance(origin, dir_max, triangle, setup);
-  const double quotient = setup.numerator / (double{dir[0]} * setup.normal[0] + double{dir[1]} * setup.normal[1] +
-                                             double{dir[2]} * setup.normal[2]);
+  double normal[3], products[3];
+  normal_of(triangle, normal, products);
+  double numerator = 0.0, numerator_size = 0.0, denominator = 0.0;
+  for (int i = 0; i < 3; ++i) {
+    const double a = double{triangle.v[0][i]} - double{origin[i]};
+    numerator += a * normal[i];
+    numerator_size += magnitude(a) * products[i];
+    denominator += double{dir[i]} * normal[i];
+  }
+  // The errors of DistanceSetup with one division: it has two roundings more.
+  const double inverse = 1.0 / denominator;
+  const double quotient = numerator * inverse;
   const double size = magnitude(quotient);
-  const double relative = size * setup.relative_error_per_t + setup.relative_error;
+  const double denominator_size = double{dir_max} * (products[0] + products[1] + products[2]);
+  const double error =
+      kDistanceError * (numerator_size + size * denominator_size) * magnitude(inverse) + 0x1p-49 * size;
   // False for NaN too; the distance is unknown then.
-  if (!(size > 0.0 && relative < 0x1p-10)) return {0.0, static_cast<double>(kInfinity)};
-  return {quotient - size * relative, quotient + size * relative};
+  if (!(size > 0.0 && error < 0x1p-10 * size)) return {0.0, static_cast<double>(kInfinity)};
+  return {quotient - error, quotient + error};
 }
 
 DistanceEstimate set_up_estimate(const float origin[3], float dir_max, const VertexTriangle& triangle) {

@@ -123,9 +123,9 @@ GRIDIRON_INLINE std::uint32_t mark_run(const BoxSides<L>* sides, BatchRay* rays,
                                        WorkCounters& work) {
   static constexpr std::uint32_t kGroups = L::kCount < 4 ? 4 : L::kCount == 8 ? 2 : 1;
   const std::uint32_t behind = behind_octant(list[begin]);
-  std::uint32_t i = begin, word = list[i];
+  std::uint32_t i = begin, word = list[i], tests = 0;
   do {
-    work.add(kind);
+    ++tests;
     if constexpr (kBoxRays<L> == 2) {
       // The last ray of an odd number is tested twice.
       const std::uint32_t next = list[i + 1];
@@ -149,6 +149,7 @@ GRIDIRON_INLINE std::uint32_t mark_run(const BoxSides<L>* sides, BatchRay* rays,
     }
     word = list[i];
   } while (word < behind);
+  work.add(kind, tests);
   return i;
 }
 

@@ -91,32 +91,45 @@ GRIDIRON_OUTLINE void set_up_leaf(const VertexTriangle* records, std::uint32_t c
 /// What floats say of L::kCount triangles and a ray; bit i = triangle i of the lanes.
 template <class L>
 struct LeafAnswer {
-  std::uint32_t inside;  ///< the ray's line surely passes through, and the plane is not surely out of reach
-  std::uint32_t unsure;  ///< the line may pass through, likewise
-  std::uint32_t within;  ///< the plane is surely at 0 < t <= the ray's
-  typename L::Float ahead, ahead_error, size, turn;  ///< of the plane's t = ahead / size, and errors of both
+  using Float = typename L::Float;
+  std::uint32_t inside;           ///< the ray's line surely passes through, and the plane is not surely out of reach
+  std::uint32_t unsure;           ///< the line may pass through, likewise
+  std::uint32_t within;           ///< the plane is surely at 0 < t <= the ray's
+  Float least_ahead, size, turn;  ///< of the plane's t = ahead / size: a bound of ahead from below, and of size's error
 
   /// @returns a bound of t from below. Where the sign of size is not known, or products may have overflowed, it is
   /// below 0: never NaN, which would come behind all others.
-  [[nodiscard]] GRIDIRON_INLINE typename L::Float least_t() const {
-    using Float = typename L::Float;
-    return L::select(size > turn, (ahead - ahead_error) / (size + turn) * Float(1.0f - 0x1p-20f), Float(-1.0f));
+  [[nodiscard]] GRIDIRON_INLINE Float least_t() const {
+    return L::select(size > turn, least_ahead / (size + turn) * Float(1.0f - 0x1p-20f), Float(-1.0f));
   }
 };
+
+/// Wide lanes bound the errors of all rays of a batch once for a leaf: less work a ray. Few lanes would gain no more
+/// than that costs.
+template <class L>
+inline constexpr bool kBoundsBatch = L::kCount > 4;
 
 /// The lanes of a leaf from `base` on, in registers.
 template <class L>
 struct LeafLanes {
   using Float = typename L::Float;
   Float v[3], back_e1[3], e2[3], n[3], edge_error, normal_error;
+  Float most_error;  ///< factor on the largest component of directions: bounds the errors of all rays' sides; if
+                     ///< kBoundsBatch
 
-  GRIDIRON_INLINE LeafLanes(const TriangleLanes& lanes, std::uint32_t base)
-      : edge_error(Float::load(lanes.edge_error + base)), normal_error(Float::load(lanes.normal_error + base)) {
-    for (int axis = 0; axis < 3; ++axis) {
-      v[axis] = Float::load(lanes.v[axis] + base);
-      back_e1[axis] = Float::load(lanes.back_e1[axis] + base);
-      e2[axis] = Float::load(lanes.e2[axis] + base);
-      n[axis] = Float::load(lanes.normal[axis] + base);
+  /// @param farthest  FarthestOrigin::sum() of all rays.
+  GRIDIRON_INLINE LeafLanes(const TriangleLanes& lanes, std::uint32_t base, float farthest)
+      : v{Float::load(lanes.v[0] + base), Float::load(lanes.v[1] + base), Float::load(lanes.v[2] + base)},
+        back_e1{Float::load(lanes.back_e1[0] + base), Float::load(lanes.back_e1[1] + base),
+                Float::load(lanes.back_e1[2] + base)},
+        e2{Float::load(lanes.e2[0] + base), Float::load(lanes.e2[1] + base), Float::load(lanes.e2[2] + base)},
+        n{Float::load(lanes.normal[0] + base), Float::load(lanes.normal[1] + base),
+          Float::load(lanes.normal[2] + base)},
+        edge_error(Float::load(lanes.edge_error + base)),
+        normal_error(Float::load(lanes.normal_error + base)),
+        most_error(edge_error) {
+    if constexpr (kBoundsBatch<L>) {
+      most_error = (L::abs(v[0]) + L::abs(v[1]) + (L::abs(v[2]) + Float(farthest))) * edge_error + normal_error;
     }
   }
 
@@ -139,37 +152,43 @@ struct LeafLanes {
       t = Float(ray.t), dir_max = Float(ray.dir_max);
     }
     const Float x = v[0] - o_x, y = v[1] - o_y, z = v[2] - o_z;
-    const Float r_x = y * d_z - z * d_y, r_y = z * d_x - x * d_z, r_z = x * d_y - y * d_x;
-    const Float denominator = d_x * n[0] + d_y * n[1] + d_z * n[2];
-    const Float first = L::turn_by(denominator, r_x * e2[0] + r_y * e2[1] + r_z * e2[2]);
-    const Float second = L::turn_by(denominator, r_x * back_e1[0] + r_y * back_e1[1] + r_z * back_e1[2]);
+    const Float r_x = L::bounded_difference(y, d_z, z, d_y), r_y = L::bounded_difference(z, d_x, x, d_z),
+                r_z = L::bounded_difference(x, d_y, y, d_x);
+    const Float denominator = inner(d_x, d_y, d_z, n);
+    const Float first = L::turn_by(denominator, inner(r_x, r_y, r_z, e2));
+    const Float second = L::turn_by(denominator, inner(r_x, r_y, r_z, back_e1));
     const Float size = L::abs(denominator);
     const Float third = size - first - second;
+    const Float least = L::min(L::min(first, second), third);
+    if constexpr (kBoundsBatch<L>) {
+      if ((there & ~(L::bounded_sum(most_error, dir_max, least) < Float(0.0f)).bits()) == 0) return none();
+    }
     const Float far = L::abs(x) + L::abs(y) + (L::abs(z) + Float(kLeastListSize));
     const Float turn = normal_error * dir_max;
     const Float error = far * dir_max * edge_error + turn;
-    const Float least = L::min(L::min(first, second), third);
     // Where there is no bound, nothing is outside or inside.
     const std::uint32_t candidates = there & ~(least + error < Float(0.0f)).bits();
-    if (candidates == 0) return {0, 0, 0, Float(0.0f), Float(0.0f), Float(0.0f), Float(0.0f)};
-    // Where along the ray.
-    const Float ahead = L::turn_by(denominator, x * n[0] + y * n[1] + z * n[2]);
-    const Float limit = size * t;
+    if (candidates == 0) return none();
+    // Where along the ray. What rounds after the bounds of ahead and size is less than 2^-20 of their products.
+    const Float ahead = L::turn_by(denominator, inner(x, y, z, n));
     const Float ahead_error = far * normal_error + Float(kLeastAhead);
-    const Float limit_error = turn * t + limit * Float(0x1p-20f) + ahead_error;
+    const Float least_ahead = ahead - ahead_error, most_ahead = ahead + ahead_error;
+    const Float least_limit = (size - turn) * t * Float(1.0f - 0x1p-20f),
+                most_limit = (size + turn) * t * Float(1.0f + 0x1p-20f);
     const std::uint32_t sign_known = (size > turn).bits();
-    const std::uint32_t in_front = (ahead > ahead_error).bits() & sign_known;
-    const std::uint32_t behind = (ahead < -ahead_error).bits() & sign_known;
-    const std::uint32_t beyond = (ahead - limit > limit_error).bits() & sign_known;
+    const std::uint32_t in_front = (least_ahead > Float(0.0f)).bits() & sign_known;
+    const std::uint32_t behind = (most_ahead < Float(0.0f)).bits() & sign_known;
+    const std::uint32_t beyond = (least_ahead > most_limit).bits() & sign_known;
     const std::uint32_t in_reach = candidates & ~(behind | beyond);
     const std::uint32_t inside = (least > error).bits();
-    return {in_reach & inside,
-            in_reach & ~inside,
-            (limit - ahead > limit_error).bits() & in_front,
-            ahead,
-            ahead_error,
-            size,
-            turn};
+    return {
+        in_reach & inside, in_reach & ~inside, (most_ahead < least_limit).bits() & in_front, least_ahead, size, turn};
+  }
+
+ private:
+  [[nodiscard]] static GRIDIRON_INLINE LeafAnswer<L> none() { return {0, 0, 0, Float(0.0f), Float(0.0f), Float(0.0f)}; }
+  [[nodiscard]] static GRIDIRON_INLINE Float inner(Float x, Float y, Float z, const Float (&other)[3]) {
+    return L::bounded_sum(z, other[2], L::bounded_sum(y, other[1], x * other[0]));
   }
 };
 

@@ -131,6 +131,23 @@ GRIDIRON_INLINE std::uint32_t set_up_list_ray(BatchRay& ray, float largest) {
   return set_up_odd_ray<L>(ray, octant, is_within(far), is_large || !is_within(kGreatestListPlace));
 }
 
+/// The largest |x|, |y|, |z| of the origins of rays, where leaves ask for them.
+template <class L>
+class FarthestOrigin {
+ public:
+  GRIDIRON_INLINE void add(const BatchRay& ray) {
+    if constexpr (kBoundsBatch<L>) sizes_ = Quad::max(sizes_, Quad::abs(Quad::Float::load(ray.origin)));
+  }
+  /// @returns their sum.
+  [[nodiscard]] GRIDIRON_INLINE float sum() const {
+    return Quad::lane(sizes_, 0) + Quad::lane(sizes_, 1) + Quad::lane(sizes_, 2);
+  }
+
+ private:
+  using Quad = Lanes<4>;
+  typename Quad::Float sizes_{0.0f};  // the fourth of t
+};
+
 /// Copies the words of rays that meet a child, without their masks.
 /// @param list    at a multiple of kListStep<L> words, as mark_list() left it.
 /// @param count   of words: all, or a multiple of L::kCount.

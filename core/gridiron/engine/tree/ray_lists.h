@@ -62,11 +62,14 @@ class RayLists {
     std::uint32_t* const unsorted = memory_.arena + (Memory::kArenaWords - Memory::kRays);
     work_.add(Work::kListRay, count);
     work_.charge_to(Work::kListRay);
+    FarthestOrigin<L> farthest;
     for (std::uint32_t i = 0; i < count; ++i) {
+      farthest.add(memory_.rays[i]);
       const std::uint32_t octant = set_up_list_ray<L>(memory_.rays[i], largest);
       unsorted[i] = list_word(i, octant);
       ++counts[octant];
     }
+    farthest_ = farthest.sum();
     std::uint32_t places[8], end = 0;
     for (std::uint32_t octant = 0; octant < 8; ++octant) {
       begins[octant] = places[octant] = end;
@@ -240,7 +243,7 @@ class RayLists {
   [[nodiscard]] GRIDIRON_OUTLINE std::uint32_t next_candidate(const std::uint32_t* list, std::uint32_t begin,
                                                               std::uint32_t end, std::uint32_t base,
                                                               std::uint32_t there, LeafAnswer<L>& answer) const {
-    const LeafLanes<L> lanes(memory_.triangles, base);
+    const LeafLanes<L> lanes(memory_.triangles, base, farthest_);
     for (std::uint32_t i = begin; i < end; ++i) {
       const LeafAnswer<L> found = lanes.test(ray_of(memory_.rays, list[i]), there);
       if ((found.inside | found.unsure) == 0) continue;
@@ -329,6 +332,7 @@ class RayLists {
   WorkCounters& work_;
   RayQuestion question_{};
   std::uint32_t ray_count_ = 0, dead_count_ = 0;
+  float farthest_ = 0.0f;  // FarthestOrigin::sum()
 };
 
 }  // namespace gridiron
