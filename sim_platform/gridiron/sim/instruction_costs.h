@@ -71,14 +71,14 @@ inline constexpr auto kInstructionCosts = std::to_array<InstructionCost>({
     {WorkId(49),   181.9},  // list_ray, of effects
     {WorkId(50),   264.3},  // list_child, of effects
     {WorkId(51),    43.1},  // list_entry, of effects
-    {WorkId(52),  1399.9},  // list_node, of effects
-    {WorkId(53),   147.5},  // list_run, of effects
-    {WorkId(54),   459.2},  // list_ray_node, of effects
-    {WorkId(55),   462.7},  // list_box_quad, of effects
+    {WorkId(52),  1401.2},  // list_node, of effects
+    {WorkId(53),   140.5},  // list_run, of effects
+    {WorkId(54),   455.9},  // list_ray_node, of effects
+    {WorkId(55),   461.8},  // list_box_quad, of effects
     {WorkId(56),  1886.4},  // list_leaf, of effects
-    {WorkId(57),   781.6},  // list_triangle_group, of effects
+    {WorkId(57),   760.3},  // list_triangle_group, of effects
     {WorkId(58),   117.1},  // list_candidate, of effects
-    {WorkId(59),   315.4},  // ray_distance, of effects
+    {WorkId(59),   302.4},  // ray_distance, of effects
     {WorkId(60),  1422.2},  // surface_point, of effects
     {WorkId(61),   322.8},  // smooth_normal, of effects
     {WorkId(62),    47.0},  // jitter_seed, of effects
