@@ -1,0 +1,303 @@
+// The sections on secondary rays. SPDX-License-Identifier: Apache-2.0
+#include "experiment/secondary_book.h"
+
+#include <algorithm>
+#include <cmath>
+#include <functional>
+#include <utility>
+
+#include "base/words.h"
+#include "experiment/sections.h"
+#include "experiment/svg_plot.h"
+#include "experiment/table.h"
+
+namespace gridiron::experiment {
+namespace {
+
+constexpr std::string_view kUsual = "standard";
+
+double per_million(double count, std::uint64_t rays) {
+  return rays == 0 ? 0.0 : 1e6 * count / static_cast<double>(rays);
+}
+
+// Cycles that all cores compute and wait.
+double busy_cycles(const EffectFrame& frame) {
+  double sum = 0;
+  for (const sim::StageTiming& stage : frame.stages) sum += stage.compute_cycles + stage.wait_cycles;
+  return sum;
+}
+
+struct Decision {
+  const char* key;
+  WorkId work;
+  bool is_exact;  ///< in integers; else in double
+};
+constexpr Decision kDecisions[] = {{"exact_signs", Work::kExactSign, true},
+                                   {"exact_distances", Work::kExactDistance, true},
+                                   {"exact_orders", Work::kExactOrder, true},
+                                   {"double_signs", Work::kDoubleSign, false},
+                                   {"double_distances", Work::kRayDistance, false}};
+
+// A kind of rays with a profile, over all scenes.
+struct Sum {
+  std::uint64_t rays = 0;
+  double cycles = 0;      ///< that the rays take, of all cores
+  double log_frames = 0;  ///< of the frames' cycles, over those of standard
+  std::uint64_t exact = 0, doubles = 0;
+  RayErrors errors, at_edges;
+  std::uint64_t pixels = 0, differing_pixels = 0, square_sum = 0;
+  std::uint32_t greatest_pixel_error = 0;
+
+  [[nodiscard]] double cycles_per_ray() const { return rays == 0 ? 0.0 : cycles / static_cast<double>(rays); }
+  [[nodiscard]] double differing_percent() const {
+    return pixels == 0 ? 0.0 : 100 * static_cast<double>(differing_pixels) / static_cast<double>(pixels);
+  }
+  [[nodiscard]] double rms_error() const {
+    return PictureErrors{pixels, differing_pixels, greatest_pixel_error, square_sum}.rms_error();
+  }
+};
+
+double extra_cycles(const SecondaryPrices& prices, const SecondaryPrice& price) {
+  return busy_cycles(price.frame) - busy_cycles(prices.without(price));
+}
+
+std::uint64_t extra_count(const SecondaryPrices& prices, const SecondaryPrice& price, WorkId work) {
+  return price.frame.count(work) - prices.without(price).count(work);
+}
+
+Sum sum_of(const SecondaryPrices& prices, RayKind kind, std::size_t profile) {
+  Sum sum;
+  const std::size_t usual = prices.find_profile(kUsual);
+  for (std::size_t scene = 0; scene < prices.scenes().size(); ++scene) {
+    const SecondaryPrice& price = prices.price(scene, kind, profile);
+    sum.rays += price.rays();
+    sum.cycles += extra_cycles(prices, price);
+    sum.log_frames += std::log(price.frame.cycles / prices.price(scene, kind, usual).frame.cycles);
+    for (const Decision& decision : kDecisions) {
+      (decision.is_exact ? sum.exact : sum.doubles) += extra_count(prices, price, decision.work);
+    }
+    sum.errors += price.errors;
+    sum.at_edges += price.at_edges;
+    sum.pixels += price.picture.pixels;
+    sum.differing_pixels += price.picture.differing_pixels;
+    sum.square_sum += price.picture.square_sum;
+    sum.greatest_pixel_error = std::max(sum.greatest_pixel_error, price.picture.greatest_pixel_error);
+  }
+  return sum;
+}
+
+// Bars of all profiles for each kind of rays.
+std::string chart_svg(const SecondaryPrices& prices, std::string title, std::string y_title,
+                      const std::function<double(RayKind, std::size_t)>& value) {
+  BarChart chart{.title = std::move(title), .y_title = std::move(y_title), .parts = {"all"}, .labels = true};
+  for (const NamedRayKind& kind : kRayKinds) chart.groups.emplace_back(kind.title);
+  for (const Profile& profile : prices.profiles()) chart.bars.push_back(profile.key);
+  for (const NamedRayKind& kind : kRayKinds) {
+    for (std::size_t profile = 0; profile < prices.profiles().size(); ++profile) {
+      chart.values.push_back(value(kind.kind, profile));
+    }
+  }
+  return bar_chart_svg(chart);
+}
+
+// Everything of every frame.
+Table frames_table(const SecondaryPrices& prices) {
+  Table table = make_table("secondary_frames", "scene", "rays_of", "profile", "rays", "cycles", "cycles_without",
+                           "cycles_per_ray", "cycles_per_ray_over_standard");
+  for (const Decision& decision : kDecisions) {
+    table.columns.emplace_back((std::string(decision.key) + "_without").c_str());
+    table.columns.emplace_back(decision.key);
+    table.columns.emplace_back((std::string(decision.key) + "_per_million_rays").c_str());
+  }
+  for (const std::string where : {"", "edge_"}) {
+    for (const char* name : {"rays_asked", "leaks", "self_hits", "false_hits", "wrong_triangles", "leaks_per_million",
+                             "self_hits_per_million"}) {
+      table.columns.emplace_back((where + name).c_str());
+    }
+  }
+  for (const char* name :
+       {"differing_pixels", "differing_percent", "greatest_pixel_error", "rms_pixel_error", "psnr_db"}) {
+    table.columns.emplace_back(name);
+  }
+  const auto per_ray = [&](const SecondaryPrice& price) {
+    return ratio_of(extra_cycles(prices, price), static_cast<double>(price.rays()));
+  };
+  for (const SecondaryPrice& price : prices.prices()) {
+    const SecondaryPrice& usual = prices.price(price.scene, price.kind, prices.find_profile(kUsual));
+    std::vector<Cell> row = {prices.scenes()[price.scene].key,
+                             named(price.kind).key,
+                             prices.profiles()[price.profile].key,
+                             price.rays(),
+                             price.frame.cycles,
+                             prices.without(price).cycles,
+                             per_ray(price),
+                             ratio_of(per_ray(price), per_ray(usual))};
+    for (const Decision& decision : kDecisions) {
+      const std::uint64_t extra = extra_count(prices, price, decision.work);
+      row.emplace_back(prices.without(price).count(decision.work));
+      row.emplace_back(price.frame.count(decision.work));
+      row.emplace_back(per_million(static_cast<double>(extra), price.rays()));
+    }
+    for (const RayErrors* errors : {&price.errors, &price.at_edges}) {
+      const HitCounts& hits = errors->hits;
+      row.emplace_back(hits.rays);
+      row.emplace_back(hits.leaks());
+      row.emplace_back(errors->self_hits);
+      row.emplace_back(hits.false_hits);
+      row.emplace_back(hits.wrong_triangles);
+      row.emplace_back(hits.per_million(hits.leaks()));
+      row.emplace_back(hits.per_million(errors->self_hits));
+    }
+    const PictureErrors& picture = price.picture;
+    row.emplace_back(picture.differing_pixels);
+    row.emplace_back(100 *
+                     ratio_of(static_cast<double>(picture.differing_pixels), static_cast<double>(picture.pixels)));
+    row.emplace_back(std::uint64_t{picture.greatest_pixel_error});
+    row.emplace_back(picture.rms_error());
+    row.emplace_back(picture.psnr_db());
+    table.add(std::move(row));
+  }
+  return table;
+}
+
+Table solids_table(const SecondaryPrices& prices) {
+  Table table = make_table(
+      "secondary_solids", Column("rays_of", "rays of"), "profile", Column("enclosed_rays", "rays inside solids"),
+      "leaks", Column("leaks_per_million", "a million", 1), Column("edge_rays", "rays inside, at edges"),
+      Column("edge_leaks", "leaks"), Column("edge_leaks_per_million", "a million", 1),
+      Column("edge_exact_per_million", "integers a million", 0), Column("open_rays", "rays off a convex body"),
+      Column("self_hits", "self-hits"), Column("self_hits_per_million", "a million", 1));
+  for (const SolidPrice& price : prices.solids()) {
+    std::vector<Cell> row = {named(price.kind).title, prices.profiles()[price.profile].key};
+    const auto add = [&row](const HitCounts& hits, std::uint64_t count) {
+      row.emplace_back(hits.rays);
+      row.emplace_back(count);
+      row.emplace_back(hits.per_million(count));
+    };
+    add(price.enclosed, price.enclosed.leaks());
+    add(price.at_edges, price.at_edges.leaks());
+    row.emplace_back(price.at_edges.per_million(price.edge_integers));
+    add(price.open, price.open.false_hits);
+    table.add(std::move(row));
+  }
+  return table;
+}
+
+Table overview_table(const SecondaryPrices& prices) {
+  Table table = make_table(
+      "secondary", Column("rays_of", "rays of"), "profile", Column("cycles_over_standard", "frame, times standard", 3),
+      Column("cycles_per_ray", "cycles a ray", 0), Column("cycles_per_ray_over_standard", "times standard", 3),
+      Column("exact_per_million_rays", "exact decisions", 0), Column("doubles_per_million_rays", "doubles", 0),
+      Column("leaks_per_million", "leaks", 1), Column("edge_leaks_per_million", "leaks at edges", 1),
+      Column("self_hits_per_million", "self-hits", 1), Column("differing_percent", "% of pixels differ"),
+      Column("greatest_pixel_error", "most, of 255"), Column("rms_pixel_error", "RMS", 3));
+  const auto scenes = static_cast<double>(prices.scenes().size());
+  for (const NamedRayKind& kind : kRayKinds) {
+    const Sum usual = sum_of(prices, kind.kind, prices.find_profile(kUsual));
+    for (std::size_t profile = 0; profile < prices.profiles().size(); ++profile) {
+      const Sum sum = sum_of(prices, kind.kind, profile);
+      const SolidPrice& solid = prices.solid(kind.kind, profile);
+      const HitCounts& hits = sum.errors.hits;
+      const HitCounts& at_edges = sum.at_edges.hits;
+      table.add(
+          {kind.title, prices.profiles()[profile].key, std::exp(sum.log_frames / scenes), sum.cycles_per_ray(),
+           ratio_of(sum.cycles_per_ray(), usual.cycles_per_ray()),
+           per_million(static_cast<double>(sum.exact), sum.rays),
+           per_million(static_cast<double>(sum.doubles), sum.rays),
+           per_million(static_cast<double>(hits.leaks() + solid.enclosed.leaks()), hits.rays + solid.enclosed.rays),
+           per_million(static_cast<double>(at_edges.leaks() + solid.at_edges.leaks()),
+                       at_edges.rays + solid.at_edges.rays),
+           per_million(static_cast<double>(sum.errors.self_hits + solid.open.false_hits), hits.rays + solid.open.rays),
+           sum.differing_percent(), std::uint64_t{sum.greatest_pixel_error}, sum.rms_error()});
+    }
+  }
+  return table;
+}
+
+std::string joined_keys(const std::vector<Profile>& profiles) {
+  std::string words;
+  for (std::size_t i = 0; i < profiles.size(); ++i) {
+    words += (i == 0 ? "" : i + 1 == profiles.size() ? " and " : ", ") + profiles[i].key;
+  }
+  return words;
+}
+
+}  // namespace
+
+std::vector<std::string> secondary_file_names() {
+  return {"secondary.csv",       "secondary_frames.csv",    "secondary_solids.csv", "secondary_cycles.svg",
+          "secondary_leaks.svg", "secondary_decisions.svg", "secondary_pixels.svg"};
+}
+
+void write_secondary_prices(const SecondaryPrices& prices, Book& book) {
+  const Table overview = overview_table(prices), solids = solids_table(prices);
+  book.section("secondary", "Secondary rays");
+  std::string scenes;
+  for (const EffectScene& scene : prices.scenes()) scenes += (scenes.empty() ? "" : ", ") + scene.key;
+  book.paragraph(
+      "Profiles " + joined_keys(prices.profiles()) + " render effects. " + joined_keys(prices.refused()) +
+      " does not: its hits are too far off their triangles for secondary rays to start there. The scenes are " +
+      scenes + ", " + std::to_string(prices.width()) + "x" + std::to_string(prices.height()) +
+      " pixels in configuration best on six cores, each changed to cast one kind of secondary rays and no other, with "
+      "four rays a point to each area light and for ambient occlusion. Refraction is glass, which reflects too.");
+  book.figure(
+      "secondary_cycles",
+      chart_svg(prices, "What a secondary ray costs", "cycles of a core",
+                [&](RayKind kind, std::size_t profile) { return sum_of(prices, kind, profile).cycles_per_ray(); }),
+      "Cycles of a core for a ray of each kind, all scenes together: what the frame takes beyond the same frame "
+      "without these rays.");
+  book.figure("secondary_leaks",
+              chart_svg(prices, "Leaks at edges", "leaks of a million rays at edges",
+                        [&](RayKind kind, std::size_t profile) {
+                          const HitCounts& hits = prices.solid(kind, profile).at_edges;
+                          return hits.per_million(hits.leaks());
+                        }),
+              "Rays inside closed solids that were aimed at edges and vertices and got out, of a million.");
+  book.figure(
+      "secondary_decisions",
+      chart_svg(prices, "Decisions in integers at edges", "of a million rays at edges",
+                [&](RayKind kind, std::size_t profile) {
+                  const SolidPrice& solid = prices.solid(kind, profile);
+                  return solid.at_edges.per_million(solid.edge_integers);
+                }),
+      "Signs, distances and orders of distances that a million of these rays leave to integers. Other rays hardly "
+      "ever need one: the table below.");
+  book.figure(
+      "secondary_pixels",
+      chart_svg(prices, "Pixels that differ from exact", "% of all pixels",
+                [&](RayKind kind, std::size_t profile) { return sum_of(prices, kind, profile).differing_percent(); }),
+      "Pixels of another colour than in profile exact.");
+  book.table(overview,
+             "Over all scenes: cycles of a frame over those of standard (geometric mean), cycles of a core for a ray; "
+             "decisions in integers and in double of a million rays; leaks, leaks of rays aimed at edges and self-hits "
+             "of a million rays, in scenes and solids; pixels that differ from exact, the greatest and the RMS "
+             "difference of a channel.");
+  book.linked_table(frames_table(prices), "every scene, kind of rays and profile with every figure.");
+  book.section("solids", "Secondary rays in closed solids");
+  book.paragraph(
+      "That exact arithmetic is right about a ray does not mean that the ray begins on the right side of its surface. "
+      "So two solids are rendered whose rays have known answers, whatever a profile says: a room, which is a ball with "
+      "a ball of glass in it, the eye between them and the lights outside, where every ray hits something; and a ball "
+      "alone, lit from behind the eye, where no ray that leaves it hits anything and every ray refracted into it does. "
+      "Both stand at the origin and again a thousand radii away, where coordinates are coarser.");
+  std::uint64_t least_rays = ~0ull;
+  for (const SolidPrice& price : prices.solids()) least_rays = std::min(least_rays, price.at_edges.rays);
+  book.table(solids,
+             "Rays inside solids that hit nothing (leaks), the same of rays aimed at edges, and rays off a convex "
+             "body that hit something (self-hits). All of them should be 0.");
+  book.paragraph(
+      "A ray is what the kernel itself casts: its own code renders the frame with an engine that notes each ray and "
+      "its "
+      "answer. In the scenes each answer is compared with that of exact to the same ray, on the triangles as the "
+      "profile stores them, so errors of moved vertices show in the picture and not here. A ray that should hit and "
+      "does not, or hits something farther away by more than a thousandth, is a leak; a hit that is not there, or too "
+      "near, within a thousandth of the scene's diagonal of the ray's origin, is a self-hit. Each ray that hits "
+      "something is asked again towards an edge or, a quarter of them, a vertex of that triangle. The least share that "
+      "can be told is one ray: of rays at edges in the solids at most " +
+      fixed_text(per_million(1, least_rays), 1) +
+      " of a million. Cycles of a ray are what all cores compute and wait "
+      "beyond the same frame without secondary rays, shading of what they hit included. Decisions in integers and "
+      "doubles are counted likewise.");
+}
+
+}  // namespace gridiron::experiment
