@@ -143,7 +143,8 @@ Table all_prices(const PriceList& list) {
   add_spread("t_all_hits_relative", &Comparison::all_relative);
   fields.add_error({"differing_pixels", ""}, [](const Comparison& found) { return found.picture.differing_pixels; });
   fields.add_error({"psnr_db", ""}, [](const Comparison& found) { return found.picture.psnr_db(); });
-  fields.add_error({"greatest_pixel_error", ""}, [](const Comparison& found) { return found.picture.greatest_pixel_error; });
+  fields.add_error({"greatest_pixel_error", ""},
+                   [](const Comparison& found) { return found.picture.greatest_pixel_error; });
   return fields.table("prices", [](const Price&) { return true; });
 }
 
