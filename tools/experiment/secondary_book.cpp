@@ -197,13 +197,13 @@ Table solids_table(const SecondaryPrices& prices) {
 }
 
 Table overview_table(const SecondaryPrices& prices) {
-  Table table = make_table(
-      "secondary", Column("rays_of", "rays of"), "profile", Column("cycles_over_standard", "frame, times standard", 3),
-      Column("cycles_per_ray", "cycles a ray", 0), Column("cycles_per_ray_over_standard", "times standard", 3),
-      Column("exact_per_million_rays", "exact decisions", 0), Column("doubles_per_million_rays", "doubles", 0),
-      Column("leaks_per_million", "leaks", 1), Column("edge_leaks_per_million", "leaks at edges", 1),
-      Column("self_hits_per_million", "self-hits", 1), Column("differing_percent", "% of pixels differ"),
-      Column("greatest_pixel_error", "most, of 255"), Column("rms_pixel_error", "RMS", 3));
+  Table table =
+      make_table("secondary", Column("rays_of", "rays of"), "profile", Column("cycles_over_standard", "frame", 3),
+                 Column("cycles_per_ray", "cycles", 0), Column("cycles_per_ray_over_standard", "times", 3),
+                 Column("exact_per_million_rays", "integers", 0), Column("doubles_per_million_rays", "doubles", 0),
+                 Column("leaks_per_million", "leak", 1), Column("edge_leaks_per_million", "edge leak", 0),
+                 Column("self_hits_per_million", "self-hit", 1), Column("differing_percent", "pixels %", 2),
+                 Column("greatest_pixel_error", "most"), Column("rms_pixel_error", "RMS", 2));
   const auto scenes = static_cast<double>(prices.scenes().size());
   for (const NamedRayKind& kind : kRayKinds) {
     const Sum usual = sum_of(prices, kind.kind, prices.find_profile(kUsual));
@@ -238,8 +238,8 @@ std::string joined_keys(const std::vector<Profile>& profiles) {
 }  // namespace
 
 std::vector<std::string> secondary_file_names() {
-  return {"secondary.csv",       "secondary_frames.csv",    "secondary_solids.csv", "secondary_cycles.svg",
-          "secondary_leaks.svg", "secondary_decisions.svg", "secondary_pixels.svg"};
+  return {"secondary.csv",        "secondary.txt",       "secondary_frames.csv",    "secondary_solids.csv",
+          "secondary_cycles.svg", "secondary_leaks.svg", "secondary_decisions.svg", "secondary_pixels.svg"};
 }
 
 void write_secondary_prices(const SecondaryPrices& prices, Book& book) {
@@ -278,15 +278,18 @@ void write_secondary_prices(const SecondaryPrices& prices, Book& book) {
   figure("secondary_leaks", "Leaks at edges", "leaks of a million rays at edges", leaks, 0,
          "Rays inside closed solids, aimed at edges and vertices, that hit nothing.");
   figure("secondary_decisions", "Decisions in integers at edges", "decisions of a ray at an edge", integers, 2,
-         "Signs, distances and orders of distances that integers decide for these rays. Other rays hardly ever need "
-         "integers: the table below has their number.");
+         "Signs, distances and orders of distances that integers decide for these rays; of fast only signs of floats "
+         "that are exactly 0. Other rays hardly ever need integers: the table below has their number.");
   figure("secondary_pixels", "Pixels that differ from exact", "% of all pixels", pixels, 2,
          "Pixels of another colour than in profile exact, all scenes together.");
-  book.table(overview_table(prices),
-             "Over all scenes: cycles of a frame over those of standard (geometric mean); cycles of a core for a ray, "
-             "and the same over standard; decisions in integers and in double of a million rays; leaks, leaks of rays "
-             "aimed at edges and self-hits of a million rays, in scenes and solids; pixels that differ from exact, the "
-             "greatest and the RMS difference of a channel.");
+  const Table overview = overview_table(prices);
+  book.table(
+      overview,
+      "Over all scenes. frame: its cycles over those of standard (geometric mean). cycles: of a core for a ray; "
+      "times: the same over standard. integers, doubles: decisions of a million rays. leak, edge leak, self-hit: "
+      "of a million rays, of a million rays aimed at edges, of a million rays, in scenes and solids. pixels %: "
+      "those that differ from exact; most and RMS: difference of a channel, of 255.");
+  book.text("secondary.txt", aligned_text(overview), "the same as plain text.");
   book.linked_table(frames_table(prices), "every scene, kind of rays and profile with every figure.");
 
   std::uint64_t least_rays = ~0ull;
@@ -295,11 +298,10 @@ void write_secondary_prices(const SecondaryPrices& prices, Book& book) {
   book.paragraph(
       "Exact arithmetic decides each ray correctly, but it cannot know whether a ray begins on the right side of its "
       "surface. So two solids are rendered whose rays have known answers, whatever a profile says. The first is a "
-      "room: "
-      "a ball, seen from inside, with a smaller ball in it and the lights outside. Every ray hits something there, and "
-      "one that does not is a leak. The second is a ball alone, lit from behind the eye. No ray that leaves it hits "
-      "anything, and one that does is a self-hit; a ray refracted into it must hit it from inside. Both solids stand "
-      "at the origin and again a thousand radii away, where coordinates are coarser.");
+      "room: a ball, seen from inside, with a smaller ball in it and the lights outside. Every ray hits something "
+      "there, and one that does not is a leak. The second is a ball alone, lit from behind the eye. No ray that leaves "
+      "it hits anything, and one that does is a self-hit; a ray refracted into it must hit it from inside. Both solids "
+      "stand at the origin and again a thousand radii away, where coordinates are coarser.");
   book.table(solids_table(prices),
              "Rays inside solids and those that leak; the same of rays aimed at edges, and what a million of these "
              "leave to integers; rays that leave a convex body, and those that hit it.");
@@ -310,9 +312,8 @@ void write_secondary_prices(const SecondaryPrices& prices, Book& book) {
       "something and hits nothing, or something farther away by more than a thousandth. It hits itself if the hit "
       "should not be there, or should be farther away, and lies within a thousandth of the scene's diagonal of the "
       "ray's origin. Each ray that hits a triangle gives a ray aimed at an edge of that triangle or, every fourth, at "
-      "a "
-      "vertex. Aimed rays are asked through the kernel's lists of rays, without a frame. The least share that can be "
-      "measured is one ray: in solids at most " +
+      "a vertex. Aimed rays are asked for their nearest hit through the kernel's lists of rays, without a frame. The "
+      "least share that can be measured is one ray: in solids at most " +
       fixed_text(per_million(1, least_rays), 1) +
       " of a million rays at edges. Cycles of a ray are what all cores compute and wait beyond the same frame without "
       "secondary rays; they include shading of what the ray hits. Decisions in integers and double are counted the "
