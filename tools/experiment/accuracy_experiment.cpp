@@ -5,6 +5,8 @@
 #include "experiment/experiments.h"
 #include "experiment/price_book.h"
 #include "experiment/price_list.h"
+#include "experiment/secondary_book.h"
+#include "experiment/secondary_prices.h"
 #include "experiment/sections.h"
 
 namespace gridiron::experiment {
@@ -76,6 +78,7 @@ void write_method(const PriceList& list, Book& book) {
 std::vector<std::string> accuracy_file_names() {
   std::vector<std::string> names = {"host_prices.csv", "index.html",  "overview.csv", "pareto.csv",
                                     "prices.csv",      "starved.csv", "targets.csv",  "t_histogram.csv"};
+  for (std::string& name : secondary_file_names()) names.push_back(std::move(name));
   for (const char* front : {"pixels", "edges", "t"}) names.push_back("pareto_" + std::string(front) + ".svg");
   for (const std::string& view : known_view_keys()) {
     names.push_back(price_text_name(view));
@@ -90,9 +93,12 @@ std::vector<std::string> accuracy_file_names() {
 ExperimentResult run_accuracy_experiment(const ExperimentSettings& settings, const ProgressCall& progress) {
   FoundViews found = find_views(settings.scenes);
   PriceList list(std::move(found.views), settings.width, settings.height);
-  const auto total = static_cast<std::uint32_t>(list.step_count());
+  SecondaryPrices secondary(list.views().front(), settings.width, settings.height);
+  const auto total = static_cast<std::uint32_t>(list.step_count() + secondary.step_count());
   std::uint32_t done = 0;
-  list.collect(settings.threads, [&] { progress(++done, total); });
+  const auto step_done = [&] { progress(++done, total); };
+  list.collect(settings.threads, step_done);
+  secondary.collect(settings.threads, step_done);
 
   const std::string size = std::to_string(settings.width) + "x" + std::to_string(settings.height);
   Book book(
@@ -107,6 +113,7 @@ ExperimentResult run_accuracy_experiment(const ExperimentSettings& settings, con
   write_steps(list, book);
   write_fronts(list, book);
   write_starved(list, book);
+  write_secondary_prices(secondary, book);
   write_views(list, book);
   write_method(list, book);
   write_host_prices(list, book);
@@ -114,8 +121,8 @@ ExperimentResult run_accuracy_experiment(const ExperimentSettings& settings, con
     book.section("missing", "Views left out");
     for (const std::string& sentence : found.missing) book.paragraph(sentence);
   }
-  return {book.finish(), list.plan().rendered_count() + list.prices().size(), list.plan().run_count(),
-          std::move(found.missing)};
+  return {book.finish(), list.plan().rendered_count() + list.prices().size() + secondary.frame_count(),
+          list.plan().run_count() + secondary.frame_count(), std::move(found.missing)};
 }
 
 }  // namespace gridiron::experiment

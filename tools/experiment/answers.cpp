@@ -5,26 +5,13 @@
 
 #include <algorithm>
 #include <bit>
+#include <cmath>
 #include <cstdlib>
 
 namespace gridiron::experiment {
 namespace {
 
-void compare_colors(const Answers& truth, const Answers& answers, Comparison& found) {
-  constexpr std::uint32_t kChannels = 3;
-  std::uint64_t square_sum = 0;
-  for (std::size_t i = 0; i < truth.color.size(); ++i) {
-    if (truth.color[i] == answers.color[i]) continue;
-    ++found.differing_pixels;
-    for (std::uint32_t channel = 0; channel < kChannels; ++channel) {
-      const auto value_of = [channel](std::uint32_t pixel) { return static_cast<int>(pixel >> (8 * channel) & 0xFFu); };
-      const auto error = static_cast<std::uint32_t>(std::abs(value_of(truth.color[i]) - value_of(answers.color[i])));
-      square_sum += std::uint64_t{error} * error;
-      found.greatest_pixel_error = std::max(found.greatest_pixel_error, error);
-    }
-  }
-  found.psnr_db = peak_signal_to_noise(square_sum, truth.color.size() * kChannels);
-}
+constexpr std::uint32_t kChannels = 3;
 
 }  // namespace
 
@@ -34,6 +21,40 @@ std::size_t ulp_bin(std::uint64_t ulps) {
 
 double HitCounts::per_million(std::uint64_t count) const {
   return rays == 0 ? 0.0 : 1e6 * static_cast<double>(count) / static_cast<double>(rays);
+}
+
+HitCounts& operator+=(HitCounts& sum, const HitCounts& more) {
+  sum.rays += more.rays;
+  sum.true_hits += more.true_hits;
+  sum.holes += more.holes;
+  sum.false_hits += more.false_hits;
+  sum.wrong_triangles += more.wrong_triangles;
+  sum.seen_through += more.seen_through;
+  return sum;
+}
+
+double PictureErrors::psnr_db() const {
+  return peak_signal_to_noise(square_sum, pixels * kChannels);
+}
+
+double PictureErrors::rms_error() const {
+  return pixels == 0 ? 0.0 : std::sqrt(static_cast<double>(square_sum) / static_cast<double>(pixels * kChannels));
+}
+
+PictureErrors compare_colors(std::span<const std::uint32_t> truth, std::span<const std::uint32_t> colors) {
+  PictureErrors found;
+  found.pixels = truth.size();
+  for (std::size_t i = 0; i < truth.size(); ++i) {
+    if (truth[i] == colors[i]) continue;
+    ++found.differing_pixels;
+    for (std::uint32_t channel = 0; channel < kChannels; ++channel) {
+      const auto value_of = [channel](std::uint32_t pixel) { return static_cast<int>(pixel >> (8 * channel) & 0xFFu); };
+      const auto error = static_cast<std::uint32_t>(std::abs(value_of(truth[i]) - value_of(colors[i])));
+      found.square_sum += std::uint64_t{error} * error;
+      found.greatest_pixel_error = std::max(found.greatest_pixel_error, error);
+    }
+  }
+  return found;
 }
 
 HitCounts count_hits(const Answers& truth, const Answers& answers) {
@@ -72,7 +93,7 @@ Comparison compare_answers(const Answers& truth, const Answers& answers) {
   found.relative = spread_of(std::move(relative));
   found.all_ulps = spread_of(std::move(all_ulps));
   found.all_relative = spread_of(std::move(all_relative));
-  compare_colors(truth, answers, found);
+  found.picture = compare_colors(truth.color, answers.color);
   return found;
 }
 

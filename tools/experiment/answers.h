@@ -5,6 +5,7 @@
 #include <array>
 #include <cstddef>
 #include <cstdint>
+#include <span>
 #include <vector>
 
 #include "experiment/statistics.h"
@@ -43,8 +44,25 @@ struct HitCounts {
 
 inline constexpr double kBehind = 1e-3;
 
+/// Adds counts of other rays.
+HitCounts& operator+=(HitCounts& sum, const HitCounts& more);
+
 /// Precondition: as many rays of each. Ignores colours.
 [[nodiscard]] HitCounts count_hits(const Answers& truth, const Answers& answers);
+
+/// The errors in the colours of a picture.
+struct PictureErrors {
+  std::uint64_t pixels = 0;
+  std::uint64_t differing_pixels = 0;      ///< of another colour
+  std::uint32_t greatest_pixel_error = 0;  ///< 0 to 255, of red, green or blue
+  std::uint64_t square_sum = 0;            ///< of the errors of red, green and blue of all pixels
+
+  [[nodiscard]] double psnr_db() const;    ///< over red, green and blue of all pixels; infinite if none differs
+  [[nodiscard]] double rms_error() const;  ///< likewise, 0 to 255; 0 without pixels
+};
+
+/// Precondition: as many pixels of each, 0xAABBGGRR.
+[[nodiscard]] PictureErrors compare_colors(std::span<const std::uint32_t> truth, std::span<const std::uint32_t> colors);
 
 /// The errors in the answers of a frame. A pixel is a ray.
 struct Comparison {
@@ -53,9 +71,7 @@ struct Comparison {
   std::array<std::uint64_t, kUlpBinCount> ulp_histogram{};  ///< of the rays that hit the true triangle
   Spread ulps, relative;                                    ///< error of t of the rays that hit the true triangle
   Spread all_ulps, all_relative;                            ///< and of all that hit something and should
-  std::uint64_t differing_pixels = 0;                       ///< of another colour
-  double psnr_db = 0;                      ///< over red, green and blue of all pixels; infinite if none differs
-  std::uint32_t greatest_pixel_error = 0;  ///< 0 to 255, of red, green or blue
+  PictureErrors picture;
 };
 
 /// Precondition: planes of the same size.

@@ -12,6 +12,9 @@
 
 namespace gridiron::experiment {
 
+/// @returns a point on an edge of a triangle, or every fourth `turn` a vertex; turns go round the edges and along them.
+[[nodiscard]] Vec3 edge_point(const MeshView& mesh, std::uint32_t id, std::size_t turn);
+
 /// @returns `count` points on edges of visible triangles, spread evenly over the picture, every fourth of them a
 /// vertex; none if nothing is visible. Rounding to floats moves them off the edge.
 /// @param ids  the picture's triangles, kNoTriangle without a hit.

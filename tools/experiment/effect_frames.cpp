@@ -7,9 +7,7 @@
 #include "experiment/systems.h"
 #include "experiment/table.h"
 #include "gridiron/frame/chip_frame.h"
-#include "gridiron/frame/frame_memory.h"
 #include "gridiron/frame/frame_pictures.h"
-#include "gridiron/frame/render_plan.h"
 #include "gridiron/scene/effect_names.h"
 
 namespace gridiron::experiment {
@@ -27,6 +25,7 @@ tool::RenderPlan plan_of(const EffectScene& scene, const EffectFrameRequest& req
   asked.layout.depths = request.depths;
   asked.size = {request.width, request.height};
   asked.threads = 1;
+  asked.accuracy = request.accuracy;
   return tool::resolve(asked, {.kind = tool::SceneKind::kText, .has_effects = true, .is_read = true}, {});
 }
 
@@ -101,13 +100,17 @@ double EffectFrame::secondary_wait_cycles() const {
   return sum;
 }
 
-EffectFrame render_effect_frame(const EffectScene& scene, const EffectFrameRequest& request) {
-  const tool::RenderPlan plan = plan_of(scene, request);
-  const tool::SceneInput input = input_of(scene);
+PreparedEffectFrame::PreparedEffectFrame(const EffectScene& scene, const EffectFrameRequest& request)
+    : input(input_of(scene)), plan(plan_of(scene, request)), memory(tool::frame_memory_bytes(input, plan)) {
   const tool::SceneView& view = input.text->view;
-  tool::FrameMemory memory(tool::frame_memory_bytes(input, plan));
   tool::prepare_frame(memory, input, plan,
                       {.eye = view.from, .at = view.at, .up = view.up, .fov_degrees = view.angle_degrees});
+}
+
+EffectFrame render_effect_frame(const EffectScene& scene, const EffectFrameRequest& request) {
+  PreparedEffectFrame prepared(scene, request);
+  tool::FrameMemory& memory = prepared.memory;
+  const tool::RenderPlan& plan = prepared.plan;
   const sim::ChipResult result = tool::render_on_chip(memory, plan, {});
   const sim::FrameTiming timing = sim::replay(result.trace, *plan.scene.machine, {.core_count = 6});
 

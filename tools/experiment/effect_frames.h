@@ -3,6 +3,7 @@
 #pragma once
 
 #include <gridiron/base/effect_records.h>
+#include <gridiron/base/records.h>
 #include <gridiron/base/stages.h>
 #include <gridiron/base/work_counters.h>
 #include <gridiron/sim/replay.h>
@@ -18,6 +19,9 @@
 #include "experiment/effect_scenes.h"
 #include "files/image_files.h"
 #include "gridiron/device/configurations.h"
+#include "gridiron/frame/frame_memory.h"
+#include "gridiron/frame/render_plan.h"
+#include "gridiron/scene/scene_input.h"
 
 namespace gridiron::experiment {
 
@@ -25,11 +29,22 @@ struct EffectFrameRequest {
   std::uint32_t width = 96, height = 96;
   float lambda = 4;  ///< grid cells per triangle
   tool::BufferDepths depths = tool::kDoubleBuffering;
+  Accuracy accuracy = Accuracy::kStandard;
+};
+
+/// A frame in main memory, ready to be rendered with configuration best on the home machine.
+struct PreparedEffectFrame {
+  /// Errors: tool::Failure.
+  PreparedEffectFrame(const EffectScene& scene, const EffectFrameRequest& request);
+
+  tool::SceneInput input;
+  tool::RenderPlan plan;
+  tool::FrameMemory memory;
 };
 
 /// The counts of a frame.
 struct EffectFrame {
-  std::uint32_t called_for = 0;   ///< EffectBits, as the scene image has them
+  std::uint32_t called_for = 0;  ///< EffectBits, as the scene image has them
   bool has_shadows = true;
   sim::WorkTotals work{};
   std::array<sim::StageTiming, kStageCount> stages{};  ///< sums over the cores

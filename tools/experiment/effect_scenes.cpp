@@ -54,13 +54,6 @@ p 7
   -3.5 2 -3
 )";
 
-tool::SceneDescription read(std::string_view key, std::string_view text) {
-  // Coarser than the program's default: sufficient for so small a picture.
-  tool::SceneOptions options;
-  options.relative_tolerance = 5e-4f;
-  return tool::read_scene_text(text, std::string(key), options);
-}
-
 // The faces of the sky, made as bytes of PFM files: little-endian floats, the lowest row first.
 tool::EnvironmentMap make_sky() {
   tool::EnvironmentMap sky;
@@ -100,44 +93,49 @@ void add_area_light(tool::SceneDescription& scene) {
   scene.area_lights.push_back(light_beside(scene.view));
 }
 
-// Occlusion as far as a twentieth of the distance to the point that the camera looks at.
+}  // namespace
+
+tool::SceneDescription read_effect_scene(std::string_view key, std::string_view text) {
+  tool::SceneOptions options;
+  options.relative_tolerance = 5e-4f;
+  return tool::read_scene_text(text, std::string(key), options);
+}
+
 tool::AmbientOcclusion occlusion_of(const tool::SceneView& view) {
   return {.samples = 4, .radius = 0.05f * glm::length(view.at - view.from)};
 }
-
-}  // namespace
 
 EffectScene make_effect_scene(std::string_view key) {
   EffectScene scene;
   scene.key = key;
   if (key == "balls") {
-    scene.description = read(key, scene_makers::make_balls(2));
+    scene.description = read_effect_scene(key, scene_makers::make_balls(2));
     add_area_light(scene.description);
     scene.words =
         "the sphereflake of the Standard Procedural Databases, 91 mirroring balls on a floor, with an area light more";
   } else if (key == "tetra") {
-    scene.description = read(key, scene_makers::make_tetra(5));
+    scene.description = read_effect_scene(key, scene_makers::make_tetra(5));
     scene.description.ambient_occlusion = occlusion_of(scene.description.view);
     scene.description.samples_per_pixel = 4;
     scene.words =
         "the tetrahedral pyramid of the Standard Procedural Databases, 1,024 matt triangles, with ambient occlusion "
         "and four samples a pixel";
   } else if (key == "mount") {
-    scene.description = read(key, scene_makers::make_mount(6));
+    scene.description = read_effect_scene(key, scene_makers::make_mount(6));
     scene.description.environment = make_sky();
     scene.description.ambient_occlusion = occlusion_of(scene.description.view);
     scene.words =
         "the fractal mountain of the Standard Procedural Databases behind four balls of glass, under a sky, with "
         "ambient occlusion";
   } else if (key == "rings") {
-    scene.description = read(key, scene_makers::make_rings(2));
+    scene.description = read_effect_scene(key, scene_makers::make_rings(2));
     add_area_light(scene.description);
     scene.description.samples_per_pixel = 4;
     scene.words =
         "rings of the Standard Procedural Databases, 5 objects of 30 cylinders and 30 balls each, with an area light "
         "and four samples a pixel";
   } else {
-    scene.description = read(key, kGallery);
+    scene.description = read_effect_scene(key, kGallery);
     scene.description.environment = make_sky();
     scene.words = "a scene of our own that calls for every effect: a mirror, a ball of glass, a matt cone and a patch";
   }

@@ -26,6 +26,12 @@ inline constexpr std::string_view kEffectSceneKeys[] = {"balls", "tetra", "mount
 /// @returns the scene of that key. Precondition: there is one.
 [[nodiscard]] EffectScene make_effect_scene(std::string_view key);
 
+/// Reads a text scene. Round shapes are coarser than the program makes them: sufficient for small pictures.
+[[nodiscard]] tool::SceneDescription read_effect_scene(std::string_view key, std::string_view text);
+
+/// @returns ambient occlusion as far as a twentieth of the distance to the point that the camera looks at.
+[[nodiscard]] tool::AmbientOcclusion occlusion_of(const tool::SceneView& view);
+
 /// @returns the scene in the form that prepare_frame takes.
 [[nodiscard]] tool::SceneInput input_of(const EffectScene& scene);
 

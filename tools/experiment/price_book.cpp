@@ -141,9 +141,10 @@ Table all_prices(const PriceList& list) {
   add_spread("t_relative", &Comparison::relative);
   add_spread("t_all_hits_ulp", &Comparison::all_ulps);
   add_spread("t_all_hits_relative", &Comparison::all_relative);
-  fields.add_error({"differing_pixels", ""}, [](const Comparison& found) { return found.differing_pixels; });
-  fields.add_error({"psnr_db", ""}, [](const Comparison& found) { return found.psnr_db; });
-  fields.add_error({"greatest_pixel_error", ""}, [](const Comparison& found) { return found.greatest_pixel_error; });
+  fields.add_error({"differing_pixels", ""}, [](const Comparison& found) { return found.picture.differing_pixels; });
+  fields.add_error({"psnr_db", ""}, [](const Comparison& found) { return found.picture.psnr_db(); });
+  fields.add_error({"greatest_pixel_error", ""},
+                   [](const Comparison& found) { return found.picture.greatest_pixel_error; });
   return fields.table("prices", [](const Price&) { return true; });
 }
 
@@ -347,8 +348,8 @@ Table view_errors(const PriceList& list, std::size_t view, bool split_leaks) {
   fields.add_error({"", "99%", 0}, [](const Comparison& found) { return found.ulps.percentile_99; });
   fields.add_error({"", "max", 0}, [](const Comparison& found) { return found.ulps.greatest; });
   fields.add_error({"", "t 99%", -2}, [](const Comparison& found) { return found.relative.percentile_99; });
-  fields.add_error({"", "PSNR", 1}, [](const Comparison& found) { return found.psnr_db; });
-  fields.add_error({"", "pixel"}, [](const Comparison& found) { return found.greatest_pixel_error; });
+  fields.add_error({"", "PSNR", 1}, [](const Comparison& found) { return found.picture.psnr_db(); });
+  fields.add_error({"", "pixel"}, [](const Comparison& found) { return found.picture.greatest_pixel_error; });
   return fields.table("", [view](const Price& price) { return price.view == view; });
 }
 
@@ -388,9 +389,9 @@ void write_overview(const PriceList& list, Book& book) {
       {{"most_t_ulp_max", "most", 0}, [](const Price& price) { return price.errors->ulps.greatest; }},
       {{"most_t_relative_p99", "99 %, relative", -2},
        [](const Price& price) { return price.errors->relative.percentile_99; }},
-      {{"least_psnr_db", "PSNR, dB", 1}, [](const Price& price) { return price.errors->psnr_db; }, true},
+      {{"least_psnr_db", "PSNR, dB", 1}, [](const Price& price) { return price.errors->picture.psnr_db(); }, true},
       {{"greatest_pixel_error", "colour", 0},
-       [](const Price& price) { return static_cast<double>(price.errors->greatest_pixel_error); }},
+       [](const Price& price) { return static_cast<double>(price.errors->picture.greatest_pixel_error); }},
   };
   for (const Time& time : times) table.columns.push_back({time.key, time.title});
   for (const Worst& worst : worsts) table.columns.push_back(worst.column);

@@ -77,7 +77,7 @@ std::vector<Metric> price_metrics() {
       error("ulp in 99 of 100 pixels", 0, [](const Comparison& found) { return found.ulps.percentile_99; }),
       error("ulp at most", 0, [](const Comparison& found) { return found.ulps.greatest; }),
       error("pixels of another colour a million", 1,
-            [](const Comparison& found) { return found.hits.per_million(found.differing_pixels); }),
+            [](const Comparison& found) { return found.hits.per_million(found.picture.differing_pixels); }),
   };
 }
 

@@ -88,6 +88,55 @@ void expect_targets(const fs::path& folder, const std::string& page) {
   EXPECT_EQ(said, met);
 }
 
+// Every kind of secondary rays has every profile that renders effects, and figures follow from each other.
+void expect_secondary(const fs::path& folder, const std::string& page) {
+  std::vector<std::string> profiles;
+  for (const tool::NamedAccuracy& named : tool::accuracies()) {
+    const bool renders = accuracy_traits(named.accuracy).has_scene_shading;
+    if (renders) profiles.emplace_back(named.name);
+    EXPECT_NE(page.find((renders ? "" : "They cannot with ") + std::string(named.name)), std::string::npos);
+  }
+  constexpr std::size_t kKinds = 5, kScenes = 4;
+  const Rows overview = csv_rows(folder / "secondary.csv"), solids = csv_rows(folder / "secondary_solids.csv");
+  const Rows frames = csv_rows(folder / "secondary_frames.csv");
+  ASSERT_EQ(overview.size(), 1 + kKinds * profiles.size());
+  ASSERT_EQ(solids.size(), overview.size());
+  ASSERT_EQ(frames.size(), 1 + kScenes * kKinds * profiles.size());
+  for (std::size_t row = 1; row < overview.size(); ++row) {
+    SCOPED_TRACE(overview[row][0] + " " + overview[row][1]);
+    const std::string profile = text_under(overview, row, "profile");
+    EXPECT_EQ(profile, profiles[(row - 1) % profiles.size()]);
+    EXPECT_EQ(text_under(solids, row, "profile"), profile);
+    EXPECT_GT(number_under(overview, row, "cycles_per_ray"), 100);
+    if (profile == "standard") {
+      EXPECT_EQ(number_under(overview, row, "cycles_over_standard"), 1);
+      EXPECT_EQ(number_under(overview, row, "cycles_per_ray_over_standard"), 1);
+    }
+    const bool is_fast = profile == "fast";
+    EXPECT_LT(number_under(overview, row, "cycles_per_ray_over_standard"), is_fast ? 1 : 1.1);
+    if (is_fast) {
+      EXPECT_EQ(number_under(overview, row, "doubles_per_million_rays"), 0);
+    }
+    EXPECT_EQ(number_under(overview, row, "self_hits_per_million"), 0);
+    EXPECT_EQ(number_under(overview, row, "edge_leaks_per_million") == 0, !is_fast);
+    EXPECT_EQ(number_under(solids, row, "edge_leaks") == 0, !is_fast);
+    EXPECT_EQ(number_under(solids, row, "self_hits"), 0);
+    EXPECT_EQ(number_under(overview, row, "differing_percent") == 0, profile != "compact");
+    EXPECT_EQ(number_under(overview, row, "rms_pixel_error") == 0, profile != "compact");
+  }
+  for (std::size_t row = 1; row < frames.size(); ++row) {
+    SCOPED_TRACE(frames[row][0] + " " + frames[row][1] + " " + frames[row][2]);
+    EXPECT_GT(number_under(frames, row, "rays"), 0);
+    EXPECT_EQ(number_under(frames, row, "rays_asked"), number_under(frames, row, "rays"));
+    EXPECT_GT(number_under(frames, row, "cycles"), number_under(frames, row, "cycles_without"));
+    for (const std::string decision : {"exact_signs", "exact_distances", "exact_orders", "double_signs"}) {
+      const double extra = number_under(frames, row, decision) - number_under(frames, row, decision + "_without");
+      EXPECT_NEAR(number_under(frames, row, decision + "_per_million_rays") * number_under(frames, row, "rays"),
+                  1e6 * extra, 1);
+    }
+  }
+}
+
 TEST(AccuracyExperiment, FilesDoNotDependOnThreads) {
   const TemporaryFolder folder;
   // Files of a run with other scenes go, everything else stays: another experiment's too.
@@ -107,6 +156,7 @@ TEST(AccuracyExperiment, FilesDoNotDependOnThreads) {
   EXPECT_EQ(page.find("none %"), std::string::npos);
   expect_prices(csv_rows(folder.path("out1") / "prices.csv"));
   expect_targets(folder.path("out1"), page);
+  expect_secondary(folder.path("out1"), page);
 
   // The histogram holds each pixel of the true triangle once; points on a front are those that the table says.
   const Rows histogram = csv_rows(folder.path("out1") / "t_histogram.csv");

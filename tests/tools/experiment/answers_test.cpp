@@ -83,15 +83,15 @@ TEST(Answers, BinsDouble) {
 TEST(Answers, ColoursAreComparedByChannel) {
   Case made = make_case();
   Comparison found = compare_answers(made.truth, made.answers);
-  EXPECT_EQ(found.differing_pixels, 0u);
-  EXPECT_EQ(found.psnr_db, std::numeric_limits<double>::infinity());
-  EXPECT_EQ(found.greatest_pixel_error, 0u);
+  EXPECT_EQ(found.picture.differing_pixels, 0u);
+  EXPECT_EQ(found.picture.psnr_db(), std::numeric_limits<double>::infinity());
+  EXPECT_EQ(found.picture.greatest_pixel_error, 0u);
   made.answers.color[2] = 0xFF404740u;  // green by 7
   made.answers.color[9] = 0xFF3F4041u;  // blue and red by 1
   found = compare_answers(made.truth, made.answers);
-  EXPECT_EQ(found.differing_pixels, 2u);
-  EXPECT_EQ(found.greatest_pixel_error, 7u);
-  EXPECT_DOUBLE_EQ(found.psnr_db, 10 * std::log10(255.0 * 255.0 * 30 / (49 + 1 + 1)));
+  EXPECT_EQ(found.picture.differing_pixels, 2u);
+  EXPECT_EQ(found.picture.greatest_pixel_error, 7u);
+  EXPECT_DOUBLE_EQ(found.picture.psnr_db(), 10 * std::log10(255.0 * 255.0 * 30 / (49 + 1 + 1)));
 }
 
 }  // namespace

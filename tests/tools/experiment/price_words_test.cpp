@@ -109,7 +109,7 @@ TEST_F(SmallPriceList, ExactIsTheTruthAndStandardHitsIt) {
     if (profile == "exact") {
       EXPECT_EQ(price.errors->hits.wrong_rays() + price.at_edges.wrong_rays(), 0u);
       EXPECT_EQ(price.errors->all_ulps.greatest, 0);
-      EXPECT_EQ(price.errors->differing_pixels, 0u);
+      EXPECT_EQ(price.errors->picture.differing_pixels, 0u);
     } else if (profile == "standard") {
       EXPECT_EQ(price.errors->hits.leaks() + price.errors->hits.false_hits, 0u);
       EXPECT_EQ(price.at_edges.leaks() + price.at_edges.false_hits, 0u);
