@@ -97,19 +97,18 @@ KernelScene everything(tool::SceneDescription& scene, const KernelOptions& optio
 // Edges of tiles lie across both edges of the picture.
 constexpr std::uint32_t kWidth = 37, kHeight = 27;
 
-TEST(BruteForceEngine, RendersEffectsAsGridAndTreeDo) {
-  tool::SceneDescription scene;
+// @param shipped  the frame by grid and tree.
+void expect_same_frames(KernelScene& built, const Camera& camera, std::uint32_t width, std::uint32_t height,
+                        KernelPicture& shipped) {
+  ASSERT_EQ(built.status, Status::kOk);
   KernelOptions options;
   options.wants_planes = true;
-  KernelScene built = everything(scene, options);
-  ASSERT_EQ(built.status, Status::kOk);
-  const Camera camera = camera_of(scene.view);
-  const KernelPicture shipped = render_kernel<GridLayout>(built, camera, kWidth, kHeight, options);
+  shipped = render_kernel<GridLayout>(built, camera, width, height, options);
   ASSERT_EQ(shipped.status, Status::kOk) << shipped.violation;
   options.alter = make_brute_force;
   options.fetch_depth = 1;
   const KernelPicture brute_force =
-      render_kernel<BruteForceLayout<kAllEffects, 16>>(built, camera, kWidth, kHeight, options);
+      render_kernel<BruteForceLayout<kAllEffects, 16>>(built, camera, width, height, options);
   ASSERT_EQ(brute_force.status, Status::kOk) << brute_force.violation;
   EXPECT_EQ(brute_force.color, shipped.color);
   EXPECT_EQ(brute_force.depth, shipped.depth);
@@ -117,6 +116,50 @@ TEST(BruteForceEngine, RendersEffectsAsGridAndTreeDo) {
   // Shading does the same for every engine; only part of its order depends on the engine.
   for (const Work kind : {Work::kWaveRay, Work::kShadowRay, Work::kSurfacePoint, Work::kQueuedRay, Work::kColorAdded}) {
     EXPECT_EQ(brute_force.work[kind], shipped.work[kind]) << static_cast<int>(kind);
+  }
+}
+
+TEST(BruteForceEngine, RendersEffectsAsGridAndTreeDo) {
+  tool::SceneDescription scene;
+  KernelScene built = everything(scene, {});
+  KernelPicture shipped;
+  expect_same_frames(built, camera_of(scene.view), kWidth, kHeight, shipped);
+}
+
+// Hills of 2 * cells^2 triangles in the middle of the scene, in turn of each of its materials without normals.
+void add_hills(tool::SceneDescription& scene, std::uint32_t cells) {
+  std::vector<std::uint16_t> materials;
+  for (std::size_t i = 0; i < scene.materials.size(); ++i) {
+    if (!scene.materials[i].smooth_normals) materials.push_back(static_cast<std::uint16_t>(i));
+  }
+  tool::SceneGeometry& geometry = scene.geometry;
+  const TestMesh hills = moved(make_height_field(cells, 0.3f, 7), 2.0f, {0, 1, 0});
+  const auto first = static_cast<std::uint32_t>(geometry.vertices.size());
+  geometry.vertices.insert(geometry.vertices.end(), hills.vertices.begin(), hills.vertices.end());
+  for (const UVec3& t : hills.triangles) {
+    geometry.triangle_materials.push_back(materials[geometry.triangles.size() % materials.size()]);
+    geometry.triangles.push_back(t + UVec3(first));
+    geometry.triangle_normals.push_back(UVec3(tool::kNoNormal));
+  }
+}
+
+// GRIDIRON_BRUTE_FORCE_CELLS: of the hills; 1000 for 2 million triangles.
+TEST(BruteForceEngine, RendersManyTrianglesAsGridAndTreeDo) {
+  const char* const wanted = std::getenv("GRIDIRON_BRUTE_FORCE_CELLS");
+  tool::SceneDescription scene = tool::read_scene_text(GRIDIRON_SOURCE_DIR "/scenes/everything.nff");
+  const auto first = static_cast<std::uint32_t>(scene.geometry.triangles.size());
+  add_hills(scene, wanted == nullptr ? 40 : static_cast<std::uint32_t>(std::atoi(wanted)));
+  scene.samples_per_pixel = 1;
+  scene.recursion_depth = 3;
+  scene.view.angle_degrees = 15;
+  KernelScene built = build_kernel_scene(scene, {});
+  KernelPicture shipped;
+  expect_same_frames(built, camera_of(scene.view), 8, 8, shipped);
+  const auto is_of_hills = [first](std::uint32_t id) { return id >= first && id != kNoTriangle; };
+  EXPECT_GT(std::count_if(shipped.ids.begin(), shipped.ids.end(), is_of_hills), 16);
+  for (const Work kind :
+       {Work::kShadowRay, Work::kAreaPlace, Work::kOcclusionRay, Work::kMirrorRay, Work::kRefractedRay}) {
+    EXPECT_GT(shipped.work[kind], 0u) << static_cast<int>(kind);
   }
 }
 
