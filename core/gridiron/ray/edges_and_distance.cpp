@@ -26,6 +26,27 @@ void normal_of(const VertexTriangle& triangle, Real normal[3], Real products[3])
   }
 }
 
+// A triangle's plane as an origin sees it, in double.
+struct Plane {
+  double normal[3];
+  double volume;                      // normal . (corner - origin)
+  double normal_error, volume_error;  // bounds; the first one of normal . direction, for directions of at most 1
+};
+GRIDIRON_OUTLINE Plane plane_of(const float origin[3], const VertexTriangle& triangle) {
+  Plane plane{};
+  double products[3];
+  normal_of(triangle, plane.normal, products);
+  for (int i = 0; i < 3; ++i) {
+    const double a = double{triangle.v[0][i]} - double{origin[i]};
+    plane.volume += a * plane.normal[i];
+    plane.volume_error += magnitude(a) * products[i];
+    plane.normal_error += products[i];
+  }
+  plane.volume_error *= kDistanceError;
+  plane.normal_error *= kDistanceError;
+  return plane;
+}
+
 // Compares the bits: where denormals are flushed, they compare equal to zero and to each other.
 bool is_same(float a, float b) {
   const std::uint32_t bits_a = std::bit_cast<std::uint32_t>(a);
@@ -36,40 +57,25 @@ bool is_same(float a, float b) {
 }  // namespace
 
 void set_up_distance(const float origin[3], float dir_max, const VertexTriangle& triangle, DistanceSetup& setup) {
-  double products[3];
-  normal_of(triangle, setup.normal, products);
-  double numerator = 0.0;
-  double numerator_error = 0.0;
-  for (int i = 0; i < 3; ++i) {
-    const double a = double{triangle.v[0][i]} - double{origin[i]};
-    numerator += a * setup.normal[i];
-    numerator_error += magnitude(a) * products[i];
-  }
-  setup.numerator = numerator;
+  const Plane plane = plane_of(origin, triangle);
+  for (int i = 0; i < 3; ++i) setup.normal[i] = plane.normal[i];
+  setup.numerator = plane.volume;
   // A numerator of 0 makes these NaN or infinite, that is unsure, which is correct.
-  setup.relative_error = kDistanceError * numerator_error / magnitude(numerator) + 0x1p-50;
-  setup.relative_error_per_t =
-      kDistanceError * double{dir_max} * (products[0] + products[1] + products[2]) / magnitude(numerator);
+  setup.relative_error = plane.volume_error / magnitude(plane.volume) + 0x1p-50;
+  setup.relative_error_per_t = double{dir_max} * plane.normal_error / magnitude(plane.volume);
 }
 
 DistanceInterval distance_interval(const float origin[3], float dir_max, const float dir[3],
                                    const VertexTriangle& triangle) {
-  double normal[3], products[3];
-  normal_of(triangle, normal, products);
-  double numerator = 0.0, numerator_size = 0.0, denominator = 0.0;
-  for (int i = 0; i < 3; ++i) {
-    const double a = double{triangle.v[0][i]} - double{origin[i]};
-    numerator += a * normal[i];
-    numerator_size += magnitude(a) * products[i];
-    denominator += double{dir[i]} * normal[i];
-  }
+  const Plane plane = plane_of(origin, triangle);
+  double denominator = 0.0;
+  for (int i = 0; i < 3; ++i) denominator += double{dir[i]} * plane.normal[i];
   // The errors of DistanceSetup with one division: it has two roundings more.
   const double inverse = 1.0 / denominator;
-  const double quotient = numerator * inverse;
+  const double quotient = plane.volume * inverse;
   const double size = magnitude(quotient);
-  const double denominator_size = double{dir_max} * (products[0] + products[1] + products[2]);
   const double error =
-      kDistanceError * (numerator_size + size * denominator_size) * magnitude(inverse) + 0x1p-49 * size;
+      (plane.volume_error + size * (double{dir_max} * plane.normal_error)) * magnitude(inverse) + 0x1p-49 * size;
   // False for NaN too; the distance is unknown then.
   if (!(size > 0.0 && error < 0x1p-10 * size)) return {0.0, static_cast<double>(kInfinity)};
   return {quotient - error, quotient + error};
@@ -179,18 +185,9 @@ std::int32_t edge_sign(const float origin[3], const float dir[3], const float a[
 }
 
 std::int32_t volume_sign(const float origin[3], const VertexTriangle& triangle, WorkCounters& work) {
-  double normal[3], products[3];
-  normal_of(triangle, normal, products);
-  double volume = 0.0;
-  double error = 0.0;
-  for (int i = 0; i < 3; ++i) {
-    const double a = double{triangle.v[0][i]} - double{origin[i]};
-    volume += a * normal[i];
-    error += magnitude(a) * products[i];
-  }
-  error *= kDistanceError;
-  if (volume > error) return 1;
-  if (volume < -error) return -1;
+  const Plane plane = plane_of(origin, triangle);
+  if (plane.volume > plane.volume_error) return 1;
+  if (plane.volume < -plane.volume_error) return -1;
   work.add(Work::kExactSign);
   return exact_volume_sign(origin, triangle.v[0], triangle.v[1], triangle.v[2]);
 }
