@@ -40,10 +40,9 @@ GRIDIRON_OUTLINE Plane plane_of(const float origin[3], const VertexTriangle& tri
     const double a = double{triangle.v[0][i]} - double{origin[i]};
     plane.volume += a * plane.normal[i];
     plane.volume_error += magnitude(a) * products[i];
-    plane.normal_error += products[i];
   }
   plane.volume_error *= kDistanceError;
-  plane.normal_error *= kDistanceError;
+  plane.normal_error = kDistanceError * (products[0] + products[1] + products[2]);
   return plane;
 }
 

@@ -29,7 +29,7 @@ inline constexpr auto kInstructionCosts = std::to_array<InstructionCost>({
     {WorkId( 7),  1613.4},  // pixel_box_group, not in `dense`
     {WorkId( 8),   160.8},  // open_triangle, not in `dense`
     {WorkId( 9),    14.1},  // listed_triangle
-    {WorkId(10),   595.4},  // triangle_setup
+    {WorkId(10),   595.5},  // triangle_setup
     {WorkId(11),   330.5},  // slope_setup, not in `dense`
     {WorkId(12),   337.1},  // subpacket_setup, not in `dense`
     {WorkId(13),   391.7},  // subpacket_group, not in `dense`
@@ -52,7 +52,7 @@ inline constexpr auto kInstructionCosts = std::to_array<InstructionCost>({
     {WorkId(30),   123.0},  // taken_subpacket, not in `dense`
     {WorkId(31),    96.4},  // facing_group
     {WorkId(32),   180.5},  // hit_group_paper, not in `dense`
-    {WorkId(33),   255.6},  // hit_setup
+    {WorkId(33),   287.6},  // hit_setup
     {WorkId(34),   181.2},  // double_sign
     {WorkId(35),  2430.8},  // exact_sign, of 64 decisions
     {WorkId(36), 66091.2},  // exact_distance, of 64 decisions
@@ -78,7 +78,7 @@ inline constexpr auto kInstructionCosts = std::to_array<InstructionCost>({
     {WorkId(56),  1886.4},  // list_leaf, of effects
     {WorkId(57),   760.3},  // list_triangle_group, of effects
     {WorkId(58),   117.1},  // list_candidate, of effects
-    {WorkId(59),   302.4},  // ray_distance, of effects
+    {WorkId(59),   326.4},  // ray_distance, of effects
     {WorkId(60),  1422.2},  // surface_point, of effects
     {WorkId(61),   322.8},  // smooth_normal, of effects
     {WorkId(62),    47.0},  // jitter_seed, of effects
