@@ -263,8 +263,8 @@ struct Lanes {
       W == 8 ||
 #endif
       false;
-  /// a b + c with one rounding or two, whichever is faster: for values with a bound of their error, never for what must
-  /// have the same bits everywhere.
+  /// a b + c with two roundings, in wide lanes with one where that is one instruction: for values with a bound of their
+  /// error, never for what must have the same bits everywhere.
   [[nodiscard]] static GRIDIRON_INLINE Float bounded_sum(Float a, Float b, Float c) {
 #if defined(__AVX512F__)
     if constexpr (W == 16) return Float(FloatVector(_mm512_fmadd_ps(__m512(a.v), __m512(b.v), __m512(c.v))));
@@ -274,7 +274,7 @@ struct Lanes {
 #endif
     return a * b + c;
   }
-  /// a b - c d, likewise.
+  /// a b - c d, with one rounding less if bounded_sum() rounds once.
   [[nodiscard]] static GRIDIRON_INLINE Float bounded_difference(Float a, Float b, Float c, Float d) {
     if constexpr (kRoundsOnce) return bounded_sum(a, b, -(c * d));
     return a * b - c * d;

@@ -69,7 +69,7 @@ DistanceInterval distance_interval(const float origin[3], float dir_max, const f
   const Plane plane = plane_of(origin, triangle);
   double denominator = 0.0;
   for (int i = 0; i < 3; ++i) denominator += double{dir[i]} * plane.normal[i];
-  // The errors of DistanceSetup with one division: it has two roundings more.
+  // The errors of DistanceSetup with one division: the quotient has one rounding more.
   const double inverse = 1.0 / denominator;
   const double quotient = plane.volume * inverse;
   const double size = magnitude(quotient);

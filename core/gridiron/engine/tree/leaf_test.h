@@ -95,7 +95,7 @@ struct LeafAnswer {
   std::uint32_t inside;           ///< the ray's line surely passes through, and the plane is not surely out of reach
   std::uint32_t unsure;           ///< the line may pass through, likewise
   std::uint32_t within;           ///< the plane is surely at 0 < t <= the ray's
-  Float least_ahead, size, turn;  ///< of the plane's t = ahead / size: a bound of ahead from below, and of size's error
+  Float least_ahead, size, turn;  ///< of t = ahead / size: a bound of ahead from below, size, a bound of its error
 
   /// @returns a bound of t from below. Where the sign of size is not known, or products may have overflowed, it is
   /// below 0: never NaN, which would come behind all others.
@@ -104,13 +104,15 @@ struct LeafAnswer {
   }
 };
 
-/// Wide lanes bound the errors of all rays of a batch once for a leaf: less work a ray. Few lanes would gain no more
-/// than that costs.
+/// Wide lanes first try a bound of the errors of all rays of a batch: less work a ray. Few lanes would gain no more
+/// than it costs.
 template <class L>
 inline constexpr bool kBoundsBatch = L::kCount > 4;
 
 /// The lanes of a leaf from `base` on, in registers.
-template <class L>
+/// @tparam kBounded  decisions have bounds of their error. Accuracy::kFast has none, so it computes the same bits with
+///                   all lanes.
+template <class L, bool kBounded>
 struct LeafLanes {
   using Float = typename L::Float;
   Float v[3], back_e1[3], e2[3], n[3], edge_error, normal_error;
@@ -129,7 +131,8 @@ struct LeafLanes {
         normal_error(Float::load(lanes.normal_error + base)),
         most_error(edge_error) {
     if constexpr (kBoundsBatch<L>) {
-      most_error = (L::abs(v[0]) + L::abs(v[1]) + (L::abs(v[2]) + Float(farthest))) * edge_error + normal_error;
+      most_error =
+          (L::abs(v[0]) + L::abs(v[1]) + (L::abs(v[2]) + Float(farthest + kLeastListSize))) * edge_error + normal_error;
     }
   }
 
@@ -152,8 +155,7 @@ struct LeafLanes {
       t = Float(ray.t), dir_max = Float(ray.dir_max);
     }
     const Float x = v[0] - o_x, y = v[1] - o_y, z = v[2] - o_z;
-    const Float r_x = L::bounded_difference(y, d_z, z, d_y), r_y = L::bounded_difference(z, d_x, x, d_z),
-                r_z = L::bounded_difference(x, d_y, y, d_x);
+    const Float r_x = difference(y, d_z, z, d_y), r_y = difference(z, d_x, x, d_z), r_z = difference(x, d_y, y, d_x);
     const Float denominator = inner(d_x, d_y, d_z, n);
     const Float first = L::turn_by(denominator, inner(r_x, r_y, r_z, e2));
     const Float second = L::turn_by(denominator, inner(r_x, r_y, r_z, back_e1));
@@ -161,7 +163,7 @@ struct LeafLanes {
     const Float third = size - first - second;
     const Float least = L::min(L::min(first, second), third);
     if constexpr (kBoundsBatch<L>) {
-      if ((there & ~(L::bounded_sum(most_error, dir_max, least) < Float(0.0f)).bits()) == 0) return none();
+      if ((there & ~(sum(most_error, dir_max, least) < Float(0.0f)).bits()) == 0) return none();
     }
     const Float far = L::abs(x) + L::abs(y) + (L::abs(z) + Float(kLeastListSize));
     const Float turn = normal_error * dir_max;
@@ -187,8 +189,16 @@ struct LeafLanes {
 
  private:
   [[nodiscard]] static GRIDIRON_INLINE LeafAnswer<L> none() { return {0, 0, 0, Float(0.0f), Float(0.0f), Float(0.0f)}; }
+  [[nodiscard]] static GRIDIRON_INLINE Float sum(Float a, Float b, Float c) {
+    if constexpr (kBounded) return L::bounded_sum(a, b, c);
+    return a * b + c;
+  }
+  [[nodiscard]] static GRIDIRON_INLINE Float difference(Float a, Float b, Float c, Float d) {
+    if constexpr (kBounded) return L::bounded_difference(a, b, c, d);
+    return a * b - c * d;
+  }
   [[nodiscard]] static GRIDIRON_INLINE Float inner(Float x, Float y, Float z, const Float (&other)[3]) {
-    return L::bounded_sum(z, other[2], L::bounded_sum(y, other[1], x * other[0]));
+    return sum(z, other[2], sum(y, other[1], x * other[0]));
   }
 };
 

@@ -136,9 +136,12 @@ template <class L>
 class FarthestOrigin {
  public:
   GRIDIRON_INLINE void add(const BatchRay& ray) {
-    if constexpr (kBoundsBatch<L>) sizes_ = Quad::max(sizes_, Quad::abs(Quad::Float::load(ray.origin)));
+    if constexpr (kBoundsBatch<L>) {
+      // In this order a NaN changes nothing.
+      sizes_ = Quad::max(Quad::abs(Quad::Float::load(ray.origin)), sizes_);
+    }
   }
-  /// @returns their sum.
+  /// @returns their sum; 0 where it is not asked for.
   [[nodiscard]] GRIDIRON_INLINE float sum() const {
     return Quad::lane(sizes_, 0) + Quad::lane(sizes_, 1) + Quad::lane(sizes_, 2);
   }

@@ -240,10 +240,19 @@ class RayLists {
 
   // @returns the first ray of a list, from `begin` on, that floats do not rule out for all triangles of a group, or the
   // list's end. @param answer  gets what they say.
-  [[nodiscard]] GRIDIRON_OUTLINE std::uint32_t next_candidate(const std::uint32_t* list, std::uint32_t begin,
-                                                              std::uint32_t end, std::uint32_t base,
-                                                              std::uint32_t there, LeafAnswer<L>& answer) const {
-    const LeafLanes<L> lanes(memory_.triangles, base, farthest_);
+  [[nodiscard]] GRIDIRON_INLINE std::uint32_t next_candidate(const std::uint32_t* list, std::uint32_t begin,
+                                                             std::uint32_t end, std::uint32_t base, std::uint32_t there,
+                                                             LeafAnswer<L>& answer) const {
+    if constexpr (L::kRoundsOnce) {
+      if (question_.trusts_floats) return search<false>(list, begin, end, base, there, answer);
+    }
+    return search<true>(list, begin, end, base, there, answer);
+  }
+  template <bool kBounded>
+  [[nodiscard]] GRIDIRON_OUTLINE std::uint32_t search(const std::uint32_t* list, std::uint32_t begin, std::uint32_t end,
+                                                      std::uint32_t base, std::uint32_t there,
+                                                      LeafAnswer<L>& answer) const {
+    const LeafLanes<L, kBounded> lanes(memory_.triangles, base, farthest_);
     for (std::uint32_t i = begin; i < end; ++i) {
       const LeafAnswer<L> found = lanes.test(ray_of(memory_.rays, list[i]), there);
       if ((found.inside | found.unsure) == 0) continue;
