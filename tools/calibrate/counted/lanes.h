@@ -194,6 +194,7 @@ struct Lanes {
   [[nodiscard]] static Float min(Float a, Float b) {
     return make(OpClass::kFixed, Native::min(a.v, b.v), a, chosen(a, b));
   }
+  static constexpr bool kRoundsOnce = false;
   [[nodiscard]] static Float bounded_sum(Float a, Float b, Float c) { return a * b + c; }
   [[nodiscard]] static Float bounded_difference(Float a, Float b, Float c, Float d) { return a * b - c * d; }
   [[nodiscard]] static Float max(Float a, Float b) {
