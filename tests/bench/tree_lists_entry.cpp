@@ -3,6 +3,8 @@
 #include <gridiron/base/one_lane.h>
 #include <gridiron/engine/tree/ray_lists.h>
 
+#include <cstring>
+
 #include "bench/tree_lists.h"
 
 namespace gridiron::bench {
@@ -39,11 +41,9 @@ struct Source {
 };
 
 void load_ray(const MemoryRay& from, BatchRay& to) {
-  for (int axis = 0; axis < 3; ++axis) {
-    to.origin[axis] = from.origin[axis];
-    to.dir[axis] = from.dir[axis];
-  }
-  to.t = from.t;
+  // Origin and t follow each other in both: one quad of words.
+  std::memcpy(to.origin, from.origin, sizeof(to.origin) + sizeof(to.t));
+  std::memcpy(to.dir, from.dir, sizeof(to.dir));
   to.id = kNoTriangle;
 }
 

@@ -56,6 +56,10 @@ class RayLists {
   static constexpr std::uint32_t kLevelWords = (1 + kListParts<L>)*kStep;
   [[nodiscard]] static std::uint32_t step_up(std::uint32_t words) { return (words + (kStep - 1)) & ~(kStep - 1); }
 
+  // Wide lanes pick the rays of one octant after the other, as those that meet a child: a counter of each octant would
+  // be a chain through memory where rays run alike.
+  static constexpr bool kSortsByLanes = L::kCount > 4;
+
   // Lists the batch in the order of octants: rays that run alike along all axes follow each other.
   GRIDIRON_OUTLINE void list_rays(std::uint32_t count, float largest, std::uint32_t* begins, std::uint32_t* counts) {
     for (std::uint32_t octant = 0; octant < 8; ++octant) counts[octant] = 0;
@@ -63,23 +67,40 @@ class RayLists {
     work_.add(Work::kListRay, count);
     work_.charge_to(Work::kListRay);
     FarthestOrigin<L> farthest;
+    [[maybe_unused]] std::uint32_t octants = 0;
     for (std::uint32_t i = 0; i < count; ++i) {
       farthest.add(memory_.rays[i]);
       const std::uint32_t octant = set_up_list_ray<L>(memory_.rays[i], largest);
-      unsorted[i] = list_word(i, octant);
-      ++counts[octant];
+      if constexpr (kSortsByLanes) {
+        unsorted[i] = list_word(i, octant) | (kMaskBits & ~(1u << octant));
+        octants |= 1u << octant;
+      } else {
+        unsorted[i] = list_word(i, octant);
+        ++counts[octant];
+      }
     }
     farthest_ = farthest.sum();
-    std::uint32_t places[8], end = 0;
-    for (std::uint32_t octant = 0; octant < 8; ++octant) {
-      begins[octant] = places[octant] = end;
-      end += question_.any_hit ? counts[octant] : step_up(counts[octant]);
-    }
-    for (std::uint32_t i = 0; i < count; ++i) {
-      const std::uint32_t word = unsorted[i];
-      std::uint32_t& place = places[octant_of(word)];
-      memory_.arena[place] = word;
-      ++place;
+    if constexpr (kSortsByLanes) {
+      for (std::uint32_t i = count; i % L::kCount != 0; ++i) unsorted[i] = kMaskBits;
+      for (std::uint32_t octant = 0, end = 0; octant < 8; ++octant) {
+        begins[octant] = end;
+        counts[octant] = 0;
+        if ((octants >> octant & 1u) == 0) continue;
+        counts[octant] = take_marked<L>(unsorted, count, octant, memory_.arena + end);
+        end += question_.any_hit ? counts[octant] : step_up(counts[octant]);
+      }
+    } else {
+      std::uint32_t places[8], end = 0;
+      for (std::uint32_t octant = 0; octant < 8; ++octant) {
+        begins[octant] = places[octant] = end;
+        end += question_.any_hit ? counts[octant] : step_up(counts[octant]);
+      }
+      for (std::uint32_t i = 0; i < count; ++i) {
+        const std::uint32_t word = unsorted[i];
+        std::uint32_t& place = places[octant_of(word)];
+        memory_.arena[place] = word;
+        ++place;
+      }
     }
   }
 
