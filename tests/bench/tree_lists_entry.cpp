@@ -11,7 +11,7 @@ namespace gridiron::bench {
 namespace {
 
 using L = Lanes<GRIDIRON_ENTRY_LANES>;
-using Memory = ListMemory<kMaxBatchRays, 0>;
+using Memory = ListMemory<kMaxBatchRays, 0, (L::kCount > 4)>;
 
 // Too large for a stack.
 Memory memory;

@@ -42,6 +42,19 @@ struct BoxRay {
   }
 };
 
+/// The same of its terms.
+template <class L>
+struct BoxTerms {
+  typename L::Float scale[3], shift[3], t;
+
+  GRIDIRON_INLINE explicit BoxTerms(const RayTerms& terms) : t(terms.t) {
+    for (int axis = 0; axis < 3; ++axis) {
+      scale[axis] = typename L::Float(terms.scale[axis]);
+      shift[axis] = typename L::Float(terms.shift[axis]);
+    }
+  }
+};
+
 /// The sides of L::kCount boxes that rays of one octant enter and leave by.
 template <class L>
 struct BoxSides {
@@ -58,6 +71,24 @@ struct BoxSides {
     const Float first = L::max(L::max(in[0], in[1]), L::max(in[2], Float(0.0f)));
     const Float last = L::min(L::min(out[0], out[1]), L::min(out[2], ray.t));
     return (first > last * Float(kExitFactor)).bits();
+  }
+  [[nodiscard]] GRIDIRON_INLINE std::uint32_t missed_by(const BoxTerms<L>& ray) const {
+    Float in[3], out[3];
+    for (int axis = 0; axis < 3; ++axis) {
+      in[axis] = L::bounded_sum(near[axis], ray.scale[axis], ray.shift[axis]);
+      out[axis] = L::bounded_sum(far[axis], ray.scale[axis], ray.shift[axis]);
+    }
+    const Float first = L::max(L::max(in[0], in[1]), L::max(in[2], Float(0.0f)));
+    const Float last = L::min(L::min(out[0], out[1]), L::min(out[2], ray.t));
+    return (first > last).bits();
+  }
+  /// Makes them fit terms of rays.
+  GRIDIRON_INLINE void widen(const float* twice_farthest, std::uint32_t octant) {
+    for (std::uint32_t axis = 0; axis < 3; ++axis) {
+      const Float outwards((octant >> axis & 1u) != 0 ? kWidening : -kWidening), most(twice_farthest[axis]);
+      near[axis] = near[axis] + (L::abs(near[axis]) + most) * outwards;
+      far[axis] = far[axis] - (L::abs(far[axis]) + most) * outwards;
+    }
   }
 };
 
@@ -110,15 +141,32 @@ GRIDIRON_INLINE void unite_boxes(const TreeNode& node, NodeUnions& unions) {
   }
 }
 
+/// What lists are tested by: the rays, or their terms. box_ray_of() is one of them, fit_sides() prepares boxes.
+template <class L>
+[[nodiscard]] GRIDIRON_INLINE BoxRay<L> box_ray_of(BatchRay* rays, std::uint32_t word) {
+  return BoxRay<L>(ray_of(rays, word));
+}
+template <class L>
+GRIDIRON_INLINE void fit_sides(const BatchRay*, std::uint32_t, BoxSides<L>&) {}
+template <class L>
+[[nodiscard]] GRIDIRON_INLINE BoxTerms<L> box_ray_of(const TermsList* list, std::uint32_t word) {
+  return BoxTerms<L>(terms_of(list->terms, word));
+}
+template <class L>
+GRIDIRON_INLINE void fit_sides(const TermsList* list, std::uint32_t octant, BoxSides<L>& sides) {
+  sides.widen(list->twice_farthest, octant);
+}
+
 /// Rays that are tested at once: one ray's test is a chain of results, two of them fill four lanes' pipes.
 template <class L>
 inline constexpr std::uint32_t kBoxRays = L::kCount == 4 ? 2 : 1;
 
 /// Tests rays of one octant, those of a list from `begin` on, against the same boxes.
+/// @param rays    or a TermsList.
 /// @param list    ends with kListEnd; its words get bits of missed boxes, from `place` on.
 /// @param closed  boxes that no ray meets so far. @returns where the octant ends.
-template <class L>
-GRIDIRON_INLINE std::uint32_t mark_run(const BoxSides<L>* sides, BatchRay* rays, std::uint32_t* list,
+template <class L, class Rays>
+GRIDIRON_INLINE std::uint32_t mark_run(const BoxSides<L>* sides, Rays* rays, std::uint32_t* list,
                                        std::uint32_t begin, std::uint32_t place, Work kind, std::uint32_t& closed,
                                        WorkCounters& work) {
   static constexpr std::uint32_t kGroups = L::kCount < 4 ? 4 : L::kCount == 8 ? 2 : 1;
@@ -138,7 +186,7 @@ GRIDIRON_INLINE std::uint32_t mark_run(const BoxSides<L>* sides, BatchRay* rays,
       closed &= first_missed & second_missed;
       i = second + 1;
     } else {
-      const BoxRay<L> ray(ray_of(rays, word));
+      const auto ray = box_ray_of<L>(rays, word);
       std::uint32_t missed = 0;
       for (std::uint32_t group = 0; group < kGroups; ++group) {
         missed |= sides[group].missed_by(ray) << group * L::kCount;
@@ -156,8 +204,8 @@ GRIDIRON_INLINE std::uint32_t mark_run(const BoxSides<L>* sides, BatchRay* rays,
 /// The same for all octants of a list, with room for L::kCount words more.
 /// @param base   the first box: as many are tested as a part has. @param place  of its bit.
 /// @param kind   of work that a test of kBoxRays is. @returns the boxes that any ray meets.
-template <class L>
-GRIDIRON_OUTLINE std::uint32_t mark_list(const BoxTable& boxes, std::uint32_t base, std::uint32_t place, BatchRay* rays,
+template <class L, class Rays>
+GRIDIRON_OUTLINE std::uint32_t mark_list(const BoxTable& boxes, std::uint32_t base, std::uint32_t place, Rays* rays,
                                          std::uint32_t* list, std::uint32_t count, Work kind, WorkCounters& work) {
   static constexpr std::uint32_t kGroups = L::kCount < 4 ? 4 : L::kCount == 8 ? 2 : 1;
   static constexpr std::uint32_t kBoxes = kTreeWidth / kBoxParts<L>;
@@ -169,6 +217,7 @@ GRIDIRON_OUTLINE std::uint32_t mark_list(const BoxTable& boxes, std::uint32_t ba
     BoxSides<L> sides[kGroups];
     for (std::uint32_t group = 0; group < kGroups; ++group) {
       sides[group] = boxes.template sides<L>(octant_of(list[i]), base + group * L::kCount);
+      fit_sides<L>(rays, octant_of(list[i]), sides[group]);
     }
     work.charge_to(kind);
     i = mark_run<L>(sides, rays, list, i, place, kind, closed, work);
@@ -184,8 +233,8 @@ inline constexpr std::uint32_t kFewChildren = 8;
 
 /// Finds the boxes of a node that each ray of a list meets. @param level  gets the lists of its parts, behind `list`.
 /// @param arena  of the lists. @returns the children that any ray meets.
-template <class L>
-[[nodiscard]] GRIDIRON_INLINE std::uint32_t mark_boxes(const TreeNode& node, BatchRay* rays, std::uint32_t* arena,
+template <class L, class Rays>
+[[nodiscard]] GRIDIRON_INLINE std::uint32_t mark_boxes(const TreeNode& node, Rays* rays, std::uint32_t* arena,
                                                        std::uint32_t list, std::uint32_t count, ListLevel& level,
                                                        WorkCounters& work) {
   const std::uint32_t there = (2u << (node.child_count - 1)) - 1;

@@ -29,6 +29,16 @@ inline constexpr std::uint32_t kListParts = kBoxParts<L> == 1 ? std::uint32_t{0}
   return (narrow > wide ? narrow : wide) / 16 * 16 + 16 + spare;
 }
 
+/// What wide lanes prepare of a ray for boxes: entries and exits are side * scale + shift. list_rays.h has the bounds.
+/// As long as a ray, so that the words of lists lead to both.
+struct alignas(16) RayTerms {
+  float scale[3];
+  float t;  ///< the ray's
+  float shift[3];
+  float unused[5];
+};
+static_assert(sizeof(RayTerms) == sizeof(BatchRay));
+
 /// A node on the way down, and the rays that met its box.
 struct ListLevel {
   TreeChild children[kTreeWidth];  ///< those that rays meet, in the order of their turns
@@ -52,10 +62,21 @@ struct TriangleLanes {
   alignas(64) float normal_error[kMaxTreeLeaf];  ///< likewise, of products with the normal
 };
 
-/// @tparam Rays   of a batch: a multiple of 16.
-/// @tparam Spare  words of the arena beyond the least.
-template <std::uint32_t Rays, std::uint32_t Spare>
-struct alignas(128) ListMemory {
+/// Memory for terms of rays, where there is some.
+template <std::uint32_t Rays, bool HasTerms>
+struct TermsMemory {};
+template <std::uint32_t Rays>
+struct TermsMemory<Rays, true> {
+  RayTerms terms[Rays];
+};
+
+/// @tparam Rays      of a batch: a multiple of 16.
+/// @tparam Spare     words of the arena beyond the least.
+/// @tparam HasTerms  whether there is room for terms of rays. With them lanes that round a product and a sum once test
+///                   boxes faster; they change no answer.
+template <std::uint32_t Rays, std::uint32_t Spare, bool HasTerms = false>
+struct alignas(128) ListMemory : TermsMemory<Rays, HasTerms> {
+  static constexpr bool kHasTerms = HasTerms;
   static constexpr std::uint32_t kRays = Rays;
   static constexpr std::uint32_t kArenaWords = list_arena_words(Rays, Spare);
   static_assert(Rays % 16 == 0 && 3 * Rays <= 1u << 13, "a word of a list has 13 bits for a ray's place");

@@ -38,6 +38,12 @@ inline constexpr std::uint32_t kListEnd = ~0u;
   return *reinterpret_cast<BatchRay*>(reinterpret_cast<std::byte*>(rays) + ((word & kPlaces) >> (kPlaceShift - 4)));
 }
 
+[[nodiscard]] GRIDIRON_INLINE const RayTerms& terms_of(const RayTerms* terms, std::uint32_t word) {
+  constexpr std::uint32_t kPlaces = ((1u << kOctantShift) - 1) & ~kMaskBits;
+  return *reinterpret_cast<const RayTerms*>(reinterpret_cast<const std::byte*>(terms) +
+                                            ((word & kPlaces) >> (kPlaceShift - 4)));
+}
+
 /// Rays with directions of such sizes, and origins at most so far away, in the scene's largest |coordinate|, are tested
 /// as they are: no product overflows, and what kLeastListComponent changes is less than the growth of boxes. Products
 /// that count are not subnormal, where denormals are flushed neither: leaf_test.h.
@@ -145,10 +151,66 @@ class FarthestOrigin {
   [[nodiscard]] GRIDIRON_INLINE float sum() const {
     return Quad::lane(sizes_, 0) + Quad::lane(sizes_, 1) + Quad::lane(sizes_, 2);
   }
+  [[nodiscard]] GRIDIRON_INLINE float along(std::uint32_t axis) const { return Quad::lane(sizes_, axis); }
 
  private:
   using Quad = Lanes<4>;
   typename Quad::Float sizes_{0.0f};  // the fourth of t
+};
+
+// Terms, in any rounding mode: with e = 2^-23, o, d a component of the origin and direction, n a side moved outwards by
+// w: scale is 1 / d with an error of e, shift -o times that with one of e more, and their product and sum is fused: it
+// rounds once. So the distance (n - o) / d has errors of 2.01 e |n - o| / |d| and 1.01 e |o / d|. n itself rounds by
+// e |n|. Together that is less than 3.1 e (|n| + |o|) / |d|, and moving a side by w moves its distance by w / |d|.
+// Stored boxes are grown by more than 1.5 e |n| + S / 2^25, S the scene's largest |coordinate|, so with
+// w = 2 e |n| + 4 e O, O the largest |o| of the batch, a ray enters a box no later than it truly does and leaves it no
+// earlier. S / 2^25 covers the rest: components below 2^-40 of the largest count as that much, which moves a ray by
+// less than 2^-30 S on the 2^10 S it has to go; what is flushed is below 2^-124 in t. No product reaches 2^105.
+inline constexpr float kWidening = 0x1p-22f, kGreatestRatio = 0x1p40f;
+/// Scenes of such sizes, with origins so far away in their largest |coordinate|, are tested by terms.
+inline constexpr float kLeastTermScene = 0x1p-56f, kFarTermOrigin = 0x1p8f;
+
+/// What set_up_ray_terms() does with other rays than most.
+template <class L>
+GRIDIRON_RARE inline void set_up_odd_terms(const BatchRay& ray, RayTerms& terms) {
+  const float most = kGreatestRatio / ray.dir_max;  // 0 where dir_max is infinite
+  for (int axis = 0; axis < 3; ++axis) {
+    float scale = ray.inverse[axis];
+    if (most > 0.0f && magnitude(scale) > most) scale = scale < 0.0f ? -most : most;
+    terms.scale[axis] = scale;
+    terms.shift[axis] = scale == 0.0f ? 0.0f : -(ray.origin[axis] * scale);
+  }
+}
+
+/// Prepares a ray that set_up_list_ray() has prepared for boxes by terms.
+template <class L>
+GRIDIRON_INLINE void set_up_ray_terms(const BatchRay& ray, RayTerms& terms) {
+  using Quad = Lanes<4>;
+  using Float = typename Quad::Float;
+  const Float place = Float::load(ray.origin), inverse = Float::load(ray.inverse);
+  const auto is_t = Quad::mask_from_bits(8);
+  Quad::select(is_t, place, inverse).store(terms.scale);
+  (-(place * inverse)).store(terms.shift);
+  const Float ratio = Quad::abs(inverse) * Float(ray.dir_max);
+  if (((ratio <= Float(kGreatestRatio)) | is_t).bits() != 15) [[unlikely]] set_up_odd_terms<L>(ray, terms);
+}
+
+/// Terms of all rays, and what they widen boxes by.
+struct TermsList {
+  const RayTerms* terms = nullptr;
+  float twice_farthest[3] = {};  ///< the largest |component| of origins, doubled
+
+  /// @param largest  |coordinate| of the scene. @returns whether the rays can be tested by terms.
+  template <class L>
+  [[nodiscard]] bool set_up(const RayTerms* of_rays, const FarthestOrigin<L>& farthest, float largest) {
+    terms = of_rays;
+    bool is_possible = largest >= kLeastTermScene && largest <= kGreatestListPlace;
+    for (std::uint32_t axis = 0; axis < 3; ++axis) {
+      is_possible = is_possible && farthest.along(axis) <= largest * kFarTermOrigin;
+      twice_farthest[axis] = 2.0f * farthest.along(axis);
+    }
+    return is_possible;
+  }
 };
 
 /// Copies the words of rays that meet a child, without their masks.

@@ -52,6 +52,8 @@ class RayLists {
 
  private:
   using Float = typename L::Float;
+  // Where products round apart from sums, terms would have no bound.
+  static constexpr bool kHasTerms = L::kRoundsOnce && Memory::kHasTerms;
   static constexpr std::uint32_t kStep = kListStep<L>, kParts = kBoxParts<L>;
   static constexpr std::uint32_t kLevelWords = (1 + kListParts<L>)*kStep;
   [[nodiscard]] static std::uint32_t step_up(std::uint32_t words) { return (words + (kStep - 1)) & ~(kStep - 1); }
@@ -71,6 +73,7 @@ class RayLists {
     for (std::uint32_t i = 0; i < count; ++i) {
       farthest.add(memory_.rays[i]);
       const std::uint32_t octant = set_up_list_ray<L>(memory_.rays[i], largest);
+      if constexpr (kHasTerms) set_up_ray_terms<L>(memory_.rays[i], memory_.terms[i]);
       if constexpr (kSortsByLanes) {
         unsorted[i] = list_word(i, octant) | (kMaskBits & ~(1u << octant));
         octants |= 1u << octant;
@@ -80,9 +83,11 @@ class RayLists {
       }
     }
     farthest_ = farthest.sum();
+    if constexpr (kHasTerms) uses_terms_ = terms_.set_up(memory_.terms, farthest, largest);
     if constexpr (kSortsByLanes) {
       for (std::uint32_t i = count; i % L::kCount != 0; ++i) unsorted[i] = kMaskBits;
-      for (std::uint32_t octant = 0, end = 0; octant < 8; ++octant) {
+      std::uint32_t end = 0;
+      for (std::uint32_t octant = 0; octant < 8; ++octant) {
         begins[octant] = end;
         counts[octant] = 0;
         if ((octants >> octant & 1u) == 0) continue;
@@ -189,7 +194,7 @@ class RayLists {
     level.taken = 0;
     level.turn = 0;
     level.asked = 0;
-    const std::uint32_t open = mark_boxes<L>(*node, memory_.rays, memory_.arena, list, count, level, work_);
+    const std::uint32_t open = mark(*node, list, count, level);
     work_.charge_to(Work::kListNode);
     level.child_count = 0;
     level.places[0] = level.places[1] = 0;
@@ -320,16 +325,28 @@ class RayLists {
         GRIDIRON_TRY(comes_before(ray, triangle, is_first));
         if (!is_first) continue;
       }
-      ray.t = t;
+      set_t(ray, t);
       ray.id = triangle.triangle_id;
     }
     return Status::kOk;
   }
 
+  [[nodiscard]] GRIDIRON_INLINE std::uint32_t mark(const TreeNode& node, std::uint32_t list, std::uint32_t count,
+                                                   ListLevel& level) {
+    if constexpr (kHasTerms) {
+      if (uses_terms_) return mark_boxes<L>(node, &terms_, memory_.arena, list, count, level, work_);
+    }
+    return mark_boxes<L>(node, memory_.rays, memory_.arena, list, count, level, work_);
+  }
+  GRIDIRON_INLINE void set_t(BatchRay& ray, float t) {
+    ray.t = t;
+    if constexpr (kHasTerms) memory_.terms[&ray - memory_.rays].t = t;
+  }
+
   // A ray of no length meets no box any more.
   [[nodiscard]] Status stop(BatchRay& ray, std::uint32_t id) {
     ray.id = id;
-    ray.t = -1.0f;
+    set_t(ray, -1.0f);
     ++dead_count_;
     return Status::kOk;
   }
@@ -363,6 +380,8 @@ class RayLists {
   RayQuestion question_{};
   std::uint32_t ray_count_ = 0, dead_count_ = 0;
   float farthest_ = 0.0f;  // FarthestOrigin::sum()
+  bool uses_terms_ = false;
+  TermsList terms_;
 };
 
 }  // namespace gridiron
