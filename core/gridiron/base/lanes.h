@@ -283,6 +283,17 @@ struct Lanes {
     const IntVector magnitude = reinterpret_cast<IntVector>(a.v) & 0x7FFFFFFF;
     return Float(reinterpret_cast<FloatVector>(magnitude));
   }
+  /// The larger of two magnitudes. A NaN of one of them may be lost.
+  [[nodiscard]] static GRIDIRON_INLINE Float larger_size(Float a, Float b) {
+#if defined(__AVX512DQ__)
+    if constexpr (W == 16) {
+      constexpr int kLargerMagnitude = 3, kPositive = 2 << 2;
+      return Float(FloatVector(_mm512_maskz_range_ps(static_cast<__mmask16>(kAllBits), __m512(a.v), __m512(b.v),
+                                                     kLargerMagnitude | kPositive)));
+    } else
+#endif
+      return max(abs(a), abs(b));
+  }
   /// Square roots, correctly rounded.
   [[nodiscard]] static GRIDIRON_INLINE Float square_root(Float a) {
     for (int i = 0; i < W; ++i) a.v[i] = __builtin_sqrtf(a.v[i]);

@@ -104,10 +104,11 @@ struct LeafAnswer {
   }
 };
 
-/// Wide lanes first try a bound of the errors of all rays of a batch: less work a ray. Few lanes would gain no more
-/// than it costs.
-template <class L>
-inline constexpr bool kBoundsBatch = L::kCount > 4;
+/// Wide lanes first rule out what they can by wider bounds of less work, without a branch between sides and distance:
+/// half of the rays pass through their own triangle's plane within its sides. Few lanes would gain no more than it
+/// costs.
+template <class L, bool kBounded>
+inline constexpr bool kFiltersFirst = L::kRoundsOnce && kBounded;
 
 /// The lanes of a leaf from `base` on, in registers.
 /// @tparam kBounded  decisions have bounds of their error. Accuracy::kFast has none, so it computes the same bits with
@@ -116,11 +117,9 @@ template <class L, bool kBounded>
 struct LeafLanes {
   using Float = typename L::Float;
   Float v[3], back_e1[3], e2[3], n[3], edge_error, normal_error;
-  Float most_error;  ///< factor on the largest component of directions: bounds the errors of all rays' sides; if
-                     ///< kBoundsBatch
+  Float wide_edge_error, wide_normal_error, least_error;  ///< if kFiltersFirst
 
-  /// @param farthest  FarthestOrigin::sum() of all rays.
-  GRIDIRON_INLINE LeafLanes(const TriangleLanes& lanes, std::uint32_t base, float farthest)
+  GRIDIRON_INLINE LeafLanes(const TriangleLanes& lanes, std::uint32_t base)
       : v{Float::load(lanes.v[0] + base), Float::load(lanes.v[1] + base), Float::load(lanes.v[2] + base)},
         back_e1{Float::load(lanes.back_e1[0] + base), Float::load(lanes.back_e1[1] + base),
                 Float::load(lanes.back_e1[2] + base)},
@@ -129,10 +128,13 @@ struct LeafLanes {
           Float::load(lanes.normal[2] + base)},
         edge_error(Float::load(lanes.edge_error + base)),
         normal_error(Float::load(lanes.normal_error + base)),
-        most_error(edge_error) {
-    if constexpr (kBoundsBatch<L>) {
-      most_error =
-          (L::abs(v[0]) + L::abs(v[1]) + (L::abs(v[2]) + Float(farthest + kLeastListSize))) * edge_error + normal_error;
+        wide_edge_error(edge_error),
+        wide_normal_error(edge_error),
+        least_error(edge_error) {
+    if constexpr (kFiltersFirst<L, kBounded>) {
+      wide_edge_error = edge_error * Float(3.0f);
+      wide_normal_error = normal_error * Float(3.0f);
+      least_error = normal_error + edge_error * Float(kLeastListSize);
     }
   }
 
@@ -162,8 +164,16 @@ struct LeafLanes {
     const Float size = L::abs(denominator);
     const Float third = size - first - second;
     const Float least = L::min(L::min(first, second), third);
-    if constexpr (kBoundsBatch<L>) {
-      if ((there & ~(sum(most_error, dir_max, least) < Float(0.0f)).bits()) == 0) return none();
+    if constexpr (kFiltersFirst<L, kBounded>) {
+      // The bounds below with three times the largest component in place of the sum.
+      const Float most = L::larger_size(L::larger_size(x, y), z);
+      const Float side = sum(sum(most, wide_edge_error, least_error), dir_max, least);
+      const Float ahead = L::turn_by(denominator, inner(x, y, z, n));
+      const Float turn = wide_normal_error * dir_max;
+      const Float limit = sum(sum(size, Float(1.0f + 0x1p-20f), turn), t, Float(2.0f * kLeastAhead));
+      const auto away = (sum(most, wide_normal_error, ahead) < Float(-2.0f * kLeastAhead)) |
+                        (sum(most, -wide_normal_error, ahead) > limit);
+      if ((there & ~((side < Float(0.0f)) | (away & (size > turn))).bits()) == 0) return none();
     }
     const Float far = L::abs(x) + L::abs(y) + (L::abs(z) + Float(kLeastListSize));
     const Float turn = normal_error * dir_max;

@@ -137,19 +137,15 @@ GRIDIRON_INLINE std::uint32_t set_up_list_ray(BatchRay& ray, float largest) {
   return set_up_odd_ray<L>(ray, octant, is_within(far), is_large || !is_within(kGreatestListPlace));
 }
 
-/// The largest |x|, |y|, |z| of the origins of rays, where leaves ask for them.
-template <class L>
+/// The largest |x|, |y|, |z| of the origins of rays, where terms ask for them.
+template <bool kHasTerms>
 class FarthestOrigin {
  public:
   GRIDIRON_INLINE void add(const BatchRay& ray) {
-    if constexpr (kBoundsBatch<L>) {
+    if constexpr (kHasTerms) {
       // In this order a NaN changes nothing.
       sizes_ = Quad::max(Quad::abs(Quad::Float::load(ray.origin)), sizes_);
     }
-  }
-  /// @returns their sum; 0 where it is not asked for.
-  [[nodiscard]] GRIDIRON_INLINE float sum() const {
-    return Quad::lane(sizes_, 0) + Quad::lane(sizes_, 1) + Quad::lane(sizes_, 2);
   }
   [[nodiscard]] GRIDIRON_INLINE float along(std::uint32_t axis) const { return Quad::lane(sizes_, axis); }
 
@@ -201,8 +197,7 @@ struct TermsList {
   float twice_farthest[3] = {};  ///< the largest |component| of origins, doubled
 
   /// @param largest  |coordinate| of the scene. @returns whether the rays can be tested by terms.
-  template <class L>
-  [[nodiscard]] bool set_up(const RayTerms* of_rays, const FarthestOrigin<L>& farthest, float largest) {
+  [[nodiscard]] bool set_up(const RayTerms* of_rays, const FarthestOrigin<true>& farthest, float largest) {
     terms = of_rays;
     bool is_possible = largest >= kLeastTermScene && largest <= kGreatestListPlace;
     for (std::uint32_t axis = 0; axis < 3; ++axis) {

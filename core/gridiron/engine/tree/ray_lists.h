@@ -68,7 +68,7 @@ class RayLists {
     std::uint32_t* const unsorted = memory_.arena + (Memory::kArenaWords - Memory::kRays);
     work_.add(Work::kListRay, count);
     work_.charge_to(Work::kListRay);
-    FarthestOrigin<L> farthest;
+    FarthestOrigin<kHasTerms> farthest;
     [[maybe_unused]] std::uint32_t octants = 0;
     for (std::uint32_t i = 0; i < count; ++i) {
       farthest.add(memory_.rays[i]);
@@ -82,7 +82,6 @@ class RayLists {
         ++counts[octant];
       }
     }
-    farthest_ = farthest.sum();
     if constexpr (kHasTerms) uses_terms_ = terms_.set_up(memory_.terms, farthest, largest);
     if constexpr (kSortsByLanes) {
       for (std::uint32_t i = count; i % L::kCount != 0; ++i) unsorted[i] = kMaskBits;
@@ -278,7 +277,7 @@ class RayLists {
   [[nodiscard]] GRIDIRON_OUTLINE std::uint32_t search(const std::uint32_t* list, std::uint32_t begin, std::uint32_t end,
                                                       std::uint32_t base, std::uint32_t there,
                                                       LeafAnswer<L>& answer) const {
-    const LeafLanes<L, kBounded> lanes(memory_.triangles, base, farthest_);
+    const LeafLanes<L, kBounded> lanes(memory_.triangles, base);
     for (std::uint32_t i = begin; i < end; ++i) {
       const LeafAnswer<L> found = lanes.test(ray_of(memory_.rays, list[i]), there);
       if ((found.inside | found.unsure) == 0) continue;
@@ -379,7 +378,6 @@ class RayLists {
   WorkCounters& work_;
   RayQuestion question_{};
   std::uint32_t ray_count_ = 0, dead_count_ = 0;
-  float farthest_ = 0.0f;  // FarthestOrigin::sum()
   bool uses_terms_ = false;
   TermsList terms_;
 };
