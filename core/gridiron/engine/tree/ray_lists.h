@@ -254,8 +254,10 @@ class RayLists {
       work_.add(Work::kListTriangleGroup, count);
       work_.charge_to(Work::kListTriangleGroup);
       LeafAnswer<L> answer;
-      for (std::uint32_t i = next_candidate(list, 0, count, base, there, answer); i < count;
-           i = next_candidate(list, i + 1, count, base, there, answer)) {
+      const auto next = [&](std::uint32_t begin) GRIDIRON_INLINE_LAMBDA {
+        return next_candidate(list, begin, count, records + base, base, there, answer);
+      };
+      for (std::uint32_t i = next(0); i < count; i = next(i + 1)) {
         GRIDIRON_TRY(decide(ray_of(memory_.rays, list[i]), records + base, answer, base));
         work_.charge_to(Work::kListTriangleGroup);
       }
@@ -264,23 +266,34 @@ class RayLists {
   }
 
   // @returns the first ray of a list, from `begin` on, that floats do not rule out for all triangles of a group, or the
-  // list's end. @param answer  gets what they say.
+  // list's end. Wide lanes stop rays on the way that surely hit one, if any hit will do: to leave and come back loads
+  // all lanes again. @param answer  gets what floats say.
   [[nodiscard]] GRIDIRON_INLINE std::uint32_t next_candidate(const std::uint32_t* list, std::uint32_t begin,
-                                                             std::uint32_t end, std::uint32_t base, std::uint32_t there,
-                                                             LeafAnswer<L>& answer) const {
+                                                             std::uint32_t end, const VertexTriangle* triangles,
+                                                             std::uint32_t base, std::uint32_t there,
+                                                             LeafAnswer<L>& answer) {
     if constexpr (L::kRoundsOnce) {
-      if (question_.trusts_floats) return search<false>(list, begin, end, base, there, answer);
+      if (question_.trusts_floats) return search<false>(list, begin, end, triangles, base, there, answer);
     }
-    return search<true>(list, begin, end, base, there, answer);
+    return search<true>(list, begin, end, triangles, base, there, answer);
   }
   template <bool kBounded>
   [[nodiscard]] GRIDIRON_OUTLINE std::uint32_t search(const std::uint32_t* list, std::uint32_t begin, std::uint32_t end,
-                                                      std::uint32_t base, std::uint32_t there,
-                                                      LeafAnswer<L>& answer) const {
+                                                      [[maybe_unused]] const VertexTriangle* triangles,
+                                                      std::uint32_t base, std::uint32_t there, LeafAnswer<L>& answer) {
     const LeafLanes<L, kBounded> lanes(memory_.triangles, base);
     for (std::uint32_t i = begin; i < end; ++i) {
-      const LeafAnswer<L> found = lanes.test(ray_of(memory_.rays, list[i]), there);
+      BatchRay& ray = ray_of(memory_.rays, list[i]);
+      const LeafAnswer<L> found = lanes.test(ray, there);
       if ((found.inside | found.unsure) == 0) continue;
+      if constexpr (L::kCount > 4) {
+        const std::uint32_t sure = found.inside & found.within;
+        if (question_.any_hit && sure != 0 && !ray.has_hit()) {
+          work_.add(Work::kListCandidate);
+          end_ray(ray, triangles[lowest_bit(sure)].triangle_id);
+          continue;
+        }
+      }
       answer = found;
       return i;
     }
@@ -343,10 +356,13 @@ class RayLists {
   }
 
   // A ray of no length meets no box any more.
-  [[nodiscard]] Status stop(BatchRay& ray, std::uint32_t id) {
+  GRIDIRON_INLINE void end_ray(BatchRay& ray, std::uint32_t id) {
     ray.id = id;
     set_t(ray, -1.0f);
     ++dead_count_;
+  }
+  [[nodiscard]] Status stop(BatchRay& ray, std::uint32_t id) {
+    end_ray(ray, id);
     return Status::kOk;
   }
 
