@@ -356,6 +356,16 @@ struct Lanes {
       return;
     }
 #endif
+#if defined(__AVX2__) && defined(__BMI2__)
+    if constexpr (W == 8) {
+      // The numbers of the lanes that stay, a byte each.
+      const std::uint64_t stay = _pdep_u64(bits, 0x0101010101010101u) * 0xFFu;
+      const std::uint64_t numbers = _pext_u64(0x0706050403020100u, stay);
+      const __m256i places = _mm256_cvtepu8_epi32(_mm_cvtsi64_si128(static_cast<long long>(numbers)));
+      _mm256_storeu_si256(reinterpret_cast<__m256i*>(target), _mm256_permutevar8x32_epi32(__m256i(a.v), places));
+      return;
+    }
+#endif
 #if defined(__ARM_NEON) || defined(__SSSE3__)
     if constexpr (W == 4) {
       // Bytes of the words that stay, by bits.

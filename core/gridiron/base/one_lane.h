@@ -54,6 +54,7 @@ struct Lanes<1> {
     return a * b - c * d;
   }
   [[nodiscard]] static GRIDIRON_INLINE Float abs(Float a) { return Float(magnitude(a.v)); }
+  [[nodiscard]] static GRIDIRON_INLINE Float larger_size(Float a, Float b) { return max(abs(a), abs(b)); }
   [[nodiscard]] static GRIDIRON_INLINE Float select(Mask mask, Float a, Float b) { return mask.is_set ? a : b; }
   [[nodiscard]] static GRIDIRON_INLINE Float flip_sign(Mask mask, Float a) { return mask.is_set ? -a : a; }
   [[nodiscard]] static GRIDIRON_INLINE Float turn_by(Float by, Float a) {

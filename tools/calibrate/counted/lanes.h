@@ -204,6 +204,7 @@ struct Lanes {
     return {b.v, emit(OpClass::kFixed, tie(a.v.v) + tie(b.v.v), a.node, b.node)};
   }
   [[nodiscard]] static Float abs(Float a) { return make(OpClass::kFixed, Native::abs(a.v), a, a); }
+  [[nodiscard]] static Float larger_size(Float a, Float b) { return max(abs(a), abs(b)); }
   [[nodiscard]] static Float select(Mask mask, Float a, Float b) {
     const Native::Float value = Native::select(mask.v, a.v, b.v);
     return {value, emit(OpClass::kFixed, tie(value.v), mask.node, a.node, b.node)};
