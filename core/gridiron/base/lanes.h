@@ -460,6 +460,15 @@ struct Lanes {
     if constexpr (W == 4) {
       return Float(quad(0));
     } else {
+#if defined(__AVX512F__)
+      // Insertions from memory: no shuffles.
+      if constexpr (W == 16) {
+        __m512 all = _mm512_castps128_ps512(__m128(quad(0)));
+        all = _mm512_insertf32x4(all, __m128(quad(1)), 1);
+        all = _mm512_insertf32x4(all, __m128(quad(2)), 2);
+        return Float(FloatVector(_mm512_insertf32x4(all, __m128(quad(3)), 3)));
+      }
+#endif
       const auto low = __builtin_shufflevector(quad(0), quad(1), 0, 1, 2, 3, 4, 5, 6, 7);
       if constexpr (W == 8) {
         return Float(low);

@@ -7,6 +7,7 @@
 #include <gridiron/engine/tree/list_memory.h>
 #include <gridiron/ray/ray_batch.h>
 
+#include <cstddef>
 #include <cstdint>
 
 namespace gridiron {
@@ -36,8 +37,28 @@ GRIDIRON_INLINE void load_records(const VertexTriangle* records, std::uint32_t b
     for (int word = 0; word < 9; ++word) words[word] = Float(records[base].v[word / 3][word % 3]);
   } else {
     const float* places[4][L::kCount / 4];
-    for (std::uint32_t i = 0; i < L::kCount; ++i) {
-      places[i % 4][i / 4] = records[base + i < count ? base + i : count - 1].v[0];
+    if constexpr (L::kCount == 4) {
+      for (std::uint32_t i = 0; i < L::kCount; ++i) {
+        places[i % 4][i / 4] = records[base + i < count ? base + i : count - 1].v[0];
+      }
+    } else {
+      // By a table, without a comparison a lane.
+      static constexpr auto kOffsets = [] {
+        struct {
+          std::uint16_t bytes[L::kCount][L::kCount];
+        } offsets{};
+        for (std::uint32_t last = 0; last < L::kCount; ++last) {
+          for (std::uint32_t i = 0; i < L::kCount; ++i) {
+            offsets.bytes[last][i] = static_cast<std::uint16_t>(sizeof(VertexTriangle) * (i < last ? i : last));
+          }
+        }
+        return offsets;
+      }();
+      const std::uint32_t rest = count - base, last = (rest < L::kCount ? rest : L::kCount) - 1;
+      const auto* const first = reinterpret_cast<const std::byte*>(records + base);
+      for (std::uint32_t i = 0; i < L::kCount; ++i) {
+        places[i % 4][i / 4] = reinterpret_cast<const float*>(first + kOffsets.bytes[last][i]);
+      }
     }
     for (int part = 0; part < 3; ++part) {
       Float rows[4];
