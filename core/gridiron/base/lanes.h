@@ -179,6 +179,7 @@ struct Lanes {
     }
     [[nodiscard]] GRIDIRON_INLINE std::int32_t operator[](int lane) const { return v[lane]; }
     GRIDIRON_INLINE void store(std::uint32_t* target) const { *reinterpret_cast<IntMemory*>(target) = v; }
+    friend GRIDIRON_INLINE Int operator+(Int a, Int b) { return {a.v + b.v}; }
     friend GRIDIRON_INLINE Int operator|(Int a, Int b) { return {a.v | b.v}; }
     friend GRIDIRON_INLINE Int operator&(Int a, Int b) { return {a.v & b.v}; }
     friend GRIDIRON_INLINE Int operator<<(Int a, int count) { return {a.v << count}; }

@@ -104,6 +104,9 @@ struct Lanes {
     friend Mask operator<(Int a, Int b) {
       return {a.v < b.v, emit(OpClass::kFixed, tie((a.v < b.v).v), a.node, b.node)};
     }
+    friend Int operator+(Int a, Int b) {
+      return {a.v + b.v, emit(OpClass::kFixed, tie((a.v + b.v).v), a.node, b.node)};
+    }
     friend Int operator|(Int a, Int b) {
       return {a.v | b.v, emit(OpClass::kFixed, tie((a.v | b.v).v), a.node, b.node)};
     }

@@ -137,23 +137,6 @@ GRIDIRON_INLINE std::uint32_t set_up_list_ray(BatchRay& ray, float largest) {
   return set_up_odd_ray<L>(ray, octant, is_within(far), is_large || !is_within(kGreatestListPlace));
 }
 
-/// The largest |x|, |y|, |z| of the origins of rays, where terms ask for them.
-template <bool kHasTerms>
-class FarthestOrigin {
- public:
-  GRIDIRON_INLINE void add(const BatchRay& ray) {
-    if constexpr (kHasTerms) {
-      // In this order a NaN changes nothing.
-      sizes_ = Quad::max(Quad::abs(Quad::Float::load(ray.origin)), sizes_);
-    }
-  }
-  [[nodiscard]] GRIDIRON_INLINE float along(std::uint32_t axis) const { return Quad::lane(sizes_, axis); }
-
- private:
-  using Quad = Lanes<4>;
-  typename Quad::Float sizes_{0.0f};  // the fourth of t
-};
-
 // Terms, in any rounding mode: with e = 2^-23, o, d a component of the origin and direction, n a side moved outwards by
 // w: scale is 1 / d with an error of e, shift -o times that with one of e more, and their product and sum is fused: it
 // rounds once. So the distance (n - o) / d has errors of 2.01 e |n - o| / |d| and 1.01 e |o / d|. n itself rounds by
@@ -191,18 +174,133 @@ GRIDIRON_INLINE void set_up_ray_terms(const BatchRay& ray, RayTerms& terms) {
   if (((ratio <= Float(kGreatestRatio)) | is_t).bits() != 15) [[unlikely]] set_up_odd_terms<L>(ray, terms);
 }
 
+/// Four words of each of L::kCount rays, ray by ray in rows of quads, to lanes and back: `words` has ray i in lane i.
+/// @param rays  the first ray's words; the next ray's are sizeof(BatchRay) behind.
+template <class L>
+GRIDIRON_INLINE void load_ray_words(const float* rays, typename L::Float (&words)[4]) {
+  using Float = typename L::Float;
+  static constexpr std::uint32_t kStride = sizeof(BatchRay) / sizeof(float);
+  Float rows[4];
+  for (std::uint32_t row = 0; row < 4; ++row) {
+    const float* places[L::kCount / 4];
+    for (std::uint32_t quad = 0; quad < L::kCount / 4; ++quad) places[quad] = rays + (4 * quad + row) * kStride;
+    rows[row] = L::load_quads(places);
+  }
+  const Float low_01 = L::template shuffle_quads<0, 4, 1, 5>(rows[0], rows[1]),
+              low_23 = L::template shuffle_quads<0, 4, 1, 5>(rows[2], rows[3]),
+              high_01 = L::template shuffle_quads<2, 6, 3, 7>(rows[0], rows[1]),
+              high_23 = L::template shuffle_quads<2, 6, 3, 7>(rows[2], rows[3]);
+  words[0] = L::template shuffle_quads<0, 1, 4, 5>(low_01, low_23);
+  words[1] = L::template shuffle_quads<2, 3, 6, 7>(low_01, low_23);
+  words[2] = L::template shuffle_quads<0, 1, 4, 5>(high_01, high_23);
+  words[3] = L::template shuffle_quads<2, 3, 6, 7>(high_01, high_23);
+}
+template <class L>
+GRIDIRON_INLINE void store_ray_words(typename L::Float x, typename L::Float y, typename L::Float z, typename L::Float w,
+                                     float* rays) {
+  using Float = typename L::Float;
+  static constexpr std::uint32_t kStride = sizeof(BatchRay) / sizeof(float);
+  const Float low_xy = L::template shuffle_quads<0, 4, 1, 5>(x, y), high_xy = L::template shuffle_quads<2, 6, 3, 7>(x, y),
+              low_zw = L::template shuffle_quads<0, 4, 1, 5>(z, w), high_zw = L::template shuffle_quads<2, 6, 3, 7>(z, w);
+  L::store_quads(L::template shuffle_quads<0, 1, 4, 5>(low_xy, low_zw), rays, 4 * kStride);
+  L::store_quads(L::template shuffle_quads<2, 3, 6, 7>(low_xy, low_zw), rays + kStride, 4 * kStride);
+  L::store_quads(L::template shuffle_quads<0, 1, 4, 5>(high_xy, high_zw), rays + 2 * kStride, 4 * kStride);
+  L::store_quads(L::template shuffle_quads<2, 3, 6, 7>(high_xy, high_zw), rays + 3 * kStride, 4 * kStride);
+}
+
+/// What set_up_list_ray() and set_up_ray_terms() do, for L::kCount rays at once: wide lanes prepare a batch by it.
+template <class L, bool kHasTerms>
+class RaySetup {
+ public:
+  /// @param largest  |coordinate| of the scene.
+  GRIDIRON_INLINE explicit RaySetup(float largest) : largest_(largest) {
+    const float far = largest * kFarOrigin;
+    // No origin is usual in scenes that are too large.
+    most_ = !(largest <= kGreatestListPlace) ? -1.0f : far < kGreatestListPlace ? far : kGreatestListPlace;
+  }
+
+  /// Prepares as many rays as there are lanes.
+  /// @param terms  of the rays, if they have some. @param words  get the rays' words; each misses all octants but its
+  ///               own. @param first  the first ray's number.
+  GRIDIRON_INLINE void add(BatchRay* rays, RayTerms* terms, std::uint32_t first, std::uint32_t* words) {
+    static constexpr auto kWords = [] {
+      struct {
+        alignas(64) std::uint32_t of[L::kCount];
+      } made{};
+      for (std::uint32_t i = 0; i < L::kCount; ++i) made.of[i] = (kRayQuads * i) << kPlaceShift | 0xFF00u;
+      return made;
+    }();
+    Float place[4], dir[4], sizes[3], inverse[3];
+    load_ray_words<L>(rays->origin, place);
+    load_ray_words<L>(rays->dir, dir);
+    for (int axis = 0; axis < 3; ++axis) {
+      sizes[axis] = L::abs(dir[axis]);
+      const Float distance = L::abs(place[axis]);
+      farthest_[axis] = L::max(distance, farthest_[axis]);  // in this order a NaN changes nothing
+    }
+    const Float longest = L::max(L::max(sizes[0], sizes[1]), sizes[2]), least = longest * Float(kLeastListComponent);
+    Mask is_usual = (longest >= Float(kLeastListDirection)) & (longest <= Float(kGreatestListDirection));
+    Int missed = Int::splat(1), octant = Int::splat(first * kRayQuads << kPlaceShift);
+    for (std::uint32_t axis = 0; axis < 3; ++axis) {
+      const Mask is_backwards = dir[axis] < Float(0.0f);
+      inverse[axis] = Float(1.0f) / L::select(sizes[axis] < least, L::flip_sign(is_backwards, least), dir[axis]);
+      is_usual = is_usual & (L::abs(place[axis]) <= Float(most_));
+      if constexpr (kHasTerms) is_usual = is_usual & (L::abs(inverse[axis]) * longest <= Float(kGreatestRatio));
+      // Of twice as many octants those of the other half are missed.
+      const std::uint32_t half = 1u << axis, bits = (1u << half) - 1;
+      const Int others = Int::splat(bits);
+      missed = axis == 0 ? L::select(is_backwards, Int::splat(1), Int::splat(2))
+                         : L::select(is_backwards, (missed << static_cast<int>(half)) | others,
+                                     missed | (others << static_cast<int>(half)));
+      octant = octant + L::select(is_backwards, Int::splat(1u << (kOctantShift + axis)), Int::splat(0));
+    }
+    store_ray_words<L>(inverse[0], inverse[1], inverse[2], longest, rays->inverse);
+    if constexpr (kHasTerms) {
+      store_ray_words<L>(inverse[0], inverse[1], inverse[2], place[3], terms->scale);
+      store_ray_words<L>(-(place[0] * inverse[0]), -(place[1] * inverse[1]), -(place[2] * inverse[2]), place[3],
+                         terms->shift);
+    }
+    missed_ = missed_ & missed;
+    ((octant + Int::load(kWords.of)) | missed).store(words + first);
+    for (std::uint32_t odd = L::kAllBits & ~is_usual.bits(); odd != 0; odd &= odd - 1) [[unlikely]] {
+      const std::uint32_t lane = lowest_bit(odd);
+      // The octant does not change.
+      (void)set_up_list_ray<L>(rays[lane], largest_);
+      if constexpr (kHasTerms) set_up_ray_terms<L>(rays[lane], terms[lane]);
+    }
+  }
+  /// @returns the octants of rays so far, as bits.
+  [[nodiscard]] GRIDIRON_INLINE std::uint32_t octants() const {
+    alignas(64) std::uint32_t missed[L::kCount];
+    missed_.store(missed);
+    std::uint32_t all = 0xFF;
+    for (const std::uint32_t one : missed) all &= one;
+    return ~all & 0xFF;
+  }
+  /// @returns the largest |component| of the origins so far.
+  [[nodiscard]] GRIDIRON_INLINE float farthest(std::uint32_t axis) const { return L::horizontal_max(farthest_[axis]); }
+
+ private:
+  using Float = typename L::Float;
+  using Int = typename L::Int;
+  using Mask = typename L::Mask;
+  float largest_, most_;
+  Float farthest_[3] = {Float(0.0f), Float(0.0f), Float(0.0f)};
+  Int missed_ = Int::splat(0xFF);
+};
+
 /// Terms of all rays, and what they widen boxes by.
 struct TermsList {
   const RayTerms* terms = nullptr;
   float twice_farthest[3] = {};  ///< the largest |component| of origins, doubled
 
   /// @param largest  |coordinate| of the scene. @returns whether the rays can be tested by terms.
-  [[nodiscard]] bool set_up(const RayTerms* of_rays, const FarthestOrigin<true>& farthest, float largest) {
+  [[nodiscard]] bool set_up(const RayTerms* of_rays, const float (&farthest)[3], float largest) {
     terms = of_rays;
     bool is_possible = largest >= kLeastTermScene && largest <= kGreatestListPlace;
     for (std::uint32_t axis = 0; axis < 3; ++axis) {
-      is_possible = is_possible && farthest.along(axis) <= largest * kFarTermOrigin;
-      twice_farthest[axis] = 2.0f * farthest.along(axis);
+      is_possible = is_possible && farthest[axis] <= largest * kFarTermOrigin;
+      twice_farthest[axis] = 2.0f * farthest[axis];
     }
     return is_possible;
   }

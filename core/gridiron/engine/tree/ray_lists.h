@@ -58,42 +58,20 @@ class RayLists {
   static constexpr std::uint32_t kLevelWords = (1 + kListParts<L>)*kStep;
   [[nodiscard]] static std::uint32_t step_up(std::uint32_t words) { return (words + (kStep - 1)) & ~(kStep - 1); }
 
-  // Wide lanes pick the rays of one octant after the other, as those that meet a child: a counter of each octant would
-  // be a chain through memory where rays run alike.
-  static constexpr bool kSortsByLanes = L::kCount > 4;
-
   // Lists the batch in the order of octants: rays that run alike along all axes follow each other.
   GRIDIRON_OUTLINE void list_rays(std::uint32_t count, float largest, std::uint32_t* begins, std::uint32_t* counts) {
-    for (std::uint32_t octant = 0; octant < 8; ++octant) counts[octant] = 0;
     std::uint32_t* const unsorted = memory_.arena + (Memory::kArenaWords - Memory::kRays);
     work_.add(Work::kListRay, count);
     work_.charge_to(Work::kListRay);
-    FarthestOrigin<kHasTerms> farthest;
-    [[maybe_unused]] std::uint32_t octants = 0;
-    for (std::uint32_t i = 0; i < count; ++i) {
-      farthest.add(memory_.rays[i]);
-      const std::uint32_t octant = set_up_list_ray<L>(memory_.rays[i], largest);
-      if constexpr (kHasTerms) set_up_ray_terms<L>(memory_.rays[i], memory_.terms[i]);
-      if constexpr (kSortsByLanes) {
-        unsorted[i] = list_word(i, octant) | (kMaskBits & ~(1u << octant));
-        octants |= 1u << octant;
-      } else {
+    if constexpr (L::kCount > 4) {
+      list_by_lanes(count, largest, unsorted, begins, counts);
+    } else {
+      for (std::uint32_t octant = 0; octant < 8; ++octant) counts[octant] = 0;
+      for (std::uint32_t i = 0; i < count; ++i) {
+        const std::uint32_t octant = set_up_list_ray<L>(memory_.rays[i], largest);
         unsorted[i] = list_word(i, octant);
         ++counts[octant];
       }
-    }
-    if constexpr (kHasTerms) uses_terms_ = terms_.set_up(memory_.terms, farthest, largest);
-    if constexpr (kSortsByLanes) {
-      for (std::uint32_t i = count; i % L::kCount != 0; ++i) unsorted[i] = kMaskBits;
-      std::uint32_t end = 0;
-      for (std::uint32_t octant = 0; octant < 8; ++octant) {
-        begins[octant] = end;
-        counts[octant] = 0;
-        if ((octants >> octant & 1u) == 0) continue;
-        counts[octant] = take_marked<L>(unsorted, count, octant, memory_.arena + end);
-        end += question_.any_hit ? counts[octant] : step_up(counts[octant]);
-      }
-    } else {
       std::uint32_t places[8], end = 0;
       for (std::uint32_t octant = 0; octant < 8; ++octant) {
         begins[octant] = places[octant] = end;
@@ -105,6 +83,33 @@ class RayLists {
         memory_.arena[place] = word;
         ++place;
       }
+    }
+  }
+  // Wide lanes prepare as many rays at once, and pick those of one octant after the other, as those that meet a child:
+  // a counter of each octant would be a chain through memory where rays run alike.
+  GRIDIRON_INLINE void list_by_lanes(std::uint32_t count, float largest, std::uint32_t* unsorted, std::uint32_t* begins,
+                                     std::uint32_t* counts) {
+    // Copies of the last ray fill the last lanes. They are listed nowhere.
+    for (std::uint32_t i = count; i % L::kCount != 0; ++i) memory_.rays[i] = memory_.rays[count - 1];
+    RaySetup<L, kHasTerms> setup(largest);
+    for (std::uint32_t i = 0; i < count; i += L::kCount) {
+      RayTerms* terms = nullptr;
+      if constexpr (kHasTerms) terms = memory_.terms + i;
+      setup.add(memory_.rays + i, terms, i, unsorted);
+    }
+    for (std::uint32_t i = count; i % L::kCount != 0; ++i) unsorted[i] = kMaskBits;
+    if constexpr (kHasTerms) {
+      const float farthest[3] = {setup.farthest(0), setup.farthest(1), setup.farthest(2)};
+      uses_terms_ = terms_.set_up(memory_.terms, farthest, largest);
+    }
+    const std::uint32_t octants = setup.octants();
+    std::uint32_t end = 0;
+    for (std::uint32_t octant = 0; octant < 8; ++octant) {
+      begins[octant] = end;
+      counts[octant] = (octants >> octant & 1u) == 0
+                           ? std::uint32_t{0}
+                           : take_marked<L>(unsorted, count, octant, memory_.arena + end);
+      end += question_.any_hit ? counts[octant] : step_up(counts[octant]);
     }
   }
 
