@@ -183,6 +183,7 @@ struct Lanes {
     friend GRIDIRON_INLINE Int operator|(Int a, Int b) { return {a.v | b.v}; }
     friend GRIDIRON_INLINE Int operator&(Int a, Int b) { return {a.v & b.v}; }
     friend GRIDIRON_INLINE Int operator<<(Int a, int count) { return {a.v << count}; }
+    friend GRIDIRON_INLINE Int operator>>(Int a, int count) { return {a.v >> count}; }
     friend GRIDIRON_INLINE Mask operator<(Int a, Int b) {
 #if defined(__AVX512F__)
       if constexpr (W == 16)
@@ -313,6 +314,23 @@ struct Lanes {
     const Float chosen =
         select(mask, Float(reinterpret_cast<FloatVector>(a.v)), Float(reinterpret_cast<FloatVector>(b.v)));
     return {reinterpret_cast<IntVector>(chosen.v)};
+  }
+  /// The words so many bytes behind `base`, which are aligned to 4 bytes.
+  [[nodiscard]] static GRIDIRON_INLINE Int gather(const std::uint32_t* base, Int bytes) {
+#if defined(__AVX512F__)
+    if constexpr (W == 16) {
+      return {IntVector(_mm512_mask_i32gather_epi32(_mm512_setzero_si512(), static_cast<__mmask16>(kAllBits),
+                                                    __m512i(bytes.v), base, 1))};
+    }
+#endif
+#if defined(__AVX2__)
+    if constexpr (W == 8) {
+      return {IntVector(_mm256_i32gather_epi32(reinterpret_cast<const int*>(base), __m256i(bytes.v), 1))};
+    }
+#endif
+    Int result;
+    for (int i = 0; i < W; ++i) result.v[i] = static_cast<std::int32_t>(base[bytes.v[i] / 4]);
+    return result;
   }
   /// Stores `value` in the lanes of the mask. @param target  W words, aligned to 4 * W bytes.
   static GRIDIRON_INLINE void store_where(Mask mask, std::uint32_t value, std::uint32_t* target) {

@@ -116,6 +116,9 @@ struct Lanes {
     friend Int operator<<(Int a, int count) {
       return {a.v << count, emit(OpClass::kShift, tie((a.v << count).v), a.node)};
     }
+    friend Int operator>>(Int a, int count) {
+      return {a.v >> count, emit(OpClass::kShift, tie((a.v >> count).v), a.node)};
+    }
   };
 
   /// Two integers of 64 bits. What a scalar of 64 bits takes, two of them take.
@@ -248,6 +251,17 @@ struct Lanes {
     }
     const std::uint32_t count = gridiron::count_bits(bits.value);
     for (std::uint32_t i = 0; i < count; ++i) target[i].value = words[i];
+  }
+  /// A word after the other.
+  [[nodiscard]] static Int gather(const Counted<std::uint32_t>* base, Int bytes) {
+    Native::Int words = Native::Int::splat(0);
+    Node node = bytes.node;
+    for (int i = 0; i < W; ++i) {
+      const Counted<std::uint32_t>& word = base[bytes.v[i] / 4];
+      words.v[i] = static_cast<std::int32_t>(word.value);
+      node = emit(OpClass::kShuffle, word.value, node, PipeModel::current().splat_of(&word.value, word.value));
+    }
+    return {words, node};
   }
   static void store_where(Mask mask, const Counted<std::uint32_t>& value, Counted<std::uint32_t>* target) {
     store_quads(select(mask, Int::splat(value), Int::load(target)), target, 0);

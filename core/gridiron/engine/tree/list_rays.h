@@ -33,15 +33,14 @@ inline constexpr std::uint32_t kListEnd = ~0u;
 [[nodiscard]] GRIDIRON_INLINE std::uint32_t octant_of(std::uint32_t word) {
   return word >> kOctantShift;
 }
+inline constexpr std::uint32_t kPlaceBits = ((1u << kOctantShift) - 1) & ~kMaskBits;
 [[nodiscard]] GRIDIRON_INLINE BatchRay& ray_of(BatchRay* rays, std::uint32_t word) {
-  constexpr std::uint32_t kPlaces = ((1u << kOctantShift) - 1) & ~kMaskBits;
-  return *reinterpret_cast<BatchRay*>(reinterpret_cast<std::byte*>(rays) + ((word & kPlaces) >> (kPlaceShift - 4)));
+  return *reinterpret_cast<BatchRay*>(reinterpret_cast<std::byte*>(rays) + ((word & kPlaceBits) >> (kPlaceShift - 4)));
 }
 
 [[nodiscard]] GRIDIRON_INLINE const RayTerms& terms_of(const RayTerms* terms, std::uint32_t word) {
-  constexpr std::uint32_t kPlaces = ((1u << kOctantShift) - 1) & ~kMaskBits;
   return *reinterpret_cast<const RayTerms*>(reinterpret_cast<const std::byte*>(terms) +
-                                            ((word & kPlaces) >> (kPlaceShift - 4)));
+                                            ((word & kPlaceBits) >> (kPlaceShift - 4)));
 }
 
 /// Rays with directions of such sizes, and origins at most so far away, in the scene's largest |coordinate|, are tested
@@ -331,6 +330,24 @@ GRIDIRON_INLINE std::uint32_t take_marked(const std::uint32_t* list, std::uint32
     }
   }
   return taken;
+}
+
+/// Leaves those words of rays in a list that have no hit yet. @param list  with room for L::kCount words more, aligned to
+/// as many. @returns how many.
+template <class L>
+GRIDIRON_INLINE std::uint32_t take_living(const BatchRay* rays, std::uint32_t* list, std::uint32_t count) {
+  using Int = typename L::Int;
+  std::uint32_t living = 0;
+  for (std::uint32_t i = 0; i < count; i += L::kCount) {
+    const Int words = Int::load(list + i);
+    const std::uint32_t rest = count - i;
+    const std::uint32_t there = rest >= L::kCount ? std::uint32_t{L::kAllBits} : (1u << rest) - 1u;
+    const Int ids = L::gather(&rays->id, (words & Int::splat(kPlaceBits)) >> static_cast<int>(kPlaceShift - 4));
+    const std::uint32_t open = (ids < Int::splat(0)).bits() & there;
+    L::compress(words, open, list + living);
+    living += count_bits(open);
+  }
+  return living;
 }
 
 }  // namespace gridiron

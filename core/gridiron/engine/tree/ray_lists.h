@@ -170,21 +170,27 @@ class RayLists {
       level.taken = 0;
       ++level.turn;
     }
-    if (dead_count_ * 5 > ray_count_) {
+    if (dead_count_ * kDeadShare > ray_count_) {
       // Rays that have their answer leave lists only once they are many: they meet no box any more.
       count = keep_living(target, count);
     }
     return count;
   }
 
+  // Of what share of the batch: wide lanes look at as many rays at once.
+  static constexpr std::uint32_t kDeadShare = L::kCount > 4 ? 20 : 5;
   [[nodiscard]] std::uint32_t keep_living(std::uint32_t* list, std::uint32_t count) const {
-    std::uint32_t living = 0;
-    for (std::uint32_t i = 0; i < count; ++i) {
-      const std::uint32_t word = list[i];
-      list[living] = word;
-      living += ray_of(memory_.rays, word).has_hit() ? std::uint32_t{0} : std::uint32_t{1};
+    if constexpr (L::kCount > 4) {
+      return take_living<L>(memory_.rays, list, count);
+    } else {
+      std::uint32_t living = 0;
+      for (std::uint32_t i = 0; i < count; ++i) {
+        const std::uint32_t word = list[i];
+        list[living] = word;
+        living += ray_of(memory_.rays, word).has_hit() ? std::uint32_t{0} : std::uint32_t{1};
+      }
+      return living;
     }
-    return living;
   }
 
   // Finds which boxes of a node each ray of a list meets: surely all that hold a hit.
