@@ -184,6 +184,8 @@ struct Lanes {
     friend GRIDIRON_INLINE Int operator&(Int a, Int b) { return {a.v & b.v}; }
     friend GRIDIRON_INLINE Int operator<<(Int a, int count) { return {a.v << count}; }
     friend GRIDIRON_INLINE Int operator>>(Int a, int count) { return {a.v >> count}; }
+    /// Each lane by a number of its own.
+    friend GRIDIRON_INLINE Int operator>>(Int a, Int counts) { return {a.v >> counts.v}; }
     friend GRIDIRON_INLINE Mask operator<(Int a, Int b) {
 #if defined(__AVX512F__)
       if constexpr (W == 16)

@@ -119,6 +119,9 @@ struct Lanes {
     friend Int operator>>(Int a, int count) {
       return {a.v >> count, emit(OpClass::kShift, tie((a.v >> count).v), a.node)};
     }
+    friend Int operator>>(Int a, Int counts) {
+      return {a.v >> counts.v, emit(OpClass::kShift, tie((a.v >> counts.v).v), a.node, counts.node)};
+    }
   };
 
   /// Two integers of 64 bits. What a scalar of 64 bits takes, two of them take.

@@ -215,12 +215,31 @@ class RayLists {
       const auto child_at = [&order](std::uint32_t turn)
                                 GRIDIRON_INLINE_LAMBDA { return order[turn / 8] >> 4 * (turn % 8) & 15; };
       std::uint32_t turns = 0;
-      for (std::uint32_t i = 0; i < node->child_count; ++i) turns |= (open >> child_at(i) & 1u) << i;
+      if constexpr (L::kCount > 4) {
+        turns = turns_by_lanes(order, open);
+      } else {
+        for (std::uint32_t i = 0; i < node->child_count; ++i) turns |= (open >> child_at(i) & 1u) << i;
+      }
       for (; turns != 0; turns &= turns - 1) add_child(level, *node, child_at(lowest_bit(turns)));
       return Status::kOk;
     }
     add_nearest_first(level, *node, open, octant_of(memory_.arena[list]));
     return Status::kOk;
+  }
+
+  // Bit i: the child in place i of an order is open. Eight places are a word of the order, 4 bits each.
+  [[nodiscard]] static GRIDIRON_INLINE std::uint32_t turns_by_lanes(const std::uint32_t* order, std::uint32_t open) {
+    using Int = typename L::Int;
+    alignas(64) static constexpr std::uint32_t kShifts[kTreeWidth] = {0, 4, 8, 12, 16, 20, 24, 28,
+                                                                      0, 4, 8, 12, 16, 20, 24, 28};
+    std::uint32_t closed = 0;
+    for (std::uint32_t base = 0; base < kTreeWidth; base += L::kCount) {
+      const std::uint32_t first = order[base / 8], last = order[(base + L::kCount - 1) / 8];
+      const Int words = L::select(L::mask_from_bits(0xFF), Int::splat(first), Int::splat(last));
+      const Int children = (words >> Int::load(kShifts)) & Int::splat(15);
+      closed |= (((Int::splat(open) >> children) & Int::splat(1)) < Int::splat(1)).bits() << base;
+    }
+    return ~closed & ((1u << kTreeWidth) - 1);
   }
 
   static void add_child(ListLevel& level, const TreeNode& node, std::uint32_t child) {
