@@ -81,12 +81,11 @@ class Leaf {
   }
   [[nodiscard]] LeafBits test(const BatchRay& ray) const {
     LeafBits bits;
-    const float farthest = magnitude(ray.origin[0]) + magnitude(ray.origin[1]) + magnitude(ray.origin[2]);
     for (std::uint32_t base = 0; base < count_; base += L::kCount) {
       const std::uint32_t rest = count_ - base;
       const std::uint32_t there = rest >= L::kCount ? std::uint32_t{L::kAllBits} : (1u << rest) - 1u;
-      const LeafAnswer<L> answer = trusts_floats_ ? LeafLanes<L, false>(lanes_, base, farthest).test(ray, there)
-                                                  : LeafLanes<L, true>(lanes_, base, farthest).test(ray, there);
+      const LeafAnswer<L> answer = trusts_floats_ ? LeafLanes<L, false>(lanes_, base).test(ray, there)
+                                                  : LeafLanes<L, true>(lanes_, base).test(ray, there);
       EXPECT_EQ(answer.inside & answer.unsure, 0u);
       EXPECT_EQ((answer.inside | answer.unsure) & ~there, 0u) << "a lane without a triangle";
       bits.inside |= answer.inside << base;
@@ -267,15 +266,57 @@ TYPED_TEST(LeafTest, HitsOfSmallRaysAtLongEdgesCount) {
   EXPECT_EQ(bits.inside | bits.unsure, 1u);
 }
 
-TYPED_TEST(LeafTest, TheFarthestOriginIsThatOfNumbers) {
-  FarthestOrigin<TypeParam> farthest;
-  BatchRay ray{};
-  const float nan = std::numeric_limits<float>::quiet_NaN();
-  for (const float place : {-1000.0f, nan, 0.5f}) {
-    for (float& component : ray.origin) component = place;
-    farthest.add(ray);
+// Lanes prepare many rays at once as one ray is prepared: rays of all kinds, the farthest origin is that of numbers.
+TYPED_TEST(LeafTest, ManyRaysAreSetUpAsOne) {
+  if constexpr (TypeParam::kCount > 4) {
+    constexpr bool kHasTerms = TypeParam::kRoundsOnce;
+    constexpr std::uint32_t kCount = TypeParam::kCount;
+    TestRandom random(5);
+    for (std::uint32_t round = 0; round < 2000; ++round) {
+      const float largest = round % 50 == 0 ? 0x1p100f : 1.0f;
+      alignas(64) BatchRay many[kCount];
+      alignas(64) RayTerms terms[kCount] = {};
+      alignas(64) std::uint32_t words[2 * kCount];
+      std::vector<BatchRay> one(kCount);
+      float farthest[3] = {};
+      for (std::uint32_t i = 0; i < kCount; ++i) {
+        BatchRay ray{};
+        for (int axis = 0; axis < 3; ++axis) {
+          ray.origin[axis] = random.between(-2.0f, 2.0f);
+          ray.dir[axis] = random.below(8) == 0 ? 0.0f : random.between(-1.0f, 1.0f);
+          if (random.below(40) == 0) ray.dir[axis] = std::ldexp(ray.dir[axis], -50);
+        }
+        if (random.below(30) == 0) ray.origin[random.below(3)] = std::ldexp(1.0f, 45);
+        if (random.below(30) == 0) ray.origin[random.below(3)] = std::numeric_limits<float>::quiet_NaN();
+        const int exponent = random.below(20) == 0 ? -30 : random.below(20) == 0 ? 50 : 0;
+        for (float& component : ray.dir) component = std::ldexp(component, exponent);
+        ray.t = random.unit();
+        ray.id = kNoTriangle;
+        for (int axis = 0; axis < 3; ++axis) farthest[axis] = std::fmax(farthest[axis], std::fabs(ray.origin[axis]));
+        many[i] = one[i] = ray;
+      }
+      RaySetup<TypeParam, kHasTerms> setup(largest);
+      setup.add(many, terms, kCount, words);
+      std::uint32_t octants = 0;
+      for (std::uint32_t i = 0; i < kCount; ++i) {
+        const std::uint32_t octant = set_up_list_ray<TypeParam>(one[i], largest);
+        octants |= 1u << octant;
+        ASSERT_EQ(std::memcmp(&many[i], &one[i], sizeof(BatchRay)), 0) << i;
+        ASSERT_EQ(words[kCount + i], list_word(kCount + i, octant) | (kMaskBits & ~(1u << octant)));
+        if constexpr (kHasTerms) {
+          RayTerms own{};
+          set_up_ray_terms<TypeParam>(one[i], own);
+          for (int axis = 0; axis < 3; ++axis) {
+            ASSERT_EQ(terms[i].scale[axis], own.scale[axis]) << i;
+            ASSERT_TRUE(terms[i].shift[axis] == own.shift[axis] || !is_finite(own.shift[axis])) << i;
+          }
+          ASSERT_EQ(terms[i].t, one[i].t);
+        }
+      }
+      ASSERT_EQ(setup.octants(), octants);
+      for (std::uint32_t axis = 0; axis < 3; ++axis) ASSERT_EQ(setup.farthest(axis), farthest[axis]);
+    }
   }
-  EXPECT_EQ(farthest.sum(), kBoundsBatch<TypeParam> ? 3000.0f : 0.0f);
 }
 
 // Plain scenes: floats settle nearly all, or the filter would be none.

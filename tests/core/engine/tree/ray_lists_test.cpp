@@ -135,6 +135,12 @@ std::vector<Answer> answers(MemoryTree& tree, const std::vector<Ray>& rays, bool
 
 template <class L>
 class RayListsTest : public testing::Test {};
+// Where lanes have terms of rays, memory for them.
+template <class L, std::uint32_t Rays, std::uint32_t Spare>
+std::vector<Answer> answers_by_terms(MemoryTree& tree, const std::vector<Ray>& rays, bool any_hit) {
+  WorkCounters work;
+  return answers<L, ListMemory<Rays, Spare, true>>(tree, rays, any_hit, work);
+}
 using AllLanes = testing::Types<Lanes<1>, Lanes<4>, Lanes<8>, Lanes<16>>;
 TYPED_TEST_SUITE(RayListsTest, AllLanes);
 
@@ -168,7 +174,10 @@ TYPED_TEST(RayListsTest, FindWhatExactArithmeticFinds) {
       ASSERT_EQ(tree.status(), Status::kOk);
       const std::vector<Answer> closest = answers<TypeParam, 256, 512>(tree, rays, false);
       const std::vector<Answer> any = answers<TypeParam, 256, 512>(tree, rays, true);
+      ASSERT_EQ((answers_by_terms<TypeParam, 256, 512>(tree, rays, false)), closest);
+      const std::vector<Answer> any_by_terms = answers_by_terms<TypeParam, 256, 512>(tree, rays, true);
       for (std::size_t i = 0; i < rays.size(); ++i) {
+        ASSERT_EQ(any_by_terms[i].id == kNoTriangle, exact[i].id == kNoTriangle) << i;
         ASSERT_EQ(closest[i].id, exact[i].id) << i;
         ASSERT_EQ(closest[i].t, exact[i].t) << i;
         ASSERT_EQ(any[i].id == kNoTriangle, exact[i].id == kNoTriangle) << i;
@@ -212,7 +221,10 @@ TYPED_TEST(RayListsTest, HoldWithEveryRoundingAndFlushedDenormals) {
       const RoundingScope scope(mode, true);
       const std::vector<Answer> closest = answers<TypeParam, 256, 512>(tree, rays, false);
       const std::vector<Answer> any = answers<TypeParam, 256, 512>(tree, rays, true);
+      ASSERT_EQ((answers_by_terms<TypeParam, 256, 512>(tree, rays, false)), closest);
+      const std::vector<Answer> any_by_terms = answers_by_terms<TypeParam, 256, 512>(tree, rays, true);
       for (std::size_t i = 0; i < rays.size(); ++i) {
+        ASSERT_EQ(any_by_terms[i].id == kNoTriangle, any[i].id == kNoTriangle) << i;
         const Answer exact = exact_answer(mesh, rays[i]);
         ASSERT_EQ(closest[i], exact) << i;
         ASSERT_EQ(any[i].id == kNoTriangle, exact.id == kNoTriangle) << i;
