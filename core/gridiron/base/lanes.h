@@ -340,6 +340,16 @@ struct Lanes {
   }
   /// Stores each quad of lanes, aligned to 16 bytes, `stride` words behind the one before.
   static GRIDIRON_INLINE void store_quads(Int a, std::uint32_t* target, std::uint32_t stride) {
+#if defined(__AVX512F__)
+    if constexpr (W == 16) {
+      const __m512i v = __m512i(a.v);
+      _mm_store_si128(reinterpret_cast<__m128i*>(target), _mm512_castsi512_si128(v));
+      _mm_store_si128(reinterpret_cast<__m128i*>(target + stride), _mm512_extracti32x4_epi32(v, 1));
+      _mm_store_si128(reinterpret_cast<__m128i*>(target + 2 * stride), _mm512_extracti32x4_epi32(v, 2));
+      _mm_store_si128(reinterpret_cast<__m128i*>(target + 3 * stride), _mm512_extracti32x4_epi32(v, 3));
+      return;
+    }
+#endif
     using Quad = typename LaneVectors<4>::IntMemory;
     const auto store = [&](int i, typename LaneVectors<4>::IntVector quad) GRIDIRON_INLINE_LAMBDA {
       *reinterpret_cast<Quad*>(target + static_cast<std::uint32_t>(i) * stride) = quad;
