@@ -342,11 +342,12 @@ struct Lanes {
   static GRIDIRON_INLINE void store_quads(Int a, std::uint32_t* target, std::uint32_t stride) {
 #if defined(__AVX512F__)
     if constexpr (W == 16) {
+      // With masks, as the compiler warns of what is behind the plain ones.
       const __m512i v = __m512i(a.v);
-      _mm_store_si128(reinterpret_cast<__m128i*>(target), _mm512_castsi512_si128(v));
-      _mm_store_si128(reinterpret_cast<__m128i*>(target + stride), _mm512_extracti32x4_epi32(v, 1));
-      _mm_store_si128(reinterpret_cast<__m128i*>(target + 2 * stride), _mm512_extracti32x4_epi32(v, 2));
-      _mm_store_si128(reinterpret_cast<__m128i*>(target + 3 * stride), _mm512_extracti32x4_epi32(v, 3));
+      _mm_store_si128(reinterpret_cast<__m128i*>(target), _mm512_maskz_extracti32x4_epi32(0xFF, v, 0));
+      _mm_store_si128(reinterpret_cast<__m128i*>(target + stride), _mm512_maskz_extracti32x4_epi32(0xFF, v, 1));
+      _mm_store_si128(reinterpret_cast<__m128i*>(target + 2 * stride), _mm512_maskz_extracti32x4_epi32(0xFF, v, 2));
+      _mm_store_si128(reinterpret_cast<__m128i*>(target + 3 * stride), _mm512_maskz_extracti32x4_epi32(0xFF, v, 3));
       return;
     }
 #endif

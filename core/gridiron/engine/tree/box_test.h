@@ -166,9 +166,8 @@ inline constexpr std::uint32_t kBoxRays = L::kCount == 4 ? 2 : 1;
 /// @param list    ends with kListEnd; its words get bits of missed boxes, from `place` on.
 /// @param closed  boxes that no ray meets so far. @returns where the octant ends.
 template <class L, class Rays>
-GRIDIRON_INLINE std::uint32_t mark_run(const BoxSides<L>* sides, Rays* rays, std::uint32_t* list,
-                                       std::uint32_t begin, std::uint32_t place, Work kind, std::uint32_t& closed,
-                                       WorkCounters& work) {
+GRIDIRON_INLINE std::uint32_t mark_run(const BoxSides<L>* sides, Rays* rays, std::uint32_t* list, std::uint32_t begin,
+                                       std::uint32_t place, Work kind, std::uint32_t& closed, WorkCounters& work) {
   static constexpr std::uint32_t kGroups = L::kCount < 4 ? 4 : L::kCount == 8 ? 2 : 1;
   const std::uint32_t behind = behind_octant(list[begin]);
   std::uint32_t i = begin, word = list[i], tests = 0;

@@ -129,7 +129,7 @@ struct LeafAnswer {
 /// half of the rays pass through their own triangle's plane within its sides. Few lanes would gain no more than it
 /// costs.
 template <class L, bool kBounded>
-inline constexpr bool kFiltersFirst = L::kRoundsOnce && kBounded;
+inline constexpr bool kFiltersFirst = L::kRoundsOnce&& kBounded;
 
 /// The lanes of a leaf from `base` on, in registers.
 /// @tparam kBounded  decisions have bounds of their error. Accuracy::kFast has none, so it computes the same bits with

@@ -170,7 +170,8 @@ GRIDIRON_INLINE void set_up_ray_terms(const BatchRay& ray, RayTerms& terms) {
   Quad::select(is_t, place, inverse).store(terms.scale);
   (-(place * inverse)).store(terms.shift);
   const Float ratio = Quad::abs(inverse) * Float(ray.dir_max);
-  if (((ratio <= Float(kGreatestRatio)) | is_t).bits() != 15) [[unlikely]] set_up_odd_terms<L>(ray, terms);
+  if (((ratio <= Float(kGreatestRatio)) | is_t).bits() != 15) [[unlikely]]
+    set_up_odd_terms<L>(ray, terms);
 }
 
 /// Four words of each of L::kCount rays, ray by ray in rows of quads, to lanes and back: `words` has ray i in lane i.
@@ -199,8 +200,10 @@ GRIDIRON_INLINE void store_ray_words(typename L::Float x, typename L::Float y, t
                                      float* rays) {
   using Float = typename L::Float;
   static constexpr std::uint32_t kStride = sizeof(BatchRay) / sizeof(float);
-  const Float low_xy = L::template shuffle_quads<0, 4, 1, 5>(x, y), high_xy = L::template shuffle_quads<2, 6, 3, 7>(x, y),
-              low_zw = L::template shuffle_quads<0, 4, 1, 5>(z, w), high_zw = L::template shuffle_quads<2, 6, 3, 7>(z, w);
+  const Float low_xy = L::template shuffle_quads<0, 4, 1, 5>(x, y),
+              high_xy = L::template shuffle_quads<2, 6, 3, 7>(x, y),
+              low_zw = L::template shuffle_quads<0, 4, 1, 5>(z, w),
+              high_zw = L::template shuffle_quads<2, 6, 3, 7>(z, w);
   L::store_quads(L::template shuffle_quads<0, 1, 4, 5>(low_xy, low_zw), rays, 4 * kStride);
   L::store_quads(L::template shuffle_quads<2, 3, 6, 7>(low_xy, low_zw), rays + kStride, 4 * kStride);
   L::store_quads(L::template shuffle_quads<0, 1, 4, 5>(high_xy, high_zw), rays + 2 * kStride, 4 * kStride);
@@ -262,11 +265,11 @@ class RaySetup {
     missed_ = missed_ & missed;
     ((octant + Int::load(kWords.of)) | missed).store(words + first);
     for (std::uint32_t odd = L::kAllBits & ~is_usual.bits(); odd != 0; odd &= odd - 1) [[unlikely]] {
-      const std::uint32_t lane = lowest_bit(odd);
-      // The octant does not change.
-      (void)set_up_list_ray<L>(rays[lane], largest_);
-      if constexpr (kHasTerms) set_up_ray_terms<L>(rays[lane], terms[lane]);
-    }
+        const std::uint32_t lane = lowest_bit(odd);
+        // The octant does not change.
+        (void)set_up_list_ray<L>(rays[lane], largest_);
+        if constexpr (kHasTerms) set_up_ray_terms<L>(rays[lane], terms[lane]);
+      }
   }
   /// @returns the octants of rays so far, as bits.
   [[nodiscard]] GRIDIRON_INLINE std::uint32_t octants() const {
@@ -332,8 +335,8 @@ GRIDIRON_INLINE std::uint32_t take_marked(const std::uint32_t* list, std::uint32
   return taken;
 }
 
-/// Leaves those words of rays in a list that have no hit yet. @param list  with room for L::kCount words more, aligned to
-/// as many. @returns how many.
+/// Leaves those words of rays in a list that have no hit yet. @param list  with room for L::kCount words more, aligned
+/// to as many. @returns how many.
 template <class L>
 GRIDIRON_INLINE std::uint32_t take_living(const BatchRay* rays, std::uint32_t* list, std::uint32_t count) {
   using Int = typename L::Int;

@@ -106,9 +106,8 @@ class RayLists {
     std::uint32_t end = 0;
     for (std::uint32_t octant = 0; octant < 8; ++octant) {
       begins[octant] = end;
-      counts[octant] = (octants >> octant & 1u) == 0
-                           ? std::uint32_t{0}
-                           : take_marked<L>(unsorted, count, octant, memory_.arena + end);
+      counts[octant] = (octants >> octant & 1u) == 0 ? std::uint32_t{0}
+                                                     : take_marked<L>(unsorted, count, octant, memory_.arena + end);
       end += question_.any_hit ? counts[octant] : step_up(counts[octant]);
     }
   }

@@ -70,8 +70,8 @@ struct Tally {
   std::uint64_t hits = 0, pairs = 0, met = 0, by_terms = 0;
 };
 
-// All rays against all nodes, whether or not they meet their parents. @param by_terms  where lanes have terms of rays, and
-// the rays can be tested by them.
+// All rays against all nodes, whether or not they meet their parents. @param by_terms  where lanes have terms of rays,
+// and the rays can be tested by them.
 template <class L>
 void expect_boxes_met_by(bool by_terms, MemoryTree& tree, const std::vector<Shot>& shots, Tally& tally) {
   constexpr std::uint32_t kStep = kListStep<L>, kPartBoxes = kTreeWidth / kBoxParts<L>;
