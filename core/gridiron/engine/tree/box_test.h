@@ -48,12 +48,21 @@ struct BoxSides {
   using Float = typename L::Float;
   Float near[3], far[3];
 
-  /// @returns the boxes that a ray misses, as bits.
+  /// Measures the sides from a place.
+  GRIDIRON_INLINE void measure_from(const float* place) {
+    for (int axis = 0; axis < 3; ++axis) {
+      near[axis] = near[axis] - Float(place[axis]);
+      far[axis] = far[axis] - Float(place[axis]);
+    }
+  }
+
+  /// @returns the boxes that a ray misses, as bits. @tparam kAreMeasured  from its origin.
+  template <bool kAreMeasured>
   [[nodiscard]] GRIDIRON_INLINE std::uint32_t missed_by(const BoxRay<L>& ray) const {
     Float in[3], out[3];
     for (int axis = 0; axis < 3; ++axis) {
-      in[axis] = (near[axis] - ray.origin[axis]) * ray.inverse[axis];
-      out[axis] = (far[axis] - ray.origin[axis]) * ray.inverse[axis];
+      in[axis] = (kAreMeasured ? near[axis] : near[axis] - ray.origin[axis]) * ray.inverse[axis];
+      out[axis] = (kAreMeasured ? far[axis] : far[axis] - ray.origin[axis]) * ray.inverse[axis];
     }
     const Float first = L::max(L::max(in[0], in[1]), L::max(in[2], Float(0.0f)));
     const Float last = L::min(L::min(out[0], out[1]), L::min(out[2], ray.t));
@@ -117,22 +126,23 @@ inline constexpr std::uint32_t kBoxRays = L::kCount == 4 ? 2 : 1;
 /// Tests rays of one octant, those of a list from `begin` on, against the same boxes.
 /// @param list    ends with kListEnd; its words get bits of missed boxes, from `place` on.
 /// @param closed  boxes that no ray meets so far. @returns where the octant ends.
-template <class L>
+template <bool kAreMeasured, class L>
 GRIDIRON_INLINE std::uint32_t mark_run(const BoxSides<L>* sides, BatchRay* rays, std::uint32_t* list,
                                        std::uint32_t begin, std::uint32_t place, Work kind, std::uint32_t& closed,
                                        WorkCounters& work) {
   static constexpr std::uint32_t kGroups = L::kCount < 4 ? 4 : L::kCount == 8 ? 2 : 1;
-  const std::uint32_t behind = behind_octant(list[begin]);
   std::uint32_t i = begin, word = list[i], tests = 0;
+  const std::uint32_t octant = word & ~((1u << kOctantShift) - 1);
   do {
     ++tests;
     if constexpr (kBoxRays<L> == 2) {
       // The last ray of an odd number is tested twice.
       const std::uint32_t next = list[i + 1];
-      const bool are_two = next < behind;
+      const bool are_two = is_of_octant(next, octant);
       const std::uint32_t second = are_two ? i + 1 : i, second_word = are_two ? next : word;
       const BoxRay<L> first_ray(ray_of(rays, word)), second_ray(ray_of(rays, second_word));
-      const std::uint32_t first_missed = sides->missed_by(first_ray), second_missed = sides->missed_by(second_ray);
+      const std::uint32_t first_missed = sides->template missed_by<kAreMeasured>(first_ray),
+                          second_missed = sides->template missed_by<kAreMeasured>(second_ray);
       list[i] = word | first_missed << place;
       list[second] = second_word | second_missed << place;
       closed &= first_missed & second_missed;
@@ -141,24 +151,26 @@ GRIDIRON_INLINE std::uint32_t mark_run(const BoxSides<L>* sides, BatchRay* rays,
       const BoxRay<L> ray(ray_of(rays, word));
       std::uint32_t missed = 0;
       for (std::uint32_t group = 0; group < kGroups; ++group) {
-        missed |= sides[group].missed_by(ray) << group * L::kCount;
+        missed |= sides[group].template missed_by<kAreMeasured>(ray) << group * L::kCount;
       }
       list[i] = word | missed << place;
       closed &= missed;
       ++i;
     }
     word = list[i];
-  } while (word < behind);
+  } while (is_of_octant(word, octant));
   work.add(kind, tests);
   return i;
 }
 
 /// The same for all octants of a list, with room for L::kCount words more.
 /// @param base   the first box: as many are tested as a part has. @param place  of its bit.
-/// @param kind   of work that a test of kBoxRays is. @returns the boxes that any ray meets.
+/// @param origin  of all rays, if it is one. @param kind  of work that a test of kBoxRays is.
+/// @returns the boxes that any ray meets.
 template <class L>
 GRIDIRON_OUTLINE std::uint32_t mark_list(const BoxTable& boxes, std::uint32_t base, std::uint32_t place, BatchRay* rays,
-                                         std::uint32_t* list, std::uint32_t count, Work kind, WorkCounters& work) {
+                                         const float* origin, std::uint32_t* list, std::uint32_t count, Work kind,
+                                         WorkCounters& work) {
   static constexpr std::uint32_t kGroups = L::kCount < 4 ? 4 : L::kCount == 8 ? 2 : 1;
   static constexpr std::uint32_t kBoxes = kTreeWidth / kBoxParts<L>;
   std::uint32_t closed = (1u << kBoxes) - 1;
@@ -170,8 +182,14 @@ GRIDIRON_OUTLINE std::uint32_t mark_list(const BoxTable& boxes, std::uint32_t ba
     for (std::uint32_t group = 0; group < kGroups; ++group) {
       sides[group] = boxes.template sides<L>(octant_of(list[i]), base + group * L::kCount);
     }
-    work.charge_to(kind);
-    i = mark_run<L>(sides, rays, list, i, place, kind, closed, work);
+    if (origin != nullptr) {
+      for (BoxSides<L>& group : sides) group.measure_from(origin);
+      work.charge_to(Work::kListSharedBox);
+      i = mark_run<true, L>(sides, rays, list, i, place, Work::kListSharedBox, closed, work);
+    } else {
+      work.charge_to(kind);
+      i = mark_run<false, L>(sides, rays, list, i, place, kind, closed, work);
+    }
   }
   work.charge_to(Work::kListNode);
   // Words up to the next group of lanes miss all, so that take_marked() need not look where the list ends.
@@ -185,9 +203,9 @@ inline constexpr std::uint32_t kFewChildren = 8;
 /// Finds the boxes of a node that each ray of a list meets. @param level  gets the lists of its parts, behind `list`.
 /// @param arena  of the lists. @returns the children that any ray meets.
 template <class L>
-[[nodiscard]] GRIDIRON_INLINE std::uint32_t mark_boxes(const TreeNode& node, BatchRay* rays, std::uint32_t* arena,
-                                                       std::uint32_t list, std::uint32_t count, ListLevel& level,
-                                                       WorkCounters& work) {
+[[nodiscard]] GRIDIRON_INLINE std::uint32_t mark_boxes(const TreeNode& node, BatchRay* rays, const float* origin,
+                                                       std::uint32_t* arena, std::uint32_t list, std::uint32_t count,
+                                                       ListLevel& level, WorkCounters& work) {
   const std::uint32_t there = (2u << (node.child_count - 1)) - 1;
   static constexpr std::uint32_t kStep = kListStep<L>, kParts = kBoxParts<L>, kPartBoxes = kTreeWidth / kParts;
   std::uint32_t end = (list + count + (kStep - 1)) & ~(kStep - 1);
@@ -199,13 +217,13 @@ template <class L>
       const std::uint32_t base = part * kPartBoxes;
       level.lists[part] = list;
       level.ray_counts[part] = count;
-      open |= mark_list<L>(boxes, base, base, rays, arena + list, count, kKind, work) << base;
+      open |= mark_list<L>(boxes, base, base, rays, origin, arena + list, count, kKind, work) << base;
     }
   } else {
     NodeUnions unions;
     unite_boxes<L>(node, unions);
     const BoxTable united{unions.low[0], unions.high[0], 4};
-    const std::uint32_t quads = mark_list<L>(united, 0, 0, rays, arena + list, count, Work::kListRayNode, work);
+    const std::uint32_t quads = mark_list<L>(united, 0, 0, rays, origin, arena + list, count, Work::kListRayNode, work);
     for (std::uint32_t rest = quads; rest != 0; rest &= rest - 1) {
       const std::uint32_t part = lowest_bit(rest);
       work.add(Work::kListEntry, count);
@@ -214,7 +232,7 @@ template <class L>
       const std::uint32_t base = part * kPartBoxes;
       level.lists[part] = end;
       level.ray_counts[part] = taken;
-      open |= mark_list<L>(boxes, base, base, rays, arena + end, taken, Work::kListBoxQuad, work) << base;
+      open |= mark_list<L>(boxes, base, base, rays, origin, arena + end, taken, Work::kListBoxQuad, work) << base;
       end = (end + taken + (kStep - 1)) & ~(kStep - 1);
     }
   }

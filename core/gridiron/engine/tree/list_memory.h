@@ -29,6 +29,23 @@ inline constexpr std::uint32_t kListParts = kBoxParts<L> == 1 ? std::uint32_t{0}
   return (narrow > wide ? narrow : wide) / 16 * 16 + 16 + spare;
 }
 
+/// Rays of a beam.
+inline constexpr std::uint32_t kBeamRays = 16;
+
+/// What bounds neighbouring rays: four planes, and where they are along its axis; ray_beams.h.
+struct alignas(64) RayBeam {
+  float planes[4][4];  ///< plane, {slope or 0 if it is below 0, slope or 0 if it is above, offset, one of four
+                       ///< numbers}: the least and the greatest place along the axis, where all rays have begun, and
+                       ///< the greatest |component| of a direction along it, with its sign
+};
+
+template <std::uint32_t Count>
+struct BeamMemory {
+  RayBeam of[Count];
+};
+template <>
+struct BeamMemory<0> {};
+
 /// A node on the way down, and the rays that met its box.
 struct ListLevel {
   TreeChild children[kTreeWidth];  ///< those that rays meet, in the order of their turns
@@ -40,6 +57,7 @@ struct ListLevel {
   std::uint32_t ray_counts[4];     ///< of these lists
   std::uint32_t end;               ///< what is free behind them
   std::uint32_t taken;             ///< of a part's rays, those that the child whose turn it is has seen
+  bool has_beams;                  ///< lists are of beams, not of rays
 };
 
 /// Up to 16 triangles in lanes.
@@ -54,14 +72,25 @@ struct TriangleLanes {
 
 /// @tparam Rays   of a batch: a multiple of 16.
 /// @tparam Spare  words of the arena beyond the least.
-template <std::uint32_t Rays, std::uint32_t Spare>
+/// @tparam Beams  whether there is memory for beams; with it comes code for rays of one origin.
+template <std::uint32_t Rays, std::uint32_t Spare, bool Beams>
 struct alignas(128) ListMemory {
   static constexpr std::uint32_t kRays = Rays;
   static constexpr std::uint32_t kArenaWords = list_arena_words(Rays, Spare);
+  static constexpr bool kHasBeams = Beams;
+  /// All lists of beams fit, at every level, and behind the last the lists of their rays, and what these need below.
+  template <class L>
+  static constexpr bool kHoldsBeams = [] {
+    constexpr std::uint32_t step = kListStep<L>, parts = 1 + kListParts<L>,
+                            beams = (Rays / kBeamRays + (step - 1)) / step * step,
+                            level = beams > parts * step ? beams : parts * step;
+    return kArenaWords >= (kMaxTreeDepth + 1) * level + parts * (Rays + beams) + parts * step;
+  }();
   static_assert(Rays % 16 == 0 && 3 * Rays <= 1u << 13, "a word of a list has 13 bits for a ray's place");
   static_assert(Spare % 16 == 0);
 
   BatchRay rays[Rays];
+  [[no_unique_address]] BeamMemory<Beams ? Rays / kBeamRays : 0> beams;
   std::uint32_t owners[Rays];
   alignas(64) std::uint32_t arena[kArenaWords];
   TriangleLanes triangles;

@@ -11,6 +11,7 @@
 #include <gridiron/engine/tree/leaf_test.h>
 #include <gridiron/engine/tree/list_memory.h>
 #include <gridiron/engine/tree/list_rays.h>
+#include <gridiron/engine/tree/ray_beams.h>
 #include <gridiron/platform/contract.h>
 #include <gridiron/ray/distance.h>
 #include <gridiron/ray/intersect_rays.h>
@@ -38,55 +39,109 @@ class RayLists {
     question_ = question;
     ray_count_ = count;
     dead_count_ = 0;
-    std::uint32_t begins[8], counts[8];
+    std::uint32_t begins[kRoots], counts[kRoots];
     list_rays(count, largest, begins, counts);
-    if (question.any_hit) return walk(0, count);
+    if (question.any_hit) {
+      std::uint32_t rays = 0, beams = 0;
+      for (std::uint32_t octant = 0; octant < 8; ++octant) {
+        rays += counts[octant];
+        beams += counts[kBeamRoot + octant];
+      }
+      if (beams != 0) GRIDIRON_TRY(walk(begins[kBeamRoot], beams, true));
+      return rays != 0 ? walk(0, rays, false) : Status::kOk;
+    }
     // The nearest hit is found soonest front to back, and front is another side for each octant. The last list goes
     // first: it needs the room behind it.
-    for (std::uint32_t octant = 8; octant > 0; --octant) {
-      if (counts[octant - 1] == 0) continue;
-      GRIDIRON_TRY(walk(begins[octant - 1], counts[octant - 1]));
+    for (std::uint32_t root = kRoots; root > 0; --root) {
+      if (counts[root - 1] == 0) continue;
+      GRIDIRON_TRY(walk(begins[root - 1], counts[root - 1], root > kBeamRoot));
     }
     return Status::kOk;
   }
 
  private:
   using Float = typename L::Float;
+  // Lists that a batch begins with: rays by octants, then beams. Of unsorted words, a bit says which.
+  static constexpr std::uint32_t kBeamRoot = 8, kRoots = 16, kIsBeam = 1;
   static constexpr std::uint32_t kStep = kListStep<L>, kParts = kBoxParts<L>;
   static constexpr std::uint32_t kLevelWords = (1 + kListParts<L>)*kStep;
+  static constexpr bool kHasBeams = L::kCount >= 4 && Memory::kHasBeams;
+  static_assert(!kHasBeams || Memory::template kHoldsBeams<L>);
   [[nodiscard]] static std::uint32_t step_up(std::uint32_t words) { return (words + (kStep - 1)) & ~(kStep - 1); }
 
   // Lists the batch in the order of octants: rays that run alike along all axes follow each other.
   GRIDIRON_OUTLINE void list_rays(std::uint32_t count, float largest, std::uint32_t* begins, std::uint32_t* counts) {
-    for (std::uint32_t octant = 0; octant < 8; ++octant) counts[octant] = 0;
+    for (std::uint32_t root = 0; root < kRoots; ++root) counts[root] = 0;
     std::uint32_t* const unsorted = memory_.arena + (Memory::kArenaWords - Memory::kRays);
     work_.add(Work::kListRay, count);
     work_.charge_to(Work::kListRay);
     FarthestOrigin<L> farthest;
+    bool is_shared = Memory::kHasBeams;
     for (std::uint32_t i = 0; i < count; ++i) {
       farthest.add(memory_.rays[i]);
+      is_shared = is_shared && have_one_origin(memory_.rays[i], memory_.rays[0]);
       const std::uint32_t octant = set_up_list_ray<L>(memory_.rays[i], largest);
       unsorted[i] = list_word(i, octant);
       ++counts[octant];
     }
     farthest_ = farthest.sum();
-    std::uint32_t places[8], end = 0;
-    for (std::uint32_t octant = 0; octant < 8; ++octant) {
-      begins[octant] = places[octant] = end;
-      end += question_.any_hit ? counts[octant] : step_up(counts[octant]);
+    shares_origin_ = is_shared && !question_.trusts_floats;
+    std::uint32_t words = count;
+    if constexpr (kHasBeams) {
+      if (question_.are_neighbors) words = list_beams(unsorted, count, largest, counts);
     }
-    for (std::uint32_t i = 0; i < count; ++i) {
+    std::uint32_t places[kRoots], end = 0;
+    for (std::uint32_t root = 0; root < kRoots; ++root) {
+      if (root == kBeamRoot) end = step_up(end);
+      begins[root] = places[root] = end;
+      end += question_.any_hit ? counts[root] : step_up(counts[root]);
+    }
+    for (std::uint32_t i = 0; i < words; ++i) {
       const std::uint32_t word = unsorted[i];
-      std::uint32_t& place = places[octant_of(word)];
-      memory_.arena[place] = word;
+      std::uint32_t& place = places[octant_of(word) + ((word & kIsBeam) != 0 ? kBeamRoot : 0)];
+      memory_.arena[place] = word & ~kIsBeam;
       ++place;
     }
   }
 
+  // Puts beams in the place of rays where neighbours make them. @returns how many words are left.
+  GRIDIRON_OUTLINE std::uint32_t list_beams(std::uint32_t* words, std::uint32_t count, float largest,
+                                            std::uint32_t* counts) {
+    std::uint32_t listed = 0, tried = 0, made = 0;
+    for (std::uint32_t first = 0; first < count; first += kBeamRays) {
+      const std::uint32_t rest = count - first, here = rest < kBeamRays ? rest : kBeamRays;
+      const std::uint32_t octant = octant_of(words[first]);
+      std::uint32_t axis = kNoBeam;
+      if (tried - made < kVainBeams + tried / 4) {
+        work_.add(Work::kListBeam);
+        work_.charge_to(Work::kListBeam);
+        axis = make_beam(memory_.rays + first, here, largest, memory_.beams.of[first / kBeamRays]);
+        ++tried;
+      }
+      if (axis == kNoBeam) {
+        for (std::uint32_t i = first; i < first + here; ++i, ++listed) words[listed] = words[i];
+        continue;
+      }
+      for (std::uint32_t i = first; i < first + here; ++i) --counts[octant_of(words[i])];
+      words[listed] = beam_word(first / kBeamRays, axis, octant) | kIsBeam;
+      ++listed;
+      ++counts[kBeamRoot + octant];
+      ++made;
+    }
+    work_.charge_to(Work::kListRay);
+    return listed;
+  }
+
+  [[nodiscard]] static GRIDIRON_INLINE bool have_one_origin(const BatchRay& a, const BatchRay& b) {
+    return a.origin[0] == b.origin[0] && a.origin[1] == b.origin[1] && a.origin[2] == b.origin[2];
+  }
+  // Where all rays begin, if it is one place.
+  [[nodiscard]] const float* shared_origin() const { return shares_origin_ ? memory_.rays[0].origin : nullptr; }
+
   // Takes a list of the arena down the tree. What lies behind it is overwritten.
-  [[nodiscard]] GRIDIRON_OUTLINE Status walk(std::uint32_t list, std::uint32_t count) {
+  [[nodiscard]] GRIDIRON_OUTLINE Status walk(std::uint32_t list, std::uint32_t count, bool are_beams) {
     std::uint32_t depth = 0;
-    GRIDIRON_TRY(enter(memory_.levels[0], 0, list, count));
+    GRIDIRON_TRY(enter(memory_.levels[0], 0, list, count, are_beams));
     for (;;) {
       ListLevel& level = memory_.levels[depth];
       work_.charge_to(Work::kListChild);
@@ -107,7 +162,7 @@ class RayLists {
         GRIDIRON_TRY(visit_leaf(child, memory_.arena + level.end, selected));
       } else {
         ++depth;
-        GRIDIRON_TRY(enter(memory_.levels[depth], child.node_index(), level.end, selected));
+        GRIDIRON_TRY(enter(memory_.levels[depth], child.node_index(), level.end, selected, level.has_beams));
       }
     }
   }
@@ -127,7 +182,7 @@ class RayLists {
     // list_arena_words, and so 2 W here, and 13 - (d + 1) behind a child's lists, which take W less than the room.
     const std::uint32_t ray_count = level.ray_counts[part];
     std::uint32_t end = ray_count;
-    if ((1 + kListParts<L>)*step_up(end - level.taken) + kLevelWords > room) [[unlikely]] {
+    if (!level.has_beams && (1 + kListParts<L>)*step_up(end - level.taken) + kLevelWords > room) [[unlikely]] {
       end = level.taken + (room / kLevelWords - 1) * kStep;
     }
     const std::uint32_t seen = end - level.taken;
@@ -140,7 +195,7 @@ class RayLists {
       level.taken = 0;
       ++level.turn;
     }
-    if (dead_count_ * 5 > ray_count_) {
+    if (!level.has_beams && dead_count_ * 5 > ray_count_) {
       // Rays that have their answer leave lists only once they are many: they meet no box any more.
       count = keep_living(target, count);
     }
@@ -159,7 +214,7 @@ class RayLists {
 
   // Finds which boxes of a node each ray of a list meets: surely all that hold a hit.
   [[nodiscard]] GRIDIRON_OUTLINE Status enter(ListLevel& level, std::uint32_t index, std::uint32_t list,
-                                              std::uint32_t count) {
+                                              std::uint32_t count, bool are_beams) {
     work_.charge_to(Work::kListNode);
     const TreeNode* node = nullptr;
     GRIDIRON_TRY(source_.node(index, node));
@@ -168,7 +223,29 @@ class RayLists {
     level.taken = 0;
     level.turn = 0;
     level.asked = 0;
-    const std::uint32_t open = mark_boxes<L>(*node, memory_.rays, memory_.arena, list, count, level, work_);
+    std::uint32_t open = 0;
+    level.has_beams = false;
+    if constexpr (kHasBeams) {
+      if (are_beams) {
+        open = mark_beams<L>(*node, memory_.beams.of, memory_.arena + list, count, work_);
+        work_.charge_to(Work::kListNode);
+        level.end = step_up(list + count);
+        level.has_beams = !has_leaf(*node, open);
+        for (std::uint32_t part = 0; part < kParts; ++part) {
+          level.lists[part] = list;
+          level.ray_counts[part] = count;
+        }
+        if (!level.has_beams) {
+          // Rays are tested one by one where leaves are: a beam meets more of them than its rays do.
+          work_.charge_to(Work::kListEntry);
+          count = list_beam_rays(memory_.beams.of, memory_.arena + list, count, memory_.rays, ray_count_,
+                                 memory_.arena + level.end, work_);
+          list = level.end;
+        }
+      }
+    }
+    if (!level.has_beams)
+      open = mark_boxes<L>(*node, memory_.rays, shared_origin(), memory_.arena, list, count, level, work_);
     work_.charge_to(Work::kListNode);
     level.child_count = 0;
     level.places[0] = level.places[1] = 0;
@@ -185,6 +262,13 @@ class RayLists {
     }
     add_nearest_first(level, *node, open, octant_of(memory_.arena[list]));
     return Status::kOk;
+  }
+
+  // @returns whether one of some children is a leaf.
+  [[nodiscard]] static bool has_leaf(const TreeNode& node, std::uint32_t children) {
+    std::uint32_t bits = 0;
+    for (std::uint32_t rest = children; rest != 0; rest &= rest - 1) bits |= node.children[lowest_bit(rest)].bits;
+    return TreeChild{bits}.is_leaf();
   }
 
   static void add_child(ListLevel& level, const TreeNode& node, std::uint32_t child) {
@@ -220,19 +304,24 @@ class RayLists {
     work_.charge_to(Work::kListLeaf);
     const VertexTriangle* records = nullptr;
     GRIDIRON_TRY(source_.leaf(leaf, records));
-    work_.add(Work::kListLeaf);
-    work_.charge_to(Work::kListLeaf);
+    const Work leaf_kind = shares_origin_ ? Work::kListSharedLeaf : Work::kListLeaf;
+    const Work group_kind = shares_origin_ ? Work::kListSharedGroup : Work::kListTriangleGroup;
+    work_.add(leaf_kind);
+    work_.charge_to(leaf_kind);
     set_up_leaf<L>(records, leaf.count(), question_.trusts_floats, memory_.triangles);
+    if constexpr (Memory::kHasBeams) {
+      if (shares_origin_) share_origin<L>(memory_.rays[0].origin, leaf.count(), memory_.triangles);
+    }
     for (std::uint32_t base = 0; base < leaf.count(); base += L::kCount) {
       const std::uint32_t rest = leaf.count() - base;
       const std::uint32_t there = rest >= L::kCount ? std::uint32_t{L::kAllBits} : (1u << rest) - 1u;
-      work_.add(Work::kListTriangleGroup, count);
-      work_.charge_to(Work::kListTriangleGroup);
+      work_.add(group_kind, count);
+      work_.charge_to(group_kind);
       LeafAnswer<L> answer;
       for (std::uint32_t i = next_candidate(list, 0, count, base, there, answer); i < count;
            i = next_candidate(list, i + 1, count, base, there, answer)) {
         GRIDIRON_TRY(decide(ray_of(memory_.rays, list[i]), records + base, answer, base));
-        work_.charge_to(Work::kListTriangleGroup);
+        work_.charge_to(group_kind);
       }
     }
     return Status::kOk;
@@ -240,19 +329,23 @@ class RayLists {
 
   // @returns the first ray of a list, from `begin` on, that floats do not rule out for all triangles of a group, or the
   // list's end. @param answer  gets what they say.
-  [[nodiscard]] GRIDIRON_INLINE std::uint32_t next_candidate(const std::uint32_t* list, std::uint32_t begin,
-                                                             std::uint32_t end, std::uint32_t base, std::uint32_t there,
-                                                             LeafAnswer<L>& answer) const {
-    if constexpr (L::kRoundsOnce) {
-      if (question_.trusts_floats) return search<false>(list, begin, end, base, there, answer);
+  [[nodiscard]] GRIDIRON_OUTLINE std::uint32_t next_candidate(const std::uint32_t* list, std::uint32_t begin,
+                                                              std::uint32_t end, std::uint32_t base,
+                                                              std::uint32_t there, LeafAnswer<L>& answer) const {
+    if constexpr (Memory::kHasBeams) {
+      if (shares_origin_) return search(SharedLanes<L>(memory_.triangles, base), list, begin, end, there, answer);
     }
-    return search<true>(list, begin, end, base, there, answer);
+    if constexpr (L::kRoundsOnce) {
+      if (question_.trusts_floats) {
+        return search(LeafLanes<L, false>(memory_.triangles, base, farthest_), list, begin, end, there, answer);
+      }
+    }
+    return search(LeafLanes<L, true>(memory_.triangles, base, farthest_), list, begin, end, there, answer);
   }
-  template <bool kBounded>
-  [[nodiscard]] GRIDIRON_OUTLINE std::uint32_t search(const std::uint32_t* list, std::uint32_t begin, std::uint32_t end,
-                                                      std::uint32_t base, std::uint32_t there,
-                                                      LeafAnswer<L>& answer) const {
-    const LeafLanes<L, kBounded> lanes(memory_.triangles, base, farthest_);
+  template <class LanesOfLeaf>
+  [[nodiscard]] GRIDIRON_INLINE std::uint32_t search(const LanesOfLeaf& lanes, const std::uint32_t* list,
+                                                     std::uint32_t begin, std::uint32_t end, std::uint32_t there,
+                                                     LeafAnswer<L>& answer) const {
     for (std::uint32_t i = begin; i < end; ++i) {
       const LeafAnswer<L> found = lanes.test(ray_of(memory_.rays, list[i]), there);
       if ((found.inside | found.unsure) == 0) continue;
@@ -341,6 +434,7 @@ class RayLists {
   WorkCounters& work_;
   RayQuestion question_{};
   std::uint32_t ray_count_ = 0, dead_count_ = 0;
+  bool shares_origin_ = false;
   float farthest_ = 0.0f;  // FarthestOrigin::sum()
 };
 
