@@ -131,14 +131,14 @@ GRIDIRON_INLINE std::uint32_t mark_run(const BoxSides<L>* sides, BatchRay* rays,
                                        std::uint32_t begin, std::uint32_t place, Work kind, std::uint32_t& closed,
                                        WorkCounters& work) {
   static constexpr std::uint32_t kGroups = L::kCount < 4 ? 4 : L::kCount == 8 ? 2 : 1;
+  const std::uint32_t behind = behind_octant(list[begin]);
   std::uint32_t i = begin, word = list[i], tests = 0;
-  const std::uint32_t octant = word & ~((1u << kOctantShift) - 1);
   do {
     ++tests;
     if constexpr (kBoxRays<L> == 2) {
       // The last ray of an odd number is tested twice.
       const std::uint32_t next = list[i + 1];
-      const bool are_two = is_of_octant(next, octant);
+      const bool are_two = next < behind;
       const std::uint32_t second = are_two ? i + 1 : i, second_word = are_two ? next : word;
       const BoxRay<L> first_ray(ray_of(rays, word)), second_ray(ray_of(rays, second_word));
       const std::uint32_t first_missed = sides->template missed_by<kAreMeasured>(first_ray),
@@ -158,7 +158,7 @@ GRIDIRON_INLINE std::uint32_t mark_run(const BoxSides<L>* sides, BatchRay* rays,
       ++i;
     }
     word = list[i];
-  } while (is_of_octant(word, octant));
+  } while (word < behind);
   work.add(kind, tests);
   return i;
 }

@@ -256,11 +256,15 @@ struct SharedLanes {
   using Float = typename L::Float;
   Float first[3], second[3], n[3], ahead, ahead_error, error, normal_error;
 
-  GRIDIRON_INLINE SharedLanes(const TriangleLanes& lanes, std::uint32_t base)
+  const std::uint32_t* own_ids;
+
+  /// @param own_ids  no_hit() of the triangles.
+  GRIDIRON_INLINE SharedLanes(const TriangleLanes& lanes, std::uint32_t base, const std::uint32_t* own_ids)
       : ahead(Float::load(lanes.e2[0] + base)),
         ahead_error(Float::load(lanes.e2[1] + base)),
         error(Float::load(lanes.edge_error + base)),
-        normal_error(Float::load(lanes.normal_error + base)) {
+        normal_error(Float::load(lanes.normal_error + base)),
+        own_ids(own_ids + base) {
     for (int axis = 0; axis < 3; ++axis) {
       first[axis] = Float::load(lanes.v[axis] + base);
       second[axis] = Float::load(lanes.back_e1[axis] + base);
@@ -277,7 +281,8 @@ struct SharedLanes {
     const Float size = L::abs(denominator);
     const Float least = L::min(L::min(side, other), size - side - other);
     const Float most_error = error * q.dir_max;
-    const std::uint32_t candidates = there & ~(least + most_error < Float(0.0f)).bits();
+    // Rays from a light end on their own triangles, which would all be candidates.
+    const std::uint32_t candidates = there & ~((least + most_error < Float(0.0f)) | L::equal(ray.id, own_ids)).bits();
     if (candidates == 0) return LeafAnswer<L>::none();
     return LeafAnswer<L>::judge(candidates, (least > most_error).bits(), L::turn_by(denominator, ahead), ahead_error,
                                 size, normal_error * q.dir_max, q.t);

@@ -39,9 +39,11 @@ struct alignas(64) RayBeam {
                        ///< the greatest |component| of a direction along it, with its sign
 };
 
+/// Beams, and what leaves take for rays of one origin.
 template <std::uint32_t Count>
 struct BeamMemory {
   RayBeam of[Count];
+  alignas(64) std::uint32_t own_ids[kMaxTreeLeaf];  ///< no_hit() of a leaf's triangles
 };
 template <>
 struct BeamMemory<0> {};
@@ -90,7 +92,7 @@ struct alignas(128) ListMemory {
   static_assert(Spare % 16 == 0);
 
   BatchRay rays[Rays];
-  [[no_unique_address]] BeamMemory<Beams ? Rays / kBeamRays : 0> beams;
+  [[no_unique_address]] BeamMemory<Beams ? Rays / kBeamRays : std::uint32_t{0}> beams;
   std::uint32_t owners[Rays];
   alignas(64) std::uint32_t arena[kArenaWords];
   TriangleLanes triangles;

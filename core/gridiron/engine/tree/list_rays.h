@@ -25,9 +25,9 @@ inline constexpr std::uint32_t kRayQuads = sizeof(BatchRay) / 16;
 }
 /// Behind all words of rays.
 inline constexpr std::uint32_t kListEnd = ~0u;
-/// @returns whether a word has an octant. @param octant  at its place in words. The list's end has none.
-[[nodiscard]] GRIDIRON_INLINE bool is_of_octant(std::uint32_t word, std::uint32_t octant) {
-  return word - octant < (1u << kOctantShift) - 1;
+/// @returns a number above the words of a word's octant, and not above those of the next, or of the list's end.
+[[nodiscard]] GRIDIRON_INLINE std::uint32_t behind_octant(std::uint32_t word) {
+  return word | ((1u << kOctantShift) - 1);
 }
 /// @returns the octant: bit 0, 1, 2 where the ray runs towards smaller x, y, z.
 [[nodiscard]] GRIDIRON_INLINE std::uint32_t octant_of(std::uint32_t word) {

@@ -26,6 +26,8 @@ namespace gridiron {
 inline constexpr float kBeamMargin = 0x1p-18f;
 /// A beam that is wider than this share of its length would meet too much.
 inline constexpr float kBeamWidth = 0.2f;
+/// Nor are rays bounded that begin or end farther away than this, in the scene's sizes.
+inline constexpr float kFarBeam = 0x1p10f;
 /// Groups of rays that make no beam, beyond a quarter of all, before the others are not tried any more.
 inline constexpr std::uint32_t kVainBeams = 4;
 
@@ -43,8 +45,8 @@ inline constexpr std::uint32_t kVainBeams = 4;
 /// No axis: rays that make no beam.
 inline constexpr std::uint32_t kNoBeam = 3;
 
-/// Makes the beam of some rays. @param rays  prepared for lists, 1 to kBeamRays. @param largest  as in
-/// RayLists::trace().
+/// Makes the beam of some rays. @param rays  of one octant, prepared for lists, 1 to kBeamRays.
+/// @param largest  as in RayLists::trace().
 /// @returns its axis, or kNoBeam.
 GRIDIRON_OUTLINE inline std::uint32_t make_beam(const BatchRay* rays, std::uint32_t count, float largest,
                                                 RayBeam& beam) {
@@ -54,56 +56,50 @@ GRIDIRON_OUTLINE inline std::uint32_t make_beam(const BatchRay* rays, std::uint3
   const std::uint32_t axis = x > y ? (x > z ? 0u : 2u) : (y > z ? 1u : 2u);
   const float far = 2.0f * largest;
   Float starts[kBeamRays], ends[kBeamRays];
-  Float low_start(kFloatMax), high_start(-kFloatMax), low_end(kFloatMax), high_end(-kFloatMax), low_dir(kFloatMax),
-      high_dir(-kFloatMax);
-  const Float limit(far * 0x1p10f);
-  std::uint32_t fits = 7;
+  Float low_start(kFloatMax), high_start(-kFloatMax), low_end(kFloatMax), high_end(-kFloatMax), dir_size(0.0f);
+  bool are_bounded = true;
   for (std::uint32_t i = 0; i < count; ++i) {
     const BatchRay& ray = rays[i];
-    // Behind this the rest of the ray is outside the scene.
+    // Behind this the rest of the ray is outside the scene. A ray that boxes cannot be tested against has 0 here.
     const float reach = (magnitude(ray.origin[axis]) + far) * magnitude(ray.inverse[axis]);
     const float t = ray.t < reach ? ray.t : reach;
+    are_bounded = are_bounded && t > 0.0f && t < kFloatMax;  // nor NaN
     const Float start = Quad::shuffle_quads<0, 1, 2, 0>(Float::load(ray.origin));
     const Float dir = Quad::shuffle_quads<0, 1, 2, 0>(Float::load(ray.dir));
     const Float end = start + Float(t) * dir;
-    // NaN does not fit; a ray that boxes cannot be tested against has no reach.
-    fits &= (Quad::abs(end) <= limit).bits();
-    if (!(t > 0.0f)) fits = 0;
     starts[i] = start;
     ends[i] = end;
     low_start = Quad::min(start, low_start);
     high_start = Quad::max(start, high_start);
     low_end = Quad::min(end, low_end);
     high_end = Quad::max(end, high_end);
-    low_dir = Quad::min(dir, low_dir);
-    high_dir = Quad::max(dir, high_dir);
+    dir_size = Quad::max(Quad::abs(dir), dir_size);
   }
-  if (fits != 7) return kNoBeam;
+  const Float sizes = Quad::max(Quad::max(Quad::abs(low_start), Quad::abs(high_start)),
+                                Quad::max(Quad::abs(low_end), Quad::abs(high_end)));
+  const float most = Quad::horizontal_max(sizes);
+  if (!are_bounded || !(most <= far * kFarBeam)) return kNoBeam;
   const Float half(0.5f);
-  const Float length = Float(Quad::lane((low_end + high_end) * half - (low_start + high_start) * half, axis));
-  const float low_along = Quad::lane(low_dir, axis), high_along = Quad::lane(high_dir, axis);
-  const bool is_forward = low_along > 0.0f;
-  const Float low_slope = (low_end - low_start) / length, high_slope = (high_end - high_start) / length;
-  const Float spread = Quad::abs(length) * Float(kBeamWidth);
+  const float length = Quad::lane((low_end + high_end) * half - (low_start + high_start) * half, axis);
+  const bool is_forward = length > 0.0f;
+  const Float spread(magnitude(length) * kBeamWidth);
   const std::uint32_t others = 7u & ~(1u << axis);
-  const std::uint32_t narrow = ((high_start - low_start) <= spread).bits() & ((high_end - low_end) <= spread).bits();
-  if ((narrow & others) != others || (!is_forward && !(high_along < 0.0f))) return kNoBeam;
+  const std::uint32_t wide = ((high_start - low_start > spread) | (high_end - low_end > spread)).bits();
+  if ((wide & others) != 0) return kNoBeam;
+  const Float low_slope = (low_end - low_start) / Float(length), high_slope = (high_end - high_start) / Float(length);
   Float low_offset(kFloatMax), high_offset(-kFloatMax);
   for (std::uint32_t i = 0; i < count; ++i) {
     const Float start_w = Float(Quad::lane(starts[i], axis)), end_w = Float(Quad::lane(ends[i], axis));
     low_offset = Quad::min(low_offset, Quad::min(starts[i] - low_slope * start_w, ends[i] - low_slope * end_w));
     high_offset = Quad::max(high_offset, Quad::max(starts[i] - high_slope * start_w, ends[i] - high_slope * end_w));
   }
-  const Float sizes = Quad::max(Quad::max(Quad::abs(low_start), Quad::abs(high_start)),
-                                Quad::max(Quad::abs(low_end), Quad::abs(high_end)));
-  const float most = Quad::horizontal_max(sizes);
   const float margin = (most > far ? most : far) * kBeamMargin;
   low_offset = low_offset - (Float(1.0f) + Quad::abs(low_slope)) * Float(margin);
   high_offset = high_offset + (Float(1.0f) + Quad::abs(high_slope)) * Float(margin);
   const auto plane = [](Float slope, Float offset, std::uint32_t lane, float* words) {
-    const float value = Quad::lane(slope, lane);
-    words[0] = value > 0.0f ? value : 0.0f;
-    words[1] = value > 0.0f ? 0.0f : value;
+    const float value = Quad::lane(slope, lane), none = 0.0f;
+    words[0] = value > none ? value : none;
+    words[1] = value > none ? none : value;
     words[2] = Quad::lane(offset, lane);
   };
   const std::uint32_t u = axis == 0 ? 1 : 0, v = axis == 2 ? 1 : 2;
@@ -114,7 +110,7 @@ GRIDIRON_OUTLINE inline std::uint32_t make_beam(const BatchRay* rays, std::uint3
   beam.planes[0][3] = Quad::lane(is_forward ? low_start : low_end, axis) - margin;
   beam.planes[1][3] = Quad::lane(is_forward ? high_end : high_start, axis) + margin;
   beam.planes[2][3] = is_forward ? Quad::lane(high_start, axis) + margin : Quad::lane(low_start, axis) - margin;
-  beam.planes[3][3] = is_forward ? high_along : low_along;
+  beam.planes[3][3] = is_forward ? Quad::lane(dir_size, axis) : -Quad::lane(dir_size, axis);
   return axis;
 }
 
@@ -206,19 +202,16 @@ template <class L>
 GRIDIRON_OUTLINE inline std::uint32_t list_beam_rays(RayBeam* beams, const std::uint32_t* list, std::uint32_t count,
                                                      BatchRay* rays, std::uint32_t ray_count, std::uint32_t* target,
                                                      WorkCounters& work) {
-  using Quad = Lanes<4>;
   std::uint32_t listed = 0;
   for (std::uint32_t i = 0; i < count; ++i) {
-    const std::uint32_t beam = beam_index(list[i]), first = beam * kBeamRays;
+    const std::uint32_t beam = beam_index(list[i]), first = beam * kBeamRays, octant = octant_of(list[i]);
     const std::uint32_t rest = ray_count - first, here = rest < kBeamRays ? rest : kBeamRays;
     work.add(Work::kListEntry, here);
     float most_t = -1.0f;
     for (std::uint32_t j = 0; j < here; ++j) {
-      const BatchRay& ray = rays[first + j];
-      const float t = ray.t;
-      const std::uint32_t octant = (Quad::Float::load(ray.inverse) < Quad::Float(0.0f)).bits() & 7u;
+      const float t = rays[first + j].t;
       target[listed] = list_word(first + j, octant);
-      listed += t >= 0.0f ? 1u : 0u;
+      listed += t >= 0.0f ? std::uint32_t{1} : std::uint32_t{0};
       most_t = t > most_t ? t : most_t;
     }
     shorten_beam(beams[beam], most_t);

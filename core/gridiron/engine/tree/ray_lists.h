@@ -76,19 +76,20 @@ class RayLists {
     work_.add(Work::kListRay, count);
     work_.charge_to(Work::kListRay);
     FarthestOrigin<L> farthest;
-    bool is_shared = Memory::kHasBeams;
     for (std::uint32_t i = 0; i < count; ++i) {
       farthest.add(memory_.rays[i]);
-      is_shared = is_shared && have_one_origin(memory_.rays[i], memory_.rays[0]);
       const std::uint32_t octant = set_up_list_ray<L>(memory_.rays[i], largest);
       unsorted[i] = list_word(i, octant);
       ++counts[octant];
     }
     farthest_ = farthest.sum();
-    shares_origin_ = is_shared && !question_.trusts_floats;
+    shares_origin_ = false;
     std::uint32_t words = count;
     if constexpr (kHasBeams) {
-      if (question_.are_neighbors) words = list_beams(unsorted, count, largest, counts);
+      if (question_.are_neighbors) {
+        shares_origin_ = !question_.trusts_floats && have_one_origin(memory_.rays, count);
+        words = list_beams(unsorted, count, largest, counts);
+      }
     }
     std::uint32_t places[kRoots], end = 0;
     for (std::uint32_t root = 0; root < kRoots; ++root) {
@@ -98,7 +99,7 @@ class RayLists {
     }
     for (std::uint32_t i = 0; i < words; ++i) {
       const std::uint32_t word = unsorted[i];
-      std::uint32_t& place = places[octant_of(word) + ((word & kIsBeam) != 0 ? kBeamRoot : 0)];
+      std::uint32_t& place = places[octant_of(word) + (word & kIsBeam) * kBeamRoot];
       memory_.arena[place] = word & ~kIsBeam;
       ++place;
     }
@@ -112,7 +113,9 @@ class RayLists {
       const std::uint32_t rest = count - first, here = rest < kBeamRays ? rest : kBeamRays;
       const std::uint32_t octant = octant_of(words[first]);
       std::uint32_t axis = kNoBeam;
-      if (tried - made < kVainBeams + tried / 4) {
+      bool are_alike = true;
+      for (std::uint32_t i = first; i < first + here; ++i) are_alike = are_alike && octant_of(words[i]) == octant;
+      if (are_alike && tried - made < kVainBeams + tried / 4) {
         work_.add(Work::kListBeam);
         work_.charge_to(Work::kListBeam);
         axis = make_beam(memory_.rays + first, here, largest, memory_.beams.of[first / kBeamRays]);
@@ -122,7 +125,7 @@ class RayLists {
         for (std::uint32_t i = first; i < first + here; ++i, ++listed) words[listed] = words[i];
         continue;
       }
-      for (std::uint32_t i = first; i < first + here; ++i) --counts[octant_of(words[i])];
+      counts[octant] -= here;
       words[listed] = beam_word(first / kBeamRays, axis, octant) | kIsBeam;
       ++listed;
       ++counts[kBeamRoot + octant];
@@ -132,8 +135,14 @@ class RayLists {
     return listed;
   }
 
-  [[nodiscard]] static GRIDIRON_INLINE bool have_one_origin(const BatchRay& a, const BatchRay& b) {
-    return a.origin[0] == b.origin[0] && a.origin[1] == b.origin[1] && a.origin[2] == b.origin[2];
+  [[nodiscard]] static GRIDIRON_OUTLINE bool have_one_origin(const BatchRay* rays, std::uint32_t count) {
+    using Quad = Lanes<4>;
+    const auto place = Quad::Float::load(rays[0].origin);
+    for (std::uint32_t i = 1; i < count; ++i) {
+      const auto other = Quad::Float::load(rays[i].origin);
+      if ((((other < place) | (other > place)).bits() & 7u) != 0) return false;
+    }
+    return true;
   }
   // Where all rays begin, if it is one place.
   [[nodiscard]] const float* shared_origin() const { return shares_origin_ ? memory_.rays[0].origin : nullptr; }
@@ -309,8 +318,11 @@ class RayLists {
     work_.add(leaf_kind);
     work_.charge_to(leaf_kind);
     set_up_leaf<L>(records, leaf.count(), question_.trusts_floats, memory_.triangles);
-    if constexpr (Memory::kHasBeams) {
-      if (shares_origin_) share_origin<L>(memory_.rays[0].origin, leaf.count(), memory_.triangles);
+    if constexpr (kHasBeams) {
+      if (shares_origin_) {
+        share_origin<L>(memory_.rays[0].origin, leaf.count(), memory_.triangles);
+        for (std::uint32_t i = 0; i < leaf.count(); ++i) memory_.beams.own_ids[i] = no_hit(records[i].triangle_id);
+      }
     }
     for (std::uint32_t base = 0; base < leaf.count(); base += L::kCount) {
       const std::uint32_t rest = leaf.count() - base;
@@ -329,25 +341,34 @@ class RayLists {
 
   // @returns the first ray of a list, from `begin` on, that floats do not rule out for all triangles of a group, or the
   // list's end. @param answer  gets what they say.
-  [[nodiscard]] GRIDIRON_OUTLINE std::uint32_t next_candidate(const std::uint32_t* list, std::uint32_t begin,
-                                                              std::uint32_t end, std::uint32_t base,
-                                                              std::uint32_t there, LeafAnswer<L>& answer) const {
-    if constexpr (Memory::kHasBeams) {
-      if (shares_origin_) return search(SharedLanes<L>(memory_.triangles, base), list, begin, end, there, answer);
+  [[nodiscard]] GRIDIRON_INLINE std::uint32_t next_candidate(const std::uint32_t* list, std::uint32_t begin,
+                                                             std::uint32_t end, std::uint32_t base, std::uint32_t there,
+                                                             LeafAnswer<L>& answer) const {
+    if constexpr (kHasBeams) {
+      if (shares_origin_) return search_shared(list, begin, end, base, there, answer);
     }
     if constexpr (L::kRoundsOnce) {
-      if (question_.trusts_floats) {
-        return search(LeafLanes<L, false>(memory_.triangles, base, farthest_), list, begin, end, there, answer);
-      }
+      if (question_.trusts_floats) return search_own<false>(list, begin, end, base, there, answer);
     }
-    return search(LeafLanes<L, true>(memory_.triangles, base, farthest_), list, begin, end, there, answer);
+    return search_own<true>(list, begin, end, base, there, answer);
   }
-  template <class LanesOfLeaf>
-  [[nodiscard]] GRIDIRON_INLINE std::uint32_t search(const LanesOfLeaf& lanes, const std::uint32_t* list,
+  [[nodiscard]] GRIDIRON_OUTLINE std::uint32_t search_shared(const std::uint32_t* list, std::uint32_t begin,
+                                                             std::uint32_t end, std::uint32_t base, std::uint32_t there,
+                                                             LeafAnswer<L>& answer) const {
+    return search(SharedLanes<L>(memory_.triangles, base, memory_.beams.own_ids), list, begin, end, there, answer);
+  }
+  template <bool kBounded>
+  [[nodiscard]] GRIDIRON_OUTLINE std::uint32_t search_own(const std::uint32_t* list, std::uint32_t begin,
+                                                          std::uint32_t end, std::uint32_t base, std::uint32_t there,
+                                                          LeafAnswer<L>& answer) const {
+    return search(LeafLanes<L, kBounded>(memory_.triangles, base, farthest_), list, begin, end, there, answer);
+  }
+  template <class Triangles>
+  [[nodiscard]] GRIDIRON_INLINE std::uint32_t search(const Triangles& triangles, const std::uint32_t* list,
                                                      std::uint32_t begin, std::uint32_t end, std::uint32_t there,
                                                      LeafAnswer<L>& answer) const {
     for (std::uint32_t i = begin; i < end; ++i) {
-      const LeafAnswer<L> found = lanes.test(ray_of(memory_.rays, list[i]), there);
+      const LeafAnswer<L> found = triangles.test(ray_of(memory_.rays, list[i]), there);
       if ((found.inside | found.unsure) == 0) continue;
       answer = found;
       return i;
