@@ -137,7 +137,7 @@ struct EffectLayout256K {
   /// @endcond
   using RayEngine = TreeEngine;                          ///< what traces all rays but eye rays
   static constexpr std::uint32_t kBatchRays = 512;       ///< rays that its lists take at once
-  static constexpr std::uint32_t kSpareListWords = 448;  ///< of its lists, beyond the least
+  static constexpr std::uint32_t kSpareListWords = 528;  ///< of its lists, beyond the least
   static constexpr bool kHasBeams = true;                ///< lists have beams, and code for rays of one origin
   static constexpr std::uint32_t kTreeSlots = 32;        ///< nodes and leaves at hand
   static constexpr std::uint32_t kLeafTriangles = 8;     ///< of a leaf, at most

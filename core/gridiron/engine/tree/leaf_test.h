@@ -58,12 +58,11 @@ GRIDIRON_INLINE void load_records(const VertexTriangle* records, std::uint32_t b
   }
 }
 
-/// Spreads `count` records over lanes. @param trusts_floats  no errors of sides: Accuracy::kFast.
+/// Spreads `count` records over lanes.
 template <class L>
-GRIDIRON_OUTLINE void set_up_leaf(const VertexTriangle* records, std::uint32_t count, bool trusts_floats,
-                                  TriangleLanes& lanes) {
+GRIDIRON_OUTLINE void set_up_leaf(const VertexTriangle* records, std::uint32_t count, TriangleLanes& lanes) {
   using Float = typename L::Float;
-  const Float factor(trusts_floats ? 0.0f : kSideErrorFactor);
+  const Float factor(kSideErrorFactor);
   for (std::uint32_t base = 0; base < count; base += L::kCount) {
     Float corners[12];  // nine coordinates
     load_records<L>(records, base, count, corners);
@@ -184,8 +183,8 @@ template <class L>
 inline constexpr bool kBoundsBatch = L::kCount > 4;
 
 /// The lanes of a leaf from `base` on, in registers.
-/// @tparam kBounded  decisions have bounds of their error. Accuracy::kFast has none, so it computes the same bits with
-///                   all lanes.
+/// @tparam kBounded  what is unsure is decided exactly. With Accuracy::kFast it is not, so all lanes compute the same
+///                   bits.
 template <class L, bool kBounded>
 struct LeafLanes {
   using Float = typename L::Float;
@@ -222,7 +221,7 @@ struct LeafLanes {
     const Float size = L::abs(denominator);
     const Float third = size - first - second;
     const Float least = L::min(L::min(first, second), third);
-    if constexpr (kBoundsBatch<L>) {
+    if constexpr (kBounded && kBoundsBatch<L>) {
       if ((there & ~(sum(most_error, q.dir_max, least) < Float(0.0f)).bits()) == 0) return LeafAnswer<L>::none();
     }
     const Float far = L::abs(x) + L::abs(y) + (L::abs(z) + Float(kLeastListSize));
@@ -258,13 +257,13 @@ struct SharedLanes {
 
   const std::uint32_t* own_ids;
 
-  /// @param own_ids  no_hit() of the triangles.
-  GRIDIRON_INLINE SharedLanes(const TriangleLanes& lanes, std::uint32_t base, const std::uint32_t* own_ids)
+  /// @param ids  no_hit() of the triangles.
+  GRIDIRON_INLINE SharedLanes(const TriangleLanes& lanes, std::uint32_t base, const std::uint32_t* ids)
       : ahead(Float::load(lanes.e2[0] + base)),
         ahead_error(Float::load(lanes.e2[1] + base)),
         error(Float::load(lanes.edge_error + base)),
         normal_error(Float::load(lanes.normal_error + base)),
-        own_ids(own_ids + base) {
+        own_ids(ids + base) {
     for (int axis = 0; axis < 3; ++axis) {
       first[axis] = Float::load(lanes.v[axis] + base);
       second[axis] = Float::load(lanes.back_e1[axis] + base);

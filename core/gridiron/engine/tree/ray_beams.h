@@ -204,6 +204,7 @@ GRIDIRON_OUTLINE inline std::uint32_t list_beam_rays(RayBeam* beams, const std::
                                                      WorkCounters& work) {
   std::uint32_t listed = 0;
   for (std::uint32_t i = 0; i < count; ++i) {
+    if ((list[i] & kMaskBits) == kMaskBits) continue;
     const std::uint32_t beam = beam_index(list[i]), first = beam * kBeamRays, octant = octant_of(list[i]);
     const std::uint32_t rest = ray_count - first, here = rest < kBeamRays ? rest : kBeamRays;
     work.add(Work::kListEntry, here);

@@ -317,7 +317,7 @@ class RayLists {
     const Work group_kind = shares_origin_ ? Work::kListSharedGroup : Work::kListTriangleGroup;
     work_.add(leaf_kind);
     work_.charge_to(leaf_kind);
-    set_up_leaf<L>(records, leaf.count(), question_.trusts_floats, memory_.triangles);
+    set_up_leaf<L>(records, leaf.count(), memory_.triangles);
     if constexpr (kHasBeams) {
       if (shares_origin_) {
         share_origin<L>(memory_.rays[0].origin, leaf.count(), memory_.triangles);
@@ -328,12 +328,11 @@ class RayLists {
       const std::uint32_t rest = leaf.count() - base;
       const std::uint32_t there = rest >= L::kCount ? std::uint32_t{L::kAllBits} : (1u << rest) - 1u;
       work_.add(group_kind, count);
-      work_.charge_to(group_kind);
+      work_.charge_to(leaf_kind);
       LeafAnswer<L> answer;
       for (std::uint32_t i = next_candidate(list, 0, count, base, there, answer); i < count;
            i = next_candidate(list, i + 1, count, base, there, answer)) {
         GRIDIRON_TRY(decide(ray_of(memory_.rays, list[i]), records + base, answer, base));
-        work_.charge_to(group_kind);
       }
     }
     return Status::kOk;
@@ -367,6 +366,7 @@ class RayLists {
   [[nodiscard]] GRIDIRON_INLINE std::uint32_t search(const Triangles& triangles, const std::uint32_t* list,
                                                      std::uint32_t begin, std::uint32_t end, std::uint32_t there,
                                                      LeafAnswer<L>& answer) const {
+    work_.charge_to(shares_origin_ ? Work::kListSharedGroup : Work::kListTriangleGroup);
     for (std::uint32_t i = begin; i < end; ++i) {
       const LeafAnswer<L> found = triangles.test(ray_of(memory_.rays, list[i]), there);
       if ((found.inside | found.unsure) == 0) continue;
@@ -402,7 +402,9 @@ class RayLists {
       }
       const VertexTriangle& triangle = triangles[lane];
       if ((triangle.triangle_id | kNoHit) == ray.id) continue;
-      if ((answer.inside >> lane & 1u) == 0 && !passes_through(ray, triangle, work_)) continue;
+      // Floats alone take what is unsure for a hit: two triangles that share an edge leave no gap then.
+      const bool is_sure = (answer.inside >> lane & 1u) != 0 || (question_.trusts_floats && ray.dir_max < kInfinity);
+      if (!is_sure && !passes_through(ray, triangle, work_)) continue;
       if (any_hit && (answer.within >> lane & 1u) != 0) return stop(ray, triangle.triangle_id);
       const float t = question_.trusts_floats ? float_distance(ray, base + lane) : ray_distance(ray, triangle, work_);
       work_.charge_to(Work::kListCandidate);
