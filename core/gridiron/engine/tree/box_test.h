@@ -165,9 +165,9 @@ GRIDIRON_INLINE std::uint32_t mark_run(const BoxSides<L>* sides, BatchRay* rays,
 
 /// The same for all octants of a list, with room for L::kCount words more.
 /// @param base   the first box: as many are tested as a part has. @param place  of its bit.
-/// @param origin  of all rays, if it is one. @param kind  of work that a test of kBoxRays is.
-/// @returns the boxes that any ray meets.
-template <class L>
+/// @tparam kShares  rays may have one origin. @param origin  this; null: each has its own.
+/// @param kind  of work that a test of kBoxRays is. @returns the boxes that any ray meets.
+template <class L, bool kShares>
 GRIDIRON_OUTLINE std::uint32_t mark_list(const BoxTable& boxes, std::uint32_t base, std::uint32_t place, BatchRay* rays,
                                          const float* origin, std::uint32_t* list, std::uint32_t count, Work kind,
                                          WorkCounters& work) {
@@ -182,7 +182,7 @@ GRIDIRON_OUTLINE std::uint32_t mark_list(const BoxTable& boxes, std::uint32_t ba
     for (std::uint32_t group = 0; group < kGroups; ++group) {
       sides[group] = boxes.template sides<L>(octant_of(list[i]), base + group * L::kCount);
     }
-    if (origin != nullptr) {
+    if (kShares && origin != nullptr) {
       for (BoxSides<L>& group : sides) group.measure_from(origin);
       work.charge_to(Work::kListSharedBox);
       i = mark_run<true, L>(sides, rays, list, i, place, Work::kListSharedBox, closed, work);
@@ -202,7 +202,7 @@ inline constexpr std::uint32_t kFewChildren = 8;
 
 /// Finds the boxes of a node that each ray of a list meets. @param level  gets the lists of its parts, behind `list`.
 /// @param arena  of the lists. @returns the children that any ray meets.
-template <class L>
+template <class L, bool kShares>
 [[nodiscard]] GRIDIRON_INLINE std::uint32_t mark_boxes(const TreeNode& node, BatchRay* rays, const float* origin,
                                                        std::uint32_t* arena, std::uint32_t list, std::uint32_t count,
                                                        ListLevel& level, WorkCounters& work) {
@@ -215,24 +215,24 @@ template <class L>
     static constexpr Work kKind = kParts == 1 ? Work::kListRayNode : Work::kListBoxQuad;
     for (std::uint32_t part = 0; part * kPartBoxes < node.child_count; ++part) {
       const std::uint32_t base = part * kPartBoxes;
-      level.lists[part] = list;
-      level.ray_counts[part] = count;
-      open |= mark_list<L>(boxes, base, base, rays, origin, arena + list, count, kKind, work) << base;
+      level.set_part(part, list, count);
+      open |= mark_list<L, kShares>(boxes, base, base, rays, origin, arena + list, count, kKind, work) << base;
     }
   } else {
     NodeUnions unions;
     unite_boxes<L>(node, unions);
     const BoxTable united{unions.low[0], unions.high[0], 4};
-    const std::uint32_t quads = mark_list<L>(united, 0, 0, rays, origin, arena + list, count, Work::kListRayNode, work);
+    const std::uint32_t quads =
+        mark_list<L, kShares>(united, 0, 0, rays, origin, arena + list, count, Work::kListRayNode, work);
     for (std::uint32_t rest = quads; rest != 0; rest &= rest - 1) {
       const std::uint32_t part = lowest_bit(rest);
       work.add(Work::kListEntry, count);
       work.charge_to(Work::kListEntry);
       const std::uint32_t taken = take_marked<L>(arena + list, count, part, arena + end);
       const std::uint32_t base = part * kPartBoxes;
-      level.lists[part] = end;
-      level.ray_counts[part] = taken;
-      open |= mark_list<L>(boxes, base, base, rays, origin, arena + end, taken, Work::kListBoxQuad, work) << base;
+      level.set_part(part, end, taken);
+      open |= mark_list<L, kShares>(boxes, base, base, rays, origin, arena + end, taken, Work::kListBoxQuad, work)
+              << base;
       end = (end + taken + (kStep - 1)) & ~(kStep - 1);
     }
   }

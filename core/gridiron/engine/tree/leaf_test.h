@@ -91,7 +91,7 @@ GRIDIRON_OUTLINE void set_up_leaf(const VertexTriangle* records, std::uint32_t c
 /// back_e1 those through it and the second one, e2 what rays have in common (SharedLanes). Each has the roundings that
 /// the bound of a side allows for.
 template <class L>
-GRIDIRON_OUTLINE void share_origin(const float* origin, std::uint32_t count, TriangleLanes& lanes) {
+GRIDIRON_OUTLINE void set_up_origin(const float* origin, std::uint32_t count, TriangleLanes& lanes) {
   using Float = typename L::Float;
   for (std::uint32_t base = 0; base < count; base += L::kCount) {
     Float place[3], first[3], second[3];
@@ -249,7 +249,7 @@ struct LeafLanes {
   }
 };
 
-/// The same of lanes that share_origin() prepared.
+/// The same of lanes that set_up_origin() prepared.
 template <class L>
 struct SharedLanes {
   using Float = typename L::Float;

@@ -55,11 +55,14 @@ struct ListLevel {
   std::uint32_t child_count;       ///< of these
   std::uint32_t turn;              ///< the child whose rays are next
   std::uint32_t asked;             ///< children asked for ahead of their turns
-  std::uint32_t lists[4];          ///< of each part: where its list begins in the arena
-  std::uint32_t ray_counts[4];     ///< of these lists
+  std::uint32_t parts[4];          ///< set_part() of each
   std::uint32_t end;               ///< what is free behind them
   std::uint32_t taken;             ///< of a part's rays, those that the child whose turn it is has seen
-  bool has_beams;                  ///< lists are of beams, not of rays
+
+  /// A part's list: where it begins in the arena, and how long it is.
+  void set_part(std::uint32_t part, std::uint32_t list, std::uint32_t count) { parts[part] = list << 16 | count; }
+  [[nodiscard]] std::uint32_t list_of(std::uint32_t part) const { return parts[part] >> 16; }
+  [[nodiscard]] std::uint32_t count_of(std::uint32_t part) const { return parts[part] & 0xFFFFu; }
 };
 
 /// Up to 16 triangles in lanes.
@@ -90,6 +93,7 @@ struct alignas(128) ListMemory {
   }();
   static_assert(Rays % 16 == 0 && 3 * Rays <= 1u << 13, "a word of a list has 13 bits for a ray's place");
   static_assert(Spare % 16 == 0);
+  static_assert(kArenaWords <= 0xFFFFu, "ListLevel::set_part");
 
   BatchRay rays[Rays];
   [[no_unique_address]] BeamMemory<Beams ? Rays / kBeamRays : std::uint32_t{0}> beams;

@@ -42,13 +42,13 @@ class RayLists {
     std::uint32_t begins[kRoots], counts[kRoots];
     list_rays(count, largest, begins, counts);
     if (question.any_hit) {
-      std::uint32_t rays = 0, beams = 0;
-      for (std::uint32_t octant = 0; octant < 8; ++octant) {
-        rays += counts[octant];
-        beams += counts[kBeamRoot + octant];
+      if constexpr (kHasBeams) {
+        const std::uint32_t beams = sum_of(counts + kBeamRoot);
+        if (beams != 0) GRIDIRON_TRY(walk(begins[kBeamRoot], beams, true));
+        const std::uint32_t rays = sum_of(counts);
+        return rays != 0 ? walk(0, rays, false) : Status::kOk;
       }
-      if (beams != 0) GRIDIRON_TRY(walk(begins[kBeamRoot], beams, true));
-      return rays != 0 ? walk(0, rays, false) : Status::kOk;
+      return walk(0, count, false);
     }
     // The nearest hit is found soonest front to back, and front is another side for each octant. The last list goes
     // first: it needs the room behind it.
@@ -62,11 +62,17 @@ class RayLists {
  private:
   using Float = typename L::Float;
   // Lists that a batch begins with: rays by octants, then beams. Of unsorted words, a bit says which.
-  static constexpr std::uint32_t kBeamRoot = 8, kRoots = 16, kIsBeam = 1;
+  static constexpr std::uint32_t kBeamRoot = 8, kIsBeam = 1;
   static constexpr std::uint32_t kStep = kListStep<L>, kParts = kBoxParts<L>;
   static constexpr std::uint32_t kLevelWords = (1 + kListParts<L>)*kStep;
   static constexpr bool kHasBeams = L::kCount >= 4 && Memory::kHasBeams;
   static_assert(!kHasBeams || Memory::template kHoldsBeams<L>);
+  static constexpr std::uint32_t kRoots = kHasBeams ? 2 * kBeamRoot : kBeamRoot;
+  [[nodiscard]] static std::uint32_t sum_of(const std::uint32_t* counts) {
+    std::uint32_t sum = 0;
+    for (std::uint32_t octant = 0; octant < 8; ++octant) sum += counts[octant];
+    return sum;
+  }
   [[nodiscard]] static std::uint32_t step_up(std::uint32_t words) { return (words + (kStep - 1)) & ~(kStep - 1); }
 
   // Lists the batch in the order of octants: rays that run alike along all axes follow each other.
@@ -145,7 +151,8 @@ class RayLists {
     return true;
   }
   // Where all rays begin, if it is one place.
-  [[nodiscard]] const float* shared_origin() const { return shares_origin_ ? memory_.rays[0].origin : nullptr; }
+  [[nodiscard]] bool share_origin() const { return kHasBeams && shares_origin_; }
+  [[nodiscard]] const float* shared_origin() const { return share_origin() ? memory_.rays[0].origin : nullptr; }
 
   // Takes a list of the arena down the tree. What lies behind it is overwritten.
   [[nodiscard]] GRIDIRON_OUTLINE Status walk(std::uint32_t list, std::uint32_t count, bool are_beams) {
@@ -171,7 +178,7 @@ class RayLists {
         GRIDIRON_TRY(visit_leaf(child, memory_.arena + level.end, selected));
       } else {
         ++depth;
-        GRIDIRON_TRY(enter(memory_.levels[depth], child.node_index(), level.end, selected, level.has_beams));
+        GRIDIRON_TRY(enter(memory_.levels[depth], child.node_index(), level.end, selected, has_beams(depth - 1)));
       }
     }
   }
@@ -184,14 +191,14 @@ class RayLists {
     const std::uint32_t part = child / (kTreeWidth / kParts);
     const std::uint32_t below = (kMaxTreeDepth - 1 - depth) * kLevelWords;
     const std::uint32_t room = Memory::kArenaWords - level.end - below;
-    const std::uint32_t* const list = memory_.arena + level.lists[part];
+    const std::uint32_t* const list = memory_.arena + level.list_of(part);
     std::uint32_t* const target = memory_.arena + level.end;
     // All of them, if they fit even where each meets the child, and all boxes below it. With d = depth and words W of a
     // step of rays at all parts of a level, 13 - d of W are free behind the level's lists: of the root's by
     // list_arena_words, and so 2 W here, and 13 - (d + 1) behind a child's lists, which take W less than the room.
-    const std::uint32_t ray_count = level.ray_counts[part];
+    const std::uint32_t ray_count = level.count_of(part);
     std::uint32_t end = ray_count;
-    if (!level.has_beams && (1 + kListParts<L>)*step_up(end - level.taken) + kLevelWords > room) [[unlikely]] {
+    if (!has_beams(depth) && (1 + kListParts<L>)*step_up(end - level.taken) + kLevelWords > room) [[unlikely]] {
       end = level.taken + (room / kLevelWords - 1) * kStep;
     }
     const std::uint32_t seen = end - level.taken;
@@ -204,7 +211,7 @@ class RayLists {
       level.taken = 0;
       ++level.turn;
     }
-    if (!level.has_beams && dead_count_ * 5 > ray_count_) {
+    if (!has_beams(depth) && dead_count_ * 5 > ray_count_) {
       // Rays that have their answer leave lists only once they are many: they meet no box any more.
       count = keep_living(target, count);
     }
@@ -233,18 +240,19 @@ class RayLists {
     level.turn = 0;
     level.asked = 0;
     std::uint32_t open = 0;
-    level.has_beams = false;
+    bool are_rays = !kHasBeams || !are_beams;
     if constexpr (kHasBeams) {
+      const auto bit = std::uint32_t{1} << static_cast<std::uint32_t>(&level - memory_.levels);
+      beam_levels_ &= ~bit;
       if (are_beams) {
         open = mark_beams<L>(*node, memory_.beams.of, memory_.arena + list, count, work_);
         work_.charge_to(Work::kListNode);
         level.end = step_up(list + count);
-        level.has_beams = !has_leaf(*node, open);
-        for (std::uint32_t part = 0; part < kParts; ++part) {
-          level.lists[part] = list;
-          level.ray_counts[part] = count;
-        }
-        if (!level.has_beams) {
+        are_rays = has_leaf(*node, open);
+        for (std::uint32_t part = 0; part < kParts; ++part) level.set_part(part, list, count);
+        if (!are_rays) {
+          beam_levels_ |= bit;
+        } else {
           // Rays are tested one by one where leaves are: a beam meets more of them than its rays do.
           work_.charge_to(Work::kListEntry);
           count = list_beam_rays(memory_.beams.of, memory_.arena + list, count, memory_.rays, ray_count_,
@@ -253,8 +261,9 @@ class RayLists {
         }
       }
     }
-    if (!level.has_beams)
-      open = mark_boxes<L>(*node, memory_.rays, shared_origin(), memory_.arena, list, count, level, work_);
+    if (are_rays) {
+      open = mark_boxes<L, kHasBeams>(*node, memory_.rays, shared_origin(), memory_.arena, list, count, level, work_);
+    }
     work_.charge_to(Work::kListNode);
     level.child_count = 0;
     level.places[0] = level.places[1] = 0;
@@ -271,6 +280,11 @@ class RayLists {
     }
     add_nearest_first(level, *node, open, octant_of(memory_.arena[list]));
     return Status::kOk;
+  }
+
+  [[nodiscard]] bool has_beams(std::uint32_t depth) const {
+    if constexpr (kHasBeams) return (beam_levels_ >> depth & 1u) != 0;
+    return false;
   }
 
   // @returns whether one of some children is a leaf.
@@ -313,14 +327,14 @@ class RayLists {
     work_.charge_to(Work::kListLeaf);
     const VertexTriangle* records = nullptr;
     GRIDIRON_TRY(source_.leaf(leaf, records));
-    const Work leaf_kind = shares_origin_ ? Work::kListSharedLeaf : Work::kListLeaf;
-    const Work group_kind = shares_origin_ ? Work::kListSharedGroup : Work::kListTriangleGroup;
+    const Work leaf_kind = share_origin() ? Work::kListSharedLeaf : Work::kListLeaf;
+    const Work group_kind = share_origin() ? Work::kListSharedGroup : Work::kListTriangleGroup;
     work_.add(leaf_kind);
     work_.charge_to(leaf_kind);
     set_up_leaf<L>(records, leaf.count(), memory_.triangles);
     if constexpr (kHasBeams) {
       if (shares_origin_) {
-        share_origin<L>(memory_.rays[0].origin, leaf.count(), memory_.triangles);
+        set_up_origin<L>(memory_.rays[0].origin, leaf.count(), memory_.triangles);
         for (std::uint32_t i = 0; i < leaf.count(); ++i) memory_.beams.own_ids[i] = no_hit(records[i].triangle_id);
       }
     }
@@ -366,7 +380,7 @@ class RayLists {
   [[nodiscard]] GRIDIRON_INLINE std::uint32_t search(const Triangles& triangles, const std::uint32_t* list,
                                                      std::uint32_t begin, std::uint32_t end, std::uint32_t there,
                                                      LeafAnswer<L>& answer) const {
-    work_.charge_to(shares_origin_ ? Work::kListSharedGroup : Work::kListTriangleGroup);
+    work_.charge_to(share_origin() ? Work::kListSharedGroup : Work::kListTriangleGroup);
     for (std::uint32_t i = begin; i < end; ++i) {
       const LeafAnswer<L> found = triangles.test(ray_of(memory_.rays, list[i]), there);
       if ((found.inside | found.unsure) == 0) continue;
@@ -389,6 +403,9 @@ class RayLists {
     }
     // The nearest first, by estimates: exact distances cost the most, and a near hit spares those behind it.
     const std::uint32_t candidates = answer.inside | answer.unsure;
+    // Floats alone take what is unsure for a hit: two triangles that share an edge leave no gap then.
+    const std::uint32_t passed =
+        question_.trusts_floats && ray.dir_max < kInfinity ? candidates : std::uint32_t{answer.inside};
     alignas(64) float least[L::kCount];
     const bool are_several = !any_hit && (candidates & (candidates - 1)) != 0;
     if (are_several) answer.least_t().store(least);
@@ -402,9 +419,7 @@ class RayLists {
       }
       const VertexTriangle& triangle = triangles[lane];
       if ((triangle.triangle_id | kNoHit) == ray.id) continue;
-      // Floats alone take what is unsure for a hit: two triangles that share an edge leave no gap then.
-      const bool is_sure = (answer.inside >> lane & 1u) != 0 || (question_.trusts_floats && ray.dir_max < kInfinity);
-      if (!is_sure && !passes_through(ray, triangle, work_)) continue;
+      if ((passed >> lane & 1u) == 0 && !passes_through(ray, triangle, work_)) continue;
       if (any_hit && (answer.within >> lane & 1u) != 0) return stop(ray, triangle.triangle_id);
       const float t = question_.trusts_floats ? float_distance(ray, base + lane) : ray_distance(ray, triangle, work_);
       work_.charge_to(Work::kListCandidate);
@@ -457,6 +472,7 @@ class RayLists {
   WorkCounters& work_;
   RayQuestion question_{};
   std::uint32_t ray_count_ = 0, dead_count_ = 0;
+  std::uint32_t beam_levels_ = 0;  // bit i: the lists of level i are of beams
   bool shares_origin_ = false;
   float farthest_ = 0.0f;  // FarthestOrigin::sum()
 };
