@@ -111,6 +111,10 @@ const char* name_of(RayKind kind) {
   return "shadow";
 }
 
+bool are_neighbors(RayKind kind) {
+  return kind == RayKind::kMirror || kind == RayKind::kShadow;
+}
+
 bool wants_any_hit(RayKind kind) {
   return kind != RayKind::kMirror;
 }

@@ -34,6 +34,8 @@ inline constexpr std::uint32_t kOcclusionRays = 16;
 [[nodiscard]] const char* name_of(RayKind kind);
 /// @returns whether the question is if there is a hit, not which is the nearest.
 [[nodiscard]] bool wants_any_hit(RayKind kind);
+/// Whether rays that follow each other run alike, which their maker knows.
+[[nodiscard]] bool are_neighbors(RayKind kind);
 
 /// @returns the hit points of a picture of 1024x1024 eye rays.
 [[nodiscard]] std::vector<HitPoint> find_hit_points(const MeshView& mesh, const Camera& camera, double diagonal,

@@ -175,9 +175,10 @@ std::vector<Way> ways_of(const EmbreeScenes& scenes) {
 // The same rays in the layouts of all sides, and the ways to answer them.
 class RaySet {
  public:
-  RaySet(const std::vector<peer::PeerRay>& rays, bool any_hit, std::uint32_t batch_rays)
+  RaySet(const std::vector<peer::PeerRay>& rays, bool any_hit, bool are_neighbors, std::uint32_t batch_rays)
       : rays_(rays),
         any_hit_(any_hit),
+        are_neighbors_(are_neighbors),
         batch_rays_(batch_rays),
         ours_(memory_rays(rays)),
         answers_(rays.size() / kGroupRays) {
@@ -185,7 +186,8 @@ class RaySet {
   }
 
   [[nodiscard]] Candidate ours(const Build& build, const ListTree& tree) {
-    return {build.name, [this, &build, &tree] { build.trace(tree, ours_, answers_, batch_rays_, any_hit_); }};
+    return {build.name,
+            [this, &build, &tree] { build.trace(tree, ours_, answers_, batch_rays_, any_hit_, are_neighbors_); }};
   }
   // Embree writes into its rays, so they are written anew for each round.
   [[nodiscard]] Candidate embree(const Way& way) {
@@ -226,7 +228,7 @@ class RaySet {
   }
 
   const std::vector<peer::PeerRay>& rays_;
-  bool any_hit_;
+  bool any_hit_, are_neighbors_;
   std::uint32_t batch_rays_;
   std::vector<MemoryRay> ours_;
   std::vector<AnswerGroup> answers_;
@@ -266,7 +268,7 @@ void print_head(const std::vector<Build>& builds) {
 Row bench_kind(const BenchOptions& options, const std::string& scene, RayKind kind,
                const std::vector<peer::PeerRay>& rays, const std::vector<Build>& builds,
                const std::vector<const ListTree*>& trees, const EmbreeScenes& fast, const EmbreeScenes& robust) {
-  RaySet set(rays, wants_any_hit(kind), options.batch_rays);
+  RaySet set(rays, wants_any_hit(kind), are_neighbors(kind), options.batch_rays);
   std::vector<Way> ways = finalists(set, ways_of(fast), kFinalists);
   const std::vector<Way> robust_ways = finalists(set, ways_of(robust), kRobustFinalists);
   ways.insert(ways.end(), robust_ways.begin(), robust_ways.end());

@@ -33,9 +33,10 @@ struct AnswerGroup {
 };
 
 /// Answers rays[i] in answers[i / kGroupRays].
-/// @param batch_rays  traced together: a multiple of kGroupRays, at most kMaxBatchRays.
+/// @param batch_rays     traced together: a multiple of kGroupRays, at most kMaxBatchRays.
+/// @param are_neighbors  as in RayQuestion.
 using TraceLists = void(const ListTree& tree, std::span<const MemoryRay> rays, std::span<AnswerGroup> answers,
-                        std::uint32_t batch_rays, bool any_hit);
+                        std::uint32_t batch_rays, bool any_hit, bool are_neighbors);
 
 extern "C" {
 TraceLists gridiron_bench_trace_lanes4;

@@ -11,7 +11,7 @@ namespace gridiron::bench {
 namespace {
 
 using L = Lanes<GRIDIRON_ENTRY_LANES>;
-using Memory = ListMemory<kMaxBatchRays, 0, (L::kCount > 4)>;
+using Memory = ListMemory<kMaxBatchRays, kMaxBatchRays, true, (L::kCount > 4)>;
 
 // Too large for a stack.
 Memory memory;
@@ -64,7 +64,8 @@ void store_answers(const BatchRay* rays, bool any_hit, AnswerGroup& to) {
 }  // namespace gridiron::bench
 
 void gridiron::bench::GRIDIRON_ENTRY_NAME(const ListTree& tree, std::span<const MemoryRay> rays,
-                                          std::span<AnswerGroup> answers, std::uint32_t batch_rays, bool any_hit) {
+                                          std::span<AnswerGroup> answers, std::uint32_t batch_rays, bool any_hit,
+                                          bool are_neighbors) {
   WorkCounters work;
   Source source{tree};
   for (std::size_t first = 0; first < rays.size(); first += batch_rays) {
@@ -73,7 +74,7 @@ void gridiron::bench::GRIDIRON_ENTRY_NAME(const ListTree& tree, std::span<const 
     for (std::uint32_t i = 0; i < count; ++i) load_ray(rays[first + i], memory.rays[i]);
     RayLists<L, Memory, Source> lists(memory, source, work);
     // A source in memory has no transfers that fail.
-    (void)lists.trace(RayQuestion{any_hit, false, false, {}}, count, tree.largest);
+    (void)lists.trace(RayQuestion{any_hit, are_neighbors, false, false, {}}, count, tree.largest);
     for (std::uint32_t i = 0; i < count; i += kGroupRays) {
       store_answers(memory.rays + i, any_hit, answers[(first + i) / kGroupRays]);
     }

@@ -45,6 +45,7 @@ struct EffectOrderLayout : OrderLayout {
   using RayEngine = TreeEngine;
   static constexpr std::uint32_t kBatchRays = 32;
   static constexpr std::uint32_t kSpareListWords = 0;
+  static constexpr bool kHasBeams = false;
   static constexpr std::uint32_t kTreeSlots = 16;  // eight records under way
   static constexpr std::uint32_t kLeafTriangles = 2;
   static constexpr std::uint32_t kWaveRays = 32;

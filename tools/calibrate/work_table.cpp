@@ -117,7 +117,7 @@ void make_effect_scene(const Scene& teapot, bool with_environment, EffectScene& 
       constexpr std::size_t kTexels = kEnvironmentWidth * kEnvironmentWidth;
       view.environment_faces[face] = std::span<const Vec3>(scene.environment).subspan(face * kTexels, kTexels);
     }
-    view.occlusion_samples = 2;
+    view.occlusion_samples = 16;
     view.occlusion_radius = 1.5f;
     view.samples_per_pixel = 4;
   } else {

@@ -220,11 +220,11 @@ RayTree::RayTree(PreparedEffectFrame& frame) {
 }
 
 std::vector<RayHit> RayTree::nearest(std::span<const TracedRay> rays, Accuracy accuracy, WorkCounters& work) const {
-  using Memory = ListMemory<512, 0>;
+  using Memory = ListMemory<512, 0, false>;
   const auto memory = std::make_unique<Memory>();
   MemorySource source(nodes_, records_, mesh());
   RayLists<ChipLanes, Memory, MemorySource> lists(*memory, source, work);
-  const RayQuestion question{false, accuracy == Accuracy::kFast, accuracy == Accuracy::kExact, {}};
+  const RayQuestion question{false, false, accuracy == Accuracy::kFast, accuracy == Accuracy::kExact, {}};
   std::vector<RayHit> hits;
   hits.reserve(rays.size());
   for (std::size_t first = 0; first < rays.size(); first += Memory::kRays) {

@@ -61,14 +61,19 @@ enum class Work : std::uint8_t {
   kWaveRay,            ///< rays of a wave taken from pixels or from the queue
   kQueuedRay,          ///< reflected and refracted rays made, and put into the queue
   kListRay,            ///< rays of a batch prepared for lists
+  kListBeam,           ///< beams made of 16 of them, or tried in vain
+  kListBeamNode,       ///< tests of a beam against a node's boxes
   kListChild,          ///< lists made for a child of a node
   kListEntry,          ///< rays that were gone through for these
   kListNode,           ///< nodes that a list of rays has entered
   kListRun,            ///< runs of their rays of one octant: the sides of boxes that these enter and leave by
   kListRayNode,        ///< tests of one or two rays against a node's union boxes; wide lanes: against all boxes
   kListBoxQuad,        ///< likewise, against a quad of a node's boxes
+  kListSharedBox,      ///< both, of rays with one origin
   kListLeaf,           ///< leaves that a list of rays was tested against: triangles spread over lanes
   kListTriangleGroup,  ///< SIMD groups of a leaf's triangles tested by a ray
+  kListSharedLeaf,     ///< leaves likewise, for rays with one origin
+  kListSharedGroup,    ///< groups likewise
   kListCandidate,      ///< of these, groups with triangles that floats do not rule out
   kRayDistance,        ///< distances of single rays, in double
   kSurfacePoint,       ///< hits of which point, normal and material were found
@@ -93,7 +98,7 @@ enum class Work : std::uint8_t {
 /// The number of the first kind of an engine.
 inline constexpr std::uint32_t kSharedWorkCount = static_cast<std::uint32_t>(Work::kCount);
 /// Kinds that there are counters for. No frame has two engines, so all engines use the same ones.
-inline constexpr std::uint32_t kWorkKindCount = 95;
+inline constexpr std::uint32_t kWorkKindCount = 100;
 
 /// A kind of Work or of an engine: the number of its counter.
 class WorkId {

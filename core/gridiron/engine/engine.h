@@ -50,8 +50,10 @@ concept Engine = requires {
 ///   begin()       as EngineCore's.
 ///   begin_rays()  before the first rays after eye rays were traced: discards what its memory held.
 ///   trace(question, jobs)  answers rays, batch by batch, and returns a Status.
-///                 jobs.next(batch) adds 1 to kJobRays rays to a batch: origin, dir, t, id (no_hit()) and owner; or
-///                 none, and returns false, if there are no more. Directions have any length, and a component may be 0.
+///                 jobs.next(batch) adds up to kJobRays rays to a batch: origin, dir, t, id (no_hit()) and owner. It
+///                 returns false if there are no more, and has added none then. jobs.ends_batch(), if there is one,
+///                 says after it that the next rays are better traced apart.
+///                 Directions have any length, and a component may be 0.
 ///                 A hit has 0 < t <= rays.t.
 ///                 jobs.finish(batch) takes each batch once, with owners as they were and ids answered. Origins,
 ///                 directions and t are not kept. With question.any_hit any hit will do; else the hit does not depend

@@ -272,13 +272,14 @@ class Sum {
     Count listed = queued + into_the_open;
     if (effects.has_shadows != 0) listed = listed + to_lights;
     if (layout_.packet_width == 0) listed = listed + eye_rays;
-    add_lists(listed);
+    add_lists(listed, effects.has_shadows != 0 && layout_.has_beams != 0 ? to_lights : Count{});
     add_records(rays, queued, samples * parts(pixels, layout_.wave_rays));
   }
 
-  // Lists: a ray is in the list of a node or leaf once at most, and a list has one ray at least. Each child is asked
-  // for ahead and taken, and may have been evicted in between; the root is asked for once a batch.
-  void add_lists(Count rays) {
+  // Lists: a ray is in the list of a node or leaf once at most, and a list has one ray at least, or a beam of one ray at
+  // least. Each child is asked for ahead and taken, and may have been evicted in between; the root is asked for once a
+  // batch. @param shared  of these, rays that may be traced as rays of one origin.
+  void add_lists(Count rays, Count shared) {
     const Count nodes = rays * scene_.nodes, leaves = rays * scene_.leaves, triangles = rays * scene_.tree_triangles;
     const Count children = nodes + leaves, groups = rays * scene_.leaf_groups;
     add(Work::kListRay, rays);
@@ -290,6 +291,14 @@ class Sum {
     add(Work::kListRun, nodes + quads);
     add(Work::kListChild, children);
     add(Work::kListEntry, children + quads);
+    if (layout_.has_beams != 0) {
+      add(Work::kListBeam, rays);
+      add(Work::kListBeamNode, nodes);
+      add(Work::kListEntry, nodes);  // their rays, listed where leaves are
+      add(Work::kListSharedBox, shared * scene_.nodes * (layout_.lanes <= kTreeWidth / 4 ? 1 + kTreeWidth / 4 : 1));
+      add(Work::kListSharedLeaf, shared * scene_.leaves);
+      add(Work::kListSharedGroup, shared * scene_.leaf_groups);
+    }
     add(Work::kListLeaf, leaves);
     add(Work::kListTriangleGroup, groups);
     add(Work::kListCandidate, groups);

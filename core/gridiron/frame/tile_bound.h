@@ -26,6 +26,7 @@ struct TileLayout {
   std::uint32_t recent_triangles;      ///< of which estimated distances can be made exact
   std::uint32_t batch_rays;            ///< secondary rays traced at once; from here on 0 in layouts without effects
   std::uint32_t tree_slots;            ///< nodes and leaves at hand
+  std::uint32_t has_beams;             ///< 0, 1: lists have beams, and code for rays of one origin
   std::uint32_t wave_rays;             ///< rays worked on together
   std::uint32_t material_slots;        ///< materials at hand
   std::uint32_t light_slots;           ///< lights at hand
@@ -49,6 +50,7 @@ template <class Layout>
   if constexpr (Layout::kEffects != 0) {
     layout.batch_rays = Layout::kBatchRays;
     layout.tree_slots = Layout::kTreeSlots;
+    layout.has_beams = Layout::kHasBeams ? 1 : 0;
     layout.wave_rays = Layout::kWaveRays;
     layout.material_slots = Layout::kMaterialSlots;
     layout.light_slots = Layout::kLightSlots;

@@ -44,6 +44,7 @@ struct RayBatch {
 /// What is asked about the hits of rays.
 struct RayQuestion {
   bool any_hit;          ///< whether there is one, or which is the nearest
+  bool are_neighbors;    ///< rays that follow each other run alike: bounds of several may save work
   bool trusts_floats;    ///< Accuracy::kFast
   bool breaks_ties;      ///< Accuracy::kExact: of hits at one rounded distance the truly nearer one counts
   MainAddress surfaces;  ///< the scene's SurfaceRecord[], by triangle_id: ties are settled with them

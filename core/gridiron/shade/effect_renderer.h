@@ -169,8 +169,8 @@ class EffectRenderer {
   [[nodiscard]] MainAddress section(std::uint64_t offset) const {
     return MainAddress{store_.frame.image_address + offset};
   }
-  [[nodiscard]] RayQuestion question(bool any_hit) const {
-    return {any_hit, store_.frame.accuracy == static_cast<std::uint32_t>(Accuracy::kFast),
+  [[nodiscard]] RayQuestion question(bool any_hit, bool are_neighbors) const {
+    return {any_hit, are_neighbors, store_.frame.accuracy == static_cast<std::uint32_t>(Accuracy::kFast),
             store_.frame.accuracy == static_cast<std::uint32_t>(Accuracy::kExact),
             section(scene().surfaces_offset_bytes)};
   }
@@ -213,7 +213,7 @@ class EffectRenderer {
         GRIDIRON_TRY(
             queue_.pop_wave(count, [&](std::uint32_t i, const QueuedRay& ray) { store_.wave.items[i].ray = ray; }));
         WaveRayJobs<Store> jobs(store_, count, kFloatMax);
-        GRIDIRON_TRY(rays_.trace(question(false), jobs));
+        GRIDIRON_TRY(rays_.trace(question(false, true), jobs));
         GRIDIRON_TRY(finish_wave(count, sample));
       }
     }
@@ -225,7 +225,7 @@ class EffectRenderer {
   [[nodiscard]] Status trace_eye_rays(std::uint32_t ray_count, std::uint32_t* ids) {  // NOLINT: it is written to
     transfers_.note_stage(Stage::kPrimary);
     WaveRayJobs<Store> jobs(store_, ray_count, store_.frame.t_far);
-    GRIDIRON_TRY(rays_.trace(question(false), jobs));
+    GRIDIRON_TRY(rays_.trace(question(false, true), jobs));
     store_.work.charge_to(Work::kWaveRay);
     for (std::uint32_t i = 0; i < ray_count; ++i) ids[store_.wave.items[i].ray.pixel & 0xFFFFu] = store_.wave.ids[i];
     return Status::kOk;
@@ -243,7 +243,7 @@ class EffectRenderer {
       if (calls_for(kAmbientOcclusion)) {
         transfers_.note_stage(Stage::kOcclusion);
         OcclusionJobs<Store> jobs(context);
-        GRIDIRON_TRY(rays_.trace(question(true), jobs));
+        GRIDIRON_TRY(rays_.trace(question(true, false), jobs));
       }
     }
     return Status::kOk;
@@ -467,7 +467,7 @@ class EffectRenderer {
       LightJobs<Store, kBuilt> jobs(context, first, lights_at_hand(first));
       if constexpr (has(kPointShadows | kAreaLights)) {
         if (has_shadows()) {
-          GRIDIRON_TRY(rays_.trace(question(true), jobs));
+          GRIDIRON_TRY(rays_.trace(question(true, true), jobs));
           continue;
         }
       }

@@ -80,7 +80,7 @@ class LightJobs {
   LightJobs(const WaveContext<Store>& context, std::uint32_t first_light, std::uint32_t light_count)
       : context_(context), first_light_(first_light), light_count_(light_count) {}
 
-  /// The next rays of up to 16 neighbouring hits to one place. @returns whether there are any.
+  /// The next rays of up to 16 neighbouring hits to one place. @returns whether there may be more.
   [[nodiscard]] GRIDIRON_OUTLINE bool next(RayBatch& batch) {
     context_.store.work.charge_to(Work::kShadowRay);
     const std::uint32_t before = batch.count;
@@ -90,6 +90,7 @@ class LightJobs {
       const bool from_light = light.samples == 0 && light.is_near != 0;
       const std::uint32_t first = first_point_, sample = sample_;
       step(light);
+      if constexpr (Store::Layout::kHasBeams) ends_batch_ = from_light && light_ != index;
       std::uint32_t end = first + kJobRays;
       if (end > context_.point_count) end = context_.point_count;
       if (light.samples != 0) context_.store.work.charge_to(Work::kAreaPlace);
@@ -109,9 +110,15 @@ class LightJobs {
         }
       }
       if (batch.count != before) return true;
+      if constexpr (Store::Layout::kHasBeams) {
+        if (ends_batch_ && before != 0) return light_ < light_count_;
+      }
     }
     return false;
   }
+
+  /// Whether the next rays are better traced apart: rays of one origin, as those from a light, take less work.
+  [[nodiscard]] bool ends_batch() const { return ends_batch_; }
 
   void finish(const RayBatch& batch) {
     for (std::uint32_t i = 0; i < batch.count; ++i) {
@@ -197,6 +204,7 @@ class LightJobs {
   const WaveContext<Store>& context_;
   std::uint32_t first_light_, light_count_;
   std::uint32_t light_ = 0, sample_ = 0, first_point_ = 0;
+  bool ends_batch_ = false;
 };
 
 /// Rays into the open, for ambient light.

@@ -61,7 +61,7 @@ struct StoreLayout64K {
   static constexpr std::uint32_t kPacketWidth = PacketWidthV;
   static constexpr std::uint32_t kMailboxSlots = PacketWidthV >= 16 ? 128 : 64;
   static constexpr std::uint32_t kRecentTriangles = PacketWidthV >= 16 ? 4 : 16;
-  static constexpr std::uint32_t kTableEntries = PacketWidthV >= 16 ? 176 : 512;  ///< 32 macrocells each
+  static constexpr std::uint32_t kTableEntries = PacketWidthV >= 16 ? 144 : 512;  ///< 32 macrocells each
   static constexpr std::uint32_t kMaxMacroWidth = 6;
   static constexpr std::uint32_t kMaxMacroDepth = 2;
   static constexpr std::uint32_t kTrianglesPerBuffer = PacketWidthV >= 16 ? 8 : 16;
@@ -122,8 +122,8 @@ struct EffectLayout256K {
   using Engine = GridEngine;
   static constexpr std::uint32_t kEffects = BuiltV;
   static constexpr std::uint32_t kArenaBytes = 256 * 1024;
-  static constexpr std::uint32_t kCodeBudgetBytes = 92 * 1024;
-  static constexpr std::uint32_t kStackBudgetBytes = 9 * 1024;
+  static constexpr std::uint32_t kCodeBudgetBytes = PacketWidthV >= 16 ? 88 * 1024 : 94 * 1024;
+  static constexpr std::uint32_t kStackBudgetBytes = PacketWidthV >= 16 ? 9 * 1024 : 7 * 1024 + 768;
   static constexpr std::uint32_t kTileWidth = 32;
   static constexpr std::uint32_t kPacketWidth = PacketWidthV;
   static constexpr std::uint32_t kMailboxSlots = PacketWidthV < 16 ? 64 : 256;
@@ -137,11 +137,12 @@ struct EffectLayout256K {
   /// @endcond
   using RayEngine = TreeEngine;                          ///< what traces all rays but eye rays
   static constexpr std::uint32_t kBatchRays = 512;       ///< rays that its lists take at once
-  static constexpr std::uint32_t kSpareListWords = 576;  ///< of its lists, beyond the least
+  static constexpr std::uint32_t kSpareListWords = 288;  ///< of its lists, beyond the least
+  static constexpr bool kHasBeams = true;                ///< lists have beams, and code for rays of one origin
   static constexpr std::uint32_t kTreeSlots = 32;        ///< nodes and leaves at hand
   static constexpr std::uint32_t kLeafTriangles = 8;     ///< of a leaf, at most
   static constexpr std::uint32_t kWaveRays = 256;        ///< rays worked on together
-  static constexpr std::uint32_t kMaterialSlots = 64;    ///< materials at hand
+  static constexpr std::uint32_t kMaterialSlots = 32;    ///< materials at hand
   static constexpr std::uint32_t kLightSlots = 16;       ///< lights at hand
   static_assert((BuiltV & kSceneShading) != 0);
 };
@@ -156,14 +157,15 @@ struct EffectLayout64K {
   using Engine = GridEngine;
   static constexpr std::uint32_t kEffects = BuiltV;
   static constexpr std::uint32_t kArenaBytes = 64 * 1024;
-  static constexpr std::uint32_t kCodeBudgetBytes = 40 * 1024 + 256;
-  static constexpr std::uint32_t kStackBudgetBytes = 4 * 1024;
+  static constexpr std::uint32_t kCodeBudgetBytes = 40 * 1024 + 320;
+  static constexpr std::uint32_t kStackBudgetBytes = 4 * 1024 - 64;
   static constexpr std::uint32_t kTileWidth = 8;
   static constexpr std::uint32_t kPacketWidth = 0;
   static constexpr std::uint32_t kMaxOutputDepth = 2;
   using RayEngine = TreeEngine;
   static constexpr std::uint32_t kBatchRays = 32;
   static constexpr std::uint32_t kSpareListWords = 0;
+  static constexpr bool kHasBeams = false;
   static constexpr std::uint32_t kTreeSlots = 8;
   static constexpr std::uint32_t kLeafTriangles = 8;
   static constexpr std::uint32_t kWaveRays = WaveRaysV;

@@ -69,48 +69,53 @@ inline constexpr auto kInstructionCosts = std::to_array<InstructionCost>({
     {WorkId(47),   161.8},  // wave_ray, of effects
     {WorkId(48),    92.1},  // queued_ray, of effects
     {WorkId(49),   181.9},  // list_ray, of effects
-    {WorkId(50),   264.3},  // list_child, of effects
-    {WorkId(51),    43.1},  // list_entry, of effects
-    {WorkId(52),  1401.2},  // list_node, of effects
-    {WorkId(53),   140.5},  // list_run, of effects
-    {WorkId(54),   455.9},  // list_ray_node, of effects
-    {WorkId(55),   461.8},  // list_box_quad, of effects
-    {WorkId(56),  1886.4},  // list_leaf, of effects
-    {WorkId(57),   760.3},  // list_triangle_group, of effects
-    {WorkId(58),   117.1},  // list_candidate, of effects
-    {WorkId(59),   326.4},  // ray_distance, of effects
-    {WorkId(60),  1422.2},  // surface_point, of effects
-    {WorkId(61),   322.8},  // smooth_normal, of effects
-    {WorkId(62),    47.0},  // jitter_seed, of effects
-    {WorkId(63),   114.6},  // shadow_ray, of effects
-    {WorkId(64),    88.4},  // area_place, of effects
-    {WorkId(65),    67.0},  // light_sample, of effects
-    {WorkId(66),   153.2},  // highlight, of effects
-    {WorkId(67),   186.0},  // occlusion_ray, of effects
-    {WorkId(68),   159.9},  // mirror_ray, of effects
-    {WorkId(69),   159.4},  // refracted_ray, of effects
-    {WorkId(70),   383.7},  // environment_lookup, of effects
-    {WorkId(71),    84.8},  // color_added, of effects
-    {WorkId(72),   193.1},  // color_group, of effects
-    {WorkId(76),   387.8},  // packet_start
-    {WorkId(77),    23.0},  // pass_slope
-    {WorkId(78),    15.7},  // mailbox_group
-    {WorkId(79),   422.6},  // pass_group, not in `dense`
-    {WorkId(80),   407.9},  // pass_square
-    {WorkId(81),   239.0},  // macro_slice_step
-    {WorkId(82),    13.9},  // macro_row
-    {WorkId(83),    28.8},  // macro_cell_step
-    {WorkId(84),   337.7},  // macro_cell_visit
-    {WorkId(85),   241.4},  // slice_step
-    {WorkId(86),    23.7},  // cell_row
-    {WorkId(87),     7.9},  // cell_step
-    {WorkId(88),    22.0},  // cell_visit
-    {WorkId(89),   368.9},  // triangle_batch
-    {WorkId(90),    39.2},  // mailbox_probe
-    {WorkId(91),    25.6},  // reach_group
-    {WorkId(92),   121.8},  // reach_test, not in `dense`
-    {WorkId(93),   357.5},  // footprint_group, not in `dense`
-    {WorkId(94),    10.6},  // cell_bound_step, not in `dense`
+    {WorkId(50),   181.9},  // list_beam, of effects
+    {WorkId(51),   181.9},  // list_beam_node, of effects
+    {WorkId(52),   264.3},  // list_child, of effects
+    {WorkId(53),    43.1},  // list_entry, of effects
+    {WorkId(54),  1401.2},  // list_node, of effects
+    {WorkId(55),   140.5},  // list_run, of effects
+    {WorkId(56),   455.9},  // list_ray_node, of effects
+    {WorkId(57),   461.8},  // list_box_quad, of effects
+    {WorkId(58),   461.8},  // list_shared_box, of effects
+    {WorkId(59),  1886.4},  // list_leaf, of effects
+    {WorkId(60),   760.3},  // list_triangle_group, of effects
+    {WorkId(61),   760.3},  // list_shared_leaf, of effects
+    {WorkId(62),   760.3},  // list_shared_group, of effects
+    {WorkId(63),   117.1},  // list_candidate, of effects
+    {WorkId(64),   326.4},  // ray_distance, of effects
+    {WorkId(65),  1422.2},  // surface_point, of effects
+    {WorkId(66),   322.8},  // smooth_normal, of effects
+    {WorkId(67),    47.0},  // jitter_seed, of effects
+    {WorkId(68),   114.6},  // shadow_ray, of effects
+    {WorkId(69),    88.4},  // area_place, of effects
+    {WorkId(70),    67.0},  // light_sample, of effects
+    {WorkId(71),   153.2},  // highlight, of effects
+    {WorkId(72),   186.0},  // occlusion_ray, of effects
+    {WorkId(73),   159.9},  // mirror_ray, of effects
+    {WorkId(74),   159.4},  // refracted_ray, of effects
+    {WorkId(75),   383.7},  // environment_lookup, of effects
+    {WorkId(76),    84.8},  // color_added, of effects
+    {WorkId(77),   193.1},  // color_group, of effects
+    {WorkId(81),   387.8},  // packet_start
+    {WorkId(82),    23.0},  // pass_slope
+    {WorkId(83),    15.7},  // mailbox_group
+    {WorkId(84),   422.6},  // pass_group, not in `dense`
+    {WorkId(85),   407.9},  // pass_square
+    {WorkId(86),   239.0},  // macro_slice_step
+    {WorkId(87),    13.9},  // macro_row
+    {WorkId(88),    28.8},  // macro_cell_step
+    {WorkId(89),   337.7},  // macro_cell_visit
+    {WorkId(90),   241.4},  // slice_step
+    {WorkId(91),    23.7},  // cell_row
+    {WorkId(92),     7.9},  // cell_step
+    {WorkId(93),    22.0},  // cell_visit
+    {WorkId(94),   368.9},  // triangle_batch
+    {WorkId(95),    39.2},  // mailbox_probe
+    {WorkId(96),    25.6},  // reach_group
+    {WorkId(97),   121.8},  // reach_test, not in `dense`
+    {WorkId(98),   357.5},  // footprint_group, not in `dense`
+    {WorkId(99),    10.6},  // cell_bound_step, not in `dense`
 });
 
 /// A command: from where core counts it to the next kind of work, and its end in a wait.

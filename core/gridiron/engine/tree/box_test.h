@@ -61,17 +61,27 @@ struct BoxSides {
   using Float = typename L::Float;
   Float near[3], far[3];
 
-  /// @returns the boxes that a ray misses, as bits.
+  /// Measures the sides from a place.
+  GRIDIRON_INLINE void measure_from(const float* place) {
+    for (int axis = 0; axis < 3; ++axis) {
+      near[axis] = near[axis] - Float(place[axis]);
+      far[axis] = far[axis] - Float(place[axis]);
+    }
+  }
+
+  /// @returns the boxes that a ray misses, as bits. @tparam kAreMeasured  from its origin.
+  template <bool kAreMeasured>
   [[nodiscard]] GRIDIRON_INLINE std::uint32_t missed_by(const BoxRay<L>& ray) const {
     Float in[3], out[3];
     for (int axis = 0; axis < 3; ++axis) {
-      in[axis] = (near[axis] - ray.origin[axis]) * ray.inverse[axis];
-      out[axis] = (far[axis] - ray.origin[axis]) * ray.inverse[axis];
+      in[axis] = (kAreMeasured ? near[axis] : near[axis] - ray.origin[axis]) * ray.inverse[axis];
+      out[axis] = (kAreMeasured ? far[axis] : far[axis] - ray.origin[axis]) * ray.inverse[axis];
     }
     const Float first = L::max(L::max(in[0], in[1]), L::max(in[2], Float(0.0f)));
     const Float last = L::min(L::min(out[0], out[1]), L::min(out[2], ray.t));
     return (first > last * Float(kExitFactor)).bits();
   }
+  template <bool>
   [[nodiscard]] GRIDIRON_INLINE std::uint32_t missed_by(const BoxTerms<L>& ray) const {
     Float in[3], out[3];
     for (int axis = 0; axis < 3; ++axis) {
@@ -165,7 +175,7 @@ inline constexpr std::uint32_t kBoxRays = L::kCount == 4 ? 2 : 1;
 /// @param rays    or a TermsList.
 /// @param list    ends with kListEnd; its words get bits of missed boxes, from `place` on.
 /// @param closed  boxes that no ray meets so far. @returns where the octant ends.
-template <class L, class Rays>
+template <bool kAreMeasured, class L, class Rays>
 GRIDIRON_INLINE std::uint32_t mark_run(const BoxSides<L>* sides, Rays* rays, std::uint32_t* list, std::uint32_t begin,
                                        std::uint32_t place, Work kind, std::uint32_t& closed, WorkCounters& work) {
   static constexpr std::uint32_t kGroups = L::kCount < 4 ? 4 : L::kCount == 8 ? 2 : 1;
@@ -179,7 +189,8 @@ GRIDIRON_INLINE std::uint32_t mark_run(const BoxSides<L>* sides, Rays* rays, std
       const bool are_two = next < behind;
       const std::uint32_t second = are_two ? i + 1 : i, second_word = are_two ? next : word;
       const BoxRay<L> first_ray(ray_of(rays, word)), second_ray(ray_of(rays, second_word));
-      const std::uint32_t first_missed = sides->missed_by(first_ray), second_missed = sides->missed_by(second_ray);
+      const std::uint32_t first_missed = sides->template missed_by<kAreMeasured>(first_ray),
+                          second_missed = sides->template missed_by<kAreMeasured>(second_ray);
       list[i] = word | first_missed << place;
       list[second] = second_word | second_missed << place;
       closed &= first_missed & second_missed;
@@ -188,7 +199,7 @@ GRIDIRON_INLINE std::uint32_t mark_run(const BoxSides<L>* sides, Rays* rays, std
       const auto ray = box_ray_of<L>(rays, word);
       std::uint32_t missed = 0;
       for (std::uint32_t group = 0; group < kGroups; ++group) {
-        missed |= sides[group].missed_by(ray) << group * L::kCount;
+        missed |= sides[group].template missed_by<kAreMeasured>(ray) << group * L::kCount;
       }
       list[i] = word | missed << place;
       closed &= missed;
@@ -202,10 +213,12 @@ GRIDIRON_INLINE std::uint32_t mark_run(const BoxSides<L>* sides, Rays* rays, std
 
 /// The same for all octants of a list, with room for L::kCount words more.
 /// @param base   the first box: as many are tested as a part has. @param place  of its bit.
-/// @param kind   of work that a test of kBoxRays is. @returns the boxes that any ray meets.
-template <class L, class Rays>
+/// @tparam kShares  rays may have one origin. @param origin  this; null: each has its own.
+/// @param kind  of work that a test of kBoxRays is. @returns the boxes that any ray meets.
+template <class L, bool kShares, class Rays>
 GRIDIRON_OUTLINE std::uint32_t mark_list(const BoxTable& boxes, std::uint32_t base, std::uint32_t place, Rays* rays,
-                                         std::uint32_t* list, std::uint32_t count, Work kind, WorkCounters& work) {
+                                         const float* origin, std::uint32_t* list, std::uint32_t count, Work kind,
+                                         WorkCounters& work) {
   static constexpr std::uint32_t kGroups = L::kCount < 4 ? 4 : L::kCount == 8 ? 2 : 1;
   static constexpr std::uint32_t kBoxes = kTreeWidth / kBoxParts<L>;
   std::uint32_t closed = (1u << kBoxes) - 1;
@@ -218,8 +231,14 @@ GRIDIRON_OUTLINE std::uint32_t mark_list(const BoxTable& boxes, std::uint32_t ba
       sides[group] = boxes.template sides<L>(octant_of(list[i]), base + group * L::kCount);
       fit_sides<L>(rays, octant_of(list[i]), sides[group]);
     }
-    work.charge_to(kind);
-    i = mark_run<L>(sides, rays, list, i, place, kind, closed, work);
+    if (kShares && origin != nullptr) {
+      for (BoxSides<L>& group : sides) group.measure_from(origin);
+      work.charge_to(Work::kListSharedBox);
+      i = mark_run<true, L>(sides, rays, list, i, place, Work::kListSharedBox, closed, work);
+    } else {
+      work.charge_to(kind);
+      i = mark_run<false, L>(sides, rays, list, i, place, kind, closed, work);
+    }
   }
   work.charge_to(Work::kListNode);
   // Words up to the next group of lanes miss all, so that take_marked() need not look where the list ends.
@@ -232,10 +251,10 @@ inline constexpr std::uint32_t kFewChildren = 8;
 
 /// Finds the boxes of a node that each ray of a list meets. @param level  gets the lists of its parts, behind `list`.
 /// @param arena  of the lists. @returns the children that any ray meets.
-template <class L, class Rays>
-[[nodiscard]] GRIDIRON_INLINE std::uint32_t mark_boxes(const TreeNode& node, Rays* rays, std::uint32_t* arena,
-                                                       std::uint32_t list, std::uint32_t count, ListLevel& level,
-                                                       WorkCounters& work) {
+template <class L, bool kShares, class Rays>
+[[nodiscard]] GRIDIRON_INLINE std::uint32_t mark_boxes(const TreeNode& node, Rays* rays, const float* origin,
+                                                       std::uint32_t* arena, std::uint32_t list, std::uint32_t count,
+                                                       ListLevel& level, WorkCounters& work) {
   const std::uint32_t there = (2u << (node.child_count - 1)) - 1;
   static constexpr std::uint32_t kStep = kListStep<L>, kParts = kBoxParts<L>, kPartBoxes = kTreeWidth / kParts;
   std::uint32_t end = (list + count + (kStep - 1)) & ~(kStep - 1);
@@ -245,24 +264,24 @@ template <class L, class Rays>
     static constexpr Work kKind = kParts == 1 ? Work::kListRayNode : Work::kListBoxQuad;
     for (std::uint32_t part = 0; part * kPartBoxes < node.child_count; ++part) {
       const std::uint32_t base = part * kPartBoxes;
-      level.lists[part] = list;
-      level.ray_counts[part] = count;
-      open |= mark_list<L>(boxes, base, base, rays, arena + list, count, kKind, work) << base;
+      level.set_part(part, list, count);
+      open |= mark_list<L, kShares>(boxes, base, base, rays, origin, arena + list, count, kKind, work) << base;
     }
   } else {
     NodeUnions unions;
     unite_boxes<L>(node, unions);
     const BoxTable united{unions.low[0], unions.high[0], 4};
-    const std::uint32_t quads = mark_list<L>(united, 0, 0, rays, arena + list, count, Work::kListRayNode, work);
+    const std::uint32_t quads =
+        mark_list<L, kShares>(united, 0, 0, rays, origin, arena + list, count, Work::kListRayNode, work);
     for (std::uint32_t rest = quads; rest != 0; rest &= rest - 1) {
       const std::uint32_t part = lowest_bit(rest);
       work.add(Work::kListEntry, count);
       work.charge_to(Work::kListEntry);
       const std::uint32_t taken = take_marked<L>(arena + list, count, part, arena + end);
       const std::uint32_t base = part * kPartBoxes;
-      level.lists[part] = end;
-      level.ray_counts[part] = taken;
-      open |= mark_list<L>(boxes, base, base, rays, arena + end, taken, Work::kListBoxQuad, work) << base;
+      level.set_part(part, end, taken);
+      open |= mark_list<L, kShares>(boxes, base, base, rays, origin, arena + end, taken, Work::kListBoxQuad, work)
+              << base;
       end = (end + taken + (kStep - 1)) & ~(kStep - 1);
     }
   }

@@ -79,12 +79,11 @@ GRIDIRON_INLINE void load_records(const VertexTriangle* records, std::uint32_t b
   }
 }
 
-/// Spreads `count` records over lanes. @param trusts_floats  no errors of sides: Accuracy::kFast.
+/// Spreads `count` records over lanes.
 template <class L>
-GRIDIRON_OUTLINE void set_up_leaf(const VertexTriangle* records, std::uint32_t count, bool trusts_floats,
-                                  TriangleLanes& lanes) {
+GRIDIRON_OUTLINE void set_up_leaf(const VertexTriangle* records, std::uint32_t count, TriangleLanes& lanes) {
   using Float = typename L::Float;
-  const Float factor(trusts_floats ? 0.0f : kSideErrorFactor);
+  const Float factor(kSideErrorFactor);
   for (std::uint32_t base = 0; base < count; base += L::kCount) {
     Float corners[12];  // nine coordinates
     load_records<L>(records, base, count, corners);
@@ -109,6 +108,34 @@ GRIDIRON_OUTLINE void set_up_leaf(const VertexTriangle* records, std::uint32_t c
   }
 }
 
+/// Prepares the lanes for rays of one origin: v becomes the normals of the planes through it and the third side,
+/// back_e1 those through it and the second one, e2 what rays have in common (SharedLanes). Each has the roundings that
+/// the bound of a side allows for.
+template <class L>
+GRIDIRON_OUTLINE void set_up_origin(const float* origin, std::uint32_t count, TriangleLanes& lanes) {
+  using Float = typename L::Float;
+  for (std::uint32_t base = 0; base < count; base += L::kCount) {
+    Float place[3], first[3], second[3];
+    for (int axis = 0; axis < 3; ++axis) {
+      place[axis] = Float::load(lanes.v[axis] + base) - Float(origin[axis]);
+      first[axis] = Float::load(lanes.e2[axis] + base);
+      second[axis] = Float::load(lanes.back_e1[axis] + base);
+    }
+    Float ahead(0.0f), far(kLeastListSize);
+    for (int axis = 0; axis < 3; ++axis) {
+      const int j = axis == 2 ? 0 : axis + 1, k = j == 2 ? 0 : j + 1;
+      (first[j] * place[k] - first[k] * place[j]).store(lanes.v[axis] + base);
+      (second[j] * place[k] - second[k] * place[j]).store(lanes.back_e1[axis] + base);
+      ahead = ahead + place[axis] * Float::load(lanes.normal[axis] + base);
+      far = far + L::abs(place[axis]);
+    }
+    const Float normal_error = Float::load(lanes.normal_error + base);
+    ahead.store(lanes.e2[0] + base);
+    (far * normal_error + Float(kLeastAhead)).store(lanes.e2[1] + base);
+    (far * Float::load(lanes.edge_error + base) + normal_error).store(lanes.edge_error + base);
+  }
+}
+
 /// What floats say of L::kCount triangles and a ray; bit i = triangle i of the lanes.
 template <class L>
 struct LeafAnswer {
@@ -123,6 +150,52 @@ struct LeafAnswer {
   [[nodiscard]] GRIDIRON_INLINE Float least_t() const {
     return L::select(size > turn, least_ahead / (size + turn) * Float(1.0f - 0x1p-20f), Float(-1.0f));
   }
+
+  /// That no triangle is hit.
+  [[nodiscard]] static GRIDIRON_INLINE LeafAnswer none() { return {0, 0, 0, Float(0.0f), Float(0.0f), Float(0.0f)}; }
+
+  /// Where along the ray the planes of triangles are. What rounds after the bounds of ahead and size is less than 2^-20
+  /// of their products. @param candidates  that the ray's line may pass through. @param passed  that it surely does.
+  [[nodiscard]] static GRIDIRON_INLINE LeafAnswer judge(std::uint32_t candidates, std::uint32_t passed, Float ahead,
+                                                        Float ahead_error, Float size, Float turn, Float t) {
+    const Float least_ahead = ahead - ahead_error, most_ahead = ahead + ahead_error;
+    const Float least_limit = (size - turn) * t * Float(1.0f - 0x1p-20f),
+                most_limit = (size + turn) * t * Float(1.0f + 0x1p-20f);
+    const std::uint32_t sign_known = (size > turn).bits();
+    const std::uint32_t in_front = (least_ahead > Float(0.0f)).bits() & sign_known;
+    const std::uint32_t behind = (most_ahead < Float(0.0f)).bits() & sign_known;
+    const std::uint32_t beyond = (least_ahead > most_limit).bits() & sign_known;
+    const std::uint32_t in_reach = candidates & ~(behind | beyond);
+    return {
+        in_reach & passed, in_reach & ~passed, (most_ahead < least_limit).bits() & in_front, least_ahead, size, turn};
+  }
+};
+
+/// What leaves need of a ray, in every lane.
+template <class L>
+struct LeafRay {
+  typename L::Float origin[3], dir[3], t, dir_max;
+
+  GRIDIRON_INLINE explicit LeafRay(const BatchRay& ray) {
+    using Float = typename L::Float;
+    if constexpr (L::kCount == 4) {
+      const Float place = Float::load(ray.origin), sizes = Float::load(ray.inverse), way = Float::load(ray.dir);
+      origin[0] = L::template shuffle_quads<0, 0, 0, 0>(place);
+      origin[1] = L::template shuffle_quads<1, 1, 1, 1>(place);
+      origin[2] = L::template shuffle_quads<2, 2, 2, 2>(place);
+      t = L::template shuffle_quads<3, 3, 3, 3>(place);
+      dir[0] = L::template shuffle_quads<0, 0, 0, 0>(way);
+      dir[1] = L::template shuffle_quads<1, 1, 1, 1>(way);
+      dir[2] = L::template shuffle_quads<2, 2, 2, 2>(way);
+      dir_max = L::template shuffle_quads<3, 3, 3, 3>(sizes);
+    } else {
+      for (int axis = 0; axis < 3; ++axis) {
+        origin[axis] = Float(ray.origin[axis]);
+        dir[axis] = Float(ray.dir[axis]);
+      }
+      t = Float(ray.t), dir_max = Float(ray.dir_max);
+    }
+  }
 };
 
 /// Wide lanes first rule out what they can by wider bounds of less work, without a branch between sides and distance:
@@ -132,8 +205,8 @@ template <class L, bool kBounded>
 inline constexpr bool kFiltersFirst = L::kRoundsOnce&& kBounded;
 
 /// The lanes of a leaf from `base` on, in registers.
-/// @tparam kBounded  decisions have bounds of their error. Accuracy::kFast has none, so it computes the same bits with
-///                   all lanes.
+/// @tparam kBounded  what is unsure is decided exactly. With Accuracy::kFast it is not, so all lanes compute the same
+///                   bits.
 template <class L, bool kBounded>
 struct LeafLanes {
   using Float = typename L::Float;
@@ -141,17 +214,17 @@ struct LeafLanes {
   Float wide_edge_error, wide_normal_error, least_error;  ///< if kFiltersFirst
 
   GRIDIRON_INLINE LeafLanes(const TriangleLanes& lanes, std::uint32_t base)
-      : v{Float::load(lanes.v[0] + base), Float::load(lanes.v[1] + base), Float::load(lanes.v[2] + base)},
-        back_e1{Float::load(lanes.back_e1[0] + base), Float::load(lanes.back_e1[1] + base),
-                Float::load(lanes.back_e1[2] + base)},
-        e2{Float::load(lanes.e2[0] + base), Float::load(lanes.e2[1] + base), Float::load(lanes.e2[2] + base)},
-        n{Float::load(lanes.normal[0] + base), Float::load(lanes.normal[1] + base),
-          Float::load(lanes.normal[2] + base)},
-        edge_error(Float::load(lanes.edge_error + base)),
+      : edge_error(Float::load(lanes.edge_error + base)),
         normal_error(Float::load(lanes.normal_error + base)),
         wide_edge_error(edge_error),
         wide_normal_error(edge_error),
         least_error(edge_error) {
+    for (int axis = 0; axis < 3; ++axis) {
+      v[axis] = Float::load(lanes.v[axis] + base);
+      back_e1[axis] = Float::load(lanes.back_e1[axis] + base);
+      e2[axis] = Float::load(lanes.e2[axis] + base);
+      n[axis] = Float::load(lanes.normal[axis] + base);
+    }
     if constexpr (kFiltersFirst<L, kBounded>) {
       wide_edge_error = edge_error * Float(3.0f);
       wide_normal_error = normal_error * Float(3.0f);
@@ -161,65 +234,39 @@ struct LeafLanes {
 
   /// @param there  the lanes that have a triangle.
   [[nodiscard]] GRIDIRON_INLINE LeafAnswer<L> test(const BatchRay& ray, std::uint32_t there) const {
-    Float o_x, o_y, o_z, d_x, d_y, d_z, t, dir_max;
-    if constexpr (L::kCount == 4) {
-      const Float place = Float::load(ray.origin), sizes = Float::load(ray.inverse), dir = Float::load(ray.dir);
-      o_x = L::template shuffle_quads<0, 0, 0, 0>(place);
-      o_y = L::template shuffle_quads<1, 1, 1, 1>(place);
-      o_z = L::template shuffle_quads<2, 2, 2, 2>(place);
-      t = L::template shuffle_quads<3, 3, 3, 3>(place);
-      d_x = L::template shuffle_quads<0, 0, 0, 0>(dir);
-      d_y = L::template shuffle_quads<1, 1, 1, 1>(dir);
-      d_z = L::template shuffle_quads<2, 2, 2, 2>(dir);
-      dir_max = L::template shuffle_quads<3, 3, 3, 3>(sizes);
-    } else {
-      o_x = Float(ray.origin[0]), o_y = Float(ray.origin[1]), o_z = Float(ray.origin[2]);
-      d_x = Float(ray.dir[0]), d_y = Float(ray.dir[1]), d_z = Float(ray.dir[2]);
-      t = Float(ray.t), dir_max = Float(ray.dir_max);
-    }
-    const Float x = v[0] - o_x, y = v[1] - o_y, z = v[2] - o_z;
-    const Float r_x = difference(y, d_z, z, d_y), r_y = difference(z, d_x, x, d_z), r_z = difference(x, d_y, y, d_x);
-    const Float denominator = inner(d_x, d_y, d_z, n);
-    const Float first = L::turn_by(denominator, inner(r_x, r_y, r_z, e2));
-    const Float second = L::turn_by(denominator, inner(r_x, r_y, r_z, back_e1));
+    const LeafRay<L> q(ray);
+    const Float x = v[0] - q.origin[0], y = v[1] - q.origin[1], z = v[2] - q.origin[2];
+    const Float r[3] = {difference(y, q.dir[2], z, q.dir[1]), difference(z, q.dir[0], x, q.dir[2]),
+                        difference(x, q.dir[1], y, q.dir[0])};
+    const Float denominator = inner(q.dir, n);
+    const Float first = L::turn_by(denominator, inner(r, e2));
+    const Float second = L::turn_by(denominator, inner(r, back_e1));
     const Float size = L::abs(denominator);
     const Float third = size - first - second;
     const Float least = L::min(L::min(first, second), third);
+    const Float place[3] = {x, y, z};
     if constexpr (kFiltersFirst<L, kBounded>) {
       // The bounds below with three times the largest component in place of the sum.
       const Float most = L::larger_size(L::larger_size(x, y), z);
-      const Float side = sum(sum(most, wide_edge_error, least_error), dir_max, least);
-      const Float ahead = L::turn_by(denominator, inner(x, y, z, n));
-      const Float turn = wide_normal_error * dir_max;
-      const Float limit = sum(sum(size, Float(1.0f + 0x1p-20f), turn), t, Float(2.0f * kLeastAhead));
+      const Float side = sum(sum(most, wide_edge_error, least_error), q.dir_max, least);
+      const Float ahead = L::turn_by(denominator, inner(place, n));
+      const Float turn = wide_normal_error * q.dir_max;
+      const Float limit = sum(sum(size, Float(1.0f + 0x1p-20f), turn), q.t, Float(2.0f * kLeastAhead));
       const auto away = (sum(most, wide_normal_error, ahead) < Float(-2.0f * kLeastAhead)) |
                         (sum(most, -wide_normal_error, ahead) > limit);
-      if ((there & ~((side < Float(0.0f)) | (away & (size > turn))).bits()) == 0) return none();
+      if ((there & ~((side < Float(0.0f)) | (away & (size > turn))).bits()) == 0) return LeafAnswer<L>::none();
     }
     const Float far = L::abs(x) + L::abs(y) + (L::abs(z) + Float(kLeastListSize));
-    const Float turn = normal_error * dir_max;
-    const Float error = far * dir_max * edge_error + turn;
+    const Float turn = normal_error * q.dir_max;
+    const Float error = far * q.dir_max * edge_error + turn;
     // Where there is no bound, nothing is outside or inside.
     const std::uint32_t candidates = there & ~(least + error < Float(0.0f)).bits();
-    if (candidates == 0) return none();
-    // Where along the ray. What rounds after the bounds of ahead and size is less than 2^-20 of their products.
-    const Float ahead = L::turn_by(denominator, inner(x, y, z, n));
-    const Float ahead_error = far * normal_error + Float(kLeastAhead);
-    const Float least_ahead = ahead - ahead_error, most_ahead = ahead + ahead_error;
-    const Float least_limit = (size - turn) * t * Float(1.0f - 0x1p-20f),
-                most_limit = (size + turn) * t * Float(1.0f + 0x1p-20f);
-    const std::uint32_t sign_known = (size > turn).bits();
-    const std::uint32_t in_front = (least_ahead > Float(0.0f)).bits() & sign_known;
-    const std::uint32_t behind = (most_ahead < Float(0.0f)).bits() & sign_known;
-    const std::uint32_t beyond = (least_ahead > most_limit).bits() & sign_known;
-    const std::uint32_t in_reach = candidates & ~(behind | beyond);
-    const std::uint32_t inside = (least > error).bits();
-    return {
-        in_reach & inside, in_reach & ~inside, (most_ahead < least_limit).bits() & in_front, least_ahead, size, turn};
+    if (candidates == 0) return LeafAnswer<L>::none();
+    return LeafAnswer<L>::judge(candidates, (least > error).bits(), L::turn_by(denominator, inner(place, n)),
+                                far * normal_error + Float(kLeastAhead), size, turn, q.t);
   }
 
  private:
-  [[nodiscard]] static GRIDIRON_INLINE LeafAnswer<L> none() { return {0, 0, 0, Float(0.0f), Float(0.0f), Float(0.0f)}; }
   [[nodiscard]] static GRIDIRON_INLINE Float sum(Float a, Float b, Float c) {
     if constexpr (kBounded) return L::bounded_sum(a, b, c);
     return a * b + c;
@@ -228,8 +275,52 @@ struct LeafLanes {
     if constexpr (kBounded) return L::bounded_difference(a, b, c, d);
     return a * b - c * d;
   }
-  [[nodiscard]] static GRIDIRON_INLINE Float inner(Float x, Float y, Float z, const Float (&other)[3]) {
-    return sum(z, other[2], sum(y, other[1], x * other[0]));
+  [[nodiscard]] static GRIDIRON_INLINE Float inner(const Float (&a)[3], const Float (&b)[3]) {
+    return sum(a[2], b[2], sum(a[1], b[1], a[0] * b[0]));
+  }
+};
+
+/// The same of lanes that set_up_origin() prepared.
+template <class L>
+struct SharedLanes {
+  using Float = typename L::Float;
+  Float first[3], second[3], n[3], ahead, ahead_error, error, normal_error;
+
+  const std::uint32_t* own_ids;
+
+  /// @param ids  no_hit() of the triangles.
+  GRIDIRON_INLINE SharedLanes(const TriangleLanes& lanes, std::uint32_t base, const std::uint32_t* ids)
+      : ahead(Float::load(lanes.e2[0] + base)),
+        ahead_error(Float::load(lanes.e2[1] + base)),
+        error(Float::load(lanes.edge_error + base)),
+        normal_error(Float::load(lanes.normal_error + base)),
+        own_ids(ids + base) {
+    for (int axis = 0; axis < 3; ++axis) {
+      first[axis] = Float::load(lanes.v[axis] + base);
+      second[axis] = Float::load(lanes.back_e1[axis] + base);
+      n[axis] = Float::load(lanes.normal[axis] + base);
+    }
+  }
+
+  /// @param there  the lanes that have a triangle.
+  [[nodiscard]] GRIDIRON_INLINE LeafAnswer<L> test(const BatchRay& ray, std::uint32_t there) const {
+    const LeafRay<L> q(ray);
+    const Float denominator = inner(q.dir, n);
+    const Float side = L::turn_by(denominator, inner(q.dir, first));
+    const Float other = L::turn_by(denominator, inner(q.dir, second));
+    const Float size = L::abs(denominator);
+    const Float least = L::min(L::min(side, other), size - side - other);
+    const Float most_error = error * q.dir_max;
+    // Rays from a light end on their own triangles, which would all be candidates.
+    const std::uint32_t candidates = there & ~((least + most_error < Float(0.0f)) | L::equal(ray.id, own_ids)).bits();
+    if (candidates == 0) return LeafAnswer<L>::none();
+    return LeafAnswer<L>::judge(candidates, (least > most_error).bits(), L::turn_by(denominator, ahead), ahead_error,
+                                size, normal_error * q.dir_max, q.t);
+  }
+
+ private:
+  [[nodiscard]] static GRIDIRON_INLINE Float inner(const Float (&a)[3], const Float (&b)[3]) {
+    return L::bounded_sum(a[2], b[2], L::bounded_sum(a[1], b[1], a[0] * b[0]));
   }
 };
 

@@ -39,6 +39,25 @@ struct alignas(16) RayTerms {
 };
 static_assert(sizeof(RayTerms) == sizeof(BatchRay));
 
+/// Rays of a beam.
+inline constexpr std::uint32_t kBeamRays = 16;
+
+/// What bounds neighbouring rays: four planes, and where they are along its axis; ray_beams.h.
+struct alignas(64) RayBeam {
+  float planes[4][4];  ///< plane, {slope or 0 if it is below 0, slope or 0 if it is above, offset, one of four
+                       ///< numbers}: the least and the greatest place along the axis, where all rays have begun, and
+                       ///< the greatest |component| of a direction along it, with its sign
+};
+
+/// Beams, and what leaves take for rays of one origin.
+template <std::uint32_t Count>
+struct BeamMemory {
+  RayBeam of[Count];
+  alignas(64) std::uint32_t own_ids[kMaxTreeLeaf];  ///< no_hit() of a leaf's triangles
+};
+template <>
+struct BeamMemory<0> {};
+
 /// A node on the way down, and the rays that met its box.
 struct ListLevel {
   TreeChild children[kTreeWidth];  ///< those that rays meet, in the order of their turns
@@ -46,10 +65,14 @@ struct ListLevel {
   std::uint32_t child_count;       ///< of these
   std::uint32_t turn;              ///< the child whose rays are next
   std::uint32_t asked;             ///< children asked for ahead of their turns
-  std::uint32_t lists[4];          ///< of each part: where its list begins in the arena
-  std::uint32_t ray_counts[4];     ///< of these lists
+  std::uint32_t parts[4];          ///< set_part() of each
   std::uint32_t end;               ///< what is free behind them
   std::uint32_t taken;             ///< of a part's rays, those that the child whose turn it is has seen
+
+  /// A part's list: where it begins in the arena, and how long it is.
+  void set_part(std::uint32_t part, std::uint32_t list, std::uint32_t count) { parts[part] = list << 16 | count; }
+  [[nodiscard]] std::uint32_t list_of(std::uint32_t part) const { return parts[part] >> 16; }
+  [[nodiscard]] std::uint32_t count_of(std::uint32_t part) const { return parts[part] & 0xFFFFu; }
 };
 
 /// Up to 16 triangles in lanes.
@@ -72,17 +95,29 @@ struct TermsMemory<Rays, true> {
 
 /// @tparam Rays      of a batch: a multiple of 16.
 /// @tparam Spare     words of the arena beyond the least.
+/// @tparam Beams     whether there is memory for beams; with it comes code for rays of one origin.
 /// @tparam HasTerms  whether there is room for terms of rays. With them lanes that round a product and a sum once test
 ///                   boxes faster; they change no answer.
-template <std::uint32_t Rays, std::uint32_t Spare, bool HasTerms = false>
+template <std::uint32_t Rays, std::uint32_t Spare, bool Beams, bool HasTerms = false>
 struct alignas(128) ListMemory : TermsMemory<Rays, HasTerms> {
   static constexpr bool kHasTerms = HasTerms;
   static constexpr std::uint32_t kRays = Rays;
   static constexpr std::uint32_t kArenaWords = list_arena_words(Rays, Spare);
+  static constexpr bool kHasBeams = Beams;
+  /// All lists of beams fit, at every level, and behind the last the lists of their rays, and what these need below.
+  template <class L>
+  static constexpr bool kHoldsBeams = [] {
+    constexpr std::uint32_t step = kListStep<L>, parts = 1 + kListParts<L>,
+                            beams = (Rays / kBeamRays + (step - 1)) / step * step,
+                            level = beams > parts * step ? beams : parts * step;
+    return kArenaWords >= (kMaxTreeDepth + 1) * level + parts * (Rays + beams) + parts * step;
+  }();
   static_assert(Rays % 16 == 0 && 3 * Rays <= 1u << 13, "a word of a list has 13 bits for a ray's place");
   static_assert(Spare % 16 == 0);
+  static_assert(kArenaWords <= 0xFFFFu, "ListLevel::set_part");
 
   BatchRay rays[Rays];
+  [[no_unique_address]] BeamMemory<Beams ? Rays / kBeamRays : std::uint32_t{0}> beams;
   std::uint32_t owners[Rays];
   alignas(64) std::uint32_t arena[kArenaWords];
   TriangleLanes triangles;

@@ -11,12 +11,14 @@
 #include <gridiron/engine/tree/leaf_test.h>
 #include <gridiron/engine/tree/list_memory.h>
 #include <gridiron/engine/tree/list_rays.h>
+#include <gridiron/engine/tree/ray_beams.h>
 #include <gridiron/platform/contract.h>
 #include <gridiron/ray/distance.h>
 #include <gridiron/ray/intersect_rays.h>
 #include <gridiron/ray/ray_batch.h>
 
 #include <cstdint>
+#include <type_traits>
 #include <utility>
 
 namespace gridiron {
@@ -38,14 +40,22 @@ class RayLists {
     question_ = question;
     ray_count_ = count;
     dead_count_ = 0;
-    std::uint32_t begins[8], counts[8];
+    std::uint32_t begins[kRoots], counts[kRoots];
     list_rays(count, largest, begins, counts);
-    if (question.any_hit) return walk(0, count);
+    if (question.any_hit) {
+      if constexpr (kHasBeams) {
+        const std::uint32_t beams = sum_of(counts + kBeamRoot);
+        if (beams != 0) GRIDIRON_TRY(walk(begins[kBeamRoot], beams, true));
+        const std::uint32_t rays = sum_of(counts);
+        return rays != 0 ? walk(0, rays, false) : Status::kOk;
+      }
+      return walk(0, count, false);
+    }
     // The nearest hit is found soonest front to back, and front is another side for each octant. The last list goes
     // first: it needs the room behind it.
-    for (std::uint32_t octant = 8; octant > 0; --octant) {
-      if (counts[octant - 1] == 0) continue;
-      GRIDIRON_TRY(walk(begins[octant - 1], counts[octant - 1]));
+    for (std::uint32_t root = kRoots; root > 0; --root) {
+      if (counts[root - 1] == 0) continue;
+      GRIDIRON_TRY(walk(begins[root - 1], counts[root - 1], root > kBeamRoot));
     }
     return Status::kOk;
   }
@@ -54,68 +64,164 @@ class RayLists {
   using Float = typename L::Float;
   // Where products round apart from sums, terms would have no bound.
   static constexpr bool kHasTerms = L::kRoundsOnce && Memory::kHasTerms;
+  // Lists that a batch begins with: rays by octants, then beams. Of unsorted words, a bit says which.
+  static constexpr std::uint32_t kBeamRoot = 8, kIsBeam = 1;
   static constexpr std::uint32_t kStep = kListStep<L>, kParts = kBoxParts<L>;
   static constexpr std::uint32_t kLevelWords = (1 + kListParts<L>)*kStep;
+  static constexpr bool kHasBeams = L::kCount >= 4 && Memory::kHasBeams;
+  static_assert(!kHasBeams || Memory::template kHoldsBeams<L>);
+  static constexpr std::uint32_t kRoots = kHasBeams ? 2 * kBeamRoot : kBeamRoot;
+  [[nodiscard]] static std::uint32_t sum_of(const std::uint32_t* counts) {
+    std::uint32_t sum = 0;
+    for (std::uint32_t octant = 0; octant < 8; ++octant) sum += counts[octant];
+    return sum;
+  }
   [[nodiscard]] static std::uint32_t step_up(std::uint32_t words) { return (words + (kStep - 1)) & ~(kStep - 1); }
 
   // Lists the batch in the order of octants: rays that run alike along all axes follow each other.
   GRIDIRON_OUTLINE void list_rays(std::uint32_t count, float largest, std::uint32_t* begins, std::uint32_t* counts) {
+    for (std::uint32_t root = 0; root < kRoots; ++root) counts[root] = 0;
     std::uint32_t* const unsorted = memory_.arena + (Memory::kArenaWords - Memory::kRays);
     work_.add(Work::kListRay, count);
     work_.charge_to(Work::kListRay);
     if constexpr (L::kCount > 4) {
       list_by_lanes(count, largest, unsorted, begins, counts);
     } else {
-      for (std::uint32_t octant = 0; octant < 8; ++octant) counts[octant] = 0;
-      for (std::uint32_t i = 0; i < count; ++i) {
-        const std::uint32_t octant = set_up_list_ray<L>(memory_.rays[i], largest);
-        unsorted[i] = list_word(i, octant);
-        ++counts[octant];
-      }
-      std::uint32_t places[8], end = 0;
-      for (std::uint32_t octant = 0; octant < 8; ++octant) {
-        begins[octant] = places[octant] = end;
-        end += question_.any_hit ? counts[octant] : step_up(counts[octant]);
-      }
-      for (std::uint32_t i = 0; i < count; ++i) {
-        const std::uint32_t word = unsorted[i];
-        std::uint32_t& place = places[octant_of(word)];
-        memory_.arena[place] = word;
-        ++place;
-      }
+      list_one_by_one(count, largest, unsorted, begins, counts);
     }
   }
-  // Wide lanes prepare as many rays at once, and pick those of one octant after the other, as those that meet a child:
+  GRIDIRON_INLINE void list_one_by_one(std::uint32_t count, float largest, std::uint32_t* unsorted,
+                                       std::uint32_t* begins, std::uint32_t* counts) {
+    for (std::uint32_t i = 0; i < count; ++i) {
+      const std::uint32_t octant = set_up_list_ray<L>(memory_.rays[i], largest);
+      unsorted[i] = list_word(i, octant);
+      ++counts[octant];
+    }
+    shares_origin_ = false;
+    std::uint32_t words = count;
+    if constexpr (kHasBeams) {
+      if (question_.are_neighbors) {
+        shares_origin_ = !question_.trusts_floats && have_one_origin(memory_.rays, count);
+        words = list_beams(unsorted, count, largest, counts);
+      }
+    }
+    std::uint32_t places[kRoots], end = 0;
+    for (std::uint32_t root = 0; root < kRoots; ++root) {
+      if (root == kBeamRoot) end = step_up(end);
+      begins[root] = places[root] = end;
+      end += question_.any_hit ? counts[root] : step_up(counts[root]);
+    }
+    for (std::uint32_t i = 0; i < words; ++i) {
+      const std::uint32_t word = unsorted[i];
+      std::uint32_t& place = places[octant_of(word) + (word & kIsBeam) * kBeamRoot];
+      memory_.arena[place] = word & ~kIsBeam;
+      ++place;
+    }
+  }
+
+  // Wide lanes prepare as many rays at once, and pick those of one root after the other, as those that meet a child:
   // a counter of each octant would be a chain through memory where rays run alike.
   GRIDIRON_INLINE void list_by_lanes(std::uint32_t count, float largest, std::uint32_t* unsorted, std::uint32_t* begins,
                                      std::uint32_t* counts) {
     // Copies of the last ray fill the last lanes. They are listed nowhere.
     for (std::uint32_t i = count; i % L::kCount != 0; ++i) memory_.rays[i] = memory_.rays[count - 1];
-    RaySetup<L, kHasTerms> setup(largest);
-    for (std::uint32_t i = 0; i < count; i += L::kCount) {
-      RayTerms* terms = nullptr;
-      if constexpr (kHasTerms) terms = memory_.terms + i;
-      setup.add(memory_.rays + i, terms, i, unsorted);
+    shares_origin_ = false;
+    if constexpr (kHasBeams) {
+      if (question_.are_neighbors && !question_.trusts_floats) shares_origin_ = have_one_origin(memory_.rays, count);
     }
-    for (std::uint32_t i = count; i % L::kCount != 0; ++i) unsorted[i] = kMaskBits;
-    if constexpr (kHasTerms) {
-      const float farthest[3] = {setup.farthest(0), setup.farthest(1), setup.farthest(2)};
-      uses_terms_ = terms_.set_up(memory_.terms, farthest, largest);
+    // Accuracy::kFast meets the same boxes with all lanes. Sides measured from one origin take less than terms.
+    std::uint32_t roots = kHasTerms && !share_origin() && !question_.trusts_floats
+                              ? set_up_by_lanes<kHasTerms>(count, largest, unsorted)
+                              : set_up_by_lanes<false>(count, largest, unsorted);
+    std::uint32_t words = count;
+    if constexpr (kHasBeams) {
+      if (question_.are_neighbors) {
+        words = list_beams(unsorted, count, largest, counts);
+        for (std::uint32_t octant = 0; octant < 8; ++octant) {
+          if (counts[kBeamRoot + octant] != 0) roots |= 1u << (kBeamRoot + octant);
+        }
+      }
     }
-    const std::uint32_t octants = setup.octants();
+    for (std::uint32_t i = words; i % L::kCount != 0; ++i) unsorted[i] = kMaskBits;
     std::uint32_t end = 0;
-    for (std::uint32_t octant = 0; octant < 8; ++octant) {
-      begins[octant] = end;
-      counts[octant] = (octants >> octant & 1u) == 0 ? std::uint32_t{0}
-                                                     : take_marked<L>(unsorted, count, octant, memory_.arena + end);
-      end += question_.any_hit ? counts[octant] : step_up(counts[octant]);
+    for (std::uint32_t root = 0; root < kRoots; ++root) {
+      if (root == kBeamRoot) end = step_up(end);
+      begins[root] = end;
+      counts[root] = (roots >> root & 1u) == 0 ? std::uint32_t{0}
+                                               : take_marked<L>(unsorted, words, root, memory_.arena + end);
+      end += question_.any_hit ? counts[root] : step_up(counts[root]);
     }
   }
+  // @param unsorted  gets words of rays that miss all roots but their own. @returns the rays' roots, as bits.
+  template <bool kSetsTerms>
+  [[nodiscard]] GRIDIRON_OUTLINE std::uint32_t set_up_by_lanes(std::uint32_t count, float largest,
+                                                               std::uint32_t* unsorted) {
+    RaySetup<L, kSetsTerms> setup(largest);
+    for (std::uint32_t i = 0; i < count; i += L::kCount) {
+      RayTerms* terms = nullptr;
+      if constexpr (kSetsTerms) terms = memory_.terms + i;
+      setup.add(memory_.rays + i, terms, i, unsorted);
+    }
+    wide_.uses_terms = false;
+    if constexpr (kSetsTerms) {
+      const float farthest[3] = {setup.farthest(0), setup.farthest(1), setup.farthest(2)};
+      wide_.uses_terms = wide_.terms.set_up(memory_.terms, farthest, largest);
+    }
+    return setup.octants();
+  }
+  // What tells a beam from rays among unsorted words: to wide lanes that it misses all other roots.
+  [[nodiscard]] static GRIDIRON_INLINE std::uint32_t beam_mark([[maybe_unused]] std::uint32_t octant) {
+    if constexpr (L::kCount > 4) return kMaskBits & ~(1u << (kBeamRoot + octant));
+    return kIsBeam;
+  }
+
+  // Puts beams in the place of rays where neighbours make them. @returns how many words are left.
+  GRIDIRON_OUTLINE std::uint32_t list_beams(std::uint32_t* words, std::uint32_t count, float largest,
+                                            std::uint32_t* counts) {
+    std::uint32_t listed = 0, tried = 0, made = 0;
+    for (std::uint32_t first = 0; first < count; first += kBeamRays) {
+      const std::uint32_t rest = count - first, here = rest < kBeamRays ? rest : kBeamRays;
+      const std::uint32_t octant = octant_of(words[first]);
+      std::uint32_t axis = kNoBeam;
+      bool are_alike = true;
+      for (std::uint32_t i = first; i < first + here; ++i) are_alike = are_alike && octant_of(words[i]) == octant;
+      if (are_alike && tried - made < kVainBeams + tried / 4) {
+        work_.add(Work::kListBeam);
+        work_.charge_to(Work::kListBeam);
+        axis = make_beam(memory_.rays + first, here, largest, memory_.beams.of[first / kBeamRays]);
+        ++tried;
+      }
+      if (axis == kNoBeam) {
+        for (std::uint32_t i = first; i < first + here; ++i, ++listed) words[listed] = words[i];
+        continue;
+      }
+      counts[octant] -= here;
+      words[listed] = beam_word(first / kBeamRays, axis, octant) | beam_mark(octant);
+      ++listed;
+      ++counts[kBeamRoot + octant];
+      ++made;
+    }
+    work_.charge_to(Work::kListRay);
+    return listed;
+  }
+
+  [[nodiscard]] static GRIDIRON_OUTLINE bool have_one_origin(const BatchRay* rays, std::uint32_t count) {
+    using Quad = Lanes<4>;
+    const auto place = Quad::Float::load(rays[0].origin);
+    for (std::uint32_t i = 1; i < count; ++i) {
+      const auto other = Quad::Float::load(rays[i].origin);
+      if ((((other < place) | (other > place)).bits() & 7u) != 0) return false;
+    }
+    return true;
+  }
+  // Where all rays begin, if it is one place.
+  [[nodiscard]] bool share_origin() const { return kHasBeams && shares_origin_; }
+  [[nodiscard]] const float* shared_origin() const { return share_origin() ? memory_.rays[0].origin : nullptr; }
 
   // Takes a list of the arena down the tree. What lies behind it is overwritten.
-  [[nodiscard]] GRIDIRON_OUTLINE Status walk(std::uint32_t list, std::uint32_t count) {
+  [[nodiscard]] GRIDIRON_OUTLINE Status walk(std::uint32_t list, std::uint32_t count, bool are_beams) {
     std::uint32_t depth = 0;
-    GRIDIRON_TRY(enter(memory_.levels[0], 0, list, count));
+    GRIDIRON_TRY(enter(memory_.levels[0], 0, list, count, are_beams));
     for (;;) {
       ListLevel& level = memory_.levels[depth];
       work_.charge_to(Work::kListChild);
@@ -136,7 +242,7 @@ class RayLists {
         GRIDIRON_TRY(visit_leaf(child, memory_.arena + level.end, selected));
       } else {
         ++depth;
-        GRIDIRON_TRY(enter(memory_.levels[depth], child.node_index(), level.end, selected));
+        GRIDIRON_TRY(enter(memory_.levels[depth], child.node_index(), level.end, selected, has_beams(depth - 1)));
       }
     }
   }
@@ -149,14 +255,14 @@ class RayLists {
     const std::uint32_t part = child / (kTreeWidth / kParts);
     const std::uint32_t below = (kMaxTreeDepth - 1 - depth) * kLevelWords;
     const std::uint32_t room = Memory::kArenaWords - level.end - below;
-    const std::uint32_t* const list = memory_.arena + level.lists[part];
+    const std::uint32_t* const list = memory_.arena + level.list_of(part);
     std::uint32_t* const target = memory_.arena + level.end;
     // All of them, if they fit even where each meets the child, and all boxes below it. With d = depth and words W of a
     // step of rays at all parts of a level, 13 - d of W are free behind the level's lists: of the root's by
     // list_arena_words, and so 2 W here, and 13 - (d + 1) behind a child's lists, which take W less than the room.
-    const std::uint32_t ray_count = level.ray_counts[part];
+    const std::uint32_t ray_count = level.count_of(part);
     std::uint32_t end = ray_count;
-    if ((1 + kListParts<L>)*step_up(end - level.taken) + kLevelWords > room) [[unlikely]] {
+    if (!has_beams(depth) && (1 + kListParts<L>)*step_up(end - level.taken) + kLevelWords > room) [[unlikely]] {
       end = level.taken + (room / kLevelWords - 1) * kStep;
     }
     const std::uint32_t seen = end - level.taken;
@@ -169,7 +275,7 @@ class RayLists {
       level.taken = 0;
       ++level.turn;
     }
-    if (dead_count_ * kDeadShare > ray_count_) {
+    if (!has_beams(depth) && dead_count_ * kDeadShare > ray_count_) {
       // Rays that have their answer leave lists only once they are many: they meet no box any more.
       count = keep_living(target, count);
     }
@@ -194,7 +300,7 @@ class RayLists {
 
   // Finds which boxes of a node each ray of a list meets: surely all that hold a hit.
   [[nodiscard]] GRIDIRON_OUTLINE Status enter(ListLevel& level, std::uint32_t index, std::uint32_t list,
-                                              std::uint32_t count) {
+                                              std::uint32_t count, bool are_beams) {
     work_.charge_to(Work::kListNode);
     const TreeNode* node = nullptr;
     GRIDIRON_TRY(source_.node(index, node));
@@ -203,7 +309,31 @@ class RayLists {
     level.taken = 0;
     level.turn = 0;
     level.asked = 0;
-    const std::uint32_t open = mark(*node, list, count, level);
+    std::uint32_t open = 0;
+    bool are_rays = !kHasBeams || !are_beams;
+    if constexpr (kHasBeams) {
+      const auto bit = std::uint32_t{1} << static_cast<std::uint32_t>(&level - memory_.levels);
+      beam_levels_ &= ~bit;
+      if (are_beams) {
+        open = mark_beams<L>(*node, memory_.beams.of, memory_.arena + list, count, work_);
+        work_.charge_to(Work::kListNode);
+        level.end = step_up(list + count);
+        are_rays = has_leaf(*node, open);
+        for (std::uint32_t part = 0; part < kParts; ++part) level.set_part(part, list, count);
+        if (!are_rays) {
+          beam_levels_ |= bit;
+        } else {
+          // Rays are tested one by one where leaves are: a beam meets more of them than its rays do.
+          work_.charge_to(Work::kListEntry);
+          count = list_beam_rays(memory_.beams.of, memory_.arena + list, count, memory_.rays, ray_count_,
+                                 memory_.arena + level.end, work_);
+          list = level.end;
+        }
+      }
+    }
+    if (are_rays) {
+      open = mark(*node, list, count, level);
+    }
     work_.charge_to(Work::kListNode);
     level.child_count = 0;
     level.places[0] = level.places[1] = 0;
@@ -241,6 +371,18 @@ class RayLists {
     return ~closed & ((1u << kTreeWidth) - 1);
   }
 
+  [[nodiscard]] bool has_beams(std::uint32_t depth) const {
+    if constexpr (kHasBeams) return (beam_levels_ >> depth & 1u) != 0;
+    return false;
+  }
+
+  // @returns whether one of some children is a leaf.
+  [[nodiscard]] static bool has_leaf(const TreeNode& node, std::uint32_t children) {
+    std::uint32_t bits = 0;
+    for (std::uint32_t rest = children; rest != 0; rest &= rest - 1) bits |= node.children[lowest_bit(rest)].bits;
+    return TreeChild{bits}.is_leaf();
+  }
+
   static void add_child(ListLevel& level, const TreeNode& node, std::uint32_t child) {
     const std::uint32_t turn = level.child_count;
     level.children[turn] = node.children[child];
@@ -274,21 +416,27 @@ class RayLists {
     work_.charge_to(Work::kListLeaf);
     const VertexTriangle* records = nullptr;
     GRIDIRON_TRY(source_.leaf(leaf, records));
-    work_.add(Work::kListLeaf);
-    work_.charge_to(Work::kListLeaf);
-    set_up_leaf<L>(records, leaf.count(), question_.trusts_floats, memory_.triangles);
+    const Work leaf_kind = share_origin() ? Work::kListSharedLeaf : Work::kListLeaf;
+    const Work group_kind = share_origin() ? Work::kListSharedGroup : Work::kListTriangleGroup;
+    work_.add(leaf_kind);
+    work_.charge_to(leaf_kind);
+    set_up_leaf<L>(records, leaf.count(), memory_.triangles);
+    if constexpr (kHasBeams) {
+      if (shares_origin_) {
+        set_up_origin<L>(memory_.rays[0].origin, leaf.count(), memory_.triangles);
+        for (std::uint32_t i = 0; i < leaf.count(); ++i) memory_.beams.own_ids[i] = no_hit(records[i].triangle_id);
+      }
+    }
     for (std::uint32_t base = 0; base < leaf.count(); base += L::kCount) {
       const std::uint32_t rest = leaf.count() - base;
       const std::uint32_t there = rest >= L::kCount ? std::uint32_t{L::kAllBits} : (1u << rest) - 1u;
-      work_.add(Work::kListTriangleGroup, count);
-      work_.charge_to(Work::kListTriangleGroup);
+      work_.add(group_kind, count);
+      work_.charge_to(leaf_kind);
+      if constexpr (L::kCount > 4) wide_.records = records + base;
       LeafAnswer<L> answer;
-      const auto next = [&](std::uint32_t begin) GRIDIRON_INLINE_LAMBDA {
-        return next_candidate(list, begin, count, records + base, base, there, answer);
-      };
-      for (std::uint32_t i = next(0); i < count; i = next(i + 1)) {
+      for (std::uint32_t i = next_candidate(list, 0, count, base, there, answer); i < count;
+           i = next_candidate(list, i + 1, count, base, there, answer)) {
         GRIDIRON_TRY(decide(ray_of(memory_.rays, list[i]), records + base, answer, base));
-        work_.charge_to(Work::kListTriangleGroup);
       }
     }
     return Status::kOk;
@@ -298,19 +446,32 @@ class RayLists {
   // list's end. Wide lanes stop rays on the way that surely hit one, if any hit will do: to leave and come back loads
   // all lanes again. @param answer  gets what floats say.
   [[nodiscard]] GRIDIRON_INLINE std::uint32_t next_candidate(const std::uint32_t* list, std::uint32_t begin,
-                                                             std::uint32_t end, const VertexTriangle* triangles,
-                                                             std::uint32_t base, std::uint32_t there,
+                                                             std::uint32_t end, std::uint32_t base, std::uint32_t there,
                                                              LeafAnswer<L>& answer) {
-    if constexpr (L::kRoundsOnce) {
-      if (question_.trusts_floats) return search<false>(list, begin, end, triangles, base, there, answer);
+    if constexpr (kHasBeams) {
+      if (shares_origin_) return search_shared(list, begin, end, base, there, answer);
     }
-    return search<true>(list, begin, end, triangles, base, there, answer);
+    if constexpr (L::kRoundsOnce) {
+      if (question_.trusts_floats) return search_own<false>(list, begin, end, base, there, answer);
+    }
+    return search_own<true>(list, begin, end, base, there, answer);
+  }
+  [[nodiscard]] GRIDIRON_OUTLINE std::uint32_t search_shared(const std::uint32_t* list, std::uint32_t begin,
+                                                             std::uint32_t end, std::uint32_t base, std::uint32_t there,
+                                                             LeafAnswer<L>& answer) {
+    return search(SharedLanes<L>(memory_.triangles, base, memory_.beams.own_ids), list, begin, end, there, answer);
   }
   template <bool kBounded>
-  [[nodiscard]] GRIDIRON_OUTLINE std::uint32_t search(const std::uint32_t* list, std::uint32_t begin, std::uint32_t end,
-                                                      [[maybe_unused]] const VertexTriangle* triangles,
-                                                      std::uint32_t base, std::uint32_t there, LeafAnswer<L>& answer) {
-    const LeafLanes<L, kBounded> lanes(memory_.triangles, base);
+  [[nodiscard]] GRIDIRON_OUTLINE std::uint32_t search_own(const std::uint32_t* list, std::uint32_t begin,
+                                                          std::uint32_t end, std::uint32_t base, std::uint32_t there,
+                                                          LeafAnswer<L>& answer) {
+    return search(LeafLanes<L, kBounded>(memory_.triangles, base), list, begin, end, there, answer);
+  }
+  template <class LaneTriangles>
+  [[nodiscard]] GRIDIRON_INLINE std::uint32_t search(const LaneTriangles& lanes, const std::uint32_t* list,
+                                                     std::uint32_t begin, std::uint32_t end, std::uint32_t there,
+                                                     LeafAnswer<L>& answer) {
+    work_.charge_to(share_origin() ? Work::kListSharedGroup : Work::kListTriangleGroup);
     for (std::uint32_t i = begin; i < end; ++i) {
       BatchRay& ray = ray_of(memory_.rays, list[i]);
       const LeafAnswer<L> found = lanes.test(ray, there);
@@ -319,7 +480,7 @@ class RayLists {
         const std::uint32_t sure = found.inside & found.within;
         if (question_.any_hit && sure != 0 && !ray.has_hit()) {
           work_.add(Work::kListCandidate);
-          end_ray(ray, triangles[lowest_bit(sure)].triangle_id);
+          end_ray(ray, wide_.records[lowest_bit(sure)].triangle_id);
           continue;
         }
       }
@@ -342,6 +503,9 @@ class RayLists {
     }
     // The nearest first, by estimates: exact distances cost the most, and a near hit spares those behind it.
     const std::uint32_t candidates = answer.inside | answer.unsure;
+    // Floats alone take what is unsure for a hit: two triangles that share an edge leave no gap then.
+    const std::uint32_t passed =
+        question_.trusts_floats && ray.dir_max < kInfinity ? candidates : std::uint32_t{answer.inside};
     alignas(64) float least[L::kCount];
     const bool are_several = !any_hit && (candidates & (candidates - 1)) != 0;
     if (are_several) answer.least_t().store(least);
@@ -355,7 +519,7 @@ class RayLists {
       }
       const VertexTriangle& triangle = triangles[lane];
       if ((triangle.triangle_id | kNoHit) == ray.id) continue;
-      if ((answer.inside >> lane & 1u) == 0 && !passes_through(ray, triangle, work_)) continue;
+      if ((passed >> lane & 1u) == 0 && !passes_through(ray, triangle, work_)) continue;
       if (any_hit && (answer.within >> lane & 1u) != 0) return stop(ray, triangle.triangle_id);
       const float t = question_.trusts_floats ? float_distance(ray, base + lane) : ray_distance(ray, triangle, work_);
       work_.charge_to(Work::kListCandidate);
@@ -375,9 +539,11 @@ class RayLists {
   [[nodiscard]] GRIDIRON_INLINE std::uint32_t mark(const TreeNode& node, std::uint32_t list, std::uint32_t count,
                                                    ListLevel& level) {
     if constexpr (kHasTerms) {
-      if (uses_terms_) return mark_boxes<L>(node, &terms_, memory_.arena, list, count, level, work_);
+      if (wide_.uses_terms) {
+        return mark_boxes<L, false>(node, &wide_.terms, nullptr, memory_.arena, list, count, level, work_);
+      }
     }
-    return mark_boxes<L>(node, memory_.rays, memory_.arena, list, count, level, work_);
+    return mark_boxes<L, kHasBeams>(node, memory_.rays, shared_origin(), memory_.arena, list, count, level, work_);
   }
   GRIDIRON_INLINE void set_t(BatchRay& ray, float t) {
     ray.t = t;
@@ -423,8 +589,16 @@ class RayLists {
   WorkCounters& work_;
   RayQuestion question_{};
   std::uint32_t ray_count_ = 0, dead_count_ = 0;
-  bool uses_terms_ = false;
-  TermsList terms_;
+  std::uint32_t beam_levels_ = 0;  // bit i: the lists of level i are of beams
+  bool shares_origin_ = false;
+  // What wide lanes alone keep.
+  struct Wide {
+    TermsList terms;
+    bool uses_terms = false;
+    const VertexTriangle* records = nullptr;  // of those in the lanes
+  };
+  struct None {};
+  [[no_unique_address]] std::conditional_t<(L::kCount > 4), Wide, None> wide_;
 };
 
 }  // namespace gridiron

@@ -57,6 +57,9 @@ class TreeCore {
         // The root comes while the other rays are made; if there are none, nothing is fetched.
         if (batch.count != 0 && !is_asked) GRIDIRON_TRY(source_.ahead(TreeChild::node(0)));
         is_asked = batch.count != 0;
+        if constexpr (Lists::kHasBeams && requires { jobs.ends_batch(); }) {
+          if (is_asked && jobs.ends_batch()) break;
+        }
       }
       if (batch.count != 0) {
         GRIDIRON_TRY((RayLists<L, Lists, Source>(lists, source_, store_.work).trace(question, batch.count, largest_)));

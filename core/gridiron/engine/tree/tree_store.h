@@ -44,7 +44,7 @@ struct TreeCache {
 /// Memory while rays are traced.
 template <class Layout>
 struct alignas(128) TreeRayStore {
-  using Lists = ListMemory<Layout::kBatchRays, Layout::kSpareListWords>;
+  using Lists = ListMemory<Layout::kBatchRays, Layout::kSpareListWords, Layout::kHasBeams>;
   using Cache = TreeCache<Layout::kTreeSlots, Layout::kLeafTriangles>;
   /// Buffers that can be lent: as many slots each as hold one.
   static constexpr std::uint32_t kBufferSlots = (kIdleBufferBytes + Cache::kSlotBytes - 1) / Cache::kSlotBytes;

@@ -57,7 +57,8 @@ Answer exact_answer(const TestMesh& mesh, const Ray& ray) {
 }
 
 template <class L, class Memory>
-std::vector<Answer> answers(MemoryTree& tree, const std::vector<Ray>& rays, bool any_hit, WorkCounters& work) {
+std::vector<Answer> answers(MemoryTree& tree, const std::vector<Ray>& rays, bool any_hit, WorkCounters& work,
+                            bool are_neighbors = false) {
   constexpr std::uint32_t Rays = Memory::kRays;
   const auto memory = std::make_unique<Memory>();
   std::vector<Answer> all;
@@ -65,7 +66,7 @@ std::vector<Answer> answers(MemoryTree& tree, const std::vector<Ray>& rays, bool
     const auto n = static_cast<std::uint32_t>(std::min<std::size_t>(Rays, rays.size() - first));
     for (std::uint32_t i = 0; i < n; ++i) memory->rays[i] = batch_ray(rays[first + i]);
     RayLists<L, Memory, MemoryTree> lists(*memory, tree, work);
-    EXPECT_EQ(lists.trace(RayQuestion{any_hit, false, false, {}}, n, tree.largest()), Status::kOk);
+    EXPECT_EQ(lists.trace(RayQuestion{any_hit, are_neighbors, false, false, {}}, n, tree.largest()), Status::kOk);
     for (std::uint32_t i = 0; i < n; ++i) {
       // Directions may have been scaled by a power of two, and t with them.
       float scale = 1.0f;
@@ -130,7 +131,7 @@ std::vector<Ray> hard_rays(const TestMesh& mesh, std::uint32_t count, std::uint6
 template <class L, std::uint32_t Rays, std::uint32_t Spare>
 std::vector<Answer> answers(MemoryTree& tree, const std::vector<Ray>& rays, bool any_hit) {
   WorkCounters work;
-  return answers<L, ListMemory<Rays, Spare>>(tree, rays, any_hit, work);
+  return answers<L, ListMemory<Rays, Spare, false>>(tree, rays, any_hit, work);
 }
 
 template <class L>
@@ -235,10 +236,10 @@ TYPED_TEST(RayListsTest, HoldWithEveryRoundingAndFlushedDenormals) {
 
 // The least that rays of one octant need: less than list_arena_words() by what eight octants and other lanes add.
 template <class L>
-struct LeastMemory : ListMemory<64, 0> {
+struct LeastMemory : ListMemory<64, 0, false> {
   static constexpr std::uint32_t kArenaWords =
       (1 + kListParts<L>)*64 + (kMaxTreeDepth + 2) * (1 + kListParts<L>)*kListStep<L>;
-  static_assert(kArenaWords < ListMemory<64, 0>::kArenaWords);
+  static_assert(kArenaWords < ListMemory<64, 0, false>::kArenaWords);
 };
 
 // A batch of equal rays fills the lists of every level. With the least arena they go through nodes in pieces.
@@ -251,8 +252,86 @@ TYPED_TEST(RayListsTest, PiecesOfListsFindTheSame) {
   for (const bool any_hit : {false, true}) {
     WorkCounters least, ample;
     const std::vector<Answer> pieces = answers<TypeParam, LeastMemory<TypeParam>>(tree, rays, any_hit, least);
-    EXPECT_EQ(pieces, (answers<TypeParam, ListMemory<64, 8192>>(tree, rays, any_hit, ample)));
+    EXPECT_EQ(pieces, (answers<TypeParam, ListMemory<64, 8192, false>>(tree, rays, any_hit, ample)));
     EXPECT_GT(least[Work::kListNode], ample[Work::kListNode]) << "no list went in pieces";
+  }
+}
+
+// Beams: rays from neighbouring places to neighbouring places, along each axis, to both sides, some of one origin, with
+// targets at vertices and edges; some neighbours stray.
+std::vector<Ray> neighbor_rays(const TestMesh& mesh, std::uint32_t groups, std::uint64_t seed) {
+  TestRandom random(seed);
+  float scale = 0;
+  for (const Vec3& p : mesh.vertices) {
+    for (int axis = 0; axis < 3; ++axis) scale = std::max(scale, std::fabs(p[axis]));
+  }
+  const auto place = [&](float size) {
+    return size * Vec3(2.0f * static_cast<float>(random.unit()) - 1.0f, 2.0f * static_cast<float>(random.unit()) - 1.0f,
+                       2.0f * static_cast<float>(random.unit()) - 1.0f);
+  };
+  std::vector<Ray> rays;
+  for (std::uint32_t group = 0; group < groups; ++group) {
+    const std::uint64_t kind = random.next() % 6;
+    const float size = scale * std::exp2(-2.0f - static_cast<float>(random.next() % 16));
+    const Vec3 start = place(kind == 5 ? 16.0f * scale : scale);
+    const float t = random.next() % 2 == 0 ? kFloatMax : 1.0f;
+    const std::size_t first = static_cast<std::size_t>(random.next() % mesh.triangles.size());
+    for (std::uint32_t i = 0; i < kBeamRays; ++i) {
+      const UVec3& corners = mesh.triangles[(first + random.next() % 4) % mesh.triangles.size()];
+      const Vec3 a = mesh.vertices[corners.x], b = mesh.vertices[corners.y];
+      const Vec3 target = kind < 2    ? a
+                          : kind == 2 ? 0.5f * a + 0.5f * b
+                                      : mesh.vertices[mesh.triangles[first].x] + place(size);
+      Ray ray{kind % 2 == 0 ? start : start + place(size), {}, t};
+      ray.dir = target - ray.origin;
+      if (group % 16 == 15 && i == 7) ray.dir = -ray.dir;
+      if (group % 16 == 13 && i == 3) ray.dir[static_cast<int>(group / 16 % 3)] = 0.0f;
+      rays.push_back(ray);
+    }
+  }
+  return rays;
+}
+
+// The rays of a batch that all begin at one place, seen from there.
+std::vector<Ray> from_one_place(std::vector<Ray> rays, std::uint32_t batch) {
+  for (std::size_t i = 0; i < rays.size(); ++i) {
+    const Vec3 target = rays[i].origin + rays[i].dir;
+    rays[i].origin = rays[i / batch * batch].origin;
+    rays[i].dir = target - rays[i].origin;
+  }
+  return rays;
+}
+
+TYPED_TEST(RayListsTest, BeamsAndSharedOriginsFindWhatSingleRaysDo) {
+  constexpr std::uint32_t kRays = 128;
+  const TestMesh meshes[] = {make_torus(48, 24, 1.0f, 0.35f), moved(make_torus(48, 24, 1.0f, 0.35f), 1000.0f),
+                             make_height_field(24, 0.1f, 3)};
+  for (const TestMesh& mesh : meshes) {
+    MemoryTree tree(mesh.view(), 8);
+    ASSERT_EQ(tree.status(), Status::kOk);
+    const std::vector<Ray> scattered = neighbor_rays(mesh, 512, 11), gathered = from_one_place(scattered, kRays);
+    for (const bool is_shared : {false, true}) {
+      const std::vector<Ray>& rays = is_shared ? gathered : scattered;
+      for (const bool any_hit : {false, true}) {
+        WorkCounters single, beams;
+        const auto expected = answers<TypeParam, ListMemory<kRays, 0, false>>(tree, rays, any_hit, single);
+        const auto found = answers<TypeParam, ListMemory<kRays, 512, true>>(tree, rays, any_hit, beams, true);
+        ASSERT_EQ(found.size(), expected.size());
+        for (std::size_t i = 0; i < rays.size(); ++i) {
+          if (any_hit) {
+            ASSERT_EQ(found[i].id == kNoTriangle, expected[i].id == kNoTriangle) << i;
+          } else {
+            ASSERT_EQ(found[i], expected[i]) << i;
+          }
+        }
+        if (TypeParam::kCount < 4) continue;
+        EXPECT_EQ(beams[Work::kListSharedBox] != 0, is_shared);
+        EXPECT_EQ(beams[Work::kListSharedGroup] != 0, is_shared);
+        EXPECT_GT(beams[Work::kListBeamNode], 0u);
+        EXPECT_LT(beams[Work::kListRayNode] + beams[Work::kListSharedBox],
+                  single[Work::kListRayNode] + single[Work::kListBoxQuad]);
+      }
+    }
   }
 }
 
