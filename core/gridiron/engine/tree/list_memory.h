@@ -79,7 +79,7 @@ struct TriangleLanes {
 /// @tparam Spare  words of the arena beyond the least.
 /// @tparam Beams  whether there is memory for beams; with it comes code for rays of one origin.
 template <std::uint32_t Rays, std::uint32_t Spare, bool Beams>
-struct alignas(128) ListMemory {
+struct alignas(64) ListMemory {
   static constexpr std::uint32_t kRays = Rays;
   static constexpr std::uint32_t kArenaWords = list_arena_words(Rays, Spare);
   static constexpr bool kHasBeams = Beams;
