@@ -99,7 +99,7 @@ struct TermsMemory<Rays, true> {
 /// @tparam HasTerms  whether there is room for terms of rays. With them lanes that round a product and a sum once test
 ///                   boxes faster; they change no answer.
 template <std::uint32_t Rays, std::uint32_t Spare, bool Beams, bool HasTerms = false>
-struct alignas(128) ListMemory : TermsMemory<Rays, HasTerms> {
+struct alignas(64) ListMemory : TermsMemory<Rays, HasTerms> {
   static constexpr bool kHasTerms = HasTerms;
   static constexpr std::uint32_t kRays = Rays;
   static constexpr std::uint32_t kArenaWords = list_arena_words(Rays, Spare);
