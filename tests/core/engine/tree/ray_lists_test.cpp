@@ -140,7 +140,7 @@ class RayListsTest : public testing::Test {};
 template <class L, std::uint32_t Rays, std::uint32_t Spare>
 std::vector<Answer> answers_by_terms(MemoryTree& tree, const std::vector<Ray>& rays, bool any_hit) {
   WorkCounters work;
-  return answers<L, ListMemory<Rays, Spare, true>>(tree, rays, any_hit, work);
+  return answers<L, ListMemory<Rays, Spare, false, true>>(tree, rays, any_hit, work);
 }
 using AllLanes = testing::Types<Lanes<1>, Lanes<4>, Lanes<8>, Lanes<16>>;
 TYPED_TEST_SUITE(RayListsTest, AllLanes);
@@ -313,21 +313,27 @@ TYPED_TEST(RayListsTest, BeamsAndSharedOriginsFindWhatSingleRaysDo) {
     for (const bool is_shared : {false, true}) {
       const std::vector<Ray>& rays = is_shared ? gathered : scattered;
       for (const bool any_hit : {false, true}) {
-        WorkCounters single, beams;
+        WorkCounters single, beams, by_terms;
         const auto expected = answers<TypeParam, ListMemory<kRays, 0, false>>(tree, rays, any_hit, single);
         const auto found = answers<TypeParam, ListMemory<kRays, 512, true>>(tree, rays, any_hit, beams, true);
+        const auto with_terms =
+            answers<TypeParam, ListMemory<kRays, 512, true, true>>(tree, rays, any_hit, by_terms, true);
         ASSERT_EQ(found.size(), expected.size());
         for (std::size_t i = 0; i < rays.size(); ++i) {
           if (any_hit) {
             ASSERT_EQ(found[i].id == kNoTriangle, expected[i].id == kNoTriangle) << i;
+            ASSERT_EQ(with_terms[i].id == kNoTriangle, expected[i].id == kNoTriangle) << i;
           } else {
             ASSERT_EQ(found[i], expected[i]) << i;
+            ASSERT_EQ(with_terms[i], expected[i]) << i;
           }
         }
         if (TypeParam::kCount < 4) continue;
         EXPECT_EQ(beams[Work::kListSharedBox] != 0, is_shared);
         EXPECT_EQ(beams[Work::kListSharedGroup] != 0, is_shared);
         EXPECT_GT(beams[Work::kListBeamNode], 0u);
+        EXPECT_EQ(by_terms[Work::kListSharedBox] != 0, is_shared);
+        EXPECT_EQ(by_terms[Work::kListBeamNode], beams[Work::kListBeamNode]);
         EXPECT_LT(beams[Work::kListRayNode] + beams[Work::kListSharedBox],
                   single[Work::kListRayNode] + single[Work::kListBoxQuad]);
       }
