@@ -77,16 +77,33 @@ class Leaf {
       : count_(static_cast<std::uint32_t>(triangles.size())), trusts_floats_(trusts_floats) {
     // Lanes without a triangle must not matter.
     std::memset(static_cast<void*>(&lanes_), 0xFF, sizeof lanes_);
-    set_up_leaf<L>(triangles.data(), count_, trusts_floats, lanes_);
+    set_up_leaf<L>(triangles.data(), count_, lanes_);
   }
   [[nodiscard]] LeafBits test(const BatchRay& ray) const {
-    LeafBits bits;
     const float farthest = magnitude(ray.origin[0]) + magnitude(ray.origin[1]) + magnitude(ray.origin[2]);
+    return bits_of([&](std::uint32_t base, std::uint32_t there) {
+      return trusts_floats_ ? LeafLanes<L, false>(lanes_, base, farthest).test(ray, there)
+                            : LeafLanes<L, true>(lanes_, base, farthest).test(ray, there);
+    });
+  }
+  // As for a batch of which all rays have its origin, but for the ray's own triangle.
+  [[nodiscard]] LeafBits test_shared(const BatchRay& ray, std::uint32_t own) const {
+    TriangleLanes lanes = lanes_;
+    set_up_origin<L>(ray.origin, count_, lanes);
+    alignas(64) std::uint32_t own_ids[kMaxTreeLeaf] = {};
+    own_ids[own] = ray.id;
+    return bits_of(
+        [&](std::uint32_t base, std::uint32_t there) { return SharedLanes<L>(lanes, base, own_ids).test(ray, there); });
+  }
+
+ private:
+  template <class Test>
+  [[nodiscard]] LeafBits bits_of(const Test& test) const {
+    LeafBits bits;
     for (std::uint32_t base = 0; base < count_; base += L::kCount) {
       const std::uint32_t rest = count_ - base;
       const std::uint32_t there = rest >= L::kCount ? std::uint32_t{L::kAllBits} : (1u << rest) - 1u;
-      const LeafAnswer<L> answer = trusts_floats_ ? LeafLanes<L, false>(lanes_, base, farthest).test(ray, there)
-                                                  : LeafLanes<L, true>(lanes_, base, farthest).test(ray, there);
+      const LeafAnswer<L> answer = test(base, there);
       EXPECT_EQ(answer.inside & answer.unsure, 0u);
       EXPECT_EQ((answer.inside | answer.unsure) & ~there, 0u) << "a lane without a triangle";
       bits.inside |= answer.inside << base;
@@ -101,7 +118,6 @@ class Leaf {
     return bits;
   }
 
- private:
   std::uint32_t count_;
   bool trusts_floats_;
   TriangleLanes lanes_;
@@ -170,7 +186,7 @@ std::vector<float> true_distances(const Oracle& oracle, const OracleRay& ray, st
 
 TYPED_TEST(LeafTest, DecidesAsTheOracleDoes) {
   std::uint64_t hits = 0, sure_hits = 0, unsure = 0, at_limit = 0, bounded = 0, pairs = 0, scaled = 0, boundless = 0;
-  std::uint64_t unlimited = 0;
+  std::uint64_t unlimited = 0, shared_hits = 0;
   WorkCounters work;
   for_each_seed(1500, [&](std::uint64_t seed) {
     TestRandom random(seed * 7919);
@@ -205,6 +221,10 @@ TYPED_TEST(LeafTest, DecidesAsTheOracleDoes) {
       if constexpr (!TypeParam::kRoundsOnce) {
         ASSERT_EQ(other_leaf.test(ray), bits) << "other lanes";
       }
+      const std::uint32_t own = random.below(static_cast<std::uint32_t>(triangles.size()));
+      LeafBits shared = bits;
+      if constexpr (TypeParam::kCount >= 4) shared = leaf.test_shared(ray, own);
+      const std::uint32_t stopped_shared = stopping(ray, triangles, shared, work);
       for (std::uint32_t i = 0; i < triangles.size(); ++i) {
         const float truth = distances[triangles[i].triangle_id];
         if (truth == kFloatMax) continue;  // farther than all floats: may be a hit or none
@@ -212,6 +232,12 @@ TYPED_TEST(LeafTest, DecidesAsTheOracleDoes) {
         const bool is_inside = (bits.inside >> i & 1u) != 0, is_unsure = (bits.unsure >> i & 1u) != 0;
         const bool is_within = (bits.within >> i & 1u) != 0;
         ASSERT_EQ((stopped >> i & 1u) != 0, is_hit) << "lane " << i << " at " << truth << " of " << ray.t;
+        const bool is_apart = TypeParam::kCount >= 4 && i == own;  // left out
+        ASSERT_EQ((stopped_shared >> i & 1u) != 0, is_hit && !is_apart) << "lane " << i << ", one origin";
+        if (((shared.inside & shared.within) >> i & 1u) != 0) {
+          ASSERT_TRUE(is_hit) << "lane " << i << ", one origin";
+        }
+        shared_hits += is_hit && (shared.inside & shared.within) >> i & 1u;
         if (is_inside) {
           ASSERT_TRUE(passes_through(ray, triangles[i], work)) << "lane " << i;
         }
@@ -237,6 +263,7 @@ TYPED_TEST(LeafTest, DecidesAsTheOracleDoes) {
   EXPECT_GT(pairs, 50'000u);
   EXPECT_GT(hits, 5'000u);
   EXPECT_GT(sure_hits, 1'000u);
+  EXPECT_GT(shared_hits, 1'000u);
   EXPECT_GT(unlimited, 100u) << "rays without end";
   EXPECT_GT(unsure, 1'000u);
   EXPECT_GT(at_limit, 500u);
