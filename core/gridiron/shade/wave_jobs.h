@@ -90,7 +90,7 @@ class LightJobs {
       const bool from_light = light.samples == 0 && light.is_near != 0;
       const std::uint32_t first = first_point_, sample = sample_;
       step(light);
-      if constexpr (Store::Layout::kHasBeams) ends_batch_ = from_light && light_ != index;
+      if constexpr (kPartsLights) ends_batch_ = from_light && light_ != index;
       std::uint32_t end = first + kJobRays;
       if (end > context_.point_count) end = context_.point_count;
       if (light.samples != 0) context_.store.work.charge_to(Work::kAreaPlace);
@@ -110,7 +110,7 @@ class LightJobs {
         }
       }
       if (batch.count != before) return true;
-      if constexpr (Store::Layout::kHasBeams) {
+      if constexpr (kPartsLights) {
         if (ends_batch_ && before != 0) return light_ < light_count_;
       }
     }
@@ -152,6 +152,7 @@ class LightJobs {
   }
 
  private:
+  static constexpr bool kPartsLights = requires { requires Store::Layout::kHasBeams; };
   static constexpr std::uint32_t kLightShift = 16;  // of a ray's owner: the light above its hit
   static_assert(kMostWaveRays <= 1u << kLightShift && (kMostWaveRays & (kMostWaveRays - 1)) == 0);
 

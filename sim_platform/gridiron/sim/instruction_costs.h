@@ -25,7 +25,7 @@ inline constexpr auto kInstructionCosts = std::to_array<InstructionCost>({
     {WorkId( 3),   232.0},  // ray_generated
     {WorkId( 4),    19.2},  // ray_set_word
     {WorkId( 5),     3.5},  // recent_slot
-    {WorkId( 6),   359.6},  // cull_test
+    {WorkId( 6),   358.6},  // cull_test
     {WorkId( 7),  1613.4},  // pixel_box_group, not in `dense`
     {WorkId( 8),   160.8},  // open_triangle, not in `dense`
     {WorkId( 9),    14.1},  // listed_triangle
@@ -50,7 +50,7 @@ inline constexpr auto kInstructionCosts = std::to_array<InstructionCost>({
     {WorkId(28),    95.5},  // settled_group
     {WorkId(29),   609.0},  // hit_subpacket, not in `dense`
     {WorkId(30),   123.0},  // taken_subpacket, not in `dense`
-    {WorkId(31),    96.4},  // facing_group
+    {WorkId(31),    95.6},  // facing_group
     {WorkId(32),   180.5},  // hit_group_paper, not in `dense`
     {WorkId(33),   287.6},  // hit_setup
     {WorkId(34),   181.2},  // double_sign
@@ -66,36 +66,36 @@ inline constexpr auto kInstructionCosts = std::to_array<InstructionCost>({
     {WorkId(44),   351.4},  // hit_half
     {WorkId(45), 27547.3},  // exact_order, of 64 decisions
     {WorkId(46),    95.6},  // lattice_triangle, not in `dense`
-    {WorkId(47),   161.8},  // wave_ray, of effects
+    {WorkId(47),   161.9},  // wave_ray, of effects
     {WorkId(48),    92.1},  // queued_ray, of effects
-    {WorkId(49),   181.9},  // list_ray, of effects
-    {WorkId(50),   181.9},  // list_beam, of effects
-    {WorkId(51),   181.9},  // list_beam_node, of effects
-    {WorkId(52),   264.3},  // list_child, of effects
-    {WorkId(53),    43.1},  // list_entry, of effects
-    {WorkId(54),  1401.2},  // list_node, of effects
-    {WorkId(55),   140.5},  // list_run, of effects
-    {WorkId(56),   455.9},  // list_ray_node, of effects
-    {WorkId(57),   461.8},  // list_box_quad, of effects
-    {WorkId(58),   461.8},  // list_shared_box, of effects
-    {WorkId(59),  1886.4},  // list_leaf, of effects
-    {WorkId(60),   760.3},  // list_triangle_group, of effects
-    {WorkId(61),   760.3},  // list_shared_leaf, of effects
-    {WorkId(62),   760.3},  // list_shared_group, of effects
-    {WorkId(63),   117.1},  // list_candidate, of effects
+    {WorkId(49),   189.6},  // list_ray, of effects
+    {WorkId(50),  4260.6},  // list_beam, of effects
+    {WorkId(51),  1734.9},  // list_beam_node, of effects
+    {WorkId(52),   303.0},  // list_child, of effects
+    {WorkId(53),    39.7},  // list_entry, of effects
+    {WorkId(54),  1312.9},  // list_node, of effects
+    {WorkId(55),   153.6},  // list_run, of effects
+    {WorkId(56),   454.9},  // list_ray_node, of effects
+    {WorkId(57),   457.8},  // list_box_quad, of effects
+    {WorkId(58),   391.6},  // list_shared_box, of effects
+    {WorkId(59),  2176.7},  // list_leaf, of effects
+    {WorkId(60),   941.9},  // list_triangle_group, of effects
+    {WorkId(61),  3066.5},  // list_shared_leaf, of effects
+    {WorkId(62),   613.2},  // list_shared_group, of effects
+    {WorkId(63),   284.4},  // list_candidate, of effects
     {WorkId(64),   326.4},  // ray_distance, of effects
-    {WorkId(65),  1422.2},  // surface_point, of effects
+    {WorkId(65),  1422.3},  // surface_point, of effects
     {WorkId(66),   322.8},  // smooth_normal, of effects
     {WorkId(67),    47.0},  // jitter_seed, of effects
-    {WorkId(68),   114.6},  // shadow_ray, of effects
-    {WorkId(69),    88.4},  // area_place, of effects
+    {WorkId(68),   116.1},  // shadow_ray, of effects
+    {WorkId(69),    88.7},  // area_place, of effects
     {WorkId(70),    67.0},  // light_sample, of effects
     {WorkId(71),   153.2},  // highlight, of effects
-    {WorkId(72),   186.0},  // occlusion_ray, of effects
+    {WorkId(72),   184.4},  // occlusion_ray, of effects
     {WorkId(73),   159.9},  // mirror_ray, of effects
     {WorkId(74),   159.4},  // refracted_ray, of effects
     {WorkId(75),   383.7},  // environment_lookup, of effects
-    {WorkId(76),    84.8},  // color_added, of effects
+    {WorkId(76),    70.1},  // color_added, of effects
     {WorkId(77),   193.1},  // color_group, of effects
     {WorkId(81),   387.8},  // packet_start
     {WorkId(82),    23.0},  // pass_slope

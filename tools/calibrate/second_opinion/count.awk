@@ -4,11 +4,11 @@
 BEGIN {
   # n = 128 + kind, and the marks of program_core.h: movz xzr, #n is d280001f + 32 n, slti zero, zero, n
   # 00002013 + n * 2^20.
-  for (kind = 0; kind < 100; ++kind) {
+  for (kind = 0; kind < 108; ++kind) {
     code = target == "riscv64" ? sprintf("%03x02013", 128 + kind) : sprintf("d28%05x", 31 + 32 * (128 + kind))
     kind_of[code] = kind
   }
-  kKinds = kClaim = 96; kCommandEnd = 97; kCopied = 98; kNothing = 99
+  kKinds = kClaim = 104; kCommandEnd = 105; kCopied = 106; kNothing = 107
   while ((getline line < (work "/units")) > 0) {
     split(line, part, " ")
     name[part[1]] = part[2]

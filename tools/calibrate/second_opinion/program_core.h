@@ -20,7 +20,7 @@ extern "C" std::byte gridiron_memory[], gridiron_memory_end[];
 
 // Marks beside those of kinds of work, which `count.awk` knows: the first begins a claim, the next stands in a wait
 // where it ends a command, the last two stand around what no core does: copies are a transfer engine's work.
-inline constexpr int kClaimMark = 224, kCommandEndMark = 225, kCopiedMark = 226, kNothingMark = 227;
+inline constexpr int kClaimMark = 232, kCommandEndMark = 233, kCopiedMark = 234, kNothingMark = 235;
 static_assert(gridiron::kEndOfKindMarks <= kClaimMark);
 template <int kNumber>
 [[gnu::always_inline]] inline void put_mark() {

@@ -176,7 +176,7 @@ struct Rig {
     store->frame.fetch_depth = options.depth;
     store->frame.image_address = kImage;
     store->frame.tree_address = kImage + scene.view.tree_offset_bytes;
-    question = {options.any_hit, false, scene.accuracy == Accuracy::kFast, scene.accuracy == Accuracy::kExact,
+    question = {options.any_hit, true, scene.accuracy == Accuracy::kFast, scene.accuracy == Accuracy::kExact,
                 MainAddress{kImage + scene.view.effects.surfaces_offset_bytes}};
     platform.failing_command = options.failing_command;
   }

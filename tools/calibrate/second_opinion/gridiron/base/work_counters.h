@@ -19,7 +19,7 @@
 namespace gridiron {
 
 /// Numbers of marks: of kinds of work first, of what else there is at the end.
-inline constexpr int kFirstMark = 128, kEndOfKindMarks = kFirstMark + 96;
+inline constexpr int kFirstMark = 128, kEndOfKindMarks = kFirstMark + 104;
 static_assert(kFirstMark + kWorkKindCount <= kEndOfKindMarks, "each kind has a mark");
 
 struct WorkCounters : PlainWorkCounters {
@@ -47,7 +47,7 @@ struct WorkCounters : PlainWorkCounters {
         GRIDIRON_MARKS(0)
         GRIDIRON_MARKS(8)
         GRIDIRON_MARKS(16) GRIDIRON_MARKS(24) GRIDIRON_MARKS(32) GRIDIRON_MARKS(40) GRIDIRON_MARKS(48)
-            GRIDIRON_MARKS(56) GRIDIRON_MARKS(64) GRIDIRON_MARKS(72) GRIDIRON_MARKS(80) GRIDIRON_MARKS(88)
+            GRIDIRON_MARKS(56) GRIDIRON_MARKS(64) GRIDIRON_MARKS(72) GRIDIRON_MARKS(80) GRIDIRON_MARKS(88) GRIDIRON_MARKS(96)
 #undef GRIDIRON_MARKS
 #undef GRIDIRON_MARK
                 default : break;
