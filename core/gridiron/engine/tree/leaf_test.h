@@ -204,12 +204,29 @@ struct LeafRay {
 template <class L, bool kBounded>
 inline constexpr bool kFiltersFirst = L::kRoundsOnce&& kBounded;
 
-/// The lanes of a leaf from `base` on, in registers.
-/// @tparam kBounded  what is unsure is decided exactly. With Accuracy::kFast it is not, so all lanes compute the same
-///                   bits.
+/// Sums of products. @tparam kBounded  what is unsure is decided exactly. With Accuracy::kFast it is not always, so all
+/// lanes compute the same bits.
 template <class L, bool kBounded>
-struct LeafLanes {
+struct LeafSums {
   using Float = typename L::Float;
+  [[nodiscard]] static GRIDIRON_INLINE Float sum(Float a, Float b, Float c) {
+    if constexpr (kBounded) return L::bounded_sum(a, b, c);
+    return a * b + c;
+  }
+  [[nodiscard]] static GRIDIRON_INLINE Float difference(Float a, Float b, Float c, Float d) {
+    if constexpr (kBounded) return L::bounded_difference(a, b, c, d);
+    return a * b - c * d;
+  }
+  [[nodiscard]] static GRIDIRON_INLINE Float inner(const Float (&a)[3], const Float (&b)[3]) {
+    return sum(a[2], b[2], sum(a[1], b[1], a[0] * b[0]));
+  }
+};
+
+/// The lanes of a leaf from `base` on, in registers.
+template <class L, bool kBounded>
+struct LeafLanes : LeafSums<L, kBounded> {
+  using Float = typename L::Float;
+  using LeafSums<L, kBounded>::sum, LeafSums<L, kBounded>::difference, LeafSums<L, kBounded>::inner;
   Float v[3], back_e1[3], e2[3], n[3], edge_error, normal_error;
   Float wide_edge_error, wide_normal_error, least_error;  ///< if kFiltersFirst
 
@@ -265,25 +282,13 @@ struct LeafLanes {
     return LeafAnswer<L>::judge(candidates, (least > error).bits(), L::turn_by(denominator, inner(place, n)),
                                 far * normal_error + Float(kLeastAhead), size, turn, q.t);
   }
-
- private:
-  [[nodiscard]] static GRIDIRON_INLINE Float sum(Float a, Float b, Float c) {
-    if constexpr (kBounded) return L::bounded_sum(a, b, c);
-    return a * b + c;
-  }
-  [[nodiscard]] static GRIDIRON_INLINE Float difference(Float a, Float b, Float c, Float d) {
-    if constexpr (kBounded) return L::bounded_difference(a, b, c, d);
-    return a * b - c * d;
-  }
-  [[nodiscard]] static GRIDIRON_INLINE Float inner(const Float (&a)[3], const Float (&b)[3]) {
-    return sum(a[2], b[2], sum(a[1], b[1], a[0] * b[0]));
-  }
 };
 
 /// The same of lanes that set_up_origin() prepared.
-template <class L>
-struct SharedLanes {
+template <class L, bool kBounded>
+struct SharedLanes : LeafSums<L, kBounded> {
   using Float = typename L::Float;
+  using LeafSums<L, kBounded>::inner;
   Float first[3], second[3], n[3], ahead, ahead_error, error, normal_error;
 
   const std::uint32_t* own_ids;
@@ -316,11 +321,6 @@ struct SharedLanes {
     if (candidates == 0) return LeafAnswer<L>::none();
     return LeafAnswer<L>::judge(candidates, (least > most_error).bits(), L::turn_by(denominator, ahead), ahead_error,
                                 size, normal_error * q.dir_max, q.t);
-  }
-
- private:
-  [[nodiscard]] static GRIDIRON_INLINE Float inner(const Float (&a)[3], const Float (&b)[3]) {
-    return L::bounded_sum(a[2], b[2], L::bounded_sum(a[1], b[1], a[0] * b[0]));
   }
 };
 

@@ -101,7 +101,7 @@ class RayLists {
     std::uint32_t words = count;
     if constexpr (kHasBeams) {
       if (question_.are_neighbors) {
-        shares_origin_ = !question_.trusts_floats && have_one_origin(memory_.rays, count);
+        shares_origin_ = have_one_origin(memory_.rays, count);
         words = list_beams(unsorted, count, largest, counts);
       }
     }
@@ -127,7 +127,7 @@ class RayLists {
     for (std::uint32_t i = count; i % L::kCount != 0; ++i) memory_.rays[i] = memory_.rays[count - 1];
     shares_origin_ = false;
     if constexpr (kHasBeams) {
-      if (question_.are_neighbors && !question_.trusts_floats) shares_origin_ = have_one_origin(memory_.rays, count);
+      if (question_.are_neighbors) shares_origin_ = have_one_origin(memory_.rays, count);
     }
     // Accuracy::kFast meets the same boxes with all lanes. Sides measured from one origin take less than terms.
     std::uint32_t roots = kHasTerms && !share_origin() && !question_.trusts_floats
@@ -147,8 +147,8 @@ class RayLists {
     for (std::uint32_t root = 0; root < kRoots; ++root) {
       if (root == kBeamRoot) end = step_up(end);
       begins[root] = end;
-      counts[root] = (roots >> root & 1u) == 0 ? std::uint32_t{0}
-                                               : take_marked<L>(unsorted, words, root, memory_.arena + end);
+      counts[root] =
+          (roots >> root & 1u) == 0 ? std::uint32_t{0} : take_marked<L>(unsorted, words, root, memory_.arena + end);
       end += question_.any_hit ? counts[root] : step_up(counts[root]);
     }
   }
@@ -449,17 +449,24 @@ class RayLists {
                                                              std::uint32_t end, std::uint32_t base, std::uint32_t there,
                                                              LeafAnswer<L>& answer) {
     if constexpr (kHasBeams) {
-      if (shares_origin_) return search_shared(list, begin, end, base, there, answer);
+      if (shares_origin_) {
+        if constexpr (L::kRoundsOnce) {
+          if (question_.trusts_floats) return search_shared<false>(list, begin, end, base, there, answer);
+        }
+        return search_shared<true>(list, begin, end, base, there, answer);
+      }
     }
     if constexpr (L::kRoundsOnce) {
       if (question_.trusts_floats) return search_own<false>(list, begin, end, base, there, answer);
     }
     return search_own<true>(list, begin, end, base, there, answer);
   }
+  template <bool kBounded>
   [[nodiscard]] GRIDIRON_OUTLINE std::uint32_t search_shared(const std::uint32_t* list, std::uint32_t begin,
                                                              std::uint32_t end, std::uint32_t base, std::uint32_t there,
                                                              LeafAnswer<L>& answer) {
-    return search(SharedLanes<L>(memory_.triangles, base, memory_.beams.own_ids), list, begin, end, there, answer);
+    return search(SharedLanes<L, kBounded>(memory_.triangles, base, memory_.beams.own_ids), list, begin, end, there,
+                  answer);
   }
   template <bool kBounded>
   [[nodiscard]] GRIDIRON_OUTLINE std::uint32_t search_own(const std::uint32_t* list, std::uint32_t begin,
@@ -496,16 +503,17 @@ class RayLists {
     work_.add(Work::kListCandidate);
     work_.charge_to(Work::kListCandidate);
     const bool any_hit = question_.any_hit;
+    std::uint32_t passed = answer.inside;
+    // Floats alone take what is unsure for a hit, so two triangles that share an edge leave no gap. Where a ray begins
+    // or ends, it would hit its own triangle's neighbours.
+    if (question_.trusts_floats) passed |= answer.unsure & answer.within;
     if (any_hit) {
       if (ray.has_hit()) return Status::kOk;
-      const std::uint32_t sure = answer.inside & answer.within;
+      const std::uint32_t sure = passed & answer.within;
       if (sure != 0) return stop(ray, triangles[lowest_bit(sure)].triangle_id);
     }
     // The nearest first, by estimates: exact distances cost the most, and a near hit spares those behind it.
     const std::uint32_t candidates = answer.inside | answer.unsure;
-    // Floats alone take what is unsure for a hit: two triangles that share an edge leave no gap then.
-    const std::uint32_t passed =
-        question_.trusts_floats && ray.dir_max < kInfinity ? candidates : std::uint32_t{answer.inside};
     alignas(64) float least[L::kCount];
     const bool are_several = !any_hit && (candidates & (candidates - 1)) != 0;
     if (are_several) answer.least_t().store(least);
@@ -521,7 +529,8 @@ class RayLists {
       if ((triangle.triangle_id | kNoHit) == ray.id) continue;
       if ((passed >> lane & 1u) == 0 && !passes_through(ray, triangle, work_)) continue;
       if (any_hit && (answer.within >> lane & 1u) != 0) return stop(ray, triangle.triangle_id);
-      const float t = question_.trusts_floats ? float_distance(ray, base + lane) : ray_distance(ray, triangle, work_);
+      const float t =
+          question_.trusts_floats ? float_distance(ray, triangle, base + lane) : ray_distance(ray, triangle, work_);
       work_.charge_to(Work::kListCandidate);
       if (!(t > 0.0f) || t > ray.t) continue;
       if (any_hit) return stop(ray, triangle.triangle_id);
@@ -562,11 +571,11 @@ class RayLists {
   }
 
   // Single precision alone. @param place  of the triangle in the lanes.
-  [[nodiscard]] float float_distance(const BatchRay& ray, std::uint32_t place) const {
+  [[nodiscard]] float float_distance(const BatchRay& ray, const VertexTriangle& triangle, std::uint32_t place) const {
     const TriangleLanes& lanes = memory_.triangles;
     float ahead = 0.0f, along = 0.0f;
     for (int axis = 0; axis < 3; ++axis) {
-      ahead = ahead + (lanes.v[axis][place] - ray.origin[axis]) * lanes.normal[axis][place];
+      ahead = ahead + (triangle.v[0][axis] - ray.origin[axis]) * lanes.normal[axis][place];
       along = along + ray.dir[axis] * lanes.normal[axis][place];
     }
     return ahead / along;

@@ -91,8 +91,9 @@ class Leaf {
     set_up_origin<L>(ray.origin, count_, lanes);
     alignas(64) std::uint32_t own_ids[kMaxTreeLeaf] = {};
     own_ids[own] = ray.id;
-    return bits_of(
-        [&](std::uint32_t base, std::uint32_t there) { return SharedLanes<L>(lanes, base, own_ids).test(ray, there); });
+    return bits_of([&](std::uint32_t base, std::uint32_t there) {
+      return SharedLanes<L, true>(lanes, base, own_ids).test(ray, there);
+    });
   }
 
  private:
