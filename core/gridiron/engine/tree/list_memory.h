@@ -39,6 +39,10 @@ struct alignas(16) RayTerms {
 };
 static_assert(sizeof(RayTerms) == sizeof(BatchRay));
 
+/// Lanes that use beams, and code for rays of one origin. One lane needs short code; 16 test all boxes of a node at
+/// once, so a beam saves them less than it costs.
+template <class L>
+inline constexpr bool kUsesBeams = L::kCount == 4 || L::kCount == 8;
 /// Rays of a beam.
 inline constexpr std::uint32_t kBeamRays = 16;
 
@@ -64,15 +68,15 @@ struct ListLevel {
   std::uint32_t places[2];         ///< of each: its bit in the masks, 4 bits, eight to a word
   std::uint32_t child_count;       ///< of these
   std::uint32_t turn;              ///< the child whose rays are next
-  std::uint32_t asked;             ///< children asked for ahead of their turns
-  std::uint32_t parts[4];          ///< set_part() of each
+  std::uint32_t lists[4];          ///< of each part: where its list begins in the arena
+  std::uint32_t ray_counts[4];     ///< of these lists
   std::uint32_t end;               ///< what is free behind them
   std::uint32_t taken;             ///< of a part's rays, those that the child whose turn it is has seen
 
-  /// A part's list: where it begins in the arena, and how long it is.
-  void set_part(std::uint32_t part, std::uint32_t list, std::uint32_t count) { parts[part] = list << 16 | count; }
-  [[nodiscard]] std::uint32_t list_of(std::uint32_t part) const { return parts[part] >> 16; }
-  [[nodiscard]] std::uint32_t count_of(std::uint32_t part) const { return parts[part] & 0xFFFFu; }
+  void set_part(std::uint32_t part, std::uint32_t list, std::uint32_t count) {
+    lists[part] = list;
+    ray_counts[part] = count;
+  }
 };
 
 /// Up to 16 triangles in lanes.
@@ -114,7 +118,6 @@ struct alignas(64) ListMemory : TermsMemory<Rays, HasTerms> {
   }();
   static_assert(Rays % 16 == 0 && 3 * Rays <= 1u << 13, "a word of a list has 13 bits for a ray's place");
   static_assert(Spare % 16 == 0);
-  static_assert(kArenaWords <= 0xFFFFu, "ListLevel::set_part");
 
   BatchRay rays[Rays];
   [[no_unique_address]] BeamMemory<Beams ? Rays / kBeamRays : std::uint32_t{0}> beams;

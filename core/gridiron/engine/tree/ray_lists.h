@@ -68,7 +68,7 @@ class RayLists {
   static constexpr std::uint32_t kBeamRoot = 8, kIsBeam = 1;
   static constexpr std::uint32_t kStep = kListStep<L>, kParts = kBoxParts<L>;
   static constexpr std::uint32_t kLevelWords = (1 + kListParts<L>)*kStep;
-  static constexpr bool kHasBeams = L::kCount >= 4 && Memory::kHasBeams;
+  static constexpr bool kHasBeams = kUsesBeams<L> && Memory::kHasBeams;
   static_assert(!kHasBeams || Memory::template kHoldsBeams<L>);
   static constexpr std::uint32_t kRoots = kHasBeams ? 2 * kBeamRoot : kBeamRoot;
   [[nodiscard]] static std::uint32_t sum_of(const std::uint32_t* counts) {
@@ -230,9 +230,11 @@ class RayLists {
         --depth;
         continue;
       }
-      for (const std::uint32_t window = level.turn + source_.window();
-           level.asked < level.child_count && level.asked < window; ++level.asked) {
-        GRIDIRON_TRY(source_.ahead(level.children[level.asked]));
+      // At first those of a window, then one more for each that was taken.
+      const std::uint32_t window = source_.window();
+      std::uint32_t next = level.turn == 0 ? std::uint32_t{0} : level.turn + window - 1;
+      for (; next < level.child_count && next < level.turn + window; ++next) {
+        GRIDIRON_TRY(source_.ahead(level.children[next]));
       }
       work_.charge_to(Work::kListChild);
       const TreeChild child = level.children[level.turn];
@@ -255,12 +257,12 @@ class RayLists {
     const std::uint32_t part = child / (kTreeWidth / kParts);
     const std::uint32_t below = (kMaxTreeDepth - 1 - depth) * kLevelWords;
     const std::uint32_t room = Memory::kArenaWords - level.end - below;
-    const std::uint32_t* const list = memory_.arena + level.list_of(part);
+    const std::uint32_t* const list = memory_.arena + level.lists[part];
     std::uint32_t* const target = memory_.arena + level.end;
     // All of them, if they fit even where each meets the child, and all boxes below it. With d = depth and words W of a
     // step of rays at all parts of a level, 13 - d of W are free behind the level's lists: of the root's by
     // list_arena_words, and so 2 W here, and 13 - (d + 1) behind a child's lists, which take W less than the room.
-    const std::uint32_t ray_count = level.count_of(part);
+    const std::uint32_t ray_count = level.ray_counts[part];
     std::uint32_t end = ray_count;
     if (!has_beams(depth) && (1 + kListParts<L>)*step_up(end - level.taken) + kLevelWords > room) [[unlikely]] {
       end = level.taken + (room / kLevelWords - 1) * kStep;
@@ -308,7 +310,6 @@ class RayLists {
     work_.charge_to(Work::kListNode);
     level.taken = 0;
     level.turn = 0;
-    level.asked = 0;
     std::uint32_t open = 0;
     bool are_rays = !kHasBeams || !are_beams;
     if constexpr (kHasBeams) {

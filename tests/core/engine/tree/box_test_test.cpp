@@ -124,14 +124,14 @@ void expect_boxes_met_by(bool by_terms, MemoryTree& tree, const std::vector<Shot
     std::vector<std::uint32_t> met(shots.size(), 0);  // by ray, all boxes of the node
     std::uint32_t all = 0;
     for (std::uint32_t part = 0; part < kBoxParts<L>; ++part) {
-      ASSERT_LE(level.count_of(part), count);
+      ASSERT_LE(level.ray_counts[part], count);
       const std::uint32_t part_bits = ((1u << (kPartBoxes - 1) << 1) - 1) << part * kPartBoxes;
-      for (std::uint32_t i = 0; i < level.count_of(part); ++i) {
-        const std::uint32_t word = arena[level.list_of(part) + i];
+      for (std::uint32_t i = 0; i < level.ray_counts[part]; ++i) {
+        const std::uint32_t word = arena[level.lists[part] + i];
         const auto ray = static_cast<std::uint32_t>(&ray_of(rays.data(), word) - rays.data());
         ASSERT_LT(ray, count);
         ASSERT_TRUE(std::find(list.begin(), list.end(), word & ~kMaskBits) != list.end()) << "not the ray's word";
-        if (level.list_of(part) != kStep) {
+        if (level.lists[part] != kStep) {
           ASSERT_EQ(word & kMaskBits & ~part_bits, 0u) << "boxes of another part";
         }
         met[ray] |= ~word & part_bits & there;
