@@ -69,7 +69,7 @@ TEST_F(Budgets, EachPortIsHeldAgainstItsOwnLayout) {
   const ScriptResult effects = check_budgets_of(small, "effects", table);
   EXPECT_EQ(effects.exit_code, 0) << effects.output;
   EXPECT_NE(effects.output.find("effects: code "), std::string::npos) << effects.output;
-  EXPECT_NE(effects.output.find(words_of_budget(EffectLayout256K<kAllEffects>::kCodeBudgetBytes)), std::string::npos)
+  EXPECT_NE(effects.output.find(words_of_budget(EffectLayout256K<kAllEffects, 8>::kCodeBudgetBytes)), std::string::npos)
       << effects.output;
   const ScriptResult effects64k = check_budgets_of(small, "effects64k", table);
   EXPECT_EQ(effects64k.exit_code, 1);

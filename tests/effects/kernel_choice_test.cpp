@@ -83,9 +83,10 @@ TEST(KernelChoice, WhatASceneDoesNotCallForHappensNever) {
     EXPECT_EQ(work[Work::kWaveRay] - work[Work::kQueuedRay], samples * kSize * kSize);
     // Without any ray beyond the eye's no list begins.
     const bool has_rays = has_shadows || (effects & (kAmbientOcclusion | kReflection | kRefraction)) != 0;
-    for (const Work kind : {Work::kListRay, Work::kListNode, Work::kListBoxQuad, Work::kListChild}) {
+    for (const Work kind : {Work::kListRay, Work::kListNode, Work::kListChild}) {
       EXPECT_EQ(work[kind] != 0, has_rays) << static_cast<int>(kind);
     }
+    EXPECT_EQ(work[Work::kListBoxQuad] + work[Work::kListSharedBox] != 0, has_rays);
     if (!has_rays) {
       EXPECT_EQ(work[Work::kListRayNode], 0u);
     }

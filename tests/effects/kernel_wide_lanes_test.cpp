@@ -12,7 +12,9 @@ namespace {
 constexpr std::uint32_t kWidth = 40, kHeight = 34;
 using Layout = EffectLayout256K<kAllEffects>;
 // A store in which no list is ever cut: room for all rays of a batch in all five lists of every level.
+// Without beams, which 16 lanes do not use.
 struct UncutLayout : Layout {
+  static constexpr bool kHasBeams = false;
   static constexpr std::uint32_t kArenaBytes = 512 * 1024;
   static constexpr std::uint32_t kSpareListWords = 5 * Layout::kBatchRays * kMaxTreeDepth;
 };
@@ -60,8 +62,9 @@ TYPED_TEST(KernelLanes, ChangeNoPixelAndNoRay) {
 }
 
 // Four lanes have five lists a node, wider ones one, so that lists are cut elsewhere: a node may be entered twice, and
-// rays that were stopped meanwhile are missing then. Where no list is cut, all lanes make the same lists.
-TYPED_TEST(KernelLanes, MakeTheSameListsWhereNoneIsCut) {
+// rays that were stopped meanwhile are missing then. Where no list is cut, wide lanes make the same lists but for rays
+// that were stopped, which leave them earlier.
+TYPED_TEST(KernelLanes, MakeNoMoreListsWhereNoneIsCut) {
   for (const Accuracy accuracy : {Accuracy::kStandard, Accuracy::kCompact}) {
     const KernelOptions options{.accuracy = accuracy};
     const tool::SceneDescription description = lit_glass();
@@ -74,9 +77,10 @@ TYPED_TEST(KernelLanes, MakeTheSameListsWhereNoneIsCut) {
     EXPECT_EQ(picture.color, cut.color);
     for (const Work kind : kRayWork) EXPECT_EQ(picture.work[kind], cut.work[kind]) << "kind " << static_cast<int>(kind);
     for (const Work kind : kListWork) {
-      EXPECT_EQ(picture.work[kind], four.work[kind]) << "kind " << static_cast<int>(kind);
+      EXPECT_LE(picture.work[kind], four.work[kind]) << "kind " << static_cast<int>(kind);
+      EXPECT_GT(picture.work[kind], four.work[kind] - four.work[kind] / 8) << "kind " << static_cast<int>(kind);
     }
-    EXPECT_EQ(picture.work[Work::kGetIssue], four.work[Work::kGetIssue]) << "nodes and leaves in the same order";
+    EXPECT_LE(picture.work[Work::kGetIssue], four.work[Work::kGetIssue]);
     EXPECT_GT(cut.work[Work::kListNode], four.work[Work::kListNode]) << "no list of the shipped layout is cut";
   }
 }

@@ -1,9 +1,8 @@
 // Tile bound: see the header. Names of loops and counters are those of the kernel's folders.
 // Memory: values. Threads: any. SPDX-License-Identifier: Apache-2.0
-#include <gridiron/frame/tile_bound.h>
-
 #include <gridiron/base/lanes.h>
 #include <gridiron/engine/grid/grid_work.h>
+#include <gridiron/frame/tile_bound.h>
 
 namespace gridiron {
 namespace {
@@ -25,9 +24,15 @@ struct Count {
   }
 };
 
-Count smaller(Count a, Count b) { return a.value < b.value ? a : b; }
-Count larger(Count a, Count b) { return a.value > b.value ? a : b; }
-std::uint64_t parts(std::uint64_t count, std::uint64_t each) { return count / each + (count % each != 0 ? 1 : 0); }
+Count smaller(Count a, Count b) {
+  return a.value < b.value ? a : b;
+}
+Count larger(Count a, Count b) {
+  return a.value > b.value ? a : b;
+}
+std::uint64_t parts(std::uint64_t count, std::uint64_t each) {
+  return count / each + (count % each != 0 ? 1 : 0);
+}
 
 // Commands of a transfer wherever it begins, a multiple of `step`: a first piece up to a boundary, and the rest.
 std::uint64_t pieces_of(std::uint64_t bytes, std::uint64_t step) {
@@ -276,9 +281,9 @@ class Sum {
     add_records(rays, queued, samples * parts(pixels, layout_.wave_rays));
   }
 
-  // Lists: a ray is in the list of a node or leaf once at most, and a list has one ray at least, or a beam of one ray at
-  // least. Each child is asked for ahead and taken, and may have been evicted in between; the root is asked for once a
-  // batch. @param shared  of these, rays that may be traced as rays of one origin.
+  // Lists: a ray is in the list of a node or leaf once at most, and a list has one ray or beam at least. Each child is
+  // asked for ahead and taken, and may have been evicted in between; the root is asked for once a batch. @param shared
+  // of these, rays that may be traced as rays of one origin.
   void add_lists(Count rays, Count shared) {
     const Count nodes = rays * scene_.nodes, leaves = rays * scene_.leaves, triangles = rays * scene_.tree_triangles;
     const Count children = nodes + leaves, groups = rays * scene_.leaf_groups;

@@ -111,10 +111,10 @@ TEST(Layouts, TheUsualMapStays) {
     });
     return found;
   };
-  EXPECT_EQ(offset_of("macro_table"), 768u);
-  EXPECT_EQ(offset_of("triangles"), 54'400u);
-  EXPECT_EQ(offset_of("output"), 93'568u);
-  EXPECT_EQ(sizeof(LocalStore<StoreLayout256K<8>>), 118'144u);
+  EXPECT_EQ(offset_of("macro_table"), 896u);
+  EXPECT_EQ(offset_of("triangles"), 54'528u);
+  EXPECT_EQ(offset_of("output"), 93'696u);
+  EXPECT_EQ(sizeof(LocalStore<StoreLayout256K<8>>), 118'272u);
 }
 
 }  // namespace
