@@ -19,27 +19,27 @@ struct EffectSize {
 };
 
 inline constexpr std::array kEffectSizes{
-    EffectSize{0x000, 54820, 163968, 0, 0, false},  // none
-    EffectSize{0x200, 61282, 140288, 23990, 18048, true},  // scene shading
-    EffectSize{0x201, 79410, 140288, 25424, 18048, true},  // + point shadows
-    EffectSize{0x202, 80184, 140288, 26192, 18048, true},  // + area lights
-    EffectSize{0x204, 80512, 158592, 25676, 20224, true},  // + reflection
-    EffectSize{0x208, 81640, 158592, 26804, 20224, true},  // + refraction
-    EffectSize{0x210, 80288, 140288, 26286, 18048, true},  // + ambient occlusion
-    EffectSize{0x220, 63306, 140288, 26002, 18048, true},  // + environment
-    EffectSize{0x240, 62706, 140288, 25406, 18048, true},  // + smooth normals
-    EffectSize{0x280, 62024, 140288, 24732, 18048, true},  // + highlights
-    EffectSize{0x300, 61804, 140288, 24314, 18048, true},  // + multisampling
-    EffectSize{0x3fe, 91204, 158592, 35676, 20224, true},  // all but point shadows
-    EffectSize{0x3fd, 90374, 158592, 34860, 20224, true},  // all but area lights
-    EffectSize{0x3fb, 91204, 158592, 35676, 20224, true},  // all but reflection
-    EffectSize{0x3f7, 90068, 158592, 34540, 20224, true},  // all but refraction
-    EffectSize{0x3ef, 88846, 158592, 33434, 20224, true},  // all but ambient occlusion
-    EffectSize{0x3df, 89116, 158592, 33634, 20224, true},  // all but environment
-    EffectSize{0x3bf, 89760, 158592, 34236, 20224, true},  // all but smooth normals
-    EffectSize{0x37f, 90464, 158592, 34936, 20224, true},  // all but highlights
-    EffectSize{0x2ff, 90662, 158592, 35348, 20224, true},  // all but multisampling
-    EffectSize{0x3ff, 91196, 158592, 35668, 20224, true},  // all
+    EffectSize{0x000, 46424, 118272, 0, 0, false},  // none
+    EffectSize{0x200, 52856, 139648, 24068, 18048, true},  // scene shading
+    EffectSize{0x201, 84260, 139648, 25512, 18048, true},  // + point shadows
+    EffectSize{0x202, 84988, 139648, 26280, 18048, true},  // + area lights
+    EffectSize{0x204, 85264, 157952, 25758, 20224, true},  // + reflection
+    EffectSize{0x208, 86362, 157952, 26886, 20224, true},  // + refraction
+    EffectSize{0x210, 85010, 139648, 26370, 18048, true},  // + ambient occlusion
+    EffectSize{0x220, 54866, 139648, 26080, 18048, true},  // + environment
+    EffectSize{0x240, 54236, 139648, 25484, 18048, true},  // + smooth normals
+    EffectSize{0x280, 53598, 139648, 24810, 18048, true},  // + highlights
+    EffectSize{0x300, 53390, 139648, 24390, 18048, true},  // + multisampling
+    EffectSize{0x3fe, 96012, 157952, 35776, 20224, true},  // all but point shadows
+    EffectSize{0x3fd, 95196, 157952, 34960, 20224, true},  // all but area lights
+    EffectSize{0x3fb, 96012, 157952, 35776, 20224, true},  // all but reflection
+    EffectSize{0x3f7, 94876, 157952, 34640, 20224, true},  // all but refraction
+    EffectSize{0x3ef, 93640, 157952, 33528, 20224, true},  // all but ambient occlusion
+    EffectSize{0x3df, 93938, 157952, 33734, 20224, true},  // all but environment
+    EffectSize{0x3bf, 94598, 157952, 34336, 20224, true},  // all but smooth normals
+    EffectSize{0x37f, 95272, 157952, 35036, 20224, true},  // all but highlights
+    EffectSize{0x2ff, 95462, 157952, 35448, 20224, true},  // all but multisampling
+    EffectSize{0x3ff, 96004, 157952, 35768, 20224, true},  // all
 };
 
 }  // namespace gridiron::experiment

@@ -66,23 +66,23 @@ inline constexpr auto kInstructionCosts = std::to_array<InstructionCost>({
     {WorkId(44),   351.4},  // hit_half
     {WorkId(45), 27547.3},  // exact_order, of 64 decisions
     {WorkId(46),    95.6},  // lattice_triangle, not in `dense`
-    {WorkId(47),   161.9},  // wave_ray, of effects
+    {WorkId(47),   161.5},  // wave_ray, of effects
     {WorkId(48),    92.1},  // queued_ray, of effects
     {WorkId(49),   189.6},  // list_ray, of effects
     {WorkId(50),  4260.6},  // list_beam, of effects
     {WorkId(51),  1734.9},  // list_beam_node, of effects
-    {WorkId(52),   303.0},  // list_child, of effects
-    {WorkId(53),    39.7},  // list_entry, of effects
-    {WorkId(54),  1312.9},  // list_node, of effects
+    {WorkId(52),   303.9},  // list_child, of effects
+    {WorkId(53),    39.9},  // list_entry, of effects
+    {WorkId(54),  1310.1},  // list_node, of effects
     {WorkId(55),   153.6},  // list_run, of effects
     {WorkId(56),   454.9},  // list_ray_node, of effects
     {WorkId(57),   457.8},  // list_box_quad, of effects
     {WorkId(58),   391.6},  // list_shared_box, of effects
-    {WorkId(59),  2176.7},  // list_leaf, of effects
+    {WorkId(59),  2172.3},  // list_leaf, of effects
     {WorkId(60),   941.9},  // list_triangle_group, of effects
-    {WorkId(61),  3066.5},  // list_shared_leaf, of effects
+    {WorkId(61),  3065.5},  // list_shared_leaf, of effects
     {WorkId(62),   613.2},  // list_shared_group, of effects
-    {WorkId(63),   284.4},  // list_candidate, of effects
+    {WorkId(63),   285.9},  // list_candidate, of effects
     {WorkId(64),   326.4},  // ray_distance, of effects
     {WorkId(65),  1422.3},  // surface_point, of effects
     {WorkId(66),   322.8},  // smooth_normal, of effects
@@ -94,7 +94,7 @@ inline constexpr auto kInstructionCosts = std::to_array<InstructionCost>({
     {WorkId(72),   184.4},  // occlusion_ray, of effects
     {WorkId(73),   159.9},  // mirror_ray, of effects
     {WorkId(74),   159.4},  // refracted_ray, of effects
-    {WorkId(75),   383.7},  // environment_lookup, of effects
+    {WorkId(75),   386.3},  // environment_lookup, of effects
     {WorkId(76),    70.1},  // color_added, of effects
     {WorkId(77),   193.1},  // color_group, of effects
     {WorkId(81),   387.8},  // packet_start

@@ -115,7 +115,7 @@ void expect_secondary(const fs::path& folder, const std::string& page) {
     const bool is_fast = profile == "fast";
     EXPECT_LE(number_under(overview, row, "cycles_per_ray_over_standard"), is_fast ? 1 : 1.1);
     if (is_fast) {
-      EXPECT_EQ(number_under(overview, row, "integers_per_million_rays"), 0);
+      EXPECT_EQ(number_under(overview, row, "exact_per_million_rays"), 0);
     }
     EXPECT_EQ(number_under(overview, row, "self_hits_per_million"), 0);
     EXPECT_EQ(number_under(overview, row, "edge_leaks_per_million"), 0);
