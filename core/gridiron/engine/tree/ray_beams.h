@@ -29,7 +29,7 @@ inline constexpr float kBeamWidth = 0.2f;
 /// Nor are rays bounded that begin or end farther away than this, in the scene's sizes.
 inline constexpr float kFarBeam = 0x1p10f;
 /// Groups of rays that make no beam, beyond a quarter of all, before the others are not tried any more.
-inline constexpr std::uint32_t kVainBeams = 4;
+inline constexpr std::uint32_t kVainBeams = 1;
 
 /// Words of a list of beams are as those of rays, with the axis below the place, which is a multiple of 4.
 [[nodiscard]] GRIDIRON_INLINE std::uint32_t beam_word(std::uint32_t beam, std::uint32_t axis, std::uint32_t octant) {
