@@ -28,6 +28,8 @@ inline constexpr float kBeamMargin = 0x1p-18f;
 inline constexpr float kBeamWidth = 0.2f;
 /// Nor are rays bounded that begin or end farther away than this, in the scene's sizes.
 inline constexpr float kFarBeam = 0x1p10f;
+/// In smaller scenes what is lost below the least normal float would be more than the margin.
+inline constexpr float kLeastBeamScene = 0x1p-60f;
 /// Groups of rays that make no beam, beyond a quarter of all, before the others are not tried any more.
 inline constexpr std::uint32_t kVainBeams = 1;
 

@@ -38,6 +38,9 @@ class RayLists {
   /// @param largest  |coordinate| of the tree's triangles.
   [[nodiscard]] GRIDIRON_OUTLINE Status trace(const RayQuestion& question, std::uint32_t count, float largest) {
     question_ = question;
+    if constexpr (kHasBeams) {
+      if (!(largest >= kLeastBeamScene)) question_.are_neighbors = false;
+    }
     ray_count_ = count;
     dead_count_ = 0;
     std::uint32_t begins[kRoots], counts[kRoots];
