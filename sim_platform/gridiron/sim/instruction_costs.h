@@ -66,28 +66,28 @@ inline constexpr auto kInstructionCosts = std::to_array<InstructionCost>({
     {WorkId(44),   351.4},  // hit_half
     {WorkId(45), 27547.3},  // exact_order, of 64 decisions
     {WorkId(46),    95.6},  // lattice_triangle, not in `dense`
-    {WorkId(47),   161.5},  // wave_ray, of effects
+    {WorkId(47),   161.6},  // wave_ray, of effects
     {WorkId(48),    92.1},  // queued_ray, of effects
-    {WorkId(49),   189.6},  // list_ray, of effects
-    {WorkId(50),  4260.6},  // list_beam, of effects
-    {WorkId(51),  1734.9},  // list_beam_node, of effects
-    {WorkId(52),   303.9},  // list_child, of effects
+    {WorkId(49),   189.8},  // list_ray, of effects
+    {WorkId(50),  5246.8},  // list_beam, of effects
+    {WorkId(51),  1728.6},  // list_beam_node, of effects
+    {WorkId(52),   303.7},  // list_child, of effects
     {WorkId(53),    39.9},  // list_entry, of effects
-    {WorkId(54),  1310.1},  // list_node, of effects
-    {WorkId(55),   153.6},  // list_run, of effects
+    {WorkId(54),  1314.7},  // list_node, of effects
+    {WorkId(55),   153.4},  // list_run, of effects
     {WorkId(56),   454.9},  // list_ray_node, of effects
-    {WorkId(57),   457.8},  // list_box_quad, of effects
-    {WorkId(58),   391.6},  // list_shared_box, of effects
-    {WorkId(59),  2172.3},  // list_leaf, of effects
+    {WorkId(57),   457.7},  // list_box_quad, of effects
+    {WorkId(58),   391.3},  // list_shared_box, of effects
+    {WorkId(59),  2171.8},  // list_leaf, of effects
     {WorkId(60),   941.9},  // list_triangle_group, of effects
-    {WorkId(61),  3065.5},  // list_shared_leaf, of effects
-    {WorkId(62),   613.2},  // list_shared_group, of effects
+    {WorkId(61),  3064.0},  // list_shared_leaf, of effects
+    {WorkId(62),   612.8},  // list_shared_group, of effects
     {WorkId(63),   285.9},  // list_candidate, of effects
     {WorkId(64),   326.4},  // ray_distance, of effects
     {WorkId(65),  1422.3},  // surface_point, of effects
     {WorkId(66),   322.8},  // smooth_normal, of effects
     {WorkId(67),    47.0},  // jitter_seed, of effects
-    {WorkId(68),   116.1},  // shadow_ray, of effects
+    {WorkId(68),   116.2},  // shadow_ray, of effects
     {WorkId(69),    88.7},  // area_place, of effects
     {WorkId(70),    67.0},  // light_sample, of effects
     {WorkId(71),   153.2},  // highlight, of effects

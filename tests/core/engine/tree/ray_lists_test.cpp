@@ -341,5 +341,34 @@ TYPED_TEST(RayListsTest, BeamsAndSharedOriginsFindWhatSingleRaysDo) {
   }
 }
 
+// In the smallest scenes products of beams would fall below the least normal float, so none are made.
+TYPED_TEST(RayListsTest, BeamsOfSmallScenesHoldWithFlushedDenormals) {
+  constexpr std::uint32_t kRays = 128;
+  const TestMesh torus = make_torus(24, 12, 1.0f, 0.35f);
+  for (const int exponent : {-59, -100, -116}) {
+    SCOPED_TRACE(exponent);
+    const TestMesh mesh = moved(torus, std::ldexp(1.0f, exponent));
+    MemoryTree tree(mesh.view(), 8);
+    ASSERT_EQ(tree.status(), Status::kOk);
+    const std::vector<Ray> rays = neighbor_rays(mesh, 128, 29);
+    for (const int mode : kRoundingModes) {
+      SCOPED_TRACE(mode);
+      const RoundingScope scope(mode, true);
+      for (const bool any_hit : {false, true}) {
+        WorkCounters single, beams;
+        const auto expected = answers<TypeParam, ListMemory<kRays, 0, false>>(tree, rays, any_hit, single);
+        const auto found = answers<TypeParam, ListMemory<kRays, 512, true>>(tree, rays, any_hit, beams, true);
+        for (std::size_t i = 0; i < rays.size(); ++i) {
+          ASSERT_EQ(found[i].id == kNoTriangle, expected[i].id == kNoTriangle) << i;
+          if (!any_hit) {
+            ASSERT_EQ(found[i], expected[i]) << i;
+          }
+        }
+        EXPECT_EQ(beams[Work::kListBeamNode] != 0, kUsesBeams<TypeParam> && exponent == -59);
+      }
+    }
+  }
+}
+
 }  // namespace
 }  // namespace gridiron::test
