@@ -138,7 +138,7 @@ Table frames_table(const SecondaryPrices& prices) {
   for (const SecondaryPrice& price : prices.prices()) {
     const SecondaryPrice& usual = prices.price(price.scene, price.kind, prices.find_profile(kUsual));
     std::vector<Cell> row = {prices.scenes()[price.scene].key,
-                             named(price.kind).key,
+                             named(price.kind).title,
                              prices.profiles()[price.profile].key,
                              price.rays(),
                              price.frame.cycles,
@@ -278,8 +278,9 @@ void write_secondary_prices(const SecondaryPrices& prices, Book& book) {
   figure("secondary_leaks", "Leaks at edges", "leaks of a million rays at edges", leaks, 0,
          "Rays inside closed solids, aimed at edges and vertices, that hit nothing.");
   figure("secondary_decisions", "Decisions in integers at edges", "decisions of a ray at an edge", integers, 2,
-         "Signs, distances and orders of distances that integers decide for these rays; of fast only signs of floats "
-         "that are exactly 0. Other rays hardly ever need integers: the table below has their number.");
+         "Signs, distances and orders of distances that integers decide for these rays; of fast only edges where a hit "
+         "may lie before the ray's beginning or behind its end. Other rays hardly ever need integers: the table below "
+         "has their number.");
   figure("secondary_pixels", "Pixels that differ from exact", "% of all pixels", pixels, 2,
          "Pixels of another colour than in profile exact, all scenes together.");
   const Table overview = overview_table(prices);

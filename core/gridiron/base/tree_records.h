@@ -42,8 +42,9 @@ inline constexpr float kTreeGrowth = 0x1p-22f;
   return high + ((high < 0.0f ? -high : high) * kTreeGrowth + margin);
 }
 
-/// A node. It has 16 children, or leaves alone. Children cover its records in order. Nodes are numbered level by level,
-/// and within a level in the order of their records. Boxes are the least that hold the child's triangles, grown.
+/// A node. It has exactly 16 children, or all are leaves. Children cover its records in order. Nodes are numbered level
+/// by level, and within a level in the order of their records. Boxes are the least that hold the child's triangles,
+/// grown.
 struct alignas(64) TreeNode {
   float low[3][kTreeWidth];        ///< axis, child; of a child that is not there kFloatMax
   float high[3][kTreeWidth];       ///< of one that is not there -kFloatMax

@@ -11,9 +11,9 @@ namespace gridiron {
 /// L::kCount rays.
 enum class Work : std::uint8_t {
   kTileStart,          ///< tiles begun: parameter reset, output buffer turned over         (initialisation)
-  kRayPacket,          ///< packets of primary rays begun                                    (initialisation)
+  kRayPacket,          ///< packets of eye rays begun                                        (initialisation)
   kPixelProjection,    ///< packets of which the projection to pixels was set up             (initialisation)
-  kRayGenerated,       ///< primary ray groups generated                                     (initialisation)
+  kRayGenerated,       ///< groups of eye rays generated                                     (initialisation)
   kRaySetWord,         ///< words of sets of rays that were gone through                     (initialisation)
   kRecentSlot,         ///< places of recently hit triangles cleared                         (initialisation)
   kCullTest,           ///< corner-ray culling tests, one per triangle
@@ -97,7 +97,8 @@ enum class Work : std::uint8_t {
 
 /// The number of the first kind of an engine.
 inline constexpr std::uint32_t kSharedWorkCount = static_cast<std::uint32_t>(Work::kCount);
-/// Kinds that there are counters for. No frame has two engines, so all engines use the same ones.
+/// Kinds that there are counters for. A frame has one engine of eye rays, so all of these use the
+/// same ones; the kinds of the tree, which traces the other rays beside any of them, are in Work.
 inline constexpr std::uint32_t kWorkKindCount = 100;
 
 /// A kind of Work or of an engine: the number of its counter.

@@ -6,7 +6,8 @@
 
 namespace gridiron {
 
-inline constexpr std::uint8_t kSetupTag = 0;           ///< frame record, macrocell table
+inline constexpr std::uint8_t kSetupTag = 0;           ///< what a core waits for at once: records of the frame and
+                                                       ///< its scene, macrocell table, materials, lights, spilled rays
 inline constexpr std::uint8_t kFirstMacroTag = 1;      ///< cell blocks, one tag per buffer; nodes of the tree
 inline constexpr std::uint8_t kMacroTagCount = 8;      ///< most cell blocks in rotation
 inline constexpr std::uint8_t kFirstTriangleTag = 9;   ///< triangle buffers, one tag per buffer; leaves, records

@@ -57,7 +57,8 @@ concept Engine = requires {
 ///                 A hit has 0 < t <= rays.t.
 ///                 jobs.finish(batch) takes each batch once, with owners as they were and ids answered. Origins,
 ///                 directions and t are not kept. With question.any_hit any hit will do; else the hit does not depend
-///                 on the engine, except with kFast, where single precision decides.
+///                 on the engine, except with kFast, where distances are floats and edges that
+///                 floats leave open may count as hit.
 ///                 next and finish charge work of their own: call charge_to() after them.
 template <class E, class Layout>
 concept RayEngine = requires {

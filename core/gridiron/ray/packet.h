@@ -1,4 +1,4 @@
-// Packet: primary rays of a square of pixels, traced together. All of them start at the eye.
+// Packet: eye rays of a square of pixels, traced together. All of them start at the eye.
 // Memory: inside the local store. Threads: one core. SPDX-License-Identifier: Apache-2.0
 #pragma once
 

@@ -83,7 +83,7 @@ class TileRenderer {
     } else if constexpr (kTracesEyes<Layout>) {
       GRIDIRON_TRY(render_hits(left, top, output));
     }
-    store_.work.charge_to(Work::kTileStart);
+    store_.work.charge_to(Work::kTileStart);  // for tools/calibrate; nothing on a core
     GRIDIRON_TRY(put_tile(tile_id, slot, tag));
     return waits_for_output_ ? transfers_.wait(tag) : Status::kOk;
   }
@@ -116,6 +116,7 @@ class TileRenderer {
       if (frame.depth_address != 0) clear_plane(output.depth, kFloatMax);
     }
     const std::uint32_t sample_count = effects_.samples_per_pixel();
+    // Without code for eye rays shade_sample() traces them too.
     for (std::uint32_t sample = 0; sample < sample_count; ++sample) {
       store_.work.charge_to(Work::kColorGroup);
       std::uint32_t* const ids = sample == 0 ? output.id : store_.effects.hit_ids;

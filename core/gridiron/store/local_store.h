@@ -18,8 +18,9 @@
 
 namespace gridiron {
 
-// A layout is a set of sizes; none changes a pixel. The tile's width is a template parameter; kFitsArena checks which
-// widths a core can hold. The reference documents the members of one layout; the others have the same.
+// A layout is a set of sizes; none changes a pixel, except in `paper` and `fast`. The tile's width is a template
+// parameter; kFitsArena checks which widths a core can hold. The reference documents the members of one layout; the
+// others have the same.
 
 /// Sizes of a 256 KB core (Cho, Kim, Han 2012, section 6).
 /// @tparam PacketWidthV  rays along a packet's edge: 4, 8, 16, 32, at most the tile's width.

@@ -5,6 +5,7 @@
 #include <string>
 
 #include "base/words.h"
+#include "gridiron/device/store_facts.h"
 #include "gridiron/scene/hither.h"
 
 namespace gridiron::tool {
@@ -13,7 +14,8 @@ namespace {
 // Notes that a named configuration is reduced to the store's buffers.
 void tell_fewer_buffers(const RenderRequest& request, const RenderPlan& plan) {
   const BufferDepths wanted = request.layout.depths.value_or(request.scene.configuration->depths);
-  if (plan.depths == wanted) return;
+  const auto facts = find_store_facts(plan.layout);
+  if (plan.depths == wanted || (facts && facts->packet_width == 0)) return;  // without packets the grid is not used
   const auto blocks = [](const BufferDepths& depths) {
     return words_of_count(depths.macro, "cell block") + " and " + words_of_count(depths.triangle, "triangle buffer");
   };

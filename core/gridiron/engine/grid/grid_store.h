@@ -51,7 +51,7 @@ struct NoGridStore {
 };
 
 /// Memory while eye rays are traced: the packet, and what is fetched for it. Cell blocks start on lines in main memory
-/// and here. Triangle runs start anywhere on 16 bytes, so their buffers are 16 bytes longer.
+/// and here. Triangle runs start anywhere on 16 bytes, so their buffers are 32 bytes longer.
 template <class Layout>
 struct alignas(128) GridEyeStore : GridPacketParts<Layout>::StorePacket {
   /// @cond

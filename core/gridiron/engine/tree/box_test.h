@@ -1,5 +1,5 @@
 // Boxes of a node against the rays of a list. A ray meets a box unless exact arithmetic says that it misses what is in
-// it: entry and exit are (side - origin) x reciprocal, three roundings of 2^-24 and less each, and exits are taken
+// it: entry and exit are (side - origin) x reciprocal, three roundings of at most 2^-23 each, and exits are taken
 // 2^-19 later. Boxes are stored grown, which covers the rest; core/TREE.md.
 // Source: own. Memory: values. Threads: one core. SPDX-License-Identifier: Apache-2.0
 #pragma once

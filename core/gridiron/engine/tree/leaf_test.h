@@ -108,9 +108,9 @@ GRIDIRON_OUTLINE void set_up_leaf(const VertexTriangle* records, std::uint32_t c
   }
 }
 
-/// Prepares the lanes for rays of one origin: v becomes the normals of the planes through it and the third side,
-/// back_e1 those through it and the second one, e2 what rays have in common (SharedLanes). Each has the roundings that
-/// the bound of a side allows for.
+/// Prepares the lanes for rays of one origin: v becomes the normals of the planes through it and the edge from corner
+/// 0 to 2, back_e1 of those through the edge from corner 0 to 1, e2 what rays have in common (SharedLanes). Each has
+/// the roundings that the bound of a side allows for.
 template <class L>
 GRIDIRON_OUTLINE void set_up_origin(const float* origin, std::uint32_t count, TriangleLanes& lanes) {
   using Float = typename L::Float;

@@ -264,12 +264,12 @@ class RaySetup {
     }
     missed_ = missed_ & missed;
     ((octant + Int::load(kWords.of)) | missed).store(words + first);
-    for (std::uint32_t odd = L::kAllBits & ~is_usual.bits(); odd != 0; odd &= odd - 1) [[unlikely]] {
-        const std::uint32_t lane = lowest_bit(odd);
-        // The octant does not change.
-        (void)set_up_list_ray<L>(rays[lane], largest_);
-        if constexpr (kHasTerms) set_up_ray_terms<L>(rays[lane], terms[lane]);
-      }
+    for (std::uint32_t odd = L::kAllBits & ~is_usual.bits(); odd != 0; odd &= odd - 1) {
+      const std::uint32_t lane = lowest_bit(odd);
+      // The octant does not change.
+      (void)set_up_list_ray<L>(rays[lane], largest_);
+      if constexpr (kHasTerms) set_up_ray_terms<L>(rays[lane], terms[lane]);
+    }
   }
   /// @returns the octants of rays so far, as bits.
   [[nodiscard]] GRIDIRON_INLINE std::uint32_t octants() const {

@@ -1,5 +1,5 @@
 // Lists of rays through the wide tree: a batch is filtered down the nodes, child by child. A node or leaf is looked at
-// once for all rays of a list. Every decision equals that of exact arithmetic.
+// once for all rays of a list. Every hit equals that of exact arithmetic, except with Accuracy::kFast.
 // Source: own; core/TREE.md. Memory: ListMemory. Threads: one core. SPDX-License-Identifier: Apache-2.0
 #pragma once
 

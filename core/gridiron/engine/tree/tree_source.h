@@ -100,8 +100,8 @@ class TreeSource {
   [[nodiscard]] static std::uint32_t first_byte_of(std::uint64_t address) {
     return static_cast<std::uint32_t>(address) % kPortableCongruenceBytes;
   }
-  // Waits for nodes count as those for cell blocks do, waits for leaves as those for triangles. Children that are asked
-  // for together lie in different sets, and have tags of their own.
+  // Waits for nodes count as those for cell blocks do, waits for leaves as those for triangles. Neighbouring
+  // children lie in different sets. With more slots than tags a set has one tag: a wait for one slot ends all of it.
   [[nodiscard]] static std::uint8_t tag_of(std::uint32_t slot, TreeChild child) {
     static constexpr std::uint32_t kTags = kMacroTagCount;
     static constexpr std::uint32_t kTagSlots = Cache::kSlots < kTags ? std::uint32_t{1} : Cache::kSlots / kTags;
