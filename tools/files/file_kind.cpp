@@ -100,8 +100,9 @@ bool is_mesh(std::span<const std::byte> head) {
 
 // Checks the first entity of a text scene as far as needed to exclude other formats whose lines begin with a letter.
 bool is_text_scene(std::span<const std::byte> head) {
-  if (is_binary(head)) return false;
   std::string_view text = text_of(head);
+  // A damaged line further on is for the reader to name.
+  if (is_binary(head.first(std::min(head.size(), text.find('\n'))))) return false;
   const std::string_view first = take_word(text), second = take_word(text);
   if (first == "v") {
     return second.empty() || is_one_of(second, {"from", "at", "up", "angle", "hither", "resolution"});

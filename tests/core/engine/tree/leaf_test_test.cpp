@@ -8,6 +8,7 @@
 #include "core/seeds.h"
 #include "numeric/hard_rays.h"
 #include "numeric/oracle.h"
+#include "numeric/rounding_scope.h"
 #include "support/test_mesh.h"
 
 namespace gridiron::test {
@@ -274,6 +275,47 @@ TYPED_TEST(LeafTest, DecidesAsTheOracleDoes) {
 }
 
 // What is lost below the least normal number, times a long edge, is more than all other errors of a small ray near 0.
+// Products of equal size cancel at edges: what floats call sure is right with all roundings to one side too.
+TYPED_TEST(LeafTest, SidesThatCancelAreBounded) {
+  TestRandom random(7);
+  const auto place = [&] {
+    const float size = 1.0f + 0x1p-12f * static_cast<float>(random.unit());
+    return random.next() % 2 == 0 ? size : -size;
+  };
+  std::uint32_t passed = 0, sure = 0;
+  for (std::uint32_t i = 0; i < 20000; ++i) {
+    std::vector<VertexTriangle> triangles(1);
+    VertexTriangle& triangle = triangles[0];
+    for (auto& corner : triangle.v) {
+      for (float& component : corner) component = place();
+    }
+    OracleRay ray{};
+    const float along = static_cast<float>(random.unit());
+    const std::uint64_t edge = random.next() % 3;
+    const float beside = random.next() % 4 == 0 ? 0.1f : 0.0f;  // of the edge
+    const auto &a = triangle.v[edge], &b = triangle.v[(edge + 1) % 3], &c = triangle.v[(edge + 2) % 3];
+    for (int axis = 0; axis < 3; ++axis) {
+      ray.origin[axis] = place();
+      ray.direction[axis] = a[axis] + along * (b[axis] - a[axis]) + beside * (c[axis] - a[axis]) - ray.origin[axis];
+    }
+    ray.t_max = kFloatMax;
+    const BatchRay made = list_ray<TypeParam>(ray, 2.0f);
+    WorkCounters work;
+    const bool passes = passes_through(made, triangle, work),
+               hits = passes && ray_distance(made, triangle, work) > 0.0f;
+    passed += passes ? 1u : 0u;
+    for (const int mode : kRoundingModes) {
+      const RoundingScope scope(mode, false);
+      const LeafBits bits = Leaf<TypeParam>(triangles).test(made);
+      sure += bits.unsure == 0 ? 1u : 0u;
+      ASSERT_FALSE(bits.inside != 0 && !passes) << i;
+      ASSERT_FALSE((bits.inside | bits.unsure) == 0 && hits) << i;
+    }
+  }
+  EXPECT_GT(passed, 1000u);
+  EXPECT_GT(sure, 1000u);
+}
+
 TYPED_TEST(LeafTest, HitsOfSmallRaysAtLongEdgesCount) {
   const VertexTriangle triangle{{{-0x1.647dcap-126f, 0x1.12586p-128f, -0x1.89e5fap-126f},
                                  {0x1.c123d8p34f, 0x1.72d738p35f, 0x1.7858ep35f},

@@ -302,6 +302,32 @@ std::vector<Ray> from_one_place(std::vector<Ray> rays, std::uint32_t batch) {
   return rays;
 }
 
+// Origins that agree on two axes are not one origin.
+TYPED_TEST(RayListsTest, OriginsThatDifferOnOneAxisAreNotShared) {
+  constexpr std::uint32_t kRays = 128;
+  const TestMesh mesh = make_torus(48, 24, 1.0f, 0.35f);
+  MemoryTree tree(mesh.view(), 8);
+  ASSERT_EQ(tree.status(), Status::kOk);
+  const std::vector<Ray> gathered = from_one_place(neighbor_rays(mesh, 128, 13), kRays);
+  for (const int axis : {0, 1, 2}) {
+    SCOPED_TRACE(axis);
+    std::vector<Ray> rays = gathered;
+    for (std::size_t i = 0; i < rays.size(); i += 7) rays[i].origin[axis] += 0.5f;
+    for (const bool any_hit : {false, true}) {
+      WorkCounters single, beams;
+      const auto expected = answers<TypeParam, ListMemory<kRays, 0, false>>(tree, rays, any_hit, single);
+      const auto found = answers<TypeParam, ListMemory<kRays, 512, true>>(tree, rays, any_hit, beams, true);
+      for (std::size_t i = 0; i < rays.size(); ++i) {
+        ASSERT_EQ(found[i].id == kNoTriangle, expected[i].id == kNoTriangle) << i;
+        if (!any_hit) {
+          ASSERT_EQ(found[i], expected[i]) << i;
+        }
+      }
+      EXPECT_EQ(beams[Work::kListSharedBox], 0u);
+    }
+  }
+}
+
 TYPED_TEST(RayListsTest, BeamsAndSharedOriginsFindWhatSingleRaysDo) {
   constexpr std::uint32_t kRays = 128;
   const TestMesh meshes[] = {make_torus(48, 24, 1.0f, 0.35f), moved(make_torus(48, 24, 1.0f, 0.35f), 1000.0f),
