@@ -24,8 +24,8 @@ namespace gridiron {
 ///   e M is the last sum's. So each component is within E of a point of the triangle, lifted.
 /// - lift = 4 E, and a vector whose components are within E is shorter than sqrt(3) E: the point is above the plane by
 ///   2 E at least, and by 6 E at most. A ray that leaves a convex body from there cannot meet it again.
-/// - inset = 16 E: the weights are moved towards their middle until the point is that far from each edge of the
-///   triangle.
+/// - inset = 16 E: the weights are moved towards their middle, all by the share that takes a point of an edge that far
+///   from it.
 ///   Where another face meets an edge at an angle a on this side, the point is away from it by
 ///   16 E sin a - 4 E cos a - 2 E > 0 from a = 22 degrees on: no ray begins behind the neighbouring face.
 /// - M + 8 L is at least 2^-126: below it E would be less than the least float.
