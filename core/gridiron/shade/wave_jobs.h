@@ -96,7 +96,8 @@ class LightJobs {
       if (light.samples != 0) context_.store.work.charge_to(Work::kAreaPlace);
       for (std::uint32_t i = first; i < end; ++i) {
         const WavePoint& point = context_.point(i);
-        const Vector3 to_light = place_of(index, sample, point) - vector_of(point.point);
+        const Vector3 from = vector_of(point.point);  // first, whatever the compiler
+        const Vector3 to_light = place_of(index, sample, point) - from;
         const bool is_lit =
             dot(to_light, vector_of(point.face)) > 0.0f && dot(to_light, vector_of(point.shading)) > 0.0f;
         if (!is_lit) continue;
@@ -145,7 +146,8 @@ class LightJobs {
       for (std::uint32_t i = first; i < end; ++i) {
         context_.store.work.charge_to(Work::kLightSample);
         const WavePoint& point = context_.point(i);
-        const Vector3 to_light = place_of(index, sample, point) - vector_of(point.point);
+        const Vector3 from = vector_of(point.point);
+        const Vector3 to_light = place_of(index, sample, point) - from;
         if (dot(to_light, vector_of(point.face)) > 0.0f) light_point(light, point, to_light);
       }
     }
