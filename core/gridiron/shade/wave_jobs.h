@@ -146,8 +146,7 @@ class LightJobs {
       for (std::uint32_t i = first; i < end; ++i) {
         context_.store.work.charge_to(Work::kLightSample);
         const WavePoint& point = context_.point(i);
-        const Vector3 from = vector_of(point.point);
-        const Vector3 to_light = place_of(index, sample, point) - from;
+        const Vector3 to_light = place_of(index, sample, point) - vector_of(point.point);
         if (dot(to_light, vector_of(point.face)) > 0.0f) light_point(light, point, to_light);
       }
     }
