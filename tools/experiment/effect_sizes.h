@@ -21,25 +21,25 @@ struct EffectSize {
 inline constexpr std::array kEffectSizes{
     EffectSize{0x000, 46424, 118272, 0, 0, false},  // none
     EffectSize{0x200, 52856, 139648, 24068, 18048, true},  // scene shading
-    EffectSize{0x201, 84260, 139648, 25512, 18048, true},  // + point shadows
-    EffectSize{0x202, 84988, 139648, 26280, 18048, true},  // + area lights
-    EffectSize{0x204, 85264, 157952, 25758, 20224, true},  // + reflection
-    EffectSize{0x208, 86362, 157952, 26886, 20224, true},  // + refraction
-    EffectSize{0x210, 85010, 139648, 26370, 18048, true},  // + ambient occlusion
+    EffectSize{0x201, 84282, 139648, 25512, 18048, true},  // + point shadows
+    EffectSize{0x202, 85022, 139648, 26292, 18048, true},  // + area lights
+    EffectSize{0x204, 85286, 157952, 25758, 20224, true},  // + reflection
+    EffectSize{0x208, 86384, 157952, 26886, 20224, true},  // + refraction
+    EffectSize{0x210, 85032, 139648, 26370, 18048, true},  // + ambient occlusion
     EffectSize{0x220, 54866, 139648, 26080, 18048, true},  // + environment
     EffectSize{0x240, 54236, 139648, 25484, 18048, true},  // + smooth normals
     EffectSize{0x280, 53598, 139648, 24810, 18048, true},  // + highlights
     EffectSize{0x300, 53390, 139648, 24390, 18048, true},  // + multisampling
-    EffectSize{0x3fe, 96012, 157952, 35776, 20224, true},  // all but point shadows
-    EffectSize{0x3fd, 95196, 157952, 34960, 20224, true},  // all but area lights
-    EffectSize{0x3fb, 96012, 157952, 35776, 20224, true},  // all but reflection
-    EffectSize{0x3f7, 94876, 157952, 34640, 20224, true},  // all but refraction
-    EffectSize{0x3ef, 93640, 157952, 33528, 20224, true},  // all but ambient occlusion
-    EffectSize{0x3df, 93938, 157952, 33734, 20224, true},  // all but environment
-    EffectSize{0x3bf, 94598, 157952, 34336, 20224, true},  // all but smooth normals
-    EffectSize{0x37f, 95272, 157952, 35036, 20224, true},  // all but highlights
-    EffectSize{0x2ff, 95462, 157952, 35448, 20224, true},  // all but multisampling
-    EffectSize{0x3ff, 96004, 157952, 35768, 20224, true},  // all
+    EffectSize{0x3fe, 96034, 157952, 35776, 20224, true},  // all but point shadows
+    EffectSize{0x3fd, 95218, 157952, 34960, 20224, true},  // all but area lights
+    EffectSize{0x3fb, 96034, 157952, 35776, 20224, true},  // all but reflection
+    EffectSize{0x3f7, 94898, 157952, 34640, 20224, true},  // all but refraction
+    EffectSize{0x3ef, 93674, 157952, 33540, 20224, true},  // all but ambient occlusion
+    EffectSize{0x3df, 93960, 157952, 33734, 20224, true},  // all but environment
+    EffectSize{0x3bf, 94620, 157952, 34336, 20224, true},  // all but smooth normals
+    EffectSize{0x37f, 95294, 157952, 35036, 20224, true},  // all but highlights
+    EffectSize{0x2ff, 95484, 157952, 35448, 20224, true},  // all but multisampling
+    EffectSize{0x3ff, 96026, 157952, 35768, 20224, true},  // all
 };
 
 }  // namespace gridiron::experiment
