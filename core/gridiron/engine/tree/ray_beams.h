@@ -19,9 +19,8 @@ namespace gridiron {
 // offset of the lower plane, likewise for the upper plane and for v: the offset is the least of all ends of segments,
 // lowered by a bound of the error.
 //
-// Let M be the greatest |coordinate| of all ends and of the scene, e = 2^-23, the
-// largest relative error of an operation in any rounding mode. An end o + t d is within 4 e M of its
-// exact place; what its offset comes from within 4 e (1 + |slope|) M more, and its distance from a plane within
+// Let M be the greatest |coordinate| of all ends and of the scene, e = 2^-23, the largest
+// relative error of an operation in any rounding mode. An end o + t d is within 4 e M of its exact place; what its offset comes from within 4 e (1 + |slope|) M more, and its distance from a plane within
 // (1 + |slope|) times these. In the test of a box slope x w has |w| <= M, and two sums: 8 e (1 + |slope|) M. All are
 // less than kBeamMargin (1 + |slope|) M.
 inline constexpr float kBeamMargin = 0x1p-18f;

@@ -302,6 +302,20 @@ std::vector<Ray> from_one_place(std::vector<Ray> rays, std::uint32_t batch) {
   return rays;
 }
 
+// That beams, and code for rays of one origin, find what single rays do. @param work  of the beams.
+template <class L, std::uint32_t Rays>
+void expect_beams_find_the_same(MemoryTree& tree, const std::vector<Ray>& rays, bool any_hit, WorkCounters& work) {
+  WorkCounters single;
+  const auto expected = answers<L, ListMemory<Rays, 0, false>>(tree, rays, any_hit, single);
+  const auto found = answers<L, ListMemory<Rays, 512, true>>(tree, rays, any_hit, work, true);
+  for (std::size_t i = 0; i < rays.size(); ++i) {
+    ASSERT_EQ(found[i].id == kNoTriangle, expected[i].id == kNoTriangle) << i;
+    if (!any_hit) {
+      ASSERT_EQ(found[i], expected[i]) << i;
+    }
+  }
+}
+
 // Origins that agree on two axes are not one origin.
 TYPED_TEST(RayListsTest, OriginsThatDifferOnOneAxisAreNotShared) {
   constexpr std::uint32_t kRays = 128;
@@ -314,15 +328,8 @@ TYPED_TEST(RayListsTest, OriginsThatDifferOnOneAxisAreNotShared) {
     std::vector<Ray> rays = gathered;
     for (std::size_t i = 0; i < rays.size(); i += 7) rays[i].origin[axis] += 0.5f;
     for (const bool any_hit : {false, true}) {
-      WorkCounters single, beams;
-      const auto expected = answers<TypeParam, ListMemory<kRays, 0, false>>(tree, rays, any_hit, single);
-      const auto found = answers<TypeParam, ListMemory<kRays, 512, true>>(tree, rays, any_hit, beams, true);
-      for (std::size_t i = 0; i < rays.size(); ++i) {
-        ASSERT_EQ(found[i].id == kNoTriangle, expected[i].id == kNoTriangle) << i;
-        if (!any_hit) {
-          ASSERT_EQ(found[i], expected[i]) << i;
-        }
-      }
+      WorkCounters beams;
+      expect_beams_find_the_same<TypeParam, kRays>(tree, rays, any_hit, beams);
       EXPECT_EQ(beams[Work::kListSharedBox], 0u);
     }
   }
@@ -381,15 +388,8 @@ TYPED_TEST(RayListsTest, BeamsOfSmallScenesHoldWithFlushedDenormals) {
       SCOPED_TRACE(mode);
       const RoundingScope scope(mode, true);
       for (const bool any_hit : {false, true}) {
-        WorkCounters single, beams;
-        const auto expected = answers<TypeParam, ListMemory<kRays, 0, false>>(tree, rays, any_hit, single);
-        const auto found = answers<TypeParam, ListMemory<kRays, 512, true>>(tree, rays, any_hit, beams, true);
-        for (std::size_t i = 0; i < rays.size(); ++i) {
-          ASSERT_EQ(found[i].id == kNoTriangle, expected[i].id == kNoTriangle) << i;
-          if (!any_hit) {
-            ASSERT_EQ(found[i], expected[i]) << i;
-          }
-        }
+        WorkCounters beams;
+        expect_beams_find_the_same<TypeParam, kRays>(tree, rays, any_hit, beams);
         EXPECT_EQ(beams[Work::kListBeamNode] != 0, kUsesBeams<TypeParam> && exponent == -59);
       }
     }
