@@ -20,9 +20,10 @@ namespace gridiron {
 // lowered by a bound of the error.
 //
 // Let M be the greatest |coordinate| of all ends and of the scene, e = 2^-23, the largest
-// relative error of an operation in any rounding mode. An end o + t d is within 4 e M of its exact place; what its offset comes from within 4 e (1 + |slope|) M more, and its distance from a plane within
-// (1 + |slope|) times these. In the test of a box slope x w has |w| <= M, and two sums: 8 e (1 + |slope|) M. All are
-// less than kBeamMargin (1 + |slope|) M.
+// relative error of an operation in any rounding mode. An end o + t d is within 4 e M of its exact place; what its
+// offset comes from within 4 e (1 + |slope|) M more, and its distance from a plane within (1 + |slope|) times these. In
+// the test of a box slope x w has |w| <= M, and two sums: 8 e (1 + |slope|) M. All are less than kBeamMargin (1 +
+// |slope|) M.
 inline constexpr float kBeamMargin = 0x1p-18f;
 /// A beam that is wider than this share of its length would meet too much.
 inline constexpr float kBeamWidth = 0.2f;

@@ -101,7 +101,8 @@ class TreeSource {
     return static_cast<std::uint32_t>(address) % kPortableCongruenceBytes;
   }
   // Waits for nodes count as those for cell blocks do, waits for leaves as those for triangles. Neighbouring
-  // children mostly lie in different sets. With more slots than tags a set has one tag: a wait for one slot ends all of it.
+  // children mostly lie in different sets. With more slots than tags a set has one tag: a wait for one slot ends all of
+  // it.
   [[nodiscard]] static std::uint8_t tag_of(std::uint32_t slot, TreeChild child) {
     static constexpr std::uint32_t kTags = kMacroTagCount;
     static constexpr std::uint32_t kTagSlots = Cache::kSlots < kTags ? std::uint32_t{1} : Cache::kSlots / kTags;
