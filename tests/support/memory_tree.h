@@ -52,6 +52,10 @@ class MemoryTree {
     records = &records_[child.first()];
     return Status::kOk;
   }
+  [[nodiscard]] Status record(std::uint32_t number, VertexTriangle& triangle) const {
+    triangle = records_[number];
+    return Status::kOk;
+  }
   [[nodiscard]] Status triangle_of(MainAddress, std::uint32_t id, VertexTriangle& triangle) const {
     const auto found =
         std::find_if(records_.begin(), records_.end(), [&](const VertexTriangle& t) { return t.triangle_id == id; });

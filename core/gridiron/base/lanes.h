@@ -235,6 +235,13 @@ struct Lanes {
   [[nodiscard]] static GRIDIRON_INLINE Int truncate(Float a) {
     return {__builtin_convertvector(a.v, IntVector)};
   }
+  /// The words of floats.
+  [[nodiscard]] static GRIDIRON_INLINE Int bits_of(Float a) {
+    return {reinterpret_cast<IntVector>(a.v)};
+  }
+  [[nodiscard]] static GRIDIRON_INLINE Float to_float(Int a) {
+    return Float(__builtin_convertvector(a.v, FloatVector));
+  }
   /// Stores the low halves of W / 2 integers of 64 bits as the patterns of floats, aligned to 2 * W bytes.
   static GRIDIRON_INLINE void store_patterns(Long patterns, float* target) {
     *reinterpret_cast<HalfIntMemory*>(target) = __builtin_convertvector(patterns.v, HalfIntVector);

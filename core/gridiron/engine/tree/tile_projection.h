@@ -1,0 +1,143 @@
+// From world space to the pixels of a tile: the inverse of the camera's matrix, with bounds of what rounding moves.
+// A place p before the eye has three coordinates: (column w, row w, w) with w its distance t along the ray through its
+// pixel. Pixels are counted from the tile's first one.
+// Source: Olano, Greer 1997 (homogeneous coordinates); bounds own, core/TREE.md. Memory: values. Threads: one core.
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <gridiron/base/lanes.h>
+#include <gridiron/base/records.h>
+#include <gridiron/ray/hits.h>
+
+#include <cstdint>
+
+namespace gridiron {
+
+/// The largest relative error of an operation in any rounding mode.
+inline constexpr double kUnit = 0x1p-23;
+
+/// What all tiles of a frame share, in double.
+struct EyeProjection {
+  double rows[3][3];   ///< column, row, w: of a place less the eye
+  double sizes[3];     ///< sums of the rows' magnitudes
+  double eye[3];
+  double slack;        ///< times a row's size and a place's largest component: what doubles may lose
+  double direction;    ///< largest component by which rounding moves a direction off the linear one
+  float dir_max;       ///< no component of a direction is larger
+  bool is_trusted;     ///< if not, no bound holds and every pixel is decided exactly
+};
+
+/// Inverts the camera's matrix.
+///
+/// A direction is a linear function of the pixel but for three roundings of at most kUnit each, of sums of magnitudes up
+/// to D: within 3 D kUnit, 4 are charged. Rows are products of two columns over the determinant: with doubles of 2^-52
+/// their error is below 2^-50 |a||b| / det each, and the determinant's own relative error below 2^-49 scale / det. As
+/// det > 2^-12 scale, both together are below 2^-36 of a row's size.
+GRIDIRON_OUTLINE inline EyeProjection project_eye(const FrameHead& frame, float largest) {
+  EyeProjection eye{};
+  double first[3], step_x[3], step_y[3], most = 0.0, far = double{largest};
+  for (int axis = 0; axis < 3; ++axis) {
+    first[axis] = double{frame.corner[axis]};
+    step_x[axis] = double{frame.step_x[axis]};
+    step_y[axis] = double{frame.step_y[axis]};
+    eye.eye[axis] = double{frame.eye[axis]};
+    const double sum = magnitude(first[axis]) + (double(frame.width) + 1.0) * magnitude(step_x[axis]) +
+                       (double(frame.height) + 1.0) * magnitude(step_y[axis]);
+    most = sum > most ? sum : most;
+    far = magnitude(eye.eye[axis]) > far ? magnitude(eye.eye[axis]) : far;
+  }
+  double scale = 1.0;
+  for (const double* const column : {first, step_x, step_y}) {
+    scale *= magnitude(column[0]) + magnitude(column[1]) + magnitude(column[2]);
+  }
+  double det = 0.0;
+  for (int i = 0; i < 3; ++i) {
+    const int j = i == 2 ? 0 : i + 1, k = j == 2 ? 0 : j + 1;
+    eye.rows[0][i] = step_y[j] * first[k] - step_y[k] * first[j];
+    eye.rows[1][i] = first[j] * step_x[k] - first[k] * step_x[j];
+    eye.rows[2][i] = step_x[j] * step_y[k] - step_x[k] * step_y[j];
+    det += first[i] * eye.rows[2][i];
+  }
+  for (int row = 0; row < 3; ++row) {
+    for (double& value : eye.rows[row]) {
+      value /= det;
+      eye.sizes[row] += magnitude(value);
+    }
+  }
+  eye.slack = 0x1p-36;
+  eye.direction = 4.0 * kUnit * most;
+  eye.dir_max = static_cast<float>(most * 1.0001);
+  // Where pixels are far smaller than rounding, or numbers leave the range in which products of four keep their
+  // precision, exact arithmetic decides everything.
+  const double moved = eye.direction * (eye.sizes[0] + eye.sizes[1] + (frame.width + frame.height) * eye.sizes[2]);
+  eye.is_trusted = magnitude(det) > 0x1p-12 * scale && moved < 0x1p-6 && far < 0x1p40 && far * eye.sizes[2] < 0x1p24 &&
+                   far * (eye.sizes[0] + eye.sizes[1]) < 0x1p36 && far * eye.sizes[2] > 0x1p-24;
+  return eye;
+}
+
+/// Of one tile, in floats.
+/// @tparam Width  pixels along its edge.
+struct TileProjection {
+  float rows[3][3];       ///< column, row, w; of a place less the eye
+  double exact_rows[3][3];
+  float error_per_size;   ///< of a coordinate of a corner, times the largest component of its way from the leaf's base
+  float error_per_base;   ///< the same, times the base's own coordinates
+  float base_error;       ///< the same, of a base
+  float direction_error;  ///< of a direction, in pixels
+  float w_error;          ///< of w along a direction, relative
+  // Boxes: planes through the eye, left, right, top, bottom, then w itself.
+  float planes[5][4];     ///< inside is where x p0 + y p1 + z p2 + p3 >= 0; the last one gives w, or less
+};
+
+/// How far outside a tile's pixels a box still counts, in pixels.
+inline constexpr double kPlaneMargin = 0x1p-5;
+
+/// @param largest  |coordinate| of the tree. @param width  pixels along the tile's edge.
+///
+/// With q a corner's way from the leaf's base: rows rounded to floats carry 1 kUnit, their products with q (which is
+/// rounded itself) 2, three sums 3 at most: 6 kUnit size |q|, and 1 of the result, which is at most that of the base
+/// and size |q|: 7 kUnit size |q| + 2 kUnit |base|. A pixel's place less an offset of up to `width` takes that much of
+/// w's error too, twice where a pixel is up to `width` away from the offset.
+GRIDIRON_OUTLINE inline void project_tile(const EyeProjection& eye, const TileView& view, std::uint32_t width,
+                                          float largest, TileProjection& tile) {
+  const double x = double(view.left) + double{view.dx}, y = double(view.top) + double{view.dy};
+  double sizes[3] = {0.0, 0.0, 0.0}, most = double{largest};
+  for (int axis = 0; axis < 3; ++axis) {
+    tile.exact_rows[0][axis] = eye.rows[0][axis] - x * eye.rows[2][axis];
+    tile.exact_rows[1][axis] = eye.rows[1][axis] - y * eye.rows[2][axis];
+    tile.exact_rows[2][axis] = eye.rows[2][axis];
+    most = magnitude(eye.eye[axis]) > most ? magnitude(eye.eye[axis]) : most;
+    for (int row = 0; row < 3; ++row) {
+      tile.rows[row][axis] = static_cast<float>(tile.exact_rows[row][axis]);
+      sizes[row] += magnitude(tile.exact_rows[row][axis]);
+    }
+  }
+  const double span = 2.0 * width, size = (sizes[0] > sizes[1] ? sizes[0] : sizes[1]) + span * sizes[2];
+  // Doubles lose of the eye's rows, not of the tile's.
+  const double lost = eye.sizes[0] + eye.sizes[1] + (x + y + span) * eye.sizes[2];
+  tile.error_per_size = static_cast<float>(7.1 * kUnit * size);
+  tile.error_per_base = static_cast<float>(2.1 * kUnit);
+  tile.base_error = static_cast<float>(eye.slack * lost * 2.0 * most + 0x1p-100);
+  tile.direction_error = static_cast<float>(1.01 * eye.direction * size);
+  tile.w_error = static_cast<float>(2.0 * eye.direction * sizes[2]);
+  const double last = double(width - 1) + kPlaneMargin;
+  for (int plane = 0; plane < 5; ++plane) {
+    double values[3], offset = 0.0, sum = 0.0;
+    for (int axis = 0; axis < 3; ++axis) {
+      const double column = tile.exact_rows[0][axis], row = tile.exact_rows[1][axis], w = tile.exact_rows[2][axis];
+      values[axis] = plane == 0   ? column + kPlaneMargin * w
+                     : plane == 1 ? last * w - column
+                     : plane == 2 ? row + kPlaneMargin * w
+                     : plane == 3 ? last * w - row
+                                  : w;
+      offset -= values[axis] * eye.eye[axis];
+      sum += magnitude(values[axis]);
+    }
+    // Three products and sums of floats, and all that doubles lose.
+    const double error = 6.0 * kUnit * (sum * most + magnitude(offset)) + double{tile.base_error};
+    for (int axis = 0; axis < 3; ++axis) tile.planes[plane][axis] = static_cast<float>(values[axis]);
+    tile.planes[plane][3] = static_cast<float>(plane == 4 ? offset - error : offset + error);
+  }
+}
+
+}  // namespace gridiron

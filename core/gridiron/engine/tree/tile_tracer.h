@@ -1,0 +1,549 @@
+// Eye rays of a tile through the wide tree: boxes, then triangles, are brought to the tile's pixels. Every pixel's hit is
+// that of exact arithmetic: floats decide with bounds of their errors, what they leave open doubles and integers decide.
+// Source: own; Olano, Greer 1997 for edges without clipping; core/TREE.md. Memory: TileMemory. Threads: one core.
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <gridiron/base/lanes.h>
+#include <gridiron/base/records.h>
+#include <gridiron/base/tree_records.h>
+#include <gridiron/base/work_counters.h>
+#include <gridiron/engine/tree/tile_memory.h>
+#include <gridiron/engine/tree/tile_projection.h>
+#include <gridiron/engine/tree/tile_triangles.h>
+#include <gridiron/platform/contract.h>
+#include <gridiron/ray/distance.h>
+#include <gridiron/ray/hits.h>
+#include <gridiron/ray/intersect_rays.h>
+
+#include <cstdint>
+
+namespace gridiron {
+
+/// Places of pixels in a block, and of blocks in a tile.
+template <std::uint32_t Width>
+struct TilePlaces {
+  static constexpr std::uint32_t kBlocksPerRow = Width / kBlockWidth;
+  static constexpr std::uint32_t kBlocks = kBlocksPerRow * kBlocksPerRow;
+  alignas(64) float column[kBlockPixels];
+  alignas(64) float row[kBlockPixels];
+  alignas(64) float block_column[kBlocks < 16 ? 16 : kBlocks];
+  alignas(64) float block_row[kBlocks < 16 ? 16 : kBlocks];
+};
+template <std::uint32_t Width>
+inline constexpr TilePlaces<Width> kTilePlaces = [] {
+  TilePlaces<Width> places{};
+  for (std::uint32_t i = 0; i < kBlockPixels; ++i) {
+    places.column[i] = static_cast<float>(i % kBlockWidth);
+    places.row[i] = static_cast<float>(i / kBlockWidth);
+  }
+  for (std::uint32_t i = 0; i < sizeof(places.block_column) / sizeof(float); ++i) {
+    places.block_column[i] = static_cast<float>(i % places.kBlocksPerRow * kBlockWidth);
+    places.block_row[i] = static_cast<float>(i / places.kBlocksPerRow * kBlockWidth);
+  }
+  return places;
+}();
+
+inline constexpr float kMostStoredNear = 0x1p120f;
+inline constexpr auto kLaneNumbers = [] {
+  struct {
+    alignas(64) std::uint32_t lane[16];
+  } numbers{};
+  for (std::uint32_t i = 0; i < 16; ++i) numbers.lane[i] = i;
+  return numbers;
+}();
+
+/// @tparam Source  where nodes and records are, as of RayLists; record(number, triangle) fetches any record, and what
+///                 node() and leaf() gave stays.
+template <class L, std::uint32_t Width, class Source>
+class TileTracer {
+ public:
+  using Memory = TileMemory<Width>;
+  TileTracer(Memory& memory, Source& source, WorkCounters& work) : memory_(memory), source_(source), work_(work) {}
+
+  /// Finds the nearest hits of a tile; they are in the memory then.
+  /// @param largest  |coordinate| of the tree's triangles.
+  [[nodiscard]] GRIDIRON_OUTLINE Status trace(const FrameHead& frame, const EyeProjection& eye, const TileView& view,
+                                              float largest) {
+    frame_ = &frame;
+    view_ = view;
+    eye_ = &eye;
+    project_tile(eye, view, Width, largest, tile_);
+    const std::uint32_t columns = frame.width - view.left, rows = frame.height - view.top;
+    columns_ = columns < Width ? columns : Width;
+    rows_ = rows < Width ? rows : Width;
+    last_x_ = static_cast<float>(columns_ - 1);
+    last_y_ = static_cast<float>(rows_ - 1);
+    queued_ = 0;
+    is_cleared_ = false;
+    least_near_ = 0.0f;
+    far_ = kFloatMax;
+    std::uint32_t top = 1;
+    memory_.stack[0] = TreeChild::node(0).bits;
+    memory_.stack_w[0] = 0.0f;
+    GRIDIRON_TRY(source_.ahead(TreeChild::node(0)));
+    while (top != 0) {
+      --top;
+      if (memory_.stack_w[top] > far_) continue;
+      const TreeChild child{memory_.stack[top]};
+      for (std::uint32_t i = 1; i < source_.window() && i <= top; ++i) {
+        GRIDIRON_TRY(source_.ahead(TreeChild{memory_.stack[top - i]}));
+      }
+      if (child.is_leaf()) {
+        GRIDIRON_TRY(visit_leaf(child));
+      } else {
+        const TreeNode* node = nullptr;
+        GRIDIRON_TRY(source_.node(child.node_index(), node));
+        top = push_children(*node, top);
+      }
+    }
+    while (queued_ != 0) GRIDIRON_TRY(draw_group());
+    return Status::kOk;
+  }
+
+  /// Whether anything was hit, or may have been; if not, the memory is as it was.
+  [[nodiscard]] bool is_cleared() const { return is_cleared_; }
+
+ private:
+  using Float = typename L::Float;
+  using Int = typename L::Int;
+  static constexpr std::uint32_t kLanes = L::kCount;
+  static constexpr std::uint32_t kGroups = kBlockPixels / kLanes;
+
+  [[nodiscard]] GRIDIRON_INLINE std::uint32_t push_children(const TreeNode& node, std::uint32_t top) {
+    alignas(64) float least_w[kTreeWidth];
+    std::uint32_t met = 0;
+    for (std::uint32_t base = 0; base < node.child_count; base += kLanes) {
+      const auto plane = [&](int p, bool is_least) GRIDIRON_INLINE_LAMBDA {
+        const float* const k = tile_.planes[p];
+        const auto side = [&](int axis) GRIDIRON_INLINE_LAMBDA {
+          return Float::load(((k[axis] > 0.0f) == is_least ? node.low : node.high)[axis] + base);
+        };
+        return L::bounded_sum(side(0), Float(k[0]),
+                              L::bounded_sum(side(1), Float(k[1]), L::bounded_sum(side(2), Float(k[2]), Float(k[3]))));
+      };
+      const Float w = plane(4, true);
+      const Float inside = L::min(L::min(plane(0, false), plane(1, false)), L::min(plane(2, false), plane(3, false)));
+      w.store(least_w + base);
+      met |= ((inside >= Float(0.0f)) & (w <= Float(far_))).bits() << base;
+    }
+    if (!eye_->is_trusted) met = ~0u;
+    const std::uint32_t there = (2u << (node.child_count - 1)) - 1;
+    const std::uint32_t bottom = top;
+    for (std::uint32_t rest = met & there; rest != 0; rest &= rest - 1) {
+      const std::uint32_t i = lowest_bit(rest);
+      const float w = least_w[i];
+      std::uint32_t place = top;
+      for (; place > bottom && memory_.stack_w[place - 1] < w; --place) {
+        memory_.stack[place] = memory_.stack[place - 1];
+        memory_.stack_w[place] = memory_.stack_w[place - 1];
+      }
+      memory_.stack[place] = node.children[i].bits;
+      memory_.stack_w[place] = w;
+      ++top;
+    }
+    return top;
+  }
+
+  [[nodiscard]] GRIDIRON_INLINE Status visit_leaf(TreeChild child) {
+    if (!is_cleared_) clear();
+    const VertexTriangle* records = nullptr;
+    GRIDIRON_TRY(source_.leaf(child, records));
+    const std::uint32_t count = child.count();
+    if (!eye_->is_trusted) [[unlikely]]
+      return decide_all(records, child);
+    const LeafBase base(*eye_, tile_, records[0]);
+    for (std::uint32_t first = 0; first < count; first += kLanes) {
+      const std::uint32_t here = count - first < kLanes ? count - first : kLanes;
+      LeafCorners<L> corners;
+      corners.template project<Width>(tile_, base, records + first, here);
+      Int box;
+      const std::uint32_t kept =
+          corners.template cull<Width>(far_, last_x_, last_y_, box) & (here == 32 ? ~0u : (1u << here) - 1);
+      if (kept == 0) continue;
+      queue(corners, box, kept, child.first() + first);
+      if (queued_ >= kLanes) GRIDIRON_TRY(draw_group());
+    }
+    return Status::kOk;
+  }
+
+  GRIDIRON_INLINE void queue(const LeafCorners<L>& corners, Int box, std::uint32_t kept, std::uint32_t first_record) {
+    const auto put = [&](std::uint32_t word, Int value) GRIDIRON_INLINE_LAMBDA {
+      L::compress(value, kept, memory_.queue[word] + queued_);
+    };
+    for (std::uint32_t i = 0; i < 3; ++i) {
+      put(kCornerX + i, L::bits_of(corners.x[i]));
+      put(kCornerY + i, L::bits_of(corners.y[i]));
+      put(kCornerW + i, L::bits_of(corners.w[i]));
+    }
+    put(kCornerError, L::bits_of(corners.error));
+    put(kPixelBox, box);
+    put(kRecord, Int::splat(first_record) + Int::load(kLaneNumbers.lane));
+    put(kTriangleId, L::bits_of(corners.id));
+    queued_ += count_bits(kept);
+  }
+
+  // Draws up to a group of lanes off the end of the queue.
+  [[nodiscard]] GRIDIRON_OUTLINE Status draw_group() {
+    const std::uint32_t count = queued_ < kLanes ? queued_ : kLanes;
+    queued_ -= count;
+    // Loads are aligned: the queue's first lanes are drawn, the rest takes their place.
+    const TileGroup group =
+        set_up_group<L, Width>(memory_, tile_, 0, count == 32 ? ~0u : (1u << count) - 1, least_near_);
+    dirty_ = 0;
+    std::uint32_t rest = group.drawn;
+    if (group.tiny != 0 && count_bits(group.tiny) >= kLeastTiny) {
+      GRIDIRON_TRY(draw_tiny(group.tiny));
+      rest &= ~group.tiny;
+    }
+    for (; rest != 0; rest &= rest - 1) GRIDIRON_TRY(draw_triangle(lowest_bit(rest)));
+    for (rest = group.careful; rest != 0; rest &= rest - 1) GRIDIRON_TRY(draw_carefully(lowest_bit(rest)));
+    if (queued_ != 0) {
+      for (auto& word : memory_.queue) {
+        for (std::uint32_t i = 0; i < queued_; i += kLanes) Int::load(word + kLanes + i).store(word + i);
+      }
+    }
+    if (dirty_ != 0) update_least();
+    return Status::kOk;
+  }
+  static constexpr std::uint32_t kLeastTiny = kLanes < 16 ? 1 : 4;
+
+  GRIDIRON_INLINE void mark(std::uint32_t block) { dirty_ |= std::uint64_t{1} << (block % 64); }
+
+  [[nodiscard]] GRIDIRON_INLINE Status draw_tiny(std::uint32_t tiny) {
+    const auto function = [&](std::uint32_t kind) GRIDIRON_INLINE_LAMBDA { return Float::load(memory_.functions[kind]); };
+    const Int box = Int::load(memory_.boxes);
+    const Int byte = Int::splat(0xFF), in_block = Int::splat(kBlockWidth - 1), one = Int::splat(1);
+    const Int ix0 = box & byte, iy0 = (box >> 8) & byte, ix1 = (box >> 16) & byte, iy1 = (box >> 24) & byte;
+    const Float edge_span = function(kEdgeSpan), near_span = function(kNearSpan);
+    const Float x = L::to_float(ix0 & in_block), y = L::to_float(iy0 & in_block);
+    Float left[4];
+    for (std::uint32_t k = 0; k < 3; ++k) {
+      left[k] = L::bounded_sum(function(kEdgeX + k), x, L::bounded_sum(function(kEdgeY + k), y, function(kEdgeValue + k)));
+    }
+    left[3] = L::bounded_sum(function(kNearX), x, L::bounded_sum(function(kNearY), y, function(kNearValue)));
+    for (std::uint32_t row = 0; row < 3; ++row) {
+      const Int py = iy0 + Int::splat(row);
+      const std::uint32_t rows = (py < iy1 + one).bits() & tiny;
+      if (rows == 0) break;
+      Float value[4] = {left[0], left[1], left[2], left[3]};
+      for (std::uint32_t column = 0; column < 3; ++column) {
+        const Int px = ix0 + Int::splat(column);
+        const std::uint32_t here = (px < ix1 + one).bits() & rows;
+        if (here == 0) break;
+        const Float least = L::min(L::min(value[0], value[1]), value[2]);
+        const std::uint32_t met = (least >= Float(0.0f)).bits() & here;
+        if (met != 0) {
+          const std::uint32_t sure = (least > edge_span).bits();
+          alignas(64) float near[kLanes];
+          value[3].store(near);
+          for (std::uint32_t rest = met; rest != 0; rest &= rest - 1) {
+            const std::uint32_t i = lowest_bit(rest);
+            GRIDIRON_TRY(draw_pixel(i, column, row, near[i], (sure >> i & 1u) != 0));
+          }
+        }
+        if (column < 2) {
+          for (std::uint32_t k = 0; k < 3; ++k) value[k] = value[k] + function(kEdgeX + k);
+          value[3] = value[3] + function(kNearX);
+        }
+      }
+      for (std::uint32_t k = 0; k < 3; ++k) left[k] = left[k] + function(kEdgeY + k);
+      left[3] = left[3] + function(kNearY);
+    }
+    (void)near_span;
+    return Status::kOk;
+  }
+  [[nodiscard]] GRIDIRON_INLINE Status draw_pixel(std::uint32_t i, std::uint32_t column, std::uint32_t row, float near,
+                                                  bool is_inside) {
+    const std::uint32_t box = memory_.boxes[i];
+    const std::uint32_t x = (box & 0xFFu) + column, y = (box >> 8 & 0xFFu) + row;
+    const std::uint32_t block = y / kBlockWidth * Memory::kBlocksPerRow + x / kBlockWidth;
+    const std::uint32_t pixel = y % kBlockWidth * kBlockWidth + x % kBlockWidth;
+    const float old = memory_.near[block][pixel], span = memory_.functions[kNearSpan][i];
+    if (near + span < old) return Status::kOk;
+    if (is_inside && near > old + memory_.span[block]) [[likely]] {
+      memory_.near[block][pixel] = near;
+      memory_.id[block][pixel] = memory_.ids[i];
+      memory_.record[block][pixel] = memory_.records[i];
+      memory_.span[block] = span > memory_.span[block] ? span : memory_.span[block];
+      mark(block);
+      return Status::kOk;
+    }
+    return decide(block, 1u << pixel, memory_.records[i]);
+  }
+
+  // A triangle's functions, each in all lanes.
+  struct Functions {
+    Float value[4], x[4], y[4], edge_span, near_span;
+
+    GRIDIRON_INLINE Functions(const Memory& memory, std::uint32_t i) {
+      for (std::uint32_t k = 0; k < 3; ++k) {
+        value[k] = Float(memory.functions[kEdgeValue + k][i]);
+        x[k] = Float(memory.functions[kEdgeX + k][i]);
+        y[k] = Float(memory.functions[kEdgeY + k][i]);
+      }
+      value[3] = Float(memory.functions[kNearValue][i]);
+      x[3] = Float(memory.functions[kNearX][i]);
+      y[3] = Float(memory.functions[kNearY][i]);
+      edge_span = Float(memory.functions[kEdgeSpan][i]);
+      near_span = Float(memory.functions[kNearSpan][i]);
+    }
+  };
+  /// A triangle that is drawn block by block.
+  struct Drawn {
+    Functions f;
+    Float start[4], step[4];  ///< at the pixels of a block's first group; on to the next group
+    float span;
+    std::uint32_t id, record;
+
+    GRIDIRON_INLINE Drawn(const Memory& memory, std::uint32_t i)
+        : f(memory, i), span(memory.functions[kNearSpan][i]), id(memory.ids[i]), record(memory.records[i]) {
+      const auto& places = kTilePlaces<Width>;
+      const Float column = Float::load(places.column), row = Float::load(places.row);
+      for (int k = 0; k < 4; ++k) {
+        start[k] = L::bounded_sum(f.x[k], column, L::bounded_sum(f.y[k], row, f.value[k]));
+        if constexpr (kGroups > 1) step[k] = f.y[k] * Float(float(kLanes) / kBlockWidth);
+      }
+    }
+  };
+
+  [[nodiscard]] GRIDIRON_INLINE Status draw_triangle(std::uint32_t i) {
+    const Drawn drawn(memory_, i);
+    const std::uint32_t box = memory_.boxes[i];
+    const std::uint32_t bx0 = (box & 0xFFu) / kBlockWidth, by0 = (box >> 8 & 0xFFu) / kBlockWidth,
+                        bx1 = (box >> 16 & 0xFFu) / kBlockWidth, by1 = (box >> 24) / kBlockWidth;
+    if ((bx1 - bx0 + 1) * (by1 - by0 + 1) > kFewBlocks) return draw_many_blocks(drawn, bx0, by0, bx1, by1);
+    Float y(0.0f);
+    for (std::uint32_t by = by0; by <= by1; ++by) {
+      Float x(0.0f);
+      for (std::uint32_t bx = bx0; bx <= bx1; ++bx) {
+        GRIDIRON_TRY(draw_block<false>(drawn, by * Memory::kBlocksPerRow + bx, x, y));
+        x = x + Float(kBlockWidth);
+      }
+      y = y + Float(kBlockWidth);
+    }
+    return Status::kOk;
+  }
+  static constexpr std::uint32_t kFewBlocks = kLanes == 16 ? 6 : 4;
+
+  // Blocks are looked at in lanes: which the triangle may touch in front of what is there, which it covers.
+  [[nodiscard]] GRIDIRON_OUTLINE Status draw_many_blocks(const Drawn& drawn, std::uint32_t bx0, std::uint32_t by0,
+                                                         std::uint32_t bx1, std::uint32_t by1) {
+    static constexpr std::uint32_t kRow = Memory::kBlocksPerRow;
+    static constexpr float kLast = kBlockWidth - 1.0f;
+    const auto& places = kTilePlaces<Width>;
+    const auto& f = drawn.f;
+    Float most[4], least[3];
+    for (int k = 0; k < 4; ++k) {
+      const Float zero(0.0f), last(kLast);
+      most[k] = (L::max(f.x[k], zero) + L::max(f.y[k], zero)) * last + f.value[k];
+      if (k < 3) least[k] = (L::min(f.x[k], zero) + L::min(f.y[k], zero)) * last + f.value[k];
+    }
+    most[3] = most[3] + f.near_span;
+    const float left = static_cast<float>(bx0 * kBlockWidth), top = static_cast<float>(by0 * kBlockWidth);
+    const float right = static_cast<float>((bx1 - bx0) * kBlockWidth), bottom = static_cast<float>((by1 - by0) * kBlockWidth);
+    const std::uint32_t begin = (by0 * kRow + (kLanes <= kRow ? bx0 : std::uint32_t{0})) & ~(kLanes - 1);
+    for (std::uint32_t base = begin; base <= by1 * kRow + bx1; base += kLanes) {
+      if constexpr (kLanes < kRow) {
+        const std::uint32_t column = base % kRow;
+        if (column > bx1 || column + (kLanes - 1) < bx0) continue;
+      }
+      const Float x = Float::load(places.block_column + base) - Float(left);
+      const Float y = Float::load(places.block_row + base) - Float(top);
+      auto met = (x >= Float(0.0f)) & (x <= Float(right)) & (y >= Float(0.0f)) & (y <= Float(bottom));
+      auto covered = met;
+      for (int k = 0; k < 3; ++k) {
+        const Float value = L::bounded_sum(f.x[k], x, f.y[k] * y);
+        met = met & (value + most[k] >= Float(0.0f));
+        covered = covered & (value + least[k] > f.edge_span);
+      }
+      met = met & (L::bounded_sum(f.x[3], x, L::bounded_sum(f.y[3], y, most[3])) >= Float::load(memory_.least_near + base));
+      const std::uint32_t all = met.bits();
+      if (all == 0) continue;
+      const std::uint32_t full = covered.bits() & all;
+      for (std::uint32_t rest = all & ~full; rest != 0; rest &= rest - 1) {
+        const std::uint32_t block = base + lowest_bit(rest);
+        GRIDIRON_TRY(draw_block<false>(drawn, block, Float(places.block_column[block] - left),
+                                       Float(places.block_row[block] - top)));
+      }
+      for (std::uint32_t rest = full; rest != 0; rest &= rest - 1) {
+        const std::uint32_t block = base + lowest_bit(rest);
+        GRIDIRON_TRY(draw_block<true>(drawn, block, Float(places.block_column[block] - left),
+                                      Float(places.block_row[block] - top)));
+      }
+    }
+    return Status::kOk;
+  }
+
+  // @param x, y  of the block's first pixel from the triangle's offset. @tparam kCovered  the triangle surely covers it.
+  template <bool kCovered>
+  [[nodiscard]] GRIDIRON_INLINE Status draw_block(const Drawn& drawn, std::uint32_t block, Float x, Float y) {
+    const auto& f = drawn.f;
+    Float value[4];
+    for (int k = kCovered ? 3 : 0; k < 4; ++k) {
+      value[k] = L::bounded_sum(f.x[k], x, L::bounded_sum(f.y[k], y, drawn.start[k]));
+    }
+    const Float old_span(memory_.span[block]);
+    std::uint32_t open = 0, taken = 0;
+    for (std::uint32_t group = 0; group < kGroups; ++group) {
+      const std::uint32_t pixel = group * kLanes;
+      float* const near = memory_.near[block] + pixel;
+      const Float old = Float::load(near);
+      auto met = value[3] + f.near_span >= old;
+      auto sure = value[3] > old + old_span;
+      if constexpr (!kCovered) {
+        const Float least = L::min(L::min(value[0], value[1]), value[2]);
+        met = met & (least >= Float(0.0f));
+        sure = sure & (least > f.edge_span);
+      }
+      sure = sure & met;
+      const std::uint32_t sure_bits = sure.bits();
+      open |= (met.bits() ^ sure_bits) << pixel;
+      taken |= sure_bits;
+      if (kGroups == 1 || sure_bits != 0) {
+        L::select(sure, value[3], old).store(near);
+        L::store_where(sure, drawn.id, memory_.id[block] + pixel);
+        L::store_where(sure, drawn.record, memory_.record[block] + pixel);
+      }
+      if (group + 1 < kGroups) {
+        for (int k = kCovered ? 3 : 0; k < 4; ++k) value[k] = value[k] + drawn.step[k];
+      }
+    }
+    if (taken != 0) {
+      memory_.span[block] = drawn.span > memory_.span[block] ? drawn.span : memory_.span[block];
+      mark(block);
+    }
+    if (open != 0) [[unlikely]]
+      return decide(block, open, drawn.record);
+    return Status::kOk;
+  }
+
+  // The least of blocks that changed, and of the tile once every block has a hit everywhere.
+  GRIDIRON_INLINE void update_least() {
+    for (std::uint32_t block = 0; block < Memory::kBlocks; ++block) {
+      if constexpr (Memory::kBlocks <= 64) {
+        if ((dirty_ >> block) == 0) break;
+        block += lowest_bit(dirty_ >> block);
+      } else {
+        if ((dirty_ >> (block % 64) & 1u) == 0) continue;
+      }
+      Float least = Float::load(memory_.near[block]);
+      for (std::uint32_t i = kLanes; i < kBlockPixels; i += kLanes) least = L::min(least, Float::load(memory_.near[block] + i));
+      const float found = L::horizontal_min(least);
+      if (memory_.least_near[block] <= floor_ && found > floor_) --empty_blocks_;
+      memory_.least_near[block] = found;
+    }
+    if (empty_blocks_ != 0) return;
+    Float least = Float::load(memory_.least_near);
+    for (std::uint32_t i = kLanes; i < Memory::kBlocks; i += kLanes) least = L::min(least, Float::load(memory_.least_near + i));
+    least_near_ = L::horizontal_min(least);
+    far_ = least_near_ > 0x1p-100f ? (1.0f / least_near_) * (1.0f + 0x1p-9f) : kFloatMax;
+  }
+
+  GRIDIRON_INLINE void clear() {
+    is_cleared_ = true;
+    // What lies farther than t_far is no hit. Near it, exact distances decide.
+    floor_ = frame_->t_far < 0x1p60f ? (1.0f / frame_->t_far) * (1.0f - 0x1p-18f) : 0.0f;
+    const Float none(floor_), span(floor_ * 0x1p-16f);
+    for (std::uint32_t block = 0; block < Memory::kBlocks; ++block) {
+      for (std::uint32_t i = 0; i < kBlockPixels; i += kLanes) {
+        none.store(memory_.near[block] + i);
+        Int::splat(kNoTriangle).store(memory_.id[block] + i);
+      }
+    }
+    for (std::uint32_t i = 0; i < Memory::kBlocks; i += kLanes) {
+      none.store(memory_.least_near + i);
+      span.store(memory_.span + i);
+    }
+    empty_blocks_ = Memory::kBlocks;
+    if (columns_ == Width && rows_ == Width) return;
+    // Nothing is in front of pixels outside the picture.
+    for (std::uint32_t i = 0; i < Width * Width; ++i) {
+      const std::uint32_t x = i % Width, y = i / Width;
+      if (x < columns_ && y < rows_) continue;
+      memory_.near[y / kBlockWidth * Memory::kBlocksPerRow + x / kBlockWidth][y % kBlockWidth * kBlockWidth + x % kBlockWidth] = kMostStoredNear;
+    }
+    dirty_ = ~std::uint64_t{0};
+    update_least();
+    dirty_ = 0;
+  }
+
+  // Pixels of a box, one by one.
+  [[nodiscard]] GRIDIRON_RARE Status draw_carefully(std::uint32_t i) {
+    const std::uint32_t box = memory_.boxes[i], record = memory_.records[i];
+    return decide_box(box & 0xFFu, box >> 8 & 0xFFu, box >> 16 & 0xFFu, box >> 24, record);
+  }
+  [[nodiscard]] GRIDIRON_RARE Status decide_box(std::uint32_t x0, std::uint32_t y0, std::uint32_t x1, std::uint32_t y1,
+                                                std::uint32_t record) {
+    for (std::uint32_t y = y0; y <= y1; ++y) {
+      for (std::uint32_t x = x0; x <= x1; ++x) {
+        const std::uint32_t block = y / kBlockWidth * Memory::kBlocksPerRow + x / kBlockWidth;
+        GRIDIRON_TRY(decide(block, 1u << (y % kBlockWidth * kBlockWidth + x % kBlockWidth), record));
+      }
+    }
+    return Status::kOk;
+  }
+  [[nodiscard]] GRIDIRON_RARE Status decide_all(const VertexTriangle*, TreeChild child) {
+    for (std::uint32_t i = 0; i < child.count(); ++i) {
+      GRIDIRON_TRY(decide_box(0, 0, columns_ - 1, rows_ - 1, child.first() + i));
+    }
+    if (dirty_ != 0) update_least();
+    return Status::kOk;
+  }
+
+  // Decides pixels of a block exactly: whether the triangle is hit, and whether before what was hit so far.
+  [[nodiscard]] GRIDIRON_RARE Status decide(std::uint32_t block, std::uint32_t pixels, std::uint32_t record) {
+    VertexTriangle triangle;
+    GRIDIRON_TRY(source_.record(record, triangle));
+    for (; pixels != 0; pixels &= pixels - 1) {
+      const std::uint32_t pixel = lowest_bit(pixels);
+      const std::uint32_t column = block % Memory::kBlocksPerRow * kBlockWidth + pixel % kBlockWidth;
+      const std::uint32_t row = block / Memory::kBlocksPerRow * kBlockWidth + pixel / kBlockWidth;
+      if (column >= columns_ || row >= rows_) continue;
+      const float x = (static_cast<float>(view_.left) + view_.dx) + static_cast<float>(column);
+      const float y = (static_cast<float>(view_.top) + view_.dy) + static_cast<float>(row);
+      BatchRay ray{};
+      float dir_max = 0.0f;
+      for (int axis = 0; axis < 3; ++axis) {
+        ray.origin[axis] = frame_->eye[axis];
+        ray.dir[axis] = pixel_direction(*frame_, axis, x, y);
+        dir_max = magnitude(ray.dir[axis]) > dir_max ? magnitude(ray.dir[axis]) : dir_max;
+      }
+      ray.dir_max = dir_max;
+      if (!passes_through(ray, triangle, work_)) continue;
+      const float t = ray_distance(ray, triangle, work_);
+      if (!(t > 0.0f) || !(t <= frame_->t_far)) continue;
+      const std::uint32_t old_id = memory_.id[block][pixel];
+      if (old_id != kNoTriangle) {
+        VertexTriangle old;
+        GRIDIRON_TRY(source_.record(memory_.record[block][pixel], old));
+        const float old_t = ray_distance(ray, old, work_);
+        if (old_t < t || (old_t == t && old_id < triangle.triangle_id)) continue;
+      }
+      const float near = (1.0f / t) * (1.0f - 0x1p-18f);
+      memory_.near[block][pixel] = near < kMostStoredNear ? near : kMostStoredNear;
+      memory_.id[block][pixel] = triangle.triangle_id;
+      memory_.record[block][pixel] = record;
+      const float span = memory_.near[block][pixel] * 0x1p-16f;
+      memory_.span[block] = span > memory_.span[block] ? span : memory_.span[block];
+      mark(block);
+    }
+    return Status::kOk;
+  }
+
+  Memory& memory_;
+  Source& source_;
+  WorkCounters& work_;
+  const FrameHead* frame_ = nullptr;
+  const EyeProjection* eye_ = nullptr;
+  TileView view_{};
+  TileProjection tile_{};
+  std::uint32_t columns_ = 0, rows_ = 0;
+  float last_x_ = 0.0f, last_y_ = 0.0f;
+  std::uint32_t queued_ = 0, empty_blocks_ = 0;
+  std::uint64_t dirty_ = 0;
+  float least_near_ = 0.0f, far_ = 0.0f, floor_ = 0.0f;
+  bool is_cleared_ = false;
+};
+
+}  // namespace gridiron

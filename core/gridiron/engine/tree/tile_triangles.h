@@ -1,0 +1,257 @@
+// Triangles on their way to the pixels of a tile: corners in the tile's coordinates, the pixels that they may cover,
+// edges and 1 / t as functions of the pixel; all in lanes, one triangle a lane, each with a bound of its error.
+// Source: Olano, Greer 1997 (edges without clipping); bounds own, core/TREE.md. Memory: values. Threads: one core.
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <gridiron/base/lanes.h>
+#include <gridiron/base/records.h>
+#include <gridiron/engine/tree/tile_memory.h>
+#include <gridiron/engine/tree/tile_projection.h>
+#include <gridiron/ray/pixel_box.h>
+
+#include <cstdint>
+
+namespace gridiron {
+
+/// A leaf's first corner in the coordinates of a tile.
+struct LeafBase {
+  float place[3];   ///< world space
+  float base[3];    ///< column w, row w, w
+  float error;      ///< of these
+
+  GRIDIRON_INLINE LeafBase(const EyeProjection& eye, const TileProjection& tile, const VertexTriangle& first) {
+    double way[3];
+    for (int axis = 0; axis < 3; ++axis) {
+      place[axis] = first.v[0][axis];
+      way[axis] = double{place[axis]} - eye.eye[axis];
+    }
+    for (int row = 0; row < 3; ++row) {
+      const double* const r = tile.exact_rows[row];
+      base[row] = static_cast<float>(r[0] * way[0] + r[1] * way[1] + r[2] * way[2]);
+    }
+    const float column = magnitude(base[0]), line = magnitude(base[1]);
+    error = (column > line ? column : line) * tile.error_per_base + tile.base_error;
+  }
+};
+
+/// A box of pixels may be too large by so much on each side: what estimates of 1 / w and corners' errors move.
+inline constexpr float kBoxMargin = 0x1p-5f + 0x1p-7f;
+/// w of every corner must be above its error times this, so that the box holds.
+inline constexpr float kLeastSureW = 0x1p8f;
+/// Beyond it 1 / w of a triangle is surely below that of a pixel.
+inline constexpr float kSurelyFarther = 1.0f - 0x1p-10f;
+
+/// Corners of L::kCount triangles of a leaf.
+template <class L>
+struct LeafCorners {
+  using Float = typename L::Float;
+  Float x[3], y[3], w[3], error;
+  Float id;  ///< pattern of triangle_id
+
+  /// @param triangles  L::kCount of them; a shorter group repeats one.
+  /// @tparam Width  of the tile.
+  template <std::uint32_t Width>
+  GRIDIRON_INLINE void project(const TileProjection& tile, const LeafBase& leaf, const VertexTriangle* triangles,
+                               std::uint32_t count) {
+    Float v[3][3];
+    load(triangles, count, v);
+    Float most(0.0f);
+    for (int corner = 0; corner < 3; ++corner) {
+      Float q[3];
+      for (int axis = 0; axis < 3; ++axis) {
+        q[axis] = v[corner][axis] - Float(leaf.place[axis]);
+        most = L::larger_size(most, q[axis]);
+      }
+      const auto along = [&](int row) GRIDIRON_INLINE_LAMBDA {
+        const float* const r = tile.rows[row];
+        return L::bounded_sum(
+            q[0], Float(r[0]), L::bounded_sum(q[1], Float(r[1]), L::bounded_sum(q[2], Float(r[2]), Float(leaf.base[row]))));
+      };
+      x[corner] = along(0);
+      y[corner] = along(1);
+      w[corner] = along(2);
+    }
+    // w's own error counts 2 Width times.
+    const float base = leaf.error + 2.0f * float(Width) * (magnitude(leaf.base[2]) * tile.error_per_base);
+    error = L::bounded_sum(most, Float(tile.error_per_size), Float(base));
+  }
+
+  /// @returns the triangles that may cover a pixel's centre and are not surely behind all hits, as bits.
+  /// @param far   w beyond which everything is hidden. @param last_x, last_y  pixels that the picture has.
+  template <std::uint32_t Width>
+  [[nodiscard]] GRIDIRON_INLINE std::uint32_t cull(float far, float last_x, float last_y, typename L::Int& box) const {
+    const Float least_w = L::min(L::min(w[0], w[1]), w[2]), most_w = L::max(L::max(w[0], w[1]), w[2]);
+    Float column[3], row[3];
+    for (int corner = 0; corner < 3; ++corner) {
+      const Float inverse = L::reciprocal_estimate(w[corner]);
+      column[corner] = x[corner] * inverse;
+      row[corner] = y[corner] * inverse;
+    }
+    const auto is_near = least_w > error * Float(kLeastSureW);  // else pixels cannot be told
+    const auto range = [&](const Float* place, float last, Float& first, Float& end) GRIDIRON_INLINE_LAMBDA {
+      const Float low = L::min(L::min(place[0], place[1]), place[2]) + Float(1.0f - 0x1p-10f - kBoxMargin);
+      const Float high = L::max(L::max(place[0], place[1]), place[2]) + Float(kBoxMargin);
+      // Not a number: min and max choose their second operand.
+      first = L::select(is_near, L::max(low, Float(0.0f)), Float(0.0f));
+      end = L::select(is_near, L::min(high, Float(last)), Float(last));
+    };
+    Float x0, x1, y0, y1;
+    range(column, last_x, x0, x1);
+    range(row, last_y, y0, y1);
+    const auto far_end = L::min(x1, y1) >= Float(0.0f);
+    const auto ix0 = L::truncate(L::min(x0, Float(Width))), iy0 = L::truncate(L::min(y0, Float(Width)));
+    const auto ix1 = L::truncate(L::max(x1, Float(-1.0f))), iy1 = L::truncate(L::max(y1, Float(-1.0f)));
+    const auto one = L::Int::splat(1);
+    box = ix0 | (iy0 << 8) | (ix1 << 16) | (iy1 << 24);
+    const auto kept = far_end & (ix0 < ix1 + one) & (iy0 < iy1 + one) & (most_w > -error);
+    const std::uint32_t hidden = (least_w * Float(kSurelyFarther) > Float(far)).bits() & is_near.bits();
+    return kept.bits() & ~hidden;
+  }
+
+ private:
+  GRIDIRON_INLINE void load(const VertexTriangle* triangles, std::uint32_t count, Float (&v)[3][3]) {
+    const VertexTriangle* group[L::kCount];
+    for (std::uint32_t i = 0; i < L::kCount; ++i) group[i] = triangles + (i < count ? i : count - 1);
+    const TransposedWords<L> low(group, 0), middle(group, 4), high(group, 8);
+    v[0][0] = low.word[0], v[0][1] = low.word[1], v[0][2] = low.word[2];
+    v[1][0] = low.word[3], v[1][1] = middle.word[0], v[1][2] = middle.word[1];
+    v[2][0] = middle.word[2], v[2][1] = middle.word[3], v[2][2] = high.word[0];
+    id = high.word[3];
+  }
+};
+
+// With e = kUnit, corners relative to an offset within the tile, g the error of their coordinates there and G = P + R W,
+// where P and W are the largest |column w|, |row w| and |w| and R the farthest pixel: an edge's function is a product of
+// two places less the pixel, each at most G and off by g: 4 g G. Its coefficients are differences of two products, their
+// sum at a pixel takes seven more roundings of sums of at most 2 G^2: 2 (2 + 7) e G^2 < 24 e G^2.
+inline constexpr float kTileEdgeError = 24.0f * 0x1p-23f;
+inline constexpr float kCornerFactor = 4.1f;
+/// Covers what becomes subnormal, or is flushed.
+inline constexpr float kLeastEdgeError = 0x1p-100f;
+/// 1 / t is n . pixel / n . v with n = a x b, sides of the triangle at corner v. With C_i = |a_j b_k| + |a_k b_j| and m_i
+/// the largest |component| of corners: n is off by 3 e C_i, and by e C_i for each rounded side, which counts along the
+/// way from v to the hit, at most 2 m_i: 8 e C . m; n . v rounds by 3 e C . m, and takes (|n_x| + |n_y|) g + |n_w| g_w of
+/// corners' errors. Coefficients take 3 e, their sum at a pixel 7 e of the sum of magnitudes; the least distance by
+/// which rounded t surely differ 2 e.
+inline constexpr float kNormalError = 11.5f * 0x1p-23f;
+inline constexpr float kNearError = 12.5f * 0x1p-23f;
+/// Above it nothing is known of a triangle's side.
+inline constexpr float kMostNormalError = 0x1p-5f;
+inline constexpr float kMostNear = 0x1p90f;
+
+/// What a group of the queue gives: triangles as bits.
+struct TileGroup {
+  std::uint32_t drawn;    ///< have functions
+  std::uint32_t tiny;     ///< of these, with boxes of at most 3 x 3 pixels
+  std::uint32_t careful;  ///< have no bound: exact arithmetic decides their pixels
+};
+
+/// Makes functions of L::kCount triangles of the queue, those from `first` on, relative to the first pixel of the block
+/// of each box.
+/// @param there  lanes with triangles. @param least_near  1 / t below which everything is hidden.
+template <class L, std::uint32_t Width>
+[[nodiscard]] GRIDIRON_INLINE TileGroup set_up_group(TileMemory<Width>& memory, const TileProjection& tile,
+                                                     std::uint32_t first, std::uint32_t there, float least_near) {
+  using Float = typename L::Float;
+  using Int = typename L::Int;
+  const auto word = [&](std::uint32_t kind) GRIDIRON_INLINE_LAMBDA {
+    return Float::load(reinterpret_cast<const float*>(memory.queue[kind]) + first);
+  };
+  const Int box = Int::load(memory.queue[kPixelBox] + first);
+  const Int byte = Int::splat(0xFF);
+  const Int ix0 = box & byte, iy0 = (box >> 8) & byte, ix1 = (box >> 16) & byte, iy1 = (box >> 24) & byte;
+  const Int block = Int::splat(~(kBlockWidth - 1));
+  const Float ox = L::to_float(ix0 & block), oy = L::to_float(iy0 & block);
+  const Float x0 = L::to_float(ix0) - ox, y0 = L::to_float(iy0) - oy;
+  const Float x1 = L::to_float(ix1) - ox, y1 = L::to_float(iy1) - oy;
+
+  // 1. Corners relative to the offset, and how large they are.
+  Float x[3], y[3], w[3];
+  Float most_x(0.0f), most_y(0.0f), most_w(0.0f);
+  for (std::uint32_t corner = 0; corner < 3; ++corner) {
+    w[corner] = word(kCornerW + corner);
+    x[corner] = word(kCornerX + corner) - ox * w[corner];
+    y[corner] = word(kCornerY + corner) - oy * w[corner];
+    most_x = L::larger_size(most_x, x[corner]);
+    most_y = L::larger_size(most_y, y[corner]);
+    most_w = L::larger_size(most_w, w[corner]);
+  }
+  const Float reach = L::max(x1, y1) + Float(kBlockWidth - 1.0f);
+  const Float size = L::bounded_sum(reach, most_w, L::max(most_x, most_y));
+  const Float moved = word(kCornerError) + size * Float(0x1p-23f) +
+                      most_w * Float(static_cast<float>(Width * 0x1p-22) + tile.direction_error);
+  const Float edge_error =
+      size * (moved * Float(kCornerFactor) + size * Float(kTileEdgeError)) + Float(kLeastEdgeError);
+
+  // 2. The plane. Of the three corners the one opposite to the longest side gives the least error.
+  Float side_x[3], side_y[3], side_w[3], length[3];
+  for (int i = 0; i < 3; ++i) {
+    const int next = i == 2 ? 0 : i + 1;
+    side_x[i] = x[next] - x[i];
+    side_y[i] = y[next] - y[i];
+    side_w[i] = w[next] - w[i];
+    length[i] = L::abs(side_x[i]) + L::abs(side_y[i]);
+  }
+  // The longest side is number 0, 1, or else 2: the others are 1 and 2, 2 and 0, 0 and 1.
+  const auto is_first = (length[0] >= length[1]) & (length[0] >= length[2]);
+  const auto is_second = length[1] >= length[2];
+  const auto choose = [&](Float one, Float two, Float three) GRIDIRON_INLINE_LAMBDA {
+    return L::select(is_first, one, L::select(is_second, two, three));
+  };
+  const Float ax = choose(side_x[1], side_x[2], side_x[0]), bx = choose(side_x[2], side_x[0], side_x[1]);
+  const Float ay = choose(side_y[1], side_y[2], side_y[0]), by = choose(side_y[2], side_y[0], side_y[1]);
+  const Float aw = choose(side_w[1], side_w[2], side_w[0]), bw = choose(side_w[2], side_w[0], side_w[1]);
+  const Float vx = choose(x[2], x[0], x[1]), vy = choose(y[2], y[0], y[1]), vw = choose(w[2], w[0], w[1]);
+  const Float p0 = ay * bw, p1 = aw * by, p2 = aw * bx, p3 = ax * bw, p4 = ax * by, p5 = ay * bx;
+  const Float nx = p0 - p1, ny = p2 - p3, nw = p4 - p5;
+  const Float volume = L::bounded_sum(nx, vx, L::bounded_sum(ny, vy, nw * vw));
+  const Float rounded = L::bounded_sum(
+      L::abs(p0) + L::abs(p1), most_x,
+      L::bounded_sum(L::abs(p2) + L::abs(p3), most_y, (L::abs(p4) + L::abs(p5)) * most_w));
+  const Float slope = L::abs(nx) + L::abs(ny);
+  const Float plane_error = rounded * Float(kNormalError) + slope * moved +
+                            L::abs(nw) * moved * Float(1.0f / (2.0f * float(Width)));
+  const Float inverse = Float(1.0f) / volume;
+  const Float relative = plane_error * L::abs(inverse);
+  const Float near_x = nx * inverse, near_y = ny * inverse, near_w = nw * inverse;
+  const Float most_near = L::bounded_sum(L::abs(near_x) + L::abs(near_y), reach, L::abs(near_w));
+  const Float near_error = most_near * (relative + Float(kNearError + 2.0f * tile.w_error));
+  // Not a number: not sure.
+  const auto is_sure = (relative < Float(kMostNormalError)) & (most_near < Float(kMostNear)) &
+                       (edge_error < Float(kMostNear));
+
+  // 3. Edges, turned so that the triangle lies on their positive side, with their error added. The greatest value in the
+  // box tells whether the triangle covers a pixel of it.
+  const auto most_in_box = [&](Float value, Float along_x, Float along_y) GRIDIRON_INLINE_LAMBDA {
+    return value + L::max(along_x * x0, along_x * x1) + L::max(along_y * y0, along_y * y1);
+  };
+  const Float near_value = near_w - near_error;
+  auto is_drawn = most_in_box(near_value, near_x, near_y) + (near_error + near_error) >= Float(least_near);
+  for (std::uint32_t i = 0; i < 3; ++i) {
+    const std::uint32_t next = i == 2 ? std::uint32_t{0} : i + 1;
+    const Float edge_x = L::turn_by(volume, y[i] * w[next] - w[i] * y[next]);
+    const Float edge_y = L::turn_by(volume, w[i] * x[next] - x[i] * w[next]);
+    const Float value = L::turn_by(volume, x[i] * y[next] - y[i] * x[next]) + edge_error;
+    is_drawn = is_drawn & (most_in_box(value, edge_x, edge_y) >= Float(0.0f));
+    value.store(memory.functions[kEdgeValue + i]);
+    edge_x.store(memory.functions[kEdgeX + i]);
+    edge_y.store(memory.functions[kEdgeY + i]);
+  }
+  const std::uint32_t sure = is_sure.bits();
+  TileGroup group{is_drawn.bits() & sure & there, 0, there & ~sure};
+  if ((group.drawn | group.careful) == 0) return group;
+  near_value.store(memory.functions[kNearValue]);
+  near_x.store(memory.functions[kNearX]);
+  near_y.store(memory.functions[kNearY]);
+  (edge_error + edge_error).store(memory.functions[kEdgeSpan]);
+  (near_error + near_error).store(memory.functions[kNearSpan]);
+  box.store(memory.boxes);
+  Int::load(memory.queue[kRecord] + first).store(memory.records);
+  Int::load(memory.queue[kTriangleId] + first).store(memory.ids);
+  const Float extent = L::max(x1 - x0, y1 - y0);
+  group.tiny = (extent < Float(2.5f)).bits() & group.drawn;
+  return group;
+}
+
+}  // namespace gridiron
