@@ -22,7 +22,9 @@ enum TileWord : std::uint32_t {
   kPixelBox,         ///< first column and row, last column and row, a byte each
   kRecord,           ///< number of its record in the tree
   kTriangleId,
-  kTileWords
+  kNormal,           ///< unit normal, with Shading::kSimple
+  kVertex = kNormal + 3,  ///< three vertices in world space, where distances are asked for
+  kTileWords = kVertex + 9
 };
 
 /// Functions of the pixel of triangles that are drawn: value at the offset, then per column and per row.
@@ -50,6 +52,8 @@ struct alignas(128) TileMemory {
   alignas(64) float near[kBlocks][kBlockPixels];  ///< 1 / t of the nearest hit so far, or a little less
   alignas(64) std::uint32_t id[kBlocks][kBlockPixels];      ///< its triangle
   alignas(64) std::uint32_t record[kBlocks][kBlockPixels];  ///< and where this lies in the tree
+  alignas(64) float facing[kBlocks][kBlockPixels];    ///< |normal . direction| of the hit, with Shading::kSimple
+  alignas(64) float distance[kBlocks][kBlockPixels];  ///< t of the hit, rounded, where distances are asked for
   alignas(64) float least_near[kBlocks];  ///< least of a block's pixels
   alignas(64) float span[kBlocks];        ///< 1 / t of a block's hits is less than this above what stands there
 

@@ -11,6 +11,7 @@
 #include <gridiron/engine/tree/tile_memory.h>
 #include <gridiron/engine/tree/tile_projection.h>
 #include <gridiron/engine/tree/tile_triangles.h>
+#include <gridiron/engine/tree/tile_work.h>
 #include <gridiron/platform/contract.h>
 #include <gridiron/ray/distance.h>
 #include <gridiron/ray/hits.h>
@@ -53,21 +54,29 @@ inline constexpr auto kLaneNumbers = [] {
   return numbers;
 }();
 
+/// Traces one tile after the other. Between begin() and finish() it goes on step by step, so that several tracers can
+/// take turns while what they wait for is on its way.
 /// @tparam Source  where nodes and records are, as of RayLists; record(number, triangle) fetches any record, and what
-///                 node() and leaf() gave stays.
+///                 node() and leaf() gave stays until their next call.
 template <class L, std::uint32_t Width, class Source>
 class TileTracer {
  public:
   using Memory = TileMemory<Width>;
   TileTracer(Memory& memory, Source& source, WorkCounters& work) : memory_(memory), source_(source), work_(work) {}
 
-  /// Finds the nearest hits of a tile; they are in the memory then.
+  /// Begins a tile whose first pixel lies in the picture. Borrows frame and eye until finish().
+  /// @param wants_facing, wants_distance  the planes of the memory that are to be filled.
   /// @param largest  |coordinate| of the tree's triangles.
-  [[nodiscard]] GRIDIRON_OUTLINE Status trace(const FrameHead& frame, const EyeProjection& eye, const TileView& view,
-                                              float largest) {
+  [[nodiscard]] GRIDIRON_OUTLINE Status begin(const FrameHead& frame, const EyeProjection& eye, const TileView& view,
+                                              bool wants_facing, bool wants_distance, float largest) {
+    work_.add(TileWork::kView);
+    work_.charge_to(TileWork::kView);
     frame_ = &frame;
-    view_ = view;
     eye_ = &eye;
+    view_ = view;
+    wants_facing_ = wants_facing;
+    wants_distance_ = wants_distance;
+    trusts_floats_ = frame.accuracy == static_cast<std::uint32_t>(Accuracy::kFast);
     project_tile(eye, view, Width, largest, tile_);
     const std::uint32_t columns = frame.width - view.left, rows = frame.height - view.top;
     columns_ = columns < Width ? columns : Width;
@@ -78,39 +87,110 @@ class TileTracer {
     is_cleared_ = false;
     least_near_ = 0.0f;
     far_ = kFloatMax;
-    std::uint32_t top = 1;
+    top_ = 1;
     memory_.stack[0] = TreeChild::node(0).bits;
     memory_.stack_w[0] = 0.0f;
-    GRIDIRON_TRY(source_.ahead(TreeChild::node(0)));
-    while (top != 0) {
-      --top;
-      if (memory_.stack_w[top] > far_) continue;
-      const TreeChild child{memory_.stack[top]};
-      for (std::uint32_t i = 1; i < source_.window() && i <= top; ++i) {
-        GRIDIRON_TRY(source_.ahead(TreeChild{memory_.stack[top - i]}));
-      }
-      if (child.is_leaf()) {
-        GRIDIRON_TRY(visit_leaf(child));
-      } else {
-        const TreeNode* node = nullptr;
-        GRIDIRON_TRY(source_.node(child.node_index(), node));
-        top = push_children(*node, top);
-      }
+    return source_.ahead(TreeChild::node(0));
+  }
+
+  [[nodiscard]] bool has_more() const { return top_ != 0; }
+
+  /// Visits the next child, and has those fetched that come next. Precondition: has_more().
+  [[nodiscard]] GRIDIRON_OUTLINE Status step() {
+    work_.charge_to(TileWork::kChild);
+    --top_;
+    if (memory_.stack_w[top_] > far_) return Status::kOk;
+    const TreeChild child{memory_.stack[top_]};
+    if (child.is_leaf()) {
+      GRIDIRON_TRY(visit_leaf(child));
+    } else {
+      const TreeNode* node = nullptr;
+      GRIDIRON_TRY(source_.node(child.node_index(), node));
+      push_children(*node);
     }
+    work_.charge_to(TileWork::kChild);
+    for (std::uint32_t i = 1; i <= source_.window() && i <= top_; ++i) {
+      if (memory_.stack_w[top_ - i] > far_) continue;
+      GRIDIRON_TRY(source_.ahead(TreeChild{memory_.stack[top_ - i]}));
+    }
+    return Status::kOk;
+  }
+
+  /// Draws what still waits. Then the memory has the tile's hits, if has_hits().
+  [[nodiscard]] GRIDIRON_OUTLINE Status finish() {
     while (queued_ != 0) GRIDIRON_TRY(draw_group());
     return Status::kOk;
   }
 
-  /// Whether anything was hit, or may have been; if not, the memory is as it was.
-  [[nodiscard]] bool is_cleared() const { return is_cleared_; }
+  /// Whether anything may have been hit; if not, the memory's planes are undefined.
+  [[nodiscard]] bool has_hits() const { return is_cleared_; }
+
+  /// Writes the hits into the planes of a larger tile.
+  /// @param x, y  this tile's first pixel there. @param tile_width  pixels of a row of the planes.
+  GRIDIRON_OUTLINE void store_hits(std::uint32_t x, std::uint32_t y, std::uint32_t tile_width, const Hits& hits) {
+    work_.add(Work::kIdGroup, Memory::kBlocks * kGroups);
+    work_.charge_to(Work::kIdGroup);
+    for_each_group([&](std::uint32_t block, std::uint32_t i, std::uint32_t pixel) GRIDIRON_INLINE_LAMBDA {
+      const Int id = is_cleared_ ? Int::load(memory_.id[block] + i) : Int::splat(kNoTriangle);
+      L::store_quads(id, hits.id + pixel, tile_width);
+    }, x, y, tile_width);
+    if (hits.distance != nullptr) {
+      work_.add(Work::kDepthGroup, Memory::kBlocks * kGroups);
+      work_.charge_to(Work::kDepthGroup);
+      for_each_group([&](std::uint32_t block, std::uint32_t i, std::uint32_t pixel) GRIDIRON_INLINE_LAMBDA {
+        Float distance(kFloatMax);
+        if (is_cleared_) {
+          Float dir[3];
+          directions(block, i, dir);
+          const auto missed = L::equal(kNoTriangle, memory_.id[block] + i);
+          distance = L::select(missed, distance, Float::load(memory_.distance[block] + i) * length_of(dir));
+        }
+        L::store_quads(distance, hits.distance + pixel, tile_width);
+      }, x, y, tile_width);
+    }
+    if (hits.facing != nullptr) {
+      work_.charge_to(Work::kShadedSimpleGroup);
+      for_each_group([&](std::uint32_t block, std::uint32_t i, std::uint32_t pixel) GRIDIRON_INLINE_LAMBDA {
+        Float facing(0.0f);
+        if (is_cleared_) {
+          Float dir[3];
+          directions(block, i, dir);
+          facing = Float::load(memory_.facing[block] + i) / length_of(dir);
+        }
+        L::store_quads(facing, hits.facing + pixel, tile_width);
+      }, x, y, tile_width);
+    }
+  }
 
  private:
   using Float = typename L::Float;
   using Int = typename L::Int;
   static constexpr std::uint32_t kLanes = L::kCount;
   static constexpr std::uint32_t kGroups = kBlockPixels / kLanes;
+  static constexpr std::uint32_t kRow = Memory::kBlocksPerRow;
 
-  [[nodiscard]] GRIDIRON_INLINE std::uint32_t push_children(const TreeNode& node, std::uint32_t top) {
+  template <class Write>
+  GRIDIRON_INLINE void for_each_group(Write&& write, std::uint32_t x, std::uint32_t y, std::uint32_t tile_width) const {
+    for (std::uint32_t block = 0; block < Memory::kBlocks; ++block) {
+      const std::uint32_t pixel = (y + block / kRow * kBlockWidth) * tile_width + x + block % kRow * kBlockWidth;
+      for (std::uint32_t i = 0; i < kBlockPixels; i += kLanes) write(block, i, pixel + i / kBlockWidth * tile_width);
+    }
+  }
+  // Directions of a group of pixels, as FrameHead defines them.
+  GRIDIRON_INLINE void directions(std::uint32_t block, std::uint32_t i, Float (&dir)[3]) const {
+    const auto& places = kTilePlaces<Width>;
+    const float left = static_cast<float>(view_.left) + view_.dx, top = static_cast<float>(view_.top) + view_.dy;
+    const Float x = Float(left + places.block_column[block]) + Float::load(places.column + i);
+    const Float y = Float(top + places.block_row[block]) + Float::load(places.row + i);
+    for (int axis = 0; axis < 3; ++axis) dir[axis] = pixel_direction(*frame_, axis, x, y);
+  }
+  [[nodiscard]] static GRIDIRON_INLINE Float length_of(const Float (&dir)[3]) {
+    return L::square_root((dir[0] * dir[0] + dir[1] * dir[1]) + dir[2] * dir[2]);
+  }
+
+  GRIDIRON_INLINE void push_children(const TreeNode& node) {
+    work_.add(TileWork::kBoxGroup, (node.child_count + (kLanes - 1)) / kLanes);
+    work_.charge_to(TileWork::kBoxGroup);
     alignas(64) float least_w[kTreeWidth];
     std::uint32_t met = 0;
     for (std::uint32_t base = 0; base < node.child_count; base += kLanes) {
@@ -129,7 +209,9 @@ class TileTracer {
     }
     if (!eye_->is_trusted) met = ~0u;
     const std::uint32_t there = (2u << (node.child_count - 1)) - 1;
-    const std::uint32_t bottom = top;
+    const std::uint32_t bottom = top_;
+    std::uint32_t top = top_;
+    work_.charge_to(TileWork::kChild);
     for (std::uint32_t rest = met & there; rest != 0; rest &= rest - 1) {
       const std::uint32_t i = lowest_bit(rest);
       const float w = least_w[i];
@@ -142,7 +224,8 @@ class TileTracer {
       memory_.stack_w[place] = w;
       ++top;
     }
-    return top;
+    work_.add(TileWork::kChild, top - bottom);
+    top_ = top;
   }
 
   [[nodiscard]] GRIDIRON_INLINE Status visit_leaf(TreeChild child) {
@@ -151,23 +234,29 @@ class TileTracer {
     GRIDIRON_TRY(source_.leaf(child, records));
     const std::uint32_t count = child.count();
     if (!eye_->is_trusted) [[unlikely]]
-      return decide_all(records, child);
+      return decide_all(child);
+    work_.add(TileWork::kLeaf);
+    work_.charge_to(TileWork::kLeaf);
     const LeafBase base(*eye_, tile_, records[0]);
     for (std::uint32_t first = 0; first < count; first += kLanes) {
       const std::uint32_t here = count - first < kLanes ? count - first : kLanes;
+      work_.add(TileWork::kCornerGroup);
+      work_.charge_to(TileWork::kCornerGroup);
       LeafCorners<L> corners;
       corners.template project<Width>(tile_, base, records + first, here);
       Int box;
-      const std::uint32_t kept =
-          corners.template cull<Width>(far_, last_x_, last_y_, box) & (here == 32 ? ~0u : (1u << here) - 1);
+      const std::uint32_t kept = corners.template cull<Width>(far_, last_x_, last_y_, box) & ((1u << here) - 1);
       if (kept == 0) continue;
-      queue(corners, box, kept, child.first() + first);
+      queue(corners, box, kept, child.first() + first, records + first);
       if (queued_ >= kLanes) GRIDIRON_TRY(draw_group());
     }
     return Status::kOk;
   }
 
-  GRIDIRON_INLINE void queue(const LeafCorners<L>& corners, Int box, std::uint32_t kept, std::uint32_t first_record) {
+  GRIDIRON_INLINE void queue(const LeafCorners<L>& corners, Int box, std::uint32_t kept, std::uint32_t first_record,
+                             const VertexTriangle* records) {
+    work_.add(TileWork::kKeptGroup);
+    work_.charge_to(TileWork::kKeptGroup);
     const auto put = [&](std::uint32_t word, Int value) GRIDIRON_INLINE_LAMBDA {
       L::compress(value, kept, memory_.queue[word] + queued_);
     };
@@ -180,33 +269,69 @@ class TileTracer {
     put(kPixelBox, box);
     put(kRecord, Int::splat(first_record) + Int::load(kLaneNumbers.lane));
     put(kTriangleId, L::bits_of(corners.id));
+    if (wants_facing_) {
+      Float normal[3];
+      set_up_normals(corners, kept, records, normal);
+      for (std::uint32_t i = 0; i < 3; ++i) put(kNormal + i, L::bits_of(normal[i]));
+    }
+    if (wants_distance_) {
+      for (std::uint32_t i = 0; i < 9; ++i) put(kVertex + i, L::bits_of(corners.vertices[i / 3][i % 3]));
+    }
     queued_ += count_bits(kept);
   }
+  // set_up_normal() of a group: its float test, lane by lane; the same bits.
+  GRIDIRON_INLINE void set_up_normals(const LeafCorners<L>& corners, std::uint32_t kept, const VertexTriangle* records,
+                                      Float (&normal)[3]) {
+    work_.add(TileWork::kNormalGroup);
+    work_.charge_to(TileWork::kNormalGroup);
+    const std::uint32_t sure = float_normals<L>(corners.vertices, normal);
+    if ((kept & ~sure) == 0) [[likely]]
+      return;
+    alignas(64) float words[3][kLanes];
+    for (int axis = 0; axis < 3; ++axis) normal[axis].store(words[axis]);
+    for (std::uint32_t rest = kept & ~sure; rest != 0; rest &= rest - 1) {
+      const std::uint32_t i = lowest_bit(rest);
+      work_.add(Work::kNormalSetup);
+      float found[3];
+      set_up_normal(records[i], found);
+      for (int axis = 0; axis < 3; ++axis) words[axis][i] = found[axis];
+    }
+    for (int axis = 0; axis < 3; ++axis) normal[axis] = Float::load(words[axis]);
+  }
 
-  // Draws up to a group of lanes off the end of the queue.
+  // Draws the first group of lanes of the queue; the rest takes its place.
   [[nodiscard]] GRIDIRON_OUTLINE Status draw_group() {
     const std::uint32_t count = queued_ < kLanes ? queued_ : kLanes;
-    queued_ -= count;
-    // Loads are aligned: the queue's first lanes are drawn, the rest takes their place.
-    const TileGroup group =
-        set_up_group<L, Width>(memory_, tile_, 0, count == 32 ? ~0u : (1u << count) - 1, least_near_);
+    work_.add(TileWork::kFunctionGroup);
+    work_.charge_to(TileWork::kFunctionGroup);
+    TileGroup group = set_up_group<L, Width>(memory_, tile_, 0, (1u << count) - 1, least_near_);
     dirty_ = 0;
+    if (trusts_floats_) trust_floats();
     std::uint32_t rest = group.drawn;
-    if (group.tiny != 0 && count_bits(group.tiny) >= kLeastTiny) {
+    if (count_bits(group.tiny) >= kLeastTiny) {
+      work_.charge_to(TileWork::kTinyPlace);
       GRIDIRON_TRY(draw_tiny(group.tiny));
       rest &= ~group.tiny;
     }
     for (; rest != 0; rest &= rest - 1) GRIDIRON_TRY(draw_triangle(lowest_bit(rest)));
     for (rest = group.careful; rest != 0; rest &= rest - 1) GRIDIRON_TRY(draw_carefully(lowest_bit(rest)));
+    work_.charge_to(TileWork::kFunctionGroup);
+    queued_ -= count;
     if (queued_ != 0) {
-      for (auto& word : memory_.queue) {
-        for (std::uint32_t i = 0; i < queued_; i += kLanes) Int::load(word + kLanes + i).store(word + i);
+      const std::uint32_t words = wants_distance_ ? kTileWords : wants_facing_ ? kVertex : kNormal;
+      for (std::uint32_t word = 0; word < words; ++word) {
+        Int::load(memory_.queue[word] + kLanes).store(memory_.queue[word]);
       }
     }
     if (dirty_ != 0) update_least();
     return Status::kOk;
   }
   static constexpr std::uint32_t kLeastTiny = kLanes < 16 ? 1 : 4;
+  // Accuracy::kFast: what may be inside is, and what is in front by floats is.
+  GRIDIRON_INLINE void trust_floats() {
+    Float(-1.0f).store(memory_.functions[kEdgeSpan]);
+    Float(0.0f).store(memory_.functions[kNearSpan]);
+  }
 
   GRIDIRON_INLINE void mark(std::uint32_t block) { dirty_ |= std::uint64_t{1} << (block % 64); }
 
@@ -215,7 +340,7 @@ class TileTracer {
     const Int box = Int::load(memory_.boxes);
     const Int byte = Int::splat(0xFF), in_block = Int::splat(kBlockWidth - 1), one = Int::splat(1);
     const Int ix0 = box & byte, iy0 = (box >> 8) & byte, ix1 = (box >> 16) & byte, iy1 = (box >> 24) & byte;
-    const Float edge_span = function(kEdgeSpan), near_span = function(kNearSpan);
+    const Float edge_span = function(kEdgeSpan);
     const Float x = L::to_float(ix0 & in_block), y = L::to_float(iy0 & in_block);
     Float left[4];
     for (std::uint32_t k = 0; k < 3; ++k) {
@@ -231,6 +356,8 @@ class TileTracer {
         const Int px = ix0 + Int::splat(column);
         const std::uint32_t here = (px < ix1 + one).bits() & rows;
         if (here == 0) break;
+        work_.add(TileWork::kTinyPlace);
+        work_.charge_to(TileWork::kTinyPlace);
         const Float least = L::min(L::min(value[0], value[1]), value[2]);
         const std::uint32_t met = (least >= Float(0.0f)).bits() & here;
         if (met != 0) {
@@ -241,6 +368,7 @@ class TileTracer {
             const std::uint32_t i = lowest_bit(rest);
             GRIDIRON_TRY(draw_pixel(i, column, row, near[i], (sure >> i & 1u) != 0));
           }
+          work_.charge_to(TileWork::kTinyPlace);
         }
         if (column < 2) {
           for (std::uint32_t k = 0; k < 3; ++k) value[k] = value[k] + function(kEdgeX + k);
@@ -250,33 +378,43 @@ class TileTracer {
       for (std::uint32_t k = 0; k < 3; ++k) left[k] = left[k] + function(kEdgeY + k);
       left[3] = left[3] + function(kNearY);
     }
-    (void)near_span;
     return Status::kOk;
   }
   [[nodiscard]] GRIDIRON_INLINE Status draw_pixel(std::uint32_t i, std::uint32_t column, std::uint32_t row, float near,
                                                   bool is_inside) {
+    work_.add(TileWork::kTinyPixel);
+    work_.charge_to(TileWork::kTinyPixel);
     const std::uint32_t box = memory_.boxes[i];
     const std::uint32_t x = (box & 0xFFu) + column, y = (box >> 8 & 0xFFu) + row;
-    const std::uint32_t block = y / kBlockWidth * Memory::kBlocksPerRow + x / kBlockWidth;
+    const std::uint32_t block = y / kBlockWidth * kRow + x / kBlockWidth;
     const std::uint32_t pixel = y % kBlockWidth * kBlockWidth + x % kBlockWidth;
     const float old = memory_.near[block][pixel], span = memory_.functions[kNearSpan][i];
     if (near + span < old) return Status::kOk;
-    if (is_inside && near > old + memory_.span[block]) [[likely]] {
-      memory_.near[block][pixel] = near;
-      memory_.id[block][pixel] = memory_.ids[i];
-      memory_.record[block][pixel] = memory_.records[i];
-      memory_.span[block] = span > memory_.span[block] ? span : memory_.span[block];
-      mark(block);
-      return Status::kOk;
-    }
-    return decide(block, 1u << pixel, memory_.records[i]);
+    if (!is_inside || !(near > old + memory_.span[block])) [[unlikely]]
+      return trusts_floats_ ? Status::kOk : decide(block, 1u << pixel, i);
+    memory_.near[block][pixel] = near;
+    memory_.id[block][pixel] = memory_.ids[i];
+    memory_.record[block][pixel] = memory_.records[i];
+    memory_.span[block] = span > memory_.span[block] ? span : memory_.span[block];
+    mark(block);
+    if (wants_facing_ || wants_distance_) take_planes(block, 1u << pixel, i);
+    return Status::kOk;
   }
 
-  // A triangle's functions, each in all lanes.
-  struct Functions {
+  // A triangle that is drawn block by block: its functions in all lanes.
+  struct Drawn {
     Float value[4], x[4], y[4], edge_span, near_span;
+    Float start[4], step[4];  ///< at the pixels of a block's first group; from one group to the next
+    float span;
+    std::uint32_t id, record, lane;
 
-    GRIDIRON_INLINE Functions(const Memory& memory, std::uint32_t i) {
+    GRIDIRON_INLINE Drawn(const Memory& memory, std::uint32_t i)
+        : edge_span(memory.functions[kEdgeSpan][i]),
+          near_span(memory.functions[kNearSpan][i]),
+          span(memory.functions[kNearSpan][i]),
+          id(memory.ids[i]),
+          record(memory.records[i]),
+          lane(i) {
       for (std::uint32_t k = 0; k < 3; ++k) {
         value[k] = Float(memory.functions[kEdgeValue + k][i]);
         x[k] = Float(memory.functions[kEdgeX + k][i]);
@@ -285,29 +423,18 @@ class TileTracer {
       value[3] = Float(memory.functions[kNearValue][i]);
       x[3] = Float(memory.functions[kNearX][i]);
       y[3] = Float(memory.functions[kNearY][i]);
-      edge_span = Float(memory.functions[kEdgeSpan][i]);
-      near_span = Float(memory.functions[kNearSpan][i]);
-    }
-  };
-  /// A triangle that is drawn block by block.
-  struct Drawn {
-    Functions f;
-    Float start[4], step[4];  ///< at the pixels of a block's first group; on to the next group
-    float span;
-    std::uint32_t id, record;
-
-    GRIDIRON_INLINE Drawn(const Memory& memory, std::uint32_t i)
-        : f(memory, i), span(memory.functions[kNearSpan][i]), id(memory.ids[i]), record(memory.records[i]) {
       const auto& places = kTilePlaces<Width>;
       const Float column = Float::load(places.column), row = Float::load(places.row);
       for (int k = 0; k < 4; ++k) {
-        start[k] = L::bounded_sum(f.x[k], column, L::bounded_sum(f.y[k], row, f.value[k]));
-        if constexpr (kGroups > 1) step[k] = f.y[k] * Float(float(kLanes) / kBlockWidth);
+        start[k] = L::bounded_sum(x[k], column, kLanes > kBlockWidth ? L::bounded_sum(y[k], row, value[k]) : value[k]);
+        if constexpr (kGroups > 1) step[k] = kLanes > kBlockWidth ? y[k] * Float(float(kLanes) / kBlockWidth) : y[k];
       }
     }
   };
 
   [[nodiscard]] GRIDIRON_INLINE Status draw_triangle(std::uint32_t i) {
+    work_.add(TileWork::kDrawn);
+    work_.charge_to(TileWork::kDrawn);
     const Drawn drawn(memory_, i);
     const std::uint32_t box = memory_.boxes[i];
     const std::uint32_t bx0 = (box & 0xFFu) / kBlockWidth, by0 = (box >> 8 & 0xFFu) / kBlockWidth,
@@ -317,7 +444,7 @@ class TileTracer {
     for (std::uint32_t by = by0; by <= by1; ++by) {
       Float x(0.0f);
       for (std::uint32_t bx = bx0; bx <= bx1; ++bx) {
-        GRIDIRON_TRY(draw_block<false>(drawn, by * Memory::kBlocksPerRow + bx, x, y));
+        GRIDIRON_TRY(draw_block<false>(drawn, by * kRow + bx, x, y));
         x = x + Float(kBlockWidth);
       }
       y = y + Float(kBlockWidth);
@@ -327,12 +454,10 @@ class TileTracer {
   static constexpr std::uint32_t kFewBlocks = kLanes == 16 ? 6 : 4;
 
   // Blocks are looked at in lanes: which the triangle may touch in front of what is there, which it covers.
-  [[nodiscard]] GRIDIRON_OUTLINE Status draw_many_blocks(const Drawn& drawn, std::uint32_t bx0, std::uint32_t by0,
+  [[nodiscard]] GRIDIRON_OUTLINE Status draw_many_blocks(const Drawn& f, std::uint32_t bx0, std::uint32_t by0,
                                                          std::uint32_t bx1, std::uint32_t by1) {
-    static constexpr std::uint32_t kRow = Memory::kBlocksPerRow;
     static constexpr float kLast = kBlockWidth - 1.0f;
     const auto& places = kTilePlaces<Width>;
-    const auto& f = drawn.f;
     Float most[4], least[3];
     for (int k = 0; k < 4; ++k) {
       const Float zero(0.0f), last(kLast);
@@ -341,21 +466,24 @@ class TileTracer {
     }
     most[3] = most[3] + f.near_span;
     const float left = static_cast<float>(bx0 * kBlockWidth), top = static_cast<float>(by0 * kBlockWidth);
-    const float right = static_cast<float>((bx1 - bx0) * kBlockWidth), bottom = static_cast<float>((by1 - by0) * kBlockWidth);
+    const float right = static_cast<float>((bx1 - bx0) * kBlockWidth),
+                bottom = static_cast<float>((by1 - by0) * kBlockWidth);
     const std::uint32_t begin = (by0 * kRow + (kLanes <= kRow ? bx0 : std::uint32_t{0})) & ~(kLanes - 1);
     for (std::uint32_t base = begin; base <= by1 * kRow + bx1; base += kLanes) {
       if constexpr (kLanes < kRow) {
         const std::uint32_t column = base % kRow;
         if (column > bx1 || column + (kLanes - 1) < bx0) continue;
       }
+      work_.add(TileWork::kBlockGroup);
+      work_.charge_to(TileWork::kBlockGroup);
       const Float x = Float::load(places.block_column + base) - Float(left);
       const Float y = Float::load(places.block_row + base) - Float(top);
       auto met = (x >= Float(0.0f)) & (x <= Float(right)) & (y >= Float(0.0f)) & (y <= Float(bottom));
       auto covered = met;
       for (int k = 0; k < 3; ++k) {
-        const Float value = L::bounded_sum(f.x[k], x, f.y[k] * y);
-        met = met & (value + most[k] >= Float(0.0f));
-        covered = covered & (value + least[k] > f.edge_span);
+        const Float along = L::bounded_sum(f.x[k], x, f.y[k] * y);
+        met = met & (along + most[k] >= Float(0.0f));
+        covered = covered & (along + least[k] > f.edge_span);
       }
       met = met & (L::bounded_sum(f.x[3], x, L::bounded_sum(f.y[3], y, most[3])) >= Float::load(memory_.least_near + base));
       const std::uint32_t all = met.bits();
@@ -363,12 +491,12 @@ class TileTracer {
       const std::uint32_t full = covered.bits() & all;
       for (std::uint32_t rest = all & ~full; rest != 0; rest &= rest - 1) {
         const std::uint32_t block = base + lowest_bit(rest);
-        GRIDIRON_TRY(draw_block<false>(drawn, block, Float(places.block_column[block] - left),
+        GRIDIRON_TRY(draw_block<false>(f, block, Float(places.block_column[block] - left),
                                        Float(places.block_row[block] - top)));
       }
       for (std::uint32_t rest = full; rest != 0; rest &= rest - 1) {
         const std::uint32_t block = base + lowest_bit(rest);
-        GRIDIRON_TRY(draw_block<true>(drawn, block, Float(places.block_column[block] - left),
+        GRIDIRON_TRY(draw_block<true>(f, block, Float(places.block_column[block] - left),
                                       Float(places.block_row[block] - top)));
       }
     }
@@ -377,11 +505,13 @@ class TileTracer {
 
   // @param x, y  of the block's first pixel from the triangle's offset. @tparam kCovered  the triangle surely covers it.
   template <bool kCovered>
-  [[nodiscard]] GRIDIRON_INLINE Status draw_block(const Drawn& drawn, std::uint32_t block, Float x, Float y) {
-    const auto& f = drawn.f;
+  [[nodiscard]] GRIDIRON_INLINE Status draw_block(const Drawn& f, std::uint32_t block, Float x, Float y) {
+    static constexpr TileWork kKind = kCovered ? TileWork::kCoveredBlock : TileWork::kBlock;
+    work_.add(kKind);
+    work_.charge_to(kKind);
     Float value[4];
     for (int k = kCovered ? 3 : 0; k < 4; ++k) {
-      value[k] = L::bounded_sum(f.x[k], x, L::bounded_sum(f.y[k], y, drawn.start[k]));
+      value[k] = L::bounded_sum(f.x[k], x, L::bounded_sum(f.y[k], y, f.start[k]));
     }
     const Float old_span(memory_.span[block]);
     std::uint32_t open = 0, taken = 0;
@@ -399,56 +529,113 @@ class TileTracer {
       sure = sure & met;
       const std::uint32_t sure_bits = sure.bits();
       open |= (met.bits() ^ sure_bits) << pixel;
-      taken |= sure_bits;
+      taken |= sure_bits << pixel;
       if (kGroups == 1 || sure_bits != 0) {
         L::select(sure, value[3], old).store(near);
-        L::store_where(sure, drawn.id, memory_.id[block] + pixel);
-        L::store_where(sure, drawn.record, memory_.record[block] + pixel);
+        L::store_where(sure, f.id, memory_.id[block] + pixel);
+        L::store_where(sure, f.record, memory_.record[block] + pixel);
       }
       if (group + 1 < kGroups) {
-        for (int k = kCovered ? 3 : 0; k < 4; ++k) value[k] = value[k] + drawn.step[k];
+        for (int k = kCovered ? 3 : 0; k < 4; ++k) value[k] = value[k] + f.step[k];
       }
     }
     if (taken != 0) {
-      memory_.span[block] = drawn.span > memory_.span[block] ? drawn.span : memory_.span[block];
+      memory_.span[block] = f.span > memory_.span[block] ? f.span : memory_.span[block];
       mark(block);
+      if (wants_facing_ || wants_distance_) take_planes(block, taken, f.lane);
     }
-    if (open != 0) [[unlikely]]
-      return decide(block, open, drawn.record);
+    if (open != 0 && !trusts_floats_) [[unlikely]]
+      return decide(block, open, f.lane);
     return Status::kOk;
+  }
+
+  // Fills the planes that shading and depth ask for, where the triangle of a lane was taken.
+  GRIDIRON_OUTLINE void take_planes(std::uint32_t block, std::uint32_t taken, std::uint32_t lane) {
+    work_.add(TileWork::kFacingBlock);
+    work_.charge_to(TileWork::kFacingBlock);
+    if (wants_facing_) {
+      const auto normal = [&](std::uint32_t axis) GRIDIRON_INLINE_LAMBDA {
+        return Float(reinterpret_cast<const float*>(memory_.queue[kNormal + axis])[lane]);
+      };
+      const Float normal_x = normal(0), normal_y = normal(1), normal_z = normal(2);
+      for (std::uint32_t i = 0; i < kBlockPixels; i += kLanes) {
+        const std::uint32_t here = taken >> i & L::kAllBits;
+        if (here == 0) continue;
+        Float dir[3];
+        directions(block, i, dir);
+        const Float facing = L::abs(normal_x * dir[0] + normal_y * dir[1] + normal_z * dir[2]);
+        float* const target = memory_.facing[block] + i;
+        L::select(L::mask_from_bits(here), facing, Float::load(target)).store(target);
+      }
+    }
+    if (wants_distance_) take_distances(block, taken, lane);
+  }
+  GRIDIRON_OUTLINE void take_distances(std::uint32_t block, std::uint32_t taken, std::uint32_t lane) {
+    VertexTriangle triangle;
+    queued_triangle(lane, triangle);
+    struct BlockRays : PacketDirections<kBlockPixels> {
+      float origin[3];
+    } rays;
+    for (int axis = 0; axis < 3; ++axis) rays.origin[axis] = frame_->eye[axis];
+    work_.add(Work::kHitSetup);
+    DistanceSetup setup;
+    set_up_distance(rays.origin, eye_->dir_max, triangle, setup);
+    for (std::uint32_t i = 0; i < kBlockPixels; i += kLanes) {
+      const std::uint32_t here = taken >> i & L::kAllBits;
+      if (here == 0) continue;
+      Float dir[3];
+      directions(block, i, dir);
+      for (int axis = 0; axis < 3; ++axis) dir[axis].store(rays.dir[axis] + i);
+      alignas(64) float found[kLanes];
+      distances_of<L>(rays, i, here, triangle, setup, found, work_);
+      float* const target = memory_.distance[block] + i;
+      L::select(L::mask_from_bits(here), Float::load(found), Float::load(target)).store(target);
+    }
+  }
+  GRIDIRON_INLINE void queued_triangle(std::uint32_t lane, VertexTriangle& triangle) const {
+    for (std::uint32_t i = 0; i < 9; ++i) {
+      triangle.v[i / 3][i % 3] = reinterpret_cast<const float*>(memory_.queue[kVertex + i])[lane];
+    }
+    triangle.triangle_id = memory_.ids[lane];
   }
 
   // The least of blocks that changed, and of the tile once every block has a hit everywhere.
   GRIDIRON_INLINE void update_least() {
-    for (std::uint32_t block = 0; block < Memory::kBlocks; ++block) {
-      if constexpr (Memory::kBlocks <= 64) {
-        if ((dirty_ >> block) == 0) break;
-        block += lowest_bit(dirty_ >> block);
-      } else {
-        if ((dirty_ >> (block % 64) & 1u) == 0) continue;
+    work_.charge_to(TileWork::kChangedBlock);
+    for (std::uint64_t rest = dirty_; rest != 0; rest &= rest - 1) {
+      for (std::uint32_t block = lowest_bit(rest); block < Memory::kBlocks; block += 64) {
+        work_.add(TileWork::kChangedBlock);
+        Float least = Float::load(memory_.near[block]);
+        for (std::uint32_t i = kLanes; i < kBlockPixels; i += kLanes) {
+          least = L::min(least, Float::load(memory_.near[block] + i));
+        }
+        const float found = L::horizontal_min(least);
+        if (memory_.least_near[block] <= floor_ && found > floor_) --empty_blocks_;
+        memory_.least_near[block] = found;
       }
-      Float least = Float::load(memory_.near[block]);
-      for (std::uint32_t i = kLanes; i < kBlockPixels; i += kLanes) least = L::min(least, Float::load(memory_.near[block] + i));
-      const float found = L::horizontal_min(least);
-      if (memory_.least_near[block] <= floor_ && found > floor_) --empty_blocks_;
-      memory_.least_near[block] = found;
     }
     if (empty_blocks_ != 0) return;
     Float least = Float::load(memory_.least_near);
-    for (std::uint32_t i = kLanes; i < Memory::kBlocks; i += kLanes) least = L::min(least, Float::load(memory_.least_near + i));
+    for (std::uint32_t i = kLanes; i < Memory::kBlocks; i += kLanes) {
+      least = L::min(least, Float::load(memory_.least_near + i));
+    }
     least_near_ = L::horizontal_min(least);
     far_ = least_near_ > 0x1p-100f ? (1.0f / least_near_) * (1.0f + 0x1p-9f) : kFloatMax;
   }
 
-  GRIDIRON_INLINE void clear() {
+  GRIDIRON_OUTLINE void clear() {
+    work_.add(TileWork::kClearedBlock, Memory::kBlocks);
+    work_.charge_to(TileWork::kClearedBlock);
     is_cleared_ = true;
     // What lies farther than t_far is no hit. Near it, exact distances decide.
     floor_ = frame_->t_far < 0x1p60f ? (1.0f / frame_->t_far) * (1.0f - 0x1p-18f) : 0.0f;
-    const Float none(floor_), span(floor_ * 0x1p-16f);
+    const Float none(floor_), span(floor_ * 0x1p-16f), zero(0.0f);
+    const Int no_id = Int::splat(kNoTriangle);
     for (std::uint32_t block = 0; block < Memory::kBlocks; ++block) {
       for (std::uint32_t i = 0; i < kBlockPixels; i += kLanes) {
         none.store(memory_.near[block] + i);
-        Int::splat(kNoTriangle).store(memory_.id[block] + i);
+        no_id.store(memory_.id[block] + i);
+        if (wants_facing_) zero.store(memory_.facing[block] + i);
       }
     }
     for (std::uint32_t i = 0; i < Memory::kBlocks; i += kLanes) {
@@ -456,12 +643,15 @@ class TileTracer {
       span.store(memory_.span + i);
     }
     empty_blocks_ = Memory::kBlocks;
-    if (columns_ == Width && rows_ == Width) return;
-    // Nothing is in front of pixels outside the picture.
+    if (columns_ != Width || rows_ != Width) clear_outside();
+  }
+  // Nothing lies in front of what is outside the picture, so that it hides the blocks and the tile like a hit.
+  GRIDIRON_RARE void clear_outside() {
     for (std::uint32_t i = 0; i < Width * Width; ++i) {
       const std::uint32_t x = i % Width, y = i / Width;
       if (x < columns_ && y < rows_) continue;
-      memory_.near[y / kBlockWidth * Memory::kBlocksPerRow + x / kBlockWidth][y % kBlockWidth * kBlockWidth + x % kBlockWidth] = kMostStoredNear;
+      const std::uint32_t block = y / kBlockWidth * kRow + x / kBlockWidth;
+      memory_.near[block][y % kBlockWidth * kBlockWidth + x % kBlockWidth] = kMostStoredNear;
     }
     dirty_ = ~std::uint64_t{0};
     update_least();
@@ -470,46 +660,63 @@ class TileTracer {
 
   // Pixels of a box, one by one.
   [[nodiscard]] GRIDIRON_RARE Status draw_carefully(std::uint32_t i) {
-    const std::uint32_t box = memory_.boxes[i], record = memory_.records[i];
-    return decide_box(box & 0xFFu, box >> 8 & 0xFFu, box >> 16 & 0xFFu, box >> 24, record);
+    const std::uint32_t box = memory_.boxes[i];
+    for (std::uint32_t y = box >> 8 & 0xFFu; y <= box >> 24; ++y) {
+      for (std::uint32_t x = box & 0xFFu; x <= (box >> 16 & 0xFFu); ++x) GRIDIRON_TRY(decide_pixel(x, y, i));
+    }
+    return Status::kOk;
   }
-  [[nodiscard]] GRIDIRON_RARE Status decide_box(std::uint32_t x0, std::uint32_t y0, std::uint32_t x1, std::uint32_t y1,
-                                                std::uint32_t record) {
-    for (std::uint32_t y = y0; y <= y1; ++y) {
-      for (std::uint32_t x = x0; x <= x1; ++x) {
-        const std::uint32_t block = y / kBlockWidth * Memory::kBlocksPerRow + x / kBlockWidth;
-        GRIDIRON_TRY(decide(block, 1u << (y % kBlockWidth * kBlockWidth + x % kBlockWidth), record));
+  // Without any bound, all pixels of all triangles.
+  [[nodiscard]] GRIDIRON_RARE Status decide_all(TreeChild child) {
+    const std::uint32_t first = child.first();
+    for (std::uint32_t i = 0; i < child.count(); ++i) {
+      VertexTriangle triangle;
+      GRIDIRON_TRY(source_.record(first + i, triangle));
+      memory_.records[0] = first + i;
+      memory_.ids[0] = triangle.triangle_id;
+      if (wants_distance_) {
+        for (std::uint32_t k = 0; k < 9; ++k) {
+          reinterpret_cast<float*>(memory_.queue[kVertex + k])[0] = triangle.v[k / 3][k % 3];
+        }
+      }
+      if (wants_facing_) {
+        float normal[3];
+        work_.add(Work::kNormalSetup);
+        set_up_normal(triangle, normal);
+        for (std::uint32_t k = 0; k < 3; ++k) reinterpret_cast<float*>(memory_.queue[kNormal + k])[0] = normal[k];
+      }
+      for (std::uint32_t y = 0; y < rows_; ++y) {
+        for (std::uint32_t x = 0; x < columns_; ++x) GRIDIRON_TRY(decide_pixel(x, y, 0));
       }
     }
     return Status::kOk;
   }
-  [[nodiscard]] GRIDIRON_RARE Status decide_all(const VertexTriangle*, TreeChild child) {
-    for (std::uint32_t i = 0; i < child.count(); ++i) {
-      GRIDIRON_TRY(decide_box(0, 0, columns_ - 1, rows_ - 1, child.first() + i));
-    }
-    if (dirty_ != 0) update_least();
-    return Status::kOk;
+  [[nodiscard]] GRIDIRON_RARE Status decide_pixel(std::uint32_t x, std::uint32_t y, std::uint32_t lane) {
+    const std::uint32_t block = y / kBlockWidth * kRow + x / kBlockWidth;
+    return decide(block, 1u << (y % kBlockWidth * kBlockWidth + x % kBlockWidth), lane);
   }
 
-  // Decides pixels of a block exactly: whether the triangle is hit, and whether before what was hit so far.
-  [[nodiscard]] GRIDIRON_RARE Status decide(std::uint32_t block, std::uint32_t pixels, std::uint32_t record) {
+  // Decides pixels of a block exactly: whether the triangle of a lane is hit, and whether before what was hit so far.
+  [[nodiscard]] GRIDIRON_RARE Status decide(std::uint32_t block, std::uint32_t pixels, std::uint32_t lane) {
+    work_.charge_to(TileWork::kOpenPixel);
+    const std::uint32_t record = memory_.records[lane];
     VertexTriangle triangle;
     GRIDIRON_TRY(source_.record(record, triangle));
+    BatchRay ray{};
+    for (int axis = 0; axis < 3; ++axis) ray.origin[axis] = frame_->eye[axis];
     for (; pixels != 0; pixels &= pixels - 1) {
       const std::uint32_t pixel = lowest_bit(pixels);
-      const std::uint32_t column = block % Memory::kBlocksPerRow * kBlockWidth + pixel % kBlockWidth;
-      const std::uint32_t row = block / Memory::kBlocksPerRow * kBlockWidth + pixel / kBlockWidth;
+      const std::uint32_t column = block % kRow * kBlockWidth + pixel % kBlockWidth;
+      const std::uint32_t row = block / kRow * kBlockWidth + pixel / kBlockWidth;
       if (column >= columns_ || row >= rows_) continue;
+      work_.add(TileWork::kOpenPixel);
       const float x = (static_cast<float>(view_.left) + view_.dx) + static_cast<float>(column);
       const float y = (static_cast<float>(view_.top) + view_.dy) + static_cast<float>(row);
-      BatchRay ray{};
-      float dir_max = 0.0f;
+      ray.dir_max = 0.0f;
       for (int axis = 0; axis < 3; ++axis) {
-        ray.origin[axis] = frame_->eye[axis];
         ray.dir[axis] = pixel_direction(*frame_, axis, x, y);
-        dir_max = magnitude(ray.dir[axis]) > dir_max ? magnitude(ray.dir[axis]) : dir_max;
+        ray.dir_max = magnitude(ray.dir[axis]) > ray.dir_max ? magnitude(ray.dir[axis]) : ray.dir_max;
       }
-      ray.dir_max = dir_max;
       if (!passes_through(ray, triangle, work_)) continue;
       const float t = ray_distance(ray, triangle, work_);
       if (!(t > 0.0f) || !(t <= frame_->t_far)) continue;
@@ -518,15 +725,23 @@ class TileTracer {
         VertexTriangle old;
         GRIDIRON_TRY(source_.record(memory_.record[block][pixel], old));
         const float old_t = ray_distance(ray, old, work_);
-        if (old_t < t || (old_t == t && old_id < triangle.triangle_id)) continue;
+        const bool has_lower_id = triangle.triangle_id < old_id;
+        if (old_t < t) continue;
+        if (old_t == t) {
+          const bool breaks_ties = frame_->accuracy == static_cast<std::uint32_t>(Accuracy::kExact);
+          const bool is_first =
+              breaks_ties ? comes_first_exactly(ray.origin, ray.dir, triangle, old, has_lower_id, work_) : has_lower_id;
+          if (!is_first) continue;
+        }
       }
       const float near = (1.0f / t) * (1.0f - 0x1p-18f);
-      memory_.near[block][pixel] = near < kMostStoredNear ? near : kMostStoredNear;
+      const float stored = near < kMostStoredNear ? near : kMostStoredNear, span = stored * 0x1p-16f;
+      memory_.near[block][pixel] = stored;
       memory_.id[block][pixel] = triangle.triangle_id;
       memory_.record[block][pixel] = record;
-      const float span = memory_.near[block][pixel] * 0x1p-16f;
       memory_.span[block] = span > memory_.span[block] ? span : memory_.span[block];
-      mark(block);
+      if (eye_->is_trusted) mark(block);
+      if (wants_facing_ || wants_distance_) take_planes(block, 1u << pixel, lane);
     }
     return Status::kOk;
   }
@@ -540,10 +755,10 @@ class TileTracer {
   TileProjection tile_{};
   std::uint32_t columns_ = 0, rows_ = 0;
   float last_x_ = 0.0f, last_y_ = 0.0f;
-  std::uint32_t queued_ = 0, empty_blocks_ = 0;
+  std::uint32_t top_ = 0, queued_ = 0, empty_blocks_ = 0;
   std::uint64_t dirty_ = 0;
   float least_near_ = 0.0f, far_ = 0.0f, floor_ = 0.0f;
-  bool is_cleared_ = false;
+  bool is_cleared_ = false, wants_facing_ = false, wants_distance_ = false, trusts_floats_ = false;
 };
 
 }  // namespace gridiron

@@ -46,21 +46,21 @@ inline constexpr float kSurelyFarther = 1.0f - 0x1p-10f;
 template <class L>
 struct LeafCorners {
   using Float = typename L::Float;
+  Float vertices[3][3];  ///< corner, axis; world space
+  Float id;              ///< pattern of triangle_id
   Float x[3], y[3], w[3], error;
-  Float id;  ///< pattern of triangle_id
 
   /// @param triangles  L::kCount of them; a shorter group repeats one.
   /// @tparam Width  of the tile.
   template <std::uint32_t Width>
   GRIDIRON_INLINE void project(const TileProjection& tile, const LeafBase& leaf, const VertexTriangle* triangles,
                                std::uint32_t count) {
-    Float v[3][3];
-    load(triangles, count, v);
+    load(triangles, count);
     Float most(0.0f);
     for (int corner = 0; corner < 3; ++corner) {
       Float q[3];
       for (int axis = 0; axis < 3; ++axis) {
-        q[axis] = v[corner][axis] - Float(leaf.place[axis]);
+        q[axis] = vertices[corner][axis] - Float(leaf.place[axis]);
         most = L::larger_size(most, q[axis]);
       }
       const auto along = [&](int row) GRIDIRON_INLINE_LAMBDA {
@@ -110,16 +110,45 @@ struct LeafCorners {
   }
 
  private:
-  GRIDIRON_INLINE void load(const VertexTriangle* triangles, std::uint32_t count, Float (&v)[3][3]) {
+  GRIDIRON_INLINE void load(const VertexTriangle* triangles, std::uint32_t count) {
     const VertexTriangle* group[L::kCount];
     for (std::uint32_t i = 0; i < L::kCount; ++i) group[i] = triangles + (i < count ? i : count - 1);
     const TransposedWords<L> low(group, 0), middle(group, 4), high(group, 8);
-    v[0][0] = low.word[0], v[0][1] = low.word[1], v[0][2] = low.word[2];
-    v[1][0] = low.word[3], v[1][1] = middle.word[0], v[1][2] = middle.word[1];
-    v[2][0] = middle.word[2], v[2][1] = middle.word[3], v[2][2] = high.word[0];
+    for (int axis = 0; axis < 3; ++axis) vertices[0][axis] = low.word[axis];
+    vertices[1][0] = low.word[3];
+    vertices[1][1] = middle.word[0];
+    vertices[1][2] = middle.word[1];
+    vertices[2][0] = middle.word[2];
+    vertices[2][1] = middle.word[3];
+    vertices[2][2] = high.word[0];
     id = high.word[3];
   }
 };
+
+/// The float test of set_up_normal(), with the same operations, for L::kCount triangles.
+/// @param vertices  corner, axis. @returns the lanes for which it is valid.
+template <class L>
+[[nodiscard]] GRIDIRON_INLINE std::uint32_t float_normals(const typename L::Float (&vertices)[3][3],
+                                                          typename L::Float (&normal)[3]) {
+  using Float = typename L::Float;
+  Float e1[3], e2[3], size[3];
+  for (int i = 0; i < 3; ++i) {
+    e1[i] = vertices[1][i] - vertices[0][i];
+    e2[i] = vertices[2][i] - vertices[0][i];
+  }
+  for (int i = 0; i < 3; ++i) {
+    const int j = i == 2 ? 0 : i + 1, k = j == 2 ? 0 : j + 1;
+    const Float first = e1[j] * e2[k], second = e1[k] * e2[j];
+    normal[i] = first - second;
+    size[i] = L::abs(first) + L::abs(second);
+  }
+  const Float squared = normal[0] * normal[0] + normal[1] * normal[1] + normal[2] * normal[2];
+  const Float sum = size[0] + size[1] + size[2];
+  const auto is_valid = (sum > Float(0x1p-40f)) & (sum < Float(0x1p40f)) & (squared > Float(0x1p-8f) * (sum * sum));
+  const Float scale = Float(1.0f) / L::square_root(squared);
+  for (int i = 0; i < 3; ++i) normal[i] = normal[i] * scale;
+  return is_valid.bits();
+}
 
 // With e = kUnit, corners relative to an offset within the tile, g the error of their coordinates there and G = P + R W,
 // where P and W are the largest |column w|, |row w| and |w| and R the farthest pixel: an edge's function is a product of
