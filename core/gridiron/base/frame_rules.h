@@ -85,6 +85,15 @@ template <class Limits>
   return {};
 }
 
+/// @returns the first fault in what the tree needs for eye rays. Precondition: find_picture_fault finds none.
+template <class Limits>
+[[nodiscard, gnu::always_inline]] constexpr FrameFault find_tree_fault(const FrameHead& frame) {
+  GRIDIRON_HEAD_RULE(frame.image_address != 0, Status::kBadFrame, image_address);
+  GRIDIRON_HEAD_RULE(frame.tree_address != 0, Status::kBadFrame, tree_address);
+  GRIDIRON_HEAD_RULE(is_in_range(frame.fetch_depth, 1, Limits::kMaxFetchDepth), Limits::kBeyond, fetch_depth);
+  return {};
+}
+
 /// @returns the first fault in the grid's part of a frame. Precondition: find_picture_fault finds none.
 template <class Limits>
 [[nodiscard, gnu::always_inline]] constexpr FrameFault find_grid_fault(const FrameRecord& frame) {

@@ -63,7 +63,7 @@ struct ImageHead {
   Sections sections;
   GridRecord grid{};
   EffectsRecord effects{};  ///< all zero if the image has none
-  TreeRecord tree{};        ///< all zero if the image has no effects
+  TreeRecord tree{};        ///< all zero if the image has no tree
 };
 
 /// @param available  bytes of memory from the image's first on.
@@ -283,21 +283,21 @@ constexpr bool for_each_tree_part(const TreeRecord& tree, Body&& body) {
                           offsetof(TreeRecord, nodes_offset_bytes), "tree.nodes_offset_bytes"});
 }
 
-/// Reads the tree's record of an image with effects, and requires exactly the sections that it counts, at the places
-/// that it names. Other images have none.
+/// Reads the tree's record, and requires exactly the sections that it counts, at the places that it names. An image
+/// with effects has one, another may.
 template <class Checker>
 [[nodiscard]] bool check_tree_sizes(Checker& checker, ImageHead& head) {
   const Sections& sections = head.sections;
-  if (!sections.has(SectionKind::kEffects)) {
-    constexpr SectionKind kKinds[] = {SectionKind::kTree, SectionKind::kTreeNodes, SectionKind::kTreeTriangles};
+  const ImageHeader& header = head.header;
+  if (!sections.has(SectionKind::kTree)) {
+    GRIDIRON_RULE(!sections.has(SectionKind::kEffects), 0, header, section_count);
+    constexpr SectionKind kKinds[] = {SectionKind::kTreeNodes, SectionKind::kTreeTriangles};
     for (const SectionKind kind : kKinds) {
       const SectionEntry& section = sections.entry(kind);
       GRIDIRON_RULE(!sections.has(kind), sections.entry_offset(kind), section, kind);
     }
     return true;
   }
-  const ImageHeader& header = head.header;
-  GRIDIRON_RULE(sections.has(SectionKind::kTree), 0, header, section_count);
   if (!check_elements(checker, sections, SectionKind::kTree, sizeof(TreeRecord), 1)) return false;
   const std::uint64_t base = sections.entry(SectionKind::kTree).offset_bytes;
   const TreeRecord& tree = head.tree = checker.template read<TreeRecord>(base);

@@ -239,6 +239,10 @@ struct Lanes {
   [[nodiscard]] static GRIDIRON_INLINE Int bits_of(Float a) {
     return {reinterpret_cast<IntVector>(a.v)};
   }
+  /// The floats that words are.
+  [[nodiscard]] static GRIDIRON_INLINE Float floats_of(Int a) {
+    return Float(reinterpret_cast<FloatVector>(a.v));
+  }
   [[nodiscard]] static GRIDIRON_INLINE Float to_float(Int a) {
     return Float(__builtin_convertvector(a.v, FloatVector));
   }

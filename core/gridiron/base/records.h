@@ -198,6 +198,7 @@ inline constexpr std::uint32_t kLeastInputCommands = 4;
 /// Which engine traces the rays of a frame. sim/engine_work.h has a row for each.
 enum class EngineId : unsigned {
   kGrid = 1,  ///< GridEngine
+  kTree = 2,  ///< TileEngine
   kEnd
 };
 inline constexpr std::uint32_t kFirstOtherEngine = 1000;  ///< from here on, engines outside core
@@ -213,7 +214,7 @@ struct FrameHead {
   std::uint32_t shading;               ///< Shading
   std::uint32_t engine_id;             ///< EngineId: whose record follows
   std::uint32_t output_depth;          ///< tile buffers in rotation: 1 single, 2 double
-  std::uint32_t fetch_depth;           ///< children of a tree's node under way at once; of Shading::kScene, else 0
+  std::uint32_t fetch_depth;           ///< children of a tree's node under way at once; of kTree and kScene, else 0
   std::uint32_t background_rgba;       ///< 0xAABBGGRR
   float t_far;                         ///< a hit has 0 < t <= t_far; in units of the ray's direction
   std::uint32_t reserved0[2];
@@ -229,8 +230,8 @@ struct FrameHead {
   std::uint64_t depth_address;         ///< float distance along the unit direction, kFloatMax where nothing; 0: off
   std::uint64_t id_address;            ///< triangle_id, kNoTriangle where nothing; 0: off
   std::uint64_t effects_address;       ///< EffectsRecord, of Shading::kScene; else 0
-  std::uint64_t image_address;         ///< base of the offsets of effects and tree; else 0
-  std::uint64_t tree_address;          ///< TreeRecord, of Shading::kScene; else 0
+  std::uint64_t image_address;         ///< base of the offsets of effects and tree; of kTree and kScene, else 0
+  std::uint64_t tree_address;          ///< TreeRecord, of EngineId::kTree and Shading::kScene; else 0
   std::uint32_t reserved1[8];
 };
 static_assert(sizeof(FrameHead) == 192);
@@ -256,7 +257,12 @@ struct GridFrame {
 };
 static_assert(sizeof(GridFrame) == 192);
 
-using FrameRecord = Frame<GridFrame>;  ///< of the grid
+using FrameRecord = Frame<GridFrame>;  ///< of the grid; in main memory every frame is as long
+
+/// The tree's part of a frame: what it needs stands in the head.
+struct TreeFrame {
+  std::uint32_t reserved[4];
+};
 static_assert(sizeof(FrameRecord) == 384);
 
 inline constexpr std::uint32_t kNoTriangle = 0xFFFFFFFFu;  ///< id where a ray hits nothing

@@ -51,6 +51,27 @@ bool stays_in_range(const FrameSettings& settings, const GridRecord& grid) {
   return true;
 }
 
+// Fills the grid's part. Errors: of find_grid_fault; kBadFrame out of range.
+Status add_grid(const FrameSettings& settings, const SceneImageView& image, MainAddress image_address,
+                FrameRecord& frame) {
+  frame.engine.grid = image.grid;
+  frame.engine.macro_table_address = image_address.value + image.macro_table_offset_bytes;
+  frame.engine.cell_blocks_address = image_address.value + image.cell_blocks_offset_bytes;
+  frame.engine.triangles_address = image_address.value + image.triangles_offset_bytes;
+  frame.engine.macro_depth = settings.macro_depth;
+  frame.engine.triangle_depth = settings.triangle_depth;
+  frame.engine.techniques = settings.techniques;
+  GRIDIRON_TRY(find_grid_fault<AnyLayout>(frame).status);
+  return stays_in_range(settings, image.grid) ? Status::kOk : Status::kBadFrame;
+}
+
+// Says where the tree lies.
+void add_tree(const FrameSettings& settings, const SceneImageView& image, MainAddress image_address, FrameHead& head) {
+  head.image_address = image_address.value;
+  head.tree_address = image_address.value + image.tree_offset_bytes;
+  head.fetch_depth = settings.fetch_depth;
+}
+
 }  // namespace
 
 std::uint64_t output_plane_bytes(std::uint32_t width, std::uint32_t height, std::uint32_t tile_width) {
@@ -116,22 +137,20 @@ Status make_frame_record(const FrameSettings& settings, const SceneImageView& im
   FrameRecord made{};
   GRIDIRON_TRY(make_frame_head(settings, made));
   if (!is_multiple(image_address, kLineBytes)) return Status::kTransferAlignment;
-  made.engine_id = static_cast<std::uint32_t>(EngineId::kGrid);
-  made.engine.grid = image.grid;
-  made.engine.macro_table_address = image_address.value + image.macro_table_offset_bytes;
-  made.engine.cell_blocks_address = image_address.value + image.cell_blocks_offset_bytes;
-  made.engine.triangles_address = image_address.value + image.triangles_offset_bytes;
-  made.engine.macro_depth = settings.macro_depth;
-  made.engine.triangle_depth = settings.triangle_depth;
-  made.engine.techniques = settings.techniques;
-  GRIDIRON_TRY(find_grid_fault<AnyLayout>(made).status);
-  if (!stays_in_range(settings, image.grid)) return Status::kBadFrame;
+  made.engine_id = static_cast<std::uint32_t>(settings.engine);
+  if (settings.engine == EngineId::kGrid) {
+    GRIDIRON_TRY(add_grid(settings, image, image_address, made));
+  } else if (settings.engine != EngineId::kTree) {
+    return Status::kUnsupportedFrame;
+  } else {
+    if (!image.has_tree || !reads_format(made.accuracy, image.tree.triangle_format)) return Status::kUnsupportedImage;
+    add_tree(settings, image, image_address, made);
+    GRIDIRON_TRY(find_tree_fault<AnyLayout>(made).status);
+  }
   if (settings.shading == Shading::kScene) {
     if (!image.has_effects || !accuracy_traits(settings.accuracy).has_scene_shading) return Status::kUnsupportedImage;
     made.effects_address = image_address.value + image.effects_offset_bytes;
-    made.image_address = image_address.value;
-    made.tree_address = image_address.value + image.tree_offset_bytes;
-    made.fetch_depth = settings.fetch_depth;
+    add_tree(settings, image, image_address, made);
     GRIDIRON_TRY(find_scene_fault<AnyLayout>(made).status);
   }
   frame = made;

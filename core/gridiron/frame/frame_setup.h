@@ -41,14 +41,17 @@ struct FrameSettings {
   /// An enumerator [kUnsupportedFrame]; kScene: of images with effects, and not with Accuracy::kPaper
   /// [kUnsupportedImage].
   Shading shading = Shading::kSimple;
+  /// What traces eye rays [kUnsupportedFrame]. kTree: of images with a tree in the accuracy's triangle format
+  /// [kUnsupportedImage].
+  EngineId engine = EngineId::kGrid;
   /// TechniqueBits; they change the amount of work, not the picture.
   std::uint32_t techniques = kUseMailbox | kUseCornerCulling | kUseEmptySkip;
   // Depths: from 1 [kBadFrame] to the layout's limit.
   std::uint32_t output_depth = 2;    ///< tile buffers in rotation, at most kMaxOutputDepth
   std::uint32_t macro_depth = 2;     ///< cell blocks in rotation, at most kMaxMacroDepth
   std::uint32_t triangle_depth = 2;  ///< triangle buffers in rotation, at most kMaxTriangleDepth
-  /// Children of a tree's node, or records for shading, under way at once: at most the ray engine's kMaxDepth. Only for
-  /// Shading::kScene.
+  /// Children of a tree's node, or records for shading, under way at once: at most the engines' kMaxDepth. Only for
+  /// EngineId::kTree and Shading::kScene.
   std::uint32_t fetch_depth = 2;
   std::uint32_t background_rgba = 0xFF000000u;  ///< 0xAABBGGRR, where nothing is hit
   /// Hits farther away do not count. Above 0 [kBadFrame], in units of the ray's direction, which has length 1 in the
@@ -73,14 +76,14 @@ struct FrameSettings {
 /// Errors: kBadFrame, kUnsupportedFrame, kTransferAlignment, as below; `frame` is unchanged then.
 [[nodiscard]] Status make_frame_head(const FrameSettings& settings, FrameHead& frame);
 
-/// Fills `frame` for the grid. Its directions have length between 1 and a few units, whatever the scale of the camera.
+/// Fills `frame`. Its directions have length between 1 and a few units, whatever the scale of the camera.
 ///
 /// @param image          as open_scene_image() opened it.
 /// @param image_address  where `image` lies in main memory: a multiple of kLineBytes, of Shading::kScene not 0.
 /// @param frame          to be copied to a multiple of kLineBytes in main memory; unchanged on an error.
 /// Errors: kBadFrame (sizes, t_far, depths; no plane of colours; image at 0 with Shading::kScene; camera degenerate,
 /// not finite or so far away that its place in cells exceeds kCellSpaceLimit), kTransferAlignment (a plane or the image
-/// is misaligned), kUnsupportedFrame (unknown accuracy or shading), kUnsupportedImage (the accuracy requires another
+/// is misaligned), kUnsupportedFrame (unknown accuracy, shading or engine), kUnsupportedImage (the accuracy requires another
 /// triangle format; Shading::kScene requires an image with effects, and an accuracy other than kPaper). The size of the
 /// memory for planes is not checked here.
 [[nodiscard]] Status make_frame_record(const FrameSettings& settings, const SceneImageView& image,

@@ -22,8 +22,9 @@ struct SceneImageView {
   bool has_effects;                        ///< the scene has lights and materials
   EffectsRecord effects;                   ///< all zero where the image has none
   std::uint64_t effects_offset_bytes;      ///< of that record; 0 where the image has none
-  TreeRecord tree;                         ///< of the same images; else all zero
-  std::uint64_t tree_offset_bytes;         ///< of that record; else 0
+  bool has_tree;                           ///< true with effects
+  TreeRecord tree;                         ///< all zero where the image has none
+  std::uint64_t tree_offset_bytes;         ///< of that record; 0 where the image has none
 };
 
 /// The view of an image whose head is right.
@@ -37,6 +38,7 @@ struct SceneImageView {
           head.sections.has(SectionKind::kEffects),
           head.effects,
           offset_of(SectionKind::kEffects),
+          head.sections.has(SectionKind::kTree),
           head.tree,
           offset_of(SectionKind::kTree)};
 }

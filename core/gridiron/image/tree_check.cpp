@@ -8,8 +8,9 @@ namespace {
 
 // --- Triangles ------------------------------------------------------------------------------------------------------
 
-// A record has the corners of the surface with its id, which says where the record stands. So no two records have one
-// id, and as there are as many as triangles that are kept, each of these is there.
+// With effects a record has the corners of the surface with its id, which says where the record stands. So no two records
+// have one id, and as there are as many as triangles that are kept, each of these is there. Without, its corners are
+// numbers within the bounds.
 bool check_tree_triangles(ImageChecker& checker, const SceneImageView& view) {
   const TreeRecord& tree = view.tree;
   const std::uint64_t id_offset = tree.triangle_bytes - sizeof(std::uint32_t);
@@ -26,6 +27,15 @@ bool check_tree_triangles(ImageChecker& checker, const SceneImageView& view) {
     } else {
       const VertexTriangle& tree_triangle = triangle;
       GRIDIRON_REQUIRE(all_zero(tree_triangle.reserved, 2), base, tree_triangle, reserved);
+    }
+    if (!view.has_effects) {
+      bool good = true;
+      for (int k = 0; k < 9; ++k) {
+        const float value = triangle.v[k / 3][k % 3];
+        good = good && value >= tree.bounds_minimum[k % 3] && value <= tree.bounds_maximum[k % 3];
+      }
+      if (!checker.require(good, base, "tree_triangle.v")) return false;
+      continue;
     }
     const std::uint64_t surface_base = view.effects.surfaces_offset_bytes + std::uint64_t{id} * sizeof(SurfaceRecord);
     const auto surface = checker.read<SurfaceRecord>(surface_base);
@@ -171,7 +181,7 @@ bool check_runs_and_boxes(ImageChecker& checker, const SceneImageView& view) {
 }  // namespace
 
 bool check_tree(ImageChecker& checker, const SceneImageView& view) {
-  if (!view.has_effects) return true;
+  if (!view.has_tree) return true;
   const TreeRecord& tree = view.tree;
   const GridRecord& grid = view.grid;
   const std::uint64_t base = view.tree_offset_bytes;

@@ -172,8 +172,11 @@ class TileRenderer {
   }
 
   [[nodiscard]] static constexpr std::uint32_t most_fetch_depth() {
-    if constexpr (kHasEffects) return Layout::RayEngine::template kMaxDepth<Layout>;
-    return 0;
+    if constexpr (kHasEffects) {
+      return Layout::RayEngine::template kMaxDepth<Layout>;
+    } else {
+      return 0;
+    }
   }
   // Limits of this store.
   struct Limits : Layout {

@@ -8,6 +8,7 @@
 #include <gridiron/dma/tags.h>
 #include <gridiron/engine/engine.h>
 #include <gridiron/engine/grid/grid_engine.h>
+#include <gridiron/engine/tree/tile_engine.h>
 #include <gridiron/engine/tree/tree_engine.h>
 #include <gridiron/platform/contract.h>
 #include <gridiron/shade/effect_store.h>
@@ -113,6 +114,26 @@ struct StoreLayout512K {
   static constexpr std::uint32_t kMaxTriangleDepth = 15;
   static constexpr std::uint32_t kMaxOutputDepth = 2;
   /// @endcond
+};
+
+/// Sizes of a 256 KB core that traces eye rays through the tree: no packets.
+/// @tparam TileWidthV  pixels along a tile's edge: 32, 64.
+template <std::uint32_t TileWidthV = 64>
+struct TreeLayout256K {
+  /// @cond
+  using Engine = TileEngine;
+  static constexpr std::uint32_t kEffects = 0;
+  static constexpr std::uint32_t kArenaBytes = 256 * 1024;
+  static constexpr std::uint32_t kCodeBudgetBytes = 54 * 1024;
+  static constexpr std::uint32_t kStackBudgetBytes = 8 * 1024;
+  static constexpr std::uint32_t kTileWidth = TileWidthV;
+  static constexpr std::uint32_t kPacketWidth = 0;
+  static constexpr std::uint32_t kMaxOutputDepth = 2;
+  /// @endcond
+  static constexpr std::uint32_t kEyeTileWidth = 32;  ///< pixels along the edge of what is traced at once
+  static constexpr std::uint32_t kEyeTurns = 2;       ///< of these, how many take turns
+  static constexpr std::uint32_t kEyeSlots = 32;      ///< nodes and leaves at hand
+  static constexpr std::uint32_t kLeafTriangles = 8;  ///< of a leaf, at most
 };
 
 /// Sizes of a 256 KB core that renders effects.
@@ -252,6 +273,7 @@ static_assert(kFitsArena<StoreLayout64K<4>> && kFitsArena<StoreLayout64K<8>> && 
 static_assert(kFitsArena<StoreLayout128K<8>> && kFitsArena<StoreLayout128K<32>>);
 static_assert(kFitsArena<EffectLayout256K<kAllEffects, 8>> && kFitsArena<EffectLayout256K<kAllEffects, 32>> &&
               kFitsArena<EffectLayout64K<kAllEffects>>);
+static_assert(kFitsArena<TreeLayout256K<32>> && kFitsArena<TreeLayout256K<64>>);
 static_assert(kFitsArena<StoreLayout512K<8>> && kFitsArena<StoreLayout512K<32>> && kFitsArena<StoreLayout512K<8, 64>> &&
               kFitsArena<StoreLayout512K<32, 64>>);
 

@@ -14,7 +14,7 @@ struct LayoutList {};
 
 /// In every mode and for every lane count.
 using CommonLayouts = LayoutList<StoreLayout64K<4>, StoreLayout64K<8>, StoreLayout64K<16>, StoreLayout256K<4>,
-                                 StoreLayout256K<8>, StoreLayout256K<16>, StoreLayout256K<32>>;
+                                 StoreLayout256K<8>, StoreLayout256K<16>, StoreLayout256K<32>, TreeLayout256K<64>>;
 
 /// In Mode::kChecked with 4 lanes only, for sweeps of the store's and the tile's size.
 using SweepLayouts =

@@ -7,6 +7,8 @@
 #include <gridiron/base/records.h>
 #include <gridiron/base/work_counters.h>
 #include <gridiron/engine/grid/grid_work.h>
+#include <gridiron/engine/tree/tile_work.h>
+#include <gridiron/sim/tile_costs.h>
 #include <gridiron/sim/wait_levels.h>
 
 #include <array>
@@ -154,8 +156,36 @@ inline constexpr EngineWork kGridEngine =
                                       .prices = {},
                                       .wait_levels = {"tile", "macrocell", "triangle", "setup"}});
 
+// clang-format off
+/// The kinds of tiles of eye rays through the tree.
+inline constexpr WorkKind kTileWorkKinds[] = {
+    {TileWork::kView, "tile_view", true}, {TileWork::kClearedBlock, "cleared_block", true},
+    {TileWork::kBoxGroup, "box_group"}, {TileWork::kChild, "child"}, {TileWork::kLeaf, "leaf"},
+    {TileWork::kCornerGroup, "corner_group"}, {TileWork::kKeptGroup, "kept_group"},
+    {TileWork::kNormalGroup, "normal_group"}, {TileWork::kFunctionGroup, "function_group"},
+    {TileWork::kTinyPlace, "tiny_place"}, {TileWork::kTinyPixel, "tiny_pixel"}, {TileWork::kDrawn, "drawn"},
+    {TileWork::kBlockGroup, "block_group"}, {TileWork::kBlock, "block"}, {TileWork::kCoveredBlock, "covered_block"},
+    {TileWork::kFacingBlock, "facing_block"}, {TileWork::kOpenPixel, "open_pixel"},
+    {TileWork::kChangedBlock, "changed_block"}};
+// clang-format on
+
+inline constexpr auto kTilePrices = [] {
+  static_assert(kTileCosts.size() == std::size(kTileWorkKinds));
+  std::array<WorkPrice, kTileCosts.size()> prices{};
+  for (std::size_t i = 0; i < prices.size(); ++i) prices[i] = {kTileWorkKinds[i].id, kTileCosts[i].cycles};
+  return prices;
+}();
+
+/// The tree. Its prices are those of a core of two pipes whatever the machine.
+inline constexpr EngineWork kTreeEngine =
+    EngineWork::make(TileWork::kEnd, {.id = static_cast<std::uint32_t>(EngineId::kTree),
+                                      .name = "tree",
+                                      .kinds = kTileWorkKinds,
+                                      .prices = kTilePrices,
+                                      .wait_levels = {"tile", "node", "leaf", "setup"}});
+
 /// The engines of core, by EngineId. Engines outside core, such as the cached BVH, have their description alone.
-inline constexpr std::array kCoreEngines = {&kGridEngine};
+inline constexpr std::array kCoreEngines = {&kGridEngine, &kTreeEngine};
 static_assert(
     [] {
       for (std::size_t i = 0; i < kCoreEngines.size(); ++i) {

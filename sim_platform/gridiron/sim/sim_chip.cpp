@@ -95,33 +95,72 @@ enum class LayoutGroup : std::uint8_t { kCommon, kSweep, kEffects, kNone };
   return has_effects ? gridiron_sim_render_plain_effects_lanes4 : gridiron_sim_render_plain_lanes4;
 }
 
-/// Whether everything that a frame with effects names lies in memory. The image's header says how many surfaces and
-/// how many bytes there are.
-[[nodiscard]] bool are_effects_in_memory(SimMemory& memory, const FrameRecord& frame) {
-  EffectsRecord effects;
-  TreeRecord tree;
-  ImageHeader image;
-  const auto read = [&](void* record, std::uint64_t address, std::size_t byte_count) {
-    const std::span<std::byte> bytes = memory.bytes_at(MainAddress{address}, byte_count);
-    if (!bytes.empty()) std::memcpy(record, bytes.data(), byte_count);
+/// Reads records of main memory.
+struct RecordReader {
+  SimMemory& memory;
+
+  template <class Record>
+  [[nodiscard]] bool read(Record& record, std::uint64_t address) const {
+    const std::span<std::byte> bytes = memory.bytes_at(MainAddress{address}, sizeof record);
+    if (!bytes.empty()) std::memcpy(&record, bytes.data(), sizeof record);
     return !bytes.empty();
-  };
-  if (!read(&effects, frame.effects_address, sizeof effects) || !read(&tree, frame.tree_address, sizeof tree) ||
-      !read(&image, frame.image_address, sizeof image) || image.magic != kImageMagic ||
-      memory.bytes_at(MainAddress{frame.image_address}, image.image_bytes).empty()) {
+  }
+};
+
+/// Whether a part of an image lies in it. Images and their sections consist of whole lines, so cores may read whole
+/// lines.
+[[nodiscard]] bool lies_in_image(const ImageHeader& image, const CountedPart& part) {
+  const std::uint64_t bytes = round_up<std::uint64_t>(part.element_count * part.element_bytes, kLineBytes);
+  return part.offset_bytes <= image.image_bytes && bytes <= image.image_bytes - part.offset_bytes;
+}
+
+/// Whether the image of a frame with a tree, and the tree, lie in memory. The image's header says how many bytes there
+/// are.
+[[nodiscard]] bool is_tree_in_memory(SimMemory& memory, const FrameRecord& frame, ImageHeader& image) {
+  const RecordReader reader{memory};
+  TreeRecord tree;
+  if (!reader.read(tree, frame.tree_address) || !reader.read(image, frame.image_address) ||
+      image.magic != kImageMagic || memory.bytes_at(MainAddress{frame.image_address}, image.image_bytes).empty()) {
     return false;
   }
-  // Images and their sections consist of whole lines, so cores may read whole lines.
-  const auto lies_in_image = [&image](const CountedPart& part) {
-    const std::uint64_t bytes = round_up<std::uint64_t>(part.element_count * part.element_bytes, kLineBytes);
-    return part.offset_bytes <= image.image_bytes && bytes <= image.image_bytes - part.offset_bytes;
-  };
-  return check_effect_counts(AnyFault{}, 0, effects) && check_tree_counts(AnyFault{}, 0, tree) &&
-         for_each_effect_part(effects, image.triangle_count, lies_in_image) && for_each_tree_part(tree, lies_in_image);
+  return check_tree_counts(AnyFault{}, 0, tree) &&
+         for_each_tree_part(tree, [&image](const CountedPart& part) { return lies_in_image(image, part); });
+}
+
+/// Whether everything that a frame with effects names lies in memory. The image's header says how many surfaces there
+/// are.
+[[nodiscard]] bool are_effects_in_memory(SimMemory& memory, const FrameRecord& frame) {
+  EffectsRecord effects;
+  ImageHeader image;
+  if (!RecordReader{memory}.read(effects, frame.effects_address) || !is_tree_in_memory(memory, frame, image)) {
+    return false;
+  }
+  return check_effect_counts(AnyFault{}, 0, effects) &&
+         for_each_effect_part(effects, image.triangle_count,
+                              [&image](const CountedPart& part) { return lies_in_image(image, part); });
 }
 
 [[nodiscard]] bool is_scene_shaded(const FrameRecord& frame) {
   return frame.shading == static_cast<std::uint32_t>(Shading::kScene);
+}
+
+/// Whether everything that the grid's part of a frame names lies in memory.
+[[nodiscard]] bool is_grid_in_memory(SimMemory& memory, const FrameRecord& frame) {
+  const auto lies_in_memory = [&](std::uint64_t begin, std::uint64_t byte_count) {
+    return byte_count == 0 || !memory.bytes_at(MainAddress{begin}, byte_count).empty();
+  };
+  const GridRecord& grid = frame.engine.grid;
+  std::uint64_t macro_cells = 1;
+  for (const std::uint32_t count : grid.macro_cell_count) {
+    if (count > kMaxCellsPerAxis) return false;
+    macro_cells *= count;
+  }
+  // The table is read in whole lines.
+  const std::uint64_t table_bytes =
+      round_up<std::uint64_t>((macro_cells + 31) / 32 * sizeof(MacroTableEntry), kLineBytes);
+  return lies_in_memory(frame.engine.macro_table_address, table_bytes) &&
+         lies_in_memory(frame.engine.cell_blocks_address, std::uint64_t{grid.cell_block_count} * grid.cell_block_bytes) &&
+         lies_in_memory(frame.engine.triangles_address, std::uint64_t{grid.reference_count} * grid.triangle_bytes);
 }
 
 /// Reads the frame record and checks that everything it names lies in memory: the plain mode believes it.
@@ -132,7 +171,7 @@ enum class LayoutGroup : std::uint8_t { kCommon, kSweep, kEffects, kNone };
 
   GRIDIRON_TRY(find_picture_fault<AnyLayout>(frame).status);
   shape.engine = core_engine(frame.engine_id);
-  if (shape.engine != &kGridEngine) return Status::kBadFrame;  // whose record follows the head
+  if (shape.engine == nullptr) return Status::kBadFrame;
   shape.tile_count = frame.tiles_x * frame.tiles_y;
   shape.output_depth = frame.output_depth;
   shape.is_picture = true;
@@ -146,27 +185,12 @@ enum class LayoutGroup : std::uint8_t { kCommon, kSweep, kEffects, kNone };
   std::sort(shape.writable.begin(), shape.writable.end(),
             [](const MainRange& a, const MainRange& b) { return a.begin < b.begin; });
 
-  const auto lies_in_memory = [&](std::uint64_t begin, std::uint64_t byte_count) {
-    return byte_count == 0 || !memory.bytes_at(MainAddress{begin}, byte_count).empty();
-  };
-  const GridRecord& grid = frame.engine.grid;
-  std::uint64_t macro_cells = 1;
-  for (const std::uint32_t count : grid.macro_cell_count) {
-    if (count > kMaxCellsPerAxis) return Status::kBadFrame;
-    macro_cells *= count;
-  }
-  // The table is read in whole lines.
-  const std::uint64_t table_bytes =
-      round_up<std::uint64_t>((macro_cells + 31) / 32 * sizeof(MacroTableEntry), kLineBytes);
-  if (!lies_in_memory(frame.engine.macro_table_address, table_bytes) ||
-      !lies_in_memory(frame.engine.cell_blocks_address, std::uint64_t{grid.cell_block_count} * grid.cell_block_bytes) ||
-      !lies_in_memory(frame.engine.triangles_address, std::uint64_t{grid.reference_count} * grid.triangle_bytes)) {
-    return Status::kBadFrame;
-  }
   if (is_scene_shaded(frame) && !are_effects_in_memory(memory, frame)) return Status::kBadFrame;
-  return Status::kOk;
+  if (shape.engine == &kGridEngine) return is_grid_in_memory(memory, frame) ? Status::kOk : Status::kBadFrame;
+  GRIDIRON_TRY(find_tree_fault<AnyLayout>(frame).status);
+  ImageHeader image;
+  return is_tree_in_memory(memory, frame, image) ? Status::kOk : Status::kBadFrame;
 }
-
 [[nodiscard]] ChipResult render_plain(SimMemory& memory, MainAddress frame, const FrameShape& shape,
                                       const LayoutChoice& layout, const ChipOptions& options,
                                       RenderEntry<PlainCore> entry) {

@@ -47,7 +47,7 @@ inline constexpr StoreSize kStoreSizes[] = {StoreSize::k64KB, StoreSize::k128KB,
 struct LayoutChoice {
   StoreSize store = StoreSize::k256KB;  ///< local memory
   std::uint32_t tile_width = 32;   ///< pixels along a tile's edge
-  std::uint32_t packet_width = 8;  ///< rays along a packet's edge
+  std::uint32_t packet_width = 8;  ///< rays along a packet's edge; 0: no packets, eye rays go through the tree
   bool has_effects = false;        ///< renders Shading::kScene
 };
 
@@ -77,7 +77,7 @@ struct ChipOptions {
                               ///< fewer, or the frame fewer tiles
   std::uint32_t lanes = 4;    ///< 4, 8, 16 (8 and 16 where the host has them, else kUnsupportedFrame)
   StoreSize store = StoreSize::k256KB;  ///< local memory of each core
-  std::uint32_t packet_width = 8;  ///< rays along a packet's edge; the frame brings its tile width
+  std::uint32_t packet_width = 8;  ///< rays along a packet's edge, 0: none; the frame brings its tile width
   Completion completion = Completion::kEarly;  ///< of transfers
   std::uint64_t seed = 0;           ///< of Completion::kRandom
   PlatformLimits limits{};          ///< of the simulated platform

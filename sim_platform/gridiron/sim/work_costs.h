@@ -5,22 +5,11 @@
 #pragma once
 
 #include <gridiron/sim/engine_work.h>
+#include <gridiron/sim/work_cost.h>
 
 #include <array>
 
 namespace gridiron::sim {
-
-/// Means over the units of the counted frames.
-struct WorkCost {
-  double cycles;        ///< charged: superblock schedule, branch misses included
-  double least_cycles;  ///< the fuller pipe never idle; too much where these operations fill the gaps of a neighbour
-  double most_cycles;   ///< bound: nothing issued together
-  double even;          ///< operations of the even pipe, and of these:
-  double doubles;       ///< in double precision
-  double odd;           ///< operations of the odd pipe, and of these:
-  double branches;
-  double misses;        ///< branches that go the rarer way
-};
 
 /// By kind of work of core and of the grid. Commands and waits are charged where they happen, see MachineProfile.
 inline constexpr std::array<WorkCost, kGridEngine.kind_count()> kWorkCosts = {{

@@ -20,6 +20,9 @@ constexpr Configuration kConfigurations[] = {
      .lambda = 0.4f, .macro_width = 4, .packet_width = 32,
      .depths = {.output = 2, .macro = 4, .triangle = 3, .fetch = 2},
      .techniques = kUseMailbox | kUseEmptySkip | kUseSubpackets},
+    {.name = "tree", .description = "the wide tree, tile by tile, in place of a grid",
+     .lambda = 0.01f, .macro_width = 4, .packet_width = 0,
+     .depths = {.output = 2, .macro = 1, .triangle = 1, .fetch = 3}, .techniques = 0},
 };
 // clang-format on
 

@@ -33,7 +33,7 @@ struct Configuration {
   std::string_view description;
   float lambda;                ///< cells per triangle, Eq. (1)
   std::uint32_t macro_width;   ///< cells along a macrocell's edge
-  std::uint32_t packet_width;  ///< rays along a packet's edge
+  std::uint32_t packet_width;  ///< rays along a packet's edge; 0: none, eye rays go through the tree
   BufferDepths depths;
   std::uint32_t techniques;  ///< TechniqueBits
 };

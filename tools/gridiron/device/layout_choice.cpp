@@ -48,6 +48,10 @@ sim::LayoutChoice layout_with(const LayoutRequest& asked, const Configuration& c
   if (has_effects && store == StoreSize::k64KB) {
     return {store, asked.tile_width.value_or(8), asked.packet_width.value_or(0), true};
   }
+  // Eye rays through the tree, without packets.
+  if (configuration.packet_width == 0 && !has_effects) {
+    return {store, asked.tile_width.value_or(64), asked.packet_width.value_or(0)};
+  }
   const std::uint32_t tile_width = asked.tile_width.value_or(sim::usual_tile_width(store));
   // A packet is no wider than a tile.
   const std::uint32_t fitting = std::min(configuration.packet_width, tile_width);

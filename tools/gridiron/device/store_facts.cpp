@@ -17,8 +17,13 @@ StoreFacts facts_of() {
   facts.stack_bytes = Layout::kStackBudgetBytes;
   facts.tile_width = Layout::kTileWidth;
   facts.packet_width = Layout::kPacketWidth;
+  facts.engine = static_cast<EngineId>(Layout::Engine::kId);
   facts.most_depths.output = Layout::kMaxOutputDepth;
-  if constexpr (Layout::kEffects != 0) facts.most_depths.fetch = Layout::RayEngine::template kMaxDepth<Layout>;
+  if constexpr (Layout::kEffects != 0) {
+    facts.most_depths.fetch = Layout::RayEngine::template kMaxDepth<Layout>;
+  } else if constexpr (Layout::Engine::kId == TileEngine::kId) {
+    facts.most_depths.fetch = Layout::Engine::template kMaxDepth<Layout>;
+  }
   if constexpr (kHasPackets<Layout>) {
     facts.max_macro_width = Layout::kMaxMacroWidth;
     facts.most_depths.macro = Layout::kMaxMacroDepth;

@@ -18,8 +18,9 @@ struct StoreFacts {
   std::uint32_t arena_bytes = 0;
   std::uint32_t code_bytes = 0, stack_bytes = 0;  ///< committed budgets
   std::uint32_t tile_width = 0, packet_width = 0;
+  EngineId engine = EngineId::kGrid;  ///< of eye rays
   std::uint32_t max_macro_width = 0;
-  BufferDepths most_depths{};  ///< fetch: of layouts with effects alone
+  BufferDepths most_depths{};  ///< fetch: of layouts with effects or the tree alone
   std::uint32_t triangles_per_buffer = 0;
   std::uint32_t mailbox_slots = 0;         ///< 0: no packets
   std::uint32_t resident_macro_cells = 0;  ///< size of the table that is fetched only once

@@ -35,7 +35,8 @@ std::uint32_t waiting_depth(const SceneInput& input, const RenderPlan& plan) {
 // its address.
 MainAddress place_image(FrameMemory& frame, const SceneInput& input, const RenderPlan& plan, std::uint64_t budget_bytes,
                         InputFile* movable) {
-  const ImageLimits limits = {format_of(plan.accuracy), budget_bytes, plan.most_macro_width};
+  const ImageLimits limits = {format_of(plan.accuracy), budget_bytes, plan.most_macro_width,
+                              plan.engine == EngineId::kTree};
   if (const PackedScene* packed = std::get_if<PackedScene>(&input.content)) {
     check_packed(input, *packed, plan.scene, limits);
     const std::uint64_t image_bytes = packed->view.header.image_bytes;
@@ -117,6 +118,7 @@ void prepare(FrameMemory& frame, const SceneInput& input, const RenderPlan& plan
   settings.tile_width = plan.layout.tile_width;
   settings.accuracy = plan.accuracy;
   settings.shading = plan.shading;
+  settings.engine = plan.engine;
   settings.techniques = plan.techniques;
   settings.output_depth = plan.depths.output;
   settings.macro_depth = plan.depths.macro;

@@ -44,13 +44,14 @@ sim::LayoutChoice layout_of(const RenderRequest& request, const RenderPlan& plan
 void settle_depths(const RenderRequest& request, RenderPlan& plan) {
   const Configuration& configuration = *request.scene.configuration;
   const StoreFacts facts = *find_store_facts(plan.layout);
+  plan.engine = facts.engine;
   const BufferDepths& most = facts.most_depths;
   const bool has_effects = plan.layout.has_effects;
   plan.depths = request.layout.depths.value_or(configuration.depths);
   if (!request.layout.depths) {  // a named configuration is limited by the store, an explicit depth is not
     const std::uint32_t fetch = plan.depths.fetch;
     plan.depths = plan.depths.within(most);
-    if (!has_effects) plan.depths.fetch = fetch;
+    if (!has_effects && facts.engine == EngineId::kGrid) plan.depths.fetch = fetch;
   } else if (plan.layout.packet_width == 0) {  // without packets nothing reads the grid
     plan.depths.macro = most.macro;
     plan.depths.triangle = most.triangle;

@@ -71,6 +71,7 @@ struct RenderPlan {
   sim::LayoutChoice layout{};
   std::uint32_t most_macro_width = kMaxMacroWidth;  ///< of the store; a configuration's width is limited to it
   BufferDepths depths{};
+  EngineId engine = EngineId::kGrid;  ///< of eye rays
   std::uint32_t techniques = 0;
   Accuracy accuracy = Accuracy::kStandard;
   Shading shading = Shading::kSimple;

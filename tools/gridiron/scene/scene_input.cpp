@@ -222,6 +222,7 @@ GridChoice choose_grid(const SceneInput& input, const Mesh& mesh, const SceneReq
   choice.parameters.macro_width =
       request.macro_width.value_or(std::min(configuration.macro_width, limits.most_macro_width));
   choice.parameters.format = limits.format;
+  choice.parameters.has_tree = limits.has_tree;
   choice.budget_bytes = limits.budget_bytes;
   constexpr std::size_t kMarks = std::size_t{1} << 21;  // words: one sweep over the triangles for most scenes
   const std::unique_ptr<std::uint64_t[]> storage(new (std::nothrow) std::uint64_t[kMarks]);

@@ -105,6 +105,7 @@ struct ImageLimits {
   TriangleFormat format = TriangleFormat::kVertices;
   std::uint64_t budget_bytes = 0;                   ///< of main memory
   std::uint32_t most_macro_width = kMaxMacroWidth;  ///< of the local store; a configuration's width is limited to it
+  bool has_tree = false;                            ///< eye rays go through the tree
 };
 
 /// The grid that a mesh will get, or the grid of a packed scene.

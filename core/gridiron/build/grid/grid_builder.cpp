@@ -310,15 +310,17 @@ Status build_scene_image(const MeshView& mesh, const GridParameters& parameters,
   GRIDIRON_TRY(check_parameters(parameters));
   const GridRecord& grid = need.grid;
   EffectsRecord record{};
+  const bool has_tree = effects != nullptr || parameters.has_tree;
+  if (has_tree && !may_have_tree(parameters)) return Status::kBadParameter;
   if (effects != nullptr) {
-    if (!may_have_effects(parameters) || check_effects(mesh, *effects) != Status::kOk) return Status::kBadParameter;
+    if (check_effects(mesh, *effects) != Status::kOk) return Status::kBadParameter;
     record = count_effects(*effects);
   }
   const std::uint64_t triangle_count = mesh.triangles.size();
   if (need.dropped_triangle_count >= triangle_count) return Status::kBadParameter;
   ImageLayout layout = layout_of(grid, {effects != nullptr ? &record : nullptr, triangle_count,
-                                        triangle_count - need.dropped_triangle_count, parameters.leaf_triangles});
-  const std::uint64_t scratch_bytes = effects != nullptr ? tree_scratch_bytes(triangle_count) : 0;
+                                        triangle_count - need.dropped_triangle_count, parameters});
+  const std::uint64_t scratch_bytes = has_tree ? tree_scratch_bytes(triangle_count) : 0;
   const bool need_ok = grid.lambda == parameters.lambda && grid.macro_width == parameters.macro_width &&
                        grid.triangle_format == static_cast<std::uint32_t>(parameters.format) &&
                        grid.triangle_bytes == triangle_bytes_of(parameters.format) &&
@@ -338,6 +340,8 @@ Status build_scene_image(const MeshView& mesh, const GridParameters& parameters,
   if (effects != nullptr) {
     write_effect_sections(mesh, *effects, grid, layout.effects, image.data());
     link_surfaces(layout.tree, layout.effects.record, image.data());
+  }
+  if (has_tree) {
     const std::uint64_t bytes = layout.tree.end_bytes - layout.effects.begin_bytes;
     check.add({image.data() + layout.effects.begin_bytes, static_cast<std::size_t>(bytes)});
   }

@@ -20,6 +20,7 @@ struct GridParameters {
   std::uint32_t macro_width = 6;                      ///< m; 1..kMaxMacroWidth
   TriangleFormat format = TriangleFormat::kVertices;  ///< how triangles are stored
   std::uint32_t leaf_triangles = 8;                   ///< of a leaf of the tree, at most; 1..kMaxTreeLeaf
+  bool has_tree = false;                              ///< a tree without effects too, for EngineId::kTree
 };
 
 /// What had to be cut to know which cells triangles touch.
@@ -40,16 +41,16 @@ struct GridSteps {
   CellCuts cuts;                  ///< of building
 };
 
-/// What a scene image of a mesh will hold and need. All is exact, but image_bytes with effects.
+/// What a scene image of a mesh will hold and need. All is exact, but image_bytes with a tree.
 struct GridNeed {
   GridRecord grid;                       ///< complete, as it will stand in the image
   std::uint32_t dropped_triangle_count;  ///< zero-area triangles (decided exactly)
   std::uint64_t image_bytes;  ///< memory to build the image in, a multiple of kLineBytes: the size of an image without
-                              ///< effects. With them the tree's nodes, its end, are counted while they are built; then
+                              ///< a tree. A tree's nodes, its end, are counted while they are built; then
                               ///< this has room for the most that so many triangles can have (most_tree_nodes), and
                               ///< the size is ImageHeader::image_bytes.
   std::uint64_t scratch_bytes;  ///< working memory of build_scene_image, free again afterwards; tree_scratch_bytes of
-                                ///< all triangles, 0 without effects
+                                ///< all triangles, 0 without a tree
   GridSteps steps;              ///< for those who keep time
 };
 
@@ -57,11 +58,11 @@ inline constexpr std::uint64_t kAnyImageBytes = ~std::uint64_t{0};  ///< for an 
 
 /// Counts what build_scene_image will need. Takes a fixed stack frame, and `marks` if given.
 ///
-/// @param effects           of the scene; null: the image holds the grid alone, neither effects nor a tree.
+/// @param effects           of the scene; null: the image holds no effects, and a tree only if parameters.has_tree.
 /// @param most_image_bytes  ends the count of an image that needs more.
 /// @param marks             working memory, a bit for each macrocell; empty: 16,384 of them on the stack.
 /// Errors: kBadEffects (check_effects; a light farther from the grid than an eye may be), kBadVertex, kBadIndex,
-/// kBadParameter (also effects with TriangleFormat::kProjection), kNoTriangles, kTooManyTriangles (with effects more
+/// kBadParameter (also effects or a tree with TriangleFormat::kProjection), kNoTriangles, kTooManyTriangles (with a tree more
 /// than kMaxTreeTriangles too); kMemoryTooSmall: need.image_bytes is then more than most_image_bytes, but less than the
 /// image would take. Cost: linear in triangles + references that fit, once for each part of the macrocells that `marks`
 /// holds at a time.

@@ -202,9 +202,7 @@ struct Request {
 std::uint64_t image_bytes_of(const Request& request, GridRecord grid, std::uint64_t references, std::uint64_t blocks) {
   grid.reference_count = static_cast<std::uint32_t>(references);
   grid.cell_block_count = static_cast<std::uint32_t>(blocks);
-  return layout_of(grid,
-                   {request.effects, request.triangle_count, request.kept_count, request.parameters.leaf_triangles})
-      .image_bytes;
+  return layout_of(grid, {request.effects, request.triangle_count, request.kept_count, request.parameters}).image_bytes;
 }
 
 // Makes the grid over the kept triangles; references and blocks are counted later. @param grid  so far: the lattice.
@@ -274,7 +272,8 @@ Status count_grid(const Mesh& mesh, const Request& request, const KeptTriangles&
 
   need.grid = grid;
   need.dropped_triangle_count = static_cast<std::uint32_t>(mesh.triangles.size() - kept.count);
-  need.scratch_bytes = request.effects != nullptr ? tree_scratch_bytes(request.triangle_count) : 0;
+  const bool has_tree = request.effects != nullptr || request.parameters.has_tree;
+  need.scratch_bytes = has_tree ? tree_scratch_bytes(request.triangle_count) : 0;
   need.steps = steps;
   return Status::kOk;
 }
@@ -316,12 +315,13 @@ Status count_geometry(const MeshView& mesh, Request request, GridNeed& need) {
 Status count_within(const MeshView& mesh, Request request, const EffectsView* effects, GridNeed& need) {
   enter_step<GridStep::kBuildOnce>();
   GRIDIRON_TRY(check_parameters(request.parameters));
-  if (effects != nullptr && !may_have_effects(request.parameters)) return Status::kBadParameter;
+  const bool has_tree = effects != nullptr || request.parameters.has_tree;
+  if (has_tree && !may_have_tree(request.parameters)) return Status::kBadParameter;
   if (mesh.triangles.size() > kMaxCount || mesh.vertices.size() > kMaxCount) return Status::kTooManyTriangles;
+  if (has_tree && mesh.triangles.size() > kMaxTreeTriangles) return Status::kTooManyTriangles;
   if (!all_in_range(mesh.vertices)) return Status::kBadVertex;
   EffectsRecord record{};
   if (effects != nullptr) {
-    if (mesh.triangles.size() > kMaxTreeTriangles) return Status::kTooManyTriangles;
     GRIDIRON_TRY(check_effects(mesh, *effects));
     record = count_effects(*effects);
     request.effects = &record;

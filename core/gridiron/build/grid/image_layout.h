@@ -28,8 +28,8 @@ inline Status check_parameters(const GridParameters& parameters) {
   return lambda_ok && width_ok && format_ok && leaf_ok ? Status::kOk : Status::kBadParameter;
 }
 
-/// Surfaces store vertices, which a projection does not have.
-inline bool may_have_effects(const GridParameters& parameters) {
+/// Surfaces and the tree store vertices, which a projection does not have.
+inline bool may_have_tree(const GridParameters& parameters) {
   return parameters.format != TriangleFormat::kProjection;
 }
 
@@ -47,10 +47,12 @@ struct ImageLayout {
 
 // What an image holds besides the grid.
 struct ImageParts {
-  const EffectsRecord* effects;  // as counted; null: neither effects nor a tree
+  const EffectsRecord* effects;  // as counted; null: none
   std::uint64_t triangle_count;  // of the input
   std::uint64_t kept_count;      // of these, those that have an area as they are stored
-  std::uint32_t leaf_triangles;  // of the tree
+  const GridParameters& parameters;
+
+  [[nodiscard]] bool has_tree() const { return effects != nullptr || parameters.has_tree; }
 };
 
 inline ImageLayout layout_of(const GridRecord& grid, const ImageParts& parts) {
@@ -58,8 +60,8 @@ inline ImageLayout layout_of(const GridRecord& grid, const ImageParts& parts) {
   ImageLayout layout{};
   layout.macro_table_entries = (macro_cell_total(grid) + 31) / 32;
   layout.section_table_offset = round_up<std::uint64_t>(sizeof(ImageHeader), kLine);
-  layout.section_count =
-      kSectionCount + (parts.effects != nullptr ? effect_section_count(*parts.effects) + kTreeSectionCount : 0);
+  layout.section_count = kSectionCount + (parts.effects != nullptr ? effect_section_count(*parts.effects) : 0) +
+                         (parts.has_tree() ? kTreeSectionCount : 0);
   layout.grid_offset = round_up(layout.section_table_offset + layout.section_count * sizeof(SectionEntry), kLine);
   layout.macro_table_offset = round_up(layout.grid_offset + sizeof(GridRecord), kLine);
   layout.cell_blocks_offset =
@@ -70,13 +72,15 @@ inline ImageLayout layout_of(const GridRecord& grid, const ImageParts& parts) {
       round_up(layout.triangles_offset + std::uint64_t{grid.reference_count} * grid.triangle_bytes, kLine);
   layout.effects.begin_bytes = triangles_end;
   layout.effects.end_bytes = triangles_end;
-  layout.tree.begin_bytes = triangles_end;
-  layout.tree.end_bytes = triangles_end;
   if (parts.effects != nullptr) {
     layout.effects =
         place_effect_sections(*parts.effects, static_cast<std::uint32_t>(parts.triangle_count), triangles_end);
+  }
+  layout.tree.begin_bytes = layout.effects.end_bytes;
+  layout.tree.end_bytes = layout.effects.end_bytes;
+  if (parts.has_tree()) {
     layout.tree = place_tree_sections(static_cast<TriangleFormat>(grid.triangle_format), parts.kept_count,
-                                      parts.leaf_triangles, layout.effects.end_bytes);
+                                      parts.parameters.leaf_triangles, layout.effects.end_bytes);
   }
   layout.image_bytes = layout.tree.end_bytes;
   return layout;

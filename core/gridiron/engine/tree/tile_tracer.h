@@ -17,6 +17,7 @@
 #include <gridiron/ray/hits.h>
 #include <gridiron/ray/intersect_rays.h>
 
+#include <bit>
 #include <cstdint>
 
 namespace gridiron {
@@ -555,7 +556,7 @@ class TileTracer {
     work_.charge_to(TileWork::kFacingBlock);
     if (wants_facing_) {
       const auto normal = [&](std::uint32_t axis) GRIDIRON_INLINE_LAMBDA {
-        return Float(reinterpret_cast<const float*>(memory_.queue[kNormal + axis])[lane]);
+        return Float(std::bit_cast<float>(memory_.queue[kNormal + axis][lane]));
       };
       const Float normal_x = normal(0), normal_y = normal(1), normal_z = normal(2);
       for (std::uint32_t i = 0; i < kBlockPixels; i += kLanes) {
@@ -594,7 +595,7 @@ class TileTracer {
   }
   GRIDIRON_INLINE void queued_triangle(std::uint32_t lane, VertexTriangle& triangle) const {
     for (std::uint32_t i = 0; i < 9; ++i) {
-      triangle.v[i / 3][i % 3] = reinterpret_cast<const float*>(memory_.queue[kVertex + i])[lane];
+      triangle.v[i / 3][i % 3] = std::bit_cast<float>(memory_.queue[kVertex + i][lane]);
     }
     triangle.triangle_id = memory_.ids[lane];
   }
@@ -676,14 +677,14 @@ class TileTracer {
       memory_.ids[0] = triangle.triangle_id;
       if (wants_distance_) {
         for (std::uint32_t k = 0; k < 9; ++k) {
-          reinterpret_cast<float*>(memory_.queue[kVertex + k])[0] = triangle.v[k / 3][k % 3];
+          memory_.queue[kVertex + k][0] = std::bit_cast<std::uint32_t>(triangle.v[k / 3][k % 3]);
         }
       }
       if (wants_facing_) {
         float normal[3];
         work_.add(Work::kNormalSetup);
         set_up_normal(triangle, normal);
-        for (std::uint32_t k = 0; k < 3; ++k) reinterpret_cast<float*>(memory_.queue[kNormal + k])[0] = normal[k];
+        for (std::uint32_t k = 0; k < 3; ++k) memory_.queue[kNormal + k][0] = std::bit_cast<std::uint32_t>(normal[k]);
       }
       for (std::uint32_t y = 0; y < rows_; ++y) {
         for (std::uint32_t x = 0; x < columns_; ++x) GRIDIRON_TRY(decide_pixel(x, y, 0));

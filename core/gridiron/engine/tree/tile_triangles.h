@@ -185,7 +185,7 @@ template <class L, std::uint32_t Width>
   using Float = typename L::Float;
   using Int = typename L::Int;
   const auto word = [&](std::uint32_t kind) GRIDIRON_INLINE_LAMBDA {
-    return Float::load(reinterpret_cast<const float*>(memory.queue[kind]) + first);
+    return L::floats_of(Int::load(memory.queue[kind] + first));
   };
   const Int box = Int::load(memory.queue[kPixelBox] + first);
   const Int byte = Int::splat(0xFF);

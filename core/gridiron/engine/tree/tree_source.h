@@ -15,16 +15,47 @@
 
 namespace gridiron {
 
-/// A source of RayLists.
-/// @tparam Store  LocalStore of a layout whose rays this engine traces.
-template <class L, class Store, Platform P>
+/// Where a LocalStore keeps the tree's parts while rays of lists are traced.
+struct RayParts {
+  /// @cond
+  template <class Store>
+  using Memory = typename Store::RayStore;
+  template <class Store>
+  [[nodiscard]] static GRIDIRON_INLINE const TreeRecord& tree(const Store& store) {
+    return store.rays.tree;
+  }
+  template <class Store>
+  [[nodiscard]] static GRIDIRON_INLINE Memory<Store>& memory(Store& store) {
+    return store.wave.rays;
+  }
+  /// @endcond
+};
+/// And while eye rays are.
+struct EyeParts {
+  /// @cond
+  template <class Store>
+  using Memory = typename Store::EyeStore;
+  template <class Store>
+  [[nodiscard]] static GRIDIRON_INLINE const TreeRecord& tree(const Store& store) {
+    return store.engine.tree;
+  }
+  template <class Store>
+  [[nodiscard]] static GRIDIRON_INLINE Memory<Store>& memory(Store& store) {
+    return store.packet;
+  }
+  /// @endcond
+};
+
+/// A source of RayLists and TileTracer.
+/// @tparam Store  LocalStore of a layout whose rays this engine traces. @tparam Parts  RayParts or EyeParts.
+template <class L, class Store, Platform P, class Parts = RayParts>
 class TreeSource {
  public:
   TreeSource(Store& store, Transfers<P>& transfers) : store_(store), transfers_(transfers) {}
 
   /// The store has another tree's record.
   void begin() {
-    const TreeRecord& tree = store_.rays.tree;
+    const TreeRecord& tree = Parts::tree(store_);
     nodes_ = store_.frame.image_address + tree.nodes_offset_bytes;
     triangles_ = store_.frame.image_address + tree.triangles_offset_bytes;
     is_on_lattice_ = tree.triangle_format == static_cast<std::uint32_t>(TriangleFormat::kLattice);
@@ -56,8 +87,37 @@ class TreeSource {
   [[nodiscard]] Status leaf(TreeChild child, const VertexTriangle*& records) {
     std::uint32_t slot = 0;
     GRIDIRON_TRY(take(child, slot));
-    const std::uint32_t first_byte = is_on_lattice_ ? std::uint32_t{0} : first_byte_of(address_of(child));
-    records = reinterpret_cast<const VertexTriangle*>(cache().slots[slot].bytes + first_byte);
+    records = records_of(slot, child);
+    return Status::kOk;
+  }
+
+  /// A record by its number in the tree: mostly of a leaf that is still at hand.
+  [[nodiscard]] GRIDIRON_OUTLINE Status record(std::uint32_t number, VertexTriangle& triangle) {
+    for (std::uint32_t slot = 0; slot < Cache::kSlots; ++slot) {
+      const TreeChild leaf{cache().keys[slot]};
+      const std::uint32_t place = number - leaf.first();
+      if (!leaf.is_leaf() || leaf.bits == Cache::kNoKey || place >= leaf.count()) continue;
+      if ((pending_ >> slot & 1u) != 0) GRIDIRON_TRY(arrive(slot));
+      triangle = records_of(slot, leaf)[place];
+      return Status::kOk;
+    }
+    std::byte* const bytes = Parts::memory(store_).surface_bytes;
+    const TreeChild child = TreeChild::leaf(number, 1);
+    const std::uint64_t address = address_of(child);
+    // Where one open pixel is, its neighbours are.
+    const std::uint32_t first_byte = is_on_lattice_ ? std::uint32_t{0} : first_byte_of(address);
+    if (number != surface_) {
+      const Moved moved = moved_of(address, child);
+      GRIDIRON_TRY(transfers_.get(bytes + (first_byte_of(address) - moved.slack), MainAddress{address - moved.slack},
+                                  moved.bytes, kSetupTag));
+      GRIDIRON_TRY(transfers_.wait(kSetupTag));
+      if (is_on_lattice_) {
+        store_.work.add(Work::kLatticeTriangle);
+        spread_lattice_run(Parts::tree(store_).lattice, bytes, first_byte_of(address), 1);
+      }
+      surface_ = number;
+    }
+    triangle = *reinterpret_cast<const VertexTriangle*>(bytes + first_byte);
     return Status::kOk;
   }
 
@@ -69,7 +129,7 @@ class TreeSource {
 
   [[nodiscard]] Status triangle_of(MainAddress surfaces, std::uint32_t id, VertexTriangle& triangle) {
     const MainAddress address{surfaces.value + std::uint64_t{id} * sizeof(SurfaceRecord)};
-    std::byte* const place = store_.wave.rays.surface_bytes + address.value % kPortableCongruenceBytes;
+    std::byte* const place = Parts::memory(store_).surface_bytes + address.value % kPortableCongruenceBytes;
     // Where one tie is, its neighbours are.
     if (id != surface_) {
       GRIDIRON_TRY(transfers_.get(place, address, sizeof(SurfaceRecord), kSetupTag));
@@ -84,10 +144,14 @@ class TreeSource {
   }
 
  private:
-  using RayStore = typename Store::RayStore;
-  using Cache = typename RayStore::Cache;
+  using Cache = typename Parts::template Memory<Store>::Cache;
 
-  [[nodiscard]] Cache& cache() { return store_.wave.rays.cache; }
+  [[nodiscard]] Cache& cache() { return Parts::memory(store_).cache; }
+
+  [[nodiscard]] const VertexTriangle* records_of(std::uint32_t slot, TreeChild leaf) {
+    const std::uint32_t first_byte = is_on_lattice_ ? std::uint32_t{0} : first_byte_of(address_of(leaf));
+    return reinterpret_cast<const VertexTriangle*>(cache().slots[slot].bytes + first_byte);
+  }
 
   // Where a child lies in main memory.
   [[nodiscard]] std::uint64_t address_of(TreeChild child) const {
@@ -140,13 +204,19 @@ class TreeSource {
     if (!child.is_leaf()) {
       return transfers_.get(cache().slots[slot].bytes, MainAddress{address}, sizeof(TreeNode), tag_of(slot, child));
     }
-    // Records of half the length start and end between the multiples of 16 bytes that a transfer moves.
+    const Moved moved = moved_of(address, child);
+    return transfers_.get(cache().slots[slot].bytes + (first_byte_of(address) - moved.slack),
+                          MainAddress{address - moved.slack}, moved.bytes, tag_of(slot, child));
+  }
+  // Records of half the length start and end between the multiples of 16 bytes that a transfer moves.
+  struct Moved {
+    std::uint32_t slack, bytes;
+  };
+  [[nodiscard]] GRIDIRON_INLINE Moved moved_of(std::uint64_t address, TreeChild child) const {
     static constexpr std::uint32_t kStep = kPortableGranuleBytes;
     const std::uint32_t slack = static_cast<std::uint32_t>(address) % kStep;
     const std::uint32_t length = child.count() * (is_on_lattice_ ? std::uint32_t{24} : std::uint32_t{48});
-    const std::uint32_t bytes = (slack + length + (kStep - 1)) & ~(kStep - 1);
-    return transfers_.get(cache().slots[slot].bytes + (first_byte_of(address) - slack), MainAddress{address - slack},
-                          bytes, tag_of(slot, child));
+    return {slack, (slack + length + (kStep - 1)) & ~(kStep - 1)};
   }
 
   [[nodiscard]] GRIDIRON_OUTLINE Status take(TreeChild child, std::uint32_t& slot) {
@@ -163,7 +233,7 @@ class TreeSource {
   [[nodiscard]] GRIDIRON_OUTLINE Status spread(std::uint32_t slot, TreeChild child) {
     store_.work.add(Work::kLatticeTriangle, child.count());
     store_.work.charge_to(Work::kLatticeTriangle);
-    spread_lattice_run(store_.rays.tree.lattice, cache().slots[slot].bytes, first_byte_of(address_of(child)),
+    spread_lattice_run(Parts::tree(store_).lattice, cache().slots[slot].bytes, first_byte_of(address_of(child)),
                        child.count());
     return Status::kOk;
   }
