@@ -22,6 +22,7 @@ static_assert(bvh::kTilePixels == kWordsOfTile);
 CountedProgram program_of(const CountedFrame& frame) {
   if (frame.ring_size != 0) return CountedProgram::kBvh;
   if (frame.effects != nullptr) return CountedProgram::kEffects;
+  if (frame.configuration->packet_width == 0) return CountedProgram::kTree;
   return frame.configuration->packet_width == 32 ? CountedProgram::kPackets32 : CountedProgram::kPackets8;
 }
 
@@ -60,6 +61,7 @@ void FrameInMemory::set_up_grid(const CountedFrame& frame) {
   grid.lambda = configuration.lambda;
   grid.macro_width = configuration.macro_width;
   grid.format = format_of(frame.accuracy);
+  grid.has_tree = program_ == CountedProgram::kTree;
   GridNeed need;
   require(count_scene_image(mesh, grid, need, frame.effects));
   set_up_picture(frame, 512, frame.has_planes ? 3 : 1);
@@ -83,6 +85,7 @@ void FrameInMemory::set_up_grid(const CountedFrame& frame) {
   settings.macro_depth = configuration.depths.macro;
   settings.triangle_depth = configuration.depths.triangle;
   if (frame.effects != nullptr) settings.fetch_depth = 8;
+  if (program_ == CountedProgram::kTree) settings.engine = EngineId::kTree;
   if (frame.has_planes) {
     settings.depth = MainAddress{picture_address_ + plane_bytes_};
     settings.ids = MainAddress{picture_address_ + 2 * plane_bytes_};
@@ -138,6 +141,8 @@ CountedPicture FrameInMemory::count(const Branches& usual, std::span<const std::
         return render<bvh::BvhStore>(tiles);
       case CountedProgram::kEffects:
         return render<LocalStore<EffectLayout256K<kAllEffects, 32>>>(tiles);
+      case CountedProgram::kTree:
+        return render<LocalStore<TreeLayout256K<32>>>(tiles);
       case CountedProgram::kPackets32:
         return render<LocalStore<StoreLayout256K<32>>>(tiles);
       default:

@@ -29,6 +29,8 @@ void render_program(const CountedRun& run, PipeModel& model) {
       return render<twin::LocalStore<twin::StoreLayout256K<8>>>(run, model);
     case CountedProgram::kPackets32:
       return render<twin::LocalStore<twin::StoreLayout256K<32>>>(run, model);
+    case CountedProgram::kTree:
+      return render<twin::LocalStore<twin::TreeLayout256K<32>>>(run, model);
     case CountedProgram::kEffects:
       return render<twin::LocalStore<twin::EffectLayout256K<twin::kAllEffects, 32>>>(run, model);
     case CountedProgram::kBvh:

@@ -12,7 +12,7 @@
 namespace gridiron::calibrate {
 
 /// Which program runs, in which layout of the local store.
-enum class CountedProgram { kPackets8, kPackets32, kEffects, kBvh };
+enum class CountedProgram { kPackets8, kPackets32, kTree, kEffects, kBvh };
 
 /// What a counted core renders: memory that begins with the frame's record.
 struct CountedRun {

@@ -19,11 +19,12 @@
 namespace {
 
 constexpr std::string_view kUsage =
-    "usage: gridiron_calibrate [--bvh] [FILE | --memories FOLDER | --check SCENES | --rules]\n"
+    "usage: gridiron_calibrate [--bvh | --tree] [FILE | --memories FOLDER | --check SCENES | --rules]\n"
     "Counts the operations of the kernel on eight small frames and puts them through the pipeline model.\n"
     "  --bvh          of the cached BVH instead, on four frames\n"
+    "  --tree         of eye rays through the tree, on nine frames\n"
     "  FILE           write the table there: sim_platform/gridiron/sim/work_costs.h, of the cached BVH\n"
-    "                 sim_platform/gridiron/bvh/bvh_costs.h\n"
+    "                 sim_platform/gridiron/bvh/bvh_costs.h, of the tree sim_platform/gridiron/sim/tile_costs.h\n"
     "  --memories     write the frames' memories there, for second_opinion/run\n"
     "  --check        compare prices with direct counts of windows of the views of these scans, and print the table\n"
     "  --rules        what other assumptions of the pipeline model would change, as a table\n"
@@ -48,8 +49,21 @@ int run(int argument_count, char** arguments) {
     std::fputs(calibrate::direct_count_kinds(counts).c_str(), stdout);
     return 0;
   }
-  const bool of_bvh = argument_count > 1 && std::string_view(arguments[1]) == "--bvh";
-  if (of_bvh) {
+  // What is counted, and the texts of it.
+  struct Subject {
+    std::string_view option;
+    calibrate::Totals (*count)(const calibrate::PipeRules&);
+    std::string (*table)(const calibrate::Totals&);
+    std::string (*report)(const calibrate::Totals&);
+  };
+  constexpr Subject kSubjects[] = {
+      {"--bvh", calibrate::count_bvh_frames, calibrate::bvh_table_text, calibrate::bvh_report_text},
+      {"--tree", calibrate::count_tree_frames, calibrate::tree_table_text, calibrate::tree_report_text},
+      {"", calibrate::count_frames, calibrate::table_text, calibrate::report_text}};
+  const Subject& subject = *std::ranges::find_if(kSubjects, [&](const Subject& one) {
+    return one.option.empty() || (argument_count > 1 && one.option == arguments[1]);
+  });
+  if (!subject.option.empty()) {
     --argument_count;
     ++arguments;
   }
@@ -62,16 +76,13 @@ int run(int argument_count, char** arguments) {
       const calibrate::PipeRules rules{.superblock_branches = branches};
       std::printf("superblocks of at most %u basic blocks%s\n%s\n", branches,
                   branches == calibrate::kSuperblockBranches ? " (charged)" : "",
-                  (of_bvh ? calibrate::bvh_report_text(calibrate::count_bvh_frames(rules))
-                          : calibrate::report_text(calibrate::count_frames(rules)))
-                      .c_str());
+                  subject.report(subject.count(rules)).c_str());
     }
     return 0;
   }
   // Nobody should wait for a count that cannot be written.
   (void)gridiron::tool::resolve_output(arguments[1]);
-  const std::string text = of_bvh ? calibrate::bvh_table_text(calibrate::count_bvh_frames())
-                                  : calibrate::table_text(calibrate::count_frames());
+  const std::string text = subject.table(subject.count({}));
   gridiron::tool::AtomicFile file(arguments[1]);
   file.write(text);
   file.commit();

@@ -321,6 +321,24 @@ inline constexpr std::array<sim::WorkCost, kBvhWorkCount + 1> kBvhCosts = {{
     //  cycles    least     most     even  doubles      odd branches   misses
 )";
 
+constexpr std::string_view kTreeTableHead =
+    R"(// What a unit of each kind of work of tiles of eye rays through the tree costs on a core of two in-order pipes. Written
+// by gridiron_calibrate from counted operations of the kernel itself; do not edit. tools/calibrate/README.md says how.
+// Memory: constants. Threads: any. SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <gridiron/engine/tree/tile_work.h>
+#include <gridiron/sim/work_cost.h>
+
+#include <array>
+
+namespace gridiron::sim {
+
+/// By kind of TileWork, from kFirst on.
+inline constexpr std::array<WorkCost, kTileWorkCount> kTileCosts = {{
+    //  cycles    least     most     even  doubles      odd branches   misses
+)";
+
 std::string name_of(std::uint32_t kind, const sim::EngineWork& engine) {
   return std::string(sim::work_kind(WorkId(kind), engine).name);
 }
@@ -374,8 +392,34 @@ FramesInMemory grid_frames(std::span<const NamedFrame> named) {
   return {frames, [&](std::size_t i) { return !named[i].frame.has_planes && !named[i].is_wide && !named[i].is_apart; }};
 }
 
+constexpr std::uint32_t kKnotTriangles = 12'000;
+constexpr Camera kKnotCamera = {.eye = {3.0f, 2.0f, 8.0f}};
+
+FramesInMemory tree_frames() {
+  const Scene teapot = make_scene(), fine = scene_of(scene_makers::make_teapot(kFineSegments));
+  const Scene knot = scene_of(scene_makers::make_torus_knot(kKnotTriangles));
+  CountedFrame frame = teapot_frame(teapot);
+  frame.configuration = tool::find_configuration("tree");
+  std::vector<CountedFrame> frames = {frame};
+  frame.has_planes = true;
+  frames.push_back(frame);
+  frame.has_planes = false;
+  frame.shading = Shading::kNone;
+  frames.push_back(frame);
+  frames.push_back(of_mesh(frame, fine));
+  frames.push_back(close_up(of_mesh(frame, fine), {0.25f, 1.5f, 0.0f}));
+  frames.push_back(close_up(of_mesh(frame, fine), {3.0f, 2.2f, 0.0f}));
+  CountedFrame near = frame;
+  near.camera.tan_half_fov = 0.06f;
+  frames.push_back(near);
+  near.camera.tan_half_fov = 0.02f;
+  frames.push_back(near);
+  frame.camera = kKnotCamera;
+  frames.push_back(of_mesh(frame, knot));
+  return {frames, [](std::size_t) { return true; }};
+}
+
 FramesInMemory bvh_frames() {
-  constexpr std::uint32_t kKnotTriangles = 12'000;
   constexpr std::uint32_t kRing = 3;
   const Scene teapot = make_scene(), fine = scene_of(scene_makers::make_teapot(kFineSegments));
   const Scene knot = scene_of(scene_makers::make_torus_knot(kKnotTriangles));
@@ -385,7 +429,7 @@ FramesInMemory bvh_frames() {
     frame.ring_size = ring_size;
     frames.push_back(frame);
     frames.push_back(close_up(of_mesh(frame, fine), {0.25f, 1.5f, 0.0f}));
-    frame.camera = {.eye = {3.0f, 2.0f, 8.0f}};
+    frame.camera = kKnotCamera;
     frames.push_back(of_mesh(frame, knot));
   }
   return {frames, [](std::size_t) { return true; }};
@@ -501,9 +545,17 @@ Totals count_bvh_frames(const PipeRules& rules) {
   return sum;
 }
 
+Totals count_tree_frames(const PipeRules& rules) {
+  const FramesInMemory memory = tree_frames();
+  Totals sum{};
+  for (const Totals& totals : memory.count(rules)) add(sum, totals, [](std::size_t) { return true; });
+  return sum;
+}
+
 std::map<CountedProgram, Branches> usual_branches() {
   const Scenes scenes;
   std::map<CountedProgram, Branches> usual = grid_frames(frames_of(scenes)).usual;
+  usual.merge(tree_frames().usual);
   usual.merge(bvh_frames().usual);
   return usual;
 }
@@ -527,6 +579,14 @@ std::string bvh_table_text(const Totals& totals) {
     text += table_row(totals[price.id.number()], name_of(price.id.number(), bvh::kBvhEngine));
   }
   return text + "}};\n\n}  // namespace gridiron::bvh\n";
+}
+
+std::string tree_table_text(const Totals& totals) {
+  std::string text(kTreeTableHead);
+  for (const sim::WorkPrice& price : sim::kTilePrices) {
+    text += table_row(totals[price.id.number()], name_of(price.id.number(), sim::kTreeEngine));
+  }
+  return text + "}};\n\n}  // namespace gridiron::sim\n";
 }
 
 namespace {
@@ -608,6 +668,10 @@ std::string report_of(const Totals& totals, const sim::EngineWork& engine) {
 
 std::string report_text(const Totals& totals) {
   return report_of(totals, sim::kGridEngine);
+}
+
+std::string tree_report_text(const Totals& totals) {
+  return report_of(totals, sim::kTreeEngine);
 }
 
 std::string bvh_report_text(const Totals& totals) {

@@ -30,15 +30,23 @@ namespace gridiron::calibrate {
 /// with packets one after another and in a ring. By Work and bvh::BvhWork.
 [[nodiscard]] Totals count_bvh_frames(const PipeRules& rules = {});
 
+/// The same for eye rays through the tree: the teapot, coarse and fine, from afar and near, without and with shading and
+/// planes, and a torus knot of 12,000 triangles. By Work and TileWork.
+[[nodiscard]] Totals count_tree_frames(const PipeRules& rules = {});
+
 /// Frames of `reference`, `best` and the cached BVH under other rules than those charged: cycles against theirs, dual
 /// issue, registers. @returns a table, Markdown.
 [[nodiscard]] std::string rules_text();
 
-/// @returns what branches usually do in each program, over the frames of count_frames() and count_bvh_frames().
+/// @returns what branches usually do in each program, over the frames of count_frames(), count_tree_frames() and
+/// count_bvh_frames().
 [[nodiscard]] std::map<CountedProgram, Branches> usual_branches();
 
 /// @returns the generated source file, sim_platform/gridiron/bvh/bvh_costs.h.
 [[nodiscard]] std::string bvh_table_text(const Totals& totals);
+
+/// @returns the generated source file, sim_platform/gridiron/sim/tile_costs.h.
+[[nodiscard]] std::string tree_table_text(const Totals& totals);
 
 /// Writes into a folder, for second_opinion, of each frame, those apart too, and of the exact decisions, `exact`: the
 /// main memory, NAME.memory, the units, NAME.units (kind, units), a line of `frames` (name, width of packets or
@@ -50,5 +58,6 @@ void write_memories(const std::string& folder);
 /// @returns the same for people: every kind with its bounds and classes, and the rate of dual issue.
 [[nodiscard]] std::string report_text(const Totals& totals);
 [[nodiscard]] std::string bvh_report_text(const Totals& totals);
+[[nodiscard]] std::string tree_report_text(const Totals& totals);
 
 }  // namespace gridiron::calibrate

@@ -236,7 +236,7 @@ struct Lanes {
     return {__builtin_convertvector(a.v, IntVector)};
   }
   /// The words of floats.
-  [[nodiscard]] static GRIDIRON_INLINE Int bits_of(Float a) {
+  [[nodiscard]] static GRIDIRON_INLINE Int words_of(Float a) {
     return {reinterpret_cast<IntVector>(a.v)};
   }
   /// The floats that words are.

@@ -3,6 +3,7 @@
 // Memory: constants. Threads: any. SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <gridiron/engine/tree/tile_work.h>
 #include <gridiron/sim/work_cost.h>
 
 #include <array>
@@ -10,7 +11,7 @@
 namespace gridiron::sim {
 
 /// By kind of TileWork, from kFirst on.
-inline constexpr std::array<WorkCost, 18> kTileCosts = {{
+inline constexpr std::array<WorkCost, kTileWorkCount> kTileCosts = {{
     //  cycles    least     most     even  doubles      odd branches   misses
     {   50.0,    50.0,    50.0,    0.00,    0.00,    0.00,    0.00,    0.00},  // tile_view
     {   50.0,    50.0,    50.0,    0.00,    0.00,    0.00,    0.00,    0.00},  // cleared_block

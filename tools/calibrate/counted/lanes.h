@@ -187,6 +187,13 @@ struct Lanes {
     const float value = a.v.v[lane.value];
     return Counted<float>::made(value, emit(OpClass::kShuffle, bits_of(value), a.node, node_of(lane)));
   }
+  /// Words and floats are the same registers.
+  [[nodiscard]] static Int words_of(Float a) { return {Native::words_of(a.v), a.node}; }
+  [[nodiscard]] static Float floats_of(Int a) { return {Native::floats_of(a.v), a.node}; }
+  [[nodiscard]] static Float to_float(Int a) {
+    const Native::Float value = Native::to_float(a.v);
+    return {value, emit(OpClass::kConvert, tie(value.v), a.node)};
+  }
   [[nodiscard]] static Int truncate(Float a) {
     const Native::Int value = Native::truncate(a.v);
     return {value, emit(OpClass::kConvert, tie(value.v), a.node)};

@@ -14,6 +14,7 @@
 #include <gridiron/base/stages.h>
 #include <gridiron/base/work_counters.h>
 #include <gridiron/bvh/bvh_work.h>
+#include <gridiron/engine/tree/tile_work.h>
 #include <gridiron/bvh/cache_counts.h>
 #include <gridiron/engine/grid/grid_work.h>
 #include <gridiron/platform/contract.h>
@@ -33,6 +34,7 @@
 namespace gridiron_counted {
 
 using gridiron::GridWork;
+using gridiron::TileWork;
 using gridiron::kFloatMax;
 using gridiron::kInfinity;
 using gridiron::kPortableBoundaryBytes;

@@ -14,7 +14,7 @@ inline constexpr std::uint32_t kBlockWidth = 4;                          ///< pi
 inline constexpr std::uint32_t kBlockPixels = kBlockWidth * kBlockWidth;
 
 /// Triangles of the queue, word by word.
-enum TileWord : std::uint32_t {
+enum TileWord : unsigned {
   kCornerX,      ///< three corners: column w, row w, w
   kCornerY = 3,
   kCornerW = 6,
@@ -28,7 +28,7 @@ enum TileWord : std::uint32_t {
 };
 
 /// Functions of the pixel of triangles that are drawn: value at the offset, then per column and per row.
-enum TileFunction : std::uint32_t {
+enum TileFunction : unsigned {
   kEdgeValue,  ///< three edges: not negative where the triangle may be
   kEdgeX = 3,
   kEdgeY = 6,

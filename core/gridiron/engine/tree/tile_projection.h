@@ -60,7 +60,7 @@ GRIDIRON_OUTLINE inline EyeProjection project_eye(const FrameHead& frame, float 
   }
   for (int row = 0; row < 3; ++row) {
     for (double& value : eye.rows[row]) {
-      value /= det;
+      value = value / det;
       eye.sizes[row] += magnitude(value);
     }
   }

@@ -27,10 +27,11 @@ template <std::uint32_t Width>
 struct TilePlaces {
   static constexpr std::uint32_t kBlocksPerRow = Width / kBlockWidth;
   static constexpr std::uint32_t kBlocks = kBlocksPerRow * kBlocksPerRow;
+  static constexpr std::uint32_t kEntries = (kBlocks + 15) / 16 * 16;  ///< for whole groups of lanes
   alignas(64) float column[kBlockPixels];
   alignas(64) float row[kBlockPixels];
-  alignas(64) float block_column[kBlocks < 16 ? 16 : kBlocks];
-  alignas(64) float block_row[kBlocks < 16 ? 16 : kBlocks];
+  alignas(64) float block_column[kEntries];
+  alignas(64) float block_row[kEntries];
 };
 template <std::uint32_t Width>
 inline constexpr TilePlaces<Width> kTilePlaces = [] {
@@ -39,9 +40,9 @@ inline constexpr TilePlaces<Width> kTilePlaces = [] {
     places.column[i] = static_cast<float>(i % kBlockWidth);
     places.row[i] = static_cast<float>(i / kBlockWidth);
   }
-  for (std::uint32_t i = 0; i < sizeof(places.block_column) / sizeof(float); ++i) {
-    places.block_column[i] = static_cast<float>(i % places.kBlocksPerRow * kBlockWidth);
-    places.block_row[i] = static_cast<float>(i / places.kBlocksPerRow * kBlockWidth);
+  for (std::uint32_t i = 0; i < TilePlaces<Width>::kEntries; ++i) {
+    places.block_column[i] = static_cast<float>(i % TilePlaces<Width>::kBlocksPerRow * kBlockWidth);
+    places.block_row[i] = static_cast<float>(i / TilePlaces<Width>::kBlocksPerRow * kBlockWidth);
   }
   return places;
 }();
@@ -169,6 +170,7 @@ class TileTracer {
   static constexpr std::uint32_t kLanes = L::kCount;
   static constexpr std::uint32_t kGroups = kBlockPixels / kLanes;
   static constexpr std::uint32_t kRow = Memory::kBlocksPerRow;
+  static constexpr float kBlockStep = kBlockWidth;
 
   template <class Write>
   GRIDIRON_INLINE void for_each_group(Write&& write, std::uint32_t x, std::uint32_t y, std::uint32_t tile_width) const {
@@ -262,21 +264,21 @@ class TileTracer {
       L::compress(value, kept, memory_.queue[word] + queued_);
     };
     for (std::uint32_t i = 0; i < 3; ++i) {
-      put(kCornerX + i, L::bits_of(corners.x[i]));
-      put(kCornerY + i, L::bits_of(corners.y[i]));
-      put(kCornerW + i, L::bits_of(corners.w[i]));
+      put(kCornerX + i, L::words_of(corners.x[i]));
+      put(kCornerY + i, L::words_of(corners.y[i]));
+      put(kCornerW + i, L::words_of(corners.w[i]));
     }
-    put(kCornerError, L::bits_of(corners.error));
+    put(kCornerError, L::words_of(corners.error));
     put(kPixelBox, box);
     put(kRecord, Int::splat(first_record) + Int::load(kLaneNumbers.lane));
-    put(kTriangleId, L::bits_of(corners.id));
+    put(kTriangleId, L::words_of(corners.id));
     if (wants_facing_) {
       Float normal[3];
       set_up_normals(corners, kept, records, normal);
-      for (std::uint32_t i = 0; i < 3; ++i) put(kNormal + i, L::bits_of(normal[i]));
+      for (std::uint32_t i = 0; i < 3; ++i) put(kNormal + i, L::words_of(normal[i]));
     }
     if (wants_distance_) {
-      for (std::uint32_t i = 0; i < 9; ++i) put(kVertex + i, L::bits_of(corners.vertices[i / 3][i % 3]));
+      for (std::uint32_t i = 0; i < 9; ++i) put(kVertex + i, L::words_of(corners.vertices[i / 3][i % 3]));
     }
     queued_ += count_bits(kept);
   }
@@ -446,9 +448,9 @@ class TileTracer {
       Float x(0.0f);
       for (std::uint32_t bx = bx0; bx <= bx1; ++bx) {
         GRIDIRON_TRY(draw_block<false>(drawn, by * kRow + bx, x, y));
-        x = x + Float(kBlockWidth);
+        x = x + Float(kBlockStep);
       }
-      y = y + Float(kBlockWidth);
+      y = y + Float(kBlockStep);
     }
     return Status::kOk;
   }

@@ -81,6 +81,7 @@ struct LeafCorners {
   /// @param far   w beyond which everything is hidden. @param last_x, last_y  pixels that the picture has.
   template <std::uint32_t Width>
   [[nodiscard]] GRIDIRON_INLINE std::uint32_t cull(float far, float last_x, float last_y, typename L::Int& box) const {
+    static constexpr float kWidth = Width;
     const Float least_w = L::min(L::min(w[0], w[1]), w[2]), most_w = L::max(L::max(w[0], w[1]), w[2]);
     Float column[3], row[3];
     for (int corner = 0; corner < 3; ++corner) {
@@ -100,7 +101,7 @@ struct LeafCorners {
     range(column, last_x, x0, x1);
     range(row, last_y, y0, y1);
     const auto far_end = L::min(x1, y1) >= Float(0.0f);
-    const auto ix0 = L::truncate(L::min(x0, Float(Width))), iy0 = L::truncate(L::min(y0, Float(Width)));
+    const auto ix0 = L::truncate(L::min(x0, Float(kWidth))), iy0 = L::truncate(L::min(y0, Float(kWidth)));
     const auto ix1 = L::truncate(L::max(x1, Float(-1.0f))), iy1 = L::truncate(L::max(y1, Float(-1.0f)));
     const auto one = L::Int::splat(1);
     box = ix0 | (iy0 << 8) | (ix1 << 16) | (iy1 << 24);

@@ -32,4 +32,7 @@ enum class TileWork : std::uint8_t {
   kEnd
 };
 
+inline constexpr std::uint32_t kTileWorkCount =
+    static_cast<std::uint32_t>(TileWork::kEnd) - static_cast<std::uint32_t>(TileWork::kFirst);
+
 }  // namespace gridiron
