@@ -1,15 +1,15 @@
-# core/gridiron/engine/tree/ray_beams.h: kBeamMargin. No point of a ray is outside a beam's plane: with p the exact end of a
-# ray and w a place along the axis within the beam, p.u - slope p.w + slope w is at least the plane's value as rounded. Starts
-# round less, points between lie between, other planes are mirror images; an offset is the least of all ends', and
-# smaller ones round to smaller ones. For fixed roundings all is linear in places along u and, times the slope, along w:
-# one kind is 0. Powers of two bring M to at most 1, and the slope to 1. t d is at most 2.001, as both ends are within M.
-# SPDX-License-Identifier: Apache-2.0
+# core/gridiron/engine/tree/ray_beams.h: kBeamMargin. No point of a ray is outside a beam's plane: with p the exact
+# end of a ray and w a place along the axis within the beam, p.u - slope p.w + slope w is at least the plane's value
+# as rounded. Starts round less, points between lie between, other planes are mirror images; an offset is the least of
+# all ends', and smaller ones round to smaller ones. For fixed roundings all is linear in places along u and, times
+# the slope, along w: one kind is 0. Powers of two bring M to at most 1, and the slope to 1. t d is at most 2.001, as
+# both ends are within M. SPDX-License-Identifier: Apache-2.0
 %source core/gridiron/engine/tree/ray_beams.h
 %constant kBeamMargin inline constexpr float kBeamMargin = {};
 %proves kBeamMargin least 0.283
 %cases ALONG_U ALONG_W STEP_U STEP_W END_U END_W
-%case 1 0 0x2.01p0 0 0x1.01p0 0
 %case 0 1 0 0x2.01p0 0 0x1.01p0
+%case 1 0 0x2.01p0 0 0x1.01p0 0
 
 %line const Float end = start + Float(t) * dir;
 %round step_u = t * d_u

@@ -1,7 +1,7 @@
-# core/gridiron/engine/tree/box_test.h: kExitFactor. A ray that meets a box has an exact entry of no axis behind an exact exit
-# of any: then `first` is not above `last` times the factor. Entries below 0 count as 0, t is an exit without rounding.
-# Only ratios count: the reciprocal's exact value is 1 on both axes, the nearest exit 1, the entry between 0 and 1.
-# SPDX-License-Identifier: Apache-2.0
+# core/gridiron/engine/tree/box_test.h: kExitFactor. A ray that meets a box has an exact entry of no axis behind an
+# exact exit of any: then `first` is not above `last` times the factor. Entries below 0 count as 0, t is an exit
+# without rounding. Only ratios count: the reciprocal's exact value is 1 on both axes, the nearest exit 1, the entry
+# between 0 and 1. SPDX-License-Identifier: Apache-2.0
 %source core/gridiron/engine/tree/box_test.h
 %constant kExitFactor inline constexpr float kExitFactor = {};
 %proves kExitFactor above 1 least 0.438

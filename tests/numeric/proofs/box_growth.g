@@ -1,6 +1,6 @@
-# core/gridiron/base/tree_records.h: kTreeGrowth. A stored side lies outside the triangles by at least 1.5 e |n| + S / 2^25, n
-# its place and S >= |n| the scene's largest coordinate, as box_terms.g and the header assume, if boxes are made in the
-# usual rounding mode: an operation then has an error of 2^-24. All is linear in n and S: n is S, -S or 0.
+# core/gridiron/base/tree_records.h: kTreeGrowth. A stored side lies outside the triangles by at least 1.5 e |n| + S /
+# 2^25, n its place and S >= |n| the scene's largest coordinate, as box_terms.g and the header assume, if boxes are
+# made in the usual rounding mode: an operation then has an error of 2^-24. All is linear in n and S: n is S, -S or 0.
 # SPDX-License-Identifier: Apache-2.0
 %source core/gridiron/base/tree_records.h
 %constant kTreeGrowth inline constexpr float kTreeGrowth = {};

@@ -1,8 +1,8 @@
-# core/gridiron/engine/tree/list_rays.h: kWidening. By terms, a ray enters the widened box no later than it truly enters the
-# triangles' own bounds, `side`, of which the stored box n is grown by at least 1.5 e |n|. Exits are the mirror image.
-# For fixed roundings all is linear in n, the origin's o and the farthest origin O >= |o|: one of n, o = O and O is 1 in
-# magnitude. Only ratios count: d is 1; fused sums round once. Small d and the share of the scene's size: the header.
-# SPDX-License-Identifier: Apache-2.0
+# core/gridiron/engine/tree/list_rays.h: kWidening. By terms, a ray enters the widened box no later than it truly
+# enters the triangles' own bounds, `side`, of which the stored box n is grown by at least 1.5 e |n|. Exits are the
+# mirror image. For fixed roundings all is linear in n, the origin's o and the farthest origin O >= |o|: one of n, o =
+# O and O is 1 in magnitude. Only ratios count: d is 1; fused sums round once. Small d and the share of the scene's
+# size: the header. SPDX-License-Identifier: Apache-2.0
 %source core/gridiron/engine/tree/list_rays.h
 %constant kWidening inline constexpr float kWidening = {}, kGreatestRatio = 0x1p40f;
 %proves kWidening least 0.751

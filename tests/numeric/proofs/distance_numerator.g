@@ -1,5 +1,5 @@
-# core/gridiron/ray/distance.h: kDistanceError, of the numerator in doubles, and of volume_sign(). The argument is that of
-# estimate_numerator.g. SPDX-License-Identifier: Apache-2.0
+# core/gridiron/ray/distance.h: kDistanceError, of the numerator in doubles, and of volume_sign(). The argument is
+# that of estimate_numerator.g. SPDX-License-Identifier: Apache-2.0
 %source core/gridiron/ray/distance.h
 %constant kDistanceError inline constexpr double kDistanceError = {};
 %unit 0x1p-52

@@ -1,13 +1,13 @@
-# core/gridiron/ray/edges_and_distance.cpp, edge_sign(): the factor 2^-47 of its bound in doubles. The argument is that of
-# edge_float.g. SPDX-License-Identifier: Apache-2.0
+# core/gridiron/ray/edges_and_distance.cpp, edge_sign(): the factor 2^-47 of its bound in doubles. The argument is
+# that of edge_float.g. SPDX-License-Identifier: Apache-2.0
 %source core/gridiron/ray/edges_and_distance.cpp
 %constant kDoubleEdgeError const double error = {} * size_sum * size_edge * size_dir;
 %proves kDoubleEdgeError least 0.501
 %unit 0x1p-52
 %cases AT_X AT_Y AT_Z
+%case 0 0 1
 %case 1 0 0
 %case 0 1 0
-%case 0 0 1
 
 %line const double from_a = double{a[i]} - double{origin[i]};
 %round a_x = A_x - o_x

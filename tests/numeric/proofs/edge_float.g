@@ -1,14 +1,15 @@
-# core/gridiron/ray/edges.h: kEdgeErrorFactor. The float value of n . d differs from the exact one by no more than `error`.
-# For fixed roundings the value is linear in a and b, and `error` in their magnitudes: the claim holds for all of them if
-# it holds where one component is 1 and all others are 0. a and b go the same way, so a's three components are the cases.
-# Powers of two bring |F|max and |d|max to at most 1; kUnderflow only adds to `error`. SPDX-License-Identifier: Apache-2.0
+# core/gridiron/ray/edges.h: kEdgeErrorFactor. The float value of n . d differs from the exact one by no more than
+# `error`. For fixed roundings the value is linear in a and b, and `error` in their magnitudes: the claim holds for
+# all of them if it holds where one component is 1 and all others are 0. a and b go the same way, so a's three
+# components are the cases. Powers of two bring |F|max and |d|max to at most 1; kUnderflow only adds to `error`.
+# SPDX-License-Identifier: Apache-2.0
 %source core/gridiron/ray/edges.h
 %constant kEdgeErrorFactor inline constexpr float kEdgeErrorFactor = {};
 %proves kEdgeErrorFactor least 0.942
 %cases AT_X AT_Y AT_Z
+%case 0 0 1
 %case 1 0 0
 %case 0 1 0
-%case 0 0 1
 
 %line const Float a_x = x - Float(packet.origin[0]);
 %line const Float a_y = y - Float(packet.origin[1]);

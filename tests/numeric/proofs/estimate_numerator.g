@@ -1,7 +1,7 @@
-# core/gridiron/ray/distance.h: kFloatError, of the estimate's numerator (corner - origin) . normal.
-# Each of the six products e1_j e2_k is rounded as a whole, and each of their products with a component of corner - origin:
-# for fixed roundings numerator and bound are linear in these and their magnitudes. One of them is 1, the others are 0;
-# signs are alike, so one of each component. kUncertain is kFloatError times a constant, rounded once when multiplied.
+# core/gridiron/ray/distance.h: kFloatError, of the estimate's numerator (corner - origin) . normal. Each of the six
+# products e1_j e2_k is rounded as a whole, and each of their products with a component of corner - origin: for fixed
+# roundings numerator and bound are linear in these and their magnitudes. One of them is 1, the others are 0; signs
+# are alike, so one of each component. kUncertain is kFloatError times a constant, rounded once when multiplied.
 # SPDX-License-Identifier: Apache-2.0
 %source core/gridiron/ray/distance.h
 %constant kFloatError inline constexpr float kFloatError = {};

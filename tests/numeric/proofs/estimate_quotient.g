@@ -1,6 +1,6 @@
-# core/gridiron/ray/distance.h: the factor 2.25 of kUncertain. Where numerator and denominator are at least kUncertain times
-# the size of which kFloatError is their error, their quotient is within kEstimateError of the exact one.
-# Only ratios count: the rounded numerator and denominator are 1. N and D are the exact ones, h and k the shares of the
+# core/gridiron/ray/distance.h: the factor 2.25 of kUncertain. Where numerator and denominator are at least kUncertain
+# times the size of which kFloatError is their error, their quotient is within kEstimateError of the exact one. Only
+# ratios count: the rounded numerator and denominator are 1. N and D are the exact ones, h and k the shares of the
 # uncertainty; kUncertain is rounded once when multiplied. SPDX-License-Identifier: Apache-2.0
 %source core/gridiron/ray/packet.h
 %constant kEstimateError inline constexpr float kEstimateError = {};

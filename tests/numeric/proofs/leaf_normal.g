@@ -1,6 +1,6 @@
-# core/gridiron/engine/tree/leaf_test.h: kSideErrorFactor, of what sides, `size` and `ahead` take from the normal e1 x e2.
-# For fixed roundings all is linear in the six products e1_j e2_k, in corner - origin and in the direction. One product is 1,
-# the others are 0; signs are alike, so one of each component. SPDX-License-Identifier: Apache-2.0
+# core/gridiron/engine/tree/leaf_test.h: kSideErrorFactor, of what sides, `size` and `ahead` take from the normal e1 x
+# e2. For fixed roundings all is linear in the six products e1_j e2_k, in corner - origin and in the direction. One
+# product is 1, the others are 0; signs are alike, so one of each component. SPDX-License-Identifier: Apache-2.0
 %source core/gridiron/engine/tree/leaf_test.h
 %constant kSideErrorFactor inline constexpr float kSideErrorFactor = {};
 %proves kSideErrorFactor least 0.215
@@ -54,10 +54,17 @@
 %round far = 1 + 0 + (0 + 0)
 %round ahead_error = far * normal_error + 0
 
-{ B_x - A_x in [IN_Z, IN_Z] /\ B_y - A_y in [IN_X, IN_X] /\ B_z - A_z in [IN_Y, IN_Y] /\
+# What wide lanes rule out first: the largest component is at least a third of the sum, before it is rounded.
+%line wide_normal_error = normal_error * Float(3.0f);
+%line const auto away = (sum(most, wide_normal_error, ahead) < Float(-2.0f * kLeastAhead)) |
+%round most = a_third + 0
+%round wide_error = most * (normal_error * 3)
+
+{ a_third in [0x0.55555554p0, 1] /\
+  B_x - A_x in [IN_Z, IN_Z] /\ B_y - A_y in [IN_X, IN_X] /\ B_z - A_z in [IN_Y, IN_Y] /\
   C_x - A_x in [IN_Y, IN_Y] /\ C_y - A_y in [IN_Z, IN_Z] /\ C_z - A_z in [IN_X, IN_X] /\
   |d_x| <= 1 /\ |d_y| <= 1 /\ |d_z| <= 1 /\ dir_max in [1, 1] /\
   |A_x - o_x| <= 1 /\ |A_y - o_y| <= 1 /\ |A_z - o_z| <= 1 /\
   %roundings
   -> error - |third - exact_third| >= 0 /\ turn - |denominator - exact_denominator| >= 0 /\
-     ahead_error - |ahead - exact_ahead| >= 0 }
+     ahead_error - |ahead - exact_ahead| >= 0 /\ wide_error - |ahead - exact_ahead| >= 0 }

@@ -1,14 +1,14 @@
-# core/gridiron/ray/packet.h: kLinearError. A direction of a packet differs from the linear form first_dir + column step_x +
-# row step_y, which floats evaluate once, by at most linear_error. For fixed roundings the difference is linear in C, the
-# frame's corner, U = x_last step_x and V = y_last step_y, of which D = |C| + |U| + |V|: one of them is 1, the others are
-# 0. Columns are in units of x_last: x_0 >= -1/2 and at least 7 columns follow where the form is used: c is at most 14/13.
-# SPDX-License-Identifier: Apache-2.0
+# core/gridiron/ray/packet.h: kLinearError. A direction of a packet differs from the linear form first_dir + column
+# step_x + row step_y, which floats evaluate once, by at most linear_error. For fixed roundings the difference is
+# linear in C, the frame's corner, U = x_last step_x and V = y_last step_y, of which D = |C| + |U| + |V|: one of them
+# is 1, the others are 0. Columns are in units of x_last: x_0 >= -1/2 and at least 7 columns follow where the form is
+# used: c is at most 14/13. SPDX-License-Identifier: Apache-2.0
 %source core/gridiron/ray/packet.h
 %constant kLinearError inline constexpr float kLinearError = {};
 %proves kLinearError least 0.573
 %cases IN_C IN_U IN_V
-%case 1 0 0
 %case 0 1 0
+%case 1 0 0
 %case 0 0 1
 
 # Pixels are multiples of 1/32 below 2^18: x_0 + c is exact.

@@ -1,16 +1,16 @@
-# core/gridiron/ray/edges.h: kSubpacketErrorFactor, as squares, quarters and rows of rays use it: where the linear form says
-# that an edge function is below surely_outside everywhere in a place, it is below 0 for every ray of the place.
-# The difference is linear in the edge, in |S|1, in the parts C, U, V of D (pixel_direction.g), and in x_0, c_0 and the ray's
-# column in the place, which add up to x_last in magnitude, or 15/13 of it as x_0 >= -1/2: one of each is enough, and rows round no more than columns. One
-# component of S leaves two terms, one of each other component of d; each must be within half of the bound.
-# SPDX-License-Identifier: Apache-2.0
+# core/gridiron/ray/edges.h: kSubpacketErrorFactor, as squares, quarters and rows of rays use it: where the linear
+# form says that an edge function is below surely_outside everywhere in a place, it is below 0 for every ray of the
+# place. The difference is linear in the edge, in |S|1, in the parts C, U, V of D (pixel_direction.g), and in x_0, c_0
+# and the ray's column in the place, which add up to x_last in magnitude, or 15/13 of it as x_0 >= -1/2: one of each
+# is enough. Rows round no more than columns. One component of S leaves two terms, one of each other component of d;
+# each must be within half of the bound. SPDX-License-Identifier: Apache-2.0
 %source core/gridiron/ray/edges.h
 %constant kEdgeErrorFactor inline constexpr float kEdgeErrorFactor = {};
 %constant kSubpacketErrorFactor inline constexpr float kSubpacketErrorFactor = {};
 %proves kSubpacketErrorFactor least 0.545
 %cases IN_C IN_U IN_V X_0 C_0 T Y_0 R_0 W
-%case 1 0 0 0 0 0 0 0 0
 %case 0 1 0 0x1.28p0 0 0 0 0 0
+%case 1 0 0 0 0 0 0 0 0
 %case 0 1 0 0 0x1.28p0 0 0 0 0
 %case 0 1 0 0 0 1 0 0 0
 
