@@ -18,6 +18,9 @@
 %case 0x1p-5 0
 %case 0 0x1.56p-11
 
+%line return x * Float(projection.rows[k][0]) + y * Float(projection.rows[k][1]) + z * Float(projection.rows[k][2]);
+%line is_sure = is_sure & (size < depth * Float(projection.most_per_depth)) & (depth > Float(0x1p-80f));
+%line projection.most_per_depth = static_cast<float>(2.0 * bound_per_det * largest);
 %line const Float inverse = Float(1.0f) / depth;
 %line column[i] = along(1) * inverse;
 %line projection.margin = static_cast<float>(margin);
