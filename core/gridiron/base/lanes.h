@@ -521,6 +521,20 @@ struct Lanes {
       }
     }
   }
+  /// Four floats in every quad of lanes. @param source  aligned to 16 bytes.
+  [[nodiscard]] static GRIDIRON_INLINE Float repeat_quad(const float* source) {
+    const float* sources[W / 4];
+    for (int quad = 0; quad < W / 4; ++quad) sources[quad] = source;
+    return load_quads(sources);
+  }
+  /// Quad i of lanes is source[i].
+  [[nodiscard]] static GRIDIRON_INLINE Float splat_quads(const float* source) {
+    Float result(source[0]);
+    if constexpr (W >= 8) {
+      for (int i = 4; i < W; ++i) result.v[i] = source[i / 4];
+    }
+    return result;
+  }
   /// Rearranges each quad of lanes alike: indices 0..3 pick from a's quad, 4..7 from b's.
   template <int I0, int I1, int I2, int I3>
   [[nodiscard]] static GRIDIRON_INLINE Float shuffle_quads(Float a, Float b) {

@@ -295,6 +295,8 @@ struct Lanes {
     const Native::Float value = Native::reciprocal_estimate(a.v);
     return {value, emit(OpClass::kConvert, tie(value.v), a.node, emit(OpClass::kShuffle, tie(value.v), a.node))};
   }
+  [[nodiscard]] static Float repeat_quad(const Counted<float>* source) { return Float::load(source); }
+  [[nodiscard]] static Float splat_quads(const Counted<float>* source) { return Float(*source); }
   [[nodiscard]] static Float load_quads(const Counted<float>* const* sources) { return Float::load(sources[0]); }
   template <int I0, int I1, int I2, int I3>
   [[nodiscard]] static Float shuffle_quads(Float a, Float b) {

@@ -35,6 +35,8 @@ enum TileFunction : unsigned {
   kNearValue = 9,  ///< 1 / t or a little less
   kNearX,
   kNearY,
+  kOffsetX,    ///< pixel of the tile that functions are relative to
+  kOffsetY,
   kEdgeSpan,   ///< above it an edge's value is surely positive
   kNearSpan,   ///< 1 / t is less than this above its function
   kTileFunctions
@@ -56,6 +58,10 @@ struct alignas(128) TileMemory {
   alignas(64) float distance[kBlocks][kBlockPixels];  ///< t of the hit, rounded, where distances are asked for
   alignas(64) float least_near[kBlocks];  ///< least of a block's pixels
   alignas(64) float span[kBlocks];        ///< 1 / t of a block's hits is less than this above what stands there
+
+  // Directions of pixels are sums of a term of their column and one of their row, as FrameHead rounds them.
+  alignas(64) float column_direction[3][Width];
+  alignas(64) float row_direction[3][Width];
 
   alignas(64) std::uint32_t queue[kTileWords][2 * kMostLanes];
   alignas(64) float functions[kTileFunctions][kMostLanes];

@@ -22,15 +22,13 @@ struct EyeProjection {
   double sizes[3];     ///< sums of the rows' magnitudes
   double eye[3];
   double slack;        ///< times a row's size and a place's largest component: what doubles may lose
-  double direction;    ///< largest component by which rounding moves a direction off the linear one
   float dir_max;       ///< no component of a direction is larger
   bool is_trusted;     ///< if not, no bound holds and every pixel is decided exactly
 };
 
 /// Inverts the camera's matrix.
 ///
-/// A direction is a linear function of the pixel but for three roundings of at most kUnit each, of sums of magnitudes up
-/// to D: within 3 D kUnit, 4 are charged. Rows are products of two columns over the determinant: with doubles of 2^-52
+/// Rows are products of two columns over the determinant: with doubles of 2^-52
 /// their error is below 2^-50 |a||b| / det each, and the determinant's own relative error below 2^-49 scale / det. As
 /// det > 2^-12 scale, both together are below 2^-36 of a row's size.
 GRIDIRON_OUTLINE inline EyeProjection project_eye(const FrameHead& frame, float largest) {
@@ -65,11 +63,10 @@ GRIDIRON_OUTLINE inline EyeProjection project_eye(const FrameHead& frame, float 
     }
   }
   eye.slack = 0x1p-36;
-  eye.direction = 4.0 * kUnit * most;
   eye.dir_max = static_cast<float>(most * 1.0001);
   // Where pixels are far smaller than rounding, or numbers leave the range in which products of four keep their
   // precision, exact arithmetic decides everything.
-  const double moved = eye.direction * (eye.sizes[0] + eye.sizes[1] + (frame.width + frame.height) * eye.sizes[2]);
+  const double moved = 5.0 * kUnit * most * (eye.sizes[0] + eye.sizes[1] + (frame.width + frame.height) * eye.sizes[2]);
   eye.is_trusted = magnitude(det) > 0x1p-12 * scale && moved < 0x1p-6 && far < 0x1p40 && far * eye.sizes[2] < 0x1p24 &&
                    far * (eye.sizes[0] + eye.sizes[1]) < 0x1p36 && far * eye.sizes[2] > 0x1p-24;
   return eye;
@@ -98,8 +95,11 @@ inline constexpr double kPlaneMargin = 0x1p-5;
 /// rounded itself) 2, three sums 3 at most: 6 kUnit size |q|, and 1 of the result, which is at most that of the base
 /// and size |q|: 7 kUnit size |q| + 2 kUnit |base|. A pixel's place less an offset of up to `width` takes that much of
 /// w's error too, twice where a pixel is up to `width` away from the offset.
-GRIDIRON_OUTLINE inline void project_tile(const EyeProjection& eye, const TileView& view, std::uint32_t width,
-                                          float largest, TileProjection& tile) {
+///
+/// A direction's component is a linear function of the pixel but for four roundings of at most kUnit each: of two
+/// products and two sums. Over a tile each of them is largest at a corner.
+GRIDIRON_OUTLINE inline void project_tile(const FrameHead& frame, const EyeProjection& eye, const TileView& view,
+                                          std::uint32_t width, float largest, TileProjection& tile) {
   const double x = double(view.left) + double{view.dx}, y = double(view.top) + double{view.dy};
   double sizes[3] = {0.0, 0.0, 0.0}, most = double{largest};
   for (int axis = 0; axis < 3; ++axis) {
@@ -118,8 +118,19 @@ GRIDIRON_OUTLINE inline void project_tile(const EyeProjection& eye, const TileVi
   tile.error_per_size = static_cast<float>(7.1 * kUnit * size);
   tile.error_per_base = static_cast<float>(2.1 * kUnit);
   tile.base_error = static_cast<float>(eye.slack * lost * 2.0 * most + 0x1p-100);
-  tile.direction_error = static_cast<float>(1.01 * eye.direction * size);
-  tile.w_error = static_cast<float>(2.0 * eye.direction * sizes[2]);
+  double moved[3] = {0.0, 0.0, 0.0};
+  for (int axis = 0; axis < 3; ++axis) {
+    const auto larger = [](double a, double b) { return magnitude(a) > magnitude(b) ? magnitude(a) : magnitude(b); };
+    const double corner = frame.corner[axis], step_x = frame.step_x[axis], step_y = frame.step_y[axis];
+    const double x1 = x + width, y1 = y + width, left = corner + x * step_x, right = corner + x1 * step_x;
+    const double top = y * step_y, bottom = y1 * step_y;
+    const double ends = larger(larger(left + top, left + bottom), larger(right + top, right + bottom));
+    const double off = kUnit * (larger(x * step_x, x1 * step_x) + larger(left, right) + larger(top, bottom) + ends);
+    for (int row = 0; row < 3; ++row) moved[row] += magnitude(tile.exact_rows[row][axis]) * off;
+  }
+  tile.direction_error =
+      static_cast<float>(1.01 * ((moved[0] > moved[1] ? moved[0] : moved[1]) + span * moved[2]));
+  tile.w_error = static_cast<float>(1.01 * moved[2]);
   const double last = double(width - 1) + kPlaneMargin;
   for (int plane = 0; plane < 5; ++plane) {
     double values[3], offset = 0.0, sum = 0.0;

@@ -79,13 +79,15 @@ class TileTracer {
     wants_facing_ = wants_facing;
     wants_distance_ = wants_distance;
     trusts_floats_ = frame.accuracy == static_cast<std::uint32_t>(Accuracy::kFast);
-    project_tile(eye, view, Width, largest, tile_);
+    project_tile(frame, eye, view, Width, largest, tile_);
     const std::uint32_t columns = frame.width - view.left, rows = frame.height - view.top;
     columns_ = columns < Width ? columns : Width;
     rows_ = rows < Width ? rows : Width;
     last_x_ = static_cast<float>(columns_ - 1);
     last_y_ = static_cast<float>(rows_ - 1);
+    if (wants_facing || wants_distance) set_up_directions();
     queued_ = 0;
+    dirty_ = 0;
     is_cleared_ = false;
     least_near_ = 0.0f;
     far_ = kFloatMax;
@@ -104,17 +106,15 @@ class TileTracer {
     if (memory_.stack_w[top_] > far_) return Status::kOk;
     const TreeChild child{memory_.stack[top_]};
     if (child.is_leaf()) {
-      GRIDIRON_TRY(visit_leaf(child));
-    } else {
-      const TreeNode* node = nullptr;
-      GRIDIRON_TRY(source_.node(child.node_index(), node));
-      push_children(*node);
+      // One more child comes into the window.
+      if (top_ >= source_.window()) GRIDIRON_TRY(ask_for(top_ - source_.window()));
+      return visit_leaf(child);
     }
-    work_.charge_to(TileWork::kChild);
-    for (std::uint32_t i = 1; i <= source_.window() && i <= top_; ++i) {
-      if (memory_.stack_w[top_ - i] > far_) continue;
-      GRIDIRON_TRY(source_.ahead(TreeChild{memory_.stack[top_ - i]}));
-    }
+    const TreeNode* node = nullptr;
+    GRIDIRON_TRY(source_.node(child.node_index(), node));
+    if (dirty_ != 0) update_least();
+    push_children(*node);
+    for (std::uint32_t i = 1; i <= source_.window() && i <= top_; ++i) GRIDIRON_TRY(ask_for(top_ - i));
     return Status::kOk;
   }
 
@@ -181,14 +181,30 @@ class TileTracer {
   }
   // Directions of a group of pixels, as FrameHead defines them.
   GRIDIRON_INLINE void directions(std::uint32_t block, std::uint32_t i, Float (&dir)[3]) const {
-    const auto& places = kTilePlaces<Width>;
+    const std::uint32_t column = block % kRow * kBlockWidth, row = block / kRow * kBlockWidth + i / kBlockWidth;
+    for (int axis = 0; axis < 3; ++axis) {
+      dir[axis] = L::repeat_quad(memory_.column_direction[axis] + column) +
+                  L::splat_quads(memory_.row_direction[axis] + row);
+    }
+  }
+  // The two terms of directions: pixel_direction().
+  GRIDIRON_OUTLINE void set_up_directions() {
     const float left = static_cast<float>(view_.left) + view_.dx, top = static_cast<float>(view_.top) + view_.dy;
-    const Float x = Float(left + places.block_column[block]) + Float::load(places.column + i);
-    const Float y = Float(top + places.block_row[block]) + Float::load(places.row + i);
-    for (int axis = 0; axis < 3; ++axis) dir[axis] = pixel_direction(*frame_, axis, x, y);
+    for (int axis = 0; axis < 3; ++axis) {
+      const float corner = frame_->corner[axis], step_x = frame_->step_x[axis], step_y = frame_->step_y[axis];
+      for (std::uint32_t i = 0; i < Width; ++i) {
+        const float place = static_cast<float>(i);
+        memory_.column_direction[axis][i] = corner + (left + place) * step_x;
+        memory_.row_direction[axis][i] = (top + place) * step_y;
+      }
+    }
   }
   [[nodiscard]] static GRIDIRON_INLINE Float length_of(const Float (&dir)[3]) {
     return L::square_root((dir[0] * dir[0] + dir[1] * dir[1]) + dir[2] * dir[2]);
+  }
+
+  [[nodiscard]] GRIDIRON_INLINE Status ask_for(std::uint32_t place) {
+    return memory_.stack_w[place] > far_ ? Status::kOk : source_.ahead(TreeChild{memory_.stack[place]});
   }
 
   GRIDIRON_INLINE void push_children(const TreeNode& node) {
@@ -308,7 +324,6 @@ class TileTracer {
     work_.add(TileWork::kFunctionGroup);
     work_.charge_to(TileWork::kFunctionGroup);
     TileGroup group = set_up_group<L, Width>(memory_, tile_, 0, (1u << count) - 1, least_near_);
-    dirty_ = 0;
     if (trusts_floats_) trust_floats();
     std::uint32_t rest = group.drawn;
     if (count_bits(group.tiny) >= kLeastTiny) {
@@ -326,7 +341,6 @@ class TileTracer {
         Int::load(memory_.queue[word] + kLanes).store(memory_.queue[word]);
       }
     }
-    if (dirty_ != 0) update_least();
     return Status::kOk;
   }
   static constexpr std::uint32_t kLeastTiny = kLanes < 16 ? 1 : 4;
@@ -341,28 +355,29 @@ class TileTracer {
   [[nodiscard]] GRIDIRON_INLINE Status draw_tiny(std::uint32_t tiny) {
     const auto function = [&](std::uint32_t kind) GRIDIRON_INLINE_LAMBDA { return Float::load(memory_.functions[kind]); };
     const Int box = Int::load(memory_.boxes);
-    const Int byte = Int::splat(0xFF), in_block = Int::splat(kBlockWidth - 1), one = Int::splat(1);
+    const Int byte = Int::splat(0xFF);
     const Int ix0 = box & byte, iy0 = (box >> 8) & byte, ix1 = (box >> 16) & byte, iy1 = (box >> 24) & byte;
     const Float edge_span = function(kEdgeSpan);
-    const Float x = L::to_float(ix0 & in_block), y = L::to_float(iy0 & in_block);
+    const Float x = L::to_float(ix0) - function(kOffsetX), y = L::to_float(iy0) - function(kOffsetY);
+    // Which triangles have a second and a third row or column.
+    const Int one = Int::splat(1);
+    const std::uint32_t columns[3] = {tiny, (ix0 < ix1).bits() & tiny, (ix0 + one < ix1).bits() & tiny};
+    const std::uint32_t lines[3] = {tiny, (iy0 < iy1).bits(), (iy0 + one < iy1).bits()};
     Float left[4];
     for (std::uint32_t k = 0; k < 3; ++k) {
       left[k] = L::bounded_sum(function(kEdgeX + k), x, L::bounded_sum(function(kEdgeY + k), y, function(kEdgeValue + k)));
     }
     left[3] = L::bounded_sum(function(kNearX), x, L::bounded_sum(function(kNearY), y, function(kNearValue)));
     for (std::uint32_t row = 0; row < 3; ++row) {
-      const Int py = iy0 + Int::splat(row);
-      const std::uint32_t rows = (py < iy1 + one).bits() & tiny;
-      if (rows == 0) break;
+      if ((lines[row] & tiny) == 0) break;
       Float value[4] = {left[0], left[1], left[2], left[3]};
       for (std::uint32_t column = 0; column < 3; ++column) {
-        const Int px = ix0 + Int::splat(column);
-        const std::uint32_t here = (px < ix1 + one).bits() & rows;
+        const std::uint32_t here = columns[column] & lines[row];
         if (here == 0) break;
         work_.add(TileWork::kTinyPlace);
         work_.charge_to(TileWork::kTinyPlace);
         const Float least = L::min(L::min(value[0], value[1]), value[2]);
-        const std::uint32_t met = (least >= Float(0.0f)).bits() & here;
+        const std::uint32_t met = (least > Float(0.0f)).bits() & here;
         if (met != 0) {
           const std::uint32_t sure = (least > edge_span).bits();
           alignas(64) float near[kLanes];
@@ -442,10 +457,15 @@ class TileTracer {
     const std::uint32_t box = memory_.boxes[i];
     const std::uint32_t bx0 = (box & 0xFFu) / kBlockWidth, by0 = (box >> 8 & 0xFFu) / kBlockWidth,
                         bx1 = (box >> 16 & 0xFFu) / kBlockWidth, by1 = (box >> 24) / kBlockWidth;
-    if ((bx1 - bx0 + 1) * (by1 - by0 + 1) > kFewBlocks) return draw_many_blocks(drawn, bx0, by0, bx1, by1);
-    Float y(0.0f);
+    const Float offset_x(memory_.functions[kOffsetX][i]), offset_y(memory_.functions[kOffsetY][i]);
+    if ((bx1 - bx0 + 1) * (by1 - by0 + 1) > kFewBlocks) {
+      return draw_many_blocks(drawn, bx0, by0, bx1, by1, offset_x, offset_y);
+    }
+    const std::uint32_t first = by0 * kRow + bx0;
+    const Float left = Float(kTilePlaces<Width>.block_column[first]) - offset_x;
+    Float y = Float(kTilePlaces<Width>.block_row[first]) - offset_y;
     for (std::uint32_t by = by0; by <= by1; ++by) {
-      Float x(0.0f);
+      Float x = left;
       for (std::uint32_t bx = bx0; bx <= bx1; ++bx) {
         GRIDIRON_TRY(draw_block<false>(drawn, by * kRow + bx, x, y));
         x = x + Float(kBlockStep);
@@ -458,7 +478,8 @@ class TileTracer {
 
   // Blocks are looked at in lanes: which the triangle may touch in front of what is there, which it covers.
   [[nodiscard]] GRIDIRON_OUTLINE Status draw_many_blocks(const Drawn& f, std::uint32_t bx0, std::uint32_t by0,
-                                                         std::uint32_t bx1, std::uint32_t by1) {
+                                                         std::uint32_t bx1, std::uint32_t by1, Float offset_x,
+                                                         Float offset_y) {
     static constexpr float kLast = kBlockWidth - 1.0f;
     const auto& places = kTilePlaces<Width>;
     Float most[4], least[3];
@@ -468,9 +489,8 @@ class TileTracer {
       if (k < 3) least[k] = (L::min(f.x[k], zero) + L::min(f.y[k], zero)) * last + f.value[k];
     }
     most[3] = most[3] + f.near_span;
-    const float left = static_cast<float>(bx0 * kBlockWidth), top = static_cast<float>(by0 * kBlockWidth);
-    const float right = static_cast<float>((bx1 - bx0) * kBlockWidth),
-                bottom = static_cast<float>((by1 - by0) * kBlockWidth);
+    const float left = places.block_column[bx0] - 1.0f, right = places.block_column[bx1] + 1.0f;
+    const float top = places.block_row[by0 * kRow] - 1.0f, bottom = places.block_row[by1 * kRow] + 1.0f;
     const std::uint32_t begin = (by0 * kRow + (kLanes <= kRow ? bx0 : std::uint32_t{0})) & ~(kLanes - 1);
     for (std::uint32_t base = begin; base <= by1 * kRow + bx1; base += kLanes) {
       if constexpr (kLanes < kRow) {
@@ -479,28 +499,28 @@ class TileTracer {
       }
       work_.add(TileWork::kBlockGroup);
       work_.charge_to(TileWork::kBlockGroup);
-      const Float x = Float::load(places.block_column + base) - Float(left);
-      const Float y = Float::load(places.block_row + base) - Float(top);
-      auto met = (x >= Float(0.0f)) & (x <= Float(right)) & (y >= Float(0.0f)) & (y <= Float(bottom));
+      const Float column = Float::load(places.block_column + base), line = Float::load(places.block_row + base);
+      const Float x = column - offset_x, y = line - offset_y;
+      auto met = (column > Float(left)) & (column < Float(right)) & (line > Float(top)) & (line < Float(bottom));
       auto covered = met;
       for (int k = 0; k < 3; ++k) {
         const Float along = L::bounded_sum(f.x[k], x, f.y[k] * y);
-        met = met & (along + most[k] >= Float(0.0f));
+        met = met & (along + most[k] > Float(0.0f));
         covered = covered & (along + least[k] > f.edge_span);
       }
-      met = met & (L::bounded_sum(f.x[3], x, L::bounded_sum(f.y[3], y, most[3])) >= Float::load(memory_.least_near + base));
+      met = met & (L::bounded_sum(f.x[3], x, L::bounded_sum(f.y[3], y, most[3])) > Float::load(memory_.least_near + base));
       const std::uint32_t all = met.bits();
       if (all == 0) continue;
       const std::uint32_t full = covered.bits() & all;
       for (std::uint32_t rest = all & ~full; rest != 0; rest &= rest - 1) {
         const std::uint32_t block = base + lowest_bit(rest);
-        GRIDIRON_TRY(draw_block<false>(f, block, Float(places.block_column[block] - left),
-                                       Float(places.block_row[block] - top)));
+        GRIDIRON_TRY(draw_block<false>(f, block, Float(places.block_column[block]) - offset_x,
+                                       Float(places.block_row[block]) - offset_y));
       }
       for (std::uint32_t rest = full; rest != 0; rest &= rest - 1) {
         const std::uint32_t block = base + lowest_bit(rest);
-        GRIDIRON_TRY(draw_block<true>(f, block, Float(places.block_column[block] - left),
-                                      Float(places.block_row[block] - top)));
+        GRIDIRON_TRY(draw_block<true>(f, block, Float(places.block_column[block]) - offset_x,
+                                      Float(places.block_row[block]) - offset_y));
       }
     }
     return Status::kOk;
@@ -516,31 +536,40 @@ class TileTracer {
     for (int k = kCovered ? 3 : 0; k < 4; ++k) {
       value[k] = L::bounded_sum(f.x[k], x, L::bounded_sum(f.y[k], y, f.start[k]));
     }
+    // What decides a pixel: the least edge function, and how far the triangle is in front; both with the error that may
+    // be.
+    Float inside[kGroups], ahead[kGroups], near[kGroups];
+    typename L::Mask met[kGroups];
+    Float any(-1.0f);
+    for (std::uint32_t group = 0; group < kGroups; ++group) {
+      near[group] = value[3];
+      ahead[group] = value[3] - Float::load(memory_.near[block] + group * kLanes);
+      Float possible = ahead[group] + f.near_span;
+      if constexpr (!kCovered) {
+        inside[group] = L::min(L::min(value[0], value[1]), value[2]);
+        possible = L::min(possible, inside[group]);
+      }
+      any = group == 0 ? possible : L::max(any, possible);
+      met[group] = possible > Float(0.0f);
+      if (group + 1 < kGroups) {
+        for (int k = kCovered ? 3 : 0; k < 4; ++k) value[k] = value[k] + f.step[k];
+      }
+    }
+    if ((any > Float(0.0f)).bits() == 0) return Status::kOk;
     const Float old_span(memory_.span[block]);
     std::uint32_t open = 0, taken = 0;
     for (std::uint32_t group = 0; group < kGroups; ++group) {
       const std::uint32_t pixel = group * kLanes;
-      float* const near = memory_.near[block] + pixel;
-      const Float old = Float::load(near);
-      auto met = value[3] + f.near_span >= old;
-      auto sure = value[3] > old + old_span;
-      if constexpr (!kCovered) {
-        const Float least = L::min(L::min(value[0], value[1]), value[2]);
-        met = met & (least >= Float(0.0f));
-        sure = sure & (least > f.edge_span);
-      }
-      sure = sure & met;
+      Float surely = ahead[group] - old_span;
+      if constexpr (!kCovered) surely = L::min(surely, inside[group] - f.edge_span);
+      const auto sure = (surely > Float(0.0f)) & met[group];
       const std::uint32_t sure_bits = sure.bits();
-      open |= (met.bits() ^ sure_bits) << pixel;
+      open |= (met[group].bits() ^ sure_bits) << pixel;
       taken |= sure_bits << pixel;
-      if (kGroups == 1 || sure_bits != 0) {
-        L::select(sure, value[3], old).store(near);
-        L::store_where(sure, f.id, memory_.id[block] + pixel);
-        L::store_where(sure, f.record, memory_.record[block] + pixel);
-      }
-      if (group + 1 < kGroups) {
-        for (int k = kCovered ? 3 : 0; k < 4; ++k) value[k] = value[k] + f.step[k];
-      }
+      float* const target = memory_.near[block] + pixel;
+      L::select(sure, near[group], Float::load(target)).store(target);
+      L::store_where(sure, f.id, memory_.id[block] + pixel);
+      L::store_where(sure, f.record, memory_.record[block] + pixel);
     }
     if (taken != 0) {
       memory_.span[block] = f.span > memory_.span[block] ? f.span : memory_.span[block];
@@ -617,6 +646,7 @@ class TileTracer {
         memory_.least_near[block] = found;
       }
     }
+    dirty_ = 0;
     if (empty_blocks_ != 0) return;
     Float least = Float::load(memory_.least_near);
     for (std::uint32_t i = kLanes; i < Memory::kBlocks; i += kLanes) {
@@ -658,7 +688,6 @@ class TileTracer {
     }
     dirty_ = ~std::uint64_t{0};
     update_least();
-    dirty_ = 0;
   }
 
   // Pixels of a box, one by one.
@@ -737,8 +766,8 @@ class TileTracer {
           if (!is_first) continue;
         }
       }
-      const float near = (1.0f / t) * (1.0f - 0x1p-18f);
-      const float stored = near < kMostStoredNear ? near : kMostStoredNear, span = stored * 0x1p-16f;
+      const float near = (1.0f / t) * (1.0f - 0x1p-19f);
+      const float stored = near < kMostStoredNear ? near : kMostStoredNear, span = stored * 0x1p-17f;
       memory_.near[block][pixel] = stored;
       memory_.id[block][pixel] = triangle.triangle_id;
       memory_.record[block][pixel] = record;

@@ -177,8 +177,7 @@ struct TileGroup {
   std::uint32_t careful;  ///< have no bound: exact arithmetic decides their pixels
 };
 
-/// Makes functions of L::kCount triangles of the queue, those from `first` on, relative to the first pixel of the block
-/// of each box.
+/// Makes functions of L::kCount triangles of the queue, those from `first` on, relative to the middle of each box.
 /// @param there  lanes with triangles. @param least_near  1 / t below which everything is hidden.
 template <class L, std::uint32_t Width>
 [[nodiscard]] GRIDIRON_INLINE TileGroup set_up_group(TileMemory<Width>& memory, const TileProjection& tile,
@@ -191,8 +190,7 @@ template <class L, std::uint32_t Width>
   const Int box = Int::load(memory.queue[kPixelBox] + first);
   const Int byte = Int::splat(0xFF);
   const Int ix0 = box & byte, iy0 = (box >> 8) & byte, ix1 = (box >> 16) & byte, iy1 = (box >> 24) & byte;
-  const Int block = Int::splat(~(kBlockWidth - 1));
-  const Float ox = L::to_float(ix0 & block), oy = L::to_float(iy0 & block);
+  const Float ox = L::to_float((ix0 + ix1) >> 1), oy = L::to_float((iy0 + iy1) >> 1);
   const Float x0 = L::to_float(ix0) - ox, y0 = L::to_float(iy0) - oy;
   const Float x1 = L::to_float(ix1) - ox, y1 = L::to_float(iy1) - oy;
 
@@ -207,6 +205,7 @@ template <class L, std::uint32_t Width>
     most_y = L::larger_size(most_y, y[corner]);
     most_w = L::larger_size(most_w, w[corner]);
   }
+  // The offset is no farther from the first pixel than from the last; blocks reach beyond the box.
   const Float reach = L::max(x1, y1) + Float(kBlockWidth - 1.0f);
   const Float size = L::bounded_sum(reach, most_w, L::max(most_x, most_y));
   const Float moved = word(kCornerError) + size * Float(0x1p-23f) +
@@ -257,13 +256,13 @@ template <class L, std::uint32_t Width>
     return value + L::max(along_x * x0, along_x * x1) + L::max(along_y * y0, along_y * y1);
   };
   const Float near_value = near_w - near_error;
-  auto is_drawn = most_in_box(near_value, near_x, near_y) + (near_error + near_error) >= Float(least_near);
+  auto is_drawn = most_in_box(near_value, near_x, near_y) + (near_error + near_error) > Float(least_near);
   for (std::uint32_t i = 0; i < 3; ++i) {
     const std::uint32_t next = i == 2 ? std::uint32_t{0} : i + 1;
     const Float edge_x = L::turn_by(volume, y[i] * w[next] - w[i] * y[next]);
     const Float edge_y = L::turn_by(volume, w[i] * x[next] - x[i] * w[next]);
     const Float value = L::turn_by(volume, x[i] * y[next] - y[i] * x[next]) + edge_error;
-    is_drawn = is_drawn & (most_in_box(value, edge_x, edge_y) >= Float(0.0f));
+    is_drawn = is_drawn & (most_in_box(value, edge_x, edge_y) > Float(0.0f));
     value.store(memory.functions[kEdgeValue + i]);
     edge_x.store(memory.functions[kEdgeX + i]);
     edge_y.store(memory.functions[kEdgeY + i]);
@@ -274,6 +273,8 @@ template <class L, std::uint32_t Width>
   near_value.store(memory.functions[kNearValue]);
   near_x.store(memory.functions[kNearX]);
   near_y.store(memory.functions[kNearY]);
+  ox.store(memory.functions[kOffsetX]);
+  oy.store(memory.functions[kOffsetY]);
   (edge_error + edge_error).store(memory.functions[kEdgeSpan]);
   (near_error + near_error).store(memory.functions[kNearSpan]);
   box.store(memory.boxes);
