@@ -523,8 +523,9 @@ struct Lanes {
   }
   /// Four floats in every quad of lanes. @param source  aligned to 16 bytes.
   [[nodiscard]] static GRIDIRON_INLINE Float repeat_quad(const float* source) {
-    const float* sources[W / 4];
-    for (int quad = 0; quad < W / 4; ++quad) sources[quad] = source;
+    static constexpr unsigned kQuads = W / 4;
+    const float* sources[kQuads];
+    for (const float*& quad : sources) quad = source;
     return load_quads(sources);
   }
   /// Quad i of lanes is source[i].

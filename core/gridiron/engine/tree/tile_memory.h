@@ -71,6 +71,7 @@ struct alignas(128) TileMemory {
 
   std::uint32_t stack[kStackEntries];  ///< TreeChild::bits
   float stack_w[kStackEntries];        ///< no corner in it has a lesser w
+  float stack_size[kStackEntries];     ///< largest extent of its box
 };
 
 }  // namespace gridiron

@@ -94,6 +94,7 @@ class TileTracer {
     top_ = 1;
     memory_.stack[0] = TreeChild::node(0).bits;
     memory_.stack_w[0] = 0.0f;
+    memory_.stack_size[0] = 0.0f;
     return source_.ahead(TreeChild::node(0));
   }
 
@@ -108,7 +109,7 @@ class TileTracer {
     if (child.is_leaf()) {
       // One more child comes into the window.
       if (top_ >= source_.window()) GRIDIRON_TRY(ask_for(top_ - source_.window()));
-      return visit_leaf(child);
+      return visit_leaf(child, memory_.stack_size[top_]);
     }
     const TreeNode* node = nullptr;
     GRIDIRON_TRY(source_.node(child.node_index(), node));
@@ -210,7 +211,7 @@ class TileTracer {
   GRIDIRON_INLINE void push_children(const TreeNode& node) {
     work_.add(TileWork::kBoxGroup, (node.child_count + (kLanes - 1)) / kLanes);
     work_.charge_to(TileWork::kBoxGroup);
-    alignas(64) float least_w[kTreeWidth];
+    alignas(64) float least_w[kTreeWidth], sizes[kTreeWidth];
     std::uint32_t met = 0;
     for (std::uint32_t base = 0; base < node.child_count; base += kLanes) {
       const auto plane = [&](int p, bool is_least) GRIDIRON_INLINE_LAMBDA {
@@ -224,6 +225,10 @@ class TileTracer {
       const Float w = plane(4, true);
       const Float inside = L::min(L::min(plane(0, false), plane(1, false)), L::min(plane(2, false), plane(3, false)));
       w.store(least_w + base);
+      const auto extent = [&](int axis) GRIDIRON_INLINE_LAMBDA {
+        return Float::load(node.high[axis] + base) - Float::load(node.low[axis] + base);
+      };
+      L::max(L::max(extent(0), extent(1)), extent(2)).store(sizes + base);
       met |= ((inside >= Float(0.0f)) & (w <= Float(far_))).bits() << base;
     }
     if (!eye_->is_trusted) met = ~0u;
@@ -238,16 +243,18 @@ class TileTracer {
       for (; place > bottom && memory_.stack_w[place - 1] < w; --place) {
         memory_.stack[place] = memory_.stack[place - 1];
         memory_.stack_w[place] = memory_.stack_w[place - 1];
+        memory_.stack_size[place] = memory_.stack_size[place - 1];
       }
       memory_.stack[place] = node.children[i].bits;
       memory_.stack_w[place] = w;
+      memory_.stack_size[place] = sizes[i];
       ++top;
     }
     work_.add(TileWork::kChild, top - bottom);
     top_ = top;
   }
 
-  [[nodiscard]] GRIDIRON_INLINE Status visit_leaf(TreeChild child) {
+  [[nodiscard]] GRIDIRON_INLINE Status visit_leaf(TreeChild child, float size) {
     if (!is_cleared_) clear();
     const VertexTriangle* records = nullptr;
     GRIDIRON_TRY(source_.leaf(child, records));
@@ -256,13 +263,13 @@ class TileTracer {
       return decide_all(child);
     work_.add(TileWork::kLeaf);
     work_.charge_to(TileWork::kLeaf);
-    const LeafBase base(*eye_, tile_, records[0]);
+    const LeafBase base(*eye_, tile_, Width, records[0], size);
     for (std::uint32_t first = 0; first < count; first += kLanes) {
       const std::uint32_t here = count - first < kLanes ? count - first : kLanes;
       work_.add(TileWork::kCornerGroup);
       work_.charge_to(TileWork::kCornerGroup);
       LeafCorners<L> corners;
-      corners.template project<Width>(tile_, base, records + first, here);
+      corners.project(tile_, base, records + first, here);
       Int box;
       const std::uint32_t kept = corners.template cull<Width>(far_, last_x_, last_y_, box) & ((1u << here) - 1);
       if (kept == 0) continue;
@@ -284,7 +291,7 @@ class TileTracer {
       put(kCornerY + i, L::words_of(corners.y[i]));
       put(kCornerW + i, L::words_of(corners.w[i]));
     }
-    put(kCornerError, L::words_of(corners.error));
+    put(kCornerError, L::words_of(Float(corners.error)));
     put(kPixelBox, box);
     put(kRecord, Int::splat(first_record) + Int::load(kLaneNumbers.lane));
     put(kTriangleId, L::words_of(corners.id));
@@ -357,7 +364,6 @@ class TileTracer {
     const Int box = Int::load(memory_.boxes);
     const Int byte = Int::splat(0xFF);
     const Int ix0 = box & byte, iy0 = (box >> 8) & byte, ix1 = (box >> 16) & byte, iy1 = (box >> 24) & byte;
-    const Float edge_span = function(kEdgeSpan);
     const Float x = L::to_float(ix0) - function(kOffsetX), y = L::to_float(iy0) - function(kOffsetY);
     // Which triangles have a second and a third row or column.
     const Int one = Int::splat(1);
@@ -368,31 +374,28 @@ class TileTracer {
       left[k] = L::bounded_sum(function(kEdgeX + k), x, L::bounded_sum(function(kEdgeY + k), y, function(kEdgeValue + k)));
     }
     left[3] = L::bounded_sum(function(kNearX), x, L::bounded_sum(function(kNearY), y, function(kNearValue)));
+    const Float edge_x[3] = {function(kEdgeX), function(kEdgeX + 1), function(kEdgeX + 2)}, near_x = function(kNearX);
+    alignas(64) float inside[3][kLanes], near[3][kLanes];
     for (std::uint32_t row = 0; row < 3; ++row) {
       if ((lines[row] & tiny) == 0) break;
       Float value[4] = {left[0], left[1], left[2], left[3]};
+      std::uint64_t met = 0;  // triangles that may be hit, pixel after pixel of the row
       for (std::uint32_t column = 0; column < 3; ++column) {
         const std::uint32_t here = columns[column] & lines[row];
         if (here == 0) break;
         work_.add(TileWork::kTinyPlace);
-        work_.charge_to(TileWork::kTinyPlace);
         const Float least = L::min(L::min(value[0], value[1]), value[2]);
-        const std::uint32_t met = (least > Float(0.0f)).bits() & here;
-        if (met != 0) {
-          const std::uint32_t sure = (least > edge_span).bits();
-          alignas(64) float near[kLanes];
-          value[3].store(near);
-          for (std::uint32_t rest = met; rest != 0; rest &= rest - 1) {
-            const std::uint32_t i = lowest_bit(rest);
-            GRIDIRON_TRY(draw_pixel(i, column, row, near[i], (sure >> i & 1u) != 0));
-          }
-          work_.charge_to(TileWork::kTinyPlace);
-        }
-        if (column < 2) {
-          for (std::uint32_t k = 0; k < 3; ++k) value[k] = value[k] + function(kEdgeX + k);
-          value[3] = value[3] + function(kNearX);
-        }
+        least.store(inside[column]);
+        value[3].store(near[column]);
+        met |= std::uint64_t{(least > Float(0.0f)).bits() & here} << (column * kLanes);
+        for (std::uint32_t k = 0; k < 3; ++k) value[k] = value[k] + edge_x[k];
+        value[3] = value[3] + near_x;
       }
+      for (; met != 0; met &= met - 1) {
+        const std::uint32_t place = lowest_bit(met), column = place / kLanes, i = place % kLanes;
+        GRIDIRON_TRY(draw_pixel(i, column, row, near[column][i], inside[column][i] > memory_.functions[kEdgeSpan][i]));
+      }
+      work_.charge_to(TileWork::kTinyPlace);
       for (std::uint32_t k = 0; k < 3; ++k) left[k] = left[k] + function(kEdgeY + k);
       left[3] = left[3] + function(kNearY);
     }

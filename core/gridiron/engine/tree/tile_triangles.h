@@ -18,9 +18,11 @@ namespace gridiron {
 struct LeafBase {
   float place[3];   ///< world space
   float base[3];    ///< column w, row w, w
-  float error;      ///< of these
+  float error;      ///< of a coordinate of any of the leaf's corners, w's counted 2 width times
 
-  GRIDIRON_INLINE LeafBase(const EyeProjection& eye, const TileProjection& tile, const VertexTriangle& first) {
+  /// @param width  of the tile, in pixels. @param size  no corner is farther from another, along any axis.
+  GRIDIRON_INLINE LeafBase(const EyeProjection& eye, const TileProjection& tile, std::uint32_t width,
+                           const VertexTriangle& first, float size) {
     double way[3];
     for (int axis = 0; axis < 3; ++axis) {
       place[axis] = first.v[0][axis];
@@ -31,7 +33,8 @@ struct LeafBase {
       base[row] = static_cast<float>(r[0] * way[0] + r[1] * way[1] + r[2] * way[2]);
     }
     const float column = magnitude(base[0]), line = magnitude(base[1]);
-    error = (column > line ? column : line) * tile.error_per_base + tile.base_error;
+    const float bases = (column > line ? column : line) + 2.0f * static_cast<float>(width) * magnitude(base[2]);
+    error = size * tile.error_per_size + bases * tile.error_per_base + tile.base_error;
   }
 };
 
@@ -48,21 +51,17 @@ struct LeafCorners {
   using Float = typename L::Float;
   Float vertices[3][3];  ///< corner, axis; world space
   Float id;              ///< pattern of triangle_id
-  Float x[3], y[3], w[3], error;
+  Float x[3], y[3], w[3];
+  float error;
 
-  /// @param triangles  L::kCount of them; a shorter group repeats one.
-  /// @tparam Width  of the tile.
-  template <std::uint32_t Width>
+  /// @param triangles  `count` of them; a shorter group of lanes repeats the last.
   GRIDIRON_INLINE void project(const TileProjection& tile, const LeafBase& leaf, const VertexTriangle* triangles,
                                std::uint32_t count) {
     load(triangles, count);
-    Float most(0.0f);
+    error = leaf.error;
     for (int corner = 0; corner < 3; ++corner) {
       Float q[3];
-      for (int axis = 0; axis < 3; ++axis) {
-        q[axis] = vertices[corner][axis] - Float(leaf.place[axis]);
-        most = L::larger_size(most, q[axis]);
-      }
+      for (int axis = 0; axis < 3; ++axis) q[axis] = vertices[corner][axis] - Float(leaf.place[axis]);
       const auto along = [&](int row) GRIDIRON_INLINE_LAMBDA {
         const float* const r = tile.rows[row];
         return L::bounded_sum(
@@ -72,9 +71,6 @@ struct LeafCorners {
       y[corner] = along(1);
       w[corner] = along(2);
     }
-    // w's own error counts 2 Width times.
-    const float base = leaf.error + 2.0f * float(Width) * (magnitude(leaf.base[2]) * tile.error_per_base);
-    error = L::bounded_sum(most, Float(tile.error_per_size), Float(base));
   }
 
   /// @returns the triangles that may cover a pixel's centre and are not surely behind all hits, as bits.
@@ -89,7 +85,7 @@ struct LeafCorners {
       column[corner] = x[corner] * inverse;
       row[corner] = y[corner] * inverse;
     }
-    const auto is_near = least_w > error * Float(kLeastSureW);  // else pixels cannot be told
+    const auto is_near = least_w > Float(error * kLeastSureW);  // else pixels cannot be told
     const auto range = [&](const Float* place, float last, Float& first, Float& end) GRIDIRON_INLINE_LAMBDA {
       const Float low = L::min(L::min(place[0], place[1]), place[2]) + Float(1.0f - 0x1p-10f - kBoxMargin);
       const Float high = L::max(L::max(place[0], place[1]), place[2]) + Float(kBoxMargin);
@@ -105,7 +101,7 @@ struct LeafCorners {
     const auto ix1 = L::truncate(L::max(x1, Float(-1.0f))), iy1 = L::truncate(L::max(y1, Float(-1.0f)));
     const auto one = L::Int::splat(1);
     box = ix0 | (iy0 << 8) | (ix1 << 16) | (iy1 << 24);
-    const auto kept = far_end & (ix0 < ix1 + one) & (iy0 < iy1 + one) & (most_w > -error);
+    const auto kept = far_end & (ix0 < ix1 + one) & (iy0 < iy1 + one) & (most_w > Float(-error));
     const std::uint32_t hidden = (least_w * Float(kSurelyFarther) > Float(far)).bits() & is_near.bits();
     return kept.bits() & ~hidden;
   }
