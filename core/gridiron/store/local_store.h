@@ -137,11 +137,15 @@ struct TreeLayout256K {
 };
 
 /// Sizes of a 256 KB core that renders effects.
-/// @tparam BuiltV  EffectBits: what it is built for, kSceneShading among them.
+/// @tparam BuiltV        EffectBits: what it is built for, kSceneShading among them.
+/// @tparam PacketWidthV  0: eye rays go through the tree.
 template <std::uint32_t BuiltV, std::uint32_t PacketWidthV = 32>
 struct EffectLayout256K {
   /// @cond
-  using Engine = GridEngine;
+  using Engine = std::conditional_t<PacketWidthV == 0, TileEngine, GridEngine>;
+  static constexpr std::uint32_t kEyeTileWidth = 32;
+  static constexpr std::uint32_t kEyeTurns = 1;
+  static constexpr std::uint32_t kEyeSlots = 32;
   static constexpr std::uint32_t kEffects = BuiltV;
   static constexpr std::uint32_t kArenaBytes = 256 * 1024;
   static constexpr std::uint32_t kCodeBudgetBytes = PacketWidthV >= 16 ? 88 * 1024 : 94 * 1024;
@@ -271,7 +275,7 @@ static_assert(kFitsArena<StoreLayout256K<8, 8>> && kFitsArena<StoreLayout256K<16
               kFitsArena<StoreLayout256K<8, 64>> && kFitsArena<StoreLayout256K<32, 64>>);
 static_assert(kFitsArena<StoreLayout64K<4>> && kFitsArena<StoreLayout64K<8>> && kFitsArena<StoreLayout64K<16>>);
 static_assert(kFitsArena<StoreLayout128K<8>> && kFitsArena<StoreLayout128K<32>>);
-static_assert(kFitsArena<EffectLayout256K<kAllEffects, 8>> && kFitsArena<EffectLayout256K<kAllEffects, 32>> &&
+static_assert(kFitsArena<EffectLayout256K<kAllEffects, 0>> && kFitsArena<EffectLayout256K<kAllEffects, 8>> && kFitsArena<EffectLayout256K<kAllEffects, 32>> &&
               kFitsArena<EffectLayout64K<kAllEffects>>);
 static_assert(kFitsArena<TreeLayout256K<32>> && kFitsArena<TreeLayout256K<64>>);
 static_assert(kFitsArena<StoreLayout512K<8>> && kFitsArena<StoreLayout512K<32>> && kFitsArena<StoreLayout512K<8, 64>> &&

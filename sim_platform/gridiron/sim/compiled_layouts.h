@@ -24,7 +24,7 @@ using SweepLayouts =
 
 /// For frames with effects: in Mode::kPlain for every lane count, in the others with 4 lanes.
 using EffectLayouts =
-    LayoutList<EffectLayout256K<kAllEffects, 8>, EffectLayout256K<kAllEffects, 32>, EffectLayout64K<kAllEffects>>;
+    LayoutList<EffectLayout256K<kAllEffects, 0>, EffectLayout256K<kAllEffects, 8>, EffectLayout256K<kAllEffects, 32>, EffectLayout64K<kAllEffects>>;
 
 template <class Layout>
 [[nodiscard]] constexpr bool is_layout(const LayoutChoice& choice) {

@@ -67,13 +67,14 @@ std::string words_of_missing_effects(std::uint32_t bits) {
 
 std::string renderer_type(std::uint32_t called_for, std::uint32_t store_kilobytes, std::uint32_t packet_width) {
   if ((called_for & kAllEffects) == 0) {
+    if (packet_width == 0) return "TreeLayout" + std::to_string(store_kilobytes) + "K<>";
     return "StoreLayout" + std::to_string(store_kilobytes) + "K<" + std::to_string(packet_width) + ">";
   }
   std::string constants(kEffects[0].constant);
   for (const EffectName& effect : kEffects) {
     if (effect.bit != kSceneShading && (called_for & effect.bit) != 0) constants.append(" | ").append(effect.constant);
   }
-  if (packet_width == 0) return "EffectLayout64K<" + constants + ">";
+  if (store_kilobytes == 64) return "EffectLayout64K<" + constants + ">";
   constexpr std::uint32_t kDefaultPacketWidth = 32;  // of the template
   if (packet_width != kDefaultPacketWidth) constants.append(", ").append(std::to_string(packet_width));
   return "EffectLayout256K<" + constants + ">";

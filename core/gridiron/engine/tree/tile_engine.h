@@ -86,9 +86,11 @@ class TileCore {
     return Status::kOk;
   }
 
-  void begin_tile() { source_.forget(); }
+  void begin_tile() {}
 
+  /// Begins with an empty cache: shading uses its memory between two samples.
   [[nodiscard]] Status trace_eyes(const TileView& view, const Hits& hits) {
+    source_.forget();
     if constexpr (EyeStore::kTurns == 1) {
       Tracer tracer(store_.packet.tiles[0], source_, store_.work);
       return take_turns(view, hits, &tracer);
@@ -146,7 +148,7 @@ class TileCore {
 
   // Limits of this store.
   struct Limits {
-    static constexpr std::uint32_t kMaxFetchDepth = Layout::kEyeSlots / 4;
+    static constexpr std::uint32_t kMaxFetchDepth = Layout::kEyeSlots / 2;
     static constexpr Status kBeyond = Status::kUnsupportedFrame;
   };
 
@@ -167,7 +169,7 @@ struct TileEngine {
   template <class Layout>
   static constexpr bool kTracesEyes = true;
   template <class Layout>
-  static constexpr std::uint32_t kMaxDepth = Layout::kEyeSlots / 4;  ///< the greatest frame.fetch_depth
+  static constexpr std::uint32_t kMaxDepth = Layout::kEyeSlots / 2;  ///< the greatest frame.fetch_depth
   template <class L, class Store, Platform P>
   using Core = TileCore<L, Store, P>;
 };

@@ -10,6 +10,7 @@
 #include <gridiron/ray/hits.h>
 
 #include <cstdint>
+#include <initializer_list>
 
 namespace gridiron {
 

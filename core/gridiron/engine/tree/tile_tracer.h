@@ -374,28 +374,30 @@ class TileTracer {
       left[k] = L::bounded_sum(function(kEdgeX + k), x, L::bounded_sum(function(kEdgeY + k), y, function(kEdgeValue + k)));
     }
     left[3] = L::bounded_sum(function(kNearX), x, L::bounded_sum(function(kNearY), y, function(kNearValue)));
-    const Float edge_x[3] = {function(kEdgeX), function(kEdgeX + 1), function(kEdgeX + 2)}, near_x = function(kNearX);
-    alignas(64) float inside[3][kLanes], near[3][kLanes];
+    const Float edge_span = function(kEdgeSpan);
     for (std::uint32_t row = 0; row < 3; ++row) {
       if ((lines[row] & tiny) == 0) break;
       Float value[4] = {left[0], left[1], left[2], left[3]};
-      std::uint64_t met = 0;  // triangles that may be hit, pixel after pixel of the row
       for (std::uint32_t column = 0; column < 3; ++column) {
         const std::uint32_t here = columns[column] & lines[row];
         if (here == 0) break;
         work_.add(TileWork::kTinyPlace);
+        work_.charge_to(TileWork::kTinyPlace);
         const Float least = L::min(L::min(value[0], value[1]), value[2]);
-        least.store(inside[column]);
-        value[3].store(near[column]);
-        met |= std::uint64_t{(least > Float(0.0f)).bits() & here} << (column * kLanes);
-        for (std::uint32_t k = 0; k < 3; ++k) value[k] = value[k] + edge_x[k];
-        value[3] = value[3] + near_x;
+        const std::uint32_t met = (least > Float(0.0f)).bits() & here;
+        if (met != 0) {
+          const std::uint32_t sure = (least > edge_span).bits();
+          alignas(64) float near[kLanes];
+          value[3].store(near);
+          for (std::uint32_t rest = met; rest != 0; rest &= rest - 1) {
+            const std::uint32_t i = lowest_bit(rest);
+            GRIDIRON_TRY(draw_pixel(i, column, row, near[i], (sure >> i & 1u) != 0));
+          }
+          work_.charge_to(TileWork::kTinyPlace);
+        }
+        for (std::uint32_t k = 0; k < 3; ++k) value[k] = value[k] + function(kEdgeX + k);
+        value[3] = value[3] + function(kNearX);
       }
-      for (; met != 0; met &= met - 1) {
-        const std::uint32_t place = lowest_bit(met), column = place / kLanes, i = place % kLanes;
-        GRIDIRON_TRY(draw_pixel(i, column, row, near[column][i], inside[column][i] > memory_.functions[kEdgeSpan][i]));
-      }
-      work_.charge_to(TileWork::kTinyPlace);
       for (std::uint32_t k = 0; k < 3; ++k) left[k] = left[k] + function(kEdgeY + k);
       left[3] = left[3] + function(kNearY);
     }
@@ -418,8 +420,20 @@ class TileTracer {
     memory_.record[block][pixel] = memory_.records[i];
     memory_.span[block] = span > memory_.span[block] ? span : memory_.span[block];
     mark(block);
-    if (wants_facing_ || wants_distance_) take_planes(block, 1u << pixel, i);
+    if (wants_facing_) take_facing(block, pixel, i);
+    if (wants_distance_) take_distances(block, 1u << pixel, i);
     return Status::kOk;
+  }
+  // The facing of one pixel: take_planes() for a group, lane by lane.
+  GRIDIRON_INLINE void take_facing(std::uint32_t block, std::uint32_t pixel, std::uint32_t lane) {
+    const std::uint32_t column = block % kRow * kBlockWidth + pixel % kBlockWidth;
+    const std::uint32_t row = block / kRow * kBlockWidth + pixel / kBlockWidth;
+    const auto share = [&](std::uint32_t axis) GRIDIRON_INLINE_LAMBDA {
+      const float dir = memory_.column_direction[axis][column] + memory_.row_direction[axis][row];
+      return std::bit_cast<float>(memory_.queue[kNormal + axis][lane]) * dir;
+    };
+    const float x = share(0), y = share(1), z = share(2);
+    memory_.facing[block][pixel] = magnitude(x + y + z);
   }
 
   // A triangle that is drawn block by block: its functions in all lanes.
@@ -427,14 +441,15 @@ class TileTracer {
     Float value[4], x[4], y[4], edge_span, near_span;
     Float start[4], step[4];  ///< at the pixels of a block's first group; from one group to the next
     float span;
-    std::uint32_t id, record, lane;
+    Int id, record;
+    std::uint32_t lane;
 
     GRIDIRON_INLINE Drawn(const Memory& memory, std::uint32_t i)
         : edge_span(memory.functions[kEdgeSpan][i]),
           near_span(memory.functions[kNearSpan][i]),
           span(memory.functions[kNearSpan][i]),
-          id(memory.ids[i]),
-          record(memory.records[i]),
+          id(Int::splat(memory.ids[i])),
+          record(Int::splat(memory.records[i])),
           lane(i) {
       for (std::uint32_t k = 0; k < 3; ++k) {
         value[k] = Float(memory.functions[kEdgeValue + k][i]);
@@ -451,6 +466,10 @@ class TileTracer {
         if constexpr (kGroups > 1) step[k] = kLanes > kBlockWidth ? y[k] * Float(float(kLanes) / kBlockWidth) : y[k];
       }
     }
+    /// Function k at the first group's pixels of a block.
+    [[nodiscard]] GRIDIRON_INLINE Float at(int k, Float column, Float row) const {
+      return L::bounded_sum(x[k], column, L::bounded_sum(y[k], row, start[k]));
+    }
   };
 
   [[nodiscard]] GRIDIRON_INLINE Status draw_triangle(std::uint32_t i) {
@@ -465,15 +484,22 @@ class TileTracer {
       return draw_many_blocks(drawn, bx0, by0, bx1, by1, offset_x, offset_y);
     }
     const std::uint32_t first = by0 * kRow + bx0;
-    const Float left = Float(kTilePlaces<Width>.block_column[first]) - offset_x;
-    Float y = Float(kTilePlaces<Width>.block_row[first]) - offset_y;
+    const Float x = Float(kTilePlaces<Width>.block_column[first]) - offset_x;
+    const Float y = Float(kTilePlaces<Width>.block_row[first]) - offset_y;
+    // From block to block.
+    Float row[4], right[4], down[4];
+    for (int k = 0; k < 4; ++k) {
+      row[k] = drawn.at(k, x, y);
+      right[k] = drawn.x[k] * Float(kBlockStep);
+      down[k] = drawn.y[k] * Float(kBlockStep);
+    }
     for (std::uint32_t by = by0; by <= by1; ++by) {
-      Float x = left;
+      Float value[4] = {row[0], row[1], row[2], row[3]};
       for (std::uint32_t bx = bx0; bx <= bx1; ++bx) {
-        GRIDIRON_TRY(draw_block<false>(drawn, by * kRow + bx, x, y));
-        x = x + Float(kBlockStep);
+        GRIDIRON_TRY(draw_block<false>(drawn, by * kRow + bx, value));
+        for (int k = 0; k < 4; ++k) value[k] = value[k] + right[k];
       }
-      y = y + Float(kBlockStep);
+      for (int k = 0; k < 4; ++k) row[k] = row[k] + down[k];
     }
     return Status::kOk;
   }
@@ -517,28 +543,33 @@ class TileTracer {
       const std::uint32_t full = covered.bits() & all;
       for (std::uint32_t rest = all & ~full; rest != 0; rest &= rest - 1) {
         const std::uint32_t block = base + lowest_bit(rest);
-        GRIDIRON_TRY(draw_block<false>(f, block, Float(places.block_column[block]) - offset_x,
-                                       Float(places.block_row[block]) - offset_y));
+        GRIDIRON_TRY(draw_block_at<false>(f, block, Float(places.block_column[block]) - offset_x,
+                                          Float(places.block_row[block]) - offset_y));
       }
       for (std::uint32_t rest = full; rest != 0; rest &= rest - 1) {
         const std::uint32_t block = base + lowest_bit(rest);
-        GRIDIRON_TRY(draw_block<true>(f, block, Float(places.block_column[block]) - offset_x,
-                                      Float(places.block_row[block]) - offset_y));
+        GRIDIRON_TRY(draw_block_at<true>(f, block, Float(places.block_column[block]) - offset_x,
+                                         Float(places.block_row[block]) - offset_y));
       }
     }
     return Status::kOk;
   }
 
-  // @param x, y  of the block's first pixel from the triangle's offset. @tparam kCovered  the triangle surely covers it.
+  // @param x, y  of the block's first pixel from the triangle's offset.
   template <bool kCovered>
-  [[nodiscard]] GRIDIRON_INLINE Status draw_block(const Drawn& f, std::uint32_t block, Float x, Float y) {
+  [[nodiscard]] GRIDIRON_INLINE Status draw_block_at(const Drawn& f, std::uint32_t block, Float x, Float y) {
+    Float value[4];
+    for (int k = kCovered ? 3 : 0; k < 4; ++k) value[k] = f.at(k, x, y);
+    return draw_block<kCovered>(f, block, value);
+  }
+  // @param at  values of the functions at the first group's pixels. @tparam kCovered  the triangle surely covers the block.
+  template <bool kCovered>
+  [[nodiscard]] GRIDIRON_INLINE Status draw_block(const Drawn& f, std::uint32_t block, const Float (&at)[4]) {
     static constexpr TileWork kKind = kCovered ? TileWork::kCoveredBlock : TileWork::kBlock;
     work_.add(kKind);
     work_.charge_to(kKind);
     Float value[4];
-    for (int k = kCovered ? 3 : 0; k < 4; ++k) {
-      value[k] = L::bounded_sum(f.x[k], x, L::bounded_sum(f.y[k], y, f.start[k]));
-    }
+    for (int k = kCovered ? 3 : 0; k < 4; ++k) value[k] = at[k];
     // What decides a pixel: the least edge function, and how far the triangle is in front; both with the error that may
     // be.
     Float inside[kGroups], ahead[kGroups], near[kGroups];
@@ -571,8 +602,10 @@ class TileTracer {
       taken |= sure_bits << pixel;
       float* const target = memory_.near[block] + pixel;
       L::select(sure, near[group], Float::load(target)).store(target);
-      L::store_where(sure, f.id, memory_.id[block] + pixel);
-      L::store_where(sure, f.record, memory_.record[block] + pixel);
+      std::uint32_t* const id = memory_.id[block] + pixel;
+      std::uint32_t* const record = memory_.record[block] + pixel;
+      L::select(sure, f.id, Int::load(id)).store(id);
+      L::select(sure, f.record, Int::load(record)).store(record);
     }
     if (taken != 0) {
       memory_.span[block] = f.span > memory_.span[block] ? f.span : memory_.span[block];
@@ -594,13 +627,11 @@ class TileTracer {
       };
       const Float normal_x = normal(0), normal_y = normal(1), normal_z = normal(2);
       for (std::uint32_t i = 0; i < kBlockPixels; i += kLanes) {
-        const std::uint32_t here = taken >> i & L::kAllBits;
-        if (here == 0) continue;
         Float dir[3];
         directions(block, i, dir);
         const Float facing = L::abs(normal_x * dir[0] + normal_y * dir[1] + normal_z * dir[2]);
         float* const target = memory_.facing[block] + i;
-        L::select(L::mask_from_bits(here), facing, Float::load(target)).store(target);
+        L::select(L::mask_from_bits(taken >> i & L::kAllBits), facing, Float::load(target)).store(target);
       }
     }
     if (wants_distance_) take_distances(block, taken, lane);

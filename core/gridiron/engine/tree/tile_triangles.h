@@ -150,18 +150,18 @@ template <class L>
 // With e = kUnit, corners relative to an offset within the tile, g the error of their coordinates there and G = P + R W,
 // where P and W are the largest |column w|, |row w| and |w| and R the farthest pixel: an edge's function is a product of
 // two places less the pixel, each at most G and off by g: 4 g G. Its coefficients are differences of two products, their
-// sum at a pixel takes seven more roundings of sums of at most 2 G^2: 2 (2 + 7) e G^2 < 24 e G^2.
-inline constexpr float kTileEdgeError = 24.0f * 0x1p-23f;
+// sum at a pixel takes twelve more roundings of sums of at most 2 G^2, step by step: 2 (2 + 12) e G^2 < 30 e G^2.
+inline constexpr float kTileEdgeError = 30.0f * 0x1p-23f;
 inline constexpr float kCornerFactor = 4.1f;
 /// Covers what becomes subnormal, or is flushed.
 inline constexpr float kLeastEdgeError = 0x1p-100f;
 /// 1 / t is n . pixel / n . v with n = a x b, sides of the triangle at corner v. With C_i = |a_j b_k| + |a_k b_j| and m_i
 /// the largest |component| of corners: n is off by 3 e C_i, and by e C_i for each rounded side, which counts along the
 /// way from v to the hit, at most 2 m_i: 8 e C . m; n . v rounds by 3 e C . m, and takes (|n_x| + |n_y|) g + |n_w| g_w of
-/// corners' errors. Coefficients take 3 e, their sum at a pixel 7 e of the sum of magnitudes; the least distance by
+/// corners' errors. Coefficients take 3 e, their sum at a pixel 12 e of the sum of magnitudes; the least distance by
 /// which rounded t surely differ 2 e.
 inline constexpr float kNormalError = 11.5f * 0x1p-23f;
-inline constexpr float kNearError = 12.5f * 0x1p-23f;
+inline constexpr float kNearError = 17.5f * 0x1p-23f;
 /// Above it nothing is known of a triangle's side.
 inline constexpr float kMostNormalError = 0x1p-5f;
 inline constexpr float kMostNear = 0x1p90f;
