@@ -56,6 +56,17 @@ TEST(WorkTable, CommittedTableOfTheBvhIsThatOfToday) {
   }
 }
 
+TEST(WorkTable, CommittedTableOfTheTreeIsThatOfToday) {
+  const Totals totals = count_tree_frames();
+  for (std::uint32_t i = 0; i < sim::kTileCosts.size(); ++i) {
+    const WorkId kind = sim::kTileWorkKinds[i].id;
+    SCOPED_TRACE(std::string(sim::kTileWorkKinds[i].name) +
+                 ": if the kernel's operations changed, write the table anew with\n"
+                 "  build/host/bin/gridiron_calibrate --tree sim_platform/gridiron/sim/tile_costs.h");
+    expect_same(sim::kTileCosts[i], totals[kind.number()]);
+  }
+}
+
 /// Prices by the names that stand beside them in a table's file.
 std::map<std::string, double> prices_in(const std::string& file) {
   std::ifstream in(GRIDIRON_SOURCE_DIR "/sim_platform/gridiron/" + file);

@@ -50,7 +50,7 @@ sim::LayoutChoice layout_with(const LayoutRequest& asked, const Configuration& c
   }
   // Eye rays through the tree, without packets.
   if (configuration.packet_width == 0 && !has_effects) {
-    return {store, asked.tile_width.value_or(64), asked.packet_width.value_or(0)};
+    return {store, asked.tile_width.value_or(kTreeTileWidth), asked.packet_width.value_or(0)};
   }
   const std::uint32_t tile_width = asked.tile_width.value_or(sim::usual_tile_width(store));
   // A packet is no wider than a tile.

@@ -53,7 +53,7 @@ EffectFacts effects_of(const EffectsRecord& record, std::uint32_t triangle_count
 }
 
 void add_tree(const SceneImageView& view, SceneFacts& facts) {
-  if (!view.has_effects) return;
+  if (!view.has_tree) return;
   facts.tree = view.tree;
   facts.tree_bytes = sizeof(TreeRecord);
   for_each_tree_part(view.tree, [&facts](const CountedPart& part) {
@@ -71,6 +71,9 @@ std::uint64_t EffectFacts::bytes_of(std::string_view section) const {
 
 SceneFacts collect_scene_facts(const InfoPlan& plan, const SceneInput& input) {
   SceneFacts facts;
+  // A tile of eye rays through the tree has no bound yet.
+  const EngineId engine = find_store_facts(plan.layout)->engine;
+  const bool is_bounded = engine == EngineId::kGrid;
   const sim::MachineProfile& machine = *plan.scene.machine;
   const std::uint32_t tile_width = sim::usual_tile_width(sim::StoreSize::k256KB);
   const std::uint32_t planes = plan.has_depth ? 2 : 1;
@@ -87,7 +90,7 @@ SceneFacts collect_scene_facts(const InfoPlan& plan, const SceneInput& input) {
     facts.wanted_lambda = facts.grid.lambda;
     facts.image_bytes = header.image_bytes;
     facts.fits = header.image_bytes <= budget_bytes;
-    facts.worst = find_worst_tile(plan, packed->file.bytes, packed->view);
+    if (is_bounded) facts.worst = find_worst_tile(plan, packed->file.bytes, packed->view);
     add_tree(packed->view, facts);
     if (packed->view.has_effects) facts.effects = effects_of(packed->view.effects, header.triangle_count);
   } else {
@@ -95,7 +98,7 @@ SceneFacts collect_scene_facts(const InfoPlan& plan, const SceneInput& input) {
     const EffectsView view = input.text ? input.text->effects.view() : EffectsView{};
     const EffectsView* effects = input.text ? &view : nullptr;
     const GridChoice choice =
-        choose_grid(input, mesh, plan.scene, {plan.format, budget_bytes, plan.most_macro_width}, effects);
+        choose_grid(input, mesh, plan.scene, {plan.format, budget_bytes, plan.most_macro_width, engine == EngineId::kTree}, effects);
     facts.vertices = mesh.vertices.size();
     facts.triangles = mesh.triangles.size();
     facts.dropped_triangles = choice.need.dropped_triangle_count;
@@ -111,7 +114,7 @@ SceneFacts collect_scene_facts(const InfoPlan& plan, const SceneInput& input) {
       const SceneImageView built = build_image(input, mesh, choice, image, effects);
       facts.image_bytes = built.header.image_bytes;
       add_tree(built, facts);
-      facts.worst = find_worst_tile(plan, image, built);
+      if (is_bounded) facts.worst = find_worst_tile(plan, image, built);
     }
     if (input.text) facts.roundness = input.text->roundness;
     if (effects != nullptr) {
