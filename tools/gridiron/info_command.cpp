@@ -303,15 +303,15 @@ void print_text(const InfoPlan& plan, const SceneFacts& facts) {
                 (region.name + " at " + words_of_count(region.offset_bytes)).c_str());
   }
   print_effects(plan, facts);
-  print_line("loop bounds", "per packet " + std::to_string(facts.bounds.passes_per_packet) +
-                                " passes; twice as many where estimates leave hits open;"
-                                " with exact one more for each ray");
-  print_line("", "per pass " + words_of_count(facts.bounds.macro_slices_per_pass) + " macro slices, " +
-                     words_of_count(facts.bounds.macro_cells_per_pass) + " macrocells, " +
-                     words_of_count(facts.bounds.slices_per_pass) + " slices, " +
-                     words_of_count(facts.bounds.cells_per_pass) + " cells, " +
-                     words_of_count(facts.bounds.triangle_tests_per_pass) + " triangle tests");
   if (facts.worst) {
+    print_line("loop bounds", "per packet " + std::to_string(facts.bounds.passes_per_packet) +
+                                  " passes; twice as many where estimates leave hits open;"
+                                  " with exact one more for each ray");
+    print_line("", "per pass " + words_of_count(facts.bounds.macro_slices_per_pass) + " macro slices, " +
+                       words_of_count(facts.bounds.macro_cells_per_pass) + " macrocells, " +
+                       words_of_count(facts.bounds.slices_per_pass) + " slices, " +
+                       words_of_count(facts.bounds.cells_per_pass) + " cells, " +
+                       words_of_count(facts.bounds.triangle_tests_per_pass) + " triangle tests");
     const WorstTile& worst = *facts.worst;
     std::snprintf(text, sizeof text, " at most %.3g %s of work, %.3g with all waits; ", worst.cycles.work,
                   unit_of(worst), worst.cycles.total());

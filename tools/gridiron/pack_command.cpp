@@ -32,7 +32,9 @@ void run_command(const PackRequest& request) {
   const sim::MachineProfile& machine = *request.scene.machine;
   constexpr std::uint32_t kUsualTileWidth = 32;
   const std::uint64_t spill_bytes = spill_bytes_of(machine.core_count, recursion_depth(input));
-  const ImageLimits limits = {request.format, image_budget_bytes(machine, 1, 1, 1, kUsualTileWidth, spill_bytes)};
+  const ImageLimits limits = {.format = request.format,
+                              .budget_bytes = image_budget_bytes(machine, 1, 1, 1, kUsualTileWidth, spill_bytes),
+                              .has_tree = request.scene.configuration->packet_width == 0};
   const EffectsView of_text = input.text ? input.text->effects.view() : EffectsView{};
   const EffectsView* effects = input.text ? &of_text : nullptr;
   const GridChoice choice = choose_grid(input, *mesh, request.scene, limits, effects);

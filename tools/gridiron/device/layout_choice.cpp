@@ -73,6 +73,15 @@ StoreSize choose_store(const sim::MachineProfile& machine, std::optional<StoreSi
   return chosen;
 }
 
+void require_tree_of(const Configuration& configuration, const LayoutRequest& asked, std::optional<Accuracy> accuracy) {
+  if (configuration.packet_width != 0) return;
+  const std::string name = "--configuration " + std::string(configuration.name);
+  if (asked.packet_width) usage_error("--packet: " + name + " has no packets");
+  if (accuracy == Accuracy::kPaper) {
+    usage_error("--accuracy paper: " + name + " has no triangles for it; --configuration reference has");
+  }
+}
+
 void require_built(const sim::LayoutChoice& layout, bool is_built) {
   if (layout.packet_width > layout.tile_width) {
     usage_error("--packet: tiles are " + std::to_string(layout.tile_width) + " pixels wide");
@@ -81,7 +90,7 @@ void require_built(const sim::LayoutChoice& layout, bool is_built) {
 }
 
 void require_distances(const sim::LayoutChoice& layout, bool has_depth) {
-  if (!has_depth || !layout.has_effects || layout.packet_width != 0) return;
+  if (!has_depth || !layout.has_effects || layout.store != StoreSize::k64KB) return;
   usage_error("--depth: --shading scene has no distances with " + words_of_layout(layout) +
               ", which are those of a 64 KB store; --store 256 without --tile-width and --packet has them");
 }

@@ -34,6 +34,9 @@ struct LayoutRequest {
 /// Errors: Failure (kUsage) if packets are wider than tiles, or no kernel is built; lists the existing ones.
 void require_built(const sim::LayoutChoice& layout, bool is_built);
 
+/// Errors: Failure (kUsage) if a configuration without packets is asked for them, or for Accuracy::kPaper.
+void require_tree_of(const Configuration& configuration, const LayoutRequest& asked, std::optional<Accuracy> accuracy);
+
 /// Errors: Failure (kUsage) if distances are requested of a layout without them.
 void require_distances(const sim::LayoutChoice& layout, bool has_depth);
 

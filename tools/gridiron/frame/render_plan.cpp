@@ -30,6 +30,7 @@ Shading shading_of(const RenderRequest& request, const KnownScene& scene) {
 }
 
 sim::LayoutChoice layout_of(const RenderRequest& request, const RenderPlan& plan) {
+  require_tree_of(*request.scene.configuration, request.layout, request.accuracy);
   const auto with = [&](StoreSize store) {
     return layout_with(request.layout, *request.scene.configuration, store, plan.shading == Shading::kScene);
   };
@@ -45,6 +46,10 @@ void settle_depths(const RenderRequest& request, RenderPlan& plan) {
   const Configuration& configuration = *request.scene.configuration;
   const StoreFacts facts = *find_store_facts(plan.layout);
   plan.engine = facts.engine;
+  if (plan.engine == EngineId::kTree && plan.mode != Mode::kPlain && sim::counts_instructions(*request.scene.machine)) {
+    usage_error("--machine " + std::string(request.scene.machine->name) + ": counts instructions, which are not known of " +
+                "--configuration " + std::string(configuration.name) + "; --mode plain counts nothing");
+  }
   const BufferDepths& most = facts.most_depths;
   const bool has_effects = plan.layout.has_effects;
   plan.depths = request.layout.depths.value_or(configuration.depths);

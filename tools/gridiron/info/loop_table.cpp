@@ -3,6 +3,7 @@
 
 #include <gridiron/base/exact_sum.h>
 #include <gridiron/engine/tree/list_memory.h>
+#include <gridiron/engine/tree/tile_memory.h>
 #include <gridiron/ray/packet.h>
 #include <gridiron/ray/ray_batch.h>
 

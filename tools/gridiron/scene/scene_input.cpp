@@ -303,6 +303,9 @@ void check_packed(const SceneInput& input, const PackedScene& packed, const Scen
                   const ImageLimits& limits) {
   const GridRecord& grid = packed.view.grid;
   require_format(input, packed, limits.format);
+  if (limits.has_tree && !packed.view.has_tree) {
+    input_error(input.path, "was packed without a tree; pack it with --configuration tree");
+  }
   if (request.lambda && *request.lambda != grid.lambda) {
     input_error(input.path, "was packed with lambda " + text_of(grid.lambda) + "; --lambda cannot change it");
   }
