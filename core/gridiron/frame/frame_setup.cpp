@@ -8,12 +8,18 @@
 namespace gridiron {
 namespace {
 
-bool is_finite(double value) { return value - value == 0.0; }
+bool is_finite(double value) {
+  return value - value == 0.0;
+}
 
-bool is_finite(const DVec3& v) { return is_finite(v.x) && is_finite(v.y) && is_finite(v.z); }
+bool is_finite(const DVec3& v) {
+  return is_finite(v.x) && is_finite(v.y) && is_finite(v.z);
+}
 
 // The built-in compiles to the square root instruction; glm::sqrt would call libm.
-double length_of(const DVec3& v) { return __builtin_sqrt(glm::dot(v, v)); }
+double length_of(const DVec3& v) {
+  return __builtin_sqrt(glm::dot(v, v));
+}
 
 void store(float out[3], const DVec3& v) {
   out[0] = static_cast<float>(v.x);
@@ -21,7 +27,9 @@ void store(float out[3], const DVec3& v) {
   out[2] = static_cast<float>(v.z);
 }
 
-bool is_multiple(MainAddress address, std::uint32_t step) { return address.value % step == 0; }
+bool is_multiple(MainAddress address, std::uint32_t step) {
+  return address.value % step == 0;
+}
 
 // Tiles in a store start at multiples of it, so both ends of their transfers are aligned and congruent.
 static_assert(kPlaneAlignment % kPortableGranuleBytes == 0 && kPlaneAlignment % kPortableCongruenceBytes == 0);

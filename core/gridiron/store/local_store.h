@@ -275,8 +275,8 @@ static_assert(kFitsArena<StoreLayout256K<8, 8>> && kFitsArena<StoreLayout256K<16
               kFitsArena<StoreLayout256K<8, 64>> && kFitsArena<StoreLayout256K<32, 64>>);
 static_assert(kFitsArena<StoreLayout64K<4>> && kFitsArena<StoreLayout64K<8>> && kFitsArena<StoreLayout64K<16>>);
 static_assert(kFitsArena<StoreLayout128K<8>> && kFitsArena<StoreLayout128K<32>>);
-static_assert(kFitsArena<EffectLayout256K<kAllEffects, 0>> && kFitsArena<EffectLayout256K<kAllEffects, 8>> && kFitsArena<EffectLayout256K<kAllEffects, 32>> &&
-              kFitsArena<EffectLayout64K<kAllEffects>>);
+static_assert(kFitsArena<EffectLayout256K<kAllEffects, 0>> && kFitsArena<EffectLayout256K<kAllEffects, 8>> &&
+              kFitsArena<EffectLayout256K<kAllEffects, 32>> && kFitsArena<EffectLayout64K<kAllEffects>>);
 static_assert(kFitsArena<TreeLayout256K<32>> && kFitsArena<TreeLayout256K<64>>);
 static_assert(kFitsArena<StoreLayout512K<8>> && kFitsArena<StoreLayout512K<32>> && kFitsArena<StoreLayout512K<8, 64>> &&
               kFitsArena<StoreLayout512K<32, 64>>);

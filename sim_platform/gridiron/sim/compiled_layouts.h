@@ -23,8 +23,8 @@ using SweepLayouts =
                StoreLayout256K<8, 64>, StoreLayout256K<32, 64>>;
 
 /// For frames with effects: in Mode::kPlain for every lane count, in the others with 4 lanes.
-using EffectLayouts =
-    LayoutList<EffectLayout256K<kAllEffects, 0>, EffectLayout256K<kAllEffects, 8>, EffectLayout256K<kAllEffects, 32>, EffectLayout64K<kAllEffects>>;
+using EffectLayouts = LayoutList<EffectLayout256K<kAllEffects, 0>, EffectLayout256K<kAllEffects, 8>,
+                                 EffectLayout256K<kAllEffects, 32>, EffectLayout64K<kAllEffects>>;
 
 template <class Layout>
 [[nodiscard]] constexpr bool is_layout(const LayoutChoice& choice) {

@@ -31,8 +31,7 @@ template <class... Layouts>
 consteval bool have_all_effects(LayoutList<Layouts...>) {
   return ((Layouts::kEffects == kAllEffects) && ...);
 }
-static_assert(have_all_effects(EffectLayouts{}),
-              "no frame ends with kMissingEffect, so results need not name effects");
+static_assert(have_all_effects(EffectLayouts{}), "no frame ends with kMissingEffect, so results need not name effects");
 static_assert(fit_arenas(CommonLayouts{}) && fit_arenas(SweepLayouts{}) && fit_arenas(EffectLayouts{}));
 
 template <class Core>
@@ -159,7 +158,8 @@ struct RecordReader {
   const std::uint64_t table_bytes =
       round_up<std::uint64_t>((macro_cells + 31) / 32 * sizeof(MacroTableEntry), kLineBytes);
   return lies_in_memory(frame.engine.macro_table_address, table_bytes) &&
-         lies_in_memory(frame.engine.cell_blocks_address, std::uint64_t{grid.cell_block_count} * grid.cell_block_bytes) &&
+         lies_in_memory(frame.engine.cell_blocks_address,
+                        std::uint64_t{grid.cell_block_count} * grid.cell_block_bytes) &&
          lies_in_memory(frame.engine.triangles_address, std::uint64_t{grid.reference_count} * grid.triangle_bytes);
 }
 

@@ -12,7 +12,7 @@ struct WorkCost {
   double doubles;       ///< in double precision
   double odd;           ///< operations of the odd pipe, and of these:
   double branches;
-  double misses;        ///< branches that go the rarer way
+  double misses;  ///< branches that go the rarer way
 };
 
 }  // namespace gridiron::sim

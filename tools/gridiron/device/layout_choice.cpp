@@ -4,8 +4,8 @@
 #include <algorithm>
 #include <string>
 
-#include "base/failure.h"
 #include "accuracies.h"
+#include "base/failure.h"
 #include "machine_file.h"
 #include "store_facts.h"
 

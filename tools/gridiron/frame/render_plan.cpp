@@ -47,8 +47,9 @@ void settle_depths(const RenderRequest& request, RenderPlan& plan) {
   const StoreFacts facts = *find_store_facts(plan.layout);
   plan.engine = facts.engine;
   if (plan.engine == EngineId::kTree && plan.mode != Mode::kPlain && sim::counts_instructions(*request.scene.machine)) {
-    usage_error("--machine " + std::string(request.scene.machine->name) + ": counts instructions, which are not known of " +
-                "--configuration " + std::string(configuration.name) + "; --mode plain counts nothing");
+    usage_error("--machine " + std::string(request.scene.machine->name) +
+                ": counts instructions, which are not known of " + "--configuration " +
+                std::string(configuration.name) + "; --mode plain counts nothing");
   }
   const BufferDepths& most = facts.most_depths;
   const bool has_effects = plan.layout.has_effects;

@@ -98,7 +98,8 @@ SceneFacts collect_scene_facts(const InfoPlan& plan, const SceneInput& input) {
     const EffectsView view = input.text ? input.text->effects.view() : EffectsView{};
     const EffectsView* effects = input.text ? &view : nullptr;
     const GridChoice choice =
-        choose_grid(input, mesh, plan.scene, {plan.format, budget_bytes, plan.most_macro_width, engine == EngineId::kTree}, effects);
+        choose_grid(input, mesh, plan.scene,
+                    {plan.format, budget_bytes, plan.most_macro_width, engine == EngineId::kTree}, effects);
     facts.vertices = mesh.vertices.size();
     facts.triangles = mesh.triangles.size();
     facts.dropped_triangles = choice.need.dropped_triangle_count;

@@ -95,7 +95,8 @@ class TileCore {
       Tracer tracer(store_.packet.tiles[0], source_, store_.work);
       return take_turns(view, hits, &tracer);
     } else {
-      Tracer tracers[2] = {{store_.packet.tiles[0], source_, store_.work}, {store_.packet.tiles[1], source_, store_.work}};
+      Tracer tracers[2] = {{store_.packet.tiles[0], source_, store_.work},
+                           {store_.packet.tiles[1], source_, store_.work}};
       return take_turns(view, hits, tracers);
     }
   }

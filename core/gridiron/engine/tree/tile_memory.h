@@ -10,19 +10,19 @@
 
 namespace gridiron {
 
-inline constexpr std::uint32_t kBlockWidth = 4;                          ///< pixels along a block's edge
+inline constexpr std::uint32_t kBlockWidth = 4;  ///< pixels along a block's edge
 inline constexpr std::uint32_t kBlockPixels = kBlockWidth * kBlockWidth;
 
 /// Triangles of the queue, word by word.
 enum TileWord : unsigned {
-  kCornerX,      ///< three corners: column w, row w, w
+  kCornerX,  ///< three corners: column w, row w, w
   kCornerY = 3,
   kCornerW = 6,
   kCornerError = 9,  ///< of a corner's coordinate
   kPixelBox,         ///< first column and row, last column and row, a byte each
   kRecord,           ///< number of its record in the tree
   kTriangleId,
-  kNormal,           ///< unit normal, with Shading::kSimple
+  kNormal,                ///< unit normal, with Shading::kSimple
   kVertex = kNormal + 3,  ///< three vertices in world space, where distances are asked for
   kTileWords = kVertex + 9
 };
@@ -35,10 +35,10 @@ enum TileFunction : unsigned {
   kNearValue = 9,  ///< 1 / t or a little less
   kNearX,
   kNearY,
-  kOffsetX,    ///< pixel of the tile that functions are relative to
+  kOffsetX,  ///< pixel of the tile that functions are relative to
   kOffsetY,
-  kEdgeSpan,   ///< above it an edge's value is surely positive
-  kNearSpan,   ///< 1 / t is less than this above its function
+  kEdgeSpan,  ///< above it an edge's value is surely positive
+  kNearSpan,  ///< 1 / t is less than this above its function
   kTileFunctions
 };
 
@@ -51,13 +51,13 @@ struct alignas(128) TileMemory {
   static constexpr std::uint32_t kMostLanes = 16;
   static constexpr std::uint32_t kStackEntries = (kTreeWidth - 1) * kMaxTreeDepth + 1;
 
-  alignas(64) float near[kBlocks][kBlockPixels];  ///< 1 / t of the nearest hit so far, or a little less
+  alignas(64) float near[kBlocks][kBlockPixels];            ///< 1 / t of the nearest hit so far, or a little less
   alignas(64) std::uint32_t id[kBlocks][kBlockPixels];      ///< its triangle
   alignas(64) std::uint32_t record[kBlocks][kBlockPixels];  ///< and where this lies in the tree
-  alignas(64) float facing[kBlocks][kBlockPixels];    ///< |normal . direction| of the hit, with Shading::kSimple
-  alignas(64) float distance[kBlocks][kBlockPixels];  ///< t of the hit, rounded, where distances are asked for
-  alignas(64) float least_near[kBlocks];  ///< least of a block's pixels
-  alignas(64) float span[kBlocks];        ///< 1 / t of a block's hits is less than this above what stands there
+  alignas(64) float facing[kBlocks][kBlockPixels];          ///< |normal . direction| of the hit, with Shading::kSimple
+  alignas(64) float distance[kBlocks][kBlockPixels];        ///< t of the hit, rounded, where distances are asked for
+  alignas(64) float least_near[kBlocks];                    ///< least of a block's pixels
+  alignas(64) float span[kBlocks];  ///< 1 / t of a block's hits is less than this above what stands there
 
   // Directions of pixels are sums of a term of their column and one of their row, as FrameHead rounds them.
   alignas(64) float column_direction[3][Width];

@@ -19,12 +19,12 @@ inline constexpr double kUnit = 0x1p-23;
 
 /// What all tiles of a frame share, in double.
 struct EyeProjection {
-  double rows[3][3];   ///< column, row, w: of a place less the eye
-  double sizes[3];     ///< sums of the rows' magnitudes
+  double rows[3][3];  ///< column, row, w: of a place less the eye
+  double sizes[3];    ///< sums of the rows' magnitudes
   double eye[3];
-  double slack;        ///< times a row's size and a place's largest component: what doubles may lose
-  float dir_max;       ///< no component of a direction is larger
-  bool is_trusted;     ///< if not, no bound holds and every pixel is decided exactly
+  double slack;     ///< times a row's size and a place's largest component: what doubles may lose
+  float dir_max;    ///< no component of a direction is larger
+  bool is_trusted;  ///< if not, no bound holds and every pixel is decided exactly
 };
 
 /// Inverts the camera's matrix.
@@ -76,7 +76,7 @@ GRIDIRON_OUTLINE inline EyeProjection project_eye(const FrameHead& frame, float 
 /// Of one tile, in floats.
 /// @tparam Width  pixels along its edge.
 struct TileProjection {
-  float rows[3][3];       ///< column, row, w; of a place less the eye
+  float rows[3][3];  ///< column, row, w; of a place less the eye
   double exact_rows[3][3];
   float error_per_size;   ///< of a coordinate of a corner, times the largest component of its way from the leaf's base
   float error_per_base;   ///< the same, times the base's own coordinates
@@ -84,7 +84,7 @@ struct TileProjection {
   float direction_error;  ///< of a direction, in pixels
   float w_error;          ///< of w along a direction, relative
   // Boxes: planes through the eye, left, right, top, bottom, then w itself.
-  float planes[5][4];     ///< inside is where x p0 + y p1 + z p2 + p3 >= 0; the last one gives w, or less
+  float planes[5][4];  ///< inside is where x p0 + y p1 + z p2 + p3 >= 0; the last one gives w, or less
 };
 
 /// How far outside a tile's pixels a box still counts, in pixels.
@@ -129,8 +129,7 @@ GRIDIRON_OUTLINE inline void project_tile(const FrameHead& frame, const EyeProje
     const double off = kUnit * (larger(x * step_x, x1 * step_x) + larger(left, right) + larger(top, bottom) + ends);
     for (int row = 0; row < 3; ++row) moved[row] += magnitude(tile.exact_rows[row][axis]) * off;
   }
-  tile.direction_error =
-      static_cast<float>(1.01 * ((moved[0] > moved[1] ? moved[0] : moved[1]) + span * moved[2]));
+  tile.direction_error = static_cast<float>(1.01 * ((moved[0] > moved[1] ? moved[0] : moved[1]) + span * moved[2]));
   tile.w_error = static_cast<float>(1.01 * moved[2]);
   const double last = double(width - 1) + kPlaneMargin;
   for (int plane = 0; plane < 5; ++plane) {

@@ -1,5 +1,5 @@
-// Eye rays of a tile through the wide tree: boxes, then triangles, are brought to the tile's pixels. Every pixel's hit is
-// that of exact arithmetic: floats decide with bounds of their errors, what they leave open doubles and integers decide.
+// Eye rays of a tile through the wide tree: boxes, then triangles, are brought to the tile's pixels. Every pixel's hit
+// is that of exact arithmetic: floats decide with bounds of their errors, doubles and integers what these leave open.
 // Source: own; Olano, Greer 1997 for edges without clipping; core/TREE.md. Memory: TileMemory. Threads: one core.
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
@@ -133,35 +133,41 @@ class TileTracer {
   GRIDIRON_OUTLINE void store_hits(std::uint32_t x, std::uint32_t y, std::uint32_t tile_width, const Hits& hits) {
     work_.add(Work::kIdGroup, Memory::kBlocks * kGroups);
     work_.charge_to(Work::kIdGroup);
-    for_each_group([&](std::uint32_t block, std::uint32_t i, std::uint32_t pixel) GRIDIRON_INLINE_LAMBDA {
-      const Int id = is_cleared_ ? Int::load(memory_.id[block] + i) : Int::splat(kNoTriangle);
-      L::store_quads(id, hits.id + pixel, tile_width);
-    }, x, y, tile_width);
+    for_each_group(
+        [&](std::uint32_t block, std::uint32_t i, std::uint32_t pixel) GRIDIRON_INLINE_LAMBDA {
+          const Int id = is_cleared_ ? Int::load(memory_.id[block] + i) : Int::splat(kNoTriangle);
+          L::store_quads(id, hits.id + pixel, tile_width);
+        },
+        x, y, tile_width);
     if (hits.distance != nullptr) {
       work_.add(Work::kDepthGroup, Memory::kBlocks * kGroups);
       work_.charge_to(Work::kDepthGroup);
-      for_each_group([&](std::uint32_t block, std::uint32_t i, std::uint32_t pixel) GRIDIRON_INLINE_LAMBDA {
-        Float distance(kFloatMax);
-        if (is_cleared_) {
-          Float dir[3];
-          directions(block, i, dir);
-          const auto missed = L::equal(kNoTriangle, memory_.id[block] + i);
-          distance = L::select(missed, distance, Float::load(memory_.distance[block] + i) * length_of(dir));
-        }
-        L::store_quads(distance, hits.distance + pixel, tile_width);
-      }, x, y, tile_width);
+      for_each_group(
+          [&](std::uint32_t block, std::uint32_t i, std::uint32_t pixel) GRIDIRON_INLINE_LAMBDA {
+            Float distance(kFloatMax);
+            if (is_cleared_) {
+              Float dir[3];
+              directions(block, i, dir);
+              const auto missed = L::equal(kNoTriangle, memory_.id[block] + i);
+              distance = L::select(missed, distance, Float::load(memory_.distance[block] + i) * length_of(dir));
+            }
+            L::store_quads(distance, hits.distance + pixel, tile_width);
+          },
+          x, y, tile_width);
     }
     if (hits.facing != nullptr) {
       work_.charge_to(Work::kShadedSimpleGroup);
-      for_each_group([&](std::uint32_t block, std::uint32_t i, std::uint32_t pixel) GRIDIRON_INLINE_LAMBDA {
-        Float facing(0.0f);
-        if (is_cleared_) {
-          Float dir[3];
-          directions(block, i, dir);
-          facing = Float::load(memory_.facing[block] + i) / length_of(dir);
-        }
-        L::store_quads(facing, hits.facing + pixel, tile_width);
-      }, x, y, tile_width);
+      for_each_group(
+          [&](std::uint32_t block, std::uint32_t i, std::uint32_t pixel) GRIDIRON_INLINE_LAMBDA {
+            Float facing(0.0f);
+            if (is_cleared_) {
+              Float dir[3];
+              directions(block, i, dir);
+              facing = Float::load(memory_.facing[block] + i) / length_of(dir);
+            }
+            L::store_quads(facing, hits.facing + pixel, tile_width);
+          },
+          x, y, tile_width);
     }
   }
 
@@ -184,8 +190,8 @@ class TileTracer {
   GRIDIRON_INLINE void directions(std::uint32_t block, std::uint32_t i, Float (&dir)[3]) const {
     const std::uint32_t column = block % kRow * kBlockWidth, row = block / kRow * kBlockWidth + i / kBlockWidth;
     for (int axis = 0; axis < 3; ++axis) {
-      dir[axis] = L::repeat_quad(memory_.column_direction[axis] + column) +
-                  L::splat_quads(memory_.row_direction[axis] + row);
+      dir[axis] =
+          L::repeat_quad(memory_.column_direction[axis] + column) + L::splat_quads(memory_.row_direction[axis] + row);
     }
   }
   // The two terms of directions: pixel_direction().
@@ -283,9 +289,8 @@ class TileTracer {
                              const VertexTriangle* records) {
     work_.add(TileWork::kKeptGroup);
     work_.charge_to(TileWork::kKeptGroup);
-    const auto put = [&](std::uint32_t word, Int value) GRIDIRON_INLINE_LAMBDA {
-      L::compress(value, kept, memory_.queue[word] + queued_);
-    };
+    const auto put = [&](std::uint32_t word, Int value)
+                         GRIDIRON_INLINE_LAMBDA { L::compress(value, kept, memory_.queue[word] + queued_); };
     for (std::uint32_t i = 0; i < 3; ++i) {
       put(kCornerX + i, L::words_of(corners.x[i]));
       put(kCornerY + i, L::words_of(corners.y[i]));
@@ -360,7 +365,8 @@ class TileTracer {
   GRIDIRON_INLINE void mark(std::uint32_t block) { dirty_ |= std::uint64_t{1} << (block % 64); }
 
   [[nodiscard]] GRIDIRON_INLINE Status draw_tiny(std::uint32_t tiny) {
-    const auto function = [&](std::uint32_t kind) GRIDIRON_INLINE_LAMBDA { return Float::load(memory_.functions[kind]); };
+    const auto function = [&](std::uint32_t kind)
+                              GRIDIRON_INLINE_LAMBDA { return Float::load(memory_.functions[kind]); };
     const Int box = Int::load(memory_.boxes);
     const Int byte = Int::splat(0xFF);
     const Int ix0 = box & byte, iy0 = (box >> 8) & byte, ix1 = (box >> 16) & byte, iy1 = (box >> 24) & byte;
@@ -371,7 +377,8 @@ class TileTracer {
     const std::uint32_t lines[3] = {tiny, (iy0 < iy1).bits(), (iy0 + one < iy1).bits()};
     Float left[4];
     for (std::uint32_t k = 0; k < 3; ++k) {
-      left[k] = L::bounded_sum(function(kEdgeX + k), x, L::bounded_sum(function(kEdgeY + k), y, function(kEdgeValue + k)));
+      left[k] =
+          L::bounded_sum(function(kEdgeX + k), x, L::bounded_sum(function(kEdgeY + k), y, function(kEdgeValue + k)));
     }
     left[3] = L::bounded_sum(function(kNearX), x, L::bounded_sum(function(kNearY), y, function(kNearValue)));
     const Float edge_span = function(kEdgeSpan);
@@ -537,7 +544,8 @@ class TileTracer {
         met = met & (along + most[k] > Float(0.0f));
         covered = covered & (along + least[k] > f.edge_span);
       }
-      met = met & (L::bounded_sum(f.x[3], x, L::bounded_sum(f.y[3], y, most[3])) > Float::load(memory_.least_near + base));
+      met = met &
+            (L::bounded_sum(f.x[3], x, L::bounded_sum(f.y[3], y, most[3])) > Float::load(memory_.least_near + base));
       const std::uint32_t all = met.bits();
       if (all == 0) continue;
       const std::uint32_t full = covered.bits() & all;
@@ -562,7 +570,8 @@ class TileTracer {
     for (int k = kCovered ? 3 : 0; k < 4; ++k) value[k] = f.at(k, x, y);
     return draw_block<kCovered>(f, block, value);
   }
-  // @param at  values of the functions at the first group's pixels. @tparam kCovered  the triangle surely covers the block.
+  // @param at  values of the functions at the first group's pixels. @tparam kCovered  the triangle surely covers the
+  // block.
   template <bool kCovered>
   [[nodiscard]] GRIDIRON_INLINE Status draw_block(const Drawn& f, std::uint32_t block, const Float (&at)[4]) {
     static constexpr TileWork kKind = kCovered ? TileWork::kCoveredBlock : TileWork::kBlock;

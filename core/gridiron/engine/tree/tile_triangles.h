@@ -16,9 +16,9 @@ namespace gridiron {
 
 /// A leaf's first corner in the coordinates of a tile.
 struct LeafBase {
-  float place[3];   ///< world space
-  float base[3];    ///< column w, row w, w
-  float error;      ///< of a coordinate of any of the leaf's corners, w's counted 2 width times
+  float place[3];  ///< world space
+  float base[3];   ///< column w, row w, w
+  float error;     ///< of a coordinate of any of the leaf's corners, w's counted 2 width times
 
   /// @param width  of the tile, in pixels. @param size  no corner is farther from another, along any axis.
   GRIDIRON_INLINE LeafBase(const EyeProjection& eye, const TileProjection& tile, std::uint32_t width,
@@ -65,7 +65,8 @@ struct LeafCorners {
       const auto along = [&](int row) GRIDIRON_INLINE_LAMBDA {
         const float* const r = tile.rows[row];
         return L::bounded_sum(
-            q[0], Float(r[0]), L::bounded_sum(q[1], Float(r[1]), L::bounded_sum(q[2], Float(r[2]), Float(leaf.base[row]))));
+            q[0], Float(r[0]),
+            L::bounded_sum(q[1], Float(r[1]), L::bounded_sum(q[2], Float(r[2]), Float(leaf.base[row]))));
       };
       x[corner] = along(0);
       y[corner] = along(1);
@@ -147,19 +148,20 @@ template <class L>
   return is_valid.bits();
 }
 
-// With e = kUnit, corners relative to an offset within the tile, g the error of their coordinates there and G = P + R W,
-// where P and W are the largest |column w|, |row w| and |w| and R the farthest pixel: an edge's function is a product of
-// two places less the pixel, each at most G and off by g: 4 g G. Its coefficients are differences of two products, their
-// sum at a pixel takes twelve more roundings of sums of at most 2 G^2, step by step: 2 (2 + 12) e G^2 < 30 e G^2.
+// With e = kUnit, corners relative to an offset within the tile, g the error of their coordinates there and G = P + R
+// W, where P and W are the largest |column w|, |row w| and |w| and R the farthest pixel: an edge's function is a
+// product of two places less the pixel, each at most G and off by g: 4 g G. Its coefficients are differences of two
+// products, their sum at a pixel takes twelve more roundings of sums of at most 2 G^2, step by step: 2 (2 + 12) e G^2 <
+// 30 e G^2.
 inline constexpr float kTileEdgeError = 30.0f * 0x1p-23f;
 inline constexpr float kCornerFactor = 4.1f;
 /// Covers what becomes subnormal, or is flushed.
 inline constexpr float kLeastEdgeError = 0x1p-100f;
-/// 1 / t is n . pixel / n . v with n = a x b, sides of the triangle at corner v. With C_i = |a_j b_k| + |a_k b_j| and m_i
-/// the largest |component| of corners: n is off by 3 e C_i, and by e C_i for each rounded side, which counts along the
-/// way from v to the hit, at most 2 m_i: 8 e C . m; n . v rounds by 3 e C . m, and takes (|n_x| + |n_y|) g + |n_w| g_w of
-/// corners' errors. Coefficients take 3 e, their sum at a pixel 12 e of the sum of magnitudes; the least distance by
-/// which rounded t surely differ 2 e.
+/// 1 / t is n . pixel / n . v with n = a x b, sides of the triangle at corner v. With C_i = |a_j b_k| + |a_k b_j| and
+/// m_i the largest |component| of corners: n is off by 3 e C_i, and by e C_i for each rounded side, which counts along
+/// the way from v to the hit, at most 2 m_i: 8 e C . m; n . v rounds by 3 e C . m, and takes (|n_x| + |n_y|) g + |n_w|
+/// g_w of corners' errors. Coefficients take 3 e, their sum at a pixel 12 e of the sum of magnitudes; the least
+/// distance by which rounded t surely differ 2 e.
 inline constexpr float kNormalError = 11.5f * 0x1p-23f;
 inline constexpr float kNearError = 17.5f * 0x1p-23f;
 /// Above it nothing is known of a triangle's side.
@@ -180,9 +182,8 @@ template <class L, std::uint32_t Width>
                                                      std::uint32_t first, std::uint32_t there, float least_near) {
   using Float = typename L::Float;
   using Int = typename L::Int;
-  const auto word = [&](std::uint32_t kind) GRIDIRON_INLINE_LAMBDA {
-    return L::floats_of(Int::load(memory.queue[kind] + first));
-  };
+  const auto word = [&](std::uint32_t kind)
+                        GRIDIRON_INLINE_LAMBDA { return L::floats_of(Int::load(memory.queue[kind] + first)); };
   const Int box = Int::load(memory.queue[kPixelBox] + first);
   const Int byte = Int::splat(0xFF);
   const Int ix0 = box & byte, iy0 = (box >> 8) & byte, ix1 = (box >> 16) & byte, iy1 = (box >> 24) & byte;
@@ -221,9 +222,8 @@ template <class L, std::uint32_t Width>
   // The longest side is number 0, 1, or else 2: the others are 1 and 2, 2 and 0, 0 and 1.
   const auto is_first = (length[0] >= length[1]) & (length[0] >= length[2]);
   const auto is_second = length[1] >= length[2];
-  const auto choose = [&](Float one, Float two, Float three) GRIDIRON_INLINE_LAMBDA {
-    return L::select(is_first, one, L::select(is_second, two, three));
-  };
+  const auto choose = [&](Float one, Float two, Float three)
+                          GRIDIRON_INLINE_LAMBDA { return L::select(is_first, one, L::select(is_second, two, three)); };
   const Float ax = choose(side_x[1], side_x[2], side_x[0]), bx = choose(side_x[2], side_x[0], side_x[1]);
   const Float ay = choose(side_y[1], side_y[2], side_y[0]), by = choose(side_y[2], side_y[0], side_y[1]);
   const Float aw = choose(side_w[1], side_w[2], side_w[0]), bw = choose(side_w[2], side_w[0], side_w[1]);
@@ -231,23 +231,23 @@ template <class L, std::uint32_t Width>
   const Float p0 = ay * bw, p1 = aw * by, p2 = aw * bx, p3 = ax * bw, p4 = ax * by, p5 = ay * bx;
   const Float nx = p0 - p1, ny = p2 - p3, nw = p4 - p5;
   const Float volume = L::bounded_sum(nx, vx, L::bounded_sum(ny, vy, nw * vw));
-  const Float rounded = L::bounded_sum(
-      L::abs(p0) + L::abs(p1), most_x,
-      L::bounded_sum(L::abs(p2) + L::abs(p3), most_y, (L::abs(p4) + L::abs(p5)) * most_w));
+  const Float rounded =
+      L::bounded_sum(L::abs(p0) + L::abs(p1), most_x,
+                     L::bounded_sum(L::abs(p2) + L::abs(p3), most_y, (L::abs(p4) + L::abs(p5)) * most_w));
   const Float slope = L::abs(nx) + L::abs(ny);
-  const Float plane_error = rounded * Float(kNormalError) + slope * moved +
-                            L::abs(nw) * moved * Float(1.0f / (2.0f * float(Width)));
+  const Float plane_error =
+      rounded * Float(kNormalError) + slope * moved + L::abs(nw) * moved * Float(1.0f / (2.0f * float(Width)));
   const Float inverse = Float(1.0f) / volume;
   const Float relative = plane_error * L::abs(inverse);
   const Float near_x = nx * inverse, near_y = ny * inverse, near_w = nw * inverse;
   const Float most_near = L::bounded_sum(L::abs(near_x) + L::abs(near_y), reach, L::abs(near_w));
   const Float near_error = most_near * (relative + Float(kNearError + 2.0f * tile.w_error));
   // Not a number: not sure.
-  const auto is_sure = (relative < Float(kMostNormalError)) & (most_near < Float(kMostNear)) &
-                       (edge_error < Float(kMostNear));
+  const auto is_sure =
+      (relative < Float(kMostNormalError)) & (most_near < Float(kMostNear)) & (edge_error < Float(kMostNear));
 
-  // 3. Edges, turned so that the triangle lies on their positive side, with their error added. The greatest value in the
-  // box tells whether the triangle covers a pixel of it.
+  // 3. Edges, turned so that the triangle lies on their positive side, with their error added. The greatest value in
+  // the box tells whether the triangle covers a pixel of it.
   const auto most_in_box = [&](Float value, Float along_x, Float along_y) GRIDIRON_INLINE_LAMBDA {
     return value + L::max(along_x * x0, along_x * x1) + L::max(along_y * y0, along_y * y1);
   };

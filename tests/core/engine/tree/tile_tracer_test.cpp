@@ -61,16 +61,14 @@ BatchRay ray_of(const View& view, std::uint32_t x, std::uint32_t y) {
   BatchRay ray{};
   for (int axis = 0; axis < 3; ++axis) {
     ray.origin[axis] = view.frame.eye[axis];
-    ray.dir[axis] =
-        pixel_direction(view.frame, axis, static_cast<float>(x) + view.dx, static_cast<float>(y) + view.dy);
+    ray.dir[axis] = pixel_direction(view.frame, axis, static_cast<float>(x) + view.dx, static_cast<float>(y) + view.dy);
     ray.dir_max = std::max(ray.dir_max, std::fabs(ray.dir[axis]));
   }
   return ray;
 }
 
 Shown shown_by(const BatchRay& ray, const VertexTriangle& triangle, float t) {
-  const float length =
-      square_root((ray.dir[0] * ray.dir[0] + ray.dir[1] * ray.dir[1]) + ray.dir[2] * ray.dir[2]);
+  const float length = square_root((ray.dir[0] * ray.dir[0] + ray.dir[1] * ray.dir[1]) + ray.dir[2] * ray.dir[2]);
   float normal[3];
   set_up_normal(triangle, normal);
   return {triangle.triangle_id, t * length,
@@ -132,8 +130,8 @@ std::vector<Shown> traced(MemoryTree& tree, const View& view, WorkCounters& work
     }
     for (std::size_t i = 0; i < count; ++i) {
       EXPECT_EQ(tracers[i].finish(), Status::kOk);
-      tracers[i].store_hits(0, 0, kWidth,
-                            {planes->id, has_planes ? planes->distance : nullptr, has_planes ? planes->facing : nullptr});
+      tracers[i].store_hits(
+          0, 0, kWidth, {planes->id, has_planes ? planes->distance : nullptr, has_planes ? planes->facing : nullptr});
       const TileView& tile = tiles[first + i];
       for (std::uint32_t y = 0; y < kWidth && tile.top + y < frame.height; ++y) {
         for (std::uint32_t x = 0; x < kWidth && tile.left + x < frame.width; ++x) {
@@ -301,8 +299,8 @@ TYPED_TEST(TileTracerTest, WorkIsCounted) {
   EXPECT_EQ(work[TileWork::kNormalGroup], 0u);
 }
 
-// Boxes of pixels come from estimates and have a margin: a triangle between pixel centres is left out, one that touches a
-// centre stays.
+// Boxes of pixels come from estimates and have a margin: a triangle between pixel centres is left out, one that touches
+// a centre stays.
 TYPED_TEST(TileTracerTest, LargeTrianglesAreCoveredBlockByBlock) {
   TestMesh mesh = make_triangle({-50, -50, -3}, {50, -50, -3}, {0, 80, -3});
   mesh.append(make_triangle({-50, -50, -2}, {50, -40, -4}, {0, 80, -3}));
