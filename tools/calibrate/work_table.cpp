@@ -322,8 +322,8 @@ inline constexpr std::array<sim::WorkCost, kBvhWorkCount + 1> kBvhCosts = {{
 )";
 
 constexpr std::string_view kTreeTableHead =
-    R"(// What a unit of each kind of work of eye rays through the tree costs on a core of two in-order pipes. Written by
-// gridiron_calibrate from counted operations of the kernel itself; do not edit. tools/calibrate/README.md says how.
+    R"(// What a unit of each kind of work of eye rays through the tree costs on a core of two in-order pipes. Written
+// by gridiron_calibrate from counted operations of the kernel itself; do not edit. tools/calibrate/README.md says how.
 // Memory: constants. Threads: any. SPDX-License-Identifier: Apache-2.0
 #pragma once
 

@@ -30,8 +30,8 @@ namespace gridiron::calibrate {
 /// with packets one after another and in a ring. By Work and bvh::BvhWork.
 [[nodiscard]] Totals count_bvh_frames(const PipeRules& rules = {});
 
-/// The same for eye rays through the tree: the teapot, coarse and fine, from afar and near, without and with shading and
-/// planes, and a torus knot of 12,000 triangles. By Work and TileWork.
+/// The same for eye rays through the tree: the teapot, coarse and fine, from afar and near, without and with shading
+/// and planes, and a torus knot of 12,000 triangles. By Work and TileWork.
 [[nodiscard]] Totals count_tree_frames(const PipeRules& rules = {});
 
 /// Frames of `reference`, `best` and the cached BVH under other rules than those charged: cycles against theirs, dual

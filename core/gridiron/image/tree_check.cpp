@@ -8,9 +8,9 @@ namespace {
 
 // --- Triangles ------------------------------------------------------------------------------------------------------
 
-// With effects a record has the corners of the surface with its id, which says where the record stands. So no two records
-// have one id, and as there are as many as triangles that are kept, each of these is there. Without, its corners are
-// numbers within the bounds.
+// With effects a record has the corners of the surface with its id, which says where the record stands. So no two
+// records have one id, and as there are as many as triangles that are kept, each of these is there. Without, its
+// corners are numbers within the bounds.
 bool check_tree_triangles(ImageChecker& checker, const SceneImageView& view) {
   const TreeRecord& tree = view.tree;
   const std::uint64_t id_offset = tree.triangle_bytes - sizeof(std::uint32_t);

@@ -126,7 +126,7 @@ class TileCore {
         turn = {x, y, true};
         ++busy;
         GRIDIRON_TRY(tracers[i].begin(frame, store_.engine.eye, {view.left + x, view.top + y, view.dx, view.dy},
-                                      hits.facing != nullptr, hits.distance != nullptr, largest_));
+                                      {hits.facing != nullptr, hits.distance != nullptr}, largest_));
         x += kWidth;
         if (x >= columns) {
           x = 0;

@@ -8,6 +8,7 @@
 #include <gridiron/base/records.h>
 #include <gridiron/base/tree_records.h>
 #include <gridiron/base/work_counters.h>
+#include <gridiron/engine/tree/tile_hits.h>
 #include <gridiron/engine/tree/tile_memory.h>
 #include <gridiron/engine/tree/tile_projection.h>
 #include <gridiron/engine/tree/tile_triangles.h>
@@ -15,39 +16,11 @@
 #include <gridiron/platform/contract.h>
 #include <gridiron/ray/distance.h>
 #include <gridiron/ray/hits.h>
-#include <gridiron/ray/intersect_rays.h>
 
 #include <bit>
 #include <cstdint>
 
 namespace gridiron {
-
-/// Places of pixels in a block, and of blocks in a tile.
-template <std::uint32_t Width>
-struct TilePlaces {
-  static constexpr std::uint32_t kBlocksPerRow = Width / kBlockWidth;
-  static constexpr std::uint32_t kBlocks = kBlocksPerRow * kBlocksPerRow;
-  static constexpr std::uint32_t kEntries = (kBlocks + 15) / 16 * 16;  ///< for whole groups of lanes
-  alignas(64) float column[kBlockPixels];
-  alignas(64) float row[kBlockPixels];
-  alignas(64) float block_column[kEntries];
-  alignas(64) float block_row[kEntries];
-};
-template <std::uint32_t Width>
-inline constexpr TilePlaces<Width> kTilePlaces = [] {
-  TilePlaces<Width> places{};
-  for (std::uint32_t i = 0; i < kBlockPixels; ++i) {
-    places.column[i] = static_cast<float>(i % kBlockWidth);
-    places.row[i] = static_cast<float>(i / kBlockWidth);
-  }
-  for (std::uint32_t i = 0; i < TilePlaces<Width>::kEntries; ++i) {
-    places.block_column[i] = static_cast<float>(i % TilePlaces<Width>::kBlocksPerRow * kBlockWidth);
-    places.block_row[i] = static_cast<float>(i / TilePlaces<Width>::kBlocksPerRow * kBlockWidth);
-  }
-  return places;
-}();
-
-inline constexpr float kMostStoredNear = 0x1p120f;
 inline constexpr auto kLaneNumbers = [] {
   struct {
     alignas(64) std::uint32_t lane[16];
@@ -64,33 +37,21 @@ template <class L, std::uint32_t Width, class Source>
 class TileTracer {
  public:
   using Memory = TileMemory<Width>;
-  TileTracer(Memory& memory, Source& source, WorkCounters& work) : memory_(memory), source_(source), work_(work) {}
+  TileTracer(Memory& memory, Source& source, WorkCounters& work)
+      : memory_(memory), source_(source), work_(work), hits_(memory, source, work) {}
 
   /// Begins a tile whose first pixel lies in the picture. Borrows frame and eye until finish().
-  /// @param wants_facing, wants_distance  the planes of the memory that are to be filled.
   /// @param largest  |coordinate| of the tree's triangles.
   [[nodiscard]] GRIDIRON_OUTLINE Status begin(const FrameHead& frame, const EyeProjection& eye, const TileView& view,
-                                              bool wants_facing, bool wants_distance, float largest) {
+                                              TilePlanes planes, float largest) {
     work_.add(TileWork::kView);
     work_.charge_to(TileWork::kView);
-    frame_ = &frame;
     eye_ = &eye;
-    view_ = view;
-    wants_facing_ = wants_facing;
-    wants_distance_ = wants_distance;
-    trusts_floats_ = frame.accuracy == static_cast<std::uint32_t>(Accuracy::kFast);
+    hits_.begin(frame, eye, view, planes);
     project_tile(frame, eye, view, Width, largest, tile_);
-    const std::uint32_t columns = frame.width - view.left, rows = frame.height - view.top;
-    columns_ = columns < Width ? columns : Width;
-    rows_ = rows < Width ? rows : Width;
-    last_x_ = static_cast<float>(columns_ - 1);
-    last_y_ = static_cast<float>(rows_ - 1);
-    if (wants_facing || wants_distance) set_up_directions();
+    last_x_ = static_cast<float>(hits_.columns() - 1);
+    last_y_ = static_cast<float>(hits_.rows() - 1);
     queued_ = 0;
-    dirty_ = 0;
-    is_cleared_ = false;
-    least_near_ = 0.0f;
-    far_ = kFloatMax;
     top_ = 1;
     memory_.stack[0] = TreeChild::node(0).bits;
     memory_.stack_w[0] = 0.0f;
@@ -104,7 +65,7 @@ class TileTracer {
   [[nodiscard]] GRIDIRON_OUTLINE Status step() {
     work_.charge_to(TileWork::kChild);
     --top_;
-    if (memory_.stack_w[top_] > far_) return Status::kOk;
+    if (memory_.stack_w[top_] > hits_.far()) return Status::kOk;
     const TreeChild child{memory_.stack[top_]};
     if (child.is_leaf()) {
       // One more child comes into the window.
@@ -113,62 +74,25 @@ class TileTracer {
     }
     const TreeNode* node = nullptr;
     GRIDIRON_TRY(source_.node(child.node_index(), node));
-    if (dirty_ != 0) update_least();
+    hits_.update();
     push_children(*node);
     for (std::uint32_t i = 1; i <= source_.window() && i <= top_; ++i) GRIDIRON_TRY(ask_for(top_ - i));
     return Status::kOk;
   }
 
-  /// Draws what still waits. Then the memory has the tile's hits, if has_hits().
+  /// Draws what still waits. Then the memory has the tile's hits, if are_there_hits().
   [[nodiscard]] GRIDIRON_OUTLINE Status finish() {
     while (queued_ != 0) GRIDIRON_TRY(draw_group());
     return Status::kOk;
   }
 
   /// Whether anything may have been hit; if not, the memory's planes are undefined.
-  [[nodiscard]] bool has_hits() const { return is_cleared_; }
+  [[nodiscard]] bool are_there_hits() const { return hits_.is_cleared(); }
 
   /// Writes the hits into the planes of a larger tile.
   /// @param x, y  this tile's first pixel there. @param tile_width  pixels of a row of the planes.
-  GRIDIRON_OUTLINE void store_hits(std::uint32_t x, std::uint32_t y, std::uint32_t tile_width, const Hits& hits) {
-    work_.add(Work::kIdGroup, Memory::kBlocks * kGroups);
-    work_.charge_to(Work::kIdGroup);
-    for_each_group(
-        [&](std::uint32_t block, std::uint32_t i, std::uint32_t pixel) GRIDIRON_INLINE_LAMBDA {
-          const Int id = is_cleared_ ? Int::load(memory_.id[block] + i) : Int::splat(kNoTriangle);
-          L::store_quads(id, hits.id + pixel, tile_width);
-        },
-        x, y, tile_width);
-    if (hits.distance != nullptr) {
-      work_.add(Work::kDepthGroup, Memory::kBlocks * kGroups);
-      work_.charge_to(Work::kDepthGroup);
-      for_each_group(
-          [&](std::uint32_t block, std::uint32_t i, std::uint32_t pixel) GRIDIRON_INLINE_LAMBDA {
-            Float distance(kFloatMax);
-            if (is_cleared_) {
-              Float dir[3];
-              directions(block, i, dir);
-              const auto missed = L::equal(kNoTriangle, memory_.id[block] + i);
-              distance = L::select(missed, distance, Float::load(memory_.distance[block] + i) * length_of(dir));
-            }
-            L::store_quads(distance, hits.distance + pixel, tile_width);
-          },
-          x, y, tile_width);
-    }
-    if (hits.facing != nullptr) {
-      work_.charge_to(Work::kShadedSimpleGroup);
-      for_each_group(
-          [&](std::uint32_t block, std::uint32_t i, std::uint32_t pixel) GRIDIRON_INLINE_LAMBDA {
-            Float facing(0.0f);
-            if (is_cleared_) {
-              Float dir[3];
-              directions(block, i, dir);
-              facing = Float::load(memory_.facing[block] + i) / length_of(dir);
-            }
-            L::store_quads(facing, hits.facing + pixel, tile_width);
-          },
-          x, y, tile_width);
-    }
+  void store_hits(std::uint32_t x, std::uint32_t y, std::uint32_t tile_width, const Hits& hits) {
+    hits_.store(x, y, tile_width, hits);
   }
 
  private:
@@ -179,39 +103,8 @@ class TileTracer {
   static constexpr std::uint32_t kRow = Memory::kBlocksPerRow;
   static constexpr float kBlockStep = kBlockWidth;
 
-  template <class Write>
-  GRIDIRON_INLINE void for_each_group(Write&& write, std::uint32_t x, std::uint32_t y, std::uint32_t tile_width) const {
-    for (std::uint32_t block = 0; block < Memory::kBlocks; ++block) {
-      const std::uint32_t pixel = (y + block / kRow * kBlockWidth) * tile_width + x + block % kRow * kBlockWidth;
-      for (std::uint32_t i = 0; i < kBlockPixels; i += kLanes) write(block, i, pixel + i / kBlockWidth * tile_width);
-    }
-  }
-  // Directions of a group of pixels, as FrameHead defines them.
-  GRIDIRON_INLINE void directions(std::uint32_t block, std::uint32_t i, Float (&dir)[3]) const {
-    const std::uint32_t column = block % kRow * kBlockWidth, row = block / kRow * kBlockWidth + i / kBlockWidth;
-    for (int axis = 0; axis < 3; ++axis) {
-      dir[axis] =
-          L::repeat_quad(memory_.column_direction[axis] + column) + L::splat_quads(memory_.row_direction[axis] + row);
-    }
-  }
-  // The two terms of directions: pixel_direction().
-  GRIDIRON_OUTLINE void set_up_directions() {
-    const float left = static_cast<float>(view_.left) + view_.dx, top = static_cast<float>(view_.top) + view_.dy;
-    for (int axis = 0; axis < 3; ++axis) {
-      const float corner = frame_->corner[axis], step_x = frame_->step_x[axis], step_y = frame_->step_y[axis];
-      for (std::uint32_t i = 0; i < Width; ++i) {
-        const float place = static_cast<float>(i);
-        memory_.column_direction[axis][i] = corner + (left + place) * step_x;
-        memory_.row_direction[axis][i] = (top + place) * step_y;
-      }
-    }
-  }
-  [[nodiscard]] static GRIDIRON_INLINE Float length_of(const Float (&dir)[3]) {
-    return L::square_root((dir[0] * dir[0] + dir[1] * dir[1]) + dir[2] * dir[2]);
-  }
-
   [[nodiscard]] GRIDIRON_INLINE Status ask_for(std::uint32_t place) {
-    return memory_.stack_w[place] > far_ ? Status::kOk : source_.ahead(TreeChild{memory_.stack[place]});
+    return memory_.stack_w[place] > hits_.far() ? Status::kOk : source_.ahead(TreeChild{memory_.stack[place]});
   }
 
   GRIDIRON_INLINE void push_children(const TreeNode& node) {
@@ -235,7 +128,7 @@ class TileTracer {
         return Float::load(node.high[axis] + base) - Float::load(node.low[axis] + base);
       };
       L::max(L::max(extent(0), extent(1)), extent(2)).store(sizes + base);
-      met |= ((inside >= Float(0.0f)) & (w <= Float(far_))).bits() << base;
+      met |= ((inside >= Float(0.0f)) & (w <= Float(hits_.far()))).bits() << base;
     }
     if (!eye_->is_trusted) met = ~0u;
     const std::uint32_t there = (2u << (node.child_count - 1)) - 1;
@@ -261,7 +154,7 @@ class TileTracer {
   }
 
   [[nodiscard]] GRIDIRON_INLINE Status visit_leaf(TreeChild child, float size) {
-    if (!is_cleared_) clear();
+    if (!hits_.is_cleared()) hits_.clear();
     const VertexTriangle* records = nullptr;
     GRIDIRON_TRY(source_.leaf(child, records));
     const std::uint32_t count = child.count();
@@ -277,7 +170,7 @@ class TileTracer {
       LeafCorners<L> corners;
       corners.project(tile_, base, records + first, here);
       Int box;
-      const std::uint32_t kept = corners.template cull<Width>(far_, last_x_, last_y_, box) & ((1u << here) - 1);
+      const std::uint32_t kept = corners.template cull<Width>(hits_.far(), last_x_, last_y_, box) & ((1u << here) - 1);
       if (kept == 0) continue;
       queue(corners, box, kept, child.first() + first, records + first);
       if (queued_ >= kLanes) GRIDIRON_TRY(draw_group());
@@ -300,12 +193,12 @@ class TileTracer {
     put(kPixelBox, box);
     put(kRecord, Int::splat(first_record) + Int::load(kLaneNumbers.lane));
     put(kTriangleId, L::words_of(corners.id));
-    if (wants_facing_) {
+    if (hits_.planes().facing) {
       Float normal[3];
       set_up_normals(corners, kept, records, normal);
       for (std::uint32_t i = 0; i < 3; ++i) put(kNormal + i, L::words_of(normal[i]));
     }
-    if (wants_distance_) {
+    if (hits_.planes().distance) {
       for (std::uint32_t i = 0; i < 9; ++i) put(kVertex + i, L::words_of(corners.vertices[i / 3][i % 3]));
     }
     queued_ += count_bits(kept);
@@ -335,8 +228,8 @@ class TileTracer {
     const std::uint32_t count = queued_ < kLanes ? queued_ : kLanes;
     work_.add(TileWork::kFunctionGroup);
     work_.charge_to(TileWork::kFunctionGroup);
-    TileGroup group = set_up_group<L, Width>(memory_, tile_, 0, (1u << count) - 1, least_near_);
-    if (trusts_floats_) trust_floats();
+    TileGroup group = set_up_group<L, Width>(memory_, tile_, 0, (1u << count) - 1, hits_.least_near());
+    if (hits_.trusts_floats()) trust_floats();
     std::uint32_t rest = group.drawn;
     if (count_bits(group.tiny) >= kLeastTiny) {
       work_.charge_to(TileWork::kTinyPlace);
@@ -348,7 +241,7 @@ class TileTracer {
     work_.charge_to(TileWork::kFunctionGroup);
     queued_ -= count;
     if (queued_ != 0) {
-      const std::uint32_t words = wants_distance_ ? kTileWords : wants_facing_ ? kVertex : kNormal;
+      const std::uint32_t words = hits_.planes().distance ? kTileWords : hits_.planes().facing ? kVertex : kNormal;
       for (std::uint32_t word = 0; word < words; ++word) {
         Int::load(memory_.queue[word] + kLanes).store(memory_.queue[word]);
       }
@@ -361,8 +254,6 @@ class TileTracer {
     Float(-1.0f).store(memory_.functions[kEdgeSpan]);
     Float(0.0f).store(memory_.functions[kNearSpan]);
   }
-
-  GRIDIRON_INLINE void mark(std::uint32_t block) { dirty_ |= std::uint64_t{1} << (block % 64); }
 
   [[nodiscard]] GRIDIRON_INLINE Status draw_tiny(std::uint32_t tiny) {
     const auto function = [&](std::uint32_t kind)
@@ -421,28 +312,15 @@ class TileTracer {
     const float old = memory_.near[block][pixel], span = memory_.functions[kNearSpan][i];
     if (near + span < old) return Status::kOk;
     if (!is_inside || !(near > old + memory_.span[block])) [[unlikely]]
-      return trusts_floats_ ? Status::kOk : decide(block, 1u << pixel, i);
+      return hits_.trusts_floats() ? Status::kOk : hits_.decide(block, 1u << pixel, i);
     memory_.near[block][pixel] = near;
     memory_.id[block][pixel] = memory_.ids[i];
     memory_.record[block][pixel] = memory_.records[i];
     memory_.span[block] = span > memory_.span[block] ? span : memory_.span[block];
-    mark(block);
-    if (wants_facing_) take_facing(block, pixel, i);
-    if (wants_distance_) take_distances(block, 1u << pixel, i);
+    hits_.mark(block);
+    hits_.take_pixel(block, pixel, i);
     return Status::kOk;
   }
-  // The facing of one pixel: take_planes() for a group, lane by lane.
-  GRIDIRON_INLINE void take_facing(std::uint32_t block, std::uint32_t pixel, std::uint32_t lane) {
-    const std::uint32_t column = block % kRow * kBlockWidth + pixel % kBlockWidth;
-    const std::uint32_t row = block / kRow * kBlockWidth + pixel / kBlockWidth;
-    const auto share = [&](std::uint32_t axis) GRIDIRON_INLINE_LAMBDA {
-      const float dir = memory_.column_direction[axis][column] + memory_.row_direction[axis][row];
-      return std::bit_cast<float>(memory_.queue[kNormal + axis][lane]) * dir;
-    };
-    const float x = share(0), y = share(1), z = share(2);
-    memory_.facing[block][pixel] = magnitude(x + y + z);
-  }
-
   // A triangle that is drawn block by block: its functions in all lanes.
   struct Drawn {
     Float value[4], x[4], y[4], edge_span, near_span;
@@ -618,126 +496,19 @@ class TileTracer {
     }
     if (taken != 0) {
       memory_.span[block] = f.span > memory_.span[block] ? f.span : memory_.span[block];
-      mark(block);
-      if (wants_facing_ || wants_distance_) take_planes(block, taken, f.lane);
+      hits_.mark(block);
+      if (hits_.planes().facing || hits_.planes().distance) hits_.take_planes(block, taken, f.lane);
     }
-    if (open != 0 && !trusts_floats_) [[unlikely]]
-      return decide(block, open, f.lane);
+    if (open != 0 && !hits_.trusts_floats()) [[unlikely]]
+      return hits_.decide(block, open, f.lane);
     return Status::kOk;
-  }
-
-  // Fills the planes that shading and depth ask for, where the triangle of a lane was taken.
-  GRIDIRON_OUTLINE void take_planes(std::uint32_t block, std::uint32_t taken, std::uint32_t lane) {
-    work_.add(TileWork::kFacingBlock);
-    work_.charge_to(TileWork::kFacingBlock);
-    if (wants_facing_) {
-      const auto normal = [&](std::uint32_t axis) GRIDIRON_INLINE_LAMBDA {
-        return Float(std::bit_cast<float>(memory_.queue[kNormal + axis][lane]));
-      };
-      const Float normal_x = normal(0), normal_y = normal(1), normal_z = normal(2);
-      for (std::uint32_t i = 0; i < kBlockPixels; i += kLanes) {
-        Float dir[3];
-        directions(block, i, dir);
-        const Float facing = L::abs(normal_x * dir[0] + normal_y * dir[1] + normal_z * dir[2]);
-        float* const target = memory_.facing[block] + i;
-        L::select(L::mask_from_bits(taken >> i & L::kAllBits), facing, Float::load(target)).store(target);
-      }
-    }
-    if (wants_distance_) take_distances(block, taken, lane);
-  }
-  GRIDIRON_OUTLINE void take_distances(std::uint32_t block, std::uint32_t taken, std::uint32_t lane) {
-    VertexTriangle triangle;
-    queued_triangle(lane, triangle);
-    struct BlockRays : PacketDirections<kBlockPixels> {
-      float origin[3];
-    } rays;
-    for (int axis = 0; axis < 3; ++axis) rays.origin[axis] = frame_->eye[axis];
-    work_.add(Work::kHitSetup);
-    DistanceSetup setup;
-    set_up_distance(rays.origin, eye_->dir_max, triangle, setup);
-    for (std::uint32_t i = 0; i < kBlockPixels; i += kLanes) {
-      const std::uint32_t here = taken >> i & L::kAllBits;
-      if (here == 0) continue;
-      Float dir[3];
-      directions(block, i, dir);
-      for (int axis = 0; axis < 3; ++axis) dir[axis].store(rays.dir[axis] + i);
-      alignas(64) float found[kLanes];
-      distances_of<L>(rays, i, here, triangle, setup, found, work_);
-      float* const target = memory_.distance[block] + i;
-      L::select(L::mask_from_bits(here), Float::load(found), Float::load(target)).store(target);
-    }
-  }
-  GRIDIRON_INLINE void queued_triangle(std::uint32_t lane, VertexTriangle& triangle) const {
-    for (std::uint32_t i = 0; i < 9; ++i) {
-      triangle.v[i / 3][i % 3] = std::bit_cast<float>(memory_.queue[kVertex + i][lane]);
-    }
-    triangle.triangle_id = memory_.ids[lane];
-  }
-
-  // The least of blocks that changed, and of the tile once every block has a hit everywhere.
-  GRIDIRON_INLINE void update_least() {
-    work_.charge_to(TileWork::kChangedBlock);
-    for (std::uint64_t rest = dirty_; rest != 0; rest &= rest - 1) {
-      for (std::uint32_t block = lowest_bit(rest); block < Memory::kBlocks; block += 64) {
-        work_.add(TileWork::kChangedBlock);
-        Float least = Float::load(memory_.near[block]);
-        for (std::uint32_t i = kLanes; i < kBlockPixels; i += kLanes) {
-          least = L::min(least, Float::load(memory_.near[block] + i));
-        }
-        const float found = L::horizontal_min(least);
-        if (memory_.least_near[block] <= floor_ && found > floor_) --empty_blocks_;
-        memory_.least_near[block] = found;
-      }
-    }
-    dirty_ = 0;
-    if (empty_blocks_ != 0) return;
-    Float least = Float::load(memory_.least_near);
-    for (std::uint32_t i = kLanes; i < Memory::kBlocks; i += kLanes) {
-      least = L::min(least, Float::load(memory_.least_near + i));
-    }
-    least_near_ = L::horizontal_min(least);
-    far_ = least_near_ > 0x1p-100f ? (1.0f / least_near_) * (1.0f + 0x1p-9f) : kFloatMax;
-  }
-
-  GRIDIRON_OUTLINE void clear() {
-    work_.add(TileWork::kClearedBlock, Memory::kBlocks);
-    work_.charge_to(TileWork::kClearedBlock);
-    is_cleared_ = true;
-    // What lies farther than t_far is no hit. Near it, exact distances decide.
-    floor_ = frame_->t_far < 0x1p60f ? (1.0f / frame_->t_far) * (1.0f - 0x1p-18f) : 0.0f;
-    const Float none(floor_), span(floor_ * 0x1p-16f), zero(0.0f);
-    const Int no_id = Int::splat(kNoTriangle);
-    for (std::uint32_t block = 0; block < Memory::kBlocks; ++block) {
-      for (std::uint32_t i = 0; i < kBlockPixels; i += kLanes) {
-        none.store(memory_.near[block] + i);
-        no_id.store(memory_.id[block] + i);
-        if (wants_facing_) zero.store(memory_.facing[block] + i);
-      }
-    }
-    for (std::uint32_t i = 0; i < Memory::kBlocks; i += kLanes) {
-      none.store(memory_.least_near + i);
-      span.store(memory_.span + i);
-    }
-    empty_blocks_ = Memory::kBlocks;
-    if (columns_ != Width || rows_ != Width) clear_outside();
-  }
-  // Nothing lies in front of what is outside the picture, so that it hides the blocks and the tile like a hit.
-  GRIDIRON_RARE void clear_outside() {
-    for (std::uint32_t i = 0; i < Width * Width; ++i) {
-      const std::uint32_t x = i % Width, y = i / Width;
-      if (x < columns_ && y < rows_) continue;
-      const std::uint32_t block = y / kBlockWidth * kRow + x / kBlockWidth;
-      memory_.near[block][y % kBlockWidth * kBlockWidth + x % kBlockWidth] = kMostStoredNear;
-    }
-    dirty_ = ~std::uint64_t{0};
-    update_least();
   }
 
   // Pixels of a box, one by one.
   [[nodiscard]] GRIDIRON_RARE Status draw_carefully(std::uint32_t i) {
     const std::uint32_t box = memory_.boxes[i];
     for (std::uint32_t y = box >> 8 & 0xFFu; y <= box >> 24; ++y) {
-      for (std::uint32_t x = box & 0xFFu; x <= (box >> 16 & 0xFFu); ++x) GRIDIRON_TRY(decide_pixel(x, y, i));
+      for (std::uint32_t x = box & 0xFFu; x <= (box >> 16 & 0xFFu); ++x) GRIDIRON_TRY(hits_.decide_pixel(x, y, i));
     }
     return Status::kOk;
   }
@@ -749,74 +520,20 @@ class TileTracer {
       GRIDIRON_TRY(source_.record(first + i, triangle));
       memory_.records[0] = first + i;
       memory_.ids[0] = triangle.triangle_id;
-      if (wants_distance_) {
+      if (hits_.planes().distance) {
         for (std::uint32_t k = 0; k < 9; ++k) {
           memory_.queue[kVertex + k][0] = std::bit_cast<std::uint32_t>(triangle.v[k / 3][k % 3]);
         }
       }
-      if (wants_facing_) {
+      if (hits_.planes().facing) {
         float normal[3];
         work_.add(Work::kNormalSetup);
         set_up_normal(triangle, normal);
         for (std::uint32_t k = 0; k < 3; ++k) memory_.queue[kNormal + k][0] = std::bit_cast<std::uint32_t>(normal[k]);
       }
-      for (std::uint32_t y = 0; y < rows_; ++y) {
-        for (std::uint32_t x = 0; x < columns_; ++x) GRIDIRON_TRY(decide_pixel(x, y, 0));
+      for (std::uint32_t y = 0; y < hits_.rows(); ++y) {
+        for (std::uint32_t x = 0; x < hits_.columns(); ++x) GRIDIRON_TRY(hits_.decide_pixel(x, y, 0));
       }
-    }
-    return Status::kOk;
-  }
-  [[nodiscard]] GRIDIRON_RARE Status decide_pixel(std::uint32_t x, std::uint32_t y, std::uint32_t lane) {
-    const std::uint32_t block = y / kBlockWidth * kRow + x / kBlockWidth;
-    return decide(block, 1u << (y % kBlockWidth * kBlockWidth + x % kBlockWidth), lane);
-  }
-
-  // Decides pixels of a block exactly: whether the triangle of a lane is hit, and whether before what was hit so far.
-  [[nodiscard]] GRIDIRON_RARE Status decide(std::uint32_t block, std::uint32_t pixels, std::uint32_t lane) {
-    work_.charge_to(TileWork::kOpenPixel);
-    const std::uint32_t record = memory_.records[lane];
-    VertexTriangle triangle;
-    GRIDIRON_TRY(source_.record(record, triangle));
-    BatchRay ray{};
-    for (int axis = 0; axis < 3; ++axis) ray.origin[axis] = frame_->eye[axis];
-    for (; pixels != 0; pixels &= pixels - 1) {
-      const std::uint32_t pixel = lowest_bit(pixels);
-      const std::uint32_t column = block % kRow * kBlockWidth + pixel % kBlockWidth;
-      const std::uint32_t row = block / kRow * kBlockWidth + pixel / kBlockWidth;
-      if (column >= columns_ || row >= rows_) continue;
-      work_.add(TileWork::kOpenPixel);
-      const float x = (static_cast<float>(view_.left) + view_.dx) + static_cast<float>(column);
-      const float y = (static_cast<float>(view_.top) + view_.dy) + static_cast<float>(row);
-      ray.dir_max = 0.0f;
-      for (int axis = 0; axis < 3; ++axis) {
-        ray.dir[axis] = pixel_direction(*frame_, axis, x, y);
-        ray.dir_max = magnitude(ray.dir[axis]) > ray.dir_max ? magnitude(ray.dir[axis]) : ray.dir_max;
-      }
-      if (!passes_through(ray, triangle, work_)) continue;
-      const float t = ray_distance(ray, triangle, work_);
-      if (!(t > 0.0f) || !(t <= frame_->t_far)) continue;
-      const std::uint32_t old_id = memory_.id[block][pixel];
-      if (old_id != kNoTriangle) {
-        VertexTriangle old;
-        GRIDIRON_TRY(source_.record(memory_.record[block][pixel], old));
-        const float old_t = ray_distance(ray, old, work_);
-        const bool has_lower_id = triangle.triangle_id < old_id;
-        if (old_t < t) continue;
-        if (old_t == t) {
-          const bool breaks_ties = frame_->accuracy == static_cast<std::uint32_t>(Accuracy::kExact);
-          const bool is_first =
-              breaks_ties ? comes_first_exactly(ray.origin, ray.dir, triangle, old, has_lower_id, work_) : has_lower_id;
-          if (!is_first) continue;
-        }
-      }
-      const float near = (1.0f / t) * (1.0f - 0x1p-19f);
-      const float stored = near < kMostStoredNear ? near : kMostStoredNear, span = stored * 0x1p-17f;
-      memory_.near[block][pixel] = stored;
-      memory_.id[block][pixel] = triangle.triangle_id;
-      memory_.record[block][pixel] = record;
-      memory_.span[block] = span > memory_.span[block] ? span : memory_.span[block];
-      if (eye_->is_trusted) mark(block);
-      if (wants_facing_ || wants_distance_) take_planes(block, 1u << pixel, lane);
     }
     return Status::kOk;
   }
@@ -824,16 +541,11 @@ class TileTracer {
   Memory& memory_;
   Source& source_;
   WorkCounters& work_;
-  const FrameHead* frame_ = nullptr;
+  TileHits<L, Width, Source> hits_;
   const EyeProjection* eye_ = nullptr;
-  TileView view_{};
   TileProjection tile_{};
-  std::uint32_t columns_ = 0, rows_ = 0;
   float last_x_ = 0.0f, last_y_ = 0.0f;
-  std::uint32_t top_ = 0, queued_ = 0, empty_blocks_ = 0;
-  std::uint64_t dirty_ = 0;
-  float least_near_ = 0.0f, far_ = 0.0f, floor_ = 0.0f;
-  bool is_cleared_ = false, wants_facing_ = false, wants_distance_ = false, trusts_floats_ = false;
+  std::uint32_t top_ = 0, queued_ = 0;
 };
 
 }  // namespace gridiron
