@@ -62,10 +62,10 @@ inline constexpr std::uint64_t kAnyImageBytes = ~std::uint64_t{0};  ///< for an 
 /// @param most_image_bytes  ends the count of an image that needs more.
 /// @param marks             working memory, a bit for each macrocell; empty: 16,384 of them on the stack.
 /// Errors: kBadEffects (check_effects; a light farther from the grid than an eye may be), kBadVertex, kBadIndex,
-/// kBadParameter (also effects or a tree with TriangleFormat::kProjection), kNoTriangles, kTooManyTriangles (with a tree
-/// more than kMaxTreeTriangles too); kMemoryTooSmall: need.image_bytes is then more than most_image_bytes, but less
-/// than the image would take. Cost: linear in triangles + references that fit, once for each part of the macrocells that `marks`
-/// holds at a time.
+/// kBadParameter (also effects or a tree with TriangleFormat::kProjection), kNoTriangles, kTooManyTriangles (with a
+/// tree more than kMaxTreeTriangles too); kMemoryTooSmall: need.image_bytes is then more than most_image_bytes, but
+/// less than the image would take. Cost: linear in triangles + references that fit, once for each part of the
+/// macrocells that `marks` holds at a time.
 [[nodiscard]] Status count_scene_image(const MeshView& mesh, const GridParameters& parameters, GridNeed& need,
                                        const EffectsView* effects = nullptr,
                                        std::uint64_t most_image_bytes = kAnyImageBytes,
