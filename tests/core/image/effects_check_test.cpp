@@ -202,12 +202,45 @@ TEST(PartsOfEffects, StandAllOrNone) {
   EXPECT_EQ(opened.status, Status::kOk);
   EXPECT_FALSE(opened.view.has_effects);
   EXPECT_STREQ(broken_effects(built.image.bytes(), opened.view), nullptr);
-  // A part of the tree is none of an image without effects.
+  EXPECT_FALSE(opened.view.has_tree);
+  // A part of the tree does not stand alone.
+  const std::uint64_t tree = built.view.tree_offset_bytes;
   for (int i = 6; i < 9; ++i) {
     edit<SectionEntry>(built.image, entry_offset(kinds[i]), [](SectionEntry& entry) { entry.kind -= 1000; });
-    expect_refused(built.image, "section.kind", entry_offset(kinds[i]));
+    if (kinds[i] == SectionKind::kTree) {
+      expect_refused(built.image, "tree.triangles_offset_bytes", tree + offsetof(TreeRecord, triangles_offset_bytes));
+    } else {
+      expect_refused(built.image, "section.kind", entry_offset(kinds[i]));
+    }
     edit<SectionEntry>(built.image, entry_offset(kinds[i]), [](SectionEntry& entry) { entry.kind += 1000; });
   }
+}
+
+// Without effects there is no surface to compare a record with.
+TEST(PartsOfEffects, ATreeStandsWithoutThem) {
+  GridParameters parameters{4.0f, 2};
+  parameters.has_tree = true;
+  for (const TriangleFormat format : {TriangleFormat::kVertices, TriangleFormat::kLattice}) {
+    parameters.format = format;
+    BuiltImage built = build_image(all_effects().mesh(), parameters);
+    ASSERT_TRUE(built.view.has_tree);
+    EXPECT_FALSE(built.view.has_effects);
+    EXPECT_EQ(built.view.tree.triangle_count, built.view.header.triangle_count);
+    const std::uint64_t record = built.view.tree.triangles_offset_bytes, bytes = built.view.tree.triangle_bytes;
+    const std::uint64_t id = record + bytes - sizeof(std::uint32_t);
+    edit<std::uint32_t>(built.image, id, [&](std::uint32_t& number) { number += built.view.header.triangle_count; });
+    expect_refused(built.image, "tree_triangle.triangle_id", id);
+    edit<std::uint32_t>(built.image, id, [&](std::uint32_t& number) { number -= built.view.header.triangle_count; });
+    if (format != TriangleFormat::kVertices) continue;
+    for (const float value : {1e9f, -1e9f, std::numeric_limits<float>::quiet_NaN()}) {
+      BuiltImage other = build_image(all_effects().mesh(), parameters);
+      edit<float>(other.image, record + 4, [value](float& coordinate) { coordinate = value; });
+      expect_refused(other.image, "tree_triangle.v", record);
+    }
+  }
+  parameters.format = TriangleFormat::kProjection;
+  GridNeed need;
+  EXPECT_EQ(count_scene_image(all_effects().mesh(), parameters, need), Status::kBadParameter);
 }
 
 TEST(PartsOfEffects, StandBesideTrianglesThatHaveVertices) {

@@ -59,7 +59,7 @@ TEST(Configurations, UnknownNamesAreNone) {
 
 TEST(StoreFacts, RegionsFillTheStoreInOrderWithinTheArena) {
   const std::vector<sim::LayoutChoice> layouts = tool::built_layouts();
-  EXPECT_EQ(layouts.size(), 21u);
+  EXPECT_EQ(layouts.size(), 23u);
   for (const sim::LayoutChoice& layout : layouts) {
     const std::optional<tool::StoreFacts> store = tool::find_store_facts(layout);
     ASSERT_TRUE(store.has_value());
@@ -82,13 +82,17 @@ TEST(StoreFacts, RegionsFillTheStoreInOrderWithinTheArena) {
 TEST(StoreFacts, EveryStoreHasTheConfigurationsPackets) {
   for (const sim::StoreSize size : sim::kStoreSizes) {
     for (const tool::Configuration& configuration : tool::configurations()) {
+      if (configuration.packet_width == 0) continue;  // for 256 KB alone
       const tool::StoreFacts store = tool::usual_store_facts(size, configuration.packet_width);
+      EXPECT_EQ(store.engine, EngineId::kGrid);
       EXPECT_EQ(store.arena_bytes, sim::arena_bytes(size));
       EXPECT_EQ(store.tile_width, size == sim::StoreSize::k64KB ? 16u : 32u);
       EXPECT_EQ(store.packet_width, std::min(configuration.packet_width, store.tile_width));
     }
   }
   EXPECT_FALSE(tool::find_store_facts({sim::StoreSize::k128KB, 64, 8}).has_value());
+  EXPECT_EQ(tool::usual_store_facts(sim::StoreSize::k256KB, 0).engine, EngineId::kTree);
+  EXPECT_EQ(tool::effect_store_facts(sim::StoreSize::k256KB, 0).engine, EngineId::kTree);
 }
 
 TEST(StoreFacts, FitsTellRoomAndNeed) {

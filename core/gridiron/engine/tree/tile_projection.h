@@ -15,7 +15,7 @@
 namespace gridiron {
 
 /// The largest relative error of an operation in any rounding mode.
-inline constexpr double kUnit = 0x1p-23;
+inline constexpr double kFloatUnit = 0x1p-23;
 
 /// What all tiles of a frame share, in double.
 struct EyeProjection {
@@ -67,7 +67,8 @@ GRIDIRON_OUTLINE inline EyeProjection project_eye(const FrameHead& frame, float 
   eye.dir_max = static_cast<float>(most * 1.0001);
   // Where pixels are far smaller than rounding, or numbers leave the range in which products of four keep their
   // precision, exact arithmetic decides everything.
-  const double moved = 5.0 * kUnit * most * (eye.sizes[0] + eye.sizes[1] + (frame.width + frame.height) * eye.sizes[2]);
+  const double moved =
+      5.0 * kFloatUnit * most * (eye.sizes[0] + eye.sizes[1] + (frame.width + frame.height) * eye.sizes[2]);
   eye.is_trusted = magnitude(det) > 0x1p-12 * scale && moved < 0x1p-6 && far < 0x1p40 && far * eye.sizes[2] < 0x1p24 &&
                    far * (eye.sizes[0] + eye.sizes[1]) < 0x1p36 && far * eye.sizes[2] > 0x1p-24;
   return eye;
@@ -92,12 +93,12 @@ inline constexpr double kPlaneMargin = 0x1p-5;
 
 /// @param largest  |coordinate| of the tree. @param width  pixels along the tile's edge.
 ///
-/// With q a corner's way from the leaf's base: rows rounded to floats carry 1 kUnit, their products with q (which is
-/// rounded itself) 2, three sums 3 at most: 6 kUnit size |q|, and 1 of the result, which is at most that of the base
-/// and size |q|: 7 kUnit size |q| + 2 kUnit |base|. A pixel's place less an offset of up to `width` takes that much of
-/// w's error too, twice where a pixel is up to `width` away from the offset.
+/// With q a corner's way from the leaf's base: rows rounded to floats carry 1 kFloatUnit, their products with q (which
+/// is rounded itself) 2, three sums 3 at most: 6 kFloatUnit size |q|, and 1 of the result, which is at most that of the
+/// base and size |q|: 7 kFloatUnit size |q| + 2 kFloatUnit |base|. A pixel's place less an offset of up to `width`
+/// takes that much of w's error too, twice where a pixel is up to `width` away from the offset.
 ///
-/// A direction's component is a linear function of the pixel but for four roundings of at most kUnit each: of two
+/// A direction's component is a linear function of the pixel but for four roundings of at most kFloatUnit each: of two
 /// products and two sums. Over a tile each of them is largest at a corner.
 GRIDIRON_OUTLINE inline void project_tile(const FrameHead& frame, const EyeProjection& eye, const TileView& view,
                                           std::uint32_t width, float largest, TileProjection& tile) {
@@ -116,8 +117,8 @@ GRIDIRON_OUTLINE inline void project_tile(const FrameHead& frame, const EyeProje
   const double span = 2.0 * width, size = (sizes[0] > sizes[1] ? sizes[0] : sizes[1]) + span * sizes[2];
   // Doubles lose of the eye's rows, not of the tile's.
   const double lost = eye.sizes[0] + eye.sizes[1] + (x + y + span) * eye.sizes[2];
-  tile.error_per_size = static_cast<float>(7.1 * kUnit * size);
-  tile.error_per_base = static_cast<float>(2.1 * kUnit);
+  tile.error_per_size = static_cast<float>(7.1 * kFloatUnit * size);
+  tile.error_per_base = static_cast<float>(2.1 * kFloatUnit);
   tile.base_error = static_cast<float>(eye.slack * lost * 2.0 * most + 0x1p-100);
   double moved[3] = {0.0, 0.0, 0.0};
   for (int axis = 0; axis < 3; ++axis) {
@@ -126,7 +127,8 @@ GRIDIRON_OUTLINE inline void project_tile(const FrameHead& frame, const EyeProje
     const double x1 = x + width, y1 = y + width, left = corner + x * step_x, right = corner + x1 * step_x;
     const double top = y * step_y, bottom = y1 * step_y;
     const double ends = larger(larger(left + top, left + bottom), larger(right + top, right + bottom));
-    const double off = kUnit * (larger(x * step_x, x1 * step_x) + larger(left, right) + larger(top, bottom) + ends);
+    const double off =
+        kFloatUnit * (larger(x * step_x, x1 * step_x) + larger(left, right) + larger(top, bottom) + ends);
     for (int row = 0; row < 3; ++row) moved[row] += magnitude(tile.exact_rows[row][axis]) * off;
   }
   tile.direction_error = static_cast<float>(1.01 * ((moved[0] > moved[1] ? moved[0] : moved[1]) + span * moved[2]));
@@ -145,7 +147,7 @@ GRIDIRON_OUTLINE inline void project_tile(const FrameHead& frame, const EyeProje
       sum += magnitude(values[axis]);
     }
     // Three products and sums of floats, and all that doubles lose.
-    const double error = 6.0 * kUnit * (sum * most + magnitude(offset)) + double{tile.base_error};
+    const double error = 6.0 * kFloatUnit * (sum * most + magnitude(offset)) + double{tile.base_error};
     for (int axis = 0; axis < 3; ++axis) tile.planes[plane][axis] = static_cast<float>(values[axis]);
     tile.planes[plane][3] = static_cast<float>(plane == 4 ? offset - error : offset + error);
   }

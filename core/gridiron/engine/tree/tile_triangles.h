@@ -148,8 +148,8 @@ template <class L>
   return is_valid.bits();
 }
 
-// With e = kUnit, corners relative to an offset within the tile, g the error of their coordinates there and G = P + R
-// W, where P and W are the largest |column w|, |row w| and |w| and R the farthest pixel: an edge's function is a
+// With e = kFloatUnit, corners relative to an offset within the tile, g the error of their coordinates there and G = P
+// + R W, where P and W are the largest |column w|, |row w| and |w| and R the farthest pixel: an edge's function is a
 // product of two places less the pixel, each at most G and off by g: 4 g G. Its coefficients are differences of two
 // products, their sum at a pixel takes twelve more roundings of sums of at most 2 G^2, step by step: 2 (2 + 12) e G^2 <
 // 30 e G^2.
