@@ -7,12 +7,12 @@
 %proves kTileEdgeError least 0.868
 
 %line const Float size = L::bounded_sum(reach, most_w, L::max(most_x, most_y));
-%line size * (moved * Float(kCornerFactor) + size * Float(kTileEdgeError)) + Float(kLeastEdgeError);
+%line (size + moved) * (moved * Float(kCornerFactor) + size * Float(kTileEdgeError)) + Float(kLeastEdgeError);
 # The square's P R W is the product of a P and an R W.
 %round size_p = 0 * 0 + 1
 %round size_w = 1 * 1 + 0
-%round error_p = size_p * (0 * 0 + size_w * kTileEdgeError) + 0
-%round error_w = size_w * (0 * 0 + size_p * kTileEdgeError) + 0
+%round error_p = (size_p + 0) * (0 * 0 + size_w * kTileEdgeError) + 0
+%round error_w = (size_w + 0) * (0 * 0 + size_p * kTileEdgeError) + 0
 %line const Float value = L::turn_by(volume, x[i] * y[next] - y[i] * x[next]) + edge_error;
 %define edge_error = (error_p + error_w) / 2
 %round value = 0 + edge_error

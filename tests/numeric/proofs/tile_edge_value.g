@@ -9,9 +9,9 @@
 %proves kTileEdgeError least 0.801
 
 %line const Float size = L::bounded_sum(reach, most_w, L::max(most_x, most_y));
-%line size * (moved * Float(kCornerFactor) + size * Float(kTileEdgeError)) + Float(kLeastEdgeError);
+%line (size + moved) * (moved * Float(kCornerFactor) + size * Float(kTileEdgeError)) + Float(kLeastEdgeError);
 %round size = 0 * 0 + 1
-%round error = size * (0 * 0 + size * kTileEdgeError) + 0
+%round error = (size + 0) * (0 * 0 + size * kTileEdgeError) + 0
 # The value has the error, rounded once for all.
 %define edge_error = error
 %line const Float value = L::turn_by(volume, x[i] * y[next] - y[i] * x[next]) + edge_error;
