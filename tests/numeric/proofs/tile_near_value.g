@@ -1,0 +1,58 @@
+# core/gridiron/engine/tree/tile_triangles.h: kNearError, of the value of 1 / t at the offset, in every way that a pixel
+# comes by it. For fixed roundings this is linear in nx, ny and nw over the rounded volume, and `most_near` in their
+# magnitudes: nw / volume is 1, the others are 0; steps are in tile_near_step.g. 2 e are left on each side for what
+# comparisons round and for the distance by which rounded t surely differ (tile_near_order.g). What `relative` and w_error
+# take is a matter of their own. SPDX-License-Identifier: Apache-2.0
+%source core/gridiron/engine/tree/tile_triangles.h
+%constant kNearError inline constexpr float kNearError = {};
+%proves kNearError least 0.810
+
+%line const Float inverse = Float(1.0f) / volume;
+%line const Float near_x = nx * inverse, near_y = ny * inverse, near_w = nw * inverse;
+%round inverse = 1 / volume
+%round near_w = nw * inverse
+%line const Float most_near = L::bounded_sum(L::abs(near_x) + L::abs(near_y), reach, L::abs(near_w));
+%line const Float near_error = most_near * (relative + Float(kNearError + 2.0f * tile.w_error));
+%round most_near = 0 * 0 + size(near_w)
+%round error = most_near * (0 + (kNearError + 0))
+%line const Float near_value = near_w - near_error;
+%define near_error = error
+%round near_value = near_w - near_error
+
+# The steps are 0. draw_triangle(): 16, 8 and 4 lanes, see tile_edge_value.g.
+%source core/gridiron/engine/tree/tile_tracer.h
+%line start[k] = L::bounded_sum(x[k], column, kLanes > kBlockWidth ? L::bounded_sum(y[k], row, value[k]) : value[k]);
+%line return L::bounded_sum(x[k], column, L::bounded_sum(y[k], row, start[k]));
+%line for (int k = 0; k < 4; ++k) value[k] = value[k] + right[k];
+%line for (int k = 0; k < 4; ++k) row[k] = row[k] + down[k];
+%line for (int k = kCovered ? 3 : 0; k < 4; ++k) value[k] = value[k] + f.step[k];
+%round start_16 = 0 + (0 + near_value)
+%round at_16 = 0 + (0 + start_16)
+%round block_16 = ((((at_16 + 0) + 0) + 0) + 0) + 0
+%round block_8 = (((at_16 + 0) + 0) + 0) + 0
+%round start_4 = 0 + near_value
+%round at_4 = 0 + (0 + start_4)
+%round block_4 = (((((at_4 + 0) + 0) + 0) + 0) + 0) + 0
+# draw_tiny().
+%line left[3] = L::bounded_sum(function(kNearX), x, L::bounded_sum(function(kNearY), y, function(kNearValue)));
+%line value[3] = value[3] + function(kNearX);
+%line left[3] = left[3] + function(kNearY);
+%round tiny = (((((0 + (0 + near_value)) + 0) + 0) + 0) + 0)
+# draw_many_blocks(): the greatest value of a block, with the span.
+%line most[k] = (L::max(f.x[k], zero) + L::max(f.y[k], zero)) * last + f.value[k];
+%line most[3] = most[3] + f.near_span;
+%line (L::bounded_sum(f.x[3], x, L::bounded_sum(f.y[3], y, most[3])) > Float::load(memory_.least_near + base));
+%round many = 0 + (0 + ((0 + near_value) + 2 * near_error))
+# set_up_group(): all hidden.
+%source core/gridiron/engine/tree/tile_triangles.h
+%line return value + L::max(along_x * x0, along_x * x1) + L::max(along_y * y0, along_y * y1);
+%line auto is_drawn = most_in_box(near_value, near_x, near_y) + (near_error + near_error) > Float(least_near);
+%round in_box = (near_value + 0 + 0) + 2 * near_error
+
+%define left_over = 0x2p-23 * most_near
+
+{ nw / volume in [1, 1] /\ |nw| in [1, 1] /\ |volume| in [1, 1] /\
+  %roundings
+  -> near_error - |block_16 - exact_block_16| - left_over >= 0 /\ near_error - |block_8 - exact_block_8| - left_over >= 0 /\
+     near_error - |block_4 - exact_block_4| - left_over >= 0 /\ near_error - |tiny - exact_tiny| - left_over >= 0 /\
+     near_error - |many - exact_many| - left_over >= 0 /\ near_error - |in_box - exact_in_box| - left_over >= 0 }
