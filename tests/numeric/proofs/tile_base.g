@@ -2,7 +2,7 @@
 # base itself is rounded, and it goes through three sums. The argument is that of tile_corner.g.
 # SPDX-License-Identifier: Apache-2.0
 %source core/gridiron/engine/tree/tile_projection.h
-%decimal kPerBase tile.error_per_base = static_cast<float>({} * kUnit);
+%decimal kPerBase tile.error_per_base = static_cast<float>({} * kFloatUnit);
 %proves kPerBase least 0.976
 %define unit = 0x1p-23
 %round per_base = kPerBase * unit

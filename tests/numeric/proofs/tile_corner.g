@@ -2,7 +2,7 @@
 # base. For fixed roundings the difference is linear in the products of a row's components and the way's: one is 1, the
 # others are 0. What the base takes is in tile_base.g. SPDX-License-Identifier: Apache-2.0
 %source core/gridiron/engine/tree/tile_projection.h
-%decimal kPerSize tile.error_per_size = static_cast<float>({} * kUnit * size);
+%decimal kPerSize tile.error_per_size = static_cast<float>({} * kFloatUnit * size);
 %proves kPerSize least 0.984
 %cases IN_X IN_Y IN_Z
 %case 1 0 0

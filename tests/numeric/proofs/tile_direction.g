@@ -6,7 +6,7 @@
 %decimal kShareOfW tile.w_error = static_cast<float>({} * moved[2]);
 %proves kShare least 0.991
 %proves kShareOfW least 0.991
-%line const double off = kUnit * (larger(x * step_x, x1 * step_x) + larger(left, right) + larger(top, bottom) + ends);
+%line kFloatUnit * (larger(x * step_x, x1 * step_x) + larger(left, right) + larger(top, bottom) + ends);
 %define off = 0x1p-23
 %cases COLUMN LEFT ROW ALL
 %case 1 0 0 0

@@ -11,7 +11,7 @@
 %round inverse = quotient * 1
 %round near_y = inverse * 1
 %line const Float most_near = L::bounded_sum(L::abs(near_x) + L::abs(near_y), reach, L::abs(near_w));
-%line const Float near_error = most_near * (relative + Float(kNearError + 2.0f * tile.w_error));
+%line const Float near_error = most_near * (relative * Float(kSecondOrder) + Float(kNearError + 2.0f * tile.w_error));
 %round most_near = (0 + size(near_y)) * 1 + 0
 %round error = most_near * (0 + (kNearError + 0))
 %line const Float near_value = near_w - near_error;

@@ -12,7 +12,7 @@
 %round inverse = 1 / volume
 %round near_w = nw * inverse
 %line const Float most_near = L::bounded_sum(L::abs(near_x) + L::abs(near_y), reach, L::abs(near_w));
-%line const Float near_error = most_near * (relative + Float(kNearError + 2.0f * tile.w_error));
+%line const Float near_error = most_near * (relative * Float(kSecondOrder) + Float(kNearError + 2.0f * tile.w_error));
 %round most_near = 0 * 0 + size(near_w)
 %round error = most_near * (0 + (kNearError + 0))
 %line const Float near_value = near_w - near_error;

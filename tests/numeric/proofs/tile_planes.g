@@ -3,7 +3,7 @@
 # components and a side, and in the offset: one of them is 1 or -1, the others are 0. Sides are at most `most`, but for
 # what boxes are grown. SPDX-License-Identifier: Apache-2.0
 %source core/gridiron/engine/tree/tile_projection.h
-%constant kPlaneError const double error = {} * kUnit * (sum * most + magnitude(offset)) + double{tile.base_error};
+%constant kPlaneError const double error = {} * kFloatUnit * (sum * most + magnitude(offset)) + double{tile.base_error};
 %proves kPlaneError least 0.834
 %cases IN_X IN_Y IN_Z OFFSET
 %case 1 0 0 0

@@ -68,7 +68,7 @@ GRIDIRON_OUTLINE inline EyeProjection project_eye(const FrameHead& frame, float 
   // Where pixels are far smaller than rounding, or numbers leave the range in which products of four keep their
   // precision, exact arithmetic decides everything.
   const double moved =
-      5.0 * kFloatUnit * most * (eye.sizes[0] + eye.sizes[1] + (frame.width + frame.height) * eye.sizes[2]);
+      5.0 * kFloatUnit * most * (eye.sizes[0] + eye.sizes[1] + (8.0 + frame.width + frame.height) * eye.sizes[2]);
   eye.is_trusted = magnitude(det) > 0x1p-12 * scale && moved < 0x1p-6 && far < 0x1p40 && far * eye.sizes[2] < 0x1p24 &&
                    far * (eye.sizes[0] + eye.sizes[1]) < 0x1p36 && far * eye.sizes[2] > 0x1p-24;
   return eye;
@@ -93,10 +93,10 @@ inline constexpr double kPlaneMargin = 0x1p-5;
 
 /// @param largest  |coordinate| of the tree. @param width  pixels along the tile's edge.
 ///
-/// With q a corner's way from the leaf's base: rows rounded to floats carry 1 kFloatUnit, their products with q (which
-/// is rounded itself) 2, three sums 3 at most: 6 kFloatUnit size |q|, and 1 of the result, which is at most that of the
-/// base and size |q|: 7 kFloatUnit size |q| + 2 kFloatUnit |base|. A pixel's place less an offset of up to `width`
-/// takes that much of w's error too, twice where a pixel is up to `width` away from the offset.
+/// With q a corner's way from the leaf's base: rows rounded to floats carry 1 kFloatUnit, q and its products with them
+/// 2, three sums 3: 6 kFloatUnit size |q|. The base is rounded once and goes through all three sums: 4 kFloatUnit
+/// |base|. A pixel's place less an offset of up to `width` takes that much of w's error too, twice where a pixel is up
+/// to `width` away from the offset. tests/numeric/proofs proves these, and what tile_triangles.h charges.
 ///
 /// A direction's component is a linear function of the pixel but for four roundings of at most kFloatUnit each: of two
 /// products and two sums. Over a tile each of them is largest at a corner.
@@ -117,8 +117,8 @@ GRIDIRON_OUTLINE inline void project_tile(const FrameHead& frame, const EyeProje
   const double span = 2.0 * width, size = (sizes[0] > sizes[1] ? sizes[0] : sizes[1]) + span * sizes[2];
   // Doubles lose of the eye's rows, not of the tile's.
   const double lost = eye.sizes[0] + eye.sizes[1] + (x + y + span) * eye.sizes[2];
-  tile.error_per_size = static_cast<float>(7.1 * kFloatUnit * size);
-  tile.error_per_base = static_cast<float>(2.1 * kFloatUnit);
+  tile.error_per_size = static_cast<float>(6.1 * kFloatUnit * size);
+  tile.error_per_base = static_cast<float>(4.1 * kFloatUnit);
   tile.base_error = static_cast<float>(eye.slack * lost * 2.0 * most + 0x1p-100);
   double moved[3] = {0.0, 0.0, 0.0};
   for (int axis = 0; axis < 3; ++axis) {

@@ -100,6 +100,7 @@ class TileTracer {
   using Int = typename L::Int;
   static constexpr std::uint32_t kLanes = L::kCount;
   static constexpr std::uint32_t kGroups = kBlockPixels / kLanes;
+  static_assert(kLanes >= kBlockWidth, "a group is one or several rows of a block");
   static constexpr std::uint32_t kRow = Memory::kBlocksPerRow;
   static constexpr float kBlockStep = kBlockWidth;
 

@@ -164,6 +164,8 @@ inline constexpr float kLeastEdgeError = 0x1p-100f;
 /// distance by which rounded t surely differ 2 e.
 inline constexpr float kNormalError = 11.5f * 0x1p-23f;
 inline constexpr float kNearError = 17.5f * 0x1p-23f;
+/// An error r of n . v moves 1 / t by r / (1 - r).
+inline constexpr float kSecondOrder = 1.04f;
 /// Above it nothing is known of a triangle's side.
 inline constexpr float kMostNormalError = 0x1p-5f;
 inline constexpr float kMostNear = 0x1p90f;
@@ -205,10 +207,10 @@ template <class L, std::uint32_t Width>
   // The offset is no farther from the first pixel than from the last; blocks reach beyond the box.
   const Float reach = L::max(x1, y1) + Float(kBlockWidth - 1.0f);
   const Float size = L::bounded_sum(reach, most_w, L::max(most_x, most_y));
-  const Float moved = word(kCornerError) + size * Float(0x1p-23f) +
+  const Float moved = word(kCornerError) + size * Float(0x1.4p-23f) +
                       most_w * Float(static_cast<float>(Width * 0x1p-22) + tile.direction_error);
   const Float edge_error =
-      size * (moved * Float(kCornerFactor) + size * Float(kTileEdgeError)) + Float(kLeastEdgeError);
+      (size + moved) * (moved * Float(kCornerFactor) + size * Float(kTileEdgeError)) + Float(kLeastEdgeError);
 
   // 2. The plane. Of the three corners the one opposite to the longest side gives the least error.
   Float side_x[3], side_y[3], side_w[3], length[3];
@@ -241,7 +243,7 @@ template <class L, std::uint32_t Width>
   const Float relative = plane_error * L::abs(inverse);
   const Float near_x = nx * inverse, near_y = ny * inverse, near_w = nw * inverse;
   const Float most_near = L::bounded_sum(L::abs(near_x) + L::abs(near_y), reach, L::abs(near_w));
-  const Float near_error = most_near * (relative + Float(kNearError + 2.0f * tile.w_error));
+  const Float near_error = most_near * (relative * Float(kSecondOrder) + Float(kNearError + 2.0f * tile.w_error));
   // Not a number: not sure.
   const auto is_sure =
       (relative < Float(kMostNormalError)) & (most_near < Float(kMostNear)) & (edge_error < Float(kMostNear));
