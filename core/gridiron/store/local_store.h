@@ -124,8 +124,8 @@ struct TreeLayout256K {
   using Engine = TileEngine;
   static constexpr std::uint32_t kEffects = 0;
   static constexpr std::uint32_t kArenaBytes = 256 * 1024;
-  static constexpr std::uint32_t kCodeBudgetBytes = 54 * 1024;
-  static constexpr std::uint32_t kStackBudgetBytes = 8 * 1024;
+  static constexpr std::uint32_t kCodeBudgetBytes = 60 * 1024;
+  static constexpr std::uint32_t kStackBudgetBytes = 10 * 1024 + 512;
   static constexpr std::uint32_t kTileWidth = TileWidthV;
   static constexpr std::uint32_t kPacketWidth = 0;
   static constexpr std::uint32_t kMaxOutputDepth = 2;
@@ -149,7 +149,9 @@ struct EffectLayout256K {
   static constexpr std::uint32_t kEffects = BuiltV;
   static constexpr std::uint32_t kArenaBytes = 256 * 1024;
   static constexpr std::uint32_t kCodeBudgetBytes = PacketWidthV >= 16 ? 88 * 1024 : 94 * 1024;
-  static constexpr std::uint32_t kStackBudgetBytes = PacketWidthV >= 16 ? 9 * 1024 : 7 * 1024 + 768;
+  static constexpr std::uint32_t kStackBudgetBytes = PacketWidthV == 0    ? 10 * 1024 + 256
+                                                    : PacketWidthV >= 16 ? 9 * 1024
+                                                                         : 7 * 1024 + 768;
   static constexpr std::uint32_t kTileWidth = 32;
   static constexpr std::uint32_t kPacketWidth = PacketWidthV;
   static constexpr std::uint32_t kMailboxSlots = PacketWidthV < 16 ? 64 : 256;
