@@ -169,6 +169,7 @@ inline constexpr WorkKind kTileWorkKinds[] = {
     {TileWork::kChangedBlock, "changed_block"}};
 // clang-format on
 
+/// Their prices, in the same order.
 inline constexpr auto kTilePrices = [] {
   static_assert(kTileCosts.size() == std::size(kTileWorkKinds));
   std::array<WorkPrice, kTileCosts.size()> prices{};
