@@ -69,7 +69,7 @@ inline constexpr float kVolumeErrorLimit = 0x1p90f;
 
 /// A bound of the rounding of pixel directions themselves, added where the corner rays speak for all others: with D as
 /// below, the edge function of a rounded ray is above the largest of the corner rays' by at most
-/// (5 D + |d|max) e scale, in every rounding mode; tests/numeric/watertight/README.md has the proof.
+/// (5 D + |d|max) e scale, in every rounding mode; tests/numeric/proofs/README.md has the argument.
 inline constexpr float kCornerErrorFactor = 5.0f * 0x1p-23f;
 
 /// The same for n . d evaluated as first + column * per_column + row * per_row. With D the largest sum of magnitudes
