@@ -182,6 +182,7 @@ struct Lanes {
     friend GRIDIRON_INLINE Int operator+(Int a, Int b) { return {a.v + b.v}; }
     friend GRIDIRON_INLINE Int operator|(Int a, Int b) { return {a.v | b.v}; }
     friend GRIDIRON_INLINE Int operator&(Int a, Int b) { return {a.v & b.v}; }
+    friend GRIDIRON_INLINE Int operator^(Int a, Int b) { return {a.v ^ b.v}; }
     friend GRIDIRON_INLINE Int operator<<(Int a, int count) { return {a.v << count}; }
     friend GRIDIRON_INLINE Int operator>>(Int a, int count) { return {a.v >> count}; }
     /// Each lane by a number of its own.
@@ -269,7 +270,7 @@ struct Lanes {
 #endif
       return Float(a.v > b.v ? a.v : b.v);
   }
-  /// Whether bounded_sum() rounds once.
+  /// Whether wide lanes have a bounded_sum() that rounds once.
   static constexpr bool kRoundsOnce =
 #if defined(__AVX512F__)
       W == 16 ||
@@ -278,14 +279,17 @@ struct Lanes {
       W == 8 ||
 #endif
       false;
-  /// a b + c with two roundings, in wide lanes with one where that is one instruction: for values with a bound of their
-  /// error, never for what must have the same bits everywhere.
+  /// a b + c with two roundings, or with one where that is one instruction: for values with a bound of their error,
+  /// never for what must have the same bits everywhere.
   [[nodiscard]] static GRIDIRON_INLINE Float bounded_sum(Float a, Float b, Float c) {
 #if defined(__AVX512F__)
     if constexpr (W == 16) return Float(FloatVector(_mm512_fmadd_ps(__m512(a.v), __m512(b.v), __m512(c.v))));
 #endif
 #if defined(__FMA__)
     if constexpr (W == 8) return Float(FloatVector(_mm256_fmadd_ps(__m256(a.v), __m256(b.v), __m256(c.v))));
+#endif
+#if defined(__ARM_NEON) && defined(__aarch64__)
+    if constexpr (W == 4) return Float(FloatVector(vfmaq_f32(float32x4_t(c.v), float32x4_t(a.v), float32x4_t(b.v))));
 #endif
     return a * b + c;
   }
@@ -443,6 +447,31 @@ struct Lanes {
       target[count] = static_cast<std::uint32_t>(a.v[i]);
       count += bits >> i & 1u;
     }
+  }
+  /// Which lanes go behind `count` words that are there: bit i for lane i. Precondition: count < W.
+  struct Packing {
+    std::uint32_t bits, count;
+  };
+  /// Puts lanes behind words, in order. @param target  room for 2 W words, aligned to 4 W bytes; those behind the last
+  /// are undefined.
+  static GRIDIRON_INLINE void append(const Packing& packing, Int a, std::uint32_t* target) {
+    compress(a, packing.bits, target + packing.count);
+  }
+  /// Copies 16 bytes. @tparam Quad  of this size and alignment.
+  template <class Quad>
+  static GRIDIRON_INLINE void copy_quad(const Quad& source, Quad& target) {
+    static_assert(sizeof(Quad) == 16 && alignof(Quad) == 16);
+    target = source;
+  }
+  /// Bit i is the sign of lane i.
+  [[nodiscard]] static GRIDIRON_INLINE std::uint32_t sign_bits(Int a) {
+#if defined(__AVX2__)
+    if constexpr (W == 8) return static_cast<std::uint32_t>(_mm256_movemask_ps(reinterpret_cast<__m256>(a.v)));
+#endif
+#if defined(__SSE2__)
+    if constexpr (W == 4) return static_cast<std::uint32_t>(_mm_movemask_ps(reinterpret_cast<__m128>(a.v)));
+#endif
+    return (a < Int::splat(0)).bits();
   }
   /// Mask with lane i set where bit i is.
   [[nodiscard]] static GRIDIRON_INLINE Mask mask_from_bits(std::uint32_t bits) {

@@ -133,7 +133,7 @@ struct TreeLayout256K {
   static constexpr std::uint32_t kEyeTileWidth = 32;  ///< pixels along the edge of what is traced at once
   static constexpr std::uint32_t kEyeTurns = 2;       ///< of these, how many take turns
   static constexpr std::uint32_t kEyeSlots = 32;      ///< nodes and leaves at hand
-  static constexpr std::uint32_t kLeafTriangles = 8;  ///< of a leaf, at most
+  static constexpr std::uint32_t kLeafTriangles = 16;///< of a leaf, at most
 };
 
 /// Sizes of a 256 KB core that renders effects.

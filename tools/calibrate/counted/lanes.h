@@ -113,6 +113,9 @@ struct Lanes {
     friend Int operator&(Int a, Int b) {
       return {a.v & b.v, emit(OpClass::kFixed, tie((a.v & b.v).v), a.node, b.node)};
     }
+    friend Int operator^(Int a, Int b) {
+      return {a.v ^ b.v, emit(OpClass::kFixed, tie((a.v ^ b.v).v), a.node, b.node)};
+    }
     friend Int operator<<(Int a, int count) {
       return {a.v << count, emit(OpClass::kShift, tie((a.v << count).v), a.node)};
     }
@@ -211,8 +214,17 @@ struct Lanes {
     return make(OpClass::kFixed, Native::min(a.v, b.v), a, chosen(a, b));
   }
   static constexpr bool kRoundsOnce = false;
-  [[nodiscard]] static Float bounded_sum(Float a, Float b, Float c) { return a * b + c; }
-  [[nodiscard]] static Float bounded_difference(Float a, Float b, Float c, Float d) { return a * b - c * d; }
+  /// One instruction: a bounded value may be rounded once.
+  [[nodiscard]] static Float bounded_sum(Float a, Float b, Float c) {
+    const Native::Float value = Native::bounded_sum(a.v, b.v, c.v);
+    const bool is_constant = a.node == 0 && b.node == 0 && c.node == 0;
+    return {value, is_constant ? 0 : emit(OpClass::kFloat, tie(value.v), a.node, b.node, c.node)};
+  }
+  [[nodiscard]] static Float bounded_difference(Float a, Float b, Float c, Float d) {
+    const Float second = c * d;
+    const Native::Float value = Native::bounded_difference(a.v, b.v, c.v, d.v);
+    return {value, emit(OpClass::kFloat, tie(value.v), a.node, b.node, second.node)};
+  }
   [[nodiscard]] static Float max(Float a, Float b) {
     return make(OpClass::kFixed, Native::max(a.v, b.v), a, chosen(a, b));
   }
@@ -261,6 +273,47 @@ struct Lanes {
     }
     const std::uint32_t count = gridiron::count_bits(bits.value);
     for (std::uint32_t i = 0; i < count; ++i) target[i].value = words[i];
+  }
+  /// Patterns by the bits and by the count: of one shuffle, of a rotation, of what stays.
+  struct Packing {
+    Packing(const Counted<std::uint32_t>& lanes, const Counted<std::uint32_t>& words)
+        : bits(lanes.value), count(words.value) {
+      const std::uint64_t tied = bits * 16 + count;
+      const Node place = emit(OpClass::kShift, tied, node_of(lanes));
+      pattern = emit(OpClass::kLoad, tied, place);
+      rotation = emit(OpClass::kShift, tied + 1, node_of(words));
+      stays = emit(OpClass::kLoad, tied + 1, rotation);
+    }
+    std::uint32_t bits, count;
+    Node pattern, rotation, stays;
+  };
+  static void append(const Packing& packing, Int a, Counted<std::uint32_t>* target) {
+    alignas(16) std::uint32_t words[4];
+    Native::compress(a.v, packing.bits, words);
+    const std::uint64_t tied = tie(a.v.v) + packing.bits;
+    const Node before = PipeModel::current().load_quad(target, tied);
+    const Node packed = emit(OpClass::kShuffle, tied, a.node, packing.pattern);
+    const Node turned = emit(OpClass::kShuffle, tied + 1, packed, packing.rotation);
+    PipeModel::current().store_quad(target, emit(OpClass::kFixed, tied, before, turned, packing.stays), tied);
+    PipeModel::current().store_quad(target + W, turned, tied + 1);
+    const std::uint32_t count = gridiron::count_bits(packing.bits);
+    for (std::uint32_t i = 0; i < count; ++i) target[packing.count + i].value = words[i];
+  }
+  template <class Quad>
+  static void copy_quad(const Quad& source, Quad& target) {
+    static_assert(sizeof(Quad) == 16 && alignof(Quad) == 16);
+    std::uint64_t words[2];
+    __builtin_memcpy(words, &source, sizeof words);
+    const std::uint64_t tied = words[0] * 31 + words[1];
+    const Node node = PipeModel::current().load_quad(&source, tied);
+    __builtin_memcpy(static_cast<void*>(&target), words, sizeof words);
+    PipeModel::current().store_quad(&target, node, tied);
+  }
+  /// A comparison with 0, and the gather.
+  [[nodiscard]] static Counted<std::uint32_t> sign_bits(Int a) {
+    const std::uint32_t bits = Native::sign_bits(a.v);
+    const Node is_negative = emit(OpClass::kFixed, tie(a.v.v), a.node);
+    return Counted<std::uint32_t>::made(bits, emit(OpClass::kShuffle, bits, is_negative));
   }
   /// A word after the other.
   [[nodiscard]] static Int gather(const Counted<std::uint32_t>* base, Int bytes) {

@@ -76,13 +76,13 @@ class TileCore {
       return Status::kUnsupportedImage;
     }
     source_.begin();
-    largest_ = 0.0f;
+    float largest = 0.0f;
     for (int axis = 0; axis < 3; ++axis) {
       const float low = magnitude(tree.bounds_minimum[axis]), high = magnitude(tree.bounds_maximum[axis]);
-      largest_ = low > largest_ ? low : largest_;
-      largest_ = high > largest_ ? high : largest_;
+      largest = low > largest ? low : largest;
+      largest = high > largest ? high : largest;
     }
-    store_.engine.eye = project_eye(frame, largest_);
+    store_.engine.eye = project_eye(frame, largest);
     return Status::kOk;
   }
 
@@ -119,14 +119,18 @@ class TileCore {
     const std::uint32_t rows = least(Layout::kTileWidth, frame.height - view.top);
     Turn turns[kTurns] = {};
     std::uint32_t x = 0, y = 0, busy = 0;
-    for (std::uint32_t i = 0; y < rows || busy != 0; i = i + 1 == kTurns ? std::uint32_t{0} : i + 1) {
+    // The other one is next, if it has something to do.
+    const auto next_after = [&](std::uint32_t i) GRIDIRON_INLINE_LAMBDA {
+      const std::uint32_t other = i + 1 == kTurns ? std::uint32_t{0} : i + 1;
+      return turns[other].is_busy || y < rows ? other : i;
+    };
+    for (std::uint32_t i = 0; y < rows || busy != 0; i = next_after(i)) {
       Turn& turn = turns[i];
       if (!turn.is_busy) {
-        if (y >= rows) continue;
         turn = {x, y, true};
         ++busy;
         GRIDIRON_TRY(tracers[i].begin(frame, store_.engine.eye, {view.left + x, view.top + y, view.dx, view.dy},
-                                      {hits.facing != nullptr, hits.distance != nullptr}, largest_));
+                                      {hits.facing != nullptr, hits.distance != nullptr}));
         x += kWidth;
         if (x >= columns) {
           x = 0;
@@ -156,7 +160,6 @@ class TileCore {
   Store& store_;
   Transfers<P>& transfers_;
   Source source_;
-  float largest_ = 0.0f;
 };
 
 /// The tree as a layout names it for eye rays.

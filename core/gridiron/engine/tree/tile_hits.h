@@ -51,6 +51,18 @@ struct TilePlanes {
   bool facing, distance;
 };
 
+/// Whether two triangles lie in one plane across an axis: their corners agree in that coordinate.
+[[nodiscard]] GRIDIRON_RARE inline bool share_axis_plane(const VertexTriangle& a, const VertexTriangle& b) {
+  for (int axis = 0; axis < 3; ++axis) {
+    const float place = a.v[0][axis];
+    if (b.v[0][axis] == place && a.v[1][axis] == place && a.v[2][axis] == place && b.v[1][axis] == place &&
+        b.v[2][axis] == place) {
+      return true;
+    }
+  }
+  return false;
+}
+
 /// @tparam Source  as of TileTracer.
 template <class L, std::uint32_t Width, class Source>
 class TileHits {
@@ -102,7 +114,11 @@ class TileHits {
       for (std::uint32_t i = 0; i < kBlockPixels; i += kLanes) {
         none.store(memory_.near[block] + i);
         no_id.store(memory_.id[block] + i);
-        if (planes_.facing) zero.store(memory_.facing[block] + i);
+      }
+    }
+    if (planes_.facing) {
+      for (std::uint32_t block = 0; block < Memory::kBlocks; ++block) {
+        for (std::uint32_t i = 0; i < kBlockPixels; i += kLanes) zero.store(memory_.facing[block] + i);
       }
     }
     for (std::uint32_t i = 0; i < Memory::kBlocks; i += kLanes) {
@@ -178,8 +194,10 @@ class TileHits {
   [[nodiscard]] GRIDIRON_RARE Status decide(std::uint32_t block, std::uint32_t pixels, std::uint32_t lane) {
     work_.charge_to(TileWork::kOpenPixel);
     const std::uint32_t record = memory_.records[lane];
-    VertexTriangle triangle;
+    VertexTriangle triangle, old;
     GRIDIRON_TRY(source_.record(record, triangle));
+    std::uint32_t old_record = record;
+    old = triangle;
     BatchRay ray{};
     for (int axis = 0; axis < 3; ++axis) ray.origin[axis] = frame_->eye[axis];
     for (; pixels != 0; pixels &= pixels - 1) {
@@ -196,28 +214,39 @@ class TileHits {
         ray.dir_max = magnitude(ray.dir[axis]) > ray.dir_max ? magnitude(ray.dir[axis]) : ray.dir_max;
       }
       if (!passes_through(ray, triangle, work_)) continue;
-      const float t = ray_distance(ray, triangle, work_);
-      if (!(t > 0.0f) || !(t <= frame_->t_far)) continue;
       const std::uint32_t old_id = memory_.id[block][pixel];
+      const bool has_lower_id = triangle.triangle_id < old_id;
+      bool is_tie = false;
       if (old_id != kNoTriangle) {
-        VertexTriangle old;
-        GRIDIRON_TRY(source_.record(memory_.record[block][pixel], old));
-        const float old_t = ray_distance(ray, old, work_);
-        const bool has_lower_id = triangle.triangle_id < old_id;
-        if (old_t < t) continue;
-        if (old_t == t) {
-          const bool breaks_ties = frame_->accuracy == static_cast<std::uint32_t>(Accuracy::kExact);
-          const bool is_first =
-              breaks_ties ? comes_first_exactly(ray.origin, ray.dir, triangle, old, has_lower_id, work_) : has_lower_id;
-          if (!is_first) continue;
+        if (memory_.record[block][pixel] != old_record) {
+          old_record = memory_.record[block][pixel];
+          GRIDIRON_TRY(source_.record(old_record, old));
         }
+        // Walls on walls are equally far.
+        is_tie = share_axis_plane(triangle, old);
+        if (is_tie && !has_lower_id) continue;
       }
-      const float near = (1.0f / t) * (1.0f - 0x1p-19f);
-      const float stored = near < kMostStoredNear ? near : kMostStoredNear, span = stored * 0x1p-17f;
-      memory_.near[block][pixel] = stored;
+      if (!is_tie) {
+        const float t = ray_distance(ray, triangle, work_);
+        if (!(t > 0.0f) || !(t <= frame_->t_far)) continue;
+        if (old_id != kNoTriangle) {
+          const float old_t = ray_distance(ray, old, work_);
+          if (old_t < t) continue;
+          if (old_t == t) {
+            const bool breaks_ties = frame_->accuracy == static_cast<std::uint32_t>(Accuracy::kExact);
+            const bool is_first = breaks_ties
+                                      ? comes_first_exactly(ray.origin, ray.dir, triangle, old, has_lower_id, work_)
+                                      : has_lower_id;
+            if (!is_first) continue;
+          }
+        }
+        const float near = (1.0f / t) * (1.0f - 0x1p-19f);
+        const float stored = near < kMostStoredNear ? near : kMostStoredNear, span = stored * 0x1p-17f;
+        memory_.near[block][pixel] = stored;
+        memory_.span[block] = span > memory_.span[block] ? span : memory_.span[block];
+      }
       memory_.id[block][pixel] = triangle.triangle_id;
       memory_.record[block][pixel] = record;
-      memory_.span[block] = span > memory_.span[block] ? span : memory_.span[block];
       if (eye_->is_trusted) mark(block);
       if (planes_.facing || planes_.distance) take_planes(block, 1u << pixel, lane);
     }
@@ -229,25 +258,21 @@ class TileHits {
   GRIDIRON_OUTLINE void store(std::uint32_t x, std::uint32_t y, std::uint32_t tile_width, const Hits& hits) {
     work_.add(Work::kIdGroup, Memory::kBlocks * kGroups);
     work_.charge_to(Work::kIdGroup);
+    if (!is_cleared_) return store_misses(x, y, tile_width, hits);
     for_each_group(
-        [&](std::uint32_t block, std::uint32_t i, std::uint32_t pixel) GRIDIRON_INLINE_LAMBDA {
-          const Int id = is_cleared_ ? Int::load(memory_.id[block] + i) : Int::splat(kNoTriangle);
-          L::store_quads(id, hits.id + pixel, tile_width);
-        },
+        [&](std::uint32_t block, std::uint32_t i, std::uint32_t pixel)
+            GRIDIRON_INLINE_LAMBDA { L::store_quads(Int::load(memory_.id[block] + i), hits.id + pixel, tile_width); },
         x, y, tile_width);
     if (hits.distance != nullptr) {
       work_.add(Work::kDepthGroup, Memory::kBlocks * kGroups);
       work_.charge_to(Work::kDepthGroup);
       for_each_group(
           [&](std::uint32_t block, std::uint32_t i, std::uint32_t pixel) GRIDIRON_INLINE_LAMBDA {
-            Float distance(kFloatMax);
-            if (is_cleared_) {
-              Float dir[3];
-              directions(block, i, dir);
-              const auto missed = L::equal(kNoTriangle, memory_.id[block] + i);
-              distance = L::select(missed, distance, Float::load(memory_.distance[block] + i) * length_of(dir));
-            }
-            L::store_quads(distance, hits.distance + pixel, tile_width);
+            Float dir[3];
+            directions(block, i, dir);
+            const auto missed = L::equal(kNoTriangle, memory_.id[block] + i);
+            const Float distance = Float::load(memory_.distance[block] + i) * length_of(dir);
+            L::store_quads(L::select(missed, Float(kFloatMax), distance), hits.distance + pixel, tile_width);
           },
           x, y, tile_width);
     }
@@ -255,13 +280,9 @@ class TileHits {
       work_.charge_to(Work::kShadedSimpleGroup);
       for_each_group(
           [&](std::uint32_t block, std::uint32_t i, std::uint32_t pixel) GRIDIRON_INLINE_LAMBDA {
-            Float facing(0.0f);
-            if (is_cleared_) {
-              Float dir[3];
-              directions(block, i, dir);
-              facing = Float::load(memory_.facing[block] + i) / length_of(dir);
-            }
-            L::store_quads(facing, hits.facing + pixel, tile_width);
+            Float dir[3];
+            directions(block, i, dir);
+            L::store_quads(Float::load(memory_.facing[block] + i) / length_of(dir), hits.facing + pixel, tile_width);
           },
           x, y, tile_width);
     }
@@ -281,6 +302,16 @@ class TileHits {
       const std::uint32_t pixel = (y + block / kRow * kBlockWidth) * tile_width + x + block % kRow * kBlockWidth;
       for (std::uint32_t i = 0; i < kBlockPixels; i += kLanes) write(block, i, pixel + i / kBlockWidth * tile_width);
     }
+  }
+  GRIDIRON_INLINE void store_misses(std::uint32_t x, std::uint32_t y, std::uint32_t tile_width,
+                                    const Hits& hits) const {
+    for_each_group(
+        [&](std::uint32_t, std::uint32_t, std::uint32_t pixel) GRIDIRON_INLINE_LAMBDA {
+          L::store_quads(Int::splat(kNoTriangle), hits.id + pixel, tile_width);
+          if (hits.distance != nullptr) L::store_quads(Float(kFloatMax), hits.distance + pixel, tile_width);
+          if (hits.facing != nullptr) L::store_quads(Float(0.0f), hits.facing + pixel, tile_width);
+        },
+        x, y, tile_width);
   }
   // Directions of a group of pixels, as FrameHead defines them.
   GRIDIRON_INLINE void directions(std::uint32_t block, std::uint32_t i, Float (&dir)[3]) const {

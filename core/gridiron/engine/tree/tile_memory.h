@@ -42,6 +42,14 @@ enum TileFunction : unsigned {
   kTileFunctions
 };
 
+/// A child that waits to be visited.
+struct alignas(16) WaitingChild {
+  float w;              ///< no corner in it has a lesser w
+  std::uint32_t child;  ///< TreeChild::bits
+  float size;           ///< largest extent of its box
+  std::uint32_t unused;
+};
+
 /// @tparam Width  pixels along a tile's edge: 8, 16, 32, 64.
 template <std::uint32_t Width>
 struct alignas(128) TileMemory {
@@ -69,9 +77,7 @@ struct alignas(128) TileMemory {
   alignas(64) std::uint32_t records[kMostLanes];
   alignas(64) std::uint32_t ids[kMostLanes];
 
-  std::uint32_t stack[kStackEntries];  ///< TreeChild::bits
-  float stack_w[kStackEntries];        ///< no corner in it has a lesser w
-  float stack_size[kStackEntries];     ///< largest extent of its box
+  WaitingChild stack[kStackEntries];
 };
 
 }  // namespace gridiron

@@ -16,15 +16,18 @@ namespace gridiron {
 
 /// The largest relative error of an operation in any rounding mode.
 inline constexpr double kFloatUnit = 0x1p-23;
+inline constexpr std::uint32_t kMostTileWidth = 64;
 
 /// What all tiles of a frame share, in double.
 struct EyeProjection {
   double rows[3][3];  ///< column, row, w: of a place less the eye
   double sizes[3];    ///< sums of the rows' magnitudes
+  double offsets[3];  ///< of the rows: what makes them take places themselves
   double eye[3];
-  double slack;     ///< times a row's size and a place's largest component: what doubles may lose
-  float dir_max;    ///< no component of a direction is larger
-  bool is_trusted;  ///< if not, no bound holds and every pixel is decided exactly
+  float most;        ///< no component of a place or of the eye is larger
+  float base_error;  ///< what doubles may lose of a place's coordinate, w's counted twice a tile's width
+  float dir_max;     ///< no component of a direction is larger
+  bool is_trusted;   ///< if not, no bound holds and every pixel is decided exactly
 };
 
 /// Inverts the camera's matrix.
@@ -62,8 +65,13 @@ GRIDIRON_OUTLINE inline EyeProjection project_eye(const FrameHead& frame, float 
       value = value / det;
       eye.sizes[row] += magnitude(value);
     }
+    for (int axis = 0; axis < 3; ++axis) eye.offsets[row] -= eye.rows[row][axis] * eye.eye[axis];
   }
-  eye.slack = 0x1p-36;
+  // Of the eye's rows, not of a tile's.
+  const double widest = double(frame.width) + double(frame.height) + 4.0 * kMostTileWidth;
+  const double lost = eye.sizes[0] + eye.sizes[1] + widest * eye.sizes[2];
+  eye.most = static_cast<float>(far * 1.0001);
+  eye.base_error = static_cast<float>(0x1p-36 * lost * 2.0 * far + 0x1p-100);
   eye.dir_max = static_cast<float>(most * 1.0001);
   // Where pixels are far smaller than rounding, or numbers leave the range in which products of four keep their
   // precision, exact arithmetic decides everything.
@@ -91,7 +99,12 @@ struct TileProjection {
 /// How far outside a tile's pixels a box still counts, in pixels.
 inline constexpr double kPlaneMargin = 0x1p-5;
 
-/// @param largest  |coordinate| of the tree. @param width  pixels along the tile's edge.
+/// The error of a box's value at a plane, as a share of its parts' magnitudes.
+inline constexpr float kPlaneError = 10.0f * 0x1p-23f;
+/// Makes up for what a sum of a few positive floats loses.
+inline constexpr float kRoundedUp = 1.0f + 0x1p-16f;
+
+/// @param width  pixels along the tile's edge, at most kMostTileWidth.
 ///
 /// With q a corner's way from the leaf's base: rows rounded to floats carry 1 kFloatUnit, q and its products with them
 /// 2, three sums 3: 6 kFloatUnit size |q|. The base is rounded once and goes through all three sums: 4 kFloatUnit
@@ -101,56 +114,63 @@ inline constexpr double kPlaneMargin = 0x1p-5;
 /// A direction's component is a linear function of the pixel but for four roundings of at most kFloatUnit each: of two
 /// products and two sums. Over a tile each of them is largest at a corner.
 GRIDIRON_OUTLINE inline void project_tile(const FrameHead& frame, const EyeProjection& eye, const TileView& view,
-                                          std::uint32_t width, float largest, TileProjection& tile) {
+                                          std::uint32_t width, TileProjection& tile) {
   const double x = double(view.left) + double{view.dx}, y = double(view.top) + double{view.dy};
-  double sizes[3] = {0.0, 0.0, 0.0}, most = double{largest};
+  float sizes[3] = {0.0f, 0.0f, 0.0f};
   for (int axis = 0; axis < 3; ++axis) {
     tile.exact_rows[0][axis] = eye.rows[0][axis] - x * eye.rows[2][axis];
     tile.exact_rows[1][axis] = eye.rows[1][axis] - y * eye.rows[2][axis];
     tile.exact_rows[2][axis] = eye.rows[2][axis];
-    most = magnitude(eye.eye[axis]) > most ? magnitude(eye.eye[axis]) : most;
     for (int row = 0; row < 3; ++row) {
       tile.rows[row][axis] = static_cast<float>(tile.exact_rows[row][axis]);
-      sizes[row] += magnitude(tile.exact_rows[row][axis]);
+      sizes[row] += magnitude(tile.rows[row][axis]);
     }
   }
-  const double span = 2.0 * width, size = (sizes[0] > sizes[1] ? sizes[0] : sizes[1]) + span * sizes[2];
-  // Doubles lose of the eye's rows, not of the tile's.
-  const double lost = eye.sizes[0] + eye.sizes[1] + (x + y + span) * eye.sizes[2];
-  tile.error_per_size = static_cast<float>(6.1 * kFloatUnit * size);
+  const float wide = static_cast<float>(width), span = 2.0f * wide;
+  const float size = ((sizes[0] > sizes[1] ? sizes[0] : sizes[1]) + span * sizes[2]) * kRoundedUp;
+  tile.error_per_size = static_cast<float>(6.1 * kFloatUnit) * size;
   tile.error_per_base = static_cast<float>(4.1 * kFloatUnit);
-  tile.base_error = static_cast<float>(eye.slack * lost * 2.0 * most + 0x1p-100);
-  double moved[3] = {0.0, 0.0, 0.0};
+  tile.base_error = eye.base_error;
+
+  // What directions' roundings move.
+  const float left_x = static_cast<float>(x), top_y = static_cast<float>(y);
+  float moved[3] = {0.0f, 0.0f, 0.0f};
   for (int axis = 0; axis < 3; ++axis) {
-    const auto larger = [](double a, double b) { return magnitude(a) > magnitude(b) ? magnitude(a) : magnitude(b); };
-    const double corner = frame.corner[axis], step_x = frame.step_x[axis], step_y = frame.step_y[axis];
-    const double x1 = x + width, y1 = y + width, left = corner + x * step_x, right = corner + x1 * step_x;
-    const double top = y * step_y, bottom = y1 * step_y;
-    const double ends = larger(larger(left + top, left + bottom), larger(right + top, right + bottom));
-    const double off =
-        kFloatUnit * (larger(x * step_x, x1 * step_x) + larger(left, right) + larger(top, bottom) + ends);
-    for (int row = 0; row < 3; ++row) moved[row] += magnitude(tile.exact_rows[row][axis]) * off;
+    const auto larger = [](float a, float b) { return magnitude(a) > magnitude(b) ? magnitude(a) : magnitude(b); };
+    const float corner = frame.corner[axis], step_x = frame.step_x[axis], step_y = frame.step_y[axis];
+    const float column0 = left_x * step_x, column1 = (left_x + wide) * step_x;
+    const float left = corner + column0, right = corner + column1;
+    const float top = top_y * step_y, bottom = (top_y + wide) * step_y;
+    const float ends = larger(larger(left + top, left + bottom), larger(right + top, right + bottom));
+    const float off = larger(column0, column1) + larger(left, right) + larger(top, bottom) + ends;
+    for (int row = 0; row < 3; ++row) moved[row] += magnitude(tile.rows[row][axis]) * off;
   }
-  tile.direction_error = static_cast<float>(1.01 * ((moved[0] > moved[1] ? moved[0] : moved[1]) + span * moved[2]));
-  tile.w_error = static_cast<float>(1.01 * moved[2]);
+  const float per_off = static_cast<float>(1.01 * kFloatUnit);
+  tile.direction_error = per_off * ((moved[0] > moved[1] ? moved[0] : moved[1]) + span * moved[2]);
+  tile.w_error = per_off * moved[2];
+
+  // Planes. A component takes 4 kFloatUnit of the larger ones that it is the difference of, three products and sums
+  // take 5; the rest covers what is rounded here.
+  static constexpr float kMargin = static_cast<float>(kPlaneMargin);
+  const double offsets[3] = {eye.offsets[0] - x * eye.offsets[2], eye.offsets[1] - y * eye.offsets[2], eye.offsets[2]};
   const double last = double(width - 1) + kPlaneMargin;
-  for (int plane = 0; plane < 5; ++plane) {
-    double values[3], offset = 0.0, sum = 0.0;
+  const float last_w = static_cast<float>(last);
+  for (int row = 0; row < 2; ++row) {
+    float(&first)[4] = tile.planes[2 * row];
+    float(&second)[4] = tile.planes[2 * row + 1];
     for (int axis = 0; axis < 3; ++axis) {
-      const double column = tile.exact_rows[0][axis], row = tile.exact_rows[1][axis], w = tile.exact_rows[2][axis];
-      values[axis] = plane == 0   ? column + kPlaneMargin * w
-                     : plane == 1 ? last * w - column
-                     : plane == 2 ? row + kPlaneMargin * w
-                     : plane == 3 ? last * w - row
-                                  : w;
-      offset -= values[axis] * eye.eye[axis];
-      sum += magnitude(values[axis]);
+      first[axis] = tile.rows[row][axis] + kMargin * tile.rows[2][axis];
+      second[axis] = last_w * tile.rows[2][axis] - tile.rows[row][axis];
     }
-    // Three products and sums of floats, and all that doubles lose.
-    const double error = 6.0 * kFloatUnit * (sum * most + magnitude(offset)) + double{tile.base_error};
-    for (int axis = 0; axis < 3; ++axis) tile.planes[plane][axis] = static_cast<float>(values[axis]);
-    tile.planes[plane][3] = static_cast<float>(plane == 4 ? offset - error : offset + error);
+    const float near_offset = static_cast<float>(offsets[row] + kPlaneMargin * offsets[2]);
+    const float far_offset = static_cast<float>(last * offsets[2] - offsets[row]);
+    const float lost = (sizes[row] + last_w * sizes[2]) * eye.most;
+    first[3] = near_offset + (kPlaneError * (lost + magnitude(near_offset)) + tile.base_error);
+    second[3] = far_offset + (kPlaneError * (lost + magnitude(far_offset)) + tile.base_error);
   }
+  const float offset = static_cast<float>(offsets[2]);
+  for (int axis = 0; axis < 3; ++axis) tile.planes[4][axis] = tile.rows[2][axis];
+  tile.planes[4][3] = offset - (kPlaneError * (sizes[2] * eye.most + magnitude(offset)) + tile.base_error);
 }
 
 }  // namespace gridiron

@@ -19,6 +19,7 @@
 
 #include <bit>
 #include <cstdint>
+#include <type_traits>
 
 namespace gridiron {
 inline constexpr auto kLaneNumbers = [] {
@@ -41,21 +42,18 @@ class TileTracer {
       : memory_(memory), source_(source), work_(work), hits_(memory, source, work) {}
 
   /// Begins a tile whose first pixel lies in the picture. Borrows frame and eye until finish().
-  /// @param largest  |coordinate| of the tree's triangles.
   [[nodiscard]] GRIDIRON_OUTLINE Status begin(const FrameHead& frame, const EyeProjection& eye, const TileView& view,
-                                              TilePlanes planes, float largest) {
+                                              TilePlanes planes) {
     work_.add(TileWork::kView);
     work_.charge_to(TileWork::kView);
     eye_ = &eye;
     hits_.begin(frame, eye, view, planes);
-    project_tile(frame, eye, view, Width, largest, tile_);
+    project_tile(frame, eye, view, Width, tile_);
     last_x_ = static_cast<float>(hits_.columns() - 1);
     last_y_ = static_cast<float>(hits_.rows() - 1);
     queued_ = 0;
     top_ = 1;
-    memory_.stack[0] = TreeChild::node(0).bits;
-    memory_.stack_w[0] = 0.0f;
-    memory_.stack_size[0] = 0.0f;
+    memory_.stack[0] = {0.0f, TreeChild::node(0).bits, 0.0f, 0};
     return source_.ahead(TreeChild::node(0));
   }
 
@@ -65,18 +63,21 @@ class TileTracer {
   [[nodiscard]] GRIDIRON_OUTLINE Status step() {
     work_.charge_to(TileWork::kChild);
     --top_;
-    if (memory_.stack_w[top_] > hits_.far()) return Status::kOk;
-    const TreeChild child{memory_.stack[top_]};
+    const WaitingChild& next = memory_.stack[top_];
+    if (next.w > hits_.far()) return ask_for_last();
+    const TreeChild child{next.child};
     if (child.is_leaf()) {
-      // One more child comes into the window.
-      if (top_ >= source_.window()) GRIDIRON_TRY(ask_for(top_ - source_.window()));
-      return visit_leaf(child, memory_.stack_size[top_]);
+      GRIDIRON_TRY(ask_for_last());
+      return visit_leaf(child, next.size);
     }
     const TreeNode* node = nullptr;
     GRIDIRON_TRY(source_.node(child.node_index(), node));
     hits_.update();
+    const std::uint32_t bottom = top_;
     push_children(*node);
-    for (std::uint32_t i = 1; i <= source_.window() && i <= top_; ++i) GRIDIRON_TRY(ask_for(top_ - i));
+    if (top_ == bottom) return ask_for_last();
+    const std::uint32_t added = top_ - bottom, asked = added < source_.window() ? added : source_.window();
+    for (std::uint32_t i = 1; i <= asked; ++i) GRIDIRON_TRY(ask_for(top_ - i));
     return Status::kOk;
   }
 
@@ -104,8 +105,13 @@ class TileTracer {
   static constexpr std::uint32_t kRow = Memory::kBlocksPerRow;
   static constexpr float kBlockStep = kBlockWidth;
 
-  [[nodiscard]] GRIDIRON_INLINE Status ask_for(std::uint32_t place) {
-    return memory_.stack_w[place] > hits_.far() ? Status::kOk : source_.ahead(TreeChild{memory_.stack[place]});
+  // One more child comes into the window: those that are visited next have been asked for.
+  [[nodiscard]] GRIDIRON_INLINE Status ask_for_last() {
+    return top_ >= source_.window() ? ask_for(top_ - source_.window()) : Status::kOk;
+  }
+  [[nodiscard]] GRIDIRON_OUTLINE Status ask_for(std::uint32_t place) {
+    const WaitingChild& waiting = memory_.stack[place];
+    return waiting.w > hits_.far() ? Status::kOk : source_.ahead(TreeChild{waiting.child});
   }
 
   GRIDIRON_INLINE void push_children(const TreeNode& node) {
@@ -140,14 +146,11 @@ class TileTracer {
       const std::uint32_t i = lowest_bit(rest);
       const float w = least_w[i];
       std::uint32_t place = top;
-      for (; place > bottom && memory_.stack_w[place - 1] < w; --place) {
-        memory_.stack[place] = memory_.stack[place - 1];
-        memory_.stack_w[place] = memory_.stack_w[place - 1];
-        memory_.stack_size[place] = memory_.stack_size[place - 1];
+      for (; place > bottom && memory_.stack[place - 1].w < w; --place) {
+        L::copy_quad(memory_.stack[place - 1], memory_.stack[place]);
       }
-      memory_.stack[place] = node.children[i].bits;
-      memory_.stack_w[place] = w;
-      memory_.stack_size[place] = sizes[i];
+      const WaitingChild waiting{w, node.children[i].bits, sizes[i], 0};
+      L::copy_quad(waiting, memory_.stack[place]);
       ++top;
     }
     work_.add(TileWork::kChild, top - bottom);
@@ -183,8 +186,9 @@ class TileTracer {
                              const VertexTriangle* records) {
     work_.add(TileWork::kKeptGroup);
     work_.charge_to(TileWork::kKeptGroup);
+    const typename L::Packing packing{kept, queued_};
     const auto put = [&](std::uint32_t word, Int value)
-                         GRIDIRON_INLINE_LAMBDA { L::compress(value, kept, memory_.queue[word] + queued_); };
+                         GRIDIRON_INLINE_LAMBDA { L::append(packing, value, memory_.queue[word]); };
     for (std::uint32_t i = 0; i < 3; ++i) {
       put(kCornerX + i, L::words_of(corners.x[i]));
       put(kCornerY + i, L::words_of(corners.y[i]));
@@ -241,18 +245,16 @@ class TileTracer {
     for (rest = group.careful; rest != 0; rest &= rest - 1) GRIDIRON_TRY(draw_carefully(lowest_bit(rest)));
     work_.charge_to(TileWork::kFunctionGroup);
     queued_ -= count;
-    if (queued_ != 0) {
-      const std::uint32_t words = hits_.planes().distance ? kTileWords : hits_.planes().facing ? kVertex : kNormal;
-      for (std::uint32_t word = 0; word < words; ++word) {
-        Int::load(memory_.queue[word] + kLanes).store(memory_.queue[word]);
-      }
+    const std::uint32_t words = hits_.planes().distance ? kTileWords : hits_.planes().facing ? kVertex : kNormal;
+    for (std::uint32_t word = 0; word < words; ++word) {
+      Int::load(memory_.queue[word] + kLanes).store(memory_.queue[word]);
     }
     return Status::kOk;
   }
   static constexpr std::uint32_t kLeastTiny = kLanes < 16 ? 1 : 4;
   // Accuracy::kFast: what may be inside is, and what is in front by floats is.
   GRIDIRON_INLINE void trust_floats() {
-    Float(-1.0f).store(memory_.functions[kEdgeSpan]);
+    Float(0.0f).store(memory_.functions[kEdgeSpan]);
     Float(0.0f).store(memory_.functions[kNearSpan]);
   }
 
@@ -273,37 +275,41 @@ class TileTracer {
           L::bounded_sum(function(kEdgeX + k), x, L::bounded_sum(function(kEdgeY + k), y, function(kEdgeValue + k)));
     }
     left[3] = L::bounded_sum(function(kNearX), x, L::bounded_sum(function(kNearY), y, function(kNearValue)));
-    const Float edge_span = function(kEdgeSpan);
-    for (std::uint32_t row = 0; row < 3; ++row) {
+    for (std::uint32_t row = 0; row < kMostTiny; ++row) {
       if ((lines[row] & tiny) == 0) break;
       Float value[4] = {left[0], left[1], left[2], left[3]};
-      for (std::uint32_t column = 0; column < 3; ++column) {
-        const std::uint32_t here = columns[column] & lines[row];
-        if (here == 0) break;
+      alignas(64) float near[kMostTiny][kLanes], inside[kMostTiny][kLanes];
+      LaneSets hits = 0;
+      const auto test = [&](std::uint32_t column) GRIDIRON_INLINE_LAMBDA {
         work_.add(TileWork::kTinyPlace);
-        work_.charge_to(TileWork::kTinyPlace);
         const Float least = L::min(L::min(value[0], value[1]), value[2]);
-        const std::uint32_t met = (least > Float(0.0f)).bits() & here;
-        if (met != 0) {
-          const std::uint32_t sure = (least > edge_span).bits();
-          alignas(64) float near[kLanes];
-          value[3].store(near);
-          for (std::uint32_t rest = met; rest != 0; rest &= rest - 1) {
-            const std::uint32_t i = lowest_bit(rest);
-            GRIDIRON_TRY(draw_pixel(i, column, row, near[i], (sure >> i & 1u) != 0));
-          }
-          work_.charge_to(TileWork::kTinyPlace);
-        }
+        least.store(inside[column]);
+        value[3].store(near[column]);
+        const std::uint32_t met = ~L::sign_bits(L::words_of(least)) & columns[column] & lines[row];
+        hits = hits | LaneSets(met) << (column * kLanes);
+      };
+      test(0);
+      for (std::uint32_t column = 1; column < kMostTiny; ++column) {
         for (std::uint32_t k = 0; k < 3; ++k) value[k] = value[k] + function(kEdgeX + k);
         value[3] = value[3] + function(kNearX);
+        test(column);
       }
+      for (; hits != 0; hits &= hits - 1) {
+        const std::uint32_t hit = lowest_bit(hits), i = hit % kLanes, column = hit / kLanes;
+        GRIDIRON_TRY(draw_pixel(i, column, row, near[column][i], inside[column][i]));
+      }
+      work_.charge_to(TileWork::kTinyPlace);
       for (std::uint32_t k = 0; k < 3; ++k) left[k] = left[k] + function(kEdgeY + k);
       left[3] = left[3] + function(kNearY);
     }
     return Status::kOk;
   }
+  static constexpr std::uint32_t kMostTiny = 3;  // columns and rows of a tiny triangle's box
+  // A bit a lane, for each column.
+  using LaneSets = std::conditional_t<(kLanes * kMostTiny > 32), std::uint64_t, std::uint32_t>;
+  // @param inside  the least of the edges' functions, not negative.
   [[nodiscard]] GRIDIRON_INLINE Status draw_pixel(std::uint32_t i, std::uint32_t column, std::uint32_t row, float near,
-                                                  bool is_inside) {
+                                                  float inside) {
     work_.add(TileWork::kTinyPixel);
     work_.charge_to(TileWork::kTinyPixel);
     const std::uint32_t box = memory_.boxes[i];
@@ -312,7 +318,7 @@ class TileTracer {
     const std::uint32_t pixel = y % kBlockWidth * kBlockWidth + x % kBlockWidth;
     const float old = memory_.near[block][pixel], span = memory_.functions[kNearSpan][i];
     if (near + span < old) return Status::kOk;
-    if (!is_inside || !(near > old + memory_.span[block])) [[unlikely]]
+    if (!(inside >= memory_.functions[kEdgeSpan][i]) || !(near > old + memory_.span[block])) [[unlikely]]
       return hits_.trusts_floats() ? Status::kOk : hits_.decide(block, 1u << pixel, i);
     memory_.near[block][pixel] = near;
     memory_.id[block][pixel] = memory_.ids[i];
@@ -329,22 +335,29 @@ class TileTracer {
     float span;
     Int id, record;
     std::uint32_t lane;
+    Float offset_x, offset_y;  ///< pixel that functions are relative to
+    static constexpr unsigned kMost = Memory::kMostLanes;
 
     GRIDIRON_INLINE Drawn(const Memory& memory, std::uint32_t i)
-        : edge_span(memory.functions[kEdgeSpan][i]),
-          near_span(memory.functions[kNearSpan][i]),
-          span(memory.functions[kNearSpan][i]),
-          id(Int::splat(memory.ids[i])),
-          record(Int::splat(memory.records[i])),
-          lane(i) {
-      for (std::uint32_t k = 0; k < 3; ++k) {
-        value[k] = Float(memory.functions[kEdgeValue + k][i]);
-        x[k] = Float(memory.functions[kEdgeX + k][i]);
-        y[k] = Float(memory.functions[kEdgeY + k][i]);
+        : Drawn(&memory.functions[0][i], memory.ids[i], memory.records[i], i) {}
+    // @param of_lane  its first function; the next one is Memory::kMostLanes further.
+    GRIDIRON_INLINE Drawn(const float* of_lane, std::uint32_t triangle, std::uint32_t place, std::uint32_t i)
+        : edge_span(of_lane[kEdgeSpan * kMost]),
+          near_span(of_lane[kNearSpan * kMost]),
+          span(of_lane[kNearSpan * kMost]),
+          id(Int::splat(triangle)),
+          record(Int::splat(place)),
+          lane(i),
+          offset_x(of_lane[kOffsetX * kMost]),
+          offset_y(of_lane[kOffsetY * kMost]) {
+      for (unsigned k = 0; k < 3; ++k) {
+        value[k] = Float(of_lane[(kEdgeValue + k) * kMost]);
+        x[k] = Float(of_lane[(kEdgeX + k) * kMost]);
+        y[k] = Float(of_lane[(kEdgeY + k) * kMost]);
       }
-      value[3] = Float(memory.functions[kNearValue][i]);
-      x[3] = Float(memory.functions[kNearX][i]);
-      y[3] = Float(memory.functions[kNearY][i]);
+      value[3] = Float(of_lane[kNearValue * kMost]);
+      x[3] = Float(of_lane[kNearX * kMost]);
+      y[3] = Float(of_lane[kNearY * kMost]);
       const auto& places = kTilePlaces<Width>;
       const Float column = Float::load(places.column), row = Float::load(places.row);
       for (int k = 0; k < 4; ++k) {
@@ -365,13 +378,12 @@ class TileTracer {
     const std::uint32_t box = memory_.boxes[i];
     const std::uint32_t bx0 = (box & 0xFFu) / kBlockWidth, by0 = (box >> 8 & 0xFFu) / kBlockWidth,
                         bx1 = (box >> 16 & 0xFFu) / kBlockWidth, by1 = (box >> 24) / kBlockWidth;
-    const Float offset_x(memory_.functions[kOffsetX][i]), offset_y(memory_.functions[kOffsetY][i]);
     if ((bx1 - bx0 + 1) * (by1 - by0 + 1) > kFewBlocks) {
-      return draw_many_blocks(drawn, bx0, by0, bx1, by1, offset_x, offset_y);
+      return draw_many_blocks(drawn, bx0, by0, bx1, by1);
     }
     const std::uint32_t first = by0 * kRow + bx0;
-    const Float x = Float(kTilePlaces<Width>.block_column[first]) - offset_x;
-    const Float y = Float(kTilePlaces<Width>.block_row[first]) - offset_y;
+    const Float x = Float(kTilePlaces<Width>.block_column[first]) - drawn.offset_x;
+    const Float y = Float(kTilePlaces<Width>.block_row[first]) - drawn.offset_y;
     // From block to block.
     Float row[4], right[4], down[4];
     for (int k = 0; k < 4; ++k) {
@@ -393,53 +405,73 @@ class TileTracer {
 
   // Blocks are looked at in lanes: which the triangle may touch in front of what is there, which it covers.
   [[nodiscard]] GRIDIRON_OUTLINE Status draw_many_blocks(const Drawn& f, std::uint32_t bx0, std::uint32_t by0,
-                                                         std::uint32_t bx1, std::uint32_t by1, Float offset_x,
-                                                         Float offset_y) {
+                                                         std::uint32_t bx1, std::uint32_t by1) {
     static constexpr float kLast = kBlockWidth - 1.0f;
     const auto& places = kTilePlaces<Width>;
-    Float most[4], least[3];
+    Float most[4], least[4];
     for (int k = 0; k < 4; ++k) {
       const Float zero(0.0f), last(kLast);
       most[k] = (L::max(f.x[k], zero) + L::max(f.y[k], zero)) * last + f.value[k];
-      if (k < 3) least[k] = (L::min(f.x[k], zero) + L::min(f.y[k], zero)) * last + f.value[k];
+      least[k] = (L::min(f.x[k], zero) + L::min(f.y[k], zero)) * last + f.value[k];
     }
     most[3] = most[3] + f.near_span;
-    const float left = places.block_column[bx0] - 1.0f, right = places.block_column[bx1] + 1.0f;
-    const float top = places.block_row[by0 * kRow] - 1.0f, bottom = places.block_row[by1 * kRow] + 1.0f;
-    const std::uint32_t begin = (by0 * kRow + (kLanes <= kRow ? bx0 : std::uint32_t{0})) & ~(kLanes - 1);
-    for (std::uint32_t base = begin; base <= by1 * kRow + bx1; base += kLanes) {
-      if constexpr (kLanes < kRow) {
-        const std::uint32_t column = base % kRow;
-        if (column > bx1 || column + (kLanes - 1) < bx0) continue;
+    // A block's value is the sum of a term of its column and one of its row.
+    Float across[4][kColumnGroups], covers[3];
+    for (std::uint32_t group = 0; group < kColumnGroups; ++group) {
+      const Float x = Float::load(places.block_column + group * kLanes) - f.offset_x;
+      const Float y = Float::load(places.block_row);
+      for (int k = 0; k < 4; ++k) {
+        across[k][group] = kGroupRows > 1 ? L::bounded_sum(f.x[k], x, f.y[k] * y) : f.x[k] * x;
       }
-      work_.add(TileWork::kBlockGroup);
-      work_.charge_to(TileWork::kBlockGroup);
-      const Float column = Float::load(places.block_column + base), line = Float::load(places.block_row + base);
-      const Float x = column - offset_x, y = line - offset_y;
-      auto met = (column > Float(left)) & (column < Float(right)) & (line > Float(top)) & (line < Float(bottom));
-      auto covered = met;
-      for (int k = 0; k < 3; ++k) {
-        const Float along = L::bounded_sum(f.x[k], x, f.y[k] * y);
-        met = met & (along + most[k] > Float(0.0f));
-        covered = covered & (along + least[k] > f.edge_span);
-      }
-      met = met &
-            (L::bounded_sum(f.x[3], x, L::bounded_sum(f.y[3], y, most[3])) > Float::load(memory_.least_near + base));
-      const std::uint32_t all = met.bits();
-      if (all == 0) continue;
-      const std::uint32_t full = covered.bits() & all;
-      for (std::uint32_t rest = all & ~full; rest != 0; rest &= rest - 1) {
-        const std::uint32_t block = base + lowest_bit(rest);
-        GRIDIRON_TRY(draw_block_at<false>(f, block, Float(places.block_column[block]) - offset_x,
-                                          Float(places.block_row[block]) - offset_y));
-      }
-      for (std::uint32_t rest = full; rest != 0; rest &= rest - 1) {
-        const std::uint32_t block = base + lowest_bit(rest);
-        GRIDIRON_TRY(draw_block_at<true>(f, block, Float(places.block_column[block]) - offset_x,
-                                         Float(places.block_row[block]) - offset_y));
+    }
+    for (int k = 0; k < 3; ++k) covers[k] = (most[k] - least[k]) + f.edge_span;
+    const std::uint32_t columns = (2u << bx1) - (1u << bx0);
+    for (std::uint32_t by = by0 - by0 % kGroupRows; by <= by1; by += kGroupRows) {
+      const Float line = Float(places.block_row[by * kRow]) - f.offset_y;
+      Float down[4];
+      for (int k = 0; k < 4; ++k) down[k] = L::bounded_sum(f.y[k], line, most[k]);
+      const std::uint32_t wanted = kGroupRows > 1 ? blocks_of_rows(columns, by, by0, by1) : columns;
+      for (std::uint32_t group = 0; group < kColumnGroups; ++group) {
+        const std::uint32_t here = wanted >> (group * kLanes) & L::kAllBits;
+        if (here == 0) continue;
+        work_.add(TileWork::kBlockGroup);
+        work_.charge_to(TileWork::kBlockGroup);
+        const std::uint32_t base = by * kRow + group * kLanes;
+        // Negative: no pixel, not every pixel.
+        Int none = L::words_of((across[3][group] + down[3]) - Float::load(memory_.least_near + base));
+        Int partial = none;
+        for (int k = 0; k < 3; ++k) {
+          const Float value = across[k][group] + down[k];
+          none = none | L::words_of(value);
+          partial = partial | L::words_of(value - covers[k]);
+        }
+        const std::uint32_t all = ~L::sign_bits(none) & here;
+        if (all == 0) continue;
+        const std::uint32_t some = L::sign_bits(partial) & all;
+        for (std::uint32_t rest = some; rest != 0; rest &= rest - 1) {
+          const std::uint32_t block = base + lowest_bit(rest);
+          GRIDIRON_TRY(draw_block_at<false>(f, block, Float(places.block_column[block]) - f.offset_x,
+                                            Float(places.block_row[block]) - f.offset_y));
+        }
+        for (std::uint32_t rest = all & ~some; rest != 0; rest &= rest - 1) {
+          const std::uint32_t block = base + lowest_bit(rest);
+          GRIDIRON_TRY(draw_block_at<true>(f, block, Float(places.block_column[block]) - f.offset_x,
+                                           Float(places.block_row[block]) - f.offset_y));
+        }
       }
     }
     return Status::kOk;
+  }
+  // A group of lanes is a part of a row of blocks, or several rows.
+  static constexpr std::uint32_t kColumnGroups = kRow > kLanes ? kRow / kLanes : std::uint32_t{1};
+  static constexpr std::uint32_t kGroupRows = kLanes > kRow ? kLanes / kRow : std::uint32_t{1};
+  [[nodiscard]] static GRIDIRON_INLINE std::uint32_t blocks_of_rows(std::uint32_t columns, std::uint32_t first,
+                                                                    std::uint32_t by0, std::uint32_t by1) {
+    std::uint32_t blocks = 0;
+    for (std::uint32_t i = 0; i < kGroupRows; ++i) {
+      if (first + i >= by0 && first + i <= by1) blocks |= columns << (i * kRow);
+    }
+    return blocks;
   }
 
   // @param x, y  of the block's first pixel from the triangle's offset.
@@ -459,51 +491,64 @@ class TileTracer {
     Float value[4];
     for (int k = kCovered ? 3 : 0; k < 4; ++k) value[k] = at[k];
     // What decides a pixel: the least edge function, and how far the triangle is in front; both with the error that may
-    // be.
+    // be. Where one of them is negative, the pixel keeps its hit; signs are joined as words.
     Float inside[kGroups], ahead[kGroups], near[kGroups];
-    typename L::Mask met[kGroups];
-    Float any(-1.0f);
-    for (std::uint32_t group = 0; group < kGroups; ++group) {
+    Int possible[kGroups], surely[kGroups];
+    float* const stored = memory_.near[block];
+    const auto test = [&](std::uint32_t group) GRIDIRON_INLINE_LAMBDA {
       near[group] = value[3];
-      ahead[group] = value[3] - Float::load(memory_.near[block] + group * kLanes);
-      Float possible = ahead[group] + f.near_span;
+      ahead[group] = value[3] - Float::load(stored + group * kLanes);
+      possible[group] = L::words_of(ahead[group] + f.near_span);
       if constexpr (!kCovered) {
         inside[group] = L::min(L::min(value[0], value[1]), value[2]);
-        possible = L::min(possible, inside[group]);
+        possible[group] = possible[group] | L::words_of(inside[group]);
       }
-      any = group == 0 ? possible : L::max(any, possible);
-      met[group] = possible > Float(0.0f);
-      if (group + 1 < kGroups) {
-        for (int k = kCovered ? 3 : 0; k < 4; ++k) value[k] = value[k] + f.step[k];
-      }
+    };
+    test(0);
+    Int all = possible[0];
+    for (std::uint32_t group = 1; group < kGroups; ++group) {
+      for (int k = kCovered ? 3 : 0; k < 4; ++k) value[k] = value[k] + f.step[k];
+      test(group);
+      all = all & possible[group];
     }
-    if ((any > Float(0.0f)).bits() == 0) return Status::kOk;
+    if (L::sign_bits(all) == L::kAllBits) return Status::kOk;
     const Float old_span(memory_.span[block]);
-    std::uint32_t open = 0, taken = 0;
+    std::uint32_t* const id = memory_.id[block];
+    std::uint32_t* const record = memory_.record[block];
     for (std::uint32_t group = 0; group < kGroups; ++group) {
       const std::uint32_t pixel = group * kLanes;
-      Float surely = ahead[group] - old_span;
-      if constexpr (!kCovered) surely = L::min(surely, inside[group] - f.edge_span);
-      const auto sure = (surely > Float(0.0f)) & met[group];
-      const std::uint32_t sure_bits = sure.bits();
-      open |= (met[group].bits() ^ sure_bits) << pixel;
-      taken |= sure_bits << pixel;
-      float* const target = memory_.near[block] + pixel;
-      L::select(sure, near[group], Float::load(target)).store(target);
-      std::uint32_t* const id = memory_.id[block] + pixel;
-      std::uint32_t* const record = memory_.record[block] + pixel;
-      L::select(sure, f.id, Int::load(id)).store(id);
-      L::select(sure, f.record, Int::load(record)).store(record);
+      surely[group] = L::words_of(ahead[group] - old_span);
+      if constexpr (!kCovered) surely[group] = surely[group] | L::words_of(inside[group] - f.edge_span);
+      const auto stays = surely[group] < Int::splat(0);
+      L::select(stays, Float::load(stored + pixel), near[group]).store(stored + pixel);
+      L::select(stays, Int::load(id + pixel), f.id).store(id + pixel);
+      L::select(stays, Int::load(record + pixel), f.record).store(record + pixel);
     }
-    if (taken != 0) {
+    all = surely[0];
+    Int open = surely[0] ^ possible[0];
+    for (std::uint32_t group = 1; group < kGroups; ++group) {
+      all = all & surely[group];
+      open = open | (surely[group] ^ possible[group]);
+    }
+    if (L::sign_bits(all) != L::kAllBits) {
       memory_.span[block] = f.span > memory_.span[block] ? f.span : memory_.span[block];
       hits_.mark(block);
-      if (hits_.planes().facing || hits_.planes().distance) hits_.take_planes(block, taken, f.lane);
+      if (hits_.planes().facing || hits_.planes().distance) {
+        std::uint32_t kept = 0;
+        for (std::uint32_t group = 0; group < kGroups; ++group) kept |= L::sign_bits(surely[group]) << group * kLanes;
+        hits_.take_planes(block, ~kept & kAllPixels, f.lane);
+      }
     }
-    if (open != 0 && !hits_.trusts_floats()) [[unlikely]]
-      return hits_.decide(block, open, f.lane);
+    if (L::sign_bits(open) != 0 && !hits_.trusts_floats()) [[unlikely]] {
+      std::uint32_t pixels = 0;
+      for (std::uint32_t group = 0; group < kGroups; ++group) {
+        pixels |= L::sign_bits(surely[group] ^ possible[group]) << group * kLanes;
+      }
+      return hits_.decide(block, pixels, f.lane);
+    }
     return Status::kOk;
   }
+  static constexpr std::uint32_t kAllPixels = (1u << kBlockPixels) - 1;
 
   // Pixels of a box, one by one.
   [[nodiscard]] GRIDIRON_RARE Status draw_carefully(std::uint32_t i) {

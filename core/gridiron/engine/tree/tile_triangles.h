@@ -189,23 +189,22 @@ template <class L, std::uint32_t Width>
   const Int box = Int::load(memory.queue[kPixelBox] + first);
   const Int byte = Int::splat(0xFF);
   const Int ix0 = box & byte, iy0 = (box >> 8) & byte, ix1 = (box >> 16) & byte, iy1 = (box >> 24) & byte;
-  const Float ox = L::to_float((ix0 + ix1) >> 1), oy = L::to_float((iy0 + iy1) >> 1);
-  const Float x0 = L::to_float(ix0) - ox, y0 = L::to_float(iy0) - oy;
-  const Float x1 = L::to_float(ix1) - ox, y1 = L::to_float(iy1) - oy;
+  const Float ox = L::to_float(ix0 + ix1) * Float(0.5f), oy = L::to_float(iy0 + iy1) * Float(0.5f);
+  const Float x1 = L::to_float(ix1) - ox, y1 = L::to_float(iy1) - oy;  // the first pixel is at -x1, -y1
+  const Float minus_ox = -ox, minus_oy = -oy;
 
   // 1. Corners relative to the offset, and how large they are.
   Float x[3], y[3], w[3];
-  Float most_x(0.0f), most_y(0.0f), most_w(0.0f);
   for (std::uint32_t corner = 0; corner < 3; ++corner) {
     w[corner] = word(kCornerW + corner);
-    x[corner] = word(kCornerX + corner) - ox * w[corner];
-    y[corner] = word(kCornerY + corner) - oy * w[corner];
-    most_x = L::larger_size(most_x, x[corner]);
-    most_y = L::larger_size(most_y, y[corner]);
-    most_w = L::larger_size(most_w, w[corner]);
+    x[corner] = L::bounded_sum(minus_ox, w[corner], word(kCornerX + corner));
+    y[corner] = L::bounded_sum(minus_oy, w[corner], word(kCornerY + corner));
   }
-  // The offset is no farther from the first pixel than from the last; blocks reach beyond the box.
-  const Float reach = L::max(x1, y1) + Float(kBlockWidth - 1.0f);
+  const auto most = [](const Float(&of)[3])
+                        GRIDIRON_INLINE_LAMBDA { return L::max(L::larger_size(of[0], of[1]), L::abs(of[2])); };
+  const Float most_x = most(x), most_y = most(y), most_w = most(w);
+  // Blocks reach beyond the box.
+  const Float half = L::max(x1, y1), reach = half + Float(kBlockWidth - 1.0f);
   const Float size = L::bounded_sum(reach, most_w, L::max(most_x, most_y));
   const Float moved = word(kCornerError) + size * Float(0x1.4p-23f) +
                       most_w * Float(static_cast<float>(Width * 0x1p-22) + tile.direction_error);
@@ -222,10 +221,10 @@ template <class L, std::uint32_t Width>
     length[i] = L::abs(side_x[i]) + L::abs(side_y[i]);
   }
   // The longest side is number 0, 1, or else 2: the others are 1 and 2, 2 and 0, 0 and 1.
-  const auto is_first = (length[0] >= length[1]) & (length[0] >= length[2]);
-  const auto is_second = length[1] >= length[2];
+  const auto is_later = (length[1] > length[0]) | (length[2] > length[0]);
+  const auto is_last = length[2] > length[1];
   const auto choose = [&](Float one, Float two, Float three)
-                          GRIDIRON_INLINE_LAMBDA { return L::select(is_first, one, L::select(is_second, two, three)); };
+                          GRIDIRON_INLINE_LAMBDA { return L::select(is_later, L::select(is_last, three, two), one); };
   const Float ax = choose(side_x[1], side_x[2], side_x[0]), bx = choose(side_x[2], side_x[0], side_x[1]);
   const Float ay = choose(side_y[1], side_y[2], side_y[0]), by = choose(side_y[2], side_y[0], side_y[1]);
   const Float aw = choose(side_w[1], side_w[2], side_w[0]), bw = choose(side_w[2], side_w[0], side_w[1]);
@@ -248,25 +247,27 @@ template <class L, std::uint32_t Width>
   const auto is_sure =
       (relative < Float(kMostNormalError)) & (most_near < Float(kMostNear)) & (edge_error < Float(kMostNear));
 
-  // 3. Edges, turned so that the triangle lies on their positive side, with their error added. The greatest value in
-  // the box tells whether the triangle covers a pixel of it.
+  // 3. Edges, turned so that the triangle lies on their positive side, with their error added. Where the greatest value
+  // in the box is negative, the triangle covers no pixel of it, or is hidden.
   const auto most_in_box = [&](Float value, Float along_x, Float along_y) GRIDIRON_INLINE_LAMBDA {
-    return value + L::max(along_x * x0, along_x * x1) + L::max(along_y * y0, along_y * y1);
+    return L::bounded_sum(L::abs(along_x), x1, L::bounded_sum(L::abs(along_y), y1, value));
   };
-  const Float near_value = near_w - near_error;
-  auto is_drawn = most_in_box(near_value, near_x, near_y) + (near_error + near_error) > Float(least_near);
+  const Float near_value = near_w - near_error, near_span = near_error + near_error;
+  Int none = L::words_of(most_in_box(near_value, near_x, near_y) + near_span - Float(least_near));
+  const Int sign = L::words_of(volume) & Int::splat(0x80000000u);
+  const auto turned = [&](Float a) GRIDIRON_INLINE_LAMBDA { return L::floats_of(L::words_of(a) ^ sign); };
   for (std::uint32_t i = 0; i < 3; ++i) {
     const std::uint32_t next = i == 2 ? std::uint32_t{0} : i + 1;
-    const Float edge_x = L::turn_by(volume, y[i] * w[next] - w[i] * y[next]);
-    const Float edge_y = L::turn_by(volume, w[i] * x[next] - x[i] * w[next]);
-    const Float value = L::turn_by(volume, x[i] * y[next] - y[i] * x[next]) + edge_error;
-    is_drawn = is_drawn & (most_in_box(value, edge_x, edge_y) > Float(0.0f));
+    const Float edge_x = turned(L::bounded_difference(y[i], w[next], w[i], y[next]));
+    const Float edge_y = turned(L::bounded_difference(w[i], x[next], x[i], w[next]));
+    const Float value = turned(L::bounded_difference(x[i], y[next], y[i], x[next])) + edge_error;
+    none = none | L::words_of(most_in_box(value, edge_x, edge_y));
     value.store(memory.functions[kEdgeValue + i]);
     edge_x.store(memory.functions[kEdgeX + i]);
     edge_y.store(memory.functions[kEdgeY + i]);
   }
   const std::uint32_t sure = is_sure.bits();
-  TileGroup group{is_drawn.bits() & sure & there, 0, there & ~sure};
+  TileGroup group{~L::sign_bits(none) & sure & there, 0, there & ~sure};
   if ((group.drawn | group.careful) == 0) return group;
   near_value.store(memory.functions[kNearValue]);
   near_x.store(memory.functions[kNearX]);
@@ -274,12 +275,11 @@ template <class L, std::uint32_t Width>
   ox.store(memory.functions[kOffsetX]);
   oy.store(memory.functions[kOffsetY]);
   (edge_error + edge_error).store(memory.functions[kEdgeSpan]);
-  (near_error + near_error).store(memory.functions[kNearSpan]);
+  near_span.store(memory.functions[kNearSpan]);
   box.store(memory.boxes);
   Int::load(memory.queue[kRecord] + first).store(memory.records);
   Int::load(memory.queue[kTriangleId] + first).store(memory.ids);
-  const Float extent = L::max(x1 - x0, y1 - y0);
-  group.tiny = (extent < Float(2.5f)).bits() & group.drawn;
+  group.tiny = (half < Float(1.25f)).bits() & group.drawn;
   return group;
 }
 

@@ -74,7 +74,8 @@ class TreeSource {
 
   [[nodiscard]] Status ahead(TreeChild child) {
     std::uint32_t slot = 0;
-    return find(child, slot) ? Status::kOk : start(child, slot);
+    if (find(child, slot) != 0) return Status::kOk;
+    return start(child, slot);
   }
 
   [[nodiscard]] Status node(std::uint32_t index, const TreeNode*& node) {
@@ -103,7 +104,7 @@ class TreeSource {
     }
     std::byte* const bytes = Parts::memory(store_).surface_bytes;
     const TreeChild child = TreeChild::leaf(number, 1);
-    const std::uint64_t address = address_of(child);
+    const std::uint64_t address = leaf_address(child);
     // Where one open pixel is, its neighbours are.
     const std::uint32_t first_byte = is_on_lattice_ ? std::uint32_t{0} : first_byte_of(address);
     if (number != surface_) {
@@ -149,13 +150,15 @@ class TreeSource {
   [[nodiscard]] Cache& cache() { return Parts::memory(store_).cache; }
 
   [[nodiscard]] const VertexTriangle* records_of(std::uint32_t slot, TreeChild leaf) {
-    const std::uint32_t first_byte = is_on_lattice_ ? std::uint32_t{0} : first_byte_of(address_of(leaf));
+    const std::uint32_t first_byte = is_on_lattice_ ? std::uint32_t{0} : first_byte_of(leaf_address(leaf));
     return reinterpret_cast<const VertexTriangle*>(cache().slots[slot].bytes + first_byte);
   }
 
-  // Where a child lies in main memory.
-  [[nodiscard]] std::uint64_t address_of(TreeChild child) const {
-    if (!child.is_leaf()) return nodes_ + std::uint64_t{child.node_index()} * sizeof(TreeNode);
+  // Where they lie in main memory.
+  [[nodiscard]] std::uint64_t node_address(TreeChild child) const {
+    return nodes_ + std::uint64_t{child.node_index()} * sizeof(TreeNode);
+  }
+  [[nodiscard]] std::uint64_t leaf_address(TreeChild child) const {
     static_assert(sizeof(VertexTriangle) == 48 && sizeof(LatticeTriangle) == 24);
     const std::uint64_t thirds = child.first() * std::uint32_t{3};
     return triangles_ + (thirds << (is_on_lattice_ ? 3 : 4));
@@ -175,8 +178,8 @@ class TreeSource {
     return static_cast<std::uint8_t>(first + slot / kTagSlots);
   }
 
-  // Finds a child's slot, or the first of those that it may have.
-  [[nodiscard]] GRIDIRON_INLINE bool find(TreeChild child, std::uint32_t& slot) {
+  // Finds the ways that have a child, as bits: one or none. @param slot  gets that of the first way.
+  [[nodiscard]] GRIDIRON_INLINE std::uint32_t find(TreeChild child, std::uint32_t& slot) {
     slot = ((child.bits ^ child.bits >> 3) & (Cache::kSets - 1)) * Cache::kWays;
     const std::uint32_t* const keys = cache().keys + slot;
     std::uint32_t found = 0;
@@ -187,12 +190,10 @@ class TreeSource {
     } else {
       found = Lanes<4>::equal(child.bits, keys).bits();
     }
-    if (found == 0) return false;
-    slot += lowest_bit(found);
-    return true;
+    return found;
   }
 
-  // @param slot  as find() left it; gets the child's.
+  // @param slot  as find() left it, without a way; gets the child's.
   [[nodiscard]] GRIDIRON_OUTLINE Status start(TreeChild child, std::uint32_t& slot) {
     std::uint32_t& turn = cache().turns[slot / Cache::kWays];
     slot += turn;
@@ -200,10 +201,11 @@ class TreeSource {
     if ((pending_ >> slot & 1u) != 0) GRIDIRON_TRY(arrive(slot));
     cache().keys[slot] = child.bits;
     pending_ |= 1u << slot;
-    const std::uint64_t address = address_of(child);
     if (!child.is_leaf()) {
-      return transfers_.get(cache().slots[slot].bytes, MainAddress{address}, sizeof(TreeNode), tag_of(slot, child));
+      return transfers_.get(cache().slots[slot].bytes, MainAddress{node_address(child)}, sizeof(TreeNode),
+                            tag_of(slot, child));
     }
+    const std::uint64_t address = leaf_address(child);
     const Moved moved = moved_of(address, child);
     return transfers_.get(cache().slots[slot].bytes + (first_byte_of(address) - moved.slack),
                           MainAddress{address - moved.slack}, moved.bytes, tag_of(slot, child));
@@ -220,7 +222,12 @@ class TreeSource {
   }
 
   [[nodiscard]] GRIDIRON_OUTLINE Status take(TreeChild child, std::uint32_t& slot) {
-    if (!find(child, slot)) GRIDIRON_TRY(start(child, slot));
+    const std::uint32_t found = find(child, slot);
+    if (found == 0) {
+      GRIDIRON_TRY(start(child, slot));
+    } else {
+      slot += lowest_bit(found);
+    }
     return (pending_ >> slot & 1u) != 0 ? arrive(slot) : Status::kOk;
   }
 
@@ -233,7 +240,7 @@ class TreeSource {
   [[nodiscard]] GRIDIRON_OUTLINE Status spread(std::uint32_t slot, TreeChild child) {
     store_.work.add(Work::kLatticeTriangle, child.count());
     store_.work.charge_to(Work::kLatticeTriangle);
-    spread_lattice_run(Parts::tree(store_).lattice, cache().slots[slot].bytes, first_byte_of(address_of(child)),
+    spread_lattice_run(Parts::tree(store_).lattice, cache().slots[slot].bytes, first_byte_of(leaf_address(child)),
                        child.count());
     return Status::kOk;
   }

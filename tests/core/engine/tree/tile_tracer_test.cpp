@@ -118,7 +118,7 @@ std::vector<Shown> traced(MemoryTree& tree, const View& view, WorkCounters& work
   for (std::size_t first = 0; first < tiles.size(); first += 2) {
     const std::size_t count = std::min<std::size_t>(2, tiles.size() - first);
     for (std::size_t i = 0; i < count; ++i) {
-      EXPECT_EQ(tracers[i].begin(frame, eye, tiles[first + i], {has_planes, has_planes}, tree.largest()), Status::kOk);
+      EXPECT_EQ(tracers[i].begin(frame, eye, tiles[first + i], {has_planes, has_planes}), Status::kOk);
     }
     for (bool goes_on = true; goes_on;) {
       goes_on = false;
