@@ -2,6 +2,7 @@
 // Memory: values. Threads: any. SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <gridiron/base/lanes.h>
 #include <gridiron/base/math.h>
 #include <gridiron/base/tree_records.h>
 
@@ -54,13 +55,18 @@ struct TreeBox {
   return box;
 }
 
-/// @returns the box of a node: that of its children's boxes.
+/// @returns the box of a node: that of its children's boxes. Those that are not there change nothing.
 [[nodiscard]] inline TreeBox box_of_node(const TreeNode& node) {
+  using Quad = Lanes<4>::Float;
   TreeBox box;
-  for (std::uint32_t i = 0; i < node.child_count; ++i) {
-    for (int axis = 0; axis < 3; ++axis) {
-      box.low[axis] = node.low[axis][i] < box.low[axis] ? node.low[axis][i] : box.low[axis];
-      box.high[axis] = node.high[axis][i] > box.high[axis] ? node.high[axis][i] : box.high[axis];
+  for (int axis = 0; axis < 3; ++axis) {
+    const auto low_at = [&node, axis](int i) { return Quad::load(node.low[axis] + 4 * i); };
+    const auto high_at = [&node, axis](int i) { return Quad::load(node.high[axis] + 4 * i); };
+    const Quad low = Lanes<4>::min(Lanes<4>::min(low_at(0), low_at(1)), Lanes<4>::min(low_at(2), low_at(3)));
+    const Quad high = Lanes<4>::max(Lanes<4>::max(high_at(0), high_at(1)), Lanes<4>::max(high_at(2), high_at(3)));
+    for (int i = 0; i < 4; ++i) {
+      box.low[axis] = low.v[i] < box.low[axis] ? low.v[i] : box.low[axis];
+      box.high[axis] = high.v[i] > box.high[axis] ? high.v[i] : box.high[axis];
     }
   }
   return box;
