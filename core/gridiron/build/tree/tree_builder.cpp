@@ -117,9 +117,18 @@ void sort_keys(Key* from, Key* to, std::uint32_t count, std::uint32_t* histogram
 // Records ahead of the one that is written whose indices, and whose corners, the caches are asked for: neighbours in the
 // tree may lie far apart in the mesh.
 constexpr std::uint32_t kIndicesAhead = 32, kCornersAhead = 16;
+// Nodes ahead of the one that is split whose keys are asked for, at most so many.
+constexpr std::uint32_t kNodesAhead = 2, kFewKeys = 256;
 
 [[nodiscard]] std::span<const Vec3> stored_vertices(const MeshView& mesh) { return mesh.vertices; }
 [[nodiscard]] std::span<const Vec3> stored_vertices(const LatticeMesh& mesh) { return mesh.vertices.vertices; }
+
+// Asks the caches for elements.
+template <class Element>
+void ask_for(const Element* elements, std::uint32_t count) {
+  const auto* const bytes = reinterpret_cast<const std::byte*>(elements);
+  for (std::uint32_t offset = 0; offset < count * sizeof(Element); offset += 64) __builtin_prefetch(bytes + offset);
+}
 
 template <class Mesh>
 void ask_for_corners(const Mesh& mesh, const UVec3& t) {
@@ -245,7 +254,9 @@ class TreeBuilder {
     std::uint32_t id = 0, count = 0;
     for (const UVec3& t : mesh_.triangles) {
       if (t.x >= vertex_count || t.y >= vertex_count || t.z >= vertex_count) return Status::kBadIndex;
-      const Vec3 a = mesh_.vertices[t.x], b = mesh_.vertices[t.y], c = mesh_.vertices[t.z];
+      const Vec3& a = mesh_.vertices[t.x];
+      const Vec3& b = mesh_.vertices[t.y];
+      const Vec3& c = mesh_.vertices[t.z];
       const std::uint32_t here = id++;
       if (has_zero_area(a, b, c)) continue;
       const TreeBox box = box_of(a, b, c);
@@ -292,7 +303,14 @@ class TreeBuilder {
   [[nodiscard]] Status split_all(std::uint32_t count) {
     size_.node_count = 0;
     GRIDIRON_TRY(append_node({0, count, 0, 0, 0}, 1));
-    for (std::uint32_t i = 0; i < size_.node_count; ++i) GRIDIRON_TRY(split(nodes_[i]));
+    for (std::uint32_t i = 0; i < size_.node_count; ++i) {
+      if (size_.node_count - i > kNodesAhead) {
+        const TreeNode& later = nodes_[i + kNodesAhead];
+        const std::uint32_t begin = later.children[0].bits, end = later.children[1].bits;
+        ask_for(keys_ + begin, end - begin < kFewKeys ? end - begin : kFewKeys);
+      }
+      GRIDIRON_TRY(split(nodes_[i]));
+    }
     return Status::kOk;
   }
 
@@ -312,7 +330,8 @@ class TreeBuilder {
     Range ranges[kTreeWidth];
     const std::uint32_t count =
         is_deep(end - begin, depth) ? split_by_number(begin, end, ranges) : split_by_codes(begin, end, ranges);
-    node = {};
+    // Boxes are written at last.
+    __builtin_memset(node.children, 0, sizeof(TreeNode) - offsetof(TreeNode, children));
     node.child_count = count;
     for (std::uint32_t i = 0; i < count; ++i) {
       const Range& range = ranges[i];
@@ -444,7 +463,14 @@ class TreeBuilder {
   void bound_all() {
     margin_ = tree_margin_of(size_.low, size_.high);
     auto* const areas = reinterpret_cast<float*>(spare_);  // by node; there are no more nodes than triangles
-    for (std::uint32_t i = size_.node_count; i-- > 0;) areas[i] = bound(nodes_[i], areas);
+    for (std::uint32_t i = size_.node_count; i-- > 0;) {
+      if (i > 0) {
+        for (const TreeChild child : nodes_[i - 1].children) {
+          if (child.is_leaf()) ask_for(&records_[child.first()], child.count());
+        }
+      }
+      areas[i] = bound(nodes_[i], areas);
+    }
   }
 
   // @returns the area of the node's triangles.
