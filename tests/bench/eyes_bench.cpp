@@ -68,7 +68,8 @@ class Frames {
  public:
   Frames(test::SceneInMemory& scene, const Camera& camera)
       : frame_(scene.prepare(
-            FrameSettings{.camera = camera, .tile_width = kTileWidth, .shading = Shading::kNone, .engine = EngineId::kTree},
+            FrameSettings{
+                .camera = camera, .tile_width = kTileWidth, .shading = Shading::kNone, .engine = EngineId::kTree},
             chip_of(4), test::PlaneSet::kAll)),
         all_(frame_.record()) {}
 
@@ -138,10 +139,9 @@ void choose_call(const FrameRecord& frame, const char* quality, std::vector<std:
     for (const bool is_coherent : {false, true}) {
       if (is_coherent && call == peer::EmbreeEyeCall::kSingle) continue;
       choices.emplace_back(call, is_coherent);
-      candidates.push_back({std::string(name) + ' ' + quality + (is_coherent ? " coherent" : ""),
-                            [&, choice = choices.back()] {
-                              way.scene.find_triangles(frame, choice.first, choice.second, ids);
-                            }});
+      candidates.push_back(
+          {std::string(name) + ' ' + quality + (is_coherent ? " coherent" : ""),
+           [&, choice = choices.back()] { way.scene.find_triangles(frame, choice.first, choice.second, ids); }});
     }
   }
   const std::vector<double> seconds = least_seconds(candidates, 1);
@@ -169,11 +169,11 @@ EmbreeWays embree_ways(const MeshView& mesh, bool robust, const FrameRecord& fra
 // Seconds of one view.
 struct Row {
   const char* name;
-  std::vector<double> frames;                // of each number of lanes
-  double build, tree;                        // ours; of the latter the tree alone, without an image and checks
-  double simple, depth, ids, all;            // frames of the widest lanes with these
-  double one_thread, two_threads;            // wall clock
-  double embree_builds[2];                   // low, medium
+  std::vector<double> frames;      // of each number of lanes
+  double build, tree;              // ours; of the latter the tree alone, without an image and checks
+  double simple, depth, ids, all;  // frames of the widest lanes with these
+  double one_thread, two_threads;  // wall clock
+  double embree_builds[2];         // low, medium
   double embree_frames[kQualityCount], robust_frames[kQualityCount];
   std::string way, robust_way;
   std::size_t different;  // pixels with another triangle than in Embree
@@ -263,8 +263,7 @@ bool measure_view(const BenchOptions& options, const test::SceneView& view, Row&
        [&] {
          TreeSize size;
          static_cast<void>(build_tree(
-             mesh_view, 8,
-             {reinterpret_cast<VertexTriangle*>(records.bytes().data()), mesh_view.triangles.size()},
+             mesh_view, 8, {reinterpret_cast<VertexTriangle*>(records.bytes().data()), mesh_view.triangles.size()},
              {reinterpret_cast<TreeNode*>(nodes.bytes().data()), nodes.bytes().size() / sizeof(TreeNode)},
              scratch.bytes(), size));
        }},
@@ -320,9 +319,10 @@ bool bench_eyes(const BenchOptions& options) {
   }
   std::printf("1024x1024, no shading, milliseconds of one thread; ours with");
   for (const std::uint32_t lanes : lanes_of_host()) std::printf(" %u", lanes);
-  std::printf(" lanes; Embree's fastest calls; builds: ours, of it the tree, Embree low, medium;\n"
-              "frames with simple shading, depth, ids, all over the frame; one thread over two; pixels with another "
-              "triangle than Embree robust\n");
+  std::printf(
+      " lanes; Embree's fastest calls; builds: ours, of it the tree, Embree low, medium;\n"
+      "frames with simple shading, depth, ids, all over the frame; one thread over two; pixels with another "
+      "triangle than Embree robust\n");
   std::vector<Row> rows;
   for (const test::SceneView& view : kViews) {
     Row row{};
@@ -331,18 +331,23 @@ bool bench_eyes(const BenchOptions& options) {
     rows.push_back(row);
   }
   if (rows.empty()) return true;
-  bool within = report("frame: Embree / ours", rows, [](const Row& row) { return row.embree_frame() / row.frame(); },
-                       kFrameLimit, kFrameMeanLimit);
-  report("frame: Embree robust / ours", rows, [](const Row& row) { return row.robust_frame() / row.frame(); }, 0, 0);
-  within = report("build: Embree low / ours", rows, [](const Row& row) { return row.embree_builds[0] / row.build; },
-                  kBuildLimit, kBuildLimit) &&
+  bool within = report(
+      "frame: Embree / ours", rows, [](const Row& row) { return row.embree_frame() / row.frame(); }, kFrameLimit,
+      kFrameMeanLimit);
+  report(
+      "frame: Embree robust / ours", rows, [](const Row& row) { return row.robust_frame() / row.frame(); }, 0, 0);
+  within = report(
+               "build: Embree low / ours", rows, [](const Row& row) { return row.embree_builds[0] / row.build; },
+               kBuildLimit, kBuildLimit) &&
            within;
-  within = report("build + frame: Embree / ours", rows,
-                  [](const Row& row) { return row.embree_both() / (row.build + row.frame()); }, kBothLimit,
-                  kBothMeanLimit) &&
-           within;
-  within = report("one thread / two threads", rows, [](const Row& row) { return row.one_thread / row.two_threads; },
-                  kThreadsLimit, kThreadsLimit) &&
+  within =
+      report(
+          "build + frame: Embree / ours", rows,
+          [](const Row& row) { return row.embree_both() / (row.build + row.frame()); }, kBothLimit, kBothMeanLimit) &&
+      within;
+  within = report(
+               "one thread / two threads", rows, [](const Row& row) { return row.one_thread / row.two_threads; },
+               kThreadsLimit, kThreadsLimit) &&
            within;
   return within;
 }

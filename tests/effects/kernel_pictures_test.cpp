@@ -102,7 +102,8 @@ TEST_P(KernelPictures, AreTheReferencesPictures) {
   expect_reference(picture.scene(1e-4f), size, size, tolerance);
 }
 
-// Colours, distances and triangles, bit by bit: eye rays by packets through the grid, and tile by tile through the tree.
+// Colours, distances and triangles, bit by bit: eye rays by packets through the grid, and tile by tile through the
+// tree.
 TEST_P(KernelPictures, EyeRaysThroughTheTreeGiveTheSameBits) {
   constexpr std::uint32_t kWidth = 49, kHeight = 37;  // 2 x 2 tiles, cut
   const SceneDescription description = GetParam().scene(1e-3f);

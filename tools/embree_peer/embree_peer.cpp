@@ -83,7 +83,9 @@ class EyeDirections {
   void store_four(int axis, std::uint32_t x, std::uint32_t y, float* to) const {
     for (std::uint32_t i = 0; i < 4; ++i) to[i] = columns_[axis][x + i] + rows_[axis][y];
   }
-  [[nodiscard]] float of(int axis, std::uint32_t x, std::uint32_t y) const { return columns_[axis][x] + rows_[axis][y]; }
+  [[nodiscard]] float of(int axis, std::uint32_t x, std::uint32_t y) const {
+    return columns_[axis][x] + rows_[axis][y];
+  }
 
  private:
   std::vector<float> columns_[3], rows_[3];
@@ -323,7 +325,8 @@ void EmbreeScene::find_triangles(const FrameRecord& frame, EmbreeEyeCall call, b
       return trace_packet_streams<8, RTCRayHit8>(
           frame,
           [&](RTCRayHit8* packets) {
-            rtcIntersectNM(scene, &context, reinterpret_cast<RTCRayHitN*>(packets), 8, kStreamRays / 8, sizeof *packets);
+            rtcIntersectNM(scene, &context, reinterpret_cast<RTCRayHitN*>(packets), 8, kStreamRays / 8,
+                           sizeof *packets);
           },
           ids.data());
     case EmbreeEyeCall::kStream16:

@@ -4,8 +4,10 @@
 
 #include <gridiron/base/lanes.h>
 #include <gridiron/base/math.h>
+#include <gridiron/base/records.h>
 #include <gridiron/base/tree_records.h>
 
+#include <cstddef>
 #include <cstdint>
 
 namespace gridiron {
@@ -43,6 +45,35 @@ struct TreeBox {
     float size[3];
     for (int axis = 0; axis < 3; ++axis) size[axis] = high[axis] - low[axis];
     return size[0] * size[1] + size[1] * size[2] + size[2] * size[0];
+  }
+};
+
+/// x, y and z of a corner, and a number without meaning.
+using CornerQuad = Lanes<4>::Float;
+[[nodiscard]] inline CornerQuad corner_quad(const VertexTriangle& record, int corner) {
+  // Behind the last corner there is a reserved word, behind another one the next.
+  float words[4];
+  __builtin_memcpy(words, reinterpret_cast<const std::byte*>(&record) + corner * std::ptrdiff_t{12}, sizeof words);
+  return CornerQuad::load(words);
+}
+
+/// The box of triangles, in lanes; zeros may have another sign than TreeBox gives them, which is lost when it grows.
+struct QuadBox {
+  CornerQuad low{kFloatMax}, high{-kFloatMax};
+
+  void add(CornerQuad a, CornerQuad b, CornerQuad c) {
+    low = Lanes<4>::min(Lanes<4>::min(a, b), Lanes<4>::min(c, low));
+    high = Lanes<4>::max(Lanes<4>::max(a, b), Lanes<4>::max(c, high));
+  }
+  /// @returns the box, grown.
+  [[nodiscard]] TreeBox grown(float margin) const {
+    TreeBox box;
+    for (int axis = 0; axis < 3; ++axis) {
+      box.low[axis] = low.v[axis];
+      box.high[axis] = high.v[axis];
+    }
+    box.grow(margin);
+    return box;
   }
 };
 

@@ -1,8 +1,8 @@
 // Building the wide tree: see the header. SPDX-License-Identifier: Apache-2.0
 #include <gridiron/base/lanes.h>
-#include <gridiron/build/triangle_records.h>
 #include <gridiron/build/tree/tree_box.h>
 #include <gridiron/build/tree/tree_builder.h>
+#include <gridiron/build/triangle_records.h>
 
 #include <cstddef>
 
@@ -23,15 +23,12 @@ struct Key {
   std::uint32_t id;    // of a triangle, or its place in a range that is sorted again
 };
 
-// x, y, z, and a number without meaning.
-using Quad = Lanes<4>::Float;
-
 // Twice the area; where floats overflow or underflow any number, as it decides an order alone.
-float area_of(Quad a, Quad b, Quad c) {
-  const Quad e = b - a, f = c - a;
-  const auto turn = [](Quad q) { return Lanes<4>::shuffle_quads<1, 2, 0, 3>(q); };
-  const Quad normal = e * turn(f) - turn(e) * f;  // z, x, y
-  const Quad squares = normal * normal;
+float area_of(CornerQuad a, CornerQuad b, CornerQuad c) {
+  const CornerQuad e = b - a, f = c - a;
+  const auto turn = [](CornerQuad q) { return Lanes<4>::shuffle_quads<1, 2, 0, 3>(q); };
+  const CornerQuad normal = e * turn(f) - turn(e) * f;  // z, x, y
+  const CornerQuad squares = normal * normal;
   return __builtin_sqrtf(squares.v[1] + squares.v[2] + squares.v[0]);
 }
 
@@ -114,14 +111,18 @@ void sort_keys(Key* from, Key* to, std::uint32_t count, std::uint32_t* histogram
   }
 }
 
-// Records ahead of the one that is written whose indices, and whose corners, the caches are asked for: neighbours in the
-// tree may lie far apart in the mesh.
+// Records ahead of the one that is written whose indices, and whose corners, the caches are asked for: neighbours in
+// the tree may lie far apart in the mesh.
 constexpr std::uint32_t kIndicesAhead = 32, kCornersAhead = 16;
 // Nodes ahead of the one that is split whose keys are asked for, at most so many.
 constexpr std::uint32_t kNodesAhead = 2, kFewKeys = 256;
 
-[[nodiscard]] std::span<const Vec3> stored_vertices(const MeshView& mesh) { return mesh.vertices; }
-[[nodiscard]] std::span<const Vec3> stored_vertices(const LatticeMesh& mesh) { return mesh.vertices.vertices; }
+[[nodiscard]] std::span<const Vec3> stored_vertices(const MeshView& mesh) {
+  return mesh.vertices;
+}
+[[nodiscard]] std::span<const Vec3> stored_vertices(const LatticeMesh& mesh) {
+  return mesh.vertices.vertices;
+}
 
 // Asks the caches for elements.
 template <class Element>
@@ -152,12 +153,7 @@ struct VertexForm {
   [[nodiscard]] static Vec3 corner(const Record& record, int i) {
     return {record.v[i][0], record.v[i][1], record.v[i][2]};
   }
-  // Behind the last corner there is a reserved word, behind another one the next.
-  [[nodiscard]] static Quad quad(const Record& record, int i) {
-    float corner[4];
-    __builtin_memcpy(corner, reinterpret_cast<const std::byte*>(&record) + 12 * i, sizeof corner);
-    return Quad::load(corner);
-  }
+  [[nodiscard]] static CornerQuad quad(const Record& record, int i) { return corner_quad(record, i); }
 };
 
 struct LatticeForm {
@@ -182,10 +178,10 @@ struct LatticeForm {
     }
     return p;
   }
-  [[nodiscard]] Quad quad(const Record& record, int i) const {
+  [[nodiscard]] CornerQuad quad(const Record& record, int i) const {
     const Vec3 p = corner(record, i);
     const float words[4] = {p.x, p.y, p.z, 0.0f};
-    return Quad::load(words);
+    return CornerQuad::load(words);
   }
 };
 
@@ -483,8 +479,7 @@ class TreeBuilder {
         const TreeChild child = node.children[i];
         float area = 0.0f;
         if (child.is_leaf()) {
-          box = bound_leaf(child, area);
-          box.grow(margin);
+          box = bound_leaf(child, margin, area);
         } else {
           box = box_of_node(nodes_[child.node_index()]);
           area = areas[child.node_index()];
@@ -501,22 +496,16 @@ class TreeBuilder {
     return total;
   }
 
-  // The box of a leaf's triangles, and their area.
-  [[nodiscard]] TreeBox bound_leaf(TreeChild leaf, float& area) const {
-    Quad low(kFloatMax), high(-kFloatMax);
+  // The box of a leaf, and the area of its triangles.
+  [[nodiscard]] TreeBox bound_leaf(TreeChild leaf, float margin, float& area) const {
+    QuadBox box;
     for (std::uint32_t k = leaf.first(); k < leaf.first() + leaf.count(); ++k) {
       const Record& record = records_[k];
-      const Quad a = form_.quad(record, 0), b = form_.quad(record, 1), c = form_.quad(record, 2);
-      low = Lanes<4>::min(Lanes<4>::min(a, b), Lanes<4>::min(c, low));
-      high = Lanes<4>::max(Lanes<4>::max(a, b), Lanes<4>::max(c, high));
+      const CornerQuad a = form_.quad(record, 0), b = form_.quad(record, 1), c = form_.quad(record, 2);
+      box.add(a, b, c);
       area += area_of(a, b, c);
     }
-    TreeBox box;
-    for (int axis = 0; axis < 3; ++axis) {
-      box.low[axis] = low.v[axis];
-      box.high[axis] = high.v[axis];
-    }
-    return box;
+    return box.grown(margin);
   }
 
   // The densest first; of equal ones the first.
