@@ -4,6 +4,7 @@
 #include <gridiron/build/tree/tree_builder.h>
 #include <gridiron/build/triangle_records.h>
 
+#include <bit>
 #include <cstddef>
 
 namespace gridiron {
@@ -71,21 +72,10 @@ class Curve {
   bool is_flat_ = true;
 };
 
-// The number of the highest bit, from 1; 0 of none. As std::bit_width(), which calls a library where there is no
-// instruction for it.
+// The number of the highest bit, from 1; 0 of none: from the exponent of a double that holds it exactly.
+// std::bit_width() calls a library where there is no instruction for it.
 [[nodiscard]] std::int32_t width_of(std::uint32_t bits) {
-  std::int32_t width = 0;
-  const auto shift_by = [&bits, &width](std::int32_t step) {
-    if (bits >> step == 0) return;
-    bits >>= step;
-    width += step;
-  };
-  shift_by(16);
-  shift_by(8);
-  shift_by(4);
-  shift_by(2);
-  shift_by(1);
-  return width + static_cast<std::int32_t>(bits);
+  return static_cast<std::int32_t>(std::bit_cast<std::uint64_t>(static_cast<double>(bits) + 0.5) >> 52) - 1022;
 }
 
 // Sorts keys by their codes, equal ones in the order they have. `from` is changed too.
@@ -368,22 +358,22 @@ class TreeBuilder {
     const bool is_root = end - begin == size_.triangle_count;
     const std::uint64_t full_weight = static_cast<std::uint64_t>(is_root ? kRootWeight : kMostWeight) << kWeightShift;
     std::uint32_t group_sizes[kGroups] = {1, 1, 1, 1};
+    std::uint64_t less[kGroups] = {};  // what the parts of a group that is full weigh less
     ranges[0] = range_of(begin, end);
     std::uint32_t count = 1;
     while (count < kTreeWidth) {
       std::uint64_t most = 0;
       for (std::uint32_t i = 0; i < count; ++i) {
         const Range& range = ranges[i];
-        if (range.weight == 0) continue;
-        const bool is_full = count >= kGroups && group_sizes[range.group] >= kGroupSize;
-        const std::uint64_t weight = (range.weight - (is_full ? full_weight : 0)) | (kTreeWidth - 1 - i);
+        const std::uint64_t weight = range.weight == 0 ? 0 : (range.weight - less[range.group]) | (kTreeWidth - 1 - i);
         most = weight > most ? weight : most;
       }
       if (most == 0) break;
       const std::uint32_t best = kTreeWidth - 1 - static_cast<std::uint32_t>(most % kTreeWidth);
       split_part(ranges, count, best);
       ++count;
-      if (count > kGroups) ++group_sizes[ranges[best].group];
+      const std::uint32_t group = ranges[best].group;
+      if (count > kGroups && ++group_sizes[group] >= kGroupSize) less[group] = full_weight;
       if (count == kGroups) {
         for (std::uint32_t i = 0; i < kGroups; ++i) ranges[i].group = i;
       }
