@@ -16,17 +16,17 @@ std::map<std::string, BenchFunction, std::less<>>& registry() {
   return functions;
 }
 
-double processor_seconds() {
+double seconds_now(Clock clock) {
   timespec now{};
-  clock_gettime(CLOCK_PROCESS_CPUTIME_ID, &now);
+  clock_gettime(clock == Clock::kWall ? CLOCK_MONOTONIC : CLOCK_PROCESS_CPUTIME_ID, &now);
   return static_cast<double>(now.tv_sec) + 1e-9 * static_cast<double>(now.tv_nsec);
 }
 
-double seconds_of(const Candidate& candidate) {
+double seconds_of(const Candidate& candidate, Clock clock) {
   if (candidate.prepare) candidate.prepare();
-  const double start = processor_seconds();
+  const double start = seconds_now(clock);
   candidate.run();
-  return processor_seconds() - start;
+  return seconds_now(clock) - start;
 }
 
 int usage() {
@@ -76,11 +76,13 @@ int run(std::span<char*> arguments) {
 
 }  // namespace
 
-std::vector<double> least_seconds(std::span<const Candidate> candidates, unsigned rounds) {
+std::vector<double> least_seconds(std::span<const Candidate> candidates, unsigned rounds, Clock clock) {
   std::vector<double> least;
-  for (const Candidate& candidate : candidates) least.push_back(seconds_of(candidate));
+  for (const Candidate& candidate : candidates) least.push_back(seconds_of(candidate, clock));
   for (unsigned round = 0; round < rounds; ++round) {
-    for (std::size_t i = 0; i < candidates.size(); ++i) least[i] = std::min(least[i], seconds_of(candidates[i]));
+    for (std::size_t i = 0; i < candidates.size(); ++i) {
+      least[i] = std::min(least[i], seconds_of(candidates[i], clock));
+    }
   }
   return least;
 }

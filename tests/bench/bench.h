@@ -2,6 +2,7 @@
 // Memory: std::vector. Threads: one. SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <cstdint>
 #include <filesystem>
 #include <functional>
 #include <span>
@@ -25,10 +26,14 @@ struct Candidate {
   std::function<void()> prepare = {};  ///< before each run, not timed; may be empty
 };
 
+/// What is measured of a run. The processor's time is that of all threads together: for one thread it is the wall
+/// clock's time on an idle host, and on a busy one it leaves out the others' turns.
+enum class Clock : std::uint8_t { kProcessor, kWall };
+
 /// Runs all candidates once to warm up, then `rounds` times in turn, so that a slow moment of the host hits all alike.
-/// @returns the least processor seconds of each, all threads together: for one thread that is the wall clock's time on
-///          an idle host, and on a busy one it leaves out the others' turns.
-std::vector<double> least_seconds(std::span<const Candidate> candidates, unsigned rounds);
+/// @returns the least seconds of each.
+std::vector<double> least_seconds(std::span<const Candidate> candidates, unsigned rounds,
+                                  Clock clock = Clock::kProcessor);
 
 /// Prints "label: ours / peer = ratio (limit)". @returns whether the ratio is within the limit.
 bool report_ratio(std::string_view label, double ours_seconds, double peer_seconds, double limit);

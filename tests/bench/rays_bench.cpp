@@ -33,9 +33,8 @@ const LitView kViews[] = {
     {test::kHorseView, {}},
     {test::kArmadilloView, {}},
     {test::kConferenceView, Vec3(0.5f, 0.8f, 0.5f)},
-    {{"sponza", "sponza_dabrovic.ply", Camera{{-12, 3, 0.5f}, {10, 4.5f, 0}, {0, 1, 0}, test::kTanHalf65Degrees}},
-     Vec3(0.5f, 0.8f, 0.5f)},
-    {{"dragon", "stanford_dragon_res2.ply", {}}, {}},
+    {test::kSponzaView, Vec3(0.5f, 0.8f, 0.5f)},
+    {test::kDragonView, {}},
     // The teapot from near by, behind it the field and the stands.
     {{"stadium", "teapot_in_stadium.ply", Camera{{3.13f, 1.72f, 0.18f}, {3.0f, 2.0f, 0.07f}, {0, 0, 1}, 0.41421356f}},
      Vec3(0.3f, 0.3f, 0.9f)},

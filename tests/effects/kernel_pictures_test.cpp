@@ -1,9 +1,11 @@
-// Pictures of the kernel against the reference's: scenes of the repository, scenes in code, scenes of the makers.
+// Pictures of the kernel against the reference's: scenes of the repository, scenes in code, scenes of the makers. And
+// against those whose eye rays go through the tree.
 // SPDX-License-Identifier: Apache-2.0
 #include <ostream>
 
 #include "effects/effect_scene.h"
 #include "effects/kernel_check.h"
+#include "effects/kernel_chip.h"
 #include "scene_makers/procedural.h"
 #include "scene_text/scene_reader.h"
 
@@ -98,6 +100,41 @@ TEST_P(KernelPictures, AreTheReferencesPictures) {
       static_cast<std::size_t>(pixels * static_cast<double>(tolerance.off_by_more_than_1 + 2));
   tolerance.ray_share += 1e-4;
   expect_reference(picture.scene(1e-4f), size, size, tolerance);
+}
+
+// Colours, distances and triangles, bit by bit: eye rays by packets through the grid, and tile by tile through the
+// tree.
+TEST_P(KernelPictures, EyeRaysThroughTheTreeGiveTheSameBits) {
+  constexpr std::uint32_t kWidth = 49, kHeight = 37;  // 2 x 2 tiles, cut
+  const SceneDescription description = GetParam().scene(1e-3f);
+  const Camera camera = camera_of(description.view);
+  for (const Accuracy accuracy : {Accuracy::kStandard, Accuracy::kExact, Accuracy::kCompact}) {
+    KernelOptions options{.accuracy = accuracy, .fetch_depth = 4, .wants_planes = true};
+    KernelScene scene = build_kernel_scene(description, options);
+    const auto render = [&](const sim::ChipOptions& chip) {
+      return render_on_chip(scene, camera, kWidth, kHeight, options, chip);
+    };
+    const std::uint32_t widest = sim::widest_lanes();
+    const KernelPicture packets = render({.mode = sim::Mode::kPlain, .lanes = widest, .packet_width = 8});
+    ASSERT_EQ(packets.status, Status::kOk);
+    ASSERT_TRUE(std::any_of(packets.ids.begin(), packets.ids.end(), [](auto id) { return id != kNoTriangle; }));
+    options.engine = EngineId::kTree;
+    const sim::ChipOptions chips[] = {
+        {.mode = sim::Mode::kPlain, .lanes = 4, .packet_width = 0},
+        {.mode = sim::Mode::kPlain, .lanes = widest, .packet_width = 0},
+        {.mode = sim::Mode::kChecked, .lanes = 4, .packet_width = 0, .completion = sim::Completion::kLate}};
+    for (const sim::ChipOptions& chip : chips) {
+      SCOPED_TRACE(testing::Message() << "accuracy " << static_cast<unsigned>(accuracy) << ", mode "
+                                      << static_cast<unsigned>(chip.mode) << ", lanes " << chip.lanes);
+      const KernelPicture tiles = render(chip);
+      ASSERT_EQ(tiles.status, Status::kOk) << tiles.violation;
+      EXPECT_EQ(tiles.violation, "");
+      EXPECT_EQ(tiles.color, packets.color);
+      EXPECT_EQ(tiles.ids, packets.ids);
+      ASSERT_EQ(tiles.depth.size(), packets.depth.size());
+      EXPECT_EQ(std::memcmp(tiles.depth.data(), packets.depth.data(), 4 * packets.depth.size()), 0);
+    }
+  }
 }
 
 INSTANTIATE_TEST_SUITE_P(Scenes, KernelPictures, testing::ValuesIn(kCases),

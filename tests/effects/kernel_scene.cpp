@@ -68,6 +68,7 @@ KernelFrame make_kernel_frame(KernelScene& scene, const Camera& camera, std::uin
                                .tile_width = tile_width,
                                .accuracy = options.accuracy,
                                .shading = options.shading,
+                               .engine = options.engine,
                                .techniques = kUseMailbox | kUseCornerCulling | kUseEmptySkip | kUseSubpackets,
                                .macro_depth = options.macro_depth,
                                .triangle_depth = options.triangle_depth,

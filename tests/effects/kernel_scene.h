@@ -30,6 +30,7 @@ struct KernelOptions {
   bool claims_backwards = false;      ///< the last tile is handed out first
   bool wants_planes = false;          ///< depth and ids too
   Shading shading = Shading::kScene;
+  EngineId engine = EngineId::kGrid;  ///< of eye rays
   void (*alter)(FrameRecord& record) = nullptr;  ///< breaks a frame that its set-up would not have made
 };
 

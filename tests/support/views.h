@@ -9,7 +9,7 @@
 
 namespace gridiron::test {
 
-/// Our view of a model that Cho, Kim, Han 2012 render; the paper does not describe its views.
+/// Our view of a model; Cho, Kim, Han 2012 render the first four, but do not describe their views.
 struct SceneView {
   const char* name;
   const char* file;              ///< in the directory of scans
@@ -26,6 +26,9 @@ inline const SceneView kConferenceView = {"conference_1", "conference.ply",
                                           Camera{{-73, 454, -883}, {603, 128, 151}, {0, 1, 0}, kTanHalf65Degrees}};
 inline const SceneView kConferenceView2 = {"conference_2", "conference.ply",
                                            Camera{{1415, 389, -797}, {-208, 160, -21}, {0, 1, 0}, kTanHalf65Degrees}};
+inline const SceneView kSponzaView = {"sponza", "sponza_dabrovic.ply",
+                                      Camera{{-12, 3, 0.5f}, {10, 4.5f, 0}, {0, 1, 0}, kTanHalf65Degrees}};
+inline const SceneView kDragonView = {"dragon", "stanford_dragon_res2.ply", {}};
 
 /// Frames a mesh: eye = c + 1.05 d n with c the centre of the bounding box of all vertices, d its diagonal,
 /// n = (0.35, 0.25, 1) normalised; 45 degrees.

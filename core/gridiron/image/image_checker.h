@@ -26,6 +26,12 @@ class ImageChecker {
     return record;
   }
 
+  /// The same in place. Precondition: `offset` is a multiple of the record's alignment.
+  template <class Record>
+  [[nodiscard]] const Record& at(std::uint64_t offset) const {
+    return *reinterpret_cast<const Record*>(image_.data() + offset);
+  }
+
   [[nodiscard]] bool require(bool holds, std::uint64_t byte_offset, const char* field, std::uint64_t = 0) {
     if (!holds) error_ = {Status::kBadImage, byte_offset, field};
     return holds;

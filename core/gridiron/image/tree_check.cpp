@@ -8,17 +8,35 @@ namespace {
 
 // --- Triangles ------------------------------------------------------------------------------------------------------
 
+std::uint64_t place_of_triangle(const TreeRecord& tree, std::uint64_t number) {
+  return tree.triangles_offset_bytes + number * tree.triangle_bytes;
+}
+
+// A triangle of the tree where it lies, or as it is read from a lattice: words that were just copied load slowly in
+// other groups than they were stored in.
+const VertexTriangle& triangle_at(const ImageChecker& checker, const SceneImageView& view, std::uint64_t place,
+                                  VertexTriangle& read) {
+  if (view.tree.triangle_format != static_cast<std::uint32_t>(TriangleFormat::kLattice)) {
+    return checker.at<VertexTriangle>(place);
+  }
+  read = checker.read_triangle(place, view.grid);
+  return read;
+}
+
 // With effects a record has the corners of the surface with its id, which says where the record stands. So no two
 // records have one id, and as there are as many as triangles that are kept, each of these is there. Without, its
 // corners are numbers within the bounds.
 bool check_tree_triangles(ImageChecker& checker, const SceneImageView& view) {
   const TreeRecord& tree = view.tree;
+  const float lows[4] = {tree.bounds_minimum[0], tree.bounds_minimum[1], tree.bounds_minimum[2], 0.0f};
+  const float highs[4] = {tree.bounds_maximum[0], tree.bounds_maximum[1], tree.bounds_maximum[2], 0.0f};
+  const CornerQuad low = CornerQuad::load(lows), high = CornerQuad::load(highs);
   const std::uint64_t id_offset = tree.triangle_bytes - sizeof(std::uint32_t);
-  const auto place_of = [&tree](std::uint64_t i) { return tree.triangles_offset_bytes + i * tree.triangle_bytes; };
   const bool is_lattice = tree.triangle_format == static_cast<std::uint32_t>(TriangleFormat::kLattice);
+  VertexTriangle read{};
   for (std::uint64_t i = 0; i < tree.triangle_count; ++i) {
-    const std::uint64_t base = place_of(i);
-    const VertexTriangle triangle = checker.read_triangle(base, view.grid);
+    const std::uint64_t base = place_of_triangle(tree, i);
+    const VertexTriangle& triangle = triangle_at(checker, view, base, read);
     const std::uint32_t id = triangle.triangle_id;
     if (!checker.require(id < view.header.triangle_count, base + id_offset, "tree_triangle.triangle_id")) return false;
     if (is_lattice) {
@@ -29,12 +47,9 @@ bool check_tree_triangles(ImageChecker& checker, const SceneImageView& view) {
       GRIDIRON_REQUIRE(all_zero(tree_triangle.reserved, 2), base, tree_triangle, reserved);
     }
     if (!view.has_effects) {
-      bool good = true;
-      for (int k = 0; k < 9; ++k) {
-        const float value = triangle.v[k / 3][k % 3];
-        good = good && value >= tree.bounds_minimum[k % 3] && value <= tree.bounds_maximum[k % 3];
-      }
-      if (!checker.require(good, base, "tree_triangle.v")) return false;
+      const CornerQuad a = corner_quad(triangle, 0), b = corner_quad(triangle, 1), c = corner_quad(triangle, 2);
+      const auto inside = ((a >= low) & (a <= high)) & ((b >= low) & (b <= high)) & ((c >= low) & (c <= high));
+      if (!checker.require((inside.bits() & 7u) == 7u, base, "tree_triangle.v")) return false;
       continue;
     }
     const std::uint64_t surface_base = view.effects.surfaces_offset_bytes + std::uint64_t{id} * sizeof(SurfaceRecord);
@@ -42,8 +57,9 @@ bool check_tree_triangles(ImageChecker& checker, const SceneImageView& view) {
     if (!checker.require(same_bits(&surface.v[0][0], &triangle.v[0][0], 9), base, "tree_triangle.v")) return false;
     if (surface.tree_place == i) continue;
     // Either the record has another's id, or the surface names another's place.
-    const bool is_elsewhere = surface.tree_place == kNoTriangle ||
-                              checker.read<std::uint32_t>(place_of(surface.tree_place) + id_offset) == id;
+    const bool is_elsewhere =
+        surface.tree_place == kNoTriangle ||
+        checker.read<std::uint32_t>(place_of_triangle(tree, surface.tree_place) + id_offset) == id;
     return is_elsewhere
                ? checker.require(false, base + id_offset, "tree_triangle.triangle_id")
                : checker.require(false, surface_base + offsetof(SurfaceRecord, tree_place), "surface.tree_place");
@@ -102,7 +118,7 @@ bool check_levels(ImageChecker& checker, std::uint64_t tree_base, const TreeReco
       level_end = numbered;
     }
     const std::uint64_t base = place_of_node(tree, i);
-    if (!check_children(checker, tree, base, checker.read<TreeNode>(base), i == 0, numbered)) return false;
+    if (!check_children(checker, tree, base, checker.at<TreeNode>(base), i == 0, numbered)) return false;
   }
   GRIDIRON_REQUIRE(depth == tree.depth, tree_base, tree, depth);
   return true;
@@ -134,16 +150,25 @@ Run run_of(const ImageChecker& checker, const TreeRecord& tree, TreeChild child)
 // The box that the builder gives a child.
 TreeBox box_of_child(const ImageChecker& checker, const SceneImageView& view, TreeChild child, float margin) {
   const TreeRecord& tree = view.tree;
-  if (!child.is_leaf()) return box_of_node(checker.read<TreeNode>(place_of_node(tree, child.node_index())));
-  TreeBox box;
+  if (!child.is_leaf()) return box_of_node(checker.at<TreeNode>(place_of_node(tree, child.node_index())));
+  QuadBox box;
+  VertexTriangle read{};
   for (std::uint32_t i = child.first(); i < child.first() + child.count(); ++i) {
-    const VertexTriangle triangle =
-        checker.read_triangle(tree.triangles_offset_bytes + std::uint64_t{i} * tree.triangle_bytes, view.grid);
-    const auto corner = [&](int k) { return Vec3(triangle.v[k][0], triangle.v[k][1], triangle.v[k][2]); };
-    box.add(box_of(corner(0), corner(1), corner(2)));
+    const VertexTriangle& triangle = triangle_at(checker, view, place_of_triangle(tree, i), read);
+    box.add(corner_quad(triangle, 0), corner_quad(triangle, 1), corner_quad(triangle, 2));
   }
-  box.grow(margin);
-  return box;
+  return box.grown(margin);
+}
+
+// Asks the caches for the triangles of a node's leaves.
+void ask_for_triangles(const ImageChecker& checker, const TreeRecord& tree, const TreeNode& node) {
+  for (const TreeChild child : node.children) {
+    if (!child.is_leaf()) continue;
+    const std::byte* const bytes = checker.image().data() + place_of_triangle(tree, child.first());
+    for (std::uint32_t offset = 0; offset < child.count() * tree.triangle_bytes; offset += 64) {
+      __builtin_prefetch(bytes + offset);
+    }
+  }
 }
 
 // Every child begins where the one before it ends, so the leaves of any node cover its records in order. A child that
@@ -154,7 +179,8 @@ bool check_runs_and_boxes(ImageChecker& checker, const SceneImageView& view) {
   const float margin = tree_margin_of(tree.bounds_minimum, tree.bounds_maximum);
   for (std::uint32_t i = tree.node_count; i-- > 0;) {
     const std::uint64_t base = place_of_node(tree, i);
-    const auto node = checker.read<TreeNode>(base);
+    const auto& node = checker.at<TreeNode>(base);
+    if (i > 0) ask_for_triangles(checker, tree, checker.at<TreeNode>(base - sizeof(TreeNode)));
     std::uint64_t end = i == 0 ? 0 : run_of(checker, tree, node.children[0]).first;
     for (std::uint32_t k = 0; k < kTreeWidth; ++k) {
       TreeBox box;

@@ -2,9 +2,12 @@
 // Memory: values. Threads: any. SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <gridiron/base/lanes.h>
 #include <gridiron/base/math.h>
+#include <gridiron/base/records.h>
 #include <gridiron/base/tree_records.h>
 
+#include <cstddef>
 #include <cstdint>
 
 namespace gridiron {
@@ -45,6 +48,35 @@ struct TreeBox {
   }
 };
 
+/// x, y and z of a corner, and a number without meaning.
+using CornerQuad = Lanes<4>::Float;
+[[nodiscard]] inline CornerQuad corner_quad(const VertexTriangle& record, int corner) {
+  // Behind the last corner there is a reserved word, behind another one the next.
+  float words[4];
+  __builtin_memcpy(words, reinterpret_cast<const std::byte*>(&record) + corner * std::ptrdiff_t{12}, sizeof words);
+  return CornerQuad::load(words);
+}
+
+/// The box of triangles, in lanes; zeros may have another sign than TreeBox gives them, which is lost when it grows.
+struct QuadBox {
+  CornerQuad low{kFloatMax}, high{-kFloatMax};
+
+  void add(CornerQuad a, CornerQuad b, CornerQuad c) {
+    low = Lanes<4>::min(Lanes<4>::min(a, b), Lanes<4>::min(c, low));
+    high = Lanes<4>::max(Lanes<4>::max(a, b), Lanes<4>::max(c, high));
+  }
+  /// @returns the box, grown.
+  [[nodiscard]] TreeBox grown(float margin) const {
+    TreeBox box;
+    for (int axis = 0; axis < 3; ++axis) {
+      box.low[axis] = low.v[axis];
+      box.high[axis] = high.v[axis];
+    }
+    box.grow(margin);
+    return box;
+  }
+};
+
 /// @returns the box of a triangle.
 [[nodiscard]] inline TreeBox box_of(const Vec3& a, const Vec3& b, const Vec3& c) {
   TreeBox box;
@@ -54,13 +86,18 @@ struct TreeBox {
   return box;
 }
 
-/// @returns the box of a node: that of its children's boxes.
+/// @returns the box of a node: that of its children's boxes. Those that are not there change nothing.
 [[nodiscard]] inline TreeBox box_of_node(const TreeNode& node) {
+  using Quad = Lanes<4>::Float;
   TreeBox box;
-  for (std::uint32_t i = 0; i < node.child_count; ++i) {
-    for (int axis = 0; axis < 3; ++axis) {
-      box.low[axis] = node.low[axis][i] < box.low[axis] ? node.low[axis][i] : box.low[axis];
-      box.high[axis] = node.high[axis][i] > box.high[axis] ? node.high[axis][i] : box.high[axis];
+  for (int axis = 0; axis < 3; ++axis) {
+    const auto low_at = [&node, axis](int i) { return Quad::load(node.low[axis] + 4 * i); };
+    const auto high_at = [&node, axis](int i) { return Quad::load(node.high[axis] + 4 * i); };
+    const Quad low = Lanes<4>::min(Lanes<4>::min(low_at(0), low_at(1)), Lanes<4>::min(low_at(2), low_at(3)));
+    const Quad high = Lanes<4>::max(Lanes<4>::max(high_at(0), high_at(1)), Lanes<4>::max(high_at(2), high_at(3)));
+    for (int i = 0; i < 4; ++i) {
+      box.low[axis] = low.v[i] < box.low[axis] ? low.v[i] : box.low[axis];
+      box.high[axis] = high.v[i] > box.high[axis] ? high.v[i] : box.high[axis];
     }
   }
   return box;

@@ -1,8 +1,10 @@
 // Building the wide tree: see the header. SPDX-License-Identifier: Apache-2.0
-#include <gridiron/build/triangle_records.h>
+#include <gridiron/base/lanes.h>
 #include <gridiron/build/tree/tree_box.h>
 #include <gridiron/build/tree/tree_builder.h>
+#include <gridiron/build/triangle_records.h>
 
+#include <bit>
 #include <cstddef>
 
 namespace gridiron {
@@ -23,10 +25,12 @@ struct Key {
 };
 
 // Twice the area; where floats overflow or underflow any number, as it decides an order alone.
-float area_of(const Vec3& a, const Vec3& b, const Vec3& c) {
-  const Vec3 e = b - a, f = c - a;
-  const float x = e.y * f.z - e.z * f.y, y = e.z * f.x - e.x * f.z, z = e.x * f.y - e.y * f.x;
-  return __builtin_sqrtf(x * x + y * y + z * z);
+float area_of(CornerQuad a, CornerQuad b, CornerQuad c) {
+  const CornerQuad e = b - a, f = c - a;
+  const auto turn = [](CornerQuad q) { return Lanes<4>::shuffle_quads<1, 2, 0, 3>(q); };
+  const CornerQuad normal = e * turn(f) - turn(e) * f;  // z, x, y
+  const CornerQuad squares = normal * normal;
+  return __builtin_sqrtf(squares.v[1] + squares.v[2] + squares.v[0]);
 }
 
 // The lattice of a Z curve: kPlaces along each axis of a range of middles.
@@ -68,21 +72,10 @@ class Curve {
   bool is_flat_ = true;
 };
 
-// The number of the highest bit, from 1; 0 of none. As std::bit_width(), which calls a library where there is no
-// instruction for it.
+// The number of the highest bit, from 1; 0 of none: from the exponent of a double that holds it exactly.
+// std::bit_width() calls a library where there is no instruction for it.
 [[nodiscard]] std::int32_t width_of(std::uint32_t bits) {
-  std::int32_t width = 0;
-  const auto shift_by = [&bits, &width](std::int32_t step) {
-    if (bits >> step == 0) return;
-    bits >>= step;
-    width += step;
-  };
-  shift_by(16);
-  shift_by(8);
-  shift_by(4);
-  shift_by(2);
-  shift_by(1);
-  return width + static_cast<std::int32_t>(bits);
+  return static_cast<std::int32_t>(std::bit_cast<std::uint64_t>(static_cast<double>(bits) + 0.5) >> 52) - 1022;
 }
 
 // Sorts keys by their codes, equal ones in the order they have. `from` is changed too.
@@ -108,6 +101,31 @@ void sort_keys(Key* from, Key* to, std::uint32_t count, std::uint32_t* histogram
   }
 }
 
+// Records ahead of the one that is written whose indices, and whose corners, the caches are asked for: neighbours in
+// the tree may lie far apart in the mesh.
+constexpr std::uint32_t kIndicesAhead = 32, kCornersAhead = 16;
+// Nodes ahead of the one that is split whose keys are asked for, at most so many.
+constexpr std::uint32_t kNodesAhead = 2, kFewKeys = 256;
+
+[[nodiscard]] std::span<const Vec3> stored_vertices(const MeshView& mesh) {
+  return mesh.vertices;
+}
+[[nodiscard]] std::span<const Vec3> stored_vertices(const LatticeMesh& mesh) {
+  return mesh.vertices.vertices;
+}
+
+// Asks the caches for elements.
+template <class Element>
+void ask_for(const Element* elements, std::uint32_t count) {
+  const auto* const bytes = reinterpret_cast<const std::byte*>(elements);
+  for (std::uint32_t offset = 0; offset < count * sizeof(Element); offset += 64) __builtin_prefetch(bytes + offset);
+}
+
+template <class Mesh>
+void ask_for_corners(const Mesh& mesh, const UVec3& t) {
+  for (int corner = 0; corner < 3; ++corner) __builtin_prefetch(&stored_vertices(mesh)[t[corner]]);
+}
+
 // What a mesh's records are.
 struct VertexForm {
   using Record = VertexTriangle;
@@ -125,6 +143,7 @@ struct VertexForm {
   [[nodiscard]] static Vec3 corner(const Record& record, int i) {
     return {record.v[i][0], record.v[i][1], record.v[i][2]};
   }
+  [[nodiscard]] static CornerQuad quad(const Record& record, int i) { return corner_quad(record, i); }
 };
 
 struct LatticeForm {
@@ -148,6 +167,11 @@ struct LatticeForm {
       p[axis] = lattice.origin[axis] + lattice.step * static_cast<float>(std::int32_t{record.v[i][axis]});
     }
     return p;
+  }
+  [[nodiscard]] CornerQuad quad(const Record& record, int i) const {
+    const Vec3 p = corner(record, i);
+    const float words[4] = {p.x, p.y, p.z, 0.0f};
+    return CornerQuad::load(words);
   }
 };
 
@@ -176,7 +200,7 @@ class TreeBuilder {
     const std::uint32_t count = size_.triangle_count;
     if (count > records_.size()) return Status::kMemoryTooSmall;
     sort_keys(spare_, keys_, count, histograms_);
-    for (std::uint32_t i = 0; i < count; ++i) form_.write(mesh_, keys_[i].id, records_[i]);
+    write_records(count);
     GRIDIRON_TRY(split_all(count));
     bound_all();
     return Status::kOk;
@@ -185,12 +209,15 @@ class TreeBuilder {
  private:
   struct Range {
     std::uint32_t begin, end;
-    std::int32_t level;   // the highest bit in which codes differ, from 1; 0: they are equal; -1: a leaf
-    std::uint32_t group;  // of a node's first four parts: from which it comes
+    std::int32_t level;    // the highest bit in which codes differ, from 1; 0: they are equal; -1: a leaf
+    std::uint32_t group;   // of a node's first four parts: from which it comes
+    std::uint64_t weight;  // of parts that can be split, in the order in which they are; 0: a leaf
   };
 
   // By trial with two scans, a room and balls on a floor. More than any part weighs: kMostWeight.
   static constexpr std::int32_t kLevelWeight = 5, kNumberWeight = 2, kRootWeight = 3, kMostWeight = 1000;
+  // Of a part's weight, above its size and its number: the first of the largest of those that weigh the most.
+  static constexpr std::uint32_t kNumberBits = 4, kWeightShift = kNumberBits + 28;
   static constexpr std::uint32_t kGroups = 4, kGroupSize = kTreeWidth / kGroups;
 
   // --- Triangles --------------------------------------------------------------------------------------------------
@@ -213,7 +240,9 @@ class TreeBuilder {
     std::uint32_t id = 0, count = 0;
     for (const UVec3& t : mesh_.triangles) {
       if (t.x >= vertex_count || t.y >= vertex_count || t.z >= vertex_count) return Status::kBadIndex;
-      const Vec3 a = mesh_.vertices[t.x], b = mesh_.vertices[t.y], c = mesh_.vertices[t.z];
+      const Vec3& a = mesh_.vertices[t.x];
+      const Vec3& b = mesh_.vertices[t.y];
+      const Vec3& c = mesh_.vertices[t.z];
       const std::uint32_t here = id++;
       if (has_zero_area(a, b, c)) continue;
       const TreeBox box = box_of(a, b, c);
@@ -230,6 +259,16 @@ class TreeBuilder {
     return Status::kOk;
   }
 
+  // In the order of the keys.
+  void write_records(std::uint32_t count) {
+    const std::uint32_t last = count - 1;
+    for (std::uint32_t i = 0; i < count; ++i) {
+      __builtin_prefetch(&mesh_.triangles[keys_[last - i > kIndicesAhead ? i + kIndicesAhead : last].id]);
+      ask_for_corners(mesh_, mesh_.triangles[keys_[last - i > kCornersAhead ? i + kCornersAhead : last].id]);
+      form_.write(mesh_, keys_[i].id, records_[i]);
+    }
+  }
+
   [[nodiscard]] TreeBox box_of_record(std::uint32_t i) const {
     const Record& record = records_[i];
     return box_of(form_.corner(record, 0), form_.corner(record, 1), form_.corner(record, 2));
@@ -238,15 +277,26 @@ class TreeBuilder {
   // --- Nodes ------------------------------------------------------------------------------------------------------
 
   [[nodiscard]] Range range_of(std::uint32_t begin, std::uint32_t end) const {
-    if (end - begin <= leaf_triangles_) return {begin, end, -1, 0};
-    return {begin, end, width_of(keys_[begin].code ^ keys_[end - 1].code), 0};
+    const std::uint32_t size = end - begin;
+    if (size <= leaf_triangles_) return {begin, end, -1, 0, 0};
+    const std::int32_t level = width_of(keys_[begin].code ^ keys_[end - 1].code);
+    // Rays meet large cells, and a box is worth more above many triangles.
+    const std::int32_t weight = 2 * kMostWeight + kLevelWeight * level + kNumberWeight * width_of(size);
+    return {begin, end, level, 0, static_cast<std::uint64_t>(weight) << kWeightShift | size << kNumberBits};
   }
 
   // Level by level: nodes that are still to be split lie behind those that are done.
   [[nodiscard]] Status split_all(std::uint32_t count) {
     size_.node_count = 0;
-    GRIDIRON_TRY(append_node({0, count, 0, 0}, 1));
-    for (std::uint32_t i = 0; i < size_.node_count; ++i) GRIDIRON_TRY(split(nodes_[i]));
+    GRIDIRON_TRY(append_node({0, count, 0, 0, 0}, 1));
+    for (std::uint32_t i = 0; i < size_.node_count; ++i) {
+      if (size_.node_count - i > kNodesAhead) {
+        const TreeNode& later = nodes_[i + kNodesAhead];
+        const std::uint32_t begin = later.children[0].bits, end = later.children[1].bits;
+        ask_for(keys_ + begin, end - begin < kFewKeys ? end - begin : kFewKeys);
+      }
+      GRIDIRON_TRY(split(nodes_[i]));
+    }
     return Status::kOk;
   }
 
@@ -266,7 +316,8 @@ class TreeBuilder {
     Range ranges[kTreeWidth];
     const std::uint32_t count =
         is_deep(end - begin, depth) ? split_by_number(begin, end, ranges) : split_by_codes(begin, end, ranges);
-    node = {};
+    // Boxes are written at last.
+    __builtin_memset(node.children, 0, sizeof(TreeNode) - offsetof(TreeNode, children));
     node.child_count = count;
     for (std::uint32_t i = 0; i < count; ++i) {
       const Range& range = ranges[i];
@@ -304,39 +355,30 @@ class TreeBuilder {
   // of each four children first, so the first four parts become groups of four: below the root a group gets more only
   // if no other can be split. At the root, which all rays enter, a group may grow where its parts weigh much more.
   [[nodiscard]] std::uint32_t split_by_codes(std::uint32_t begin, std::uint32_t end, Range* ranges) {
-    const std::int32_t full_weight = end - begin == size_.triangle_count ? kRootWeight : kMostWeight;
+    const bool is_root = end - begin == size_.triangle_count;
+    const std::uint64_t full_weight = static_cast<std::uint64_t>(is_root ? kRootWeight : kMostWeight) << kWeightShift;
     std::uint32_t group_sizes[kGroups] = {1, 1, 1, 1};
+    std::uint64_t less[kGroups] = {};  // what the parts of a group that is full weigh less
     ranges[0] = range_of(begin, end);
     std::uint32_t count = 1;
     while (count < kTreeWidth) {
-      std::uint32_t best = 0;
-      std::int32_t best_weight = -2 * kMostWeight;
+      std::uint64_t most = 0;
       for (std::uint32_t i = 0; i < count; ++i) {
         const Range& range = ranges[i];
-        if (range.level < 0) continue;
-        const bool is_full = count >= kGroups && group_sizes[range.group] >= kGroupSize;
-        const std::int32_t weight = weight_of(range) - (is_full ? full_weight : 0);
-        if (weight > best_weight || (weight == best_weight && size_of(range) > size_of(ranges[best]))) {
-          best = i;
-          best_weight = weight;
-        }
+        const std::uint64_t weight = range.weight == 0 ? 0 : (range.weight - less[range.group]) | (kTreeWidth - 1 - i);
+        most = weight > most ? weight : most;
       }
-      if (ranges[best].level < 0) break;
+      if (most == 0) break;
+      const std::uint32_t best = kTreeWidth - 1 - static_cast<std::uint32_t>(most % kTreeWidth);
       split_part(ranges, count, best);
       ++count;
-      if (count > kGroups) ++group_sizes[ranges[best].group];
+      const std::uint32_t group = ranges[best].group;
+      if (count > kGroups && ++group_sizes[group] >= kGroupSize) less[group] = full_weight;
       if (count == kGroups) {
         for (std::uint32_t i = 0; i < kGroups; ++i) ranges[i].group = i;
       }
     }
     return count;
-  }
-
-  [[nodiscard]] static std::uint32_t size_of(const Range& range) { return range.end - range.begin; }
-
-  // Rays meet large cells, and a box is worth more above many triangles.
-  [[nodiscard]] static std::int32_t weight_of(const Range& range) {
-    return kLevelWeight * range.level + kNumberWeight * width_of(size_of(range));
   }
 
   // Splits part i of `count` in two.
@@ -356,14 +398,12 @@ class TreeBuilder {
 
   [[nodiscard]] std::uint32_t first_with_bit(const Range& range) const {
     const std::uint32_t bit = 1u << (range.level - 1);
-    std::uint32_t low = range.begin, high = range.end;
-    while (low < high) {
-      const std::uint32_t middle = low + (high - low) / 2;
-      if ((keys_[middle].code & bit) != 0) {
-        high = middle;
-      } else {
-        low = middle + 1;
-      }
+    // The first is among [low, low + count]. No branch depends on a code: none could be predicted.
+    std::uint32_t low = range.begin;
+    for (std::uint32_t count = range.end - range.begin; count > 0;) {
+      const std::uint32_t half = (count + 1) / 2;
+      low += (keys_[low + half - 1].code & bit) != 0 ? 0 : half;
+      count -= half;
     }
     return low;
   }
@@ -409,7 +449,14 @@ class TreeBuilder {
   void bound_all() {
     margin_ = tree_margin_of(size_.low, size_.high);
     auto* const areas = reinterpret_cast<float*>(spare_);  // by node; there are no more nodes than triangles
-    for (std::uint32_t i = size_.node_count; i-- > 0;) areas[i] = bound(nodes_[i], areas);
+    for (std::uint32_t i = size_.node_count; i-- > 0;) {
+      if (i > 0) {
+        for (const TreeChild child : nodes_[i - 1].children) {
+          if (child.is_leaf()) ask_for(&records_[child.first()], child.count());
+        }
+      }
+      areas[i] = bound(nodes_[i], areas);
+    }
   }
 
   // @returns the area of the node's triangles.
@@ -422,13 +469,7 @@ class TreeBuilder {
         const TreeChild child = node.children[i];
         float area = 0.0f;
         if (child.is_leaf()) {
-          for (std::uint32_t k = child.first(); k < child.first() + child.count(); ++k) {
-            const Record& record = records_[k];
-            const Vec3 a = form_.corner(record, 0), b = form_.corner(record, 1), c = form_.corner(record, 2);
-            box.add(box_of(a, b, c));
-            area += area_of(a, b, c);
-          }
-          box.grow(margin);
+          box = bound_leaf(child, margin, area);
         } else {
           box = box_of_node(nodes_[child.node_index()]);
           area = areas[child.node_index()];
@@ -443,6 +484,18 @@ class TreeBuilder {
     }
     node.order = order_of(densities, node.child_count);
     return total;
+  }
+
+  // The box of a leaf, and the area of its triangles.
+  [[nodiscard]] TreeBox bound_leaf(TreeChild leaf, float margin, float& area) const {
+    QuadBox box;
+    for (std::uint32_t k = leaf.first(); k < leaf.first() + leaf.count(); ++k) {
+      const Record& record = records_[k];
+      const CornerQuad a = form_.quad(record, 0), b = form_.quad(record, 1), c = form_.quad(record, 2);
+      box.add(a, b, c);
+      area += area_of(a, b, c);
+    }
+    return box.grown(margin);
   }
 
   // The densest first; of equal ones the first.
