@@ -62,6 +62,7 @@ void FrameInMemory::set_up_grid(const CountedFrame& frame) {
   grid.macro_width = configuration.macro_width;
   grid.format = format_of(frame.accuracy);
   grid.has_tree = program_ == CountedProgram::kTree;
+  grid.has_grid = !grid.has_tree;
   GridNeed need;
   require(count_scene_image(mesh, grid, need, frame.effects));
   set_up_picture(frame, 512, frame.has_planes ? 3 : 1);

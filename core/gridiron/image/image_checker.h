@@ -128,8 +128,9 @@ class ImageChecker {
 [[nodiscard]] bool check_tree_space(ImageChecker& checker, const SceneImageView& view);
 
 /// Checks the contents of the tree's sections: every kept triangle is there once, with the corners of its surface, and
-/// the bounds are theirs; the nodes are numbered level by level, on paths no longer than the record says, and their leaves cover the triangles in
-/// order; boxes are as built. Precondition: everything else in the image is right. Cost: linear.
+/// the bounds are theirs; the nodes are numbered level by level, on paths no longer than the record says, and their
+/// leaves cover the triangles in order; boxes are as built. Precondition: everything else in the image is right. Cost:
+/// linear.
 [[nodiscard]] bool check_tree(ImageChecker& checker, const SceneImageView& view);
 
 }  // namespace gridiron

@@ -19,7 +19,7 @@ ReportInput sample() {
   std::ranges::copy(std::array{2048u, 2047u, 2046u}, input.grid.cell_count);
   std::ranges::copy(std::array{342u, 342u, 341u}, input.grid.macro_cell_count);
   input.grid.reference_count = 4000000000u;
-  input.grid_bytes = 5000000000u;
+  input.image_bytes = 5000000000u;
   input.machine = *sim::find_machine_profile("cell-ps3");
   input.timing.frame_cycles = 1000.5;
   input.timing.seconds = 0.25;

@@ -6,10 +6,10 @@
 #include <gridiron/build/grid/cell_rows.h>
 #include <gridiron/build/grid/grid_builder.h>
 #include <gridiron/build/grid/image_layout.h>
-#include <gridiron/build/triangle_records.h>
 #include <gridiron/build/lattice.h>
 #include <gridiron/build/tree/tree_builder.h>
 #include <gridiron/build/tree/tree_sections.h>
+#include <gridiron/build/triangle_records.h>
 
 namespace gridiron {
 namespace {
@@ -351,8 +351,9 @@ Status build_scene_image(const MeshView& mesh, const GridParameters& parameters,
   ImageLayout layout = layout_of(grid, {effects != nullptr ? &record : nullptr, triangle_count,
                                         triangle_count - need.dropped_triangle_count, parameters});
   const std::uint64_t scratch_bytes = has_tree ? tree_scratch_bytes(triangle_count) : 0;
-  const bool need_ok = is_counted_with(parameters, grid) && need.image_bytes == layout.image_bytes && need.scratch_bytes == scratch_bytes &&
-                       triangle_count <= kMaxCount && mesh.vertices.size() <= kMaxCount;
+  const bool need_ok = is_counted_with(parameters, grid) && need.image_bytes == layout.image_bytes &&
+                       need.scratch_bytes == scratch_bytes && triangle_count <= kMaxCount &&
+                       mesh.vertices.size() <= kMaxCount;
   if (!need_ok || reinterpret_cast<std::uintptr_t>(image.data()) % kLineBytes != 0) return Status::kBadParameter;
   if (image.size() < need.image_bytes || scratch.size() < need.scratch_bytes) return Status::kMemoryTooSmall;
 

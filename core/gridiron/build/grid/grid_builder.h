@@ -1,6 +1,6 @@
-// Builds the scene image from a mesh, in memory of the caller: grid (macrocells, sorted triangle references), wide tree,
-// effects.
-// Source: Cho, Kim, Han 2012, sections 3.1 and 3.2. Memory: caller's. Threads: one. SPDX-License-Identifier: Apache-2.0
+// Builds the scene image from a mesh, in memory of the caller: grid (macrocells, sorted triangle references), wide
+// tree, effects. Source: Cho, Kim, Han 2012, sections 3.1 and 3.2. Memory: caller's. Threads: one.
+// SPDX-License-Identifier: Apache-2.0
 #pragma once
 
 #include <gridiron/base/records.h>
@@ -14,8 +14,8 @@
 
 namespace gridiron {
 
-/// Parameters of the grid and of the tree, and which of them an image holds. An image needs what the engines of its frames
-/// read: GridEngine the grid, TileEngine and the rays of effects the tree.
+/// Parameters of the grid and of the tree, and which of them an image holds. An image needs what the engines of its
+/// frames read: GridEngine the grid, TileEngine and the rays of effects the tree.
 struct GridParameters {
   float lambda = 4.0f;                                ///< cells per triangle, Eq. (1); 1e-6..1e6
   std::uint32_t macro_width = 6;                      ///< m; 1..kMaxMacroWidth
@@ -73,9 +73,9 @@ inline constexpr std::uint64_t kAnyImageBytes = ~std::uint64_t{0};  ///< for an 
                                        std::uint64_t most_image_bytes = kAnyImageBytes,
                                        std::span<std::uint64_t> marks = {});
 
-/// Counts as count_scene_image does; of a grid with the greatest lambda of parameters.lambda, its half, its quarter and so on
-/// whose image fits. need.grid.lambda is that lambda. If none fits, `need` describes the last one tried, 1e-6 or a grid
-/// of one cell, and need.image_bytes is more than most_image_bytes.
+/// Counts as count_scene_image does; of a grid with the greatest lambda of parameters.lambda, its half, its quarter and
+/// so on whose image fits. need.grid.lambda is that lambda. If none fits, `need` describes the last one tried, 1e-6 or
+/// a grid of one cell, and need.image_bytes is more than most_image_bytes.
 ///
 /// Errors: as count_scene_image; kTooManyTriangles only if the last lambda has too many references.
 /// Cost: one count for each lambda that a bound of its references does not rule out.

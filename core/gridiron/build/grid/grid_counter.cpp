@@ -5,9 +5,9 @@
 #include <gridiron/build/grid/grid_builder.h>
 #include <gridiron/build/grid/grid_resolution.h>
 #include <gridiron/build/grid/image_layout.h>
-#include <gridiron/build/triangle_records.h>
 #include <gridiron/build/lattice.h>
 #include <gridiron/build/tree/tree_builder.h>
+#include <gridiron/build/triangle_records.h>
 
 #include <bit>
 
