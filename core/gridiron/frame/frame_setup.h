@@ -83,7 +83,7 @@ struct FrameSettings {
 /// @param frame          to be copied to a multiple of kLineBytes in main memory; unchanged on an error.
 /// Errors: kBadFrame (sizes, t_far, depths; no plane of colours; image at 0 with Shading::kScene; camera degenerate,
 /// not finite or so far away that its place in cells exceeds kCellSpaceLimit), kTransferAlignment (a plane or the image
-/// is misaligned), kUnsupportedFrame (unknown accuracy, shading or engine), kUnsupportedImage (the image has not what
+/// is misaligned), kUnsupportedFrame (unknown accuracy, shading or engine), kUnsupportedImage (the image lacks what
 /// the engine reads; the accuracy requires another triangle format; Shading::kScene requires an image with effects, and
 /// an accuracy other than kPaper). The size of the memory for planes is not checked here.
 [[nodiscard]] Status make_frame_record(const FrameSettings& settings, const SceneImageView& image,

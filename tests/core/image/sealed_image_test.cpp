@@ -207,7 +207,8 @@ TEST(SealedImage, OfATreeAloneOnlyWhatAnotherMeshMayHaveIsFree) {
     const GridParameters parameters{.format = format, .leaf_triangles = 2, .has_tree = true, .has_grid = false};
     BuiltImage built = build_image(scattered_mesh().view(), parameters);
     ASSERT_FALSE(HasFailure());
-    EXPECT_EQ(free_fields(built), (Names{"header.vertex_count", "tree_triangle.id", "tree_triangle.v"}));
+    EXPECT_EQ(free_fields(built),
+              (Names{"header.vertex_count", "tree.leaf_triangles", "tree_triangle.id", "tree_triangle.v"}));
 
     built = image_with_effects(format, 2, false);
     ASSERT_FALSE(HasFailure());

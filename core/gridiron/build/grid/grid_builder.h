@@ -73,9 +73,9 @@ inline constexpr std::uint64_t kAnyImageBytes = ~std::uint64_t{0};  ///< for an 
                                        std::uint64_t most_image_bytes = kAnyImageBytes,
                                        std::span<std::uint64_t> marks = {});
 
-/// Counts as count_scene_image does; of a grid with the greatest lambda of parameters.lambda, its half, its quarter and
-/// so on whose image fits. need.grid.lambda is that lambda. If none fits, `need` describes the last one tried, 1e-6 or
-/// a grid of one cell, and need.image_bytes is more than most_image_bytes.
+/// Counts as count_scene_image does. A grid gets the greatest lambda of parameters.lambda, its half, its quarter and so
+/// on whose image fits; need.grid.lambda is that lambda. If none fits, `need` describes the last one tried, 1e-6 or a
+/// grid of one cell, and need.image_bytes is more than most_image_bytes; so it is without a grid.
 ///
 /// Errors: as count_scene_image; kTooManyTriangles only if the last lambda has too many references.
 /// Cost: one count for each lambda that a bound of its references does not rule out.
