@@ -365,7 +365,7 @@ TEST(TreesAlone, HaveALatticeOfFloats) {
       expect_refused(built.image, c.field, {}, has_effects ? "with effects" : "");
     }
     BuiltImage built = alone(has_effects, TriangleFormat::kLattice);
-    edit<TreeRecord>(built.image, built.view.tree_offset_bytes, [](TreeRecord& r) { r.lattice.step *= 2.0f; });
+    edit<TreeRecord>(built.image, built.view.tree_offset_bytes, [](TreeRecord& r) { r.lattice.step *= 0.5f; });
     expect_refused(built.image, has_effects ? "surface.v" : "tree_triangle.v");
   }
 }

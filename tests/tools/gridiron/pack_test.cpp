@@ -56,8 +56,10 @@ TEST(Pack, ImagesHoldWhatTheirConfigurationReads) {
     const auto rendered_hash = [&](const std::string& input, const char* configuration) {
       return hash_of(run(folder, {"render", input, "--size", "96x64", "--configuration", configuration}));
     };
-    EXPECT_EQ(rendered_hash(image, "tree"), rendered_hash(scene, "tree"));
-    EXPECT_EQ(rendered_hash(image, "tree"), rendered_hash(scene, "best"));
+    EXPECT_EQ(rendered_hash(image, "tree"), rendered_hash(other, "best"));
+    if (scene == "a.ply") {  // an image has no view of its own
+      EXPECT_EQ(rendered_hash(image, "tree"), rendered_hash(scene, "tree"));
+    }
     for (const char* configuration : {"reference", "best"}) {
       const ProgramResult result = run_program(folder.folder(), {"render", image, "--configuration", configuration});
       EXPECT_EQ(result.exit_code, 1);
@@ -76,8 +78,8 @@ TEST(Pack, ImagesHoldWhatTheirConfigurationReads) {
                  "but no tree, which --configuration tree");
   EXPECT_EQ(run_program(folder.folder(), {"render", "a.nff2.gri", "--configuration", "tree"}).exit_code, 0)
       << "effects have a tree";
-  // On a machine whose eye rays go by lists a frame of the grid is made, whatever the configuration.
-  expect_failure(folder, {"render", "a.nff.gri", "--configuration", "tree", "--store", "64"}, 1,
+  // With effects a 64 KB store takes frames of the grid, whatever the configuration.
+  expect_failure(folder, {"render", "a.nff.gri", "--configuration", "tree", "--store", "64", "--shading", "scene"}, 1,
                  "pack it with --configuration reference");
   for (const Words& option : {Words{"--lambda", "2"}, {"--macro-width", "4"}}) {
     expect_failure(folder, Words{"render", "a.ply", "--configuration", "tree"} + option, 2, "has no grid");
