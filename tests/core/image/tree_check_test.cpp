@@ -341,6 +341,40 @@ TEST(TreesAlone, HaveBoundsThatHoldAllTriangles) {
   }
 }
 
+// The only triangle of a tree alone, at (-far, -1, -1), (0, -1, -1) and (-1, 0, 0), as if it had been built so.
+BuiltImage lone_triangle(float far) {
+  TestEffects scene;
+  scene.vertices = {{-1, -1, -1}, {0, -1, -1}, {-1, 0, 0}};
+  scene.triangles = {{0, 1, 2}};
+  BuiltImage built = build_image(scene.mesh(), {.has_tree = true, .has_grid = false});
+  const SceneImageView& view = built.view;
+  edit<VertexTriangle>(built.image, view.tree.triangles_offset_bytes, [far](VertexTriangle& r) { r.v[0][0] = -far; });
+  edit<TreeRecord>(built.image, view.tree_offset_bytes, [far](TreeRecord& r) { r.bounds_minimum[0] = -far; });
+  edit<TreeNode>(built.image, view.tree.nodes_offset_bytes, [far](TreeNode& node) {
+    TreeBox box = box_of({-far, -1, -1}, {0, -1, -1}, {-1, 0, 0});
+    box.grow(tree_margin(far));
+    for (int axis = 0; axis < 3; ++axis) {
+      node.low[axis][0] = box.low[axis];
+      node.high[axis][0] = box.high[axis];
+    }
+  });
+  renew_check_value(built.image);
+  return built;
+}
+
+// Coordinates have limits that no other rule of the tree knows.
+TEST(TreesAlone, StayWithinTheLimitsOfCoordinates) {
+  EXPECT_EQ(open_image(lone_triangle(1.0f).image.bytes()).status, Status::kOk);
+  EXPECT_EQ(open_image(lone_triangle(kCoordinateLimit).image.bytes()).status, Status::kOk);
+  expect_refused(lone_triangle(std::nextafter(kCoordinateLimit, kInfinity)).image, "tree.bounds_minimum");
+  for (int axis = 1; axis < 3; ++axis) {
+    BuiltImage built = lone_triangle(1.0f);
+    edit<TreeRecord>(built.image, built.view.tree_offset_bytes,
+                     [axis](TreeRecord& r) { r.bounds_maximum[axis] = -0.0f; });
+    expect_refused(built.image, "tree.bounds_maximum");
+  }
+}
+
 // A lattice that is not beside a grid's.
 TEST(TreesAlone, HaveALatticeOfFloats) {
   struct Case {
