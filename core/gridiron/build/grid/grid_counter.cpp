@@ -30,8 +30,8 @@ bool all_in_range(std::span<const Vec3> vertices) {
 
 // A mesh below is a MeshView, or a LatticeMesh of one: the triangles as they will be stored.
 
-// Checks of indices, zero areas, and the triangles that are kept: their tight bounds, and sums that bound their
-// references.
+// Checks of indices, zero areas, and the triangles that are kept: their tight bounds, and for a grid sums that bound
+// their references.
 struct KeptTriangles {
   std::uint64_t count = 0;
   Vec3 minimum{kFloatMax, kFloatMax, kFloatMax};
@@ -41,7 +41,7 @@ struct KeptTriangles {
 };
 
 template <class Mesh>
-Status survey(const Mesh& mesh, KeptTriangles& kept) {
+Status survey(const Mesh& mesh, bool has_grid, KeptTriangles& kept) {
   enter_step<kIsOnLattice<Mesh> ? GridStep::kLatticeBox : GridStep::kTriangleSurvey>();
   const std::uint64_t vertex_count = mesh.vertices.size();
   for (const UVec3& t : mesh.triangles) {
@@ -51,16 +51,20 @@ Status survey(const Mesh& mesh, KeptTriangles& kept) {
     const Vec3& c = mesh.vertices[t.z];
     if (has_zero_area(a, b, c)) continue;
     ++kept.count;
-    double e1[3];
-    double e2[3];
+    Vec3 least, greatest;
     for (int axis = 0; axis < 3; ++axis) {
       const float low = a[axis] < b[axis] ? a[axis] : b[axis];
       const float high = a[axis] < b[axis] ? b[axis] : a[axis];
-      const float least = low < c[axis] ? low : c[axis];
-      const float greatest = high > c[axis] ? high : c[axis];
-      kept.minimum[axis] = least < kept.minimum[axis] ? least : kept.minimum[axis];
-      kept.maximum[axis] = greatest > kept.maximum[axis] ? greatest : kept.maximum[axis];
-      kept.extents[axis] += double{greatest} - double{least};
+      least[axis] = low < c[axis] ? low : c[axis];
+      greatest[axis] = high > c[axis] ? high : c[axis];
+      kept.minimum[axis] = least[axis] < kept.minimum[axis] ? least[axis] : kept.minimum[axis];
+      kept.maximum[axis] = greatest[axis] > kept.maximum[axis] ? greatest[axis] : kept.maximum[axis];
+    }
+    if (!has_grid) continue;
+    double e1[3];
+    double e2[3];
+    for (int axis = 0; axis < 3; ++axis) {
+      kept.extents[axis] += double{greatest[axis]} - double{least[axis]};
       e1[axis] = double{b[axis]} - double{a[axis]};
       e2[axis] = double{c[axis]} - double{a[axis]};
     }
@@ -321,7 +325,8 @@ Status count_mesh(const Mesh& mesh, const Request& request, const KeptTriangles&
 Status count_geometry(const MeshView& mesh, Request request, GridNeed& need) {
   GridRecord grid{};
   KeptTriangles kept;
-  GRIDIRON_TRY(survey(mesh, kept));
+  const bool has_grid = request.parameters.has_grid;
+  GRIDIRON_TRY(survey(mesh, has_grid, kept));
   request.resolved_count = kept.count;
   request.kept_count = kept.count;
   if (request.parameters.format != TriangleFormat::kLattice) return count_mesh(mesh, request, kept, grid, need);
@@ -330,7 +335,7 @@ Status count_geometry(const MeshView& mesh, Request request, GridNeed& need) {
   GRIDIRON_TRY(find_lattice(mesh, grid.lattice));
   const LatticeMesh moved{{mesh.vertices, grid.lattice}, mesh.triangles};
   KeptTriangles moved_kept;
-  GRIDIRON_TRY(survey(moved, moved_kept));
+  GRIDIRON_TRY(survey(moved, has_grid, moved_kept));
   request.kept_count = moved_kept.count;
   return count_mesh(moved, request, moved_kept, grid, need);
 }
