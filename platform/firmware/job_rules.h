@@ -153,6 +153,8 @@ template <class Require>
   const auto* const grid = reinterpret_cast<const std::byte*>(&frame.engine.grid);
   return require(image.header.image_bytes == job.image_bytes, offsetof(FrameJob, image_bytes),
                  "scene image: ", job.image_bytes, " bytes in the job, its header has ", image.header.image_bytes) &&
+         require(image.has_grid, place + offsetof(FrameHead, engine_id), "frame record: engine_id ", frame.engine_id,
+                 ", the scene image has no grid") &&
          // Bit for bit: no floating point here.
          require(std::memcmp(grid, reinterpret_cast<const std::byte*>(&image.grid), sizeof(GridRecord)) == 0,
                  place + sizeof(FrameHead) + offsetof(GridFrame, grid),

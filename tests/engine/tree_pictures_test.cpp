@@ -66,6 +66,28 @@ TEST(TreePictures, AreThoseOfTheGridInEveryModeAndAccuracy) {
   }
 }
 
+// An image needs the tree alone.
+TEST(TreePictures, AreTheSameOfAnImageWithoutAGrid) {
+  const TestMesh mesh = make_mixed_mesh();
+  for (const TriangleFormat format : {TriangleFormat::kVertices, TriangleFormat::kLattice}) {
+    GridParameters alone = with_tree(format);
+    alone.has_grid = false;
+    SceneInMemory with_grid(mesh.view(), with_tree(format)), without(mesh.view(), alone);
+    ASSERT_EQ(with_grid.status(), Status::kOk);
+    ASSERT_EQ(without.status(), Status::kOk);
+    FrameSettings settings = settings_of(150, 97);
+    settings.accuracy = format == TriangleFormat::kLattice ? Accuracy::kCompact : Accuracy::kStandard;
+    const RenderedFrame wanted = with_grid.render(through_tree(settings), tree_chip(), PlaneSet::kAll);
+    const RenderedFrame frame = without.render(through_tree(settings), tree_chip(), PlaneSet::kAll);
+    ASSERT_EQ(wanted.result.status, Status::kOk);
+    ASSERT_EQ(frame.result.status, Status::kOk);
+    EXPECT_TRUE(frame.result.violations.empty());
+    EXPECT_EQ(frame.planes.color, wanted.planes.color);
+    EXPECT_EQ(first_difference(frame, wanted), "");
+    EXPECT_EQ(without.prepare(settings, {}).status(), Status::kUnsupportedImage);
+  }
+}
+
 TEST(TreePictures, AreTheSameWithoutPlanesAndShading) {
   SceneInMemory scene(make_mixed_mesh().view(), with_tree());
   ASSERT_EQ(scene.status(), Status::kOk);

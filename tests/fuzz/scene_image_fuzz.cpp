@@ -38,8 +38,9 @@ Record read(std::span<const std::byte> bytes, std::uint64_t offset) {
 // Every macrocell, block, cell and triangle; every record of effects; the tree along every path.
 void read_all(std::span<const std::byte> bytes, const SceneImageView& view) {
   const GridRecord& grid = view.grid;
+  require(view.has_grid || view.has_tree, "nothing can be traced");
   const std::uint64_t macro_cells =
-      std::uint64_t{grid.macro_cell_count[0]} * grid.macro_cell_count[1] * grid.macro_cell_count[2];
+      view.has_grid ? std::uint64_t{grid.macro_cell_count[0]} * grid.macro_cell_count[1] * grid.macro_cell_count[2] : 0;
   const std::uint64_t cells = std::uint64_t{grid.macro_width} * grid.macro_width * grid.macro_width;
   std::uint64_t references = 0;
   for (std::uint64_t macro_cell = 0; macro_cell < macro_cells; ++macro_cell) {
@@ -106,15 +107,23 @@ std::size_t write_image_with_effects(std::uint8_t* data, std::size_t max_size, u
   if ((seed & 32) != 0) scene.settings.recursion_depth = 1;
   const TriangleFormat format = (seed & 64) != 0 ? TriangleFormat::kVertices : TriangleFormat::kLattice;
   const EffectsView view = scene.view();
-  return write_image(data, max_size, scene.mesh(), {2.0f, 1 + (seed >> 8) % 3, format}, &view);
+  const GridParameters parameters{
+      .lambda = 2.0f, .macro_width = 1 + (seed >> 8) % 3, .format = format, .has_grid = (seed & 128) != 0};
+  return write_image(data, max_size, scene.mesh(), parameters, &view);
 }
 
-// A scene without lights whose tree has several nodes.
+// A scene without lights, or without effects, whose tree has several nodes, with a grid or without.
 std::size_t write_image_with_nodes(std::uint8_t* data, std::size_t max_size, unsigned seed) {
   const TestEffects scene = tree_scene(1 + seed % 32);
   const TriangleFormat format = (seed & 64) != 0 ? TriangleFormat::kVertices : TriangleFormat::kLattice;
   const EffectsView view = scene.view();
-  return write_image(data, max_size, scene.mesh(), {1e-6f, 1, format, 1 + (seed >> 8) % 2}, &view);
+  const GridParameters parameters{.lambda = 1e-6f,
+                                  .macro_width = 1,
+                                  .format = format,
+                                  .leaf_triangles = 1 + (seed >> 8) % 2,
+                                  .has_tree = true,
+                                  .has_grid = (seed & 128) != 0};
+  return write_image(data, max_size, scene.mesh(), parameters, (seed & 512) != 0 ? &view : nullptr);
 }
 
 // Changes one word of the sections of effects and tree to what floats, counts and offsets are worst at, or by one bit:

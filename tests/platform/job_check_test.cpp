@@ -74,6 +74,12 @@ class JobMemory {
     change(record().engine.grid);
   }
   GridRecord& grid() { return *reinterpret_cast<GridRecord*>(image() + section(SectionKind::kGrid).offset_bytes); }
+  // Its sections become ones that are not known.
+  void remove_grid() {
+    for (std::uint32_t kind = 1; kind <= Sections::kGridCount; ++kind) {
+      section(static_cast<SectionKind>(kind)).kind += 1000;
+    }
+  }
   EffectsRecord& effects() {
     return *reinterpret_cast<EffectsRecord*>(image() + section(SectionKind::kEffects).offset_bytes);
   }
@@ -232,6 +238,8 @@ TEST(JobCheck, HoldsEffectsAgainstTheJob) {
        WRONG("scene image: effects.environment_offset_bytes", m.effects().environment_offset_bytes = ~127ull),
        WRONG("scene image: effects.environment_offset_bytes", m.effects().environment_width = 0),
        WRONG("scene image: header.section_count", m.section(SectionKind::kTree).kind = 1000),
+       WRONG("scene image: header.section_count", m.section(SectionKind::kGrid).kind = 1000),
+       WRONG("frame record: engine_id 1, the scene image has no grid", m.remove_grid()),
        WRONG("scene image: tree.nodes_offset_bytes", m.section(SectionKind::kTreeNodes).kind = 1000),
        WRONG("scene image: tree.nodes_offset_bytes", m.tree().nodes_offset_bytes = ~127ull),
        WRONG("scene image: tree.triangles_offset_bytes", m.tree().triangles_offset_bytes += 128),

@@ -62,6 +62,7 @@ void FrameInMemory::set_up_grid(const CountedFrame& frame) {
   grid.macro_width = configuration.macro_width;
   grid.format = format_of(frame.accuracy);
   grid.has_tree = program_ == CountedProgram::kTree;
+  grid.has_grid = !grid.has_tree;
   if (grid.has_tree) grid.leaf_triangles = kMaxTreeLeaf;
   GridNeed need;
   require(count_scene_image(mesh, grid, need, frame.effects));

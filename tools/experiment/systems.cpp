@@ -209,15 +209,17 @@ std::unique_ptr<Recording> GridSystem::record(const View& view, const FrameReque
   const tool::FrameMemory& frame = prepared.memory;
 
   FrameFacts facts;
-  facts.build = sim::grid_build_work(view.mesh().vertices.size(), view.mesh().triangles.size(), frame.need,
-                                     sim::count_mesh_lines(view.mesh().view()));
+  if (!frame.image.has_tree) {
+    facts.build = sim::grid_build_work(view.mesh().vertices.size(), view.mesh().triangles.size(), frame.need,
+                                       sim::count_mesh_lines(view.mesh().view()));
+  }
   facts.traversal_steps = sum_of(result.work, {GridWork::kMacroSliceStep, GridWork::kMacroCellStep,
                                                GridWork::kSliceStep, GridWork::kCellStep, GridWork::kCellBoundStep});
   facts.intersection_tests =
       sum_of(result.work, {Work::kGroupTestStandard, Work::kRowTest, Work::kGroupTestPaper, Work::kListTriangleGroup});
   facts.scene_bytes = frame.image.header.image_bytes;
   facts.dropped_triangles = frame.image.header.dropped_triangle_count;
-  facts.grid = frame.image.grid;
+  if (frame.image.has_grid) facts.grid = frame.image.grid;
   facts.triangle_bytes = std::uint64_t{frame.image.grid.triangle_bytes} * frame.image.grid.reference_count;
   facts.fetched_triangle_bytes = fetched_triangle_bytes(result.trace);
   facts.main_memory_bytes = frame.memory.used_bytes();

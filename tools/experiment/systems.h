@@ -33,14 +33,14 @@ struct FrameRequest {
 
 /// Facts of a frame that need no clock.
 struct FrameFacts {
-  sim::BuildWork build;                  ///< of the structure
+  sim::BuildWork build;                  ///< of the structure; nothing of a tree, whose steps have no prices
   std::uint64_t traversal_steps = 0;     ///< steps through the structure, all packets
   std::uint64_t intersection_tests = 0;  ///< (SIMD group, triangle) tests
   std::uint64_t scene_bytes = 0;         ///< structure and triangles in main memory
   std::uint64_t picture_hash = 0;
-  std::uint32_t dropped_triangles = 0;  ///< of zero area
-  std::optional<GridRecord> grid;       ///< of systems that have one
-  std::uint64_t triangle_bytes = 0;     ///< of the scene: triangle records; from here on for the grid alone
+  std::uint32_t dropped_triangles = 0;       ///< of zero area
+  std::optional<GridRecord> grid;            ///< of systems that have one
+  std::uint64_t triangle_bytes = 0;          ///< of the scene: triangle records; from here on for the grid alone
   std::uint64_t fetched_triangle_bytes = 0;  ///< requested by gets of triangle records
   std::uint64_t main_memory_bytes = 0;       ///< scene, frame record and output planes
   std::uint64_t local_store_bytes = 0;       ///< data, and the budgets of code and stack
@@ -155,7 +155,7 @@ class CloseLook {
 
 struct HostFrame {
   tool::HostSeconds seconds;  ///< the scene's build not included
-  FrameRecord record{};  ///< camera and size of it
+  FrameRecord record{};       ///< camera and size of it
 };
 
 /// Renders the frame directly on this host: plain mode, no simulated clock. @param threads  host threads. Errors:

@@ -141,6 +141,23 @@ Json effects_json(const InfoPlan& plan, const SceneFacts& facts) {
   return json;
 }
 
+// Null where there is no grid.
+Json grid_json(const SceneFacts& facts) {
+  const GridRecord& grid = facts.grid;
+  if (!facts.has_grid) return {};
+  return {{"lambda", grid.lambda},
+          {"wanted_lambda", facts.wanted_lambda},
+          {"macro_width", grid.macro_width},
+          {"cell_count", json_of(grid.cell_count)},
+          {"macro_cell_count", json_of(grid.macro_cell_count)},
+          {"cells", facts.bounds.cells_per_pass},
+          {"macrocells", facts.bounds.macro_cells_per_pass},
+          {"cell_blocks", grid.cell_block_count},
+          {"references", grid.reference_count},
+          {"triangle_format", word_of(static_cast<TriangleFormat>(grid.triangle_format))},
+          {"lattice_step", grid.lattice.step}};
+}
+
 // Null where there is no tree.
 Json tree_json(const SceneFacts& facts) {
   const TreeRecord& tree = facts.tree;
@@ -149,7 +166,9 @@ Json tree_json(const SceneFacts& facts) {
           {"triangles", tree.triangle_count},
           {"depth", tree.depth},
           {"leaf_triangles", tree.leaf_triangles},
-          {"bytes", facts.tree_bytes}};
+          {"bytes", facts.structures.tree},
+          {"triangle_format", word_of(static_cast<TriangleFormat>(tree.triangle_format))},
+          {"lattice_step", tree.lattice.step}};
 }
 
 void print_json(const InfoPlan& plan, const SceneFacts& facts) {
@@ -163,29 +182,21 @@ void print_json(const InfoPlan& plan, const SceneFacts& facts) {
         {"triangles", facts.triangles},
         {"dropped_triangles", facts.dropped_triangles},
         {"bounds", {{"minimum", json_of(grid.bounds_minimum)}, {"maximum", json_of(grid.bounds_maximum)}}}}},
-      {"grid",
-       {{"lambda", grid.lambda},
-        {"wanted_lambda", facts.wanted_lambda},
-        {"macro_width", grid.macro_width},
-        {"cell_count", json_of(grid.cell_count)},
-        {"macro_cell_count", json_of(grid.macro_cell_count)},
-        {"cells", facts.bounds.cells_per_pass},
-        {"macrocells", facts.bounds.macro_cells_per_pass},
-        {"cell_blocks", grid.cell_block_count},
-        {"references", grid.reference_count},
-        {"triangle_format", word_of(static_cast<TriangleFormat>(grid.triangle_format))},
-        {"lattice_step", grid.lattice.step}}},
+      {"grid", grid_json(facts)},
       {"tree", tree_json(facts)},
       {"main_memory",
        {{"machine", plan.scene.machine->name},
         {"capacity_bytes", plan.scene.machine->main_memory_bytes},
         {"image_bytes", facts.image_bytes},
+        {"grid_bytes", facts.structures.grid},
+        {"tree_bytes", facts.structures.tree},
+        {"effect_bytes", facts.structures.effects},
         {"scratch_bytes", facts.scratch_bytes},
         {"picture_bytes", facts.picture_bytes},
         {"fits", facts.fits}}},
       {"local_store", json_of(plan.local_store)},
       {"effects", effects_json(plan, facts)},
-      {"loop_bounds", json_of(facts.bounds)}};
+      {"loop_bounds", facts.has_grid ? json_of(facts.bounds) : Json()}};
   if (!facts.roundness.groups.empty()) {
     const char* rules[] = {"asked", "diagonal", "picture"};
     document["scene"]["tolerance"] = {{"rule", rules[static_cast<std::size_t>(facts.roundness.rule)]},
@@ -252,14 +263,16 @@ void print_text(const InfoPlan& plan, const SceneFacts& facts) {
                 static_cast<double>(grid.bounds_maximum[0]), static_cast<double>(grid.bounds_maximum[1]),
                 static_cast<double>(grid.bounds_maximum[2]));
   print_line("bounds", text);
-  std::snprintf(text, sizeof text, ", lambda %g", static_cast<double>(grid.lambda));
-  print_line("grid", joined(grid.cell_count) + " cells" + text + ", " + words_of_count(grid.reference_count) +
-                         " references stored as " + word_of(static_cast<TriangleFormat>(grid.triangle_format)));
+  const std::string format = " stored as " + word_of(static_cast<TriangleFormat>(grid.triangle_format));
+  if (facts.has_grid) {
+    std::snprintf(text, sizeof text, ", lambda %g", static_cast<double>(grid.lambda));
+    print_line("grid", joined(grid.cell_count) + " cells" + text + ", " + words_of_count(grid.reference_count) +
+                           " references" + format);
+  }
   if (const TreeRecord& tree = facts.tree; tree.node_count != 0) {
     print_line("tree", words_of_count(tree.node_count, "node") + ", " + std::to_string(tree.depth) +
                            " on the longest path, " + words_of_count(tree.triangle_count, "triangle") +
-                           " in leaves of " + std::to_string(tree.leaf_triangles) + ", " +
-                           words_of_bytes(facts.tree_bytes));
+                           " in leaves of " + std::to_string(tree.leaf_triangles) + format);
   }
   if (!facts.roundness.groups.empty()) {
     const char* rules[] = {"as requested", "1e-4 of the scene's diagonal", "chosen by the picture"};
@@ -277,13 +290,17 @@ void print_text(const InfoPlan& plan, const SceneFacts& facts) {
     print_line("lattice", text + words_of_count(static_cast<std::uint64_t>(places)) +
                               " of them along the longest side; triangles without area there are dropped");
   }
-  if (grid.lambda != facts.wanted_lambda) {
+  if (facts.has_grid && grid.lambda != facts.wanted_lambda) {
     std::snprintf(text, sizeof text, "reduced from lambda %g to fit the main memory",
                   static_cast<double>(facts.wanted_lambda));
     print_line("", text);
   }
-  print_line("macrocells", joined(grid.macro_cell_count) + " of width " + std::to_string(grid.macro_width) + ", " +
-                               words_of_count(grid.cell_block_count - 1) + " of them hold triangles");
+  if (facts.has_grid) {
+    print_line("macrocells", joined(grid.macro_cell_count) + " of width " + std::to_string(grid.macro_width) + ", " +
+                                 words_of_count(grid.cell_block_count - 1) + " of them hold triangles");
+  }
+  const std::string structures = words_of_structures(facts.structures);
+  if (!structures.empty()) print_line("holds", structures);
   print_line("main memory", words_of_bytes(facts.image_bytes) + " scene image, " + words_of_bytes(facts.scratch_bytes) +
                                 " while it is built, " + words_of_bytes(facts.picture_bytes) + " picture of " +
                                 std::to_string(plan.size.x) + "x" + std::to_string(plan.size.y) +

@@ -7,6 +7,7 @@
 #include "commands.h"
 #include "files/atomic_file.h"
 #include "files/command_files.h"
+#include "gridiron/scene/image_structures.h"
 #include "gridiron/scene/scene_input.h"
 
 namespace gridiron::tool {
@@ -34,7 +35,7 @@ void run_command(const PackRequest& request) {
   const std::uint64_t spill_bytes = spill_bytes_of(machine.core_count, recursion_depth(input));
   const ImageLimits limits = {.format = request.format,
                               .budget_bytes = image_budget_bytes(machine, 1, 1, 1, kUsualTileWidth, spill_bytes),
-                              .has_tree = request.scene.configuration->packet_width == 0};
+                              .engine = engine_of(*request.scene.configuration)};
   const EffectsView of_text = input.text ? input.text->effects.view() : EffectsView{};
   const EffectsView* effects = input.text ? &of_text : nullptr;
   const GridChoice choice = choose_grid(input, *mesh, request.scene, limits, effects);
@@ -54,9 +55,13 @@ void run_command(const PackRequest& request) {
   if (choice.need.dropped_triangle_count != 0) {
     triangles += " (" + words_of_count(choice.need.dropped_triangle_count) + " of zero area dropped)";
   }
-  std::printf("%s: %s, %s, %s references, lambda %g\n", target_of(request.output).name.c_str(),
-              words_of_bytes(image.size()).c_str(), triangles.c_str(),
-              words_of_count(choice.need.grid.reference_count).c_str(), static_cast<double>(choice.parameters.lambda));
+  std::printf("%s: %s, %s", target_of(request.output).name.c_str(), words_of_bytes(image.size()).c_str(),
+              triangles.c_str());
+  if (built.has_grid) {
+    std::printf(", %s references, lambda %g", words_of_count(built.grid.reference_count).c_str(),
+                static_cast<double>(built.grid.lambda));
+  }
+  std::printf("\nholds: %s\n", words_of_structures(structures_of(built)).c_str());
 }
 
 }  // namespace gridiron::tool

@@ -62,9 +62,10 @@ ReportInput collect_report(const RenderPlan& plan, const SceneInput& input, cons
   report.triangle_count = frame.image.header.triangle_count;
   report.vertex_count = frame.image.header.vertex_count;
   report.dropped_triangle_count = frame.image.header.dropped_triangle_count;
+  report.has_grid = frame.image.has_grid;
   report.grid = frame.image.grid;
   report.wanted_lambda = frame.wanted_lambda;
-  report.grid_bytes = frame.image.header.image_bytes;
+  report.image_bytes = frame.image.header.image_bytes;
   report.machine = *plan.scene.machine;
   report.timing = timing;
   report.work = result.work;

@@ -41,13 +41,16 @@ Json scene_json(const ReportInput& input) {
   Json json = {{"triangles", input.triangle_count},
                {"vertices", input.vertex_count},
                {"dropped_triangles", input.dropped_triangle_count},
-               {"grid",
-                {{"cells", product(grid.cell_count)},
-                 {"macrocells", product(grid.macro_cell_count)},
-                 {"references", grid.reference_count},
-                 {"bytes", input.grid_bytes},
-                 {"lambda", grid.lambda},
-                 {"wanted_lambda", input.wanted_lambda}}}};
+               {"image_bytes", input.image_bytes},
+               {"grid", Json()}};
+  if (input.has_grid) {
+    json["grid"] = {{"cells", product(grid.cell_count)},
+                    {"macrocells", product(grid.macro_cell_count)},
+                    {"references", grid.reference_count},
+                    {"bytes", input.image_bytes},
+                    {"lambda", grid.lambda},
+                    {"wanted_lambda", input.wanted_lambda}};
+  }
   if (input.least_tolerance) json["least_tolerance"] = *input.least_tolerance;
   if (input.most_tolerance) json["most_tolerance"] = *input.most_tolerance;
   return json;

@@ -50,9 +50,10 @@ struct ReportInput {
   std::uint64_t triangle_count = 0;  ///< of the input, dropped ones included
   std::uint64_t vertex_count = 0;
   std::uint64_t dropped_triangle_count = 0;  ///< zero area
-  GridRecord grid{};
-  float wanted_lambda = 0;       ///< more than the grid's where that was reduced to fit the main memory
-  std::uint64_t grid_bytes = 0;  ///< the whole scene image
+  bool has_grid = true;
+  GridRecord grid{};              ///< with a grid
+  float wanted_lambda = 0;        ///< more than the grid's where that was reduced to fit the main memory
+  std::uint64_t image_bytes = 0;  ///< the whole scene image
 
   sim::MachineProfile machine{};
   sim::FrameTiming timing;

@@ -45,7 +45,7 @@ struct AnyFault {
 
 /// The known sections by kind, and where their entries stand.
 struct Sections {
-  static constexpr std::uint32_t kGeometryCount = 4;  ///< in every image
+  static constexpr std::uint32_t kGridCount = 4;  ///< of the grid, the first kinds: all of them or none
   static constexpr std::uint32_t kKnownCount = static_cast<std::uint32_t>(SectionKind::kEnd) - 1;
   SectionEntry entries[kKnownCount] = {};
   std::uint64_t entry_offsets[kKnownCount] = {};
@@ -55,13 +55,14 @@ struct Sections {
   [[nodiscard]] const SectionEntry& entry(SectionKind kind) const { return entries[index_of(kind)]; }
   [[nodiscard]] std::uint64_t entry_offset(SectionKind kind) const { return entry_offsets[index_of(kind)]; }
   [[nodiscard]] bool has(SectionKind kind) const { return found[index_of(kind)]; }
+  [[nodiscard]] bool has_grid() const { return has(SectionKind::kGrid); }
 };
 
 /// The parts of an image that determine the sizes of all others.
 struct ImageHead {
   ImageHeader header{};
   Sections sections;
-  GridRecord grid{};
+  GridRecord grid{};        ///< all zero if the image has no grid
   EffectsRecord effects{};  ///< all zero if the image has none
   TreeRecord tree{};        ///< all zero if the image has no tree
 };
@@ -125,8 +126,11 @@ template <class Checker>
     sections.entries[index] = section;
     sections.entry_offsets[index] = place;
   }
-  for (std::uint32_t i = 0; i < Sections::kGeometryCount; ++i) {
-    GRIDIRON_RULE(sections.found[i], 0, header, section_count);
+  // A grid, a tree or both.
+  bool has_grid = !sections.has(SectionKind::kTree);
+  for (std::uint32_t i = 0; i < Sections::kGridCount; ++i) has_grid |= sections.found[i];
+  for (std::uint32_t i = 0; i < Sections::kGridCount; ++i) {
+    GRIDIRON_RULE(sections.found[i] == has_grid, 0, header, section_count);
   }
   return true;
 }
@@ -148,9 +152,10 @@ template <class Checker>
   return std::uint64_t{grid.macro_cell_count[0]} * grid.macro_cell_count[1] * grid.macro_cell_count[2];
 }
 
-/// Checks the grid's integers, and the sections whose sizes follow from them.
+/// Checks the grid's integers, and the sections whose sizes follow from them. An image with a tree may have no grid.
 template <class Checker>
 [[nodiscard]] bool check_grid_sizes(Checker& checker, const Sections& sections, GridRecord& grid) {
+  if (!sections.has_grid()) return true;
   if (!check_elements(checker, sections, SectionKind::kGrid, sizeof(GridRecord), 1)) return false;
   const std::uint64_t base = sections.entry(SectionKind::kGrid).offset_bytes;
   grid = checker.template read<GridRecord>(base);
@@ -284,7 +289,7 @@ constexpr bool for_each_tree_part(const TreeRecord& tree, Body&& body) {
 }
 
 /// Reads the tree's record, and requires exactly the sections that it counts, at the places that it names. An image
-/// with effects has one, another may.
+/// with effects has one, and one without a grid; another may.
 template <class Checker>
 [[nodiscard]] bool check_tree_sizes(Checker& checker, ImageHead& head) {
   const Sections& sections = head.sections;
@@ -304,7 +309,7 @@ template <class Checker>
   if (!check_tree_counts(checker, base, tree)) return false;
   GRIDIRON_RULE(tree.triangle_count == header.triangle_count - header.dropped_triangle_count, base, tree,
                 triangle_count);
-  GRIDIRON_RULE(tree.triangle_format == head.grid.triangle_format, base, tree, triangle_format);
+  GRIDIRON_RULE(!sections.has_grid() || tree.triangle_format == head.grid.triangle_format, base, tree, triangle_format);
   GRIDIRON_RULE_OF(tree.reserved[0], all_zero(tree.reserved, 12), base, tree, reserved);
   return for_each_tree_part(tree, [&](const CountedPart& part) { return check_part(checker, sections, base, part); });
 }

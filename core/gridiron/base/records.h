@@ -23,6 +23,7 @@ enum class TriangleFormat : unsigned {
 
 /// What a section of an image holds.
 enum class SectionKind : unsigned {
+  // The grid: all four or none.
   kGrid = 1,        ///< one GridRecord
   kMacroTable = 2,  ///< MacroTableEntry[ceil(macro_cell_count / 32)]
   kCellBlocks = 3,  ///< cell blocks of cell_block_bytes each; block 0 is the empty one (all zero)
@@ -34,7 +35,7 @@ enum class SectionKind : unsigned {
   kSurfaces = 8,         ///< SurfaceRecord[triangle_count]
   kNormals = 9,          ///< NormalRecord[]
   kEnvironmentMap = 10,  ///< EnvironmentBlock[]
-  // The wide tree (base/tree_records.h): all three or none. Images with effects have it.
+  // The wide tree (base/tree_records.h): all three or none. Images with effects or without a grid have it.
   kTree = 11,           ///< one TreeRecord
   kTreeNodes = 12,      ///< TreeNode[node_count]
   kTreeTriangles = 13,  ///< triangle records, in the order of the leaves

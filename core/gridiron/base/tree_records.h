@@ -66,7 +66,7 @@ struct TreeRecord {
   std::uint32_t triangle_bytes;          ///< record size
   std::uint64_t nodes_offset_bytes;      ///< TreeNode[node_count], from the image's first byte
   std::uint64_t triangles_offset_bytes;  ///< triangle records in the order of the leaves
-  float bounds_minimum[3];               ///< tight bounds of the triangles, world space; the grid's
+  float bounds_minimum[3];               ///< tight bounds of the triangles, world space; a grid's too
   float bounds_maximum[3];               ///< the other corner
   Lattice lattice;                       ///< of kLattice; all zero in other formats
   std::uint32_t reserved[12];

@@ -147,6 +147,7 @@ Status make_frame_record(const FrameSettings& settings, const SceneImageView& im
   if (!is_multiple(image_address, kLineBytes)) return Status::kTransferAlignment;
   made.engine_id = static_cast<std::uint32_t>(settings.engine);
   if (settings.engine == EngineId::kGrid) {
+    if (!image.has_grid) return Status::kUnsupportedImage;
     GRIDIRON_TRY(add_grid(settings, image, image_address, made));
   } else if (settings.engine != EngineId::kTree) {
     return Status::kUnsupportedFrame;

@@ -32,17 +32,17 @@ inline constexpr std::uint32_t kPlaneAlignment = kPortableCongruenceBytes;
 /// from the top left, and in each tile its pixels row by row from the top; see output_plane_index(). Tiles at the right
 /// and lower edge are written whole; their words outside of the picture have no meaning.
 struct FrameSettings {
-  Camera camera;                 ///< in world space
-  std::uint32_t width = 1024;    ///< pixels, 1..kMaxPictureWidth [kBadFrame]
-  std::uint32_t height = 1024;   ///< likewise
+  Camera camera;                  ///< in world space
+  std::uint32_t width = 1024;     ///< pixels, 1..kMaxPictureWidth [kBadFrame]
+  std::uint32_t height = 1024;    ///< likewise
   std::uint32_t tile_width = 32;  ///< pixels along a tile's edge, 1..kMaxPictureWidth [kBadFrame]; must be the layout's
   /// An enumerator [kUnsupportedFrame] that the image stores triangles for [kUnsupportedImage].
   Accuracy accuracy = Accuracy::kStandard;
   /// An enumerator [kUnsupportedFrame]; kScene: of images with effects, and not with Accuracy::kPaper
   /// [kUnsupportedImage].
   Shading shading = Shading::kSimple;
-  /// What traces eye rays [kUnsupportedFrame]. kTree: of images with a tree in the accuracy's triangle format
-  /// [kUnsupportedImage].
+  /// What traces eye rays [kUnsupportedFrame]. kGrid: of images with a grid, kTree: with a tree, in the accuracy's
+  /// triangle format [kUnsupportedImage].
   EngineId engine = EngineId::kGrid;
   /// TechniqueBits; they change the amount of work, not the picture.
   std::uint32_t techniques = kUseMailbox | kUseCornerCulling | kUseEmptySkip;
@@ -83,9 +83,9 @@ struct FrameSettings {
 /// @param frame          to be copied to a multiple of kLineBytes in main memory; unchanged on an error.
 /// Errors: kBadFrame (sizes, t_far, depths; no plane of colours; image at 0 with Shading::kScene; camera degenerate,
 /// not finite or so far away that its place in cells exceeds kCellSpaceLimit), kTransferAlignment (a plane or the image
-/// is misaligned), kUnsupportedFrame (unknown accuracy, shading or engine), kUnsupportedImage (the accuracy requires
-/// another triangle format; Shading::kScene requires an image with effects, and an accuracy other than kPaper). The
-/// size of the memory for planes is not checked here.
+/// is misaligned), kUnsupportedFrame (unknown accuracy, shading or engine), kUnsupportedImage (the image lacks what
+/// the engine reads; the accuracy requires another triangle format; Shading::kScene requires an image with effects, and
+/// an accuracy other than kPaper). The size of the memory for planes is not checked here.
 [[nodiscard]] Status make_frame_record(const FrameSettings& settings, const SceneImageView& image,
                                        MainAddress image_address, FrameRecord& frame);
 

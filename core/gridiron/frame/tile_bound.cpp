@@ -403,7 +403,7 @@ std::uint32_t extent_of(const GridRecord& grid, int axis, std::uint32_t index) {
 }  // namespace
 
 TileScene count_tile_scene(std::span<const std::byte> image, const SceneImageView& view, const TileLayout& layout) {
-  const GridRecord& grid = view.grid;
+  const GridRecord grid = view.has_grid ? view.grid : GridRecord{};
   const std::uint32_t* const macro = grid.macro_cell_count;
   TileScene scene{};
   scene.macro_cells = std::uint64_t{macro[0]} * macro[1] * macro[2];

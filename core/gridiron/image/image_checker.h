@@ -84,6 +84,30 @@ class ImageChecker {
   return differ == 0;
 }
 
+[[nodiscard]] inline bool is_negative_zero(float value) {
+  return std::bit_cast<std::uint32_t>(value) == 0x80000000u;
+}
+
+[[nodiscard]] inline bool is_no_lattice(const Lattice& lattice) {
+  const float none[3] = {0.0f, 0.0f, 0.0f};
+  return same_bits(lattice.origin, none, 3) && same_bits(&lattice.step, none, 1);
+}
+
+/// With a step that is right, and an origin that is right on each axis, all values of a lattice are floats within the
+/// limits of coordinates.
+[[nodiscard]] inline bool is_lattice_step(float step) {
+  return step >= kLeastLatticeStep && step <= kCoordinateLimit &&
+         (std::bit_cast<std::uint32_t>(step) & 0x007FFFFFu) == 0;
+}
+[[nodiscard]] inline bool is_lattice_origin(float origin, float step) {
+  const double steps = double{origin} / double{step};
+  const double last = double{origin} + double{step} * (kLatticePlaces - 1);
+  const bool in_range = !is_negative_zero(origin) && __builtin_fabsf(origin) <= kCoordinateLimit &&
+                        last <= 8.0 * double{kCoordinateLimit} &&
+                        __builtin_fabs(steps) <= double{kMostStepsFromZero} + 1.0;
+  return in_range && steps == static_cast<double>(static_cast<std::int32_t>(steps));
+}
+
 /// Checks that bytes [begin, end) of the image, multiples of 4, are padding: all zero.
 [[nodiscard]] inline bool check_padding(ImageChecker& checker, std::uint64_t begin, std::uint64_t end) {
   for (std::uint64_t at = begin; at < end; at += sizeof(std::uint32_t)) {
@@ -106,9 +130,13 @@ class ImageChecker {
 /// Precondition: everything else in the image is right. Cost: linear.
 [[nodiscard]] bool check_effect_sections(ImageChecker& checker, const SceneImageView& view);
 
-/// Checks the contents of the tree's sections: every kept triangle is there once, with the corners of its surface; the
-/// nodes are numbered level by level, on paths no longer than the record says, and their leaves cover the triangles in
-/// order; boxes are as built. Precondition: everything else in the image is right. Cost: linear.
+/// Checks what the other checks need of the tree of an image without a grid: its bounds and its lattice.
+[[nodiscard]] bool check_tree_space(ImageChecker& checker, const SceneImageView& view);
+
+/// Checks the contents of the tree's sections: every kept triangle is there once, with the corners of its surface, and
+/// the bounds are theirs; the nodes are numbered level by level, on paths no longer than the record says, and their
+/// leaves cover the triangles in order; boxes are as built. Precondition: everything else in the image is right. Cost:
+/// linear.
 [[nodiscard]] bool check_tree(ImageChecker& checker, const SceneImageView& view);
 
 }  // namespace gridiron

@@ -13,39 +13,19 @@ namespace {
 
 // --- Grid ---------------------------------------------------------------------------------------------------------
 
-bool is_power_of_two(float value) {
-  return value > 0.0f && (std::bit_cast<std::uint32_t>(value) & 0x007FFFFFu) == 0;
-}
-
 bool same_float(float a, float b) {
   return std::bit_cast<std::uint32_t>(a) == std::bit_cast<std::uint32_t>(b);
 }
 
-bool is_negative_zero(float value) {
-  return same_float(value, -0.0f);
-}
-
 // A lattice whose values are all floats within the limits of coordinates, or none at all.
 bool check_lattice(ImageChecker& checker, std::uint64_t base, const GridRecord& grid) {
-  const Lattice& lattice = grid.lattice;
   if (grid.triangle_format != static_cast<std::uint32_t>(TriangleFormat::kLattice)) {
-    const std::uint32_t words[4] = {
-        std::bit_cast<std::uint32_t>(lattice.origin[0]), std::bit_cast<std::uint32_t>(lattice.origin[1]),
-        std::bit_cast<std::uint32_t>(lattice.origin[2]), std::bit_cast<std::uint32_t>(lattice.step)};
-    GRIDIRON_REQUIRE(all_zero(words, 4), base, grid, lattice);
+    GRIDIRON_REQUIRE(is_no_lattice(grid.lattice), base, grid, lattice);
     return true;
   }
-  GRIDIRON_REQUIRE(
-      lattice.step >= kLeastLatticeStep && lattice.step <= kCoordinateLimit && is_power_of_two(lattice.step), base,
-      grid, lattice.step);
-  for (const float origin : lattice.origin) {
-    const double steps = double{origin} / double{lattice.step};
-    const double last = double{origin} + double{lattice.step} * (kLatticePlaces - 1);
-    const bool in_range = !is_negative_zero(origin) && magnitude(origin) <= kCoordinateLimit &&
-                          last <= 8.0 * double{kCoordinateLimit} &&
-                          magnitude(steps) <= double{kMostStepsFromZero} + 1.0;
-    GRIDIRON_REQUIRE(in_range && steps == static_cast<double>(static_cast<std::int32_t>(steps)), base, grid,
-                     lattice.origin);
+  GRIDIRON_REQUIRE(is_lattice_step(grid.lattice.step), base, grid, lattice.step);
+  for (const float origin : grid.lattice.origin) {
+    GRIDIRON_REQUIRE(is_lattice_origin(origin, grid.lattice.step), base, grid, lattice.origin);
   }
   return true;
 }
@@ -192,6 +172,27 @@ bool check_cells(ImageChecker& checker, const Sections& sections, const SceneIma
   return true;
 }
 
+// Checks the grid with its cells and triangles. Without one it completes the view: what the tree has in its place.
+bool check_grid_part(ImageChecker& checker, const Sections& sections, SceneImageView& view) {
+  if (view.has_grid) {
+    const std::uint64_t base = sections.entry(SectionKind::kGrid).offset_bytes;
+    return check_grid(checker, base, view.header, view.grid) && check_cells(checker, sections, view) &&
+           check_geometry(checker, sections, view);
+  }
+  if (!check_tree_space(checker, view)) return false;
+  const TreeRecord& tree = view.tree;
+  GridRecord& grid = view.grid;
+  grid.triangle_format = tree.triangle_format;
+  grid.triangle_bytes = tree.triangle_bytes;
+  grid.lattice = tree.lattice;
+  for (int axis = 0; axis < 3; ++axis) {
+    grid.bounds_minimum[axis] = tree.bounds_minimum[axis];
+    grid.bounds_maximum[axis] = tree.bounds_maximum[axis];
+  }
+  resolve_empty_grid(grid);
+  return true;
+}
+
 // --- Padding ------------------------------------------------------------------------------------------------------
 
 // Checks the bytes in no section, and those after the elements of the known ones.
@@ -232,10 +233,8 @@ Status open_scene_image(std::span<const std::byte> image, SceneImageView& view, 
   if (!checker.require(is_aligned, 0, "image") || !check_image_head(checker, image.size(), head)) {
     return Status::kBadImage;
   }
-  const SceneImageView opened = view_of(head);
-  const std::uint64_t grid_place = head.sections.entry(SectionKind::kGrid).offset_bytes;
-  if (!check_grid(checker, grid_place, opened.header, opened.grid) || !check_cells(checker, head.sections, opened) ||
-      !check_geometry(checker, head.sections, opened) || !check_effect_sections(checker, opened) ||
+  SceneImageView opened = view_of(head);
+  if (!check_grid_part(checker, head.sections, opened) || !check_effect_sections(checker, opened) ||
       !check_tree(checker, opened) || !check_gaps(checker, opened.header, head.sections)) {
     return Status::kBadImage;
   }

@@ -15,22 +15,24 @@ namespace gridiron {
 /// image's first byte.
 struct SceneImageView {
   ImageHeader header;                      ///< as it stands in the image
-  GridRecord grid;                         ///< as it stands in the image
-  std::uint64_t macro_table_offset_bytes;  ///< MacroTableEntry[]
+  bool has_grid;                           ///< there is a grid, a tree, or both
+  GridRecord grid;                         ///< of the image; without a grid resolve_empty_grid's, of the tree
+  std::uint64_t macro_table_offset_bytes;  ///< MacroTableEntry[]; like the next two 0 without a grid
   std::uint64_t cell_blocks_offset_bytes;  ///< blocks of cells
   std::uint64_t triangles_offset_bytes;    ///< triangle records
   bool has_effects;                        ///< the scene has lights and materials
   EffectsRecord effects;                   ///< all zero where the image has none
   std::uint64_t effects_offset_bytes;      ///< of that record; 0 where the image has none
-  bool has_tree;                           ///< true with effects
+  bool has_tree;                           ///< true with effects, and without a grid
   TreeRecord tree;                         ///< all zero where the image has none
   std::uint64_t tree_offset_bytes;         ///< of that record; 0 where the image has none
 };
 
-/// The view of an image whose head is right.
+/// The view of an image whose head is right; without a grid its `grid` is all zero.
 [[nodiscard]] inline SceneImageView view_of(const ImageHead& head) {
   const auto offset_of = [&head](SectionKind kind) { return head.sections.entry(kind).offset_bytes; };
   return {head.header,
+          head.sections.has_grid(),
           head.grid,
           offset_of(SectionKind::kMacroTable),
           offset_of(SectionKind::kCellBlocks),

@@ -1,6 +1,7 @@
 // Checks of the wide tree: see image_checker.h. SPDX-License-Identifier: Apache-2.0
 #include <gridiron/base/math.h>
 #include <gridiron/build/tree/tree_box.h>
+#include <gridiron/build/triangle_records.h>
 #include <gridiron/image/image_checker.h>
 
 namespace gridiron {
@@ -25,13 +26,16 @@ const VertexTriangle& triangle_at(const ImageChecker& checker, const SceneImageV
 
 // With effects a record has the corners of the surface with its id, which says where the record stands. So no two
 // records have one id, and as there are as many as triangles that are kept, each of these is there. Without, its
-// corners are numbers within the bounds.
+// corners are numbers within the bounds and span an area, and if no triangle was dropped, the sum of the ids is that of
+// all. The bounds are tight.
 bool check_tree_triangles(ImageChecker& checker, const SceneImageView& view) {
   const TreeRecord& tree = view.tree;
   const float lows[4] = {tree.bounds_minimum[0], tree.bounds_minimum[1], tree.bounds_minimum[2], 0.0f};
   const float highs[4] = {tree.bounds_maximum[0], tree.bounds_maximum[1], tree.bounds_maximum[2], 0.0f};
   const CornerQuad low = CornerQuad::load(lows), high = CornerQuad::load(highs);
   const std::uint64_t id_offset = tree.triangle_bytes - sizeof(std::uint32_t);
+  TreeBox bounds;
+  std::uint64_t id_sum = 0;
   const bool is_lattice = tree.triangle_format == static_cast<std::uint32_t>(TriangleFormat::kLattice);
   VertexTriangle read{};
   for (std::uint64_t i = 0; i < tree.triangle_count; ++i) {
@@ -46,10 +50,14 @@ bool check_tree_triangles(ImageChecker& checker, const SceneImageView& view) {
       const VertexTriangle& tree_triangle = triangle;
       GRIDIRON_REQUIRE(all_zero(tree_triangle.reserved, 2), base, tree_triangle, reserved);
     }
+    id_sum += id;
+    const auto corner = [&](int k) { return Vec3(triangle.v[k][0], triangle.v[k][1], triangle.v[k][2]); };
+    for (int k = 0; k < 3; ++k) bounds.add(corner(k));
     if (!view.has_effects) {
       const CornerQuad a = corner_quad(triangle, 0), b = corner_quad(triangle, 1), c = corner_quad(triangle, 2);
       const auto inside = ((a >= low) & (a <= high)) & ((b >= low) & (b <= high)) & ((c >= low) & (c <= high));
-      if (!checker.require((inside.bits() & 7u) == 7u, base, "tree_triangle.v")) return false;
+      const bool good = (inside.bits() & 7u) == 7u && !has_zero_area(corner(0), corner(1), corner(2));
+      if (!checker.require(good, base, "tree_triangle.v")) return false;
       continue;
     }
     const std::uint64_t surface_base = view.effects.surfaces_offset_bytes + std::uint64_t{id} * sizeof(SurfaceRecord);
@@ -64,7 +72,14 @@ bool check_tree_triangles(ImageChecker& checker, const SceneImageView& view) {
                ? checker.require(false, base + id_offset, "tree_triangle.triangle_id")
                : checker.require(false, surface_base + offsetof(SurfaceRecord, tree_place), "surface.tree_place");
   }
-  return true;
+  for (int axis = 0; axis < 3; ++axis) {
+    const std::uint64_t tree_base = view.tree_offset_bytes;
+    GRIDIRON_REQUIRE(bounds.low[axis] == tree.bounds_minimum[axis], tree_base, tree, bounds_minimum);
+    GRIDIRON_REQUIRE(bounds.high[axis] == tree.bounds_maximum[axis], tree_base, tree, bounds_maximum);
+  }
+  const std::uint64_t count = view.header.triangle_count;
+  const bool are_all = view.has_effects || view.header.dropped_triangle_count != 0 || id_sum == count * (count - 1) / 2;
+  return checker.require(are_all, tree.triangles_offset_bytes, "tree_triangle.triangle_id");
 }
 
 // --- Nodes ----------------------------------------------------------------------------------------------------------
@@ -206,6 +221,27 @@ bool check_runs_and_boxes(ImageChecker& checker, const SceneImageView& view) {
 
 }  // namespace
 
+bool check_tree_space(ImageChecker& checker, const SceneImageView& view) {
+  const TreeRecord& tree = view.tree;
+  const std::uint64_t base = view.tree_offset_bytes;
+  for (int axis = 0; axis < 3; ++axis) {
+    const float low = tree.bounds_minimum[axis], high = tree.bounds_maximum[axis];
+    GRIDIRON_REQUIRE(low >= -kCoordinateLimit && low <= kCoordinateLimit && !is_negative_zero(low), base, tree,
+                     bounds_minimum);
+    GRIDIRON_REQUIRE(high >= low && high <= kCoordinateLimit && !is_negative_zero(high), base, tree, bounds_maximum);
+  }
+  if (tree.triangle_format != static_cast<std::uint32_t>(TriangleFormat::kLattice)) {
+    GRIDIRON_REQUIRE(is_no_lattice(tree.lattice), base, tree, lattice);
+    return true;
+  }
+  GRIDIRON_REQUIRE(is_lattice_step(tree.lattice.step), base, tree, lattice.step);
+  for (const float origin : tree.lattice.origin) {
+    GRIDIRON_REQUIRE(is_lattice_origin(origin, tree.lattice.step), base, tree, lattice.origin);
+  }
+  return true;
+}
+
+// Without a grid the view's has the tree's bounds and lattice.
 bool check_tree(ImageChecker& checker, const SceneImageView& view) {
   if (!view.has_tree) return true;
   const TreeRecord& tree = view.tree;

@@ -166,6 +166,35 @@ TEST(FramesWithEffects, FetchAtLeastOneAtATime) {
   EXPECT_EQ(make_frame_record(settings, built.view, kImageAddress, frame), Status::kBadFrame);
 }
 
+// The engine of eye rays reads the grid or the tree; the image has it or the frame is refused.
+TEST(Engines, WantAnImageThatHoldsWhatTheyRead) {
+  const TestEffects scene = all_effects();
+  const EffectsView view = scene.view();
+  const auto image_with = [&](bool has_grid, bool has_tree, bool has_effects) {
+    const GridParameters parameters{.macro_width = 2, .has_tree = has_tree, .has_grid = has_grid};
+    return build_image(scene.mesh(), parameters, std::byte{0xCD}, has_effects ? &view : nullptr);
+  };
+  const auto status_with = [](const BuiltImage& built, EngineId engine, Shading shading) {
+    FrameSettings settings = plain_settings();
+    settings.engine = engine;
+    settings.shading = shading;
+    return status_of(settings, built);
+  };
+  const BuiltImage grid = image_with(true, false, false), tree = image_with(false, true, false),
+                   both = image_with(true, true, false), effects = image_with(false, false, true);
+  ASSERT_FALSE(HasFailure());
+  const Status missing = Status::kUnsupportedImage;
+  EXPECT_EQ(status_with(grid, EngineId::kGrid, Shading::kSimple), Status::kOk);
+  EXPECT_EQ(status_with(grid, EngineId::kTree, Shading::kSimple), missing);
+  EXPECT_EQ(status_with(tree, EngineId::kGrid, Shading::kSimple), missing);
+  EXPECT_EQ(status_with(tree, EngineId::kTree, Shading::kSimple), Status::kOk);
+  EXPECT_EQ(status_with(tree, EngineId::kTree, Shading::kScene), missing);
+  EXPECT_EQ(status_with(both, EngineId::kGrid, Shading::kSimple), Status::kOk);
+  EXPECT_EQ(status_with(both, EngineId::kTree, Shading::kSimple), Status::kOk);
+  EXPECT_EQ(status_with(effects, EngineId::kGrid, Shading::kScene), missing);
+  EXPECT_EQ(status_with(effects, EngineId::kTree, Shading::kScene), Status::kOk);
+}
+
 TEST(FramesWithoutEffects, LeaveTheirFieldsZero) {
   const BuiltImage built = image_with_effects();
   for (const Shading shading : {Shading::kNone, Shading::kSimple}) {

@@ -63,7 +63,11 @@ std::string field_of_element(const SectionEntry& entry, TriangleFormat format, s
     case SectionKind::kTreeNodes:
       return "node";
     case SectionKind::kTreeTriangles:
-      return "tree_triangle";
+      return field_in(
+          format == TriangleFormat::kLattice
+              ? std::vector<Field>{{"tree_triangle.v", 18}, {"tree_triangle", 20}, {"tree_triangle.id", 24}}
+              : std::vector<Field>{{"tree_triangle.v", 36}, {"tree_triangle", 44}, {"tree_triangle.id", 48}},
+          offset);
     case SectionKind::kEnd:
       break;
   }
@@ -107,10 +111,11 @@ TestMesh scattered_mesh() {
   return mesh;
 }
 
-BuiltImage image_with_effects(TriangleFormat format, std::uint32_t environment_width) {
+BuiltImage image_with_effects(TriangleFormat format, std::uint32_t environment_width, bool has_grid = true) {
   const TestEffects scene = all_effects(environment_width);
   const EffectsView effects = scene.view();
-  return build_image(scene.mesh(), {4.0f, 2, format}, std::byte{0xCD}, &effects);
+  const GridParameters parameters{.lambda = 4.0f, .macro_width = 2, .format = format, .has_grid = has_grid};
+  return build_image(scene.mesh(), parameters, std::byte{0xCD}, &effects);
 }
 
 // Makes the image again, of the triangles that it holds. @returns whether grid, cells and triangles are the same bytes.
@@ -152,7 +157,7 @@ std::set<std::string> free_fields(BuiltImage& built) {
         fields.insert(field);
         const bool has_vertices =
             built.view.grid.triangle_format == static_cast<std::uint32_t>(TriangleFormat::kVertices);
-        if (has_vertices && !built.view.has_effects) {
+        if (has_vertices && built.view.has_grid && !built.view.has_effects) {
           EXPECT_TRUE(is_as_built(built)) << field << " at byte " << i << ", bit " << bit;
         }
       }
@@ -197,6 +202,31 @@ TEST(SealedImage, OfEffectsOnlyWhatAnotherSceneMayHaveIsFree) {
   }
 }
 
+TEST(SealedImage, OfATreeAloneOnlyWhatAnotherMeshMayHaveIsFree) {
+  for (const TriangleFormat format : {TriangleFormat::kVertices, TriangleFormat::kLattice}) {
+    const GridParameters parameters{.format = format, .leaf_triangles = 2, .has_tree = true, .has_grid = false};
+    BuiltImage built = build_image(scattered_mesh().view(), parameters);
+    ASSERT_FALSE(HasFailure());
+    EXPECT_EQ(free_fields(built),
+              (Names{"header.vertex_count", "tree.leaf_triangles", "tree_triangle.id", "tree_triangle.v"}));
+
+    built = image_with_effects(format, 2, false);
+    ASSERT_FALSE(HasFailure());
+    EXPECT_EQ(free_fields(built), (Names{"effects", "environment.texels", "header.vertex_count", "light", "material",
+                                         "normal.n", "surface.v", "tree.leaf_triangles"}));
+  }
+}
+
+// An id too: if no triangle was dropped, their sum is known. So one that is changed is refused.
+TEST(SealedImage, OfATreeAloneAnIdIsFreeOnlyBesideDroppedTriangles) {
+  const TestMesh mesh = make_sphere(5, 6, 1.0f);
+  const GridParameters parameters{.has_tree = true, .has_grid = false};
+  BuiltImage built = build_image(mesh.view(), parameters);
+  ASSERT_FALSE(HasFailure());
+  ASSERT_EQ(built.view.header.dropped_triangle_count, 0u);
+  EXPECT_EQ(free_fields(built).count("tree_triangle.id"), 0u);
+}
+
 TEST(SealedImage, WithoutDroppedTrianglesAnIdIsNotFree) {
   TestMesh mesh = make_triangle({0, 0, 0}, {0.1f, 0, 0}, {0, 0.1f, 0.1f});
   for (int i = 1; i < 8; ++i) {
@@ -209,6 +239,21 @@ TEST(SealedImage, WithoutDroppedTrianglesAnIdIsNotFree) {
 }
 
 // --- Fields by place ------------------------------------------------------------------------------------------------
+
+TEST(SealedImage, PaddingOfATreeAloneIsNamedWithItsPlace) {
+  const GridParameters parameters{.has_tree = true, .has_grid = false};
+  BuiltImage built = build_image(scattered_mesh().view(), parameters);
+  ASSERT_FALSE(HasFailure());
+  int paddings = 0;
+  for (std::uint64_t i = 0; i < built.image.bytes().size(); ++i) {
+    if (field_at(built, i) != "padding") continue;
+    built.image.bytes()[i] = std::byte{0x10};
+    expect_refused(built.image, "padding", i);
+    built.image.bytes()[i] = std::byte{0};
+    ++paddings;
+  }
+  EXPECT_GT(paddings, 64);
+}
 
 TEST(SealedImage, PaddingIsNamedWithItsPlace) {
   for (const TriangleFormat format :

@@ -285,6 +285,174 @@ TEST(Trees, OfALatticeHaveItsRecords) {
   expect_refused(built.image, "tree.lattice", built.view.tree_offset_bytes + offsetof(TreeRecord, lattice));
 }
 
+// --- Without a grid ------------------------------------------------------------------------------------------------
+
+// 86 triangles that are kept; without effects too.
+BuiltImage alone(bool has_effects, TriangleFormat format = TriangleFormat::kVertices) {
+  const TestEffects scene = tree_scene(100);
+  const EffectsView view = scene.view();
+  const GridParameters parameters{.format = format, .leaf_triangles = 2, .has_tree = true, .has_grid = false};
+  return build_image(scene.mesh(), parameters, std::byte{0xCD}, has_effects ? &view : nullptr);
+}
+
+const Damage kAloneDamages[] = {
+    TREE_DAMAGE("bounds_too_large", bounds_maximum, r.bounds_maximum[1] = std::nextafter(r.bounds_maximum[1], 9.0f)),
+    TREE_DAMAGE("bounds_of_minus_zero", bounds_minimum, r.bounds_minimum[0] = -0.0f),
+    TREE_DAMAGE("bounds_nan", bounds_minimum, r.bounds_minimum[0] = kNan),
+    TREE_DAMAGE("bounds_infinite", bounds_maximum, r.bounds_maximum[0] = kInfinity),
+    TREE_DAMAGE("bounds_beyond_the_limit", bounds_minimum, r.bounds_minimum[0] = -0x1.000002p120f),
+    TREE_DAMAGE("bounds_the_wrong_way_round", bounds_maximum, r.bounds_maximum[1] = r.bounds_minimum[1] - 1.0f),
+    TREE_DAMAGE("lattice_of_vertices", lattice, r.lattice.step = 1.0f),
+    TREE_DAMAGE("format_of_projections", triangle_format, r.triangle_format = 2),
+    TREE_DAMAGE("format_of_none", triangle_format, r.triangle_format = 0),
+    TREE_DAMAGE("more_triangles_than_are_kept", triangle_count, r.triangle_count += 1),
+    NODE_DAMAGE("box_too_small", 0, low, r.low[1][0] = std::nextafter(r.low[1][0], 9.0f)),
+    TRIANGLE_DAMAGE("id_beyond", 3, triangle_id, r.triangle_id = view.header.triangle_count),
+    TRIANGLE_DAMAGE("corner_nan", 3, v, r.v[2][1] = kNan),
+    TRIANGLE_DAMAGE("corner_outside", 3, v, r.v[2][1] = 2.0f),
+    TRIANGLE_DAMAGE("triangle_without_area", 3, v, std::memcpy(r.v[1], r.v[0], sizeof r.v[0])),
+    TRIANGLE_DAMAGE("triangle_reserved", 3, reserved, r.reserved[0] = 1),
+    ENTRY_DAMAGE("tree_of_no_kind", SectionKind::kTree, kind, r.kind = 1000),
+};
+
+class AloneDamages : public ::testing::TestWithParam<Damage> {};
+
+TEST_P(AloneDamages, AreNamedWithTheirPlace) {
+  for (const bool has_effects : {false, true}) {
+    BuiltImage built = alone(has_effects);
+    ASSERT_FALSE(::testing::Test::HasFailure());
+    const std::uint64_t place = GetParam().apply(built.image, built.view);
+    const bool is_tree_gone = std::string_view(GetParam().name) == "tree_of_no_kind";
+    // Nothing is left that eye rays can be traced through.
+    expect_refused(built.image, is_tree_gone ? "header.section_count" : GetParam().field,
+                   is_tree_gone ? offsetof(ImageHeader, section_count) : place, has_effects ? "with effects" : "");
+  }
+}
+INSTANTIATE_TEST_SUITE_P(All, AloneDamages, ::testing::ValuesIn(kAloneDamages),
+                         [](const auto& test) { return test.param.name; });
+
+// Without effects a corner outside the bounds is found first.
+TEST(TreesAlone, HaveBoundsThatHoldAllTriangles) {
+  for (const bool has_effects : {false, true}) {
+    BuiltImage built = alone(has_effects);
+    edit<TreeRecord>(built.image, built.view.tree_offset_bytes,
+                     [](TreeRecord& r) { r.bounds_minimum[2] = std::nextafter(r.bounds_minimum[2], 9.0f); });
+    expect_refused(built.image, has_effects ? "tree.bounds_minimum" : "tree_triangle.v");
+  }
+}
+
+// The only triangle of a tree alone, at (-far, -1, -1), (0, -1, -1) and (-1, 0, 0), as if it had been built so.
+BuiltImage lone_triangle(float far) {
+  TestEffects scene;
+  scene.vertices = {{-1, -1, -1}, {0, -1, -1}, {-1, 0, 0}};
+  scene.triangles = {{0, 1, 2}};
+  BuiltImage built = build_image(scene.mesh(), {.has_tree = true, .has_grid = false});
+  const SceneImageView& view = built.view;
+  edit<VertexTriangle>(built.image, view.tree.triangles_offset_bytes, [far](VertexTriangle& r) { r.v[0][0] = -far; });
+  edit<TreeRecord>(built.image, view.tree_offset_bytes, [far](TreeRecord& r) { r.bounds_minimum[0] = -far; });
+  edit<TreeNode>(built.image, view.tree.nodes_offset_bytes, [far](TreeNode& node) {
+    TreeBox box = box_of({-far, -1, -1}, {0, -1, -1}, {-1, 0, 0});
+    box.grow(tree_margin(far));
+    for (int axis = 0; axis < 3; ++axis) {
+      node.low[axis][0] = box.low[axis];
+      node.high[axis][0] = box.high[axis];
+    }
+  });
+  renew_check_value(built.image);
+  return built;
+}
+
+// Coordinates have limits that no other rule of the tree knows.
+TEST(TreesAlone, StayWithinTheLimitsOfCoordinates) {
+  EXPECT_EQ(open_image(lone_triangle(1.0f).image.bytes()).status, Status::kOk);
+  EXPECT_EQ(open_image(lone_triangle(kCoordinateLimit).image.bytes()).status, Status::kOk);
+  expect_refused(lone_triangle(std::nextafter(kCoordinateLimit, kInfinity)).image, "tree.bounds_minimum");
+  for (int axis = 1; axis < 3; ++axis) {
+    BuiltImage built = lone_triangle(1.0f);
+    edit<TreeRecord>(built.image, built.view.tree_offset_bytes,
+                     [axis](TreeRecord& r) { r.bounds_maximum[axis] = -0.0f; });
+    expect_refused(built.image, "tree.bounds_maximum");
+  }
+}
+
+// A lattice that is not beside a grid's.
+TEST(TreesAlone, HaveALatticeOfFloats) {
+  struct Case {
+    const char* field;
+    std::function<void(Lattice&)> damage;
+  };
+  const Case cases[] = {
+      {"tree.lattice.step", [](Lattice& l) { l.step = 0.0f; }},
+      {"tree.lattice.step", [](Lattice& l) { l.step = kNan; }},
+      {"tree.lattice.step", [](Lattice& l) { l.step *= 1.5f; }},
+      {"tree.lattice.step", [](Lattice& l) { l.step = -l.step; }},
+      {"tree.lattice.step", [](Lattice& l) { l.step = 0x1p121f; }},
+      {"tree.lattice.origin", [](Lattice& l) { l.origin[1] = -0.0f; }},
+      {"tree.lattice.origin", [](Lattice& l) { l.origin[2] = kNan; }},
+      {"tree.lattice.origin", [](Lattice& l) { l.origin[2] += 0.5f * l.step; }},
+      {"tree.lattice.origin", [](Lattice& l) { l.origin[0] = 0x1p120f; }},
+  };
+  for (const bool has_effects : {false, true}) {
+    for (const Case& c : cases) {
+      BuiltImage built = alone(has_effects, TriangleFormat::kLattice);
+      edit<TreeRecord>(built.image, built.view.tree_offset_bytes, [&c](TreeRecord& r) { c.damage(r.lattice); });
+      expect_refused(built.image, c.field, {}, has_effects ? "with effects" : "");
+    }
+    BuiltImage built = alone(has_effects, TriangleFormat::kLattice);
+    edit<TreeRecord>(built.image, built.view.tree_offset_bytes, [](TreeRecord& r) { r.lattice.step *= 0.5f; });
+    expect_refused(built.image, has_effects ? "surface.v" : "tree_triangle.v");
+  }
+}
+
+// A grid has all of its sections. Any one or three of them are refused, as is a tree that is left without its own.
+TEST(TreesAlone, AGridIsWholeOrNotThere) {
+  const TestEffects scene = tree_scene(50);
+  const GridParameters parameters{.macro_width = 2, .has_tree = true};
+  const BuiltImage both = build_image(scene.mesh(), parameters);
+  ASSERT_FALSE(HasFailure());
+  for (std::uint32_t kept = 0; kept < 16; ++kept) {
+    BuiltImage built = both;
+    for (std::uint32_t i = 0; i < 4; ++i) {
+      if ((kept >> i & 1u) != 0) continue;
+      edit<SectionEntry>(built.image, kTableOffset + i * sizeof(SectionEntry), [](SectionEntry& e) { e.kind += 1000; });
+    }
+    if (kept != 0 && kept != 15) {
+      expect_refused(built.image, "header.section_count", offsetof(ImageHeader, section_count));
+      continue;
+    }
+    renew_check_value(built.image);
+    const OpenedImage opened = open_image(built.image.bytes());
+    EXPECT_EQ(opened.status, Status::kOk);
+    EXPECT_EQ(opened.view.has_grid, kept == 15);
+    EXPECT_STREQ(broken_tree(built.image.bytes(), opened.view), nullptr);
+  }
+}
+
+// Each bit of each word of the tree of an image without grid and effects.
+TEST(TreesAlone, WordsThatAreChangedAreRefusedOrHarmless) {
+  for (const TriangleFormat format : {TriangleFormat::kVertices, TriangleFormat::kLattice}) {
+    BuiltImage built = alone(false, format);
+    ASSERT_FALSE(HasFailure());
+    const std::span<std::byte> bytes = built.image.bytes();
+    std::uint64_t refused = 0, opened = 0;
+    for (std::uint64_t at = kTableOffset; at < bytes.size(); at += 4) {
+      const auto word = read_record<std::uint32_t>(bytes, at);
+      for (std::uint32_t i = 0; i < 34; ++i) {
+        const std::uint32_t changed = i < 32 ? word ^ (1u << i) : i == 32 ? 0x7FC00000u : 0xFFFFFFFFu;
+        std::memcpy(bytes.data() + at, &changed, sizeof changed);
+        renew_check_value(built.image);
+        const OpenedImage image = open_image(bytes);
+        (image.status == Status::kOk ? opened : refused) += 1;
+        if (image.status != Status::kOk) continue;
+        ASSERT_STREQ(broken_tree(bytes, image.view), nullptr) << "word at " << at << ", " << std::hex << changed;
+      }
+      std::memcpy(bytes.data() + at, &word, sizeof word);
+    }
+    EXPECT_GT(refused, 5 * opened);
+    EXPECT_GT(opened, 10u);
+  }
+}
+
 // --- Every word -----------------------------------------------------------------------------------------------------
 
 // Each bit of each word is flipped, and each word is set to the worst values for floats, counts and children.

@@ -5,6 +5,7 @@
 #include <gridiron/image/scene_image.h>
 
 #include <algorithm>
+#include <cmath>
 #include <cstddef>
 #include <cstdint>
 #include <cstring>
@@ -21,7 +22,8 @@ class TreeWalk {
 
   /// @returns what is wrong, or null.
   [[nodiscard]] const char* broken() {
-    if (!view_.has_effects) return tree_.node_count == 0 && view_.tree_offset_bytes == 0 ? nullptr : "a tree of none";
+    if (!view_.has_tree && (!view_.has_grid || view_.has_effects)) return "no tree";
+    if (!view_.has_tree) return tree_.node_count == 0 && view_.tree_offset_bytes == 0 ? nullptr : "a tree of none";
     TreeRecord stored{};
     if (!read(view_.tree_offset_bytes, stored) || std::memcmp(&stored, &tree_, sizeof stored) != 0) return "the record";
     if (tree_.triangle_count != view_.header.triangle_count - view_.header.dropped_triangle_count) return "the count";
@@ -93,12 +95,13 @@ class TreeWalk {
       std::uint32_t id = 0;
       SurfaceRecord surface{};
       if (!read(place + tree_.triangle_bytes - sizeof id, id)) return;
-      if (id >= view_.header.triangle_count || seen_[id]) {
+      if (id >= view_.header.triangle_count || (view_.has_effects && seen_[id])) {
         what_ = "an id";
         return;
       }
       seen_[id] = true;
-      if (!read(view_.effects.surfaces_offset_bytes + std::uint64_t{id} * sizeof surface, surface)) return;
+      if (view_.has_effects && !read(view_.effects.surfaces_offset_bytes + std::uint64_t{id} * sizeof surface, surface))
+        return;
       for (int corner = 0; corner < 3; ++corner) {
         for (int axis = 0; axis < 3; ++axis) {
           float at = 0;
@@ -109,7 +112,9 @@ class TreeWalk {
           } else if (!read(place + static_cast<std::uint64_t>(corner * 3 + axis) * sizeof at, at)) {
             return;
           }
-          if (std::memcmp(&at, &surface.v[corner][axis], sizeof at) != 0) what_ = "corners of another";
+          if (!(std::fabs(at) <= 0x1p121f)) what_ = "a corner out of range";
+          if (view_.has_effects && std::memcmp(&at, &surface.v[corner][axis], sizeof at) != 0)
+            what_ = "corners of another";
           low[axis] = std::min(low[axis], at);
           high[axis] = std::max(high[axis], at);
         }

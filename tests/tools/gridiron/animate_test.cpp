@@ -108,6 +108,20 @@ TEST(Animate, FramesAreThoseOfRender) {
   }
 }
 
+// What the tree's build costs on the chip is not known; no figure pretends that it costs nothing.
+TEST(Animate, BuildsOfTheTreeHaveNoPrice) {
+  const TemporaryFolder folder("a.ply", make_sphere(10, 14, 1.0f));
+  const ProgramResult result = animate(folder, {"a.ply", "-o", "out", "--size", "48x32", "--configuration", "tree"});
+  EXPECT_NE(result.out.find("without their builds: there are no prices for building a tree"), std::string::npos);
+  EXPECT_NE(result.out.find(" unknown "), std::string::npos) << result.out;
+  const Row row = read_table(folder.path("out/animation.csv")).at(0);
+  for (const char* column : {"lambda", "build_cycles", "build_seconds", "total_cycles", "seconds", "fps"}) {
+    EXPECT_EQ(row.at(column), "") << column;
+  }
+  EXPECT_GT(std::stod(row.at("render_cycles")), 0);
+  EXPECT_GT(std::stod(row.at("render_seconds")), 0);
+}
+
 TEST(Animate, SaysWhichFrameShowsNothing) {
   const TemporaryFolder folder("a.ply", make_sphere(10, 14, 1.0f));
   folder.write_ply("b.ply", moved(make_sphere(10, 14, 1.0f), 1.0f, Vec3(0, 0, 40)));

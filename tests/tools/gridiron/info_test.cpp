@@ -54,6 +54,29 @@ TEST(Info, TellsWhatTheBuilderCounts) {
   EXPECT_EQ(info["local_store"]["regions"][0]["name"], "frame");
 }
 
+// Bytes of each structure, which together with header and section table are the image.
+TEST(Info, TellsWhatAnImageHolds) {
+  const TemporaryFolder folder("a.ply", make_scene());
+  for (const char* configuration : {"best", "tree"}) {
+    run(folder, {"pack", "a.ply", "-o", "a.gri", "--configuration", configuration});
+    const bool is_tree = std::string_view(configuration) == "tree";
+    for (const char* input : {"a.gri", "a.ply"}) {
+      const Json info = info_json(folder, {input, "--configuration", configuration});
+      const Json& memory = info["main_memory"];
+      EXPECT_EQ(info["grid"].is_null(), is_tree);
+      EXPECT_EQ(info["tree"].is_null(), !is_tree);
+      EXPECT_EQ(info["loop_bounds"].is_null(), is_tree);
+      EXPECT_EQ(memory["grid_bytes"] == 0, is_tree);
+      EXPECT_EQ(memory["tree_bytes"] == 0, !is_tree);
+      EXPECT_EQ(memory["effect_bytes"], 0);
+      EXPECT_EQ(memory["grid_bytes"].get<std::uint64_t>() + memory["tree_bytes"].get<std::uint64_t>() + 256,
+                memory["image_bytes"].get<std::uint64_t>());
+      EXPECT_EQ(memory["image_bytes"], std::filesystem::file_size(folder.path("a.gri")));
+      EXPECT_LT(info["scene"]["bounds"]["maximum"][0], 2.0);
+    }
+  }
+}
+
 // The bound of a tile, on the counts that it is made of, and each loop's.
 TEST(Info, TellsTheWorstTileAndEveryLoop) {
   const TemporaryFolder folder("a.ply", make_scene());
@@ -196,9 +219,9 @@ TEST(Info, WhatIsCountedInInstructionsIsCalledSo) {
     EXPECT_NE(begin, std::string::npos) << result.out;
     return begin == std::string::npos ? "" : result.out.substr(begin);
   };
-  for (const auto& [machine, unit, other] :
-       {std::tuple{"cell-ps3", "cycles", "instructions"}, {"fu540", "instructions", "cycles"},
-        {"board.machine", "instructions", "cycles"}}) {
+  for (const auto& [machine, unit, other] : {std::tuple{"cell-ps3", "cycles", "instructions"},
+                                             {"fu540", "instructions", "cycles"},
+                                             {"board.machine", "instructions", "cycles"}}) {
     EXPECT_NE(worst_line(machine).find(std::string(unit) + " of work"), std::string::npos) << machine;
     EXPECT_EQ(worst_line(machine).find(other), std::string::npos) << machine;
     EXPECT_EQ(info_json(folder, {"a.ply", "--machine", machine})["worst_tile"]["cycles_are"], unit);

@@ -38,6 +38,57 @@ TEST(Pack, RendersTheSamePictureAsTheMesh) {
   }
 }
 
+// An image holds what the eye rays of its configuration read, and says so; another configuration is told how to get it.
+TEST(Pack, ImagesHoldWhatTheirConfigurationReads) {
+  const TemporaryFolder folder("a.ply", make_torus(40, 24, 1.0f, 0.4f));
+  folder.write("a.nff",
+               "v\nfrom 0 0 5\nat 0 0 0\nup 0 1 0\nangle 40\nhither 1\nresolution 64 64\n"
+               "l 2 3 4\nf 1 0.5 0.2 0.8 0.2 10 0 1\ns 0 0 0 1\n");
+  for (const std::string scene : {"a.ply", "a.nff"}) {
+    const std::string image = scene + ".gri", other = scene + "2.gri";
+    const ProgramResult packed = run(folder, {"pack", scene, "-o", image, "--configuration", "tree"});
+    EXPECT_NE(packed.out.find("\nholds: tree "), std::string::npos) << packed.out;
+    EXPECT_EQ(packed.out.find("lambda"), std::string::npos) << packed.out;
+    const ProgramResult with_grid = run(folder, {"pack", scene, "-o", other, "--configuration", "best"});
+    EXPECT_NE(with_grid.out.find("\nholds: grid "), std::string::npos) << with_grid.out;
+    EXPECT_LT(read_file(folder.path(image)).size(), read_file(folder.path(other)).size());
+
+    const auto rendered_hash = [&](const std::string& input, const char* configuration) {
+      return hash_of(run(folder, {"render", input, "--size", "96x64", "--configuration", configuration}));
+    };
+    EXPECT_EQ(rendered_hash(image, "tree"), rendered_hash(other, "best"));
+    if (scene == "a.ply") {  // an image has no view of its own
+      EXPECT_EQ(rendered_hash(image, "tree"), rendered_hash(scene, "tree"));
+    }
+    for (const char* configuration : {"reference", "best"}) {
+      const ProgramResult result = run_program(folder.folder(), {"render", image, "--configuration", configuration});
+      EXPECT_EQ(result.exit_code, 1);
+      EXPECT_EQ(result.err.find(image + ": holds tree "), 0u) << result.err;
+      EXPECT_NE(result.err.find("but no grid, which --configuration " + std::string(configuration) +
+                                " reads here; pack it with --configuration " + configuration + "\n"),
+                std::string::npos)
+          << result.err;
+    }
+    const std::string info = run(folder, {"info", image}).out;
+    EXPECT_NE(info.find("\nholds          tree "), std::string::npos) << info;
+    EXPECT_EQ(info.find("\ngrid "), std::string::npos) << info;
+    EXPECT_EQ(info.find("\nmacrocells "), std::string::npos) << info;
+  }
+  expect_failure(folder, {"render", "a.ply2.gri", "--configuration", "tree"}, 1,
+                 "but no tree, which --configuration tree");
+  EXPECT_EQ(run_program(folder.folder(), {"render", "a.nff2.gri", "--configuration", "tree"}).exit_code, 0)
+      << "effects have a tree";
+  // With effects a 64 KB store takes frames of the grid, whatever the configuration.
+  expect_failure(folder, {"render", "a.nff.gri", "--configuration", "tree", "--store", "64", "--shading", "scene"}, 1,
+                 "pack it with --configuration reference");
+  for (const Words& option : {Words{"--lambda", "2"}, {"--macro-width", "4"}}) {
+    expect_failure(folder, Words{"render", "a.ply", "--configuration", "tree"} + option, 2, "has no grid");
+    expect_failure(folder, Words{"render", "a.ply.gri", "--configuration", "tree"} + option, 2, "has no grid");
+  }
+  expect_failure(folder, {"pack", "a.ply", "-o", "b.gri", "--configuration", "tree", "--format", "projection"}, 2,
+                 "--format projection: --configuration tree has no triangles for it");
+}
+
 TEST(Pack, IsTheSameBytesEveryTime) {
   const TemporaryFolder folder("a.ply", make_random_soup(300, 0.2f, 7));
   run(folder, {"pack", "a.ply", "-o", "a.gri"});

@@ -19,7 +19,7 @@ ReportInput sample() {
   std::ranges::copy(std::array{2048u, 2047u, 2046u}, input.grid.cell_count);
   std::ranges::copy(std::array{342u, 342u, 341u}, input.grid.macro_cell_count);
   input.grid.reference_count = 4000000000u;
-  input.grid_bytes = 5000000000u;
+  input.image_bytes = 5000000000u;
   input.machine = *sim::find_machine_profile("cell-ps3");
   input.timing.frame_cycles = 1000.5;
   input.timing.seconds = 0.25;
@@ -72,7 +72,7 @@ void collect_paths(const Json& json, const std::string& prefix, std::vector<std:
 /// What sample() becomes, keys in the documented order; but for its work.
 constexpr const char* kReport = R"({
   "version": 1, "mode": "checked",
-  "scene": {"triangles": 69451, "vertices": 35947, "dropped_triangles": 3,
+  "scene": {"triangles": 69451, "vertices": 35947, "dropped_triangles": 3, "image_bytes": 5000000000,
             "grid": {"cells": 8577355776, "macrocells": 39884724, "references": 4000000000, "bytes": 5000000000,
                      "lambda": 0, "wanted_lambda": 0}},
   "machine": {"name": "cell-ps3", "cores": 2, "clock_hz": 3.2e9},
@@ -142,6 +142,15 @@ TEST(Report, ValuesAreTheOnesPutIn) {
   for (std::uint32_t kind = 0; kind < sim::kGridEngine.kind_count(); ++kind) {
     EXPECT_EQ(report["work"][std::string(sim::work_kind(WorkId(kind)).name)], 1000 + kind) << kind;
   }
+}
+
+TEST(Report, AnImageWithoutAGridHasNone) {
+  ReportInput input = sample();
+  input.has_grid = false;
+  const Json scene = Json::parse(report_json(input), nullptr, false)["scene"];
+  EXPECT_TRUE(scene.contains("grid"));
+  EXPECT_TRUE(scene["grid"].is_null());
+  EXPECT_EQ(scene["image_bytes"], 5000000000u);
 }
 
 TEST(Report, CyclesOfACoreAddUpToTheFrame) {

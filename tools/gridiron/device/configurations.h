@@ -2,6 +2,8 @@
 // Memory: one table. Threads: any. SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <gridiron/base/records.h>
+
 #include <algorithm>
 #include <cstdint>
 #include <span>
@@ -37,6 +39,11 @@ struct Configuration {
   BufferDepths depths;
   std::uint32_t techniques;  ///< TechniqueBits
 };
+
+/// @returns what traces its eye rays, but where a 64 KB store traces them by lists.
+[[nodiscard]] constexpr EngineId engine_of(const Configuration& configuration) {
+  return configuration.packet_width == 0 ? EngineId::kTree : EngineId::kGrid;
+}
 
 /// All configurations, `reference` (the default) first.
 [[nodiscard]] std::span<const Configuration> configurations();

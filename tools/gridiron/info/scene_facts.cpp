@@ -52,14 +52,9 @@ EffectFacts effects_of(const EffectsRecord& record, std::uint32_t triangle_count
   return facts;
 }
 
-void add_tree(const SceneImageView& view, SceneFacts& facts) {
-  if (!view.has_tree) return;
+void add_structures(const SceneImageView& view, SceneFacts& facts) {
   facts.tree = view.tree;
-  facts.tree_bytes = sizeof(TreeRecord);
-  for_each_tree_part(view.tree, [&facts](const CountedPart& part) {
-    facts.tree_bytes += round_up<std::uint64_t>(part.element_count * part.element_bytes, kLineBytes);
-    return true;
-  });
+  facts.structures = structures_of(view);
 }
 
 }  // namespace
@@ -71,9 +66,7 @@ std::uint64_t EffectFacts::bytes_of(std::string_view section) const {
 
 SceneFacts collect_scene_facts(const InfoPlan& plan, const SceneInput& input) {
   SceneFacts facts;
-  // A tile of eye rays through the tree has no bound yet.
   const EngineId engine = find_store_facts(plan.layout)->engine;
-  const bool is_bounded = engine == EngineId::kGrid;
   const sim::MachineProfile& machine = *plan.scene.machine;
   const std::uint32_t tile_width = sim::usual_tile_width(sim::StoreSize::k256KB);
   const std::uint32_t planes = plan.has_depth ? 2 : 1;
@@ -86,23 +79,27 @@ SceneFacts collect_scene_facts(const InfoPlan& plan, const SceneInput& input) {
     facts.vertices = header.vertex_count;
     facts.triangles = header.triangle_count;
     facts.dropped_triangles = header.dropped_triangle_count;
+    facts.has_grid = packed->view.has_grid;
     facts.grid = packed->view.grid;
     facts.wanted_lambda = facts.grid.lambda;
     facts.image_bytes = header.image_bytes;
     facts.fits = header.image_bytes <= budget_bytes;
-    if (is_bounded) facts.worst = find_worst_tile(plan, packed->file.bytes, packed->view);
-    add_tree(packed->view, facts);
+    // A tile of eye rays through the tree has no bound yet.
+    if (engine == EngineId::kGrid && facts.has_grid) {
+      facts.worst = find_worst_tile(plan, packed->file.bytes, packed->view);
+    }
+    add_structures(packed->view, facts);
     if (packed->view.has_effects) facts.effects = effects_of(packed->view.effects, header.triangle_count);
   } else {
     const Mesh& mesh = std::get<Mesh>(input.content);
     const EffectsView view = input.text ? input.text->effects.view() : EffectsView{};
     const EffectsView* effects = input.text ? &view : nullptr;
     const GridChoice choice =
-        choose_grid(input, mesh, plan.scene,
-                    {plan.format, budget_bytes, plan.most_macro_width, engine == EngineId::kTree}, effects);
+        choose_grid(input, mesh, plan.scene, {plan.format, budget_bytes, plan.most_macro_width, engine}, effects);
     facts.vertices = mesh.vertices.size();
     facts.triangles = mesh.triangles.size();
     facts.dropped_triangles = choice.need.dropped_triangle_count;
+    facts.has_grid = choice.parameters.has_grid;
     facts.grid = choice.need.grid;
     facts.wanted_lambda = choice.wanted_lambda;
     facts.image_bytes = choice.need.image_bytes;
@@ -114,8 +111,8 @@ SceneFacts collect_scene_facts(const InfoPlan& plan, const SceneInput& input) {
       const std::span<std::byte> image(storage.get(), choice.need.image_bytes);
       const SceneImageView built = build_image(input, mesh, choice, image, effects);
       facts.image_bytes = built.header.image_bytes;
-      add_tree(built, facts);
-      if (is_bounded) facts.worst = find_worst_tile(plan, image, built);
+      add_structures(built, facts);
+      if (engine == EngineId::kGrid) facts.worst = find_worst_tile(plan, image, built);
     }
     if (input.text) facts.roundness = input.text->roundness;
     if (effects != nullptr) {
@@ -123,7 +120,7 @@ SceneFacts collect_scene_facts(const InfoPlan& plan, const SceneInput& input) {
     }
   }
   facts.picture_bytes = planes * output_plane_bytes(plan.size.x, plan.size.y, tile_width) + sizeof(FrameRecord);
-  facts.bounds = bounds_of(facts.grid);
+  if (facts.has_grid) facts.bounds = bounds_of(facts.grid);
   return facts;
 }
 

@@ -11,6 +11,7 @@
 #include <string_view>
 #include <vector>
 
+#include "gridiron/scene/image_structures.h"
 #include "gridiron/scene/scene_input.h"
 #include "info_plan.h"
 #include "scene_text/scene_description.h"
@@ -47,19 +48,20 @@ struct EffectFacts {
 
 struct SceneFacts {
   std::uint64_t vertices = 0, triangles = 0, dropped_triangles = 0;
-  GridRecord grid{};
+  bool has_grid = false;
+  GridRecord grid{};  ///< as SceneImageView's
   float wanted_lambda = 0;
   SceneRoundness roundness;  ///< of a text scene
   bool is_packed = false;
-  TreeRecord tree{};              ///< of an image with effects that was built or packed; else all zero
-  std::uint64_t tree_bytes = 0;   ///< of its sections
-  std::uint64_t image_bytes = 0;  ///< of the image, or what building it needs where it does not fit
+  TreeRecord tree{};                ///< of an image that was built or packed; all zero if it has none
+  StructureBytes structures;        ///< of an image that was built or packed
+  std::uint64_t image_bytes = 0;    ///< of the image, or what building it needs where it does not fit
   std::uint64_t scratch_bytes = 0;  ///< of the builder, free again afterwards; 0 for a packed scene
   std::uint64_t picture_bytes = 0;  ///< requested planes and frame record
   bool fits = false;                ///< in the machine's main memory
-  LoopBounds bounds;
+  LoopBounds bounds;                ///< with a grid
   EffectFacts effects;
-  std::optional<WorstTile> worst;  ///< where the image fits
+  std::optional<WorstTile> worst;  ///< where the image fits, of eye rays through the grid
 };
 
 /// Counts the scene; builds an image that fits, to count its contents too. Errors: Failure.

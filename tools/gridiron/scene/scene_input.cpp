@@ -17,6 +17,7 @@
 #include "base/words.h"
 #include "files/interrupt.h"
 #include "image_damage.h"
+#include "image_structures.h"
 
 namespace gridiron::tool {
 namespace {
@@ -94,6 +95,54 @@ std::string words_of_budget(const sim::MachineProfile& machine, std::uint64_t bu
          words_of_bytes(machine.main_memory_bytes) + " of main memory " +
          words_of_bytes(machine.main_memory_bytes - budget_bytes) +
          " are kept for pictures, the frame record and rays that wait (see 'gridiron machines')";
+}
+
+// " at lambda 4", or nothing without a grid.
+std::string words_of_lambda(const GridParameters& parameters, float lambda) {
+  return parameters.has_grid ? " at lambda " + text_of(lambda) : "";
+}
+
+// Options of grids, and triangles that the tree does not have.
+void require_no_grid_options(const SceneRequest& request, TriangleFormat format) {
+  const std::string name = "--configuration " + std::string(request.configuration->name);
+  if (request.lambda) usage_error("--lambda: " + name + " has no grid");
+  if (request.macro_width) usage_error("--macro-width: " + name + " has no grid");
+  if (format == TriangleFormat::kProjection) {
+    usage_error("--format projection: " + name + " has no triangles for it; --configuration reference has");
+  }
+}
+
+// The configuration to pack with for what eye rays read.
+std::string configuration_with(EngineId engine, const Configuration& wanted) {
+  const auto reads = [engine](const Configuration& configuration) { return engine_of(configuration) == engine; };
+  return std::string(reads(wanted) ? wanted.name : std::ranges::find_if(configurations(), reads)->name);
+}
+
+void require_engine(const SceneInput& input, const PackedScene& packed, const SceneRequest& request, EngineId engine) {
+  const bool has_it = engine == EngineId::kTree ? packed.view.has_tree : packed.view.has_grid;
+  if (has_it) return;
+  const char* const missing = engine == EngineId::kTree ? "tree" : "grid";
+  input_error(input.path, "holds " + words_of_structures(structures_of(packed.view)) + ", but no " + missing +
+                              ", which --configuration " + std::string(request.configuration->name) +
+                              " reads here; pack it with --configuration " +
+                              configuration_with(engine, *request.configuration));
+}
+
+// Whether the grid of a packed scene is as requested.
+void require_grid(const SceneInput& input, const GridRecord& grid, const SceneRequest& request,
+                  const ImageLimits& limits) {
+  if (request.lambda && *request.lambda != grid.lambda) {
+    input_error(input.path, "was packed with lambda " + text_of(grid.lambda) + "; --lambda cannot change it");
+  }
+  if (grid.macro_width > limits.most_macro_width) {
+    input_error(input.path, "was packed with macrocells of width " + std::to_string(grid.macro_width) +
+                                "; the local store holds cell blocks of width " +
+                                std::to_string(limits.most_macro_width));
+  }
+  if (request.macro_width && *request.macro_width != grid.macro_width) {
+    input_error(input.path, "was packed with macrocells of width " + std::to_string(grid.macro_width) +
+                                "; --macro-width cannot change it");
+  }
 }
 
 void require_tolerance(std::optional<float> tolerance, SceneKind kind) {
@@ -222,7 +271,9 @@ GridChoice choose_grid(const SceneInput& input, const Mesh& mesh, const SceneReq
   choice.parameters.macro_width =
       request.macro_width.value_or(std::min(configuration.macro_width, limits.most_macro_width));
   choice.parameters.format = limits.format;
-  choice.parameters.has_tree = limits.has_tree;
+  choice.parameters.has_tree = limits.engine == EngineId::kTree;
+  choice.parameters.has_grid = limits.engine != EngineId::kTree;
+  if (!choice.parameters.has_grid) require_no_grid_options(request, limits.format);
   choice.budget_bytes = limits.budget_bytes;
   constexpr std::size_t kMarks = std::size_t{1} << 21;  // words: one sweep over the triangles for most scenes
   const std::unique_ptr<std::uint64_t[]> storage(new (std::nothrow) std::uint64_t[kMarks]);
@@ -231,7 +282,7 @@ GridChoice choose_grid(const SceneInput& input, const Mesh& mesh, const SceneReq
   constexpr std::uint64_t kCountedBytes = std::uint64_t{8} << 30;
   const std::uint64_t most_bytes = std::max(limits.budget_bytes, kCountedBytes);
   const Status status = [&] {
-    const Stage stage(input.path, "choosing its grid");
+    const Stage stage(input.path, choice.parameters.has_grid ? "choosing its grid" : "counting its triangles");
     return request.lambda
                ? count_scene_image(mesh.view(), choice.parameters, choice.need, effects, most_bytes, marks)
                : fit_scene_image(mesh.view(), choice.parameters, limits.budget_bytes, choice.need, effects, marks);
@@ -244,7 +295,7 @@ GridChoice choose_grid(const SceneInput& input, const Mesh& mesh, const SceneReq
   }
   if (status == Status::kTooManyTriangles) {
     const float lambda = request.lambda ? choice.wanted_lambda : kLeastLambda;
-    input_error(input.path, std::string(words_of(status)) + " at lambda " + text_of(lambda) +
+    input_error(input.path, std::string(words_of(status)) + words_of_lambda(choice.parameters, lambda) +
                                 (request.lambda ? "; a smaller --lambda needs fewer" : "") +
                                 (input.text ? "; a greater --tolerance makes fewer triangles" : ""));
   }
@@ -255,15 +306,15 @@ GridChoice choose_grid(const SceneInput& input, const Mesh& mesh, const SceneReq
                           (mesh.vertices.size() == 1 ? " vertex" : " vertices")
                     : "no triangle to trace: all " + words_of_count(mesh.triangles.size()) + " have zero area");
   }
-  if (status != Status::kOk) input_error(input.path, std::string("cannot build the grid: ") + words_of(status));
-  choice.parameters.lambda = choice.need.grid.lambda;
+  if (status != Status::kOk) input_error(input.path, std::string("cannot build the scene image: ") + words_of(status));
+  if (choice.parameters.has_grid) choice.parameters.lambda = choice.need.grid.lambda;
   return choice;
 }
 
 void require_fit(const GridChoice& choice, const SceneRequest& request, const SceneInput& input) {
   if (!choice.fits()) {
-    input_error(request.input, "the scene needs " + words_of_bytes(choice.need.image_bytes) + " at lambda " +
-                                   text_of(choice.parameters.lambda) + "; " +
+    input_error(request.input, "the scene needs " + words_of_bytes(choice.need.image_bytes) +
+                                   words_of_lambda(choice.parameters, choice.parameters.lambda) + "; " +
                                    words_of_budget(*request.machine, choice.budget_bytes) +
                                    words_of_fitting_tolerance(choice, input));
   }
@@ -282,7 +333,7 @@ SceneImageView build_image(const SceneInput& input, const Mesh& mesh, const Grid
   });
   const Status status = build_scene_image(mesh.view(), choice.parameters, choice.need, image,
                                           std::as_writable_bytes(std::span(scratch)), effects);
-  if (status != Status::kOk) input_error(input.path, std::string("cannot build the grid: ") + words_of(status));
+  if (status != Status::kOk) input_error(input.path, std::string("cannot build the scene image: ") + words_of(status));
   SceneImageView view{};
   SceneImageError error;
   if (open_scene_image(image, view, error) != Status::kOk) {
@@ -301,22 +352,12 @@ void require_format(const SceneInput& input, const PackedScene& packed, Triangle
 
 void check_packed(const SceneInput& input, const PackedScene& packed, const SceneRequest& request,
                   const ImageLimits& limits) {
-  const GridRecord& grid = packed.view.grid;
   require_format(input, packed, limits.format);
-  if (limits.has_tree && !packed.view.has_tree) {
-    input_error(input.path, "was packed without a tree; pack it with --configuration tree");
-  }
-  if (request.lambda && *request.lambda != grid.lambda) {
-    input_error(input.path, "was packed with lambda " + text_of(grid.lambda) + "; --lambda cannot change it");
-  }
-  if (grid.macro_width > limits.most_macro_width) {
-    input_error(input.path, "was packed with macrocells of width " + std::to_string(grid.macro_width) +
-                                "; the local store holds cell blocks of width " +
-                                std::to_string(limits.most_macro_width));
-  }
-  if (request.macro_width && *request.macro_width != grid.macro_width) {
-    input_error(input.path, "was packed with macrocells of width " + std::to_string(grid.macro_width) +
-                                "; --macro-width cannot change it");
+  require_engine(input, packed, request, limits.engine);
+  if (limits.engine == EngineId::kTree) {
+    require_no_grid_options(request, limits.format);
+  } else {
+    require_grid(input, packed.view.grid, request, limits);
   }
   if (packed.view.header.image_bytes > limits.budget_bytes) {
     input_error(input.path, "the scene needs " + words_of_bytes(packed.view.header.image_bytes) + "; " +

@@ -105,18 +105,18 @@ struct ImageLimits {
   TriangleFormat format = TriangleFormat::kVertices;
   std::uint64_t budget_bytes = 0;                   ///< of main memory
   std::uint32_t most_macro_width = kMaxMacroWidth;  ///< of the local store; a configuration's width is limited to it
-  bool has_tree = false;                            ///< eye rays go through the tree
+  EngineId engine = EngineId::kGrid;                ///< of eye rays: an image is built with what it reads
 };
 
-/// The grid that a mesh will get, or the grid of a packed scene.
+/// The image that a mesh will get: its grid, or that it has none.
 struct GridChoice {
   GridParameters parameters;
   GridNeed need;
-  float wanted_lambda = 0;  ///< of the configuration or the command line
+  float wanted_lambda = 0;  ///< of the configuration or the command line; no matter without a grid
   std::uint64_t budget_bytes = 0;
 
   [[nodiscard]] bool fits() const { return need.image_bytes <= budget_bytes; }
-  [[nodiscard]] bool is_reduced() const { return parameters.lambda != wanted_lambda; }
+  [[nodiscard]] bool is_reduced() const { return parameters.has_grid && parameters.lambda != wanted_lambda; }
 };
 
 /// Bytes of main memory for the waiting rays of all cores, including losses by alignment.
@@ -138,7 +138,8 @@ void require_format(const SceneInput& input, const PackedScene& packed, Triangle
 
 /// Chooses the grid of a mesh: the wanted lambda, halved until the image fits the budget unless the command line fixed
 /// it. If nothing fits, the choice says so and has the least need found.
-/// @param effects  for the image; null: none. Errors: Failure (kBadInput) if there is nothing to trace.
+/// @param effects  for the image; null: none. Errors: Failure (kBadInput) if there is nothing to trace; kUsage for
+/// options of a grid where there is none.
 [[nodiscard]] GridChoice choose_grid(const SceneInput& input, const Mesh& mesh, const SceneRequest& request,
                                      const ImageLimits& limits, const EffectsView* effects = nullptr);
 
@@ -154,8 +155,8 @@ void require_fit(const GridChoice& choice, const SceneRequest& request, const Sc
 [[nodiscard]] SceneImageView build_image(const SceneInput& input, const Mesh& mesh, const GridChoice& choice,
                                          std::span<std::byte> image, const EffectsView* effects = nullptr);
 
-/// Throws Failure (kBadInput) if a packed scene cannot be used as requested: another format, other grid parameters than
-/// the command line fixes, or larger than the budget.
+/// Throws Failure (kBadInput) if a packed scene cannot be used as requested: another format, without what the engine
+/// reads, other grid parameters than the command line fixes, or larger than the budget.
 void check_packed(const SceneInput& input, const PackedScene& packed, const SceneRequest& request,
                   const ImageLimits& limits);
 

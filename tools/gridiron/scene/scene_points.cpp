@@ -99,14 +99,15 @@ void visit_points(const MeshView& mesh, const PointVisitor& visitor) {
 }
 
 void visit_points(const SceneImageView& view, std::span<const std::byte> image, const PointVisitor& visitor) {
-  const GridRecord& grid = view.grid;
+  const GridRecord& grid = view.grid;  // without one the tree's bounds, format and lattice
   const auto format = static_cast<TriangleFormat>(grid.triangle_format);
+  const std::uint64_t records_offset = view.has_grid ? view.triangles_offset_bytes : view.tree.triangles_offset_bytes;
+  const std::uint64_t record_count = view.has_grid ? grid.reference_count : view.tree.triangle_count;
   // Most triangles are in several cells. An image may name more of them than it has.
-  std::vector<bool> is_known(
-      std::min(std::uint64_t{view.header.triangle_count}, std::uint64_t{8} * grid.reference_count));
+  std::vector<bool> is_known(std::min(std::uint64_t{view.header.triangle_count}, std::uint64_t{8} * record_count));
   Groups groups(visitor);
   const auto visit = [&](std::uint64_t record) {
-    const std::uint64_t offset = view.triangles_offset_bytes + record * grid.triangle_bytes;
+    const std::uint64_t offset = records_offset + record * grid.triangle_bytes;
     const auto id = read_record<std::uint32_t>(image, offset + grid.triangle_bytes - sizeof(std::uint32_t));
     if (id < is_known.size()) {
       if (is_known[id]) return;
@@ -126,11 +127,11 @@ void visit_points(const SceneImageView& view, std::span<const std::byte> image, 
     }
     for (const Vec3& corner : corners) groups.add(corner);
   };
-  // Records are ordered by cell. Samples from everywhere come first, since most of the others lie between those.
+  // Records are ordered by place. Samples from everywhere come first, since most of the others lie between those.
   constexpr std::uint64_t kRun = 32, kRuns = 64;
   for (std::uint64_t first = 0; first < kRuns; ++first) {
-    for (std::uint64_t run = first * kRun; run < grid.reference_count; run += kRun * kRuns) {
-      const std::uint64_t end = std::min(run + kRun, std::uint64_t{grid.reference_count});
+    for (std::uint64_t run = first * kRun; run < record_count; run += kRun * kRuns) {
+      const std::uint64_t end = std::min(run + kRun, record_count);
       for (std::uint64_t record = run; record < end; ++record) visit(record);
     }
   }

@@ -6,10 +6,10 @@
 #include <gridiron/build/grid/cell_rows.h>
 #include <gridiron/build/grid/grid_builder.h>
 #include <gridiron/build/grid/image_layout.h>
-#include <gridiron/build/triangle_records.h>
 #include <gridiron/build/lattice.h>
 #include <gridiron/build/tree/tree_builder.h>
 #include <gridiron/build/tree/tree_sections.h>
+#include <gridiron/build/triangle_records.h>
 
 namespace gridiron {
 namespace {
@@ -30,7 +30,8 @@ SectionEntry section(SectionKind kind, std::uint64_t element_bytes, std::uint64_
 }
 
 template <class Mesh>
-void write_directory(const Mesh& mesh, const GridNeed& need, const ImageLayout& layout, std::byte* image) {
+void write_directory(const Mesh& mesh, const GridNeed& need, bool has_grid, const ImageLayout& layout,
+                     std::byte* image) {
   const GridRecord& grid = need.grid;
   clear(image, 0, layout.cell_blocks_offset);
   ImageHeader header{};
@@ -43,23 +44,23 @@ void write_directory(const Mesh& mesh, const GridNeed& need, const ImageLayout& 
   header.vertex_count = static_cast<std::uint32_t>(mesh.vertices.size());
   header.dropped_triangle_count = need.dropped_triangle_count;
   store(image, 0, header);
-  const SectionEntry sections[kSectionCount] = {
-      section(SectionKind::kGrid, sizeof(GridRecord), 1, layout.grid_offset, layout.macro_table_offset),
-      section(SectionKind::kMacroTable, sizeof(MacroTableEntry), layout.macro_table_entries, layout.macro_table_offset,
-              layout.cell_blocks_offset),
-      section(SectionKind::kCellBlocks, grid.cell_block_bytes, grid.cell_block_count, layout.cell_blocks_offset,
-              layout.triangles_offset),
-      section(SectionKind::kTriangles, grid.triangle_bytes, grid.reference_count, layout.triangles_offset,
-              layout.effects.begin_bytes)};
-  store(image, layout.section_table_offset, sections);
-  std::uint64_t entry_at = layout.section_table_offset + sizeof sections;
+  std::uint64_t entry_at = layout.section_table_offset;
   const auto append_entry = [&](const SectionEntry& entry) {
     store(image, entry_at, entry);
     entry_at += sizeof entry;
   };
+  if (has_grid) {
+    store(image, layout.grid_offset, grid);
+    append_entry(section(SectionKind::kGrid, sizeof(GridRecord), 1, layout.grid_offset, layout.macro_table_offset));
+    append_entry(section(SectionKind::kMacroTable, sizeof(MacroTableEntry), layout.macro_table_entries,
+                         layout.macro_table_offset, layout.cell_blocks_offset));
+    append_entry(section(SectionKind::kCellBlocks, grid.cell_block_bytes, grid.cell_block_count,
+                         layout.cell_blocks_offset, layout.triangles_offset));
+    append_entry(section(SectionKind::kTriangles, grid.triangle_bytes, grid.reference_count, layout.triangles_offset,
+                         layout.effects.begin_bytes));
+  }
   for (std::uint32_t i = 0; i < layout.effects.section_count; ++i) append_entry(layout.effects.entries[i]);
   for (std::uint32_t i = 0; i < layout.tree.section_count; ++i) append_entry(layout.tree.entries[i]);
-  store(image, layout.grid_offset, grid);
 }
 
 // The lists of references before they become triangle records. They lie in the triangle section itself, which has w
@@ -268,20 +269,12 @@ void write_triangles(const Mesh& mesh, const GridRecord& grid, const std::uint32
   check.add({triangles + checked_bytes, static_cast<std::size_t>(padded_end - checked_bytes)});
 }
 
-// Writes the image without the sections of effects, and adds what stands before them to the check value.
-// @param layout  image_bytes and the number of nodes become those of the image that is written.
+// Writes the grid's cells and triangles, and adds what stands before their end to the check value.
 // Errors: kBadParameter if the mesh is not the one that was counted.
 template <class Mesh>
-Status write_image(const Mesh& mesh, const GridNeed& need, std::span<std::byte> scratch, ImageLayout& layout,
-                   std::byte* bytes, CheckValue& check) {
-  const GridRecord& grid = need.grid;
-  // The directory says how many nodes the tree has, so the tree comes first.
-  if (layout.tree.section_count != 0) {
-    GRIDIRON_TRY(write_tree_sections(mesh, scratch, layout.tree, bytes));
-    layout.image_bytes = layout.tree.end_bytes;
-  }
+Status write_grid(const Mesh& mesh, const GridRecord& grid, const ImageLayout& layout, std::byte* bytes,
+                  CheckValue& check) {
   std::byte* const triangles = bytes + layout.triangles_offset;
-  write_directory(mesh, need, layout, bytes);
   enter_step<GridStep::kClearedLine>();
   clear(bytes, layout.cell_blocks_offset, layout.triangles_offset);
   auto* const macro_table = reinterpret_cast<MacroTableEntry*>(bytes + layout.macro_table_offset);
@@ -302,6 +295,43 @@ Status write_image(const Mesh& mesh, const GridNeed& need, std::span<std::byte> 
   return Status::kOk;
 }
 
+bool are_bounds_of(const GridRecord& grid, const TreeRecord& tree) {
+  bool same = true;
+  for (int axis = 0; axis < 3; ++axis) {
+    same = same && grid.bounds_minimum[axis] == tree.bounds_minimum[axis] &&
+           grid.bounds_maximum[axis] == tree.bounds_maximum[axis];
+  }
+  return same;
+}
+
+// Writes the image without the sections of effects, and adds what stands before them to the check value.
+// @param layout  image_bytes and the number of nodes become those of the image that is written.
+// Errors: kBadParameter if the mesh is not the one that was counted.
+template <class Mesh>
+Status write_image(const Mesh& mesh, const GridNeed& need, bool has_grid, std::span<std::byte> scratch,
+                   ImageLayout& layout, std::byte* bytes, CheckValue& check) {
+  // The directory says how many nodes the tree has, so the tree comes first.
+  if (layout.tree.section_count != 0) {
+    GRIDIRON_TRY(write_tree_sections(mesh, scratch, layout.tree, bytes));
+    layout.image_bytes = layout.tree.end_bytes;
+  }
+  write_directory(mesh, need, has_grid, layout, bytes);
+  if (has_grid) return write_grid(mesh, need.grid, layout, bytes, check);
+  if (!are_bounds_of(need.grid, layout.tree.record)) return Status::kBadParameter;
+  check.add({bytes, static_cast<std::size_t>(layout.effects.begin_bytes)});
+  return Status::kOk;
+}
+
+// Whether the grid is one that counting with these parameters gives, by what the builder relies on.
+bool is_counted_with(const GridParameters& parameters, const GridRecord& grid) {
+  if (grid.triangle_format != static_cast<std::uint32_t>(parameters.format) ||
+      grid.triangle_bytes != triangle_bytes_of(parameters.format)) {
+    return false;
+  }
+  if (!parameters.has_grid) return grid.reference_count == 0 && grid.cell_block_count == 0;
+  return grid.lambda == parameters.lambda && grid.macro_width == parameters.macro_width;
+}
+
 }  // namespace
 
 Status build_scene_image(const MeshView& mesh, const GridParameters& parameters, const GridNeed& need,
@@ -311,7 +341,7 @@ Status build_scene_image(const MeshView& mesh, const GridParameters& parameters,
   const GridRecord& grid = need.grid;
   EffectsRecord record{};
   const bool has_tree = effects != nullptr || parameters.has_tree;
-  if (has_tree && !may_have_tree(parameters)) return Status::kBadParameter;
+  GRIDIRON_TRY(check_parts(parameters, has_tree));
   if (effects != nullptr) {
     if (check_effects(mesh, *effects) != Status::kOk) return Status::kBadParameter;
     record = count_effects(*effects);
@@ -321,21 +351,19 @@ Status build_scene_image(const MeshView& mesh, const GridParameters& parameters,
   ImageLayout layout = layout_of(grid, {effects != nullptr ? &record : nullptr, triangle_count,
                                         triangle_count - need.dropped_triangle_count, parameters});
   const std::uint64_t scratch_bytes = has_tree ? tree_scratch_bytes(triangle_count) : 0;
-  const bool need_ok = grid.lambda == parameters.lambda && grid.macro_width == parameters.macro_width &&
-                       grid.triangle_format == static_cast<std::uint32_t>(parameters.format) &&
-                       grid.triangle_bytes == triangle_bytes_of(parameters.format) &&
-                       need.image_bytes == layout.image_bytes && need.scratch_bytes == scratch_bytes &&
-                       triangle_count <= kMaxCount && mesh.vertices.size() <= kMaxCount;
+  const bool need_ok = is_counted_with(parameters, grid) && need.image_bytes == layout.image_bytes &&
+                       need.scratch_bytes == scratch_bytes && triangle_count <= kMaxCount &&
+                       mesh.vertices.size() <= kMaxCount;
   if (!need_ok || reinterpret_cast<std::uintptr_t>(image.data()) % kLineBytes != 0) return Status::kBadParameter;
   if (image.size() < need.image_bytes || scratch.size() < need.scratch_bytes) return Status::kMemoryTooSmall;
 
   CheckValue check;
   if (parameters.format != TriangleFormat::kLattice) {
-    GRIDIRON_TRY(write_image(mesh, need, scratch, layout, image.data(), check));
+    GRIDIRON_TRY(write_image(mesh, need, parameters.has_grid, scratch, layout, image.data(), check));
   } else {
     if (!(grid.lattice.step >= kLeastLatticeStep)) return Status::kBadParameter;
     const LatticeMesh moved{{mesh.vertices, grid.lattice}, mesh.triangles};
-    GRIDIRON_TRY(write_image(moved, need, scratch, layout, image.data(), check));
+    GRIDIRON_TRY(write_image(moved, need, parameters.has_grid, scratch, layout, image.data(), check));
   }
   if (effects != nullptr) {
     write_effect_sections(mesh, *effects, grid, layout.effects, image.data());

@@ -1,6 +1,6 @@
-// Builds the scene image (grid, macrocells, sorted triangle references; with effects the wide tree too) from a mesh, in
-// memory of the caller.
-// Source: Cho, Kim, Han 2012, sections 3.1 and 3.2. Memory: caller's. Threads: one. SPDX-License-Identifier: Apache-2.0
+// Builds the scene image from a mesh, in memory of the caller: grid (macrocells, sorted triangle references), wide
+// tree, effects. Source: Cho, Kim, Han 2012, sections 3.1 and 3.2. Memory: caller's. Threads: one.
+// SPDX-License-Identifier: Apache-2.0
 #pragma once
 
 #include <gridiron/base/records.h>
@@ -14,13 +14,15 @@
 
 namespace gridiron {
 
-/// Parameters of the grid and of the tree.
+/// Parameters of the grid and of the tree, and which of them an image holds. An image needs what the engines of its
+/// frames read: GridEngine the grid, TileEngine and the rays of effects the tree.
 struct GridParameters {
   float lambda = 4.0f;                                ///< cells per triangle, Eq. (1); 1e-6..1e6
   std::uint32_t macro_width = 6;                      ///< m; 1..kMaxMacroWidth
   TriangleFormat format = TriangleFormat::kVertices;  ///< how triangles are stored
   std::uint32_t leaf_triangles = 8;                   ///< of a leaf of the tree, at most; 1..kMaxTreeLeaf
   bool has_tree = false;                              ///< a tree without effects too, for EngineId::kTree
+  bool has_grid = true;                               ///< false: the tree alone, for EngineId::kTree; needs the tree
 };
 
 /// What had to be cut to know which cells triangles touch.
@@ -43,7 +45,7 @@ struct GridSteps {
 
 /// What a scene image of a mesh will hold and need. All is exact, but image_bytes with a tree.
 struct GridNeed {
-  GridRecord grid;                       ///< complete, as it will stand in the image
+  GridRecord grid;                       ///< as it will stand in the image; without a grid resolve_empty_grid's
   std::uint32_t dropped_triangle_count;  ///< zero-area triangles (decided exactly)
   std::uint64_t image_bytes;  ///< memory to build the image in, a multiple of kLineBytes: the size of an image without
                               ///< a tree. A tree's nodes, its end, are counted while they are built; then
@@ -51,7 +53,7 @@ struct GridNeed {
                               ///< the size is ImageHeader::image_bytes.
   std::uint64_t scratch_bytes;  ///< working memory of build_scene_image, free again afterwards; tree_scratch_bytes of
                                 ///< all triangles, 0 without a tree
-  GridSteps steps;              ///< for those who keep time
+  GridSteps steps;              ///< for those who keep time; 0 without a grid
 };
 
 inline constexpr std::uint64_t kAnyImageBytes = ~std::uint64_t{0};  ///< for an image whose size has no limit
@@ -71,9 +73,9 @@ inline constexpr std::uint64_t kAnyImageBytes = ~std::uint64_t{0};  ///< for an 
                                        std::uint64_t most_image_bytes = kAnyImageBytes,
                                        std::span<std::uint64_t> marks = {});
 
-/// Counts as count_scene_image does, with the greatest lambda of parameters.lambda, its half, its quarter and so on
-/// whose image fits. need.grid.lambda is that lambda. If none fits, `need` describes the last one tried, 1e-6 or a grid
-/// of one cell, and need.image_bytes is more than most_image_bytes.
+/// Counts as count_scene_image does. A grid gets the greatest lambda of parameters.lambda, its half, its quarter and so
+/// on whose image fits; need.grid.lambda is that lambda. If none fits, `need` describes the last one tried, 1e-6 or a
+/// grid of one cell, and need.image_bytes is more than most_image_bytes; so it is without a grid.
 ///
 /// Errors: as count_scene_image; kTooManyTriangles only if the last lambda has too many references.
 /// Cost: one count for each lambda that a bound of its references does not rule out.

@@ -5,9 +5,9 @@
 #include <gridiron/build/grid/grid_builder.h>
 #include <gridiron/build/grid/grid_resolution.h>
 #include <gridiron/build/grid/image_layout.h>
-#include <gridiron/build/triangle_records.h>
 #include <gridiron/build/lattice.h>
 #include <gridiron/build/tree/tree_builder.h>
+#include <gridiron/build/triangle_records.h>
 
 #include <bit>
 
@@ -30,8 +30,8 @@ bool all_in_range(std::span<const Vec3> vertices) {
 
 // A mesh below is a MeshView, or a LatticeMesh of one: the triangles as they will be stored.
 
-// Checks of indices, zero areas, and the triangles that are kept: their tight bounds, and sums that bound their
-// references.
+// Checks of indices, zero areas, and the triangles that are kept: their tight bounds, and for a grid sums that bound
+// their references.
 struct KeptTriangles {
   std::uint64_t count = 0;
   Vec3 minimum{kFloatMax, kFloatMax, kFloatMax};
@@ -41,7 +41,7 @@ struct KeptTriangles {
 };
 
 template <class Mesh>
-Status survey(const Mesh& mesh, KeptTriangles& kept) {
+Status survey(const Mesh& mesh, bool has_grid, KeptTriangles& kept) {
   enter_step<kIsOnLattice<Mesh> ? GridStep::kLatticeBox : GridStep::kTriangleSurvey>();
   const std::uint64_t vertex_count = mesh.vertices.size();
   for (const UVec3& t : mesh.triangles) {
@@ -51,16 +51,20 @@ Status survey(const Mesh& mesh, KeptTriangles& kept) {
     const Vec3& c = mesh.vertices[t.z];
     if (has_zero_area(a, b, c)) continue;
     ++kept.count;
-    double e1[3];
-    double e2[3];
+    Vec3 least, greatest;
     for (int axis = 0; axis < 3; ++axis) {
       const float low = a[axis] < b[axis] ? a[axis] : b[axis];
       const float high = a[axis] < b[axis] ? b[axis] : a[axis];
-      const float least = low < c[axis] ? low : c[axis];
-      const float greatest = high > c[axis] ? high : c[axis];
-      kept.minimum[axis] = least < kept.minimum[axis] ? least : kept.minimum[axis];
-      kept.maximum[axis] = greatest > kept.maximum[axis] ? greatest : kept.maximum[axis];
-      kept.extents[axis] += double{greatest} - double{least};
+      least[axis] = low < c[axis] ? low : c[axis];
+      greatest[axis] = high > c[axis] ? high : c[axis];
+      kept.minimum[axis] = least[axis] < kept.minimum[axis] ? least[axis] : kept.minimum[axis];
+      kept.maximum[axis] = greatest[axis] > kept.maximum[axis] ? greatest[axis] : kept.maximum[axis];
+    }
+    if (!has_grid) continue;
+    double e1[3];
+    double e2[3];
+    for (int axis = 0; axis < 3; ++axis) {
+      kept.extents[axis] += double{greatest[axis]} - double{least[axis]};
       e1[axis] = double{b[axis]} - double{a[axis]};
       e2[axis] = double{c[axis]} - double{a[axis]};
     }
@@ -205,19 +209,31 @@ std::uint64_t image_bytes_of(const Request& request, GridRecord grid, std::uint6
   return layout_of(grid, {request.effects, request.triangle_count, request.kept_count, request.parameters}).image_bytes;
 }
 
-// Makes the grid over the kept triangles; references and blocks are counted later. @param grid  so far: the lattice.
-void make_grid(const Request& request, const KeptTriangles& kept, float lambda, GridRecord& grid) {
-  const GridParameters& parameters = request.parameters;
+// Bounds and format of the kept triangles. @param grid  so far: the lattice.
+void describe(const GridParameters& parameters, const KeptTriangles& kept, GridRecord& grid) {
   for (int axis = 0; axis < 3; ++axis) {
     grid.bounds_minimum[axis] = kept.minimum[axis] + 0.0f;  // no negative zero
     grid.bounds_maximum[axis] = kept.maximum[axis] + 0.0f;
   }
+  grid.triangle_format = static_cast<std::uint32_t>(parameters.format);
+  grid.triangle_bytes = triangle_bytes_of(parameters.format);
+}
+
+// Makes the grid over the kept triangles; references and blocks are counted later.
+void make_grid(const Request& request, float lambda, GridRecord& grid) {
+  const GridParameters& parameters = request.parameters;
   grid.lambda = lambda;
   grid.macro_width = parameters.macro_width;
   grid.cell_block_bytes = cell_block_bytes_of(parameters.format, parameters.macro_width);
-  grid.triangle_format = static_cast<std::uint32_t>(parameters.format);
-  grid.triangle_bytes = triangle_bytes_of(parameters.format);
   resolve_grid(request.resolved_count, grid);
+}
+
+// What a need has besides grid and steps.
+template <class Mesh>
+void add_other_needs(const Mesh& mesh, const Request& request, GridNeed& need) {
+  need.dropped_triangle_count = static_cast<std::uint32_t>(mesh.triangles.size() - request.kept_count);
+  const bool has_tree = request.effects != nullptr || request.parameters.has_tree;
+  need.scratch_bytes = has_tree ? tree_scratch_bytes(request.triangle_count) : 0;
 }
 
 // Counts references and non-empty macrocells. The first sweep covers every triangle, the others those beyond its
@@ -271,10 +287,19 @@ Status count_grid(const Mesh& mesh, const Request& request, const KeptTriangles&
   grid.cell_block_count = static_cast<std::uint32_t>(block_count);
 
   need.grid = grid;
-  need.dropped_triangle_count = static_cast<std::uint32_t>(mesh.triangles.size() - kept.count);
-  const bool has_tree = request.effects != nullptr || request.parameters.has_tree;
-  need.scratch_bytes = has_tree ? tree_scratch_bytes(request.triangle_count) : 0;
   need.steps = steps;
+  add_other_needs(mesh, request, need);
+  return Status::kOk;
+}
+
+// Without a grid the size follows from the numbers of triangles, and nothing makes it smaller.
+template <class Mesh>
+Status count_without_grid(const Mesh& mesh, const Request& request, GridRecord grid, GridNeed& need) {
+  resolve_empty_grid(grid);
+  need.image_bytes = image_bytes_of(request, grid, 0, 0);
+  if (!request.may_reduce && need.image_bytes > request.most_bytes) return Status::kMemoryTooSmall;
+  need.grid = grid;
+  add_other_needs(mesh, request, need);
   return Status::kOk;
 }
 
@@ -284,9 +309,11 @@ Status count_mesh(const Mesh& mesh, const Request& request, const KeptTriangles&
                   GridNeed& need) {
   enter_step<GridStep::kBuildOnce>();
   if (kept.count == 0) return Status::kNoTriangles;
+  describe(request.parameters, kept, grid);
+  if (!request.parameters.has_grid) return count_without_grid(mesh, request, grid, need);
   float lambda = request.parameters.lambda;
   for (;;) {
-    make_grid(request, kept, lambda, grid);
+    make_grid(request, lambda, grid);
     if (!request.may_reduce) return count_grid(mesh, request, kept, request.most_bytes, grid, need);
     const bool is_last = lambda <= kLeastLambda || has_one_cell(grid);
     const Status status = count_grid(mesh, request, kept, is_last ? kAnyImageBytes : request.most_bytes, grid, need);
@@ -298,7 +325,8 @@ Status count_mesh(const Mesh& mesh, const Request& request, const KeptTriangles&
 Status count_geometry(const MeshView& mesh, Request request, GridNeed& need) {
   GridRecord grid{};
   KeptTriangles kept;
-  GRIDIRON_TRY(survey(mesh, kept));
+  const bool has_grid = request.parameters.has_grid;
+  GRIDIRON_TRY(survey(mesh, has_grid, kept));
   request.resolved_count = kept.count;
   request.kept_count = kept.count;
   if (request.parameters.format != TriangleFormat::kLattice) return count_mesh(mesh, request, kept, grid, need);
@@ -307,7 +335,7 @@ Status count_geometry(const MeshView& mesh, Request request, GridNeed& need) {
   GRIDIRON_TRY(find_lattice(mesh, grid.lattice));
   const LatticeMesh moved{{mesh.vertices, grid.lattice}, mesh.triangles};
   KeptTriangles moved_kept;
-  GRIDIRON_TRY(survey(moved, moved_kept));
+  GRIDIRON_TRY(survey(moved, has_grid, moved_kept));
   request.kept_count = moved_kept.count;
   return count_mesh(moved, request, moved_kept, grid, need);
 }
@@ -316,7 +344,7 @@ Status count_within(const MeshView& mesh, Request request, const EffectsView* ef
   enter_step<GridStep::kBuildOnce>();
   GRIDIRON_TRY(check_parameters(request.parameters));
   const bool has_tree = effects != nullptr || request.parameters.has_tree;
-  if (has_tree && !may_have_tree(request.parameters)) return Status::kBadParameter;
+  GRIDIRON_TRY(check_parts(request.parameters, has_tree));
   if (mesh.triangles.size() > kMaxCount || mesh.vertices.size() > kMaxCount) return Status::kTooManyTriangles;
   if (has_tree && mesh.triangles.size() > kMaxTreeTriangles) return Status::kTooManyTriangles;
   if (!all_in_range(mesh.vertices)) return Status::kBadVertex;

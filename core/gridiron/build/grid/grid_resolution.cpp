@@ -98,4 +98,11 @@ void resolve_grid(std::uint64_t triangle_count, GridRecord& grid) {
   }
 }
 
+// With 1e-6 cells wanted in all, every round of solve_resolution closes an axis.
+void resolve_empty_grid(GridRecord& grid) {
+  grid.lambda = kLeastLambda;
+  grid.macro_width = 1;
+  resolve_grid(1, grid);
+}
+
 }  // namespace gridiron

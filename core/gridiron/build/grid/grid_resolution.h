@@ -17,6 +17,12 @@ inline constexpr float kGreatestLambda = 1e6f;
 /// @param triangle_count  n of Eq. (1), at least 1.
 void resolve_grid(std::uint64_t triangle_count, GridRecord& grid);
 
+/// Completes the grid of an image without one: a cell over the bounds that holds nothing. Its other fields are those of
+/// the tree. Lights and rays of ambient occlusion have the limits that they have beside a grid of one cell.
+///
+/// @param grid  bounds, lattice, triangle_format and triangle_bytes.
+void resolve_empty_grid(GridRecord& grid);
+
 /// @returns whether the grid is one cell: no smaller lambda makes it coarser.
 [[nodiscard]] constexpr bool has_one_cell(const GridRecord& grid) {
   return grid.cell_count[0] == 1 && grid.cell_count[1] == 1 && grid.cell_count[2] == 1;

@@ -16,7 +16,6 @@
 namespace gridiron {
 
 inline constexpr std::uint64_t kMaxCount = 0xFFFFFFFFu;
-inline constexpr std::uint32_t kSectionCount = 4;  ///< of geometry
 
 inline Status check_parameters(const GridParameters& parameters) {
   const bool lambda_ok = parameters.lambda >= kLeastLambda && parameters.lambda <= kGreatestLambda;
@@ -28,14 +27,16 @@ inline Status check_parameters(const GridParameters& parameters) {
   return lambda_ok && width_ok && format_ok && leaf_ok ? Status::kOk : Status::kBadParameter;
 }
 
-/// Surfaces and the tree store vertices, which a projection does not have.
-inline bool may_have_tree(const GridParameters& parameters) {
-  return parameters.format != TriangleFormat::kProjection;
+/// Whether these can be parts of one image. Surfaces and the tree store vertices, which a projection does not have.
+inline Status check_parts(const GridParameters& parameters, bool has_tree) {
+  const bool parts_ok = has_tree ? parameters.format != TriangleFormat::kProjection : parameters.has_grid;
+  return parts_ok ? Status::kOk : Status::kBadParameter;
 }
 
 // --- Layout -----------------------------------------------------------------------------------------------------
 
-// Offsets of all parts; they follow from the counts, but for the end of the tree's nodes.
+// Offsets of all parts; they follow from the counts, but for the end of the tree's nodes. Without a grid its parts take
+// no bytes.
 struct ImageLayout {
   std::uint64_t section_table_offset, grid_offset, macro_table_offset, cell_blocks_offset, triangles_offset;
   std::uint64_t macro_table_entries;
@@ -45,25 +46,27 @@ struct ImageLayout {
   std::uint64_t image_bytes;
 };
 
-// What an image holds besides the grid.
+// What an image holds.
 struct ImageParts {
   const EffectsRecord* effects;  // as counted; null: none
   std::uint64_t triangle_count;  // of the input
   std::uint64_t kept_count;      // of these, those that have an area as they are stored
   const GridParameters& parameters;
 
+  [[nodiscard]] bool has_grid() const { return parameters.has_grid; }
   [[nodiscard]] bool has_tree() const { return effects != nullptr || parameters.has_tree; }
 };
 
 inline ImageLayout layout_of(const GridRecord& grid, const ImageParts& parts) {
   constexpr std::uint64_t kLine = kLineBytes;
   ImageLayout layout{};
-  layout.macro_table_entries = (macro_cell_total(grid) + 31) / 32;
+  layout.macro_table_entries = parts.has_grid() ? (macro_cell_total(grid) + 31) / 32 : 0;
   layout.section_table_offset = round_up<std::uint64_t>(sizeof(ImageHeader), kLine);
-  layout.section_count = kSectionCount + (parts.effects != nullptr ? effect_section_count(*parts.effects) : 0) +
+  layout.section_count = (parts.has_grid() ? Sections::kGridCount : 0) +
+                         (parts.effects != nullptr ? effect_section_count(*parts.effects) : 0) +
                          (parts.has_tree() ? kTreeSectionCount : 0);
   layout.grid_offset = round_up(layout.section_table_offset + layout.section_count * sizeof(SectionEntry), kLine);
-  layout.macro_table_offset = round_up(layout.grid_offset + sizeof(GridRecord), kLine);
+  layout.macro_table_offset = round_up(layout.grid_offset + (parts.has_grid() ? sizeof(GridRecord) : 0), kLine);
   layout.cell_blocks_offset =
       round_up(layout.macro_table_offset + layout.macro_table_entries * sizeof(MacroTableEntry), kLine);
   layout.triangles_offset =

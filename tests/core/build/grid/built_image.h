@@ -98,7 +98,9 @@ inline BuiltImage build_image(const MeshView& mesh, const GridParameters& parame
   EXPECT_LE(built.view.header.image_bytes, built.need.image_bytes);
   EXPECT_TRUE(effects != nullptr || parameters.has_tree || built.view.header.image_bytes == built.need.image_bytes);
   built.image.shrink(static_cast<std::size_t>(built.view.header.image_bytes));
-  built.cells = read_cells(built.image.bytes(), built.view);
+  EXPECT_EQ(built.view.has_grid, parameters.has_grid);
+  EXPECT_EQ(built.view.has_tree, effects != nullptr || parameters.has_tree);
+  if (built.view.has_grid) built.cells = read_cells(built.image.bytes(), built.view);
   return built;
 }
 
