@@ -1,5 +1,6 @@
 // Tiles of eye rays through the tree show, pixel by pixel, what exact arithmetic finds triangle by triangle.
 // SPDX-License-Identifier: Apache-2.0
+#include <gridiron/base/one_lane.h>
 #include <gridiron/build/triangle_records.h>
 #include <gridiron/engine/tree/tile_tracer.h>
 #include <gridiron/frame/frame_setup.h>
@@ -194,7 +195,7 @@ const Camera kCameras[] = {
 
 template <class L>
 class TileTracerTest : public testing::Test {};
-using TiledLanes = testing::Types<Lanes<4>, Lanes<8>, Lanes<16>>;
+using TiledLanes = testing::Types<Lanes<1>, Lanes<4>, Lanes<8>, Lanes<16>>;
 TYPED_TEST_SUITE(TileTracerTest, TiledLanes);
 
 TYPED_TEST(TileTracerTest, EveryPixelIsThatOfExactArithmetic) {
