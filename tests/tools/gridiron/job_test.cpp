@@ -58,6 +58,9 @@ const std::vector<JobCase> kCases = {
     {{"--size", "64x64", "--accuracy", "exact", "--lambda", "2"}},
     {{"--size", "64x64", "--accuracy", "paper", "--shading", "none"}},
     {{"--size", "64x64", "--accuracy", "compact", "--packet", "32"}},
+    {{"--size", "96x64", "--configuration", "tree"}},
+    {{"--size", "96x64", "--configuration", "tree", "--store", "64", "--accuracy", "compact"}},
+    {{"--configuration", "tree", "--cores", "5"}, "a.nff"},
     {{"--cores", "5"}, "a.nff"},
     {{"--store", "64"}, "a.nff", false},
 };
@@ -79,8 +82,12 @@ TEST(Job, NamesWhatLiesInIt) {
     const auto record = record_at<FrameRecord>(file, job.frame_address - kBase);
     EXPECT_EQ(record.width, job.width);
     EXPECT_EQ(record.tiles_x * record.tiles_y, job.tile_count);
-    for (const std::uint64_t part :
-         {record.engine.macro_table_address, record.engine.cell_blocks_address, record.engine.triangles_address}) {
+    const bool has_tree = record.engine_id == static_cast<std::uint32_t>(EngineId::kTree);
+    const std::vector<std::uint64_t> parts =
+        has_tree ? std::vector{record.image_address, record.tree_address}
+                 : std::vector{record.engine.macro_table_address, record.engine.cell_blocks_address,
+                               record.engine.triangles_address};
+    for (const std::uint64_t part : parts) {
       EXPECT_TRUE(lies_in(part, kLineBytes, job.image_address, job.image_address + job.image_bytes));
     }
     const std::uint64_t head = sizeof(FrameResult) + job.tile_count * sizeof(port::TileResult);

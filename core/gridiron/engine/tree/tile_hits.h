@@ -51,11 +51,11 @@ struct TilePlanes {
   bool facing, distance;
 };
 
-/// @tparam Source  as of TileTracer.
-template <class L, std::uint32_t Width, class Source>
+/// @tparam Source, MostLanes  as of TileTracer.
+template <class L, std::uint32_t Width, class Source, std::uint32_t MostLanes = 16>
 class TileHits {
  public:
-  using Memory = TileMemory<Width>;
+  using Memory = TileMemory<Width, MostLanes>;
   TileHits(Memory& memory, Source& source, WorkCounters& work) : memory_(memory), source_(source), work_(work) {}
 
   /// Begins a tile whose first pixel lies in the picture. Borrows frame and eye.
@@ -293,7 +293,8 @@ class TileHits {
   }
   // Directions of a group of pixels, as FrameHead defines them.
   GRIDIRON_INLINE void directions(std::uint32_t block, std::uint32_t i, Float (&dir)[3]) const {
-    const std::uint32_t column = block % kRow * kBlockWidth + column_of(i), row = block / kRow * kBlockWidth + i / kBlockWidth;
+    const std::uint32_t column = block % kRow * kBlockWidth + column_of(i),
+                        row = block / kRow * kBlockWidth + i / kBlockWidth;
     for (int axis = 0; axis < 3; ++axis) {
       dir[axis] =
           L::repeat_quad(memory_.column_direction[axis] + column) + L::splat_quads(memory_.row_direction[axis] + row);

@@ -33,10 +33,11 @@ inline constexpr auto kLaneNumbers = [] {
 /// take turns while what they wait for is on its way.
 /// @tparam Source  where nodes and records are, as of RayLists; record(number, triangle) fetches any record, and what
 ///                 node() and leaf() gave stays until their next call.
-template <class L, std::uint32_t Width, class Source>
+/// @tparam MostLanes  of the memory.
+template <class L, std::uint32_t Width, class Source, std::uint32_t MostLanes = 16>
 class TileTracer {
  public:
-  using Memory = TileMemory<Width>;
+  using Memory = TileMemory<Width, MostLanes>;
   TileTracer(Memory& memory, Source& source, WorkCounters& work)
       : memory_(memory), source_(source), work_(work), hits_(memory, source, work) {}
 
@@ -100,6 +101,7 @@ class TileTracer {
   using Int = typename L::Int;
   static constexpr std::uint32_t kLanes = L::kCount;
   static constexpr std::uint32_t kGroups = kBlockPixels / kLanes;
+  static_assert(kLanes <= MostLanes);
   static_assert(kLanes == 1 || kLanes >= kBlockWidth, "a group is a pixel, or one or several rows of a block");
   static constexpr std::uint32_t kRow = Memory::kBlocksPerRow;
   static constexpr float kBlockStep = kBlockWidth;
@@ -582,7 +584,7 @@ class TileTracer {
   Memory& memory_;
   Source& source_;
   WorkCounters& work_;
-  TileHits<L, Width, Source> hits_;
+  TileHits<L, Width, Source, MostLanes> hits_;
   const EyeProjection* eye_ = nullptr;
   TileProjection tile_{};
   float last_x_ = 0.0f, last_y_ = 0.0f;

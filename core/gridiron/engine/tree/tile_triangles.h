@@ -188,8 +188,8 @@ struct TileGroup {
 
 /// Makes functions of L::kCount triangles of the queue, those from `first` on, relative to the middle of each box.
 /// @param there  lanes with triangles. @param least_near  1 / t below which everything is hidden.
-template <class L, std::uint32_t Width>
-[[nodiscard]] GRIDIRON_INLINE TileGroup set_up_group(TileMemory<Width>& memory, const TileProjection& tile,
+template <class L, std::uint32_t Width, std::uint32_t MostLanes>
+[[nodiscard]] GRIDIRON_INLINE TileGroup set_up_group(TileMemory<Width, MostLanes>& memory, const TileProjection& tile,
                                                      std::uint32_t first, std::uint32_t there, float least_near) {
   using Float = typename L::Float;
   using Int = typename L::Int;

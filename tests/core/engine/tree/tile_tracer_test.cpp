@@ -105,8 +105,10 @@ struct Planes {
 // Two tracers take turns, each with every other tile.
 template <class L>
 std::vector<Shown> traced(MemoryTree& tree, const View& view, WorkCounters& work, bool has_planes = true) {
-  using Tracer = TileTracer<L, kWidth, MemoryTree>;
-  const auto memories = std::make_unique<std::array<TileMemory<kWidth>, 2>>();
+  // No more memory than the lanes take.
+  static constexpr std::uint32_t kMostLanes = L::kCount < 4 ? 4 : L::kCount;
+  using Tracer = TileTracer<L, kWidth, MemoryTree, kMostLanes>;
+  const auto memories = std::make_unique<std::array<TileMemory<kWidth, kMostLanes>, 2>>();
   const auto planes = std::make_unique<Planes>();
   Tracer tracers[2] = {{(*memories)[0], tree, work}, {(*memories)[1], tree, work}};
   const FrameHead& frame = view.frame;
