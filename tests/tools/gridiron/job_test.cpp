@@ -60,7 +60,7 @@ const std::vector<JobCase> kCases = {
     {{"--size", "64x64", "--accuracy", "compact", "--packet", "32"}},
     {{"--size", "96x64", "--configuration", "tree"}},
     {{"--size", "96x64", "--configuration", "tree", "--store", "64", "--accuracy", "compact"}},
-    {{"--configuration", "tree", "--cores", "5"}, "a.nff"},
+    {{"--cores", "5", "--configuration", "tree"}, "a.nff"},
     {{"--cores", "5"}, "a.nff"},
     {{"--store", "64"}, "a.nff", false},
 };
