@@ -47,7 +47,7 @@ void secondary_entry(std::uint32_t core);
 namespace gridiron::port {
 namespace {
 
-#if GRIDIRON_EFFECTS == 0 && defined(GRIDIRON_PACKET_WIDTH)
+#if GRIDIRON_EFFECTS == 0 && defined(GRIDIRON_PACKET_WIDTH) && GRIDIRON_PACKET_WIDTH == 0
 using FirmwareLayout = TreeLayout64K;
 #elif GRIDIRON_EFFECTS == 0
 using FirmwareLayout = StoreLayout64K<8>;
