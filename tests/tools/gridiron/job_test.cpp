@@ -1,6 +1,7 @@
 // job and result: correct files, a device simulated by the host, and damage that is found.
 // SPDX-License-Identifier: Apache-2.0
 #include <gridiron/base/work_counters.h>
+#include <gridiron/engine/tree/tile_work.h>
 #include <report/report.h>
 
 #include <nlohmann/json.hpp>
@@ -241,6 +242,20 @@ TEST(Result, OneDifferenceIsEnough) {
   // Beside the picture an edge tile holds anything: the last pixel of tile 1 is column 63 of 50.
   folder.write("a.res", flip(job.color_address - job.result_address + 2 * 4096 - 1));
   run(folder, {"result", "a.job", "a.res", "--compare"});
+}
+
+// Kinds of work are those of the frame's engine.
+TEST(Result, TilesOfTheTreeAreComparedByTheirOwnKinds) {
+  const TemporaryFolder folder;
+  const std::string file = make_job(folder, {"--size", "70x40", "--configuration", "tree"});
+  std::string result = render_on_host_device(file, 2);
+  folder.write("a.res", result);
+  run(folder, {"result", "a.job", "a.res", "--compare"});
+  const std::size_t leaves = offsetof(FrameResult, cores) + offsetof(port::CoreResult, work) +
+                             4 * static_cast<std::uint64_t>(TileWork::kLeaf);
+  result[leaves] = static_cast<char>(result[leaves] ^ 1);
+  folder.write("a.res", result);
+  expect_failure(folder, {"result", "a.job", "a.res", "--compare"}, 3, "simulator's: work work.leaf");
 }
 
 // Other words of the device for how it counted: other lanes are said, another queue makes a core wait earlier.
