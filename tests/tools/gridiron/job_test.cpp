@@ -251,8 +251,8 @@ TEST(Result, TilesOfTheTreeAreComparedByTheirOwnKinds) {
   std::string result = render_on_host_device(file, 2);
   folder.write("a.res", result);
   run(folder, {"result", "a.job", "a.res", "--compare"});
-  const std::size_t leaves = offsetof(FrameResult, cores) + offsetof(port::CoreResult, work) +
-                             4 * static_cast<std::uint64_t>(TileWork::kLeaf);
+  const std::size_t leaves =
+      offsetof(FrameResult, cores) + offsetof(port::CoreResult, work) + 4 * static_cast<std::uint64_t>(TileWork::kLeaf);
   result[leaves] = static_cast<char>(result[leaves] ^ 1);
   folder.write("a.res", result);
   expect_failure(folder, {"result", "a.job", "a.res", "--compare"}, 3, "simulator's: work work.leaf");
