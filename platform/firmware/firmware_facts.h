@@ -30,6 +30,7 @@ template <class Layout, class L>
           .tile_width = Layout::kTileWidth,
           .effects = Layout::kEffects,
           .packet_width = Layout::kPacketWidth,
+          .engine = Layout::Engine::kId,
           .store_bytes = Layout::kArenaBytes,
           .stack_bytes = Layout::kStackBudgetBytes + board_stack_bytes,
           .lane_count = std::uint32_t{L::kCount},

@@ -107,7 +107,8 @@ bool check_job(const FrameJob& job, const FirmwareFacts& facts) {
   }
 
   // 3. The frame record and the head of the scene image, which the workers use.
-  return check_record(job);
+  if (!check_record(job)) return false;
+  return is_equal("engine of eye rays", record_at<FrameRecord>(job.frame_address).engine_id, facts.engine);
 }
 
 }  // namespace gridiron::port

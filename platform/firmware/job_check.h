@@ -16,6 +16,7 @@ struct FirmwareFacts {
   std::uint32_t tile_width;     ///< of the layout
   std::uint32_t effects;        ///< EffectBits built
   std::uint32_t packet_width;   ///< of the layout, 0: no packets
+  std::uint32_t engine;         ///< EngineId: what traces eye rays
   std::uint32_t store_bytes;    ///< of a worker's arena
   std::uint32_t stack_bytes;    ///< the most that a worker's stack may take
   std::uint32_t lane_count;
@@ -24,8 +25,8 @@ struct FirmwareFacts {
   std::uint32_t most_tiles;     ///< the most tiles whose results fit the board's memory; a frame never has more
 };
 
-/// Checks a job against the firmware: magic, version, place, size, check value, tiles, effects, arena, and that every
-/// range lies inside its memory.
+/// Checks a job against the firmware: magic, version, place, size, check value, tiles, effects, engine, arena, and that
+/// every range lies inside its memory.
 /// @returns whether it may run; if not, a line on the console gives the reason. A job for packets of another width may
 /// run, with a note, since its work differs from that of the job's own layout.
 [[nodiscard]] bool check_job(const FrameJob& job, const FirmwareFacts& facts);

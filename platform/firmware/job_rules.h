@@ -85,7 +85,10 @@ template <class Require>
          GRIDIRON_HEAD_IS(color_address, job.color_address, "job") &&
          GRIDIRON_HEAD_IS(depth_address, job.depth_address, "job") &&
          GRIDIRON_HEAD_IS(id_address, job.ids_address, "job") &&
-         GRIDIRON_HEAD_IS(engine_id, static_cast<std::uint32_t>(EngineId::kGrid), "job") &&
+         require(frame.engine_id == static_cast<std::uint32_t>(EngineId::kGrid) ||
+                     frame.engine_id == static_cast<std::uint32_t>(EngineId::kTree),
+                 place + offsetof(FrameHead, engine_id), "frame record: engine_id ", frame.engine_id,
+                 ", no engine of core") &&
          has_no(find_picture_fault<AnyLayout>(frame), frame, place, require) &&
          has_no(find_scene_fault<AnyLayout>(frame), frame, place, require) &&
          require(job.tile_count == frame.tiles_x * frame.tiles_y, offsetof(FrameJob, tile_count), job.tile_count,
@@ -142,18 +145,22 @@ template <class Require>
                  "memory for waiting rays at ", Hex{spill.begin}, " is on the result");
 }
 
-/// Checks the frame record against the scene image's head, which is right, and the job's effects against both.
+/// Checks the engine's part of the frame record against the scene image's head.
 template <class Require>
-[[nodiscard]] bool check_scene(const FrameJob& job, const FrameRecord& frame, const SceneImageView& image,
-                               const Require& require) {
+[[nodiscard]] bool check_engine(const FrameJob& job, const FrameRecord& frame, const SceneImageView& image,
+                                const Require& require) {
   const std::uint64_t place = job.frame_address - job.base_address;
-  const bool is_scene = frame.shading == static_cast<std::uint32_t>(Shading::kScene);
-  const std::uint32_t called_for = is_scene ? image.effects.called_for : 0;
+  if (frame.engine_id == static_cast<std::uint32_t>(EngineId::kTree)) {
+    return require(image.has_tree, place + offsetof(FrameHead, engine_id), "frame record: engine_id ", frame.engine_id,
+                   ", the scene image has no tree") &&
+           require(reads_format(frame.accuracy, image.tree.triangle_format), place + offsetof(FrameHead, accuracy),
+                   "frame record: accuracy ", frame.accuracy, ", the tree's triangles are of format ",
+                   image.tree.triangle_format) &&
+           has_no(find_tree_fault<AnyLayout>(frame), frame, place, require);
+  }
   const std::uint64_t base = job.image_address;
   const auto* const grid = reinterpret_cast<const std::byte*>(&frame.engine.grid);
-  return require(image.header.image_bytes == job.image_bytes, offsetof(FrameJob, image_bytes),
-                 "scene image: ", job.image_bytes, " bytes in the job, its header has ", image.header.image_bytes) &&
-         require(image.has_grid, place + offsetof(FrameHead, engine_id), "frame record: engine_id ", frame.engine_id,
+  return require(image.has_grid, place + offsetof(FrameHead, engine_id), "frame record: engine_id ", frame.engine_id,
                  ", the scene image has no grid") &&
          // Bit for bit: no floating point here.
          require(std::memcmp(grid, reinterpret_cast<const std::byte*>(&image.grid), sizeof(GridRecord)) == 0,
@@ -162,14 +169,28 @@ template <class Require>
          has_no(find_grid_fault<AnyLayout>(frame), frame, place, require) &&
          GRIDIRON_ENGINE_IS(macro_table_address, base + image.macro_table_offset_bytes, "scene image") &&
          GRIDIRON_ENGINE_IS(cell_blocks_address, base + image.cell_blocks_offset_bytes, "scene image") &&
-         GRIDIRON_ENGINE_IS(triangles_address, base + image.triangles_offset_bytes, "scene image") &&
+         GRIDIRON_ENGINE_IS(triangles_address, base + image.triangles_offset_bytes, "scene image");
+}
+
+/// Checks the frame record against the scene image's head, which is right, and the job's effects against both.
+template <class Require>
+[[nodiscard]] bool check_scene(const FrameJob& job, const FrameRecord& frame, const SceneImageView& image,
+                               const Require& require) {
+  const std::uint64_t place = job.frame_address - job.base_address;
+  const bool is_scene = frame.shading == static_cast<std::uint32_t>(Shading::kScene);
+  const bool uses_tree = is_scene || frame.engine_id == static_cast<std::uint32_t>(EngineId::kTree);
+  const std::uint32_t called_for = is_scene ? image.effects.called_for : 0;
+  const std::uint64_t base = job.image_address;
+  return require(image.header.image_bytes == job.image_bytes, offsetof(FrameJob, image_bytes),
+                 "scene image: ", job.image_bytes, " bytes in the job, its header has ", image.header.image_bytes) &&
+         check_engine(job, frame, image, require) &&
          require(!is_scene || image.has_effects, place + offsetof(FrameHead, shading), "frame record: shading ",
                  frame.shading, ", the scene image has no effects") &&
          require(job.effects == called_for, offsetof(FrameJob, effects), "effects ", Hex{job.effects},
                  ", frame record and scene image call for ", Hex{called_for}) &&
          GRIDIRON_HEAD_IS(effects_address, (is_scene ? base + image.effects_offset_bytes : 0), "scene image") &&
-         GRIDIRON_HEAD_IS(image_address, (is_scene ? base : 0), "scene image") &&
-         GRIDIRON_HEAD_IS(tree_address, (is_scene ? base + image.tree_offset_bytes : 0), "scene image");
+         GRIDIRON_HEAD_IS(image_address, (uses_tree ? base : 0), "scene image") &&
+         GRIDIRON_HEAD_IS(tree_address, (uses_tree ? base + image.tree_offset_bytes : 0), "scene image");
 }
 
 #undef GRIDIRON_ENGINE_IS

@@ -1,6 +1,6 @@
 // Layout, lanes and entry point of the firmware of the made-up chip. The build may define GRIDIRON_PACKET_WIDTH, the
-// rays along a packet's edge, GRIDIRON_EFFECTS, the set of effects, GRIDIRON_64K for the layout of a 64 KB core, which
-// has no packets, or GRIDIRON_LAYOUT for any other layout.
+// rays along a packet's edge (0 without effects: eye rays go through the tree), GRIDIRON_EFFECTS, the set of effects,
+// GRIDIRON_64K for the layout of a 64 KB core, which has no packets, or GRIDIRON_LAYOUT for any other layout.
 // Memory: none. Threads: any. SPDX-License-Identifier: Apache-2.0
 #pragma once
 
@@ -8,6 +8,8 @@
 #include <gridiron/base/lanes.h>
 #include <gridiron/base/one_lane.h>
 #include <gridiron/store/local_store.h>
+
+#include <type_traits>
 
 #include "template_board.h"
 
@@ -23,7 +25,9 @@ namespace gridiron::port {
 #if defined(GRIDIRON_LAYOUT)
 using FirmwareLayout = GRIDIRON_LAYOUT;
 #elif defined(GRIDIRON_64K) && GRIDIRON_EFFECTS == 0
-#error "GRIDIRON_64K is for effects; packets in 64 KB: GRIDIRON_LAYOUT, StoreLayout64K<8>"
+using FirmwareLayout = TreeLayout64K;
+#elif GRIDIRON_EFFECTS == 0 && GRIDIRON_PACKET_WIDTH == 0
+using FirmwareLayout = TreeLayout256K<>;
 #elif GRIDIRON_EFFECTS == 0
 using FirmwareLayout = StoreLayout256K<GRIDIRON_PACKET_WIDTH>;
 #elif defined(GRIDIRON_64K)
@@ -31,12 +35,14 @@ using FirmwareLayout = EffectLayout64K<GRIDIRON_EFFECTS>;
 #else
 using FirmwareLayout = EffectLayout256K<GRIDIRON_EFFECTS, GRIDIRON_PACKET_WIDTH>;
 #endif
-// Several lanes would only make the code of a core without vectors longer; such a core has no packets either.
-#if defined(GRIDIRON_64K) && !defined(__ARM_NEON) && !defined(__SSE2__)
-using FirmwareLanes = Lanes<1>;
+// Several lanes would only make the code of a core without vectors longer. Packets require them, and so do beams.
+#if defined(__ARM_NEON) || defined(__SSE2__)
+inline constexpr bool kTakesOneLane = false;
 #else
-using FirmwareLanes = Lanes<4>;
+inline constexpr bool kTakesOneLane =
+    FirmwareLayout::kPacketWidth == 0 && (FirmwareLayout::kEffects == 0 || FirmwareLayout::kArenaBytes <= 64 * 1024);
 #endif
+using FirmwareLanes = std::conditional_t<kTakesOneLane, Lanes<1>, Lanes<4>>;
 using FirmwareStore = LocalStore<FirmwareLayout>;
 static_assert(kFitsArena<FirmwareLayout>, "store, code and stack are more than the arena");
 

@@ -1,6 +1,6 @@
 // Core 0 is master and worker, cores 1 to 3 are workers. The build defines GRIDIRON_EFFECTS, the set of effects of the
-// image (0: frames are rendered by packets); GRIDIRON_FORGETFUL and GRIDIRON_TRESPASS make images that are wrong on
-// purpose.
+// image (0: frames are rendered by packets, with GRIDIRON_PACKET_WIDTH=0 through the tree); GRIDIRON_FORGETFUL and
+// GRIDIRON_TRESPASS make images that are wrong on purpose.
 // Memory: arenas in on-chip memory, shared data in main memory. Threads: four cores.
 // SPDX-License-Identifier: Apache-2.0
 #include <gridiron/base/effect_records.h>
@@ -47,7 +47,9 @@ void secondary_entry(std::uint32_t core);
 namespace gridiron::port {
 namespace {
 
-#if GRIDIRON_EFFECTS == 0
+#if GRIDIRON_EFFECTS == 0 && defined(GRIDIRON_PACKET_WIDTH) && GRIDIRON_PACKET_WIDTH == 0
+using FirmwareLayout = TreeLayout64K;
+#elif GRIDIRON_EFFECTS == 0
 using FirmwareLayout = StoreLayout64K<8>;
 #else
 using FirmwareLayout = EffectLayout64K<GRIDIRON_EFFECTS>;

@@ -56,6 +56,38 @@ TEST(BoardRuns, RefuseBeforeTheyRun) {
   }
 }
 
+// A job for eye rays through the tree, and one for effects, take images of their own.
+TEST(BoardRuns, TakeTheImageThatTheJobIsFor) {
+  const auto put = [](std::string& job, std::size_t place, char value) { job[place] = value; };
+  for (const auto& [name, emulator] : kBoards) {
+    SCOPED_TRACE(name);
+    const Board board(name, emulator, "readlink firmware.elf > result.bin");
+    for (const char* image : {"plain_tree", "effects", "effects_tree"}) {
+      board.write("bin/" + std::string(name) + "_" + image + ".elf", "firmware");
+    }
+    std::string job(1024, '\0');
+    put(job, 11, 1);  // base_address, below 4 GB
+    put(job, 35, 1);  // frame_address
+    put(job, 33, 1);  // 256 bytes further on
+    const auto expect_image = [&](const std::string& image) {
+      board.write("a.job", job);
+      const ScriptResult result = board.run("a.job -o a.res");
+      EXPECT_EQ(result.exit_code, 0) << result.output;
+      EXPECT_NE(board.read("a.res").find("_" + image + ".elf"), std::string::npos) << board.read("a.res");
+    };
+    expect_image("plain");
+    put(job, 256 + 36, 2);  // FrameHead::engine_id
+    expect_image("plain_tree");
+    put(job, 140, 1);  // effects
+    expect_image("effects_tree");
+    put(job, 256 + 36, 1);
+    expect_image("effects");
+    put(job, 34, 1);  // the record lies beyond the file: the firmware refuses it
+    put(job, 140, 0);
+    expect_image("plain");
+  }
+}
+
 TEST(BoardRuns, LeaveNoResultOfAnotherRun) {
   for (const auto& [name, emulator] : kBoards) {
     SCOPED_TRACE(name);

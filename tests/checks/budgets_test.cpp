@@ -75,6 +75,11 @@ TEST_F(Budgets, EachPortIsHeldAgainstItsOwnLayout) {
   EXPECT_EQ(effects64k.exit_code, 1);
   EXPECT_NE(effects64k.output.find(words_of_budget(EffectLayout64K<kAllEffects>::kCodeBudgetBytes)), std::string::npos)
       << effects64k.output;
+  const ScriptResult tree = check_budgets_of(small, "tree", table);
+  EXPECT_NE(tree.output.find(words_of_budget(TreeLayout256K<>::kCodeBudgetBytes)), std::string::npos) << tree.output;
+  const ScriptResult tree64k = check_budgets_of(small, "tree64k", table);
+  EXPECT_EQ(tree64k.exit_code, 1);
+  EXPECT_NE(tree64k.output.find(words_of_budget(TreeLayout64K::kCodeBudgetBytes)), std::string::npos) << tree64k.output;
   EXPECT_EQ(check_budgets_of(small, "packet32", table).exit_code, 1);
   EXPECT_EQ(check_budgets_of(small, "packet32", small).exit_code, 0);
   // Stacks too: 5,000 bytes are too much for 64 KB alone.

@@ -23,20 +23,24 @@ FrameSettings settings_of(std::uint32_t width, std::uint32_t height) {
   return settings;
 }
 
-FrameSettings through_tree(FrameSettings settings) {
+FrameSettings through_tree(FrameSettings settings, std::uint32_t tile_width = kTileWidth) {
   settings.engine = EngineId::kTree;
-  settings.tile_width = kTileWidth;
+  settings.tile_width = tile_width;
   return settings;
 }
 
 sim::ChipOptions tree_chip(sim::Mode mode = sim::Mode::kChecked, std::uint32_t lanes = 4) {
   return {.mode = mode, .lanes = lanes, .packet_width = 0};
 }
+sim::ChipOptions small_chip(sim::Mode mode = sim::Mode::kChecked, std::uint32_t lanes = 4) {
+  return {.mode = mode, .lanes = lanes, .store = sim::StoreSize::k64KB, .packet_width = 0};
+}
 
 void expect_same(SceneInMemory& scene, const FrameSettings& settings, const sim::ChipOptions& chip,
                  PlaneSet planes = PlaneSet::kAll) {
   const RenderedFrame grid = scene.render(settings, {}, planes);
-  const RenderedFrame tree = scene.render(through_tree(settings), chip, planes);
+  const std::uint32_t tile_width = chip.store == sim::StoreSize::k64KB ? 16 : kTileWidth;
+  const RenderedFrame tree = scene.render(through_tree(settings, tile_width), chip, planes);
   ASSERT_EQ(grid.result.status, Status::kOk);
   ASSERT_EQ(tree.result.status, Status::kOk);
   EXPECT_TRUE(tree.result.violations.empty());
@@ -58,11 +62,21 @@ TEST(TreePictures, AreThoseOfTheGridInEveryModeAndAccuracy) {
     ASSERT_EQ(scene.status(), Status::kOk);
     FrameSettings settings = settings_of(150, 97);
     settings.accuracy = accuracy;
-    expect_same(scene, settings, tree_chip());
-    for (const std::uint32_t lanes : {4u, 8u, 16u}) {
-      if (lanes <= sim::widest_lanes()) expect_same(scene, settings, tree_chip(sim::Mode::kPlain, lanes));
+    for (const std::uint32_t lanes : {1u, 4u}) {
+      for (const sim::Mode mode : {sim::Mode::kChecked, sim::Mode::kPlain}) {
+        expect_same(scene, settings, tree_chip(mode, lanes));
+        expect_same(scene, settings, small_chip(mode, lanes));
+      }
     }
-    if (sim::has_instrumented_mode()) expect_same(scene, settings, tree_chip(sim::Mode::kInstrumented));
+    for (const std::uint32_t lanes : {8u, 16u}) {
+      if (lanes > sim::widest_lanes()) continue;
+      expect_same(scene, settings, tree_chip(sim::Mode::kPlain, lanes));
+      EXPECT_EQ(scene.render(through_tree(settings, 16), small_chip(sim::Mode::kPlain, lanes)).result.status,
+                Status::kUnsupportedFrame);
+    }
+    if (!sim::has_instrumented_mode()) continue;
+    expect_same(scene, settings, tree_chip(sim::Mode::kInstrumented));
+    expect_same(scene, settings, small_chip(sim::Mode::kInstrumented));
   }
 }
 
@@ -88,6 +102,39 @@ TEST(TreePictures, AreTheSameOfAnImageWithoutAGrid) {
   }
 }
 
+// One lane is for the tree alone, and not instrumented.
+TEST(TreePictures, AreBuiltForTheLanesThatTheyRunWith) {
+  for (const std::uint32_t lanes : {1u, 4u}) {
+    EXPECT_TRUE(sim::is_built({sim::StoreSize::k64KB, 16, 0}, sim::Mode::kChecked, lanes));
+    EXPECT_TRUE(sim::is_built({sim::StoreSize::k256KB, 64, 0}, sim::Mode::kPlain, lanes));
+  }
+  EXPECT_FALSE(sim::is_built({sim::StoreSize::k256KB, 32, 8}, sim::Mode::kPlain, 1));
+  EXPECT_FALSE(sim::is_built({sim::StoreSize::k256KB, 64, 0}, sim::Mode::kInstrumented, 1));
+  EXPECT_FALSE(sim::is_built({sim::StoreSize::k64KB, 16, 0}, sim::Mode::kChecked, 8));
+  EXPECT_FALSE(sim::is_built({sim::StoreSize::k64KB, 64, 0}, sim::Mode::kChecked, 4));
+}
+
+// `fast` may show another triangle at an edge than exact arithmetic, but every size of store renders it.
+TEST(TreePictures, FastPicturesHaveTheSameSilhouetteOutsideOfEdges) {
+  SceneInMemory scene(make_mixed_mesh().view(), with_tree());
+  ASSERT_EQ(scene.status(), Status::kOk);
+  FrameSettings settings = settings_of(150, 97);
+  const RenderedFrame exact = scene.render(through_tree(settings), tree_chip());
+  settings.accuracy = Accuracy::kFast;
+  const RenderedFrame large = scene.render(through_tree(settings), tree_chip());
+  const RenderedFrame small = scene.render(through_tree(settings, 16), small_chip());
+  ASSERT_EQ(small.result.status, Status::kOk);
+  std::uint32_t others = 0;
+  for (std::uint32_t y = 0; y < settings.height; ++y) {
+    for (std::uint32_t x = 0; x < settings.width; ++x) {
+      const std::uint32_t id = exact.planes.ids[exact.pixel_index(x, y)];
+      others += large.planes.ids[large.pixel_index(x, y)] != id ? 1u : 0u;
+      others += small.planes.ids[small.pixel_index(x, y)] != id ? 1u : 0u;
+    }
+  }
+  EXPECT_LT(others, 30u);  // of 29,100
+}
+
 TEST(TreePictures, AreTheSameWithoutPlanesAndShading) {
   SceneInMemory scene(make_mixed_mesh().view(), with_tree());
   ASSERT_EQ(scene.status(), Status::kOk);
@@ -96,8 +143,10 @@ TEST(TreePictures, AreTheSameWithoutPlanesAndShading) {
     settings.shading = shading;
     expect_same(scene, settings, tree_chip(), PlaneSet::kColor);
     expect_same(scene, settings, tree_chip(), PlaneSet::kColorAndIds);
+    expect_same(scene, settings, small_chip(), PlaneSet::kColor);
     settings.t_far = 3.7f;
     expect_same(scene, settings, tree_chip());
+    expect_same(scene, settings, small_chip());
   }
 }
 
@@ -114,8 +163,13 @@ TEST(TreePictures, DependOnNoDepthCompletionThreadsOrQueue) {
       chip.threads = 1 + depth % 3;
       chip.limits.queue_depth = depth == 1 ? 4 : 16;
       expect_same(scene, settings, chip);
+      if (depth > 4) continue;
+      chip.store = sim::StoreSize::k64KB;
+      expect_same(scene, settings, chip);
     }
   }
+  settings.fetch_depth = 5;
+  EXPECT_EQ(scene.render(through_tree(settings, 16), small_chip()).result.status, Status::kUnsupportedFrame);
   settings.fetch_depth = 17;
   EXPECT_EQ(scene.render(through_tree(settings), tree_chip()).result.status, Status::kUnsupportedFrame);
 }

@@ -54,6 +54,7 @@ class JobMemory {
   void load() {
     std::memcpy(bytes_, file_.data(), file_.size());
     built = kAllEffects;
+    engine = record().engine_id;
   }
 
   FrameJob& job() { return *reinterpret_cast<FrameJob*>(bytes_); }
@@ -95,13 +96,14 @@ class JobMemory {
     facts.tile_width = whole().tile_width;
     facts.effects = built;
     facts.packet_width = whole().packet_width;
+    facts.engine = engine;
     facts.store_bytes = whole().store_bytes;
     facts.most_tiles = 1024;
     told.clear();
     return check_job(job(), facts);
   }
 
-  std::uint32_t built = kAllEffects;  ///< into the firmware
+  std::uint32_t built = kAllEffects, engine = 0;  ///< into the firmware
 
  private:
   [[nodiscard]] const FrameJob& whole() const { return *reinterpret_cast<const FrameJob*>(file_.data()); }
@@ -136,6 +138,16 @@ TEST(JobCheck, TakesWhatTheProgramMakes) {
     EXPECT_TRUE(JobMemory("teapot.ply", options).check()) << accuracy << ": " << told;
   }
   EXPECT_TRUE(JobMemory("teapot.ply", {"--size", "9x9", "--store", "64", "--cores", "4"}).check()) << told;
+  for (const char* store : {"64", "256"}) {
+    for (const char* accuracy : {"standard", "exact", "fast", "compact"}) {
+      EXPECT_TRUE(JobMemory("teapot.ply",
+                            {"--size", "70x40", "--configuration", "tree", "--store", store, "--accuracy", accuracy})
+                      .check())
+          << store << ", " << accuracy << ": " << told;
+    }
+    EXPECT_TRUE(JobMemory("everything.nff", {"--size", "40x40", "--configuration", "tree", "--store", store}).check())
+        << store << ": " << told;
+  }
   for (const char* scene : {"everything.nff", "shadow.nff", "environment.nff", "smooth_normals.nff"}) {
     EXPECT_TRUE(JobMemory(scene, {"--size", "40x40", "--cores", "4"}).check()) << scene << ": " << told;
     EXPECT_TRUE(JobMemory(scene, {"--size", "40x40", "--cores", "4", "--store", "64"}).check())
@@ -190,6 +202,26 @@ TEST(JobCheck, HoldsTheRecordAgainstTheJob) {
        WRONG("frame record: shading 2, the scene image has no effects", m.record().shading = m.record().fetch_depth = 2,
              m.record().effects_address = m.record().image_address = m.record().tree_address = 4096),
        WRONG("47 tiles, of ", m.job().tile_count = 47)});
+}
+
+TEST(JobCheck, HoldsTreesAgainstTheJob) {
+  JobMemory memory("teapot.ply", {"--size", "70x40", "--configuration", "tree"});
+  expect_refusals(
+      memory,
+      {WRONG("frame record: engine_id 3, no engine of core", ++m.record().engine_id),
+       WRONG("engine of eye rays", m.engine = static_cast<std::uint32_t>(EngineId::kGrid)),
+       WRONG("frame record: engine_id 2, the scene image has no tree", m.section(SectionKind::kTree).kind = 1000,
+             m.section(SectionKind::kTreeNodes).kind = 1000, m.section(SectionKind::kTreeTriangles).kind = 1000),
+       WRONG("scene image: section.kind 12", m.section(SectionKind::kTree).kind = 1000),
+       WRONG("frame record: image_address", m.record().image_address = 0),
+       WRONG("frame record: image_address", m.record().image_address += 128),
+       WRONG("frame record: tree_address", m.record().tree_address = 0),
+       WRONG("frame record: tree_address", m.record().tree_address += 128),
+       WRONG("frame record: fetch_depth 0x0", m.record().fetch_depth = 0),
+       WRONG("frame record: accuracy 1, the tree's triangles are of format 1", m.record().accuracy = 1),
+       WRONG("frame record: accuracy 4, the tree's triangles are of format 1", m.record().accuracy = 4),
+       WRONG("frame record: color_address", m.record().color_address += 128),
+       WRONG("scene image: tree.nodes_offset_bytes", m.tree().nodes_offset_bytes = ~127ull)});
 }
 
 TEST(JobCheck, HoldsTheImageAgainstTheJob) {

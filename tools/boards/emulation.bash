@@ -37,11 +37,19 @@ read_request() {
   command -v "$qemu" > /dev/null || fail "no $qemu (Debian package $package)"
 }
 
-# plain, or effects where the job calls for them.
+# word_of_job OFFSET BYTES: a number of the job's file.
+word_of_job() { od -A n -t "u$2" -j "$1" -N "$2" "$job" | tr -d ' '; }
+
+# plain, or effects where the job calls for them; with _tree where eye rays go through the tree.
 image_for_job() {
-  local effects
-  effects=$(od -A n -t u4 -j 140 -N 4 "$job" | tr -d ' ')   # FrameJob::effects
-  if [ "${effects:-0}" = 0 ]; then echo plain; else echo effects; fi
+  local effects image=plain base frame engine=
+  effects=$(word_of_job 140 4)  # FrameJob::effects, base_address, frame_address; FrameHead::engine_id
+  base=$(word_of_job 8 8)
+  frame=$(word_of_job 32 8)
+  if [ "${effects:-0}" != 0 ]; then image=effects; fi
+  if ((frame >= base && frame - base <= $(stat -c %s "$job"))); then engine=$(word_of_job $((frame - base + 36)) 4); fi
+  if [ "${engine:-1}" = 2 ]; then image+=_tree; fi
+  echo $image
 }
 
 # emulate ADDRESS HARMLESS QEMU ARGUMENTS...: runs the image with the job at ADDRESS, moves the result to its place and

@@ -93,6 +93,10 @@ void run_command(const ResultRequest& request) {
   OpenJob job = read_job_file(request.job);
   require_planes(request, job);
   const OpenResult result = read_result_file(request.result, job);
+  if (request.predict && job.record.engine_id != sim::kGridEngine.id && sim::counts_instructions(*request.predict)) {
+    usage_error("--predict: " + std::string(request.predict->name) +
+                " counts instructions, which are not known of the tree's eye rays");
+  }
   const auto is_counted = [](const port::TileResult& tile) { return tile.instructions != 0; };
   if (request.predict && !std::ranges::all_of(result.tiles, is_counted)) {
     usage_error("--predict: " + request.result.string() + " has no counted instructions");
@@ -105,6 +109,7 @@ void run_command(const ResultRequest& request) {
   report.width = job.job.width;
   report.height = job.job.height;
   report.tile_width = job.job.tile_width;
+  report.engine = sim::core_engine(job.record.engine_id);
   report.cores = result.cores();
   report.tiles = result.tiles;
   if (comparison) report.tile_work = comparison->tile_work;

@@ -13,10 +13,10 @@ namespace {
 using Json = nlohmann::ordered_json;
 
 template <class Counts>
-Json work_json(const Counts& counts) {
+Json work_json(const Counts& counts, const sim::EngineWork& engine) {
   Json json = Json::object();
-  for (std::uint32_t kind = 0; kind < sim::kGridEngine.kind_count(); ++kind) {
-    json[std::string(sim::work_kind(WorkId(kind)).name)] = counts[kind];
+  for (std::uint32_t kind = 0; kind < engine.kind_count(); ++kind) {
+    json[std::string(sim::work_kind(WorkId(kind), engine).name)] = counts[kind];
   }
   return json;
 }
@@ -40,7 +40,7 @@ std::string device_report_json(const DeviceReportInput& input) {
                          {"instructions", core.instructions},
                          {"stack_bytes", core.stack_bytes},
                          {"dma", {{"transfers", core.transfers}, {"bytes", core.transfer_bytes}}},
-                         {"work", work_json(core.work)}});
+                         {"work", work_json(core.work, *input.engine)}});
   }
   Json tiles = Json::array();
   for (std::size_t i = 0; i < input.tiles.size(); ++i) {
@@ -54,8 +54,8 @@ std::string device_report_json(const DeviceReportInput& input) {
   report["machine"] = {{"cores", input.cores.size()}};
   report["frame"] = {{"instructions", instructions}};
   report["cores"] = std::move(cores);
-  report["work_of_cores"] = work_json(sum_of_work(input.cores));
-  if (input.tile_work) report["work"] = work_json(*input.tile_work);
+  report["work_of_cores"] = work_json(sum_of_work(input.cores), *input.engine);
+  if (input.tile_work) report["work"] = work_json(*input.tile_work, *input.engine);
   report["tiles"] = std::move(tiles);
   report["image_hash"] = hash_text(input.image_hash);
   if (input.depth_hash) report["depth_hash"] = hash_text(*input.depth_hash);

@@ -15,6 +15,7 @@ namespace gridiron::tool {
 /// The contents of a device's report.
 struct DeviceReportInput {
   std::uint32_t width = 0, height = 0, tile_width = 0;  ///< pixels
+  const sim::EngineWork* engine = &sim::kGridEngine;    ///< of the frame
   std::span<const port::CoreResult> cores;              ///< those that took part
   std::span<const port::TileResult> tiles;              ///< index = tile id
   std::uint64_t image_hash = 0;                         ///< image_hash() of report.h

@@ -65,9 +65,9 @@ GRIDIRON_INLINE void distances_of(const PacketType& packet, std::uint32_t base, 
                                   WorkCounters& work) {
   using Double = typename L::Double;
   using Long = typename L::Long;
-  static constexpr std::uint32_t kHalf = L::kCount / 2;
+  static constexpr std::uint32_t kHalf = L::kCount == 1 ? 1 : L::kCount / 2, kHalves = L::kCount / kHalf;
   std::uint32_t unsure = 0;
-  for (std::uint32_t half = 0; half < 2; ++half) {
+  for (std::uint32_t half = 0; half < kHalves; ++half) {
     if ((bits >> (half * kHalf) & ((1u << kHalf) - 1u)) == 0) continue;
     work.add(Work::kHitHalf);
     const std::uint32_t first = base + half * kHalf;

@@ -133,7 +133,28 @@ struct TreeLayout256K {
   static constexpr std::uint32_t kEyeTileWidth = 32;  ///< pixels along the edge of what is traced at once
   static constexpr std::uint32_t kEyeTurns = 2;       ///< of these, how many take turns
   static constexpr std::uint32_t kEyeSlots = 32;      ///< nodes and leaves at hand
-  static constexpr std::uint32_t kLeafTriangles = 16;///< of a leaf, at most
+  static constexpr std::uint32_t kLeafTriangles = 16;  ///< of a leaf, at most
+  static constexpr std::uint32_t kMostLanes = 16;     ///< that its memory is for
+};
+
+/// The same of a 64 KB core: smaller tiles, no turns, memory for four lanes. A core without vectors requires Lanes<1>
+/// (base/one_lane.h).
+struct TreeLayout64K {
+  /// @cond
+  using Engine = TileEngine;
+  static constexpr std::uint32_t kEffects = 0;
+  static constexpr std::uint32_t kArenaBytes = 64 * 1024;
+  static constexpr std::uint32_t kCodeBudgetBytes = 36 * 1024 + 256;
+  static constexpr std::uint32_t kStackBudgetBytes = 7 * 1024 + 512;
+  static constexpr std::uint32_t kTileWidth = 16;
+  static constexpr std::uint32_t kPacketWidth = 0;
+  static constexpr std::uint32_t kMaxOutputDepth = 2;
+  static constexpr std::uint32_t kEyeTileWidth = 16;
+  static constexpr std::uint32_t kEyeTurns = 1;
+  static constexpr std::uint32_t kEyeSlots = 8;
+  static constexpr std::uint32_t kLeafTriangles = 8;
+  static constexpr std::uint32_t kMostLanes = 4;
+  /// @endcond
 };
 
 /// Sizes of a 256 KB core that renders effects.
@@ -146,6 +167,7 @@ struct EffectLayout256K {
   static constexpr std::uint32_t kEyeTileWidth = 32;
   static constexpr std::uint32_t kEyeTurns = 1;
   static constexpr std::uint32_t kEyeSlots = 32;
+  static constexpr std::uint32_t kMostLanes = 16;
   static constexpr std::uint32_t kEffects = BuiltV;
   static constexpr std::uint32_t kArenaBytes = 256 * 1024;
   static constexpr std::uint32_t kCodeBudgetBytes = PacketWidthV >= 16 ? 88 * 1024 : 94 * 1024;
@@ -277,7 +299,7 @@ static_assert(kFitsArena<StoreLayout64K<4>> && kFitsArena<StoreLayout64K<8>> && 
 static_assert(kFitsArena<StoreLayout128K<8>> && kFitsArena<StoreLayout128K<32>>);
 static_assert(kFitsArena<EffectLayout256K<kAllEffects, 0>> && kFitsArena<EffectLayout256K<kAllEffects, 8>> &&
               kFitsArena<EffectLayout256K<kAllEffects, 32>> && kFitsArena<EffectLayout64K<kAllEffects>>);
-static_assert(kFitsArena<TreeLayout256K<32>> && kFitsArena<TreeLayout256K<64>>);
+static_assert(kFitsArena<TreeLayout64K> && kFitsArena<TreeLayout256K<32>> && kFitsArena<TreeLayout256K<64>>);
 static_assert(kFitsArena<StoreLayout512K<8>> && kFitsArena<StoreLayout512K<32>> && kFitsArena<StoreLayout512K<8, 64>> &&
               kFitsArena<StoreLayout512K<32, 64>>);
 

@@ -12,9 +12,13 @@ namespace gridiron::sim {
 template <class... Layouts>
 struct LayoutList {};
 
-/// In every mode and for every lane count.
-using CommonLayouts = LayoutList<StoreLayout64K<4>, StoreLayout64K<8>, StoreLayout64K<16>, StoreLayout256K<4>,
-                                 StoreLayout256K<8>, StoreLayout256K<16>, StoreLayout256K<32>, TreeLayout256K<64>>;
+/// In every mode and for every lane count from 4 on, up to most_lanes().
+using CommonLayouts =
+    LayoutList<StoreLayout64K<4>, StoreLayout64K<8>, StoreLayout64K<16>, StoreLayout256K<4>, StoreLayout256K<8>,
+               StoreLayout256K<16>, StoreLayout256K<32>, TreeLayout64K, TreeLayout256K<64>>;
+
+/// Of these, with one lane too, in Mode::kChecked and Mode::kPlain: what cores without vectors run.
+using OneLaneLayouts = LayoutList<TreeLayout64K, TreeLayout256K<64>>;
 
 /// In Mode::kChecked with 4 lanes only, for sweeps of the store's and the tile's size.
 using SweepLayouts =
@@ -25,6 +29,13 @@ using SweepLayouts =
 /// For frames with effects: in Mode::kPlain for every lane count, in the others with 4 lanes.
 using EffectLayouts = LayoutList<EffectLayout256K<kAllEffects, 0>, EffectLayout256K<kAllEffects, 8>,
                                  EffectLayout256K<kAllEffects, 32>, EffectLayout64K<kAllEffects>>;
+
+/// @returns the most lanes that the layout has memory for.
+template <class Layout>
+[[nodiscard]] constexpr std::uint32_t most_lanes() {
+  if constexpr (requires { Layout::kMostLanes; }) return Layout::kMostLanes;
+  return 16;
+}
 
 template <class Layout>
 [[nodiscard]] constexpr bool is_layout(const LayoutChoice& choice) {

@@ -2,6 +2,7 @@
 // GRIDIRON_ENTRY_LANES, GRIDIRON_ENTRY_CORE (the platform), GRIDIRON_ENTRY_LAYOUTS (a list of layouts).
 // Memory: the core's arena. Threads: one core per call. SPDX-License-Identifier: Apache-2.0
 #include <gridiron/base/lanes.h>
+#include <gridiron/base/one_lane.h>
 #include <gridiron/render/tile_renderer.h>
 #include <gridiron/sim/compiled_layouts.h>
 #include <gridiron/sim/render_entry.h>
@@ -22,8 +23,9 @@ Status render_in(std::byte* store, P& core, MainAddress frame, SpillRegion spill
 template <Platform P>
 Status render(LayoutChoice layout, std::byte* store, P& core, MainAddress frame, SpillRegion spill) {
   Status status = Status::kUnsupportedFrame;
-  visit_layout(GRIDIRON_ENTRY_LAYOUTS{}, layout,
-               [&]<class Layout>() { status = render_in<Layout>(store, core, frame, spill); });
+  visit_layout(GRIDIRON_ENTRY_LAYOUTS{}, layout, [&]<class Layout>() {
+    if constexpr (GRIDIRON_ENTRY_LANES <= most_lanes<Layout>()) status = render_in<Layout>(store, core, frame, spill);
+  });
   return status;
 }
 

@@ -15,9 +15,12 @@
 extern "C" {
 
 /// Renders tiles until none is left. `store` is zeroed, kLineBytes-aligned, as large as the layout's LocalStore. The
-/// layout is one of CommonLayouts; for ..._sweep one of SweepLayouts, for ..._effects one of EffectLayouts
-/// (compiled_layouts.h). It is passed as a copy because instrumented code may access a core's own memory only.
-/// Errors: kUnsupportedFrame for a layout that is not built; the kernel's.
+/// layout is one of CommonLayouts, with one lane of OneLaneLayouts; for ..._sweep one of SweepLayouts, for ..._effects
+/// one of EffectLayouts (compiled_layouts.h). It is passed as a copy because instrumented code may access a core's own
+/// memory only. Errors: kUnsupportedFrame for a layout that is not built; the kernel's.
+gridiron::Status gridiron_sim_render_checked_lanes1(gridiron::sim::LayoutChoice layout, std::byte* store,
+                                                    gridiron::sim::SimCore& core, gridiron::MainAddress frame,
+                                                    gridiron::SpillRegion spill);
 gridiron::Status gridiron_sim_render_checked_lanes4(gridiron::sim::LayoutChoice layout, std::byte* store,
                                                     gridiron::sim::SimCore& core, gridiron::MainAddress frame,
                                                     gridiron::SpillRegion spill);
@@ -40,6 +43,9 @@ gridiron::Status gridiron_sim_render_instrumented_effects_lanes4(gridiron::sim::
                                                                  gridiron::sim::SimCore& core,
                                                                  gridiron::MainAddress frame,
                                                                  gridiron::SpillRegion spill);
+gridiron::Status gridiron_sim_render_plain_lanes1(gridiron::sim::LayoutChoice layout, std::byte* store,
+                                                  gridiron::sim::PlainCore& core, gridiron::MainAddress frame,
+                                                  gridiron::SpillRegion spill);
 gridiron::Status gridiron_sim_render_plain_lanes4(gridiron::sim::LayoutChoice layout, std::byte* store,
                                                   gridiron::sim::PlainCore& core, gridiron::MainAddress frame,
                                                   gridiron::SpillRegion spill);

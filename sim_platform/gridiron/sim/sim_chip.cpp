@@ -58,7 +58,7 @@ enum class LayoutGroup : std::uint8_t { kCommon, kSweep, kEffects, kNone };
            __builtin_cpu_supports("avx512dq") != 0 && __builtin_cpu_supports("avx512vl") != 0;
   }
 #endif
-  return lanes == 4;
+  return lanes == 1 || lanes == 4;
 }
 
 /// @returns null if this host cannot run the build for these options.
@@ -74,6 +74,7 @@ enum class LayoutGroup : std::uint8_t { kCommon, kSweep, kEffects, kNone };
 #endif
   }
   if (has_effects) return gridiron_sim_render_checked_effects_lanes4;
+  if (options.lanes == 1) return gridiron_sim_render_checked_lanes1;
 #if defined(GRIDIRON_SIM_WIDE_LANES)
   if (options.lanes == 8) return gridiron_sim_render_checked_lanes8;
   if (options.lanes == 16) return gridiron_sim_render_checked_lanes16;
@@ -84,6 +85,7 @@ enum class LayoutGroup : std::uint8_t { kCommon, kSweep, kEffects, kNone };
 [[nodiscard]] RenderEntry<PlainCore> plain_entry(const ChipOptions& options, LayoutGroup group) {
   if (!host_runs_lanes(options.lanes)) return nullptr;
   const bool has_effects = group == LayoutGroup::kEffects;
+  if (options.lanes == 1) return gridiron_sim_render_plain_lanes1;
 #if defined(GRIDIRON_SIM_WIDE_LANES)
   if (options.lanes == 8)
     return has_effects ? gridiron_sim_render_plain_effects_lanes8 : gridiron_sim_render_plain_lanes8;
@@ -309,6 +311,10 @@ bool is_built(const LayoutChoice& layout, Mode mode, std::uint32_t lanes) {
   if (group == LayoutGroup::kSweep) return mode == Mode::kChecked && lanes == 4;
   if (group == LayoutGroup::kEffects && mode == Mode::kChecked) return lanes == 4;
   if (mode == Mode::kInstrumented) return has_instrumented_mode() && lanes == 4;
+  if (lanes == 1) return visit_layout(OneLaneLayouts{}, layout, []<class Layout>() {});
+  std::uint32_t most = 16;
+  visit_layout(CommonLayouts{}, layout, [&most]<class Layout>() { most = most_lanes<Layout>(); });
+  if (lanes > most) return false;
 #if defined(GRIDIRON_SIM_WIDE_LANES)
   if (lanes == 8 || lanes == 16) return true;
 #endif

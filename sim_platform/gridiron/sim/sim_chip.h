@@ -75,7 +75,7 @@ struct ChipOptions {
   Mode mode = Mode::kChecked;  ///< what is checked
   std::uint32_t threads = 1;  ///< host threads, each one simulated core's worth of claims; fewer if the host has
                               ///< fewer, or the frame fewer tiles
-  std::uint32_t lanes = 4;    ///< 4, 8, 16 (8 and 16 where the host has them, else kUnsupportedFrame)
+  std::uint32_t lanes = 4;    ///< 1, 4, 8, 16 (8 and 16 where the host has them, else kUnsupportedFrame)
   StoreSize store = StoreSize::k256KB;  ///< local memory of each core
   std::uint32_t packet_width = 8;  ///< rays along a packet's edge, 0: none; the frame brings its tile width
   Completion completion = Completion::kEarly;  ///< of transfers
@@ -130,7 +130,8 @@ struct ChipResult {
 /// @returns whether the kernel was built for a layout, a mode and a lane count, whatever this host can run. Stores of
 /// 64 KB with tiles of 16 and of 256 KB with tiles of 32 pixels are built in every mode, the others in Mode::kChecked
 /// with 4 lanes. With effects: 256 KB, tiles of 32 pixels, packets of 8 and 32 rays, and 64 KB; Mode::kPlain with every
-/// lane count, other modes with 4 lanes.
+/// lane count, other modes with 4 lanes. One lane: eye rays through the tree, not Mode::kInstrumented; their layout of
+/// 64 KB has 1 and 4 lanes only.
 [[nodiscard]] bool is_built(const LayoutChoice& layout, Mode mode, std::uint32_t lanes);
 
 /// @returns the widest lane count this host can run: 4, 8 or 16.

@@ -45,6 +45,15 @@
 %round group_1 = row_3 + exactly(f * quarter)
 %round group_2 = group_1 + exactly(f * quarter)
 %round group_3 = group_2 + exactly(f * quarter)
+# One lane, draw_pixels(): of two blocks the lower one, three rows and three columns on.
+%line for (int k = kCovered ? 3 : 0; k < 4; ++k) value[k] = value[k] + f.x[k];
+%line for (int k = kCovered ? 3 : 0; k < 4; ++k) line[k] = line[k] + f.y[k];
+%round at_1 = 0 + (f * line + value)
+%round next_1 = at_1 + exactly(f * step)
+%round line_1 = next_1 + exactly(f * quarter)
+%round line_2 = line_1 + exactly(f * quarter)
+%round line_3 = line_2 + exactly(f * quarter)
+%round pixel_1 = ((line_3 + 0) + 0) + 0
 # draw_tiny().
 %line L::bounded_sum(function(kEdgeX + k), x, L::bounded_sum(function(kEdgeY + k), y, function(kEdgeValue + k)));
 %line for (std::uint32_t k = 0; k < 3; ++k) value[k] = value[k] + function(kEdgeX + k);
@@ -68,6 +77,7 @@
 %define true_block_5 = exact_edge_y * (line + row + 5 * step) + edge_error
 %define true_group_8 = exact_edge_y * (line + row + 3 * step + half) + edge_error
 %define true_group_3 = exact_edge_y * (line + 3 * step + 3 * quarter) + edge_error
+%define true_pixel_1 = exact_edge_y * (line + step + 3 * quarter) + edge_error
 %define true_tiny = exact_edge_y * (line + 2 * quarter) + edge_error
 %define true_many = exact_edge_y * (line + first * last) + edge_error
 %define true_in_box = exact_edge_y * (line) + edge_error
@@ -78,11 +88,14 @@
   |line + row + 3 * step + half| <= 1 /\
   |line + step| <= 1 /\ |line + 2 * step| <= 1 /\ |line + 3 * step| <= 1 /\ |line + 3 * step + quarter| <= 1 /\
   |line + 3 * step + 2 * quarter| <= 1 /\ |line + 3 * step + 3 * quarter| <= 1 /\ |line + quarter| <= 1 /\
-  |line + 2 * quarter| <= 1 /\ first in [0, 1] /\ |first * last| <= 1 /\ last in [3, 3] /\ |line + first * last| <= 1 /\
+  |line + 2 * quarter| <= 1 /\ |line + step + quarter| <= 1 /\ |line + step + 2 * quarter| <= 1 /\
+  |line + step + 3 * quarter| <= 1 /\ first in [0, 1] /\ |first * last| <= 1 /\ last in [3, 3] /\
+  |line + first * last| <= 1 /\
   %roundings
   -> edge_error - |block_5 - true_block_5| >= 0 /\ edge_error - |group_8 - true_group_8| >= 0 /\
-     edge_error - |group_3 - true_group_3| >= 0 /\ edge_error - |tiny - true_tiny| >= 0 /\
-     edge_error - |many - true_many| >= 0 /\ edge_error - |in_box - true_in_box| >= 0 }
+     edge_error - |group_3 - true_group_3| >= 0 /\ edge_error - |pixel_1 - true_pixel_1| >= 0 /\
+     edge_error - |tiny - true_tiny| >= 0 /\ edge_error - |many - true_many| >= 0 /\
+     edge_error - |in_box - true_in_box| >= 0 }
 
 exact_at_16 -> f * (line + row) + edge_error;
 at_16 + (f * step) -> f * (line + row + step) + edge_error + (at_16 - exact_at_16);
@@ -109,6 +122,15 @@ group_1 + (f * quarter) -> f * (line + 3 * step + 2 * quarter) + edge_error + (g
 exact_group_2 -> f * (line + 3 * step + 2 * quarter) + edge_error;
 group_2 + (f * quarter) -> f * (line + 3 * step + 3 * quarter) + edge_error + (group_2 - exact_group_2);
 exact_group_3 -> f * (line + 3 * step + 3 * quarter) + edge_error;
+at_1 + (f * step) -> f * (line + step) + edge_error + (at_1 - exact_at_1);
+exact_next_1 -> f * (line + step) + edge_error;
+next_1 + (f * quarter) -> f * (line + step + quarter) + edge_error + (next_1 - exact_next_1);
+exact_line_1 -> f * (line + step + quarter) + edge_error;
+line_1 + (f * quarter) -> f * (line + step + 2 * quarter) + edge_error + (line_1 - exact_line_1);
+exact_line_2 -> f * (line + step + 2 * quarter) + edge_error;
+line_2 + (f * quarter) -> f * (line + step + 3 * quarter) + edge_error + (line_2 - exact_line_2);
+exact_line_3 -> f * (line + step + 3 * quarter) + edge_error;
+exact_pixel_1 -> f * (line + step + 3 * quarter) + edge_error;
 left_0 + (f * quarter) -> f * (line + quarter) + edge_error + (left_0 - exact_left_0);
 exact_left_1 -> f * (line + quarter) + edge_error;
 left_1 + (f * quarter) -> f * (line + 2 * quarter) + edge_error + (left_1 - exact_left_1);
@@ -118,6 +140,7 @@ exact_many -> f * (line + first * last) + edge_error;
 block_5 - true_block_5 -> (block_5 - exact_block_5) + (f - exact_edge_y) * (line + row + 5 * step);
 group_8 - true_group_8 -> (group_8 - exact_group_8) + (f - exact_edge_y) * (line + row + 3 * step + half);
 group_3 - true_group_3 -> (group_3 - exact_group_3) + (f - exact_edge_y) * (line + 3 * step + 3 * quarter);
+pixel_1 - true_pixel_1 -> (pixel_1 - exact_pixel_1) + (f - exact_edge_y) * (line + step + 3 * quarter);
 tiny - true_tiny -> (tiny - exact_tiny) + (f - exact_edge_y) * (line + 2 * quarter);
 many - true_many -> (many - exact_many) + (f - exact_edge_y) * (line + first * last);
 in_box - true_in_box -> (in_box - exact_in_box) + (f - exact_edge_y) * (line);

@@ -19,7 +19,7 @@
 
 # The steps are 0. draw_triangle(), 16 lanes: six blocks in a row or a column.
 %source core/gridiron/engine/tree/tile_tracer.h
-%line static constexpr std::uint32_t kFewBlocks = kLanes == 16 ? 6 : 4;
+%line static constexpr std::uint32_t kFewBlocks = kLanes == 16 ? 6 : kLanes == 1 ? 2 : 4;
 %line start[k] = L::bounded_sum(x[k], column, kLanes > kBlockWidth ? L::bounded_sum(y[k], row, value[k]) : value[k]);
 %line return L::bounded_sum(x[k], column, L::bounded_sum(y[k], row, start[k]));
 %line for (int k = 0; k < 4; ++k) value[k] = value[k] + right[k];
@@ -34,6 +34,11 @@
 %round start_4 = 0 + value
 %round at_4 = 0 + (0 + start_4)
 %round block_4 = (((((at_4 + 0) + 0) + 0) + 0) + 0) + 0
+# One lane, draw_pixels(): two blocks, three rows and three columns on.
+%line for (int k = kCovered ? 3 : 0; k < 4; ++k) value[k] = value[k] + f.x[k];
+%line for (int k = kCovered ? 3 : 0; k < 4; ++k) line[k] = line[k] + f.y[k];
+%round at_1 = 0 + (0 + value)
+%round pixel_1 = ((((((at_1 + 0) + 0) + 0) + 0) + 0) + 0) + 0
 # draw_tiny().
 %line L::bounded_sum(function(kEdgeX + k), x, L::bounded_sum(function(kEdgeY + k), y, function(kEdgeValue + k)));
 %line for (std::uint32_t k = 0; k < 3; ++k) value[k] = value[k] + function(kEdgeX + k);
@@ -53,5 +58,6 @@
 { |x_i| <= 1 /\ |y_i| <= 1 /\ |x_k| <= 1 /\ |y_k| <= 1 /\
   %roundings
   -> edge_error - |block_16 - exact_block_16| >= 0 /\ edge_error - |block_8 - exact_block_8| >= 0 /\
-     edge_error - |block_4 - exact_block_4| >= 0 /\ edge_error - |tiny - exact_tiny| >= 0 /\
-     edge_error - |many - exact_many| >= 0 /\ edge_error - |in_box - exact_in_box| >= 0 }
+     edge_error - |block_4 - exact_block_4| >= 0 /\ edge_error - |pixel_1 - exact_pixel_1| >= 0 /\
+     edge_error - |tiny - exact_tiny| >= 0 /\ edge_error - |many - exact_many| >= 0 /\
+     edge_error - |in_box - exact_in_box| >= 0 }

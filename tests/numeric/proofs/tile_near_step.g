@@ -44,6 +44,15 @@
 %round group_1 = row_3 + exactly(f * quarter)
 %round group_2 = group_1 + exactly(f * quarter)
 %round group_3 = group_2 + exactly(f * quarter)
+# One lane, draw_pixels(): of two blocks the lower one, three rows and three columns on.
+%line for (int k = kCovered ? 3 : 0; k < 4; ++k) value[k] = value[k] + f.x[k];
+%line for (int k = kCovered ? 3 : 0; k < 4; ++k) line[k] = line[k] + f.y[k];
+%round at_1 = 0 + (f * line + near_value)
+%round next_1 = at_1 + exactly(f * step)
+%round line_1 = next_1 + exactly(f * quarter)
+%round line_2 = line_1 + exactly(f * quarter)
+%round line_3 = line_2 + exactly(f * quarter)
+%round pixel_1 = ((line_3 + 0) + 0) + 0
 # draw_tiny().
 %line left[3] = L::bounded_sum(function(kNearX), x, L::bounded_sum(function(kNearY), y, function(kNearValue)));
 %line value[3] = value[3] + function(kNearX);
@@ -68,6 +77,7 @@
 %define true_block_5 = exact_near_y * (line + row + 5 * step) - near_error
 %define true_group_8 = exact_near_y * (line + row + 3 * step + half) - near_error
 %define true_group_3 = exact_near_y * (line + 3 * step + 3 * quarter) - near_error
+%define true_pixel_1 = exact_near_y * (line + step + 3 * quarter) - near_error
 %define true_tiny = exact_near_y * (line + 2 * quarter) - near_error
 %define true_many = exact_near_y * (line + first * last) + near_error
 %define true_in_box = exact_near_y * (line) + near_error
@@ -79,11 +89,14 @@
   |line + row + 3 * step + half| <= 1 /\
   |line + step| <= 1 /\ |line + 2 * step| <= 1 /\ |line + 3 * step| <= 1 /\ |line + 3 * step + quarter| <= 1 /\
   |line + 3 * step + 2 * quarter| <= 1 /\ |line + 3 * step + 3 * quarter| <= 1 /\ |line + quarter| <= 1 /\
-  |line + 2 * quarter| <= 1 /\ first in [0, 1] /\ |first * last| <= 1 /\ last in [3, 3] /\ |line + first * last| <= 1 /\
+  |line + 2 * quarter| <= 1 /\ |line + step + quarter| <= 1 /\ |line + step + 2 * quarter| <= 1 /\
+  |line + step + 3 * quarter| <= 1 /\ first in [0, 1] /\ |first * last| <= 1 /\ last in [3, 3] /\
+  |line + first * last| <= 1 /\
   %roundings
   -> near_error - |block_5 - true_block_5| - left_over >= 0 /\
      near_error - |group_8 - true_group_8| - left_over >= 0 /\
      near_error - |group_3 - true_group_3| - left_over >= 0 /\
+     near_error - |pixel_1 - true_pixel_1| - left_over >= 0 /\
      near_error - |tiny - true_tiny| - left_over >= 0 /\
      near_error - |many - true_many| - left_over >= 0 /\
      near_error - |in_box - true_in_box| - left_over >= 0 }
@@ -113,6 +126,15 @@ group_1 + (f * quarter) -> f * (line + 3 * step + 2 * quarter) - near_error + (g
 exact_group_2 -> f * (line + 3 * step + 2 * quarter) - near_error;
 group_2 + (f * quarter) -> f * (line + 3 * step + 3 * quarter) - near_error + (group_2 - exact_group_2);
 exact_group_3 -> f * (line + 3 * step + 3 * quarter) - near_error;
+at_1 + (f * step) -> f * (line + step) - near_error + (at_1 - exact_at_1);
+exact_next_1 -> f * (line + step) - near_error;
+next_1 + (f * quarter) -> f * (line + step + quarter) - near_error + (next_1 - exact_next_1);
+exact_line_1 -> f * (line + step + quarter) - near_error;
+line_1 + (f * quarter) -> f * (line + step + 2 * quarter) - near_error + (line_1 - exact_line_1);
+exact_line_2 -> f * (line + step + 2 * quarter) - near_error;
+line_2 + (f * quarter) -> f * (line + step + 3 * quarter) - near_error + (line_2 - exact_line_2);
+exact_line_3 -> f * (line + step + 3 * quarter) - near_error;
+exact_pixel_1 -> f * (line + step + 3 * quarter) - near_error;
 left_0 + (f * quarter) -> f * (line + quarter) - near_error + (left_0 - exact_left_0);
 exact_left_1 -> f * (line + quarter) - near_error;
 left_1 + (f * quarter) -> f * (line + 2 * quarter) - near_error + (left_1 - exact_left_1);
@@ -122,6 +144,7 @@ exact_many -> f * (line + first * last) + near_error;
 block_5 - true_block_5 -> (block_5 - exact_block_5) + (f - exact_near_y) * (line + row + 5 * step);
 group_8 - true_group_8 -> (group_8 - exact_group_8) + (f - exact_near_y) * (line + row + 3 * step + half);
 group_3 - true_group_3 -> (group_3 - exact_group_3) + (f - exact_near_y) * (line + 3 * step + 3 * quarter);
+pixel_1 - true_pixel_1 -> (pixel_1 - exact_pixel_1) + (f - exact_near_y) * (line + step + 3 * quarter);
 tiny - true_tiny -> (tiny - exact_tiny) + (f - exact_near_y) * (line + 2 * quarter);
 many - true_many -> (many - exact_many) + (f - exact_near_y) * (line + first * last);
 in_box - true_in_box -> (in_box - exact_in_box) + (f - exact_near_y) * (line);

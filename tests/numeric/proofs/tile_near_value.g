@@ -19,7 +19,7 @@
 %define near_error = error
 %round near_value = near_w - near_error
 
-# The steps are 0. draw_triangle(): 16, 8 and 4 lanes, see tile_edge_value.g.
+# The steps are 0. draw_triangle(): 16, 8, 4 lanes and one, see tile_edge_value.g.
 %source core/gridiron/engine/tree/tile_tracer.h
 %line start[k] = L::bounded_sum(x[k], column, kLanes > kBlockWidth ? L::bounded_sum(y[k], row, value[k]) : value[k]);
 %line return L::bounded_sum(x[k], column, L::bounded_sum(y[k], row, start[k]));
@@ -33,6 +33,10 @@
 %round start_4 = 0 + near_value
 %round at_4 = 0 + (0 + start_4)
 %round block_4 = (((((at_4 + 0) + 0) + 0) + 0) + 0) + 0
+%line for (int k = kCovered ? 3 : 0; k < 4; ++k) value[k] = value[k] + f.x[k];
+%line for (int k = kCovered ? 3 : 0; k < 4; ++k) line[k] = line[k] + f.y[k];
+%round at_1 = 0 + (0 + near_value)
+%round pixel_1 = ((((((at_1 + 0) + 0) + 0) + 0) + 0) + 0) + 0
 # draw_tiny().
 %line left[3] = L::bounded_sum(function(kNearX), x, L::bounded_sum(function(kNearY), y, function(kNearValue)));
 %line value[3] = value[3] + function(kNearX);
@@ -54,5 +58,6 @@
 { nw / volume in [1, 1] /\ |nw| in [1, 1] /\ |volume| in [1, 1] /\
   %roundings
   -> near_error - |block_16 - exact_block_16| - left_over >= 0 /\ near_error - |block_8 - exact_block_8| - left_over >= 0 /\
-     near_error - |block_4 - exact_block_4| - left_over >= 0 /\ near_error - |tiny - exact_tiny| - left_over >= 0 /\
+     near_error - |block_4 - exact_block_4| - left_over >= 0 /\ near_error - |pixel_1 - exact_pixel_1| - left_over >= 0 /\
+     near_error - |tiny - exact_tiny| - left_over >= 0 /\
      near_error - |many - exact_many| - left_over >= 0 /\ near_error - |in_box - exact_in_box| - left_over >= 0 }

@@ -44,6 +44,8 @@ TEST(EffectNames, MissingOnesAreNamed) {
 
 TEST(EffectNames, RenderersAreTypes) {
   EXPECT_EQ(tool::renderer_type(0, 128, 8), "StoreLayout128K<8>");
+  EXPECT_EQ(tool::renderer_type(0, 64, 0), "TreeLayout64K");
+  EXPECT_EQ(tool::renderer_type(0, 256, 0), "TreeLayout256K<>");
   EXPECT_EQ(tool::renderer_type(kSceneShading, 256, 32), "EffectLayout256K<kSceneShading>");
   EXPECT_EQ(tool::renderer_type(kSceneShading | kPointShadows | kHighlights, 512, 8),
             "EffectLayout256K<kSceneShading | kPointShadows | kHighlights, 8>");

@@ -1,6 +1,7 @@
 // job and result: correct files, a device simulated by the host, and damage that is found.
 // SPDX-License-Identifier: Apache-2.0
 #include <gridiron/base/work_counters.h>
+#include <gridiron/engine/tree/tile_work.h>
 #include <report/report.h>
 
 #include <nlohmann/json.hpp>
@@ -58,6 +59,9 @@ const std::vector<JobCase> kCases = {
     {{"--size", "64x64", "--accuracy", "exact", "--lambda", "2"}},
     {{"--size", "64x64", "--accuracy", "paper", "--shading", "none"}},
     {{"--size", "64x64", "--accuracy", "compact", "--packet", "32"}},
+    {{"--size", "96x64", "--configuration", "tree"}},
+    {{"--size", "96x64", "--configuration", "tree", "--store", "64", "--accuracy", "compact"}},
+    {{"--cores", "5", "--configuration", "tree"}, "a.nff"},
     {{"--cores", "5"}, "a.nff"},
     {{"--store", "64"}, "a.nff", false},
 };
@@ -79,8 +83,12 @@ TEST(Job, NamesWhatLiesInIt) {
     const auto record = record_at<FrameRecord>(file, job.frame_address - kBase);
     EXPECT_EQ(record.width, job.width);
     EXPECT_EQ(record.tiles_x * record.tiles_y, job.tile_count);
-    for (const std::uint64_t part :
-         {record.engine.macro_table_address, record.engine.cell_blocks_address, record.engine.triangles_address}) {
+    const bool has_tree = record.engine_id == static_cast<std::uint32_t>(EngineId::kTree);
+    const std::vector<std::uint64_t> parts =
+        has_tree ? std::vector{record.image_address, record.tree_address}
+                 : std::vector{record.engine.macro_table_address, record.engine.cell_blocks_address,
+                               record.engine.triangles_address};
+    for (const std::uint64_t part : parts) {
       EXPECT_TRUE(lies_in(part, kLineBytes, job.image_address, job.image_address + job.image_bytes));
     }
     const std::uint64_t head = sizeof(FrameResult) + job.tile_count * sizeof(port::TileResult);
@@ -234,6 +242,20 @@ TEST(Result, OneDifferenceIsEnough) {
   // Beside the picture an edge tile holds anything: the last pixel of tile 1 is column 63 of 50.
   folder.write("a.res", flip(job.color_address - job.result_address + 2 * 4096 - 1));
   run(folder, {"result", "a.job", "a.res", "--compare"});
+}
+
+// Kinds of work are those of the frame's engine.
+TEST(Result, TilesOfTheTreeAreComparedByTheirOwnKinds) {
+  const TemporaryFolder folder;
+  const std::string file = make_job(folder, {"--size", "70x40", "--configuration", "tree"});
+  std::string result = render_on_host_device(file, 2);
+  folder.write("a.res", result);
+  run(folder, {"result", "a.job", "a.res", "--compare"});
+  const std::size_t leaves =
+      offsetof(FrameResult, cores) + offsetof(port::CoreResult, work) + 4 * static_cast<std::uint64_t>(TileWork::kLeaf);
+  result[leaves] = static_cast<char>(result[leaves] ^ 1);
+  folder.write("a.res", result);
+  expect_failure(folder, {"result", "a.job", "a.res", "--compare"}, 3, "simulator's: work work.leaf");
 }
 
 // Other words of the device for how it counted: other lanes are said, another queue makes a core wait earlier.

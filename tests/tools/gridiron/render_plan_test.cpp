@@ -83,6 +83,21 @@ TEST(RenderPlan, WhatIsAskedForIsKept) {
   EXPECT_EQ(plan.techniques, std::uint32_t{kUseEmptySkip | kUseSubpackets});
 }
 
+// A layout with memory for four lanes gets four of a wider host's, unless others are asked for.
+TEST(RenderPlan, TheTreeInASmallStoreHasFourLanes) {
+  tool::RenderRequest request = render_request("tree");
+  request.mode = sim::Mode::kPlain;
+  EXPECT_EQ(plan_of(request).lanes, 8u);
+  EXPECT_EQ(plan_of(request).layout.tile_width, 64u);
+  request.layout.store = StoreSize::k64KB;
+  EXPECT_EQ(plan_of(request).lanes, 4u);
+  EXPECT_EQ(plan_of(request).layout.tile_width, 16u);
+  request.lanes = 8;
+  EXPECT_NE(refusal(request).find("--lanes 1, 4"), std::string::npos) << refusal(request);
+  request.lanes = 1;
+  EXPECT_EQ(plan_of(request).lanes, 1u);
+}
+
 TEST(RenderPlan, AConfigurationGetsTheBuffersThatTheStoreHas) {
   tool::RenderRequest request = render_request("deep");
   request.layout.store = StoreSize::k64KB;

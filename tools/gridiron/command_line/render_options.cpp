@@ -81,8 +81,9 @@ void add_machine_options(CLI::App& app, RenderRequest& render) {
       "when the bytes of a transfer move (default early)");
   add_parsed(app, "--seed", render.seed, parse_seed, "a whole number of at most 19 digits", "N",
              "seed of --completion random (default 0)");
-  add_choice(app, "--lanes", render.lanes, Choices<std::uint32_t>{{"4", 4}, {"8", 8}, {"16", 16}},
-             "rays per SIMD group (default 4; plain: the host's widest); cycles are counted for 4 only");
+  add_choice(app, "--lanes", render.lanes, Choices<std::uint32_t>{{"1", 1}, {"4", 4}, {"8", 8}, {"16", 16}},
+             "rays per SIMD group (default 4; plain: the host's widest); cycles are counted for 4 only; 1: with "
+             "--configuration tree");
   const auto tile = [](const std::string& text) { return parse_count_pair(text, ','); };
   add_parsed(app, "--tile", render.tile, tile, "X,Y with a column and a row", "X,Y",
              "render this tile alone; the picture is the tile, the frame in main memory is whole");

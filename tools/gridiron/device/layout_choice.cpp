@@ -24,6 +24,14 @@ std::string words_of_layout(const sim::LayoutChoice& layout) {
 [[noreturn]] void refuse_layout(const sim::LayoutChoice& layout) {
   const std::string store = "--store " + std::to_string(sim::arena_bytes(layout.store) >> 10);
   const std::string shading = layout.has_effects ? ", --shading scene" : "";
+  if (!layout.has_effects && sim::is_built(layout, sim::Mode::kPlain, 4)) {
+    std::string lanes;
+    for (const std::uint32_t count : {1u, 4u, 8u, 16u}) {
+      if (sim::is_built(layout, sim::Mode::kPlain, count)) lanes += (lanes.empty() ? "" : ", ") + std::to_string(count);
+    }
+    usage_error("--lanes: " + store + " with " + words_of_layout(layout) + " is built for --lanes " + lanes +
+                ", of which --mode instrumented has 4");
+  }
   if (sim::is_built(layout, sim::Mode::kChecked, 4)) {
     usage_error(store + shading + ": with " + words_of_layout(layout) +
                 (layout.has_effects ? " --mode checked and instrumented are built for --lanes 4 only"
@@ -50,7 +58,7 @@ sim::LayoutChoice layout_with(const LayoutRequest& asked, const Configuration& c
   }
   // Eye rays through the tree, without packets.
   if (configuration.packet_width == 0 && !has_effects) {
-    return {store, asked.tile_width.value_or(kTreeTileWidth), asked.packet_width.value_or(0)};
+    return {store, asked.tile_width.value_or(tree_tile_width(store)), asked.packet_width.value_or(0)};
   }
   const std::uint32_t tile_width = asked.tile_width.value_or(sim::usual_tile_width(store));
   // A packet is no wider than a tile.

@@ -37,10 +37,12 @@ struct StoreFacts {
 [[nodiscard]] std::vector<sim::LayoutChoice> built_layouts();
 
 /// Pixels along the edge of a tile whose eye rays go through the tree.
-inline constexpr std::uint32_t kTreeTileWidth = 64;
+[[nodiscard]] constexpr std::uint32_t tree_tile_width(sim::StoreSize store) {
+  return store == sim::StoreSize::k64KB ? 16 : 64;
+}
 
 /// The layout with the store's usual tiles. @param packet_width  8 or 32; 32 becomes 16 if tiles are no wider. 0: the
-/// one of 256 KB whose eye rays go through the tree.
+/// one whose eye rays go through the tree, of 64 KB or else of 256 KB.
 [[nodiscard]] StoreFacts usual_store_facts(sim::StoreSize store, std::uint32_t packet_width);
 
 /// The layout that renders effects. @param store  64 KB, else that of 256 KB is returned. @param packet_width  0, 8 or

@@ -29,13 +29,18 @@ Shading shading_of(const RenderRequest& request, const KnownScene& scene) {
   return shading;
 }
 
-sim::LayoutChoice layout_of(const RenderRequest& request, const RenderPlan& plan) {
+constexpr std::uint32_t kChipLanes = 4;
+
+// May lower the plan's lanes.
+sim::LayoutChoice layout_of(const RenderRequest& request, RenderPlan& plan) {
   require_tree_of(*request.scene.configuration, request.layout, request.accuracy);
   const auto with = [&](StoreSize store) {
     return layout_with(request.layout, *request.scene.configuration, store, plan.shading == Shading::kScene);
   };
   const auto is_built = [&](StoreSize store) { return sim::is_built(with(store), plan.mode, plan.lanes); };
   const StoreSize store = choose_store(*request.scene.machine, request.layout.store, is_built);
+  // The host's widest lanes are a default; a layout may have memory for four only.
+  if (!request.lanes && !is_built(store)) plan.lanes = kChipLanes;
   require_built(with(store), is_built(store));
   require_distances(with(store), plan.has_depth);
   return with(store);
@@ -86,7 +91,7 @@ std::uint32_t techniques_of(const RenderRequest& request) {
 }
 
 std::uint32_t lanes_of(const RenderRequest& request, const Host& host) {
-  return request.lanes.value_or(request.mode == Mode::kPlain ? host.lanes : 4);
+  return request.lanes.value_or(request.mode == Mode::kPlain ? host.lanes : kChipLanes);
 }
 
 // Limits the threads to the number of tiles.

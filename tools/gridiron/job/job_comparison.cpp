@@ -142,14 +142,15 @@ void compare_work(const sim::ChipResult& simulated, const OpenResult& result, st
   const std::uint32_t device_lanes = result.frame.lane_count != 0 ? result.frame.lane_count : kUsualLanes;
   const sim::WorkTotals device = sum_of_work(result.cores());
   const sim::WorkTotals prologue = work_of(simulated.trace.prologue), epilogue = work_of(simulated.trace.epilogue);
+  const sim::EngineWork& engine = *simulated.trace.engine;
   const std::size_t item = comparison.items.size();
-  comparison.items.push_back({"work", true, words_of_count(sim::kGridEngine.kind_count(), "kind")});
-  for (std::uint32_t kind = 0; kind < sim::kGridEngine.kind_count(); ++kind) {
+  comparison.items.push_back({"work", true, words_of_count(engine.kind_count(), "kind")});
+  for (std::uint32_t kind = 0; kind < engine.kind_count(); ++kind) {
     const std::uint64_t outside = result.frame.core_count * (prologue[kind] + epilogue[kind]);
     comparison.tile_work[kind] = device[kind] - std::min(device[kind], outside);
     if (device_lanes != lanes || is_same_count(device[kind], simulated.work[kind] + outside)) continue;
     comparison.items[item].equal = false;
-    comparison.items.push_back({"work." + std::string(sim::work_kind(WorkId(kind)).name), false,
+    comparison.items.push_back({"work." + std::string(sim::work_kind(WorkId(kind), engine).name), false,
                                 of_both(device[kind], simulated.work[kind] + outside)});
   }
   if (device_lanes != lanes) {
@@ -157,8 +158,8 @@ void compare_work(const sim::ChipResult& simulated, const OpenResult& result, st
                               "the device counts groups of " + words_of_count(device_lanes, "ray") +
                                   ", the simulator groups of " + std::to_string(lanes)};
   } else if (!comparison.items[item].equal) {
-    comparison.items[item].detail = words_of_count(comparison.items.size() - item - 1) + " of " +
-                                    words_of_count(sim::kGridEngine.kind_count(), "kind");
+    comparison.items[item].detail =
+        words_of_count(comparison.items.size() - item - 1) + " of " + words_of_count(engine.kind_count(), "kind");
   }
 }
 

@@ -39,10 +39,6 @@ std::uint64_t result_head_bytes(std::uint32_t tile_count) {
 
 // The offsets of a job's parts from its base.
 FrameJob plan_job(const FrameMemory& frame, const RenderPlan& plan) {
-  if (plan.engine != EngineId::kGrid) {
-    usage_error("--configuration " + std::string(plan.scene.configuration->name) +
-                ": the boards' renderers trace eye rays through the grid; take another configuration");
-  }
   FrameJob job{};
   job.magic = port::kFrameJobMagic;
   job.version = port::kFrameJobVersion;

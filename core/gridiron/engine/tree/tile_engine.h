@@ -40,7 +40,8 @@ template <class Layout>
 struct alignas(128) TileEyeStore {
   static constexpr std::uint32_t kWidth = Layout::kEyeTileWidth;
   static constexpr std::uint32_t kTurns = Layout::kEyeTurns;
-  using Tile = TileMemory<kWidth>;
+  static constexpr std::uint32_t kMostLanes = Layout::kMostLanes;
+  using Tile = TileMemory<kWidth, kMostLanes>;
   using Cache = TreeCache<Layout::kEyeSlots, Layout::kLeafTriangles>;
   static_assert(Layout::kTileWidth % kWidth == 0);
 
@@ -105,7 +106,7 @@ class TileCore {
   using EyeStore = typename Store::EyeStore;
   using Source = TreeSource<L, Store, P, EyeParts>;
   static constexpr std::uint32_t kWidth = EyeStore::kWidth, kTurns = EyeStore::kTurns;
-  using Tracer = TileTracer<L, kWidth, Source>;
+  using Tracer = TileTracer<L, kWidth, Source, EyeStore::kMostLanes>;
 
   // Which tiles a core looks at next, and who.
   struct Turn {

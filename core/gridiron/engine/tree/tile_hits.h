@@ -63,11 +63,11 @@ struct TilePlanes {
   return false;
 }
 
-/// @tparam Source  as of TileTracer.
-template <class L, std::uint32_t Width, class Source>
+/// @tparam Source, MostLanes  as of TileTracer.
+template <class L, std::uint32_t Width, class Source, std::uint32_t MostLanes = 16>
 class TileHits {
  public:
-  using Memory = TileMemory<Width>;
+  using Memory = TileMemory<Width, MostLanes>;
   TileHits(Memory& memory, Source& source, WorkCounters& work) : memory_(memory), source_(source), work_(work) {}
 
   /// Begins a tile whose first pixel lies in the picture. Borrows frame and eye.
@@ -146,6 +146,9 @@ class TileHits {
       };
       const Float normal_x = normal(0), normal_y = normal(1), normal_z = normal(2);
       for (std::uint32_t i = 0; i < kBlockPixels; i += kLanes) {
+        if constexpr (kLanes == 1) {
+          if ((taken >> i & 1u) == 0) continue;
+        }
         Float dir[3];
         directions(block, i, dir);
         const Float facing = L::abs(normal_x * dir[0] + normal_y * dir[1] + normal_z * dir[2]);
@@ -300,7 +303,9 @@ class TileHits {
   GRIDIRON_INLINE void for_each_group(Write&& write, std::uint32_t x, std::uint32_t y, std::uint32_t tile_width) const {
     for (std::uint32_t block = 0; block < Memory::kBlocks; ++block) {
       const std::uint32_t pixel = (y + block / kRow * kBlockWidth) * tile_width + x + block % kRow * kBlockWidth;
-      for (std::uint32_t i = 0; i < kBlockPixels; i += kLanes) write(block, i, pixel + i / kBlockWidth * tile_width);
+      for (std::uint32_t i = 0; i < kBlockPixels; i += kLanes) {
+        write(block, i, pixel + i / kBlockWidth * tile_width + column_of(i));
+      }
     }
   }
   GRIDIRON_INLINE void store_misses(std::uint32_t x, std::uint32_t y, std::uint32_t tile_width,
@@ -313,9 +318,14 @@ class TileHits {
         },
         x, y, tile_width);
   }
+  // Of a group's first pixel in its block: groups are whole rows, or single pixels.
+  [[nodiscard]] static GRIDIRON_INLINE std::uint32_t column_of([[maybe_unused]] std::uint32_t i) {
+    return kLanes < kBlockWidth ? i % kBlockWidth : std::uint32_t{0};
+  }
   // Directions of a group of pixels, as FrameHead defines them.
   GRIDIRON_INLINE void directions(std::uint32_t block, std::uint32_t i, Float (&dir)[3]) const {
-    const std::uint32_t column = block % kRow * kBlockWidth, row = block / kRow * kBlockWidth + i / kBlockWidth;
+    const std::uint32_t column = block % kRow * kBlockWidth + column_of(i),
+                        row = block / kRow * kBlockWidth + i / kBlockWidth;
     for (int axis = 0; axis < 3; ++axis) {
       dir[axis] =
           L::repeat_quad(memory_.column_direction[axis] + column) + L::splat_quads(memory_.row_direction[axis] + row);

@@ -50,13 +50,15 @@ struct alignas(16) WaitingChild {
   std::uint32_t unused;
 };
 
-/// @tparam Width  pixels along a tile's edge: 8, 16, 32, 64.
-template <std::uint32_t Width>
+/// @tparam Width      pixels along a tile's edge: 8, 16, 32, 64.
+/// @tparam MostLanes  that work in it: 4, 8, 16.
+template <std::uint32_t Width, std::uint32_t MostLanes = 16>
 struct alignas(128) TileMemory {
   static constexpr std::uint32_t kWidth = Width;
   static constexpr std::uint32_t kBlocksPerRow = Width / kBlockWidth;
   static constexpr std::uint32_t kBlocks = kBlocksPerRow * kBlocksPerRow;
-  static constexpr std::uint32_t kMostLanes = 16;
+  static constexpr std::uint32_t kMostLanes = MostLanes;
+  static constexpr std::uint32_t kQueueEntries = 2 * MostLanes;
   static constexpr std::uint32_t kStackEntries = (kTreeWidth - 1) * kMaxTreeDepth + 1;
 
   alignas(64) float near[kBlocks][kBlockPixels];            ///< 1 / t of the nearest hit so far, or a little less
@@ -71,7 +73,7 @@ struct alignas(128) TileMemory {
   alignas(64) float column_direction[3][Width];
   alignas(64) float row_direction[3][Width];
 
-  alignas(64) std::uint32_t queue[kTileWords][2 * kMostLanes];
+  alignas(64) std::uint32_t queue[kTileWords][kQueueEntries];
   alignas(64) float functions[kTileFunctions][kMostLanes];
   alignas(64) std::uint32_t boxes[kMostLanes];
   alignas(64) std::uint32_t records[kMostLanes];

@@ -34,10 +34,11 @@ inline constexpr auto kLaneNumbers = [] {
 /// take turns while what they wait for is on its way.
 /// @tparam Source  where nodes and records are, as of RayLists; record(number, triangle) fetches any record, and what
 ///                 node() and leaf() gave stays until their next call.
-template <class L, std::uint32_t Width, class Source>
+/// @tparam MostLanes  of the memory.
+template <class L, std::uint32_t Width, class Source, std::uint32_t MostLanes = 16>
 class TileTracer {
  public:
-  using Memory = TileMemory<Width>;
+  using Memory = TileMemory<Width, MostLanes>;
   TileTracer(Memory& memory, Source& source, WorkCounters& work)
       : memory_(memory), source_(source), work_(work), hits_(memory, source, work) {}
 
@@ -101,7 +102,8 @@ class TileTracer {
   using Int = typename L::Int;
   static constexpr std::uint32_t kLanes = L::kCount;
   static constexpr std::uint32_t kGroups = kBlockPixels / kLanes;
-  static_assert(kLanes >= kBlockWidth, "a group is one or several rows of a block");
+  static_assert(kLanes <= MostLanes);
+  static_assert(kLanes == 1 || kLanes >= kBlockWidth, "a group is a pixel, or one or several rows of a block");
   static constexpr std::uint32_t kRow = Memory::kBlocksPerRow;
   static constexpr float kBlockStep = kBlockWidth;
 
@@ -401,7 +403,7 @@ class TileTracer {
     }
     return Status::kOk;
   }
-  static constexpr std::uint32_t kFewBlocks = kLanes == 16 ? 6 : 4;
+  static constexpr std::uint32_t kFewBlocks = kLanes == 16 ? 6 : kLanes == 1 ? 2 : 4;
 
   // Blocks are looked at in lanes: which the triangle may touch in front of what is there, which it covers.
   [[nodiscard]] GRIDIRON_OUTLINE Status draw_many_blocks(const Drawn& f, std::uint32_t bx0, std::uint32_t by0,
@@ -488,6 +490,7 @@ class TileTracer {
     static constexpr TileWork kKind = kCovered ? TileWork::kCoveredBlock : TileWork::kBlock;
     work_.add(kKind);
     work_.charge_to(kKind);
+    if constexpr (kLanes == 1) return draw_pixels<kCovered>(f, block, at);
     Float value[4];
     for (int k = kCovered ? 3 : 0; k < 4; ++k) value[k] = at[k];
     // What decides a pixel: the least edge function, and how far the triangle is in front; both with the error that may
@@ -550,6 +553,53 @@ class TileTracer {
   }
   static constexpr std::uint32_t kAllPixels = (1u << kBlockPixels) - 1;
 
+  // What follows where pixels of a block were taken, or left open.
+  [[nodiscard]] GRIDIRON_INLINE Status settle_block(const Drawn& f, std::uint32_t block, std::uint32_t taken,
+                                                    std::uint32_t open) {
+    if (taken != 0) {
+      memory_.span[block] = f.span > memory_.span[block] ? f.span : memory_.span[block];
+      hits_.mark(block);
+      if (hits_.planes().facing || hits_.planes().distance) hits_.take_planes(block, taken, f.lane);
+    }
+    if (open != 0 && !hits_.trusts_floats()) [[unlikely]]
+      return hits_.decide(block, open, f.lane);
+    return Status::kOk;
+  }
+  // draw_block() of one lane: pixel by pixel, and no more of each than decides it.
+  template <bool kCovered>
+  [[nodiscard]] GRIDIRON_OUTLINE Status draw_pixels(const Drawn& f, std::uint32_t block, const Float (&at)[4]) {
+    Float line[4];
+    for (int k = kCovered ? 3 : 0; k < 4; ++k) line[k] = at[k];
+    const Float zero(0.0f), old_span(memory_.span[block]);
+    std::uint32_t open = 0, taken = 0;
+    for (std::uint32_t first = 0; first < kBlockPixels; first += kBlockWidth) {
+      Float value[4];
+      for (int k = kCovered ? 3 : 0; k < 4; ++k) value[k] = line[k];
+      for (std::uint32_t column = 0; column < kBlockWidth; ++column) {
+        const std::uint32_t pixel = first + column;
+        Float inside = f.edge_span + f.edge_span;
+        if constexpr (!kCovered) inside = L::min(L::min(value[0], value[1]), value[2]);
+        if (kCovered || (inside > zero).is_set) {
+          const Float ahead = value[3] - Float::load(memory_.near[block] + pixel);
+          if ((ahead + f.near_span > zero).is_set) {
+            const bool is_inside = kCovered || (inside - f.edge_span > zero).is_set;
+            if (is_inside && (ahead - old_span > zero).is_set) {
+              taken |= 1u << pixel;
+              value[3].store(memory_.near[block] + pixel);
+              f.id.store(memory_.id[block] + pixel);
+              f.record.store(memory_.record[block] + pixel);
+            } else {
+              open |= 1u << pixel;
+            }
+          }
+        }
+        for (int k = kCovered ? 3 : 0; k < 4; ++k) value[k] = value[k] + f.x[k];
+      }
+      for (int k = kCovered ? 3 : 0; k < 4; ++k) line[k] = line[k] + f.y[k];
+    }
+    return (open | taken) == 0 ? Status::kOk : settle_block(f, block, taken, open);
+  }
+
   // Pixels of a box, one by one.
   [[nodiscard]] GRIDIRON_RARE Status draw_carefully(std::uint32_t i) {
     const std::uint32_t box = memory_.boxes[i];
@@ -587,7 +637,7 @@ class TileTracer {
   Memory& memory_;
   Source& source_;
   WorkCounters& work_;
-  TileHits<L, Width, Source> hits_;
+  TileHits<L, Width, Source, MostLanes> hits_;
   const EyeProjection* eye_ = nullptr;
   TileProjection tile_{};
   float last_x_ = 0.0f, last_y_ = 0.0f;

@@ -10,6 +10,7 @@
 #include <gridiron/engine/tree/tile_projection.h>
 #include <gridiron/ray/pixel_box.h>
 
+#include <bit>
 #include <cstdint>
 
 namespace gridiron {
@@ -109,6 +110,14 @@ struct LeafCorners {
 
  private:
   GRIDIRON_INLINE void load(const VertexTriangle* triangles, std::uint32_t count) {
+    if constexpr (L::kCount == 1) {
+      for (int i = 0; i < 9; ++i) vertices[i / 3][i % 3] = Float(triangles->v[i / 3][i % 3]);
+      id = Float(std::bit_cast<float>(triangles->triangle_id));
+    } else {
+      load_lanes(triangles, count);
+    }
+  }
+  GRIDIRON_INLINE void load_lanes(const VertexTriangle* triangles, std::uint32_t count) {
     const VertexTriangle* group[L::kCount];
     for (std::uint32_t i = 0; i < L::kCount; ++i) group[i] = triangles + (i < count ? i : count - 1);
     const TransposedWords<L> low(group, 0), middle(group, 4), high(group, 8);
@@ -179,8 +188,8 @@ struct TileGroup {
 
 /// Makes functions of L::kCount triangles of the queue, those from `first` on, relative to the middle of each box.
 /// @param there  lanes with triangles. @param least_near  1 / t below which everything is hidden.
-template <class L, std::uint32_t Width>
-[[nodiscard]] GRIDIRON_INLINE TileGroup set_up_group(TileMemory<Width>& memory, const TileProjection& tile,
+template <class L, std::uint32_t Width, std::uint32_t MostLanes>
+[[nodiscard]] GRIDIRON_INLINE TileGroup set_up_group(TileMemory<Width, MostLanes>& memory, const TileProjection& tile,
                                                      std::uint32_t first, std::uint32_t there, float least_near) {
   using Float = typename L::Float;
   using Int = typename L::Int;

@@ -1,5 +1,6 @@
 // Tiles of eye rays through the tree show, pixel by pixel, what exact arithmetic finds triangle by triangle.
 // SPDX-License-Identifier: Apache-2.0
+#include <gridiron/base/one_lane.h>
 #include <gridiron/build/triangle_records.h>
 #include <gridiron/engine/tree/tile_tracer.h>
 #include <gridiron/frame/frame_setup.h>
@@ -104,8 +105,10 @@ struct Planes {
 // Two tracers take turns, each with every other tile.
 template <class L>
 std::vector<Shown> traced(MemoryTree& tree, const View& view, WorkCounters& work, bool has_planes = true) {
-  using Tracer = TileTracer<L, kWidth, MemoryTree>;
-  const auto memories = std::make_unique<std::array<TileMemory<kWidth>, 2>>();
+  // No more memory than the lanes take.
+  static constexpr std::uint32_t kMostLanes = L::kCount < 4 ? 4 : L::kCount;
+  using Tracer = TileTracer<L, kWidth, MemoryTree, kMostLanes>;
+  const auto memories = std::make_unique<std::array<TileMemory<kWidth, kMostLanes>, 2>>();
   const auto planes = std::make_unique<Planes>();
   Tracer tracers[2] = {{(*memories)[0], tree, work}, {(*memories)[1], tree, work}};
   const FrameHead& frame = view.frame;
@@ -194,7 +197,7 @@ const Camera kCameras[] = {
 
 template <class L>
 class TileTracerTest : public testing::Test {};
-using TiledLanes = testing::Types<Lanes<4>, Lanes<8>, Lanes<16>>;
+using TiledLanes = testing::Types<Lanes<1>, Lanes<4>, Lanes<8>, Lanes<16>>;
 TYPED_TEST_SUITE(TileTracerTest, TiledLanes);
 
 TYPED_TEST(TileTracerTest, EveryPixelIsThatOfExactArithmetic) {
