@@ -8,6 +8,7 @@
 #include <gridiron/dma/tags.h>
 #include <gridiron/platform/contract.h>
 
+#include <cstddef>
 #include <cstdint>
 
 namespace gridiron {
@@ -73,6 +74,11 @@ class Transfers {
     if (is_counted(tag)) pending_count_ -= pending_[tag];
     pending_[tag] = 0;
     return platform_.wait(TagMask::of(Tag{tag}));
+  }
+
+  /// Bytes of main memory where they lie.
+  [[nodiscard]] const std::byte* in_place(MainAddress address) const requires InPlaceReader<P> {
+    return platform_.in_place(address);
   }
 
   /// Reports the core's stage from now on, to platforms that have note_stage().

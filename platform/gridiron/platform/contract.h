@@ -105,4 +105,11 @@ concept StageObserver = requires(P& platform, std::uint8_t stage) {
   { platform.note_stage(stage) } -> std::same_as<void>;
 };
 
+/// A platform that also reads main memory where it lies: a host that simulates no local memory. Core then leaves out
+/// copies of what it reads and never changes. Optional, as above.
+template <class P>
+concept InPlaceReader = requires(const P& platform, MainAddress address) {
+  { platform.in_place(address) } -> std::same_as<const std::byte*>;
+};
+
 }  // namespace gridiron

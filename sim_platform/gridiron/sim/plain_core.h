@@ -1,4 +1,5 @@
-// Platform of the plain mode: a get or put is one copy, at once, unchecked. For fast renders on the host.
+// Platform of the plain mode: a get or put is one copy, at once, unchecked; the tree is read where it lies. For fast
+// renders on the host.
 // Memory: borrows main memory and the tile source. Threads: one core per object. SPDX-License-Identifier: Apache-2.0
 #pragma once
 
@@ -42,6 +43,8 @@ class PlainCore {
 
   Status wait(TagMask) { return Status::kOk; }
 
+  [[nodiscard]] const std::byte* in_place(MainAddress address) const { return base_ + address.value; }
+
   TileClaim claim_tile() {
     if (busy_) tiles_->tile_done();
     const TileClaim claim = tiles_->claim();
@@ -63,7 +66,7 @@ class PlainCore {
   bool busy_ = false;
 };
 
-static_assert(Platform<PlainCore>);
+static_assert(Platform<PlainCore> && InPlaceReader<PlainCore>);
 static_assert(!WorkObserver<PlainCore> && !StageObserver<PlainCore>, "no time is kept, so no observer is needed");
 
 }  // namespace gridiron::sim
