@@ -73,11 +73,14 @@ class TreeSource {
   [[nodiscard]] std::uint32_t window() const { return store_.frame.fetch_depth; }
 
   [[nodiscard]] Status ahead(TreeChild child) {
-    if (const std::byte* bytes = nullptr; find_in_place(child, bytes)) {
-      const std::uint32_t count =
-          child.is_leaf() ? child.count() * kTriangleRecordBytes : std::uint32_t{sizeof(TreeNode)};
-      for (std::uint32_t offset = 0; offset < count; offset += 64) __builtin_prefetch(bytes + offset);
-      return Status::kOk;
+    if constexpr (InPlaceReader<P>) {
+      if (!is_on_lattice_) {
+        const std::byte* const bytes = in_place<std::byte>(child);
+        const std::uint32_t count =
+            child.is_leaf() ? child.count() * kTriangleRecordBytes : std::uint32_t{sizeof(TreeNode)};
+        for (std::uint32_t offset = 0; offset < count; offset += 64) __builtin_prefetch(bytes + offset);
+        return Status::kOk;
+      }
     }
     std::uint32_t slot = 0;
     if (find(child, slot) != 0) return Status::kOk;
@@ -85,7 +88,12 @@ class TreeSource {
   }
 
   [[nodiscard]] Status node(std::uint32_t index, const TreeNode*& node) {
-    if (find_in_place(TreeChild::node(index), node)) return Status::kOk;
+    if constexpr (InPlaceReader<P>) {
+      if (!is_on_lattice_) {
+        node = in_place<TreeNode>(TreeChild::node(index));
+        return Status::kOk;
+      }
+    }
     std::uint32_t slot = 0;
     GRIDIRON_TRY(take(TreeChild::node(index), slot));
     node = reinterpret_cast<const TreeNode*>(cache().slots[slot].bytes);
@@ -93,7 +101,12 @@ class TreeSource {
   }
 
   [[nodiscard]] Status leaf(TreeChild child, const VertexTriangle*& records) {
-    if (find_in_place(child, records)) return Status::kOk;
+    if constexpr (InPlaceReader<P>) {
+      if (!is_on_lattice_) {
+        records = in_place<VertexTriangle>(child);
+        return Status::kOk;
+      }
+    }
     std::uint32_t slot = 0;
     GRIDIRON_TRY(take(child, slot));
     records = records_of(slot, child);
@@ -102,9 +115,11 @@ class TreeSource {
 
   /// A record by its number in the tree: mostly of a leaf that is still at hand.
   [[nodiscard]] GRIDIRON_OUTLINE Status record(std::uint32_t number, VertexTriangle& triangle) {
-    if (const VertexTriangle* place = nullptr; find_in_place(TreeChild::leaf(number, 1), place)) {
-      triangle = *place;
-      return Status::kOk;
+    if constexpr (InPlaceReader<P>) {
+      if (!is_on_lattice_) {
+        triangle = *in_place<VertexTriangle>(TreeChild::leaf(number, 1));
+        return Status::kOk;
+      }
     }
     for (std::uint32_t slot = 0; slot < Cache::kSlots; ++slot) {
       const TreeChild leaf{cache().keys[slot]};
@@ -159,17 +174,11 @@ class TreeSource {
  private:
   using Cache = typename Parts::template Memory<Store>::Cache;
 
-  // Where the platform reads main memory in place nothing is copied, but for triangles of a lattice, which are made of
-  // what is fetched; their nodes then go the same way.
+  // A child where it lies. Triangles of a lattice are made of what is fetched, and nodes beside them go the same way.
   template <class Element>
-  [[nodiscard]] GRIDIRON_INLINE bool find_in_place(TreeChild child, const Element*& place) const {
-    if constexpr (InPlaceReader<P>) {
-      if (is_on_lattice_) return false;
-      place = reinterpret_cast<const Element*>(transfers_.in_place(MainAddress{address_of(child)}));
-      return true;
-    } else {
-      return false;
-    }
+  [[nodiscard]] GRIDIRON_INLINE const Element* in_place(TreeChild child) const {
+    const std::uint64_t address = child.is_leaf() ? leaf_address(child) : node_address(child);
+    return reinterpret_cast<const Element*>(transfers_.in_place(MainAddress{address}));
   }
 
   [[nodiscard]] Cache& cache() { return Parts::memory(store_).cache; }
