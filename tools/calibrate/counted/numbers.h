@@ -34,6 +34,7 @@
 namespace gridiron_counted {
 
 using gridiron::GridWork;
+using gridiron::InPlaceReader;
 using gridiron::TileWork;
 using gridiron::kFloatMax;
 using gridiron::kInfinity;
