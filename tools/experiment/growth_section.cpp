@@ -155,7 +155,7 @@ Writer plan_table1(Plan& plan, const Stage& stage) {
                    ". The printed growth is that of one ray. A packet also visits what its other rays need, the more "
                    "the narrower cells and boxes become beside it; how much that is shows in two configurations, "
                    "reference with packets of " +
-                   packet_words("reference") + " and best with " + packet_words("best") +
+                   packet_words("reference") + " and grid with " + packet_words("grid") +
                    ". Skipping what is empty and stopping behind the last hit take steps away. The fits are "
                    "least squares of the logarithms; they hold for this mesh and this range only, and r squared says "
                    "how far from a power law the counts are.");

@@ -169,7 +169,7 @@ Writer plan_machine_sweeps(Plan& plan, const Stage& stage) {
         "published is \"several hundred\", and the paper's machine may well have had more or less. The grid's recorded "
         "frame is the same at every point, only the replay changes; the hierarchy is rendered anew. Without hiding "
         "every cycle of latency is waited for; double buffering hides a transfer only as long as the work beside it "
-        "lasts, and more buffers, as best has them, move that limit out. " +
+        "lasts, and more buffers, as configuration grid has them, move that limit out. " +
         ring_words(done, turns));
     draw("sweep_latency", latencies, kPaperCores,
          {.title = "Latency", .x_title = "latency, cycles", .y_title = "waiting, % of core cycles"},

@@ -200,7 +200,7 @@ std::vector<Contender> make_contenders() {
   projection.accuracy = Accuracy::kPaper;
   return {grid_contender("reference", "reference", "double buffering", grid_variant("reference")),
           grid_contender("projection", "reference, projection test", "double buffering", projection),
-          grid_contender("best", "best", buffer_words("best"), grid_variant("best")), bvh_contender()};
+          grid_contender("grid", "grid", buffer_words("grid"), grid_variant("grid")), bvh_contender()};
 }
 
 std::unique_ptr<Recording> GridSystem::record(const View& view, const FrameRequest& request) const {

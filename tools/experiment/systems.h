@@ -110,7 +110,7 @@ struct GridVariant {
   bool late_normals = false;
 };
 
-/// @returns the configuration with that name, e.g. "best". Precondition: it exists.
+/// @returns the configuration with that name, e.g. "grid". Precondition: it exists.
 [[nodiscard]] GridVariant grid_variant(std::string_view configuration);
 
 /// @returns "4 cell blocks and 3 triangle buffers": the buffers of a configuration. Precondition as above.

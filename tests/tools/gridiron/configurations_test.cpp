@@ -27,7 +27,7 @@ TEST(Configurations, FetchSoManyChildrenForEffects) {
   const auto fetch = [](const char* name) { return tool::find_configuration(name)->depths.fetch; };
   EXPECT_EQ(fetch("reference"), 2u);
   EXPECT_EQ(fetch("deep"), 4u);
-  EXPECT_EQ(fetch("best"), 2u);
+  EXPECT_EQ(fetch("grid"), 2u);
 }
 
 TEST(Configurations, EachFitsAStoreWithEffects) {

@@ -211,7 +211,7 @@ TEST(Info, EachStoreHasItsMap) {
   const Words command = {"a.ply", "--machine", "big.machine"};
   EXPECT_EQ(info_json(folder, command)["local_store"]["arena_bytes"], 524288) << "the largest there is room for";
   for (const int kilobytes : {64, 128, 256, 512}) {
-    const Words store_options = {"--store", std::to_string(kilobytes), "--configuration", "best"};
+    const Words store_options = {"--store", std::to_string(kilobytes), "--configuration", "grid"};
     const Json store = info_json(folder, command + store_options)["local_store"];
     EXPECT_EQ(store["arena_bytes"], kilobytes * 1024);
     const Json& last = store["regions"].back();

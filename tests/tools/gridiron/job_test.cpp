@@ -53,7 +53,7 @@ struct JobCase {
 
 const std::vector<JobCase> kCases = {
     {{"--size", "96x64"}},
-    {{"--size", "70x45", "--eye", "1,2,3", "--configuration", "best"}},
+    {{"--size", "70x45", "--eye", "1,2,3", "--configuration", "grid"}},
     {{"--size", "40x40", "--store", "64", "--buffering", "single"}},
     {{"--size", "64x64", "--accuracy", "exact", "--lambda", "2"}},
     {{"--size", "64x64", "--accuracy", "paper", "--shading", "none"}},
@@ -239,7 +239,7 @@ TEST(Result, OneDifferenceIsEnough) {
 // Other words of the device for how it counted: other lanes are said, another queue makes a core wait earlier.
 TEST(Result, LanesAndQueueAreTheDevices) {
   const TemporaryFolder folder;
-  const std::string file = make_job(folder, {"--size", "50x40", "--configuration", "best"});
+  const std::string file = make_job(folder, {"--size", "50x40", "--configuration", "grid"});
   std::string result = render_on_host_device(file, 2);
   put_record(result, offsetof(FrameResult, lane_count), std::uint32_t{1});
   folder.write("a.res", result);

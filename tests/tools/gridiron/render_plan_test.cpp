@@ -39,7 +39,7 @@ std::string refusal(const tool::RenderRequest& request, const tool::KnownScene& 
 }
 
 TEST(RenderPlan, WhatIsNotAskedForIsTheScenesTheMachinesTheHostsAndTheConfigurations) {
-  const tool::RenderRequest request = render_request("best");
+  const tool::RenderRequest request = render_request("grid");
   const tool::RenderPlan mesh = plan_of(request);
   EXPECT_EQ(mesh.outputs.picture, "scene.png");
   EXPECT_EQ(mesh.width, 1024u);
@@ -62,7 +62,7 @@ TEST(RenderPlan, WhatIsNotAskedForIsTheScenesTheMachinesTheHostsAndTheConfigurat
 }
 
 TEST(RenderPlan, WhatIsAskedForIsKept) {
-  tool::RenderRequest request = render_request("best");
+  tool::RenderRequest request = render_request("grid");
   request.ids_plane = true;
   request.outputs.depth = "depth.pfm";
   request.size = {64, 64};
@@ -95,7 +95,7 @@ TEST(RenderPlan, AConfigurationGetsTheBuffersThatTheStoreHas) {
 }
 
 TEST(RenderPlan, RefusesByWhatIsKnownOfTheScene) {
-  tool::RenderRequest request = render_request("best");
+  tool::RenderRequest request = render_request("grid");
   request.shading = Shading::kScene;
   EXPECT_EQ(refusal(request), "--shading scene: a mesh has no lights and materials; text scenes (NFF) have");
   EXPECT_NO_THROW((void)plan_of(request, kPacked)) << "nobody knows before it is read";
@@ -106,7 +106,7 @@ TEST(RenderPlan, RefusesByWhatIsKnownOfTheScene) {
 }
 
 TEST(RenderPlan, RefusesWhatTheHostCannotRun) {
-  tool::RenderRequest request = render_request("best");
+  tool::RenderRequest request = render_request("grid");
   request.lanes = 16;
   EXPECT_EQ(refusal(request), "--lanes: this host has at most 8 lanes");
   request.lanes.reset();
@@ -116,7 +116,7 @@ TEST(RenderPlan, RefusesWhatTheHostCannotRun) {
 
 TEST(InfoPlan, SettlesTheLocalStoreThatIsToldOf) {
   tool::InfoRequest request;
-  request.scene = scene_request("best");
+  request.scene = scene_request("grid");
   request.layout.store = StoreSize::k128KB;
   EXPECT_EQ(tool::resolve(request, kMesh).layout.store, StoreSize::k128KB);
   const tool::InfoPlan text = tool::resolve(request, kText);

@@ -126,7 +126,7 @@ TEST(TextScene, InfoNamesTheRenderer) {
   const TemporaryFolder folder;
   const std::string mirror = (kScenes / "mirror.nff").string();
   EXPECT_EQ(info_json(folder, {mirror})["effects"]["renderer"], "EffectLayout256K<kSceneShading | kReflection, 8>");
-  EXPECT_EQ(info_json(folder, {mirror, "--configuration", "best"})["effects"]["renderer"],
+  EXPECT_EQ(info_json(folder, {mirror, "--configuration", "grid"})["effects"]["renderer"],
             "EffectLayout256K<kSceneShading | kReflection>");
   EXPECT_EQ(info_json(folder, {mirror})["effects"]["has_room"], true);
   EXPECT_EQ(info_json(folder, {mirror, "--store", "64"})["effects"]["renderer"],
@@ -257,7 +257,7 @@ TEST(TextScene, RendersItsEffects) {
   EXPECT_EQ(picture.substr(0, 7), "40x24, ");
   EXPECT_NE(picture, picture_of(run(folder, {"render", "a.nff", "--shading", "simple"})));
   EXPECT_EQ(picture, picture_of(run(folder, {"render", "a.nff", "--threads", "7"}))) << "more than cores";
-  for (const char* configuration : {"deep", "best"}) {
+  for (const char* configuration : {"deep", "grid"}) {
     EXPECT_EQ(picture, picture_of(run(folder, {"render", "a.nff", "--configuration", configuration})));
   }
   EXPECT_EQ(picture, picture_of(run(folder, {"render", "a.nff", "--buffering", "single"})));
@@ -293,7 +293,7 @@ TEST(TextScene, EveryEffectAtOnce) {
     return picture_of(run(folder, more));
   };
   const std::string reference = picture({});
-  EXPECT_EQ(reference, picture({"--configuration", "best", "--threads", "1"}));
+  EXPECT_EQ(reference, picture({"--configuration", "grid", "--threads", "1"}));
   EXPECT_EQ(reference, picture({"--completion", "late"}));
   EXPECT_NE(reference, picture({"--shading", "simple"}));
   EXPECT_EQ(reference, picture({"--store", "64"}));

@@ -28,7 +28,7 @@ TEST(Usage, MistakesExitWithTwoAndSayWhy) {
       {{"render a.ply --eye -1,-2,-3 --upp 0,0,1"}, "--upp is not an option of render; did you mean --up?"},
       {{"render a.ply --width 100"}, "did you mean --macro-width or --tile-width?"},
       {{"info a.ply --fov 30"}, "--fov is not an option of info; render, animate and job have it"},
-      {{"render a.ply --configuration bets"}, "'bets' is not one of reference|deep|best|tree; did you mean best?"},
+      {{"render a.ply --configuration bets"}, "'bets' is not one of reference|deep|grid|tree; did you mean deep?"},
       {{"render a.ply --accuracy extract"}, "did you mean exact?"},
       {{"render a.ply --shading Scene"}, "did you mean scene?"},
       {{"experiment acuracy -o x"}, "did you mean accuracy?"},

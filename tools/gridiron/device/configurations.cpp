@@ -16,7 +16,7 @@ constexpr Configuration kConfigurations[] = {
     {.name = "deep", .description = "the reference system, prefetching 4 cell blocks and 8 triangle buffers",
      .lambda = 4.0f, .macro_width = 6, .packet_width = 8,
      .depths = {.output = 2, .macro = 4, .triangle = 8, .fetch = 4}, .techniques = kReferenceTechniques},
-    {.name = "best", .description = "one traversal per tile for all its rays, a coarse grid, culling by pixels",
+    {.name = "grid", .description = "one traversal per tile for all its rays, a coarse grid, culling by pixels",
      .lambda = 0.4f, .macro_width = 4, .packet_width = 32,
      .depths = {.output = 2, .macro = 4, .triangle = 3, .fetch = 2},
      .techniques = kUseMailbox | kUseEmptySkip | kUseSubpackets},
