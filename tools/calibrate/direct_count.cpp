@@ -34,7 +34,7 @@ std::array<std::uint32_t, 9> tiles_of(std::size_t window) {
 
 std::array<double, kWorkKindCount> prices_of(const std::string& configuration) {
   const sim::EngineWork& engine = configuration == "bvh"    ? bvh::kBvhEngine
-                                  : configuration == "tree" ? sim::kTreeEngine
+                                  : configuration == "best" ? sim::kTreeEngine
                                                             : sim::kGridEngine;
   return sim::work_prices(sim::find_machine_profile("cell-ps3")->work_cycles, engine);
 }

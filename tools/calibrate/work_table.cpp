@@ -399,7 +399,7 @@ FramesInMemory tree_frames() {
   const Scene teapot = make_scene(), fine = scene_of(scene_makers::make_teapot(kFineSegments));
   const Scene knot = scene_of(scene_makers::make_torus_knot(kKnotTriangles));
   CountedFrame frame = teapot_frame(teapot);
-  frame.configuration = tool::find_configuration("tree");
+  frame.configuration = tool::find_configuration("best");
   std::vector<CountedFrame> frames = {frame};
   frame.has_planes = true;
   frames.push_back(frame);

@@ -1,4 +1,4 @@
-// animate: one frame for each mesh, with a new grid each, and its cost. SPDX-License-Identifier: Apache-2.0
+// animate: one frame for each mesh, with a new scene image each, and its cost. SPDX-License-Identifier: Apache-2.0
 #include <gridiron/sim/build_work.h>
 #include <gridiron/sim/replay.h>
 #include <report/report.h>
@@ -39,7 +39,8 @@ struct AnimationFrame {
   std::optional<SceneInput> mesh{};  ///< of a stream, which is read once
   std::uint64_t triangles = 0;
   float lambda = 0;
-  double build_cycles = 0, build_seconds = 0;    ///< of the machine's general core
+  bool is_build_counted = true;                  ///< false: through the tree, of whose build nothing is counted yet
+  double build_cycles = 0, build_seconds = 0;    ///< of the machine's general core; 0 where it is not counted
   double render_cycles = 0, render_seconds = 0;  ///< of its cores
   std::uint64_t hash = 0;
 
@@ -123,13 +124,16 @@ void render(AnimationFrame& frame, RenderPlan plan, const ViewRequest& view, con
   const sim::ChipResult result = render_on_chip(memory, plan, {});
 
   const sim::MachineProfile& machine = *plan.scene.machine;
-  const sim::BuildWork build = sim::grid_build_work(mesh.vertices.size(), mesh.triangles.size(), memory.need,
-                                                    sim::count_mesh_lines(mesh.view()));
   const sim::FrameTiming timing = sim::replay(result.trace, machine, {.core_count = plan.cores});
   frame.triangles = mesh.triangles.size();
   frame.lambda = memory.image.grid.lambda;
-  frame.build_cycles = sim::build_cycles(machine.master, build);
-  frame.build_seconds = sim::build_seconds(machine.master, build);
+  frame.is_build_counted = plan.scene.configuration->has_grid();
+  if (frame.is_build_counted) {
+    const sim::BuildWork build = sim::grid_build_work(mesh.vertices.size(), mesh.triangles.size(), memory.need,
+                                                      sim::count_mesh_lines(mesh.view()));
+    frame.build_cycles = sim::build_cycles(machine.master, build);
+    frame.build_seconds = sim::build_seconds(machine.master, build);
+  }
   frame.render_cycles = timing.frame_cycles;
   frame.render_seconds = timing.seconds;
 
@@ -149,10 +153,11 @@ std::string table_of(const std::vector<AnimationFrame>& frames, const sim::Machi
     const AnimationFrame& frame = frames[i];
     // The general core may have another clock; the total is in cycles of the cores.
     const double total_cycles = frame.build_seconds * machine.clock_hz + frame.render_cycles;
+    const auto of_build = [&frame](double value) { return frame.is_build_counted ? shortest_text(value) : ""; };
     for (const std::string& field :
          {shortest_text(i), in_csv(frame.input.filename().string()), shortest_text(frame.triangles),
-          shortest_text(frame.lambda), shortest_text(frame.build_cycles), shortest_text(frame.render_cycles),
-          shortest_text(total_cycles), shortest_text(frame.build_seconds), shortest_text(frame.render_seconds),
+          shortest_text(frame.lambda), of_build(frame.build_cycles), shortest_text(frame.render_cycles),
+          shortest_text(total_cycles), of_build(frame.build_seconds), shortest_text(frame.render_seconds),
           shortest_text(frame.seconds()), shortest_text(frame.fps())}) {
       table += field + ",";
     }
@@ -166,13 +171,17 @@ void print_frames(const std::vector<AnimationFrame>& frames, const RenderPlan& p
   std::printf("%-24s %14s %14s %9s\n", "frame", "build cycles", "render cycles", "frames/s");
   double seconds = 0;
   for (const AnimationFrame& frame : frames) {
-    std::printf("%-24s %14s %14s %9.2f\n", frame.picture.c_str(), cycles(frame.build_cycles).c_str(),
+    std::printf("%-24s %14s %14s %9.2f\n", frame.picture.c_str(),
+                frame.is_build_counted ? cycles(frame.build_cycles).c_str() : "not counted",
                 cycles(frame.render_cycles).c_str(), frame.fps());
     seconds += frame.seconds();
   }
-  std::printf("%s, %s: %s in %.2f ms, %.2f frames/s with their builds\n", std::string(plan.scene.machine->name).c_str(),
+  const char* builds = plan.scene.configuration->has_grid()
+                           ? "with their builds"
+                           : "without their builds; --configuration grid counts these too";
+  std::printf("%s, %s: %s in %.2f ms, %.2f frames/s %s\n", std::string(plan.scene.machine->name).c_str(),
               words_of_count(plan.cores, "core").c_str(), words_of_count(frames.size(), "frame").c_str(), seconds * 1e3,
-              seconds > 0 ? static_cast<double>(frames.size()) / seconds : 0.0);
+              seconds > 0 ? static_cast<double>(frames.size()) / seconds : 0.0, builds);
 }
 
 }  // namespace

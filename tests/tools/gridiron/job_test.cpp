@@ -52,14 +52,14 @@ struct JobCase {
 };
 
 const std::vector<JobCase> kCases = {
-    {{"--size", "96x64"}},
+    {with_reference({"--size", "96x64"})},
     {{"--size", "70x45", "--eye", "1,2,3", "--configuration", "grid"}},
-    {{"--size", "40x40", "--store", "64", "--buffering", "single"}},
-    {{"--size", "64x64", "--accuracy", "exact", "--lambda", "2"}},
+    {with_reference({"--size", "40x40", "--store", "64", "--buffering", "single"})},
+    {with_reference({"--size", "64x64", "--accuracy", "exact", "--lambda", "2"})},
     {{"--size", "64x64", "--accuracy", "paper", "--shading", "none"}},
-    {{"--size", "64x64", "--accuracy", "compact", "--packet", "32"}},
-    {{"--cores", "5"}, "a.nff"},
-    {{"--store", "64"}, "a.nff", false},
+    {with_reference({"--size", "64x64", "--accuracy", "compact", "--packet", "32"})},
+    {with_reference({"--cores", "5"}), "a.nff"},
+    {with_reference({"--store", "64"}), "a.nff", false},
 };
 
 TEST(Job, NamesWhatLiesInIt) {
@@ -113,12 +113,21 @@ TEST(Job, NamesWhatLiesInIt) {
 
 TEST(Job, IsTheSameBytesEveryTimeAndOfAPackedScene) {
   const TemporaryFolder folder;
-  const std::string job = make_job(folder, {"--size", "64x48"});
-  run(folder, {"pack", "a.ply", "-o", "a.gri"});
-  EXPECT_EQ(make_job(folder, {"--size", "64x48"}, "a.gri"), job);
+  const Words frame = with_reference({"--size", "64x48"});
+  const std::string job = make_job(folder, frame);
+  run(folder, with_reference({"pack", "a.ply", "-o", "a.gri"}));
+  EXPECT_EQ(make_job(folder, frame, "a.gri"), job);
   const auto plain = record_at<FrameJob>(job, 0);
   EXPECT_EQ(plain.depth_address, 0u);
   EXPECT_EQ(plain.ids_address, 0u);
+}
+
+// The boards' renderers have no eye rays through the tree.
+TEST(Job, IsOfTheGridByDefault) {
+  const TemporaryFolder folder;
+  EXPECT_EQ(make_job(folder, {"--size", "64x48"}), make_job(folder, {"--size", "64x48", "--configuration", "grid"}));
+  expect_failure(folder, {"job", "a.ply", "-o", "b.job", "--base", "0", "--configuration", "best"}, 2,
+                 "--configuration grid, reference and deep do");
 }
 
 TEST(Job, IsRefusedWhereItDoesNotFit) {

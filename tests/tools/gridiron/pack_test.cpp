@@ -25,7 +25,9 @@ TEST(Pack, RendersTheSamePictureAsTheMesh) {
       {{"--format", "lattice"}, {"--accuracy", "compact"}},
       {{}, {"--accuracy", "exact"}},
       {{"--format", "vertices"}, {"--accuracy", "fast"}},
-      {{"--lambda", "1", "--macro-width", "4"}, {}},
+      {{"--lambda", "1", "--macro-width", "4", "--configuration", "grid"}, {}},
+      {{"--configuration", "reference"}, {}},
+      {{}, {"--configuration", "grid"}},
   };
   for (const auto& choice : cases) {
     run(folder, Words{"pack", "a.ply", "-o", "a.gri"} + choice.pack);
@@ -47,15 +49,17 @@ TEST(Pack, IsTheSameBytesEveryTime) {
 
 TEST(Pack, ImagesAreUsedAsTheyWerePacked) {
   const TemporaryFolder folder("a.ply", make_sphere(12, 16, 1.0f));
-  run(folder, {"pack", "a.ply", "-o", "a.gri"});
+  run(folder, with_reference({"pack", "a.ply", "-o", "a.gri"}));
   const struct {
     Words arguments;
     const char* words;
   } cases[] = {
       {{"render", "a.gri", "--accuracy", "paper"}, "with --format vertices; this needs --format projection"},
       {{"render", "a.gri", "--accuracy", "compact"}, "needs --format lattice"},
-      {{"render", "a.gri", "--lambda", "2"}, "packed with lambda 4"},
-      {{"render", "a.gri", "--macro-width", "4"}, "width 6"},
+      {with_reference({"render", "a.gri", "--lambda", "2"}), "packed with lambda 4"},
+      {with_reference({"render", "a.gri", "--macro-width", "4"}), "width 6"},
+      {{"render", "a.gri", "--configuration", "best"},
+       "packed without a tree; pack it with --configuration best, or take --configuration grid"},
       {{"pack", "a.gri", "-o", "b.gri"}, "already"},
   };
   for (const auto& mistake : cases) expect_failure(folder, mistake.arguments, 1, mistake.words);

@@ -61,6 +61,34 @@ TEST(RenderPlan, WhatIsNotAskedForIsTheScenesTheMachinesTheHostsAndTheConfigurat
   EXPECT_TRUE(text.layout.has_effects);
 }
 
+// A configuration that nobody named follows from scene, machine, mode and store.
+TEST(RenderPlan, TheDefaultConfigurationIsCompleted) {
+  tool::RenderRequest request;
+  request.scene = scene_request("best");
+  request.scene.configuration = nullptr;
+  const auto name = [](const tool::RenderPlan& plan) { return plan.scene.configuration->name; };
+  EXPECT_EQ(name(plan_of(request)), "best");
+  EXPECT_EQ(plan_of(request).engine, EngineId::kTree);
+  EXPECT_EQ(plan_of(request).techniques, 0u);
+  EXPECT_EQ(name(plan_of(request, kText)), "best");
+  EXPECT_EQ(plan_of(request, kText).layout.tile_width, 32u);
+  EXPECT_EQ(name(plan_of(request, kPacked)), "best") << "nobody knows before it is read";
+  EXPECT_EQ(name(plan_of(request, {.kind = SceneKind::kPacked, .is_read = true, .has_tree = false})), "grid");
+  EXPECT_EQ(request.scene.configuration, nullptr);
+  request.is_for_board = true;
+  EXPECT_EQ(name(plan_of(request)), "grid");
+  request.is_for_board = false;
+  request.scene.machine = tool::find_machine("fu540");
+  EXPECT_EQ(name(plan_of(request)), "grid");
+  request.mode = sim::Mode::kPlain;
+  EXPECT_EQ(name(plan_of(request)), "best") << "nothing is counted";
+  request.layout.store = StoreSize::k64KB;
+  EXPECT_EQ(name(plan_of(request)), "grid");
+  EXPECT_EQ(name(plan_of(request, kText)), "best") << "all rays by lists";
+  request.accuracy = Accuracy::kPaper;
+  EXPECT_EQ(name(plan_of(request)), "reference");
+}
+
 TEST(RenderPlan, WhatIsAskedForIsKept) {
   tool::RenderRequest request = render_request("grid");
   request.ids_plane = true;
@@ -112,6 +140,25 @@ TEST(RenderPlan, RefusesWhatTheHostCannotRun) {
   request.lanes.reset();
   request.mode = sim::Mode::kInstrumented;
   EXPECT_EQ(refusal(request), "--mode instrumented: this build has no instrumented kernel");
+}
+
+TEST(InfoPlan, TheDefaultConfigurationIsCompleted) {
+  tool::InfoRequest request;
+  request.scene = scene_request("best");
+  request.scene.configuration = nullptr;
+  const auto name = [&](const tool::KnownScene& scene) {
+    return tool::resolve(request, scene).scene.configuration->name;
+  };
+  EXPECT_EQ(name(kMesh), "best");
+  EXPECT_EQ(name(kText), "best");
+  EXPECT_EQ(name({.kind = SceneKind::kPacked, .is_read = true, .has_tree = false}), "grid");
+  EXPECT_EQ(name({.kind = SceneKind::kPacked, .is_read = true, .has_tree = false, .has_projection = true}),
+            "reference");
+  request.format = TriangleFormat::kProjection;
+  EXPECT_EQ(name(kMesh), "reference");
+  request.format.reset();
+  request.layout.store = StoreSize::k128KB;
+  EXPECT_EQ(name(kMesh), "grid");
 }
 
 TEST(InfoPlan, SettlesTheLocalStoreThatIsToldOf) {

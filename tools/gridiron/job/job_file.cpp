@@ -41,7 +41,7 @@ std::uint64_t result_head_bytes(std::uint32_t tile_count) {
 FrameJob plan_job(const FrameMemory& frame, const RenderPlan& plan) {
   if (plan.engine != EngineId::kGrid) {
     usage_error("--configuration " + std::string(plan.scene.configuration->name) +
-                ": the boards' renderers trace eye rays through the grid; take another configuration");
+                ": the boards' renderers trace eye rays through the grid; --configuration grid, reference and deep do");
   }
   FrameJob job{};
   job.magic = port::kFrameJobMagic;

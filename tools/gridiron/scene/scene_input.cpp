@@ -120,12 +120,19 @@ KnownScene foreseen_scene(const SceneRequest& request) {
 
 KnownScene known_scene(const SceneInput& input) {
   if (const PackedScene* packed = std::get_if<PackedScene>(&input.content)) {
-    return {SceneKind::kPacked, packed->view.has_effects, true};
+    return {
+        .kind = SceneKind::kPacked,
+        .has_effects = packed->view.has_effects,
+        .is_read = true,
+        .has_tree = packed->view.has_tree,
+        .has_projection = packed->view.grid.triangle_format == static_cast<std::uint32_t>(TriangleFormat::kProjection)};
   }
-  if (!input.text) return {SceneKind::kMesh, false, true};
+  if (!input.text) return {.kind = SceneKind::kMesh, .is_read = true};
   const SceneView& view = input.text->view;
-  return {SceneKind::kText, true, true,
-          view.is_given() ? std::optional(CountPair{view.width, view.height}) : std::nullopt};
+  return {.kind = SceneKind::kText,
+          .has_effects = true,
+          .is_read = true,
+          .size = view.is_given() ? std::optional(CountPair{view.width, view.height}) : std::nullopt};
 }
 
 std::uint32_t recursion_depth(const SceneInput& input) {
@@ -237,10 +244,11 @@ GridChoice choose_grid(const SceneInput& input, const Mesh& mesh, const SceneReq
                : fit_scene_image(mesh.view(), choice.parameters, limits.budget_bytes, choice.need, effects, marks);
   }();
   if (status == Status::kMemoryTooSmall) {
-    input_error(input.path,
-                "the scene needs more than " + words_of_bytes(choice.need.image_bytes) + " at lambda " +
-                    text_of(choice.wanted_lambda) + "; " + words_of_budget(*request.machine, limits.budget_bytes) +
-                    "; a smaller --lambda needs less" + (input.text ? ", and so does a greater --tolerance" : ""));
+    input_error(input.path, "the scene needs more than " + words_of_bytes(choice.need.image_bytes) + " at lambda " +
+                                text_of(choice.wanted_lambda) + "; " +
+                                words_of_budget(*request.machine, limits.budget_bytes) +
+                                (configuration.has_grid() ? "; a smaller --lambda needs less" : "") +
+                                (input.text ? "; a greater --tolerance makes fewer triangles" : ""));
   }
   if (status == Status::kTooManyTriangles) {
     const float lambda = request.lambda ? choice.wanted_lambda : kLeastLambda;
@@ -304,7 +312,8 @@ void check_packed(const SceneInput& input, const PackedScene& packed, const Scen
   const GridRecord& grid = packed.view.grid;
   require_format(input, packed, limits.format);
   if (limits.has_tree && !packed.view.has_tree) {
-    input_error(input.path, "was packed without a tree; pack it with --configuration tree");
+    input_error(input.path,
+                "was packed without a tree; pack it with --configuration best, or take --configuration grid");
   }
   if (request.lambda && *request.lambda != grid.lambda) {
     input_error(input.path, "was packed with lambda " + text_of(grid.lambda) + "; --lambda cannot change it");
