@@ -52,6 +52,7 @@ inline constexpr const char* kBvhCostWords =
 [[nodiscard]] Writer plan_figure6(Plan& plan, const Stage& stage);
 [[nodiscard]] Writer plan_table4(Plan& plan, const Stage& stage);
 [[nodiscard]] Writer plan_grid(Plan& plan, const Stage& stage);
+[[nodiscard]] Writer plan_best(Plan& plan, const Stage& stage);
 [[nodiscard]] Writer plan_figure7(Plan& plan, const Stage& stage);
 
 /// Fig. 7 (b): the same kernel, and Embree, on this host's processor. One frame after another, without other work of

@@ -33,14 +33,14 @@ struct FrameRequest {
 
 /// Facts of a frame that need no clock.
 struct FrameFacts {
-  sim::BuildWork build;                  ///< of the structure
+  sim::BuildWork build;                  ///< of the structure; nothing of the tree's
   std::uint64_t traversal_steps = 0;     ///< steps through the structure, all packets
-  std::uint64_t intersection_tests = 0;  ///< (SIMD group, triangle) tests
+  std::uint64_t intersection_tests = 0;  ///< (SIMD group, triangle) tests; 0 of tiles, which draw triangles
   std::uint64_t scene_bytes = 0;         ///< structure and triangles in main memory
   std::uint64_t picture_hash = 0;
-  std::uint32_t dropped_triangles = 0;  ///< of zero area
-  std::optional<GridRecord> grid;       ///< of systems that have one
-  std::uint64_t triangle_bytes = 0;     ///< of the scene: triangle records; from here on for the grid alone
+  std::uint32_t dropped_triangles = 0;       ///< of zero area
+  std::optional<GridRecord> grid;            ///< of systems that have one
+  std::uint64_t triangle_bytes = 0;          ///< of the scene: triangle records; from here on for the grid alone
   std::uint64_t fetched_triangle_bytes = 0;  ///< requested by gets of triangle records
   std::uint64_t main_memory_bytes = 0;       ///< scene, frame record and output planes
   std::uint64_t local_store_bytes = 0;       ///< data, and the budgets of code and stack
@@ -89,6 +89,7 @@ struct Contender {
   std::string hiding;                      ///< how `system` hides it, for people
   bool is_grid = true;                     ///< false: a hierarchy
   PaperGrowth paper_growth;                ///< growth of such a structure by the paper's Table 1
+  bool is_build_counted = true;            ///< false: nothing of its build is counted
 };
 
 /// The columns of every table that compares systems.
@@ -97,7 +98,7 @@ struct Contender {
 /// The machine whose main memory must hold every scene.
 [[nodiscard]] const tool::Machine& home_machine();
 
-/// Parameters of core's own grid traversal.
+/// Parameters of core's own engines, the grid and the tree.
 struct GridVariant {
   std::string key;
   tool::Configuration configuration;
@@ -116,7 +117,7 @@ struct GridVariant {
 /// @returns "4 cell blocks and 3 triangle buffers": the buffers of a configuration. Precondition as above.
 [[nodiscard]] std::string buffer_words(std::string_view configuration);
 
-/// The grid traversal of core, rendered in checked mode with 4 lanes and timed by replay.
+/// An engine of core, rendered in checked mode with 4 lanes and timed by replay.
 class GridSystem : public System {
  public:
   explicit GridSystem(GridVariant variant) : variant_(std::move(variant)) {}
@@ -155,7 +156,7 @@ class CloseLook {
 
 struct HostFrame {
   tool::HostSeconds seconds;  ///< the scene's build not included
-  FrameRecord record{};  ///< camera and size of it
+  FrameRecord record{};       ///< camera and size of it
 };
 
 /// Renders the frame directly on this host: plain mode, no simulated clock. @param threads  host threads. Errors:

@@ -37,6 +37,10 @@ void expect_bvh(const fs::path& folder) {
     }
     EXPECT_NEAR(number_under(frames, row, "grid_over_bvh") * number_under(frames, row, "bvh_fps"),
                 number_under(frames, row, "grid_fps"), 1e-6);
+    const double best = number_under(frames, row, "best_fps");
+    EXPECT_NEAR(number_under(frames, row, "best_over_bvh") * number_under(frames, row, "bvh_fps"), best, 1e-6);
+    EXPECT_NEAR(number_under(frames, row, "best_over_grid") * number_under(frames, row, "grid_fps"), best, 1e-6);
+    EXPECT_NEAR(number_under(cycles, row, "best_mcycles") * 1e6 * best, clock, 1e-6 * clock);
   }
   EXPECT_EQ(csv_rows(folder / "fig7_caches.csv").size(), 9u) << "two views, two machines, with and without turns";
   EXPECT_NE(csv_rows(folder / "host_fig7.csv").at(0).at(5), "") << "Embree has its column";
@@ -135,6 +139,7 @@ void expect_words(const fs::path& folder, const std::string& page) {
   for (std::size_t row = 1; row < costs.size(); ++row) {
     of_paper.add(number_under(costs, row, "projection_percent"));
     others.add(number_under(costs, row, "bvh_percent"));
+    others.add(number_under(costs, row, "best_percent"));
   }
   expect("costs the reference, with either test, " + of_paper.percent(1) +
          " of its fps, and the other systems, whose " + "frames are shorter, " + others.percent(1));
@@ -157,7 +162,16 @@ void expect_words(const fs::path& folder, const std::string& page) {
   expect("computation changes by " + growths.percent(1));
   expect("times the reference's bytes and computes for " + work_ratios.text(2) + " times its cycles");
 
-  // Best: the costs and gains of its depths; the sweeps' tables have the same frames.
+  // Best against grid.
+  const auto against = csv_rows(folder / "best_against_grid.csv");
+  EXPECT_EQ(rows_of(against, against.at(0).size() - 1, "yes").size(), against.size()) << "the same pictures";
+  EXPECT_EQ(against.size(), 5u) << "two views, without and with shading";
+  expect("it renders " + range_under(against, "fps_ratio").text(2) + " times the frames of configuration grid");
+  expect("of the hierarchy with hyper-threading and " +
+         range_under(csv_rows(folder / "fig7_frames.csv"), "best_over_grid").text(2) + " times those of");
+  EXPECT_EQ(rows_of(csv_rows(folder / "table1_growth.csv"), 0, "best").size(), 1u) << "its build is not counted";
+
+  // Grid: the costs and gains of its depths; the sweeps' tables have the same frames.
   const auto depths = rows_of(csv_rows(folder / "sweep_macro_depth.csv"), 1, "grid");
   experiment::Range lost, waits;
   for (std::size_t row = 1; row < depths.size(); ++row) {
