@@ -294,11 +294,13 @@ Writer plan_tile_sweep(Plan& plan, const Stage& stage) {
   return [sweep](const Plan& done, Book& book) {
     book.section("tiles", "Sweep: tile size");
     book.paragraph(
-        "Pixels along a tile's edge, in the store of 256 KB. The reference keeps its packets of 8x8; configuration grid traverses "
+        "Pixels along a tile's edge, in the store of 256 KB. The reference keeps its packets of 8x8; configuration "
+        "grid traverses "
         "once per tile as far as packets go: they are as wide as the tile up to 32x32, whose 64 subpackets are one "
         "word of bits, so that tiles of 64 pixels take four. Packets of 8x8 have mailboxes of 64 slots, those of "
         "16x16 and of tiles of 64 pixels 256, the others 1,024. Two tiles of 64 pixels take 96 KB with their planes of "
-        "colour, distance and triangle; beside them there is room for 8 triangle buffers instead of 12; configuration grid uses 3.");
+        "colour, distance and triangle; beside them there is room for 8 triangle buffers instead of 12; configuration "
+        "grid uses 3.");
     book.paragraph("Frames over those at 32 pixels, all views: the reference renders " +
                    ratio_words(*sweep, done, "reference", &RunResult::fps) + "; grid " +
                    ratio_words(*sweep, done, "grid", &RunResult::fps) + ". Traversal steps of grid: " +
@@ -487,7 +489,8 @@ Writer plan_store_sweep(Plan& plan, const Stage& stage) {
     book.paragraph(
         "A layout for each size: tiles of 16 pixels in 64 KB and of 32 in the others, and with the size the table of "
         "macrocells, the buffers and the mailbox of wide packets; the contents of each are below. Where a layout has "
-        "fewer buffers than a configuration asks for, it is cut down to them; in 64 KB configuration grid traverses once per 16x16 "
+        "fewer buffers than a configuration asks for, it is cut down to them; in 64 KB configuration grid traverses "
+        "once per 16x16 "
         "tile.");
     book.paragraph("Frames over those from 256 KB, all views: the reference renders " +
                    ratio_words(*sweep, done, "reference", &RunResult::fps) + "; grid " +
