@@ -50,7 +50,7 @@ TEST_P(ScansTest, PixelsEqualTheTruthBitForBit) {
   EXPECT_EQ(report.mismatches, 0u) << view.name << ", seed " << kSeed << ": " << report.first_mismatch;
   EXPECT_GT(report.hits, kBorderPixels / 2);
 
-  // The `best` configuration: another traversal, the same bits in every pixel.
+  // The `grid` configuration: another traversal, the same bits in every pixel.
   settings.techniques = kUseMailbox | kUseEmptySkip | kUseSubpackets;
   settings.macro_depth = 4;
   settings.triangle_depth = 8;

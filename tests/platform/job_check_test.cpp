@@ -141,11 +141,11 @@ TEST(JobCheck, TakesWhatTheProgramMakes) {
   for (const char* store : {"64", "256"}) {
     for (const char* accuracy : {"standard", "exact", "fast", "compact"}) {
       EXPECT_TRUE(JobMemory("teapot.ply",
-                            {"--size", "70x40", "--configuration", "tree", "--store", store, "--accuracy", accuracy})
+                            {"--size", "70x40", "--configuration", "best", "--store", store, "--accuracy", accuracy})
                       .check())
           << store << ", " << accuracy << ": " << told;
     }
-    EXPECT_TRUE(JobMemory("everything.nff", {"--size", "40x40", "--configuration", "tree", "--store", store}).check())
+    EXPECT_TRUE(JobMemory("everything.nff", {"--size", "40x40", "--configuration", "best", "--store", store}).check())
         << store << ": " << told;
   }
   for (const char* scene : {"everything.nff", "shadow.nff", "environment.nff", "smooth_normals.nff"}) {
@@ -205,7 +205,7 @@ TEST(JobCheck, HoldsTheRecordAgainstTheJob) {
 }
 
 TEST(JobCheck, HoldsTreesAgainstTheJob) {
-  JobMemory memory("teapot.ply", {"--size", "70x40", "--configuration", "tree"});
+  JobMemory memory("teapot.ply", {"--size", "70x40", "--configuration", "best"});
   expect_refusals(
       memory,
       {WRONG("frame record: engine_id 3, no engine of core", ++m.record().engine_id),

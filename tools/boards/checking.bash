@@ -165,7 +165,7 @@ refuse_broken_jobs() {
     change "$work/broken.job" "$offset" 1 0xa5
     refuse_job "job with byte $offset changed" "$word"
   done
-  job broken "$scene" --store "$1" --size 64x64
+  job broken "$scene" --configuration reference --store "$1" --size 64x64
   refuse_job 'a job of other tiles' 'tile width'
   for field in colour width triangles; do
     cp "$work/small.job" "$work/broken.job"

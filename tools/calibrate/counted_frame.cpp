@@ -22,7 +22,7 @@ static_assert(bvh::kTilePixels == kWordsOfTile);
 CountedProgram program_of(const CountedFrame& frame) {
   if (frame.ring_size != 0) return CountedProgram::kBvh;
   if (frame.effects != nullptr) return CountedProgram::kEffects;
-  if (frame.configuration->packet_width == 0) return CountedProgram::kTree;
+  if (!frame.configuration->has_grid()) return CountedProgram::kTree;
   return frame.configuration->packet_width == 32 ? CountedProgram::kPackets32 : CountedProgram::kPackets8;
 }
 

@@ -32,10 +32,13 @@ std::array<std::uint32_t, 9> tiles_of(std::size_t window) {
   return tiles;
 }
 
+const sim::EngineWork& engine_of(const std::string& configuration) {
+  if (configuration == "bvh") return bvh::kBvhEngine;
+  return configuration == "best" ? sim::kTreeEngine : sim::kGridEngine;
+}
+
 std::array<double, kWorkKindCount> prices_of(const std::string& configuration) {
-  const sim::EngineWork& engine = configuration == "bvh"    ? bvh::kBvhEngine
-                                  : configuration == "tree" ? sim::kTreeEngine
-                                                            : sim::kGridEngine;
+  const sim::EngineWork& engine = engine_of(configuration);
   return sim::work_prices(sim::find_machine_profile("cell-ps3")->work_cycles, engine);
 }
 
@@ -150,7 +153,7 @@ std::string direct_count_kinds(const std::vector<DirectCount>& counts) {
   std::string text;
   for (const std::string& configuration : configurations) {
     const std::array<double, kWorkKindCount> prices = prices_of(configuration);
-    const sim::EngineWork& engine = configuration == "bvh" ? bvh::kBvhEngine : sim::kGridEngine;
+    const sim::EngineWork& engine = engine_of(configuration);
     text += format("\n%s\n%-20s %9s", configuration.c_str(), "kind", "price");
     for (const DirectCount& one : counts) {
       if (one.configuration == configuration) text += format(" %17.17s", one.view.c_str());

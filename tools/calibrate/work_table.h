@@ -13,7 +13,7 @@
 namespace gridiron::calibrate {
 
 /// Counts the frames that the table is made from: the teapot, 1,640 triangles on 96 x 96 pixels, as `reference`, as
-/// `best`, from near, with the paper's test, with planes and on a lattice; the teapot on a floor with every effect,
+/// `grid`, from near, with the paper's test, with planes and on a lattice; the teapot on a floor with every effect,
 /// 12 x 12 and 20 x 20 pixels; and the exact decisions on 64 rays and triangles of it.
 ///
 /// Each program is laid out once, for what branches usually do in all its frames.
@@ -34,7 +34,7 @@ namespace gridiron::calibrate {
 /// and planes, and a torus knot of 12,000 triangles. By Work and TileWork.
 [[nodiscard]] Totals count_tree_frames(const PipeRules& rules = {});
 
-/// Frames of `reference`, `best` and the cached BVH under other rules than those charged: cycles against theirs, dual
+/// Frames of `reference`, `grid` and the cached BVH under other rules than those charged: cycles against theirs, dual
 /// issue, registers. @returns a table, Markdown.
 [[nodiscard]] std::string rules_text();
 

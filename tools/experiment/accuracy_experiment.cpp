@@ -23,7 +23,7 @@ void write_method(const PriceList& list, Book& book) {
   book.paragraph(
       "Truth is exact arithmetic on the mesh as it was read. Profile exact gives it: tests/numeric and tests/image "
       "hold its triangles and distances against integers and rational numbers. So its frame, with distances, in "
-      "configuration best is the reference for all others; whatever a profile does to the mesh is an error of the "
+      "configuration grid is the reference for all others; whatever a profile does to the mesh is an error of the "
       "profile. All profiles of a view see it through the same camera, so a pixel is the same ray for all.");
   book.paragraph(
       "A ray that hits something in truth and nothing here is a hole, one that hits nothing in truth and something "
@@ -50,7 +50,7 @@ void write_method(const PriceList& list, Book& book) {
       tool::words_of_count(alike) + " of " + tool::words_of_count(compared) +
       " frames are the same with and without them.");
   book.paragraph(
-      "Configuration best culls by the vertices of triangles. The records of profile paper have none, so it runs best "
+      "Configuration grid culls by the vertices of triangles. The records of profile paper have none, so it runs grid "
       "without; its home is the reference configuration, and both are shown. All frames have simple shading, as "
       "gridiron render has by default, and six cores. Bytes moved by DMA are those requested by gets and puts of all "
       "cores; main memory holds scene image, frame record and picture. " +
@@ -106,7 +106,7 @@ ExperimentResult run_accuracy_experiment(const ExperimentSettings& settings, con
       "Every figure below comes from one run of `gridiron experiment accuracy`: pictures of " + size +
           " rendered by the kernel's real code on the simulated chip " + list.machine().key +
           " with six cores, in each of its accuracy profiles, and held pixel by pixel against the frame of profile "
-          "exact in configuration best, which the project's tests hold against integers. "
+          "exact in configuration grid, which the project's tests hold against integers. "
           "MB are 2^20 bytes, GB/s 10^9 bytes a second.");
   write_overview(list, book);
   write_targets(list, book);

@@ -20,7 +20,7 @@ tool::RenderPlan plan_of(const EffectScene& scene, const EffectFrameRequest& req
   tool::RenderRequest asked;
   asked.scene.input = scene.key;
   asked.scene.machine = home_machine();
-  asked.scene.configuration = tool::find_configuration("best");
+  asked.scene.configuration = tool::find_configuration("grid");
   asked.scene.lambda = request.lambda;
   asked.layout.depths = request.depths;
   asked.size = {request.width, request.height};

@@ -32,7 +32,7 @@ struct EffectFrameRequest {
   Accuracy accuracy = Accuracy::kStandard;
 };
 
-/// A frame in main memory, ready to be rendered with configuration best on the home machine.
+/// A frame in main memory, ready to be rendered with configuration grid on the home machine.
 struct PreparedEffectFrame {
   /// Errors: tool::Failure.
   PreparedEffectFrame(const EffectScene& scene, const EffectFrameRequest& request);
@@ -60,7 +60,7 @@ struct EffectFrame {
   [[nodiscard]] double secondary_wait_cycles() const;  ///< of stages surface, shadow, occlusion, bounce, environment
 };
 
-/// Renders on the calling thread with configuration best on six cores of the home machine. Errors: tool::Failure.
+/// Renders on the calling thread with configuration grid on six cores of the home machine. Errors: tool::Failure.
 [[nodiscard]] EffectFrame render_effect_frame(const EffectScene& scene, const EffectFrameRequest& request);
 
 /// The counts of a frame for an effect that it does not call for.

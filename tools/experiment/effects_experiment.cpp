@@ -103,7 +103,7 @@ std::vector<Step> list_steps(std::vector<SceneFrames>& scenes, const ExperimentS
       add(frames.whole(), frames.lambdas[i]);
     }
     request.lambda = kLambda;
-    request.depths = tool::find_configuration("best")->depths;
+    request.depths = tool::find_configuration("grid")->depths;
     add(frames.whole(), frames.deep);
   }
   return steps;
@@ -200,9 +200,9 @@ void write_hiding(const std::vector<SceneFrames>& scenes, Book& book) {
   Table table =
       make_table("hiding", "scene", Column("single_wait_cycles", "waiting, single buffering", 0),
                  Column("double_wait_cycles", "waiting, double buffering", 0), Column("hidden_percent", "% gone"),
-                 Column("best_wait_cycles", "waiting, the configuration's buffers", 0),
-                 Column("best_hidden_percent", "% gone"), Column("single_fps", "frames/s, single"),
-                 Column("double_fps", "double"), Column("best_fps", "the configuration's"));
+                 Column("grid_wait_cycles", "waiting, the configuration's buffers", 0),
+                 Column("grid_hidden_percent", "% gone"), Column("single_fps", "frames/s, single"),
+                 Column("double_fps", "double"), Column("grid_fps", "the configuration's"));
   BarChart chart{.title = "Waits for secondary rays",
                  .y_title = "million cycles of all cores",
                  .bars = {"buffering"},
@@ -231,7 +231,7 @@ void write_hiding(const std::vector<SceneFrames>& scenes, Book& book) {
       fixed_text(100 * kLeastHiddenShare, 0) + " % of them go; the least here is " + fixed_text(100 * least, 1) +
       " %. It does so too where the rest is more than " + fixed_text(100 * kMostWaitShare, 0) +
       " % of the cores' time; the most here is " + fixed_text(100 * most_left, 1) +
-      " %. The configuration itself has " + std::to_string(tool::find_configuration("best")->depths.fetch) +
+      " %. The configuration itself has " + std::to_string(tool::find_configuration("grid")->depths.fetch) +
       " children or records under way.");
   book.figure("hiding", bar_chart_svg(chart), "A bar is all waiting for secondary rays with single buffering.");
   book.table(table, "Waiting in the stages of secondary rays, all effects on.");
@@ -284,7 +284,7 @@ void write_lambdas(const std::vector<SceneFrames>& scenes, Book& book) {
   }
   book.section("lambda", "How fine a grid");
   book.paragraph(
-      "Configuration best has a coarse grid of " + number_text(tool::find_configuration("best")->lambda) +
+      "Configuration grid has a coarse grid of " + number_text(tool::find_configuration("grid")->lambda) +
       " cells per triangle, which suits packets of eye rays that share what they fetch. Secondary rays go through a "
       "tree and do not use the grid. A finer one has fewer triangles a cell, but more cells and references. "
       "All other frames of this page have " +
@@ -300,7 +300,7 @@ void write_sizes(Book& book) {
       "The kernel of a set of effects is compiled without the code and the data of all others. The simulated chip has "
       "the one with all effects, whose code and stack have budgets:");
   const tool::StoreFacts facts =
-      tool::effect_store_facts(sim::StoreSize::k256KB, tool::find_configuration("best")->packet_width);
+      tool::effect_store_facts(sim::StoreSize::k256KB, tool::find_configuration("grid")->packet_width);
   Table map = make_table("", "region", "offset", "bytes");
   for (const tool::LocalStoreRegion& region : facts.regions) {
     map.add({region.name, region.offset_bytes, region.bytes});
@@ -326,7 +326,7 @@ void write_method(const ExperimentSettings& settings, Book& book) {
       "All scenes are made in process, without files. Frames of " + std::to_string(settings.width) + "x" +
       std::to_string(settings.height) +
       " pixels are rendered by the kernel's real code in checked mode with four lanes, accuracy standard, "
-      "configuration best with " +
+      "configuration grid with " +
       number_text(kLambda) +
       " cells per triangle, and their traces get a time on six cores of cell-ps3. Single buffering is one buffer of "
       "each kind and one child of a node at a time, double buffering two of each. Rays are counted where they "

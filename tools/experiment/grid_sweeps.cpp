@@ -11,7 +11,7 @@
 namespace gridiron::experiment {
 namespace {
 
-const char* const kSweptConfigurations[] = {"reference", "best"};
+const char* const kSweptConfigurations[] = {"reference", "grid"};
 
 /// One frame of a sweep: a view, a configuration, and the parameter's value.
 struct Step {
@@ -129,7 +129,7 @@ Range waits_at(const Plan& done, const std::vector<Step>& steps, const std::stri
   return waits;
 }
 
-// "reference 5.5 to 30.1 %, best 0.5 to 3.3 %": the extra bytes that the last value fetches over the first.
+// "reference 5.5 to 30.1 %, grid 0.5 to 3.3 %": the extra bytes that the last value fetches over the first.
 std::string fetched_more(const Plan& done, const std::vector<Step>& steps) {
   std::string text;
   for (const char* configuration : kSweptConfigurations) {
@@ -192,19 +192,19 @@ ChoiceWords plan_choice_words(Plan& plan, const Stage& stage) {
   const auto lambdas = plan_lambdas(plan, stage), widths = plan_widths(plan, stage);
   const auto macros = plan_depths(plan, stage, kMacroRing), triangles = plan_depths(plan, stage, kTriangleRing);
   return [lambdas, widths, macros, triangles](const Plan& done) {
-    const tool::Configuration best = grid_variant("best").configuration;
+    const tool::Configuration grid = grid_variant("grid").configuration;
     const auto depth_words = [&done](const std::vector<Step>& steps, std::uint32_t own, const std::string& noun) {
-      return lost_frames(done, steps, "best", own).percent(2) + " for its " + std::to_string(own) + " " + noun +
-             ", with which it waits " + waits_at(done, steps, "best", own).percent(2) +
-             " of its cycles instead of the " + waits_at(done, steps, "best", 2).percent(2) + " with 2";
+      return lost_frames(done, steps, "grid", own).percent(2) + " for its " + std::to_string(own) + " " + noun +
+             ", with which it waits " + waits_at(done, steps, "grid", own).percent(2) +
+             " of its cycles instead of the " + waits_at(done, steps, "grid", 2).percent(2) + " with 2";
     };
     return "Its packets, tiles and grid are chosen by the sweeps below for frames a second, its depths for little "
            "waiting: against the fastest value of the sweep, on the views that are swept, "
            "it loses " +
-           lost_frames(done, lambdas, "best", static_cast<double>(best.lambda)).percent(2) + " for its lambda, " +
-           lost_frames(done, widths, "best", best.macro_width).percent(2) + " for its width of macrocells, " +
-           depth_words(macros, best.depths.macro, "cell blocks") + ", and " +
-           depth_words(triangles, best.depths.triangle, "triangle buffers") + ".";
+           lost_frames(done, lambdas, "grid", static_cast<double>(grid.lambda)).percent(2) + " for its lambda, " +
+           lost_frames(done, widths, "grid", grid.macro_width).percent(2) + " for its width of macrocells, " +
+           depth_words(macros, grid.depths.macro, "cell blocks") + ", and " +
+           depth_words(triangles, grid.depths.triangle, "triangle buffers") + ".";
   };
 }
 
@@ -216,8 +216,8 @@ Writer plan_grid_sweeps(Plan& plan, const Stage& stage) {
         "Lambda of Eq. (1). Few large cells mean more intersection tests, many small ones more steps and more "
         "duplicated triangles in main memory. Most frames a second at " +
         best_values(done, lambdas) + "; the reference uses " +
-        number_text(grid_variant("reference").configuration.lambda) + ", best " +
-        number_text(grid_variant("best").configuration.lambda) + ".");
+        number_text(grid_variant("reference").configuration.lambda) + ", grid " +
+        number_text(grid_variant("grid").configuration.lambda) + ".");
     book.figure("sweep_lambda",
                 step_chart(done, lambdas,
                            {.title = "Cells per triangle",
@@ -236,7 +236,7 @@ Writer plan_grid_sweeps(Plan& plan, const Stage& stage) {
         "6, 4,096 at 8. Wide macrocells need fewer commands and carry more cells that are not needed. Most frames a "
         "second at " +
         best_values(done, widths) +
-        "; the reference uses 6, best 4. A view whose waiting jumps at width 2 has more macrocells than the local "
+        "; the reference uses 6, grid 4. A view whose waiting jumps at width 2 has more macrocells than the local "
         "store holds entries for (131,072), so that parts of their table are fetched again.");
     book.figure("sweep_macro_width",
                 step_chart(done, widths,
@@ -262,11 +262,11 @@ Writer plan_packet_sweep(Plan& plan, const Stage& stage) {
   for (const View* view : stage.sweep_views) {
     for (const bool subpackets : {false, true}) {
       for (const std::uint32_t width : {4u, 8u, 16u, 32u}) {
-        GridVariant two = grid_variant(subpackets ? "best" : "reference");
+        GridVariant two = grid_variant(subpackets ? "grid" : "reference");
         two.configuration.packet_width = width;
         GridVariant deep = two;
         two.configuration.depths = grid_variant("reference").configuration.depths;
-        deep.configuration.depths = grid_variant("best").configuration.depths;
+        deep.configuration.depths = grid_variant("grid").configuration.depths;
         two.key += "/double/packet=" + std::to_string(width);
         deep.key += "/deep/packet=" + std::to_string(width);
         const auto add = [&](GridVariant variant) {
@@ -281,7 +281,7 @@ Writer plan_packet_sweep(Plan& plan, const Stage& stage) {
     Table table =
         make_table("sweep_packet", "view", "culling", "packet_width", Column("double_fps", "double buffering, fps"),
                    Column("double_wait_percent", "wait, %"), Column("double_fetched_mb", "fetched, MB", 1),
-                   Column("prefetch_fps", "prefetch of best, fps"), Column("prefetch_wait_percent", "wait, %"),
+                   Column("prefetch_fps", "prefetch of grid, fps"), Column("prefetch_wait_percent", "wait, %"),
                    Column("prefetch_fetched_mb", "fetched, MB", 1));
     for (const Row& row : rows) {
       const RunResult& two = done.result(row.two);
@@ -292,11 +292,11 @@ Writer plan_packet_sweep(Plan& plan, const Stage& stage) {
     book.section("packets", "Sweep: packet size");
     book.paragraph(
         "Rays along a packet's edge, with the two ways of culling a triangle: by the four corner rays of the packet "
-        "(reference) or by subpackets of 4x4 rays (best). Wide packets fetch and walk less often; without subpackets "
+        "(reference) or by subpackets of 4x4 rays (grid). Wide packets fetch and walk less often; without subpackets "
         "every triangle that touches the packet is then tested against all of its rays. Mailboxes have 64 slots for "
         "packets of 4x4 and 8x8, 256 for those of 16x16, 1,024 for those of 32x32.");
     book.table(table, "Packet size and culling, 6 cores, no shading. Double buffering: " + buffer_words("reference") +
-                          "; prefetch of best: " + buffer_words("best") + ".");
+                          "; prefetch of grid: " + buffer_words("grid") + ".");
   };
 }
 

@@ -73,14 +73,17 @@ void add_curve(LineChart& chart, const std::string& title, const std::vector<Poi
 }  // namespace
 
 Writer plan_table1(Plan& plan, const Stage& stage) {
+  std::vector<const Contender*> contenders;
   std::vector<std::vector<Plan::RunId>> runs;  // [contender][knot]
   for (const Contender& contender : stage.contenders) {
+    if (!contender.is_build_counted) continue;
+    contenders.push_back(&contender);
     auto& row = runs.emplace_back();
     for (const View& knot : stage.knots) {
       row.push_back(plan.add(knot, contender.system, Shading::kNone, stage.machine, kPaperCores));
     }
   }
-  return [&stage, runs](const Plan& done, Book& book) {
+  return [&stage, contenders, runs](const Plan& done, Book& book) {
     Table growth =
         make_table("table1_growth", "system", "triangles", "vertices", "cells", "references", "build_steps",
                    Column("build_cycles", "build cycles of the general core", 0), "traversal_steps",
@@ -100,8 +103,8 @@ Writer plan_table1(Plan& plan, const Stage& stage) {
                    .log_x = true,
                    .log_y = true};
     Range grid_build, grid_walk, bvh_build, bvh_walk;
-    for (std::size_t c = 0; c < stage.contenders.size(); ++c) {
-      const Contender& contender = stage.contenders[c];
+    for (std::size_t c = 0; c < contenders.size(); ++c) {
+      const Contender& contender = *contenders[c];
       std::vector<std::vector<Point2>> points(std::size(kQuantities));
       for (std::size_t k = 0; k < stage.knots.size(); ++k) {
         const RunResult& run = done.result(runs[c][k]);
@@ -148,14 +151,15 @@ Writer plan_table1(Plan& plan, const Stage& stage) {
         "checked, a row of cells met, a reference sorted, a triangle entered into a bin, ...); their cycles weigh "
         "them. A traversal step of the grid is one macro slice, macrocell, slice or cell, one of the hierarchy a node "
         "or a leaf; both are summed over all packets of a frame. Where the paper names a function, the last column is "
-        "the exponent that a fit of that function over the same triangle counts gives [D].");
+        "the exponent that a fit of that function over the same triangle counts gives [D]. Configuration best is not "
+        "here, for nothing of its build is counted yet.");
     book.paragraph("Building the grid grows with exponent " + grid_build.text(2) + ", building the hierarchy with " +
                    bvh_build.text(2) + "; traversing the grid with " + grid_walk.text(2) +
                    ", traversing the hierarchy with " + bvh_walk.text(2) +
                    ". The printed growth is that of one ray. A packet also visits what its other rays need, the more "
                    "the narrower cells and boxes become beside it; how much that is shows in two configurations, "
                    "reference with packets of " +
-                   packet_words("reference") + " and best with " + packet_words("best") +
+                   packet_words("reference") + " and grid with " + packet_words("grid") +
                    ". Skipping what is empty and stopping behind the last hit take steps away. The fits are "
                    "least squares of the logarithms; they hold for this mesh and this range only, and r squared says "
                    "how far from a power law the counts are.");

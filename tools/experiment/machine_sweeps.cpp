@@ -1,5 +1,5 @@
-// Sweeps of the machine: latency and bandwidth of main memory. The grid's work stays the same; only the replay changes.
-// SPDX-License-Identifier: Apache-2.0
+// Sweeps of the machine: latency and bandwidth of main memory. The work of grid and tree stays the same; only the
+// replay changes. SPDX-License-Identifier: Apache-2.0
 #include <algorithm>
 #include <functional>
 #include <utility>
@@ -166,10 +166,11 @@ Writer plan_machine_sweeps(Plan& plan, const Stage& stage) {
     book.section("latency", "Sweep: memory latency");
     book.paragraph(
         "Cycles from the end of a line's turn on the memory channel to its arrival. The profile assumes 500; what is "
-        "published is \"several hundred\", and the paper's machine may well have had more or less. The grid's recorded "
-        "frame is the same at every point, only the replay changes; the hierarchy is rendered anew. Without hiding "
+        "published is \"several hundred\", and the paper's machine may well have had more or less. A recorded "
+        "frame of grid or tree is the same at every point, only the replay changes; the hierarchy is rendered anew. "
+        "Without hiding "
         "every cycle of latency is waited for; double buffering hides a transfer only as long as the work beside it "
-        "lasts, and more buffers, as best has them, move that limit out. " +
+        "lasts, and more buffers, as configuration grid has them, move that limit out. " +
         ring_words(done, turns));
     draw("sweep_latency", latencies, kPaperCores,
          {.title = "Latency", .x_title = "latency, cycles", .y_title = "waiting, % of core cycles"},

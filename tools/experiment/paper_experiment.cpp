@@ -78,15 +78,16 @@ double percent_more(double changed, double base) {
 std::vector<std::string> paper_file_names() {
   // clang-format off
   std::vector<std::string> names = {
-      "best_against_reference.csv", "fig5_speedup.csv", "fig6_breakdown.csv", "fig7_build_steps.csv",
+      "best_against_grid.csv", "grid_against_reference.csv", "fig5_speedup.csv", "fig6_breakdown.csv",
+      "fig7_build_steps.csv",
       "fig7_caches.csv", "fig7_cell_2006.svg", "fig7_cycles.csv", "fig7_frames.csv", "fig7_with_build.csv",
       "fig7_with_build.svg", "host_fig7.csv", "index.html", "local_store_fit.csv", "local_store_layouts.csv",
-      "local_store_map_best.csv", "local_store_map_bvh.csv", "local_store_map_reference.csv", "sweep_bandwidth.csv",
+      "local_store_map_grid.csv", "local_store_map_bvh.csv", "local_store_map_reference.csv", "sweep_bandwidth.csv",
       "sweep_lambda.csv", "sweep_lambda.svg", "sweep_latency.csv", "sweep_local_store.csv",
-      "sweep_local_store_best.svg", "sweep_local_store_reference.svg", "sweep_macro_depth.csv",
+      "sweep_local_store_grid.svg", "sweep_local_store_reference.svg", "sweep_macro_depth.csv",
       "sweep_macro_depth.svg", "sweep_macro_width.csv", "sweep_macro_width.svg", "sweep_packet.csv",
       "sweep_bvh.csv",
-      "sweep_tile_width.csv", "sweep_tile_width_best.svg", "sweep_tile_width_reference.svg",
+      "sweep_tile_width.csv", "sweep_tile_width_grid.svg", "sweep_tile_width_reference.svg",
       "sweep_triangle_depth.csv", "sweep_triangle_depth.svg", "table1_build.svg", "table1_exponents.csv",
       "table1_growth.csv", "table1_traversal.svg", "table2_scenes.csv", "table3_fps.csv", "table3_shading_cost.csv",
       "table4_hiding.csv", "table4_levers.csv", "table4_wait_share.csv"};
@@ -108,8 +109,8 @@ ExperimentResult run_paper_experiment(const ExperimentSettings& settings, const 
   // 1. Plan the runs.
   Plan plan(settings.width, settings.height);
   std::vector<Writer> before_host, after_host;
-  for (const auto section :
-       {plan_table1, plan_table2, plan_table3, plan_figure5, plan_figure6, plan_table4, plan_best, plan_figure7}) {
+  for (const auto section : {plan_table1, plan_table2, plan_table3, plan_figure5, plan_figure6, plan_table4, plan_grid,
+                             plan_best, plan_figure7}) {
     before_host.push_back(section(plan, stage));
   }
   for (const auto section : {plan_grid_sweeps, plan_packet_sweep, plan_tile_sweep, plan_prefetch_sweeps,

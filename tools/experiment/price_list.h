@@ -30,7 +30,7 @@ struct Profile {
 [[nodiscard]] std::vector<Profile> make_profiles();
 
 /// Names of the configurations that each profile is rendered with.
-inline constexpr const char* kPricedConfigurations[] = {"best", "reference"};
+inline constexpr const char* kPricedConfigurations[] = {"grid", "reference"};
 
 /// One profile in one configuration on one view.
 struct Price {

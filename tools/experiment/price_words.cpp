@@ -167,20 +167,20 @@ std::vector<Target> price_targets(const PriceList& list) {
       add(step.from, step.to, "cycles of a frame with distances", step.limit_percent, configuration, distance_cycles);
     }
   }
-  constexpr std::size_t kBest = 0;
+  constexpr std::size_t kGrid = 0;
   const auto bytes = [&list](auto bytes_of) {
     return [&list, bytes_of](const Price& price) {
       const RunResult& run = list.frame(price);
       return run.failed() ? std::nan("") : static_cast<double>(bytes_of(run));
     };
   };
-  add("standard", "compact", "bytes of triangles in main memory", -45, kBest,
+  add("standard", "compact", "bytes of triangles in main memory", -45, kGrid,
       bytes([](const RunResult& run) { return run.facts.triangle_bytes; }));
-  add("standard", "compact", "bytes of triangles fetched a frame", -45, kBest,
+  add("standard", "compact", "bytes of triangles fetched a frame", -45, kGrid,
       bytes([](const RunResult& run) { return run.facts.fetched_triangle_bytes; }));
-  add("standard", "compact", "bytes fetched by DMA a frame", -35, kBest,
+  add("standard", "compact", "bytes fetched by DMA a frame", -35, kGrid,
       bytes([](const RunResult& run) { return run.bytes_in(); }));
-  add("standard", "compact", "bytes moved by DMA a frame", -35, kBest,
+  add("standard", "compact", "bytes moved by DMA a frame", -35, kGrid,
       bytes([](const RunResult& run) { return run.moved_bytes(); }));
   return targets;
 }

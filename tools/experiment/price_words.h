@@ -32,7 +32,7 @@ struct Metric {
 [[nodiscard]] std::string step_words(const PriceList& list, std::size_t configuration, std::size_t from,
                                      std::size_t to);
 
-/// @returns whether a profile can be judged by a configuration: `best` culls by vertices, which the records of `paper`
+/// @returns whether a profile can be judged by a configuration: `grid` culls by vertices, which the records of `paper`
 /// do not have.
 [[nodiscard]] bool is_at_home(std::string_view profile, std::size_t configuration);
 

@@ -116,7 +116,7 @@ struct TappedEngine {
   using Core = TappedCore<L, Store, P>;
 };
 
-/// The layout of configuration best.
+/// The layout of configuration grid.
 struct TappedLayout : EffectLayout256K<kAllEffects, 32> {
   using RayEngine = TappedEngine;
 };

@@ -269,7 +269,7 @@ void write_secondary_prices(const SecondaryPrices& prices, Book& book) {
                  ". They cannot with " + joined_keys(prices.refused()) +
                  ": its hits lie too far off their triangles for secondary rays to start there. The scenes are " +
                  scenes + ", " + std::to_string(prices.width()) + "x" + std::to_string(prices.height()) +
-                 " pixels in configuration best on six cores. Each scene is changed so that it casts one kind of "
+                 " pixels in configuration grid on six cores. Each scene is changed so that it casts one kind of "
                  "secondary rays and no other. Each point sends four rays to an area light, and four for ambient "
                  "occlusion. Refraction is glass, and includes the rays that glass reflects.");
   figure("secondary_cycles", "What a secondary ray costs", "cycles of a core a ray", cycles, 0,

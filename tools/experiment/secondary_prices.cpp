@@ -151,11 +151,11 @@ std::size_t SecondaryPrices::find_profile(std::string_view key) const {
 }
 
 EffectFrameRequest SecondaryPrices::request(std::size_t profile) const {
-  const tool::Configuration& best = *tool::find_configuration("best");
+  const tool::Configuration& grid = *tool::find_configuration("grid");
   return {.width = width_,
           .height = height_,
-          .lambda = best.lambda,
-          .depths = best.depths,
+          .lambda = grid.lambda,
+          .depths = grid.depths,
           .accuracy = profiles_[profile].accuracy};
 }
 

@@ -51,6 +51,7 @@ inline constexpr const char* kBvhCostWords =
 [[nodiscard]] Writer plan_figure5(Plan& plan, const Stage& stage);
 [[nodiscard]] Writer plan_figure6(Plan& plan, const Stage& stage);
 [[nodiscard]] Writer plan_table4(Plan& plan, const Stage& stage);
+[[nodiscard]] Writer plan_grid(Plan& plan, const Stage& stage);
 [[nodiscard]] Writer plan_best(Plan& plan, const Stage& stage);
 [[nodiscard]] Writer plan_figure7(Plan& plan, const Stage& stage);
 
@@ -67,7 +68,7 @@ void write_host_figures(const Stage& stage, std::uint32_t threads, Book& book);
 [[nodiscard]] Writer plan_store_sweep(Plan& plan, const Stage& stage);      ///< 64 to 512 KB, the maps
 [[nodiscard]] Writer plan_bvh_sweep(Plan& plan, const Stage& stage);        ///< settings of the hierarchy
 
-/// Sentences about the parameters of configuration best: their costs and gains against the other values of their
+/// Sentences about the parameters of configuration grid: their costs and gains against the other values of their
 /// sweeps.
 using ChoiceWords = std::function<std::string(const Plan&)>;
 [[nodiscard]] ChoiceWords plan_choice_words(Plan& plan, const Stage& stage);

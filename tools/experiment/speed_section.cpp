@@ -162,7 +162,8 @@ Writer plan_figure5(Plan& plan, const Stage& stage) {
     }
     book.section("fig5", "Fig. 5: scaling with cores");
     book.paragraph(
-        "1 to 16 cores of the same machine; the paper stops at six. Frames of the grid are recorded once and replayed; "
+        "1 to 16 cores of the same machine; the paper stops at six. Frames of grid and tree are recorded once and "
+        "replayed; "
         "the hierarchy, whose caches outlive a tile, is rendered anew for each number of cores. The "
         "dashed line projects one core's fps, as the paper's dotted line does. On six cores the speed-up is " +
         speedups.text(2) +

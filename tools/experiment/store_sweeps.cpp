@@ -14,7 +14,7 @@
 namespace gridiron::experiment {
 namespace {
 
-const char* const kSweptConfigurations[] = {"reference", "best"};
+const char* const kSweptConfigurations[] = {"reference", "grid"};
 
 std::uint64_t kilobytes(sim::StoreSize store) {
   return sim::arena_bytes(store) >> 10;
@@ -294,18 +294,20 @@ Writer plan_tile_sweep(Plan& plan, const Stage& stage) {
   return [sweep](const Plan& done, Book& book) {
     book.section("tiles", "Sweep: tile size");
     book.paragraph(
-        "Pixels along a tile's edge, in the store of 256 KB. The reference keeps its packets of 8x8; best traverses "
+        "Pixels along a tile's edge, in the store of 256 KB. The reference keeps its packets of 8x8; configuration "
+        "grid traverses "
         "once per tile as far as packets go: they are as wide as the tile up to 32x32, whose 64 subpackets are one "
         "word of bits, so that tiles of 64 pixels take four. Packets of 8x8 have mailboxes of 64 slots, those of "
         "16x16 and of tiles of 64 pixels 256, the others 1,024. Two tiles of 64 pixels take 96 KB with their planes of "
-        "colour, distance and triangle; beside them there is room for 8 triangle buffers instead of 12; best uses 3.");
+        "colour, distance and triangle; beside them there is room for 8 triangle buffers instead of 12; configuration "
+        "grid uses 3.");
     book.paragraph("Frames over those at 32 pixels, all views: the reference renders " +
-                   ratio_words(*sweep, done, "reference", &RunResult::fps) + "; best " +
-                   ratio_words(*sweep, done, "best", &RunResult::fps) + ". Traversal steps of best: " +
-                   ratio_words(*sweep, done, "best", steps_of) + ". Over all widths the reference stands idle for " +
-                   range_words(*sweep, done, "reference", idle_percent) + " of its core cycles and best for " +
-                   range_words(*sweep, done, "best", idle_percent) + ". Best is fastest with " +
-                   fastest_words(*sweep, done, "best") + ", the reference with " +
+                   ratio_words(*sweep, done, "reference", &RunResult::fps) + "; grid " +
+                   ratio_words(*sweep, done, "grid", &RunResult::fps) + ". Traversal steps of grid: " +
+                   ratio_words(*sweep, done, "grid", steps_of) + ". Over all widths the reference stands idle for " +
+                   range_words(*sweep, done, "reference", idle_percent) + " of its core cycles and grid for " +
+                   range_words(*sweep, done, "grid", idle_percent) + ". Configuration grid is fastest with " +
+                   fastest_words(*sweep, done, "grid") + ", the reference with " +
                    fastest_words(*sweep, done, "reference") + ". " + picture_words(*sweep, done));
     write_tables(*sweep, done, "sweep_tile_width", "Width of tiles", "the width of tiles",
                  "Widths of tiles, 256 KB, 6 cores, no shading.", book);
@@ -424,29 +426,29 @@ std::string widest_tiles() {
   return text;
 }
 
-// "; 64 KB hold fewer than best asks for": the reduced configurations.
+// "; 64 KB hold fewer than grid asks for": the reduced configurations.
 std::string short_store_words() {
   std::string stores;
-  const tool::BufferDepths wanted = grid_variant("best").configuration.depths;
-  for (const NamedLayout& layout : layouts_of("best")) {
+  const tool::BufferDepths wanted = grid_variant("grid").configuration.depths;
+  for (const NamedLayout& layout : layouts_of("grid")) {
     const tool::BufferDepths& most = layout.facts.most_depths;
     const bool is_short = most.macro < wanted.macro || most.triangle < wanted.triangle;
     if (is_short) stores += (stores.empty() ? "" : ", ") + layout.title;
   }
-  return stores.empty() ? "" : "; " + stores + " have fewer than the " + buffer_words("best") + " of best";
+  return stores.empty() ? "" : "; " + stores + " have fewer than the " + buffer_words("grid") + " of grid";
 }
 
-// "64 KB: packet; ...": the regions whose sizes differ between reference and best.
+// "64 KB: packet; ...": the regions whose sizes differ between reference and grid.
 std::string differing_regions() {
   std::string text;
-  const std::vector<NamedLayout> reference = layouts_of("reference"), best = layouts_of("best");
-  for (std::size_t i = 0; i < best.size(); ++i) {
+  const std::vector<NamedLayout> reference = layouts_of("reference"), grid = layouts_of("grid");
+  for (std::size_t i = 0; i < grid.size(); ++i) {
     std::string names;
-    const auto &ours = best[i].facts.regions, &theirs = reference[i].facts.regions;
+    const auto &ours = grid[i].facts.regions, &theirs = reference[i].facts.regions;
     for (std::size_t r = 0; r < ours.size(); ++r) {
       if (ours[r].bytes != theirs[r].bytes) names += (names.empty() ? "" : ", ") + ours[r].name;
     }
-    text += (text.empty() ? "" : "; ") + best[i].title + ": " + (names.empty() ? "none" : names);
+    text += (text.empty() ? "" : "; ") + grid[i].title + ": " + (names.empty() ? "none" : names);
   }
   return text;
 }
@@ -456,7 +458,7 @@ void write_maps(Book& book) {
   book.paragraph(
       "Everything a core works in, in address order. The sizes are those of the compiled layouts, whose buffers are as "
       "many as in the first table, however many of them a configuration uses" +
-      short_store_words() + ". The layouts of reference and best differ in these regions: " + differing_regions() +
+      short_store_words() + ". The layouts of reference and grid differ in these regions: " + differing_regions() +
       ". Code and stack are committed budgets; the cross builds prove those of the layouts of 256 KB "
       "with packets of 8x8 and 32x32, and of no others.");
   book.table(contents_table(), "What each layout holds.");
@@ -487,14 +489,15 @@ Writer plan_store_sweep(Plan& plan, const Stage& stage) {
     book.paragraph(
         "A layout for each size: tiles of 16 pixels in 64 KB and of 32 in the others, and with the size the table of "
         "macrocells, the buffers and the mailbox of wide packets; the contents of each are below. Where a layout has "
-        "fewer buffers than a configuration asks for, it is cut down to them; in 64 KB best traverses once per 16x16 "
+        "fewer buffers than a configuration asks for, it is cut down to them; in 64 KB configuration grid traverses "
+        "once per 16x16 "
         "tile.");
     book.paragraph("Frames over those from 256 KB, all views: the reference renders " +
-                   ratio_words(*sweep, done, "reference", &RunResult::fps) + "; best " +
-                   ratio_words(*sweep, done, "best", &RunResult::fps) + ". Over all sizes the reference waits for " +
+                   ratio_words(*sweep, done, "reference", &RunResult::fps) + "; grid " +
+                   ratio_words(*sweep, done, "grid", &RunResult::fps) + ". Over all sizes the reference waits for " +
                    range_words(*sweep, done, "reference", &RunResult::wait_percent) +
-                   " of its core cycles and best for " + range_words(*sweep, done, "best", &RunResult::wait_percent) +
-                   ". Intersection tests of best: " + ratio_words(*sweep, done, "best", tests_of) +
+                   " of its core cycles and grid for " + range_words(*sweep, done, "grid", &RunResult::wait_percent) +
+                   ". Intersection tests of grid: " + ratio_words(*sweep, done, "grid", tests_of) +
                    ", of the reference " + ratio_words(*sweep, done, "reference", tests_of) + ". " +
                    picture_words(*sweep, done));
     book.paragraph(

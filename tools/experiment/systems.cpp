@@ -33,6 +33,7 @@ tool::RenderPlan plan_of(const GridVariant& variant, const View& view, const Fra
   plan.width = request.width;
   plan.height = request.height;
   plan.layout = {variant.store, variant.tile_width, variant.configuration.packet_width};
+  plan.engine = variant.configuration.has_grid() ? EngineId::kGrid : EngineId::kTree;
   plan.depths = variant.configuration.depths;
   plan.techniques = variant.configuration.techniques;
   plan.accuracy = variant.accuracy;
@@ -158,7 +159,7 @@ Contender grid_contender(std::string key, std::string title, std::string hiding,
   variant.key = key;
   GridVariant unhidden = variant;
   unhidden.key = key + "_single";
-  unhidden.configuration.depths = {.output = 1, .macro = 1, .triangle = 1};
+  unhidden.configuration.depths = tool::kSingleBuffering;
   return {std::move(key),
           std::move(title),
           std::make_shared<GridSystem>(std::move(variant)),
@@ -166,6 +167,18 @@ Contender grid_contender(std::string key, std::string title, std::string hiding,
           std::move(hiding),
           true,
           kPaperGridGrowth};
+}
+
+// Eye rays through the wide tree. Its two tiles take turns without hiding too.
+Contender tree_contender() {
+  const GridVariant best = grid_variant("best");
+  Contender contender = grid_contender(
+      "best", "best",
+      "up to " + std::to_string(best.configuration.depths.fetch) + " nodes or leaves under way for each of two tiles",
+      best);
+  contender.is_grid = false;
+  contender.is_build_counted = false;
+  return contender;
 }
 
 Contender bvh_contender() {
@@ -186,7 +199,9 @@ std::uint64_t FrameFacts::build_steps() const {
 }
 
 GridVariant grid_variant(std::string_view configuration) {
-  return {std::string(configuration), *tool::find_configuration(configuration)};
+  GridVariant variant{std::string(configuration), *tool::find_configuration(configuration)};
+  if (!variant.configuration.has_grid()) variant.tile_width = tool::kTreeTileWidth;
+  return variant;
 }
 
 std::string buffer_words(std::string_view configuration) {
@@ -200,7 +215,8 @@ std::vector<Contender> make_contenders() {
   projection.accuracy = Accuracy::kPaper;
   return {grid_contender("reference", "reference", "double buffering", grid_variant("reference")),
           grid_contender("projection", "reference, projection test", "double buffering", projection),
-          grid_contender("best", "best", buffer_words("best"), grid_variant("best")), bvh_contender()};
+          grid_contender("grid", "grid", buffer_words("grid"), grid_variant("grid")), tree_contender(),
+          bvh_contender()};
 }
 
 std::unique_ptr<Recording> GridSystem::record(const View& view, const FrameRequest& request) const {
@@ -209,12 +225,15 @@ std::unique_ptr<Recording> GridSystem::record(const View& view, const FrameReque
   const tool::FrameMemory& frame = prepared.memory;
 
   FrameFacts facts;
-  if (!frame.image.has_tree) {
+  const bool has_grid = variant_.configuration.has_grid();
+  if (has_grid) {
     facts.build = sim::grid_build_work(view.mesh().vertices.size(), view.mesh().triangles.size(), frame.need,
                                        sim::count_mesh_lines(view.mesh().view()));
+    facts.traversal_steps = sum_of(result.work, {GridWork::kMacroSliceStep, GridWork::kMacroCellStep,
+                                                 GridWork::kSliceStep, GridWork::kCellStep, GridWork::kCellBoundStep});
+  } else {
+    facts.traversal_steps = sum_of(result.work, {TileWork::kChild, TileWork::kLeaf});
   }
-  facts.traversal_steps = sum_of(result.work, {GridWork::kMacroSliceStep, GridWork::kMacroCellStep,
-                                               GridWork::kSliceStep, GridWork::kCellStep, GridWork::kCellBoundStep});
   facts.intersection_tests =
       sum_of(result.work, {Work::kGroupTestStandard, Work::kRowTest, Work::kGroupTestPaper, Work::kListTriangleGroup});
   facts.scene_bytes = frame.image.header.image_bytes;

@@ -35,7 +35,7 @@ struct FrameRequest {
 struct FrameFacts {
   sim::BuildWork build;                  ///< of the structure; nothing of a tree, whose steps have no prices
   std::uint64_t traversal_steps = 0;     ///< steps through the structure, all packets
-  std::uint64_t intersection_tests = 0;  ///< (SIMD group, triangle) tests
+  std::uint64_t intersection_tests = 0;  ///< (SIMD group, triangle) tests; 0 of tiles, which draw triangles
   std::uint64_t scene_bytes = 0;         ///< structure and triangles in main memory
   std::uint64_t picture_hash = 0;
   std::uint32_t dropped_triangles = 0;       ///< of zero area
@@ -89,6 +89,7 @@ struct Contender {
   std::string hiding;                      ///< how `system` hides it, for people
   bool is_grid = true;                     ///< false: a hierarchy
   PaperGrowth paper_growth;                ///< growth of such a structure by the paper's Table 1
+  bool is_build_counted = true;            ///< false: nothing of its build is counted
 };
 
 /// The columns of every table that compares systems.
@@ -97,7 +98,7 @@ struct Contender {
 /// The machine whose main memory must hold every scene.
 [[nodiscard]] const tool::Machine& home_machine();
 
-/// Parameters of core's own grid traversal.
+/// Parameters of core's own engines, the grid and the tree.
 struct GridVariant {
   std::string key;
   tool::Configuration configuration;
@@ -110,13 +111,13 @@ struct GridVariant {
   bool late_normals = false;
 };
 
-/// @returns the configuration with that name, e.g. "best". Precondition: it exists.
+/// @returns the configuration with that name, e.g. "grid". Precondition: it exists.
 [[nodiscard]] GridVariant grid_variant(std::string_view configuration);
 
 /// @returns "4 cell blocks and 3 triangle buffers": the buffers of a configuration. Precondition as above.
 [[nodiscard]] std::string buffer_words(std::string_view configuration);
 
-/// The grid traversal of core, rendered in checked mode with 4 lanes and timed by replay.
+/// An engine of core, rendered in checked mode with 4 lanes and timed by replay.
 class GridSystem : public System {
  public:
   explicit GridSystem(GridVariant variant) : variant_(std::move(variant)) {}

@@ -40,8 +40,8 @@ struct AnimationFrame {
   std::uint64_t triangles = 0;
   float lambda = 0;
   bool has_grid = true;
-  bool is_priced = true;                         ///< the build's cycles are known
-  double build_cycles = 0, build_seconds = 0;    ///< of the machine's general core; 0 if they are not known
+  bool is_build_counted = true;                  ///< false: through the tree, of whose build nothing is counted yet
+  double build_cycles = 0, build_seconds = 0;    ///< of the machine's general core; 0 where it is not counted
   double render_cycles = 0, render_seconds = 0;  ///< of its cores
   std::uint64_t hash = 0;
 
@@ -129,8 +129,8 @@ void render(AnimationFrame& frame, RenderPlan plan, const ViewRequest& view, con
   frame.triangles = mesh.triangles.size();
   frame.lambda = memory.image.grid.lambda;
   frame.has_grid = memory.image.has_grid;
-  frame.is_priced = !memory.image.has_tree;
-  if (frame.is_priced) {
+  frame.is_build_counted = plan.scene.configuration->has_grid();
+  if (frame.is_build_counted) {
     const sim::BuildWork build = sim::grid_build_work(mesh.vertices.size(), mesh.triangles.size(), memory.need,
                                                       sim::count_mesh_lines(mesh.view()));
     frame.build_cycles = sim::build_cycles(machine.master, build);
@@ -156,12 +156,12 @@ std::string table_of(const std::vector<AnimationFrame>& frames, const sim::Machi
     const AnimationFrame& frame = frames[i];
     // The general core may have another clock; the total is in cycles of the cores.
     const double total_cycles = frame.build_seconds * machine.clock_hz + frame.render_cycles;
-    const auto if_priced = [&frame](double value) { return frame.is_priced ? shortest_text(value) : std::string(); };
+    const auto of_build = [&frame](double value) { return frame.is_build_counted ? shortest_text(value) : ""; };
     for (const std::string& field :
          {shortest_text(i), in_csv(frame.input.filename().string()), shortest_text(frame.triangles),
-          frame.has_grid ? shortest_text(frame.lambda) : std::string(), if_priced(frame.build_cycles),
-          shortest_text(frame.render_cycles), if_priced(total_cycles), if_priced(frame.build_seconds),
-          shortest_text(frame.render_seconds), if_priced(frame.seconds()), if_priced(frame.fps())}) {
+          frame.has_grid ? shortest_text(frame.lambda) : std::string(), of_build(frame.build_cycles),
+          shortest_text(frame.render_cycles), shortest_text(total_cycles), of_build(frame.build_seconds),
+          shortest_text(frame.render_seconds), shortest_text(frame.seconds()), shortest_text(frame.fps())}) {
       table += field + ",";
     }
     table += hash_text(frame.hash) + "\n";
@@ -176,15 +176,17 @@ void print_frames(const std::vector<AnimationFrame>& frames, const RenderPlan& p
   bool are_priced = true;
   for (const AnimationFrame& frame : frames) {
     std::printf("%-24s %14s %14s %9.2f\n", frame.picture.c_str(),
-                frame.is_priced ? cycles(frame.build_cycles).c_str() : "unknown", cycles(frame.render_cycles).c_str(),
-                frame.fps());
+                frame.is_build_counted ? cycles(frame.build_cycles).c_str() : "not counted",
+                cycles(frame.render_cycles).c_str(), frame.fps());
     seconds += frame.seconds();
     are_priced = are_priced && frame.is_priced;
   }
+  const char* builds = plan.scene.configuration->has_grid()
+                           ? "with their builds"
+                           : "without their builds; --configuration grid counts these too";
   std::printf("%s, %s: %s in %.2f ms, %.2f frames/s %s\n", std::string(plan.scene.machine->name).c_str(),
               words_of_count(plan.cores, "core").c_str(), words_of_count(frames.size(), "frame").c_str(), seconds * 1e3,
-              seconds > 0 ? static_cast<double>(frames.size()) / seconds : 0.0,
-              are_priced ? "with their builds" : "without their builds: there are no prices for building a tree");
+              seconds > 0 ? static_cast<double>(frames.size()) / seconds : 0.0, builds);
 }
 
 }  // namespace

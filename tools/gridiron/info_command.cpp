@@ -177,6 +177,7 @@ void print_json(const InfoPlan& plan, const SceneFacts& facts) {
       {"version", 1},
       {"input", plan.scene.input.string()},
       {"packed", facts.is_packed},
+      {"configuration", std::string(plan.scene.configuration->name)},
       {"scene",
        {{"vertices", facts.vertices},
         {"triangles", facts.triangles},
@@ -308,6 +309,7 @@ void print_text(const InfoPlan& plan, const SceneFacts& facts) {
   print_line("", std::string(facts.fits ? "fits" : "does NOT fit") + " the " +
                      words_of_bytes(plan.scene.machine->main_memory_bytes) + " of " +
                      std::string(plan.scene.machine->name));
+  print_line("configuration", std::string(plan.scene.configuration->name));
   print_line("local store", words_of_bytes(store.arena_bytes) + ": " + words_of_bytes(store.code_bytes) + " code, " +
                                 words_of_bytes(store.stack_bytes) + " stack, " + words_of_bytes(store.data_bytes()) +
                                 " data");

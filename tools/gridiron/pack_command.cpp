@@ -7,6 +7,8 @@
 #include "commands.h"
 #include "files/atomic_file.h"
 #include "files/command_files.h"
+#include "gridiron/device/layout_choice.h"
+#include "gridiron/device/store_facts.h"
 #include "gridiron/scene/image_structures.h"
 #include "gridiron/scene/scene_input.h"
 
@@ -15,10 +17,37 @@ namespace {
 
 constexpr const char* kExpected = "pack takes a PLY mesh or a text scene (NFF)";
 
+// The scene with the named configuration, or with the default one for its triangles.
+SceneRequest completed(const PackRequest& request, const KnownScene& known) {
+  const bool has_projection = request.format == TriangleFormat::kProjection;
+  SceneRequest scene = request.scene;
+  const sim::MachineProfile& machine = *scene.machine;
+  const auto is_built = [](const sim::LayoutChoice& layout) { return find_store_facts(layout).has_value(); };
+  if (scene.configuration == nullptr) {
+    scene.configuration =
+        &default_configuration({.has_projection = has_projection,
+                                .has_kernel = has_best_kernel(machine, std::nullopt, known.has_effects, is_built),
+                                .has_prices = !sim::counts_instructions(machine)});
+  }
+  const GridOption grid_options[] = {{"--lambda", scene.lambda.has_value()},
+                                     {"--macro-width", scene.macro_width.has_value()}};
+  require_grid_for(*scene.configuration, grid_options, has_projection ? "--format projection" : nullptr);
+  return scene;
+}
+
+// As for a frame of the usual layout in the machine's largest store.
+std::uint32_t leaf_triangles_of(const sim::MachineProfile& machine, const Configuration& configuration,
+                                const SceneInput& input) {
+  const sim::StoreSize store = largest_store(machine);
+  return (input.text ? effect_store_facts(store, configuration.packet_width)
+                     : usual_store_facts(store, configuration.packet_width))
+      .leaf_triangles;
+}
+
 }  // namespace
 
 void run_command(const PackRequest& request) {
-  (void)foreseen_scene(request.scene);
+  (void)completed(request, foreseen_scene(request.scene));
   declare_outputs({{"-o", request.output, OutputKind::kBinary}});
   const StageLines stages(!request.scene.quiet);
   const SceneInput input = read_scene_input(request.scene.input, request.scene.tolerance, PictureRequest{}, kExpected);
@@ -27,19 +56,21 @@ void run_command(const PackRequest& request) {
     input_error(input.path, std::string("is a scene image already; ") + kExpected);
   }
 
-  if (!request.scene.quiet) tell_notes(input);
+  const SceneRequest scene = completed(request, known_scene(input));
+  if (!scene.quiet) tell_notes(input);
 
   // The budget for an ordinary picture, so that render chooses the same grid.
-  const sim::MachineProfile& machine = *request.scene.machine;
+  const sim::MachineProfile& machine = *scene.machine;
   constexpr std::uint32_t kUsualTileWidth = 32;
   const std::uint64_t spill_bytes = spill_bytes_of(machine.core_count, recursion_depth(input));
   const ImageLimits limits = {.format = request.format,
                               .budget_bytes = image_budget_bytes(machine, 1, 1, 1, kUsualTileWidth, spill_bytes),
-                              .engine = engine_of(*request.scene.configuration)};
+                              .engine = engine_of(*scene.configuration),
+                              .leaf_triangles = leaf_triangles_of(machine, *scene.configuration, input)};
   const EffectsView of_text = input.text ? input.text->effects.view() : EffectsView{};
   const EffectsView* effects = input.text ? &of_text : nullptr;
-  const GridChoice choice = choose_grid(input, *mesh, request.scene, limits, effects);
-  require_fit(choice, request.scene, input);
+  const GridChoice choice = choose_grid(input, *mesh, scene, limits, effects);
+  require_fit(choice, scene, input);
 
   const AlignedBytes storage =
       name_in_shortage(input.path, "build its scene image", [&] { return allocate_aligned(choice.need.image_bytes); });
@@ -50,7 +81,7 @@ void run_command(const PackRequest& request) {
   AtomicFiles files;
   files.add(request.output, image);
   files.commit_at_end();
-  if (request.scene.quiet) return;
+  if (scene.quiet) return;
   std::string triangles = words_of_count(mesh->triangles.size()) + " triangles";
   if (choice.need.dropped_triangle_count != 0) {
     triangles += " (" + words_of_count(choice.need.dropped_triangle_count) + " of zero area dropped)";

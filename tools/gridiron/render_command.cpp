@@ -54,6 +54,7 @@ ReportInput collect_report(const RenderPlan& plan, const SceneInput& input, cons
   const sim::ChipResult& result = repeated.result;
   ReportInput report;
   report.mode = word_of(plan.mode);
+  report.configuration = plan.scene.configuration->name;
   report.is_timed = has_time(plan);
   if (input.text && !input.text->roundness.groups.empty()) {
     report.least_tolerance = input.text->roundness.least_tolerance;

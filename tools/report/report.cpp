@@ -151,6 +151,7 @@ std::string report_json(const ReportInput& input) {
   Json report;
   report["version"] = kReportVersion;
   report["mode"] = input.mode;
+  report["configuration"] = input.configuration;
   report["scene"] = scene_json(input);
   if (input.is_timed) {
     report["machine"] = {{"name", std::string(input.machine.name)},

@@ -43,6 +43,7 @@ struct HostTime {
 /// The contents of a report.
 struct ReportInput {
   std::string mode = "checked";  ///< of the simulator
+  std::string configuration;     ///< its name
   bool is_timed = true;          ///< false: machine, frame, cores, work and rays are left out
 
   std::optional<float> least_tolerance, most_tolerance;  ///< of a text scene with round shapes

@@ -302,7 +302,7 @@ class BvhCore {
     count(BvhWork::kLeafVisit);
     const std::uint32_t first = (slot << log_line_triangles_) + (cursor.child.first_triangle() & triangle_mask_);
     const auto* triangle = reinterpret_cast<const VertexTriangle*>(triangle_lines_ + record_bytes(first));
-    // Subpackets do the work of corner rays, and cheaper (as in the grid's configuration best).
+    // Subpackets do the work of corner rays, and cheaper (as in configuration grid).
     const bool by_subpackets = settings().use_subpackets != 0;
     const Culling culling{.corner_rays = !by_subpackets, .subpackets = by_subpackets};
     const SubpacketSet open = subpackets_of(cursor.missed ^ kAllQuarters);

@@ -1,5 +1,5 @@
 // From a packed scene to a picture with the scene's lights and materials, on the simulated chip.
-//   gridiron pack scene.nff -o scene.gri
+//   gridiron pack scene.nff --configuration grid -o scene.gri
 //   packed_picture scene.gri [PICTURE.ppm]
 // Memory: SimMemory stands for the chip's main memory. Threads: one per simulated core.
 // SPDX-License-Identifier: Apache-2.0

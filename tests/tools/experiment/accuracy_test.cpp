@@ -25,7 +25,7 @@ void expect_prices(const Rows& rows) {
     SCOPED_TRACE(row);
     const std::string profile = text_under(rows, row, "profile");
     EXPECT_EQ(profile, tool::accuracies()[(row - 1) % profiles].name);
-    EXPECT_EQ(text_under(rows, row, "configuration"), (row - 1) / profiles % 2 == 0 ? "best" : "reference");
+    EXPECT_EQ(text_under(rows, row, "configuration"), (row - 1) / profiles % 2 == 0 ? "grid" : "reference");
     for (const std::string frame : {"", "with_distances_", "starved_"}) {
       EXPECT_NEAR(number_under(rows, row, frame + "cycles") * number_under(rows, row, frame + "fps"), 3.2e9, 1);
     }
@@ -71,7 +71,7 @@ void expect_targets(const fs::path& folder, const std::string& page) {
     double worst = -100;
     for (std::size_t from = 1; from < prices.size(); ++from) {
       for (std::size_t to = 1; to < prices.size(); ++to) {
-        const bool pair = prices[from][0] == prices[to][0] && prices[from][1] + prices[to][1] == "bestbest" &&
+        const bool pair = prices[from][0] == prices[to][0] && prices[from][1] + prices[to][1] == "gridgrid" &&
                           prices[from][2] == "standard" && prices[to][2] == "compact";
         if (!pair) continue;
         const double change = number_under(prices, to, "dma_bytes") / number_under(prices, from, "dma_bytes");
@@ -210,7 +210,7 @@ TEST(AccuracyExperiment, MistakesAreTold) {
 // Found before anything is read or rendered: the scan, which is wrong, is not even looked at.
 TEST(AccuracyExperiment, AnOutputThatCannotBeIsToldFirst) {
   const TemporaryFolder folder("bunny.ply", "nonsense");
-  for (const char* name : {"index.html", "host_prices.csv", "errors_best_bunny.svg", "prices_conference_2.txt"}) {
+  for (const char* name : {"index.html", "host_prices.csv", "errors_grid_bunny.svg", "prices_conference_2.txt"}) {
     fs::create_directories(folder.path("out") / name);
     expect_failure(folder, tiny("out", "1"), 1, std::string("out/") + name + ": cannot write: it is a folder");
     fs::remove_all(folder.path("out"));

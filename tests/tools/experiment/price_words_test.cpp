@@ -33,13 +33,13 @@ TEST(PriceWords, ChangesHaveADirection) {
 }
 
 TEST(PriceWords, TargetsAreMetInEveryViewOrNot) {
-  Target target{"cycles", "a", "b", "best", 15, {3, 15, std::nan("")}};
+  Target target{"cycles", "a", "b", "grid", 15, {3, 15, std::nan("")}};
   EXPECT_EQ(target.worst_percent(), 15);
   EXPECT_TRUE(target.is_met());
   EXPECT_EQ(target.limit_words(), "at most 15 % more");
   target.percents[0] = 15.01;
   EXPECT_FALSE(target.is_met());
-  Target less{"bytes", "a", "b", "best", -45, {-50, -45}};
+  Target less{"bytes", "a", "b", "grid", -45, {-50, -45}};
   EXPECT_TRUE(less.is_met());
   EXPECT_EQ(less.limit_words(), "at least 45 % fewer");
   less.percents.push_back(-44.9);
@@ -186,7 +186,7 @@ TEST_F(SmallPriceList, CompactIsHeldAgainstStandard) {
 // A look's rays pass the point within a few roundings: what they hit lies there or, at an outline, behind it.
 TEST(CloseLook, LooksAtItsPoint) {
   const View view = make_knot_view(600);
-  GridVariant variant = grid_variant("best");
+  GridVariant variant = grid_variant("grid");
   variant.accuracy = Accuracy::kExact;
   const Answers picture = render_answers(variant, view, {.width = 64, .height = 64, .shading = Shading::kNone});
   const std::vector<Vec3> points = edge_points(view.mesh().view(), picture.ids, 20);

@@ -12,7 +12,6 @@ namespace {
 TEST(Configurations, ReferenceIsTheReferenceSystem) {
   const tool::Configuration* reference = tool::find_configuration("reference");
   ASSERT_NE(reference, nullptr);
-  EXPECT_EQ(reference, &tool::configurations().front()) << "the default";
   EXPECT_EQ(reference->lambda, 4.0f);
   EXPECT_EQ(reference->macro_width, 6u);
   EXPECT_EQ(reference->packet_width, 8u);
@@ -22,12 +21,31 @@ TEST(Configurations, ReferenceIsTheReferenceSystem) {
   EXPECT_EQ(reference->techniques, std::uint32_t{kUseMailbox} | kUseCornerCulling | kUseEmptySkip);
 }
 
+TEST(Configurations, BestAloneHasNoGrid) {
+  EXPECT_EQ(tool::find_configuration("best"), &tool::configurations().front());
+  EXPECT_EQ(tool::find_configuration("tree"), nullptr);
+  for (const tool::Configuration& configuration : tool::configurations()) {
+    EXPECT_EQ(configuration.has_grid(), configuration.name != "best") << configuration.name;
+  }
+}
+
+// `best`, unless it cannot render the frame.
+TEST(Configurations, TheDefaultFollowsTheFrame) {
+  const auto name = [](const tool::ConfigurationNeed& need) { return tool::default_configuration(need).name; };
+  EXPECT_EQ(name({}), "best");
+  EXPECT_EQ(name({.has_projection = true}), "reference");
+  EXPECT_EQ(name({.has_tree = false}), "grid");
+  EXPECT_EQ(name({.has_kernel = false}), "grid");
+  EXPECT_EQ(name({.has_prices = false}), "grid");
+}
+
 // More children at once delay the one that is next, and push others out of the cache.
 TEST(Configurations, FetchSoManyChildrenForEffects) {
   const auto fetch = [](const char* name) { return tool::find_configuration(name)->depths.fetch; };
   EXPECT_EQ(fetch("reference"), 2u);
   EXPECT_EQ(fetch("deep"), 4u);
-  EXPECT_EQ(fetch("best"), 2u);
+  EXPECT_EQ(fetch("grid"), 2u);
+  EXPECT_EQ(fetch("best"), 3u);
 }
 
 TEST(Configurations, EachFitsAStoreWithEffects) {

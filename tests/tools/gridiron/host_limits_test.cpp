@@ -80,7 +80,7 @@ TEST(HostLimits, NoMoreThreadsThanTilesAreStarted) {
     // Addresses for some threads' stacks, but not for all the requested ones.
     const LowerLimit limit(RLIMIT_AS, rlim_t{700} << 20);
     const ProgramResult result = run_program(
-        folder.folder(), {"render", "a.ply", "--size", "64x64", "--mode", mode, "-o", "a.png", "--threads", "256"});
+        folder.folder(), {"render", "a.ply", "--size", "128x128", "--mode", mode, "-o", "a.png", "--threads", "256"});
     EXPECT_EQ(result.exit_code, 0) << result.err;
     EXPECT_NE(result.out.find(" on 4 threads"), std::string::npos) << result.out;
   }

@@ -35,8 +35,9 @@ TEST(Info, TellsWhatTheBuilderCounts) {
   GridNeed need{};
   ASSERT_EQ(count_scene_image(mesh.view(), {}, need), Status::kOk);
 
-  const Json info = info_json(folder, {"a.ply"});
+  const Json info = info_json(folder, with_reference({"a.ply"}));
   EXPECT_EQ(info["version"], 1);
+  EXPECT_EQ(info["configuration"], "reference");
   EXPECT_EQ(info["packed"], false);
   EXPECT_EQ(info["scene"]["triangles"], mesh.triangles.size());
   EXPECT_EQ(info["scene"]["vertices"], mesh.vertices.size());
@@ -57,9 +58,9 @@ TEST(Info, TellsWhatTheBuilderCounts) {
 // Bytes of each structure, which together with header and section table are the image.
 TEST(Info, TellsWhatAnImageHolds) {
   const TemporaryFolder folder("a.ply", make_scene());
-  for (const char* configuration : {"best", "tree"}) {
+  for (const char* configuration : {"grid", "best"}) {
     run(folder, {"pack", "a.ply", "-o", "a.gri", "--configuration", configuration});
-    const bool is_tree = std::string_view(configuration) == "tree";
+    const bool is_tree = std::string_view(configuration) == "best";
     for (const char* input : {"a.gri", "a.ply"}) {
       const Json info = info_json(folder, {input, "--configuration", configuration});
       const Json& memory = info["main_memory"];
@@ -77,10 +78,22 @@ TEST(Info, TellsWhatAnImageHolds) {
   }
 }
 
+// By default: the tree and its layout; a tile of eye rays through it has no bound yet.
+TEST(Info, TellsTheTreeOfBest) {
+  const TemporaryFolder folder("a.ply", make_scene());
+  const Json info = info_json(folder, {"a.ply"});
+  EXPECT_EQ(info["configuration"], "best");
+  EXPECT_EQ(info["tree"]["triangles"], info["scene"]["triangles"].get<int>() - 2);
+  EXPECT_EQ(info["effects"]["renderer"], "TreeLayout256K<>");
+  EXPECT_TRUE(info["worst_tile"].is_null());
+  EXPECT_TRUE(info_json(folder, with_reference({"a.ply"}))["tree"].is_null());
+  EXPECT_NE(run(folder, {"info", "a.ply"}).out.find("\nconfiguration  best\n"), std::string::npos);
+}
+
 // The bound of a tile, on the counts that it is made of, and each loop's.
 TEST(Info, TellsTheWorstTileAndEveryLoop) {
   const TemporaryFolder folder("a.ply", make_scene());
-  const Json info = info_json(folder, {"a.ply"});
+  const Json info = info_json(folder, with_reference({"a.ply"}));
   const Json& worst = info["worst_tile"];
   EXPECT_EQ(worst["accuracy"], "standard");
   EXPECT_EQ(worst["tile_width"], 32);
@@ -119,10 +132,10 @@ TEST(Info, TellsTheWorstTileAndEveryLoop) {
 // Another accuracy is another bound, of its own format; and the default is that of the format.
 TEST(Info, TheWorstTileIsOfTheAccuracyAskedFor) {
   const TemporaryFolder folder("a.ply", make_scene());
-  const Json usual = info_json(folder, {"a.ply"});
-  const Json standard = info_json(folder, {"a.ply", "--accuracy", "standard"});
+  const Json usual = info_json(folder, with_reference({"a.ply"}));
+  const Json standard = info_json(folder, with_reference({"a.ply", "--accuracy", "standard"}));
   EXPECT_EQ(usual, standard);
-  const Json exact = info_json(folder, {"a.ply", "--accuracy", "exact"});
+  const Json exact = info_json(folder, with_reference({"a.ply", "--accuracy", "exact"}));
   EXPECT_EQ(exact["grid"], usual["grid"]);
   EXPECT_EQ(exact["local_store"], usual["local_store"]);
   EXPECT_EQ(exact["worst_tile"]["accuracy"], "exact");
@@ -133,19 +146,21 @@ TEST(Info, TheWorstTileIsOfTheAccuracyAskedFor) {
   EXPECT_FALSE(usual["worst_tile"]["work"].contains("exact_order"));
   for (const auto& [accuracy, format] :
        {std::pair{"paper", "projection"}, {"fast", "vertices"}, {"compact", "lattice"}}) {
-    const Json info = info_json(folder, {"a.ply", "--accuracy", accuracy});
+    const Json info = info_json(folder, with_reference({"a.ply", "--accuracy", accuracy}));
     EXPECT_EQ(info["worst_tile"]["accuracy"], accuracy);
     EXPECT_EQ(info["grid"]["triangle_format"], format);
     if (info["grid"]["triangle_format"] == "vertices") continue;
-    EXPECT_EQ(info, info_json(folder, {"a.ply", "--format", format})) << "each is the only one of its format";
+    EXPECT_EQ(info, info_json(folder, with_reference({"a.ply", "--format", format})))
+        << "each is the only one of its format";
   }
 }
 
 TEST(Info, AnAccuracyThatAPackedSceneDoesNotServeIsRefused) {
   const TemporaryFolder folder("a.ply", make_scene());
-  run(folder, {"pack", "a.ply", "-o", "a.gri"});
-  EXPECT_EQ(info_json(folder, {"a.gri", "--accuracy", "exact"})["worst_tile"],
-            info_json(folder, {"a.ply", "--accuracy", "exact"})["worst_tile"]);
+  run(folder, with_reference({"pack", "a.ply", "-o", "a.gri"}));
+  const Json packed = info_json(folder, with_reference({"a.gri", "--accuracy", "exact"}))["worst_tile"];
+  EXPECT_FALSE(packed.is_null());
+  EXPECT_EQ(packed, info_json(folder, with_reference({"a.ply", "--accuracy", "exact"}))["worst_tile"]);
   expect_failure(folder, {"info", "a.gri", "--accuracy", "paper"}, 1,
                  "was packed with --format vertices; this needs --format projection");
 }
@@ -161,7 +176,7 @@ TEST(Info, TheLayoutFollowsThePackets) {
   };
   int last_bytes = 0;
   for (const int width : {4, 8, 16, 32}) {
-    const Json info = info_json(folder, {"a.ply", "--packet", std::to_string(width)});
+    const Json info = info_json(folder, with_reference({"a.ply", "--packet", std::to_string(width)}));
     EXPECT_EQ(info["worst_tile"]["packet_width"], width);
     const int across = 32 / width;
     EXPECT_EQ(info["worst_tile"]["work"]["packet_start"], across * across * 6 * 2 + 2);
@@ -176,17 +191,18 @@ TEST(Info, TheLayoutFollowsThePackets) {
     }
     EXPECT_TRUE(found);
   }
-  EXPECT_EQ(info_json(folder, {"a.ply", "--packet", "8"}), info_json(folder, {"a.ply"}));
+  EXPECT_EQ(info_json(folder, with_reference({"a.ply", "--packet", "8"})),
+            info_json(folder, with_reference({"a.ply"})));
   // A default store is one with a kernel for the packets, as for render.
   folder.write("big.machine", "based_on cell-ps3\nlocal_store_bytes 524288\n");
-  const Json smaller = info_json(folder, {"a.ply", "--packet", "4", "--machine", "big.machine"});
+  const Json smaller = info_json(folder, with_reference({"a.ply", "--packet", "4", "--machine", "big.machine"}));
   EXPECT_EQ(smaller["local_store"]["arena_bytes"], 262144);
 }
 
 TEST(Info, APlaneOfDistancesCountsItsBytesAndItsWork) {
   const TemporaryFolder folder("a.ply", make_scene());
-  const Json without = info_json(folder, {"a.ply"});
-  const Json with = info_json(folder, {"a.ply", "--depth"});
+  const Json without = info_json(folder, with_reference({"a.ply"}));
+  const Json with = info_json(folder, with_reference({"a.ply", "--depth"}));
   EXPECT_EQ(with["local_store"], without["local_store"]);
   EXPECT_EQ(without["worst_tile"]["depth"], false);
   EXPECT_EQ(with["worst_tile"]["depth"], true);
@@ -201,7 +217,8 @@ TEST(Info, APlaneOfDistancesCountsItsBytesAndItsWork) {
 TEST(Info, WithoutAnImageThatFitsThereIsNoWorstTile) {
   const TemporaryFolder folder("a.ply", make_torus(100, 100, 1.0f, 0.4f));
   folder.write("small.machine", "based_on cell-ps3\nmain_memory_bytes 1048576\n");
-  const Json info = info_json(folder, {"a.ply", "--machine", "small.machine", "--lambda", "8", "--size", "64x64"});
+  const Json info =
+      info_json(folder, with_reference({"a.ply", "--machine", "small.machine", "--lambda", "8", "--size", "64x64"}));
   EXPECT_EQ(info["main_memory"]["fits"], false);
   ASSERT_TRUE(info.contains("worst_tile") && info.contains("loops"));
   EXPECT_TRUE(info["worst_tile"].is_null());
@@ -214,7 +231,7 @@ TEST(Info, WhatIsCountedInInstructionsIsCalledSo) {
   const TemporaryFolder folder("a.ply", make_scene());
   folder.write("board.machine", "based_on fu540\ncore_count 2\n");
   const auto worst_line = [&folder](const std::string& machine) {
-    const ProgramResult result = run(folder, {"info", "a.ply", "--machine", machine});
+    const ProgramResult result = run(folder, with_reference({"info", "a.ply", "--machine", machine}));
     const std::size_t begin = result.out.find("\nworst tile");
     EXPECT_NE(begin, std::string::npos) << result.out;
     return begin == std::string::npos ? "" : result.out.substr(begin);
@@ -224,7 +241,7 @@ TEST(Info, WhatIsCountedInInstructionsIsCalledSo) {
                                              {"board.machine", "instructions", "cycles"}}) {
     EXPECT_NE(worst_line(machine).find(std::string(unit) + " of work"), std::string::npos) << machine;
     EXPECT_EQ(worst_line(machine).find(other), std::string::npos) << machine;
-    EXPECT_EQ(info_json(folder, {"a.ply", "--machine", machine})["worst_tile"]["cycles_are"], unit);
+    EXPECT_EQ(info_json(folder, with_reference({"a.ply", "--machine", machine}))["worst_tile"]["cycles_are"], unit);
   }
 }
 
@@ -232,9 +249,11 @@ TEST(Info, EachStoreHasItsMap) {
   const TemporaryFolder folder("a.ply", make_scene());
   folder.write("big.machine", "based_on cell-ps3\nlocal_store_bytes 524288\n");
   const Words command = {"a.ply", "--machine", "big.machine"};
-  EXPECT_EQ(info_json(folder, command)["local_store"]["arena_bytes"], 524288) << "the largest there is room for";
+  EXPECT_EQ(info_json(folder, with_reference(command))["local_store"]["arena_bytes"], 524288)
+      << "the largest there is room for";
+  EXPECT_EQ(info_json(folder, command)["local_store"]["arena_bytes"], 262144) << "the largest that best is built for";
   for (const int kilobytes : {64, 128, 256, 512}) {
-    const Words store_options = {"--store", std::to_string(kilobytes), "--configuration", "best"};
+    const Words store_options = {"--store", std::to_string(kilobytes), "--configuration", "grid"};
     const Json store = info_json(folder, command + store_options)["local_store"];
     EXPECT_EQ(store["arena_bytes"], kilobytes * 1024);
     const Json& last = store["regions"].back();
@@ -251,7 +270,8 @@ TEST(Info, APackedSceneTellsTheSameScene) {
   Json mesh = info_json(folder, {"a.ply"});
   Json packed = info_json(folder, {"a.gri"});
   EXPECT_EQ(packed["packed"], true);
-  for (const char* key : {"scene", "grid", "loop_bounds", "local_store"}) EXPECT_EQ(mesh[key], packed[key]) << key;
+  for (const char* key : {"scene", "configuration", "grid", "tree", "loop_bounds", "local_store"})
+    EXPECT_EQ(mesh[key], packed[key]) << key;
   EXPECT_EQ(packed["main_memory"]["image_bytes"], mesh["main_memory"]["image_bytes"]);
   EXPECT_EQ(packed["main_memory"]["image_bytes"], std::filesystem::file_size(folder.path("a.gri")));
 }
@@ -259,6 +279,7 @@ TEST(Info, APackedSceneTellsTheSameScene) {
 TEST(Info, ParametersReachTheGrid) {
   const TemporaryFolder folder("a.ply", make_scene());
   const Json info = info_json(folder, {"a.ply", "--lambda", "0.5", "--macro-width", "3", "--format", "projection"});
+  EXPECT_EQ(info["configuration"], "reference") << "the one for --format projection";
   EXPECT_EQ(info["grid"]["lambda"], 0.5);
   EXPECT_EQ(info["grid"]["macro_width"], 3);
   EXPECT_EQ(info["grid"]["triangle_format"], "projection");

@@ -53,17 +53,17 @@ struct JobCase {
 };
 
 const std::vector<JobCase> kCases = {
-    {{"--size", "96x64"}},
-    {{"--size", "70x45", "--eye", "1,2,3", "--configuration", "best"}},
-    {{"--size", "40x40", "--store", "64", "--buffering", "single"}},
-    {{"--size", "64x64", "--accuracy", "exact", "--lambda", "2"}},
+    {with_reference({"--size", "96x64"})},
+    {{"--size", "70x45", "--eye", "1,2,3", "--configuration", "grid"}},
+    {with_reference({"--size", "40x40", "--store", "64", "--buffering", "single"})},
+    {with_reference({"--size", "64x64", "--accuracy", "exact", "--lambda", "2"})},
     {{"--size", "64x64", "--accuracy", "paper", "--shading", "none"}},
-    {{"--size", "64x64", "--accuracy", "compact", "--packet", "32"}},
-    {{"--size", "96x64", "--configuration", "tree"}},
-    {{"--size", "96x64", "--configuration", "tree", "--store", "64", "--accuracy", "compact"}},
-    {{"--cores", "5", "--configuration", "tree"}, "a.nff"},
+    {with_reference({"--size", "64x64", "--accuracy", "compact", "--packet", "32"})},
+    {{"--size", "96x64"}},
+    {{"--size", "96x64", "--store", "64", "--accuracy", "compact"}},
     {{"--cores", "5"}, "a.nff"},
-    {{"--store", "64"}, "a.nff", false},
+    {with_reference({"--cores", "5"}), "a.nff"},
+    {with_reference({"--store", "64"}), "a.nff", false},
 };
 
 TEST(Job, NamesWhatLiesInIt) {
@@ -121,12 +121,18 @@ TEST(Job, NamesWhatLiesInIt) {
 
 TEST(Job, IsTheSameBytesEveryTimeAndOfAPackedScene) {
   const TemporaryFolder folder;
-  const std::string job = make_job(folder, {"--size", "64x48"});
-  run(folder, {"pack", "a.ply", "-o", "a.gri"});
-  EXPECT_EQ(make_job(folder, {"--size", "64x48"}, "a.gri"), job);
+  const Words frame = with_reference({"--size", "64x48"});
+  const std::string job = make_job(folder, frame);
+  run(folder, with_reference({"pack", "a.ply", "-o", "a.gri"}));
+  EXPECT_EQ(make_job(folder, frame, "a.gri"), job);
   const auto plain = record_at<FrameJob>(job, 0);
   EXPECT_EQ(plain.depth_address, 0u);
   EXPECT_EQ(plain.ids_address, 0u);
+}
+
+TEST(Job, IsOfTheTreeByDefault) {
+  const TemporaryFolder folder;
+  EXPECT_EQ(make_job(folder, {"--size", "64x48"}), make_job(folder, {"--size", "64x48", "--configuration", "best"}));
 }
 
 TEST(Job, IsRefusedWhereItDoesNotFit) {
@@ -247,7 +253,7 @@ TEST(Result, OneDifferenceIsEnough) {
 // Kinds of work are those of the frame's engine.
 TEST(Result, TilesOfTheTreeAreComparedByTheirOwnKinds) {
   const TemporaryFolder folder;
-  const std::string file = make_job(folder, {"--size", "70x40", "--configuration", "tree"});
+  const std::string file = make_job(folder, {"--size", "70x40", "--configuration", "best"});
   std::string result = render_on_host_device(file, 2);
   folder.write("a.res", result);
   run(folder, {"result", "a.job", "a.res", "--compare"});
@@ -261,7 +267,7 @@ TEST(Result, TilesOfTheTreeAreComparedByTheirOwnKinds) {
 // Other words of the device for how it counted: other lanes are said, another queue makes a core wait earlier.
 TEST(Result, LanesAndQueueAreTheDevices) {
   const TemporaryFolder folder;
-  const std::string file = make_job(folder, {"--size", "50x40", "--configuration", "best"});
+  const std::string file = make_job(folder, {"--size", "50x40", "--configuration", "grid"});
   std::string result = render_on_host_device(file, 2);
   put_record(result, offsetof(FrameResult, lane_count), std::uint32_t{1});
   folder.write("a.res", result);

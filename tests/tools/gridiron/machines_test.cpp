@@ -125,8 +125,8 @@ TEST(Machines, TheSmallestMachineRenders) {
     const char* words;
   } cases[] = {
       {"reference", ""},
-      {"best",
-       "a.ply: configuration best has 4 cell blocks and 3 triangle buffers; a local store of 64 KB holds 2 cell blocks "
+      {"grid",
+       "a.ply: configuration grid has 4 cell blocks and 3 triangle buffers; a local store of 64 KB holds 2 cell blocks "
        "and 3 triangle buffers for it\n"},
       {"deep",
        "a.ply: configuration deep has 4 cell blocks and 8 triangle buffers; a local store of 64 KB holds 2 cell blocks "
@@ -149,7 +149,7 @@ TEST(Machines, TheSmallestMachineRenders) {
             "");
   // An explicit number of buffers is used.
   EXPECT_EQ(run(folder, {"render", "a.ply", "-o", "a.png", "--size", "128x128", "--machine", "least.machine",
-                         "--configuration", "best", "--buffering", "double"})
+                         "--configuration", "grid", "--buffering", "double"})
                 .err,
             "");
 }

@@ -25,7 +25,9 @@ TEST(Pack, RendersTheSamePictureAsTheMesh) {
       {{"--format", "lattice"}, {"--accuracy", "compact"}},
       {{}, {"--accuracy", "exact"}},
       {{"--format", "vertices"}, {"--accuracy", "fast"}},
-      {{"--lambda", "1", "--macro-width", "4"}, {}},
+      {{"--lambda", "1", "--macro-width", "4", "--configuration", "grid"}, {}},
+      {{"--configuration", "reference"}, {}},
+      {{}, {"--configuration", "grid"}},
   };
   for (const auto& choice : cases) {
     run(folder, Words{"pack", "a.ply", "-o", "a.gri"} + choice.pack);
@@ -46,21 +48,21 @@ TEST(Pack, ImagesHoldWhatTheirConfigurationReads) {
                "l 2 3 4\nf 1 0.5 0.2 0.8 0.2 10 0 1\ns 0 0 0 1\n");
   for (const std::string scene : {"a.ply", "a.nff"}) {
     const std::string image = scene + ".gri", other = scene + "2.gri";
-    const ProgramResult packed = run(folder, {"pack", scene, "-o", image, "--configuration", "tree"});
+    const ProgramResult packed = run(folder, {"pack", scene, "-o", image, "--configuration", "best"});
     EXPECT_NE(packed.out.find("\nholds: tree "), std::string::npos) << packed.out;
     EXPECT_EQ(packed.out.find("lambda"), std::string::npos) << packed.out;
-    const ProgramResult with_grid = run(folder, {"pack", scene, "-o", other, "--configuration", "best"});
+    const ProgramResult with_grid = run(folder, {"pack", scene, "-o", other, "--configuration", "grid"});
     EXPECT_NE(with_grid.out.find("\nholds: grid "), std::string::npos) << with_grid.out;
     EXPECT_LT(read_file(folder.path(image)).size(), read_file(folder.path(other)).size());
 
     const auto rendered_hash = [&](const std::string& input, const char* configuration) {
       return hash_of(run(folder, {"render", input, "--size", "96x64", "--configuration", configuration}));
     };
-    EXPECT_EQ(rendered_hash(image, "tree"), rendered_hash(other, "best"));
+    EXPECT_EQ(rendered_hash(image, "best"), rendered_hash(other, "grid"));
     if (scene == "a.ply") {  // an image has no view of its own
-      EXPECT_EQ(rendered_hash(image, "tree"), rendered_hash(scene, "tree"));
+      EXPECT_EQ(rendered_hash(image, "best"), rendered_hash(scene, "best"));
     }
-    for (const char* configuration : {"reference", "best"}) {
+    for (const char* configuration : {"reference", "grid"}) {
       const ProgramResult result = run_program(folder.folder(), {"render", image, "--configuration", configuration});
       EXPECT_EQ(result.exit_code, 1);
       EXPECT_EQ(result.err.find(image + ": holds tree "), 0u) << result.err;
@@ -74,19 +76,19 @@ TEST(Pack, ImagesHoldWhatTheirConfigurationReads) {
     EXPECT_EQ(info.find("\ngrid "), std::string::npos) << info;
     EXPECT_EQ(info.find("\nmacrocells "), std::string::npos) << info;
   }
-  expect_failure(folder, {"render", "a.ply2.gri", "--configuration", "tree"}, 1,
-                 "but no tree, which --configuration tree");
-  EXPECT_EQ(run_program(folder.folder(), {"render", "a.nff2.gri", "--configuration", "tree"}).exit_code, 0)
+  expect_failure(folder, {"render", "a.ply2.gri", "--configuration", "best"}, 1,
+                 "but no tree, which --configuration best");
+  EXPECT_EQ(run_program(folder.folder(), {"render", "a.nff2.gri", "--configuration", "best"}).exit_code, 0)
       << "effects have a tree";
   // With effects a 64 KB store takes frames of the grid, whatever the configuration.
-  expect_failure(folder, {"render", "a.nff.gri", "--configuration", "tree", "--store", "64", "--shading", "scene"}, 1,
-                 "pack it with --configuration reference");
+  expect_failure(folder, {"render", "a.nff.gri", "--configuration", "best", "--store", "64", "--shading", "scene"}, 1,
+                 "pack it with --configuration grid");
   for (const Words& option : {Words{"--lambda", "2"}, {"--macro-width", "4"}}) {
-    expect_failure(folder, Words{"render", "a.ply", "--configuration", "tree"} + option, 2, "has no grid");
-    expect_failure(folder, Words{"render", "a.ply.gri", "--configuration", "tree"} + option, 2, "has no grid");
+    expect_failure(folder, Words{"render", "a.ply", "--configuration", "best"} + option, 2, "has no grid");
+    expect_failure(folder, Words{"render", "a.ply.gri", "--configuration", "best"} + option, 2, "has no grid");
   }
-  expect_failure(folder, {"pack", "a.ply", "-o", "b.gri", "--configuration", "tree", "--format", "projection"}, 2,
-                 "--format projection: --configuration tree has no triangles for it");
+  expect_failure(folder, {"pack", "a.ply", "-o", "b.gri", "--configuration", "best", "--format", "projection"}, 2,
+                 "--format projection: configuration best has no triangles for it");
 }
 
 TEST(Pack, IsTheSameBytesEveryTime) {
@@ -98,15 +100,17 @@ TEST(Pack, IsTheSameBytesEveryTime) {
 
 TEST(Pack, ImagesAreUsedAsTheyWerePacked) {
   const TemporaryFolder folder("a.ply", make_sphere(12, 16, 1.0f));
-  run(folder, {"pack", "a.ply", "-o", "a.gri"});
+  run(folder, with_reference({"pack", "a.ply", "-o", "a.gri"}));
   const struct {
     Words arguments;
     const char* words;
   } cases[] = {
       {{"render", "a.gri", "--accuracy", "paper"}, "with --format vertices; this needs --format projection"},
       {{"render", "a.gri", "--accuracy", "compact"}, "needs --format lattice"},
-      {{"render", "a.gri", "--lambda", "2"}, "packed with lambda 4"},
-      {{"render", "a.gri", "--macro-width", "4"}, "width 6"},
+      {with_reference({"render", "a.gri", "--lambda", "2"}), "packed with lambda 4"},
+      {with_reference({"render", "a.gri", "--macro-width", "4"}), "width 6"},
+      {{"render", "a.gri", "--configuration", "best"},
+       "but no tree, which --configuration best reads here; pack it with --configuration best"},
       {{"pack", "a.gri", "-o", "b.gri"}, "already"},
   };
   for (const auto& mistake : cases) expect_failure(folder, mistake.arguments, 1, mistake.words);

@@ -105,7 +105,8 @@ TEST(RenderFailure, ViewsThatNoCameraHas) {
   folder.write("bad.camera", "eye 1 2 3\nat 0 0\n");
   expect_failure(folder, {"render", "a.ply", "--eye", "1,2,3", "--at", "1,2,3"}, 2, "eye and at are the same point");
   expect_failure(folder, {"render", "a.ply", "--eye", "0,5,0", "--at", "0,0,0"}, 2, "up points along the view");
-  expect_failure(folder, {"render", "a.ply", "--tile", "32,0"}, 2, "32 columns and 32 rows of tiles");
+  expect_failure(folder, {"render", "a.ply", "--tile", "16,0"}, 2, "16 columns and 16 rows of tiles");
+  expect_failure(folder, with_reference({"render", "a.ply", "--tile", "32,0"}), 2, "32 columns and 32 rows of tiles");
   expect_failure(folder, {"render", "a.ply", "--tile", "1,0", "--size", "9x9"}, 2, "has 1 column and 1 row of tiles");
   expect_failure(folder, {"render", "a.ply", "--camera", "bad.camera"}, 1, "bad.camera:2: ");
   expect_failure(folder, {"render", "a.ply", "--camera", "none.camera"}, 1, "none.camera: No such file");
@@ -113,8 +114,9 @@ TEST(RenderFailure, ViewsThatNoCameraHas) {
 
 TEST(RenderFailure, TheStoreMustHoldThePackedMacrocells) {
   const TemporaryFolder folder("a.ply", make_box(Vec3(0), Vec3(1)));
-  run(folder, {"pack", "a.ply", "-o", "a.gri", "--macro-width", "8"});
-  expect_failure(folder, {"render", "a.gri", "--store", "64"}, 1, "a.gri: scene image that this local store");
+  run(folder, with_reference({"pack", "a.ply", "-o", "a.gri", "--macro-width", "8"}));
+  expect_failure(folder, with_reference({"render", "a.gri", "--store", "64"}), 1,
+                 "a.gri: scene image that this local store");
 }
 
 TEST(RenderFailure, SignalsThatTheParentIgnoresStayIgnored) {
@@ -138,9 +140,9 @@ wait $!)sh");
 void expect_interrupt(int signal, std::chrono::milliseconds delay) {
   const TemporaryFolder folder("a.ply", make_torus(200, 100, 1.0f, 0.4f));
   folder.write("a.png", "earlier");
-  RunningProgram program(
-      folder.folder(), {"render", "a.ply", "-o", "a.png", "--report", "r.json", "--size", "7000x7000", "--threads", "1",
-                        "--completion", "random", "--packet", "4", "--no-culling", "--no-mailbox"});
+  RunningProgram program(folder.folder(), with_reference({"render", "a.ply", "-o", "a.png", "--report", "r.json",
+                                                          "--size", "7000x7000", "--threads", "1", "--completion",
+                                                          "random", "--packet", "4", "--no-culling", "--no-mailbox"}));
   program.wait_until_caught(signal);
   std::this_thread::sleep_for(delay);
   const auto start = std::chrono::steady_clock::now();

@@ -39,7 +39,7 @@ std::string refusal(const tool::RenderRequest& request, const tool::KnownScene& 
 }
 
 TEST(RenderPlan, WhatIsNotAskedForIsTheScenesTheMachinesTheHostsAndTheConfigurations) {
-  const tool::RenderRequest request = render_request("best");
+  const tool::RenderRequest request = render_request("grid");
   const tool::RenderPlan mesh = plan_of(request);
   EXPECT_EQ(mesh.outputs.picture, "scene.png");
   EXPECT_EQ(mesh.width, 1024u);
@@ -61,8 +61,33 @@ TEST(RenderPlan, WhatIsNotAskedForIsTheScenesTheMachinesTheHostsAndTheConfigurat
   EXPECT_TRUE(text.layout.has_effects);
 }
 
+// A configuration that nobody named follows from scene, machine, mode and store.
+TEST(RenderPlan, TheDefaultConfigurationIsCompleted) {
+  tool::RenderRequest request;
+  request.scene = scene_request("best");
+  request.scene.configuration = nullptr;
+  const auto name = [](const tool::RenderPlan& plan) { return plan.scene.configuration->name; };
+  EXPECT_EQ(name(plan_of(request)), "best");
+  EXPECT_EQ(plan_of(request).engine, EngineId::kTree);
+  EXPECT_EQ(plan_of(request).techniques, 0u);
+  EXPECT_EQ(name(plan_of(request, kText)), "best");
+  EXPECT_EQ(plan_of(request, kText).layout.tile_width, 32u);
+  EXPECT_EQ(name(plan_of(request, kPacked)), "best") << "nobody knows before it is read";
+  EXPECT_EQ(name(plan_of(request, {.kind = SceneKind::kPacked, .is_read = true, .has_tree = false})), "grid");
+  EXPECT_EQ(request.scene.configuration, nullptr);
+  request.scene.machine = tool::find_machine("fu540");
+  EXPECT_EQ(name(plan_of(request)), "grid");
+  request.mode = sim::Mode::kPlain;
+  EXPECT_EQ(name(plan_of(request)), "best") << "nothing is counted";
+  request.layout.store = StoreSize::k64KB;
+  EXPECT_EQ(name(plan_of(request)), "best");
+  EXPECT_EQ(name(plan_of(request, kText)), "best") << "all rays by lists";
+  request.accuracy = Accuracy::kPaper;
+  EXPECT_EQ(name(plan_of(request)), "reference");
+}
+
 TEST(RenderPlan, WhatIsAskedForIsKept) {
-  tool::RenderRequest request = render_request("best");
+  tool::RenderRequest request = render_request("grid");
   request.ids_plane = true;
   request.outputs.depth = "depth.pfm";
   request.size = {64, 64};
@@ -85,7 +110,7 @@ TEST(RenderPlan, WhatIsAskedForIsKept) {
 
 // A layout with memory for four lanes gets four of a wider host's, unless others are asked for.
 TEST(RenderPlan, TheTreeInASmallStoreHasFourLanes) {
-  tool::RenderRequest request = render_request("tree");
+  tool::RenderRequest request = render_request("best");
   request.mode = sim::Mode::kPlain;
   EXPECT_EQ(plan_of(request).lanes, 8u);
   EXPECT_EQ(plan_of(request).layout.tile_width, 64u);
@@ -110,7 +135,7 @@ TEST(RenderPlan, AConfigurationGetsTheBuffersThatTheStoreHas) {
 }
 
 TEST(RenderPlan, RefusesByWhatIsKnownOfTheScene) {
-  tool::RenderRequest request = render_request("best");
+  tool::RenderRequest request = render_request("grid");
   request.shading = Shading::kScene;
   EXPECT_EQ(refusal(request), "--shading scene: a mesh has no lights and materials; text scenes (NFF) have");
   EXPECT_NO_THROW((void)plan_of(request, kPacked)) << "nobody knows before it is read";
@@ -121,7 +146,7 @@ TEST(RenderPlan, RefusesByWhatIsKnownOfTheScene) {
 }
 
 TEST(RenderPlan, RefusesWhatTheHostCannotRun) {
-  tool::RenderRequest request = render_request("best");
+  tool::RenderRequest request = render_request("grid");
   request.lanes = 16;
   EXPECT_EQ(refusal(request), "--lanes: this host has at most 8 lanes");
   request.lanes.reset();
@@ -129,9 +154,28 @@ TEST(RenderPlan, RefusesWhatTheHostCannotRun) {
   EXPECT_EQ(refusal(request), "--mode instrumented: this build has no instrumented kernel");
 }
 
-TEST(InfoPlan, SettlesTheLocalStoreThatIsToldOf) {
+TEST(InfoPlan, TheDefaultConfigurationIsCompleted) {
   tool::InfoRequest request;
   request.scene = scene_request("best");
+  request.scene.configuration = nullptr;
+  const auto name = [&](const tool::KnownScene& scene) {
+    return tool::resolve(request, scene).scene.configuration->name;
+  };
+  EXPECT_EQ(name(kMesh), "best");
+  EXPECT_EQ(name(kText), "best");
+  EXPECT_EQ(name({.kind = SceneKind::kPacked, .is_read = true, .has_tree = false}), "grid");
+  EXPECT_EQ(name({.kind = SceneKind::kPacked, .is_read = true, .has_tree = false, .has_projection = true}),
+            "reference");
+  request.format = TriangleFormat::kProjection;
+  EXPECT_EQ(name(kMesh), "reference");
+  request.format.reset();
+  request.layout.store = StoreSize::k128KB;
+  EXPECT_EQ(name(kMesh), "grid");
+}
+
+TEST(InfoPlan, SettlesTheLocalStoreThatIsToldOf) {
+  tool::InfoRequest request;
+  request.scene = scene_request("grid");
   request.layout.store = StoreSize::k128KB;
   EXPECT_EQ(tool::resolve(request, kMesh).layout.store, StoreSize::k128KB);
   const tool::InfoPlan text = tool::resolve(request, kText);

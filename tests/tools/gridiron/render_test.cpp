@@ -194,7 +194,7 @@ TEST(Render, PlainModeReportsItsHost) {
     }
     for (const char* key : {"machine", "frame", "cores", "work"}) EXPECT_FALSE(report.contains(key)) << key;
   }
-  const Json tile = render_report(folder, {"a.ply", "--size", "96x64", "--tile", "1,1"});
+  const Json tile = render_report(folder, {"a.ply", "--size", "96x64", "--tile", "1,0"});
   EXPECT_FALSE(tile.contains("frame")) << "time is not told of one tile";
 }
 
@@ -217,7 +217,9 @@ TEST(Render, TheReportHoldsWhatWasRendered) {
   const TemporaryFolder folder;
   const TestMesh mesh = make_torus(40, 24, 1.0f, 0.4f);
   folder.write_ply("a.ply", mesh);
-  const Json report = render_report(folder, {"a.ply", "-o", "a.png", "--size", "96x64", "--timeline", "t.json"});
+  const Json report =
+      render_report(folder, with_reference({"a.ply", "-o", "a.png", "--size", "96x64", "--timeline", "t.json"}));
+  EXPECT_EQ(report["configuration"], "reference");
   EXPECT_EQ(report["scene"]["triangles"], mesh.triangles.size());
   EXPECT_EQ(report["scene"]["grid"]["lambda"], 4.0);
   EXPECT_EQ(report["machine"]["name"], "cell-ps3");
@@ -229,6 +231,40 @@ TEST(Render, TheReportHoldsWhatWasRendered) {
   EXPECT_EQ(report["image_hash"], tool::hash_text(tool::image_hash(expected_frame(mesh, 96, 64).planes.color)));
   const Json timeline = Json::parse(read_file(folder.path("t.json")), nullptr, false);
   EXPECT_GT(timeline["traceEvents"].size(), 6u);
+}
+
+// What the command line does not say is decided so that the frame can be rendered.
+TEST(Render, TheDefaultConfigurationIsTheBestThatCanRender) {
+  const TemporaryFolder folder("a.ply", make_torus(40, 24, 1.0f, 0.4f));
+  run(folder, with_reference({"pack", "a.ply", "-o", "reference.gri"}));
+  run(folder, {"pack", "a.ply", "-o", "best.gri"});
+  folder.write("board.machine", "based_on fu540\ncore_count 2\n");
+  folder.write("small.machine", "based_on cell-ps3\nlocal_store_bytes 131072\n");
+  const struct {
+    Words frame;
+    const char* configuration;
+  } cases[] = {
+      {{"a.ply"}, "best"},
+      {{"best.gri"}, "best"},
+      {{"a.ply", "--mode", "plain"}, "best"},
+      {{"a.ply", "--accuracy", "exact", "--buffering", "single", "--depth", "d.pfm"}, "best"},
+      {{"a.ply", "--accuracy", "compact"}, "best"},
+      {{"a.ply", "--machine", "board.machine", "--mode", "plain"}, "best"},
+      {{"a.ply", "--accuracy", "paper"}, "reference"},
+      {{"reference.gri"}, "grid"},
+      {{"a.ply", "--store", "64"}, "grid"},
+      {{"a.ply", "--store", "128"}, "grid"},
+      {{"a.ply", "--machine", "small.machine"}, "grid"},
+      {{"a.ply", "--machine", "board.machine"}, "grid"},
+  };
+  const std::string hash =
+      tool::hash_text(tool::image_hash(expected_frame(make_torus(40, 24, 1.0f, 0.4f), 96, 64).planes.color));
+  for (const auto& each : cases) {
+    const Json report = render_report(folder, each.frame + Words{"--size", "96x64", "-o", "a.png"});
+    EXPECT_EQ(report["configuration"], each.configuration) << each.frame.back();
+    const bool is_compact = each.frame.back() == "compact";
+    EXPECT_EQ(report["image_hash"] == hash, !is_compact) << each.frame.back();
+  }
 }
 
 // Everything but host times.
@@ -244,50 +280,56 @@ TEST(Render, OptionsOfTheHostChangeNothing) {
   const Words variants[] = {{"--threads", "3"},
                             {"--completion", "late"},
                             {"--completion", "random", "--seed", "5"},
-                            {"--configuration", "reference", "--machine", "cell-ps3", "--buffering", "double"}};
+                            {"--configuration", "best", "--machine", "cell-ps3"}};
   for (const Words& variant : variants) {
     EXPECT_EQ(without_host(render_report(folder, scene + variant)), reference) << variant[0] << " " << variant[1];
   }
+  EXPECT_EQ(without_host(render_report(folder, with_reference(scene + Words{"--buffering", "double"}))),
+            without_host(render_report(folder, with_reference(scene))));
 }
 
 TEST(Render, TechniquesChangeTheWorkAndNotThePicture) {
   const TemporaryFolder folder("a.ply", make_torus(60, 40, 1.0f, 0.3f));
   const Words scene = {"a.ply", "-o", "a.png", "--size", "100x70"};
-  const Json reference = render_report(folder, scene);
+  const Json reference = render_report(folder, with_reference(scene));
   const Words variants[] = {{"--no-mailbox"},
                             {"--no-culling"},
                             {"--no-empty-skip"},
                             {"--buffering", "single"},
                             {"--configuration", "deep"},
+                            {"--configuration", "best"},
+                            {"--configuration", "best", "--buffering", "single"},
                             {"--packet", "4"},
                             {"--packet", "16"},
                             {"--store", "64"},
-                            {"--store", "128", "--configuration", "best"},
+                            {"--store", "128", "--configuration", "grid"},
                             {"--tile-width", "8"},
-                            {"--tile-width", "64", "--configuration", "best"},
+                            {"--tile-width", "64", "--configuration", "grid"},
                             {"--lambda", "1"},
                             {"--macro-width", "4"},
                             {"--cores", "2"},
                             {"--machine", "cell-2006"}};
   for (const Words& variant : variants) {
-    const Json report = render_report(folder, scene + variant);
+    const Json report = render_report(folder, with_reference(scene + variant));
     EXPECT_EQ(report["image_hash"], reference["image_hash"]) << variant[0];
     EXPECT_NE(report["frame"]["cycles"], reference["frame"]["cycles"]) << variant[0];
   }
-  EXPECT_EQ(render_report(folder, scene + Words{"--no-mailbox"})["work"]["mailbox_probe"], 0);
-  EXPECT_EQ(render_report(folder, scene + Words{"--no-culling"})["work"]["cull_test"], 0);
-  EXPECT_EQ(render_report(folder, scene + Words{"--cores", "2"})["cores"].size(), 2u);
-  EXPECT_EQ(render_report(folder, scene + Words{"--store", "64"})["local_store"]["arena_bytes"], 65536);
-  EXPECT_EQ(render_report(folder, scene + Words{"--store", "128"})["local_store"]["arena_bytes"], 131072);
+  EXPECT_EQ(render_report(folder, with_reference(scene + Words{"--no-mailbox"}))["work"]["mailbox_probe"], 0);
+  EXPECT_EQ(render_report(folder, with_reference(scene + Words{"--no-culling"}))["work"]["cull_test"], 0);
+  EXPECT_EQ(render_report(folder, with_reference(scene + Words{"--cores", "2"}))["cores"].size(), 2u);
+  EXPECT_EQ(render_report(folder, with_reference(scene + Words{"--store", "64"}))["local_store"]["arena_bytes"], 65536);
+  EXPECT_EQ(render_report(folder, with_reference(scene + Words{"--store", "128"}))["local_store"]["arena_bytes"],
+            131072);
   folder.write("big.machine", "based_on cell-ps3\nlocal_store_bytes 600000\n");
   const Words big = scene + Words{"--machine", "big.machine"};
-  EXPECT_EQ(render_report(folder, big)["local_store"]["arena_bytes"], 524288) << "the largest that there is room for";
-  EXPECT_EQ(render_report(folder, big + Words{"--packet", "4"})["local_store"]["arena_bytes"], 262144)
+  EXPECT_EQ(render_report(folder, with_reference(big))["local_store"]["arena_bytes"], 524288)
+      << "the largest that there is room for";
+  EXPECT_EQ(render_report(folder, with_reference(big + Words{"--packet", "4"}))["local_store"]["arena_bytes"], 262144)
       << "the largest that is built for what was asked";
-  const Json paper = render_report(folder, scene + Words{"--accuracy", "paper"});
+  const Json paper = render_report(folder, with_reference(scene + Words{"--accuracy", "paper"}));
   EXPECT_EQ(paper["work"]["group_test_standard"], 0);
   EXPECT_GT(paper["work"]["group_test_paper"], 0);
-  const Json flat = render_report(folder, scene + Words{"--shading", "none"});
+  const Json flat = render_report(folder, with_reference(scene + Words{"--shading", "none"}));
   EXPECT_NE(flat["image_hash"], reference["image_hash"]);
   EXPECT_EQ(flat["work"]["shaded_simple_group"], 0);
 }
@@ -302,14 +344,15 @@ double wait_cycles(const Json& report, const char* level) {
 TEST(Render, BufferingHidesWaitsAtEachLevel) {
   const TemporaryFolder folder("a.ply", make_torus(60, 40, 1.0f, 0.3f));
   const Words scene = {"a.ply", "-o", "a.png", "--size", "200x200", "--cores", "1"};
-  const Json twice = render_report(folder, scene);
-  const Json once = render_report(folder, scene + Words{"--buffering", "single"});
-  const Json deep = render_report(folder, scene + Words{"--configuration", "deep"});
+  const Json twice = render_report(folder, with_reference(scene));
+  const Json once = render_report(folder, with_reference(scene + Words{"--buffering", "single"}));
+  const Json deep = render_report(folder, with_reference(scene + Words{"--configuration", "deep"}));
   for (const char* level : {"tile", "macrocell", "triangle"}) {
     EXPECT_LT(wait_cycles(twice, level), wait_cycles(once, level)) << level;
   }
   EXPECT_LT(wait_cycles(deep, "triangle"), 0.5 * wait_cycles(twice, "triangle"));
-  const Json both = render_report(folder, scene + Words{"--configuration", "deep", "--buffering", "single"});
+  const Json both =
+      render_report(folder, with_reference(scene + Words{"--configuration", "deep", "--buffering", "single"}));
   EXPECT_EQ(both["frame"], once["frame"]) << "--buffering replaces what the configuration says";
 }
 
@@ -332,7 +375,7 @@ TEST(Render, ModesAndLanesMakeTheSamePicture) {
 
 TEST(Render, OneTileIsThatPartOfThePicture) {
   const TemporaryFolder folder("a.ply", make_torus(40, 24, 1.0f, 0.4f));
-  const Words scene = {"a.ply", "--size", "100x70"};
+  const Words scene = with_reference({"a.ply", "--size", "100x70"});
   (void)render(folder, scene + Words{"-o", "a.png", "--depth", "a.pfm"});
   (void)render(folder, scene + Words{"-o", "b.png", "--depth", "b.pfm", "--tile", "3,1"});
   for (const char* extension : {".png", ".pfm"}) {
@@ -346,6 +389,23 @@ TEST(Render, OneTileIsThatPartOfThePicture) {
       for (std::uint32_t i = 0; i < 4 * tile->channels; ++i) {
         ASSERT_EQ(tile->values[y * 4 * tile->channels + i], whole->values[((y + 32) * 100 + 96) * tile->channels + i]);
       }
+    }
+  }
+}
+
+// A tile of best has 64 pixels along its edge.
+TEST(Render, OneTileOfBestIsThatPartOfThePicture) {
+  const TemporaryFolder folder("a.ply", make_torus(40, 24, 1.0f, 0.4f));
+  const Words scene = {"a.ply", "--size", "100x70"};
+  (void)render(folder, scene + Words{"-o", "a.png"});
+  (void)render(folder, scene + Words{"-o", "b.png", "--tile", "1,0"});
+  const auto whole = load_picture(folder.path("a.png")), tile = load_picture(folder.path("b.png"));
+  ASSERT_TRUE(whole && tile);
+  ASSERT_EQ(tile->width, 36u);
+  ASSERT_EQ(tile->height, 64u);
+  for (std::uint32_t y = 0; y < 64; ++y) {
+    for (std::uint32_t i = 0; i < 36 * tile->channels; ++i) {
+      ASSERT_EQ(tile->values[y * 36 * tile->channels + i], whole->values[(y * 100 + 64) * tile->channels + i]);
     }
   }
 }
@@ -366,7 +426,7 @@ TEST(Render, ACameraFileIsAView) {
 TEST(Render, ReducesLambdaToFitTheMachineAndSaysSo) {
   // Large triangles in many cells: far more references than the 256 MB of cell-ps3 hold at lambda 4.
   const TemporaryFolder folder("a.ply", make_random_soup(30000, 3.0f, 14));
-  const Words scene = {"a.ply", "-o", "a.png", "--size", "8x8"};
+  const Words scene = with_reference({"a.ply", "-o", "a.png", "--size", "8x8"});
   const ProgramResult result = run_program(folder.folder(), Words{"render"} + scene + Words{"--report", "r.json"});
   ASSERT_EQ(result.exit_code, 0) << result.err;
   EXPECT_EQ(result.err.find("a.ply: lambda reduced from 4 to "), 0u) << result.err;

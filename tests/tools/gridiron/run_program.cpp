@@ -119,6 +119,11 @@ Words operator+(Words words, const Words& more) {
   return words;
 }
 
+Words with_reference(Words words) {
+  if (std::ranges::find(words, "--configuration") != words.end()) return words;
+  return std::move(words) + Words{"--configuration", "reference"};
+}
+
 ProgramResult run(const TemporaryFolder& folder, const Words& arguments) {
   const ProgramResult result = run_program(folder.folder(), arguments);
   EXPECT_EQ(result.exit_code, 0) << result.out << result.err;

@@ -14,6 +14,9 @@ using Words = std::vector<std::string>;
 
 [[nodiscard]] Words operator+(Words words, const Words& more);
 
+/// @returns the words with `--configuration reference`, unless they name a configuration: for tests of the grid.
+[[nodiscard]] Words with_reference(Words words);
+
 struct ProgramResult {
   int exit_code = -1;  ///< -signal where a signal ended it
   std::string out, err;

@@ -125,8 +125,10 @@ TEST(TextScene, InfoTellsWhatItCallsFor) {
 TEST(TextScene, InfoNamesTheRenderer) {
   const TemporaryFolder folder;
   const std::string mirror = (kScenes / "mirror.nff").string();
-  EXPECT_EQ(info_json(folder, {mirror})["effects"]["renderer"], "EffectLayout256K<kSceneShading | kReflection, 8>");
-  EXPECT_EQ(info_json(folder, {mirror, "--configuration", "best"})["effects"]["renderer"],
+  EXPECT_EQ(info_json(folder, {mirror})["effects"]["renderer"], "EffectLayout256K<kSceneShading | kReflection, 0>");
+  EXPECT_EQ(info_json(folder, with_reference({mirror}))["effects"]["renderer"],
+            "EffectLayout256K<kSceneShading | kReflection, 8>");
+  EXPECT_EQ(info_json(folder, {mirror, "--configuration", "grid"})["effects"]["renderer"],
             "EffectLayout256K<kSceneShading | kReflection>");
   EXPECT_EQ(info_json(folder, {mirror})["effects"]["has_room"], true);
   EXPECT_EQ(info_json(folder, {mirror, "--store", "64"})["effects"]["renderer"],
@@ -135,10 +137,10 @@ TEST(TextScene, InfoNamesTheRenderer) {
   EXPECT_EQ(info_json(folder, {mirror, "--store", "128"})["effects"]["has_room"], false);
   const std::string text = run(folder, {"info", (kScenes / "shadow.nff").string()}).out;
   EXPECT_NE(text.find("scene_shading, point_shadows\n"), std::string::npos) << text;
-  EXPECT_NE(text.find("EffectLayout256K<kSceneShading | kPointShadows, 8>"), std::string::npos) << text;
+  EXPECT_NE(text.find("EffectLayout256K<kSceneShading | kPointShadows, 0>"), std::string::npos) << text;
 
   folder.write_ply("ball.ply", make_sphere(12, 16, 1.0f));
-  const Json mesh = info_json(folder, {"ball.ply", "--store", "128"});
+  const Json mesh = info_json(folder, with_reference({"ball.ply", "--store", "128"}));
   EXPECT_EQ(mesh["effects"], Json({{"called_for", Json::array()}, {"renderer", "StoreLayout128K<8>"}}));
 }
 
@@ -192,16 +194,14 @@ TEST(TextScene, OddOnesAreRenderedWithANote) {
 
 TEST(TextScene, ManyTrianglesGetTheToleranceOfThePicture) {
   const TemporaryFolder folder("a.nff", scene_makers::make_lattice(8));
-  const auto json = [&folder](const Words& options) {
-    return info_json(folder, Words{"a.nff", "--lambda", "0.1"} + options);
-  };
+  const auto json = [&folder](const Words& options) { return info_json(folder, Words{"a.nff"} + options); };
   const Json chosen = json({}), asked = json({"--tolerance", "0.00018"}), large = json({"--size", "4096x4096"});
   EXPECT_EQ(chosen["scene"]["tolerance"]["rule"], "picture");
   EXPECT_EQ(asked["scene"]["tolerance"]["rule"], "asked");
   EXPECT_EQ(asked["scene"]["tolerance"]["least"], asked["scene"]["tolerance"]["most"]);
   EXPECT_LT(2 * chosen["scene"]["triangles"].get<int>(), asked["scene"]["triangles"].get<int>());
   EXPECT_GT(large["scene"]["triangles"], chosen["scene"]["triangles"]);
-  const Words render = {"render", "a.nff", "--mode", "plain", "--shading", "none", "--lambda", "0.1"};
+  const Words render = {"render", "a.nff", "--mode", "plain", "--shading", "none"};
   const Words small = render + Words{"--size", "8x8"};
   const ProgramResult result = run(folder, small);
   EXPECT_EQ(result.err.find("a.nff: tolerance of round shapes chosen by the picture: 0.000"), 0u) << result.err;
@@ -222,11 +222,11 @@ TEST(TextScene, ManyTrianglesGetTheToleranceOfThePicture) {
   text.erase(view, text.find("resolution 512 512") + 18 - view);
   folder.write("b.nff", text);
   const auto triangles_of = [](const std::string& err) { return err.substr(err.find("picture: ")); };
-  const Words bare = {"render", "b.nff", "--mode", "plain", "--shading", "none", "--lambda", "0.1", "--tile", "0,0"};
+  const Words bare = {"render", "b.nff", "--mode", "plain", "--shading", "none", "--tile", "0,0"};
   const Words eye = {"--size", "2048x2048", "--eye", "1.75,1.55,3", "--at", "0.5,0.5,0.5"};
   EXPECT_EQ(triangles_of(run(folder, bare + eye).err), triangles_of(own));
   EXPECT_EQ(run(folder, bare).err.find("b.nff: tolerance of round shapes chosen by the picture: "), 0u);
-  EXPECT_EQ(info_json(folder, {"b.nff", "--lambda", "0.1"})["scene"]["tolerance"]["rule"], "picture");
+  EXPECT_EQ(info_json(folder, {"b.nff"})["scene"]["tolerance"]["rule"], "picture");
   const Words within = {"--size", "4096x4096", "--eye", "0.55,0.45,0.5"};
   EXPECT_EQ(run(folder, bare + within).err, "") << "no shape is coarser";
 }
@@ -257,7 +257,7 @@ TEST(TextScene, RendersItsEffects) {
   EXPECT_EQ(picture.substr(0, 7), "40x24, ");
   EXPECT_NE(picture, picture_of(run(folder, {"render", "a.nff", "--shading", "simple"})));
   EXPECT_EQ(picture, picture_of(run(folder, {"render", "a.nff", "--threads", "7"}))) << "more than cores";
-  for (const char* configuration : {"deep", "best"}) {
+  for (const char* configuration : {"reference", "deep", "grid"}) {
     EXPECT_EQ(picture, picture_of(run(folder, {"render", "a.nff", "--configuration", configuration})));
   }
   EXPECT_EQ(picture, picture_of(run(folder, {"render", "a.nff", "--buffering", "single"})));
@@ -293,7 +293,8 @@ TEST(TextScene, EveryEffectAtOnce) {
     return picture_of(run(folder, more));
   };
   const std::string reference = picture({});
-  EXPECT_EQ(reference, picture({"--configuration", "best", "--threads", "1"}));
+  EXPECT_EQ(reference, picture({"--configuration", "grid", "--threads", "1"}));
+  EXPECT_EQ(reference, picture({"--configuration", "reference"}));
   EXPECT_EQ(reference, picture({"--completion", "late"}));
   EXPECT_NE(reference, picture({"--shading", "simple"}));
   EXPECT_EQ(reference, picture({"--store", "64"}));

@@ -20,6 +20,7 @@ ReportInput sample() {
   std::ranges::copy(std::array{342u, 342u, 341u}, input.grid.macro_cell_count);
   input.grid.reference_count = 4000000000u;
   input.image_bytes = 5000000000u;
+  input.configuration = "reference";
   input.machine = *sim::find_machine_profile("cell-ps3");
   input.timing.frame_cycles = 1000.5;
   input.timing.seconds = 0.25;
@@ -71,7 +72,7 @@ void collect_paths(const Json& json, const std::string& prefix, std::vector<std:
 
 /// What sample() becomes, keys in the documented order; but for its work.
 constexpr const char* kReport = R"({
-  "version": 1, "mode": "checked",
+  "version": 1, "mode": "checked", "configuration": "reference",
   "scene": {"triangles": 69451, "vertices": 35947, "dropped_triangles": 3, "image_bytes": 5000000000,
             "grid": {"cells": 8577355776, "macrocells": 39884724, "references": 4000000000, "bytes": 5000000000,
                      "lambda": 0, "wanted_lambda": 0}},

@@ -55,7 +55,6 @@ void add_grid_options(CLI::App& app, SceneRequest& scene, std::string& machine) 
   Choices<const Configuration*> sets;
   for (const Configuration& configuration : configurations()) sets.emplace_back(configuration.name, &configuration);
   machine = sim::machine_profiles().front().name;
-  scene.configuration = &configurations().front();
   std::string built_in;
   for (const sim::MachineProfile& profile : sim::machine_profiles()) built_in += std::string(profile.name) + "|";
   const auto any_name = [](const std::string& text) { return text.empty() ? std::nullopt : std::optional(text); };
@@ -63,15 +62,18 @@ void add_grid_options(CLI::App& app, SceneRequest& scene, std::string& machine) 
       app, "--machine", machine, any_name, "a machine's name or file", built_in + "FILE",
       "machine profile, built in or a text file as 'gridiron machines NAME' prints, - for standard input (default " +
           machine + ")");
-  add_choice(app, "--configuration", scene.configuration, sets,
-             "named set of parameters (default " + std::string(scene.configuration->name) + ")");
+  add_choice(
+      app, "--configuration", scene.configuration, sets,
+      "named set of parameters (default best; reference with --accuracy paper; grid where best cannot render, as "
+      "tools/README.md lists)");
   const auto lambda = [](const std::string& text) {
     const std::optional<float> value = parse_float(text);
     return value && *value >= 1e-6f && *value <= 1e6f ? value : std::nullopt;
   };
   add_parsed(app, "--lambda", scene.lambda, lambda, "a number from 1e-6 to 1e6", "NUMBER",
-             "grid cells per triangle; given, it is never reduced to fit the machine's memory");
-  add_count(app, "--macro-width", scene.macro_width, 1, kMaxMacroWidth, "cells along a macrocell's edge");
+             "grid cells per triangle; given, it is never reduced to fit the machine's memory; not with best");
+  add_count(app, "--macro-width", scene.macro_width, 1, kMaxMacroWidth,
+            "cells along a macrocell's edge; not with best");
 }
 
 void add_threads(CLI::App& app, std::optional<std::uint32_t>& threads, const std::string& effect) {
@@ -89,7 +91,7 @@ void add_store(CLI::App& app, std::optional<StoreSize>& store) {
 
 void add_packet(CLI::App& app, std::optional<std::uint32_t>& packet_width) {
   add_choice(app, "--packet", packet_width, Choices<std::uint32_t>{{"4", 4}, {"8", 8}, {"16", 16}, {"32", 32}},
-             "rays along a packet's edge (default: the configuration's)");
+             "rays along a packet's edge (default: the configuration's); not with best");
 }
 
 Choices<Accuracy> accuracy_choices(std::string& help) {

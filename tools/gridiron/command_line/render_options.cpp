@@ -94,18 +94,20 @@ void add_algorithm_options(CLI::App& app, RenderRequest& render) {
              Choices<BufferDepths>{{"single", kSingleBuffering}, {"double", kDoubleBuffering}},
              "buffers of all three levels (default: the configuration's)");
   add_packet(app, render.layout.packet_width);
-  add_choice(app, "--tile-width", render.layout.tile_width,
-             Choices<std::uint32_t>{{"8", 8}, {"16", 16}, {"32", 32}, {"64", 64}},
-             "pixels along a tile's edge (default: 16 with --store 64, 8 there with --shading scene, else 32)");
+  add_choice(
+      app, "--tile-width", render.layout.tile_width,
+      Choices<std::uint32_t>{{"8", 8}, {"16", 16}, {"32", 32}, {"64", 64}},
+      "pixels along a tile's edge (default: 64 with best; else 32, 16 with --store 64; with --shading scene 32, 8 with "
+      "--store 64)");
   add_accuracy(app, render.accuracy);
   add_choice(app, "--shading", render.shading,
              Choices<Shading>{{"none", Shading::kNone}, {"simple", Shading::kSimple}, {"scene", Shading::kScene}},
              "none: hit or background; simple: facing ratio (default of meshes); scene: lights, materials and effects "
              "of the scene (default where it has any)");
-  app.add_flag("--no-mailbox", render.no_mailbox, "test a triangle again in every cell that holds it");
-  app.add_flag("--no-culling", render.no_culling, "do not cull triangles by the corner rays");
-  app.add_flag("--no-subpackets", render.no_subpackets, "do not cull subpackets of a packet");
-  app.add_flag("--no-empty-skip", render.no_empty_skip, "fetch the cell blocks of empty macrocells too");
+  app.add_flag("--no-mailbox", render.no_mailbox, "test a triangle again in every cell that holds it; not with best");
+  app.add_flag("--no-culling", render.no_culling, "do not cull triangles by the corner rays; not with best");
+  app.add_flag("--no-subpackets", render.no_subpackets, "do not cull subpackets of a packet; not with best");
+  app.add_flag("--no-empty-skip", render.no_empty_skip, "fetch the cell blocks of empty macrocells too; not with best");
 }
 
 // Rejects impossible combinations before a file is opened.

@@ -10,19 +10,19 @@ constexpr std::uint32_t kReferenceTechniques = kUseMailbox | kUseCornerCulling |
 
 // clang-format off
 constexpr Configuration kConfigurations[] = {
+    {.name = "best", .description = "eye rays through the wide tree, tile by tile; no grid",
+     .lambda = 0.01f, .macro_width = 4, .packet_width = 0,
+     .depths = {.output = 2, .macro = 1, .triangle = 1, .fetch = 3}, .techniques = 0},
+    {.name = "grid", .description = "one traversal per tile for all its rays, a coarse grid, culling by pixels",
+     .lambda = 0.4f, .macro_width = 4, .packet_width = 32,
+     .depths = {.output = 2, .macro = 4, .triangle = 3, .fetch = 2},
+     .techniques = kUseMailbox | kUseEmptySkip | kUseSubpackets},
     {.name = "reference", .description = "the reference system: double buffering at three levels",
      .lambda = 4.0f, .macro_width = 6, .packet_width = 8,
      .depths = {.output = 2, .macro = 2, .triangle = 2, .fetch = 2}, .techniques = kReferenceTechniques},
     {.name = "deep", .description = "the reference system, prefetching 4 cell blocks and 8 triangle buffers",
      .lambda = 4.0f, .macro_width = 6, .packet_width = 8,
      .depths = {.output = 2, .macro = 4, .triangle = 8, .fetch = 4}, .techniques = kReferenceTechniques},
-    {.name = "best", .description = "one traversal per tile for all its rays, a coarse grid, culling by pixels",
-     .lambda = 0.4f, .macro_width = 4, .packet_width = 32,
-     .depths = {.output = 2, .macro = 4, .triangle = 3, .fetch = 2},
-     .techniques = kUseMailbox | kUseEmptySkip | kUseSubpackets},
-    {.name = "tree", .description = "the wide tree, tile by tile, in place of a grid",
-     .lambda = 0.01f, .macro_width = 4, .packet_width = 0,
-     .depths = {.output = 2, .macro = 1, .triangle = 1, .fetch = 3}, .techniques = 0},
 };
 // clang-format on
 
@@ -35,6 +35,11 @@ std::span<const Configuration> configurations() {
 const Configuration* find_configuration(std::string_view name) {
   const auto* found = std::ranges::find(kConfigurations, name, &Configuration::name);
   return found == std::end(kConfigurations) ? nullptr : found;
+}
+
+const Configuration& default_configuration(const ConfigurationNeed& need) {
+  if (need.has_projection) return *find_configuration("reference");
+  return *find_configuration(need.has_tree && need.has_kernel && need.has_prices ? "best" : "grid");
 }
 
 }  // namespace gridiron::tool

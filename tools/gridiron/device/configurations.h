@@ -38,17 +38,31 @@ struct Configuration {
   std::uint32_t packet_width;  ///< rays along a packet's edge; 0: none, eye rays go through the tree
   BufferDepths depths;
   std::uint32_t techniques;  ///< TechniqueBits
+
+  /// Whether eye rays go through a grid, by packets.
+  [[nodiscard]] constexpr bool has_grid() const { return packet_width != 0; }
 };
 
 /// @returns what traces its eye rays, but where a 64 KB store traces them by lists.
 [[nodiscard]] constexpr EngineId engine_of(const Configuration& configuration) {
-  return configuration.packet_width == 0 ? EngineId::kTree : EngineId::kGrid;
+  return configuration.has_grid() ? EngineId::kGrid : EngineId::kTree;
 }
 
-/// All configurations, `reference` (the default) first.
+/// All configurations, the fastest first.
 [[nodiscard]] std::span<const Configuration> configurations();
 
 /// @returns nullptr if no configuration has that name.
 [[nodiscard]] const Configuration* find_configuration(std::string_view name);
+
+/// What decides the configuration where a command line names none.
+struct ConfigurationNeed {
+  bool has_projection = false;  ///< triangles are those of Accuracy::kPaper
+  bool has_tree = true;         ///< false: a packed scene without a tree
+  bool has_kernel = true;       ///< false: no kernel of `best` is built for the store, the mode and the lanes
+  bool has_prices = true;       ///< false: the machine counts instructions, in a mode that counts
+};
+
+/// @returns `best`; `reference` for triangles of Accuracy::kPaper; `grid` where `best` cannot render the frame.
+[[nodiscard]] const Configuration& default_configuration(const ConfigurationNeed& need);
 
 }  // namespace gridiron::tool

@@ -21,7 +21,7 @@ std::string words_of_layout(const sim::LayoutChoice& layout) {
 }
 
 // Reports that a layout has no kernel, and which ones of its store have.
-[[noreturn]] void refuse_layout(const sim::LayoutChoice& layout) {
+[[noreturn]] void refuse_layout(const sim::LayoutChoice& layout, const Configuration& configuration) {
   const std::string store = "--store " + std::to_string(sim::arena_bytes(layout.store) >> 10);
   const std::string shading = layout.has_effects ? ", --shading scene" : "";
   if (!layout.has_effects && sim::is_built(layout, sim::Mode::kPlain, 4)) {
@@ -39,13 +39,17 @@ std::string words_of_layout(const sim::LayoutChoice& layout) {
   }
   std::string list;
   for (const sim::LayoutChoice& built : built_layouts()) {
-    if (built.store == layout.store && built.has_effects == layout.has_effects) {
+    const bool is_near = built.store == layout.store && built.has_effects == layout.has_effects;
+    if (is_near && (configuration.has_grid() || built.packet_width == 0)) {
       list += (list.empty() ? "" : "; ") + words_of_layout(built);
     }
   }
-  if (list.empty())
+  if (list.empty() && layout.has_effects)
     usage_error(store + shading + ": effects need a local store of 64 or 256 KB; --shading simple does without them");
-  usage_error(store + shading + ": not built for " + words_of_layout(layout) + "; there are " + list);
+  const std::string name(configuration.name);
+  if (list.empty()) usage_error(store + ": not built for configuration " + name + "; --configuration grid is");
+  usage_error(store + shading + ": not built for " + words_of_layout(layout) + "; there are " + list +
+              (configuration.has_grid() ? "" : "; --configuration grid has other tiles, and packets"));
 }
 
 }  // namespace
@@ -57,7 +61,7 @@ sim::LayoutChoice layout_with(const LayoutRequest& asked, const Configuration& c
     return {store, asked.tile_width.value_or(8), asked.packet_width.value_or(0), true};
   }
   // Eye rays through the tree, without packets.
-  if (configuration.packet_width == 0 && !has_effects) {
+  if (!configuration.has_grid() && !has_effects) {
     return {store, asked.tile_width.value_or(tree_tile_width(store)), asked.packet_width.value_or(0)};
   }
   const std::uint32_t tile_width = asked.tile_width.value_or(sim::usual_tile_width(store));
@@ -81,20 +85,33 @@ StoreSize choose_store(const sim::MachineProfile& machine, std::optional<StoreSi
   return chosen;
 }
 
-void require_tree_of(const Configuration& configuration, const LayoutRequest& asked, std::optional<Accuracy> accuracy) {
-  if (configuration.packet_width != 0) return;
-  const std::string name = "--configuration " + std::string(configuration.name);
-  if (asked.packet_width) usage_error("--packet: " + name + " has no packets");
-  if (accuracy == Accuracy::kPaper) {
-    usage_error("--accuracy paper: " + name + " has no triangles for it; --configuration reference has");
+bool has_best_kernel(const sim::MachineProfile& machine, std::optional<StoreSize> asked, bool has_effects,
+                     const std::function<bool(const sim::LayoutChoice&)>& is_built) {
+  const auto has_kernel = [&](StoreSize store) {
+    return is_built(layout_with({}, default_configuration({}), store, has_effects));
+  };
+  return has_kernel(choose_store(machine, asked, has_kernel));
+}
+
+void require_grid_for(const Configuration& configuration, std::span<const GridOption> options, const char* projection) {
+  if (configuration.has_grid()) return;
+  const std::string name = "configuration " + std::string(configuration.name);
+  for (const GridOption& option : options) {
+    if (!option.is_given) continue;
+    usage_error(std::string(option.name) + ": " + name +
+                " has no grid and no packets; --configuration grid, reference and deep have");
+  }
+  if (projection != nullptr) {
+    usage_error(std::string(projection) + ": " + name +
+                " has no triangles for it; --configuration reference and grid have");
   }
 }
 
-void require_built(const sim::LayoutChoice& layout, bool is_built) {
+void require_built(const sim::LayoutChoice& layout, const Configuration& configuration, bool is_built) {
   if (layout.packet_width > layout.tile_width) {
     usage_error("--packet: tiles are " + std::to_string(layout.tile_width) + " pixels wide");
   }
-  if (!is_built) refuse_layout(layout);
+  if (!is_built) refuse_layout(layout, configuration);
 }
 
 void require_distances(const sim::LayoutChoice& layout, bool has_depth) {

@@ -9,6 +9,7 @@
 #include <cstdint>
 #include <functional>
 #include <optional>
+#include <span>
 
 #include "configurations.h"
 
@@ -31,11 +32,23 @@ struct LayoutRequest {
 [[nodiscard]] sim::StoreSize choose_store(const sim::MachineProfile& machine, std::optional<sim::StoreSize> asked,
                                           const std::function<bool(sim::StoreSize)>& is_built);
 
-/// Errors: Failure (kUsage) if packets are wider than tiles, or no kernel is built; lists the existing ones.
-void require_built(const sim::LayoutChoice& layout, bool is_built);
+/// @returns whether `best` has a kernel for the requested store, or else for a store of the machine.
+/// Errors: Failure (kUsage) as choose_store().
+[[nodiscard]] bool has_best_kernel(const sim::MachineProfile& machine, std::optional<sim::StoreSize> asked,
+                                   bool has_effects, const std::function<bool(const sim::LayoutChoice&)>& is_built);
 
-/// Errors: Failure (kUsage) if a configuration without packets is asked for them, or for Accuracy::kPaper.
-void require_tree_of(const Configuration& configuration, const LayoutRequest& asked, std::optional<Accuracy> accuracy);
+/// Errors: Failure (kUsage) if packets are wider than tiles, or no kernel is built; lists the existing ones.
+void require_built(const sim::LayoutChoice& layout, const Configuration& configuration, bool is_built);
+
+/// An option of the command line that only eye rays through a grid have.
+struct GridOption {
+  const char* name;  ///< with its dashes
+  bool is_given = false;
+};
+
+/// Errors: Failure (kUsage) if a configuration without a grid is given an option of the grid, or triangles of
+/// Accuracy::kPaper. @param projection  the option that requires such triangles; null: none does.
+void require_grid_for(const Configuration& configuration, std::span<const GridOption> options, const char* projection);
 
 /// Errors: Failure (kUsage) if distances are requested of a layout without them.
 void require_distances(const sim::LayoutChoice& layout, bool has_depth);

@@ -19,6 +19,7 @@ StoreFacts facts_of() {
   facts.packet_width = Layout::kPacketWidth;
   facts.engine = static_cast<EngineId>(Layout::Engine::kId);
   facts.most_depths.output = Layout::kMaxOutputDepth;
+  if constexpr (requires { Layout::kLeafTriangles; }) facts.leaf_triangles = Layout::kLeafTriangles;
   if constexpr (Layout::kEffects != 0) {
     facts.most_depths.fetch = Layout::RayEngine::template kMaxDepth<Layout>;
   } else if constexpr (Layout::Engine::kId == TileEngine::kId) {

@@ -23,6 +23,7 @@ struct StoreFacts {
   BufferDepths most_depths{};  ///< fetch: of layouts with effects or the tree alone
   std::uint32_t triangles_per_buffer = 0;
   std::uint32_t mailbox_slots = 0;         ///< 0: no packets
+  std::uint32_t leaf_triangles = 8;        ///< of a leaf of the tree that images for it have, at most
   std::uint32_t resident_macro_cells = 0;  ///< size of the table that is fetched only once
   std::vector<LocalStoreRegion> regions;   ///< in address order
 

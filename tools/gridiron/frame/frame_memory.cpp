@@ -8,6 +8,7 @@
 #include "base/failure.h"
 #include "base/words.h"
 #include "frame_pictures.h"
+#include "gridiron/device/store_facts.h"
 #include "gridiron/scene/scene_points.h"
 
 namespace gridiron::tool {
@@ -35,7 +36,8 @@ std::uint32_t waiting_depth(const SceneInput& input, const RenderPlan& plan) {
 // its address.
 MainAddress place_image(FrameMemory& frame, const SceneInput& input, const RenderPlan& plan, std::uint64_t budget_bytes,
                         InputFile* movable) {
-  const ImageLimits limits = {format_of(plan.accuracy), budget_bytes, plan.most_macro_width, plan.engine};
+  const ImageLimits limits = {format_of(plan.accuracy), budget_bytes, plan.most_macro_width, plan.engine,
+                              find_store_facts(plan.layout)->leaf_triangles};
   if (const PackedScene* packed = std::get_if<PackedScene>(&input.content)) {
     check_packed(input, *packed, plan.scene, limits);
     const std::uint64_t image_bytes = packed->view.header.image_bytes;

@@ -31,30 +31,53 @@ Shading shading_of(const RenderRequest& request, const KnownScene& scene) {
 
 constexpr std::uint32_t kChipLanes = 4;
 
+// The named configuration, or the default one for the scene, the machine and the kernels that are built.
+const Configuration& configuration_of(const RenderRequest& request, const KnownScene& scene, const RenderPlan& plan) {
+  if (request.scene.configuration != nullptr) return *request.scene.configuration;
+  const sim::MachineProfile& machine = *request.scene.machine;
+  const auto is_built = [&](const sim::LayoutChoice& layout) {
+    return sim::is_built(layout, plan.mode, plan.lanes) ||
+           (!request.lanes && sim::is_built(layout, plan.mode, kChipLanes));
+  };
+  return default_configuration(
+      {.has_projection = request.accuracy == Accuracy::kPaper,
+       .has_tree = scene.has_tree,
+       .has_kernel = has_best_kernel(machine, request.layout.store, plan.shading == Shading::kScene, is_built),
+       .has_prices = plan.mode == Mode::kPlain || !sim::counts_instructions(machine)});
+}
+
 // May lower the plan's lanes.
 sim::LayoutChoice layout_of(const RenderRequest& request, RenderPlan& plan) {
-  require_tree_of(*request.scene.configuration, request.layout, request.accuracy);
+  const Configuration& configuration = *plan.scene.configuration;
+  const GridOption grid_options[] = {{"--packet", request.layout.packet_width.has_value()},
+                                     {"--lambda", request.scene.lambda.has_value()},
+                                     {"--macro-width", request.scene.macro_width.has_value()},
+                                     {"--no-mailbox", request.no_mailbox},
+                                     {"--no-culling", request.no_culling},
+                                     {"--no-subpackets", request.no_subpackets},
+                                     {"--no-empty-skip", request.no_empty_skip}};
+  require_grid_for(configuration, grid_options, request.accuracy == Accuracy::kPaper ? "--accuracy paper" : nullptr);
   const auto with = [&](StoreSize store) {
-    return layout_with(request.layout, *request.scene.configuration, store, plan.shading == Shading::kScene);
+    return layout_with(request.layout, configuration, store, plan.shading == Shading::kScene);
   };
   const auto is_built = [&](StoreSize store) { return sim::is_built(with(store), plan.mode, plan.lanes); };
   const StoreSize store = choose_store(*request.scene.machine, request.layout.store, is_built);
   // The host's widest lanes are a default; a layout may have memory for four only.
   if (!request.lanes && !is_built(store)) plan.lanes = kChipLanes;
-  require_built(with(store), is_built(store));
+  require_built(with(store), configuration, is_built(store));
   require_distances(with(store), plan.has_depth);
   return with(store);
 }
 
 // The buffers of the three levels and the width of macrocells, limited by the store.
 void settle_depths(const RenderRequest& request, RenderPlan& plan) {
-  const Configuration& configuration = *request.scene.configuration;
+  const Configuration& configuration = *plan.scene.configuration;
   const StoreFacts facts = *find_store_facts(plan.layout);
   plan.engine = facts.engine;
   if (plan.engine == EngineId::kTree && plan.mode != Mode::kPlain && sim::counts_instructions(*request.scene.machine)) {
     usage_error("--machine " + std::string(request.scene.machine->name) +
-                ": counts instructions, which are not known of " + "--configuration " +
-                std::string(configuration.name) + "; --mode plain counts nothing");
+                ": counts instructions, which are not known of configuration " + std::string(configuration.name) +
+                "; --configuration grid has them, and --mode plain counts nothing");
   }
   const BufferDepths& most = facts.most_depths;
   const bool has_effects = plan.layout.has_effects;
@@ -83,11 +106,11 @@ void settle_depths(const RenderRequest& request, RenderPlan& plan) {
 }
 
 // The techniques of the configuration, without those that are switched off.
-std::uint32_t techniques_of(const RenderRequest& request) {
+std::uint32_t techniques_of(const RenderRequest& request, const Configuration& configuration) {
   const auto bit = [](bool is_off, std::uint32_t technique) { return is_off ? technique : 0u; };
   const std::uint32_t off = bit(request.no_mailbox, kUseMailbox) | bit(request.no_culling, kUseCornerCulling) |
                             bit(request.no_subpackets, kUseSubpackets) | bit(request.no_empty_skip, kUseEmptySkip);
-  return request.scene.configuration->techniques & ~off;
+  return configuration.techniques & ~off;
 }
 
 std::uint32_t lanes_of(const RenderRequest& request, const Host& host) {
@@ -151,7 +174,6 @@ RenderPlan resolve(const RenderRequest& request, const KnownScene& scene, const 
                   .tile = request.tile,
                   .cores = request.cores.value_or(request.scene.machine->core_count),
                   .lanes = lanes_of(request, host),
-                  .techniques = techniques_of(request),
                   .accuracy = request.accuracy,
                   .mode = request.mode,
                   .completion = request.completion,
@@ -161,6 +183,8 @@ RenderPlan resolve(const RenderRequest& request, const KnownScene& scene, const 
   plan.width = size.x;
   plan.height = size.y;
   plan.shading = shading_of(request, scene);
+  plan.scene.configuration = &configuration_of(request, scene, plan);
+  plan.techniques = techniques_of(request, *plan.scene.configuration);
   plan.layout = layout_of(request, plan);
   settle_depths(request, plan);
   plan.threads = threads_of(request, plan, host);

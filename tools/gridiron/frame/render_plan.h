@@ -60,7 +60,7 @@ struct Host {
 
 /// A completed frame; the commands carry it out.
 struct RenderPlan {
-  SceneRequest scene;
+  SceneRequest scene;    ///< with a configuration
   FrameOutputs outputs;  ///< with a picture
   bool has_depth = false, has_ids = false;
   std::uint32_t width = kUsualPictureSize.x, height = kUsualPictureSize.y;
@@ -86,8 +86,8 @@ void check_request(const RenderRequest& request, const Host& host);
 
 /// Completes a frame from its arguments alone; opens no file and prints nothing.
 ///
-/// The store is the requested one, or the largest one of the machine that is built for the rest. A configuration with
-/// more buffers than the store gets those that there are.
+/// The configuration is the named one or default_configuration(). The store is the requested one, or the largest one of
+/// the machine that is built for the rest. A configuration with more buffers than the store gets those that there are.
 /// Errors: Failure (kUsage) of check_request(), if the scene cannot be rendered as requested, if no kernel is built for
 /// it, or if its buffers do not hold what was requested. Precondition: the scene's kind is known.
 [[nodiscard]] RenderPlan resolve(const RenderRequest& request, const KnownScene& scene, const Host& host);

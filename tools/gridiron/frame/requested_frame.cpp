@@ -13,6 +13,7 @@ namespace {
 
 // Notes that a named configuration is reduced to the store's buffers.
 void tell_fewer_buffers(const RenderRequest& request, const RenderPlan& plan) {
+  if (request.scene.configuration == nullptr) return;
   const BufferDepths wanted = request.layout.depths.value_or(request.scene.configuration->depths);
   const auto facts = find_store_facts(plan.layout);
   if (plan.depths == wanted || (facts && facts->packet_width == 0)) return;  // without packets the grid is not used

@@ -24,16 +24,36 @@ TriangleFormat triangle_format_of(const InfoRequest& request) {
 }
 
 // The described layout, built or not.
-sim::LayoutChoice layout_of(const InfoRequest& request, StoreSize store, bool has_effects) {
+sim::LayoutChoice layout_of(const InfoRequest& request, const Configuration& configuration, StoreSize store,
+                            bool has_effects) {
   if (has_effects && store != StoreSize::k64KB) store = StoreSize::k256KB;
-  return layout_with(request.layout, *request.scene.configuration, store, has_effects);
+  return layout_with(request.layout, configuration, store, has_effects);
 }
 
-StoreFacts require_layout(const InfoRequest& request, const sim::LayoutChoice& layout) {
+// The named configuration, or the one that a frame would have in Mode::kChecked.
+const Configuration& configuration_of(const InfoRequest& request, const KnownScene& scene, const InfoPlan& plan) {
+  if (request.scene.configuration != nullptr) return *request.scene.configuration;
+  const sim::MachineProfile& machine = *request.scene.machine;
+  const auto is_built = [](const sim::LayoutChoice& layout) { return find_store_facts(layout).has_value(); };
+  return default_configuration(
+      {.has_projection = plan.format == TriangleFormat::kProjection || scene.has_projection,
+       .has_tree = scene.has_tree,
+       .has_kernel = has_best_kernel(machine, request.layout.store, scene.has_effects, is_built),
+       .has_prices = !sim::counts_instructions(machine)});
+}
+
+StoreFacts require_layout(const InfoRequest& request, const Configuration& configuration,
+                          const sim::LayoutChoice& layout) {
   const std::optional<StoreFacts> facts = find_store_facts(layout);
-  require_built(layout, facts.has_value());
+  require_built(layout, configuration, facts.has_value());
   require_distances(layout, request.has_depth);
   return *facts;
+}
+
+// The option that requires triangles of Accuracy::kPaper.
+const char* projection_option(const InfoRequest& request) {
+  if (request.accuracy == Accuracy::kPaper) return "--accuracy paper";
+  return request.format == TriangleFormat::kProjection ? "--format projection" : nullptr;
 }
 
 }  // namespace
@@ -48,13 +68,19 @@ InfoPlan resolve(const InfoRequest& request, const KnownScene& scene) {
   // A packed scene uses the store that a mesh would get.
   const bool is_text = scene.kind == SceneKind::kText;
   if (is_text) require_effects_of(request.accuracy);
+  const Configuration& configuration = configuration_of(request, scene, plan);
+  plan.scene.configuration = &configuration;
+  const GridOption grid_options[] = {{"--packet", request.layout.packet_width.has_value()},
+                                     {"--lambda", request.scene.lambda.has_value()},
+                                     {"--macro-width", request.scene.macro_width.has_value()}};
+  require_grid_for(configuration, grid_options, projection_option(request));
   plan.store = choose_store(*request.scene.machine, request.layout.store, [&](StoreSize store) {
-    return find_store_facts(layout_of(request, store, is_text)).has_value();
+    return find_store_facts(layout_of(request, configuration, store, is_text)).has_value();
   });
-  (void)require_layout(request, layout_of(request, plan.store, is_text));
-  plan.layout = layout_of(request, plan.store, scene.has_effects);
-  plan.local_store = require_layout(request, plan.layout);
-  plan.depths = request.scene.configuration->depths.within(plan.local_store.most_depths);
+  (void)require_layout(request, configuration, layout_of(request, configuration, plan.store, is_text));
+  plan.layout = layout_of(request, configuration, plan.store, scene.has_effects);
+  plan.local_store = require_layout(request, configuration, plan.layout);
+  plan.depths = configuration.depths.within(plan.local_store.most_depths);
   if (is_text && plan.store == StoreSize::k64KB) plan.most_macro_width = plan.local_store.max_macro_width;
   return plan;
 }

@@ -28,7 +28,7 @@ struct InfoRequest {
 
 /// The completed request.
 struct InfoPlan {
-  SceneRequest scene;
+  SceneRequest scene;          ///< with a configuration
   sim::StoreSize store{};      ///< the requested one, or the machine's largest one with such packets
   sim::LayoutChoice layout{};  ///< with effects that the store cannot have, that of 256 KB
   StoreFacts local_store{};    ///< the layout's

@@ -66,7 +66,8 @@ std::uint64_t EffectFacts::bytes_of(std::string_view section) const {
 
 SceneFacts collect_scene_facts(const InfoPlan& plan, const SceneInput& input) {
   SceneFacts facts;
-  const EngineId engine = find_store_facts(plan.layout)->engine;
+  const StoreFacts store = *find_store_facts(plan.layout);
+  const EngineId engine = store.engine;
   const sim::MachineProfile& machine = *plan.scene.machine;
   const std::uint32_t tile_width = sim::usual_tile_width(sim::StoreSize::k256KB);
   const std::uint32_t planes = plan.has_depth ? 2 : 1;
@@ -94,8 +95,8 @@ SceneFacts collect_scene_facts(const InfoPlan& plan, const SceneInput& input) {
     const Mesh& mesh = std::get<Mesh>(input.content);
     const EffectsView view = input.text ? input.text->effects.view() : EffectsView{};
     const EffectsView* effects = input.text ? &view : nullptr;
-    const GridChoice choice =
-        choose_grid(input, mesh, plan.scene, {plan.format, budget_bytes, plan.most_macro_width, engine}, effects);
+    const ImageLimits limits = {plan.format, budget_bytes, plan.most_macro_width, engine, store.leaf_triangles};
+    const GridChoice choice = choose_grid(input, mesh, plan.scene, limits, effects);
     facts.vertices = mesh.vertices.size();
     facts.triangles = mesh.triangles.size();
     facts.dropped_triangles = choice.need.dropped_triangle_count;

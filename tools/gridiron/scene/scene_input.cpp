@@ -102,16 +102,6 @@ std::string words_of_lambda(const GridParameters& parameters, float lambda) {
   return parameters.has_grid ? " at lambda " + text_of(lambda) : "";
 }
 
-// Options of grids, and triangles that the tree does not have.
-void require_no_grid_options(const SceneRequest& request, TriangleFormat format) {
-  const std::string name = "--configuration " + std::string(request.configuration->name);
-  if (request.lambda) usage_error("--lambda: " + name + " has no grid");
-  if (request.macro_width) usage_error("--macro-width: " + name + " has no grid");
-  if (format == TriangleFormat::kProjection) {
-    usage_error("--format projection: " + name + " has no triangles for it; --configuration reference has");
-  }
-}
-
 // The configuration to pack with for what eye rays read.
 std::string configuration_with(EngineId engine, const Configuration& wanted) {
   const auto reads = [engine](const Configuration& configuration) { return engine_of(configuration) == engine; };
@@ -169,12 +159,19 @@ KnownScene foreseen_scene(const SceneRequest& request) {
 
 KnownScene known_scene(const SceneInput& input) {
   if (const PackedScene* packed = std::get_if<PackedScene>(&input.content)) {
-    return {SceneKind::kPacked, packed->view.has_effects, true};
+    return {
+        .kind = SceneKind::kPacked,
+        .has_effects = packed->view.has_effects,
+        .is_read = true,
+        .has_tree = packed->view.has_tree,
+        .has_projection = packed->view.grid.triangle_format == static_cast<std::uint32_t>(TriangleFormat::kProjection)};
   }
-  if (!input.text) return {SceneKind::kMesh, false, true};
+  if (!input.text) return {.kind = SceneKind::kMesh, .is_read = true};
   const SceneView& view = input.text->view;
-  return {SceneKind::kText, true, true,
-          view.is_given() ? std::optional(CountPair{view.width, view.height}) : std::nullopt};
+  return {.kind = SceneKind::kText,
+          .has_effects = true,
+          .is_read = true,
+          .size = view.is_given() ? std::optional(CountPair{view.width, view.height}) : std::nullopt};
 }
 
 std::uint32_t recursion_depth(const SceneInput& input) {
@@ -273,7 +270,7 @@ GridChoice choose_grid(const SceneInput& input, const Mesh& mesh, const SceneReq
   choice.parameters.format = limits.format;
   choice.parameters.has_tree = limits.engine == EngineId::kTree;
   choice.parameters.has_grid = limits.engine != EngineId::kTree;
-  if (!choice.parameters.has_grid) require_no_grid_options(request, limits.format);
+  choice.parameters.leaf_triangles = limits.leaf_triangles;
   choice.budget_bytes = limits.budget_bytes;
   constexpr std::size_t kMarks = std::size_t{1} << 21;  // words: one sweep over the triangles for most scenes
   const std::unique_ptr<std::uint64_t[]> storage(new (std::nothrow) std::uint64_t[kMarks]);
@@ -288,10 +285,11 @@ GridChoice choose_grid(const SceneInput& input, const Mesh& mesh, const SceneReq
                : fit_scene_image(mesh.view(), choice.parameters, limits.budget_bytes, choice.need, effects, marks);
   }();
   if (status == Status::kMemoryTooSmall) {
-    input_error(input.path,
-                "the scene needs more than " + words_of_bytes(choice.need.image_bytes) + " at lambda " +
-                    text_of(choice.wanted_lambda) + "; " + words_of_budget(*request.machine, limits.budget_bytes) +
-                    "; a smaller --lambda needs less" + (input.text ? ", and so does a greater --tolerance" : ""));
+    input_error(input.path, "the scene needs more than " + words_of_bytes(choice.need.image_bytes) + " at lambda " +
+                                text_of(choice.wanted_lambda) + "; " +
+                                words_of_budget(*request.machine, limits.budget_bytes) +
+                                (configuration.has_grid() ? "; a smaller --lambda needs less" : "") +
+                                (input.text ? "; a greater --tolerance makes fewer triangles" : ""));
   }
   if (status == Status::kTooManyTriangles) {
     const float lambda = request.lambda ? choice.wanted_lambda : kLeastLambda;
@@ -354,11 +352,12 @@ void check_packed(const SceneInput& input, const PackedScene& packed, const Scen
                   const ImageLimits& limits) {
   require_format(input, packed, limits.format);
   require_engine(input, packed, request, limits.engine);
-  if (limits.engine == EngineId::kTree) {
-    require_no_grid_options(request, limits.format);
-  } else {
-    require_grid(input, packed.view.grid, request, limits);
+  if (limits.engine == EngineId::kTree && packed.view.tree.leaf_triangles > limits.leaf_triangles) {
+    input_error(input.path, "was packed with leaves of " + std::to_string(packed.view.tree.leaf_triangles) +
+                                " triangles for a larger local store; this one holds leaves of " +
+                                std::to_string(limits.leaf_triangles) + ": render the mesh itself");
   }
+  if (limits.engine != EngineId::kTree) require_grid(input, packed.view.grid, request, limits);
   if (packed.view.header.image_bytes > limits.budget_bytes) {
     input_error(input.path, "the scene needs " + words_of_bytes(packed.view.header.image_bytes) + "; " +
                                 words_of_budget(*request.machine, limits.budget_bytes));

@@ -106,6 +106,7 @@ struct ImageLimits {
   std::uint64_t budget_bytes = 0;                   ///< of main memory
   std::uint32_t most_macro_width = kMaxMacroWidth;  ///< of the local store; a configuration's width is limited to it
   EngineId engine = EngineId::kGrid;                ///< of eye rays: an image is built with what it reads
+  std::uint32_t leaf_triangles = 8;                 ///< of a leaf of the tree, at most
 };
 
 /// The image that a mesh will get: its grid, or that it has none.

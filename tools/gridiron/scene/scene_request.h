@@ -16,8 +16,8 @@ namespace gridiron::tool {
 /// The grid of a mesh, and the machine whose memory must hold it. A packed scene has its own grid.
 struct SceneRequest {
   std::filesystem::path input;
-  Machine machine;  ///< never null
-  const Configuration* configuration = nullptr;
+  Machine machine;                               ///< never null
+  const Configuration* configuration = nullptr;  ///< null in a request that names none: default_configuration()
   std::optional<float> lambda;
   std::optional<std::uint32_t> macro_width;
   std::optional<float> tolerance;  ///< of round shapes in a text scene, world units; nothing: the reader's default
@@ -29,6 +29,8 @@ struct KnownScene {
   SceneKind kind = SceneKind::kUnknown;
   bool has_effects = false;         ///< it brings lights and materials
   bool is_read = false;             ///< else foreseen: for a packed scene only the kind is known
+  bool has_tree = true;             ///< false: a packed scene that was read and has none
+  bool has_projection = false;      ///< a packed scene that was read has TriangleFormat::kProjection
   std::optional<CountPair> size{};  ///< the picture's size in a text scene
 };
 
