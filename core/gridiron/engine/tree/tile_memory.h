@@ -50,6 +50,7 @@ struct alignas(128) TileMemory {
   static constexpr std::uint32_t kBlocksPerRow = Width / kBlockWidth;
   static constexpr std::uint32_t kBlocks = kBlocksPerRow * kBlocksPerRow;
   static constexpr std::uint32_t kMostLanes = MostLanes;
+  static constexpr std::uint32_t kQueueEntries = 2 * MostLanes;
   static constexpr std::uint32_t kStackEntries = (kTreeWidth - 1) * kMaxTreeDepth + 1;
 
   alignas(64) float near[kBlocks][kBlockPixels];            ///< 1 / t of the nearest hit so far, or a little less
@@ -64,7 +65,7 @@ struct alignas(128) TileMemory {
   alignas(64) float column_direction[3][Width];
   alignas(64) float row_direction[3][Width];
 
-  alignas(64) std::uint32_t queue[kTileWords][2 * kMostLanes];
+  alignas(64) std::uint32_t queue[kTileWords][kQueueEntries];
   alignas(64) float functions[kTileFunctions][kMostLanes];
   alignas(64) std::uint32_t boxes[kMostLanes];
   alignas(64) std::uint32_t records[kMostLanes];
