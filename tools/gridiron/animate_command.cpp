@@ -147,7 +147,7 @@ void render(AnimationFrame& frame, RenderPlan plan, const ViewRequest& view, con
   if (!plan.scene.quiet) tell_note(frame.input, unseen_note(memory, result, plan.mode));
 }
 
-// Fields that contain an unknown build are empty.
+// Fields of a build that is not counted are empty.
 std::string table_of(const std::vector<AnimationFrame>& frames, const sim::MachineProfile& machine) {
   std::string table =
       "frame,mesh,triangles,lambda,build_cycles,render_cycles,total_cycles,build_seconds,render_seconds,seconds,fps,"
@@ -173,13 +173,11 @@ void print_frames(const std::vector<AnimationFrame>& frames, const RenderPlan& p
   const auto cycles = [](double count) { return words_of_count(static_cast<std::uint64_t>(count)); };
   std::printf("%-24s %14s %14s %9s\n", "frame", "build cycles", "render cycles", "frames/s");
   double seconds = 0;
-  bool are_priced = true;
   for (const AnimationFrame& frame : frames) {
     std::printf("%-24s %14s %14s %9.2f\n", frame.picture.c_str(),
                 frame.is_build_counted ? cycles(frame.build_cycles).c_str() : "not counted",
                 cycles(frame.render_cycles).c_str(), frame.fps());
     seconds += frame.seconds();
-    are_priced = are_priced && frame.is_priced;
   }
   const char* builds = plan.scene.configuration->has_grid()
                            ? "with their builds"
