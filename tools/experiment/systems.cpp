@@ -200,7 +200,7 @@ std::uint64_t FrameFacts::build_steps() const {
 
 GridVariant grid_variant(std::string_view configuration) {
   GridVariant variant{std::string(configuration), *tool::find_configuration(configuration)};
-  if (!variant.configuration.has_grid()) variant.tile_width = tool::kTreeTileWidth;
+  if (!variant.configuration.has_grid()) variant.tile_width = tool::tree_tile_width(sim::StoreSize::k256KB);
   return variant;
 }
 
