@@ -2,7 +2,8 @@
 # base. For fixed roundings the difference is linear in the products of a row's components and the way's: one is 1, the
 # others are 0. What the base takes is in tile_base.g. SPDX-License-Identifier: Apache-2.0
 %source core/gridiron/engine/tree/tile_projection.h
-%decimal kPerSize tile.error_per_size = static_cast<float>({} * kFloatUnit * size);
+%decimal kPerSize tile.error_per_size = static_cast<float>({} * kFloatUnit) * size;
+%constant kRoundedUp inline constexpr float kRoundedUp = {};
 %proves kPerSize least 0.984
 %cases IN_X IN_Y IN_Z
 %case 1 0 0
@@ -13,8 +14,14 @@
 %round r_x = R_x + 0
 %round r_y = R_y + 0
 %round r_z = R_z + 0
+%line sizes[row] += magnitude(tile.rows[row][axis]);
+%line const float size = ((sizes[0] > sizes[1] ? sizes[0] : sizes[1]) + span * sizes[2]) * kRoundedUp;
+%round sizes = ((0 + size(r_x)) + size(r_y)) + size(r_z)
+# Of w's row there is one rounding more.
+%round size = (0 + 1 * sizes) * kRoundedUp
 %define unit = 0x1p-23
-%round per_size = kPerSize * unit
+%define per_unit = kPerSize * unit
+%round per_size = (per_unit * 1) * size
 %source core/gridiron/engine/tree/tile_triangles.h
 %line error = size * tile.error_per_size + bases * tile.error_per_base + tile.base_error;
 %round error = 1 * per_size + 0 + 0

@@ -13,10 +13,11 @@
 %round size_w = 1 * 1 + 0
 %round error_p = (size_p + 0) * (0 * 0 + size_w * kTileEdgeError) + 0
 %round error_w = (size_w + 0) * (0 * 0 + size_p * kTileEdgeError) + 0
-%line const Float value = L::turn_by(volume, x[i] * y[next] - y[i] * x[next]) + edge_error;
+%line const auto turned = [&](Float a) GRIDIRON_INLINE_LAMBDA { return L::floats_of(L::words_of(a) ^ sign); };
+%line const Float value = turned(L::bounded_difference(x[i], y[next], y[i], x[next])) + edge_error;
 %define edge_error = (error_p + error_w) / 2
 %round value = 0 + edge_error
-%line const Float edge_y = L::turn_by(volume, w[i] * x[next] - x[i] * w[next]);
+%line const Float edge_y = turned(L::bounded_difference(w[i], x[next], x[i], w[next]));
 %round edge_y = w_i * x_k - x_i * w_k
 %define f = edge_y
 
@@ -62,24 +63,18 @@
 %round left_1 = left_0 + exactly(f * quarter)
 %round left_2 = left_1 + exactly(f * quarter)
 %round tiny = (left_2 + 0) + 0
-# draw_many_blocks(): the least and the greatest value of a block.
-%line most[k] = (L::max(f.x[k], zero) + L::max(f.y[k], zero)) * last + f.value[k];
-%line if (k < 3) least[k] = (L::min(f.x[k], zero) + L::min(f.y[k], zero)) * last + f.value[k];
-%line const Float along = L::bounded_sum(f.x[k], x, f.y[k] * y);
-%line met = met & (along + most[k] > Float(0.0f));
-%line covered = covered & (along + least[k] > f.edge_span);
-%round many = (0 + f * line) + ((0 + exactly(f * first)) * last + value)
+# Blocks in lanes, of draw_many_blocks(): tile_edge_blocks.g.
 # set_up_group(): no pixel of the box.
 %source core/gridiron/engine/tree/tile_triangles.h
-%line return value + L::max(along_x * x0, along_x * x1) + L::max(along_y * y0, along_y * y1);
-%round in_box = value + 0 + f * line
+%line return L::bounded_sum(L::abs(along_x), x1, L::bounded_sum(L::abs(along_y), y1, value));
+%line none = none | L::words_of(most_in_box(value, edge_x, edge_y));
+%round in_box = 0 + (f * line + value)
 # In exact arithmetic, apart from the error.
 %define true_block_5 = exact_edge_y * (line + row + 5 * step) + edge_error
 %define true_group_8 = exact_edge_y * (line + row + 3 * step + half) + edge_error
 %define true_group_3 = exact_edge_y * (line + 3 * step + 3 * quarter) + edge_error
 %define true_pixel_1 = exact_edge_y * (line + step + 3 * quarter) + edge_error
 %define true_tiny = exact_edge_y * (line + 2 * quarter) + edge_error
-%define true_many = exact_edge_y * (line + first * last) + edge_error
 %define true_in_box = exact_edge_y * (line) + edge_error
 
 { |w_i| <= 1 /\ |x_i| <= 1 /\ |w_k| <= 1 /\ |x_k| <= 1 /\
@@ -89,12 +84,11 @@
   |line + step| <= 1 /\ |line + 2 * step| <= 1 /\ |line + 3 * step| <= 1 /\ |line + 3 * step + quarter| <= 1 /\
   |line + 3 * step + 2 * quarter| <= 1 /\ |line + 3 * step + 3 * quarter| <= 1 /\ |line + quarter| <= 1 /\
   |line + 2 * quarter| <= 1 /\ |line + step + quarter| <= 1 /\ |line + step + 2 * quarter| <= 1 /\
-  |line + step + 3 * quarter| <= 1 /\ first in [0, 1] /\ |first * last| <= 1 /\ last in [3, 3] /\
-  |line + first * last| <= 1 /\
+  |line + step + 3 * quarter| <= 1 /\
   %roundings
   -> edge_error - |block_5 - true_block_5| >= 0 /\ edge_error - |group_8 - true_group_8| >= 0 /\
      edge_error - |group_3 - true_group_3| >= 0 /\ edge_error - |pixel_1 - true_pixel_1| >= 0 /\
-     edge_error - |tiny - true_tiny| >= 0 /\ edge_error - |many - true_many| >= 0 /\
+     edge_error - |tiny - true_tiny| >= 0 /\
      edge_error - |in_box - true_in_box| >= 0 }
 
 exact_at_16 -> f * (line + row) + edge_error;
@@ -136,11 +130,9 @@ exact_left_1 -> f * (line + quarter) + edge_error;
 left_1 + (f * quarter) -> f * (line + 2 * quarter) + edge_error + (left_1 - exact_left_1);
 exact_left_2 -> f * (line + 2 * quarter) + edge_error;
 exact_tiny -> f * (line + 2 * quarter) + edge_error;
-exact_many -> f * (line + first * last) + edge_error;
 block_5 - true_block_5 -> (block_5 - exact_block_5) + (f - exact_edge_y) * (line + row + 5 * step);
 group_8 - true_group_8 -> (group_8 - exact_group_8) + (f - exact_edge_y) * (line + row + 3 * step + half);
 group_3 - true_group_3 -> (group_3 - exact_group_3) + (f - exact_edge_y) * (line + 3 * step + 3 * quarter);
 pixel_1 - true_pixel_1 -> (pixel_1 - exact_pixel_1) + (f - exact_edge_y) * (line + step + 3 * quarter);
 tiny - true_tiny -> (tiny - exact_tiny) + (f - exact_edge_y) * (line + 2 * quarter);
-many - true_many -> (many - exact_many) + (f - exact_edge_y) * (line + first * last);
 in_box - true_in_box -> (in_box - exact_in_box) + (f - exact_edge_y) * (line);

@@ -14,7 +14,8 @@
 %round error = (size + 0) * (0 * 0 + size * kTileEdgeError) + 0
 # The value has the error, rounded once for all.
 %define edge_error = error
-%line const Float value = L::turn_by(volume, x[i] * y[next] - y[i] * x[next]) + edge_error;
+%line const auto turned = [&](Float a) GRIDIRON_INLINE_LAMBDA { return L::floats_of(L::words_of(a) ^ sign); };
+%line const Float value = turned(L::bounded_difference(x[i], y[next], y[i], x[next])) + edge_error;
 %round value = (x_i * y_k - y_i * x_k) + edge_error
 
 # The steps are 0. draw_triangle(), 16 lanes: six blocks in a row or a column.
@@ -30,6 +31,9 @@
 # 8 lanes: four blocks, one step to the second group.
 %line for (int k = kCovered ? 3 : 0; k < 4; ++k) value[k] = value[k] + f.step[k];
 %round block_8 = (((at_16 + 0) + 0) + 0) + 0
+# What decides, by the sign.
+%line possible[group] = possible[group] | L::words_of(inside[group]);
+%line if constexpr (!kCovered) surely[group] = surely[group] | L::words_of(inside[group] - f.edge_span);
 # 4 lanes: a sum less in start[], four blocks, three steps.
 %round start_4 = 0 + value
 %round at_4 = 0 + (0 + start_4)
@@ -43,21 +47,32 @@
 %line L::bounded_sum(function(kEdgeX + k), x, L::bounded_sum(function(kEdgeY + k), y, function(kEdgeValue + k)));
 %line for (std::uint32_t k = 0; k < 3; ++k) value[k] = value[k] + function(kEdgeX + k);
 %line for (std::uint32_t k = 0; k < 3; ++k) left[k] = left[k] + function(kEdgeY + k);
+%line const std::uint32_t met = ~L::sign_bits(L::words_of(least)) & columns[column] & lines[row];
 %round tiny = (((((0 + (0 + value)) + 0) + 0) + 0) + 0)
 # draw_many_blocks(): what it skips, and what it takes to be covered.
 %line most[k] = (L::max(f.x[k], zero) + L::max(f.y[k], zero)) * last + f.value[k];
-%line if (k < 3) least[k] = (L::min(f.x[k], zero) + L::min(f.y[k], zero)) * last + f.value[k];
-%line met = met & (along + most[k] > Float(0.0f));
-%line covered = covered & (along + least[k] > f.edge_span);
-%round many = 0 + (0 + value)
+%line least[k] = (L::min(f.x[k], zero) + L::min(f.y[k], zero)) * last + f.value[k];
+%line across[k][group] = kGroupRows > 1 ? L::bounded_sum(f.x[k], x, f.y[k] * y) : f.x[k] * x;
+%line for (int k = 0; k < 3; ++k) covers[k] = (most[k] - least[k]) + f.edge_span;
+%line for (int k = 0; k < 4; ++k) down[k] = L::bounded_sum(f.y[k], line, most[k]);
+%line const Float value = across[k][group] + down[k];
+%line none = none | L::words_of(value);
+%line partial = partial | L::words_of(value - covers[k]);
+%round most = (0 + 0) * 3 + value
+%round least = (0 + 0) * 3 + value
+%round many = (0 + 0) + (0 + most)
+%define edge_span = 2 * edge_error
+%round covered = many - ((most - least) + edge_span)
 # set_up_group(): no pixel of the box.
 %source core/gridiron/engine/tree/tile_triangles.h
-%line return value + L::max(along_x * x0, along_x * x1) + L::max(along_y * y0, along_y * y1);
-%round in_box = value + 0 + 0
+%line return L::bounded_sum(L::abs(along_x), x1, L::bounded_sum(L::abs(along_y), y1, value));
+%line none = none | L::words_of(most_in_box(value, edge_x, edge_y));
+%round in_box = 0 + (0 + value)
 
 { |x_i| <= 1 /\ |y_i| <= 1 /\ |x_k| <= 1 /\ |y_k| <= 1 /\
   %roundings
   -> edge_error - |block_16 - exact_block_16| >= 0 /\ edge_error - |block_8 - exact_block_8| >= 0 /\
      edge_error - |block_4 - exact_block_4| >= 0 /\ edge_error - |pixel_1 - exact_pixel_1| >= 0 /\
      edge_error - |tiny - exact_tiny| >= 0 /\ edge_error - |many - exact_many| >= 0 /\
+     edge_error - |covered - exact_covered| >= 0 /\
      edge_error - |in_box - exact_in_box| >= 0 }

@@ -1,7 +1,7 @@
 # core/gridiron/engine/tree/tile_triangles.h: kNearError, of the value of 1 / t at the offset, in every way that a pixel
 # comes by it. For fixed roundings this is linear in nx, ny and nw over the rounded volume, and `most_near` in their
 # magnitudes: nw / volume is 1, the others are 0; steps are in tile_near_step.g. 2 e are left on each side for what
-# comparisons round and for the distance by which rounded t surely differ (tile_near_order.g). What `relative` and w_error
+# comparisons round and for the distance by which rounded t surely differ: see the README. What `relative` and w_error
 # take is a matter of their own. SPDX-License-Identifier: Apache-2.0
 %source core/gridiron/engine/tree/tile_triangles.h
 %constant kNearError inline constexpr float kNearError = {};
@@ -15,7 +15,7 @@
 %line const Float near_error = most_near * (relative * Float(kSecondOrder) + Float(kNearError + 2.0f * tile.w_error));
 %round most_near = 0 * 0 + size(near_w)
 %round error = most_near * (0 + (kNearError + 0))
-%line const Float near_value = near_w - near_error;
+%line const Float near_value = near_w - near_error, near_span = near_error + near_error;
 %define near_error = error
 %round near_value = near_w - near_error
 
@@ -26,6 +26,10 @@
 %line for (int k = 0; k < 4; ++k) value[k] = value[k] + right[k];
 %line for (int k = 0; k < 4; ++k) row[k] = row[k] + down[k];
 %line for (int k = kCovered ? 3 : 0; k < 4; ++k) value[k] = value[k] + f.step[k];
+# What decides, by the sign.
+%line ahead[group] = value[3] - Float::load(stored + group * kLanes);
+%line possible[group] = L::words_of(ahead[group] + f.near_span);
+%line surely[group] = L::words_of(ahead[group] - old_span);
 %round start_16 = 0 + (0 + near_value)
 %round at_16 = 0 + (0 + start_16)
 %round block_16 = ((((at_16 + 0) + 0) + 0) + 0) + 0
@@ -45,13 +49,16 @@
 # draw_many_blocks(): the greatest value of a block, with the span.
 %line most[k] = (L::max(f.x[k], zero) + L::max(f.y[k], zero)) * last + f.value[k];
 %line most[3] = most[3] + f.near_span;
-%line (L::bounded_sum(f.x[3], x, L::bounded_sum(f.y[3], y, most[3])) > Float::load(memory_.least_near + base));
-%round many = 0 + (0 + ((0 + near_value) + 2 * near_error))
+%line across[k][group] = kGroupRows > 1 ? L::bounded_sum(f.x[k], x, f.y[k] * y) : f.x[k] * x;
+%line for (int k = 0; k < 4; ++k) down[k] = L::bounded_sum(f.y[k], line, most[k]);
+%line Int none = L::words_of((across[3][group] + down[3]) - Float::load(memory_.least_near + base));
+%define near_span = 2 * near_error
+%round many = (0 + 0) + (0 + (((0 + 0) * 3 + near_value) + near_span))
 # set_up_group(): all hidden.
 %source core/gridiron/engine/tree/tile_triangles.h
-%line return value + L::max(along_x * x0, along_x * x1) + L::max(along_y * y0, along_y * y1);
-%line auto is_drawn = most_in_box(near_value, near_x, near_y) + (near_error + near_error) > Float(least_near);
-%round in_box = (near_value + 0 + 0) + 2 * near_error
+%line return L::bounded_sum(L::abs(along_x), x1, L::bounded_sum(L::abs(along_y), y1, value));
+%line Int none = L::words_of(most_in_box(near_value, near_x, near_y) + near_span - Float(least_near));
+%round in_box = (0 + (0 + near_value)) + near_span
 
 %define left_over = 0x2p-23 * most_near
 
