@@ -359,6 +359,7 @@ TEST(SmallScenes, ExactTellsSheetsApartThatRoundAlike) {
 std::vector<Vec3> directions_of(FrameSettings settings) {
   settings.color = MainAddress{kLineBytes};
   SceneImageView any_image{};
+  any_image.has_grid = true;
   any_image.grid.triangle_format = static_cast<std::uint32_t>(TriangleFormat::kVertices);
   any_image.grid.macro_width = 1;
   FrameRecord frame{};

@@ -129,7 +129,8 @@ void expect_refusals(JobMemory& memory, const std::vector<Wrong>& wrongs) {
   EXPECT_TRUE(memory.check()) << told;
 }
 
-const std::vector<const char*> kPlain = {"--size", "70x40", "--packet", "8", "--cores", "4", "--depth", "--ids"};
+const std::vector<const char*> kPlain = {"--size",  "70x40", "--configuration", "grid", "--packet", "8",
+                                         "--cores", "4",     "--depth",         "--ids"};
 
 TEST(JobCheck, TakesWhatTheProgramMakes) {
   for (const char* accuracy : {"standard", "paper", "exact", "fast", "compact"}) {
@@ -251,7 +252,7 @@ TEST(JobCheck, HoldsTheImageAgainstTheJob) {
 }
 
 TEST(JobCheck, HoldsEffectsAgainstTheJob) {
-  JobMemory memory("everything.nff", {"--size", "40x40", "--cores", "4"});
+  JobMemory memory("everything.nff", {"--size", "40x40", "--cores", "4", "--configuration", "grid"});
   constexpr std::uint32_t kMirrors = kReflection | kSmoothNormals;
   expect_refusals(
       memory,

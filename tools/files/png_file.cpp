@@ -10,6 +10,7 @@
 #include <array>
 #include <cstring>
 #include <iterator>
+#include <new>
 #include <span>
 #include <string>
 #include <string_view>
@@ -126,6 +127,7 @@ std::vector<std::byte> encode_png(const Picture<std::uint32_t>& picture) {
   std::vector<std::byte> file(PNG_IMAGE_PNG_SIZE_MAX(image));
   png_alloc_size_t file_bytes = file.size();
   if (png_image_write_to_memory(&image, file.data(), &file_bytes, 0, picture.pixels.data(), 0, nullptr) == 0) {
+    if (std::string_view(image.message).find("memory") != std::string_view::npos) throw std::bad_alloc();
     throw Failure(ExitCode::kBadInput, std::string("cannot encode the picture: ") + image.message);
   }
   file.resize(file_bytes);

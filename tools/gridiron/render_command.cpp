@@ -16,6 +16,7 @@
 #include "files/atomic_file.h"
 #include "files/command_files.h"
 #include "files/image_files.h"
+#include "files/input_file.h"
 #include "gridiron/device/store_facts.h"
 #include "gridiron/frame/chip_frame.h"
 #include "gridiron/frame/frame_memory.h"
@@ -176,7 +177,8 @@ void run_command(const RenderRequest& request) {
   }
 
   AtomicFiles files;
-  files.add(*outputs.picture, encode_picture(color, *outputs.picture));
+  files.add(*outputs.picture, name_in_shortage(plan.scene.input, "encode its picture",
+                                               [&] { return encode_picture(color, *outputs.picture); }));
   if (outputs.depth) {
     files.add(*outputs.depth, encode_pfm(depth_picture(plane_words(frame, plan, frame.depth))));
   }

@@ -106,7 +106,7 @@ concept StageObserver = requires(P& platform, std::uint8_t stage) {
 };
 
 /// A platform that also reads main memory where it lies: a host that simulates no local memory. Core then leaves out
-/// copies of what it reads and never changes. Optional, as above.
+/// copies of what it reads and never changes. Null where it does not after all. Optional, as above.
 template <class P>
 concept InPlaceReader = requires(const P& platform, MainAddress address) {
   { platform.in_place(address) } -> std::same_as<const std::byte*>;

@@ -71,14 +71,14 @@ inline constexpr auto kInstructionCosts = std::to_array<InstructionCost>({
     {WorkId(49),   189.8},  // list_ray, of effects
     {WorkId(50),  5246.8},  // list_beam, of effects
     {WorkId(51),  1728.6},  // list_beam_node, of effects
-    {WorkId(52),   303.7},  // list_child, of effects
+    {WorkId(52),   305.0},  // list_child, of effects
     {WorkId(53),    39.9},  // list_entry, of effects
-    {WorkId(54),  1314.7},  // list_node, of effects
+    {WorkId(54),  1314.9},  // list_node, of effects
     {WorkId(55),   153.4},  // list_run, of effects
     {WorkId(56),   454.9},  // list_ray_node, of effects
     {WorkId(57),   457.7},  // list_box_quad, of effects
     {WorkId(58),   391.3},  // list_shared_box, of effects
-    {WorkId(59),  2171.8},  // list_leaf, of effects
+    {WorkId(59),  2171.6},  // list_leaf, of effects
     {WorkId(60),   941.9},  // list_triangle_group, of effects
     {WorkId(61),  3064.0},  // list_shared_leaf, of effects
     {WorkId(62),   612.8},  // list_shared_group, of effects

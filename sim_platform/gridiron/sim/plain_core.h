@@ -43,7 +43,11 @@ class PlainCore {
 
   Status wait(TagMask) { return Status::kOk; }
 
-  [[nodiscard]] const std::byte* in_place(MainAddress address) const { return base_ + address.value; }
+  /// From now on the tree is copied too, as a device would.
+  void copy_all() { reads_in_place_ = false; }
+  [[nodiscard]] const std::byte* in_place(MainAddress address) const {
+    return reads_in_place_ ? base_ + address.value : nullptr;
+  }
 
   TileClaim claim_tile() {
     if (busy_) tiles_->tile_done();
@@ -64,6 +68,7 @@ class PlainCore {
   std::uint64_t transfers_ = 0;
   std::uint32_t tile_id_ = 0;
   bool busy_ = false;
+  bool reads_in_place_ = true;
 };
 
 static_assert(Platform<PlainCore> && InPlaceReader<PlainCore>);

@@ -29,6 +29,7 @@ TEST(ReferenceCamera, IsTheFramesBitForBit) {
         .height = height,
         .color = MainAddress{kLineBytes}};
     SceneImageView image{};
+    image.has_grid = true;
     image.grid.triangle_format = static_cast<std::uint32_t>(TriangleFormat::kVertices);
     image.grid.macro_width = 1;
     FrameRecord frame{};

@@ -57,6 +57,7 @@ class DeviceCore {
       told = claiming->transfers();
     });
     sim::PlainCore core(memory_.base(), {}, source);
+    core.copy_all();
     claiming = &core;
     const SpillRegion spill = job_.spill_address == 0
                                   ? SpillRegion{}

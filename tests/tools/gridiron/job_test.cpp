@@ -280,7 +280,7 @@ TEST(Result, LanesAndQueueAreTheDevices) {
 
 TEST(Job, DamageIsFoundWithItsPlace) {
   const TemporaryFolder folder;
-  const std::string whole = make_job(folder, {"--size", "50x40", "--depth"});
+  const std::string whole = make_job(folder, with_reference({"--size", "50x40", "--depth"}));
   const auto expect_refused = [&](const std::string& file, std::uint64_t place, const char* words) {
     folder.write("b.job", file);
     expect_failure(folder, {"result", "b.job", "a.res"}, 1, "b.job:byte " + std::to_string(place) + ": " + words);
@@ -388,7 +388,7 @@ TEST(Job, DamageIsFoundWithItsPlace) {
 
 TEST(Result, DamageIsFoundWithItsPlace) {
   const TemporaryFolder folder;
-  const std::string file = make_job(folder, {"--size", "50x40"});
+  const std::string file = make_job(folder, with_reference({"--size", "50x40"}));
   const std::string whole = render_on_host_device(file, 2);
   const auto expect_refused = [&](const std::string& result, int code, const std::string& words) {
     folder.write("a.res", result);

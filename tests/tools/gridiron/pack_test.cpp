@@ -27,7 +27,7 @@ TEST(Pack, RendersTheSamePictureAsTheMesh) {
       {{"--format", "vertices"}, {"--accuracy", "fast"}},
       {{"--lambda", "1", "--macro-width", "4", "--configuration", "grid"}, {}},
       {{"--configuration", "reference"}, {}},
-      {{}, {"--configuration", "grid"}},
+      {{"--configuration", "grid"}, {"--configuration", "grid"}},
   };
   for (const auto& choice : cases) {
     run(folder, Words{"pack", "a.ply", "-o", "a.gri"} + choice.pack);

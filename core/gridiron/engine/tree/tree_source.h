@@ -59,6 +59,9 @@ class TreeSource {
     nodes_ = store_.frame.image_address + tree.nodes_offset_bytes;
     triangles_ = store_.frame.image_address + tree.triangles_offset_bytes;
     is_on_lattice_ = tree.triangle_format == static_cast<std::uint32_t>(TriangleFormat::kLattice);
+    if constexpr (InPlaceReader<P>) {
+      is_in_place_ = !is_on_lattice_ && transfers_.in_place(MainAddress{nodes_}) != nullptr;
+    }
   }
 
   /// Discards what the cache has. Precondition: nothing is pending.
@@ -74,7 +77,7 @@ class TreeSource {
 
   [[nodiscard]] Status ahead(TreeChild child) {
     if constexpr (InPlaceReader<P>) {
-      if (!is_on_lattice_) {
+      if (is_in_place_) {
         const std::byte* const bytes = in_place<std::byte>(child);
         const std::uint32_t count =
             child.is_leaf() ? child.count() * kTriangleRecordBytes : std::uint32_t{sizeof(TreeNode)};
@@ -89,7 +92,7 @@ class TreeSource {
 
   [[nodiscard]] Status node(std::uint32_t index, const TreeNode*& node) {
     if constexpr (InPlaceReader<P>) {
-      if (!is_on_lattice_) {
+      if (is_in_place_) {
         node = in_place<TreeNode>(TreeChild::node(index));
         return Status::kOk;
       }
@@ -102,7 +105,7 @@ class TreeSource {
 
   [[nodiscard]] Status leaf(TreeChild child, const VertexTriangle*& records) {
     if constexpr (InPlaceReader<P>) {
-      if (!is_on_lattice_) {
+      if (is_in_place_) {
         records = in_place<VertexTriangle>(child);
         return Status::kOk;
       }
@@ -116,7 +119,7 @@ class TreeSource {
   /// A record by its number in the tree: mostly of a leaf that is still at hand.
   [[nodiscard]] GRIDIRON_OUTLINE Status record(std::uint32_t number, VertexTriangle& triangle) {
     if constexpr (InPlaceReader<P>) {
-      if (!is_on_lattice_) {
+      if (is_in_place_) {
         triangle = *in_place<VertexTriangle>(TreeChild::leaf(number, 1));
         return Status::kOk;
       }
@@ -285,6 +288,7 @@ class TreeSource {
   std::uint32_t pending_ = 0;                ///< slots whose transfers were not waited for yet, as bits
   std::uint32_t surface_ = kNoTriangle;      ///< the triangle that was fetched last for a tie
   bool is_on_lattice_ = false;
+  bool is_in_place_ = false;  ///< where the platform is an InPlaceReader
 };
 
 }  // namespace gridiron
