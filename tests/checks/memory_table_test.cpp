@@ -82,7 +82,8 @@ TEST(MemoryTable, RowsThatComeAndGoFail) {
 TEST(MemoryTable, TheReadmeShowsWhatIsCommitted) {
   const ScriptResult table = run_script(memory_table() + " --table " + source_path("core/memory.csv"));
   ASSERT_EQ(table.exit_code, 0) << table.output;
-  EXPECT_NE(table.output.find("On riscv64 64 KB hold `TreeLayout64K`, `EffectLayout64K<kAllEffects>`"), std::string::npos)
+  EXPECT_NE(table.output.find("On riscv64 64 KB hold `TreeLayout64K`, `EffectLayout64K<kAllEffects>`"),
+            std::string::npos)
       << table.output;
   std::ifstream file(source_path("core/README.md"));
   const std::string readme{std::istreambuf_iterator<char>(file), {}};

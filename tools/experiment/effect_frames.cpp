@@ -165,7 +165,7 @@ void check_hiding(const EffectFrame& single, const EffectFrame& buffered, const 
   }
   if (left > kMostWaitShare) {
     fail_check(name + ": cores wait for secondary rays for " + fixed_text(100 * left, 1) +
-               " % of their time, more than " + fixed_text(100 * kMostWaitShare, 0) + " %");
+               " % of their time, more than " + fixed_text(100 * kMostWaitShare, 1) + " %");
   }
 }
 

@@ -229,7 +229,7 @@ void write_hiding(const std::vector<SceneFrames>& scenes, Book& book) {
       "stages surface, shadow, occlusion, bounce and environment, all effects on. The run ends with an error where "
       "less than " +
       fixed_text(100 * kLeastHiddenShare, 0) + " % of them go; the least here is " + fixed_text(100 * least, 1) +
-      " %. It does so too where the rest is more than " + fixed_text(100 * kMostWaitShare, 0) +
+      " %. It does so too where the rest is more than " + fixed_text(100 * kMostWaitShare, 1) +
       " % of the cores' time; the most here is " + fixed_text(100 * most_left, 1) +
       " %. The configuration itself has " + std::to_string(tool::find_configuration("grid")->depths.fetch) +
       " children or records under way.");

@@ -460,7 +460,7 @@ struct Lanes {
   /// Copies 16 bytes. @tparam Quad  of this size and alignment.
   template <class Quad>
   static GRIDIRON_INLINE void copy_quad(const Quad& source, Quad& target) {
-    static_assert(sizeof(Quad) == 16 && alignof(Quad) == 16);
+    static_assert(sizeof(Quad) == 16);
     target = source;
   }
   /// Bit i is the sign of lane i.

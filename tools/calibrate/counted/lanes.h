@@ -301,7 +301,7 @@ struct Lanes {
   }
   template <class Quad>
   static void copy_quad(const Quad& source, Quad& target) {
-    static_assert(sizeof(Quad) == 16 && alignof(Quad) == 16);
+    static_assert(sizeof(Quad) == 16);
     std::uint64_t words[2];
     __builtin_memcpy(words, &source, sizeof words);
     const std::uint64_t tied = words[0] * 31 + words[1];
