@@ -211,9 +211,9 @@ TEST(JobCheck, HoldsTreesAgainstTheJob) {
       memory,
       {WRONG("frame record: engine_id 3, no engine of core", ++m.record().engine_id),
        WRONG("engine of eye rays", m.engine = static_cast<std::uint32_t>(EngineId::kGrid)),
-       WRONG("frame record: engine_id 2, the scene image has no tree", m.section(SectionKind::kTree).kind = 1000,
+       WRONG("scene image: header.section_count 3", m.section(SectionKind::kTree).kind = 1000,
              m.section(SectionKind::kTreeNodes).kind = 1000, m.section(SectionKind::kTreeTriangles).kind = 1000),
-       WRONG("scene image: section.kind 12", m.section(SectionKind::kTree).kind = 1000),
+       WRONG("scene image: header.section_count 3", m.section(SectionKind::kTree).kind = 1000),
        WRONG("frame record: image_address", m.record().image_address = 0),
        WRONG("frame record: image_address", m.record().image_address += 128),
        WRONG("frame record: tree_address", m.record().tree_address = 0),
@@ -223,6 +223,9 @@ TEST(JobCheck, HoldsTreesAgainstTheJob) {
        WRONG("frame record: accuracy 4, the tree's triangles are of format 1", m.record().accuracy = 4),
        WRONG("frame record: color_address", m.record().color_address += 128),
        WRONG("scene image: tree.nodes_offset_bytes", m.tree().nodes_offset_bytes = ~127ull)});
+  JobMemory with_grid("teapot.ply", {"--size", "70x40", "--configuration", "grid"});
+  expect_refusals(with_grid, {WRONG("frame record: engine_id 2, the scene image has no tree", m.record().engine_id = 2,
+                                    m.engine = 2)});
 }
 
 TEST(JobCheck, HoldsTheImageAgainstTheJob) {

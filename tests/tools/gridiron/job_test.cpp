@@ -212,7 +212,7 @@ TEST(Result, SaysThatNoPixelShowsTheSceneAndWhy) {
 
 TEST(Result, OneDifferenceIsEnough) {
   const TemporaryFolder folder;
-  const std::string file = make_job(folder, {"--size", "50x40", "--depth", "--ids"});
+  const std::string file = make_job(folder, with_reference({"--size", "50x40", "--depth", "--ids"}));
   const auto job = record_at<FrameJob>(file, 0);
   const std::string whole = render_on_host_device(file, 3);
   const auto flip = [&whole](std::uint64_t place) {

@@ -252,9 +252,9 @@ TEST(Render, TheDefaultConfigurationIsTheBestThatCanRender) {
       {{"a.ply", "--machine", "board.machine", "--mode", "plain"}, "best"},
       {{"a.ply", "--accuracy", "paper"}, "reference"},
       {{"reference.gri"}, "grid"},
-      {{"a.ply", "--store", "64"}, "grid"},
+      {{"a.ply", "--store", "64"}, "best"},
       {{"a.ply", "--store", "128"}, "grid"},
-      {{"a.ply", "--machine", "small.machine"}, "grid"},
+      {{"a.ply", "--machine", "small.machine"}, "best"},
       {{"a.ply", "--machine", "board.machine"}, "grid"},
   };
   const std::string hash =
