@@ -4,6 +4,7 @@
 #pragma once
 
 #include <gridiron/platform/contract.h>
+#include <gridiron/platform/tile_order.h>
 #include <gridiron/platform/transfer_rules.h>
 
 #include <cstdint>
@@ -67,8 +68,9 @@ class DeskPort {
 
   TileClaim claim_tile() {
     if (tiles_.must_stop()) return {TileClaim::Kind::kAborted, 0};
-    const std::uint32_t tile = tiles_.next_tile();
-    return tile < tiles_.tile_count() ? TileClaim{TileClaim::Kind::kTile, tile} : TileClaim{TileClaim::Kind::kNone, 0};
+    const std::uint32_t claim = tiles_.next_tile(), count = tiles_.tile_count();
+    if (claim >= count) return {TileClaim::Kind::kNone, 0};
+    return {TileClaim::Kind::kTile, middle_out(claim, count)};
   }
 
  private:

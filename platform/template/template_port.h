@@ -4,6 +4,7 @@
 #pragma once
 
 #include <gridiron/platform/contract.h>
+#include <gridiron/platform/tile_order.h>
 #include <gridiron/platform/transfer_rules.h>
 
 #include <concepts>
@@ -88,8 +89,9 @@ class TemplatePort {
 
   TileClaim claim_tile() {
     if (board_.must_stop()) return {TileClaim::Kind::kAborted, 0};
-    const std::uint32_t tile = board_.next_tile();
-    return tile < board_.tile_count() ? TileClaim{TileClaim::Kind::kTile, tile} : TileClaim{TileClaim::Kind::kNone, 0};
+    const std::uint32_t claim = board_.next_tile(), count = board_.tile_count();
+    if (claim >= count) return {TileClaim::Kind::kNone, 0};
+    return {TileClaim::Kind::kTile, middle_out(claim, count)};
   }
 
  private:

@@ -91,7 +91,18 @@ class Model {
     core.ordinal = core.tiles;
     core.is_last = next_tile_ == trace_.tiles.size();
     if (!core.is_last) ++core.tiles;
-    open(core, core.is_last ? trace_.epilogue : trace_.tiles[next_tile_++]);
+    open(core, core.is_last ? trace_.epilogue : trace_.tiles[order_[next_tile_++]]);
+  }
+
+  // From the middle outward: the one right of what is done, then the one left of it.
+  static std::vector<std::size_t> order_of(const FrameTrace& trace) {
+    std::vector<std::size_t> order;
+    std::size_t low = trace.is_middle_out ? trace.tiles.size() / 2 : 0, high = low;
+    while (order.size() < trace.tiles.size()) {
+      if (high < trace.tiles.size()) order.push_back(high++);
+      if (low > 0) order.push_back(--low);
+    }
+    return order;
   }
 
   static ModelCommand* open_command(ModelCore& core) {
@@ -182,6 +193,7 @@ class Model {
   const FrameTrace& trace_;
   const MachineProfile& machine_;
   std::vector<ModelCore> cores_;
+  std::vector<std::size_t> order_ = order_of(trace_);
   std::size_t next_tile_ = 0;
   double channel_free_ = 0;
 };
@@ -246,7 +258,9 @@ TEST(ReplayOracle, FortyMachinesAsASecondModelHasThem) {
     FrameTrace trace;
     trace.output_depth = kOutputDepth;
     trace.prologue = random_tile(kNoTile, random);
-    for (std::uint32_t tile = 0; tile < 24; ++tile) trace.tiles.push_back(random_tile(tile, random));
+    trace.is_middle_out = setting % 2 == 1;
+    const std::uint32_t tiles = 24 + setting % 3;
+    for (std::uint32_t tile = 0; tile < tiles; ++tile) trace.tiles.push_back(random_tile(tile, random));
     trace.epilogue = Steps(kNoTile).wait(0, 3);
     for (const std::uint32_t cores : {1u, 2u, 6u}) {
       SCOPED_TRACE("machine " + std::to_string(setting) + ", " + std::to_string(cores) + " cores");

@@ -124,17 +124,18 @@ struct TreeLayout256K {
   using Engine = TileEngine;
   static constexpr std::uint32_t kEffects = 0;
   static constexpr std::uint32_t kArenaBytes = 256 * 1024;
-  static constexpr std::uint32_t kCodeBudgetBytes = 60 * 1024;
+  static constexpr std::uint32_t kCodeBudgetBytes = 48 * 1024;
   static constexpr std::uint32_t kStackBudgetBytes = 10 * 1024 + 512;
   static constexpr std::uint32_t kTileWidth = TileWidthV;
   static constexpr std::uint32_t kPacketWidth = 0;
   static constexpr std::uint32_t kMaxOutputDepth = 2;
   /// @endcond
-  static constexpr std::uint32_t kEyeTileWidth = 32;  ///< pixels along the edge of what is traced at once
-  static constexpr std::uint32_t kEyeTurns = 2;       ///< of these, how many take turns
-  static constexpr std::uint32_t kEyeSlots = 32;      ///< nodes and leaves at hand
+  static constexpr std::uint32_t kEyeTileWidth = 32;   ///< pixels along the edge of what is traced at once
+  static constexpr std::uint32_t kEyeTurns = 2;        ///< of these, how many take turns
+  static constexpr std::uint32_t kEyeSlots = 32;       ///< nodes and leaves at hand
+  static constexpr std::uint32_t kEyeTopNodes = 17;    ///< of these nodes, the first, which stay for the frame
   static constexpr std::uint32_t kLeafTriangles = 16;  ///< of a leaf, at most
-  static constexpr std::uint32_t kMostLanes = 16;     ///< that its memory is for
+  static constexpr std::uint32_t kMostLanes = 16;      ///< that its memory is for
 };
 
 /// The same of a 64 KB core: smaller tiles, no turns, memory for four lanes. A core without vectors requires Lanes<1>
@@ -152,6 +153,7 @@ struct TreeLayout64K {
   static constexpr std::uint32_t kEyeTileWidth = 16;
   static constexpr std::uint32_t kEyeTurns = 1;
   static constexpr std::uint32_t kEyeSlots = 8;
+  static constexpr std::uint32_t kEyeTopNodes = 0;
   static constexpr std::uint32_t kLeafTriangles = 8;
   static constexpr std::uint32_t kMostLanes = 4;
   /// @endcond
@@ -167,6 +169,7 @@ struct EffectLayout256K {
   static constexpr std::uint32_t kEyeTileWidth = 32;
   static constexpr std::uint32_t kEyeTurns = 1;
   static constexpr std::uint32_t kEyeSlots = 32;
+  static constexpr std::uint32_t kEyeTopNodes = 0;
   static constexpr std::uint32_t kMostLanes = 16;
   static constexpr std::uint32_t kEffects = BuiltV;
   static constexpr std::uint32_t kArenaBytes = 256 * 1024;

@@ -221,6 +221,7 @@ namespace {
   // Trace and totals.
   result.trace.output_depth = shape.output_depth;
   result.trace.engine = shape.engine;
+  result.trace.is_middle_out = shape.engine == &kTreeEngine;
   result.trace.tiles.resize(end_tile - first_tile);
   for (std::uint32_t i = 0; i < result.trace.tiles.size(); ++i) result.trace.tiles[i].tile_id = first_tile + i;
   for (CoreRun& run : runs) {

@@ -1,6 +1,7 @@
 // Replay: a discrete-event simulation of one frame's traces. See replay.h for the model.
 // Memory: std::vector. Threads: any, no shared state. SPDX-License-Identifier: Apache-2.0
 #include <gridiron/dma/tags.h>
+#include <gridiron/platform/tile_order.h>
 #include <gridiron/sim/replay.h>
 #include <gridiron/sim/trace_packing.h>
 
@@ -139,7 +140,7 @@ struct Core {
   TraceReader steps;
   const TraceEvent* step = nullptr;  ///< that is taken next; null after the last one
   std::uint32_t tile_id = kNoTile;
-  std::uint32_t ordinal = 0;  ///< of the tile: how many this core has had before it
+  std::uint32_t ordinal = 0;      ///< of the tile: how many this core has had before it
   std::size_t next_own_tile = 0;  ///< where tiles are assigned: the first of the trace that may be its next
   Ticks now = 0;
   Ticks claim_time = kNever;        ///< when it asks for a tile
@@ -257,7 +258,12 @@ class Replay {
   /// @returns null if the core gets no more tiles.
   const TileTrace* next_tile_of(Core& core) {
     const std::size_t count = trace_.tiles.size();
-    if (core_of_tile_.empty()) return next_tile_ < count ? &trace_.tiles[next_tile_++] : nullptr;
+    if (core_of_tile_.empty()) {
+      if (next_tile_ == count) return nullptr;
+      const std::size_t claim = next_tile_++;
+      if (!trace_.is_middle_out) return &trace_.tiles[claim];
+      return &trace_.tiles[middle_out(static_cast<std::uint32_t>(claim), static_cast<std::uint32_t>(count))];
+    }
     const auto index = static_cast<std::uint32_t>(&core - cores_.data());
     while (core.next_own_tile < count) {
       const std::size_t tile = core.next_own_tile++;

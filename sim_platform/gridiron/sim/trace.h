@@ -71,6 +71,7 @@ struct FrameTrace {
   std::vector<TileTrace> tiles;   ///< index = tile_id; one entry if a single tile was rendered
   std::uint32_t output_depth = 1; ///< rotation of the relative tags
   const EngineWork* engine = &kGridEngine;  ///< whose kinds of work these are; outlives the trace
+  bool is_middle_out = false;  ///< whether cores claim in the order of middle_out(), not by rising number
 
   /// @returns bytes of all packed steps.
   [[nodiscard]] std::uint64_t packed_bytes() const {

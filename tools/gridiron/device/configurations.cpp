@@ -12,7 +12,7 @@ constexpr std::uint32_t kReferenceTechniques = kUseMailbox | kUseCornerCulling |
 constexpr Configuration kConfigurations[] = {
     {.name = "best", .description = "eye rays through the wide tree, tile by tile; no grid",
      .lambda = 0.01f, .macro_width = 4, .packet_width = 0,
-     .depths = {.output = 2, .macro = 1, .triangle = 1, .fetch = 3}, .techniques = 0},
+     .depths = {.output = 2, .macro = 1, .triangle = 1, .fetch = 2}, .techniques = 0},
     {.name = "grid", .description = "one traversal per tile for all its rays, a coarse grid, culling by pixels",
      .lambda = 0.4f, .macro_width = 4, .packet_width = 32,
      .depths = {.output = 2, .macro = 4, .triangle = 3, .fetch = 2},

@@ -23,10 +23,22 @@
 
 namespace gridiron {
 
-/// Memory for the whole frame.
+/// The first nodes of the tree, which stay for the frame.
+template <std::uint32_t Count>
+struct alignas(128) TopNodes {
+  TreeNode nodes[Count];
+};
+template <>
+struct TopNodes<0> {};
+
+/// Memory for the whole frame. @tparam TopCount  first nodes that stay.
+template <std::uint32_t TopCount>
 struct alignas(128) TileStore {
+  static constexpr std::uint32_t kTopNodes = TopCount;
+
   TreeRecord tree;
   EyeProjection eye;
+  [[no_unique_address]] TopNodes<TopCount> top;
 
   /// Calls visit(name, offset_bytes, bytes) for every region, in address order.
   template <class Visit>
@@ -77,6 +89,7 @@ class TileCore {
       return Status::kUnsupportedImage;
     }
     source_.begin();
+    GRIDIRON_TRY(source_.fetch_top());
     float largest = 0.0f;
     for (int axis = 0; axis < 3; ++axis) {
       const float low = magnitude(tree.bounds_minimum[axis]), high = magnitude(tree.bounds_maximum[axis]);
@@ -168,7 +181,7 @@ struct TileEngine {
   static constexpr std::uint32_t kId = static_cast<std::uint32_t>(EngineId::kTree);
   using Record = TreeFrame;
   template <class Layout>
-  using Store = TileStore;
+  using Store = TileStore<Layout::kEyeTopNodes>;
   template <class Layout>
   using EyeStore = TileEyeStore<Layout>;
   template <class Layout>

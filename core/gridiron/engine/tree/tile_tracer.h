@@ -60,12 +60,14 @@ class TileTracer {
 
   [[nodiscard]] bool has_more() const { return top_ != 0; }
 
-  /// Visits the next child, and has those fetched that come next. Precondition: has_more().
+  /// Visits the next child that is not behind all hits, and has those fetched that come next. Precondition: has_more().
   [[nodiscard]] GRIDIRON_OUTLINE Status step() {
     work_.charge_to(TileWork::kChild);
-    --top_;
+    for (--top_; memory_.stack[top_].w > hits_.far(); --top_) {
+      GRIDIRON_TRY(ask_for_last());
+      if (top_ == 0) return Status::kOk;
+    }
     const WaitingChild& next = memory_.stack[top_];
-    if (next.w > hits_.far()) return ask_for_last();
     const TreeChild child{next.child};
     if (child.is_leaf()) {
       GRIDIRON_TRY(ask_for_last());

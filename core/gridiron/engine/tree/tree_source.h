@@ -21,6 +21,8 @@ struct RayParts {
   template <class Store>
   using Memory = typename Store::RayStore;
   template <class Store>
+  static constexpr std::uint32_t kTopNodes = 0;
+  template <class Store>
   [[nodiscard]] static GRIDIRON_INLINE const TreeRecord& tree(const Store& store) {
     return store.rays.tree;
   }
@@ -35,6 +37,8 @@ struct EyeParts {
   /// @cond
   template <class Store>
   using Memory = typename Store::EyeStore;
+  template <class Store>
+  static constexpr std::uint32_t kTopNodes = decltype(Store::engine)::kTopNodes;
   template <class Store>
   [[nodiscard]] static GRIDIRON_INLINE const TreeRecord& tree(const Store& store) {
     return store.engine.tree;
@@ -64,11 +68,24 @@ class TreeSource {
     }
   }
 
+  /// Fetches the first nodes, if the store has a place for them. After begin().
+  [[nodiscard]] Status fetch_top() {
+    if constexpr (Parts::template kTopNodes<Store> != 0) {
+      if (is_in_place_) return Status::kOk;
+      const std::uint32_t there = Parts::tree(store_).node_count;
+      top_count_ = there < Parts::template kTopNodes<Store> ? there : Parts::template kTopNodes<Store>;
+      GRIDIRON_TRY(transfers_.get(store_.engine.top.nodes, MainAddress{nodes_},
+                                  top_count_ * std::uint32_t{sizeof(TreeNode)}, kSetupTag));
+      return transfers_.wait(kSetupTag);
+    }
+    return Status::kOk;
+  }
+
   /// Discards what the cache has. Precondition: nothing is pending.
   void forget() {
     for (std::uint32_t i = 0; i < Cache::kSlots; ++i) cache().keys[i] = Cache::kNoKey;
     for (std::uint32_t i = 0; i < Cache::kSets; ++i) cache().turns[i] = 0;
-    pending_ = 0;
+    pending_ = wanted_ = fetched_ = 0;
     surface_ = kNoTriangle;
   }
 
@@ -85,6 +102,9 @@ class TreeSource {
         return Status::kOk;
       }
     }
+    if constexpr (Parts::template kTopNodes<Store> != 0) {
+      if (!child.is_leaf() && child.node_index() < top_count_) return Status::kOk;
+    }
     std::uint32_t slot = 0;
     if (find(child, slot) != 0) return Status::kOk;
     return start(child, slot);
@@ -94,6 +114,12 @@ class TreeSource {
     if constexpr (InPlaceReader<P>) {
       if (is_in_place_) {
         node = in_place<TreeNode>(TreeChild::node(index));
+        return Status::kOk;
+      }
+    }
+    if constexpr (Parts::template kTopNodes<Store> != 0) {
+      if (index < top_count_) {
+        node = &store_.engine.top.nodes[index];
         return Status::kOk;
       }
     }
@@ -204,15 +230,15 @@ class TreeSource {
   [[nodiscard]] static std::uint32_t first_byte_of(std::uint64_t address) {
     return static_cast<std::uint32_t>(address) % kPortableCongruenceBytes;
   }
-  // Waits for nodes count as those for cell blocks do, waits for leaves as those for triangles. Neighbouring
-  // children mostly lie in different sets. With more slots than tags a set has one tag: a wait for one slot ends all of
-  // it.
-  [[nodiscard]] static std::uint8_t tag_of(std::uint32_t slot, TreeChild child) {
+  // Waits for nodes count as those for cell blocks do, waits for leaves as those for triangles. Tags go round, so that
+  // a wait for one child hardly ever is for another that was asked for later.
+  [[nodiscard]] std::uint8_t next_tag(std::uint32_t slot, TreeChild child) {
     static constexpr std::uint32_t kTags = kMacroTagCount;
-    static constexpr std::uint32_t kTagSlots = Cache::kSlots < kTags ? std::uint32_t{1} : Cache::kSlots / kTags;
     static_assert(kTags <= kTriangleTagCount);
     const std::uint32_t first = child.is_leaf() ? std::uint32_t{kFirstTriangleTag} : std::uint32_t{kFirstMacroTag};
-    return static_cast<std::uint8_t>(first + slot / kTagSlots);
+    const auto tag = static_cast<std::uint8_t>(first + fetched_++ % kTags);
+    cache().tags[slot] = tag;
+    return tag;
   }
 
   // Finds the ways that have a child, as bits: one or none. @param slot  gets that of the first way.
@@ -233,19 +259,25 @@ class TreeSource {
   // @param slot  as find() left it, without a way; gets the child's.
   [[nodiscard]] GRIDIRON_OUTLINE Status start(TreeChild child, std::uint32_t& slot) {
     std::uint32_t& turn = cache().turns[slot / Cache::kWays];
-    slot += turn;
-    turn = (turn + 1) % Cache::kWays;
+    // Of those that were taken, or of all, the one that was fetched longest ago makes room.
+    std::uint32_t way = turn;
+    for (std::uint32_t i = 0; i < Cache::kWays && (wanted_ >> (slot + way) & 1u) != 0; ++i) {
+      way = (way + 1) % Cache::kWays;
+    }
+    slot += way;
+    turn = (way + 1) % Cache::kWays;
+    wanted_ |= 1u << slot;
     if ((pending_ >> slot & 1u) != 0) GRIDIRON_TRY(arrive(slot));
     cache().keys[slot] = child.bits;
     pending_ |= 1u << slot;
     if (!child.is_leaf()) {
       return transfers_.get(cache().slots[slot].bytes, MainAddress{node_address(child)}, sizeof(TreeNode),
-                            tag_of(slot, child));
+                            next_tag(slot, child));
     }
     const std::uint64_t address = leaf_address(child);
     const Moved moved = moved_of(address, child);
     return transfers_.get(cache().slots[slot].bytes + (first_byte_of(address) - moved.slack),
-                          MainAddress{address - moved.slack}, moved.bytes, tag_of(slot, child));
+                          MainAddress{address - moved.slack}, moved.bytes, next_tag(slot, child));
   }
   // Records of half the length start and end between the multiples of 16 bytes that a transfer moves.
   struct Moved {
@@ -265,12 +297,13 @@ class TreeSource {
     } else {
       slot += lowest_bit(found);
     }
+    wanted_ &= ~(1u << slot);
     return (pending_ >> slot & 1u) != 0 ? arrive(slot) : Status::kOk;
   }
 
   [[nodiscard]] Status arrive(std::uint32_t slot) {
     const TreeChild child{cache().keys[slot]};
-    GRIDIRON_TRY(transfers_.wait(tag_of(slot, child)));
+    GRIDIRON_TRY(transfers_.wait(cache().tags[slot]));
     pending_ &= ~(1u << slot);
     return is_on_lattice_ && child.is_leaf() ? spread(slot, child) : Status::kOk;
   }
@@ -285,7 +318,10 @@ class TreeSource {
   Store& store_;
   Transfers<P>& transfers_;
   std::uint64_t nodes_ = 0, triangles_ = 0;  ///< where they begin in main memory
+  std::uint32_t top_count_ = 0;              ///< nodes that stay for the frame
+  std::uint32_t wanted_ = 0;                 ///< slots that were asked for and not taken yet, as bits
   std::uint32_t pending_ = 0;                ///< slots whose transfers were not waited for yet, as bits
+  std::uint32_t fetched_ = 0;                ///< children since forget()
   std::uint32_t surface_ = kNoTriangle;      ///< the triangle that was fetched last for a tie
   bool is_on_lattice_ = false;
   bool is_in_place_ = false;  ///< where the platform is an InPlaceReader

@@ -20,7 +20,8 @@ struct alignas(128) TreeStore {
   TreeRecord tree;
 };
 
-/// Nodes and leaves that were fetched: sets of four, in which the one fetched longest ago makes room.
+/// Nodes and leaves that were fetched: sets of four, in which the one fetched longest ago makes room, of those that no
+/// one waits for.
 /// @tparam Slots  4 times a power of two, at most 32. @tparam LeafTriangles  of a leaf, at most.
 template <std::uint32_t Slots, std::uint32_t LeafTriangles>
 struct TreeCache {
@@ -38,6 +39,7 @@ struct TreeCache {
   };
   Slot slots[Slots];
   alignas(16) std::uint32_t keys[Slots];  ///< TreeChild::bits of what a slot has, or will have
+  std::uint8_t tags[Slots];               ///< of their transfers
   std::uint32_t turns[kSets];             ///< of each set: the slot that makes room next
 };
 
