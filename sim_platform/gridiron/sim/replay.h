@@ -18,8 +18,8 @@ namespace gridiron::sim {
 
 /// One core's time in one stage: cycles and commands belong to the stage in which the core was.
 struct StageTiming {
-  double compute_cycles = 0;                  ///< initialisation included
-  double wait_cycles = 0;                     ///< of all levels
+  double compute_cycles = 0;  ///< initialisation included
+  double wait_cycles = 0;     ///< of all levels
   std::uint64_t gets = 0, puts = 0;           ///< commands
   std::uint64_t bytes_in = 0, bytes_out = 0;  ///< as requested
 };
@@ -52,21 +52,21 @@ struct TimelineSpan {
     kWait,     ///< stands still
     kTile,     ///< has this tile
   };
-  std::uint32_t core;               ///< whose
-  Kind kind;                        ///< of span
-  WaitLevel level;                  ///< kWait only
-  std::uint32_t tile_id;            ///< kNoTile before the first and after the last
-  double begin_cycles, end_cycles;  ///< from the frame's begin
+  std::uint32_t core;                ///< whose
+  Kind kind;                         ///< of span
+  WaitLevel level;                   ///< kWait only
+  std::uint32_t tile_id;             ///< kNoTile before the first and after the last
+  double begin_cycles, end_cycles;   ///< from the frame's begin
 };
 
 /// The time of a frame.
 struct FrameTiming {
   const EngineWork* engine = &kGridEngine;  ///< of the trace: names its wait levels and kinds of work
-  double frame_cycles = 0;                  ///< until the last core has ended its epilogue
-  double seconds = 0;                       ///< the same, by the clock of the machine
-  double channel_busy_cycles = 0;           ///< time in which the shared channel carried a line
-  std::vector<CoreTiming> cores;            ///< one a core
-  std::vector<TimelineSpan> timeline;       ///< filled only if requested; core by core, each in order of time
+  double frame_cycles = 0;  ///< until the last core has ended its epilogue
+  double seconds = 0;       ///< the same, by the clock of the machine
+  double channel_busy_cycles = 0;  ///< time in which the shared channel carried a line
+  std::vector<CoreTiming> cores;       ///< one a core
+  std::vector<TimelineSpan> timeline;  ///< filled only if requested; core by core, each in order of time
 };
 
 /// Options of a replay.
@@ -84,12 +84,12 @@ struct ReplayOptions {
 /// ties by core. The n-th grant hands out trace.tiles[n], or, if trace.is_middle_out, that of middle_out(n); with
 /// options.core_of_tile a core gets the next of its own tiles instead, in the order of the trace. A core's commands are
 /// served one after another in the order of issue. Each line leaves the core when the command has been issued,
-/// core_line_interval_cycles have passed since the line before it, and fewer than lines_in_flight lines are under way:
-/// a line is until it arrives. The channel serves lines of all cores, gets and puts alike, by the time they left, ties
-/// by core. A line arrives latency_cycles after its turn on the channel has ended; where these are several numbers,
-/// line_draw() / 2^64 falls into the share of one of them, in their order. A command is done when all its lines have
-/// arrived; commands need not be done in the order of issue. A wait ends when all commands of its tags are done. The
-/// queue is full until the command queue_depth before the new one is done.
+/// core_line_interval_cycles have passed since the line before it, and fewer than lines_in_flight lines are under way: a
+/// line is until it arrives. The channel serves lines of all cores, gets and puts alike, by the time they left, ties by core. A line arrives latency_cycles after its turn on the
+/// channel has ended; where these are several numbers, line_draw() / 2^64 falls into the share of one of them, in their
+/// order. A command is done when all its lines have arrived; commands need not be done in the order of issue. A wait
+/// ends when all commands of its tags are done. The queue is full until the command queue_depth before the new one is
+/// done.
 ///
 /// First come, first served is fair: cores that stream equally get equal shares, and a line waits for at most
 /// lines_in_flight lines of each other core.
@@ -105,7 +105,7 @@ struct ReplayOptions {
 /// A replay of one core that is alone with its memory, step by step while the core runs.
 class CoreClock {
  public:
-  using Ticks = std::uint64_t;                    ///< simulated time
+  using Ticks = std::uint64_t;                     ///< simulated time
   static constexpr double kTicksPerCycle = 1024;  ///< of `machine`'s cores
 
   /// At time 0.

@@ -190,11 +190,13 @@ class TileHits {
   /// Decides a pixel of the tile, see decide().
   [[nodiscard]] GRIDIRON_RARE Status decide_pixel(std::uint32_t x, std::uint32_t y, std::uint32_t lane) {
     const std::uint32_t block = y / kBlockWidth * kRow + x / kBlockWidth;
-    return decide(block, 1u << (y % kBlockWidth * kBlockWidth + x % kBlockWidth), lane);
+    return decide(block, 1u << (y % kBlockWidth * kBlockWidth + x % kBlockWidth), lane, false);
   }
 
   /// Decides pixels of a block exactly: whether the triangle of a lane is hit, and whether before what was hit so far.
-  [[nodiscard]] GRIDIRON_RARE Status decide(std::uint32_t block, std::uint32_t pixels, std::uint32_t lane) {
+  /// @param has_function  whether the lane has functions of the pixel; 1 / t then decides the second, if it can.
+  [[nodiscard]] GRIDIRON_RARE Status decide(std::uint32_t block, std::uint32_t pixels, std::uint32_t lane,
+                                            bool has_function = true) {
     work_.charge_to(TileWork::kOpenPixel);
     const std::uint32_t record = memory_.records[lane];
     VertexTriangle triangle, old;
@@ -217,6 +219,13 @@ class TileHits {
         ray.dir_max = magnitude(ray.dir[axis]) > ray.dir_max ? magnitude(ray.dir[axis]) : ray.dir_max;
       }
       if (!passes_through(ray, triangle, work_)) continue;
+      if (has_function) {
+        const float near = near_of(lane, column, row);
+        if (near > memory_.near[block][pixel] + memory_.span[block]) {
+          take(block, pixel, lane, near, memory_.functions[kNearSpan][lane]);
+          continue;
+        }
+      }
       const std::uint32_t old_id = memory_.id[block][pixel];
       const bool has_lower_id = triangle.triangle_id < old_id;
       bool is_tie = false;
@@ -243,15 +252,11 @@ class TileHits {
             if (!is_first) continue;
           }
         }
-        const float near = (1.0f / t) * (1.0f - 0x1p-19f);
-        const float stored = near < kMostStoredNear ? near : kMostStoredNear, span = stored * 0x1p-17f;
-        memory_.near[block][pixel] = stored;
-        memory_.span[block] = span > memory_.span[block] ? span : memory_.span[block];
+        const float exact = (1.0f / t) * (1.0f - 0x1p-19f), stored = exact < kMostStoredNear ? exact : kMostStoredNear;
+        take(block, pixel, lane, stored, stored * 0x1p-17f);
+      } else {
+        take(block, pixel, lane, memory_.near[block][pixel], memory_.span[block]);
       }
-      memory_.id[block][pixel] = triangle.triangle_id;
-      memory_.record[block][pixel] = record;
-      if (eye_->is_trusted) mark(block);
-      if (planes_.facing || planes_.distance) take_planes(block, 1u << pixel, lane);
     }
     return Status::kOk;
   }
@@ -292,6 +297,22 @@ class TileHits {
   }
 
  private:
+  // 1 / t of a lane's triangle at a pixel, or a little less: as for blocks and tiny triangles, with no more roundings.
+  [[nodiscard]] GRIDIRON_INLINE float near_of(std::uint32_t lane, std::uint32_t column, std::uint32_t row) const {
+    const auto& functions = memory_.functions;
+    const float x = static_cast<float>(column) - functions[kOffsetX][lane];
+    const float y = static_cast<float>(row) - functions[kOffsetY][lane];
+    return functions[kNearX][lane] * x + (functions[kNearY][lane] * y + functions[kNearValue][lane]);
+  }
+  GRIDIRON_OUTLINE void take(std::uint32_t block, std::uint32_t pixel, std::uint32_t lane, float near, float span) {
+    memory_.near[block][pixel] = near;
+    memory_.span[block] = span > memory_.span[block] ? span : memory_.span[block];
+    memory_.id[block][pixel] = memory_.ids[lane];
+    memory_.record[block][pixel] = memory_.records[lane];
+    if (eye_->is_trusted) mark(block);
+    if (planes_.facing || planes_.distance) take_planes(block, 1u << pixel, lane);
+  }
+
   using Float = typename L::Float;
   using Int = typename L::Int;
   static constexpr std::uint32_t kLanes = L::kCount;

@@ -236,7 +236,8 @@ class TreeSource {
     static constexpr std::uint32_t kTags = kMacroTagCount;
     static_assert(kTags <= kTriangleTagCount);
     const std::uint32_t first = child.is_leaf() ? std::uint32_t{kFirstTriangleTag} : std::uint32_t{kFirstMacroTag};
-    const auto tag = static_cast<std::uint8_t>(first + fetched_++ % kTags);
+    const auto tag = static_cast<std::uint8_t>(first + fetched_ % kTags);
+    ++fetched_;
     cache().tags[slot] = tag;
     return tag;
   }
@@ -260,10 +261,10 @@ class TreeSource {
   [[nodiscard]] GRIDIRON_OUTLINE Status start(TreeChild child, std::uint32_t& slot) {
     std::uint32_t& turn = cache().turns[slot / Cache::kWays];
     // Of those that were taken, or of all, the one that was fetched longest ago makes room.
-    std::uint32_t way = turn;
-    for (std::uint32_t i = 0; i < Cache::kWays && (wanted_ >> (slot + way) & 1u) != 0; ++i) {
-      way = (way + 1) % Cache::kWays;
-    }
+    static constexpr std::uint32_t kAll = (1u << Cache::kWays) - 1;
+    const std::uint32_t free = ~(wanted_ >> slot) & kAll;
+    const std::uint32_t from_turn = (free | free << Cache::kWays) >> turn & kAll;
+    const std::uint32_t way = (turn + lowest_bit(from_turn | 1u << Cache::kWays)) % Cache::kWays;
     slot += way;
     turn = (way + 1) % Cache::kWays;
     wanted_ |= 1u << slot;
