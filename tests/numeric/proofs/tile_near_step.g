@@ -72,6 +72,10 @@
 %round across = 0 + f * deeper
 %round down = f * upper + most_3
 %round many = across + down
+# TileHits::near_of(): an open pixel.
+%source core/gridiron/engine/tree/tile_hits.h
+%line return functions[kNearX][lane] * x + (functions[kNearY][lane] * y + functions[kNearValue][lane]);
+%round open = 0 + (f * line + near_value)
 # set_up_group(): all hidden.
 %source core/gridiron/engine/tree/tile_triangles.h
 %line return L::bounded_sum(L::abs(along_x), x1, L::bounded_sum(L::abs(along_y), y1, value));
@@ -84,6 +88,7 @@
 %define true_group_3 = exact_near_y * (line + 3 * step + 3 * quarter) - near_error
 %define true_pixel_1 = exact_near_y * (line + step + 3 * quarter) - near_error
 %define true_tiny = exact_near_y * (line + 2 * quarter) - near_error
+%define true_open = exact_near_y * (line) - near_error
 %define true_many = exact_near_y * (upper + deeper + first * last) + near_error
 %define true_in_box = exact_near_y * (line) + near_error
 %define left_over = 0x2p-23 * most_near
@@ -104,6 +109,7 @@
      near_error - |group_3 - true_group_3| - left_over >= 0 /\
      near_error - |pixel_1 - true_pixel_1| - left_over >= 0 /\
      near_error - |tiny - true_tiny| - left_over >= 0 /\
+     near_error - |open - true_open| - left_over >= 0 /\
      near_error - |many - true_many| - left_over >= 0 /\
      near_error - |in_box - true_in_box| - left_over >= 0 }
 
@@ -146,6 +152,7 @@ exact_left_1 -> f * (line + quarter) - near_error;
 left_1 + (f * quarter) -> f * (line + 2 * quarter) - near_error + (left_1 - exact_left_1);
 exact_left_2 -> f * (line + 2 * quarter) - near_error;
 exact_tiny -> f * (line + 2 * quarter) - near_error;
+exact_open -> f * (line) - near_error;
 exact_most_3 -> f * (first * last) + near_error;
 f * upper + most_3 -> f * (upper + first * last) + near_error + (most_3 - exact_most_3);
 exact_down -> f * (upper + first * last) + near_error;
@@ -156,5 +163,6 @@ group_8 - true_group_8 -> (group_8 - exact_group_8) + (f - exact_near_y) * (line
 group_3 - true_group_3 -> (group_3 - exact_group_3) + (f - exact_near_y) * (line + 3 * step + 3 * quarter);
 pixel_1 - true_pixel_1 -> (pixel_1 - exact_pixel_1) + (f - exact_near_y) * (line + step + 3 * quarter);
 tiny - true_tiny -> (tiny - exact_tiny) + (f - exact_near_y) * (line + 2 * quarter);
+open - true_open -> (open - exact_open) + (f - exact_near_y) * (line);
 many - true_many -> (many - exact_many) + (f - exact_near_y) * (upper + deeper + first * last);
 in_box - true_in_box -> (in_box - exact_in_box) + (f - exact_near_y) * (line);

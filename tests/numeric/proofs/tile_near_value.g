@@ -54,6 +54,10 @@
 %line Int none = L::words_of((across[3][group] + down[3]) - Float::load(memory_.least_near + base));
 %define near_span = 2 * near_error
 %round many = (0 + 0) + (0 + (((0 + 0) * 3 + near_value) + near_span))
+# TileHits::near_of(): an open pixel.
+%source core/gridiron/engine/tree/tile_hits.h
+%line return functions[kNearX][lane] * x + (functions[kNearY][lane] * y + functions[kNearValue][lane]);
+%round open = 0 + (0 + near_value)
 # set_up_group(): all hidden.
 %source core/gridiron/engine/tree/tile_triangles.h
 %line return L::bounded_sum(L::abs(along_x), x1, L::bounded_sum(L::abs(along_y), y1, value));
@@ -67,4 +71,5 @@
   -> near_error - |block_16 - exact_block_16| - left_over >= 0 /\ near_error - |block_8 - exact_block_8| - left_over >= 0 /\
      near_error - |block_4 - exact_block_4| - left_over >= 0 /\ near_error - |pixel_1 - exact_pixel_1| - left_over >= 0 /\
      near_error - |tiny - exact_tiny| - left_over >= 0 /\
+     near_error - |open - exact_open| - left_over >= 0 /\
      near_error - |many - exact_many| - left_over >= 0 /\ near_error - |in_box - exact_in_box| - left_over >= 0 }
