@@ -17,6 +17,7 @@
 #include <array>
 #include <bit>
 #include <cstring>
+#include <functional>
 #include <vector>
 
 namespace gridiron::sim {
@@ -32,9 +33,12 @@ constexpr std::uint32_t kLanes = L::kCount;
 constexpr float kEdgeSlack = 0.4f;
 // The crossing of a row is rounded three times, near places of at most 64.
 constexpr float kPlaceSlack = 0x1p-14f;
-// 1 / t of a triangle at a pixel: its function, less and more than one span off, whichever way it was summed up; what
-// an exact decision stores lies in between too.
-constexpr float kNearSlack = 2.0f;
+// In spans of a triangle's 1 / t, whose function's sum at a pixel may round by 12 of the 35 kFloatUnit that a span has at
+// least: how far the kernel's sum may be off; from there on, how far what is stored for a hit may be below (an exact
+// decision stores 2^-19 less) and above.
+constexpr double kSumSlack = 0.35, kLessStored = 0.9, kMoreStored = 1.35;
+// An exact decision stores a span of its own.
+constexpr double kStoredSpan = 0x1.01p-17;
 // Rows with more triangles than this, and tiles with more open pixels, are not looked into: each pixel is open, and
 // costs the most.
 constexpr std::size_t kMostOfRow = 512;
@@ -47,16 +51,24 @@ struct Shape {
   float edge_span, near_span;
   std::uint32_t box;
   std::uint32_t record;
+  std::uint32_t node;  // nodes that the tile had entered when it was queued
   enum class Kind : std::uint8_t { kTiny, kDrawn, kCareful } kind;
 };
 
 // A shape's pixels of one row, by bits.
 struct RowPart {
   std::uint32_t possible;  // where it may be hit
-  std::uint32_t open;      // of these, where edges are open
+  std::uint32_t edges;     // of these, where edges are open
+  std::uint32_t open;      // and where it may have to be decided
   std::uint32_t shape;
-  float near, near_x;      // 1 / t at column 0 and per column
-  float low, high;         // of 1 / t where it is possible, spans included
+  double near, near_x;  // 1 / t at column 0 and per column
+  double low, high;     // what may be stored, where it is possible
+  double span;          // of 1 / t
+  bool is_in_order;     // drawn after all that comes before it
+
+  [[nodiscard]] double at(std::uint32_t x) const { return near + near_x * x; }
+  [[nodiscard]] bool may_be(std::uint32_t x) const { return (possible >> x & 1u) != 0; }
+  [[nodiscard]] bool is_sure(std::uint32_t x) const { return ((possible & ~edges) >> x & 1u) != 0; }
 };
 
 std::uint32_t bits_between(int first, int end) {  // [first, end)
@@ -130,7 +142,11 @@ class TileBounder {
     for (auto& row : rows_) row.clear();
     block_span_.fill(floor_of(head) * 0x1p-16f);
     queued_ = 0;
-    marks_ = drawn_tiny_[0] = drawn_tiny_[1] = drawn_tiny_[2] = 0;
+    drawn_tiny_[0] = drawn_tiny_[1] = drawn_tiny_[2] = 0;
+    marked_.clear();
+    changed_ = 0;
+    changed_blocks_ = 0;
+    changed_node_ = 0;
     kept_ = 0;
     count(TileWork::kView);
     count(Work::kIdGroup, Memory::kBlocks * kGroups);
@@ -299,6 +315,7 @@ class TileBounder {
       shape.near_span = memory_->functions[kNearSpan][i];
       shape.box = memory_->boxes[i];
       shape.record = memory_->records[i];
+      shape.node = static_cast<std::uint32_t>(nodes_);
       shape.kind = is_careful                        ? Shape::Kind::kCareful
                    : (group.tiny >> i & 1u) != 0 ? Shape::Kind::kTiny
                                                      : Shape::Kind::kDrawn;
@@ -317,8 +334,10 @@ class TileBounder {
     count(TileWork::kFunctionGroup, groups);
     for (std::uint32_t i = 0; i < shapes_.size(); ++i) {
       const Shape& shape = shapes_[i];
+      std::uint64_t blocks = blocks_of(shape.box);
       if (shape.kind == Shape::Kind::kCareful) {
         add_careful(i);
+        mark(shape, blocks);
         continue;
       }
       if (shape.kind == Shape::Kind::kTiny) {
@@ -326,27 +345,58 @@ class TileBounder {
         for (std::uint32_t line = 0; line <= lines && line < 3; ++line) ++drawn_tiny_[line];
       } else {
         count(TileWork::kDrawn);
-        add_blocks(shape);
+        add_blocks(shape, blocks);
       }
+      mark(shape, blocks);
       add_rows(i);
     }
     // Places of tiny triangles: three of each line that one of the group has. Hits change which triangles share a
     // group, but not how many groups there may be with a triangle that has so many lines.
     for (const std::uint64_t with_line : drawn_tiny_) count(TileWork::kTinyPlace, 3 * std::min(with_line, groups));
     settle_rows();
-    // A block is marked where something is taken in it, and looked at once for each node that is entered later.
-    count(TileWork::kChangedBlock, std::min(nodes_ * Memory::kBlocks, marks_));
+    count(TileWork::kChangedBlock, most_changed_blocks());
+  }
+
+  // Blocks that a node finds changed when it is entered.
+  //
+  // Those of triangles that were queued since the node before; where that one is left out, blocks of both count
+  // once. But up to three triangles wait in the queue while a node is entered, and change their blocks after it.
+  [[nodiscard]] std::uint64_t most_changed_blocks() {
+    changed_ += static_cast<std::uint64_t>(std::popcount(changed_blocks_));
+    const std::size_t late = std::min<std::size_t>(marked_.size(), (kLanes - 1) * nodes_);
+    std::ranges::nth_element(marked_, marked_.begin() + static_cast<std::ptrdiff_t>(late), std::greater{});
+    for (std::size_t i = 0; i < late; ++i) changed_ += marked_[i];
+    return std::min(changed_, nodes_ * Memory::kBlocks);
+  }
+  // A shape may change these blocks.
+  void mark(const Shape& shape, std::uint64_t blocks) {
+    if (shape.node != changed_node_) {
+      changed_ += static_cast<std::uint64_t>(std::popcount(changed_blocks_));
+      changed_blocks_ = 0;
+      changed_node_ = shape.node;
+    }
+    changed_blocks_ |= blocks;
+    marked_.push_back(static_cast<std::uint8_t>(std::popcount(blocks)));
+  }
+  [[nodiscard]] static std::uint64_t blocks_of(std::uint32_t box) {
+    const std::uint32_t bx0 = (box & 0xFFu) / kBlockWidth, by0 = (box >> 8 & 0xFFu) / kBlockWidth,
+                        bx1 = (box >> 16 & 0xFFu) / kBlockWidth, by1 = (box >> 24) / kBlockWidth;
+    std::uint64_t blocks = 0;
+    for (std::uint32_t by = by0; by <= by1; ++by) blocks |= std::uint64_t{(2u << bx1) - (1u << bx0)} << (by * kRow);
+    return blocks;
   }
 
   // Blocks that the kernel tests, hits aside.
-  void add_blocks(const Shape& f) {
+  // @param blocks  of its box; gets those of them.
+  void add_blocks(const Shape& f, std::uint64_t& blocks) {
     const std::uint32_t bx0 = (f.box & 0xFFu) / kBlockWidth, by0 = (f.box >> 8 & 0xFFu) / kBlockWidth,
                         bx1 = (f.box >> 16 & 0xFFu) / kBlockWidth, by1 = (f.box >> 24) / kBlockWidth;
-    const std::uint32_t blocks = (bx1 - bx0 + 1) * (by1 - by0 + 1);
-    if (blocks <= kFewBlocks) {
-      add_tested(blocks, 0);
+    const std::uint32_t of_box = (bx1 - bx0 + 1) * (by1 - by0 + 1);
+    if (of_box <= kFewBlocks) {
+      add_tested(of_box, 0);
       return;
     }
+    blocks = 0;
     const auto& places = kTilePlaces<Width>;
     const Float zero(0.0f), last(kBlockWidth - 1.0f);
     Float most[3], covers[3];
@@ -374,6 +424,7 @@ class TileBounder {
           whole = whole | L::words_of(value - covers[k] + slack);
         }
         const std::uint32_t all = ~L::sign_bits(none) & here;
+        blocks |= std::uint64_t{all} << (by * kRow + group * kLanes);
         tested += count_bits(L::sign_bits(partial) & all);
         covered += count_bits(~L::sign_bits(whole) & all);
       }
@@ -385,7 +436,6 @@ class TileBounder {
     count(TileWork::kBlock, tested);
     count(TileWork::kCoveredBlock, covered);
     if (scene_.has_facing) count(TileWork::kFacingBlock, tested + covered);
-    marks_ += tested + covered;
   }
 
   // Where a shape's edges cross the rows of pixels, four rows at a time.
@@ -442,23 +492,21 @@ class TileBounder {
     return bits_between(whole + (static_cast<float>(whole) < low ? 1 : 0), static_cast<int>(high) + 1);
   }
 
-  void add_part(std::uint32_t number, std::uint32_t row, std::uint32_t possible, std::uint32_t open) {
+  void add_part(std::uint32_t number, std::uint32_t row, std::uint32_t possible, std::uint32_t edges) {
     const Shape& f = shapes_[number];
-    if (f.kind == Shape::Kind::kTiny) {
-      const std::uint64_t pixels = count_bits(possible);
-      count(TileWork::kTinyPixel, pixels);
-      marks_ += pixels;
-    }
+    if (f.kind == Shape::Kind::kTiny) count(TileWork::kTinyPixel, count_bits(possible));
     if (scene_.trusts_floats) return;
-    const float near = f.value[3] + f.y[3] * (static_cast<float>(row) - f.offset_y) - f.x[3] * f.offset_x;
+    const double near = double{f.value[3]} + double{f.y[3]} * (row - double{f.offset_y}) - double{f.x[3]} * double{f.offset_x};
     const int first = std::countr_zero(possible), last = 31 - std::countl_zero(possible);
-    const float at_first = near + f.x[3] * static_cast<float>(first), at_last = near + f.x[3] * static_cast<float>(last);
-    const float span = kNearSlack * f.near_span;
-    rows_[row].push_back({possible, open, number, near, f.x[3], std::min(at_first, at_last) - span,
-                          std::max(at_first, at_last) + span});
+    const double at_first = near + double{f.x[3]} * first, at_last = near + double{f.x[3]} * last;
+    const double span = f.near_span, most = std::max(at_first, at_last) + kMoreStored * span;
+    rows_[row].push_back({possible, edges, edges, number, near, f.x[3],
+                          std::min(at_first, at_last) - kMoreStored * span, most, span,
+                          f.kind == Shape::Kind::kDrawn});
+    const double stored = std::max(span, most * kStoredSpan);
     for (int block = first / 4; block <= last / 4; ++block) {
-      float& most = block_span_[row / kBlockWidth * kRow + static_cast<std::uint32_t>(block)];
-      most = std::max(most, span);
+      double& most_span = block_span_[row / kBlockWidth * kRow + static_cast<std::uint32_t>(block)];
+      most_span = std::max(most_span, stored);
     }
   }
 
@@ -466,10 +514,11 @@ class TileBounder {
   void add_careful(std::uint32_t number) {
     const Shape& f = shapes_[number];
     const std::uint32_t bits = bits_between(static_cast<int>(f.box & 0xFFu), static_cast<int>((f.box >> 16 & 0xFFu) + 1));
+    const double all = kInfinity;
     for (std::uint32_t y = f.box >> 8 & 0xFFu; y <= f.box >> 24; ++y) {
-      rows_[y].push_back({bits, bits, number, 0.0f, 0.0f, -kInfinity, kInfinity});
+      rows_[y].push_back({bits, bits, bits, number, 0.0, 0.0, -all, all, all, false});
       for (std::uint32_t block = 0; block < kRow; ++block) {
-        if ((bits >> (block * kBlockWidth) & 15u) != 0) block_span_[y / kBlockWidth * kRow + block] = kInfinity;
+        if ((bits >> (block * kBlockWidth) & 15u) != 0) block_span_[y / kBlockWidth * kRow + block] = all;
       }
     }
   }
@@ -480,22 +529,21 @@ class TileBounder {
       for (auto& row : rows_) row.clear();
       return;
     }
-    const float floor = floor_of(scene_.head);
+    const double floor = floor_of(scene_.head) * (1.0 + 0x1p-14);
     std::uint64_t looked_into = 0;
     for (std::uint32_t y = 0; y < rows_count_; ++y) {
       std::vector<RowPart>& row = rows_[y];
-      const float* const spans = &block_span_[y / kBlockWidth * kRow];
+      const double* const spans = &block_span_[y / kBlockWidth * kRow];
       if (row.size() > kMostOfRow) {
         for (const RowPart& part : row) add_open_pixels(count_bits(part.possible));
         continue;
       }
-      float most_span = 0.0f;
-      for (std::uint32_t i = 0; i < kRow; ++i) most_span = std::max(most_span, spans[i]);
+      const double most_span = *std::max_element(spans, spans + kRow);
       std::uint32_t seen = 0;
       for (std::size_t i = 0; i < row.size(); ++i) {
         RowPart& part = row[i];
         // Nothing was hit: what t_far or an error of 1 / t leaves open.
-        if (part.low <= floor * (1.0f + 0x1p-14f) + most_span) part.open = part.possible;
+        if (!(part.low > floor + most_span)) part.open = part.possible;
         if ((seen & part.possible) != 0) {
           for (std::size_t j = 0; j < i; ++j) {
             RowPart& other = row[j];
@@ -504,6 +552,8 @@ class TileBounder {
               continue;
             }
             compare(part, other, spans);
+            // Which of them is drawn first depends on what else is kept.
+            if (!part.is_in_order || !other.is_in_order) compare(other, part, spans);
           }
         }
         seen |= part.possible;
@@ -521,30 +571,38 @@ class TileBounder {
     }
   }
 
-  // Marks the pixels where two parts of a row may be equally near.
-  void compare(RowPart& part, RowPart& other, const float* spans) {
-    const std::uint32_t both = part.possible & other.possible;
+  // Marks the pixels where a part may have to be decided after another was hit.
+  void compare(RowPart& part, const RowPart& old, const double* spans) {
+    const std::uint32_t both = part.possible & old.possible;
     const int first = std::countr_zero(both), last = 31 - std::countl_zero(both);
-    float span = 0.0f;
-    for (int block = first / 4; block <= last / 4; ++block) span = std::max(span, spans[block]);
-    const float limit = kNearSlack * (shapes_[part.shape].near_span + shapes_[other.shape].near_span) + span;
-    const float apart = part.near - other.near, per_column = part.near_x - other.near_x;
-    const float at_first = apart + per_column * static_cast<float>(first);
-    const float at_last = apart + per_column * static_cast<float>(last);
-    if ((at_first > limit && at_last > limit) || (at_first < -limit && at_last < -limit)) return;
-    std::uint32_t open = 0;
-    for (std::uint32_t rest = both; rest != 0; rest &= rest - 1) {
-      const float here = apart + per_column * static_cast<float>(lowest_bit(rest));
-      if (!(magnitude(here) > limit)) open |= rest & -rest;
+    const double span = *std::max_element(spans + first / 4, spans + last / 4 + 1);
+    // In front at least: surely, or not at all.
+    const double most = kSumSlack * part.span + kMoreStored * old.span + span;
+    const double least = -(kMoreStored * part.span + kLessStored * old.span);
+    const double apart = part.near - old.near, per_column = part.near_x - old.near_x;
+    const double at_first = apart + per_column * first, at_last = apart + per_column * last;
+    if ((at_first > most && at_last > most) || (at_first < least && at_last < least)) return;
+    for (std::uint32_t rest = both & ~part.open; rest != 0; rest &= rest - 1) {
+      const double here = apart + per_column * lowest_bit(rest);
+      if (!(here > most || here < least)) part.open |= rest & -rest;
     }
-    part.open |= open;
-    other.open |= open;
+  }
+
+  // Whether a pixel surely has a hit so much in front when a part is drawn that floats leave it out. What is drawn
+  // block by block comes after all before it; these were drawn, or something in front of them was.
+  [[nodiscard]] static bool is_hidden(const std::vector<RowPart>& row, const RowPart& part, std::uint32_t x) {
+    if (!part.is_in_order) return false;
+    const double most = part.at(x) + kMoreStored * part.span;
+    for (const RowPart* other = row.data(); other != &part; ++other) {
+      if (other->is_sure(x) && other->at(x) - kLessStored * other->span > most) return true;
+    }
+    return false;
   }
 
   // One decision at the most: whichever triangle was hit before.
   void decide(const std::vector<RowPart>& row, const RowPart& part, std::uint32_t x, std::uint32_t y) {
+    if (is_hidden(row, part, x)) return;
     count(TileWork::kOpenPixel);
-    ++marks_;
     if (scene_.has_facing) count(TileWork::kFacingBlock);
     BatchRay ray{};
     const FrameHead& head = scene_.head;
@@ -565,7 +623,7 @@ class TileBounder {
       std::uint32_t exact = 0;
       Transfer longest{};
       for (const RowPart& other : row) {
-        if ((other.possible >> x & 1u) == 0 || &other == &part) continue;
+        if (!other.may_be(x) || &other == &part) continue;
         WorkCounters of_other;
         const std::uint32_t other_record = shapes_[other.shape].record;
         const float other_t = ray_distance(ray, scene_.triangles[other_record], of_other);
@@ -593,7 +651,6 @@ class TileBounder {
   // The most of so many decisions.
   void add_open_pixels(std::uint64_t pixels) {
     count(TileWork::kOpenPixel, pixels);
-    marks_ += pixels;
     if (scene_.has_facing) count(TileWork::kFacingBlock, pixels);
     count(Work::kDoubleSign, 3 * pixels);
     count(Work::kExactSign, (scene_.breaks_ties ? 6 : 3) * pixels);
@@ -614,12 +671,15 @@ class TileBounder {
   TileView view_{};
   TileProjection tile_{};
   std::uint32_t columns_ = 0, rows_count_ = 0, queued_ = 0;
-  std::uint64_t kept_ = 0, marks_ = 0, nodes_ = 0;
+  std::uint64_t kept_ = 0, nodes_ = 0;
+  std::uint64_t changed_ = 0, changed_blocks_ = 0;  // up to a node; since then
+  std::uint32_t changed_node_ = 0;
+  std::vector<std::uint8_t> marked_;  // blocks that each shape may change
   std::uint64_t drawn_tiny_[3] = {};  // tiny triangles with a first, second, third line
   std::vector<WaitingChild> stack_;
   std::vector<Shape> shapes_;
   std::array<std::vector<RowPart>, Width> rows_;
-  std::array<float, Memory::kBlocks> block_span_{};
+  std::array<double, Memory::kBlocks> block_span_{};
 };
 
 }  // namespace
