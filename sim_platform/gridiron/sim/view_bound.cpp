@@ -330,6 +330,7 @@ class TileBounder {
   // Everything is queued.
   void finish() {
     if (queued_ != 0) set_up(queued_);
+    has_careful_ = std::ranges::any_of(shapes_, [](const Shape& f) { return f.kind == Shape::Kind::kCareful; });
     const std::uint64_t groups = (kept_ + kLanes - 1) / kLanes;
     count(TileWork::kFunctionGroup, groups);
     for (std::uint32_t i = 0; i < shapes_.size(); ++i) {
@@ -400,10 +401,11 @@ class TileBounder {
     const auto& places = kTilePlaces<Width>;
     const Float zero(0.0f), last(kBlockWidth - 1.0f);
     Float most[3], covers[3];
+    const float span = scene_.trusts_floats ? 0.0f : f.edge_span;
     for (int k = 0; k < 3; ++k) {
       const Float x(f.x[k]), y(f.y[k]), value(f.value[k]);
       most[k] = (L::max(x, zero) + L::max(y, zero)) * last + value;
-      covers[k] = (most[k] - ((L::min(x, zero) + L::min(y, zero)) * last + value)) + Float(f.edge_span);
+      covers[k] = (most[k] - ((L::min(x, zero) + L::min(y, zero)) * last + value)) + Float(span);
     }
     const std::uint32_t columns = (2u << bx1) - (1u << bx0);
     std::uint64_t tested = 0, covered = 0;
@@ -495,7 +497,7 @@ class TileBounder {
   void add_part(std::uint32_t number, std::uint32_t row, std::uint32_t possible, std::uint32_t edges) {
     const Shape& f = shapes_[number];
     if (f.kind == Shape::Kind::kTiny) count(TileWork::kTinyPixel, count_bits(possible));
-    if (scene_.trusts_floats) return;
+    if (!is_looked_into()) return;
     const double near = double{f.value[3]} + double{f.y[3]} * (row - double{f.offset_y}) - double{f.x[3]} * double{f.offset_x};
     const int first = std::countr_zero(possible), last = 31 - std::countl_zero(possible);
     const double at_first = near + double{f.x[3]} * first, at_last = near + double{f.x[3]} * last;
@@ -509,6 +511,9 @@ class TileBounder {
       most_span = std::max(most_span, stored);
     }
   }
+
+  // Whether any pixel may be decided: Accuracy::kFast decides those of triangles without a bound.
+  [[nodiscard]] bool is_looked_into() const { return !scene_.trusts_floats || has_careful_; }
 
   // Every pixel of the box is decided, and what it stores may be as near as anything.
   void add_careful(std::uint32_t number) {
@@ -525,23 +530,28 @@ class TileBounder {
 
   // Pixels that floats may leave open: those near an edge, and those where two triangles are equally near.
   void settle_rows() {
-    if (scene_.trusts_floats) {
-      for (auto& row : rows_) row.clear();
-      return;
-    }
+    if (!is_looked_into()) return;
     const double floor = floor_of(scene_.head) * (1.0 + 0x1p-14);
     std::uint64_t looked_into = 0;
     for (std::uint32_t y = 0; y < rows_count_; ++y) {
       std::vector<RowPart>& row = rows_[y];
       const double* const spans = &block_span_[y / kBlockWidth * kRow];
       if (row.size() > kMostOfRow) {
-        for (const RowPart& part : row) add_open_pixels(count_bits(part.possible));
+        for (const RowPart& part : row) {
+          if (!scene_.trusts_floats || shapes_[part.shape].kind == Shape::Kind::kCareful) {
+            add_open_pixels(count_bits(part.possible));
+          }
+        }
         continue;
       }
       const double most_span = *std::max_element(spans, spans + kRow);
       std::uint32_t seen = 0;
       for (std::size_t i = 0; i < row.size(); ++i) {
         RowPart& part = row[i];
+        if (scene_.trusts_floats) {
+          if (shapes_[part.shape].kind != Shape::Kind::kCareful) part.open = 0;
+          continue;
+        }
         // Nothing was hit: what t_far or an error of 1 / t leaves open.
         if (!(part.low > floor + most_span)) part.open = part.possible;
         if ((seen & part.possible) != 0) {
@@ -676,6 +686,7 @@ class TileBounder {
   std::uint32_t changed_node_ = 0;
   std::vector<std::uint8_t> marked_;  // blocks that each shape may change
   std::uint64_t drawn_tiny_[3] = {};  // tiny triangles with a first, second, third line
+  bool has_careful_ = false;
   std::vector<WaitingChild> stack_;
   std::vector<Shape> shapes_;
   std::array<std::vector<RowPart>, Width> rows_;
