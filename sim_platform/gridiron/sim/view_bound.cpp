@@ -31,51 +31,49 @@ constexpr std::uint32_t kLanes = L::kCount;
 // Two ways to sum up a linear function at a pixel differ by less than this share of its span: each rounds at most 11
 // times sums of at most 2 size^2, by half a kFloatUnit each time, and the span is twice 30 kFloatUnit size^2 or more.
 constexpr float kEdgeSlack = 0.4f;
-// The crossing of a row is rounded three times, near places of at most 64.
-constexpr float kPlaceSlack = 0x1p-14f;
 // In spans of a triangle's 1 / t, whose function's sum at a pixel may round by 12 of the 35 kFloatUnit that a span has at
 // least: how far the kernel's sum may be off; from there on, how far what is stored for a hit may be below (an exact
 // decision stores 2^-19 less) and above.
 constexpr double kSumSlack = 0.35, kLessStored = 0.9, kMoreStored = 1.35;
 // An exact decision stores a span of its own.
 constexpr double kStoredSpan = 0x1.01p-17;
-// Rows with more triangles than this, and tiles with more open pixels, are not looked into: each pixel is open, and
+// Blocks with more triangles than this, and tiles with more open pixels, are not looked into: each pixel is open, and
 // costs the most.
-constexpr std::size_t kMostOfRow = 512;
+constexpr std::size_t kMostOfBlock = 512;
 constexpr std::uint64_t kMostLookedInto = 1u << 15;
 
 // What is drawn: functions of the pixel as in memory, relative to an offset.
 struct Shape {
+  enum class Kind : std::uint8_t { kTiny, kDrawn, kCareful };
+
   float value[4], x[4], y[4];  // edges, then 1 / t
   float offset_x, offset_y;
-  float edge_span, near_span;
+  float edge_span;
   std::uint32_t box;
   std::uint32_t record;
   std::uint32_t node;  // nodes that the tile had entered when it was queued
-  enum class Kind : std::uint8_t { kTiny, kDrawn, kCareful } kind;
+  Kind kind;
+  double span;       // of 1 / t
+  double low, high;  // of what may be stored, anywhere in its blocks
+
+  // 1 / t at a pixel.
+  [[nodiscard]] double near(std::uint32_t column, std::uint32_t row) const {
+    return double{value[3]} + double{x[3]} * (column - double{offset_x}) + double{y[3]} * (row - double{offset_y});
+  }
+  // What is drawn block by block comes after all before it; else this depends on what else is kept.
+  [[nodiscard]] bool is_in_order() const { return kind == Kind::kDrawn; }
 };
 
-// A shape's pixels of one row, by bits.
-struct RowPart {
-  std::uint32_t possible;  // where it may be hit
-  std::uint32_t edges;     // of these, where edges are open
-  std::uint32_t open;      // and where it may have to be decided
+// A shape's pixels of a block, by bits.
+struct BlockPart {
+  std::uint16_t possible;  // where it may be hit
+  std::uint16_t edges;     // of these, where edges are open
+  std::uint16_t open;      // and where it may have to be decided
   std::uint32_t shape;
-  double near, near_x;  // 1 / t at column 0 and per column
-  double low, high;     // what may be stored, where it is possible
-  double span;          // of 1 / t
-  bool is_in_order;     // drawn after all that comes before it
 
-  [[nodiscard]] double at(std::uint32_t x) const { return near + near_x * x; }
-  [[nodiscard]] bool may_be(std::uint32_t x) const { return (possible >> x & 1u) != 0; }
-  [[nodiscard]] bool is_sure(std::uint32_t x) const { return ((possible & ~edges) >> x & 1u) != 0; }
+  [[nodiscard]] bool may_be(std::uint32_t pixel) const { return (possible >> pixel & 1u) != 0; }
+  [[nodiscard]] bool is_sure(std::uint32_t pixel) const { return (possible >> pixel & ~edges >> pixel & 1) != 0; }
 };
-
-std::uint32_t bits_between(int first, int end) {  // [first, end)
-  if (end <= first) return 0;
-  const std::uint64_t below_end = (std::uint64_t{1} << end) - 1;
-  return static_cast<std::uint32_t>(below_end & ~((std::uint64_t{1} << first) - 1));
-}
 
 // What tiles of a frame have in common.
 struct Scene {
@@ -139,8 +137,9 @@ class TileBounder {
     rows_count_ = std::min(Width, head.height - view.top);
     project_tile(head, scene_.eye, view, Width, tile_);
     shapes_.clear();
-    for (auto& row : rows_) row.clear();
-    block_span_.fill(floor_of(head) * 0x1p-16f);
+    for (auto& block : parts_) block.clear();
+    block_span_.fill(double{floor_of(head)} * 0x1p-16);
+    for (std::uint32_t block = 0; block < Memory::kBlocks; ++block) pixels_[block] = pixels_of(block);
     queued_ = 0;
     drawn_tiny_[0] = drawn_tiny_[1] = drawn_tiny_[2] = 0;
     marked_.clear();
@@ -312,19 +311,35 @@ class TileBounder {
       shape.offset_x = memory_->functions[kOffsetX][i];
       shape.offset_y = memory_->functions[kOffsetY][i];
       shape.edge_span = memory_->functions[kEdgeSpan][i];
-      shape.near_span = memory_->functions[kNearSpan][i];
       shape.box = memory_->boxes[i];
       shape.record = memory_->records[i];
       shape.node = static_cast<std::uint32_t>(nodes_);
       shape.kind = is_careful                        ? Shape::Kind::kCareful
                    : (group.tiny >> i & 1u) != 0 ? Shape::Kind::kTiny
                                                      : Shape::Kind::kDrawn;
+      set_interval(shape, memory_->functions[kNearSpan][i]);
       shapes_.push_back(shape);
     }
     queued_ -= lanes;
     for (std::uint32_t word = 0; word < kNormal; ++word) {
       Int::load(memory_->queue[word] + kLanes).store(memory_->queue[word]);
     }
+  }
+
+  // Of what a shape may store, or of anything where it has no bound.
+  static void set_interval(Shape& shape, float near_span) {
+    shape.span = near_span;
+    if (shape.kind == Shape::Kind::kCareful) {
+      shape.span = shape.high = double{kInfinity};
+      shape.low = -double{kInfinity};
+      return;
+    }
+    const std::uint32_t box = shape.box;
+    const double reach_x = 0.5 * ((box >> 16 & 0xFFu) - (box & 0xFFu)) + (kBlockWidth - 1),
+                 reach_y = 0.5 * ((box >> 24) - (box >> 8 & 0xFFu)) + (kBlockWidth - 1);
+    const double half = double{magnitude(shape.x[3])} * reach_x + double{magnitude(shape.y[3])} * reach_y;
+    shape.low = double{shape.value[3]} - half - kMoreStored * shape.span;
+    shape.high = double{shape.value[3]} + half + kMoreStored * shape.span;
   }
 
   // Everything is queued.
@@ -337,24 +352,28 @@ class TileBounder {
       const Shape& shape = shapes_[i];
       std::uint64_t blocks = blocks_of(shape.box);
       if (shape.kind == Shape::Kind::kCareful) {
-        add_careful(i);
         mark(shape, blocks);
+        for_each_block(shape.box, [&](std::uint32_t block, std::uint32_t pixels) {
+          pixels &= pixels_[block];
+          add_part(i, block, pixels, pixels);
+        });
         continue;
       }
       if (shape.kind == Shape::Kind::kTiny) {
         const std::uint32_t lines = (shape.box >> 24) - (shape.box >> 8 & 0xFFu);
         for (std::uint32_t line = 0; line <= lines && line < 3; ++line) ++drawn_tiny_[line];
+        const Edges edges(shape);
+        for_each_block(shape.box, [&](std::uint32_t block, std::uint32_t pixels) { add_tested(i, edges, block, pixels); });
       } else {
         count(TileWork::kDrawn);
-        add_blocks(shape, blocks);
+        add_drawn(i, blocks);
       }
       mark(shape, blocks);
-      add_rows(i);
     }
     // Places of tiny triangles: three of each line that one of the group has. Hits change which triangles share a
     // group, but not how many groups there may be with a triangle that has so many lines.
     for (const std::uint64_t with_line : drawn_tiny_) count(TileWork::kTinyPlace, 3 * std::min(with_line, groups));
-    settle_rows();
+    settle_blocks();
     count(TileWork::kChangedBlock, most_changed_blocks());
   }
 
@@ -387,14 +406,86 @@ class TileBounder {
     return blocks;
   }
 
-  // Blocks that the kernel tests, hits aside.
-  // @param blocks  of its box; gets those of them.
-  void add_blocks(const Shape& f, std::uint64_t& blocks) {
+  // Calls visit(block, pixels) for the blocks of a box, with its pixels there.
+  template <class Visit>
+  static void for_each_block(std::uint32_t box, Visit&& visit) {
+    const std::uint32_t x0 = box & 0xFFu, y0 = box >> 8 & 0xFFu, x1 = box >> 16 & 0xFFu, y1 = box >> 24;
+    for (std::uint32_t by = y0 / kBlockWidth; by <= y1 / kBlockWidth; ++by) {
+      const std::uint32_t rows = 0x1111u & bits_of_block(by, y0, y1, kBlockWidth);
+      for (std::uint32_t bx = x0 / kBlockWidth; bx <= x1 / kBlockWidth; ++bx) {
+        visit(by * kRow + bx, rows * bits_of_block(bx, x0, x1, 1));
+      }
+    }
+  }
+  // Columns or rows first..last of a block, `step` bits each.
+  static std::uint32_t bits_of_block(std::uint32_t block, std::uint32_t first, std::uint32_t last, std::uint32_t step) {
+    const std::uint32_t start = block * kBlockWidth;
+    const std::uint32_t low = first > start ? first - start : 0;
+    const std::uint32_t end = last - start < kBlockWidth ? last - start + 1 : kBlockWidth;
+    return ((1u << (end * step)) - 1) & ~((1u << (low * step)) - 1);
+  }
+  // Of a block, those in the picture.
+  [[nodiscard]] std::uint16_t pixels_of(std::uint32_t block) const {
+    const std::uint32_t bx = block % kRow, by = block / kRow;
+    if (bx * kBlockWidth >= columns_ || by * kBlockWidth >= rows_count_) return 0;
+    return static_cast<std::uint16_t>((0x1111u & bits_of_block(by, 0, rows_count_ - 1, kBlockWidth)) *
+                                      bits_of_block(bx, 0, columns_ - 1, 1));
+  }
+
+  // A shape's edges in lanes.
+  struct Edges {
+    Float start[3], down[3], x[3], y[3], offset_x, offset_y, slack, span;
+
+    explicit Edges(const Shape& f)
+        : offset_x(f.offset_x),
+          offset_y(f.offset_y),
+          slack(f.edge_span * kEdgeSlack),
+          span(f.edge_span * (1.0f + kEdgeSlack)) {
+      for (int k = 0; k < 3; ++k) {
+        x[k] = Float(f.x[k]);
+        y[k] = Float(f.y[k]);
+        start[k] = x[k] * Float::load(kTilePlaces<Width>.column) + Float(f.value[k]);
+      }
+    }
+    // Pixels of a block where the triangle may be, and surely is.
+    void test(std::uint32_t block, std::uint32_t& possible, std::uint32_t& sure) const {
+      const Float column = Float(kTilePlaces<Width>.block_column[block]) - offset_x;
+      const Float row = Float(kTilePlaces<Width>.block_row[block]) - offset_y;
+      Float value[3];
+      for (int k = 0; k < 3; ++k) value[k] = x[k] * column + (y[k] * row + start[k]);
+      std::uint32_t none = 0, not_sure = 0;
+      for (std::uint32_t line = 0; line < kBlockWidth; ++line) {
+        const Float inside = L::min(L::min(value[0], value[1]), value[2]);
+        none |= L::sign_bits(L::words_of(inside + slack)) << (line * kBlockWidth);
+        not_sure |= L::sign_bits(L::words_of(inside - span)) << (line * kBlockWidth);
+        for (int k = 0; k < 3; ++k) value[k] = value[k] + y[k];
+      }
+      possible = ~none & kAllPixels;
+      sure = ~not_sure & kAllPixels;
+    }
+  };
+  static constexpr std::uint32_t kAllPixels = (1u << kBlockPixels) - 1;
+
+  // A block tested pixel by pixel. @param pixels  that are tested.
+  void add_tested(std::uint32_t number, const Edges& edges, std::uint32_t block, std::uint32_t pixels) {
+    std::uint32_t possible = 0, sure = 0;
+    edges.test(block, possible, sure);
+    possible &= pixels & pixels_[block];
+    if (possible != 0) add_part(number, block, possible, possible & ~sure);
+  }
+
+  // A triangle that is drawn block by block. @param blocks  of its box; gets those that it may change.
+  void add_drawn(std::uint32_t number, std::uint64_t& blocks) {
+    const Shape& f = shapes_[number];
+    const Edges edges(f);
     const std::uint32_t bx0 = (f.box & 0xFFu) / kBlockWidth, by0 = (f.box >> 8 & 0xFFu) / kBlockWidth,
                         bx1 = (f.box >> 16 & 0xFFu) / kBlockWidth, by1 = (f.box >> 24) / kBlockWidth;
     const std::uint32_t of_box = (bx1 - bx0 + 1) * (by1 - by0 + 1);
     if (of_box <= kFewBlocks) {
-      add_tested(of_box, 0);
+      count_blocks(of_box, 0);
+      for (std::uint32_t by = by0; by <= by1; ++by) {
+        for (std::uint32_t bx = bx0; bx <= bx1; ++bx) add_tested(number, edges, by * kRow + bx, kAllPixels);
+      }
       return;
     }
     blocks = 0;
@@ -403,215 +494,142 @@ class TileBounder {
     Float most[3], covers[3];
     const float span = scene_.trusts_floats ? 0.0f : f.edge_span;
     for (int k = 0; k < 3; ++k) {
-      const Float x(f.x[k]), y(f.y[k]), value(f.value[k]);
-      most[k] = (L::max(x, zero) + L::max(y, zero)) * last + value;
-      covers[k] = (most[k] - ((L::min(x, zero) + L::min(y, zero)) * last + value)) + Float(span);
+      most[k] = (L::max(edges.x[k], zero) + L::max(edges.y[k], zero)) * last + Float(f.value[k]);
+      covers[k] =
+          (most[k] - ((L::min(edges.x[k], zero) + L::min(edges.y[k], zero)) * last + Float(f.value[k]))) + Float(span);
     }
     const std::uint32_t columns = (2u << bx1) - (1u << bx0);
     std::uint64_t tested = 0, covered = 0;
     for (std::uint32_t by = by0; by <= by1; ++by) {
-      const Float line = Float(places.block_row[by * kRow]) - Float(f.offset_y);
+      const Float line = Float(places.block_row[by * kRow]) - edges.offset_y;
       for (std::uint32_t group = 0; group < kRow / kLanes; ++group) {
         const std::uint32_t here = columns >> (group * kLanes) & L::kAllBits;
         if (here == 0) continue;
         count(TileWork::kBlockGroup);
-        const Float x = Float::load(places.block_column + group * kLanes) - Float(f.offset_x);
-        // Sums in another order may decide otherwise: within this of a limit a block counts as both.
-        const Float slack(f.edge_span * kEdgeSlack);
+        const Float x = Float::load(places.block_column + group * kLanes) - edges.offset_x;
+        // Sums in another order may decide otherwise: within `slack` of a limit a block counts as both.
         Int none = Int::splat(0), partial = Int::splat(0), whole = Int::splat(0);
         for (int k = 0; k < 3; ++k) {
-          const Float value = Float(f.x[k]) * x + L::bounded_sum(Float(f.y[k]), line, most[k]);
-          none = none | L::words_of(value + slack);
-          partial = partial | L::words_of(value - covers[k] - slack);
-          whole = whole | L::words_of(value - covers[k] + slack);
+          const Float value = edges.x[k] * x + (edges.y[k] * line + most[k]);
+          none = none | L::words_of(value + edges.slack);
+          partial = partial | L::words_of(value - covers[k] - edges.slack);
+          whole = whole | L::words_of(value - covers[k] + edges.slack);
         }
-        const std::uint32_t all = ~L::sign_bits(none) & here;
-        blocks |= std::uint64_t{all} << (by * kRow + group * kLanes);
-        tested += count_bits(L::sign_bits(partial) & all);
+        const std::uint32_t all = ~L::sign_bits(none) & here, part = L::sign_bits(partial) & all;
+        const std::uint32_t base = by * kRow + group * kLanes;
+        blocks |= std::uint64_t{all} << base;
+        tested += count_bits(part);
         covered += count_bits(~L::sign_bits(whole) & all);
+        for (std::uint32_t rest = part; rest != 0; rest &= rest - 1) {
+          add_tested(number, edges, base + lowest_bit(rest), kAllPixels);
+        }
+        for (std::uint32_t rest = all & ~part; rest != 0; rest &= rest - 1) {
+          const std::uint32_t block = base + lowest_bit(rest);
+          if (pixels_[block] != 0) add_part(number, block, pixels_[block], 0);
+        }
       }
     }
-    add_tested(tested, covered);
+    count_blocks(tested, covered);
   }
   static constexpr std::uint32_t kFewBlocks = 4;  // of TileTracer with four lanes
-  void add_tested(std::uint64_t tested, std::uint64_t covered) {
+  void count_blocks(std::uint64_t tested, std::uint64_t covered) {
     count(TileWork::kBlock, tested);
     count(TileWork::kCoveredBlock, covered);
     if (scene_.has_facing) count(TileWork::kFacingBlock, tested + covered);
   }
 
-  // Where a shape's edges cross the rows of pixels, four rows at a time.
-  void add_rows(std::uint32_t number) {
-    const Shape& f = shapes_[number];
-    const bool is_tiny = f.kind == Shape::Kind::kTiny;
-    // Blocks are tested whole.
-    const std::uint32_t round = is_tiny ? 0 : kBlockWidth - 1;
-    const std::uint32_t x0 = (f.box & 0xFFu) & ~round, y0 = (f.box >> 8 & 0xFFu) & ~round;
-    const std::uint32_t x1 = std::min((f.box >> 16 & 0xFFu) | round, columns_ - 1),
-                        y1 = std::min((f.box >> 24) | round, rows_count_ - 1);
-    const Float first(static_cast<float>(x0)), last(static_cast<float>(x1));
-    Float inverse[3], before[3], after[3];
-    bool is_left[3];
-    for (int k = 0; k < 3; ++k) {
-      static constexpr float kLeastSlope = 0x1p-120f;
-      is_left[k] = f.x[k] >= 0.0f;
-      const float slope = std::max(magnitude(f.x[k]), kLeastSlope);
-      const float per = 1.0f / slope;
-      inverse[k] = Float(is_left[k] ? per : -per);
-      const float slack = f.edge_span * kEdgeSlack * per + kPlaceSlack;
-      before[k] = Float(slack);
-      after[k] = Float(f.edge_span * per + slack);
-    }
-    for (std::uint32_t y = y0; y <= y1; y += kLanes) {
-      const Float row = Float(static_cast<float>(y) - f.offset_y) + Float::load(kFourRows);
-      Float low = first, high = last, sure_low = first, sure_high = last;
-      for (int k = 0; k < 3; ++k) {
-        const Float place = Float(f.offset_x) - (Float(f.value[k]) + row * Float(f.y[k])) * inverse[k];
-        if (is_left[k]) {
-          low = L::max(place - before[k], low);
-          sure_low = L::max(place + after[k], sure_low);
-        } else {
-          high = L::min(place + before[k], high);
-          sure_high = L::min(place - after[k], sure_high);
-        }
-      }
-      alignas(16) float lows[4], highs[4], sure_lows[4], sure_highs[4];
-      low.store(lows);
-      high.store(highs);
-      sure_low.store(sure_lows);
-      sure_high.store(sure_highs);
-      for (std::uint32_t i = 0; i < kLanes && y + i <= y1; ++i) {
-        const std::uint32_t possible = bits_within(lows[i], highs[i]);
-        if (possible != 0) add_part(number, y + i, possible, possible & ~bits_within(sure_lows[i], sure_highs[i]));
-      }
-    }
-  }
-  static constexpr float kFourRows[4] = {0.0f, 1.0f, 2.0f, 3.0f};
-  // Whole numbers from `low` to `high`, as bits. Precondition: 0 <= low, high < Width.
-  static std::uint32_t bits_within(float low, float high) {
-    if (!(low <= high)) return 0;
-    const int whole = static_cast<int>(low);
-    return bits_between(whole + (static_cast<float>(whole) < low ? 1 : 0), static_cast<int>(high) + 1);
-  }
-
-  void add_part(std::uint32_t number, std::uint32_t row, std::uint32_t possible, std::uint32_t edges) {
+  void add_part(std::uint32_t number, std::uint32_t block, std::uint32_t possible, std::uint32_t edges) {
     const Shape& f = shapes_[number];
     if (f.kind == Shape::Kind::kTiny) count(TileWork::kTinyPixel, count_bits(possible));
     if (!is_looked_into()) return;
-    const double near = double{f.value[3]} + double{f.y[3]} * (row - double{f.offset_y}) - double{f.x[3]} * double{f.offset_x};
-    const int first = std::countr_zero(possible), last = 31 - std::countl_zero(possible);
-    const double at_first = near + double{f.x[3]} * first, at_last = near + double{f.x[3]} * last;
-    const double span = f.near_span, most = std::max(at_first, at_last) + kMoreStored * span;
-    rows_[row].push_back({possible, edges, edges, number, near, f.x[3],
-                          std::min(at_first, at_last) - kMoreStored * span, most, span,
-                          f.kind == Shape::Kind::kDrawn});
-    const double stored = std::max(span, most * kStoredSpan);
-    for (int block = first / 4; block <= last / 4; ++block) {
-      double& most_span = block_span_[row / kBlockWidth * kRow + static_cast<std::uint32_t>(block)];
-      most_span = std::max(most_span, stored);
-    }
+    const auto bits = static_cast<std::uint16_t>(edges);
+    parts_[block].push_back({static_cast<std::uint16_t>(possible), bits, bits, number});
+    block_span_[block] = std::max({block_span_[block], f.span, f.high * kStoredSpan});
   }
 
   // Whether any pixel may be decided: Accuracy::kFast decides those of triangles without a bound.
   [[nodiscard]] bool is_looked_into() const { return !scene_.trusts_floats || has_careful_; }
 
-  // Every pixel of the box is decided, and what it stores may be as near as anything.
-  void add_careful(std::uint32_t number) {
-    const Shape& f = shapes_[number];
-    const std::uint32_t bits = bits_between(static_cast<int>(f.box & 0xFFu), static_cast<int>((f.box >> 16 & 0xFFu) + 1));
-    const double all = kInfinity;
-    for (std::uint32_t y = f.box >> 8 & 0xFFu; y <= f.box >> 24; ++y) {
-      rows_[y].push_back({bits, bits, bits, number, 0.0, 0.0, -all, all, all, false});
-      for (std::uint32_t block = 0; block < kRow; ++block) {
-        if ((bits >> (block * kBlockWidth) & 15u) != 0) block_span_[y / kBlockWidth * kRow + block] = all;
-      }
-    }
-  }
-
   // Pixels that floats may leave open: those near an edge, and those where two triangles are equally near.
-  void settle_rows() {
+  void settle_blocks() {
     if (!is_looked_into()) return;
     const double floor = floor_of(scene_.head) * (1.0 + 0x1p-14);
     std::uint64_t looked_into = 0;
-    for (std::uint32_t y = 0; y < rows_count_; ++y) {
-      std::vector<RowPart>& row = rows_[y];
-      const double* const spans = &block_span_[y / kBlockWidth * kRow];
-      if (row.size() > kMostOfRow) {
-        for (const RowPart& part : row) {
-          if (!scene_.trusts_floats || shapes_[part.shape].kind == Shape::Kind::kCareful) {
-            add_open_pixels(count_bits(part.possible));
-          }
-        }
-        continue;
-      }
-      const double most_span = *std::max_element(spans, spans + kRow);
+    for (std::uint32_t block = 0; block < Memory::kBlocks; ++block) {
+      std::vector<BlockPart>& parts = parts_[block];
+      const double span = block_span_[block];
+      const bool is_short = parts.size() <= kMostOfBlock;
       std::uint32_t seen = 0;
-      for (std::size_t i = 0; i < row.size(); ++i) {
-        RowPart& part = row[i];
+      for (std::size_t i = 0; i < parts.size(); ++i) {
+        BlockPart& part = parts[i];
+        const Shape& f = shapes_[part.shape];
         if (scene_.trusts_floats) {
-          if (shapes_[part.shape].kind != Shape::Kind::kCareful) part.open = 0;
+          if (f.kind != Shape::Kind::kCareful) part.open = 0;
           continue;
         }
         // Nothing was hit: what t_far or an error of 1 / t leaves open.
-        if (!(part.low > floor + most_span)) part.open = part.possible;
-        if ((seen & part.possible) != 0) {
-          for (std::size_t j = 0; j < i; ++j) {
-            RowPart& other = row[j];
-            if ((part.possible & other.possible) == 0 || part.low > other.high + most_span ||
-                other.low > part.high + most_span) {
-              continue;
-            }
-            compare(part, other, spans);
-            // Which of them is drawn first depends on what else is kept.
-            if (!part.is_in_order || !other.is_in_order) compare(other, part, spans);
+        if (!is_short || !(f.low > floor + span)) part.open = part.possible;
+        if ((seen & part.possible & ~part.open) != 0 || !f.is_in_order()) {
+          for (std::size_t j = 0; j < i && is_short; ++j) {
+            BlockPart& other = parts[j];
+            if ((part.possible & other.possible) == 0) continue;
+            const Shape& old = shapes_[other.shape];
+            if (f.low > old.high + span || old.low > f.high + span) continue;
+            compare(part, other, block);
+            if (!f.is_in_order() || !old.is_in_order()) compare(other, part, block);
           }
         }
         seen |= part.possible;
       }
-      for (const RowPart& part : row) {
-        if (looked_into > kMostLookedInto) {
+      for (const BlockPart& part : parts) {
+        if (looked_into > kMostLookedInto || !is_short) {
           add_open_pixels(count_bits(part.open));
           continue;
         }
         for (std::uint32_t rest = part.open; rest != 0; rest &= rest - 1) {
           ++looked_into;
-          decide(row, part, lowest_bit(rest), y);
+          decide(parts, part, lowest_bit(rest), block);
         }
       }
     }
   }
 
   // Marks the pixels where a part may have to be decided after another was hit.
-  void compare(RowPart& part, const RowPart& old, const double* spans) {
-    const std::uint32_t both = part.possible & old.possible;
-    const int first = std::countr_zero(both), last = 31 - std::countl_zero(both);
-    const double span = *std::max_element(spans + first / 4, spans + last / 4 + 1);
+  void compare(BlockPart& part, const BlockPart& old_part, std::uint32_t block) const {
+    const Shape &f = shapes_[part.shape], &old = shapes_[old_part.shape];
     // In front at least: surely, or not at all.
-    const double most = kSumSlack * part.span + kMoreStored * old.span + span;
-    const double least = -(kMoreStored * part.span + kLessStored * old.span);
-    const double apart = part.near - old.near, per_column = part.near_x - old.near_x;
-    const double at_first = apart + per_column * first, at_last = apart + per_column * last;
-    if ((at_first > most && at_last > most) || (at_first < least && at_last < least)) return;
-    for (std::uint32_t rest = both & ~part.open; rest != 0; rest &= rest - 1) {
-      const double here = apart + per_column * lowest_bit(rest);
-      if (!(here > most || here < least)) part.open |= rest & -rest;
+    const double most = kSumSlack * f.span + kMoreStored * old.span + block_span_[block];
+    const double least = -(kMoreStored * f.span + kLessStored * old.span);
+    const std::uint32_t column = block % kRow * kBlockWidth, row = block / kRow * kBlockWidth;
+    const double apart = f.near(column, row) - old.near(column, row);
+    const double right = double{f.x[3]} - double{old.x[3]}, down = double{f.y[3]} - double{old.y[3]};
+    for (std::uint32_t rest = part.possible & old_part.possible & ~part.open; rest != 0; rest &= rest - 1) {
+      const std::uint32_t pixel = lowest_bit(rest);
+      const double here = apart + right * (pixel % kBlockWidth) + down * (pixel / kBlockWidth);
+      if (!(here > most || here < least)) part.open = static_cast<std::uint16_t>(part.open | 1u << pixel);
     }
   }
 
-  // Whether a pixel surely has a hit so much in front when a part is drawn that floats leave it out. What is drawn
-  // block by block comes after all before it; these were drawn, or something in front of them was.
-  [[nodiscard]] static bool is_hidden(const std::vector<RowPart>& row, const RowPart& part, std::uint32_t x) {
-    if (!part.is_in_order) return false;
-    const double most = part.at(x) + kMoreStored * part.span;
-    for (const RowPart* other = row.data(); other != &part; ++other) {
-      if (other->is_sure(x) && other->at(x) - kLessStored * other->span > most) return true;
+  // Whether a pixel surely has a hit so much in front when a part is drawn that floats leave it out: what comes before
+  // it was drawn, or something in front of that was.
+  [[nodiscard]] bool is_hidden(const std::vector<BlockPart>& parts, const BlockPart& part, std::uint32_t pixel,
+                               std::uint32_t x, std::uint32_t y) const {
+    const Shape& f = shapes_[part.shape];
+    if (!f.is_in_order()) return false;
+    const double most = f.near(x, y) + kMoreStored * f.span;
+    for (const BlockPart* other = parts.data(); other != &part; ++other) {
+      if (!other->is_sure(pixel)) continue;
+      const Shape& before = shapes_[other->shape];
+      if (before.near(x, y) - kLessStored * before.span > most) return true;
     }
     return false;
   }
 
   // One decision at the most: whichever triangle was hit before.
-  void decide(const std::vector<RowPart>& row, const RowPart& part, std::uint32_t x, std::uint32_t y) {
-    if (is_hidden(row, part, x)) return;
+  void decide(const std::vector<BlockPart>& parts, const BlockPart& part, std::uint32_t pixel, std::uint32_t block) {
+    const std::uint32_t x = block % kRow * kBlockWidth + pixel % kBlockWidth,
+                        y = block / kRow * kBlockWidth + pixel / kBlockWidth;
+    if (is_hidden(parts, part, pixel, x, y)) return;
     count(TileWork::kOpenPixel);
     if (scene_.has_facing) count(TileWork::kFacingBlock);
     BatchRay ray{};
@@ -626,14 +644,13 @@ class TileBounder {
     const VertexTriangle& triangle = scene_.triangles[record];
     fetch(record_transfer(record));
     WorkCounters work;
-    const bool is_hit = passes_through(ray, triangle, work);
     bool may_tie = false;
-    if (is_hit) {
+    if (passes_through(ray, triangle, work)) {
       const float t = ray_distance(ray, triangle, work);
       std::uint32_t exact = 0;
       Transfer longest{};
-      for (const RowPart& other : row) {
-        if (!other.may_be(x) || &other == &part) continue;
+      for (const BlockPart& other : parts) {
+        if (!other.may_be(pixel) || &other == &part) continue;
         WorkCounters of_other;
         const std::uint32_t other_record = shapes_[other.shape].record;
         const float other_t = ray_distance(ray, scene_.triangles[other_record], of_other);
@@ -689,8 +706,9 @@ class TileBounder {
   bool has_careful_ = false;
   std::vector<WaitingChild> stack_;
   std::vector<Shape> shapes_;
-  std::array<std::vector<RowPart>, Width> rows_;
-  std::array<double, Memory::kBlocks> block_span_{};
+  std::array<std::vector<BlockPart>, Memory::kBlocks> parts_;
+  std::array<double, Memory::kBlocks> block_span_{};  // the most that a block's hits may have
+  std::array<std::uint16_t, Memory::kBlocks> pixels_{};  // in the picture
 };
 
 }  // namespace
