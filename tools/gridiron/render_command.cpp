@@ -1,15 +1,12 @@
 // render: a scene becomes a picture, and where its cycles and bytes went. SPDX-License-Identifier: Apache-2.0
 #include <gridiron/sim/replay.h>
 #include <gridiron/sim/sim_chip.h>
-#include <gridiron/sim/view_bound.h>
-#include <gridiron/sim/trace_packing.h>
-#include <cstdlib>
-#include <algorithm>
 #include <report/report.h>
 #include <report/timeline.h>
 
 #include <cstdio>
 #include <optional>
+#include <span>
 #include <string>
 #include <string_view>
 #include <utility>
@@ -27,6 +24,7 @@
 #include "gridiron/frame/frame_pictures.h"
 #include "gridiron/frame/requested_frame.h"
 #include "gridiron/frame/unseen_scene.h"
+#include "gridiron/frame/worst_of_view.h"
 #include "gridiron/scene/effect_names.h"
 #include "gridiron/scene/scene_input.h"
 
@@ -97,6 +95,36 @@ ReportInput collect_report(const RenderPlan& plan, const SceneInput& input, cons
   if (plan.outputs.depth) report.depth_hash = repeated.hashes.depth;
   if (plan.outputs.ids) report.ids_hash = repeated.hashes.ids;
   return report;
+}
+
+// What the worst tile took, and what any may take with this camera.
+WorstTiles collect_worst_tiles(const RenderPlan& plan, FrameMemory& frame, const sim::FrameTrace& trace,
+                               const sim::FrameTiming& timing) {
+  const WorstMeasured measured = find_worst_measured(trace, timing);
+  const std::span<const std::byte> image =
+      frame.memory.bytes_at(frame.image_address, frame.image.header.image_bytes);
+  const WorstOfView bound = find_worst_of_view({frame.record, image, plan.layout.store}, *plan.scene.machine);
+  WorstTiles worst;
+  worst.tile[0] = measured.tile % frame.record.tiles_x;
+  worst.tile[1] = measured.tile / frame.record.tiles_x;
+  worst.bound_tile[0] = bound.tile % frame.record.tiles_x;
+  worst.bound_tile[1] = bound.tile / frame.record.tiles_x;
+  worst.cycles = measured.cycles;
+  worst.bound_cycles = bound.cycles.total();
+  worst.gets = measured.gets;
+  worst.bound_gets = bound.most_gets;
+  worst.get_bytes = measured.get_bytes;
+  worst.bound_get_bytes = bound.most_get_bytes;
+  worst.time = time_of(bound.seconds);
+  return worst;
+}
+
+void print_worst_tiles(const WorstTiles& worst) {
+  const auto words = [](double cycles) { return words_of_count(static_cast<std::uint64_t>(cycles)); };
+  std::printf("worst tile: %s cycles, at most %s with this camera; %s gets of %s bytes, at most %s of %s\n",
+              words(worst.cycles).c_str(), words(worst.bound_cycles).c_str(), words_of_count(worst.gets).c_str(),
+              words_of_count(worst.get_bytes).c_str(), words_of_count(worst.bound_gets).c_str(),
+              words_of_count(worst.bound_get_bytes).c_str());
 }
 
 void print_picture(const RenderPlan& plan, const Picture<std::uint32_t>& color, std::uint64_t hash) {
@@ -175,57 +203,13 @@ void run_command(const RenderRequest& request) {
   const FrameMemory& frame = *memory;
   const Picture<std::uint32_t> color = plane_words(frame, plan, frame.color);
   sim::FrameTiming timing;
+  std::optional<WorstTiles> worst;
   if (has_time(plan)) {
     timing = sim::replay(repeated.result.trace, *plan.scene.machine,
-                         {.core_count = plan.cores, .timeline = outputs.timeline.has_value()});
+                         {.core_count = plan.cores, .timeline = outputs.timeline.has_value() || plan.has_bound});
+    if (plan.has_bound) worst = collect_worst_tiles(plan, *memory, repeated.result.trace, timing);
   }
 
-  if (std::getenv("H1_DEBUG") != nullptr) {  // SCRATCH
-    timing = sim::replay(repeated.result.trace, *plan.scene.machine, {.core_count = plan.cores, .timeline = true});
-    const auto& trace = repeated.result.trace;
-    std::vector<double> cyc(trace.tiles.size());
-    for (auto& span : timing.timeline) if (span.kind == sim::TimelineSpan::Kind::kTile) cyc[span.tile_id] = span.end_cycles - span.begin_cycles;
-    const auto& head = static_cast<const FrameHead&>(frame.record);
-    std::vector<TileBound> bounds(trace.tiles.size());
-    double best = 1e9;
-    for (int rep = 0; rep < 5; ++rep) {
-      const Stopwatch watch;
-      sim::ViewBound view({head, memory->memory.bytes_at(frame.image_address, frame.image.header.image_bytes), plan.layout.store});
-      for (std::uint32_t i = 0; i < bounds.size(); ++i) bounds[i] = view.of(i);
-      best = std::min(best, watch.both().processor);
-    }
-    double wm[kWorkKindCount] = {}, wb[kWorkKindCount] = {};
-    double mc = 0, bc = 0, mg = 0, bg = 0, mb = 0, bb = 0;
-    const auto prices = sim::work_prices(plan.scene.machine->work_cycles, sim::kTreeEngine);
-    std::size_t worst_m = 0, worst_b = 0;
-    int bad = 0;
-    std::vector<std::array<double, kWorkKindCount>> all(bounds.size());
-    for (std::size_t i = 0; i < bounds.size(); ++i) {
-      auto& m = all[i];
-      double gets = 0, bytes = 0;
-      sim::for_each_event(trace.tiles[i], [&](const sim::TraceEvent& e) {
-        if (e.kind == sim::EventKind::kGet) { ++gets; bytes += e.bytes; ++m[WorkId(Work::kGetIssue).number()]; }
-        if (e.kind == sim::EventKind::kPut) ++m[WorkId(Work::kPutIssue).number()];
-        if (e.kind == sim::EventKind::kWait) ++m[WorkId(Work::kWait).number()];
-        if (e.kind == sim::EventKind::kWork) for (auto& a : e.work) if (!sim::is_charged_as_event(a.kind)) m[a.kind.number()] += a.amount;
-      });
-      for (std::uint32_t k = 0; k < sim::kTreeEngine.kind_count(); ++k) {
-        wm[k] += m[k]; wb[k] += double(bounds[i].work[k]);
-        if (m[k] > double(bounds[i].work[k])) { ++bad; if (bad < 20) std::printf("BAD tile %zu kind %s: %g > %llu\n", i, std::string(sim::work_kind(WorkId(k), sim::kTreeEngine).name).c_str(), m[k], (unsigned long long)bounds[i].work[k]); }
-      }
-      if (bytes > double(bounds[i].get_bytes)) { ++bad; std::printf("BAD bytes\n"); }
-      const double c = sim::view_tile_cycles(bounds[i], *plan.scene.machine, head.output_depth).total();
-      if (cyc[i] > c) { ++bad; std::printf("BAD cycles\n"); }
-      if (cyc[i] > mc) { mc = cyc[i]; worst_m = i; }
-      if (c > bc) { bc = c; worst_b = i; }
-      mg = std::max(mg, gets); mb = std::max(mb, bytes);
-      bg = std::max(bg, double(bounds[i][Work::kGetIssue])); bb = std::max(bb, double(bounds[i].get_bytes));
-    }
-    std::printf("bad %d, time %.2f ms; cycles %.0f <= %.0f: %.2f; gets %.0f <= %.0f: %.2f; bytes %.0f <= %.0f: %.2f\n", bad, best * 1e3, mc, bc, bc / mc, mg, bg, bg / mg, mb, bb, bb / mb);
-    const auto cy = sim::view_tile_cycles(bounds[worst_b], *plan.scene.machine, head.output_depth);
-    std::printf("worst measured tile %zu, bound tile %zu: work %.0f commands %.0f transfers %.0f\n", worst_m, worst_b, cy.work, cy.commands, cy.transfers);
-    for (std::uint32_t k = 0; k < sim::kTreeEngine.kind_count(); ++k) if (wb[k] > 0) std::printf("%-20s frame %10.0f %10.0f %6.2f | worst tile %9.0f %9llu cycles %9.0f %9.0f\n", std::string(sim::work_kind(WorkId(k), sim::kTreeEngine).name).c_str(), wm[k], wb[k], wb[k] / std::max(1.0, wm[k]), all[worst_b][k], (unsigned long long)bounds[worst_b].work[k], all[worst_b][k] * prices[k], double(bounds[worst_b].work[k]) * prices[k]);
-  }
   AtomicFiles files;
   files.add(*outputs.picture, name_in_shortage(plan.scene.input, "encode its picture",
                                                [&] { return encode_picture(color, *outputs.picture); }));
@@ -234,7 +218,9 @@ void run_command(const RenderRequest& request) {
   }
   if (outputs.ids) files.add(*outputs.ids, encode_pfm(id_picture(plane_words(frame, plan, frame.ids))));
   if (outputs.report) {
-    files.add(*outputs.report, report_json(collect_report(plan, input, frame, repeated, timing)));
+    ReportInput report = collect_report(plan, input, frame, repeated, timing);
+    report.worst_tiles = worst;
+    files.add(*outputs.report, report_json(report));
   }
   if (outputs.timeline) files.add(*outputs.timeline, timeline_json(timing, *plan.scene.machine));
   files.commit_at_end();
@@ -243,6 +229,7 @@ void run_command(const RenderRequest& request) {
   if (!plan.tile) tell_note(input.path, unseen_note(*memory, repeated.result, plan.mode));
   print_picture(plan, color, repeated.hashes.color);
   if (has_time(plan)) print_timing(plan, timing);
+  if (worst) print_worst_tiles(*worst);
   const std::string least = plan.repeats > 1 ? ", the least of " + std::to_string(plan.repeats) : "";
   std::printf("host: %.3f s to load, %.3f s to build, %.3f s to render on %s (%.3f s of processor time)%s\n",
               input.load_seconds.wall, repeated.build.wall, repeated.render.wall,
