@@ -54,6 +54,16 @@ Json json_of_count(std::uint64_t count) {
   return count == ~std::uint64_t{0} ? Json() : Json(count);
 }
 
+// Kinds of work that a bound has any of.
+Json work_json(const TileBound& bound, const sim::EngineWork& engine) {
+  Json work = Json::object();
+  for (std::uint32_t kind = 0; kind < engine.kind_count(); ++kind) {
+    if (sim::is_charged_as_event(WorkId(kind)) || bound.work[kind] == 0) continue;
+    work[std::string(sim::work_kind(WorkId(kind), engine).name)] = json_of_count(bound.work[kind]);
+  }
+  return work;
+}
+
 // The unit of a bound's cycles.
 const char* unit_of(const WorstTile& worst) {
   return worst.are_instructions ? "instructions" : "cycles";
@@ -83,16 +93,6 @@ Json json_of(const WorstTile& worst) {
             {"commands", worst.cycles.commands},
             {"transfers", worst.cycles.transfers},
             {"total", worst.cycles.total()}}}};
-}
-
-// Kinds of work that a bound has any of.
-Json work_json(const TileBound& bound, const sim::EngineWork& engine) {
-  Json work = Json::object();
-  for (std::uint32_t kind = 0; kind < engine.kind_count(); ++kind) {
-    if (sim::is_charged_as_event(WorkId(kind)) || bound.work[kind] == 0) continue;
-    work[std::string(sim::work_kind(WorkId(kind), engine).name)] = json_of_count(bound.work[kind]);
-  }
-  return work;
 }
 
 Json json_of(const InfoPlan& plan, const WorstOfView& worst) {

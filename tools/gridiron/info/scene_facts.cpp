@@ -56,7 +56,7 @@ EffectFacts effects_of(const EffectsRecord& record, std::uint32_t triangle_count
   return facts;
 }
 
-// Of a frame as `render` places it: the image first, then its planes.
+// Of a frame whose image lies where `render` places it.
 WorstOfView bound_view(const InfoPlan& plan, const std::filesystem::path& path, std::span<const std::byte> image,
                        const SceneImageView& view, const ViewRequest& request) {
   FrameSettings settings;
@@ -71,7 +71,7 @@ WorstOfView bound_view(const InfoPlan& plan, const std::filesystem::path& path, 
   settings.output_depth = plan.depths.output;
   settings.fetch_depth = plan.depths.fetch;
   constexpr MainAddress kImage{sim::SimMemory::kFirstAddress};
-  settings.color = kImage.offset_by((view.header.image_bytes + kLineBytes - 1) / kLineBytes * kLineBytes);
+  settings.color = kImage.offset_by(kLineBytes);  // across as many boundaries as may be
   FrameRecord record;
   const Status status = make_frame_record(settings, view, kImage, record);
   if (status == Status::kBadFrame) usage_error("--camera: no camera can be made of it for " + path.string());
